@@ -1,0 +1,15 @@
+/**
+ * @file led.h
+ * The alarm LED.
+ */
+#ifndef HAL_LED_H
+#define HAL_LED_H
+
+#include <stdbool.h>
+
+#include "hal/hal.h"
+
+/** Switch the LED. Called when it changes, at most once a tick. */
+void hal_led_set(hal_t *hal, bool on);
+
+#endif

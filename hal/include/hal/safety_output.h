@@ -1,0 +1,19 @@
+/**
+ * @file safety_output.h
+ * The hardware safety output: a contact that the integrator wires into the vehicle's drive enable. Open = safe. It must
+ * not cut the supply of VCU, EPS or remote receiver.
+ */
+#ifndef HAL_SAFETY_OUTPUT_H
+#define HAL_SAFETY_OUTPUT_H
+
+#include <stdbool.h>
+
+#include "hal/hal.h"
+
+/**
+ * Close (true) or open (false) the output. The port keeps it open from reset until the first call with true, and opens
+ * it in its fault handlers (FSM-4).
+ */
+void hal_safety_output_set(hal_t *hal, bool closed);
+
+#endif
