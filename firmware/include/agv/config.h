@@ -1,0 +1,90 @@
+/**
+ * @file config.h
+ * The configuration: one struct with checked defaults (INT-2). Rows, ranges and meanings stand in config_settings.def.
+ */
+#ifndef AGV_CONFIG_H
+#define AGV_CONFIG_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "agv/faults.h"
+
+/** Values of the choices. */
+enum { AGV_TOPOLOGY_SHARED = 0, AGV_TOPOLOGY_GATEWAY = 1 };
+enum { AGV_SHADOW_OFF = 0, AGV_SHADOW_ON = 1 };
+enum { AGV_PARK_AT_ONCE = 0, AGV_PARK_AT_STANDSTILL = 1 };
+enum { AGV_AI_LOST_WARN = 0, AGV_AI_LOST_TRIP = 1 };
+enum { AGV_OWN_HEARTBEAT_RUNNING = 0, AGV_OWN_HEARTBEAT_FROZEN = 1 };
+enum { AGV_IN_MANUAL_HEARTBEAT = 0, AGV_IN_MANUAL_ALL = 1 };
+
+/** All settings, in the order of config_settings.def, and the classes of the faults. */
+typedef struct {
+#define AGV_SETTING(name, preset, lowest, highest, unit, meaning) uint16_t name;
+#define AGV_CHOICE(name, preset, words, meaning) uint16_t name;
+#include "agv/config_settings.def"
+#undef AGV_SETTING
+#undef AGV_CHOICE
+    agv_fault_set_t trips; /**< the faults whose class is trip; the others warn */
+} agv_config_t;
+
+/** Number of settings, `trips` not among them. */
+enum {
+    AGV_SETTING_COUNT = 0
+#define AGV_SETTING(name, preset, lowest, highest, unit, meaning) +1
+#define AGV_CHOICE(name, preset, words, meaning) +1
+#include "agv/config_settings.def"
+#undef AGV_SETTING
+#undef AGV_CHOICE
+};
+
+/** What is wrong with a configuration. */
+typedef enum {
+    AGV_CONFIG_OK,
+    AGV_CONFIG_OUT_OF_RANGE,    /**< a setting below its lowest or above its highest value; `setting` says which */
+    AGV_CONFIG_ID_TWICE,        /**< status_frame_id is an identifier of the protocol, in one of the ID sets */
+    AGV_CONFIG_NEEDS_GATEWAY,   /**< `setting` only makes sense in the gateway topology */
+    AGV_CONFIG_FAULT_TOO_WEAK,  /**< `fault` is made weaker than it may be */
+    AGV_CONFIG_NO_SUCH_FAULT    /**< bits in `trips` beyond the faults */
+} agv_config_problem_t;
+
+/** Result of agv_config_check. */
+typedef struct {
+    agv_config_problem_t problem;
+    uint16_t setting;  /**< index of the setting in config_settings.def */
+    agv_fault_t fault; /**< for AGV_CONFIG_FAULT_TOO_WEAK: the highest-ranking one */
+} agv_config_verdict_t;
+
+/** The default configuration. */
+void agv_config_defaults(agv_config_t *config);
+
+/** Read a setting by its index; 0 beyond the last. */
+uint16_t agv_config_get(const agv_config_t *config, uint16_t setting);
+
+/** Write a setting by its index, unchecked. @return false when there is no such setting. */
+bool agv_config_set(agv_config_t *config, uint16_t setting, uint16_t value);
+
+/** Check a configuration as a whole. @return the first problem found, or AGV_CONFIG_OK. */
+agv_config_verdict_t agv_config_check(const agv_config_t *config);
+
+/**
+ * Checksum of a configuration: CRC-32 (IEEE 802.3) over all settings in their order, 16 bit little-endian each, then
+ * `trips`, 64 bit little-endian. The same on every platform.
+ */
+uint32_t agv_config_checksum(const agv_config_t *config);
+
+/** What a setting is, for programs that list or read configurations. Not used by the supervisor itself. */
+typedef struct {
+    const char *name;
+    uint16_t preset;  /**< default */
+    uint16_t lowest;
+    uint16_t highest;
+    const char *unit;    /**< "" for choices */
+    const char *words;   /**< "a|b" for choices, NULL for numbers */
+    const char *meaning; /**< one line, with the requirement row */
+} agv_setting_info_t;
+
+/** Describe a setting; NULL beyond the last. */
+const agv_setting_info_t *agv_setting_info(uint16_t setting);
+
+#endif
