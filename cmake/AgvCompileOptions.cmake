@@ -1,0 +1,32 @@
+# How this project's own code is compiled. Link `agv_options` (PRIVATE) to get it; generated and foreign code does not.
+
+option(AGV_WARNINGS_AS_ERRORS "Warnings in the project's own code are errors" ON)
+set(AGV_INSTRUMENT "" CACHE STRING "Instrumentation: empty, sanitize or coverage")
+set_property(CACHE AGV_INSTRUMENT PROPERTY STRINGS "" sanitize coverage)
+
+add_library(agv_options INTERFACE)
+target_compile_options(agv_options INTERFACE
+  -Wall -Wextra -Wpedantic
+  -Wshadow -Wundef -Wvla -Wunused -Wwrite-strings
+  -Wconversion -Wsign-conversion -Wdouble-promotion -Wfloat-equal
+  -Wcast-qual -Wcast-align -Wpointer-arith
+  -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition
+  -Wformat=2 -Wimplicit-fallthrough
+  -Walloca -Wnull-dereference
+  $<$<C_COMPILER_ID:GNU>:-Wlogical-op -Wduplicated-cond -Wduplicated-branches -Wtrampolines>
+  $<$<C_COMPILER_ID:Clang>:-Wcomma -Wunreachable-code-aggressive -Wconditional-uninitialized -Wextra-semi>
+)
+if(AGV_WARNINGS_AS_ERRORS)
+  target_compile_options(agv_options INTERFACE -Werror)
+endif()
+
+# Instrumentation is for everything that is linked, generated code included: a mock must not hide an overflow.
+if(AGV_INSTRUMENT STREQUAL "sanitize")
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+elseif(AGV_INSTRUMENT STREQUAL "coverage")
+  add_compile_options(--coverage)
+  add_link_options(--coverage)
+elseif(NOT AGV_INSTRUMENT STREQUAL "")
+  message(FATAL_ERROR "AGV_INSTRUMENT is '${AGV_INSTRUMENT}': it must be empty, sanitize or coverage")
+endif()

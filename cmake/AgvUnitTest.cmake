@@ -1,0 +1,85 @@
+# Unit tests with Unity and CMock.
+#
+#   agv_add_unit_test(NAME test_gate SOURCES test_gate.c [more.c ...] [MOCKS hal/can.h ...] [LIBS hal_sim ...])
+#
+# Builds one program from the sources, a runner generated from the first of them, and the generated mocks, and adds it
+# to ctest. A test includes a mock as "mock_can.h" (for hal/can.h). Every program is linked to agv_core.
+# Mocks stand in for the HAL contract, hal/include, and for nothing else: the rest of the core is tested as it is.
+
+find_program(AGV_RUBY ruby)
+set(AGV_GEMS ${PROJECT_SOURCE_DIR}/build/gems)
+set(AGV_UNITY ${AGV_GEMS}/vendor/unity)
+set(AGV_CMOCK ${AGV_GEMS}/vendor/cmock)
+set(AGV_CMOCK_CONFIG ${PROJECT_SOURCE_DIR}/tests/cmock.yml)
+set(AGV_MOCK_DIR ${PROJECT_BINARY_DIR}/mocks)
+
+# Without Ruby the programs still build (target host_sim and others): only the tests ask for it, when they are built.
+if(NOT AGV_RUBY)
+  set(AGV_RUBY ruby)
+endif()
+
+add_custom_command(
+  OUTPUT ${AGV_GEMS}/.complete
+  BYPRODUCTS ${AGV_UNITY}/src/unity.c ${AGV_CMOCK}/src/cmock.c
+  COMMAND ${PROJECT_SOURCE_DIR}/scripts/bundle-gems
+  DEPENDS ${PROJECT_SOURCE_DIR}/Gemfile.lock
+  COMMENT "Installing Unity and CMock into build/gems"
+)
+add_library(unity STATIC ${AGV_UNITY}/src/unity.c ${AGV_CMOCK}/src/cmock.c ${AGV_GEMS}/.complete)
+target_include_directories(unity SYSTEM PUBLIC ${AGV_UNITY}/src ${AGV_CMOCK}/src)
+
+# The library target of the mock of one header of the HAL contract, made when it is first asked for.
+function(agv_mock_of HEADER TARGET_VARIABLE)
+  if(NOT HEADER MATCHES "^hal/([a-z_]+)\\.h$" OR NOT EXISTS ${PROJECT_SOURCE_DIR}/hal/include/${HEADER})
+    message(FATAL_ERROR "'${HEADER}' cannot be mocked: mocks replace headers of hal/include and nothing else")
+  endif()
+  set(mock mock_${CMAKE_MATCH_1})
+  set(${TARGET_VARIABLE} ${mock} PARENT_SCOPE)
+  if(TARGET ${mock})
+    return()
+  endif()
+  set(header_path ${PROJECT_SOURCE_DIR}/hal/include/${HEADER})
+  add_custom_command(
+    OUTPUT ${AGV_MOCK_DIR}/${mock}.c ${AGV_MOCK_DIR}/${mock}.h
+    COMMAND ${AGV_RUBY} ${AGV_CMOCK}/lib/cmock.rb -o${AGV_CMOCK_CONFIG} --mock_path=${AGV_MOCK_DIR} ${header_path}
+    DEPENDS ${header_path} ${AGV_CMOCK_CONFIG} ${AGV_GEMS}/.complete
+    COMMENT "Mocking ${HEADER}"
+    VERBATIM
+  )
+  add_library(${mock} STATIC ${AGV_MOCK_DIR}/${mock}.c ${AGV_MOCK_DIR}/${mock}.h)
+  target_include_directories(${mock} SYSTEM PUBLIC ${AGV_MOCK_DIR} ${PROJECT_SOURCE_DIR}/hal/include)
+  target_link_libraries(${mock} PUBLIC unity)
+endfunction()
+
+function(agv_add_unit_test)
+  cmake_parse_arguments(PARSE_ARGV 0 TEST "" "NAME" "SOURCES;MOCKS;LIBS")
+  if(NOT TEST_NAME OR NOT TEST_SOURCES OR TEST_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "usage: agv_add_unit_test(NAME name SOURCES file.c ... [MOCKS hal/x.h ...] [LIBS lib ...])")
+  endif()
+  list(GET TEST_SOURCES 0 first)
+  get_filename_component(first ${first} ABSOLUTE)
+  set(runner ${CMAKE_CURRENT_BINARY_DIR}/${TEST_NAME}_runner.c)
+  add_custom_command(
+    OUTPUT ${runner}
+    COMMAND ${AGV_RUBY} ${AGV_UNITY}/auto/generate_test_runner.rb ${AGV_CMOCK_CONFIG} ${first} ${runner}
+    DEPENDS ${first} ${AGV_CMOCK_CONFIG} ${AGV_GEMS}/.complete
+    COMMENT "Generating the runner of ${TEST_NAME}"
+    VERBATIM
+  )
+  set(mocks)
+  foreach(header IN LISTS TEST_MOCKS)
+    agv_mock_of(${header} mock)
+    list(APPEND mocks ${mock})
+  endforeach()
+
+  add_executable(${TEST_NAME} ${TEST_SOURCES} ${runner})
+  target_link_libraries(${TEST_NAME} PRIVATE agv_options ${TEST_LIBS} agv_core ${mocks} unity)
+  # The runner calls the test functions by name, so they are not static and have no prototype.
+  set_source_files_properties(${TEST_SOURCES} PROPERTIES COMPILE_OPTIONS -Wno-missing-prototypes)
+  set_source_files_properties(${runner} PROPERTIES COMPILE_OPTIONS -w)
+  add_test(NAME ${TEST_NAME} COMMAND ${TEST_NAME})
+  get_filename_component(kind ${CMAKE_CURRENT_SOURCE_DIR} NAME)
+  # An ignored test function, or a program with none, is a failure.
+  set_tests_properties(${TEST_NAME} PROPERTIES LABELS "unity;${kind}" TIMEOUT 120
+    FAIL_REGULAR_EXPRESSION ":IGNORE;(^|\n)0 Tests ")
+endfunction()
