@@ -1,0 +1,200 @@
+/**
+ * @file sim_hal.h
+ * The simulated port: `struct hal` for one supervisor, with everything of hal/include behind it.
+ *
+ * Two modes, chosen once:
+ * - on a bus: sim_hal_init(), then sim_hal_attach() for each side. Time is the bus's; received frames are taken with
+ *   sim_hal_receive().
+ * - direct: sim_hal_init_direct(). What is sent goes to a callback in the very call; clock and controller state are
+ * what the program sets. For replay, exploration and fuzzing; the program hands received frames to the supervisor
+ * itself.
+ *
+ * The program owns the struct; it may be copied by assignment to take a snapshot (it points to bus and store). Members
+ * marked "read" may be read at any time; all is changed through functions.
+ */
+#ifndef HAL_SIM_SIM_HAL_H
+#define HAL_SIM_SIM_HAL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "hal/can.h"
+#include "hal/clock.h"
+#include "hal/hal.h"
+#include "hal/led.h"
+#include "hal/reset.h"
+#include "hal/safety_output.h"
+#include "hal/store.h"
+#include "hal/watchdog.h"
+#include "hal_sim/sim_bus.h"
+#include "hal_sim/sim_store.h"
+
+#define SIM_HAL_WATCHDOG_DEFAULT_MS 100u
+#define SIM_HAL_WATCHDOG_OFF UINT32_MAX
+
+/** The operations of hal/include, one each. */
+typedef enum {
+    SIM_HAL_OP_CAN_SEND,
+    SIM_HAL_OP_CAN_PURGE,
+    SIM_HAL_OP_CAN_RECOVER,
+    SIM_HAL_OP_CAN_STATUS,
+    SIM_HAL_OP_CLOCK_NOW,
+    SIM_HAL_OP_LED_SET,
+    SIM_HAL_OP_RESET_CAUSE,
+    SIM_HAL_OP_SAFETY_OUTPUT_SET,
+    SIM_HAL_OP_STORE_READ_LATCH,
+    SIM_HAL_OP_STORE_WRITE_LATCH,
+    SIM_HAL_OP_STORE_APPEND,
+    SIM_HAL_OP_STORE_READ_RECORD,
+    SIM_HAL_OP_WATCHDOG_FEED,
+    SIM_HAL_OP_COUNT
+} sim_hal_op_t;
+
+#define SIM_HAL_OP_ALL ((1u << SIM_HAL_OP_COUNT) - 1u)
+
+/** Direct mode: a frame was sent. Not called for a frame that is refused. */
+typedef void sim_hal_sink_fn(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame);
+
+/** All zero: clock from 0, watchdog after 100 ms, power-on, no store. */
+typedef struct {
+    uint32_t clock_start_ms; /**< what the clock reads at bus time 0 (direct: until it is set); any value */
+    uint16_t clock_phase_us; /**< 0..999: how much of the first millisecond is over at bus time 0 */
+    uint32_t watchdog_ms;    /**< period; 0 = SIM_HAL_WATCHDOG_DEFAULT_MS; or SIM_HAL_WATCHDOG_OFF */
+    hal_reset_cause_t reset_cause;
+    sim_store_t *store; /**< NULL: nothing is ever stored, writes fail */
+} sim_hal_config_t;
+
+/** An output pin. */
+typedef struct {
+    bool on;             /**< LED lit; safety output closed */
+    uint32_t changes;    /**< times that it changed */
+    uint32_t changed_ms; /**< clock at the last change */
+} sim_hal_pin_t;
+
+/** One CAN controller. */
+typedef struct {
+    bool exists;               /**< read */
+    uint32_t sent;             /**< read: frames taken */
+    uint32_t refused;          /**< read: hal_can_send() returned false */
+    uint32_t received;         /**< read: frames handed out by sim_hal_receive() */
+    uint32_t purges;           /**< read: hal_can_purge() calls */
+    uint32_t recover_requests; /**< read: hal_can_recover() calls that came in bus-off */
+    hal_can_status_t status;   /**< direct mode: what is reported; bus mode: the last one that was */
+    bool full;                 /**< direct mode: sim_hal_set_full() */
+    sim_bus_t *bus;
+    sim_bus_node_t node;
+} sim_hal_can_t;
+
+struct hal {
+    sim_hal_can_t can[HAL_CAN_SIDES];    /**< read */
+    sim_hal_pin_t led;                   /**< read */
+    sim_hal_pin_t safety_output;         /**< read */
+    bool held;                           /**< read: the watchdog has bitten; nothing works until sim_hal_reset() */
+    uint32_t feeds;                      /**< read: hal_watchdog_feed() calls */
+    uint32_t bites;                      /**< read: of the watchdog, since sim_hal_init() */
+    uint32_t resets;                     /**< read: sim_hal_reset() calls */
+    uint32_t calls;                      /**< read: operations of hal/include called so far */
+    uint32_t failures;                   /**< read: of those, how many were made to fail */
+    uint32_t op_calls[SIM_HAL_OP_COUNT]; /**< read: calls of each */
+    sim_hal_op_t last_failed;            /**< read: operation made to fail last (when failures > 0) */
+    uint32_t fail_first;
+    uint32_t fail_count;
+    uint32_t fail_ops;
+    uint32_t fed_ms;
+    uint32_t direct_now_ms;
+    uint32_t last_now_ms;
+    bool direct;
+    sim_hal_config_t config;
+    sim_hal_sink_fn *sink;
+    void *sink_ctx;
+};
+
+/** @name Building @{ */
+
+/** Make a port on a bus. No controller exists until sim_hal_attach(). @param config NULL = all zero; is copied. */
+void sim_hal_init(hal_t *hal, const sim_hal_config_t *config);
+
+/**
+ * Attach a side to a bus as a new node. Both sides' buses must be kept at one time (sim_bus_run_all_until()).
+ * @param config of the node; NULL = 8 mailboxes by ID, a receive queue of SIM_BUS_RX_SLOTS_MAX
+ * @return false: the side has a bus already, the bus is full, or the configuration is out of range.
+ */
+bool sim_hal_attach(hal_t *hal, hal_can_side_t side, sim_bus_t *bus, const sim_bus_node_config_t *config);
+
+/**
+ * Make a port without a bus.
+ * @param sides how many controllers exist: 1 = the vehicle side, 2 = the AI side too
+ * @param sink gets every frame that is sent; NULL = they are only counted
+ */
+void sim_hal_init_direct(hal_t *hal, const sim_hal_config_t *config, unsigned sides, sim_hal_sink_fn *sink, void *ctx);
+/** @} */
+
+/** @name Pumping @{ */
+
+/**
+ * Take the next received frame of a side; the program hands it to the supervisor.
+ * @param frame time_ms = this supervisor's clock at the moment of its arrival, rounded down
+ * @return false: nothing there, no such side, direct mode, or held in reset.
+ */
+bool sim_hal_receive(hal_t *hal, hal_can_side_t side, hal_can_frame_t *frame);
+
+/**
+ * Let the watchdog look at the clock; call it every tick, after the supervisor's step. It bites when the last feed is
+ * more than its period ago: the safety output opens (at the moment when the period was over), the LED goes dark, the
+ * controllers lose power, and every operation is without effect until sim_hal_reset().
+ * @return true while the port is held in reset.
+ */
+bool sim_hal_poll(hal_t *hal);
+
+/**
+ * Reset the MCU: outputs as at boot (open, dark), controllers fresh with empty queues and zero counters, watchdog just
+ * fed. The log and (but for HAL_RESET_POWER_ON, see sim_store_t) the latch stay. The program then starts a new
+ * supervisor.
+ */
+void sim_hal_reset(hal_t *hal, hal_reset_cause_t cause);
+
+/** The clock, uncounted and never failing: for the program's own use. */
+uint32_t sim_hal_now_ms(const hal_t *hal);
+
+/** The clock at a moment of the bus; direct mode: as sim_hal_now_ms(). */
+uint32_t sim_hal_clock_at(const hal_t *hal, uint64_t bus_us);
+/** @} */
+
+/** @name Failing on demand @{ */
+
+/**
+ * Make calls of hal/include fail: those with the numbers @p first .. @p first + @p count - 1 (the first call after
+ * sim_hal_init() is number 1; hal->calls is the number of the last one), as far as their operation is in @p ops.
+ * A failing operation has no effect and reports the worst that its contract allows:
+ * send, write_latch, append: false; read_latch, read_record: 0; reset_cause: HAL_RESET_UNKNOWN; status: what it
+ * reported last; clock: what it read last; purge, recover, led, safety output, feed: nothing happens.
+ * @param first 0 = nothing fails (default)
+ * @param count UINT32_MAX = all from first on
+ * @param ops bits 1 << sim_hal_op_t; SIM_HAL_OP_ALL
+ */
+void sim_hal_fail_at(hal_t *hal, uint32_t first, uint32_t count, uint32_t ops);
+/** @} */
+
+/** @name Direct mode: what is set from outside @{ */
+
+/** Set the clock. Never call it with an earlier time (the wrap is none). */
+void sim_hal_set_now_ms(hal_t *hal, uint32_t now_ms);
+
+/**
+ * Set a controller's error state. Entering HAL_CAN_BUS_OFF counts bus_off_count up and sets tx_pending_ms to 0; while
+ * in it hal_can_send() returns false. hal_can_recover() only counts recover_requests.
+ */
+void sim_hal_set_can_state(hal_t *hal, hal_can_side_t side, hal_can_state_t state);
+
+/** Count one overrun. Works on a bus, too. */
+void sim_hal_add_overrun(hal_t *hal, hal_can_side_t side);
+
+/** Report frames as waiting for so long (0 = none); hal_can_purge() sets it to 0. */
+void sim_hal_set_tx_pending_ms(hal_t *hal, hal_can_side_t side, uint32_t tx_pending_ms);
+
+/** While set, hal_can_send() returns false (queue full). Works on a bus, too. */
+void sim_hal_set_full(hal_t *hal, hal_can_side_t side, bool full);
+/** @} */
+
+#endif
