@@ -1,0 +1,24 @@
+/**
+ * @file commands.h
+ * The sub-commands. To add one: a file cmd_<name>.c with its function, a prototype here, a row in the table in main.c.
+ */
+#ifndef HOST_SIM_COMMANDS_H
+#define HOST_SIM_COMMANDS_H
+
+#include "report.h"
+
+/**
+ * Run a sub-command.
+ * @param argc number of its arguments, its own name not among them
+ * @param argv its arguments; the function may change their order
+ * @return exit status of the program; whatever is not STATUS_OK was reported on standard error
+ */
+typedef status_t command_fn(int argc, char **argv);
+
+/** `host_sim replay`: a recorded log, supervised in virtual time. */
+command_fn cmd_replay;
+
+/** `host_sim config`: every setting, as YAML or as a Kconfig fragment. */
+command_fn cmd_config;
+
+#endif

@@ -1,0 +1,72 @@
+/**
+ * @file main.c
+ * The program's front: finds the sub-command and runs it.
+ */
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "commands.h"
+#include "report.h"
+
+/** One sub-command, as `--help` lists it. */
+typedef struct {
+    const char *name;
+    const char *help; /**< one line */
+    command_fn *run;
+} command_t;
+
+static const command_t commands[] = {
+    {"config", "print every setting as a configuration file, or a configuration as Kconfig", cmd_config},
+    {"replay", "feed a recorded candump log to the supervisor in virtual time", cmd_replay},
+};
+
+static const size_t command_count = sizeof commands / sizeof commands[0];
+
+static void print_help(void) {
+    (void)printf("usage: host_sim COMMAND [OPTION]...\n"
+                 "\n"
+                 "The safety supervisor of an AGV's CAN bus, on a computer.\n"
+                 "\n"
+                 "Commands:\n");
+    for (size_t i = 0u; i < command_count; i++) {
+        (void)printf("  %-10s %s\n", commands[i].name, commands[i].help);
+    }
+    (void)printf(
+        "\n"
+        "  --help     print this help; after a command: its options\n"
+        "  --version  print the version\n"
+        "\n"
+        "Exit status: 0 it ran; 1 it ran, and an expectation did not hold; 2 it could not run, and one line on\n"
+        "standard error says why.\n");
+}
+
+static status_t run_command(int argc, char **argv) {
+    for (size_t i = 0u; i < command_count; i++) {
+        if (strcmp(argv[0], commands[i].name) == 0) {
+            return commands[i].run(argc - 1, &argv[1]);
+        }
+    }
+    (void)report("'%s' is no command; see host_sim --help", argv[0]);
+    return STATUS_UNUSABLE;
+}
+
+int main(int argc, char **argv) {
+    /* A reader that goes away is a write error like any other, with a message and an exit status. */
+    (void)signal(SIGPIPE, SIG_IGN);
+    status_t status = STATUS_OK;
+    if (argc < 2) {
+        (void)report("no command given; see host_sim --help");
+        status = STATUS_UNUSABLE;
+    } else if ((strcmp(argv[1], "--help") == 0) || (strcmp(argv[1], "-h") == 0)) {
+        print_help();
+    } else if (strcmp(argv[1], "--version") == 0) {
+        (void)printf("host_sim %s\n", HOST_SIM_VERSION);
+    } else {
+        status = run_command(argc - 1, &argv[1]);
+    }
+    if (!report_stdout() && (status == STATUS_OK)) {
+        status = STATUS_UNUSABLE;
+    }
+    return (int)status;
+}

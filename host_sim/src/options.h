@@ -1,0 +1,83 @@
+/**
+ * @file options.h
+ * Options of a command, described as tables of rows; one table says how they are parsed and what `--help` prints.
+ *
+ * `--name VALUE` and `--name=VALUE` (only the latter for a value that begins with `--`); an option that is given twice counts as given last (but for `each`); `--` ends the
+ * options; everything else that does not begin with `-`, and `-` itself, is an operand.
+ */
+#ifndef HOST_SIM_OPTIONS_H
+#define HOST_SIM_OPTIONS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/**
+ * Called for every occurrence of an option.
+ * @return false: the value makes no sense, and that was reported.
+ */
+typedef bool option_each_fn(void *ctx, const char *value);
+
+/** One option. Exactly one of flag, text, number, word and each is set; it is where the value goes. */
+typedef struct {
+    const char *name;  /**< "--tail" */
+    const char *value; /**< what `--help` calls its value: "MS"; NULL for a flag */
+    const char *help;  /**< one line */
+    bool *flag;        /**< set to true */
+    const char **text; /**< any text but an empty one */
+    uint64_t *number;  /**< decimal, `lowest` .. `highest` */
+    int *word;         /**< index of one of `words` */
+    option_each_fn *each;
+    void *ctx; /**< for `each` */
+    uint64_t lowest;
+    uint64_t highest;
+    const char *words; /**< "a|b|c" */
+} option_t;
+
+/** Options that belong together in `--help`. */
+typedef struct {
+    const char *title; /**< "Options" */
+    const option_t *options;
+    size_t count;
+} option_group_t;
+
+/** What a command takes. */
+typedef struct {
+    const char *usage;   /**< what follows "host_sim": "replay [OPTION]... LOG" */
+    const char *summary; /**< lines that say what it does, each ended by a line break */
+    const option_group_t *groups;
+    size_t group_count;
+    size_t operands_min;
+    size_t operands_max;
+    const char *operand; /**< what an operand is called in a message: "LOG" */
+} option_syntax_t;
+
+/** What came of it. */
+typedef enum {
+    OPTIONS_GO,   /**< run the command */
+    OPTIONS_DONE, /**< `--help` was asked for and printed: the command ends, successfully */
+    OPTIONS_BAD   /**< that was reported */
+} options_result_t;
+
+/**
+ * Parse the arguments of a command. The operands are moved to the front of @p argv in their order.
+ *
+ * @param argc number of arguments, the command's name not among them
+ * @param argv the arguments
+ * @param operands how many operands there are
+ */
+options_result_t options_parse(const option_syntax_t *syntax, int argc, char **argv, size_t *operands);
+
+/**
+ * Read a whole decimal number: digits only, no sign, no blanks.
+ * @return false: it is none, or not within @p lowest .. @p highest; not reported.
+ */
+bool options_number(const char *text, uint64_t lowest, uint64_t highest, uint64_t *number);
+
+/**
+ * The index of a word in a list "a|b|c".
+ * @return -1 when it is not in it.
+ */
+int options_word(const char *words, const char *word);
+
+#endif

@@ -1,0 +1,71 @@
+/**
+ * @file session.h
+ * A supervisor with all it needs around it: flight recorder, port, a time that does not wrap, and observers that are
+ * told what happens. Replay, scenarios and nodes on a real bus drive the supervisor through this.
+ *
+ * The program calls session_init, session_observe as often as it likes, session_start, and then session_frame and
+ * session_tick in the order of time.
+ */
+#ifndef HOST_SIM_SESSION_H
+#define HOST_SIM_SESSION_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "agv/config.h"
+#include "agv/recorder.h"
+#include "agv/supervisor.h"
+#include "hal/can.h"
+#include "hal/hal.h"
+
+#define SESSION_OBSERVERS_MAX 4u
+
+/** What an observer is told: an event of the flight recorder, or a change of the LED code. */
+typedef struct {
+    uint64_t t_ms;        /**< since the start of the run */
+    bool is_led;          /**< `led_code` is the news; else `recorded` */
+    int8_t led_code;      /**< as agv_supervisor_led_code() */
+    agv_event_t recorded; /**< kind, a, b, c, missing as recorder.h says */
+} session_event_t;
+
+/** Told of every event, in order. */
+typedef void session_observer_fn(void *ctx, const session_event_t *event);
+
+/** Read the members freely; change nothing but through the functions. */
+typedef struct {
+    agv_supervisor_t supervisor;
+    agv_recorder_t recorder;
+    agv_ports_t ports;
+    uint64_t t_ms;     /**< time of the last call, since the start of the run */
+    uint32_t clock_ms; /**< the supervisor's clock at that moment */
+    uint32_t next;     /**< sequence number of the next event to tell of */
+    int8_t led_code;   /**< as last told */
+    size_t observer_count;
+    struct {
+        session_observer_fn *fn;
+        void *ctx;
+    } observers[SESSION_OBSERVERS_MAX];
+} session_t;
+
+/** Make a session: an empty recorder, no observers. @param hal stays the caller's and must outlive the session */
+void session_init(session_t *session, hal_t *hal);
+
+/** Tell one more observer. @return false: there are SESSION_OBSERVERS_MAX already */
+bool session_observe(session_t *session, session_observer_fn *fn, void *ctx);
+
+/**
+ * Start the supervisor, or start it again after a reset of its processor: the recorder is kept. Observers are told the
+ * first state first, then (once each) whether the safety output is closed, and the LED code.
+ *
+ * @param t_ms     time since the start of the run
+ * @param clock_ms the supervisor's clock, any value
+ */
+void session_start(session_t *session, const agv_config_t *config, uint64_t t_ms, uint32_t clock_ms);
+
+/** Hand over a frame that was received; its time_ms is the supervisor's clock. */
+void session_frame(session_t *session, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_ms);
+
+/** A millisecond passed and every frame up to it was handed over. */
+void session_tick(session_t *session, uint64_t t_ms, uint32_t clock_ms);
+
+#endif
