@@ -32,22 +32,33 @@ typedef enum { AGV_CLASS_WARN = 0, AGV_CLASS_TRIP = 1 } agv_fault_class_t;
 typedef uint64_t agv_fault_set_t;
 
 /** The set with one fault in it; empty for AGV_FAULT_NONE and beyond. */
-agv_fault_set_t agv_fault_bit(agv_fault_t fault);
+static inline agv_fault_set_t agv_fault_bit(agv_fault_t fault) {
+    return ((uint32_t)fault < (uint32_t)AGV_FAULT_COUNT) ? ((agv_fault_set_t)1u << (uint32_t)fault) : 0u;
+}
+
+/** That set when the condition holds, else the empty one. */
+static inline agv_fault_set_t agv_fault_when(bool condition, agv_fault_t fault) {
+    return condition ? agv_fault_bit(fault) : 0u;
+}
 
 /** The highest-ranking fault of a set; AGV_FAULT_NONE when it is empty. */
 agv_fault_t agv_fault_highest(agv_fault_set_t set);
 
-/** All faults that have one of the flags (AGV_FAULT_FLAG_*). */
-agv_fault_set_t agv_fault_set_of(uint8_t flags);
+/** All faults with the flag UNRESETTABLE, EVENT, FIXED, FROM_AI, OF_EPS. */
+extern const agv_fault_set_t agv_faults_unresettable;
+extern const agv_fault_set_t agv_faults_events;
+extern const agv_fault_set_t agv_faults_fixed;
+extern const agv_fault_set_t agv_faults_from_ai;
+extern const agv_fault_set_t agv_faults_of_eps;
 
 /** All faults whose default class is trip. */
-agv_fault_set_t agv_fault_default_trips(void);
+extern const agv_fault_set_t agv_faults_default_trips;
 
 /** LED code of a fault: 1..17, or 0 where the protocol document has none (also for no fault). */
 uint8_t agv_fault_led_code(agv_fault_t fault);
 
 /** How many faults are events. */
-#define AGV_EVENT_FAULT_COUNT 7u
+#define AGV_EVENT_FAULT_COUNT 8u
 
 /**
  * The faults of one supervisor. A *level* is active while its cause is; an *event* for event_hold_ms after it was last
@@ -64,13 +75,23 @@ typedef struct {
 /** Nothing active, nothing latched. */
 void agv_faults_init(agv_faults_t *faults);
 
-/** Say whether the cause of a level is present. Ignored for events and for no fault. */
-void agv_faults_level(agv_faults_t *faults, agv_fault_t fault, bool cause);
+/** Say which of some levels have a cause now: those of @p judged become active if in @p causes, else end. */
+void agv_faults_levels(agv_faults_t *faults, agv_fault_set_t judged, agv_fault_set_t causes);
 
-/** Raise an event. Ignored for levels and for no fault. */
+/** Raise an event, or raise it again. Ignored for what is no event. */
 void agv_faults_event(agv_faults_t *faults, agv_fault_t fault, uint32_t now_ms);
 
 /** End the events whose hold time is over. Call at every tick. */
 void agv_faults_tick(agv_faults_t *faults, uint32_t now_ms, uint16_t event_hold_ms);
+
+/** What changed between two reports. */
+typedef struct {
+    agv_fault_set_t raised; /**< became active, or changed their class while active */
+    agv_fault_set_t ended;
+    agv_fault_set_t trips; /**< those of `raised` that are trips now */
+} agv_fault_changes_t;
+
+/** Compare with the last report, given which faults are trips at the moment, and make this the last report. */
+agv_fault_changes_t agv_faults_report(agv_faults_t *faults, agv_fault_set_t trip_classes);
 
 #endif

@@ -58,7 +58,6 @@ typedef struct {
     uint32_t stored_sequence; /**< events before this one are in flash */
     uint16_t seen;
     uint8_t run;
-    uint8_t first_reason;
     uint8_t frames[AGV_MSG_COUNT][AGV_DLC];
     agv_event_t events[AGV_RECORDER_EVENTS];
 } agv_recorder_t;
@@ -87,8 +86,8 @@ uint32_t agv_recorder_next_sequence(const agv_recorder_t *recorder);
  */
 bool agv_recorder_get(const agv_recorder_t *recorder, uint32_t sequence, agv_event_t *event);
 
-/** The oldest event that is not in flash yet. @return false when there is none. */
-bool agv_recorder_next_to_store(const agv_recorder_t *recorder, agv_event_t *event);
+/** The oldest valid event that is not in flash yet. @return false when there is none. */
+bool agv_recorder_next_to_store(agv_recorder_t *recorder, agv_event_t *event);
 
 /** That event is in flash now. */
 void agv_recorder_stored(agv_recorder_t *recorder, uint32_t sequence);

@@ -1,0 +1,82 @@
+/**
+ * @file liveness.h
+ * Who is alive, and how old is what we know (SUP-1 to SUP-3): the age of every message and the three heartbeats.
+ */
+#ifndef AGV_LIVENESS_H
+#define AGV_LIVENESS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "agv/config.h"
+#include "agv/protocol.h"
+
+/** The nodes with a heartbeat (SUP-1): 363h byte 8, 067h byte 1, 43Fh byte 8. */
+typedef enum { AGV_NODE_VCU, AGV_NODE_EPS, AGV_NODE_AI, AGV_NODE_COUNT } agv_node_t;
+
+/** What is known of a heartbeat. */
+typedef enum {
+    AGV_HEARTBEAT_UNSEEN,   /**< no frame yet */
+    AGV_HEARTBEAT_BASELINE, /**< one value seen: the first frame ever proves nothing */
+    AGV_HEARTBEAT_ALIVE,    /**< the counter changed within the deadline */
+    AGV_HEARTBEAT_LOST,     /**< deadline expired; stays until the counter changes again */
+    AGV_HEARTBEAT_STUCK     /**< as LOST, but frames with the old counter went on coming */
+} agv_heartbeat_state_t;
+
+/** One heartbeat. */
+typedef struct {
+    uint32_t changed_ms; /**< when the counter last changed; before: when the deadline began */
+    uint8_t state;       /**< agv_heartbeat_state_t */
+    uint8_t counter;     /**< value last seen */
+    bool counter_known;
+    bool repeated; /**< the last frame had the value of the one before */
+} agv_heartbeat_t;
+
+/** Age returned for what is older than AGV_AGE_LIMIT_MS or was never heard: ages saturate (TIM-2). */
+#define AGV_AGE_MAX UINT32_MAX
+#define AGV_AGE_LIMIT_MS 6000u
+
+/** All messages and heartbeats of one supervisor. Bit n of the sets is message n. */
+typedef struct {
+    uint32_t last_ms[AGV_MSG_COUNT];     /**< last frame of the right shape */
+    uint32_t deadline_ms[AGV_MSG_COUNT]; /**< where the deadline began: last usable frame, start, or engagement */
+    agv_heartbeat_t heartbeats[AGV_NODE_COUNT];
+    uint16_t heard;   /**< received at least once */
+    uint16_t recent;  /**< last_ms is not older than AGV_AGE_LIMIT_MS */
+    uint16_t expired; /**< deadline expired; stays until it begins anew */
+} agv_liveness_t;
+
+/** Nothing heard; all deadlines begin now, but the one of the AI's heartbeat (SUP-8). */
+void agv_liveness_start(agv_liveness_t *liveness, uint32_t now_ms);
+
+/**
+ * A frame of the right shape arrived.
+ * @return milliseconds since the one before, AGV_AGE_MAX when that is too long ago or there was none.
+ */
+uint32_t agv_liveness_arrived(agv_liveness_t *liveness, agv_message_t message, uint32_t time_ms);
+
+/** The deadline of a message begins anew: it was usable, or (AI commands) the autopilot was engaged. */
+void agv_liveness_refresh(agv_liveness_t *liveness, agv_message_t message, uint32_t time_ms);
+
+/** A frame with an alive counter arrived. */
+void agv_liveness_beat(agv_liveness_t *liveness, agv_node_t node, uint8_t counter, uint32_t time_ms);
+
+/** Forget that a node was seen (SUP-8, reset): it is seen again when its counter changes. */
+void agv_liveness_forget(agv_liveness_t *liveness, agv_node_t node);
+
+/** Judge all deadlines. Call at every tick, after the frames stamped up to it. */
+void agv_liveness_tick(agv_liveness_t *liveness, const agv_config_t *config, uint32_t now_ms);
+
+/** Heard, and within its deadline. */
+bool agv_liveness_fresh(const agv_liveness_t *liveness, agv_message_t message);
+
+/** Deadline expired, heard or not. */
+bool agv_liveness_expired(const agv_liveness_t *liveness, agv_message_t message);
+
+/** Age of the last frame of the right shape; since the start when none was heard. Saturates to AGV_AGE_MAX. */
+uint32_t agv_liveness_age_ms(const agv_liveness_t *liveness, agv_message_t message, uint32_t now_ms);
+
+/** What is known of a heartbeat. */
+agv_heartbeat_state_t agv_liveness_heartbeat(const agv_liveness_t *liveness, agv_node_t node);
+
+#endif
