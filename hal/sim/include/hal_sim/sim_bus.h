@@ -92,19 +92,9 @@ typedef struct {
 } sim_bus_slot_t;
 
 typedef struct {
-    sim_bus_slot_t tx[SIM_BUS_TX_SLOTS_MAX];
-    uint32_t tx_key[SIM_BUS_TX_SLOTS_MAX];
     sim_bus_node_config_t config;
-    uint64_t suspend_until_us;
-    uint64_t recovery_from_us;
-    uint64_t alone_us;
-    uint32_t corrupt_sent;
-    uint32_t corrupt_received;
     uint16_t tec;
     uint16_t rec;
-    uint16_t recovery_left;
-    uint16_t bus_off_count;
-    uint16_t overrun_count;
     uint8_t tx_count;
     uint8_t tx_current;
     uint8_t rx_head;
@@ -115,6 +105,16 @@ typedef struct {
     bool stalled;
     bool full;
     bool bus_off;
+    uint16_t bus_off_count;
+    uint16_t overrun_count;
+    uint32_t recovery_left;
+    uint32_t corrupt_sent;
+    uint32_t corrupt_received;
+    uint64_t suspend_until_us;
+    uint64_t recovery_from_us;
+    uint64_t alone_us;
+    uint32_t tx_key[SIM_BUS_TX_SLOTS_MAX];
+    sim_bus_slot_t tx[SIM_BUS_TX_SLOTS_MAX];
     sim_bus_slot_t rx[SIM_BUS_RX_SLOTS_MAX];
 } sim_bus_node_state_t;
 
@@ -123,6 +123,8 @@ typedef struct {
     void *ctx;
 } sim_bus_tap_t;
 
+typedef enum { SIM_BUS_ARRIVES, SIM_BUS_DESTROYED, SIM_BUS_NOT_ACKNOWLEDGED } sim_bus_outcome_t;
+
 typedef struct {
     uint64_t now_us;
     uint64_t due_us;
@@ -130,18 +132,23 @@ typedef struct {
     uint64_t start_us;
     uint64_t end_us;
     uint32_t bit_us;
-    uint32_t attached;
     uint32_t ready;
     uint32_t listening;
-    uint32_t sending;
+    uint32_t suspended;
     uint32_t alone;
     uint32_t recovering;
+    uint32_t senders;
+    uint32_t sending;
+    uint32_t hearing;
+    uint32_t dropped;
+    uint32_t misread;
+    uint32_t corrupting;
+    uint32_t misreading;
     uint32_t corrupt_all;
-    uint32_t key;
     bool busy;
-    bool failing;
     uint8_t node_count;
     uint8_t tap_count;
+    sim_bus_outcome_t outcome;
     hal_can_frame_t frame;
     sim_bus_stats_t stats;
     sim_bus_tap_t taps[SIM_BUS_TAPS_MAX];
@@ -262,7 +269,7 @@ void sim_bus_corrupt_sent(sim_bus_t *bus, sim_bus_node_t node, uint32_t count);
  */
 void sim_bus_corrupt_received(sim_bus_t *bus, sim_bus_node_t node, uint32_t count);
 
-/** Set both error counters; a TEC above 255 is bus-off at once. Does not end bus-off. */
+/** Set both error counters of a node with power; a TEC above 255 is bus-off at once. Does not end bus-off. */
 void sim_bus_set_error_counters(sim_bus_t *bus, sim_bus_node_t node, uint16_t tec, uint16_t rec);
 
 /** Bus-off at once (as a TEC above 255). */

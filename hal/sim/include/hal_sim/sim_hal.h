@@ -87,15 +87,15 @@ typedef struct {
 } sim_hal_can_t;
 
 struct hal {
-    sim_hal_can_t can[HAL_CAN_SIDES];    /**< read */
-    sim_hal_pin_t led;                   /**< read */
-    sim_hal_pin_t safety_output;         /**< read */
-    bool held;                           /**< read: the watchdog has bitten; nothing works until sim_hal_reset() */
-    uint32_t feeds;                      /**< read: hal_watchdog_feed() calls */
-    uint32_t bites;                      /**< read: of the watchdog, since sim_hal_init() */
-    uint32_t resets;                     /**< read: sim_hal_reset() calls */
-    uint32_t calls;                      /**< read: operations of hal/include called so far */
-    uint32_t failures;                   /**< read: of those, how many were made to fail */
+    sim_hal_can_t can[HAL_CAN_SIDES]; /**< read */
+    sim_hal_pin_t led;                /**< read */
+    sim_hal_pin_t safety_output;      /**< read */
+    bool held;         /**< read: in reset (watchdog or sim_hal_hold()); nothing works until sim_hal_reset() */
+    uint32_t feeds;    /**< read: hal_watchdog_feed() calls */
+    uint32_t bites;    /**< read: of the watchdog, since sim_hal_init() */
+    uint32_t resets;   /**< read: sim_hal_reset() calls */
+    uint32_t calls;    /**< read: operations of hal/include called so far */
+    uint32_t failures; /**< read: of those, how many were made to fail */
     uint32_t op_calls[SIM_HAL_OP_COUNT]; /**< read: calls of each */
     sim_hal_op_t last_failed;            /**< read: operation made to fail last (when failures > 0) */
     uint32_t fail_first;
@@ -116,7 +116,8 @@ struct hal {
 void sim_hal_init(hal_t *hal, const sim_hal_config_t *config);
 
 /**
- * Attach a side to a bus as a new node. Both sides' buses must be kept at one time (sim_bus_run_all_until()).
+ * Attach a side to a bus as a new node. Both sides' buses must be kept at one time (sim_bus_run_all_until()). A callback
+ * on_receive is the receive interrupt: it takes the frame with sim_hal_receive(), which stamps it with this clock.
  * @param config of the node; NULL = 8 mailboxes by ID, a receive queue of SIM_BUS_RX_SLOTS_MAX
  * @return false: the side has a bus already, the bus is full, or the configuration is out of range.
  */
@@ -146,6 +147,12 @@ bool sim_hal_receive(hal_t *hal, hal_can_side_t side, hal_can_frame_t *frame);
  * @return true while the port is held in reset.
  */
 bool sim_hal_poll(hal_t *hal);
+
+/**
+ * Hold the MCU in reset from now on, as without supply: safety output open, LED dark, controllers without power, every
+ * operation without effect, until sim_hal_reset().
+ */
+void sim_hal_hold(hal_t *hal);
 
 /**
  * Reset the MCU: outputs as at boot (open, dark), controllers fresh with empty queues and zero counters, watchdog just

@@ -1,0 +1,198 @@
+/* Fault confinement: the sets of nodes, error counters, bus-off and the way back, nodes that are alone. */
+#include "sim_internal.h"
+
+static void put(uint32_t *set, uint32_t bit, bool member) {
+    *set = member ? *set | bit : *set & ~bit;
+}
+
+/* It is no longer on the wire: what it was sending breaks off, what it was hearing is lost. */
+static void leave(sim_bus_t *bus, unsigned number) {
+    sim_bus_node_state_t *node = &bus->nodes[number];
+    bus->sending &= ~sim_bit(number);
+    bus->hearing &= ~sim_bit(number);
+    bus->dropped &= ~sim_bit(number);
+    bus->misread &= ~sim_bit(number);
+    if (node->current_aborted) {
+        node->current_aborted = false;
+        sim_bus_remove(node, node->tx_current);
+    }
+}
+
+void sim_bus_refresh(sim_bus_t *bus, unsigned number) {
+    sim_bus_node_state_t *node = &bus->nodes[number];
+    const uint32_t bit = sim_bit(number);
+    const bool works = node->powered && !node->bus_off;
+    put(&bus->listening, bit, works && node->plugged);
+    if ((bus->listening & bit) == 0) {
+        leave(bus, number);
+    }
+    const bool wants = works && node->tx_count > 0 && !node->stalled;
+    put(&bus->ready, bit, wants && node->plugged);
+    const bool was_alone = (bus->alone & bit) != 0;
+    put(&bus->alone, bit, wants && !node->plugged);
+    if (!was_alone && (bus->alone & bit) != 0) {
+        node->alone_us = bus->now_us + sim_bus_alone_attempt_us(bus, node);
+    }
+}
+
+void sim_bus_enter_bus_off(sim_bus_t *bus, unsigned number) {
+    sim_bus_node_state_t *node = &bus->nodes[number];
+    if (node->bus_off) {
+        return;
+    }
+    node->bus_off = true;
+    node->bus_off_count++;
+    sim_bus_refresh(bus, number);
+    if (!node->config.keep_on_bus_off) {
+        node->tx_count = 0;
+    }
+}
+
+void sim_bus_penalise(sim_bus_t *bus, unsigned number) {
+    sim_bus_node_state_t *node = &bus->nodes[number];
+    node->tec = (uint16_t)(node->tec + SIM_TEC_FAILED);
+    if (node->tec > SIM_TEC_MAX) {
+        sim_bus_enter_bus_off(bus, number);
+    }
+}
+
+void sim_bus_misread(sim_bus_node_state_t *node, unsigned amount) {
+    const unsigned rec = node->rec + amount;
+    node->rec = (uint16_t)(rec > SIM_REC_MAX ? SIM_REC_MAX : rec);
+}
+
+/* ---- Recovery: 128 sequences of 11 recessive bits; recovery_from_us = NEVER while the count stands still ---- */
+
+static uint64_t sequence_us(const sim_bus_t *bus) {
+    return (uint64_t)SIM_BUS_RECOVERY_BITS * bus->bit_us;
+}
+
+/* Count what has passed since recovery_from_us, and count on from now. */
+static void settle(const sim_bus_t *bus, sim_bus_node_state_t *node) {
+    if (node->recovery_from_us >= bus->now_us) {
+        return;
+    }
+    const uint64_t passed = (bus->now_us - node->recovery_from_us) / sequence_us(bus);
+    node->recovery_left = passed < node->recovery_left ? node->recovery_left - (uint32_t)passed : 0u;
+    node->recovery_from_us = bus->now_us;
+}
+
+/* Where the count goes on: on a wire of its own at once, on the bus when it is idle. */
+static uint64_t recovery_goes_on_us(const sim_bus_t *bus, const sim_bus_node_state_t *node) {
+    if (!node->plugged) {
+        return bus->now_us;
+    }
+    if (bus->busy) {
+        return SIM_BUS_NEVER;
+    }
+    return bus->free_us > bus->now_us ? bus->free_us : bus->now_us;
+}
+
+void sim_bus_recover(sim_bus_t *bus, sim_bus_node_t number) {
+    if (number >= bus->node_count || !bus->nodes[number].bus_off || (bus->recovering & sim_bit(number)) != 0) {
+        return;
+    }
+    sim_bus_node_state_t *node = &bus->nodes[number];
+    bus->recovering |= sim_bit(number);
+    node->recovery_left = SIM_BUS_RECOVERY_SEQUENCES;
+    node->recovery_from_us = recovery_goes_on_us(bus, node);
+    sim_bus_schedule(bus);
+}
+
+void sim_bus_pause_recovery(sim_bus_t *bus) {
+    for (uint32_t set = bus->recovering; set != 0; set &= set - 1u) {
+        sim_bus_node_state_t *node = &bus->nodes[sim_lowest(set)];
+        if (node->plugged) {
+            settle(bus, node);
+            node->recovery_from_us = SIM_BUS_NEVER;
+        }
+    }
+}
+
+/* Its delimiter, end of frame and interframe bits are 11 recessive ones. */
+void sim_bus_resume_recovery(sim_bus_t *bus) {
+    for (uint32_t set = bus->recovering; set != 0; set &= set - 1u) {
+        sim_bus_node_state_t *node = &bus->nodes[sim_lowest(set)];
+        if (node->plugged) {
+            node->recovery_left -= node->recovery_left > 0 ? 1u : 0u;
+            node->recovery_from_us = bus->free_us;
+        }
+    }
+}
+
+static uint64_t recovered_us(const sim_bus_t *bus, const sim_bus_node_state_t *node) {
+    if (node->recovery_from_us == SIM_BUS_NEVER) {
+        return SIM_BUS_NEVER;
+    }
+    return node->recovery_from_us + node->recovery_left * sequence_us(bus);
+}
+
+static void end_recovery(sim_bus_t *bus, unsigned number) {
+    sim_bus_node_state_t *node = &bus->nodes[number];
+    bus->recovering &= ~sim_bit(number);
+    node->bus_off = false;
+    node->tec = 0;
+    node->rec = 0;
+    sim_bus_refresh(bus, number);
+}
+
+/* ---- Nodes that are unplugged: nobody acknowledges, so they try again and again ---- */
+
+uint64_t sim_bus_alone_attempt_us(const sim_bus_t *bus, const sim_bus_node_state_t *node) {
+    const hal_can_frame_t *frame = &node->tx[sim_bus_choose(node)].frame;
+    uint32_t bits =
+        sim_bus_frame_bits(frame) - SIM_BITS_AFTER_ACKNOWLEDGE + SIM_BUS_ERROR_BITS + SIM_BUS_INTERFRAME_BITS;
+    if (sim_is_passive(node)) {
+        bits += SIM_BUS_SUSPEND_BITS;
+    }
+    return (uint64_t)bits * bus->bit_us;
+}
+
+static void fail_alone(sim_bus_t *bus, unsigned number) {
+    sim_bus_node_state_t *node = &bus->nodes[number];
+    if (!sim_is_passive(node)) {
+        sim_bus_penalise(bus, number);
+    }
+    node->alone_us = bus->now_us + sim_bus_alone_attempt_us(bus, node);
+}
+
+uint64_t sim_bus_aside_due_us(const sim_bus_t *bus) {
+    uint64_t due_us = SIM_BUS_NEVER;
+    for (uint32_t set = bus->alone; set != 0; set &= set - 1u) {
+        const uint64_t alone_us = bus->nodes[sim_lowest(set)].alone_us;
+        due_us = alone_us < due_us ? alone_us : due_us;
+    }
+    for (uint32_t set = bus->recovering; set != 0; set &= set - 1u) {
+        const uint64_t end_us = recovered_us(bus, &bus->nodes[sim_lowest(set)]);
+        due_us = end_us < due_us ? end_us : due_us;
+    }
+    return due_us;
+}
+
+void sim_bus_run_aside(sim_bus_t *bus) {
+    for (uint32_t set = bus->alone; set != 0; set &= set - 1u) {
+        if (bus->nodes[sim_lowest(set)].alone_us <= bus->now_us) {
+            fail_alone(bus, sim_lowest(set));
+        }
+    }
+    for (uint32_t set = bus->recovering; set != 0; set &= set - 1u) {
+        if (recovered_us(bus, &bus->nodes[sim_lowest(set)]) <= bus->now_us) {
+            end_recovery(bus, sim_lowest(set));
+        }
+    }
+}
+
+void sim_bus_set_plugged(sim_bus_t *bus, sim_bus_node_t number, bool plugged) {
+    if (number >= bus->node_count || bus->nodes[number].plugged == plugged) {
+        return;
+    }
+    sim_bus_node_state_t *node = &bus->nodes[number];
+    if ((bus->recovering & sim_bit(number)) != 0) {
+        settle(bus, node);
+        node->plugged = plugged;
+        node->recovery_from_us = recovery_goes_on_us(bus, node);
+    }
+    node->plugged = plugged;
+    sim_bus_refresh(bus, number);
+    sim_bus_schedule(bus);
+}

@@ -1,0 +1,23 @@
+/**
+ * @file sim_hal_internal.h
+ * What the source files of the simulated port share.
+ */
+#ifndef SIM_HAL_INTERNAL_H
+#define SIM_HAL_INTERNAL_H
+
+#include "hal_sim/sim_hal.h"
+
+/** The controller of a side; NULL = there is none. */
+static inline sim_hal_can_t *sim_hal_controller(hal_t *hal, hal_can_side_t side) {
+    return (unsigned)side < HAL_CAN_SIDES && hal->can[side].exists ? &hal->can[side] : NULL;
+}
+
+static inline void sim_hal_set_pin(sim_hal_pin_t *pin, bool on, uint32_t time_ms) {
+    if (pin->on != on) {
+        pin->on = on;
+        pin->changes++;
+        pin->changed_ms = time_ms;
+    }
+}
+
+#endif

@@ -1,0 +1,106 @@
+/**
+ * @file sim_internal.h
+ * What the source files of the simulated bus share.
+ *
+ * The bus keeps sets of nodes as bit masks, so that a quiet bus costs one comparison a call:
+ * listening  on the wire, not bus-off: hears and acknowledges          ready      of those, has a frame that may start
+ * alone      unplugged, with a frame to send                           recovering on the way back from bus-off
+ * suspended  error passive and perhaps still in its suspend time       corrupting, misreading: errors are ordered
+ * and about the frame on the wire: senders (whose it is), sending and hearing (of senders and receivers, those that
+ * have not left since it began), dropped (lost a collision without a word), misread (could not read it).
+ *
+ * due_us is the one number that says when something happens next; whoever changes anything else calls
+ * sim_bus_schedule() at the end.
+ */
+#ifndef SIM_INTERNAL_H
+#define SIM_INTERNAL_H
+
+#include "hal_sim/sim_bus.h"
+
+#define SIM_TEC_FAILED 8u
+#define SIM_TEC_MAX 255u
+#define SIM_REC_MAX 255u
+#define SIM_PASSIVE_ABOVE 127u
+
+/** A frame that nobody acknowledges breaks off after the acknowledge slot: its delimiter and 7 end bits are not sent. */
+#define SIM_BITS_AFTER_ACKNOWLEDGE 8u
+
+/** The bit of a node in a set. */
+static inline uint32_t sim_bit(unsigned node) {
+    return UINT32_C(1) << node;
+}
+
+/** The lowest node of a set that is not empty. */
+static inline unsigned sim_lowest(uint32_t set) {
+#if defined(__GNUC__)
+    return (unsigned)__builtin_ctz(set);
+#else
+    unsigned node = 0;
+    while ((set & sim_bit(node)) == 0) {
+        node++;
+    }
+    return node;
+#endif
+}
+
+static inline bool sim_is_passive(const sim_bus_node_state_t *node) {
+    return node->tec > SIM_PASSIVE_ABOVE || node->rec > SIM_PASSIVE_ABOVE;
+}
+
+/** The mailbox that takes part in the arbitration. The node has a frame. */
+unsigned sim_bus_choose(const sim_bus_node_state_t *node);
+
+/** Empty a mailbox; those behind it move up, so that they stay in the order of their requests. */
+void sim_bus_remove(sim_bus_node_state_t *node, unsigned slot);
+
+/** Bring the sets in line with what the node is now; one that has left the wire breaks off what it was sending. */
+void sim_bus_refresh(sim_bus_t *bus, unsigned number);
+
+/** Work out due_us anew. */
+void sim_bus_schedule(sim_bus_t *bus);
+
+/** A frame arrives at a node that can hear it. */
+void sim_bus_arrive(sim_bus_node_state_t *node, const hal_can_frame_t *frame, uint64_t time_us);
+
+/** A frame of this node failed: TEC + 8, and what follows from it. */
+void sim_bus_penalise(sim_bus_t *bus, unsigned number);
+
+void sim_bus_enter_bus_off(sim_bus_t *bus, unsigned number);
+
+/** REC + amount. */
+void sim_bus_misread(sim_bus_node_state_t *node, unsigned amount);
+
+/** A frame begins: the recessive bits of the idle wire until now count for the recovery, then the count stands still. */
+void sim_bus_pause_recovery(sim_bus_t *bus);
+
+/** The end of a frame or error frame: 11 recessive bits for all that are recovering on this wire. */
+void sim_bus_resume_recovery(sim_bus_t *bus);
+
+/** The next moment at which a node that is alone or recovering has something to do. */
+uint64_t sim_bus_aside_due_us(const sim_bus_t *bus);
+
+/** Do what is due now for the nodes that are alone or recovering. */
+void sim_bus_run_aside(sim_bus_t *bus);
+
+/** How long a lone attempt takes until the node tries again. */
+uint64_t sim_bus_alone_attempt_us(const sim_bus_t *bus, const sim_bus_node_state_t *node);
+
+/** Errors that were ordered and hit the frame that begins. @return true: it is destroyed. */
+bool sim_bus_spoil(sim_bus_t *bus);
+
+/** Order of arbitration: the lower number wins. Only equal numbers collide. */
+uint32_t sim_frame_key(const hal_can_frame_t *frame);
+
+/** Whether this bus can carry it. */
+bool sim_frame_is_classic(const hal_can_frame_t *frame);
+
+/** Number of bits from the start bit to the DLC, without stuff bits and DLC. */
+uint32_t sim_frame_header_bits(const hal_can_frame_t *frame);
+
+/** Bit @p index (0 = first of the DLC) of what follows the header. */
+bool sim_frame_bit(const hal_can_frame_t *frame, uint32_t index);
+
+/** Number of these bits: DLC and data. */
+uint32_t sim_frame_body_bits(const hal_can_frame_t *frame);
+
+#endif

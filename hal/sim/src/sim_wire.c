@@ -1,0 +1,324 @@
+/* The wire: arbitration, collisions, the end of a frame, and what happens when. */
+#include "sim_internal.h"
+
+/* The moment at which the wire is idle and a node that is ready may start. There is one. */
+static uint64_t next_start_us(const sim_bus_t *bus) {
+    const uint64_t idle_us = bus->free_us > bus->now_us ? bus->free_us : bus->now_us;
+    if ((bus->ready & ~bus->suspended) != 0) {
+        return idle_us;
+    }
+    uint64_t start_us = SIM_BUS_NEVER;
+    for (uint32_t set = bus->ready; set != 0; set &= set - 1u) {
+        const uint64_t until_us = bus->nodes[sim_lowest(set)].suspend_until_us;
+        start_us = until_us < start_us ? until_us : start_us;
+    }
+    return start_us > idle_us ? start_us : idle_us;
+}
+
+void sim_bus_schedule(sim_bus_t *bus) {
+    uint64_t due_us = SIM_BUS_NEVER;
+    if (bus->busy) {
+        due_us = bus->end_us;
+    } else if (bus->ready != 0) {
+        bus->start_us = next_start_us(bus);
+        due_us = bus->start_us + 1u; /* only when time moves on: all that is sent at this moment takes part */
+    }
+    if ((bus->alone | bus->recovering) != 0) {
+        const uint64_t aside_us = sim_bus_aside_due_us(bus);
+        due_us = aside_us < due_us ? aside_us : due_us;
+    }
+    bus->due_us = due_us;
+}
+
+/* The nodes that may start now: those whose suspend time is over. */
+static uint32_t contenders(sim_bus_t *bus) {
+    for (uint32_t set = bus->suspended; set != 0; set &= set - 1u) {
+        const unsigned number = sim_lowest(set);
+        if (bus->nodes[number].suspend_until_us <= bus->now_us) {
+            bus->suspended &= ~sim_bit(number);
+        }
+    }
+    return bus->ready & ~bus->suspended;
+}
+
+/* Who is left at the end of the arbitration field: all with the lowest key. */
+static uint32_t arbitrate(sim_bus_t *bus) {
+    uint32_t lowest_key = UINT32_MAX;
+    uint32_t winners = 0;
+    for (uint32_t set = contenders(bus); set != 0; set &= set - 1u) {
+        const unsigned number = sim_lowest(set);
+        sim_bus_node_state_t *node = &bus->nodes[number];
+        const unsigned slot = sim_bus_choose(node);
+        node->tx_current = (uint8_t)slot;
+        if (node->tx_key[slot] < lowest_key) {
+            lowest_key = node->tx_key[slot];
+            winners = 0;
+        }
+        if (node->tx_key[slot] == lowest_key) {
+            winners |= sim_bit(number);
+        }
+    }
+    return winners;
+}
+
+static const hal_can_frame_t *current_frame(const sim_bus_t *bus, unsigned number) {
+    const sim_bus_node_state_t *node = &bus->nodes[number];
+    return &node->tx[node->tx_current].frame;
+}
+
+/* Those of the set that send bit @p index of the body recessive. */
+static uint32_t recessive_at(const sim_bus_t *bus, uint32_t set, uint32_t index) {
+    uint32_t recessive = 0;
+    for (; set != 0; set &= set - 1u) {
+        const unsigned number = sim_lowest(set);
+        if (sim_frame_bit(current_frame(bus, number), index)) {
+            recessive |= sim_bit(number);
+        }
+    }
+    return recessive;
+}
+
+static bool any_active(const sim_bus_t *bus, uint32_t set) {
+    for (; set != 0; set &= set - 1u) {
+        if (!sim_is_passive(&bus->nodes[sim_lowest(set)])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/*
+ * Several nodes send the same arbitration field. Equal frames merge. At the first bit that differs those that send it
+ * recessive see a bit error. The error flag of an active one destroys the frame for all; a passive one falls silent
+ * (dropped) and the others go on.
+ * @return bits until the error, both included; 0 = the frame of those that are left goes through
+ */
+static uint32_t collide(sim_bus_t *bus) {
+    for (uint32_t index = 0; (bus->senders & (bus->senders - 1u)) != 0; index++) {
+        const hal_can_frame_t *frame = current_frame(bus, sim_lowest(bus->senders));
+        if (index == sim_frame_body_bits(frame)) {
+            break; /* to the last bit the same: CRC and all */
+        }
+        const uint32_t recessive = recessive_at(bus, bus->senders, index);
+        if (recessive == 0 || recessive == bus->senders) {
+            continue;
+        }
+        if (any_active(bus, recessive)) {
+            const uint32_t bits = sim_frame_header_bits(frame) + index + 1u;
+            return bits + (bits - 1u) / 4u;
+        }
+        bus->dropped |= recessive;
+        bus->senders &= ~recessive;
+    }
+    return 0;
+}
+
+/* How the frame of the winners will end, and after how many bits. */
+static uint32_t foresee(sim_bus_t *bus) {
+    const uint32_t collision_bits = collide(bus);
+    bus->frame = *current_frame(bus, sim_lowest(bus->senders));
+    bus->sending = bus->senders;
+    bus->hearing = bus->listening & ~(bus->senders | bus->dropped);
+    bus->outcome = SIM_BUS_DESTROYED;
+    if (collision_bits != 0) {
+        return collision_bits + SIM_BUS_ERROR_BITS;
+    }
+    const uint32_t bits = sim_bus_frame_bits(&bus->frame);
+    if (sim_bus_spoil(bus)) {
+        return bits + SIM_BUS_ERROR_BITS;
+    }
+    if (bus->hearing == 0) {
+        bus->outcome = SIM_BUS_NOT_ACKNOWLEDGED;
+        return bits - SIM_BITS_AFTER_ACKNOWLEDGE + SIM_BUS_ERROR_BITS;
+    }
+    bus->outcome = SIM_BUS_ARRIVES;
+    return bits;
+}
+
+static void begin(sim_bus_t *bus) {
+    bus->now_us = bus->start_us;
+    if (bus->recovering != 0) {
+        sim_bus_pause_recovery(bus);
+    }
+    bus->dropped = 0;
+    bus->misread = 0;
+    bus->senders = arbitrate(bus);
+    bus->end_us = bus->start_us + (uint64_t)foresee(bus) * bus->bit_us;
+    bus->busy = true;
+}
+
+static void tell_taps(const sim_bus_t *bus) {
+    const sim_bus_event_t event = {
+        .frame = &bus->frame,
+        .start_us = bus->start_us,
+        .end_us = bus->end_us,
+        .senders = bus->senders,
+        .sender = (sim_bus_node_t)sim_lowest(bus->senders),
+        .error = bus->outcome != SIM_BUS_ARRIVES,
+    };
+    for (unsigned i = 0; i < bus->tap_count; i++) {
+        bus->taps[i].fn(bus->taps[i].ctx, &event);
+    }
+}
+
+/* An error-passive node that has sent leaves the wire to the others for a while. */
+static void suspend(sim_bus_t *bus, unsigned number) {
+    sim_bus_node_state_t *node = &bus->nodes[number];
+    if (sim_is_passive(node)) {
+        node->suspend_until_us = bus->free_us + (uint64_t)SIM_BUS_SUSPEND_BITS * bus->bit_us;
+        bus->suspended |= sim_bit(number);
+    }
+}
+
+static void sent(sim_bus_t *bus, unsigned number) {
+    sim_bus_node_state_t *node = &bus->nodes[number];
+    sim_bus_remove(node, node->tx_current);
+    node->current_aborted = false;
+    if (node->tx_count == 0) {
+        bus->ready &= ~sim_bit(number);
+    }
+    suspend(bus, number);
+    if (node->tec > 0) {
+        node->tec--;
+    }
+}
+
+static void succeed(sim_bus_t *bus, uint32_t senders, uint32_t hearing) {
+    for (uint32_t set = senders; set != 0; set &= set - 1u) {
+        sent(bus, sim_lowest(set));
+    }
+    for (uint32_t set = hearing; set != 0; set &= set - 1u) {
+        sim_bus_node_state_t *node = &bus->nodes[sim_lowest(set)];
+        if (node->rec > SIM_PASSIVE_ABOVE) {
+            node->rec = SIM_PASSIVE_ABOVE;
+        } else if (node->rec > 0) {
+            node->rec--;
+        }
+        /* A callback before this one may have switched it off. */
+        if ((bus->listening & set & (0u - set)) != 0) {
+            sim_bus_arrive(node, &bus->frame, bus->now_us);
+        }
+    }
+}
+
+static void fail(sim_bus_t *bus, uint32_t senders, uint32_t hearing) {
+    for (uint32_t set = senders; set != 0; set &= set - 1u) {
+        const unsigned number = sim_lowest(set);
+        sim_bus_node_state_t *node = &bus->nodes[number];
+        if (node->current_aborted) {
+            sim_bus_remove(node, node->tx_current);
+            node->current_aborted = false;
+            sim_bus_refresh(bus, number);
+        }
+        /* ISO 11898-1: a passive node that misses the acknowledge, and nothing else, does not count. */
+        if (bus->outcome == SIM_BUS_DESTROYED || !sim_is_passive(node)) {
+            sim_bus_penalise(bus, number);
+        }
+        suspend(bus, number);
+    }
+    for (uint32_t set = hearing; set != 0; set &= set - 1u) {
+        sim_bus_misread(&bus->nodes[sim_lowest(set)], 1u);
+    }
+}
+
+/* The error counters of nodes whose part was not that of a sender or receiver like the others. */
+static void blame(sim_bus_t *bus, uint32_t hearing) {
+    for (uint32_t set = bus->misread; set != 0; set &= set - 1u) {
+        const unsigned number = sim_lowest(set);
+        sim_bus_misread(&bus->nodes[number], (hearing & sim_bit(number)) != 0 ? 8u : 1u);
+    }
+    for (uint32_t set = bus->dropped & bus->listening; set != 0; set &= set - 1u) {
+        sim_bus_penalise(bus, sim_lowest(set));
+        suspend(bus, sim_lowest(set));
+    }
+}
+
+static void finish(sim_bus_t *bus) {
+    const uint32_t senders = bus->sending;
+    const uint32_t hearing = bus->hearing;
+    bus->now_us = bus->end_us;
+    bus->free_us = bus->end_us + (uint64_t)SIM_BUS_INTERFRAME_BITS * bus->bit_us;
+    bus->frame.time_ms = (uint32_t)(bus->now_us / 1000u);
+    if (senders == 0) {
+        bus->outcome = SIM_BUS_DESTROYED; /* its sender has gone */
+    } else if (hearing == 0 && bus->outcome == SIM_BUS_ARRIVES) {
+        bus->outcome = SIM_BUS_NOT_ACKNOWLEDGED; /* the last receiver has gone */
+    }
+    bus->busy = false;
+    bus->sending = 0;
+    bus->hearing = 0;
+    bus->stats.busy_us += bus->free_us - bus->start_us;
+    tell_taps(bus);
+    if (bus->recovering != 0) {
+        sim_bus_resume_recovery(bus);
+    }
+    if ((bus->misread | bus->dropped) != 0) {
+        blame(bus, hearing);
+    }
+    if (bus->outcome == SIM_BUS_ARRIVES) {
+        bus->stats.frames++;
+        succeed(bus, senders, hearing);
+    } else {
+        bus->stats.errors++;
+        fail(bus, senders, hearing);
+    }
+}
+
+/* What is due next: a frame begins or ends, or a node apart from the wire has something to do. */
+static void step(sim_bus_t *bus) {
+    const uint64_t due_us = bus->due_us;
+    if (bus->busy) {
+        if (bus->end_us == due_us) {
+            finish(bus);
+        }
+    } else if (bus->ready != 0 && bus->start_us < due_us) {
+        begin(bus);
+    }
+    if ((bus->alone | bus->recovering) != 0 && bus->now_us <= due_us) {
+        bus->now_us = due_us;
+        sim_bus_run_aside(bus);
+    }
+    sim_bus_schedule(bus);
+}
+
+void sim_bus_process(sim_bus_t *bus, uint64_t until_us) {
+    while (bus->due_us <= until_us) {
+        step(bus);
+    }
+    if (until_us > bus->now_us) {
+        bus->now_us = until_us;
+    }
+}
+
+static uint64_t earliest_due_us(sim_bus_t *const buses[], size_t count) {
+    uint64_t due_us = SIM_BUS_NEVER;
+    for (size_t i = 0; i < count; i++) {
+        due_us = buses[i]->due_us < due_us ? buses[i]->due_us : due_us;
+    }
+    return due_us;
+}
+
+/* Start first what starts (which calls nobody), so that no callback can send into the past of another bus. */
+static void run_all_to(sim_bus_t *const buses[], size_t count, uint64_t time_us) {
+    for (size_t i = 0; i < count; i++) {
+        if (!buses[i]->busy) {
+            sim_bus_run_until(buses[i], time_us);
+        } else if (time_us > buses[i]->now_us) {
+            buses[i]->now_us = time_us;
+        }
+    }
+    for (size_t i = 0; i < count; i++) {
+        sim_bus_run_until(buses[i], time_us);
+    }
+}
+
+void sim_bus_run_all_until(sim_bus_t *const buses[], size_t count, uint64_t until_us) {
+    uint64_t due_us = earliest_due_us(buses, count);
+    while (due_us <= until_us) {
+        run_all_to(buses, count, due_us);
+        due_us = earliest_due_us(buses, count);
+    }
+    for (size_t i = 0; i < count; i++) {
+        sim_bus_run_until(buses[i], until_us);
+    }
+}
