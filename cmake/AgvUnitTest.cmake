@@ -1,10 +1,11 @@
 # Unit tests with Unity and CMock.
 #
-#   agv_add_unit_test(NAME test_gate SOURCES test_gate.c [more.c ...] [MOCKS hal/can.h ...] [LIBS hal_sim ...])
+#   agv_add_unit_test(NAME test_gate SOURCES test_gate.c [more.c ...] [MOCKS hal/can.h ...] [LIBS hal_sim ...] [PLANTED])
 #
 # Builds one program from the sources, a runner generated from the first of them, and the generated mocks, and adds it
 # to ctest. A test includes a mock as "mock_can.h" (for hal/can.h). Every program is linked to agv_core.
 # Mocks stand in for the HAL contract, hal/include, and for nothing else: the rest of the core is tested as it is.
+# PLANTED: a test that has to fail; it is built by its name only and run by `ctest -C planted` only (tests/gates).
 
 find_program(AGV_RUBY ruby)
 set(AGV_GEMS ${PROJECT_SOURCE_DIR}/build/gems)
@@ -52,7 +53,7 @@ function(agv_mock_of HEADER TARGET_VARIABLE)
 endfunction()
 
 function(agv_add_unit_test)
-  cmake_parse_arguments(PARSE_ARGV 0 TEST "" "NAME" "SOURCES;MOCKS;LIBS")
+  cmake_parse_arguments(PARSE_ARGV 0 TEST "PLANTED" "NAME" "SOURCES;MOCKS;LIBS")
   if(NOT TEST_NAME OR NOT TEST_SOURCES OR TEST_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "usage: agv_add_unit_test(NAME name SOURCES file.c ... [MOCKS hal/x.h ...] [LIBS lib ...])")
   endif()
@@ -77,7 +78,12 @@ function(agv_add_unit_test)
   # The runner calls the test functions by name, so they are not static and have no prototype.
   set_source_files_properties(${TEST_SOURCES} PROPERTIES COMPILE_OPTIONS -Wno-missing-prototypes)
   set_source_files_properties(${runner} PROPERTIES COMPILE_OPTIONS -w)
-  add_test(NAME ${TEST_NAME} COMMAND ${TEST_NAME})
+  if(TEST_PLANTED)
+    set_target_properties(${TEST_NAME} PROPERTIES EXCLUDE_FROM_ALL ON)
+    add_test(NAME ${TEST_NAME} CONFIGURATIONS planted COMMAND ${TEST_NAME})
+  else()
+    add_test(NAME ${TEST_NAME} COMMAND ${TEST_NAME})
+  endif()
   get_filename_component(kind ${CMAKE_CURRENT_SOURCE_DIR} NAME)
   # An ignored test function, or a program with none, is a failure.
   set_tests_properties(${TEST_NAME} PROPERTIES LABELS "unity;${kind}" TIMEOUT 120

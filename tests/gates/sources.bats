@@ -1,0 +1,79 @@
+#!/usr/bin/env bats
+# Layers, format, clang-tidy, shellcheck: each on a planted violation.
+load helper
+
+setup() {
+    cd "$BATS_TEST_TMPDIR" || exit
+}
+
+# A copy of the sources, in which the layers are right.
+copy_sources() {
+    mkdir -p firmware
+    cp -R "$ROOT"/firmware/{include,src} firmware/
+    cp -R "$ROOT/hal" hal
+    passes "$ROOT/scripts/check-layers" "$PWD"
+}
+
+# plant FILE LINE MESSAGE
+plant() {
+    copy_sources
+    mkdir -p "$(dirname "$1")"
+    echo "$2" >>"$1"
+    fails_with "$3" "$ROOT/scripts/check-layers" "$PWD"
+}
+
+@test "layers: an operating system's header in the core" {
+    plant firmware/src/codec.c '#include <pthread.h>' 'firmware/ includes something other'
+}
+
+@test "layers: a port's header in the core" {
+    plant firmware/include/agv/codec.h '#include "hal_sim/sim_bus.h"' 'firmware/ includes something other'
+}
+
+@test "layers: a platform #ifdef in the core" {
+    plant firmware/src/codec.c '#ifdef __linux__' 'a platform #if'
+}
+
+@test "layers: a platform #if defined behind another one" {
+    plant firmware/src/codec.c '#if defined(AGV_X) && defined(CONFIG_ARM)' 'a platform #if'
+}
+
+@test "layers: a header of the core in a port" {
+    plant hal/sim/planted.c '#include "agv/protocol.h"' 'the HAL includes headers of the core'
+}
+
+@test "layers: a port's header in the contract" {
+    plant hal/include/hal/can.h '#include <linux/can.h>' 'hal/include includes something other'
+}
+
+@test "layers: a frame that leaves past the gate" {
+    plant firmware/src/codec.c 'bool x(void) { return hal_can_send(0, HAL_CAN_VEHICLE, 0); }' 'past the gate'
+}
+
+@test "layers: nothing to check" {
+    mkdir -p firmware/include firmware/src hal/include
+    fails_with "nothing to check" "$ROOT/scripts/check-layers" "$PWD"
+}
+
+@test "format: a badly formatted file" {
+    command -v clang-format-19 || skip "no clang-format-19"
+    printf 'int main(void) {\n    return 0;\n}\n' >good.c
+    printf 'int main(void)\n{ return 0; }\n' >bad.c
+    passes "$ROOT/scripts/check-format" "$PWD/good.c"
+    fails_with "bad.c:1" "$ROOT/scripts/check-format" "$PWD/bad.c"
+}
+
+@test "clang-tidy: a suspicious line" {
+    command -v clang-tidy-19 || skip "no clang-tidy-19"
+    printf 'int main(void) {\n    return 0;\n}\n' >good.c
+    printf 'int main(int argc, char **argv) {\n    (void)argv;\n    if (argc = 1) {\n        return 1;\n    }\n    return 0;\n}\n' >bad.c
+    passes "$ROOT/scripts/check-tidy" "$PWD/good.c"
+    fails_with "bugprone-assignment-in-if-condition" "$ROOT/scripts/check-tidy" "$PWD/bad.c"
+}
+
+@test "shellcheck: a name that is not quoted" {
+    printf '#!/bin/sh\necho "%s"\n' "\$1" >good
+    printf '#!/bin/sh\necho %s\n' "\$1" >bad
+    passes "$ROOT/scripts/check-shell" "$PWD/good"
+    fails_with SC2086 "$ROOT/scripts/check-shell" "$PWD/bad"
+}
