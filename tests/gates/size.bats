@@ -14,7 +14,7 @@ graph() {
 
 @test "size: flash over its limit" {
     passes "$ROOT/scripts/size"
-    fails_with "over the limit" "$ROOT/scripts/size" --max-flash 1000
+    fails_with "over the limit" "$ROOT/scripts/size" --max-flash 100
 }
 
 @test "size: RAM over its limit" {
@@ -50,6 +50,12 @@ graph() {
 @test "stack: a call through a pointer" {
     graph pointer <<<'int f(int (*g)(void)); int f(int (*g)(void)) { return g() + 1; }'
     fails_with "calls through a pointer" "$ROOT/scripts/stack-depth" pointer.ci --entry f
+}
+
+@test "stack: recursion through a pointer" {
+    graph table <<<'void f(int n); static void h(int n) { f(n); } static void (*const table[])(int) = {h, h};
+        void f(int n) { table[n & 1](n); }'
+    fails_with "recursion: " "$ROOT/scripts/stack-depth" table.ci --objects table.o --entry f
 }
 
 @test "stack: a frame without a fixed size" {
