@@ -1,0 +1,185 @@
+/* The vehicle: its nodes, their messages and when these are due. */
+#include "vehicle.h"
+
+#include <string.h>
+
+#include "vehicle_internal.h"
+
+/* Phases: at most two frames start in one millisecond. The cycles are those of agv_message_cycle_ms() (a test compares). */
+const vehicle_row_t VEHICLE_ROWS[AGV_MSG_COUNT] = {
+    [AGV_MSG_TURN_SIGNAL_COMMAND] = {VEHICLE_AI, 9u, 100u, vehicle_ai_turn_signal_command},
+    [AGV_MSG_GEAR_COMMAND] = {VEHICLE_AI, 37u, 100u, vehicle_ai_gear_command},
+    [AGV_MSG_THROTTLE_COMMAND] = {VEHICLE_AI, 67u, 100u, vehicle_ai_throttle_command},
+    [AGV_MSG_STEERING_COMMAND] = {VEHICLE_AI, 8u, 25u, vehicle_ai_steering_command},
+    [AGV_MSG_VEHICLE_STATUS] = {VEHICLE_VCU, 0u, 10u, vehicle_vcu_vehicle_status},
+    [AGV_MSG_GEAR_STATUS] = {VEHICLE_VCU, 6u, 25u, vehicle_vcu_gear_status},
+    [AGV_MSG_THROTTLE_STATUS] = {VEHICLE_VCU, 4u, 10u, vehicle_vcu_throttle_status},
+    [AGV_MSG_STEERING_STATUS] = {VEHICLE_EPS, 1u, 10u, vehicle_eps_steering_status},
+    [AGV_MSG_EPS_STATUS] = {VEHICLE_EPS, 3u, 10u, vehicle_eps_eps_status},
+    [AGV_MSG_STEERING_POSITION] = {VEHICLE_EPS, 5u, 10u, vehicle_eps_steering_position},
+    [AGV_MSG_WHEEL_SPEED] = {VEHICLE_VCU, 2u, 10u, vehicle_vcu_wheel_speed},
+};
+
+void vehicle_defaults(vehicle_config_t *config) {
+    *config = (vehicle_config_t){
+        .id_set = AGV_ID_SET_HEADING,
+        .park_guard = true,
+        .seed = 1u,
+        .gear_change_ms = 120u,
+        .walking_pace_mm_s = 800u,
+        .top_speed_mm_s = 4000u,
+        .acceleration_mm_s2 = 1000u,
+        .coasting_mm_s2 = 400u,
+        .braking_mm_s2 = 3000u,
+        .locked_mm_s2 = 5000u,
+        .steering_rate_ddeg_s = 3000u,
+        .eps_mode_change_ms = 200u,
+        .ai_lost_ms = 1000u,
+        .eps_lost_ms = 100u,
+    };
+}
+
+void vehicle_init(vehicle_t *vehicle, const vehicle_config_t *config, vehicle_send_fn *send, void *ctx) {
+    memset(vehicle, 0, sizeof *vehicle);
+    vehicle->config = *config;
+    vehicle->send = send;
+    vehicle->send_ctx = ctx;
+    vehicle->random = (config->seed != 0u) ? config->seed : 1u;
+    vehicle->body.gear = AGV_GEAR_P;
+    vehicle->body.target = AGV_GEAR_P;
+    vehicle->eps.mode = AGV_EPS_MODE_ASSIST;
+    vehicle->eps.wanted = AGV_EPS_MODE_ASSIST;
+    vehicle->people.remote_gear = AGV_GEAR_P;
+    vehicle->people.ai_gear = AGV_GEAR_N;
+    for (int m = 0; m < AGV_MSG_COUNT; m++) {
+        vehicle->id[m] = agv_message_id((agv_message_t)m, config->id_set);
+    }
+    for (int n = 0; n < VEHICLE_NODES; n++) {
+        const uint32_t start_ms = config->start_ms[n];
+        vehicle->nodes[n].start_ms = (start_ms == VEHICLE_NEVER) ? UINT64_MAX : start_ms;
+    }
+}
+
+vehicle_node_t vehicle_sender_of(agv_message_t message) {
+    return VEHICLE_ROWS[message].node;
+}
+
+hal_can_side_t vehicle_side_of(const vehicle_t *vehicle, vehicle_node_t node) {
+    return (vehicle->config.gateway && (node == VEHICLE_AI)) ? HAL_CAN_AI : HAL_CAN_VEHICLE;
+}
+
+uint8_t vehicle_count(vehicle_t *vehicle, vehicle_node_t node) {
+    vehicle_node_state_t *state = &vehicle->nodes[node];
+    if (!state->frozen) {
+        state->counter++;
+    }
+    return state->counter;
+}
+
+static void start_messages(vehicle_t *vehicle, vehicle_node_t node, uint64_t now_ms) {
+    for (int m = 0; m < AGV_MSG_COUNT; m++) {
+        if (VEHICLE_ROWS[m].node == node) {
+            vehicle->messages[m].due_ms = now_ms + VEHICLE_ROWS[m].phase_ms;
+        }
+    }
+}
+
+void vehicle_power(vehicle_t *vehicle, vehicle_node_t node, bool on, uint64_t now_ms) {
+    vehicle_node_state_t *state = &vehicle->nodes[node];
+
+    vehicle->due_ms = now_ms;
+    state->start_ms = UINT64_MAX;
+    if (state->running == on) {
+        return;
+    }
+    if (node == VEHICLE_VCU) {
+        vehicle_body_move(vehicle, now_ms);
+    }
+    state->running = on;
+    state->counter = UINT8_MAX; /* the first frame carries 0 */
+    if (!on) {
+        if (node == VEHICLE_VCU) {
+            vehicle_vcu_stop(vehicle, now_ms);
+        }
+        return;
+    }
+    start_messages(vehicle, node, now_ms);
+    switch (node) {
+    case VEHICLE_VCU:
+        vehicle_vcu_start(vehicle, now_ms);
+        break;
+    case VEHICLE_EPS:
+        vehicle_eps_start(vehicle, now_ms);
+        break;
+    default:
+        vehicle_ai_start(vehicle, now_ms);
+        break;
+    }
+}
+
+static inline uint64_t earlier(uint64_t a, uint64_t b) {
+    return (a < b) ? a : b;
+}
+
+static uint64_t run_nodes(vehicle_t *vehicle, uint64_t now_ms) {
+    uint64_t next = UINT64_MAX;
+
+    for (int n = 0; n < VEHICLE_NODES; n++) {
+        if (now_ms >= vehicle->nodes[n].start_ms) {
+            vehicle_power(vehicle, (vehicle_node_t)n, true, now_ms);
+        }
+        next = earlier(next, vehicle->nodes[n].start_ms);
+    }
+    return next;
+}
+
+void vehicle_run(vehicle_t *vehicle, uint64_t now_ms) {
+    uint64_t next = run_nodes(vehicle, now_ms);
+
+    for (int m = 0; m < AGV_MSG_COUNT; m++) {
+        const vehicle_node_state_t *node = &vehicle->nodes[VEHICLE_ROWS[m].node];
+        if (!node->running) {
+            continue;
+        }
+        if (now_ms >= vehicle->messages[m].due_ms) {
+            vehicle_send_message(vehicle, (agv_message_t)m, now_ms);
+        }
+        next = earlier(next, vehicle->messages[m].due_ms);
+    }
+    vehicle->due_ms = earlier(next, vehicle_send_strangers(vehicle, now_ms));
+}
+
+void vehicle_receive(vehicle_t *vehicle, vehicle_node_t node, uint64_t now_ms, const hal_can_frame_t *frame) {
+    if (((unsigned)node >= (unsigned)VEHICLE_NODES) || !vehicle->nodes[node].running || (frame->flags != 0u)) {
+        return;
+    }
+    switch (node) {
+    case VEHICLE_VCU:
+        vehicle_vcu_receive(vehicle, now_ms, frame);
+        break;
+    case VEHICLE_EPS:
+        vehicle_eps_receive(vehicle, now_ms, frame);
+        break;
+    default:
+        vehicle_ai_receive(vehicle, now_ms, frame);
+        break;
+    }
+}
+
+void vehicle_view(vehicle_t *vehicle, uint64_t now_ms, vehicle_view_t *view) {
+    vehicle_body_move(vehicle, now_ms);
+    vehicle_eps_move(vehicle, now_ms);
+    *view = (vehicle_view_t){
+        .gear = vehicle->body.gear,
+        .autopilot = vehicle->vcu.autopilot,
+        .speed_mm_s = vehicle->body.speed_um_s / 1000,
+        .throttle_permille = vehicle->body.throttle_permille,
+        .eps_mode = vehicle->eps.mode,
+        .angle_ddeg = vehicle->eps.angle_mddeg / 1000,
+        .alarms = vehicle_vcu_alarms(vehicle, now_ms),
+        .fastest_park_mm_s = vehicle->body.fastest_park_mm_s,
+    };
+    for (int n = 0; n < VEHICLE_NODES; n++) {
+        view->running[n] = vehicle->nodes[n].running;
+    }
+}

@@ -1,0 +1,294 @@
+/**
+ * @file vehicle.h
+ * A vehicle to supervise: VCU, EPS and AI computer, each sending its messages on their cycles (P16), and the body that
+ * they move. It obeys the commands on the bus, and every node can misbehave on demand.
+ *
+ * It knows no bus: time and received frames are passed in, what a node sends goes to a callback. So the same vehicle runs
+ * on the simulated bus and on a real one. Nothing is random but by a seed: the same calls give the same frames.
+ *
+ * How it behaves (the figures are members of vehicle_config_t):
+ * - *VCU*. In autopilot it obeys 168h, 075h and 43Fh. In manual it obeys the remote controller, and of the bus only gear P
+ *   and autopilot off. Autopilot off ends autopilot mode at once: the gear stays, the throttle goes to 0. It engages when
+ *   the operator asks for it, unless autopilot off was commanded in the last 300 ms. While gear P is commanded (last one
+ *   within 300 ms) and until the operator drives anew, the remote controller moves nothing.
+ *   A gear takes time to engage. With the guard, P is taken only below walking pace: it brakes until then; without it, P
+ *   is taken at speed, and the wheels lock. 075h that stays away for 500 ms is throttle 0.
+ *   Alarms: AI CAN signal lost (43Fh counter unchanged for ai_lost_ms; the throttle goes to 0), EPS CAN bus fault (067h
+ *   counter unchanged for eps_lost_ms), EPS hardware fault (a bit in 167h byte 8), remote signal and power lost (it
+ *   brakes in manual). After a start: manual, gear P when it stands still, else N, all counters at 0.
+ * - *EPS*. Angle control while 363h reports autopilot, steering assist otherwise; a change takes eps_mode_change_ms. In
+ *   angle control it follows 065h, in assist the driver's hand, both with a limited rate.
+ * - *AI computer*. It drives as told while 363h reports autopilot; otherwise it sends gear N, throttle 0, angle 0.
+ *   Stubborn, it commands what it was told in every mode.
+ *
+ * Single-threaded, no allocation, no globals. All times are milliseconds since the start of the run.
+ */
+#ifndef VEHICLE_H
+#define VEHICLE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "agv/codec.h"
+#include "agv/protocol.h"
+#include "hal/can.h"
+
+/** A node of the vehicle; VEHICLE_STRANGER stands for whoever sends frames that no node of the vehicle would. */
+typedef enum { VEHICLE_VCU, VEHICLE_EPS, VEHICLE_AI, VEHICLE_NODES, VEHICLE_STRANGER = VEHICLE_NODES } vehicle_node_t;
+
+/** As a start time: the node stays off. */
+#define VEHICLE_NEVER UINT32_MAX
+/** As a number of frames: until it is cleared. */
+#define VEHICLE_FOREVER UINT16_MAX
+/** Periodic senders of raw frames at one time. */
+#define VEHICLE_STRANGERS_MAX 8u
+
+/** Called for every frame that is sent, at the moment of sending. Must not call the vehicle. */
+typedef void vehicle_send_fn(void *ctx, vehicle_node_t from, hal_can_side_t side, const hal_can_frame_t *frame);
+
+/** How a vehicle is built. Start from vehicle_defaults(). */
+typedef struct {
+    agv_id_set_t id_set;
+    bool gateway;                     /**< the AI computer is on the AI side, the others on the vehicle side */
+    bool park_guard;                  /**< the VCU takes P only below walking pace (default) */
+    bool obeys_short_frames;          /**< the VCU takes a 168h, 075h or 43Fh of any length (missing bytes are 0) */
+    uint32_t start_ms[VEHICLE_NODES]; /**< when each node starts; VEHICLE_NEVER */
+    uint32_t seed;                    /**< of the garbage */
+    uint16_t gear_change_ms;          /**< 120 */
+    uint16_t walking_pace_mm_s;       /**< 800 */
+    uint16_t top_speed_mm_s;          /**< 4000, at throttle 100 % */
+    uint16_t acceleration_mm_s2;      /**< 1000 */
+    uint16_t coasting_mm_s2;          /**< 400: slowing down with throttle below the speed */
+    uint16_t braking_mm_s2;           /**< 3000: the VCU brakes */
+    uint16_t locked_mm_s2;            /**< 5000: gear P */
+    uint16_t steering_rate_ddeg_s;    /**< 3000 */
+    uint16_t eps_mode_change_ms;      /**< 200 */
+    uint16_t ai_lost_ms;              /**< 1000 */
+    uint16_t eps_lost_ms;             /**< 100 */
+} vehicle_config_t;
+
+/** The defaults: shared bus, heading IDs, guarded P, all nodes start at 0. */
+void vehicle_defaults(vehicle_config_t *config);
+
+/** What a node sends instead of its payloads. */
+typedef enum {
+    VEHICLE_GARBAGE_OFF,
+    VEHICLE_GARBAGE_RANDOM,   /**< random payload, right length */
+    VEHICLE_GARBAGE_LENGTH,   /**< right first bytes, random DLC 0..7 */
+    VEHICLE_GARBAGE_EXTENDED, /**< 29-bit identifier */
+    VEHICLE_GARBAGE_REMOTE    /**< remote request */
+} vehicle_garbage_t;
+
+/** What can be asked of the vehicle at any moment. */
+typedef enum {
+    /* a node: `node` */
+    VEHICLE_DO_START,   /**< if it is off */
+    VEHICLE_DO_STOP,    /**< it loses power: neither sends nor hears */
+    VEHICLE_DO_RESTART, /**< off for `ms`, then as freshly started */
+    VEHICLE_DO_FREEZE,  /**< its alive counter stands still */
+    VEHICLE_DO_UNFREEZE,
+    VEHICLE_DO_LAG,     /**< every cycle of it takes `ms` longer; 0 = no more */
+    VEHICLE_DO_REPEAT,  /**< every frame of it is sent `count` times more; 0 = no more */
+    VEHICLE_DO_GARBAGE, /**< `garbage` */
+    VEHICLE_DO_RECOVER, /**< end of every misbehaviour of this node, its messages included */
+    /* a message: `message` */
+    VEHICLE_DO_MUTE, /**< it is not sent; for `count` frames (VEHICLE_FOREVER) */
+    VEHICLE_DO_UNMUTE,
+    VEHICLE_DO_PERIOD, /**< its cycle is `ms`; 0 = as it should be */
+    VEHICLE_DO_PATCH,  /**< payload = (payload & `keep`) | `value` in the next `count` frames (VEHICLE_FOREVER) */
+    VEHICLE_DO_UNPATCH,
+    /* the AI computer */
+    VEHICLE_DO_AI_DRIVE,         /**< `gear`, `throttle_permille`, `angle_ddeg` while engaged */
+    VEHICLE_DO_AI_IDLE,          /**< gear N, throttle 0, angle 0 */
+    VEHICLE_DO_AI_STUBBORN,      /**< `on`: commands what it was told in every mode */
+    VEHICLE_DO_AI_AUTOPILOT_OFF, /**< `on`: asks for autopilot off in 43Fh */
+    /* the EPS */
+    VEHICLE_DO_EPS_STUCK, /**< `on`: the steering does not move */
+    /* the operator */
+    VEHICLE_DO_ENGAGE,
+    VEHICLE_DO_DISENGAGE,
+    VEHICLE_DO_BUTTON,        /**< `count` = 1 or 2, `on` = pressed */
+    VEHICLE_DO_REMOTE_DRIVE,  /**< `gear`, `throttle_permille`: in manual */
+    VEHICLE_DO_HAND_STEER,    /**< `angle_ddeg`: in steering assist */
+    VEHICLE_DO_REMOTE_SIGNAL, /**< `on`: the VCU hears the remote controller */
+    VEHICLE_DO_REMOTE_POWER,  /**< `on`: the receiver has power */
+    /* a stranger: raw frames */
+    VEHICLE_DO_SEND, /**< `frame` on `side`, `count` times (0 = 1, VEHICLE_FOREVER) every `ms`, the first at once */
+    VEHICLE_DO_STOP_SENDING, /**< whatever strangers send */
+    VEHICLE_DO_COUNT
+} vehicle_do_t;
+
+/** One action; members that its kind does not name are ignored. */
+typedef struct {
+    vehicle_do_t what;
+    vehicle_node_t node;
+    agv_message_t message;
+    vehicle_garbage_t garbage;
+    hal_can_side_t side;
+    uint32_t ms;
+    uint16_t count;
+    bool on;
+    uint8_t gear; /**< agv_gear_t */
+    uint16_t throttle_permille;
+    int32_t angle_ddeg;
+    uint8_t keep[AGV_DLC];
+    uint8_t value[AGV_DLC];
+    hal_can_frame_t frame;
+} vehicle_action_t;
+
+/** What the vehicle is doing. */
+typedef struct {
+    uint8_t gear;   /**< agv_gear_t, engaged */
+    bool autopilot; /**< mode of the VCU */
+    int32_t speed_mm_s;
+    uint16_t throttle_permille;
+    uint8_t eps_mode; /**< agv_eps_mode_t */
+    int32_t angle_ddeg;
+    uint8_t alarms; /**< of the VCU, AGV_VCU_ALARM_* */
+    bool running[VEHICLE_NODES];
+    int32_t fastest_park_mm_s; /**< highest speed in amount at which P was taken so far */
+} vehicle_view_t;
+
+/** @name Private: layout only, so that a program can own a vehicle. @{ */
+typedef struct {
+    uint64_t due_ms;
+    uint32_t period_ms;
+    uint16_t muted;
+    uint16_t patched;
+    uint8_t keep[AGV_DLC];
+    uint8_t value[AGV_DLC];
+} vehicle_message_t;
+
+typedef struct {
+    uint64_t start_ms;
+    uint32_t lag_ms;
+    uint16_t repeat;
+    bool running;
+    bool frozen;
+    uint8_t garbage;
+    uint8_t counter;
+} vehicle_node_state_t;
+
+typedef struct {
+    uint64_t at_ms;
+    uint64_t changed_ms; /* when the target of a change under way was set */
+    int32_t speed_um_s;
+    int32_t fastest_park_mm_s;
+    uint16_t throttle_permille;
+    uint8_t gear;
+    uint8_t target;
+} vehicle_body_t;
+
+typedef struct {
+    uint64_t park_until_ms;
+    uint64_t off_until_ms;
+    uint64_t throttle_until_ms;
+    uint64_t ai_until_ms;
+    uint64_t eps_until_ms;
+    uint16_t throttle_permille;
+    uint8_t gear;
+    uint8_t ai_counter;
+    uint8_t eps_counter;
+    bool ai_heard;
+    bool eps_heard;
+    bool eps_fault;
+    bool autopilot;
+    bool turn_left_on;
+    bool turn_right_on;
+} vehicle_vcu_t;
+
+typedef struct {
+    uint64_t at_ms;
+    uint64_t changed_ms;
+    int32_t angle_mddeg;
+    int32_t command_ddeg;
+    uint8_t mode;
+    uint8_t wanted;
+    bool commanded;
+} vehicle_eps_t;
+
+typedef struct {
+    bool engaged;
+} vehicle_ai_t;
+
+/* What people and the world outside do; outlives every restart of a node. */
+typedef struct {
+    int32_t hand_ddeg;
+    int32_t ai_angle_ddeg;
+    uint16_t remote_throttle_permille;
+    uint16_t ai_throttle_permille;
+    uint8_t remote_gear;
+    uint8_t ai_gear;
+    bool hand_steers;
+    bool button_1;
+    bool button_2;
+    bool remote_signal_lost;
+    bool remote_power_lost;
+    bool ai_stubborn;
+    bool ai_autopilot_off;
+    bool eps_stuck;
+} vehicle_people_t;
+
+typedef struct {
+    uint64_t due_ms;
+    uint32_t period_ms;
+    uint16_t left;
+    hal_can_side_t side;
+    hal_can_frame_t frame;
+} vehicle_stranger_t;
+
+typedef struct {
+    uint64_t due_ms;
+    uint64_t now_ms;
+    vehicle_send_fn *send;
+    void *send_ctx;
+    uint16_t id[AGV_MSG_COUNT];
+    uint32_t random;
+    vehicle_message_t messages[AGV_MSG_COUNT];
+    vehicle_node_state_t nodes[VEHICLE_NODES];
+    vehicle_body_t body;
+    vehicle_vcu_t vcu;
+    vehicle_eps_t eps;
+    vehicle_ai_t ai;
+    vehicle_people_t people;
+    vehicle_stranger_t strangers[VEHICLE_STRANGERS_MAX];
+    vehicle_config_t config;
+} vehicle_t;
+
+void vehicle_run(vehicle_t *vehicle, uint64_t now_ms);
+/** @} */
+
+/**
+ * Build a vehicle that stands in manual, gear P, at time 0.
+ * @param config is copied
+ * @param send   gets every frame sent; not NULL
+ */
+void vehicle_init(vehicle_t *vehicle, const vehicle_config_t *config, vehicle_send_fn *send, void *ctx);
+
+/** Time has come to @p now_ms: send what is due. Call it every millisecond; never with an earlier time. */
+static inline void vehicle_tick(vehicle_t *vehicle, uint64_t now_ms) {
+    vehicle->now_ms = now_ms;
+    if (now_ms >= vehicle->due_ms) {
+        vehicle_run(vehicle, now_ms);
+    }
+}
+
+/** A node hears a frame. Not for its own ones; a node that is off hears nothing. */
+void vehicle_receive(vehicle_t *vehicle, vehicle_node_t node, uint64_t now_ms, const hal_can_frame_t *frame);
+
+/**
+ * Do something now; frames of it are sent by the next vehicle_tick(), the one of this millisecond included.
+ * @return false: the action names a node, message or value that there is not, or there is no room for another stranger.
+ */
+bool vehicle_do(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action);
+
+/** Look at the vehicle. @p now_ms not before the last call. */
+void vehicle_view(vehicle_t *vehicle, uint64_t now_ms, vehicle_view_t *view);
+
+/** The controller side that a node is on; a stranger is on the vehicle side. */
+hal_can_side_t vehicle_side_of(const vehicle_t *vehicle, vehicle_node_t node);
+
+/** The node that sends a message. */
+vehicle_node_t vehicle_sender_of(agv_message_t message);
+
+#endif

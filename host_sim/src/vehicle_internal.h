@@ -1,0 +1,85 @@
+/**
+ * @file vehicle_internal.h
+ * What the parts of the vehicle share. For vehicle*.c only.
+ */
+#ifndef VEHICLE_INTERNAL_H
+#define VEHICLE_INTERNAL_H
+
+#include "vehicle.h"
+
+/** Compose the payload that a healthy node sends now; raises its alive counter where the message carries one. */
+typedef void vehicle_compose_fn(vehicle_t *vehicle, uint64_t now_ms, uint8_t data[AGV_DLC]);
+
+/** A message of the vehicle. */
+typedef struct {
+    vehicle_node_t node;
+    uint16_t phase_ms; /**< of its first frame, after the start of the node: spread, so that few fall together */
+    uint16_t cycle_ms;
+    vehicle_compose_fn *compose;
+} vehicle_row_t;
+
+extern const vehicle_row_t VEHICLE_ROWS[AGV_MSG_COUNT];
+
+/** Bring a value closer to its target by at most @p step. */
+static inline int32_t vehicle_approach(int32_t value, int32_t target, int32_t step) {
+    if (value < target) {
+        return (target - value <= step) ? target : value + step;
+    }
+    return (value - target <= step) ? target : value - step;
+}
+
+/** The alive counter of the next frame. */
+uint8_t vehicle_count(vehicle_t *vehicle, vehicle_node_t node);
+
+/** @name vehicle_vcu.c @{ */
+void vehicle_vcu_start(vehicle_t *vehicle, uint64_t now_ms);
+void vehicle_vcu_stop(vehicle_t *vehicle, uint64_t now_ms);
+void vehicle_vcu_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_frame_t *frame);
+void vehicle_vcu_engage(vehicle_t *vehicle, uint64_t now_ms);
+void vehicle_vcu_disengage(vehicle_t *vehicle, uint64_t now_ms);
+void vehicle_vcu_remote(vehicle_t *vehicle, uint64_t now_ms);
+uint8_t vehicle_vcu_alarms(const vehicle_t *vehicle, uint64_t now_ms);
+vehicle_compose_fn vehicle_vcu_vehicle_status;
+vehicle_compose_fn vehicle_vcu_gear_status;
+vehicle_compose_fn vehicle_vcu_throttle_status;
+vehicle_compose_fn vehicle_vcu_wheel_speed;
+/** @} */
+
+/** @name vehicle_body.c @{ */
+/** Let gear box and wheels come to @p now_ms, as the VCU has them do since the last call. */
+void vehicle_body_move(vehicle_t *vehicle, uint64_t now_ms);
+/** @} */
+
+/** @name vehicle_eps.c @{ */
+void vehicle_eps_start(vehicle_t *vehicle, uint64_t now_ms);
+void vehicle_eps_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_frame_t *frame);
+/** Let the steering come to @p now_ms. */
+void vehicle_eps_move(vehicle_t *vehicle, uint64_t now_ms);
+vehicle_compose_fn vehicle_eps_steering_status;
+vehicle_compose_fn vehicle_eps_eps_status;
+vehicle_compose_fn vehicle_eps_steering_position;
+/** @} */
+
+/** @name vehicle_ai.c @{ */
+void vehicle_ai_start(vehicle_t *vehicle, uint64_t now_ms);
+void vehicle_ai_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_frame_t *frame);
+vehicle_compose_fn vehicle_ai_turn_signal_command;
+vehicle_compose_fn vehicle_ai_gear_command;
+vehicle_compose_fn vehicle_ai_throttle_command;
+vehicle_compose_fn vehicle_ai_steering_command;
+/** @} */
+
+/** @name vehicle_send.c: how nodes send, and misbehave @{ */
+/** Send the frame of a message that is due, as its node and the message misbehave. */
+void vehicle_send_message(vehicle_t *vehicle, agv_message_t message, uint64_t now_ms);
+/** Send what strangers have due. @return when the next one is due. */
+uint64_t vehicle_send_strangers(vehicle_t *vehicle, uint64_t now_ms);
+bool vehicle_add_stranger(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action);
+void vehicle_recover(vehicle_t *vehicle, vehicle_node_t node);
+/** @} */
+
+/** @name vehicle.c @{ */
+void vehicle_power(vehicle_t *vehicle, vehicle_node_t node, bool on, uint64_t now_ms);
+/** @} */
+
+#endif

@@ -1,0 +1,141 @@
+/* How nodes send: on their cycles, and as they misbehave. */
+#include <string.h>
+
+#include "vehicle_internal.h"
+
+#define EXTENDED_ID_SHIFT 18u /* an 11-bit identifier in the upper bits of a 29-bit one */
+
+/** xorshift32 */
+static uint32_t next_random(vehicle_t *vehicle) {
+    uint32_t x = vehicle->random;
+
+    x ^= x << 13;
+    x ^= x >> 17;
+    x ^= x << 5;
+    vehicle->random = x;
+    return x;
+}
+
+/** Count down what lasts for a number of frames. */
+static void use_up(uint16_t *left) {
+    if (*left != VEHICLE_FOREVER) {
+        (*left)--;
+    }
+}
+
+static void shorten(vehicle_t *vehicle, hal_can_frame_t *frame) {
+    frame->length = (uint8_t)(next_random(vehicle) % AGV_DLC);
+    memset(&frame->data[frame->length], 0, (size_t)AGV_DLC - frame->length);
+}
+
+static void make_garbage(vehicle_t *vehicle, vehicle_garbage_t kind, hal_can_frame_t *frame) {
+    switch (kind) {
+    case VEHICLE_GARBAGE_RANDOM:
+        for (unsigned i = 0; i < AGV_DLC; i++) {
+            frame->data[i] = (uint8_t)(next_random(vehicle) >> 24);
+        }
+        break;
+    case VEHICLE_GARBAGE_LENGTH:
+        shorten(vehicle, frame);
+        break;
+    case VEHICLE_GARBAGE_EXTENDED:
+        frame->flags = HAL_CAN_EXTENDED;
+        frame->id <<= EXTENDED_ID_SHIFT;
+        break;
+    case VEHICLE_GARBAGE_REMOTE:
+        frame->flags = HAL_CAN_REMOTE;
+        memset(frame->data, 0, AGV_DLC);
+        break;
+    default:
+        break;
+    }
+}
+
+static void patch(vehicle_message_t *message, uint8_t data[AGV_DLC]) {
+    for (unsigned i = 0; i < AGV_DLC; i++) {
+        data[i] = (uint8_t)((data[i] & message->keep[i]) | message->value[i]);
+    }
+    use_up(&message->patched);
+}
+
+void vehicle_send_message(vehicle_t *vehicle, agv_message_t message, uint64_t now_ms) {
+    const vehicle_row_t *row = &VEHICLE_ROWS[message];
+    vehicle_message_t *state = &vehicle->messages[message];
+    const vehicle_node_state_t *node = &vehicle->nodes[row->node];
+    const uint32_t period_ms = ((state->period_ms != 0u) ? state->period_ms : row->cycle_ms) + node->lag_ms;
+    hal_can_frame_t frame = {.id = vehicle->id[message], .time_ms = (uint32_t)now_ms, .length = AGV_DLC};
+
+    state->due_ms += period_ms;
+    if (state->due_ms <= now_ms) { /* time was not called for long: no burst */
+        state->due_ms = now_ms + period_ms;
+    }
+    row->compose(vehicle, now_ms, frame.data);
+    if (state->muted != 0u) {
+        use_up(&state->muted);
+        return;
+    }
+    if (state->patched != 0u) {
+        patch(state, frame.data);
+    }
+    if (node->garbage != VEHICLE_GARBAGE_OFF) {
+        make_garbage(vehicle, (vehicle_garbage_t)node->garbage, &frame);
+    }
+    for (unsigned i = 0; i <= node->repeat; i++) {
+        vehicle->send(vehicle->send_ctx, row->node, vehicle_side_of(vehicle, row->node), &frame);
+    }
+}
+
+void vehicle_recover(vehicle_t *vehicle, vehicle_node_t node) {
+    vehicle_node_state_t *state = &vehicle->nodes[node];
+
+    state->frozen = false;
+    state->lag_ms = 0u;
+    state->repeat = 0u;
+    state->garbage = VEHICLE_GARBAGE_OFF;
+    for (int m = 0; m < AGV_MSG_COUNT; m++) {
+        if (VEHICLE_ROWS[m].node == node) {
+            vehicle->messages[m].muted = 0u;
+            vehicle->messages[m].patched = 0u;
+            vehicle->messages[m].period_ms = 0u;
+        }
+    }
+    if (node == VEHICLE_EPS) {
+        vehicle->people.eps_stuck = false;
+    }
+}
+
+bool vehicle_add_stranger(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action) {
+    for (unsigned i = 0; i < VEHICLE_STRANGERS_MAX; i++) {
+        vehicle_stranger_t *stranger = &vehicle->strangers[i];
+        if (stranger->left == 0u) {
+            stranger->left = (action->count != 0u) ? action->count : 1u;
+            stranger->period_ms = (action->ms != 0u) ? action->ms : 1u;
+            stranger->due_ms = now_ms;
+            stranger->side = action->side;
+            stranger->frame = action->frame;
+            return true;
+        }
+    }
+    return false;
+}
+
+uint64_t vehicle_send_strangers(vehicle_t *vehicle, uint64_t now_ms) {
+    uint64_t next = UINT64_MAX;
+
+    for (unsigned i = 0; i < VEHICLE_STRANGERS_MAX; i++) {
+        vehicle_stranger_t *stranger = &vehicle->strangers[i];
+        if (stranger->left == 0u) {
+            continue;
+        }
+        if (now_ms >= stranger->due_ms) {
+            stranger->due_ms = now_ms + stranger->period_ms;
+            stranger->frame.time_ms = (uint32_t)now_ms;
+            use_up(&stranger->left);
+            vehicle->send(vehicle->send_ctx, VEHICLE_STRANGER, stranger->side, &stranger->frame);
+        }
+        if ((stranger->left != 0u) && (stranger->due_ms < next)) {
+            next = stranger->due_ms;
+        }
+    }
+    return next;
+}
