@@ -18,6 +18,9 @@
     (AGV_VCU_ALARM_REMOTE_SIGNAL_LOST | AGV_VCU_ALARM_REMOTE_POWER_LOST | AGV_VCU_ALARM_AI_CAN_LOST |                  \
      AGV_VCU_ALARM_EPS_HARDWARE | AGV_VCU_ALARM_EPS_CAN_BUS | AGV_VCU_ALARM_S_DRIVER)
 
+_Static_assert(0xFFFFu * AGV_VEHICLE_SPEED_M_PER_H_PER_COUNT <= UINT16_MAX,
+               "speed_m_per_h must hold every count in this unit: widen it first");
+
 static inline void put_le16(uint8_t *to, uint32_t value) {
     to[0] = (uint8_t)(value & 0xFFu);
     to[1] = (uint8_t)((value >> 8) & 0xFFu);
@@ -166,7 +169,7 @@ bool agv_pack_vehicle_status(uint8_t data[AGV_DLC], const agv_vehicle_status_t *
     flags = (flags * 2u) + in->turn_left_on;
     buttons = (buttons * 2u) + in->button_1;
     flags = (flags << 4) | buttons;
-    put_le32(&data[0], in->speed_m_per_h);
+    put_le32(&data[0], in->speed_m_per_h / AGV_VEHICLE_SPEED_M_PER_H_PER_COUNT); /* the two reserved bytes as 0 */
     data[4] = (uint8_t)(in->level1_alarms & VCU_ALARM_MASK);
     data[5] = in->level2_alarms;
     data[6] = (uint8_t)flags;
@@ -178,7 +181,7 @@ bool agv_unpack_vehicle_status(agv_vehicle_status_t *out, const uint8_t data[AGV
     const uint32_t flags = data[6];
 
     out->alive_counter = data[7];
-    out->speed_m_per_h = get_le16(&data[0]);
+    out->speed_m_per_h = (uint16_t)(get_le16(&data[0]) * AGV_VEHICLE_SPEED_M_PER_H_PER_COUNT);
     out->level1_alarms = (uint8_t)(data[4] & VCU_ALARM_MASK);
     out->level2_alarms = data[5];
     out->button_1 = (flags & 0x01u) != 0u;

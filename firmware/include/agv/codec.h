@@ -3,7 +3,7 @@
  * Pack and unpack the payload of each of the 11 messages.
  *
  * All functions are pure, straight code without loops, and work on the 8 payload bytes of a frame whose DLC was already
- * checked. They never keep a pointer. Pointers must not be NULL.
+ * checked. They never keep a pointer. Pointers must not be NULL, and payload and struct must not overlap.
  *
  * - `agv_pack_X(data, &in)` checks every field. In range: writes all 8 bytes (reserved bits as 0, P14), returns true.
  *   Out of range: returns false and leaves @p data untouched.
@@ -42,10 +42,13 @@ typedef enum {
 #define AGV_ANGLE_RAW_CENTRE 9000
 #define AGV_ANGLE_RAW_MAX 18000
 #define AGV_ANGLE_MAX_DDEG 9000
-/** Which side a positive angle turns to: not stated by the document, for the integrator to set. +1 left, -1 right. */
+/**
+ * Which side a positive angle turns to: not stated by the document, for the integrator to set. +1 left, -1 right. The
+ * supervisor itself never needs it: it only compares angles and sends back the measured one.
+ */
 #define AGV_ANGLE_POSITIVE_SIDE (+1)
 
-/** Vehicle speed: one count is 1 m/h = 0.001 km/h (P7). */
+/** Vehicle speed: one count is 1 m/h = 0.001 km/h (P7). Nothing safety-relevant uses more than "is it zero". */
 #define AGV_VEHICLE_SPEED_M_PER_H_PER_COUNT 1u
 
 /** Bits of 363h byte 5, VCU level 1 alarms (the document counts them from Bit0). */
@@ -93,7 +96,7 @@ typedef struct {
 /** 363h. Every value is valid (both mode bits set is judged by the supervisor, MODE_INVALID). */
 typedef struct {
     uint16_t speed_m_per_h; /**< metres per hour, unsigned (P7) */
-    uint8_t level1_alarms;  /**< AGV_VCU_ALARM_* bits; the two reserved bits read as 0 */
+    uint8_t level1_alarms;  /**< AGV_VCU_ALARM_* bits; the two reserved bits are read and sent as 0 */
     uint8_t level2_alarms;  /**< reserved by the document; 0 = none */
     bool button_1;
     bool button_2;

@@ -51,12 +51,13 @@ typedef enum {
 
 /**
  * The identifier of a message.
- * @return the 11-bit identifier; a value above AGV_ID_MAX when @p message is no message.
+ * @return the 11-bit identifier; a value above AGV_ID_MAX when @p message is no message, or @p id_set no set.
  */
 uint16_t agv_message_id(agv_message_t message, agv_id_set_t id_set);
 
 /**
- * The message with this identifier in the chosen set.
+ * The message with this identifier in the chosen set. Whether a frame is extended, remote, FD or of another length is
+ * the caller's to check (P15).
  * @return the message, or AGV_MSG_NONE (also for identifiers that only the other set knows).
  */
 agv_message_t agv_message_from_id(uint32_t id, agv_id_set_t id_set);
