@@ -30,6 +30,10 @@ plant() {
     plant firmware/include/agv/codec.h '#include "hal_sim/sim_bus.h"' 'firmware/ includes something other'
 }
 
+@test "layers: a library's header in the core" {
+    plant firmware/src/codec.c '#include "yaml.h"' 'firmware/ includes something other'
+}
+
 @test "layers: a platform #ifdef in the core" {
     plant firmware/src/codec.c '#ifdef __linux__' 'a platform #if'
 }
