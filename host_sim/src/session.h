@@ -10,6 +10,7 @@
 #define HOST_SIM_SESSION_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "agv/config.h"

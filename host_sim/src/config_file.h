@@ -1,0 +1,41 @@
+/**
+ * @file config_file.h
+ * A configuration as a YAML file: settings at the top level, by the names of config_settings.def, and
+ * `class_<fault in lower case>: trip|warn`. What is not named keeps its default.
+ */
+#ifndef HOST_SIM_CONFIG_FILE_H
+#define HOST_SIM_CONFIG_FILE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "agv/config.h"
+
+/** Where each setting stands in its file, so that a later check can name the line; 0 = it is not in it. */
+typedef struct {
+    const char *path; /**< NULL: no file */
+    size_t settings[AGV_SETTING_COUNT];
+    size_t classes[AGV_FAULT_COUNT];
+} config_lines_t;
+
+/**
+ * Change a configuration as a file says.
+ * @param config starts as what the caller filled in, commonly the defaults
+ * @param lines  is filled in
+ * @return false: the file cannot be read, or a key or value makes no sense by itself; was reported.
+ */
+bool config_file_load(const char *path, agv_config_t *config, config_lines_t *lines);
+
+/** Check a configuration as a whole. @return false: it makes no sense; was reported, with its line if it has one. */
+bool config_check(const agv_config_t *config, const config_lines_t *lines);
+
+/** Size of the key of any fault's class, terminating zero included. */
+#define CONFIG_CLASS_KEY_SIZE 64u
+
+/** "class_bus_off": the key of a fault's class. */
+void config_class_key(agv_fault_t fault, char key[CONFIG_CLASS_KEY_SIZE]);
+
+/** The word with an index in a list "a|b|c", not terminated. @return its length; 0: there is none. */
+size_t config_word(const char *words, uint16_t index, const char **word);
+
+#endif

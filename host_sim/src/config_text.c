@@ -1,0 +1,122 @@
+#include "config_text.h"
+
+#include <ctype.h>
+#include <inttypes.h>
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "agv/names.h"
+#include "config_file.h"
+
+enum { TEXT_SIZE = 96 };
+
+/** The value of a setting as it stands in a file. */
+static void value_text(const agv_setting_info_t *info, uint16_t value, char text[TEXT_SIZE]) {
+    if (info->words == NULL) {
+        (void)snprintf(text, TEXT_SIZE, "%u", value);
+    } else {
+        const char *word = NULL;
+        size_t length = config_word(info->words, value, &word);
+        (void)snprintf(text, TEXT_SIZE, "%.*s", (int)length, word);
+    }
+}
+
+static const char *class_word(agv_fault_set_t trips, agv_fault_t fault) {
+    return agv_class_name(((trips & agv_fault_bit(fault)) != 0u) ? AGV_CLASS_TRIP : AGV_CLASS_WARN);
+}
+
+/** Whether the class of a fault may be chosen at all. */
+static bool may_be_chosen(agv_fault_t fault) {
+    return (agv_faults_fixed & agv_fault_bit(fault)) == 0u;
+}
+
+void config_print_yaml(const agv_config_t *config) {
+    (void)printf("# Configuration of the supervisor: every setting with its meaning, range and default.\n"
+                 "# Checksum: %08" PRIX32 "\n",
+                 agv_config_checksum(config));
+    for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
+        const agv_setting_info_t *info = agv_setting_info(i);
+        char preset[TEXT_SIZE];
+        char value[TEXT_SIZE];
+        value_text(info, info->preset, preset);
+        value_text(info, agv_config_get(config, i), value);
+        (void)printf("\n# %s\n", info->meaning);
+        if (info->words == NULL) {
+            (void)printf("# %u to %u%s%s, default %s\n", info->lowest, info->highest,
+                         (info->unit[0] != '\0') ? " " : "", info->unit, preset);
+        } else {
+            (void)printf("# %s, default %s\n", info->words, preset);
+        }
+        (void)printf("%s: %s\n", info->name, value);
+    }
+    (void)printf(
+        "\n# What each fault does: trip|warn. A warning may be made a trip; a trip that must stay one says so.\n");
+    for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
+        const agv_fault_t fault = (agv_fault_t)i;
+        char key[CONFIG_CLASS_KEY_SIZE];
+        config_class_key(fault, key);
+        (void)printf("%s: %s  # default %s%s\n", key, class_word(config->trips, fault),
+                     class_word(agv_faults_default_trips, fault), may_be_chosen(fault) ? "" : ", must stay");
+    }
+}
+
+static void print_upper(const char *text) {
+    for (const char *at = text; *at != '\0'; at++) {
+        (void)putchar(toupper((unsigned char)*at));
+    }
+}
+
+void config_print_kconfig(const agv_config_t *config) {
+    (void)printf("# Configuration of the supervisor, for the firmware.\n"
+                 "# Checksum: %08" PRIX32 "\n",
+                 agv_config_checksum(config));
+    for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
+        const agv_setting_info_t *info = agv_setting_info(i);
+        char value[TEXT_SIZE];
+        value_text(info, agv_config_get(config, i), value);
+        (void)printf("CONFIG_AGV_");
+        print_upper(info->name);
+        (void)putchar((info->words == NULL) ? '=' : '_');
+        print_upper(value);
+        (void)printf((info->words == NULL) ? "\n" : "=y\n");
+    }
+    for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
+        const agv_fault_t fault = (agv_fault_t)i;
+        if (may_be_chosen(fault)) {
+            (void)printf("CONFIG_AGV_CLASS_%s_", agv_fault_name(fault));
+            print_upper(class_word(config->trips, fault));
+            (void)printf("=y\n");
+        }
+    }
+}
+
+/** Begin or go on with the line of deviations. */
+static void print_deviation(bool *any, const char *key, const char *value, const char *preset) {
+    (void)fprintf(stderr, "%s%s: %s (%s)", *any ? ", " : "host_sim: not the default: ", key, value, preset);
+    *any = true;
+}
+
+void config_note_deviations(const agv_config_t *config) {
+    bool any = false;
+    for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
+        const agv_setting_info_t *info = agv_setting_info(i);
+        if (agv_config_get(config, i) != info->preset) {
+            char preset[TEXT_SIZE];
+            char value[TEXT_SIZE];
+            value_text(info, info->preset, preset);
+            value_text(info, agv_config_get(config, i), value);
+            print_deviation(&any, info->name, value, preset);
+        }
+    }
+    for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
+        const agv_fault_t fault = (agv_fault_t)i;
+        if (((config->trips ^ agv_faults_default_trips) & agv_fault_bit(fault)) != 0u) {
+            char key[CONFIG_CLASS_KEY_SIZE];
+            config_class_key(fault, key);
+            print_deviation(&any, key, class_word(config->trips, fault), class_word(agv_faults_default_trips, fault));
+        }
+    }
+    if (any) {
+        (void)fputc('\n', stderr);
+    }
+}

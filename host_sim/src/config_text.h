@@ -1,0 +1,23 @@
+/**
+ * @file config_text.h
+ * A configuration in print: as YAML (config_file.h reads it back), as a Kconfig fragment for the firmware, and what of
+ * it is not the default.
+ */
+#ifndef HOST_SIM_CONFIG_TEXT_H
+#define HOST_SIM_CONFIG_TEXT_H
+
+#include "agv/config.h"
+
+/** Print every setting on standard output, with meaning, range and default as comments. */
+void config_print_yaml(const agv_config_t *config);
+
+/**
+ * Print the Kconfig fragment on standard output: CONFIG_AGV_<SETTING>=<number>, CONFIG_AGV_<SETTING>_<WORD>=y, and, for
+ * every fault whose class may be chosen, CONFIG_AGV_CLASS_<FAULT>_TRIP=y or _WARN=y.
+ */
+void config_print_kconfig(const agv_config_t *config);
+
+/** List what is not the default, in one line on standard error: "setting: value (default)"; nothing when all is. */
+void config_note_deviations(const agv_config_t *config);
+
+#endif

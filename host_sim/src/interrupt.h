@@ -1,0 +1,26 @@
+/**
+ * @file interrupt.h
+ * Ctrl-C and its like while something unfinished lies on the disk: the signal is held back, noticed between two steps,
+ * and acts once the unfinished is removed.
+ */
+#ifndef HOST_SIM_INTERRUPT_H
+#define HOST_SIM_INTERRUPT_H
+
+#include <stdbool.h>
+
+/** What to wait for. */
+typedef enum { INTERRUPT_READ, INTERRUPT_WRITE } interrupt_for_t;
+
+/** Hold SIGINT, SIGTERM and SIGHUP back from now on. */
+void interrupt_hold(void);
+
+/** Whether one of them came while they are held back. Cheap enough for every thousandth step, not for every one. */
+bool interrupt_pending(void);
+
+/** Wait until a file can be read or written. @return false: interrupt_pending() */
+bool interrupt_wait(int fd, interrupt_for_t what);
+
+/** Let them through: one that came ends the program here. */
+void interrupt_release(void);
+
+#endif
