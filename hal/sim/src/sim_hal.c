@@ -93,13 +93,17 @@ void sim_hal_hold(hal_t *hal) {
     hold(hal, sim_hal_now_ms(hal));
 }
 
-bool sim_hal_poll(hal_t *hal) {
+bool sim_hal_watch(hal_t *hal, uint32_t now_ms) {
     if (!hal->held && hal->config.watchdog_ms != SIM_HAL_WATCHDOG_OFF &&
-        sim_hal_now_ms(hal) - hal->fed_ms > hal->config.watchdog_ms) {
+        now_ms - hal->fed_ms > hal->config.watchdog_ms) {
         hal->bites++;
         hold(hal, hal->fed_ms + hal->config.watchdog_ms);
     }
     return hal->held;
+}
+
+bool sim_hal_poll(hal_t *hal) {
+    return sim_hal_watch(hal, sim_hal_now_ms(hal));
 }
 
 void sim_hal_reset(hal_t *hal, hal_reset_cause_t cause) {

@@ -20,4 +20,7 @@ static inline void sim_hal_set_pin(sim_hal_pin_t *pin, bool on, uint32_t time_ms
     }
 }
 
+/** The watchdog looks at the clock. @return it holds the MCU in reset. */
+bool sim_hal_watch(hal_t *hal, uint32_t now_ms);
+
 #endif

@@ -109,9 +109,11 @@ hal_reset_cause_t hal_reset_cause(hal_t *hal) {
 }
 
 void hal_watchdog_feed(hal_t *hal) {
-    if (enter(hal, SIM_HAL_OP_WATCHDOG_FEED) && !sim_hal_poll(hal)) {
+    const bool works = enter(hal, SIM_HAL_OP_WATCHDOG_FEED);
+    const uint32_t now_ms = sim_hal_now_ms(hal);
+    if (works && !sim_hal_watch(hal, now_ms)) {
         hal->feeds++;
-        hal->fed_ms = sim_hal_now_ms(hal);
+        hal->fed_ms = now_ms;
     }
 }
 

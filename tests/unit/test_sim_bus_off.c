@@ -1,0 +1,269 @@
+/* The simulated bus: the way back from bus-off, and nodes that lose their power. */
+#include <string.h>
+
+#include "sim_bus_fixture.h"
+#include "unity.h"
+
+static fixture_t fixture;
+static sim_bus_t *const bus = &fixture.bus;
+
+void setUp(void) {
+    memset(&fixture, 0xA5, sizeof fixture);
+    fixture_init(&fixture, 500000); /* 2 us a bit */
+}
+
+void tearDown(void) {
+}
+
+static void assert_state(hal_can_state_t expected, sim_bus_node_t node) {
+    TEST_ASSERT_EQUAL_INT(expected, status_of(&fixture, node).state);
+}
+
+/* ---- Recovery ---- */
+
+/* Idle bus: 128 x 11 = 1408 bits = 2816 us. */
+/* Shows: SUP-7 */
+void test_recovery_takes_1408_bits_of_an_idle_bus(void) {
+    sim_bus_recover(bus, A); /* not in bus-off: nothing */
+    sim_bus_run_until(bus, 1000);
+    sim_bus_force_bus_off(bus, A);
+    sim_bus_force_bus_off(bus, A);
+    sim_bus_run_until(bus, 10000);
+    assert_state(HAL_CAN_BUS_OFF, A);
+    sim_bus_recover(bus, A);
+    sim_bus_run_until(bus, 11000);
+    sim_bus_recover(bus, A); /* asking twice does not start it anew */
+    sim_bus_run_until(bus, 12815);
+    assert_state(HAL_CAN_BUS_OFF, A);
+    sim_bus_run_until(bus, 12816);
+    assert_state(HAL_CAN_ERROR_ACTIVE, A);
+    TEST_ASSERT_EQUAL_UINT(0, tec_of(&fixture, A));
+    TEST_ASSERT_EQUAL_UINT16(1, status_of(&fixture, A).bus_off_count);
+    TEST_ASSERT_TRUE(send(&fixture, A, 0x168, 8, 0));
+    sim_bus_run_until(bus, 13500);
+    TEST_ASSERT_EQUAL_UINT(1, fixture.event_count);
+}
+
+/*
+ * One frame in between: 50 whole sequences (1100 us) and 9 bits that do not count, the frame 264 us and 6 between frames
+ * = 1 sequence, then the other 77: 1118 + 264 + 6 + 77 x 22 = 3082.
+ */
+void test_a_frame_in_between_counts_as_one_sequence(void) {
+    sim_bus_force_bus_off(bus, A);
+    sim_bus_recover(bus, A);
+    sim_bus_run_until(bus, 1118);
+    send(&fixture, B, 0x100, 8, 0);
+    sim_bus_run_until(bus, 3081);
+    assert_state(HAL_CAN_BUS_OFF, A);
+    sim_bus_run_until(bus, 3082);
+    assert_state(HAL_CAN_ERROR_ACTIVE, A);
+}
+
+/* A bus without a pause: frame after frame, 270 us and one sequence each: 128 x 270 = 34560. */
+void test_recovery_on_a_full_bus_takes_128_frames(void) {
+    sim_bus_force_bus_off(bus, A);
+    send(&fixture, B, 0x100, 8, 0);
+    sim_bus_run_until(bus, 1);
+    sim_bus_recover(bus, A); /* asked for in the middle of the first one */
+    for (uint64_t us = 100; us < 34560; us += 100) {
+        (void)send(&fixture, B, 0x100, 8, 0);
+        sim_bus_run_until(bus, us);
+    }
+    sim_bus_run_until(bus, 34559);
+    assert_state(HAL_CAN_BUS_OFF, A);
+    sim_bus_run_until(bus, 34560);
+    assert_state(HAL_CAN_ERROR_ACTIVE, A);
+}
+
+/* Asked for between two frames: it counts from the end of the pause on. */
+void test_recovery_asked_for_between_frames(void) {
+    send(&fixture, B, 0x100, 8, 0);
+    sim_bus_run_until(bus, 264);
+    sim_bus_force_bus_off(bus, A);
+    sim_bus_recover(bus, A);
+    sim_bus_run_until(bus, 270 + 2815);
+    assert_state(HAL_CAN_BUS_OFF, A);
+    sim_bus_run_until(bus, 270 + 2816);
+    assert_state(HAL_CAN_ERROR_ACTIVE, A);
+}
+
+/* Unplugged, its own wire is idle: frames of the others do not hold it up any more. */
+void test_an_unplugged_node_recovers_on_its_own(void) {
+    sim_bus_force_bus_off(bus, A);
+    sim_bus_recover(bus, A);
+    sim_bus_run_until(bus, 220); /* 10 sequences */
+    send(&fixture, B, 0x100, 8, 0);
+    sim_bus_run_until(bus, 320);
+    sim_bus_set_plugged(bus, A, false); /* counts on from here: 118 x 22 = 2596 */
+    for (uint64_t us = 400; us <= 2900; us += 100) {
+        (void)send(&fixture, B, 0x100, 8, 0);
+        sim_bus_run_until(bus, us);
+    }
+    sim_bus_run_until(bus, 2915);
+    assert_state(HAL_CAN_BUS_OFF, A);
+    sim_bus_run_until(bus, 2916);
+    assert_state(HAL_CAN_ERROR_ACTIVE, A);
+}
+
+void test_a_node_that_is_plugged_in_while_it_recovers_waits_for_the_bus(void) {
+    sim_bus_force_bus_off(bus, A);
+    sim_bus_set_plugged(bus, A, false);
+    sim_bus_recover(bus, A);
+    sim_bus_run_until(bus, 220); /* 10 sequences */
+    send(&fixture, B, 0x100, 8, 0);
+    sim_bus_run_until(bus, 221); /* 220..484, 490 */
+    sim_bus_set_plugged(bus, A, true);
+    sim_bus_run_until(bus, 490 + 117 * 22 - 1);
+    assert_state(HAL_CAN_BUS_OFF, A);
+    sim_bus_run_until(bus, 490 + 117 * 22);
+    assert_state(HAL_CAN_ERROR_ACTIVE, A);
+}
+
+void test_what_waits_is_lost_in_bus_off_or_kept_if_so_built(void) {
+    const sim_bus_node_config_t keeps = {.keep_on_bus_off = true};
+    const sim_bus_node_t keeper = sim_bus_attach(bus, &keeps);
+    for (unsigned i = 0; i < 2; i++) {
+        sim_bus_set_stalled(bus, i == 0 ? A : keeper, true);
+        send(&fixture, i == 0 ? A : keeper, 0x168, 8, (uint8_t)i);
+        sim_bus_force_bus_off(bus, i == 0 ? A : keeper);
+        sim_bus_set_stalled(bus, i == 0 ? A : keeper, false);
+        sim_bus_recover(bus, i == 0 ? A : keeper);
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, status_of(&fixture, A).tx_pending_ms);
+    TEST_ASSERT_EQUAL_UINT32(1, status_of(&fixture, keeper).tx_pending_ms);
+    sim_bus_run_until(bus, 10000);
+    TEST_ASSERT_EQUAL_UINT(1, fixture.event_count);
+    TEST_ASSERT_EQUAL_UINT8(keeper, fixture.events[0].sender);
+    TEST_ASSERT_EQUAL_UINT64(2816, fixture.events[0].start_us);
+}
+
+/* Shows: SUP-7 */
+void test_a_frame_purged_in_bus_off_never_leaves(void) {
+    const sim_bus_node_config_t keeps = {.keep_on_bus_off = true};
+    const sim_bus_node_t keeper = sim_bus_attach(bus, &keeps);
+    send(&fixture, keeper, 0x168, 8, 0);
+    sim_bus_run_until(bus, 100);
+    sim_bus_force_bus_off(bus, keeper); /* in the middle of it: it breaks off */
+    TEST_ASSERT_EQUAL_size_t(1, sim_bus_waiting(bus, keeper));
+    sim_bus_purge(bus, keeper);
+    sim_bus_recover(bus, keeper);
+    sim_bus_run_until(bus, 10000);
+    assert_state(HAL_CAN_ERROR_ACTIVE, keeper);
+    TEST_ASSERT_EQUAL_UINT(1, fixture.event_count);
+    TEST_ASSERT_TRUE(fixture.events[0].error);
+}
+
+/* Purged on the wire, then bus-off in the middle of the same frame: it is gone, although the node keeps its frames. */
+void test_a_frame_purged_on_the_wire_is_gone_when_it_breaks_off(void) {
+    const sim_bus_node_config_t keeps = {.keep_on_bus_off = true};
+    const sim_bus_node_t keeper = sim_bus_attach(bus, &keeps);
+    send(&fixture, keeper, 0x168, 8, 0);
+    sim_bus_run_until(bus, 100);
+    sim_bus_purge(bus, keeper);
+    send(&fixture, keeper, 0x169, 8, 0);
+    sim_bus_force_bus_off(bus, keeper);
+    TEST_ASSERT_EQUAL_size_t(1, sim_bus_waiting(bus, keeper));
+    sim_bus_recover(bus, keeper);
+    sim_bus_run_until(bus, 10000);
+    TEST_ASSERT_EQUAL_HEX32(0x169, fixture.events[1].id);
+    TEST_ASSERT_EQUAL_UINT(2, fixture.event_count);
+}
+
+/* ---- Error counters set from outside ---- */
+
+void test_error_counters_make_the_state(void) {
+    sim_bus_set_error_counters(bus, A, 127, 127);
+    assert_state(HAL_CAN_ERROR_ACTIVE, A);
+    sim_bus_set_error_counters(bus, A, 128, 0);
+    assert_state(HAL_CAN_ERROR_PASSIVE, A);
+    sim_bus_set_error_counters(bus, A, 0, 128);
+    assert_state(HAL_CAN_ERROR_PASSIVE, A);
+    sim_bus_set_error_counters(bus, A, 255, 0);
+    assert_state(HAL_CAN_ERROR_PASSIVE, A);
+    sim_bus_set_error_counters(bus, A, 256, 0);
+    assert_state(HAL_CAN_BUS_OFF, A);
+    sim_bus_set_error_counters(bus, A, 0, 0);
+    assert_state(HAL_CAN_BUS_OFF, A);
+    sim_bus_set_power(bus, B, false);
+    sim_bus_force_bus_off(bus, B);
+    assert_state(HAL_CAN_ERROR_ACTIVE, B);
+    sim_bus_error_counters(bus, A, NULL, NULL);
+}
+
+/* ---- Power ---- */
+
+void test_a_sender_that_loses_its_power_breaks_off(void) {
+    send(&fixture, A, 0x168, 8, 0);
+    send(&fixture, A, 0x169, 8, 0);
+    sim_bus_run_until(bus, 100);
+    sim_bus_set_power(bus, A, false);
+    sim_bus_set_power(bus, A, true); /* at once on again: it is a fresh node, and that frame stays broken */
+    sim_bus_run_until(bus, 5000);
+    TEST_ASSERT_EQUAL_UINT(1, fixture.event_count);
+    TEST_ASSERT_TRUE(fixture.events[0].error);
+    TEST_ASSERT_EQUAL_UINT(1, rec_of(&fixture, B));
+    TEST_ASSERT_EQUAL_UINT(0, tec_of(&fixture, A));
+    TEST_ASSERT_TRUE(send(&fixture, A, 0x168, 8, 0));
+    sim_bus_run_until(bus, 6000);
+    TEST_ASSERT_FALSE(fixture.events[1].error);
+}
+
+void test_one_of_two_merged_senders_may_go(void) {
+    send(&fixture, A, 0x168, 8, 0);
+    send(&fixture, B, 0x168, 8, 0);
+    sim_bus_run_until(bus, 100);
+    sim_bus_set_power(bus, A, false);
+    sim_bus_run_until(bus, 5000);
+    TEST_ASSERT_FALSE(fixture.events[0].error);
+    TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(bus, B));
+}
+
+void test_the_last_receiver_goes_in_the_middle_of_a_frame(void) {
+    sim_bus_set_power(bus, C, false);
+    sim_bus_set_power(bus, D, false);
+    send(&fixture, A, 0x168, 8, 0);
+    sim_bus_run_until(bus, 100);
+    sim_bus_set_power(bus, B, false);
+    sim_bus_run_until(bus, 264);
+    TEST_ASSERT_TRUE(fixture.events[0].error);
+    TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, A));
+    TEST_ASSERT_EQUAL_size_t(1, sim_bus_waiting(bus, A));
+}
+
+void test_a_node_without_power_is_not_there(void) {
+    send(&fixture, B, 0x100, 8, 0);
+    sim_bus_run_until(bus, 1000);
+    sim_bus_set_error_counters(bus, A, 100, 100);
+    sim_bus_inject_overrun(bus, A);
+    sim_bus_set_power(bus, A, false);
+    TEST_ASSERT_EQUAL_UINT(0, received_by(&fixture, A));
+    TEST_ASSERT_FALSE(send(&fixture, A, 0x168, 8, 0));
+    send(&fixture, B, 0x100, 8, 0);
+    sim_bus_run_until(bus, 2000);
+    sim_bus_set_power(bus, A, true);
+    TEST_ASSERT_EQUAL_UINT(0, received_by(&fixture, A));
+    TEST_ASSERT_EQUAL_UINT(0, tec_of(&fixture, A) + rec_of(&fixture, A));
+    TEST_ASSERT_EQUAL_UINT16(0, status_of(&fixture, A).overrun_count);
+}
+
+void test_power_off_and_on_ends_bus_off(void) {
+    sim_bus_force_bus_off(bus, A);
+    sim_bus_recover(bus, A);
+    sim_bus_set_power(bus, A, false);
+    sim_bus_set_power(bus, A, true);
+    assert_state(HAL_CAN_ERROR_ACTIVE, A);
+    TEST_ASSERT_EQUAL_UINT64(SIM_BUS_NEVER, sim_bus_due_us(bus));
+}
+
+void test_unplugged_in_the_middle_of_a_frame_it_tries_again_alone(void) {
+    send(&fixture, A, 0x168, 8, 0);
+    sim_bus_run_until(bus, 100);
+    sim_bus_set_plugged(bus, A, false);
+    sim_bus_run_until(bus, 394);
+    TEST_ASSERT_TRUE(fixture.events[0].error);
+    TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, A));
+    TEST_ASSERT_EQUAL_size_t(1, sim_bus_waiting(bus, A));
+    sim_bus_set_stalled(bus, A, true); /* stalled it does not even try */
+    sim_bus_run_until(bus, 5000);
+    TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, A));
+}
