@@ -57,10 +57,14 @@ const agv_fault_set_t agv_faults_default_trips = 0u
     ;
 #undef AGV_FAULT
 
-static const uint8_t event_faults[AGV_EVENT_FAULT_COUNT] = {
-    AGV_FAULT_SUPERVISOR_RESET,       AGV_FAULT_TX_GATE_REFUSED,  AGV_FAULT_STEP_OVERRUN,
-    AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, AGV_FAULT_FOREIGN_COMMAND_SENDER, AGV_FAULT_COMMAND_TOO_FAST,
-    AGV_FAULT_RX_OVERRUN,             AGV_FAULT_STORE_INVALID};
+static const uint8_t event_faults[AGV_EVENT_FAULT_COUNT] = {AGV_FAULT_SUPERVISOR_RESET,
+                                                            AGV_FAULT_TX_GATE_REFUSED,
+                                                            AGV_FAULT_STEP_OVERRUN,
+                                                            AGV_FAULT_AI_COMMAND_OUT_OF_RANGE,
+                                                            AGV_FAULT_FOREIGN_COMMAND_SENDER,
+                                                            AGV_FAULT_COMMAND_TOO_FAST,
+                                                            AGV_FAULT_RX_OVERRUN,
+                                                            AGV_FAULT_STORE_INVALID};
 
 static bool in_set(agv_fault_set_t set, agv_fault_t fault) {
     return (set & agv_fault_bit(fault)) != 0u;

@@ -210,8 +210,8 @@ static void judge_eps_mode(agv_monitor_t *monitor, const agv_config_t *config, c
     const agv_fault_set_t any = BIT(EPS_MODE_OFF) | BIT(EPS_MODE_INVALID) | BIT(EPS_MODE_NOT_ANGLE);
     const bool in_angle_mode = status->mode == (uint8_t)AGV_EPS_MODE_ANGLE;
     const bool bad = !in_angle_mode && agv_monitor_settled(monitor, config, frame->now_ms);
-    const bool counts = bad_in_a_row(&monitor->in_a_row.eps_mode, bad, frame, config->eps_mode_frames,
-                                     is_active(monitor, any));
+    const bool counts =
+        bad_in_a_row(&monitor->in_a_row.eps_mode, bad, frame, config->eps_mode_frames, is_active(monitor, any));
     monitor->vehicle.eps_in_angle_mode = in_angle_mode;
     agv_faults_levels(&monitor->faults, any, agv_fault_when(counts, mode_fault(status->mode, valid)));
 }
@@ -226,17 +226,16 @@ static void judge_eps_faults(agv_monitor_t *monitor, const agv_config_t *config,
                                    is_active(monitor, BIT(EPS_OVER_VOLTAGE)));
     const bool current = bad_in_a_row(&row->excessive_current, (bits & AGV_EPS_FAULT_EXCESSIVE_CURRENT) != 0u, frame,
                                       needed, is_active(monitor, BIT(EPS_EXCESSIVE_CURRENT)));
-    agv_faults_levels(&monitor->faults,
-                      BIT(EPS_UNDER_VOLTAGE) | BIT(EPS_OVER_VOLTAGE) | BIT(EPS_EXCESSIVE_CURRENT) |
-                          BIT(EPS_OVER_CURRENT_SHUTDOWN) | BIT(EPS_TEMP_ABOVE_110) | BIT(EPS_TEMP_ABOVE_120) |
-                          BIT(EPS_MOTOR_ENCODER) | BIT(EPS_POSITION_ENCODER),
-                      WHEN(under, EPS_UNDER_VOLTAGE) | WHEN(over, EPS_OVER_VOLTAGE) |
-                          WHEN(current, EPS_EXCESSIVE_CURRENT) |
-                          WHEN((bits & AGV_EPS_FAULT_OVER_CURRENT_SHUTDOWN) != 0u, EPS_OVER_CURRENT_SHUTDOWN) |
-                          WHEN((bits & AGV_EPS_FAULT_TEMP_ABOVE_110) != 0u, EPS_TEMP_ABOVE_110) |
-                          WHEN((bits & AGV_EPS_FAULT_TEMP_ABOVE_120) != 0u, EPS_TEMP_ABOVE_120) |
-                          WHEN((bits & AGV_EPS_FAULT_MOTOR_ENCODER) != 0u, EPS_MOTOR_ENCODER) |
-                          WHEN((bits & AGV_EPS_FAULT_POSITION_ENCODER) != 0u, EPS_POSITION_ENCODER));
+    agv_faults_levels(
+        &monitor->faults,
+        BIT(EPS_UNDER_VOLTAGE) | BIT(EPS_OVER_VOLTAGE) | BIT(EPS_EXCESSIVE_CURRENT) | BIT(EPS_OVER_CURRENT_SHUTDOWN) |
+            BIT(EPS_TEMP_ABOVE_110) | BIT(EPS_TEMP_ABOVE_120) | BIT(EPS_MOTOR_ENCODER) | BIT(EPS_POSITION_ENCODER),
+        WHEN(under, EPS_UNDER_VOLTAGE) | WHEN(over, EPS_OVER_VOLTAGE) | WHEN(current, EPS_EXCESSIVE_CURRENT) |
+            WHEN((bits & AGV_EPS_FAULT_OVER_CURRENT_SHUTDOWN) != 0u, EPS_OVER_CURRENT_SHUTDOWN) |
+            WHEN((bits & AGV_EPS_FAULT_TEMP_ABOVE_110) != 0u, EPS_TEMP_ABOVE_110) |
+            WHEN((bits & AGV_EPS_FAULT_TEMP_ABOVE_120) != 0u, EPS_TEMP_ABOVE_120) |
+            WHEN((bits & AGV_EPS_FAULT_MOTOR_ENCODER) != 0u, EPS_MOTOR_ENCODER) |
+            WHEN((bits & AGV_EPS_FAULT_POSITION_ENCODER) != 0u, EPS_POSITION_ENCODER));
 }
 
 static bool on_eps_status(agv_monitor_t *monitor, const agv_config_t *config, const agv_monitor_frame_t *frame) {
@@ -248,8 +247,7 @@ static bool on_eps_status(agv_monitor_t *monitor, const agv_config_t *config, co
     return true;
 }
 
-static bool on_steering_position(agv_monitor_t *monitor, const agv_config_t *config,
-                                 const agv_monitor_frame_t *frame) {
+static bool on_steering_position(agv_monitor_t *monitor, const agv_config_t *config, const agv_monitor_frame_t *frame) {
     (void)config;
     agv_liveness_refresh(&monitor->liveness, AGV_MSG_STEERING_POSITION, frame->stamp_ms);
     return true;
@@ -270,10 +268,10 @@ static bool on_wheel_speed(agv_monitor_t *monitor, const agv_config_t *config, c
 }
 
 /* One row a message, in the order of agv_message_t. */
-static const handler_t handlers[AGV_MSG_COUNT] = {
-    on_turn_signal_command, on_gear_command,    on_throttle_command, on_steering_command,
-    on_vehicle_status,      on_gear_status,     on_throttle_status,  on_steering_status,
-    on_eps_status,          on_steering_position, on_wheel_speed};
+static const handler_t handlers[AGV_MSG_COUNT] = {on_turn_signal_command, on_gear_command,    on_throttle_command,
+                                                  on_steering_command,    on_vehicle_status,  on_gear_status,
+                                                  on_throttle_status,     on_steering_status, on_eps_status,
+                                                  on_steering_position,   on_wheel_speed};
 
 static void judge_command_rate(agv_monitor_t *monitor, const agv_config_t *config, agv_message_t message,
                                uint32_t gap_ms, uint32_t now_ms) {

@@ -101,10 +101,8 @@ static agv_fault_set_t judge_heartbeats(agv_monitor_t *monitor, const agv_config
     const agv_heartbeat_state_t ai = agv_liveness_heartbeat(&monitor->liveness, AGV_NODE_AI);
     agv_timer_while(&monitor->ai_awaited, is_engaged(monitor) && (ai == AGV_HEARTBEAT_UNSEEN), now_ms);
     const bool never_seen = agv_timer_exceeded(&monitor->ai_awaited, now_ms, config->ai_never_seen_timeout_ms);
-    return WHEN(vcu == AGV_HEARTBEAT_LOST, VCU_HEARTBEAT_LOST) |
-           WHEN(vcu == AGV_HEARTBEAT_STUCK, VCU_HEARTBEAT_STUCK) |
-           WHEN(eps == AGV_HEARTBEAT_LOST, EPS_HEARTBEAT_LOST) |
-           WHEN(eps == AGV_HEARTBEAT_STUCK, EPS_HEARTBEAT_STUCK) |
+    return WHEN(vcu == AGV_HEARTBEAT_LOST, VCU_HEARTBEAT_LOST) | WHEN(vcu == AGV_HEARTBEAT_STUCK, VCU_HEARTBEAT_STUCK) |
+           WHEN(eps == AGV_HEARTBEAT_LOST, EPS_HEARTBEAT_LOST) | WHEN(eps == AGV_HEARTBEAT_STUCK, EPS_HEARTBEAT_STUCK) |
            WHEN((ai == AGV_HEARTBEAT_LOST) || never_seen, AI_HEARTBEAT_LOST) |
            WHEN(ai == AGV_HEARTBEAT_STUCK, AI_HEARTBEAT_STUCK);
 }

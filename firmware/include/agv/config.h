@@ -41,11 +41,11 @@ enum {
 /** What is wrong with a configuration. */
 typedef enum {
     AGV_CONFIG_OK,
-    AGV_CONFIG_OUT_OF_RANGE,    /**< a setting below its lowest or above its highest value; `setting` says which */
-    AGV_CONFIG_ID_TWICE,        /**< status_frame_id is an identifier of the protocol, in one of the ID sets */
-    AGV_CONFIG_NEEDS_GATEWAY,   /**< `setting` only makes sense in the gateway topology */
-    AGV_CONFIG_FAULT_TOO_WEAK,  /**< `fault` is made weaker than it may be */
-    AGV_CONFIG_NO_SUCH_FAULT    /**< bits in `trips` beyond the faults */
+    AGV_CONFIG_OUT_OF_RANGE,   /**< a setting below its lowest or above its highest value; `setting` says which */
+    AGV_CONFIG_ID_TWICE,       /**< status_frame_id is an identifier of the protocol, in one of the ID sets */
+    AGV_CONFIG_NEEDS_GATEWAY,  /**< `setting` only makes sense in the gateway topology */
+    AGV_CONFIG_FAULT_TOO_WEAK, /**< `fault` is made weaker than it may be */
+    AGV_CONFIG_NO_SUCH_FAULT   /**< bits in `trips` beyond the faults */
 } agv_config_problem_t;
 
 /** Result of agv_config_check. */
@@ -76,7 +76,7 @@ uint32_t agv_config_checksum(const agv_config_t *config);
 /** What a setting is, for programs that list or read configurations. Not used by the supervisor itself. */
 typedef struct {
     const char *name;
-    uint16_t preset;  /**< default */
+    uint16_t preset; /**< default */
     uint16_t lowest;
     uint16_t highest;
     const char *unit;    /**< "" for choices */

@@ -19,11 +19,11 @@ typedef enum {
 
 /** The counters of one supervisor. */
 typedef struct {
-    uint32_t received;      /**< frames handed in, of any kind, both sides */
+    uint32_t received; /**< frames handed in, of any kind, both sides */
     uint32_t rejected[AGV_REJECTED_KINDS];
-    uint32_t dropped;       /**< commands out of range, frames not passed on by the gateway, frames that could not be sent */
-    uint32_t sent;          /**< frames that the HAL took */
-    uint32_t shadowed;      /**< frames that would have been sent, but for the shadow mode (TOP-4) */
+    uint32_t dropped;  /**< commands out of range, frames not passed on by the gateway, frames that could not be sent */
+    uint32_t sent;     /**< frames that the HAL took */
+    uint32_t shadowed; /**< frames that would have been sent, but for the shadow mode (TOP-4) */
     uint32_t gate_refused;  /**< frames that the gate refused (INT-4) */
     uint32_t skipped_slots; /**< periodic slots missed after an overrun (TIM-1) */
     uint32_t warnings;      /**< faults raised as warnings */

@@ -65,10 +65,10 @@ uint8_t agv_fault_led_code(agv_fault_t fault);
  * raised (the hold time is an argument).
  */
 typedef struct {
-    agv_fault_set_t active;   /**< cause present */
-    agv_fault_set_t latched;  /**< raised as a trip since the last reset */
-    agv_fault_set_t reported; /**< active ones as last reported */
-    agv_fault_set_t tripping; /**< those of `reported` that were reported as trips */
+    agv_fault_set_t active;                   /**< cause present */
+    agv_fault_set_t latched;                  /**< raised as a trip since the last reset */
+    agv_fault_set_t reported;                 /**< active ones as last reported */
+    agv_fault_set_t tripping;                 /**< those of `reported` that were reported as trips */
     uint32_t event_ms[AGV_EVENT_FAULT_COUNT]; /**< when each event was last raised */
 } agv_faults_t;
 

@@ -34,14 +34,14 @@ typedef struct {
     agv_liveness_t liveness;
     agv_faults_t faults;
     agv_vehicle_t vehicle;
-    agv_timer_t engaged;            /**< runs while engaged; limit engaged_grace_ms */
-    agv_timer_t ai_awaited;         /**< runs while engaged with an AI never seen */
-    agv_timer_t steering_off;       /**< runs while the steering is off its command and does not gain */
-    agv_timer_t throttle_in_park;   /**< runs while 050h is above 0 in gear P */
-    uint32_t other_set_ms[2];       /**< last frame with the other ID set's 43Fh, 363h */
-    uint16_t steering_off_ddeg;     /**< difference from which a gain is counted */
-    uint8_t other_set_recent;       /**< bit 0, 1: heard within wrong_id_set_ms */
-    bool ai_alarm_armed;            /**< VCU alarm bit 3 was clear with the AI alive (SUP-8) */
+    agv_timer_t engaged;          /**< runs while engaged; limit engaged_grace_ms */
+    agv_timer_t ai_awaited;       /**< runs while engaged with an AI never seen */
+    agv_timer_t steering_off;     /**< runs while the steering is off its command and does not gain */
+    agv_timer_t throttle_in_park; /**< runs while 050h is above 0 in gear P */
+    uint32_t other_set_ms[2];     /**< last frame with the other ID set's 43Fh, 363h */
+    uint16_t steering_off_ddeg;   /**< difference from which a gain is counted */
+    uint8_t other_set_recent;     /**< bit 0, 1: heard within wrong_id_set_ms */
+    bool ai_alarm_armed;          /**< VCU alarm bit 3 was clear with the AI alive (SUP-8) */
     agv_in_a_row_t in_a_row;
 } agv_monitor_t;
 

@@ -18,11 +18,11 @@
 
 /** What happened. */
 typedef enum {
-    AGV_EVENT_STATE = 1,    /**< a = state before (0: the run starts here), b = state, c = fault or AGV_FAULT_NONE */
-    AGV_EVENT_FAULT = 2,    /**< a = fault, b = class, c = 1: raised, 0: ended */
-    AGV_EVENT_OUTPUT = 3,   /**< a = 1: safety output closed, 0: opened */
-    AGV_EVENT_RESET = 4,    /**< a = 1: accepted, 0: refused; missing = AGV_MISSING_* */
-    AGV_EVENT_STARTUP = 5   /**< missing = AGV_MISSING_*: what keeps INIT from being left */
+    AGV_EVENT_STATE = 1,  /**< a = state before (0: the run starts here), b = state, c = fault or AGV_FAULT_NONE */
+    AGV_EVENT_FAULT = 2,  /**< a = fault, b = class, c = 1: raised, 0: ended */
+    AGV_EVENT_OUTPUT = 3, /**< a = 1: safety output closed, 0: opened */
+    AGV_EVENT_RESET = 4,  /**< a = 1: accepted, 0: refused; missing = AGV_MISSING_* */
+    AGV_EVENT_STARTUP = 5 /**< missing = AGV_MISSING_*: what keeps INIT from being left */
 } agv_event_kind_t;
 
 /** What was missing, for AGV_EVENT_RESET and AGV_EVENT_STARTUP. */
@@ -31,9 +31,9 @@ typedef enum {
 #define AGV_MISSING_EPS_HEARTBEAT 0x04u /**< EPS not alive */
 #define AGV_MISSING_TRIP_CAUSE 0x08u    /**< a trip cause is active */
 #define AGV_MISSING_STANDSTILL 0x10u
-#define AGV_MISSING_MANUAL 0x20u        /**< manual is not reported */
-#define AGV_MISSING_BUTTON 0x40u        /**< the press began before the trip */
-#define AGV_MISSING_MESSAGES 0x80u      /**< a trip-class status message is not fresh */
+#define AGV_MISSING_MANUAL 0x20u   /**< manual is not reported */
+#define AGV_MISSING_BUTTON 0x40u   /**< the press began before the trip */
+#define AGV_MISSING_MESSAGES 0x80u /**< a trip-class status message is not fresh */
 
 /** One event. */
 typedef struct {
@@ -43,12 +43,12 @@ typedef struct {
     uint8_t a;
     uint8_t b;
     uint8_t c;
-    uint8_t missing;      /**< AGV_MISSING_* bits */
-    uint8_t state;        /**< agv_state_t at that moment */
-    uint8_t first_reason; /**< agv_fault_t, AGV_FAULT_NONE when not tripped */
-    uint8_t run;          /**< counts starts of the supervisor; wraps */
-    uint16_t seen;        /**< bit n: message n was received in this run */
-    uint16_t checksum;    /**< CRC-16 (CCITT) over the event with this field 0 */
+    uint8_t missing;                        /**< AGV_MISSING_* bits */
+    uint8_t state;                          /**< agv_state_t at that moment */
+    uint8_t first_reason;                   /**< agv_fault_t, AGV_FAULT_NONE when not tripped */
+    uint8_t run;                            /**< counts starts of the supervisor; wraps */
+    uint16_t seen;                          /**< bit n: message n was received in this run */
+    uint16_t checksum;                      /**< CRC-16 (CCITT) over the event with this field 0 */
     uint8_t frames[AGV_MSG_COUNT][AGV_DLC]; /**< last payload of each message */
 } agv_event_t;
 

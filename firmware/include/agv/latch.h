@@ -1,0 +1,35 @@
+/**
+ * @file latch.h
+ * The latch record: what a reset of the MCU must not undo (FSM-7). Kept through hal_store_write_latch.
+ */
+#ifndef AGV_LATCH_H
+#define AGV_LATCH_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "agv/faults.h"
+#include "hal/hal.h"
+
+/** Values of `latched`, eight bits apart. */
+enum { AGV_LATCH_OPEN = 0x69, AGV_LATCH_CLOSED = 0x96 };
+
+/** The record as stored. */
+typedef struct {
+    uint8_t latched;      /**< AGV_LATCH_CLOSED: tripped; AGV_LATCH_OPEN: not */
+    uint8_t first_reason; /**< agv_fault_t; AGV_FAULT_NONE while not tripped */
+    uint8_t unresettable; /**< the fault that only a power-on ends, or AGV_FAULT_NONE */
+    uint8_t version;      /**< of this layout: 1 */
+    uint32_t checksum;    /**< CRC-32 over the four bytes before */
+} agv_latch_t;
+
+/** What was found in the store. */
+typedef enum { AGV_LATCH_NOTHING, AGV_LATCH_VALID, AGV_LATCH_CORRUPT } agv_latch_found_t;
+
+/** Read the record. @p latch is only filled for AGV_LATCH_VALID. */
+agv_latch_found_t agv_latch_read(hal_t *hal, agv_latch_t *latch);
+
+/** Store the record; version and checksum are filled in. A failure is ignored: nobody could do better. */
+void agv_latch_write(hal_t *hal, bool latched, agv_fault_t first_reason, agv_fault_t unresettable);
+
+#endif

@@ -1,0 +1,57 @@
+/**
+ * @file scheduler.h
+ * When to send (FSM-2, TIM-1, TOP-1): the periodic slots of the four commands, and the least time between overrides.
+ * Slot n belongs to the command n of agv_message_t.
+ */
+#ifndef AGV_SCHEDULER_H
+#define AGV_SCHEDULER_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "agv/protocol.h"
+
+/** One slot. */
+typedef struct {
+    uint32_t next_ms;       /**< when it is due */
+    uint32_t overridden_ms; /**< last override of this identifier */
+    bool override_recent;   /**< less than override_gap_ms ago */
+    bool override_waits;    /**< another one came too soon and is answered later */
+} agv_slot_t;
+
+/** All slots. */
+typedef struct {
+    agv_slot_t slots[AGV_COMMAND_COUNT];
+} agv_scheduler_t;
+
+/**
+ * All four have just been sent: the next ones are due in 100 ms (43Fh), 66 ms (168h), 33 ms (075h), 25 ms (065h), then on
+ * their cycles. What waited to be answered is forgotten.
+ */
+void agv_scheduler_restart(agv_scheduler_t *scheduler, uint32_t now_ms);
+
+/** One of them has just been sent for the first time: its next one is due a cycle later. */
+void agv_scheduler_restart_slot(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_ms);
+
+/**
+ * Whether a slot is due; if so its next moment is set, on the same grid. Slots that were missed are not made up for.
+ * @param skipped counts the missed ones
+ */
+bool agv_scheduler_due(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_ms, uint32_t *skipped);
+
+/**
+ * A foreign command has to be answered.
+ * @return true: now. false: the last answer is less than @p gap_ms ago; it waits.
+ */
+bool agv_scheduler_override(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_ms, uint16_t gap_ms);
+
+/**
+ * At a tick: whether a waiting answer is to be sent now. Time stamps are whole milliseconds, rounded down: more than
+ * @p gap_ms must have passed, so that never less have.
+ */
+bool agv_scheduler_override_due(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_ms, uint16_t gap_ms);
+
+/** An override was sent: the next periodic frame is due half a cycle later. */
+void agv_scheduler_overridden(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_ms);
+
+#endif
