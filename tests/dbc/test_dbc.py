@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""protocol/agv.dbc, read by canmatrix, and the C codec say the same.
+"""protocol/agv.dbc, read by canmatrix, the C codec, and docs/protocol.md say the same.
 
 canmatrix knows nothing of the C code, and the C code nothing of the DBC file: what both agree on was written twice.
 Every comparison runs for all messages and both identifier sets, on boundaries and on random values.
 
-usage: test_dbc.py --dbc FILE --codec PROGRAM [--seed N] [--random N] [--expect TEST:MESSAGE ...]
+usage: test_dbc.py --dbc FILE --codec PROGRAM --document FILE [--seed N] [--random N] [--expect TEST:MESSAGE ...]
 
 --expect turns the test round, to prove that it can fail: the run succeeds when exactly these comparisons find a
 difference, and no other does (MESSAGE - for a test that compares all messages at once).
@@ -230,10 +230,36 @@ def good_values(codec, frame, field, span):
     return [int(min(ends)), int(max(ends))]
 
 
+def document_rows(text, heading):
+    """The cells of the table rows below a heading of docs/protocol.md, header and rule left out."""
+    section = re.split(r"^#+ ", text.split(f"# {heading}\n", 1)[1], maxsplit=1, flags=re.MULTILINE)[0]
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in section.splitlines() if line[:1] == "|"]
+    return rows[2:]
+
+
+def documented_signal(cell):
+    """The DBC signal of a cell such as `faults`: `UNDER_VOLTAGE`, or `gear`."""
+    field, _, bit = cell.replace("`", "").partition(": ")
+    if bit:
+        return {"level1_alarms": "alarm_", "faults": "fault_"}[field] + bit.lower()
+    return {"headlight_on": "headlight_off", "throttle_permille": "throttle_pct", "angle_ddeg": "angle_deg"}.get(
+        field, field)
+
+
+def documented_bits(byte, bit):
+    """The bits of cells such as `5`, `7 (Bit6)` or `1..2`, `LE`: a mask over the payload, low byte first."""
+    first, last = (int(number) for number in (byte.split("..") * 2)[:2])
+    if bit.strip("*") in ("LE", "BE", "1..8"):
+        return sum(0xFF << 8 * (n - 1) for n in range(first, last + 1))
+    return 1 << (8 * (first - 1) + int(bit.split()[0]) - 1)
+
+
 class DbcAgainstCodec(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.codec = Codec(OPTIONS.codec)
+        with open(OPTIONS.document, encoding="utf-8") as document:
+            cls.document = document.read()
         complaints = io.StringIO()
         handler = logging.StreamHandler(complaints)
         logging.getLogger().addHandler(handler)
@@ -314,6 +340,45 @@ class DbcAgainstCodec(unittest.TestCase):
                     if signal.name == "angle_deg":
                         self.assertEqual(signal.initial_value, 0)
 
+    # Shows: P1, P16
+    def test_document_messages(self):
+        rows = document_rows(self.document, "All messages")
+        self.assertEqual(len(rows), len(self.codec.messages))
+        for ids, link, sender, cycle, _ in rows:
+            name = re.match(r"\[(\w+)\]", link)[1]
+            with self.subTest(message=name):
+                numbers = [int(number, 16) for number in re.findall(r"([0-9A-F]{3})h", ids)]
+                self.assertEqual((numbers[0], numbers[-1], int(cycle.split()[0])), self.codec.messages[name])
+                self.assertEqual(sender, SENDERS[name][0])
+                anchor = re.search(r"\(#(.*)\)", link)[1]
+                anchors = [re.sub(r"[^\w -]", "", line.lower()).replace(" ", "-")
+                           for line in re.findall(r"^#+ (.*)$", self.document, re.MULTILINE)]
+                self.assertIn(anchor, anchors)
+
+    # Shows: P3, P4
+    def test_document_fields(self):
+        headings = re.findall(r"^### (.*)$", self.document, re.MULTILINE)
+        for name, frame in self.frames():
+            with self.subTest(message=frame.name):
+                heading = next(line for line in headings if name in re.findall(r"\w+", line))
+                rows = document_rows(self.document, heading)
+                self.assertEqual(sorted(documented_signal(row[2]) for row in rows),
+                                 sorted(signal.name for signal in frame.signals))
+                for byte, bit, field, _, valid in rows:
+                    signal = frame.signal_by_name(documented_signal(field))
+                    self.assertEqual(documented_bits(byte, bit),
+                                     int.from_bytes(place(signal, -1, bytes(8)), "little"), field)
+                    if signal.size > 8:
+                        self.assertEqual(bit.strip("*"), "LE" if signal.is_little_endian else "BE", field)
+                    self.assertEqual(valid.split(" (")[0], self.valid_in_words(signal), field)
+
+    @staticmethod
+    def valid_in_words(signal):
+        if signal.values and signal.size > 1:
+            return {4: "these four", 5: "these five"}[len(signal.values)]
+        lowest, highest = (int((limit - signal.offset) / signal.factor) for limit in (signal.min, signal.max))
+        return "all" if (lowest, highest) == raw_range(signal) else f"{lowest}..{highest}"
+
     # Shows: P17
     def test_file_is_read_without_complaint(self):
         self.assertEqual(self.complaints, "")
@@ -379,6 +444,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--dbc", required=True)
     parser.add_argument("--codec", required=True)
+    parser.add_argument("--document", required=True)
     parser.add_argument("--seed", type=int, default=20261121)
     parser.add_argument("--random", type=int, default=2000)
     parser.add_argument("--expect", nargs="+", default=[])
