@@ -147,17 +147,14 @@ static bool take_pair(const reading_t *reading) {
     return wrong(reading, "no such setting");
 }
 
-static bool take_root(yaml_document_t *document, agv_config_t *config, config_lines_t *lines) {
-    const yaml_node_t *root = yaml_document_get_root_node(document);
-    if (root == NULL) {
-        return true; /* nothing but comments: the defaults */
-    }
-    if (root->type != YAML_MAPPING_NODE) {
-        return report_at(lines->path, yaml_node_line(root), "no settings: a line is 'setting: value'");
+bool config_read_mapping(yaml_document_t *document, const yaml_node_t *mapping, agv_config_t *config,
+                         config_lines_t *lines) {
+    if (mapping->type != YAML_MAPPING_NODE) {
+        return report_at(lines->path, yaml_node_line(mapping), "no settings: a line is 'setting: value'");
     }
     bool good = true;
-    for (const yaml_node_pair_t *pair = root->data.mapping.pairs.start; good && (pair < root->data.mapping.pairs.top);
-         pair++) {
+    for (const yaml_node_pair_t *pair = mapping->data.mapping.pairs.start;
+         good && (pair < mapping->data.mapping.pairs.top); pair++) {
         const yaml_node_t *key = yaml_document_get_node(document, pair->key);
         const reading_t reading = {.config = config,
                                    .lines = lines,
@@ -168,6 +165,14 @@ static bool take_root(yaml_document_t *document, agv_config_t *config, config_li
                                      : report_at(lines->path, reading.line, "the name of a setting is a word");
     }
     return good;
+}
+
+static bool take_root(yaml_document_t *document, agv_config_t *config, config_lines_t *lines) {
+    const yaml_node_t *root = yaml_document_get_root_node(document);
+    if (root == NULL) {
+        return true; /* nothing but comments: the defaults */
+    }
+    return config_read_mapping(document, root, config, lines);
 }
 
 bool config_file_load(const char *path, agv_config_t *config, config_lines_t *lines) {

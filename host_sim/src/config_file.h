@@ -8,6 +8,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <yaml.h>
 
 #include "agv/config.h"
 
@@ -25,6 +26,14 @@ typedef struct {
  * @return false: the file cannot be read, or a key or value makes no sense by itself; was reported.
  */
 bool config_file_load(const char *path, agv_config_t *config, config_lines_t *lines);
+
+/**
+ * Change a configuration as a mapping of a document says (a scenario has one).
+ * @param lines its path is set; the rest is added to
+ * @return false: a key or value makes no sense by itself; was reported.
+ */
+bool config_read_mapping(yaml_document_t *document, const yaml_node_t *mapping, agv_config_t *config,
+                         config_lines_t *lines);
 
 /** Check a configuration as a whole. @return false: it makes no sense; was reported, with its line if it has one. */
 bool config_check(const agv_config_t *config, const config_lines_t *lines);

@@ -417,6 +417,22 @@ void test_a_callback_cannot_send_into_the_past_of_another_bus(void) {
     TEST_ASSERT_EQUAL_HEX32(0x050, other.events[1].id);
 }
 
+/* A bus that is ahead is not taken back. */
+void test_buses_that_are_not_at_one_time_catch_up(void) {
+    static fixture_t other;
+    fixture_init(&other, 500000);
+    sim_bus_t *const buses[2] = {bus, &other.bus};
+    send(&other, A, 0x400, 8, 0);
+    sim_bus_run_until(&other.bus, 200); /* busy until 264 */
+    send(&fixture, A, 0x300, 0, 0);     /* 0..104 */
+    sim_bus_run_all_until(buses, 2, 150);
+    TEST_ASSERT_EQUAL_UINT64(150, sim_bus_now_us(bus));
+    TEST_ASSERT_EQUAL_UINT64(200, sim_bus_now_us(&other.bus));
+    TEST_ASSERT_EQUAL_UINT64(104, fixture.events[0].end_us);
+    sim_bus_run_all_until(buses, 2, 300);
+    TEST_ASSERT_EQUAL_UINT64(264, other.events[0].end_us);
+}
+
 void test_a_copy_is_a_snapshot(void) {
     static sim_bus_t copy;
     send(&fixture, A, 0x300, 8, 0);

@@ -154,6 +154,14 @@ void test_what_a_failing_store_does(void) {
     TEST_ASSERT_EQUAL_size_t(0, hal_store_read_record(&hal, 1, bytes, 4));
 }
 
+/* The store's own failures come through. */
+void test_a_store_that_fails_is_reported(void) {
+    sim_store_fail_writes(&store, 2);
+    TEST_ASSERT_FALSE(hal_store_write_latch(&hal, "abcd", 4));
+    TEST_ASSERT_FALSE(hal_store_append(&hal, "abcd", 4));
+    TEST_ASSERT_EQUAL_UINT32(0, hal.failures);
+}
+
 void test_a_port_without_a_store_stores_nothing(void) {
     uint8_t bytes[4] = {0};
     sim_hal_init_direct(&hal, NULL, 1, NULL, NULL);

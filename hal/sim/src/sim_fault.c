@@ -67,13 +67,12 @@ static uint64_t sequence_us(const sim_bus_t *bus) {
     return (uint64_t)SIM_BUS_RECOVERY_BITS * bus->bit_us;
 }
 
-/* Count what has passed since recovery_from_us, and count on from now. */
+/* Count what has passed since recovery_from_us, and count on from now. It is never more than is left: that was due. */
 static void settle(const sim_bus_t *bus, sim_bus_node_state_t *node) {
     if (node->recovery_from_us >= bus->now_us) {
         return;
     }
-    const uint64_t passed = (bus->now_us - node->recovery_from_us) / sequence_us(bus);
-    node->recovery_left = passed < node->recovery_left ? node->recovery_left - (uint32_t)passed : 0u;
+    node->recovery_left -= (uint32_t)((bus->now_us - node->recovery_from_us) / sequence_us(bus));
     node->recovery_from_us = bus->now_us;
 }
 
@@ -114,7 +113,7 @@ void sim_bus_resume_recovery(sim_bus_t *bus) {
     for (uint32_t set = bus->recovering; set != 0; set &= set - 1u) {
         sim_bus_node_state_t *node = &bus->nodes[sim_lowest(set)];
         if (node->plugged) {
-            node->recovery_left -= node->recovery_left > 0 ? 1u : 0u;
+            node->recovery_left--;
             node->recovery_from_us = bus->free_us;
         }
     }

@@ -274,7 +274,7 @@ static void step(sim_bus_t *bus) {
     } else if (bus->ready != 0 && bus->start_us < due_us) {
         begin(bus);
     }
-    if ((bus->alone | bus->recovering) != 0 && bus->now_us <= due_us) {
+    if ((bus->alone | bus->recovering) != 0) {
         bus->now_us = due_us;
         sim_bus_run_aside(bus);
     }

@@ -1,0 +1,410 @@
+/* Scenario files: the top level. */
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "agv/names.h"
+#include "config_file.h"
+#include "report.h"
+#include "scenario_parse.h"
+#include "yaml_file.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+const yaml_word_t SCENARIO_GEARS[] = {
+    {"P", AGV_GEAR_P}, {"R", AGV_GEAR_R}, {"N", AGV_GEAR_N}, {"D", AGV_GEAR_D}, {NULL, 0}};
+const yaml_word_t SCENARIO_SIDES[] = {{"vehicle", HAL_CAN_VEHICLE}, {"ai", HAL_CAN_AI}, {NULL, 0}};
+const yaml_word_t SCENARIO_CAUSES[] = {{"power-on", HAL_RESET_POWER_ON},
+                                       {"watchdog", HAL_RESET_WATCHDOG},
+                                       {"brown-out", HAL_RESET_BROWN_OUT},
+                                       {"lock-up", HAL_RESET_LOCK_UP},
+                                       {"software", HAL_RESET_SOFTWARE},
+                                       {"unknown", HAL_RESET_UNKNOWN},
+                                       {NULL, 0}};
+
+/** What the file holds is read into this. */
+typedef struct {
+    scenario_t *scenario;
+    config_lines_t lines;
+    const yaml_node_t *config; /* read once topology and ID set are known */
+} reading_t;
+
+bool scenario_parse_u32(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t lowest,
+                        uint32_t highest, uint32_t *number) {
+    int64_t value = 0;
+
+    if (!yaml_reader_number(reader, node, what, lowest, highest, &value)) {
+        return false;
+    }
+    *number = (uint32_t)value;
+    return true;
+}
+
+bool scenario_parse_time(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t *ms) {
+    return scenario_parse_u32(reader, node, what, 0u, SCENARIO_DURATION_MAX_MS, ms);
+}
+
+bool scenario_parse_message(const yaml_reader_t *reader, const yaml_node_t *node, agv_message_t *message) {
+    const char *text = yaml_reader_text(reader, node, "message");
+
+    if (text == NULL) {
+        return false;
+    }
+    for (int m = 0; m < AGV_MSG_COUNT; m++) {
+        if (strcmp(agv_message_name((agv_message_t)m), text) == 0) {
+            *message = (agv_message_t)m;
+            return true;
+        }
+    }
+    return yaml_reader_fail(reader, node, "message: '%.40s' is no message of the protocol", text);
+}
+
+bool scenario_parse_fault(const yaml_reader_t *reader, const yaml_node_t *node, agv_fault_t *fault) {
+    const char *text = yaml_reader_text(reader, node, "fault");
+
+    if (text == NULL) {
+        return false;
+    }
+    *fault = agv_fault_from_name(text);
+    return (*fault != AGV_FAULT_NONE) || yaml_reader_fail(reader, node, "'%.40s' is no fault", text);
+}
+
+static bool read_name(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    scenario_t *scenario = ((reading_t *)target)->scenario;
+    const char *text = yaml_reader_text(reader, node, "name");
+
+    if (text == NULL) {
+        return false;
+    }
+    if (strlen(text) >= sizeof scenario->name) {
+        return yaml_reader_fail(reader, node, "name: longer than %u bytes", SCENARIO_TEXT_MAX - 1u);
+    }
+    (void)strcpy(scenario->name, text);
+    return true;
+}
+
+/** "SUP-2", "P15", "FSM-10": capital letters, a dash or none, digits. */
+static bool is_requirement(const char *text) {
+    size_t letters = 0u;
+    size_t digits = 0u;
+
+    while (isupper((unsigned char)text[letters]) != 0) {
+        letters++;
+    }
+    const size_t dash = (text[letters] == '-') ? 1u : 0u;
+    while (isdigit((unsigned char)text[letters + dash + digits]) != 0) {
+        digits++;
+    }
+    return (letters > 0u) && (digits > 0u) && (text[letters + dash + digits] == '\0');
+}
+
+static bool read_shown(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    scenario_t *scenario = ((reading_t *)target)->scenario;
+    const char *text = yaml_reader_text(reader, node, "shows");
+
+    if (text == NULL) {
+        return false;
+    }
+    if (scenario->shows_count == SCENARIO_SHOWS_MAX) {
+        return yaml_reader_fail(reader, node, "shows: more than %u", SCENARIO_SHOWS_MAX);
+    }
+    if (!is_requirement(text) && (agv_fault_from_name(text) == AGV_FAULT_NONE)) {
+        return yaml_reader_fail(reader, node, "shows: '%.40s' is neither a requirement such as SUP-2 nor a fault",
+                                text);
+    }
+    (void)snprintf(scenario->shows[scenario->shows_count], SCENARIO_TEXT_MAX, "%s", text);
+    scenario->shows_count++;
+    return true;
+}
+
+static bool read_shows(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    return yaml_reader_list(reader, node, "shows", read_shown, target);
+}
+
+static bool read_description(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    (void)target;
+    return yaml_reader_text(reader, node, "description") != NULL;
+}
+
+static bool read_topology(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    static const yaml_word_t words[] = {{"shared", AGV_TOPOLOGY_SHARED}, {"gateway", AGV_TOPOLOGY_GATEWAY}, {NULL, 0}};
+    scenario_t *scenario = ((reading_t *)target)->scenario;
+    int value = 0;
+
+    scenario->fixes_topology = true;
+    if (!yaml_reader_word(reader, node, "topology", words, &value)) {
+        return false;
+    }
+    scenario->config.topology = (uint16_t)value;
+    return true;
+}
+
+static bool read_id_set(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    static const yaml_word_t words[] = {{"heading", AGV_ID_SET_HEADING}, {"table", AGV_ID_SET_TABLE}, {NULL, 0}};
+    scenario_t *scenario = ((reading_t *)target)->scenario;
+    int value = 0;
+
+    scenario->fixes_id_set = true;
+    if (!yaml_reader_word(reader, node, "id_set", words, &value)) {
+        return false;
+    }
+    scenario->config.id_set = (uint16_t)value;
+    return true;
+}
+
+static bool read_config(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    reading_t *reading = target;
+    const uint16_t topology = reading->scenario->config.topology;
+    const uint16_t id_set = reading->scenario->config.id_set;
+
+    if (!config_read_mapping(reader->document, node, &reading->scenario->config, &reading->lines)) {
+        return false;
+    }
+    reading->scenario->config.topology = topology;
+    reading->scenario->config.id_set = id_set;
+    for (uint16_t i = 0u; i < AGV_SETTING_COUNT; i++) {
+        const char *name = agv_setting_info(i)->name;
+        if ((reading->lines.settings[i] != 0u) && ((strcmp(name, "topology") == 0) || (strcmp(name, "id_set") == 0))) {
+            return report_at(reader->file, reading->lines.settings[i], "%s: belongs to the top level of the file",
+                             name);
+        }
+    }
+    return true;
+}
+
+static bool read_unchecked(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    return yaml_reader_bool(reader, node, "config_unchecked", &((reading_t *)target)->scenario->config_unchecked);
+}
+
+static bool read_self_test(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    static const yaml_word_t words[] = {{"passed", 1}, {"failed", 0}, {NULL, 0}};
+    int value = 0;
+
+    if (!yaml_reader_word(reader, node, "self_test", words, &value)) {
+        return false;
+    }
+    ((reading_t *)target)->scenario->self_test_passed = value != 0;
+    return true;
+}
+
+static bool read_bitrate(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    static const yaml_word_t words[] = {
+        {"125000", 125000}, {"250000", 250000}, {"500000", 500000}, {"1000000", 1000000}, {NULL, 0}};
+    int value = 0;
+
+    if (!yaml_reader_word(reader, node, "bitrate", words, &value)) {
+        return false;
+    }
+    ((reading_t *)target)->scenario->bitrate = (uint32_t)value;
+    return true;
+}
+
+static bool read_clock(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    return scenario_parse_u32(reader, node, "clock_start_ms", 0u, UINT32_MAX,
+                              &((reading_t *)target)->scenario->clock_start_ms);
+}
+
+static bool read_watchdog(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    static const yaml_word_t words[] = {{"fitted", 0}, {"none", 1}, {NULL, 0}};
+    int value = 0;
+
+    if (!yaml_reader_word(reader, node, "hardware_watchdog", words, &value)) {
+        return false;
+    }
+    ((reading_t *)target)->scenario->watchdog_ms = (value != 0) ? UINT32_MAX : 0u;
+    return true;
+}
+
+static bool read_cause(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    int value = 0;
+
+    if (!yaml_reader_word(reader, node, "reset_cause", SCENARIO_CAUSES, &value)) {
+        return false;
+    }
+    ((reading_t *)target)->scenario->reset_cause = (hal_reset_cause_t)value;
+    return true;
+}
+
+static bool read_duration(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    return scenario_parse_u32(reader, node, "duration_ms", 1u, SCENARIO_DURATION_MAX_MS,
+                              &((reading_t *)target)->scenario->duration_ms);
+}
+
+static bool read_start(const yaml_reader_t *reader, const yaml_node_t *node, uint32_t *start_ms) {
+    const char *text = yaml_node_text(node);
+
+    if ((text != NULL) && (strcmp(text, "never") == 0)) {
+        *start_ms = VEHICLE_NEVER;
+        return true;
+    }
+    return scenario_parse_time(reader, node, "start (a time in ms, or never)", start_ms);
+}
+
+static bool read_start_vcu(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    return read_start(reader, node, &((vehicle_config_t *)target)->start_ms[VEHICLE_VCU]);
+}
+
+static bool read_start_eps(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    return read_start(reader, node, &((vehicle_config_t *)target)->start_ms[VEHICLE_EPS]);
+}
+
+static bool read_start_ai(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    return read_start(reader, node, &((vehicle_config_t *)target)->start_ms[VEHICLE_AI]);
+}
+
+static bool read_guard(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    return yaml_reader_bool(reader, node, "park_guard", &((vehicle_config_t *)target)->park_guard);
+}
+
+static bool read_short(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    return yaml_reader_bool(reader, node, "obeys_short_frames", &((vehicle_config_t *)target)->obeys_short_frames);
+}
+
+static bool read_seed(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    return scenario_parse_u32(reader, node, "seed", 1u, UINT32_MAX, &((vehicle_config_t *)target)->seed);
+}
+
+/* The figures of the vehicle, each a 16-bit number. */
+#define FIGURE(name, lowest)                                                                                           \
+    static bool read_##name(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {                      \
+        uint32_t value = 0u;                                                                                           \
+        if (!scenario_parse_u32(reader, node, #name, (lowest), UINT16_MAX, &value)) {                                  \
+            return false;                                                                                              \
+        }                                                                                                              \
+        ((vehicle_config_t *)target)->name = (uint16_t)value;                                                          \
+        return true;                                                                                                   \
+    }
+FIGURE(gear_change_ms, 0u)
+FIGURE(walking_pace_mm_s, 1u)
+FIGURE(top_speed_mm_s, 1u)
+FIGURE(acceleration_mm_s2, 1u)
+FIGURE(coasting_mm_s2, 1u)
+FIGURE(braking_mm_s2, 1u)
+FIGURE(locked_mm_s2, 1u)
+FIGURE(steering_rate_ddeg_s, 0u)
+FIGURE(eps_mode_change_ms, 0u)
+FIGURE(ai_lost_ms, 1u)
+FIGURE(eps_lost_ms, 1u)
+
+static bool read_vehicle(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    static const yaml_key_t keys[] = {
+        {"park_guard", read_guard, false},
+        {"obeys_short_frames", read_short, false},
+        {"vcu_starts_ms", read_start_vcu, false},
+        {"eps_starts_ms", read_start_eps, false},
+        {"ai_starts_ms", read_start_ai, false},
+        {"seed", read_seed, false},
+        {"gear_change_ms", read_gear_change_ms, false},
+        {"walking_pace_mm_s", read_walking_pace_mm_s, false},
+        {"top_speed_mm_s", read_top_speed_mm_s, false},
+        {"acceleration_mm_s2", read_acceleration_mm_s2, false},
+        {"coasting_mm_s2", read_coasting_mm_s2, false},
+        {"braking_mm_s2", read_braking_mm_s2, false},
+        {"locked_mm_s2", read_locked_mm_s2, false},
+        {"steering_rate_ddeg_s", read_steering_rate_ddeg_s, false},
+        {"eps_mode_change_ms", read_eps_mode_change_ms, false},
+        {"ai_lost_ms", read_ai_lost_ms, false},
+        {"eps_lost_ms", read_eps_lost_ms, false},
+    };
+    return yaml_reader_map(reader, node, "vehicle", keys, COUNT(keys), &((reading_t *)target)->scenario->vehicle);
+}
+
+static bool read_steps(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    return scenario_parse_steps(reader, node, ((reading_t *)target)->scenario);
+}
+
+static bool read_expect(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    return scenario_parse_expect(reader, node, ((reading_t *)target)->scenario);
+}
+
+static const yaml_key_t TOP[] = {
+    {"name", read_name, true},
+    {"shows", read_shows, true},
+    {"description", read_description, false},
+    {"topology", read_topology, false},
+    {"id_set", read_id_set, false},
+    {"config", read_config, false},
+    {"config_unchecked", read_unchecked, false},
+    {"self_test", read_self_test, false},
+    {"bitrate", read_bitrate, false},
+    {"clock_start_ms", read_clock, false},
+    {"hardware_watchdog", read_watchdog, false},
+    {"reset_cause", read_cause, false},
+    {"vehicle", read_vehicle, false},
+    {"duration_ms", read_duration, true},
+    {"steps", read_steps, false},
+    {"expect", read_expect, true},
+};
+
+static void preset(scenario_t *scenario, const scenario_options_t *options) {
+    memset(scenario, 0, sizeof *scenario);
+    scenario->config = options->config;
+    scenario->config.topology = (options->topology >= 0) ? (uint16_t)options->topology : options->config.topology;
+    scenario->config.id_set = (options->id_set >= 0) ? (uint16_t)options->id_set : options->config.id_set;
+    scenario->self_test_passed = true;
+    scenario->bitrate = SCENARIO_DEFAULT_BITRATE;
+    scenario->reset_cause = HAL_RESET_POWER_ON;
+    vehicle_defaults(&scenario->vehicle);
+}
+
+/** What the file fixes, the command line cannot change. */
+static bool agrees(const scenario_t *scenario, const char *file, const scenario_options_t *options) {
+    if (scenario->fixes_topology && (options->topology >= 0) && (options->topology != (int)scenario->config.topology)) {
+        return report("%s: the file fixes the topology, --topology names another", file);
+    }
+    if (scenario->fixes_id_set && (options->id_set >= 0) && (options->id_set != (int)scenario->config.id_set)) {
+        return report("%s: the file fixes the ID set, --id-set names another", file);
+    }
+    return true;
+}
+
+/** Steps and expectations that lie after the end would never be seen. */
+static bool fits(const scenario_t *scenario, const char *file) {
+    for (size_t i = 0u; i < scenario->step_count; i++) {
+        if (scenario->steps[i].at_ms >= scenario->duration_ms) {
+            return report_at(file, scenario->steps[i].line, "the step is at or after the end (duration_ms: %u)",
+                             (unsigned)scenario->duration_ms);
+        }
+        if ((i > 0u) && (scenario->steps[i].at_ms < scenario->steps[i - 1u].at_ms)) {
+            return report_at(file, scenario->steps[i].line, "the step is earlier than the one before it");
+        }
+    }
+    return true;
+}
+
+static bool read_document(reading_t *reading, yaml_document_t *document, const char *file) {
+    const yaml_reader_t reader = {file, document};
+    const yaml_node_t *root = yaml_document_get_root_node(document);
+    scenario_t *scenario = reading->scenario;
+
+    if (root == NULL) {
+        return report("%s: there is no scenario in it", file);
+    }
+    if (!yaml_reader_map(&reader, root, "a scenario", TOP, COUNT(TOP), reading) || !fits(scenario, file)) {
+        return false;
+    }
+    scenario->vehicle.gateway = scenario->config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    scenario->vehicle.id_set = (agv_id_set_t)scenario->config.id_set;
+    return true;
+}
+
+bool scenario_read(scenario_t *scenario, const char *file, const scenario_options_t *options) {
+    reading_t reading = {.scenario = scenario, .lines = {.path = file}};
+    yaml_document_t document;
+
+    preset(scenario, options);
+    if (!yaml_file_load(file, &document)) {
+        return false;
+    }
+    const bool good = read_document(&reading, &document, file);
+    yaml_document_delete(&document);
+    return good && agrees(scenario, file, options) &&
+           (scenario->config_unchecked || config_check(&scenario->config, &reading.lines));
+}
+
+uint32_t scenario_frame_id(const scenario_t *scenario, const scenario_frame_t *frame) {
+    if (frame->message == AGV_MSG_NONE) {
+        return frame->id;
+    }
+    return agv_message_id(frame->message, (agv_id_set_t)scenario->config.id_set);
+}

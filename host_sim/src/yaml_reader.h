@@ -1,0 +1,86 @@
+/**
+ * @file yaml_reader.h
+ * Reading a YAML document by tables: which keys a mapping may have, and what each holds. Unknown and repeated keys are
+ * refused. What is wrong is reported with file and line at once; every function then returns false (or NULL), and its
+ * caller does the same, so that one line is printed.
+ */
+#ifndef HOST_SIM_YAML_READER_H
+#define HOST_SIM_YAML_READER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <yaml.h>
+
+#define YAML_READER_KEYS_MAX 40u
+
+/** A document that is being read; made with yaml_file_load(). */
+typedef struct {
+    const char *file;
+    yaml_document_t *document;
+} yaml_reader_t;
+
+/** A word and what it stands for; a list of them ends with the word NULL. */
+typedef struct {
+    const char *word;
+    int value;
+} yaml_word_t;
+
+/** Reads the value of a key into whatever @p target is. @return false: it makes no sense; was reported. */
+typedef bool yaml_read_fn(const yaml_reader_t *reader, const yaml_node_t *value, void *target);
+
+/** A key of a mapping. */
+typedef struct {
+    const char *name;
+    yaml_read_fn *read;
+    bool required;
+} yaml_key_t;
+
+/** Report what is wrong with a node. @return false */
+bool yaml_reader_fail(const yaml_reader_t *reader, const yaml_node_t *node, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/**
+ * Read a mapping: each key with its function of the table, all with one target, in the order of the table (so that a row
+ * may go by what an earlier one has read).
+ * @param what  names the mapping in messages
+ * @param count at most YAML_READER_KEYS_MAX
+ */
+bool yaml_reader_map(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, const yaml_key_t *keys,
+                     size_t count, void *target);
+
+/** Read a sequence: each item with @p read. */
+bool yaml_reader_list(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, yaml_read_fn *read,
+                      void *target);
+
+/** The text of a scalar; NULL when it is none or empty. Lives as long as the document. */
+const char *yaml_reader_text(const yaml_reader_t *reader, const yaml_node_t *node, const char *what);
+
+/** A whole decimal number, or a hexadecimal one (0x1F) that is not negative. */
+bool yaml_reader_number(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, int64_t lowest,
+                        int64_t highest, int64_t *number);
+
+/** A hexadecimal number as the protocol document writes it, "168h", or "0x168". */
+bool yaml_reader_hex(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t highest,
+                     uint32_t *number);
+
+/** true, false. */
+bool yaml_reader_bool(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, bool *value);
+
+/** One of the words; the message lists them. */
+bool yaml_reader_word(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, const yaml_word_t *words,
+                      int *value);
+
+/** A number, or a list of two: the lowest and the highest. */
+bool yaml_reader_range(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, int64_t lowest,
+                       int64_t highest, int64_t range[2]);
+
+/**
+ * Payload bytes, two hexadecimal digits each, with blanks between them: "08 00 FF".
+ * @param mask FFh for a byte that stands there, 00h for one that is `..`; NULL: `..` is refused. Beyond the length both
+ *             are 0.
+ */
+bool yaml_reader_bytes(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint8_t value[8],
+                       uint8_t *mask, uint8_t *length);
+
+#endif
