@@ -1,0 +1,357 @@
+#include "fixture.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "agv/names.h"
+#include "unity.h"
+
+/* Healthy traffic, by hand: identifiers of both sets, cycle, phase, counter byte, payload in manual mode. */
+typedef struct {
+    uint16_t id;
+    uint16_t table_id;
+    uint16_t cycle_ms;
+    uint16_t phase_ms;
+    int8_t counter_at;
+    uint8_t data[8];
+} healthy_t;
+
+static const healthy_t HEALTHY[AGV_MSG_COUNT] = {
+    [AGV_MSG_TURN_SIGNAL_COMMAND] = {0x43F, 0x201, 100, 8, 7, {0, 0, 0, 0, 0x80}},
+    [AGV_MSG_GEAR_COMMAND] = {0x168, 0x168, 100, 18, -1, {GEAR_P}},
+    [AGV_MSG_THROTTLE_COMMAND] = {0x075, 0x075, 100, 28, -1, {0}},
+    [AGV_MSG_STEERING_COMMAND] = {0x065, 0x065, 25, 9, -1, {0x28, 0x23}},
+    [AGV_MSG_VEHICLE_STATUS] = {0x363, 0x203, 10, 1, 7, {0, 0, 0, 0, 0, 0, MODE_MANUAL}},
+    [AGV_MSG_GEAR_STATUS] = {0x0A3, 0x0A3, 25, 7, -1, {GEAR_P}},
+    [AGV_MSG_THROTTLE_STATUS] = {0x050, 0x050, 10, 2, -1, {0}},
+    [AGV_MSG_STEERING_STATUS] = {0x067, 0x067, 10, 4, 0, {0, 100, 0x28, 0x23}},
+    [AGV_MSG_EPS_STATUS] = {0x167, 0x167, 10, 5, -1, {0, 0, 0, 0x01}},
+    [AGV_MSG_STEERING_POSITION] = {0x267, 0x267, 10, 6, -1, {0x23, 0x28, 0, 0, 0x46, 0x50}},
+    [AGV_MSG_WHEEL_SPEED] = {0x101, 0x101, 10, 3, -1, {0}},
+};
+
+enum { COMMANDS = 4, STANDBY_WITHIN_MS = 1000, ENGAGED_MS = 1000 };
+
+/* ---- Building ---- */
+
+static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
+    fixture_t *f = (fixture_t *)ctx;
+    TEST_ASSERT_TRUE_MESSAGE(f->sent_count < FIXTURE_SENT_MAX, "the log of sent frames is full");
+    fixture_sent_t *entry = &f->sent[f->sent_count++];
+    *entry = (fixture_sent_t){.time_ms = f->now_ms,
+                              .call = f->call,
+                              .side = side,
+                              .id = frame->id,
+                              .flags = frame->flags,
+                              .length = frame->length};
+    memcpy(entry->data, frame->data, sizeof entry->data);
+}
+
+void fixture_init(fixture_t *f) {
+    memset(f, 0, sizeof *f);
+    agv_config_defaults(&f->config);
+    f->ports = (agv_ports_t){.hal = &f->hal, .recorder = &f->recorder};
+    f->reset_cause = HAL_RESET_POWER_ON;
+    f->self_test_passed = true;
+    f->what = "";
+    sim_store_init(&f->store);
+    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
+        f->traffic[i] = (fixture_message_t){.length = 8,
+                                            .counter_at = HEALTHY[i].counter_at,
+                                            .cycle_ms = HEALTHY[i].cycle_ms,
+                                            .phase_ms = HEALTHY[i].phase_ms};
+        memcpy(f->traffic[i].data, HEALTHY[i].data, sizeof HEALTHY[i].data);
+    }
+}
+
+static void address_traffic(fixture_t *f) {
+    const bool gateway = f->config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
+        f->traffic[i].id = f->config.id_set == (uint16_t)AGV_ID_SET_TABLE ? HEALTHY[i].table_id : HEALTHY[i].id;
+        f->traffic[i].side = gateway && i < COMMANDS ? HAL_CAN_AI : HAL_CAN_VEHICLE;
+    }
+}
+
+static void start_supervisor(fixture_t *f) {
+    f->call++;
+    agv_supervisor_start(&f->supervisor, &f->ports, &f->config, f->self_test_passed, f->now_ms);
+}
+
+void fixture_start(fixture_t *f) {
+    const bool gateway = f->config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    const sim_hal_config_t config = {.clock_start_ms = f->now_ms, .reset_cause = f->reset_cause, .store = &f->store};
+    sim_hal_init_direct(&f->hal, &config, gateway ? 2 : 1, on_sent, f);
+    address_traffic(f);
+    f->elapsed_ms = 0;
+    start_supervisor(f);
+}
+
+void fixture_restart(fixture_t *f, hal_reset_cause_t cause) {
+    sim_hal_reset(&f->hal, cause);
+    start_supervisor(f);
+}
+
+void fixture_standby(fixture_t *f) {
+    fixture_start(f);
+    for (unsigned i = 0; i < STANDBY_WITHIN_MS && agv_supervisor_state(&f->supervisor) != AGV_STATE_STANDBY; i++) {
+        fixture_run(f, 1);
+    }
+    expect_state(f, AGV_STATE_STANDBY);
+    fixture_forget_sent(f);
+}
+
+void fixture_active(fixture_t *f) {
+    fixture_standby(f);
+    fixture_mode(f, MODE_ENGAGED);
+    fixture_gear(f, GEAR_D);
+    fixture_run(f, ENGAGED_MS);
+    expect_state(f, AGV_STATE_ACTIVE);
+    fixture_forget_sent(f);
+}
+
+/* ---- Traffic ---- */
+
+void fixture_raw(fixture_t *f, hal_can_side_t side, hal_can_frame_t frame) {
+    frame.time_ms = f->now_ms;
+    f->call++;
+    agv_supervisor_frame(&f->supervisor, &f->ports, side, &frame);
+}
+
+void fixture_frame(fixture_t *f, agv_message_t message, const uint8_t data[8]) {
+    hal_can_frame_t frame = {.id = f->traffic[message].id, .length = 8};
+    memcpy(frame.data, data, sizeof frame.data);
+    fixture_raw(f, f->traffic[message].side, frame);
+}
+
+void fixture_send_now(fixture_t *f, agv_message_t message) {
+    fixture_message_t *m = &f->traffic[message];
+    if (!m->frozen) {
+        m->counter++;
+    }
+    if (m->counter_at >= 0) {
+        m->data[m->counter_at] = m->counter;
+    }
+    hal_can_frame_t frame = {.id = m->id, .flags = m->flags, .length = m->length};
+    memcpy(frame.data, m->data, sizeof frame.data);
+    m->sent++;
+    m->last_ms = f->now_ms;
+    if (f->edit == NULL || f->edit(f, message, &frame)) {
+        fixture_raw(f, m->side, frame);
+    }
+}
+
+static bool is_due(const fixture_message_t *m, uint32_t elapsed_ms) {
+    return !m->muted && elapsed_ms % m->cycle_ms == m->phase_ms;
+}
+
+static void mute(fixture_t *f, const agv_message_t *messages, unsigned count, bool muted) {
+    for (unsigned i = 0; i < count; i++) {
+        f->traffic[messages[i]].muted = muted;
+    }
+}
+
+void fixture_mute_vcu(fixture_t *f, bool muted) {
+    static const agv_message_t OF_VCU[] = {AGV_MSG_VEHICLE_STATUS, AGV_MSG_GEAR_STATUS, AGV_MSG_THROTTLE_STATUS,
+                                           AGV_MSG_WHEEL_SPEED};
+    mute(f, OF_VCU, 4, muted);
+}
+
+void fixture_mute_eps(fixture_t *f, bool muted) {
+    static const agv_message_t OF_EPS[] = {AGV_MSG_STEERING_STATUS, AGV_MSG_EPS_STATUS, AGV_MSG_STEERING_POSITION};
+    mute(f, OF_EPS, 3, muted);
+}
+
+void fixture_mute_ai(fixture_t *f, bool muted) {
+    static const agv_message_t OF_AI[] = {AGV_MSG_TURN_SIGNAL_COMMAND, AGV_MSG_GEAR_COMMAND, AGV_MSG_THROTTLE_COMMAND,
+                                          AGV_MSG_STEERING_COMMAND};
+    mute(f, OF_AI, COMMANDS, muted);
+}
+
+void fixture_mode(fixture_t *f, uint8_t mode) {
+    uint8_t *byte = &f->traffic[AGV_MSG_VEHICLE_STATUS].data[6];
+    *byte = (uint8_t)((*byte & 0x3Fu) | mode);
+}
+
+void fixture_button(fixture_t *f, bool pressed) {
+    uint8_t *byte = &f->traffic[AGV_MSG_VEHICLE_STATUS].data[6];
+    *byte = (uint8_t)((*byte & 0xFEu) | (pressed ? BUTTON_1 : 0u));
+}
+
+static void put_u16(uint8_t *data, uint16_t value) {
+    data[0] = (uint8_t)value;
+    data[1] = (uint8_t)(value >> 8u);
+}
+
+void fixture_gear(fixture_t *f, uint8_t gear) {
+    f->traffic[AGV_MSG_GEAR_STATUS].data[0] = gear;
+}
+
+void fixture_angle(fixture_t *f, uint16_t raw) {
+    put_u16(&f->traffic[AGV_MSG_STEERING_STATUS].data[2], raw);
+}
+
+void fixture_command_angle(fixture_t *f, uint16_t raw) {
+    put_u16(f->traffic[AGV_MSG_STEERING_COMMAND].data, raw);
+}
+
+void fixture_wheels(fixture_t *f, int32_t left_mm_s, int32_t right_mm_s) {
+    uint8_t *data = f->traffic[AGV_MSG_WHEEL_SPEED].data;
+    put_u16(&data[0], (uint16_t)(uint32_t)left_mm_s);
+    put_u16(&data[2], (uint16_t)((uint32_t)left_mm_s >> 16u));
+    put_u16(&data[4], (uint16_t)(uint32_t)right_mm_s);
+    put_u16(&data[6], (uint16_t)((uint32_t)right_mm_s >> 16u));
+}
+
+void fixture_vehicle_confirms(fixture_t *f) {
+    fixture_mode(f, MODE_MANUAL);
+    fixture_gear(f, GEAR_P);
+    fixture_wheels(f, 0, 0);
+    f->traffic[AGV_MSG_THROTTLE_STATUS].data[0] = 0;
+}
+
+/* ---- Time ---- */
+
+static void tick(fixture_t *f) {
+    if (!f->receive_path_dead) {
+        agv_supervisor_receive_alive(&f->supervisor);
+    }
+    f->call++;
+    agv_supervisor_tick(&f->supervisor, &f->ports, f->now_ms);
+    (void)sim_hal_poll(&f->hal);
+}
+
+static void step(fixture_t *f) {
+    f->now_ms++;
+    f->elapsed_ms++;
+    sim_hal_set_now_ms(&f->hal, f->now_ms);
+    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
+        if (is_due(&f->traffic[i], f->elapsed_ms)) {
+            fixture_send_now(f, (agv_message_t)i);
+        }
+    }
+    tick(f);
+}
+
+void fixture_run(fixture_t *f, uint32_t ms) {
+    for (uint32_t i = 0; i < ms; i++) {
+        step(f);
+    }
+}
+
+void fixture_run_before(fixture_t *f, agv_message_t message) {
+    TEST_ASSERT_FALSE_MESSAGE(f->traffic[message].muted, "a muted message never comes");
+    while (!is_due(&f->traffic[message], f->elapsed_ms + 1u)) {
+        step(f);
+    }
+}
+
+void fixture_run_past(fixture_t *f, agv_message_t message) {
+    fixture_run_before(f, message);
+    step(f);
+}
+
+void fixture_jump(fixture_t *f, uint32_t ms) {
+    f->now_ms += ms;
+    f->elapsed_ms += ms;
+    sim_hal_set_now_ms(&f->hal, f->now_ms);
+    tick(f);
+}
+
+/* ---- Looking ---- */
+
+bool fixture_has(const fixture_t *f, agv_fault_t fault) {
+    return (agv_supervisor_active_faults(&f->supervisor) & agv_fault_bit(fault)) != 0;
+}
+
+static uint32_t find_fault(const fixture_t *f, agv_fault_t fault, bool raised, agv_event_t *last) {
+    const uint32_t next = agv_recorder_next_sequence(&f->recorder);
+    const uint32_t kept = next < AGV_RECORDER_EVENTS ? next : AGV_RECORDER_EVENTS;
+    uint32_t count = 0;
+    agv_event_t event;
+    for (uint32_t i = next - kept; i != next; i++) {
+        if (agv_recorder_get(&f->recorder, i, &event) && event.kind == AGV_EVENT_FAULT && event.a == fault &&
+            event.c == (raised ? 1 : 0)) {
+            count++;
+            *last = event;
+        }
+    }
+    return count;
+}
+
+uint32_t fixture_raised(const fixture_t *f, agv_fault_t fault) {
+    agv_event_t event;
+    return find_fault(f, fault, true, &event);
+}
+
+uint32_t fixture_ended(const fixture_t *f, agv_fault_t fault) {
+    agv_event_t event;
+    return find_fault(f, fault, false, &event);
+}
+
+bool fixture_last_raised(const fixture_t *f, agv_fault_t fault, agv_event_t *event) {
+    return find_fault(f, fault, true, event) > 0;
+}
+
+void fixture_forget_sent(fixture_t *f) {
+    f->sent_count = 0;
+}
+
+uint32_t fixture_count_sent(const fixture_t *f, uint32_t id) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < f->sent_count; i++) {
+        count += f->sent[i].id == id ? 1u : 0u;
+    }
+    return count;
+}
+
+const fixture_sent_t *fixture_nth_sent(const fixture_t *f, uint32_t id, uint32_t n) {
+    for (uint32_t i = 0; i < f->sent_count; i++) {
+        if (f->sent[i].id == id && n-- == 0) {
+            return &f->sent[i];
+        }
+    }
+    TEST_FAIL_MESSAGE("no such frame was sent");
+    return NULL;
+}
+
+static const char *name_or(const char *name, const char *otherwise) {
+    return name != NULL ? name : otherwise;
+}
+
+static void fail_unless(bool good, const fixture_t *f, const char *expected, const char *seen) {
+    char text[200];
+    if (!good) {
+        (void)snprintf(text, sizeof text, "%s: expected %s, is %s, %u ms after the start", f->what, expected, seen,
+                       (unsigned)f->elapsed_ms);
+        TEST_FAIL_MESSAGE(text);
+    }
+}
+
+void expect_state(const fixture_t *f, agv_state_t expected) {
+    const agv_state_t state = agv_supervisor_state(&f->supervisor);
+    fail_unless(state == expected, f, agv_state_name(expected), name_or(agv_state_name(state), "no state"));
+}
+
+void expect_reason(const fixture_t *f, agv_fault_t expected) {
+    const agv_fault_t reason = agv_supervisor_first_reason(&f->supervisor);
+    fail_unless(reason == expected, f, name_or(agv_fault_name(expected), "no reason"),
+                name_or(agv_fault_name(reason), "no reason"));
+}
+
+void expect_fault(const fixture_t *f, agv_fault_t fault, bool active) {
+    fail_unless(fixture_has(f, fault) == active, f, agv_fault_name(fault),
+                active ? "not raised" : "(it should not be)");
+}
+
+void expect_led(const fixture_t *f, int expected_code) {
+    TEST_ASSERT_EQUAL_INT_MESSAGE(expected_code, agv_supervisor_led_code(&f->supervisor), f->what);
+}
+
+void expect_output(const fixture_t *f, bool closed) {
+    TEST_ASSERT_EQUAL_INT_MESSAGE(closed, f->hal.safety_output.on, f->what);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(closed, agv_supervisor_output_closed(&f->supervisor), f->what);
+}
+
+void expect_silence(const fixture_t *f) {
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(0, f->sent_count, f->what);
+}

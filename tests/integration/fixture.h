@@ -1,0 +1,174 @@
+/**
+ * @file fixture.h
+ * One supervisor on the simulated port without a bus, the healthy traffic of a vehicle around it, and a log of all that
+ * it sends. Virtual time: one step is one millisecond.
+ *
+ * A step (fixture_run): the clock moves on by 1 ms; the messages that are due are handed over with that time stamp, in
+ * the order of agv_message_t; the receive path checks in; one tick; the watchdog looks at the clock.
+ *
+ * Use: fixture_init(), change what the test is about (config, traffic), fixture_start(), run, look.
+ * Everything in the struct may be read and changed by a test at any time.
+ */
+#ifndef FIXTURE_H
+#define FIXTURE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "agv/recorder.h"
+#include "agv/supervisor.h"
+#include "hal_sim/sim_hal.h"
+#include "hal_sim/sim_store.h"
+
+#define FIXTURE_SENT_MAX 4096u
+
+/** Values of 363h byte 7, of gears on the wire, and the raw angle that healthy traffic has. */
+enum { MODE_NEITHER = 0x00, MODE_MANUAL = 0x40, MODE_ENGAGED = 0x80, MODE_BOTH = 0xC0, BUTTON_1 = 0x01 };
+enum { GEAR_D = 1, GEAR_R = 2, GEAR_N = 4, GEAR_P = 8 };
+enum { ANGLE_CENTRE = 9000 };
+
+/** What one message does. Healthy at first; every member is for the test to change. */
+typedef struct {
+    bool muted;        /**< is not sent */
+    bool frozen;       /**< its alive counter stands still */
+    uint8_t flags;     /**< HAL_CAN_* bits it is sent with */
+    uint8_t length;    /**< DLC; 8 */
+    uint8_t data[8];   /**< payload; byte `counter_at` is filled in */
+    int8_t counter_at; /**< index of its alive counter; -1: none */
+    uint8_t counter;   /**< value that was sent last */
+    uint16_t cycle_ms; /**< sent when (elapsed_ms % cycle_ms) == phase_ms */
+    uint16_t phase_ms;
+    uint32_t id;         /**< identifier */
+    hal_can_side_t side; /**< where it arrives */
+    uint32_t sent;       /**< frames so far */
+    uint32_t last_ms;    /**< clock at the last one */
+} fixture_message_t;
+
+/** One frame that the supervisor sent. */
+typedef struct {
+    uint32_t time_ms; /**< clock */
+    uint32_t call;    /**< number of the call to the supervisor in which it was sent */
+    hal_can_side_t side;
+    uint32_t id;
+    uint8_t flags;
+    uint8_t length;
+    uint8_t data[8];
+} fixture_sent_t;
+
+struct fixture;
+
+/** Asked for every frame of the traffic: may change it. @return false: it is not handed over. */
+typedef bool fixture_edit_fn(struct fixture *f, agv_message_t message, hal_can_frame_t *frame);
+
+/** All of it. */
+typedef struct fixture {
+    agv_supervisor_t supervisor;
+    agv_recorder_t recorder;
+    agv_ports_t ports;
+    struct hal hal;
+    sim_store_t store;
+    agv_config_t config;           /**< what fixture_start() hands in */
+    hal_reset_cause_t reset_cause; /**< what fixture_start() starts with; power-on */
+    bool self_test_passed;         /**< true */
+    uint32_t now_ms;               /**< clock; set it before fixture_start() */
+    uint32_t elapsed_ms;           /**< steps since fixture_start() */
+    bool receive_path_dead;        /**< the receive path does not check in */
+    uint32_t call;                 /**< calls to the supervisor so far */
+    fixture_edit_fn *edit;         /**< NULL: nothing is edited */
+    fixture_message_t traffic[AGV_MSG_COUNT];
+    const char *what; /**< the case of a table, for messages of failures */
+    uint32_t sent_count;
+    fixture_sent_t sent[FIXTURE_SENT_MAX];
+} fixture_t;
+
+/** @name Building @{ */
+
+/** Default configuration, shared bus, power-on, clock from 0, healthy traffic in manual mode. Not started yet. */
+void fixture_init(fixture_t *f);
+
+/** Start the supervisor at now_ms. Identifiers and sides of the traffic follow config.id_set and config.topology. */
+void fixture_start(fixture_t *f);
+
+/** Start it once more, on the same port, store, recorder, clock and traffic, after a reset with this cause. */
+void fixture_restart(fixture_t *f, hal_reset_cause_t cause);
+
+/** fixture_start(), then run until STANDBY, which has to come within a second. The log of sent frames is emptied. */
+void fixture_standby(fixture_t *f);
+
+/** fixture_standby(), then engage: ACTIVE, and the grace of 500 ms is over. The log of sent frames is emptied. */
+void fixture_active(fixture_t *f);
+/** @} */
+
+/** @name Time @{ */
+
+/** So many steps of 1 ms. */
+void fixture_run(fixture_t *f, uint32_t ms);
+
+/** Steps until a frame of this message was just handed over and the tick of that moment is done. */
+void fixture_run_past(fixture_t *f, agv_message_t message);
+
+/** Steps until the next step would send a frame of this message. */
+void fixture_run_before(fixture_t *f, agv_message_t message);
+
+/** Only a tick, @p ms later: no traffic in between, the receive path checks in. */
+void fixture_jump(fixture_t *f, uint32_t ms);
+/** @} */
+
+/** @name Traffic @{ */
+
+/** The message's own next frame, now instead of in its time: counter and all. */
+void fixture_send_now(fixture_t *f, agv_message_t message);
+
+/** Hand over a frame with the message's identifier and side, this payload, and now as its time stamp. */
+void fixture_frame(fixture_t *f, agv_message_t message, const uint8_t data[8]);
+
+/** Hand over any frame; its time stamp is filled in. */
+void fixture_raw(fixture_t *f, hal_can_side_t side, hal_can_frame_t frame);
+
+/** Mute or unmute all messages of a node: VCU (363h, 0A3h, 050h, 101h), EPS (067h, 167h, 267h), AI (the commands). */
+void fixture_mute_vcu(fixture_t *f, bool muted);
+void fixture_mute_eps(fixture_t *f, bool muted);
+void fixture_mute_ai(fixture_t *f, bool muted);
+
+/** Set the mode bits of 363h byte 7 (MODE_*), or press and release button 1; the rest of the byte stays. */
+void fixture_mode(fixture_t *f, uint8_t mode);
+void fixture_button(fixture_t *f, bool pressed);
+
+/** Set gear status, raw measured angle, raw commanded angle, both wheel speeds. */
+void fixture_gear(fixture_t *f, uint8_t gear);
+void fixture_angle(fixture_t *f, uint16_t raw);
+void fixture_command_angle(fixture_t *f, uint16_t raw);
+void fixture_wheels(fixture_t *f, int32_t left_mm_s, int32_t right_mm_s);
+
+/** The vehicle obeys: autopilot mode off (manual), gear P, throttle 0, wheels stand. */
+void fixture_vehicle_confirms(fixture_t *f);
+/** @} */
+
+/** @name Looking. A failed expectation names f->what. @{ */
+
+/** Whether a fault's cause is there now. */
+bool fixture_has(const fixture_t *f, agv_fault_t fault);
+
+/** How often a fault was raised (or ended) since fixture_start(), of the events that the recorder still has. */
+uint32_t fixture_raised(const fixture_t *f, agv_fault_t fault);
+uint32_t fixture_ended(const fixture_t *f, agv_fault_t fault);
+
+/** The last event in which this fault was raised. @return false: there is none. */
+bool fixture_last_raised(const fixture_t *f, agv_fault_t fault, agv_event_t *event);
+
+/** Empty the log of sent frames. */
+void fixture_forget_sent(fixture_t *f);
+
+/** How many frames with this identifier are in the log, and the n-th of them (0 = oldest; it has to be there). */
+uint32_t fixture_count_sent(const fixture_t *f, uint32_t id);
+const fixture_sent_t *fixture_nth_sent(const fixture_t *f, uint32_t id, uint32_t n);
+
+void expect_state(const fixture_t *f, agv_state_t expected);
+void expect_reason(const fixture_t *f, agv_fault_t expected);
+void expect_fault(const fixture_t *f, agv_fault_t fault, bool active);
+void expect_led(const fixture_t *f, int expected_code);
+void expect_output(const fixture_t *f, bool closed);
+void expect_silence(const fixture_t *f);
+/** @} */
+
+#endif
