@@ -18,6 +18,12 @@ typedef status_t command_fn(int argc, char **argv);
 /** `host_sim replay`: a recorded log, supervised in virtual time. */
 command_fn cmd_replay;
 
+/** `host_sim demo`: the main job on the simulated bus, as a timeline. */
+command_fn cmd_demo;
+
+/** `host_sim scenario`: scenario files, played and judged. */
+command_fn cmd_scenario;
+
 /** `host_sim config`: every setting, as YAML or as a Kconfig fragment. */
 command_fn cmd_config;
 

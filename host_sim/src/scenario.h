@@ -60,6 +60,8 @@ typedef struct {
 typedef struct {
     uint32_t at_ms;
     size_t line;
+    const char *actor; /**< "ai" */
+    const char *word;  /**< "stop" */
     bool of_vehicle;
     vehicle_action_t vehicle;
     scenario_action_t supervisor;

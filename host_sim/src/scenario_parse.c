@@ -22,11 +22,12 @@ const yaml_word_t SCENARIO_CAUSES[] = {{"power-on", HAL_RESET_POWER_ON},
                                        {"unknown", HAL_RESET_UNKNOWN},
                                        {NULL, 0}};
 
+static const yaml_word_t ID_SETS[] = {{"heading", AGV_ID_SET_HEADING}, {"table", AGV_ID_SET_TABLE}, {NULL, 0}};
+
 /** What the file holds is read into this. */
 typedef struct {
     scenario_t *scenario;
     config_lines_t lines;
-    const yaml_node_t *config; /* read once topology and ID set are known */
 } reading_t;
 
 bool scenario_parse_u32(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t lowest,
@@ -140,15 +141,15 @@ static bool read_topology(const yaml_reader_t *reader, const yaml_node_t *node, 
 }
 
 static bool read_id_set(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_word_t words[] = {{"heading", AGV_ID_SET_HEADING}, {"table", AGV_ID_SET_TABLE}, {NULL, 0}};
     scenario_t *scenario = ((reading_t *)target)->scenario;
     int value = 0;
 
     scenario->fixes_id_set = true;
-    if (!yaml_reader_word(reader, node, "id_set", words, &value)) {
+    if (!yaml_reader_word(reader, node, "id_set", ID_SETS, &value)) {
         return false;
     }
     scenario->config.id_set = (uint16_t)value;
+    scenario->vehicle.id_set = (agv_id_set_t)value; /* unless the vehicle's own part, read later, says otherwise */
     return true;
 }
 
@@ -286,8 +287,19 @@ FIGURE(eps_mode_change_ms, 0u)
 FIGURE(ai_lost_ms, 1u)
 FIGURE(eps_lost_ms, 1u)
 
+static bool read_vehicle_id_set(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    int value = 0;
+
+    if (!yaml_reader_word(reader, node, "id_set", ID_SETS, &value)) {
+        return false;
+    }
+    ((vehicle_config_t *)target)->id_set = (agv_id_set_t)value;
+    return true;
+}
+
 static bool read_vehicle(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     static const yaml_key_t keys[] = {
+        {"id_set", read_vehicle_id_set, false},
         {"park_guard", read_guard, false},
         {"obeys_short_frames", read_short, false},
         {"vcu_starts_ms", read_start_vcu, false},
@@ -306,7 +318,9 @@ static bool read_vehicle(const yaml_reader_t *reader, const yaml_node_t *node, v
         {"ai_lost_ms", read_ai_lost_ms, false},
         {"eps_lost_ms", read_eps_lost_ms, false},
     };
-    return yaml_reader_map(reader, node, "vehicle", keys, COUNT(keys), &((reading_t *)target)->scenario->vehicle);
+    scenario_t *scenario = ((reading_t *)target)->scenario;
+
+    return yaml_reader_map(reader, node, "vehicle", keys, COUNT(keys), &scenario->vehicle);
 }
 
 static bool read_steps(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
@@ -345,6 +359,7 @@ static void preset(scenario_t *scenario, const scenario_options_t *options) {
     scenario->bitrate = SCENARIO_DEFAULT_BITRATE;
     scenario->reset_cause = HAL_RESET_POWER_ON;
     vehicle_defaults(&scenario->vehicle);
+    scenario->vehicle.id_set = (agv_id_set_t)scenario->config.id_set;
 }
 
 /** What the file fixes, the command line cannot change. */
@@ -358,18 +373,42 @@ static bool agrees(const scenario_t *scenario, const char *file, const scenario_
     return true;
 }
 
-/** Steps and expectations that lie after the end would never be seen. */
-static bool fits(const scenario_t *scenario, const char *file) {
+/** What lies after the end would never be seen. */
+static bool is_before_end(const scenario_t *scenario, const char *file, size_t line, uint32_t at_ms) {
+    return (at_ms <= scenario->duration_ms) || report_at(file, line, "%u ms lies after the end (duration_ms: %u)",
+                                                         (unsigned)at_ms, (unsigned)scenario->duration_ms);
+}
+
+static bool steps_fit(const scenario_t *scenario, const char *file) {
     for (size_t i = 0u; i < scenario->step_count; i++) {
-        if (scenario->steps[i].at_ms >= scenario->duration_ms) {
-            return report_at(file, scenario->steps[i].line, "the step is at or after the end (duration_ms: %u)",
-                             (unsigned)scenario->duration_ms);
+        const scenario_step_t *step = &scenario->steps[i];
+        if (!is_before_end(scenario, file, step->line, step->at_ms)) {
+            return false;
         }
-        if ((i > 0u) && (scenario->steps[i].at_ms < scenario->steps[i - 1u].at_ms)) {
-            return report_at(file, scenario->steps[i].line, "the step is earlier than the one before it");
+        if ((i > 0u) && (step->at_ms < scenario->steps[i - 1u].at_ms)) {
+            return report_at(file, step->line, "the step is earlier than the one before it");
         }
     }
     return true;
+}
+
+static bool expectations_fit(const scenario_t *scenario, const char *file) {
+    const scenario_expect_t *expect = &scenario->expect;
+    bool good = true;
+
+    for (size_t i = 0u; good && (i < expect->vehicle.count); i++) {
+        good = is_before_end(scenario, file, expect->vehicle.items[i].line, expect->vehicle.items[i].at_ms);
+    }
+    for (size_t i = 0u; good && (i < expect->leds.count); i++) {
+        good = is_before_end(scenario, file, expect->leds.items[i].line, expect->leds.items[i].at_ms.to);
+    }
+    for (size_t i = 0u; good && (i < expect->frames.count); i++) {
+        good = is_before_end(scenario, file, expect->frames.items[i].line, expect->frames.items[i].at_ms.to);
+    }
+    for (size_t i = 0u; good && (i < expect->never.count); i++) {
+        good = is_before_end(scenario, file, expect->never.items[i].line, expect->never.items[i].at_ms.from);
+    }
+    return good;
 }
 
 static bool read_document(reading_t *reading, yaml_document_t *document, const char *file) {
@@ -380,11 +419,11 @@ static bool read_document(reading_t *reading, yaml_document_t *document, const c
     if (root == NULL) {
         return report("%s: there is no scenario in it", file);
     }
-    if (!yaml_reader_map(&reader, root, "a scenario", TOP, COUNT(TOP), reading) || !fits(scenario, file)) {
+    if (!yaml_reader_map(&reader, root, "a scenario", TOP, COUNT(TOP), reading) || !steps_fit(scenario, file) ||
+        !expectations_fit(scenario, file)) {
         return false;
     }
     scenario->vehicle.gateway = scenario->config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
-    scenario->vehicle.id_set = (agv_id_set_t)scenario->config.id_set;
     return true;
 }
 

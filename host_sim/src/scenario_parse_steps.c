@@ -356,7 +356,11 @@ static bool read_step(const yaml_reader_t *reader, const yaml_node_t *node, void
         return yaml_reader_fail(reader, reading.word, "%s: there is no '%.40s' to do",
                                 SCENARIO_ACTORS[reading.actor].word, word);
     }
-    *step = (scenario_step_t){.at_ms = reading.at_ms, .line = yaml_node_line(node), .of_vehicle = row->of_vehicle};
+    *step = (scenario_step_t){.at_ms = reading.at_ms,
+                              .line = yaml_node_line(node),
+                              .actor = SCENARIO_ACTORS[reading.actor].word,
+                              .word = row->word,
+                              .of_vehicle = row->of_vehicle};
     step->vehicle.message = AGV_MSG_NONE;
     if (!has_what_it_needs(reader, &reading, row) || !take_message(reader, &reading, step)) {
         return false;

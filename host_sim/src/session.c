@@ -54,14 +54,6 @@ static void tell_recorded(session_t *session, bool with_output) {
     }
 }
 
-/** Tell of what was recorded in the last call. The LED code only ever changes with an event. */
-static void tell_news(session_t *session) {
-    tell_recorded(session, true);
-    if (agv_supervisor_led_code(&session->supervisor) != session->led_code) {
-        tell_led(session);
-    }
-}
-
 static inline bool has_news(const session_t *session) {
     return agv_recorder_next_sequence(&session->recorder) != session->next;
 }
@@ -81,10 +73,14 @@ static uint32_t first_of_run(const agv_recorder_t *recorder) {
     return first;
 }
 
+void session_fail_self_test(session_t *session) {
+    session->self_test_failed = true;
+}
+
 void session_start(session_t *session, const agv_config_t *config, uint64_t t_ms, uint32_t clock_ms) {
     session->t_ms = t_ms;
     session->clock_ms = clock_ms;
-    agv_supervisor_start(&session->supervisor, &session->ports, config, true, clock_ms);
+    agv_supervisor_start(&session->supervisor, &session->ports, config, !session->self_test_failed, clock_ms);
     session->next = first_of_run(&session->recorder);
     tell_recorded(session, false);
     tell_output(session, agv_supervisor_output_closed(&session->supervisor));
@@ -96,7 +92,7 @@ void session_frame(session_t *session, hal_can_side_t side, const hal_can_frame_
     session->clock_ms = frame->time_ms;
     agv_supervisor_frame(&session->supervisor, &session->ports, side, frame);
     if (has_news(session)) {
-        tell_news(session);
+        tell_recorded(session, true);
     }
 }
 
@@ -106,6 +102,9 @@ void session_tick(session_t *session, uint64_t t_ms, uint32_t clock_ms) {
     agv_supervisor_receive_alive(&session->supervisor);
     agv_supervisor_tick(&session->supervisor, &session->ports, clock_ms);
     if (has_news(session)) {
-        tell_news(session);
+        tell_recorded(session, true);
+    }
+    if (agv_supervisor_led_code(&session->supervisor) != session->led_code) {
+        tell_led(session); /* it follows a fault that a frame carried in the next tick */
     }
 }

@@ -37,10 +37,11 @@ typedef struct {
     agv_supervisor_t supervisor;
     agv_recorder_t recorder;
     agv_ports_t ports;
-    uint64_t t_ms;     /**< time of the last call, since the start of the run */
-    uint32_t clock_ms; /**< the supervisor's clock at that moment */
-    uint32_t next;     /**< sequence number of the next event to tell of */
-    int8_t led_code;   /**< as last told */
+    uint64_t t_ms;         /**< time of the last call, since the start of the run */
+    uint32_t clock_ms;     /**< the supervisor's clock at that moment */
+    uint32_t next;         /**< sequence number of the next event to tell of */
+    int8_t led_code;       /**< as last told */
+    bool self_test_failed; /**< session_fail_self_test() */
     size_t observer_count;
     struct {
         session_observer_fn *fn;
@@ -53,6 +54,9 @@ void session_init(session_t *session, hal_t *hal);
 
 /** Tell one more observer. @return false: there are SESSION_OBSERVERS_MAX already */
 bool session_observe(session_t *session, session_observer_fn *fn, void *ctx);
+
+/** From the next start on, the program's own test of RAM, flash and processor reports a failure. */
+void session_fail_self_test(session_t *session);
 
 /**
  * Start the supervisor, or start it again after a reset of its processor: the recorder is kept. Observers are told the

@@ -1,0 +1,117 @@
+/**
+ * @file cmd_demo.c
+ * `host_sim demo`: a scenario played as a timeline.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "commands.h"
+#include "config_options.h"
+#include "options.h"
+#include "scenario_run.h"
+#include "timeline.h"
+
+#define MAIN_JOB "demo"
+
+enum { PATH_SIZE = 4096 };
+
+/** What was given. */
+typedef struct {
+    config_options_t config;
+    const char *scenario;
+} given_t;
+
+/** What the command works with. */
+typedef struct {
+    char path[PATH_SIZE];
+    scenario_options_t options;
+    timeline_t timeline;
+    scenario_run_t run;
+} work_t;
+
+static options_result_t parse(int argc, char **argv, given_t *given) {
+    option_t config_rows[CONFIG_OPTIONS];
+    config_options_init(&given->config, config_rows);
+    const option_t rows[] = {
+        {.name = "--scenario",
+         .value = "NAME",
+         .help = "another one: its name, or the path of a file",
+         .text = &given->scenario},
+    };
+    const option_group_t groups[] = {
+        {.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]},
+        {.title = "Configuration of the supervisor, under what the scenario says",
+         .options = config_rows,
+         .count = CONFIG_OPTIONS},
+    };
+    const option_syntax_t syntax = {
+        .usage = "demo [OPTION]...",
+        .summary =
+            "See the supervisor at work, on the simulated bus in virtual time: a vehicle drives off on autopilot,\n"
+            "its AI computer falls silent, the supervisor parks it, the operator resets; then the EPS fails.\n"
+            "Scenarios by name lie in " HOST_SIM_SCENARIOS ".\n",
+        .groups = groups,
+        .group_count = sizeof groups / sizeof groups[0],
+    };
+    size_t operands = 0u;
+    return options_parse(&syntax, argc, argv, &operands);
+}
+
+/** A name is that of a shipped scenario, anything with a slash or an ending is a path. */
+static bool find_scenario(const char *name, char path[PATH_SIZE]) {
+    const bool is_path = (strchr(name, '/') != NULL) || (strchr(name, '.') != NULL);
+    const int length = is_path ? snprintf(path, PATH_SIZE, "%s", name)
+                               : snprintf(path, PATH_SIZE, "%s/%s.yaml", HOST_SIM_SCENARIOS, name);
+
+    if ((length < 0) || (length >= PATH_SIZE)) {
+        return report("--scenario: the name is too long");
+    }
+    if (!is_path && (access(path, R_OK) != 0)) {
+        return report("--scenario: there is no '%s'; the shipped scenarios are the files in %s", name,
+                      HOST_SIM_SCENARIOS);
+    }
+    return true;
+}
+
+static status_t play(work_t *work) {
+    if (!scenario_read(&work->run.scenario, work->path, &work->options)) {
+        return STATUS_UNUSABLE;
+    }
+    timeline_init(&work->timeline, &work->run.world);
+    const scenario_watch_t watch = timeline_watch(&work->timeline);
+    (void)printf("%s\n\n", work->run.scenario.name);
+    const bool good = scenario_run(&work->run, SCENARIO_REAL, &watch, timeline_step);
+    const scenario_check_t *check = &work->run.check;
+    if (good) {
+        (void)printf("\nSeen as promised: all %zu expectations of the scenario held.\n", check->expectation_count);
+        return STATUS_OK;
+    }
+    (void)printf("\nNOT as promised, %s:\n", work->path);
+    for (size_t i = 0u; (i < check->failure_count) && (i < SCENARIO_FAILURES_MAX); i++) {
+        (void)printf("  %s\n", check->failures[i]);
+    }
+    return STATUS_UNMET;
+}
+
+status_t cmd_demo(int argc, char **argv) {
+    given_t given = {.scenario = MAIN_JOB};
+    const options_result_t parsed = parse(argc, argv, &given);
+    if (parsed != OPTIONS_GO) {
+        return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
+    }
+    work_t *work = calloc(1u, sizeof *work);
+    if (work == NULL) {
+        (void)report("out of memory");
+        return STATUS_UNUSABLE;
+    }
+    status_t status = STATUS_UNUSABLE;
+    work->options.topology = given.config.topology;
+    work->options.id_set = given.config.id_set;
+    if (config_options_make(&given.config, &work->options.config) && find_scenario(given.scenario, work->path)) {
+        status = play(work);
+    }
+    free(work);
+    return status;
+}

@@ -1,0 +1,52 @@
+#include "scenario_run.h"
+
+#include <stddef.h>
+
+static void judge_event(void *ctx, const session_event_t *event) {
+    scenario_check_event(ctx, event);
+}
+
+static void judge_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
+    scenario_check_frame(ctx, t_us, side, from, frame);
+}
+
+static void play(scenario_run_t *run, void *ctx, scenario_step_fn *on_step) {
+    const scenario_t *scenario = &run->scenario;
+    size_t next = 0u;
+
+    for (uint32_t t_ms = 0u; t_ms <= scenario->duration_ms; t_ms++) {
+        for (; (next < scenario->step_count) && (scenario->steps[next].at_ms == t_ms); next++) {
+            if (on_step != NULL) {
+                on_step(ctx, &scenario->steps[next]);
+            }
+            scenario_world_do(&run->world, &scenario->steps[next]);
+        }
+        scenario_world_tick(&run->world, t_ms);
+        scenario_check_output(&run->check, t_ms, run->world.hal.safety_output.on);
+        if (scenario_check_wants_vehicle(&run->check, t_ms)) {
+            vehicle_view_t view;
+            vehicle_view(&run->world.vehicle, t_ms, &view);
+            scenario_check_vehicle(&run->check, t_ms, &view);
+        }
+    }
+}
+
+bool scenario_run(scenario_run_t *run, scenario_planted_t planted, const scenario_watch_t *watch,
+                  scenario_step_fn *on_step) {
+    const scenario_watch_t judge = {judge_event, judge_frame, &run->check};
+
+    scenario_check_init(&run->check, &run->scenario);
+    if (!scenario_world_init(&run->world, &run->scenario, planted)) {
+        scenario_check_fail(&run->check, 0u, "the world could not be built");
+        return false;
+    }
+    scenario_world_watch(&run->world, &judge);
+    if (watch != NULL) {
+        scenario_world_watch(&run->world, watch);
+    }
+    scenario_world_start(&run->world);
+    play(run, (watch != NULL) ? watch->ctx : NULL, on_step);
+    scenario_check_finish(&run->check,
+                          (planted == SCENARIO_REAL) ? agv_supervisor_counters(&run->world.session.supervisor) : NULL);
+    return run->check.failure_count == 0u;
+}
