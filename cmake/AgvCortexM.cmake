@@ -21,6 +21,7 @@ endfunction()
 
 add_subdirectory(firmware EXCLUDE_FROM_ALL)
 add_subdirectory(hal/template EXCLUDE_FROM_ALL)
+add_subdirectory(tests/planted)
 foreach(cpu IN LISTS AGV_CPUS)
   agv_build_for_cpu(agv_core ${cpu})
   agv_build_for_cpu(hal_template ${cpu})
