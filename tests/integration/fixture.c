@@ -1,6 +1,7 @@
 #include "fixture.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "agv/names.h"
@@ -36,6 +37,11 @@ enum { COMMANDS = 4, STANDBY_WITHIN_MS = 1000, ENGAGED_MS = 1000 };
 
 static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
     fixture_t *f = (fixture_t *)ctx;
+    oracle_sent(&f->oracle, side, frame, agv_supervisor_state(&f->supervisor));
+    TEST_ASSERT_EQUAL_STRING_MESSAGE("", oracle_verdict(&f->oracle), f->what);
+    if (f->long_run && f->sent_count == FIXTURE_SENT_MAX) {
+        f->sent_count = 0;
+    }
     TEST_ASSERT_TRUE_MESSAGE(f->sent_count < FIXTURE_SENT_MAX, "the log of sent frames is full");
     fixture_sent_t *entry = &f->sent[f->sent_count++];
     *entry = (fixture_sent_t){.time_ms = f->now_ms,
@@ -47,8 +53,15 @@ static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame
     memcpy(entry->data, frame->data, sizeof entry->data);
 }
 
+/* 0, or a moment before the wrap. */
+static uint32_t clock_start_ms(void) {
+    const char *wrap_in_ms = getenv("AGV_TEST_WRAP_IN_MS");
+    return wrap_in_ms != NULL ? 0u - (uint32_t)strtoul(wrap_in_ms, NULL, 10) : 0u;
+}
+
 void fixture_init(fixture_t *f) {
     memset(f, 0, sizeof *f);
+    f->now_ms = clock_start_ms();
     agv_config_defaults(&f->config);
     f->ports = (agv_ports_t){.hal = &f->hal, .recorder = &f->recorder};
     f->reset_cause = HAL_RESET_POWER_ON;
@@ -73,8 +86,16 @@ static void address_traffic(fixture_t *f) {
 }
 
 static void start_supervisor(fixture_t *f) {
+    const bool table = f->config.id_set == (uint16_t)AGV_ID_SET_TABLE;
+    f->oracle.gateway = f->config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    f->oracle.pass_all_in_manual = f->config.gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL;
+    f->oracle.signal_id = table ? 0x201 : 0x43F;
+    f->oracle.vehicle_id = table ? 0x203 : 0x363;
+    f->oracle.own_status_id = f->config.status_frame_id;
+    oracle_restart(&f->oracle);
     f->call++;
     agv_supervisor_start(&f->supervisor, &f->ports, &f->config, f->self_test_passed, f->now_ms);
+    oracle_returned(&f->oracle, agv_supervisor_state(&f->supervisor));
 }
 
 void fixture_start(fixture_t *f) {
@@ -114,7 +135,9 @@ void fixture_active(fixture_t *f) {
 void fixture_raw(fixture_t *f, hal_can_side_t side, hal_can_frame_t frame) {
     frame.time_ms = f->now_ms;
     f->call++;
+    oracle_heard(&f->oracle, side, &frame);
     agv_supervisor_frame(&f->supervisor, &f->ports, side, &frame);
+    oracle_returned(&f->oracle, agv_supervisor_state(&f->supervisor));
 }
 
 void fixture_frame(fixture_t *f, agv_message_t message, const uint8_t data[8]) {
@@ -135,6 +158,7 @@ void fixture_send_now(fixture_t *f, agv_message_t message) {
     memcpy(frame.data, m->data, sizeof frame.data);
     m->sent++;
     m->last_ms = f->now_ms;
+    m->call = f->call + 1u;
     if (f->edit == NULL || f->edit(f, message, &frame)) {
         fixture_raw(f, m->side, frame);
     }
@@ -217,10 +241,11 @@ static void tick(fixture_t *f) {
     }
     f->call++;
     agv_supervisor_tick(&f->supervisor, &f->ports, f->now_ms);
+    oracle_returned(&f->oracle, agv_supervisor_state(&f->supervisor));
     (void)sim_hal_poll(&f->hal);
 }
 
-static void step(fixture_t *f) {
+static void hand_over_traffic(fixture_t *f) {
     f->now_ms++;
     f->elapsed_ms++;
     sim_hal_set_now_ms(&f->hal, f->now_ms);
@@ -229,6 +254,10 @@ static void step(fixture_t *f) {
             fixture_send_now(f, (agv_message_t)i);
         }
     }
+}
+
+static void step(fixture_t *f) {
+    hand_over_traffic(f);
     tick(f);
 }
 
@@ -255,6 +284,12 @@ void fixture_jump(fixture_t *f, uint32_t ms) {
     f->elapsed_ms += ms;
     sim_hal_set_now_ms(&f->hal, f->now_ms);
     tick(f);
+}
+
+void fixture_run_without_ticks(fixture_t *f, uint32_t ms) {
+    for (uint32_t i = 0; i < ms; i++) {
+        hand_over_traffic(f);
+    }
 }
 
 /* ---- Looking ---- */

@@ -19,6 +19,7 @@
 #include "agv/supervisor.h"
 #include "hal_sim/sim_hal.h"
 #include "hal_sim/sim_store.h"
+#include "oracle.h"
 
 #define FIXTURE_SENT_MAX 4096u
 
@@ -42,6 +43,7 @@ typedef struct {
     hal_can_side_t side; /**< where it arrives */
     uint32_t sent;       /**< frames so far */
     uint32_t last_ms;    /**< clock at the last one */
+    uint32_t call;       /**< number of the call in which the last one was handed over */
 } fixture_message_t;
 
 /** One frame that the supervisor sent. */
@@ -77,13 +79,18 @@ typedef struct fixture {
     fixture_edit_fn *edit;         /**< NULL: nothing is edited */
     fixture_message_t traffic[AGV_MSG_COUNT];
     const char *what; /**< the case of a table, for messages of failures */
+    oracle_t oracle;  /**< judges every frame that leaves (FSM-6): a forbidden one ends the test */
+    bool long_run;    /**< a full log of sent frames begins anew instead of ending the test */
     uint32_t sent_count;
     fixture_sent_t sent[FIXTURE_SENT_MAX];
 } fixture_t;
 
 /** @name Building @{ */
 
-/** Default configuration, shared bus, power-on, clock from 0, healthy traffic in manual mode. Not started yet. */
+/**
+ * Default configuration, shared bus, power-on, healthy traffic in manual mode. Not started yet. The clock stands at 0, or
+ * so many milliseconds before its wrap as the environment variable AGV_TEST_WRAP_IN_MS says.
+ */
 void fixture_init(fixture_t *f);
 
 /** Start the supervisor at now_ms. Identifiers and sides of the traffic follow config.id_set and config.topology. */
@@ -112,6 +119,9 @@ void fixture_run_before(fixture_t *f, agv_message_t message);
 
 /** Only a tick, @p ms later: no traffic in between, the receive path checks in. */
 void fixture_jump(fixture_t *f, uint32_t ms);
+
+/** Traffic without ticks: the clock moves on, frames are handed over in their time, the supervisor's step does not come. */
+void fixture_run_without_ticks(fixture_t *f, uint32_t ms);
 /** @} */
 
 /** @name Traffic @{ */

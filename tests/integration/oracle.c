@@ -1,0 +1,149 @@
+#include "oracle.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static bool sends_safe_commands(agv_state_t state) {
+    return (state != AGV_STATE_STANDBY) && (state != AGV_STATE_ACTIVE);
+}
+
+static bool is_latched(agv_state_t state) {
+    return sends_safe_commands(state) && (state != AGV_STATE_INIT);
+}
+
+static bool bytes_are(const hal_can_frame_t *frame, const uint8_t expected[8]) {
+    return memcmp(frame->data, expected, 8) == 0;
+}
+
+static bool zeros_from(const hal_can_frame_t *frame, unsigned first) {
+    static const uint8_t zeros[8] = {0};
+    return memcmp(&frame->data[first], zeros, 8u - first) == 0;
+}
+
+static uint16_t word_of(const uint8_t *low) {
+    return (uint16_t)(low[0] | ((unsigned)low[1] << 8u));
+}
+
+void oracle_restart(oracle_t *oracle) {
+    oracle->angle_known = false;
+    oracle->latched = false;
+    oracle->held = false;
+}
+
+/* The hold angle is the last valid one of the moment of the trip, or the first valid one after it. */
+static void follow(oracle_t *oracle, bool latched) {
+    if (!latched) {
+        oracle->held = false;
+    } else if (!oracle->held && oracle->angle_known) {
+        oracle->held = true;
+        oracle->held_raw = oracle->angle_raw;
+    } else {
+        /* as it was */
+    }
+    oracle->latched = latched;
+}
+
+void oracle_heard(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *frame) {
+    const uint16_t raw = word_of(&frame->data[2]);
+    if ((side == HAL_CAN_VEHICLE) && (frame->id == 0x067u) && (frame->flags == 0u) && (frame->length == 8u) &&
+        (raw <= 18000u)) {
+        oracle->angle_known = true;
+        oracle->angle_raw = raw;
+        follow(oracle, oracle->latched);
+    }
+}
+
+static bool safe_to_vehicle(const oracle_t *oracle, const hal_can_frame_t *frame, agv_state_t state) {
+    static const uint8_t park[8] = {0x08};
+    if (frame->id == oracle->signal_id) {
+        /* reserved bytes 0; bits 5, 6, 7 on, bit 8 off = headlight on; any counter */
+        return (frame->data[4] == 0x70u) && (word_of(&frame->data[0]) == 0u) && (word_of(&frame->data[2]) == 0u) &&
+               (word_of(&frame->data[5]) == 0u);
+    }
+    switch (frame->id) {
+    case 0x168u:
+        return bytes_are(frame, park);
+    case 0x075u:
+        return zeros_from(frame, 0);
+    case 0x065u:
+        return (state != AGV_STATE_INIT) && oracle->held && (word_of(frame->data) == oracle->held_raw) &&
+               zeros_from(frame, 2);
+    default:
+        return false;
+    }
+}
+
+static bool passed_to_vehicle(const oracle_t *oracle, const hal_can_frame_t *frame, agv_state_t state) {
+    const bool all = (state == AGV_STATE_ACTIVE) || oracle->pass_all_in_manual;
+    const uint8_t gear = frame->data[0];
+    if (frame->id == oracle->signal_id) {
+        return ((frame->data[4] & 0x0Fu) == 0u) && (word_of(&frame->data[0]) == 0u) &&
+               (word_of(&frame->data[2]) == 0u) && (word_of(&frame->data[5]) == 0u);
+    }
+    switch (frame->id) {
+    case 0x168u:
+        return all && ((gear == 1u) || (gear == 2u) || (gear == 4u) || (gear == 8u)) && zeros_from(frame, 1);
+    case 0x075u:
+        return all && (frame->data[0] <= ((state == AGV_STATE_ACTIVE) ? 250u : 0u)) && zeros_from(frame, 1);
+    case 0x065u:
+        return all && (word_of(frame->data) <= 18000u) && zeros_from(frame, 2);
+    default:
+        return false;
+    }
+}
+
+static bool is_status(const oracle_t *oracle, uint32_t id) {
+    return (id == oracle->vehicle_id) || (id == 0x0A3u) || (id == 0x050u) || (id == 0x067u) || (id == 0x167u) ||
+           (id == 0x267u) || (id == 0x101u);
+}
+
+static bool may_leave(const oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *frame, agv_state_t state) {
+    if ((frame->flags != 0u) || (frame->length != 8u)) {
+        return false;
+    }
+    if (side == HAL_CAN_AI) {
+        return oracle->gateway && is_status(oracle, frame->id);
+    }
+    if ((oracle->own_status_id != 0u) && (frame->id == oracle->own_status_id)) {
+        return true;
+    }
+    if (sends_safe_commands(state)) {
+        return safe_to_vehicle(oracle, frame, state);
+    }
+    return oracle->gateway && passed_to_vehicle(oracle, frame, state);
+}
+
+void oracle_sent(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *frame, agv_state_t state) {
+    follow(oracle, is_latched(state));
+    if (sends_safe_commands(state)) {
+        oracle->judged++;
+    } else {
+        oracle->others++;
+    }
+    if (!may_leave(oracle, side, frame, state)) {
+        if (oracle->forbidden == 0u) {
+            oracle->first_forbidden = *frame;
+            oracle->first_side = side;
+            oracle->first_state = state;
+        }
+        oracle->forbidden++;
+    }
+}
+
+void oracle_returned(oracle_t *oracle, agv_state_t state) {
+    follow(oracle, is_latched(state));
+}
+
+const char *oracle_verdict(const oracle_t *oracle) {
+    static char text[160];
+    const hal_can_frame_t *frame = &oracle->first_forbidden;
+    if (oracle->forbidden == 0u) {
+        return "";
+    }
+    (void)snprintf(text, sizeof text,
+                   "%u forbidden, first in state %02Xh to side %d: %03X#%02X%02X%02X%02X%02X%02X%02X%02X (held %d: %u)",
+                   (unsigned)oracle->forbidden, (unsigned)oracle->first_state, (int)oracle->first_side,
+                   (unsigned)frame->id, frame->data[0], frame->data[1], frame->data[2], frame->data[3], frame->data[4],
+                   frame->data[5], frame->data[6], frame->data[7], oracle->held ? 1 : 0, (unsigned)oracle->held_raw);
+    return text;
+}

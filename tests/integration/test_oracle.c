@@ -1,0 +1,137 @@
+/* The oracle itself: it lets the safe commands through and catches each kind of frame that it is there to catch. */
+#include "oracle.h"
+#include "unity.h"
+
+static oracle_t oracle;
+
+static hal_can_frame_t frame_of(uint32_t id, uint8_t first, uint8_t second) {
+    return (hal_can_frame_t){.id = id, .length = 8, .data = {first, second}};
+}
+
+static hal_can_frame_t signals(uint8_t fifth, uint8_t counter) {
+    return (hal_can_frame_t){.id = 0x43F, .length = 8, .data = {0, 0, 0, 0, fifth, 0, 0, counter}};
+}
+
+static uint32_t forbidden(hal_can_side_t side, hal_can_frame_t frame, agv_state_t state) {
+    const uint32_t before = oracle.forbidden;
+    oracle_sent(&oracle, side, &frame, state);
+    return oracle.forbidden - before;
+}
+
+/* 067h with this raw angle. */
+static void measured(uint16_t raw) {
+    const hal_can_frame_t frame = {.id = 0x067, .length = 8, .data = {1, 100, (uint8_t)raw, (uint8_t)(raw >> 8u)}};
+    oracle_heard(&oracle, HAL_CAN_VEHICLE, &frame);
+}
+
+void setUp(void) {
+    oracle = (oracle_t){.signal_id = 0x43F, .vehicle_id = 0x363};
+}
+
+void tearDown(void) {
+}
+
+static void judge_commands_in(agv_state_t state) {
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, signals(0x70, 0), state));
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, signals(0x70, 255), state));
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x168, 8, 0), state));
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 0, 0), state));
+
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, signals(0x30, 0), state)); /* autopilot not off */
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, signals(0xF0, 0), state)); /* headlight off */
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, signals(0x60, 0), state)); /* no hazard lights */
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x168, 1, 0), state));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x168, 2, 0), state));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x168, 4, 0), state));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x168, 8, 1), state));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 1, 0), state));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x28, 0x23), state)); /* nothing is held */
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x363, 0, 0), state));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x123, 0, 0), state));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_AI, frame_of(0x363, 0, 0), state)); /* there is no AI side */
+}
+
+/* Shows: FSM-6 */
+void test_only_safe_commands(void) {
+    judge_commands_in(AGV_STATE_INIT);
+    judge_commands_in(AGV_STATE_TRIPPED);
+    judge_commands_in(AGV_STATE_SAFE);
+    judge_commands_in((agv_state_t)0x00); /* no state is latched, too */
+    judge_commands_in((agv_state_t)0x54);
+    TEST_ASSERT_EQUAL(5 * 16, oracle.judged);
+    TEST_ASSERT_EQUAL(5 * 12, oracle.forbidden);
+}
+
+/* Shows: FSM-6 */
+void test_a_frame_of_another_shape(void) {
+    hal_can_frame_t frame = frame_of(0x075, 0, 0);
+    frame.length = 1;
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame, AGV_STATE_TRIPPED));
+    frame.length = 8;
+    frame.flags = HAL_CAN_EXTENDED;
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame, AGV_STATE_TRIPPED));
+}
+
+/* Shows: FSM-6, FSM-10 */
+void test_the_held_angle_is_that_of_the_moment_of_the_trip(void) {
+    measured(9100);
+    oracle_returned(&oracle, AGV_STATE_ACTIVE);
+    measured(9200);
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x8C, 0x23), AGV_STATE_TRIPPED)); /* 9100 */
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED)); /* 9200 */
+    oracle_returned(&oracle, AGV_STATE_TRIPPED);
+    measured(9100);
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x8C, 0x23), AGV_STATE_SAFE));
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_SAFE));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_INIT));
+}
+
+/* Shows: FSM-6, FSM-10 */
+void test_after_a_restart_the_first_valid_angle_is_held(void) {
+    measured(9200);
+    oracle_restart(&oracle);
+    oracle_returned(&oracle, AGV_STATE_TRIPPED);
+    measured(18001);
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED));
+    measured(9100);
+    measured(9200);
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x8C, 0x23), AGV_STATE_TRIPPED));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED));
+}
+
+/* Shows: FSM-6 */
+void test_on_the_shared_bus_nothing_leaves_in_standby_and_active(void) {
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x168, 8, 0), AGV_STATE_STANDBY));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, signals(0x70, 0), AGV_STATE_ACTIVE));
+    oracle.own_status_id = 0x123;
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x123, 0, 0), AGV_STATE_ACTIVE));
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x123, 0, 0), AGV_STATE_TRIPPED));
+}
+
+/* Shows: FSM-6, TOP-2 */
+void test_what_a_gateway_passes(void) {
+    oracle.gateway = true;
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, signals(0x80, 1), AGV_STATE_STANDBY));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, signals(0x81, 1), AGV_STATE_STANDBY)); /* a reserved bit */
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x168, 1, 0), AGV_STATE_STANDBY));
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x168, 1, 0), AGV_STATE_ACTIVE));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x168, 3, 0), AGV_STATE_ACTIVE));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x168, 1, 0), AGV_STATE_TRIPPED));
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 250, 0), AGV_STATE_ACTIVE));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 251, 0), AGV_STATE_ACTIVE));
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x50, 0x46), AGV_STATE_ACTIVE)); /* 18000 */
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x51, 0x46), AGV_STATE_ACTIVE));
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_AI, frame_of(0x363, 0, 0), AGV_STATE_TRIPPED));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_AI, frame_of(0x168, 8, 0), AGV_STATE_ACTIVE));
+    oracle.pass_all_in_manual = true;
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x168, 1, 0), AGV_STATE_STANDBY));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 1, 0), AGV_STATE_STANDBY));
+}
+
+void test_the_verdict_names_the_first_forbidden_frame(void) {
+    TEST_ASSERT_EQUAL_STRING("", oracle_verdict(&oracle));
+    (void)forbidden(HAL_CAN_VEHICLE, frame_of(0x168, 1, 0), AGV_STATE_TRIPPED);
+    (void)forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 9, 0), AGV_STATE_SAFE);
+    TEST_ASSERT_EQUAL_STRING("2 forbidden, first in state 55h to side 0: 168#0100000000000000 (held 0: 0)",
+                             oracle_verdict(&oracle));
+}
