@@ -43,6 +43,7 @@ void test_frames_take_their_time_at_each_bit_rate(void) {
 }
 
 void test_other_bit_rates_are_refused(void) {
+    TEST_ASSERT_TRUE(sim_bus_init(bus, 1000000));
     TEST_ASSERT_FALSE(sim_bus_init(bus, 0));
     TEST_ASSERT_FALSE(sim_bus_init(bus, 100000));
     TEST_ASSERT_FALSE(sim_bus_init(bus, 800000));
@@ -235,17 +236,18 @@ void test_a_full_receive_queue_counts_overruns_and_keeps_the_old_frames(void) {
 void test_the_age_of_the_oldest_waiting_frame_is_reported(void) {
     TEST_ASSERT_EQUAL_UINT32(0, status_of(&fixture, A).tx_pending_ms);
     sim_bus_set_stalled(bus, A, true);
+    sim_bus_run_until(bus, 5500);
     send(&fixture, A, 0x300, 8, 0);
     TEST_ASSERT_EQUAL_UINT32(1, status_of(&fixture, A).tx_pending_ms);
-    sim_bus_run_until(bus, 99999);
+    sim_bus_run_until(bus, 105499);
     send(&fixture, A, 0x100, 8, 0);
     TEST_ASSERT_EQUAL_UINT32(99, status_of(&fixture, A).tx_pending_ms);
-    sim_bus_run_until(bus, 100000);
+    sim_bus_run_until(bus, 105500);
     TEST_ASSERT_EQUAL_UINT32(100, status_of(&fixture, A).tx_pending_ms);
     sim_bus_set_stalled(bus, A, false);
-    sim_bus_run_until(bus, 100300); /* the 100h is gone, the 300h on the wire */
+    sim_bus_run_until(bus, 105800); /* the 100h is gone, the 300h on the wire */
     TEST_ASSERT_EQUAL_UINT32(100, status_of(&fixture, A).tx_pending_ms);
-    sim_bus_run_until(bus, 101000);
+    sim_bus_run_until(bus, 107000);
     TEST_ASSERT_EQUAL_UINT32(0, status_of(&fixture, A).tx_pending_ms);
     sim_bus_set_stalled(bus, A, true);
     send(&fixture, A, 0x300, 8, 0);
@@ -258,7 +260,9 @@ void test_nodes_and_taps_are_limited_and_configurations_checked(void) {
     const sim_bus_node_config_t too_many_rx = {.rx_slots = SIM_BUS_RX_SLOTS_MAX + 1u};
     TEST_ASSERT_EQUAL_UINT8(SIM_BUS_NO_NODE, sim_bus_attach(bus, &too_many_tx));
     TEST_ASSERT_EQUAL_UINT8(SIM_BUS_NO_NODE, sim_bus_attach(bus, &too_many_rx));
-    for (unsigned i = FIXTURE_NODES; i < SIM_BUS_NODES_MAX; i++) {
+    const sim_bus_node_config_t largest = {.tx_slots = SIM_BUS_TX_SLOTS_MAX, .rx_slots = SIM_BUS_RX_SLOTS_MAX};
+    TEST_ASSERT_EQUAL_UINT8(FIXTURE_NODES, sim_bus_attach(bus, &largest));
+    for (unsigned i = FIXTURE_NODES + 1u; i < SIM_BUS_NODES_MAX; i++) {
         TEST_ASSERT_EQUAL_UINT8(i, sim_bus_attach(bus, NULL));
     }
     TEST_ASSERT_EQUAL_UINT8(SIM_BUS_NO_NODE, sim_bus_attach(bus, NULL));

@@ -1,4 +1,4 @@
-/* The simulated bus when something is wrong: collisions, no acknowledge, errors, bus-off, nodes that go. */
+/* The simulated bus when something is wrong: no acknowledge, errors on demand, purge. Collisions have a file of their own. */
 #include <string.h>
 
 #include "sim_bus_fixture.h"
@@ -23,148 +23,6 @@ static void only_a_and(sim_bus_node_t other) {
     for (sim_bus_node_t node = B; node < FIXTURE_NODES; node++) {
         sim_bus_set_power(bus, node, node == other);
     }
-}
-
-/* ---- Two nodes, one identifier, one moment ---- */
-
-void test_identical_frames_merge(void) {
-    send(&fixture, A, 0x168, 8, 7);
-    send(&fixture, B, 0x168, 8, 7);
-    sim_bus_run_until(bus, 1000);
-    TEST_ASSERT_EQUAL_UINT(1, fixture.event_count);
-    TEST_ASSERT_FALSE(fixture.events[0].error);
-    TEST_ASSERT_EQUAL_HEX32(0x3, fixture.events[0].senders);
-    TEST_ASSERT_EQUAL_UINT8(A, fixture.events[0].sender);
-    TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(bus, A) + sim_bus_waiting(bus, B));
-    TEST_ASSERT_EQUAL_UINT(0, received_by(&fixture, A) + received_by(&fixture, B));
-    TEST_ASSERT_EQUAL_UINT(1, received_by(&fixture, C));
-}
-
-/* Two senders and nobody else: no one is left to acknowledge. */
-void test_identical_frames_of_all_are_not_acknowledged(void) {
-    only_a_and(B);
-    send(&fixture, A, 0x168, 8, 7);
-    send(&fixture, B, 0x168, 8, 7);
-    sim_bus_run_until(bus, 290);
-    TEST_ASSERT_TRUE(fixture.events[0].error);
-    TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, A));
-    TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, B));
-}
-
-/*
- * 00h against 80h in the first of one data byte: the first data bit differs. Bits up to it: start 1, identifier 11,
- * RTR, IDE, r0 3, DLC 4, data 1 = 20, with (20 - 1) / 4 = 4 stuff bits 24; error frame 20: 44 bits = 88 us, next start
- * 3 bits = 6 us later.
- */
-void test_different_frames_destroy_each_other(void) {
-    send(&fixture, A, 0x168, 1, 0x00);
-    send(&fixture, B, 0x168, 1, 0x80);
-    sim_bus_run_until(bus, 88);
-    TEST_ASSERT_EQUAL_UINT(1, fixture.event_count);
-    TEST_ASSERT_TRUE(fixture.events[0].error);
-    TEST_ASSERT_EQUAL_UINT64(88, fixture.events[0].end_us);
-    TEST_ASSERT_EQUAL_HEX32(0x3, fixture.events[0].senders);
-    TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, A));
-    TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, B));
-    TEST_ASSERT_EQUAL_UINT(1, rec_of(&fixture, C));
-    TEST_ASSERT_EQUAL_UINT(0, received_by(&fixture, C));
-    sim_bus_run_until(bus, 95);
-    TEST_ASSERT_EQUAL_size_t(1, sim_bus_waiting(bus, A));
-    sim_bus_run_until(bus, 94 + 88);
-    TEST_ASSERT_EQUAL_UINT64(94, fixture.events[1].start_us);
-    TEST_ASSERT_EQUAL_UINT(16, tec_of(&fixture, A));
-}
-
-/*
- * 16 collisions of 94 us make both passive (16 x 8 = 128); the 16th ends at 15 x 94 + 88 = 1498. Passive senders wait
- * 3 + 8 bits: 1498 + 22 = 1520. Then the recessive one sees its error, but its passive error flag disturbs nobody: the
- * other gets through (1 byte: 62 bits = 124 us), and then, 8 bits later than others might, the loser.
- */
-void test_a_collision_ends_when_the_loser_is_passive(void) {
-    send(&fixture, A, 0x168, 1, 0x00);
-    send(&fixture, B, 0x168, 1, 0x80);
-    sim_bus_run_until(bus, 1498);
-    TEST_ASSERT_EQUAL_UINT(16, fixture.event_count);
-    assert_state(HAL_CAN_ERROR_PASSIVE, A);
-    assert_state(HAL_CAN_ERROR_PASSIVE, B);
-    sim_bus_run_until(bus, 1520 + 124);
-    TEST_ASSERT_EQUAL_UINT(17, fixture.event_count);
-    TEST_ASSERT_EQUAL_UINT64(1520, fixture.events[16].start_us);
-    TEST_ASSERT_EQUAL_HEX32(0x1, fixture.events[16].senders);
-    TEST_ASSERT_FALSE(fixture.events[16].error);
-    TEST_ASSERT_EQUAL_UINT(127, tec_of(&fixture, A));
-    TEST_ASSERT_EQUAL_UINT(136, tec_of(&fixture, B));
-    sim_bus_run_until(bus, 5000);
-    TEST_ASSERT_EQUAL_UINT64(1644 + 22, fixture.events[17].start_us);
-    TEST_ASSERT_EQUAL_HEX8(0x80, fixture.events[17].first);
-    TEST_ASSERT_EQUAL_UINT(135, tec_of(&fixture, B));
-    TEST_ASSERT_EQUAL_UINT(2, received_by(&fixture, C));
-}
-
-/*
- * Round after round: from the second on B, passive, loses 8 and gets 1 back, 7 a round from 135: in round 19 its counter
- * is 135 + 17 x 7 = 254, + 8 = 262 > 255. A, dominant, recovers meanwhile.
- */
-/* Shows: SUP-7 */
-void test_endless_collisions_end_in_bus_off(void) {
-    unsigned round = 0;
-    while (status_of(&fixture, B).state != HAL_CAN_BUS_OFF && round < 100) {
-        round++;
-        send(&fixture, A, 0x168, 1, 0x00);
-        send(&fixture, B, 0x168, 1, 0x80);
-        sim_bus_run_until(bus, round * 10000u);
-    }
-    TEST_ASSERT_EQUAL_UINT(19, round);
-    TEST_ASSERT_EQUAL_UINT16(1, status_of(&fixture, B).bus_off_count);
-    TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(bus, B));
-    TEST_ASSERT_EQUAL_UINT(128 - 19, tec_of(&fixture, A));
-    assert_state(HAL_CAN_ERROR_ACTIVE, A);
-}
-
-/* An active loser destroys the frame of a passive winner, too. */
-void test_an_active_loser_destroys_the_frame(void) {
-    sim_bus_set_error_counters(bus, A, 128, 0);
-    send(&fixture, A, 0x168, 1, 0x00);
-    send(&fixture, B, 0x168, 1, 0x80);
-    sim_bus_run_until(bus, 88);
-    TEST_ASSERT_TRUE(fixture.events[0].error);
-    TEST_ASSERT_EQUAL_UINT(136, tec_of(&fixture, A));
-    TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, B));
-    sim_bus_run_until(bus, 94 + 62 * 2); /* and A has to wait: B alone gets through */
-    TEST_ASSERT_EQUAL_HEX32(0x2, fixture.events[1].senders);
-    TEST_ASSERT_FALSE(fixture.events[1].error);
-}
-
-/* Lengths 0 and 8 differ in the first bit of the DLC: 16 bits, (16 - 1) / 4 = 3 stuff bits, error frame 20 = 39. */
-void test_frames_of_different_length_collide_in_their_length(void) {
-    send(&fixture, A, 0x168, 0, 0);
-    send(&fixture, B, 0x168, 8, 0);
-    sim_bus_run_until(bus, 1000);
-    TEST_ASSERT_EQUAL_UINT64(78, fixture.events[0].end_us);
-}
-
-/* 29 bits: 35 to the DLC, 4, 1 data bit = 40, 39 / 4 = 9 stuff bits, 20 = 69 bits. */
-void test_extended_frames_collide_later(void) {
-    const hal_can_frame_t dominant = {.id = 5, .flags = HAL_CAN_EXTENDED, .length = 1};
-    const hal_can_frame_t recessive = {.id = 5, .flags = HAL_CAN_EXTENDED, .length = 1, .data = {0x80}};
-    sim_bus_send(bus, A, &dominant);
-    sim_bus_send(bus, B, &recessive);
-    sim_bus_run_until(bus, 1000);
-    TEST_ASSERT_EQUAL_UINT64(138, fixture.events[0].end_us);
-}
-
-/* Three of them: the passive one falls silent at its bit, the other two are equal and get through together. */
-void test_a_passive_loser_leaves_the_others_to_merge(void) {
-    sim_bus_set_error_counters(bus, C, 128, 0);
-    send(&fixture, A, 0x168, 1, 0x01);
-    send(&fixture, B, 0x168, 1, 0x01);
-    send(&fixture, C, 0x168, 1, 0x03);
-    sim_bus_run_until(bus, 124);
-    TEST_ASSERT_EQUAL_HEX32(0x3, fixture.events[0].senders);
-    TEST_ASSERT_FALSE(fixture.events[0].error);
-    TEST_ASSERT_EQUAL_UINT(136, tec_of(&fixture, C));
-    TEST_ASSERT_EQUAL_UINT(0, received_by(&fixture, C)); /* nor could it read the frame that it had disputed */
-    TEST_ASSERT_EQUAL_UINT(1, received_by(&fixture, D));
 }
 
 /* ---- Nobody acknowledges ---- */
@@ -215,6 +73,26 @@ void test_an_unplugged_node_is_alone(void) {
     sim_bus_run_until(bus, 91000);
     TEST_ASSERT_EQUAL_HEX32(0x001, fixture.events[1].id);
     TEST_ASSERT_EQUAL_UINT(127, tec_of(&fixture, A));
+}
+
+void test_several_nodes_may_be_unplugged(void) {
+    sim_bus_set_plugged(bus, A, false);
+    sim_bus_set_plugged(bus, B, false);
+    send(&fixture, B, 0x001, 8, 0); /* 294 us an attempt */
+    send(&fixture, A, 0x001, 0, 0); /* 52 - 8 + 20 + 3 = 67 bits = 134 us */
+    sim_bus_run_until(bus, 133);
+    TEST_ASSERT_EQUAL_UINT(0, tec_of(&fixture, A));
+    sim_bus_run_until(bus, 134);
+    TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, A));
+    sim_bus_run_until(bus, 294);
+    TEST_ASSERT_EQUAL_UINT(16, tec_of(&fixture, A));
+    TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, B));
+    sim_bus_run_until(bus, 100000);
+    TEST_ASSERT_EQUAL_UINT64(SIM_BUS_NEVER, sim_bus_due_us(bus)); /* passive: nothing more changes */
+    sim_bus_set_error_counters(bus, A, 0, 0);
+    sim_bus_run_until(bus, 100134);
+    TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, A));
+    TEST_ASSERT_EQUAL_UINT(128, tec_of(&fixture, B));
 }
 
 /* Its attempts end in the middle of the others' frames: 0..294, 294..588, 588..882; theirs 0..264, 270..534, ... */
@@ -311,6 +189,24 @@ void test_a_receiver_that_cannot_read_becomes_passive(void) {
     TEST_ASSERT_EQUAL_UINT(1, received_by(&fixture, B));
 }
 
+void test_a_frame_misread_once_counts_once(void) {
+    sim_bus_corrupt_received(bus, B, 1);
+    send(&fixture, A, 0x168, 8, 0);
+    sim_bus_run_until(bus, 304);
+    TEST_ASSERT_EQUAL_UINT(9, rec_of(&fixture, B));
+    sim_bus_run_until(bus, 1000);
+    TEST_ASSERT_EQUAL_UINT(8, rec_of(&fixture, B));
+    TEST_ASSERT_EQUAL_UINT(7, tec_of(&fixture, A));
+    sim_bus_corrupt_received(bus, B, 1);
+    send(&fixture, A, 0x168, 8, 0);
+    sim_bus_run_until(bus, 1100);
+    sim_bus_set_power(bus, B, false); /* in the middle: as for the sender, that frame is past */
+    sim_bus_set_power(bus, B, true);
+    sim_bus_run_until(bus, 1304);
+    TEST_ASSERT_TRUE(fixture.events[2].error);
+    TEST_ASSERT_EQUAL_UINT(0, rec_of(&fixture, B));
+}
+
 /* A passive one that cannot read does not acknowledge either. */
 void test_a_frame_that_nobody_could_read_is_not_acknowledged(void) {
     only_a_and(B);
@@ -364,6 +260,28 @@ void test_frames_that_the_wire_cannot_carry_may_be_delivered(void) {
     TEST_ASSERT_EQUAL_UINT(0, fixture.event_count);
 }
 
+/* An error-passive sender waits 3 + 8 bits after each of its frames: 264 + 22 = 286. Others do not. */
+void test_a_passive_sender_lets_the_others_go_first(void) {
+    sim_bus_set_error_counters(bus, A, 200, 0);
+    for (unsigned i = 0; i < 3; i++) {
+        send(&fixture, A, 0x100u + i, 8, 0);
+    }
+    sim_bus_run_until(bus, 560); /* the second one: 286..550, and A may go on from 572 */
+    TEST_ASSERT_EQUAL_UINT64(286, fixture.events[1].start_us);
+    send(&fixture, B, 0x300, 8, 0);
+    sim_bus_run_until(bus, 2000);
+    TEST_ASSERT_EQUAL_HEX32(0x300, fixture.events[2].id);
+    TEST_ASSERT_EQUAL_UINT64(560, fixture.events[2].start_us);
+    TEST_ASSERT_EQUAL_UINT64(830, fixture.events[3].start_us);
+    send(&fixture, A, 0x103, 8, 0);
+    sim_bus_run_until(bus, 2264);
+    sim_bus_set_power(bus, A, false); /* a fresh node does not remember */
+    sim_bus_set_power(bus, A, true);
+    send(&fixture, A, 0x104, 8, 0);
+    sim_bus_run_until(bus, 3000);
+    TEST_ASSERT_EQUAL_UINT64(2270, fixture.events[5].start_us);
+}
+
 /* ---- Purge ---- */
 
 /* Shows: SUP-7, FSM-2 */
@@ -396,10 +314,29 @@ void test_a_purged_frame_that_fails_is_not_sent_again(void) {
     TEST_ASSERT_EQUAL_UINT64(SIM_BUS_NEVER, sim_bus_due_us(bus));
 }
 
+/* The one on the wire need not be the oldest. What comes after the purge is an ordinary frame again: it is repeated. */
+void test_a_purge_keeps_the_frame_that_is_on_the_wire(void) {
+    send(&fixture, A, 0x200, 8, 1);
+    send(&fixture, A, 0x100, 8, 2);
+    sim_bus_run_until(bus, 100);
+    sim_bus_purge(bus, A);
+    sim_bus_run_until(bus, 1000);
+    TEST_ASSERT_EQUAL_UINT(1, fixture.event_count);
+    TEST_ASSERT_EQUAL_UINT8(2, fixture.events[0].first);
+    TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(bus, A));
+    sim_bus_corrupt_all(bus, 1);
+    send(&fixture, A, 0x300, 8, 3);
+    TEST_ASSERT_EQUAL_UINT32(1, status_of(&fixture, A).tx_pending_ms);
+    sim_bus_run_until(bus, 2000);
+    TEST_ASSERT_TRUE(fixture.events[1].error);
+    TEST_ASSERT_FALSE(fixture.events[2].error);
+}
+
 void test_a_purge_before_the_frame_starts_leaves_nothing(void) {
     send(&fixture, A, 0x100, 8, 1);
     send(&fixture, A, 0x200, 8, 1);
     sim_bus_purge(bus, A);
+    TEST_ASSERT_EQUAL_UINT64(SIM_BUS_NEVER, sim_bus_due_us(bus));
     sim_bus_run_until(bus, 5000);
     TEST_ASSERT_EQUAL_UINT(0, fixture.event_count);
 }

@@ -167,6 +167,28 @@ void test_a_frame_purged_on_the_wire_is_gone_when_it_breaks_off(void) {
     sim_bus_run_until(bus, 10000);
     TEST_ASSERT_EQUAL_HEX32(0x169, fixture.events[1].id);
     TEST_ASSERT_EQUAL_UINT(2, fixture.event_count);
+    sim_bus_corrupt_all(bus, 1); /* and the purge is forgotten: what fails now is repeated */
+    send(&fixture, keeper, 0x170, 8, 0);
+    sim_bus_run_until(bus, 20000);
+    TEST_ASSERT_EQUAL_UINT(4, fixture.event_count);
+}
+
+void test_several_nodes_recover_each_in_its_time(void) {
+    sim_bus_set_error_counters(bus, B, 256, 50);
+    sim_bus_force_bus_off(bus, A);
+    sim_bus_recover(bus, B);
+    sim_bus_run_until(bus, 220); /* 10 sequences */
+    sim_bus_recover(bus, A);
+    send(&fixture, C, 0x100, 8, 0); /* 1 for both, 270 us */
+    sim_bus_run_until(bus, 490 + 117 * 22 - 1);
+    assert_state(HAL_CAN_BUS_OFF, B);
+    sim_bus_run_until(bus, 490 + 117 * 22);
+    assert_state(HAL_CAN_ERROR_ACTIVE, B);
+    TEST_ASSERT_EQUAL_UINT(0, rec_of(&fixture, B));
+    sim_bus_run_until(bus, 490 + 127 * 22 - 1);
+    assert_state(HAL_CAN_BUS_OFF, A);
+    sim_bus_run_until(bus, 490 + 127 * 22);
+    assert_state(HAL_CAN_ERROR_ACTIVE, A);
 }
 
 /* ---- Error counters set from outside ---- */
@@ -246,12 +268,28 @@ void test_a_node_without_power_is_not_there(void) {
     TEST_ASSERT_EQUAL_UINT16(0, status_of(&fixture, A).overrun_count);
 }
 
+void test_power_off_after_a_purge_leaves_nothing(void) {
+    send(&fixture, A, 0x168, 8, 0);
+    sim_bus_run_until(bus, 100);
+    sim_bus_purge(bus, A);
+    sim_bus_set_power(bus, A, false);
+    TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(bus, A));
+    sim_bus_set_power(bus, A, true);
+    TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(bus, A));
+    sim_bus_set_error_counters(bus, A, 9, 9);
+    sim_bus_set_power(bus, A, true); /* it is on already: nothing */
+    TEST_ASSERT_EQUAL_UINT(9, tec_of(&fixture, A));
+}
+
 void test_power_off_and_on_ends_bus_off(void) {
+    send(&fixture, A, 0x168, 8, 0);
     sim_bus_force_bus_off(bus, A);
+    TEST_ASSERT_EQUAL_UINT64(SIM_BUS_NEVER, sim_bus_due_us(bus)); /* what waited is gone */
     sim_bus_recover(bus, A);
     sim_bus_set_power(bus, A, false);
     sim_bus_set_power(bus, A, true);
     assert_state(HAL_CAN_ERROR_ACTIVE, A);
+    TEST_ASSERT_EQUAL_UINT16(0, status_of(&fixture, A).bus_off_count);
     TEST_ASSERT_EQUAL_UINT64(SIM_BUS_NEVER, sim_bus_due_us(bus));
 }
 
@@ -259,6 +297,9 @@ void test_unplugged_in_the_middle_of_a_frame_it_tries_again_alone(void) {
     send(&fixture, A, 0x168, 8, 0);
     sim_bus_run_until(bus, 100);
     sim_bus_set_plugged(bus, A, false);
+    sim_bus_run_until(bus, 390);
+    TEST_ASSERT_EQUAL_UINT64(394, sim_bus_due_us(bus)); /* the end of its first attempt */
+    sim_bus_set_stalled(bus, A, false);                 /* which nothing starts anew */
     sim_bus_run_until(bus, 394);
     TEST_ASSERT_TRUE(fixture.events[0].error);
     TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, A));

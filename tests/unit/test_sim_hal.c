@@ -87,6 +87,8 @@ void test_a_side_that_does_not_exist_refuses_and_reports_nothing(void) {
     TEST_ASSERT_FALSE(hal_can_send(&hal, HAL_CAN_SIDES, &FRAME));
     TEST_ASSERT_FALSE(sim_hal_receive(&hal, HAL_CAN_AI, &frame));
     TEST_ASSERT_FALSE(sim_hal_receive(&hal, HAL_CAN_SIDES, &frame));
+    sim_bus_run_until(&bus, 7000);
+    TEST_ASSERT_EQUAL_UINT32(7, hal_clock_now_ms(&hal));
     hal_can_purge(&hal, HAL_CAN_AI);
     hal_can_recover(&hal, HAL_CAN_AI);
     sim_hal_add_overrun(&hal, HAL_CAN_AI);
@@ -97,6 +99,32 @@ void test_a_side_that_does_not_exist_refuses_and_reports_nothing(void) {
     TEST_ASSERT_EQUAL_INT(HAL_CAN_ERROR_ACTIVE, status.state);
     TEST_ASSERT_EQUAL_UINT32(0, status.tx_pending_ms);
     TEST_ASSERT_EQUAL_UINT16(0, status.bus_off_count + status.overrun_count);
+}
+
+/* A port that joins a bus late: its watchdog starts then, and its clock reads what it would always have. */
+void test_a_port_may_join_a_bus_that_has_run_for_long(void) {
+    sim_bus_init(&bus, 500000);
+    sim_bus_run_until(&bus, 500000);
+    sim_hal_init(&hal, NULL);
+    sim_hal_attach(&hal, HAL_CAN_VEHICLE, &bus, NULL);
+    sim_hal_fail_at(&hal, 1, 1, SIM_HAL_OP_ALL);
+    TEST_ASSERT_EQUAL_UINT32(500, hal_clock_now_ms(&hal));
+    sim_bus_run_until(&bus, 600000);
+    TEST_ASSERT_FALSE(sim_hal_poll(&hal));
+}
+
+void test_a_purge_reaches_the_controller(void) {
+    sim_bus_set_stalled(&bus, hal.can[HAL_CAN_VEHICLE].node, true);
+    TEST_ASSERT_TRUE(hal_can_send(&hal, HAL_CAN_VEHICLE, &FRAME));
+    hal_can_purge(&hal, HAL_CAN_VEHICLE);
+    TEST_ASSERT_EQUAL_UINT32(0, status_of(HAL_CAN_VEHICLE).tx_pending_ms);
+    TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(&bus, hal.can[HAL_CAN_VEHICLE].node));
+}
+
+void test_a_recovery_counts_as_asked_for_without_a_look_at_the_state(void) {
+    sim_bus_force_bus_off(&bus, hal.can[HAL_CAN_VEHICLE].node);
+    hal_can_recover(&hal, HAL_CAN_VEHICLE);
+    TEST_ASSERT_EQUAL_UINT32(1, hal.can[HAL_CAN_VEHICLE].recover_requests);
 }
 
 /* Shows: SUP-7 */
@@ -257,6 +285,26 @@ void test_a_reset_keeps_the_latch_and_opens_the_output(void) {
     TEST_ASSERT_EQUAL_UINT32(1, hal.resets);
 }
 
+/* Shows: FSM-4 */
+void test_a_reset_in_the_middle_of_everything(void) {
+    hal_safety_output_set(&hal, true);
+    hal_led_set(&hal, true);
+    run_until(9100);
+    hal_watchdog_feed(&hal);
+    hal_can_send(&hal, HAL_CAN_VEHICLE, &FRAME);
+    sim_bus_set_stalled(&ai_bus, hal.can[HAL_CAN_AI].node, true);
+    hal_can_send(&hal, HAL_CAN_AI, &FRAME);
+    (void)status_of(HAL_CAN_AI);
+    sim_hal_reset(&hal, HAL_RESET_BROWN_OUT);
+    TEST_ASSERT_FALSE(hal.safety_output.on || hal.led.on);
+    TEST_ASSERT_EQUAL_UINT32(9, hal.safety_output.changed_ms);
+    TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(&bus, hal.can[HAL_CAN_VEHICLE].node));
+    TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(&ai_bus, hal.can[HAL_CAN_AI].node));
+    sim_hal_fail_at(&hal, hal.calls + 1u, 2, SIM_HAL_OP_ALL);
+    TEST_ASSERT_EQUAL_UINT32(9, hal_clock_now_ms(&hal)); /* what could be read last: at the reset */
+    TEST_ASSERT_EQUAL_UINT32(0, status_of(HAL_CAN_AI).tx_pending_ms);
+}
+
 /* Shows: FSM-7 */
 void test_a_power_on_loses_the_latch_but_not_the_log(void) {
     uint8_t read[8];
@@ -320,7 +368,10 @@ void test_direct_state_comes_from_outside(void) {
     sim_hal_set_tx_pending_ms(&hal, HAL_CAN_VEHICLE, 99);
     TEST_ASSERT_EQUAL_UINT32(99, status_of(HAL_CAN_VEHICLE).tx_pending_ms);
     sim_hal_set_can_state(&hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
+    TEST_ASSERT_EQUAL_UINT16(1, status_of(HAL_CAN_VEHICLE).bus_off_count);
     sim_hal_set_can_state(&hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
+    sim_hal_set_can_state(&hal, HAL_CAN_AI, HAL_CAN_BUS_OFF); /* does not exist */
+    sim_hal_set_tx_pending_ms(&hal, HAL_CAN_AI, 5);
     TEST_ASSERT_FALSE(hal_can_send(&hal, HAL_CAN_VEHICLE, &FRAME));
     hal_can_recover(&hal, HAL_CAN_VEHICLE);
     TEST_ASSERT_EQUAL_UINT32(1, hal.can[HAL_CAN_VEHICLE].recover_requests);

@@ -106,6 +106,7 @@ void test_a_torn_write_loses_at_most_the_newest_record(void) {
     TEST_ASSERT_EQUAL_UINT(3, record_at(2));
     TEST_ASSERT_EQUAL_size_t(4, sim_store_read_record(&store, 1, read, 4));
     TEST_ASSERT_EQUAL_HEX8_ARRAY(torn, read, 4);
+    TEST_ASSERT_TRUE(sim_store_append(&store, "cdef", 4));
 }
 
 void test_a_torn_latch_is_half_old_half_new(void) {

@@ -29,7 +29,7 @@ void sim_bus_refresh(sim_bus_t *bus, unsigned number) {
     const bool wants = works && node->tx_count > 0 && !node->stalled;
     put(&bus->ready, bit, wants && node->plugged);
     const bool was_alone = (bus->alone & bit) != 0;
-    put(&bus->alone, bit, wants && !node->plugged);
+    put(&bus->alone, bit, wants && !node->plugged && !sim_is_passive(node));
     if (!was_alone && (bus->alone & bit) != 0) {
         node->alone_us = bus->now_us + sim_bus_alone_attempt_us(bus, node);
     }
@@ -135,24 +135,20 @@ static void end_recovery(sim_bus_t *bus, unsigned number) {
     sim_bus_refresh(bus, number);
 }
 
-/* ---- Nodes that are unplugged: nobody acknowledges, so they try again and again ---- */
+/* ---- Nodes that are unplugged: nobody acknowledges, so they try again and again; once passive it changes nothing ---- */
 
 uint64_t sim_bus_alone_attempt_us(const sim_bus_t *bus, const sim_bus_node_state_t *node) {
     const hal_can_frame_t *frame = &node->tx[sim_bus_choose(node)].frame;
-    uint32_t bits =
+    const uint32_t bits =
         sim_bus_frame_bits(frame) - SIM_BITS_AFTER_ACKNOWLEDGE + SIM_BUS_ERROR_BITS + SIM_BUS_INTERFRAME_BITS;
-    if (sim_is_passive(node)) {
-        bits += SIM_BUS_SUSPEND_BITS;
-    }
     return (uint64_t)bits * bus->bit_us;
 }
 
 static void fail_alone(sim_bus_t *bus, unsigned number) {
     sim_bus_node_state_t *node = &bus->nodes[number];
-    if (!sim_is_passive(node)) {
-        sim_bus_penalise(bus, number);
-    }
+    sim_bus_penalise(bus, number);
     node->alone_us = bus->now_us + sim_bus_alone_attempt_us(bus, node);
+    sim_bus_refresh(bus, number);
 }
 
 uint64_t sim_bus_aside_due_us(const sim_bus_t *bus) {

@@ -28,7 +28,6 @@ void sim_hal_init(hal_t *hal, const sim_hal_config_t *config) {
     if (hal->config.watchdog_ms == 0) {
         hal->config.watchdog_ms = SIM_HAL_WATCHDOG_DEFAULT_MS;
     }
-    hal->fail_ops = SIM_HAL_OP_ALL;
     hal->direct_now_ms = hal->config.clock_start_ms;
     hal->fed_ms = sim_hal_now_ms(hal);
     hal->last_now_ms = hal->fed_ms;

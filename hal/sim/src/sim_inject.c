@@ -13,12 +13,10 @@ void sim_bus_set_power(sim_bus_t *bus, sim_bus_node_t number, bool on) {
     sim_bus_refresh(bus, number);
     node->tx_count = 0;
     node->rx_count = 0;
-    node->rx_head = 0;
     node->tec = 0;
     node->rec = 0;
     node->bus_off_count = 0;
     node->overrun_count = 0;
-    sim_bus_refresh(bus, number);
     sim_bus_schedule(bus);
 }
 
@@ -111,8 +109,9 @@ void sim_bus_set_error_counters(sim_bus_t *bus, sim_bus_node_t number, uint16_t 
     bus->nodes[number].rec = rec > SIM_REC_MAX ? (uint16_t)SIM_REC_MAX : rec;
     if (tec > SIM_TEC_MAX) {
         sim_bus_enter_bus_off(bus, number);
-        sim_bus_schedule(bus);
     }
+    sim_bus_refresh(bus, number);
+    sim_bus_schedule(bus);
 }
 
 void sim_bus_force_bus_off(sim_bus_t *bus, sim_bus_node_t number) {

@@ -4,7 +4,7 @@
  *
  * The bus keeps sets of nodes as bit masks, so that a quiet bus costs one comparison a call:
  * listening  on the wire, not bus-off: hears and acknowledges          ready      of those, has a frame that may start
- * alone      unplugged, with a frame to send                           recovering on the way back from bus-off
+ * alone      unplugged and not passive, with a frame to send           recovering on the way back from bus-off
  * suspended  error passive and perhaps still in its suspend time       corrupting, misreading: errors are ordered
  * and about the frame on the wire: senders (whose it is), sending and hearing (of senders and receivers, those that
  * have not left since it began), dropped (lost a collision without a word), misread (could not read it).
