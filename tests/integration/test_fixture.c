@@ -37,11 +37,11 @@ void test_healthy_traffic_raises_nothing_and_nothing_is_sent(void) {
 void test_run_past_and_run_before(void) {
     fixture_start(&f);
     fixture_run_before(&f, AGV_MSG_GEAR_STATUS);
-    TEST_ASSERT_EQUAL_UINT32(6, f.now_ms);
+    TEST_ASSERT_EQUAL_UINT32(6, f.elapsed_ms);
     TEST_ASSERT_EQUAL_UINT32(0, f.traffic[AGV_MSG_GEAR_STATUS].sent);
     fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
-    TEST_ASSERT_EQUAL_UINT32(7, f.now_ms);
+    TEST_ASSERT_EQUAL_UINT32(7, f.elapsed_ms);
     TEST_ASSERT_EQUAL_UINT32(1, f.traffic[AGV_MSG_GEAR_STATUS].sent);
     fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
-    TEST_ASSERT_EQUAL_UINT32(32, f.now_ms);
+    TEST_ASSERT_EQUAL_UINT32(32, f.elapsed_ms);
 }

@@ -1,0 +1,110 @@
+#include "expect.h"
+
+#include <string.h>
+
+#include "unity.h"
+
+static const fixture_sent_t *the_one_in_call(const fixture_t *f, uint32_t call, uint32_t id) {
+    const fixture_sent_t *found = NULL;
+    for (uint32_t i = 0; i < f->sent_count; i++) {
+        if (f->sent[i].call == call && f->sent[i].id == id) {
+            TEST_ASSERT_NULL_MESSAGE(found, f->what);
+            found = &f->sent[i];
+        }
+    }
+    TEST_ASSERT_NOT_NULL_MESSAGE(found, f->what);
+    return found;
+}
+
+static void expect_frame(const fixture_t *f, uint32_t call, uint32_t id, const uint8_t *data, unsigned bytes) {
+    const fixture_sent_t *frame = the_one_in_call(f, call, id);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(HAL_CAN_VEHICLE, frame->side, f->what);
+    TEST_ASSERT_EQUAL_UINT8_MESSAGE(0, frame->flags, f->what);
+    TEST_ASSERT_EQUAL_UINT8_MESSAGE(8, frame->length, f->what);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY_MESSAGE(data, frame->data, bytes, f->what);
+}
+
+static uint32_t count_in_call(const fixture_t *f, uint32_t call) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < f->sent_count; i++) {
+        count += f->sent[i].call == call && f->sent[i].side == HAL_CAN_VEHICLE ? 1u : 0u;
+    }
+    return count;
+}
+
+void expect_safe_commands(const fixture_t *f, uint32_t call, int32_t hold_raw) {
+    static const uint8_t SIGNALS[7] = {0, 0, 0, 0, 0x70, 0, 0}; /* byte 8 is the alive counter */
+    static const uint8_t PARK[8] = {8};
+    static const uint8_t NO_THROTTLE[8] = {0};
+    const uint8_t hold[8] = {(uint8_t)((unsigned)hold_raw & 0xFFu), (uint8_t)((unsigned)hold_raw >> 8u)};
+    const uint32_t signals_id = f->config.id_set == (uint16_t)AGV_ID_SET_TABLE ? 0x201 : 0x43F;
+    expect_frame(f, call, signals_id, SIGNALS, 7);
+    expect_frame(f, call, 0x168, PARK, 8);
+    expect_frame(f, call, 0x075, NO_THROTTLE, 8);
+    if (hold_raw != NO_HOLD) {
+        expect_frame(f, call, 0x065, hold, 8);
+    }
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(hold_raw != NO_HOLD ? 4 : 3, count_in_call(f, call), f->what);
+}
+
+/* The recorder's last event of this kind. */
+static agv_event_t last_event(const fixture_t *f, agv_event_kind_t kind) {
+    agv_event_t event;
+    for (uint32_t i = agv_recorder_next_sequence(&f->recorder); i-- > 0;) {
+        if (!agv_recorder_get(&f->recorder, i, &event)) {
+            break;
+        }
+        if (event.kind == kind) {
+            return event;
+        }
+    }
+    TEST_FAIL_MESSAGE("no such event was recorded");
+    return event;
+}
+
+static void expect_raised_now(const fixture_t *f, agv_fault_t fault, agv_fault_class_t fault_class) {
+    agv_event_t event;
+    expect_fault(f, fault, true);
+    TEST_ASSERT_TRUE_MESSAGE(fixture_last_raised(f, fault, &event), f->what);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(f->now_ms, event.time_ms, f->what);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(fault_class, event.b, f->what);
+}
+
+/* The vehicle may confirm in the same moment: then SAFE follows at once. */
+static void expect_entered_tripped_now(const fixture_t *f, agv_fault_t reason) {
+    agv_event_t event = last_event(f, AGV_EVENT_STATE);
+    if (event.b == AGV_STATE_SAFE) {
+        TEST_ASSERT_TRUE_MESSAGE(event.sequence > 0, f->what);
+        uint32_t before = event.sequence;
+        do {
+            TEST_ASSERT_TRUE_MESSAGE(agv_recorder_get(&f->recorder, --before, &event), f->what);
+        } while (event.kind != AGV_EVENT_STATE);
+    }
+    TEST_ASSERT_EQUAL_HEX8_MESSAGE(AGV_STATE_TRIPPED, event.b, f->what);
+    TEST_ASSERT_EQUAL_UINT8_MESSAGE(reason, event.c, f->what);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(f->now_ms, event.time_ms, f->what);
+}
+
+void expect_trip(const fixture_t *f, agv_fault_t fault, uint32_t call, int32_t hold_raw) {
+    expect_raised_now(f, fault, AGV_CLASS_TRIP);
+    expect_reason(f, fault);
+    expect_entered_tripped_now(f, fault);
+    const agv_state_t state = agv_supervisor_state(&f->supervisor);
+    TEST_ASSERT_TRUE_MESSAGE(state == AGV_STATE_TRIPPED || state == AGV_STATE_SAFE, f->what);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(f->now_ms, f->sent[0].time_ms, f->what); /* not earlier */
+    expect_safe_commands(f, call, hold_raw);
+}
+
+void expect_warning(const fixture_t *f, agv_fault_t fault, agv_state_t state) {
+    expect_raised_now(f, fault, AGV_CLASS_WARN);
+    expect_state(f, state);
+    expect_reason(f, AGV_FAULT_NONE);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(fixture_raised(f, fault), agv_supervisor_counters(&f->supervisor)->warnings,
+                                     f->what);
+}
+
+void expect_nothing(const fixture_t *f, agv_fault_t fault, agv_state_t state) {
+    expect_fault(f, fault, false);
+    expect_state(f, state);
+    expect_reason(f, AGV_FAULT_NONE);
+}

@@ -1,0 +1,317 @@
+/* The heartbeats of VCU and EPS (SUP-1, SUP-2): when they are lost, when stuck, what counts as a beat. Hand-worked: the
+ * deadline is 50 ms, so 50 ms after the last change nothing, 51 ms after it the trip, in that tick. */
+#include "expect.h"
+#include "unity.h"
+
+typedef struct {
+    const char *name;
+    agv_message_t message;
+    agv_fault_t lost;
+    agv_fault_t stuck;
+    int led;
+    int32_t hold_raw; /* while engaged */
+} node_t;
+
+static const node_t VCU = {
+    "VCU", AGV_MSG_VEHICLE_STATUS, AGV_FAULT_VCU_HEARTBEAT_LOST, AGV_FAULT_VCU_HEARTBEAT_STUCK, -1, ANGLE_CENTRE};
+static const node_t EPS = {
+    "EPS", AGV_MSG_STEERING_STATUS, AGV_FAULT_EPS_HEARTBEAT_LOST, AGV_FAULT_EPS_HEARTBEAT_STUCK, 12, NO_HOLD};
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+static void expect_no_trip(const node_t *node, agv_state_t state) {
+    expect_nothing(&f, node->lost, state);
+    expect_nothing(&f, node->stuck, state);
+}
+
+/* The last change has just been; from now on the message comes only when the test sends it. */
+static void take_over(const node_t *node) {
+    f.what = node->name;
+    fixture_run_past(&f, node->message);
+    f.traffic[node->message].muted = true;
+}
+
+static void check_lost(const node_t *node, agv_state_t state, int32_t hold_raw) {
+    take_over(node);
+    fixture_run(&f, 50);
+    expect_no_trip(node, state);
+    fixture_run(&f, 1);
+    expect_trip(&f, node->lost, f.call, hold_raw);
+    expect_fault(&f, node->stuck, false);
+    expect_led(&f, node->led);
+    f.traffic[node->message].muted = false;
+    fixture_run_past(&f, node->message);
+    expect_fault(&f, node->lost, false); /* the first change ends it */
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, node->lost));
+    expect_reason(&f, node->lost);
+}
+
+static void check_stuck(const node_t *node, agv_state_t state, int32_t hold_raw) {
+    f.what = node->name;
+    fixture_run_past(&f, node->message);
+    f.traffic[node->message].frozen = true;
+    fixture_run(&f, 50);
+    expect_no_trip(node, state);
+    fixture_run(&f, 1);
+    expect_trip(&f, node->stuck, f.call, hold_raw);
+    expect_fault(&f, node->lost, false);
+    expect_led(&f, node->led);
+    fixture_run(&f, 100);
+    expect_fault(&f, node->stuck, true);
+    f.traffic[node->message].frozen = false;
+    fixture_run_before(&f, node->message);
+    expect_fault(&f, node->stuck, true);
+    fixture_run(&f, 1);
+    expect_fault(&f, node->stuck, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, node->stuck));
+    expect_reason(&f, node->stuck);
+}
+
+/* Shows: SUP-1, SUP-2, FSM-2, VCU_HEARTBEAT_LOST */
+void test_vcu_lost(void) {
+    fixture_standby(&f);
+    check_lost(&VCU, AGV_STATE_STANDBY, NO_HOLD);
+    fixture_init(&f);
+    fixture_active(&f);
+    check_lost(&VCU, AGV_STATE_ACTIVE, VCU.hold_raw);
+}
+
+/* Shows: SUP-1, SUP-2, FSM-2, EPS_HEARTBEAT_LOST */
+void test_eps_lost(void) {
+    fixture_standby(&f);
+    check_lost(&EPS, AGV_STATE_STANDBY, NO_HOLD);
+    fixture_init(&f);
+    fixture_active(&f);
+    check_lost(&EPS, AGV_STATE_ACTIVE, EPS.hold_raw);
+}
+
+/* Shows: SUP-1, SUP-2, P13, VCU_HEARTBEAT_STUCK */
+void test_vcu_stuck(void) {
+    fixture_standby(&f);
+    check_stuck(&VCU, AGV_STATE_STANDBY, NO_HOLD);
+    fixture_init(&f);
+    fixture_active(&f);
+    check_stuck(&VCU, AGV_STATE_ACTIVE, VCU.hold_raw);
+}
+
+/* Shows: SUP-1, SUP-2, P13, EPS_HEARTBEAT_STUCK */
+void test_eps_stuck(void) {
+    fixture_standby(&f);
+    check_stuck(&EPS, AGV_STATE_STANDBY, NO_HOLD);
+    fixture_init(&f);
+    fixture_active(&f);
+    check_stuck(&EPS, AGV_STATE_ACTIVE, EPS.hold_raw);
+}
+
+/* One repeat so long after the last change, then silence: is it stuck or lost 51 ms after the change? */
+static void check_last_repeat(const node_t *node, uint32_t repeat_ms, agv_fault_t expected) {
+    fixture_init(&f);
+    fixture_standby(&f);
+    take_over(node);
+    fixture_run(&f, repeat_ms);
+    f.traffic[node->message].frozen = true;
+    fixture_send_now(&f, node->message);
+    fixture_run(&f, 50 - repeat_ms);
+    expect_no_trip(node, AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_trip(&f, expected, f.call, NO_HOLD);
+}
+
+/* Two cycles are 20 ms: a repeat 31 ms after the change is 20 ms old at the deadline, one 30 ms after it is 21 ms old. */
+/* Shows: SUP-2, VCU_HEARTBEAT_LOST, VCU_HEARTBEAT_STUCK, EPS_HEARTBEAT_LOST, EPS_HEARTBEAT_STUCK */
+void test_stuck_needs_a_repeat_within_the_last_two_cycles(void) {
+    check_last_repeat(&VCU, 30, AGV_FAULT_VCU_HEARTBEAT_LOST);
+    check_last_repeat(&VCU, 31, AGV_FAULT_VCU_HEARTBEAT_STUCK);
+    check_last_repeat(&EPS, 30, AGV_FAULT_EPS_HEARTBEAT_LOST);
+    check_last_repeat(&EPS, 31, AGV_FAULT_EPS_HEARTBEAT_STUCK);
+}
+
+/* A repeat that is malformed is no valid frame: lost, not stuck. */
+/* Shows: SUP-2, P15, VCU_HEARTBEAT_LOST */
+void test_malformed_repeats_are_not_stuck(void) {
+    fixture_standby(&f);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].frozen = true;
+    f.traffic[AGV_MSG_VEHICLE_STATUS].length = 7;
+    fixture_run(&f, 50);
+    expect_no_trip(&VCU, AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_trip(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, f.call, NO_HOLD);
+}
+
+static void send_counter(const node_t *node, uint8_t counter) {
+    f.traffic[node->message].counter = (uint8_t)(counter - 1u);
+    fixture_send_now(&f, node->message);
+}
+
+/* Alive is a value that changed, whatever it changed to. One each 50 ms is enough. */
+/* Shows: SUP-1, SUP-2, P13 */
+void test_any_change_is_a_beat(void) {
+    static const uint8_t VALUES[] = {1, 0, 255, 0, 128, 127, 129, 255, 254, 0};
+    static const node_t *const NODES[] = {&VCU, &EPS};
+    for (unsigned n = 0; n < 2; n++) {
+        fixture_init(&f);
+        fixture_standby(&f);
+        take_over(NODES[n]);
+        f.traffic[NODES[n]->message].counter = 200;
+        for (unsigned i = 0; i < sizeof VALUES; i++) {
+            fixture_run(&f, 50);
+            expect_no_trip(NODES[n], AGV_STATE_STANDBY);
+            send_counter(NODES[n], VALUES[i]);
+        }
+        fixture_run(&f, 51);
+        expect_trip(&f, NODES[n]->lost, f.call, NO_HOLD);
+    }
+}
+
+/* Repeats in between change nothing: a counter that moves every 50 ms is alive, one that moves every 60 ms is stuck. */
+/* Shows: SUP-1, SUP-2, P13, VCU_HEARTBEAT_STUCK */
+void test_repeats_between_changes(void) {
+    fixture_standby(&f);
+    take_over(&VCU);
+    for (unsigned i = 1; i <= 50; i++) {
+        fixture_run(&f, 10);
+        f.traffic[VCU.message].frozen = i % 5 != 0;
+        fixture_send_now(&f, VCU.message);
+        expect_no_trip(&VCU, AGV_STATE_STANDBY);
+    }
+    f.traffic[VCU.message].frozen = true;
+    for (unsigned i = 1; i <= 5; i++) {
+        fixture_run(&f, 10);
+        expect_no_trip(&VCU, AGV_STATE_STANDBY);
+        fixture_send_now(&f, VCU.message);
+    }
+    fixture_run(&f, 1);
+    expect_trip(&f, AGV_FAULT_VCU_HEARTBEAT_STUCK, f.call, NO_HOLD);
+}
+
+/* 363h byte 8 and 067h byte 1, and no other byte. */
+/* Shows: SUP-1, P3 */
+void test_only_the_counter_beats(void) {
+    static const node_t *const NODES[] = {&VCU, &EPS};
+    for (unsigned n = 0; n < 2; n++) {
+        fixture_init(&f);
+        fixture_standby(&f);
+        take_over(NODES[n]);
+        f.traffic[NODES[n]->message].frozen = true;
+        for (unsigned i = 1; i <= 5; i++) {
+            fixture_run(&f, 10);
+            expect_no_trip(NODES[n], AGV_STATE_STANDBY);
+            f.traffic[NODES[n]->message].data[1] = (uint8_t)i; /* speed, voltage */
+            f.traffic[NODES[n]->message].data[5] = 0;
+            fixture_send_now(&f, NODES[n]->message);
+        }
+        fixture_run(&f, 1);
+        expect_trip(&f, NODES[n]->stuck, f.call, NO_HOLD);
+    }
+}
+
+/* The first frame ever proves nothing: the deadline runs from the start, and a counter that never changes is stuck. */
+static void check_start(const node_t *node, bool muted, agv_fault_t expected) {
+    fixture_init(&f);
+    f.what = node->name;
+    f.traffic[node->message].muted = muted;
+    f.traffic[node->message].frozen = true;
+    fixture_start(&f);
+    fixture_run(&f, 50);
+    expect_no_trip(node, AGV_STATE_INIT);
+    fixture_run(&f, 1);
+    expect_fault(&f, expected, true);
+    expect_led(&f, node->led);
+    fixture_run(&f, 2000);
+    expect_fault(&f, expected, true);
+    expect_state(&f, AGV_STATE_INIT); /* a cause in INIT only keeps INIT from being left */
+    expect_reason(&f, AGV_FAULT_NONE);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, expected));
+}
+
+/* Shows: SUP-2, P13, VCU_HEARTBEAT_LOST, VCU_HEARTBEAT_STUCK, EPS_HEARTBEAT_LOST, EPS_HEARTBEAT_STUCK */
+void test_the_first_frame_is_only_the_baseline(void) {
+    check_start(&VCU, true, AGV_FAULT_VCU_HEARTBEAT_LOST);
+    check_start(&VCU, false, AGV_FAULT_VCU_HEARTBEAT_STUCK);
+    check_start(&EPS, true, AGV_FAULT_EPS_HEARTBEAT_LOST);
+    check_start(&EPS, false, AGV_FAULT_EPS_HEARTBEAT_STUCK);
+}
+
+/* One frame and silence: it refreshed nothing. */
+/* Shows: SUP-2, VCU_HEARTBEAT_LOST */
+void test_one_single_frame_after_the_start(void) {
+    fixture_start(&f);
+    take_over(&VCU);
+    fixture_run(&f, 50 - f.elapsed_ms);
+    expect_no_trip(&VCU, AGV_STATE_INIT);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, true);
+}
+
+/* An angle that is no angle still comes with a heartbeat (and is never used). */
+/* Shows: SUP-5, EPS_HEARTBEAT_LOST */
+void test_a_frame_with_an_invalid_angle_is_a_heartbeat(void) {
+    fixture_standby(&f);
+    fixture_angle(&f, 18001);
+    fixture_run(&f, 2000);
+    expect_state(&f, AGV_STATE_STANDBY);
+    TEST_ASSERT_EQUAL_UINT64(0, agv_supervisor_active_faults(&f.supervisor));
+    take_over(&EPS);
+    fixture_run(&f, 51);
+    expect_trip(&f, AGV_FAULT_EPS_HEARTBEAT_LOST, f.call, NO_HOLD);
+}
+
+/* Frames that waited and are handed over late do not look fresh: what counts is when they were received. */
+/* Shows: SUP-2, TIM-4, VCU_HEARTBEAT_LOST */
+void test_a_backlog_does_not_look_fresh(void) {
+    fixture_standby(&f);
+    take_over(&VCU);
+    const uint32_t changed_ms = f.now_ms;
+    f.now_ms += 60;
+    sim_hal_set_now_ms(&f.hal, f.now_ms);
+    hal_can_frame_t frame = {
+        .id = 0x363, .time_ms = changed_ms + 8u, .length = 8, .data = {0, 0, 0, 0, 0, 0, 0x40, 77}};
+    agv_supervisor_frame(&f.supervisor, &f.ports, HAL_CAN_VEHICLE, &frame);
+    expect_no_trip(&VCU, AGV_STATE_STANDBY);
+    fixture_jump(&f, 0); /* 52 ms after that change */
+    expect_fault(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, true);
+    expect_reason(&f, AGV_FAULT_VCU_HEARTBEAT_LOST);
+}
+
+/* The same, but the change in the backlog is 50 ms old: alive. */
+/* Shows: SUP-2, TIM-4 */
+void test_a_backlog_that_is_young_enough(void) {
+    fixture_standby(&f);
+    take_over(&VCU);
+    const uint32_t changed_ms = f.now_ms;
+    f.now_ms += 60;
+    sim_hal_set_now_ms(&f.hal, f.now_ms);
+    hal_can_frame_t frame = {
+        .id = 0x363, .time_ms = changed_ms + 10u, .length = 8, .data = {0, 0, 0, 0, 0, 0, 0x40, 77}};
+    agv_supervisor_frame(&f.supervisor, &f.ports, HAL_CAN_VEHICLE, &frame);
+    fixture_jump(&f, 0);
+    expect_fault(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, false);
+    expect_fault(&f, AGV_FAULT_VCU_HEARTBEAT_STUCK, false);
+}
+
+/* Deadlines are settings: the lowest ones are three cycles. */
+/* Shows: SUP-2, VCU_HEARTBEAT_LOST, EPS_HEARTBEAT_LOST */
+void test_the_deadlines_are_settings(void) {
+    f.config.vcu_heartbeat_timeout_ms = 30;
+    f.config.eps_heartbeat_timeout_ms = 500;
+    fixture_standby(&f);
+    take_over(&EPS);
+    fixture_run(&f, 500);
+    expect_no_trip(&EPS, AGV_STATE_STANDBY);
+    f.traffic[EPS.message].muted = false;
+    fixture_send_now(&f, EPS.message);
+    fixture_run(&f, 1);
+    take_over(&VCU);
+    fixture_run(&f, 30);
+    expect_no_trip(&VCU, AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_trip(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, f.call, NO_HOLD);
+}
