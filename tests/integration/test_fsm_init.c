@@ -1,0 +1,268 @@
+/* INIT: what it sends, how it is left, what keeps it, and that nothing latches in it. */
+#include "fixture.h"
+#include "unity.h"
+#include "walk.h"
+
+static fixture_t f;
+static uint32_t start_ms;
+
+void setUp(void) {
+    fixture_init(&f);
+    start_ms = f.now_ms;
+}
+
+void tearDown(void) {
+}
+
+/* The n-th frame with this identifier left so many milliseconds after the start. */
+static void expect_sent_at(uint32_t id, uint32_t n, uint32_t after_start_ms) {
+    TEST_ASSERT_EQUAL_UINT32(after_start_ms, fixture_nth_sent(&f, id, n)->time_ms - start_ms);
+}
+
+/* Shows: FSM-2, FSM-6, TIM-1 */
+void test_init_sends_the_safe_commands_beginning_as_after_a_trip(void) {
+    fixture_mute_ai(&f, true);
+    fixture_start(&f);
+    expect_state(&f, AGV_STATE_INIT);
+    TEST_ASSERT_EQUAL_UINT32(3, f.sent_count);
+    fixture_run(&f, 250);
+    for (uint32_t n = 0; n < 3; n++) {
+        expect_sent_at(0x43F, n, 100 * n);
+        expect_sent_at(0x168, n, n == 0 ? 0 : 66 + 100 * (n - 1));
+        expect_sent_at(0x075, n, n == 0 ? 0 : 33 + 100 * (n - 1));
+    }
+    TEST_ASSERT_EQUAL_UINT32(3 + 3 + 4, f.sent_count); /* 075h once more at 233 ms */
+}
+
+/* Shows: FSM-10 */
+void test_init_sends_no_steering_command_though_the_angle_is_known(void) {
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_start(&f);
+    fixture_run(&f, 2000);
+    expect_state(&f, AGV_STATE_INIT);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
+}
+
+/*
+ * 363h comes at 1 and 11 ms (the second one shows a changed counter), 067h at 4 and 14 ms, 0A3h at 7 ms: from 14 ms on
+ * all is well.
+ */
+/* Shows: FSM-3, FSM-4, TIM-2 */
+void test_init_is_left_after_500_ms_of_all_well(void) {
+    fixture_start(&f);
+    expect_output(&f, false);
+    fixture_run(&f, 513);
+    expect_state(&f, AGV_STATE_INIT);
+    expect_output(&f, false);
+    fixture_run(&f, 1);
+    expect_state(&f, AGV_STATE_STANDBY);
+    expect_output(&f, true);
+    expect_reason(&f, AGV_FAULT_NONE);
+    fixture_forget_sent(&f);
+    fixture_run(&f, 1000);
+    expect_silence(&f);
+}
+
+/* Shows: FSM-3 */
+void test_one_frame_that_is_not_well_starts_the_500_ms_anew(void) {
+    fixture_start(&f);
+    fixture_run(&f, 410);
+    fixture_mode(&f, MODE_NEITHER);
+    fixture_run(&f, 1); /* 363h at 411 ms */
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run(&f, 509); /* well again from 421 ms on; now it is 920 ms */
+    expect_state(&f, AGV_STATE_INIT);
+    fixture_run(&f, 1);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* What is wrong with the vehicle, and how the supervisor calls it. */
+typedef struct {
+    const char *what;
+    void (*spoil)(bool spoilt);
+    uint8_t missing;
+} obstacle_t;
+
+static void freeze_vcu(bool spoilt) {
+    f.traffic[AGV_MSG_VEHICLE_STATUS].frozen = spoilt;
+}
+
+static void freeze_eps(bool spoilt) {
+    f.traffic[AGV_MSG_STEERING_STATUS].frozen = spoilt;
+}
+
+static void mute_363(bool spoilt) {
+    f.traffic[AGV_MSG_VEHICLE_STATUS].muted = spoilt;
+}
+
+static void mute_067(bool spoilt) {
+    f.traffic[AGV_MSG_STEERING_STATUS].muted = spoilt;
+}
+
+static void mute_167(bool spoilt) {
+    f.traffic[AGV_MSG_EPS_STATUS].muted = spoilt;
+}
+
+static void mute_0a3(bool spoilt) {
+    f.traffic[AGV_MSG_GEAR_STATUS].muted = spoilt;
+}
+
+static void mute_050(bool spoilt) {
+    f.traffic[AGV_MSG_THROTTLE_STATUS].muted = spoilt;
+}
+
+static void mute_101(bool spoilt) {
+    f.traffic[AGV_MSG_WHEEL_SPEED].muted = spoilt;
+}
+
+static void engage(bool spoilt) {
+    fixture_mode(&f, spoilt ? MODE_ENGAGED : MODE_MANUAL);
+    fixture_mute_ai(&f, !spoilt); /* engaged without an AI computer would be a trip cause, too */
+}
+
+static void no_mode(bool spoilt) {
+    fixture_mode(&f, spoilt ? MODE_NEITHER : MODE_MANUAL);
+}
+
+static void alarm(bool spoilt) {
+    walk_alarm(&f, spoilt ? ALARM_REMOTE_SIGNAL : ALARM_NONE);
+}
+
+static void eps_fault(bool spoilt) {
+    f.traffic[AGV_MSG_EPS_STATUS].data[7] = spoilt ? 0x40 : 0;
+}
+
+static void bus_off(bool spoilt) {
+    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, spoilt ? HAL_CAN_BUS_OFF : HAL_CAN_ERROR_ACTIVE);
+}
+
+static const obstacle_t OBSTACLES[] = {
+    {"VCU counter stands still", freeze_vcu, AGV_MISSING_VCU_HEARTBEAT | AGV_MISSING_TRIP_CAUSE},
+    {"EPS counter stands still", freeze_eps, AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_TRIP_CAUSE},
+    {"no 363h", mute_363, AGV_MISSING_VCU_HEARTBEAT | AGV_MISSING_TRIP_CAUSE | AGV_MISSING_MANUAL},
+    {"no 067h", mute_067, AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_TRIP_CAUSE},
+    {"no 167h", mute_167, AGV_MISSING_MESSAGES | AGV_MISSING_TRIP_CAUSE},
+    {"no 0A3h", mute_0a3, AGV_MISSING_MESSAGES | AGV_MISSING_TRIP_CAUSE},
+    {"no 050h", mute_050, AGV_MISSING_MESSAGES | AGV_MISSING_TRIP_CAUSE},
+    {"no 101h", mute_101, AGV_MISSING_MESSAGES | AGV_MISSING_TRIP_CAUSE},
+    {"engaged", engage, AGV_MISSING_MANUAL},
+    {"neither mode", no_mode, AGV_MISSING_MANUAL},
+    {"VCU alarm", alarm, AGV_MISSING_TRIP_CAUSE},
+    {"EPS fault", eps_fault, AGV_MISSING_TRIP_CAUSE},
+    {"bus-off", bus_off, AGV_MISSING_TRIP_CAUSE},
+};
+enum { OBSTACLE_COUNT = sizeof OBSTACLES / sizeof OBSTACLES[0] };
+
+static void begin(const obstacle_t *obstacle) {
+    const uint32_t clock_ms = start_ms;
+    fixture_init(&f);
+    f.now_ms = clock_ms;
+    f.what = obstacle->what;
+    f.long_run = true;
+    fixture_mute_ai(&f, true);
+    fixture_start(&f);
+    obstacle->spoil(true);
+}
+
+static uint32_t startup_reports(agv_event_t *last) {
+    return walk_events(&f, AGV_EVENT_STARTUP, 0, last);
+}
+
+/* Shows: STARTUP_TIMEOUT, FSM-4 */
+void test_each_missing_condition_keeps_init_and_is_named_after_10_s(void) {
+    for (unsigned i = 0; i < OBSTACLE_COUNT; i++) {
+        agv_event_t report = {0};
+        begin(&OBSTACLES[i]);
+        fixture_run(&f, 9999);
+        expect_state(&f, AGV_STATE_INIT);
+        expect_fault(&f, AGV_FAULT_STARTUP_TIMEOUT, false);
+        fixture_run(&f, 2);
+        expect_fault(&f, AGV_FAULT_STARTUP_TIMEOUT, true);
+        fixture_run(&f, 12000);
+        expect_state(&f, AGV_STATE_INIT);
+        expect_output(&f, false);
+        expect_fault(&f, AGV_FAULT_STARTUP_TIMEOUT, true);
+        TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, startup_reports(&report), f.what);
+        TEST_ASSERT_EQUAL_HEX8_MESSAGE(OBSTACLES[i].missing, report.missing, f.what);
+        TEST_ASSERT_EQUAL_UINT64_MESSAGE(
+            0, agv_supervisor_active_trips(&f.supervisor) & agv_fault_bit(AGV_FAULT_STARTUP_TIMEOUT),
+            f.what); /* it warns */
+    }
+}
+
+/* Shows: STARTUP_TIMEOUT, FSM-3 */
+void test_init_is_left_once_the_obstacle_is_gone_and_nothing_has_latched(void) {
+    for (unsigned i = 0; i < OBSTACLE_COUNT; i++) {
+        begin(&OBSTACLES[i]);
+        fixture_run(&f, 10500);
+        expect_state(&f, AGV_STATE_INIT);
+        expect_reason(&f, AGV_FAULT_NONE);
+        OBSTACLES[i].spoil(false);
+        fixture_run(&f, 500);
+        expect_state(&f, AGV_STATE_INIT); /* the first good frame or tick came 1 ms later at the earliest */
+        fixture_run(&f, 60);
+        expect_state(&f, AGV_STATE_STANDBY);
+        expect_reason(&f, AGV_FAULT_NONE);
+        expect_fault(&f, AGV_FAULT_STARTUP_TIMEOUT, false);
+        expect_output(&f, true);
+    }
+}
+
+/* Shows: SUP-3, SUP-8 */
+void test_what_does_not_keep_init(void) {
+    f.traffic[AGV_MSG_STEERING_POSITION].muted = true; /* 267h only warns */
+    fixture_mute_ai(&f, true);
+    fixture_gear(&f, GEAR_D);
+    fixture_wheels(&f, 2000, 2000);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 0x01; /* level 2 alarm */
+    fixture_start(&f);
+    fixture_run(&f, 514);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* An event counts as a cause for 1 s after the last one. */
+/* Shows: FOREIGN_COMMAND_SENDER, FSM-3 */
+void test_an_event_keeps_init_until_it_has_ended(void) {
+    static const uint8_t park[8] = {GEAR_P};
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    fixture_start(&f);
+    fixture_run(&f, 200);
+    f.traffic[AGV_MSG_GEAR_COMMAND].side = HAL_CAN_VEHICLE;
+    fixture_frame(&f, AGV_MSG_GEAR_COMMAND, park);
+    f.traffic[AGV_MSG_GEAR_COMMAND].side = HAL_CAN_AI;
+    expect_fault(&f, AGV_FAULT_FOREIGN_COMMAND_SENDER, true);
+    expect_state(&f, AGV_STATE_INIT);
+    fixture_run(&f, 1499);
+    expect_state(&f, AGV_STATE_INIT);
+    fixture_run(&f, 2);
+    expect_state(&f, AGV_STATE_STANDBY);
+    expect_reason(&f, AGV_FAULT_NONE);
+}
+
+/* Shows: FSM-7 */
+void test_a_vehicle_that_is_engaged_at_power_on_is_not_resumed(void) {
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_gear(&f, GEAR_D);
+    fixture_wheels(&f, 1500, 1500);
+    fixture_start(&f);
+    f.long_run = true;
+    fixture_run(&f, 30000);
+    expect_state(&f, AGV_STATE_INIT);
+    expect_output(&f, false);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run(&f, 600);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* Shows: FSM-9, SELF_TEST_FAILED, CONFIG_INVALID */
+void test_only_what_cannot_be_reset_latches_at_a_power_on(void) {
+    f.self_test_passed = false;
+    fixture_start(&f);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, AGV_FAULT_SELF_TEST_FAILED);
+    fixture_init(&f);
+    f.config.startup_timeout_ms = 0;
+    fixture_start(&f);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, AGV_FAULT_CONFIG_INVALID);
+}

@@ -1,0 +1,39 @@
+/*
+ * Ways through the states that several tests go, and a look at the recorder's events.
+ */
+#ifndef WALK_H
+#define WALK_H
+
+#include "fixture.h"
+
+/* 363h byte 5. */
+enum {
+    ALARM_NONE = 0x00,
+    ALARM_REMOTE_SIGNAL = 0x01,
+    ALARM_REMOTE_POWER = 0x02,
+    ALARM_EPS_HARDWARE = 0x10,
+    ALARM_S_DRIVER = 0x80
+};
+
+/* 363h byte 5 from its next frame on. */
+void walk_alarm(fixture_t *f, uint8_t alarms);
+
+/* One 363h with the S-driver alarm, now: trips. The alarm is gone in the next one. */
+void walk_trip(fixture_t *f);
+
+/* Run until the state is there, which has to be within so many milliseconds. Returns how many it took. */
+uint32_t walk_until(fixture_t *f, agv_state_t state, uint32_t within_ms);
+
+/* fixture_active(), a trip, the vehicle confirms, and it has stood for a second: SAFE. */
+void walk_to_safe(fixture_t *f);
+
+/* fixture_active(), and a trip that the vehicle does not confirm: it stays engaged and in D. The AI computer is silent. */
+void walk_to_tripped(fixture_t *f);
+
+/* How many events of this kind with this first parameter the recorder has, and the last of them. */
+uint32_t walk_events(const fixture_t *f, agv_event_kind_t kind, uint8_t a, agv_event_t *last);
+
+/* Events of presses that were held in vain; what the last one missed. */
+uint32_t walk_refusals(const fixture_t *f, uint8_t *missing);
+
+#endif
