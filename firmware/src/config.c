@@ -19,13 +19,6 @@ static const struct {
 #undef AGV_SETTING
 };
 
-/* Index of each setting. */
-enum {
-#define AGV_SETTING(name, preset, lowest, highest, unit, meaning) SETTING_##name,
-#include "agv/config_settings.def"
-#undef AGV_SETTING
-};
-
 /* The settings stand without gaps at the start of the struct: a setting's place is its index. */
 _Static_assert(offsetof(agv_config_t, watchdog_period_ms) == ((size_t)AGV_SETTING_COUNT - 1u) * sizeof(uint16_t),
                "settings are contiguous");
@@ -46,6 +39,10 @@ bool agv_config_set(agv_config_t *config, uint16_t setting, uint16_t value) {
     return known;
 }
 
+bool agv_config_is_trip(const agv_config_t *config, agv_fault_t fault) {
+    return (config->trips & agv_fault_bit(fault)) != 0u;
+}
+
 void agv_config_defaults(agv_config_t *config) {
     (void)memset(config, 0, sizeof *config);
     for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
@@ -54,42 +51,54 @@ void agv_config_defaults(agv_config_t *config) {
     config->trips = agv_faults_default_trips;
 }
 
+/* The setting that is out of range; AGV_SETTING_COUNT when none is. */
+static uint16_t out_of_range(const agv_config_t *config) {
+    uint16_t setting = 0u;
+    while (setting < (uint16_t)AGV_SETTING_COUNT) {
+        const uint16_t value = agv_config_get(config, setting);
+        if ((value < rows[setting].lowest) || (value > rows[setting].highest)) {
+            break;
+        }
+        setting++;
+    }
+    return setting;
+}
+
+/* The highest-ranking fault that is made weaker than it may be; AGV_FAULT_NONE when none is. */
+static agv_fault_t too_weak(const agv_config_t *config) {
+    const agv_fault_set_t must_trip = agv_faults_default_trips & agv_faults_fixed;
+    uint32_t fault = 0u;
+    while ((fault < (uint32_t)AGV_FAULT_COUNT) &&
+           (((must_trip & ~config->trips) & agv_fault_bit((agv_fault_t)fault)) == 0u)) {
+        fault++;
+    }
+    return (agv_fault_t)fault;
+}
+
 static bool id_is_taken(uint32_t id) {
     return (agv_message_from_id(id, AGV_ID_SET_HEADING) != AGV_MSG_NONE) ||
            (agv_message_from_id(id, AGV_ID_SET_TABLE) != AGV_MSG_NONE);
 }
 
-static agv_config_verdict_t verdict(agv_config_problem_t problem, uint16_t setting, agv_fault_t fault) {
-    const agv_config_verdict_t result = {.problem = problem, .setting = setting, .fault = fault};
-    return result;
-}
-
-static agv_config_verdict_t check_together(const agv_config_t *config) {
-    const agv_fault_set_t all = agv_fault_bit(AGV_FAULT_COUNT - 1) | (agv_fault_bit(AGV_FAULT_COUNT - 1) - 1u);
-    const agv_fault_set_t weakened = agv_faults_default_trips & agv_faults_fixed & ~config->trips;
-    if ((config->status_frame_id != 0u) && id_is_taken(config->status_frame_id)) {
-        return verdict(AGV_CONFIG_ID_TWICE, SETTING_status_frame_id, AGV_FAULT_NONE);
-    }
-    if ((config->own_heartbeat == AGV_OWN_HEARTBEAT_FROZEN) && (config->topology != AGV_TOPOLOGY_GATEWAY)) {
-        return verdict(AGV_CONFIG_NEEDS_GATEWAY, SETTING_own_heartbeat, AGV_FAULT_NONE);
-    }
-    if (weakened != 0u) {
-        return verdict(AGV_CONFIG_FAULT_TOO_WEAK, 0u, agv_fault_highest(weakened));
-    }
-    if ((config->trips & ~all) != 0u) {
-        return verdict(AGV_CONFIG_NO_SUCH_FAULT, 0u, AGV_FAULT_NONE);
-    }
-    return verdict(AGV_CONFIG_OK, 0u, AGV_FAULT_NONE);
-}
-
 agv_config_verdict_t agv_config_check(const agv_config_t *config) {
-    for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
-        const uint16_t value = agv_config_get(config, i);
-        if ((value < rows[i].lowest) || (value > rows[i].highest)) {
-            return verdict(AGV_CONFIG_OUT_OF_RANGE, i, AGV_FAULT_NONE);
-        }
+    agv_config_verdict_t verdict = {AGV_CONFIG_OK, out_of_range(config), too_weak(config)};
+    if (verdict.setting < (uint16_t)AGV_SETTING_COUNT) {
+        verdict.problem = AGV_CONFIG_OUT_OF_RANGE;
+    } else if (id_is_taken(config->status_frame_id)) {
+        verdict.problem = AGV_CONFIG_ID_TWICE;
+        verdict.setting = AGV_SETTING_status_frame_id;
+    } else if ((config->own_heartbeat == (uint16_t)AGV_OWN_HEARTBEAT_FROZEN) &&
+               (config->topology != (uint16_t)AGV_TOPOLOGY_GATEWAY)) {
+        verdict.problem = AGV_CONFIG_NEEDS_GATEWAY;
+        verdict.setting = AGV_SETTING_own_heartbeat;
+    } else if (verdict.fault != AGV_FAULT_NONE) {
+        verdict.problem = AGV_CONFIG_FAULT_TOO_WEAK;
+    } else if ((config->trips >> (uint32_t)AGV_FAULT_COUNT) != 0u) {
+        verdict.problem = AGV_CONFIG_NO_SUCH_FAULT;
+    } else {
+        /* sound */
     }
-    return check_together(config);
+    return verdict;
 }
 
 static uint32_t crc_of(uint32_t crc, uint64_t value, uint32_t size) {

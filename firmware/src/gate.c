@@ -10,7 +10,7 @@ enum {
     GEAR_N = 4,
     GEAR_P = 8,
     SAFE_SIGNALS = 0x70, /* left on, right on, autopilot off; bit 8 clear: headlight on */
-    SIGNAL_BITS = 0xF0,
+    NO_SIGNALS = 0x0F,   /* reserved bits beside the signals */
     ANGLE_MAX = 18000
 };
 
@@ -23,32 +23,16 @@ static bool zero_from(const uint8_t data[AGV_DLC], uint32_t first) {
 }
 
 static bool signals_shaped(const uint8_t data[AGV_DLC]) {
-    return (data[0] | data[1] | data[2] | data[3] | (data[4] & (uint8_t)~SIGNAL_BITS) | data[5] | data[6]) == 0;
+    return (data[0] | data[1] | data[2] | data[3] | (data[4] & NO_SIGNALS) | data[5] | data[6]) == 0;
 }
 
 static uint32_t first_two(const uint8_t data[AGV_DLC]) {
     return (uint32_t)data[0] | ((uint32_t)data[1] << 8u);
 }
 
-static bool is_held_angle(const agv_gate_t *gate, const uint8_t data[AGV_DLC]) {
+static bool is_held_angle(const agv_gate_t *gate, uint32_t raw) {
     const uint16_t complement = (uint16_t)~gate->hold_raw;
-    return (gate->state != (uint8_t)AGV_STATE_INIT) && (gate->hold_check == complement) &&
-           (first_two(data) == gate->hold_raw) && (first_two(data) <= (uint32_t)ANGLE_MAX) && zero_from(data, 2u);
-}
-
-static bool is_safe_command(const agv_gate_t *gate, agv_message_t message, const uint8_t data[AGV_DLC]) {
-    switch (message) {
-    case AGV_MSG_TURN_SIGNAL_COMMAND:
-        return signals_shaped(data) && (data[4] == (uint8_t)SAFE_SIGNALS);
-    case AGV_MSG_GEAR_COMMAND:
-        return (data[0] == (uint8_t)GEAR_P) && zero_from(data, 1u);
-    case AGV_MSG_THROTTLE_COMMAND:
-        return zero_from(data, 0u);
-    case AGV_MSG_STEERING_COMMAND:
-        return is_held_angle(gate, data);
-    default:
-        return false;
-    }
+    return (gate->state != (uint8_t)AGV_STATE_INIT) && (gate->hold_check == complement) && (raw == gate->hold_raw);
 }
 
 static bool is_gear(uint8_t gear) {
@@ -56,51 +40,58 @@ static bool is_gear(uint8_t gear) {
            (gear == (uint8_t)GEAR_P);
 }
 
-static bool is_passed_command(const agv_gate_t *gate, agv_message_t message, const uint8_t data[AGV_DLC]) {
-    const bool active = gate->state == (uint8_t)AGV_STATE_ACTIVE;
-    const bool all = active || gate->pass_all_in_manual;
-    const uint8_t throttle_max = active ? gate->throttle_max_counts : 0u;
+static uint32_t throttle_max_counts(const agv_gate_t *gate) {
+    return (gate->state == (uint8_t)AGV_STATE_ACTIVE) ? (((uint32_t)gate->config->throttle_ceiling_pct * 5u) / 2u) : 0u;
+}
+
+/* safe: only the safe commands; else what the gateway may pass on. */
+static bool command_allowed(const agv_gate_t *gate, agv_message_t message, const uint8_t data[AGV_DLC], bool safe) {
     switch (message) {
     case AGV_MSG_TURN_SIGNAL_COMMAND:
-        return signals_shaped(data);
+        return signals_shaped(data) && (!safe || (data[4] == (uint8_t)SAFE_SIGNALS));
     case AGV_MSG_GEAR_COMMAND:
-        return all && is_gear(data[0]) && zero_from(data, 1u);
+        return zero_from(data, 1u) && (safe ? (data[0] == (uint8_t)GEAR_P) : is_gear(data[0]));
     case AGV_MSG_THROTTLE_COMMAND:
-        return all && (data[0] <= throttle_max) && zero_from(data, 1u);
-    case AGV_MSG_STEERING_COMMAND:
-        return all && (first_two(data) <= (uint32_t)ANGLE_MAX) && zero_from(data, 2u);
-    default:
-        return false;
+        return zero_from(data, 1u) && (data[0] <= (safe ? 0u : throttle_max_counts(gate)));
+    default: {
+        const uint32_t raw = first_two(data);
+        return zero_from(data, 2u) && (raw <= (uint32_t)ANGLE_MAX) && (!safe || is_held_angle(gate, raw));
     }
+    }
+}
+
+/* Whether the gateway may pass a command on in this state at all. */
+static bool may_pass(const agv_gate_t *gate, agv_message_t message) {
+    return (gate->config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) &&
+           ((gate->state == (uint8_t)AGV_STATE_ACTIVE) || (message == AGV_MSG_TURN_SIGNAL_COMMAND) ||
+            (gate->config->gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL));
 }
 
 static bool vehicle_side_allows(const agv_gate_t *gate, agv_message_t message, const hal_can_frame_t *frame) {
-    if ((gate->status_id != 0u) && (frame->id == gate->status_id)) {
-        return message == AGV_MSG_NONE;
+    const bool safe = agv_state_commands_safe((agv_state_t)gate->state);
+    if ((uint32_t)message < AGV_COMMAND_COUNT) {
+        return (safe || may_pass(gate, message)) && command_allowed(gate, message, frame->data, safe);
     }
-    if (agv_state_commands_safe((agv_state_t)gate->state)) {
-        return is_safe_command(gate, message, frame->data);
-    }
-    return gate->gateway && is_passed_command(gate, message, frame->data);
+    return (message == AGV_MSG_NONE) && (frame->id == gate->config->status_frame_id) && (frame->id != 0u);
 }
 
 bool agv_gate_allows(const agv_gate_t *gate, hal_can_side_t side, const hal_can_frame_t *frame) {
-    const agv_message_t message = agv_message_from_id(frame->id, (agv_id_set_t)gate->id_set);
-    if ((frame->flags != 0u) || (frame->length != AGV_DLC) || (frame->id > AGV_ID_MAX)) {
+    const agv_message_t message = agv_message_from_id(frame->id, (agv_id_set_t)gate->config->id_set);
+    if ((frame->flags != 0u) || (frame->length != AGV_DLC)) {
         return false;
     }
     if (side == HAL_CAN_VEHICLE) {
         return vehicle_side_allows(gate, message, frame);
     }
-    return (side == HAL_CAN_AI) && gate->gateway && ((uint32_t)message >= AGV_COMMAND_COUNT) &&
-           (message != AGV_MSG_NONE);
+    return (side == HAL_CAN_AI) && (gate->config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) &&
+           ((uint32_t)message >= AGV_COMMAND_COUNT) && (message != AGV_MSG_NONE);
 }
 
 agv_gate_result_t agv_gate_send(const agv_gate_t *gate, hal_t *hal, hal_can_side_t side, const hal_can_frame_t *frame) {
     if (!agv_gate_allows(gate, side, frame)) {
         return AGV_GATE_REFUSED;
     }
-    if (gate->shadow) {
+    if (gate->config->shadow == (uint16_t)AGV_SHADOW_ON) {
         return AGV_GATE_SHADOWED;
     }
     return hal_can_send(hal, side, frame) ? AGV_GATE_SENT : AGV_GATE_BUSY;

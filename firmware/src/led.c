@@ -11,13 +11,12 @@ enum {
     SHADOW_ON_MS = 100
 };
 
-int8_t agv_led_code(agv_fault_set_t trips, agv_fault_set_t warnings) {
-    const agv_fault_set_t shown = (trips != 0u) ? trips : warnings;
-    if (shown == 0u) {
-        return AGV_LED_HEALTHY;
+int8_t agv_led_code(agv_fault_t fault) {
+    const uint8_t code = agv_fault_led_code(fault);
+    if ((code == 0u) && (fault != AGV_FAULT_NONE)) {
+        return AGV_LED_BLINK;
     }
-    const uint8_t code = agv_fault_led_code(agv_fault_highest(shown));
-    return (code == 0u) ? (int8_t)AGV_LED_BLINK : (int8_t)code;
+    return (int8_t)code;
 }
 
 static uint32_t period_ms(int8_t code) {

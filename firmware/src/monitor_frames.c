@@ -1,269 +1,217 @@
 #include "agv/codec.h"
-#include "agv/monitor.h"
+#include "agv/core.h"
 
-#define BIT(name) agv_fault_bit(AGV_FAULT_##name)
-#define WHEN(condition, name) agv_fault_when((condition), AGV_FAULT_##name)
+/* Returns false when the frame is a command with a value out of range. */
+typedef bool (*handler_t)(agv_core_t *core, const hal_can_frame_t *frame);
 
-typedef bool (*handler_t)(agv_monitor_t *monitor, const agv_config_t *config, const agv_monitor_frame_t *frame);
-
-/* Counts bad frames in a row. A fault that is active stays so until a good frame. */
-static bool bad_in_a_row(uint8_t *count, bool bad, const agv_monitor_frame_t *frame, uint16_t needed, bool is_active) {
-    if (!bad) {
-        *count = 0u;
-        return false;
-    }
-    if (frame->after_gap) {
+/* Counts bad frames in a row. What is active already stays so until a good frame. */
+static bool in_a_row(agv_core_t *core, uint32_t row, bool bad, uint16_t needed, bool is_active) {
+    uint8_t *const count = &core->monitor.in_a_row[row];
+    if (!bad || core->monitor.after_gap) {
         *count = 0u;
     }
-    if (*count < UINT8_MAX) {
+    if (bad && (*count < UINT8_MAX)) {
         (*count)++;
     }
-    return is_active || (*count >= needed);
+    return bad && (is_active || (*count >= needed));
 }
 
-static bool is_active(const agv_monitor_t *monitor, agv_fault_set_t set) {
-    return (monitor->faults.active & set) != 0u;
+static void judge_row(agv_core_t *core, agv_fault_t fault, uint32_t row, bool bad, uint16_t needed) {
+    agv_faults_t *const faults = &core->monitor.faults;
+    agv_faults_level(faults, fault, in_a_row(core, row, bad, needed, agv_faults_is_active(faults, fault)));
 }
 
-static bool is_engaged(const agv_monitor_t *monitor) {
-    return monitor->vehicle.mode == (uint8_t)AGV_MODE_ENGAGED;
+/* A status value that the protocol does not know counts once the engagement has settled (SUP-5). */
+static void judge_value(agv_core_t *core, agv_fault_t fault, uint32_t row, bool valid) {
+    judge_row(core, fault, row, !valid && agv_monitor_settled(core), core->config.status_invalid_frames);
 }
 
-static bool out_of_range(agv_monitor_t *monitor, const agv_monitor_frame_t *frame) {
-    if (is_engaged(monitor)) {
-        agv_faults_event(&monitor->faults, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, frame->now_ms);
-    }
-    return false;
-}
-
-static bool on_turn_signal_command(agv_monitor_t *monitor, const agv_config_t *config,
-                                   const agv_monitor_frame_t *frame) {
+static bool on_turn_signal_command(agv_core_t *core, const hal_can_frame_t *frame) {
     agv_turn_signal_command_t command;
-    (void)config;
     (void)agv_unpack_turn_signal_command(&command, frame->data);
-    agv_liveness_beat(&monitor->liveness, AGV_NODE_AI, command.alive_counter, frame->stamp_ms);
+    agv_liveness_beat(&core->monitor.liveness, AGV_NODE_AI, command.alive_counter, frame->time_ms);
     return true;
 }
 
-static bool on_gear_command(agv_monitor_t *monitor, const agv_config_t *config, const agv_monitor_frame_t *frame) {
-    agv_gear_command_t command;
-    (void)config;
-    if (!agv_unpack_gear_command(&command, frame->data)) {
-        return out_of_range(monitor, frame);
-    }
-    agv_liveness_refresh(&monitor->liveness, AGV_MSG_GEAR_COMMAND, frame->stamp_ms);
-    return true;
-}
-
-static bool on_throttle_command(agv_monitor_t *monitor, const agv_config_t *config, const agv_monitor_frame_t *frame) {
-    agv_throttle_command_t command;
-    (void)config;
-    if (!agv_unpack_throttle_command(&command, frame->data)) {
-        return out_of_range(monitor, frame);
-    }
-    agv_liveness_refresh(&monitor->liveness, AGV_MSG_THROTTLE_COMMAND, frame->stamp_ms);
-    return true;
-}
-
-static bool on_steering_command(agv_monitor_t *monitor, const agv_config_t *config, const agv_monitor_frame_t *frame) {
-    agv_steering_command_t command;
-    if (!agv_unpack_steering_command(&command, frame->data)) {
-        return out_of_range(monitor, frame);
-    }
-    agv_liveness_refresh(&monitor->liveness, AGV_MSG_STEERING_COMMAND, frame->stamp_ms);
-    if (is_engaged(monitor) && (config->topology == (uint16_t)AGV_TOPOLOGY_SHARED)) {
-        agv_monitor_steering_sent(monitor, (int16_t)command.angle_ddeg);
-    }
-    return true;
-}
-
-static void engage(agv_monitor_t *monitor, const agv_monitor_frame_t *frame) {
-    static const agv_message_t commands[] = {AGV_MSG_GEAR_COMMAND, AGV_MSG_THROTTLE_COMMAND, AGV_MSG_STEERING_COMMAND};
-    for (uint32_t i = 0u; i < (sizeof commands / sizeof commands[0]); i++) {
-        agv_liveness_refresh(&monitor->liveness, commands[i], frame->stamp_ms);
-    }
-    agv_timer_start(&monitor->engaged, frame->now_ms);
-    monitor->vehicle.command_known = false;
-    monitor->in_a_row.eps_mode = 0u;
-    monitor->in_a_row.gear_status = 0u;
-    monitor->in_a_row.throttle_status = 0u;
-    monitor->in_a_row.steering_angle = 0u;
-}
-
-static void disengage(agv_monitor_t *monitor) {
-    static const uint32_t none = 0u;
-    agv_faults_levels(&monitor->faults,
-                      BIT(EPS_MODE_OFF) | BIT(EPS_MODE_INVALID) | BIT(EPS_MODE_NOT_ANGLE) | BIT(GEAR_STATUS_INVALID) |
-                          BIT(THROTTLE_STATUS_INVALID) | BIT(STEERING_ANGLE_INVALID) | BIT(VCU_AI_CAN_LOST),
-                      none);
-    agv_timer_stop(&monitor->engaged);
-}
-
-static void update_mode(agv_monitor_t *monitor, const agv_vehicle_status_t *status, const agv_monitor_frame_t *frame) {
-    agv_vehicle_t *vehicle = &monitor->vehicle;
-    const bool was_engaged = is_engaged(monitor);
-    const bool both = status->manual_mode && status->autopilot_mode;
-    agv_timer_while(&vehicle->both_modes, both, frame->now_ms);
-    if (!both) {
-        vehicle->mode = (uint8_t)AGV_MODE_NONE;
-        if (status->autopilot_mode) {
-            vehicle->mode = (uint8_t)AGV_MODE_ENGAGED;
-        } else if (status->manual_mode) {
-            vehicle->mode = (uint8_t)AGV_MODE_MANUAL;
-        } else {
-            /* neither is reported */
-        }
-    }
-    if (is_engaged(monitor) && !was_engaged) {
-        engage(monitor, frame);
-    }
-    if (!is_engaged(monitor) && was_engaged) {
-        disengage(monitor);
-    }
-}
-
-static void judge_vcu_alarms(agv_monitor_t *monitor, const agv_vehicle_status_t *status) {
-    const uint8_t alarms = status->level1_alarms;
-    const bool ai_alarm = (alarms & AGV_VCU_ALARM_AI_CAN_LOST) != 0u;
-    if (!agv_monitor_alive(monitor, AGV_NODE_AI)) {
-        monitor->ai_alarm_armed = false;
-    } else if (!ai_alarm) {
-        monitor->ai_alarm_armed = true;
+/* SUP-5: while engaged a command out of range trips; it refreshes no deadline in any case. */
+static bool judge_command(agv_core_t *core, agv_message_t message, const hal_can_frame_t *frame, bool valid) {
+    if (valid) {
+        agv_liveness_refresh(&core->monitor.liveness, message, frame->time_ms);
+    } else if (agv_monitor_engaged(core)) {
+        agv_faults_event(&core->monitor.faults, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, core->now_ms);
     } else {
-        /* as it was */
+        /* dropped */
     }
-    agv_faults_levels(&monitor->faults,
-                      BIT(REMOTE_SIGNAL_LOST) | BIT(REMOTE_POWER_LOST) | BIT(VCU_AI_CAN_LOST) |
-                          BIT(VCU_EPS_HARDWARE_FAULT) | BIT(VCU_EPS_CAN_BUS_FAULT) | BIT(S_DRIVER_ALARM) |
-                          BIT(VCU_LEVEL2_ALARM),
-                      WHEN((alarms & AGV_VCU_ALARM_REMOTE_SIGNAL_LOST) != 0u, REMOTE_SIGNAL_LOST) |
-                          WHEN((alarms & AGV_VCU_ALARM_REMOTE_POWER_LOST) != 0u, REMOTE_POWER_LOST) |
-                          WHEN(ai_alarm && monitor->ai_alarm_armed && is_engaged(monitor), VCU_AI_CAN_LOST) |
-                          WHEN((alarms & AGV_VCU_ALARM_EPS_HARDWARE) != 0u, VCU_EPS_HARDWARE_FAULT) |
-                          WHEN((alarms & AGV_VCU_ALARM_EPS_CAN_BUS) != 0u, VCU_EPS_CAN_BUS_FAULT) |
-                          WHEN((alarms & AGV_VCU_ALARM_S_DRIVER) != 0u, S_DRIVER_ALARM) |
-                          WHEN(status->level2_alarms != 0u, VCU_LEVEL2_ALARM));
+    return valid;
 }
 
-static bool on_vehicle_status(agv_monitor_t *monitor, const agv_config_t *config, const agv_monitor_frame_t *frame) {
+static bool on_gear_command(agv_core_t *core, const hal_can_frame_t *frame) {
+    agv_gear_command_t command;
+    return judge_command(core, AGV_MSG_GEAR_COMMAND, frame, agv_unpack_gear_command(&command, frame->data));
+}
+
+static bool on_throttle_command(agv_core_t *core, const hal_can_frame_t *frame) {
+    agv_throttle_command_t command;
+    return judge_command(core, AGV_MSG_THROTTLE_COMMAND, frame, agv_unpack_throttle_command(&command, frame->data));
+}
+
+static bool on_steering_command(agv_core_t *core, const hal_can_frame_t *frame) {
+    agv_steering_command_t command;
+    const bool valid = agv_unpack_steering_command(&command, frame->data);
+    if (valid && (core->config.topology == (uint16_t)AGV_TOPOLOGY_SHARED)) {
+        agv_monitor_steering_commanded(core, command.angle_ddeg);
+    }
+    return judge_command(core, AGV_MSG_STEERING_COMMAND, frame, valid);
+}
+
+static void engage(agv_core_t *core, uint32_t stamp_ms) {
+    agv_monitor_t *const monitor = &core->monitor;
+    for (uint32_t command = AGV_MSG_GEAR_COMMAND; command < AGV_COMMAND_COUNT; command++) {
+        agv_liveness_refresh(&monitor->liveness, (agv_message_t)command, stamp_ms);
+    }
+    agv_timer_start(&monitor->engaged, core->now_ms);
+    monitor->faults.changed = true; /* the class of AI_HEARTBEAT_* */
+}
+
+static void update_mode(agv_core_t *core, const agv_vehicle_status_t *status, uint32_t stamp_ms) {
+    agv_vehicle_t *const vehicle = &core->monitor.vehicle;
+    const bool was_engaged = agv_monitor_engaged(core);
+    const bool both = status->manual_mode && status->autopilot_mode;
+    agv_timer_while(&vehicle->both_modes, both, core->now_ms);
+    if (both) {
+        return; /* the mode before stands, until MODE_INVALID */
+    }
+    if (status->autopilot_mode) {
+        vehicle->mode = (uint8_t)AGV_MODE_ENGAGED;
+    } else {
+        vehicle->mode = (uint8_t)(status->manual_mode ? AGV_MODE_MANUAL : AGV_MODE_NONE);
+    }
+    if (status->autopilot_mode && !was_engaged) {
+        engage(core, stamp_ms);
+    } else if (!status->autopilot_mode && was_engaged) {
+        agv_monitor_disengage(core);
+    } else {
+        /* as before */
+    }
+}
+
+/* Bit 3 counts while engaged, after it was once clear with the AI alive (SUP-8). */
+static bool ai_alarm_counts(agv_core_t *core, bool alarm) {
+    agv_monitor_t *const monitor = &core->monitor;
+    const bool alive = agv_liveness_alive(&monitor->liveness, AGV_NODE_AI);
+    monitor->ai_alarm_armed = alive && (monitor->ai_alarm_armed || !alarm);
+    return monitor->ai_alarm_armed && agv_monitor_engaged(core);
+}
+
+static void judge_vcu_alarms(agv_core_t *core, const agv_vehicle_status_t *status) {
+    /* By bit of 363h byte 5. */
+    static const uint8_t faults[8] = {
+        AGV_FAULT_REMOTE_SIGNAL_LOST,     AGV_FAULT_REMOTE_POWER_LOST,     AGV_FAULT_NONE, AGV_FAULT_VCU_AI_CAN_LOST,
+        AGV_FAULT_VCU_EPS_HARDWARE_FAULT, AGV_FAULT_VCU_EPS_CAN_BUS_FAULT, AGV_FAULT_NONE, AGV_FAULT_S_DRIVER_ALARM};
+    uint32_t alarms = status->level1_alarms;
+    if (!ai_alarm_counts(core, (alarms & AGV_VCU_ALARM_AI_CAN_LOST) != 0u)) {
+        alarms &= ~AGV_VCU_ALARM_AI_CAN_LOST;
+    }
+    for (uint32_t bit = 0u; bit < 8u; bit++) {
+        agv_faults_level(&core->monitor.faults, (agv_fault_t)faults[bit], ((alarms >> bit) & 1u) != 0u);
+    }
+    agv_faults_level(&core->monitor.faults, AGV_FAULT_VCU_LEVEL2_ALARM, status->level2_alarms != 0u);
+}
+
+static bool on_vehicle_status(agv_core_t *core, const hal_can_frame_t *frame) {
     agv_vehicle_status_t status;
-    (void)config;
     (void)agv_unpack_vehicle_status(&status, frame->data);
-    agv_liveness_beat(&monitor->liveness, AGV_NODE_VCU, status.alive_counter, frame->stamp_ms);
-    update_mode(monitor, &status, frame);
-    monitor->vehicle.button_pressed = status.button_1;
-    judge_vcu_alarms(monitor, &status);
+    agv_liveness_beat(&core->monitor.liveness, AGV_NODE_VCU, status.alive_counter, frame->time_ms);
+    update_mode(core, &status, frame->time_ms);
+    core->monitor.vehicle.button_pressed = status.button_1;
+    judge_vcu_alarms(core, &status);
     return true;
 }
 
-static bool on_gear_status(agv_monitor_t *monitor, const agv_config_t *config, const agv_monitor_frame_t *frame) {
+static bool on_gear_status(agv_core_t *core, const hal_can_frame_t *frame) {
     agv_gear_status_t status;
     const bool valid = agv_unpack_gear_status(&status, frame->data);
-    const bool bad = !valid && agv_monitor_settled(monitor, config, frame->now_ms);
-    monitor->vehicle.gear = valid ? status.gear : 0u;
-    agv_faults_levels(&monitor->faults, BIT(GEAR_STATUS_INVALID),
-                      WHEN(bad_in_a_row(&monitor->in_a_row.gear_status, bad, frame, config->status_invalid_frames,
-                                        is_active(monitor, BIT(GEAR_STATUS_INVALID))),
-                           GEAR_STATUS_INVALID));
-    agv_liveness_refresh(&monitor->liveness, AGV_MSG_GEAR_STATUS, frame->stamp_ms);
+    core->monitor.vehicle.gear = valid ? status.gear : 0u;
+    judge_value(core, AGV_FAULT_GEAR_STATUS_INVALID, AGV_ROW_GEAR_STATUS, valid);
     return true;
 }
 
-static bool on_throttle_status(agv_monitor_t *monitor, const agv_config_t *config, const agv_monitor_frame_t *frame) {
+static bool on_throttle_status(agv_core_t *core, const hal_can_frame_t *frame) {
     agv_throttle_status_t status;
     const bool valid = agv_unpack_throttle_status(&status, frame->data);
-    const bool bad = !valid && agv_monitor_settled(monitor, config, frame->now_ms);
-    monitor->vehicle.throttle_on = valid && (status.throttle_permille > 0u);
-    agv_faults_levels(&monitor->faults, BIT(THROTTLE_STATUS_INVALID),
-                      WHEN(bad_in_a_row(&monitor->in_a_row.throttle_status, bad, frame, config->status_invalid_frames,
-                                        is_active(monitor, BIT(THROTTLE_STATUS_INVALID))),
-                           THROTTLE_STATUS_INVALID));
-    agv_liveness_refresh(&monitor->liveness, AGV_MSG_THROTTLE_STATUS, frame->stamp_ms);
+    core->monitor.vehicle.throttle_on = valid && (status.throttle_permille > 0u);
+    judge_value(core, AGV_FAULT_THROTTLE_STATUS_INVALID, AGV_ROW_THROTTLE_STATUS, valid);
     return true;
 }
 
-static bool on_steering_status(agv_monitor_t *monitor, const agv_config_t *config, const agv_monitor_frame_t *frame) {
+static bool on_steering_status(agv_core_t *core, const hal_can_frame_t *frame) {
     agv_steering_status_t status;
     const bool valid = agv_unpack_steering_status(&status, frame->data);
-    const bool bad = !valid && agv_monitor_settled(monitor, config, frame->now_ms);
     if (valid) {
-        monitor->vehicle.angle_ddeg = (int16_t)status.angle_ddeg;
-        monitor->vehicle.angle_known = true;
+        core->monitor.vehicle.angle_ddeg = (int16_t)status.angle_ddeg;
+        core->monitor.vehicle.angle_known = true;
     }
-    agv_faults_levels(&monitor->faults, BIT(STEERING_ANGLE_INVALID),
-                      WHEN(bad_in_a_row(&monitor->in_a_row.steering_angle, bad, frame, config->status_invalid_frames,
-                                        is_active(monitor, BIT(STEERING_ANGLE_INVALID))),
-                           STEERING_ANGLE_INVALID));
-    agv_liveness_beat(&monitor->liveness, AGV_NODE_EPS, status.alive_counter, frame->stamp_ms);
+    judge_value(core, AGV_FAULT_STEERING_ANGLE_INVALID, AGV_ROW_STEERING_ANGLE, valid);
+    agv_liveness_beat(&core->monitor.liveness, AGV_NODE_EPS, status.alive_counter, frame->time_ms);
     return true;
 }
 
-static agv_fault_t mode_fault(uint8_t mode, bool valid) {
-    if (!valid) {
-        return AGV_FAULT_EPS_MODE_INVALID;
-    }
-    return (mode == (uint8_t)AGV_EPS_MODE_OFF) ? AGV_FAULT_EPS_MODE_OFF : AGV_FAULT_EPS_MODE_NOT_ANGLE;
-}
-
-static void judge_eps_mode(agv_monitor_t *monitor, const agv_config_t *config, const agv_eps_status_t *status,
-                           bool valid, const agv_monitor_frame_t *frame) {
-    const agv_fault_set_t any = BIT(EPS_MODE_OFF) | BIT(EPS_MODE_INVALID) | BIT(EPS_MODE_NOT_ANGLE);
+/* Named after the last of the frames that count. */
+static void judge_eps_mode(agv_core_t *core, const agv_eps_status_t *status, bool valid) {
+    agv_faults_t *const faults = &core->monitor.faults;
     const bool in_angle_mode = status->mode == (uint8_t)AGV_EPS_MODE_ANGLE;
-    const bool bad = !in_angle_mode && agv_monitor_settled(monitor, config, frame->now_ms);
-    const bool counts =
-        bad_in_a_row(&monitor->in_a_row.eps_mode, bad, frame, config->eps_mode_frames, is_active(monitor, any));
-    monitor->vehicle.eps_in_angle_mode = in_angle_mode;
-    agv_faults_levels(&monitor->faults, any, agv_fault_when(counts, mode_fault(status->mode, valid)));
+    const bool bad = !in_angle_mode && agv_monitor_settled(core);
+    agv_fault_t named = AGV_FAULT_EPS_MODE_NOT_ANGLE;
+    if (status->mode == (uint8_t)AGV_EPS_MODE_OFF) {
+        named = AGV_FAULT_EPS_MODE_OFF;
+    } else if (!valid) {
+        named = AGV_FAULT_EPS_MODE_INVALID;
+    } else {
+        /* a mode that exists, but not the one that steers */
+    }
+    const bool active = agv_faults_is_active(faults, AGV_FAULT_EPS_MODE_OFF) ||
+                        agv_faults_is_active(faults, AGV_FAULT_EPS_MODE_INVALID) ||
+                        agv_faults_is_active(faults, AGV_FAULT_EPS_MODE_NOT_ANGLE);
+    const bool counts = in_a_row(core, AGV_ROW_EPS_MODE, bad, core->config.eps_mode_frames, active);
+    core->monitor.vehicle.eps_in_angle_mode = in_angle_mode;
+    for (uint32_t fault = AGV_FAULT_EPS_MODE_OFF; fault <= (uint32_t)AGV_FAULT_EPS_MODE_NOT_ANGLE; fault++) {
+        agv_faults_level(faults, (agv_fault_t)fault, counts && (fault == (uint32_t)named));
+    }
 }
 
-static void judge_eps_faults(agv_monitor_t *monitor, const agv_config_t *config, uint8_t bits,
-                             const agv_monitor_frame_t *frame) {
-    agv_in_a_row_t *row = &monitor->in_a_row;
-    const uint16_t needed = config->eps_supply_fault_frames;
-    const bool under = bad_in_a_row(&row->under_voltage, (bits & AGV_EPS_FAULT_UNDER_VOLTAGE) != 0u, frame, needed,
-                                    is_active(monitor, BIT(EPS_UNDER_VOLTAGE)));
-    const bool over = bad_in_a_row(&row->over_voltage, (bits & AGV_EPS_FAULT_OVER_VOLTAGE) != 0u, frame, needed,
-                                   is_active(monitor, BIT(EPS_OVER_VOLTAGE)));
-    const bool current = bad_in_a_row(&row->excessive_current, (bits & AGV_EPS_FAULT_EXCESSIVE_CURRENT) != 0u, frame,
-                                      needed, is_active(monitor, BIT(EPS_EXCESSIVE_CURRENT)));
-    agv_faults_levels(
-        &monitor->faults,
-        BIT(EPS_UNDER_VOLTAGE) | BIT(EPS_OVER_VOLTAGE) | BIT(EPS_EXCESSIVE_CURRENT) | BIT(EPS_OVER_CURRENT_SHUTDOWN) |
-            BIT(EPS_TEMP_ABOVE_110) | BIT(EPS_TEMP_ABOVE_120) | BIT(EPS_MOTOR_ENCODER) | BIT(EPS_POSITION_ENCODER),
-        WHEN(under, EPS_UNDER_VOLTAGE) | WHEN(over, EPS_OVER_VOLTAGE) | WHEN(current, EPS_EXCESSIVE_CURRENT) |
-            WHEN((bits & AGV_EPS_FAULT_OVER_CURRENT_SHUTDOWN) != 0u, EPS_OVER_CURRENT_SHUTDOWN) |
-            WHEN((bits & AGV_EPS_FAULT_TEMP_ABOVE_110) != 0u, EPS_TEMP_ABOVE_110) |
-            WHEN((bits & AGV_EPS_FAULT_TEMP_ABOVE_120) != 0u, EPS_TEMP_ABOVE_120) |
-            WHEN((bits & AGV_EPS_FAULT_MOTOR_ENCODER) != 0u, EPS_MOTOR_ENCODER) |
-            WHEN((bits & AGV_EPS_FAULT_POSITION_ENCODER) != 0u, EPS_POSITION_ENCODER));
-}
-
-static bool on_eps_status(agv_monitor_t *monitor, const agv_config_t *config, const agv_monitor_frame_t *frame) {
+static bool on_eps_status(agv_core_t *core, const hal_can_frame_t *frame) {
+    /* By bit of 167h byte 8; the first three are those of the supply. */
+    static const uint8_t faults[8] = {AGV_FAULT_EPS_UNDER_VOLTAGE,     AGV_FAULT_EPS_OVER_VOLTAGE,
+                                      AGV_FAULT_EPS_EXCESSIVE_CURRENT, AGV_FAULT_EPS_OVER_CURRENT_SHUTDOWN,
+                                      AGV_FAULT_EPS_TEMP_ABOVE_110,    AGV_FAULT_EPS_TEMP_ABOVE_120,
+                                      AGV_FAULT_EPS_MOTOR_ENCODER,     AGV_FAULT_EPS_POSITION_ENCODER};
+    const uint32_t supply_bits = 3u;
     agv_eps_status_t status;
     const bool valid = agv_unpack_eps_status(&status, frame->data);
-    judge_eps_mode(monitor, config, &status, valid, frame);
-    judge_eps_faults(monitor, config, status.faults, frame);
-    agv_liveness_refresh(&monitor->liveness, AGV_MSG_EPS_STATUS, frame->stamp_ms);
+    judge_eps_mode(core, &status, valid);
+    for (uint32_t bit = 0u; bit < 8u; bit++) {
+        const uint16_t needed = (bit < supply_bits) ? core->config.eps_supply_fault_frames : 1u;
+        judge_row(core, (agv_fault_t)faults[bit], bit, (((uint32_t)status.faults >> bit) & 1u) != 0u, needed);
+    }
     return true;
 }
 
-static bool on_steering_position(agv_monitor_t *monitor, const agv_config_t *config, const agv_monitor_frame_t *frame) {
-    (void)config;
-    agv_liveness_refresh(&monitor->liveness, AGV_MSG_STEERING_POSITION, frame->stamp_ms);
-    return true;
+static bool on_steering_position(agv_core_t *core, const hal_can_frame_t *frame) {
+    (void)core;
+    (void)frame;
+    return true; /* only its coming counts */
 }
 
-static bool is_slow(int32_t speed_mm_s, uint16_t limit_mm_s) {
-    return (speed_mm_s < (int32_t)limit_mm_s) && (speed_mm_s > -(int32_t)limit_mm_s);
+static bool is_slow(const agv_core_t *core, int32_t speed_mm_s) {
+    const int32_t limit_mm_s = (int32_t)core->config.standstill_speed_mm_s;
+    return (speed_mm_s < limit_mm_s) && (speed_mm_s > -limit_mm_s);
 }
 
-static bool on_wheel_speed(agv_monitor_t *monitor, const agv_config_t *config, const agv_monitor_frame_t *frame) {
+static bool on_wheel_speed(agv_core_t *core, const hal_can_frame_t *frame) {
     agv_wheel_speed_t wheels;
     (void)agv_unpack_wheel_speed(&wheels, frame->data);
-    const bool slow = is_slow(wheels.left_mm_s, config->standstill_speed_mm_s) &&
-                      is_slow(wheels.right_mm_s, config->standstill_speed_mm_s);
-    agv_timer_while(&monitor->vehicle.slow, slow, frame->now_ms);
-    agv_liveness_refresh(&monitor->liveness, AGV_MSG_WHEEL_SPEED, frame->stamp_ms);
+    agv_timer_while(&core->monitor.vehicle.slow, is_slow(core, wheels.left_mm_s) && is_slow(core, wheels.right_mm_s),
+                    core->now_ms);
     return true;
 }
 
@@ -273,29 +221,24 @@ static const handler_t handlers[AGV_MSG_COUNT] = {on_turn_signal_command, on_gea
                                                   on_throttle_status,     on_steering_status, on_eps_status,
                                                   on_steering_position,   on_wheel_speed};
 
-static void judge_command_rate(agv_monitor_t *monitor, const agv_config_t *config, agv_message_t message,
-                               uint32_t gap_ms, uint32_t now_ms) {
-    uint8_t *fast_gaps = &monitor->in_a_row.fast_gaps[message];
-    const uint32_t half_cycle_ms = ((uint32_t)agv_message_cycle_ms(message) + 1u) / 2u;
-    if (gap_ms >= half_cycle_ms) {
-        *fast_gaps = 0u;
-    } else if (*fast_gaps < UINT8_MAX) {
-        (*fast_gaps)++;
-    } else {
-        /* as many as can be counted */
-    }
-    if (*fast_gaps >= config->command_too_fast_gaps) {
-        agv_faults_event(&monitor->faults, AGV_FAULT_COMMAND_TOO_FAST, now_ms);
+/* Under half a cycle, so many gaps in a row (SUP-6). */
+static void judge_rate(agv_core_t *core, agv_message_t command, uint32_t gap_ms, uint32_t cycle_ms) {
+    const bool fast = gap_ms < ((cycle_ms + 1u) / 2u);
+    if (in_a_row(core, (uint32_t)AGV_ROW_FAST_GAPS + (uint32_t)command, fast, core->config.command_too_fast_gaps,
+                 false)) {
+        agv_faults_event(&core->monitor.faults, AGV_FAULT_COMMAND_TOO_FAST, core->now_ms);
     }
 }
 
-bool agv_monitor_frame(agv_monitor_t *monitor, const agv_config_t *config, agv_message_t message,
-                       const agv_monitor_frame_t *frame) {
-    agv_monitor_frame_t handed_on = *frame;
-    const uint32_t gap_ms = agv_liveness_arrived(&monitor->liveness, message, frame->stamp_ms);
-    handed_on.after_gap = gap_ms > (2u * (uint32_t)agv_message_cycle_ms(message));
+bool agv_monitor_frame(agv_core_t *core, agv_message_t message, const hal_can_frame_t *frame) {
+    agv_liveness_t *const liveness = &core->monitor.liveness;
+    const uint32_t cycle_ms = agv_message_cycle_ms(message);
+    const uint32_t gap_ms = agv_liveness_arrived(liveness, message, frame->time_ms);
+    core->monitor.after_gap = gap_ms > (2u * cycle_ms);
     if ((uint32_t)message < AGV_COMMAND_COUNT) {
-        judge_command_rate(monitor, config, message, gap_ms, frame->now_ms);
+        judge_rate(core, message, gap_ms, cycle_ms);
+    } else {
+        agv_liveness_refresh(liveness, message, frame->time_ms);
     }
-    return handlers[message](monitor, config, &handed_on);
+    return handlers[message](core, frame);
 }

@@ -1,5 +1,6 @@
 #include "agv/recorder.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #include "agv/checksum.h"
@@ -7,14 +8,14 @@
 _Static_assert((AGV_RECORDER_EVENTS & (AGV_RECORDER_EVENTS - 1u)) == 0u, "a power of two");
 _Static_assert(sizeof(agv_event_t) == 108u, "no padding: the checksum runs over all bytes");
 
-static agv_event_t *slot(agv_recorder_t *recorder, uint32_t sequence) {
-    return &recorder->events[sequence & (AGV_RECORDER_EVENTS - 1u)];
+static uint32_t slot_of(uint32_t sequence) {
+    return sequence & (AGV_RECORDER_EVENTS - 1u);
 }
 
+/* Over the bytes before the checksum and those after it. */
 static uint16_t checksum(const agv_event_t *event) {
-    agv_event_t copy = *event;
-    copy.checksum = 0u;
-    return agv_crc16(&copy, sizeof copy);
+    const uint16_t head = agv_crc16(AGV_CRC16_START, event, offsetof(agv_event_t, checksum));
+    return agv_crc16(head, event->frames, sizeof event->frames);
 }
 
 static bool is_valid(const agv_event_t *event) {
@@ -22,35 +23,31 @@ static bool is_valid(const agv_event_t *event) {
 }
 
 static bool is_newer(uint32_t sequence, uint32_t other) {
-    return ((sequence - other) != 0u) && ((sequence - other) < 0x80000000u);
+    return ((sequence - other) - 1u) < (UINT32_MAX / 2u);
 }
 
 void agv_recorder_start(agv_recorder_t *recorder) {
-    bool any = false;
-    uint32_t newest = 0u;
-    uint32_t oldest = 0u;
-    uint8_t run = 0u;
+    const agv_event_t *newest = NULL;
+    const agv_event_t *oldest = NULL;
     for (uint32_t i = 0u; i < AGV_RECORDER_EVENTS; i++) {
         agv_event_t *event = &recorder->events[i];
-        if (!is_valid(event) || ((event->sequence & (AGV_RECORDER_EVENTS - 1u)) != i)) {
+        if (!is_valid(event) || (slot_of(event->sequence) != i)) {
             (void)memset(event, 0, sizeof *event);
             continue;
         }
-        if (!any || is_newer(event->sequence, newest)) {
-            newest = event->sequence;
-            run = event->run;
+        if ((newest == NULL) || is_newer(event->sequence, newest->sequence)) {
+            newest = event;
         }
-        if (!any || is_newer(oldest, event->sequence)) {
-            oldest = event->sequence;
+        if ((oldest == NULL) || is_newer(oldest->sequence, event->sequence)) {
+            oldest = event;
         }
-        any = true;
     }
-    recorder->next_sequence = any ? (newest + 1u) : 0u;
-    recorder->run = any ? (uint8_t)(run + 1u) : 0u;
-    /* What is still here and newer than the mark was not stored before the reset. */
-    if (!any || is_newer(oldest, recorder->stored_sequence) ||
-        is_newer(recorder->stored_sequence, recorder->next_sequence)) {
-        recorder->stored_sequence = any ? oldest : 0u;
+    recorder->next_sequence = (newest == NULL) ? 0u : (newest->sequence + 1u);
+    recorder->run = (newest == NULL) ? 0u : (uint8_t)(newest->run + 1u);
+    const uint32_t first = (oldest == NULL) ? 0u : oldest->sequence;
+    /* The mark of what is in flash counts if it lies among what is here. */
+    if ((recorder->stored_sequence - first) > (recorder->next_sequence - first)) {
+        recorder->stored_sequence = first;
     }
     recorder->seen = 0u;
     (void)memset(recorder->frames, 0, sizeof recorder->frames);
@@ -63,41 +60,57 @@ void agv_recorder_frame(agv_recorder_t *recorder, agv_message_t message, const u
     }
 }
 
-void agv_recorder_add(agv_recorder_t *recorder, const agv_event_t *event) {
-    agv_event_t *target = slot(recorder, recorder->next_sequence);
-    *target = *event;
-    target->sequence = recorder->next_sequence;
-    target->run = recorder->run;
-    target->seen = recorder->seen;
-    (void)memcpy(target->frames, recorder->frames, sizeof target->frames);
-    target->checksum = checksum(target);
-    if ((recorder->next_sequence - recorder->stored_sequence) >= AGV_RECORDER_EVENTS) {
-        recorder->stored_sequence = recorder->next_sequence - (AGV_RECORDER_EVENTS - 1u);
-    }
+void agv_recorder_add(agv_recorder_t *recorder, const agv_entry_t *entry, uint32_t time_ms) {
+    agv_event_t *event = &recorder->events[slot_of(recorder->next_sequence)];
+    event->sequence = recorder->next_sequence;
+    event->time_ms = time_ms;
+    event->kind = entry->kind;
+    event->a = entry->a;
+    event->b = entry->b;
+    event->c = entry->c;
+    event->missing = entry->missing;
+    event->state = entry->state;
+    event->first_reason = entry->first_reason;
+    event->run = recorder->run;
+    event->seen = recorder->seen;
+    (void)memcpy(event->frames, recorder->frames, sizeof event->frames);
+    event->checksum = checksum(event);
     recorder->next_sequence++;
+    if ((recorder->next_sequence - recorder->stored_sequence) > AGV_RECORDER_EVENTS) {
+        recorder->stored_sequence++;
+    }
 }
 
 uint32_t agv_recorder_next_sequence(const agv_recorder_t *recorder) {
     return recorder->next_sequence;
 }
 
-bool agv_recorder_get(const agv_recorder_t *recorder, uint32_t sequence, agv_event_t *event) {
-    *event = recorder->events[sequence & (AGV_RECORDER_EVENTS - 1u)];
-    return (event->sequence == sequence) && is_valid(event);
+/* The event in the ring, NULL when it is not there any more or not valid. */
+static const agv_event_t *find(const agv_recorder_t *recorder, uint32_t sequence) {
+    const agv_event_t *event = &recorder->events[slot_of(sequence)];
+    return ((event->sequence == sequence) && is_valid(event)) ? event : NULL;
 }
 
-bool agv_recorder_next_to_store(agv_recorder_t *recorder, agv_event_t *event) {
-    bool found = false;
-    for (uint32_t i = 0u; (i < AGV_RECORDER_EVENTS) && !found; i++) {
+bool agv_recorder_get(const agv_recorder_t *recorder, uint32_t sequence, agv_event_t *event) {
+    const agv_event_t *found = find(recorder, sequence);
+    if (found != NULL) {
+        *event = *found;
+    }
+    return found != NULL;
+}
+
+const agv_event_t *agv_recorder_next_to_store(agv_recorder_t *recorder) {
+    const agv_event_t *event = NULL;
+    for (uint32_t i = 0u; (i < AGV_RECORDER_EVENTS) && (event == NULL); i++) {
         if (recorder->stored_sequence == recorder->next_sequence) {
             break;
         }
-        found = agv_recorder_get(recorder, recorder->stored_sequence, event);
-        recorder->stored_sequence += found ? 0u : 1u;
+        event = find(recorder, recorder->stored_sequence);
+        recorder->stored_sequence += (event == NULL) ? 1u : 0u;
     }
-    return found;
+    return event;
 }
 
-void agv_recorder_stored(agv_recorder_t *recorder, uint32_t sequence) {
-    recorder->stored_sequence = sequence + 1u;
+void agv_recorder_stored(agv_recorder_t *recorder) {
+    recorder->stored_sequence++;
 }

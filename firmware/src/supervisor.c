@@ -1,5 +1,8 @@
 #include "agv/supervisor.h"
 
+#include <stddef.h>
+#include <string.h>
+
 #include "agv/checksum.h"
 #include "hal/led.h"
 #include "hal/store.h"
@@ -9,30 +12,38 @@
 /* Activities that check in before the hardware watchdog is fed (TIM-3). */
 enum { CHECKED_RECEIVE = 1, CHECKED_STEP = 2, CHECKED_SEND = 4, CHECKED_ALL = 7 };
 
-static bool is_intact(const agv_supervisor_t *supervisor) {
-    return (supervisor->seal == agv_seal(&supervisor->core, sizeof supervisor->core)) &&
-           agv_state_machine_is_sound(&supervisor->core.machine);
+/* The supervisor's time never goes backwards, whatever stamps frames carry. */
+static void advance(agv_core_t *core, uint32_t moment_ms) {
+    core->now_ms += agv_age_ms(moment_ms, core->now_ms);
 }
 
-static void seal(agv_supervisor_t *supervisor) {
+static void attach(agv_core_t *core, const agv_ports_t *ports) {
+    core->hal = ports->hal;
+    core->recorder = ports->recorder;
+}
+
+/* Every call begins with a look at the whole memory (INT-5). */
+static agv_core_t *open_core(agv_supervisor_t *supervisor, const agv_ports_t *ports, uint32_t moment_ms) {
+    agv_core_t *const core = &supervisor->core;
+    const bool intact =
+        (supervisor->seal == agv_seal(core, sizeof *core)) && agv_state_machine_is_sound(&core->machine);
+    attach(core, ports);
+    if (intact) {
+        advance(core, moment_ms);
+    } else {
+        core->now_ms = moment_ms;
+        agv_core_begin_corrupted(core);
+    }
+    return core;
+}
+
+static void close_core(agv_supervisor_t *supervisor) {
+    supervisor->core.hal = NULL;
+    supervisor->core.recorder = NULL;
     supervisor->seal = agv_seal(&supervisor->core, sizeof supervisor->core);
 }
 
-static void check_memory(agv_supervisor_t *supervisor, const agv_ports_t *ports, uint32_t now_ms) {
-    if (!is_intact(supervisor)) {
-        agv_core_restart_corrupted(&supervisor->core, ports, now_ms);
-    }
-}
-
-/* The supervisor's time never goes backwards, whatever stamps frames carry. */
-static void advance(agv_core_t *core, uint32_t moment_ms) {
-    if ((moment_ms - core->now_ms) <= (UINT32_MAX / 2u)) {
-        core->now_ms = moment_ms;
-    }
-}
-
-static uint32_t step_time(agv_core_t *core, uint32_t now_ms) {
-    advance(core, now_ms);
+static uint32_t step_time(agv_core_t *core) {
     const uint32_t elapsed_ms = core->now_ms - core->last_tick_ms;
     core->last_tick_ms = core->now_ms;
     if (elapsed_ms > ((uint32_t)core->config.watchdog_period_ms + 1u)) {
@@ -41,172 +52,114 @@ static uint32_t step_time(agv_core_t *core, uint32_t now_ms) {
     return elapsed_ms;
 }
 
-static agv_bus_report_t look_at_bus(agv_core_t *core, const agv_ports_t *ports, hal_can_side_t side) {
+/* SUP-7, one side: recovery is asked for after a purge; what waited is never sent. */
+static agv_bus_report_t follow_bus(agv_core_t *core, hal_can_side_t side, uint16_t messages) {
     hal_can_status_t status;
-    hal_can_status(ports->hal, side, &status);
-    return agv_bus_tick(&core->buses[side], &status, core->config.bus_off_recovery_ms, core->config.tx_stalled_ms,
-                        core->now_ms);
-}
-
-static void recover(agv_core_t *core, const agv_ports_t *ports, hal_can_side_t side) {
-    if (side == HAL_CAN_VEHICLE) {
-        agv_transmitter_discard(&core->transmitter, &core->counters);
-    } else {
-        agv_transmitter_discard_ai(&core->transmitter, &core->counters);
+    hal_can_status(core->hal, side, &status);
+    const agv_bus_report_t report = agv_bus_tick(&core->buses[side], &status, core->config.bus_off_recovery_ms,
+                                                 core->config.tx_stalled_ms, core->now_ms);
+    if (report.off) {
+        agv_transmitter_discard(core, messages);
     }
-    hal_can_purge(ports->hal, side);
-    hal_can_recover(ports->hal, side);
-}
-
-/* SUP-7. Returns whether the vehicle side has come back from bus-off. */
-static bool judge_buses(agv_core_t *core, const agv_ports_t *ports) {
-    const agv_fault_set_t judged = agv_fault_bit(AGV_FAULT_BUS_OFF) | agv_fault_bit(AGV_FAULT_TX_STALLED) |
-                                   agv_fault_bit(AGV_FAULT_ERROR_PASSIVE) | agv_fault_bit(AGV_FAULT_AI_BUS_OFF);
-    const bool gateway = core->config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
-    const agv_bus_report_t vehicle = look_at_bus(core, ports, HAL_CAN_VEHICLE);
-    agv_bus_report_t ai = {0};
-    if (gateway) {
-        ai = look_at_bus(core, ports, HAL_CAN_AI);
+    if (report.ask_recovery) {
+        hal_can_purge(core->hal, side);
+        hal_can_recover(core->hal, side);
     }
-    if (vehicle.off) {
-        agv_transmitter_discard(&core->transmitter, &core->counters);
-    }
-    if (vehicle.ask_recovery) {
-        recover(core, ports, HAL_CAN_VEHICLE);
-    }
-    if (ai.ask_recovery) {
-        recover(core, ports, HAL_CAN_AI);
-    }
-    if (vehicle.overrun || ai.overrun) {
+    if (report.overrun) {
         agv_faults_event(&core->monitor.faults, AGV_FAULT_RX_OVERRUN, core->now_ms);
     }
-    const bool waits = agv_transmitter_stalled(&core->transmitter, core->now_ms, core->config.tx_stalled_ms);
-    agv_faults_levels(&core->monitor.faults, judged,
-                      agv_fault_when(vehicle.off, AGV_FAULT_BUS_OFF) |
-                          agv_fault_when(vehicle.stalled || waits, AGV_FAULT_TX_STALLED) |
-                          agv_fault_when(vehicle.passive || ai.passive, AGV_FAULT_ERROR_PASSIVE) |
-                          agv_fault_when(ai.off || ai.stalled, AGV_FAULT_AI_BUS_OFF));
+    return report;
+}
+
+/* Returns whether the vehicle side has come back from bus-off. */
+static bool judge_buses(agv_core_t *core) {
+    agv_faults_t *const faults = &core->monitor.faults;
+    const agv_bus_report_t vehicle = follow_bus(core, HAL_CAN_VEHICLE, AGV_SET_COMMANDS);
+    const agv_bus_report_t ai = follow_bus(core, HAL_CAN_AI, AGV_SET_STATUS);
+    agv_faults_level(faults, AGV_FAULT_BUS_OFF, vehicle.off);
+    agv_faults_level(faults, AGV_FAULT_TX_STALLED, vehicle.stalled || agv_transmitter_stalled(core));
+    agv_faults_level(faults, AGV_FAULT_ERROR_PASSIVE, vehicle.passive || ai.passive);
+    agv_faults_level(faults, AGV_FAULT_AI_BUS_OFF, ai.off || ai.stalled);
     return vehicle.recovered;
 }
 
-static void send_status_frame(agv_core_t *core, agv_outlet_t *outlet) {
-    const uint32_t checksum = core->config_checksum;
-    const uint8_t data[AGV_DLC] = {core->machine.state,
-                                   core->machine.first_reason,
-                                   (uint8_t)(core->machine.output_closed ? 1u : 0u),
-                                   0u, /* alive counter, filled in by the transmitter */
-                                   (uint8_t)checksum,
-                                   (uint8_t)(checksum >> 8u),
-                                   (uint8_t)(checksum >> 16u),
-                                   (uint8_t)(checksum >> 24u)};
-    agv_transmitter_status(&core->transmitter, outlet, data, core->config.status_frame_period_ms);
-}
-
-static void transmit(agv_core_t *core, const agv_ports_t *ports, bool all_at_once) {
-    agv_outlet_t outlet = agv_core_outlet(core, ports);
-    if (all_at_once && (outlet.wanted != 0u)) {
-        agv_transmitter_burst(&core->transmitter, &outlet);
+static void transmit(agv_core_t *core, bool all_at_once) {
+    if (all_at_once) {
+        agv_transmitter_burst(core);
     }
-    agv_transmitter_tick(&core->transmitter, &outlet);
-    send_status_frame(core, &outlet);
-    agv_core_after_sending(core, ports, &outlet);
+    agv_transmitter_tick(core);
     core->checked_in |= CHECKED_SEND;
+    if (core->monitor.faults.changed) {
+        (void)agv_core_react(core); /* the gate refused a frame */
+    }
 }
 
-static void show_led(agv_core_t *core, const agv_ports_t *ports, uint32_t elapsed_ms) {
-    const agv_faults_t *faults = &core->monitor.faults;
-    const int8_t code = agv_led_code(faults->tripping | faults->latched, faults->active);
-    if (agv_led_tick(&core->led, code, core->config.shadow == (uint16_t)AGV_SHADOW_ON, elapsed_ms)) {
-        hal_led_set(ports->hal, core->led.on);
+void agv_core_show_led(agv_core_t *core, uint32_t elapsed_ms) {
+    if (agv_led_tick(&core->led, core->led_code, core->config.shadow == (uint16_t)AGV_SHADOW_ON, elapsed_ms)) {
+        hal_led_set(core->hal, core->led.on);
     }
 }
 
 /* INT-3: flash may stall the processor, so only where no reaction can be due. One event a tick. */
-static void store_events(agv_core_t *core, const agv_ports_t *ports) {
-    const bool standing = (core->machine.state == (uint8_t)AGV_STATE_STANDBY) &&
-                          agv_monitor_standstill(&core->monitor, &core->config, core->now_ms);
-    agv_event_t event;
-    if (((core->machine.state == (uint8_t)AGV_STATE_SAFE) || standing) &&
-        agv_recorder_next_to_store(ports->recorder, &event)) {
-        (void)hal_store_append(ports->hal, &event, sizeof event);
-        agv_recorder_stored(ports->recorder, event.sequence);
+static void store_events(agv_core_t *core) {
+    if ((core->machine.state != (uint8_t)AGV_STATE_SAFE) &&
+        ((core->machine.state != (uint8_t)AGV_STATE_STANDBY) || !agv_monitor_standstill(core))) {
+        return;
+    }
+    const agv_event_t *const event = agv_recorder_next_to_store(core->recorder);
+    if (event != NULL) {
+        (void)hal_store_append(core->hal, event, sizeof *event);
+        agv_recorder_stored(core->recorder);
     }
 }
 
-static void feed_watchdog(agv_core_t *core, const agv_ports_t *ports) {
+static void feed_watchdog(agv_core_t *core) {
     if (core->checked_in == (uint8_t)CHECKED_ALL) {
         core->checked_in = 0u;
         agv_timer_start(&core->unfed, core->now_ms);
-        hal_watchdog_feed(ports->hal);
+        hal_watchdog_feed(core->hal);
     }
 }
 
 void agv_supervisor_start(agv_supervisor_t *supervisor, const agv_ports_t *ports, const agv_config_t *config,
                           bool self_test_passed, uint32_t now_ms) {
-    agv_core_start(&supervisor->core, ports, config, self_test_passed, now_ms);
-    seal(supervisor);
+    agv_core_t *const core = &supervisor->core;
+    const bool config_valid = agv_config_check(config).problem == AGV_CONFIG_OK;
+    (void)memset(core, 0, sizeof *core);
+    attach(core, ports);
+    core->now_ms = now_ms;
+    if (config_valid) {
+        core->config = *config;
+    } else {
+        agv_core_built_in_config(&core->config, config->id_set, config->topology);
+    }
+    agv_recorder_start(core->recorder);
+    agv_core_begin(core, config_valid, self_test_passed, false);
+    close_core(supervisor);
 }
 
 void agv_supervisor_frame(agv_supervisor_t *supervisor, const agv_ports_t *ports, hal_can_side_t side,
                           const hal_can_frame_t *frame) {
-    agv_core_t *core = &supervisor->core;
-    check_memory(supervisor, ports, frame->time_ms);
-    advance(core, frame->time_ms);
-    agv_core_frame(core, ports, side, frame);
-    seal(supervisor);
+    agv_core_t *const core = open_core(supervisor, ports, frame->time_ms);
+    agv_core_frame(core, side, frame);
+    close_core(supervisor);
 }
 
 void agv_supervisor_tick(agv_supervisor_t *supervisor, const agv_ports_t *ports, uint32_t now_ms) {
-    agv_core_t *core = &supervisor->core;
-    check_memory(supervisor, ports, now_ms);
-    const uint32_t elapsed_ms = step_time(core, now_ms);
-    core->checked_in |= CHECKED_STEP;
-    const bool recovered = judge_buses(core, ports);
-    agv_monitor_tick(&core->monitor, &core->config, core->now_ms);
-    (void)agv_core_react(core, ports);
-    transmit(core, ports, recovered);
-    feed_watchdog(core, ports);
-    show_led(core, ports, elapsed_ms);
-    store_events(core, ports);
-    seal(supervisor);
+    agv_core_t *const core = open_core(supervisor, ports, now_ms);
+    const uint32_t elapsed_ms = step_time(core);
+    core->checked_in |= (uint8_t)(CHECKED_STEP | (supervisor->receive_alive ? CHECKED_RECEIVE : 0));
+    supervisor->receive_alive = false;
+    const bool recovered = judge_buses(core);
+    agv_monitor_tick(core);
+    (void)agv_core_react(core);
+    transmit(core, recovered);
+    feed_watchdog(core);
+    agv_core_show_led(core, elapsed_ms);
+    store_events(core);
+    close_core(supervisor);
 }
 
 void agv_supervisor_receive_alive(agv_supervisor_t *supervisor) {
-    const uint8_t before = supervisor->core.checked_in;
-    supervisor->core.checked_in |= CHECKED_RECEIVE;
-    if (supervisor->core.checked_in != before) {
-        seal(supervisor);
-    }
-}
-
-agv_state_t agv_supervisor_state(const agv_supervisor_t *supervisor) {
-    return (agv_state_t)supervisor->core.machine.state;
-}
-
-agv_fault_t agv_supervisor_first_reason(const agv_supervisor_t *supervisor) {
-    return (agv_fault_t)supervisor->core.machine.first_reason;
-}
-
-agv_fault_set_t agv_supervisor_active_faults(const agv_supervisor_t *supervisor) {
-    return supervisor->core.monitor.faults.active;
-}
-
-agv_fault_set_t agv_supervisor_active_trips(const agv_supervisor_t *supervisor) {
-    return supervisor->core.monitor.faults.tripping;
-}
-
-bool agv_supervisor_output_closed(const agv_supervisor_t *supervisor) {
-    return supervisor->core.machine.output_closed;
-}
-
-int8_t agv_supervisor_led_code(const agv_supervisor_t *supervisor) {
-    return supervisor->core.led.code;
-}
-
-const agv_counters_t *agv_supervisor_counters(const agv_supervisor_t *supervisor) {
-    return &supervisor->core.counters;
-}
-
-const agv_config_t *agv_supervisor_config(const agv_supervisor_t *supervisor) {
-    return &supervisor->core.config;
+    supervisor->receive_alive = true;
 }

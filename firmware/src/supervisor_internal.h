@@ -6,37 +6,42 @@
 #ifndef AGV_SUPERVISOR_INTERNAL_H
 #define AGV_SUPERVISOR_INTERNAL_H
 
-#include "agv/supervisor.h"
-
-/** Make the outlet for this call: the gate's view of the state, and which own commands are sent. */
-agv_outlet_t agv_core_outlet(agv_core_t *core, const agv_ports_t *ports);
+#include "agv/core.h"
 
 /**
  * Faults as they stand: report them, step the state machine, carry out what follows.
- * @return whether the safe commands were all sent at once
+ * @return whether a trip sent all safe commands at once
  */
-bool agv_core_react(agv_core_t *core, const agv_ports_t *ports);
-
-/** After sending: a frame that the gate refused trips (INT-4), 168h P that was sent starts its confirmation. */
-void agv_core_after_sending(agv_core_t *core, const agv_ports_t *ports, const agv_outlet_t *outlet);
+bool agv_core_react(agv_core_t *core);
 
 /** Record an event. */
-void agv_core_record(const agv_core_t *core, const agv_ports_t *ports, const agv_event_t *what);
+void agv_core_record(const agv_core_t *core, agv_event_kind_t kind, uint8_t a, uint8_t b, uint8_t c);
+
+/** Record an event that says what is missing. */
+void agv_core_record_missing(const agv_core_t *core, agv_event_kind_t kind, uint8_t accepted, uint8_t missing);
 
 /** Write the latch record. */
-void agv_core_store_latch(const agv_core_t *core, const agv_ports_t *ports);
+void agv_core_store_latch(const agv_core_t *core);
 
-/** Report what changed among the faults to the recorder. @return those that became trips. */
-agv_fault_set_t agv_core_report_faults(agv_core_t *core, const agv_ports_t *ports);
+/**
+ * Report what changed among the faults to the recorder, and sum up what is active.
+ * @return the highest-ranking fault that became a trip; AGV_FAULT_NONE
+ */
+agv_fault_t agv_core_report_faults(agv_core_t *core);
 
-/** Start: see agv_supervisor_start. */
-void agv_core_start(agv_core_t *core, const agv_ports_t *ports, const agv_config_t *config, bool self_test_passed,
-                    uint32_t now_ms);
+/** Start, once core->config, hal, recorder and now_ms stand (FSM-7, FSM-9). */
+void agv_core_begin(agv_core_t *core, bool config_valid, bool self_test_passed, bool corrupted);
 
 /** Start again after a corruption was found in the memory of the supervisor (INT-5). */
-void agv_core_restart_corrupted(agv_core_t *core, const agv_ports_t *ports, uint32_t now_ms);
+void agv_core_begin_corrupted(agv_core_t *core);
+
+/** The defaults, but on the identifiers and the wiring that this vehicle has, as far as they are known. */
+void agv_core_built_in_config(agv_config_t *config, uint16_t id_set, uint16_t topology);
 
 /** Handle a frame. */
-void agv_core_frame(agv_core_t *core, const agv_ports_t *ports, hal_can_side_t side, const hal_can_frame_t *frame);
+void agv_core_frame(agv_core_t *core, hal_can_side_t side, const hal_can_frame_t *frame);
+
+/** Advance the LED. */
+void agv_core_show_led(agv_core_t *core, uint32_t elapsed_ms);
 
 #endif

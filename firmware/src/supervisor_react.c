@@ -1,226 +1,230 @@
+#include "agv/codec.h"
+#include "agv/latch.h"
 #include "hal/safety_output.h"
 #include "supervisor_internal.h"
 
-#include "agv/codec.h"
-#include "agv/latch.h"
-
-static agv_state_t state_of(const agv_core_t *core) {
-    return (agv_state_t)core->machine.state;
+static void add_entry(const agv_core_t *core, agv_entry_t *entry) {
+    entry->state = core->machine.state;
+    entry->first_reason = core->machine.first_reason;
+    agv_recorder_add(core->recorder, entry, core->now_ms);
 }
 
-static bool angle_is_held(const agv_core_t *core) {
-    const uint16_t complement = (uint16_t)~core->hold.raw;
-    return core->hold.check == complement;
+void agv_core_record(const agv_core_t *core, agv_event_kind_t kind, uint8_t a, uint8_t b, uint8_t c) {
+    agv_entry_t entry = {.kind = (uint8_t)kind, .a = a, .b = b, .c = c};
+    add_entry(core, &entry);
 }
 
-static uint8_t wanted_commands(const agv_core_t *core) {
-    uint8_t wanted = 0u;
-    if (agv_state_commands_safe(state_of(core))) {
-        wanted = (1u << AGV_MSG_TURN_SIGNAL_COMMAND) | (1u << AGV_MSG_THROTTLE_COMMAND);
-        if (core->machine.park_released) {
-            wanted |= 1u << AGV_MSG_GEAR_COMMAND;
-        }
-        if (agv_state_is_latched(state_of(core)) && angle_is_held(core) &&
-            agv_monitor_steering_holdable(&core->monitor)) {
-            wanted |= 1u << AGV_MSG_STEERING_COMMAND;
+void agv_core_record_missing(const agv_core_t *core, agv_event_kind_t kind, uint8_t accepted, uint8_t missing) {
+    agv_entry_t entry = {.kind = (uint8_t)kind, .a = accepted, .missing = missing};
+    add_entry(core, &entry);
+}
+
+void agv_core_store_latch(const agv_core_t *core) {
+    agv_latch_write(core->hal, agv_state_is_latched(agv_core_state(core)), (agv_fault_t)core->machine.first_reason,
+                    (agv_fault_t)core->machine.unresettable);
+}
+
+/* The new marks of a fault, as it stands now. */
+static uint8_t judge_marks(const agv_core_t *core, agv_fault_t fault, uint8_t marks) {
+    uint8_t now = marks & (AGV_MARK_ACTIVE | AGV_MARK_LATCHED);
+    if ((now & AGV_MARK_ACTIVE) != 0u) {
+        now |= AGV_MARK_REPORTED;
+        if (agv_monitor_is_trip(core, fault)) {
+            now |= AGV_MARK_TRIPPING;
+            now |= agv_state_is_latched(agv_core_state(core)) ? AGV_MARK_LATCHED : 0u;
         }
     }
-    return wanted;
+    return now;
 }
 
-agv_outlet_t agv_core_outlet(agv_core_t *core, const agv_ports_t *ports) {
-    const agv_config_t *config = &core->config;
-    const agv_outlet_t outlet = {
-        .hal = ports->hal,
-        .gate = {.state = core->machine.state,
-                 .id_set = (uint8_t)config->id_set,
-                 .gateway = config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY,
-                 .pass_all_in_manual = config->gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL,
-                 .shadow = config->shadow == (uint16_t)AGV_SHADOW_ON,
-                 .throttle_max_counts = agv_gateway_throttle_max_counts(config),
-                 .status_id = config->status_frame_id,
-                 .hold_raw = core->hold.raw,
-                 .hold_check = core->hold.check},
-        .counters = &core->counters,
-        .now_ms = core->now_ms,
-        .override_gap_ms = config->override_gap_ms,
-        .wanted = wanted_commands(core),
-        .frozen_heartbeat = config->own_heartbeat == (uint16_t)AGV_OWN_HEARTBEAT_FROZEN,
-        .vehicle_side_off = agv_bus_is_off(&core->buses[HAL_CAN_VEHICLE]),
-    };
-    return outlet;
-}
-
-void agv_core_record(const agv_core_t *core, const agv_ports_t *ports, const agv_event_t *what) {
-    agv_event_t event = *what;
-    event.time_ms = core->now_ms;
-    event.state = core->machine.state;
-    event.first_reason = core->machine.first_reason;
-    agv_recorder_add(ports->recorder, &event);
-}
-
-void agv_core_store_latch(const agv_core_t *core, const agv_ports_t *ports) {
-    const agv_state_machine_t *machine = &core->machine;
-    agv_latch_write(ports->hal, agv_state_is_latched(state_of(core)), (agv_fault_t)machine->first_reason,
-                    (agv_fault_t)machine->unresettable);
-}
-
-static void record_fault(const agv_core_t *core, const agv_ports_t *ports, agv_fault_t fault, bool trip, bool active) {
-    const agv_event_t event = {.kind = AGV_EVENT_FAULT,
-                               .a = (uint8_t)fault,
-                               .b = (uint8_t)(trip ? AGV_CLASS_TRIP : AGV_CLASS_WARN),
-                               .c = (uint8_t)(active ? 1u : 0u)};
-    agv_core_record(core, ports, &event);
-}
-
-agv_fault_set_t agv_core_report_faults(agv_core_t *core, const agv_ports_t *ports) {
-    const agv_fault_set_t classes = agv_monitor_trip_classes(&core->monitor, &core->config);
-    const agv_fault_set_t were_trips = core->monitor.faults.tripping;
-    const agv_fault_changes_t changes = agv_faults_report(&core->monitor.faults, classes);
-    agv_fault_set_t rest = changes.raised | changes.ended;
-    while (rest != 0u) {
-        const agv_fault_t fault = agv_fault_highest(rest);
-        const agv_fault_set_t bit = agv_fault_bit(fault);
-        const bool raised = (changes.raised & bit) != 0u;
-        const bool trip = ((raised ? classes : were_trips) & bit) != 0u;
-        if (raised && !trip) {
-            core->counters.warnings++;
-        }
-        record_fault(core, ports, fault, trip, raised);
-        rest &= ~bit;
+static void keep_first(agv_fault_t *kept, agv_fault_t fault) {
+    if (*kept == AGV_FAULT_NONE) {
+        *kept = fault;
     }
-    return changes.trips;
 }
 
-static agv_situation_t situation_of(agv_core_t *core, agv_fault_set_t raised_trips) {
-    agv_monitor_t *monitor = &core->monitor;
-    const agv_config_t *config = &core->config;
-    const agv_fault_set_t unsafe = agv_fault_bit(AGV_FAULT_BUS_OFF) | agv_fault_bit(AGV_FAULT_TX_STALLED);
-    const bool unfed = agv_timer_exceeded(&core->unfed, core->now_ms, config->watchdog_period_ms);
+static void sum_up_trip(agv_core_t *core, agv_fault_t fault) {
+    const uint8_t flags = agv_fault_flags(fault);
+    if ((flags & AGV_FAULT_FLAG_FROM_AI) != 0u) {
+        core->ai_cause = true;
+    } else {
+        keep_first(&core->cause, fault);
+    }
+    if ((flags & AGV_FAULT_FLAG_UNRESETTABLE) != 0u) {
+        keep_first(&core->forever, fault);
+    }
+}
+
+/* Raised, raised again with another class, or ended. */
+static void record_change(agv_core_t *core, agv_fault_t fault, uint8_t before, uint8_t now) {
+    const bool active = (now & AGV_MARK_ACTIVE) != 0u;
+    const bool trip = ((active ? now : before) & AGV_MARK_TRIPPING) != 0u;
+    if (((before ^ now) & (AGV_MARK_REPORTED | AGV_MARK_TRIPPING)) == 0u) {
+        return;
+    }
+    if (active && !trip) {
+        core->counters.warnings++;
+    }
+    agv_core_record(core, AGV_EVENT_FAULT, (uint8_t)fault, (uint8_t)(trip ? AGV_CLASS_TRIP : AGV_CLASS_WARN),
+                    (uint8_t)(active ? 1u : 0u));
+}
+
+/* From the highest rank down, so that the first one found is the one that counts. */
+static agv_fault_t report_all(agv_core_t *core) {
+    agv_fault_t raised = AGV_FAULT_NONE;
+    agv_fault_t trip = AGV_FAULT_NONE;
+    agv_fault_t warning = AGV_FAULT_NONE;
+    for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
+        const agv_fault_t fault = (agv_fault_t)i;
+        const uint8_t before = core->monitor.faults.marks[i];
+        const uint8_t now = judge_marks(core, fault, before);
+        if (now == 0u && before == 0u) {
+            continue;
+        }
+        core->monitor.faults.marks[i] = now;
+        record_change(core, fault, before, now);
+        if ((now & AGV_MARK_TRIPPING) != 0u) {
+            sum_up_trip(core, fault);
+            if ((before & AGV_MARK_TRIPPING) == 0u) {
+                keep_first(&raised, fault);
+            }
+        }
+        keep_first(((now & (AGV_MARK_TRIPPING | AGV_MARK_LATCHED)) != 0u) ? &trip : &warning,
+                   (now != 0u) ? fault : AGV_FAULT_NONE);
+    }
+    core->led_code = agv_led_code((trip != AGV_FAULT_NONE) ? trip : warning);
+    return raised;
+}
+
+agv_fault_t agv_core_report_faults(agv_core_t *core) {
+    if (!core->monitor.faults.changed) {
+        return AGV_FAULT_NONE;
+    }
+    core->monitor.faults.changed = false;
+    core->cause = AGV_FAULT_NONE;
+    core->forever = AGV_FAULT_NONE;
+    core->ai_cause = false;
+    return report_all(core);
+}
+
+static uint8_t missing_of_vehicle(agv_core_t *core) {
+    const agv_liveness_t *const liveness = &core->monitor.liveness;
+    uint8_t missing = 0u;
+    missing |= agv_liveness_alive(liveness, AGV_NODE_VCU) ? 0u : AGV_MISSING_VCU_HEARTBEAT;
+    missing |= agv_liveness_alive(liveness, AGV_NODE_EPS) ? 0u : AGV_MISSING_EPS_HEARTBEAT;
+    missing |= agv_monitor_standstill(core) ? 0u : AGV_MISSING_STANDSTILL;
+    missing |= (core->monitor.vehicle.mode == (uint8_t)AGV_MODE_MANUAL) ? 0u : AGV_MISSING_MANUAL;
+    missing |= agv_monitor_messages_fresh(core) ? 0u : AGV_MISSING_MESSAGES;
+    return missing;
+}
+
+static bool output_is_unsafe(agv_core_t *core) {
+    const agv_faults_t *const faults = &core->monitor.faults;
+    return agv_timer_exceeded(&core->unfed, core->now_ms, core->config.watchdog_period_ms) ||
+           agv_faults_is_active(faults, AGV_FAULT_BUS_OFF) || agv_faults_is_active(faults, AGV_FAULT_TX_STALLED);
+}
+
+static agv_step_t step(agv_core_t *core, agv_fault_t raised) {
     const agv_situation_t situation = {
-        .raised_trips = raised_trips,
-        .active_trips = monitor->faults.tripping,
-        .vcu_alive = agv_monitor_alive(monitor, AGV_NODE_VCU),
-        .eps_alive = agv_monitor_alive(monitor, AGV_NODE_EPS),
-        .ai_alive = agv_monitor_alive(monitor, AGV_NODE_AI),
-        .messages_fresh = agv_monitor_messages_fresh(monitor, config),
-        .manual = monitor->vehicle.mode == (uint8_t)AGV_MODE_MANUAL,
-        .engaged = monitor->vehicle.mode == (uint8_t)AGV_MODE_ENGAGED,
-        .standstill = agv_monitor_standstill(monitor, config, core->now_ms),
-        .autopilot_off = agv_monitor_autopilot_off(monitor),
-        .in_park = agv_monitor_in_park(monitor),
-        .button = monitor->vehicle.button_pressed,
-        .output_unsafe = unfed || ((monitor->faults.active & unsafe) != 0u),
+        .raised = raised,
+        .cause = core->cause,
+        .forever = core->forever,
+        .missing = missing_of_vehicle(core),
+        .ai_cause = core->ai_cause,
+        .engaged = agv_monitor_engaged(core),
+        .ai_alive = agv_liveness_alive(&core->monitor.liveness, AGV_NODE_AI),
+        .autopilot_off = agv_monitor_autopilot_off(core),
+        .in_park = agv_monitor_in_park(core),
+        .button = core->monitor.vehicle.button_pressed,
+        .output_unsafe = output_is_unsafe(core),
     };
-    return situation;
+    return agv_state_machine_step(&core->machine, &core->config, &situation, core->now_ms);
 }
 
-/* The angle of the moment of the trip; without one, the first valid angle after it. */
+/* The angle of the moment of the trip; without one, the first valid angle after it (FSM-10). */
 static void follow_hold(agv_core_t *core, bool tripped) {
-    const agv_vehicle_t *vehicle = &core->monitor.vehicle;
-    const bool latched = agv_state_is_latched(state_of(core));
-    if (!latched) {
-        core->hold = (agv_hold_t){0};
-    } else if ((tripped || !angle_is_held(core)) && vehicle->angle_known) {
+    const agv_vehicle_t *const vehicle = &core->monitor.vehicle;
+    const uint16_t complement = (uint16_t)~core->hold.raw;
+    if (tripped || !agv_state_is_latched(agv_core_state(core))) {
+        core->hold.raw = 0u;
+        core->hold.check = 0u;
+    }
+    if (agv_state_is_latched(agv_core_state(core)) && vehicle->angle_known &&
+        (tripped || (core->hold.check != complement))) {
         core->hold.raw = (uint16_t)(vehicle->angle_ddeg + AGV_ANGLE_RAW_CENTRE);
         core->hold.check = (uint16_t)~core->hold.raw;
+    }
+}
+
+/* INIT or SAFE to STANDBY: what was latched is over, and nothing of it may still be sent. */
+static void leave_safe_commands(agv_core_t *core, bool reset) {
+    agv_transmitter_discard(core, AGV_SET_COMMANDS);
+    hal_can_purge(core->hal, HAL_CAN_VEHICLE);
+    for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
+        core->monitor.faults.marks[i] &= (uint8_t)~AGV_MARK_LATCHED;
+    }
+    if (reset) {
+        agv_monitor_forget_ai(core);
+    }
+}
+
+static void send_all_at_once(agv_core_t *core) {
+    agv_transmitter_discard(core, AGV_SET_COMMANDS);
+    hal_can_purge(core->hal, HAL_CAN_VEHICLE);
+    agv_transmitter_burst(core);
+}
+
+static void carry_out_transition(agv_core_t *core, const agv_step_t *taken) {
+    const uint8_t reason = taken->tripped ? core->machine.first_reason : (uint8_t)AGV_FAULT_NONE;
+    const agv_state_t from = (agv_state_t)taken->from;
+    if (taken->tripped) {
+        send_all_at_once(core);
+    } else if (agv_state_commands_safe(from) && !agv_state_commands_safe(agv_core_state(core))) {
+        leave_safe_commands(core, taken->reset_accepted);
     } else {
-        /* held, or nothing known yet */
+        /* nothing to send or to forget */
     }
-}
-
-static void report_step(agv_core_t *core, const agv_ports_t *ports, const agv_step_t *step) {
-    if (step->from != core->machine.state) {
-        const agv_event_t event = {.kind = AGV_EVENT_STATE,
-                                   .a = step->from,
-                                   .b = core->machine.state,
-                                   .c = step->tripped ? core->machine.first_reason : (uint8_t)AGV_FAULT_NONE};
-        agv_core_record(core, ports, &event);
-    }
-    if (step->reset_accepted || step->reset_refused) {
-        const agv_event_t event = {
-            .kind = AGV_EVENT_RESET, .a = (uint8_t)(step->reset_accepted ? 1u : 0u), .missing = step->missing};
-        agv_core_record(core, ports, &event);
-    }
-    if (step->startup_timed_out) {
-        const agv_event_t event = {.kind = AGV_EVENT_STARTUP, .missing = step->missing};
-        agv_core_record(core, ports, &event);
-    }
-}
-
-static void switch_output(agv_core_t *core, const agv_ports_t *ports, bool was_closed) {
-    const bool closed = core->machine.output_closed;
-    if (closed != was_closed) {
-        const agv_event_t event = {.kind = AGV_EVENT_OUTPUT, .a = (uint8_t)(closed ? 1u : 0u)};
-        hal_safety_output_set(ports->hal, closed);
-        agv_core_record(core, ports, &event);
-    }
-}
-
-static void send_all_at_once(agv_core_t *core, const agv_ports_t *ports) {
-    agv_outlet_t outlet = agv_core_outlet(core, ports);
-    agv_transmitter_discard(&core->transmitter, &core->counters);
-    hal_can_purge(ports->hal, HAL_CAN_VEHICLE);
-    agv_transmitter_burst(&core->transmitter, &outlet);
-    if (outlet.park_sent) {
-        agv_state_machine_park_sent(&core->machine, core->now_ms);
-    }
-}
-
-static void leave_latch(agv_core_t *core, const agv_ports_t *ports, const agv_step_t *step) {
-    if (agv_state_commands_safe((agv_state_t)step->from) && !agv_state_commands_safe(state_of(core))) {
-        agv_transmitter_discard(&core->transmitter, &core->counters);
-        hal_can_purge(ports->hal, HAL_CAN_VEHICLE);
-        core->monitor.faults.latched = 0u;
-    }
-    if (step->reset_accepted) {
-        agv_monitor_forget_ai(&core->monitor);
-    }
-}
-
-static void carry_out(agv_core_t *core, const agv_ports_t *ports, const agv_step_t *step, agv_fault_set_t trips) {
-    if (agv_state_is_latched(state_of(core))) {
-        core->monitor.faults.latched |= trips;
-    }
-    follow_hold(core, step->tripped);
     if (core->machine.state != (uint8_t)AGV_STATE_ACTIVE) {
-        core->gateway = (agv_gateway_t){0};
+        core->gateway.sent = false;
     }
-    leave_latch(core, ports, step);
-    if (step->tripped) {
-        send_all_at_once(core, ports);
-    }
-    report_step(core, ports, step);
-    if (agv_state_is_latched((agv_state_t)step->from) != agv_state_is_latched(state_of(core))) {
-        agv_core_store_latch(core, ports);
+    core->monitor.faults.changed = true; /* what is latched, and for how long, goes by the state */
+    agv_core_record(core, AGV_EVENT_STATE, taken->from, core->machine.state, reason);
+    if (agv_state_is_latched(from) != agv_state_is_latched(agv_core_state(core))) {
+        agv_core_store_latch(core);
     }
 }
 
-bool agv_core_react(agv_core_t *core, const agv_ports_t *ports) {
-    const agv_fault_set_t own =
-        agv_fault_bit(AGV_FAULT_SAFE_STATE_UNCONFIRMED) | agv_fault_bit(AGV_FAULT_STARTUP_TIMEOUT);
+static void carry_out(agv_core_t *core, const agv_step_t *taken) {
+    agv_faults_t *const faults = &core->monitor.faults;
+    follow_hold(core, taken->tripped);
+    if (taken->from != core->machine.state) {
+        carry_out_transition(core, taken);
+    }
+    if (taken->reset_accepted || taken->reset_refused) {
+        agv_core_record_missing(core, AGV_EVENT_RESET, (uint8_t)(taken->reset_accepted ? 1u : 0u),
+                                taken->reset_accepted ? 0u : taken->missing);
+    }
+    if (taken->startup_timed_out) {
+        agv_core_record_missing(core, AGV_EVENT_STARTUP, 0u, taken->missing);
+    }
+    agv_faults_level(faults, AGV_FAULT_SAFE_STATE_UNCONFIRMED, core->machine.safe_state_unconfirmed);
+    agv_faults_level(faults, AGV_FAULT_STARTUP_TIMEOUT,
+                     core->machine.startup_reported && (core->machine.state == (uint8_t)AGV_STATE_INIT));
+}
+
+bool agv_core_react(agv_core_t *core) {
     const bool was_closed = core->machine.output_closed;
     const uint8_t unresettable = core->machine.unresettable;
-    const agv_fault_set_t trips = agv_core_report_faults(core, ports);
-    const agv_situation_t situation = situation_of(core, trips);
-    const agv_step_t step = agv_state_machine_step(&core->machine, &core->config, &situation, core->now_ms);
-    carry_out(core, ports, &step, trips);
+    const agv_fault_t raised = agv_core_report_faults(core);
+    const agv_step_t taken = step(core, raised);
+    carry_out(core, &taken);
+    (void)agv_core_report_faults(core);
     if (unresettable != core->machine.unresettable) {
-        agv_core_store_latch(core, ports);
+        agv_core_store_latch(core);
     }
-    agv_faults_levels(&core->monitor.faults, own, agv_state_machine_faults(&core->machine));
-    core->monitor.faults.latched |=
-        agv_core_report_faults(core, ports) & (agv_state_is_latched(state_of(core)) ? ~(agv_fault_set_t)0u : 0u);
-    switch_output(core, ports, was_closed);
-    return step.tripped;
-}
-
-void agv_core_after_sending(agv_core_t *core, const agv_ports_t *ports, const agv_outlet_t *outlet) {
-    if (outlet->park_sent) {
-        agv_state_machine_park_sent(&core->machine, core->now_ms);
+    if (was_closed != core->machine.output_closed) {
+        hal_safety_output_set(core->hal, core->machine.output_closed);
+        agv_core_record(core, AGV_EVENT_OUTPUT, (uint8_t)(core->machine.output_closed ? 1u : 0u), 0u, 0u);
     }
-    if (outlet->refused) {
-        agv_faults_event(&core->monitor.faults, AGV_FAULT_TX_GATE_REFUSED, core->now_ms);
-        (void)agv_core_react(core, ports);
-    }
+    return taken.tripped;
 }

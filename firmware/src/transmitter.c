@@ -1,252 +1,251 @@
 #include "agv/transmitter.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #include "agv/codec.h"
+#include "agv/core.h"
+#include "agv/gate.h"
 
-static uint8_t bit_of(agv_message_t command) {
-    return (uint8_t)(1u << (uint32_t)command);
+static uint32_t bit_of(agv_message_t message) {
+    return 1u << (uint32_t)message;
 }
 
-static bool is_command(agv_message_t message) {
-    return (uint32_t)message < AGV_COMMAND_COUNT;
+void agv_transmitter_start(agv_core_t *core) {
+    core->transmitter = (agv_transmitter_t){.status_due_ms = core->now_ms};
+    agv_scheduler_restart(&core->transmitter.scheduler, core->now_ms);
 }
 
-void agv_transmitter_start(agv_transmitter_t *transmitter, uint32_t now_ms) {
-    *transmitter = (agv_transmitter_t){.status_due_ms = now_ms};
-    agv_scheduler_restart(&transmitter->scheduler, now_ms);
-}
-
-static void discard(agv_transmitter_t *transmitter, agv_counters_t *counters, uint16_t messages) {
+void agv_transmitter_discard(agv_core_t *core, uint16_t messages) {
+    agv_transmitter_t *const transmitter = &core->transmitter;
     for (uint32_t i = 0u; i < (uint32_t)AGV_MSG_COUNT; i++) {
-        if ((transmitter->kept & messages & (1u << i)) != 0u) {
-            counters->dropped++;
+        const uint32_t bit = messages & bit_of((agv_message_t)i);
+        if ((transmitter->kept & bit) != 0u) {
+            core->counters.dropped++;
+        }
+        if ((bit & AGV_SET_COMMANDS) != 0u) {
+            agv_timer_stop(&transmitter->waits[i]);
+            transmitter->scheduler.slots[i].override_waits = false;
         }
     }
     transmitter->kept &= (uint16_t)~messages;
 }
 
-void agv_transmitter_discard(agv_transmitter_t *transmitter, agv_counters_t *counters) {
-    discard(transmitter, counters, AGV_COMMANDS_ALL);
-    for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
-        agv_timer_stop(&transmitter->waits[i]);
-        transmitter->scheduler.slots[i].override_waits = false;
+/* The own commands that are sent in this state (FSM-1, FSM-10). */
+static uint32_t wanted_commands(const agv_core_t *core) {
+    const uint16_t complement = (uint16_t)~core->hold.raw;
+    uint32_t wanted = 0u;
+    if (agv_state_commands_safe(agv_core_state(core))) {
+        wanted = bit_of(AGV_MSG_TURN_SIGNAL_COMMAND) | bit_of(AGV_MSG_THROTTLE_COMMAND);
+        if (core->machine.park_released) {
+            wanted |= bit_of(AGV_MSG_GEAR_COMMAND);
+        }
+        if ((core->hold.check == complement) && agv_monitor_steering_holdable(core)) {
+            wanted |= bit_of(AGV_MSG_STEERING_COMMAND);
+        }
     }
-}
-
-void agv_transmitter_discard_ai(agv_transmitter_t *transmitter, agv_counters_t *counters) {
-    discard(transmitter, counters, (uint16_t)~AGV_COMMANDS_ALL);
+    return wanted;
 }
 
 /* The safe command: built-in constants, but for the alive counter and the held angle. */
-static void build(const agv_transmitter_t *transmitter, const agv_outlet_t *outlet, agv_message_t command,
-                  uint8_t data[AGV_DLC]) {
+static void build(const agv_core_t *core, agv_message_t command, uint8_t data[AGV_DLC]) {
+    static const agv_turn_signal_command_t hazard = {
+        .turn_left_on = true, .turn_right_on = true, .autopilot_off = true, .headlight_on = true};
+    static const agv_gear_command_t park = {.gear = AGV_GEAR_P};
     (void)memset(data, 0, AGV_DLC);
-    switch (command) {
-    case AGV_MSG_TURN_SIGNAL_COMMAND: {
-        const agv_turn_signal_command_t safe = {.turn_left_on = true,
-                                                .turn_right_on = true,
-                                                .autopilot_off = true,
-                                                .headlight_on = true,
-                                                .alive_counter = transmitter->alive_counter};
-        (void)agv_pack_turn_signal_command(data, &safe);
-        break;
-    }
-    case AGV_MSG_GEAR_COMMAND: {
-        const agv_gear_command_t safe = {.gear = AGV_GEAR_P};
-        (void)agv_pack_gear_command(data, &safe);
-        break;
-    }
-    case AGV_MSG_STEERING_COMMAND: {
-        const agv_steering_command_t safe = {.angle_ddeg = (int32_t)outlet->gate.hold_raw - AGV_ANGLE_RAW_CENTRE};
-        (void)agv_pack_steering_command(data, &safe);
-        break;
-    }
-    default: /* throttle 0 */
-        break;
+    if (command == AGV_MSG_TURN_SIGNAL_COMMAND) {
+        (void)agv_pack_turn_signal_command(data, &hazard);
+        data[AGV_DLC - 1u] = core->transmitter.alive_counter;
+    } else if (command == AGV_MSG_GEAR_COMMAND) {
+        (void)agv_pack_gear_command(data, &park);
+    } else if (command == AGV_MSG_STEERING_COMMAND) {
+        const agv_steering_command_t hold = {.angle_ddeg = (int32_t)core->hold.raw - AGV_ANGLE_RAW_CENTRE};
+        (void)agv_pack_steering_command(data, &hold);
+    } else {
+        /* throttle 0 */
     }
 }
 
-static agv_gate_result_t emit(agv_outlet_t *outlet, hal_can_side_t side, uint16_t id, const uint8_t data[AGV_DLC]) {
-    hal_can_frame_t frame = {.id = id, .time_ms = outlet->now_ms, .length = AGV_DLC};
+/* Send a frame through the gate. Returns false when the HAL did not take it. */
+static bool emit(agv_core_t *core, hal_can_side_t side, uint16_t id, const uint8_t data[AGV_DLC]) {
+    const agv_gate_t gate = {.config = &core->config,
+                             .hold_raw = core->hold.raw,
+                             .hold_check = core->hold.check,
+                             .state = core->machine.state};
+    hal_can_frame_t frame = {.id = id, .time_ms = core->now_ms, .length = AGV_DLC};
     (void)memcpy(frame.data, data, AGV_DLC);
-    const agv_gate_result_t result = agv_gate_send(&outlet->gate, outlet->hal, side, &frame);
-    switch (result) {
-    case AGV_GATE_SENT:
-        outlet->counters->sent++;
-        break;
-    case AGV_GATE_SHADOWED:
-        outlet->counters->shadowed++;
-        break;
-    case AGV_GATE_REFUSED:
-        outlet->counters->gate_refused++;
-        outlet->refused = true;
-        break;
-    default:
-        break;
+    const agv_gate_result_t result = agv_gate_send(&gate, core->hal, side, &frame);
+    if (result == AGV_GATE_SENT) {
+        core->counters.sent++;
+    } else if (result == AGV_GATE_SHADOWED) {
+        core->counters.shadowed++;
+    } else if (result == AGV_GATE_REFUSED) {
+        core->counters.gate_refused++;
+        agv_faults_event(&core->monitor.faults, AGV_FAULT_TX_GATE_REFUSED, core->now_ms);
+    } else {
+        /* not taken */
     }
-    return result;
+    return result != AGV_GATE_BUSY;
 }
 
-static agv_gate_result_t emit_message(agv_outlet_t *outlet, agv_message_t message, const uint8_t data[AGV_DLC]) {
-    const uint16_t id = agv_message_id(message, (agv_id_set_t)outlet->gate.id_set);
-    return emit(outlet, is_command(message) ? HAL_CAN_VEHICLE : HAL_CAN_AI, id, data);
+static bool emit_message(agv_core_t *core, agv_message_t message, const uint8_t data[AGV_DLC]) {
+    const hal_can_side_t side = ((uint32_t)message < AGV_COMMAND_COUNT) ? HAL_CAN_VEHICLE : HAL_CAN_AI;
+    return emit(core, side, agv_message_id(message, (agv_id_set_t)core->config.id_set), data);
 }
 
-/* Send an own command. It answers whatever was heard before. */
-static void send_own(agv_transmitter_t *transmitter, agv_outlet_t *outlet, agv_message_t command) {
+/* Send an own command. It answers whatever was heard before. In bus-off nothing is handed to the HAL. */
+static void send_own(agv_core_t *core, agv_message_t command) {
+    agv_transmitter_t *const transmitter = &core->transmitter;
     uint8_t data[AGV_DLC];
-    if (outlet->vehicle_side_off) {
+    if (agv_bus_is_off(&core->buses[HAL_CAN_VEHICLE])) {
         return;
     }
-    build(transmitter, outlet, command, data);
-    const agv_gate_result_t result = emit_message(outlet, command, data);
-    agv_timer_while(&transmitter->waits[command], result == AGV_GATE_BUSY, outlet->now_ms);
-    if ((result == AGV_GATE_SENT) || (result == AGV_GATE_SHADOWED)) {
-        transmitter->scheduler.slots[command].override_waits = false;
-        if (command == AGV_MSG_GEAR_COMMAND) {
-            outlet->park_sent = true;
-        }
-        if ((command == AGV_MSG_TURN_SIGNAL_COMMAND) && !outlet->frozen_heartbeat) {
-            transmitter->alive_counter++;
-        }
+    build(core, command, data);
+    const bool taken = emit_message(core, command, data);
+    agv_timer_while(&transmitter->waits[command], !taken, core->now_ms);
+    if (!taken) {
+        return;
+    }
+    transmitter->scheduler.slots[command].override_waits = false;
+    if (command == AGV_MSG_GEAR_COMMAND) {
+        agv_state_machine_park_sent(&core->machine, core->now_ms);
+    }
+    if ((command == AGV_MSG_TURN_SIGNAL_COMMAND) &&
+        (core->config.own_heartbeat == (uint16_t)AGV_OWN_HEARTBEAT_RUNNING)) {
+        transmitter->alive_counter++;
     }
 }
 
-static bool is_wanted(const agv_outlet_t *outlet, agv_message_t command) {
-    return (outlet->wanted & bit_of(command)) != 0u;
-}
-
-void agv_transmitter_burst(agv_transmitter_t *transmitter, agv_outlet_t *outlet) {
-    agv_scheduler_restart(&transmitter->scheduler, outlet->now_ms);
+void agv_transmitter_burst(agv_core_t *core) {
+    const uint32_t wanted = wanted_commands(core);
+    agv_scheduler_restart(&core->transmitter.scheduler, core->now_ms);
     for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
-        if (is_wanted(outlet, (agv_message_t)i)) {
-            send_own(transmitter, outlet, (agv_message_t)i);
+        if ((wanted & bit_of((agv_message_t)i)) != 0u) {
+            send_own(core, (agv_message_t)i);
         }
     }
-    transmitter->wanted_before = outlet->wanted;
+    core->transmitter.wanted_before = (uint8_t)wanted;
 }
 
-bool agv_transmitter_same_command(agv_message_t command, const agv_outlet_t *outlet, const uint8_t data[AGV_DLC]) {
-    agv_turn_signal_command_t signals;
-    agv_gear_command_t gear;
-    agv_throttle_command_t throttle;
-    agv_steering_command_t steering;
-    switch (command) {
-    case AGV_MSG_TURN_SIGNAL_COMMAND:
-        (void)agv_unpack_turn_signal_command(&signals, data);
-        return signals.turn_left_on && signals.turn_right_on && signals.autopilot_off && signals.headlight_on;
-    case AGV_MSG_GEAR_COMMAND:
-        return agv_unpack_gear_command(&gear, data) && (gear.gear == (uint8_t)AGV_GEAR_P);
-    case AGV_MSG_THROTTLE_COMMAND:
-        return agv_unpack_throttle_command(&throttle, data) && (throttle.throttle_permille == 0u);
-    default:
-        return agv_unpack_steering_command(&steering, data) &&
-               (steering.angle_ddeg == ((int32_t)outlet->gate.hold_raw - AGV_ANGLE_RAW_CENTRE));
+/* Whether a payload commands what the own command does. Reserved bits and the alive counter command nothing. */
+static bool is_same_command(const agv_core_t *core, agv_message_t command, const uint8_t data[AGV_DLC]) {
+    static const uint8_t commanding[AGV_COMMAND_COUNT][AGV_DLC] = {
+        {0u, 0u, 0u, 0u, 0xF0u}, {0xFFu}, {0xFFu}, {0xFFu, 0xFFu}};
+    uint8_t own[AGV_DLC];
+    uint32_t differences = 0u;
+    build(core, command, own);
+    for (uint32_t i = 0u; i < AGV_DLC; i++) {
+        differences |= ((uint32_t)own[i] ^ data[i]) & commanding[command][i];
+    }
+    return differences == 0u;
+}
+
+static void override(agv_core_t *core, agv_message_t command) {
+    send_own(core, command);
+    agv_scheduler_overridden(&core->transmitter.scheduler, command, core->now_ms);
+}
+
+void agv_transmitter_answer(agv_core_t *core, agv_message_t command, const uint8_t *data) {
+    if ((wanted_commands(core) & bit_of(command)) == 0u) {
+        return;
+    }
+    if (((data == NULL) || !is_same_command(core, command, data)) &&
+        agv_scheduler_override(&core->transmitter.scheduler, command, core->now_ms, core->config.override_gap_ms)) {
+        override(core, command);
     }
 }
 
-static void answer(agv_transmitter_t *transmitter, agv_outlet_t *outlet, agv_message_t command) {
-    send_own(transmitter, outlet, command);
-    agv_scheduler_overridden(&transmitter->scheduler, command, outlet->now_ms);
-}
-
-void agv_transmitter_override(agv_transmitter_t *transmitter, agv_outlet_t *outlet, agv_message_t command) {
-    if (is_wanted(outlet, command) &&
-        agv_scheduler_override(&transmitter->scheduler, command, outlet->now_ms, outlet->override_gap_ms)) {
-        answer(transmitter, outlet, command);
+/* Send a passed frame, or keep it until the HAL takes it. */
+static void send_passed(agv_core_t *core, agv_message_t message) {
+    agv_transmitter_t *const transmitter = &core->transmitter;
+    const bool taken = emit_message(core, message, transmitter->kept_data[message]);
+    if (taken) {
+        transmitter->kept &= (uint16_t)~bit_of(message);
+    } else {
+        transmitter->kept |= (uint16_t)bit_of(message);
+    }
+    if ((uint32_t)message < AGV_COMMAND_COUNT) {
+        agv_timer_while(&transmitter->waits[message], !taken, core->now_ms);
     }
 }
 
-static void keep(agv_transmitter_t *transmitter, agv_outlet_t *outlet, agv_message_t message, bool busy,
-                 const uint8_t data[AGV_DLC]) {
-    const uint16_t bit = (uint16_t)(1u << (uint32_t)message);
-    if (is_command(message)) {
-        agv_timer_while(&transmitter->waits[message], busy, outlet->now_ms);
+void agv_transmitter_pass(agv_core_t *core, agv_message_t message, const uint8_t data[AGV_DLC]) {
+    if ((core->transmitter.kept & bit_of(message)) != 0u) {
+        core->counters.dropped++; /* the older one that waited */
     }
-    transmitter->kept &= (uint16_t)~bit;
-    if (busy) {
-        transmitter->kept |= bit;
-        (void)memmove(transmitter->kept_data[message], data, AGV_DLC);
-    }
+    (void)memcpy(core->transmitter.kept_data[message], data, AGV_DLC);
+    send_passed(core, message);
 }
 
-void agv_transmitter_pass(agv_transmitter_t *transmitter, agv_outlet_t *outlet, agv_message_t message,
-                          const uint8_t data[AGV_DLC]) {
-    if ((transmitter->kept & (1u << (uint32_t)message)) != 0u) {
-        outlet->counters->dropped++; /* the older one that waited */
-    }
-    keep(transmitter, outlet, message, emit_message(outlet, message, data) == AGV_GATE_BUSY, data);
-}
-
-static void retry_kept(agv_transmitter_t *transmitter, agv_outlet_t *outlet) {
-    for (uint32_t i = 0u; (i < (uint32_t)AGV_MSG_COUNT) && (transmitter->kept != 0u); i++) {
-        if ((transmitter->kept & (1u << i)) != 0u) {
-            const agv_message_t message = (agv_message_t)i;
-            const uint8_t *data = transmitter->kept_data[message];
-            keep(transmitter, outlet, message, emit_message(outlet, message, data) == AGV_GATE_BUSY, data);
-        }
-    }
-}
-
-/* 168h may be wanted later than the others (park: at_standstill): then it is sent at once. 065h waits for its slot. */
-static bool begins(const agv_transmitter_t *transmitter, const agv_outlet_t *outlet, agv_message_t command) {
-    return (command == AGV_MSG_GEAR_COMMAND) && ((transmitter->wanted_before & bit_of(command)) == 0u) &&
-           is_wanted(outlet, command);
-}
-
-static void tick_command(agv_transmitter_t *transmitter, agv_outlet_t *outlet, agv_message_t command) {
-    const bool waits = transmitter->waits[command].phase != (uint8_t)AGV_TIMER_STOPPED;
+static void tick_own(agv_core_t *core, agv_message_t command, bool wanted) {
+    agv_transmitter_t *const transmitter = &core->transmitter;
+    agv_scheduler_t *const scheduler = &transmitter->scheduler;
+    const bool waits = agv_timer_runs(&transmitter->waits[command]);
+    const bool before = (transmitter->wanted_before & bit_of(command)) != 0u;
     uint32_t skipped = 0u;
-    const bool due = agv_scheduler_due(&transmitter->scheduler, command, outlet->now_ms, &skipped);
-    const bool override_due =
-        agv_scheduler_override_due(&transmitter->scheduler, command, outlet->now_ms, outlet->override_gap_ms);
-    if (!is_wanted(outlet, command)) {
+    const bool due = agv_scheduler_due(scheduler, command, core->now_ms, &skipped);
+    const bool foreign = agv_scheduler_override_due(scheduler, command, core->now_ms, core->config.override_gap_ms);
+    if (!wanted) {
         agv_timer_stop(&transmitter->waits[command]);
         return;
     }
-    outlet->counters->skipped_slots += skipped;
-    if (begins(transmitter, outlet, command)) {
-        agv_scheduler_restart_slot(&transmitter->scheduler, command, outlet->now_ms);
-        send_own(transmitter, outlet, command);
-    } else if (override_due) {
-        answer(transmitter, outlet, command);
+    core->counters.skipped_slots += skipped;
+    if (foreign) {
+        override(core, command);
+    } else if ((command == AGV_MSG_GEAR_COMMAND) && !before) {
+        /* park: at_standstill held it back; 065h waits for its slot */
+        agv_scheduler_restart_slot(scheduler, command, core->now_ms);
+        send_own(core, command);
     } else if (due || waits) {
-        send_own(transmitter, outlet, command);
+        send_own(core, command);
     } else {
         /* not yet */
     }
 }
 
-void agv_transmitter_tick(agv_transmitter_t *transmitter, agv_outlet_t *outlet) {
-    retry_kept(transmitter, outlet);
-    if ((outlet->wanted | transmitter->wanted_before) != 0u) {
-        for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
-            tick_command(transmitter, outlet, (agv_message_t)i);
-        }
-    }
-    transmitter->wanted_before = outlet->wanted;
-}
-
-bool agv_transmitter_stalled(agv_transmitter_t *transmitter, uint32_t now_ms, uint16_t limit_ms) {
-    bool stalled = false;
-    for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
-        stalled = agv_timer_exceeded(&transmitter->waits[i], now_ms, limit_ms) || stalled;
-    }
-    return stalled;
-}
-
-void agv_transmitter_status(agv_transmitter_t *transmitter, agv_outlet_t *outlet, const uint8_t data[AGV_DLC],
-                            uint16_t period_ms) {
-    uint8_t payload[AGV_DLC];
-    const uint32_t late_ms = outlet->now_ms - transmitter->status_due_ms;
-    if ((outlet->gate.status_id == 0u) || (late_ms > (UINT32_MAX / 2u)) || outlet->vehicle_side_off) {
+/* TOP-3: state, first reason, safety output, alive counter, configuration checksum. */
+static void send_status_frame(agv_core_t *core) {
+    agv_transmitter_t *const transmitter = &core->transmitter;
+    const uint32_t late_ms = core->now_ms - transmitter->status_due_ms;
+    const uint32_t period_ms = core->config.status_frame_period_ms;
+    uint8_t data[AGV_DLC] = {core->machine.state, core->machine.first_reason,
+                             (uint8_t)(core->machine.output_closed ? 1u : 0u), transmitter->status_counter};
+    if ((core->config.status_frame_id == 0u) || (late_ms > (UINT32_MAX / 2u)) ||
+        agv_bus_is_off(&core->buses[HAL_CAN_VEHICLE])) {
         return;
     }
-    transmitter->status_due_ms = outlet->now_ms + period_ms - (late_ms % period_ms);
-    (void)memcpy(payload, data, AGV_DLC);
-    payload[3] = transmitter->status_counter;
-    if (emit(outlet, HAL_CAN_VEHICLE, outlet->gate.status_id, payload) != AGV_GATE_BUSY) {
+    for (uint32_t i = 0u; i < 4u; i++) {
+        data[4u + i] = (uint8_t)(core->config_checksum >> (8u * i));
+    }
+    transmitter->status_due_ms = (core->now_ms + period_ms) - (late_ms % period_ms);
+    if (emit(core, HAL_CAN_VEHICLE, core->config.status_frame_id, data)) {
         transmitter->status_counter++;
     }
+}
+
+void agv_transmitter_tick(agv_core_t *core) {
+    agv_transmitter_t *const transmitter = &core->transmitter;
+    const uint32_t wanted = wanted_commands(core);
+    for (uint32_t i = 0u; (transmitter->kept >> i) != 0u; i++) {
+        if ((transmitter->kept & bit_of((agv_message_t)i)) != 0u) {
+            send_passed(core, (agv_message_t)i);
+        }
+    }
+    if ((wanted | transmitter->wanted_before) != 0u) {
+        for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
+            tick_own(core, (agv_message_t)i, (wanted & bit_of((agv_message_t)i)) != 0u);
+        }
+    }
+    transmitter->wanted_before = (uint8_t)wanted;
+    send_status_frame(core);
+}
+
+bool agv_transmitter_stalled(agv_core_t *core) {
+    bool stalled = false;
+    for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
+        if (agv_timer_exceeded(&core->transmitter.waits[i], core->now_ms, core->config.tx_stalled_ms)) {
+            stalled = true;
+        }
+    }
+    return stalled;
 }

@@ -28,14 +28,14 @@ typedef struct {
     agv_fault_set_t trips; /**< the faults whose class is trip; the others warn */
 } agv_config_t;
 
-/** Number of settings, `trips` not among them. */
+/** Index of each setting, `trips` not among them, and their number. */
 enum {
-    AGV_SETTING_COUNT = 0
-#define AGV_SETTING(name, preset, lowest, highest, unit, meaning) +1
-#define AGV_CHOICE(name, preset, words, meaning) +1
+#define AGV_SETTING(name, preset, lowest, highest, unit, meaning) AGV_SETTING_##name,
+#define AGV_CHOICE(name, preset, words, meaning) AGV_SETTING_##name,
 #include "agv/config_settings.def"
 #undef AGV_SETTING
 #undef AGV_CHOICE
+    AGV_SETTING_COUNT
 };
 
 /** What is wrong with a configuration. */
@@ -63,6 +63,9 @@ uint16_t agv_config_get(const agv_config_t *config, uint16_t setting);
 
 /** Write a setting by its index, unchecked. @return false when there is no such setting. */
 bool agv_config_set(agv_config_t *config, uint16_t setting, uint16_t value);
+
+/** Whether the configured class of a fault is trip. False for AGV_FAULT_NONE. */
+bool agv_config_is_trip(const agv_config_t *config, agv_fault_t fault);
 
 /** Check a configuration as a whole. @return the first problem found, or AGV_CONFIG_OK. */
 agv_config_verdict_t agv_config_check(const agv_config_t *config);

@@ -16,20 +16,16 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "agv/config.h"
 #include "hal/can.h"
 #include "hal/hal.h"
 
 /** What the gate goes by. */
 typedef struct {
-    uint8_t state;               /**< agv_state_t */
-    uint8_t id_set;              /**< agv_id_set_t */
-    bool gateway;                /**< two sides; else the shared bus */
-    bool pass_all_in_manual;     /**< gateway_in_manual: all */
-    bool shadow;                 /**< let nothing out (TOP-4) */
-    uint8_t throttle_max_counts; /**< ceiling of passed throttle commands, 0..250 */
-    uint16_t status_id;          /**< own status frame; 0 = off */
-    uint16_t hold_raw;           /**< held steering angle, raw 0..18000 */
-    uint16_t hold_check;         /**< its complement; anything else: no angle is held */
+    const agv_config_t *config; /**< topology, ID set, ceiling, shadow, status frame */
+    uint16_t hold_raw;          /**< held steering angle, raw 0..18000 */
+    uint16_t hold_check;        /**< its complement; anything else: no angle is held */
+    uint8_t state;              /**< agv_state_t */
 } agv_gate_t;
 
 /** What became of a frame. */

@@ -22,8 +22,8 @@ typedef struct {
     uint16_t phase_ms; /**< within the pattern */
 } agv_led_t;
 
-/** The code of the highest-ranking fault of @p trips (active or latched), else of @p warnings, else healthy. */
-int8_t agv_led_code(agv_fault_set_t trips, agv_fault_set_t warnings);
+/** The code that shows a fault; AGV_LED_HEALTHY for AGV_FAULT_NONE. */
+int8_t agv_led_code(agv_fault_t fault);
 
 /**
  * Advance the pattern; another code starts its pattern at once.

@@ -8,7 +8,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "agv/config.h"
 #include "agv/protocol.h"
 
 /** The nodes with a heartbeat (SUP-1): 363h byte 8, 067h byte 1, 43Fh byte 8. */
@@ -16,8 +15,8 @@ typedef enum { AGV_NODE_VCU, AGV_NODE_EPS, AGV_NODE_AI, AGV_NODE_COUNT } agv_nod
 
 /** What is known of a heartbeat. */
 typedef enum {
-    AGV_HEARTBEAT_UNSEEN,   /**< no frame yet */
-    AGV_HEARTBEAT_BASELINE, /**< one value seen: the first frame ever proves nothing */
+    AGV_HEARTBEAT_UNSEEN,   /**< no changed counter yet */
+    AGV_HEARTBEAT_BASELINE, /**< AI: one value seen, which proves nothing yet, but begins the deadline */
     AGV_HEARTBEAT_ALIVE,    /**< the counter changed within the deadline */
     AGV_HEARTBEAT_LOST,     /**< deadline expired; stays until the counter changes again */
     AGV_HEARTBEAT_STUCK     /**< as LOST, but frames with the old counter went on coming */
@@ -64,19 +63,25 @@ void agv_liveness_beat(agv_liveness_t *liveness, agv_node_t node, uint8_t counte
 /** Forget that a node was seen (SUP-8, reset): it is seen again when its counter changes. */
 void agv_liveness_forget(agv_liveness_t *liveness, agv_node_t node);
 
-/** Judge all deadlines. Call at every tick, after the frames stamped up to it. */
-void agv_liveness_tick(agv_liveness_t *liveness, const agv_config_t *config, uint32_t now_ms);
+/** Saturate the ages. Call at every tick. */
+void agv_liveness_tick(agv_liveness_t *liveness, uint32_t now_ms);
+
+/** Judge the deadline of a message. @return whether it has expired, now or earlier. */
+bool agv_liveness_judge(agv_liveness_t *liveness, agv_message_t message, uint32_t now_ms, uint16_t timeout_ms);
+
+/** Judge the deadline of a heartbeat. The AI's is not awaited before it was seen (SUP-8). */
+void agv_liveness_judge_beat(agv_liveness_t *liveness, agv_node_t node, uint32_t now_ms, uint16_t timeout_ms);
 
 /** Heard, and within its deadline. */
 bool agv_liveness_fresh(const agv_liveness_t *liveness, agv_message_t message);
-
-/** Deadline expired, heard or not. */
-bool agv_liveness_expired(const agv_liveness_t *liveness, agv_message_t message);
 
 /** Age of the last frame of the right shape; since the start when none was heard. Saturates to AGV_AGE_MAX. */
 uint32_t agv_liveness_age_ms(const agv_liveness_t *liveness, agv_message_t message, uint32_t now_ms);
 
 /** What is known of a heartbeat. */
 agv_heartbeat_state_t agv_liveness_heartbeat(const agv_liveness_t *liveness, agv_node_t node);
+
+/** Whether a heartbeat is ALIVE. */
+bool agv_liveness_alive(const agv_liveness_t *liveness, agv_node_t node);
 
 #endif

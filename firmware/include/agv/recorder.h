@@ -25,30 +25,31 @@ typedef enum {
     AGV_EVENT_STARTUP = 5 /**< missing = AGV_MISSING_*: what keeps INIT from being left */
 } agv_event_kind_t;
 
-/** What was missing, for AGV_EVENT_RESET and AGV_EVENT_STARTUP. */
-#define AGV_MISSING_STATE 0x01u         /**< not in SAFE */
-#define AGV_MISSING_VCU_HEARTBEAT 0x02u /**< VCU not alive */
-#define AGV_MISSING_EPS_HEARTBEAT 0x04u /**< EPS not alive */
-#define AGV_MISSING_TRIP_CAUSE 0x08u    /**< a trip cause is active */
-#define AGV_MISSING_STANDSTILL 0x10u
-#define AGV_MISSING_MANUAL 0x20u   /**< manual is not reported */
-#define AGV_MISSING_BUTTON 0x40u   /**< the press began before the trip */
-#define AGV_MISSING_MESSAGES 0x80u /**< a trip-class status message is not fresh */
-
-/** One event. */
+/** What the supervisor says of an event. */
 typedef struct {
-    uint32_t sequence; /**< counts events over all runs; wraps */
-    uint32_t time_ms;  /**< the supervisor's clock */
-    uint8_t kind;      /**< agv_event_kind_t */
+    uint8_t kind; /**< agv_event_kind_t */
     uint8_t a;
     uint8_t b;
     uint8_t c;
-    uint8_t missing;                        /**< AGV_MISSING_* bits */
-    uint8_t state;                          /**< agv_state_t at that moment */
-    uint8_t first_reason;                   /**< agv_fault_t, AGV_FAULT_NONE when not tripped */
-    uint8_t run;                            /**< counts starts of the supervisor; wraps */
-    uint16_t seen;                          /**< bit n: message n was received in this run */
-    uint16_t checksum;                      /**< CRC-16 (CCITT) over the event with this field 0 */
+    uint8_t missing;      /**< AGV_MISSING_* bits (state_machine.h) */
+    uint8_t state;        /**< agv_state_t at that moment */
+    uint8_t first_reason; /**< agv_fault_t, AGV_FAULT_NONE when not tripped */
+} agv_entry_t;
+
+/** One event as it is kept. */
+typedef struct {
+    uint32_t sequence; /**< counts events over all runs; wraps */
+    uint32_t time_ms;  /**< the supervisor's clock */
+    uint8_t kind;      /**< from here on as in agv_entry_t */
+    uint8_t a;
+    uint8_t b;
+    uint8_t c;
+    uint8_t missing;
+    uint8_t state;
+    uint8_t first_reason;
+    uint8_t run;       /**< counts starts of the supervisor; wraps */
+    uint16_t seen;     /**< bit n: message n was received in this run */
+    uint16_t checksum; /**< CRC-16 (CCITT) over the other fields, in their order */
     uint8_t frames[AGV_MSG_COUNT][AGV_DLC]; /**< last payload of each message */
 } agv_event_t;
 
@@ -71,11 +72,8 @@ void agv_recorder_start(agv_recorder_t *recorder);
 /** Keep the payload of a message for the snapshots. Ignored for AGV_MSG_NONE. */
 void agv_recorder_frame(agv_recorder_t *recorder, agv_message_t message, const uint8_t data[AGV_DLC]);
 
-/**
- * Record an event. The caller fills time_ms, kind, a, b, c, missing, state and first_reason; the rest is filled in. When
- * the ring is full the oldest event is replaced.
- */
-void agv_recorder_add(agv_recorder_t *recorder, const agv_event_t *event);
+/** Record an event with a snapshot of the last frames. When the ring is full the oldest event is replaced. */
+void agv_recorder_add(agv_recorder_t *recorder, const agv_entry_t *entry, uint32_t time_ms);
 
 /** The sequence number that the next event will get: compare it to see whether something was recorded. */
 uint32_t agv_recorder_next_sequence(const agv_recorder_t *recorder);
@@ -86,10 +84,10 @@ uint32_t agv_recorder_next_sequence(const agv_recorder_t *recorder);
  */
 bool agv_recorder_get(const agv_recorder_t *recorder, uint32_t sequence, agv_event_t *event);
 
-/** The oldest valid event that is not in flash yet. @return false when there is none. */
-bool agv_recorder_next_to_store(agv_recorder_t *recorder, agv_event_t *event);
+/** The oldest valid event that is not in flash yet; NULL when there is none. */
+const agv_event_t *agv_recorder_next_to_store(agv_recorder_t *recorder);
 
 /** That event is in flash now. */
-void agv_recorder_stored(agv_recorder_t *recorder, uint32_t sequence);
+void agv_recorder_stored(agv_recorder_t *recorder);
 
 #endif

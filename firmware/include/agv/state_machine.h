@@ -14,17 +14,25 @@
 #include "agv/state.h"
 #include "agv/timer.h"
 
+/** What may be missing for a reset or for leaving INIT: words of the events `reset` and `startup`. */
+#define AGV_MISSING_STATE 0x01u         /**< not in SAFE */
+#define AGV_MISSING_VCU_HEARTBEAT 0x02u /**< VCU not alive */
+#define AGV_MISSING_EPS_HEARTBEAT 0x04u /**< EPS not alive */
+#define AGV_MISSING_TRIP_CAUSE 0x08u    /**< a trip cause is active */
+#define AGV_MISSING_STANDSTILL 0x10u
+#define AGV_MISSING_MANUAL 0x20u   /**< manual is not reported */
+#define AGV_MISSING_BUTTON 0x40u   /**< the press began before the trip, or there is none */
+#define AGV_MISSING_MESSAGES 0x80u /**< a trip-class status message is not fresh */
+
 /** The facts that a step goes by. */
 typedef struct {
-    agv_fault_set_t raised_trips; /**< raised as trips since the last step */
-    agv_fault_set_t active_trips; /**< trips with a cause now */
-    bool vcu_alive;
-    bool eps_alive;
-    bool ai_alive;
-    bool messages_fresh; /**< every trip-class status message */
-    bool manual;
+    agv_fault_t raised;  /**< highest-ranking fault raised as a trip since the last step; AGV_FAULT_NONE */
+    agv_fault_t cause;   /**< highest-ranking trip with a cause now that does not come from the AI; AGV_FAULT_NONE */
+    agv_fault_t forever; /**< unresettable fault with a cause; AGV_FAULT_NONE */
+    uint8_t missing;     /**< AGV_MISSING_* but STATE, BUTTON and TRIP_CAUSE */
+    bool ai_cause;       /**< a trip that comes from the AI has a cause */
     bool engaged;
-    bool standstill;
+    bool ai_alive;
     bool autopilot_off; /**< confirmed by the VCU */
     bool in_park;       /**< confirmed by the VCU */
     bool button;        /**< remote button 1 is pressed */
@@ -33,12 +41,11 @@ typedef struct {
 
 /** The machine. */
 typedef struct {
-    agv_timer_t init_good;   /**< all well in INIT */
+    agv_timer_t good;        /**< INIT: all well; TRIPPED, SAFE: everything that a reset needs holds */
     agv_timer_t init;        /**< since the start, in INIT */
     agv_timer_t unconfirmed; /**< since the trip or the withdrawal of the confirmation: autopilot off is awaited */
     agv_timer_t park_sent;   /**< since the first P, or that withdrawal: P is awaited */
     agv_timer_t park_wait;   /**< since the trip or the start: P at the latest (park: at_standstill) */
-    agv_timer_t reset_good;  /**< everything that a reset needs holds */
     agv_timer_t press;       /**< button 1 held, in TRIPPED or SAFE */
     uint8_t state;           /**< agv_state_t */
     uint8_t latched;         /**< AGV_LATCH_CLOSED in TRIPPED and SAFE, else AGV_LATCH_OPEN */
@@ -51,7 +58,7 @@ typedef struct {
     bool park_released;      /**< 168h may be sent */
     bool output_closed;
     bool startup_reported;
-    bool safe_state_unconfirmed;
+    bool safe_state_unconfirmed; /**< the fault of that name has a cause */
 } agv_state_machine_t;
 
 /** What a step did. */
@@ -71,13 +78,10 @@ void agv_state_machine_start(agv_state_machine_t *machine, agv_fault_t reason, u
 agv_step_t agv_state_machine_step(agv_state_machine_t *machine, const agv_config_t *config,
                                   const agv_situation_t *situation, uint32_t now_ms);
 
-/** 168h P was sent: from its first time on the vehicle has confirm_timeout_ms. */
+/** 168h P was sent: from its first time after the trip the vehicle has confirm_timeout_ms. */
 void agv_state_machine_park_sent(agv_state_machine_t *machine, uint32_t now_ms);
 
-/** Faults that the machine itself raises: SAFE_STATE_UNCONFIRMED, STARTUP_TIMEOUT. */
-agv_fault_set_t agv_state_machine_faults(const agv_state_machine_t *machine);
-
-/** Whether state, latch and first reason fit together (INT-5). */
+/** Whether state and latch fit together (INT-5). */
 bool agv_state_machine_is_sound(const agv_state_machine_t *machine);
 
 #endif

@@ -26,12 +26,14 @@ typedef struct {
 } agv_ports_t;
 
 /**
- * One supervisor: static memory of the caller, no pointers inside. Read it through the functions below. `seal` is a
- * checksum over `core`, made at the end of every call and checked at the start of the next (INT-5).
+ * One supervisor: static memory of the caller. Read it through the functions below. `seal` is a checksum over `core`,
+ * made at the end of every call and checked at the start of the next (INT-5); a flipped bit in `receive_alive`, outside
+ * of it, feeds the watchdog a tick early or late.
  */
 typedef struct {
     agv_core_t core;
     uint32_t seal;
+    bool receive_alive; /**< the receive path has checked in since the last tick (TIM-3) */
 } agv_supervisor_t;
 
 /**
