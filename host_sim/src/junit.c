@@ -20,11 +20,17 @@ static size_t sequence_length(const uint8_t *at) {
         return ((at[0] >= 0x20u) || (at[0] == '\t') || (at[0] == '\n')) ? 1u : 0u;
     }
     if ((at[0] & 0xE0u) == 0xC0u) {
-        length = 2u, lowest = 0x80u, value &= 0x1Fu;
+        length = 2u;
+        lowest = 0x80u;
+        value &= 0x1Fu;
     } else if ((at[0] & 0xF0u) == 0xE0u) {
-        length = 3u, lowest = 0x800u, value &= 0x0Fu;
+        length = 3u;
+        lowest = 0x800u;
+        value &= 0x0Fu;
     } else if ((at[0] & 0xF8u) == 0xF0u) {
-        length = 4u, lowest = 0x10000u, value &= 0x07u;
+        length = 4u;
+        lowest = 0x10000u;
+        value &= 0x07u;
     } else {
         return 0u;
     }

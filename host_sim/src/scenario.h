@@ -23,7 +23,7 @@
 #define SCENARIO_SHOWS_MAX 24u
 #define SCENARIO_STEPS_MAX 256u
 #define SCENARIO_EXPECT_MAX 64u /* of each kind */
-#define SCENARIO_DURATION_MAX_MS (24u * 3600u * 1000u)
+#define SCENARIO_DURATION_MAX_MS 86400000u
 #define SCENARIO_DEFAULT_BITRATE 500000u
 
 /** From `from` up to and with `to`. */
