@@ -1,0 +1,385 @@
+/* What trips only while engaged and after 500 ms of grace (SUP-5): EPS mode, invalid status values, throttle in park;
+ * and commands out of range, which have no grace. */
+#include "expect.h"
+#include "unity.h"
+
+typedef struct {
+    agv_fault_t fault;
+    int led;
+    agv_message_t message;
+    unsigned frames; /* in a row */
+    uint8_t bad[8];  /* payload; the alive counter is filled in */
+    int32_t hold_raw;
+} row_t;
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+static void set_payload(agv_message_t message, const uint8_t data[8]) {
+    for (unsigned i = 0; i < 8; i++) {
+        f.traffic[message].data[i] = data[i];
+    }
+}
+
+static void send_bad_frames(const row_t *row, unsigned count, agv_state_t state) {
+    for (unsigned i = 0; i < count; i++) {
+        fixture_run_past(&f, row->message);
+        expect_nothing(&f, row->fault, state);
+    }
+}
+
+static void check_trips(const row_t *row) {
+    uint8_t good[8];
+    f.what = "engaged";
+    fixture_active(&f);
+    fixture_run_past(&f, row->message);
+    for (unsigned i = 0; i < 8; i++) {
+        good[i] = f.traffic[row->message].data[i];
+    }
+    set_payload(row->message, row->bad);
+    send_bad_frames(row, row->frames - 1, AGV_STATE_ACTIVE);
+    fixture_run_past(&f, row->message);
+    expect_trip(&f, row->fault, f.traffic[row->message].call, row->hold_raw);
+    expect_led(&f, row->led);
+    fixture_run(&f, 300);
+    expect_fault(&f, row->fault, true);
+    set_payload(row->message, good);
+    fixture_run_before(&f, row->message);
+    expect_fault(&f, row->fault, true);
+    fixture_run(&f, 1);
+    expect_fault(&f, row->fault, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, row->fault));
+    expect_reason(&f, row->fault);
+}
+
+/* Bad all the time, also before the engagement. Only frames from 500 ms after it on count: the message comes in the
+ * same millisecond as 363h (phase 1) or one before it, so that one frame is exactly 500 ms, or 499 ms, after it. */
+static void check_grace(const row_t *row, uint16_t phase_ms, unsigned not_counted) {
+    fixture_init(&f);
+    f.what = phase_ms == 1 ? "a frame 500 ms after the engagement" : "a frame 499 ms after the engagement";
+    fixture_standby(&f);
+    f.traffic[row->message].phase_ms = phase_ms;
+    set_payload(row->message, row->bad);
+    fixture_run(&f, 3000);
+    expect_nothing(&f, row->fault, AGV_STATE_STANDBY); /* not engaged: not judged */
+    fixture_run(&f, 100 - f.elapsed_ms % 100);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run(&f, 1);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    fixture_run(&f, 498);
+    send_bad_frames(row, not_counted + row->frames - 1, AGV_STATE_ACTIVE);
+    fixture_run_past(&f, row->message);
+    expect_trip(&f, row->fault, f.traffic[row->message].call, row->hold_raw);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_fault(&f, row->fault, false); /* no longer engaged */
+}
+
+/* A good frame, or a gap of more than two cycles, restarts the count. */
+static void check_restarts(const row_t *row, uint32_t cycle_ms) {
+    fixture_init(&f);
+    fixture_active(&f);
+    uint8_t good[8];
+    fixture_run_past(&f, row->message);
+    for (unsigned i = 0; i < 8; i++) {
+        good[i] = f.traffic[row->message].data[i];
+    }
+    f.what = "good frame";
+    set_payload(row->message, row->bad);
+    send_bad_frames(row, row->frames - 1, AGV_STATE_ACTIVE);
+    set_payload(row->message, good);
+    fixture_run_past(&f, row->message);
+    set_payload(row->message, row->bad);
+    send_bad_frames(row, row->frames - 1, AGV_STATE_ACTIVE);
+    f.what = "more than two cycles";
+    f.traffic[row->message].muted = true;
+    fixture_run(&f, 2 * cycle_ms + 1);
+    fixture_send_now(&f, row->message);
+    for (unsigned i = 1; i < row->frames; i++) {
+        expect_nothing(&f, row->fault, AGV_STATE_ACTIVE);
+        fixture_run(&f, 2 * cycle_ms); /* exactly two cycles: goes on counting */
+        expect_nothing(&f, row->fault, AGV_STATE_ACTIVE);
+        fixture_send_now(&f, row->message);
+    }
+    expect_trip(&f, row->fault, f.call, row->hold_raw);
+}
+
+static void check(const row_t *row) {
+    check_trips(row);
+    check_grace(row, 1, 0);
+    check_grace(row, 0, 1);
+    check_restarts(row, row->message == AGV_MSG_GEAR_STATUS ? 25 : 10);
+}
+
+/* ---- EPS mode: 167h byte 4, five in a row ---- */
+
+/* Shows: SUP-5, P18, FSM-10, EPS_MODE_OFF */
+void test_eps_mode_off(void) {
+    check(&(row_t){AGV_FAULT_EPS_MODE_OFF, 13, AGV_MSG_EPS_STATUS, 5, {0, 0, 0, 0xFF}, NO_HOLD});
+}
+
+/* Shows: SUP-5, P18, FSM-10, EPS_MODE_INVALID */
+void test_eps_mode_invalid(void) {
+    static const uint8_t INVALID[] = {0x04, 0x7F, 0xFE};
+    for (unsigned i = 0; i < sizeof INVALID; i++) {
+        fixture_init(&f);
+        check(&(row_t){AGV_FAULT_EPS_MODE_INVALID, 13, AGV_MSG_EPS_STATUS, 5, {0, 0, 0, INVALID[i]}, NO_HOLD});
+    }
+}
+
+/* Shows: SUP-5, P18, FSM-10, EPS_MODE_NOT_ANGLE */
+void test_eps_mode_not_angle(void) {
+    static const uint8_t OTHERS[] = {0x00, 0x02, 0x03};
+    for (unsigned i = 0; i < sizeof OTHERS; i++) {
+        fixture_init(&f);
+        check(&(row_t){AGV_FAULT_EPS_MODE_NOT_ANGLE, 13, AGV_MSG_EPS_STATUS, 5, {0, 0, 0, OTHERS[i]}, NO_HOLD});
+    }
+}
+
+static void check_named_after_the_last(const uint8_t modes[5], agv_fault_t expected) {
+    static const agv_fault_t ALL[] = {AGV_FAULT_EPS_MODE_OFF, AGV_FAULT_EPS_MODE_INVALID, AGV_FAULT_EPS_MODE_NOT_ANGLE};
+    fixture_init(&f);
+    fixture_active(&f);
+    for (unsigned i = 0; i < 5; i++) {
+        expect_nothing(&f, expected, AGV_STATE_ACTIVE);
+        f.traffic[AGV_MSG_EPS_STATUS].data[3] = modes[i];
+        fixture_run_past(&f, AGV_MSG_EPS_STATUS);
+    }
+    expect_trip(&f, expected, f.traffic[AGV_MSG_EPS_STATUS].call, NO_HOLD);
+    for (unsigned i = 0; i < 3; i++) {
+        expect_fault(&f, ALL[i], ALL[i] == expected);
+    }
+}
+
+/* Any five of them count, and the name is the last one's. */
+/* Shows: SUP-5, EPS_MODE_OFF, EPS_MODE_INVALID, EPS_MODE_NOT_ANGLE */
+void test_eps_modes_mixed(void) {
+    check_named_after_the_last((const uint8_t[5]){0x00, 0x04, 0x02, 0x77, 0xFF}, AGV_FAULT_EPS_MODE_OFF);
+    check_named_after_the_last((const uint8_t[5]){0xFF, 0xFF, 0xFF, 0xFF, 0x04}, AGV_FAULT_EPS_MODE_INVALID);
+    check_named_after_the_last((const uint8_t[5]){0xFF, 0x04, 0x00, 0x02, 0x03}, AGV_FAULT_EPS_MODE_NOT_ANGLE);
+}
+
+/* ---- Status values that are none: three in a row ---- */
+
+/* Shows: SUP-5, P2, GEAR_STATUS_INVALID */
+void test_gear_status_invalid(void) {
+    static const uint8_t INVALID[] = {0, 3, 9, 0xFF};
+    for (unsigned i = 0; i < sizeof INVALID; i++) {
+        fixture_init(&f);
+        check(&(row_t){AGV_FAULT_GEAR_STATUS_INVALID, 8, AGV_MSG_GEAR_STATUS, 3, {INVALID[i]}, ANGLE_CENTRE});
+    }
+}
+
+/* Shows: SUP-5, P6, THROTTLE_STATUS_INVALID */
+void test_throttle_status_invalid(void) {
+    check(&(row_t){AGV_FAULT_THROTTLE_STATUS_INVALID, 7, AGV_MSG_THROTTLE_STATUS, 3, {251}, ANGLE_CENTRE});
+    fixture_init(&f);
+    check(&(row_t){AGV_FAULT_THROTTLE_STATUS_INVALID, 7, AGV_MSG_THROTTLE_STATUS, 3, {255}, ANGLE_CENTRE});
+}
+
+/* 18001 = 4651h. The angle that is held is the last valid one. */
+/* Shows: SUP-5, P5, FSM-10, STEERING_ANGLE_INVALID */
+void test_steering_angle_invalid(void) {
+    check(&(row_t){AGV_FAULT_STEERING_ANGLE_INVALID, 13, AGV_MSG_STEERING_STATUS, 3, {0, 100, 0x51, 0x46}, 9000});
+    fixture_init(&f);
+    check(&(row_t){AGV_FAULT_STEERING_ANGLE_INVALID, 13, AGV_MSG_STEERING_STATUS, 3, {0, 100, 0xFF, 0xFF}, 9000});
+}
+
+/* The largest and smallest values that are valid. */
+/* Shows: SUP-5, P2, P5, P6 */
+void test_values_at_the_edge_are_valid(void) {
+    static const uint8_t GEARS[] = {GEAR_P, GEAR_R, GEAR_N, GEAR_D};
+    fixture_active(&f);
+    for (unsigned i = 0; i < 8; i++) {
+        fixture_gear(&f, GEARS[i % 4]);
+        f.traffic[AGV_MSG_THROTTLE_STATUS].data[0] = GEARS[i % 4] == GEAR_P ? 0 : 250;
+        fixture_angle(&f, i % 2 == 0 ? 18000 : 0);
+        fixture_command_angle(&f, i % 2 == 0 ? 18000 : 0);
+        fixture_run(&f, 200);
+        expect_state(&f, AGV_STATE_ACTIVE);
+    }
+    TEST_ASSERT_EQUAL_UINT64(0, agv_supervisor_active_faults(&f.supervisor));
+}
+
+/* ---- THROTTLE_IN_PARK ---- */
+
+static void set_throttle(uint8_t counts) {
+    f.traffic[AGV_MSG_THROTTLE_STATUS].data[0] = counts;
+}
+
+/* Shows: SUP-5, FSM-2, THROTTLE_IN_PARK */
+void test_throttle_in_park(void) {
+    fixture_active(&f);
+    fixture_gear(&f, GEAR_P);
+    fixture_run(&f, 1000); /* P alone is nothing */
+    set_throttle(1);
+    fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
+    fixture_run(&f, 199);
+    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    fixture_run(&f, 1);
+    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
+    expect_led(&f, 7);
+    set_throttle(0);
+    fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
+    expect_fault(&f, AGV_FAULT_THROTTLE_IN_PARK, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_THROTTLE_IN_PARK));
+}
+
+/* The gear may also come second; leaving P ends it. */
+/* Shows: SUP-5, THROTTLE_IN_PARK */
+void test_park_with_throttle(void) {
+    fixture_active(&f);
+    set_throttle(250);
+    fixture_run(&f, 1000);
+    fixture_gear(&f, GEAR_P);
+    fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
+    fixture_run(&f, 199);
+    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    fixture_run(&f, 1);
+    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
+    fixture_gear(&f, GEAR_D);
+    fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
+    expect_fault(&f, AGV_FAULT_THROTTLE_IN_PARK, false);
+}
+
+/* One frame with throttle 0 starts the 200 ms anew. */
+/* Shows: SUP-5, THROTTLE_IN_PARK */
+void test_throttle_in_park_with_interruptions(void) {
+    fixture_active(&f);
+    fixture_gear(&f, GEAR_P);
+    fixture_run(&f, 50);
+    for (unsigned i = 0; i < 5; i++) {
+        set_throttle(10);
+        fixture_run(&f, 190);
+        set_throttle(0);
+        fixture_run(&f, 10);
+    }
+    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_THROTTLE_IN_PARK));
+}
+
+/* Not in manual; and after the engagement the 200 ms begin when the grace of 500 ms is over. */
+/* Shows: SUP-5, THROTTLE_IN_PARK */
+void test_throttle_in_park_counts_after_the_grace(void) {
+    fixture_standby(&f);
+    set_throttle(10);
+    fixture_run(&f, 3000);
+    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_STANDBY);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_run(&f, 699);
+    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    fixture_run(&f, 1);
+    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
+}
+
+/* An invalid throttle is not above 0, an invalid gear is not P. */
+/* Shows: SUP-5, THROTTLE_IN_PARK */
+void test_invalid_values_are_no_throttle_in_park(void) {
+    f.config.status_invalid_frames = 10; /* the largest: 100 ms of 050h, 250 ms of 0A3h */
+    fixture_active(&f);
+    fixture_gear(&f, GEAR_P);
+    for (unsigned i = 0; i < 10; i++) {
+        set_throttle(251);
+        fixture_run(&f, 90);
+        set_throttle(0);
+        fixture_run(&f, 10);
+    }
+    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    fixture_gear(&f, 0);
+    fixture_run(&f, 25);
+    set_throttle(10);
+    fixture_run(&f, 200);
+    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+}
+
+/* ---- AI_COMMAND_OUT_OF_RANGE ---- */
+
+typedef struct {
+    agv_message_t message;
+    uint8_t data[8];
+} command_t;
+
+static const command_t OUT_OF_RANGE[] = {
+    {AGV_MSG_GEAR_COMMAND, {0}},
+    {AGV_MSG_GEAR_COMMAND, {3}},
+    {AGV_MSG_GEAR_COMMAND, {16}},
+    {AGV_MSG_GEAR_COMMAND, {0xFF}},
+    {AGV_MSG_THROTTLE_COMMAND, {251}},
+    {AGV_MSG_THROTTLE_COMMAND, {255}},
+    {AGV_MSG_STEERING_COMMAND, {0x51, 0x46}}, /* 18001 */
+    {AGV_MSG_STEERING_COMMAND, {0xFF, 0xFF}},
+};
+enum { OUT_OF_RANGE_COUNT = sizeof OUT_OF_RANGE / sizeof OUT_OF_RANGE[0] };
+
+static void check_out_of_range(const command_t *command) {
+    const agv_fault_t fault = AGV_FAULT_AI_COMMAND_OUT_OF_RANGE;
+    fixture_standby(&f);
+    fixture_frame(&f, command->message, command->data); /* manual: dropped and counted */
+    expect_nothing(&f, fault, AGV_STATE_STANDBY);
+    TEST_ASSERT_EQUAL_UINT32(1, agv_supervisor_counters(&f.supervisor)->dropped);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS); /* no grace for it */
+    expect_nothing(&f, fault, AGV_STATE_ACTIVE);
+    fixture_frame(&f, command->message, command->data);
+    expect_trip(&f, fault, f.call, ANGLE_CENTRE);
+    TEST_ASSERT_EQUAL_UINT32(2, agv_supervisor_counters(&f.supervisor)->dropped);
+    fixture_run(&f, 999);
+    expect_led(&f, 14);
+    expect_fault(&f, fault, true);
+    fixture_run(&f, 1); /* an event: ends after a second without another */
+    expect_fault(&f, fault, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, fault));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, fault));
+}
+
+/* Shows: SUP-5, FSM-2, P2, P5, P6, AI_COMMAND_OUT_OF_RANGE */
+void test_commands_out_of_range(void) {
+    for (unsigned i = 0; i < OUT_OF_RANGE_COUNT; i++) {
+        fixture_init(&f);
+        check_out_of_range(&OUT_OF_RANGE[i]);
+    }
+}
+
+/* Each one starts the second anew; it is one fault. */
+/* Shows: SUP-5, AI_COMMAND_OUT_OF_RANGE */
+void test_commands_out_of_range_again_and_again(void) {
+    fixture_active(&f);
+    for (unsigned i = 0; i < 4; i++) {
+        fixture_frame(&f, AGV_MSG_GEAR_COMMAND, (const uint8_t[8]){3});
+        fixture_run(&f, 900);
+        expect_fault(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, true);
+    }
+    fixture_run(&f, 100);
+    expect_fault(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE));
+}
+
+/* Every value at the edge of the range is in it; reserved bytes are ignored. */
+/* Shows: SUP-5, P14, AI_COMMAND_OUT_OF_RANGE */
+void test_commands_in_range(void) {
+    static const command_t IN_RANGE[] = {
+        {AGV_MSG_GEAR_COMMAND, {1, 0xFF, 0xFF}},
+        {AGV_MSG_GEAR_COMMAND, {2}},
+        {AGV_MSG_GEAR_COMMAND, {4}},
+        {AGV_MSG_GEAR_COMMAND, {8}},
+        {AGV_MSG_THROTTLE_COMMAND, {0, 0xFF}},
+        {AGV_MSG_THROTTLE_COMMAND, {250}},
+        {AGV_MSG_STEERING_COMMAND, {0, 0, 0xFF}},
+        {AGV_MSG_STEERING_COMMAND, {0x50, 0x46}}, /* 18000 */
+    };
+    fixture_active(&f);
+    for (unsigned i = 0; i < sizeof IN_RANGE / sizeof IN_RANGE[0]; i++) {
+        fixture_frame(&f, IN_RANGE[i].message, IN_RANGE[i].data);
+        fixture_run(&f, 60);
+        expect_state(&f, AGV_STATE_ACTIVE);
+    }
+    TEST_ASSERT_EQUAL_UINT64(0, agv_supervisor_active_faults(&f.supervisor));
+    TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->dropped);
+}

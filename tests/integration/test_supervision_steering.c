@@ -1,0 +1,231 @@
+/* STEERING_DEVIATION (SUP-5): measured steering more than 50.0 degrees from the command during 500 ms in which the
+ * difference did not shrink by at least 25.0 degrees. Raw counts are 0.1 degree: 500 is 50.0 degrees. */
+#include "expect.h"
+#include "unity.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+static const agv_fault_t FAULT = AGV_FAULT_STEERING_DEVIATION;
+
+/* A new command, from its next frame on: that frame has just come. */
+static void command(uint16_t raw) {
+    fixture_run_before(&f, AGV_MSG_STEERING_COMMAND);
+    fixture_command_angle(&f, raw);
+    fixture_run(&f, 1);
+}
+
+/* A new measured angle, from its next frame on: that frame has just come. */
+static void measure(uint16_t raw) {
+    fixture_run_before(&f, AGV_MSG_STEERING_STATUS);
+    fixture_angle(&f, raw);
+    fixture_run(&f, 1);
+}
+
+static void run_until(uint32_t moment_ms) {
+    fixture_run(&f, moment_ms - f.now_ms);
+}
+
+static void expect_trip_at(uint32_t moment_ms, int32_t hold_raw) {
+    run_until(moment_ms - 1u);
+    expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
+    fixture_run(&f, 1);
+    expect_trip(&f, FAULT, f.call, hold_raw);
+    expect_led(&f, 13);
+}
+
+/* Shows: SUP-5, FSM-2, STEERING_DEVIATION */
+void test_more_than_50_degrees_for_500_ms(void) {
+    static const uint16_t COMMANDS[] = {9501, 8499, 18000, 0};
+    for (unsigned i = 0; i < 4; i++) {
+        fixture_init(&f);
+        fixture_active(&f);
+        command(COMMANDS[i]);
+        expect_trip_at(f.now_ms + 500u, ANGLE_CENTRE);
+        measure((uint16_t)(COMMANDS[i] < 9000 ? COMMANDS[i] + 500 : COMMANDS[i] - 500));
+        expect_fault(&f, FAULT, false); /* not more than 50.0 degrees any more */
+        TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, FAULT));
+        expect_reason(&f, FAULT);
+    }
+}
+
+/* Shows: SUP-5, STEERING_DEVIATION */
+void test_50_degrees_are_no_deviation(void) {
+    fixture_active(&f);
+    command(9500);
+    fixture_run(&f, 3000);
+    command(8500);
+    fixture_run(&f, 3000);
+    expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
+    TEST_ASSERT_EQUAL_UINT64(0, agv_supervisor_active_faults(&f.supervisor));
+}
+
+/* 499 ms of it are none; 50.0 degrees in between start them anew. */
+/* Shows: SUP-5, STEERING_DEVIATION */
+void test_not_long_enough(void) {
+    fixture_active(&f);
+    for (unsigned i = 0; i < 4; i++) {
+        command(9501);
+        const uint32_t began_ms = f.now_ms;
+        run_until(began_ms + 474u); /* the last frame with 50.1 degrees was at 450 ms, the next comes at 475 ms */
+        command(9500);
+        run_until(began_ms + 499u);
+    }
+    expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, FAULT));
+}
+
+/* 200.0 degrees off; in time the steering gains 24.9 degrees: not enough. */
+/* Shows: SUP-5, STEERING_DEVIATION */
+void test_a_gain_of_24_9_degrees_is_not_enough(void) {
+    fixture_active(&f);
+    command(11000);
+    const uint32_t began_ms = f.now_ms;
+    fixture_run(&f, 300);
+    measure(9249);
+    expect_trip_at(began_ms + 500u, 9249);
+}
+
+/* 25.0 degrees are: the 500 ms begin anew at that frame. And only once: the next 25.0 degrees have to be gained too. */
+/* Shows: SUP-5, STEERING_DEVIATION */
+void test_a_gain_of_25_0_degrees_starts_anew(void) {
+    fixture_active(&f);
+    command(11000);
+    fixture_run(&f, 300);
+    measure(9250);
+    fixture_run(&f, 300);
+    measure(9500);
+    const uint32_t gained_ms = f.now_ms;
+    fixture_run(&f, 300);
+    measure(9749);
+    expect_trip_at(gained_ms + 500u, 9749);
+}
+
+/* The gain may come in small steps. */
+/* Shows: SUP-5, STEERING_DEVIATION */
+void test_a_gain_in_small_steps(void) {
+    fixture_active(&f);
+    command(11000);
+    uint32_t gained_ms = f.now_ms;
+    for (uint16_t raw = 9010; raw <= 9250; raw = (uint16_t)(raw + 10)) {
+        measure(raw); /* 10 ms each: 25.0 degrees after 250 ms */
+        gained_ms = f.now_ms;
+    }
+    expect_trip_at(gained_ms + 500u, 9250);
+}
+
+/* An EPS that follows slowly but steadily, 25.0 degrees in less than 500 ms each, from one end to the other. */
+/* Shows: SUP-5, STEERING_DEVIATION */
+void test_a_slow_eps_is_no_deviation(void) {
+    fixture_active(&f);
+    fixture_angle(&f, 0);
+    fixture_command_angle(&f, 0);
+    fixture_run(&f, 100);
+    command(18000);
+    for (unsigned raw = 250; raw <= 18000; raw += 250) {
+        fixture_run(&f, 480);
+        measure((uint16_t)raw);
+        expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, FAULT));
+}
+
+/* A command that moves on and on does not excuse: the difference grows, it does not shrink. */
+/* Shows: SUP-5, STEERING_DEVIATION */
+void test_a_growing_difference(void) {
+    fixture_active(&f);
+    command(9600);
+    const uint32_t began_ms = f.now_ms;
+    fixture_run(&f, 150);
+    command(10200);
+    fixture_run(&f, 150);
+    command(10800);
+    expect_trip_at(began_ms + 500u, ANGLE_CENTRE);
+}
+
+/* Off from the start: the 500 ms begin when the grace of 500 ms is over. */
+/* Shows: SUP-5, STEERING_DEVIATION */
+void test_deviation_counts_after_the_grace(void) {
+    fixture_standby(&f);
+    fixture_command_angle(&f, 12000);
+    fixture_run(&f, 3000);
+    expect_nothing(&f, FAULT, AGV_STATE_STANDBY); /* not while a human drives */
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_trip_at(f.now_ms + 1000u, ANGLE_CENTRE);
+}
+
+/* A command from before the engagement is not what the steering is compared with. */
+/* Shows: SUP-5, STEERING_DEVIATION, STEERING_COMMAND_TIMEOUT */
+void test_a_command_from_before_the_engagement_is_forgotten(void) {
+    f.config.engaged_grace_ms = 50;
+    f.config.steering_deviation_ms = 100;
+    f.config.steering_command_timeout_ms = 1000;
+    fixture_standby(&f);
+    command(12000);
+    f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_run(&f, 1000);
+    expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
+    fixture_run(&f, 1);
+    expect_trip(&f, AGV_FAULT_STEERING_COMMAND_TIMEOUT, f.call, ANGLE_CENTRE);
+}
+
+/* An invalid measured angle is not used: the last valid one stands. */
+/* Shows: SUP-5, P5, STEERING_DEVIATION */
+void test_an_invalid_angle_is_no_measured_angle(void) {
+    f.config.status_invalid_frames = 10;
+    fixture_active(&f);
+    measure(18001); /* would be 900 degrees off */
+    fixture_run(&f, 80);
+    measure(9000);
+    fixture_run(&f, 600);
+    expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
+}
+
+/* Limits and times are settings. */
+/* Shows: SUP-5, STEERING_DEVIATION */
+void test_the_limits_are_settings(void) {
+    f.config.steering_deviation_ddeg = 100;
+    f.config.steering_gain_ddeg = 10;
+    f.config.steering_deviation_ms = 100;
+    fixture_active(&f);
+    command(9100);
+    fixture_run(&f, 1000);
+    expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
+    command(9200);
+    fixture_run(&f, 60);
+    measure(9010);
+    expect_trip_at(f.now_ms + 100u, 9010);
+}
+
+/* ---- Gateway: compared with what was sent on ---- */
+
+static void check_gateway(uint16_t slew_ddeg_s, uint32_t trips_after_ms) {
+    fixture_init(&f);
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    f.config.steering_slew_ddeg_s = slew_ddeg_s;
+    fixture_active(&f);
+    command(12000);
+    const uint32_t began_ms = f.now_ms;
+    run_until(began_ms + trips_after_ms - 1u);
+    expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
+    fixture_forget_sent(&f);
+    fixture_run(&f, 1);
+    expect_trip(&f, FAULT, f.call, ANGLE_CENTRE);
+}
+
+/* Not limited, 12000 is sent on at once. Limited to 400.0 degrees a second, which is 100 counts each 25 ms, it is 9500 with
+ * the fifth command and 9600 with the sixth: 125 ms later. */
+/* Shows: SUP-5, TOP-2, STEERING_DEVIATION */
+void test_gateway_compares_with_what_was_sent_on(void) {
+    check_gateway(0, 500);
+    check_gateway(4000, 625);
+}
