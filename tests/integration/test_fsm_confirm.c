@@ -1,0 +1,227 @@
+/* TRIPPED and SAFE: what confirms the safe state, and what takes the confirmation back. */
+#include "fixture.h"
+#include "unity.h"
+#include "walk.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+static uint32_t send_now(agv_message_t message) {
+    fixture_send_now(&f, message);
+    return f.now_ms;
+}
+
+static void trip_and_confirm_all_but(void (*spoil)(void), const char *what) {
+    fixture_init(&f);
+    f.what = what;
+    f.long_run = true;
+    fixture_active(&f);
+    fixture_mute_ai(&f, true);
+    walk_trip(&f);
+    fixture_vehicle_confirms(&f);
+    spoil();
+    fixture_run(&f, 5000);
+}
+
+static void gear_d(void) {
+    fixture_gear(&f, GEAR_D);
+}
+
+static void gear_n(void) {
+    fixture_gear(&f, GEAR_N);
+}
+
+static void gear_r(void) {
+    fixture_gear(&f, GEAR_R);
+}
+
+static void gear_invalid(void) {
+    fixture_gear(&f, 9); /* P and D at once */
+}
+
+static void no_gear(void) {
+    f.traffic[AGV_MSG_GEAR_STATUS].muted = true;
+}
+
+static void still_engaged(void) {
+    fixture_mode(&f, MODE_ENGAGED);
+}
+
+static void vcu_frozen(void) {
+    f.traffic[AGV_MSG_VEHICLE_STATUS].frozen = true;
+}
+
+static void vcu_silent(void) {
+    fixture_mute_vcu(&f, true);
+}
+
+/* Shows: FSM-4 */
+void test_without_each_part_of_the_confirmation_it_stays_tripped(void) {
+    static const struct {
+        const char *what;
+        void (*spoil)(void);
+    } ROWS[] = {{"D", gear_d},
+                {"N", gear_n},
+                {"R", gear_r},
+                {"no valid gear", gear_invalid},
+                {"no 0A3h", no_gear},
+                {"engaged", still_engaged},
+                {"VCU counter stands still", vcu_frozen},
+                {"VCU silent", vcu_silent}};
+    for (unsigned i = 0; i < sizeof ROWS / sizeof ROWS[0]; i++) {
+        trip_and_confirm_all_but(ROWS[i].spoil, ROWS[i].what);
+        expect_state(&f, AGV_STATE_TRIPPED);
+        expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
+        expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
+        expect_output(&f, false);
+    }
+}
+
+static void nothing(void) {
+}
+
+static void in_neither_mode(void) {
+    fixture_mode(&f, MODE_NEITHER);
+}
+
+static void eps_silent(void) {
+    fixture_mute_eps(&f, true);
+}
+
+static void still_moving(void) {
+    fixture_wheels(&f, 900, 900);
+}
+
+/* Shows: FSM-4 */
+void test_what_the_confirmation_does_not_need(void) {
+    static const struct {
+        const char *what;
+        void (*spoil)(void);
+    } ROWS[] = {
+        {"nothing", nothing}, {"neither mode", in_neither_mode}, {"EPS silent", eps_silent}, {"moving", still_moving}};
+    for (unsigned i = 0; i < sizeof ROWS / sizeof ROWS[0]; i++) {
+        trip_and_confirm_all_but(ROWS[i].spoil, ROWS[i].what);
+        expect_state(&f, AGV_STATE_SAFE);
+        expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
+        expect_output(&f, true);
+    }
+}
+
+/* Shows: FSM-2, FSM-4 */
+void test_the_confirmation_counts_in_the_handling_of_its_last_frame(void) {
+    walk_to_tripped(&f);
+    fixture_vehicle_confirms(&f);
+    (void)send_now(AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    (void)send_now(AGV_MSG_GEAR_STATUS);
+    expect_state(&f, AGV_STATE_SAFE);
+}
+
+/* Shows: FSM-2, FSM-10 */
+void test_safe_sends_as_tripped_does(void) {
+    walk_to_tripped(&f);
+    const uint32_t trip_ms = f.now_ms;
+    fixture_vehicle_confirms(&f);
+    fixture_mode(&f, MODE_NEITHER); /* so that the steering is held */
+    fixture_run(&f, 90);
+    expect_state(&f, AGV_STATE_SAFE);
+    fixture_forget_sent(&f);
+    fixture_run(&f, 1000); /* from 91 to 1090 ms after the trip */
+    TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x43F));
+    TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x168));
+    TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x075));
+    TEST_ASSERT_EQUAL_UINT32(40, fixture_count_sent(&f, 0x065));
+    TEST_ASSERT_EQUAL_UINT32(100, fixture_nth_sent(&f, 0x43F, 0)->time_ms - trip_ms);
+    TEST_ASSERT_EQUAL_UINT32(166, fixture_nth_sent(&f, 0x168, 0)->time_ms - trip_ms);
+    TEST_ASSERT_EQUAL_UINT32(133, fixture_nth_sent(&f, 0x075, 0)->time_ms - trip_ms);
+    TEST_ASSERT_EQUAL_UINT32(100, fixture_nth_sent(&f, 0x065, 0)->time_ms - trip_ms);
+}
+
+/* ---- Taken back ---- */
+
+/* Shows: FSM-3, FSM-4 */
+void test_leaving_p_or_engaging_takes_the_confirmation_back_in_that_frame(void) {
+    static const uint8_t GEARS[] = {GEAR_D, GEAR_N, GEAR_R, 0, 0xFF};
+    walk_to_safe(&f);
+    for (unsigned i = 0; i < sizeof GEARS; i++) {
+        fixture_gear(&f, GEARS[i]);
+        (void)send_now(AGV_MSG_GEAR_STATUS);
+        expect_state(&f, AGV_STATE_TRIPPED);
+        fixture_gear(&f, GEAR_P);
+        (void)send_now(AGV_MSG_GEAR_STATUS);
+        expect_state(&f, AGV_STATE_SAFE);
+    }
+    fixture_mode(&f, MODE_ENGAGED);
+    (void)send_now(AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    fixture_mode(&f, MODE_MANUAL);
+    (void)send_now(AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_SAFE);
+    expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
+    expect_output(&f, true);
+}
+
+/* The deadline of 0A3h is 125 ms. */
+/* Shows: FSM-4, SUP-3 */
+void test_a_gear_that_is_not_fresh_confirms_nothing(void) {
+    walk_to_safe(&f);
+    fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
+    f.traffic[AGV_MSG_GEAR_STATUS].muted = true;
+    fixture_run(&f, 125);
+    expect_state(&f, AGV_STATE_SAFE);
+    fixture_run(&f, 1);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    f.traffic[AGV_MSG_GEAR_STATUS].muted = false;
+    fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
+    expect_state(&f, AGV_STATE_SAFE);
+}
+
+/* The deadline of the VCU's heartbeat is 50 ms; one repeated counter does not revive it, a changed one does. */
+/* Shows: FSM-4, SUP-2 */
+void test_a_vcu_that_is_not_alive_confirms_nothing(void) {
+    walk_to_safe(&f);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].muted = true;
+    fixture_run(&f, 50);
+    expect_state(&f, AGV_STATE_SAFE);
+    fixture_run(&f, 1);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].frozen = true;
+    (void)send_now(AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].frozen = false;
+    (void)send_now(AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_SAFE);
+}
+
+/* Shows: FSM-3, FSM-5 */
+void test_the_state_is_latched_whatever_the_vehicle_reports(void) {
+    static const uint8_t MODES[] = {MODE_MANUAL, MODE_ENGAGED, MODE_NEITHER, MODE_BOTH};
+    static const uint8_t GEARS[] = {GEAR_P, GEAR_D, GEAR_N, GEAR_R, 0};
+    f.long_run = true;
+    walk_to_safe(&f);
+    fixture_mute_ai(&f, false);
+    for (unsigned i = 0; i < 4 * 5; i++) {
+        fixture_mode(&f, MODES[i % 4]);
+        fixture_gear(&f, GEARS[i % 5]);
+        fixture_run(&f, 1500);
+        const agv_state_t state = agv_supervisor_state(&f.supervisor);
+        TEST_ASSERT_TRUE(state == AGV_STATE_TRIPPED || state == AGV_STATE_SAFE);
+        expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
+    }
+}
+
+/* Shows: FSM-4, MODE_INVALID */
+void test_both_modes_at_once_after_engaged_confirm_nothing(void) {
+    walk_to_tripped(&f);
+    fixture_vehicle_confirms(&f);
+    fixture_mode(&f, MODE_BOTH); /* engaged stands until MODE_INVALID */
+    fixture_run(&f, 50);
+    expect_state(&f, AGV_STATE_TRIPPED);
+}

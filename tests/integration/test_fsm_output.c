@@ -1,0 +1,203 @@
+/* The hardware safety output: what closes it, what opens it, and that it then stays open. */
+#include "fixture.h"
+#include "unity.h"
+#include "walk.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+static void reset_by_button(void) {
+    fixture_button(&f, true);
+    fixture_run(&f, 1020);
+    fixture_button(&f, false);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* Shows: FSM-4 */
+void test_it_is_closed_by_entering_standby_and_by_nothing_before(void) {
+    fixture_start(&f);
+    (void)walk_until(&f, AGV_STATE_STANDBY, 1000);
+    expect_output(&f, true);
+    TEST_ASSERT_EQUAL_UINT32(1, f.hal.safety_output.changes);
+}
+
+/* Shows: FSM-4 */
+void test_it_stays_closed_while_the_vehicle_obeys(void) {
+    walk_to_safe(&f);
+    expect_output(&f, true);
+    reset_by_button();
+    expect_output(&f, true);
+    TEST_ASSERT_EQUAL_UINT32(1, f.hal.safety_output.changes);
+}
+
+/* From 500 ms on without the confirmation it is open until the next STANDBY. */
+static void expect_opens_at(uint32_t moment_ms) {
+    fixture_run(&f, moment_ms + 500 - f.now_ms);
+    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
+    expect_output(&f, true);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
+    expect_output(&f, false);
+}
+
+static void expect_open_until_the_reset(void) {
+    fixture_vehicle_confirms(&f);
+    fixture_run(&f, 200);
+    expect_state(&f, AGV_STATE_SAFE);
+    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
+    expect_output(&f, false);
+    reset_by_button();
+    expect_output(&f, true);
+}
+
+/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
+void test_autopilot_off_is_not_confirmed(void) {
+    walk_to_tripped(&f);
+    const uint32_t trip_ms = f.now_ms;
+    fixture_gear(&f, GEAR_P);
+    fixture_wheels(&f, 0, 0);
+    expect_opens_at(trip_ms);
+    expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
+    expect_open_until_the_reset();
+}
+
+/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
+void test_p_is_not_confirmed(void) {
+    walk_to_tripped(&f);
+    const uint32_t trip_ms = f.now_ms;
+    fixture_mode(&f, MODE_MANUAL);
+    expect_opens_at(trip_ms);
+    expect_open_until_the_reset();
+}
+
+/* Shows: FSM-4, FSM-1, SAFE_STATE_UNCONFIRMED */
+void test_p_counts_from_the_first_p_that_was_sent(void) {
+    f.config.park = AGV_PARK_AT_STANDSTILL;
+    fixture_wheels(&f, 1000, 1000);
+    walk_to_tripped(&f);
+    const uint32_t trip_ms = f.now_ms;
+    fixture_mode(&f, MODE_MANUAL);
+    expect_opens_at(trip_ms + 3000);
+}
+
+/* The autopilot is known to be off, and P comes 499 ms after it was commanded. */
+/* Shows: FSM-4 */
+void test_a_confirmation_in_time_keeps_it_closed(void) {
+    walk_to_tripped(&f);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run(&f, 499);
+    fixture_gear(&f, GEAR_P);
+    fixture_send_now(&f, AGV_MSG_GEAR_STATUS);
+    fixture_run(&f, 2000);
+    expect_state(&f, AGV_STATE_SAFE);
+    expect_output(&f, true);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
+}
+
+/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
+void test_after_a_withdrawn_confirmation_the_500_ms_begin_anew(void) {
+    walk_to_safe(&f);
+    fixture_gear(&f, GEAR_D);
+    fixture_send_now(&f, AGV_MSG_GEAR_STATUS);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    const uint32_t back_ms = f.now_ms;
+    fixture_run(&f, 400);
+    fixture_gear(&f, GEAR_P);
+    fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
+    expect_state(&f, AGV_STATE_SAFE);
+    TEST_ASSERT_TRUE(f.now_ms - back_ms < 500);
+    fixture_gear(&f, GEAR_D);
+    fixture_send_now(&f, AGV_MSG_GEAR_STATUS);
+    expect_opens_at(f.now_ms);
+    expect_open_until_the_reset();
+}
+
+/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
+void test_a_withdrawn_autopilot_off_counts_from_its_withdrawal(void) {
+    walk_to_safe(&f);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_opens_at(f.now_ms);
+}
+
+static void expect_open_at_once(agv_state_t before, agv_fault_t fault) {
+    expect_state(&f, before);
+    expect_output(&f, true);
+    if (fault == AGV_FAULT_BUS_OFF) {
+        sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
+    } else {
+        sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101);
+    }
+    fixture_run(&f, 1);
+    expect_fault(&f, fault, true);
+    expect_output(&f, false);
+    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 0);
+    expect_open_until_the_reset();
+}
+
+static void expect_open_at_once_in_each_state(agv_fault_t fault) {
+    fixture_standby(&f);
+    expect_open_at_once(AGV_STATE_STANDBY, fault);
+    fixture_init(&f);
+    fixture_active(&f);
+    expect_open_at_once(AGV_STATE_ACTIVE, fault);
+    fixture_init(&f);
+    walk_to_tripped(&f);
+    expect_open_at_once(AGV_STATE_TRIPPED, fault);
+    fixture_init(&f);
+    walk_to_safe(&f);
+    expect_open_at_once(AGV_STATE_SAFE, fault);
+}
+
+/* Shows: FSM-4, BUS_OFF */
+void test_bus_off_opens_it_at_once(void) {
+    expect_open_at_once_in_each_state(AGV_FAULT_BUS_OFF);
+}
+
+/* Shows: FSM-4, TX_STALLED */
+void test_a_stalled_frame_opens_it_at_once(void) {
+    expect_open_at_once_in_each_state(AGV_FAULT_TX_STALLED);
+}
+
+/* Shows: FSM-4, FSM-7 */
+void test_a_crash_opens_it_and_it_stays_open_until_the_reset(void) {
+    walk_to_safe(&f);
+    fixture_button(&f, false);
+    sim_hal_hold(&f.hal);
+    TEST_ASSERT_FALSE(f.hal.safety_output.on);
+    fixture_restart(&f, HAL_RESET_LOCK_UP);
+    expect_output(&f, false);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    fixture_run(&f, 1200);
+    expect_open_until_the_reset();
+}
+
+/* The port's own watchdog is out of the way, so that it is the supervisor that opens the output. */
+/* Shows: FSM-4, TIM-3 */
+void test_it_opens_while_the_hardware_watchdog_is_not_fed(void) {
+    walk_to_safe(&f);
+    f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF;
+    f.receive_path_dead = true;
+    fixture_run(&f, 100);
+    expect_output(&f, true);
+    fixture_run(&f, 1);
+    expect_output(&f, false);
+    f.receive_path_dead = false;
+    expect_open_until_the_reset();
+}
+
+/* Shows: FSM-4, FSM-7 */
+void test_a_start_opens_it(void) {
+    fixture_standby(&f);
+    expect_output(&f, true);
+    f.hal.config.reset_cause = HAL_RESET_POWER_ON;
+    agv_supervisor_start(&f.supervisor, &f.ports, &f.config, true, f.now_ms); /* the port still has it closed */
+    expect_output(&f, false);
+}
