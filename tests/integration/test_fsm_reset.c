@@ -1,0 +1,393 @@
+/* The reset: what it needs, what breaks it, what a press in vain is told. */
+#include "fixture.h"
+#include "unity.h"
+#include "walk.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+/* Press (or release) the button in a 363h of its own, now. */
+static void press(bool pressed) {
+    fixture_button(&f, pressed);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+}
+
+static void expect_reset_after(uint32_t ms) {
+    fixture_run(&f, ms - 1);
+    expect_state(&f, AGV_STATE_SAFE);
+    fixture_run(&f, 1);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* Shows: FSM-3, FSM-4, FSM-5 */
+void test_a_press_of_1_s_with_all_conditions_resets(void) {
+    agv_event_t event = {0};
+    walk_to_safe(&f);
+    press(true);
+    expect_reset_after(1000);
+    expect_reason(&f, AGV_FAULT_NONE);
+    expect_output(&f, true);
+    TEST_ASSERT_EQUAL_UINT32(1, walk_events(&f, AGV_EVENT_RESET, 1, &event));
+    TEST_ASSERT_EQUAL_UINT32(0, walk_events(&f, AGV_EVENT_RESET, 0, &event));
+    fixture_forget_sent(&f);
+    fixture_run(&f, 2000); /* the button still pressed */
+    expect_state(&f, AGV_STATE_STANDBY);
+    expect_silence(&f);
+}
+
+/* Shows: FSM-3 */
+void test_a_press_of_less_than_1_s_resets_nothing_and_is_not_reported(void) {
+    uint8_t missing = 0;
+    walk_to_safe(&f);
+    for (unsigned i = 0; i < 5; i++) {
+        press(true);
+        fixture_run(&f, 999);
+        press(false);
+        fixture_run(&f, 500);
+        expect_state(&f, AGV_STATE_SAFE);
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, walk_refusals(&f, &missing));
+}
+
+/* ---- Each condition missing in turn ---- */
+
+static void moving(bool spoilt) {
+    fixture_wheels(&f, spoilt ? 50 : 0, 0);
+}
+
+static void moving_backwards(bool spoilt) {
+    fixture_wheels(&f, 0, spoilt ? -50 : 0);
+}
+
+static void not_manual(bool spoilt) {
+    fixture_mode(&f, spoilt ? MODE_NEITHER : MODE_MANUAL);
+}
+
+static void eps_frozen(bool spoilt) {
+    f.traffic[AGV_MSG_STEERING_STATUS].frozen = spoilt;
+}
+
+static void eps_fault(bool spoilt) {
+    f.traffic[AGV_MSG_EPS_STATUS].data[7] = spoilt ? 0x08 : 0;
+}
+
+static void alarm(bool spoilt) {
+    walk_alarm(&f, spoilt ? ALARM_REMOTE_POWER : ALARM_NONE);
+}
+
+static void no_throttle_status(bool spoilt) {
+    f.traffic[AGV_MSG_THROTTLE_STATUS].muted = spoilt;
+}
+
+static void vcu_frozen(bool spoilt) {
+    f.traffic[AGV_MSG_VEHICLE_STATUS].frozen = spoilt;
+}
+
+static void not_in_p(bool spoilt) {
+    fixture_gear(&f, spoilt ? GEAR_N : GEAR_P);
+}
+
+static void engaged(bool spoilt) {
+    fixture_mode(&f, spoilt ? MODE_ENGAGED : MODE_MANUAL);
+    fixture_mute_ai(&f, !spoilt);
+}
+
+typedef struct {
+    const char *what;
+    void (*spoil)(bool spoilt);
+    agv_state_t state;
+    uint8_t missing;
+} condition_t;
+
+static const condition_t CONDITIONS[] = {
+    {"moving", moving, AGV_STATE_SAFE, AGV_MISSING_STANDSTILL},
+    {"moving backwards", moving_backwards, AGV_STATE_SAFE, AGV_MISSING_STANDSTILL},
+    {"not manual", not_manual, AGV_STATE_SAFE, AGV_MISSING_MANUAL},
+    {"EPS frozen", eps_frozen, AGV_STATE_SAFE, AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_TRIP_CAUSE},
+    {"EPS fault", eps_fault, AGV_STATE_SAFE, AGV_MISSING_TRIP_CAUSE},
+    {"alarm", alarm, AGV_STATE_SAFE, AGV_MISSING_TRIP_CAUSE},
+    {"no 050h", no_throttle_status, AGV_STATE_SAFE, AGV_MISSING_TRIP_CAUSE | AGV_MISSING_MESSAGES},
+    {"not in P", not_in_p, AGV_STATE_TRIPPED, AGV_MISSING_STATE | AGV_MISSING_TRIP_CAUSE},
+    {"VCU frozen", vcu_frozen, AGV_STATE_TRIPPED,
+     AGV_MISSING_STATE | AGV_MISSING_TRIP_CAUSE | AGV_MISSING_VCU_HEARTBEAT},
+    {"engaged", engaged, AGV_STATE_TRIPPED, AGV_MISSING_STATE | AGV_MISSING_TRIP_CAUSE | AGV_MISSING_MANUAL},
+};
+
+static void begin(const condition_t *condition) {
+    fixture_init(&f);
+    f.what = condition->what;
+    f.long_run = true;
+    walk_to_safe(&f);
+    condition->spoil(true);
+    fixture_run(&f, 700); /* a deadline has expired, SAFE_STATE_UNCONFIRMED has been raised */
+    expect_state(&f, condition->state);
+}
+
+/* Shows: FSM-3 */
+void test_each_missing_condition_refuses_and_is_named_once_a_press(void) {
+    for (unsigned i = 0; i < sizeof CONDITIONS / sizeof CONDITIONS[0]; i++) {
+        uint8_t missing = 0;
+        begin(&CONDITIONS[i]);
+        press(true);
+        fixture_run(&f, 999);
+        TEST_ASSERT_EQUAL_UINT32_MESSAGE(0, walk_refusals(&f, &missing), f.what);
+        fixture_run(&f, 4000);
+        TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, walk_refusals(&f, &missing), f.what);
+        TEST_ASSERT_EQUAL_HEX8_MESSAGE(CONDITIONS[i].missing, missing, f.what);
+        press(false);
+        press(true);
+        fixture_run(&f, 4000);
+        TEST_ASSERT_EQUAL_UINT32_MESSAGE(2, walk_refusals(&f, &missing), f.what);
+        TEST_ASSERT_EQUAL_HEX8_MESSAGE(CONDITIONS[i].missing, missing, f.what);
+        expect_state(&f, CONDITIONS[i].state);
+    }
+}
+
+/* The button stays pressed; from the first moment at which all is well, 1 s. */
+/* Shows: FSM-3 */
+void test_a_break_starts_the_1_s_anew_and_the_button_need_not_be_released(void) {
+    for (unsigned i = 0; i < sizeof CONDITIONS / sizeof CONDITIONS[0]; i++) {
+        begin(&CONDITIONS[i]);
+        press(true);
+        fixture_run(&f, 2000);
+        expect_state(&f, CONDITIONS[i].state);
+        CONDITIONS[i].spoil(false);
+        fixture_run(&f, 1000);
+        TEST_ASSERT_NOT_EQUAL_MESSAGE(AGV_STATE_STANDBY, agv_supervisor_state(&f.supervisor), f.what);
+        fixture_run(&f, 120); /* at most 100 ms of standstill and a cycle until all is well */
+        expect_state(&f, AGV_STATE_STANDBY);
+    }
+}
+
+/* Shows: FSM-3 */
+void test_a_break_of_one_frame_in_the_last_moment(void) {
+    walk_to_safe(&f);
+    press(true);
+    fixture_run(&f, 990);
+    fixture_mode(&f, MODE_NEITHER);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_reset_after(1000);
+}
+
+/* Shows: FSM-3 */
+void test_a_release_starts_the_1_s_anew(void) {
+    walk_to_safe(&f);
+    press(true);
+    fixture_run(&f, 990);
+    press(false);
+    press(true);
+    expect_reset_after(1000);
+}
+
+/* ---- The edge of the button ---- */
+
+static void expect_no_reset_before_a_new_press(void) {
+    uint8_t missing = 0;
+    fixture_run(&f, 5000);
+    expect_state(&f, AGV_STATE_SAFE);
+    TEST_ASSERT_EQUAL_UINT32(1, walk_refusals(&f, &missing));
+    TEST_ASSERT_BITS_HIGH(AGV_MISSING_BUTTON, missing);
+    press(false);
+    press(true);
+    expect_reset_after(1000);
+}
+
+/* Shows: FSM-3 */
+void test_a_press_that_began_before_the_trip_does_not_count(void) {
+    fixture_active(&f);
+    press(true);
+    fixture_run(&f, 50);
+    walk_trip(&f);
+    fixture_mute_ai(&f, true);
+    fixture_vehicle_confirms(&f);
+    expect_no_reset_before_a_new_press();
+}
+
+/* Shows: FSM-3 */
+void test_a_press_in_the_very_frame_of_the_trip_does_not_count(void) {
+    fixture_active(&f);
+    fixture_button(&f, true);
+    walk_trip(&f);
+    fixture_mute_ai(&f, true);
+    fixture_vehicle_confirms(&f);
+    expect_no_reset_before_a_new_press();
+}
+
+/* Shows: FSM-3 */
+void test_a_press_after_the_trip_and_before_safe_counts_from_safe_on(void) {
+    walk_to_tripped(&f);
+    fixture_run(&f, 100);
+    press(true);
+    fixture_wheels(&f, 0, 0);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run(&f, 300);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    fixture_gear(&f, GEAR_P);
+    fixture_send_now(&f, AGV_MSG_GEAR_STATUS);
+    expect_reset_after(1000);
+}
+
+/* A press in TRIPPED that was refused is accepted once SAFE has lasted for a second. */
+/* Shows: FSM-3 */
+void test_a_press_in_tripped_is_refused_and_then_accepted(void) {
+    uint8_t missing = 0;
+    walk_to_tripped(&f);
+    fixture_mode(&f, MODE_MANUAL);
+    press(true);
+    fixture_run(&f, 1000);
+    TEST_ASSERT_EQUAL_UINT32(1, walk_refusals(&f, &missing));
+    TEST_ASSERT_BITS_HIGH(AGV_MISSING_STATE, missing);
+    fixture_gear(&f, GEAR_P);
+    fixture_send_now(&f, AGV_MSG_GEAR_STATUS); /* ends SAFE_STATE_UNCONFIRMED, too: the next tick sees no trip cause */
+    expect_reset_after(1001);
+}
+
+/* Shows: FSM-3 */
+void test_button_2_resets_nothing(void) {
+    walk_to_safe(&f);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[6] = 0x42;
+    fixture_run(&f, 3000);
+    expect_state(&f, AGV_STATE_SAFE);
+}
+
+/* Shows: FSM-3 */
+void test_a_press_outside_the_latch_is_no_event(void) {
+    uint8_t missing = 0;
+    fixture_standby(&f);
+    press(true);
+    fixture_run(&f, 3000);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run(&f, 3000);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    TEST_ASSERT_EQUAL_UINT32(0, walk_refusals(&f, &missing));
+}
+
+/* ---- The AI computer does not hinder ---- */
+
+static void trip_by_silent_ai(void) {
+    fixture_active(&f);
+    fixture_mute_ai(&f, true);
+    fixture_run(&f, 500);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    fixture_vehicle_confirms(&f);
+    fixture_run(&f, 300);
+    expect_state(&f, AGV_STATE_SAFE);
+}
+
+/* 065h is the fastest: 126 ms after the last one. */
+/* Shows: FSM-3, SUP-8, STEERING_COMMAND_TIMEOUT */
+void test_a_dead_ai_computer_does_not_hinder(void) {
+    trip_by_silent_ai();
+    expect_reason(&f, AGV_FAULT_STEERING_COMMAND_TIMEOUT);
+    press(true);
+    expect_reset_after(1000);
+    fixture_run(&f, 3000);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* Shows: FSM-3, SUP-8 */
+void test_a_dead_ai_computer_does_not_hinder_though_it_trips_in_manual(void) {
+    f.config.ai_lost_in_manual = AGV_AI_LOST_TRIP;
+    trip_by_silent_ai();
+    expect_fault(&f, AGV_FAULT_AI_HEARTBEAT_LOST, true);
+    press(true);
+    expect_reset_after(1000);
+    fixture_run(&f, 3000); /* the reset forgot that the AI was seen */
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* Shows: FSM-3, SUP-8, AI_HEARTBEAT_STUCK */
+void test_a_frozen_ai_computer_does_not_hinder_though_it_trips_in_manual(void) {
+    f.config.ai_lost_in_manual = AGV_AI_LOST_TRIP;
+    fixture_active(&f);
+    f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].frozen = true;
+    fixture_run(&f, 500);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, AGV_FAULT_AI_HEARTBEAT_STUCK);
+    fixture_vehicle_confirms(&f);
+    fixture_run(&f, 300);
+    press(true);
+    expect_reset_after(1000);
+}
+
+/* Three of four frames are D, 100 % and out of range, one a millisecond. */
+static bool babble(fixture_t *fixture, agv_message_t message, hal_can_frame_t *frame) {
+    static const uint8_t values[] = {1, 250, 3, 0xFF};
+    (void)fixture;
+    if (message == AGV_MSG_GEAR_COMMAND || message == AGV_MSG_THROTTLE_COMMAND) {
+        frame->data[0] = values[f.now_ms % 4];
+    }
+    return true;
+}
+
+static void expect_babbling_ai_does_not_hinder(uint16_t topology) {
+    fixture_init(&f);
+    f.long_run = true;
+    f.config.topology = topology;
+    walk_to_safe(&f);
+    fixture_mute_ai(&f, false);
+    for (unsigned message = AGV_MSG_GEAR_COMMAND; message <= AGV_MSG_STEERING_COMMAND; message++) {
+        f.traffic[message].cycle_ms = 1;
+        f.traffic[message].phase_ms = 0;
+    }
+    f.edit = babble;
+    fixture_run(&f, 200);
+    expect_fault(&f, AGV_FAULT_COMMAND_TOO_FAST, true);
+    press(true);
+    expect_reset_after(1000);
+}
+
+/* Shows: FSM-3, COMMAND_TOO_FAST */
+void test_a_babbling_ai_computer_does_not_hinder(void) {
+    expect_babbling_ai_does_not_hinder(AGV_TOPOLOGY_SHARED);
+    expect_babbling_ai_does_not_hinder(AGV_TOPOLOGY_GATEWAY);
+}
+
+/* Shows: FSM-3, AI_BUS_OFF */
+void test_a_dead_ai_side_of_a_gateway_does_not_hinder(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    walk_to_safe(&f);
+    sim_hal_set_can_state(&f.hal, HAL_CAN_AI, HAL_CAN_BUS_OFF);
+    fixture_run(&f, 200);
+    expect_fault(&f, AGV_FAULT_AI_BUS_OFF, true);
+    press(true);
+    expect_reset_after(1000);
+}
+
+/* ---- After it ---- */
+
+/* Shows: FSM-3, FSM-4 */
+void test_a_trip_while_the_vehicle_is_being_reset_again_is_a_new_one(void) {
+    walk_to_safe(&f);
+    press(true);
+    expect_reset_after(1000);
+    walk_alarm(&f, ALARM_REMOTE_SIGNAL);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    walk_alarm(&f, ALARM_NONE);
+    expect_reason(&f, AGV_FAULT_REMOTE_SIGNAL_LOST);
+    fixture_run(&f, 3000); /* the button is still pressed, since before this trip */
+    expect_state(&f, AGV_STATE_SAFE);
+}
+
+/* Shows: FSM-3, SUP-8 */
+void test_after_the_reset_the_autopilot_can_be_engaged_again(void) {
+    walk_to_safe(&f);
+    press(true);
+    expect_reset_after(1000);
+    press(false);
+    fixture_forget_sent(&f);
+    fixture_mute_ai(&f, false);
+    fixture_run(&f, 300);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run(&f, 1000);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    expect_silence(&f);
+}
