@@ -2,9 +2,12 @@
  * @file main.c
  * The program's front: finds the sub-command and runs it.
  */
+#include <fcntl.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "commands.h"
 #include "report.h"
@@ -53,7 +56,21 @@ static status_t run_command(int argc, char **argv) {
     return STATUS_UNUSABLE;
 }
 
+/**
+ * Occupy standard streams that the caller has closed, so that no file gets their numbers; using them is an error as
+ * before.
+ */
+static void occupy_closed_streams(void) {
+    bool occupied = true;
+    for (int stream = STDIN_FILENO; occupied && (stream <= STDERR_FILENO); stream++) {
+        if (fcntl(stream, F_GETFD) < 0) {
+            occupied = open("/dev/null", (stream == STDIN_FILENO) ? O_WRONLY : O_RDONLY) == stream;
+        }
+    }
+}
+
 int main(int argc, char **argv) {
+    occupy_closed_streams();
     /* A reader that goes away is a write error like any other, with a message and an exit status. */
     (void)signal(SIGPIPE, SIG_IGN);
     status_t status = STATUS_OK;

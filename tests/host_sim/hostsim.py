@@ -1,0 +1,111 @@
+"""Runs the built program from outside. HOST_SIM in the environment is its path."""
+import json
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM = os.environ["HOST_SIM"]
+
+SENT = re.compile(r"\((\d{10,})\.(\d{6})\) (\S+) ([0-9A-F]{3})#((?:[0-9A-F]{2})*)")
+
+
+class Sent:
+    """One line of an OUT log."""
+
+    def __init__(self, line):
+        match = SENT.fullmatch(line)
+        assert match, line
+        self.us = int(match[1]) * 1000000 + int(match[2])
+        self.interface = match[3]
+        self.can_id = int(match[4], 16)
+        self.data = bytes.fromhex(match[5])
+
+    def __repr__(self):
+        return "(%d) %s %03X#%s" % (self.us, self.interface, self.can_id, self.data.hex())
+
+
+class Result:
+    """What a run came to."""
+
+    def __init__(self, status, stdout, stderr, folder):
+        self.status = status
+        self.stdout = stdout
+        self.stderr = stderr
+        self.folder = folder
+
+    def text(self, name):
+        return (self.folder / name).read_text(encoding="ascii")
+
+    def sent(self, name="out.log"):
+        return [Sent(line) for line in self.text(name).splitlines()]
+
+    def events(self, name="events.jsonl"):
+        return [json.loads(line) for line in self.text(name).splitlines()]
+
+    def of(self, kind):
+        return [event for event in self.events() if event["event"] == kind]
+
+    def summary(self):
+        return self.events()[-1]
+
+    def trips(self):
+        """(t_ms, reason) of every trip."""
+        return [(event["t_ms"], event["reason"]) for event in self.of("state") if event["reason"]]
+
+    def faults(self, active=True):
+        return [(event["t_ms"], event["name"], event["class"]) for event in self.of("fault")
+                if event["active"] == active]
+
+
+class Case(unittest.TestCase):
+    """A test with a folder of its own, in which the program runs."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="host_sim.")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def write(self, name, content):
+        path = self.folder / name
+        path.write_bytes(content if isinstance(content, bytes) else content.encode("utf-8"))
+        return path
+
+    def files(self):
+        return sorted(path.name for path in self.folder.iterdir())
+
+    def run_program(self, *arguments, stdin=b"", timeout=120, **options):
+        options.setdefault("stdout", subprocess.PIPE)
+        done = subprocess.run([PROGRAM, *map(str, arguments)], input=stdin, stderr=subprocess.PIPE, timeout=timeout,
+                              cwd=self.folder, check=False, **options)
+        stdout = (done.stdout or b"").decode("utf-8", "replace")
+        return Result(done.returncode, stdout, done.stderr.decode("utf-8", "replace"), self.folder)
+
+    def run_good(self, *arguments, **options):
+        result = self.run_program(*arguments, **options)
+        self.assertEqual(result.status, 0, result.stderr)
+        return result
+
+    def assert_refused(self, result, *parts):
+        """Exit status 2, and one line on standard error that names the thing."""
+        self.assertEqual(result.status, 2, result.stdout + result.stderr)
+        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+        self.assertTrue(result.stderr.endswith("\n"))
+        for part in parts:
+            self.assertIn(part, result.stderr)
+
+    def replay(self, log, *arguments, name="log", **options):
+        """Replay a log, with all outputs; must succeed."""
+        self.write(name, log)
+        return self.run_good("replay", "--events", "events.jsonl", "--out", "out.log", *arguments, name, **options)
+
+    def refuse(self, log, *arguments, **options):
+        """Replay a log that is refused: nothing is written."""
+        self.write("log", log)
+        before = self.files()
+        result = self.run_program("replay", "--events", "events.jsonl", "--out", "out.log", "--store", "store",
+                                  *arguments, "log", **options)
+        self.assertEqual(self.files(), before)
+        return result

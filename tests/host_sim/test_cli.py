@@ -1,0 +1,141 @@
+"""The program's front: commands, options, exit status, one line for what is wrong."""
+import os
+import re
+import subprocess
+import unittest
+
+import hostsim
+import traffic
+
+LOG = traffic.log(traffic.frames(100))
+
+
+class Front(hostsim.Case):
+    def commands(self):
+        text = self.run_good("--help").stdout
+        return re.findall(r"^  ([a-z]+) {2,}\S", text, re.MULTILINE)
+
+    def test_version_is_one_line(self):
+        result = self.run_good("--version")
+        self.assertRegex(result.stdout, r"\Ahost_sim \d+\.\d+\.\d+\n\Z")
+        self.assertEqual(result.stderr, "")
+
+    def test_help_lists_the_commands_and_each_has_its_own(self):
+        commands = self.commands()
+        self.assertLessEqual({"config", "replay"}, set(commands))
+        for command in commands:
+            text = self.run_good(command, "--help").stdout
+            self.assertIn("usage: host_sim " + command, text)
+            self.assertEqual(text, self.run_good(command, "-h").stdout)
+
+    def test_help_of_replay_names_every_option(self):
+        text = self.run_good("replay", "--help").stdout
+        for option in ("--out", "--events", "--tail", "--start-ms", "--skip-bad-lines", "--ai-if", "--reset-cause",
+                       "--store", "--config", "--topology", "--id-set", "--shadow"):
+            self.assertRegex(text, r"(?m)^  %s( |$)" % option)
+
+    def test_help_wins_over_what_comes_after_it(self):
+        self.run_good("replay", "--help", "--nonsense")
+
+    def test_no_command_and_an_unknown_one(self):
+        self.assert_refused(self.run_program(), "no command")
+        self.assert_refused(self.run_program("drive"), "'drive'")
+        self.assert_refused(self.run_program("--nonsense"), "'--nonsense'")
+        self.assert_refused(self.run_program(""), "''")
+
+    def test_every_command_refuses_an_unknown_option_by_its_name(self):
+        for command in self.commands():
+            for option in ("--nonsense", "--nonsense=1", "-n"):
+                self.assert_refused(self.run_program(command, option), "'" + option + "'", command)
+
+    def test_a_name_with_control_characters_is_still_one_line(self):
+        self.assert_refused(self.run_program("a\nb\x1b[2J"), "'a?b?[2J'")
+        self.assert_refused(self.run_program("replay", "no\nsuch\nfile"), "no?such?file")
+
+    def test_a_very_long_name_is_one_line(self):
+        self.assert_refused(self.run_program("x" * 100000), "'xxx")
+        self.assert_refused(self.run_program("replay", "x" * 100000), "xxx")
+
+
+class Options(hostsim.Case):
+    def setUp(self):
+        super().setUp()
+        self.write("log", LOG)
+
+    def test_values_with_a_blank_and_with_an_equals_sign(self):
+        one = self.run_good("replay", "--tail", "17", "--start-ms", "5", "--topology", "shared", "log")
+        two = self.run_good("replay", "--tail=17", "--start-ms=5", "--topology=shared", "log")
+        self.assertEqual(one.stdout, two.stdout)
+        self.assertIn("0.111 s", one.stdout)
+
+    def test_options_may_follow_the_log_and_the_last_one_wins(self):
+        self.assertIn("0.113 s", self.run_good("replay", "log", "--tail", "17", "--tail", "19").stdout)
+
+    def test_what_is_missing_or_too_much(self):
+        self.assert_refused(self.run_program("replay"), "LOG is missing")
+        self.assert_refused(self.run_program("replay", "log", "more"), "'more' is one too many")
+        self.assert_refused(self.run_program("replay", "log", "--tail"), "--tail needs a value")
+        self.assert_refused(self.run_program("replay", "log", "--out", "--shadow"), "--out needs a value")
+        self.assert_refused(self.run_program("replay", "log", "--out="), "--out: the value is empty")
+        self.assert_refused(self.run_program("replay", "log", "--shadow=on"), "--shadow takes no value")
+        self.assert_refused(self.run_program("config", "log"), "'log' is one too many")
+
+    def test_numbers_are_checked_completely(self):
+        for option, highest in (("--tail", 8640000000), ("--start-ms", 4294967295)):
+            for bad in ("-1", "+1", "1.0", "1s", " 1", "", "0x1", "1e3", str(highest + 1), "9" * 30):
+                self.assert_refused(self.run_program("replay", option + "=" + bad, "log"), option, "'%s'" % bad)
+        self.run_good("replay", "--start-ms", 4294967295, "log")
+        self.run_good("replay", "--start-ms", "0", "--tail", "0", "log")
+        self.run_good("replay", "--tail", "0001", "log")
+
+    def test_words_are_checked(self):
+        for option, words in (("--topology", "shared|gateway"), ("--id-set", "heading|table"),
+                              ("--reset-cause", "power-on|watchdog|brown-out|lock-up|software|unknown")):
+            for bad in ("", "SHARED", words, "shared ", "share"):
+                self.assert_refused(self.run_program("replay", option + "=" + bad, "log"), option, words)
+
+    def test_two_dashes_end_the_options(self):
+        self.write("--shadow", LOG)
+        self.run_good("replay", "--", "--shadow")
+        self.assert_refused(self.run_program("replay", "--", "log", "--tail"), "'--tail' is one too many")
+
+
+class StandardOutput(hostsim.Case):
+    """What does not arrive is noticed."""
+
+    def full(self, *arguments):
+        with open("/dev/full", "wb") as full:
+            return self.run_program(*arguments, stdout=full)
+
+    def test_a_full_disk(self):
+        self.write("log", LOG)
+        for arguments in (("--help",), ("--version",), ("config",), ("config", "--to-kconfig"), ("replay", "--help"),
+                          ("replay", "log"), ("replay", "--events", "-", "log"), ("replay", "--out=-", "log")):
+            with self.subTest(arguments):
+                self.assert_refused(self.full(*arguments), "standard output: No space left on device")
+
+    def test_a_file_on_a_full_disk(self):
+        self.write("log", LOG)
+        result = self.run_program("replay", "--out", "/dev/full", "--events", "events", "log")
+        self.assert_refused(result, "/dev/full: No space left on device")
+        self.assertEqual(self.files(), ["log"])
+
+    def test_a_closed_pipe(self):
+        self.write("log", traffic.log(traffic.frames(3000)))
+        for arguments in (("config",), ("replay", "--out", "-", "log"), ("replay", "log")):
+            with self.subTest(arguments):
+                reading, writing = os.pipe()
+                os.close(reading)
+                result = self.run_program(*arguments, stdout=writing)
+                os.close(writing)
+                self.assert_refused(result, "standard output: Broken pipe")
+
+    def test_a_closed_standard_output(self):
+        self.write("log", LOG)
+        done = subprocess.run(["sh", "-c", '"$0" config >&-', hostsim.PROGRAM], stderr=subprocess.PIPE, check=False)
+        self.assertEqual(done.returncode, 2)
+        self.assertEqual(done.stderr.count(b"\n"), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,216 @@
+"""`host_sim config`, and configurations as files."""
+import re
+import unittest
+import zlib
+
+import hostsim
+import traffic
+
+LOG = traffic.log(traffic.frames(50))
+
+# Written by hand from the requirements: some settings and their defaults.
+DEFAULTS = {
+    "topology": "shared", "id_set": "heading", "shadow": "off", "park": "at_once", "ai_lost_in_manual": "warn",
+    "own_heartbeat": "running", "gateway_in_manual": "heartbeat", "vcu_heartbeat_timeout_ms": "50",
+    "eps_heartbeat_timeout_ms": "50", "ai_heartbeat_timeout_ms": "350", "gear_command_timeout_ms": "350",
+    "throttle_command_timeout_ms": "350", "steering_command_timeout_ms": "125", "gear_status_timeout_ms": "125",
+    "throttle_status_timeout_ms": "60", "eps_status_timeout_ms": "60", "steering_position_timeout_ms": "60",
+    "wheel_speed_timeout_ms": "60", "ai_never_seen_timeout_ms": "500", "engaged_grace_ms": "500",
+    "mode_invalid_ms": "50", "tx_stalled_ms": "100", "bus_off_recovery_ms": "100", "init_hold_ms": "500",
+    "startup_timeout_ms": "10000", "confirm_timeout_ms": "500", "park_timeout_ms": "3000", "reset_hold_ms": "1000",
+    "watchdog_period_ms": "100", "class_vcu_heartbeat_lost": "trip", "class_eps_temp_above_110": "warn",
+    "class_command_too_fast": "warn", "class_store_invalid": "warn",
+}
+
+ENTRY = re.compile(r"^([a-z][a-z0-9_]*): (\S+)(?:  # .*)?$")
+
+
+def entries(text):
+    """The settings of a YAML file as host_sim writes it: key -> value, each once."""
+    result = {}
+    for line in text.splitlines():
+        if line and not line.startswith("#"):
+            match = ENTRY.match(line)
+            assert match, line
+            assert match[1] not in result, line
+            result[match[1]] = match[2]
+    return result
+
+
+def checksum_of(text):
+    return re.search(r"^# Checksum: ([0-9A-F]{8})$", text, re.MULTILINE)[1]
+
+
+class Listing(hostsim.Case):
+    def test_every_setting_stands_with_default_unit_range_and_meaning(self):
+        text = self.run_good("config").stdout
+        found = entries(text)
+        for key, value in DEFAULTS.items():
+            self.assertEqual(found.get(key), value, key)
+        for key in found:
+            if not key.startswith("class_"):
+                self.assertRegex(text, r"(?m)^# \S.*\n# (\d+ to \d+.*|[a-z_]+\|[a-z_]+), default \S+\n%s: " % key)
+        self.assertIn("# 30 to 500 ms, default 50\nvcu_heartbeat_timeout_ms: 50\n", text)
+
+    def test_what_is_listed_is_taken_back(self):
+        text = self.run_good("config").stdout
+        self.write("c.yaml", text)
+        self.assertEqual(self.run_good("config", "--config", "c.yaml").stdout, text)
+
+    def test_a_changed_configuration_is_taken_back(self):
+        self.write("a.yaml", "topology: gateway\nown_heartbeat: frozen\nid_set: table\nstatus_frame_id: 0x7A0\n"
+                             "class_remote_signal_lost: warn\nclass_store_invalid: trip\nshadow: on\n")
+        text = self.run_good("config", "--config", "a.yaml").stdout
+        self.assertEqual(entries(text)["status_frame_id"], str(0x7A0))
+        self.assertEqual(entries(text)["class_remote_signal_lost"], "warn")
+        self.write("b.yaml", text)
+        self.assertEqual(self.run_good("config", "--config", "b.yaml").stdout, text)
+        self.assertEqual(self.run_good("config", "--config", "b.yaml").stderr, "")
+
+    def test_options_change_the_listing(self):
+        text = self.run_good("config", "--topology=gateway", "--id-set=table", "--shadow").stdout
+        found = entries(text)
+        self.assertEqual((found["topology"], found["id_set"], found["shadow"]), ("gateway", "table", "on"))
+
+    def test_every_numeric_setting_takes_its_limits_and_no_more(self):
+        text = self.run_good("config").stdout
+        limits = re.findall(r"^# (\d+) to (\d+).*\n([a-z0-9_]+): ", text, re.MULTILINE)
+        self.assertGreater(len(limits), 30)
+        for lowest, highest, key in limits:
+            for value in (int(lowest), int(highest)):
+                self.write("c.yaml", "%s: %d\n" % (key, value))
+                self.run_good("config", "--config", "c.yaml")
+            for value in (int(lowest) - 1, int(highest) + 1):
+                self.write("c.yaml", "# first\n%s: %d\n" % (key, value))
+                self.assert_refused(self.run_program("config", "--config", "c.yaml"), "c.yaml:2: %s: " % key)
+
+
+class Kconfig(hostsim.Case):
+    def test_the_fragment_says_the_same(self):
+        self.write("c.yaml", "topology: gateway\ninit_hold_ms: 700\nclass_remote_signal_lost: warn\n"
+                             "class_eps_temp_above_110: trip\n")
+        yaml = self.run_good("config", "--config", "c.yaml").stdout
+        kconfig = self.run_good("config", "--config", "c.yaml", "--to-kconfig").stdout
+        self.assertEqual(checksum_of(yaml), checksum_of(kconfig))
+        lines = [line for line in kconfig.splitlines() if not line.startswith("#")]
+        self.assertEqual(len(lines), len(set(lines)))
+        classes = 0
+        for key, value in entries(yaml).items():
+            name = "CONFIG_AGV_" + key.upper()
+            if value.isdigit():
+                self.assertIn("%s=%s" % (name, value), lines)
+            elif not key.startswith("class_"):
+                self.assertIn("%s_%s=y" % (name, value.upper()), lines)
+            elif "%s_%s=y" % (name, value.upper()) in lines:
+                classes += 1
+            else:  # only a class that cannot be chosen may be missing
+                self.assertRegex(yaml, r"(?m)^%s: .*must stay$" % key)
+        self.assertIn("CONFIG_AGV_CLASS_REMOTE_SIGNAL_LOST_WARN=y", lines)
+        self.assertIn("CONFIG_AGV_CLASS_EPS_TEMP_ABOVE_110_TRIP=y", lines)
+        settings = [key for key in entries(yaml) if not key.startswith("class_")]
+        self.assertEqual(len(lines), len(settings) + classes)
+
+    def test_the_checksum_is_what_the_header_says(self):
+        """CRC-32 over all settings, 16 bit little-endian each, then the trips, 64 bit little-endian."""
+        text = self.run_good("config").stdout
+        values, trips, faults = b"", 0, 0
+        for key, value in entries(text).items():
+            if key.startswith("class_"):
+                trips |= (value == "trip") << faults
+                faults += 1
+            elif value.isdigit():
+                values += int(value).to_bytes(2, "little")
+            else:
+                words = re.search(r"^# ([a-z_|]+), default \S+\n%s: " % key, text, re.MULTILINE)[1].split("|")
+                values += words.index(value).to_bytes(2, "little")
+        expected = zlib.crc32(values + trips.to_bytes(8, "little"))
+        self.assertEqual(checksum_of(text), "%08X" % expected)
+
+    def test_another_configuration_has_another_checksum(self):
+        base = checksum_of(self.run_good("config").stdout)
+        self.write("c.yaml", "init_hold_ms: 501\n")
+        self.assertNotEqual(checksum_of(self.run_good("config", "--config=c.yaml").stdout), base)
+        self.write("c.yaml", "class_remote_signal_lost: warn\n")
+        self.assertNotEqual(checksum_of(self.run_good("config", "--config=c.yaml").stdout), base)
+
+
+class Refusals(hostsim.Case):
+    def refuse_config(self, text, *parts):
+        self.write("c.yaml", text)
+        self.write("log", LOG)
+        for arguments in (("config", "--config", "c.yaml"), ("replay", "--config", "c.yaml", "log"),
+                          ("config", "--to-kconfig", "--config=c.yaml")):
+            result = self.run_program(*arguments)
+            self.assert_refused(result, *parts)
+            self.assertEqual(result.stdout, "")
+
+    # Shows: INT-2
+    def test_what_makes_no_sense_is_refused_with_its_line(self):
+        for text, *parts in (
+                ("a: 1\n", "c.yaml:1: a: "),
+                ("\n\ntopologi: shared\n", "c.yaml:3: topologi: "),
+                ("park: at_once\npark: at_once\n", "c.yaml:2: park: ", "line 1"),
+                ("park: now\n", "c.yaml:1: park: 'now'", "at_once|at_standstill"),
+                ("init_hold_ms: soon\n", "c.yaml:1: init_hold_ms: 'soon'"),
+                ("init_hold_ms: 5\n", "c.yaml:1: init_hold_ms: 5 "),
+                ("init_hold_ms: 1e3\n", "c.yaml:1: init_hold_ms: "),
+                ("init_hold_ms: '500'\n", "c.yaml:1: init_hold_ms: "),
+                ("init_hold_ms: [500]\n", "c.yaml:1: init_hold_ms: "),
+                ("init_hold_ms:\n  a: b\n", "c.yaml:1: init_hold_ms: "),
+                ("init_hold_ms:\n", "c.yaml:1: init_hold_ms: "),
+                ("# deadline under three cycles\nvcu_heartbeat_timeout_ms: 29\n", "c.yaml:2: vcu_heartbeat_timeout_ms"),
+                ("status_frame_period_ms: 0\n", "c.yaml:1: status_frame_period_ms: 0 "),
+                ("status_frame_id: 0x43F\n", "c.yaml:1: status_frame_id: "),
+                ("\nown_heartbeat: frozen\n", "c.yaml:2: own_heartbeat: ", "gateway"),
+                ("class_bus_off: warn\n", "c.yaml:1: class_bus_off: "),
+                ("park: at_once\nclass_ai_heartbeat_lost: warn\n", "c.yaml:2: class_ai_heartbeat_lost: "),
+                ("class_nothing: warn\n", "c.yaml:1: class_nothing: "),
+                ("- a\n- b\n", "c.yaml:1: "),
+                ("text\n", "c.yaml:1: "),
+                ("a: [\n", "c.yaml:"),
+                ("---\npark: at_once\n---\npark: at_once\n", "c.yaml:4: "),
+                ("park: at_once\n\x01\n", "c.yaml:2: "),
+                (b"park: at_once\n\xff\n", "c.yaml:2: "),
+                (b"park: at_once\n\0\n", "c.yaml:2: "),
+        ):
+            with self.subTest(text):
+                self.refuse_config(text, *parts)
+
+    def test_every_fault_that_must_trip_is_refused_as_a_warning(self):
+        text = self.run_good("config").stdout
+        fixed = re.findall(r"^(class_[a-z0-9_]+): trip  # .*must stay$", text, re.MULTILINE)
+        self.assertGreater(len(fixed), 25)
+        for key in fixed:
+            self.write("c.yaml", "%s: warn\n" % key)
+            self.assert_refused(self.run_program("config", "--config", "c.yaml"), "c.yaml:1: %s: " % key)
+
+    def test_files_that_cannot_be_read(self):
+        for path, reason in (("none.yaml", "No such file"), (".", "Is a directory"), ("/dev/zero", "larger than")):
+            self.assert_refused(self.run_program("config", "--config", path), path, reason)
+
+    def test_an_option_may_make_a_file_senseless(self):
+        self.write("c.yaml", "topology: gateway\nown_heartbeat: frozen\n")
+        self.run_good("config", "--config", "c.yaml")
+        self.assert_refused(self.run_program("config", "--config", "c.yaml", "--topology", "shared"),
+                            "c.yaml:2: own_heartbeat: ")
+
+
+class Deviations(hostsim.Case):
+    # Shows: INT-2
+    def test_what_is_not_the_default_is_listed_at_the_start(self):
+        self.write("log", LOG)
+        self.write("c.yaml", "init_hold_ms: 700\npark: at_standstill\nclass_remote_signal_lost: warn\n"
+                             "tx_stalled_ms: 100\n")
+        result = self.run_good("replay", "--config", "c.yaml", "--shadow", "--events", "-", "log")
+        self.assertEqual(result.stderr, "host_sim: not the default: shadow: on (off), park: at_standstill (at_once), "
+                                        "init_hold_ms: 700 (500), class_remote_signal_lost: warn (trip)\n")
+        self.assertTrue(result.stdout.startswith('{"t_ms"'))
+
+    def test_the_defaults_are_not_listed(self):
+        self.write("log", LOG)
+        self.write("c.yaml", "# nothing\n")
+        self.assertEqual(self.run_good("replay", "--config", "c.yaml", "log").stderr, "")
+
+
+if __name__ == "__main__":
+    unittest.main()
