@@ -16,6 +16,8 @@ setup() {
         echo '<!-- end of fault table -->'
     } >docs/faults.md
     printf '# Rows\n\nA gap of 50 ms (`gap_ms`), see `BUS_OFF`, [table](faults.md) and [above](#rows).\n' >docs/requirements.md
+    echo '[table](../firmware/include/agv/fault_table.def), [settings](../firmware/include/agv/config_settings.def)' \
+        >docs/architecture.md
     printf '#!/bin/sh\n' >scripts/run
     chmod +x scripts/run
     printf '[rows](docs/requirements.md#rows)\n\n```sh\n./scripts/run --fast | sed -n 1p # comment\n```\n' >README.md
@@ -112,6 +114,12 @@ pages() {
 @test "pages: a setting that is not there" {
     sed -i 's/`gap_ms`/`hole_ms`/' docs/requirements.md
     fails_with "not the default of hole_ms" pages
+}
+
+@test "pages: a module that the architecture does not name" {
+    mkdir firmware/src
+    : >firmware/src/new.c
+    fails_with "does not link firmware/src/new.c" pages
 }
 
 @test "pages: nothing to check" {
