@@ -27,17 +27,14 @@ uint16_t agv_crc16(uint16_t crc, const void *bytes, size_t size) {
 
 uint32_t agv_seal(const void *words, size_t size) {
     const unsigned char *block = words;
-    uint32_t folded[4] = {0u, 0u, 0u, 0u};
-    uint32_t next[4] = {0u, 0u, 0u, 0u};
-    size_t at = 0u;
-    /* Four lanes, so that compilers use vector registers where there are any. */
-    for (; (at + sizeof next) <= size; at += sizeof next) {
-        (void)memcpy(next, &block[at], sizeof next);
-        for (uint32_t lane = 0u; lane < 4u; lane++) {
-            folded[lane] ^= next[lane];
-        }
+    uint32_t folded = 0u;
+    uint32_t next = 0u;
+    const size_t whole = size / sizeof next;
+    for (size_t i = 0u; i < whole; i++) {
+        (void)memcpy(&next, &block[i * sizeof next], sizeof next);
+        folded ^= next;
     }
-    (void)memset(next, 0, sizeof next);
-    (void)memcpy(next, &block[at], size - at);
-    return ~(folded[0] ^ folded[1] ^ folded[2] ^ folded[3] ^ next[0] ^ next[1] ^ next[2] ^ next[3]);
+    next = 0u;
+    (void)memcpy(&next, &block[whole * sizeof next], size % sizeof next);
+    return ~(folded ^ next);
 }
