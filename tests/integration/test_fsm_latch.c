@@ -1,0 +1,204 @@
+/* The first reason, faults that cannot be reset, and the alive counter of the own 43Fh. */
+#include "fixture.h"
+#include "unity.h"
+#include "walk.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+static void press_for(uint32_t ms) {
+    fixture_button(&f, false);
+    fixture_run(&f, 20);
+    fixture_button(&f, true);
+    fixture_run(&f, ms);
+}
+
+/* ---- The first reason ---- */
+
+/* Shows: FSM-5, BUS_OFF */
+void test_later_reasons_do_not_replace_the_first_one(void) {
+    walk_to_safe(&f);
+    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF); /* ranks higher */
+    fixture_run(&f, 300);
+    expect_fault(&f, AGV_FAULT_BUS_OFF, true);
+    expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
+    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    fixture_run(&f, 300);
+    expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
+}
+
+/* Shows: FSM-5 */
+void test_the_reason_goes_with_the_reset_and_the_recorder_keeps_it(void) {
+    agv_event_t event = {0};
+    walk_to_safe(&f);
+    press_for(1100);
+    expect_state(&f, AGV_STATE_STANDBY);
+    expect_reason(&f, AGV_FAULT_NONE);
+    TEST_ASSERT_TRUE(fixture_last_raised(&f, AGV_FAULT_S_DRIVER_ALARM, &event));
+    TEST_ASSERT_EQUAL_UINT8(AGV_CLASS_TRIP, event.b);
+    TEST_ASSERT_EQUAL_UINT32(1, walk_events(&f, AGV_EVENT_STATE, AGV_STATE_ACTIVE, &event));
+    TEST_ASSERT_EQUAL_HEX8(AGV_STATE_TRIPPED, event.b);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_S_DRIVER_ALARM, event.c);
+}
+
+static void expect_first(uint8_t alarms, agv_fault_t reason) {
+    fixture_init(&f);
+    fixture_active(&f);
+    walk_alarm(&f, alarms);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, reason);
+}
+
+/* In one frame: the upper row of the table is the first. */
+/* Shows: FSM-5, REMOTE_SIGNAL_LOST, REMOTE_POWER_LOST, VCU_EPS_HARDWARE_FAULT */
+void test_of_two_in_the_same_instant_the_upper_row_is_the_first(void) {
+    expect_first(ALARM_REMOTE_SIGNAL | ALARM_REMOTE_POWER, AGV_FAULT_REMOTE_SIGNAL_LOST);
+    expect_first(ALARM_REMOTE_POWER | ALARM_S_DRIVER, AGV_FAULT_S_DRIVER_ALARM);
+    expect_first(ALARM_REMOTE_SIGNAL | ALARM_EPS_HARDWARE | ALARM_S_DRIVER, AGV_FAULT_VCU_EPS_HARDWARE_FAULT);
+}
+
+/* Within a row the left one: bits 6 and 4 of 167h byte 8. */
+/* Shows: FSM-5, EPS_OVER_CURRENT_SHUTDOWN, EPS_TEMP_ABOVE_120 */
+void test_of_two_of_a_row_in_the_same_instant_the_left_one_is_the_first(void) {
+    fixture_active(&f);
+    f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x28;
+    fixture_send_now(&f, AGV_MSG_EPS_STATUS);
+    expect_reason(&f, AGV_FAULT_EPS_OVER_CURRENT_SHUTDOWN);
+    expect_fault(&f, AGV_FAULT_EPS_TEMP_ABOVE_120, true);
+}
+
+/* ---- What only a power-on ends ---- */
+
+static void start_with_failed_self_test(void) {
+    f.self_test_passed = false;
+    fixture_start(&f);
+    f.self_test_passed = true;
+}
+
+static void start_with_invalid_config(void) {
+    f.config.vcu_heartbeat_timeout_ms = 29; /* less than three cycles */
+    fixture_start(&f);
+    f.config.vcu_heartbeat_timeout_ms = 50;
+}
+
+static void corrupt_memory(void) {
+    fixture_active(&f);
+    ((uint8_t *)&f.supervisor)[sizeof f.supervisor / 2u] ^= 0x01u;
+    fixture_send_now(&f, AGV_MSG_WHEEL_SPEED);
+}
+
+static void expect_cannot_be_reset(agv_fault_t fault) {
+    uint8_t missing = 0;
+    const uint32_t refusals = walk_refusals(&f, &missing);
+    f.long_run = true;
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, fault);
+    expect_output(&f, false);
+    fixture_vehicle_confirms(&f);
+    fixture_mute_ai(&f, true);
+    fixture_run(&f, 2000);
+    expect_state(&f, AGV_STATE_SAFE);
+    press_for(5000);
+    expect_state(&f, AGV_STATE_SAFE);
+    expect_reason(&f, fault);
+    expect_output(&f, false);
+    TEST_ASSERT_EQUAL_UINT32(refusals + 1, walk_refusals(&f, &missing));
+    TEST_ASSERT_EQUAL_HEX8(AGV_MISSING_TRIP_CAUSE, missing);
+}
+
+static void expect_a_power_on_ends(agv_fault_t fault) {
+    expect_cannot_be_reset(fault);
+    fixture_restart(&f, HAL_RESET_POWER_ON);
+    expect_state(&f, AGV_STATE_INIT);
+    fixture_run(&f, 600);
+    expect_state(&f, AGV_STATE_STANDBY);
+    expect_output(&f, true);
+}
+
+/* Shows: FSM-9, SELF_TEST_FAILED */
+void test_a_failed_self_test_is_ended_by_a_power_on(void) {
+    start_with_failed_self_test();
+    expect_a_power_on_ends(AGV_FAULT_SELF_TEST_FAILED);
+}
+
+/* Shows: FSM-9, CONFIG_INVALID, INT-2 */
+void test_an_invalid_configuration_is_ended_by_a_power_on(void) {
+    start_with_invalid_config();
+    expect_a_power_on_ends(AGV_FAULT_CONFIG_INVALID);
+}
+
+/* Shows: FSM-9, MEMORY_CORRUPTED, INT-5 */
+void test_corrupted_memory_is_ended_by_a_power_on(void) {
+    corrupt_memory();
+    expect_a_power_on_ends(AGV_FAULT_MEMORY_CORRUPTED);
+}
+
+/* Shows: FSM-9 */
+void test_both_at_the_start_the_left_one_is_the_first(void) {
+    f.self_test_passed = false;
+    f.config.vcu_heartbeat_timeout_ms = 0;
+    fixture_start(&f);
+    expect_reason(&f, AGV_FAULT_SELF_TEST_FAILED);
+    expect_fault(&f, AGV_FAULT_CONFIG_INVALID, true);
+}
+
+/* Sent from constants: on the identifiers of this vehicle, as far as they make sense. */
+/* Shows: FSM-9, P1 */
+void test_an_invalid_configuration_still_sends_on_the_vehicles_identifiers(void) {
+    f.config.id_set = AGV_ID_SET_TABLE;
+    f.config.reset_hold_ms = 0;
+    fixture_start(&f);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x201));
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x43F));
+    fixture_init(&f);
+    f.config.id_set = 2;
+    fixture_start(&f);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x43F));
+    expect_reason(&f, AGV_FAULT_CONFIG_INVALID);
+}
+
+/* ---- The alive counter of the own 43Fh ---- */
+
+/* Answers to another sender count, too: no two frames in a row repeat a value. */
+/* Shows: FSM-8 */
+void test_the_own_heartbeat_runs(void) {
+    fixture_active(&f);
+    walk_trip(&f);
+    fixture_run(&f, 30000); /* the AI computer still sends its own */
+    const uint32_t count = fixture_count_sent(&f, 0x43F);
+    TEST_ASSERT_TRUE(count > 300);
+    for (uint32_t n = 1; n < count; n++) {
+        const uint8_t before = fixture_nth_sent(&f, 0x43F, n - 1)->data[7];
+        TEST_ASSERT_EQUAL_HEX8((uint8_t)(before + 1u), fixture_nth_sent(&f, 0x43F, n)->data[7]);
+    }
+}
+
+/* Shows: FSM-8 */
+void test_the_own_heartbeat_is_frozen_if_so_chosen(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    f.config.own_heartbeat = AGV_OWN_HEARTBEAT_FROZEN;
+    f.long_run = true;
+    walk_to_safe(&f);
+    fixture_forget_sent(&f);
+    fixture_run(&f, 3000);
+    TEST_ASSERT_EQUAL_UINT32(30, fixture_count_sent(&f, 0x43F));
+    for (uint32_t n = 1; n < 30; n++) {
+        TEST_ASSERT_EQUAL_HEX8(fixture_nth_sent(&f, 0x43F, 0)->data[7], fixture_nth_sent(&f, 0x43F, n)->data[7]);
+    }
+}
+
+/* Frozen, the bus being shared, would only mean that two heartbeats fight: refused. */
+/* Shows: FSM-8, INT-2 */
+void test_a_frozen_heartbeat_needs_a_gateway(void) {
+    f.config.own_heartbeat = AGV_OWN_HEARTBEAT_FROZEN;
+    TEST_ASSERT_EQUAL_INT(AGV_CONFIG_NEEDS_GATEWAY, agv_config_check(&f.config).problem);
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    TEST_ASSERT_EQUAL_INT(AGV_CONFIG_OK, agv_config_check(&f.config).problem);
+}

@@ -1,0 +1,219 @@
+/* The latch outlives the MCU: every reset cause, tripped or not, with every state of the store. */
+#include "fixture.h"
+#include "unity.h"
+#include "walk.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+typedef enum { STORE_OK, STORE_CORRUPT, STORE_EMPTY } store_t;
+
+typedef struct {
+    const char *what;
+    hal_reset_cause_t cause;
+    bool tripped;
+    store_t store;
+    agv_state_t state;
+    agv_fault_t reason;
+    bool store_invalid;
+} restart_t;
+
+static void spoil_store(store_t store) {
+    if (store == STORE_CORRUPT) {
+        TEST_ASSERT_TRUE(sim_store_corrupt_latch(&f.store, 1, 0x10));
+    }
+    if (store == STORE_EMPTY) {
+        f.store.latch_size = 0;
+    }
+}
+
+static void expect_restart(const restart_t *row) {
+    fixture_init(&f);
+    f.what = row->what;
+    if (row->tripped) {
+        walk_to_safe(&f);
+    } else {
+        fixture_active(&f);
+    }
+    fixture_forget_sent(&f);
+    f.store.keep_latch = true; /* also through a power-on: what it finds there must not matter */
+    spoil_store(row->store);
+    fixture_restart(&f, row->cause);
+    expect_state(&f, row->state);
+    expect_reason(&f, row->reason);
+    expect_fault(&f, AGV_FAULT_STORE_INVALID, row->store_invalid);
+    expect_output(&f, false);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(3, f.sent_count, row->what); /* 43Fh, 168h, 075h at once */
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, fixture_count_sent(&f, 0x43F), row->what);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, fixture_count_sent(&f, 0x168), row->what);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, fixture_count_sent(&f, 0x075), row->what);
+}
+
+#define POWER_ON(what, tripped, store, invalid)                                                                        \
+    {what, HAL_RESET_POWER_ON, tripped, store, AGV_STATE_INIT, AGV_FAULT_NONE, invalid}
+#define OTHER(what, cause, tripped, store, reason, invalid)                                                            \
+    {what, cause, tripped, store, AGV_STATE_TRIPPED, AGV_FAULT_##reason, invalid}
+#define OTHERS(name, cause)                                                                                            \
+    OTHER(name ", tripped", cause, true, STORE_OK, S_DRIVER_ALARM, false),                                             \
+        OTHER(name ", tripped, corrupt", cause, true, STORE_CORRUPT, SUPERVISOR_RESET, true),                          \
+        OTHER(name ", tripped, empty", cause, true, STORE_EMPTY, SUPERVISOR_RESET, false),                             \
+        OTHER(name ", not tripped", cause, false, STORE_OK, SUPERVISOR_RESET, false),                                  \
+        OTHER(name ", not tripped, corrupt", cause, false, STORE_CORRUPT, SUPERVISOR_RESET, true),                     \
+        OTHER(name ", not tripped, empty", cause, false, STORE_EMPTY, SUPERVISOR_RESET, false)
+
+/* Shows: FSM-7, SUPERVISOR_RESET, STORE_INVALID */
+void test_each_reset_cause_tripped_or_not_with_each_state_of_the_store(void) {
+    static const restart_t ROWS[] = {
+        POWER_ON("power-on, tripped", true, STORE_OK, false),
+        POWER_ON("power-on, tripped, corrupt", true, STORE_CORRUPT, true),
+        POWER_ON("power-on, tripped, empty", true, STORE_EMPTY, false),
+        POWER_ON("power-on, not tripped", false, STORE_OK, false),
+        POWER_ON("power-on, not tripped, corrupt", false, STORE_CORRUPT, true),
+        POWER_ON("power-on, not tripped, empty", false, STORE_EMPTY, false),
+        OTHERS("watchdog", HAL_RESET_WATCHDOG),
+        OTHERS("brown-out", HAL_RESET_BROWN_OUT),
+        OTHERS("lock-up", HAL_RESET_LOCK_UP),
+        OTHERS("software", HAL_RESET_SOFTWARE),
+        OTHERS("unknown", HAL_RESET_UNKNOWN),
+    };
+    for (unsigned i = 0; i < sizeof ROWS / sizeof ROWS[0]; i++) {
+        expect_restart(&ROWS[i]);
+    }
+}
+
+static void expect_tripped_after_restart(agv_state_t before, agv_fault_t reason) {
+    expect_state(&f, before);
+    fixture_restart(&f, HAL_RESET_BROWN_OUT);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, reason);
+}
+
+/* Shows: FSM-7 */
+void test_a_restart_in_each_state(void) {
+    fixture_start(&f);
+    expect_tripped_after_restart(AGV_STATE_INIT, AGV_FAULT_SUPERVISOR_RESET);
+    fixture_init(&f);
+    fixture_standby(&f);
+    expect_tripped_after_restart(AGV_STATE_STANDBY, AGV_FAULT_SUPERVISOR_RESET);
+    fixture_init(&f);
+    fixture_active(&f);
+    expect_tripped_after_restart(AGV_STATE_ACTIVE, AGV_FAULT_SUPERVISOR_RESET);
+    fixture_init(&f);
+    walk_to_tripped(&f);
+    expect_tripped_after_restart(AGV_STATE_TRIPPED, AGV_FAULT_S_DRIVER_ALARM);
+    fixture_init(&f);
+    walk_to_safe(&f);
+    expect_tripped_after_restart(AGV_STATE_SAFE, AGV_FAULT_S_DRIVER_ALARM);
+}
+
+/* Shows: FSM-7, FSM-5 */
+void test_the_first_reason_outlives_one_restart_after_the_other(void) {
+    walk_to_safe(&f);
+    for (unsigned i = 0; i < 5; i++) {
+        fixture_restart(&f, HAL_RESET_WATCHDOG);
+        expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
+        fixture_run(&f, 300);
+        expect_state(&f, AGV_STATE_SAFE);
+    }
+}
+
+/* Shows: FSM-7, FSM-3 */
+void test_after_a_restart_a_reset_is_possible_and_forgets_the_latch(void) {
+    walk_to_safe(&f);
+    fixture_restart(&f, HAL_RESET_WATCHDOG);
+    fixture_run(&f, 1500);
+    expect_state(&f, AGV_STATE_SAFE);
+    fixture_button(&f, true);
+    fixture_run(&f, 1050);
+    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_restart(&f, HAL_RESET_WATCHDOG);
+    expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET); /* not the alarm of before */
+}
+
+/* The restart itself is an event: it ends after 1 s, and keeps a reset from being accepted for that long. */
+/* Shows: FSM-7, SUPERVISOR_RESET */
+void test_the_restart_is_an_event(void) {
+    fixture_standby(&f);
+    fixture_restart(&f, HAL_RESET_SOFTWARE);
+    fixture_run(&f, 999);
+    expect_fault(&f, AGV_FAULT_SUPERVISOR_RESET, true);
+    fixture_run(&f, 2);
+    expect_fault(&f, AGV_FAULT_SUPERVISOR_RESET, false);
+    expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
+    expect_state(&f, AGV_STATE_SAFE);
+}
+
+/* Shows: FSM-7 */
+void test_a_power_on_waits_for_manual(void) {
+    fixture_active(&f);
+    fixture_restart(&f, HAL_RESET_POWER_ON);
+    fixture_run(&f, 5000);
+    expect_state(&f, AGV_STATE_INIT); /* still engaged */
+    fixture_vehicle_confirms(&f);
+    fixture_run(&f, 600);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* Shows: FSM-7, STORE_INVALID */
+void test_every_flipped_bit_of_the_stored_latch_counts_as_tripped(void) {
+    walk_to_safe(&f);
+    const unsigned size = f.store.latch_size;
+    TEST_ASSERT_TRUE(size > 0);
+    for (unsigned bit = 0; bit < 8 * size; bit++) {
+        TEST_ASSERT_TRUE(sim_store_corrupt_latch(&f.store, bit / 8, (uint8_t)(1u << (bit % 8))));
+        fixture_restart(&f, HAL_RESET_WATCHDOG);
+        expect_state(&f, AGV_STATE_TRIPPED);
+        expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
+        expect_fault(&f, AGV_FAULT_STORE_INVALID, true);
+    }
+}
+
+/* Shows: FSM-7, STORE_INVALID */
+void test_a_stored_latch_that_is_cut_short_counts_as_tripped(void) {
+    walk_to_safe(&f);
+    for (uint8_t size = (uint8_t)(f.store.latch_size - 1u); size > 0; size--) {
+        f.store.latch_size = size;
+        fixture_restart(&f, HAL_RESET_WATCHDOG);
+        expect_state(&f, AGV_STATE_TRIPPED);
+        expect_fault(&f, AGV_FAULT_STORE_INVALID, true);
+    }
+}
+
+/* Shows: FSM-7, STORE_INVALID */
+void test_a_torn_write_of_the_latch_counts_as_tripped(void) {
+    for (unsigned bytes = 0; bytes < 8; bytes++) {
+        fixture_init(&f);
+        fixture_active(&f);
+        sim_store_tear_write(&f.store, bytes);
+        walk_trip(&f);
+        fixture_restart(&f, HAL_RESET_BROWN_OUT);
+        expect_state(&f, AGV_STATE_TRIPPED);
+    }
+}
+
+/* Shows: FSM-7 */
+void test_a_store_that_takes_nothing_changes_nothing_but_the_reason(void) {
+    sim_store_fail_writes(&f.store, UINT32_MAX);
+    walk_to_safe(&f);
+    expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
+    fixture_restart(&f, HAL_RESET_WATCHDOG);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
+}
+
+/* A trip is on record before anything else can happen. */
+/* Shows: FSM-7 */
+void test_the_latch_is_stored_in_the_handling_of_the_trip(void) {
+    fixture_active(&f);
+    const uint32_t writes = f.hal.op_calls[SIM_HAL_OP_STORE_WRITE_LATCH];
+    walk_trip(&f);
+    TEST_ASSERT_EQUAL_UINT32(writes + 1, f.hal.op_calls[SIM_HAL_OP_STORE_WRITE_LATCH]);
+    fixture_restart(&f, HAL_RESET_LOCK_UP);
+    expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
+}
