@@ -1,0 +1,371 @@
+/* Faults of the controllers (SUP-7) and of the supervisor's own time (TIM-4). The controller's state is set from outside
+ * between two ticks; the next tick sees it. */
+#include "expect.h"
+#include "unity.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+static void set_state(hal_can_side_t side, hal_can_state_t state) {
+    sim_hal_set_can_state(&f.hal, side, state);
+}
+
+static uint32_t purges(hal_can_side_t side) {
+    return f.hal.can[side].purges;
+}
+
+static uint32_t recoveries(hal_can_side_t side) {
+    return f.hal.can[side].recover_requests;
+}
+
+/* ---- BUS_OFF ---- */
+
+static void expect_bus_off_trip(void) {
+    expect_fault(&f, AGV_FAULT_BUS_OFF, true);
+    expect_reason(&f, AGV_FAULT_BUS_OFF);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_output(&f, false); /* at once: nothing can be commanded */
+    expect_led(&f, 14);
+    expect_silence(&f);
+}
+
+/* Shows: SUP-7, FSM-2, FSM-4, BUS_OFF */
+void test_bus_off_trips_and_opens_the_output(void) {
+    fixture_active(&f);
+    expect_output(&f, true);
+    set_state(HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
+    expect_nothing(&f, AGV_FAULT_BUS_OFF, AGV_STATE_ACTIVE);
+    fixture_run(&f, 1);
+    expect_bus_off_trip();
+}
+
+/* 100 ms after it, and again and again. What was queued is purged with it. */
+/* Shows: SUP-7, BUS_OFF */
+void test_recovery_is_asked_for(void) {
+    fixture_active(&f);
+    set_state(HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
+    fixture_run(&f, 1);
+    fixture_run(&f, 99);
+    TEST_ASSERT_EQUAL_UINT32(0, recoveries(HAL_CAN_VEHICLE));
+    const uint32_t purged = purges(HAL_CAN_VEHICLE);
+    fixture_run(&f, 1);
+    TEST_ASSERT_EQUAL_UINT32(1, recoveries(HAL_CAN_VEHICLE));
+    TEST_ASSERT_EQUAL_UINT32(purged + 1, purges(HAL_CAN_VEHICLE));
+    fixture_run(&f, 99);
+    TEST_ASSERT_EQUAL_UINT32(1, recoveries(HAL_CAN_VEHICLE));
+    fixture_run(&f, 1);
+    TEST_ASSERT_EQUAL_UINT32(2, recoveries(HAL_CAN_VEHICLE));
+    expect_silence(&f);
+}
+
+/* Recovered: all safe commands at once, the trip stays. */
+/* Shows: SUP-7, FSM-3, BUS_OFF */
+void test_after_the_recovery(void) {
+    fixture_active(&f);
+    set_state(HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
+    fixture_run(&f, 137);
+    expect_fault(&f, AGV_FAULT_BUS_OFF, true);
+    expect_silence(&f);
+    set_state(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_BUS_OFF, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_BUS_OFF));
+    expect_safe_commands(&f, f.call, ANGLE_CENTRE);
+    expect_reason(&f, AGV_FAULT_BUS_OFF);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_output(&f, false); /* until the next STANDBY */
+    expect_led(&f, 14);
+}
+
+/* Came and went between two ticks: the controller's count tells. */
+/* Shows: SUP-7, BUS_OFF */
+void test_bus_off_between_two_ticks(void) {
+    fixture_active(&f);
+    set_state(HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
+    set_state(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_BUS_OFF, true);
+    expect_reason(&f, AGV_FAULT_BUS_OFF);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_output(&f, false);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_BUS_OFF, false);
+}
+
+/* PARKED: they are sent twice in one tick. */
+void parked_bus_off_between_two_ticks_sends_the_safe_commands_once(void) {
+    fixture_active(&f);
+    set_state(HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
+    set_state(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    fixture_run(&f, 1);
+    expect_trip(&f, AGV_FAULT_BUS_OFF, f.call, ANGLE_CENTRE);
+}
+
+/* In INIT nothing latches; recovered, the safe commands go out at once. */
+/* Shows: SUP-7, BUS_OFF */
+void test_bus_off_in_init(void) {
+    fixture_start(&f);
+    fixture_run(&f, 40);
+    set_state(HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
+    fixture_forget_sent(&f);
+    fixture_run(&f, 1500);
+    expect_fault(&f, AGV_FAULT_BUS_OFF, true);
+    expect_state(&f, AGV_STATE_INIT);
+    expect_reason(&f, AGV_FAULT_NONE);
+    expect_silence(&f);
+    set_state(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    fixture_run(&f, 1);
+    expect_safe_commands(&f, f.call, NO_HOLD); /* INIT sends no 065h */
+    fixture_run(&f, 600);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* A frame that waited to be passed on when the bus went off is never sent. */
+/* Shows: SUP-7, TOP-2, BUS_OFF */
+void test_what_was_queued_is_never_sent(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    fixture_active(&f);
+    fixture_run_before(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    fixture_run(&f, 30); /* 43Fh, 168h, 065h wait */
+    set_state(HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
+    fixture_run(&f, 120);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    fixture_mute_ai(&f, true);
+    fixture_forget_sent(&f);
+    set_state(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    fixture_run(&f, 1);
+    expect_safe_commands(&f, f.call, ANGLE_CENTRE);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x43F));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+}
+
+/* ---- TX_STALLED ---- */
+
+/* The trip purges the controller, so that the safe commands go out. */
+/* Shows: SUP-7, FSM-2, FSM-4, TX_STALLED */
+void test_a_frame_that_does_not_leave(void) {
+    fixture_active(&f);
+    sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 100);
+    fixture_run(&f, 10);
+    expect_nothing(&f, AGV_FAULT_TX_STALLED, AGV_STATE_ACTIVE);
+    sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101);
+    const uint32_t purged = purges(HAL_CAN_VEHICLE);
+    fixture_run(&f, 1);
+    expect_trip(&f, AGV_FAULT_TX_STALLED, f.call, ANGLE_CENTRE);
+    expect_output(&f, false);
+    expect_led(&f, 14);
+    TEST_ASSERT_EQUAL_UINT32(purged + 1, purges(HAL_CAN_VEHICLE));
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_TX_STALLED, false); /* nothing pends any more */
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_TX_STALLED));
+    expect_reason(&f, AGV_FAULT_TX_STALLED);
+}
+
+/* The queue takes nothing: INIT's first 075h is due 33 ms after the start, so 101 ms after that it is stalled. */
+/* Shows: SUP-7, TX_STALLED */
+void test_a_queue_that_takes_nothing_in_init(void) {
+    fixture_start(&f);
+    fixture_run(&f, 10);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    fixture_run(&f, 133 - 10);
+    expect_nothing(&f, AGV_FAULT_TX_STALLED, AGV_STATE_INIT);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_TX_STALLED, true);
+    expect_led(&f, 14);
+    fixture_run(&f, 1000);
+    expect_state(&f, AGV_STATE_INIT);
+    expect_reason(&f, AGV_FAULT_NONE);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    fixture_run(&f, 2);
+    expect_fault(&f, AGV_FAULT_TX_STALLED, false);
+    fixture_run(&f, 600);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* The gateway cannot pass on: 101 ms after the first command that was not taken. When the queue takes frames again these
+ * are the safe commands, not what waited. */
+/* Shows: SUP-7, TOP-2, FSM-2, TX_STALLED */
+void test_a_queue_that_takes_nothing_in_a_gateway(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    fixture_active(&f);
+    fixture_run_before(&f, AGV_MSG_STEERING_COMMAND);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    fixture_run(&f, 1);
+    fixture_run(&f, 100);
+    expect_nothing(&f, AGV_FAULT_TX_STALLED, AGV_STATE_ACTIVE);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_TX_STALLED, true);
+    expect_reason(&f, AGV_FAULT_TX_STALLED);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_output(&f, false);
+    fixture_run(&f, 50);
+    fixture_mute_ai(&f, true);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    fixture_forget_sent(&f);
+    fixture_run(&f, 1);
+    expect_safe_commands(&f, f.call, ANGLE_CENTRE);
+}
+
+/* ---- Warnings ---- */
+
+/* An event: ends a second after the last one. */
+/* Shows: SUP-7, RX_OVERRUN */
+void test_receive_overrun(void) {
+    fixture_active(&f);
+    sim_hal_add_overrun(&f.hal, HAL_CAN_VEHICLE);
+    expect_nothing(&f, AGV_FAULT_RX_OVERRUN, AGV_STATE_ACTIVE);
+    fixture_run(&f, 1);
+    expect_warning(&f, AGV_FAULT_RX_OVERRUN, AGV_STATE_ACTIVE);
+    expect_led(&f, 14);
+    fixture_run(&f, 500);
+    sim_hal_add_overrun(&f.hal, HAL_CAN_VEHICLE);
+    fixture_run(&f, 1);
+    fixture_run(&f, 999);
+    expect_fault(&f, AGV_FAULT_RX_OVERRUN, true);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_RX_OVERRUN, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_RX_OVERRUN));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_RX_OVERRUN));
+    expect_led(&f, 0);
+    expect_silence(&f);
+}
+
+/* Shows: SUP-7, ERROR_PASSIVE */
+void test_error_passive(void) {
+    fixture_active(&f);
+    set_state(HAL_CAN_VEHICLE, HAL_CAN_ERROR_PASSIVE);
+    fixture_run(&f, 1);
+    expect_warning(&f, AGV_FAULT_ERROR_PASSIVE, AGV_STATE_ACTIVE);
+    expect_led(&f, 14);
+    fixture_run(&f, 3000);
+    expect_fault(&f, AGV_FAULT_ERROR_PASSIVE, true);
+    set_state(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_ERROR_PASSIVE, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_ERROR_PASSIVE));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_ERROR_PASSIVE));
+    expect_state(&f, AGV_STATE_ACTIVE);
+    expect_led(&f, 0);
+}
+
+/* A warning in INIT does not keep INIT from being left. */
+/* Shows: SUP-7, ERROR_PASSIVE, RX_OVERRUN */
+void test_warnings_of_the_bus_in_init(void) {
+    fixture_start(&f);
+    set_state(HAL_CAN_VEHICLE, HAL_CAN_ERROR_PASSIVE);
+    sim_hal_add_overrun(&f.hal, HAL_CAN_VEHICLE);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_ERROR_PASSIVE, true);
+    expect_fault(&f, AGV_FAULT_RX_OVERRUN, true);
+    fixture_run(&f, 600);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* The AI side only warns; recovery is asked for there, and only there. */
+/* Shows: SUP-7, AI_BUS_OFF */
+void test_bus_off_of_the_ai_side(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    fixture_standby(&f);
+    set_state(HAL_CAN_AI, HAL_CAN_BUS_OFF);
+    fixture_run(&f, 1);
+    expect_warning(&f, AGV_FAULT_AI_BUS_OFF, AGV_STATE_STANDBY);
+    expect_led(&f, 14);
+    expect_output(&f, true);
+    fixture_run(&f, 99);
+    TEST_ASSERT_EQUAL_UINT32(0, recoveries(HAL_CAN_AI));
+    const uint32_t purged = purges(HAL_CAN_AI);
+    fixture_run(&f, 1);
+    TEST_ASSERT_EQUAL_UINT32(1, recoveries(HAL_CAN_AI));
+    TEST_ASSERT_EQUAL_UINT32(purged + 1, purges(HAL_CAN_AI));
+    TEST_ASSERT_EQUAL_UINT32(0, recoveries(HAL_CAN_VEHICLE));
+    set_state(HAL_CAN_AI, HAL_CAN_ERROR_ACTIVE);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_AI_BUS_OFF, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_AI_BUS_OFF));
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* While engaged the AI side's bus-off does not trip by itself: the AI's silence does. */
+/* Shows: SUP-7, AI_BUS_OFF, STEERING_COMMAND_TIMEOUT */
+void test_bus_off_of_the_ai_side_while_engaged(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    fixture_active(&f);
+    fixture_run_past(&f, AGV_MSG_STEERING_COMMAND);
+    set_state(HAL_CAN_AI, HAL_CAN_BUS_OFF);
+    fixture_mute_ai(&f, true);
+    fixture_run(&f, 125);
+    expect_fault(&f, AGV_FAULT_AI_BUS_OFF, true);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    fixture_run(&f, 1);
+    expect_reason(&f, AGV_FAULT_STEERING_COMMAND_TIMEOUT);
+}
+
+/* An AI side that takes no frames, or whose frames do not leave, only warns. */
+/* Shows: SUP-7 */
+void test_an_overfull_ai_side_only_warns(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    fixture_active(&f);
+    sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_AI, 101);
+    sim_hal_set_full(&f.hal, HAL_CAN_AI, true);
+    fixture_run(&f, 3000);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    TEST_ASSERT_TRUE(agv_supervisor_counters(&f.supervisor)->warnings > 0);
+    expect_fault(&f, AGV_FAULT_TX_STALLED, false);
+}
+
+/* ---- STEP_OVERRUN ---- */
+
+/* The frames keep their time stamps, only the tick is late; the simulated watchdog does not bite. */
+static void be_late(uint32_t ms) {
+    f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF;
+    fixture_run_without_ticks(&f, ms + 1u);
+    fixture_jump(&f, 0);
+}
+
+/* Shows: TIM-4, FSM-2, STEP_OVERRUN */
+void test_a_step_100_ms_late_is_in_time(void) {
+    fixture_active(&f);
+    be_late(100);
+    expect_nothing(&f, AGV_FAULT_STEP_OVERRUN, AGV_STATE_ACTIVE);
+    be_late(101);
+    expect_trip(&f, AGV_FAULT_STEP_OVERRUN, f.call, ANGLE_CENTRE);
+    expect_led(&f, -1);
+    fixture_run(&f, 999);
+    expect_fault(&f, AGV_FAULT_STEP_OVERRUN, true);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_STEP_OVERRUN, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_STEP_OVERRUN));
+    expect_reason(&f, AGV_FAULT_STEP_OVERRUN);
+}
+
+/* The limit is the watchdog's period. */
+/* Shows: TIM-4, STEP_OVERRUN */
+void test_the_watchdog_period_is_a_setting(void) {
+    f.config.watchdog_period_ms = 10;
+    fixture_standby(&f);
+    be_late(10);
+    expect_nothing(&f, AGV_FAULT_STEP_OVERRUN, AGV_STATE_STANDBY);
+    be_late(11);
+    expect_trip(&f, AGV_FAULT_STEP_OVERRUN, f.call, NO_HOLD);
+}
+
+/* In INIT it latches nothing, and keeps INIT for its second. */
+/* Shows: TIM-4, STEP_OVERRUN */
+void test_a_late_step_in_init(void) {
+    fixture_start(&f);
+    fixture_run(&f, 300);
+    be_late(101);
+    expect_fault(&f, AGV_FAULT_STEP_OVERRUN, true);
+    fixture_run(&f, 1400);
+    expect_state(&f, AGV_STATE_INIT);
+    expect_reason(&f, AGV_FAULT_NONE);
+    fixture_run(&f, 150);
+    expect_state(&f, AGV_STATE_STANDBY);
+}

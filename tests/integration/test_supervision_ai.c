@@ -1,0 +1,402 @@
+/* The AI computer (SUP-8): required while engaged, a warning in manual, forgotten by a reset; and what the VCU says of it.
+ * Hand-worked: the deadline is 350 ms, 43Fh comes each 100 ms, two cycles are 200 ms. */
+#include "expect.h"
+#include "unity.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+static const agv_fault_t LOST = AGV_FAULT_AI_HEARTBEAT_LOST;
+static const agv_fault_t STUCK = AGV_FAULT_AI_HEARTBEAT_STUCK;
+static const agv_message_t AI = AGV_MSG_TURN_SIGNAL_COMMAND;
+static const agv_message_t VCU = AGV_MSG_VEHICLE_STATUS;
+
+static void expect_no_fault(agv_state_t state) {
+    expect_nothing(&f, LOST, state);
+    expect_nothing(&f, STUCK, state);
+}
+
+/* The 363h with the autopilot bit has just been handed over. */
+static void engage(void) {
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run_past(&f, VCU);
+}
+
+/* ---- Lost and stuck ---- */
+
+/* Muted: silent from now on. Frozen: goes on with the counter that it has. */
+static void check_manual(agv_fault_t fault, bool *how) {
+    fixture_standby(&f);
+    fixture_run_past(&f, AI);
+    *how = true;
+    fixture_run(&f, 350);
+    expect_no_fault(AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_warning(&f, fault, AGV_STATE_STANDBY);
+    expect_led(&f, 14);
+    fixture_run(&f, 5000); /* switching the AI computer off while driving by remote control is normal */
+    expect_state(&f, AGV_STATE_STANDBY);
+    expect_silence(&f);
+    *how = false;
+    fixture_run_before(&f, AI);
+    expect_fault(&f, fault, true);
+    fixture_run(&f, 1);
+    expect_no_fault(AGV_STATE_STANDBY);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, fault));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, fault));
+    expect_led(&f, 0);
+}
+
+static void check_engaged(agv_fault_t fault, bool *how) {
+    fixture_init(&f);
+    fixture_active(&f);
+    fixture_run_past(&f, AI);
+    *how = true;
+    fixture_run(&f, 350);
+    expect_no_fault(AGV_STATE_ACTIVE);
+    fixture_run(&f, 1);
+    expect_trip(&f, fault, f.call, ANGLE_CENTRE);
+    expect_led(&f, 14);
+    *how = false;
+    fixture_run_past(&f, AI);
+    expect_fault(&f, fault, false);
+    expect_reason(&f, fault);
+}
+
+/* Shows: SUP-1, SUP-2, SUP-8, FSM-2, AI_HEARTBEAT_LOST */
+void test_lost(void) {
+    check_manual(LOST, &f.traffic[AI].muted);
+    check_engaged(LOST, &f.traffic[AI].muted);
+}
+
+/* Shows: SUP-1, SUP-2, SUP-8, FSM-2, P13, AI_HEARTBEAT_STUCK */
+void test_stuck(void) {
+    check_manual(STUCK, &f.traffic[AI].frozen);
+    check_engaged(STUCK, &f.traffic[AI].frozen);
+}
+
+/* One repeat so long after the last change, then silence. */
+static void check_last_repeat(uint32_t repeat_ms, agv_fault_t expected) {
+    fixture_init(&f);
+    fixture_standby(&f);
+    fixture_run_past(&f, AI);
+    f.traffic[AI].muted = true;
+    f.traffic[AI].frozen = true;
+    fixture_run(&f, repeat_ms);
+    fixture_send_now(&f, AI);
+    fixture_run(&f, 350 - repeat_ms);
+    expect_no_fault(AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_warning(&f, expected, AGV_STATE_STANDBY);
+}
+
+/* A repeat 151 ms after the change is 200 ms old at the deadline, one 150 ms after it is 201 ms old. */
+/* Shows: SUP-2, AI_HEARTBEAT_LOST, AI_HEARTBEAT_STUCK */
+void test_stuck_needs_a_repeat_within_the_last_two_cycles(void) {
+    check_last_repeat(150, LOST);
+    check_last_repeat(151, STUCK);
+}
+
+/* 43Fh byte 8 and no other byte. */
+/* Shows: SUP-1, P3, AI_HEARTBEAT_STUCK */
+void test_only_the_counter_beats(void) {
+    fixture_standby(&f);
+    fixture_run_past(&f, AI);
+    f.traffic[AI].frozen = true;
+    for (unsigned i = 0; i < 3; i++) {
+        f.traffic[AI].data[i] = 0xFF;
+        f.traffic[AI].data[4] ^= 0xB0; /* lights */
+        fixture_run(&f, 100);
+    }
+    fixture_run(&f, 50);
+    expect_no_fault(AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_warning(&f, STUCK, AGV_STATE_STANDBY);
+}
+
+/* One valid 43Fh is seen, though not alive: its deadline runs from there. */
+/* Shows: SUP-8, AI_HEARTBEAT_LOST */
+void test_seen_once(void) {
+    f.traffic[AI].muted = true;
+    fixture_standby(&f);
+    fixture_send_now(&f, AI);
+    fixture_run(&f, 350);
+    expect_no_fault(AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_warning(&f, LOST, AGV_STATE_STANDBY);
+}
+
+/* ai_lost_in_manual: trip. */
+/* Shows: SUP-8, AI_HEARTBEAT_LOST, AI_HEARTBEAT_STUCK */
+void test_lost_in_manual_may_be_made_a_trip(void) {
+    for (unsigned i = 0; i < 2; i++) {
+        fixture_init(&f);
+        f.config.ai_lost_in_manual = AGV_AI_LOST_TRIP;
+        fixture_standby(&f);
+        fixture_run_past(&f, AI);
+        f.traffic[AI].muted = i == 0;
+        f.traffic[AI].frozen = i == 1;
+        fixture_run(&f, 350);
+        expect_no_fault(AGV_STATE_STANDBY);
+        fixture_run(&f, 1);
+        expect_trip(&f, i == 0 ? LOST : STUCK, f.call, NO_HOLD);
+    }
+}
+
+/* ---- At the moment of engagement ---- */
+
+/* Lost or stuck already: the fault changes its class, is raised again, and trips in the handling of that 363h. */
+static void check_at_engagement(agv_fault_t fault, bool *how) {
+    fixture_standby(&f);
+    *how = true;
+    fixture_run(&f, 1000);
+    expect_fault(&f, fault, true);
+    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run_before(&f, VCU);
+    expect_reason(&f, AGV_FAULT_NONE);
+    fixture_run(&f, 1);
+    expect_trip(&f, fault, f.traffic[VCU].call, ANGLE_CENTRE);
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_raised(&f, fault));
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_ended(&f, fault));
+}
+
+/* Shows: SUP-8, FSM-2, AI_HEARTBEAT_LOST, AI_HEARTBEAT_STUCK */
+void test_lost_or_stuck_at_the_engagement_trips_at_once(void) {
+    check_at_engagement(LOST, &f.traffic[AI].muted);
+    fixture_init(&f);
+    check_at_engagement(STUCK, &f.traffic[AI].frozen);
+}
+
+/* And back: the class changes while the fault is there, so it is raised again, as a warning. */
+/* Shows: SUP-8, AI_HEARTBEAT_LOST */
+void test_the_class_follows_the_mode(void) {
+    agv_event_t event;
+    fixture_active(&f);
+    f.traffic[AI].muted = true;
+    fixture_run(&f, 500);
+    expect_reason(&f, LOST);
+    TEST_ASSERT_EQUAL_UINT64(agv_fault_bit(LOST), agv_supervisor_active_trips(&f.supervisor));
+    fixture_vehicle_confirms(&f);
+    fixture_run_past(&f, VCU);
+    expect_fault(&f, LOST, true);
+    TEST_ASSERT_EQUAL_UINT64(0, agv_supervisor_active_trips(&f.supervisor));
+    TEST_ASSERT_TRUE(fixture_last_raised(&f, LOST, &event));
+    TEST_ASSERT_EQUAL_INT(AGV_CLASS_WARN, event.b);
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_raised(&f, LOST));
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_ended(&f, LOST));
+    expect_reason(&f, LOST);
+    expect_led(&f, 14);
+}
+
+/* Never seen: no fault in manual, however long. Engaged: a trip 500 ms later; ACTIVE is not reached without the AI. */
+/* Shows: SUP-8, AI_HEARTBEAT_LOST */
+void test_never_seen(void) {
+    f.traffic[AI].muted = true;
+    fixture_standby(&f);
+    fixture_run(&f, 5000);
+    expect_no_fault(AGV_STATE_STANDBY);
+    expect_led(&f, 0);
+    engage();
+    fixture_run(&f, 500);
+    expect_no_fault(AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_trip(&f, LOST, f.call, ANGLE_CENTRE);
+    expect_led(&f, 14);
+}
+
+/* The 500 ms belong to one engagement. */
+/* Shows: SUP-8, AI_HEARTBEAT_LOST */
+void test_never_seen_and_not_engaged_for_long_enough(void) {
+    f.traffic[AI].muted = true;
+    fixture_standby(&f);
+    for (unsigned i = 0; i < 3; i++) {
+        engage();
+        fixture_run(&f, 490);
+        fixture_mode(&f, MODE_MANUAL);
+        fixture_run(&f, 10);
+    }
+    expect_no_fault(AGV_STATE_STANDBY);
+}
+
+/* It comes up while engaged: the first 43Fh is the baseline, with the second it is alive. */
+/* Shows: SUP-8, P13 */
+void test_seen_in_time(void) {
+    f.traffic[AI].muted = true;
+    fixture_standby(&f);
+    engage();
+    fixture_run(&f, 390);
+    fixture_send_now(&f, AI);
+    fixture_run(&f, 200);
+    expect_no_fault(AGV_STATE_STANDBY);
+    fixture_send_now(&f, AI);
+    expect_no_fault(AGV_STATE_ACTIVE);
+    f.traffic[AI].muted = false;
+    fixture_run(&f, 2000);
+    expect_no_fault(AGV_STATE_ACTIVE);
+}
+
+/* Seen but never alive. */
+/* Shows: SUP-8, AI_HEARTBEAT_STUCK */
+void test_seen_while_engaged_but_frozen(void) {
+    f.traffic[AI].muted = true;
+    f.traffic[AI].frozen = true;
+    fixture_standby(&f);
+    engage();
+    fixture_run(&f, 300);
+    fixture_send_now(&f, AI);
+    const uint32_t seen_ms = f.now_ms;
+    fixture_run(&f, 200);
+    fixture_send_now(&f, AI);
+    fixture_run(&f, 350 - (f.now_ms - seen_ms));
+    expect_no_fault(AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_trip(&f, STUCK, f.call, ANGLE_CENTRE);
+}
+
+/* A cause in INIT latches nothing. */
+/* Shows: SUP-8, AI_HEARTBEAT_LOST */
+void test_lost_in_init(void) {
+    fixture_start(&f);
+    fixture_run(&f, 250);
+    f.traffic[AI].muted = true;
+    fixture_run(&f, 400);
+    expect_fault(&f, LOST, true);
+    expect_led(&f, 14);
+    fixture_run(&f, 400);
+    expect_state(&f, AGV_STATE_STANDBY); /* a warning in manual does not keep INIT */
+    expect_reason(&f, AGV_FAULT_NONE);
+}
+
+/* ---- A reset forgets it ---- */
+
+static void reset(void) {
+    fixture_vehicle_confirms(&f);
+    fixture_run(&f, 300);
+    expect_state(&f, AGV_STATE_SAFE);
+    fixture_button(&f, true);
+    fixture_run(&f, 1100);
+    fixture_button(&f, false);
+    fixture_run(&f, 20);
+    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_forget_sent(&f);
+}
+
+static void trip_and_reset(bool *how) {
+    fixture_active(&f);
+    *how = true;
+    fixture_run(&f, 1000);
+    reset(); /* a dead AI computer keeps nobody from driving the vehicle away */
+    expect_no_fault(AGV_STATE_STANDBY);
+    expect_led(&f, 0);
+    fixture_run(&f, 5000);
+    expect_no_fault(AGV_STATE_STANDBY);
+}
+
+/* Engaged again it is one that was never seen. */
+/* Shows: SUP-8, FSM-3, AI_HEARTBEAT_LOST */
+void test_a_reset_forgets_a_silent_ai(void) {
+    trip_and_reset(&f.traffic[AI].muted);
+    engage();
+    fixture_run(&f, 500);
+    expect_no_fault(AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_trip(&f, LOST, f.call, ANGLE_CENTRE);
+}
+
+/* It is seen again when its counter changes, not by frames with the old one. */
+/* Shows: SUP-8, FSM-3, AI_HEARTBEAT_STUCK */
+void test_a_reset_forgets_a_frozen_ai_until_its_counter_changes(void) {
+    trip_and_reset(&f.traffic[AI].frozen);
+    f.traffic[AI].frozen = false;
+    fixture_run_past(&f, AI);
+    f.traffic[AI].frozen = true;
+    fixture_run(&f, 350);
+    expect_no_fault(AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_fault(&f, STUCK, true);
+    expect_led(&f, 14);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* ---- VCU alarm bit 3, "AI CAN signal lost": 363h byte 5, Bit3 ---- */
+
+static void set_alarm(bool on) {
+    f.traffic[VCU].data[4] = on ? 0x08 : 0;
+}
+
+/* Shows: SUP-4, SUP-8, FSM-2, VCU_AI_CAN_LOST */
+void test_the_vcus_ai_alarm_while_engaged(void) {
+    fixture_active(&f);
+    set_alarm(true);
+    fixture_run_before(&f, VCU);
+    expect_nothing(&f, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_ACTIVE);
+    fixture_run(&f, 1);
+    expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
+    expect_led(&f, 14);
+    set_alarm(false);
+    fixture_run_past(&f, VCU);
+    expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_VCU_AI_CAN_LOST));
+    expect_reason(&f, AGV_FAULT_VCU_AI_CAN_LOST);
+}
+
+/* No longer engaged: it does not count any more, though the bit is set. */
+/* Shows: SUP-8, VCU_AI_CAN_LOST */
+void test_the_vcus_ai_alarm_ends_with_the_engagement(void) {
+    fixture_active(&f);
+    set_alarm(true);
+    fixture_run(&f, 100);
+    expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, true);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run_past(&f, VCU);
+    expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, false);
+}
+
+/* Shows: SUP-8, VCU_AI_CAN_LOST */
+void test_the_vcus_ai_alarm_in_manual_is_normal(void) {
+    fixture_mute_ai(&f, true);
+    set_alarm(true);
+    fixture_standby(&f);
+    fixture_run(&f, 5000);
+    expect_nothing(&f, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_STANDBY);
+    expect_led(&f, 0);
+}
+
+/* The AI computer comes up while the alarm is still set: it counts only after it was once clear with the AI alive. That
+ * it was clear before, while the AI was silent, does not help. */
+/* Shows: SUP-8, VCU_AI_CAN_LOST */
+void test_the_vcus_ai_alarm_has_to_be_clear_once(void) {
+    fixture_mute_ai(&f, true);
+    fixture_standby(&f);
+    set_alarm(true);
+    fixture_run(&f, 1000);
+    fixture_mute_ai(&f, false);
+    fixture_run(&f, 500);
+    engage();
+    fixture_run(&f, 2000);
+    expect_nothing(&f, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_ACTIVE);
+    set_alarm(false);
+    fixture_run_past(&f, VCU);
+    set_alarm(true);
+    fixture_run_past(&f, VCU);
+    expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
+}
+
+/* Was clear, is set, and then it is engaged: in that very frame. */
+/* Shows: SUP-8, FSM-2, VCU_AI_CAN_LOST */
+void test_the_vcus_ai_alarm_at_the_engagement(void) {
+    fixture_standby(&f);
+    set_alarm(true);
+    fixture_run(&f, 200);
+    expect_nothing(&f, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_STANDBY);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run_past(&f, VCU);
+    expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
+}
