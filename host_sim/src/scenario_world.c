@@ -60,6 +60,11 @@ static void send_of_vehicle(void *ctx, vehicle_node_t from, hal_can_side_t side,
     if (from != VEHICLE_STRANGER) {
         follow_power(world, from);
         number = world->stations[from].number;
+    } else if (!world->stranger_powered[side]) {
+        world->stranger_powered[side] = true; /* before that nobody is there who would acknowledge */
+        sim_bus_set_power(&world->buses[side], number, true);
+    } else {
+        /* it goes on sending */
     }
     if (!sim_bus_send(&world->buses[side], number, frame)) {
         world->lost_frames++;
@@ -110,6 +115,7 @@ static bool attach(scenario_world_t *world, hal_can_side_t side) {
         sim_bus_set_power(bus, station->number, false);
     }
     world->strangers[side] = sim_bus_attach(bus, &deaf);
+    sim_bus_set_power(bus, world->strangers[side], false);
     return true;
 }
 

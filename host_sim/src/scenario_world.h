@@ -66,6 +66,7 @@ struct scenario_world {
     scenario_planted_t planted;
     scenario_station_t stations[VEHICLE_NODES];
     sim_bus_node_t strangers[HAL_CAN_SIDES];
+    bool stranger_powered[HAL_CAN_SIDES];
     scenario_side_t sides[HAL_CAN_SIDES];
     scenario_watch_t watches[SCENARIO_WATCHES_MAX];
     size_t watch_count;

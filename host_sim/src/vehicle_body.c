@@ -23,9 +23,11 @@ static bool remote_is_lost(const vehicle_t *vehicle) {
     return vehicle->people.remote_signal_lost || vehicle->people.remote_power_lost;
 }
 
+/** On the way to P it brakes if it guards it. */
 static bool brakes(const vehicle_t *vehicle) {
     const vehicle_vcu_t *vcu = &vehicle->vcu;
-    return vcu_runs(vehicle) && ((vcu->gear == AGV_GEAR_P) || (!vcu->autopilot && remote_is_lost(vehicle)));
+    const bool before_park = vehicle->config.park_guard && (vcu->gear == AGV_GEAR_P);
+    return vcu_runs(vehicle) && (before_park || (!vcu->autopilot && remote_is_lost(vehicle)));
 }
 
 static pull_t pull_of(const vehicle_t *vehicle) {
@@ -71,7 +73,7 @@ static void shift(vehicle_t *vehicle, uint64_t now_ms) {
 static uint16_t throttle_of(const vehicle_t *vehicle, uint64_t now_ms) {
     const vehicle_vcu_t *vcu = &vehicle->vcu;
 
-    if (!vcu_runs(vehicle) || brakes(vehicle) || (vehicle->body.gear == AGV_GEAR_P)) {
+    if (!vcu_runs(vehicle) || brakes(vehicle) || (vcu->gear == AGV_GEAR_P) || (vehicle->body.gear == AGV_GEAR_P)) {
         return 0u;
     }
     if (vcu->autopilot && ((now_ms >= vcu->throttle_until_ms) || (now_ms >= vcu->ai_until_ms))) {
