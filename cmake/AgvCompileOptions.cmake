@@ -14,7 +14,7 @@ target_compile_options(agv_options INTERFACE
   -Wformat=2 -Wimplicit-fallthrough
   -Walloca -Wnull-dereference
   $<$<C_COMPILER_ID:GNU>:-Wlogical-op -Wduplicated-cond -Wduplicated-branches -Wtrampolines>
-  $<$<C_COMPILER_ID:Clang>:-Wcomma -Wunreachable-code-aggressive -Wconditional-uninitialized -Wextra-semi>
+  $<$<C_COMPILER_ID:Clang>:-Wcomma -Wunreachable-code -Wconditional-uninitialized -Wextra-semi>
 )
 if(AGV_WARNINGS_AS_ERRORS)
   target_compile_options(agv_options INTERFACE -Werror)
