@@ -1,0 +1,195 @@
+/* The two identifier sets (P1): 43Fh and 363h, or 201h and 203h. Each is supervised alike; traffic on the other set's
+ * identifiers is never accepted, and is told as WRONG_ID_SET. */
+#include "expect.h"
+#include "unity.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+static const agv_fault_t WRONG = AGV_FAULT_WRONG_ID_SET;
+
+typedef struct {
+    const char *name;
+    agv_id_set_t id_set;
+    uint32_t command_id; /* of this set */
+    uint32_t status_id;
+    uint32_t other_command_id; /* of the other one */
+    uint32_t other_status_id;
+} set_t;
+
+static const set_t SETS[] = {{"heading", AGV_ID_SET_HEADING, 0x43F, 0x363, 0x201, 0x203},
+                             {"table", AGV_ID_SET_TABLE, 0x201, 0x203, 0x43F, 0x363}};
+enum { SET_COUNT = 2 };
+
+static void init(const set_t *set) {
+    fixture_init(&f);
+    f.what = set->name;
+    f.config.id_set = (uint16_t)set->id_set;
+}
+
+/* Shows: P1 */
+void test_both_sets_work(void) {
+    for (unsigned i = 0; i < SET_COUNT; i++) {
+        init(&SETS[i]);
+        fixture_active(&f);
+        TEST_ASSERT_EQUAL_HEX32(SETS[i].status_id, f.traffic[AGV_MSG_VEHICLE_STATUS].id);
+        TEST_ASSERT_EQUAL_UINT64(0, agv_supervisor_active_faults(&f.supervisor));
+        f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x01;
+        fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+        expect_trip(&f, AGV_FAULT_REMOTE_SIGNAL_LOST, f.traffic[AGV_MSG_VEHICLE_STATUS].call, ANGLE_CENTRE);
+        fixture_mute_ai(&f, true); /* or its commands would be answered, too */
+        fixture_run(&f, 1000);
+        TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, SETS[i].other_command_id));
+        TEST_ASSERT_EQUAL_UINT32(11, fixture_count_sent(&f, SETS[i].command_id)); /* at once, then each 100 ms */
+    }
+}
+
+/* The AI computer is set to the other identifiers from the start: nothing else is wrong. */
+/* Shows: P1, WRONG_ID_SET */
+void test_a_command_on_the_other_identifier(void) {
+    for (unsigned i = 0; i < SET_COUNT; i++) {
+        init(&SETS[i]);
+        fixture_start(&f);
+        f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].id = SETS[i].other_command_id;
+        fixture_run(&f, 500);
+        expect_fault(&f, WRONG, false);
+        fixture_run(&f, 1);
+        expect_warning(&f, WRONG, agv_supervisor_state(&f.supervisor));
+        expect_led(&f, -1);
+        fixture_run(&f, 2000);
+        expect_state(&f, AGV_STATE_STANDBY);
+        TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, WRONG));
+        f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].id = SETS[i].command_id; /* set right */
+        fixture_run_before(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
+        expect_fault(&f, WRONG, true);
+        fixture_run(&f, 1);
+        expect_fault(&f, WRONG, false);
+        TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, WRONG));
+        expect_led(&f, 0);
+    }
+}
+
+/* The VCU is: it counts as silent. */
+/* Shows: P1, WRONG_ID_SET, VCU_HEARTBEAT_LOST */
+void test_a_status_on_the_other_identifier_is_never_accepted(void) {
+    for (unsigned i = 0; i < SET_COUNT; i++) {
+        init(&SETS[i]);
+        fixture_start(&f);
+        f.traffic[AGV_MSG_VEHICLE_STATUS].id = SETS[i].other_status_id;
+        fixture_run(&f, 500);
+        expect_fault(&f, WRONG, false);
+        expect_fault(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, true);
+        fixture_run(&f, 1);
+        expect_fault(&f, WRONG, true);
+        fixture_run(&f, 3000);
+        expect_state(&f, AGV_STATE_INIT);
+        expect_fault(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, true);
+        TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, WRONG));
+        TEST_ASSERT_EQUAL_UINT32(0, fixture_ended(&f, AGV_FAULT_VCU_HEARTBEAT_LOST));
+    }
+}
+
+/* It ends when the other identifier falls silent, too: 500 ms after its last frame it is still there. */
+/* Shows: P1, WRONG_ID_SET */
+void test_the_end_when_the_other_identifier_is_silent(void) {
+    init(&SETS[0]);
+    fixture_start(&f);
+    f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].id = SETS[0].other_command_id;
+    fixture_run(&f, 1000);
+    fixture_run_past(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
+    f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].muted = true;
+    fixture_run(&f, 500);
+    expect_fault(&f, WRONG, true);
+    fixture_run(&f, 1);
+    expect_fault(&f, WRONG, false);
+}
+
+/* While driving: the own identifier falls silent and the other one begins. */
+/* Shows: P1, WRONG_ID_SET, AI_HEARTBEAT_LOST */
+void test_an_identifier_that_changes_while_driving(void) {
+    for (unsigned i = 0; i < SET_COUNT; i++) {
+        init(&SETS[i]);
+        fixture_active(&f);
+        fixture_run_past(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
+        f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].id = SETS[i].other_command_id;
+        fixture_run(&f, 351);
+        expect_reason(&f, AGV_FAULT_AI_HEARTBEAT_LOST);
+        fixture_run(&f, 149);
+        expect_fault(&f, WRONG, false);
+        fixture_run(&f, 1);
+        expect_fault(&f, WRONG, true);
+    }
+}
+
+/* One more on the other identifier, while its own goes on, is not a wrong set. */
+/* Shows: P1, WRONG_ID_SET */
+void test_both_identifiers_at_once(void) {
+    for (unsigned i = 0; i < SET_COUNT; i++) {
+        init(&SETS[i]);
+        fixture_active(&f);
+        for (unsigned round = 0; round < 300; round++) {
+            fixture_run(&f, 10);
+            fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = SETS[i].other_command_id, .length = 8});
+            fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = SETS[i].other_status_id, .length = 8});
+        }
+        TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, WRONG));
+        expect_state(&f, AGV_STATE_ACTIVE);
+    }
+}
+
+/* A malformed frame on the other identifier is no valid one. */
+/* Shows: P1, P15, WRONG_ID_SET */
+void test_malformed_frames_on_the_other_identifier(void) {
+    static const hal_can_frame_t MALFORMED[] = {{.length = 7},
+                                                {.length = 0},
+                                                {.length = 8, .flags = HAL_CAN_EXTENDED},
+                                                {.length = 8, .flags = HAL_CAN_REMOTE},
+                                                {.length = 8, .flags = HAL_CAN_FD},
+                                                {.length = 8, .flags = HAL_CAN_ERROR}};
+    init(&SETS[0]);
+    f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].muted = true;
+    fixture_standby(&f);
+    for (unsigned round = 0; round < 300; round++) {
+        hal_can_frame_t frame = MALFORMED[round % 6];
+        frame.id = SETS[0].other_command_id;
+        fixture_run(&f, 10);
+        fixture_raw(&f, HAL_CAN_VEHICLE, frame);
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, WRONG));
+}
+
+/* In a gateway the AI's identifier belongs on the AI side. */
+/* Shows: P1, TOP-2, WRONG_ID_SET */
+void test_wrong_set_in_a_gateway(void) {
+    for (unsigned i = 0; i < SET_COUNT; i++) {
+        init(&SETS[i]);
+        f.config.topology = AGV_TOPOLOGY_GATEWAY;
+        fixture_start(&f);
+        f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].id = SETS[i].other_command_id;
+        fixture_run(&f, 500);
+        expect_fault(&f, WRONG, false);
+        fixture_run(&f, 1);
+        expect_fault(&f, WRONG, true);
+        fixture_run(&f, 200);
+        TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, SETS[i].other_command_id)); /* is not passed on */
+    }
+}
+
+/* The 500 ms are a setting. */
+/* Shows: P1, WRONG_ID_SET */
+void test_the_time_is_a_setting(void) {
+    init(&SETS[0]);
+    f.config.wrong_id_set_ms = 300;
+    fixture_start(&f);
+    f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].id = SETS[0].other_command_id;
+    fixture_run(&f, 300);
+    expect_fault(&f, WRONG, false);
+    fixture_run(&f, 1);
+    expect_fault(&f, WRONG, true);
+}

@@ -1,0 +1,232 @@
+/* Intrusion (SUP-6): a foreign sender of a command on the vehicle side of a gateway, and commands that come faster than
+ * half their cycle. */
+#include "expect.h"
+#include "unity.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+/* ---- FOREIGN_COMMAND_SENDER ---- */
+
+static const agv_fault_t FOREIGN = AGV_FAULT_FOREIGN_COMMAND_SENDER;
+
+static void send_foreign(uint32_t id, uint8_t length) {
+    fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = id, .length = length, .data = {1}});
+}
+
+static void gateway(agv_id_set_t id_set) {
+    fixture_init(&f);
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    f.config.id_set = (uint16_t)id_set;
+}
+
+static void check_foreign(agv_id_set_t id_set, uint32_t id) {
+    gateway(id_set);
+    fixture_standby(&f);
+    send_foreign(id, 8);
+    expect_trip(&f, FOREIGN, f.call, NO_HOLD);
+    TEST_ASSERT_EQUAL_UINT32(3, f.sent_count); /* nothing of it went on to the AI side */
+    fixture_run(&f, 1);
+    expect_led(&f, 14);
+    gateway(id_set);
+    fixture_active(&f);
+    send_foreign(id, 8);
+    expect_trip(&f, FOREIGN, f.call, ANGLE_CENTRE);
+    fixture_run(&f, 999);
+    expect_fault(&f, FOREIGN, true);
+    fixture_run(&f, 1);
+    expect_fault(&f, FOREIGN, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, FOREIGN));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, FOREIGN));
+    expect_reason(&f, FOREIGN);
+}
+
+/* Shows: SUP-6, FSM-2, P1, FOREIGN_COMMAND_SENDER */
+void test_each_command_on_the_vehicle_side(void) {
+    static const uint32_t HEADING[] = {0x43F, 0x168, 0x075, 0x065};
+    static const uint32_t TABLE[] = {0x201, 0x168, 0x075, 0x065};
+    for (unsigned i = 0; i < 4; i++) {
+        check_foreign(AGV_ID_SET_HEADING, HEADING[i]);
+        check_foreign(AGV_ID_SET_TABLE, TABLE[i]);
+    }
+}
+
+/* Each one starts the second anew; it is one fault. */
+/* Shows: SUP-6, FOREIGN_COMMAND_SENDER */
+void test_a_foreign_sender_goes_on(void) {
+    gateway(AGV_ID_SET_HEADING);
+    fixture_standby(&f);
+    for (unsigned i = 0; i < 5; i++) {
+        send_foreign(0x168, 8);
+        fixture_run(&f, 999);
+        expect_fault(&f, FOREIGN, true);
+    }
+    fixture_run(&f, 1);
+    expect_fault(&f, FOREIGN, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, FOREIGN));
+}
+
+/* In INIT it latches nothing. */
+/* Shows: SUP-6, FOREIGN_COMMAND_SENDER */
+void test_a_foreign_sender_in_init(void) {
+    gateway(AGV_ID_SET_HEADING);
+    fixture_start(&f);
+    fixture_run(&f, 100);
+    send_foreign(0x075, 8);
+    expect_fault(&f, FOREIGN, true);
+    fixture_run(&f, 1200);
+    expect_state(&f, AGV_STATE_INIT);
+    expect_reason(&f, AGV_FAULT_NONE);
+    fixture_run(&f, 400);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* A malformed one raises nothing, nor does the other set's identifier, nor one of nobody. */
+/* Shows: SUP-6, P1, P15, FOREIGN_COMMAND_SENDER */
+void test_what_is_no_foreign_command(void) {
+    gateway(AGV_ID_SET_HEADING);
+    fixture_active(&f);
+    send_foreign(0x168, 7);
+    send_foreign(0x201, 8);
+    send_foreign(0x169, 8);
+    fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .length = 8, .flags = HAL_CAN_EXTENDED});
+    fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .length = 8, .flags = HAL_CAN_REMOTE});
+    fixture_run(&f, 100);
+    expect_nothing(&f, FOREIGN, AGV_STATE_ACTIVE);
+}
+
+/* On the shared bus the AI computer is on the vehicle side. */
+/* Shows: SUP-6, TOP-1 */
+void test_no_foreign_sender_on_the_shared_bus(void) {
+    fixture_active(&f);
+    send_foreign(0x168, 8);
+    send_foreign(0x43F, 8);
+    fixture_run(&f, 200);
+    expect_nothing(&f, FOREIGN, AGV_STATE_ACTIVE);
+}
+
+/* ---- COMMAND_TOO_FAST ---- */
+
+static const agv_fault_t FAST = AGV_FAULT_COMMAND_TOO_FAST;
+
+/* The first frame comes a whole cycle after the one before; then so many gaps. */
+static void send_first(agv_message_t message) {
+    fixture_run_past(&f, message);
+    f.traffic[message].muted = true;
+    fixture_run(&f, f.traffic[message].cycle_ms);
+    fixture_send_now(&f, message);
+}
+
+static void send_gaps(agv_message_t message, unsigned count, uint32_t gap_ms) {
+    for (unsigned i = 0; i < count; i++) {
+        fixture_run(&f, gap_ms);
+        fixture_send_now(&f, message);
+    }
+}
+
+static void check_fast(unsigned topology, agv_message_t message, uint32_t gap_ms) {
+    fixture_init(&f);
+    f.config.topology = (uint16_t)topology;
+    fixture_standby(&f);
+    send_first(message);
+    send_gaps(message, 9, gap_ms);
+    fixture_run(&f, gap_ms);
+    expect_nothing(&f, FAST, AGV_STATE_STANDBY);
+    fixture_send_now(&f, message);
+    expect_warning(&f, FAST, AGV_STATE_STANDBY);
+    send_gaps(message, 5, gap_ms); /* goes on: raised already */
+    fixture_run(&f, 999);
+    expect_fault(&f, FAST, true);
+    expect_led(&f, 14);
+    fixture_run(&f, 1);
+    expect_fault(&f, FAST, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, FAST));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, FAST));
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* Half of 100 ms is 50 ms, half of 25 ms is 12.5 ms. */
+typedef struct {
+    agv_message_t message;
+    uint32_t fast_ms;
+    uint32_t slow_ms;
+} gap_t;
+static const gap_t GAPS[] = {
+    {AGV_MSG_TURN_SIGNAL_COMMAND, 49, 50},
+    {AGV_MSG_GEAR_COMMAND, 49, 50},
+    {AGV_MSG_THROTTLE_COMMAND, 49, 50},
+    {AGV_MSG_STEERING_COMMAND, 12, 13},
+};
+
+/* Shows: SUP-6, P16, COMMAND_TOO_FAST */
+void test_ten_gaps_in_a_row_under_half_the_cycle(void) {
+    for (unsigned i = 0; i < 4; i++) {
+        check_fast(AGV_TOPOLOGY_SHARED, GAPS[i].message, GAPS[i].fast_ms);
+        check_fast(AGV_TOPOLOGY_SHARED, GAPS[i].message, 1);
+        check_fast(AGV_TOPOLOGY_GATEWAY, GAPS[i].message, GAPS[i].fast_ms);
+    }
+}
+
+/* Shows: SUP-6, P16, COMMAND_TOO_FAST */
+void test_gaps_of_half_the_cycle_are_not_too_fast(void) {
+    for (unsigned i = 0; i < 4; i++) {
+        fixture_init(&f);
+        fixture_active(&f);
+        send_first(GAPS[i].message);
+        send_gaps(GAPS[i].message, 40, GAPS[i].slow_ms);
+        expect_nothing(&f, FAST, AGV_STATE_ACTIVE);
+        for (unsigned round = 0; round < 4; round++) { /* nine, and one that is not */
+            send_gaps(GAPS[i].message, 9, GAPS[i].fast_ms);
+            send_gaps(GAPS[i].message, 1, GAPS[i].slow_ms);
+        }
+        expect_nothing(&f, FAST, AGV_STATE_ACTIVE);
+        TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, FAST));
+    }
+}
+
+/* Each command is counted for itself. */
+/* Shows: SUP-6, COMMAND_TOO_FAST */
+void test_fast_gaps_of_different_commands_do_not_add_up(void) {
+    fixture_standby(&f);
+    send_first(AGV_MSG_GEAR_COMMAND);
+    send_first(AGV_MSG_THROTTLE_COMMAND);
+    send_gaps(AGV_MSG_GEAR_COMMAND, 9, 1);
+    send_gaps(AGV_MSG_THROTTLE_COMMAND, 9, 1);
+    expect_nothing(&f, FAST, AGV_STATE_STANDBY);
+}
+
+/* While engaged it is the same warning, in INIT too; and the number of gaps is a setting. */
+/* Shows: SUP-6, COMMAND_TOO_FAST */
+void test_too_fast_in_other_states(void) {
+    f.config.command_too_fast_gaps = 2;
+    fixture_active(&f);
+    send_first(AGV_MSG_STEERING_COMMAND);
+    send_gaps(AGV_MSG_STEERING_COMMAND, 1, 5);
+    expect_nothing(&f, FAST, AGV_STATE_ACTIVE);
+    send_gaps(AGV_MSG_STEERING_COMMAND, 1, 5);
+    expect_warning(&f, FAST, AGV_STATE_ACTIVE);
+    fixture_init(&f);
+    fixture_start(&f);
+    send_first(AGV_MSG_THROTTLE_COMMAND);
+    send_gaps(AGV_MSG_THROTTLE_COMMAND, 10, 10);
+    expect_fault(&f, FAST, true);
+    fixture_run(&f, 500);
+    expect_state(&f, AGV_STATE_STANDBY); /* a warning does not keep INIT */
+}
+
+/* Malformed frames are no commands: they are not counted here. */
+/* Shows: SUP-6, P15, COMMAND_TOO_FAST */
+void test_malformed_frames_are_not_too_fast(void) {
+    fixture_standby(&f);
+    for (unsigned i = 0; i < 50; i++) {
+        fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .length = 7, .data = {8}});
+        fixture_run(&f, 2);
+    }
+    expect_nothing(&f, FAST, AGV_STATE_STANDBY);
+}
