@@ -1,0 +1,250 @@
+/* Steering hold: which angle 065h carries in TRIPPED and SAFE, and when it is not sent. */
+#include "fixture.h"
+#include "unity.h"
+#include "walk.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+/* 40 a second on a 25 ms cycle; all with this raw angle. */
+static void expect_held_for_a_second(uint16_t raw) {
+    fixture_forget_sent(&f);
+    fixture_run(&f, 1000);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(40, fixture_count_sent(&f, 0x065), f.what);
+    for (uint32_t n = 0; n < 40; n++) {
+        const fixture_sent_t *sent = fixture_nth_sent(&f, 0x065, n);
+        TEST_ASSERT_EQUAL_HEX8_MESSAGE(raw & 0xFFu, sent->data[0], f.what);
+        TEST_ASSERT_EQUAL_HEX8_MESSAGE(raw >> 8u, sent->data[1], f.what);
+    }
+}
+
+static void expect_not_held_for_a_second(void) {
+    fixture_forget_sent(&f);
+    fixture_run(&f, 1000);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(0, fixture_count_sent(&f, 0x065), f.what);
+}
+
+static void trip_at(uint16_t raw) {
+    fixture_angle(&f, raw);
+    fixture_command_angle(&f, raw);
+    walk_to_tripped(&f);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x065)); /* with the others, at once */
+}
+
+/* Shows: FSM-10 */
+void test_the_angle_of_the_moment_of_the_trip_is_held(void) {
+    static const uint16_t ANGLES[] = {0, 1, 9000, 9123, 17999, 18000};
+    for (unsigned i = 0; i < sizeof ANGLES / sizeof ANGLES[0]; i++) {
+        fixture_init(&f);
+        trip_at(ANGLES[i]);
+        fixture_angle(&f, 5000); /* the wheels go on turning */
+        expect_held_for_a_second(ANGLES[i]);
+    }
+}
+
+/* Shows: FSM-10 */
+void test_safe_holds_the_same_angle(void) {
+    trip_at(9123);
+    fixture_vehicle_confirms(&f);
+    fixture_mode(&f, MODE_NEITHER);
+    fixture_angle(&f, 9400);
+    fixture_run(&f, 100);
+    expect_state(&f, AGV_STATE_SAFE);
+    expect_held_for_a_second(9123);
+}
+
+/* Shows: FSM-10, STEERING_ANGLE_INVALID */
+void test_an_invalid_angle_is_no_hold_angle(void) {
+    fixture_angle(&f, 9050);
+    fixture_active(&f);
+    fixture_mute_ai(&f, true);
+    fixture_angle(&f, 18001);
+    fixture_run(&f, 30); /* three of them */
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, AGV_FAULT_STEERING_ANGLE_INVALID);
+    expect_held_for_a_second(9050);
+}
+
+/* Shows: FSM-10 */
+void test_without_any_valid_angle_the_first_valid_one_after_the_trip_is_held(void) {
+    fixture_angle(&f, 18001);
+    fixture_standby(&f);
+    fixture_mute_ai(&f, true);
+    walk_trip(&f);
+    fixture_mode(&f, MODE_NEITHER);
+    fixture_run(&f, 100);
+    expect_not_held_for_a_second();
+    fixture_angle(&f, 8000);
+    fixture_run_past(&f, AGV_MSG_STEERING_STATUS);
+    fixture_angle(&f, 8500);
+    fixture_run(&f, 100);
+    expect_held_for_a_second(8000);
+}
+
+/* ---- While the EPS is fit to be commanded ---- */
+
+static void eps_frozen(bool spoilt) {
+    f.traffic[AGV_MSG_STEERING_STATUS].frozen = spoilt;
+}
+
+static void eps_silent(bool spoilt) {
+    f.traffic[AGV_MSG_STEERING_STATUS].muted = spoilt;
+}
+
+static void no_eps_status(bool spoilt) {
+    f.traffic[AGV_MSG_EPS_STATUS].muted = spoilt;
+}
+
+static void over_current(bool spoilt) {
+    f.traffic[AGV_MSG_EPS_STATUS].data[7] = spoilt ? 0x08 : 0;
+}
+
+static void position_encoder(bool spoilt) {
+    f.traffic[AGV_MSG_EPS_STATUS].data[7] = spoilt ? 0x80 : 0;
+}
+
+static void under_voltage(bool spoilt) {
+    f.traffic[AGV_MSG_EPS_STATUS].data[7] = spoilt ? 0x01 : 0;
+}
+
+static void vcu_says_hardware(bool spoilt) {
+    walk_alarm(&f, spoilt ? ALARM_EPS_HARDWARE : ALARM_NONE);
+}
+
+static void vcu_says_can(bool spoilt) {
+    walk_alarm(&f, spoilt ? 0x20 : ALARM_NONE);
+}
+
+static void mode_assist(bool spoilt) {
+    f.traffic[AGV_MSG_EPS_STATUS].data[3] = spoilt ? 0x00 : 0x01;
+}
+
+static void mode_speed(bool spoilt) {
+    f.traffic[AGV_MSG_EPS_STATUS].data[3] = spoilt ? 0x02 : 0x01;
+}
+
+static void mode_torque(bool spoilt) {
+    f.traffic[AGV_MSG_EPS_STATUS].data[3] = spoilt ? 0x03 : 0x01;
+}
+
+static void mode_off(bool spoilt) {
+    f.traffic[AGV_MSG_EPS_STATUS].data[3] = spoilt ? 0xFF : 0x01;
+}
+
+static void mode_unknown(bool spoilt) {
+    f.traffic[AGV_MSG_EPS_STATUS].data[3] = spoilt ? 0x11 : 0x01;
+}
+
+static void manual(bool spoilt) {
+    fixture_mode(&f, spoilt ? MODE_MANUAL : MODE_ENGAGED);
+}
+
+static const struct {
+    const char *what;
+    void (*spoil)(bool spoilt);
+} UNFIT[] = {
+    {"EPS frozen", eps_frozen},
+    {"no 067h", eps_silent},
+    {"no 167h", no_eps_status},
+    {"over current", over_current},
+    {"position encoder", position_encoder},
+    {"under voltage", under_voltage},
+    {"hardware fault, says the VCU", vcu_says_hardware},
+    {"CAN fault, says the VCU", vcu_says_can},
+    {"steering assist", mode_assist},
+    {"speed control", mode_speed},
+    {"torque control", mode_torque},
+    {"EPS off", mode_off},
+    {"unknown mode", mode_unknown},
+    {"manual", manual},
+};
+
+/* Shows: FSM-10 */
+void test_it_is_held_only_while_the_eps_is_fit_and_nobody_steers_by_remote(void) {
+    for (unsigned i = 0; i < sizeof UNFIT / sizeof UNFIT[0]; i++) {
+        fixture_init(&f);
+        f.what = UNFIT[i].what;
+        f.long_run = true;
+        trip_at(9123);
+        UNFIT[i].spoil(true);
+        fixture_run(&f, 100);
+        expect_not_held_for_a_second();
+        fixture_angle(&f, 8700);
+        UNFIT[i].spoil(false);
+        fixture_run(&f, 100);
+        expect_held_for_a_second(9123); /* still the angle of the trip */
+    }
+}
+
+/* Shows: FSM-10 */
+void test_it_ends_in_the_frame_that_says_so(void) {
+    static const uint8_t other[8] = {0x10, 0x27};
+    trip_at(9123);
+    fixture_run(&f, 30);
+    fixture_frame(&f, AGV_MSG_STEERING_COMMAND, other); /* answered, as it is being sent */
+    TEST_ASSERT_EQUAL_UINT32(f.call, f.sent[f.sent_count - 1].call);
+    fixture_run(&f, 20);
+    mode_off(true);
+    fixture_send_now(&f, AGV_MSG_EPS_STATUS);
+    fixture_forget_sent(&f);
+    fixture_frame(&f, AGV_MSG_STEERING_COMMAND, other);
+    expect_silence(&f);
+}
+
+/* Shows: FSM-10 */
+void test_a_trip_in_manual_driving_holds_nothing(void) {
+    fixture_angle(&f, 9300);
+    fixture_standby(&f);
+    fixture_mute_ai(&f, true);
+    walk_trip(&f);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
+    expect_not_held_for_a_second();
+    fixture_angle(&f, 9700);
+    fixture_run(&f, 50);
+    fixture_mode(&f, MODE_NEITHER);
+    fixture_run(&f, 50);
+    expect_held_for_a_second(9300); /* of the moment of the trip */
+}
+
+/* ---- After a restart ---- */
+
+/* Shows: FSM-10, FSM-7 */
+void test_after_a_restart_the_first_valid_angle_is_held(void) {
+    f.long_run = true;
+    fixture_angle(&f, 9100);
+    fixture_command_angle(&f, 9100);
+    fixture_active(&f);
+    fixture_mute_ai(&f, true);
+    fixture_restart(&f, HAL_RESET_WATCHDOG);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
+    fixture_angle(&f, 18001);
+    fixture_run(&f, 200);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
+    fixture_angle(&f, 9210);
+    fixture_run_past(&f, AGV_MSG_STEERING_STATUS);
+    fixture_angle(&f, 9320);
+    fixture_run(&f, 100);
+    expect_held_for_a_second(9210);
+}
+
+/* Shows: FSM-10, FSM-3 */
+void test_a_second_trip_holds_its_own_angle(void) {
+    fixture_angle(&f, 9100);
+    walk_to_safe(&f);
+    fixture_button(&f, true);
+    fixture_run(&f, 1100);
+    fixture_button(&f, false);
+    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_angle(&f, 9900);
+    fixture_mode(&f, MODE_NEITHER);
+    fixture_run(&f, 50);
+    walk_trip(&f);
+    fixture_angle(&f, 9100);
+    expect_held_for_a_second(9900);
+}

@@ -1,0 +1,363 @@
+/* Overriding another sender: at once, for frames of any length, and not so often that it drowns the bus. */
+#include <string.h>
+
+#include "fixture.h"
+#include "unity.h"
+#include "walk.h"
+
+static fixture_t f;
+static fixture_t g; /* a second supervisor on the same bus */
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+static void foreign(uint32_t id, uint8_t length, const uint8_t data[8]) {
+    hal_can_frame_t frame = {.id = id, .length = length};
+    memcpy(frame.data, data, 8);
+    fixture_raw(&f, HAL_CAN_VEHICLE, frame);
+}
+
+static void foreign_gear(uint8_t gear) {
+    const uint8_t data[8] = {gear};
+    foreign(0x168, 8, data);
+}
+
+/* 43Fh with this byte 5. */
+static void foreign_signals(uint8_t fifth) {
+    const uint8_t data[8] = {0, 0, 0, 0, fifth, 0, 0, 99};
+    foreign(0x43F, 8, data);
+}
+
+/* Tripped, engaged, holding 9000, with the AI computer silent; the first frames are out, no periodic one is near. */
+static void tripped(void) {
+    walk_to_tripped(&f);
+    fixture_run(&f, 10);
+    fixture_forget_sent(&f);
+}
+
+/* Long enough that no override is recent; then nothing is in the log. */
+static void settle(void) {
+    fixture_run(&f, 7);
+    fixture_forget_sent(&f);
+}
+
+typedef struct {
+    uint32_t id;
+    uint8_t data[8];
+} command_t;
+
+static const command_t DIFFERENT[] = {
+    {0x43F, {0, 0, 0, 0, 0x30}}, /* autopilot not off */
+    {0x43F, {0, 0, 0, 0, 0x60}}, /* left signal off */
+    {0x43F, {0, 0, 0, 0, 0x50}}, /* right signal off */
+    {0x43F, {0, 0, 0, 0, 0xF0}}, /* headlight off */
+    {0x43F, {0}},
+    {0x168, {1}},
+    {0x168, {2}},
+    {0x168, {4}},
+    {0x168, {0}},
+    {0x168, {9}},
+    {0x168, {0xFF}},
+    {0x075, {1}},
+    {0x075, {250}},
+    {0x075, {255}},
+    {0x065, {0x29, 0x23}}, /* 9001 */
+    {0x065, {0x27, 0x23}},
+    {0x065, {0x51, 0x46}}, /* 18001 */
+};
+
+static const command_t THE_SAME[] = {
+    {0x43F, {0, 0, 0, 0, 0x70, 0, 0, 0}},
+    {0x43F, {0, 0, 0, 0, 0x70, 0, 0, 0xA5}}, /* the alive counter is no difference */
+    {0x43F, {1, 2, 3, 4, 0x7F, 6, 7, 8}},    /* nor are reserved bits */
+    {0x168, {8}},
+    {0x168, {8, 1, 2, 3, 4, 5, 6, 7}},
+    {0x075, {0}},
+    {0x075, {0, 1}},
+    {0x065, {0x28, 0x23}},
+    {0x065, {0x28, 0x23, 1}},
+};
+
+static void expect_answered_in_this_call(uint32_t id, const char *what) {
+    static const uint8_t PARK[8] = {8};
+    static const uint8_t ZERO[8] = {0};
+    static const uint8_t HELD[8] = {0x28, 0x23};
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, f.sent_count, what);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(f.call, f.sent[0].call, what);
+    TEST_ASSERT_EQUAL_HEX32_MESSAGE(id, f.sent[0].id, what);
+    if (id == 0x43F) {
+        const uint8_t signals[8] = {0, 0, 0, 0, 0x70, 0, 0, f.sent[0].data[7]};
+        TEST_ASSERT_EQUAL_HEX8_ARRAY_MESSAGE(signals, f.sent[0].data, 8, what);
+    } else {
+        const uint8_t *expected = id == 0x168 ? PARK : id == 0x075 ? ZERO : HELD;
+        TEST_ASSERT_EQUAL_HEX8_ARRAY_MESSAGE(expected, f.sent[0].data, 8, what);
+    }
+}
+
+/* Shows: TOP-1 */
+void test_a_command_that_differs_is_answered_in_its_handling(void) {
+    for (unsigned i = 0; i < sizeof DIFFERENT / sizeof DIFFERENT[0]; i++) {
+        fixture_init(&f);
+        tripped();
+        foreign(DIFFERENT[i].id, 8, DIFFERENT[i].data);
+        expect_answered_in_this_call(DIFFERENT[i].id, "differs");
+    }
+}
+
+/* Shows: TOP-1, P14 */
+void test_a_command_that_does_not_differ_is_not_answered(void) {
+    tripped();
+    for (unsigned i = 0; i < sizeof THE_SAME / sizeof THE_SAME[0]; i++) {
+        foreign(THE_SAME[i].id, 8, THE_SAME[i].data);
+    }
+    expect_silence(&f);
+}
+
+/* Shows: TOP-1, INT-2, P15 */
+void test_a_command_of_another_length_is_answered_whatever_it_says(void) {
+    for (uint8_t length = 0; length < 8; length++) {
+        for (unsigned i = 0; i < sizeof THE_SAME / sizeof THE_SAME[0]; i++) {
+            uint8_t data[8] = {0};
+            memcpy(data, THE_SAME[i].data, length);
+            fixture_init(&f);
+            tripped();
+            foreign(THE_SAME[i].id, length, data);
+            expect_answered_in_this_call(THE_SAME[i].id, "short");
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, agv_supervisor_counters(&f.supervisor)->rejected[AGV_REJECTED_LENGTH]);
+}
+
+/* Shows: TOP-1, P15 */
+void test_what_is_no_data_frame_with_that_identifier_is_not_answered(void) {
+    static const uint8_t FLAGS[] = {HAL_CAN_EXTENDED, HAL_CAN_REMOTE, HAL_CAN_ERROR};
+    tripped();
+    for (unsigned i = 0; i < sizeof FLAGS; i++) {
+        fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .flags = FLAGS[i], .length = 8, .data = {1}});
+    }
+    expect_silence(&f);
+}
+
+/* Shows: TOP-1 */
+void test_init_and_safe_override_too(void) {
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_mute_ai(&f, true);
+    fixture_start(&f);
+    fixture_run(&f, 10);
+    fixture_forget_sent(&f);
+    expect_state(&f, AGV_STATE_INIT);
+    foreign_gear(GEAR_D);
+    expect_answered_in_this_call(0x168, "INIT");
+
+    fixture_init(&f);
+    walk_to_safe(&f);
+    settle();
+    settle();
+    foreign_gear(GEAR_D);
+    expect_answered_in_this_call(0x168, "SAFE");
+}
+
+/* Shows: TOP-1 */
+void test_standby_and_active_override_nothing(void) {
+    fixture_standby(&f);
+    foreign_gear(GEAR_D);
+    foreign_signals(0x00);
+    expect_silence(&f);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run(&f, 100);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    foreign_gear(GEAR_D);
+    foreign_signals(0x00);
+    expect_silence(&f);
+}
+
+/* Shows: TOP-1, FOREIGN_COMMAND_SENDER */
+void test_the_vehicle_side_of_a_gateway_is_overridden_too(void) {
+    static const uint8_t park[8] = {8};
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    tripped();
+    foreign_gear(GEAR_D);
+    expect_answered_in_this_call(0x168, "gateway");
+    fixture_run(&f, 6);
+    fixture_forget_sent(&f);
+    foreign(0x168, 1, park);
+    expect_answered_in_this_call(0x168, "gateway, short");
+    fixture_run(&f, 6);
+    fixture_forget_sent(&f);
+    foreign_gear(GEAR_P);
+    expect_silence(&f);
+}
+
+/* Shows: TOP-1, TOP-2 */
+void test_the_ai_side_of_a_gateway_is_not_answered(void) {
+    static const uint8_t drive[8] = {GEAR_D};
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    tripped();
+    fixture_frame(&f, AGV_MSG_GEAR_COMMAND, drive); /* comes from the AI side */
+    expect_silence(&f);
+}
+
+/* Shows: TOP-1, FSM-10 */
+void test_a_steering_command_is_not_answered_while_none_is_sent(void) {
+    static const uint8_t angle[8] = {0x00, 0x10};
+    walk_to_safe(&f); /* manual: nothing is held */
+    settle();
+    foreign(0x065, 8, angle);
+    foreign(0x065, 2, angle);
+    expect_silence(&f);
+}
+
+/* ---- The schedule after an override ---- */
+
+static void expect_next_after(uint32_t id, uint32_t answered_ms, uint32_t half_ms, uint32_t cycle_ms) {
+    fixture_run(&f, 400);
+    TEST_ASSERT_EQUAL_UINT32(answered_ms, fixture_nth_sent(&f, id, 0)->time_ms);
+    TEST_ASSERT_EQUAL_UINT32(half_ms, fixture_nth_sent(&f, id, 1)->time_ms - answered_ms);
+    TEST_ASSERT_EQUAL_UINT32(half_ms + cycle_ms, fixture_nth_sent(&f, id, 2)->time_ms - answered_ms);
+    TEST_ASSERT_EQUAL_UINT32(half_ms + 2 * cycle_ms, fixture_nth_sent(&f, id, 3)->time_ms - answered_ms);
+}
+
+/* 25 ms have no half in whole milliseconds: 12. */
+/* Shows: TOP-1, TIM-1 */
+void test_after_an_override_the_next_periodic_frame_is_due_half_a_cycle_later(void) {
+    static const uint8_t pull[8] = {200};
+    static const uint8_t angle[8] = {0x00, 0x10};
+    tripped();
+    foreign_gear(GEAR_D);
+    expect_next_after(0x168, f.now_ms, 50, 100);
+    fixture_init(&f);
+    tripped();
+    foreign_signals(0x80);
+    expect_next_after(0x43F, f.now_ms, 50, 100);
+    fixture_init(&f);
+    tripped();
+    foreign(0x075, 8, pull);
+    expect_next_after(0x075, f.now_ms, 50, 100);
+    fixture_init(&f);
+    tripped();
+    foreign(0x065, 8, angle);
+    expect_next_after(0x065, f.now_ms, 12, 25);
+}
+
+/* An AI computer that sends D every 100 ms is answered each time, and the own slots lie in the middle between. */
+/* Shows: TOP-1 */
+void test_a_periodic_foreign_sender_is_answered_each_time(void) {
+    tripped();
+    for (unsigned i = 0; i < 20; i++) {
+        fixture_forget_sent(&f);
+        foreign_gear(GEAR_D);
+        const uint32_t heard_ms = f.now_ms;
+        fixture_run(&f, 100);
+        TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168));
+        TEST_ASSERT_EQUAL_UINT32(0, fixture_nth_sent(&f, 0x168, 0)->time_ms - heard_ms);
+        TEST_ASSERT_EQUAL_UINT32(50, fixture_nth_sent(&f, 0x168, 1)->time_ms - heard_ms);
+    }
+}
+
+/* ---- Not more often than every 5 ms ---- */
+
+/* Shows: TOP-1 */
+void test_after_5_ms_it_is_answered_at_once_again(void) {
+    tripped();
+    for (unsigned i = 0; i < 10; i++) {
+        fixture_forget_sent(&f);
+        foreign_gear(GEAR_D);
+        expect_answered_in_this_call(0x168, "every 5 ms");
+        fixture_run_without_ticks(&f, 5);
+        fixture_jump(&f, 0);
+    }
+}
+
+/* Shows: TOP-1 */
+void test_identifiers_are_overridden_independently(void) {
+    tripped();
+    foreign_gear(GEAR_D);
+    fixture_forget_sent(&f);
+    foreign_signals(0x00);
+    expect_answered_in_this_call(0x43F, "another identifier");
+}
+
+/* A sender of one frame a millisecond: an answer every 5 ms or a tick later, and the last word. */
+/* Shows: TOP-1, COMMAND_TOO_FAST */
+void test_a_babbling_sender_is_answered_every_5_ms_and_last(void) {
+    tripped();
+    for (unsigned i = 0; i < 1000; i++) {
+        foreign_gear(GEAR_D);
+        fixture_run(&f, 1);
+    }
+    const uint32_t last_ms = f.now_ms - 1;
+    fixture_run(&f, 10);
+    const uint32_t count = fixture_count_sent(&f, 0x168);
+    TEST_ASSERT_TRUE(count >= 160 && count <= 201);
+    for (uint32_t n = 1; n < count; n++) {
+        const uint32_t gap_ms = fixture_nth_sent(&f, 0x168, n)->time_ms - fixture_nth_sent(&f, 0x168, n - 1)->time_ms;
+        TEST_ASSERT_TRUE(gap_ms == 5 || gap_ms == 6);
+    }
+    TEST_ASSERT_TRUE(fixture_nth_sent(&f, 0x168, count - 1)->time_ms - last_ms <= 6);
+}
+
+/* Shows: TOP-1 */
+void test_the_gap_is_what_is_configured(void) {
+    f.config.override_gap_ms = 10;
+    tripped();
+    foreign_gear(GEAR_D);
+    fixture_run(&f, 1);
+    foreign_gear(GEAR_D);
+    fixture_run(&f, 8);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    fixture_run(&f, 2);
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168));
+}
+
+/* ---- A queue that is full, a second supervisor ---- */
+
+/* Shows: TOP-1 */
+void test_at_most_one_frame_an_identifier_waits(void) {
+    tripped();
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    for (unsigned i = 0; i < 80; i++) {
+        foreign_gear(GEAR_D);
+        foreign_signals(0x00);
+        fixture_run(&f, 1);
+    }
+    expect_silence(&f);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    fixture_run(&f, 1);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x43F));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x075));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x065));
+}
+
+static void hear_each_other(fixture_t *from, fixture_t *to) {
+    for (uint32_t i = 0; i < from->sent_count; i++) {
+        hal_can_frame_t frame = {.id = from->sent[i].id, .length = 8};
+        memcpy(frame.data, from->sent[i].data, 8);
+        fixture_raw(to, HAL_CAN_VEHICLE, frame);
+    }
+    fixture_forget_sent(from);
+}
+
+/* They hold different angles: each one overrides the other, at most every 5 ms. Of the rest they send the same. */
+/* Shows: TOP-1 */
+void test_two_supervisors_on_one_bus_do_not_drown_it(void) {
+    tripped();
+    fixture_init(&g);
+    fixture_angle(&g, 9010);
+    walk_to_tripped(&g);
+    fixture_run(&g, 10);
+    fixture_forget_sent(&g);
+    const uint32_t before = agv_supervisor_counters(&f.supervisor)->sent + agv_supervisor_counters(&g.supervisor)->sent;
+    for (unsigned i = 0; i < 1000; i++) {
+        fixture_run(&f, 1);
+        hear_each_other(&f, &g);
+        fixture_run(&g, 1);
+        hear_each_other(&g, &f);
+    }
+    const uint32_t after = agv_supervisor_counters(&f.supervisor)->sent + agv_supervisor_counters(&g.supervisor)->sent;
+    TEST_ASSERT_TRUE(after - before <= 2 * (200 + 3 * 10 + 1)); /* 065h every 5 ms, the other three every 100 ms */
+}
