@@ -262,6 +262,7 @@ void test_nodes_and_taps_are_limited_and_configurations_checked(void) {
     TEST_ASSERT_EQUAL_UINT8(SIM_BUS_NO_NODE, sim_bus_attach(bus, &too_many_rx));
     const sim_bus_node_config_t largest = {.tx_slots = SIM_BUS_TX_SLOTS_MAX, .rx_slots = SIM_BUS_RX_SLOTS_MAX};
     TEST_ASSERT_EQUAL_UINT8(FIXTURE_NODES, sim_bus_attach(bus, &largest));
+    TEST_ASSERT_EQUAL_UINT8(SIM_BUS_NO_NODE, sim_bus_attach(bus, &too_many_tx));
     for (unsigned i = FIXTURE_NODES + 1u; i < SIM_BUS_NODES_MAX; i++) {
         TEST_ASSERT_EQUAL_UINT8(i, sim_bus_attach(bus, NULL));
     }

@@ -187,6 +187,9 @@ void test_a_receiver_that_cannot_read_becomes_passive(void) {
     TEST_ASSERT_EQUAL_UINT(127, rec_of(&fixture, B));
     assert_state(HAL_CAN_ERROR_ACTIVE, B);
     TEST_ASSERT_EQUAL_UINT(1, received_by(&fixture, B));
+    send(&fixture, A, 0x168, 8, 0);
+    sim_bus_run_until(bus, 9000);
+    TEST_ASSERT_EQUAL_UINT(126, rec_of(&fixture, B));
 }
 
 void test_a_frame_misread_once_counts_once(void) {
@@ -320,16 +323,29 @@ void test_a_purge_keeps_the_frame_that_is_on_the_wire(void) {
     send(&fixture, A, 0x100, 8, 2);
     sim_bus_run_until(bus, 100);
     sim_bus_purge(bus, A);
+    send(&fixture, A, 0x400, 8, 4);
     sim_bus_run_until(bus, 1000);
-    TEST_ASSERT_EQUAL_UINT(1, fixture.event_count);
+    TEST_ASSERT_EQUAL_UINT(2, fixture.event_count);
     TEST_ASSERT_EQUAL_UINT8(2, fixture.events[0].first);
+    TEST_ASSERT_EQUAL_UINT8(4, fixture.events[1].first);
     TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(bus, A));
     sim_bus_corrupt_all(bus, 1);
     send(&fixture, A, 0x300, 8, 3);
     TEST_ASSERT_EQUAL_UINT32(1, status_of(&fixture, A).tx_pending_ms);
     sim_bus_run_until(bus, 2000);
-    TEST_ASSERT_TRUE(fixture.events[1].error);
-    TEST_ASSERT_FALSE(fixture.events[2].error);
+    TEST_ASSERT_TRUE(fixture.events[2].error);
+    TEST_ASSERT_FALSE(fixture.events[3].error);
+}
+
+/* Between an error frame and the next try nothing is on the wire. */
+void test_a_purge_between_two_tries_leaves_nothing(void) {
+    sim_bus_corrupt_all(bus, 1);
+    send(&fixture, A, 0x100, 8, 1);
+    sim_bus_run_until(bus, 305);
+    TEST_ASSERT_TRUE(fixture.events[0].error);
+    sim_bus_purge(bus, A);
+    TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(bus, A));
+    TEST_ASSERT_EQUAL_UINT64(SIM_BUS_NEVER, sim_bus_due_us(bus));
 }
 
 void test_a_purge_before_the_frame_starts_leaves_nothing(void) {

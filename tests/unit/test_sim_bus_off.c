@@ -49,13 +49,14 @@ void test_recovery_takes_1408_bits_of_an_idle_bus(void) {
  * = 1 sequence, then the other 77: 1118 + 264 + 6 + 77 x 22 = 3082.
  */
 void test_a_frame_in_between_counts_as_one_sequence(void) {
+    sim_bus_run_until(bus, 7000);
     sim_bus_force_bus_off(bus, A);
     sim_bus_recover(bus, A);
-    sim_bus_run_until(bus, 1118);
+    sim_bus_run_until(bus, 7000 + 1118);
     send(&fixture, B, 0x100, 8, 0);
-    sim_bus_run_until(bus, 3081);
+    sim_bus_run_until(bus, 7000 + 3081);
     assert_state(HAL_CAN_BUS_OFF, A);
-    sim_bus_run_until(bus, 3082);
+    sim_bus_run_until(bus, 7000 + 3082);
     assert_state(HAL_CAN_ERROR_ACTIVE, A);
 }
 

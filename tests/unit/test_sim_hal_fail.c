@@ -119,6 +119,14 @@ void test_a_failing_status_repeats_the_last_report(void) {
     TEST_ASSERT_EQUAL_UINT16(2, status.overrun_count);
 }
 
+/* What it could read last: nothing yet, so what the clock started with. */
+void test_a_clock_that_fails_from_the_first_call_on_stands_at_the_start(void) {
+    sim_hal_init_direct(&hal, &(sim_hal_config_t){.clock_start_ms = 77}, 1, NULL, NULL);
+    sim_hal_set_now_ms(&hal, 90);
+    sim_hal_fail_at(&hal, 1, UINT32_MAX, SIM_HAL_OP_ALL);
+    TEST_ASSERT_EQUAL_UINT32(77, hal_clock_now_ms(&hal));
+}
+
 void test_what_the_other_failing_operations_do(void) {
     sim_hal_set_now_ms(&hal, 5);
     TEST_ASSERT_EQUAL_UINT32(5, hal_clock_now_ms(&hal));

@@ -92,8 +92,7 @@ void sim_bus_purge(sim_bus_t *bus, sim_bus_node_t number) {
     }
     sim_bus_node_state_t *node = &bus->nodes[number];
     if ((bus->sending & sim_bit(number)) != 0) {
-        node->tx[0] = node->tx[node->tx_current];
-        node->tx_current = 0;
+        node->tx_current = 0; /* stands for the frame on the wire, whatever it holds: it is not started again */
         node->tx_count = 1;
         node->current_aborted = true;
     } else {

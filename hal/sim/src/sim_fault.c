@@ -67,13 +67,11 @@ static uint64_t sequence_us(const sim_bus_t *bus) {
     return (uint64_t)SIM_BUS_RECOVERY_BITS * bus->bit_us;
 }
 
-/* Count what has passed since recovery_from_us, and count on from now. It is never more than is left: that was due. */
+/* Count what has passed since recovery_from_us. It is never more than is left: that was due. */
 static void settle(const sim_bus_t *bus, sim_bus_node_state_t *node) {
-    if (node->recovery_from_us >= bus->now_us) {
-        return;
+    if (node->recovery_from_us < bus->now_us) {
+        node->recovery_left -= (uint32_t)((bus->now_us - node->recovery_from_us) / sequence_us(bus));
     }
-    node->recovery_left -= (uint32_t)((bus->now_us - node->recovery_from_us) / sequence_us(bus));
-    node->recovery_from_us = bus->now_us;
 }
 
 /* Where the count goes on: on a wire of its own at once, on the bus when it is idle. */
