@@ -1,0 +1,231 @@
+/* Malformed frames (P15): each kind on each message is counted and refreshes nothing, so that the silence which they
+ * leave is what trips. Reserved bits (P14) are ignored. */
+#include <string.h>
+
+#include "expect.h"
+#include "unity.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+typedef struct {
+    const char *name;
+    uint8_t flags;
+    uint8_t length;
+    agv_rejected_t counted;
+} kind_t;
+
+static const kind_t KINDS[] = {
+    {"length 0", 0, 0, AGV_REJECTED_LENGTH},
+    {"length 1", 0, 1, AGV_REJECTED_LENGTH},
+    {"length 4", 0, 4, AGV_REJECTED_LENGTH},
+    {"length 7", 0, 7, AGV_REJECTED_LENGTH},
+    {"FD with 8 bytes", HAL_CAN_FD, 8, AGV_REJECTED_FD},
+    {"FD with 64 bytes", HAL_CAN_FD, 64, AGV_REJECTED_FD},
+    {"FD with 7 bytes", HAL_CAN_FD, 7, AGV_REJECTED_FD},
+    {"remote", HAL_CAN_REMOTE, 8, AGV_REJECTED_REMOTE},
+    {"remote, none asked for", HAL_CAN_REMOTE, 0, AGV_REJECTED_REMOTE},
+    {"extended", HAL_CAN_EXTENDED, 8, AGV_REJECTED_EXTENDED},
+    {"extended remote", HAL_CAN_EXTENDED | HAL_CAN_REMOTE, 8, AGV_REJECTED_EXTENDED},
+    {"extended FD", HAL_CAN_EXTENDED | HAL_CAN_FD, 8, AGV_REJECTED_EXTENDED},
+    {"error", HAL_CAN_ERROR, 8, AGV_REJECTED_ERROR},
+    {"error of all kinds", HAL_CAN_ERROR | HAL_CAN_EXTENDED | HAL_CAN_REMOTE | HAL_CAN_FD, 3, AGV_REJECTED_ERROR},
+};
+enum { KIND_COUNT = sizeof KINDS / sizeof KINDS[0] };
+
+static uint32_t rejected(agv_rejected_t kind) {
+    return agv_supervisor_counters(&f.supervisor)->rejected[kind];
+}
+
+static uint32_t rejected_in_all(void) {
+    uint32_t sum = 0;
+    for (unsigned i = 0; i < AGV_REJECTED_KINDS; i++) {
+        sum += rejected((agv_rejected_t)i);
+    }
+    return sum;
+}
+
+/* From a good frame on only malformed ones, in their rhythm and with running counters: as if they were not there. */
+static void check(const kind_t *kind, agv_message_t message, uint32_t deadline_ms, agv_fault_t fault) {
+    fixture_init(&f);
+    f.what = kind->name;
+    fixture_active(&f);
+    fixture_run_past(&f, message);
+    const uint32_t before = f.traffic[message].sent;
+    f.traffic[message].flags = kind->flags;
+    f.traffic[message].length = kind->length;
+    fixture_run(&f, deadline_ms);
+    expect_nothing(&f, fault, AGV_STATE_ACTIVE);
+    TEST_ASSERT_TRUE(f.traffic[message].sent > before);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(f.traffic[message].sent - before, rejected(kind->counted), f.what);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(f.traffic[message].sent - before, rejected_in_all(), f.what);
+    expect_silence(&f);
+    fixture_run(&f, 1);
+    expect_fault(&f, fault, true);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, fault));
+}
+
+static void check_all_kinds(agv_message_t message, uint32_t deadline_ms, agv_fault_t fault) {
+    for (unsigned i = 0; i < KIND_COUNT; i++) {
+        check(&KINDS[i], message, deadline_ms, fault);
+        expect_reason(&f, fault);
+    }
+}
+
+/* Shows: P15, SUP-2, VCU_HEARTBEAT_LOST */
+void test_malformed_vehicle_status(void) {
+    check_all_kinds(AGV_MSG_VEHICLE_STATUS, 50, AGV_FAULT_VCU_HEARTBEAT_LOST);
+}
+
+/* Shows: P15, SUP-2, EPS_HEARTBEAT_LOST */
+void test_malformed_steering_status(void) {
+    check_all_kinds(AGV_MSG_STEERING_STATUS, 50, AGV_FAULT_EPS_HEARTBEAT_LOST);
+}
+
+/* Shows: P15, SUP-2, AI_HEARTBEAT_LOST */
+void test_malformed_turn_signal_command(void) {
+    check_all_kinds(AGV_MSG_TURN_SIGNAL_COMMAND, 350, AGV_FAULT_AI_HEARTBEAT_LOST);
+}
+
+/* Shows: P15, SUP-3, EPS_STATUS_TIMEOUT */
+void test_malformed_eps_status(void) {
+    check_all_kinds(AGV_MSG_EPS_STATUS, 60, AGV_FAULT_EPS_STATUS_TIMEOUT);
+}
+
+/* Shows: P15, SUP-3, GEAR_STATUS_TIMEOUT */
+void test_malformed_gear_status(void) {
+    check_all_kinds(AGV_MSG_GEAR_STATUS, 125, AGV_FAULT_GEAR_STATUS_TIMEOUT);
+}
+
+/* Shows: P15, SUP-3, THROTTLE_STATUS_TIMEOUT */
+void test_malformed_throttle_status(void) {
+    check_all_kinds(AGV_MSG_THROTTLE_STATUS, 60, AGV_FAULT_THROTTLE_STATUS_TIMEOUT);
+}
+
+/* Shows: P15, SUP-3, WHEEL_SPEED_TIMEOUT */
+void test_malformed_wheel_speed(void) {
+    check_all_kinds(AGV_MSG_WHEEL_SPEED, 60, AGV_FAULT_WHEEL_SPEED_TIMEOUT);
+}
+
+/* Shows: P15, SUP-3, STEERING_POSITION_TIMEOUT */
+void test_malformed_steering_position(void) {
+    for (unsigned i = 0; i < KIND_COUNT; i++) {
+        check(&KINDS[i], AGV_MSG_STEERING_POSITION, 60, AGV_FAULT_STEERING_POSITION_TIMEOUT);
+        expect_state(&f, AGV_STATE_ACTIVE); /* only a warning */
+    }
+}
+
+/* Shows: P15, SUP-3, GEAR_COMMAND_TIMEOUT */
+void test_malformed_gear_command(void) {
+    check_all_kinds(AGV_MSG_GEAR_COMMAND, 350, AGV_FAULT_GEAR_COMMAND_TIMEOUT);
+}
+
+/* Shows: P15, SUP-3, THROTTLE_COMMAND_TIMEOUT */
+void test_malformed_throttle_command(void) {
+    check_all_kinds(AGV_MSG_THROTTLE_COMMAND, 350, AGV_FAULT_THROTTLE_COMMAND_TIMEOUT);
+}
+
+/* Shows: P15, SUP-3, STEERING_COMMAND_TIMEOUT */
+void test_malformed_steering_command(void) {
+    check_all_kinds(AGV_MSG_STEERING_COMMAND, 125, AGV_FAULT_STEERING_COMMAND_TIMEOUT);
+}
+
+/* ---- Whatever they carry, they raise nothing ---- */
+
+/* Every kind on every message in every millisecond, with all bits set: alarms, faults, modes, values out of range. */
+static void storm(unsigned round) {
+    const kind_t *kind = &KINDS[round % KIND_COUNT];
+    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
+        hal_can_frame_t frame = {.id = f.traffic[i].id, .flags = kind->flags, .length = kind->length};
+        memset(frame.data, 0xFF, kind->length < 8 ? kind->length : 8);
+        fixture_raw(&f, f.traffic[i].side, frame);
+    }
+}
+
+static void check_storm(unsigned topology) {
+    fixture_init(&f);
+    f.config.topology = (uint16_t)topology;
+    fixture_active(&f);
+    for (unsigned round = 0; round < 1000; round++) {
+        storm(round);
+        fixture_run(&f, 1);
+        f.sent_count = topology == AGV_TOPOLOGY_GATEWAY ? 0 : f.sent_count;
+    }
+    expect_state(&f, AGV_STATE_ACTIVE);
+    expect_silence(&f);
+    TEST_ASSERT_EQUAL_UINT64(0, agv_supervisor_active_faults(&f.supervisor));
+    TEST_ASSERT_EQUAL_UINT32(1000 * AGV_MSG_COUNT, rejected_in_all());
+    TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->warnings);
+}
+
+/* Shows: P15, INT-2 */
+void test_a_storm_of_malformed_frames(void) {
+    check_storm(AGV_TOPOLOGY_SHARED);
+    check_storm(AGV_TOPOLOGY_GATEWAY);
+}
+
+/* Nor do they fill a gap: of four bad frames in 30 ms the two in the middle are malformed, so it was a gap. */
+/* Shows: P15, SUP-4, EPS_UNDER_VOLTAGE */
+void test_malformed_frames_do_not_fill_a_gap(void) {
+    fixture_standby(&f);
+    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
+    f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x01;
+    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
+    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
+    f.traffic[AGV_MSG_EPS_STATUS].length = 7;
+    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
+    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
+    f.traffic[AGV_MSG_EPS_STATUS].length = 8;
+    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
+    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
+    expect_nothing(&f, AGV_FAULT_EPS_UNDER_VOLTAGE, AGV_STATE_STANDBY);
+    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
+    expect_trip(&f, AGV_FAULT_EPS_UNDER_VOLTAGE, f.traffic[AGV_MSG_EPS_STATUS].call, NO_HOLD);
+}
+
+/* Identifiers of nobody may have any length; they are received and no more. */
+/* Shows: P15 */
+void test_frames_of_others(void) {
+    fixture_active(&f);
+    const uint32_t received = agv_supervisor_counters(&f.supervisor)->received;
+    fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x7FF, .length = 3});
+    fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0, .length = 8});
+    TEST_ASSERT_EQUAL_UINT32(received + 2, agv_supervisor_counters(&f.supervisor)->received);
+    TEST_ASSERT_EQUAL_UINT32(0, rejected_in_all());
+    TEST_ASSERT_EQUAL_UINT64(0, agv_supervisor_active_faults(&f.supervisor));
+}
+
+/* ---- Reserved bits ---- */
+
+/* All of them set, in all messages: byte 1 is the leftmost. */
+/* Shows: P14 */
+void test_reserved_bits_are_ignored(void) {
+    static const uint8_t RESERVED[AGV_MSG_COUNT][8] = {
+        [AGV_MSG_TURN_SIGNAL_COMMAND] = {0xFF, 0xFF, 0xFF, 0xFF, 0x0F, 0xFF, 0xFF, 0},
+        [AGV_MSG_GEAR_COMMAND] = {0, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF},
+        [AGV_MSG_THROTTLE_COMMAND] = {0, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF},
+        [AGV_MSG_STEERING_COMMAND] = {0, 0, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF},
+        [AGV_MSG_VEHICLE_STATUS] = {0, 0, 0xFF, 0xFF, 0x44, 0, 0x0C, 0},
+        [AGV_MSG_GEAR_STATUS] = {0, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF},
+        [AGV_MSG_THROTTLE_STATUS] = {0, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF},
+        [AGV_MSG_EPS_STATUS] = {0xFF, 0xFF, 0xFF, 0, 0xFF, 0xFF, 0xFF, 0},
+        [AGV_MSG_STEERING_POSITION] = {0, 0, 0, 0, 0, 0, 0xFF, 0xFF},
+    };
+    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
+        for (unsigned byte = 0; byte < 8; byte++) {
+            f.traffic[i].data[byte] |= RESERVED[i][byte];
+        }
+    }
+    fixture_active(&f);
+    fixture_run(&f, 2000);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    expect_silence(&f);
+    TEST_ASSERT_EQUAL_UINT64(0, agv_supervisor_active_faults(&f.supervisor));
+    TEST_ASSERT_EQUAL_UINT32(0, rejected_in_all());
+}
