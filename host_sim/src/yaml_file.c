@@ -48,42 +48,74 @@ static void report_problem(const char *path, const yaml_parser_t *parser, const 
     (void)report_at(path, line, "no YAML: %s", problem);
 }
 
-/** Check that nothing but the end comes after the first document. */
-static bool is_last(const char *path, yaml_parser_t *parser, const unsigned char *bytes, size_t size) {
-    yaml_document_t next;
-    if (yaml_parser_load(parser, &next) == 0) {
-        report_problem(path, parser, bytes, size);
-        return false;
+/** Follow an event. @return what is wrong with it, or NULL */
+static const char *judge_event(const yaml_event_t *event, size_t *depth, size_t *documents) {
+    switch (event->type) {
+    case YAML_DOCUMENT_START_EVENT:
+        (*documents)++;
+        return (*documents == 1u) ? NULL : "a second YAML document begins here";
+    case YAML_SEQUENCE_START_EVENT:
+    case YAML_MAPPING_START_EVENT:
+        (*depth)++;
+        return (*depth <= YAML_FILE_DEPTH_MAX) ? NULL : "this is nested too deep";
+    case YAML_SEQUENCE_END_EVENT:
+    case YAML_MAPPING_END_EVENT:
+        (*depth)--;
+        return NULL;
+    default:
+        return NULL;
     }
-    const yaml_node_t *root = yaml_document_get_root_node(&next);
-    bool is_end = root == NULL;
-    if (!is_end) {
-        (void)report_at(path, yaml_node_line(root), "a second YAML document begins here");
-    }
-    yaml_document_delete(&next);
-    return is_end;
 }
 
-bool yaml_file_load(const char *path, yaml_document_t *document) {
-    size_t size = 0u;
-    unsigned char *bytes = read_file(path, &size);
-    if (bytes == NULL) {
-        return false;
-    }
+/**
+ * Look through a file before it is loaded: the time that the library takes grows with the square of the depth, and it
+ * leaves what follows the first document unread.
+ */
+static bool check(const char *path, const unsigned char *bytes, size_t size) {
     yaml_parser_t parser;
     if (yaml_parser_initialize(&parser) == 0) {
-        free(bytes);
+        return report("%s: out of memory", path);
+    }
+    yaml_parser_set_input_string(&parser, bytes, size);
+    size_t depth = 0u;
+    size_t documents = 0u;
+    bool good = true;
+    for (bool at_end = false; good && !at_end;) {
+        yaml_event_t event;
+        good = yaml_parser_parse(&parser, &event) != 0;
+        if (!good) {
+            report_problem(path, &parser, bytes, size);
+            break;
+        }
+        const char *wrong = judge_event(&event, &depth, &documents);
+        if (wrong != NULL) {
+            good = report_at(path, event.start_mark.line + 1u, "%s", wrong);
+        }
+        at_end = event.type == YAML_STREAM_END_EVENT;
+        yaml_event_delete(&event);
+    }
+    yaml_parser_delete(&parser);
+    return good;
+}
+
+static bool load(const char *path, const unsigned char *bytes, size_t size, yaml_document_t *document) {
+    yaml_parser_t parser;
+    if (yaml_parser_initialize(&parser) == 0) {
         return report("%s: out of memory", path);
     }
     yaml_parser_set_input_string(&parser, bytes, size);
     bool loaded = yaml_parser_load(&parser, document) != 0;
     if (!loaded) {
         report_problem(path, &parser, bytes, size);
-    } else if ((yaml_document_get_root_node(document) != NULL) && !is_last(path, &parser, bytes, size)) {
-        yaml_document_delete(document);
-        loaded = false;
     }
     yaml_parser_delete(&parser);
+    return loaded;
+}
+
+bool yaml_file_load(const char *path, yaml_document_t *document) {
+    size_t size = 0u;
+    unsigned char *bytes = read_file(path, &size);
+    bool loaded = (bytes != NULL) && check(path, bytes, size) && load(path, bytes, size, document);
     free(bytes);
     return loaded;
 }

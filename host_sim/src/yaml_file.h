@@ -10,6 +10,7 @@
 #include <yaml.h>
 
 #define YAML_FILE_SIZE_MAX 1048576u /**< larger files are refused */
+#define YAML_FILE_DEPTH_MAX 32u     /**< files nested deeper are refused */
 
 /**
  * Load a file that holds one YAML document, or none.

@@ -1,0 +1,488 @@
+"""`host_sim replay`: time, frames, events, what is sent. The byte values and times are written by hand."""
+import json
+import unittest
+
+import hostsim
+import traffic
+from traffic import BASE_US, IDS, US_PER_MS
+
+S = 1000000
+SAFE_LIGHTS = 0x43F
+SAFE_GEAR = (0x168, bytes([8, 0, 0, 0, 0, 0, 0, 0]))
+SAFE_THROTTLE = (0x075, bytes(8))
+
+SUMMARY_KEYS = {"t_ms", "event", "received", "rejected", "dropped", "sent", "shadowed", "warnings", "skipped_lines",
+                "backward_stamps", "final_state", "first_reason"}
+
+
+def edit_payload(name, at_ms, change, until_ms=None):
+    """An edit for traffic.frames: change the payload (a bytearray) of a message from a moment on."""
+    def edit(frame):
+        if frame.name == name and frame.t_ms >= at_ms and (until_ms is None or frame.t_ms < until_ms):
+            data = bytearray(frame.data)
+            change(data)
+            frame.data = bytes(data)
+        return frame
+    return edit
+
+
+def stop(names, at_ms, until_ms=None):
+    """An edit: messages that stop."""
+    def edit(frame):
+        stopped = frame.name in names and frame.t_ms >= at_ms and (until_ms is None or frame.t_ms < until_ms)
+        return None if stopped else frame
+    return edit
+
+
+VCU = ("vehicle_status", "throttle_status", "wheel_speed", "gear_status")
+EPS = ("steering_status", "eps_status", "steering_position")
+AI = ("steering_command", "turn_signal_command", "gear_command", "throttle_command")
+
+
+def raise_remote_signal_lost(data):
+    data[4] |= 0x01
+
+
+class Healthy(hostsim.Case):
+    # Shows: FSM-4
+    def test_manual_traffic_reaches_standby_and_nothing_is_sent_from_then_on(self):
+        result = self.replay(traffic.log(traffic.frames(3000)), "--tail", "0")
+        states = [(event["from"], event["to"], event["reason"]) for event in result.of("state")]
+        self.assertEqual(states, [(None, "INIT", None), ("INIT", "STANDBY", None)])
+        standby = result.of("state")[1]["t_ms"]
+        self.assertTrue(500 <= standby <= 520, standby)
+        self.assertEqual([event["closed"] for event in result.of("safety_output")], [False, True])
+        self.assertTrue(all(sent.us < BASE_US + standby * US_PER_MS for sent in result.sent()))
+        self.assertEqual(result.summary()["first_reason"], None)
+        self.assertEqual(result.summary()["final_state"], "STANDBY")
+
+    def test_engaged_traffic_is_active(self):
+        result = self.replay(traffic.log(traffic.frames(3000, engage_ms=1000)), "--tail=0")
+        self.assertEqual([(event["t_ms"], event["to"]) for event in result.of("state")][2:], [(1000, "ACTIVE")])
+        self.assertEqual(result.summary()["warnings"], 0)
+        self.assertEqual(result.of("fault"), [])
+
+    def test_init_sends_the_safe_commands_from_the_first_stamp_on(self):
+        result = self.replay(traffic.log(traffic.frames(1000)))
+        first = result.sent()[:3]
+        self.assertEqual([sent.us for sent in first], [BASE_US] * 3)
+        self.assertEqual([(sent.can_id, sent.data) for sent in first[1:]], [SAFE_GEAR, SAFE_THROTTLE])
+        self.assertEqual((first[0].can_id, first[0].data[:7]), (SAFE_LIGHTS, bytes([0, 0, 0, 0, 0x70, 0, 0])))
+        self.assertNotIn(0x065, [sent.can_id for sent in result.sent()])
+
+    # Shows: P1
+    def test_the_other_set_of_identifiers(self):
+        log = traffic.log(traffic.frames(2000, ids=traffic.TABLE_IDS, engage_ms=1000))
+        result = self.replay(log, "--id-set", "table", "--tail", "0")
+        self.assertEqual(result.summary()["final_state"], "ACTIVE")
+        self.assertIn(0x201, [sent.can_id for sent in result.sent()])
+
+    def test_it_is_the_same_every_time(self):
+        log = traffic.log(traffic.frames(2000, engage_ms=1000, edit=stop(AI, 1500)))
+        one = self.replay(log)
+        texts = one.text("events.jsonl"), one.text("out.log")
+        two = self.replay(log)
+        self.assertEqual((two.text("events.jsonl"), two.text("out.log")), texts)
+
+
+class Time(hostsim.Case):
+    # Shows: FSM-2
+    def test_what_a_frame_causes_carries_the_stamp_of_the_frame(self):
+        frames = traffic.frames(2000, edit=edit_payload("vehicle_status", 1500, raise_remote_signal_lost))
+        culprit = next(frame for frame in frames if frame.name == "vehicle_status" and frame.t_ms >= 1500)
+        culprit.t_us += 123
+        result = self.replay(traffic.log(frames), "--tail", "10")
+        self.assertEqual(result.trips(), [(1500, "REMOTE_SIGNAL_LOST")])
+        after = [sent for sent in result.sent() if sent.us >= BASE_US + 1400 * US_PER_MS]
+        # All safe commands at once; manual is reported, so no steering hold; no tick comes in between.
+        self.assertEqual([sent.us - BASE_US for sent in after[:3]], [1500123] * 3)
+        self.assertEqual({sent.can_id for sent in after[:3]}, {0x43F, 0x168, 0x075})
+        self.assertNotEqual(after[3].us, BASE_US + 1500123)
+
+    # Shows: SUP-2, VCU_HEARTBEAT_LOST
+    def test_ticks_fall_on_whole_milliseconds_since_the_first_stamp(self):
+        base = BASE_US + 777
+        frames = traffic.frames(2000, edit=stop(VCU, 1001))
+        result = self.replay(traffic.log(frames, base_us=base), "--tail", "10")
+        # The last 363h came at 1000.000; at 1050 its age is 50, which is not greater than the deadline.
+        self.assertEqual(result.trips()[0], (1051, "VCU_HEARTBEAT_LOST"))
+        after = [sent for sent in result.sent() if sent.us > base + 1000 * US_PER_MS]
+        self.assertEqual(after[0].us, base + 1051 * US_PER_MS)
+
+    # Shows: SUP-2
+    def test_a_frame_comes_before_the_tick_of_the_same_moment(self):
+        def gap(us):
+            # 363h at 1000 ms is followed by one at 1051 ms + us; all else as ever.
+            def edit(frame):
+                if frame.name == "vehicle_status" and 1000 < frame.t_ms <= 1050:
+                    if frame.t_ms < 1050:
+                        return None
+                    frame.t_us = 1051 * US_PER_MS + us
+                return frame
+            return traffic.log(traffic.frames(1500, edit=edit))
+        self.assertEqual(self.replay(gap(0), "--tail", "0").trips(), [])
+        self.assertEqual(self.replay(gap(-1), "--tail", "0").trips(), [])
+        self.assertEqual(self.replay(gap(1), "--tail", "0").trips(), [(1051, "VCU_HEARTBEAT_LOST")])
+
+    def test_the_stamp_of_a_frame_is_rounded_down_to_milliseconds(self):
+        # 363h at 1000.999: 51 ms later, at 1051, its age is 51, since it counts as 1000.
+        def edit(frame):
+            if frame.name == "vehicle_status" and frame.t_ms >= 1000:
+                frame.t_us += 999
+            return None if frame.name == "vehicle_status" and frame.t_ms >= 1001 else frame
+        result = self.replay(traffic.log(traffic.frames(1500, edit=edit)), "--tail", "0")
+        self.assertEqual(result.trips()[0], (1051, "VCU_HEARTBEAT_LOST"))
+
+    def test_the_run_goes_on_for_the_tail(self):
+        log = traffic.log(traffic.frames(1000))  # ends at 994.1
+        self.assertEqual(self.replay(log, "--tail", "0").summary()["t_ms"], 994)
+        self.assertEqual(self.replay(log).summary()["t_ms"], 1994)
+        self.assertEqual(self.replay(log, "--tail", "5").summary()["t_ms"], 999)
+        last = "(1700000001.000000) can0 000#\n"
+        self.assertEqual(self.replay(log + last, "--tail", "5").summary()["t_ms"], 1005)
+        self.assertEqual(self.replay(log, "--tail", "60").trips(), [(1041, "VCU_HEARTBEAT_LOST")])
+        self.assertEqual(self.replay(last, "--tail", "0").summary()["t_ms"], 0)
+
+    def test_a_stamp_that_goes_backwards_is_taken_as_the_last_one_and_counted(self):
+        lines = traffic.log(traffic.frames(2000)).splitlines(keepends=True)
+        at = lines.index("(1700000001.000000) can0 363#0000000000004064\n")
+        lines[at + 1:at + 1] = ["(1700000000.500000) can0 363#0000000001004000\n",  # alarm: remote signal lost
+                                "(0000000000.000001) can0 000#\n", "(1700000000.999999) can0 000#\n"]
+        result = self.replay("".join(lines), "--tail", "0")
+        self.assertEqual(result.summary()["backward_stamps"], 3)
+        self.assertEqual(result.trips(), [(1000, "REMOTE_SIGNAL_LOST")])
+        self.assertIn(BASE_US + 1 * S, [sent.us for sent in result.sent()])
+
+    # Shows: TIM-2
+    def test_the_clock_may_start_anywhere_and_wrap(self):
+        log = traffic.log(traffic.frames(3000, engage_ms=1000, edit=stop(AI, 2000)))
+        base = self.replay(log)
+        texts = base.text("events.jsonl"), base.text("out.log")
+        self.assertEqual(base.trips(), [(2107, "STEERING_COMMAND_TIMEOUT")])
+        for start_ms in (1, 4294967295, 4294967295 - 2106, 4294967295 - 2107, 4294967295 - 1500, 2147483647):
+            result = self.replay(log, "--start-ms", start_ms)
+            self.assertEqual((result.text("events.jsonl"), result.text("out.log")), texts, start_ms)
+
+    def test_the_stamps_of_the_log_may_be_of_any_time(self):
+        frames = traffic.frames(1000, edit=stop(EPS, 700))
+        base = self.replay(traffic.log(frames))
+        for base_us in (0, 1, 999999, 999999999 * S, 9999999999 * S, 999999999990 * S):
+            result = self.replay(traffic.log(frames, base_us=base_us))
+            self.assertEqual(result.text("events.jsonl"), base.text("events.jsonl"))
+            self.assertEqual(result.sent()[0].us, base_us)
+
+    def test_a_jump_of_more_than_100_days_is_a_bad_line(self):
+        one = "(0000000012.000000) can0 000#\n"
+        self.assert_refused(self.refuse(one + "(1700000000.000000) can0 000#\n"), "log:2: ", "100 days")
+        self.assert_refused(self.refuse(one + "(0008640012.000001) can0 000#\n"), "log:2: ", "100 days")
+        result = self.replay(one + "(1700000000.000000) can0 000#\n(0000000013.000000) can0 000#\n",
+                             "--skip-bad-lines", "--tail=0")
+        self.assertEqual((result.summary()["skipped_lines"], result.summary()["t_ms"]), (1, 1000))
+
+
+class Events(hostsim.Case):
+    def test_the_first_and_the_last_lines(self):
+        result = self.replay(traffic.log(traffic.frames(100)))
+        self.assertEqual(result.events()[:3], [
+            {"t_ms": 0, "event": "state", "from": None, "to": "INIT", "reason": None},
+            {"t_ms": 0, "event": "safety_output", "closed": False},
+            {"t_ms": 0, "event": "led", "code": 0}])
+        self.assertEqual(set(result.summary()), SUMMARY_KEYS)
+        self.assertEqual(set(result.summary()["rejected"]), {"length", "extended", "remote", "fd", "error"})
+        self.assertEqual([event["event"] for event in result.events()].count("summary"), 1)
+
+    def test_the_layout_of_a_line(self):
+        result = self.replay(traffic.log(traffic.frames(100)))
+        line = result.text("events.jsonl").splitlines()[0]
+        self.assertEqual(line, '{"t_ms": 0, "event": "state", "from": null, "to": "INIT", "reason": null}')
+
+    def test_every_line_is_of_the_kinds_that_are_documented(self):
+        edit = edit_payload("eps_status", 1500, lambda data: data.__setitem__(7, 0x20), 2500)
+        result = self.replay(traffic.log(traffic.frames(4000, engage_ms=1000, edit=edit)))
+        keys = {"state": {"from", "to", "reason"}, "fault": {"name", "class", "active"}, "safety_output": {"closed"},
+                "led": {"code"}, "reset": {"accepted", "why"}, "startup": {"missing"}}
+        times = []
+        for event in result.events()[:-1]:
+            self.assertEqual(set(event), keys[event["event"]] | {"t_ms", "event"})
+            times.append(event["t_ms"])
+        self.assertEqual(times, sorted(times))
+
+    # Shows: EPS_TEMP_ABOVE_110, LED-1
+    def test_a_warning_begins_and_ends(self):
+        edit = edit_payload("eps_status", 1000, lambda data: data.__setitem__(7, 0x10), 1500)
+        result = self.replay(traffic.log(traffic.frames(3000, edit=edit)), "--tail", "0")
+        self.assertEqual(result.faults(), [(1003, "EPS_TEMP_ABOVE_110", "warn")])
+        self.assertEqual(result.faults(active=False), [(1503, "EPS_TEMP_ABOVE_110", "warn")])
+        self.assertEqual([event["code"] for event in result.of("led")], [0, 13, 0])
+        self.assertEqual(result.summary()["warnings"], 1)
+        self.assertEqual(result.trips(), [])
+
+    # Shows: FSM-3
+    def test_a_reset_that_is_refused_and_one_that_is_accepted(self):
+        def edit(frame):
+            frame = edit_payload("vehicle_status", 1000, raise_remote_signal_lost, 1500)(frame)
+            held = 2000 <= frame.t_ms < 3500 or 4000 <= frame.t_ms < 5500
+            if frame.name == "vehicle_status" and held:
+                frame.data = frame.data[:6] + bytes([frame.data[6] | traffic.BUTTON_1]) + frame.data[7:]
+            if frame.name == "wheel_speed" and frame.t_ms < 3800:  # rolls
+                frame.data = (500).to_bytes(4, "little") * 2
+            return frame
+        result = self.replay(traffic.log(traffic.frames(6000, edit=edit)), "--tail", "0")
+        self.assertEqual([(event["accepted"], event["why"]) for event in result.of("reset")],
+                         [(False, ["standstill"]), (True, [])])
+        self.assertEqual([event["to"] for event in result.of("state")],
+                         ["INIT", "STANDBY", "TRIPPED", "SAFE", "STANDBY"])
+        self.assertIsNone(result.summary()["first_reason"])
+
+    # Shows: STARTUP_TIMEOUT
+    def test_a_startup_that_takes_too_long_names_what_is_missing(self):
+        result = self.replay(traffic.log(traffic.frames(11000, edit=stop(EPS, 0))), "--tail", "0")
+        self.assertEqual(len(result.of("startup")), 1)
+        self.assertLessEqual({"eps_heartbeat", "messages"}, set(result.of("startup")[0]["missing"]))
+        self.assertIn("STARTUP_TIMEOUT", [name for _, name, _ in result.faults()])
+
+    def test_events_on_standard_output(self):
+        self.write("log", traffic.log(traffic.frames(100)))
+        result = self.run_good("replay", "--events", "-", "log")
+        lines = [json.loads(line) for line in result.stdout.splitlines()]
+        self.assertEqual(lines[-1]["event"], "summary")
+        self.assertEqual(self.files(), ["log"])
+
+    def test_without_events_a_summary_for_people(self):
+        self.write("log", traffic.log(traffic.frames(100)))
+        result = self.run_good("replay", "log")
+        self.assertIn("final state: ", result.stdout)
+        self.assertNotIn("{", result.stdout)
+        self.assertEqual(self.run_good("replay", "--events", "e", "log").stdout, "")
+
+    def test_what_was_sent_on_standard_output(self):
+        self.write("log", traffic.log(traffic.frames(100)))
+        result = self.run_good("replay", "--out", "-", "log")
+        self.assertEqual([hostsim.Sent(line).us for line in result.stdout.splitlines()][:3], [BASE_US] * 3)
+
+    def test_the_exit_status_is_0_also_when_it_tripped(self):
+        result = self.replay(traffic.log(traffic.frames(1000)))
+        self.assertEqual(result.summary()["final_state"], "TRIPPED")
+
+
+class Counting(hostsim.Case):
+    # Shows: INT-2, P15
+    def test_what_is_malformed_is_counted_by_its_kind_and_changes_nothing(self):
+        frames = traffic.frames(2000)
+        odd = ["43F#00", "43F#", "363#00000000000040", "0000043F#0000000000000011", "1FFFFFFF#", "43F#R", "43F#R8",
+               "168#R2", "363##10000000000000000", "363##0000000000000000000000000", "20000080#0000000000000000"]
+        lines = traffic.log(frames).splitlines(keepends=True)
+        extra = ["(1700000001.0%05d) can0 %s\n" % (number, text) for number, text in enumerate(odd)]
+        lines = sorted(lines + extra)
+        result = self.replay("".join(lines), "--tail", "0")
+        self.assertEqual(result.summary()["rejected"], {"length": 3, "extended": 2, "remote": 3, "fd": 2, "error": 1})
+        self.assertEqual(result.summary()["received"], len(frames) + len(odd))
+        self.assertEqual(result.summary()["final_state"], "STANDBY")
+        self.assertEqual(result.of("fault"), [])
+
+    def test_frames_of_no_interest_are_received(self):
+        result = self.replay("(1.000000) can0 001#\n(1.000100) can0 7FF#0011223344556677\n", "--tail", "0")
+        self.assertEqual(result.summary()["received"], 2)
+        self.assertEqual(sum(result.summary()["rejected"].values()), 0)
+
+    def test_sent_is_what_stands_in_the_log(self):
+        result = self.replay(traffic.log(traffic.frames(500)))
+        self.assertEqual(result.summary()["sent"], len(result.sent()))
+
+    # Shows: TOP-4
+    def test_shadow_sends_nothing_and_counts_it(self):
+        log = traffic.log(traffic.frames(1000))
+        loud = self.replay(log)
+        shadow = self.replay(log, "--shadow")
+        self.assertEqual(shadow.sent(), [])
+        self.assertEqual(shadow.summary()["sent"], 0)
+        self.assertGreater(shadow.summary()["shadowed"], 0)
+        self.assertEqual(shadow.trips()[0], loud.trips()[0])
+        self.assertIn("shadow: on (off)", shadow.stderr)
+
+
+class Controller(hostsim.Case):
+    """Error frames act as on a live bus."""
+
+    def with_errors(self, errors, duration_ms=3000, **options):
+        frames = traffic.frames(duration_ms, **options)
+        lines = traffic.log(frames).splitlines(keepends=True)
+        lines += ["%s can0 %s\n" % (traffic.stamp(BASE_US + int(t_ms * US_PER_MS)), text) for t_ms, text in errors]
+        return self.replay("".join(sorted(lines)), "--tail", "0")
+
+    # Shows: SUP-7, BUS_OFF
+    def test_bus_off_trips_and_lasts_until_the_log_shows_the_restart(self):
+        result = self.with_errors([(1000.5, "20000040#0000000000000000"), (2000.5, "20000100#0000000000000000")])
+        trip_ms, reason = result.trips()[0]
+        self.assertEqual(reason, "BUS_OFF")
+        self.assertTrue(1000 <= trip_ms <= 1001)
+        sent = [(frame.us - BASE_US) / US_PER_MS for frame in result.sent() if frame.us >= BASE_US + 1 * S]
+        self.assertTrue(2000 <= sent[0] <= 2001.5, sent[0])
+        ended = [t_ms for t_ms, name, _ in result.faults(active=False) if name == "BUS_OFF"]
+        self.assertEqual(len(ended), 1)
+        self.assertTrue(2000 <= ended[0] <= 2001)
+        first = [frame.can_id for frame in result.sent() if BASE_US + 2 * S <= frame.us < BASE_US + 2002 * US_PER_MS]
+        self.assertLessEqual({0x43F, 0x168, 0x075}, set(first))
+        self.assertEqual(result.summary()["rejected"]["error"], 2)
+
+    def test_bus_off_is_not_ended_by_less(self):
+        result = self.with_errors([(1000.5, "20000040#"), (1100.5, "20000004#0010000000000000"),
+                                   (1200.5, "20000004#0004000000000000"), (1300.5, "20000002#00")])
+        self.assertEqual([name for _, name, _ in result.faults(active=False)], [])
+        self.assertEqual([frame for frame in result.sent() if frame.us > BASE_US + 1001 * US_PER_MS], [])
+
+    def test_error_active_ends_bus_off(self):
+        result = self.with_errors([(1000.5, "20000040#"), (1500.5, "20000004#0040000000000000")])
+        self.assertEqual([name for _, name, _ in result.faults(active=False)], ["BUS_OFF"])
+
+    # Shows: ERROR_PASSIVE
+    def test_error_passive_warns_until_it_is_over(self):
+        for passive, over in (("20000004#0010000000000000", "20000004#0040000000000000"),
+                              ("20000004#0020000000000000", "20000004#0008000000000000"),
+                              ("20000204#0030000000008000", "20000004#0004000000000000"),
+                              ("20000004#0010000000000000", "20000100#0000000000000000")):
+            result = self.with_errors([(1000.5, passive), (1500.5, over)])
+            self.assertEqual([(name, kind) for _, name, kind in result.faults()], [("ERROR_PASSIVE", "warn")])
+            self.assertEqual([name for _, name, _ in result.faults(active=False)], ["ERROR_PASSIVE"])
+            self.assertEqual(result.trips(), [])
+
+    # Shows: RX_OVERRUN
+    def test_an_overrun_warns(self):
+        result = self.with_errors([(1000.5, "20000004#0001000000000000")])
+        self.assertEqual([(name, kind) for _, name, kind in result.faults()], [("RX_OVERRUN", "warn")])
+        self.assertEqual([name for _, name, _ in result.faults(active=False)], ["RX_OVERRUN"])
+
+    def test_other_errors_are_only_counted(self):
+        result = self.with_errors([(1000.5, "20000001#0000000000000000"), (1001.5, "20000004#"),
+                                   (1002.5, "20000088#0000000800000000"), (1003.5, "20000004#0002000000000000")])
+        self.assertEqual(result.of("fault"), [])
+        self.assertEqual(result.summary()["rejected"]["error"], 4)
+
+
+class Interfaces(hostsim.Case):
+    def test_what_is_sent_names_the_interface_that_was_heard_first(self):
+        lines = traffic.log(traffic.frames(100, interface="vcan7")).splitlines(keepends=True)
+        lines[1] = lines[1].replace("vcan7", "slcan0")
+        result = self.replay("".join(lines))
+        self.assertEqual({sent.interface for sent in result.sent()}, {"vcan7"})
+
+    def test_on_the_shared_bus_every_interface_is_the_vehicle_side(self):
+        lines = traffic.log(traffic.frames(1000)).splitlines(keepends=True)
+        lines = [line.replace("can0", "can%d" % (number % 3)) for number, line in enumerate(lines)]
+        result = self.replay("".join(lines), "--tail=0")
+        self.assertEqual(result.summary()["final_state"], "STANDBY")
+
+    def gateway(self, *arguments, **options):
+        options.setdefault("ai_interface", "ai0")
+        log = traffic.log(traffic.frames(2000, engage_ms=1000, interface="veh0", **options))
+        return self.replay(log, "--topology", "gateway", "--tail=0", *arguments)
+
+    # Shows: TOP-2
+    def test_the_gateway_passes_frames_with_their_stamps(self):
+        result = self.gateway("--ai-if", "ai0")
+        self.assertEqual(result.summary()["final_state"], "ACTIVE")
+        self.assertEqual(result.of("fault"), [])
+        late = [sent for sent in result.sent() if sent.us >= BASE_US + 1200 * US_PER_MS]
+        self.assertEqual({sent.can_id for sent in late if sent.interface == "veh0"}, {0x43F, 0x168, 0x075, 0x065})
+        self.assertEqual({sent.can_id for sent in late if sent.interface == "ai0"},
+                         {IDS[name] for name in VCU + EPS})
+        stamps = {BASE_US + frame.t_us for frame in traffic.frames(2000)}
+        self.assertTrue(all(sent.us in stamps for sent in late))
+
+    # Shows: FOREIGN_COMMAND_SENDER, SUP-6
+    def test_an_interface_that_is_not_the_ai_side_is_the_vehicle_side(self):
+        result = self.gateway("--ai-if", "ai1")
+        self.assertEqual(result.summary()["final_state"], "INIT")
+        self.assertIn("FOREIGN_COMMAND_SENDER", [name for _, name, _ in result.faults()])
+        self.assertIn("no frame in the log is from ai1", result.stderr)
+
+    def test_what_is_sent_waits_for_the_name_of_its_interface(self):
+        lines = ["(1700000000.000000) ai0 43F#0000000080000000\n", "(1700000000.500000) veh0 000#\n"]
+        result = self.replay("".join(lines), "--topology=gateway", "--ai-if=ai0", "--tail=0")
+        self.assertEqual({sent.interface for sent in result.sent()}, {"veh0"})
+        self.assertEqual(result.sent()[0].us, BASE_US)
+
+    def test_a_side_that_is_never_heard_is_called_can0(self):
+        result = self.replay("(1.000000) ai0 000#\n", "--topology=gateway", "--ai-if=ai0")
+        self.assertEqual({sent.interface for sent in result.sent()}, {"can0"})
+        self.assertIn("vehicle side", result.stderr)
+        result = self.replay("(1.000000) can0 000#\n", "--topology=gateway", "--ai-if=can0")
+        self.assertEqual({sent.interface for sent in result.sent()}, {"can1"})
+
+    def test_the_ai_side_and_the_topology_go_together(self):
+        log = traffic.log(traffic.frames(50))
+        self.assert_refused(self.refuse(log, "--topology", "gateway"), "--ai-if")
+        self.assert_refused(self.refuse(log, "--ai-if", "can0"), "--ai-if", "gateway")
+        self.assert_refused(self.refuse(log, "--topology=gateway", "--ai-if=0123456789abcdef"), "--ai-if", "longer")
+        self.write("c.yaml", "topology: gateway\n")
+        self.assert_refused(self.refuse(log, "--config", "c.yaml"), "--ai-if")
+        self.replay(log, "--config", "c.yaml", "--ai-if", "can1")
+
+
+class Restart(hostsim.Case):
+    """--reset-cause and --store."""
+
+    # Shows: FSM-7, SUPERVISOR_RESET
+    def test_whatever_is_no_power_on_starts_tripped(self):
+        log = traffic.log(traffic.frames(100))
+        for cause in ("watchdog", "brown-out", "lock-up", "software", "unknown"):
+            result = self.replay(log, "--reset-cause", cause, "--tail=0")
+            self.assertEqual(result.of("state")[0],
+                             {"t_ms": 0, "event": "state", "from": None, "to": "TRIPPED", "reason": "SUPERVISOR_RESET"})
+        result = self.replay(log, "--reset-cause", "power-on", "--tail=0")
+        self.assertEqual(result.of("state")[0]["to"], "INIT")
+
+    def trip(self, *arguments):
+        log = traffic.log(traffic.frames(1500, edit=edit_payload("vehicle_status", 1000, raise_remote_signal_lost)))
+        result = self.replay(log, "--store", "store", *arguments)
+        self.assertEqual(result.summary()["first_reason"], "REMOTE_SIGNAL_LOST")
+
+    # Shows: FSM-5, FSM-7
+    def test_the_first_reason_outlives_a_reset(self):
+        self.trip()
+        log = traffic.log(traffic.frames(100))
+        for _ in range(2):
+            result = self.replay(log, "--store", "store", "--reset-cause", "watchdog", "--tail=0")
+            self.assertEqual(result.of("state")[0]["to"], "TRIPPED")
+            self.assertEqual(result.summary()["first_reason"], "REMOTE_SIGNAL_LOST")
+            self.assertNotIn("STORE_INVALID", [name for _, name, _ in result.faults()])
+        result = self.replay(log, "--store", "store", "--tail=0")
+        self.assertEqual(result.of("state")[0]["to"], "INIT")
+
+    def test_each_run_tells_of_its_own_events_only(self):
+        self.trip()
+        result = self.replay(traffic.log(traffic.frames(100)), "--store", "store", "--reset-cause", "watchdog")
+        self.assertEqual([event["from"] for event in result.of("state")].count(None), 1)
+        self.assertEqual(result.events()[0]["event"], "state")
+
+    # Shows: FSM-7, STORE_INVALID
+    def test_a_store_that_is_damaged_counts_as_tripped_and_warns(self):
+        self.trip()
+        good = (self.folder / "store").read_bytes()
+        log = traffic.log(traffic.frames(1000))
+        changed = bytearray(good)
+        changed[20] ^= 1
+        for content in (b"", good[:10], good[:-1], good[:-9], bytes(changed), b"\0" * 1000, b"nonsense\n" * 9, good * 30):
+            for cause, state in (("watchdog", "TRIPPED"), ("power-on", "INIT")):
+                self.write("store", content)
+                result = self.replay(log, "--store", "store", "--reset-cause", cause, "--tail=0")
+                self.assertEqual(result.of("state")[0]["to"], state)
+                self.assertIn(("STORE_INVALID", "warn"), [(name, kind) for _, name, kind in result.faults()])
+            self.replay(log, "--store", "store", "--reset-cause", "watchdog", "--tail=0")
+            self.assertNotIn("STORE_INVALID", [name for _, name, _ in self.replay(
+                log, "--store", "store", "--tail=0").faults()])
+
+    def test_a_store_is_made_when_it_is_not_there(self):
+        self.replay(traffic.log(traffic.frames(100)), "--store", "store")
+        self.assertIn("store", self.files())
+
+    def test_a_store_that_cannot_be_read_or_written(self):
+        (self.folder / "folder").mkdir()
+        log = traffic.log(traffic.frames(50))
+        self.assert_refused(self.refuse(log, "--store", "folder"), "folder: Is a directory")
+        self.assert_refused(self.refuse(log, "--store", "none/store"), "none/store: No such file")
+        self.assert_refused(self.refuse(log, "--store", "log/store"), "log/store: Not a directory")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,188 @@
+"""`host_sim replay`: the log as a file, and files that are written whole or not at all."""
+import os
+import signal
+import subprocess
+import time
+import unittest
+
+import hostsim
+import traffic
+
+LOG = traffic.log(traffic.frames(500))
+GOOD = "(1700000000.000000) can0 43F#0000000000000011\n"
+BAD = (
+    "nonsense", "(", "()", "(1)", "(1.0)", "(1.000000)", "(1.000000) ", "(1.000000) can0", "(1.000000) can0 ",
+    "(1.000000) can0 43F", "(1.000000) can0 43F#0", "(1.000000) can0 43F#GG", "(1.000000) can0 43F#00112233445566778",
+    "(1.000000) can0 43F#001122334455667788", "(1.000000) can0 800#00", "(1.000000) can0 43#00",
+    "(1.000000) can0 4343F#00", "(1.000000) can0 FFFFFFFF#00", "(1.000000) can0 40000000#00",
+    "(1.000000) can0 43F##", "(1.000000) can0 43F##1" + "00" * 65, "(1.000000) can0 43F#R9", "(1.000000) can0 43F#RR",
+    "(1.000000) can0 20000004#R", "(1.000000) can0 43F#00 X", "(1.000000) can0 43F#00 R R", "(1.000000) can0 43F#00 ",
+    "(1.000000)  43F#00", "(1.000000) 0123456789abcdef 43F#00", "(-1.000000) can0 43F#00", "(1.00000) can0 43F#00",
+    "(1.0000000) can0 43F#00", "(1,000000) can0 43F#00", "(1.000000) can0 43F#0011223344556677_8",
+    "1.000000 can0 43F#00", "can0 43F#00", "can0  43F   [8]  00 00 00 00 00 00 00 11", "# a comment",
+    "(1.000000) can0 43F#\x0000", "(1.000000) can0 43F#00\r\r", "\x00", "\x1b[31m", "\xff", "(" * 300, "x" * 300000,
+    "(9999999999999.000000) can0 43F#00", "(1.000000) can0 00123#81:00:12345678#11",
+    "DROPCOUNT: dropped 1 CAN frame on 'can0' socket (total drops 1)",
+)
+
+
+class Lines(hostsim.Case):
+    def test_every_form_that_can_utils_writes_is_a_frame(self):
+        lines = ("(1.000000) can0 43F#0000000000000011", "(1.000000) can0 43F#", "(1.000000)   can0 43F#00",
+                 "(1.000000) can0 0000043F#00", "(1.000000) can0 43F#R", "(1.000000) can0 43F#R8",
+                 "(1.000000) can0 43F##1", "(1.000000) can0 43F##5" + "00" * 64, "(1.000000) can0 20000004#0001",
+                 "(1.000000) can0 43F#0011223344556677_F", "(1.000000) can0 43F#00 R", "(1.000000) can0 43F#00 T",
+                 "(1.000000) can0 43F#00\r", "(1.000000) can0 43F#00 T\r", "(1.000000000) can0 43F#00",
+                 "(1.000000) can0 0000043F#R3 R", "(1.000000) can0 43F#R8_A")
+        result = self.replay("\n".join(lines), "--tail", "0")
+        self.assertEqual(result.summary()["received"], len(lines))
+        self.assertEqual(result.summary()["skipped_lines"], 0)
+
+    def test_blank_lines_are_skipped_and_not_counted(self):
+        result = self.replay("\n\r\n" + GOOD + "\n  \n\t\n" + GOOD + "\n\n", "--tail", "0")
+        self.assertEqual((result.summary()["received"], result.summary()["skipped_lines"]), (2, 0))
+
+    def test_a_log_from_windows(self):
+        plain = self.replay(LOG)
+        texts = plain.text("events.jsonl"), plain.text("out.log")
+        crlf = self.replay(LOG.replace("\n", "\r\n"))
+        self.assertEqual((crlf.text("events.jsonl"), crlf.text("out.log")), texts)
+
+    def test_every_bad_line_is_refused_with_its_number(self):
+        for bad in BAD:
+            with self.subTest(bad[:60]):
+                content = (GOOD + "\n" + GOOD + bad + "\n" + GOOD).encode("latin-1")
+                self.assert_refused(self.refuse(content), "log:4: ")
+
+    def test_the_first_line_may_be_the_bad_one(self):
+        self.assert_refused(self.refuse("nonsense\n" + GOOD), "log:1: ")
+
+    def test_every_bad_line_is_skipped_and_counted_on_demand(self):
+        plain = self.replay(LOG)
+        events = plain.events()
+        sent = plain.text("out.log")
+        lines = LOG.splitlines(keepends=True)
+        for number, bad in enumerate(BAD):
+            lines.insert(number * 7, bad + "\n")
+        result = self.replay("".join(lines).encode("latin-1"), "--skip-bad-lines")
+        events[-1]["skipped_lines"] = len(BAD)
+        self.assertEqual(result.events(), events)
+        self.assertEqual(result.text("out.log"), sent)
+
+    def test_the_last_line_may_lack_its_end_but_not_more(self):
+        self.replay(GOOD + GOOD[:-1])
+        self.assert_refused(self.refuse(GOOD + GOOD[:-2]), "log:2: ", "odd number")
+
+    def test_a_log_without_a_frame_is_refused(self):
+        for content in ("", "\n", "\r\n  \n"):
+            self.assert_refused(self.refuse(content), "log: there is no frame in it")
+            self.assert_refused(self.refuse(content, "--skip-bad-lines"), "log: there is no frame in it")
+        self.assert_refused(self.refuse("nonsense\n" * 5, "--skip-bad-lines"), "log: there is no frame in it")
+        self.assert_refused(self.refuse(os.urandom(100000).replace(b"(", b""), "--skip-bad-lines"), "no frame in it")
+
+    def test_logs_that_cannot_be_read(self):
+        self.assert_refused(self.run_program("replay", "none"), "none: No such file or directory")
+        self.assert_refused(self.run_program("replay", "."), ".: Is a directory")
+        self.assert_refused(self.run_program("replay", "none/log"), "none/log: ")
+
+
+class StandardInput(hostsim.Case):
+    def test_a_log_from_standard_input(self):
+        plain = self.replay(LOG)
+        texts = plain.text("events.jsonl"), plain.text("out.log")
+        piped = self.run_good("replay", "--events", "events.jsonl", "--out", "out.log", "-", stdin=LOG.encode())
+        self.assertEqual((piped.text("events.jsonl"), piped.text("out.log")), texts)
+
+    def test_a_bad_line_of_standard_input(self):
+        result = self.run_program("replay", "-", stdin=(GOOD + "nonsense\n").encode())
+        self.assert_refused(result, "standard input:2: ")
+
+    def test_no_input(self):
+        self.assert_refused(self.run_program("replay", "-"), "standard input: there is no frame in it")
+
+
+class Outputs(hostsim.Case):
+    def test_nothing_is_left_of_a_run_that_fails(self):
+        log = LOG + "nonsense\n"
+        self.assert_refused(self.refuse(log), ":356: ")
+        for name in ("events.jsonl", "out.log", "store"):
+            self.write(name, "old")
+        self.assert_refused(self.refuse(log), ":356: ")
+        for name in ("events.jsonl", "out.log", "store"):
+            self.assertEqual((self.folder / name).read_text(encoding="ascii"), "old")
+
+    def test_files_are_replaced_as_a_whole(self):
+        for name in ("events.jsonl", "out.log"):
+            self.write(name, "old" * 1000000)
+        result = self.replay(LOG)
+        self.assertEqual(result.summary()["event"], "summary")
+        self.assertEqual(self.files(), ["events.jsonl", "log", "out.log"])
+
+    def test_where_nothing_can_be_written(self):
+        self.write("log", LOG)
+        for option in ("--out", "--events", "--store"):
+            for path, reason in (("none/file", "No such file or directory"), ("log/file", "Not a directory"),
+                                 (".", "Is a directory")):
+                result = self.run_program("replay", option, path, "log")
+                self.assert_refused(result, path, reason)
+        self.assertEqual(self.files(), ["log"])
+
+    def test_a_pipe_and_a_device_are_written_directly(self):
+        self.write("log", LOG)
+        os.mkfifo(self.folder / "pipe")
+        with subprocess.Popen(["cat", "pipe"], cwd=self.folder, stdout=subprocess.PIPE) as reader:
+            self.run_good("replay", "--out", "pipe", "--events", "/dev/null", "log")
+            self.assertIn(b"(1700000000.000000) can0 43F#", reader.communicate()[0])
+        self.assertEqual(self.files(), ["log", "pipe"])
+        result = self.run_good("replay", "--events", "/dev/stdout", "log")
+        self.assertTrue(result.stdout.startswith('{"t_ms": 0'))
+
+    def test_one_file_for_two_things_is_refused(self):
+        self.write("log", LOG)
+        self.write("c.yaml", "")
+        os.symlink("log", self.folder / "link")
+        for arguments in (("--out", "log"), ("--events", "./log"), ("--store", "link"), ("--out", "x", "--events", "x"),
+                          ("--out", "x", "--store", "./x"), ("--events", "-", "--out", "-"),
+                          ("--config", "c.yaml", "--out", "c.yaml"), ("--events=/dev/stdout", "--out=-")):
+            with self.subTest(arguments):
+                self.assert_refused(self.run_program("replay", *arguments, "log"), "same file")
+        self.assertEqual((self.folder / "log").read_text(encoding="ascii"), LOG)
+        self.assertEqual(self.files(), ["c.yaml", "link", "log"])
+
+    def test_a_signal_leaves_nothing_behind(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            with subprocess.Popen([hostsim.PROGRAM, "replay", "--out", "out", "--events", "events", "-"],
+                                  cwd=self.folder, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as program:
+                program.stdin.write(LOG.encode())
+                program.stdin.flush()
+                deadline = time.monotonic() + 30
+                while len(self.files()) < 2 and time.monotonic() < deadline:
+                    time.sleep(0.01)
+                self.assertEqual(len(self.files()), 2)  # both under their temporary names
+                program.send_signal(number)
+                self.assertEqual(program.wait(timeout=30), -number)
+                self.assertEqual(program.stderr.read(), b"")
+            self.assertEqual(self.files(), [])
+
+
+class Memory(hostsim.Case):
+    def peak_kib(self, seconds):
+        block = traffic.frames(25600)
+        with open(self.folder / "log", "w", encoding="ascii") as log:
+            for number in range(seconds // 25):
+                log.write(traffic.log(block, traffic.BASE_US + number * 25600000))
+        process = subprocess.Popen([hostsim.PROGRAM, "replay", "--out", "out", "--events", "events", "log"],
+                                   cwd=self.folder)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        self.assertEqual(process.returncode, 0)
+        return usage.ru_maxrss
+
+    def test_a_longer_log_takes_no_more_memory(self):
+        short = self.peak_kib(50)
+        long = self.peak_kib(1000)
+        self.assertLess(long, short + 1024)
+
+
+if __name__ == "__main__":
+    unittest.main()
