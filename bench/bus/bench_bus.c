@@ -34,9 +34,9 @@ typedef struct {
     uint64_t received;
 } bench_t;
 
-static double now_ns(void) {
+static double cpu_ns(void) {
     struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now); /* of this program alone, also on a busy machine */
     return (double)now.tv_sec * 1e9 + (double)now.tv_nsec;
 }
 
@@ -93,7 +93,7 @@ static void pump(bench_t *bench) {
 }
 
 static double run_ns(bench_t *bench, uint64_t ticks) {
-    const double start = now_ns();
+    const double start = cpu_ns();
     for (uint64_t tick = 0; tick < ticks; tick++) {
         if (bench->with_frames) {
             send(bench, tick);
@@ -103,7 +103,7 @@ static double run_ns(bench_t *bench, uint64_t ticks) {
             pump(bench);
         }
     }
-    return now_ns() - start;
+    return cpu_ns() - start;
 }
 
 static double best_ns(bench_t *bench, uint64_t seconds, unsigned nodes, bool with_hal, bool with_frames) {
@@ -121,12 +121,12 @@ static double direct_ns(bench_t *bench, uint64_t frames) {
     hal_can_frame_t frame = {.id = 0x168, .length = 8};
     for (int pass = 0; pass < PASSES; pass++) {
         sim_hal_init_direct(&bench->hal, NULL, 1, count_sent, bench);
-        const double start = now_ns();
+        const double start = cpu_ns();
         for (uint64_t i = 0; i < frames; i++) {
             frame.data[0] = (uint8_t)i;
             hal_can_send(&bench->hal, HAL_CAN_VEHICLE, &frame);
         }
-        const double ns = now_ns() - start;
+        const double ns = cpu_ns() - start;
         best = ns < best ? ns : best;
     }
     return best / (double)frames;

@@ -37,7 +37,7 @@ typedef enum { HAL_CAN_ERROR_ACTIVE, HAL_CAN_ERROR_PASSIVE, HAL_CAN_BUS_OFF } ha
 /** What a controller reports. Counters never go down but for their wrap. */
 typedef struct {
     hal_can_state_t state;
-    uint32_t tx_pending_ms; /**< age of the oldest frame taken by hal_can_send and not on the wire yet; 0 = none */
+    uint32_t tx_pending_ms; /**< age of the oldest frame taken and not sent yet, at least 1; 0 = none */
     uint16_t bus_off_count; /**< times that bus-off was entered */
     uint16_t overrun_count; /**< times that received frames were lost in controller or queue */
 } hal_can_status_t;

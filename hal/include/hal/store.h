@@ -16,6 +16,9 @@
 /** Largest latch record that a port must be able to keep. */
 #define HAL_STORE_LATCH_SIZE_MAX 32u
 
+/** Largest record of the log that a port must be able to keep. */
+#define HAL_STORE_RECORD_SIZE_MAX 256u
+
 /**
  * Read the latch record.
  * @return how many bytes are stored, at most @p size of them were copied; 0 = nothing is stored.

@@ -52,18 +52,6 @@ void sim_bus_remove(sim_bus_node_state_t *node, unsigned slot) {
     }
 }
 
-unsigned sim_bus_choose(const sim_bus_node_state_t *node) {
-    unsigned chosen = 0;
-    if (node->config.tx_order == SIM_BUS_TX_BY_ID) {
-        for (unsigned i = 1; i < node->tx_count; i++) {
-            if (node->tx_key[i] < node->tx_key[chosen]) {
-                chosen = i;
-            }
-        }
-    }
-    return chosen;
-}
-
 bool sim_bus_send(sim_bus_t *bus, sim_bus_node_t number, const hal_can_frame_t *frame) {
     if (number >= bus->node_count || !sim_frame_is_classic(frame)) {
         return false;
@@ -120,24 +108,6 @@ void sim_bus_status(const sim_bus_t *bus, sim_bus_node_t number, hal_can_status_
     }
     status->bus_off_count = node->bus_off_count;
     status->overrun_count = node->overrun_count;
-}
-
-void sim_bus_arrive(sim_bus_node_state_t *node, const hal_can_frame_t *frame, uint64_t time_us) {
-    if (node->config.rx_slots != 0) {
-        if (node->rx_count == node->config.rx_slots) {
-            node->overrun_count++;
-            return;
-        }
-        unsigned tail = (unsigned)node->rx_head + node->rx_count;
-        if (tail >= node->config.rx_slots) {
-            tail -= node->config.rx_slots;
-        }
-        node->rx[tail] = (sim_bus_slot_t){*frame, time_us};
-        node->rx_count++;
-    }
-    if (node->config.on_receive != NULL) {
-        node->config.on_receive(node->config.ctx, frame);
-    }
 }
 
 bool sim_bus_receive(sim_bus_t *bus, sim_bus_node_t number, hal_can_frame_t *frame, uint64_t *time_us) {

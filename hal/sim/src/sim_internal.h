@@ -48,7 +48,17 @@ static inline bool sim_is_passive(const sim_bus_node_state_t *node) {
 }
 
 /** The mailbox that takes part in the arbitration. The node has a frame. */
-unsigned sim_bus_choose(const sim_bus_node_state_t *node);
+static inline unsigned sim_bus_choose(const sim_bus_node_state_t *node) {
+    unsigned chosen = 0;
+    if (node->config.tx_order == SIM_BUS_TX_BY_ID) {
+        for (unsigned i = 1; i < node->tx_count; i++) {
+            if (node->tx_key[i] < node->tx_key[chosen]) {
+                chosen = i;
+            }
+        }
+    }
+    return chosen;
+}
 
 /** Empty a mailbox; those behind it move up, so that they stay in the order of their requests. */
 void sim_bus_remove(sim_bus_node_state_t *node, unsigned slot);

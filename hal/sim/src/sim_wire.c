@@ -183,6 +183,24 @@ static void sent(sim_bus_t *bus, unsigned number) {
     }
 }
 
+void sim_bus_arrive(sim_bus_node_state_t *node, const hal_can_frame_t *frame, uint64_t time_us) {
+    if (node->config.rx_slots != 0) {
+        if (node->rx_count == node->config.rx_slots) {
+            node->overrun_count++;
+            return;
+        }
+        unsigned tail = (unsigned)node->rx_head + node->rx_count;
+        if (tail >= node->config.rx_slots) {
+            tail -= node->config.rx_slots;
+        }
+        node->rx[tail] = (sim_bus_slot_t){*frame, time_us};
+        node->rx_count++;
+    }
+    if (node->config.on_receive != NULL) {
+        node->config.on_receive(node->config.ctx, frame);
+    }
+}
+
 static void succeed(sim_bus_t *bus, uint32_t senders, uint32_t hearing) {
     for (uint32_t set = senders; set != 0; set &= set - 1u) {
         sent(bus, sim_lowest(set));

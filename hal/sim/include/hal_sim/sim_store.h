@@ -14,8 +14,8 @@
 
 #include "hal/store.h"
 
-#define SIM_STORE_RECORDS_MAX 256u     /**< records in the log; more drop the oldest */
-#define SIM_STORE_RECORD_SIZE_MAX 256u /**< bytes in one record; a longer one is refused */
+#define SIM_STORE_RECORDS_MAX 256u                          /**< records in the log; more drop the oldest */
+#define SIM_STORE_RECORD_SIZE_MAX HAL_STORE_RECORD_SIZE_MAX /**< bytes in one record; a longer one is refused */
 
 /** One record of the log. */
 typedef struct {
