@@ -1,0 +1,385 @@
+/* The gateway: what passes in which state, how it is packed and limited, and that nothing else passes. */
+#include <string.h>
+
+#include "fixture.h"
+#include "unity.h"
+#include "walk.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+}
+
+void tearDown(void) {
+}
+
+static void from_ai(uint32_t id, const uint8_t data[8]) {
+    hal_can_frame_t frame = {.id = id, .length = 8};
+    memcpy(frame.data, data, 8);
+    fixture_forget_sent(&f);
+    fixture_raw(&f, HAL_CAN_AI, frame);
+}
+
+/* That frame, and no other, left in this call, to that side. */
+static void expect_passed(hal_can_side_t side, uint32_t id, const uint8_t expected[8]) {
+    TEST_ASSERT_EQUAL_UINT32(1, f.sent_count);
+    TEST_ASSERT_EQUAL_UINT32(f.call, f.sent[0].call);
+    TEST_ASSERT_EQUAL_INT(side, f.sent[0].side);
+    TEST_ASSERT_EQUAL_HEX32(id, f.sent[0].id);
+    TEST_ASSERT_EQUAL_UINT8(8, f.sent[0].length);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, f.sent[0].data, 8);
+}
+
+static uint32_t dropped(void) {
+    return agv_supervisor_counters(&f.supervisor)->dropped;
+}
+
+static void expect_dropped(uint32_t id, const uint8_t data[8]) {
+    const uint32_t before = dropped();
+    from_ai(id, data);
+    expect_silence(&f);
+    TEST_ASSERT_EQUAL_UINT32(before + 1, dropped());
+}
+
+/* Commands with every reserved bit set, and as they have to leave. */
+static const uint8_t SIGNALS[8] = {0xFF, 0xFF, 0xFF, 0xFF, 0xAF, 0xFF, 0xFF, 0x5A};
+static const uint8_t SIGNALS_PACKED[8] = {0, 0, 0, 0, 0xA0, 0, 0, 0x5A};
+static const uint8_t DRIVE[8] = {1, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF};
+static const uint8_t DRIVE_PACKED[8] = {1};
+static const uint8_t THROTTLE[8] = {77, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF};
+static const uint8_t THROTTLE_PACKED[8] = {77};
+static const uint8_t ANGLE[8] = {0x34, 0x22, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF};
+static const uint8_t ANGLE_PACKED[8] = {0x34, 0x22};
+static const uint8_t ZERO[8] = {0};
+
+static const uint8_t NO_GEAR[8] = {3};
+static const uint8_t TOO_MUCH_THROTTLE[8] = {251};
+static const uint8_t TOO_MUCH_ANGLE[8] = {0x51, 0x46}; /* 18001 */
+
+/* ---- Commands ---- */
+
+/* Shows: TOP-2, P14 */
+void test_in_active_the_four_commands_pass_packed_anew(void) {
+    fixture_active(&f);
+    from_ai(0x43F, SIGNALS);
+    expect_passed(HAL_CAN_VEHICLE, 0x43F, SIGNALS_PACKED);
+    from_ai(0x168, DRIVE);
+    expect_passed(HAL_CAN_VEHICLE, 0x168, DRIVE_PACKED);
+    from_ai(0x075, THROTTLE);
+    expect_passed(HAL_CAN_VEHICLE, 0x075, THROTTLE_PACKED);
+    from_ai(0x065, ANGLE);
+    expect_passed(HAL_CAN_VEHICLE, 0x065, ANGLE_PACKED);
+}
+
+/* Shows: TOP-2 */
+void test_in_standby_only_43f_passes(void) {
+    fixture_standby(&f);
+    from_ai(0x43F, SIGNALS);
+    expect_passed(HAL_CAN_VEHICLE, 0x43F, SIGNALS_PACKED);
+    expect_dropped(0x168, DRIVE);
+    expect_dropped(0x075, THROTTLE);
+    expect_dropped(0x065, ANGLE);
+}
+
+/* Shows: TOP-2 */
+void test_in_standby_all_four_pass_if_so_chosen_and_the_throttle_as_0(void) {
+    f.config.gateway_in_manual = AGV_IN_MANUAL_ALL;
+    fixture_standby(&f);
+    from_ai(0x43F, SIGNALS);
+    expect_passed(HAL_CAN_VEHICLE, 0x43F, SIGNALS_PACKED);
+    from_ai(0x168, DRIVE);
+    expect_passed(HAL_CAN_VEHICLE, 0x168, DRIVE_PACKED);
+    from_ai(0x075, THROTTLE);
+    expect_passed(HAL_CAN_VEHICLE, 0x075, ZERO);
+    from_ai(0x065, ANGLE);
+    expect_passed(HAL_CAN_VEHICLE, 0x065, ANGLE_PACKED);
+}
+
+static void expect_no_command_passes(agv_state_t state) {
+    expect_state(&f, state);
+    expect_dropped(0x43F, SIGNALS);
+    expect_dropped(0x168, DRIVE);
+    expect_dropped(0x075, THROTTLE);
+    expect_dropped(0x065, ANGLE);
+}
+
+/* Shows: TOP-2, FSM-6 */
+void test_in_init_tripped_and_safe_no_command_passes(void) {
+    for (uint16_t choice = AGV_IN_MANUAL_HEARTBEAT; choice <= AGV_IN_MANUAL_ALL; choice++) {
+        setUp();
+        f.config.gateway_in_manual = choice;
+        fixture_start(&f);
+        expect_no_command_passes(AGV_STATE_INIT);
+        setUp();
+        f.config.gateway_in_manual = choice;
+        walk_to_tripped(&f);
+        expect_no_command_passes(AGV_STATE_TRIPPED);
+        setUp();
+        f.config.gateway_in_manual = choice;
+        walk_to_safe(&f);
+        expect_no_command_passes(AGV_STATE_SAFE);
+    }
+}
+
+static void expect_invalid_commands_are_dropped(void) {
+    expect_dropped(0x168, NO_GEAR);
+    expect_dropped(0x075, TOO_MUCH_THROTTLE);
+    expect_dropped(0x065, TOO_MUCH_ANGLE);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* Shows: TOP-2, SUP-5 */
+void test_a_command_out_of_range_does_not_pass_in_standby(void) {
+    fixture_standby(&f);
+    expect_invalid_commands_are_dropped();
+    setUp();
+    f.config.gateway_in_manual = AGV_IN_MANUAL_ALL;
+    fixture_standby(&f);
+    expect_invalid_commands_are_dropped();
+}
+
+/* Shows: TOP-2, AI_COMMAND_OUT_OF_RANGE */
+void test_a_command_out_of_range_does_not_pass_in_active(void) {
+    static const struct {
+        uint32_t id;
+        const uint8_t *data;
+    } ROWS[] = {{0x168, NO_GEAR}, {0x075, TOO_MUCH_THROTTLE}, {0x065, TOO_MUCH_ANGLE}};
+    for (unsigned i = 0; i < 3; i++) {
+        setUp();
+        fixture_active(&f);
+        from_ai(ROWS[i].id, ROWS[i].data); /* the oracle lets none of them out of TRIPPED */
+        expect_reason(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE);
+        TEST_ASSERT_EQUAL_UINT32(4, f.sent_count);
+    }
+}
+
+/* Shows: TOP-2, P1 */
+void test_the_table_set_passes_on_its_own_identifiers(void) {
+    f.config.id_set = AGV_ID_SET_TABLE;
+    fixture_standby(&f);
+    from_ai(0x201, SIGNALS);
+    expect_passed(HAL_CAN_VEHICLE, 0x201, SIGNALS_PACKED);
+    expect_dropped(0x43F, SIGNALS);
+}
+
+/* ---- Limits ---- */
+
+static void expect_throttle(uint16_t ceiling_pct, uint8_t commanded, uint8_t passed) {
+    const uint8_t command[8] = {commanded};
+    const uint8_t expected[8] = {passed};
+    setUp();
+    f.config.throttle_ceiling_pct = ceiling_pct;
+    fixture_active(&f);
+    from_ai(0x075, command);
+    expect_passed(HAL_CAN_VEHICLE, 0x075, expected);
+}
+
+/* 250 counts are 100 %. */
+/* Shows: TOP-2 */
+void test_the_throttle_is_limited_to_the_ceiling(void) {
+    expect_throttle(100, 250, 250);
+    expect_throttle(40, 250, 100);
+    expect_throttle(40, 101, 100);
+    expect_throttle(40, 100, 100);
+    expect_throttle(40, 99, 99);
+    expect_throttle(33, 250, 82); /* 82.5: never more than the ceiling */
+    expect_throttle(1, 250, 2);
+    expect_throttle(0, 250, 0);
+}
+
+static void expect_steering(uint16_t commanded, uint16_t passed) {
+    const uint8_t command[8] = {(uint8_t)commanded, (uint8_t)(commanded >> 8)};
+    const uint8_t expected[8] = {(uint8_t)passed, (uint8_t)(passed >> 8)};
+    fixture_run(&f, 25);
+    from_ai(0x065, command);
+    expect_passed(HAL_CAN_VEHICLE, 0x065, expected);
+}
+
+/* Shows: TOP-2 */
+void test_steering_is_not_limited_by_default(void) {
+    fixture_active(&f);
+    f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
+    expect_steering(0, 0);
+    expect_steering(18000, 18000);
+}
+
+/* 100.0 degrees a second are 2.5 degrees, 25 counts, in 25 ms. */
+/* Shows: TOP-2 */
+void test_steering_is_limited_to_the_slew_rate(void) {
+    f.config.steering_slew_ddeg_s = 1000;
+    fixture_active(&f);
+    fixture_run_past(&f, AGV_MSG_STEERING_COMMAND); /* 9000, as measured */
+    f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
+    expect_steering(9060, 9025);
+    expect_steering(9060, 9050);
+    expect_steering(9060, 9060);
+    expect_steering(8000, 9035);
+    expect_steering(8000, 9010);
+    expect_steering(9005, 9005);
+}
+
+/* The first command after the engagement starts from where the wheels are. */
+/* Shows: TOP-2 */
+void test_the_slew_rate_starts_from_the_measured_angle(void) {
+    f.config.steering_slew_ddeg_s = 1000;
+    fixture_angle(&f, 9300);
+    fixture_standby(&f);
+    fixture_mute_ai(&f, true);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    expect_steering(9000, 9275);
+}
+
+/* ---- A side that takes nothing ---- */
+
+/* Shows: TOP-2 */
+void test_towards_a_stalled_vehicle_side_the_newest_of_each_is_kept(void) {
+    static const uint8_t reverse[8] = {2};
+    static const uint8_t neutral[8] = {4};
+    fixture_active(&f);
+    fixture_mute_ai(&f, true);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    const uint32_t before = dropped();
+    from_ai(0x168, DRIVE);
+    from_ai(0x168, reverse);
+    from_ai(0x168, neutral);
+    from_ai(0x075, THROTTLE);
+    fixture_run(&f, 30);
+    TEST_ASSERT_EQUAL_UINT32(before + 2, dropped());
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    fixture_run(&f, 1);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(neutral, fixture_nth_sent(&f, 0x168, 0)->data, 8);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x075));
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(THROTTLE_PACKED, fixture_nth_sent(&f, 0x075, 0)->data, 8);
+    fixture_run(&f, 50);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168)); /* once */
+    expect_state(&f, AGV_STATE_ACTIVE);
+}
+
+/* Shows: TOP-2 */
+void test_towards_a_stalled_ai_side_the_newest_of_each_is_kept(void) {
+    static const uint8_t neutral[8] = {4};
+    static const uint8_t park[8] = {8};
+    fixture_standby(&f);
+    sim_hal_set_full(&f.hal, HAL_CAN_AI, true);
+    fixture_frame(&f, AGV_MSG_GEAR_STATUS, neutral);
+    const uint32_t before = dropped();
+    fixture_frame(&f, AGV_MSG_GEAR_STATUS, park);
+    TEST_ASSERT_EQUAL_UINT32(before + 1, dropped());
+    expect_silence(&f);
+    sim_hal_set_full(&f.hal, HAL_CAN_AI, false);
+    fixture_jump(&f, 1);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x0A3));
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(park, fixture_nth_sent(&f, 0x0A3, 0)->data, 8);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* ---- Status frames ---- */
+
+static void expect_status_passes(agv_state_t state) {
+    static const agv_message_t STATUS[] = {AGV_MSG_VEHICLE_STATUS,  AGV_MSG_GEAR_STATUS, AGV_MSG_THROTTLE_STATUS,
+                                           AGV_MSG_STEERING_STATUS, AGV_MSG_EPS_STATUS,  AGV_MSG_STEERING_POSITION,
+                                           AGV_MSG_WHEEL_SPEED};
+    expect_state(&f, state);
+    for (unsigned i = 0; i < 7; i++) {
+        fixture_forget_sent(&f);
+        fixture_send_now(&f, STATUS[i]);
+        expect_passed(HAL_CAN_AI, f.traffic[STATUS[i]].id, f.traffic[STATUS[i]].data);
+    }
+    expect_state(&f, state);
+}
+
+/* Shows: TOP-2 */
+void test_status_frames_pass_to_the_ai_side_in_every_state(void) {
+    fixture_start(&f);
+    expect_status_passes(AGV_STATE_INIT);
+    setUp();
+    fixture_standby(&f);
+    expect_status_passes(AGV_STATE_STANDBY);
+    setUp();
+    fixture_active(&f);
+    expect_status_passes(AGV_STATE_ACTIVE);
+    setUp();
+    walk_to_tripped(&f);
+    expect_status_passes(AGV_STATE_TRIPPED);
+    setUp();
+    walk_to_safe(&f);
+    expect_status_passes(AGV_STATE_SAFE);
+}
+
+/* Also what the supervisor itself cannot use. */
+/* Shows: TOP-2 */
+void test_a_status_frame_passes_as_it_is(void) {
+    static const uint8_t odd[8] = {0xFF, 1, 2, 3, 4, 5, 6, 7};
+    fixture_standby(&f);
+    fixture_frame(&f, AGV_MSG_GEAR_STATUS, odd);
+    expect_passed(HAL_CAN_AI, 0x0A3, odd);
+}
+
+/* ---- Nothing else ---- */
+
+static void expect_nothing_passes(hal_can_side_t side, hal_can_frame_t frame) {
+    fixture_forget_sent(&f);
+    fixture_raw(&f, side, frame);
+    expect_silence(&f);
+}
+
+/* Shows: TOP-2 */
+void test_no_other_identifier_passes(void) {
+    fixture_active(&f);
+    for (uint32_t id = 0; id <= 0x7FF; id++) {
+        if (id != 0x43F && id != 0x168 && id != 0x075 && id != 0x065) {
+            expect_nothing_passes(HAL_CAN_AI, (hal_can_frame_t){.id = id, .length = 8});
+        }
+    }
+    expect_state(&f, AGV_STATE_ACTIVE);
+    for (uint32_t id = 0; id <= 0x7FF; id++) {
+        if (id != 0x363 && id != 0x0A3 && id != 0x050 && id != 0x067 && id != 0x167 && id != 0x267 && id != 0x101 &&
+            id != 0x43F && id != 0x168 && id != 0x075 && id != 0x065) {
+            expect_nothing_passes(HAL_CAN_VEHICLE, (hal_can_frame_t){.id = id, .length = 8});
+        }
+    }
+    expect_state(&f, AGV_STATE_ACTIVE);
+}
+
+/* Shows: TOP-2, INT-2, P15 */
+void test_no_malformed_frame_passes(void) {
+    static const uint32_t IDS[] = {0x43F, 0x168, 0x075, 0x065, 0x363, 0x0A3, 0x050, 0x067, 0x167, 0x267, 0x101};
+    fixture_active(&f);
+    for (unsigned i = 0; i < sizeof IDS / sizeof IDS[0]; i++) {
+        const hal_can_side_t side = i < 4 ? HAL_CAN_AI : HAL_CAN_VEHICLE;
+        for (uint8_t length = 0; length < 8; length++) {
+            expect_nothing_passes(side, (hal_can_frame_t){.id = IDS[i], .length = length});
+        }
+        for (uint8_t flags = 1; flags < 16; flags++) {
+            expect_nothing_passes(side, (hal_can_frame_t){.id = IDS[i], .flags = flags, .length = 8});
+        }
+    }
+    expect_state(&f, AGV_STATE_ACTIVE);
+}
+
+/* Shows: TOP-2, FOREIGN_COMMAND_SENDER, SUP-6 */
+void test_a_command_of_the_vehicle_side_passes_nowhere_and_trips(void) {
+    fixture_active(&f);
+    fixture_forget_sent(&f);
+    fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .length = 8, .data = {GEAR_P}});
+    expect_reason(&f, AGV_FAULT_FOREIGN_COMMAND_SENDER);
+    for (uint32_t i = 0; i < f.sent_count; i++) {
+        TEST_ASSERT_EQUAL_INT(HAL_CAN_VEHICLE, f.sent[i].side);
+        TEST_ASSERT_EQUAL_UINT32(f.call, f.sent[i].call);
+    }
+}
+
+/* Shows: TOP-1 */
+void test_on_the_shared_bus_the_ai_side_is_ignored(void) {
+    f.config.topology = AGV_TOPOLOGY_SHARED;
+    fixture_active(&f);
+    expect_dropped(0x168, NO_GEAR);
+    expect_dropped(0x363, ZERO);
+    expect_state(&f, AGV_STATE_ACTIVE);
+}
