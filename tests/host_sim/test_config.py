@@ -168,7 +168,7 @@ class Refusals(hostsim.Case):
                 ("- a\n- b\n", "c.yaml:1: "),
                 ("text\n", "c.yaml:1: "),
                 ("a: [\n", "c.yaml:"),
-                ("---\npark: at_once\n---\npark: at_once\n", "c.yaml:4: "),
+                ("---\npark: at_once\n---\npark: at_once\n", "c.yaml:3: "),
                 ("park: at_once\n\x01\n", "c.yaml:2: "),
                 (b"park: at_once\n\xff\n", "c.yaml:2: "),
                 (b"park: at_once\n\0\n", "c.yaml:2: "),

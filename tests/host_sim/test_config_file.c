@@ -198,7 +198,7 @@ void test_what_is_no_yaml(void) {
     load_bad("\tpark: at_once\n", "c.yaml:1: no YAML: ");
     load_bad("park: at_once\n\nxy: \xFF\xFE\n", "c.yaml:3: no YAML: ");
     load_bad("park: *nobody\n", "c.yaml:1: no YAML: ");
-    load_bad("---\npark: at_once\n---\npark: at_once\n", "c.yaml:4: a second YAML document begins here\n");
+    load_bad("---\npark: at_once\n---\npark: at_once\n", "c.yaml:3: a second YAML document begins here\n");
     load_bad("park: at_once\n...\npark: at_once\n", "c.yaml:3: a second YAML document begins here\n");
     char nested[128];
     memset(nested, '[', sizeof nested);
