@@ -87,6 +87,10 @@ void agv_liveness_judge_beat(agv_liveness_t *liveness, agv_node_t node, uint32_t
     }
 }
 
+bool agv_liveness_heard(const agv_liveness_t *liveness, agv_message_t message) {
+    return (liveness->heard & bit_of(message)) != 0u;
+}
+
 bool agv_liveness_fresh(const agv_liveness_t *liveness, agv_message_t message) {
     return (liveness->heard & (uint16_t)~liveness->expired & bit_of(message)) != 0u;
 }

@@ -13,7 +13,7 @@ void agv_state_machine_start(agv_state_machine_t *machine, agv_fault_t reason, u
     *machine = (agv_state_machine_t){
         .first_reason = (uint8_t)reason,
         .unresettable = AGV_FAULT_NONE,
-        .button_before = true, /* a button held since before the start has no rising edge */
+        .button_before = true, /* until the VCU tells: what is held since before the start has no rising edge */
     };
     enter(machine, tripped ? AGV_STATE_TRIPPED : AGV_STATE_INIT);
     agv_timer_start(&machine->park_wait, now_ms);
@@ -172,7 +172,7 @@ agv_step_t agv_state_machine_step(agv_state_machine_t *machine, const agv_config
     } else {
         follow_engagement(machine, situation);
     }
-    machine->button_before = situation->button;
+    machine->button_before = situation->button || !situation->button_known;
     release_park(machine, config, situation, now_ms);
     judge_output(machine, config, situation, now_ms);
     return step;

@@ -75,7 +75,10 @@ static agv_bus_report_t follow_bus(agv_core_t *core, hal_can_side_t side, uint16
 static bool judge_buses(agv_core_t *core) {
     agv_faults_t *const faults = &core->monitor.faults;
     const agv_bus_report_t vehicle = follow_bus(core, HAL_CAN_VEHICLE, AGV_SET_COMMANDS);
-    const agv_bus_report_t ai = follow_bus(core, HAL_CAN_AI, AGV_SET_STATUS);
+    agv_bus_report_t ai = {0};
+    if (agv_core_is_gateway(core)) {
+        ai = follow_bus(core, HAL_CAN_AI, AGV_SET_STATUS);
+    }
     agv_faults_level(faults, AGV_FAULT_BUS_OFF, vehicle.off);
     agv_faults_level(faults, AGV_FAULT_TX_STALLED, vehicle.stalled || agv_transmitter_stalled(core));
     agv_faults_level(faults, AGV_FAULT_ERROR_PASSIVE, vehicle.passive || ai.passive);
@@ -152,8 +155,8 @@ void agv_supervisor_tick(agv_supervisor_t *supervisor, const agv_ports_t *ports,
     supervisor->receive_alive = false;
     const bool recovered = judge_buses(core);
     agv_monitor_tick(core);
-    (void)agv_core_react(core);
-    transmit(core, recovered);
+    const bool all_sent = agv_core_react(core);
+    transmit(core, recovered && !all_sent);
     feed_watchdog(core);
     agv_core_show_led(core, elapsed_ms);
     store_events(core);

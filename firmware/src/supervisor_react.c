@@ -136,6 +136,7 @@ static agv_step_t step(agv_core_t *core, agv_fault_t raised) {
         .autopilot_off = agv_monitor_autopilot_off(core),
         .in_park = agv_monitor_in_park(core),
         .button = core->monitor.vehicle.button_pressed,
+        .button_known = agv_liveness_heard(&core->monitor.liveness, AGV_MSG_VEHICLE_STATUS),
         .output_unsafe = output_is_unsafe(core),
     };
     return agv_state_machine_step(&core->machine, &core->config, &situation, core->now_ms);

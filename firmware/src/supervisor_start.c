@@ -74,15 +74,22 @@ static void begin_state(agv_core_t *core, agv_fault_t kept_reason) {
     (void)agv_core_report_faults(core);
 }
 
+/* What an earlier run found stays, whatever is found now. */
+static void raise_if(agv_core_t *core, bool cause, agv_fault_t fault) {
+    if (cause) {
+        agv_faults_level(&core->monitor.faults, fault, true);
+    }
+}
+
 void agv_core_begin(agv_core_t *core, bool config_valid, bool self_test_passed, bool corrupted) {
     agv_faults_t *const faults = &core->monitor.faults;
     const bool restarted = corrupted || (hal_reset_cause(core->hal) != HAL_RESET_POWER_ON);
     hal_safety_output_set(core->hal, false);
     begin_modules(core);
     const agv_fault_t kept_reason = begin_from_latch(core, restarted);
-    agv_faults_level(faults, AGV_FAULT_SELF_TEST_FAILED, !self_test_passed || !self_test(&core->config));
-    agv_faults_level(faults, AGV_FAULT_MEMORY_CORRUPTED, corrupted);
-    agv_faults_level(faults, AGV_FAULT_CONFIG_INVALID, !config_valid);
+    raise_if(core, !self_test_passed || !self_test(&core->config), AGV_FAULT_SELF_TEST_FAILED);
+    raise_if(core, corrupted, AGV_FAULT_MEMORY_CORRUPTED);
+    raise_if(core, !config_valid, AGV_FAULT_CONFIG_INVALID);
     if (restarted && !corrupted && (kept_reason == AGV_FAULT_NONE)) {
         agv_faults_event(faults, AGV_FAULT_SUPERVISOR_RESET, core->now_ms);
     }

@@ -72,6 +72,9 @@ bool agv_liveness_judge(agv_liveness_t *liveness, agv_message_t message, uint32_
 /** Judge the deadline of a heartbeat. The AI's is not awaited before it was seen (SUP-8). */
 void agv_liveness_judge_beat(agv_liveness_t *liveness, agv_node_t node, uint32_t now_ms, uint16_t timeout_ms);
 
+/** Received since the start. */
+bool agv_liveness_heard(const agv_liveness_t *liveness, agv_message_t message);
+
 /** Heard, and within its deadline. */
 bool agv_liveness_fresh(const agv_liveness_t *liveness, agv_message_t message);
 

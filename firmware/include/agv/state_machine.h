@@ -36,6 +36,7 @@ typedef struct {
     bool autopilot_off; /**< confirmed by the VCU */
     bool in_park;       /**< confirmed by the VCU */
     bool button;        /**< remote button 1 is pressed */
+    bool button_known;  /**< the VCU has told so since the start */
     bool output_unsafe; /**< bus-off, transmit stalled, watchdog not fed: the output opens at once */
 } agv_situation_t;
 
