@@ -47,9 +47,9 @@ typedef struct {
     uint8_t missing;
     uint8_t state;
     uint8_t first_reason;
-    uint8_t run;       /**< counts starts of the supervisor; wraps */
-    uint16_t seen;     /**< bit n: message n was received in this run */
-    uint16_t checksum; /**< CRC-16 (CCITT) over the other fields, in their order */
+    uint8_t run;                            /**< counts starts of the supervisor; wraps */
+    uint16_t seen;                          /**< bit n: message n was received in this run */
+    uint16_t checksum;                      /**< CRC-16 (CCITT) over the other fields, in their order */
     uint8_t frames[AGV_MSG_COUNT][AGV_DLC]; /**< last payload of each message */
 } agv_event_t;
 
