@@ -1,0 +1,167 @@
+/* Periodic sending after an overrun, and silence that lasts longer than the clock. */
+#include "fixture.h"
+#include "unity.h"
+#include "walk.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+static uint32_t skipped(void) {
+    return agv_supervisor_counters(&f.supervisor)->skipped_slots;
+}
+
+static void expect_next(uint32_t id, uint32_t trip_ms, uint32_t after_ms) {
+    TEST_ASSERT_EQUAL_UINT32(after_ms, fixture_nth_sent(&f, id, 0)->time_ms - trip_ms);
+}
+
+/*
+ * No tick for 350 ms after the trip. Missed by then: 43Fh at 100, 200, 300; 168h at 66, 166, 266; 075h at 33, 133, 233,
+ * 333; 065h at 25, 50 ... 350 (14). One each is made up for, the others are skipped: 2 + 2 + 3 + 13.
+ */
+/* Shows: TIM-1 */
+void test_after_an_overrun_one_frame_each_and_the_others_are_skipped_and_counted(void) {
+    walk_to_tripped(&f);
+    const uint32_t trip_ms = f.now_ms;
+    f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF;
+    fixture_forget_sent(&f);
+    fixture_run_without_ticks(&f, 350);
+    expect_silence(&f);
+    fixture_jump(&f, 0);
+    TEST_ASSERT_EQUAL_UINT32(4, f.sent_count);
+    TEST_ASSERT_EQUAL_UINT32(20, skipped());
+    fixture_forget_sent(&f);
+    fixture_run(&f, 200);
+    expect_next(0x168, trip_ms, 366);
+    expect_next(0x065, trip_ms, 375);
+    expect_next(0x43F, trip_ms, 400);
+    expect_next(0x075, trip_ms, 433);
+    TEST_ASSERT_EQUAL_UINT32(20, skipped());
+}
+
+/* Late by less than a cycle: nothing is skipped, and the slots stay where they were. */
+/* Shows: TIM-1 */
+void test_a_late_step_moves_no_slot(void) {
+    walk_to_tripped(&f);
+    const uint32_t trip_ms = f.now_ms;
+    fixture_run(&f, 90);
+    fixture_run_without_ticks(&f, 70);
+    fixture_forget_sent(&f);
+    fixture_jump(&f, 0);
+    TEST_ASSERT_EQUAL_UINT32(160, fixture_nth_sent(&f, 0x43F, 0)->time_ms - trip_ms);
+    TEST_ASSERT_EQUAL_UINT32(160, fixture_nth_sent(&f, 0x075, 0)->time_ms - trip_ms);
+    fixture_forget_sent(&f);
+    fixture_run(&f, 100);
+    expect_next(0x43F, trip_ms, 200);
+    expect_next(0x168, trip_ms, 166);
+    expect_next(0x075, trip_ms, 233);
+}
+
+/* Slots pass unused while nothing is sent: they are no skipped ones. */
+/* Shows: TIM-1 */
+void test_nothing_is_skipped_in_normal_operation(void) {
+    fixture_active(&f);
+    fixture_run(&f, 3000);
+    walk_trip(&f);
+    fixture_run(&f, 3000);
+    fixture_vehicle_confirms(&f);
+    fixture_run(&f, 1000);
+    TEST_ASSERT_EQUAL_UINT32(0, skipped());
+}
+
+/* ---- Longer than the clock: 2^32 ms ---- */
+
+static const agv_fault_t OF_SILENCE[] = {AGV_FAULT_VCU_HEARTBEAT_LOST,     AGV_FAULT_EPS_HEARTBEAT_LOST,
+                                         AGV_FAULT_EPS_STATUS_TIMEOUT,     AGV_FAULT_GEAR_STATUS_TIMEOUT,
+                                         AGV_FAULT_WHEEL_SPEED_TIMEOUT,    AGV_FAULT_STEERING_POSITION_TIMEOUT,
+                                         AGV_FAULT_THROTTLE_STATUS_TIMEOUT};
+
+static void expect_silent_faults(void) {
+    for (unsigned i = 0; i < sizeof OF_SILENCE / sizeof OF_SILENCE[0]; i++) {
+        expect_fault(&f, OF_SILENCE[i], true);
+    }
+}
+
+/* Ticks only, in steps of 1000 s, to 300 ms before the clock has gone round once; then every millisecond. */
+static void go_round_the_clock(uint32_t since_ms, void (*look)(void)) {
+    const uint32_t before_ms = since_ms - 300u;
+    f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF;
+    while (before_ms - f.now_ms > 1000000u) {
+        fixture_jump(&f, 1000000);
+        look();
+        fixture_forget_sent(&f);
+    }
+    fixture_jump(&f, before_ms - f.now_ms);
+    for (unsigned i = 0; i < 900; i++) {
+        fixture_jump(&f, 1);
+        look();
+    }
+}
+
+static void expect_still_tripped(void) {
+    expect_silent_faults();
+    expect_state(&f, AGV_STATE_TRIPPED);
+}
+
+/* Shows: TIM-2, SUP-2, SUP-3 */
+void test_silence_that_lasts_longer_than_the_clock_stays_silence(void) {
+    fixture_standby(&f);
+    fixture_mute_vcu(&f, true);
+    fixture_mute_eps(&f, true);
+    fixture_mute_ai(&f, true);
+    const uint32_t last_ms = f.now_ms;
+    fixture_run(&f, 200);
+    expect_still_tripped();
+    go_round_the_clock(last_ms, expect_still_tripped);
+}
+
+static void expect_still_in_init(void) {
+    agv_event_t event;
+    expect_state(&f, AGV_STATE_INIT);
+    TEST_ASSERT_EQUAL_UINT32(1, walk_events(&f, AGV_EVENT_STARTUP, 0, &event));
+    expect_fault(&f, AGV_FAULT_STARTUP_TIMEOUT, true);
+}
+
+/* Shows: TIM-2, STARTUP_TIMEOUT */
+void test_init_without_a_vehicle_for_longer_than_the_clock(void) {
+    fixture_mute_vcu(&f, true);
+    fixture_mute_eps(&f, true);
+    fixture_mute_ai(&f, true);
+    f.long_run = true;
+    fixture_start(&f);
+    const uint32_t start_ms = f.now_ms;
+    fixture_run(&f, 10100);
+    expect_still_in_init();
+    go_round_the_clock(start_ms, expect_still_in_init);
+}
+
+/* All messages once, then a tick: fresh at every look, with 1000 s between two. */
+static void look_in(uint32_t ms) {
+    f.now_ms += ms;
+    f.elapsed_ms += ms;
+    sim_hal_set_now_ms(&f.hal, f.now_ms);
+    for (unsigned message = AGV_MSG_VEHICLE_STATUS; message < AGV_MSG_COUNT; message++) {
+        fixture_send_now(&f, (agv_message_t)message);
+    }
+    fixture_jump(&f, 0);
+}
+
+/* Shows: TIM-2, FSM-3 */
+void test_a_vehicle_that_stands_in_safe_for_longer_than_the_clock_can_be_reset(void) {
+    walk_to_safe(&f);
+    f.long_run = true;
+    f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF;
+    for (unsigned i = 0; i < 5000; i++) {
+        look_in(1000000);
+        expect_state(&f, AGV_STATE_SAFE);
+    }
+    fixture_run(&f, 1500);
+    fixture_button(&f, true);
+    fixture_run(&f, 1050);
+    expect_state(&f, AGV_STATE_STANDBY);
+}

@@ -1,0 +1,194 @@
+/* The hardware watchdog, steps that come late, and frames that were waiting. */
+#include "fixture.h"
+#include "unity.h"
+#include "walk.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+/* Shows: TIM-3 */
+void test_it_is_fed_in_every_state_while_all_activities_check_in(void) {
+    walk_to_safe(&f);
+    fixture_button(&f, true);
+    fixture_run(&f, 1100);
+    expect_state(&f, AGV_STATE_STANDBY);
+    TEST_ASSERT_EQUAL_UINT32(0, f.hal.bites);
+    for (unsigned i = 0; i < 50; i++) {
+        const uint32_t feeds = f.hal.feeds;
+        fixture_run(&f, 10);
+        TEST_ASSERT_TRUE(f.hal.feeds > feeds);
+    }
+}
+
+/* Frames still come in, steps are made: but nobody looks whether there are more. */
+/* Shows: TIM-3 */
+void test_it_is_not_fed_without_the_receive_path(void) {
+    fixture_standby(&f);
+    f.receive_path_dead = true;
+    const uint32_t feeds = f.hal.feeds;
+    fixture_run(&f, 100);
+    TEST_ASSERT_EQUAL_UINT32(feeds, f.hal.feeds);
+    TEST_ASSERT_EQUAL_UINT32(0, f.hal.bites);
+    fixture_run(&f, 1);
+    TEST_ASSERT_EQUAL_UINT32(1, f.hal.bites);
+    TEST_ASSERT_FALSE(f.hal.safety_output.on);
+}
+
+/* Shows: TIM-3 */
+void test_it_is_not_fed_without_the_step(void) {
+    fixture_standby(&f);
+    const uint32_t feeds = f.hal.feeds;
+    for (unsigned i = 0; i < 101; i++) {
+        TEST_ASSERT_FALSE(sim_hal_poll(&f.hal));
+        fixture_run_without_ticks(&f, 1);
+        agv_supervisor_receive_alive(&f.supervisor);
+    }
+    TEST_ASSERT_EQUAL_UINT32(feeds, f.hal.feeds);
+    TEST_ASSERT_TRUE(sim_hal_poll(&f.hal));
+}
+
+/* Shows: TIM-3 */
+void test_each_check_in_counts_for_one_feed(void) {
+    fixture_standby(&f);
+    f.receive_path_dead = true;
+    const uint32_t feeds = f.hal.feeds;
+    for (unsigned i = 1; i <= 5; i++) {
+        agv_supervisor_receive_alive(&f.supervisor);
+        agv_supervisor_receive_alive(&f.supervisor);
+        fixture_run(&f, 20);
+        TEST_ASSERT_EQUAL_UINT32(feeds + i, f.hal.feeds);
+    }
+}
+
+/* Shows: TIM-3 */
+void test_a_receive_path_that_comes_back_in_time_is_in_time(void) {
+    fixture_standby(&f);
+    f.receive_path_dead = true;
+    fixture_run(&f, 99);
+    f.receive_path_dead = false;
+    fixture_run(&f, 1000);
+    TEST_ASSERT_EQUAL_UINT32(0, f.hal.bites);
+    expect_state(&f, AGV_STATE_STANDBY);
+    expect_output(&f, true);
+}
+
+/* ---- Late steps ---- */
+
+/* Frames are handed over in their time, but the step that is due 1 ms after the last one comes so much later. */
+static void step_late_by(uint32_t ms) {
+    f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF; /* "though the watchdog did not bite" */
+    fixture_run_without_ticks(&f, ms);
+    fixture_run(&f, 1);
+}
+
+/* Shows: TIM-4, STEP_OVERRUN */
+void test_a_step_that_is_100_ms_late_does_not_trip_and_one_of_101_ms_does(void) {
+    fixture_standby(&f);
+    step_late_by(100);
+    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_run(&f, 10);
+    step_late_by(101);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, AGV_FAULT_STEP_OVERRUN);
+}
+
+static void expect_limit(uint16_t period_ms) {
+    fixture_init(&f);
+    f.config.watchdog_period_ms = period_ms;
+    fixture_active(&f);
+    step_late_by(period_ms);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    fixture_run(&f, 10);
+    step_late_by(period_ms + 1u);
+    expect_reason(&f, AGV_FAULT_STEP_OVERRUN);
+}
+
+/* Shows: TIM-4, STEP_OVERRUN */
+void test_the_limit_is_the_watchdogs_period(void) {
+    expect_limit(10);
+    expect_limit(50);
+    expect_limit(1000);
+}
+
+/* Shows: TIM-4, STEP_OVERRUN */
+void test_in_init_a_late_step_is_an_event_that_keeps_init_for_a_second(void) {
+    fixture_start(&f);
+    fixture_run(&f, 100);
+    step_late_by(300);
+    expect_state(&f, AGV_STATE_INIT);
+    expect_fault(&f, AGV_FAULT_STEP_OVERRUN, true);
+    fixture_run(&f, 1499);
+    expect_state(&f, AGV_STATE_INIT);
+    fixture_run(&f, 2);
+    expect_state(&f, AGV_STATE_STANDBY);
+    expect_reason(&f, AGV_FAULT_NONE);
+}
+
+/* Shows: TIM-4, STEP_OVERRUN, FSM-3 */
+void test_after_a_second_it_can_be_reset(void) {
+    fixture_standby(&f);
+    step_late_by(500);
+    fixture_run(&f, 100);
+    fixture_button(&f, true);
+    fixture_run(&f, 1500);
+    expect_state(&f, AGV_STATE_SAFE);
+    fixture_run(&f, 500);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* ---- A backlog does not look fresh ---- */
+
+static bool hold_back(fixture_t *fixture, agv_message_t message, hal_can_frame_t *frame) {
+    (void)fixture;
+    (void)frame;
+    return message != AGV_MSG_VEHICLE_STATUS;
+}
+
+/* 363h of t + 10 and t + 20 is handed over 60 ms after t + 10, in one go, with its stamps. Returns t + 20. */
+static uint32_t deliver_backlog(void) {
+    fixture_standby(&f);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    const uint32_t last_ms = f.now_ms;
+    f.edit = hold_back;
+    fixture_run_without_ticks(&f, 69);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].muted = true;
+    for (uint32_t i = 1; i <= 2; i++) {
+        hal_can_frame_t frame = {.id = 0x363, .time_ms = last_ms + 10 * i, .length = 8};
+        frame.data[6] = MODE_MANUAL;
+        frame.data[7] = (uint8_t)(200 + i);
+        agv_supervisor_frame(&f.supervisor, &f.ports, HAL_CAN_VEHICLE, &frame);
+    }
+    return last_ms + 20;
+}
+
+/* Age of the last one at that step: 50 ms, then 51. */
+/* Shows: TIM-4, SUP-2 */
+void test_a_backlog_is_as_old_as_its_time_stamps(void) {
+    const uint32_t newest_ms = deliver_backlog();
+    fixture_run(&f, newest_ms + 50 - f.now_ms);
+    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, AGV_FAULT_VCU_HEARTBEAT_LOST);
+}
+
+/* Frames of before the last step change nothing about the time. */
+/* Shows: TIM-4 */
+void test_an_old_time_stamp_does_not_turn_the_clock_back(void) {
+    walk_to_tripped(&f);
+    const uint32_t trip_ms = f.now_ms;
+    fixture_forget_sent(&f);
+    for (unsigned i = 0; i < 20; i++) {
+        fixture_run(&f, 5);
+        const hal_can_frame_t frame = {.id = 0x123, .time_ms = f.now_ms - 5000, .length = 8};
+        agv_supervisor_frame(&f.supervisor, &f.ports, HAL_CAN_VEHICLE, &frame);
+    }
+    TEST_ASSERT_EQUAL_UINT32(100, fixture_nth_sent(&f, 0x43F, 0)->time_ms - trip_ms);
+    expect_fault(&f, AGV_FAULT_STEP_OVERRUN, false);
+}
