@@ -83,28 +83,17 @@ void test_after_the_recovery(void) {
     expect_led(&f, 14);
 }
 
-/* Came and went between two ticks: the controller's count tells. */
-/* Shows: SUP-7, BUS_OFF */
+/* Came and went between two ticks: the controller's count tells. The trip and the recovery are one reason to send. */
+/* Shows: SUP-7, FSM-2, BUS_OFF */
 void test_bus_off_between_two_ticks(void) {
     fixture_active(&f);
     set_state(HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
     set_state(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
     fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_BUS_OFF, true);
-    expect_reason(&f, AGV_FAULT_BUS_OFF);
-    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_trip(&f, AGV_FAULT_BUS_OFF, f.call, ANGLE_CENTRE);
     expect_output(&f, false);
     fixture_run(&f, 1);
     expect_fault(&f, AGV_FAULT_BUS_OFF, false);
-}
-
-/* PARKED: they are sent twice in one tick. */
-void parked_bus_off_between_two_ticks_sends_the_safe_commands_once(void) {
-    fixture_active(&f);
-    set_state(HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
-    set_state(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_BUS_OFF, f.call, ANGLE_CENTRE);
 }
 
 /* In INIT nothing latches; recovered, the safe commands go out at once. */

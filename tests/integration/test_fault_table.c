@@ -1,0 +1,203 @@
+/* The faults as a whole: their names in the order of their rank and their default classes, by hand; what configuration
+ * may change of the classes; what the LED shows of several. */
+#include "agv/names.h"
+#include "expect.h"
+#include "unity.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+typedef struct {
+    const char *name;
+    bool trip;
+} row_t;
+
+static const row_t ROWS[] = {
+    {"SELF_TEST_FAILED", true},
+    {"MEMORY_CORRUPTED", true},
+    {"CONFIG_INVALID", true},
+    {"SUPERVISOR_RESET", true},
+    {"TX_GATE_REFUSED", true},
+    {"STEP_OVERRUN", true},
+    {"BUS_OFF", true},
+    {"TX_STALLED", true},
+    {"VCU_HEARTBEAT_LOST", true},
+    {"VCU_HEARTBEAT_STUCK", true},
+    {"EPS_HEARTBEAT_LOST", true},
+    {"EPS_HEARTBEAT_STUCK", true},
+    {"AI_HEARTBEAT_LOST", true},
+    {"AI_HEARTBEAT_STUCK", true},
+    {"EPS_OVER_CURRENT_SHUTDOWN", true},
+    {"EPS_TEMP_ABOVE_120", true},
+    {"EPS_MOTOR_ENCODER", true},
+    {"EPS_POSITION_ENCODER", true},
+    {"EPS_UNDER_VOLTAGE", true},
+    {"EPS_OVER_VOLTAGE", true},
+    {"EPS_EXCESSIVE_CURRENT", true},
+    {"EPS_TEMP_ABOVE_110", false},
+    {"VCU_EPS_HARDWARE_FAULT", true},
+    {"VCU_EPS_CAN_BUS_FAULT", true},
+    {"S_DRIVER_ALARM", true},
+    {"REMOTE_SIGNAL_LOST", true},
+    {"REMOTE_POWER_LOST", true},
+    {"VCU_AI_CAN_LOST", true},
+    {"VCU_LEVEL2_ALARM", false},
+    {"MODE_INVALID", true},
+    {"EPS_STATUS_TIMEOUT", true},
+    {"GEAR_STATUS_TIMEOUT", true},
+    {"THROTTLE_STATUS_TIMEOUT", true},
+    {"WHEEL_SPEED_TIMEOUT", true},
+    {"STEERING_POSITION_TIMEOUT", false},
+    {"GEAR_COMMAND_TIMEOUT", true},
+    {"THROTTLE_COMMAND_TIMEOUT", true},
+    {"STEERING_COMMAND_TIMEOUT", true},
+    {"AI_COMMAND_OUT_OF_RANGE", true},
+    {"EPS_MODE_OFF", true},
+    {"EPS_MODE_INVALID", true},
+    {"EPS_MODE_NOT_ANGLE", true},
+    {"GEAR_STATUS_INVALID", true},
+    {"THROTTLE_STATUS_INVALID", true},
+    {"STEERING_ANGLE_INVALID", true},
+    {"STEERING_DEVIATION", true},
+    {"THROTTLE_IN_PARK", true},
+    {"FOREIGN_COMMAND_SENDER", true},
+    {"SAFE_STATE_UNCONFIRMED", true},
+    {"COMMAND_TOO_FAST", false},
+    {"STARTUP_TIMEOUT", false},
+    {"RX_OVERRUN", false},
+    {"ERROR_PASSIVE", false},
+    {"AI_BUS_OFF", false},
+    {"WRONG_ID_SET", false},
+    {"STORE_INVALID", false},
+};
+enum { ROW_COUNT = sizeof ROWS / sizeof ROWS[0], UP_TO_COMMAND_TOO_FAST = 50 };
+
+static bool trips(const row_t *row) {
+    return (f.config.trips & agv_fault_bit(agv_fault_from_name(row->name))) != 0;
+}
+
+void test_names_and_default_classes(void) {
+    TEST_ASSERT_EQUAL_INT(ROW_COUNT, AGV_FAULT_COUNT);
+    for (unsigned i = 0; i < ROW_COUNT; i++) {
+        TEST_ASSERT_TRUE_MESSAGE(agv_fault_from_name(ROWS[i].name) != AGV_FAULT_NONE, ROWS[i].name);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ROWS[i].trip, trips(&ROWS[i]), ROWS[i].name);
+    }
+}
+
+/* Shows: FSM-5, LED-1 */
+void test_the_order_is_the_rank(void) {
+    for (unsigned i = 0; i < UP_TO_COMMAND_TOO_FAST; i++) {
+        TEST_ASSERT_EQUAL_STRING(ROWS[i].name, agv_fault_name((agv_fault_t)i));
+    }
+}
+
+/* PARKED: STARTUP_TIMEOUT ranks below RX_OVERRUN to WRONG_ID_SET, not above. */
+void parked_the_order_of_all_rows_is_the_rank(void) {
+    for (unsigned i = 0; i < ROW_COUNT; i++) {
+        TEST_ASSERT_EQUAL_STRING(ROWS[i].name, agv_fault_name((agv_fault_t)i));
+    }
+}
+
+/* ---- Classes that configuration has changed ---- */
+
+static void set_class(agv_fault_t fault, bool trip) {
+    f.config.trips = trip ? f.config.trips | agv_fault_bit(fault) : f.config.trips & ~agv_fault_bit(fault);
+}
+
+/* Shows: SUP-4, INT-2, EPS_TEMP_ABOVE_110, COMMAND_TOO_FAST */
+void test_a_warning_may_be_made_a_trip(void) {
+    set_class(AGV_FAULT_EPS_TEMP_ABOVE_110, true);
+    set_class(AGV_FAULT_STEERING_POSITION_TIMEOUT, true);
+    fixture_active(&f);
+    f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x10;
+    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
+    expect_trip(&f, AGV_FAULT_EPS_TEMP_ABOVE_110, f.traffic[AGV_MSG_EPS_STATUS].call, ANGLE_CENTRE);
+    fixture_init(&f);
+    set_class(AGV_FAULT_STEERING_POSITION_TIMEOUT, true);
+    f.traffic[AGV_MSG_STEERING_POSITION].muted = true;
+    fixture_start(&f);
+    fixture_run(&f, 2000);
+    expect_state(&f, AGV_STATE_INIT); /* now it is one of the messages that INIT waits for */
+    fixture_init(&f);
+    set_class(AGV_FAULT_STEERING_POSITION_TIMEOUT, true);
+    fixture_standby(&f);
+    fixture_run_past(&f, AGV_MSG_STEERING_POSITION);
+    f.traffic[AGV_MSG_STEERING_POSITION].muted = true;
+    fixture_run(&f, 61);
+    expect_trip(&f, AGV_FAULT_STEERING_POSITION_TIMEOUT, f.call, NO_HOLD);
+}
+
+/* Shows: SUP-4, INT-2, REMOTE_SIGNAL_LOST, WHEEL_SPEED_TIMEOUT */
+void test_some_trips_may_be_made_warnings(void) {
+    set_class(AGV_FAULT_REMOTE_SIGNAL_LOST, false);
+    set_class(AGV_FAULT_WHEEL_SPEED_TIMEOUT, false);
+    fixture_active(&f);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x01;
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_warning(&f, AGV_FAULT_REMOTE_SIGNAL_LOST, AGV_STATE_ACTIVE);
+    expect_led(&f, 17);
+    f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
+    fixture_run(&f, 100);
+    expect_fault(&f, AGV_FAULT_WHEEL_SPEED_TIMEOUT, true);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    fixture_init(&f);
+    set_class(AGV_FAULT_WHEEL_SPEED_TIMEOUT, false);
+    f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
+    fixture_standby(&f); /* INIT does not wait for it either */
+}
+
+/* Those of VCU heartbeat, EPS heartbeat, AI while engaged and EPS may not. */
+/* Shows: INT-2, CONFIG_INVALID */
+void test_the_others_may_not(void) {
+    static const agv_fault_t FIXED[] = {
+        AGV_FAULT_VCU_HEARTBEAT_LOST,    AGV_FAULT_VCU_HEARTBEAT_STUCK,    AGV_FAULT_EPS_HEARTBEAT_LOST,
+        AGV_FAULT_EPS_HEARTBEAT_STUCK,   AGV_FAULT_AI_HEARTBEAT_LOST,      AGV_FAULT_AI_HEARTBEAT_STUCK,
+        AGV_FAULT_EPS_UNDER_VOLTAGE,     AGV_FAULT_EPS_MOTOR_ENCODER,      AGV_FAULT_VCU_EPS_HARDWARE_FAULT,
+        AGV_FAULT_VCU_EPS_CAN_BUS_FAULT, AGV_FAULT_EPS_STATUS_TIMEOUT,     AGV_FAULT_EPS_MODE_OFF,
+        AGV_FAULT_EPS_MODE_INVALID,      AGV_FAULT_EPS_MODE_NOT_ANGLE,     AGV_FAULT_STEERING_ANGLE_INVALID,
+        AGV_FAULT_STEERING_DEVIATION,    AGV_FAULT_GEAR_COMMAND_TIMEOUT,   AGV_FAULT_THROTTLE_COMMAND_TIMEOUT,
+        AGV_FAULT_VCU_AI_CAN_LOST,       AGV_FAULT_AI_COMMAND_OUT_OF_RANGE};
+    for (unsigned i = 0; i < sizeof FIXED / sizeof FIXED[0]; i++) {
+        fixture_init(&f);
+        f.what = agv_fault_name(FIXED[i]);
+        set_class(FIXED[i], false);
+        const agv_config_verdict_t verdict = agv_config_check(&f.config);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(AGV_CONFIG_FAULT_TOO_WEAK, verdict.problem, f.what);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(FIXED[i], verdict.fault, f.what);
+        fixture_start(&f);
+        expect_reason(&f, AGV_FAULT_CONFIG_INVALID);
+    }
+}
+
+/* ---- The LED shows one of them ---- */
+
+/* Warnings by rank; a trip before any of them; the latched reason also after it has ended. */
+/* Shows: LED-1, VCU_LEVEL2_ALARM, ERROR_PASSIVE */
+void test_the_led_shows_the_highest(void) {
+    fixture_standby(&f);
+    expect_led(&f, 0);
+    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_ERROR_PASSIVE);
+    fixture_run(&f, 1);
+    expect_led(&f, 14);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 0x01; /* level 2 alarm: no code */
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_led(&f, -1);
+    f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x10; /* above 110 degrees */
+    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
+    expect_led(&f, 13);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x02; /* remote power: a trip */
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_led(&f, 16);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0;
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_led(&f, 16);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x80; /* S-driver: ranks higher */
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_led(&f, 8);
+}

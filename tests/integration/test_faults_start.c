@@ -1,0 +1,294 @@
+/* Faults of the supervisor itself and of its start: class, reason, LED, the safe commands in that very call, and when they
+ * end. What survives which restart is shown by test_fsm_restart and test_fsm_latch. */
+#include <stddef.h>
+#include <string.h>
+
+#include "expect.h"
+#include "unity.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+/* ---- At the start ---- */
+
+static void expect_tripped_at_the_start(agv_fault_t fault) {
+    agv_event_t event;
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, fault);
+    expect_fault(&f, fault, true);
+    TEST_ASSERT_TRUE(fixture_last_raised(&f, fault, &event));
+    TEST_ASSERT_EQUAL_INT(AGV_CLASS_TRIP, event.b);
+    expect_led(&f, -1);
+    expect_output(&f, false);
+    expect_safe_commands(&f, f.call, NO_HOLD); /* no angle is known yet */
+}
+
+/* The vehicle confirms, the operator presses: nothing but a power-on ends it. */
+static void expect_no_reset(agv_fault_t fault) {
+    fixture_run(&f, 500);
+    expect_state(&f, AGV_STATE_SAFE);
+    fixture_button(&f, true);
+    fixture_run(&f, 3000);
+    expect_state(&f, AGV_STATE_SAFE);
+    expect_reason(&f, fault);
+    expect_fault(&f, fault, true);
+    expect_led(&f, -1);
+    expect_output(&f, false);
+}
+
+/* Shows: FSM-9, SELF_TEST_FAILED */
+void test_self_test_failed(void) {
+    f.self_test_passed = false;
+    fixture_start(&f);
+    expect_tripped_at_the_start(AGV_FAULT_SELF_TEST_FAILED);
+    expect_no_reset(AGV_FAULT_SELF_TEST_FAILED);
+}
+
+/* 29 ms are less than three cycles. The built-in constants hold instead. */
+/* Shows: FSM-9, INT-2, CONFIG_INVALID */
+void test_config_invalid(void) {
+    f.config.vcu_heartbeat_timeout_ms = 29;
+    fixture_start(&f);
+    expect_tripped_at_the_start(AGV_FAULT_CONFIG_INVALID);
+    TEST_ASSERT_EQUAL_UINT16(50, agv_supervisor_config(&f.supervisor)->vcu_heartbeat_timeout_ms);
+    expect_no_reset(AGV_FAULT_CONFIG_INVALID);
+}
+
+/* Every cause that is not a power-on. An event: its cause ends after a second, the trip stays. */
+/* Shows: FSM-7, SUPERVISOR_RESET */
+void test_supervisor_reset(void) {
+    static const hal_reset_cause_t CAUSES[] = {HAL_RESET_WATCHDOG, HAL_RESET_BROWN_OUT, HAL_RESET_LOCK_UP,
+                                               HAL_RESET_SOFTWARE, HAL_RESET_UNKNOWN};
+    for (unsigned i = 0; i < sizeof CAUSES / sizeof CAUSES[0]; i++) {
+        fixture_init(&f);
+        f.reset_cause = CAUSES[i];
+        fixture_start(&f);
+        expect_tripped_at_the_start(AGV_FAULT_SUPERVISOR_RESET);
+        fixture_run(&f, 999);
+        expect_fault(&f, AGV_FAULT_SUPERVISOR_RESET, true);
+        fixture_run(&f, 1);
+        expect_fault(&f, AGV_FAULT_SUPERVISOR_RESET, false);
+        TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_SUPERVISOR_RESET));
+        expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
+        expect_led(&f, -1);
+    }
+}
+
+/* A latch that fails its checksum only warns at a power-on. */
+/* Shows: FSM-7, STORE_INVALID */
+void test_store_invalid(void) {
+    fixture_standby(&f);
+    TEST_ASSERT_TRUE(sim_store_corrupt_latch(&f.store, 0, 0x10));
+    f.store.keep_latch = true;
+    fixture_restart(&f, HAL_RESET_POWER_ON);
+    expect_warning(&f, AGV_FAULT_STORE_INVALID, AGV_STATE_INIT);
+    expect_led(&f, -1);
+    fixture_run(&f, 999);
+    expect_fault(&f, AGV_FAULT_STORE_INVALID, true);
+    expect_state(&f, AGV_STATE_STANDBY); /* it does not keep INIT */
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_STORE_INVALID, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_STORE_INVALID));
+    expect_led(&f, 0);
+}
+
+/* ---- MEMORY_CORRUPTED ---- */
+
+static void flip(size_t bit) {
+    ((uint8_t *)&f.supervisor)[bit / 8u] ^= (uint8_t)(1u << (bit % 8u));
+}
+
+/* Shows: INT-5, FSM-2, FSM-9, MEMORY_CORRUPTED */
+void test_memory_corrupted(void) {
+    fixture_active(&f);
+    f.receive_path_dead = true; /* the call that finds it is the tick */
+    fixture_mute_vcu(&f, true);
+    fixture_mute_eps(&f, true);
+    fixture_mute_ai(&f, true);
+    flip(1000);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_MEMORY_CORRUPTED, true);
+    expect_reason(&f, AGV_FAULT_MEMORY_CORRUPTED);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_led(&f, -1);
+    expect_output(&f, false);
+    expect_safe_commands(&f, f.call, NO_HOLD);
+    f.receive_path_dead = false;
+    fixture_mute_vcu(&f, false);
+    fixture_mute_eps(&f, false);
+    fixture_vehicle_confirms(&f);
+    expect_no_reset(AGV_FAULT_MEMORY_CORRUPTED);
+}
+
+/* The receive path checks in between the flip and the tick that finds it. */
+/* Shows: INT-5, MEMORY_CORRUPTED */
+void test_memory_corrupted_before_the_receive_path_checks_in(void) {
+    fixture_active(&f);
+    fixture_mute_vcu(&f, true);
+    fixture_mute_eps(&f, true);
+    fixture_mute_ai(&f, true);
+    flip(1000);
+    fixture_run(&f, 1);
+    expect_reason(&f, AGV_FAULT_MEMORY_CORRUPTED);
+    expect_state(&f, AGV_STATE_TRIPPED);
+}
+
+/* In the handling of a frame it is found just as well. */
+/* Shows: INT-5, FSM-2, MEMORY_CORRUPTED */
+void test_memory_corrupted_is_found_by_a_frame(void) {
+    fixture_active(&f);
+    flip(77);
+    fixture_send_now(&f, AGV_MSG_WHEEL_SPEED);
+    expect_reason(&f, AGV_FAULT_MEMORY_CORRUPTED);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_safe_commands(&f, f.call, NO_HOLD);
+}
+
+/* Every single bit of it, in STANDBY and in ACTIVE, one after the other, each in a supervisor that was healthy before. */
+static void flip_every_bit(void) {
+    const agv_supervisor_t healthy = f.supervisor;
+    const size_t bits = 8u * (offsetof(agv_supervisor_t, seal) + sizeof healthy.seal); /* padding may follow */
+    for (size_t bit = 0; bit < bits; bit++) {
+        f.supervisor = healthy;
+        sim_store_init(&f.store);
+        flip(bit);
+        fixture_forget_sent(&f);
+        agv_supervisor_tick(&f.supervisor, &f.ports, f.now_ms);
+        expect_reason(&f, AGV_FAULT_MEMORY_CORRUPTED);
+        expect_state(&f, AGV_STATE_TRIPPED);
+        expect_output(&f, false);
+        expect_safe_commands(&f, f.call, NO_HOLD);
+    }
+}
+
+/* Shows: INT-5, MEMORY_CORRUPTED */
+void test_every_flipped_bit_is_found(void) {
+    fixture_standby(&f);
+    flip_every_bit();
+    fixture_init(&f);
+    fixture_active(&f);
+    flip_every_bit();
+}
+
+/* ---- TX_GATE_REFUSED ---- */
+
+enum { WAITING_RAW = 10843 }; /* 2A5Bh */
+static const uint8_t WAITING[8] = {0x5B, 0x2A};
+
+/* A bit flips while frames are being sent, after the memory was checked: the steering command that waits is out of range
+ * before it leaves. */
+static bool corrupt_what_waits(void) {
+    uint8_t *memory = (uint8_t *)&f.supervisor;
+    bool found = false;
+    for (size_t at = 0; at + sizeof WAITING <= sizeof f.supervisor; at++) {
+        if (memcmp(&memory[at], WAITING, sizeof WAITING) == 0) {
+            memory[at + 1] ^= 0x80u;
+            found = true;
+        }
+    }
+    return found;
+}
+
+typedef struct {
+    sim_hal_sink_fn *sink; /* the fixture's own */
+    bool corrupted;
+} tamper_t;
+
+static tamper_t tamper;
+
+static void corrupt_and_pass_on(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
+    if (frame->id == 0x43F && !tamper.corrupted) {
+        tamper.corrupted = corrupt_what_waits();
+    }
+    tamper.sink(ctx, side, frame);
+}
+
+/* The gateway has 43Fh and 065h waiting; while the first of them leaves, the second is corrupted. */
+/* Shows: INT-4, FSM-2, TX_GATE_REFUSED */
+void test_the_gate_refuses_what_may_not_leave(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    fixture_active(&f);
+    fixture_run_before(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    fixture_command_angle(&f, WAITING_RAW);
+    fixture_run(&f, 5);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    tamper = (tamper_t){.sink = f.hal.sink};
+    f.hal.sink = corrupt_and_pass_on;
+    fixture_forget_sent(&f);
+    fixture_run(&f, 1);
+    TEST_ASSERT_TRUE(tamper.corrupted);
+    TEST_ASSERT_EQUAL_UINT32(1, agv_supervisor_counters(&f.supervisor)->gate_refused);
+    expect_fault(&f, AGV_FAULT_TX_GATE_REFUSED, true);
+    expect_reason(&f, AGV_FAULT_TX_GATE_REFUSED);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x065)); /* the held angle, and not what waited */
+    const uint8_t hold[8] = {0x28, 0x23};
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(hold, fixture_nth_sent(&f, 0x065, 0)->data, 8);
+    TEST_ASSERT_EQUAL_HEX8(0x70, fixture_nth_sent(&f, 0x43F, 1)->data[4]);
+    TEST_ASSERT_EQUAL_HEX8(8, fixture_nth_sent(&f, 0x168, 0)->data[0]);
+    fixture_run(&f, 1);
+    expect_led(&f, -1);
+    fixture_run(&f, 998);
+    expect_fault(&f, AGV_FAULT_TX_GATE_REFUSED, true);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_TX_GATE_REFUSED, false); /* an event */
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_TX_GATE_REFUSED));
+}
+
+/* ---- STARTUP_TIMEOUT, SAFE_STATE_UNCONFIRMED: raised by the states ---- */
+
+/* 10 s in INIT; ends when INIT is left. */
+/* Shows: STARTUP_TIMEOUT */
+void test_startup_timeout(void) {
+    fixture_mode(&f, MODE_NEITHER);
+    fixture_start(&f);
+    fixture_run(&f, 10000);
+    expect_nothing(&f, AGV_FAULT_STARTUP_TIMEOUT, AGV_STATE_INIT);
+    fixture_run(&f, 1);
+    expect_warning(&f, AGV_FAULT_STARTUP_TIMEOUT, AGV_STATE_INIT);
+    fixture_run(&f, 1);
+    expect_led(&f, -1);
+    fixture_run(&f, 5000);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run(&f, 400);
+    expect_fault(&f, AGV_FAULT_STARTUP_TIMEOUT, true);
+    fixture_run(&f, 200);
+    expect_state(&f, AGV_STATE_STANDBY);
+    expect_fault(&f, AGV_FAULT_STARTUP_TIMEOUT, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_STARTUP_TIMEOUT));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_STARTUP_TIMEOUT));
+    expect_led(&f, 0);
+}
+
+/* 500 ms after the trip the vehicle still reports the autopilot as engaged; ends with the confirmation. */
+/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
+void test_safe_state_unconfirmed(void) {
+    agv_event_t event;
+    fixture_active(&f);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x02;
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_reason(&f, AGV_FAULT_REMOTE_POWER_LOST);
+    fixture_run(&f, 500);
+    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
+    expect_output(&f, true);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
+    expect_output(&f, false);
+    TEST_ASSERT_TRUE(fixture_last_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, &event));
+    TEST_ASSERT_EQUAL_INT(AGV_CLASS_TRIP, event.b);
+    expect_led(&f, 16); /* the reason of the trip ranks higher */
+    fixture_vehicle_confirms(&f);
+    fixture_run(&f, 30);
+    expect_state(&f, AGV_STATE_SAFE);
+    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
+    expect_reason(&f, AGV_FAULT_REMOTE_POWER_LOST);
+}
