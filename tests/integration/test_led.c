@@ -1,0 +1,230 @@
+/* The alarm LED, millisecond by millisecond. */
+#include "fixture.h"
+#include "unity.h"
+#include "walk.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+/* n flashes of 200 ms on and 200 ms off, then 1.4 s dark. */
+static bool flashes(unsigned n, unsigned ms) {
+    const unsigned within = ms % (n * 400 + 1400);
+    return within < n * 400 && within % 400 < 200;
+}
+
+/* The pattern begins in the tick that comes next. Three times over. */
+static void expect_flashes(unsigned n) {
+    for (unsigned ms = 0; ms < 3 * (n * 400 + 1400); ms++) {
+        fixture_run(&f, 1);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(flashes(n, ms), f.hal.led.on, f.what);
+    }
+    expect_led(&f, (int)n);
+}
+
+static void expect_on_and_off(unsigned each_ms, unsigned periods) {
+    for (unsigned ms = 0; ms < periods * 2 * each_ms; ms++) {
+        fixture_run(&f, 1);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ms % (2 * each_ms) < each_ms, f.hal.led.on, f.what);
+    }
+}
+
+static void expect_blinking(void) {
+    expect_on_and_off(100, 20);
+    expect_led(&f, -1);
+}
+
+/* The driving vehicle reports this alarm once; the AI computer is silent from then on. */
+static void trip_by_alarm(uint8_t alarms) {
+    fixture_init(&f);
+    f.long_run = true;
+    fixture_active(&f);
+    fixture_mute_ai(&f, true);
+    fixture_vehicle_confirms(&f); /* later, so that nothing is unconfirmed */
+    walk_alarm(&f, alarms);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    walk_alarm(&f, ALARM_NONE);
+    expect_state(&f, AGV_STATE_TRIPPED);
+}
+
+/* Shows: LED-1 */
+void test_healthy_is_1_s_on_and_1_s_off(void) {
+    fixture_start(&f);
+    TEST_ASSERT_TRUE(f.hal.led.on); /* the start itself is its first moment */
+    for (unsigned ms = 1; ms < 7000; ms++) {
+        fixture_run(&f, 1);
+        TEST_ASSERT_EQUAL_INT(ms % 2000 < 1000, f.hal.led.on);
+    }
+    expect_led(&f, 0);
+}
+
+/* Shows: LED-1, S_DRIVER_ALARM, REMOTE_SIGNAL_LOST, REMOTE_POWER_LOST, VCU_EPS_HARDWARE_FAULT, VCU_EPS_CAN_BUS_FAULT */
+void test_code_n_is_n_flashes_and_1_4_s_dark(void) {
+    static const struct {
+        uint8_t alarms;
+        unsigned code;
+    } ROWS[] = {
+        {ALARM_S_DRIVER, 8}, {ALARM_REMOTE_SIGNAL, 17}, {ALARM_REMOTE_POWER, 16}, {ALARM_EPS_HARDWARE, 13}, {0x20, 12}};
+    for (unsigned i = 0; i < sizeof ROWS / sizeof ROWS[0]; i++) {
+        trip_by_alarm(ROWS[i].alarms);
+        expect_flashes(ROWS[i].code);
+    }
+}
+
+/* Shows: LED-1, THROTTLE_STATUS_TIMEOUT */
+void test_code_07(void) {
+    fixture_standby(&f);
+    fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
+    f.traffic[AGV_MSG_THROTTLE_STATUS].muted = true;
+    fixture_run(&f, 60);
+    expect_led(&f, 0);
+    expect_flashes(7);
+}
+
+/* Shows: LED-1, BUS_OFF */
+void test_code_14(void) {
+    fixture_standby(&f);
+    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
+    expect_flashes(14);
+}
+
+/* Shows: LED-1, VCU_HEARTBEAT_LOST */
+void test_a_fault_without_a_code_blinks_100_ms_on_and_100_ms_off(void) {
+    fixture_standby(&f);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].muted = true;
+    fixture_run(&f, 50);
+    expect_led(&f, 0);
+    expect_blinking();
+}
+
+/* Shows: LED-1, VCU_LEVEL2_ALARM */
+void test_a_warning_without_a_code_blinks_too_and_ends(void) {
+    fixture_standby(&f);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 0x04;
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_blinking();
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 0;
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_on_and_off(1000, 2);
+    expect_led(&f, 0);
+}
+
+/* ---- Which one is shown ---- */
+
+/* Shows: LED-1, FSM-5 */
+void test_a_latched_trip_is_shown_until_the_reset(void) {
+    trip_by_alarm(ALARM_S_DRIVER);
+    fixture_run(&f, 20000);
+    expect_state(&f, AGV_STATE_SAFE);
+    expect_led(&f, 8);
+    fixture_button(&f, true);
+    fixture_run(&f, 1050);
+    expect_state(&f, AGV_STATE_STANDBY);
+    expect_led(&f, 0);
+}
+
+/* Shows: LED-1, FSM-7 */
+void test_a_latch_that_was_kept_through_a_restart_is_shown(void) {
+    trip_by_alarm(ALARM_S_DRIVER);
+    fixture_run(&f, 100);
+    fixture_restart(&f, HAL_RESET_WATCHDOG);
+    fixture_run(&f, 5000);
+    expect_led(&f, 8);
+}
+
+/* Of trips the upper row, also when it came later; latched counts as active. */
+/* Shows: LED-1 */
+void test_of_two_trips_the_upper_row_is_shown(void) {
+    trip_by_alarm(ALARM_REMOTE_POWER);
+    fixture_run(&f, 100);
+    expect_led(&f, 16);
+    walk_alarm(&f, ALARM_REMOTE_SIGNAL); /* one row above */
+    fixture_run(&f, 20);
+    expect_led(&f, 17);
+    walk_alarm(&f, ALARM_NONE);
+    fixture_run(&f, 100);
+    expect_led(&f, 17);
+    f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x40; /* motor encoder: far above */
+    fixture_run(&f, 20);
+    expect_led(&f, 13);
+}
+
+/* The warning 167h bit 5 stands above the S-driver alarm, but a trip goes before it. */
+/* Shows: LED-1, EPS_TEMP_ABOVE_110 */
+void test_trips_go_before_warnings(void) {
+    fixture_standby(&f);
+    f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x10;
+    fixture_run(&f, 20);
+    expect_led(&f, 13);
+    walk_trip(&f);
+    fixture_run(&f, 20);
+    expect_led(&f, 8);
+}
+
+/* Shows: LED-1, STEERING_POSITION_TIMEOUT */
+void test_of_two_warnings_the_upper_row_is_shown(void) {
+    fixture_standby(&f);
+    f.traffic[AGV_MSG_STEERING_POSITION].muted = true;
+    fixture_run(&f, 100);
+    expect_led(&f, 12);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 0x80; /* VCU_LEVEL2_ALARM */
+    fixture_run(&f, 20);
+    expect_led(&f, -1);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 0;
+    fixture_run(&f, 20);
+    expect_led(&f, 12);
+}
+
+/* ---- How ---- */
+
+/* A new code begins at once, with its first flash. */
+/* Shows: LED-1 */
+void test_a_new_code_begins_anew(void) {
+    trip_by_alarm(ALARM_REMOTE_POWER);
+    fixture_run(&f, 330); /* in the dark of the first flash */
+    TEST_ASSERT_FALSE(f.hal.led.on);
+    walk_alarm(&f, ALARM_REMOTE_SIGNAL);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    walk_alarm(&f, ALARM_NONE);
+    expect_flashes(17);
+}
+
+/* Steps that come every 10 ms: the same pattern in time. */
+/* Shows: LED-1 */
+void test_the_pattern_keeps_time_when_steps_come_late(void) {
+    trip_by_alarm(ALARM_S_DRIVER);
+    fixture_run(&f, 1); /* first moment of the pattern */
+    fixture_mute_vcu(&f, false);
+    for (unsigned ms = 10; ms < 10000; ms += 10) {
+        fixture_run_without_ticks(&f, 10);
+        fixture_jump(&f, 0);
+        TEST_ASSERT_EQUAL_INT(flashes(8, ms), f.hal.led.on);
+    }
+}
+
+/* Shows: LED-1 */
+void test_the_led_is_switched_when_it_changes_only(void) {
+    fixture_standby(&f);
+    fixture_run(&f, 10);
+    const uint32_t calls = f.hal.op_calls[SIM_HAL_OP_LED_SET];
+    fixture_run(&f, 10000);
+    TEST_ASSERT_EQUAL_UINT32(calls + 10, f.hal.op_calls[SIM_HAL_OP_LED_SET]);
+}
+
+/* Shows: TOP-4, LED-1 */
+void test_shadow_is_seen_on_the_led(void) {
+    unsigned lit_ms = 0;
+    f.config.shadow = AGV_SHADOW_ON;
+    fixture_standby(&f);
+    for (unsigned ms = 0; ms < 2000; ms++) {
+        fixture_run(&f, 1);
+        lit_ms += f.hal.led.on ? 1 : 0;
+    }
+    TEST_ASSERT_TRUE(lit_ms > 0 && lit_ms < 500); /* healthy would be 1000 */
+}
