@@ -202,3 +202,23 @@ void test_a_frozen_heartbeat_needs_a_gateway(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
     TEST_ASSERT_EQUAL_INT(AGV_CONFIG_OK, agv_config_check(&f.config).problem);
 }
+
+static void expect_outlives_every_other_reset(agv_fault_t fault) {
+    for (unsigned cause = HAL_RESET_WATCHDOG; cause <= HAL_RESET_UNKNOWN; cause++) {
+        fixture_button(&f, false);
+        fixture_restart(&f, (hal_reset_cause_t)cause);
+        expect_cannot_be_reset(fault);
+    }
+}
+
+/* Shows: FSM-9, FSM-7, SELF_TEST_FAILED, CONFIG_INVALID, MEMORY_CORRUPTED */
+void test_what_a_power_on_ends_outlives_every_other_reset(void) {
+    start_with_failed_self_test();
+    expect_outlives_every_other_reset(AGV_FAULT_SELF_TEST_FAILED);
+    fixture_init(&f);
+    start_with_invalid_config();
+    expect_outlives_every_other_reset(AGV_FAULT_CONFIG_INVALID);
+    fixture_init(&f);
+    corrupt_memory();
+    expect_outlives_every_other_reset(AGV_FAULT_MEMORY_CORRUPTED);
+}

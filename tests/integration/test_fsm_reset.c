@@ -391,3 +391,12 @@ void test_after_the_reset_the_autopilot_can_be_engaged_again(void) {
     expect_state(&f, AGV_STATE_ACTIVE);
     expect_silence(&f);
 }
+
+/* Shows: FSM-3, FSM-7 */
+void test_a_press_that_began_before_a_restart_does_not_count(void) {
+    walk_to_safe(&f);
+    press(true);
+    fixture_run(&f, 500);
+    fixture_restart(&f, HAL_RESET_WATCHDOG);
+    expect_no_reset_before_a_new_press();
+}
