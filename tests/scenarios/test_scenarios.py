@@ -1,0 +1,171 @@
+"""Every shipped scenario: as it is, in the other topology and with the other ID set; and that each of them can fail."""
+import json
+import os
+import pathlib
+import sys
+import unittest
+import xml.etree.ElementTree
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "host_sim"))
+import hostsim  # noqa: E402
+
+FOLDER = pathlib.Path(__file__).resolve().parents[2] / "host_sim" / "scenarios"
+SHIPPED = sorted(FOLDER.glob("*.yaml"))
+LEAST = 60  # fewer is a mistake of this test
+
+GOOD = """\
+name: N & <N>
+shows: [SUP-2]
+duration_ms: 600
+expect:
+  states: [{to: INIT, at_ms: 0}, {to: STANDBY, at_ms: [510, 513]}]
+  safety_output: [{closed: true, at_ms: [410, 513]}]
+"""
+
+
+def fixes(path, key):
+    return any(line.startswith(key + ":") for line in path.read_text(encoding="utf-8").splitlines())
+
+
+class Shipped(hostsim.Case):
+    def play(self, files, *options):
+        self.assertGreaterEqual(len(files), LEAST)
+        result = self.run_program("scenario", "--junit", "j.xml", *options, *files)
+        failed = [line for line in result.stdout.splitlines() if not line.startswith("ok ")]
+        self.assertEqual(result.status, 0, "\n".join(failed) + result.stderr)
+        suite = xml.etree.ElementTree.parse(self.folder / "j.xml").getroot()
+        self.assertEqual(suite.get("tests"), str(len(files)))
+        self.assertEqual(suite.get("failures"), "0")
+        self.assertEqual(len(suite.findall("testcase")), len(files))
+        print(f"\n{len(files)} scenarios passed {' '.join(options)}", end=" ")
+
+    def test_every_scenario_passes(self):
+        self.play(SHIPPED)
+
+    # Shows: TOP-2
+    def test_every_scenario_that_does_not_fix_the_topology_passes_in_the_gateway(self):
+        self.play([path for path in SHIPPED if not fixes(path, "topology")], "--topology", "gateway")
+
+    # Shows: P1
+    def test_every_scenario_that_does_not_fix_the_id_set_passes_with_the_table_ids(self):
+        self.play([path for path in SHIPPED if not fixes(path, "id_set")], "--id-set", "table")
+
+    def test_both_at_once(self):
+        self.play([path for path in SHIPPED if not fixes(path, "topology") and not fixes(path, "id_set")],
+                  "--topology", "gateway", "--id-set", "table")
+
+    def test_no_scenario_passes_against_a_planted_supervisor(self):
+        for planted in ("mute", "tripped"):
+            result = self.run_program("scenario", "--planted", planted, *SHIPPED)
+            self.assertEqual(result.status, 1, result.stderr)
+            passed = [line for line in result.stdout.splitlines() if line.startswith("ok ")]
+            self.assertEqual(passed, [])
+            self.assertEqual(result.stdout.count("FAILED  "), len(SHIPPED))
+            print(f"\n{len(SHIPPED)} scenarios failed --planted {planted}", end=" ")
+
+    def test_the_same_run_twice_is_the_same(self):
+        for name in ("demo", "override", "garbage_from_eps", "id_collision"):
+            runs = []
+            for _ in range(2):
+                self.run_good("scenario", "--events", "e.jsonl", FOLDER / (name + ".yaml"))
+                runs.append((self.folder / "e.jsonl").read_text(encoding="ascii"))
+            self.assertEqual(*runs)
+
+
+class Command(hostsim.Case):
+    def scenario(self, text, *options):
+        self.write("s.yaml", text)
+        return self.run_program("scenario", *options, "s.yaml")
+
+    def test_it_says_what_held(self):
+        result = self.scenario(GOOD)
+        self.assertEqual(result.status, 0, result.stderr)
+        self.assertEqual(result.stdout, "ok      s.yaml: 3 expectations\n1 scenarios: 1 passed, 0 failed\n")
+
+    def test_it_says_what_did_not_hold_and_what_was_seen(self):
+        result = self.scenario(GOOD.replace("[510, 513]", "[500, 505]"))
+        self.assertEqual(result.status, 1)
+        self.assertEqual(result.stdout.splitlines(), [
+            "FAILED  s.yaml: 1 of 3 expectations",
+            "        line 5: STANDBY (no reason) is expected in 500..505 ms, seen: STANDBY (no reason) at 511 ms",
+            "1 scenarios: 0 passed, 1 failed"])
+
+    def test_results_as_junit(self):
+        self.write("bad & <worse>.yaml", GOOD.replace("to: INIT", "to: SAFE"))
+        self.write("s.yaml", GOOD)
+        result = self.run_program("scenario", "--junit", "j.xml", "s.yaml", "bad & <worse>.yaml")
+        self.assertEqual(result.status, 1, result.stderr)
+        good, bad = xml.etree.ElementTree.parse(self.folder / "j.xml").getroot()
+        self.assertEqual((good.get("name"), good.find("failure")), ("N & <N>", None))
+        self.assertEqual(bad.get("classname"), "bad & <worse>.yaml")
+        self.assertIn("line 5: SAFE", bad.find("failure").get("message"))
+
+    def test_one_bad_file_and_nothing_runs_and_nothing_is_written(self):
+        self.write("good.yaml", GOOD)
+        self.write("bad.yaml", GOOD + "oops: 1\n")
+        result = self.run_program("scenario", "--junit", "j.xml", "good.yaml", "bad.yaml")
+        self.assert_refused(result, "bad.yaml:7: unknown key 'oops'")
+        self.assertEqual(result.stdout, "")
+        self.assertEqual(self.files(), ["bad.yaml", "good.yaml"])
+
+    def test_events(self):
+        result = self.scenario(GOOD, "--events", "e.jsonl")
+        self.assertEqual(result.status, 0, result.stderr)
+        events = [json.loads(line) for line in (self.folder / "e.jsonl").read_text(encoding="ascii").splitlines()]
+        self.assertEqual(events[0], {"t_ms": 0, "event": "state", "from": None, "to": "INIT", "reason": None})
+        self.assertEqual(events[-1]["event"], "summary")
+        self.assertEqual(events[-1]["final_state"], "STANDBY")
+
+    def test_events_are_of_one_scenario(self):
+        self.write("s.yaml", GOOD)
+        self.assert_refused(self.run_program("scenario", "--events", "e", "s.yaml", "s.yaml"), "--events", "2 were given")
+
+    def test_an_output_that_is_an_input(self):
+        self.assert_refused(self.scenario(GOOD, "--junit", "s.yaml"), "s.yaml")
+
+    def test_options_that_make_no_sense(self):
+        self.assert_refused(self.scenario(GOOD, "--bus", "vcan0"), "--bus", "vcan0")
+        self.assert_refused(self.scenario(GOOD, "--planted", "garden"), "--planted", "garden")
+        self.assert_refused(self.run_program("scenario"), "FILE is missing")
+        self.assert_refused(self.run_program("scenario", "nowhere.yaml"), "nowhere.yaml: No such file")
+        self.assert_refused(self.scenario(GOOD + "topology: shared\n", "--topology", "gateway"), "fixes the topology")
+        self.assert_refused(self.scenario(GOOD, "--junit", "nowhere/j.xml"), "nowhere/j.xml")
+
+    def test_sim_is_the_bus(self):
+        self.assertEqual(self.scenario(GOOD, "--bus", "sim").status, 0)
+
+    def test_a_configuration_lies_under_that_of_the_file(self):
+        self.write("c.yaml", "init_hold_ms: 400\n")
+        self.assertEqual(self.scenario(GOOD.replace("[510, 513]", "[410, 413]"), "--config", "c.yaml").status, 0)
+        over = GOOD + "config: {init_hold_ms: 500}\n"
+        self.assertEqual(self.scenario(over, "--config", "c.yaml").status, 0)
+
+
+class Demo(hostsim.Case):
+    def test_it_shows_the_main_job(self):
+        result = self.run_good("demo")
+        for text in ("ai          stop", "=> TRIPPED: STEERING_COMMAND_TIMEOUT", "sends 168 [08 00 00 00 00 00 00 00]",
+                     "reports manual", "reports gear P", "=> SAFE", "press button 1", "reset accepted",
+                     "=> TRIPPED: EPS_OVER_CURRENT_SHUTDOWN", "first safe frame is out", "Seen as promised"):
+            self.assertIn(text, result.stdout)
+
+    def test_a_scenario_by_name_and_by_path(self):
+        self.assertIn("BUS_OFF", self.run_good("demo", "--scenario", "bus_off").stdout)
+        self.write("s.yaml", GOOD)
+        self.assertIn("=> STANDBY", self.run_good("demo", "--scenario", "./s.yaml").stdout)
+
+    def test_what_is_not_seen_is_said(self):
+        self.write("s.yaml", GOOD.replace("[510, 513]", "[500, 505]"))
+        result = self.run_program("demo", "--scenario", "s.yaml")
+        self.assertEqual(result.status, 1)
+        self.assertIn("NOT as promised, s.yaml:\n  line 5: STANDBY", result.stdout)
+
+    def test_a_name_that_there_is_not(self):
+        self.assert_refused(self.run_program("demo", "--scenario", "nonesuch"), "nonesuch", "host_sim/scenarios")
+        self.assert_refused(self.run_program("demo", "--scenario", "x" * 5000), "too long")
+        self.assert_refused(self.run_program("demo", "more"), "more")
+
+
+if __name__ == "__main__":
+    os.environ.setdefault("HOST_SIM", "build/host/bin/host_sim")
+    unittest.main()

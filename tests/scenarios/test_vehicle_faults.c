@@ -1,0 +1,257 @@
+/* The vehicle that misbehaves: nodes that stop, start late, restart, freeze, lag, repeat, send garbage; strangers. */
+#include "vehicle_fixture.h"
+
+void setUp(void) {
+    vehicle_defaults(&config);
+    connected = true;
+    begin();
+}
+
+void tearDown(void) {
+}
+
+static size_t count_from(vehicle_node_t node, size_t first) {
+    size_t count = 0u;
+    for (size_t i = first; i < sent_count; i++) {
+        count += (sent[i].from == node) ? 1u : 0u;
+    }
+    return count;
+}
+
+void test_nodes_start_when_they_are_told(void) {
+    config.start_ms[VEHICLE_EPS] = 100u;
+    config.start_ms[VEHICLE_AI] = VEHICLE_NEVER;
+    begin();
+    run_until(100u);
+    TEST_ASSERT_EQUAL_size_t(0u, count_from(VEHICLE_EPS, 0u));
+    run_until(102u);
+    TEST_ASSERT_EQUAL_size_t(1u, count_from(VEHICLE_EPS, 0u));
+    run_until(1000u);
+    TEST_ASSERT_EQUAL_size_t(0u, count_from(VEHICLE_AI, 0u));
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_START, .node = VEHICLE_AI});
+    run_until(1010u);
+    TEST_ASSERT_EQUAL_size_t(2u, count_from(VEHICLE_AI, 0u));
+    TEST_ASSERT_TRUE(look().running[VEHICLE_AI]);
+}
+
+void test_a_node_that_stops_neither_sends_nor_hears(void) {
+    run_until(100u);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_STOP, .node = VEHICLE_VCU});
+    const size_t first = sent_count;
+    command(AGV_MSG_GEAR_COMMAND, AGV_GEAR_P, 0u);
+    run_until(200u);
+    TEST_ASSERT_EQUAL_size_t(0u, count_from(VEHICLE_VCU, first));
+    TEST_ASSERT_GREATER_THAN_size_t(0u, count_from(VEHICLE_EPS, first));
+    TEST_ASSERT_FALSE(look().running[VEHICLE_VCU]);
+}
+
+void test_a_restarted_vcu_begins_anew(void) {
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 300u});
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_ENGAGE}); /* before its start: nobody hears it */
+    run_until(10u);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_ENGAGE});
+    run_until(3000u);
+    TEST_ASSERT_EQUAL_INT32(1200, look().speed_mm_s);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_RESTART, .node = VEHICLE_VCU, .ms = 500u});
+    const size_t first = sent_count;
+    run_until(3500u);
+    TEST_ASSERT_EQUAL_size_t(0u, count_from(VEHICLE_VCU, first));
+    run_until(3510u);
+    TEST_ASSERT_EQUAL_UINT8(0u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7]);
+    TEST_ASSERT_EQUAL_HEX8(0x40u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
+    run_until(3800u);
+    TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_N, look().gear);
+    TEST_ASSERT_LESS_THAN_INT32(1100, look().speed_mm_s); /* it coasted meanwhile */
+}
+
+/* Shows: P13 */
+void test_a_frozen_counter_stands_still_and_runs_on(void) {
+    run_until(100u);
+    const uint8_t before = last_of(AGV_MSG_STEERING_STATUS)->frame.data[0];
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_FREEZE, .node = VEHICLE_EPS});
+    run_until(200u);
+    TEST_ASSERT_EQUAL_UINT8(before, last_of(AGV_MSG_STEERING_STATUS)->frame.data[0]);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_UNFREEZE, .node = VEHICLE_EPS});
+    run_until(210u);
+    TEST_ASSERT_EQUAL_UINT8(before + 1u, last_of(AGV_MSG_STEERING_STATUS)->frame.data[0]);
+}
+
+void test_lag_and_period_stretch_the_cycle(void) {
+    run_until(100u);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_LAG, .node = VEHICLE_EPS, .ms = 10u});
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_PERIOD, .message = AGV_MSG_GEAR_COMMAND, .ms = 20u});
+    run_until(200u);
+    const size_t first = sent_count;
+    run_until(1200u);
+    TEST_ASSERT_EQUAL_size_t(50u, count_of(AGV_MSG_EPS_STATUS, first));
+    TEST_ASSERT_EQUAL_size_t(50u, count_of(AGV_MSG_GEAR_COMMAND, first));
+    TEST_ASSERT_EQUAL_size_t(10u, count_of(AGV_MSG_THROTTLE_COMMAND, first));
+}
+
+void test_repeated_frames_are_the_same_frames(void) {
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_REPEAT, .node = VEHICLE_EPS, .count = 2u});
+    run_until(2u);
+    TEST_ASSERT_EQUAL_size_t(3u, count_of(AGV_MSG_STEERING_STATUS, 0u));
+    TEST_ASSERT_EQUAL_MEMORY(&sent[sent_count - 1u].frame, &sent[sent_count - 3u].frame, sizeof(hal_can_frame_t));
+}
+
+void test_garbage_of_each_kind(void) {
+    vehicle_action_t garbage = {.what = VEHICLE_DO_GARBAGE, .node = VEHICLE_EPS};
+    size_t lengths[AGV_DLC + 1u] = {0};
+
+    garbage.garbage = VEHICLE_GARBAGE_LENGTH;
+    (void)act(garbage);
+    run_until(1000u);
+    for (size_t i = 0u; i < sent_count; i++) {
+        if (sent[i].from == VEHICLE_EPS) {
+            lengths[sent[i].frame.length]++;
+        }
+    }
+    TEST_ASSERT_EQUAL_size_t(0u, lengths[AGV_DLC]);
+    for (size_t n = 0u; n < AGV_DLC; n++) {
+        TEST_ASSERT_GREATER_THAN_size_t(0u, lengths[n]);
+    }
+    garbage.garbage = VEHICLE_GARBAGE_REMOTE;
+    (void)act(garbage);
+    run_until(1010u);
+    TEST_ASSERT_EQUAL_HEX8(HAL_CAN_REMOTE, last_of(AGV_MSG_EPS_STATUS)->frame.flags);
+    garbage.garbage = VEHICLE_GARBAGE_EXTENDED;
+    (void)act(garbage);
+    run_until(1012u);
+    TEST_ASSERT_EQUAL_HEX8(HAL_CAN_EXTENDED, sent[sent_count - 1u].frame.flags);
+    TEST_ASSERT_EQUAL_HEX32(0x067u << 18, sent[sent_count - 1u].frame.id);
+    garbage.garbage = VEHICLE_GARBAGE_RANDOM;
+    (void)act(garbage);
+    run_until(1020u);
+    hal_can_frame_t before = last_of(AGV_MSG_STEERING_POSITION)->frame;
+    run_until(1030u);
+    TEST_ASSERT_EQUAL_UINT8(AGV_DLC, before.length);
+    TEST_ASSERT_FALSE(memcmp(before.data, last_of(AGV_MSG_STEERING_POSITION)->frame.data, AGV_DLC) == 0);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_RECOVER, .node = VEHICLE_EPS});
+    run_until(1040u);
+    TEST_ASSERT_EQUAL_HEX8(0x80u, last_of(AGV_MSG_STEERING_POSITION)->frame.data[0]);
+}
+
+void test_a_message_is_muted_for_so_many_frames(void) {
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_MUTE, .message = AGV_MSG_EPS_STATUS, .count = 3u});
+    run_until(100u);
+    TEST_ASSERT_EQUAL_size_t(7u, count_of(AGV_MSG_EPS_STATUS, 0u));
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_MUTE, .message = AGV_MSG_EPS_STATUS, .count = VEHICLE_FOREVER});
+    run_until(1000u);
+    TEST_ASSERT_EQUAL_size_t(7u, count_of(AGV_MSG_EPS_STATUS, 0u));
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_UNMUTE, .message = AGV_MSG_EPS_STATUS});
+    run_until(1010u);
+    TEST_ASSERT_EQUAL_size_t(8u, count_of(AGV_MSG_EPS_STATUS, 0u));
+}
+
+void test_a_field_keeps_a_value_for_so_many_frames(void) {
+    vehicle_action_t patch = {.what = VEHICLE_DO_PATCH, .message = AGV_MSG_VEHICLE_STATUS, .count = 2u};
+
+    memset(patch.keep, 0xFF, sizeof patch.keep);
+    patch.keep[6] = 0x3Fu;
+    patch.value[6] = 0xC0u;
+    (void)act(patch);
+    run_until(20u);
+    TEST_ASSERT_EQUAL_HEX8(0xC0u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
+    TEST_ASSERT_EQUAL_UINT8(1u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[7]); /* the counter runs on */
+    run_until(30u);
+    TEST_ASSERT_EQUAL_HEX8(0x40u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
+    patch.count = VEHICLE_FOREVER;
+    (void)act(patch);
+    run_until(1000u);
+    TEST_ASSERT_EQUAL_HEX8(0xC0u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_UNPATCH, .message = AGV_MSG_VEHICLE_STATUS});
+    run_until(1010u);
+    TEST_ASSERT_EQUAL_HEX8(0x40u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
+}
+
+void test_recovery_ends_every_misbehaviour_of_a_node(void) {
+    run_until(100u);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_FREEZE, .node = VEHICLE_EPS});
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_LAG, .node = VEHICLE_EPS, .ms = 50u});
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_REPEAT, .node = VEHICLE_EPS, .count = 5u});
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_MUTE, .message = AGV_MSG_EPS_STATUS, .count = VEHICLE_FOREVER});
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_EPS_STUCK, .on = true});
+    run_until(200u);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_RECOVER, .node = VEHICLE_EPS});
+    run_until(300u);
+    const size_t first = sent_count;
+    const uint8_t before = last_of(AGV_MSG_STEERING_STATUS)->frame.data[0];
+    run_until(400u);
+    TEST_ASSERT_EQUAL_size_t(30u, count_from(VEHICLE_EPS, first));
+    TEST_ASSERT_EQUAL_UINT8(before + 10u, last_of(AGV_MSG_STEERING_STATUS)->frame.data[0]);
+}
+
+void test_a_stranger_sends_once_or_again_and_again(void) {
+    vehicle_action_t stranger = {.what = VEHICLE_DO_SEND, .side = HAL_CAN_AI, .frame = {.id = 0x7FFu, .length = 2u}};
+
+    TEST_ASSERT_TRUE(act(stranger));
+    run_until(100u);
+    TEST_ASSERT_EQUAL_size_t(1u, count_from(VEHICLE_STRANGER, 0u));
+    for (size_t i = 0u; i < sent_count; i++) {
+        TEST_ASSERT_EQUAL((sent[i].from == VEHICLE_STRANGER) ? HAL_CAN_AI : HAL_CAN_VEHICLE, sent[i].side);
+    }
+    stranger.ms = 10u;
+    stranger.count = 5u;
+    TEST_ASSERT_TRUE(act(stranger));
+    run_until(200u);
+    TEST_ASSERT_EQUAL_size_t(6u, count_from(VEHICLE_STRANGER, 0u));
+    stranger.count = VEHICLE_FOREVER;
+    for (unsigned i = 0u; i < VEHICLE_STRANGERS_MAX; i++) {
+        TEST_ASSERT_TRUE(act(stranger));
+    }
+    TEST_ASSERT_FALSE(act(stranger));
+    run_until(300u);
+    TEST_ASSERT_EQUAL_size_t(6u + (10u * VEHICLE_STRANGERS_MAX), count_from(VEHICLE_STRANGER, 0u));
+    TEST_ASSERT_TRUE(act((vehicle_action_t){.what = VEHICLE_DO_STOP_SENDING}));
+    const size_t first = sent_count;
+    run_until(400u);
+    TEST_ASSERT_EQUAL_size_t(0u, count_from(VEHICLE_STRANGER, first));
+}
+
+void test_actions_that_make_no_sense_are_refused(void) {
+    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_STOP, .node = VEHICLE_NODES}));
+    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_MUTE, .message = AGV_MSG_NONE}));
+    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = 3u}));
+    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = 1u, .throttle_permille = 1001u}));
+    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = 1u, .angle_ddeg = 9001}));
+    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_REMOTE_DRIVE, .gear = 0u}));
+    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_HAND_STEER, .angle_ddeg = -9001}));
+    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_BUTTON, .count = 3u}));
+    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_SEND, .side = HAL_CAN_SIDES}));
+    TEST_ASSERT_FALSE(act((vehicle_action_t){.what = VEHICLE_DO_COUNT}));
+}
+
+void test_after_a_gap_there_is_no_burst(void) {
+    run_until(100u);
+    const size_t first = sent_count;
+    now_ms = 5000u;
+    run_until(5001u);
+    TEST_ASSERT_LESS_OR_EQUAL_size_t((size_t)AGV_MSG_COUNT, sent_count - first);
+    run_until(6000u);
+    TEST_ASSERT_EQUAL_size_t(100u, count_of(AGV_MSG_VEHICLE_STATUS, first));
+}
+
+void test_the_same_calls_give_the_same_frames(void) {
+    static sent_t before[LOG_MAX];
+    size_t count = 0u;
+
+    for (unsigned round = 0u; round < 2u; round++) {
+        begin();
+        (void)act(
+            (vehicle_action_t){.what = VEHICLE_DO_GARBAGE, .node = VEHICLE_AI, .garbage = VEHICLE_GARBAGE_RANDOM});
+        run_until(1000u);
+        (void)act((vehicle_action_t){.what = VEHICLE_DO_RESTART, .node = VEHICLE_VCU, .ms = 123u});
+        run_until(3000u);
+        if (round == 0u) {
+            memcpy(before, sent, sizeof before);
+            count = sent_count;
+        }
+    }
+    TEST_ASSERT_EQUAL_size_t(count, sent_count);
+    for (size_t i = 0u; i < count; i++) {
+        TEST_ASSERT_EQUAL_UINT64(before[i].t_ms, sent[i].t_ms);
+        TEST_ASSERT_EQUAL_HEX32(before[i].frame.id, sent[i].frame.id);
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(before[i].frame.data, sent[i].frame.data, AGV_DLC);
+    }
+}
