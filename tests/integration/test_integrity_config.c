@@ -1,0 +1,250 @@
+/* A configuration that makes no sense is refused, each with its reason, and a supervisor that is given one is tripped. */
+#include "fixture.h"
+#include "unity.h"
+#include "walk.h"
+
+static fixture_t f;
+static agv_config_t config;
+
+void setUp(void) {
+    fixture_init(&f);
+    agv_config_defaults(&config);
+}
+
+void tearDown(void) {
+}
+
+static void expect_problem(agv_config_problem_t problem, uint16_t setting, const char *what) {
+    const agv_config_verdict_t verdict = agv_config_check(&config);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(problem, verdict.problem, what);
+    TEST_ASSERT_EQUAL_UINT16_MESSAGE(setting, verdict.setting, what);
+}
+
+static void expect_too_weak(agv_fault_t fault) {
+    const agv_config_verdict_t verdict = agv_config_check(&config);
+    TEST_ASSERT_EQUAL_INT(AGV_CONFIG_FAULT_TOO_WEAK, verdict.problem);
+    TEST_ASSERT_EQUAL_INT(fault, verdict.fault);
+}
+
+static void expect_good(const char *what) {
+    TEST_ASSERT_EQUAL_INT_MESSAGE(AGV_CONFIG_OK, agv_config_check(&config).problem, what);
+}
+
+static void expect_bounds(uint16_t setting, uint16_t lowest, uint16_t highest) {
+    const char *name = agv_setting_info(setting)->name;
+    agv_config_defaults(&config);
+    TEST_ASSERT_TRUE(agv_config_set(&config, setting, lowest));
+    expect_good(name);
+    (void)agv_config_set(&config, setting, highest);
+    expect_good(name);
+    if (lowest > 0) {
+        (void)agv_config_set(&config, setting, (uint16_t)(lowest - 1u));
+        expect_problem(AGV_CONFIG_OUT_OF_RANGE, setting, name);
+    }
+    (void)agv_config_set(&config, setting, (uint16_t)(highest + 1u));
+    expect_problem(AGV_CONFIG_OUT_OF_RANGE, setting, name);
+    (void)agv_config_set(&config, setting, UINT16_MAX);
+    expect_problem(AGV_CONFIG_OUT_OF_RANGE, setting, name);
+}
+
+/* Shows: INT-2 */
+void test_the_defaults_make_sense(void) {
+    expect_good("shared bus");
+    config.topology = AGV_TOPOLOGY_GATEWAY;
+    expect_good("gateway");
+    config.id_set = AGV_ID_SET_TABLE;
+    expect_good("gateway, table");
+}
+
+/* Three cycles of 10, 25 or 100 ms. */
+/* Shows: INT-2 */
+void test_a_deadline_under_three_cycles_is_refused(void) {
+    expect_bounds(AGV_SETTING_vcu_heartbeat_timeout_ms, 30, 500);
+    expect_bounds(AGV_SETTING_eps_heartbeat_timeout_ms, 30, 500);
+    expect_bounds(AGV_SETTING_ai_heartbeat_timeout_ms, 300, 2000);
+    expect_bounds(AGV_SETTING_gear_command_timeout_ms, 300, 2000);
+    expect_bounds(AGV_SETTING_throttle_command_timeout_ms, 300, 2000);
+    expect_bounds(AGV_SETTING_steering_command_timeout_ms, 75, 1000);
+    expect_bounds(AGV_SETTING_gear_status_timeout_ms, 75, 1000);
+    expect_bounds(AGV_SETTING_throttle_status_timeout_ms, 30, 500);
+    expect_bounds(AGV_SETTING_eps_status_timeout_ms, 30, 500);
+    expect_bounds(AGV_SETTING_steering_position_timeout_ms, 30, 500);
+    expect_bounds(AGV_SETTING_wheel_speed_timeout_ms, 30, 500);
+}
+
+/* Shows: INT-2 */
+void test_a_period_count_or_time_of_zero_is_refused(void) {
+    static const uint16_t NEVER_ZERO[] = {
+        AGV_SETTING_status_frame_period_ms, AGV_SETTING_watchdog_period_ms,    AGV_SETTING_eps_supply_fault_frames,
+        AGV_SETTING_eps_mode_frames,        AGV_SETTING_status_invalid_frames, AGV_SETTING_command_too_fast_gaps,
+        AGV_SETTING_reset_hold_ms,          AGV_SETTING_confirm_timeout_ms,    AGV_SETTING_park_timeout_ms,
+        AGV_SETTING_init_hold_ms,           AGV_SETTING_standstill_speed_mm_s, AGV_SETTING_standstill_ms,
+        AGV_SETTING_tx_stalled_ms,          AGV_SETTING_bus_off_recovery_ms,   AGV_SETTING_override_gap_ms,
+        AGV_SETTING_event_hold_ms};
+    for (unsigned i = 0; i < sizeof NEVER_ZERO / sizeof NEVER_ZERO[0]; i++) {
+        agv_config_defaults(&config);
+        (void)agv_config_set(&config, NEVER_ZERO[i], 0);
+        expect_problem(AGV_CONFIG_OUT_OF_RANGE, NEVER_ZERO[i], agv_setting_info(NEVER_ZERO[i])->name);
+    }
+}
+
+/* Shows: INT-2 */
+void test_a_choice_beyond_its_words_is_refused(void) {
+    for (uint16_t setting = AGV_SETTING_topology; setting <= AGV_SETTING_gateway_in_manual; setting++) {
+        agv_config_defaults(&config);
+        (void)agv_config_set(&config, setting, 2);
+        expect_problem(AGV_CONFIG_OUT_OF_RANGE, setting, agv_setting_info(setting)->name);
+    }
+}
+
+/* Shows: INT-2 */
+void test_every_setting_is_checked_at_both_ends(void) {
+    for (uint16_t setting = 0; setting < AGV_SETTING_COUNT; setting++) {
+        const agv_setting_info_t *info = agv_setting_info(setting);
+        if (setting != AGV_SETTING_own_heartbeat) { /* needs the gateway, too */
+            expect_bounds(setting, info->lowest, info->highest);
+        }
+    }
+    TEST_ASSERT_FALSE(agv_config_set(&config, AGV_SETTING_COUNT, 0));
+    TEST_ASSERT_EQUAL_UINT16(0, agv_config_get(&config, AGV_SETTING_COUNT));
+    TEST_ASSERT_NULL(agv_setting_info(AGV_SETTING_COUNT));
+}
+
+/* Shows: INT-2, TOP-3, P1 */
+void test_an_identifier_twice_is_refused(void) {
+    static const uint16_t TAKEN[] = {0x43F, 0x201, 0x168, 0x075, 0x065, 0x363, 0x203,
+                                     0x0A3, 0x050, 0x067, 0x167, 0x267, 0x101};
+    for (unsigned i = 0; i < sizeof TAKEN / sizeof TAKEN[0]; i++) {
+        config.status_frame_id = TAKEN[i];
+        expect_problem(AGV_CONFIG_ID_TWICE, AGV_SETTING_status_frame_id, "taken");
+    }
+    config.status_frame_id = 0x102;
+    expect_good("free");
+    config.status_frame_id = 0x800;
+    expect_problem(AGV_CONFIG_OUT_OF_RANGE, AGV_SETTING_status_frame_id, "no 11-bit identifier");
+}
+
+/* ---- Classes ---- */
+
+/* Of the heartbeats of VCU and EPS, of the AI while engaged, and of the EPS; and what the supervisor itself found. */
+static const agv_fault_t FIXED[] = {
+    AGV_FAULT_SELF_TEST_FAILED,
+    AGV_FAULT_MEMORY_CORRUPTED,
+    AGV_FAULT_CONFIG_INVALID,
+    AGV_FAULT_SUPERVISOR_RESET,
+    AGV_FAULT_TX_GATE_REFUSED,
+    AGV_FAULT_STEP_OVERRUN,
+    AGV_FAULT_BUS_OFF,
+    AGV_FAULT_TX_STALLED,
+    AGV_FAULT_VCU_HEARTBEAT_LOST,
+    AGV_FAULT_VCU_HEARTBEAT_STUCK,
+    AGV_FAULT_EPS_HEARTBEAT_LOST,
+    AGV_FAULT_EPS_HEARTBEAT_STUCK,
+    AGV_FAULT_AI_HEARTBEAT_LOST,
+    AGV_FAULT_AI_HEARTBEAT_STUCK,
+    AGV_FAULT_EPS_OVER_CURRENT_SHUTDOWN,
+    AGV_FAULT_EPS_TEMP_ABOVE_120,
+    AGV_FAULT_EPS_MOTOR_ENCODER,
+    AGV_FAULT_EPS_POSITION_ENCODER,
+    AGV_FAULT_EPS_UNDER_VOLTAGE,
+    AGV_FAULT_EPS_OVER_VOLTAGE,
+    AGV_FAULT_EPS_EXCESSIVE_CURRENT,
+    AGV_FAULT_VCU_EPS_HARDWARE_FAULT,
+    AGV_FAULT_VCU_EPS_CAN_BUS_FAULT,
+    AGV_FAULT_VCU_AI_CAN_LOST,
+    AGV_FAULT_EPS_STATUS_TIMEOUT,
+    AGV_FAULT_GEAR_COMMAND_TIMEOUT,
+    AGV_FAULT_THROTTLE_COMMAND_TIMEOUT,
+    AGV_FAULT_STEERING_COMMAND_TIMEOUT,
+    AGV_FAULT_AI_COMMAND_OUT_OF_RANGE,
+    AGV_FAULT_EPS_MODE_OFF,
+    AGV_FAULT_EPS_MODE_INVALID,
+    AGV_FAULT_EPS_MODE_NOT_ANGLE,
+    AGV_FAULT_STEERING_ANGLE_INVALID,
+    AGV_FAULT_STEERING_DEVIATION,
+    AGV_FAULT_FOREIGN_COMMAND_SENDER,
+    AGV_FAULT_SAFE_STATE_UNCONFIRMED,
+};
+
+/* Shows: INT-2 */
+void test_a_fault_made_weaker_than_it_may_be_is_refused(void) {
+    for (unsigned i = 0; i < sizeof FIXED / sizeof FIXED[0]; i++) {
+        agv_config_defaults(&config);
+        config.trips &= ~agv_fault_bit(FIXED[i]);
+        expect_too_weak(FIXED[i]);
+    }
+    agv_config_defaults(&config);
+    config.trips = 0;
+    expect_too_weak(AGV_FAULT_SELF_TEST_FAILED); /* the highest-ranking one is named */
+}
+
+/* Shows: INT-2, S_DRIVER_ALARM, EPS_TEMP_ABOVE_110 */
+void test_others_may_be_made_weaker_and_warnings_stronger(void) {
+    config.trips &= ~agv_fault_bit(AGV_FAULT_S_DRIVER_ALARM);
+    config.trips |= agv_fault_bit(AGV_FAULT_EPS_TEMP_ABOVE_110);
+    expect_good("other classes");
+    f.config = config;
+    fixture_active(&f);
+    walk_alarm(&f, ALARM_S_DRIVER);
+    fixture_run(&f, 100);
+    expect_fault(&f, AGV_FAULT_S_DRIVER_ALARM, true);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x10;
+    fixture_run(&f, 10);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, AGV_FAULT_EPS_TEMP_ABOVE_110);
+}
+
+/* Shows: INT-2 */
+void test_a_class_for_no_fault_is_refused(void) {
+    for (unsigned bit = AGV_FAULT_COUNT; bit < 64; bit++) {
+        agv_config_defaults(&config);
+        config.trips |= (agv_fault_set_t)1u << bit;
+        TEST_ASSERT_EQUAL_INT(AGV_CONFIG_NO_SUCH_FAULT, agv_config_check(&config).problem);
+    }
+}
+
+/* ---- The start with such a configuration ---- */
+
+static void expect_refused_at_start(const char *what) {
+    f.what = what;
+    f.config = config;
+    fixture_start(&f);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, AGV_FAULT_CONFIG_INVALID);
+    expect_output(&f, false);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(3, f.sent_count, what);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(AGV_CONFIG_OK, agv_config_check(agv_supervisor_config(&f.supervisor)).problem, what);
+    setUp();
+}
+
+/* Shows: INT-2, CONFIG_INVALID, FSM-9 */
+void test_a_supervisor_that_is_given_one_is_tripped_and_runs_on_the_defaults(void) {
+    config.tx_stalled_ms = 0;
+    expect_refused_at_start("out of range");
+    config.topology = 7;
+    expect_refused_at_start("no topology");
+    config.id_set = 9;
+    expect_refused_at_start("no ID set");
+    config.status_frame_id = 0x168;
+    expect_refused_at_start("an identifier twice");
+    config.own_heartbeat = AGV_OWN_HEARTBEAT_FROZEN;
+    expect_refused_at_start("needs the gateway");
+    config.trips &= ~agv_fault_bit(AGV_FAULT_BUS_OFF);
+    expect_refused_at_start("too weak");
+    config.trips = ~(agv_fault_set_t)0;
+    expect_refused_at_start("no such fault");
+}
+
+/* Shows: INT-2 */
+void test_the_checksum_of_the_defaults_depends_on_every_setting(void) {
+    const uint32_t defaults = agv_config_checksum(&config);
+    for (uint16_t setting = 0; setting < AGV_SETTING_COUNT; setting++) {
+        agv_config_defaults(&config);
+        (void)agv_config_set(&config, setting, (uint16_t)(agv_config_get(&config, setting) ^ 1u));
+        TEST_ASSERT_NOT_EQUAL(defaults, agv_config_checksum(&config));
+    }
+    agv_config_defaults(&config);
+    config.trips ^= 1u;
+    TEST_ASSERT_NOT_EQUAL(defaults, agv_config_checksum(&config));
+}
