@@ -1,0 +1,306 @@
+/* The flight recorder: what it keeps, through what, and when it is copied to flash. */
+#include <string.h>
+
+#include "fixture.h"
+#include "unity.h"
+#include "walk.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+static uint32_t next_sequence(void) {
+    return agv_recorder_next_sequence(&f.recorder);
+}
+
+static bool is_there(uint32_t sequence) {
+    agv_event_t event;
+    return agv_recorder_get(&f.recorder, sequence, &event);
+}
+
+static agv_event_t event_at(uint32_t sequence) {
+    agv_event_t event = {0};
+    TEST_ASSERT_TRUE(agv_recorder_get(&f.recorder, sequence, &event));
+    TEST_ASSERT_EQUAL_UINT32(sequence, event.sequence);
+    return event;
+}
+
+/* A warning comes and goes: two events. */
+static void two_events(void) {
+    uint8_t *level2 = &f.traffic[AGV_MSG_VEHICLE_STATUS].data[5];
+    *level2 = 1;
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    *level2 = 0;
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+}
+
+/* ---- What is kept ---- */
+
+/* Shows: INT-3 */
+void test_the_last_256_events_are_kept(void) {
+    fixture_standby(&f);
+    for (unsigned i = 0; i < 400; i++) {
+        two_events();
+    }
+    const uint32_t next = next_sequence();
+    TEST_ASSERT_TRUE(next >= 800);
+    for (uint32_t i = 1; i <= 256; i++) {
+        TEST_ASSERT_TRUE(is_there(next - i));
+    }
+    TEST_ASSERT_FALSE(is_there(next - 257));
+    TEST_ASSERT_FALSE(is_there(0));
+    TEST_ASSERT_FALSE(is_there(next));
+}
+
+/* Shows: INT-3, FSM-5 */
+void test_an_event_says_when_in_which_state_and_for_which_reason(void) {
+    fixture_active(&f);
+    const uint32_t first = next_sequence();
+    walk_trip(&f);
+    const agv_event_t raised = event_at(first);
+    TEST_ASSERT_EQUAL_UINT32(f.now_ms, raised.time_ms);
+    TEST_ASSERT_EQUAL_UINT8(AGV_EVENT_FAULT, raised.kind);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_S_DRIVER_ALARM, raised.a);
+    TEST_ASSERT_EQUAL_UINT8(AGV_CLASS_TRIP, raised.b);
+    TEST_ASSERT_EQUAL_UINT8(1, raised.c);
+    const agv_event_t tripped = event_at(first + 1);
+    TEST_ASSERT_EQUAL_UINT8(AGV_EVENT_STATE, tripped.kind);
+    TEST_ASSERT_EQUAL_HEX8(AGV_STATE_ACTIVE, tripped.a);
+    TEST_ASSERT_EQUAL_HEX8(AGV_STATE_TRIPPED, tripped.b);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_S_DRIVER_ALARM, tripped.c);
+    TEST_ASSERT_EQUAL_HEX8(AGV_STATE_TRIPPED, tripped.state);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_S_DRIVER_ALARM, tripped.first_reason);
+}
+
+/* Shows: INT-3 */
+void test_an_event_holds_the_last_payload_of_each_message(void) {
+    /* a byte of each message in which any value is as good as another (101h: 0.01 m/s) */
+    static const uint8_t FREE[AGV_MSG_COUNT] = {1, 3, 4, 5, 2, 6, 7, 5, 1, 7, 0};
+    fixture_active(&f);
+    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
+        f.traffic[i].data[FREE[i]] = (uint8_t)(i + 1);
+        fixture_send_now(&f, (agv_message_t)i);
+    }
+    const uint32_t sequence = next_sequence();
+    walk_alarm(&f, ALARM_S_DRIVER);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    const agv_event_t event = event_at(sequence);
+    TEST_ASSERT_EQUAL_HEX16(0x7FF, event.seen);
+    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(f.traffic[i].data, event.frames[i], 8);
+    }
+}
+
+/* Shows: INT-3 */
+void test_a_message_that_was_not_received_is_not_in_the_snapshot(void) {
+    f.traffic[AGV_MSG_STEERING_POSITION].muted = true;
+    fixture_mute_ai(&f, true);
+    fixture_standby(&f);
+    walk_trip(&f);
+    const agv_event_t event = event_at(next_sequence() - 1);
+    TEST_ASSERT_EQUAL_HEX16(0x7FF & ~0x20F, event.seen); /* bits 0..3: the commands; bit 9: 267h */
+}
+
+/* ---- What it outlives ---- */
+
+/* Shows: INT-3, FSM-7 */
+void test_events_outlive_a_restart(void) {
+    walk_to_safe(&f);
+    const uint32_t before = next_sequence();
+    const agv_event_t last = event_at(before - 1);
+    fixture_restart(&f, HAL_RESET_WATCHDOG);
+    TEST_ASSERT_TRUE(next_sequence() > before);
+    for (uint32_t i = 0; i < before; i++) {
+        TEST_ASSERT_TRUE(is_there(i));
+    }
+    const agv_event_t first = event_at(before);
+    TEST_ASSERT_EQUAL_UINT8(AGV_EVENT_STATE, first.kind);
+    TEST_ASSERT_EQUAL_HEX8(0, first.a); /* a run starts here */
+    TEST_ASSERT_EQUAL_HEX8(AGV_STATE_TRIPPED, first.b);
+    TEST_ASSERT_EQUAL_UINT8((uint8_t)(last.run + 1), first.run);
+    TEST_ASSERT_EQUAL_HEX16(0, first.seen);
+}
+
+/* Shows: INT-3 */
+void test_after_a_power_on_whatever_is_in_the_memory_is_no_event(void) {
+    static const uint8_t FILL[] = {0x00, 0xFF, 0xA5, 0x01};
+    for (unsigned i = 0; i < sizeof FILL; i++) {
+        fixture_init(&f);
+        memset(&f.recorder, FILL[i], sizeof f.recorder);
+        fixture_start(&f);
+        const uint32_t next = next_sequence();
+        TEST_ASSERT_TRUE(next >= 1 && next <= 3);
+        TEST_ASSERT_EQUAL_UINT8(AGV_EVENT_STATE, event_at(0).kind);
+        (void)walk_until(&f, AGV_STATE_STANDBY, 600);
+        TEST_ASSERT_TRUE(is_there(0));
+    }
+}
+
+/* Flip a bit in the n-th byte of what is kept of this event. */
+static void tear(uint32_t sequence, unsigned byte) {
+    ((uint8_t *)&f.recorder.events[sequence % AGV_RECORDER_EVENTS])[byte] ^= 0x04u;
+}
+
+static void expect_all_but(uint32_t lost, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) {
+        TEST_ASSERT_EQUAL_INT(i != lost, is_there(i));
+    }
+}
+
+/* Shows: INT-3 */
+void test_a_torn_event_is_lost_alone(void) {
+    walk_to_safe(&f);
+    const uint32_t count = next_sequence();
+    const uint32_t torn = count / 2;
+    for (unsigned byte = 0; byte < sizeof(agv_event_t); byte++) {
+        tear(torn, byte);
+        expect_all_but(torn, count);
+        tear(torn, byte);
+    }
+    tear(torn, 5);
+    fixture_restart(&f, HAL_RESET_BROWN_OUT);
+    expect_all_but(torn, next_sequence());
+}
+
+/* Shows: INT-3 */
+void test_when_the_newest_event_is_torn_counting_goes_on_behind_the_one_before(void) {
+    walk_to_safe(&f);
+    const uint32_t count = next_sequence();
+    tear(count - 1, sizeof(agv_event_t) - 1);
+    fixture_restart(&f, HAL_RESET_BROWN_OUT);
+    for (uint32_t i = 0; i + 1 < count; i++) {
+        TEST_ASSERT_TRUE(is_there(i));
+    }
+    TEST_ASSERT_EQUAL_HEX8(0, event_at(count - 1).a); /* the new run has taken its place */
+}
+
+/* ---- Flash ---- */
+
+static uint32_t appended(void) {
+    return f.hal.op_calls[SIM_HAL_OP_STORE_APPEND];
+}
+
+static void expect_not_written_for_a_second(agv_state_t state) {
+    const uint32_t before = appended();
+    for (unsigned i = 0; i < 10; i++) {
+        two_events();
+        fixture_run(&f, 100);
+    }
+    expect_state(&f, state);
+    TEST_ASSERT_EQUAL_UINT32(before, appended());
+}
+
+/* Shows: INT-3 */
+void test_flash_is_not_written_in_init_active_and_tripped(void) {
+    fixture_mode(&f, MODE_NEITHER);
+    fixture_start(&f);
+    expect_not_written_for_a_second(AGV_STATE_INIT);
+    fixture_init(&f);
+    fixture_active(&f);
+    expect_not_written_for_a_second(AGV_STATE_ACTIVE);
+    fixture_init(&f);
+    walk_to_tripped(&f);
+    expect_not_written_for_a_second(AGV_STATE_TRIPPED);
+}
+
+/* Shows: INT-3 */
+void test_flash_is_written_in_standby_at_standstill_only(void) {
+    fixture_wheels(&f, 800, 800);
+    fixture_standby(&f);
+    expect_not_written_for_a_second(AGV_STATE_STANDBY);
+    fixture_wheels(&f, 0, 0);
+    fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
+    TEST_ASSERT_EQUAL_UINT32(0, appended());
+    fixture_run(&f, 99);
+    TEST_ASSERT_EQUAL_UINT32(0, appended());
+    fixture_run(&f, 400);
+    TEST_ASSERT_EQUAL_UINT32(next_sequence(), appended());
+}
+
+static void expect_log_holds(uint32_t count) {
+    agv_event_t stored;
+    for (uint32_t i = 0; i < count; i++) {
+        const agv_event_t event = event_at(i);
+        TEST_ASSERT_EQUAL_UINT32(sizeof stored, sim_store_read_record(&f.store, i, &stored, sizeof stored));
+        TEST_ASSERT_EQUAL_MEMORY(&event, &stored, sizeof stored);
+    }
+    TEST_ASSERT_EQUAL_UINT32(count, f.store.count);
+}
+
+/* Shows: INT-3 */
+void test_in_safe_each_event_is_copied_once_and_in_order(void) {
+    fixture_wheels(&f, 800, 800);
+    walk_to_safe(&f);
+    fixture_run(&f, 500);
+    expect_log_holds(next_sequence());
+    fixture_restart(&f, HAL_RESET_WATCHDOG); /* in RAM it is known what is in flash */
+    fixture_run(&f, 1500);
+    expect_state(&f, AGV_STATE_SAFE);
+    expect_log_holds(next_sequence());
+}
+
+/* It is copied with time to react in between. */
+/* Shows: INT-3 */
+void test_at_most_one_event_a_tick_is_copied(void) {
+    fixture_wheels(&f, 800, 800);
+    fixture_standby(&f);
+    for (unsigned i = 0; i < 50; i++) {
+        two_events();
+    }
+    fixture_wheels(&f, 0, 0);
+    fixture_run(&f, 50);
+    while (appended() < next_sequence()) {
+        const uint32_t before = appended();
+        fixture_run(&f, 1);
+        TEST_ASSERT_TRUE(appended() - before <= 1);
+        TEST_ASSERT_TRUE(f.elapsed_ms < 5000);
+    }
+}
+
+/* Shows: INT-3 */
+void test_a_torn_write_loses_that_event_only(void) {
+    agv_event_t stored;
+    fixture_wheels(&f, 800, 800);
+    fixture_standby(&f);
+    fixture_wheels(&f, 0, 0);
+    sim_store_tear_write(&f.store, 20);
+    fixture_run(&f, 500);
+    const uint32_t count = f.store.count;
+    TEST_ASSERT_TRUE(count >= 3);
+    for (uint32_t i = 1; i < count; i++) {
+        const agv_event_t event = event_at(i);
+        (void)sim_store_read_record(&f.store, i, &stored, sizeof stored);
+        TEST_ASSERT_EQUAL_MEMORY(&event, &stored, sizeof stored);
+    }
+}
+
+/* Shows: INT-3 */
+void test_a_flash_that_takes_nothing_changes_nothing_else(void) {
+    walk_to_safe(&f);
+    sim_store_fail_writes(&f.store, UINT32_MAX);
+    for (unsigned i = 0; i < 30; i++) {
+        two_events();
+        fixture_run(&f, 100);
+    }
+    expect_state(&f, AGV_STATE_SAFE);
+    TEST_ASSERT_EQUAL_UINT32(0, f.hal.bites);
+    TEST_ASSERT_TRUE(is_there(next_sequence() - 1));
+}
+
+/* More events than the recorder holds come before they can be copied: the newest 256 are. */
+/* Shows: INT-3 */
+void test_what_was_replaced_before_it_could_be_copied_is_lost(void) {
+    fixture_wheels(&f, 800, 800);
+    fixture_standby(&f);
+    for (unsigned i = 0; i < 200; i++) {
+        two_events();
+    }
+    fixture_wheels(&f, 0, 0);
+    fixture_run(&f, 1000);
+    TEST_ASSERT_UINT32_WITHIN(1, 256, appended());
+}
