@@ -62,7 +62,7 @@ void test_a_command_on_the_other_identifier(void) {
         fixture_run(&f, 1);
         expect_warning(&f, WRONG, agv_supervisor_state(&f.supervisor));
         expect_led(&f, -1);
-        fixture_run(&f, 2000);
+        fixture_run(&f, 10000);
         expect_state(&f, AGV_STATE_STANDBY);
         TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, WRONG));
         f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].id = SETS[i].command_id; /* set right */

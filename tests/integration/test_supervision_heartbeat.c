@@ -133,6 +133,24 @@ void test_stuck_needs_a_repeat_within_the_last_two_cycles(void) {
     check_last_repeat(&EPS, 31, AGV_FAULT_EPS_HEARTBEAT_STUCK);
 }
 
+/* However long it was silent before: when it is alive again it can get stuck again. */
+/* Shows: SUP-2, VCU_HEARTBEAT_STUCK */
+void test_stuck_after_a_long_silence(void) {
+    fixture_start(&f);
+    fixture_run(&f, 100);
+    f.traffic[VCU.message].muted = true;
+    fixture_run(&f, 60000);
+    expect_fault(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, true);
+    f.traffic[VCU.message].muted = false;
+    fixture_run_past(&f, VCU.message);
+    expect_no_trip(&VCU, AGV_STATE_INIT);
+    f.traffic[VCU.message].frozen = true;
+    fixture_run(&f, 50);
+    expect_no_trip(&VCU, AGV_STATE_INIT);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_VCU_HEARTBEAT_STUCK, true);
+}
+
 /* A repeat that is malformed is no valid frame: lost, not stuck. */
 /* Shows: SUP-2, P15, VCU_HEARTBEAT_LOST */
 void test_malformed_repeats_are_not_stuck(void) {
