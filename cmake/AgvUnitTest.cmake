@@ -19,15 +19,28 @@ if(NOT AGV_RUBY)
   set(AGV_RUBY ruby)
 endif()
 
+# The gems are shared by all build trees, what is compiled of them is copied: so `clean` leaves the gems alone.
+set(AGV_GEMS_STAMP ${PROJECT_BINARY_DIR}/gems.stamp)
 add_custom_command(
-  OUTPUT ${AGV_GEMS}/.complete
-  BYPRODUCTS ${AGV_UNITY}/src/unity.c ${AGV_CMOCK}/src/cmock.c
+  OUTPUT ${AGV_GEMS_STAMP}
   COMMAND ${PROJECT_SOURCE_DIR}/scripts/bundle-gems
-  DEPENDS ${PROJECT_SOURCE_DIR}/Gemfile.lock
+  COMMAND ${CMAKE_COMMAND} -E touch ${AGV_GEMS_STAMP}
+  DEPENDS ${PROJECT_SOURCE_DIR}/Gemfile.lock ${PROJECT_SOURCE_DIR}/scripts/bundle-gems
   COMMENT "Installing Unity and CMock into build/gems"
 )
-add_library(unity STATIC ${AGV_UNITY}/src/unity.c ${AGV_CMOCK}/src/cmock.c ${AGV_GEMS}/.complete)
-target_include_directories(unity SYSTEM PUBLIC ${AGV_UNITY}/src ${AGV_CMOCK}/src)
+set(AGV_UNITY_COPY ${PROJECT_BINARY_DIR}/unity)
+set(unity_files
+  ${AGV_UNITY}/src/unity.c ${AGV_UNITY}/src/unity.h ${AGV_UNITY}/src/unity_internals.h
+  ${AGV_CMOCK}/src/cmock.c ${AGV_CMOCK}/src/cmock.h ${AGV_CMOCK}/src/cmock_internals.h)
+add_custom_command(
+  OUTPUT ${AGV_UNITY_COPY}/unity.c ${AGV_UNITY_COPY}/unity.h ${AGV_UNITY_COPY}/unity_internals.h
+    ${AGV_UNITY_COPY}/cmock.c ${AGV_UNITY_COPY}/cmock.h ${AGV_UNITY_COPY}/cmock_internals.h
+  COMMAND ${CMAKE_COMMAND} -E make_directory ${AGV_UNITY_COPY}
+  COMMAND ${CMAKE_COMMAND} -E copy ${unity_files} ${AGV_UNITY_COPY}
+  DEPENDS ${AGV_GEMS_STAMP}
+)
+add_library(unity STATIC ${AGV_UNITY_COPY}/unity.c ${AGV_UNITY_COPY}/cmock.c)
+target_include_directories(unity SYSTEM PUBLIC ${AGV_UNITY_COPY})
 
 # The library target of the mock of one header of the HAL contract, made when it is first asked for.
 function(agv_mock_of HEADER TARGET_VARIABLE)
@@ -43,7 +56,7 @@ function(agv_mock_of HEADER TARGET_VARIABLE)
   add_custom_command(
     OUTPUT ${AGV_MOCK_DIR}/${mock}.c ${AGV_MOCK_DIR}/${mock}.h
     COMMAND ${AGV_RUBY} ${AGV_CMOCK}/lib/cmock.rb -o${AGV_CMOCK_CONFIG} --mock_path=${AGV_MOCK_DIR} ${header_path}
-    DEPENDS ${header_path} ${AGV_CMOCK_CONFIG} ${AGV_GEMS}/.complete
+    DEPENDS ${header_path} ${AGV_CMOCK_CONFIG} ${AGV_GEMS_STAMP}
     COMMENT "Mocking ${HEADER}"
     VERBATIM
   )
@@ -63,7 +76,7 @@ function(agv_add_unit_test)
   add_custom_command(
     OUTPUT ${runner}
     COMMAND ${AGV_RUBY} ${AGV_UNITY}/auto/generate_test_runner.rb ${AGV_CMOCK_CONFIG} ${first} ${runner}
-    DEPENDS ${first} ${AGV_CMOCK_CONFIG} ${AGV_GEMS}/.complete
+    DEPENDS ${first} ${AGV_CMOCK_CONFIG} ${AGV_GEMS_STAMP}
     COMMENT "Generating the runner of ${TEST_NAME}"
     VERBATIM
   )
@@ -75,6 +88,7 @@ function(agv_add_unit_test)
 
   add_executable(${TEST_NAME} ${TEST_SOURCES} ${runner})
   target_link_libraries(${TEST_NAME} PRIVATE agv_options ${TEST_LIBS} agv_core ${mocks} unity)
+  target_link_options(${TEST_NAME} PRIVATE -fno-lto) # see AGV_WHOLE_PROGRAM: for so many programs it would take minutes
   # The runner calls the test functions by name, so they are not static and have no prototype.
   set_source_files_properties(${TEST_SOURCES} PROPERTIES COMPILE_OPTIONS -Wno-missing-prototypes)
   set_source_files_properties(${runner} PROPERTIES COMPILE_OPTIONS -w)
