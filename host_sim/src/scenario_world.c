@@ -85,9 +85,12 @@ static void supervisor_hears(void *ctx, const hal_can_frame_t *arrived) {
     if (world->t_ms < world->deaf_until_ms) {
         return;
     }
+    /* What arrives with the end of this millisecond belongs to the next one. */
+    const uint64_t end_us = (world->t_ms + 1u) * US_PER_MS;
+    const uint64_t t_ms = world->t_ms + ((sim_bus_now_us(&world->buses[side->side]) >= end_us) ? 1u : 0u);
     while (sim_hal_receive(&world->hal, side->side, &frame)) {
         if (world->planted == SCENARIO_REAL) {
-            session_frame(&world->session, side->side, &frame, sim_bus_now_us(&world->buses[side->side]) / US_PER_MS);
+            session_frame(&world->session, side->side, &frame, t_ms);
         }
     }
 }
@@ -226,6 +229,7 @@ static void do_to_supervisor(scenario_world_t *world, const scenario_action_t *a
         break;
     case SCENARIO_HANG:
         world->deaf_until_ms = world->t_ms + action->ms;
+        world->was_deaf = true;
         break;
     case SCENARIO_BUS_OFF:
         sim_bus_force_bus_off(bus, node);
@@ -297,9 +301,10 @@ static void step_supervisor(scenario_world_t *world) {
         return;
     }
     if (world->t_ms >= world->deaf_until_ms) {
-        for (size_t side = 0u; side < world->bus_count; side++) {
-            supervisor_hears(&world->sides[side], NULL);
+        for (size_t side = 0u; world->was_deaf && (side < world->bus_count); side++) {
+            supervisor_hears(&world->sides[side], NULL); /* what waits since then */
         }
+        world->was_deaf = false;
         session_tick(&world->session, world->t_ms, sim_hal_now_ms(&world->hal));
     }
     if (!world->off && sim_hal_poll(&world->hal)) {
@@ -312,8 +317,11 @@ void scenario_world_tick(scenario_world_t *world, uint64_t t_ms) {
 
     world->t_ms = t_ms;
     vehicle_tick(&world->vehicle, t_ms);
-    for (int n = 0; n < VEHICLE_NODES; n++) {
-        follow_power(world, (vehicle_node_t)n);
+    if (world->power_changes != world->vehicle.power_changes) {
+        world->power_changes = world->vehicle.power_changes;
+        for (int n = 0; n < VEHICLE_NODES; n++) {
+            follow_power(world, (vehicle_node_t)n);
+        }
     }
     step_supervisor(world);
     if (world->bus_count == 1u) {

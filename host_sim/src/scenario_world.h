@@ -72,7 +72,9 @@ struct scenario_world {
     size_t watch_count;
     uint64_t t_ms;
     uint64_t deaf_until_ms; /**< the supervisor hangs, or is without power, until then */
+    bool was_deaf;          /**< it hung: frames may wait for it */
     bool off;               /**< it is without power */
+    uint32_t power_changes; /**< of the vehicle, that the buses know of */
     uint32_t lost_frames;   /**< of the vehicle, that found no room in a mailbox */
 };
 

@@ -52,6 +52,7 @@ void vehicle_init(vehicle_t *vehicle, const vehicle_config_t *config, vehicle_se
     vehicle->people.remote_gear = AGV_GEAR_P;
     vehicle->people.ai_gear = AGV_GEAR_N;
     for (int m = 0; m < AGV_MSG_COUNT; m++) {
+        vehicle->message_ms[m] = UINT64_MAX;
         vehicle->id[m] = agv_message_id((agv_message_t)m, config->id_set);
     }
     for (int n = 0; n < VEHICLE_NODES; n++) {
@@ -76,18 +77,23 @@ uint8_t vehicle_count(vehicle_t *vehicle, vehicle_node_t node) {
     return state->counter;
 }
 
-static void start_messages(vehicle_t *vehicle, vehicle_node_t node, uint64_t now_ms) {
+static void schedule_messages(vehicle_t *vehicle, vehicle_node_t node, bool on, uint64_t now_ms) {
     for (int m = 0; m < AGV_MSG_COUNT; m++) {
         if (VEHICLE_ROWS[m].node == node) {
-            vehicle->messages[m].due_ms = now_ms + VEHICLE_ROWS[m].phase_ms;
+            vehicle->message_ms[m] = on ? now_ms + VEHICLE_ROWS[m].phase_ms : UINT64_MAX;
         }
     }
+}
+
+void vehicle_look_again(vehicle_t *vehicle, uint64_t now_ms) {
+    vehicle->seldom_ms = now_ms;
+    vehicle->due_ms = now_ms;
 }
 
 void vehicle_power(vehicle_t *vehicle, vehicle_node_t node, bool on, uint64_t now_ms) {
     vehicle_node_state_t *state = &vehicle->nodes[node];
 
-    vehicle->due_ms = now_ms;
+    vehicle_look_again(vehicle, now_ms);
     state->start_ms = UINT64_MAX;
     if (state->running == on) {
         return;
@@ -96,14 +102,15 @@ void vehicle_power(vehicle_t *vehicle, vehicle_node_t node, bool on, uint64_t no
         vehicle_body_move(vehicle, now_ms);
     }
     state->running = on;
+    vehicle->power_changes++;
     state->counter = UINT8_MAX; /* the first frame carries 0 */
+    schedule_messages(vehicle, node, on, now_ms);
     if (!on) {
         if (node == VEHICLE_VCU) {
             vehicle_vcu_stop(vehicle, now_ms);
         }
         return;
     }
-    start_messages(vehicle, node, now_ms);
     switch (node) {
     case VEHICLE_VCU:
         vehicle_vcu_start(vehicle, now_ms);
@@ -121,8 +128,9 @@ static inline uint64_t earlier(uint64_t a, uint64_t b) {
     return (a < b) ? a : b;
 }
 
-static uint64_t run_nodes(vehicle_t *vehicle, uint64_t now_ms) {
-    uint64_t next = UINT64_MAX;
+/** What happens seldom: nodes that start, strangers that send. */
+static void run_seldom(vehicle_t *vehicle, uint64_t now_ms) {
+    uint64_t next = vehicle_send_strangers(vehicle, now_ms);
 
     for (int n = 0; n < VEHICLE_NODES; n++) {
         if (now_ms >= vehicle->nodes[n].start_ms) {
@@ -130,23 +138,21 @@ static uint64_t run_nodes(vehicle_t *vehicle, uint64_t now_ms) {
         }
         next = earlier(next, vehicle->nodes[n].start_ms);
     }
-    return next;
+    vehicle->seldom_ms = next;
 }
 
 void vehicle_run(vehicle_t *vehicle, uint64_t now_ms) {
-    uint64_t next = run_nodes(vehicle, now_ms);
-
+    if (now_ms >= vehicle->seldom_ms) {
+        run_seldom(vehicle, now_ms);
+    }
+    uint64_t next = vehicle->seldom_ms;
     for (int m = 0; m < AGV_MSG_COUNT; m++) {
-        const vehicle_node_state_t *node = &vehicle->nodes[VEHICLE_ROWS[m].node];
-        if (!node->running) {
-            continue;
-        }
-        if (now_ms >= vehicle->messages[m].due_ms) {
+        if (now_ms >= vehicle->message_ms[m]) {
             vehicle_send_message(vehicle, (agv_message_t)m, now_ms);
         }
-        next = earlier(next, vehicle->messages[m].due_ms);
+        next = earlier(next, vehicle->message_ms[m]);
     }
-    vehicle->due_ms = earlier(next, vehicle_send_strangers(vehicle, now_ms));
+    vehicle->due_ms = next;
 }
 
 void vehicle_receive(vehicle_t *vehicle, vehicle_node_t node, uint64_t now_ms, const hal_can_frame_t *frame) {

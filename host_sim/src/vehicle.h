@@ -151,7 +151,6 @@ typedef struct {
 
 /** @name Private: layout only, so that a program can own a vehicle. @{ */
 typedef struct {
-    uint64_t due_ms;
     uint32_t period_ms;
     uint16_t muted;
     uint16_t patched;
@@ -238,8 +237,10 @@ typedef struct {
 } vehicle_stranger_t;
 
 typedef struct {
-    uint64_t due_ms;
-    uint64_t now_ms;
+    uint64_t due_ms;                    /* the earliest of all that follows */
+    uint64_t seldom_ms;                 /* a node starts or a stranger sends */
+    uint64_t message_ms[AGV_MSG_COUNT]; /* each message; UINT64_MAX while its node is off */
+    uint32_t power_changes;             /* nodes switched on or off so far */
     vehicle_send_fn *send;
     void *send_ctx;
     uint16_t id[AGV_MSG_COUNT];
@@ -267,7 +268,6 @@ void vehicle_init(vehicle_t *vehicle, const vehicle_config_t *config, vehicle_se
 
 /** Time has come to @p now_ms: send what is due. Call it every millisecond; never with an earlier time. */
 static inline void vehicle_tick(vehicle_t *vehicle, uint64_t now_ms) {
-    vehicle->now_ms = now_ms;
     if (now_ms >= vehicle->due_ms) {
         vehicle_run(vehicle, now_ms);
     }

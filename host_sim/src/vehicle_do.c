@@ -49,6 +49,7 @@ static bool do_to_node(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action
 
 static bool do_to_message(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action) {
     vehicle_message_t *message = &vehicle->messages[action->message];
+    uint64_t *due_ms = &vehicle->message_ms[action->message];
 
     switch (action->what) {
     case VEHICLE_DO_MUTE:
@@ -59,8 +60,8 @@ static bool do_to_message(vehicle_t *vehicle, uint64_t now_ms, const vehicle_act
         break;
     case VEHICLE_DO_PERIOD:
         message->period_ms = action->ms;
-        if (message->due_ms > now_ms + action->ms) {
-            message->due_ms = now_ms + action->ms;
+        if ((*due_ms != UINT64_MAX) && (*due_ms > now_ms + action->ms)) {
+            *due_ms = now_ms + action->ms;
         }
         break;
     case VEHICLE_DO_PATCH:
@@ -83,7 +84,7 @@ static bool do_to_ai(vehicle_t *vehicle, const vehicle_action_t *action) {
         people->ai_gear = action->gear;
         people->ai_throttle_permille = action->throttle_permille;
         people->ai_angle_ddeg = action->angle_ddeg;
-        return drive_is_valid(action) && angle_is_valid(action);
+        return true;
     case VEHICLE_DO_AI_IDLE:
         people->ai_gear = AGV_GEAR_N;
         people->ai_throttle_permille = 0u;
@@ -163,7 +164,7 @@ static bool is_sane(const vehicle_action_t *action) {
 }
 
 bool vehicle_do(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action) {
-    vehicle->due_ms = now_ms;
+    vehicle_look_again(vehicle, now_ms);
     if (!is_sane(action)) {
         return false;
     }

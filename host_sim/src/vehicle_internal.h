@@ -79,6 +79,8 @@ void vehicle_recover(vehicle_t *vehicle, vehicle_node_t node);
 /** @} */
 
 /** @name vehicle.c @{ */
+/** Something was changed from outside: the next tick looks at everything. */
+void vehicle_look_again(vehicle_t *vehicle, uint64_t now_ms);
 void vehicle_power(vehicle_t *vehicle, vehicle_node_t node, bool on, uint64_t now_ms);
 /** @} */
 

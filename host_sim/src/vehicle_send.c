@@ -65,9 +65,11 @@ void vehicle_send_message(vehicle_t *vehicle, agv_message_t message, uint64_t no
     const uint32_t period_ms = ((state->period_ms != 0u) ? state->period_ms : row->cycle_ms) + node->lag_ms;
     hal_can_frame_t frame = {.id = vehicle->id[message], .time_ms = (uint32_t)now_ms, .length = AGV_DLC};
 
-    state->due_ms += period_ms;
-    if (state->due_ms <= now_ms) { /* time was not called for long: no burst */
-        state->due_ms = now_ms + period_ms;
+    uint64_t *due_ms = &vehicle->message_ms[message];
+
+    *due_ms += period_ms;
+    if (*due_ms <= now_ms) { /* time was not called for long: no burst */
+        *due_ms = now_ms + period_ms;
     }
     row->compose(vehicle, now_ms, frame.data);
     if (state->muted != 0u) {

@@ -1,0 +1,105 @@
+/*
+ * What it costs to run supervisor and vehicle on the simulated bus: an hour of healthy driving, every tick of it run.
+ *
+ *     bench_sim [SECONDS] [LEAST]     simulated seconds (3600); exit status 1 below so many times real time (0)
+ *
+ * Prints one line a part and topology. "vehicle alone" is what the vehicle costs of it, with nobody who listens.
+ */
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "scenario_world.h"
+
+enum { MS_PER_S = 1000, SETTLED_MS = 3000, DEFAULT_S = 3600 };
+
+static double seconds_now(void) {
+    struct timespec now;
+    (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now); /* of this program alone, also on a busy machine */
+    return (double)now.tv_sec + ((double)now.tv_nsec * 1e-9);
+}
+
+static void act(scenario_world_t *world, uint32_t at_ms, vehicle_action_t action) {
+    const scenario_step_t step = {.at_ms = at_ms, .of_vehicle = true, .vehicle = action};
+    scenario_world_do(world, &step);
+}
+
+/** Healthy driving on autopilot. @return how many times faster than real time; 0: it was not healthy */
+static double drive(scenario_world_t *world, uint16_t topology, uint32_t duration_ms) {
+    static scenario_t scenario;
+    scenario = (scenario_t){.bitrate = SCENARIO_DEFAULT_BITRATE, .self_test_passed = true};
+    agv_config_defaults(&scenario.config);
+    vehicle_defaults(&scenario.vehicle);
+    scenario.config.topology = topology;
+    scenario.vehicle.gateway = topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    if (!scenario_world_init(world, &scenario, SCENARIO_REAL)) {
+        return 0.0;
+    }
+    scenario_world_start(world);
+    const double begin = seconds_now();
+    for (uint32_t t_ms = 0u; t_ms < duration_ms; t_ms++) {
+        if (t_ms == SETTLED_MS) {
+            act(world, t_ms,
+                (vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 300u});
+            act(world, t_ms, (vehicle_action_t){.what = VEHICLE_DO_ENGAGE});
+        }
+        scenario_world_tick(world, t_ms);
+    }
+    const double took = seconds_now() - begin;
+    vehicle_view_t view;
+    vehicle_view(&world->vehicle, duration_ms, &view);
+    sim_bus_stats_t stats;
+    sim_bus_stats(&world->buses[HAL_CAN_VEHICLE], &stats);
+    const bool healthy = (agv_supervisor_state(&world->session.supervisor) == AGV_STATE_ACTIVE) &&
+                         (agv_supervisor_counters(&world->session.supervisor)->warnings == 0u) &&
+                         (view.speed_mm_s > 0) && (world->lost_frames == 0u);
+    const double factor = ((double)duration_ms / MS_PER_S) / took;
+    printf("%-14s %8.0f times real time, %6.1f ns a tick, %" PRIu64 " frames, %s\n",
+           (topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? "gateway" : "shared bus", factor, took * 1e9 / duration_ms,
+           stats.frames, healthy ? "healthy" : "NOT HEALTHY");
+    return healthy ? factor : 0.0;
+}
+
+static void ignore(void *ctx, vehicle_node_t from, hal_can_side_t side, const hal_can_frame_t *frame) {
+    (void)from;
+    (void)side;
+    (void)frame;
+    ++*(uint64_t *)ctx;
+}
+
+static void vehicle_alone(uint32_t duration_ms) {
+    static vehicle_t vehicle;
+    vehicle_config_t config;
+    uint64_t frames = 0u;
+    vehicle_defaults(&config);
+    vehicle_init(&vehicle, &config, ignore, &frames);
+    const double begin = seconds_now();
+    for (uint32_t t_ms = 0u; t_ms < duration_ms; t_ms++) {
+        vehicle_tick(&vehicle, t_ms);
+    }
+    const double took = seconds_now() - begin;
+    printf("%-14s %8.0f times real time, %6.1f ns a tick, %" PRIu64 " frames\n", "vehicle alone",
+           ((double)duration_ms / MS_PER_S) / took, took * 1e9 / duration_ms, frames);
+}
+
+int main(int argc, char **argv) {
+    const long seconds = (argc > 1) ? strtol(argv[1], NULL, 10) : DEFAULT_S;
+    const double least = (argc > 2) ? strtod(argv[2], NULL) : 0.0;
+    scenario_world_t *world = malloc(sizeof *world);
+    if ((world == NULL) || (seconds < 4) || (seconds > 4000000)) {
+        fprintf(stderr, "usage: bench_sim [SECONDS (4 .. 4000000)] [LEAST]\n");
+        free(world);
+        return 2;
+    }
+    const uint32_t duration_ms = (uint32_t)seconds * MS_PER_S;
+    const double shared = drive(world, AGV_TOPOLOGY_SHARED, duration_ms);
+    const double gateway = drive(world, AGV_TOPOLOGY_GATEWAY, duration_ms);
+    vehicle_alone(duration_ms);
+    free(world);
+    if ((shared <= least) || (gateway <= 0.0)) {
+        fprintf(stderr, "bench_sim: the shared bus is asked to be healthy and above %.0f times real time\n", least);
+        return 1;
+    }
+    return 0;
+}
