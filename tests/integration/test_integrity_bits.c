@@ -1,0 +1,248 @@
+/*
+ * Each single bit of the supervisor's memory is flipped, one at a time, at some moments of each state (INT-5). The oracle
+ * judges every frame; nothing may undo the latch. Flips are made between two steps: the next call may be that of the
+ * receive path, of a frame or of a tick.
+ */
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "fixture.h"
+#include "unity.h"
+#include "walk.h"
+
+enum { BITS = 8 * sizeof(agv_supervisor_t) };
+
+static fixture_t f;
+
+/* What a moment consists of; recorder and flash do not matter here. */
+typedef struct {
+    agv_supervisor_t supervisor;
+    struct hal hal;
+    oracle_t oracle;
+    fixture_message_t traffic[AGV_MSG_COUNT];
+    uint8_t latch[HAL_STORE_LATCH_SIZE_MAX];
+    uint8_t latch_size;
+    uint32_t now_ms;
+    uint32_t elapsed_ms;
+} moment_t;
+
+static moment_t moment;
+static uint32_t moments;
+static uint32_t flips;
+static uint32_t detected;
+static uint32_t harmless;
+static uint32_t judged;
+
+void setUp(void) {
+    fixture_init(&f);
+    f.long_run = true;
+}
+
+void tearDown(void) {
+}
+
+static void save(void) {
+    moment.supervisor = f.supervisor;
+    moment.hal = f.hal;
+    moment.oracle = f.oracle;
+    memcpy(moment.traffic, f.traffic, sizeof f.traffic);
+    memcpy(moment.latch, f.store.latch, sizeof f.store.latch);
+    moment.latch_size = f.store.latch_size;
+    moment.now_ms = f.now_ms;
+    moment.elapsed_ms = f.elapsed_ms;
+}
+
+static void restore(void) {
+    f.supervisor = moment.supervisor;
+    f.hal = moment.hal;
+    judged += f.oracle.judged - moment.oracle.judged;
+    f.oracle = moment.oracle;
+    memcpy(f.traffic, moment.traffic, sizeof f.traffic);
+    memcpy(f.store.latch, moment.latch, sizeof f.store.latch);
+    f.store.latch_size = moment.latch_size;
+    f.now_ms = moment.now_ms;
+    f.elapsed_ms = moment.elapsed_ms;
+}
+
+static bool is_latched(void) {
+    const agv_state_t state = agv_supervisor_state(&f.supervisor);
+    return state == AGV_STATE_TRIPPED || state == AGV_STATE_SAFE;
+}
+
+static bool is_found(void) {
+    return fixture_has(&f, AGV_FAULT_MEMORY_CORRUPTED);
+}
+
+static void fail_at(unsigned bit, const char *why) {
+    char text[120];
+    (void)snprintf(text, sizeof text, "%s, bit %u (byte %u of %u): %s", f.what, bit, bit / 8,
+                   (unsigned)sizeof(agv_supervisor_t), why);
+    TEST_FAIL_MESSAGE(text);
+}
+
+/* Found: it is latched for good, whatever the button says. Some of them are followed for longer. */
+static void follow_a_found_one(unsigned bit) {
+    const uint32_t ms = bit % 499 == 0 ? 1200 : 3;
+    for (uint32_t i = 0; i < ms; i++) {
+        fixture_run(&f, 1);
+        if (!is_latched()) {
+            fail_at(bit, "found, but not latched");
+        }
+    }
+    detected++;
+}
+
+/* Not found within 1.2 s: then nothing may have come of it. */
+static void follow_a_harmless_one(unsigned bit, bool was_latched) {
+    for (unsigned i = 0; i < 1200 && !is_found(); i++) {
+        fixture_run(&f, 1);
+        if (was_latched && !is_latched()) {
+            fail_at(bit, "the latch is undone");
+        }
+    }
+    harmless++;
+}
+
+static void flip(unsigned bit) {
+    const bool was_latched = is_latched();
+    ((uint8_t *)&f.supervisor)[bit / 8] ^= (uint8_t)(1u << (bit % 8));
+    flips++;
+    for (unsigned i = 0; i < 12 && !is_found(); i++) {
+        fixture_run(&f, 1);
+        if (was_latched && !is_latched()) {
+            fail_at(bit, "the latch is undone");
+        }
+    }
+    if (is_found()) {
+        follow_a_found_one(bit);
+    } else {
+        follow_a_harmless_one(bit, was_latched);
+    }
+}
+
+static void flip_each_bit(const char *what) {
+    f.what = what;
+    moments++;
+    save();
+    for (unsigned bit = 0; bit < BITS; bit++) {
+        restore();
+        flip(bit);
+    }
+    restore();
+}
+
+/* Before a step in which frames arrive, and before one in which only the receive path and the tick are there. */
+static void flip_at_two_moments(const char *what) {
+    fixture_run_before(&f, AGV_MSG_VEHICLE_STATUS);
+    flip_each_bit(what);
+    fixture_run_before(&f,
+                       AGV_MSG_STEERING_POSITION); /* at 6 of 10 ms; from 7 on but for 0A3h and 43Fh nothing is due */
+    fixture_run(&f, 4);
+    flip_each_bit(what);
+}
+
+static void init(void) {
+    fixture_mode(&f, MODE_NEITHER);
+    fixture_start(&f);
+    fixture_run(&f, 700);
+    flip_at_two_moments("INIT");
+}
+
+static void standby(void) {
+    fixture_standby(&f);
+    fixture_run(&f, 200);
+    flip_at_two_moments("STANDBY");
+}
+
+static void active(void) {
+    fixture_active(&f);
+    flip_at_two_moments("ACTIVE");
+}
+
+/* The button is pressed since before the trip: only a flipped bit could make a press of it. */
+static void tripped(void) {
+    fixture_active(&f);
+    fixture_button(&f, true);
+    fixture_run(&f, 50);
+    walk_trip(&f);
+    fixture_mute_ai(&f, true);
+    fixture_run(&f, 200);
+    flip_at_two_moments("TRIPPED");
+}
+
+static void safe(void) {
+    fixture_active(&f);
+    fixture_button(&f, true);
+    fixture_run(&f, 50);
+    walk_trip(&f);
+    fixture_mute_ai(&f, true);
+    fixture_vehicle_confirms(&f);
+    fixture_run(&f, 700);
+    flip_at_two_moments("SAFE");
+}
+
+/* Safe commands and answers to another sender wait for a queue that is full. */
+static void waiting(void) {
+    static const uint8_t drive[8] = {GEAR_D};
+    walk_to_tripped(&f);
+    f.traffic[AGV_MSG_GEAR_COMMAND].side = HAL_CAN_VEHICLE;
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    fixture_run(&f, 40);
+    fixture_frame(&f, AGV_MSG_GEAR_COMMAND, drive);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    flip_each_bit("safe commands wait");
+    fixture_frame(&f, AGV_MSG_GEAR_COMMAND, drive);
+    fixture_frame(&f, AGV_MSG_GEAR_COMMAND, drive);
+    flip_each_bit("an answer waits for its 5 ms");
+}
+
+static void print_counts(const char *topology) {
+    (void)printf("INT-5, %s: %u bits at %u moments: %u flips, %u detected, %u harmless, %u frames judged\n", topology,
+                 (unsigned)BITS, (unsigned)moments, (unsigned)flips, (unsigned)detected, (unsigned)harmless,
+                 (unsigned)judged);
+    TEST_ASSERT_EQUAL_UINT32(flips, detected + harmless);
+    moments = 0;
+    flips = 0;
+    detected = 0;
+    harmless = 0;
+    judged = 0;
+}
+
+static void flip_in_every_state(uint16_t topology, const char *name) {
+    static void (*const WALKS[])(void) = {init, standby, active, tripped, safe, waiting};
+    for (unsigned i = 0; i < sizeof WALKS / sizeof WALKS[0]; i++) {
+        setUp();
+        f.config.topology = topology;
+        WALKS[i]();
+    }
+    print_counts(name);
+}
+
+/* Shows: INT-5, FSM-6, MEMORY_CORRUPTED */
+void test_each_flipped_bit_on_the_shared_bus(void) {
+    flip_in_every_state(AGV_TOPOLOGY_SHARED, "shared bus");
+}
+
+/* Shows: INT-5, FSM-6, MEMORY_CORRUPTED */
+void test_each_flipped_bit_in_the_gateway(void) {
+    flip_in_every_state(AGV_TOPOLOGY_GATEWAY, "gateway");
+}
+
+/* ---- The recorder ---- */
+
+/* Its head: sequence numbers, what was seen, the last payloads. The supervisor does not depend on any of it. */
+/* Shows: INT-5, INT-3 */
+void test_a_flipped_bit_in_the_head_of_the_recorder_changes_no_decision(void) {
+    const size_t head = offsetof(agv_recorder_t, events);
+    for (unsigned bit = 0; bit < 8 * head; bit += 7) {
+        setUp();
+        walk_to_safe(&f);
+        ((uint8_t *)&f.recorder)[bit / 8] ^= (uint8_t)(1u << (bit % 8));
+        fixture_run(&f, 20);
+        expect_state(&f, AGV_STATE_SAFE);
+        fixture_button(&f, true);
+        fixture_run(&f, 1050);
+        expect_state(&f, AGV_STATE_STANDBY);
+    }
+}
