@@ -182,12 +182,13 @@ static void carry_out_transition(agv_core_t *core, const agv_step_t *taken) {
         send_all_at_once(core);
     } else if (agv_state_commands_safe(from) && !agv_state_commands_safe(agv_core_state(core))) {
         leave_safe_commands(core, taken->reset_accepted);
+    } else if (from == AGV_STATE_ACTIVE) {
+        /* Motion commands that wait for a stalled side must not reach a vehicle that a human drives. */
+        agv_transmitter_discard(core, AGV_SET_COMMANDS);
     } else {
         /* nothing to send or to forget */
     }
-    if (core->machine.state != (uint8_t)AGV_STATE_ACTIVE) {
-        core->gateway.sent = false;
-    }
+    core->gateway.sent = false; /* the slew limit begins anew with every engagement */
     core->monitor.faults.changed = true; /* what is latched, and for how long, goes by the state */
     agv_core_record(core, AGV_EVENT_STATE, taken->from, core->machine.state, reason);
     if (agv_state_is_latched(from) != agv_state_is_latched(agv_core_state(core))) {
