@@ -29,23 +29,28 @@ bool agv_scheduler_due(agv_scheduler_t *scheduler, agv_message_t command, uint32
     return true;
 }
 
-bool agv_scheduler_override(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_ms, uint16_t gap_ms) {
+/* Once the gap is over it stays over: differences of wrapping microseconds are only taken while it is not. */
+static bool is_too_soon(agv_slot_t *slot, uint32_t now_us, uint16_t gap_ms) {
+    if ((now_us - slot->overridden_us) >= ((uint32_t)gap_ms * 1000u)) {
+        slot->override_recent = false;
+    }
+    return slot->override_recent;
+}
+
+bool agv_scheduler_override(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_us, uint16_t gap_ms) {
     agv_slot_t *slot = &scheduler->slots[command];
-    slot->override_waits = slot->override_recent && ((now_ms - slot->overridden_ms) < gap_ms);
+    slot->override_waits = is_too_soon(slot, now_us, gap_ms);
     return !slot->override_waits;
 }
 
-bool agv_scheduler_override_due(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_ms, uint16_t gap_ms) {
+bool agv_scheduler_override_due(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_us, uint16_t gap_ms) {
     agv_slot_t *slot = &scheduler->slots[command];
-    if (slot->override_recent && ((now_ms - slot->overridden_ms) > gap_ms)) {
-        slot->override_recent = false;
-    }
-    return slot->override_waits && !slot->override_recent;
+    return !is_too_soon(slot, now_us, gap_ms) && slot->override_waits;
 }
 
-void agv_scheduler_overridden(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_ms) {
+void agv_scheduler_overridden(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_ms, uint32_t now_us) {
     agv_slot_t *slot = &scheduler->slots[command];
-    slot->overridden_ms = now_ms;
+    slot->overridden_us = now_us;
     slot->override_recent = true;
     slot->override_waits = false;
     slot->next_ms = now_ms + (agv_message_cycle_ms(command) / 2u);

@@ -13,8 +13,16 @@
 enum { CHECKED_RECEIVE = 1, CHECKED_STEP = 2, CHECKED_SEND = 4, CHECKED_ALL = 7 };
 
 /* The supervisor's time never goes backwards, whatever stamps frames carry. */
-static void advance(agv_core_t *core, uint32_t moment_ms) {
-    core->now_ms += agv_age_ms(moment_ms, core->now_ms);
+static void advance(agv_core_t *core, uint32_t moment_ms, uint16_t moment_us) {
+    const uint32_t now_us = (moment_ms * 1000u) + moment_us;
+    if (agv_age_ms(moment_ms, core->now_ms) > 0u) {
+        core->now_ms = moment_ms;
+        core->now_us = now_us;
+    } else if ((moment_ms == core->now_ms) && (now_us - core->now_us < 1000u)) {
+        core->now_us = now_us;
+    } else {
+        /* a stamp of the past */
+    }
 }
 
 static void attach(agv_core_t *core, const agv_ports_t *ports) {
@@ -23,15 +31,17 @@ static void attach(agv_core_t *core, const agv_ports_t *ports) {
 }
 
 /* Every call begins with a look at the whole memory (INT-5). */
-static agv_core_t *open_core(agv_supervisor_t *supervisor, const agv_ports_t *ports, uint32_t moment_ms) {
+static agv_core_t *open_core(agv_supervisor_t *supervisor, const agv_ports_t *ports, uint32_t moment_ms,
+                             uint16_t moment_us) {
     agv_core_t *const core = &supervisor->core;
     const bool intact =
         (supervisor->seal == agv_seal(core, sizeof *core)) && agv_state_machine_is_sound(&core->machine);
     attach(core, ports);
     if (intact) {
-        advance(core, moment_ms);
+        advance(core, moment_ms, moment_us);
     } else {
         core->now_ms = moment_ms;
+        core->now_us = moment_ms * 1000u;
         agv_core_begin_corrupted(core);
     }
     return core;
@@ -131,6 +141,7 @@ void agv_supervisor_start(agv_supervisor_t *supervisor, const agv_ports_t *ports
     (void)memset(core, 0, sizeof *core);
     attach(core, ports);
     core->now_ms = now_ms;
+    core->now_us = now_ms * 1000u;
     if (config_valid) {
         core->config = *config;
     } else {
@@ -143,13 +154,13 @@ void agv_supervisor_start(agv_supervisor_t *supervisor, const agv_ports_t *ports
 
 void agv_supervisor_frame(agv_supervisor_t *supervisor, const agv_ports_t *ports, hal_can_side_t side,
                           const hal_can_frame_t *frame) {
-    agv_core_t *const core = open_core(supervisor, ports, frame->time_ms);
+    agv_core_t *const core = open_core(supervisor, ports, frame->time_ms, frame->time_us);
     agv_core_frame(core, side, frame);
     close_core(supervisor);
 }
 
 void agv_supervisor_tick(agv_supervisor_t *supervisor, const agv_ports_t *ports, uint32_t now_ms) {
-    agv_core_t *const core = open_core(supervisor, ports, now_ms);
+    agv_core_t *const core = open_core(supervisor, ports, now_ms, 0u);
     const uint32_t elapsed_ms = step_time(core);
     core->checked_in |= (uint8_t)(CHECKED_STEP | (supervisor->receive_alive ? CHECKED_RECEIVE : 0));
     supervisor->receive_alive = false;

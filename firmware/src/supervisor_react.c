@@ -188,7 +188,7 @@ static void carry_out_transition(agv_core_t *core, const agv_step_t *taken) {
     } else {
         /* nothing to send or to forget */
     }
-    core->gateway.sent = false; /* the slew limit begins anew with every engagement */
+    core->gateway.sent = false;          /* the slew limit begins anew with every engagement */
     core->monitor.faults.changed = true; /* what is latched, and for how long, goes by the state */
     agv_core_record(core, AGV_EVENT_STATE, taken->from, core->machine.state, reason);
     if (agv_state_is_latched(from) != agv_state_is_latched(agv_core_state(core))) {

@@ -142,7 +142,7 @@ static bool is_same_command(const agv_core_t *core, agv_message_t command, const
 
 static void override(agv_core_t *core, agv_message_t command) {
     send_own(core, command);
-    agv_scheduler_overridden(&core->transmitter.scheduler, command, core->now_ms);
+    agv_scheduler_overridden(&core->transmitter.scheduler, command, core->now_ms, core->now_us);
 }
 
 void agv_transmitter_answer(agv_core_t *core, agv_message_t command, const uint8_t *data) {
@@ -150,7 +150,7 @@ void agv_transmitter_answer(agv_core_t *core, agv_message_t command, const uint8
         return;
     }
     if (((data == NULL) || !is_same_command(core, command, data)) &&
-        agv_scheduler_override(&core->transmitter.scheduler, command, core->now_ms, core->config.override_gap_ms)) {
+        agv_scheduler_override(&core->transmitter.scheduler, command, core->now_us, core->config.override_gap_ms)) {
         override(core, command);
     }
 }
@@ -184,7 +184,7 @@ static void tick_own(agv_core_t *core, agv_message_t command, bool wanted) {
     const bool before = (transmitter->wanted_before & bit_of(command)) != 0u;
     uint32_t skipped = 0u;
     const bool due = agv_scheduler_due(scheduler, command, core->now_ms, &skipped);
-    const bool foreign = agv_scheduler_override_due(scheduler, command, core->now_ms, core->config.override_gap_ms);
+    const bool foreign = agv_scheduler_override_due(scheduler, command, core->now_us, core->config.override_gap_ms);
     if (!wanted) {
         agv_timer_stop(&transmitter->waits[command]);
         return;

@@ -112,6 +112,7 @@ static hal_can_side_t side_of(replay_t *replay, const candump_record_t *record) 
 static void hand_over(replay_t *replay, candump_record_t *record, uint64_t t_ms) {
     const hal_can_side_t side = side_of(replay, record);
     record->frame.time_ms = clock_at(replay, t_ms);
+    record->frame.time_us = (uint16_t)((record->stamp_us - replay->first_us) % US_PER_MS);
     sim_hal_set_now_ms(&replay->hal, record->frame.time_ms);
     if ((record->frame.flags & HAL_CAN_ERROR) != 0u) {
         act_on_controller(replay, side, &record->frame);

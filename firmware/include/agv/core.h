@@ -44,6 +44,7 @@ typedef struct agv_core {
     agv_timer_t unfed;        /**< since the hardware watchdog was fed */
     uint32_t config_checksum; /**< agv_config_checksum at the start */
     uint32_t now_ms;          /**< the latest moment that was heard of */
+    uint32_t now_us;          /**< the same in microseconds, wrapping */
     uint32_t last_tick_ms;
     int8_t led_code;    /**< of the highest-ranking fault, as last reported */
     uint8_t checked_in; /**< activities since the watchdog was fed (TIM-3) */

@@ -14,7 +14,7 @@
 /** One slot. */
 typedef struct {
     uint32_t next_ms;       /**< when it is due */
-    uint32_t overridden_ms; /**< last override of this identifier */
+    uint32_t overridden_us; /**< last override of this identifier, microseconds (wraps) */
     bool override_recent;   /**< less than override_gap_ms ago */
     bool override_waits;    /**< another one came too soon and is answered later */
 } agv_slot_t;
@@ -41,17 +41,15 @@ bool agv_scheduler_due(agv_scheduler_t *scheduler, agv_message_t command, uint32
 
 /**
  * A foreign command has to be answered.
+ * @param now_us microseconds, wrapping: the rate limit goes by the exact receive time
  * @return true: now. false: the last answer is less than @p gap_ms ago; it waits.
  */
-bool agv_scheduler_override(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_ms, uint16_t gap_ms);
+bool agv_scheduler_override(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_us, uint16_t gap_ms);
 
-/**
- * At a tick: whether a waiting answer is to be sent now. Time stamps are whole milliseconds, rounded down: more than
- * @p gap_ms must have passed, so that never less have.
- */
-bool agv_scheduler_override_due(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_ms, uint16_t gap_ms);
+/** Whether a waiting answer is to be sent now. Call at every tick. */
+bool agv_scheduler_override_due(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_us, uint16_t gap_ms);
 
 /** An override was sent: the next periodic frame is due half a cycle later. */
-void agv_scheduler_overridden(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_ms);
+void agv_scheduler_overridden(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_ms, uint32_t now_us);
 
 #endif

@@ -26,6 +26,7 @@ typedef enum { HAL_CAN_VEHICLE = 0, HAL_CAN_AI = 1, HAL_CAN_SIDES = 2 } hal_can_
 typedef struct {
     uint32_t id;      /**< 11 or 29 bits */
     uint32_t time_ms; /**< received: clock at reception, rounded down (wraps); sent: ignored */
+    uint16_t time_us; /**< and the microseconds within that millisecond, 0..999; 0 where a port does not know */
     uint8_t flags;    /**< HAL_CAN_* bits */
     uint8_t length;   /**< payload bytes: 0..8, up to 64 with HAL_CAN_FD; for HAL_CAN_REMOTE what was asked for */
     uint8_t data[8];  /**< the first 8 payload bytes; those beyond length are 0 */

@@ -69,6 +69,7 @@ bool sim_hal_receive(hal_t *hal, hal_can_side_t side, hal_can_frame_t *frame) {
         return false;
     }
     frame->time_ms = sim_hal_clock_at(hal, time_us);
+    frame->time_us = (uint16_t)((time_us + hal->config.clock_phase_us) % 1000u);
     can->received++;
     return true;
 }
