@@ -1,0 +1,65 @@
+/* Checksums: known answers of the standards, pieces, and every flipped bit. */
+#include "agv/checksum.h"
+
+#include "unity.h"
+
+void setUp(void) {
+}
+
+void tearDown(void) {
+}
+
+static uint32_t crc32_of(const void *bytes, size_t size) {
+    return ~agv_crc32(AGV_CRC32_START, bytes, size);
+}
+
+/* The check value of the catalogue, and 32 bytes of 0 and of FFh as iSCSI's and Ethernet's test vectors have them. */
+void test_crc32_gives_the_known_answers(void) {
+    uint8_t ones[32];
+    const uint8_t zeros[32] = {0};
+    for (size_t i = 0; i < sizeof ones; i++) {
+        ones[i] = 0xFF;
+    }
+    TEST_ASSERT_EQUAL_HEX32(0xCBF43926u, crc32_of("123456789", 9));
+    TEST_ASSERT_EQUAL_HEX32(0x190A55ADu, crc32_of(zeros, sizeof zeros));
+    TEST_ASSERT_EQUAL_HEX32(0xFF6CAB0Bu, crc32_of(ones, sizeof ones));
+    TEST_ASSERT_EQUAL_HEX32(0x00000000u, crc32_of("", 0));
+}
+
+void test_crc16_gives_the_known_answers(void) {
+    TEST_ASSERT_EQUAL_HEX16(0x29B1u, agv_crc16(AGV_CRC16_START, "123456789", 9));
+    TEST_ASSERT_EQUAL_HEX16(0xB915u, agv_crc16(AGV_CRC16_START, "A", 1));
+    TEST_ASSERT_EQUAL_HEX16(0xFFFFu, agv_crc16(AGV_CRC16_START, "", 0));
+}
+
+void test_pieces_give_what_the_whole_gives(void) {
+    const char text[] = "123456789";
+    for (size_t cut = 0; cut <= 9; cut++) {
+        const uint32_t head32 = agv_crc32(AGV_CRC32_START, text, cut);
+        const uint16_t head16 = agv_crc16(AGV_CRC16_START, text, cut);
+        TEST_ASSERT_EQUAL_HEX32(0xCBF43926u, ~agv_crc32(head32, &text[cut], 9 - cut));
+        TEST_ASSERT_EQUAL_HEX16(0x29B1u, agv_crc16(head16, &text[cut], 9 - cut));
+    }
+}
+
+/* 12345678h ^ 0F0F0F0Fh = 1D3B5977h, inverted E2C4A688h. */
+void test_the_seal_is_the_inverted_exclusive_or_of_the_words(void) {
+    const uint32_t words[2] = {0x12345678u, 0x0F0F0F0Fu};
+    TEST_ASSERT_EQUAL_HEX32(0xE2C4A688u, agv_seal(words, sizeof words));
+    TEST_ASSERT_EQUAL_HEX32(0xEDCBA987u, agv_seal(words, sizeof words[0]));
+}
+
+/* Shows: INT-5 */
+void test_every_flipped_bit_breaks_the_seal_and_the_checksums(void) {
+    uint32_t words[5] = {0x00000000u, 0xFFFFFFFFu, 0x12345678u, 0x80000001u, 0x00000010u};
+    const uint32_t seal = agv_seal(words, sizeof words);
+    const uint32_t crc32 = crc32_of(words, sizeof words);
+    const uint16_t crc16 = agv_crc16(AGV_CRC16_START, words, sizeof words);
+    for (uint32_t bit = 0; bit < 5u * 32u; bit++) {
+        words[bit / 32u] ^= 1u << (bit % 32u);
+        TEST_ASSERT_TRUE(agv_seal(words, sizeof words) != seal);
+        TEST_ASSERT_TRUE(crc32_of(words, sizeof words) != crc32);
+        TEST_ASSERT_TRUE(agv_crc16(AGV_CRC16_START, words, sizeof words) != crc16);
+        words[bit / 32u] ^= 1u << (bit % 32u);
+    }
+}

@@ -1,0 +1,221 @@
+/* The configuration: defaults, what is refused and why, checksum. */
+#include "agv/config.h"
+
+#include <string.h>
+
+#include "unity.h"
+
+static agv_config_t config;
+
+void setUp(void) {
+    agv_config_defaults(&config);
+}
+
+void tearDown(void) {
+}
+
+static void expect_problem(agv_config_problem_t problem, uint16_t setting) {
+    const agv_config_verdict_t verdict = agv_config_check(&config);
+    TEST_ASSERT_EQUAL(problem, verdict.problem);
+    TEST_ASSERT_EQUAL_UINT16(setting, verdict.setting);
+}
+
+static void expect_good(void) {
+    TEST_ASSERT_EQUAL(AGV_CONFIG_OK, agv_config_check(&config).problem);
+}
+
+/* By hand from the rows SUP-2, SUP-3, SUP-5 to SUP-8, FSM-1 to FSM-4, TOP-1, TIM-4. */
+/* Shows: SUP-2, SUP-3, INT-2 */
+void test_the_defaults_are_those_of_the_requirements(void) {
+    expect_good();
+    TEST_ASSERT_EQUAL_UINT16(50, config.vcu_heartbeat_timeout_ms);
+    TEST_ASSERT_EQUAL_UINT16(50, config.eps_heartbeat_timeout_ms);
+    TEST_ASSERT_EQUAL_UINT16(350, config.ai_heartbeat_timeout_ms);
+    TEST_ASSERT_EQUAL_UINT16(350, config.gear_command_timeout_ms);
+    TEST_ASSERT_EQUAL_UINT16(350, config.throttle_command_timeout_ms);
+    TEST_ASSERT_EQUAL_UINT16(125, config.steering_command_timeout_ms);
+    TEST_ASSERT_EQUAL_UINT16(125, config.gear_status_timeout_ms);
+    TEST_ASSERT_EQUAL_UINT16(60, config.throttle_status_timeout_ms);
+    TEST_ASSERT_EQUAL_UINT16(60, config.eps_status_timeout_ms);
+    TEST_ASSERT_EQUAL_UINT16(60, config.steering_position_timeout_ms);
+    TEST_ASSERT_EQUAL_UINT16(60, config.wheel_speed_timeout_ms);
+    TEST_ASSERT_EQUAL_UINT16(500, config.steering_deviation_ddeg);
+    TEST_ASSERT_EQUAL_UINT16(100, config.tx_stalled_ms);
+    TEST_ASSERT_EQUAL_UINT16(500, config.ai_never_seen_timeout_ms);
+    TEST_ASSERT_EQUAL_UINT16(3000, config.park_timeout_ms);
+    TEST_ASSERT_EQUAL_UINT16(500, config.confirm_timeout_ms);
+    TEST_ASSERT_EQUAL_UINT16(1000, config.reset_hold_ms);
+    TEST_ASSERT_EQUAL_UINT16(5, config.override_gap_ms);
+    TEST_ASSERT_EQUAL_UINT16(100, config.watchdog_period_ms);
+    TEST_ASSERT_EQUAL_UINT16(AGV_TOPOLOGY_SHARED, config.topology);
+    TEST_ASSERT_EQUAL_UINT16(AGV_PARK_AT_ONCE, config.park);
+    TEST_ASSERT_EQUAL_UINT16(0, config.status_frame_id);
+}
+
+/* Shows: INT-2 */
+void test_a_deadline_under_three_cycles_is_refused(void) {
+    static const struct {
+        uint16_t setting;
+        uint16_t three_cycles_ms;
+    } deadlines[] = {
+        {AGV_SETTING_vcu_heartbeat_timeout_ms, 30},     {AGV_SETTING_eps_heartbeat_timeout_ms, 30},
+        {AGV_SETTING_ai_heartbeat_timeout_ms, 300},     {AGV_SETTING_gear_command_timeout_ms, 300},
+        {AGV_SETTING_throttle_command_timeout_ms, 300}, {AGV_SETTING_steering_command_timeout_ms, 75},
+        {AGV_SETTING_gear_status_timeout_ms, 75},       {AGV_SETTING_throttle_status_timeout_ms, 30},
+        {AGV_SETTING_eps_status_timeout_ms, 30},        {AGV_SETTING_steering_position_timeout_ms, 30},
+        {AGV_SETTING_wheel_speed_timeout_ms, 30},
+    };
+    for (size_t i = 0; i < sizeof deadlines / sizeof deadlines[0]; i++) {
+        setUp();
+        TEST_ASSERT_TRUE(agv_config_set(&config, deadlines[i].setting, deadlines[i].three_cycles_ms));
+        expect_good();
+        TEST_ASSERT_TRUE(agv_config_set(&config, deadlines[i].setting, (uint16_t)(deadlines[i].three_cycles_ms - 1)));
+        expect_problem(AGV_CONFIG_OUT_OF_RANGE, deadlines[i].setting);
+    }
+}
+
+/* The documented ends are good, one beyond is not; frozen needs the gateway, so that all is tried in it. */
+/* Shows: INT-2 */
+void test_every_setting_is_held_to_its_range(void) {
+    for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
+        const agv_setting_info_t *info = agv_setting_info(i);
+        setUp();
+        config.topology = AGV_TOPOLOGY_GATEWAY;
+        (void)agv_config_set(&config, i, info->lowest);
+        expect_good();
+        (void)agv_config_set(&config, i, info->highest);
+        expect_good();
+        (void)agv_config_set(&config, i, (uint16_t)(info->highest + 1));
+        expect_problem(AGV_CONFIG_OUT_OF_RANGE, i);
+        if (info->lowest > 0) {
+            (void)agv_config_set(&config, i, (uint16_t)(info->lowest - 1));
+            expect_problem(AGV_CONFIG_OUT_OF_RANGE, i);
+        }
+    }
+}
+
+/* Shows: INT-2 */
+void test_a_zero_period_is_refused(void) {
+    config.status_frame_period_ms = 0;
+    expect_problem(AGV_CONFIG_OUT_OF_RANGE, AGV_SETTING_status_frame_period_ms);
+    setUp();
+    config.watchdog_period_ms = 0;
+    expect_problem(AGV_CONFIG_OUT_OF_RANGE, AGV_SETTING_watchdog_period_ms);
+}
+
+/* Of the 2048 identifiers the 13 of the two sets are taken. */
+/* Shows: INT-2, TOP-3 */
+void test_the_status_frame_may_not_have_an_identifier_of_the_protocol(void) {
+    static const uint16_t taken[] = {0x43F, 0x201, 0x363, 0x203, 0x168, 0x075, 0x065,
+                                     0x0A3, 0x050, 0x067, 0x167, 0x267, 0x101};
+    for (uint16_t id = 0; id <= 0x7FF; id++) {
+        bool is_taken = false;
+        for (size_t i = 0; i < sizeof taken / sizeof taken[0]; i++) {
+            is_taken = is_taken || taken[i] == id;
+        }
+        config.status_frame_id = id;
+        TEST_ASSERT_EQUAL(is_taken ? AGV_CONFIG_ID_TWICE : AGV_CONFIG_OK, agv_config_check(&config).problem);
+    }
+    config.status_frame_id = 0x201;
+    expect_problem(AGV_CONFIG_ID_TWICE, AGV_SETTING_status_frame_id);
+}
+
+/* Shows: FSM-8, INT-2 */
+void test_a_frozen_heartbeat_needs_the_gateway(void) {
+    config.own_heartbeat = AGV_OWN_HEARTBEAT_FROZEN;
+    expect_problem(AGV_CONFIG_NEEDS_GATEWAY, AGV_SETTING_own_heartbeat);
+    config.topology = AGV_TOPOLOGY_GATEWAY;
+    expect_good();
+}
+
+/* Shows: INT-2 */
+void test_what_must_trip_cannot_be_made_a_warning(void) {
+    static const agv_fault_t must[] = {
+        AGV_FAULT_VCU_HEARTBEAT_LOST,
+        AGV_FAULT_VCU_HEARTBEAT_STUCK,
+        AGV_FAULT_EPS_HEARTBEAT_LOST,
+        AGV_FAULT_EPS_HEARTBEAT_STUCK,
+        AGV_FAULT_AI_HEARTBEAT_LOST,
+        AGV_FAULT_AI_HEARTBEAT_STUCK,
+        AGV_FAULT_EPS_OVER_CURRENT_SHUTDOWN,
+        AGV_FAULT_EPS_MOTOR_ENCODER,
+        AGV_FAULT_EPS_POSITION_ENCODER,
+        AGV_FAULT_EPS_UNDER_VOLTAGE,
+        AGV_FAULT_EPS_OVER_VOLTAGE,
+        AGV_FAULT_EPS_EXCESSIVE_CURRENT,
+        AGV_FAULT_EPS_TEMP_ABOVE_120,
+        AGV_FAULT_VCU_EPS_CAN_BUS_FAULT,
+        AGV_FAULT_VCU_EPS_HARDWARE_FAULT,
+        AGV_FAULT_EPS_STATUS_TIMEOUT,
+        AGV_FAULT_MEMORY_CORRUPTED,
+        AGV_FAULT_TX_GATE_REFUSED,
+        AGV_FAULT_CONFIG_INVALID,
+        AGV_FAULT_SELF_TEST_FAILED,
+    };
+    for (size_t i = 0; i < sizeof must / sizeof must[0]; i++) {
+        setUp();
+        TEST_ASSERT_TRUE(agv_config_is_trip(&config, must[i]));
+        config.trips &= ~agv_fault_bit(must[i]);
+        TEST_ASSERT_FALSE(agv_config_is_trip(&config, must[i]));
+        TEST_ASSERT_EQUAL(AGV_CONFIG_FAULT_TOO_WEAK, agv_config_check(&config).problem);
+        TEST_ASSERT_EQUAL(must[i], agv_config_check(&config).fault);
+    }
+}
+
+void test_the_highest_ranking_weak_fault_is_named(void) {
+    config.trips = 0;
+    TEST_ASSERT_EQUAL(AGV_FAULT_SELF_TEST_FAILED, agv_config_check(&config).fault);
+}
+
+/* Shows: INT-2 */
+void test_other_classes_are_free(void) {
+    config.trips &= ~agv_fault_bit(AGV_FAULT_REMOTE_SIGNAL_LOST);
+    expect_good();
+    config.trips |= agv_fault_bit(AGV_FAULT_EPS_TEMP_ABOVE_110) | agv_fault_bit(AGV_FAULT_COMMAND_TOO_FAST);
+    expect_good();
+    TEST_ASSERT_FALSE(agv_config_is_trip(&config, AGV_FAULT_REMOTE_SIGNAL_LOST));
+    TEST_ASSERT_TRUE(agv_config_is_trip(&config, AGV_FAULT_EPS_TEMP_ABOVE_110));
+    TEST_ASSERT_FALSE(agv_config_is_trip(&config, AGV_FAULT_NONE));
+}
+
+/* Shows: INT-2 */
+void test_bits_beyond_the_faults_are_refused(void) {
+    config.trips |= (agv_fault_set_t)1 << 63;
+    expect_problem(AGV_CONFIG_NO_SUCH_FAULT, AGV_SETTING_COUNT);
+}
+
+void test_there_is_no_setting_beyond_the_last(void) {
+    agv_config_t before = config;
+    TEST_ASSERT_FALSE(agv_config_set(&config, AGV_SETTING_COUNT, 1));
+    TEST_ASSERT_EQUAL_UINT16(0, agv_config_get(&config, AGV_SETTING_COUNT));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &config, sizeof config);
+    TEST_ASSERT_EQUAL_UINT16(50, agv_config_get(&config, AGV_SETTING_vcu_heartbeat_timeout_ms));
+}
+
+/*
+ * By an independent CRC-32, zlib.crc32 of Python, over the defaults of config_settings.def packed as "<H" and the rows of
+ * fault_table.def with the class TRIP as "<Q". A new setting or fault changes it.
+ */
+/* Shows: TOP-3 */
+void test_the_checksum_of_the_defaults_is_known(void) {
+    TEST_ASSERT_EQUAL_HEX32(0x6EBBA770u, agv_config_checksum(&config));
+}
+
+/* Shows: INT-5 */
+void test_every_flipped_bit_changes_the_checksum(void) {
+    const uint32_t checksum = agv_config_checksum(&config);
+    for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
+        for (unsigned bit = 0; bit < 16; bit++) {
+            const uint16_t value = agv_config_get(&config, i);
+            (void)agv_config_set(&config, i, (uint16_t)(value ^ (1u << bit)));
+            TEST_ASSERT_TRUE(agv_config_checksum(&config) != checksum);
+            (void)agv_config_set(&config, i, value);
+        }
+    }
+    for (unsigned bit = 0; bit < 64; bit++) {
+        config.trips ^= (agv_fault_set_t)1 << bit;
+        TEST_ASSERT_TRUE(agv_config_checksum(&config) != checksum);
+        config.trips ^= (agv_fault_set_t)1 << bit;
+    }
+    TEST_ASSERT_EQUAL_HEX32(checksum, agv_config_checksum(&config));
+}

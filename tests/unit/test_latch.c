@@ -1,0 +1,137 @@
+/* The latch record: what is handed to the store and what comes back from it. */
+#include "agv/latch.h"
+
+#include <string.h>
+
+#include "mock_store.h"
+#include "unity.h"
+
+/* A port's context: the core never looks inside. */
+struct hal {
+    int unused;
+};
+static hal_t hal;
+
+/* What the store holds, and what it says that it holds. */
+static uint8_t stored[HAL_STORE_LATCH_SIZE_MAX];
+static size_t stored_size;
+static bool write_works;
+
+static size_t read_stub(hal_t *port, void *record, size_t size, int calls) {
+    (void)calls;
+    TEST_ASSERT_EQUAL_PTR(&hal, port);
+    memcpy(record, stored, (stored_size < size) ? stored_size : size);
+    return stored_size;
+}
+
+static bool write_stub(hal_t *port, const void *record, size_t size, int calls) {
+    (void)calls;
+    TEST_ASSERT_EQUAL_PTR(&hal, port);
+    TEST_ASSERT_LESS_OR_EQUAL_size_t(sizeof stored, size);
+    memcpy(stored, record, size);
+    stored_size = size;
+    return write_works;
+}
+
+void setUp(void) {
+    memset(stored, 0, sizeof stored);
+    stored_size = 0;
+    write_works = true;
+}
+
+void tearDown(void) {
+}
+
+static void use_stubs(void) {
+    hal_store_read_latch_Stub(read_stub);
+    hal_store_write_latch_Stub(write_stub);
+}
+
+/* Latched, first reason EPS_HEARTBEAT_LOST (rank 10), nothing unresettable (56 = none). */
+static void write_tripped(void) {
+    use_stubs();
+    agv_latch_write(&hal, true, AGV_FAULT_EPS_HEARTBEAT_LOST, AGV_FAULT_NONE);
+}
+
+/* Shows: FSM-7 */
+void test_what_was_written_is_read_again(void) {
+    agv_latch_t latch;
+    write_tripped();
+    TEST_ASSERT_EQUAL(AGV_LATCH_VALID, agv_latch_read(&hal, &latch));
+    TEST_ASSERT_EQUAL_HEX8(0x96, latch.latched);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_EPS_HEARTBEAT_LOST, latch.first_reason);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_NONE, latch.unresettable);
+    agv_latch_write(&hal, false, AGV_FAULT_NONE, AGV_FAULT_MEMORY_CORRUPTED);
+    TEST_ASSERT_EQUAL(AGV_LATCH_VALID, agv_latch_read(&hal, &latch));
+    TEST_ASSERT_EQUAL_HEX8(0x69, latch.latched);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_NONE, latch.first_reason);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_MEMORY_CORRUPTED, latch.unresettable);
+}
+
+/* 96h, rank, rank, version 1, CRC-32 of 96 0A 38 01 (by zlib: D46068DF). */
+void test_one_call_with_the_whole_record(void) {
+    const agv_latch_t expected = {
+        .latched = 0x96, .first_reason = 10, .unresettable = 56, .version = 1, .checksum = 0xD46068DFu};
+    TEST_ASSERT_EQUAL_size_t(8, sizeof expected);
+    hal_store_write_latch_ExpectWithArrayAndReturn(&hal, 1, &expected, 8, true);
+    agv_latch_write(&hal, true, AGV_FAULT_EPS_HEARTBEAT_LOST, AGV_FAULT_NONE);
+}
+
+void test_one_call_to_read_it(void) {
+    agv_latch_t latch;
+    hal_store_read_latch_ExpectAndReturn(&hal, NULL, 8, 0);
+    hal_store_read_latch_IgnoreArg_record();
+    TEST_ASSERT_EQUAL(AGV_LATCH_NOTHING, agv_latch_read(&hal, &latch));
+}
+
+void test_a_write_that_fails_is_not_tried_again(void) {
+    write_works = false;
+    write_tripped();
+    TEST_ASSERT_EQUAL_size_t(8, stored_size);
+}
+
+/* Shows: FSM-7, STORE_INVALID */
+void test_every_changed_byte_is_found(void) {
+    agv_latch_t latch = {.latched = 1, .first_reason = 2, .unresettable = 3, .version = 4, .checksum = 5};
+    const agv_latch_t before = latch;
+    write_tripped();
+    for (unsigned at = 0; at < 8; at++) {
+        const uint8_t good = stored[at];
+        for (unsigned change = 1; change < 256; change++) {
+            stored[at] = (uint8_t)(good ^ change);
+            TEST_ASSERT_EQUAL(AGV_LATCH_CORRUPT, agv_latch_read(&hal, &latch));
+        }
+        stored[at] = good;
+    }
+    TEST_ASSERT_EQUAL_MEMORY(&before, &latch, sizeof latch); /* is not filled with what is corrupt */
+}
+
+/* Shows: FSM-7 */
+void test_a_record_of_another_size_is_corrupt(void) {
+    agv_latch_t latch;
+    write_tripped();
+    for (stored_size = 1; stored_size <= sizeof stored; stored_size++) {
+        TEST_ASSERT_EQUAL((stored_size == 8) ? AGV_LATCH_VALID : AGV_LATCH_CORRUPT, agv_latch_read(&hal, &latch));
+    }
+}
+
+/* A record of a later layout, with a checksum that fits: 96 0A 38 02 (by zlib: 4D693965). */
+void test_another_layout_is_corrupt(void) {
+    agv_latch_t later = {
+        .latched = 0x96, .first_reason = 10, .unresettable = 56, .version = 2, .checksum = 0x4D693965u};
+    agv_latch_t latch;
+    use_stubs();
+    memcpy(stored, &later, sizeof later);
+    stored_size = sizeof later;
+    TEST_ASSERT_EQUAL(AGV_LATCH_CORRUPT, agv_latch_read(&hal, &latch));
+}
+
+/* RAM after a power-on: all 0, all 1. */
+void test_empty_memory_is_corrupt(void) {
+    agv_latch_t latch;
+    use_stubs();
+    stored_size = 8;
+    TEST_ASSERT_EQUAL(AGV_LATCH_CORRUPT, agv_latch_read(&hal, &latch));
+    memset(stored, 0xFF, sizeof stored);
+    TEST_ASSERT_EQUAL(AGV_LATCH_CORRUPT, agv_latch_read(&hal, &latch));
+}

@@ -1,0 +1,107 @@
+/* The LED, millisecond by millisecond. */
+#include "agv/led.h"
+
+#include "unity.h"
+
+static agv_led_t led;
+
+void setUp(void) {
+    led = (agv_led_t){0};
+}
+
+void tearDown(void) {
+}
+
+/* One pattern of a code as it stands in LED-1: what the LED is in each of its milliseconds; returns its length. */
+static uint32_t pattern_of(int code, bool pattern[10000]) {
+    uint32_t length = 0;
+    for (int flash = 0; flash < code; flash++) {
+        for (uint32_t ms = 0; ms < 400; ms++) {
+            pattern[length++] = ms < 200;
+        }
+    }
+    for (uint32_t ms = 0; ms < 1400; ms++) {
+        pattern[length++] = false;
+    }
+    return length;
+}
+
+static void expect_pattern(int8_t code, bool shadow, const bool *pattern, uint32_t length) {
+    bool shown = false;
+    const int8_t other = (code == 7) ? 8 : 7; /* shown before, so that this one begins in the middle of it */
+    (void)agv_led_tick(&led, other, false, 1);
+    (void)agv_led_tick(&led, other, false, 300);
+    TEST_ASSERT_FALSE(led.on);
+    for (uint32_t ms = 0; ms < 3 * length; ms++) {
+        const bool switched = agv_led_tick(&led, code, shadow, (ms == 0) ? 5 : 1);
+        shown = switched ? led.on : shown;
+        TEST_ASSERT_EQUAL(pattern[ms % length], led.on);
+        TEST_ASSERT_EQUAL(led.on, shown); /* whoever switches when told to shows the same */
+    }
+}
+
+/* Shows: P19, LED-1 */
+TEST_RANGE([ 1, 17, 1 ])
+void test_a_code_is_that_many_flashes_and_a_pause(int code) {
+    static bool pattern[10000];
+    const uint32_t length = pattern_of(code, pattern);
+    expect_pattern((int8_t)code, false, pattern, length);
+}
+
+/* Shows: LED-1 */
+void test_healthy_is_a_second_on_and_a_second_off(void) {
+    static bool pattern[2000];
+    for (uint32_t ms = 0; ms < 2000; ms++) {
+        pattern[ms] = ms < 1000;
+    }
+    expect_pattern(AGV_LED_HEALTHY, false, pattern, 2000);
+}
+
+/* Shows: LED-1 */
+void test_a_fault_without_a_code_blinks_fast(void) {
+    static bool pattern[200];
+    for (uint32_t ms = 0; ms < 200; ms++) {
+        pattern[ms] = ms < 100;
+    }
+    expect_pattern(AGV_LED_BLINK, false, pattern, 200);
+}
+
+/* Shows: TOP-4 */
+void test_healthy_in_shadow_mode_is_a_short_flash(void) {
+    static bool pattern[2000];
+    for (uint32_t ms = 0; ms < 2000; ms++) {
+        pattern[ms] = ms < 100;
+    }
+    expect_pattern(AGV_LED_HEALTHY, true, pattern, 2000);
+}
+
+/* Shows: TOP-4, LED-1 */
+void test_a_code_is_the_same_in_shadow_mode(void) {
+    static bool pattern[10000];
+    const uint32_t length = pattern_of(13, pattern);
+    expect_pattern(13, true, pattern, length);
+}
+
+/* Steps of any length stay on the pattern: code 2 is 2200 ms long. */
+void test_a_late_tick_keeps_the_pattern(void) {
+    (void)agv_led_tick(&led, 2, false, 0);
+    TEST_ASSERT_TRUE(led.on);
+    TEST_ASSERT_FALSE(agv_led_tick(&led, 2, false, 2200)); /* one whole pattern */
+    TEST_ASSERT_TRUE(agv_led_tick(&led, 2, false, 300));
+    TEST_ASSERT_FALSE(led.on);
+    TEST_ASSERT_TRUE(agv_led_tick(&led, 2, false, 3 * 2200 + 100)); /* 400 ms into the fourth */
+    TEST_ASSERT_TRUE(led.on);
+}
+
+/* Codes of the protocol document's list, and two faults that it does not know. */
+/* Shows: P19, LED-1 */
+void test_a_fault_has_the_code_of_the_list(void) {
+    TEST_ASSERT_EQUAL_INT(0, agv_led_code(AGV_FAULT_NONE));
+    TEST_ASSERT_EQUAL_INT(14, agv_led_code(AGV_FAULT_BUS_OFF));
+    TEST_ASSERT_EQUAL_INT(17, agv_led_code(AGV_FAULT_REMOTE_SIGNAL_LOST));
+    TEST_ASSERT_EQUAL_INT(16, agv_led_code(AGV_FAULT_REMOTE_POWER_LOST));
+    TEST_ASSERT_EQUAL_INT(13, agv_led_code(AGV_FAULT_EPS_MOTOR_ENCODER));
+    TEST_ASSERT_EQUAL_INT(7, agv_led_code(AGV_FAULT_THROTTLE_STATUS_TIMEOUT));
+    TEST_ASSERT_EQUAL_INT(-1, agv_led_code(AGV_FAULT_MEMORY_CORRUPTED));
+    TEST_ASSERT_EQUAL_INT(-1, agv_led_code(AGV_FAULT_VCU_HEARTBEAT_LOST));
+}

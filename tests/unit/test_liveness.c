@@ -1,0 +1,194 @@
+/* Who is alive, and how old is what is known: deadlines, heartbeats, ages that saturate. */
+#include "agv/liveness.h"
+
+#include "unity.h"
+
+static agv_liveness_t liveness;
+
+void setUp(void) {
+    agv_liveness_start(&liveness, 0);
+}
+
+void tearDown(void) {
+}
+
+static void expect_heartbeat(agv_node_t node, agv_heartbeat_state_t expected) {
+    TEST_ASSERT_EQUAL(expected, agv_liveness_heartbeat(&liveness, node));
+    TEST_ASSERT_EQUAL(expected == AGV_HEARTBEAT_ALIVE, agv_liveness_alive(&liveness, node));
+}
+
+/* A frame with an alive counter, as the monitor hands it on. */
+static void beat(agv_node_t node, uint8_t counter, uint32_t time_ms) {
+    static const agv_message_t carrier[] = {AGV_MSG_VEHICLE_STATUS, AGV_MSG_STEERING_STATUS,
+                                            AGV_MSG_TURN_SIGNAL_COMMAND};
+    (void)agv_liveness_arrived(&liveness, carrier[node], time_ms);
+    agv_liveness_beat(&liveness, node, counter, time_ms);
+}
+
+/* Shows: SUP-2, SUP-3, TIM-2 */
+TEST_CASE(0)
+TEST_CASE(0xFFFFFFE0)
+void test_a_deadline_expires_when_the_age_is_greater(uint32_t start_ms) {
+    agv_liveness_start(&liveness, start_ms);
+    (void)agv_liveness_arrived(&liveness, AGV_MSG_EPS_STATUS, start_ms + 10);
+    agv_liveness_refresh(&liveness, AGV_MSG_EPS_STATUS, start_ms + 10);
+    TEST_ASSERT_FALSE(agv_liveness_judge(&liveness, AGV_MSG_EPS_STATUS, start_ms + 70, 60));
+    TEST_ASSERT_TRUE(agv_liveness_fresh(&liveness, AGV_MSG_EPS_STATUS));
+    TEST_ASSERT_TRUE(agv_liveness_judge(&liveness, AGV_MSG_EPS_STATUS, start_ms + 71, 60));
+    TEST_ASSERT_FALSE(agv_liveness_fresh(&liveness, AGV_MSG_EPS_STATUS));
+    agv_liveness_refresh(&liveness, AGV_MSG_EPS_STATUS, start_ms + 72);
+    TEST_ASSERT_FALSE(agv_liveness_judge(&liveness, AGV_MSG_EPS_STATUS, start_ms + 72, 60));
+    TEST_ASSERT_TRUE(agv_liveness_fresh(&liveness, AGV_MSG_EPS_STATUS));
+}
+
+/* Shows: TIM-2 */
+void test_what_is_lost_stays_lost_over_the_whole_turn_of_the_clock(void) {
+    beat(AGV_NODE_VCU, 1, 1);
+    beat(AGV_NODE_VCU, 2, 2);
+    agv_liveness_refresh(&liveness, AGV_MSG_VEHICLE_STATUS, 2);
+    for (uint32_t day = 0; day < 60; day++) {
+        const uint32_t now_ms = 100u + day * 86400000u;
+        agv_liveness_tick(&liveness, now_ms);
+        agv_liveness_judge_beat(&liveness, AGV_NODE_VCU, now_ms, 50);
+        TEST_ASSERT_TRUE(agv_liveness_judge(&liveness, AGV_MSG_VEHICLE_STATUS, now_ms, 60));
+        expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_LOST);
+    }
+    TEST_ASSERT_TRUE(agv_liveness_judge(&liveness, AGV_MSG_VEHICLE_STATUS, 2, 60));
+}
+
+void test_nothing_is_fresh_before_it_was_heard(void) {
+    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
+        TEST_ASSERT_FALSE(agv_liveness_heard(&liveness, (agv_message_t)i));
+        TEST_ASSERT_FALSE(agv_liveness_fresh(&liveness, (agv_message_t)i));
+        TEST_ASSERT_EQUAL_UINT32(7, agv_liveness_age_ms(&liveness, (agv_message_t)i, 7)); /* since the start */
+        TEST_ASSERT_TRUE(agv_liveness_judge(&liveness, (agv_message_t)i, 61, 60));
+    }
+}
+
+void test_a_message_concerns_no_other(void) {
+    (void)agv_liveness_arrived(&liveness, AGV_MSG_GEAR_STATUS, 5);
+    agv_liveness_refresh(&liveness, AGV_MSG_GEAR_STATUS, 5);
+    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
+        TEST_ASSERT_EQUAL(i == AGV_MSG_GEAR_STATUS, agv_liveness_heard(&liveness, (agv_message_t)i));
+        TEST_ASSERT_EQUAL(i == AGV_MSG_GEAR_STATUS, agv_liveness_fresh(&liveness, (agv_message_t)i));
+    }
+}
+
+/* Shows: TIM-2 */
+TEST_CASE(0)
+TEST_CASE(0xFFFFF000)
+void test_ages_and_gaps_saturate(uint32_t start_ms) {
+    agv_liveness_start(&liveness, start_ms);
+    TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, start_ms));
+    TEST_ASSERT_EQUAL_UINT32(10, agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, start_ms + 10));
+    agv_liveness_tick(&liveness, start_ms + 6010);
+    TEST_ASSERT_EQUAL_UINT32(6000, agv_liveness_age_ms(&liveness, AGV_MSG_WHEEL_SPEED, start_ms + 6010));
+    agv_liveness_tick(&liveness, start_ms + 6011);
+    TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, agv_liveness_age_ms(&liveness, AGV_MSG_WHEEL_SPEED, start_ms + 6011));
+    TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, agv_liveness_age_ms(&liveness, AGV_MSG_WHEEL_SPEED, start_ms + 11));
+    TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, start_ms + 11));
+    TEST_ASSERT_EQUAL_UINT32(0, agv_liveness_age_ms(&liveness, AGV_MSG_WHEEL_SPEED, start_ms + 11));
+}
+
+/* A stamp that lies before the one before it (frames of two queues) makes no gap of 49 days. */
+void test_a_stamp_that_goes_backwards_is_no_gap(void) {
+    (void)agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, 20);
+    TEST_ASSERT_EQUAL_UINT32(0, agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, 19));
+}
+
+/* Shows: SUP-1, SUP-2 */
+TEST_CASE(0)
+TEST_CASE(1)
+void test_vcu_and_eps_are_awaited_from_the_start(unsigned node) {
+    agv_liveness_judge_beat(&liveness, (agv_node_t)node, 50, 50);
+    expect_heartbeat((agv_node_t)node, AGV_HEARTBEAT_UNSEEN);
+    agv_liveness_judge_beat(&liveness, (agv_node_t)node, 51, 50);
+    expect_heartbeat((agv_node_t)node, AGV_HEARTBEAT_LOST);
+}
+
+/* Shows: SUP-8 */
+void test_the_ai_is_not_awaited_before_it_was_seen(void) {
+    agv_liveness_judge_beat(&liveness, AGV_NODE_AI, 1000000, 350);
+    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_UNSEEN);
+    beat(AGV_NODE_AI, 9, 1000000);
+    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_BASELINE);
+    agv_liveness_judge_beat(&liveness, AGV_NODE_AI, 1000350, 350);
+    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_BASELINE);
+    agv_liveness_judge_beat(&liveness, AGV_NODE_AI, 1000351, 350);
+    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_LOST);
+}
+
+/* Shows: SUP-1 */
+TEST_CASE(0)
+TEST_CASE(1)
+TEST_CASE(2)
+void test_the_first_frame_is_only_the_baseline(unsigned node) {
+    beat((agv_node_t)node, 200, 10);
+    TEST_ASSERT_FALSE(agv_liveness_alive(&liveness, (agv_node_t)node));
+    beat((agv_node_t)node, 200, 20);
+    TEST_ASSERT_FALSE(agv_liveness_alive(&liveness, (agv_node_t)node));
+    beat((agv_node_t)node, 201, 30);
+    expect_heartbeat((agv_node_t)node, AGV_HEARTBEAT_ALIVE);
+}
+
+/* Every change counts, backwards and from 255 to 0 as well. */
+void test_any_change_of_the_counter_is_a_beat(void) {
+    static const uint8_t counters[] = {255, 0, 7, 6, 134, 0};
+    beat(AGV_NODE_VCU, 254, 0);
+    for (uint32_t i = 0; i < sizeof counters; i++) {
+        beat(AGV_NODE_VCU, counters[i], 40 * (i + 1));
+        agv_liveness_judge_beat(&liveness, AGV_NODE_VCU, 40 * (i + 1) + 50, 50);
+        expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
+    }
+}
+
+/* 363h comes every 10 ms; the last counter changed at 100, the deadline of 50 ms has expired at 151. */
+static void repeat_until(uint32_t last_frame_ms) {
+    beat(AGV_NODE_VCU, 1, 90);
+    beat(AGV_NODE_VCU, 2, 100);
+    for (uint32_t ms = 110; ms <= last_frame_ms; ms += 10) {
+        beat(AGV_NODE_VCU, 2, ms);
+    }
+    agv_liveness_judge_beat(&liveness, AGV_NODE_VCU, 150, 50);
+    expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
+    agv_liveness_judge_beat(&liveness, AGV_NODE_VCU, 151, 50);
+}
+
+/* Shows: SUP-2 */
+void test_a_counter_that_stands_still_is_stuck(void) {
+    repeat_until(140);
+    expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_STUCK);
+    beat(AGV_NODE_VCU, 2, 155); /* the old counter revives nobody */
+    expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_STUCK);
+    beat(AGV_NODE_VCU, 3, 160);
+    expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
+}
+
+/* Shows: SUP-2 */
+void test_old_counters_more_than_two_cycles_ago_are_no_sign_of_life(void) {
+    repeat_until(130); /* 21 ms before */
+    expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_LOST);
+}
+
+/* Shows: SUP-2 */
+void test_silence_is_lost(void) {
+    repeat_until(0);
+    expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_LOST);
+    beat(AGV_NODE_VCU, 2, 500);
+    expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_LOST);
+    beat(AGV_NODE_VCU, 3, 510);
+    expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
+}
+
+/* Shows: SUP-8 */
+void test_a_forgotten_node_is_seen_again_when_its_counter_changes(void) {
+    beat(AGV_NODE_AI, 1, 0);
+    beat(AGV_NODE_AI, 2, 100);
+    agv_liveness_forget(&liveness, AGV_NODE_AI);
+    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_UNSEEN);
+    beat(AGV_NODE_AI, 2, 200);
+    agv_liveness_judge_beat(&liveness, AGV_NODE_AI, 10000, 350);
+    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_UNSEEN);
+    beat(AGV_NODE_AI, 3, 10000);
+    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_ALIVE);
+}

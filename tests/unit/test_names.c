@@ -1,0 +1,88 @@
+/* The public names, and that what is none has none. */
+#include "agv/names.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#include "unity.h"
+
+void setUp(void) {
+}
+
+void tearDown(void) {
+}
+
+void test_every_fault_is_found_by_its_name(void) {
+    for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
+        const char *name = agv_fault_name((agv_fault_t)i);
+        TEST_ASSERT_NOT_NULL(name);
+        TEST_ASSERT_EQUAL_UINT(i, agv_fault_from_name(name));
+    }
+    TEST_ASSERT_EQUAL_STRING("EPS_HEARTBEAT_LOST", agv_fault_name(AGV_FAULT_EPS_HEARTBEAT_LOST));
+    TEST_ASSERT_EQUAL_STRING("SELF_TEST_FAILED", agv_fault_name((agv_fault_t)0));
+}
+
+void test_what_is_no_fault_has_no_name(void) {
+    TEST_ASSERT_NULL(agv_fault_name(AGV_FAULT_NONE));
+    TEST_ASSERT_NULL(agv_fault_name((agv_fault_t)255));
+    TEST_ASSERT_EQUAL_UINT(AGV_FAULT_NONE, agv_fault_from_name(""));
+    TEST_ASSERT_EQUAL_UINT(AGV_FAULT_NONE, agv_fault_from_name("BUS_OF"));
+    TEST_ASSERT_EQUAL_UINT(AGV_FAULT_NONE, agv_fault_from_name("bus_off"));
+}
+
+void test_classes(void) {
+    TEST_ASSERT_EQUAL_STRING("trip", agv_class_name(AGV_CLASS_TRIP));
+    TEST_ASSERT_EQUAL_STRING("warn", agv_class_name(AGV_CLASS_WARN));
+}
+
+void test_states(void) {
+    unsigned named = 0;
+    TEST_ASSERT_EQUAL_STRING("INIT", agv_state_name(AGV_STATE_INIT));
+    TEST_ASSERT_EQUAL_STRING("STANDBY", agv_state_name(AGV_STATE_STANDBY));
+    TEST_ASSERT_EQUAL_STRING("ACTIVE", agv_state_name(AGV_STATE_ACTIVE));
+    TEST_ASSERT_EQUAL_STRING("TRIPPED", agv_state_name(AGV_STATE_TRIPPED));
+    TEST_ASSERT_EQUAL_STRING("SAFE", agv_state_name(AGV_STATE_SAFE));
+    for (unsigned value = 0; value < 256; value++) {
+        named += (agv_state_name((agv_state_t)value) != NULL) ? 1u : 0u;
+    }
+    TEST_ASSERT_EQUAL_UINT(5, named);
+}
+
+void test_messages_in_the_order_of_the_document(void) {
+    static const char *const expected[] = {"turn_signal_command", "gear_command",    "throttle_command",
+                                           "steering_command",    "vehicle_status",  "gear_status",
+                                           "throttle_status",     "steering_status", "eps_status",
+                                           "steering_position",   "wheel_speed"};
+    for (unsigned i = 0; i < 11; i++) {
+        TEST_ASSERT_EQUAL_STRING(expected[i], agv_message_name((agv_message_t)i));
+    }
+    TEST_ASSERT_NULL(agv_message_name(AGV_MSG_NONE));
+    TEST_ASSERT_NULL(agv_message_name((agv_message_t)255));
+}
+
+/* By bit of AGV_MISSING_*. */
+void test_what_is_missing(void) {
+    static const char *const expected[] = {"state",      "vcu_heartbeat", "eps_heartbeat", "trip_cause",
+                                           "standstill", "manual",        "button",        "messages"};
+    for (uint8_t i = 0; i < 8; i++) {
+        TEST_ASSERT_EQUAL_STRING(expected[i], agv_missing_name(i));
+    }
+    TEST_ASSERT_NULL(agv_missing_name(8));
+    TEST_ASSERT_NULL(agv_missing_name(255));
+}
+
+/* Shows: INT-2 */
+void test_every_setting_is_described(void) {
+    for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
+        const agv_setting_info_t *info = agv_setting_info(i);
+        TEST_ASSERT_TRUE(strlen(info->name) > 0 && strlen(info->meaning) > 0);
+        TEST_ASSERT_TRUE(info->lowest <= info->preset && info->preset <= info->highest);
+        if (info->words != NULL) {
+            TEST_ASSERT_NOT_NULL(strchr(info->words, '|'));
+            TEST_ASSERT_EQUAL_UINT16(0, info->lowest);
+            TEST_ASSERT_EQUAL_UINT16(1, info->highest);
+        }
+    }
+    TEST_ASSERT_NULL(agv_setting_info(AGV_SETTING_COUNT));
+    TEST_ASSERT_NULL(agv_setting_info(UINT16_MAX));
+}

@@ -1,0 +1,147 @@
+/* When to send: slots on their grid, overruns, overrides. */
+#include "agv/scheduler.h"
+
+#include "unity.h"
+
+static agv_scheduler_t scheduler;
+
+void setUp(void) {
+    scheduler = (agv_scheduler_t){0};
+}
+
+void tearDown(void) {
+}
+
+static const struct {
+    agv_message_t command;
+    uint32_t first_ms;
+    uint32_t cycle_ms;
+} SLOTS[] = {{AGV_MSG_TURN_SIGNAL_COMMAND, 100, 100},
+             {AGV_MSG_GEAR_COMMAND, 66, 100},
+             {AGV_MSG_THROTTLE_COMMAND, 33, 100},
+             {AGV_MSG_STEERING_COMMAND, 25, 25}};
+
+/* Slots lie at 0, 8 (33) and 16 (66) of each 25 ms: a day of ticks is long, so those well in between are left out. */
+static bool is_near_a_slot(uint32_t ms) {
+    return ((ms + 1) % 25) % 8 <= 2;
+}
+
+/* Each slot has to be due exactly on its grid. */
+static void expect_grid(uint32_t start_ms, uint32_t duration_ms) {
+    uint32_t skipped = 0;
+    uint32_t wrong = 0;
+    agv_scheduler_restart(&scheduler, start_ms);
+    for (uint32_t ms = 0; ms < duration_ms; ms++) {
+        for (unsigned i = 0; i < 4 && is_near_a_slot(ms); i++) {
+            const bool expected = ms >= SLOTS[i].first_ms && (ms - SLOTS[i].first_ms) % SLOTS[i].cycle_ms == 0;
+            wrong += agv_scheduler_due(&scheduler, SLOTS[i].command, start_ms + ms, &skipped) != expected;
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, wrong);
+    TEST_ASSERT_EQUAL_UINT32(0, skipped);
+}
+
+/* Shows: TIM-1, FSM-2 */
+void test_first_slots_then_cycles_for_a_day_without_drift(void) {
+    expect_grid(0, 86400000u);
+}
+
+/* Shows: TIM-1, TIM-2 */
+TEST_CASE(0xFFFFFFFF)
+TEST_CASE(0xFFFFFFC0)
+TEST_CASE(0xFFFFFC18)
+TEST_CASE(0x7FFFFFF0)
+void test_the_grid_goes_on_across_the_wrap(uint32_t start_ms) {
+    expect_grid(start_ms, 3000);
+}
+
+/* Shows: TIM-1, TIM-2 */
+TEST_CASE(0)
+TEST_CASE(0xFFFFFF80)
+void test_after_an_overrun_one_frame_goes_out_and_the_grid_stands(uint32_t start_ms) {
+    uint32_t skipped = 0;
+    agv_scheduler_restart(&scheduler, start_ms);
+    /* 065h was due at 25, 50, ... 325: thirteen, of which one is sent late and twelve are missed */
+    TEST_ASSERT_TRUE(agv_scheduler_due(&scheduler, AGV_MSG_STEERING_COMMAND, start_ms + 330, &skipped));
+    TEST_ASSERT_EQUAL_UINT32(12, skipped);
+    for (uint32_t ms = 330; ms < 350; ms++) {
+        TEST_ASSERT_FALSE(agv_scheduler_due(&scheduler, AGV_MSG_STEERING_COMMAND, start_ms + ms, &skipped));
+    }
+    TEST_ASSERT_TRUE(agv_scheduler_due(&scheduler, AGV_MSG_STEERING_COMMAND, start_ms + 350, &skipped));
+    TEST_ASSERT_EQUAL_UINT32(12, skipped);
+}
+
+void test_a_late_frame_misses_no_slot(void) {
+    uint32_t skipped = 0;
+    agv_scheduler_restart(&scheduler, 0);
+    TEST_ASSERT_TRUE(agv_scheduler_due(&scheduler, AGV_MSG_GEAR_COMMAND, 165, &skipped));
+    TEST_ASSERT_EQUAL_UINT32(0, skipped);
+    TEST_ASSERT_TRUE(agv_scheduler_due(&scheduler, AGV_MSG_GEAR_COMMAND, 166, &skipped));
+    TEST_ASSERT_EQUAL_UINT32(0, skipped);
+}
+
+/* FSM-1, park at standstill: the first P comes in between. */
+void test_a_slot_that_begins_later_has_its_own_grid(void) {
+    uint32_t skipped = 0;
+    agv_scheduler_restart(&scheduler, 0);
+    agv_scheduler_restart_slot(&scheduler, AGV_MSG_GEAR_COMMAND, 40);
+    TEST_ASSERT_FALSE(agv_scheduler_due(&scheduler, AGV_MSG_GEAR_COMMAND, 139, &skipped));
+    TEST_ASSERT_TRUE(agv_scheduler_due(&scheduler, AGV_MSG_GEAR_COMMAND, 140, &skipped));
+}
+
+static bool answered(uint32_t ms) {
+    if (!agv_scheduler_override(&scheduler, AGV_MSG_GEAR_COMMAND, ms * 1000, 5)) {
+        return false;
+    }
+    agv_scheduler_overridden(&scheduler, AGV_MSG_GEAR_COMMAND, ms, ms * 1000);
+    return true;
+}
+
+static bool answer_due(uint32_t ms) {
+    return agv_scheduler_override_due(&scheduler, AGV_MSG_GEAR_COMMAND, ms * 1000, 5);
+}
+
+/* Shows: TOP-1, TIM-2 */
+TEST_CASE(0)
+TEST_CASE(0xFFFFFFFD)
+void test_an_identifier_is_overridden_at_most_every_5_ms(uint32_t start_ms) {
+    agv_scheduler_restart(&scheduler, start_ms);
+    TEST_ASSERT_TRUE(answered(start_ms));
+    TEST_ASSERT_FALSE(answered(start_ms + 1));
+    TEST_ASSERT_FALSE(answered(start_ms + 4));
+    TEST_ASSERT_FALSE(answer_due(start_ms + 4));
+    TEST_ASSERT_TRUE(answer_due(start_ms + 5));
+    agv_scheduler_overridden(&scheduler, AGV_MSG_GEAR_COMMAND, start_ms + 5, (start_ms + 5) * 1000);
+    TEST_ASSERT_FALSE(answer_due(start_ms + 20));
+    TEST_ASSERT_TRUE(answered(start_ms + 20));
+    TEST_ASSERT_TRUE(answered(start_ms + 25));
+}
+
+/* Shows: TOP-1 */
+void test_after_an_override_the_periodic_frame_is_due_half_a_cycle_later(void) {
+    uint32_t skipped = 0;
+    agv_scheduler_restart(&scheduler, 1000);
+    agv_scheduler_overridden(&scheduler, AGV_MSG_GEAR_COMMAND, 1060, 1060000);
+    agv_scheduler_overridden(&scheduler, AGV_MSG_STEERING_COMMAND, 1020, 1020000);
+    TEST_ASSERT_FALSE(agv_scheduler_due(&scheduler, AGV_MSG_GEAR_COMMAND, 1109, &skipped));
+    TEST_ASSERT_TRUE(agv_scheduler_due(&scheduler, AGV_MSG_GEAR_COMMAND, 1110, &skipped));
+    TEST_ASSERT_FALSE(agv_scheduler_due(&scheduler, AGV_MSG_STEERING_COMMAND, 1031, &skipped));
+    TEST_ASSERT_TRUE(agv_scheduler_due(&scheduler, AGV_MSG_STEERING_COMMAND, 1032, &skipped));
+    TEST_ASSERT_TRUE(agv_scheduler_due(&scheduler, AGV_MSG_THROTTLE_COMMAND, 1033, &skipped)); /* not touched */
+}
+
+/* Shows: TIM-2 */
+void test_a_recent_override_is_not_recent_again_after_a_turn_of_the_clock(void) {
+    agv_scheduler_restart(&scheduler, 0);
+    TEST_ASSERT_TRUE(answered(10));
+    TEST_ASSERT_FALSE(answer_due(16)); /* the tick that notices that the 5 ms are over */
+    TEST_ASSERT_TRUE(answered(12));    /* 49.7 days later */
+}
+
+void test_when_all_are_sent_what_waited_is_forgotten(void) {
+    agv_scheduler_restart(&scheduler, 0);
+    TEST_ASSERT_TRUE(answered(10));
+    TEST_ASSERT_FALSE(answered(11));
+    agv_scheduler_restart(&scheduler, 12);
+    TEST_ASSERT_FALSE(answer_due(100));
+}
