@@ -383,3 +383,24 @@ void test_on_the_shared_bus_the_ai_side_is_ignored(void) {
     expect_dropped(0x363, ZERO);
     expect_state(&f, AGV_STATE_ACTIVE);
 }
+
+/* What waited in ACTIVE may not leave in STANDBY any more, and is no reason to trip. */
+/* Shows: TOP-2 */
+void test_what_waits_when_the_autopilot_is_disengaged_is_dropped(void) {
+    fixture_active(&f);
+    fixture_mute_ai(&f, true);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    from_ai(0x168, DRIVE);
+    from_ai(0x075, THROTTLE);
+    from_ai(0x065, ANGLE);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_STANDBY);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    fixture_run(&f, 50);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x075));
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
+    TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->gate_refused);
+    expect_state(&f, AGV_STATE_STANDBY);
+}

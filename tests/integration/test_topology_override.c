@@ -281,7 +281,7 @@ void test_identifiers_are_overridden_independently(void) {
     expect_answered_in_this_call(0x43F, "another identifier");
 }
 
-/* A sender of one frame a millisecond: an answer every 5 ms or a tick later, and the last word. */
+/* A sender of one frame a millisecond: an answer every 5 ms, and the last word. */
 /* Shows: TOP-1, COMMAND_TOO_FAST */
 void test_a_babbling_sender_is_answered_every_5_ms_and_last(void) {
     tripped();
@@ -292,12 +292,12 @@ void test_a_babbling_sender_is_answered_every_5_ms_and_last(void) {
     const uint32_t last_ms = f.now_ms - 1;
     fixture_run(&f, 10);
     const uint32_t count = fixture_count_sent(&f, 0x168);
-    TEST_ASSERT_TRUE(count >= 160 && count <= 201);
+    TEST_ASSERT_UINT32_WITHIN(1, 200, count);
     for (uint32_t n = 1; n < count; n++) {
         const uint32_t gap_ms = fixture_nth_sent(&f, 0x168, n)->time_ms - fixture_nth_sent(&f, 0x168, n - 1)->time_ms;
-        TEST_ASSERT_TRUE(gap_ms == 5 || gap_ms == 6);
+        TEST_ASSERT_EQUAL_UINT32(5, gap_ms);
     }
-    TEST_ASSERT_TRUE(fixture_nth_sent(&f, 0x168, count - 1)->time_ms - last_ms <= 6);
+    TEST_ASSERT_TRUE(fixture_nth_sent(&f, 0x168, count - 1)->time_ms - last_ms <= 5);
 }
 
 /* Shows: TOP-1 */
@@ -309,8 +309,37 @@ void test_the_gap_is_what_is_configured(void) {
     foreign_gear(GEAR_D);
     fixture_run(&f, 8);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
-    fixture_run(&f, 2);
+    fixture_run(&f, 1);
     TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168));
+}
+
+/* D at the n-th microsecond of this millisecond. */
+static void foreign_drive_at_us(uint16_t us) {
+    fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .time_us = us, .length = 8, .data = {GEAR_D}});
+}
+
+/* 5 ms are 5000 us: from t + 0.9 ms to t + 5.9 ms. */
+/* Shows: TOP-1 */
+void test_the_5_ms_are_exact_where_the_port_knows_microseconds(void) {
+    tripped();
+    foreign_drive_at_us(900);
+    const uint32_t first_ms = f.now_ms;
+    fixture_run_without_ticks(&f, 5);
+    foreign_drive_at_us(899);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    foreign_drive_at_us(900);
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168));
+
+    fixture_run(&f, 20);
+    fixture_forget_sent(&f);
+    foreign_drive_at_us(900);
+    fixture_run(&f, 1);
+    foreign_drive_at_us(0);
+    fixture_run(&f, 4); /* 4.1 ms have passed */
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    fixture_run(&f, 1);
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168));
+    TEST_ASSERT_EQUAL_UINT32(5 + 20 + 6, fixture_nth_sent(&f, 0x168, 1)->time_ms - first_ms);
 }
 
 /* ---- A queue that is full, a second supervisor ---- */
@@ -360,4 +389,23 @@ void test_two_supervisors_on_one_bus_do_not_drown_it(void) {
     }
     const uint32_t after = agv_supervisor_counters(&f.supervisor)->sent + agv_supervisor_counters(&g.supervisor)->sent;
     TEST_ASSERT_TRUE(after - before <= 2 * (200 + 3 * 10 + 1)); /* 065h every 5 ms, the other three every 100 ms */
+}
+
+/* Shows: TOP-1 */
+void test_what_comes_within_5_ms_is_answered_when_they_are_over(void) {
+    tripped();
+    foreign_gear(GEAR_D);
+    const uint32_t first_ms = f.now_ms;
+    fixture_run(&f, 1);
+    foreign_gear(GEAR_R);
+    fixture_run(&f, 2);
+    foreign_gear(GEAR_N);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    fixture_run(&f, 1);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    fixture_run(&f, 1);
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168));
+    TEST_ASSERT_EQUAL_UINT32(5, fixture_nth_sent(&f, 0x168, 1)->time_ms - first_ms);
+    fixture_run(&f, 40);
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168)); /* one answer for both */
 }
