@@ -3,7 +3,6 @@
 option(AGV_WARNINGS_AS_ERRORS "Warnings in the project's own code are errors" ON)
 set(AGV_INSTRUMENT "" CACHE STRING "Instrumentation: empty, sanitize or coverage")
 set_property(CACHE AGV_INSTRUMENT PROPERTY STRINGS "" sanitize coverage)
-option(AGV_WHOLE_PROGRAM "Optimise host_sim as one program (gcc)" OFF)
 
 add_library(agv_options INTERFACE)
 target_compile_options(agv_options INTERFACE

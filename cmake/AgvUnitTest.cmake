@@ -88,7 +88,7 @@ function(agv_add_unit_test)
 
   add_executable(${TEST_NAME} ${TEST_SOURCES} ${runner})
   target_link_libraries(${TEST_NAME} PRIVATE agv_options ${TEST_LIBS} agv_core ${mocks} unity)
-  target_link_options(${TEST_NAME} PRIVATE -fno-lto) # see AGV_WHOLE_PROGRAM: for so many programs it would take minutes
+  target_link_options(${TEST_NAME} PRIVATE -fno-lto) # see host_sim: for so many programs it would take minutes
   # The runner calls the test functions by name, so they are not static and have no prototype.
   set_source_files_properties(${TEST_SOURCES} PROPERTIES COMPILE_OPTIONS -Wno-missing-prototypes)
   set_source_files_properties(${runner} PROPERTIES COMPILE_OPTIONS -w)

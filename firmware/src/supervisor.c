@@ -91,7 +91,7 @@ static bool judge_buses(agv_core_t *core) {
     }
     agv_faults_level(faults, AGV_FAULT_BUS_OFF, vehicle.off);
     agv_faults_level(faults, AGV_FAULT_TX_STALLED, vehicle.stalled || agv_transmitter_stalled(core));
-    agv_faults_level(faults, AGV_FAULT_ERROR_PASSIVE, vehicle.passive || ai.passive);
+    agv_faults_level(faults, AGV_FAULT_ERROR_PASSIVE, vehicle.passive);
     agv_faults_level(faults, AGV_FAULT_AI_BUS_OFF, ai.off || ai.stalled);
     return vehicle.recovered;
 }
