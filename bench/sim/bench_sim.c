@@ -12,7 +12,9 @@
 
 #include "scenario_world.h"
 
-enum { MS_PER_S = 1000, SETTLED_MS = 3000, DEFAULT_S = 3600 };
+enum { SETTLED_MS = 3000, DEFAULT_S = 3600 };
+
+#define MS_PER_S 1000u
 
 static double seconds_now(void) {
     struct timespec now;
@@ -55,9 +57,9 @@ static double drive(scenario_world_t *world, uint16_t topology, uint32_t duratio
                          (agv_supervisor_counters(&world->session.supervisor)->warnings == 0u) &&
                          (view.speed_mm_s > 0) && (world->lost_frames == 0u);
     const double factor = ((double)duration_ms / MS_PER_S) / took;
-    printf("%-14s %8.0f times real time, %6.1f ns a tick, %" PRIu64 " frames, %s\n",
-           (topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? "gateway" : "shared bus", factor, took * 1e9 / duration_ms,
-           stats.frames, healthy ? "healthy" : "NOT HEALTHY");
+    (void)printf("%-14s %8.0f times real time, %6.1f ns a tick, %" PRIu64 " frames, %s\n",
+                 (topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? "gateway" : "shared bus", factor,
+                 took * 1e9 / duration_ms, stats.frames, healthy ? "healthy" : "NOT HEALTHY");
     return healthy ? factor : 0.0;
 }
 
@@ -79,8 +81,8 @@ static void vehicle_alone(uint32_t duration_ms) {
         vehicle_tick(&vehicle, t_ms);
     }
     const double took = seconds_now() - begin;
-    printf("%-14s %8.0f times real time, %6.1f ns a tick, %" PRIu64 " frames\n", "vehicle alone",
-           ((double)duration_ms / MS_PER_S) / took, took * 1e9 / duration_ms, frames);
+    (void)printf("%-14s %8.0f times real time, %6.1f ns a tick, %" PRIu64 " frames\n", "vehicle alone",
+                 ((double)duration_ms / MS_PER_S) / took, took * 1e9 / duration_ms, frames);
 }
 
 int main(int argc, char **argv) {
@@ -88,7 +90,7 @@ int main(int argc, char **argv) {
     const double least = (argc > 2) ? strtod(argv[2], NULL) : 0.0;
     scenario_world_t *world = malloc(sizeof *world);
     if ((world == NULL) || (seconds < 4) || (seconds > 4000000)) {
-        fprintf(stderr, "usage: bench_sim [SECONDS (4 .. 4000000)] [LEAST]\n");
+        (void)fprintf(stderr, "usage: bench_sim [SECONDS (4 .. 4000000)] [LEAST]\n");
         free(world);
         return 2;
     }
@@ -98,7 +100,8 @@ int main(int argc, char **argv) {
     vehicle_alone(duration_ms);
     free(world);
     if ((shared <= least) || (gateway <= 0.0)) {
-        fprintf(stderr, "bench_sim: the shared bus is asked to be healthy and above %.0f times real time\n", least);
+        (void)fprintf(stderr, "bench_sim: the shared bus is asked to be healthy and above %.0f times real time\n",
+                      least);
         return 1;
     }
     return 0;

@@ -2,6 +2,7 @@
 import json
 import os
 import pathlib
+import re
 import sys
 import unittest
 import xml.etree.ElementTree
@@ -27,10 +28,10 @@ def fixes(path, key):
     return any(line.startswith(key + ":") for line in path.read_text(encoding="utf-8").splitlines())
 
 
-class Shipped(hostsim.Case):
+class Playing(hostsim.Case):
     def play(self, files, *options):
         self.assertGreaterEqual(len(files), LEAST)
-        result = self.run_program("scenario", "--junit", "j.xml", *options, *files)
+        result = self.run_program("scenario", "--junit", "j.xml", *options, *files, timeout=500)
         failed = [line for line in result.stdout.splitlines() if not line.startswith("ok ")]
         self.assertEqual(result.status, 0, "\n".join(failed) + result.stderr)
         suite = xml.etree.ElementTree.parse(self.folder / "j.xml").getroot()
@@ -39,29 +40,10 @@ class Shipped(hostsim.Case):
         self.assertEqual(len(suite.findall("testcase")), len(files))
         print(f"\n{len(files)} scenarios passed {' '.join(options)}", end=" ")
 
+
+class Shipped(Playing):
     def test_every_scenario_passes(self):
         self.play(SHIPPED)
-
-    # Shows: TOP-2
-    def test_every_scenario_that_does_not_fix_the_topology_passes_in_the_gateway(self):
-        self.play([path for path in SHIPPED if not fixes(path, "topology")], "--topology", "gateway")
-
-    # Shows: P1
-    def test_every_scenario_that_does_not_fix_the_id_set_passes_with_the_table_ids(self):
-        self.play([path for path in SHIPPED if not fixes(path, "id_set")], "--id-set", "table")
-
-    def test_both_at_once(self):
-        self.play([path for path in SHIPPED if not fixes(path, "topology") and not fixes(path, "id_set")],
-                  "--topology", "gateway", "--id-set", "table")
-
-    def test_no_scenario_passes_against_a_planted_supervisor(self):
-        for planted in ("mute", "tripped"):
-            result = self.run_program("scenario", "--planted", planted, *SHIPPED)
-            self.assertEqual(result.status, 1, result.stderr)
-            passed = [line for line in result.stdout.splitlines() if line.startswith("ok ")]
-            self.assertEqual(passed, [])
-            self.assertEqual(result.stdout.count("FAILED  "), len(SHIPPED))
-            print(f"\n{len(SHIPPED)} scenarios failed --planted {planted}", end=" ")
 
     def test_the_same_run_twice_is_the_same(self):
         for name in ("demo", "override", "garbage_from_eps", "id_collision"):
@@ -70,6 +52,40 @@ class Shipped(hostsim.Case):
                 self.run_good("scenario", "--events", "e.jsonl", FOLDER / (name + ".yaml"))
                 runs.append((self.folder / "e.jsonl").read_text(encoding="ascii"))
             self.assertEqual(*runs)
+
+
+class Gateway(Playing):
+    # Shows: TOP-2
+    def test_every_scenario_that_leaves_the_topology_open_passes_in_the_gateway(self):
+        self.play([path for path in SHIPPED if not fixes(path, "topology")], "--topology", "gateway")
+
+
+class TableIds(Playing):
+    # Shows: P1
+    def test_every_scenario_that_leaves_the_id_set_open_passes_with_the_table_ids(self):
+        self.play([path for path in SHIPPED if not fixes(path, "id_set")], "--id-set", "table")
+
+    def test_both_at_once(self):
+        self.play([path for path in SHIPPED if not fixes(path, "topology") and not fixes(path, "id_set")],
+                  "--topology", "gateway", "--id-set", "table")
+
+
+class Planted(hostsim.Case):
+    """No scenario passes against a supervisor that does nothing, nor against one that is always tripped."""
+
+    def play_against(self, planted):
+        result = self.run_program("scenario", "--planted", planted, *SHIPPED)
+        self.assertEqual(result.status, 1, result.stderr)
+        passed = [line for line in result.stdout.splitlines() if line.startswith("ok ")]
+        self.assertEqual(passed, [])
+        self.assertEqual(result.stdout.count("FAILED  "), len(SHIPPED))
+        print(f"\n{len(SHIPPED)} scenarios failed --planted {planted}", end=" ")
+
+    def test_a_mute_one(self):
+        self.play_against("mute")
+
+    def test_one_that_is_always_tripped(self):
+        self.play_against("tripped")
 
 
 class Command(hostsim.Case):
@@ -139,6 +155,31 @@ class Command(hostsim.Case):
         self.assertEqual(self.scenario(GOOD.replace("[510, 513]", "[410, 413]"), "--config", "c.yaml").status, 0)
         over = GOOD + "config: {init_hold_ms: 500}\n"
         self.assertEqual(self.scenario(over, "--config", "c.yaml").status, 0)
+
+
+class Manual(hostsim.Case):
+    """docs/scenarios.md says what is so."""
+
+    PAGE = (FOLDER.parents[1] / "docs" / "scenarios.md").read_text(encoding="utf-8")
+
+    def test_the_example_prints_what_the_page_says(self):
+        example = re.search(r"```yaml\n(.*?)```", self.PAGE, re.DOTALL)[1]
+        passed, failed = re.findall(r"```text\n(.*?)```", self.PAGE, re.DOTALL)
+        self.write("throttle.yaml", example)
+        self.assertEqual(self.run_program("scenario", "throttle.yaml").stdout, passed)
+        self.assertEqual(example.count("at_ms: [4024, 4025]"), 1)
+        self.write("throttle.yaml", example.replace("at_ms: [4024, 4025]", "at_ms: [4004, 4005]"))
+        self.assertEqual(self.run_program("scenario", "throttle.yaml").stdout, failed)
+
+    def test_every_word_of_the_format_stands_on_the_page(self):
+        words = set()
+        for path in (FOLDER.parents[1] / "host_sim" / "src").glob("scenario_*.c"):
+            text = path.read_text(encoding="utf-8")
+            words |= set(re.findall(r'^ +\{+"(\w+)", \w+, (?:true|false)\}', text, re.MULTILINE))
+            if path.name == "scenario_actions.c":
+                words |= set(re.findall(r'"(\w+)"', text))
+        self.assertGreater(len(words), 80)
+        self.assertEqual([word for word in sorted(words) if not re.search(rf"\b{word}\b", self.PAGE)], [])
 
 
 class Demo(hostsim.Case):
