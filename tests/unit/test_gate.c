@@ -1,0 +1,311 @@
+/*
+ * The gate: what may leave in which state, on which side, with which identifier and which bytes. The oracle is a table
+ * written by hand from the rows FSM-6 and TOP-2: every payload class with the states in which each command may carry it.
+ */
+#include "agv/gate.h"
+#include "agv/protocol.h"
+
+#include <stdio.h>
+
+#include "agv/state.h"
+#include "mock_can.h"
+#include "unity.h"
+
+/* A port's context: the core never looks inside. */
+struct hal {
+    int unused;
+};
+static hal_t hal;
+static agv_config_t config;
+
+/* Throttle ceiling 30 %: 75 counts. Held angle 9123 = 23A3h. */
+enum { CEILING_PCT = 30, HELD_RAW = 0x23A3, STATUS_ID = 0x123 };
+static agv_gate_t gate;
+
+void setUp(void) {
+    agv_config_defaults(&config);
+    config.throttle_ceiling_pct = CEILING_PCT;
+    config.status_frame_id = STATUS_ID;
+    gate = (agv_gate_t){.config = &config, .hold_raw = HELD_RAW, .hold_check = 0xDC5C, .state = AGV_STATE_TRIPPED};
+}
+
+void tearDown(void) {
+}
+
+/* Who may send a payload as which command: i INIT, t TRIPPED and whatever is no state, s SAFE; with a gateway b STANDBY,
+ * B STANDBY when all commands pass in manual, a ACTIVE. */
+typedef struct {
+    uint8_t data[8];
+    const char *signals;  /* 43Fh or 201h */
+    const char *gear;     /* 168h */
+    const char *throttle; /* 075h */
+    const char *steering; /* 065h */
+} payload_t;
+
+static const payload_t PAYLOADS[] = {
+    {{0}, "bBa", "", "itsBa", "Ba"},
+    {{1}, "", "Ba", "a", "Ba"},
+    {{2}, "", "Ba", "a", "Ba"},
+    {{3}, "", "", "a", "Ba"},
+    {{4}, "", "Ba", "a", "Ba"},
+    {{8}, "", "itsBa", "a", "Ba"},
+    {{9}, "", "", "a", "Ba"},
+    {{16}, "", "", "a", "Ba"},
+    {{75}, "", "", "a", "Ba"},
+    {{76}, "", "", "", "Ba"},
+    {{250}, "", "", "", "Ba"},
+    {{255}, "", "", "", "Ba"},
+    {{0, 1}, "", "", "", "Ba"},
+    {{8, 1}, "", "", "", "Ba"},
+    {{8, 0, 1}, "", "", "", ""},
+    {{8, 0, 0, 0, 0, 0, 0, 1}, "", "", "", ""},
+    {{0xA3, 0x23}, "", "", "", "tsBa"}, /* the held angle */
+    {{0xA2, 0x23}, "", "", "", "Ba"},
+    {{0xA3, 0x22}, "", "", "", "Ba"},
+    {{0xA3, 0x23, 1}, "", "", "", ""},
+    {{0xA3, 0x23, 0, 0, 0, 0, 0, 1}, "", "", "", ""},
+    {{0x50, 0x46}, "", "", "", "Ba"}, /* 18000 = +900.0 degrees */
+    {{0x51, 0x46}, "", "", "", ""},
+    {{0xFF, 0xFF}, "", "", "", ""},
+    {{0, 0, 0, 0, 0x70, 0, 0, 0}, "itsbBa", "", "", ""}, /* the safe lights, any counter */
+    {{0, 0, 0, 0, 0x70, 0, 0, 0xFF}, "itsbBa", "", "", ""},
+    {{0, 0, 0, 0, 0x30, 0, 0, 9}, "bBa", "", "", ""}, /* without autopilot off */
+    {{0, 0, 0, 0, 0x40, 0, 0, 9}, "bBa", "", "", ""}, /* without hazard */
+    {{0, 0, 0, 0, 0x50, 0, 0, 9}, "bBa", "", "", ""},
+    {{0, 0, 0, 0, 0x60, 0, 0, 9}, "bBa", "", "", ""},
+    {{0, 0, 0, 0, 0xF0, 0, 0, 9}, "bBa", "", "", ""}, /* headlight off */
+    {{0, 0, 0, 0, 0, 0, 0, 1}, "bBa", "", "", ""},
+    {{0, 0, 0, 0, 0x71}, "", "", "", ""}, /* reserved bits */
+    {{0, 0, 0, 0, 0x78}, "", "", "", ""},
+    {{1, 0, 0, 0, 0x70}, "", "", "", ""},
+    {{0, 1, 0, 0, 0x70}, "", "", "", ""},
+    {{0, 0, 1, 0, 0x70}, "", "", "", ""},
+    {{0, 0, 0, 1, 0x70}, "", "", "", ""},
+    {{0, 0, 0, 0, 0x70, 1}, "", "", "", ""},
+    {{0, 0, 0, 0, 0x70, 0, 1}, "", "", "", ""},
+    {{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF}, "", "", "", ""},
+};
+
+static const uint8_t STATES[] = {
+    AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_STATE_ACTIVE, AGV_STATE_TRIPPED, AGV_STATE_SAFE, 0x00, 0xFF, 0x3D};
+
+/* The letter of the state that the gate is in; 0: nothing of these may leave in it. */
+static char letter(void) {
+    const bool gateway = config.topology == AGV_TOPOLOGY_GATEWAY;
+    switch (gate.state) {
+    case AGV_STATE_INIT:
+        return 'i';
+    case AGV_STATE_SAFE:
+        return 's';
+    case AGV_STATE_STANDBY:
+        if (!gateway) {
+            return 0;
+        }
+        return (config.gateway_in_manual == AGV_IN_MANUAL_ALL) ? 'B' : 'b';
+    case AGV_STATE_ACTIVE:
+        return gateway ? 'a' : 0;
+    default:
+        return 't';
+    }
+}
+
+static bool has(const char *letters, char wanted) {
+    bool found = false;
+    for (; *letters != 0; letters++) {
+        found = found || *letters == wanted;
+    }
+    return found;
+}
+
+static bool is_status(uint32_t id) {
+    static const uint16_t status[] = {0x0A3, 0x050, 0x067, 0x167, 0x267, 0x101};
+    bool found = id == ((config.id_set == AGV_ID_SET_TABLE) ? 0x203u : 0x363u);
+    for (size_t i = 0; i < sizeof status / sizeof status[0]; i++) {
+        found = found || status[i] == id;
+    }
+    return found;
+}
+
+static bool oracle(hal_can_side_t side, uint32_t id, const payload_t *payload) {
+    if (side == HAL_CAN_AI) {
+        return config.topology == AGV_TOPOLOGY_GATEWAY && is_status(id);
+    }
+    if (side != HAL_CAN_VEHICLE) {
+        return false;
+    }
+    switch (id) {
+    case STATUS_ID:
+        return true;
+    case 0x168:
+        return has(payload->gear, letter());
+    case 0x075:
+        return has(payload->throttle, letter());
+    case 0x065:
+        return has(payload->steering, letter());
+    default:
+        return id == ((config.id_set == AGV_ID_SET_TABLE) ? 0x201u : 0x43Fu) && has(payload->signals, letter());
+    }
+}
+
+static bool allows(hal_can_side_t side, uint32_t id, const uint8_t data[8]) {
+    hal_can_frame_t frame = {.id = id, .length = 8};
+    for (unsigned i = 0; i < 8; i++) {
+        frame.data[i] = data[i];
+    }
+    return agv_gate_allows(&gate, side, &frame);
+}
+
+/* In the state that the gate is in: every side, every identifier and some beyond, every payload. */
+static void expect_as_the_oracle(void) {
+    for (int side = 0; side <= HAL_CAN_SIDES; side++) {
+        for (uint32_t id = 0; id <= 0x800; id++) {
+            for (size_t i = 0; i < sizeof PAYLOADS / sizeof PAYLOADS[0]; i++) {
+                const bool expected = oracle((hal_can_side_t)side, id, &PAYLOADS[i]);
+                if (allows((hal_can_side_t)side, id, PAYLOADS[i].data) != expected) {
+                    char text[100];
+                    (void)snprintf(text, sizeof text, "state %02X side %d id %03X payload %u: expected %d",
+                                   (unsigned)gate.state, side, (unsigned)id, (unsigned)i, expected);
+                    TEST_FAIL_MESSAGE(text);
+                }
+            }
+        }
+    }
+}
+
+static void expect_as_the_oracle_in_every_state(void) {
+    for (size_t i = 0; i < sizeof STATES; i++) {
+        gate.state = STATES[i];
+        expect_as_the_oracle();
+    }
+}
+
+/* Shows: INT-4, FSM-6, TOP-1 */
+void test_the_shared_bus(void) {
+    expect_as_the_oracle_in_every_state();
+}
+
+/* Shows: INT-4, FSM-6, TOP-1 */
+void test_the_shared_bus_with_the_other_id_set(void) {
+    config.id_set = AGV_ID_SET_TABLE;
+    expect_as_the_oracle_in_every_state();
+}
+
+/* Shows: INT-4, FSM-6, TOP-2 */
+void test_the_gateway(void) {
+    config.topology = AGV_TOPOLOGY_GATEWAY;
+    expect_as_the_oracle_in_every_state();
+}
+
+/* Shows: INT-4, FSM-6, TOP-2 */
+void test_the_gateway_that_passes_all_in_manual(void) {
+    config.topology = AGV_TOPOLOGY_GATEWAY;
+    config.gateway_in_manual = AGV_IN_MANUAL_ALL;
+    config.id_set = AGV_ID_SET_TABLE;
+    expect_as_the_oracle_in_every_state();
+}
+
+/* How many of the 65536 values of the first two bytes (or of 43Fh byte 5 and 8) may leave. */
+static unsigned count_allowed(uint32_t id, unsigned first, unsigned second) {
+    unsigned count = 0;
+    for (unsigned value = 0; value < 65536; value++) {
+        uint8_t data[8] = {0};
+        data[first] = (uint8_t)(value & 0xFF);
+        data[second] = (uint8_t)(value >> 8);
+        count += allows(HAL_CAN_VEHICLE, id, data) ? 1u : 0u;
+    }
+    return count;
+}
+
+/* One gear, one throttle, one steering angle, and 43Fh with 256 counters; INIT holds no angle. */
+/* Shows: FSM-6, FSM-10 */
+void test_of_all_values_one_is_safe(void) {
+    static const uint8_t safe[] = {AGV_STATE_INIT, AGV_STATE_TRIPPED, AGV_STATE_SAFE, 0x00};
+    for (size_t i = 0; i < sizeof safe; i++) {
+        gate.state = safe[i];
+        TEST_ASSERT_EQUAL_UINT(1, count_allowed(0x168, 0, 1));
+        TEST_ASSERT_EQUAL_UINT(1, count_allowed(0x075, 0, 1));
+        TEST_ASSERT_EQUAL_UINT((safe[i] == AGV_STATE_INIT) ? 0 : 1, count_allowed(0x065, 0, 1));
+        TEST_ASSERT_EQUAL_UINT(256, count_allowed(0x43F, 4, 7));
+    }
+}
+
+/* 4 gears, throttle 0 to 75, angle 0 to 18000, and 16 combinations of lights with 256 counters. */
+/* Shows: TOP-2 */
+void test_of_all_values_those_in_range_pass(void) {
+    config.topology = AGV_TOPOLOGY_GATEWAY;
+    gate.state = AGV_STATE_ACTIVE;
+    TEST_ASSERT_EQUAL_UINT(4, count_allowed(0x168, 0, 1));
+    TEST_ASSERT_EQUAL_UINT(76, count_allowed(0x075, 0, 1));
+    TEST_ASSERT_EQUAL_UINT(18001, count_allowed(0x065, 0, 1));
+    TEST_ASSERT_EQUAL_UINT(16 * 256, count_allowed(0x43F, 4, 7));
+}
+
+/* Shows: FSM-10, INT-5 */
+void test_an_angle_that_does_not_fit_its_complement_is_not_held(void) {
+    for (unsigned bit = 0; bit < 16; bit++) {
+        gate.hold_check = (uint16_t)(0xDC5C ^ (1u << bit));
+        TEST_ASSERT_EQUAL_UINT(0, count_allowed(0x065, 0, 1));
+    }
+}
+
+/* Shows: INT-4 */
+void test_only_classic_data_frames_of_8_bytes_leave(void) {
+    hal_can_frame_t frame = {.id = 0x168, .length = 8, .data = {8}};
+    TEST_ASSERT_TRUE(agv_gate_allows(&gate, HAL_CAN_VEHICLE, &frame));
+    for (unsigned flags = 1; flags < 256; flags++) {
+        frame.flags = (uint8_t)flags;
+        TEST_ASSERT_FALSE(agv_gate_allows(&gate, HAL_CAN_VEHICLE, &frame));
+    }
+    frame.flags = 0;
+    for (unsigned length = 0; length < 256; length++) {
+        frame.length = (uint8_t)length;
+        TEST_ASSERT_EQUAL(length == 8, agv_gate_allows(&gate, HAL_CAN_VEHICLE, &frame));
+    }
+}
+
+/* An identifier that is one of the protocol in its lower 11 bits only. */
+/* Shows: INT-4 */
+void test_no_identifier_beyond_11_bits_leaves(void) {
+    static const uint8_t park[8] = {8};
+    for (unsigned bit = 11; bit < 32; bit++) {
+        TEST_ASSERT_FALSE(allows(HAL_CAN_VEHICLE, 0x168u | 1u << bit, park));
+        TEST_ASSERT_FALSE(allows(HAL_CAN_VEHICLE, STATUS_ID | 1u << bit, park));
+    }
+}
+
+/* Shows: TOP-3 */
+void test_without_a_status_frame_identifier_0_does_not_leave(void) {
+    static const uint8_t any[8] = {0};
+    config.status_frame_id = 0;
+    TEST_ASSERT_FALSE(allows(HAL_CAN_VEHICLE, 0, any));
+    TEST_ASSERT_FALSE(allows(HAL_CAN_VEHICLE, STATUS_ID, any));
+}
+
+/* Shows: INT-4 */
+void test_what_may_leave_is_handed_to_the_hal_as_it_is(void) {
+    const hal_can_frame_t frame = {.id = 0x168, .time_ms = 77, .length = 8, .data = {8}};
+    hal_can_send_ExpectAndReturn(&hal, HAL_CAN_VEHICLE, &frame, true);
+    TEST_ASSERT_EQUAL(AGV_GATE_SENT, agv_gate_send(&gate, &hal, HAL_CAN_VEHICLE, &frame));
+    hal_can_send_ExpectAndReturn(&hal, HAL_CAN_VEHICLE, &frame, false);
+    TEST_ASSERT_EQUAL(AGV_GATE_BUSY, agv_gate_send(&gate, &hal, HAL_CAN_VEHICLE, &frame));
+}
+
+/* The mock fails the test when the HAL is called. */
+/* Shows: INT-4, FSM-6 */
+void test_what_may_not_leave_never_reaches_the_hal(void) {
+    const hal_can_frame_t drive = {.id = 0x168, .length = 8, .data = {1}};
+    for (size_t i = 0; i < sizeof STATES; i++) {
+        gate.state = STATES[i];
+        TEST_ASSERT_EQUAL(AGV_GATE_REFUSED, agv_gate_send(&gate, &hal, HAL_CAN_VEHICLE, &drive));
+        TEST_ASSERT_EQUAL(AGV_GATE_REFUSED, agv_gate_send(&gate, &hal, HAL_CAN_AI, &drive));
+    }
+}
+
+/* Shows: TOP-4 */
+void test_in_shadow_mode_nothing_reaches_the_hal(void) {
+    hal_can_frame_t frame = {.id = 0x168, .length = 8, .data = {8}};
+    config.shadow = AGV_SHADOW_ON;
+    TEST_ASSERT_EQUAL(AGV_GATE_SHADOWED, agv_gate_send(&gate, &hal, HAL_CAN_VEHICLE, &frame));
+    frame.data[0] = 1;
+    TEST_ASSERT_EQUAL(AGV_GATE_REFUSED, agv_gate_send(&gate, &hal, HAL_CAN_VEHICLE, &frame));
+}
