@@ -140,6 +140,16 @@ void test_corrupted_memory_is_ended_by_a_power_on(void) {
     expect_a_power_on_ends(AGV_FAULT_MEMORY_CORRUPTED);
 }
 
+/* Found in TRIPPED: the first reason stays, and now only a power-on helps. */
+/* Shows: FSM-5, FSM-9, MEMORY_CORRUPTED */
+void test_corrupted_memory_keeps_the_reason_of_an_earlier_trip(void) {
+    walk_to_safe(&f);
+    ((uint8_t *)&f.supervisor)[sizeof f.supervisor / 2u] ^= 0x01u;
+    fixture_send_now(&f, AGV_MSG_WHEEL_SPEED);
+    expect_fault(&f, AGV_FAULT_MEMORY_CORRUPTED, true);
+    expect_cannot_be_reset(AGV_FAULT_S_DRIVER_ALARM);
+}
+
 /* Shows: FSM-9 */
 void test_both_at_the_start_the_left_one_is_the_first(void) {
     f.self_test_passed = false;

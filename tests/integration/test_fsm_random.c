@@ -184,6 +184,8 @@ static void judge_step(agv_state_t before) {
         TEST_ASSERT_NOT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_reason(&f.supervisor));
     }
     TEST_ASSERT_FALSE(before != AGV_STATE_INIT && after == AGV_STATE_INIT);
+    TEST_ASSERT_EQUAL_UINT32(0,
+                             agv_supervisor_counters(&f.supervisor)->gate_refused); /* nobody asks for such a frame */
 }
 
 static void restart(void) {

@@ -209,11 +209,12 @@ static void print_counts(const char *topology) {
     judged = 0;
 }
 
-static void flip_in_every_state(uint16_t topology, const char *name) {
+static void flip_in_every_state(uint16_t topology, uint16_t id_set, const char *name) {
     static void (*const WALKS[])(void) = {init, standby, active, tripped, safe, waiting};
     for (unsigned i = 0; i < sizeof WALKS / sizeof WALKS[0]; i++) {
         setUp();
         f.config.topology = topology;
+        f.config.id_set = id_set;
         WALKS[i]();
     }
     print_counts(name);
@@ -221,12 +222,13 @@ static void flip_in_every_state(uint16_t topology, const char *name) {
 
 /* Shows: INT-5, FSM-6, MEMORY_CORRUPTED */
 void test_each_flipped_bit_on_the_shared_bus(void) {
-    flip_in_every_state(AGV_TOPOLOGY_SHARED, "shared bus");
+    flip_in_every_state(AGV_TOPOLOGY_SHARED, AGV_ID_SET_HEADING, "shared bus");
 }
 
-/* Shows: INT-5, FSM-6, MEMORY_CORRUPTED */
-void test_each_flipped_bit_in_the_gateway(void) {
-    flip_in_every_state(AGV_TOPOLOGY_GATEWAY, "gateway");
+/* Whatever becomes of the configuration: the safe commands go on with 201h, and to the vehicle side. */
+/* Shows: INT-5, FSM-6, FSM-9, MEMORY_CORRUPTED, P1 */
+void test_each_flipped_bit_in_the_gateway_with_the_table_set(void) {
+    flip_in_every_state(AGV_TOPOLOGY_GATEWAY, AGV_ID_SET_TABLE, "gateway, table set");
 }
 
 /* ---- The recorder ---- */
