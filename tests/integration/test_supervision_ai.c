@@ -288,7 +288,8 @@ static void reset(void) {
     fixture_forget_sent(&f);
 }
 
-static void trip_and_reset(bool *how) {
+/* Raised as a trip, and as a warning when the VCU had switched to manual; ended by the reset. */
+static void trip_and_reset(agv_fault_t fault, bool *how) {
     fixture_active(&f);
     *how = true;
     fixture_run(&f, 1000);
@@ -297,12 +298,14 @@ static void trip_and_reset(bool *how) {
     expect_led(&f, 0);
     fixture_run(&f, 5000);
     expect_no_fault(AGV_STATE_STANDBY);
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_raised(&f, LOST) + fixture_raised(&f, STUCK));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, fault));
 }
 
 /* Engaged again it is one that was never seen. */
 /* Shows: SUP-8, FSM-3, AI_HEARTBEAT_LOST */
 void test_a_reset_forgets_a_silent_ai(void) {
-    trip_and_reset(&f.traffic[AI].muted);
+    trip_and_reset(LOST, &f.traffic[AI].muted);
     engage();
     fixture_run(&f, 500);
     expect_no_fault(AGV_STATE_STANDBY);
@@ -313,7 +316,7 @@ void test_a_reset_forgets_a_silent_ai(void) {
 /* It is seen again when its counter changes, not by frames with the old one. */
 /* Shows: SUP-8, FSM-3, AI_HEARTBEAT_STUCK */
 void test_a_reset_forgets_a_frozen_ai_until_its_counter_changes(void) {
-    trip_and_reset(&f.traffic[AI].frozen);
+    trip_and_reset(STUCK, &f.traffic[AI].frozen);
     f.traffic[AI].frozen = false;
     fixture_run_past(&f, AI);
     f.traffic[AI].frozen = true;
@@ -356,6 +359,20 @@ void test_the_vcus_ai_alarm_ends_with_the_engagement(void) {
     expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, true);
     fixture_mode(&f, MODE_MANUAL);
     fixture_run_past(&f, VCU);
+    expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, false);
+}
+
+/* MODE_INVALID: it is neither mode from that tick on, so it is not engaged. */
+/* Shows: SUP-8, VCU_AI_CAN_LOST, MODE_INVALID */
+void test_the_vcus_ai_alarm_ends_when_the_mode_is_invalid(void) {
+    fixture_active(&f);
+    set_alarm(true);
+    fixture_mode(&f, MODE_BOTH);
+    fixture_run_past(&f, VCU);
+    fixture_run(&f, 50);
+    expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, true);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_MODE_INVALID, true);
     expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, false);
 }
 

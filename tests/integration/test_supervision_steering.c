@@ -161,21 +161,32 @@ void test_deviation_counts_after_the_grace(void) {
     expect_trip_at(f.now_ms + 1000u, ANGLE_CENTRE);
 }
 
-/* A command from before the engagement is not what the steering is compared with. */
-/* Shows: SUP-5, STEERING_DEVIATION, STEERING_COMMAND_TIMEOUT */
-void test_a_command_from_before_the_engagement_is_forgotten(void) {
+/* A command from before the engagement is not what the steering is compared with: neither one from manual driving, nor one
+ * from an engagement before. */
+static void check_forgotten(uint8_t mode_before) {
+    fixture_init(&f);
     f.config.engaged_grace_ms = 50;
     f.config.steering_deviation_ms = 100;
     f.config.steering_command_timeout_ms = 1000;
     fixture_standby(&f);
+    fixture_mode(&f, mode_before);
+    fixture_run(&f, 100);
     command(12000);
     f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run(&f, 500);
     fixture_mode(&f, MODE_ENGAGED);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     fixture_run(&f, 1000);
     expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_STEERING_COMMAND_TIMEOUT, f.call, ANGLE_CENTRE);
+}
+
+/* Shows: SUP-5, STEERING_DEVIATION, STEERING_COMMAND_TIMEOUT */
+void test_a_command_from_before_the_engagement_is_forgotten(void) {
+    check_forgotten(MODE_MANUAL);
+    check_forgotten(MODE_ENGAGED);
 }
 
 /* An invalid measured angle is not used: the last valid one stands. */
