@@ -55,7 +55,7 @@ function(agv_mock_of HEADER TARGET_VARIABLE)
   set(header_path ${PROJECT_SOURCE_DIR}/hal/include/${HEADER})
   add_custom_command(
     OUTPUT ${AGV_MOCK_DIR}/${mock}.c ${AGV_MOCK_DIR}/${mock}.h
-    COMMAND ${AGV_RUBY} ${AGV_CMOCK}/lib/cmock.rb -o${AGV_CMOCK_CONFIG} --mock_path=${AGV_MOCK_DIR} ${header_path}
+    COMMAND ${AGV_RUBY} --disable-gems ${AGV_CMOCK}/lib/cmock.rb -o${AGV_CMOCK_CONFIG} --mock_path=${AGV_MOCK_DIR} ${header_path}
     DEPENDS ${header_path} ${AGV_CMOCK_CONFIG} ${AGV_GEMS_STAMP}
     COMMENT "Mocking ${HEADER}"
     VERBATIM
@@ -75,7 +75,7 @@ function(agv_add_unit_test)
   set(runner ${CMAKE_CURRENT_BINARY_DIR}/${TEST_NAME}_runner.c)
   add_custom_command(
     OUTPUT ${runner}
-    COMMAND ${AGV_RUBY} ${AGV_UNITY}/auto/generate_test_runner.rb ${AGV_CMOCK_CONFIG} ${first} ${runner}
+    COMMAND ${AGV_RUBY} --disable-gems ${AGV_UNITY}/auto/generate_test_runner.rb ${AGV_CMOCK_CONFIG} ${first} ${runner}
     DEPENDS ${first} ${AGV_CMOCK_CONFIG} ${AGV_GEMS_STAMP}
     COMMENT "Generating the runner of ${TEST_NAME}"
     VERBATIM
