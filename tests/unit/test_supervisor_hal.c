@@ -1,0 +1,419 @@
+/*
+ * What the supervisor asks of the hardware, call by call: at the start, at a trip, in a tick, at the end of INIT. The mocks
+ * are strict: another call, a missing one or another order fails. On the way to where a test begins stubs stand in.
+ */
+#include <string.h>
+
+#include "agv/checksum.h"
+#include "agv/latch.h"
+#include "agv/supervisor.h"
+#include "mock_can.h"
+#include "mock_led.h"
+#include "mock_reset.h"
+#include "mock_safety_output.h"
+#include "mock_store.h"
+#include "mock_watchdog.h"
+#include "unity.h"
+
+/* A port's context: the core never looks inside. */
+struct hal {
+    int unused;
+};
+static hal_t hal;
+static agv_recorder_t recorder;
+static agv_supervisor_t supervisor;
+static agv_config_t config;
+static const agv_ports_t ports = {&hal, &recorder};
+static uint32_t now_ms;
+static uint8_t counter;     /* of all that have one */
+static uint8_t mode;        /* 363h byte 7: 40h manual, 80h autopilot */
+static uint8_t wheel_speed; /* 101h, both wheels, low byte */
+static bool hal_takes;      /* what the stub of hal_can_send returns */
+static bool closed;         /* the output, as the stub saw it */
+
+static bool send_stub(hal_t *port, hal_can_side_t side, const hal_can_frame_t *frame, int calls) {
+    (void)port, (void)side, (void)frame, (void)calls;
+    return hal_takes;
+}
+
+static void status_stub(hal_t *port, hal_can_side_t side, hal_can_status_t *status, int calls) {
+    (void)port, (void)side, (void)calls;
+    *status = (hal_can_status_t){0};
+}
+
+static void output_stub(hal_t *port, bool close, int calls) {
+    (void)port, (void)calls;
+    closed = close;
+}
+
+static void use_stubs(void) {
+    hal_can_send_Stub(send_stub);
+    hal_can_status_Stub(status_stub);
+    hal_safety_output_set_Stub(output_stub);
+    hal_can_purge_Ignore();
+    hal_led_set_Ignore();
+    hal_reset_cause_IgnoreAndReturn(HAL_RESET_POWER_ON);
+    hal_store_read_latch_IgnoreAndReturn(0);
+    hal_store_write_latch_IgnoreAndReturn(true);
+    hal_store_append_IgnoreAndReturn(true);
+    hal_watchdog_feed_Ignore();
+}
+
+/* From here on every call is expected, in its order. */
+static void be_strict(void) {
+    hal_can_send_Stub(NULL);
+    hal_can_status_Stub(NULL);
+    hal_safety_output_set_Stub(NULL);
+    hal_can_purge_StopIgnore();
+    hal_led_set_StopIgnore();
+    hal_reset_cause_StopIgnore();
+    hal_store_read_latch_StopIgnore();
+    hal_store_write_latch_StopIgnore();
+    hal_store_append_StopIgnore();
+    hal_watchdog_feed_StopIgnore();
+}
+
+void setUp(void) {
+    memset(&recorder, 0, sizeof recorder);
+    memset(&supervisor, 0xA5, sizeof supervisor);
+    agv_config_defaults(&config);
+    now_ms = 1000;
+    mode = 0x40;
+    wheel_speed = 100; /* 100 mm/s: no standstill, so that nothing is written to flash */
+    hal_takes = true;
+    closed = false;
+}
+
+void tearDown(void) {
+}
+
+/* --- expectations --- */
+
+static void expect_status(hal_can_side_t side, hal_can_state_t state) {
+    static hal_can_status_t status;
+    status = (hal_can_status_t){.state = state};
+    hal_can_status_Expect(&hal, side, NULL);
+    hal_can_status_IgnoreArg_status();
+    hal_can_status_ReturnThruPtr_status(&status);
+}
+
+/* The mocks keep the pointer until the call comes. */
+static const hal_can_frame_t *kept(hal_can_frame_t frame) {
+    static hal_can_frame_t frames[16];
+    static unsigned next;
+    frames[next] = frame;
+    const hal_can_frame_t *it = &frames[next];
+    next = (next + 1) % 16;
+    return it;
+}
+
+static void expect_frame(uint32_t id, uint8_t at, uint8_t value, uint8_t last) {
+    hal_can_frame_t frame = {.id = id, .time_ms = now_ms, .length = 8};
+    frame.data[at] = value;
+    frame.data[7] = last;
+    hal_can_send_ExpectAndReturn(&hal, HAL_CAN_VEHICLE, kept(frame), true);
+}
+
+/* 43Fh hazard, autopilot off, headlight on, running counter; 168h P; 075h 0. */
+static void expect_safe_commands(uint8_t signal_counter) {
+    expect_frame(0x43F, 4, 0x70, signal_counter);
+    expect_frame(0x168, 0, 8, 0);
+    expect_frame(0x075, 0, 0, 0);
+}
+
+/* 065h, +12.3 degrees: 9123 = 23A3h. */
+static void expect_held_angle(void) {
+    const hal_can_frame_t frame = {.id = 0x065, .time_ms = now_ms, .length = 8, .data = {0xA3, 0x23}};
+    hal_can_send_ExpectAndReturn(&hal, HAL_CAN_VEHICLE, kept(frame), true);
+}
+
+static void expect_latch(uint8_t latched, agv_fault_t reason, agv_fault_t unresettable) {
+    static agv_latch_t latch;
+    latch = (agv_latch_t){
+        .latched = latched, .first_reason = (uint8_t)reason, .unresettable = (uint8_t)unresettable, .version = 1};
+    latch.checksum = ~agv_crc32(AGV_CRC32_START, &latch, 4);
+    hal_store_write_latch_ExpectWithArrayAndReturn(&hal, 1, &latch, sizeof latch, true);
+}
+
+/* Output first; what was queued before is discarded before anything is sent. */
+static void expect_start(hal_reset_cause_t cause, uint8_t latched, agv_fault_t reason, agv_fault_t unresettable) {
+    hal_reset_cause_ExpectAndReturn(&hal, cause);
+    hal_safety_output_set_Expect(&hal, false);
+    expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    expect_status(HAL_CAN_AI, HAL_CAN_ERROR_ACTIVE);
+    hal_store_read_latch_ExpectAndReturn(&hal, NULL, sizeof(agv_latch_t), 0);
+    hal_store_read_latch_IgnoreArg_record();
+    expect_latch(latched, reason, unresettable);
+    hal_can_purge_Expect(&hal, HAL_CAN_VEHICLE);
+    expect_safe_commands(0);
+    hal_led_set_Expect(&hal, true);
+}
+
+/* Every pattern begins lit; the LED is only switched when it is dark before. */
+static void expect_led_on(void) {
+    if (!supervisor.core.led.on) {
+        hal_led_set_Expect(&hal, true);
+    }
+}
+
+static void start(bool self_test_passed) {
+    agv_supervisor_start(&supervisor, &ports, &config, self_test_passed, now_ms);
+}
+
+/* --- traffic --- */
+
+static void frame(hal_can_side_t side, uint32_t id, const uint8_t data[8]) {
+    hal_can_frame_t received = {.id = id, .time_ms = now_ms, .length = 8};
+    memcpy(received.data, data, 8);
+    agv_supervisor_frame(&supervisor, &ports, side, &received);
+}
+
+static void ai_frame(uint32_t id, uint8_t first, uint8_t last) {
+    const uint8_t data[8] = {first, 0, 0, 0, 0, 0, 0, last};
+    frame((config.topology == AGV_TOPOLOGY_GATEWAY) ? HAL_CAN_AI : HAL_CAN_VEHICLE, id, data);
+}
+
+static void vcu_frame(uint8_t alarms) {
+    const uint8_t data[8] = {0, 0, 0, 0, alarms, 0, mode, counter};
+    frame(HAL_CAN_VEHICLE, 0x363, data);
+}
+
+static void tick(void) {
+    agv_supervisor_receive_alive(&supervisor);
+    agv_supervisor_tick(&supervisor, &ports, now_ms);
+}
+
+/* A healthy vehicle: P or D is not asked, throttle 0, steering +12.3 degrees in angle control. */
+static void cycle_of_10_ms(void) {
+    static const uint8_t park[8] = {8};
+    static const uint8_t zeros[8] = {0};
+    static const uint8_t angle_control[8] = {0, 0, 0, 1};
+    const uint8_t wheels[8] = {wheel_speed, 0, wheel_speed, 0};
+    const uint8_t steering[8] = {counter, 100, 0xA3, 0x23};
+    counter++;
+    vcu_frame(0);
+    frame(HAL_CAN_VEHICLE, 0x0A3, park);
+    frame(HAL_CAN_VEHICLE, 0x050, zeros);
+    frame(HAL_CAN_VEHICLE, 0x101, wheels);
+    frame(HAL_CAN_VEHICLE, 0x067, steering);
+    frame(HAL_CAN_VEHICLE, 0x167, angle_control);
+    frame(HAL_CAN_VEHICLE, 0x267, zeros);
+    if (counter % 10 == 0) {
+        ai_frame(0x43F, 0, counter);
+    }
+}
+
+static void run(uint32_t ms) {
+    for (uint32_t i = 0; i < ms; i++) {
+        now_ms++;
+        if (now_ms % 10 == 0) {
+            cycle_of_10_ms();
+        }
+        tick();
+    }
+}
+
+static void walk_to_standby(void) {
+    use_stubs();
+    start(true);
+    for (uint32_t ms = 0; ms < 1000 && agv_supervisor_state(&supervisor) != AGV_STATE_STANDBY; ms++) {
+        run(1);
+    }
+    TEST_ASSERT_EQUAL(AGV_STATE_STANDBY, agv_supervisor_state(&supervisor));
+    TEST_ASSERT_TRUE(closed);
+    run(300); /* two 43Fh: the AI is alive */
+}
+
+static void walk_to_active(void) {
+    walk_to_standby();
+    mode = 0x80;
+    run(20);
+    TEST_ASSERT_EQUAL(AGV_STATE_ACTIVE, agv_supervisor_state(&supervisor));
+}
+
+static uint8_t own_counter(void) {
+    return supervisor.core.transmitter.alive_counter;
+}
+
+/* --- the start --- */
+
+/* Shows: FSM-4, FSM-7, FSM-2 */
+void test_a_start_after_power_on(void) {
+    be_strict();
+    expect_start(HAL_RESET_POWER_ON, 0x69, AGV_FAULT_NONE, AGV_FAULT_NONE);
+    start(true);
+    TEST_ASSERT_EQUAL(AGV_STATE_INIT, agv_supervisor_state(&supervisor));
+}
+
+/* Shows: FSM-4, FSM-7, SUPERVISOR_RESET */
+TEST_CASE(1)
+TEST_CASE(2)
+TEST_CASE(3)
+TEST_CASE(4)
+TEST_CASE(5)
+void test_a_start_after_any_other_reset(int cause) {
+    be_strict();
+    expect_start((hal_reset_cause_t)cause, 0x96, AGV_FAULT_SUPERVISOR_RESET, AGV_FAULT_NONE);
+    start(true);
+    TEST_ASSERT_EQUAL(AGV_STATE_TRIPPED, agv_supervisor_state(&supervisor));
+}
+
+/* Shows: FSM-9, SELF_TEST_FAILED */
+void test_a_start_with_a_failed_self_test(void) {
+    be_strict();
+    expect_start(HAL_RESET_POWER_ON, 0x96, AGV_FAULT_SELF_TEST_FAILED, AGV_FAULT_SELF_TEST_FAILED);
+    start(false);
+    TEST_ASSERT_EQUAL(AGV_STATE_TRIPPED, agv_supervisor_state(&supervisor));
+}
+
+/* --- ticks --- */
+
+/* Shows: TIM-3 */
+void test_a_quiet_tick_looks_at_the_controller_and_feeds_the_watchdog(void) {
+    walk_to_standby();
+    be_strict();
+    now_ms++;
+    expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    hal_watchdog_feed_Expect(&hal);
+    tick();
+}
+
+/* Shows: TIM-3 */
+void test_a_tick_without_the_receive_path_does_not_feed_the_watchdog(void) {
+    walk_to_standby();
+    be_strict();
+    now_ms++;
+    expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    agv_supervisor_tick(&supervisor, &ports, now_ms);
+}
+
+/* A fresh event waits: the flash is written last, when all else of the tick is done. */
+/* Shows: INT-3 */
+void test_the_flash_is_written_at_the_end_of_a_tick_at_standstill(void) {
+    walk_to_standby();
+    TEST_ASSERT_NOT_NULL(agv_recorder_next_to_store(&recorder));
+    wheel_speed = 0;
+    run(115);
+    be_strict();
+    now_ms++;
+    expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    hal_watchdog_feed_Expect(&hal);
+    hal_store_append_ExpectAndReturn(&hal, NULL, sizeof(agv_event_t), true);
+    hal_store_append_IgnoreArg_record();
+    for (uint32_t i = 0; i < 300; i++) { /* events for later, so that one is there in this tick */
+        const agv_entry_t entry = {.kind = AGV_EVENT_STARTUP};
+        agv_recorder_add(&recorder, &entry, now_ms);
+    }
+    tick();
+}
+
+/* What INIT had queued must not follow into STANDBY; only then the output closes. All is well since the second frame of
+ * the EPS at 1020, so that INIT ends 500 ms later, in the handling of the first frame of that moment. */
+/* Shows: FSM-4 */
+void test_the_end_of_init(void) {
+    use_stubs();
+    start(true);
+    run(519);
+    TEST_ASSERT_EQUAL(AGV_STATE_INIT, agv_supervisor_state(&supervisor));
+    TEST_ASSERT_FALSE(closed);
+    be_strict();
+    now_ms++;
+    TEST_ASSERT_EQUAL_UINT32(1520, now_ms);
+    counter++;
+    hal_can_purge_Expect(&hal, HAL_CAN_VEHICLE);
+    hal_safety_output_set_Expect(&hal, true);
+    vcu_frame(0);
+    TEST_ASSERT_EQUAL(AGV_STATE_STANDBY, agv_supervisor_state(&supervisor));
+}
+
+/* --- trips --- */
+
+/* Shows: FSM-2, FSM-7, FSM-10 */
+void test_a_trip_discards_what_waits_then_sends_then_stores(void) {
+    walk_to_active();
+    be_strict();
+    hal_can_purge_Expect(&hal, HAL_CAN_VEHICLE);
+    expect_safe_commands(own_counter());
+    expect_held_angle();
+    expect_latch(0x96, AGV_FAULT_S_DRIVER_ALARM, AGV_FAULT_NONE);
+    vcu_frame(0x80);
+    TEST_ASSERT_EQUAL(AGV_STATE_TRIPPED, agv_supervisor_state(&supervisor));
+    TEST_ASSERT_TRUE(agv_supervisor_output_closed(&supervisor)); /* until the confirmation is late */
+}
+
+/* In manual the steering is the driver's. */
+/* Shows: FSM-2, FSM-10 */
+void test_a_trip_in_manual_holds_no_angle(void) {
+    walk_to_standby();
+    be_strict();
+    hal_can_purge_Expect(&hal, HAL_CAN_VEHICLE);
+    expect_safe_commands(own_counter());
+    expect_latch(0x96, AGV_FAULT_S_DRIVER_ALARM, AGV_FAULT_NONE);
+    vcu_frame(0x80);
+}
+
+/* A controller in bus-off is handed nothing, and the output opens in the same tick. */
+/* Shows: FSM-4, SUP-7, BUS_OFF */
+void test_a_trip_by_bus_off_opens_the_output(void) {
+    walk_to_standby();
+    be_strict();
+    now_ms++;
+    expect_status(HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
+    hal_can_purge_Expect(&hal, HAL_CAN_VEHICLE);
+    expect_latch(0x96, AGV_FAULT_BUS_OFF, AGV_FAULT_NONE);
+    hal_safety_output_set_Expect(&hal, false);
+    hal_watchdog_feed_Expect(&hal);
+    expect_led_on();
+    tick();
+    TEST_ASSERT_EQUAL(AGV_FAULT_BUS_OFF, agv_supervisor_first_reason(&supervisor));
+}
+
+/* Shows: INT-5, FSM-9, MEMORY_CORRUPTED */
+void test_corrupted_memory_starts_anew_in_tripped(void) {
+    walk_to_standby();
+    be_strict();
+    now_ms++;
+    supervisor.core.monitor.vehicle.angle_ddeg ^= 4;
+    hal_safety_output_set_Expect(&hal, false);
+    expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    expect_status(HAL_CAN_AI, HAL_CAN_ERROR_ACTIVE);
+    hal_store_read_latch_ExpectAndReturn(&hal, NULL, sizeof(agv_latch_t), 0);
+    hal_store_read_latch_IgnoreArg_record();
+    expect_latch(0x96, AGV_FAULT_MEMORY_CORRUPTED, AGV_FAULT_MEMORY_CORRUPTED);
+    hal_can_purge_Expect(&hal, HAL_CAN_VEHICLE);
+    expect_safe_commands(0);
+    hal_led_set_Expect(&hal, true);
+    expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    hal_watchdog_feed_Expect(&hal);
+    tick();
+    TEST_ASSERT_EQUAL(AGV_STATE_TRIPPED, agv_supervisor_state(&supervisor));
+}
+
+/* --- the gate refuses --- */
+
+/* The supervisor's own memory is changed behind its back, under a seal that fits: only the gate can notice. A passed gear
+ * that waits for the controller becomes 03h, which is none. */
+/* Shows: INT-4, TX_GATE_REFUSED */
+void test_a_refused_frame_does_not_leave_and_trips(void) {
+    config.topology = AGV_TOPOLOGY_GATEWAY;
+    walk_to_active();
+    hal_takes = false;
+    ai_frame(0x168, 1, 0);
+    TEST_ASSERT_EQUAL_HEX8(1, supervisor.core.transmitter.kept_data[AGV_MSG_GEAR_COMMAND][0]);
+    supervisor.core.transmitter.kept_data[AGV_MSG_GEAR_COMMAND][0] = 3;
+    supervisor.seal = agv_seal(&supervisor.core, sizeof supervisor.core);
+    be_strict();
+    now_ms++;
+    expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    expect_status(HAL_CAN_AI, HAL_CAN_ERROR_ACTIVE);
+    hal_can_purge_Expect(&hal, HAL_CAN_VEHICLE);
+    expect_safe_commands(own_counter());
+    expect_held_angle();
+    expect_latch(0x96, AGV_FAULT_TX_GATE_REFUSED, AGV_FAULT_NONE);
+    hal_watchdog_feed_Expect(&hal);
+    expect_led_on();
+    tick();
+    TEST_ASSERT_EQUAL(AGV_STATE_TRIPPED, agv_supervisor_state(&supervisor));
+    TEST_ASSERT_EQUAL(AGV_FAULT_TX_GATE_REFUSED, agv_supervisor_first_reason(&supervisor));
+    TEST_ASSERT_EQUAL_UINT32(1, agv_supervisor_counters(&supervisor)->gate_refused);
+}
