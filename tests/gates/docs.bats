@@ -21,6 +21,7 @@ setup() {
     printf '#!/bin/sh\n' >scripts/run
     chmod +x scripts/run
     printf '[rows](docs/requirements.md#rows)\n\n```sh\n./scripts/run --fast | sed -n 1p # comment\n```\n' >README.md
+    printf '\n```console\n$ sed -n 1p README.md\nno-such-program is only printed\n```\n' >>README.md
     passes "$ROOT/scripts/fault-docs" --root "$PWD"
     passes faults
     passes pages
@@ -120,6 +121,11 @@ pages() {
     mkdir firmware/src
     : >firmware/src/new.c
     fails_with "does not link firmware/src/new.c" pages
+}
+
+@test "pages: a program that is not there, in a console" {
+    sed -i 's/^\$ sed/$ no-such-program/' README.md
+    fails_with "no command no-such-program" pages
 }
 
 @test "pages: nothing to check" {

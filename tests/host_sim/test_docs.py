@@ -13,7 +13,7 @@ import unittest
 import hostsim
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
-PAGES = ("docs/host-sim.md",)
+PAGES = ("docs/host-sim.md", "README.md")
 LEFT_OUT = ("cmake ", "export PATH=")
 
 
@@ -52,6 +52,7 @@ class Manual(unittest.TestCase):
                 for command, expected in block:
                     if command.startswith(LEFT_OUT):
                         continue
+                    command = command.replace("./scripts/demo", "host_sim demo")  # which is what it builds and runs
                     done = subprocess.run([bash, "-c", command.replace("$?", str(status))], cwd=REPOSITORY,
                                           env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                           timeout=60, check=False, text=True)
