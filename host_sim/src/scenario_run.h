@@ -12,7 +12,7 @@
 /** Told of every step before it is done. */
 typedef void scenario_step_fn(void *ctx, const scenario_step_t *step);
 
-/** All that one run needs; some 500 KiB: allocate it. */
+/** All that one run needs; some 300 KiB: allocate it. */
 typedef struct {
     scenario_t scenario;
     scenario_world_t world;
