@@ -1,0 +1,134 @@
+/*
+ * What no frame and no tick leads to: memory that was changed behind the supervisor's back, under a seal that fits. The
+ * last line of defence has to hold all the same.
+ */
+#include "../../firmware/src/supervisor_internal.h"
+#include "agv/checksum.h"
+#include "agv/latch.h"
+#include "fixture.h"
+#include "unity.h"
+#include "walk.h"
+
+enum { STATUS_ID = 0x123 };
+
+static fixture_t f;
+static agv_core_t *const core = &f.supervisor.core;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+static void seal(void) {
+    f.supervisor.seal = agv_seal(core, sizeof *core);
+}
+
+/* Start from a configuration as it stands in memory, checked by nobody. */
+static void begin(void) {
+    core->hal = &f.hal;
+    core->recorder = &f.recorder;
+    agv_core_begin(core, true, true, false);
+    core->hal = NULL;
+    core->recorder = NULL;
+    seal();
+}
+
+/* 20000 is no angle: the frame cannot be built, and what is built instead (-900.0 degrees) is not what is held. */
+/* Shows: INT-4, FSM-10, TX_GATE_REFUSED */
+void test_an_answer_that_the_gate_refuses_trips_in_the_handling_of_the_frame(void) {
+    static const uint8_t other_angle[8] = {1};
+    walk_to_tripped(&f);
+    fixture_forget_sent(&f);
+    core->hold = (agv_hold_t){.raw = 20000, .check = (uint16_t)~20000u};
+    seal();
+    fixture_frame(&f, AGV_MSG_STEERING_COMMAND, other_angle);
+    expect_fault(&f, AGV_FAULT_TX_GATE_REFUSED, true);
+    expect_silence(&f);
+    TEST_ASSERT_EQUAL_UINT32(1, agv_supervisor_counters(&f.supervisor)->gate_refused);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_TX_GATE_REFUSED));
+}
+
+/* Shows: INT-4, TX_GATE_REFUSED */
+void test_a_frame_of_its_own_that_the_gate_refuses_trips(void) {
+    static const uint8_t drive[8] = {1};
+    fixture_standby(&f);
+    core->hal = &f.hal;
+    core->recorder = &f.recorder;
+    agv_transmitter_pass(core, AGV_MSG_GEAR_COMMAND, drive); /* shared bus, STANDBY: nobody may send this */
+    TEST_ASSERT_TRUE(agv_core_react(core));
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, AGV_FAULT_TX_GATE_REFUSED);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    TEST_ASSERT_EQUAL_HEX8(GEAR_P, fixture_nth_sent(&f, 0x168, 0)->data[0]);
+}
+
+/* No such ID set: P has no identifier any more, and nothing may leave. */
+/* Shows: INT-4, FSM-9, SELF_TEST_FAILED */
+void test_a_gate_that_lets_p_not_out_fails_the_self_test(void) {
+    fixture_start(&f);
+    fixture_forget_sent(&f);
+    core->config.id_set = 7;
+    begin();
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, AGV_FAULT_SELF_TEST_FAILED);
+    expect_output(&f, false);
+    expect_silence(&f);
+}
+
+/* The checksum is that of what stands there, and yet it makes no sense: the defaults instead. */
+/* Shows: INT-2, INT-5, MEMORY_CORRUPTED */
+void test_a_corrupted_configuration_whose_checksum_fits_is_not_used(void) {
+    f.config.tx_stalled_ms = 200;
+    fixture_standby(&f);
+    core->config.override_gap_ms = 0;
+    core->config_checksum = agv_config_checksum(&core->config);
+    fixture_run(&f, 1);
+    expect_reason(&f, AGV_FAULT_MEMORY_CORRUPTED);
+    TEST_ASSERT_EQUAL_UINT16(5, agv_supervisor_config(&f.supervisor)->override_gap_ms);
+    TEST_ASSERT_EQUAL_UINT16(100, agv_supervisor_config(&f.supervisor)->tx_stalled_ms);
+}
+
+/* Something else is corrupted: what the integrator chose goes on. */
+/* Shows: INT-5, MEMORY_CORRUPTED */
+void test_an_intact_configuration_is_kept(void) {
+    f.config.tx_stalled_ms = 200;
+    fixture_standby(&f);
+    core->monitor.vehicle.angle_ddeg ^= 1;
+    fixture_run(&f, 1);
+    expect_reason(&f, AGV_FAULT_MEMORY_CORRUPTED);
+    TEST_ASSERT_EQUAL_UINT16(200, agv_supervisor_config(&f.supervisor)->tx_stalled_ms);
+}
+
+/* What only a power-on ends has to outlive the next reset, though the state does not change any more. */
+/* Shows: FSM-9, FSM-7 */
+void test_an_unresettable_fault_that_comes_while_tripped_is_stored(void) {
+    agv_latch_t latch;
+    walk_to_tripped(&f);
+    TEST_ASSERT_EQUAL(AGV_LATCH_VALID, agv_latch_read(&f.hal, &latch));
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_NONE, latch.unresettable);
+    agv_faults_level(&core->monitor.faults, AGV_FAULT_SELF_TEST_FAILED, true);
+    seal();
+    fixture_run(&f, 1);
+    TEST_ASSERT_EQUAL(AGV_LATCH_VALID, agv_latch_read(&f.hal, &latch));
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_SELF_TEST_FAILED, latch.unresettable);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_S_DRIVER_ALARM, latch.first_reason); /* FSM-5 */
+    expect_output(&f, false);
+}
+
+/* Nothing is handed to a controller in bus-off, the status frame neither. */
+/* Shows: SUP-7, TOP-3 */
+void test_in_bus_off_nothing_is_handed_to_the_controller(void) {
+    f.config.status_frame_id = STATUS_ID;
+    f.config.status_frame_period_ms = 10;
+    fixture_standby(&f);
+    fixture_run(&f, 50);
+    TEST_ASSERT_EQUAL_UINT32(5, fixture_count_sent(&f, STATUS_ID));
+    const uint32_t refused = f.hal.can[HAL_CAN_VEHICLE].refused;
+    fixture_forget_sent(&f);
+    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
+    fixture_run(&f, 50);
+    expect_silence(&f);
+    TEST_ASSERT_EQUAL_UINT32(refused, f.hal.can[HAL_CAN_VEHICLE].refused);
+}
