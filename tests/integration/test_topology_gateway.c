@@ -233,6 +233,34 @@ void test_the_slew_rate_starts_from_the_measured_angle(void) {
     expect_steering(9000, 9275);
 }
 
+/* 2.0 degrees a second are half a count in 25 ms: one count every 50 ms. */
+/* Shows: TOP-2 */
+void test_a_slow_slew_rate_adds_up(void) {
+    f.config.steering_slew_ddeg_s = 20;
+    fixture_active(&f);
+    fixture_run_past(&f, AGV_MSG_STEERING_COMMAND);
+    f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
+    expect_steering(9010, 9000);
+    expect_steering(9010, 9001);
+    expect_steering(9010, 9001);
+    expect_steering(9010, 9002);
+    expect_steering(8000, 9002);
+    expect_steering(8000, 9001);
+}
+
+/* Nothing is known of the wheels: the first command is where the rate starts from. */
+/* Shows: TOP-2 */
+void test_without_a_measured_angle_the_slew_rate_starts_from_the_first_command(void) {
+    f.config.steering_slew_ddeg_s = 1000;
+    fixture_angle(&f, 18001);
+    fixture_standby(&f);
+    fixture_mute_ai(&f, true);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_steering(9400, 9400);
+    expect_steering(9000, 9375);
+}
+
 /* ---- A side that takes nothing ---- */
 
 /* Shows: TOP-2 */

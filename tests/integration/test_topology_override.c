@@ -342,6 +342,18 @@ void test_the_5_ms_are_exact_where_the_port_knows_microseconds(void) {
     TEST_ASSERT_EQUAL_UINT32(5 + 20 + 6, fixture_nth_sent(&f, 0x168, 1)->time_ms - first_ms);
 }
 
+/* Shows: TOP-1 */
+void test_a_frame_with_fewer_microseconds_does_not_turn_the_time_back(void) {
+    tripped();
+    fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x123, .time_us = 900, .length = 8});
+    foreign_drive_at_us(100); /* answered at 900, at the earliest */
+    fixture_run_without_ticks(&f, 5);
+    foreign_drive_at_us(500);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    foreign_drive_at_us(900);
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168));
+}
+
 /* ---- A queue that is full, a second supervisor ---- */
 
 /* Shows: TOP-1 */
