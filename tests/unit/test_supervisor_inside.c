@@ -132,3 +132,45 @@ void test_in_bus_off_nothing_is_handed_to_the_controller(void) {
     expect_silence(&f);
     TEST_ASSERT_EQUAL_UINT32(refused, f.hal.can[HAL_CAN_VEHICLE].refused);
 }
+
+/* Another state, or a latch undone, under a seal that fits: the two do not fit together. */
+/* Shows: INT-5, MEMORY_CORRUPTED */
+void test_state_and_latch_that_do_not_fit_are_corrupted_memory(void) {
+    static const struct {
+        uint8_t state;
+        uint8_t latched;
+    } pairs[] = {{AGV_STATE_STANDBY, AGV_LATCH_CLOSED}, {AGV_STATE_TRIPPED, AGV_LATCH_OPEN}, {0x54, AGV_LATCH_CLOSED}};
+    for (unsigned i = 0; i < 3; i++) {
+        fixture_init(&f);
+        walk_to_tripped(&f);
+        core->machine.state = pairs[i].state;
+        core->machine.latched = pairs[i].latched;
+        seal();
+        fixture_run(&f, 1);
+        expect_state(&f, AGV_STATE_TRIPPED);
+        expect_fault(&f, AGV_FAULT_MEMORY_CORRUPTED, true);
+        expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM); /* as stored */
+        expect_output(&f, false);
+    }
+}
+
+static void foreign_drive_at(uint32_t ms, uint16_t us) {
+    const hal_can_frame_t frame = {.id = 0x168, .time_ms = ms, .time_us = us, .length = 8, .data = {GEAR_D}};
+    agv_supervisor_frame(&f.supervisor, &f.ports, HAL_CAN_VEHICLE, &frame);
+}
+
+/* A frame stamped 0.2 ms comes after one stamped 0.9 ms: answered at 0.9 ms, so that 5.5 ms is too soon and 6.0 not. */
+/* Shows: TOP-1 */
+void test_microseconds_do_not_go_backwards_either(void) {
+    walk_to_tripped(&f);
+    fixture_forget_sent(&f);
+    const uint32_t start_ms = f.now_ms;
+    const hal_can_frame_t other = {.id = 0x700, .time_ms = start_ms, .time_us = 900};
+    agv_supervisor_frame(&f.supervisor, &f.ports, HAL_CAN_VEHICLE, &other);
+    foreign_drive_at(start_ms, 200);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    foreign_drive_at(start_ms + 5, 500);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    fixture_jump(&f, 6);
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168));
+}
