@@ -36,19 +36,12 @@ static void tell_led(session_t *session) {
     tell(session, &event);
 }
 
-/** Time of an event in 64 bits: it was recorded at the time of this call or shortly before. */
-static uint64_t time_of(const session_t *session, const agv_event_t *recorded) {
-    uint32_t age_ms = session->clock_ms - recorded->time_ms;
-    return (age_ms <= session->t_ms) ? (session->t_ms - age_ms) : session->t_ms;
-}
-
 static void tell_recorded(session_t *session, bool with_output) {
     uint32_t end = agv_recorder_next_sequence(&session->recorder);
     for (; session->next != end; session->next++) {
-        session_event_t event = {.is_led = false};
+        session_event_t event = {.t_ms = session->t_ms, .is_led = false};
         if (agv_recorder_get(&session->recorder, session->next, &event.recorded) &&
             (with_output || (event.recorded.kind != (uint8_t)AGV_EVENT_OUTPUT))) {
-            event.t_ms = time_of(session, &event.recorded);
             tell(session, &event);
         }
     }
@@ -79,7 +72,6 @@ void session_fail_self_test(session_t *session) {
 
 void session_start(session_t *session, const agv_config_t *config, uint64_t t_ms, uint32_t clock_ms) {
     session->t_ms = t_ms;
-    session->clock_ms = clock_ms;
     agv_supervisor_start(&session->supervisor, &session->ports, config, !session->self_test_failed, clock_ms);
     session->next = first_of_run(&session->recorder);
     tell_recorded(session, false);
@@ -89,7 +81,6 @@ void session_start(session_t *session, const agv_config_t *config, uint64_t t_ms
 
 void session_frame(session_t *session, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_ms) {
     session->t_ms = t_ms;
-    session->clock_ms = frame->time_ms;
     agv_supervisor_frame(&session->supervisor, &session->ports, side, frame);
     if (has_news(session)) {
         tell_recorded(session, true);
@@ -98,7 +89,6 @@ void session_frame(session_t *session, hal_can_side_t side, const hal_can_frame_
 
 void session_tick(session_t *session, uint64_t t_ms, uint32_t clock_ms) {
     session->t_ms = t_ms;
-    session->clock_ms = clock_ms;
     agv_supervisor_receive_alive(&session->supervisor);
     agv_supervisor_tick(&session->supervisor, &session->ports, clock_ms);
     if (has_news(session)) {

@@ -38,7 +38,6 @@ typedef struct {
     agv_recorder_t recorder;
     agv_ports_t ports;
     uint64_t t_ms;         /**< time of the last call, since the start of the run */
-    uint32_t clock_ms;     /**< the supervisor's clock at that moment */
     uint32_t next;         /**< sequence number of the next event to tell of */
     int8_t led_code;       /**< as last told */
     bool self_test_failed; /**< session_fail_self_test() */

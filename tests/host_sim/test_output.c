@@ -120,6 +120,15 @@ void test_what_cannot_be_opened(void) {
     TEST_ASSERT_TRUE(output_commit(output)); /* not open: nothing to do */
 }
 
+void test_a_file_that_cannot_take_its_place_leaves_nothing(void) {
+    TEST_ASSERT_TRUE(output_open(output, scratch_path("a")));
+    TEST_ASSERT_EQUAL_INT(0, mkdir(scratch_path("a"), 0700));
+    TEST_ASSERT_FALSE(output_commit(output));
+    TEST_ASSERT_NOT_NULL(strstr(scratch_said(), "/a: Is a directory\n"));
+    TEST_ASSERT_EQUAL_UINT(1, scratch_count());
+    TEST_ASSERT_EQUAL_INT(0, rmdir(scratch_path("a")));
+}
+
 void test_a_signal_waits_until_the_unfinished_is_removed(void) {
     TEST_ASSERT_TRUE(output_open(output, scratch_path("a")));
     TEST_ASSERT_FALSE(interrupt_pending());
