@@ -190,6 +190,8 @@ void test_there_is_no_setting_beyond_the_last(void) {
     TEST_ASSERT_EQUAL_UINT16(0, agv_config_get(&config, AGV_SETTING_COUNT));
     TEST_ASSERT_EQUAL_MEMORY(&before, &config, sizeof config);
     TEST_ASSERT_EQUAL_UINT16(50, agv_config_get(&config, AGV_SETTING_vcu_heartbeat_timeout_ms));
+    memset(&config, 0xFF, sizeof config); /* and what lies behind the last one */
+    TEST_ASSERT_EQUAL_UINT16(0, agv_config_get(&config, AGV_SETTING_COUNT));
 }
 
 /*

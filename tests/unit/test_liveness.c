@@ -165,6 +165,15 @@ void test_a_counter_that_stands_still_is_stuck(void) {
 }
 
 /* Shows: SUP-2 */
+void test_an_old_counter_two_cycles_ago_is_stuck(void) {
+    beat(AGV_NODE_VCU, 1, 90);
+    beat(AGV_NODE_VCU, 2, 100);
+    beat(AGV_NODE_VCU, 2, 131);
+    agv_liveness_judge_beat(&liveness, AGV_NODE_VCU, 151, 50);
+    expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_STUCK);
+}
+
+/* Shows: SUP-2 */
 void test_old_counters_more_than_two_cycles_ago_are_no_sign_of_life(void) {
     repeat_until(130); /* 21 ms before */
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_LOST);
