@@ -302,7 +302,8 @@ void test_a_press_from_before_the_trip_does_not_count(void) {
     trip(AGV_FAULT_BUS_OFF);
     run(1001);
     expect_state(AGV_STATE_SAFE);
-    TEST_ASSERT_TRUE((machine.press_missing & AGV_MISSING_BUTTON) != 0);
+    TEST_ASSERT_TRUE(did.reset_refused);
+    TEST_ASSERT_TRUE((did.missing & AGV_MISSING_BUTTON) != 0);
     facts.button = false;
     step(1);
     facts.button = true;
@@ -330,6 +331,16 @@ void test_p_waits_for_standstill_or_3_s(void) {
     trip(AGV_FAULT_BUS_OFF);
     run(2999);
     TEST_ASSERT_FALSE(machine.park_released);
+    step(1);
+    TEST_ASSERT_TRUE(machine.park_released);
+    setUp();
+    config.park = AGV_PARK_AT_STANDSTILL;
+    to_standby();
+    facts.missing = AGV_MISSING_STANDSTILL;
+    trip(AGV_FAULT_BUS_OFF);
+    run(100);
+    TEST_ASSERT_FALSE(machine.park_released);
+    facts.missing = 0;
     step(1);
     TEST_ASSERT_TRUE(machine.park_released);
     setUp();
