@@ -214,18 +214,26 @@ static void carry_out(agv_core_t *core, const agv_step_t *taken) {
                      core->machine.startup_reported && (core->machine.state == (uint8_t)AGV_STATE_INIT));
 }
 
+/* The output opens before anything that may take time, and closes after everything else is done. */
+static void switch_output(agv_core_t *core, bool was_closed, bool close) {
+    if ((close != was_closed) && (core->machine.output_closed == close)) {
+        hal_safety_output_set(core->hal, close);
+    }
+}
+
 bool agv_core_react(agv_core_t *core) {
     const bool was_closed = core->machine.output_closed;
     const uint8_t unresettable = core->machine.unresettable;
     const agv_fault_t raised = agv_core_report_faults(core);
     const agv_step_t taken = step(core, raised);
+    switch_output(core, was_closed, false);
     carry_out(core, &taken);
     (void)agv_core_report_faults(core);
     if (unresettable != core->machine.unresettable) {
         agv_core_store_latch(core);
     }
+    switch_output(core, was_closed, true);
     if (was_closed != core->machine.output_closed) {
-        hal_safety_output_set(core->hal, core->machine.output_closed);
         agv_core_record(core, AGV_EVENT_OUTPUT, (uint8_t)(core->machine.output_closed ? 1u : 0u), 0u, 0u);
     }
     return taken.tripped;

@@ -359,9 +359,9 @@ void test_a_trip_by_bus_off_opens_the_output(void) {
     be_strict();
     now_ms++;
     expect_status(HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
+    hal_safety_output_set_Expect(&hal, false);
     hal_can_purge_Expect(&hal, HAL_CAN_VEHICLE);
     expect_latch(0x96, AGV_FAULT_BUS_OFF, AGV_FAULT_NONE);
-    hal_safety_output_set_Expect(&hal, false);
     hal_watchdog_feed_Expect(&hal);
     expect_led_on();
     tick();
