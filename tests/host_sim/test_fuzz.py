@@ -64,7 +64,7 @@ class Fuzz(hostsim.Case):
         lines += [b"(1700000000.060000) can0 0000043F#00\n", b"(1700000000.060000) can0 43F#R8\n",
                   b"(1700000000.060000) can0 43F##10011 R\r\n", b"(1700000000.061000) can0 20000040#0000\n",
                   b"(1700000000.061000) can0 20000100#0000\n", b"(1700000000.061000) can0 43F#0011223344556677_9\n"]
-        for _ in range(250 * RUNS):
+        for _ in range(120 * RUNS):
             some = chance.sample(lines, chance.choice((1, 2, 5, 30)))
             self.replay_both_ways(mutate(b"".join(sorted(some)), chance))
 
@@ -90,7 +90,7 @@ class Fuzz(hostsim.Case):
         chance = random.Random(4)
         whole = self.run_good("config").stdout.encode()
         lines = [line for line in whole.splitlines(keepends=True) if not line.startswith(b"#") and line.strip()]
-        for _ in range(250 * RUNS):
+        for _ in range(120 * RUNS):
             some = whole if chance.random() < 0.1 else b"".join(chance.sample(lines, chance.choice((1, 3, 10))))
             self.write("c.yaml", mutate(some, chance))
             self.check(self.run_program("config", "--config", "c.yaml"), ())
@@ -108,7 +108,7 @@ class Fuzz(hostsim.Case):
         self.write("log", traffic.log(traffic.frames(5)))
         self.run_good("replay", "--store", "store", "log")
         good = (self.folder / "store").read_bytes()
-        for _ in range(80 * RUNS):
+        for _ in range(40 * RUNS):
             content = mutate(good[:chance.choice((10, 50, len(good)))], chance)
             if content == good:
                 continue
@@ -123,7 +123,7 @@ class Fuzz(hostsim.Case):
                  "--reset-cause", "--store", "--config", "--topology", "--id-set", "--shadow", "--help", "--to-kconfig",
                  "log", "-", "--", "", "1", "gateway", "shared", "table", "watchdog", "can0", "=", "--tail=5", "-x", "o1",
                  "--out=o2", "--start-ms=4294967295", "\n", "%n"]
-        for _ in range(200 * RUNS):
+        for _ in range(100 * RUNS):
             arguments = ["replay"] * chance.randrange(2) + chance.choices(words, k=chance.randrange(7))
             result = self.run_program(*arguments)
             self.assertIn(result.status, (0, 2), arguments)
