@@ -309,6 +309,18 @@ void test_an_overfull_ai_side_only_warns(void) {
     expect_fault(&f, AGV_FAULT_TX_STALLED, false);
 }
 
+/* Its errors and lost frames trip nothing; error-passive is judged on the vehicle side only. */
+/* Shows: SUP-7, ERROR_PASSIVE, RX_OVERRUN */
+void test_errors_of_the_ai_side(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    fixture_active(&f);
+    set_state(HAL_CAN_AI, HAL_CAN_ERROR_PASSIVE);
+    sim_hal_add_overrun(&f.hal, HAL_CAN_AI);
+    fixture_run(&f, 2000);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_ERROR_PASSIVE));
+}
+
 /* ---- STEP_OVERRUN ---- */
 
 /* The frames keep their time stamps, only the tick is late; the simulated watchdog does not bite. */

@@ -165,6 +165,26 @@ void test_eps_modes_mixed(void) {
     check_named_after_the_last((const uint8_t[5]){0xFF, 0x04, 0x00, 0x02, 0x03}, AGV_FAULT_EPS_MODE_NOT_ANGLE);
 }
 
+/* While the cause goes on the fault does, also after a gap that would restart the count. */
+/* Shows: SUP-5, EPS_MODE_OFF, EPS_MODE_INVALID, EPS_MODE_NOT_ANGLE */
+void test_a_gap_does_not_end_an_eps_mode_fault(void) {
+    static const uint8_t MODES[] = {0xFF, 0x04, 0x00};
+    static const agv_fault_t FAULTS[] = {AGV_FAULT_EPS_MODE_OFF, AGV_FAULT_EPS_MODE_INVALID,
+                                         AGV_FAULT_EPS_MODE_NOT_ANGLE};
+    for (unsigned i = 0; i < 3; i++) {
+        fixture_init(&f);
+        fixture_active(&f);
+        f.traffic[AGV_MSG_EPS_STATUS].data[3] = MODES[i];
+        fixture_run(&f, 60);
+        f.traffic[AGV_MSG_EPS_STATUS].muted = true;
+        fixture_run(&f, 50);
+        fixture_send_now(&f, AGV_MSG_EPS_STATUS);
+        expect_fault(&f, FAULTS[i], true);
+        TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, FAULTS[i]));
+        TEST_ASSERT_EQUAL_UINT32(0, fixture_ended(&f, FAULTS[i]));
+    }
+}
+
 /* ---- Status values that are none: three in a row ---- */
 
 /* Shows: SUP-5, P2, GEAR_STATUS_INVALID */

@@ -189,6 +189,17 @@ void test_a_command_from_before_the_engagement_is_forgotten(void) {
     check_forgotten(MODE_ENGAGED);
 }
 
+/* A command out of range is none: the steering is compared with the last valid one. */
+/* Shows: SUP-5, AI_COMMAND_OUT_OF_RANGE, STEERING_DEVIATION */
+void test_a_command_out_of_range_is_no_command(void) {
+    fixture_active(&f);
+    command(18001);
+    expect_reason(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE);
+    fixture_run(&f, 2000);
+    expect_fault(&f, FAULT, false);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, FAULT));
+}
+
 /* An invalid measured angle is not used: the last valid one stands. */
 /* Shows: SUP-5, P5, STEERING_DEVIATION */
 void test_an_invalid_angle_is_no_measured_angle(void) {
