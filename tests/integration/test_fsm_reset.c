@@ -149,6 +149,32 @@ void test_each_missing_condition_refuses_and_is_named_once_a_press(void) {
     }
 }
 
+static void expect_last_refusal(uint32_t count, uint8_t expected) {
+    uint8_t missing = 0;
+    TEST_ASSERT_EQUAL_UINT32(count, walk_refusals(&f, &missing));
+    TEST_ASSERT_EQUAL_HEX8(expected, missing);
+}
+
+/* Shows: FSM-3 */
+void test_a_refusal_names_what_was_missing_at_any_moment_of_that_press(void) {
+    walk_to_safe(&f);
+    moving(true);
+    fixture_run(&f, 20);
+    press(true);
+    fixture_run(&f, 300);
+    moving(false);
+    not_manual(true);
+    fixture_run(&f, 300);
+    not_manual(false);
+    fixture_run(&f, 450);
+    expect_last_refusal(1, AGV_MISSING_STANDSTILL | AGV_MISSING_MANUAL);
+    press(false);
+    not_manual(true);
+    press(true);
+    fixture_run(&f, 1100);
+    expect_last_refusal(2, AGV_MISSING_MANUAL); /* of this press only */
+}
+
 /* The button stays pressed; from the first moment at which all is well, 1 s. */
 /* Shows: FSM-3 */
 void test_a_break_starts_the_1_s_anew_and_the_button_need_not_be_released(void) {

@@ -77,6 +77,20 @@ void test_an_event_says_when_in_which_state_and_for_which_reason(void) {
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_S_DRIVER_ALARM, tripped.first_reason);
 }
 
+/* Shows: INT-3, FSM-4 */
+void test_the_safety_output_is_recorded_when_it_closes_and_opens(void) {
+    agv_event_t event = {0};
+    fixture_standby(&f);
+    TEST_ASSERT_EQUAL_UINT32(1, walk_events(&f, AGV_EVENT_OUTPUT, 1, &event));
+    TEST_ASSERT_EQUAL_UINT32(f.now_ms, event.time_ms);
+    TEST_ASSERT_EQUAL_HEX8(AGV_STATE_STANDBY, event.state);
+    TEST_ASSERT_EQUAL_UINT32(1, walk_events(&f, AGV_EVENT_OUTPUT, 0, &event)); /* at the start */
+    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
+    fixture_run(&f, 500);
+    TEST_ASSERT_EQUAL_UINT32(2, walk_events(&f, AGV_EVENT_OUTPUT, 0, &event));
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_BUS_OFF, event.first_reason);
+}
+
 /* Shows: INT-3 */
 void test_an_event_holds_the_last_payload_of_each_message(void) {
     /* a byte of each message in which any value is as good as another (101h: 0.01 m/s) */
