@@ -47,7 +47,7 @@ void test_init_sends_no_steering_command_though_the_angle_is_known(void) {
  * 363h comes at 1 and 11 ms (the second one shows a changed counter), 067h at 4 and 14 ms, 0A3h at 7 ms: from 14 ms on
  * all is well.
  */
-/* Shows: FSM-3, FSM-4, TIM-2 */
+/* Shows: FSM-7, FSM-4, TIM-2 */
 void test_init_is_left_after_500_ms_of_all_well(void) {
     fixture_start(&f);
     expect_output(&f, false);
@@ -63,7 +63,22 @@ void test_init_is_left_after_500_ms_of_all_well(void) {
     expect_silence(&f);
 }
 
-/* Shows: FSM-3 */
+/* 43Fh of 500 ms waits when INIT is left at 514 ms. */
+/* Shows: FSM-2, FSM-7 */
+void test_safe_commands_that_wait_do_not_leave_after_init(void) {
+    fixture_mute_ai(&f, true);
+    fixture_start(&f);
+    fixture_run(&f, 490);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    fixture_run(&f, 24);
+    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_forget_sent(&f);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    fixture_run(&f, 500);
+    expect_silence(&f);
+}
+
+/* Shows: FSM-7 */
 void test_one_frame_that_is_not_well_starts_the_500_ms_anew(void) {
     fixture_start(&f);
     fixture_run(&f, 410);
@@ -190,7 +205,7 @@ void test_each_missing_condition_keeps_init_and_is_named_after_10_s(void) {
     }
 }
 
-/* Shows: STARTUP_TIMEOUT, FSM-3 */
+/* Shows: STARTUP_TIMEOUT, FSM-7 */
 void test_init_is_left_once_the_obstacle_is_gone_and_nothing_has_latched(void) {
     for (unsigned i = 0; i < OBSTACLE_COUNT; i++) {
         begin(&OBSTACLES[i]);
@@ -221,7 +236,7 @@ void test_what_does_not_keep_init(void) {
 }
 
 /* An event counts as a cause for 1 s after the last one. */
-/* Shows: FOREIGN_COMMAND_SENDER, FSM-3 */
+/* Shows: FOREIGN_COMMAND_SENDER, FSM-7 */
 void test_an_event_keeps_init_until_it_has_ended(void) {
     static const uint8_t park[8] = {GEAR_P};
     f.config.topology = AGV_TOPOLOGY_GATEWAY;

@@ -203,6 +203,21 @@ void test_a_break_of_one_frame_in_the_last_moment(void) {
     expect_reset_after(1000);
 }
 
+/* 067h comes for the last time 949 ms after the press: in the last tick of the 1 s it is 51 ms old. */
+/* Shows: FSM-3, EPS_HEARTBEAT_LOST */
+void test_a_deadline_that_expires_in_the_last_tick(void) {
+    f.traffic[AGV_MSG_EPS_STATUS].phase_ms = 8;
+    walk_to_safe(&f);
+    fixture_run_past(&f, AGV_MSG_STEERING_STATUS);
+    fixture_run(&f, 1); /* nothing comes in this millisecond of ten */
+    press(true);
+    fixture_run(&f, 949);
+    f.traffic[AGV_MSG_STEERING_STATUS].muted = true;
+    fixture_run(&f, 51);
+    expect_fault(&f, AGV_FAULT_EPS_HEARTBEAT_LOST, true);
+    expect_state(&f, AGV_STATE_SAFE);
+}
+
 /* Shows: FSM-3 */
 void test_a_release_starts_the_1_s_anew(void) {
     walk_to_safe(&f);
@@ -389,6 +404,23 @@ void test_a_dead_ai_side_of_a_gateway_does_not_hinder(void) {
 }
 
 /* ---- After it ---- */
+
+/* Shows: FSM-2, FSM-3 */
+void test_safe_commands_that_wait_do_not_leave_after_the_reset(void) {
+    walk_to_safe(&f);
+    press(true);
+    fixture_run(&f, 950);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    fixture_run(&f, 50);
+    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_forget_sent(&f);
+    const uint32_t dropped = agv_supervisor_counters(&f.supervisor)->dropped;
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    fixture_run(&f, 500);
+    expect_silence(&f);
+    expect_state(&f, AGV_STATE_STANDBY);
+    TEST_ASSERT_EQUAL_UINT32(dropped, agv_supervisor_counters(&f.supervisor)->dropped);
+}
 
 /* Shows: FSM-3, FSM-4 */
 void test_a_trip_while_the_vehicle_is_being_reset_again_is_a_new_one(void) {
