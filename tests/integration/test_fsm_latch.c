@@ -1,4 +1,6 @@
 /* The first reason, faults that cannot be reset, and the alive counter of the own 43Fh. */
+#include <stddef.h>
+
 #include "fixture.h"
 #include "unity.h"
 #include "walk.h"
@@ -148,6 +150,27 @@ void test_corrupted_memory_keeps_the_reason_of_an_earlier_trip(void) {
     fixture_send_now(&f, AGV_MSG_WHEEL_SPEED);
     expect_fault(&f, AGV_FAULT_MEMORY_CORRUPTED, true);
     expect_cannot_be_reset(AGV_FAULT_S_DRIVER_ALARM);
+}
+
+/* A bit of the configuration in use is flipped: the defaults take over, on this vehicle's identifiers and wiring. */
+/* Shows: FSM-9, INT-5, MEMORY_CORRUPTED, P1 */
+void test_a_corrupted_configuration_is_replaced_by_one_that_fits_the_vehicle(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    f.config.id_set = AGV_ID_SET_TABLE;
+    f.long_run = true;
+    fixture_active(&f);
+    const agv_supervisor_t intact = f.supervisor;
+    const size_t at = (size_t)((const uint8_t *)agv_supervisor_config(&f.supervisor) - (const uint8_t *)&f.supervisor);
+    for (size_t bit = 0; bit < 8 * sizeof(agv_config_t); bit++) {
+        f.supervisor = intact;
+        ((uint8_t *)&f.supervisor)[at + bit / 8] ^= (uint8_t)(1u << (bit % 8));
+        fixture_send_now(&f, AGV_MSG_WHEEL_SPEED);
+        expect_fault(&f, AGV_FAULT_MEMORY_CORRUPTED, true);
+        const agv_config_t *config = agv_supervisor_config(&f.supervisor);
+        TEST_ASSERT_EQUAL_INT(AGV_CONFIG_OK, agv_config_check(config).problem);
+        TEST_ASSERT_EQUAL_UINT16(AGV_TOPOLOGY_GATEWAY, config->topology);
+        TEST_ASSERT_EQUAL_UINT16(AGV_ID_SET_TABLE, config->id_set);
+    }
 }
 
 /* Shows: FSM-9 */

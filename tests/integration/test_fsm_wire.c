@@ -135,6 +135,21 @@ void test_behind_a_blocked_bus_the_safe_commands_are_the_first(void) {
     expect_safe_commands_from(0);
 }
 
+/* Shows: FSM-2, INT-5, MEMORY_CORRUPTED */
+void test_when_memory_is_found_corrupted_what_waits_in_the_controller_never_leaves(void) {
+    ai_commands();
+    ((uint8_t *)&f.supervisor)[sizeof f.supervisor / 3u] ^= 0x20u;
+    fixture_send_now(&f, AGV_MSG_THROTTLE_STATUS);
+    expect_reason(&f, AGV_FAULT_MEMORY_CORRUPTED);
+    run(5);
+    TEST_ASSERT_EQUAL_UINT32(3, wire_count); /* no angle is known yet */
+    TEST_ASSERT_EQUAL_HEX32(0x075, wire[0].id);
+    TEST_ASSERT_EQUAL_HEX8(0, wire[0].data[0]);
+    TEST_ASSERT_EQUAL_HEX32(0x168, wire[1].id);
+    TEST_ASSERT_EQUAL_HEX8(GEAR_P, wire[1].data[0]);
+    TEST_ASSERT_EQUAL_HEX32(0x43F, wire[2].id);
+}
+
 /* Recovery is asked for 100 ms after bus-off; nothing of before is sent afterwards; all safe commands go out at once. */
 /* Shows: SUP-7, BUS_OFF, FSM-2 */
 void test_after_bus_off_only_safe_commands_leave(void) {
