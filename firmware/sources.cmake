@@ -26,6 +26,7 @@ set(AGV_CORE_SOURCES
   ${AGV_CORE_DIR}/src/supervisor_start.c
   ${AGV_CORE_DIR}/src/timer.c
   ${AGV_CORE_DIR}/src/transmitter.c
+  ${AGV_CORE_DIR}/src/watch.c
 )
 set(AGV_CORE_INCLUDES
   ${AGV_CORE_DIR}/include

@@ -1,31 +1,52 @@
 #include "agv/bus.h"
 
-void agv_bus_start(agv_bus_t *bus, const hal_can_status_t *status) {
-    *bus = (agv_bus_t){.bus_offs = status->bus_off_count, .overruns = status->overrun_count};
+#include "agv/core.h"
+
+static uint32_t watch_of(hal_can_side_t side) {
+    return (uint32_t)AGV_WATCH_BUS_OFF + (uint32_t)side;
 }
 
-bool agv_bus_is_off(const agv_bus_t *bus) {
-    return bus->off.phase != (uint8_t)AGV_TIMER_STOPPED;
-}
-
-agv_bus_report_t agv_bus_tick(agv_bus_t *bus, const hal_can_status_t *status, uint16_t recovery_ms, uint16_t stalled_ms,
-                              uint32_t now_ms) {
-    const bool was_off = agv_bus_is_off(bus);
-    const bool is_off = status->state == HAL_CAN_BUS_OFF;
-    const bool again = status->bus_off_count != bus->bus_offs;
-    agv_timer_while(&bus->off, is_off, now_ms);
-    const agv_bus_report_t report = {
-        .off = is_off || again,
-        .recovered = (was_off || again) && !is_off,
-        .ask_recovery = agv_timer_reached(&bus->off, now_ms, recovery_ms),
-        .passive = status->state == HAL_CAN_ERROR_PASSIVE,
-        .overrun = status->overrun_count != bus->overruns,
-        .stalled = !is_off && (status->tx_pending_ms > stalled_ms),
-    };
-    if (report.ask_recovery) {
-        agv_timer_start(&bus->off, now_ms);
-    }
+/* Keeps what the controller has counted. */
+static void follow(agv_bus_t *bus, const hal_can_status_t *status) {
     bus->bus_offs = status->bus_off_count;
     bus->overruns = status->overrun_count;
+}
+
+void agv_bus_start(agv_core_t *core, hal_can_side_t side) {
+    hal_can_status_t status;
+    hal_can_status(core->hal, side, &status);
+    follow(&core->buses[side], &status);
+}
+
+bool agv_bus_is_off(const agv_core_t *core, hal_can_side_t side) {
+    return agv_watch_runs(core, watch_of(side));
+}
+
+uint32_t agv_bus_tick(agv_core_t *core, hal_can_side_t side) {
+    agv_bus_t *const bus = &core->buses[side];
+    const bool was_off = agv_bus_is_off(core, side);
+    uint32_t report = 0u;
+    hal_can_status_t status;
+    hal_can_status(core->hal, side, &status);
+    const bool again = status.bus_off_count != bus->bus_offs;
+    const bool is_off = status.state == HAL_CAN_BUS_OFF;
+    if (is_off || again) {
+        report = AGV_BUS_OFF;
+    }
+    if (agv_watch_while(core, watch_of(side), is_off)) {
+        agv_watch_start(core, watch_of(side));
+        report |= AGV_BUS_ASK_RECOVERY;
+    }
+    if (!is_off) {
+        report |= (was_off || again) ? AGV_BUS_RECOVERED : 0u;
+        report |= (status.tx_pending_ms > core->config.tx_stalled_ms) ? AGV_BUS_STALLED : 0u;
+    }
+    if (status.state == HAL_CAN_ERROR_PASSIVE) {
+        report |= AGV_BUS_PASSIVE;
+    }
+    if (status.overrun_count != bus->overruns) {
+        report |= AGV_BUS_OVERRUN;
+    }
+    follow(bus, &status);
     return report;
 }

@@ -26,15 +26,12 @@ uint16_t agv_crc16(uint16_t crc, const void *bytes, size_t size) {
 }
 
 uint32_t agv_seal(const void *words, size_t size) {
-    const unsigned char *block = words;
-    uint32_t folded = 0u;
-    uint32_t next = 0u;
-    const size_t whole = size / sizeof next;
-    for (size_t i = 0u; i < whole; i++) {
-        (void)memcpy(&next, &block[i * sizeof next], sizeof next);
-        folded ^= next;
+    const unsigned char *const block = words;
+    uint32_t folded = UINT32_MAX;
+    for (size_t at = 0u; at < size; at += sizeof folded) {
+        uint32_t word;
+        (void)memcpy(&word, &block[at], sizeof word);
+        folded ^= word;
     }
-    next = 0u;
-    (void)memcpy(&next, &block[whole * sizeof next], size % sizeof next);
-    return ~(folded ^ next);
+    return folded;
 }

@@ -40,7 +40,9 @@ bool agv_config_set(agv_config_t *config, uint16_t setting, uint16_t value) {
 }
 
 bool agv_config_is_trip(const agv_config_t *config, agv_fault_t fault) {
-    return (config->trips & agv_fault_bit(fault)) != 0u;
+    /* In words of 32 bits: a shift of 64 by a variable is long on a small processor. */
+    const uint32_t word = (uint32_t)(((uint32_t)fault < 32u) ? config->trips : (config->trips >> 32u));
+    return ((word >> ((uint32_t)fault & 31u)) & 1u) != 0u;
 }
 
 void agv_config_defaults(agv_config_t *config) {
@@ -66,10 +68,10 @@ static uint16_t out_of_range(const agv_config_t *config) {
 
 /* The highest-ranking fault that is made weaker than it may be; AGV_FAULT_NONE when none is. */
 static agv_fault_t too_weak(const agv_config_t *config) {
-    const agv_fault_set_t must_trip = agv_faults_default_trips & agv_faults_fixed;
     uint32_t fault = 0u;
     while ((fault < (uint32_t)AGV_FAULT_COUNT) &&
-           (((must_trip & ~config->trips) & agv_fault_bit((agv_fault_t)fault)) == 0u)) {
+           (((agv_fault_flags((agv_fault_t)fault) & AGV_FAULT_FLAG_FIXED) == 0u) ||
+            agv_config_is_trip(config, (agv_fault_t)fault))) {
         fault++;
     }
     return (agv_fault_t)fault;
@@ -101,9 +103,9 @@ agv_config_verdict_t agv_config_check(const agv_config_t *config) {
     return verdict;
 }
 
-static uint32_t crc_of(uint32_t crc, uint64_t value, uint32_t size) {
+static uint32_t crc_of(uint32_t crc, uint32_t value, uint32_t size) {
     uint8_t bytes[sizeof value];
-    for (uint32_t i = 0u; i < size; i++) {
+    for (uint32_t i = 0u; i < sizeof bytes; i++) {
         bytes[i] = (uint8_t)(value >> (8u * i));
     }
     return agv_crc32(crc, bytes, size);
@@ -114,5 +116,6 @@ uint32_t agv_config_checksum(const agv_config_t *config) {
     for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
         crc = crc_of(crc, agv_config_get(config, i), 2u);
     }
-    return ~crc_of(crc, config->trips, 8u);
+    crc = crc_of(crc, (uint32_t)config->trips, 4u);
+    return ~crc_of(crc, (uint32_t)(config->trips >> 32u), 4u);
 }

@@ -1,5 +1,7 @@
 #include "agv/faults.h"
 
+#include "agv/core.h"
+
 enum {
     NONE = AGV_FAULT_FLAG_NONE,
     UNRESETTABLE = AGV_FAULT_FLAG_UNRESETTABLE,
@@ -10,6 +12,12 @@ enum {
 };
 
 _Static_assert((uint32_t)AGV_FAULT_COUNT <= 64u, "a fault set has 64 bits");
+
+/* What is FIXED trips by default: nothing could be weaker than a warning. */
+#define AGV_FAULT(name, class, led, flags)                                                                             \
+    _Static_assert((AGV_CLASS_##class == AGV_CLASS_TRIP) || (((flags)&FIXED) == 0), #name);
+#include "agv/fault_table.def"
+#undef AGV_FAULT
 
 static const uint8_t led_codes[AGV_FAULT_COUNT] = {
 #define AGV_FAULT(name, class, led, flags) (led),
@@ -36,7 +44,7 @@ static const uint8_t event_faults[AGV_EVENT_FAULT_COUNT] = {AGV_FAULT_SUPERVISOR
 enum { WARN = AGV_CLASS_WARN, TRIP = AGV_CLASS_TRIP };
 #define IF_SET(condition, name) | ((agv_fault_set_t)((condition) ? 1u : 0u) << (uint32_t)AGV_FAULT_##name)
 
-#define AGV_FAULT(name, class, led, flags) IF_SET(((flags) & FIXED) != 0, name)
+#define AGV_FAULT(name, class, led, flags) IF_SET(((flags)&FIXED) != 0, name)
 const agv_fault_set_t agv_faults_fixed = 0u
 #include "agv/fault_table.def"
     ;
@@ -64,35 +72,36 @@ uint8_t agv_fault_led_code(agv_fault_t fault) {
     return is_fault(fault) ? led_codes[fault] : 0u;
 }
 
-void agv_faults_level(agv_faults_t *faults, agv_fault_t fault, bool cause) {
-    if (is_fault(fault) && (cause != agv_faults_is_active(faults, fault))) {
-        faults->marks[fault] ^= AGV_MARK_ACTIVE;
-        faults->changed = true;
+void agv_faults_level(agv_core_t *core, agv_fault_t fault, bool cause) {
+    if (is_fault(fault) && (cause != agv_faults_is_active(core, fault))) {
+        core->faults.marks[fault] ^= AGV_MARK_ACTIVE;
+        core->faults.changed = true;
     }
 }
 
-void agv_faults_event(agv_faults_t *faults, agv_fault_t fault, uint32_t now_ms) {
+void agv_faults_event(agv_core_t *core, agv_fault_t fault) {
     for (uint32_t i = 0u; i < AGV_EVENT_FAULT_COUNT; i++) {
         if (event_faults[i] == (uint8_t)fault) {
-            faults->event_ms[i] = now_ms;
-            faults->events |= (uint8_t)(1u << i);
-            agv_faults_level(faults, fault, true);
+            core->faults.event_ms[i] = core->now_ms;
+            core->faults.events |= (uint8_t)(1u << i);
+            agv_faults_level(core, fault, true);
         }
     }
 }
 
-void agv_faults_tick(agv_faults_t *faults, uint32_t now_ms, uint16_t event_hold_ms) {
+void agv_faults_tick(agv_core_t *core) {
+    agv_faults_t *const faults = &core->faults;
     for (uint32_t i = 0u; (faults->events >> i) != 0u; i++) {
         const uint32_t bit = 1u << i;
-        if (((faults->events & bit) != 0u) && ((now_ms - faults->event_ms[i]) >= event_hold_ms)) {
+        if (((faults->events & bit) != 0u) && ((core->now_ms - faults->event_ms[i]) >= core->config.event_hold_ms)) {
             faults->events &= (uint8_t)~bit;
-            agv_faults_level(faults, (agv_fault_t)event_faults[i], false);
+            agv_faults_level(core, (agv_fault_t)event_faults[i], false);
         }
     }
 }
 
-bool agv_faults_is_active(const agv_faults_t *faults, agv_fault_t fault) {
-    return is_fault(fault) && ((faults->marks[fault] & AGV_MARK_ACTIVE) != 0u);
+bool agv_faults_is_active(const agv_core_t *core, agv_fault_t fault) {
+    return is_fault(fault) && ((core->faults.marks[fault] & AGV_MARK_ACTIVE) != 0u);
 }
 
 agv_fault_set_t agv_faults_marked(const agv_faults_t *faults, uint8_t marks) {

@@ -10,20 +10,21 @@ enum {
     GEAR_N = 4,
     GEAR_P = 8,
     SAFE_SIGNALS = 0x70, /* left on, right on, autopilot off; bit 8 clear: headlight on */
-    NO_SIGNALS = 0x0F,   /* reserved bits beside the signals */
     ANGLE_MAX = 18000
 };
 
-static bool zero_from(const uint8_t data[AGV_DLC], uint32_t first) {
+/* Bits that must be 0 in each command, from 43Fh to 065h. */
+static const uint8_t reserved[AGV_COMMAND_COUNT][AGV_DLC] = {{0xFFu, 0xFFu, 0xFFu, 0xFFu, 0x0Fu, 0xFFu, 0xFFu, 0x00u},
+                                                             {0x00u, 0xFFu, 0xFFu, 0xFFu, 0xFFu, 0xFFu, 0xFFu, 0xFFu},
+                                                             {0x00u, 0xFFu, 0xFFu, 0xFFu, 0xFFu, 0xFFu, 0xFFu, 0xFFu},
+                                                             {0x00u, 0x00u, 0xFFu, 0xFFu, 0xFFu, 0xFFu, 0xFFu, 0xFFu}};
+
+static bool reserved_are_zero(agv_message_t command, const uint8_t data[AGV_DLC]) {
     uint32_t any = 0u;
-    for (uint32_t i = first; i < AGV_DLC; i++) {
-        any |= data[i];
+    for (uint32_t i = 0u; i < AGV_DLC; i++) {
+        any |= (uint32_t)data[i] & reserved[command][i];
     }
     return any == 0u;
-}
-
-static bool signals_shaped(const uint8_t data[AGV_DLC]) {
-    return (data[0] | data[1] | data[2] | data[3] | (data[4] & NO_SIGNALS) | data[5] | data[6]) == 0;
 }
 
 static uint32_t first_two(const uint8_t data[AGV_DLC]) {
@@ -45,17 +46,17 @@ static uint32_t throttle_max_counts(const agv_gate_t *gate) {
 }
 
 /* safe: only the safe commands; else what the gateway may pass on. */
-static bool command_allowed(const agv_gate_t *gate, agv_message_t message, const uint8_t data[AGV_DLC], bool safe) {
+static bool value_allowed(const agv_gate_t *gate, agv_message_t message, const uint8_t data[AGV_DLC], bool safe) {
     switch (message) {
     case AGV_MSG_TURN_SIGNAL_COMMAND:
-        return signals_shaped(data) && (!safe || (data[4] == (uint8_t)SAFE_SIGNALS));
+        return !safe || (data[4] == (uint8_t)SAFE_SIGNALS);
     case AGV_MSG_GEAR_COMMAND:
-        return zero_from(data, 1u) && (safe ? (data[0] == (uint8_t)GEAR_P) : is_gear(data[0]));
+        return safe ? (data[0] == (uint8_t)GEAR_P) : is_gear(data[0]);
     case AGV_MSG_THROTTLE_COMMAND:
-        return zero_from(data, 1u) && (data[0] <= (safe ? 0u : throttle_max_counts(gate)));
+        return data[0] <= throttle_max_counts(gate);
     default: {
         const uint32_t raw = first_two(data);
-        return zero_from(data, 2u) && (raw <= (uint32_t)ANGLE_MAX) && (!safe || is_held_angle(gate, raw));
+        return (raw <= (uint32_t)ANGLE_MAX) && (!safe || is_held_angle(gate, raw));
     }
     }
 }
@@ -70,7 +71,8 @@ static bool may_pass(const agv_gate_t *gate, agv_message_t message) {
 static bool vehicle_side_allows(const agv_gate_t *gate, agv_message_t message, const hal_can_frame_t *frame) {
     const bool safe = agv_state_commands_safe((agv_state_t)gate->state);
     if ((uint32_t)message < AGV_COMMAND_COUNT) {
-        return (safe || may_pass(gate, message)) && command_allowed(gate, message, frame->data, safe);
+        return (safe || may_pass(gate, message)) && reserved_are_zero(message, frame->data) &&
+               value_allowed(gate, message, frame->data, safe);
     }
     return (message == AGV_MSG_NONE) && (frame->id == gate->config->status_frame_id) && (frame->id != 0u);
 }

@@ -8,6 +8,9 @@
 _Static_assert((AGV_RECORDER_EVENTS & (AGV_RECORDER_EVENTS - 1u)) == 0u, "a power of two");
 _Static_assert(sizeof(agv_event_t) == 108u, "no padding: the checksum runs over all bytes");
 
+_Static_assert(offsetof(agv_event_t, run) - offsetof(agv_event_t, kind) == sizeof(agv_entry_t), "an entry is copied");
+_Static_assert(offsetof(agv_event_t, state) - offsetof(agv_event_t, kind) == offsetof(agv_entry_t, state), "in order");
+
 static uint32_t slot_of(uint32_t sequence) {
     return sequence & (AGV_RECORDER_EVENTS - 1u);
 }
@@ -64,13 +67,7 @@ void agv_recorder_add(agv_recorder_t *recorder, const agv_entry_t *entry, uint32
     agv_event_t *event = &recorder->events[slot_of(recorder->next_sequence)];
     event->sequence = recorder->next_sequence;
     event->time_ms = time_ms;
-    event->kind = entry->kind;
-    event->a = entry->a;
-    event->b = entry->b;
-    event->c = entry->c;
-    event->missing = entry->missing;
-    event->state = entry->state;
-    event->first_reason = entry->first_reason;
+    (void)memcpy((unsigned char *)event + offsetof(agv_event_t, kind), entry, sizeof *entry);
     event->run = recorder->run;
     event->seen = recorder->seen;
     (void)memcpy(event->frames, recorder->frames, sizeof event->frames);

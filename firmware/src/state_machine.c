@@ -1,191 +1,201 @@
 #include "agv/state_machine.h"
 
+#include "agv/core.h"
 #include "agv/latch.h"
 
-static void enter(agv_state_machine_t *machine, agv_state_t state) {
-    machine->state = (uint8_t)state;
-    machine->latched = (uint8_t)(agv_state_is_latched(state) ? AGV_LATCH_CLOSED : AGV_LATCH_OPEN);
-    agv_timer_stop(&machine->good);
+static void enter(agv_core_t *core, agv_state_t state) {
+    core->machine.state = (uint8_t)state;
+    core->machine.latched = (uint8_t)(agv_state_is_latched(state) ? AGV_LATCH_CLOSED : AGV_LATCH_OPEN);
+    agv_watch_stop(core, AGV_WATCH_RESET_GOOD);
 }
 
-void agv_state_machine_start(agv_state_machine_t *machine, agv_fault_t reason, uint32_t now_ms) {
+void agv_state_machine_start(agv_core_t *core, agv_fault_t reason) {
     const bool tripped = reason != AGV_FAULT_NONE;
-    *machine = (agv_state_machine_t){
-        .first_reason = (uint8_t)reason,
-        .unresettable = AGV_FAULT_NONE,
-        .button_before = true, /* until the VCU tells: what is held since before the start has no rising edge */
-    };
-    enter(machine, tripped ? AGV_STATE_TRIPPED : AGV_STATE_INIT);
-    agv_timer_start(&machine->park_wait, now_ms);
-    agv_timer_start(tripped ? &machine->unconfirmed : &machine->init, now_ms);
+    core->machine.first_reason = (uint8_t)reason;
+    core->machine.unresettable = AGV_FAULT_NONE;
+    core->machine.button_before =
+        true; /* until the VCU tells: what is held since before the start has no rising edge */
+    enter(core, tripped ? AGV_STATE_TRIPPED : AGV_STATE_INIT);
+    agv_watch_start(core, AGV_WATCH_PARK_WAIT);
+    agv_watch_start(core, tripped ? AGV_WATCH_UNCONFIRMED : AGV_WATCH_INIT);
 }
 
-static void enter_standby(agv_state_machine_t *machine) {
-    enter(machine, AGV_STATE_STANDBY);
-    machine->first_reason = AGV_FAULT_NONE;
-    machine->output_closed = true;
+static void enter_standby(agv_core_t *core) {
+    enter(core, AGV_STATE_STANDBY);
+    core->machine.first_reason = AGV_FAULT_NONE;
+    core->machine.output_closed = true;
 }
 
-static void trip(agv_state_machine_t *machine, agv_fault_t reason, uint32_t now_ms) {
-    enter(machine, AGV_STATE_TRIPPED);
-    machine->first_reason = (uint8_t)reason;
-    machine->park_released = false;
+/* No press counts that began before now. */
+static void forget_press(agv_state_machine_t *machine) {
     machine->pressed_after_trip = false;
     machine->press_refused = false;
     machine->press_missing = 0u;
-    agv_timer_stop(&machine->press);
-    agv_timer_stop(&machine->park_sent);
-    agv_timer_start(&machine->park_wait, now_ms);
-    agv_timer_start(&machine->unconfirmed, now_ms);
 }
 
-static void withdraw_confirmation(agv_state_machine_t *machine, uint32_t now_ms) {
-    enter(machine, AGV_STATE_TRIPPED);
-    agv_timer_start(&machine->unconfirmed, now_ms);
-    if (agv_timer_runs(&machine->park_sent)) {
-        agv_timer_start(&machine->park_sent, now_ms);
+static void trip(agv_core_t *core, agv_fault_t reason) {
+    enter(core, AGV_STATE_TRIPPED);
+    core->machine.first_reason = (uint8_t)reason;
+    core->machine.park_released = false;
+    forget_press(&core->machine);
+    agv_watch_stop(core, AGV_WATCH_PRESS);
+    agv_watch_stop(core, AGV_WATCH_PARK_SENT);
+    agv_watch_start(core, AGV_WATCH_PARK_WAIT);
+    agv_watch_start(core, AGV_WATCH_UNCONFIRMED);
+}
+
+static void withdraw_confirmation(agv_core_t *core) {
+    enter(core, AGV_STATE_TRIPPED);
+    agv_watch_start(core, AGV_WATCH_UNCONFIRMED);
+    if (agv_watch_runs(core, AGV_WATCH_PARK_SENT)) {
+        agv_watch_start(core, AGV_WATCH_PARK_SENT);
     }
 }
 
-static void step_init(agv_state_machine_t *machine, const agv_config_t *config, const agv_situation_t *situation,
-                      agv_step_t *step, uint32_t now_ms) {
-    const bool cause = (situation->cause != AGV_FAULT_NONE) || situation->ai_cause;
-    const uint8_t not_needed = AGV_MISSING_STANDSTILL;
-    step->missing = (uint8_t)((situation->missing & ~not_needed) | (cause ? AGV_MISSING_TRIP_CAUSE : 0u));
-    agv_timer_while(&machine->good, step->missing == 0u, now_ms);
-    if (agv_timer_reached(&machine->good, now_ms, config->init_hold_ms)) {
-        enter_standby(machine);
-    } else if (!machine->startup_reported && agv_timer_exceeded(&machine->init, now_ms, config->startup_timeout_ms)) {
-        machine->startup_reported = true;
-        step->startup_timed_out = true;
+static uint32_t step_init(agv_core_t *core, uint32_t facts) {
+    const bool cause = (core->summary.cause != (uint8_t)AGV_FAULT_NONE) || core->summary.ai_cause;
+    const uint32_t needed = AGV_FACT_VCU_ALIVE | AGV_FACT_EPS_ALIVE | AGV_FACT_MANUAL | AGV_FACT_MESSAGES;
+    const uint32_t missing = (needed & ~facts) | (cause ? AGV_MISSING_TRIP_CAUSE : 0u);
+    if (agv_watch_while(core, AGV_WATCH_INIT_GOOD, missing == 0u)) {
+        enter_standby(core);
+    } else if (!core->machine.startup_reported && agv_watch_reached(core, AGV_WATCH_INIT)) {
+        core->machine.startup_reported = true;
+        return AGV_STEP_STARTUP_TIMED_OUT | missing;
     } else {
         /* wait */
     }
+    return 0u;
 }
 
-static void follow_engagement(agv_state_machine_t *machine, const agv_situation_t *situation) {
-    if (!situation->engaged) {
-        machine->state = (uint8_t)AGV_STATE_STANDBY;
-    } else if (situation->ai_alive) {
-        machine->state = (uint8_t)AGV_STATE_ACTIVE;
+static void follow_engagement(agv_core_t *core, uint32_t facts) {
+    if ((facts & AGV_FACT_ENGAGED) == 0u) {
+        core->machine.state = (uint8_t)AGV_STATE_STANDBY;
+    } else if ((facts & AGV_FACT_AI_ALIVE) != 0u) {
+        core->machine.state = (uint8_t)AGV_STATE_ACTIVE;
     } else {
         /* engaged without the AI alive: AI_HEARTBEAT_* trips in its time */
     }
 }
 
-/* Presses of the reset button: since when, and whether they began after the trip. */
-static void follow_button(agv_state_machine_t *machine, const agv_situation_t *situation, uint32_t now_ms) {
-    if (!situation->button) {
-        machine->pressed_after_trip = false;
-        machine->press_refused = false;
-        machine->press_missing = 0u;
+static uint32_t missing_for_reset(const agv_core_t *core, uint32_t facts) {
+    const agv_state_machine_t *const machine = &core->machine;
+    const uint32_t needed =
+        AGV_FACT_VCU_ALIVE | AGV_FACT_EPS_ALIVE | AGV_FACT_STANDSTILL | AGV_FACT_MANUAL | AGV_FACT_MESSAGES;
+    uint32_t missing = needed & ~facts;
+    if ((core->summary.cause != (uint8_t)AGV_FAULT_NONE) || (machine->unresettable != (uint8_t)AGV_FAULT_NONE)) {
+        missing |= AGV_MISSING_TRIP_CAUSE;
+    }
+    if (machine->state != (uint8_t)AGV_STATE_SAFE) {
+        missing |= AGV_MISSING_STATE;
+    }
+    if (!machine->pressed_after_trip) {
+        missing |= AGV_MISSING_BUTTON;
+    }
+    return missing;
+}
+
+static uint32_t step_reset(agv_core_t *core, uint32_t facts) {
+    agv_state_machine_t *const machine = &core->machine;
+    const bool button = (facts & AGV_FACT_BUTTON_DOWN) != 0u;
+    if (!button) {
+        forget_press(machine);
     } else if (!machine->button_before) {
         machine->pressed_after_trip = true;
     } else {
         /* held */
     }
-    agv_timer_while(&machine->press, situation->button, now_ms);
-}
-
-static uint8_t missing_for_reset(const agv_state_machine_t *machine, const agv_situation_t *situation) {
-    const bool cause = (situation->cause != AGV_FAULT_NONE) || (machine->unresettable != (uint8_t)AGV_FAULT_NONE);
-    return (uint8_t)(situation->missing | (cause ? AGV_MISSING_TRIP_CAUSE : 0u) |
-                     ((machine->state == (uint8_t)AGV_STATE_SAFE) ? 0u : AGV_MISSING_STATE) |
-                     (machine->pressed_after_trip ? 0u : AGV_MISSING_BUTTON));
-}
-
-static void step_reset(agv_state_machine_t *machine, const agv_config_t *config, const agv_situation_t *situation,
-                       agv_step_t *step, uint32_t now_ms) {
-    follow_button(machine, situation, now_ms);
-    const uint8_t missing = missing_for_reset(machine, situation);
-    machine->press_missing |= situation->button ? missing : 0u;
-    agv_timer_while(&machine->good, missing == 0u, now_ms);
-    if (agv_timer_reached(&machine->good, now_ms, config->reset_hold_ms)) {
-        enter_standby(machine);
-        step->reset_accepted = true;
-    } else if (!machine->press_refused && agv_timer_reached(&machine->press, now_ms, config->reset_hold_ms)) {
-        machine->press_refused = true;
-        step->reset_refused = true;
-        step->missing = machine->press_missing;
-    } else {
-        /* not held for long enough */
+    const bool held = agv_watch_while(core, AGV_WATCH_PRESS, button);
+    const uint32_t missing = missing_for_reset(core, facts);
+    machine->press_missing |= (uint8_t)(button ? missing : 0u);
+    if (agv_watch_while(core, AGV_WATCH_RESET_GOOD, missing == 0u)) {
+        enter_standby(core);
+        return AGV_STEP_RESET_ACCEPTED;
     }
+    if (held && !machine->press_refused) {
+        machine->press_refused = true;
+        return AGV_STEP_RESET_REFUSED | machine->press_missing;
+    }
+    return 0u;
 }
 
-static void step_latched(agv_state_machine_t *machine, const agv_config_t *config, const agv_situation_t *situation,
-                         agv_step_t *step, uint32_t now_ms) {
-    const bool confirmed = situation->autopilot_off && situation->in_park;
-    const bool safe = machine->state == (uint8_t)AGV_STATE_SAFE;
+static uint32_t step_latched(agv_core_t *core, uint32_t facts) {
+    const uint32_t confirmation = AGV_FACT_AUTOPILOT_OFF | AGV_FACT_IN_PARK;
+    const bool confirmed = (facts & confirmation) == confirmation;
+    const bool safe = core->machine.state == (uint8_t)AGV_STATE_SAFE;
     if (confirmed && !safe) {
-        enter(machine, AGV_STATE_SAFE);
+        enter(core, AGV_STATE_SAFE);
     } else if (!confirmed && safe) {
-        withdraw_confirmation(machine, now_ms);
+        withdraw_confirmation(core);
     } else {
         /* stays */
     }
-    step_reset(machine, config, situation, step, now_ms);
+    return step_reset(core, facts);
 }
 
 /* park: at_standstill holds P back until the vehicle stands, or for park_timeout_ms (FSM-1). */
-static void release_park(agv_state_machine_t *machine, const agv_config_t *config, const agv_situation_t *situation,
-                         uint32_t now_ms) {
-    if ((config->park == (uint16_t)AGV_PARK_AT_ONCE) || ((situation->missing & AGV_MISSING_STANDSTILL) == 0u) ||
-        agv_timer_reached(&machine->park_wait, now_ms, config->park_timeout_ms)) {
-        machine->park_released = true;
+static void release_park(agv_core_t *core, uint32_t facts) {
+    if ((core->config.park == (uint16_t)AGV_PARK_AT_ONCE) || ((facts & AGV_FACT_STANDSTILL) != 0u) ||
+        agv_watch_reached(core, AGV_WATCH_PARK_WAIT)) {
+        core->machine.park_released = true;
     }
 }
 
-static void judge_output(agv_state_machine_t *machine, const agv_config_t *config, const agv_situation_t *situation,
-                         uint32_t now_ms) {
-    const uint16_t limit_ms = config->confirm_timeout_ms;
-    const bool off_late = agv_timer_exceeded(&machine->unconfirmed, now_ms, limit_ms) && !situation->autopilot_off;
-    const bool park_late = agv_timer_exceeded(&machine->park_sent, now_ms, limit_ms) && !situation->in_park;
+static void judge_output(agv_core_t *core, uint32_t facts) {
+    agv_state_machine_t *const machine = &core->machine;
+    const bool off_late = agv_watch_reached(core, AGV_WATCH_UNCONFIRMED) && ((facts & AGV_FACT_AUTOPILOT_OFF) == 0u);
+    const bool park_late = agv_watch_reached(core, AGV_WATCH_PARK_SENT) && ((facts & AGV_FACT_IN_PARK) == 0u);
     machine->safe_state_unconfirmed = (machine->state == (uint8_t)AGV_STATE_TRIPPED) && (off_late || park_late);
-    if (machine->safe_state_unconfirmed || situation->output_unsafe ||
+    if (machine->safe_state_unconfirmed || ((facts & AGV_FACT_OUTPUT_UNSAFE) != 0u) ||
         (machine->unresettable != (uint8_t)AGV_FAULT_NONE)) {
         machine->output_closed = false;
     }
 }
 
 /* The reason of a trip; AGV_FAULT_NONE: none. In INIT only the unresettable ones latch. */
-static agv_fault_t reason_to_trip(const agv_state_machine_t *machine, const agv_situation_t *situation) {
-    if (machine->state == (uint8_t)AGV_STATE_INIT) {
-        return situation->forever;
+static agv_fault_t reason_to_trip(const agv_core_t *core) {
+    const agv_summary_t *const summary = &core->summary;
+    if (core->machine.state == (uint8_t)AGV_STATE_INIT) {
+        return (agv_fault_t)summary->forever;
     }
-    return (situation->raised != AGV_FAULT_NONE) ? situation->raised : situation->cause;
+    return (agv_fault_t)((summary->raised != (uint8_t)AGV_FAULT_NONE) ? summary->raised : summary->cause);
 }
 
-agv_step_t agv_state_machine_step(agv_state_machine_t *machine, const agv_config_t *config,
-                                  const agv_situation_t *situation, uint32_t now_ms) {
-    agv_step_t step = {.from = machine->state};
-    const agv_fault_t reason = reason_to_trip(machine, situation);
-    if (situation->forever != AGV_FAULT_NONE) {
-        machine->unresettable = (uint8_t)situation->forever;
+uint32_t agv_state_machine_step(agv_core_t *core, uint32_t facts) {
+    const agv_fault_t reason = reason_to_trip(core);
+    uint32_t did = 0u;
+    if (core->summary.forever != (uint8_t)AGV_FAULT_NONE) {
+        core->machine.unresettable = core->summary.forever;
     }
-    if (agv_state_is_latched((agv_state_t)machine->state)) {
-        step_latched(machine, config, situation, &step, now_ms);
+    if (agv_core_is_latched(core)) {
+        did = step_latched(core, facts);
     } else if (reason != AGV_FAULT_NONE) {
-        trip(machine, reason, now_ms);
-        step.tripped = true;
-    } else if (machine->state == (uint8_t)AGV_STATE_INIT) {
-        step_init(machine, config, situation, &step, now_ms);
+        trip(core, reason);
+        did = AGV_STEP_TRIPPED;
+    } else if (core->machine.state == (uint8_t)AGV_STATE_INIT) {
+        did = step_init(core, facts);
     } else {
-        follow_engagement(machine, situation);
+        follow_engagement(core, facts);
     }
-    machine->button_before = situation->button || !situation->button_known;
-    release_park(machine, config, situation, now_ms);
-    judge_output(machine, config, situation, now_ms);
-    return step;
+    core->machine.button_before = (facts & AGV_FACT_BUTTON_UP) == 0u;
+    release_park(core, facts);
+    judge_output(core, facts);
+    return did;
 }
 
-void agv_state_machine_park_sent(agv_state_machine_t *machine, uint32_t now_ms) {
-    agv_timer_while(&machine->park_sent, agv_state_is_latched((agv_state_t)machine->state), now_ms);
+void agv_state_machine_park_sent(agv_core_t *core) {
+    (void)agv_watch_while(core, AGV_WATCH_PARK_SENT, agv_core_is_latched(core));
 }
 
 bool agv_state_machine_is_sound(const agv_state_machine_t *machine) {
-    const agv_state_t state = (agv_state_t)machine->state;
-    const bool open = (state == AGV_STATE_INIT) || (state == AGV_STATE_STANDBY) || (state == AGV_STATE_ACTIVE);
-    const bool closed = (state == AGV_STATE_TRIPPED) || (state == AGV_STATE_SAFE);
-    return (open && (machine->latched == (uint8_t)AGV_LATCH_OPEN)) ||
-           (closed && (machine->latched == (uint8_t)AGV_LATCH_CLOSED));
+    switch (machine->state) {
+    case AGV_STATE_INIT:
+    case AGV_STATE_STANDBY:
+    case AGV_STATE_ACTIVE:
+        return machine->latched == (uint8_t)AGV_LATCH_OPEN;
+    case AGV_STATE_TRIPPED:
+    case AGV_STATE_SAFE:
+        return machine->latched == (uint8_t)AGV_LATCH_CLOSED;
+    default:
+        return false;
+    }
 }

@@ -9,19 +9,18 @@
 #include "hal/watchdog.h"
 #include "supervisor_internal.h"
 
+_Static_assert(sizeof(agv_core_t) % sizeof(uint32_t) == 0u, "whole words: all of it is under the seal");
+
 /* Activities that check in before the hardware watchdog is fed (TIM-3). */
 enum { CHECKED_RECEIVE = 1, CHECKED_STEP = 2, CHECKED_SEND = 4, CHECKED_ALL = 7 };
 
 /* The supervisor's time never goes backwards, whatever stamps frames carry. */
-static void advance(agv_core_t *core, uint32_t moment_ms, uint16_t moment_us) {
+static void advance(agv_core_t *core, uint32_t moment_ms, uint32_t moment_us) {
     const uint32_t now_us = (moment_ms * 1000u) + moment_us;
-    if (agv_age_ms(moment_ms, core->now_ms) > 0u) {
+    const bool same_ms_later = (moment_ms == core->now_ms) && ((now_us - core->now_us) < 1000u);
+    if (same_ms_later || (agv_age_ms(moment_ms, core->now_ms) > 0u)) {
         core->now_ms = moment_ms;
         core->now_us = now_us;
-    } else if ((moment_ms == core->now_ms) && (now_us - core->now_us < 1000u)) {
-        core->now_us = now_us;
-    } else {
-        /* a stamp of the past */
     }
 }
 
@@ -32,7 +31,7 @@ static void attach(agv_core_t *core, const agv_ports_t *ports) {
 
 /* Every call begins with a look at the whole memory (INT-5). */
 static agv_core_t *open_core(agv_supervisor_t *supervisor, const agv_ports_t *ports, uint32_t moment_ms,
-                             uint16_t moment_us) {
+                             uint32_t moment_us) {
     agv_core_t *const core = &supervisor->core;
     const bool intact =
         (supervisor->seal == agv_seal(core, sizeof *core)) && agv_state_machine_is_sound(&core->machine);
@@ -57,43 +56,39 @@ static uint32_t step_time(agv_core_t *core) {
     const uint32_t elapsed_ms = core->now_ms - core->last_tick_ms;
     core->last_tick_ms = core->now_ms;
     if (elapsed_ms > ((uint32_t)core->config.watchdog_period_ms + 1u)) {
-        agv_faults_event(&core->monitor.faults, AGV_FAULT_STEP_OVERRUN, core->now_ms);
+        agv_faults_event(core, AGV_FAULT_STEP_OVERRUN);
     }
     return elapsed_ms;
 }
 
 /* SUP-7, one side: recovery is asked for after a purge; what waited is never sent. */
-static agv_bus_report_t follow_bus(agv_core_t *core, hal_can_side_t side, uint16_t messages) {
-    hal_can_status_t status;
-    hal_can_status(core->hal, side, &status);
-    const agv_bus_report_t report = agv_bus_tick(&core->buses[side], &status, core->config.bus_off_recovery_ms,
-                                                 core->config.tx_stalled_ms, core->now_ms);
-    if (report.off) {
+static uint32_t follow_bus(agv_core_t *core, hal_can_side_t side, uint32_t messages) {
+    const uint32_t report = agv_bus_tick(core, side);
+    if ((report & AGV_BUS_OFF) != 0u) {
         agv_transmitter_discard(core, messages);
     }
-    if (report.ask_recovery) {
+    if ((report & AGV_BUS_ASK_RECOVERY) != 0u) {
         hal_can_purge(core->hal, side);
         hal_can_recover(core->hal, side);
-    }
-    if (report.overrun) {
-        agv_faults_event(&core->monitor.faults, AGV_FAULT_RX_OVERRUN, core->now_ms);
     }
     return report;
 }
 
 /* Returns whether the vehicle side has come back from bus-off. */
 static bool judge_buses(agv_core_t *core) {
-    agv_faults_t *const faults = &core->monitor.faults;
-    const agv_bus_report_t vehicle = follow_bus(core, HAL_CAN_VEHICLE, AGV_SET_COMMANDS);
-    agv_bus_report_t ai = {0};
+    const uint32_t vehicle = follow_bus(core, HAL_CAN_VEHICLE, AGV_SET_COMMANDS);
+    uint32_t ai = 0u;
     if (agv_core_is_gateway(core)) {
         ai = follow_bus(core, HAL_CAN_AI, AGV_SET_STATUS);
     }
-    agv_faults_level(faults, AGV_FAULT_BUS_OFF, vehicle.off);
-    agv_faults_level(faults, AGV_FAULT_TX_STALLED, vehicle.stalled || agv_transmitter_stalled(core));
-    agv_faults_level(faults, AGV_FAULT_ERROR_PASSIVE, vehicle.passive);
-    agv_faults_level(faults, AGV_FAULT_AI_BUS_OFF, ai.off || ai.stalled);
-    return vehicle.recovered;
+    if (((vehicle | ai) & AGV_BUS_OVERRUN) != 0u) {
+        agv_faults_event(core, AGV_FAULT_RX_OVERRUN);
+    }
+    agv_faults_level(core, AGV_FAULT_BUS_OFF, (vehicle & AGV_BUS_OFF) != 0u);
+    agv_faults_level(core, AGV_FAULT_TX_STALLED, agv_transmitter_stalled(core) || ((vehicle & AGV_BUS_STALLED) != 0u));
+    agv_faults_level(core, AGV_FAULT_ERROR_PASSIVE, (vehicle & AGV_BUS_PASSIVE) != 0u);
+    agv_faults_level(core, AGV_FAULT_AI_BUS_OFF, (ai & (AGV_BUS_OFF | AGV_BUS_STALLED)) != 0u);
+    return (vehicle & AGV_BUS_RECOVERED) != 0u;
 }
 
 static void transmit(agv_core_t *core, bool all_at_once) {
@@ -102,7 +97,7 @@ static void transmit(agv_core_t *core, bool all_at_once) {
     }
     agv_transmitter_tick(core);
     core->checked_in |= CHECKED_SEND;
-    if (core->monitor.faults.changed) {
+    if (core->faults.changed) {
         (void)agv_core_react(core); /* the gate refused a frame */
     }
 }
@@ -129,7 +124,7 @@ static void store_events(agv_core_t *core) {
 static void feed_watchdog(agv_core_t *core) {
     if (core->checked_in == (uint8_t)CHECKED_ALL) {
         core->checked_in = 0u;
-        agv_timer_start(&core->unfed, core->now_ms);
+        agv_watch_start(core, AGV_WATCH_UNFED);
         hal_watchdog_feed(core->hal);
     }
 }
@@ -137,18 +132,19 @@ static void feed_watchdog(agv_core_t *core) {
 void agv_supervisor_start(agv_supervisor_t *supervisor, const agv_ports_t *ports, const agv_config_t *config,
                           bool self_test_passed, uint32_t now_ms) {
     agv_core_t *const core = &supervisor->core;
-    const bool config_valid = agv_config_check(config).problem == AGV_CONFIG_OK;
+    uint32_t found = self_test_passed ? 0u : AGV_FOUND_SELF_TEST_FAILED;
     (void)memset(core, 0, sizeof *core);
     attach(core, ports);
     core->now_ms = now_ms;
     core->now_us = now_ms * 1000u;
-    if (config_valid) {
+    if (agv_config_check(config).problem == AGV_CONFIG_OK) {
         core->config = *config;
     } else {
+        found |= AGV_FOUND_CONFIG_INVALID;
         agv_core_built_in_config(&core->config, config->id_set, config->topology);
     }
     agv_recorder_start(core->recorder);
-    agv_core_begin(core, config_valid, self_test_passed, false);
+    agv_core_begin(core, found);
     close_core(supervisor);
 }
 

@@ -35,19 +35,12 @@ static void handle_malformed(agv_core_t *core, hal_can_side_t side, agv_message_
 
 static void pass_command(agv_core_t *core, agv_message_t command, const uint8_t *received) {
     uint8_t data[AGV_DLC];
-    const agv_gateway_facts_t facts = {.now_ms = core->now_ms,
-                                       .measured_ddeg = core->monitor.vehicle.angle_ddeg,
-                                       .measured_known = core->monitor.vehicle.angle_known};
-    if (!agv_gateway_passes(&core->config, agv_core_state(core), command)) {
+    if (!agv_gateway_passes(core, command)) {
         core->counters.dropped++;
         return;
     }
     (void)memcpy(data, received, AGV_DLC);
-    const int32_t angle_ddeg =
-        agv_gateway_limit(&core->gateway, &core->config, agv_core_state(core), command, &facts, data);
-    if (command == AGV_MSG_STEERING_COMMAND) {
-        agv_monitor_steering_commanded(core, angle_ddeg);
-    }
+    agv_gateway_limit(core, command, data);
     agv_transmitter_pass(core, command, data);
 }
 
@@ -73,7 +66,7 @@ static void handle_message(agv_core_t *core, agv_message_t message, const hal_ca
 
 /* Gateway: a command on the vehicle side comes from nobody who may send one (SUP-6). */
 static void handle_foreign_command(agv_core_t *core, agv_message_t message, const hal_can_frame_t *frame) {
-    agv_faults_event(&core->monitor.faults, AGV_FAULT_FOREIGN_COMMAND_SENDER, core->now_ms);
+    agv_faults_event(core, AGV_FAULT_FOREIGN_COMMAND_SENDER);
     if (!agv_core_react(core)) {
         agv_transmitter_answer(core, message, frame->data);
     }
@@ -111,7 +104,7 @@ void agv_core_frame(agv_core_t *core, hal_can_side_t side, const hal_can_frame_t
             handle_foreign_command(core, message, frame);
         }
     }
-    if (core->monitor.faults.changed) {
+    if (core->faults.changed) {
         (void)agv_core_react(core); /* the gate refused a frame */
     }
 }

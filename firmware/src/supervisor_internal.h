@@ -17,20 +17,19 @@ bool agv_core_react(agv_core_t *core);
 /** Record an event. */
 void agv_core_record(const agv_core_t *core, agv_event_kind_t kind, uint8_t a, uint8_t b, uint8_t c);
 
-/** Record an event that says what is missing. */
-void agv_core_record_missing(const agv_core_t *core, agv_event_kind_t kind, uint8_t accepted, uint8_t missing);
-
 /** Write the latch record. */
 void agv_core_store_latch(const agv_core_t *core);
 
-/**
- * Report what changed among the faults to the recorder, and sum up what is active.
- * @return the highest-ranking fault that became a trip; AGV_FAULT_NONE
- */
-agv_fault_t agv_core_report_faults(agv_core_t *core);
+/** Report what changed among the faults to the recorder, and sum up what is active (core->summary). */
+void agv_core_report_faults(agv_core_t *core);
 
-/** Start, once core->config, hal, recorder and now_ms stand (FSM-7, FSM-9). */
-void agv_core_begin(agv_core_t *core, bool config_valid, bool self_test_passed, bool corrupted);
+/** What was found wrong before the start: bits. */
+#define AGV_FOUND_SELF_TEST_FAILED 0x01u
+#define AGV_FOUND_CORRUPTED 0x02u
+#define AGV_FOUND_CONFIG_INVALID 0x04u
+
+/** Start, once core->config, hal, recorder and now_ms stand (FSM-7, FSM-9). @param found AGV_FOUND_* bits */
+void agv_core_begin(agv_core_t *core, uint32_t found);
 
 /** Start again after a corruption was found in the memory of the supervisor (INT-5). */
 void agv_core_begin_corrupted(agv_core_t *core);

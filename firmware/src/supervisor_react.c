@@ -14,227 +14,207 @@ void agv_core_record(const agv_core_t *core, agv_event_kind_t kind, uint8_t a, u
     add_entry(core, &entry);
 }
 
-void agv_core_record_missing(const agv_core_t *core, agv_event_kind_t kind, uint8_t accepted, uint8_t missing) {
-    agv_entry_t entry = {.kind = (uint8_t)kind, .a = accepted, .missing = missing};
-    add_entry(core, &entry);
-}
-
 void agv_core_store_latch(const agv_core_t *core) {
-    agv_latch_write(core->hal, agv_state_is_latched(agv_core_state(core)), (agv_fault_t)core->machine.first_reason,
+    agv_latch_write(core->hal, agv_core_is_latched(core), (agv_fault_t)core->machine.first_reason,
                     (agv_fault_t)core->machine.unresettable);
 }
 
 /* The new marks of a fault, as it stands now. */
-static uint8_t judge_marks(const agv_core_t *core, agv_fault_t fault, uint8_t marks) {
-    uint8_t now = marks & (AGV_MARK_ACTIVE | AGV_MARK_LATCHED);
+static uint32_t judge_marks(const agv_core_t *core, agv_fault_t fault, uint32_t marks) {
+    uint32_t now = marks & (AGV_MARK_ACTIVE | AGV_MARK_LATCHED);
     if ((now & AGV_MARK_ACTIVE) != 0u) {
         now |= AGV_MARK_REPORTED;
         if (agv_monitor_is_trip(core, fault)) {
             now |= AGV_MARK_TRIPPING;
-            now |= agv_state_is_latched(agv_core_state(core)) ? AGV_MARK_LATCHED : 0u;
+            now |= agv_core_is_latched(core) ? AGV_MARK_LATCHED : 0u;
         }
     }
     return now;
 }
 
-static void keep_first(agv_fault_t *kept, agv_fault_t fault) {
-    if (*kept == AGV_FAULT_NONE) {
-        *kept = fault;
+static void keep_first(uint8_t *kept, agv_fault_t fault) {
+    if (*kept > (uint8_t)fault) {
+        *kept = (uint8_t)fault;
     }
 }
 
-static void sum_up_trip(agv_core_t *core, agv_fault_t fault) {
-    const uint8_t flags = agv_fault_flags(fault);
-    if ((flags & AGV_FAULT_FLAG_FROM_AI) != 0u) {
-        core->ai_cause = true;
-    } else {
-        keep_first(&core->cause, fault);
+static void sum_up(agv_core_t *core, agv_fault_t fault, uint32_t before, uint32_t now) {
+    agv_summary_t *const summary = &core->summary;
+    const uint32_t flags = agv_fault_flags(fault);
+    if ((now & AGV_MARK_ACTIVE) != 0u) {
+        summary->active_flags |= (uint8_t)flags;
     }
-    if ((flags & AGV_FAULT_FLAG_UNRESETTABLE) != 0u) {
-        keep_first(&core->forever, fault);
+    if ((now & AGV_MARK_TRIPPING) != 0u) {
+        if ((flags & AGV_FAULT_FLAG_FROM_AI) != 0u) {
+            summary->ai_cause = true;
+        } else {
+            keep_first(&summary->cause, fault);
+        }
+        if ((flags & AGV_FAULT_FLAG_UNRESETTABLE) != 0u) {
+            keep_first(&summary->forever, fault);
+        }
+        if ((before & AGV_MARK_TRIPPING) == 0u) {
+            keep_first(&summary->raised, fault);
+        }
     }
+    keep_first(((now & (AGV_MARK_TRIPPING | AGV_MARK_LATCHED)) != 0u) ? &summary->trip : &summary->warning, fault);
 }
 
 /* Raised, raised again with another class, or ended. */
-static void record_change(agv_core_t *core, agv_fault_t fault, uint8_t before, uint8_t now) {
-    const bool active = (now & AGV_MARK_ACTIVE) != 0u;
-    const bool trip = ((active ? now : before) & AGV_MARK_TRIPPING) != 0u;
-    if (((before ^ now) & (AGV_MARK_REPORTED | AGV_MARK_TRIPPING)) == 0u) {
-        return;
-    }
-    if (active && !trip) {
+static void record_change(agv_core_t *core, agv_fault_t fault, uint32_t before, uint32_t now) {
+    const uint32_t active = now & AGV_MARK_ACTIVE;
+    const bool trip = (((active != 0u) ? now : before) & AGV_MARK_TRIPPING) != 0u;
+    if ((active != 0u) && !trip) {
         core->counters.warnings++;
     }
     agv_core_record(core, AGV_EVENT_FAULT, (uint8_t)fault, (uint8_t)(trip ? AGV_CLASS_TRIP : AGV_CLASS_WARN),
-                    (uint8_t)(active ? 1u : 0u));
+                    (uint8_t)active);
 }
 
-/* From the highest rank down, so that the first one found is the one that counts. */
-static agv_fault_t report_all(agv_core_t *core) {
-    agv_fault_t raised = AGV_FAULT_NONE;
-    agv_fault_t trip = AGV_FAULT_NONE;
-    agv_fault_t warning = AGV_FAULT_NONE;
+/* From the highest rank down. */
+static void report_all(agv_core_t *core) {
     for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
         const agv_fault_t fault = (agv_fault_t)i;
-        const uint8_t before = core->monitor.faults.marks[i];
-        const uint8_t now = judge_marks(core, fault, before);
-        if (now == 0u && before == 0u) {
-            continue;
+        const uint32_t before = core->faults.marks[i];
+        const uint32_t now = judge_marks(core, fault, before);
+        core->faults.marks[i] = (uint8_t)now;
+        if (((before ^ now) & (AGV_MARK_REPORTED | AGV_MARK_TRIPPING)) != 0u) {
+            record_change(core, fault, before, now);
         }
-        core->monitor.faults.marks[i] = now;
-        record_change(core, fault, before, now);
-        if ((now & AGV_MARK_TRIPPING) != 0u) {
-            sum_up_trip(core, fault);
-            if ((before & AGV_MARK_TRIPPING) == 0u) {
-                keep_first(&raised, fault);
-            }
+        if (now != 0u) {
+            sum_up(core, fault, before, now);
         }
-        keep_first(((now & (AGV_MARK_TRIPPING | AGV_MARK_LATCHED)) != 0u) ? &trip : &warning,
-                   (now != 0u) ? fault : AGV_FAULT_NONE);
     }
-    core->led_code = agv_led_code((trip != AGV_FAULT_NONE) ? trip : warning);
-    return raised;
 }
 
-agv_fault_t agv_core_report_faults(agv_core_t *core) {
-    if (!core->monitor.faults.changed) {
-        return AGV_FAULT_NONE;
+void agv_core_report_faults(agv_core_t *core) {
+    agv_summary_t *const summary = &core->summary;
+    if (!core->faults.changed) {
+        summary->raised = AGV_FAULT_NONE;
+        return;
     }
-    core->monitor.faults.changed = false;
-    core->cause = AGV_FAULT_NONE;
-    core->forever = AGV_FAULT_NONE;
-    core->ai_cause = false;
-    return report_all(core);
-}
-
-static uint8_t missing_of_vehicle(agv_core_t *core) {
-    const agv_liveness_t *const liveness = &core->monitor.liveness;
-    uint8_t missing = 0u;
-    missing |= agv_liveness_alive(liveness, AGV_NODE_VCU) ? 0u : AGV_MISSING_VCU_HEARTBEAT;
-    missing |= agv_liveness_alive(liveness, AGV_NODE_EPS) ? 0u : AGV_MISSING_EPS_HEARTBEAT;
-    missing |= agv_monitor_standstill(core) ? 0u : AGV_MISSING_STANDSTILL;
-    missing |= (core->monitor.vehicle.mode == (uint8_t)AGV_MODE_MANUAL) ? 0u : AGV_MISSING_MANUAL;
-    missing |= agv_monitor_messages_fresh(core) ? 0u : AGV_MISSING_MESSAGES;
-    return missing;
+    core->faults.changed = false;
+    *summary = (agv_summary_t){.raised = AGV_FAULT_NONE,
+                               .cause = AGV_FAULT_NONE,
+                               .forever = AGV_FAULT_NONE,
+                               .trip = AGV_FAULT_NONE,
+                               .warning = AGV_FAULT_NONE};
+    report_all(core);
+    core->led_code =
+        agv_led_code((agv_fault_t)((summary->trip != (uint8_t)AGV_FAULT_NONE) ? summary->trip : summary->warning));
 }
 
 static bool output_is_unsafe(agv_core_t *core) {
-    const agv_faults_t *const faults = &core->monitor.faults;
-    return agv_timer_exceeded(&core->unfed, core->now_ms, core->config.watchdog_period_ms) ||
-           agv_faults_is_active(faults, AGV_FAULT_BUS_OFF) || agv_faults_is_active(faults, AGV_FAULT_TX_STALLED);
+    return agv_watch_reached(core, AGV_WATCH_UNFED) || agv_faults_is_active(core, AGV_FAULT_BUS_OFF) ||
+           agv_faults_is_active(core, AGV_FAULT_TX_STALLED);
 }
 
-static agv_step_t step(agv_core_t *core, agv_fault_t raised) {
-    const agv_situation_t situation = {
-        .raised = raised,
-        .cause = core->cause,
-        .forever = core->forever,
-        .missing = missing_of_vehicle(core),
-        .ai_cause = core->ai_cause,
-        .engaged = agv_monitor_engaged(core),
-        .ai_alive = agv_liveness_alive(&core->monitor.liveness, AGV_NODE_AI),
-        .autopilot_off = agv_monitor_autopilot_off(core),
-        .in_park = agv_monitor_in_park(core),
-        .button = core->monitor.vehicle.button_pressed,
-        .button_known = agv_liveness_heard(&core->monitor.liveness, AGV_MSG_VEHICLE_STATUS),
-        .output_unsafe = output_is_unsafe(core),
-    };
-    return agv_state_machine_step(&core->machine, &core->config, &situation, core->now_ms);
+static uint32_t facts_of(agv_core_t *core) {
+    uint32_t facts = 0u;
+    facts |= agv_core_alive(core, AGV_NODE_VCU) ? AGV_FACT_VCU_ALIVE : 0u;
+    facts |= agv_core_alive(core, AGV_NODE_EPS) ? AGV_FACT_EPS_ALIVE : 0u;
+    facts |= agv_core_alive(core, AGV_NODE_AI) ? AGV_FACT_AI_ALIVE : 0u;
+    facts |= agv_monitor_standstill(core) ? AGV_FACT_STANDSTILL : 0u;
+    facts |= (core->vehicle.mode == (uint8_t)AGV_MODE_MANUAL) ? AGV_FACT_MANUAL : 0u;
+    facts |= agv_monitor_messages_fresh(core) ? AGV_FACT_MESSAGES : 0u;
+    facts |= agv_core_engaged(core) ? AGV_FACT_ENGAGED : 0u;
+    facts |= agv_monitor_autopilot_off(core) ? AGV_FACT_AUTOPILOT_OFF : 0u;
+    facts |= agv_monitor_in_park(core) ? AGV_FACT_IN_PARK : 0u;
+    facts |= core->vehicle.button * AGV_FACT_BUTTON_DOWN; /* or UP, or neither */
+    facts |= output_is_unsafe(core) ? AGV_FACT_OUTPUT_UNSAFE : 0u;
+    return facts;
 }
 
 /* The angle of the moment of the trip; without one, the first valid angle after it (FSM-10). */
 static void follow_hold(agv_core_t *core, bool tripped) {
-    const agv_vehicle_t *const vehicle = &core->monitor.vehicle;
-    const uint16_t complement = (uint16_t)~core->hold.raw;
-    if (tripped || !agv_state_is_latched(agv_core_state(core))) {
-        core->hold.raw = 0u;
-        core->hold.check = 0u;
+    const agv_vehicle_t *const vehicle = &core->vehicle;
+    const bool latched = agv_core_is_latched(core);
+    if (tripped || !latched) {
+        core->hold = (agv_hold_t){0};
     }
-    if (agv_state_is_latched(agv_core_state(core)) && vehicle->angle_known &&
-        (tripped || (core->hold.check != complement))) {
+    if (latched && vehicle->angle_known && !agv_core_holds_angle(core)) {
         core->hold.raw = (uint16_t)(vehicle->angle_ddeg + AGV_ANGLE_RAW_CENTRE);
         core->hold.check = (uint16_t)~core->hold.raw;
     }
 }
 
-/* INIT or SAFE to STANDBY: what was latched is over, and nothing of it may still be sent. */
-static void leave_safe_commands(agv_core_t *core, bool reset) {
-    agv_transmitter_discard(core, AGV_SET_COMMANDS);
-    hal_can_purge(core->hal, HAL_CAN_VEHICLE);
+/* INIT or SAFE to STANDBY: what was latched is over. */
+static void forget_latched(agv_core_t *core, bool reset) {
     for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
-        core->monitor.faults.marks[i] &= (uint8_t)~AGV_MARK_LATCHED;
+        core->faults.marks[i] &= (uint8_t)~AGV_MARK_LATCHED;
     }
     if (reset) {
         agv_monitor_forget_ai(core);
     }
 }
 
-static void send_all_at_once(agv_core_t *core) {
-    agv_transmitter_discard(core, AGV_SET_COMMANDS);
-    hal_can_purge(core->hal, HAL_CAN_VEHICLE);
-    agv_transmitter_burst(core);
-}
-
-static void carry_out_transition(agv_core_t *core, const agv_step_t *taken) {
-    const uint8_t reason = taken->tripped ? core->machine.first_reason : (uint8_t)AGV_FAULT_NONE;
-    const agv_state_t from = (agv_state_t)taken->from;
-    if (taken->tripped) {
-        send_all_at_once(core);
-    } else if (agv_state_commands_safe(from) && !agv_state_commands_safe(agv_core_state(core))) {
-        leave_safe_commands(core, taken->reset_accepted);
-    } else if (from == AGV_STATE_ACTIVE) {
-        /* Motion commands that wait for a stalled side must not reach a vehicle that a human drives. */
+static void carry_out_transition(agv_core_t *core, agv_state_t from, uint32_t did) {
+    const bool tripped = (did & AGV_STEP_TRIPPED) != 0u;
+    const bool left_safe_commands = agv_state_commands_safe(from) && !agv_state_commands_safe(agv_core_state(core));
+    if (tripped || left_safe_commands || (from == AGV_STATE_ACTIVE)) {
+        /* nothing of before may still be sent; from ACTIVE: motion commands that wait for a stalled side */
         agv_transmitter_discard(core, AGV_SET_COMMANDS);
-    } else {
-        /* nothing to send or to forget */
     }
-    core->gateway.sent = false;          /* the slew limit begins anew with every engagement */
-    core->monitor.faults.changed = true; /* what is latched, and for how long, goes by the state */
-    agv_core_record(core, AGV_EVENT_STATE, taken->from, core->machine.state, reason);
-    if (agv_state_is_latched(from) != agv_state_is_latched(agv_core_state(core))) {
-        agv_core_store_latch(core);
+    if (tripped || left_safe_commands) {
+        hal_can_purge(core->hal, HAL_CAN_VEHICLE);
     }
+    if (tripped) {
+        agv_transmitter_burst(core);
+    }
+    if (left_safe_commands) {
+        forget_latched(core, (did & AGV_STEP_RESET_ACCEPTED) != 0u);
+    }
+    core->gateway.sent = false;  /* the slew limit begins anew with every engagement */
+    core->faults.changed = true; /* what is latched, and for how long, goes by the state */
+    agv_core_record(core, AGV_EVENT_STATE, (uint8_t)from, core->machine.state,
+                    tripped ? core->machine.first_reason : (uint8_t)AGV_FAULT_NONE);
 }
 
-static void carry_out(agv_core_t *core, const agv_step_t *taken) {
-    agv_faults_t *const faults = &core->monitor.faults;
-    follow_hold(core, taken->tripped);
-    if (taken->from != core->machine.state) {
-        carry_out_transition(core, taken);
+/* A press of the reset button was answered, or INIT has lasted too long. */
+static void record_answer(const agv_core_t *core, uint32_t did) {
+    const bool startup = (did & AGV_STEP_STARTUP_TIMED_OUT) != 0u;
+    agv_entry_t entry = {.kind = (uint8_t)(startup ? AGV_EVENT_STARTUP : AGV_EVENT_RESET),
+                         .a = (uint8_t)(((did & AGV_STEP_RESET_ACCEPTED) != 0u) ? 1u : 0u),
+                         .missing = (uint8_t)(did & AGV_MISSING_ALL)};
+    add_entry(core, &entry);
+}
+
+static void carry_out(agv_core_t *core, agv_state_t from, uint32_t did) {
+    follow_hold(core, (did & AGV_STEP_TRIPPED) != 0u);
+    if (from != agv_core_state(core)) {
+        carry_out_transition(core, from, did);
     }
-    if (taken->reset_accepted || taken->reset_refused) {
-        agv_core_record_missing(core, AGV_EVENT_RESET, (uint8_t)(taken->reset_accepted ? 1u : 0u),
-                                taken->reset_accepted ? 0u : taken->missing);
+    if ((did & (AGV_STEP_RESET_ACCEPTED | AGV_STEP_RESET_REFUSED | AGV_STEP_STARTUP_TIMED_OUT)) != 0u) {
+        record_answer(core, did);
     }
-    if (taken->startup_timed_out) {
-        agv_core_record_missing(core, AGV_EVENT_STARTUP, 0u, taken->missing);
-    }
-    agv_faults_level(faults, AGV_FAULT_SAFE_STATE_UNCONFIRMED, core->machine.safe_state_unconfirmed);
-    agv_faults_level(faults, AGV_FAULT_STARTUP_TIMEOUT,
+    agv_faults_level(core, AGV_FAULT_SAFE_STATE_UNCONFIRMED, core->machine.safe_state_unconfirmed);
+    agv_faults_level(core, AGV_FAULT_STARTUP_TIMEOUT,
                      core->machine.startup_reported && (core->machine.state == (uint8_t)AGV_STATE_INIT));
 }
 
 /* The output opens before anything that may take time, and closes after everything else is done. */
-static void switch_output(agv_core_t *core, bool was_closed, bool close) {
+static void switch_output(const agv_core_t *core, bool was_closed, bool close) {
     if ((close != was_closed) && (core->machine.output_closed == close)) {
         hal_safety_output_set(core->hal, close);
     }
 }
 
 bool agv_core_react(agv_core_t *core) {
+    const agv_state_t from = agv_core_state(core);
     const bool was_closed = core->machine.output_closed;
+    const uint8_t was_latched = core->machine.latched;
     const uint8_t unresettable = core->machine.unresettable;
-    const agv_fault_t raised = agv_core_report_faults(core);
-    const agv_step_t taken = step(core, raised);
+    agv_core_report_faults(core);
+    const uint32_t did = agv_state_machine_step(core, facts_of(core));
     switch_output(core, was_closed, false);
-    carry_out(core, &taken);
-    (void)agv_core_report_faults(core);
-    if (unresettable != core->machine.unresettable) {
+    carry_out(core, from, did);
+    agv_core_report_faults(core);
+    if ((was_latched != core->machine.latched) || (unresettable != core->machine.unresettable)) {
         agv_core_store_latch(core);
     }
     switch_output(core, was_closed, true);
     if (was_closed != core->machine.output_closed) {
         agv_core_record(core, AGV_EVENT_OUTPUT, (uint8_t)(core->machine.output_closed ? 1u : 0u), 0u, 0u);
     }
-    return taken.tripped;
+    return (did & AGV_STEP_TRIPPED) != 0u;
 }

@@ -10,11 +10,11 @@ agv_fault_t agv_supervisor_first_reason(const agv_supervisor_t *supervisor) {
 }
 
 agv_fault_set_t agv_supervisor_active_faults(const agv_supervisor_t *supervisor) {
-    return agv_faults_marked(&supervisor->core.monitor.faults, AGV_MARK_ACTIVE);
+    return agv_faults_marked(&supervisor->core.faults, AGV_MARK_ACTIVE);
 }
 
 agv_fault_set_t agv_supervisor_active_trips(const agv_supervisor_t *supervisor) {
-    return agv_faults_marked(&supervisor->core.monitor.faults, AGV_MARK_ACTIVE | AGV_MARK_TRIPPING);
+    return agv_faults_marked(&supervisor->core.faults, AGV_MARK_ACTIVE | AGV_MARK_TRIPPING);
 }
 
 bool agv_supervisor_output_closed(const agv_supervisor_t *supervisor) {

@@ -11,20 +11,23 @@ static uint32_t bit_of(agv_message_t message) {
     return 1u << (uint32_t)message;
 }
 
-void agv_transmitter_start(agv_core_t *core) {
-    core->transmitter = (agv_transmitter_t){.status_due_ms = core->now_ms};
-    agv_scheduler_restart(&core->transmitter.scheduler, core->now_ms);
+/* Since when the HAL does not take a command. */
+static uint32_t wait_of(uint32_t command) {
+    return (uint32_t)AGV_WATCH_TX + command;
 }
 
-void agv_transmitter_discard(agv_core_t *core, uint16_t messages) {
+void agv_transmitter_start(agv_core_t *core) {
+    core->transmitter.status_due_ms = core->now_ms;
+    agv_scheduler_restart(core);
+}
+
+void agv_transmitter_discard(agv_core_t *core, uint32_t messages) {
     agv_transmitter_t *const transmitter = &core->transmitter;
     for (uint32_t i = 0u; i < (uint32_t)AGV_MSG_COUNT; i++) {
         const uint32_t bit = messages & bit_of((agv_message_t)i);
-        if ((transmitter->kept & bit) != 0u) {
-            core->counters.dropped++;
-        }
+        core->counters.dropped += ((transmitter->kept & bit) != 0u) ? 1u : 0u;
         if ((bit & AGV_SET_COMMANDS) != 0u) {
-            agv_timer_stop(&transmitter->waits[i]);
+            agv_watch_stop(core, wait_of(i));
             transmitter->scheduler.slots[i].override_waits = false;
         }
     }
@@ -33,14 +36,13 @@ void agv_transmitter_discard(agv_core_t *core, uint16_t messages) {
 
 /* The own commands that are sent in this state (FSM-1, FSM-10). */
 static uint32_t wanted_commands(const agv_core_t *core) {
-    const uint16_t complement = (uint16_t)~core->hold.raw;
     uint32_t wanted = 0u;
     if (agv_state_commands_safe(agv_core_state(core))) {
         wanted = bit_of(AGV_MSG_TURN_SIGNAL_COMMAND) | bit_of(AGV_MSG_THROTTLE_COMMAND);
         if (core->machine.park_released) {
             wanted |= bit_of(AGV_MSG_GEAR_COMMAND);
         }
-        if ((core->hold.check == complement) && agv_monitor_steering_holdable(core)) {
+        if (agv_core_holds_angle(core) && agv_monitor_steering_holdable(core)) {
             wanted |= bit_of(AGV_MSG_STEERING_COMMAND);
         }
     }
@@ -49,20 +51,16 @@ static uint32_t wanted_commands(const agv_core_t *core) {
 
 /* The safe command: built-in constants, but for the alive counter and the held angle. */
 static void build(const agv_core_t *core, agv_message_t command, uint8_t data[AGV_DLC]) {
-    static const agv_turn_signal_command_t hazard = {
-        .turn_left_on = true, .turn_right_on = true, .autopilot_off = true, .headlight_on = true};
-    static const agv_gear_command_t park = {.gear = AGV_GEAR_P};
-    (void)memset(data, 0, AGV_DLC);
+    (void)memset(data, 0, AGV_DLC); /* throttle 0 */
     if (command == AGV_MSG_TURN_SIGNAL_COMMAND) {
-        (void)agv_pack_turn_signal_command(data, &hazard);
-        data[AGV_DLC - 1u] = core->transmitter.alive_counter;
+        data[4] = AGV_SIGNAL_LEFT | AGV_SIGNAL_RIGHT | AGV_SIGNAL_AUTOPILOT_OFF;
+        data[7] = core->transmitter.alive_counter;
     } else if (command == AGV_MSG_GEAR_COMMAND) {
-        (void)agv_pack_gear_command(data, &park);
+        data[0] = AGV_GEAR_P;
     } else if (command == AGV_MSG_STEERING_COMMAND) {
-        const agv_steering_command_t hold = {.angle_ddeg = (int32_t)core->hold.raw - AGV_ANGLE_RAW_CENTRE};
-        (void)agv_pack_steering_command(data, &hold);
+        agv_angle_write(data, (int32_t)core->hold.raw - AGV_ANGLE_RAW_CENTRE);
     } else {
-        /* throttle 0 */
+        /* throttle */
     }
 }
 
@@ -74,18 +72,21 @@ static bool emit(agv_core_t *core, hal_can_side_t side, uint16_t id, const uint8
                              .state = core->machine.state};
     hal_can_frame_t frame = {.id = id, .time_ms = core->now_ms, .length = AGV_DLC};
     (void)memcpy(frame.data, data, AGV_DLC);
-    const agv_gate_result_t result = agv_gate_send(&gate, core->hal, side, &frame);
-    if (result == AGV_GATE_SENT) {
+    switch (agv_gate_send(&gate, core->hal, side, &frame)) {
+    case AGV_GATE_BUSY:
+        return false;
+    case AGV_GATE_SENT:
         core->counters.sent++;
-    } else if (result == AGV_GATE_SHADOWED) {
+        break;
+    case AGV_GATE_SHADOWED:
         core->counters.shadowed++;
-    } else if (result == AGV_GATE_REFUSED) {
+        break;
+    default:
         core->counters.gate_refused++;
-        agv_faults_event(&core->monitor.faults, AGV_FAULT_TX_GATE_REFUSED, core->now_ms);
-    } else {
-        /* not taken */
+        agv_faults_event(core, AGV_FAULT_TX_GATE_REFUSED);
+        break;
     }
-    return result != AGV_GATE_BUSY;
+    return true;
 }
 
 static bool emit_message(agv_core_t *core, agv_message_t message, const uint8_t data[AGV_DLC]) {
@@ -97,18 +98,18 @@ static bool emit_message(agv_core_t *core, agv_message_t message, const uint8_t 
 static void send_own(agv_core_t *core, agv_message_t command) {
     agv_transmitter_t *const transmitter = &core->transmitter;
     uint8_t data[AGV_DLC];
-    if (agv_bus_is_off(&core->buses[HAL_CAN_VEHICLE])) {
+    if (agv_bus_is_off(core, HAL_CAN_VEHICLE)) {
         return;
     }
     build(core, command, data);
     const bool taken = emit_message(core, command, data);
-    agv_timer_while(&transmitter->waits[command], !taken, core->now_ms);
+    (void)agv_watch_while(core, wait_of(command), !taken);
     if (!taken) {
         return;
     }
     transmitter->scheduler.slots[command].override_waits = false;
     if (command == AGV_MSG_GEAR_COMMAND) {
-        agv_state_machine_park_sent(&core->machine, core->now_ms);
+        agv_state_machine_park_sent(core);
     }
     if ((command == AGV_MSG_TURN_SIGNAL_COMMAND) &&
         (core->config.own_heartbeat == (uint16_t)AGV_OWN_HEARTBEAT_RUNNING)) {
@@ -118,7 +119,7 @@ static void send_own(agv_core_t *core, agv_message_t command) {
 
 void agv_transmitter_burst(agv_core_t *core) {
     const uint32_t wanted = wanted_commands(core);
-    agv_scheduler_restart(&core->transmitter.scheduler, core->now_ms);
+    agv_scheduler_restart(core);
     for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
         if ((wanted & bit_of((agv_message_t)i)) != 0u) {
             send_own(core, (agv_message_t)i);
@@ -129,28 +130,23 @@ void agv_transmitter_burst(agv_core_t *core) {
 
 /* Whether a payload commands what the own command does. Reserved bits and the alive counter command nothing. */
 static bool is_same_command(const agv_core_t *core, agv_message_t command, const uint8_t data[AGV_DLC]) {
-    static const uint8_t commanding[AGV_COMMAND_COUNT][AGV_DLC] = {
-        {0u, 0u, 0u, 0u, 0xF0u}, {0xFFu}, {0xFFu}, {0xFFu, 0xFFu}};
     uint8_t own[AGV_DLC];
     uint32_t differences = 0u;
     build(core, command, own);
-    for (uint32_t i = 0u; i < AGV_DLC; i++) {
-        differences |= ((uint32_t)own[i] ^ data[i]) & commanding[command][i];
+    for (uint32_t i = 0u; i < (AGV_DLC - 1u); i++) {
+        differences |= ((uint32_t)own[i] ^ data[i]) & agv_command_bits[command][i];
     }
     return differences == 0u;
 }
 
 static void override(agv_core_t *core, agv_message_t command) {
     send_own(core, command);
-    agv_scheduler_overridden(&core->transmitter.scheduler, command, core->now_ms, core->now_us);
+    agv_scheduler_overridden(core, command);
 }
 
 void agv_transmitter_answer(agv_core_t *core, agv_message_t command, const uint8_t *data) {
-    if ((wanted_commands(core) & bit_of(command)) == 0u) {
-        return;
-    }
-    if (((data == NULL) || !is_same_command(core, command, data)) &&
-        agv_scheduler_override(&core->transmitter.scheduler, command, core->now_us, core->config.override_gap_ms)) {
+    const bool differs = (data == NULL) || !is_same_command(core, command, data);
+    if (differs && ((wanted_commands(core) & bit_of(command)) != 0u) && agv_scheduler_override(core, command)) {
         override(core, command);
     }
 }
@@ -165,7 +161,7 @@ static void send_passed(agv_core_t *core, agv_message_t message) {
         transmitter->kept |= (uint16_t)bit_of(message);
     }
     if ((uint32_t)message < AGV_COMMAND_COUNT) {
-        agv_timer_while(&transmitter->waits[message], !taken, core->now_ms);
+        (void)agv_watch_while(core, wait_of(message), !taken);
     }
 }
 
@@ -177,29 +173,26 @@ void agv_transmitter_pass(agv_core_t *core, agv_message_t message, const uint8_t
     send_passed(core, message);
 }
 
-static void tick_own(agv_core_t *core, agv_message_t command, bool wanted) {
-    agv_transmitter_t *const transmitter = &core->transmitter;
-    agv_scheduler_t *const scheduler = &transmitter->scheduler;
-    const bool waits = agv_timer_runs(&transmitter->waits[command]);
-    const bool before = (transmitter->wanted_before & bit_of(command)) != 0u;
-    uint32_t skipped = 0u;
-    const bool due = agv_scheduler_due(scheduler, command, core->now_ms, &skipped);
-    const bool foreign = agv_scheduler_override_due(scheduler, command, core->now_us, core->config.override_gap_ms);
-    if (!wanted) {
-        agv_timer_stop(&transmitter->waits[command]);
+static void tick_own(agv_core_t *core, agv_message_t command, uint32_t wanted) {
+    const uint32_t slots = agv_scheduler_due(core, command);
+    const bool foreign = agv_scheduler_override_due(core, command);
+    if ((wanted & bit_of(command)) == 0u) {
+        agv_watch_stop(core, wait_of(command));
         return;
     }
-    core->counters.skipped_slots += skipped;
+    core->counters.skipped_slots += (slots > 1u) ? (slots - 1u) : 0u;
     if (foreign) {
         override(core, command);
-    } else if ((command == AGV_MSG_GEAR_COMMAND) && !before) {
-        /* park: at_standstill held it back; 065h waits for its slot */
-        agv_scheduler_restart_slot(scheduler, command, core->now_ms);
+        return;
+    }
+    /* park: at_standstill held P back; 065h waits for its slot */
+    const bool first_park =
+        (command == AGV_MSG_GEAR_COMMAND) && ((core->transmitter.wanted_before & bit_of(command)) == 0u);
+    if (first_park) {
+        agv_scheduler_restart_slot(core, command);
+    }
+    if (first_park || (slots != 0u) || agv_watch_runs(core, wait_of(command))) {
         send_own(core, command);
-    } else if (due || waits) {
-        send_own(core, command);
-    } else {
-        /* not yet */
     }
 }
 
@@ -211,7 +204,7 @@ static void send_status_frame(agv_core_t *core) {
     uint8_t data[AGV_DLC] = {core->machine.state, core->machine.first_reason,
                              (uint8_t)(core->machine.output_closed ? 1u : 0u), transmitter->status_counter};
     if ((core->config.status_frame_id == 0u) || (late_ms > (UINT32_MAX / 2u)) ||
-        agv_bus_is_off(&core->buses[HAL_CAN_VEHICLE])) {
+        agv_bus_is_off(core, HAL_CAN_VEHICLE)) {
         return;
     }
     for (uint32_t i = 0u; i < 4u; i++) {
@@ -233,7 +226,7 @@ void agv_transmitter_tick(agv_core_t *core) {
     }
     if ((wanted | transmitter->wanted_before) != 0u) {
         for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
-            tick_own(core, (agv_message_t)i, (wanted & bit_of((agv_message_t)i)) != 0u);
+            tick_own(core, (agv_message_t)i, wanted);
         }
     }
     transmitter->wanted_before = (uint8_t)wanted;
@@ -243,7 +236,7 @@ void agv_transmitter_tick(agv_core_t *core) {
 bool agv_transmitter_stalled(agv_core_t *core) {
     bool stalled = false;
     for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
-        if (agv_timer_exceeded(&core->transmitter.waits[i], core->now_ms, core->config.tx_stalled_ms)) {
+        if (agv_watch_reached(core, wait_of(i))) {
             stalled = true;
         }
     }

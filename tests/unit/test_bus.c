@@ -1,29 +1,43 @@
 /* One CAN controller as the supervisor follows it. */
 #include "agv/bus.h"
 
+#include "agv/core.h"
+
 #include "unity.h"
 
 /* Recovery 100 ms after bus-off, stalled when a frame waits for more than 50 ms. */
-static agv_bus_t bus;
+static agv_core_t core;
 static hal_can_status_t controller;
 
-/* What a look shows, as a set. */
-enum { OFF = 1, RECOVERED = 2, ASK = 4, PASSIVE = 8, OVERRUN = 16, STALLED = 32 };
+void hal_can_status(hal_t *hal, hal_can_side_t side, hal_can_status_t *status) {
+    (void)hal;
+    (void)side;
+    *status = controller;
+}
 
-static int look(uint32_t now_ms) {
-    const agv_bus_report_t report = agv_bus_tick(&bus, &controller, 100, 50, now_ms);
-    return (report.off ? OFF : 0) | (report.recovered ? RECOVERED : 0) | (report.ask_recovery ? ASK : 0) |
-           (report.passive ? PASSIVE : 0) | (report.overrun ? OVERRUN : 0) | (report.stalled ? STALLED : 0);
+enum {
+    OFF = AGV_BUS_OFF,
+    RECOVERED = AGV_BUS_RECOVERED,
+    ASK = AGV_BUS_ASK_RECOVERY,
+    PASSIVE = AGV_BUS_PASSIVE,
+    OVERRUN = AGV_BUS_OVERRUN,
+    STALLED = AGV_BUS_STALLED
+};
+
+static uint32_t look(uint32_t now_ms) {
+    core.now_ms = now_ms;
+    return agv_bus_tick(&core, HAL_CAN_VEHICLE);
 }
 
 static bool is_off(void) {
-    return agv_bus_is_off(&bus);
+    return agv_bus_is_off(&core, HAL_CAN_VEHICLE);
 }
 
 /* The controller has counted before: what it counted then is no news. */
 void setUp(void) {
     controller = (hal_can_status_t){.state = HAL_CAN_ERROR_ACTIVE, .bus_off_count = 65535, .overrun_count = 65535};
-    agv_bus_start(&bus, &controller);
+    core = (agv_core_t){.config = {.bus_off_recovery_ms = 100, .tx_stalled_ms = 50}};
+    agv_bus_start(&core, HAL_CAN_VEHICLE);
 }
 
 void tearDown(void) {

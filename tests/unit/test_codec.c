@@ -627,3 +627,43 @@ void test_wheel_speed_takes_the_whole_range(void) {
     ASSERT_WHEEL_SPEED(INT32_MAX, INT32_MIN, 0xFF, 0xFF, 0xFF, 0x7F, 0x00, 0x00, 0x00, 0x80);
     ASSERT_WHEEL_SPEED(INT32_MIN + 1, INT32_MAX - 1, 0x01, 0x00, 0x00, 0x80, 0xFE, 0xFF, 0xFF, 0x7F);
 }
+
+/* What agv_unpack_X returns, for every value of the bytes that it judges. */
+void test_value_is_valid_says_what_unpack_says(void) {
+    agv_gear_command_t gear;
+    agv_throttle_command_t throttle;
+    agv_steering_command_t steering;
+    agv_steering_status_t measured;
+    agv_eps_status_t eps;
+    uint8_t bytes[AGV_DLC] = {0};
+    for (unsigned value = 0; value < 0x10000u; value++) {
+        bytes[0] = (uint8_t)value;
+        bytes[1] = (uint8_t)(value >> 8);
+        bytes[2] = bytes[0];
+        bytes[3] = bytes[1];
+        const bool gear_is_known = agv_unpack_gear_command(&gear, bytes);
+        const bool throttle_is_known = agv_unpack_throttle_command(&throttle, bytes);
+        TEST_ASSERT_EQUAL(gear_is_known, agv_value_is_valid(AGV_MSG_GEAR_COMMAND, bytes));
+        TEST_ASSERT_EQUAL(gear_is_known, agv_value_is_valid(AGV_MSG_GEAR_STATUS, bytes));
+        TEST_ASSERT_EQUAL(throttle_is_known, agv_value_is_valid(AGV_MSG_THROTTLE_COMMAND, bytes));
+        TEST_ASSERT_EQUAL(throttle_is_known, agv_value_is_valid(AGV_MSG_THROTTLE_STATUS, bytes));
+        TEST_ASSERT_EQUAL(agv_unpack_steering_command(&steering, bytes),
+                          agv_value_is_valid(AGV_MSG_STEERING_COMMAND, bytes));
+        TEST_ASSERT_EQUAL(agv_unpack_steering_status(&measured, bytes),
+                          agv_value_is_valid(AGV_MSG_STEERING_STATUS, bytes));
+        TEST_ASSERT_EQUAL(agv_unpack_eps_status(&eps, bytes), agv_value_is_valid(AGV_MSG_EPS_STATUS, bytes));
+        TEST_ASSERT_TRUE(agv_value_is_valid(AGV_MSG_TURN_SIGNAL_COMMAND, bytes));
+        TEST_ASSERT_TRUE(agv_value_is_valid(AGV_MSG_VEHICLE_STATUS, bytes));
+        TEST_ASSERT_TRUE(agv_value_is_valid(AGV_MSG_STEERING_POSITION, bytes));
+        TEST_ASSERT_TRUE(agv_value_is_valid(AGV_MSG_WHEEL_SPEED, bytes));
+    }
+}
+
+void test_an_angle_is_written_as_it_is_read(void) {
+    uint8_t bytes[2];
+    for (int32_t ddeg = -9000; ddeg <= 9000; ddeg++) {
+        agv_angle_write(bytes, ddeg);
+        TEST_ASSERT_EQUAL_INT32(ddeg, agv_angle_read(bytes));
+        TEST_ASSERT_EQUAL_INT32(ddeg + 9000, bytes[0] | bytes[1] << 8);
+    }
+}

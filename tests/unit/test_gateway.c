@@ -3,20 +3,16 @@
 
 #include <string.h>
 
+#include "agv/core.h"
 #include "unity.h"
 
-static agv_config_t config;
-static agv_gateway_t gateway;
-static agv_gateway_facts_t facts;
-static agv_state_t state;
+static agv_core_t core;
 static uint8_t data[8];
 
 void setUp(void) {
-    agv_config_defaults(&config);
-    config.topology = AGV_TOPOLOGY_GATEWAY;
-    gateway = (agv_gateway_t){0};
-    facts = (agv_gateway_facts_t){.now_ms = 1000};
-    state = AGV_STATE_ACTIVE;
+    core = (agv_core_t){.now_ms = 1000, .machine = {.state = AGV_STATE_ACTIVE}};
+    agv_config_defaults(&core.config);
+    core.config.topology = AGV_TOPOLOGY_GATEWAY;
 }
 
 void tearDown(void) {
@@ -24,13 +20,14 @@ void tearDown(void) {
 
 /* The adaptor to the module: everything below goes through these two. */
 static bool passes(agv_message_t command) {
-    return agv_gateway_passes(&config, state, command);
+    return agv_gateway_passes(&core, command);
 }
 
 static void limit(agv_message_t command) {
-    const int16_t sent_ddeg = agv_gateway_limit(&gateway, &config, state, command, &facts, data);
+    core.vehicle.command_ddeg = 0;
+    agv_gateway_limit(&core, command, data);
     const int raw = data[0] | data[1] << 8;
-    TEST_ASSERT_EQUAL_INT((command == AGV_MSG_STEERING_COMMAND) ? raw - 9000 : 0, sent_ddeg);
+    TEST_ASSERT_EQUAL_INT((command == AGV_MSG_STEERING_COMMAND) ? raw - 9000 : 0, core.vehicle.command_ddeg);
 }
 
 /* Hand in 8 bytes, look at those that come out. */
@@ -53,7 +50,7 @@ static int steer(uint32_t after_ms, int wanted_ddeg) {
     memset(data, 0, sizeof data);
     data[0] = (uint8_t)(raw & 0xFF);
     data[1] = (uint8_t)(raw >> 8);
-    facts.now_ms += after_ms;
+    core.now_ms += after_ms;
     limit(AGV_MSG_STEERING_COMMAND);
     return (data[0] | data[1] << 8) - 9000;
 }
@@ -64,10 +61,10 @@ void test_which_commands_pass_in_which_state(void) {
         for (unsigned command = 0; command < 4; command++) {
             const bool active = value == 0x3C;
             const bool standby = value == 0x33;
-            state = (agv_state_t)value;
-            config.gateway_in_manual = AGV_IN_MANUAL_HEARTBEAT;
+            core.machine.state = (uint8_t)value;
+            core.config.gateway_in_manual = AGV_IN_MANUAL_HEARTBEAT;
             TEST_ASSERT_EQUAL(active || (standby && command == 0), passes((agv_message_t)command));
-            config.gateway_in_manual = AGV_IN_MANUAL_ALL;
+            core.config.gateway_in_manual = AGV_IN_MANUAL_ALL;
             TEST_ASSERT_EQUAL(active || standby, passes((agv_message_t)command));
         }
     }
@@ -96,19 +93,19 @@ void test_reserved_bits_are_passed_as_0(void) {
 /* Shows: TOP-2 */
 void test_the_throttle_ceiling(void) {
     TEST_ASSERT_EQUAL_UINT(250, throttle(250));
-    config.throttle_ceiling_pct = 30;
+    core.config.throttle_ceiling_pct = 30;
     TEST_ASSERT_EQUAL_UINT(75, throttle(250));
     TEST_ASSERT_EQUAL_UINT(75, throttle(75));
     TEST_ASSERT_EQUAL_UINT(74, throttle(74));
-    config.throttle_ceiling_pct = 33; /* 82.5 counts, rounded down */
+    core.config.throttle_ceiling_pct = 33; /* 82.5 counts, rounded down */
     TEST_ASSERT_EQUAL_UINT(82, throttle(250));
-    config.throttle_ceiling_pct = 0;
+    core.config.throttle_ceiling_pct = 0;
     TEST_ASSERT_EQUAL_UINT(0, throttle(1));
 }
 
 /* Shows: TOP-2 */
 void test_in_manual_the_throttle_is_0(void) {
-    state = AGV_STATE_STANDBY;
+    core.machine.state = AGV_STATE_STANDBY;
     TEST_ASSERT_EQUAL_UINT(0, throttle(250));
     TEST_ASSERT_EQUAL_UINT(0, throttle(0));
 }
@@ -123,9 +120,9 @@ void test_without_a_slew_limit_steering_passes_as_it_is(void) {
 /* 400.0 degrees a second are 10.0 in the 25 ms of a cycle. */
 /* Shows: TOP-2 */
 void test_the_slew_limit_starts_from_the_measured_angle(void) {
-    config.steering_slew_ddeg_s = 4000;
-    facts.measured_known = true;
-    facts.measured_ddeg = -200;
+    core.config.steering_slew_ddeg_s = 4000;
+    core.vehicle.angle_known = true;
+    core.vehicle.angle_ddeg = -200;
     TEST_ASSERT_EQUAL_INT(-100, steer(0, 500)); /* the first one may use one cycle */
     TEST_ASSERT_EQUAL_INT(0, steer(25, 500));
     TEST_ASSERT_EQUAL_INT(40, steer(10, 500));
@@ -135,7 +132,7 @@ void test_the_slew_limit_starts_from_the_measured_angle(void) {
 }
 
 void test_without_a_measured_angle_the_first_command_is_the_start(void) {
-    config.steering_slew_ddeg_s = 4000;
+    core.config.steering_slew_ddeg_s = 4000;
     TEST_ASSERT_EQUAL_INT(500, steer(0, 500));
     TEST_ASSERT_EQUAL_INT(400, steer(25, 0));
 }
@@ -143,8 +140,8 @@ void test_without_a_measured_angle_the_first_command_is_the_start(void) {
 /* Longer pauses than a second give no more than a second does: 50.0 degrees. */
 /* Shows: TOP-2, TIM-2 */
 void test_a_pause_gives_at_most_a_second_of_slew(void) {
-    config.steering_slew_ddeg_s = 500;
-    facts.now_ms = 0xFFFFFF00u;
+    core.config.steering_slew_ddeg_s = 500;
+    core.now_ms = 0xFFFFFF00u;
     TEST_ASSERT_EQUAL_INT(-9000, steer(0, -9000));
     TEST_ASSERT_EQUAL_INT(-8500, steer(1000, 9000));
     TEST_ASSERT_EQUAL_INT(-8000, steer(5000, 9000));
@@ -153,7 +150,7 @@ void test_a_pause_gives_at_most_a_second_of_slew(void) {
 /* 1.0 degree a second: a tenth takes 100 ms, and 25 ms frames must not round it away. */
 /* Shows: TOP-2 */
 void test_a_slow_slew_adds_up(void) {
-    config.steering_slew_ddeg_s = 10;
+    core.config.steering_slew_ddeg_s = 10;
     (void)steer(0, 0);
     for (int i = 1; i <= 40; i++) {
         TEST_ASSERT_EQUAL_INT(i / 4, steer(25, 1000));
@@ -162,7 +159,7 @@ void test_a_slow_slew_adds_up(void) {
 
 /* The last command was reached while time added up: from there on time counts anew. */
 void test_time_does_not_add_up_while_the_command_is_followed(void) {
-    config.steering_slew_ddeg_s = 10;
+    core.config.steering_slew_ddeg_s = 10;
     for (int i = 0; i < 100; i++) {
         TEST_ASSERT_EQUAL_INT(0, steer(25, 0));
     }

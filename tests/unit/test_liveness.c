@@ -1,76 +1,109 @@
 /* Who is alive, and how old is what is known: deadlines, heartbeats, ages that saturate. */
 #include "agv/liveness.h"
 
+#include "agv/core.h"
+
 #include "unity.h"
 
-static agv_liveness_t liveness;
+static agv_core_t core;
+
+static void start(uint32_t now_ms) {
+    core = (agv_core_t){.now_ms = now_ms};
+    agv_liveness_start(&core);
+}
+
+static bool judge(agv_message_t message, uint32_t now_ms, uint32_t timeout_ms) {
+    core.now_ms = now_ms;
+    return agv_liveness_judge(&core, message, timeout_ms);
+}
+
+/* Ages only: no deadline is that long. */
+static void tick(uint32_t now_ms) {
+    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
+        (void)judge((agv_message_t)i, now_ms, UINT32_MAX);
+    }
+}
+
+static void judge_beat(agv_node_t node, uint32_t now_ms, uint32_t timeout_ms) {
+    core.now_ms = now_ms;
+    (void)agv_liveness_judge_beat(&core, node, timeout_ms);
+}
+
+static uint32_t age_ms(agv_message_t message, uint32_t now_ms) {
+    core.now_ms = now_ms;
+    return agv_liveness_age_ms(&core, message);
+}
+
+static bool is_heard(agv_message_t message) {
+    return core.liveness.messages[message].heard;
+}
 
 void setUp(void) {
-    agv_liveness_start(&liveness, 0);
+    start(0);
 }
 
 void tearDown(void) {
 }
 
 static void expect_heartbeat(agv_node_t node, agv_heartbeat_state_t expected) {
-    TEST_ASSERT_EQUAL(expected, agv_liveness_heartbeat(&liveness, node));
-    TEST_ASSERT_EQUAL(expected == AGV_HEARTBEAT_ALIVE, agv_liveness_alive(&liveness, node));
+    TEST_ASSERT_EQUAL(expected, core.liveness.heartbeats[node].state);
+    TEST_ASSERT_EQUAL(expected == AGV_HEARTBEAT_ALIVE, agv_core_alive(&core, node));
 }
 
 /* A frame with an alive counter, as the monitor hands it on. */
 static void beat(agv_node_t node, uint8_t counter, uint32_t time_ms) {
     static const agv_message_t carrier[] = {AGV_MSG_VEHICLE_STATUS, AGV_MSG_STEERING_STATUS,
                                             AGV_MSG_TURN_SIGNAL_COMMAND};
-    (void)agv_liveness_arrived(&liveness, carrier[node], time_ms);
-    agv_liveness_beat(&liveness, node, counter, time_ms);
+    (void)agv_liveness_arrived(&core, carrier[node], time_ms);
+    agv_liveness_beat(&core, node, counter, time_ms);
 }
 
 /* Shows: SUP-2, SUP-3, TIM-2 */
 TEST_CASE(0)
 TEST_CASE(0xFFFFFFE0)
 void test_a_deadline_expires_when_the_age_is_greater(uint32_t start_ms) {
-    agv_liveness_start(&liveness, start_ms);
-    (void)agv_liveness_arrived(&liveness, AGV_MSG_EPS_STATUS, start_ms + 10);
-    agv_liveness_refresh(&liveness, AGV_MSG_EPS_STATUS, start_ms + 10);
-    TEST_ASSERT_FALSE(agv_liveness_judge(&liveness, AGV_MSG_EPS_STATUS, start_ms + 70, 60));
-    TEST_ASSERT_TRUE(agv_liveness_fresh(&liveness, AGV_MSG_EPS_STATUS));
-    TEST_ASSERT_TRUE(agv_liveness_judge(&liveness, AGV_MSG_EPS_STATUS, start_ms + 71, 60));
-    TEST_ASSERT_FALSE(agv_liveness_fresh(&liveness, AGV_MSG_EPS_STATUS));
-    agv_liveness_refresh(&liveness, AGV_MSG_EPS_STATUS, start_ms + 72);
-    TEST_ASSERT_FALSE(agv_liveness_judge(&liveness, AGV_MSG_EPS_STATUS, start_ms + 72, 60));
-    TEST_ASSERT_TRUE(agv_liveness_fresh(&liveness, AGV_MSG_EPS_STATUS));
+    start(start_ms);
+    (void)agv_liveness_arrived(&core, AGV_MSG_EPS_STATUS, start_ms + 10);
+    agv_liveness_refresh(&core, AGV_MSG_EPS_STATUS, start_ms + 10);
+    TEST_ASSERT_FALSE(judge(AGV_MSG_EPS_STATUS, start_ms + 70, 60));
+    TEST_ASSERT_TRUE(agv_liveness_fresh(&core, AGV_MSG_EPS_STATUS));
+    TEST_ASSERT_TRUE(judge(AGV_MSG_EPS_STATUS, start_ms + 71, 60));
+    TEST_ASSERT_FALSE(agv_liveness_fresh(&core, AGV_MSG_EPS_STATUS));
+    agv_liveness_refresh(&core, AGV_MSG_EPS_STATUS, start_ms + 72);
+    TEST_ASSERT_FALSE(judge(AGV_MSG_EPS_STATUS, start_ms + 72, 60));
+    TEST_ASSERT_TRUE(agv_liveness_fresh(&core, AGV_MSG_EPS_STATUS));
 }
 
 /* Shows: TIM-2 */
 void test_what_is_lost_stays_lost_over_the_whole_turn_of_the_clock(void) {
     beat(AGV_NODE_VCU, 1, 1);
     beat(AGV_NODE_VCU, 2, 2);
-    agv_liveness_refresh(&liveness, AGV_MSG_VEHICLE_STATUS, 2);
+    agv_liveness_refresh(&core, AGV_MSG_VEHICLE_STATUS, 2);
     for (uint32_t day = 0; day < 60; day++) {
         const uint32_t now_ms = 100u + day * 86400000u;
-        agv_liveness_tick(&liveness, now_ms);
-        agv_liveness_judge_beat(&liveness, AGV_NODE_VCU, now_ms, 50);
-        TEST_ASSERT_TRUE(agv_liveness_judge(&liveness, AGV_MSG_VEHICLE_STATUS, now_ms, 60));
+        tick(now_ms);
+        judge_beat(AGV_NODE_VCU, now_ms, 50);
+        TEST_ASSERT_TRUE(judge(AGV_MSG_VEHICLE_STATUS, now_ms, 60));
         expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_LOST);
     }
-    TEST_ASSERT_TRUE(agv_liveness_judge(&liveness, AGV_MSG_VEHICLE_STATUS, 2, 60));
+    TEST_ASSERT_TRUE(judge(AGV_MSG_VEHICLE_STATUS, 2, 60));
 }
 
 void test_nothing_is_fresh_before_it_was_heard(void) {
     for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
-        TEST_ASSERT_FALSE(agv_liveness_heard(&liveness, (agv_message_t)i));
-        TEST_ASSERT_FALSE(agv_liveness_fresh(&liveness, (agv_message_t)i));
-        TEST_ASSERT_EQUAL_UINT32(7, agv_liveness_age_ms(&liveness, (agv_message_t)i, 7)); /* since the start */
-        TEST_ASSERT_TRUE(agv_liveness_judge(&liveness, (agv_message_t)i, 61, 60));
+        TEST_ASSERT_FALSE(is_heard((agv_message_t)i));
+        TEST_ASSERT_FALSE(agv_liveness_fresh(&core, (agv_message_t)i));
+        TEST_ASSERT_EQUAL_UINT32(7, age_ms((agv_message_t)i, 7)); /* since the start */
+        TEST_ASSERT_TRUE(judge((agv_message_t)i, 61, 60));
     }
 }
 
 void test_a_message_concerns_no_other(void) {
-    (void)agv_liveness_arrived(&liveness, AGV_MSG_GEAR_STATUS, 5);
-    agv_liveness_refresh(&liveness, AGV_MSG_GEAR_STATUS, 5);
+    (void)agv_liveness_arrived(&core, AGV_MSG_GEAR_STATUS, 5);
+    agv_liveness_refresh(&core, AGV_MSG_GEAR_STATUS, 5);
     for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
-        TEST_ASSERT_EQUAL(i == AGV_MSG_GEAR_STATUS, agv_liveness_heard(&liveness, (agv_message_t)i));
-        TEST_ASSERT_EQUAL(i == AGV_MSG_GEAR_STATUS, agv_liveness_fresh(&liveness, (agv_message_t)i));
+        TEST_ASSERT_EQUAL(i == AGV_MSG_GEAR_STATUS, is_heard((agv_message_t)i));
+        TEST_ASSERT_EQUAL(i == AGV_MSG_GEAR_STATUS, agv_liveness_fresh(&core, (agv_message_t)i));
     }
 }
 
@@ -78,43 +111,43 @@ void test_a_message_concerns_no_other(void) {
 TEST_CASE(0)
 TEST_CASE(0xFFFFF000)
 void test_ages_and_gaps_saturate(uint32_t start_ms) {
-    agv_liveness_start(&liveness, start_ms);
-    TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, start_ms));
-    TEST_ASSERT_EQUAL_UINT32(10, agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, start_ms + 10));
-    agv_liveness_tick(&liveness, start_ms + 6010);
-    TEST_ASSERT_EQUAL_UINT32(6000, agv_liveness_age_ms(&liveness, AGV_MSG_WHEEL_SPEED, start_ms + 6010));
-    agv_liveness_tick(&liveness, start_ms + 6011);
-    TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, agv_liveness_age_ms(&liveness, AGV_MSG_WHEEL_SPEED, start_ms + 6011));
-    TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, agv_liveness_age_ms(&liveness, AGV_MSG_WHEEL_SPEED, start_ms + 11));
-    TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, start_ms + 11));
-    TEST_ASSERT_EQUAL_UINT32(0, agv_liveness_age_ms(&liveness, AGV_MSG_WHEEL_SPEED, start_ms + 11));
+    start(start_ms);
+    TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, agv_liveness_arrived(&core, AGV_MSG_WHEEL_SPEED, start_ms));
+    TEST_ASSERT_EQUAL_UINT32(10, agv_liveness_arrived(&core, AGV_MSG_WHEEL_SPEED, start_ms + 10));
+    tick(start_ms + 6010);
+    TEST_ASSERT_EQUAL_UINT32(6000, age_ms(AGV_MSG_WHEEL_SPEED, start_ms + 6010));
+    tick(start_ms + 6011);
+    TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, age_ms(AGV_MSG_WHEEL_SPEED, start_ms + 6011));
+    TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, age_ms(AGV_MSG_WHEEL_SPEED, start_ms + 11));
+    TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, agv_liveness_arrived(&core, AGV_MSG_WHEEL_SPEED, start_ms + 11));
+    TEST_ASSERT_EQUAL_UINT32(0, age_ms(AGV_MSG_WHEEL_SPEED, start_ms + 11));
 }
 
 /* A stamp that lies before the one before it (frames of two queues) makes no gap of 49 days. */
 void test_a_stamp_that_goes_backwards_is_no_gap(void) {
-    (void)agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, 20);
-    TEST_ASSERT_EQUAL_UINT32(0, agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, 19));
+    (void)agv_liveness_arrived(&core, AGV_MSG_WHEEL_SPEED, 20);
+    TEST_ASSERT_EQUAL_UINT32(0, agv_liveness_arrived(&core, AGV_MSG_WHEEL_SPEED, 19));
 }
 
 /* Shows: SUP-1, SUP-2 */
 TEST_CASE(0)
 TEST_CASE(1)
 void test_vcu_and_eps_are_awaited_from_the_start(unsigned node) {
-    agv_liveness_judge_beat(&liveness, (agv_node_t)node, 50, 50);
+    judge_beat((agv_node_t)node, 50, 50);
     expect_heartbeat((agv_node_t)node, AGV_HEARTBEAT_UNSEEN);
-    agv_liveness_judge_beat(&liveness, (agv_node_t)node, 51, 50);
+    judge_beat((agv_node_t)node, 51, 50);
     expect_heartbeat((agv_node_t)node, AGV_HEARTBEAT_LOST);
 }
 
 /* Shows: SUP-8 */
 void test_the_ai_is_not_awaited_before_it_was_seen(void) {
-    agv_liveness_judge_beat(&liveness, AGV_NODE_AI, 1000000, 350);
+    judge_beat(AGV_NODE_AI, 1000000, 350);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_UNSEEN);
     beat(AGV_NODE_AI, 9, 1000000);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_BASELINE);
-    agv_liveness_judge_beat(&liveness, AGV_NODE_AI, 1000350, 350);
+    judge_beat(AGV_NODE_AI, 1000350, 350);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_BASELINE);
-    agv_liveness_judge_beat(&liveness, AGV_NODE_AI, 1000351, 350);
+    judge_beat(AGV_NODE_AI, 1000351, 350);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_LOST);
 }
 
@@ -124,9 +157,9 @@ TEST_CASE(1)
 TEST_CASE(2)
 void test_the_first_frame_is_only_the_baseline(unsigned node) {
     beat((agv_node_t)node, 200, 10);
-    TEST_ASSERT_FALSE(agv_liveness_alive(&liveness, (agv_node_t)node));
+    TEST_ASSERT_FALSE(agv_core_alive(&core, (agv_node_t)node));
     beat((agv_node_t)node, 200, 20);
-    TEST_ASSERT_FALSE(agv_liveness_alive(&liveness, (agv_node_t)node));
+    TEST_ASSERT_FALSE(agv_core_alive(&core, (agv_node_t)node));
     beat((agv_node_t)node, 201, 30);
     expect_heartbeat((agv_node_t)node, AGV_HEARTBEAT_ALIVE);
 }
@@ -137,7 +170,7 @@ void test_any_change_of_the_counter_is_a_beat(void) {
     beat(AGV_NODE_VCU, 254, 0);
     for (uint32_t i = 0; i < sizeof counters; i++) {
         beat(AGV_NODE_VCU, counters[i], 40 * (i + 1));
-        agv_liveness_judge_beat(&liveness, AGV_NODE_VCU, 40 * (i + 1) + 50, 50);
+        judge_beat(AGV_NODE_VCU, 40 * (i + 1) + 50, 50);
         expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
     }
 }
@@ -149,9 +182,9 @@ static void repeat_until(uint32_t last_frame_ms) {
     for (uint32_t ms = 110; ms <= last_frame_ms; ms += 10) {
         beat(AGV_NODE_VCU, 2, ms);
     }
-    agv_liveness_judge_beat(&liveness, AGV_NODE_VCU, 150, 50);
+    judge_beat(AGV_NODE_VCU, 150, 50);
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
-    agv_liveness_judge_beat(&liveness, AGV_NODE_VCU, 151, 50);
+    judge_beat(AGV_NODE_VCU, 151, 50);
 }
 
 /* Shows: SUP-2 */
@@ -169,7 +202,7 @@ void test_an_old_counter_two_cycles_ago_is_stuck(void) {
     beat(AGV_NODE_VCU, 1, 90);
     beat(AGV_NODE_VCU, 2, 100);
     beat(AGV_NODE_VCU, 2, 131);
-    agv_liveness_judge_beat(&liveness, AGV_NODE_VCU, 151, 50);
+    judge_beat(AGV_NODE_VCU, 151, 50);
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_STUCK);
 }
 
@@ -193,10 +226,10 @@ void test_silence_is_lost(void) {
 void test_a_forgotten_node_is_seen_again_when_its_counter_changes(void) {
     beat(AGV_NODE_AI, 1, 0);
     beat(AGV_NODE_AI, 2, 100);
-    agv_liveness_forget(&liveness, AGV_NODE_AI);
+    agv_monitor_forget_ai(&core);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_UNSEEN);
     beat(AGV_NODE_AI, 2, 200);
-    agv_liveness_judge_beat(&liveness, AGV_NODE_AI, 10000, 350);
+    judge_beat(AGV_NODE_AI, 10000, 350);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_UNSEEN);
     beat(AGV_NODE_AI, 3, 10000);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_ALIVE);

@@ -1,15 +1,35 @@
 /* When to send: slots on their grid, overruns, overrides. */
 #include "agv/scheduler.h"
 
+#include "agv/core.h"
+
 #include "unity.h"
 
-static agv_scheduler_t scheduler;
+static agv_core_t core;
 
 void setUp(void) {
-    scheduler = (agv_scheduler_t){0};
+    core = (agv_core_t){.config = {.override_gap_ms = 5}};
 }
 
 void tearDown(void) {
+}
+
+static void restart(uint32_t now_ms) {
+    core.now_ms = now_ms;
+    agv_scheduler_restart(&core);
+}
+
+static bool due(agv_message_t command, uint32_t now_ms, uint32_t *skipped) {
+    core.now_ms = now_ms;
+    const uint32_t slots = agv_scheduler_due(&core, command);
+    *skipped += (slots > 1) ? slots - 1 : 0;
+    return slots != 0;
+}
+
+static void overridden(agv_message_t command, uint32_t now_ms, uint32_t now_us) {
+    core.now_ms = now_ms;
+    core.now_us = now_us;
+    agv_scheduler_overridden(&core, command);
 }
 
 static const struct {
@@ -30,11 +50,11 @@ static bool is_near_a_slot(uint32_t ms) {
 static void expect_grid(uint32_t start_ms, uint32_t duration_ms) {
     uint32_t skipped = 0;
     uint32_t wrong = 0;
-    agv_scheduler_restart(&scheduler, start_ms);
+    restart(start_ms);
     for (uint32_t ms = 0; ms < duration_ms; ms++) {
         for (unsigned i = 0; i < 4 && is_near_a_slot(ms); i++) {
             const bool expected = ms >= SLOTS[i].first_ms && (ms - SLOTS[i].first_ms) % SLOTS[i].cycle_ms == 0;
-            wrong += agv_scheduler_due(&scheduler, SLOTS[i].command, start_ms + ms, &skipped) != expected;
+            wrong += due(SLOTS[i].command, start_ms + ms, &skipped) != expected;
         }
     }
     TEST_ASSERT_EQUAL_UINT32(0, wrong);
@@ -60,58 +80,61 @@ TEST_CASE(0)
 TEST_CASE(0xFFFFFF80)
 void test_after_an_overrun_one_frame_goes_out_and_the_grid_stands(uint32_t start_ms) {
     uint32_t skipped = 0;
-    agv_scheduler_restart(&scheduler, start_ms);
+    restart(start_ms);
     /* 065h was due at 25, 50, ... 325: thirteen, of which one is sent late and twelve are missed */
-    TEST_ASSERT_TRUE(agv_scheduler_due(&scheduler, AGV_MSG_STEERING_COMMAND, start_ms + 330, &skipped));
+    TEST_ASSERT_TRUE(due(AGV_MSG_STEERING_COMMAND, start_ms + 330, &skipped));
     TEST_ASSERT_EQUAL_UINT32(12, skipped);
     for (uint32_t ms = 330; ms < 350; ms++) {
-        TEST_ASSERT_FALSE(agv_scheduler_due(&scheduler, AGV_MSG_STEERING_COMMAND, start_ms + ms, &skipped));
+        TEST_ASSERT_FALSE(due(AGV_MSG_STEERING_COMMAND, start_ms + ms, &skipped));
     }
-    TEST_ASSERT_TRUE(agv_scheduler_due(&scheduler, AGV_MSG_STEERING_COMMAND, start_ms + 350, &skipped));
+    TEST_ASSERT_TRUE(due(AGV_MSG_STEERING_COMMAND, start_ms + 350, &skipped));
     TEST_ASSERT_EQUAL_UINT32(12, skipped);
 }
 
 void test_a_late_frame_misses_no_slot(void) {
     uint32_t skipped = 0;
-    agv_scheduler_restart(&scheduler, 0);
-    TEST_ASSERT_TRUE(agv_scheduler_due(&scheduler, AGV_MSG_GEAR_COMMAND, 165, &skipped));
+    restart(0);
+    TEST_ASSERT_TRUE(due(AGV_MSG_GEAR_COMMAND, 165, &skipped));
     TEST_ASSERT_EQUAL_UINT32(0, skipped);
-    TEST_ASSERT_TRUE(agv_scheduler_due(&scheduler, AGV_MSG_GEAR_COMMAND, 166, &skipped));
+    TEST_ASSERT_TRUE(due(AGV_MSG_GEAR_COMMAND, 166, &skipped));
     TEST_ASSERT_EQUAL_UINT32(0, skipped);
 }
 
 /* FSM-1, park at standstill: the first P comes in between. */
 void test_a_slot_that_begins_later_has_its_own_grid(void) {
     uint32_t skipped = 0;
-    agv_scheduler_restart(&scheduler, 0);
-    agv_scheduler_restart_slot(&scheduler, AGV_MSG_GEAR_COMMAND, 40);
-    TEST_ASSERT_FALSE(agv_scheduler_due(&scheduler, AGV_MSG_GEAR_COMMAND, 139, &skipped));
-    TEST_ASSERT_TRUE(agv_scheduler_due(&scheduler, AGV_MSG_GEAR_COMMAND, 140, &skipped));
+    restart(0);
+    core.now_ms = 40;
+    agv_scheduler_restart_slot(&core, AGV_MSG_GEAR_COMMAND);
+    TEST_ASSERT_FALSE(due(AGV_MSG_GEAR_COMMAND, 139, &skipped));
+    TEST_ASSERT_TRUE(due(AGV_MSG_GEAR_COMMAND, 140, &skipped));
 }
 
 static bool answered(uint32_t ms) {
-    if (!agv_scheduler_override(&scheduler, AGV_MSG_GEAR_COMMAND, ms * 1000, 5)) {
+    core.now_us = ms * 1000;
+    if (!agv_scheduler_override(&core, AGV_MSG_GEAR_COMMAND)) {
         return false;
     }
-    agv_scheduler_overridden(&scheduler, AGV_MSG_GEAR_COMMAND, ms, ms * 1000);
+    overridden(AGV_MSG_GEAR_COMMAND, ms, ms * 1000);
     return true;
 }
 
 static bool answer_due(uint32_t ms) {
-    return agv_scheduler_override_due(&scheduler, AGV_MSG_GEAR_COMMAND, ms * 1000, 5);
+    core.now_us = ms * 1000;
+    return agv_scheduler_override_due(&core, AGV_MSG_GEAR_COMMAND);
 }
 
 /* Shows: TOP-1, TIM-2 */
 TEST_CASE(0)
 TEST_CASE(0xFFFFFFFD)
 void test_an_identifier_is_overridden_at_most_every_5_ms(uint32_t start_ms) {
-    agv_scheduler_restart(&scheduler, start_ms);
+    restart(start_ms);
     TEST_ASSERT_TRUE(answered(start_ms));
     TEST_ASSERT_FALSE(answered(start_ms + 1));
     TEST_ASSERT_FALSE(answered(start_ms + 4));
     TEST_ASSERT_FALSE(answer_due(start_ms + 4));
     TEST_ASSERT_TRUE(answer_due(start_ms + 5));
-    agv_scheduler_overridden(&scheduler, AGV_MSG_GEAR_COMMAND, start_ms + 5, (start_ms + 5) * 1000);
+    overridden(AGV_MSG_GEAR_COMMAND, start_ms + 5, (start_ms + 5) * 1000);
     TEST_ASSERT_FALSE(answer_due(start_ms + 20));
     TEST_ASSERT_TRUE(answered(start_ms + 20));
     TEST_ASSERT_TRUE(answered(start_ms + 25));
@@ -120,28 +143,28 @@ void test_an_identifier_is_overridden_at_most_every_5_ms(uint32_t start_ms) {
 /* Shows: TOP-1 */
 void test_after_an_override_the_periodic_frame_is_due_half_a_cycle_later(void) {
     uint32_t skipped = 0;
-    agv_scheduler_restart(&scheduler, 1000);
-    agv_scheduler_overridden(&scheduler, AGV_MSG_GEAR_COMMAND, 1060, 1060000);
-    agv_scheduler_overridden(&scheduler, AGV_MSG_STEERING_COMMAND, 1020, 1020000);
-    TEST_ASSERT_FALSE(agv_scheduler_due(&scheduler, AGV_MSG_GEAR_COMMAND, 1109, &skipped));
-    TEST_ASSERT_TRUE(agv_scheduler_due(&scheduler, AGV_MSG_GEAR_COMMAND, 1110, &skipped));
-    TEST_ASSERT_FALSE(agv_scheduler_due(&scheduler, AGV_MSG_STEERING_COMMAND, 1031, &skipped));
-    TEST_ASSERT_TRUE(agv_scheduler_due(&scheduler, AGV_MSG_STEERING_COMMAND, 1032, &skipped));
-    TEST_ASSERT_TRUE(agv_scheduler_due(&scheduler, AGV_MSG_THROTTLE_COMMAND, 1033, &skipped)); /* not touched */
+    restart(1000);
+    overridden(AGV_MSG_GEAR_COMMAND, 1060, 1060000);
+    overridden(AGV_MSG_STEERING_COMMAND, 1020, 1020000);
+    TEST_ASSERT_FALSE(due(AGV_MSG_GEAR_COMMAND, 1109, &skipped));
+    TEST_ASSERT_TRUE(due(AGV_MSG_GEAR_COMMAND, 1110, &skipped));
+    TEST_ASSERT_FALSE(due(AGV_MSG_STEERING_COMMAND, 1031, &skipped));
+    TEST_ASSERT_TRUE(due(AGV_MSG_STEERING_COMMAND, 1032, &skipped));
+    TEST_ASSERT_TRUE(due(AGV_MSG_THROTTLE_COMMAND, 1033, &skipped)); /* not touched */
 }
 
 /* Shows: TIM-2 */
 void test_a_recent_override_is_not_recent_again_after_a_turn_of_the_clock(void) {
-    agv_scheduler_restart(&scheduler, 0);
+    restart(0);
     TEST_ASSERT_TRUE(answered(10));
     TEST_ASSERT_FALSE(answer_due(16)); /* the tick that notices that the 5 ms are over */
     TEST_ASSERT_TRUE(answered(12));    /* 49.7 days later */
 }
 
 void test_when_all_are_sent_what_waited_is_forgotten(void) {
-    agv_scheduler_restart(&scheduler, 0);
+    restart(0);
     TEST_ASSERT_TRUE(answered(10));
     TEST_ASSERT_FALSE(answered(11));
-    agv_scheduler_restart(&scheduler, 12);
+    restart(12);
     TEST_ASSERT_FALSE(answer_due(100));
 }

@@ -29,7 +29,7 @@ static void seal(void) {
 static void begin(void) {
     core->hal = &f.hal;
     core->recorder = &f.recorder;
-    agv_core_begin(core, true, true, false);
+    agv_core_begin(core, 0);
     core->hal = NULL;
     core->recorder = NULL;
     seal();
@@ -95,7 +95,7 @@ void test_a_corrupted_configuration_whose_checksum_fits_is_not_used(void) {
 void test_an_intact_configuration_is_kept(void) {
     f.config.tx_stalled_ms = 200;
     fixture_standby(&f);
-    core->monitor.vehicle.angle_ddeg ^= 1;
+    core->vehicle.angle_ddeg ^= 1;
     fixture_run(&f, 1);
     expect_reason(&f, AGV_FAULT_MEMORY_CORRUPTED);
     TEST_ASSERT_EQUAL_UINT16(200, agv_supervisor_config(&f.supervisor)->tx_stalled_ms);
@@ -108,7 +108,7 @@ void test_an_unresettable_fault_that_comes_while_tripped_is_stored(void) {
     walk_to_tripped(&f);
     TEST_ASSERT_EQUAL(AGV_LATCH_VALID, agv_latch_read(&f.hal, &latch));
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_NONE, latch.unresettable);
-    agv_faults_level(&core->monitor.faults, AGV_FAULT_SELF_TEST_FAILED, true);
+    agv_faults_level(core, AGV_FAULT_SELF_TEST_FAILED, true);
     seal();
     fixture_run(&f, 1);
     TEST_ASSERT_EQUAL(AGV_LATCH_VALID, agv_latch_read(&f.hal, &latch));

@@ -8,34 +8,31 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "agv/timer.h"
 #include "hal/can.h"
 
-/** One controller. */
+struct agv_core;
+
+/** One controller. Whether it is in bus-off, and since when, is kept by its watch (AGV_WATCH_BUS_OFF, ..AI_BUS_OFF). */
 typedef struct {
-    agv_timer_t off;   /**< since bus-off, or since its recovery was last asked for */
     uint16_t bus_offs; /**< as last read */
     uint16_t overruns; /**< as last read */
 } agv_bus_t;
 
-/** What a look at the controller showed. */
-typedef struct {
-    bool off;          /**< bus-off now, or it was since the last look */
-    bool recovered;    /**< left bus-off since the last look */
-    bool ask_recovery; /**< purge and ask for recovery now */
-    bool passive;      /**< error-passive */
-    bool overrun;      /**< received frames were lost since the last look */
-    bool stalled;      /**< a frame taken does not leave for too long */
-} agv_bus_report_t;
+/** What a look at the controller showed: bits. */
+#define AGV_BUS_OFF 0x01u          /**< bus-off now, or it was since the last look */
+#define AGV_BUS_RECOVERED 0x02u    /**< left bus-off since the last look */
+#define AGV_BUS_ASK_RECOVERY 0x04u /**< purge and ask for recovery now */
+#define AGV_BUS_PASSIVE 0x08u      /**< error-passive */
+#define AGV_BUS_OVERRUN 0x10u      /**< received frames were lost since the last look */
+#define AGV_BUS_STALLED 0x20u      /**< a frame taken does not leave for too long */
 
 /** Take the controller's counters as the starting point. */
-void agv_bus_start(agv_bus_t *bus, const hal_can_status_t *status);
+void agv_bus_start(struct agv_core *core, hal_can_side_t side);
 
-/** Look at the controller. Call at every tick. */
-agv_bus_report_t agv_bus_tick(agv_bus_t *bus, const hal_can_status_t *status, uint16_t recovery_ms, uint16_t stalled_ms,
-                              uint32_t now_ms);
+/** Look at the controller. Call at every tick. @return AGV_BUS_* bits */
+uint32_t agv_bus_tick(struct agv_core *core, hal_can_side_t side);
 
 /** Whether the controller was in bus-off at the last look. */
-bool agv_bus_is_off(const agv_bus_t *bus);
+bool agv_bus_is_off(const struct agv_core *core, hal_can_side_t side);
 
 #endif

@@ -24,8 +24,8 @@ uint32_t agv_crc32(uint32_t crc, const void *bytes, size_t size);
 uint16_t agv_crc16(uint16_t crc, const void *bytes, size_t size);
 
 /**
- * Quick seal over memory: the exclusive-or of its 32-bit words (the last one filled up with 0), inverted. Any one flipped
- * bit changes it.
+ * Quick seal over memory: the exclusive-or of its 32-bit words, inverted. Any one flipped bit changes it.
+ * @param size a multiple of 4
  */
 uint32_t agv_seal(const void *words, size_t size);
 

@@ -59,6 +59,17 @@ typedef enum {
 #define AGV_VCU_ALARM_EPS_CAN_BUS 0x20u
 #define AGV_VCU_ALARM_S_DRIVER 0x80u
 
+/** Bits of 43Fh byte 5, and one that is inverted (P11). */
+#define AGV_SIGNAL_LEFT 0x10u
+#define AGV_SIGNAL_RIGHT 0x20u
+#define AGV_SIGNAL_AUTOPILOT_OFF 0x40u
+#define AGV_SIGNAL_HEADLIGHT_OFF 0x80u
+
+/** Bits of 363h byte 7. */
+#define AGV_VCU_FLAG_BUTTON_1 0x01u
+#define AGV_VCU_FLAG_MANUAL 0x40u
+#define AGV_VCU_FLAG_AUTOPILOT 0x80u
+
 /** Bits of 167h byte 8, EPS faults (bit 1 of the document is 0x01). */
 #define AGV_EPS_FAULT_UNDER_VOLTAGE 0x01u
 #define AGV_EPS_FAULT_OVER_VOLTAGE 0x02u
@@ -144,6 +155,21 @@ typedef struct {
     int32_t left_mm_s;
     int32_t right_mm_s;
 } agv_wheel_speed_t;
+
+/**
+ * Whether the value that a message carries is one that the protocol knows: gear, throttle, steering angle, EPS mode. What
+ * the agv_unpack_X of that message returns, without unpacking; true where every value is valid.
+ */
+bool agv_value_is_valid(agv_message_t message, const uint8_t data[AGV_DLC]);
+
+/** The bits of each command that carry something; all others are reserved (P14). */
+extern const uint8_t agv_command_bits[AGV_COMMAND_COUNT][AGV_DLC];
+
+/** Read a steering angle in 0.1 degree from its two bytes (P5); beyond +9000 when they hold what is no angle. */
+int32_t agv_angle_read(const uint8_t *bytes);
+
+/** Write a steering angle, -9000..+9000, as two bytes. */
+void agv_angle_write(uint8_t *bytes, int32_t angle_ddeg);
 
 bool agv_pack_turn_signal_command(uint8_t data[AGV_DLC], const agv_turn_signal_command_t *in);
 bool agv_unpack_turn_signal_command(agv_turn_signal_command_t *out, const uint8_t data[AGV_DLC]);

@@ -8,6 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+struct agv_core;
+
 /** A fault; the value is its rank, 0 the highest. */
 typedef enum {
 #define AGV_FAULT(name, class, led, flags) AGV_FAULT_##name,
@@ -65,16 +67,16 @@ typedef struct {
 } agv_faults_t;
 
 /** Say whether the cause of a level is present. Ignored for AGV_FAULT_NONE. */
-void agv_faults_level(agv_faults_t *faults, agv_fault_t fault, bool cause);
+void agv_faults_level(struct agv_core *core, agv_fault_t fault, bool cause);
 
 /** Raise an event, or raise it again. Ignored for what is no event. */
-void agv_faults_event(agv_faults_t *faults, agv_fault_t fault, uint32_t now_ms);
+void agv_faults_event(struct agv_core *core, agv_fault_t fault);
 
 /** End the events whose hold time is over. Call at every tick. */
-void agv_faults_tick(agv_faults_t *faults, uint32_t now_ms, uint16_t event_hold_ms);
+void agv_faults_tick(struct agv_core *core);
 
 /** Whether the cause of a fault is present. False for AGV_FAULT_NONE. */
-bool agv_faults_is_active(const agv_faults_t *faults, agv_fault_t fault);
+bool agv_faults_is_active(const struct agv_core *core, agv_fault_t fault);
 
 /** The faults that have all of some marks (AGV_MARK_*). */
 agv_fault_set_t agv_faults_marked(const agv_faults_t *faults, uint8_t marks);

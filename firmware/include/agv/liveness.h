@@ -10,6 +10,8 @@
 
 #include "agv/protocol.h"
 
+struct agv_core;
+
 /** The nodes with a heartbeat (SUP-1): 363h byte 8, 067h byte 1, 43Fh byte 8. */
 typedef enum { AGV_NODE_VCU, AGV_NODE_EPS, AGV_NODE_AI, AGV_NODE_COUNT } agv_node_t;
 
@@ -35,56 +37,49 @@ typedef struct {
 #define AGV_AGE_MAX UINT32_MAX
 #define AGV_AGE_LIMIT_MS 6000u
 
-/** All messages and heartbeats of one supervisor. Bit n of the sets is message n. */
+/** One message. */
 typedef struct {
-    uint32_t last_ms[AGV_MSG_COUNT];     /**< last frame of the right shape */
-    uint32_t deadline_ms[AGV_MSG_COUNT]; /**< where the deadline began: last usable frame, start, or engagement */
+    uint32_t last_ms;     /**< last frame of the right shape; before: the start */
+    uint32_t deadline_ms; /**< where the deadline began: last usable frame, start, or engagement */
+    bool heard;           /**< received at least once */
+    bool old;             /**< last_ms is older than AGV_AGE_LIMIT_MS */
+    bool expired;         /**< deadline expired; stays until it begins anew */
+} agv_message_age_t;
+
+/** All messages and heartbeats of one supervisor. */
+typedef struct {
+    agv_message_age_t messages[AGV_MSG_COUNT];
     agv_heartbeat_t heartbeats[AGV_NODE_COUNT];
-    uint16_t heard;   /**< received at least once */
-    uint16_t recent;  /**< last_ms is not older than AGV_AGE_LIMIT_MS */
-    uint16_t expired; /**< deadline expired; stays until it begins anew */
 } agv_liveness_t;
 
-/** Nothing heard; all deadlines begin now, but the one of the AI's heartbeat (SUP-8). */
-void agv_liveness_start(agv_liveness_t *liveness, uint32_t now_ms);
+/** Nothing heard, from zeroed memory; all deadlines begin now, but the one of the AI's heartbeat (SUP-8). */
+void agv_liveness_start(struct agv_core *core);
 
 /**
  * A frame of the right shape arrived.
  * @return milliseconds since the one before, AGV_AGE_MAX when that is too long ago or there was none.
  */
-uint32_t agv_liveness_arrived(agv_liveness_t *liveness, agv_message_t message, uint32_t time_ms);
+uint32_t agv_liveness_arrived(struct agv_core *core, uint32_t message, uint32_t time_ms);
 
 /** The deadline of a message begins anew: it was usable, or (AI commands) the autopilot was engaged. */
-void agv_liveness_refresh(agv_liveness_t *liveness, agv_message_t message, uint32_t time_ms);
+void agv_liveness_refresh(struct agv_core *core, uint32_t message, uint32_t time_ms);
 
 /** A frame with an alive counter arrived. */
-void agv_liveness_beat(agv_liveness_t *liveness, agv_node_t node, uint8_t counter, uint32_t time_ms);
+void agv_liveness_beat(struct agv_core *core, agv_node_t node, uint8_t counter, uint32_t time_ms);
 
-/** Forget that a node was seen (SUP-8, reset): it is seen again when its counter changes. */
-void agv_liveness_forget(agv_liveness_t *liveness, agv_node_t node);
+/** Judge the age of a message, at every tick. @return whether its deadline has expired, now or earlier. */
+bool agv_liveness_judge(struct agv_core *core, uint32_t message, uint32_t timeout_ms);
 
-/** Saturate the ages. Call at every tick. */
-void agv_liveness_tick(agv_liveness_t *liveness, uint32_t now_ms);
-
-/** Judge the deadline of a message. @return whether it has expired, now or earlier. */
-bool agv_liveness_judge(agv_liveness_t *liveness, agv_message_t message, uint32_t now_ms, uint16_t timeout_ms);
-
-/** Judge the deadline of a heartbeat. The AI's is not awaited before it was seen (SUP-8). */
-void agv_liveness_judge_beat(agv_liveness_t *liveness, agv_node_t node, uint32_t now_ms, uint16_t timeout_ms);
-
-/** Received since the start. */
-bool agv_liveness_heard(const agv_liveness_t *liveness, agv_message_t message);
+/**
+ * Judge the deadline of a heartbeat, after the ages. The AI's is not awaited before it was seen (SUP-8).
+ * @return what is known of it now
+ */
+agv_heartbeat_state_t agv_liveness_judge_beat(struct agv_core *core, uint32_t node, uint32_t timeout_ms);
 
 /** Heard, and within its deadline. */
-bool agv_liveness_fresh(const agv_liveness_t *liveness, agv_message_t message);
+bool agv_liveness_fresh(const struct agv_core *core, uint32_t message);
 
 /** Age of the last frame of the right shape; since the start when none was heard. Saturates to AGV_AGE_MAX. */
-uint32_t agv_liveness_age_ms(const agv_liveness_t *liveness, agv_message_t message, uint32_t now_ms);
-
-/** What is known of a heartbeat. */
-agv_heartbeat_state_t agv_liveness_heartbeat(const agv_liveness_t *liveness, agv_node_t node);
-
-/** Whether a heartbeat is ALIVE. */
-bool agv_liveness_alive(const agv_liveness_t *liveness, agv_node_t node);
+uint32_t agv_liveness_age_ms(const struct agv_core *core, uint32_t message);
 
 #endif

@@ -10,35 +10,45 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "agv/codec.h"
 #include "agv/faults.h"
 #include "agv/liveness.h"
 #include "agv/protocol.h"
-#include "agv/timer.h"
 #include "hal/can.h"
 
 struct agv_core;
 
-/** Mode that 363h byte 7 reports. While both bits are set the mode before stands, until MODE_INVALID; then it is none. */
-typedef enum { AGV_MODE_NONE, AGV_MODE_MANUAL, AGV_MODE_ENGAGED } agv_mode_t;
+/**
+ * Mode that 363h byte 7 reports, as its two bits. While both are set the mode before stands, until MODE_INVALID; then it
+ * is none.
+ */
+typedef enum {
+    AGV_MODE_NONE = 0,
+    AGV_MODE_MANUAL = AGV_VCU_FLAG_MANUAL,
+    AGV_MODE_ENGAGED = AGV_VCU_FLAG_AUTOPILOT
+} agv_mode_t;
+
+/** Remote button 1. */
+typedef enum { AGV_BUTTON_UNKNOWN, AGV_BUTTON_DOWN, AGV_BUTTON_UP } agv_button_t;
 
 /** The vehicle as it last reported itself. */
 typedef struct {
-    agv_timer_t both_modes; /**< runs while both mode bits are set */
-    agv_timer_t slow;       /**< runs while both wheels are below the standstill speed and 101h is fresh */
-    int16_t angle_ddeg;     /**< last valid measured steering angle */
-    int16_t command_ddeg;   /**< last valid steering command since the engagement (gateway: as sent on) */
     uint8_t mode;           /**< agv_mode_t */
     uint8_t gear;           /**< agv_gear_t of the last 0A3h; 0 when that was invalid */
-    bool throttle_on;       /**< last 050h was valid and above 0 */
+    uint8_t throttle;       /**< counts of the last 050h; 0 when that was invalid */
     bool eps_in_angle_mode; /**< mode of the last 167h */
-    bool button_pressed;    /**< remote button 1 */
+    uint8_t button;         /**< remote button 1: agv_button_t */
     bool angle_known;
     bool command_known;
+    int16_t angle_ddeg;   /**< last valid measured steering angle */
+    int16_t command_ddeg; /**< last valid steering command since the engagement (gateway: as sent on) */
 } agv_vehicle_t;
 
-/** What is counted in a row: bad frames, fast gaps. The first eight are the fault bits of 167h. */
+/** What is counted in a row: bad frames, fast gaps. */
 enum {
-    AGV_ROW_EPS_MODE = 8,
+    AGV_ROW_EPS_FAULTS = 0, /**< eight: the fault bits of 167h */
+    AGV_ROW_VCU_ALARMS = 8, /**< eight: the alarm bits of 363h */
+    AGV_ROW_EPS_MODE = 16,
     AGV_ROW_GEAR_STATUS,
     AGV_ROW_THROTTLE_STATUS,
     AGV_ROW_STEERING_ANGLE,
@@ -48,21 +58,13 @@ enum {
 
 /** Everything that is known and wrong. */
 typedef struct {
-    agv_liveness_t liveness;
-    agv_faults_t faults;
-    agv_vehicle_t vehicle;
-    agv_timer_t engaged;          /**< runs while engaged; limit engaged_grace_ms */
-    agv_timer_t ai_awaited;       /**< runs while engaged with an AI never seen */
-    agv_timer_t steering_off;     /**< runs while the steering is off its command and does not gain */
-    agv_timer_t throttle_in_park; /**< runs while 050h is above 0 in gear P */
-    agv_timer_t other_set[2];     /**< since the other ID set's 43Fh, 363h was last heard */
-    uint16_t steering_off_ddeg;   /**< difference from which a gain is counted */
+    uint16_t steering_off_ddeg; /**< difference from which a gain is counted */
     uint8_t in_a_row[AGV_ROW_COUNT];
     bool ai_alarm_armed; /**< VCU alarm bit 3 was clear with the AI alive (SUP-8) */
     bool after_gap;      /**< this frame came more than two cycles after the one before */
 } agv_monitor_t;
 
-/** Nothing known; deadlines begin now. */
+/** Nothing known, from zeroed memory; deadlines begin now. */
 void agv_monitor_start(struct agv_core *core);
 
 /**
@@ -85,9 +87,6 @@ void agv_monitor_disengage(struct agv_core *core);
 
 /** A reset was accepted: the AI computer counts as never seen (SUP-8). */
 void agv_monitor_forget_ai(struct agv_core *core);
-
-/** Whether the autopilot is engaged. */
-bool agv_monitor_engaged(const struct agv_core *core);
 
 /** Whether it has been for engaged_grace_ms: the checks of SUP-5 count. */
 bool agv_monitor_settled(struct agv_core *core);

@@ -11,6 +11,8 @@
 
 #include "agv/protocol.h"
 
+struct agv_core;
+
 /** One slot. */
 typedef struct {
     uint32_t next_ms;       /**< when it is due */
@@ -28,28 +30,27 @@ typedef struct {
  * All four have just been sent: the next ones are due in 100 ms (43Fh), 66 ms (168h), 33 ms (075h), 25 ms (065h), then on
  * their cycles. What waited to be answered is forgotten.
  */
-void agv_scheduler_restart(agv_scheduler_t *scheduler, uint32_t now_ms);
+void agv_scheduler_restart(struct agv_core *core);
 
 /** One of them has just been sent for the first time: its next one is due a cycle later. */
-void agv_scheduler_restart_slot(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_ms);
+void agv_scheduler_restart_slot(struct agv_core *core, agv_message_t command);
 
 /**
  * Whether a slot is due; if so its next moment is set, on the same grid. Slots that were missed are not made up for.
- * @param skipped counts the missed ones
+ * @return 0: not due; else how many slots have come since the last call, the missed ones among them
  */
-bool agv_scheduler_due(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_ms, uint32_t *skipped);
+uint32_t agv_scheduler_due(struct agv_core *core, agv_message_t command);
 
 /**
  * A foreign command has to be answered.
- * @param now_us microseconds, wrapping: the rate limit goes by the exact receive time
- * @return true: now. false: the last answer is less than @p gap_ms ago; it waits.
+ * @return true: now. false: the last answer is less than override_gap_ms ago, by the exact receive times; it waits.
  */
-bool agv_scheduler_override(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_us, uint16_t gap_ms);
+bool agv_scheduler_override(struct agv_core *core, agv_message_t command);
 
 /** Whether a waiting answer is to be sent now. Call at every tick. */
-bool agv_scheduler_override_due(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_us, uint16_t gap_ms);
+bool agv_scheduler_override_due(struct agv_core *core, agv_message_t command);
 
 /** An override was sent: the next periodic frame is due half a cycle later. */
-void agv_scheduler_overridden(agv_scheduler_t *scheduler, agv_message_t command, uint32_t now_ms, uint32_t now_us);
+void agv_scheduler_overridden(struct agv_core *core, agv_message_t command);
 
 #endif

@@ -12,7 +12,6 @@
 
 #include "agv/protocol.h"
 #include "agv/scheduler.h"
-#include "agv/timer.h"
 
 struct agv_core;
 
@@ -24,19 +23,18 @@ struct agv_core;
 typedef struct {
     agv_scheduler_t scheduler;
     uint32_t status_due_ms;
-    agv_timer_t waits[AGV_COMMAND_COUNT]; /**< vehicle side: since when the HAL does not take this command */
-    uint16_t kept;                        /**< passed frames that the HAL did not take, bit n = message n */
+    uint16_t kept; /**< passed frames that the HAL did not take, bit n = message n */
     uint8_t kept_data[AGV_MSG_COUNT][AGV_DLC];
     uint8_t wanted_before;  /**< own commands that were sent at the last tick */
     uint8_t alive_counter;  /**< of the own 43Fh */
     uint8_t status_counter; /**< alive counter of the status frame */
 } agv_transmitter_t;
 
-/** Nothing waits; the slots begin now. */
+/** Nothing waits, from zeroed memory; the slots begin now. */
 void agv_transmitter_start(struct agv_core *core);
 
 /** Forget what waits to be sent, of a set of messages: it is never sent. */
-void agv_transmitter_discard(struct agv_core *core, uint16_t messages);
+void agv_transmitter_discard(struct agv_core *core, uint32_t messages);
 
 /** Send all commands that the state asks for at once and begin their slots anew (FSM-2). */
 void agv_transmitter_burst(struct agv_core *core);
