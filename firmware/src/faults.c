@@ -15,7 +15,7 @@ _Static_assert((uint32_t)AGV_FAULT_COUNT <= 64u, "a fault set has 64 bits");
 
 /* What is FIXED trips by default: nothing could be weaker than a warning. */
 #define AGV_FAULT(name, class, led, flags)                                                                             \
-    _Static_assert((AGV_CLASS_##class == AGV_CLASS_TRIP) || (((flags)&FIXED) == 0), #name);
+    _Static_assert((AGV_CLASS_##class == AGV_CLASS_TRIP) || (((flags) & FIXED) == 0), #name);
 #include "agv/fault_table.def"
 #undef AGV_FAULT
 
@@ -44,7 +44,7 @@ static const uint8_t event_faults[AGV_EVENT_FAULT_COUNT] = {AGV_FAULT_SUPERVISOR
 enum { WARN = AGV_CLASS_WARN, TRIP = AGV_CLASS_TRIP };
 #define IF_SET(condition, name) | ((agv_fault_set_t)((condition) ? 1u : 0u) << (uint32_t)AGV_FAULT_##name)
 
-#define AGV_FAULT(name, class, led, flags) IF_SET(((flags)&FIXED) != 0, name)
+#define AGV_FAULT(name, class, led, flags) IF_SET(((flags) & FIXED) != 0, name)
 const agv_fault_set_t agv_faults_fixed = 0u
 #include "agv/fault_table.def"
     ;

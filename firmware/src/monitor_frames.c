@@ -74,8 +74,15 @@ static void update_mode(agv_core_t *core, uint32_t flags, uint32_t stamp_ms) {
 static bool ai_alarm_counts(agv_core_t *core, bool alarm) {
     agv_monitor_t *const monitor = &core->monitor;
     const bool alive = agv_core_alive(core, AGV_NODE_AI);
-    monitor->ai_alarm_armed = alive && (monitor->ai_alarm_armed || !alarm);
-    return monitor->ai_alarm_armed && agv_core_engaged(core);
+    const bool engaged = agv_core_engaged(core);
+    if (alive && !alarm) {
+        monitor->ai_alarm_armed = true;
+    } else if (!alive && !engaged) {
+        monitor->ai_alarm_armed = false; /* switched off in manual driving: it has to be clear again */
+    } else {
+        /* an AI that dies while engaged is what the alarm is for */
+    }
+    return monitor->ai_alarm_armed && engaged;
 }
 
 static void on_vehicle_status(agv_core_t *core, const hal_can_frame_t *frame) {

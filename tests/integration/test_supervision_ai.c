@@ -406,6 +406,23 @@ void test_the_vcus_ai_alarm_has_to_be_clear_once(void) {
     expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
 }
 
+/* The AI computer dies while engaged: the VCU's alarm that follows counts, and stays until the engagement ends. */
+/* Shows: SUP-8, VCU_AI_CAN_LOST */
+void test_the_vcus_ai_alarm_outlives_the_ai(void) {
+    fixture_active(&f);
+    fixture_mute_ai(&f, true);
+    fixture_run(&f, 600);
+    expect_fault(&f, AGV_FAULT_AI_HEARTBEAT_LOST, true);
+    set_alarm(true);
+    fixture_run_past(&f, VCU);
+    expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, true);
+    fixture_run(&f, 500);
+    expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, true);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run_past(&f, VCU);
+    expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, false);
+}
+
 /* Was clear, is set, and then it is engaged: in that very frame. */
 /* Shows: SUP-8, FSM-2, VCU_AI_CAN_LOST */
 void test_the_vcus_ai_alarm_at_the_engagement(void) {
