@@ -132,6 +132,7 @@ void test_other_identifiers_are_received_and_nothing_else(void) {
     }
     const agv_counters_t *after = agv_supervisor_counters(&f.supervisor);
     TEST_ASSERT_EQUAL_UINT32(before.received + 9, after->received);
+    TEST_ASSERT_EQUAL_UINT32(before.dropped, after->dropped);
     TEST_ASSERT_EQUAL_UINT32(before.rejected[AGV_REJECTED_LENGTH], after->rejected[AGV_REJECTED_LENGTH]);
     expect_state(&f, AGV_STATE_STANDBY);
 }

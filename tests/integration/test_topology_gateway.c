@@ -357,19 +357,25 @@ static void expect_nothing_passes(hal_can_side_t side, hal_can_frame_t frame) {
     expect_silence(&f);
 }
 
+static void expect_dropped_from(hal_can_side_t side, uint32_t id) {
+    const uint32_t before = dropped();
+    expect_nothing_passes(side, (hal_can_frame_t){.id = id, .length = 8});
+    TEST_ASSERT_EQUAL_UINT32(before + 1, dropped());
+}
+
 /* Shows: TOP-2 */
 void test_no_other_identifier_passes(void) {
     fixture_active(&f);
     for (uint32_t id = 0; id <= 0x7FF; id++) {
         if (id != 0x43F && id != 0x168 && id != 0x075 && id != 0x065) {
-            expect_nothing_passes(HAL_CAN_AI, (hal_can_frame_t){.id = id, .length = 8});
+            expect_dropped_from(HAL_CAN_AI, id);
         }
     }
     expect_state(&f, AGV_STATE_ACTIVE);
     for (uint32_t id = 0; id <= 0x7FF; id++) {
         if (id != 0x363 && id != 0x0A3 && id != 0x050 && id != 0x067 && id != 0x167 && id != 0x267 && id != 0x101 &&
             id != 0x43F && id != 0x168 && id != 0x075 && id != 0x065) {
-            expect_nothing_passes(HAL_CAN_VEHICLE, (hal_can_frame_t){.id = id, .length = 8});
+            expect_dropped_from(HAL_CAN_VEHICLE, id);
         }
     }
     expect_state(&f, AGV_STATE_ACTIVE);
@@ -395,7 +401,9 @@ void test_no_malformed_frame_passes(void) {
 void test_a_command_of_the_vehicle_side_passes_nowhere_and_trips(void) {
     fixture_active(&f);
     fixture_forget_sent(&f);
+    const uint32_t before = dropped();
     fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .length = 8, .data = {GEAR_P}});
+    TEST_ASSERT_EQUAL_UINT32(before + 1, dropped());
     expect_reason(&f, AGV_FAULT_FOREIGN_COMMAND_SENDER);
     for (uint32_t i = 0; i < f.sent_count; i++) {
         TEST_ASSERT_EQUAL_INT(HAL_CAN_VEHICLE, f.sent[i].side);
