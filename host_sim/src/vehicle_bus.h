@@ -22,7 +22,7 @@ typedef struct {
     vehicle_config_t vehicle;
     const char *interfaces[HAL_CAN_SIDES]; /**< the AI side: NULL on the shared bus */
     const linux_clock_t *clock;            /**< time of the run; stays the caller's */
-    vehicle_bus_sent_fn *on_sent;          /**< or NULL */
+    vehicle_bus_sent_fn *on_sent;          /**< or NULL: own frames are not read back then */
     void *ctx;
 } vehicle_bus_config_t;
 
@@ -32,7 +32,10 @@ typedef struct {
     vehicle_bus_config_t config;
     linux_can_t nodes[VEHICLE_NODES];
     linux_can_t strangers[HAL_CAN_SIDES];
-    uint32_t unsent; /**< frames that the kernel did not take: they are lost, as on a bus without acknowledge */
+    uint64_t now_ms;             /**< how far the vehicle has come: its time never goes back */
+    uint64_t sent;               /**< frames that the kernel took */
+    uint64_t unsent;             /**< frames that it did not: they are lost, as on a bus without acknowledge */
+    bool is_down[HAL_CAN_SIDES]; /**< the interface is down: nothing is sent or heard until it is up again */
 } vehicle_bus_t;
 
 /** How many files vehicle_bus_fd() knows. */
@@ -44,16 +47,22 @@ bool vehicle_bus_open(vehicle_bus_t *bus, const vehicle_bus_config_t *config);
 /** The files to wait for (linux_loop.h), 0 .. VEHICLE_BUS_FILES - 1; -1: this one is not open. */
 int vehicle_bus_fd(const vehicle_bus_t *bus, unsigned file);
 
-/** Let every node hear what has arrived for it, and tell of what has left. @return false: an interface is gone. */
+/**
+ * Let every node hear what has arrived for it, and tell of what has left.
+ * @return false: an interface is gone; was reported. The vehicle cannot go on.
+ */
 bool vehicle_bus_receive(vehicle_bus_t *bus);
 
 /** vehicle_bus_receive(), and send what is due by now. @return as vehicle_bus_receive() */
 bool vehicle_bus_tick(vehicle_bus_t *bus);
 
-/** Do something now (vehicle_do()). */
+/** The vehicle at the present time (vehicle_view()). */
+void vehicle_bus_view(vehicle_bus_t *bus, vehicle_view_t *view);
+
+/** Do something now (vehicle_do()); frames of it go out with the next tick. */
 bool vehicle_bus_do(vehicle_bus_t *bus, const vehicle_action_t *action);
 
-/** Close. */
+/** Close. Nothing where vehicle_bus_open() failed. */
 void vehicle_bus_close(vehicle_bus_t *bus);
 
 #endif
