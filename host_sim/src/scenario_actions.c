@@ -81,6 +81,14 @@ const char *const SCENARIO_PARAMETER_NAMES[SCENARIO_PARAMETERS] = {
     "message",      "frames",    "by_ms",  "times", "kind", "every_ms", "bytes",  "field",  "value", "gear",
     "throttle_pct", "steer_deg", "button", "side",  "id",   "cause",    "off_ms", "for_ms", "bit"};
 
+const scenario_action_row_t *scenario_action(size_t number) {
+    return (number < COUNT(ACTIONS)) ? &ACTIONS[number] : NULL;
+}
+
+const scenario_field_row_t *scenario_field(size_t number) {
+    return (number < COUNT(FIELDS)) ? &FIELDS[number] : NULL;
+}
+
 const scenario_action_row_t *scenario_find_action(scenario_actor_t actor, const char *word) {
     for (size_t i = 0u; i < COUNT(ACTIONS); i++) {
         const scenario_action_row_t *row = &ACTIONS[i];

@@ -1,6 +1,6 @@
 /**
  * @file scenario_actions.h
- * The words that steps are made of: who acts, what he can do, what that needs. For scenario_parse*.c only.
+ * The words that steps are made of: who acts, what he can do, what that needs. For scenario_parse*.c and vehicle_words.c only.
  */
 #ifndef HOST_SIM_SCENARIO_ACTIONS_H
 #define HOST_SIM_SCENARIO_ACTIONS_H
@@ -67,6 +67,10 @@ typedef struct {
 extern const yaml_word_t SCENARIO_ACTORS[];
 /** Names of the parameters, in the order of their bits. */
 extern const char *const SCENARIO_PARAMETER_NAMES[SCENARIO_PARAMETERS];
+
+/** All actions, and all fields: those with the numbers from 0 on; NULL: no more. */
+const scenario_action_row_t *scenario_action(size_t number);
+const scenario_field_row_t *scenario_field(size_t number);
 
 /** What an actor can do by this word; NULL: nothing. */
 const scenario_action_row_t *scenario_find_action(scenario_actor_t actor, const char *word);

@@ -412,7 +412,7 @@ static bool expectations_fit(const scenario_t *scenario, const char *file) {
 }
 
 static bool read_document(reading_t *reading, yaml_document_t *document, const char *file) {
-    const yaml_reader_t reader = {file, document};
+    const yaml_reader_t reader = {.file = file, .document = document};
     const yaml_node_t *root = yaml_document_get_root_node(document);
     scenario_t *scenario = reading->scenario;
 

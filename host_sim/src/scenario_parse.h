@@ -1,6 +1,6 @@
 /**
  * @file scenario_parse.h
- * What the parts of the scenario reader share. For scenario_parse*.c only.
+ * What the parts of the scenario reader share. For scenario_parse*.c, and for those who read single steps elsewhere.
  */
 #ifndef HOST_SIM_SCENARIO_PARSE_H
 #define HOST_SIM_SCENARIO_PARSE_H
@@ -32,6 +32,13 @@ yaml_read_fn scenario_parse_counters;
 /** The steps and the expectations; their target is the scenario_t. */
 yaml_read_fn scenario_parse_steps;
 yaml_read_fn scenario_parse_expect;
+
+/**
+ * One step.
+ * @param config of its supervisor: the ID set and the topology decide what a step may name
+ */
+bool scenario_parse_step(const yaml_reader_t *reader, const yaml_node_t *node, const agv_config_t *config,
+                         scenario_step_t *step);
 
 /** A moment: 0 .. SCENARIO_DURATION_MAX_MS. */
 bool scenario_parse_time(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t *ms);

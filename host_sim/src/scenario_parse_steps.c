@@ -183,7 +183,7 @@ static bool take_kind(const yaml_reader_t *reader, const reading_t *reading, hal
 }
 
 /** A raw frame: `id` or `message`, `kind`, `bytes`. */
-static bool take_frame(const yaml_reader_t *reader, const reading_t *reading, const scenario_t *scenario,
+static bool take_frame(const yaml_reader_t *reader, const reading_t *reading, const agv_config_t *config,
                        scenario_step_t *step, hal_can_frame_t *frame) {
     const yaml_node_t *id = given(reading, P_ID);
 
@@ -195,13 +195,13 @@ static bool take_frame(const yaml_reader_t *reader, const reading_t *reading, co
         return false;
     }
     if (id == NULL) {
-        frame->id = agv_message_id(step->vehicle.message, (agv_id_set_t)scenario->config.id_set);
+        frame->id = agv_message_id(step->vehicle.message, (agv_id_set_t)config->id_set);
         return true;
     }
     return yaml_reader_hex(reader, id, "id", (frame->flags == HAL_CAN_EXTENDED) ? 0x1FFFFFFFu : AGV_ID_MAX, &frame->id);
 }
 
-static bool take_side(const yaml_reader_t *reader, const reading_t *reading, const scenario_t *scenario,
+static bool take_side(const yaml_reader_t *reader, const reading_t *reading, const agv_config_t *config,
                       hal_can_side_t *side) {
     const yaml_node_t *node = given(reading, P_SIDE);
     int word = HAL_CAN_VEHICLE;
@@ -209,7 +209,7 @@ static bool take_side(const yaml_reader_t *reader, const reading_t *reading, con
     if ((node != NULL) && !yaml_reader_word(reader, node, "side", SCENARIO_SIDES, &word)) {
         return false;
     }
-    if ((word == (int)HAL_CAN_AI) && (scenario->config.topology != (uint16_t)AGV_TOPOLOGY_GATEWAY)) {
+    if ((word == (int)HAL_CAN_AI) && (config->topology != (uint16_t)AGV_TOPOLOGY_GATEWAY)) {
         return yaml_reader_fail(reader, node, "side: there is an AI side only with topology: gateway");
     }
     *side = (hal_can_side_t)word;
@@ -217,7 +217,7 @@ static bool take_side(const yaml_reader_t *reader, const reading_t *reading, con
 }
 
 static bool take_for_vehicle(const yaml_reader_t *reader, const reading_t *reading, const scenario_action_row_t *row,
-                             const scenario_t *scenario, scenario_step_t *step) {
+                             const agv_config_t *config, scenario_step_t *step) {
     vehicle_action_t *action = &step->vehicle;
 
     action->what = (vehicle_do_t)row->what;
@@ -237,19 +237,19 @@ static bool take_for_vehicle(const yaml_reader_t *reader, const reading_t *readi
         if ((given(reading, P_EVERY_MS) != NULL) && (given(reading, P_TIMES) == NULL)) {
             action->count = VEHICLE_FOREVER;
         }
-        return take_side(reader, reading, scenario, &action->side) &&
-               take_frame(reader, reading, scenario, step, &action->frame);
+        return take_side(reader, reading, config, &action->side) &&
+               take_frame(reader, reading, config, step, &action->frame);
     default:
         return true;
     }
 }
 
 static bool take_for_supervisor(const yaml_reader_t *reader, const reading_t *reading, const scenario_action_row_t *row,
-                                const scenario_t *scenario, scenario_step_t *step) {
+                                const agv_config_t *config, scenario_step_t *step) {
     scenario_action_t *action = &step->supervisor;
     int cause = HAL_RESET_POWER_ON;
 
-    if (!take_numbers(reader, reading, step) || !take_side(reader, reading, scenario, &action->side)) {
+    if (!take_numbers(reader, reading, step) || !take_side(reader, reading, config, &action->side)) {
         return false;
     }
     action->what = (scenario_do_t)row->what;
@@ -261,7 +261,7 @@ static bool take_for_supervisor(const yaml_reader_t *reader, const reading_t *re
         }
         action->cause = (hal_reset_cause_t)cause;
     }
-    return (action->what != SCENARIO_DELIVER) || take_frame(reader, reading, scenario, step, &action->frame);
+    return (action->what != SCENARIO_DELIVER) || take_frame(reader, reading, config, step, &action->frame);
 }
 
 /** What the action needs is there, and nothing else. */
@@ -336,14 +336,10 @@ static bool take_keys(const yaml_reader_t *reader, reading_t *reading) {
            yaml_reader_fail(reader, node, "a step: who acts? one of vcu, eps, ai, operator, bus, supervisor");
 }
 
-static bool read_step(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    scenario_t *scenario = target;
+bool scenario_parse_step(const yaml_reader_t *reader, const yaml_node_t *node, const agv_config_t *config,
+                         scenario_step_t *step) {
     reading_t reading = {.node = node, .actor = ACTOR_NONE};
 
-    if (scenario->step_count == SCENARIO_STEPS_MAX) {
-        return yaml_reader_fail(reader, node, "more than %u steps", SCENARIO_STEPS_MAX);
-    }
-    scenario_step_t *step = &scenario->steps[scenario->step_count];
     if (!take_keys(reader, &reading)) {
         return false;
     }
@@ -365,9 +361,18 @@ static bool read_step(const yaml_reader_t *reader, const yaml_node_t *node, void
     if (!has_what_it_needs(reader, &reading, row) || !take_message(reader, &reading, step)) {
         return false;
     }
+    return row->of_vehicle ? take_for_vehicle(reader, &reading, row, config, step)
+                           : take_for_supervisor(reader, &reading, row, config, step);
+}
+
+static bool read_step(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    scenario_t *scenario = target;
+
+    if (scenario->step_count == SCENARIO_STEPS_MAX) {
+        return yaml_reader_fail(reader, node, "more than %u steps", SCENARIO_STEPS_MAX);
+    }
     scenario->step_count++;
-    return row->of_vehicle ? take_for_vehicle(reader, &reading, row, scenario, step)
-                           : take_for_supervisor(reader, &reading, row, scenario, step);
+    return scenario_parse_step(reader, node, &scenario->config, &scenario->steps[scenario->step_count - 1u]);
 }
 
 bool scenario_parse_steps(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {

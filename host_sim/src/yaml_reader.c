@@ -10,7 +10,7 @@
 #include "report.h"
 #include "yaml_file.h"
 
-enum { SHOWN_MAX = 40, DECIMAL = 10, HEX = 16, BYTES_MAX = 8 };
+enum { SHOWN_MAX = 40, LINE_SHOWN_MAX = 80, DECIMAL = 10, HEX = 16, BYTES_MAX = 8 };
 
 bool yaml_reader_fail(const yaml_reader_t *reader, const yaml_node_t *node, const char *format, ...) {
     char message[320];
@@ -19,7 +19,8 @@ bool yaml_reader_fail(const yaml_reader_t *reader, const yaml_node_t *node, cons
     va_start(arguments, format);
     (void)vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
-    return report_at(reader->file, yaml_node_line(node), "%s", message);
+    return reader->is_line ? report("%.*s: %s", LINE_SHOWN_MAX, reader->file, message)
+                           : report_at(reader->file, yaml_node_line(node), "%s", message);
 }
 
 /** Find the key of a pair in the table. @return its index, or `count`: reported. */

@@ -18,6 +18,7 @@
 typedef struct {
     const char *file;
     yaml_document_t *document;
+    bool is_line; /**< no file but a single line, which `file` is: messages name no line number */
 } yaml_reader_t;
 
 /** A word and what it stands for; a list of them ends with the word NULL. */
