@@ -31,8 +31,11 @@ typedef struct {
 
 /** An open socket; change it through the functions. */
 typedef struct {
-    int fd;    /**< for epoll: readable when linux_can_read() has something; -1: not open */
-    int index; /**< of the interface */
+    int fd;          /**< for epoll: readable when linux_can_read() has something; -1: not open */
+    int index;       /**< of the interface */
+    bool is_down;    /**< it was down when last written or read */
+    bool tells_down; /**< a write found that out, and linux_can_read() has still to tell */
+    bool is_gone;    /**< the interface does not exist any more */
 } linux_can_t;
 
 /** What linux_can_read() found. */

@@ -55,6 +55,7 @@ typedef struct {
     linux_can_t can;
     bool is_open; /**< the interface was there when last looked for */
     bool is_up;
+    bool fd_changed; /**< linux_hal_tick() has still to tell */
     uint64_t look_again_us;
     hal_can_state_t state; /**< of the controller, as error frames tell */
     uint16_t bus_offs;
@@ -62,6 +63,8 @@ typedef struct {
     uint32_t lost;            /**< as in the last record */
     bool in_flight;           /**< the kernel has a frame */
     linux_hal_waiting_t sent; /**< that one */
+    bool sent_is_purged;      /**< it may still leave, and is not waited for any more (tx_pending_ms) */
+    uint64_t given_us;        /**< when the kernel took it */
     linux_hal_waiting_t waiting[LINUX_HAL_QUEUE_SIZE];
     size_t waiting_count;
     bool has_next; /**< the record that linux_hal_receive() hands out next */
@@ -74,6 +77,7 @@ struct hal {
     linux_hal_side_t sides[HAL_CAN_SIDES];
     linux_hal_config_t config;
     linux_clock_t clock;
+    uint64_t handed_us; /**< arrival of the frame that was handed out last */
     bool led_on;
     bool output_closed;
     uint32_t feeds;
@@ -102,7 +106,7 @@ uint64_t linux_hal_now_us(const hal_t *hal);
  * Take the next received frame, of both sides the one that arrived first. Own frames are not among them, error frames
  * are, after they have acted on the state.
  * @param frame time_ms and time_us: the clock at its arrival, by the kernel's stamp
- * @param at_us the same moment since the port was opened
+ * @param at_us the same moment since the port was opened; never before that of the frame handed out last
  * @return false: nothing there
  */
 bool linux_hal_receive(hal_t *hal, hal_can_side_t *side, hal_can_frame_t *frame, uint64_t *at_us);

@@ -39,11 +39,14 @@ uint32_t linux_loop_wait(linux_loop_t *loop);
 /** Close; the signals stay held back. */
 void linux_loop_close(linux_loop_t *loop);
 
+/** Room for a message of linux_loop_realtime(). */
+#define LINUX_LOOP_ERROR_SIZE 160u
+
 /**
  * Run in real time: SCHED_FIFO at a middle priority, memory locked.
  * @param error LINUX_LOOP_ERROR_SIZE bytes for one line that says what was refused and what right it needs
+ * @return false: refused, nothing has changed
  */
-#define LINUX_LOOP_ERROR_SIZE 160u
 bool linux_loop_realtime(char *error);
 
 #endif

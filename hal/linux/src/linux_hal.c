@@ -1,0 +1,226 @@
+/* The port as a whole: opening, closing, receiving, and what happens every millisecond. */
+#include "hal_linux/linux_hal.h"
+
+#include <stdio.h>
+
+#include "linux_hal_internal.h"
+
+enum { US_PER_MS = 1000, LOOK_EVERY_US = 100000 };
+
+/* More records than own frames can come back in a row: what waits, and what the kernel has. */
+#define RECORDS_AT_ONCE_MAX (2u * LINUX_HAL_QUEUE_SIZE)
+
+linux_hal_side_t *linux_hal_side(hal_t *hal, hal_can_side_t side) {
+    const bool exists = (unsigned)side < (unsigned)HAL_CAN_SIDES && hal->sides[side].interface != NULL;
+    return exists ? &hal->sides[side] : NULL;
+}
+
+uint64_t linux_hal_now_us(const hal_t *hal) {
+    return linux_clock_now_us(&hal->clock);
+}
+
+static void look_whether_up(linux_hal_side_t *side) {
+    const bool is_up = linux_can_is_up(&side->can);
+    if (is_up && !side->is_up) {
+        linux_hal_controller_up(side);
+    } else if (!is_up && side->is_up) {
+        linux_hal_controller_down(side);
+    }
+}
+
+static bool open_side(hal_t *hal, linux_hal_side_t *side, char *error) {
+    const linux_can_options_t options = {
+        .ids = hal->config.ids, .id_count = hal->config.id_count, .error_frames = true, .own_frames = true};
+    if (!linux_can_open(&side->can, side->interface, &options, error)) {
+        return false;
+    }
+    side->is_open = true;
+    side->fd_changed = true;
+    side->lost = 0;
+    look_whether_up(side);
+    return true;
+}
+
+/* An adapter was pulled out: the socket is of no use any more, even if one of the same name appears. */
+static void lose_side(linux_hal_side_t *side, uint64_t now_us) {
+    linux_hal_controller_down(side);
+    linux_can_close(&side->can);
+    side->is_open = false;
+    side->fd_changed = true;
+    side->look_again_us = now_us + LOOK_EVERY_US;
+}
+
+/* By index, since an interface may have several names. */
+static bool check_sides(const hal_t *hal, char *error) {
+    const linux_hal_side_t *vehicle = &hal->sides[HAL_CAN_VEHICLE];
+    const linux_hal_side_t *ai = &hal->sides[HAL_CAN_AI];
+    if (!ai->is_open || ai->can.index != vehicle->can.index) {
+        return true;
+    }
+    (void)snprintf(error, LINUX_CAN_ERROR_SIZE, "%s: both sides on one interface: a gateway needs two", ai->interface);
+    return false;
+}
+
+static bool open_sides(hal_t *hal, char *error) {
+    for (size_t i = 0; i < (size_t)HAL_CAN_SIDES; i++) {
+        linux_hal_side_t *side = &hal->sides[i];
+        if (side->interface != NULL && !open_side(hal, side, error)) {
+            return false;
+        }
+        if (!side->is_up && side->interface != NULL) {
+            linux_hal_controller_down(side);
+        }
+        side->fd_changed = false;
+    }
+    return check_sides(hal, error);
+}
+
+bool linux_hal_open(hal_t *hal, const linux_hal_config_t *config, char *error) {
+    *hal = (hal_t){.config = *config};
+    error[0] = '\0';
+    linux_clock_start(&hal->clock);
+    for (size_t i = 0; i < (size_t)HAL_CAN_SIDES; i++) {
+        hal->sides[i].interface = config->interfaces[i];
+        hal->sides[i].can.fd = -1;
+    }
+    if (config->interfaces[HAL_CAN_VEHICLE] == NULL) {
+        (void)snprintf(error, LINUX_CAN_ERROR_SIZE, "which interface is the vehicle side?");
+        return false;
+    }
+    if (!open_sides(hal, error)) {
+        linux_hal_close(hal);
+        return false;
+    }
+    return true;
+}
+
+void linux_hal_close(hal_t *hal) {
+    for (size_t i = 0; i < (size_t)HAL_CAN_SIDES; i++) {
+        linux_can_close(&hal->sides[i].can);
+        linux_hal_queue_discard(&hal->sides[i]);
+        hal->sides[i].is_open = false;
+        hal->sides[i].is_up = false;
+        hal->sides[i].has_next = false;
+    }
+}
+
+int linux_hal_fd(const hal_t *hal, hal_can_side_t side) {
+    return ((unsigned)side < (unsigned)HAL_CAN_SIDES) ? hal->sides[side].can.fd : -1;
+}
+
+/* What the socket lost may have been the echo of the frame in flight, which would then be waited for forever. */
+static void count_lost(linux_hal_side_t *side, const linux_can_record_t *record, uint64_t at_us) {
+    const uint32_t lost = record->lost - side->lost;
+    side->lost = record->lost;
+    side->overruns = (uint16_t)(side->overruns + lost);
+    if (lost > 0 && at_us >= side->given_us) {
+        side->in_flight = false;
+    }
+}
+
+static void frame_left(hal_t *hal, hal_can_side_t which, const linux_can_record_t *record, uint64_t at_us) {
+    linux_hal_side_t *side = &hal->sides[which];
+    linux_hal_queue_left(side, &record->frame);
+    linux_hal_queue_give(side, linux_hal_now_us(hal));
+    if (hal->config.on_left != NULL) {
+        hal_can_frame_t frame = record->frame;
+        frame.time_ms = (uint32_t)(at_us / US_PER_MS);
+        frame.time_us = (uint16_t)(at_us % US_PER_MS);
+        hal->config.on_left(hal->config.ctx, which, &frame, at_us);
+    }
+}
+
+static void take_record(hal_t *hal, hal_can_side_t which, const linux_can_record_t *record) {
+    linux_hal_side_t *side = &hal->sides[which];
+    const uint64_t at_us = linux_clock_of_stamp(&hal->clock, record->stamp_us);
+    if (record->lost != side->lost) {
+        count_lost(side, record, at_us);
+    }
+    if (record->own) {
+        frame_left(hal, which, record, at_us);
+        return;
+    }
+    if ((record->frame.flags & HAL_CAN_ERROR) != 0) {
+        linux_hal_controller_error(side, &record->frame);
+    }
+    side->next = *record;
+    side->next_us = at_us;
+    side->has_next = true;
+}
+
+/* Read until there is a frame to hand out. */
+static void read_ahead(hal_t *hal, hal_can_side_t which) {
+    linux_hal_side_t *side = &hal->sides[which];
+    for (unsigned i = 0; i < RECORDS_AT_ONCE_MAX && side->is_open && !side->has_next; i++) {
+        linux_can_record_t record;
+        switch (linux_can_read(&side->can, &record)) {
+        case LINUX_CAN_RECORD:
+            take_record(hal, which, &record);
+            break;
+        case LINUX_CAN_IS_DOWN:
+            linux_hal_controller_down(side);
+            break;
+        case LINUX_CAN_IS_GONE:
+            lose_side(side, linux_hal_now_us(hal));
+            break;
+        case LINUX_CAN_NOTHING:
+            return;
+        }
+    }
+}
+
+/* Which side's frame arrived first: by the stamps themselves, since what was made of them has the jitter of clocks. */
+static bool find_first(const hal_t *hal, hal_can_side_t *first) {
+    const linux_hal_side_t *vehicle = &hal->sides[HAL_CAN_VEHICLE];
+    const linux_hal_side_t *ai = &hal->sides[HAL_CAN_AI];
+    const bool ai_is_first = ai->has_next && (!vehicle->has_next || ai->next.stamp_us < vehicle->next.stamp_us);
+    *first = ai_is_first ? HAL_CAN_AI : HAL_CAN_VEHICLE;
+    return ai->has_next || vehicle->has_next;
+}
+
+bool linux_hal_receive(hal_t *hal, hal_can_side_t *side, hal_can_frame_t *frame, uint64_t *at_us) {
+    read_ahead(hal, HAL_CAN_VEHICLE);
+    read_ahead(hal, HAL_CAN_AI);
+    read_ahead(hal, HAL_CAN_VEHICLE); /* what came between these two calls may be older than the other side's */
+    if (!find_first(hal, side)) {
+        return false;
+    }
+    linux_hal_side_t *first = &hal->sides[*side];
+    first->has_next = false;
+    hal->handed_us = (first->next_us > hal->handed_us) ? first->next_us : hal->handed_us;
+    *at_us = hal->handed_us;
+    *frame = first->next.frame;
+    frame->time_ms = (uint32_t)(*at_us / US_PER_MS);
+    frame->time_us = (uint16_t)(*at_us % US_PER_MS);
+    return true;
+}
+
+/* An interface that is down is looked at every time: it is back when the vehicle's is. */
+static void look_after(hal_t *hal, linux_hal_side_t *side, uint64_t now_us) {
+    const bool is_due = now_us >= side->look_again_us;
+    if (is_due) {
+        side->look_again_us = now_us + LOOK_EVERY_US;
+    }
+    if (side->is_open && (is_due || !side->is_up)) {
+        look_whether_up(side);
+    } else if (!side->is_open && is_due) {
+        char error[LINUX_CAN_ERROR_SIZE];
+        (void)open_side(hal, side, error);
+    }
+}
+
+bool linux_hal_tick(hal_t *hal) {
+    const uint64_t now_us = linux_hal_now_us(hal);
+    bool changed = false;
+    for (size_t i = 0; i < (size_t)HAL_CAN_SIDES; i++) {
+        linux_hal_side_t *side = &hal->sides[i];
+        if (side->interface == NULL) {
+            continue;
+        }
+        look_after(hal, side, now_us);
+        linux_hal_queue_give(side, now_us);
+        changed = changed || side->fd_changed;
+        side->fd_changed = false;
+    }
+    return changed;
+}

@@ -1,0 +1,102 @@
+/* What waits to be sent, in the order of arbitration; the kernel has one frame at a time. */
+#include <string.h>
+
+#include "linux_hal_internal.h"
+
+enum { US_PER_MS = 1000, STANDARD_SHIFT = 18 };
+
+/* What wins on the bus is less: an 11-bit identifier is compared with the first 11 bits of one with 29. */
+static uint64_t rank_of(const hal_can_frame_t *frame) {
+    const bool is_extended = (frame->flags & HAL_CAN_EXTENDED) != 0;
+    const uint64_t value = is_extended ? frame->id : (uint64_t)frame->id << STANDARD_SHIFT;
+    return value * 2u + (is_extended ? 1u : 0u);
+}
+
+static bool can_be_sent(const hal_can_frame_t *frame) {
+    const bool is_extended = (frame->flags & HAL_CAN_EXTENDED) != 0;
+    return (frame->flags & (HAL_CAN_FD | HAL_CAN_ERROR)) == 0 && frame->length <= sizeof frame->data &&
+           frame->id <= (is_extended ? 0x1FFFFFFFu : 0x7FFu);
+}
+
+static bool is_same(const hal_can_frame_t *a, const hal_can_frame_t *b) {
+    return a->id == b->id && a->flags == b->flags && a->length == b->length &&
+           ((a->flags & HAL_CAN_REMOTE) != 0 || memcmp(a->data, b->data, a->length) == 0);
+}
+
+static linux_can_write_t write_now(linux_hal_side_t *side, const linux_hal_waiting_t *frame, uint64_t now_us) {
+    const linux_can_write_t result = linux_can_write(&side->can, &frame->frame);
+    if (result == LINUX_CAN_TAKEN) {
+        side->sent = *frame;
+        side->in_flight = true;
+        side->sent_is_purged = false;
+        side->given_us = now_us;
+    }
+    return result;
+}
+
+/* Behind all that win against it, and behind its equals: so of two with one identifier the older leaves first. */
+static void insert(linux_hal_side_t *side, const linux_hal_waiting_t *frame) {
+    size_t place = side->waiting_count;
+    while (place > 0 && rank_of(&frame->frame) < rank_of(&side->waiting[place - 1u].frame)) {
+        side->waiting[place] = side->waiting[place - 1u];
+        place--;
+    }
+    side->waiting[place] = *frame;
+    side->waiting_count++;
+}
+
+bool linux_hal_queue_take(linux_hal_side_t *side, const hal_can_frame_t *frame, uint64_t now_us) {
+    const linux_hal_waiting_t waiting = {.frame = *frame, .taken_us = now_us};
+    if (!can_be_sent(frame)) {
+        return false;
+    }
+    if (!side->in_flight && side->waiting_count == 0) {
+        return write_now(side, &waiting, now_us) == LINUX_CAN_TAKEN;
+    }
+    if (side->waiting_count == LINUX_HAL_QUEUE_SIZE) {
+        return false;
+    }
+    insert(side, &waiting);
+    return true;
+}
+
+void linux_hal_queue_give(linux_hal_side_t *side, uint64_t now_us) {
+    if (side->in_flight || side->waiting_count == 0) {
+        return;
+    }
+    const linux_hal_waiting_t first = side->waiting[0];
+    if (write_now(side, &first, now_us) == LINUX_CAN_TAKEN) {
+        side->waiting_count--;
+        memmove(&side->waiting[0], &side->waiting[1], side->waiting_count * sizeof side->waiting[0]);
+    }
+}
+
+/* Compared, because a frame that was in the kernel at bus-off, and is forgotten, may leave when another one is there. */
+void linux_hal_queue_left(linux_hal_side_t *side, const hal_can_frame_t *frame) {
+    if (side->in_flight && is_same(frame, &side->sent.frame)) {
+        side->in_flight = false;
+    }
+}
+
+void linux_hal_queue_purge(linux_hal_side_t *side) {
+    side->waiting_count = 0;
+    side->sent_is_purged = true;
+}
+
+void linux_hal_queue_discard(linux_hal_side_t *side) {
+    side->waiting_count = 0;
+    side->in_flight = false;
+}
+
+uint32_t linux_hal_queue_pending_ms(const linux_hal_side_t *side, uint64_t now_us) {
+    const bool sent_counts = side->in_flight && !side->sent_is_purged;
+    if (!sent_counts && side->waiting_count == 0) {
+        return 0;
+    }
+    uint64_t oldest_us = sent_counts ? side->sent.taken_us : now_us;
+    for (size_t i = 0; i < side->waiting_count; i++) {
+        oldest_us = (side->waiting[i].taken_us < oldest_us) ? side->waiting[i].taken_us : oldest_us;
+    }
+    const uint64_t age_ms = (now_us - oldest_us) / US_PER_MS;
+    return (age_ms == 0) ? 1u : (uint32_t)age_ms;
+}
