@@ -18,6 +18,9 @@ typedef status_t command_fn(int argc, char **argv);
 /** `host_sim replay`: a recorded log, supervised in virtual time. */
 command_fn cmd_replay;
 
+/** `host_sim run`: the supervisor as a node on SocketCAN. */
+command_fn cmd_run;
+
 /** `host_sim demo`: the main job on the simulated bus, as a timeline. */
 command_fn cmd_demo;
 

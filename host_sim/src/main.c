@@ -23,6 +23,7 @@ static const command_t commands[] = {
     {"config", "print every setting as a configuration file, or a configuration as Kconfig", cmd_config},
     {"demo", "see the supervisor at work: a vehicle drives off, loses its AI computer, is parked", cmd_demo},
     {"replay", "feed a recorded candump log to the supervisor in virtual time", cmd_replay},
+    {"run", "run the supervisor as a node on SocketCAN, in real time", cmd_run},
     {"scenario", "play scenario files with a simulated vehicle and judge them", cmd_scenario},
 };
 

@@ -1,0 +1,108 @@
+/**
+ * @file cmd_run.c
+ * `host_sim run`: its options.
+ */
+#include <stddef.h>
+#include <string.h>
+
+#include "commands.h"
+#include "config_options.h"
+#include "live.h"
+#include "options.h"
+#include "output.h"
+
+/** The longest time that can be asked for: 100 days. */
+#define FOR_MAX_MS 8640000000u
+
+/** What was given. */
+typedef struct {
+    live_request_t request;
+    config_options_t config;
+} given_t;
+
+static options_result_t parse(int argc, char **argv, given_t *given) {
+    option_t config_rows[CONFIG_OPTIONS];
+    config_options_init(&given->config, config_rows);
+    live_request_t *request = &given->request;
+    const option_t rows[] = {
+        {.name = "--can",
+         .value = "IF",
+         .help = "the interface of the vehicle side, or of the shared bus",
+         .text = &request->interfaces[HAL_CAN_VEHICLE]},
+        {.name = "--ai-can",
+         .value = "IF",
+         .help = "gateway: the interface of the AI side",
+         .text = &request->interfaces[HAL_CAN_AI]},
+        {.name = "--for",
+         .value = "MS",
+         .help = "end after so long, not only by a signal",
+         .number = &request->for_ms,
+         .lowest = 1u,
+         .highest = FOR_MAX_MS},
+        {.name = "--fail-on-trip", .help = "exit status 1 when it tripped at any time", .flag = &request->fail_on_trip},
+        {.name = "--events", .value = "FILE", .help = "events as JSON Lines, as they come", .text = &request->events},
+        {.name = "--out",
+         .value = "FILE",
+         .help = "log of what the supervisor sent, as it leaves",
+         .text = &request->out},
+        {.name = "--realtime",
+         .help = "SCHED_FIFO, memory locked (CAP_SYS_NICE, CAP_IPC_LOCK)",
+         .flag = &request->realtime},
+    };
+    const option_group_t groups[] = {
+        {.title = "Options (FILE may be -, standard output)", .options = rows, .count = sizeof rows / sizeof rows[0]},
+        {.title = "Configuration of the supervisor", .options = config_rows, .count = CONFIG_OPTIONS},
+    };
+    const option_syntax_t syntax = {
+        .usage = "run --can IF [OPTION]...",
+        .summary = "Run the supervisor as a node on SocketCAN, in real time, until SIGINT, SIGTERM or SIGHUP: then it\n"
+                   "stops at once and sends nothing more. A terminal shows its state while it runs.\n",
+        .groups = groups,
+        .group_count = sizeof groups / sizeof groups[0],
+        .operand = "argument",
+    };
+    size_t operands = 0u;
+    return options_parse(&syntax, argc, argv, &operands);
+}
+
+static bool check_interfaces(const live_request_t *request) {
+    const bool is_gateway = request->config.topology == AGV_TOPOLOGY_GATEWAY;
+    const char *vehicle = request->interfaces[HAL_CAN_VEHICLE];
+    const char *ai = request->interfaces[HAL_CAN_AI];
+    if (is_gateway && (ai == NULL)) {
+        return report("the gateway topology needs --ai-can: the interface of the AI side");
+    }
+    if (!is_gateway && (ai != NULL)) {
+        return report("--ai-can is for --topology gateway: on the shared bus there is no AI side");
+    }
+    if ((ai != NULL) && (strcmp(vehicle, ai) == 0)) {
+        return report("--can and --ai-can are the same interface, '%s'", ai);
+    }
+    return true;
+}
+
+static bool check_files(const given_t *given) {
+    const output_role_t roles[] = {
+        {.role = "--config", .path = given->config.path},
+        {.role = "--out", .path = given->request.out, .is_written = true},
+        {.role = "--events", .path = given->request.events, .is_written = true},
+    };
+    return output_check_distinct(roles, sizeof roles / sizeof roles[0]);
+}
+
+status_t cmd_run(int argc, char **argv) {
+    given_t given = {.request = {.for_ms = LIVE_FOREVER}};
+    const options_result_t parsed = parse(argc, argv, &given);
+    if (parsed != OPTIONS_GO) {
+        return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
+    }
+    if (given.request.interfaces[HAL_CAN_VEHICLE] == NULL) {
+        (void)report("--can is missing: the interface of the vehicle side; see host_sim run --help");
+        return STATUS_UNUSABLE;
+    }
+    if (!check_files(&given) || !config_options_make(&given.config, &given.request.config) ||
+        !check_interfaces(&given.request)) {
+        return STATUS_UNUSABLE;
+    }
+    return live_run(&given.request);
+}
