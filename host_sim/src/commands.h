@@ -27,6 +27,9 @@ command_fn cmd_demo;
 /** `host_sim scenario`: scenario files, played and judged. */
 command_fn cmd_scenario;
 
+/** `host_sim vehicle`: VCU, EPS and AI computer as nodes on SocketCAN. */
+command_fn cmd_vehicle;
+
 /** `host_sim config`: every setting, as YAML or as a Kconfig fragment. */
 command_fn cmd_config;
 

@@ -25,6 +25,7 @@ static const command_t commands[] = {
     {"replay", "feed a recorded candump log to the supervisor in virtual time", cmd_replay},
     {"run", "run the supervisor as a node on SocketCAN, in real time", cmd_run},
     {"scenario", "play scenario files with a simulated vehicle and judge them", cmd_scenario},
+    {"vehicle", "simulate VCU, EPS and AI computer as nodes on SocketCAN", cmd_vehicle},
 };
 
 static const size_t command_count = sizeof commands / sizeof commands[0];

@@ -23,7 +23,7 @@ static uint64_t come_to(vehicle_bus_t *bus, uint64_t now_us) {
     return bus->now_ms;
 }
 
-static uint64_t come_to_now(vehicle_bus_t *bus) {
+uint64_t vehicle_bus_now_ms(vehicle_bus_t *bus) {
     return come_to(bus, linux_clock_now_us(bus->config.clock));
 }
 
@@ -128,17 +128,17 @@ bool vehicle_bus_tick(vehicle_bus_t *bus) {
     const bool good = vehicle_bus_receive(bus);
 
     if (good) {
-        vehicle_tick(&bus->vehicle, come_to_now(bus));
+        vehicle_tick(&bus->vehicle, vehicle_bus_now_ms(bus));
     }
     return good;
 }
 
 void vehicle_bus_view(vehicle_bus_t *bus, vehicle_view_t *view) {
-    vehicle_view(&bus->vehicle, come_to_now(bus), view);
+    vehicle_view(&bus->vehicle, vehicle_bus_now_ms(bus), view);
 }
 
 bool vehicle_bus_do(vehicle_bus_t *bus, const vehicle_action_t *action) {
-    return vehicle_do(&bus->vehicle, come_to_now(bus), action);
+    return vehicle_do(&bus->vehicle, vehicle_bus_now_ms(bus), action);
 }
 
 void vehicle_bus_close(vehicle_bus_t *bus) {

@@ -56,6 +56,9 @@ bool vehicle_bus_receive(vehicle_bus_t *bus);
 /** vehicle_bus_receive(), and send what is due by now. @return as vehicle_bus_receive() */
 bool vehicle_bus_tick(vehicle_bus_t *bus);
 
+/** The present time of the vehicle: the clock's, in milliseconds. */
+uint64_t vehicle_bus_now_ms(vehicle_bus_t *bus);
+
 /** The vehicle at the present time (vehicle_view()). */
 void vehicle_bus_view(vehicle_bus_t *bus, vehicle_view_t *view);
 
