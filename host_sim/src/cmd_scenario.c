@@ -9,15 +9,23 @@
 #include "commands.h"
 #include "config_options.h"
 #include "events.h"
+#include "hal_linux/linux_can.h"
 #include "junit.h"
 #include "options.h"
 #include "output.h"
+#include "scenario_bus.h"
 #include "scenario_run.h"
 
 /** The words of --planted, in the order of scenario_planted_t without SCENARIO_REAL. */
 #define PLANTED "mute|tripped"
 
-enum { FILES_MAX = 1000, NOT_PLANTED = -1 };
+enum { FILES_MAX = 1000, NOT_PLANTED = -1, DEFAULT_TOLERANCE_MS = 50, TOLERANCE_MAX_MS = 1000 };
+
+/** As a tolerance. */
+#define NOT_GIVEN UINT64_MAX
+
+/** Room for the name of an interface. */
+#define INTERFACE_SIZE (LINUX_CAN_NAME_MAX + 1u)
 
 /** What was given. */
 typedef struct {
@@ -26,6 +34,8 @@ typedef struct {
     const char *junit;
     const char *events;
     const char *bus;
+    char interface_names[HAL_CAN_SIDES][INTERFACE_SIZE]; /**< "": none; no vehicle side: the simulated bus */
+    uint64_t tolerance_ms;
     int planted;
     size_t file_count;
 } given_t;
@@ -35,7 +45,15 @@ typedef struct {
     char name[SCENARIO_TEXT_MAX];
     char failures[SCENARIO_FAILURES_MAX][SCENARIO_FAILURE_SIZE];
     size_t failure_count;
+    const char *left_out; /**< why it was not played; NULL: it was */
 } result_t;
+
+/** What came of all. */
+typedef struct {
+    size_t passed;
+    size_t failed;
+    size_t left_out;
+} totals_t;
 
 /** What the command works with. */
 typedef struct {
@@ -52,7 +70,16 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_t rows[] = {
         {.name = "--junit", .value = "FILE", .help = "results as JUnit XML", .text = &given->junit},
         {.name = "--events", .value = "FILE", .help = "events as JSON Lines (of one scenario)", .text = &given->events},
-        {.name = "--bus", .value = "sim", .help = "the simulated bus, in virtual time (sim)", .text = &given->bus},
+        {.name = "--bus",
+         .value = "sim|IF[,IF]",
+         .help =
+             "the simulated bus in virtual time (sim), or CAN interfaces (of the vehicle, of the AI side) in real time",
+         .text = &given->bus},
+        {.name = "--tolerance",
+         .value = "MS",
+         .help = "on CAN interfaces: how far times may be off (50)",
+         .number = &given->tolerance_ms,
+         .highest = TOLERANCE_MAX_MS},
         {.name = "--planted",
          .value = PLANTED,
          .help = "test of the scenarios: this stands in for the supervisor, all must fail",
@@ -92,9 +119,53 @@ static bool check_files(const given_t *given, char **files) {
     return true;
 }
 
+/** Take the name of an interface out of --bus. */
+static bool take_interface(given_t *given, hal_can_side_t side, const char *name, size_t length) {
+    if ((length == 0u) || (length > LINUX_CAN_NAME_MAX)) {
+        return report("--bus: '%s' is neither sim nor one interface, or two with a comma between them", given->bus);
+    }
+    memcpy(given->interface_names[side], name, length);
+    return true;
+}
+
+/** What --bus says: the simulated bus, or interfaces. */
+static bool check_bus(given_t *given) {
+    if ((given->bus == NULL) || (strcmp(given->bus, "sim") == 0)) {
+        return (given->tolerance_ms == NOT_GIVEN) || report("--tolerance is for CAN interfaces: --bus IF[,IF]");
+    }
+    const size_t length = strcspn(given->bus, ",");
+    const char *second = (given->bus[length] == ',') ? &given->bus[length + 1u] : NULL;
+    if (!take_interface(given, HAL_CAN_VEHICLE, given->bus, length) ||
+        ((second != NULL) && !take_interface(given, HAL_CAN_AI, second, strlen(second)))) {
+        return false;
+    }
+    if ((second != NULL) && (strcmp(given->interface_names[HAL_CAN_VEHICLE], second) == 0)) {
+        return report("--bus: both sides are the same interface, '%s'", second);
+    }
+    if (given->planted != NOT_PLANTED) {
+        return report("--planted is for the simulated bus");
+    }
+    given->tolerance_ms = (given->tolerance_ms == NOT_GIVEN) ? DEFAULT_TOLERANCE_MS : given->tolerance_ms;
+    return true;
+}
+
+static bool is_real(const given_t *given) {
+    return given->interface_names[HAL_CAN_VEHICLE][0] != '\0';
+}
+
+/** The interfaces; not kept in given_t, which is copied. */
+static scenario_bus_t real_bus(const given_t *given) {
+    const char *ai = given->interface_names[HAL_CAN_AI];
+    return (scenario_bus_t){
+        .interfaces =
+            {[HAL_CAN_VEHICLE] = given->interface_names[HAL_CAN_VEHICLE], [HAL_CAN_AI] = (ai[0] != '\0') ? ai : NULL},
+        .tolerance_ms = (uint32_t)given->tolerance_ms,
+    };
+}
+
 static bool check_given(given_t *given, char **files) {
-    if ((given->bus != NULL) && (strcmp(given->bus, "sim") != 0)) {
-        return report("--bus %s: only the simulated bus (sim) is there", given->bus);
+    if (!check_bus(given)) {
+        return false;
     }
     if ((given->events != NULL) && (given->file_count > 1u)) {
         return report("--events is for one scenario, %zu were given", given->file_count);
@@ -107,14 +178,26 @@ static bool check_given(given_t *given, char **files) {
     return true;
 }
 
+/** Whether a scenario can be played where --bus says, or will be left out. */
+static bool check_place(const work_t *work, const char *file) {
+    const scenario_t *scenario = &work->run.scenario;
+    const scenario_bus_t bus = real_bus(&work->given);
+    if (is_real(&work->given) && scenario->vehicle.gateway && (bus.interfaces[HAL_CAN_AI] == NULL)) {
+        return report("%s: the gateway topology needs two interfaces: --bus %s,IF", file,
+                      bus.interfaces[HAL_CAN_VEHICLE]);
+    }
+    return true;
+}
+
 /** Read every file once, so that nothing runs when one of them makes no sense. */
 static bool check_scenarios(work_t *work, char **files) {
     for (size_t i = 0u; i < work->given.file_count; i++) {
-        if (!scenario_read(&work->run.scenario, files[i], &work->given.options)) {
+        if (!scenario_read(&work->run.scenario, files[i], &work->given.options) || !check_place(work, files[i])) {
             return false;
         }
     }
-    return true;
+    const scenario_bus_t bus = real_bus(&work->given);
+    return !is_real(&work->given) || scenario_bus_check(&bus);
 }
 
 static void print_result(const work_t *work, const char *file, const result_t *result) {
@@ -129,19 +212,47 @@ static void print_result(const work_t *work, const char *file, const result_t *r
     }
 }
 
-static bool play(work_t *work, const char *file, result_t *result) {
+/** Play it on the simulated bus. */
+static void play_simulated(work_t *work, events_summary_t *summary) {
     const scenario_watch_t watch = {.on_event = events_write, .ctx = &work->events};
     const given_t *given = &work->given;
     const scenario_planted_t planted =
         (given->planted == NOT_PLANTED) ? SCENARIO_REAL : (scenario_planted_t)(given->planted + 1);
 
-    if (!scenario_read(&work->run.scenario, file, &given->options)) {
+    (void)scenario_run(&work->run, planted, (given->events != NULL) ? &watch : NULL, NULL);
+    events_summarise(&work->run.world.session, summary);
+}
+
+/** Play it on CAN interfaces, or leave it out. @return false: reported */
+static bool play_real(work_t *work, events_summary_t *summary, const char **left_out) {
+    const scenario_bus_watch_t watch = {.on_event = events_write, .ctx = &work->events};
+    const scenario_bus_t bus = real_bus(&work->given);
+
+    *left_out = scenario_bus_leaves_out(&bus, &work->run.scenario);
+    if (*left_out != NULL) {
+        return true;
+    }
+    scenario_bus_tolerate(&work->run.scenario, bus.tolerance_ms);
+    scenario_check_init(&work->run.check, &work->run.scenario);
+    return scenario_bus_play(&bus, &work->run.check, (work->given.events != NULL) ? &watch : NULL, summary);
+}
+
+static bool play(work_t *work, const char *file, result_t *result) {
+    events_summary_t summary = {0};
+
+    if (!scenario_read(&work->run.scenario, file, &work->given.options)) {
         return false;
     }
-    (void)scenario_run(&work->run, planted, (given->events != NULL) ? &watch : NULL, NULL);
-    if (given->events != NULL) {
-        events_summary_t summary;
-        events_summarise(&work->run.world.session, &summary);
+    if (!is_real(&work->given)) {
+        play_simulated(work, &summary);
+    } else if (!play_real(work, &summary, &result->left_out)) {
+        return false;
+    } else if (result->left_out != NULL) {
+        return true;
+    } else {
+        /* played */
+    }
+    if (work->given.events != NULL) {
         events_write_summary(&work->events, &summary);
     }
     memcpy(result->name, work->run.scenario.name, sizeof result->name);
@@ -151,35 +262,63 @@ static bool play(work_t *work, const char *file, result_t *result) {
     return true;
 }
 
-static void write_junit(work_t *work, char **files, size_t failed) {
-    junit_begin(&work->junit, "scenarios", work->given.file_count, failed);
+static void write_junit(work_t *work, char **files, const totals_t *totals) {
+    junit_begin(&work->junit, "scenarios", totals->passed + totals->failed, totals->failed);
     for (size_t i = 0u; i < work->given.file_count; i++) {
         const result_t *result = &work->results[i];
         const size_t shown =
             (result->failure_count < SCENARIO_FAILURES_MAX) ? result->failure_count : SCENARIO_FAILURES_MAX;
-        junit_test(&work->junit, files[i], result->name, result->failures[0], shown, SCENARIO_FAILURE_SIZE);
+        if (result->left_out == NULL) {
+            junit_test(&work->junit, files[i], result->name, result->failures[0], shown, SCENARIO_FAILURE_SIZE);
+        }
     }
     junit_end(&work->junit);
 }
 
+static void count(totals_t *totals, const result_t *result) {
+    if (result->left_out != NULL) {
+        totals->left_out++;
+    } else if (result->failure_count != 0u) {
+        totals->failed++;
+    } else {
+        totals->passed++;
+    }
+}
+
+/** The last lines: what was left out, and the sum. */
+static void print_totals(const work_t *work, char **files, const totals_t *totals) {
+    for (size_t i = 0u; i < work->given.file_count; i++) {
+        if (work->results[i].left_out != NULL) {
+            (void)printf("left out %s: %s\n", files[i], work->results[i].left_out);
+        }
+    }
+    (void)printf("%zu scenarios: %zu passed, %zu failed", work->given.file_count, totals->passed, totals->failed);
+    if (is_real(&work->given)) {
+        (void)printf(", %zu left out", totals->left_out);
+    }
+    (void)printf("\n");
+}
+
 static status_t play_all(work_t *work, char **files) {
-    size_t failed = 0u;
+    totals_t totals = {0};
 
     for (size_t i = 0u; i < work->given.file_count; i++) {
         if (!play(work, files[i], &work->results[i])) {
             return STATUS_UNUSABLE;
         }
-        failed += (work->results[i].failure_count != 0u) ? 1u : 0u;
+        count(&totals, &work->results[i]);
+        if (is_real(&work->given)) {
+            (void)fflush(stdout); /* it takes its time until the next line */
+        }
     }
-    (void)printf("%zu scenarios: %zu passed, %zu failed\n", work->given.file_count, work->given.file_count - failed,
-                 failed);
+    print_totals(work, files, &totals);
     if (work->given.junit != NULL) {
-        write_junit(work, files, failed);
+        write_junit(work, files, &totals);
     }
     if (!output_commit(&work->events) || !output_commit(&work->junit)) {
         return STATUS_UNUSABLE;
     }
-    return (failed == 0u) ? STATUS_OK : STATUS_UNMET;
+    return (totals.failed == 0u) ? STATUS_OK : STATUS_UNMET;
 }
 
 static status_t run_all(work_t *work, char **files) {
@@ -193,7 +332,7 @@ static status_t run_all(work_t *work, char **files) {
 }
 
 status_t cmd_scenario(int argc, char **argv) {
-    given_t given = {.planted = NOT_PLANTED};
+    given_t given = {.planted = NOT_PLANTED, .tolerance_ms = NOT_GIVEN};
     const options_result_t parsed = parse(argc, argv, &given);
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
