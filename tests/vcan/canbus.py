@@ -1,0 +1,182 @@
+"""A CAN bus seen from a test: frames with the kernel's stamps, and the program under test as a process on it.
+
+Run by scripts/with-vcan, where vcan0, vcan1 and vcan2 exist. HOST_SIM in the environment is the program's path.
+"""
+import collections
+import os
+import queue
+import re
+import signal
+import socket
+import struct
+import subprocess
+import threading
+import time
+import unittest
+
+PROGRAM = os.environ["HOST_SIM"]
+
+FRAME = struct.Struct("=IB3x8s")  # struct can_frame
+STAMP = struct.Struct("@qq")  # struct timespec
+SO_TIMESTAMPNS = 35
+SO_RCVBUFFORCE = 33
+BUFFER_SIZE = 8 << 20
+ROOM = socket.CMSG_SPACE(STAMP.size)
+FLAGS = socket.CAN_EFF_FLAG | socket.CAN_RTR_FLAG | socket.CAN_ERR_FLAG
+
+Frame = collections.namedtuple("Frame", "at id data flags")  # at: seconds, the kernel's
+
+
+class Bus:
+    """A socket on an interface. It hears everybody but itself. It looks seldom, so as not to hold up who is tested."""
+
+    def __init__(self, interface):
+        self.socket = socket.socket(socket.AF_CAN, socket.SOCK_RAW | socket.SOCK_NONBLOCK, socket.CAN_RAW)
+        self.socket.setsockopt(socket.SOL_SOCKET, SO_TIMESTAMPNS, 1)
+        self.look_every = 0.2  # seconds: so much fits into a buffer of the usual size
+        try:
+            self.socket.setsockopt(socket.SOL_SOCKET, SO_RCVBUFFORCE, BUFFER_SIZE)
+            self.look_every = 3
+        except PermissionError:
+            self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER_SIZE)
+        self.socket.bind((interface,))
+        self.waiting = collections.deque()
+
+    def close(self):
+        self.socket.close()
+
+    def send(self, can_id, data, flags=0):
+        self.socket.send(FRAME.pack(can_id | flags, len(data), bytes(data).ljust(8, b"\0")))
+
+    def look(self):
+        """Take what is there now."""
+        end = time.time()
+        while True:
+            try:
+                raw, ancillary, _, _ = self.socket.recvmsg(FRAME.size, ROOM)
+            except BlockingIOError:
+                return
+            seconds, nanoseconds = STAMP.unpack(ancillary[0][2])
+            can_id, length, data = FRAME.unpack(raw)
+            at = seconds + nanoseconds / 1e9
+            self.waiting.append(Frame(at, can_id & ~FLAGS, data[:length], can_id & FLAGS))
+            if at > end:
+                return
+
+    def listen(self, seconds):
+        """All frames until then, beginning with those that nobody has looked at so far."""
+        end = time.time() + seconds
+        while time.time() < end:
+            time.sleep(max(0, min(self.look_every, end - time.time())))
+            self.look()
+        frames = [frame for frame in self.waiting if frame.at <= end]
+        self.waiting = collections.deque(frame for frame in self.waiting if frame.at > end)
+        return frames
+
+    def forget(self):
+        """Drop what came until now."""
+        self.look()
+        self.waiting.clear()
+
+    def wait_for(self, can_id, matches=lambda data: True, timeout=10):
+        """The first frame with this identifier that matches. Those before it are dropped."""
+        end = time.monotonic() + timeout
+        seen = None
+        while time.monotonic() < end:
+            while self.waiting:
+                frame = self.waiting.popleft()
+                if frame.id == can_id:
+                    seen = frame
+                    if matches(frame.data):
+                        return frame
+            time.sleep(0.02)
+            self.look()
+        raise AssertionError("no such %03Xh within %g s, the last one: %s" % (can_id, timeout, seen))
+
+
+class Process:
+    """`host_sim ...` as it runs, with its output line by line."""
+
+    def __init__(self, *arguments, stdin=subprocess.PIPE):
+        self.process = subprocess.Popen([PROGRAM, *map(str, arguments)], stdin=stdin, stdout=subprocess.PIPE,
+                                        stderr=subprocess.PIPE, text=True, bufsize=1)
+        self.lines = {"stdout": [], "stderr": []}
+        self.news = {name: queue.Queue() for name in self.lines}
+        self.readers = [threading.Thread(target=self.read, args=(name,)) for name in self.lines]
+        for reader in self.readers:
+            reader.start()
+
+    def read(self, name):
+        for line in getattr(self.process, name):
+            self.lines[name].append(line)
+            self.news[name].put(line)
+
+    def say(self, line):
+        """Type a line."""
+        self.process.stdin.write(line + "\n")
+        self.process.stdin.flush()
+
+    def close_stdin(self):
+        self.process.stdin.close()
+
+    def wait_line(self, expression, name="stdout", timeout=10):
+        """The next line in which the expression is found."""
+        end = time.monotonic() + timeout
+        while True:
+            try:
+                line = self.news[name].get(timeout=max(0, end - time.monotonic()))
+            except queue.Empty:
+                raise AssertionError("no %r on %s, but:\n%s" % (expression, name, self.text(name))) from None
+            if re.search(expression, line):
+                return line
+
+    def is_running(self):
+        return self.process.poll() is None
+
+    def text(self, name="stdout"):
+        return "".join(self.lines[name])
+
+    def end(self, number=signal.SIGTERM, timeout=10):
+        """Send a signal, unless it is None, and wait for the end. Gives the exit status."""
+        if number is not None and self.is_running():
+            self.process.send_signal(number)
+        try:
+            status = self.process.wait(timeout)
+        finally:
+            self.process.kill()
+            for reader in self.readers:
+                reader.join()
+            for stream in (self.process.stdin, self.process.stdout, self.process.stderr):
+                if stream is not None:
+                    stream.close()
+        return status
+
+
+class Case(unittest.TestCase):
+    """A test that closes what it opens."""
+
+    def bus(self, interface="vcan0"):
+        bus = Bus(interface)
+        self.addCleanup(bus.close)
+        return bus
+
+    def start(self, *arguments, **options):
+        process = Process(*arguments, **options)
+        self.addCleanup(process.end, signal.SIGKILL)
+        return process
+
+    def run_to_end(self, *arguments, timeout=30):
+        """Exit status, standard output and standard error of a run that ends by itself."""
+        done = subprocess.run([PROGRAM, *map(str, arguments)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, timeout=timeout, check=False, text=True)
+        return done.returncode, done.stdout, done.stderr
+
+
+def ip(*arguments):
+    """Change the network: ip("link", "set", "vcan2", "down")."""
+    subprocess.run(["ip", *arguments], check=True, timeout=10)
+
+
+def of(frames, can_id):
+    """Those with this identifier."""
+    return [frame for frame in frames if frame.id == can_id]
