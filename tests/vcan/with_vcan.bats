@@ -1,0 +1,238 @@
+#!/usr/bin/env bats
+# scripts/with-vcan: the virtual machine, and the network namespace; the latter inside the machine where the kernel that
+# runs the tests has no CAN. A start of the machine takes seconds, so a test looks at many things.
+# shellcheck disable=SC2016 # what stands in '' is for the shell in there
+load ../gates/helper
+
+setup() {
+    cd "$BATS_TEST_TMPDIR" || exit
+    vcan=$ROOT/scripts/with-vcan
+}
+
+# Whether two texts are the same, and what differs
+same() {
+    diff <(printf '%s\n' "$1") <(printf '%s\n' "$2")
+}
+
+# Wait until a file is there.
+await() {
+    local tries
+    for ((tries = 0; tries < 600; tries++)); do
+        [[ ! -e $1 ]] || return 0
+        sleep 0.1
+    done
+    echo "there is no $1"
+    return 1
+}
+
+# Wait until a process is gone, or waits for its parent only.
+await_end() {
+    local tries
+    for ((tries = 0; tries < 100; tries++)); do
+        [[ $(ps -o stat= -p "$1") == [^Z]* ]] || return 0
+        sleep 0.1
+    done
+    echo "it still runs: $1"
+    return 1
+}
+
+# Run a command where there is a namespace for with-vcan: here, or in the machine.
+with_can_kernel() {
+    if "$vcan" --quiet --namespace true 2>/dev/null; then
+        "$@"
+    else
+        "$vcan" --quiet --vm "$@"
+    fi
+}
+
+# What a command must find, whichever way it came there: printed by the command, compared with what is so outside.
+look_around() {
+    cat >look <<'END'
+pwd; umask; id -u; printf '<%s>' "$@" "$PLANTED" "${LC_ALL-unset}"; echo; ip -br link | cut -d ' ' -f 1
+END
+}
+surroundings() {
+    pwd
+    umask
+    id -u
+    printf '<%s>' "$@" "$PLANTED" unset
+    printf '\nlo\nvcan0\nvcan1\nvcan2\n'
+}
+
+@test "machine: arguments, environment, folder, umask, clock, files, both outputs, status" {
+    mkdir 'a folder'
+    cd 'a folder' || exit
+    echo outside >file
+    umask 027
+    export PLANTED=$'two\nlines and a "quote"'
+    look_around
+    unset LC_ALL
+    # shellcheck disable=SC1003 # a backslash, and no quote
+    local arguments=('' 'a b' "it's" $'new\nline' '*' '$HOME' '\' $'\xff') status=0
+    "$vcan" --vm bash -c '. ./look; cat file; echo inside >>file; echo made >new; date +%s.%N >now
+        sleep 1; date +%s.%N >>now; echo told >/dev/stderr; exit 77' bash "${arguments[@]}" >../out 2>../err || status=$?
+    date +%s.%N >>now
+    [[ $status -eq 77 ]]
+    same "$(surroundings "${arguments[@]}"; echo outside)" "$(<../out)"
+    same 'told' "$(sed 1d ../err)"
+    [[ $(head -n 1 ../err) == "with-vcan: virtual machine (qemu-system-"*", tcg), kernel "*", vcan0 vcan1 vcan2" ]]
+    same $'outside\ninside\nmade' "$(cat file new)"
+    # The same clock outside and inside: a second is a second, and it is now.
+    cat now
+    awk 'NR == 1 { a = $1 } NR == 2 { b = $1 } END { exit !(b - a > 0.999 && b - a < 3 && $1 - b > -0.02 && $1 - b < 10) }' now
+}
+
+@test "machine: bytes in and out, 5 MB of them; outputs that are one keep their order; nothing outlives the command" {
+    head -c 5000000 /dev/urandom >bytes
+    "$vcan" --vm --quiet bash -c 'sleep 1000 & tee >(sha256sum >&2)' <bytes >out 2>err
+    cmp bytes out
+    [[ $(cut -d ' ' -f 1 err) == "$(sha256sum <bytes | cut -d ' ' -f 1)" ]]
+
+    "$vcan" --vm --quiet bash -c 'for i in {1..200}; do echo $i; echo $i >&2; done; kill -KILL $$' </dev/null >both 2>&1 ||
+        status=$?
+    [[ ${status:-0} -eq 137 ]]
+    same "$(for i in {1..200}; do printf '%s\n%s\n' "$i" "$i"; done)" "$(<both)"
+}
+
+@test "machine: signals reach the command, which ends as it likes; killed, with-vcan takes its machine along" {
+    env --default-signal=INT "$vcan" --vm --quiet bash -c 'trap "echo term; : >told" TERM; trap "echo int; exit 9" INT
+        : >started; while :; do sleep 0.1; done' </dev/null >out 3>&- &
+    local command=$! victim machine status=0
+    "$vcan" --vm --quiet sh -c ': >running; sleep 1000' </dev/null 3>&- &
+    victim=$!
+    await started
+    kill -TERM $command
+    await told
+    kill -INT $command
+    wait $command || status=$?
+    [[ $status -eq 9 ]]
+    same $'term\nint' "$(<out)"
+
+    await running
+    machine=$(pgrep -P $victim qemu-system)
+    kill -KILL $victim
+    await_end "$machine"
+}
+
+@test "machine: nobody reads its output any more: the command learns it, and ends" {
+    local statuses
+    "$vcan" --vm --quiet yes </dev/null 2>err | head -n 2 >out
+    statuses=${PIPESTATUS[*]}
+    [[ $statuses == "141 0" ]]
+    same $'y\ny' "$(<out)"
+}
+
+@test "machine: the user is the same, has files as outside and may change the network" {
+    if ((EUID != 0)); then
+        skip "needs root to become another user"
+    fi
+    local as_user=(setpriv --reuid 1234 --regid 1234 --groups "1234,1235")
+    chmod 755 "$BATS_RUN_TMPDIR" # only root can look into it
+    if ! "${as_user[@]}" test -r "$ROOT/scripts/with-vcan"; then
+        skip "another user cannot read the project here"
+    fi
+    "$ROOT/scripts/vcan/prepare-machine" >/dev/null # which that user cannot
+    echo secret >secret
+    chmod 600 secret
+    mkdir -m 777 shared
+    run "${as_user[@]}" "$vcan" --vm --quiet bash -c 'id -u; id -G; echo mine >shared/mine; cat secret
+        tc qdisc add dev vcan0 root netem limit 5 && ip link set vcan0 down && echo changed; exit 4'
+    same $'1234\n1234 1235\ncat: secret: Permission denied\nchanged' "$output"
+    [[ $status -eq 4 ]]
+    same '1234 1234 mine' "$(stat -c '%u %g' shared/mine) $(<shared/mine)"
+}
+
+@test "namespace: arguments, environment, user, status and signals; of each interface its own frames" {
+    awk 'BEGIN { for (i = 0; i < 1000; i++) printf "(%.6f) vcan0 %03X#%016X\n", 1 + i / 1000, i, i * i }' >sent
+    look_around
+    cat >inside <<'END'
+PLANTED=$'two\nlines' "$vcan" --namespace bash look 'a b' $'new\nline' >out 2>err
+"$vcan" --namespace --quiet bash -c 'exit 77'
+echo $? >statuses
+"$vcan" --namespace --quiet bash -c 'kill -KILL $$'
+echo $? >>statuses
+"$vcan" --namespace --quiet bash -c 'trap "exit 9" TERM; : >started; while :; do sleep 0.1; done' &
+until [[ -e started ]]; do sleep 0.1; done
+kill -TERM $!
+wait $!
+echo $? >>statuses
+setpriv --reuid 1234 --regid 1234 --clear-groups "$vcan" --namespace --quiet \
+    bash -c 'id -u && ip link set vcan2 down && ip -br link' >user 2>&1
+"$vcan" --namespace --quiet bash -c '
+    candump -L -n 1000 -T 5000 vcan0 >received & candump -L -n 1 -T 5000 vcan1 >other &
+    sleep 0.5
+    canplayer -I sent
+    cansend vcan1 7FF#C0FFEE
+    wait'
+END
+    # shellcheck disable=SC2154
+    vcan=$vcan with_can_kernel bash inside
+    same "$(PLANTED=$'two\nlines' surroundings 'a b' $'new\nline')" "$(<out)"
+    [[ $(<err) == "with-vcan: network namespace, kernel "*", vcan0 vcan1 vcan2" ]]
+    same $'77\n137\n9' "$(<statuses)"
+    same "$(cut -d ' ' -f 3 sent)" "$(cut -d ' ' -f 3 received)"
+    same '7FF#C0FFEE' "$(cut -d ' ' -f 3 other)"
+    if ((EUID == 0)); then
+        cat user
+        [[ $(head -n 1 user) == 1234 && $(<user) == *vcan2*DOWN* ]]
+    fi
+}
+
+# A PATH with the commands that with-vcan is made of, and those named.
+only() {
+    local name
+    mkdir -p bin
+    for name in bash env dirname basename uname "$@"; do
+        ln -sf "$(command -v "$name")" bin/
+    done
+}
+
+@test "neither way: one line that says why and what to do, and 125" {
+    only setpriv ip
+    printf '#!/bin/sh\necho "unshare failed: Operation not permitted" >&2\nexit 1\n' >bin/unshare
+    chmod +x bin/unshare
+    run env PATH="$PWD/bin" "$vcan" true
+    echo "$output"
+    [[ $status -eq 125 && ${#lines[@]} -eq 1 ]]
+    [[ $output == "with-vcan: no vcan in a network namespace of kernel "*"(unshare failed: Operation not permitted); and no \
+virtual machine: 'qemu-system-"*"' is missing: run 'scripts/install-deps vcan'" ]]
+    run env PATH="$PWD/bin" "$vcan" --vm true
+    [[ $status -eq 125 && ${#lines[@]} -eq 1 && $output == "with-vcan: no virtual machine: 'qemu-system-"* ]]
+    run env PATH="$PWD/bin" "$vcan" --namespace true
+    [[ $status -eq 125 && ${#lines[@]} -eq 1 && $output == "with-vcan: no vcan in a network namespace"* ]]
+}
+
+@test "machine: no network to fetch the kernel: it says so, 125, and leaves nothing half-made" {
+    mkdir project
+    cp -r "$ROOT/scripts" project/
+    mkdir bin
+    printf '#!/bin/sh\necho "E: Could not resolve host" >&2\nexit 100\n' | tee bin/apt-get >bin/apt-cache
+    chmod +x bin/apt-*
+    run env PATH="$PWD/bin:$PATH" project/scripts/with-vcan --vm true
+    echo "$output"
+    [[ $status -eq 125 && ${lines[1]} == *"no kernel could be downloaded (apt-get: Could not resolve host): is there a network?" ]]
+    same '.lock' "$(ls -A project/build/vcan)"
+}
+
+@test "machine: a kernel that panics: one line with its last words, and 125" {
+    mkdir broken empty
+    cp "$("$ROOT/scripts/vcan/prepare-machine")/kernel" broken/
+    (cd empty && echo . | cpio --create --format=newc --quiet) >broken/initramfs
+    run /usr/bin/python3 -I "$ROOT/scripts/vcan/run-machine" --kernel "$PWD/broken" --qemu "qemu-system-$(uname -m)" \
+        --accel tcg --interfaces vcan0 -- true
+    echo "$output"
+    [[ $status -eq 125 && ${#lines[@]} -eq 1 ]]
+    [[ $output == "with-vcan: the virtual machine ended before the command did ("*"Kernel panic"* ]]
+}
+
+@test "options: help, and in one line what is wrong" {
+    run "$vcan" --help
+    [[ $status -eq 0 && $output == "usage: with-vcan "* ]]
+    for bad in "" --slow "--quiet --"; do
+        # shellcheck disable=SC2086 # several words
+        run "$vcan" $bad
+        [[ $status -eq 2 && ${#lines[@]} -eq 1 && $output == "with-vcan: "* ]]
+    done
+    run env AGV_VCAN_ACCEL=xen "$vcan" true
+    [[ $status -eq 2 && $output == *"neither tcg nor kvm"* ]]
+}
