@@ -121,7 +121,7 @@ static bool check_files(const given_t *given, char **files) {
 
 /** Take the name of an interface out of --bus. */
 static bool take_interface(given_t *given, hal_can_side_t side, const char *name, size_t length) {
-    if ((length == 0u) || (length > LINUX_CAN_NAME_MAX)) {
+    if ((length == 0u) || (length > LINUX_CAN_NAME_MAX) || (memchr(name, ',', length) != NULL)) {
         return report("--bus: '%s' is neither sim nor one interface, or two with a comma between them", given->bus);
     }
     memcpy(given->interface_names[side], name, length);

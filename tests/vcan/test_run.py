@@ -1,0 +1,325 @@
+"""host_sim run and scenario --bus on virtual interfaces: states, what is on the bus and when, files, signals.
+
+Bytes are written out from docs/protocol.md. Deadlines that are not looked at are as long as they can be.
+"""
+import fcntl
+import json
+import os
+import pathlib
+import pty
+import re
+import select
+import signal
+import struct
+import subprocess
+import tempfile
+import termios
+import time
+
+import canbus
+from on_time import on_time
+from player import Player
+
+STEERING_TIMEOUT_S = 0.5
+SLACK_S = 0.4  # how long this machine may have other things to do
+PATIENT = {
+    "watchdog_period_ms": 1000, "vcu_heartbeat_timeout_ms": 500, "eps_heartbeat_timeout_ms": 500,
+    "ai_heartbeat_timeout_ms": 2000, "gear_command_timeout_ms": 2000, "throttle_command_timeout_ms": 2000,
+    "steering_command_timeout_ms": 500, "gear_status_timeout_ms": 1000, "throttle_status_timeout_ms": 500,
+    "eps_status_timeout_ms": 500, "steering_position_timeout_ms": 500, "wheel_speed_timeout_ms": 500,
+    "tx_stalled_ms": 500,
+}
+SETTINGS = "".join("%s: %d\n" % item for item in PATIENT.items())
+
+GEAR_P = bytes([8, 0, 0, 0, 0, 0, 0, 0])
+THROTTLE_0 = bytes(8)
+AUTOPILOT_OFF = 0x70  # 43Fh byte 5: autopilot off, both turn signals
+GEAR_D = bytes([1, 0, 0, 0, 0, 0, 0, 0])
+
+
+def is_safe(frame):
+    """Whether a frame is a safe command of the supervisor; the player sends no such ones."""
+    return ((frame.id == 0x168 and frame.data == GEAR_P) or (frame.id == 0x075 and frame.data == THROTTLE_0) or
+            (frame.id == 0x43F and frame.data[4] == AUTOPILOT_OFF))
+
+
+class Case(canbus.Case):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="host_sim.")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.config = self.folder / "patient.yaml"
+        self.config.write_text(SETTINGS)
+
+    def player(self, *interfaces):
+        player = Player(*interfaces)
+        self.addCleanup(player.stop)
+        return player
+
+    def run_node(self, *arguments):
+        return self.start("run", "--can", "vcan0", "--config", self.config, *arguments)
+
+    def wait_state(self, process, state):
+        return json.loads(process.wait_line('"to": "%s"' % state))
+
+    def summary(self, process):
+        return json.loads(process.text().splitlines()[-1])
+
+    def engage(self, player, *arguments):
+        """A supervisor that has come to ACTIVE."""
+        process = self.run_node("--events", "-", *arguments)
+        self.assertEqual(self.wait_state(process, "INIT")["from"], None)
+        self.wait_state(process, "STANDBY")
+        player.engaged = True
+        self.wait_state(process, "ACTIVE")
+        return process
+
+
+class Supervises(Case):
+    @on_time
+    def test_a_silent_ai_computer_is_answered_by_the_safe_commands(self):
+        player = self.player()
+        bus = self.bus()
+        process = self.engage(player)
+        bus.forget()
+        self.assertEqual([frame for frame in bus.listen(0.3) if is_safe(frame)], [])
+        player.fall_silent("ai")
+        tripped = self.wait_state(process, "TRIPPED")
+        self.assertEqual(tripped["reason"], "STEERING_COMMAND_TIMEOUT")
+        frames = bus.listen(0.3)
+        # The test's own stamp is taken after the frame was sent, so the last one before it counts.
+        last = max(frame.at for frame in frames if frame.id == 0x065 and frame.at <= player.last_065)
+        for can_id in (0x168, 0x075, 0x43F):
+            safe = [frame for frame in frames if frame.id == can_id and is_safe(frame)]
+            self.assertGreater(safe[0].at - last, STEERING_TIMEOUT_S)
+            self.assertLess(safe[0].at - last, STEERING_TIMEOUT_S + SLACK_S)
+        player.engaged = False
+        self.wait_state(process, "SAFE")
+        player.stop()
+        self.assertEqual(process.end(), 0)
+        summary = self.summary(process)
+        self.assertEqual((summary["event"], summary["final_state"], summary["first_reason"]),
+                         ("summary", "SAFE", "STEERING_COMMAND_TIMEOUT"))
+        self.assertEqual(summary["rejected"], {"length": 0, "extended": 0, "remote": 0, "fd": 0, "error": 0})
+        times = [json.loads(line)["t_ms"] for line in process.text().splitlines()]
+        self.assertEqual(times, sorted(times))
+
+    @on_time
+    def test_a_trip_can_be_a_failure(self):
+        player = self.player()
+        process = self.engage(player, "--fail-on-trip")
+        player.silent = {0x065}
+        self.wait_state(process, "TRIPPED")
+        self.assertEqual(process.end(signal.SIGINT), 1)
+        player.stop()
+
+    @on_time
+    def test_no_trip_is_no_failure(self):
+        self.player()
+        status, _, errors = self.run_to_end("run", "--can", "vcan0", "--config", self.config, "--fail-on-trip", "--for",
+                                            "700")
+        self.assertEqual((status, errors.count("\n")), (0, 1), errors)  # one note: what is not the default
+
+    def test_shadow_sends_nothing(self):
+        bus = self.bus()
+        status, output, _ = self.run_to_end("run", "--can", "vcan0", "--config", self.config, "--shadow", "--for", "700")
+        self.assertEqual((status, bus.listen(0.1)), (0, []))
+        self.assertRegex(output, r"; 0 sent, [1-9]\d* held back in shadow mode\n")
+
+    def test_only_identifiers_of_the_protocol_are_received(self):
+        bus = self.bus()
+        process = self.run_node("--events", "-")
+        self.wait_state(process, "INIT")
+        for can_id in (0x123, 0x7FF, 0x363, 0x203):  # the latter belongs to the other ID set
+            bus.send(can_id, bytes(8))
+        time.sleep(0.3)
+        self.assertEqual(process.end(), 0)
+        self.assertEqual(self.summary(process)["received"], 2)
+
+
+class Gateway(Case):
+    @on_time
+    def test_passes_and_blocks(self):
+        vehicle_side, ai_side = self.bus("vcan0"), self.bus("vcan1")
+        player = self.player("vcan0", "vcan1")
+        process = self.engage(player, "--ai-can", "vcan1", "--topology", "gateway")
+        vehicle_side.forget()
+        ai_side.forget()
+        player.ai_bus.send(0x123, bytes(8))
+        to_vehicle, to_ai = vehicle_side.listen(0.5), ai_side.listen(0.1)
+        self.assertIn(GEAR_D, [frame.data for frame in canbus.of(to_vehicle, 0x168)])
+        self.assertGreater(len(canbus.of(to_vehicle, 0x065)), 10)
+        self.assertEqual(canbus.of(to_vehicle, 0x123), [])
+        self.assertGreater(len(canbus.of(to_ai, 0x363)), 20)
+        player.silent = {0x065}  # 168h goes on, and asks for gear D
+        self.wait_state(process, "TRIPPED")
+        time.sleep(0.1)
+        vehicle_side.forget()
+        after = canbus.of(vehicle_side.listen(0.5), 0x168)
+        self.assertEqual({frame.data for frame in after}, {GEAR_P})
+        player.stop()
+        self.assertEqual(process.end(), 0)
+
+
+class Ends(Case):
+    def test_a_signal_ends_it_at_once_and_nothing_more_is_sent(self):
+        bus = self.bus()
+        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+            with self.subTest(number):
+                process = self.run_node()
+                bus.wait_for(0x168)
+                self.assertEqual(process.end(number), 0)
+                bus.forget()
+                self.assertEqual(bus.listen(0.3), [])
+                self.assertRegex(process.text(), r"\Avcan0: \d+\.\d{3} s\nframes: 0 received, 0 of them rejected, "
+                                                 r"0 dropped; \d+ sent\nwarnings: \d+\nfinal state: INIT, first reason: "
+                                                 r"none\n\Z")
+
+    @on_time
+    def test_after_a_time(self):
+        begin = time.monotonic()
+        status, output, _ = self.run_to_end("run", "--can", "vcan0", "--for", "1000")
+        self.assertEqual(status, 0)
+        self.assertGreater(time.monotonic() - begin, 1)
+        self.assertLessEqual(float(re.match(r"vcan0: ([\d.]+) s\n", output)[1]), 1)
+
+    def test_interfaces_that_are_none(self):
+        for name, why in (("vcan9", "no such interface"), ("lo", "lo")):
+            status, output, errors = self.run_to_end("run", "--can", name)
+            self.assertEqual((status, output, errors.count("\n")), (2, "", 1))
+            self.assertIn(name + ": ", errors)
+            self.assertIn(why, errors)
+
+    def test_it_goes_on_when_its_interface_was_down(self):
+        bus = self.bus("vcan2")
+        self.addCleanup(canbus.ip, "link", "set", "vcan2", "up")
+        process = self.start("run", "--can", "vcan2", "--config", self.config, "--events", "-")
+        bus.wait_for(0x168)
+        canbus.ip("link", "set", "vcan2", "down")
+        process.wait_line('"name": "BUS_OFF", "class": "trip", "active": true')
+        canbus.ip("link", "set", "vcan2", "up")
+        process.wait_line('"name": "BUS_OFF", "class": "trip", "active": false')
+        again = self.bus("vcan2")
+        again.wait_for(0x168)
+        self.assertEqual(process.end(), 0)
+
+
+class Writes(Case):
+    def test_files_grow_line_by_line_and_survive_a_kill(self):
+        events, out = self.folder / "events.jsonl", self.folder / "out.log"
+        events.write_text("of an earlier run\n" * 1000)
+        bus = self.bus()
+        process = self.run_node("--events", events, "--out", out)
+        bus.wait_for(0x168)
+        frames = bus.listen(0.7)
+        self.assertEqual(process.end(signal.SIGKILL), -signal.SIGKILL)
+        kinds = [json.loads(line)["event"] for line in events.read_text().splitlines()]
+        self.assertEqual(kinds[:3], ["state", "safety_output", "led"])
+        sent = re.findall(r"^\((\d+\.\d{6})\) vcan0 ([0-9A-F]{3})#([0-9A-F]{16})$", out.read_text(), re.MULTILINE)
+        self.assertEqual(len(sent), len(out.read_text().splitlines()))
+        logged = {(int(can_id, 16), bytes.fromhex(data)): float(at) for at, can_id, data in sent if can_id == "43F"}
+        seen = canbus.of(frames, 0x43F)[:-1]
+        self.assertGreater(len(seen), 3)
+        for frame in seen:  # each 43Fh has a counter of its own; the stamps are the kernel's
+            self.assertAlmostEqual(logged[(frame.id, frame.data)], frame.at, delta=0.01)
+
+    @on_time
+    def test_a_terminal_shows_one_line_that_is_rewritten(self):
+        ours, theirs = pty.openpty()
+        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 60, 0, 0))
+        process = subprocess.Popen([canbus.PROGRAM, "run", "--can", "vcan0", "--for", "1200"], stdin=subprocess.DEVNULL,
+                                   stdout=theirs)
+        os.close(theirs)
+        text = b""
+        while select.select([ours], [], [], 10)[0]:
+            try:
+                text += os.read(ours, 4096)
+            except OSError:  # the other end is closed
+                break
+        os.close(ours)
+        self.assertEqual(process.wait(), 0)
+        line, rest = text.split(b"\r\n", 1)
+        shown = line.split(b"\r")[1:]
+        self.assertGreaterEqual(len(shown), 3)
+        self.assertRegex(shown[-1], rb"^\d+\.\d s  INIT: [A-Z_]+  output open")
+        self.assertLessEqual(max(map(len, shown)), 59)
+        self.assertIn(b"final state: INIT", rest)
+
+    @on_time
+    def test_a_reader_that_does_not_read_holds_nothing_up(self):
+        bus = self.bus()
+        reader, writer = os.pipe()
+        self.addCleanup(os.close, reader)
+        fcntl.fcntl(writer, fcntl.F_SETPIPE_SZ, 4096)
+        process = subprocess.Popen([canbus.PROGRAM, "run", "--can", "vcan0", "--out", "-"], stdin=subprocess.DEVNULL,
+                                   stdout=writer, stderr=subprocess.PIPE)
+        os.close(writer)
+        self.addCleanup(process.kill)
+        bus.wait_for(0x168)
+        time.sleep(3.5)  # some hundred lines: more than the pipe takes
+        bus.forget()
+        self.assertGreater(len(bus.listen(0.5)), 8)
+        process.terminate()
+        _, errors = process.communicate(timeout=10)
+        self.assertEqual((process.returncode, errors), (2, b"host_sim: standard output: Connection timed out\n"))
+
+
+SCENARIO = """
+name: On a bus
+shows: [SUP-3]
+duration_ms: 4000
+vehicle: {eps_lost_ms: 5000}
+config:
+%ssteps:
+  - {at_ms: 1000, ai: drive, gear: D, throttle_pct: 20, steer_deg: 10}
+  - {at_ms: 1500, operator: engage}
+  - {at_ms: 2500, ai: stop}
+expect:
+  states:
+    - {to: INIT, at_ms: 0}
+    - {to: STANDBY, at_ms: [500, 530]}
+    - {to: ACTIVE, at_ms: [1500, 1511]}
+    - {to: TRIPPED, reason: %s, at_ms: [2975, 3010]}
+    - {to: SAFE, at_ms: [3095, 3400]}
+  frames:
+    - {message: gear_command, bytes: "08 00 00 00 00 00 00 00", at_ms: [2975, 3012], side: vehicle}
+    - {from: vcu, message: gear_status, bytes: "01 00 00 00 00 00 00 00", at_ms: [2000, 2900], side: vehicle}
+  never:
+    - {message: gear_command, bytes: "08 00 00 00 00 00 00 00", at_ms: [600, 2974]}
+  safety_output:
+    - {closed: true, at_ms: [500, 530]}
+"""
+
+
+class Scenarios(Case):
+    def scenario(self, name, reason):
+        path = self.folder / name
+        settings = "".join("  %s: %d\n" % item for item in PATIENT.items())
+        path.write_text(SCENARIO % (settings, reason))
+        return path
+
+    @on_time
+    def test_passed_failed_and_left_out(self):
+        good, bad = self.scenario("good.yaml", "STEERING_COMMAND_TIMEOUT"), self.scenario("bad.yaml", "AI_HEARTBEAT_LOST")
+        left_out = self.folder / "left_out.yaml"
+        left_out.write_text(good.read_text().replace("duration_ms", "bitrate: 125000\nduration_ms", 1))
+        status, output, errors = self.run_to_end("scenario", "--bus", "vcan0", "--tolerance", "300", "--junit",
+                                                 self.folder / "junit.xml", good, bad, left_out)
+        self.assertEqual((status, errors), (1, ""), output)
+        lines = output.splitlines()
+        self.assertEqual(lines[0], "ok      %s: 9 expectations" % good, output)
+        self.assertEqual(lines[1], "FAILED  %s: 1 of 9 expectations" % bad, output)
+        self.assertEqual(lines[-2], "left out %s: bitrate: a real interface has its own" % left_out)
+        self.assertEqual(lines[-1], "3 scenarios: 1 passed, 1 failed, 1 left out")
+        self.assertIn('tests="2" failures="1"', (self.folder / "junit.xml").read_text())
+
+    def test_a_signal_ends_it(self):
+        process = self.start("scenario", "--bus", "vcan0", self.scenario("s.yaml", "STEERING_COMMAND_TIMEOUT"))
+        self.bus().wait_for(0x363)
+        self.assertEqual((process.end(signal.SIGINT, timeout=2), process.text("stderr")), (2, "host_sim: interrupted\n"))
+
+    def test_the_gateway_needs_two_interfaces(self):
+        path = self.scenario("g.yaml", "STEERING_COMMAND_TIMEOUT")
+        status, output, errors = self.run_to_end("scenario", "--bus", "vcan0", "--topology", "gateway", path)
+        self.assertEqual((status, output, errors), (2, "", "host_sim: %s: the gateway topology needs two interfaces: "
+                                                           "--bus vcan0,IF\n" % path))
