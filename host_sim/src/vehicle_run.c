@@ -76,7 +76,7 @@ static void operate(run_t *run, uint64_t now_ms) {
         vehicle_show_event(&run->show, run->bus.now_ms, "operator", "engage");
         run->engage_ms = UINT64_MAX;
     } else if (!run->was_refused) {
-        vehicle_show_event(&run->show, run->bus.now_ms, "operator", "engage: autopilot off is commanded, tries again");
+        vehicle_show_event(&run->show, run->bus.now_ms, "operator", "engage: refused, autopilot off is commanded");
         run->was_refused = true;
     } else {
         /* said already */

@@ -6,11 +6,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "scenario_parse.h"
 
-enum { MS_PER_S = 1000, DRAW_EVERY_MS = 100, WHAT_SIZE = 320, STATUS_SIZE = 160, STATUS_WIDTH = 79, ALARM_BITS = 8 };
+enum { MS_PER_S = 1000, DRAW_EVERY_MS = 100, WHAT_SIZE = 320, STATUS_SIZE = 160, WIDTH = 80, ALARM_BITS = 8 };
 
 /* The terminal: one line up, to its begin; clear to the line's end; clear all below; keep the cursor's place. */
 #define UP "\033[1A\r"
@@ -142,15 +143,22 @@ static void show_changes(vehicle_show_t *show, uint64_t t_ms, const vehicle_view
     show_alarms(show, t_ms, before->alarms);
 }
 
+/** The last column stays free: a line that fills the terminal would begin a new one. */
+static int columns(void) {
+    struct winsize size;
+    const bool known = (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0) && (size.ws_col > 0u);
+    return (known ? (int)size.ws_col : (int)WIDTH) - 1;
+}
+
 /** Draw the status line, and leave the cursor where it was in the line below. */
 static void draw(vehicle_show_t *show) {
     char status[STATUS_SIZE];
 
     write_status(&show->view, status);
     if (show->is_drawn) {
-        (void)printf(KEEP_CURSOR UP CLEAR_LINE "%.*s" RETURN_CURSOR, STATUS_WIDTH, status);
+        (void)printf(KEEP_CURSOR UP CLEAR_LINE "%.*s" RETURN_CURSOR, columns(), status);
     } else {
-        (void)printf("\r" CLEAR_LINE "%.*s\n", STATUS_WIDTH, status);
+        (void)printf("\r" CLEAR_LINE "%.*s\n", columns(), status);
     }
     (void)fflush(stdout);
     show->is_drawn = true;

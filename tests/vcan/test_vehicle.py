@@ -131,7 +131,7 @@ class Drives(canbus.Case):
         vehicle = self.start("vehicle", "--can", "vcan0")
         bus.wait_for(0x363)
         counter = 0
-        while "tries again" not in vehicle.text():
+        while "engage: refused" not in vehicle.text():
             self.assertLess(counter, 250)
             bus.send(0x43F, AUTOPILOT_OFF[:7] + bytes([counter]))
             counter += 1
@@ -139,7 +139,7 @@ class Drives(canbus.Case):
         off_until = time.time()
         engaged = bus.wait_for(0x363, lambda data: data[6] == AUTOPILOT)
         self.assertGreater(engaged.at - off_until, 0.2)  # it counts for 300 ms
-        vehicle.wait_line("operator +engage: autopilot off is commanded, tries again ")
+        vehicle.wait_line("operator +engage: refused, autopilot off is commanded ")
         vehicle.wait_line("operator +engage  ")
         self.assertEqual(vehicle.end(), 0)
 
