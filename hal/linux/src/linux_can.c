@@ -13,6 +13,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "linux_can_internal.h"
+
 /* How much of a name that is too long is repeated. */
 #define NAME_SHOWN 40
 
@@ -39,17 +41,13 @@ static bool open_socket(linux_can_t *can, const char *interface, char *error) {
 }
 
 static bool find_interface(linux_can_t *can, const char *interface, char *error) {
-    struct ifreq request = {0};
-    memcpy(request.ifr_name, interface, strlen(interface));
-    if (ioctl(can->fd, SIOCGIFINDEX, &request) != 0) {
+    unsigned kind = 0;
+    errno = linux_can_find(interface, &can->index, &kind);
+    if (errno != 0) {
         return (errno == ENODEV) ? refuse(error, interface, "there is no such interface")
                                  : refuse_errno(error, interface, "not found");
     }
-    can->index = request.ifr_ifindex;
-    if (ioctl(can->fd, SIOCGIFHWADDR, &request) != 0) {
-        return refuse_errno(error, interface, "of unknown kind");
-    }
-    return (request.ifr_hwaddr.sa_family == ARPHRD_CAN) || refuse(error, interface, "not a CAN interface");
+    return (kind == ARPHRD_CAN) || refuse(error, interface, "not a CAN interface");
 }
 
 static bool set_option(const linux_can_t *can, int level, int name, int value) {
@@ -116,6 +114,7 @@ void linux_can_close(linux_can_t *can) {
     *can = (linux_can_t){.fd = -1};
 }
 
+/* From the index to the name, so that the second question is about one that exists (see linux_can_find()). */
 bool linux_can_is_up(const linux_can_t *can) {
     struct ifreq request = {.ifr_ifindex = can->index};
     return can->fd >= 0 && ioctl(can->fd, SIOCGIFNAME, &request) == 0 && ioctl(can->fd, SIOCGIFFLAGS, &request) == 0 &&

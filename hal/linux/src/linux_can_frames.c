@@ -87,6 +87,14 @@ static linux_can_read_t why_nothing(linux_can_t *can, int error) {
     return tells_down ? LINUX_CAN_IS_DOWN : LINUX_CAN_NOTHING;
 }
 
+static linux_can_write_t why_not_taken(linux_can_t *can, int error) {
+    if (error == ENOBUFS || error == EAGAIN) {
+        return LINUX_CAN_FULL;
+    }
+    note_error(can, error);
+    return LINUX_CAN_NOT_TAKEN;
+}
+
 linux_can_read_t linux_can_read(linux_can_t *can, linux_can_record_t *record) {
     if (can->is_gone || can->tells_down) {
         return why_nothing(can, 0);
@@ -114,13 +122,9 @@ linux_can_write_t linux_can_write(linux_can_t *can, const hal_can_frame_t *frame
     if (!to_kernel(frame, &raw)) {
         return LINUX_CAN_NOT_TAKEN;
     }
-    if (send(can->fd, &raw, sizeof raw, MSG_DONTWAIT) == (ssize_t)sizeof raw) {
-        can->is_down = false;
-        return LINUX_CAN_TAKEN;
+    if (send(can->fd, &raw, sizeof raw, MSG_DONTWAIT) < 0) {
+        return why_not_taken(can, errno);
     }
-    if (errno == ENOBUFS || errno == EAGAIN) {
-        return LINUX_CAN_FULL;
-    }
-    note_error(can, errno);
-    return LINUX_CAN_NOT_TAKEN;
+    can->is_down = false;
+    return LINUX_CAN_TAKEN;
 }

@@ -1,0 +1,227 @@
+/* The port: opening, receiving from one and two interfaces, and the functions that have no hardware behind them. */
+#include <string.h>
+
+#include "hal_linux/linux_hal.h"
+#include "port.h"
+#include "unity.h"
+#include "vcan.h"
+
+static hal_t hal;
+static hal_t other;
+static port_left_t left;
+
+void setUp(void) {
+    memset(&hal, 0, sizeof hal);
+    memset(&other, 0, sizeof other);
+    hal.sides[HAL_CAN_VEHICLE].can.fd = hal.sides[HAL_CAN_AI].can.fd = -1;
+    other.sides[HAL_CAN_VEHICLE].can.fd = other.sides[HAL_CAN_AI].can.fd = -1;
+}
+
+void tearDown(void) {
+    linux_hal_close(&hal);
+    linux_hal_close(&other);
+    vcan_restore();
+}
+
+static void expect_refusal(const char *vehicle, const char *ai, const char *line) {
+    char error[LINUX_CAN_ERROR_SIZE];
+    const linux_hal_config_t config = {.interfaces = {[HAL_CAN_VEHICLE] = vehicle, [HAL_CAN_AI] = ai}};
+    TEST_ASSERT_FALSE(linux_hal_open(&hal, &config, error));
+    TEST_ASSERT_EQUAL_STRING(line, error);
+    TEST_ASSERT_EQUAL_INT(-1, linux_hal_fd(&hal, HAL_CAN_VEHICLE));
+    TEST_ASSERT_EQUAL_INT(-1, linux_hal_fd(&hal, HAL_CAN_AI));
+}
+
+void test_what_cannot_be_opened_is_named(void) {
+    expect_refusal("vcan9", NULL, "vcan9: there is no such interface");
+    expect_refusal("lo", "vcan1", "lo: not a CAN interface");
+    expect_refusal("vcan0", "vcan9", "vcan9: there is no such interface");
+    expect_refusal("vcan0", "vcan0", "vcan0: both sides on one interface: a gateway needs two");
+    expect_refusal("vcan0123456789ab", NULL, "vcan0123456789ab: the name of an interface has at most 15 characters");
+    expect_refusal(NULL, "vcan0", "which interface is the vehicle side?");
+}
+
+void test_a_second_name_is_no_second_interface(void) {
+    vcan_run("ip link property add dev vcan0 altname vehicle-bus");
+    expect_refusal("vcan0", "vehicle-bus", "vehicle-bus: both sides on one interface: a gateway needs two");
+    vcan_run("ip link property del dev vcan0 altname vehicle-bus");
+}
+
+void test_a_fresh_port(void) {
+    port_open(&hal, "vcan0", NULL, NULL);
+    TEST_ASSERT_TRUE(linux_hal_fd(&hal, HAL_CAN_VEHICLE) >= 0);
+    TEST_ASSERT_EQUAL_INT(-1, linux_hal_fd(&hal, HAL_CAN_AI));
+    const hal_can_status_t status = port_status(&hal, HAL_CAN_VEHICLE);
+    TEST_ASSERT_EQUAL(HAL_CAN_ERROR_ACTIVE, status.state);
+    TEST_ASSERT_EQUAL_UINT32(0, status.tx_pending_ms);
+    TEST_ASSERT_EQUAL_UINT16(0, status.bus_off_count);
+    TEST_ASSERT_EQUAL_UINT16(0, status.overrun_count);
+    TEST_ASSERT_FALSE(hal.led_on);
+    TEST_ASSERT_FALSE(hal.output_closed);
+    TEST_ASSERT_FALSE(linux_hal_tick(&hal));
+    port_receive_nothing(&hal);
+}
+
+void test_a_side_that_does_not_exist(void) {
+    port_open(&hal, "vcan0", NULL, NULL);
+    const hal_can_frame_t frame = vcan_frame(0x100);
+    TEST_ASSERT_FALSE(hal_can_send(&hal, HAL_CAN_AI, &frame));
+    TEST_ASSERT_FALSE(hal_can_send(&hal, HAL_CAN_SIDES, &frame));
+    hal_can_purge(&hal, HAL_CAN_AI);
+    hal_can_recover(&hal, HAL_CAN_AI);
+    const hal_can_status_t status = port_status(&hal, HAL_CAN_AI);
+    TEST_ASSERT_EQUAL(HAL_CAN_ERROR_ACTIVE, status.state);
+    TEST_ASSERT_EQUAL_UINT32(0, status.tx_pending_ms + status.bus_off_count + status.overrun_count);
+}
+
+void test_the_parts_without_hardware(void) {
+    const uint8_t record[4] = {1, 2, 3, 4};
+    uint8_t read[8] = {0};
+    port_open(&hal, "vcan0", NULL, NULL);
+    TEST_ASSERT_EQUAL(HAL_RESET_POWER_ON, hal_reset_cause(&hal));
+    hal_led_set(&hal, true);
+    hal_safety_output_set(&hal, true);
+    hal_watchdog_feed(&hal);
+    hal_watchdog_feed(&hal);
+    TEST_ASSERT_TRUE(hal.led_on);
+    TEST_ASSERT_TRUE(hal.output_closed);
+    TEST_ASSERT_EQUAL_UINT32(2, hal.feeds);
+    TEST_ASSERT_EQUAL_UINT(0, hal_store_read_latch(&hal, read, sizeof read));
+    TEST_ASSERT_TRUE(hal_store_write_latch(&hal, record, sizeof record));
+    TEST_ASSERT_EQUAL_UINT(4, hal_store_read_latch(&hal, read, sizeof read));
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(record, read, 4);
+    TEST_ASSERT_EQUAL_HEX8(0, read[4]);
+    memset(read, 0, sizeof read);
+    TEST_ASSERT_EQUAL_UINT(4, hal_store_read_latch(&hal, read, 2));
+    TEST_ASSERT_EQUAL_HEX8(2, read[1]);
+    TEST_ASSERT_EQUAL_HEX8(0, read[2]);
+    TEST_ASSERT_FALSE(hal_store_write_latch(&hal, hal.sides, HAL_STORE_LATCH_SIZE_MAX + 1u));
+    TEST_ASSERT_FALSE(hal_store_write_latch(&hal, record, 0));
+    TEST_ASSERT_FALSE(hal_store_append(&hal, record, sizeof record));
+    TEST_ASSERT_EQUAL_UINT(0, hal_store_read_record(&hal, 0, read, sizeof read));
+}
+
+void test_the_clock_is_the_one_of_the_stamps(void) {
+    port_open(&hal, "vcan0", NULL, NULL);
+    const int tester = vcan_open("vcan0");
+    vcan_pause_ms(10);
+    TEST_ASSERT_TRUE(hal_clock_now_ms(&hal) >= 10);
+    const uint64_t before_us = linux_hal_now_us(&hal);
+    vcan_send(tester, 0x100, 8, vcan_frame(0).data);
+    const uint64_t after_us = linux_hal_now_us(&hal);
+    vcan_pause_ms(100); /* it waits in the socket, and is not taken for fresh */
+    const port_received_t received = port_receive(&hal);
+    TEST_ASSERT_TRUE(received.at_us + 100u >= before_us); /* reading two clocks takes its time */
+    TEST_ASSERT_TRUE(received.at_us <= after_us + 2u);
+    TEST_ASSERT_EQUAL_UINT32(received.at_us / 1000u, received.frame.time_ms);
+    TEST_ASSERT_EQUAL_UINT16(received.at_us % 1000u, received.frame.time_us);
+    TEST_ASSERT_TRUE(hal_clock_now_ms(&hal) >= received.frame.time_ms + 100u);
+}
+
+void test_frames_of_all_kinds_are_handed_over(void) {
+    const uint8_t data[8] = {1, 2, 3, 4, 5, 6, 7, 8};
+    port_open(&hal, "vcan0", NULL, NULL);
+    const int tester = vcan_open("vcan0");
+    vcan_send(tester, 0x101, 2, data);
+    port_received_t received = port_receive(&hal);
+    TEST_ASSERT_EQUAL(HAL_CAN_VEHICLE, received.side);
+    TEST_ASSERT_EQUAL_HEX32(0x101, received.frame.id);
+    TEST_ASSERT_EQUAL_HEX8(0, received.frame.flags);
+    TEST_ASSERT_EQUAL_UINT8(2, received.frame.length);
+    TEST_ASSERT_EQUAL_HEX8(2, received.frame.data[1]);
+    TEST_ASSERT_EQUAL_HEX8(0, received.frame.data[2]);
+    vcan_send(tester, CAN_EFF_FLAG | 0x101, 8, data);
+    TEST_ASSERT_EQUAL_HEX8(HAL_CAN_EXTENDED, port_receive(&hal).frame.flags);
+    vcan_send(tester, CAN_RTR_FLAG | 0x101, 8, data);
+    TEST_ASSERT_EQUAL_HEX8(HAL_CAN_REMOTE, port_receive(&hal).frame.flags);
+    vcan_send_fd(tester, 0x101, 48);
+    received = port_receive(&hal);
+    TEST_ASSERT_EQUAL_HEX8(HAL_CAN_FD, received.frame.flags);
+    TEST_ASSERT_EQUAL_UINT8(48, received.frame.length);
+    vcan_send_error(tester, CAN_ERR_PROT, 0);
+    received = port_receive(&hal);
+    TEST_ASSERT_EQUAL_HEX8(HAL_CAN_ERROR, received.frame.flags);
+    TEST_ASSERT_EQUAL_HEX32(0x008, received.frame.id);
+    vcan_send(tester, 0x110, 8, data); /* not in use */
+    port_receive_nothing(&hal);
+}
+
+void test_each_side_hears_its_own_interface(void) {
+    port_open(&hal, "vcan0", "vcan1", NULL);
+    const int vehicle = vcan_open("vcan0");
+    const int ai = vcan_open("vcan1");
+    const hal_can_frame_t frame = vcan_frame(0x105);
+    vcan_send(ai, 0x100, 8, frame.data);
+    TEST_ASSERT_EQUAL(HAL_CAN_AI, port_receive(&hal).side);
+    vcan_send(vehicle, 0x100, 8, frame.data);
+    TEST_ASSERT_EQUAL(HAL_CAN_VEHICLE, port_receive(&hal).side);
+    TEST_ASSERT_TRUE(hal_can_send(&hal, HAL_CAN_AI, &frame));
+    vcan_expect(ai, 0x105, 8, frame.data);
+    vcan_expect_nothing(vehicle);
+}
+
+void test_frames_of_two_interfaces_come_in_the_order_of_their_arrival(void) {
+    static const char ORDER[] = "VAAVVVAVAAAAVVAV";
+    port_open(&hal, "vcan0", "vcan1", NULL);
+    const int vehicle = vcan_open("vcan0");
+    const int ai = vcan_open("vcan1");
+    for (uint8_t i = 0; i < 16; i++) {
+        const uint8_t data[8] = {i};
+        vcan_send((ORDER[i] == 'V') ? vehicle : ai, 0x100, 1, data);
+        vcan_pause_ms(1);
+    }
+    uint64_t last_us = 0;
+    for (uint8_t i = 0; i < 16; i++) {
+        const port_received_t received = port_receive(&hal);
+        TEST_ASSERT_EQUAL_UINT8(i, received.frame.data[0]);
+        TEST_ASSERT_EQUAL((ORDER[i] == 'V') ? HAL_CAN_VEHICLE : HAL_CAN_AI, received.side);
+        TEST_ASSERT_TRUE(received.at_us >= last_us);
+        last_us = received.at_us;
+    }
+    port_receive_nothing(&hal);
+}
+
+void test_own_frames_are_told_and_never_received(void) {
+    port_open(&hal, "vcan0", NULL, &left);
+    const int tester = vcan_open("vcan0");
+    const hal_can_frame_t frame = vcan_frame(0x065);
+    const uint64_t before_us = linux_hal_now_us(&hal);
+    TEST_ASSERT_TRUE(port_send(&hal, 0x065));
+    const uint64_t after_us = linux_hal_now_us(&hal);
+    port_receive_nothing(&hal);
+    vcan_expect(tester, 0x065, 8, frame.data);
+    TEST_ASSERT_EQUAL_UINT(1, left.count);
+    TEST_ASSERT_EQUAL(HAL_CAN_VEHICLE, left.sides[0]);
+    TEST_ASSERT_EQUAL_HEX32(0x065, left.frames[0].id);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(frame.data, left.frames[0].data, 8);
+    TEST_ASSERT_EQUAL_UINT32(left.at_us[0] / 1000u, left.frames[0].time_ms);
+    TEST_ASSERT_TRUE(left.at_us[0] + 100u >= before_us);
+    TEST_ASSERT_TRUE(left.at_us[0] <= after_us + 2u);
+    vcan_send(tester, 0x065, 8, frame.data); /* the very same by somebody else on this computer: a foreign sender */
+    const port_received_t foreign = port_receive(&hal);
+    TEST_ASSERT_EQUAL_HEX32(0x065, foreign.frame.id);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(frame.data, foreign.frame.data, 8);
+    TEST_ASSERT_EQUAL_UINT(1, left.count);
+}
+
+void test_two_supervisors_hear_each_other_and_not_themselves(void) {
+    port_open(&hal, "vcan0", NULL, &left);
+    port_open(&other, "vcan0", NULL, NULL);
+    TEST_ASSERT_TRUE(port_send(&hal, 0x065));
+    TEST_ASSERT_EQUAL_HEX32(0x065, port_receive(&other).frame.id);
+    port_receive_nothing(&hal);
+    TEST_ASSERT_TRUE(port_send(&other, 0x100));
+    TEST_ASSERT_EQUAL_HEX32(0x100, port_receive(&hal).frame.id);
+    port_receive_nothing(&other);
+    TEST_ASSERT_EQUAL_UINT(1, left.count);
+}
+
+void test_a_closed_port_does_nothing(void) {
+    port_open(&hal, "vcan0", "vcan1", NULL);
+    const int tester = vcan_open("vcan0");
+    linux_hal_close(&hal);
+    TEST_ASSERT_FALSE(port_send(&hal, 0x100));
+    vcan_send(tester, 0x100, 8, vcan_frame(0).data);
+    port_receive_nothing(&hal);
+    vcan_expect_nothing(tester);
+}

@@ -1,0 +1,250 @@
+/* What is sent: order, waiting, a kernel that has no room, purging, an echo that is lost. */
+#include <string.h>
+
+#include "hal_linux/linux_hal.h"
+#include "port.h"
+#include "unity.h"
+#include "vcan.h"
+
+/* A queue for two frames at once and twelve more, which lets six out at first and then one in 160 ms. */
+#define SLOW_QUEUE "tc qdisc add dev vcan0 root tbf rate 800bit burst 100 limit 200"
+#define NO_QUEUE "tc qdisc del dev vcan0 root"
+#define DROPPED "tc -s qdisc show dev vcan0 | sed -nE 's/.*dropped ([0-9]+).*/\\1/p'"
+
+static hal_t hal;
+static port_left_t left;
+static int tester;
+
+void setUp(void) {
+    port_open(&hal, "vcan0", NULL, &left);
+    tester = vcan_open("vcan0");
+}
+
+void tearDown(void) {
+    linux_hal_close(&hal);
+    vcan_restore();
+}
+
+static uint32_t pending_ms(void) {
+    return port_status(&hal, HAL_CAN_VEHICLE).tx_pending_ms;
+}
+
+/* Frames that nobody listens to, until the kernel takes no more. */
+static void fill_kernel_queue(void) {
+    unsigned taken = 0;
+    while (vcan_try(tester, 0x7FF)) {
+        TEST_ASSERT_TRUE(++taken < 100);
+    }
+}
+
+void test_a_frame_leaves_at_once_when_none_is_on_its_way(void) {
+    TEST_ASSERT_TRUE(port_send(&hal, 0x105));
+    vcan_expect_id(tester, 0x105);
+    TEST_ASSERT_TRUE(pending_ms() >= 1); /* until its echo was read */
+    (void)port_drain(&hal);
+    TEST_ASSERT_EQUAL_UINT32(0, pending_ms());
+    TEST_ASSERT_EQUAL_UINT(1, left.count);
+}
+
+void test_what_waits_leaves_by_identifier_and_equals_by_age(void) {
+    const uint32_t ids[] = {0x108, 0x105, 0x107, 0x105, 0x10F, 0x100, 0x105};
+    const uint32_t order[] = {0x108, 0x100, 0x105, 0x105, 0x105, 0x107, 0x10F};
+    const uint8_t numbers[] = {0, 5, 1, 3, 6, 2, 4};
+    for (uint8_t i = 0; i < 7; i++) {
+        const hal_can_frame_t frame = {.id = ids[i], .length = 1, .data = {i}};
+        TEST_ASSERT_TRUE(hal_can_send(&hal, HAL_CAN_VEHICLE, &frame));
+    }
+    vcan_expect_id(tester, 0x108);
+    vcan_expect_nothing(tester); /* one at a time */
+    TEST_ASSERT_EQUAL_UINT(0, port_drain(&hal));
+    for (uint8_t i = 1; i < 7; i++) {
+        vcan_expect(tester, order[i], 1, (const uint8_t[8]){numbers[i]});
+    }
+    vcan_expect_nothing(tester);
+    TEST_ASSERT_EQUAL_UINT(7, left.count);
+    for (uint8_t i = 0; i < 7; i++) {
+        TEST_ASSERT_EQUAL_HEX32(order[i], left.frames[i].id);
+        TEST_ASSERT_EQUAL_HEX8(numbers[i], left.frames[i].data[0]);
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, pending_ms());
+}
+
+void test_extended_identifiers_are_ranked_as_on_the_bus(void) {
+    hal_can_frame_t frame = vcan_frame(0x10F);
+    TEST_ASSERT_TRUE(hal_can_send(&hal, HAL_CAN_VEHICLE, &frame));
+    frame = (hal_can_frame_t){.id = 0x101u << 18, .flags = HAL_CAN_EXTENDED};
+    TEST_ASSERT_TRUE(hal_can_send(&hal, HAL_CAN_VEHICLE, &frame));
+    frame = (hal_can_frame_t){.id = 0x065, .flags = HAL_CAN_EXTENDED};
+    TEST_ASSERT_TRUE(hal_can_send(&hal, HAL_CAN_VEHICLE, &frame));
+    TEST_ASSERT_TRUE(port_send(&hal, 0x101));
+    TEST_ASSERT_TRUE(port_send(&hal, 0x100));
+    (void)port_drain(&hal);
+    vcan_expect_id(tester, 0x10F);
+    vcan_expect_id(tester, CAN_EFF_FLAG | 0x065); /* the first 11 bits of it are 0 */
+    vcan_expect_id(tester, 0x100);
+    vcan_expect_id(tester, 0x101);
+    vcan_expect_id(tester, CAN_EFF_FLAG | (0x101u << 18));
+}
+
+void test_room_for_sixteen_behind_the_one_on_its_way(void) {
+    for (unsigned i = 0; i < 17; i++) {
+        TEST_ASSERT_TRUE(port_send(&hal, 0x100));
+    }
+    TEST_ASSERT_FALSE(port_send(&hal, 0x065));
+    (void)port_drain(&hal);
+    TEST_ASSERT_EQUAL_UINT(17, left.count);
+    TEST_ASSERT_TRUE(port_send(&hal, 0x065));
+}
+
+void test_frames_that_cannot_be_sent_are_not_taken(void) {
+    for (unsigned waiting = 0; waiting < 2; waiting++) {
+        hal_can_frame_t frame = vcan_frame(0x800);
+        TEST_ASSERT_FALSE(hal_can_send(&hal, HAL_CAN_VEHICLE, &frame));
+        frame = vcan_frame(0x100);
+        frame.length = 9;
+        TEST_ASSERT_FALSE(hal_can_send(&hal, HAL_CAN_VEHICLE, &frame));
+        frame = vcan_frame(0x100);
+        frame.flags = HAL_CAN_FD;
+        TEST_ASSERT_FALSE(hal_can_send(&hal, HAL_CAN_VEHICLE, &frame));
+        frame.flags = HAL_CAN_ERROR;
+        TEST_ASSERT_FALSE(hal_can_send(&hal, HAL_CAN_VEHICLE, &frame));
+        TEST_ASSERT_TRUE(port_send(&hal, 0x100)); /* from here on one is on its way */
+    }
+}
+
+void test_a_kernel_without_room_is_not_sent(void) {
+    vcan_run(SLOW_QUEUE);
+    fill_kernel_queue();
+    for (unsigned i = 0; i < 20; i++) {
+        if (port_send(&hal, 0x100)) {
+            (void)port_drain(&hal); /* a slot came free just then */
+            fill_kernel_queue();
+        }
+    }
+    left.count = 0;
+    fill_kernel_queue();
+    TEST_ASSERT_FALSE(port_send(&hal, 0x100));
+    TEST_ASSERT_EQUAL_UINT32(0, pending_ms());
+    vcan_run(NO_QUEUE);
+    vcan_drain(tester);
+    port_run_ms(&hal, 3);
+    vcan_expect_nothing(tester); /* not taken, so not sent later either */
+    TEST_ASSERT_TRUE(port_send(&hal, 0x101));
+    vcan_expect_id(tester, 0x101);
+}
+
+void test_a_waiting_frame_is_tried_again_in_ticks_only(void) {
+    vcan_run(SLOW_QUEUE);
+    TEST_ASSERT_TRUE(port_send(&hal, 0x10F));
+    TEST_ASSERT_TRUE(port_send(&hal, 0x101));
+    TEST_ASSERT_TRUE(port_send(&hal, 0x100));
+    fill_kernel_queue();
+    (void)port_drain(&hal); /* 10Fh has left, 100h is tried and finds no room */
+    TEST_ASSERT_EQUAL_UINT(1, left.count);
+    vcan_run("tc qdisc change dev vcan0 root tbf rate 8bit burst 100 limit 200");
+    fill_kernel_queue();
+    const long before = vcan_number(DROPPED);
+    for (unsigned i = 0; i < 1000; i++) {
+        (void)port_drain(&hal);
+    }
+    TEST_ASSERT_EQUAL_INT(before, vcan_number(DROPPED));
+    for (unsigned i = 0; i < 10; i++) {
+        (void)linux_hal_tick(&hal);
+    }
+    TEST_ASSERT_EQUAL_INT(before + 10, vcan_number(DROPPED));
+    TEST_ASSERT_TRUE(port_send(&hal, 0x105)); /* it queues up behind, and does not try either */
+    TEST_ASSERT_EQUAL_INT(before + 10, vcan_number(DROPPED));
+    vcan_run(NO_QUEUE);
+    vcan_drain(tester);
+    (void)linux_hal_tick(&hal);
+    (void)port_drain(&hal);
+    vcan_expect_id(tester, 0x100);
+    vcan_expect_id(tester, 0x101);
+    vcan_expect_id(tester, 0x105);
+    vcan_expect_nothing(tester);
+}
+
+void test_the_age_of_what_waits_grows(void) {
+    TEST_ASSERT_TRUE(port_send(&hal, 0x100));
+    vcan_pause_ms(20);
+    const uint32_t first_ms = pending_ms();
+    TEST_ASSERT_TRUE(first_ms >= 20 && first_ms < 2000);
+    const uint64_t taken_us = linux_hal_now_us(&hal);
+    TEST_ASSERT_TRUE(port_send(&hal, 0x10F));
+    vcan_run(SLOW_QUEUE);
+    fill_kernel_queue();
+    (void)port_drain(&hal); /* 100h has left: the age is that of 10Fh from now on, which finds no room */
+    vcan_pause_ms(30);
+    const uint32_t second_ms = pending_ms();
+    TEST_ASSERT_TRUE(second_ms >= 30);
+    TEST_ASSERT_TRUE(second_ms <= (linux_hal_now_us(&hal) - taken_us) / 1000u);
+}
+
+void test_a_purge_leaves_only_what_the_kernel_has(void) {
+    TEST_ASSERT_TRUE(port_send(&hal, 0x10F));
+    TEST_ASSERT_TRUE(port_send(&hal, 0x100));
+    TEST_ASSERT_TRUE(port_send(&hal, 0x101));
+    hal_can_purge(&hal, HAL_CAN_VEHICLE);
+    TEST_ASSERT_EQUAL_UINT32(0, pending_ms());
+    TEST_ASSERT_TRUE(port_send(&hal, 0x102)); /* waits until 10Fh has left: never two in the kernel */
+    TEST_ASSERT_TRUE(pending_ms() >= 1);
+    vcan_expect_id(tester, 0x10F);
+    vcan_expect_nothing(tester);
+    port_run_ms(&hal, 3);
+    vcan_expect_id(tester, 0x102);
+    vcan_expect_nothing(tester);
+    TEST_ASSERT_EQUAL_UINT(2, left.count);
+    TEST_ASSERT_EQUAL_UINT32(0, pending_ms());
+}
+
+void test_purges_do_not_pile_up_frames_in_the_kernel(void) {
+    TEST_ASSERT_TRUE(port_send(&hal, 0x10F));
+    for (unsigned i = 0; i < 10; i++) {
+        TEST_ASSERT_TRUE(port_send(&hal, 0x100));
+        hal_can_purge(&hal, HAL_CAN_VEHICLE);
+    }
+    port_run_ms(&hal, 3);
+    vcan_expect_id(tester, 0x10F);
+    vcan_expect_nothing(tester);
+    TEST_ASSERT_EQUAL_UINT(1, left.count);
+}
+
+void test_an_echo_that_was_lost_does_not_hold_up_the_rest(void) {
+    const hal_can_frame_t foreign = vcan_frame(0x105);
+    for (unsigned i = 0; i < 2000; i++) {
+        vcan_send(tester, 0x105, 8, foreign.data);
+    }
+    TEST_ASSERT_TRUE(port_send(&hal, 0x100)); /* its echo finds no room in the socket */
+    TEST_ASSERT_TRUE(port_send(&hal, 0x101));
+    const unsigned received = port_drain(&hal);
+    TEST_ASSERT_TRUE(received > 10 && received < 2000);
+    port_run_ms(&hal, 3);
+    TEST_ASSERT_EQUAL_UINT(0, left.count);
+    vcan_drain(tester);
+    vcan_send(tester, 0x105, 8, foreign.data); /* with it the kernel tells what was lost */
+    port_run_ms(&hal, 3);
+    vcan_expect_id(tester, 0x101);
+    vcan_expect_nothing(tester);
+    TEST_ASSERT_EQUAL_UINT(1, left.count);
+    TEST_ASSERT_EQUAL_UINT32(0, pending_ms());
+    TEST_ASSERT_EQUAL_UINT16(2000u - received + 1u, port_status(&hal, HAL_CAN_VEHICLE).overrun_count);
+}
+
+void test_a_loss_before_a_frame_was_given_says_nothing_of_it(void) {
+    const hal_can_frame_t foreign = vcan_frame(0x105);
+    for (unsigned i = 0; i < 2000; i++) {
+        vcan_send(tester, 0x105, 8, foreign.data);
+    }
+    TEST_ASSERT_TRUE(port_drain(&hal) < 2000);
+    vcan_send(tester, 0x105, 8, foreign.data);
+    vcan_pause_ms(2);
+    TEST_ASSERT_TRUE(port_send(&hal, 0x100));
+    TEST_ASSERT_TRUE(port_send(&hal, 0x101));
+    vcan_drain(tester);
+    TEST_ASSERT_EQUAL_HEX32(0x105, port_receive(&hal).frame.id); /* tells of the loss, and came before 100h */
+    TEST_ASSERT_TRUE(port_status(&hal, HAL_CAN_VEHICLE).overrun_count > 0);
+    TEST_ASSERT_TRUE(hal.sides[HAL_CAN_VEHICLE].in_flight);
+    vcan_expect_nothing(tester);
+    (void)port_drain(&hal);
+    vcan_expect_id(tester, 0x101);
+}

@@ -1,0 +1,197 @@
+/* Waiting: ticks, files, signals; and real-time priority, which needs rights. */
+#include "hal_linux/linux_loop.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <sched.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "unity.h"
+
+static linux_loop_t loop;
+static int ends[2];
+
+void setUp(void) {
+    TEST_ASSERT_TRUE(linux_loop_open(&loop));
+    TEST_ASSERT_EQUAL_INT(0, pipe(ends));
+}
+
+void tearDown(void) {
+    linux_loop_close(&loop);
+    (void)close(ends[0]);
+    (void)close(ends[1]);
+}
+
+static uint64_t now_us(void) {
+    struct timespec now;
+    TEST_ASSERT_EQUAL_INT(0, clock_gettime(CLOCK_MONOTONIC, &now));
+    return (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u;
+}
+
+static void pause_ms(long ms) {
+    const struct timespec time = {.tv_nsec = ms * 1000000};
+    TEST_ASSERT_EQUAL_INT(0, nanosleep(&time, NULL));
+}
+
+/* Ticks of so many milliseconds. There are never more than milliseconds, and fewer when the computer is busy. */
+static unsigned count_ticks(uint64_t ms) {
+    unsigned ticks = 0;
+    TEST_ASSERT_EQUAL_HEX32(LINUX_LOOP_TICK, linux_loop_wait(&loop));
+    const uint64_t begin_us = now_us();
+    while (now_us() - begin_us < ms * 1000u) {
+        ticks += ((linux_loop_wait(&loop) & LINUX_LOOP_TICK) != 0) ? 1u : 0u;
+    }
+    TEST_ASSERT_TRUE(ticks <= (now_us() - begin_us) / 1000u + 1u);
+    return ticks;
+}
+
+void test_a_tick_every_millisecond(void) {
+    unsigned most = 0;
+    for (unsigned i = 0; i < 5 && most < 150; i++) {
+        const unsigned ticks = count_ticks(200);
+        most = (ticks > most) ? ticks : most;
+    }
+    TEST_ASSERT_TRUE(most >= 150);
+    TEST_ASSERT_TRUE(most <= 250);
+}
+
+void test_a_late_program_gets_one_tick_and_not_a_burst(void) {
+    unsigned most = 0;
+    for (unsigned i = 0; i < 5; i++) {
+        pause_ms(50);
+        const uint64_t begin_us = now_us();
+        TEST_ASSERT_EQUAL_HEX32(LINUX_LOOP_TICK, linux_loop_wait(&loop));
+        TEST_ASSERT_EQUAL_HEX32(LINUX_LOOP_TICK, linux_loop_wait(&loop));
+        TEST_ASSERT_EQUAL_HEX32(LINUX_LOOP_TICK, linux_loop_wait(&loop));
+        const unsigned took_us = (unsigned)(now_us() - begin_us);
+        most = (took_us > most) ? took_us : most;
+        TEST_ASSERT_TRUE(took_us >= 1000); /* one that was due, up to one soon, and a whole millisecond */
+    }
+    TEST_ASSERT_TRUE(most < 1000000);
+}
+
+void test_a_file_is_told_as_long_as_it_is_ready(void) {
+    TEST_ASSERT_TRUE(linux_loop_add(&loop, ends[0]));
+    TEST_ASSERT_EQUAL_HEX32(LINUX_LOOP_TICK, linux_loop_wait(&loop));
+    TEST_ASSERT_EQUAL_INT(1, write(ends[1], "x", 1));
+    TEST_ASSERT_BITS_HIGH(LINUX_LOOP_FILE, linux_loop_wait(&loop));
+    TEST_ASSERT_BITS_HIGH(LINUX_LOOP_FILE, linux_loop_wait(&loop));
+    char byte = 0;
+    TEST_ASSERT_EQUAL_INT(1, read(ends[0], &byte, 1));
+    TEST_ASSERT_EQUAL_HEX32(LINUX_LOOP_TICK, linux_loop_wait(&loop));
+    TEST_ASSERT_EQUAL_INT(1, write(ends[1], "x", 1));
+    linux_loop_remove(&loop, ends[0]);
+    TEST_ASSERT_EQUAL_HEX32(LINUX_LOOP_TICK, linux_loop_wait(&loop));
+    linux_loop_remove(&loop, ends[0]);
+}
+
+void test_files_that_cannot_be_watched(void) {
+    const int regular = open("/proc/self/exe", O_RDONLY);
+    TEST_ASSERT_TRUE(regular >= 0);
+    TEST_ASSERT_FALSE(linux_loop_add(&loop, regular));
+    TEST_ASSERT_EQUAL_INT(EPERM, errno);
+    (void)close(regular);
+    TEST_ASSERT_FALSE(linux_loop_add(&loop, -1));
+    TEST_ASSERT_EQUAL_INT(EBADF, errno);
+}
+
+/* The signal has to be told within some ticks. */
+static void expect_signal(void) {
+    uint32_t what = 0;
+    for (unsigned i = 0; (what & LINUX_LOOP_SIGNAL) == 0 && i < 100; i++) {
+        what |= linux_loop_wait(&loop);
+    }
+    TEST_ASSERT_BITS_HIGH(LINUX_LOOP_SIGNAL, what);
+}
+
+void test_signals_are_told_and_end_nothing(void) {
+    const int signals[] = {SIGINT, SIGTERM, SIGHUP};
+    for (unsigned i = 0; i < 3; i++) {
+        TEST_ASSERT_EQUAL_INT(0, kill(getpid(), signals[i]));
+        expect_signal();
+        TEST_ASSERT_EQUAL_HEX32(LINUX_LOOP_TICK, linux_loop_wait(&loop));
+    }
+    linux_loop_close(&loop);
+    TEST_ASSERT_EQUAL_INT(0, kill(getpid(), SIGTERM)); /* still held back, and told by the next loop */
+    TEST_ASSERT_TRUE(linux_loop_open(&loop));
+    expect_signal();
+}
+
+void test_a_loop_that_cannot_wait_ends_the_program(void) {
+    linux_loop_close(&loop);
+    TEST_ASSERT_EQUAL_HEX32(LINUX_LOOP_SIGNAL, linux_loop_wait(&loop));
+}
+
+void test_a_loop_needs_files(void) {
+    const struct rlimit none = {.rlim_cur = 0, .rlim_max = RLIM_INFINITY};
+    struct rlimit usual;
+    TEST_ASSERT_EQUAL_INT(0, getrlimit(RLIMIT_NOFILE, &usual));
+    const struct rlimit no_more = {.rlim_cur = none.rlim_cur, .rlim_max = usual.rlim_max};
+    linux_loop_t other;
+    TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &no_more));
+    const bool is_open = linux_loop_open(&other);
+    const int why = errno;
+    TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &usual));
+    TEST_ASSERT_FALSE(is_open);
+    TEST_ASSERT_EQUAL_INT(EMFILE, why);
+    TEST_ASSERT_EQUAL_INT(-1, other.epoll);
+}
+
+/* In another process, so that this one stays as it is. @return what `child` did */
+static int in_child(int (*child)(void)) {
+    const pid_t pid = fork();
+    if (pid == 0) {
+        _exit(child());
+    }
+    int status = 0;
+    TEST_ASSERT_TRUE(pid > 0);
+    TEST_ASSERT_EQUAL_INT(pid, waitpid(pid, &status, 0));
+    TEST_ASSERT_TRUE(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+#define LOCK_REFUSED                                                                                                   \
+    "memory cannot be locked: Operation not permitted; it needs CAP_IPC_LOCK or a higher memlock limit (ulimit -l)"
+#define PRIORITY_REFUSED                                                                                               \
+    "no real-time priority: Operation not permitted; it needs CAP_SYS_NICE or an rtprio limit (ulimit -r)"
+
+static int ask_without_rights(void) {
+    char error[LINUX_LOOP_ERROR_SIZE] = "";
+    const struct rlimit none = {0};
+    if (setrlimit(RLIMIT_MEMLOCK, &none) != 0 || setrlimit(RLIMIT_RTPRIO, &none) != 0 ||
+        (geteuid() == 0 && setuid(65534) != 0)) {
+        return 3;
+    }
+    if (linux_loop_realtime(error) || sched_getscheduler(0) != SCHED_OTHER) {
+        return 2;
+    }
+    /* The address sanitizer makes mlockall() do nothing: then it is the priority that is refused. */
+    return (strcmp(error, LOCK_REFUSED) == 0 || strcmp(error, PRIORITY_REFUSED) == 0) ? 0 : 1;
+}
+
+void test_real_time_is_refused_in_one_line_without_the_rights(void) {
+    TEST_ASSERT_EQUAL_INT(0, in_child(ask_without_rights));
+}
+
+/* With the rights it is granted, else refused as a whole: which of the two depends on who runs this. */
+static int ask_with_what_rights_there_are(void) {
+    char error[LINUX_LOOP_ERROR_SIZE] = "";
+    if (!linux_loop_realtime(error)) {
+        return (error[0] != '\0' && sched_getscheduler(0) == SCHED_OTHER) ? 0 : 1;
+    }
+    struct sched_param now;
+    if (sched_getscheduler(0) != SCHED_FIFO || sched_getparam(0, &now) != 0 || error[0] != '\0') {
+        return 2;
+    }
+    return (now.sched_priority == 50) ? 0 : 3;
+}
+
+void test_real_time_is_granted_or_nothing_has_changed(void) {
+    TEST_ASSERT_EQUAL_INT(0, in_child(ask_with_what_rights_there_are));
+}
