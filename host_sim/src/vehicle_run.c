@@ -188,12 +188,15 @@ static bool go(run_t *run) {
 
 static bool open_bus(run_t *run) {
     const vehicle_run_request_t *request = run->request;
-    vehicle_bus_config_t config = {.clock = &run->clock};
+    vehicle_bus_config_t config = {
+        .interfaces =
+            {[HAL_CAN_VEHICLE] = request->interfaces[HAL_CAN_VEHICLE], [HAL_CAN_AI] = request->interfaces[HAL_CAN_AI]},
+        .clock = &run->clock,
+    };
 
     vehicle_defaults(&config.vehicle);
     config.vehicle.id_set = (agv_id_set_t)request->config.id_set;
     config.vehicle.gateway = request->interfaces[HAL_CAN_AI] != NULL;
-    memcpy(config.interfaces, request->interfaces, sizeof config.interfaces);
     return vehicle_bus_open(&run->bus, &config);
 }
 
