@@ -1,7 +1,9 @@
 /* What of a scenario can be shown on a real bus, and how strictly its times hold there. */
 #include <stdio.h>
+#include <string.h>
 #include <sys/stat.h>
 
+#include "agv/protocol.h"
 #include "scenario_bus.h"
 
 enum { PATH_SIZE = 64 };
@@ -96,6 +98,32 @@ static const char *why_not_ai_side(const scenario_t *scenario) {
     return expected ? "AI_BUS_OFF: a virtual interface takes every frame, acknowledged or not" : NULL;
 }
 
+/** Whether a frame is one that the kernel hands over to the supervisor (node.c). */
+static bool is_of_protocol(uint32_t id) {
+    return (agv_message_from_id(id, AGV_ID_SET_HEADING) != AGV_MSG_NONE) ||
+           (agv_message_from_id(id, AGV_ID_SET_TABLE) != AGV_MSG_NONE);
+}
+
+/** What the supervisor counts of frames that it is not given here. */
+static const char *why_not_counters(const scenario_t *scenario) {
+    static const char *const of_received[] = {"received", "dropped", "rejected_extended", "rejected_remote"};
+    bool foreign = false;
+    for (size_t i = 0u; i < scenario->step_count; i++) {
+        const scenario_step_t *step = &scenario->steps[i];
+        foreign = foreign || (step->of_vehicle && (step->vehicle.what == VEHICLE_DO_SEND) &&
+                              !is_of_protocol(step->vehicle.frame.id));
+    }
+    for (size_t i = 0u; foreign && (i < scenario->expect.counters.count); i++) {
+        const scenario_counter_t *counter = &scenario->expect.counters.items[i];
+        for (size_t name = 0u; name < sizeof of_received / sizeof of_received[0]; name++) {
+            if ((counter->value.from > 0u) && (strcmp(counter->name, of_received[name]) == 0)) {
+                return "counters_at_end: the kernel keeps frames that are none of the protocol to itself";
+            }
+        }
+    }
+    return NULL;
+}
+
 const char *scenario_bus_leaves_out(const scenario_bus_t *bus, const scenario_t *scenario) {
     const char *why = why_not_start(scenario);
     for (size_t i = 0u; (why == NULL) && (i < scenario->step_count); i++) {
@@ -104,7 +132,8 @@ const char *scenario_bus_leaves_out(const scenario_bus_t *bus, const scenario_t 
         }
     }
     why = (why != NULL) ? why : why_not_faults(&scenario->expect);
-    return (why != NULL) ? why : why_not_ai_side(scenario);
+    why = (why != NULL) ? why : why_not_ai_side(scenario);
+    return (why != NULL) ? why : why_not_counters(scenario);
 }
 
 /** Something is expected at some moment in it. */
