@@ -23,7 +23,7 @@ THROTTLE_30 = 75  # 075h and 050h byte 1: 0.4 % a count
 GEAR_P = bytes([8, 0, 0, 0, 0, 0, 0, 0])
 THROTTLE_10 = bytes([25, 0, 0, 0, 0, 0, 0, 0])
 AUTOPILOT_OFF = bytes([0, 0, 0, 0, 0x40, 0, 0, 0])  # 43Fh byte 5 bit 7, and a counter
-TRIES = 3
+TRIES = 6
 SLACK_S = 0.4  # how long this machine may have other things to do
 
 
@@ -47,7 +47,7 @@ class Sends(canbus.Case):
         text = "%03Xh: %d frames in %.3f s, held up %d times for %.3f s" % (can_id, len(mine), seconds, len(held_up),
                                                                            sum(held_up))
         self.assertTrue(least <= len(mine) <= 1.02 * right + 1, text)
-        self.assertAlmostEqual(statistics.median(gaps_ms(mine)), period_ms, delta=1 + 0.02 * period_ms, msg=text)
+        self.assertAlmostEqual(statistics.median(gaps_ms(mine)), period_ms, delta=0.05 * period_ms, msg=text)
 
     def capture(self, *options):
         captured = []
@@ -149,8 +149,8 @@ class Faults(canbus.Case):
         bus = self.bus()
         vehicle = self.start("vehicle", "--can", "vcan0", "--fault", "eps-freeze_counter@2500", "--fault",
                              "ai-stop@2000", "--fault", "eps-set,field=faults,value=08h@2200", "--fault",
-                             "ai-start@3500", "--for", "4000")
-        frames = [bus.wait_for(0x363)] + bus.listen(4.2)
+                             "ai-start@3500", "--for", "5000")
+        frames = [bus.wait_for(0x363)] + bus.listen(5.2)
         begin = frames[0].at
         of_ai = [frame.at - begin for frame in canbus.of(frames, 0x43F)]
         self.assertGreater(len([at for at in of_ai if at < 2 - SLACK_S]), 10)
@@ -167,7 +167,7 @@ class Faults(canbus.Case):
         vehicle.wait_line(r"^ +2\.\d+ s  eps +set field=faults value=08h  ")
         vehicle.wait_line(r"^ +[23]\.\d+ s  eps +freeze_counter  ")
         vehicle.wait_line(r"^ +3\.\d+ s  ai +start  ")
-        self.assertRegex(vehicle.text(), r"\n4\.\d{3} s; frames: \d{4} sent, 0 not taken by the kernel\n\Z")
+        self.assertRegex(vehicle.text(), r"\n5\.\d{3} s; frames: \d{4} sent, 0 not taken by the kernel\n\Z")
         self.assertEqual(vehicle.text("stderr"), "")
 
     def test_typed(self):
