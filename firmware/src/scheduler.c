@@ -39,15 +39,14 @@ static bool is_too_soon(const agv_core_t *core, agv_slot_t *slot) {
     return slot->override_recent;
 }
 
-bool agv_scheduler_override(agv_core_t *core, agv_message_t command) {
-    agv_slot_t *const slot = slot_of(core, command);
-    slot->override_waits = is_too_soon(core, slot);
-    return !slot->override_waits;
-}
-
 bool agv_scheduler_override_due(agv_core_t *core, agv_message_t command) {
     agv_slot_t *const slot = slot_of(core, command);
     return !is_too_soon(core, slot) && slot->override_waits;
+}
+
+bool agv_scheduler_override(agv_core_t *core, agv_message_t command) {
+    slot_of(core, command)->override_waits = true;
+    return agv_scheduler_override_due(core, command);
 }
 
 void agv_scheduler_overridden(agv_core_t *core, agv_message_t command) {

@@ -89,9 +89,15 @@ static bool emit(agv_core_t *core, hal_can_side_t side, uint16_t id, const uint8
     return true;
 }
 
-static bool emit_message(agv_core_t *core, agv_message_t message, const uint8_t data[AGV_DLC]) {
-    const hal_can_side_t side = ((uint32_t)message < AGV_COMMAND_COUNT) ? HAL_CAN_VEHICLE : HAL_CAN_AI;
+static bool emit_message(agv_core_t *core, hal_can_side_t side, agv_message_t message, const uint8_t data[AGV_DLC]) {
     return emit(core, side, agv_message_id(message, (agv_id_set_t)core->config.id_set), data);
+}
+
+/* A command that is not taken waits from then on. */
+static bool emit_command(agv_core_t *core, agv_message_t command, const uint8_t data[AGV_DLC]) {
+    const bool taken = emit_message(core, HAL_CAN_VEHICLE, command, data);
+    (void)agv_watch_while(core, wait_of(command), !taken);
+    return taken;
 }
 
 /* Send an own command. It answers whatever was heard before. In bus-off nothing is handed to the HAL. */
@@ -102,9 +108,7 @@ static void send_own(agv_core_t *core, agv_message_t command) {
         return;
     }
     build(core, command, data);
-    const bool taken = emit_message(core, command, data);
-    (void)agv_watch_while(core, wait_of(command), !taken);
-    if (!taken) {
+    if (!emit_command(core, command, data)) {
         return;
     }
     transmitter->scheduler.slots[command].override_waits = false;
@@ -154,14 +158,13 @@ void agv_transmitter_answer(agv_core_t *core, agv_message_t command, const uint8
 /* Send a passed frame, or keep it until the HAL takes it. */
 static void send_passed(agv_core_t *core, agv_message_t message) {
     agv_transmitter_t *const transmitter = &core->transmitter;
-    const bool taken = emit_message(core, message, transmitter->kept_data[message]);
+    const uint8_t *const data = transmitter->kept_data[message];
+    const bool taken = ((uint32_t)message < AGV_COMMAND_COUNT) ? emit_command(core, message, data)
+                                                               : emit_message(core, HAL_CAN_AI, message, data);
     if (taken) {
         transmitter->kept &= (uint16_t)~bit_of(message);
     } else {
         transmitter->kept |= (uint16_t)bit_of(message);
-    }
-    if ((uint32_t)message < AGV_COMMAND_COUNT) {
-        (void)agv_watch_while(core, wait_of(message), !taken);
     }
 }
 
