@@ -7,69 +7,64 @@ static bool is_command(agv_message_t message) {
     return (uint32_t)message < AGV_COMMAND_COUNT;
 }
 
-/* P15: why a frame is rejected. Identifiers of others may have any length. */
-static agv_rejected_t reason_to_reject(const hal_can_frame_t *frame, agv_message_t message) {
-    if ((frame->flags & HAL_CAN_ERROR) != 0u) {
-        return AGV_REJECTED_ERROR;
-    }
-    if ((frame->flags & HAL_CAN_EXTENDED) != 0u) {
-        return AGV_REJECTED_EXTENDED;
-    }
-    if ((frame->flags & HAL_CAN_REMOTE) != 0u) {
-        return AGV_REJECTED_REMOTE;
+/* P15: why a frame is rejected, of several reasons the last; REJECTED_KINDS: it is not. Others' may have any length. */
+static uint32_t reason_to_reject(const hal_can_frame_t *frame, agv_message_t message) {
+    uint32_t why = AGV_REJECTED_KINDS;
+    if ((frame->length != AGV_DLC) && (message != AGV_MSG_NONE)) {
+        why = AGV_REJECTED_LENGTH;
     }
     if ((frame->flags & HAL_CAN_FD) != 0u) {
-        return AGV_REJECTED_FD;
+        why = AGV_REJECTED_FD;
     }
-    return ((frame->length != AGV_DLC) && (message != AGV_MSG_NONE)) ? AGV_REJECTED_LENGTH : AGV_REJECTED_KINDS;
+    if ((frame->flags & HAL_CAN_REMOTE) != 0u) {
+        why = AGV_REJECTED_REMOTE;
+    }
+    if ((frame->flags & HAL_CAN_EXTENDED) != 0u) {
+        why = AGV_REJECTED_EXTENDED;
+    }
+    if ((frame->flags & HAL_CAN_ERROR) != 0u) {
+        why = AGV_REJECTED_ERROR;
+    }
+    return why;
 }
 
-/* A VCU may obey a command of any length: it is answered all the same (TOP-1). */
-static void handle_malformed(agv_core_t *core, hal_can_side_t side, agv_message_t message, agv_rejected_t why) {
-    const bool has_data = (why == AGV_REJECTED_LENGTH) || (why == AGV_REJECTED_FD);
-    core->counters.rejected[why]++;
-    if (has_data && is_command(message) && (side == HAL_CAN_VEHICLE)) {
-        agv_transmitter_answer(core, message, NULL);
-    }
-}
-
-static void pass_command(agv_core_t *core, agv_message_t command, const uint8_t *received) {
+/* Gateway: to the other side. */
+static void pass_on(agv_core_t *core, agv_message_t message, const uint8_t *received) {
     uint8_t data[AGV_DLC];
-    if (!agv_gateway_passes(core, command)) {
-        core->counters.dropped++;
-        return;
-    }
     (void)memcpy(data, received, AGV_DLC);
-    agv_gateway_limit(core, command, data);
-    agv_transmitter_pass(core, command, data);
+    if (is_command(message)) {
+        if (!agv_gateway_passes(core, message)) {
+            core->counters.dropped++;
+            return;
+        }
+        agv_gateway_limit(core, message, data);
+    }
+    agv_transmitter_pass(core, message, data);
 }
 
-static void handle_message(agv_core_t *core, agv_message_t message, const hal_can_frame_t *frame) {
+/* Returns whether a trip sent all safe commands at once; so do the two below. */
+static bool handle_message(agv_core_t *core, agv_message_t message, const hal_can_frame_t *frame) {
     agv_recorder_frame(core->recorder, message, frame->data);
     const bool usable = agv_monitor_frame(core, message, frame);
     const bool all_sent = agv_core_react(core);
     if (!usable) {
         core->counters.dropped++;
-    }
-    if (!agv_core_is_gateway(core)) {
-        if (is_command(message) && !all_sent) {
-            agv_transmitter_answer(core, message, frame->data);
-        }
-    } else if (!is_command(message)) {
-        agv_transmitter_pass(core, message, frame->data);
-    } else if (usable) {
-        pass_command(core, message, frame->data);
+    } else if (agv_core_is_gateway(core)) {
+        pass_on(core, message, frame->data);
     } else {
-        /* out of range */
+        /* shared bus: everybody has heard it */
     }
+    return all_sent;
 }
 
 /* Gateway: a command on the vehicle side comes from nobody who may send one (SUP-6). */
-static void handle_foreign_command(agv_core_t *core, agv_message_t message, const hal_can_frame_t *frame) {
-    agv_faults_event(core, AGV_FAULT_FOREIGN_COMMAND_SENDER);
-    if (!agv_core_react(core)) {
-        agv_transmitter_answer(core, message, frame->data);
+static bool handle_wrong_side(agv_core_t *core, hal_can_side_t side) {
+    core->counters.dropped++;
+    if (side != HAL_CAN_VEHICLE) {
+        return false;
     }
+    agv_faults_event(core, AGV_FAULT_FOREIGN_COMMAND_SENDER);
+    return agv_core_react(core);
 }
 
 /* The side that a message is taken from: commands come from the AI side where there is one. */
@@ -86,23 +81,36 @@ static void handle_other(agv_core_t *core, hal_can_side_t side, const hal_can_fr
     core->counters.dropped += agv_core_is_gateway(core) ? 1u : 0u;
 }
 
+static bool handle_well_formed(agv_core_t *core, hal_can_side_t side, agv_message_t message,
+                               const hal_can_frame_t *frame) {
+    if (message == AGV_MSG_NONE) {
+        handle_other(core, side, frame);
+        return false;
+    }
+    if (side == side_of(core, message)) {
+        return handle_message(core, message, frame);
+    }
+    return handle_wrong_side(core, side);
+}
+
 void agv_core_frame(agv_core_t *core, hal_can_side_t side, const hal_can_frame_t *frame) {
     const agv_message_t message = agv_message_from_id(frame->id, (agv_id_set_t)core->config.id_set);
-    const agv_rejected_t why = reason_to_reject(frame, message);
+    const uint32_t why = reason_to_reject(frame, message);
+    /* A VCU may obey a command of any length: what it may have heard is answered (TOP-1). */
+    bool answer = is_command(message) && (side == HAL_CAN_VEHICLE);
     core->counters.received++;
     if ((side != HAL_CAN_VEHICLE) && !agv_core_is_gateway(core)) {
         core->counters.dropped++;
-    } else if (why != AGV_REJECTED_KINDS) {
-        handle_malformed(core, side, message, why);
-    } else if (message == AGV_MSG_NONE) {
-        handle_other(core, side, frame);
-    } else if (side == side_of(core, message)) {
-        handle_message(core, message, frame);
+    } else if (why != (uint32_t)AGV_REJECTED_KINDS) {
+        core->counters.rejected[why]++;
+        answer = answer && (why <= (uint32_t)AGV_REJECTED_FD);
+    } else if (handle_well_formed(core, side, message, frame)) {
+        answer = false;
     } else {
-        core->counters.dropped++;
-        if (side == HAL_CAN_VEHICLE) {
-            handle_foreign_command(core, message, frame);
-        }
+        /* handled */
+    }
+    if (answer) {
+        agv_transmitter_answer(core, message, (why == (uint32_t)AGV_REJECTED_KINDS) ? frame->data : NULL);
     }
     if (core->faults.changed) {
         (void)agv_core_react(core); /* the gate refused a frame */
