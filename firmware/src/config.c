@@ -40,9 +40,7 @@ bool agv_config_set(agv_config_t *config, uint16_t setting, uint16_t value) {
 }
 
 bool agv_config_is_trip(const agv_config_t *config, agv_fault_t fault) {
-    /* In words of 32 bits: a shift of 64 by a variable is long on a small processor. */
-    const uint32_t word = (uint32_t)(((uint32_t)fault < 32u) ? config->trips : (config->trips >> 32u));
-    return ((word >> ((uint32_t)fault & 31u)) & 1u) != 0u;
+    return agv_fault_is_in(config->trips, fault);
 }
 
 void agv_config_defaults(agv_config_t *config) {
@@ -68,10 +66,9 @@ static uint16_t out_of_range(const agv_config_t *config) {
 
 /* The highest-ranking fault that is made weaker than it may be; AGV_FAULT_NONE when none is. */
 static agv_fault_t too_weak(const agv_config_t *config) {
+    const agv_fault_set_t weak = agv_faults_fixed & ~config->trips;
     uint32_t fault = 0u;
-    while ((fault < (uint32_t)AGV_FAULT_COUNT) &&
-           (((agv_fault_flags((agv_fault_t)fault) & AGV_FAULT_FLAG_FIXED) == 0u) ||
-            agv_config_is_trip(config, (agv_fault_t)fault))) {
+    while ((fault < (uint32_t)AGV_FAULT_COUNT) && !agv_fault_is_in(weak, (agv_fault_t)fault)) {
         fault++;
     }
     return (agv_fault_t)fault;

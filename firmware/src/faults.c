@@ -2,31 +2,29 @@
 
 #include "agv/core.h"
 
+/* A row is kept as one byte, LED code and properties; EVENT and FIXED beyond it make sets only. */
 enum {
-    NONE = AGV_FAULT_FLAG_NONE,
+    NONE = 0,
+    LED_CODE = 0x1F,
     UNRESETTABLE = AGV_FAULT_FLAG_UNRESETTABLE,
-    EVENT = AGV_FAULT_FLAG_EVENT,
-    FIXED = AGV_FAULT_FLAG_FIXED,
     FROM_AI = AGV_FAULT_FLAG_FROM_AI,
-    OF_EPS = AGV_FAULT_FLAG_OF_EPS
+    OF_EPS = AGV_FAULT_FLAG_OF_EPS,
+    KEPT = LED_CODE | UNRESETTABLE | FROM_AI | OF_EPS,
+    EVENT = 0x100,
+    FIXED = 0x200
 };
 
 _Static_assert((uint32_t)AGV_FAULT_COUNT <= 64u, "a fault set has 64 bits");
 
 /* What is FIXED trips by default: nothing could be weaker than a warning. */
 #define AGV_FAULT(name, class, led, flags)                                                                             \
-    _Static_assert((AGV_CLASS_##class == AGV_CLASS_TRIP) || (((flags) & FIXED) == 0), #name);
+    _Static_assert((AGV_CLASS_##class == AGV_CLASS_TRIP) || (((flags) & FIXED) == 0), #name);                          \
+    _Static_assert((led) <= LED_CODE, #name);
 #include "agv/fault_table.def"
 #undef AGV_FAULT
 
-static const uint8_t led_codes[AGV_FAULT_COUNT] = {
-#define AGV_FAULT(name, class, led, flags) (led),
-#include "agv/fault_table.def"
-#undef AGV_FAULT
-};
-
-static const uint8_t flags_of[AGV_FAULT_COUNT] = {
-#define AGV_FAULT(name, class, led, flags) (flags),
+static const uint8_t rows[AGV_FAULT_COUNT] = {
+#define AGV_FAULT(name, class, led, flags) (((led) | (flags)) & KEPT),
 #include "agv/fault_table.def"
 #undef AGV_FAULT
 };
@@ -50,6 +48,12 @@ const agv_fault_set_t agv_faults_fixed = 0u
     ;
 #undef AGV_FAULT
 
+#define AGV_FAULT(name, class, led, flags) IF_SET(((flags) & EVENT) != 0, name)
+const agv_fault_set_t agv_faults_events = 0u
+#include "agv/fault_table.def"
+    ;
+#undef AGV_FAULT
+
 #define AGV_FAULT(name, class, led, flags) IF_SET((class) == TRIP, name)
 const agv_fault_set_t agv_faults_default_trips = 0u
 #include "agv/fault_table.def"
@@ -64,12 +68,18 @@ agv_fault_set_t agv_fault_bit(agv_fault_t fault) {
     return is_fault(fault) ? ((agv_fault_set_t)1u << (uint32_t)fault) : 0u;
 }
 
+bool agv_fault_is_in(agv_fault_set_t set, agv_fault_t fault) {
+    /* In words of 32 bits: a shift of 64 by a variable is long on a small processor. */
+    const uint32_t word = (uint32_t)(((uint32_t)fault < 32u) ? set : (set >> 32u));
+    return is_fault(fault) && (((word >> ((uint32_t)fault & 31u)) & 1u) != 0u);
+}
+
 uint8_t agv_fault_flags(agv_fault_t fault) {
-    return is_fault(fault) ? flags_of[fault] : 0u;
+    return is_fault(fault) ? (uint8_t)(rows[fault] & ~(uint32_t)LED_CODE) : 0u;
 }
 
 uint8_t agv_fault_led_code(agv_fault_t fault) {
-    return is_fault(fault) ? led_codes[fault] : 0u;
+    return is_fault(fault) ? (uint8_t)(rows[fault] & (uint32_t)LED_CODE) : 0u;
 }
 
 void agv_faults_level(agv_core_t *core, agv_fault_t fault, bool cause) {
@@ -82,19 +92,15 @@ void agv_faults_level(agv_core_t *core, agv_fault_t fault, bool cause) {
 void agv_faults_event(agv_core_t *core, agv_fault_t fault) {
     for (uint32_t i = 0u; i < AGV_EVENT_FAULT_COUNT; i++) {
         if (event_faults[i] == (uint8_t)fault) {
-            core->faults.event_ms[i] = core->now_ms;
-            core->faults.events |= (uint8_t)(1u << i);
+            agv_watch_start(core, (uint32_t)AGV_WATCH_EVENT + i);
             agv_faults_level(core, fault, true);
         }
     }
 }
 
 void agv_faults_tick(agv_core_t *core) {
-    agv_faults_t *const faults = &core->faults;
-    for (uint32_t i = 0u; (faults->events >> i) != 0u; i++) {
-        const uint32_t bit = 1u << i;
-        if (((faults->events & bit) != 0u) && ((core->now_ms - faults->event_ms[i]) >= core->config.event_hold_ms)) {
-            faults->events &= (uint8_t)~bit;
+    for (uint32_t i = 0u; i < AGV_EVENT_FAULT_COUNT; i++) {
+        if (agv_watch_reached(core, (uint32_t)AGV_WATCH_EVENT + i)) {
             agv_faults_level(core, (agv_fault_t)event_faults[i], false);
         }
     }

@@ -2,17 +2,23 @@
 
 #include "agv/core.h"
 
-static const uint8_t heartbeat_message[AGV_NODE_COUNT] = {AGV_MSG_VEHICLE_STATUS, AGV_MSG_STEERING_STATUS,
-                                                          AGV_MSG_TURN_SIGNAL_COMMAND};
+/* In the order of agv_node_t: the message, and which of its bytes is the alive counter. */
+static const struct {
+    uint8_t message;
+    uint8_t counter_at;
+} carriers[AGV_NODE_COUNT] = {
+    {AGV_MSG_VEHICLE_STATUS, 7u}, {AGV_MSG_STEERING_STATUS, 0u}, {AGV_MSG_TURN_SIGNAL_COMMAND, 7u}};
+
+static uint32_t deadline_of(uint32_t message) {
+    return (uint32_t)AGV_WATCH_MESSAGE + message;
+}
 
 void agv_liveness_start(agv_core_t *core) {
     for (uint32_t i = 0u; i < (uint32_t)AGV_MSG_COUNT; i++) {
         core->liveness.messages[i].last_ms = core->now_ms;
-        core->liveness.messages[i].deadline_ms = core->now_ms;
+        agv_watch_start(core, deadline_of(i));
     }
-    for (uint32_t i = 0u; i < (uint32_t)AGV_NODE_COUNT; i++) {
-        core->liveness.heartbeats[i].changed_ms = core->now_ms;
-    }
+    agv_watch_stop(core, deadline_of(AGV_MSG_TURN_SIGNAL_COMMAND));
 }
 
 uint32_t agv_liveness_arrived(agv_core_t *core, uint32_t message, uint32_t time_ms) {
@@ -25,49 +31,52 @@ uint32_t agv_liveness_arrived(agv_core_t *core, uint32_t message, uint32_t time_
     return gap_ms;
 }
 
-void agv_liveness_refresh(agv_core_t *core, uint32_t message, uint32_t time_ms) {
-    core->liveness.messages[message].deadline_ms = time_ms;
-    core->liveness.messages[message].expired = false;
-}
-
-void agv_liveness_beat(agv_core_t *core, agv_node_t node, uint8_t counter, uint32_t time_ms) {
+/* Returns whether the deadline begins anew. */
+static bool beat(agv_core_t *core, uint32_t node, uint8_t counter) {
     agv_heartbeat_t *const heartbeat = &core->liveness.heartbeats[node];
     const bool same = heartbeat->counter == counter;
     heartbeat->counter = counter;
     if (!heartbeat->counter_known) {
         heartbeat->counter_known = true;
-        if (node != AGV_NODE_AI) {
-            return; /* proves nothing */
+        if (node != (uint32_t)AGV_NODE_AI) {
+            return false; /* proves nothing */
         }
         /* The AI's deadline begins when it is first seen, the others' began at the start. */
         heartbeat->state = AGV_HEARTBEAT_BASELINE;
-    } else {
-        heartbeat->repeated = same;
-        if (same) {
-            return;
-        }
+        return true;
+    }
+    heartbeat->repeated = same;
+    if (!same) {
         heartbeat->state = AGV_HEARTBEAT_ALIVE;
     }
-    heartbeat->changed_ms = time_ms;
+    return !same;
 }
 
-bool agv_liveness_judge(agv_core_t *core, uint32_t message, uint32_t timeout_ms) {
+void agv_liveness_refresh(agv_core_t *core, uint32_t message, const hal_can_frame_t *frame) {
+    bool anew = true;
+    for (uint32_t node = 0u; node < (uint32_t)AGV_NODE_COUNT; node++) {
+        if (carriers[node].message == message) {
+            anew = beat(core, node, frame->data[carriers[node].counter_at]);
+        }
+    }
+    if (anew) {
+        agv_watch_start_at(core, deadline_of(message), frame->time_ms);
+    }
+}
+
+bool agv_liveness_judge(agv_core_t *core, uint32_t message) {
     agv_message_age_t *const age = &core->liveness.messages[message];
     if (agv_age_ms(core->now_ms, age->last_ms) > AGV_AGE_LIMIT_MS) {
         age->old = true;
     }
-    if (agv_age_ms(core->now_ms, age->deadline_ms) > timeout_ms) {
-        age->expired = true;
-    }
-    return age->expired;
+    return agv_watch_reached(core, deadline_of(message));
 }
 
-agv_heartbeat_state_t agv_liveness_judge_beat(agv_core_t *core, uint32_t node, uint32_t timeout_ms) {
+agv_heartbeat_state_t agv_liveness_judge_beat(agv_core_t *core, uint32_t node) {
     agv_heartbeat_t *const heartbeat = &core->liveness.heartbeats[node];
-    const agv_message_t message = (agv_message_t)heartbeat_message[node];
-    const bool awaited = (node != (uint32_t)AGV_NODE_AI) || (heartbeat->state != (uint8_t)AGV_HEARTBEAT_UNSEEN);
+    const agv_message_t message = (agv_message_t)carriers[node].message;
     const bool running = heartbeat->state <= (uint8_t)AGV_HEARTBEAT_ALIVE;
-    if (awaited && running && (agv_age_ms(core->now_ms, heartbeat->changed_ms) > timeout_ms)) {
+    if (running && agv_watch_reached(core, deadline_of(message))) {
         const bool recent = agv_liveness_age_ms(core, message) <= (2u * (uint32_t)agv_message_cycle_ms(message));
         heartbeat->state = (uint8_t)((heartbeat->repeated && recent) ? AGV_HEARTBEAT_STUCK : AGV_HEARTBEAT_LOST);
     }
@@ -75,8 +84,8 @@ agv_heartbeat_state_t agv_liveness_judge_beat(agv_core_t *core, uint32_t node, u
 }
 
 bool agv_liveness_fresh(const agv_core_t *core, uint32_t message) {
-    const agv_message_age_t *const age = &core->liveness.messages[message];
-    return age->heard && !age->expired;
+    return core->liveness.messages[message].heard &&
+           (core->watches[deadline_of(message)].phase == (uint8_t)AGV_TIMER_RUNNING);
 }
 
 uint32_t agv_liveness_age_ms(const agv_core_t *core, uint32_t message) {

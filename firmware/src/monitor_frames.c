@@ -27,25 +27,9 @@ static void judge_bits(agv_core_t *core, const uint8_t faults[8], uint32_t first
     }
 }
 
-/* SUP-5: while engaged a command out of range trips; it refreshes no deadline in any case. */
-static void judge_command(agv_core_t *core, agv_message_t message, const hal_can_frame_t *frame, bool valid) {
-    if (message == AGV_MSG_TURN_SIGNAL_COMMAND) {
-        agv_liveness_beat(core, AGV_NODE_AI, frame->data[7], frame->time_ms);
-    } else if (valid) {
-        agv_liveness_refresh(core, message, frame->time_ms);
-        if ((message == AGV_MSG_STEERING_COMMAND) && !agv_core_is_gateway(core)) {
-            agv_monitor_steering_commanded(core, agv_angle_read(frame->data));
-        }
-    } else if (agv_core_engaged(core)) {
-        agv_faults_event(core, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE);
-    } else {
-        /* dropped */
-    }
-}
-
 static void engage(agv_core_t *core, uint32_t stamp_ms) {
     for (uint32_t command = AGV_MSG_GEAR_COMMAND; command < AGV_COMMAND_COUNT; command++) {
-        agv_liveness_refresh(core, command, stamp_ms);
+        agv_watch_start_at(core, (uint32_t)AGV_WATCH_MESSAGE + command, stamp_ms);
     }
     agv_watch_start(core, AGV_WATCH_ENGAGED);
     core->faults.changed = true; /* the class of AI_HEARTBEAT_* */
@@ -91,7 +75,6 @@ static void on_vehicle_status(agv_core_t *core, const hal_can_frame_t *frame) {
         AGV_FAULT_REMOTE_SIGNAL_LOST,     AGV_FAULT_REMOTE_POWER_LOST,     AGV_FAULT_NONE, AGV_FAULT_VCU_AI_CAN_LOST,
         AGV_FAULT_VCU_EPS_HARDWARE_FAULT, AGV_FAULT_VCU_EPS_CAN_BUS_FAULT, AGV_FAULT_NONE, AGV_FAULT_S_DRIVER_ALARM};
     uint32_t alarms = frame->data[4];
-    agv_liveness_beat(core, AGV_NODE_VCU, frame->data[7], frame->time_ms);
     update_mode(core, frame->data[6], frame->time_ms);
     core->vehicle.button =
         (uint8_t)(((frame->data[6] & AGV_VCU_FLAG_BUTTON_1) != 0u) ? AGV_BUTTON_DOWN : AGV_BUTTON_UP);
@@ -102,12 +85,9 @@ static void on_vehicle_status(agv_core_t *core, const hal_can_frame_t *frame) {
     agv_faults_level(core, AGV_FAULT_VCU_LEVEL2_ALARM, frame->data[5] != 0u);
 }
 
-static void on_steering_status(agv_core_t *core, const hal_can_frame_t *frame, bool valid) {
-    if (valid) {
-        core->vehicle.angle_ddeg = (int16_t)agv_angle_read(&frame->data[2]);
-        core->vehicle.angle_known = true;
-    }
-    agv_liveness_beat(core, AGV_NODE_EPS, frame->data[0], frame->time_ms);
+static void on_steering_angle(agv_core_t *core, const uint8_t data[AGV_DLC]) {
+    core->vehicle.angle_ddeg = (int16_t)agv_angle_read(&data[2]);
+    core->vehicle.angle_known = true;
 }
 
 /* Named after the last of the frames that count. */
@@ -135,6 +115,12 @@ static void on_eps_status(agv_core_t *core, const uint8_t data[AGV_DLC], bool va
     judge_bits(core, faults, AGV_ROW_EPS_FAULTS, data[7], core->config.eps_supply_fault_frames);
 }
 
+static void on_steering_command(agv_core_t *core, const uint8_t data[AGV_DLC], bool valid) {
+    if (valid && !agv_core_is_gateway(core)) {
+        agv_monitor_steering_commanded(core, agv_angle_read(data));
+    }
+}
+
 static bool is_slow(const agv_core_t *core, int32_t speed_mm_s) {
     const int32_t limit_mm_s = (int32_t)core->config.standstill_speed_mm_s;
     return (speed_mm_s < limit_mm_s) && (speed_mm_s > -limit_mm_s);
@@ -148,31 +134,36 @@ static void on_wheel_speed(agv_core_t *core, const uint8_t data[AGV_DLC]) {
 }
 
 /* A gear, throttle or angle that the protocol does not know counts once the engagement has settled (SUP-5). */
-static void on_value(agv_core_t *core, agv_message_t message, const hal_can_frame_t *frame, bool valid) {
+static void on_value(agv_core_t *core, agv_message_t message, const uint8_t data[AGV_DLC], bool valid) {
     const uint32_t which = (uint32_t)message - (uint32_t)AGV_MSG_GEAR_STATUS;
-    const uint8_t value = valid ? frame->data[0] : 0u;
+    const uint8_t value = valid ? data[0] : 0u;
     if (message == AGV_MSG_GEAR_STATUS) {
         core->vehicle.gear = value;
     } else if (message == AGV_MSG_THROTTLE_STATUS) {
         core->vehicle.throttle = value;
+    } else if (valid) {
+        on_steering_angle(core, data);
     } else {
-        on_steering_status(core, frame, valid);
+        /* the angle before stands */
     }
     agv_faults_level(core, (agv_fault_t)((uint32_t)AGV_FAULT_GEAR_STATUS_INVALID + which),
                      in_a_row(core, (uint32_t)AGV_ROW_GEAR_STATUS + which, !valid && agv_monitor_settled(core),
                               core->config.status_invalid_frames));
 }
 
-/* Of 267h only its coming counts. */
-static void judge_status(agv_core_t *core, agv_message_t message, const hal_can_frame_t *frame, bool valid) {
+/* Of 43Fh, 168h, 075h and 267h nothing more counts than their coming. */
+static void judge_content(agv_core_t *core, agv_message_t message, const hal_can_frame_t *frame, bool valid) {
     switch (message) {
+    case AGV_MSG_STEERING_COMMAND:
+        on_steering_command(core, frame->data, valid);
+        break;
     case AGV_MSG_VEHICLE_STATUS:
         on_vehicle_status(core, frame);
         break;
     case AGV_MSG_GEAR_STATUS:
     case AGV_MSG_THROTTLE_STATUS:
     case AGV_MSG_STEERING_STATUS:
-        on_value(core, message, frame, valid);
+        on_value(core, message, frame->data, valid);
         break;
     case AGV_MSG_EPS_STATUS:
         on_eps_status(core, frame->data, valid);
@@ -194,16 +185,22 @@ static void judge_rate(agv_core_t *core, agv_message_t command, uint32_t gap_ms,
 }
 
 bool agv_monitor_frame(agv_core_t *core, agv_message_t message, const hal_can_frame_t *frame) {
+    const bool command = (uint32_t)message < AGV_COMMAND_COUNT;
     const uint32_t cycle_ms = agv_message_cycle_ms(message);
     const uint32_t gap_ms = agv_liveness_arrived(core, message, frame->time_ms);
     const bool valid = agv_value_is_valid(message, frame->data);
+    const bool usable = valid || !command;
     core->monitor.after_gap = gap_ms > (2u * cycle_ms);
-    if ((uint32_t)message < AGV_COMMAND_COUNT) {
+    if (command) {
         judge_rate(core, message, gap_ms, cycle_ms);
-        judge_command(core, message, frame, valid);
-        return valid;
     }
-    agv_liveness_refresh(core, message, frame->time_ms);
-    judge_status(core, message, frame, valid);
-    return true;
+    if (usable) {
+        agv_liveness_refresh(core, message, frame);
+    } else if (agv_core_engaged(core)) {
+        agv_faults_event(core, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE); /* SUP-5 */
+    } else {
+        /* dropped */
+    }
+    judge_content(core, message, frame, valid);
+    return usable;
 }

@@ -2,31 +2,25 @@
 #include "agv/core.h"
 
 /*
- * Deadlines of messages (SUP-3), in the order of agv_message_t; those of commands count while engaged. 43Fh and 363h have
- * none of their own: their heartbeats have.
+ * The fault of each deadline (SUP-3), in the order of agv_message_t; those of commands count while engaged. 43Fh, 363h and
+ * 067h have none here: theirs are the heartbeats.
  */
-static const struct {
-    uint8_t setting;
-    uint8_t fault;
-} deadlines[AGV_MSG_COUNT] = {{AGV_SETTING_ai_heartbeat_timeout_ms, AGV_FAULT_NONE},
-                              {AGV_SETTING_gear_command_timeout_ms, AGV_FAULT_GEAR_COMMAND_TIMEOUT},
-                              {AGV_SETTING_throttle_command_timeout_ms, AGV_FAULT_THROTTLE_COMMAND_TIMEOUT},
-                              {AGV_SETTING_steering_command_timeout_ms, AGV_FAULT_STEERING_COMMAND_TIMEOUT},
-                              {AGV_SETTING_vcu_heartbeat_timeout_ms, AGV_FAULT_NONE},
-                              {AGV_SETTING_gear_status_timeout_ms, AGV_FAULT_GEAR_STATUS_TIMEOUT},
-                              {AGV_SETTING_throttle_status_timeout_ms, AGV_FAULT_THROTTLE_STATUS_TIMEOUT},
-                              {AGV_SETTING_eps_heartbeat_timeout_ms, AGV_FAULT_NONE},
-                              {AGV_SETTING_eps_status_timeout_ms, AGV_FAULT_EPS_STATUS_TIMEOUT},
-                              {AGV_SETTING_steering_position_timeout_ms, AGV_FAULT_STEERING_POSITION_TIMEOUT},
-                              {AGV_SETTING_wheel_speed_timeout_ms, AGV_FAULT_WHEEL_SPEED_TIMEOUT}};
+static const uint8_t deadlines[AGV_MSG_COUNT] = {AGV_FAULT_NONE,
+                                                 AGV_FAULT_GEAR_COMMAND_TIMEOUT,
+                                                 AGV_FAULT_THROTTLE_COMMAND_TIMEOUT,
+                                                 AGV_FAULT_STEERING_COMMAND_TIMEOUT,
+                                                 AGV_FAULT_NONE,
+                                                 AGV_FAULT_GEAR_STATUS_TIMEOUT,
+                                                 AGV_FAULT_THROTTLE_STATUS_TIMEOUT,
+                                                 AGV_FAULT_NONE,
+                                                 AGV_FAULT_EPS_STATUS_TIMEOUT,
+                                                 AGV_FAULT_STEERING_POSITION_TIMEOUT,
+                                                 AGV_FAULT_WHEEL_SPEED_TIMEOUT};
 
-/* Heartbeats (SUP-2), in the order of agv_node_t; the fault "stuck" follows the fault "lost". */
-static const struct {
-    uint8_t setting;
-    uint8_t lost;
-} heartbeats[AGV_NODE_COUNT] = {{AGV_SETTING_vcu_heartbeat_timeout_ms, AGV_FAULT_VCU_HEARTBEAT_LOST},
-                                {AGV_SETTING_eps_heartbeat_timeout_ms, AGV_FAULT_EPS_HEARTBEAT_LOST},
-                                {AGV_SETTING_ai_heartbeat_timeout_ms, AGV_FAULT_AI_HEARTBEAT_LOST}};
+/* The faults of the heartbeats (SUP-2) stand side by side: "lost" and "stuck", in the order of agv_node_t. */
+_Static_assert(((int)AGV_FAULT_EPS_HEARTBEAT_LOST == (int)AGV_FAULT_VCU_HEARTBEAT_LOST + 2) &&
+                   ((int)AGV_FAULT_AI_HEARTBEAT_STUCK == (int)AGV_FAULT_VCU_HEARTBEAT_LOST + 5),
+               "two a node");
 
 void agv_monitor_start(agv_core_t *core) {
     agv_liveness_start(core);
@@ -56,6 +50,7 @@ void agv_monitor_disengage(agv_core_t *core) {
 
 void agv_monitor_forget_ai(agv_core_t *core) {
     core->liveness.heartbeats[AGV_NODE_AI].state = AGV_HEARTBEAT_UNSEEN;
+    agv_watch_stop(core, (uint32_t)AGV_WATCH_MESSAGE + (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND);
     core->monitor.ai_alarm_armed = false;
     agv_faults_level(core, AGV_FAULT_AI_HEARTBEAT_LOST, false);
     agv_faults_level(core, AGV_FAULT_AI_HEARTBEAT_STUCK, false);
@@ -75,7 +70,7 @@ bool agv_monitor_is_trip(const agv_core_t *core, agv_fault_t fault) {
 bool agv_monitor_messages_fresh(const agv_core_t *core) {
     bool fresh = true;
     for (uint32_t i = AGV_COMMAND_COUNT; i < (uint32_t)AGV_MSG_COUNT; i++) {
-        if (!agv_liveness_fresh(core, i) && agv_config_is_trip(&core->config, (agv_fault_t)deadlines[i].fault)) {
+        if (!agv_liveness_fresh(core, i) && agv_config_is_trip(&core->config, (agv_fault_t)deadlines[i])) {
             fresh = false;
         }
     }
@@ -116,20 +111,18 @@ static void judge_heartbeats(agv_core_t *core) {
     const bool unseen = core->liveness.heartbeats[AGV_NODE_AI].state == (uint8_t)AGV_HEARTBEAT_UNSEEN;
     const bool never_seen = agv_watch_while(core, AGV_WATCH_AI_AWAITED, unseen && agv_core_engaged(core));
     for (uint32_t node = 0u; node < (uint32_t)AGV_NODE_COUNT; node++) {
-        const agv_fault_t lost = (agv_fault_t)heartbeats[node].lost;
-        const uint32_t timeout_ms = agv_config_get(&core->config, heartbeats[node].setting);
-        const agv_heartbeat_state_t state = agv_liveness_judge_beat(core, node, timeout_ms);
+        const uint32_t lost = (uint32_t)AGV_FAULT_VCU_HEARTBEAT_LOST + (2u * node);
+        const agv_heartbeat_state_t state = agv_liveness_judge_beat(core, node);
         const bool absent = never_seen && (node == (uint32_t)AGV_NODE_AI);
-        agv_faults_level(core, lost, (state == AGV_HEARTBEAT_LOST) || absent);
-        agv_faults_level(core, (agv_fault_t)((uint32_t)lost + 1u), state == AGV_HEARTBEAT_STUCK);
+        agv_faults_level(core, (agv_fault_t)lost, (state == AGV_HEARTBEAT_LOST) || absent);
+        agv_faults_level(core, (agv_fault_t)(lost + 1u), state == AGV_HEARTBEAT_STUCK);
     }
 }
 
 static void judge_deadlines(agv_core_t *core) {
     for (uint32_t i = 0u; i < (uint32_t)AGV_MSG_COUNT; i++) {
         const bool counts = (i >= AGV_COMMAND_COUNT) || agv_core_engaged(core);
-        const bool expired = agv_liveness_judge(core, i, agv_config_get(&core->config, deadlines[i].setting));
-        agv_faults_level(core, (agv_fault_t)deadlines[i].fault, expired && counts);
+        agv_faults_level(core, (agv_fault_t)deadlines[i], agv_liveness_judge(core, i) && counts);
     }
 }
 

@@ -13,6 +13,14 @@ static const uint8_t limits[AGV_WATCH_COUNT] = {AGV_SETTING_bus_off_recovery_ms,
                                                 AGV_SETTING_reset_hold_ms,
                                                 AGV_SETTING_reset_hold_ms,
                                                 AGV_SETTING_park_timeout_ms,
+                                                AGV_SETTING_event_hold_ms,
+                                                AGV_SETTING_event_hold_ms,
+                                                AGV_SETTING_event_hold_ms,
+                                                AGV_SETTING_event_hold_ms,
+                                                AGV_SETTING_event_hold_ms,
+                                                AGV_SETTING_event_hold_ms,
+                                                AGV_SETTING_event_hold_ms,
+                                                AGV_SETTING_event_hold_ms,
                                                 AGV_SETTING_watchdog_period_ms,
                                                 AGV_SETTING_mode_invalid_ms,
                                                 AGV_SETTING_ai_never_seen_timeout_ms,
@@ -24,10 +32,25 @@ static const uint8_t limits[AGV_WATCH_COUNT] = {AGV_SETTING_bus_off_recovery_ms,
                                                 AGV_SETTING_tx_stalled_ms,
                                                 AGV_SETTING_tx_stalled_ms,
                                                 AGV_SETTING_tx_stalled_ms,
-                                                AGV_SETTING_tx_stalled_ms};
+                                                AGV_SETTING_tx_stalled_ms,
+                                                AGV_SETTING_ai_heartbeat_timeout_ms,
+                                                AGV_SETTING_gear_command_timeout_ms,
+                                                AGV_SETTING_throttle_command_timeout_ms,
+                                                AGV_SETTING_steering_command_timeout_ms,
+                                                AGV_SETTING_vcu_heartbeat_timeout_ms,
+                                                AGV_SETTING_gear_status_timeout_ms,
+                                                AGV_SETTING_throttle_status_timeout_ms,
+                                                AGV_SETTING_eps_heartbeat_timeout_ms,
+                                                AGV_SETTING_eps_status_timeout_ms,
+                                                AGV_SETTING_steering_position_timeout_ms,
+                                                AGV_SETTING_wheel_speed_timeout_ms};
+
+void agv_watch_start_at(agv_core_t *core, uint32_t watch, uint32_t since_ms) {
+    agv_timer_start(&core->watches[watch], since_ms);
+}
 
 void agv_watch_start(agv_core_t *core, uint32_t watch) {
-    agv_timer_start(&core->watches[watch], core->now_ms);
+    agv_watch_start_at(core, watch, core->now_ms);
 }
 
 void agv_watch_stop(agv_core_t *core, uint32_t watch) {

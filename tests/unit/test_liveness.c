@@ -9,24 +9,39 @@ static agv_core_t core;
 
 static void start(uint32_t now_ms) {
     core = (agv_core_t){.now_ms = now_ms};
+    core.config.vcu_heartbeat_timeout_ms = 50;
+    core.config.eps_heartbeat_timeout_ms = 50;
+    core.config.ai_heartbeat_timeout_ms = 350;
+    core.config.gear_command_timeout_ms = 60;
+    core.config.throttle_command_timeout_ms = 60;
+    core.config.steering_command_timeout_ms = 60;
+    core.config.gear_status_timeout_ms = 60;
+    core.config.throttle_status_timeout_ms = 60;
+    core.config.eps_status_timeout_ms = 60;
+    core.config.steering_position_timeout_ms = 60;
+    core.config.wheel_speed_timeout_ms = 60;
     agv_liveness_start(&core);
 }
 
-static bool judge(agv_message_t message, uint32_t now_ms, uint32_t timeout_ms) {
+static bool judge(agv_message_t message, uint32_t now_ms) {
     core.now_ms = now_ms;
-    return agv_liveness_judge(&core, message, timeout_ms);
+    return agv_liveness_judge(&core, message);
 }
 
-/* Ages only: no deadline is that long. */
 static void tick(uint32_t now_ms) {
     for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
-        (void)judge((agv_message_t)i, now_ms, UINT32_MAX);
+        (void)judge((agv_message_t)i, now_ms);
     }
 }
 
-static void judge_beat(agv_node_t node, uint32_t now_ms, uint32_t timeout_ms) {
+static void judge_beat(agv_node_t node, uint32_t now_ms) {
     core.now_ms = now_ms;
-    (void)agv_liveness_judge_beat(&core, node, timeout_ms);
+    (void)agv_liveness_judge_beat(&core, node);
+}
+
+static void refresh(agv_message_t message, uint32_t now_ms) {
+    const hal_can_frame_t frame = {.time_ms = now_ms, .length = 8};
+    agv_liveness_refresh(&core, message, &frame);
 }
 
 static uint32_t age_ms(agv_message_t message, uint32_t now_ms) {
@@ -50,12 +65,14 @@ static void expect_heartbeat(agv_node_t node, agv_heartbeat_state_t expected) {
     TEST_ASSERT_EQUAL(expected == AGV_HEARTBEAT_ALIVE, agv_core_alive(&core, node));
 }
 
-/* A frame with an alive counter, as the monitor hands it on. */
+/* A frame with an alive counter, as the monitor hands it on: 363h byte 8, 067h byte 1, 43Fh byte 8. */
 static void beat(agv_node_t node, uint8_t counter, uint32_t time_ms) {
     static const agv_message_t carrier[] = {AGV_MSG_VEHICLE_STATUS, AGV_MSG_STEERING_STATUS,
                                             AGV_MSG_TURN_SIGNAL_COMMAND};
+    hal_can_frame_t frame = {.time_ms = time_ms, .length = 8};
+    frame.data[(node == AGV_NODE_EPS) ? 0 : 7] = counter;
     (void)agv_liveness_arrived(&core, carrier[node], time_ms);
-    agv_liveness_beat(&core, node, counter, time_ms);
+    agv_liveness_refresh(&core, carrier[node], &frame);
 }
 
 /* Shows: SUP-2, SUP-3, TIM-2 */
@@ -64,13 +81,13 @@ TEST_CASE(0xFFFFFFE0)
 void test_a_deadline_expires_when_the_age_is_greater(uint32_t start_ms) {
     start(start_ms);
     (void)agv_liveness_arrived(&core, AGV_MSG_EPS_STATUS, start_ms + 10);
-    agv_liveness_refresh(&core, AGV_MSG_EPS_STATUS, start_ms + 10);
-    TEST_ASSERT_FALSE(judge(AGV_MSG_EPS_STATUS, start_ms + 70, 60));
+    refresh(AGV_MSG_EPS_STATUS, start_ms + 10);
+    TEST_ASSERT_FALSE(judge(AGV_MSG_EPS_STATUS, start_ms + 70));
     TEST_ASSERT_TRUE(agv_liveness_fresh(&core, AGV_MSG_EPS_STATUS));
-    TEST_ASSERT_TRUE(judge(AGV_MSG_EPS_STATUS, start_ms + 71, 60));
+    TEST_ASSERT_TRUE(judge(AGV_MSG_EPS_STATUS, start_ms + 71));
     TEST_ASSERT_FALSE(agv_liveness_fresh(&core, AGV_MSG_EPS_STATUS));
-    agv_liveness_refresh(&core, AGV_MSG_EPS_STATUS, start_ms + 72);
-    TEST_ASSERT_FALSE(judge(AGV_MSG_EPS_STATUS, start_ms + 72, 60));
+    refresh(AGV_MSG_EPS_STATUS, start_ms + 72);
+    TEST_ASSERT_FALSE(judge(AGV_MSG_EPS_STATUS, start_ms + 72));
     TEST_ASSERT_TRUE(agv_liveness_fresh(&core, AGV_MSG_EPS_STATUS));
 }
 
@@ -78,29 +95,30 @@ void test_a_deadline_expires_when_the_age_is_greater(uint32_t start_ms) {
 void test_what_is_lost_stays_lost_over_the_whole_turn_of_the_clock(void) {
     beat(AGV_NODE_VCU, 1, 1);
     beat(AGV_NODE_VCU, 2, 2);
-    agv_liveness_refresh(&core, AGV_MSG_VEHICLE_STATUS, 2);
     for (uint32_t day = 0; day < 60; day++) {
         const uint32_t now_ms = 100u + day * 86400000u;
         tick(now_ms);
-        judge_beat(AGV_NODE_VCU, now_ms, 50);
-        TEST_ASSERT_TRUE(judge(AGV_MSG_VEHICLE_STATUS, now_ms, 60));
+        judge_beat(AGV_NODE_VCU, now_ms);
+        TEST_ASSERT_TRUE(judge(AGV_MSG_VEHICLE_STATUS, now_ms));
+        TEST_ASSERT_TRUE(judge(AGV_MSG_EPS_STATUS, now_ms));
         expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_LOST);
     }
-    TEST_ASSERT_TRUE(judge(AGV_MSG_VEHICLE_STATUS, 2, 60));
+    TEST_ASSERT_TRUE(judge(AGV_MSG_VEHICLE_STATUS, 2));
+    TEST_ASSERT_TRUE(judge(AGV_MSG_EPS_STATUS, 2));
 }
 
 void test_nothing_is_fresh_before_it_was_heard(void) {
     for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
         TEST_ASSERT_FALSE(is_heard((agv_message_t)i));
         TEST_ASSERT_FALSE(agv_liveness_fresh(&core, (agv_message_t)i));
-        TEST_ASSERT_EQUAL_UINT32(7, age_ms((agv_message_t)i, 7)); /* since the start */
-        TEST_ASSERT_TRUE(judge((agv_message_t)i, 61, 60));
+        TEST_ASSERT_EQUAL_UINT32(7, age_ms((agv_message_t)i, 7));                         /* since the start */
+        TEST_ASSERT_EQUAL(i != AGV_MSG_TURN_SIGNAL_COMMAND, judge((agv_message_t)i, 61)); /* the AI is not awaited */
     }
 }
 
 void test_a_message_concerns_no_other(void) {
     (void)agv_liveness_arrived(&core, AGV_MSG_GEAR_STATUS, 5);
-    agv_liveness_refresh(&core, AGV_MSG_GEAR_STATUS, 5);
+    refresh(AGV_MSG_GEAR_STATUS, 5);
     for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
         TEST_ASSERT_EQUAL(i == AGV_MSG_GEAR_STATUS, is_heard((agv_message_t)i));
         TEST_ASSERT_EQUAL(i == AGV_MSG_GEAR_STATUS, agv_liveness_fresh(&core, (agv_message_t)i));
@@ -133,21 +151,21 @@ void test_a_stamp_that_goes_backwards_is_no_gap(void) {
 TEST_CASE(0)
 TEST_CASE(1)
 void test_vcu_and_eps_are_awaited_from_the_start(unsigned node) {
-    judge_beat((agv_node_t)node, 50, 50);
+    judge_beat((agv_node_t)node, 50);
     expect_heartbeat((agv_node_t)node, AGV_HEARTBEAT_UNSEEN);
-    judge_beat((agv_node_t)node, 51, 50);
+    judge_beat((agv_node_t)node, 51);
     expect_heartbeat((agv_node_t)node, AGV_HEARTBEAT_LOST);
 }
 
 /* Shows: SUP-8 */
 void test_the_ai_is_not_awaited_before_it_was_seen(void) {
-    judge_beat(AGV_NODE_AI, 1000000, 350);
+    judge_beat(AGV_NODE_AI, 1000000);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_UNSEEN);
     beat(AGV_NODE_AI, 9, 1000000);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_BASELINE);
-    judge_beat(AGV_NODE_AI, 1000350, 350);
+    judge_beat(AGV_NODE_AI, 1000350);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_BASELINE);
-    judge_beat(AGV_NODE_AI, 1000351, 350);
+    judge_beat(AGV_NODE_AI, 1000351);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_LOST);
 }
 
@@ -170,7 +188,7 @@ void test_any_change_of_the_counter_is_a_beat(void) {
     beat(AGV_NODE_VCU, 254, 0);
     for (uint32_t i = 0; i < sizeof counters; i++) {
         beat(AGV_NODE_VCU, counters[i], 40 * (i + 1));
-        judge_beat(AGV_NODE_VCU, 40 * (i + 1) + 50, 50);
+        judge_beat(AGV_NODE_VCU, 40 * (i + 1) + 50);
         expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
     }
 }
@@ -182,9 +200,9 @@ static void repeat_until(uint32_t last_frame_ms) {
     for (uint32_t ms = 110; ms <= last_frame_ms; ms += 10) {
         beat(AGV_NODE_VCU, 2, ms);
     }
-    judge_beat(AGV_NODE_VCU, 150, 50);
+    judge_beat(AGV_NODE_VCU, 150);
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
-    judge_beat(AGV_NODE_VCU, 151, 50);
+    judge_beat(AGV_NODE_VCU, 151);
 }
 
 /* Shows: SUP-2 */
@@ -202,7 +220,7 @@ void test_an_old_counter_two_cycles_ago_is_stuck(void) {
     beat(AGV_NODE_VCU, 1, 90);
     beat(AGV_NODE_VCU, 2, 100);
     beat(AGV_NODE_VCU, 2, 131);
-    judge_beat(AGV_NODE_VCU, 151, 50);
+    judge_beat(AGV_NODE_VCU, 151);
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_STUCK);
 }
 
@@ -229,7 +247,7 @@ void test_a_forgotten_node_is_seen_again_when_its_counter_changes(void) {
     agv_monitor_forget_ai(&core);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_UNSEEN);
     beat(AGV_NODE_AI, 2, 200);
-    judge_beat(AGV_NODE_AI, 10000, 350);
+    judge_beat(AGV_NODE_AI, 10000);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_UNSEEN);
     beat(AGV_NODE_AI, 3, 10000);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_ALIVE);

@@ -22,13 +22,10 @@ typedef enum {
 /** What a fault does when it is raised. */
 typedef enum { AGV_CLASS_WARN = 0, AGV_CLASS_TRIP = 1 } agv_fault_class_t;
 
-/** Properties of a fault, see fault_table.def. */
-#define AGV_FAULT_FLAG_NONE 0x00u
-#define AGV_FAULT_FLAG_UNRESETTABLE 0x01u
-#define AGV_FAULT_FLAG_EVENT 0x02u
-#define AGV_FAULT_FLAG_FIXED 0x04u
-#define AGV_FAULT_FLAG_FROM_AI 0x08u
-#define AGV_FAULT_FLAG_OF_EPS 0x10u
+/** Properties of a fault, see fault_table.def. For EVENT and FIXED there are sets. */
+#define AGV_FAULT_FLAG_UNRESETTABLE 0x20u
+#define AGV_FAULT_FLAG_FROM_AI 0x40u
+#define AGV_FAULT_FLAG_OF_EPS 0x80u
 
 /** A set of faults, bit n = the fault of rank n. */
 typedef uint64_t agv_fault_set_t;
@@ -36,11 +33,15 @@ typedef uint64_t agv_fault_set_t;
 /** The set with one fault in it; empty for AGV_FAULT_NONE and beyond. */
 agv_fault_set_t agv_fault_bit(agv_fault_t fault);
 
-/** All faults with the flag FIXED, and all whose default class is trip. */
+/** Whether a set has a fault in it. False for AGV_FAULT_NONE and beyond. */
+bool agv_fault_is_in(agv_fault_set_t set, agv_fault_t fault);
+
+/** All faults with the flag FIXED, all with EVENT, and all whose default class is trip. */
 extern const agv_fault_set_t agv_faults_fixed;
+extern const agv_fault_set_t agv_faults_events;
 extern const agv_fault_set_t agv_faults_default_trips;
 
-/** The flags of a fault; 0 for no fault. */
+/** The properties of a fault, AGV_FAULT_FLAG_*; 0 for no fault. */
 uint8_t agv_fault_flags(agv_fault_t fault);
 
 /** LED code of a fault: 1..17, or 0 where the protocol document has none (also for no fault). */
@@ -56,14 +57,12 @@ uint8_t agv_fault_led_code(agv_fault_t fault);
 #define AGV_EVENT_FAULT_COUNT 8u
 
 /**
- * The faults of one supervisor. A *level* is active while its cause is; an *event* until event_hold_ms after it was last
- * raised.
+ * The faults of one supervisor. A *level* is active while its cause is; an *event* until its watch (AGV_WATCH_EVENT) is
+ * reached, event_hold_ms after it was last raised.
  */
 typedef struct {
-    uint32_t event_ms[AGV_EVENT_FAULT_COUNT]; /**< when each event was last raised */
     uint8_t marks[AGV_FAULT_COUNT];
-    uint8_t events; /**< bit n: event n is active */
-    bool changed;   /**< something is to be reported */
+    bool changed; /**< something is to be reported */
 } agv_faults_t;
 
 /** Say whether the cause of a level is present. Ignored for AGV_FAULT_NONE. */

@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "agv/protocol.h"
+#include "hal/can.h"
 
 struct agv_core;
 
@@ -24,11 +25,10 @@ typedef enum {
     AGV_HEARTBEAT_STUCK     /**< as LOST, but frames with the old counter went on coming */
 } agv_heartbeat_state_t;
 
-/** One heartbeat. */
+/** One heartbeat. Its deadline is the one of the message that carries it (AGV_WATCH_MESSAGE). */
 typedef struct {
-    uint32_t changed_ms; /**< when the counter last changed; before: when the deadline began */
-    uint8_t state;       /**< agv_heartbeat_state_t */
-    uint8_t counter;     /**< value last seen */
+    uint8_t state;   /**< agv_heartbeat_state_t */
+    uint8_t counter; /**< value last seen */
     bool counter_known;
     bool repeated; /**< the last frame had the value of the one before */
 } agv_heartbeat_t;
@@ -39,11 +39,9 @@ typedef struct {
 
 /** One message. */
 typedef struct {
-    uint32_t last_ms;     /**< last frame of the right shape; before: the start */
-    uint32_t deadline_ms; /**< where the deadline began: last usable frame, start, or engagement */
-    bool heard;           /**< received at least once */
-    bool old;             /**< last_ms is older than AGV_AGE_LIMIT_MS */
-    bool expired;         /**< deadline expired; stays until it begins anew */
+    uint32_t last_ms; /**< last frame of the right shape; before: the start */
+    bool heard;       /**< received at least once */
+    bool old;         /**< last_ms is older than AGV_AGE_LIMIT_MS */
 } agv_message_age_t;
 
 /** All messages and heartbeats of one supervisor. */
@@ -61,20 +59,17 @@ void agv_liveness_start(struct agv_core *core);
  */
 uint32_t agv_liveness_arrived(struct agv_core *core, uint32_t message, uint32_t time_ms);
 
-/** The deadline of a message begins anew: it was usable, or (AI commands) the autopilot was engaged. */
-void agv_liveness_refresh(struct agv_core *core, uint32_t message, uint32_t time_ms);
-
-/** A frame with an alive counter arrived. */
-void agv_liveness_beat(struct agv_core *core, agv_node_t node, uint8_t counter, uint32_t time_ms);
+/** A usable frame arrived: its deadline begins anew. One with an alive counter is usable when that has changed. */
+void agv_liveness_refresh(struct agv_core *core, uint32_t message, const hal_can_frame_t *frame);
 
 /** Judge the age of a message, at every tick. @return whether its deadline has expired, now or earlier. */
-bool agv_liveness_judge(struct agv_core *core, uint32_t message, uint32_t timeout_ms);
+bool agv_liveness_judge(struct agv_core *core, uint32_t message);
 
 /**
- * Judge the deadline of a heartbeat, after the ages. The AI's is not awaited before it was seen (SUP-8).
+ * Judge a heartbeat, after the ages. The AI's is not awaited before it was seen (SUP-8).
  * @return what is known of it now
  */
-agv_heartbeat_state_t agv_liveness_judge_beat(struct agv_core *core, uint32_t node, uint32_t timeout_ms);
+agv_heartbeat_state_t agv_liveness_judge_beat(struct agv_core *core, uint32_t node);
 
 /** Heard, and within its deadline. */
 bool agv_liveness_fresh(const struct agv_core *core, uint32_t message);

@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "agv/faults.h"
 #include "agv/protocol.h"
 #include "agv/timer.h"
 
@@ -27,21 +28,27 @@ typedef enum {
     AGV_WATCH_RESET_GOOD,       /**< everything that a reset needs holds */
     AGV_WATCH_PRESS,            /**< button 1 held, in TRIPPED or SAFE */
     AGV_WATCH_PARK_WAIT,        /**< since the trip or the start: P at the latest (park: at_standstill) */
+    AGV_WATCH_EVENT,            /**< since a fault that is an event was last raised; eight, one an event */
     /* Reached when they run for longer than their limit (deadlines). */
-    AGV_WATCH_UNFED,       /**< since the hardware watchdog was fed */
-    AGV_WATCH_BOTH_MODES,  /**< both mode bits are set */
-    AGV_WATCH_AI_AWAITED,  /**< engaged with an AI never seen */
-    AGV_WATCH_OTHER_43F,   /**< since the other ID set's 43Fh was last heard */
-    AGV_WATCH_OTHER_363,   /**< since the other ID set's 363h was last heard */
-    AGV_WATCH_INIT,        /**< since the start, in INIT */
+    AGV_WATCH_UNFED = AGV_WATCH_EVENT + (int)AGV_EVENT_FAULT_COUNT, /**< since the hardware watchdog was fed */
+    AGV_WATCH_BOTH_MODES,                                           /**< both mode bits are set */
+    AGV_WATCH_AI_AWAITED,                                           /**< engaged with an AI never seen */
+    AGV_WATCH_OTHER_43F,                                            /**< since the other ID set's 43Fh was last heard */
+    AGV_WATCH_OTHER_363,                                            /**< since the other ID set's 363h was last heard */
+    AGV_WATCH_INIT,                                                 /**< since the start, in INIT */
     AGV_WATCH_UNCONFIRMED, /**< since the trip or the withdrawal of the confirmation: autopilot off is awaited */
     AGV_WATCH_PARK_SENT,   /**< since the first P, or that withdrawal: P is awaited */
     AGV_WATCH_TX,          /**< vehicle side: since when the HAL does not take a command; four, one a command */
-    AGV_WATCH_COUNT = AGV_WATCH_TX + (int)AGV_COMMAND_COUNT
+    /** Deadlines of the messages, in their order; liveness.h says when each begins anew. */
+    AGV_WATCH_MESSAGE = AGV_WATCH_TX + (int)AGV_COMMAND_COUNT,
+    AGV_WATCH_COUNT = AGV_WATCH_MESSAGE + (int)AGV_MSG_COUNT
 } agv_watch_t;
 
 /** Start anew from now. */
 void agv_watch_start(struct agv_core *core, uint32_t watch);
+
+/** Start anew, as if it were that moment. */
+void agv_watch_start_at(struct agv_core *core, uint32_t watch, uint32_t since_ms);
 
 /** Stop. */
 void agv_watch_stop(struct agv_core *core, uint32_t watch);
