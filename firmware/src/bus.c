@@ -24,28 +24,28 @@ bool agv_bus_is_off(const agv_core_t *core, hal_can_side_t side) {
 
 uint32_t agv_bus_tick(agv_core_t *core, hal_can_side_t side) {
     agv_bus_t *const bus = &core->buses[side];
-    const bool was_off = agv_bus_is_off(core, side);
-    uint32_t report = 0u;
+    uint32_t report = agv_bus_is_off(core, side) ? AGV_BUS_RECOVERED : 0u;
     hal_can_status_t status;
     hal_can_status(core->hal, side, &status);
-    const bool again = status.bus_off_count != bus->bus_offs;
     const bool is_off = status.state == HAL_CAN_BUS_OFF;
-    if (is_off || again) {
-        report = AGV_BUS_OFF;
+    if (status.bus_off_count != bus->bus_offs) {
+        report = AGV_BUS_OFF | AGV_BUS_RECOVERED;
     }
-    if (agv_watch_while(core, watch_of(side), is_off)) {
-        agv_watch_start(core, watch_of(side));
-        report |= AGV_BUS_ASK_RECOVERY;
+    if (status.tx_pending_ms > core->config.tx_stalled_ms) {
+        report |= AGV_BUS_STALLED;
     }
-    if (!is_off) {
-        report |= (was_off || again) ? AGV_BUS_RECOVERED : 0u;
-        report |= (status.tx_pending_ms > core->config.tx_stalled_ms) ? AGV_BUS_STALLED : 0u;
+    if (is_off) {
+        report = AGV_BUS_OFF; /* not recovered, and what waits is gone */
     }
     if (status.state == HAL_CAN_ERROR_PASSIVE) {
         report |= AGV_BUS_PASSIVE;
     }
     if (status.overrun_count != bus->overruns) {
         report |= AGV_BUS_OVERRUN;
+    }
+    if (agv_watch_while(core, watch_of(side), is_off)) {
+        agv_watch_start(core, watch_of(side));
+        report |= AGV_BUS_ASK_RECOVERY;
     }
     follow(bus, &status);
     return report;
