@@ -30,26 +30,28 @@ static bool is_newer(uint32_t sequence, uint32_t other) {
 }
 
 void agv_recorder_start(agv_recorder_t *recorder) {
-    const agv_event_t *newest = NULL;
-    const agv_event_t *oldest = NULL;
+    bool found = false;
+    uint32_t first = 0u;
+    uint32_t next = 0u;
+    recorder->run = 0u;
     for (uint32_t i = 0u; i < AGV_RECORDER_EVENTS; i++) {
-        agv_event_t *event = &recorder->events[i];
+        agv_event_t *const event = &recorder->events[i];
         if (!is_valid(event) || (slot_of(event->sequence) != i)) {
             (void)memset(event, 0, sizeof *event);
             continue;
         }
-        if ((newest == NULL) || is_newer(event->sequence, newest->sequence)) {
-            newest = event;
+        if (!found || is_newer(event->sequence + 1u, next)) {
+            next = event->sequence + 1u;
+            recorder->run = (uint8_t)(event->run + 1u);
         }
-        if ((oldest == NULL) || is_newer(oldest->sequence, event->sequence)) {
-            oldest = event;
+        if (!found || is_newer(first, event->sequence)) {
+            first = event->sequence;
         }
+        found = true;
     }
-    recorder->next_sequence = (newest == NULL) ? 0u : (newest->sequence + 1u);
-    recorder->run = (newest == NULL) ? 0u : (uint8_t)(newest->run + 1u);
-    const uint32_t first = (oldest == NULL) ? 0u : oldest->sequence;
+    recorder->next_sequence = next;
     /* The mark of what is in flash counts if it lies among what is here. */
-    if ((recorder->stored_sequence - first) > (recorder->next_sequence - first)) {
+    if ((recorder->stored_sequence - first) > (next - first)) {
         recorder->stored_sequence = first;
     }
     recorder->seen = 0u;
@@ -98,12 +100,12 @@ bool agv_recorder_get(const agv_recorder_t *recorder, uint32_t sequence, agv_eve
 
 const agv_event_t *agv_recorder_next_to_store(agv_recorder_t *recorder) {
     const agv_event_t *event = NULL;
-    for (uint32_t i = 0u; (i < AGV_RECORDER_EVENTS) && (event == NULL); i++) {
-        if (recorder->stored_sequence == recorder->next_sequence) {
+    for (uint32_t i = 0u; (i < AGV_RECORDER_EVENTS) && (recorder->stored_sequence != recorder->next_sequence); i++) {
+        event = find(recorder, recorder->stored_sequence);
+        if (event != NULL) {
             break;
         }
-        event = find(recorder, recorder->stored_sequence);
-        recorder->stored_sequence += (event == NULL) ? 1u : 0u;
+        recorder->stored_sequence++;
     }
     return event;
 }

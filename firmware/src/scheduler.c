@@ -11,7 +11,10 @@ static agv_slot_t *slot_of(agv_core_t *core, agv_message_t command) {
 
 void agv_scheduler_restart(agv_core_t *core) {
     for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
-        core->transmitter.scheduler.slots[i] = (agv_slot_t){.next_ms = core->now_ms + first_ms[i]};
+        agv_slot_t *const slot = &core->transmitter.scheduler.slots[i];
+        slot->next_ms = core->now_ms + first_ms[i];
+        slot->override_recent = false;
+        slot->override_waits = false;
     }
 }
 
@@ -51,7 +54,8 @@ bool agv_scheduler_override(agv_core_t *core, agv_message_t command) {
 
 void agv_scheduler_overridden(agv_core_t *core, agv_message_t command) {
     agv_slot_t *const slot = slot_of(core, command);
-    *slot = (agv_slot_t){.next_ms = core->now_ms + (agv_message_cycle_ms(command) / 2u),
-                         .overridden_us = core->now_us,
-                         .override_recent = true};
+    slot->next_ms = core->now_ms + (agv_message_cycle_ms(command) / 2u);
+    slot->overridden_us = core->now_us;
+    slot->override_recent = true;
+    slot->override_waits = false;
 }
