@@ -85,7 +85,7 @@ uint8_t agv_fault_led_code(agv_fault_t fault) {
 void agv_faults_level(agv_core_t *core, agv_fault_t fault, bool cause) {
     if (is_fault(fault) && (cause != agv_faults_is_active(core, fault))) {
         core->faults.marks[fault] ^= AGV_MARK_ACTIVE;
-        core->faults.changed = true;
+        core->summary.changed = true;
     }
 }
 

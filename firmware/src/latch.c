@@ -24,8 +24,8 @@ agv_latch_found_t agv_latch_read(hal_t *hal, agv_latch_t *latch) {
     return AGV_LATCH_VALID;
 }
 
-void agv_latch_write(hal_t *hal, bool latched, agv_fault_t first_reason, agv_fault_t unresettable) {
-    agv_latch_t record = {.latched = latched ? AGV_LATCH_CLOSED : AGV_LATCH_OPEN,
+void agv_latch_write(hal_t *hal, uint8_t latched, agv_fault_t first_reason, agv_fault_t unresettable) {
+    agv_latch_t record = {.latched = latched,
                           .first_reason = (uint8_t)first_reason,
                           .unresettable = (uint8_t)unresettable,
                           .version = VERSION};

@@ -7,11 +7,13 @@
 /* Counts bad frames in a row. Returns whether they are enough. */
 static bool in_a_row(agv_core_t *core, uint32_t row, bool bad, uint32_t needed) {
     uint32_t count = core->monitor.in_a_row[row];
-    if (!bad || (core->monitor.after_gap && (count != COUNTS))) {
+    if (!bad) {
         count = 0u;
-    }
-    if (bad && (count != COUNTS)) {
-        count = ((count + 1u) < needed) ? (count + 1u) : COUNTS;
+    } else if (count != COUNTS) {
+        count = core->monitor.after_gap ? 1u : (count + 1u);
+        count = (count < needed) ? count : COUNTS;
+    } else {
+        /* goes on counting */
     }
     core->monitor.in_a_row[row] = (uint8_t)count;
     return count == COUNTS;
@@ -32,7 +34,7 @@ static void engage(agv_core_t *core, uint32_t stamp_ms) {
         agv_watch_start_at(core, (uint32_t)AGV_WATCH_MESSAGE + command, stamp_ms);
     }
     agv_watch_start(core, AGV_WATCH_ENGAGED);
-    core->faults.changed = true; /* the class of AI_HEARTBEAT_* */
+    core->summary.changed = true; /* the class of AI_HEARTBEAT_* */
 }
 
 static void update_mode(agv_core_t *core, uint32_t flags, uint32_t stamp_ms) {

@@ -45,7 +45,7 @@ void agv_monitor_disengage(agv_core_t *core) {
     }
     agv_watch_stop(core, AGV_WATCH_ENGAGED);
     core->vehicle.command_known = false;
-    core->faults.changed = true; /* the class of AI_HEARTBEAT_* */
+    core->summary.changed = true; /* the class of AI_HEARTBEAT_* */
 }
 
 void agv_monitor_forget_ai(agv_core_t *core) {

@@ -97,7 +97,7 @@ static void transmit(agv_core_t *core, bool all_at_once) {
     }
     agv_transmitter_tick(core);
     core->checked_in |= CHECKED_SEND;
-    if (core->faults.changed) {
+    if (core->summary.changed) {
         (void)agv_core_react(core); /* the gate refused a frame */
     }
 }

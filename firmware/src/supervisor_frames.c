@@ -112,7 +112,7 @@ void agv_core_frame(agv_core_t *core, hal_can_side_t side, const hal_can_frame_t
     if (answer) {
         agv_transmitter_answer(core, message, (why == (uint32_t)AGV_REJECTED_KINDS) ? frame->data : NULL);
     }
-    if (core->faults.changed) {
+    if (core->summary.changed) {
         (void)agv_core_react(core); /* the gate refused a frame */
     }
 }

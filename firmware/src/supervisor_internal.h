@@ -23,10 +23,10 @@ void agv_core_store_latch(const agv_core_t *core);
 /** Report what changed among the faults to the recorder, and sum up what is active (core->summary). */
 void agv_core_report_faults(agv_core_t *core);
 
-/** What was found wrong before the start: bits. */
-#define AGV_FOUND_SELF_TEST_FAILED 0x01u
-#define AGV_FOUND_CORRUPTED 0x02u
-#define AGV_FOUND_CONFIG_INVALID 0x04u
+/** What was found wrong before the start: bit n is the fault of rank n. */
+#define AGV_FOUND_SELF_TEST_FAILED (1u << (uint32_t)AGV_FAULT_SELF_TEST_FAILED)
+#define AGV_FOUND_CORRUPTED (1u << (uint32_t)AGV_FAULT_MEMORY_CORRUPTED)
+#define AGV_FOUND_CONFIG_INVALID (1u << (uint32_t)AGV_FAULT_CONFIG_INVALID)
 
 /** Start, once core->config, hal, recorder and now_ms stand (FSM-7, FSM-9). @param found AGV_FOUND_* bits */
 void agv_core_begin(agv_core_t *core, uint32_t found);

@@ -15,7 +15,7 @@ void agv_core_record(const agv_core_t *core, agv_event_kind_t kind, uint8_t a, u
 }
 
 void agv_core_store_latch(const agv_core_t *core) {
-    agv_latch_write(core->hal, agv_core_is_latched(core), (agv_fault_t)core->machine.first_reason,
+    agv_latch_write(core->hal, core->machine.latched, (agv_fault_t)core->machine.first_reason,
                     (agv_fault_t)core->machine.unresettable);
 }
 
@@ -89,11 +89,10 @@ static void report_all(agv_core_t *core) {
 
 void agv_core_report_faults(agv_core_t *core) {
     agv_summary_t *const summary = &core->summary;
-    if (!core->faults.changed) {
+    if (!core->summary.changed) {
         summary->raised = AGV_FAULT_NONE;
         return;
     }
-    core->faults.changed = false;
     *summary = (agv_summary_t){.raised = AGV_FAULT_NONE,
                                .cause = AGV_FAULT_NONE,
                                .forever = AGV_FAULT_NONE,
@@ -104,20 +103,21 @@ void agv_core_report_faults(agv_core_t *core) {
         agv_led_code((agv_fault_t)((summary->trip != (uint8_t)AGV_FAULT_NONE) ? summary->trip : summary->warning));
 }
 
+_Static_assert(((AGV_MODE_MANUAL >> 1) == AGV_FACT_MANUAL) && ((AGV_MODE_ENGAGED >> 1) == AGV_FACT_ENGAGED),
+               "the mode as a fact is its bits, one place further down");
+
 static bool output_is_unsafe(agv_core_t *core) {
     return agv_watch_reached(core, AGV_WATCH_UNFED) || agv_faults_is_active(core, AGV_FAULT_BUS_OFF) ||
            agv_faults_is_active(core, AGV_FAULT_TX_STALLED);
 }
 
 static uint32_t facts_of(agv_core_t *core) {
-    uint32_t facts = 0u;
+    uint32_t facts = (uint32_t)core->vehicle.mode >> 1u;
     facts |= agv_core_alive(core, AGV_NODE_VCU) ? AGV_FACT_VCU_ALIVE : 0u;
     facts |= agv_core_alive(core, AGV_NODE_EPS) ? AGV_FACT_EPS_ALIVE : 0u;
     facts |= agv_core_alive(core, AGV_NODE_AI) ? AGV_FACT_AI_ALIVE : 0u;
     facts |= agv_monitor_standstill(core) ? AGV_FACT_STANDSTILL : 0u;
-    facts |= (core->vehicle.mode == (uint8_t)AGV_MODE_MANUAL) ? AGV_FACT_MANUAL : 0u;
     facts |= agv_monitor_messages_fresh(core) ? AGV_FACT_MESSAGES : 0u;
-    facts |= agv_core_engaged(core) ? AGV_FACT_ENGAGED : 0u;
     facts |= agv_monitor_autopilot_off(core) ? AGV_FACT_AUTOPILOT_OFF : 0u;
     facts |= agv_monitor_in_park(core) ? AGV_FACT_IN_PARK : 0u;
     facts |= core->vehicle.button * AGV_FACT_BUTTON_DOWN; /* or UP, or neither */
@@ -150,7 +150,7 @@ static void forget_latched(agv_core_t *core, bool reset) {
 
 static void carry_out_transition(agv_core_t *core, agv_state_t from, uint32_t did) {
     const bool tripped = (did & AGV_STEP_TRIPPED) != 0u;
-    const bool left_safe_commands = agv_state_commands_safe(from) && !agv_state_commands_safe(agv_core_state(core));
+    const bool left_safe_commands = (core->machine.state == (uint8_t)AGV_STATE_STANDBY) && (from != AGV_STATE_ACTIVE);
     if (tripped || left_safe_commands || (from == AGV_STATE_ACTIVE)) {
         /* nothing of before may still be sent; from ACTIVE: motion commands that wait for a stalled side */
         agv_transmitter_discard(core, AGV_SET_COMMANDS);
@@ -164,8 +164,8 @@ static void carry_out_transition(agv_core_t *core, agv_state_t from, uint32_t di
     if (left_safe_commands) {
         forget_latched(core, (did & AGV_STEP_RESET_ACCEPTED) != 0u);
     }
-    core->gateway.sent = false;  /* the slew limit begins anew with every engagement */
-    core->faults.changed = true; /* what is latched, and for how long, goes by the state */
+    core->gateway.sent = false;   /* the slew limit begins anew with every engagement */
+    core->summary.changed = true; /* what is latched, and for how long, goes by the state */
     agv_core_record(core, AGV_EVENT_STATE, (uint8_t)from, core->machine.state,
                     tripped ? core->machine.first_reason : (uint8_t)AGV_FAULT_NONE);
 }

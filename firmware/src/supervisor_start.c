@@ -20,7 +20,7 @@ static bool self_test(const agv_config_t *config) {
 }
 
 static void begin_modules(agv_core_t *core) {
-    const size_t anew = offsetof(agv_core_t, last_tick_ms);
+    const size_t anew = offsetof(agv_core_t, led);
     (void)memset(core, 0, offsetof(agv_core_t, hal));
     (void)memset((unsigned char *)core + anew, 0, sizeof *core - anew);
     core->last_tick_ms = core->now_ms;
@@ -62,17 +62,21 @@ static agv_fault_t first_active(const agv_core_t *core) {
 static void begin_state(agv_core_t *core, agv_fault_t kept_reason) {
     const agv_fault_t found = first_active(core);
     agv_state_machine_start(core, (kept_reason != AGV_FAULT_NONE) ? kept_reason : found);
-    if (found < AGV_FAULT_SUPERVISOR_RESET) {
-        core->machine.unresettable = (uint8_t)found;
-    }
     core->machine.park_released = core->config.park == (uint16_t)AGV_PARK_AT_ONCE;
     agv_core_record(core, AGV_EVENT_STATE, 0u, core->machine.state, core->machine.first_reason);
     agv_core_record(core, AGV_EVENT_OUTPUT, 0u, 0u, 0u);
     if (kept_reason != AGV_FAULT_NONE) {
         core->faults.marks[kept_reason] |= AGV_MARK_LATCHED;
     }
-    core->faults.changed = true;
+    core->summary.changed = true;
     agv_core_report_faults(core);
+    core->machine.unresettable = core->summary.forever;
+}
+
+static void raise_found(agv_core_t *core, uint32_t found) {
+    for (uint32_t fault = 0u; (found >> fault) != 0u; fault++) {
+        agv_faults_level(core, (agv_fault_t)fault, ((found >> fault) & 1u) != 0u);
+    }
 }
 
 void agv_core_begin(agv_core_t *core, uint32_t found) {
@@ -80,16 +84,8 @@ void agv_core_begin(agv_core_t *core, uint32_t found) {
     const bool restarted = corrupted || (hal_reset_cause(core->hal) != HAL_RESET_POWER_ON);
     hal_safety_output_set(core->hal, false);
     begin_modules(core);
+    raise_found(core, found | (self_test(&core->config) ? 0u : AGV_FOUND_SELF_TEST_FAILED));
     const agv_fault_t kept_reason = begin_from_latch(core, restarted);
-    if (((found & AGV_FOUND_SELF_TEST_FAILED) != 0u) || !self_test(&core->config)) {
-        agv_faults_level(core, AGV_FAULT_SELF_TEST_FAILED, true);
-    }
-    if (corrupted) {
-        agv_faults_level(core, AGV_FAULT_MEMORY_CORRUPTED, true);
-    }
-    if ((found & AGV_FOUND_CONFIG_INVALID) != 0u) {
-        agv_faults_level(core, AGV_FAULT_CONFIG_INVALID, true);
-    }
     if (restarted && !corrupted && (kept_reason == AGV_FAULT_NONE)) {
         agv_faults_event(core, AGV_FAULT_SUPERVISOR_RESET);
     }

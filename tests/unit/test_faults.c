@@ -32,14 +32,14 @@ static bool is_active(agv_fault_t fault) {
 void test_a_level_is_active_while_its_cause_is(void) {
     agv_faults_level(&core, AGV_FAULT_MODE_INVALID, true);
     TEST_ASSERT_TRUE(is_active(AGV_FAULT_MODE_INVALID));
-    TEST_ASSERT_TRUE(core.faults.changed);
+    TEST_ASSERT_TRUE(core.summary.changed);
     TEST_ASSERT_EQUAL_HEX64(agv_fault_bit(AGV_FAULT_MODE_INVALID), agv_faults_marked(&core.faults, AGV_MARK_ACTIVE));
-    core.faults.changed = false;
+    core.summary.changed = false;
     agv_faults_level(&core, AGV_FAULT_MODE_INVALID, true);
-    TEST_ASSERT_FALSE(core.faults.changed);
+    TEST_ASSERT_FALSE(core.summary.changed);
     agv_faults_level(&core, AGV_FAULT_MODE_INVALID, false);
     TEST_ASSERT_FALSE(is_active(AGV_FAULT_MODE_INVALID));
-    TEST_ASSERT_TRUE(core.faults.changed);
+    TEST_ASSERT_TRUE(core.summary.changed);
     TEST_ASSERT_EQUAL_HEX64(0, agv_faults_marked(&core.faults, AGV_MARK_ACTIVE));
 }
 
@@ -105,7 +105,7 @@ void test_what_is_no_fault_changes_nothing(void) {
         TEST_ASSERT_EQUAL_HEX8(0, agv_fault_flags(none[i]));
         TEST_ASSERT_EQUAL_UINT8(0, agv_fault_led_code(none[i]));
     }
-    TEST_ASSERT_FALSE(core.faults.changed);
+    TEST_ASSERT_FALSE(core.summary.changed);
     TEST_ASSERT_EQUAL_HEX64(0, agv_faults_marked(&core.faults, AGV_MARK_ACTIVE));
 }
 

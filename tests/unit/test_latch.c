@@ -50,7 +50,7 @@ static void use_stubs(void) {
 /* Latched, first reason EPS_HEARTBEAT_LOST (rank 10), nothing unresettable (56 = none). */
 static void write_tripped(void) {
     use_stubs();
-    agv_latch_write(&hal, true, AGV_FAULT_EPS_HEARTBEAT_LOST, AGV_FAULT_NONE);
+    agv_latch_write(&hal, AGV_LATCH_CLOSED, AGV_FAULT_EPS_HEARTBEAT_LOST, AGV_FAULT_NONE);
 }
 
 /* Shows: FSM-7 */
@@ -61,7 +61,7 @@ void test_what_was_written_is_read_again(void) {
     TEST_ASSERT_EQUAL_HEX8(0x96, latch.latched);
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_EPS_HEARTBEAT_LOST, latch.first_reason);
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_NONE, latch.unresettable);
-    agv_latch_write(&hal, false, AGV_FAULT_NONE, AGV_FAULT_MEMORY_CORRUPTED);
+    agv_latch_write(&hal, AGV_LATCH_OPEN, AGV_FAULT_NONE, AGV_FAULT_MEMORY_CORRUPTED);
     TEST_ASSERT_EQUAL(AGV_LATCH_VALID, agv_latch_read(&hal, &latch));
     TEST_ASSERT_EQUAL_HEX8(0x69, latch.latched);
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_NONE, latch.first_reason);
@@ -74,7 +74,7 @@ void test_one_call_with_the_whole_record(void) {
         .latched = 0x96, .first_reason = 10, .unresettable = 56, .version = 1, .checksum = 0xD46068DFu};
     TEST_ASSERT_EQUAL_size_t(8, sizeof expected);
     hal_store_write_latch_ExpectWithArrayAndReturn(&hal, 1, &expected, 8, true);
-    agv_latch_write(&hal, true, AGV_FAULT_EPS_HEARTBEAT_LOST, AGV_FAULT_NONE);
+    agv_latch_write(&hal, AGV_LATCH_CLOSED, AGV_FAULT_EPS_HEARTBEAT_LOST, AGV_FAULT_NONE);
 }
 
 void test_one_call_to_read_it(void) {

@@ -30,6 +30,7 @@ typedef struct {
 
 /** What stands among the faults, as last reported: faults by rank, AGV_FAULT_NONE where there is none. */
 typedef struct {
+    bool changed;         /**< something is to be reported */
     uint8_t raised;       /**< highest-ranking fault that became a trip since the last step */
     uint8_t cause;        /**< highest-ranking trip with a cause that does not come from the AI */
     uint8_t forever;      /**< unresettable fault with a cause */
@@ -50,6 +51,9 @@ typedef struct agv_core {
     uint8_t checked_in; /**< activities since the watchdog was fed (TIM-3) */
     uint8_t id_set;     /**< second copies, for when the configuration itself is corrupted */
     uint8_t topology;
+    uint32_t last_tick_ms;
+    uint32_t config_checksum; /**< agv_config_checksum at the start */
+    agv_gateway_t gateway;
     /* What goes on after a restart that a corruption caused: hal up to config. */
     hal_t *hal; /**< these two are set at the start of each call and NULL in between: nothing outside is */
     agv_recorder_t *recorder; /**< reached through a pointer that a flipped bit may have changed */
@@ -57,11 +61,8 @@ typedef struct agv_core {
     uint32_t now_us;          /**< the same in microseconds, wrapping */
     agv_counters_t counters;
     agv_config_t config;
-    /* What begins anew with every start: last_tick_ms and all after it. */
-    uint32_t last_tick_ms;
-    uint32_t config_checksum; /**< agv_config_checksum at the start */
+    /* What begins anew with every start: led and all after it. */
     agv_led_t led;
-    agv_gateway_t gateway;
     agv_bus_t buses[HAL_CAN_SIDES];
     agv_faults_t faults;
     agv_liveness_t liveness;
@@ -82,22 +83,23 @@ static inline bool agv_core_is_latched(const agv_core_t *core) {
 
 /** Whether a heartbeat is alive. */
 static inline bool agv_core_alive(const agv_core_t *core, agv_node_t node) {
-    return core->liveness.heartbeats[node].state == (uint8_t)AGV_HEARTBEAT_ALIVE;
+    return (core->liveness.heartbeats[node].state & (uint32_t)AGV_HEARTBEAT_ALIVE) != 0u;
 }
 
 /** Whether the autopilot is engaged. */
 static inline bool agv_core_engaged(const agv_core_t *core) {
-    return core->vehicle.mode == (uint8_t)AGV_MODE_ENGAGED;
+    return (core->vehicle.mode & (uint32_t)AGV_MODE_ENGAGED) != 0u;
 }
 
 /** Whether there are two sides. */
 static inline bool agv_core_is_gateway(const agv_core_t *core) {
-    return core->config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    return core->config.topology != (uint16_t)AGV_TOPOLOGY_SHARED;
 }
 
 /** Whether a steering angle is held. */
 static inline bool agv_core_holds_angle(const agv_core_t *core) {
-    return (core->hold.raw ^ core->hold.check) == (int)UINT16_MAX;
+    const uint16_t complement = (uint16_t)~core->hold.raw;
+    return core->hold.check == complement;
 }
 
 #endif

@@ -62,7 +62,6 @@ uint8_t agv_fault_led_code(agv_fault_t fault);
  */
 typedef struct {
     uint8_t marks[AGV_FAULT_COUNT];
-    bool changed; /**< something is to be reported */
 } agv_faults_t;
 
 /** Say whether the cause of a level is present. Ignored for AGV_FAULT_NONE. */

@@ -29,7 +29,10 @@ typedef enum { AGV_LATCH_NOTHING, AGV_LATCH_VALID, AGV_LATCH_CORRUPT } agv_latch
 /** Read the record. @p latch is only filled for AGV_LATCH_VALID. */
 agv_latch_found_t agv_latch_read(hal_t *hal, agv_latch_t *latch);
 
-/** Store the record; version and checksum are filled in. A failure is ignored: nobody could do better. */
-void agv_latch_write(hal_t *hal, bool latched, agv_fault_t first_reason, agv_fault_t unresettable);
+/**
+ * Store the record; version and checksum are filled in. A failure is ignored: nobody could do better.
+ * @param latched AGV_LATCH_CLOSED or AGV_LATCH_OPEN
+ */
+void agv_latch_write(hal_t *hal, uint8_t latched, agv_fault_t first_reason, agv_fault_t unresettable);
 
 #endif

@@ -16,13 +16,13 @@ struct agv_core;
 /** The nodes with a heartbeat (SUP-1): 363h byte 8, 067h byte 1, 43Fh byte 8. */
 typedef enum { AGV_NODE_VCU, AGV_NODE_EPS, AGV_NODE_AI, AGV_NODE_COUNT } agv_node_t;
 
-/** What is known of a heartbeat. */
+/** What is known of a heartbeat. ALIVE is asked for most, and so a bit that no other has. */
 typedef enum {
-    AGV_HEARTBEAT_UNSEEN,   /**< no changed counter yet */
-    AGV_HEARTBEAT_BASELINE, /**< AI: one value seen, which proves nothing yet, but begins the deadline */
-    AGV_HEARTBEAT_ALIVE,    /**< the counter changed within the deadline */
-    AGV_HEARTBEAT_LOST,     /**< deadline expired; stays until the counter changes again */
-    AGV_HEARTBEAT_STUCK     /**< as LOST, but frames with the old counter went on coming */
+    AGV_HEARTBEAT_UNSEEN = 0,   /**< no changed counter yet */
+    AGV_HEARTBEAT_BASELINE = 1, /**< AI: one value seen, which proves nothing yet, but begins the deadline */
+    AGV_HEARTBEAT_ALIVE = 2,    /**< the counter changed within the deadline */
+    AGV_HEARTBEAT_LOST = 4,     /**< deadline expired; stays until the counter changes again */
+    AGV_HEARTBEAT_STUCK = 5     /**< as LOST, but frames with the old counter went on coming */
 } agv_heartbeat_state_t;
 
 /** One heartbeat. Its deadline is the one of the message that carries it (AGV_WATCH_MESSAGE). */

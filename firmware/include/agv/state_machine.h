@@ -34,7 +34,7 @@ struct agv_core;
 #define AGV_FACT_STANDSTILL AGV_MISSING_STANDSTILL
 #define AGV_FACT_MANUAL AGV_MISSING_MANUAL
 #define AGV_FACT_MESSAGES AGV_MISSING_MESSAGES /**< every trip-class status message is fresh */
-#define AGV_FACT_ENGAGED 0x0100u
+#define AGV_FACT_ENGAGED 0x0040u               /**< beside MANUAL, as in 363h */
 #define AGV_FACT_AI_ALIVE 0x0200u
 #define AGV_FACT_AUTOPILOT_OFF 0x0400u /**< confirmed by the VCU */
 #define AGV_FACT_IN_PARK 0x0800u       /**< confirmed by the VCU */
