@@ -178,7 +178,7 @@ static bool check_given(given_t *given, char **files) {
     return true;
 }
 
-/** Whether a scenario can be played where --bus says, or will be left out. */
+/** Whether --bus names the interfaces that a scenario needs. */
 static bool check_place(const work_t *work, const char *file) {
     const scenario_t *scenario = &work->run.scenario;
     const scenario_bus_t bus = real_bus(&work->given);

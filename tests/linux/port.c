@@ -52,16 +52,29 @@ void port_receive_nothing(hal_t *hal) {
 unsigned port_drain(hal_t *hal) {
     port_received_t received;
     unsigned count = 0;
-    while (linux_hal_receive(hal, &received.side, &received.frame, &received.at_us)) {
-        count++;
+    unsigned quiet_ms = 0;
+    while (quiet_ms < VCAN_SETTLED_MS) {
+        if (linux_hal_receive(hal, &received.side, &received.frame, &received.at_us)) {
+            count++;
+            quiet_ms = 0;
+        } else {
+            vcan_pause_ms(1);
+            quiet_ms++;
+        }
     }
     return count;
 }
 
+static void turn(hal_t *hal) {
+    port_received_t received;
+    while (linux_hal_receive(hal, &received.side, &received.frame, &received.at_us)) {
+    }
+    (void)linux_hal_tick(hal);
+}
+
 void port_run_ms(hal_t *hal, unsigned ms) {
     for (unsigned i = 0; i < ms; i++) {
-        (void)port_drain(hal);
-        (void)linux_hal_tick(hal);
+        turn(hal);
         vcan_pause_ms(1);
     }
     (void)port_drain(hal);

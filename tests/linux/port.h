@@ -33,7 +33,7 @@ port_received_t port_receive(hal_t *hal);
 /** Receive; there must be nothing. */
 void port_receive_nothing(hal_t *hal);
 
-/** Receive everything that is there. @return how many frames */
+/** Receive until nothing has come for a while. @return how many frames */
 unsigned port_drain(hal_t *hal);
 
 /** So many milliseconds of a program: receive, tick. */

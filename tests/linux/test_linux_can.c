@@ -12,6 +12,7 @@ static char error[LINUX_CAN_ERROR_SIZE];
 static int tester;
 
 void setUp(void) {
+    vcan_begin();
     can = (linux_can_t){.fd = -1};
     tester = -1;
 }
@@ -249,6 +250,7 @@ void test_what_a_full_queue_lost_is_counted(void) {
     for (unsigned i = 0; i < 200; i++) {
         vcan_send(tester, 0x065, 8, EIGHT);
     }
+    vcan_pause_ms(VCAN_SETTLED_MS);
     unsigned received = 0;
     while (linux_can_read(&can, &record) == LINUX_CAN_RECORD) {
         received++;
@@ -265,13 +267,13 @@ void test_an_interface_that_is_down_is_told_once_and_works_again(void) {
     linux_can_record_t record;
     open_plain();
     TEST_ASSERT_TRUE(linux_can_is_up(&can));
-    vcan_run("ip link set dev vcan0 down");
+    vcan_down("vcan0");
     TEST_ASSERT_FALSE(linux_can_is_up(&can));
     TEST_ASSERT_EQUAL(LINUX_CAN_IS_DOWN, linux_can_read(&can, &record));
     TEST_ASSERT_EQUAL(LINUX_CAN_NOTHING, linux_can_read(&can, &record));
     TEST_ASSERT_EQUAL(LINUX_CAN_NOT_TAKEN, linux_can_write(&can, &frame));
     TEST_ASSERT_EQUAL(LINUX_CAN_NOTHING, linux_can_read(&can, &record));
-    vcan_run("ip link set dev vcan0 up");
+    vcan_up("vcan0");
     TEST_ASSERT_TRUE(linux_can_is_up(&can));
     vcan_drain(tester);
     TEST_ASSERT_EQUAL(LINUX_CAN_TAKEN, linux_can_write(&can, &frame));
@@ -285,19 +287,19 @@ void test_a_write_does_not_take_the_news_away(void) {
     linux_can_record_t record;
     open_plain();
     for (unsigned times = 0; times < 2; times++) {
-        vcan_run("ip link set dev vcan0 down");
+        vcan_down("vcan0");
         TEST_ASSERT_EQUAL(LINUX_CAN_NOT_TAKEN, linux_can_write(&can, &frame));
         TEST_ASSERT_EQUAL(LINUX_CAN_NOT_TAKEN, linux_can_write(&can, &frame));
         TEST_ASSERT_EQUAL(LINUX_CAN_IS_DOWN, linux_can_read(&can, &record));
         TEST_ASSERT_EQUAL(LINUX_CAN_NOTHING, linux_can_read(&can, &record));
-        vcan_run("ip link set dev vcan0 up");
+        vcan_up("vcan0");
         TEST_ASSERT_EQUAL(LINUX_CAN_TAKEN, linux_can_write(&can, &frame));
     }
 }
 
 void test_an_interface_that_is_down_can_be_opened(void) {
     const linux_can_options_t plain = {0};
-    vcan_run("ip link set dev vcan0 down");
+    vcan_down("vcan0");
     TEST_ASSERT_TRUE_MESSAGE(linux_can_open(&can, "vcan0", &plain, error), error);
     TEST_ASSERT_FALSE(linux_can_is_up(&can));
 }
@@ -307,12 +309,13 @@ void test_an_interface_that_was_removed_is_gone(void) {
     const hal_can_frame_t frame = vcan_frame(0x065);
     linux_can_record_t record;
     open_plain();
-    vcan_run("ip link del dev vcan0");
+    vcan_remove("vcan0");
     TEST_ASSERT_EQUAL(LINUX_CAN_IS_GONE, read_soon(&record));
     TEST_ASSERT_EQUAL(LINUX_CAN_IS_GONE, linux_can_read(&can, &record));
     TEST_ASSERT_EQUAL(LINUX_CAN_NOT_TAKEN, linux_can_write(&can, &frame));
     TEST_ASSERT_FALSE(linux_can_is_up(&can));
-    vcan_run("ip link add dev vcan0 type vcan && ip link set dev vcan0 up");
+    vcan_add("vcan0");
+    vcan_up("vcan0");
     TEST_ASSERT_EQUAL(LINUX_CAN_IS_GONE, linux_can_read(&can, &record));
     linux_can_close(&can);
     TEST_ASSERT_TRUE_MESSAGE(linux_can_open(&can, "vcan0", &plain, error), error);
@@ -323,7 +326,7 @@ void test_a_removed_interface_is_found_by_a_write_too(void) {
     const hal_can_frame_t frame = vcan_frame(0x065);
     linux_can_record_t record;
     open_plain();
-    vcan_run("ip link del dev vcan0");
+    vcan_remove("vcan0");
     TEST_ASSERT_EQUAL(LINUX_CAN_NOT_TAKEN, linux_can_write(&can, &frame));
     TEST_ASSERT_EQUAL(LINUX_CAN_NOT_TAKEN, linux_can_write(&can, &frame));
     TEST_ASSERT_EQUAL(LINUX_CAN_IS_GONE, linux_can_read(&can, &record));
@@ -332,13 +335,13 @@ void test_a_removed_interface_is_found_by_a_write_too(void) {
 void test_a_full_kernel_queue_is_told(void) {
     const hal_can_frame_t frame = vcan_frame(0x065);
     open_plain();
-    vcan_run("tc qdisc add dev vcan0 root tbf rate 800bit burst 100 limit 200");
-    linux_can_write_t result = LINUX_CAN_TAKEN;
-    for (unsigned i = 0; result == LINUX_CAN_TAKEN && i < 100; i++) {
-        result = linux_can_write(&can, &frame);
+    vcan_stick();
+    for (unsigned i = 0; i < VCAN_STUCK_MAX; i++) {
+        TEST_ASSERT_EQUAL(LINUX_CAN_TAKEN, linux_can_write(&can, &frame));
     }
-    TEST_ASSERT_EQUAL(LINUX_CAN_FULL, result);
-    vcan_run("tc qdisc del dev vcan0 root");
+    TEST_ASSERT_EQUAL(LINUX_CAN_FULL, linux_can_write(&can, &frame));
+    TEST_ASSERT_EQUAL(LINUX_CAN_FULL, linux_can_write(&can, &frame));
+    vcan_unstick();
     TEST_ASSERT_EQUAL(LINUX_CAN_TAKEN, linux_can_write(&can, &frame));
 }
 

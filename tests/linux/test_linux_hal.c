@@ -11,6 +11,7 @@ static hal_t other;
 static port_left_t left;
 
 void setUp(void) {
+    vcan_begin();
     memset(&hal, 0, sizeof hal);
     memset(&other, 0, sizeof other);
     hal.sides[HAL_CAN_VEHICLE].can.fd = hal.sides[HAL_CAN_AI].can.fd = -1;
@@ -170,6 +171,7 @@ void test_frames_of_two_interfaces_come_in_the_order_of_their_arrival(void) {
         vcan_send((ORDER[i] == 'V') ? vehicle : ai, 0x100, 1, data);
         vcan_pause_ms(1);
     }
+    vcan_pause_ms(VCAN_SETTLED_MS);
     uint64_t last_us = 0;
     for (uint8_t i = 0; i < 16; i++) {
         const port_received_t received = port_receive(&hal);

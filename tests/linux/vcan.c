@@ -1,11 +1,16 @@
 #include "vcan.h"
 
 #include <linux/can/raw.h>
+#include <linux/if_link.h>
+#include <linux/netlink.h>
+#include <linux/rtnetlink.h>
 #include <net/if.h>
 #include <poll.h>
+#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
@@ -16,47 +21,174 @@
 
 static int testers[TESTERS_MAX];
 static unsigned tester_count;
-static bool is_changed;
+static bool links_changed;
+static bool is_stuck;
 
-void vcan_run(const char *commands) {
-    is_changed = true;
-    TEST_ASSERT_EQUAL_INT_MESSAGE(0, system(commands), commands);
+/* A request about an interface that is to be made, or is there. */
+typedef struct {
+    struct nlmsghdr header;
+    struct ifinfomsg interface;
+    struct rtattr name;
+    char name_text[IFNAMSIZ];
+    struct rtattr link_info;
+    struct rtattr kind;
+    char kind_text[8];
+} link_request_t;
+
+static void ask_rtnetlink(uint16_t type, uint16_t flags, const char *interface) {
+    link_request_t request = {.header = {.nlmsg_len = sizeof request, .nlmsg_type = type},
+                              .name = {.rta_len = sizeof(struct rtattr) + IFNAMSIZ, .rta_type = IFLA_IFNAME},
+                              .link_info = {.rta_len = 2 * sizeof(struct rtattr) + 8, .rta_type = IFLA_LINKINFO},
+                              .kind = {.rta_len = sizeof(struct rtattr) + 5, .rta_type = IFLA_INFO_KIND},
+                              .kind_text = "vcan"};
+    struct {
+        struct nlmsghdr header;
+        struct nlmsgerr verdict;
+    } answer = {0};
+    request.header.nlmsg_flags = (uint16_t)(NLM_F_REQUEST | NLM_F_ACK | flags);
+    (void)snprintf(request.name_text, sizeof request.name_text, "%s", interface);
+    const int asked = socket(AF_NETLINK, SOCK_RAW, NETLINK_ROUTE);
+    TEST_ASSERT_TRUE(asked >= 0);
+    TEST_ASSERT_EQUAL_INT(sizeof request, send(asked, &request, sizeof request, 0));
+    TEST_ASSERT_TRUE(recv(asked, &answer, sizeof answer, 0) > 0);
+    (void)close(asked);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, answer.verdict.error, interface);
+    links_changed = true;
 }
 
-long vcan_number(const char *command) {
-    char line[64] = "";
-    FILE *output = popen(command, "r");
+void vcan_add(const char *interface) {
+    ask_rtnetlink(RTM_NEWLINK, NLM_F_CREATE | NLM_F_EXCL, interface);
+}
+
+void vcan_remove(const char *interface) {
+    ask_rtnetlink(RTM_DELLINK, 0, interface);
+}
+
+static void set_up(const char *interface, bool up) {
+    struct ifreq request = {0};
+    const int asked = socket(AF_INET, SOCK_DGRAM, 0);
+    TEST_ASSERT_TRUE(asked >= 0);
+    (void)snprintf(request.ifr_name, sizeof request.ifr_name, "%s", interface);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, ioctl(asked, SIOCGIFFLAGS, &request), interface);
+    const unsigned others = (unsigned)request.ifr_flags & ~(unsigned)IFF_UP;
+    request.ifr_flags = (short)(others | (up ? (unsigned)IFF_UP : 0u));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, ioctl(asked, SIOCSIFFLAGS, &request), interface);
+    (void)close(asked);
+    links_changed = true;
+}
+
+void vcan_up(const char *interface) {
+    set_up(interface, true);
+}
+
+void vcan_down(const char *interface) {
+    set_up(interface, false);
+}
+
+void vcan_run(const char *command) {
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, system(command), command);
+}
+
+void vcan_stick(void) {
+    vcan_run("tc qdisc add dev vcan0 root netem delay 200s limit 10");
+    is_stuck = true;
+}
+
+void vcan_unstick(void) {
+    vcan_run("tc qdisc del dev vcan0 root");
+    is_stuck = false;
+}
+
+unsigned vcan_dropped(void) {
+    char text[512] = "";
+    FILE *output = popen("tc -s qdisc show dev vcan0", "r");
     TEST_ASSERT_NOT_NULL(output);
-    TEST_ASSERT_NOT_NULL_MESSAGE(fgets(line, sizeof line, output), command);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(0, pclose(output), command);
-    return strtol(line, NULL, 10);
+    const size_t size = fread(text, 1, sizeof text - 1u, output);
+    TEST_ASSERT_EQUAL_INT(0, pclose(output));
+    text[size] = '\0';
+    const char *dropped = strstr(text, "(dropped ");
+    TEST_ASSERT_NOT_NULL_MESSAGE(dropped, text);
+    return (unsigned)strtoul(dropped + strlen("(dropped "), NULL, 10);
 }
 
 void vcan_restore(void) {
+    vcan_pause_ms(VCAN_SETTLED_MS); /* what is still on its way belongs to this test */
     while (tester_count > 0) {
         (void)close(testers[--tester_count]);
     }
-    if (is_changed) {
-        is_changed = false;
-        TEST_ASSERT_EQUAL_INT(0, system("for name in vcan0 vcan1; do"
-                                        "  ip link show dev $name >/dev/null 2>&1 || ip link add dev $name type vcan;"
-                                        "  tc qdisc del dev $name root 2>/dev/null;"
-                                        "  ip link set dev $name up || exit 1; done"));
+    if (is_stuck) {
+        vcan_unstick();
     }
+    if (links_changed) {
+        if (if_nametoindex("vcan0") == 0) {
+            vcan_add("vcan0");
+        }
+        vcan_up("vcan0");
+        vcan_up("vcan1");
+        links_changed = false;
+    }
+}
+
+/* What a frame of that moment is stamped with; it is read a little later. */
+static uint64_t stamp_of_a_frame(int stamped, int sender) {
+    const struct can_frame frame = {.can_id = 1};
+    struct can_frame received;
+    _Alignas(struct cmsghdr) char control[CMSG_SPACE(sizeof(struct timespec))];
+    struct iovec part = {.iov_base = &received, .iov_len = sizeof received};
+    struct msghdr message = {
+        .msg_iov = &part, .msg_iovlen = 1, .msg_control = control, .msg_controllen = sizeof control};
+    struct timespec stamp;
+    TEST_ASSERT_EQUAL_INT(sizeof frame, send(sender, &frame, sizeof frame, 0));
+    vcan_pause_ms(VCAN_SETTLED_MS);
+    TEST_ASSERT_EQUAL_INT(sizeof received, recvmsg(stamped, &message, 0));
+    TEST_ASSERT_NOT_NULL(CMSG_FIRSTHDR(&message));
+    memcpy(&stamp, CMSG_DATA(CMSG_FIRSTHDR(&message)), sizeof stamp);
+    return (uint64_t)stamp.tv_sec * 1000000u + (uint64_t)stamp.tv_nsec / 1000u;
+}
+
+static int bind_raw(int can_socket, const char *interface) {
+    const struct sockaddr_can address = {.can_family = AF_CAN, .can_ifindex = (int)if_nametoindex(interface)};
+    TEST_ASSERT_TRUE_MESSAGE(can_socket >= 0, "no CAN socket");
+    TEST_ASSERT_NOT_EQUAL_MESSAGE(0, address.can_ifindex, interface);
+    TEST_ASSERT_EQUAL_INT(0, bind(can_socket, (const struct sockaddr *)&address, sizeof address));
+    return can_socket;
+}
+
+/* All on one processor: then whatever the kernel has put off is done as soon as this program sleeps. */
+static void stay_on_one_processor(void) {
+    cpu_set_t first;
+    CPU_ZERO(&first);
+    CPU_SET((unsigned)sched_getcpu(), &first);
+    TEST_ASSERT_EQUAL_INT(0, sched_setaffinity(0, sizeof first, &first));
+}
+
+void vcan_begin(void) {
+    static int stamped = -1; /* stays open, so that the kernel goes on stamping */
+    const int on = 1;
+    if (stamped >= 0) {
+        return;
+    }
+    stay_on_one_processor();
+    stamped = bind_raw(socket(PF_CAN, SOCK_RAW, CAN_RAW), "vcan2");
+    TEST_ASSERT_EQUAL_INT(0, setsockopt(stamped, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on));
+    const int sender = bind_raw(socket(PF_CAN, SOCK_RAW, CAN_RAW), "vcan2");
+    uint64_t before_us = 0;
+    unsigned times = 0;
+    do {
+        TEST_ASSERT_TRUE_MESSAGE(times++ < VCAN_SOON_MS / VCAN_SETTLED_MS, "the kernel does not stamp");
+        before_us = vcan_real_us();
+    } while (stamp_of_a_frame(stamped, sender) >= before_us + VCAN_SETTLED_MS * 1000u);
+    (void)close(sender);
 }
 
 int vcan_open(const char *interface) {
     const int on = 1;
     const can_err_mask_t errors = CAN_ERR_MASK;
-    const int tester = socket(PF_CAN, SOCK_RAW, CAN_RAW);
-    TEST_ASSERT_TRUE_MESSAGE(tester >= 0, "no CAN socket");
+    const int tester = bind_raw(socket(PF_CAN, SOCK_RAW, CAN_RAW), interface);
     TEST_ASSERT_TRUE(tester_count < TESTERS_MAX);
     testers[tester_count++] = tester;
-    const struct sockaddr_can address = {.can_family = AF_CAN, .can_ifindex = (int)if_nametoindex(interface)};
-    TEST_ASSERT_NOT_EQUAL_MESSAGE(0, address.can_ifindex, interface);
     TEST_ASSERT_EQUAL_INT(0, setsockopt(tester, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on));
     TEST_ASSERT_EQUAL_INT(0, setsockopt(tester, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors));
-    TEST_ASSERT_EQUAL_INT(0, bind(tester, (const struct sockaddr *)&address, sizeof address));
     return tester;
 }
 

@@ -18,14 +18,35 @@
 #define VCAN_SOON_MS 2000
 #define VCAN_NEVER_MS 30
 
-/** Run shell commands. What changes vcan0 .. vcan2 is undone by vcan_restore(). */
-void vcan_run(const char *commands);
+/** What was sent is delivered at once, or a moment later when the computer is busy. */
+#define VCAN_SETTLED_MS 20
 
-/** The number that a shell command prints. */
-long vcan_number(const char *command);
+#define VCAN_STUCK_MAX 10
 
-/** In tearDown: vcan0 and vcan1 as at the start if vcan_run() was called, and every tester closed. */
+/** In setUp: wait until the kernel stamps frames, which it begins a moment after the first socket that wants it. */
+void vcan_begin(void);
+
+/** @name Interfaces: whatever is done to vcan0 and vcan1 is undone by vcan_restore() @{ */
+void vcan_up(const char *interface);
+void vcan_down(const char *interface);
+void vcan_add(const char *interface);
+void vcan_remove(const char *interface);
+
+/** From now on vcan0 keeps what is sent in a queue for VCAN_STUCK_MAX frames. (Who listens on this computer hears them.) */
+void vcan_stick(void);
+
+/** No longer; what was in the queue is gone. */
+void vcan_unstick(void);
+
+/** How often this queue had no room. */
+unsigned vcan_dropped(void);
+
+/** Run a shell command. */
+void vcan_run(const char *command);
+
+/** In tearDown: the interfaces as at the start, and every tester closed. */
 void vcan_restore(void);
+/** @} */
 
 /** A raw socket that receives everything, error frames too, but for what it sends. */
 int vcan_open(const char *interface);
