@@ -66,8 +66,10 @@ class Bus:
     def listen(self, seconds):
         """All frames until then, beginning with those that nobody has looked at so far."""
         end = time.time() + seconds
-        while time.time() < end:
+        looked = 0
+        while looked < end:
             time.sleep(max(0, min(self.look_every, end - time.time())))
+            looked = time.time()
             self.look()
         frames = [frame for frame in self.waiting if frame.at <= end]
         self.waiting = collections.deque(frame for frame in self.waiting if frame.at > end)
