@@ -2,19 +2,35 @@
 
 Run by scripts/with-vcan, where vcan0, vcan1 and vcan2 exist. HOST_SIM in the environment is the program's path.
 """
+import atexit
 import collections
 import os
 import queue
 import re
+import shutil
 import signal
 import socket
 import struct
 import subprocess
+import tempfile
 import threading
 import time
 import unittest
 
-PROGRAM = os.environ["HOST_SIM"]
+def in_memory(program):
+    """A copy of a program, and temporary files, on no disk: in a virtual machine that may be slow (docs/vcan.md)."""
+    if not os.access("/dev/shm", os.W_OK):
+        return program
+    tempfile.tempdir = tempfile.mkdtemp(dir="/dev/shm")
+    atexit.register(shutil.rmtree, tempfile.tempdir)
+    copy = shutil.copy(program, tempfile.tempdir)
+    subprocess.run([copy, "--version"], stdout=subprocess.DEVNULL, check=True)  # its libraries are in memory from now on
+    return copy
+
+
+PROGRAM = in_memory(os.environ["HOST_SIM"])
+
+TIMEOUT = 60  # seconds, for what comes at once when all is well
 
 FRAME = struct.Struct("=IB3x8s")  # struct can_frame
 STAMP = struct.Struct("@qq")  # struct timespec
@@ -80,7 +96,7 @@ class Bus:
         self.look()
         self.waiting.clear()
 
-    def wait_for(self, can_id, matches=lambda data: True, timeout=10):
+    def wait_for(self, can_id, matches=lambda data: True, timeout=TIMEOUT):
         """The first frame with this identifier that matches. Those before it are dropped."""
         end = time.monotonic() + timeout
         seen = None
@@ -121,7 +137,7 @@ class Process:
     def close_stdin(self):
         self.process.stdin.close()
 
-    def wait_line(self, expression, name="stdout", timeout=10):
+    def wait_line(self, expression, name="stdout", timeout=TIMEOUT):
         """The next line in which the expression is found."""
         end = time.monotonic() + timeout
         while True:
@@ -138,7 +154,7 @@ class Process:
     def text(self, name="stdout"):
         return "".join(self.lines[name])
 
-    def end(self, number=signal.SIGTERM, timeout=10):
+    def end(self, number=signal.SIGTERM, timeout=TIMEOUT):
         """Send a signal, unless it is None, and wait for the end. Gives the exit status."""
         if number is not None and self.is_running():
             self.process.send_signal(number)
@@ -167,7 +183,7 @@ class Case(unittest.TestCase):
         self.addCleanup(process.end, signal.SIGKILL)
         return process
 
-    def run_to_end(self, *arguments, timeout=30):
+    def run_to_end(self, *arguments, timeout=TIMEOUT):
         """Exit status, standard output and standard error of a run that ends by itself."""
         done = subprocess.run([PROGRAM, *map(str, arguments)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE, timeout=timeout, check=False, text=True)
@@ -176,7 +192,7 @@ class Case(unittest.TestCase):
 
 def ip(*arguments):
     """Change the network: ip("link", "set", "vcan2", "down")."""
-    subprocess.run(["ip", *arguments], check=True, timeout=10)
+    subprocess.run(["ip", *arguments], check=True, timeout=TIMEOUT)
 
 
 def of(frames, can_id):
