@@ -2,6 +2,7 @@
 run again, but only then."""
 import functools
 import os
+import subprocess
 import threading
 import time
 
@@ -45,7 +46,7 @@ def on_time(test):
             try:
                 test(self)
                 return
-            except AssertionError:
+            except (AssertionError, subprocess.TimeoutExpired):
                 late_s = stalls.stop()
                 if left == 0 or late_s < STALL_S:
                     raise
