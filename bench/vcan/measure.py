@@ -283,7 +283,7 @@ def main():
     parser = argparse.ArgumentParser(prog="bench/vcan/run")
     parser.add_argument("--programs", type=pathlib.Path, required=True)
     parser.add_argument("--provided", required=True)
-    parser.add_argument("--trials", type=int, default=100)
+    parser.add_argument("--trials", type=int, default=80)
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--realtime", action="store_true")
     parser.add_argument("--self-test", action="store_true")
