@@ -270,6 +270,7 @@ static bool prepare(run_t *run) {
         return false;
     }
     linux_clock_start(&run->clock); /* opening took its time: now it begins */
+    (void)linux_loop_align(&run->loop, linux_clock_now_us(&run->clock));
     start_node(run);
     return true;
 }

@@ -1,4 +1,5 @@
 /* Waiting: ticks, files, signals; and real-time priority, which needs rights. */
+#include "hal_linux/linux_clock.h"
 #include "hal_linux/linux_loop.h"
 
 #include <errno.h>
@@ -98,6 +99,34 @@ void test_files_that_cannot_be_watched(void) {
     TEST_ASSERT_EQUAL_INT(EPERM, errno);
     (void)close(regular);
     TEST_ASSERT_FALSE(linux_loop_add(&loop, -1));
+    TEST_ASSERT_EQUAL_INT(EBADF, errno);
+}
+
+/* The earliest moment within a millisecond of the clock at which a tick was told; later ones are the computer's. */
+static uint64_t earliest_phase_us(const linux_clock_t *clock) {
+    uint64_t earliest_us = UINT64_MAX;
+    for (unsigned i = 0; i < 100; i++) {
+        (void)linux_loop_wait(&loop);
+        const uint64_t phase_us = linux_clock_now_us(clock) % 1000u;
+        earliest_us = (phase_us < earliest_us) ? phase_us : earliest_us;
+    }
+    return earliest_us;
+}
+
+void test_ticks_fall_just_after_whole_milliseconds_of_a_clock(void) {
+    linux_clock_t clock;
+    linux_clock_start(&clock);
+    for (unsigned i = 0; i < 4; i++) {
+        clock.start_ns -= 250000u; /* another clock each time, a quarter of a millisecond apart */
+        TEST_ASSERT_TRUE(linux_loop_align(&loop, linux_clock_now_us(&clock)));
+        (void)linux_loop_wait(&loop); /* may have been due before */
+        TEST_ASSERT_TRUE(earliest_phase_us(&clock) < 240u);
+    }
+}
+
+void test_what_is_closed_cannot_be_aligned(void) {
+    linux_loop_t closed = {.epoll = -1, .timer = -1, .signals = -1};
+    TEST_ASSERT_FALSE(linux_loop_align(&closed, 0));
     TEST_ASSERT_EQUAL_INT(EBADF, errno);
 }
 

@@ -11,7 +11,10 @@
 #include <sys/timerfd.h>
 #include <unistd.h>
 
-enum { TICK_NS = 1000000, EVENTS_AT_ONCE = 8 };
+enum { TICK_NS = 1000000, TICK_US = 1000, NS_PER_US = 1000, EVENTS_AT_ONCE = 8 };
+
+/* How long after the whole millisecond a tick falls: reading the clock and setting the timer must not make it early. */
+enum { ALIGNED_AFTER_US = 20 };
 
 static void close_file(int *fd) {
     if (*fd >= 0) {
@@ -48,6 +51,13 @@ bool linux_loop_open(linux_loop_t *loop) {
     linux_loop_close(loop);
     errno = why;
     return false;
+}
+
+bool linux_loop_align(linux_loop_t *loop, uint64_t now_us) {
+    const uint64_t left_us = TICK_US - (now_us % TICK_US) + ALIGNED_AFTER_US;
+    const struct itimerspec aligned = {.it_interval = {.tv_nsec = TICK_NS},
+                                       .it_value = {.tv_nsec = (long)left_us * NS_PER_US}};
+    return timerfd_settime(loop->timer, 0, &aligned, NULL) == 0;
 }
 
 bool linux_loop_add(linux_loop_t *loop, int fd) {

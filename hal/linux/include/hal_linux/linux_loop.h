@@ -27,6 +27,14 @@ typedef struct {
  */
 bool linux_loop_open(linux_loop_t *loop);
 
+/**
+ * Let the ticks fall on the whole milliseconds of a clock, and just after them: what is counted in these is judged when it
+ * changes, not up to a millisecond later.
+ * @param now_us what the clock reads now
+ * @return false: errno says why; the ticks go on as before
+ */
+bool linux_loop_align(linux_loop_t *loop, uint64_t now_us);
+
 /** Watch a file for reading as well. @return false: errno says why (a regular file cannot be waited for). */
 bool linux_loop_add(linux_loop_t *loop, int fd);
 
