@@ -104,7 +104,7 @@ class Drives(canbus.Case):
         vehicle.wait_line(r"vcu +gear D ")
         vehicle.wait_line(r"vehicle +moves off ")
 
-        # Shows: nothing but that it hears: 075h of somebody else, while its own AI computer sends none
+        # 075h of somebody else is heard, while its own AI computer sends none
         vehicle.say("ai mute message=throttle_command")
         vehicle.wait_line("ai +mute message=throttle_command ")
         bus.wait_for(0x050, lambda data: data[0] == 0)  # 500 ms later
