@@ -18,9 +18,6 @@ void linux_hal_controller_error(linux_hal_side_t *side, const hal_can_frame_t *f
     if ((details & CAN_ERR_CRTL_RX_OVERFLOW) != 0) {
         side->overruns++;
     }
-    if (!side->is_up) {
-        return; /* from before it went down */
-    }
     if ((frame->id & CAN_ERR_BUSOFF) != 0) {
         enter_bus_off(side);
         return;
