@@ -119,6 +119,7 @@ void test_the_clock_is_the_one_of_the_stamps(void) {
     TEST_ASSERT_TRUE(hal_clock_now_ms(&hal) >= received.frame.time_ms + 100u);
 }
 
+/* Shows: P15 */
 void test_frames_of_all_kinds_are_handed_over(void) {
     const uint8_t data[8] = {1, 2, 3, 4, 5, 6, 7, 8};
     port_open(&hal, "vcan0", NULL, NULL);
@@ -206,6 +207,7 @@ void test_own_frames_are_told_and_never_received(void) {
     TEST_ASSERT_EQUAL_UINT(1, left.count);
 }
 
+/* Shows: TOP-1 */
 void test_two_supervisors_hear_each_other_and_not_themselves(void) {
     port_open(&hal, "vcan0", NULL, &left);
     port_open(&other, "vcan0", NULL, NULL);

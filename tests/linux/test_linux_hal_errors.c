@@ -71,6 +71,7 @@ void test_other_errors_change_nothing(void) {
     expect_status(HAL_CAN_ERROR_ACTIVE, 0, 0);
 }
 
+/* Shows: SUP-7 */
 void test_an_overrun_of_the_controller_is_counted(void) {
     error_frame(CAN_ERR_CRTL, CAN_ERR_CRTL_RX_OVERFLOW);
     expect_status(HAL_CAN_ERROR_ACTIVE, 0, 1);
@@ -78,6 +79,7 @@ void test_an_overrun_of_the_controller_is_counted(void) {
     expect_status(HAL_CAN_ERROR_PASSIVE, 0, 2);
 }
 
+/* Shows: SUP-7 */
 void test_bus_off_lasts_until_the_restart(void) {
     error_frame(CAN_ERR_BUSOFF, 0);
     expect_status(HAL_CAN_BUS_OFF, 1, 0);
@@ -104,6 +106,7 @@ void test_a_restart_that_comes_with_passive(void) {
     expect_status(HAL_CAN_ERROR_PASSIVE, 1, 0);
 }
 
+/* Shows: SUP-7 */
 void test_what_waits_at_bus_off_is_never_sent(void) {
     vcan_send_error(tester, CAN_ERR_BUSOFF, 0); /* not read yet, when the supervisor sends */
     TEST_ASSERT_TRUE(port_send(&hal, 0x10F));
@@ -157,6 +160,7 @@ void test_frames_that_the_socket_lost_are_counted_round(void) {
     expect_status(HAL_CAN_ERROR_ACTIVE, 0, (uint16_t)(65530u + 2000u - received));
 }
 
+/* Shows: SUP-7 */
 void test_an_interface_that_goes_down_and_comes_back(void) {
     const hal_can_frame_t frame = vcan_frame(0x105);
     const int fd = linux_hal_fd(&hal, HAL_CAN_VEHICLE);

@@ -106,6 +106,7 @@ void test_frames_that_cannot_be_sent_are_not_taken(void) {
     }
 }
 
+/* Shows: SUP-7 */
 void test_a_kernel_without_room_is_not_sent(void) {
     vcan_stick();
     for (unsigned i = 0; i < VCAN_STUCK_MAX; i++) {
@@ -170,6 +171,7 @@ void test_the_age_of_what_waits_grows(void) {
     TEST_ASSERT_TRUE(second_ms <= (linux_hal_now_us(&hal) - taken_us) / 1000u);
 }
 
+/* Shows: SUP-7 */
 void test_a_purge_leaves_only_what_the_kernel_has(void) {
     TEST_ASSERT_TRUE(port_send(&hal, 0x10F));
     TEST_ASSERT_TRUE(port_send(&hal, 0x100));
