@@ -24,7 +24,6 @@ set(AGV_CORE_SOURCES
   ${AGV_CORE_DIR}/src/supervisor_react.c
   ${AGV_CORE_DIR}/src/supervisor_read.c
   ${AGV_CORE_DIR}/src/supervisor_start.c
-  ${AGV_CORE_DIR}/src/timer.c
   ${AGV_CORE_DIR}/src/transmitter.c
   ${AGV_CORE_DIR}/src/watch.c
 )

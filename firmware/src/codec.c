@@ -290,7 +290,7 @@ bool agv_unpack_wheel_speed(agv_wheel_speed_t *out, const uint8_t data[AGV_DLC])
     return true;
 }
 
-bool agv_value_is_valid(agv_message_t message, const uint8_t data[AGV_DLC]) {
+bool agv_value_is_valid(uint32_t message, const uint8_t data[AGV_DLC]) {
     switch (message) {
     case AGV_MSG_GEAR_COMMAND:
     case AGV_MSG_GEAR_STATUS:
@@ -299,9 +299,9 @@ bool agv_value_is_valid(agv_message_t message, const uint8_t data[AGV_DLC]) {
     case AGV_MSG_THROTTLE_STATUS:
         return data[0] <= AGV_THROTTLE_MAX_COUNTS;
     case AGV_MSG_STEERING_COMMAND:
-        return agv_angle_read(&data[0]) <= AGV_ANGLE_MAX_DDEG;
+        return agv_angle_read(&data[0]) <= (uint32_t)AGV_ANGLE_RAW_MAX;
     case AGV_MSG_STEERING_STATUS:
-        return agv_angle_read(&data[2]) <= AGV_ANGLE_MAX_DDEG;
+        return agv_angle_read(&data[2]) <= (uint32_t)AGV_ANGLE_RAW_MAX;
     case AGV_MSG_EPS_STATUS:
         return eps_mode_is_valid(data[3]);
     default:
@@ -312,10 +312,10 @@ bool agv_value_is_valid(agv_message_t message, const uint8_t data[AGV_DLC]) {
 const uint8_t agv_command_bits[AGV_COMMAND_COUNT][AGV_DLC] = {
     {0u, 0u, 0u, 0u, 0xF0u, 0u, 0u, 0xFFu}, {0xFFu}, {0xFFu}, {0xFFu, 0xFFu}};
 
-int32_t agv_angle_read(const uint8_t *bytes) {
-    return (int32_t)get_le16(bytes) - AGV_ANGLE_RAW_CENTRE;
+uint32_t agv_angle_read(const uint8_t *bytes) {
+    return get_le16(bytes);
 }
 
-void agv_angle_write(uint8_t *bytes, int32_t angle_ddeg) {
-    put_le16(bytes, angle_to_raw(angle_ddeg));
+void agv_angle_write(uint8_t *bytes, uint32_t angle_raw) {
+    put_le16(bytes, angle_raw);
 }

@@ -6,72 +6,92 @@
 #include "agv/checksum.h"
 #include "agv/protocol.h"
 
-/* Every choice has two words: its values are 0 and 1. */
-#define AGV_CHOICE(name, preset, words, meaning) AGV_SETTING(name, preset, 0u, 1u, "", meaning)
+/* The choices come first, then what has a row here. Every choice has two words: its values are 0 and 1, 0 the default. */
+enum {
+#define AGV_SETTING(name, preset, lowest, highest, unit, meaning)
+#define AGV_CHOICE(name, preset, words, meaning) CHOICE_##name,
+#include "agv/config_settings.def"
+#undef AGV_SETTING
+#undef AGV_CHOICE
+    CHOICES,
+    CHOICE_MAX = 1
+};
+
+#define AGV_SETTING(name, preset, lowest, highest, unit, meaning)                                                      \
+    _Static_assert((int)AGV_SETTING_##name >= (int)CHOICES, #name);
+#define AGV_CHOICE(name, preset, words, meaning) _Static_assert((preset) == 0, #name);
+#include "agv/config_settings.def"
+#undef AGV_SETTING
+#undef AGV_CHOICE
 
 static const struct {
     uint16_t preset;
     uint16_t lowest;
     uint16_t highest;
-} rows[AGV_SETTING_COUNT] = {
+} rows[AGV_SETTING_COUNT - CHOICES] = {
 #define AGV_SETTING(name, preset, lowest, highest, unit, meaning) {(preset), (lowest), (highest)},
+#define AGV_CHOICE(name, preset, words, meaning)
 #include "agv/config_settings.def"
 #undef AGV_SETTING
+#undef AGV_CHOICE
 };
 
 /* The settings stand without gaps at the start of the struct: a setting's place is its index. */
 _Static_assert(offsetof(agv_config_t, watchdog_period_ms) == ((size_t)AGV_SETTING_COUNT - 1u) * sizeof(uint16_t),
                "settings are contiguous");
 
-uint16_t agv_config_get(const agv_config_t *config, uint16_t setting) {
+uint16_t agv_config_get(const agv_config_t *config, uint32_t setting) {
     uint16_t value = 0u;
-    if (setting < (uint16_t)AGV_SETTING_COUNT) {
+    if (setting < (uint32_t)AGV_SETTING_COUNT) {
         (void)memcpy(&value, (const unsigned char *)config + (setting * sizeof value), sizeof value);
     }
     return value;
 }
 
-bool agv_config_set(agv_config_t *config, uint16_t setting, uint16_t value) {
-    const bool known = setting < (uint16_t)AGV_SETTING_COUNT;
+bool agv_config_set(agv_config_t *config, uint32_t setting, uint16_t value) {
+    const bool known = setting < (uint32_t)AGV_SETTING_COUNT;
     if (known) {
         (void)memcpy((unsigned char *)config + (setting * sizeof value), &value, sizeof value);
     }
     return known;
 }
 
-bool agv_config_is_trip(const agv_config_t *config, agv_fault_t fault) {
+bool agv_config_is_trip(const agv_config_t *config, uint32_t fault) {
     return agv_fault_is_in(config->trips, fault);
 }
 
 void agv_config_defaults(agv_config_t *config) {
     (void)memset(config, 0, sizeof *config);
-    for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
-        (void)agv_config_set(config, i, rows[i].preset);
+    for (uint32_t i = CHOICES; i < (uint32_t)AGV_SETTING_COUNT; i++) {
+        (void)agv_config_set(config, i, rows[i - CHOICES].preset);
     }
     config->trips = agv_faults_default_trips;
 }
 
+static bool is_in_range(uint32_t setting, uint32_t value) {
+    if (setting < (uint32_t)CHOICES) {
+        return value <= (uint32_t)CHOICE_MAX;
+    }
+    return (value >= rows[setting - CHOICES].lowest) && (value <= rows[setting - CHOICES].highest);
+}
+
 /* The setting that is out of range; AGV_SETTING_COUNT when none is. */
-static uint16_t out_of_range(const agv_config_t *config) {
-    uint16_t setting = 0u;
-    while (setting < (uint16_t)AGV_SETTING_COUNT) {
-        const uint16_t value = agv_config_get(config, setting);
-        if ((value < rows[setting].lowest) || (value > rows[setting].highest)) {
-            break;
-        }
+static uint32_t out_of_range(const agv_config_t *config) {
+    uint32_t setting = 0u;
+    while ((setting < (uint32_t)AGV_SETTING_COUNT) && is_in_range(setting, agv_config_get(config, setting))) {
         setting++;
     }
     return setting;
 }
 
 /* The highest-ranking fault that is made weaker than it may be; AGV_FAULT_NONE when none is. */
-static agv_fault_t too_weak(const agv_config_t *config) {
+static uint32_t too_weak(const agv_config_t *config) {
     const agv_fault_set_t weak = agv_faults_fixed & ~config->trips;
     uint32_t fault = 0u;
-    while ((fault < (uint32_t)AGV_FAULT_COUNT) && !agv_fault_is_in(weak, (agv_fault_t)fault)) {
+    while ((fault < (uint32_t)AGV_FAULT_COUNT) && !agv_fault_is_in(weak, fault)) {
         fault++;
     }
-    return (agv_fault_t)fault;
+    return fault;
 }
 
 static bool id_is_taken(uint32_t id) {
@@ -80,7 +100,7 @@ static bool id_is_taken(uint32_t id) {
 }
 
 agv_config_verdict_t agv_config_check(const agv_config_t *config) {
-    agv_config_verdict_t verdict = {AGV_CONFIG_OK, out_of_range(config), too_weak(config)};
+    agv_config_verdict_t verdict = {AGV_CONFIG_OK, (uint16_t)out_of_range(config), (agv_fault_t)too_weak(config)};
     if (verdict.setting < (uint16_t)AGV_SETTING_COUNT) {
         verdict.problem = AGV_CONFIG_OUT_OF_RANGE;
     } else if (id_is_taken(config->status_frame_id)) {
@@ -110,7 +130,7 @@ static uint32_t crc_of(uint32_t crc, uint32_t value, uint32_t size) {
 
 uint32_t agv_config_checksum(const agv_config_t *config) {
     uint32_t crc = AGV_CRC32_START;
-    for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
+    for (uint32_t i = 0u; i < (uint32_t)AGV_SETTING_COUNT; i++) {
         crc = crc_of(crc, agv_config_get(config, i), 2u);
     }
     crc = crc_of(crc, (uint32_t)config->trips, 4u);

@@ -60,40 +60,41 @@ const agv_fault_set_t agv_faults_default_trips = 0u
     ;
 #undef AGV_FAULT
 
-static bool is_fault(agv_fault_t fault) {
-    return (uint32_t)fault < (uint32_t)AGV_FAULT_COUNT;
+static bool is_fault(uint32_t fault) {
+    return fault < (uint32_t)AGV_FAULT_COUNT;
 }
 
-agv_fault_set_t agv_fault_bit(agv_fault_t fault) {
-    return is_fault(fault) ? ((agv_fault_set_t)1u << (uint32_t)fault) : 0u;
+agv_fault_set_t agv_fault_bit(uint32_t fault) {
+    return is_fault(fault) ? ((agv_fault_set_t)1u << fault) : 0u;
 }
 
-bool agv_fault_is_in(agv_fault_set_t set, agv_fault_t fault) {
+bool agv_fault_is_in(agv_fault_set_t set, uint32_t fault) {
     /* In words of 32 bits: a shift of 64 by a variable is long on a small processor. */
-    const uint32_t word = (uint32_t)(((uint32_t)fault < 32u) ? set : (set >> 32u));
-    return is_fault(fault) && (((word >> ((uint32_t)fault & 31u)) & 1u) != 0u);
+    const uint32_t word = (uint32_t)((fault < 32u) ? set : (set >> 32u));
+    return is_fault(fault) && (((word >> (fault & 31u)) & 1u) != 0u);
 }
 
-uint8_t agv_fault_flags(agv_fault_t fault) {
+uint8_t agv_fault_flags(uint32_t fault) {
     return is_fault(fault) ? (uint8_t)(rows[fault] & ~(uint32_t)LED_CODE) : 0u;
 }
 
-uint8_t agv_fault_led_code(agv_fault_t fault) {
+uint8_t agv_fault_led_code(uint32_t fault) {
     return is_fault(fault) ? (uint8_t)(rows[fault] & (uint32_t)LED_CODE) : 0u;
 }
 
-void agv_faults_level(agv_core_t *core, agv_fault_t fault, bool cause) {
+void agv_faults_level(agv_core_t *core, uint32_t fault, bool cause) {
     if (is_fault(fault) && (cause != agv_faults_is_active(core, fault))) {
         core->faults.marks[fault] ^= AGV_MARK_ACTIVE;
         core->summary.changed = true;
     }
 }
 
-void agv_faults_event(agv_core_t *core, agv_fault_t fault) {
+void agv_faults_event(agv_core_t *core, uint32_t fault) {
     for (uint32_t i = 0u; i < AGV_EVENT_FAULT_COUNT; i++) {
-        if (event_faults[i] == (uint8_t)fault) {
+        if (event_faults[i] == fault) {
             agv_watch_start(core, (uint32_t)AGV_WATCH_EVENT + i);
             agv_faults_level(core, fault, true);
+            break;
         }
     }
 }
@@ -101,12 +102,12 @@ void agv_faults_event(agv_core_t *core, agv_fault_t fault) {
 void agv_faults_tick(agv_core_t *core) {
     for (uint32_t i = 0u; i < AGV_EVENT_FAULT_COUNT; i++) {
         if (agv_watch_reached(core, (uint32_t)AGV_WATCH_EVENT + i)) {
-            agv_faults_level(core, (agv_fault_t)event_faults[i], false);
+            agv_faults_level(core, event_faults[i], false);
         }
     }
 }
 
-bool agv_faults_is_active(const agv_core_t *core, agv_fault_t fault) {
+bool agv_faults_is_active(const agv_core_t *core, uint32_t fault) {
     return is_fault(fault) && ((core->faults.marks[fault] & AGV_MARK_ACTIVE) != 0u);
 }
 
@@ -114,7 +115,7 @@ agv_fault_set_t agv_faults_marked(const agv_faults_t *faults, uint8_t marks) {
     agv_fault_set_t set = 0u;
     for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
         if ((faults->marks[i] & marks) == marks) {
-            set |= agv_fault_bit((agv_fault_t)i);
+            set |= agv_fault_bit(i);
         }
     }
     return set;

@@ -19,7 +19,7 @@ static const uint8_t reserved[AGV_COMMAND_COUNT][AGV_DLC] = {{0xFFu, 0xFFu, 0xFF
                                                              {0x00u, 0xFFu, 0xFFu, 0xFFu, 0xFFu, 0xFFu, 0xFFu, 0xFFu},
                                                              {0x00u, 0x00u, 0xFFu, 0xFFu, 0xFFu, 0xFFu, 0xFFu, 0xFFu}};
 
-static bool reserved_are_zero(agv_message_t command, const uint8_t data[AGV_DLC]) {
+static bool reserved_are_zero(uint32_t command, const uint8_t data[AGV_DLC]) {
     uint32_t any = 0u;
     for (uint32_t i = 0u; i < AGV_DLC; i++) {
         any |= (uint32_t)data[i] & reserved[command][i];
@@ -46,7 +46,7 @@ static uint32_t throttle_max_counts(const agv_gate_t *gate) {
 }
 
 /* safe: only the safe commands; else what the gateway may pass on. */
-static bool value_allowed(const agv_gate_t *gate, agv_message_t message, const uint8_t data[AGV_DLC], bool safe) {
+static bool value_allowed(const agv_gate_t *gate, uint32_t message, const uint8_t data[AGV_DLC], bool safe) {
     switch (message) {
     case AGV_MSG_TURN_SIGNAL_COMMAND:
         return !safe || (data[4] == (uint8_t)SAFE_SIGNALS);
@@ -62,15 +62,15 @@ static bool value_allowed(const agv_gate_t *gate, agv_message_t message, const u
 }
 
 /* Whether the gateway may pass a command on in this state at all. */
-static bool may_pass(const agv_gate_t *gate, agv_message_t message) {
+static bool may_pass(const agv_gate_t *gate, uint32_t message) {
     return (gate->config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) &&
            ((gate->state == (uint8_t)AGV_STATE_ACTIVE) || (message == AGV_MSG_TURN_SIGNAL_COMMAND) ||
             (gate->config->gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL));
 }
 
-static bool vehicle_side_allows(const agv_gate_t *gate, agv_message_t message, const hal_can_frame_t *frame) {
+static bool vehicle_side_allows(const agv_gate_t *gate, uint32_t message, const hal_can_frame_t *frame) {
     const bool safe = agv_state_commands_safe((agv_state_t)gate->state);
-    if ((uint32_t)message < AGV_COMMAND_COUNT) {
+    if (message < AGV_COMMAND_COUNT) {
         return (safe || may_pass(gate, message)) && reserved_are_zero(message, frame->data) &&
                value_allowed(gate, message, frame->data, safe);
     }
@@ -78,7 +78,7 @@ static bool vehicle_side_allows(const agv_gate_t *gate, agv_message_t message, c
 }
 
 bool agv_gate_allows(const agv_gate_t *gate, hal_can_side_t side, const hal_can_frame_t *frame) {
-    const agv_message_t message = agv_message_from_id(frame->id, (agv_id_set_t)gate->config->id_set);
+    const uint32_t message = agv_message_from_id(frame->id, gate->config->id_set);
     if ((frame->flags != 0u) || (frame->length != AGV_DLC)) {
         return false;
     }
@@ -86,7 +86,7 @@ bool agv_gate_allows(const agv_gate_t *gate, hal_can_side_t side, const hal_can_
         return vehicle_side_allows(gate, message, frame);
     }
     return (side == HAL_CAN_AI) && (gate->config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) &&
-           ((uint32_t)message >= AGV_COMMAND_COUNT) && (message != AGV_MSG_NONE);
+           (message >= AGV_COMMAND_COUNT) && (message != AGV_MSG_NONE);
 }
 
 agv_gate_result_t agv_gate_send(const agv_gate_t *gate, hal_t *hal, hal_can_side_t side, const hal_can_frame_t *frame) {

@@ -6,7 +6,7 @@
 /* Longer pauses give no more slew than this. */
 #define SLEW_TIME_MAX_MS 1000u
 
-bool agv_gateway_passes(const agv_core_t *core, agv_message_t command) {
+bool agv_gateway_passes(const agv_core_t *core, uint32_t command) {
     const agv_state_t state = agv_core_state(core);
     return (state == AGV_STATE_ACTIVE) ||
            ((state == AGV_STATE_STANDBY) && ((command == AGV_MSG_TURN_SIGNAL_COMMAND) ||
@@ -29,36 +29,37 @@ static int32_t clamp(int32_t value, int32_t lowest, int32_t highest) {
 }
 
 /* What the first command may start from: the angle that the steering has, a cycle ago. */
-static void begin_slew(agv_core_t *core, int32_t wanted_ddeg) {
+static void begin_slew(agv_core_t *core, uint32_t wanted_raw) {
     const agv_vehicle_t *const vehicle = &core->vehicle;
     agv_gateway_t *const gateway = &core->gateway;
     if (!gateway->sent) {
-        gateway->sent_ddeg = vehicle->angle_known ? vehicle->angle_ddeg : (int16_t)wanted_ddeg;
+        gateway->sent_raw = vehicle->angle_known ? vehicle->angle_raw : (uint16_t)wanted_raw;
         gateway->sent_ms = core->now_ms - agv_message_cycle_ms(AGV_MSG_STEERING_COMMAND);
         gateway->sent = true;
     }
 }
 
-static int32_t limit_slew(agv_core_t *core, int32_t wanted_ddeg) {
+/* Raw angles: a step is a tenth of a degree. */
+static uint32_t limit_slew(agv_core_t *core, uint32_t wanted_raw) {
     agv_gateway_t *const gateway = &core->gateway;
     const uint32_t rate_ddeg_s = core->config.steering_slew_ddeg_s;
-    int32_t limited_ddeg = wanted_ddeg;
-    begin_slew(core, wanted_ddeg);
+    uint32_t limited_raw = wanted_raw;
+    begin_slew(core, wanted_raw);
     if (rate_ddeg_s != 0u) {
         const uint32_t since_ms = core->now_ms - gateway->sent_ms;
         const uint32_t time_ms = (since_ms < SLEW_TIME_MAX_MS) ? since_ms : SLEW_TIME_MAX_MS;
-        const int32_t step_ddeg = (int32_t)((rate_ddeg_s * time_ms) / 1000u);
-        limited_ddeg = clamp(wanted_ddeg, gateway->sent_ddeg - step_ddeg, gateway->sent_ddeg + step_ddeg);
-        if ((step_ddeg == 0) && (limited_ddeg != wanted_ddeg)) {
-            return limited_ddeg; /* time goes on adding up until it makes a whole step */
+        const int32_t step = (int32_t)((rate_ddeg_s * time_ms) / 1000u);
+        limited_raw = (uint32_t)clamp((int32_t)wanted_raw, gateway->sent_raw - step, gateway->sent_raw + step);
+        if ((step == 0) && (limited_raw != wanted_raw)) {
+            return limited_raw; /* time goes on adding up until it makes a whole step */
         }
     }
-    gateway->sent_ddeg = (int16_t)limited_ddeg;
+    gateway->sent_raw = (uint16_t)limited_raw;
     gateway->sent_ms = core->now_ms;
-    return limited_ddeg;
+    return limited_raw;
 }
 
-void agv_gateway_limit(agv_core_t *core, agv_message_t command, uint8_t data[AGV_DLC]) {
+void agv_gateway_limit(agv_core_t *core, uint32_t command, uint8_t data[AGV_DLC]) {
     for (uint32_t i = 0u; i < AGV_DLC; i++) {
         data[i] &= agv_command_bits[command][i];
     }
@@ -66,9 +67,9 @@ void agv_gateway_limit(agv_core_t *core, agv_message_t command, uint8_t data[AGV
         const uint32_t max_counts = throttle_max(core);
         data[0] = (uint8_t)((data[0] < max_counts) ? data[0] : max_counts);
     } else if (command == AGV_MSG_STEERING_COMMAND) {
-        const int32_t ddeg = limit_slew(core, agv_angle_read(data));
-        agv_angle_write(data, ddeg);
-        agv_monitor_steering_commanded(core, ddeg);
+        const uint32_t raw = limit_slew(core, agv_angle_read(data));
+        agv_angle_write(data, raw);
+        agv_monitor_steering_commanded(core, raw);
     } else {
         /* as received */
     }

@@ -24,7 +24,7 @@ agv_latch_found_t agv_latch_read(hal_t *hal, agv_latch_t *latch) {
     return AGV_LATCH_VALID;
 }
 
-void agv_latch_write(hal_t *hal, uint8_t latched, agv_fault_t first_reason, agv_fault_t unresettable) {
+void agv_latch_write(hal_t *hal, uint8_t latched, uint32_t first_reason, uint32_t unresettable) {
     agv_latch_t record = {.latched = latched,
                           .first_reason = (uint8_t)first_reason,
                           .unresettable = (uint8_t)unresettable,

@@ -3,12 +3,12 @@
 /* Flashes are dark for their second half; the pause comes on top. */
 enum { FLASH_MS = 400, PAUSE_MS = 1400, BLINK_MS = 200, HEALTHY_MS = 2000, SHADOW_ON_MS = 100 };
 
-int8_t agv_led_code(agv_fault_t fault) {
+int32_t agv_led_code(uint32_t fault) {
     const uint8_t code = agv_fault_led_code(fault);
     if ((code == 0u) && (fault != AGV_FAULT_NONE)) {
         return AGV_LED_BLINK;
     }
-    return (int8_t)code;
+    return code;
 }
 
 bool agv_led_tick(agv_led_t *led, int8_t code, bool shadow, uint32_t elapsed_ms) {

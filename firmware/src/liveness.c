@@ -15,20 +15,19 @@ static uint32_t deadline_of(uint32_t message) {
 
 void agv_liveness_start(agv_core_t *core) {
     for (uint32_t i = 0u; i < (uint32_t)AGV_MSG_COUNT; i++) {
-        core->liveness.messages[i].last_ms = core->now_ms;
+        core->liveness.last_ms[i] = core->now_ms;
         agv_watch_start(core, deadline_of(i));
     }
     agv_watch_stop(core, deadline_of(AGV_MSG_TURN_SIGNAL_COMMAND));
 }
 
 uint32_t agv_liveness_arrived(agv_core_t *core, uint32_t message, uint32_t time_ms) {
-    agv_message_age_t *const age = &core->liveness.messages[message];
-    const bool known = age->heard && !age->old;
-    const uint32_t gap_ms = known ? agv_age_ms(time_ms, age->last_ms) : AGV_AGE_MAX;
-    age->last_ms = time_ms;
-    age->heard = true;
-    age->old = false;
-    return gap_ms;
+    agv_liveness_t *const liveness = &core->liveness;
+    const uint32_t last_ms = liveness->last_ms[message];
+    const bool known = liveness->seen[message] == AGV_SEEN_HEARD;
+    liveness->last_ms[message] = time_ms;
+    liveness->seen[message] = AGV_SEEN_HEARD;
+    return known ? agv_age_ms(time_ms, last_ms) : AGV_AGE_MAX;
 }
 
 /* Returns whether the deadline begins anew. */
@@ -65,30 +64,29 @@ void agv_liveness_refresh(agv_core_t *core, uint32_t message, const hal_can_fram
 }
 
 bool agv_liveness_judge(agv_core_t *core, uint32_t message) {
-    agv_message_age_t *const age = &core->liveness.messages[message];
-    if (agv_age_ms(core->now_ms, age->last_ms) > AGV_AGE_LIMIT_MS) {
-        age->old = true;
+    if (agv_age_ms(core->now_ms, core->liveness.last_ms[message]) > AGV_AGE_LIMIT_MS) {
+        core->liveness.seen[message] |= AGV_SEEN_OLD;
     }
     return agv_watch_reached(core, deadline_of(message));
 }
 
 agv_heartbeat_state_t agv_liveness_judge_beat(agv_core_t *core, uint32_t node) {
     agv_heartbeat_t *const heartbeat = &core->liveness.heartbeats[node];
-    const agv_message_t message = (agv_message_t)carriers[node].message;
+    const uint32_t message = carriers[node].message;
     const bool running = heartbeat->state <= (uint8_t)AGV_HEARTBEAT_ALIVE;
     if (running && agv_watch_reached(core, deadline_of(message))) {
-        const bool recent = agv_liveness_age_ms(core, message) <= (2u * (uint32_t)agv_message_cycle_ms(message));
+        const uint32_t age_ms = agv_age_ms(core->now_ms, core->liveness.last_ms[message]);
+        const bool recent = age_ms <= (2u * agv_message_cycle_ms(message));
         heartbeat->state = (uint8_t)((heartbeat->repeated && recent) ? AGV_HEARTBEAT_STUCK : AGV_HEARTBEAT_LOST);
     }
     return (agv_heartbeat_state_t)heartbeat->state;
 }
 
 bool agv_liveness_fresh(const agv_core_t *core, uint32_t message) {
-    return core->liveness.messages[message].heard &&
-           (core->watches[deadline_of(message)].phase == (uint8_t)AGV_TIMER_RUNNING);
+    return ((core->liveness.seen[message] & AGV_SEEN_HEARD) != 0u) && agv_watch_is_within(core, deadline_of(message));
 }
 
 uint32_t agv_liveness_age_ms(const agv_core_t *core, uint32_t message) {
-    const agv_message_age_t *const age = &core->liveness.messages[message];
-    return age->old ? AGV_AGE_MAX : agv_age_ms(core->now_ms, age->last_ms);
+    const bool old = (core->liveness.seen[message] & AGV_SEEN_OLD) != 0u;
+    return old ? AGV_AGE_MAX : agv_age_ms(core->now_ms, core->liveness.last_ms[message]);
 }

@@ -19,13 +19,12 @@ static bool in_a_row(agv_core_t *core, uint32_t row, bool bad, uint32_t needed) 
     return count == COUNTS;
 }
 
-/* Eight bits, one fault and one row each. The first three are counted. */
-static void judge_bits(agv_core_t *core, const uint8_t faults[8], uint32_t first_row, uint32_t bits, uint32_t needed) {
-    const uint32_t counted_bits = 3u;
+/* Eight bits, one fault and one row each. Those of the supply of the EPS are counted. */
+static void judge_bits(agv_core_t *core, const uint8_t faults[8], uint32_t first_row, uint32_t bits) {
     for (uint32_t bit = 0u; bit < 8u; bit++) {
-        const bool bad = ((bits >> bit) & 1u) != 0u;
-        agv_faults_level(core, (agv_fault_t)faults[bit],
-                         in_a_row(core, first_row + bit, bad, (bit < counted_bits) ? needed : 1u));
+        const uint32_t row = first_row + bit;
+        const uint32_t needed = (row <= (uint32_t)AGV_ROW_EPS_SUPPLY_LAST) ? core->config.eps_supply_fault_frames : 1u;
+        agv_faults_level(core, faults[bit], in_a_row(core, row, ((bits >> bit) & 1u) != 0u, needed));
     }
 }
 
@@ -38,8 +37,8 @@ static void engage(agv_core_t *core, uint32_t stamp_ms) {
 }
 
 static void update_mode(agv_core_t *core, uint32_t flags, uint32_t stamp_ms) {
-    const uint32_t both = AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT;
-    const uint32_t mode = flags & both;
+    const uint32_t both = (uint32_t)AGV_MODE_MANUAL | (uint32_t)AGV_MODE_ENGAGED;
+    const uint32_t mode = (flags >> 1u) & both;
     const bool was_engaged = agv_core_engaged(core);
     (void)agv_watch_while(core, AGV_WATCH_BOTH_MODES, mode == both);
     if (mode == both) {
@@ -83,12 +82,12 @@ static void on_vehicle_status(agv_core_t *core, const hal_can_frame_t *frame) {
     if (!ai_alarm_counts(core, (alarms & AGV_VCU_ALARM_AI_CAN_LOST) != 0u)) {
         alarms &= ~AGV_VCU_ALARM_AI_CAN_LOST;
     }
-    judge_bits(core, faults, AGV_ROW_VCU_ALARMS, alarms, 1u);
+    judge_bits(core, faults, AGV_ROW_VCU_ALARMS, alarms);
     agv_faults_level(core, AGV_FAULT_VCU_LEVEL2_ALARM, frame->data[5] != 0u);
 }
 
 static void on_steering_angle(agv_core_t *core, const uint8_t data[AGV_DLC]) {
-    core->vehicle.angle_ddeg = (int16_t)agv_angle_read(&data[2]);
+    core->vehicle.angle_raw = (uint16_t)agv_angle_read(&data[2]);
     core->vehicle.angle_known = true;
 }
 
@@ -101,9 +100,12 @@ static void judge_eps_mode(agv_core_t *core, uint8_t mode, bool valid) {
     if (mode == (uint8_t)AGV_EPS_MODE_OFF) {
         named = AGV_FAULT_EPS_MODE_OFF;
     }
+    if (!counts) {
+        named = AGV_FAULT_NONE;
+    }
     core->vehicle.eps_in_angle_mode = in_angle_mode;
     for (uint32_t fault = AGV_FAULT_EPS_MODE_OFF; fault <= (uint32_t)AGV_FAULT_EPS_MODE_NOT_ANGLE; fault++) {
-        agv_faults_level(core, (agv_fault_t)fault, counts && (fault == named));
+        agv_faults_level(core, fault, fault == named);
     }
 }
 
@@ -114,7 +116,7 @@ static void on_eps_status(agv_core_t *core, const uint8_t data[AGV_DLC], bool va
                                       AGV_FAULT_EPS_TEMP_ABOVE_110,    AGV_FAULT_EPS_TEMP_ABOVE_120,
                                       AGV_FAULT_EPS_MOTOR_ENCODER,     AGV_FAULT_EPS_POSITION_ENCODER};
     judge_eps_mode(core, data[3], valid);
-    judge_bits(core, faults, AGV_ROW_EPS_FAULTS, data[7], core->config.eps_supply_fault_frames);
+    judge_bits(core, faults, AGV_ROW_EPS_FAULTS, data[7]);
 }
 
 static void on_steering_command(agv_core_t *core, const uint8_t data[AGV_DLC], bool valid) {
@@ -136,8 +138,8 @@ static void on_wheel_speed(agv_core_t *core, const uint8_t data[AGV_DLC]) {
 }
 
 /* A gear, throttle or angle that the protocol does not know counts once the engagement has settled (SUP-5). */
-static void on_value(agv_core_t *core, agv_message_t message, const uint8_t data[AGV_DLC], bool valid) {
-    const uint32_t which = (uint32_t)message - (uint32_t)AGV_MSG_GEAR_STATUS;
+static void on_value(agv_core_t *core, uint32_t message, const uint8_t data[AGV_DLC], bool valid) {
+    const uint32_t which = message - (uint32_t)AGV_MSG_GEAR_STATUS;
     const uint8_t value = valid ? data[0] : 0u;
     if (message == AGV_MSG_GEAR_STATUS) {
         core->vehicle.gear = value;
@@ -148,13 +150,13 @@ static void on_value(agv_core_t *core, agv_message_t message, const uint8_t data
     } else {
         /* the angle before stands */
     }
-    agv_faults_level(core, (agv_fault_t)((uint32_t)AGV_FAULT_GEAR_STATUS_INVALID + which),
+    agv_faults_level(core, (uint32_t)AGV_FAULT_GEAR_STATUS_INVALID + which,
                      in_a_row(core, (uint32_t)AGV_ROW_GEAR_STATUS + which, !valid && agv_monitor_settled(core),
                               core->config.status_invalid_frames));
 }
 
 /* Of 43Fh, 168h, 075h and 267h nothing more counts than their coming. */
-static void judge_content(agv_core_t *core, agv_message_t message, const hal_can_frame_t *frame, bool valid) {
+static void judge_content(agv_core_t *core, uint32_t message, const hal_can_frame_t *frame, bool valid) {
     switch (message) {
     case AGV_MSG_STEERING_COMMAND:
         on_steering_command(core, frame->data, valid);
@@ -179,15 +181,15 @@ static void judge_content(agv_core_t *core, agv_message_t message, const hal_can
 }
 
 /* Under half a cycle, so many gaps in a row (SUP-6). */
-static void judge_rate(agv_core_t *core, agv_message_t command, uint32_t gap_ms, uint32_t cycle_ms) {
+static void judge_rate(agv_core_t *core, uint32_t command, uint32_t gap_ms, uint32_t cycle_ms) {
     const bool fast = gap_ms < ((cycle_ms + 1u) / 2u);
-    if (in_a_row(core, (uint32_t)AGV_ROW_FAST_GAPS + (uint32_t)command, fast, core->config.command_too_fast_gaps)) {
+    if (in_a_row(core, (uint32_t)AGV_ROW_FAST_GAPS + command, fast, core->config.command_too_fast_gaps)) {
         agv_faults_event(core, AGV_FAULT_COMMAND_TOO_FAST);
     }
 }
 
-bool agv_monitor_frame(agv_core_t *core, agv_message_t message, const hal_can_frame_t *frame) {
-    const bool command = (uint32_t)message < AGV_COMMAND_COUNT;
+bool agv_monitor_frame(agv_core_t *core, uint32_t message, const hal_can_frame_t *frame) {
+    const bool command = message < AGV_COMMAND_COUNT;
     const uint32_t cycle_ms = agv_message_cycle_ms(message);
     const uint32_t gap_ms = agv_liveness_arrived(core, message, frame->time_ms);
     const bool valid = agv_value_is_valid(message, frame->data);

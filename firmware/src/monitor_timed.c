@@ -26,18 +26,18 @@ void agv_monitor_start(agv_core_t *core) {
     agv_liveness_start(core);
 }
 
-void agv_monitor_other_id_set(agv_core_t *core, agv_message_t message) {
+void agv_monitor_other_id_set(agv_core_t *core, uint32_t message) {
     agv_watch_start(core, (message == AGV_MSG_TURN_SIGNAL_COMMAND) ? AGV_WATCH_OTHER_43F : AGV_WATCH_OTHER_363);
 }
 
-void agv_monitor_steering_commanded(agv_core_t *core, int32_t angle_ddeg) {
-    core->vehicle.command_ddeg = (int16_t)angle_ddeg;
+void agv_monitor_steering_commanded(agv_core_t *core, uint32_t angle_raw) {
+    core->vehicle.command_raw = (uint16_t)angle_raw;
     core->vehicle.command_known = agv_core_engaged(core);
 }
 
 void agv_monitor_disengage(agv_core_t *core) {
     for (uint32_t fault = AGV_FAULT_EPS_MODE_OFF; fault <= (uint32_t)AGV_FAULT_STEERING_ANGLE_INVALID; fault++) {
-        agv_faults_level(core, (agv_fault_t)fault, false);
+        agv_faults_level(core, fault, false);
     }
     agv_faults_level(core, AGV_FAULT_VCU_AI_CAN_LOST, false);
     for (uint32_t row = AGV_ROW_EPS_MODE; row <= (uint32_t)AGV_ROW_STEERING_ANGLE; row++) {
@@ -60,7 +60,7 @@ bool agv_monitor_settled(agv_core_t *core) {
     return agv_watch_reached(core, AGV_WATCH_ENGAGED);
 }
 
-bool agv_monitor_is_trip(const agv_core_t *core, agv_fault_t fault) {
+bool agv_monitor_is_trip(const agv_core_t *core, uint32_t fault) {
     const bool heartbeat = (fault == AGV_FAULT_AI_HEARTBEAT_LOST) || (fault == AGV_FAULT_AI_HEARTBEAT_STUCK);
     const bool only_warns =
         heartbeat && !agv_core_engaged(core) && (core->config.ai_lost_in_manual == (uint16_t)AGV_AI_LOST_WARN);
@@ -70,7 +70,7 @@ bool agv_monitor_is_trip(const agv_core_t *core, agv_fault_t fault) {
 bool agv_monitor_messages_fresh(const agv_core_t *core) {
     bool fresh = true;
     for (uint32_t i = AGV_COMMAND_COUNT; i < (uint32_t)AGV_MSG_COUNT; i++) {
-        if (!agv_liveness_fresh(core, i) && agv_config_is_trip(&core->config, (agv_fault_t)deadlines[i])) {
+        if (!agv_liveness_fresh(core, i) && agv_config_is_trip(&core->config, deadlines[i])) {
             fresh = false;
         }
     }
@@ -92,7 +92,7 @@ bool agv_monitor_autopilot_off(const agv_core_t *core) {
 bool agv_monitor_steering_holdable(const agv_core_t *core) {
     return agv_core_alive(core, AGV_NODE_EPS) && agv_liveness_fresh(core, AGV_MSG_EPS_STATUS) &&
            core->vehicle.eps_in_angle_mode && (core->vehicle.mode != (uint8_t)AGV_MODE_MANUAL) &&
-           ((core->summary.active_flags & AGV_FAULT_FLAG_OF_EPS) == 0u);
+           !core->summary.eps_fault;
 }
 
 /* Both mode bits for too long: the mode is none. */
@@ -114,22 +114,22 @@ static void judge_heartbeats(agv_core_t *core) {
         const uint32_t lost = (uint32_t)AGV_FAULT_VCU_HEARTBEAT_LOST + (2u * node);
         const agv_heartbeat_state_t state = agv_liveness_judge_beat(core, node);
         const bool absent = never_seen && (node == (uint32_t)AGV_NODE_AI);
-        agv_faults_level(core, (agv_fault_t)lost, (state == AGV_HEARTBEAT_LOST) || absent);
-        agv_faults_level(core, (agv_fault_t)(lost + 1u), state == AGV_HEARTBEAT_STUCK);
+        agv_faults_level(core, lost, (state == AGV_HEARTBEAT_LOST) || absent);
+        agv_faults_level(core, lost + 1u, state == AGV_HEARTBEAT_STUCK);
     }
 }
 
 static void judge_deadlines(agv_core_t *core) {
     for (uint32_t i = 0u; i < (uint32_t)AGV_MSG_COUNT; i++) {
         const bool counts = (i >= AGV_COMMAND_COUNT) || agv_core_engaged(core);
-        agv_faults_level(core, (agv_fault_t)deadlines[i], agv_liveness_judge(core, i) && counts);
+        agv_faults_level(core, deadlines[i], agv_liveness_judge(core, i) && counts);
     }
 }
 
 /* The difference must shrink by steering_gain_ddeg in every steering_deviation_ms; each such gain starts them anew. */
 static void judge_steering(agv_core_t *core, bool settled) {
     agv_monitor_t *const monitor = &core->monitor;
-    const int32_t signed_ddeg = (int32_t)core->vehicle.angle_ddeg - (int32_t)core->vehicle.command_ddeg;
+    const int32_t signed_ddeg = (int32_t)core->vehicle.angle_raw - (int32_t)core->vehicle.command_raw;
     const int32_t ddeg = (signed_ddeg < 0) ? -signed_ddeg : signed_ddeg;
     const bool known = core->vehicle.command_known && core->vehicle.angle_known;
     const bool off = settled && known && (ddeg > (int32_t)core->config.steering_deviation_ddeg);
@@ -149,9 +149,9 @@ static void judge_throttle(agv_core_t *core, bool settled) {
 }
 
 /* The other set's identifier is heard while the own one is silent (P1). */
-static bool is_other_set(agv_core_t *core, agv_watch_t heard, agv_message_t message) {
-    return agv_watch_runs(core, heard) && !agv_watch_reached(core, heard) &&
-           (agv_liveness_age_ms(core, message) > core->config.wrong_id_set_ms);
+static bool is_other_set(agv_core_t *core, agv_watch_t heard, uint32_t message) {
+    (void)agv_watch_reached(core, heard);
+    return agv_watch_is_within(core, heard) && (agv_liveness_age_ms(core, message) > core->config.wrong_id_set_ms);
 }
 
 static void judge_id_set(agv_core_t *core) {

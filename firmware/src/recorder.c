@@ -15,10 +15,8 @@ static uint32_t slot_of(uint32_t sequence) {
     return sequence & (AGV_RECORDER_EVENTS - 1u);
 }
 
-/* Over the bytes before the checksum and those after it. */
-static uint16_t checksum(const agv_event_t *event) {
-    const uint16_t head = agv_crc16(AGV_CRC16_START, event, offsetof(agv_event_t, checksum));
-    return agv_crc16(head, event->frames, sizeof event->frames);
+static uint32_t checksum(const agv_event_t *event) {
+    return agv_crc32(AGV_CRC32_START, event, offsetof(agv_event_t, checksum)) >> 16u;
 }
 
 static bool is_valid(const agv_event_t *event) {
@@ -40,14 +38,18 @@ void agv_recorder_start(agv_recorder_t *recorder) {
             (void)memset(event, 0, sizeof *event);
             continue;
         }
-        if (!found || is_newer(event->sequence + 1u, next)) {
+        if (!found) {
+            found = true;
+            first = event->sequence;
+            next = event->sequence;
+        }
+        if (is_newer(event->sequence + 1u, next)) {
             next = event->sequence + 1u;
             recorder->run = (uint8_t)(event->run + 1u);
         }
-        if (!found || is_newer(first, event->sequence)) {
+        if (is_newer(first, event->sequence)) {
             first = event->sequence;
         }
-        found = true;
     }
     recorder->next_sequence = next;
     /* The mark of what is in flash counts if it lies among what is here. */
@@ -58,10 +60,10 @@ void agv_recorder_start(agv_recorder_t *recorder) {
     (void)memset(recorder->frames, 0, sizeof recorder->frames);
 }
 
-void agv_recorder_frame(agv_recorder_t *recorder, agv_message_t message, const uint8_t data[AGV_DLC]) {
-    if ((uint32_t)message < (uint32_t)AGV_MSG_COUNT) {
+void agv_recorder_frame(agv_recorder_t *recorder, uint32_t message, const uint8_t data[AGV_DLC]) {
+    if (message < (uint32_t)AGV_MSG_COUNT) {
         (void)memcpy(recorder->frames[message], data, AGV_DLC);
-        recorder->seen |= (uint16_t)(1u << (uint32_t)message);
+        recorder->seen |= (uint16_t)(1u << message);
     }
 }
 
@@ -73,7 +75,7 @@ void agv_recorder_add(agv_recorder_t *recorder, const agv_entry_t *entry, uint32
     event->run = recorder->run;
     event->seen = recorder->seen;
     (void)memcpy(event->frames, recorder->frames, sizeof event->frames);
-    event->checksum = checksum(event);
+    event->checksum = (uint16_t)checksum(event);
     recorder->next_sequence++;
     if ((recorder->next_sequence - recorder->stored_sequence) > AGV_RECORDER_EVENTS) {
         recorder->stored_sequence++;

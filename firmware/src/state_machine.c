@@ -9,7 +9,7 @@ static void enter(agv_core_t *core, agv_state_t state) {
     agv_watch_stop(core, AGV_WATCH_RESET_GOOD);
 }
 
-void agv_state_machine_start(agv_core_t *core, agv_fault_t reason) {
+void agv_state_machine_start(agv_core_t *core, uint32_t reason) {
     const bool tripped = reason != AGV_FAULT_NONE;
     core->machine.first_reason = (uint8_t)reason;
     core->machine.unresettable = AGV_FAULT_NONE;
@@ -17,7 +17,8 @@ void agv_state_machine_start(agv_core_t *core, agv_fault_t reason) {
         true; /* until the VCU tells: what is held since before the start has no rising edge */
     enter(core, tripped ? AGV_STATE_TRIPPED : AGV_STATE_INIT);
     agv_watch_start(core, AGV_WATCH_PARK_WAIT);
-    agv_watch_start(core, tripped ? AGV_WATCH_UNCONFIRMED : AGV_WATCH_INIT);
+    agv_watch_start(core, AGV_WATCH_INIT); /* of these two the one of the state counts */
+    agv_watch_start(core, AGV_WATCH_UNCONFIRMED);
 }
 
 static void enter_standby(agv_core_t *core) {
@@ -33,7 +34,7 @@ static void forget_press(agv_state_machine_t *machine) {
     machine->press_missing = 0u;
 }
 
-static void trip(agv_core_t *core, agv_fault_t reason) {
+static void trip(agv_core_t *core, uint32_t reason) {
     enter(core, AGV_STATE_TRIPPED);
     core->machine.first_reason = (uint8_t)reason;
     core->machine.park_released = false;
@@ -106,7 +107,9 @@ static uint32_t step_reset(agv_core_t *core, uint32_t facts) {
     }
     const bool held = agv_watch_while(core, AGV_WATCH_PRESS, button);
     const uint32_t missing = missing_for_reset(core, facts);
-    machine->press_missing |= (uint8_t)(button ? missing : 0u);
+    if (button) {
+        machine->press_missing |= (uint8_t)missing;
+    }
     if (agv_watch_while(core, AGV_WATCH_RESET_GOOD, missing == 0u)) {
         enter_standby(core);
         return AGV_STEP_RESET_ACCEPTED;
@@ -152,16 +155,16 @@ static void judge_output(agv_core_t *core, uint32_t facts) {
 }
 
 /* The reason of a trip; AGV_FAULT_NONE: none. In INIT only the unresettable ones latch. */
-static agv_fault_t reason_to_trip(const agv_core_t *core) {
+static uint32_t reason_to_trip(const agv_core_t *core) {
     const agv_summary_t *const summary = &core->summary;
     if (core->machine.state == (uint8_t)AGV_STATE_INIT) {
-        return (agv_fault_t)summary->forever;
+        return summary->forever;
     }
-    return (agv_fault_t)((summary->raised != (uint8_t)AGV_FAULT_NONE) ? summary->raised : summary->cause);
+    return (summary->raised != (uint8_t)AGV_FAULT_NONE) ? summary->raised : summary->cause;
 }
 
 uint32_t agv_state_machine_step(agv_core_t *core, uint32_t facts) {
-    const agv_fault_t reason = reason_to_trip(core);
+    const uint32_t reason = reason_to_trip(core);
     uint32_t did = 0u;
     if (core->summary.forever != (uint8_t)AGV_FAULT_NONE) {
         core->machine.unresettable = core->summary.forever;
@@ -187,15 +190,19 @@ void agv_state_machine_park_sent(agv_core_t *core) {
 }
 
 bool agv_state_machine_is_sound(const agv_state_machine_t *machine) {
-    switch (machine->state) {
-    case AGV_STATE_INIT:
-    case AGV_STATE_STANDBY:
-    case AGV_STATE_ACTIVE:
-        return machine->latched == (uint8_t)AGV_LATCH_OPEN;
-    case AGV_STATE_TRIPPED:
-    case AGV_STATE_SAFE:
-        return machine->latched == (uint8_t)AGV_LATCH_CLOSED;
-    default:
-        return false;
+    static const struct {
+        uint8_t state;
+        uint8_t latched;
+    } pairs[] = {{AGV_STATE_INIT, AGV_LATCH_OPEN},
+                 {AGV_STATE_STANDBY, AGV_LATCH_OPEN},
+                 {AGV_STATE_ACTIVE, AGV_LATCH_OPEN},
+                 {AGV_STATE_TRIPPED, AGV_LATCH_CLOSED},
+                 {AGV_STATE_SAFE, AGV_LATCH_CLOSED}};
+    bool sound = false;
+    for (uint32_t i = 0u; i < (sizeof pairs / sizeof pairs[0]); i++) {
+        if ((machine->state == pairs[i].state) && (machine->latched == pairs[i].latched)) {
+            sound = true;
+        }
     }
+    return sound;
 }

@@ -62,10 +62,10 @@ static uint32_t step_time(agv_core_t *core) {
 }
 
 /* SUP-7, one side: recovery is asked for after a purge; what waited is never sent. */
-static uint32_t follow_bus(agv_core_t *core, hal_can_side_t side, uint32_t messages) {
+static uint32_t follow_bus(agv_core_t *core, hal_can_side_t side) {
     const uint32_t report = agv_bus_tick(core, side);
     if ((report & AGV_BUS_OFF) != 0u) {
-        agv_transmitter_discard(core, messages);
+        agv_transmitter_discard(core, side);
     }
     if ((report & AGV_BUS_ASK_RECOVERY) != 0u) {
         hal_can_purge(core->hal, side);
@@ -76,10 +76,10 @@ static uint32_t follow_bus(agv_core_t *core, hal_can_side_t side, uint32_t messa
 
 /* Returns whether the vehicle side has come back from bus-off. */
 static bool judge_buses(agv_core_t *core) {
-    const uint32_t vehicle = follow_bus(core, HAL_CAN_VEHICLE, AGV_SET_COMMANDS);
+    const uint32_t vehicle = follow_bus(core, HAL_CAN_VEHICLE);
     uint32_t ai = 0u;
     if (agv_core_is_gateway(core)) {
-        ai = follow_bus(core, HAL_CAN_AI, AGV_SET_STATUS);
+        ai = follow_bus(core, HAL_CAN_AI);
     }
     if (((vehicle | ai) & AGV_BUS_OVERRUN) != 0u) {
         agv_faults_event(core, AGV_FAULT_RX_OVERRUN);
@@ -91,10 +91,7 @@ static bool judge_buses(agv_core_t *core) {
     return (vehicle & AGV_BUS_RECOVERED) != 0u;
 }
 
-static void transmit(agv_core_t *core, bool all_at_once) {
-    if (all_at_once) {
-        agv_transmitter_burst(core);
-    }
+static void transmit(agv_core_t *core) {
     agv_transmitter_tick(core);
     core->checked_in |= CHECKED_SEND;
     if (core->summary.changed) {
@@ -137,11 +134,10 @@ void agv_supervisor_start(agv_supervisor_t *supervisor, const agv_ports_t *ports
     attach(core, ports);
     core->now_ms = now_ms;
     core->now_us = now_ms * 1000u;
-    if (agv_config_check(config).problem == AGV_CONFIG_OK) {
-        core->config = *config;
-    } else {
+    core->config = *config;
+    agv_core_keep_wiring(core);
+    if (!agv_core_check_config(core, true)) {
         found |= AGV_FOUND_CONFIG_INVALID;
-        agv_core_built_in_config(&core->config, config->id_set, config->topology);
     }
     agv_recorder_start(core->recorder);
     agv_core_begin(core, found);
@@ -163,7 +159,10 @@ void agv_supervisor_tick(agv_supervisor_t *supervisor, const agv_ports_t *ports,
     const bool recovered = judge_buses(core);
     agv_monitor_tick(core);
     const bool all_sent = agv_core_react(core);
-    transmit(core, recovered && !all_sent);
+    if (recovered && !all_sent) {
+        agv_transmitter_burst(core);
+    }
+    transmit(core);
     feed_watchdog(core);
     agv_core_show_led(core, elapsed_ms);
     store_events(core);

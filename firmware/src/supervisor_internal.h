@@ -14,8 +14,8 @@
  */
 bool agv_core_react(agv_core_t *core);
 
-/** Record an event. */
-void agv_core_record(const agv_core_t *core, agv_event_kind_t kind, uint8_t a, uint8_t b, uint8_t c);
+/** Record an event. @param what agv_event_kind_t, and AGV_MISSING_* in the byte above */
+void agv_core_record(const agv_core_t *core, uint32_t what, uint32_t a, uint32_t b, uint32_t c);
 
 /** Write the latch record. */
 void agv_core_store_latch(const agv_core_t *core);
@@ -34,8 +34,16 @@ void agv_core_begin(agv_core_t *core, uint32_t found);
 /** Start again after a corruption was found in the memory of the supervisor (INT-5). */
 void agv_core_begin_corrupted(agv_core_t *core);
 
-/** The defaults, but on the identifiers and the wiring that this vehicle has, as far as they are known. */
-void agv_core_built_in_config(agv_config_t *config, uint16_t id_set, uint16_t topology);
+/** Keep second copies of what the identifiers and the wiring of this vehicle are. */
+void agv_core_keep_wiring(agv_core_t *core);
+
+/**
+ * Check the configuration in the core. One that does not stand is replaced by the defaults, but on the identifiers and
+ * the wiring of the second copies.
+ * @param intact whether it is the one that was handed in
+ * @return whether it stands
+ */
+bool agv_core_check_config(agv_core_t *core, bool intact);
 
 /** Handle a frame. */
 void agv_core_frame(agv_core_t *core, hal_can_side_t side, const hal_can_frame_t *frame);

@@ -8,15 +8,20 @@
 #include "hal/safety_output.h"
 #include "supervisor_internal.h"
 
-/* Codec and gate against each other: the P that the codec knows is what the gate, in raw bytes, lets out; D is not. */
-static bool self_test(const agv_config_t *config) {
+/*
+ * Codec and gate against each other: the P that the codec knows is what the gate, in raw bytes, lets out; D is not.
+ * Returns what was found wrong.
+ */
+static uint32_t self_test(const agv_config_t *config) {
     const agv_gate_t tripped = {.config = config, .state = AGV_STATE_TRIPPED};
     hal_can_frame_t frame = {.id = 0x168u, .length = AGV_DLC, .data = {AGV_GEAR_P}};
-    const bool known = agv_value_is_valid(AGV_MSG_GEAR_COMMAND, frame.data);
-    const bool let_out =
-        known && agv_gate_allows(&tripped, HAL_CAN_VEHICLE, &frame); /* GCOVR_EXCL_BR_LINE: P is known */
+    if (!agv_value_is_valid(AGV_MSG_GEAR_COMMAND, frame.data) || /* GCOVR_EXCL_BR_LINE: P is known */
+        !agv_gate_allows(&tripped, HAL_CAN_VEHICLE, &frame)) {   /* GCOVR_EXCL_BR_LINE: and passes */
+        return AGV_FOUND_SELF_TEST_FAILED;                       /* GCOVR_EXCL_LINE: never here */
+    }
     frame.data[0] = AGV_GEAR_D;
-    return let_out && !agv_gate_allows(&tripped, HAL_CAN_VEHICLE, &frame); /* GCOVR_EXCL_BR_LINE: D never passes here */
+    return agv_gate_allows(&tripped, HAL_CAN_VEHICLE, &frame) ? AGV_FOUND_SELF_TEST_FAILED
+                                                              : 0u; /* GCOVR_EXCL_BR_LINE: D never passes here */
 }
 
 static void begin_modules(agv_core_t *core) {
@@ -25,8 +30,7 @@ static void begin_modules(agv_core_t *core) {
     (void)memset((unsigned char *)core + anew, 0, sizeof *core - anew);
     core->last_tick_ms = core->now_ms;
     core->config_checksum = agv_config_checksum(&core->config);
-    core->id_set = (uint8_t)core->config.id_set;
-    core->topology = (uint8_t)core->config.topology;
+    agv_core_keep_wiring(core);
     agv_monitor_start(core);
     agv_transmitter_start(core);
     agv_watch_start(core, AGV_WATCH_UNFED);
@@ -35,7 +39,7 @@ static void begin_modules(agv_core_t *core) {
 }
 
 /* The latch outlives a reset (FSM-7). Returns the reason that an earlier run was tripped for; AGV_FAULT_NONE. */
-static agv_fault_t begin_from_latch(agv_core_t *core, bool restarted) {
+static uint32_t begin_from_latch(agv_core_t *core, bool restarted) {
     agv_latch_t latch;
     const agv_latch_found_t found = agv_latch_read(core->hal, &latch);
     if (found == AGV_LATCH_CORRUPT) {
@@ -44,23 +48,23 @@ static agv_fault_t begin_from_latch(agv_core_t *core, bool restarted) {
     if ((found != AGV_LATCH_VALID) || !restarted) {
         return AGV_FAULT_NONE;
     }
-    agv_faults_level(core, (agv_fault_t)latch.unresettable, true);
-    return (latch.first_reason < (uint8_t)AGV_FAULT_COUNT) ? (agv_fault_t)latch.first_reason : AGV_FAULT_NONE;
+    agv_faults_level(core, latch.unresettable, true);
+    return (latch.first_reason < (uint8_t)AGV_FAULT_COUNT) ? latch.first_reason : AGV_FAULT_NONE;
 }
 
 /* The highest-ranking active fault down to SUPERVISOR_RESET; AGV_FAULT_NONE when there is none. */
-static agv_fault_t first_active(const agv_core_t *core) {
+static uint32_t first_active(const agv_core_t *core) {
     for (uint32_t fault = 0u; fault <= (uint32_t)AGV_FAULT_SUPERVISOR_RESET; fault++) {
-        if (agv_faults_is_active(core, (agv_fault_t)fault)) {
-            return (agv_fault_t)fault;
+        if (agv_faults_is_active(core, fault)) {
+            return fault;
         }
     }
     return AGV_FAULT_NONE;
 }
 
 /* INIT, or TRIPPED when an earlier run was or when something found now is reason enough. */
-static void begin_state(agv_core_t *core, agv_fault_t kept_reason) {
-    const agv_fault_t found = first_active(core);
+static void begin_state(agv_core_t *core, uint32_t kept_reason) {
+    const uint32_t found = first_active(core);
     agv_state_machine_start(core, (kept_reason != AGV_FAULT_NONE) ? kept_reason : found);
     core->machine.park_released = core->config.park == (uint16_t)AGV_PARK_AT_ONCE;
     agv_core_record(core, AGV_EVENT_STATE, 0u, core->machine.state, core->machine.first_reason);
@@ -75,7 +79,7 @@ static void begin_state(agv_core_t *core, agv_fault_t kept_reason) {
 
 static void raise_found(agv_core_t *core, uint32_t found) {
     for (uint32_t fault = 0u; (found >> fault) != 0u; fault++) {
-        agv_faults_level(core, (agv_fault_t)fault, ((found >> fault) & 1u) != 0u);
+        agv_faults_level(core, fault, ((found >> fault) & 1u) != 0u);
     }
 }
 
@@ -84,8 +88,8 @@ void agv_core_begin(agv_core_t *core, uint32_t found) {
     const bool restarted = corrupted || (hal_reset_cause(core->hal) != HAL_RESET_POWER_ON);
     hal_safety_output_set(core->hal, false);
     begin_modules(core);
-    raise_found(core, found | (self_test(&core->config) ? 0u : AGV_FOUND_SELF_TEST_FAILED));
-    const agv_fault_t kept_reason = begin_from_latch(core, restarted);
+    raise_found(core, found | self_test(&core->config));
+    const uint32_t kept_reason = begin_from_latch(core, restarted);
     if (restarted && !corrupted && (kept_reason == AGV_FAULT_NONE)) {
         agv_faults_event(core, AGV_FAULT_SUPERVISOR_RESET);
     }
@@ -96,16 +100,23 @@ void agv_core_begin(agv_core_t *core, uint32_t found) {
     agv_core_show_led(core, 0u);
 }
 
-void agv_core_built_in_config(agv_config_t *config, uint16_t id_set, uint16_t topology) {
-    agv_config_defaults(config);
-    config->id_set = (id_set == (uint16_t)AGV_ID_SET_TABLE) ? id_set : config->id_set;
-    config->topology = (topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? topology : config->topology;
+void agv_core_keep_wiring(agv_core_t *core) {
+    core->id_set = core->config.id_set;
+    core->topology = core->config.topology;
+}
+
+bool agv_core_check_config(agv_core_t *core, bool intact) {
+    agv_config_t *const config = &core->config;
+    const bool stands = intact && (agv_config_check(config).problem == AGV_CONFIG_OK);
+    if (!stands) {
+        agv_config_defaults(config);
+        config->id_set = (core->id_set == (uint16_t)AGV_ID_SET_TABLE) ? AGV_ID_SET_TABLE : config->id_set;
+        config->topology = (core->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? AGV_TOPOLOGY_GATEWAY : config->topology;
+    }
+    return stands;
 }
 
 void agv_core_begin_corrupted(agv_core_t *core) {
-    if ((agv_config_checksum(&core->config) != core->config_checksum) ||
-        (agv_config_check(&core->config).problem != AGV_CONFIG_OK)) {
-        agv_core_built_in_config(&core->config, core->id_set, core->topology);
-    }
+    (void)agv_core_check_config(core, agv_config_checksum(&core->config) == core->config_checksum);
     agv_core_begin(core, AGV_FOUND_CORRUPTED);
 }

@@ -1,52 +1,64 @@
 #include "agv/watch.h"
 
+#include <stddef.h>
+#include <string.h>
+
 #include "agv/core.h"
 
+/* Where its limit stands in the configuration, in bytes. */
+#define LIMIT(setting) ((uint8_t)offsetof(agv_config_t, setting))
+
 /* The setting that is the limit of each, in the order of agv_watch_t. */
-static const uint8_t limits[AGV_WATCH_COUNT] = {AGV_SETTING_bus_off_recovery_ms,
-                                                AGV_SETTING_bus_off_recovery_ms,
-                                                AGV_SETTING_standstill_ms,
-                                                AGV_SETTING_engaged_grace_ms,
-                                                AGV_SETTING_steering_deviation_ms,
-                                                AGV_SETTING_throttle_in_park_ms,
-                                                AGV_SETTING_init_hold_ms,
-                                                AGV_SETTING_reset_hold_ms,
-                                                AGV_SETTING_reset_hold_ms,
-                                                AGV_SETTING_park_timeout_ms,
-                                                AGV_SETTING_event_hold_ms,
-                                                AGV_SETTING_event_hold_ms,
-                                                AGV_SETTING_event_hold_ms,
-                                                AGV_SETTING_event_hold_ms,
-                                                AGV_SETTING_event_hold_ms,
-                                                AGV_SETTING_event_hold_ms,
-                                                AGV_SETTING_event_hold_ms,
-                                                AGV_SETTING_event_hold_ms,
-                                                AGV_SETTING_watchdog_period_ms,
-                                                AGV_SETTING_mode_invalid_ms,
-                                                AGV_SETTING_ai_never_seen_timeout_ms,
-                                                AGV_SETTING_wrong_id_set_ms,
-                                                AGV_SETTING_wrong_id_set_ms,
-                                                AGV_SETTING_startup_timeout_ms,
-                                                AGV_SETTING_confirm_timeout_ms,
-                                                AGV_SETTING_confirm_timeout_ms,
-                                                AGV_SETTING_tx_stalled_ms,
-                                                AGV_SETTING_tx_stalled_ms,
-                                                AGV_SETTING_tx_stalled_ms,
-                                                AGV_SETTING_tx_stalled_ms,
-                                                AGV_SETTING_ai_heartbeat_timeout_ms,
-                                                AGV_SETTING_gear_command_timeout_ms,
-                                                AGV_SETTING_throttle_command_timeout_ms,
-                                                AGV_SETTING_steering_command_timeout_ms,
-                                                AGV_SETTING_vcu_heartbeat_timeout_ms,
-                                                AGV_SETTING_gear_status_timeout_ms,
-                                                AGV_SETTING_throttle_status_timeout_ms,
-                                                AGV_SETTING_eps_heartbeat_timeout_ms,
-                                                AGV_SETTING_eps_status_timeout_ms,
-                                                AGV_SETTING_steering_position_timeout_ms,
-                                                AGV_SETTING_wheel_speed_timeout_ms};
+static const uint8_t limits[AGV_WATCH_COUNT] = {LIMIT(bus_off_recovery_ms),
+                                                LIMIT(bus_off_recovery_ms),
+                                                LIMIT(standstill_ms),
+                                                LIMIT(engaged_grace_ms),
+                                                LIMIT(steering_deviation_ms),
+                                                LIMIT(throttle_in_park_ms),
+                                                LIMIT(init_hold_ms),
+                                                LIMIT(reset_hold_ms),
+                                                LIMIT(reset_hold_ms),
+                                                LIMIT(park_timeout_ms),
+                                                LIMIT(event_hold_ms),
+                                                LIMIT(event_hold_ms),
+                                                LIMIT(event_hold_ms),
+                                                LIMIT(event_hold_ms),
+                                                LIMIT(event_hold_ms),
+                                                LIMIT(event_hold_ms),
+                                                LIMIT(event_hold_ms),
+                                                LIMIT(event_hold_ms),
+                                                LIMIT(watchdog_period_ms),
+                                                LIMIT(mode_invalid_ms),
+                                                LIMIT(ai_never_seen_timeout_ms),
+                                                LIMIT(wrong_id_set_ms),
+                                                LIMIT(wrong_id_set_ms),
+                                                LIMIT(startup_timeout_ms),
+                                                LIMIT(confirm_timeout_ms),
+                                                LIMIT(confirm_timeout_ms),
+                                                LIMIT(tx_stalled_ms),
+                                                LIMIT(tx_stalled_ms),
+                                                LIMIT(tx_stalled_ms),
+                                                LIMIT(tx_stalled_ms),
+                                                LIMIT(ai_heartbeat_timeout_ms),
+                                                LIMIT(gear_command_timeout_ms),
+                                                LIMIT(throttle_command_timeout_ms),
+                                                LIMIT(steering_command_timeout_ms),
+                                                LIMIT(vcu_heartbeat_timeout_ms),
+                                                LIMIT(gear_status_timeout_ms),
+                                                LIMIT(throttle_status_timeout_ms),
+                                                LIMIT(eps_heartbeat_timeout_ms),
+                                                LIMIT(eps_status_timeout_ms),
+                                                LIMIT(steering_position_timeout_ms),
+                                                LIMIT(wheel_speed_timeout_ms)};
+
+uint32_t agv_age_ms(uint32_t now_ms, uint32_t then_ms) {
+    const uint32_t difference = now_ms - then_ms;
+    return (difference > (UINT32_MAX / 2u)) ? 0u : difference;
+}
 
 void agv_watch_start_at(agv_core_t *core, uint32_t watch, uint32_t since_ms) {
-    agv_timer_start(&core->watches[watch], since_ms);
+    core->watches.since_ms[watch] = since_ms;
+    core->watches.phase[watch] = AGV_WATCH_RUNNING;
 }
 
 void agv_watch_start(agv_core_t *core, uint32_t watch) {
@@ -54,20 +66,39 @@ void agv_watch_start(agv_core_t *core, uint32_t watch) {
 }
 
 void agv_watch_stop(agv_core_t *core, uint32_t watch) {
-    agv_timer_stop(&core->watches[watch]);
+    core->watches.phase[watch] = AGV_WATCH_STOPPED;
 }
 
 bool agv_watch_reached(agv_core_t *core, uint32_t watch) {
-    const bool is_deadline = watch >= (uint32_t)AGV_WATCH_UNFED;
-    const uint32_t limit_ms = agv_config_get(&core->config, limits[watch]);
-    return agv_timer_reached(&core->watches[watch], core->now_ms, limit_ms + (is_deadline ? 1u : 0u));
+    uint32_t phase = core->watches.phase[watch];
+    uint32_t age_ms = agv_age_ms(core->now_ms, core->watches.since_ms[watch]);
+    uint16_t limit_ms;
+    (void)memcpy(&limit_ms, (const unsigned char *)&core->config + limits[watch], sizeof limit_ms);
+    if (watch < (uint32_t)AGV_WATCH_UNFED) {
+        age_ms++; /* its limit is enough, a deadline's is not */
+    }
+    if ((phase == (uint32_t)AGV_WATCH_RUNNING) && (age_ms > limit_ms)) {
+        phase = AGV_WATCH_REACHED;
+        core->watches.phase[watch] = AGV_WATCH_REACHED;
+    }
+    return (phase & (uint32_t)AGV_WATCH_REACHED) != 0u;
 }
 
 bool agv_watch_while(agv_core_t *core, uint32_t watch, bool condition) {
-    agv_timer_while(&core->watches[watch], condition, core->now_ms);
+    if (!condition) {
+        agv_watch_stop(core, watch);
+    } else if (!agv_watch_runs(core, watch)) {
+        agv_watch_start(core, watch);
+    } else {
+        /* goes on running */
+    }
     return agv_watch_reached(core, watch);
 }
 
+bool agv_watch_is_within(const agv_core_t *core, uint32_t watch) {
+    return core->watches.phase[watch] == (uint8_t)AGV_WATCH_RUNNING;
+}
+
 bool agv_watch_runs(const agv_core_t *core, uint32_t watch) {
-    return agv_timer_runs(&core->watches[watch]);
+    return core->watches.phase[watch] != (uint8_t)AGV_WATCH_STOPPED;
 }

@@ -26,19 +26,11 @@ void test_crc32_gives_the_known_answers(void) {
     TEST_ASSERT_EQUAL_HEX32(0x00000000u, crc32_of("", 0));
 }
 
-void test_crc16_gives_the_known_answers(void) {
-    TEST_ASSERT_EQUAL_HEX16(0x29B1u, agv_crc16(AGV_CRC16_START, "123456789", 9));
-    TEST_ASSERT_EQUAL_HEX16(0xB915u, agv_crc16(AGV_CRC16_START, "A", 1));
-    TEST_ASSERT_EQUAL_HEX16(0xFFFFu, agv_crc16(AGV_CRC16_START, "", 0));
-}
-
 void test_pieces_give_what_the_whole_gives(void) {
     const char text[] = "123456789";
     for (size_t cut = 0; cut <= 9; cut++) {
         const uint32_t head32 = agv_crc32(AGV_CRC32_START, text, cut);
-        const uint16_t head16 = agv_crc16(AGV_CRC16_START, text, cut);
         TEST_ASSERT_EQUAL_HEX32(0xCBF43926u, ~agv_crc32(head32, &text[cut], 9 - cut));
-        TEST_ASSERT_EQUAL_HEX16(0x29B1u, agv_crc16(head16, &text[cut], 9 - cut));
     }
 }
 
@@ -54,12 +46,10 @@ void test_every_flipped_bit_breaks_the_seal_and_the_checksums(void) {
     uint32_t words[5] = {0x00000000u, 0xFFFFFFFFu, 0x12345678u, 0x80000001u, 0x00000010u};
     const uint32_t seal = agv_seal(words, sizeof words);
     const uint32_t crc32 = crc32_of(words, sizeof words);
-    const uint16_t crc16 = agv_crc16(AGV_CRC16_START, words, sizeof words);
     for (uint32_t bit = 0; bit < 5u * 32u; bit++) {
         words[bit / 32u] ^= 1u << (bit % 32u);
         TEST_ASSERT_TRUE(agv_seal(words, sizeof words) != seal);
         TEST_ASSERT_TRUE(crc32_of(words, sizeof words) != crc32);
-        TEST_ASSERT_TRUE(agv_crc16(AGV_CRC16_START, words, sizeof words) != crc16);
         words[bit / 32u] ^= 1u << (bit % 32u);
     }
 }

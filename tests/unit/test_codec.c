@@ -661,9 +661,9 @@ void test_value_is_valid_says_what_unpack_says(void) {
 
 void test_an_angle_is_written_as_it_is_read(void) {
     uint8_t bytes[2];
-    for (int32_t ddeg = -9000; ddeg <= 9000; ddeg++) {
-        agv_angle_write(bytes, ddeg);
-        TEST_ASSERT_EQUAL_INT32(ddeg, agv_angle_read(bytes));
-        TEST_ASSERT_EQUAL_INT32(ddeg + 9000, bytes[0] | bytes[1] << 8);
+    for (uint32_t raw = 0; raw <= UINT16_MAX; raw++) {
+        agv_angle_write(bytes, raw);
+        TEST_ASSERT_EQUAL_UINT32(raw, agv_angle_read(bytes));
+        TEST_ASSERT_EQUAL_UINT32(raw, bytes[0] | bytes[1] << 8);
     }
 }

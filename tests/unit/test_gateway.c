@@ -24,10 +24,10 @@ static bool passes(agv_message_t command) {
 }
 
 static void limit(agv_message_t command) {
-    core.vehicle.command_ddeg = 0;
+    core.vehicle.command_raw = 0;
     agv_gateway_limit(&core, command, data);
     const int raw = data[0] | data[1] << 8;
-    TEST_ASSERT_EQUAL_INT((command == AGV_MSG_STEERING_COMMAND) ? raw - 9000 : 0, core.vehicle.command_ddeg);
+    TEST_ASSERT_EQUAL_INT((command == AGV_MSG_STEERING_COMMAND) ? raw : 0, core.vehicle.command_raw);
 }
 
 /* Hand in 8 bytes, look at those that come out. */
@@ -122,7 +122,7 @@ void test_without_a_slew_limit_steering_passes_as_it_is(void) {
 void test_the_slew_limit_starts_from_the_measured_angle(void) {
     core.config.steering_slew_ddeg_s = 4000;
     core.vehicle.angle_known = true;
-    core.vehicle.angle_ddeg = -200;
+    core.vehicle.angle_raw = 9000 - 200;
     TEST_ASSERT_EQUAL_INT(-100, steer(0, 500)); /* the first one may use one cycle */
     TEST_ASSERT_EQUAL_INT(0, steer(25, 500));
     TEST_ASSERT_EQUAL_INT(40, steer(10, 500));

@@ -50,7 +50,7 @@ static uint32_t age_ms(agv_message_t message, uint32_t now_ms) {
 }
 
 static bool is_heard(agv_message_t message) {
-    return core.liveness.messages[message].heard;
+    return (core.liveness.seen[message] & AGV_SEEN_HEARD) != 0u;
 }
 
 void setUp(void) {

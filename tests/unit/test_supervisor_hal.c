@@ -373,7 +373,7 @@ void test_corrupted_memory_starts_anew_in_tripped(void) {
     walk_to_standby();
     be_strict();
     now_ms++;
-    supervisor.core.vehicle.angle_ddeg ^= 4;
+    supervisor.core.vehicle.angle_raw ^= 4;
     hal_safety_output_set_Expect(&hal, false);
     expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
     expect_status(HAL_CAN_AI, HAL_CAN_ERROR_ACTIVE);

@@ -95,7 +95,7 @@ void test_a_corrupted_configuration_whose_checksum_fits_is_not_used(void) {
 void test_an_intact_configuration_is_kept(void) {
     f.config.tx_stalled_ms = 200;
     fixture_standby(&f);
-    core->vehicle.angle_ddeg ^= 1;
+    core->vehicle.angle_raw ^= 1;
     fixture_run(&f, 1);
     expect_reason(&f, AGV_FAULT_MEMORY_CORRUPTED);
     TEST_ASSERT_EQUAL_UINT16(200, agv_supervisor_config(&f.supervisor)->tx_stalled_ms);

@@ -17,12 +17,6 @@
  */
 uint32_t agv_crc32(uint32_t crc, const void *bytes, size_t size);
 
-/** Start value of agv_crc16. */
-#define AGV_CRC16_START 0xFFFFu
-
-/** CRC-16 (CCITT, not reflected), in pieces: start with AGV_CRC16_START, hand the result on. "123456789" gives 29B1h. */
-uint16_t agv_crc16(uint16_t crc, const void *bytes, size_t size);
-
 /**
  * Quick seal over memory: the exclusive-or of its 32-bit words, inverted. Any one flipped bit changes it.
  * @param size a multiple of 4

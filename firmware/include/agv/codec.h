@@ -160,16 +160,16 @@ typedef struct {
  * Whether the value that a message carries is one that the protocol knows: gear, throttle, steering angle, EPS mode. What
  * the agv_unpack_X of that message returns, without unpacking; true where every value is valid.
  */
-bool agv_value_is_valid(agv_message_t message, const uint8_t data[AGV_DLC]);
+bool agv_value_is_valid(uint32_t message, const uint8_t data[AGV_DLC]);
 
 /** The bits of each command that carry something; all others are reserved (P14). */
 extern const uint8_t agv_command_bits[AGV_COMMAND_COUNT][AGV_DLC];
 
-/** Read a steering angle in 0.1 degree from its two bytes (P5); beyond +9000 when they hold what is no angle. */
-int32_t agv_angle_read(const uint8_t *bytes);
+/** Read a raw steering angle from its two bytes (P5); above AGV_ANGLE_RAW_MAX when they hold what is no angle. */
+uint32_t agv_angle_read(const uint8_t *bytes);
 
-/** Write a steering angle, -9000..+9000, as two bytes. */
-void agv_angle_write(uint8_t *bytes, int32_t angle_ddeg);
+/** Write a raw steering angle as two bytes. */
+void agv_angle_write(uint8_t *bytes, uint32_t angle_raw);
 
 bool agv_pack_turn_signal_command(uint8_t data[AGV_DLC], const agv_turn_signal_command_t *in);
 bool agv_unpack_turn_signal_command(agv_turn_signal_command_t *out, const uint8_t data[AGV_DLC]);

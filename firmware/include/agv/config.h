@@ -59,13 +59,13 @@ typedef struct {
 void agv_config_defaults(agv_config_t *config);
 
 /** Read a setting by its index; 0 beyond the last. */
-uint16_t agv_config_get(const agv_config_t *config, uint16_t setting);
+uint16_t agv_config_get(const agv_config_t *config, uint32_t setting);
 
 /** Write a setting by its index, unchecked. @return false when there is no such setting. */
-bool agv_config_set(agv_config_t *config, uint16_t setting, uint16_t value);
+bool agv_config_set(agv_config_t *config, uint32_t setting, uint16_t value);
 
 /** Whether the configured class of a fault is trip. False for AGV_FAULT_NONE. */
-bool agv_config_is_trip(const agv_config_t *config, agv_fault_t fault);
+bool agv_config_is_trip(const agv_config_t *config, uint32_t fault);
 
 /** Check a configuration as a whole. @return the first problem found, or AGV_CONFIG_OK. */
 agv_config_verdict_t agv_config_check(const agv_config_t *config);

@@ -30,14 +30,14 @@ typedef struct {
 
 /** What stands among the faults, as last reported: faults by rank, AGV_FAULT_NONE where there is none. */
 typedef struct {
-    bool changed;         /**< something is to be reported */
-    uint8_t raised;       /**< highest-ranking fault that became a trip since the last step */
-    uint8_t cause;        /**< highest-ranking trip with a cause that does not come from the AI */
-    uint8_t forever;      /**< unresettable fault with a cause */
-    uint8_t trip;         /**< highest-ranking trip, active or latched */
-    uint8_t warning;      /**< highest-ranking warning */
-    bool ai_cause;        /**< a trip that comes from the AI has a cause */
-    uint8_t active_flags; /**< the flags of all active faults together */
+    bool changed;    /**< something is to be reported */
+    uint8_t raised;  /**< highest-ranking fault that became a trip since the last step */
+    uint8_t cause;   /**< highest-ranking trip with a cause that does not come from the AI */
+    uint8_t forever; /**< unresettable fault with a cause */
+    uint8_t trip;    /**< highest-ranking trip, active or latched */
+    uint8_t warning; /**< highest-ranking warning */
+    bool ai_cause;   /**< a trip that comes from the AI has a cause */
+    bool eps_fault;  /**< a fault is active with which the EPS is not to be commanded */
 } agv_summary_t;
 
 /** All of it. Small things that are used everywhere come first: short instructions reach them on small processors. */
@@ -45,12 +45,12 @@ typedef struct agv_core {
     /* What begins anew with every start. */
     agv_state_machine_t machine;
     agv_summary_t summary;
-    agv_vehicle_t vehicle;
-    agv_hold_t hold;
     int8_t led_code;    /**< of the highest-ranking fault, as last reported */
     uint8_t checked_in; /**< activities since the watchdog was fed (TIM-3) */
-    uint8_t id_set;     /**< second copies, for when the configuration itself is corrupted */
-    uint8_t topology;
+    agv_vehicle_t vehicle;
+    uint16_t id_set; /**< second copies, for when the configuration itself is corrupted */
+    agv_hold_t hold;
+    uint16_t topology;
     uint32_t last_tick_ms;
     uint32_t config_checksum; /**< agv_config_checksum at the start */
     agv_gateway_t gateway;
@@ -68,7 +68,7 @@ typedef struct agv_core {
     agv_liveness_t liveness;
     agv_monitor_t monitor;
     agv_transmitter_t transmitter;
-    agv_timer_t watches[AGV_WATCH_COUNT];
+    agv_watches_t watches;
 } agv_core_t;
 
 /** The state. */

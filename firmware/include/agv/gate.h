@@ -30,8 +30,8 @@ typedef struct {
 
 /** What became of a frame. */
 typedef enum {
-    AGV_GATE_SENT,     /**< the HAL took it */
     AGV_GATE_BUSY,     /**< the HAL did not take it */
+    AGV_GATE_SENT,     /**< the HAL took it */
     AGV_GATE_SHADOWED, /**< it may leave, but nothing leaves in shadow mode */
     AGV_GATE_REFUSED   /**< it may not leave in this state */
 } agv_gate_result_t;

@@ -16,17 +16,17 @@ struct agv_core;
 /** Memory of the steering slew limit. All zero: no command was sent since the engagement. */
 typedef struct {
     uint32_t sent_ms;  /**< when the last command was limited */
-    int16_t sent_ddeg; /**< and to what */
+    uint16_t sent_raw; /**< and to what */
     bool sent;
 } agv_gateway_t;
 
 /** Whether a command passes in this state. */
-bool agv_gateway_passes(const struct agv_core *core, agv_message_t command);
+bool agv_gateway_passes(const struct agv_core *core, uint32_t command);
 
 /**
  * Make the payload that is passed on, and note the steering command that counts from now on (SUP-5).
  * @param data in: as received, values in range; out: what to send
  */
-void agv_gateway_limit(struct agv_core *core, agv_message_t command, uint8_t data[AGV_DLC]);
+void agv_gateway_limit(struct agv_core *core, uint32_t command, uint8_t data[AGV_DLC]);
 
 #endif

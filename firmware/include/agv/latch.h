@@ -33,6 +33,6 @@ agv_latch_found_t agv_latch_read(hal_t *hal, agv_latch_t *latch);
  * Store the record; version and checksum are filled in. A failure is ignored: nobody could do better.
  * @param latched AGV_LATCH_CLOSED or AGV_LATCH_OPEN
  */
-void agv_latch_write(hal_t *hal, uint8_t latched, agv_fault_t first_reason, agv_fault_t unresettable);
+void agv_latch_write(hal_t *hal, uint8_t latched, uint32_t first_reason, uint32_t unresettable);
 
 #endif

@@ -23,7 +23,7 @@ typedef struct {
 } agv_led_t;
 
 /** The code that shows a fault; AGV_LED_HEALTHY for AGV_FAULT_NONE. */
-int8_t agv_led_code(agv_fault_t fault);
+int32_t agv_led_code(uint32_t fault);
 
 /**
  * Advance the pattern; another code starts its pattern at once.

@@ -37,16 +37,14 @@ typedef struct {
 #define AGV_AGE_MAX UINT32_MAX
 #define AGV_AGE_LIMIT_MS 6000u
 
-/** One message. */
-typedef struct {
-    uint32_t last_ms; /**< last frame of the right shape; before: the start */
-    bool heard;       /**< received at least once */
-    bool old;         /**< last_ms is older than AGV_AGE_LIMIT_MS */
-} agv_message_age_t;
+/** What is known of the age of a message: bits. */
+#define AGV_SEEN_HEARD 0x01u /**< received at least once */
+#define AGV_SEEN_OLD 0x02u   /**< last_ms is older than AGV_AGE_LIMIT_MS */
 
 /** All messages and heartbeats of one supervisor. */
 typedef struct {
-    agv_message_age_t messages[AGV_MSG_COUNT];
+    uint32_t last_ms[AGV_MSG_COUNT]; /**< last frame of the right shape; before: the start */
+    uint8_t seen[AGV_MSG_COUNT];     /**< AGV_SEEN_* */
     agv_heartbeat_t heartbeats[AGV_NODE_COUNT];
 } agv_liveness_t;
 

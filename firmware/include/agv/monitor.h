@@ -19,13 +19,13 @@
 struct agv_core;
 
 /**
- * Mode that 363h byte 7 reports, as its two bits. While both are set the mode before stands, until MODE_INVALID; then it
+ * Mode that 363h byte 7 reports, as its two bits, one place further down. While both are set the mode before stands, until MODE_INVALID; then it
  * is none.
  */
 typedef enum {
     AGV_MODE_NONE = 0,
-    AGV_MODE_MANUAL = AGV_VCU_FLAG_MANUAL,
-    AGV_MODE_ENGAGED = AGV_VCU_FLAG_AUTOPILOT
+    AGV_MODE_MANUAL = AGV_VCU_FLAG_MANUAL >> 1,
+    AGV_MODE_ENGAGED = AGV_VCU_FLAG_AUTOPILOT >> 1
 } agv_mode_t;
 
 /** Remote button 1. */
@@ -40,14 +40,15 @@ typedef struct {
     uint8_t button;         /**< remote button 1: agv_button_t */
     bool angle_known;
     bool command_known;
-    int16_t angle_ddeg;   /**< last valid measured steering angle */
-    int16_t command_ddeg; /**< last valid steering command since the engagement (gateway: as sent on) */
+    uint16_t angle_raw;   /**< last valid measured steering angle, 0.1 degree above the leftmost one (P5) */
+    uint16_t command_raw; /**< last valid steering command since the engagement (gateway: as sent on), the same */
 } agv_vehicle_t;
 
 /** What is counted in a row: bad frames, fast gaps. */
 enum {
-    AGV_ROW_EPS_FAULTS = 0, /**< eight: the fault bits of 167h */
-    AGV_ROW_VCU_ALARMS = 8, /**< eight: the alarm bits of 363h */
+    AGV_ROW_EPS_FAULTS = 0,      /**< eight: the fault bits of 167h */
+    AGV_ROW_EPS_SUPPLY_LAST = 2, /**< the first three of them are those of the supply */
+    AGV_ROW_VCU_ALARMS = 8,      /**< eight: the alarm bits of 363h */
     AGV_ROW_EPS_MODE = 16,
     AGV_ROW_GEAR_STATUS,
     AGV_ROW_THROTTLE_STATUS,
@@ -58,10 +59,10 @@ enum {
 
 /** Everything that is known and wrong. */
 typedef struct {
-    uint16_t steering_off_ddeg; /**< difference from which a gain is counted */
     uint8_t in_a_row[AGV_ROW_COUNT];
-    bool ai_alarm_armed; /**< VCU alarm bit 3 was clear with the AI alive (SUP-8) */
-    bool after_gap;      /**< this frame came more than two cycles after the one before */
+    uint16_t steering_off_ddeg; /**< difference from which a gain is counted */
+    bool ai_alarm_armed;        /**< VCU alarm bit 3 was clear with the AI alive (SUP-8) */
+    bool after_gap;             /**< this frame came more than two cycles after the one before */
 } agv_monitor_t;
 
 /** Nothing known, from zeroed memory; deadlines begin now. */
@@ -71,13 +72,13 @@ void agv_monitor_start(struct agv_core *core);
  * A frame of the right shape with a message of the chosen ID set.
  * @return false when it is a command with a value out of range: drop it.
  */
-bool agv_monitor_frame(struct agv_core *core, agv_message_t message, const hal_can_frame_t *frame);
+bool agv_monitor_frame(struct agv_core *core, uint32_t message, const hal_can_frame_t *frame);
 
 /** A frame of the right shape with an identifier that only the other ID set has. */
-void agv_monitor_other_id_set(struct agv_core *core, agv_message_t message);
+void agv_monitor_other_id_set(struct agv_core *core, uint32_t message);
 
 /** The steering command that counts (SUP-5): as received, or as the gateway sent it on. */
-void agv_monitor_steering_commanded(struct agv_core *core, int32_t angle_ddeg);
+void agv_monitor_steering_commanded(struct agv_core *core, uint32_t angle_raw);
 
 /** Judge all that depends on time. Call at every tick, after the frames stamped up to it. */
 void agv_monitor_tick(struct agv_core *core);
@@ -92,7 +93,7 @@ void agv_monitor_forget_ai(struct agv_core *core);
 bool agv_monitor_settled(struct agv_core *core);
 
 /** Whether a fault is a trip at the moment: its configured class, and SUP-8 for the AI's heartbeat. */
-bool agv_monitor_is_trip(const struct agv_core *core, agv_fault_t fault);
+bool agv_monitor_is_trip(const struct agv_core *core, uint32_t fault);
 
 /** Whether every status message whose silence trips is fresh. */
 bool agv_monitor_messages_fresh(const struct agv_core *core);

@@ -50,22 +50,22 @@ typedef enum {
 } agv_id_set_t;
 
 /**
- * The identifier of a message.
- * @return the 11-bit identifier; a value above AGV_ID_MAX when @p message is no message, or @p id_set no set.
+ * The identifier of a message, or of AGV_MSG_NONE.
+ * @return the 11-bit identifier; a value above AGV_ID_MAX for AGV_MSG_NONE, or when @p id_set is no set.
  */
-uint16_t agv_message_id(agv_message_t message, agv_id_set_t id_set);
+uint16_t agv_message_id(uint32_t message, uint32_t id_set);
 
 /**
  * The message with this identifier in the chosen set. Whether a frame is extended, remote, FD or of another length is
  * the caller's to check (P15).
  * @return the message, or AGV_MSG_NONE (also for identifiers that only the other set knows).
  */
-agv_message_t agv_message_from_id(uint32_t id, agv_id_set_t id_set);
+uint32_t agv_message_from_id(uint32_t id, uint32_t id_set);
 
 /**
- * The cycle time of a message in milliseconds (P16).
- * @return 10, 25 or 100; 0 when @p message is no message.
+ * The cycle time of a message, or of AGV_MSG_NONE, in milliseconds (P16).
+ * @return 10, 25 or 100; 0 for AGV_MSG_NONE.
  */
-uint16_t agv_message_cycle_ms(agv_message_t message);
+uint32_t agv_message_cycle_ms(uint32_t message);
 
 #endif

@@ -49,8 +49,8 @@ typedef struct {
     uint8_t first_reason;
     uint8_t run;                            /**< counts starts of the supervisor; wraps */
     uint16_t seen;                          /**< bit n: message n was received in this run */
-    uint16_t checksum;                      /**< CRC-16 (CCITT) over the other fields, in their order */
     uint8_t frames[AGV_MSG_COUNT][AGV_DLC]; /**< last payload of each message */
+    uint16_t checksum;                      /**< upper half of the CRC-32 over the fields before it */
 } agv_event_t;
 
 /** The recorder. Contents are for the functions below only. */
@@ -70,7 +70,7 @@ typedef struct {
 void agv_recorder_start(agv_recorder_t *recorder);
 
 /** Keep the payload of a message for the snapshots. Ignored for AGV_MSG_NONE. */
-void agv_recorder_frame(agv_recorder_t *recorder, agv_message_t message, const uint8_t data[AGV_DLC]);
+void agv_recorder_frame(agv_recorder_t *recorder, uint32_t message, const uint8_t data[AGV_DLC]);
 
 /** Record an event with a snapshot of the last frames. When the ring is full the oldest event is replaced. */
 void agv_recorder_add(agv_recorder_t *recorder, const agv_entry_t *entry, uint32_t time_ms);

@@ -17,13 +17,13 @@ struct agv_core;
 typedef struct {
     uint32_t next_ms;       /**< when it is due */
     uint32_t overridden_us; /**< last override of this identifier, microseconds (wraps) */
-    bool override_recent;   /**< less than override_gap_ms ago */
-    bool override_waits;    /**< another one came too soon and is answered later */
 } agv_slot_t;
 
-/** All slots. */
+/** All slots; bit n of a set is the command n. */
 typedef struct {
     agv_slot_t slots[AGV_COMMAND_COUNT];
+    uint32_t override_recent; /**< the last override was less than override_gap_ms ago */
+    uint32_t override_waits;  /**< another one came too soon and is answered later */
 } agv_scheduler_t;
 
 /**
@@ -33,24 +33,24 @@ typedef struct {
 void agv_scheduler_restart(struct agv_core *core);
 
 /** One of them has just been sent for the first time: its next one is due a cycle later. */
-void agv_scheduler_restart_slot(struct agv_core *core, agv_message_t command);
+void agv_scheduler_restart_slot(struct agv_core *core, uint32_t command);
 
 /**
  * Whether a slot is due; if so its next moment is set, on the same grid. Slots that were missed are not made up for.
  * @return 0: not due; else how many slots have come since the last call, the missed ones among them
  */
-uint32_t agv_scheduler_due(struct agv_core *core, agv_message_t command);
+uint32_t agv_scheduler_due(struct agv_core *core, uint32_t command);
 
 /**
  * A foreign command has to be answered.
  * @return true: now. false: the last answer is less than override_gap_ms ago, by the exact receive times; it waits.
  */
-bool agv_scheduler_override(struct agv_core *core, agv_message_t command);
+bool agv_scheduler_override(struct agv_core *core, uint32_t command);
 
 /** Whether a waiting answer is to be sent now. Call at every tick. */
-bool agv_scheduler_override_due(struct agv_core *core, agv_message_t command);
+bool agv_scheduler_override_due(struct agv_core *core, uint32_t command);
 
 /** An override was sent: the next periodic frame is due half a cycle later. */
-void agv_scheduler_overridden(struct agv_core *core, agv_message_t command);
+void agv_scheduler_overridden(struct agv_core *core, uint32_t command);
 
 #endif

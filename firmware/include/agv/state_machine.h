@@ -65,7 +65,7 @@ typedef struct {
 } agv_state_machine_t;
 
 /** Start, from zeroed memory, in INIT (@p reason AGV_FAULT_NONE) or in TRIPPED; the output is open. */
-void agv_state_machine_start(struct agv_core *core, agv_fault_t reason);
+void agv_state_machine_start(struct agv_core *core, uint32_t reason);
 
 /** One step, after each frame and each tick. At most one transition. @return AGV_STEP_* and AGV_MISSING_* */
 uint32_t agv_state_machine_step(struct agv_core *core, uint32_t facts);

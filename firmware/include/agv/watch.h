@@ -11,7 +11,6 @@
 
 #include "agv/faults.h"
 #include "agv/protocol.h"
-#include "agv/timer.h"
 
 struct agv_core;
 
@@ -44,6 +43,21 @@ typedef enum {
     AGV_WATCH_COUNT = AGV_WATCH_MESSAGE + (int)AGV_MSG_COUNT
 } agv_watch_t;
 
+/** Phases of a watch. Once its limit was reached it stays so until the next start: nothing un-expires after 49.7 days. */
+enum { AGV_WATCH_STOPPED = 0, AGV_WATCH_RUNNING = 1, AGV_WATCH_REACHED = 2 };
+
+/** All watches. All zero: stopped. */
+typedef struct {
+    uint32_t since_ms[AGV_WATCH_COUNT];
+    uint8_t phase[AGV_WATCH_COUNT];
+} agv_watches_t;
+
+/**
+ * Milliseconds from @p then_ms to @p now_ms across the wrap. What lies in the future has the age 0: frames may carry
+ * stamps that are a little ahead of the tick.
+ */
+uint32_t agv_age_ms(uint32_t now_ms, uint32_t then_ms);
+
 /** Start anew from now. */
 void agv_watch_start(struct agv_core *core, uint32_t watch);
 
@@ -58,6 +72,9 @@ bool agv_watch_reached(struct agv_core *core, uint32_t watch);
 
 /** Go on running while a condition holds, stop when it does not. @return whether it has reached its limit */
 bool agv_watch_while(struct agv_core *core, uint32_t watch, bool condition);
+
+/** Whether it runs and had not reached its limit when that was last asked for. */
+bool agv_watch_is_within(const struct agv_core *core, uint32_t watch);
 
 /** Whether it runs or has reached its limit. */
 bool agv_watch_runs(const struct agv_core *core, uint32_t watch);
