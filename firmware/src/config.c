@@ -56,6 +56,8 @@ bool agv_config_set(agv_config_t *config, uint32_t setting, uint16_t value) {
     return known;
 }
 
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the checksum runs over the bytes as they lie in memory");
+
 bool agv_config_is_trip(const agv_config_t *config, uint32_t fault) {
     return agv_fault_is_in(config->trips, fault);
 }
@@ -120,19 +122,7 @@ agv_config_verdict_t agv_config_check(const agv_config_t *config) {
     return verdict;
 }
 
-static uint32_t crc_of(uint32_t crc, uint32_t value, uint32_t size) {
-    uint8_t bytes[sizeof value];
-    for (uint32_t i = 0u; i < sizeof bytes; i++) {
-        bytes[i] = (uint8_t)(value >> (8u * i));
-    }
-    return agv_crc32(crc, bytes, size);
-}
-
 uint32_t agv_config_checksum(const agv_config_t *config) {
-    uint32_t crc = AGV_CRC32_START;
-    for (uint32_t i = 0u; i < (uint32_t)AGV_SETTING_COUNT; i++) {
-        crc = crc_of(crc, agv_config_get(config, i), 2u);
-    }
-    crc = crc_of(crc, (uint32_t)config->trips, 4u);
-    return ~crc_of(crc, (uint32_t)(config->trips >> 32u), 4u);
+    const uint32_t crc = agv_crc32(AGV_CRC32_START, config, (size_t)AGV_SETTING_COUNT * sizeof(uint16_t));
+    return ~agv_crc32(crc, &config->trips, sizeof config->trips);
 }
