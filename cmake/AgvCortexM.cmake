@@ -11,6 +11,12 @@ set(AGV_SMALL_OPTIONS
   -fno-schedule-insns2              # no reordering for speed, which takes the short encodings of instructions away
   -fno-caller-saves                 # values that outlive a call lie in registers that the call keeps, not on the stack
   -fno-if-conversion                # a short jump rather than arithmetic with conditions
+  -fno-tree-tail-merge              # it joins equal ends of branches into one with moves of registers in front of it
+  -fno-move-loop-invariants         # what a short loop needs is made in the loop, not kept in a register around it
+  -fno-tree-loop-im                 # the same, in an earlier pass
+  -fno-optimize-sibling-calls       # a last call as a jump takes all registers back first, at every such place
+  -fno-ipa-vrp                      # no copies of code for ranges of values
+  -fno-forward-propagate            # what was computed once is not computed again where it is used
   --param=uninlined-function-insns=0 # a call costs less than gcc thinks: inline less
 )
 
