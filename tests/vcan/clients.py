@@ -22,7 +22,7 @@ import oracle
 PROGRAM = os.environ.get("HOST_SIM", "")
 TOOLS = ("cansend", "candump", "cangen", "canplayer", "canbusload", "ip", "tc")
 SHM = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None  # a disk may be too slow for a log of a bus
-TIMEOUT_S = 300  # of whatever is waited for; a clock that is counted, not measured, leaps while a disk is waited for
+TIMEOUT_S = 100  # of whatever is waited for; a clock that is counted, not measured, leaps while a disk is waited for
 LATE_S = 0.012  # a player, or a supervisor, that is later than this was held up by the machine
 TRIES = 4
 
@@ -230,8 +230,8 @@ class Supervisor:
     def faults(self):
         """Those that were raised since INIT was left."""
         events = self.events()
-        begin = next((place for place, event in enumerate(events) if event["event"] == "state" and event["from"] == "INIT"), 0)
-        return [event["name"] for event in events[begin:] if event["event"] == "fault" and event["active"]]
+        left = [place for place, event in enumerate(events) if event["event"] == "state" and event["from"] == "INIT"]
+        return [event["name"] for event in events[left[0]:] if event["event"] == "fault" and event["active"]]
 
     def wait_for(self, what, kind="state", **expected):
         """The first event of this kind, from number `what` on, with these values."""

@@ -271,6 +271,7 @@ class Disturbed(clients.Case):
         supervisor = self.supervisor("--can", bus)
         player = self.healthy(bus)
         supervisor.wait_state("STANDBY")
+        self.scene.away.append((time.time(), time.time() + 3600))
         self.ip("link", "set", "dev", bus, "down")
         down_by = time.time()
         supervisor.wait_state("TRIPPED")
@@ -284,7 +285,7 @@ class Disturbed(clients.Case):
         time.sleep(1.1)  # whatever was fresh before is not any more
         self.healthy(bus)
         self.until(lambda: len(supervisor.states()) >= known and supervisor.states()[-1] == "SAFE", "SAFE in the end")
-        self.scene.away.append((0, time.time()))
+        self.scene.away = [(down_by - 1, time.time())]
         time.sleep(0.5)
         self.check_oracle(bus)
         # It may be SAFE for as long as the last frames are fresh, and is again when the vehicle is back.
@@ -635,8 +636,8 @@ class TwoSupervisors(clients.Case):
         configs = (clients.PATIENT + "class_steering_position_timeout: trip\n", clients.PATIENT.replace("0x7F0", "0x7F1"))
         one, two = [self.supervisor("--can", bus, name="n%d" % place, config=config)
                     for place, config in enumerate(configs)]
-        player = self.play(Vehicle().log(4000, {1000: engage, 1500: trip_the_first, 2100: setter(angle=9300), 2300: trip_the_second,
-                                                2500: lambda vehicle: setter(mode=NEITHER, gear=8)(vehicle)}), bus)
+        player = self.play(Vehicle().log(4000, {1000: engage, 1500: trip_the_first, 2100: setter(angle=9300),
+                                                2300: trip_the_second, 2500: setter(mode=NEITHER, gear=8)}), bus)
         player.wait()
         frames = self.frames(bus)
         self.assertEqual(one.story()[3], ("TRIPPED", "STEERING_POSITION_TIMEOUT"))
