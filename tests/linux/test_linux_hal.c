@@ -220,6 +220,22 @@ void test_two_supervisors_hear_each_other_and_not_themselves(void) {
     TEST_ASSERT_EQUAL_UINT(1, left.count);
 }
 
+/* Of three frames that wait the first is with the kernel, and has left; the other two never do. */
+void test_what_has_left_is_told_of_at_the_close_and_nothing_follows(void) {
+    port_open(&hal, "vcan0", NULL, &left);
+    const int tester = vcan_open("vcan0");
+    const hal_can_frame_t frame = vcan_frame(0x065);
+    TEST_ASSERT_TRUE(port_send(&hal, 0x065));
+    TEST_ASSERT_TRUE(port_send(&hal, 0x100));
+    TEST_ASSERT_TRUE(port_send(&hal, 0x100));
+    vcan_expect(tester, 0x065, 8, frame.data);
+    TEST_ASSERT_EQUAL_UINT(0, left.count); /* its echo has not been read yet */
+    linux_hal_close(&hal);
+    TEST_ASSERT_EQUAL_UINT(1, left.count);
+    TEST_ASSERT_EQUAL_HEX32(0x065, left.frames[0].id);
+    vcan_expect_nothing(tester);
+}
+
 void test_a_closed_port_does_nothing(void) {
     port_open(&hal, "vcan0", "vcan1", NULL);
     const int tester = vcan_open("vcan0");

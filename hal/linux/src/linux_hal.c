@@ -10,6 +10,9 @@ enum { US_PER_MS = 1000, LOOK_EVERY_US = 100000 };
 /* More records than own frames can come back in a row: what waits, and what the kernel has. */
 #define RECORDS_AT_ONCE_MAX (2u * LINUX_HAL_QUEUE_SIZE)
 
+/* More than a socket's queue usually holds. */
+#define RECORDS_AT_CLOSE_MAX 4096u
+
 linux_hal_side_t *linux_hal_side(hal_t *hal, hal_can_side_t side) {
     const bool exists = (unsigned)side < (unsigned)HAL_CAN_SIDES && hal->sides[side].interface != NULL;
     return exists ? &hal->sides[side] : NULL;
@@ -94,16 +97,6 @@ bool linux_hal_open(hal_t *hal, const linux_hal_config_t *config, char *error) {
     return true;
 }
 
-void linux_hal_close(hal_t *hal) {
-    for (size_t i = 0; i < (size_t)HAL_CAN_SIDES; i++) {
-        linux_can_close(&hal->sides[i].can);
-        linux_hal_queue_discard(&hal->sides[i]);
-        hal->sides[i].is_open = false;
-        hal->sides[i].is_up = false;
-        hal->sides[i].has_next = false;
-    }
-}
-
 int linux_hal_fd(const hal_t *hal, hal_can_side_t side) {
     return ((unsigned)side < (unsigned)HAL_CAN_SIDES) ? hal->sides[side].can.fd : -1;
 }
@@ -127,6 +120,28 @@ static void frame_left(hal_t *hal, hal_can_side_t which, const linux_can_record_
         frame.time_ms = (uint32_t)(at_us / US_PER_MS);
         frame.time_us = (uint16_t)(at_us % US_PER_MS);
         hal->config.on_left(hal->config.ctx, which, &frame, at_us);
+    }
+}
+
+/* Frames that have left and whose echo waits to be read. Nothing follows them: the queue is empty. */
+static void tell_of_last(hal_t *hal, hal_can_side_t which) {
+    linux_hal_side_t *side = &hal->sides[which];
+    linux_can_record_t record;
+    for (unsigned i = 0; i < RECORDS_AT_CLOSE_MAX && linux_can_read(&side->can, &record) == LINUX_CAN_RECORD; i++) {
+        if (record.own) {
+            frame_left(hal, which, &record, linux_clock_of_stamp(&hal->clock, record.stamp_us));
+        }
+    }
+}
+
+void linux_hal_close(hal_t *hal) {
+    for (size_t i = 0; i < (size_t)HAL_CAN_SIDES; i++) {
+        linux_hal_queue_discard(&hal->sides[i]);
+        tell_of_last(hal, (hal_can_side_t)i);
+        linux_can_close(&hal->sides[i].can);
+        hal->sides[i].is_open = false;
+        hal->sides[i].is_up = false;
+        hal->sides[i].has_next = false;
     }
 }
 

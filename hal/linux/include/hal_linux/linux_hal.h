@@ -93,7 +93,7 @@ struct hal {
  */
 bool linux_hal_open(hal_t *hal, const linux_hal_config_t *config, char *error);
 
-/** Close. What waits is discarded. */
+/** Close. What waits is discarded; what has left is told of (on_left). */
 void linux_hal_close(hal_t *hal);
 
 /** The file of a side, to wait for (linux_loop.h); it changes when an interface comes back. -1: none at the moment. */
