@@ -1,10 +1,12 @@
 # Unit tests with Unity and CMock.
 #
-#   agv_add_unit_test(NAME test_gate SOURCES test_gate.c [more.c ...] [MOCKS hal/can.h ...] [LIBS hal_sim ...] [PLANTED])
+#   agv_add_unit_test(NAME test_gate SOURCES test_gate.c [more.c ...] [MOCKS hal/can.h ...] [LIBS hal_sim ...] [PLANTED]
+#     [NO_TEST])
 #
 # Builds one program from the sources, a runner generated from the first of them, and the generated mocks, and adds it
 # to ctest. A test includes a mock as "mock_can.h" (for hal/can.h). Every program is linked to agv_core.
 # Mocks stand in for the HAL contract, hal/include, and for nothing else: the rest of the core is tested as it is.
+# NO_TEST: the program is built, and run by a test of somebody else.
 # PLANTED: a test that has to fail; it is built by its name only and run by `ctest -C planted` only (tests/gates).
 
 find_program(AGV_RUBY ruby)
@@ -66,7 +68,7 @@ function(agv_mock_of HEADER TARGET_VARIABLE)
 endfunction()
 
 function(agv_add_unit_test)
-  cmake_parse_arguments(PARSE_ARGV 0 TEST "PLANTED" "NAME" "SOURCES;MOCKS;LIBS")
+  cmake_parse_arguments(PARSE_ARGV 0 TEST "PLANTED;NO_TEST" "NAME" "SOURCES;MOCKS;LIBS")
   if(NOT TEST_NAME OR NOT TEST_SOURCES OR TEST_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "usage: agv_add_unit_test(NAME name SOURCES file.c ... [MOCKS hal/x.h ...] [LIBS lib ...])")
   endif()
@@ -92,6 +94,9 @@ function(agv_add_unit_test)
   # The runner calls the test functions by name, so they are not static and have no prototype.
   set_source_files_properties(${TEST_SOURCES} PROPERTIES COMPILE_OPTIONS -Wno-missing-prototypes)
   set_source_files_properties(${runner} PROPERTIES COMPILE_OPTIONS -w)
+  if(TEST_NO_TEST)
+    return()
+  endif()
   if(TEST_PLANTED)
     set_target_properties(${TEST_NAME} PROPERTIES EXCLUDE_FROM_ALL ON)
     add_test(NAME ${TEST_NAME} CONFIGURATIONS planted COMMAND ${TEST_NAME})

@@ -8,17 +8,18 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "agv/names.h"
 #include "config_text.h"
 #include "events.h"
+#include "hal_linux/linux_can.h"
 #include "hal_linux/linux_loop.h"
 #include "live_files.h"
 #include "live_output.h"
 #include "live_status.h"
 #include "node.h"
 #include "sent_log.h"
+#include "summary.h"
 
-enum { US_PER_MS = 1000, MS_PER_S = 1000, US_PER_S = 1000000, NS_PER_US = 1000 };
+enum { US_PER_MS = 1000, US_PER_S = 1000000, NS_PER_US = 1000 };
 
 /** The files that are written. */
 enum { OUT, EVENTS, OUTPUTS };
@@ -141,27 +142,16 @@ static bool run(live_t *live) {
     return good;
 }
 
-static void print_frames(const live_t *live, const agv_counters_t *counters) {
-    uint64_t rejected = 0u;
-    for (size_t i = 0u; i < (size_t)AGV_REJECTED_KINDS; i++) {
-        rejected += counters->rejected[i];
-    }
-    (void)printf("frames: %" PRIu32 " received, %" PRIu64 " of them rejected, %" PRIu32 " dropped; %" PRIu32 " sent",
-                 counters->received, rejected, counters->dropped, counters->sent);
-    if (live->request->config.shadow == AGV_SHADOW_ON) {
-        (void)printf(", %" PRIu32 " held back in shadow mode", counters->shadowed);
-    }
-}
-
 static void print_summary(const live_t *live, const events_summary_t *summary) {
     const char *ai = live->request->interfaces[HAL_CAN_AI];
-    const char *state = agv_state_name(summary->final_state);
-    const char *reason = agv_fault_name(summary->first_reason);
-    (void)printf("%s%s%s: %" PRIu64 ".%03" PRIu64 " s\n", live->request->interfaces[HAL_CAN_VEHICLE],
-                 (ai != NULL) ? ", " : "", (ai != NULL) ? ai : "", summary->t_ms / MS_PER_S, summary->t_ms % MS_PER_S);
-    print_frames(live, &summary->counters);
-    (void)printf("\nwarnings: %" PRIu32 "\nfinal state: %s, first reason: %s\n", summary->counters.warnings,
-                 (state != NULL) ? state : "corrupt", (reason != NULL) ? reason : "none");
+    char more[LINUX_CAN_NAME_MAX + sizeof ", "] = "";
+    if (ai != NULL) {
+        (void)snprintf(more, sizeof more, ", %s", ai);
+    }
+    summary_print_time(summary, live->request->interfaces[HAL_CAN_VEHICLE], more);
+    summary_print_frames(summary, live->request->config.shadow == AGV_SHADOW_ON);
+    (void)printf("warnings: %" PRIu32 "\n", summary->counters.warnings);
+    summary_print_state(summary);
 }
 
 static bool uses_stdout(const char *path) {

@@ -1,7 +1,6 @@
 #include "live_output.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <poll.h>
 #include <string.h>
@@ -20,28 +19,15 @@ bool live_output_takes(int fd, int wait_ms) {
 
 static bool is_file(const char *path) {
     struct stat existing;
+    if (output_is_stdout(path)) {
+        return false;
+    }
     return (stat(path, &existing) == 0) ? S_ISREG(existing.st_mode) : (errno == ENOENT);
 }
 
 bool live_output_open(live_output_t *output, const char *path) {
     output->lost_lines = 0u;
-    if (output_is_stdout(path) || !is_file(path)) {
-        return output_open(&output->lines, path);
-    }
-    const int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (fd < 0) {
-        return report("%s: %s", path, strerror(errno));
-    }
-    /* Whole or not at all is not for something that is read while it grows: no temporary file. */
-    output->lines.name = path;
-    output->lines.path = NULL;
-    output->lines.temporary = NULL;
-    output->lines.fd = fd;
-    output->lines.is_slow = false;
-    output->lines.error = 0;
-    output->lines.used = 0u;
-    output->lines.is_open = true;
-    return true;
+    return is_file(path) ? output_open_in_place(&output->lines, path) : output_open(&output->lines, path);
 }
 
 bool live_output_has_room(live_output_t *output) {

@@ -84,16 +84,27 @@ static void forget(output_t *output) {
     output->is_open = false;
 }
 
-bool output_open(output_t *output, const char *path) {
-    struct stat existing;
-    bool exists = stat(path, &existing) == 0;
+static void begin(output_t *output, const char *path) {
     output->name = output_is_stdout(path) ? "standard output" : path;
     output->path = NULL;
     output->temporary = NULL;
     output->is_slow = false;
     output->error = 0;
     output->used = 0u;
+}
+
+bool output_open_in_place(output_t *output, const char *path) {
+    begin(output, path);
+    output->fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    output->is_open = output->fd >= 0;
+    return output->is_open || report("%s: %s", path, strerror(errno));
+}
+
+bool output_open(output_t *output, const char *path) {
+    struct stat existing;
+    bool exists = stat(path, &existing) == 0;
     bool opened = false;
+    begin(output, path);
     if (output_is_stdout(path)) {
         output->fd = STDOUT_FILENO;
         opened = true;

@@ -31,6 +31,13 @@ typedef struct {
  */
 bool output_open(output_t *output, const char *path);
 
+/**
+ * Open a regular file that is written as it comes, for what is read while it grows: no temporary file. One that is there
+ * is emptied.
+ * @return false: it cannot be written; was reported.
+ */
+bool output_open_in_place(output_t *output, const char *path);
+
 /** Write. After a failure nothing more is written. @return false: this or an earlier write failed; not reported. */
 bool output_write(output_t *output, const void *bytes, size_t size);
 

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "agv/names.h"
 #include "candump_log.h"
 #include "config_text.h"
 #include "events.h"
@@ -15,8 +14,9 @@
 #include "sent_log.h"
 #include "session.h"
 #include "store_file.h"
+#include "summary.h"
 
-enum { US_PER_MS = 1000, MS_PER_S = 1000, LOOK_FOR_SIGNALS_EVERY = 65536 };
+enum { US_PER_MS = 1000, LOOK_FOR_SIGNALS_EVERY = 65536 };
 
 /** The files that are written. */
 enum { OUT, EVENTS, STORE, OUTPUTS };
@@ -174,24 +174,11 @@ static void start(replay_t *replay, uint64_t first_us) {
 }
 
 static void print_summary(const replay_t *replay, const events_summary_t *summary) {
-    const agv_counters_t *counters = &summary->counters;
-    uint64_t rejected = 0u;
-    for (size_t i = 0u; i < (size_t)AGV_REJECTED_KINDS; i++) {
-        rejected += counters->rejected[i];
-    }
-    const char *state = agv_state_name(summary->final_state);
-    const char *reason = agv_fault_name(summary->first_reason);
-    (void)printf("%s: %" PRIu64 ".%03" PRIu64 " s\n", replay->log.name, summary->t_ms / MS_PER_S,
-                 summary->t_ms % MS_PER_S);
-    (void)printf("frames: %" PRIu32 " received, %" PRIu64 " of them rejected, %" PRIu32 " dropped; %" PRIu32 " sent",
-                 counters->received, rejected, counters->dropped, counters->sent);
-    if (replay->request->config.shadow == AGV_SHADOW_ON) {
-        (void)printf(", %" PRIu32 " held back in shadow mode", counters->shadowed);
-    }
-    (void)printf("\nlines skipped: %" PRIu64 ", stamps that went backwards: %" PRIu64 ", warnings: %" PRIu32 "\n",
-                 summary->skipped_lines, summary->backward_stamps, counters->warnings);
-    (void)printf("final state: %s, first reason: %s\n", (state != NULL) ? state : "corrupt",
-                 (reason != NULL) ? reason : "none");
+    summary_print_time(summary, replay->log.name, "");
+    summary_print_frames(summary, replay->request->config.shadow == AGV_SHADOW_ON);
+    (void)printf("lines skipped: %" PRIu64 ", stamps that went backwards: %" PRIu64 ", warnings: %" PRIu32 "\n",
+                 summary->skipped_lines, summary->backward_stamps, summary->counters.warnings);
+    summary_print_state(summary);
 }
 
 /** Report the output that failed, if one did. @return whether none did. */
