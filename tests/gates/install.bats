@@ -28,5 +28,5 @@ only() {
 }
 
 @test "a word that it does not know" {
-    fails_with "neither demo nor test" "$ROOT/scripts/install-deps" everything
+    fails_with "neither demo nor vcan nor test" "$ROOT/scripts/install-deps" everything
 }
