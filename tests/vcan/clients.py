@@ -22,7 +22,7 @@ import oracle
 PROGRAM = os.environ.get("HOST_SIM", "")
 TOOLS = ("cansend", "candump", "cangen", "canplayer", "canbusload", "ip", "tc")
 SHM = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None  # a disk may be too slow for a log of a bus
-TIMEOUT_S = 100  # of whatever is waited for; a clock that is counted, not measured, leaps while a disk is waited for
+TIMEOUT_S = 1000  # of whatever is waited for; a clock that is counted, not measured, leaps (in_memory.py)
 LATE_S = 0.012  # a player, or a supervisor, that is later than this was held up by the machine
 TRIES = 8
 

@@ -39,6 +39,8 @@ def main():
     args = parser.parse_args()
     if not os.access(os.environ.get("HOST_SIM", ""), os.X_OK):
         sys.exit("long_clients: HOST_SIM in the environment is no program")
+    import run_clients
+    run_clients.bring_programs()
     ran = failed = 0
     for seed in range(args.first, args.first + args.seeds):
         for name in NAMES:

@@ -32,6 +32,16 @@ def missing_tools():
     return missing
 
 
+def bring_programs():
+    """All that the tests start, into memory."""
+    import clients
+    import in_memory
+    into = in_memory.folder()
+    if into:
+        in_memory.bring([shutil.which(tool) for tool in clients.TOOLS] + [os.environ["HOST_SIM"]], into)
+        clients.PROGRAM = os.path.join(into, os.path.basename(os.environ["HOST_SIM"]))
+
+
 def names_of(file):
     """The tests of a file, without importing it: python-can takes long."""
     import ast
@@ -160,6 +170,7 @@ def main():
     if missing:
         sys.exit("run_clients: missing: %s; 'scripts/install-deps vcan' installs them" % ", ".join(missing))
     begin = time.monotonic()
+    bring_programs()
     chosen, there_are = choose(FILES, args.names, args.share)
     results = run_all(chosen, FILES, args.lanes)
     wrongs = {name: wrong for name, _, _, wrong in results if wrong}

@@ -273,7 +273,7 @@ class Writes(Case):
         bus.forget()
         self.assertGreater(len(bus.listen(0.5)), 8)
         process.terminate()
-        _, errors = process.communicate(timeout=10)
+        _, errors = process.communicate(timeout=canbus.TIMEOUT)
         self.assertEqual((process.returncode, errors), (2, b"host_sim: standard output: Connection timed out\n"))
 
 
@@ -330,7 +330,7 @@ class Scenarios(Case):
     def test_a_signal_ends_it(self):
         process = self.start("scenario", "--bus", "vcan0", self.scenario("s.yaml", "STEERING_COMMAND_TIMEOUT"))
         self.bus().wait_for(0x363)
-        self.assertEqual((process.end(signal.SIGINT, timeout=2), process.text("stderr")), (2, "host_sim: interrupted\n"))
+        self.assertEqual((process.end(signal.SIGINT), process.text("stderr")), (2, "host_sim: interrupted\n"))
 
     @on_time
     def test_the_gateway_needs_two_interfaces(self):
