@@ -4,14 +4,20 @@ load helper
 
 setup() {
     cd "$BATS_TEST_TMPDIR" || exit
-    mkdir -p docs firmware/include/agv tests/unit host_sim/scenarios
+    mkdir -p docs firmware/include/agv tests/unit host_sim/scenarios scripts/proofs
     {
         for row in SUP-1 FSM-1 TOP-1 TIM-1 INT-1 LED-1; do
-            echo "| $row | text |"
+            echo "| $row | text | host |"
+            echo "/* $row */" >>firmware/include/agv/x.h
         done
         echo '<!-- traceability: made by scripts/traceability --markdown -->'
         echo '<!-- end of traceability -->'
     } >docs/requirements.md
+    {
+        echo '<!-- levels of evidence: made by scripts/traceability --markdown -->'
+        echo '<!-- end of traceability -->'
+    } >docs/safety-manual.md
+    printf '#!/bin/bash\n# proves\n# Shows: SUP-1\n' >scripts/proofs/x
     echo '| P1 | text |' >docs/protocol.md
     echo 'AGV_FAULT(BUS_OFF, TRIP, 14, FIXED)' >firmware/include/agv/fault_table.def
     echo 'agv_add_unit_test(NAME test_x SOURCES test_x.c)' >tests/unit/CMakeLists.txt
@@ -27,7 +33,7 @@ trace() {
 }
 
 @test "a requirement without a test" {
-    sed -i 's/^| SUP-1 .*/&\n| SUP-2 | text |/' docs/requirements.md
+    sed -i 's/^| SUP-1 .*/&\n| SUP-2 | text | host |/' docs/requirements.md
     fails_with "no test shows SUP-2" trace
 }
 
@@ -70,4 +76,26 @@ trace() {
     sed -i 's/test_x(int/test_renamed(int/' tests/unit/test_x.c
     passes trace
     fails_with "out of date" trace --check
+}
+
+@test "a requirement that no code names" {
+    sed -i '/FSM-1/d' firmware/include/agv/x.h
+    fails_with "no code names FSM-1" trace --check
+}
+
+@test "a requirement without a level of evidence" {
+    sed -i 's/^| TOP-1 | text | host |/| TOP-1 | text | surely |/' docs/requirements.md
+    fails_with "TOP-1 has no level of evidence" trace --check
+}
+
+@test "a proof that does not say what it shows, or names no row" {
+    sed -i 's/SUP-1/SUP-7/' scripts/proofs/x
+    fails_with "shows SUP-7, which is no row" trace --check
+    sed -i '/Shows/d' scripts/proofs/x
+    fails_with "does not say what it shows" trace --check
+}
+
+@test "a table of evidence that is out of date" {
+    sed -i '/Shows/s/SUP-1/FSM-1/' scripts/proofs/x
+    fails_with "safety-manual.md is out of date" trace --check
 }

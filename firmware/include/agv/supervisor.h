@@ -4,7 +4,8 @@
  *
  * A program calls agv_supervisor_start once, then agv_supervisor_frame for every frame received, in the order of their
  * time stamps, and agv_supervisor_tick every millisecond after the frames stamped up to it. Two supervisors in one
- * process do not know of each other. Not reentrant: one thread per supervisor.
+ * process do not know of each other. Not reentrant: one thread per supervisor. All its memory is the structure that the
+ * caller owns; no call allocates, recurses or loops without a bound (INT-1).
  */
 #ifndef AGV_SUPERVISOR_H
 #define AGV_SUPERVISOR_H
