@@ -86,7 +86,7 @@ static void forget(rules_t *rules, uint64_t now_ms) {
     rules->button_down = false;
     rules->manual = false;
     rules->fast_ms = now_ms;
-    rules->tripped_ms = now_ms;
+    rules->unconfirmed_ms = now_ms;
     rules->confirmed_off = false;
     rules->commanding_ms = now_ms;
     rules->own_counter_known = false;
@@ -333,8 +333,8 @@ static uint64_t age_ms(const rules_t *rules, uint64_t then_ms) {
 
 /* SUP-2, SUP-3: who supervises, hears. Only a tick looks at the clock. */
 static void judge_silence(rules_t *rules) {
-    static const uint32_t LIMITS[RULES_STATUS] = {HEARTBEAT_MS, GEAR_STATUS_MS, STATUS_MS, HEARTBEAT_MS,
-                                                  STATUS_MS,    UINT32_MAX,     STATUS_MS};
+    static const uint64_t LIMITS[RULES_STATUS] = {HEARTBEAT_MS, GEAR_STATUS_MS, STATUS_MS, HEARTBEAT_MS,
+                                                  STATUS_MS,    UINT64_MAX,     STATUS_MS}; /* 267h only warns */
     if ((age_ms(rules, rules->vcu.changed_ms) > HEARTBEAT_MS) || (age_ms(rules, rules->eps.changed_ms) > HEARTBEAT_MS)) {
         broken(rules, "SUP-2: the heartbeat of the VCU is %u ms old, of the EPS %u ms, and it has not tripped",
                (unsigned)age_ms(rules, rules->vcu.changed_ms), (unsigned)age_ms(rules, rules->eps.changed_ms));
@@ -351,7 +351,7 @@ static void judge_silence(rules_t *rules) {
 static void judge_trip(rules_t *rules) {
     const uint8_t needed = (uint8_t)((1u << SIGNALS) | (1u << THROTTLE) | (rules->park_at_once ? (1u << GEAR) : 0u));
     rules->trips++;
-    rules->tripped_ms = rules->now_ms;
+    rules->unconfirmed_ms = rules->now_ms;
     rules->button_was_up = false;
     rules->confirmed_off = false;
     rules->own_counter_known = false;
@@ -406,6 +406,10 @@ static void judge_state(rules_t *rules, const rules_seen_t *seen) {
     if ((seen->state == AGV_STATE_SAFE) && (last->state != AGV_STATE_SAFE)) {
         rules->safe_ms = rules->now_ms;
     }
+    if ((seen->state == AGV_STATE_TRIPPED) && (last->state == AGV_STATE_SAFE)) {
+        rules->unconfirmed_ms = rules->now_ms; /* FSM-4: the time begins anew */
+        rules->confirmed_off = false;
+    }
     if (rules->alarm && is_supervising(seen->state)) {
         broken(rules, "SUP-4: a fault bit was heard in state %02Xh, and it has not tripped", (unsigned)last->state);
     }
@@ -426,7 +430,7 @@ static void judge_output(rules_t *rules, const rules_seen_t *seen, bool tick) {
     if (tick && rules->bus.is_bus_off) {
         broken(rules, "FSM-4: the safety output is closed in bus-off");
     }
-    if (tick && is_latched(seen->state) && !rules->confirmed_off && (age_ms(rules, rules->tripped_ms) > CONFIRM_MS)) {
+    if (tick && is_latched(seen->state) && !rules->confirmed_off && (age_ms(rules, rules->unconfirmed_ms) > CONFIRM_MS)) {
         broken(rules, "FSM-4: the safety output is closed, and the vehicle has confirmed nothing");
     }
 }

@@ -77,9 +77,8 @@ typedef struct {
     bool unresettable;
 
     /* for the safety output */
-    uint64_t tripped_ms;
-    bool confirmed_off; /* since the trip a 363h without autopilot mode came */
-    uint64_t bus_off_ms;
+    uint64_t unconfirmed_ms; /* since the trip, or since a confirmation was withdrawn */
+    bool confirmed_off;      /* since then a 363h without autopilot mode came */
 
     /* for the sending */
     uint8_t sent_now; /* bits of the commands that left in this call, safe or passed */

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MANUAL = 0x40, ENGAGED = 0x80, BOTH = 0xC0, SETTLE_TICKS = 4, BEFORE_WRAP_MS = 700 };
+enum { MANUAL = 0x40, ENGAGED = 0x80, BOTH = 0xC0, SETTLE_TICKS = 4, BEFORE_WRAP_MS = 700, EPOCH_MS = 1000000 };
 
 /* Healthy traffic, by hand: identifiers of both sets, cycle, phase, which byte counts, payload in manual mode. */
 typedef struct {
@@ -222,7 +222,8 @@ static void configure(unsigned variant) {
 
 static void begin(unsigned variant, uint32_t offset_ms) {
     memset(&world, 0, sizeof world);
-    world.offset_ms = offset_ms;
+    world.now_ms = EPOCH_MS; /* so that stamps may lie before the start */
+    world.offset_ms = offset_ms - (uint32_t)EPOCH_MS;
     world.ports = (agv_ports_t){.hal = &world.hal, .recorder = &world.recorder};
     configure(variant);
     world_heal();
@@ -289,7 +290,7 @@ void world_load(unsigned variant, unsigned state) {
     if (*copy == NULL) {
         begin(variant, 0);
         go_to(state);
-        begin(variant, offset_for(variant, world.now_ms));
+        begin(variant, offset_for(variant, world.now_ms - EPOCH_MS));
         go_to(state);
         *copy = malloc(sizeof world);
         if (*copy == NULL) {
