@@ -31,7 +31,9 @@ elseif(AGV_INSTRUMENT STREQUAL "fuzz")
   if(NOT CMAKE_C_COMPILER_ID STREQUAL "Clang")
     message(FATAL_ERROR "AGV_INSTRUMENT is fuzz: only clang has libFuzzer")
   endif()
-  add_compile_options(-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  # strict: an array at the end of a struct has bounds too
+  add_compile_options(-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+    -fstrict-flex-arrays=3)
   add_link_options(-fsanitize=address,undefined)
 elseif(NOT AGV_INSTRUMENT STREQUAL "")
   message(FATAL_ERROR "AGV_INSTRUMENT is '${AGV_INSTRUMENT}': it must be empty, sanitize, coverage or fuzz")

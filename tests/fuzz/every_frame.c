@@ -18,9 +18,12 @@ static const uint8_t LENGTH_OF[LENGTHS] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 64};
 
 /* Each byte of them in each place; alarms and faults, modes, gears, values out of range, the own safe commands. */
 static const uint8_t PATTERN[PATTERNS][8] = {
-    {0, 0, 0, 0, 0, 0, 0, 0},          {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF},
-    {1, 0, 0, 1, 0, 0, 0x80, 1},       {8, 0, 0, 0, 0x70, 0, 0, 0x55},
-    {0x51, 0x46, 0x51, 0x46, 0x08, 0, 0x41, 0xAA}, {0x28, 0x23, 0x28, 0x23, 0, 1, 0xC0, 0x10},
+    {0, 0, 0, 0, 0, 0, 0, 0},
+    {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF},
+    {1, 0, 0, 1, 0, 0, 0x80, 1},
+    {8, 0, 0, 0, 0x70, 0, 0, 0x55},
+    {0x51, 0x46, 0x51, 0x46, 0x08, 0, 0x41, 0xAA},
+    {0x28, 0x23, 0x28, 0x23, 0, 1, 0xC0, 0x10},
 };
 static const uint8_t KIND[KINDS] = {0, HAL_CAN_EXTENDED, HAL_CAN_REMOTE, HAL_CAN_ERROR};
 static const char *const STATE_NAMES[WORLD_STATES] = {"INIT", "STANDBY", "ACTIVE", "TRIPPED", "SAFE"};

@@ -30,16 +30,11 @@ typedef struct {
     int64_t highest;
 } field_t;
 
-#define FLAG(byte, bit)                                                                                                \
-    { byte, bit, 1, 'l', false, false, 1, 0, 0, 1 }
-#define NUMBER(byte, bits, order)                                                                                      \
-    { byte, 1, bits, order, false, false, 1, 0, 0, UINT16_MAX }
-#define ANGLE(byte)                                                                                                    \
-    { byte, 1, 16, 'l', false, false, 1, -9000, -9000, 9000 }
-#define PERMILLE                                                                                                       \
-    { 1, 1, 8, 'l', false, false, 4, 0, 0, 1000 }
-#define WHEEL(byte)                                                                                                    \
-    { byte, 1, 32, 'l', true, false, 1, 0, INT32_MIN, INT32_MAX }
+#define FLAG(byte, bit) {byte, bit, 1, 'l', false, false, 1, 0, 0, 1}
+#define NUMBER(byte, bits, order) {byte, 1, bits, order, false, false, 1, 0, 0, UINT16_MAX}
+#define ANGLE(byte) {byte, 1, 16, 'l', false, false, 1, -9000, -9000, 9000}
+#define PERMILLE {1, 1, 8, 'l', false, false, 4, 0, 0, 1000}
+#define WHEEL(byte) {byte, 1, 32, 'l', true, false, 1, 0, INT32_MIN, INT32_MAX}
 
 static const field_t FIELDS[MESSAGES][FIELDS_MAX] = {
     {FLAG(5, 5), FLAG(5, 6), FLAG(5, 7), {5, 8, 1, 'l', false, true, 1, 0, 0, 1}, NUMBER(8, 8, 'l')}, /* 43Fh */
@@ -47,26 +42,43 @@ static const field_t FIELDS[MESSAGES][FIELDS_MAX] = {
     {PERMILLE},                                                                                       /* 075h */
     {ANGLE(1)},                                                                                       /* 065h */
     {NUMBER(1, 16, 'l'), NUMBER(5, 8, 'l'), NUMBER(6, 8, 'l'), FLAG(7, 1), FLAG(7, 2), FLAG(7, 5), FLAG(7, 6),
-     FLAG(7, 7), FLAG(7, 8), NUMBER(8, 8, 'l')},                                                  /* 363h */
-    {NUMBER(1, 8, 'l')},                                                                          /* 0A3h */
-    {PERMILLE},                                                                                   /* 050h */
-    {NUMBER(1, 8, 'l'), NUMBER(2, 8, 'l'), ANGLE(3), NUMBER(5, 16, 'l'), NUMBER(7, 16, 'l')},     /* 067h */
-    {NUMBER(4, 8, 'l'), NUMBER(8, 8, 'l')},                                                       /* 167h */
-    {NUMBER(1, 16, 'h'), NUMBER(3, 16, 'h'), NUMBER(5, 16, 'h')},                                 /* 267h */
-    {WHEEL(1), WHEEL(5)},                                                                         /* 101h */
+     FLAG(7, 7), FLAG(7, 8), NUMBER(8, 8, 'l')},                                              /* 363h */
+    {NUMBER(1, 8, 'l')},                                                                      /* 0A3h */
+    {PERMILLE},                                                                               /* 050h */
+    {NUMBER(1, 8, 'l'), NUMBER(2, 8, 'l'), ANGLE(3), NUMBER(5, 16, 'l'), NUMBER(7, 16, 'l')}, /* 067h */
+    {NUMBER(4, 8, 'l'), NUMBER(8, 8, 'l')},                                                   /* 167h */
+    {NUMBER(1, 16, 'h'), NUMBER(3, 16, 'h'), NUMBER(5, 16, 'h')},                             /* 267h */
+    {WHEEL(1), WHEEL(5)},                                                                     /* 101h */
 };
 
 /* Bits that are not reserved. */
 static const uint8_t USED[MESSAGES][8] = {
-    {0, 0, 0, 0, 0xF0, 0, 0, 0xFF}, {0xFF},
-    {0xFF},                         {0xFF, 0xFF},
-    {0xFF, 0xFF, 0, 0, 0xBB, 0xFF, 0xF3, 0xFF}, {0xFF},
-    {0xFF},                         {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF},
-    {0, 0, 0, 0xFF, 0, 0, 0, 0xFF}, {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0, 0},
+    {0, 0, 0, 0, 0xF0, 0, 0, 0xFF},
+    {0xFF},
+    {0xFF},
+    {0xFF, 0xFF},
+    {0xFF, 0xFF, 0, 0, 0xBB, 0xFF, 0xF3, 0xFF},
+    {0xFF},
+    {0xFF},
+    {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF},
+    {0, 0, 0, 0xFF, 0, 0, 0, 0xFF},
+    {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0, 0},
     {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF},
 };
 
-enum { M_SIGNALS, M_GEAR, M_THROTTLE, M_STEERING, M_VEHICLE, M_GEAR_S, M_THROTTLE_S, M_STEERING_S, M_EPS, M_POSITION, M_WHEELS };
+enum {
+    M_SIGNALS,
+    M_GEAR,
+    M_THROTTLE,
+    M_STEERING,
+    M_VEHICLE,
+    M_GEAR_S,
+    M_THROTTLE_S,
+    M_STEERING_S,
+    M_EPS,
+    M_POSITION,
+    M_WHEELS
+};
 
 /* ---- The codec, by number ---- */
 
@@ -96,9 +108,9 @@ BOTH_WAYS(vehicle, vehicle_status,
           (s.speed_m_per_h = (uint16_t)v[0], s.level1_alarms = (uint8_t)v[1], s.level2_alarms = (uint8_t)v[2],
            s.button_1 = v[3] != 0, s.button_2 = v[4] != 0, s.turn_left_on = v[5] != 0, s.turn_right_on = v[6] != 0,
            s.manual_mode = v[7] != 0, s.autopilot_mode = v[8] != 0, s.alive_counter = (uint8_t)v[9]),
-          (v[0] = s.speed_m_per_h, v[1] = s.level1_alarms, v[2] = s.level2_alarms, v[3] = s.button_1,
-           v[4] = s.button_2, v[5] = s.turn_left_on, v[6] = s.turn_right_on, v[7] = s.manual_mode,
-           v[8] = s.autopilot_mode, v[9] = s.alive_counter))
+          (v[0] = s.speed_m_per_h, v[1] = s.level1_alarms, v[2] = s.level2_alarms, v[3] = s.button_1, v[4] = s.button_2,
+           v[5] = s.turn_left_on, v[6] = s.turn_right_on, v[7] = s.manual_mode, v[8] = s.autopilot_mode,
+           v[9] = s.alive_counter))
 BOTH_WAYS(gear_s, gear_status, s.gear = (uint8_t)v[0], v[0] = s.gear)
 BOTH_WAYS(throttle_s, throttle_status, s.throttle_permille = (uint16_t)v[0], v[0] = s.throttle_permille)
 BOTH_WAYS(steering_s, steering_status,
@@ -114,8 +126,8 @@ BOTH_WAYS(wheels, wheel_speed, (s.left_mm_s = (int32_t)v[0], s.right_mm_s = (int
           (v[0] = s.left_mm_s, v[1] = s.right_mm_s))
 
 typedef bool both_ways_fn(bool pack, uint8_t data[8], values_t v);
-static both_ways_fn *const CODEC[MESSAGES] = {signals, gear,       throttle,   steering, vehicle, gear_s,
-                                              throttle_s, steering_s, eps, position, wheels};
+static both_ways_fn *const CODEC[MESSAGES] = {signals,    gear,       throttle, steering, vehicle, gear_s,
+                                              throttle_s, steering_s, eps,      position, wheels};
 
 /* ---- The same by hand ---- */
 

@@ -18,15 +18,16 @@ static const uint8_t STATES[5] = {AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_STATE_A
 static oracle_t make_oracle(const agv_gate_t *gate) {
     const agv_config_t *config = gate->config;
     const bool table = config->id_set == (uint16_t)AGV_ID_SET_TABLE;
-    const bool unlatched = (gate->state == AGV_STATE_INIT) || (gate->state == AGV_STATE_STANDBY) ||
-                           (gate->state == AGV_STATE_ACTIVE);
+    const bool unlatched =
+        (gate->state == AGV_STATE_INIT) || (gate->state == AGV_STATE_STANDBY) || (gate->state == AGV_STATE_ACTIVE);
     return (oracle_t){.gateway = config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY,
                       .pass_all_in_manual = config->gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL,
                       .signal_id = table ? 0x201u : 0x43Fu,
                       .vehicle_id = table ? 0x203u : 0x363u,
                       .own_status_id = config->status_frame_id,
                       .latched = !unlatched,
-                      .held = !unlatched && (gate->hold_check == (0xFFFFu ^ gate->hold_raw)) && (gate->hold_raw <= 18000u),
+                      .held = !unlatched && ((unsigned)gate->hold_check + gate->hold_raw == 0xFFFFu) &&
+                              (gate->hold_raw <= 18000u),
                       .held_raw = gate->hold_raw};
 }
 
@@ -81,8 +82,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     const bool allows = agv_gate_allows(&gate, side, &frame);
     if (allows != expected(&gate, side, &frame)) {
         (void)fprintf(stderr, "the gate %s in state %02Xh to side %d: %03X, length %u, flags %X, %02X %02X .. %02X\n",
-                      allows ? "allows" : "refuses", gate.state, (int)side, (unsigned)frame.id, frame.length, frame.flags,
-                      frame.data[0], frame.data[1], frame.data[4]);
+                      allows ? "allows" : "refuses", gate.state, (int)side, (unsigned)frame.id, frame.length,
+                      frame.flags, frame.data[0], frame.data[1], frame.data[4]);
         abort();
     }
     return 0;

@@ -11,8 +11,8 @@
 
 static void check_rooms(const scenario_t *scenario) {
     const scenario_expect_t *expect = &scenario->expect;
-    const size_t counts[] = {expect->states.count, expect->frames.count,   expect->never.count,   expect->outputs.count,
-                             expect->leds.count,   expect->faults.count,   expect->resets.count,  expect->startups.count,
+    const size_t counts[] = {expect->states.count,  expect->frames.count,  expect->never.count,  expect->outputs.count,
+                             expect->leds.count,    expect->faults.count,  expect->resets.count, expect->startups.count,
                              expect->vehicle.count, expect->counters.count};
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
         if (counts[i] > SCENARIO_EXPECT_MAX) {

@@ -26,12 +26,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     input_bytes(&input, (uint8_t *)line, input.left);
     line[size > 0u ? size - 1u : 0u] = '\0';
     said_begin();
-    const bool good = ((how & 1u) != 0u) ? vehicle_words_typed(line, &config, words)
-                                         : vehicle_words_fault(line, &config, words);
+    const bool good =
+        ((how & 1u) != 0u) ? vehicle_words_typed(line, &config, words) : vehicle_words_fault(line, &config, words);
     const char *said = said_end();
     if (!good) {
         said_one_line(said);
-    } else if ((said[0] != '\0') || (memchr(words->what, '\0', sizeof words->what) == NULL) || !words->step.of_vehicle) {
+    } else if ((said[0] != '\0') || (memchr(words->what, '\0', sizeof words->what) == NULL) ||
+               !words->step.of_vehicle) {
         said_fail("taken, and something was said, or it is no step of the vehicle", said);
     } else {
         /* a step */

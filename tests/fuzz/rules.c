@@ -71,6 +71,7 @@ void rules_init(rules_t *rules, const agv_config_t *config) {
 
 /* Nothing of before counts, but for what was judged. */
 static void forget(rules_t *rules, uint64_t now_ms) {
+    rules->ticked_ms = now_ms;
     rules->vcu = (rules_beat_t){.changed_ms = now_ms};
     rules->eps = (rules_beat_t){.changed_ms = now_ms};
     for (int i = 0; i < RULES_STATUS; i++) {
@@ -90,7 +91,6 @@ static void forget(rules_t *rules, uint64_t now_ms) {
     rules->confirmed_off = false;
     rules->commanding_ms = now_ms;
     rules->own_counter_known = false;
-    rules->unresettable = false;
     oracle_restart(&rules->oracle);
 }
 
@@ -151,8 +151,8 @@ static void hear_button(rules_t *rules, bool down, uint64_t stamp_ms) {
 }
 
 static bool is_fast(const uint8_t *data) {
-    const uint32_t raw = (uint32_t)data[0] | ((uint32_t)data[1] << 8u) | ((uint32_t)data[2] << 16u) |
-                         ((uint32_t)data[3] << 24u);
+    const uint32_t raw =
+        (uint32_t)data[0] | ((uint32_t)data[1] << 8u) | ((uint32_t)data[2] << 16u) | ((uint32_t)data[3] << 24u);
     const uint32_t amount = (raw < 0x80000000u) ? raw : (0u - raw);
     return amount >= (uint32_t)SLOW_MM_S;
 }
@@ -335,7 +335,8 @@ static uint64_t age_ms(const rules_t *rules, uint64_t then_ms) {
 static void judge_silence(rules_t *rules) {
     static const uint64_t LIMITS[RULES_STATUS] = {HEARTBEAT_MS, GEAR_STATUS_MS, STATUS_MS, HEARTBEAT_MS,
                                                   STATUS_MS,    UINT64_MAX,     STATUS_MS}; /* 267h only warns */
-    if ((age_ms(rules, rules->vcu.changed_ms) > HEARTBEAT_MS) || (age_ms(rules, rules->eps.changed_ms) > HEARTBEAT_MS)) {
+    if ((age_ms(rules, rules->vcu.changed_ms) > HEARTBEAT_MS) ||
+        (age_ms(rules, rules->eps.changed_ms) > HEARTBEAT_MS)) {
         broken(rules, "SUP-2: the heartbeat of the VCU is %u ms old, of the EPS %u ms, and it has not tripped",
                (unsigned)age_ms(rules, rules->vcu.changed_ms), (unsigned)age_ms(rules, rules->eps.changed_ms));
     }
@@ -373,8 +374,10 @@ static void judge_reset(rules_t *rules) {
         missing = "manual for a second";
     } else if (age_ms(rules, rules->fast_ms) < RESET_MS) {
         missing = "standstill for a second";
-    } else if (rules->unresettable) {
-        missing = "a power-on";
+    } else if ((rules->ticked_ms > rules->vcu.changed_ms + HEARTBEAT_MS) ||
+               (rules->ticked_ms > rules->eps.changed_ms + HEARTBEAT_MS)) {
+        /* of the last tick: only ticks look at deadlines */
+        missing = "a VCU and an EPS that are alive";
     } else {
         return;
     }
@@ -430,7 +433,8 @@ static void judge_output(rules_t *rules, const rules_seen_t *seen, bool tick) {
     if (tick && rules->bus.is_bus_off) {
         broken(rules, "FSM-4: the safety output is closed in bus-off");
     }
-    if (tick && is_latched(seen->state) && !rules->confirmed_off && (age_ms(rules, rules->unconfirmed_ms) > CONFIRM_MS)) {
+    if (tick && is_latched(seen->state) && !rules->confirmed_off &&
+        (age_ms(rules, rules->unconfirmed_ms) > CONFIRM_MS)) {
         broken(rules, "FSM-4: the safety output is closed, and the vehicle has confirmed nothing");
     }
 }
@@ -457,6 +461,9 @@ static void judge_sending(rules_t *rules, const rules_seen_t *seen, uint64_t tic
 
 void rules_returned(rules_t *rules, const rules_seen_t *seen, bool tick, uint64_t tick_gap_ms) {
     rules->calls++;
+    if (tick) {
+        rules->ticked_ms = rules->now_ms;
+    }
     judge_state(rules, seen);
     judge_output(rules, seen, tick);
     if (tick && is_supervising(seen->state)) {

@@ -55,6 +55,7 @@ typedef struct {
     uint8_t throttle_max;
 
     uint64_t now_ms;
+    uint64_t ticked_ms; /* the last tick */
     rules_seen_t last; /* what was seen after the call before */
     rules_bus_t bus;
 
@@ -74,14 +75,13 @@ typedef struct {
     uint64_t manual_ms;
     uint64_t fast_ms; /* when a wheel was last seen turning */
     uint64_t safe_ms; /* SAFE since */
-    bool unresettable;
 
     /* for the safety output */
     uint64_t unconfirmed_ms; /* since the trip, or since a confirmation was withdrawn */
     bool confirmed_off;      /* since then a 363h without autopilot mode came */
 
     /* for the sending */
-    uint8_t sent_now; /* bits of the commands that left in this call, safe or passed */
+    uint8_t sent_now;       /* bits of the commands that left in this call, safe or passed */
     uint64_t commanding_ms; /* the state sends safe commands, and the bus takes them, since */
     uint64_t sent_ms[RULES_COMMANDS];
     bool answer_owed[RULES_COMMANDS];
