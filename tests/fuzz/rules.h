@@ -56,7 +56,7 @@ typedef struct {
 
     uint64_t now_ms;
     uint64_t ticked_ms; /* the last tick */
-    rules_seen_t last; /* what was seen after the call before */
+    rules_seen_t last;  /* what was seen after the call before */
     rules_bus_t bus;
 
     rules_beat_t vcu;
