@@ -43,9 +43,11 @@ static void any_frame(input_t *input, unsigned how) {
 
 static void change_message(input_t *input, unsigned how) {
     world_message_t *m = &world.traffic[input_byte(input) % (unsigned)WORLD_MESSAGES];
+    uint8_t where = 0;
     switch (how & 3u) {
     case 0:
-        m->data[(how >> 2u) | ((unsigned)input_byte(input) & 4u)] = input_byte(input);
+        where = (uint8_t)((how >> 2u) | (input_byte(input) & 4u));
+        m->data[where] = input_byte(input);
         break;
     case 1:
         m->muted = !m->muted;
