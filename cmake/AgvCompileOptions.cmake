@@ -1,8 +1,8 @@
 # How this project's own code is compiled. Link `agv_options` (PRIVATE) to get it; generated and foreign code does not.
 
 option(AGV_WARNINGS_AS_ERRORS "Warnings in the project's own code are errors" ON)
-set(AGV_INSTRUMENT "" CACHE STRING "Instrumentation: empty, sanitize or coverage")
-set_property(CACHE AGV_INSTRUMENT PROPERTY STRINGS "" sanitize coverage)
+set(AGV_INSTRUMENT "" CACHE STRING "Instrumentation: empty, sanitize, coverage or fuzz")
+set_property(CACHE AGV_INSTRUMENT PROPERTY STRINGS "" sanitize coverage fuzz)
 
 add_library(agv_options INTERFACE)
 target_compile_options(agv_options INTERFACE
@@ -27,6 +27,14 @@ if(AGV_INSTRUMENT STREQUAL "sanitize")
 elseif(AGV_INSTRUMENT STREQUAL "coverage")
   add_compile_options(--coverage)
   add_link_options(--coverage)
+elseif(AGV_INSTRUMENT STREQUAL "fuzz")
+  if(NOT CMAKE_C_COMPILER_ID STREQUAL "Clang")
+    message(FATAL_ERROR "AGV_INSTRUMENT is fuzz: only clang has libFuzzer")
+  endif()
+  # strict: an array at the end of a struct has bounds too
+  add_compile_options(-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+    -fstrict-flex-arrays=3)
+  add_link_options(-fsanitize=address,undefined)
 elseif(NOT AGV_INSTRUMENT STREQUAL "")
-  message(FATAL_ERROR "AGV_INSTRUMENT is '${AGV_INSTRUMENT}': it must be empty, sanitize or coverage")
+  message(FATAL_ERROR "AGV_INSTRUMENT is '${AGV_INSTRUMENT}': it must be empty, sanitize, coverage or fuzz")
 endif()

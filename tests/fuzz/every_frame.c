@@ -1,0 +1,193 @@
+/*
+ * All 2,048 identifiers by every length, on each side, with several payloads, in each state of each variant of the
+ * configuration (world.h): exhaustively, not by chance, against the rules of rules.h. And what is no whole message of the
+ * protocol from the side where it belongs has to leave no trace but in the counters (INT-2): after it, and after the
+ * ticks that follow, everything is as without it, but for the answer to a command of another (TOP-1).
+ *
+ * usage: every_frame [PAYLOADS]     only the first so many payloads, for slow builds
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "world.h"
+
+enum { ID_COUNT = 0x800, PATTERNS = 6, TICKS = 8, LENGTHS = 11, KINDS = 4 };
+
+static const uint8_t LENGTH_OF[LENGTHS] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 64};
+
+/* Each byte of them in each place; alarms and faults, modes, gears, values out of range, the own safe commands. */
+static const uint8_t PATTERN[PATTERNS][8] = {
+    {0, 0, 0, 0, 0, 0, 0, 0},
+    {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF},
+    {1, 0, 0, 1, 0, 0, 0x80, 1},
+    {8, 0, 0, 0, 0x70, 0, 0, 0x55},
+    {0x51, 0x46, 0x51, 0x46, 0x08, 0, 0x41, 0xAA},
+    {0x28, 0x23, 0x28, 0x23, 0, 1, 0xC0, 0x10},
+};
+static const uint8_t KIND[KINDS] = {0, HAL_CAN_EXTENDED, HAL_CAN_REMOTE, HAL_CAN_ERROR};
+static const char *const STATE_NAMES[WORLD_STATES] = {"INIT", "STANDBY", "ACTIVE", "TRIPPED", "SAFE"};
+
+/* What a frame must not change. */
+typedef struct {
+    agv_state_t state;
+    agv_fault_t first_reason;
+    agv_fault_set_t active;
+    bool output_closed;
+    int8_t led;
+    uint64_t sent;
+} trace_t;
+
+static uint64_t cases;
+static uint64_t without_trace;
+static uint64_t tripped;
+
+static trace_t look(void) {
+    return (trace_t){.state = agv_supervisor_state(&world.supervisor),
+                     .first_reason = agv_supervisor_first_reason(&world.supervisor),
+                     .active = agv_supervisor_active_faults(&world.supervisor),
+                     .output_closed = world.hal.safety_output.on,
+                     .led = agv_supervisor_led_code(&world.supervisor),
+                     .sent = world.rules.sent};
+}
+
+static bool is_same(const trace_t *a, const trace_t *b, bool answered) {
+    return (a->state == b->state) && (a->first_reason == b->first_reason) && (a->active == b->active) &&
+           (a->output_closed == b->output_closed) && (a->led == b->led) && (answered || (a->sent == b->sent));
+}
+
+/* The parts of the world that a supervisor changes; the recorder and the log only tell. */
+typedef struct {
+    agv_supervisor_t supervisor;
+    struct hal hal;
+    rules_t rules;
+    uint64_t now_ms;
+    uint64_t ticked_ms;
+} kept_t;
+
+static void keep(kept_t *kept) {
+    *kept = (kept_t){.supervisor = world.supervisor,
+                     .hal = world.hal,
+                     .rules = world.rules,
+                     .now_ms = world.now_ms,
+                     .ticked_ms = world.ticked_ms};
+}
+
+static void put_back(const kept_t *kept) {
+    world.supervisor = kept->supervisor;
+    world.hal = kept->hal;
+    world.rules = kept->rules;
+    world.now_ms = kept->now_ms;
+    world.ticked_ms = kept->ticked_ms;
+}
+
+static void ticks(unsigned count) {
+    for (unsigned i = 0; i < count; i++) {
+        world_jump(1);
+    }
+}
+
+static bool is_one_of(uint32_t id, const uint16_t *ids, unsigned count) {
+    for (unsigned i = 0; i < count; i++) {
+        if (ids[i] == id) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool is_command(uint32_t id) {
+    const uint16_t ids[] = {(uint16_t)world.rules.oracle.signal_id, 0x168, 0x075, 0x065};
+    return is_one_of(id, ids, 4);
+}
+
+static bool is_status(uint32_t id) {
+    const uint16_t ids[] = {(uint16_t)world.rules.oracle.vehicle_id, 0x0A3, 0x050, 0x067, 0x167, 0x267, 0x101};
+    return is_one_of(id, ids, 7);
+}
+
+/* Whether it is a message, whole, on a side where it says something; a command on the wrong side is an intrusion. */
+static bool says_something(hal_can_side_t side, const hal_can_frame_t *frame) {
+    const bool gateway = world.rules.oracle.gateway;
+    if ((frame->flags != 0u) || (frame->length != 8u) || (!gateway && (side == HAL_CAN_AI))) {
+        return false;
+    }
+    return is_command(frame->id) || ((side == HAL_CAN_VEHICLE) && is_status(frame->id));
+}
+
+static void fail(const char *what, hal_can_side_t side, const hal_can_frame_t *frame) {
+    (void)fprintf(stderr, "%s: side %d, %03X, flags %X, length %u, %02X %02X %02X %02X ..\n", what, (int)side,
+                  (unsigned)frame->id, frame->flags, frame->length, frame->data[0], frame->data[1], frame->data[2],
+                  frame->data[3]);
+    exit(1);
+}
+
+static void try_frame(const kept_t *kept, const trace_t *without, hal_can_side_t side, const hal_can_frame_t *frame) {
+    put_back(kept);
+    cases++;
+    world_frame(side, *frame, 1);
+    const bool speaks = says_something(side, frame);
+    const bool answered = is_command(frame->id) && (side == HAL_CAN_VEHICLE) &&
+                          ((frame->flags & (HAL_CAN_EXTENDED | HAL_CAN_REMOTE | HAL_CAN_ERROR)) == 0u);
+    world_jump(0);
+    ticks(speaks || answered ? TICKS : 0);
+    if (speaks) {
+        tripped += ((without->state != AGV_STATE_TRIPPED) && (look().state == AGV_STATE_TRIPPED)) ? 1u : 0u;
+        return;
+    }
+    const trace_t with = look();
+    if (answered) {
+        put_back(kept);
+        ticks(TICKS + 1u);
+    }
+    const trace_t compared = answered ? look() : *without;
+    if (!is_same(&compared, &with, answered)) {
+        fail("it left a trace", side, frame);
+    }
+    without_trace++;
+}
+
+static void try_id(const kept_t *kept, const trace_t *without, uint32_t id, unsigned payloads) {
+    for (unsigned i = 0; i < (unsigned)LENGTHS * payloads * HAL_CAN_SIDES; i++) {
+        const uint8_t length = LENGTH_OF[i % LENGTHS];
+        const uint8_t *pattern = PATTERN[(i / LENGTHS) % payloads];
+        const hal_can_side_t side = (hal_can_side_t)(i / ((unsigned)LENGTHS * payloads));
+        hal_can_frame_t frame = {.id = id, .length = length, .flags = (length > 9u) ? HAL_CAN_FD : 0u};
+        memcpy(frame.data, pattern, (length < 8u) ? length : 8u);
+        try_frame(kept, without, side, &frame);
+    }
+    for (unsigned kind = 1; kind < (unsigned)KINDS; kind++) {
+        hal_can_frame_t frame = {.id = id, .length = 8, .flags = KIND[kind]};
+        memcpy(frame.data, PATTERN[1], 8);
+        try_frame(kept, without, HAL_CAN_VEHICLE, &frame);
+    }
+}
+
+static void try_state(unsigned variant, unsigned state, unsigned payloads) {
+    static kept_t kept;
+    const uint64_t before = cases;
+    world_load(variant, state);
+    keep(&kept);
+    ticks(1);
+    const trace_t without = look();
+    for (uint32_t id = 0; id < ID_COUNT; id++) {
+        try_id(&kept, &without, id, payloads);
+    }
+    (void)printf("variant %u, %-8s %8llu frames\n", variant, STATE_NAMES[state], (unsigned long long)(cases - before));
+}
+
+int main(int argc, char **argv) {
+    const unsigned long payloads = (argc > 1) ? strtoul(argv[1], NULL, 10) : PATTERNS;
+    if ((payloads == 0u) || (payloads > PATTERNS)) {
+        (void)fprintf(stderr, "usage: every_frame [PAYLOADS]\n");
+        return 2;
+    }
+    for (unsigned variant = 0; variant < (unsigned)WORLD_VARIANTS; variant++) {
+        for (unsigned state = 0; state < (unsigned)WORLD_STATES; state++) {
+            try_state(variant, state, (unsigned)payloads);
+        }
+    }
+    (void)printf("%llu frames: all identifiers, lengths and sides; %llu of them left no trace, %llu tripped\n",
+                 (unsigned long long)cases, (unsigned long long)without_trace, (unsigned long long)tripped);
+    return (tripped > 0u) ? 0 : 1;
+}

@@ -1,0 +1,66 @@
+/*
+ * The reader of configurations. What it refuses it tells in one line, with the line of the file; what it takes is in range,
+ * and is the same configuration when it is printed and read again.
+ */
+#include <string.h>
+
+#include "agv/names.h"
+#include "config_file.h"
+#include "config_text.h"
+#include "input.h"
+#include "said.h"
+
+static bool read_once(const char *path, agv_config_t *config) {
+    config_lines_t lines;
+    memset(config, 0, sizeof *config);
+    agv_config_defaults(config);
+    return config_file_load(path, config, &lines) && config_check(config, &lines);
+}
+
+static void check_ranges(const agv_config_t *config) {
+    for (uint16_t i = 0; i < (uint16_t)AGV_SETTING_COUNT; i++) {
+        const agv_setting_info_t *info = agv_setting_info(i);
+        const uint16_t value = agv_config_get(config, i);
+        if ((value < info->lowest) || (value > info->highest)) {
+            said_fail("a setting out of range was taken", info->name);
+        }
+    }
+}
+
+static void print_and_read(const agv_config_t *config) {
+    agv_config_t again;
+    size_t size = 0;
+    said_begin();
+    config_print_yaml(config);
+    (void)said_end();
+    const char *text = said_out(&size);
+    const char *path = said_file((const uint8_t *)text, size);
+    said_begin();
+    const bool good = read_once(path, &again);
+    const char *said = said_end();
+    if (!good || (agv_config_checksum(&again) != agv_config_checksum(config))) {
+        said_fail("printed and read it is another configuration", said);
+    }
+    said_begin();
+    config_print_kconfig(config);
+    config_note_deviations(config);
+    (void)said_end();
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    const char *path = said_file(data, size);
+    agv_config_t config;
+    said_begin();
+    const bool good = read_once(path, &config);
+    const char *said = said_end();
+    if (!good) {
+        (void)said_line(said, path, said_yaml_lines(data, size));
+        return 0;
+    }
+    if (said[0] != '\0') {
+        said_fail("taken, and something was said", said);
+    }
+    check_ranges(&config);
+    print_and_read(&config);
+    return 0;
+}

@@ -1,0 +1,90 @@
+/*
+ * The gate alone: any state code, configuration, held angle and frame. It has to say exactly what oracle.h says, which is
+ * written by hand from FSM-6, TOP-1 and TOP-2; a gate that lets one frame more through, or one less, is found.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "agv/gate.h"
+#include "agv/protocol.h"
+#include "input.h"
+#include "oracle.h"
+
+static const uint16_t IDS[16] = {0x43F, 0x168, 0x075, 0x065, 0x363, 0x0A3, 0x050, 0x067,
+                                 0x167, 0x267, 0x101, 0x201, 0x203, 0x700, 0x7FF, 0x000};
+static const uint8_t STATES[5] = {AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_STATE_ACTIVE, AGV_STATE_TRIPPED,
+                                  AGV_STATE_SAFE};
+
+static oracle_t make_oracle(const agv_gate_t *gate) {
+    const agv_config_t *config = gate->config;
+    const bool table = config->id_set == (uint16_t)AGV_ID_SET_TABLE;
+    const bool unlatched =
+        (gate->state == AGV_STATE_INIT) || (gate->state == AGV_STATE_STANDBY) || (gate->state == AGV_STATE_ACTIVE);
+    return (oracle_t){.gateway = config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY,
+                      .pass_all_in_manual = config->gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL,
+                      .signal_id = table ? 0x201u : 0x43Fu,
+                      .vehicle_id = table ? 0x203u : 0x363u,
+                      .own_status_id = config->status_frame_id,
+                      .latched = !unlatched,
+                      .held = !unlatched && ((unsigned)gate->hold_check + gate->hold_raw == 0xFFFFu) &&
+                              (gate->hold_raw <= 18000u),
+                      .held_raw = gate->hold_raw};
+}
+
+static bool expected(const agv_gate_t *gate, hal_can_side_t side, const hal_can_frame_t *frame) {
+    oracle_t oracle = make_oracle(gate);
+    const uint32_t most = gate->config->throttle_ceiling_pct * 250u / 100u;
+    oracle_sent(&oracle, side, frame, (agv_state_t)gate->state);
+    const bool too_much = (side == HAL_CAN_VEHICLE) && (frame->id == 0x075u) && (gate->state == AGV_STATE_ACTIVE) &&
+                          (frame->data[0] > most);
+    return (oracle.forbidden == 0u) && !too_much;
+}
+
+static void read_config(input_t *input, agv_config_t *config) {
+    const uint8_t bits = input_byte(input);
+    agv_config_defaults(config);
+    config->topology = bits & 1u;
+    config->id_set = (bits >> 1u) & 1u;
+    config->gateway_in_manual = (bits >> 2u) & 1u;
+    config->throttle_ceiling_pct = ((bits & 8u) != 0u) ? (uint16_t)(input_byte(input) % 101u) : 100u;
+    config->status_frame_id = ((bits & 16u) != 0u) ? 0x700u : 0u;
+}
+
+static void read_frame(input_t *input, hal_can_frame_t *frame) {
+    const uint8_t which = input_byte(input);
+    *frame = (hal_can_frame_t){.id = IDS[which & 15u], .length = 8};
+    if ((which & 0x10u) != 0u) {
+        frame->id = input_word(input);
+    }
+    if ((which & 0x20u) != 0u) {
+        frame->length = input_byte(input) % 65u;
+        frame->flags = input_byte(input) & 15u;
+    }
+    input_bytes(input, frame->data, sizeof frame->data);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    input_t input = {.at = data, .left = size};
+    agv_config_t config;
+    hal_can_frame_t frame;
+    const uint8_t state = input_byte(&input);
+    const uint8_t more = input_byte(&input);
+    const hal_can_side_t side = (hal_can_side_t)(more & 1u);
+    read_config(&input, &config);
+    agv_gate_t gate = {.config = &config, .state = (state < 200u) ? STATES[state % 5u] : state};
+    gate.hold_raw = input_word(&input);
+    gate.hold_check = ((more & 2u) != 0u) ? input_word(&input) : (uint16_t)~gate.hold_raw;
+    read_frame(&input, &frame);
+    if ((more & 4u) != 0u) {
+        frame.data[0] = (uint8_t)gate.hold_raw;
+        frame.data[1] = (uint8_t)(gate.hold_raw >> 8u);
+    }
+    const bool allows = agv_gate_allows(&gate, side, &frame);
+    if (allows != expected(&gate, side, &frame)) {
+        (void)fprintf(stderr, "the gate %s in state %02Xh to side %d: %03X, length %u, flags %X, %02X %02X .. %02X\n",
+                      allows ? "allows" : "refuses", gate.state, (int)side, (unsigned)frame.id, frame.length,
+                      frame.flags, frame.data[0], frame.data[1], frame.data[4]);
+        abort();
+    }
+    return 0;
+}

@@ -1,0 +1,158 @@
+/*
+ * The reader of candump logs. Which lines are frames is said once more by two regular expressions, from the page of the
+ * format; every other line that is not blank is refused (byte 1 even) with its number, or skipped and counted (odd).
+ * A classic frame is written and read again.
+ */
+#include <regex.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "candump_log.h"
+#include "input.h"
+#include "said.h"
+
+#define HEX "[0-9A-Fa-f]"
+#define BYTES8 "(" HEX HEX "){8}"
+/* Classic and remote, or FD; but for the error frames, which have bit 29 of the identifier set, neither remote nor FD. */
+#define DATA "((" HEX HEX "){0,7}|" BYTES8 "(_[9A-Fa-f])?)"
+#define REMOTE "R([0-7]|8(_[9A-Fa-f])?)?"
+#define FD "#" HEX "(" HEX HEX "){0,64}"
+#define FRAME "([0-7]" HEX HEX "|[01]" HEX HEX HEX HEX HEX HEX HEX ")#(" DATA "|" REMOTE "|" FD ")"
+#define ERROR "[23]" HEX HEX HEX HEX HEX HEX HEX "#" DATA
+#define LINE "^\\([0-9]{1,12}\\.([0-9]{6}|[0-9]{9})\\) +[!-~]{1,15} (" FRAME "|" ERROR ")( [RT])?\r?$"
+
+enum { LINE_MAX_CHARACTERS = 255 };
+
+static candump_log_t *log_file;
+static regex_t grammar;
+
+static void prepare(void) {
+    if (log_file == NULL) {
+        log_file = malloc(sizeof *log_file);
+        if ((log_file == NULL) || (regcomp(&grammar, LINE, REG_EXTENDED | REG_NOSUB) != 0)) {
+            said_fail("regcomp", LINE);
+        }
+    }
+}
+
+static bool is_blank(const char *line, size_t length) {
+    for (size_t i = 0; i < length; i++) {
+        if ((line[i] != ' ') && (line[i] != '\t') && (line[i] != '\r')) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* 'f' a frame, 'b' blank, 'x' neither. */
+static char kind_of(const char *line, size_t length) {
+    char text[LINE_MAX_CHARACTERS + 1];
+    if (length > LINE_MAX_CHARACTERS) {
+        return 'x';
+    }
+    if (is_blank(line, length)) {
+        return 'b';
+    }
+    if (memchr(line, '\0', length) != NULL) {
+        return 'x';
+    }
+    memcpy(text, line, length);
+    text[length] = '\0';
+    return (regexec(&grammar, text, 0, NULL, 0) == 0) ? 'f' : 'x';
+}
+
+static void check_record(const candump_record_t *record) {
+    const hal_can_frame_t *frame = &record->frame;
+    const bool is_long = (frame->flags & HAL_CAN_FD) != 0u;
+    const bool is_standard = (frame->flags & (HAL_CAN_EXTENDED | HAL_CAN_ERROR)) == 0u;
+    if ((frame->id > (is_standard ? 0x7FFu : 0x1FFFFFFFu)) || (frame->length > (is_long ? 64u : 8u))) {
+        said_fail("a frame that no bus has", log_file->name);
+    }
+    for (unsigned i = ((frame->flags & HAL_CAN_REMOTE) != 0u) ? 0u : frame->length; i < 8u; i++) {
+        if (frame->data[i] != 0u) {
+            said_fail("bytes beyond the length of a frame", log_file->name);
+        }
+    }
+}
+
+/* Only what candump_write() is for: classic data frames. */
+static void write_and_read(const candump_record_t *record) {
+    char interface[CANDUMP_INTERFACE_MAX + 1u] = {0};
+    char *line = malloc(CANDUMP_WRITE_MAX);
+    candump_record_t again;
+    if ((record->frame.flags & (uint8_t)~HAL_CAN_EXTENDED) == 0u) {
+        memcpy(interface, record->interface, record->interface_length);
+        const size_t length = candump_write(line, record->stamp_us, interface, &record->frame);
+        if ((length > CANDUMP_WRITE_MAX) || (line[length - 1u] != '\n')) {
+            said_fail("written without an end", interface);
+        }
+        if ((candump_parse(line, length - 1u, &again) != NULL) || (again.stamp_us != record->stamp_us) ||
+            (memcmp(&again.frame, &record->frame, sizeof again.frame) != 0) ||
+            (again.interface_length != record->interface_length)) {
+            said_fail("written and read it is another frame", interface);
+        }
+    }
+    free(line);
+}
+
+/* What the reader has to do with a line that is not blank. Returns whether it goes on. */
+static bool check_line(char kind, size_t number, bool skip) {
+    candump_record_t record;
+    const uint64_t skipped = log_file->skipped;
+    if (kind == 'x') {
+        return skip;
+    }
+    const candump_result_t result = candump_next(log_file, &record);
+    if ((result != CANDUMP_RECORD) || (log_file->line != number) || (log_file->skipped < skipped)) {
+        said_fail("a frame was not read", log_file->name);
+    }
+    check_record(&record);
+    write_and_read(&record);
+    return true;
+}
+
+/* Walk through the text and the reader side by side. Returns the number of the line that ends it, 0: none does. */
+static size_t walk(const char *text, size_t size, bool skip, uint64_t *bad) {
+    size_t number = 0;
+    for (size_t at = 0; at < size;) {
+        const char *end = memchr(&text[at], '\n', size - at);
+        const size_t length = (end != NULL) ? (size_t)(end - &text[at]) : (size - at);
+        const char kind = kind_of(&text[at], length);
+        number++;
+        at += length + 1u;
+        *bad += (kind == 'x') ? 1u : 0u;
+        if ((kind != 'b') && !check_line(kind, number, skip)) {
+            return number;
+        }
+    }
+    return 0;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    input_t input = {.at = data, .left = size};
+    const bool skip = (input_byte(&input) & 1u) != 0u;
+    const char *path = said_file(input.at, input.left);
+    uint64_t bad = 0;
+    candump_record_t record;
+    prepare();
+    said_begin();
+    const bool opened = candump_open(log_file, path, skip);
+    const size_t wrong = opened ? walk((const char *)input.at, input.left, skip, &bad) : 0u;
+    const candump_result_t last = candump_next(log_file, &record);
+    candump_close(log_file);
+    const char *said = said_end();
+    if (!opened || (last != ((wrong != 0u) ? CANDUMP_FAILED : CANDUMP_END))) {
+        said_fail("the log does not end where it ends", said);
+    }
+    if (wrong != 0u) {
+        if (said_line(said, path, wrong) != wrong) {
+            said_fail("the wrong line is named", said);
+        }
+    } else if ((said[0] != '\0') || (log_file->skipped != bad)) {
+        said_fail("nothing was wrong, or it was counted wrongly", said);
+    } else {
+        return 0;
+    }
+    return 0;
+}

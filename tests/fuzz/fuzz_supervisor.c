@@ -1,0 +1,160 @@
+/*
+ * Frames and ticks in any order, from any state, against the rules of rules.h.
+ *
+ * Byte 1: the state to begin in; byte 2: the variant of the configuration. Then steps, one byte what is done (lower half)
+ * and how (upper half), and what that needs.
+ */
+#include "input.h"
+#include "world.h"
+
+enum { STEPS_MAX = 64, RUN_MAX_MS = 3000 };
+
+static const uint16_t IDS[16] = {0x43F, 0x168, 0x075, 0x065, 0x363, 0x0A3, 0x050, 0x067,
+                                 0x167, 0x267, 0x101, 0x201, 0x203, 0x700, 0x001, 0x000};
+
+static uint32_t ran_ms; /* an input does not run for longer than RUN_MAX_MS in all */
+
+static void run(uint32_t ms) {
+    const uint32_t left = RUN_MAX_MS - ran_ms;
+    const uint32_t now = (ms < left) ? ms : left;
+    ran_ms += now;
+    world_run(now);
+}
+
+/* Any frame: how & 1 the AI side, how & 2 any identifier, how & 4 any kind and length, how & 8 another stamp. */
+static void any_frame(input_t *input, unsigned how) {
+    hal_can_frame_t frame = {.length = 8};
+    const uint8_t which = input_byte(input);
+    int32_t ahead_ms = 0;
+    frame.id = IDS[which & 15u];
+    if ((how & 2u) != 0u) {
+        frame.id = ((uint32_t)which | ((uint32_t)input_byte(input) << 8u)) & 0x7FFu;
+    }
+    if ((how & 4u) != 0u) {
+        frame.flags = input_byte(input) & 0x0Fu;
+        frame.length = input_byte(input) % 65u;
+    }
+    if ((how & 8u) != 0u) {
+        ahead_ms = (int8_t)input_byte(input);
+    }
+    input_bytes(input, frame.data, (frame.length < 8u) ? frame.length : 8u);
+    world_frame(((how & 1u) != 0u) ? HAL_CAN_AI : HAL_CAN_VEHICLE, frame, ahead_ms);
+}
+
+static void change_message(input_t *input, unsigned how) {
+    world_message_t *m = &world.traffic[input_byte(input) % (unsigned)WORLD_MESSAGES];
+    uint8_t where = 0;
+    switch (how & 3u) {
+    case 0:
+        where = (uint8_t)((how >> 2u) | (input_byte(input) & 4u));
+        m->data[where] = input_byte(input);
+        break;
+    case 1:
+        m->muted = !m->muted;
+        break;
+    case 2:
+        m->frozen = !m->frozen;
+        break;
+    default:
+        m->flags = (how >> 2u) == 3u ? input_byte(input) & 15u : 0u;
+        m->length = input_byte(input) % 65u;
+        break;
+    }
+}
+
+/* The vehicle as a whole. */
+static void change_vehicle(unsigned how) {
+    switch (how & 7u) {
+    case 0:
+        world_heal();
+        break;
+    case 1: /* drives on autopilot */
+        world_mode(0x80);
+        world_gear(1);
+        world_wheels(200);
+        break;
+    case 2: /* obeys */
+        world_mode(0x40);
+        world_gear(8);
+        world_wheels(0);
+        break;
+    case 3:
+        world_button(true);
+        break;
+    case 4:
+        world_button(false);
+        break;
+    case 5:
+        world_mode(0xC0);
+        break;
+    case 6:
+        world_mode(0x00);
+        break;
+    default:
+        world.receive_path_dead = (how & 8u) != 0u;
+        break;
+    }
+}
+
+static void long_silence(input_t *input, unsigned how) {
+    const uint32_t days[4] = {1, 1000, 86400000, 1000000000}; /* in ms; in one step less than half of the clock */
+    world_jump(days[how & 3u] * (1u + (input_byte(input) & 1u)));
+}
+
+static void step(input_t *input) {
+    const unsigned what = input_byte(input);
+    const unsigned how = what >> 4u;
+    switch (what & 15u) {
+    case 0:
+    case 1:
+    case 2:
+        any_frame(input, how);
+        break;
+    case 3:
+        world_send(input_byte(input) % (unsigned)WORLD_MESSAGES);
+        break;
+    case 4:
+        world_jump(how);
+        break;
+    case 5:
+        run(how + 1u);
+        break;
+    case 6:
+        run(input_byte(input));
+        break;
+    case 7:
+        run((uint32_t)input_byte(input) * 8u);
+        break;
+    case 8:
+    case 9:
+        change_message(input, how);
+        break;
+    case 10:
+    case 11:
+    case 12:
+        change_vehicle(how);
+        break;
+    case 13:
+        world_disturb((how & 1u) != 0u ? HAL_CAN_AI : HAL_CAN_VEHICLE, how >> 1u, input_byte(input));
+        break;
+    case 14:
+        world_restart((hal_reset_cause_t)(how % 6u));
+        break;
+    default:
+        long_silence(input, how);
+        break;
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    input_t input = {.at = data, .left = size};
+    const unsigned state = input_byte(&input) % (unsigned)WORLD_STATES;
+    const unsigned variant = input_byte(&input) % (unsigned)WORLD_VARIANTS;
+    world_load(variant, state);
+    ran_ms = 0;
+    for (unsigned i = 0; (i < STEPS_MAX) && (input.left > 0u); i++) {
+        step(&input);
+    }
+    run(20);
+    return 0;
+}

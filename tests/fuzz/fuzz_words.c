@@ -1,0 +1,43 @@
+/*
+ * Steps of a scenario as a line: what is typed while `host_sim vehicle` runs, and what follows --fault. What is refused is
+ * told in one line. Byte 1: which of the two, topology, identifier set; then the line.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "input.h"
+#include "said.h"
+#include "vehicle_words.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    input_t input = {.at = data, .left = size};
+    const uint8_t how = input_byte(&input);
+    agv_config_t config;
+    agv_config_defaults(&config);
+    config.topology = (how >> 1u) & 1u;
+    config.id_set = (how >> 2u) & 1u;
+    char *line = malloc(input.left + 1u);
+    vehicle_words_t *words = calloc(1, sizeof *words);
+    if ((line == NULL) || (words == NULL)) {
+        free(line);
+        free(words);
+        return 0;
+    }
+    input_bytes(&input, (uint8_t *)line, input.left);
+    line[size > 0u ? size - 1u : 0u] = '\0';
+    said_begin();
+    const bool good =
+        ((how & 1u) != 0u) ? vehicle_words_typed(line, &config, words) : vehicle_words_fault(line, &config, words);
+    const char *said = said_end();
+    if (!good) {
+        said_one_line(said);
+    } else if ((said[0] != '\0') || (memchr(words->what, '\0', sizeof words->what) == NULL) ||
+               !words->step.of_vehicle) {
+        said_fail("taken, and something was said, or it is no step of the vehicle", said);
+    } else {
+        /* a step */
+    }
+    free(line);
+    free(words);
+    return 0;
+}

@@ -1,0 +1,66 @@
+/*
+ * Runs a fuzz target on files, for compilers that have no libFuzzer: every file named, and every file in every folder
+ * named. Ends badly when there is none.
+ */
+#include <dirent.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+
+#include "input.h"
+
+enum { SIZE_MAX_BYTES = 1 << 20, PATH_SIZE = 4096 };
+
+static bool run_file(const char *path) {
+    FILE *file = fopen(path, "rb");
+    if (file == NULL) {
+        perror(path);
+        return false;
+    }
+    uint8_t *bytes = malloc(SIZE_MAX_BYTES);
+    const size_t size = (bytes != NULL) ? fread(bytes, 1, SIZE_MAX_BYTES, file) : 0u;
+    (void)fclose(file);
+    /* Exactly as large as it is: what reads beyond it is noticed by the sanitizers. */
+    uint8_t *exact = malloc((size > 0u) ? size : 1u);
+    if ((bytes == NULL) || (exact == NULL)) {
+        exit(2);
+    }
+    memcpy(exact, bytes, size);
+    free(bytes);
+    (void)LLVMFuzzerTestOneInput(exact, size);
+    free(exact);
+    return true;
+}
+
+static unsigned run_folder(const char *path) {
+    char inside[PATH_SIZE];
+    unsigned count = 0;
+    DIR *folder = opendir(path);
+    if (folder == NULL) {
+        perror(path);
+        exit(2);
+    }
+    for (const struct dirent *entry = readdir(folder); entry != NULL; entry = readdir(folder)) {
+        if (entry->d_name[0] != '.') {
+            (void)snprintf(inside, sizeof inside, "%s/%s", path, entry->d_name);
+            count += run_file(inside) ? 1u : 0u;
+        }
+    }
+    (void)closedir(folder);
+    return count;
+}
+
+int main(int argc, char **argv) {
+    unsigned count = 0;
+    for (int i = 1; i < argc; i++) {
+        struct stat status;
+        if (stat(argv[i], &status) != 0) {
+            perror(argv[i]);
+            return 2;
+        }
+        count += S_ISDIR(status.st_mode) ? run_folder(argv[i]) : (run_file(argv[i]) ? 1u : 0u);
+    }
+    (void)printf("%u inputs\n", count);
+    return (count > 0u) ? 0 : 2;
+}

@@ -1,0 +1,483 @@
+#include "rules.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "agv/names.h"
+#include "agv/protocol.h"
+
+enum { SIGNALS = 0, GEAR = 1, THROTTLE = 2, STEERING = 3 };
+enum { VEHICLE = 0, GEAR_STATUS, THROTTLE_STATUS, STEERING_STATUS, EPS_STATUS, POSITION, WHEELS };
+enum { HEARTBEAT_MS = 50, STATUS_MS = 60, GEAR_STATUS_MS = 125, RESET_MS = 1000, CONFIRM_MS = 500, SLOW_MM_S = 50 };
+enum { CYCLE_MS = 100, OVERRIDE_GAP_MS = 5 };
+
+__attribute__((format(printf, 2, 3))) static void broken(rules_t *rules, const char *format, ...) {
+    va_list arguments;
+    if (rules->broken[0] == '\0') {
+        va_start(arguments, format);
+        (void)vsnprintf(rules->broken, sizeof rules->broken, format, arguments);
+        va_end(arguments);
+    }
+}
+
+static bool commands_safe(agv_state_t state) {
+    return (state != AGV_STATE_STANDBY) && (state != AGV_STATE_ACTIVE);
+}
+
+static bool is_latched(agv_state_t state) {
+    return commands_safe(state) && (state != AGV_STATE_INIT);
+}
+
+static bool is_supervising(agv_state_t state) {
+    return !commands_safe(state);
+}
+
+static int command_of(const rules_t *rules, uint32_t id) {
+    const uint32_t ids[RULES_COMMANDS] = {rules->oracle.signal_id, 0x168u, 0x075u, 0x065u};
+    for (int i = 0; i < RULES_COMMANDS; i++) {
+        if (ids[i] == id) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+static int status_of(const rules_t *rules, uint32_t id) {
+    const uint32_t ids[RULES_STATUS] = {rules->oracle.vehicle_id, 0x0A3u, 0x050u, 0x067u, 0x167u, 0x267u, 0x101u};
+    for (int i = 0; i < RULES_STATUS; i++) {
+        if (ids[i] == id) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+void rules_init(rules_t *rules, const agv_config_t *config) {
+    const bool table = config->id_set == (uint16_t)AGV_ID_SET_TABLE;
+    memset(rules, 0, sizeof *rules);
+    rules->oracle.gateway = config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    rules->oracle.pass_all_in_manual = config->gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL;
+    rules->oracle.signal_id = table ? 0x201u : 0x43Fu;
+    rules->oracle.vehicle_id = table ? 0x203u : 0x363u;
+    rules->oracle.own_status_id = config->status_frame_id;
+    rules->park_at_once = config->park == (uint16_t)AGV_PARK_AT_ONCE;
+    rules->shadow = config->shadow == (uint16_t)AGV_SHADOW_ON;
+    rules->running_heartbeat = config->own_heartbeat == (uint16_t)AGV_OWN_HEARTBEAT_RUNNING;
+    rules->limits_commands = (config->throttle_ceiling_pct != 100u) || (config->steering_slew_ddeg_s != 0u);
+    rules->throttle_max = (uint8_t)(config->throttle_ceiling_pct * 250u / 100u);
+    rules->bus = (rules_bus_t){.takes_frames = true};
+}
+
+/* Nothing of before counts, but for what was judged. */
+static void forget(rules_t *rules, uint64_t now_ms) {
+    rules->ticked_ms = now_ms;
+    rules->vcu = (rules_beat_t){.changed_ms = now_ms};
+    rules->eps = (rules_beat_t){.changed_ms = now_ms};
+    for (int i = 0; i < RULES_STATUS; i++) {
+        rules->status_ms[i] = now_ms;
+        rules->status_heard[i] = false;
+    }
+    for (int i = 0; i < RULES_COMMANDS; i++) {
+        rules->command_heard[i] = false;
+        rules->answer_owed[i] = false;
+        rules->sent_ms[i] = now_ms;
+    }
+    rules->button_was_up = false;
+    rules->button_down = false;
+    rules->manual = false;
+    rules->fast_ms = now_ms;
+    rules->unconfirmed_ms = now_ms;
+    rules->confirmed_off = false;
+    rules->commanding_ms = now_ms;
+    rules->own_counter_known = false;
+    oracle_restart(&rules->oracle);
+}
+
+/* FSM-7 */
+static void judge_start(rules_t *rules, hal_reset_cause_t cause, const rules_seen_t *before, const rules_seen_t *seen) {
+    const bool power_on = cause == HAL_RESET_POWER_ON;
+    const bool was_tripped = (before != NULL) && is_latched(before->state);
+    if (seen->state != (power_on ? AGV_STATE_INIT : AGV_STATE_TRIPPED)) {
+        broken(rules, "FSM-7: after reset cause %d it starts in state %02Xh", (int)cause, (unsigned)seen->state);
+    }
+    if (!power_on && (seen->first_reason != (was_tripped ? before->first_reason : AGV_FAULT_SUPERVISOR_RESET))) {
+        broken(rules, "FSM-7: after a reset the first reason is %s", agv_fault_name(seen->first_reason));
+    }
+    if (seen->output_closed) {
+        broken(rules, "FSM-4: the safety output is closed after a start");
+    }
+}
+
+void rules_started(rules_t *rules, hal_reset_cause_t cause, const rules_seen_t *before, const rules_seen_t *seen,
+                   uint64_t now_ms) {
+    judge_start(rules, cause, before, seen);
+    rules->now_ms = now_ms;
+    forget(rules, now_ms);
+    rules->last = *seen;
+    oracle_returned(&rules->oracle, seen->state);
+}
+
+/* ---- What is heard ---- */
+
+static void hear_beat(rules_beat_t *beat, uint8_t counter, uint64_t stamp_ms) {
+    if (beat->heard && (beat->counter != counter)) {
+        beat->changed_ms = stamp_ms;
+    }
+    beat->heard = true;
+    beat->counter = counter;
+}
+
+static void hear_mode(rules_t *rules, uint8_t byte7, uint64_t stamp_ms) {
+    const bool manual = (byte7 & 0xC0u) == 0x40u;
+    if (((byte7 & 0xC0u) != 0xC0u) && (manual != rules->manual)) {
+        rules->manual = manual;
+        rules->manual_ms = stamp_ms;
+    }
+    if ((byte7 & 0x80u) == 0u) {
+        rules->confirmed_off = true;
+    }
+}
+
+static void hear_button(rules_t *rules, bool down, uint64_t stamp_ms) {
+    if (!down) {
+        rules->button_was_up = true;
+    } else if (!rules->button_down) {
+        rules->pressed_ms = stamp_ms;
+    } else {
+        /* held */
+    }
+    rules->button_down = down;
+}
+
+static bool is_fast(const uint8_t *data) {
+    const uint32_t raw =
+        (uint32_t)data[0] | ((uint32_t)data[1] << 8u) | ((uint32_t)data[2] << 16u) | ((uint32_t)data[3] << 24u);
+    const uint32_t amount = (raw < 0x80000000u) ? raw : (0u - raw);
+    return amount >= (uint32_t)SLOW_MM_S;
+}
+
+static void hear_status(rules_t *rules, int status, const hal_can_frame_t *frame, uint64_t stamp_ms) {
+    const uint8_t *data = frame->data;
+    rules->status_ms[status] = stamp_ms;
+    rules->status_heard[status] = true;
+    memcpy(rules->status_data[status], data, 8);
+    switch (status) {
+    case VEHICLE:
+        hear_beat(&rules->vcu, data[7], stamp_ms);
+        hear_mode(rules, data[6], stamp_ms);
+        hear_button(rules, (data[6] & 1u) != 0u, stamp_ms);
+        rules->alarm = (data[4] & 0xB3u) != 0u; /* bits 0, 1, 4, 5, 7 */
+        break;
+    case STEERING_STATUS:
+        hear_beat(&rules->eps, data[0], stamp_ms);
+        break;
+    case EPS_STATUS:
+        rules->alarm = (data[7] & 0xE8u) != 0u; /* bits 4, 6, 7, 8 of the document */
+        break;
+    case WHEELS:
+        rules->fast_ms = (is_fast(&data[0]) || is_fast(&data[4])) ? stamp_ms : rules->fast_ms;
+        break;
+    default:
+        break;
+    }
+}
+
+static bool in_range(int command, const uint8_t *data) {
+    switch (command) {
+    case GEAR:
+        return (data[0] == 1u) || (data[0] == 2u) || (data[0] == 4u) || (data[0] == 8u);
+    case THROTTLE:
+        return data[0] <= 250u;
+    case STEERING:
+        return ((unsigned)data[0] | ((unsigned)data[1] << 8u)) <= 18000u;
+    default:
+        return true;
+    }
+}
+
+/* Reserved bits of a command as 0 (P14). */
+static void clear_reserved(int command, uint8_t data[8]) {
+    static const uint8_t USED[RULES_COMMANDS][8] = {{0, 0, 0, 0, 0xF0, 0, 0, 0xFF}, {0xFF}, {0xFF}, {0xFF, 0xFF}};
+    for (int i = 0; i < 8; i++) {
+        data[i] &= USED[command][i];
+    }
+}
+
+static void hear_command(rules_t *rules, int command, const hal_can_frame_t *frame) {
+    if (in_range(command, frame->data)) {
+        memcpy(rules->command_data[command], frame->data, 8);
+        clear_reserved(command, rules->command_data[command]);
+        rules->command_heard[command] = true;
+    }
+}
+
+/* TOP-1: whether a VCU may have taken it for a command other than the safe one. */
+static bool differs_from_safe(int command, const hal_can_frame_t *frame) {
+    if (frame->length != 8u) {
+        return true;
+    }
+    switch (command) {
+    case SIGNALS:
+        return (frame->data[4] & 0xF0u) != 0x70u;
+    case GEAR:
+        return frame->data[0] != 8u;
+    default:
+        return frame->data[0] != 0u;
+    }
+}
+
+static void owe_answer(rules_t *rules, int command, const hal_can_frame_t *frame, uint64_t stamp_ms) {
+    const bool sends_it = (command == SIGNALS) || (command == THROTTLE) || ((command == GEAR) && rules->park_at_once);
+    if (sends_it && (frame->flags == 0u) && commands_safe(rules->last.state) && differs_from_safe(command, frame) &&
+        !rules->answer_owed[command]) {
+        rules->answer_owed[command] = true;
+        rules->answer_owed_ms[command] = (stamp_ms > rules->now_ms) ? stamp_ms : rules->now_ms;
+    }
+}
+
+void rules_heard(rules_t *rules, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t stamp_ms) {
+    const int command = command_of(rules, frame->id);
+    const int status = status_of(rules, frame->id);
+    const bool whole = (frame->flags == 0u) && (frame->length == 8u);
+    rules->now_ms = (stamp_ms > rules->now_ms) ? stamp_ms : rules->now_ms;
+    rules->sent_now = 0;
+    rules->alarm = false;
+    oracle_heard(&rules->oracle, side, frame);
+    if (whole && (status >= 0) && (side == HAL_CAN_VEHICLE)) {
+        hear_status(rules, status, frame, stamp_ms);
+    }
+    if (command < 0) {
+        return;
+    }
+    if (whole && (side == (rules->oracle.gateway ? HAL_CAN_AI : HAL_CAN_VEHICLE))) {
+        hear_command(rules, command, frame);
+    }
+    if (side == HAL_CAN_VEHICLE) {
+        owe_answer(rules, command, frame, stamp_ms);
+    }
+}
+
+void rules_ticks(rules_t *rules, uint64_t now_ms, rules_bus_t bus) {
+    rules->now_ms = now_ms;
+    rules->bus = bus;
+    rules->sent_now = 0;
+    rules->alarm = false;
+}
+
+/* ---- What is sent ---- */
+
+/* TOP-2: what is passed on is what was heard last, byte for byte; a command without its reserved bits, and limited. */
+static void judge_passed(rules_t *rules, hal_can_side_t side, const hal_can_frame_t *frame, agv_state_t state) {
+    const int status = status_of(rules, frame->id);
+    const int command = command_of(rules, frame->id);
+    if (side == HAL_CAN_AI) {
+        if ((status < 0) || !rules->status_heard[status] || (memcmp(rules->status_data[status], frame->data, 8) != 0)) {
+            broken(rules, "TOP-2: %03X was passed to the AI side and not heard so", (unsigned)frame->id);
+        }
+        return;
+    }
+    if ((command < 0) || commands_safe(state)) {
+        return;
+    }
+    uint8_t expected[8];
+    memcpy(expected, rules->command_data[command], 8);
+    if (command == THROTTLE) {
+        const uint8_t most = (state == AGV_STATE_ACTIVE) ? rules->throttle_max : 0u;
+        expected[0] = (expected[0] < most) ? expected[0] : most;
+    }
+    const bool same = memcmp(expected, frame->data, 8) == 0;
+    if (!rules->command_heard[command] || (!same && ((command != STEERING) || !rules->limits_commands))) {
+        broken(rules, "TOP-2: %03X was passed to the vehicle side and not heard so", (unsigned)frame->id);
+    }
+}
+
+/* FSM-8: the own counter runs. */
+static void judge_own_counter(rules_t *rules, uint8_t counter) {
+    if (rules->own_counter_known && ((counter != rules->own_counter) != rules->running_heartbeat)) {
+        broken(rules, "FSM-8: the own alive counter was %u and is %u", rules->own_counter, counter);
+    }
+    rules->own_counter = counter;
+    rules->own_counter_known = true;
+}
+
+void rules_sent(rules_t *rules, hal_can_side_t side, const hal_can_frame_t *frame, agv_state_t state) {
+    const int command = command_of(rules, frame->id);
+    const uint32_t forbidden = rules->oracle.forbidden;
+    rules->sent++;
+    oracle_sent(&rules->oracle, side, frame, state);
+    if (rules->oracle.forbidden != forbidden) {
+        broken(rules, "FSM-6: %s", oracle_verdict(&rules->oracle));
+    }
+    if (rules->shadow) {
+        broken(rules, "TOP-4: %03X left in shadow mode", (unsigned)frame->id);
+    }
+    if (rules->oracle.gateway) {
+        judge_passed(rules, side, frame, state);
+    }
+    if ((command >= 0) && (side == HAL_CAN_VEHICLE)) {
+        rules->sent_now |= (uint8_t)(1u << (unsigned)command);
+        rules->sent_ms[command] = rules->now_ms;
+        rules->answer_owed[command] = false;
+        if ((command == SIGNALS) && commands_safe(state)) {
+            judge_own_counter(rules, frame->data[7]);
+        }
+    }
+}
+
+/* ---- What follows from it ---- */
+
+static uint64_t age_ms(const rules_t *rules, uint64_t then_ms) {
+    return (rules->now_ms > then_ms) ? (rules->now_ms - then_ms) : 0u;
+}
+
+/* SUP-2, SUP-3: who supervises, hears. Only a tick looks at the clock. */
+static void judge_silence(rules_t *rules) {
+    static const uint64_t LIMITS[RULES_STATUS] = {HEARTBEAT_MS, GEAR_STATUS_MS, STATUS_MS, HEARTBEAT_MS,
+                                                  STATUS_MS,    UINT64_MAX,     STATUS_MS}; /* 267h only warns */
+    if ((age_ms(rules, rules->vcu.changed_ms) > HEARTBEAT_MS) ||
+        (age_ms(rules, rules->eps.changed_ms) > HEARTBEAT_MS)) {
+        broken(rules, "SUP-2: the heartbeat of the VCU is %u ms old, of the EPS %u ms, and it has not tripped",
+               (unsigned)age_ms(rules, rules->vcu.changed_ms), (unsigned)age_ms(rules, rules->eps.changed_ms));
+    }
+    for (int i = 0; i < RULES_STATUS; i++) {
+        if (age_ms(rules, rules->status_ms[i]) > LIMITS[i]) {
+            broken(rules, "SUP-3: status %d is %u ms old, and it has not tripped", i,
+                   (unsigned)age_ms(rules, rules->status_ms[i]));
+        }
+    }
+}
+
+/* FSM-2: all safe commands go out in the call that trips. */
+static void judge_trip(rules_t *rules) {
+    const uint8_t needed = (uint8_t)((1u << SIGNALS) | (1u << THROTTLE) | (rules->park_at_once ? (1u << GEAR) : 0u));
+    rules->trips++;
+    rules->unconfirmed_ms = rules->now_ms;
+    rules->button_was_up = false;
+    rules->confirmed_off = false;
+    rules->own_counter_known = false;
+    rules->commanding_ms = rules->now_ms;
+    if (rules->bus.takes_frames && !rules->shadow && ((rules->sent_now & needed) != needed)) {
+        broken(rules, "FSM-2: of the safe commands only %X left in the call that tripped", rules->sent_now);
+    }
+}
+
+/* FSM-3 */
+static void judge_reset(rules_t *rules) {
+    const char *missing = NULL;
+    rules->resets++;
+    if ((rules->last.state != AGV_STATE_SAFE) || (age_ms(rules, rules->safe_ms) < RESET_MS)) {
+        missing = "SAFE for a second";
+    } else if (!rules->button_was_up || !rules->button_down || (age_ms(rules, rules->pressed_ms) < RESET_MS)) {
+        missing = "the button, pressed after the trip and held for a second";
+    } else if (!rules->manual || (age_ms(rules, rules->manual_ms) < RESET_MS)) {
+        missing = "manual for a second";
+    } else if (age_ms(rules, rules->fast_ms) < RESET_MS) {
+        missing = "standstill for a second";
+    } else if ((rules->ticked_ms > rules->vcu.changed_ms + HEARTBEAT_MS) ||
+               (rules->ticked_ms > rules->eps.changed_ms + HEARTBEAT_MS)) {
+        /* of the last tick: only ticks look at deadlines */
+        missing = "a VCU and an EPS that are alive";
+    } else {
+        return;
+    }
+    broken(rules, "FSM-3: the latch was left without %s", missing);
+}
+
+static void judge_state(rules_t *rules, const rules_seen_t *seen) {
+    const rules_seen_t *last = &rules->last;
+    if (!is_latched(last->state) && is_latched(seen->state)) {
+        judge_trip(rules);
+    }
+    if (is_latched(last->state) && !is_latched(seen->state)) {
+        if (seen->state != AGV_STATE_STANDBY) {
+            broken(rules, "FSM-3: the latch was left for state %02Xh", (unsigned)seen->state);
+        }
+        judge_reset(rules);
+    }
+    if ((last->state != AGV_STATE_INIT) && (seen->state == AGV_STATE_INIT)) {
+        broken(rules, "back to INIT from %02Xh", (unsigned)last->state);
+    }
+    if (is_latched(seen->state) != (seen->first_reason != AGV_FAULT_NONE)) {
+        broken(rules, "FSM-5: state %02Xh with first reason %s", (unsigned)seen->state,
+               agv_fault_name(seen->first_reason));
+    }
+    if (is_latched(last->state) && is_latched(seen->state) && (last->first_reason != seen->first_reason)) {
+        broken(rules, "FSM-5: the first reason was %s and is %s", agv_fault_name(last->first_reason),
+               agv_fault_name(seen->first_reason));
+    }
+    if ((seen->state == AGV_STATE_SAFE) && (last->state != AGV_STATE_SAFE)) {
+        rules->safe_ms = rules->now_ms;
+    }
+    if ((seen->state == AGV_STATE_TRIPPED) && (last->state == AGV_STATE_SAFE)) {
+        rules->unconfirmed_ms = rules->now_ms; /* FSM-4: the time begins anew */
+        rules->confirmed_off = false;
+    }
+    if (rules->alarm && is_supervising(seen->state)) {
+        broken(rules, "SUP-4: a fault bit was heard in state %02Xh, and it has not tripped", (unsigned)last->state);
+    }
+}
+
+/* FSM-4 */
+static void judge_output(rules_t *rules, const rules_seen_t *seen, bool tick) {
+    const bool entered = (seen->state == AGV_STATE_STANDBY) && commands_safe(rules->last.state);
+    if (seen->output_closed && !rules->last.output_closed && !entered) {
+        broken(rules, "FSM-4: the safety output has closed in state %02Xh", (unsigned)seen->state);
+    }
+    if (!seen->output_closed) {
+        return;
+    }
+    if (seen->state == AGV_STATE_INIT) {
+        broken(rules, "FSM-4: the safety output is closed in INIT");
+    }
+    if (tick && rules->bus.is_bus_off) {
+        broken(rules, "FSM-4: the safety output is closed in bus-off");
+    }
+    if (tick && is_latched(seen->state) && !rules->confirmed_off &&
+        (age_ms(rules, rules->unconfirmed_ms) > CONFIRM_MS)) {
+        broken(rules, "FSM-4: the safety output is closed, and the vehicle has confirmed nothing");
+    }
+}
+
+/* TIM-1, TOP-1: while it sends the safe commands, they come often enough, and others are answered. */
+static void judge_sending(rules_t *rules, const rules_seen_t *seen, uint64_t tick_gap_ms) {
+    const bool able = rules->bus.takes_frames && !rules->shadow && commands_safe(seen->state);
+    if (!able || !commands_safe(rules->last.state)) {
+        rules->commanding_ms = rules->now_ms;
+        memset(rules->answer_owed, 0, sizeof rules->answer_owed);
+        return;
+    }
+    for (int i = 0; i <= THROTTLE; i++) {
+        const bool sends_it = (i != GEAR) || rules->park_at_once;
+        const uint64_t since_ms = (rules->sent_ms[i] > rules->commanding_ms) ? rules->sent_ms[i] : rules->commanding_ms;
+        if (sends_it && (age_ms(rules, since_ms) > CYCLE_MS + tick_gap_ms)) {
+            broken(rules, "TIM-1: safe command %d has not been sent for %u ms", i, (unsigned)age_ms(rules, since_ms));
+        }
+        if (rules->answer_owed[i] && (age_ms(rules, rules->answer_owed_ms[i]) > OVERRIDE_GAP_MS + tick_gap_ms)) {
+            broken(rules, "TOP-1: a command of another was not answered (command %d)", i);
+        }
+    }
+}
+
+void rules_returned(rules_t *rules, const rules_seen_t *seen, bool tick, uint64_t tick_gap_ms) {
+    rules->calls++;
+    if (tick) {
+        rules->ticked_ms = rules->now_ms;
+    }
+    judge_state(rules, seen);
+    judge_output(rules, seen, tick);
+    if (tick && is_supervising(seen->state)) {
+        judge_silence(rules);
+    }
+    if (tick) {
+        judge_sending(rules, seen, tick_gap_ms);
+    }
+    if (seen->gate_refused != rules->last.gate_refused) {
+        broken(rules, "INT-4: the gate had to refuse a frame in state %02Xh", (unsigned)seen->state);
+    }
+    if ((seen->active & agv_fault_bit(AGV_FAULT_MEMORY_CORRUPTED)) != 0u) {
+        broken(rules, "INT-5: memory was found corrupt, and nobody touched it");
+    }
+    rules->last = *seen;
+    oracle_returned(&rules->oracle, seen->state);
+}

@@ -1,0 +1,84 @@
+/*
+ * One supervisor on the simulated port, the traffic of a vehicle around it, and the rules that judge it (rules.h). For
+ * programs that start from the same state very often: a state is reached once and then copied.
+ *
+ * There is one live world; it is judged in every call, and the first broken rule ends the program.
+ */
+#ifndef WORLD_H
+#define WORLD_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "agv/supervisor.h"
+#include "hal_sim/sim_hal.h"
+#include "hal_sim/sim_store.h"
+#include "rules.h"
+
+enum { WORLD_STATES = 5, WORLD_VARIANTS = 7, WORLD_MESSAGES = 11 };
+
+/* What one message of the traffic does. */
+typedef struct {
+    bool muted;
+    bool frozen; /* its alive counter stands still */
+    uint8_t length;
+    uint8_t flags;
+    uint8_t counter;
+    uint8_t data[8];
+} world_message_t;
+
+typedef struct {
+    agv_supervisor_t supervisor;
+    agv_recorder_t recorder;
+    struct hal hal;
+    sim_store_t store;
+    agv_config_t config;
+    agv_ports_t ports;
+    rules_t rules;
+    uint64_t now_ms;    /* since the world began; never wraps */
+    uint32_t offset_ms; /* the supervisor's clock reads now_ms + offset_ms */
+    uint64_t ticked_ms; /* when the last tick came */
+    uint32_t unsettled; /* ticks until what the controller went through counts as over */
+    bool receive_path_dead;
+    world_message_t traffic[WORLD_MESSAGES];
+} world_t;
+
+extern world_t world;
+
+/*
+ * Put the world into a state, as it is just after it was entered and has settled.
+ * @param variant of the configuration, below WORLD_VARIANTS: topologies, identifier sets, choices, and where the clock
+ *                stands; in some it wraps soon after
+ * @param state   0 INIT, 1 STANDBY, 2 ACTIVE, 3 TRIPPED, 4 SAFE
+ */
+void world_load(unsigned variant, unsigned state);
+
+/* Hand over any frame, `ahead_ms` later than now; less than 0: its stamp is so much older. */
+void world_frame(hal_can_side_t side, hal_can_frame_t frame, int32_t ahead_ms);
+
+/* The message's own next frame, now. */
+void world_send(unsigned message);
+
+/* One tick, so much later, without traffic in between. */
+void world_jump(uint32_t ms);
+
+/* So many steps of a millisecond, with traffic and a tick each. */
+void world_run(uint32_t ms);
+
+/* Restart the supervisor after a reset with this cause. */
+void world_restart(hal_reset_cause_t cause);
+
+/* The controller of a side goes through something. */
+void world_disturb(hal_can_side_t side, unsigned kind, uint8_t amount);
+
+/* Values of the traffic. */
+void world_mode(uint8_t byte7_bits);
+void world_button(bool down);
+void world_gear(uint8_t gear);
+void world_wheels(uint8_t mm_s);
+void world_heal(void);
+
+/* End the program when a rule was broken. */
+void world_judge(void);
+
+#endif
