@@ -1,8 +1,8 @@
 # How this project's own code is compiled. Link `agv_options` (PRIVATE) to get it; generated and foreign code does not.
 
 option(AGV_WARNINGS_AS_ERRORS "Warnings in the project's own code are errors" ON)
-set(AGV_INSTRUMENT "" CACHE STRING "Instrumentation: empty, sanitize or coverage")
-set_property(CACHE AGV_INSTRUMENT PROPERTY STRINGS "" sanitize coverage)
+set(AGV_INSTRUMENT "" CACHE STRING "Instrumentation: empty, sanitize, coverage or mcdc")
+set_property(CACHE AGV_INSTRUMENT PROPERTY STRINGS "" sanitize coverage mcdc)
 
 add_library(agv_options INTERFACE)
 target_compile_options(agv_options INTERFACE
@@ -27,6 +27,10 @@ if(AGV_INSTRUMENT STREQUAL "sanitize")
 elseif(AGV_INSTRUMENT STREQUAL "coverage")
   add_compile_options(--coverage)
   add_link_options(--coverage)
+elseif(AGV_INSTRUMENT STREQUAL "mcdc")
+  # clang only, and of the core only: what is judged is the core, and a test's own decisions would only slow it down.
+  set(AGV_CORE_INSTRUMENT_OPTIONS -fprofile-instr-generate -fcoverage-mapping -fcoverage-mcdc)
+  add_link_options(-fprofile-instr-generate)
 elseif(NOT AGV_INSTRUMENT STREQUAL "")
-  message(FATAL_ERROR "AGV_INSTRUMENT is '${AGV_INSTRUMENT}': it must be empty, sanitize or coverage")
+  message(FATAL_ERROR "AGV_INSTRUMENT is '${AGV_INSTRUMENT}': it must be empty, sanitize, coverage or mcdc")
 endif()

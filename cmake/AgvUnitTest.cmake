@@ -107,4 +107,8 @@ function(agv_add_unit_test)
   # An ignored test function, or a program with none, is a failure.
   set_tests_properties(${TEST_NAME} PROPERTIES LABELS "unity;${kind}" TIMEOUT 120
     FAIL_REGULAR_EXPRESSION ":IGNORE;(^|\n)0 Tests ")
+  if(AGV_INSTRUMENT STREQUAL "mcdc") # a profile a program: scripts/check-mcdc can leave one out
+    set_tests_properties(${TEST_NAME} PROPERTIES
+      ENVIRONMENT LLVM_PROFILE_FILE=${PROJECT_BINARY_DIR}/profile/${TEST_NAME}.profraw)
+  endif()
 endfunction()

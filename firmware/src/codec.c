@@ -68,7 +68,7 @@ static inline int32_t to_int32(uint32_t value) {
 
 /** 1, 2, 4 or 8 (P2): in 1..8, and a single bit. */
 static inline bool gear_is_valid(uint32_t gear) {
-    return ((gear - 1u) < 8u) & ((gear & (gear - 1u)) == 0u);
+    return ((gear - 1u) < 8u) && ((gear & (gear - 1u)) == 0u);
 }
 
 /** FFh, 0, 1, 2 or 3 (P18): five values in a row when counted in a byte. */
