@@ -18,7 +18,7 @@
     (AGV_VCU_ALARM_REMOTE_SIGNAL_LOST | AGV_VCU_ALARM_REMOTE_POWER_LOST | AGV_VCU_ALARM_AI_CAN_LOST |                  \
      AGV_VCU_ALARM_EPS_HARDWARE | AGV_VCU_ALARM_EPS_CAN_BUS | AGV_VCU_ALARM_S_DRIVER)
 
-_Static_assert(0xFFFFu * AGV_VEHICLE_SPEED_M_PER_H_PER_COUNT <= UINT16_MAX,
+_Static_assert((0xFFFFu * AGV_VEHICLE_SPEED_M_PER_H_PER_COUNT) <= UINT16_MAX,
                "speed_m_per_h must hold every count in this unit: widen it first");
 
 static inline void put_le16(uint8_t *to, uint32_t value) {
