@@ -61,5 +61,5 @@ analyzed() {
     printf 'int f(int n);\nint f(int n) { return n; }\n' >fine.c
     passes gcc -std=c11 -O1 -fanalyzer -Wall -Wextra -Werror -c fine.c -o fine.o
     analyzed analyzer-malloc-leak 'void f(size_t n) { char *p = malloc(n); if (p != NULL) { p[0] = 1; } }'
-    analyzed analyzer-double-free 'void f(size_t n) { char *p = malloc(n); free(p); free(p); }'
+    analyzed analyzer-double-free 'void g(char *p); void g(char *p) { free(p); free(p); }'
 }
