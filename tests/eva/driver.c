@@ -144,11 +144,24 @@ static void any_sound_state(void) {
     supervisor.receive_alive = any_bool();
 }
 
-/* And they hold again. Of the truths EVA knows it where they are written; of the settings that nothing else is. */
-static void check_invariants(void) {
-    /*@ assert supervisor.core.transmitter.kept < (1 << AGV_MSG_COUNT); */
-    /*@ assert supervisor.core.hal == \null && supervisor.core.recorder == \null; */
-    /*@ assert 1 <= supervisor.core.config.status_frame_period_ms; */
+/* ---- And they hold again. A truth that were neither 0 nor 1 would be an alarm of its own ---- */
+
+static void within(uint32_t value, uint32_t lowest, uint32_t highest) {
+    /*@ assert lowest <= value <= highest; */
+}
+
+static void check_memory(const agv_core_t *core) {
+    /*@ assert core->transmitter.kept < (1 << AGV_MSG_COUNT); */
+    /*@ assert core->hal == \null && core->recorder == \null; */
+}
+
+static void check_invariants(const agv_core_t *core) {
+    check_memory(core);
+#define AGV_SETTING(name, preset, lowest, highest, unit, meaning) within(core->config.name, lowest, highest);
+#define AGV_CHOICE(name, preset, words, meaning) within(core->config.name, 0u, 1u);
+#include "agv/config_settings.def"
+#undef AGV_SETTING
+#undef AGV_CHOICE
 }
 
 /* ---- The entry points ---- */
@@ -163,17 +176,17 @@ void eva_frame(void) {
     any_sound_state();
     any_bytes(&frame, sizeof frame);
     agv_supervisor_frame(&supervisor, &ports, (hal_can_side_t)any(HAL_CAN_VEHICLE, HAL_CAN_AI), &frame);
-    check_invariants();
+    check_invariants(&supervisor.core);
 }
 
 void eva_tick(void) {
     const agv_ports_t ports = any_ports();
     any_sound_state();
     agv_supervisor_tick(&supervisor, &ports, any(0u, UINT32_MAX));
-    check_invariants();
+    check_invariants(&supervisor.core);
 }
 
-/* Any memory before, any configuration: the start is where the invariants begin. */
+/* Any memory before, any configuration. That the start takes none with a setting out of its range is for the tests to show. */
 void eva_start(void) {
     const agv_ports_t ports = any_ports();
     agv_config_t config;
@@ -181,6 +194,5 @@ void eva_start(void) {
     any_bytes(&recorder, sizeof recorder);
     any_bytes(&config, sizeof config);
     agv_supervisor_start(&supervisor, &ports, &config, any_bool(), any(0u, UINT32_MAX));
-    /*@ assert supervisor.core.transmitter.kept < (1 << AGV_MSG_COUNT); */
-    /*@ assert supervisor.core.hal == \null && supervisor.core.recorder == \null; */
+    check_memory(&supervisor.core);
 }

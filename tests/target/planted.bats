@@ -13,7 +13,7 @@ planted() {
 }
 
 @test "target: a program that hangs" {
-    planted planted_hang "***Timeout"
+    planted planted_hang "Subprocess killed"
 }
 
 @test "target: a program that crashes" {
