@@ -1,8 +1,8 @@
 # How this project's own code is compiled. Link `agv_options` (PRIVATE) to get it; generated and foreign code does not.
 
 option(AGV_WARNINGS_AS_ERRORS "Warnings in the project's own code are errors" ON)
-set(AGV_INSTRUMENT "" CACHE STRING "Instrumentation: empty, sanitize, coverage or fuzz")
-set_property(CACHE AGV_INSTRUMENT PROPERTY STRINGS "" sanitize coverage fuzz)
+set(AGV_INSTRUMENT "" CACHE STRING "Instrumentation: empty, sanitize, coverage, mcdc or fuzz")
+set_property(CACHE AGV_INSTRUMENT PROPERTY STRINGS "" sanitize coverage mcdc fuzz)
 
 add_library(agv_options INTERFACE)
 target_compile_options(agv_options INTERFACE
@@ -35,6 +35,10 @@ elseif(AGV_INSTRUMENT STREQUAL "fuzz")
   add_compile_options(-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
     -fstrict-flex-arrays=3)
   add_link_options(-fsanitize=address,undefined)
+elseif(AGV_INSTRUMENT STREQUAL "mcdc")
+  # clang only, and of the core only: what is judged is the core, and a test's own decisions would only slow it down.
+  set(AGV_CORE_INSTRUMENT_OPTIONS -fprofile-instr-generate -fcoverage-mapping -fcoverage-mcdc)
+  add_link_options(-fprofile-instr-generate)
 elseif(NOT AGV_INSTRUMENT STREQUAL "")
-  message(FATAL_ERROR "AGV_INSTRUMENT is '${AGV_INSTRUMENT}': it must be empty, sanitize, coverage or fuzz")
+  message(FATAL_ERROR "AGV_INSTRUMENT is '${AGV_INSTRUMENT}': it must be empty, sanitize, coverage, mcdc or fuzz")
 endif()

@@ -20,6 +20,11 @@ set(AGV_SMALL_OPTIONS
   --param=uninlined-function-insns=0 # a call costs less than gcc thinks: inline less
 )
 
+if(AGV_TARGET_TESTS)
+  include(AgvTargetTests)
+  return()
+endif()
+
 # The target `target` compiled once more, for one processor, from the same sources: `<target>_<cpu>`, or with a suffix and
 # further options.
 function(agv_build_for_cpu target cpu)

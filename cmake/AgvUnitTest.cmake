@@ -14,6 +14,7 @@ set(AGV_GEMS ${PROJECT_SOURCE_DIR}/build/gems)
 set(AGV_UNITY ${AGV_GEMS}/vendor/unity)
 set(AGV_CMOCK ${AGV_GEMS}/vendor/cmock)
 set(AGV_CMOCK_CONFIG ${PROJECT_SOURCE_DIR}/tests/cmock.yml)
+set(AGV_TEST_TIMEOUT 120 CACHE STRING "Seconds after which a test program is stuck")
 set(AGV_MOCK_DIR ${PROJECT_BINARY_DIR}/mocks)
 
 # Without Ruby the programs still build (target host_sim and others): only the tests ask for it, when they are built.
@@ -89,7 +90,7 @@ function(agv_add_unit_test)
   endforeach()
 
   add_executable(${TEST_NAME} ${TEST_SOURCES} ${runner})
-  target_link_libraries(${TEST_NAME} PRIVATE agv_options ${TEST_LIBS} agv_core ${mocks} unity)
+  target_link_libraries(${TEST_NAME} PRIVATE agv_options ${TEST_LIBS} agv_core ${mocks} unity ${AGV_TEST_START})
   target_link_options(${TEST_NAME} PRIVATE -fno-lto) # see host_sim: for so many programs it would take minutes
   # The runner calls the test functions by name, so they are not static and have no prototype.
   set_source_files_properties(${TEST_SOURCES} PROPERTIES COMPILE_OPTIONS -Wno-missing-prototypes)
@@ -105,6 +106,10 @@ function(agv_add_unit_test)
   endif()
   get_filename_component(kind ${CMAKE_CURRENT_SOURCE_DIR} NAME)
   # An ignored test function, or a program with none, is a failure.
-  set_tests_properties(${TEST_NAME} PROPERTIES LABELS "unity;${kind}" TIMEOUT 120
+  set_tests_properties(${TEST_NAME} PROPERTIES LABELS "unity;${kind}" TIMEOUT ${AGV_TEST_TIMEOUT}
     FAIL_REGULAR_EXPRESSION ":IGNORE;(^|\n)0 Tests ")
+  if(AGV_INSTRUMENT STREQUAL "mcdc") # a profile a program: scripts/check-mcdc can leave one out
+    set_tests_properties(${TEST_NAME} PROPERTIES
+      ENVIRONMENT LLVM_PROFILE_FILE=${PROJECT_BINARY_DIR}/profile/${TEST_NAME}.profraw)
+  endif()
 endfunction()

@@ -18,7 +18,7 @@
     (AGV_VCU_ALARM_REMOTE_SIGNAL_LOST | AGV_VCU_ALARM_REMOTE_POWER_LOST | AGV_VCU_ALARM_AI_CAN_LOST |                  \
      AGV_VCU_ALARM_EPS_HARDWARE | AGV_VCU_ALARM_EPS_CAN_BUS | AGV_VCU_ALARM_S_DRIVER)
 
-_Static_assert(0xFFFFu * AGV_VEHICLE_SPEED_M_PER_H_PER_COUNT <= UINT16_MAX,
+_Static_assert((0xFFFFu * AGV_VEHICLE_SPEED_M_PER_H_PER_COUNT) <= UINT16_MAX,
                "speed_m_per_h must hold every count in this unit: widen it first");
 
 static inline void put_le16(uint8_t *to, uint32_t value) {
@@ -68,7 +68,7 @@ static inline int32_t to_int32(uint32_t value) {
 
 /** 1, 2, 4 or 8 (P2): in 1..8, and a single bit. */
 static inline bool gear_is_valid(uint32_t gear) {
-    return ((gear - 1u) < 8u) & ((gear & (gear - 1u)) == 0u);
+    return ((gear - 1u) < 8u) && ((gear & (gear - 1u)) == 0u);
 }
 
 /** FFh, 0, 1, 2 or 3 (P18): five values in a row when counted in a byte. */

@@ -43,7 +43,7 @@ _Static_assert(offsetof(agv_config_t, watchdog_period_ms) == ((size_t)AGV_SETTIN
 uint16_t agv_config_get(const agv_config_t *config, uint32_t setting) {
     uint16_t value = 0u;
     if (setting < (uint32_t)AGV_SETTING_COUNT) {
-        (void)memcpy(&value, (const unsigned char *)config + (setting * sizeof value), sizeof value);
+        (void)memcpy(&value, &((const unsigned char *)config)[setting * sizeof value], sizeof value);
     }
     return value;
 }
@@ -51,7 +51,7 @@ uint16_t agv_config_get(const agv_config_t *config, uint32_t setting) {
 bool agv_config_set(agv_config_t *config, uint32_t setting, uint16_t value) {
     const bool known = setting < (uint32_t)AGV_SETTING_COUNT;
     if (known) {
-        (void)memcpy((unsigned char *)config + (setting * sizeof value), &value, sizeof value);
+        (void)memcpy(&((unsigned char *)config)[setting * sizeof value], &value, sizeof value);
     }
     return known;
 }
@@ -97,8 +97,8 @@ static uint32_t too_weak(const agv_config_t *config) {
 }
 
 static bool id_is_taken(uint32_t id) {
-    return (agv_message_from_id(id, AGV_ID_SET_HEADING) != AGV_MSG_NONE) ||
-           (agv_message_from_id(id, AGV_ID_SET_TABLE) != AGV_MSG_NONE);
+    return (agv_message_from_id(id, AGV_ID_SET_HEADING) != (uint32_t)AGV_MSG_NONE) ||
+           (agv_message_from_id(id, AGV_ID_SET_TABLE) != (uint32_t)AGV_MSG_NONE);
 }
 
 agv_config_verdict_t agv_config_check(const agv_config_t *config) {

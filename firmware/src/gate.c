@@ -64,7 +64,7 @@ static bool value_allowed(const agv_gate_t *gate, uint32_t message, const uint8_
 /* Whether the gateway may pass a command on in this state at all. */
 static bool may_pass(const agv_gate_t *gate, uint32_t message) {
     return (gate->config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) &&
-           ((gate->state == (uint8_t)AGV_STATE_ACTIVE) || (message == AGV_MSG_TURN_SIGNAL_COMMAND) ||
+           ((gate->state == (uint8_t)AGV_STATE_ACTIVE) || (message == (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND) ||
             (gate->config->gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL));
 }
 
@@ -74,7 +74,7 @@ static bool vehicle_side_allows(const agv_gate_t *gate, uint32_t message, const 
         return (safe || may_pass(gate, message)) && reserved_are_zero(message, frame->data) &&
                value_allowed(gate, message, frame->data, safe);
     }
-    return (message == AGV_MSG_NONE) && (frame->id == gate->config->status_frame_id) && (frame->id != 0u);
+    return (message == (uint32_t)AGV_MSG_NONE) && (frame->id == gate->config->status_frame_id) && (frame->id != 0u);
 }
 
 bool agv_gate_allows(const agv_gate_t *gate, hal_can_side_t side, const hal_can_frame_t *frame) {
@@ -86,7 +86,7 @@ bool agv_gate_allows(const agv_gate_t *gate, hal_can_side_t side, const hal_can_
         return vehicle_side_allows(gate, message, frame);
     }
     return (side == HAL_CAN_AI) && (gate->config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) &&
-           (message >= AGV_COMMAND_COUNT) && (message != AGV_MSG_NONE);
+           (message >= AGV_COMMAND_COUNT) && (message != (uint32_t)AGV_MSG_NONE);
 }
 
 agv_gate_result_t agv_gate_send(const agv_gate_t *gate, hal_t *hal, hal_can_side_t side, const hal_can_frame_t *frame) {

@@ -9,7 +9,7 @@
 bool agv_gateway_passes(const agv_core_t *core, uint32_t command) {
     const agv_state_t state = agv_core_state(core);
     return (state == AGV_STATE_ACTIVE) ||
-           ((state == AGV_STATE_STANDBY) && ((command == AGV_MSG_TURN_SIGNAL_COMMAND) ||
+           ((state == AGV_STATE_STANDBY) && ((command == (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND) ||
                                              (core->config.gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL)));
 }
 
@@ -49,7 +49,8 @@ static uint32_t limit_slew(agv_core_t *core, uint32_t wanted_raw) {
         const uint32_t since_ms = core->now_ms - gateway->sent_ms;
         const uint32_t time_ms = (since_ms < SLEW_TIME_MAX_MS) ? since_ms : SLEW_TIME_MAX_MS;
         const int32_t step = (int32_t)((rate_ddeg_s * time_ms) / 1000u);
-        limited_raw = (uint32_t)clamp((int32_t)wanted_raw, gateway->sent_raw - step, gateway->sent_raw + step);
+        limited_raw =
+            (uint32_t)clamp((int32_t)wanted_raw, (int32_t)gateway->sent_raw - step, (int32_t)gateway->sent_raw + step);
         if ((step == 0) && (limited_raw != wanted_raw)) {
             return limited_raw; /* time goes on adding up until it makes a whole step */
         }
@@ -63,10 +64,10 @@ void agv_gateway_limit(agv_core_t *core, uint32_t command, uint8_t data[AGV_DLC]
     for (uint32_t i = 0u; i < AGV_DLC; i++) {
         data[i] &= agv_command_bits[command][i];
     }
-    if (command == AGV_MSG_THROTTLE_COMMAND) {
+    if (command == (uint32_t)AGV_MSG_THROTTLE_COMMAND) {
         const uint32_t max_counts = throttle_max(core);
         data[0] = (uint8_t)((data[0] < max_counts) ? data[0] : max_counts);
-    } else if (command == AGV_MSG_STEERING_COMMAND) {
+    } else if (command == (uint32_t)AGV_MSG_STEERING_COMMAND) {
         const uint32_t raw = limit_slew(core, agv_angle_read(data));
         agv_angle_write(data, raw);
         agv_monitor_steering_commanded(core, raw);

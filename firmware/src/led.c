@@ -5,7 +5,7 @@ enum { FLASH_MS = 400, PAUSE_MS = 1400, BLINK_MS = 200, HEALTHY_MS = 2000, SHADO
 
 int32_t agv_led_code(uint32_t fault) {
     const uint8_t code = agv_fault_led_code(fault);
-    if ((code == 0u) && (fault != AGV_FAULT_NONE)) {
+    if ((code == 0u) && (fault != (uint32_t)AGV_FAULT_NONE)) {
         return AGV_LED_BLINK;
     }
     return code;

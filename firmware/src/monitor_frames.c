@@ -141,9 +141,9 @@ static void on_wheel_speed(agv_core_t *core, const uint8_t data[AGV_DLC]) {
 static void on_value(agv_core_t *core, uint32_t message, const uint8_t data[AGV_DLC], bool valid) {
     const uint32_t which = message - (uint32_t)AGV_MSG_GEAR_STATUS;
     const uint8_t value = valid ? data[0] : 0u;
-    if (message == AGV_MSG_GEAR_STATUS) {
+    if (message == (uint32_t)AGV_MSG_GEAR_STATUS) {
         core->vehicle.gear = value;
-    } else if (message == AGV_MSG_THROTTLE_STATUS) {
+    } else if (message == (uint32_t)AGV_MSG_THROTTLE_STATUS) {
         core->vehicle.throttle = value;
     } else if (valid) {
         on_steering_angle(core, data);

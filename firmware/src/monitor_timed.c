@@ -27,7 +27,8 @@ void agv_monitor_start(agv_core_t *core) {
 }
 
 void agv_monitor_other_id_set(agv_core_t *core, uint32_t message) {
-    agv_watch_start(core, (message == AGV_MSG_TURN_SIGNAL_COMMAND) ? AGV_WATCH_OTHER_43F : AGV_WATCH_OTHER_363);
+    agv_watch_start(core,
+                    (message == (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND) ? AGV_WATCH_OTHER_43F : AGV_WATCH_OTHER_363);
 }
 
 void agv_monitor_steering_commanded(agv_core_t *core, uint32_t angle_raw) {
@@ -61,7 +62,8 @@ bool agv_monitor_settled(agv_core_t *core) {
 }
 
 bool agv_monitor_is_trip(const agv_core_t *core, uint32_t fault) {
-    const bool heartbeat = (fault == AGV_FAULT_AI_HEARTBEAT_LOST) || (fault == AGV_FAULT_AI_HEARTBEAT_STUCK);
+    const bool heartbeat =
+        (fault == (uint32_t)AGV_FAULT_AI_HEARTBEAT_LOST) || (fault == (uint32_t)AGV_FAULT_AI_HEARTBEAT_STUCK);
     const bool only_warns =
         heartbeat && !agv_core_engaged(core) && (core->config.ai_lost_in_manual == (uint16_t)AGV_AI_LOST_WARN);
     return !only_warns && agv_config_is_trip(&core->config, fault);

@@ -63,7 +63,7 @@ const char *agv_message_name(agv_message_t message) {
 }
 
 const char *agv_missing_name(uint8_t index) {
-    return (index < (sizeof missing_names / sizeof missing_names[0])) ? missing_names[index] : NULL;
+    return (index < (sizeof(missing_names) / sizeof(missing_names[0]))) ? missing_names[index] : NULL;
 }
 
 const agv_setting_info_t *agv_setting_info(uint16_t setting) {

@@ -63,7 +63,7 @@ void agv_recorder_start(agv_recorder_t *recorder) {
 void agv_recorder_frame(agv_recorder_t *recorder, uint32_t message, const uint8_t data[AGV_DLC]) {
     if (message < (uint32_t)AGV_MSG_COUNT) {
         (void)memcpy(recorder->frames[message], data, AGV_DLC);
-        recorder->seen |= (uint16_t)(1u << message);
+        recorder->seen |= (uint16_t)((uint32_t)1u << message);
     }
 }
 
@@ -71,7 +71,7 @@ void agv_recorder_add(agv_recorder_t *recorder, const agv_entry_t *entry, uint32
     agv_event_t *event = &recorder->events[slot_of(recorder->next_sequence)];
     event->sequence = recorder->next_sequence;
     event->time_ms = time_ms;
-    (void)memcpy((unsigned char *)event + offsetof(agv_event_t, kind), entry, sizeof *entry);
+    (void)memcpy(&((unsigned char *)event)[offsetof(agv_event_t, kind)], entry, sizeof *entry);
     event->run = recorder->run;
     event->seen = recorder->seen;
     (void)memcpy(event->frames, recorder->frames, sizeof event->frames);

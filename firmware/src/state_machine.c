@@ -10,7 +10,7 @@ static void enter(agv_core_t *core, agv_state_t state) {
 }
 
 void agv_state_machine_start(agv_core_t *core, uint32_t reason) {
-    const bool tripped = reason != AGV_FAULT_NONE;
+    const bool tripped = reason != (uint32_t)AGV_FAULT_NONE;
     core->machine.first_reason = (uint8_t)reason;
     core->machine.unresettable = AGV_FAULT_NONE;
     core->machine.button_before =
@@ -171,7 +171,7 @@ uint32_t agv_state_machine_step(agv_core_t *core, uint32_t facts) {
     }
     if (agv_core_is_latched(core)) {
         did = step_latched(core, facts);
-    } else if (reason != AGV_FAULT_NONE) {
+    } else if (reason != (uint32_t)AGV_FAULT_NONE) {
         trip(core, reason);
         did = AGV_STEP_TRIPPED;
     } else if (core->machine.state == (uint8_t)AGV_STATE_INIT) {
@@ -199,7 +199,7 @@ bool agv_state_machine_is_sound(const agv_state_machine_t *machine) {
                  {AGV_STATE_TRIPPED, AGV_LATCH_CLOSED},
                  {AGV_STATE_SAFE, AGV_LATCH_CLOSED}};
     bool sound = false;
-    for (uint32_t i = 0u; i < (sizeof pairs / sizeof pairs[0]); i++) {
+    for (uint32_t i = 0u; i < (sizeof(pairs) / sizeof(pairs[0])); i++) {
         if ((machine->state == pairs[i].state) && (machine->latched == pairs[i].latched)) {
             sound = true;
         }

@@ -10,7 +10,7 @@ static bool is_command(uint32_t message) {
 /* P15: why a frame is rejected, of several reasons the last; REJECTED_KINDS: it is not. Others' may have any length. */
 static uint32_t reason_to_reject(const hal_can_frame_t *frame, uint32_t message) {
     uint32_t why = AGV_REJECTED_KINDS;
-    if ((frame->length != AGV_DLC) && (message != AGV_MSG_NONE)) {
+    if ((frame->length != AGV_DLC) && (message != (uint32_t)AGV_MSG_NONE)) {
         why = AGV_REJECTED_LENGTH;
     }
     if ((frame->flags & HAL_CAN_FD) != 0u) {
@@ -70,14 +70,14 @@ static hal_can_side_t side_of(const agv_core_t *core, uint32_t message) {
 static void handle_other(agv_core_t *core, hal_can_side_t side, const hal_can_frame_t *frame) {
     const uint32_t other_set = (uint32_t)AGV_ID_SET_TABLE - core->config.id_set;
     const uint32_t message = agv_message_from_id(frame->id, other_set);
-    if ((message != AGV_MSG_NONE) && (frame->length == AGV_DLC) && (side == side_of(core, message))) {
+    if ((message != (uint32_t)AGV_MSG_NONE) && (frame->length == AGV_DLC) && (side == side_of(core, message))) {
         agv_monitor_other_id_set(core, message);
     }
     core->counters.dropped += agv_core_is_gateway(core) ? 1u : 0u;
 }
 
 static bool handle_well_formed(agv_core_t *core, hal_can_side_t side, uint32_t message, const hal_can_frame_t *frame) {
-    if (message == AGV_MSG_NONE) {
+    if (message == (uint32_t)AGV_MSG_NONE) {
         handle_other(core, side, frame);
         return false;
     }

@@ -27,7 +27,7 @@ static uint32_t self_test(const agv_config_t *config) {
 static void begin_modules(agv_core_t *core) {
     const size_t anew = offsetof(agv_core_t, led);
     (void)memset(core, 0, offsetof(agv_core_t, hal));
-    (void)memset((unsigned char *)core + anew, 0, sizeof *core - anew);
+    (void)memset(&((unsigned char *)core)[anew], 0, sizeof *core - anew);
     core->last_tick_ms = core->now_ms;
     core->config_checksum = agv_config_checksum(&core->config);
     agv_core_keep_wiring(core);
@@ -49,7 +49,7 @@ static uint32_t begin_from_latch(agv_core_t *core, bool restarted) {
         return AGV_FAULT_NONE;
     }
     agv_faults_level(core, latch.unresettable, true);
-    return (latch.first_reason < (uint8_t)AGV_FAULT_COUNT) ? latch.first_reason : AGV_FAULT_NONE;
+    return (latch.first_reason < (uint8_t)AGV_FAULT_COUNT) ? latch.first_reason : (uint32_t)AGV_FAULT_NONE;
 }
 
 /* The highest-ranking active fault down to SUPERVISOR_RESET; AGV_FAULT_NONE when there is none. */
@@ -65,11 +65,11 @@ static uint32_t first_active(const agv_core_t *core) {
 /* INIT, or TRIPPED when an earlier run was or when something found now is reason enough. */
 static void begin_state(agv_core_t *core, uint32_t kept_reason) {
     const uint32_t found = first_active(core);
-    agv_state_machine_start(core, (kept_reason != AGV_FAULT_NONE) ? kept_reason : found);
+    agv_state_machine_start(core, (kept_reason != (uint32_t)AGV_FAULT_NONE) ? kept_reason : found);
     core->machine.park_released = core->config.park == (uint16_t)AGV_PARK_AT_ONCE;
     agv_core_record(core, AGV_EVENT_STATE, 0u, core->machine.state, core->machine.first_reason);
     agv_core_record(core, AGV_EVENT_OUTPUT, 0u, 0u, 0u);
-    if (kept_reason != AGV_FAULT_NONE) {
+    if (kept_reason != (uint32_t)AGV_FAULT_NONE) {
         core->faults.marks[kept_reason] |= AGV_MARK_LATCHED;
     }
     core->summary.changed = true;
@@ -90,7 +90,7 @@ void agv_core_begin(agv_core_t *core, uint32_t found) {
     begin_modules(core);
     raise_found(core, found | self_test(&core->config));
     const uint32_t kept_reason = begin_from_latch(core, restarted);
-    if (restarted && !corrupted && (kept_reason == AGV_FAULT_NONE)) {
+    if (restarted && !corrupted && (kept_reason == (uint32_t)AGV_FAULT_NONE)) {
         agv_faults_event(core, AGV_FAULT_SUPERVISOR_RESET);
     }
     begin_state(core, kept_reason);
@@ -110,7 +110,7 @@ bool agv_core_check_config(agv_core_t *core, bool intact) {
     const bool stands = intact && (agv_config_check(config).problem == AGV_CONFIG_OK);
     if (!stands) {
         agv_config_defaults(config);
-        config->id_set = (core->id_set == (uint16_t)AGV_ID_SET_TABLE) ? AGV_ID_SET_TABLE : config->id_set;
+        config->id_set = (core->id_set == (uint16_t)AGV_ID_SET_TABLE) ? (uint16_t)AGV_ID_SET_TABLE : config->id_set;
         config->topology = (core->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? AGV_TOPOLOGY_GATEWAY : config->topology;
     }
     return stands;

@@ -53,12 +53,12 @@ static uint32_t wanted_commands(const agv_core_t *core) {
 /* The safe command: built-in constants, but for the alive counter and the held angle. */
 static void build(const agv_core_t *core, uint32_t command, uint8_t data[AGV_DLC]) {
     (void)memset(data, 0, AGV_DLC); /* throttle 0 */
-    if (command == AGV_MSG_TURN_SIGNAL_COMMAND) {
+    if (command == (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND) {
         data[4] = AGV_SIGNAL_LEFT | AGV_SIGNAL_RIGHT | AGV_SIGNAL_AUTOPILOT_OFF;
         data[7] = core->transmitter.alive_counter;
-    } else if (command == AGV_MSG_GEAR_COMMAND) {
+    } else if (command == (uint32_t)AGV_MSG_GEAR_COMMAND) {
         data[0] = AGV_GEAR_P;
-    } else if (command == AGV_MSG_STEERING_COMMAND) {
+    } else if (command == (uint32_t)AGV_MSG_STEERING_COMMAND) {
         agv_angle_write(data, core->hold.raw);
     } else {
         /* throttle */
@@ -113,10 +113,10 @@ static void send_own(agv_core_t *core, uint32_t command) {
         return;
     }
     transmitter->scheduler.override_waits &= ~bit_of(command);
-    if (command == AGV_MSG_GEAR_COMMAND) {
+    if (command == (uint32_t)AGV_MSG_GEAR_COMMAND) {
         agv_state_machine_park_sent(core);
     }
-    if ((command == AGV_MSG_TURN_SIGNAL_COMMAND) &&
+    if ((command == (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND) &&
         (core->config.own_heartbeat == (uint16_t)AGV_OWN_HEARTBEAT_RUNNING)) {
         transmitter->alive_counter++;
     }
@@ -194,7 +194,7 @@ static void tick_own(agv_core_t *core, uint32_t command, uint32_t wanted) {
     }
     /* park: at_standstill held P back; 065h waits for its slot */
     const bool first_park =
-        (command == AGV_MSG_GEAR_COMMAND) && ((core->transmitter.wanted_before & bit_of(command)) == 0u);
+        (command == (uint32_t)AGV_MSG_GEAR_COMMAND) && ((core->transmitter.wanted_before & bit_of(command)) == 0u);
     if (first_park) {
         agv_scheduler_restart_slot(core, command);
     }

@@ -73,7 +73,7 @@ bool agv_watch_reached(agv_core_t *core, uint32_t watch) {
     uint32_t phase = core->watches.phase[watch];
     uint32_t age_ms = agv_age_ms(core->now_ms, core->watches.since_ms[watch]);
     uint16_t limit_ms;
-    (void)memcpy(&limit_ms, (const unsigned char *)&core->config + limits[watch], sizeof limit_ms);
+    (void)memcpy(&limit_ms, &((const unsigned char *)&core->config)[limits[watch]], sizeof limit_ms);
     if (watch < (uint32_t)AGV_WATCH_UNFED) {
         age_ms++; /* its limit is enough, a deadline's is not */
     }
