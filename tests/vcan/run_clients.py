@@ -11,6 +11,7 @@ import json
 import os
 import pathlib
 import platform
+import re
 import shutil
 import subprocess
 import sys
@@ -123,6 +124,12 @@ def report(name, seconds, tally, wrong):
         print(wrong, flush=True)
 
 
+def reason(traceback_text):
+    """The line of a traceback that names the exception, the last one."""
+    named = [line for line in traceback_text.splitlines() if re.match(r"[\w.]*(Error|Exception|HeldUp|Expired)\b", line)]
+    return (named or ["?"])[-1][:500]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--lanes", type=int, default=2)
@@ -135,7 +142,8 @@ def main():
         sys.exit("run_clients: missing: %s; 'scripts/install-deps vcan' installs them" % ", ".join(missing))
     begin = time.monotonic()
     results = run_all(FILES, args.names, args.lanes)
-    failed = [name for name, _, _, wrong in results if wrong]
+    wrongs = {name: wrong for name, _, _, wrong in results if wrong}
+    failed = list(wrongs)
     print("\nkernel: %s %s" % (platform.release(), platform.machine()))
     print(subprocess.run(["ip", "-d", "link", "show", "type", "vcan"], stdout=subprocess.PIPE, check=True,
                          text=True).stdout.rstrip())
@@ -147,6 +155,8 @@ def main():
     if not args.names and len(results) < EXPECTED_TESTS:
         failed.append("run_clients")
         print("FAILED: %d tests ran, %d are to" % (len(results), EXPECTED_TESTS))
+    for name, wrong in wrongs.items():  # once more: the last lines are what one sees
+        print("FAILED %s: %s" % (name, reason(wrong)))
     print("%d Tests %d Failures 0 Ignored" % (max(len(results), len(failed)), len(failed)))
     sys.exit(1 if failed or not results else 0)
 
