@@ -24,7 +24,7 @@ TOOLS = ("cansend", "candump", "cangen", "canplayer", "canbusload", "ip", "tc")
 SHM = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None  # a disk may be too slow for a log of a bus
 TIMEOUT_S = 100  # of whatever is waited for; a clock that is counted, not measured, leaps while a disk is waited for
 LATE_S = 0.012  # a player, or a supervisor, that is later than this was held up by the machine
-TRIES = 4
+TRIES = 8
 
 MANUAL, AUTOPILOT, NEITHER = 0x40, 0x80, 0x00  # 363h byte 7
 BUTTON_1 = 0x01  # 363h byte 7

@@ -6,7 +6,7 @@ import subprocess
 import threading
 import time
 
-TRIES = 4
+TRIES = 8
 STALL_S = 0.1  # longer than that, and deadlines of the vehicle are over
 NAP_S = 0.005
 

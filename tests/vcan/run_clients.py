@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Foreign CAN tools against host_sim run. usage: with-vcan run_clients.py [--lanes N] [NAME...]
+"""Foreign CAN tools against host_sim run. usage: with-vcan run_clients.py [--lanes N] [--share I/N] [NAME...]
 
-Runs the tests of test_clients.py and test_python_can.py, several at a time, each on buses of its own. HOST_SIM in the
-environment is the program. Prints what it ran on and what candump saw. Fails when a test fails, a tool is missing, or
+Runs the tests of test_clients.py and test_python_can.py, several at a time, each on buses of its own: all of them, or
+every Nth. HOST_SIM in the environment is the program. Prints what it ran on and what candump saw. Fails when a test fails, a tool is missing, or
 fewer tests ran than there are to be.
 """
 import argparse
@@ -93,9 +93,19 @@ class Queue:
             yield self.names[place[0]]
 
 
-def run_all(files, wanted, lanes):
-    chosen = {file: [name for name in names_of(file) if not wanted or any(word in name for word in wanted)]
-              for file in files}
+def choose(files, wanted, share):
+    """{file: names of its tests that are to run}"""
+    number, of_all = share
+    chosen = {file: [] for file in files}
+    names = [(file, name) for file in files for name in names_of(file)]
+    for place, (file, name) in enumerate(names):
+        if place % of_all == number - 1 and (not wanted or any(word in name for word in wanted)):
+            chosen[file].append(name)
+    return chosen, len(names)
+
+
+def run_all(chosen, files, lanes):
+    chosen = dict(chosen)
     slow = [chosen.pop(file) for file in files[1:]]  # a lane of their own, from the start on: imports take long
     queue = Queue([name for names in chosen.values() for name in names])
     children = [fork(names) for names in slow if names] + [fork(queue) for _ in range(lanes)]
@@ -124,6 +134,14 @@ def report(name, seconds, tally, wrong):
         print(wrong, flush=True)
 
 
+def share(text):
+    """2/3: the second third"""
+    match = re.fullmatch(r"([1-9]\d?)/([1-9]\d?)", text)
+    if not match or int(match[1]) > int(match[2]):
+        raise argparse.ArgumentTypeError("%r is no share like 1/2" % text)
+    return int(match[1]), int(match[2])
+
+
 def reason(traceback_text):
     """The line of a traceback that names the exception, the last one."""
     named = [line for line in traceback_text.splitlines() if re.match(r"[\w.]*(Error|Exception|HeldUp|Expired)\b", line)]
@@ -133,6 +151,7 @@ def reason(traceback_text):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--lanes", type=int, default=2)
+    parser.add_argument("--share", type=share, default=(1, 1), metavar="I/N")
     parser.add_argument("names", nargs="*")
     args = parser.parse_args()
     if not os.access(os.environ.get("HOST_SIM", ""), os.X_OK):
@@ -141,7 +160,8 @@ def main():
     if missing:
         sys.exit("run_clients: missing: %s; 'scripts/install-deps vcan' installs them" % ", ".join(missing))
     begin = time.monotonic()
-    results = run_all(FILES, args.names, args.lanes)
+    chosen, there_are = choose(FILES, args.names, args.share)
+    results = run_all(chosen, FILES, args.lanes)
     wrongs = {name: wrong for name, _, _, wrong in results if wrong}
     failed = list(wrongs)
     print("\nkernel: %s %s" % (platform.release(), platform.machine()))
@@ -152,9 +172,10 @@ def main():
           (sum(frames), len(frames)))
     times = os.times()
     print("%.0f s by the clock in here, %.0f s of a processor" % (time.monotonic() - begin, sum(times[:4])))
-    if not args.names and len(results) < EXPECTED_TESTS:
+    expected = sum(map(len, chosen.values()))
+    if there_are < EXPECTED_TESTS or len(results) < expected:
         failed.append("run_clients")
-        print("FAILED: %d tests ran, %d are to" % (len(results), EXPECTED_TESTS))
+        print("FAILED: %d of %d tests ran, and there are %d, not %d" % (len(results), expected, there_are, EXPECTED_TESTS))
     for name, wrong in wrongs.items():  # once more: the last lines are what one sees
         print("FAILED %s: %s" % (name, reason(wrong)))
     print("%d Tests %d Failures 0 Ignored" % (max(len(results), len(failed)), len(failed)))
