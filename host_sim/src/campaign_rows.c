@@ -6,8 +6,8 @@
 
 enum { US_PER_S = 1000000, BITS_PER_BYTE = 8, CONFIRM_LEAD_MS = 2 };
 
-/** Frames that the wire may take, all in all: all messages once, a row of collisions, and some. */
-enum { ALLOWED_BITS = 24 * 138 };
+/** The longest frames that the wire may take, all in all: all messages twice, two rows of collisions, and some. */
+enum { ALLOWED_BITS = 40 * 138 };
 
 #define NONE AGV_MSG_NONE
 #define NOTHING 0u, 0u, ""
@@ -167,426 +167,526 @@ const campaign_row_t CAMPAIGN_ROWS[] = {
                                                                                        CAMPAIGN_ENGAGED,
                                                                                        NOTHING,
                                                                                        "ai: mute, message: "
-                                                                                       "throttle_command") ROW(STEERING_COMMAND_TIMEOUT,
-                                                                                                               CAMPAIGN_SILENCE, AGV_MSG_STEERING_COMMAND, "steering_command_timeout_ms",
-                                                                                                               CAMPAIGN_ENGAGED, NOTHING,
-                                                                                                               "ai: "
-                                                                                                               "mute, "
-                                                                                                               "message"
-                                                                                                               ": "
-                                                                                                               "steerin"
-                                                                                                               "g_"
-                                                                                                               "command"
-                                                                                                               "/ai: "
-                                                                                                               "stop")
-                                                                        ROW(AI_COMMAND_OUT_OF_RANGE, CAMPAIGN_FRAMES,
-                                                                            AGV_MSG_GEAR_COMMAND, NULL,
+                                                                                       "throttle_command")
+                                                                        ROW(STEERING_COMMAND_TIMEOUT, CAMPAIGN_SILENCE,
+                                                                            AGV_MSG_STEERING_COMMAND,
+                                                                            "steering_command_timeout_ms",
                                                                             CAMPAIGN_ENGAGED, NOTHING,
                                                                             "ai: "
-                                                                            "set, "
-                                                                            "field"
+                                                                            "mute, "
+                                                                            "message"
                                                                             ": "
-                                                                            "gear,"
-                                                                            " valu"
-                                                                            "e: "
-                                                                            "03h/"
-                                                                            "ai: "
-                                                                            "set, "
-                                                                            "field"
-                                                                            ": "
-                                                                            "throt"
-                                                                            "tle, "
-                                                                            "value"
-                                                                            ": "
-                                                                            "FBh/"
-                                                                            "ai: "
-                                                                            "set, "
-                                                                            "field"
-                                                                            ": "
-                                                                            "angle"
-                                                                            ", "
-                                                                            "value"
-                                                                            ": "
-                                                                            "4651"
-                                                                            "h") ROW(EPS_MODE_OFF, CAMPAIGN_FRAMES,
-                                                                                     AGV_MSG_EPS_STATUS,
-                                                                                     "eps_mode_frames",
-                                                                                     CAMPAIGN_ENGAGED, NOTHING,
-                                                                                     "eps: set, field: mode, value: "
-                                                                                     "FFh")
-                                                                            ROW(EPS_MODE_INVALID, CAMPAIGN_FRAMES,
-                                                                                AGV_MSG_EPS_STATUS,
-                                                                                "eps_mode_frames",
+                                                                            "steerin"
+                                                                            "g_"
+                                                                            "command"
+                                                                            "/ai: "
+                                                                            "stop")
+                                                                            ROW(AI_COMMAND_OUT_OF_RANGE,
+                                                                                CAMPAIGN_FRAMES,
+                                                                                AGV_MSG_GEAR_COMMAND, NULL,
                                                                                 CAMPAIGN_ENGAGED, NOTHING,
-                                                                                "eps: set, field: mode, value: "
-                                                                                "07h")
-                                                                                ROW(EPS_MODE_NOT_ANGLE, CAMPAIGN_FRAMES,
+                                                                                "ai: "
+                                                                                "set, "
+                                                                                "field"
+                                                                                ": "
+                                                                                "gear,"
+                                                                                " valu"
+                                                                                "e: "
+                                                                                "03h/"
+                                                                                "ai: "
+                                                                                "set, "
+                                                                                "field"
+                                                                                ": "
+                                                                                "throt"
+                                                                                "tle, "
+                                                                                "value"
+                                                                                ": "
+                                                                                "FBh/"
+                                                                                "ai: "
+                                                                                "set, "
+                                                                                "field"
+                                                                                ": "
+                                                                                "angle"
+                                                                                ", "
+                                                                                "value"
+                                                                                ": "
+                                                                                "4651"
+                                                                                "h") ROW(EPS_MODE_OFF, CAMPAIGN_FRAMES,
+                                                                                         AGV_MSG_EPS_STATUS,
+                                                                                         "eps_mode_frames",
+                                                                                         CAMPAIGN_ENGAGED, NOTHING,
+                                                                                         "eps: set, field: mode, "
+                                                                                         "value: "
+                                                                                         "FFh")
+                                                                                ROW(EPS_MODE_INVALID, CAMPAIGN_FRAMES,
                                                                                     AGV_MSG_EPS_STATUS,
                                                                                     "eps_mode_frames",
                                                                                     CAMPAIGN_ENGAGED, NOTHING,
-                                                                                    "eps: set, field: "
-                                                                                    "mode, value: 02h")
-                                                                                    ROW(GEAR_STATUS_INVALID,
+                                                                                    "eps: set, field: mode, value: "
+                                                                                    "07h")
+                                                                                    ROW(EPS_MODE_NOT_ANGLE,
                                                                                         CAMPAIGN_FRAMES,
-                                                                                        AGV_MSG_GEAR_STATUS,
-                                                                                        "status_invalid_frames",
-                                                                                        CAMPAIGN_ENGAGED |
-                                                                                            CAMPAIGN_LIES,
-                                                                                        NOTHING,
-                                                                                        "vcu: set, field: gear, "
-                                                                                        "value: 03h") ROW(THROTTLE_STATUS_INVALID,
-                                                                                                          CAMPAIGN_FRAMES,
-                                                                                                          AGV_MSG_THROTTLE_STATUS,
-                                                                                                          "status_"
-                                                                                                          "invalid_"
-                                                                                                          "frames",
-                                                                                                          CAMPAIGN_ENGAGED,
-                                                                                                          NOTHING,
-                                                                                                          "vcu: "
-                                                                                                          "set, "
-                                                                                                          "field: "
-                                                                                                          "throttle"
-                                                                                                          ", "
-                                                                                                          "value: "
-                                                                                                          "FBh")
-                                                                                        ROW(STEERING_ANGLE_INVALID,
+                                                                                        AGV_MSG_EPS_STATUS,
+                                                                                        "eps_mode_frames",
+                                                                                        CAMPAIGN_ENGAGED, NOTHING,
+                                                                                        "eps: set, field: "
+                                                                                        "mode, value: 02h")
+                                                                                        ROW(GEAR_STATUS_INVALID,
                                                                                             CAMPAIGN_FRAMES,
-                                                                                            AGV_MSG_STEERING_STATUS, "status_invalid_frames",
-                                                                                            CAMPAIGN_ENGAGED, NOTHING,
-                                                                                            "eps: set, field: angle, "
-                                                                                            "value: "
-                                                                                            "4651h") ROW(STEERING_DEVIATION,
-                                                                                                         CAMPAIGN_LASTS,
-                                                                                                         AGV_MSG_STEERING_COMMAND,
-                                                                                                         "steering_"
-                                                                                                         "deviation_"
-                                                                                                         "ms",
-                                                                                                         CAMPAIGN_ENGAGED,
-                                                                                                         90u, 300u,
-                                                                                                         "",
-                                                                                                         "eps: "
-                                                                                                         "stick|ai: "
-                                                                                                         "drive, "
-                                                                                                         "gear: D, "
-                                                                                                         "throttle_pct:"
-                                                                                                         " 20, "
-                                                                                                         "steer_deg: "
-                                                                                                         "$n") ROW(THROTTLE_IN_PARK,
-                                                                                                                   CAMPAIGN_LASTS,
-                                                                                                                   AGV_MSG_GEAR_STATUS,
-                                                                                                                   "t"
-                                                                                                                   "h"
-                                                                                                                   "r"
-                                                                                                                   "o"
-                                                                                                                   "t"
-                                                                                                                   "t"
-                                                                                                                   "l"
-                                                                                                                   "e"
-                                                                                                                   "_"
-                                                                                                                   "i"
-                                                                                                                   "n"
-                                                                                                                   "_"
-                                                                                                                   "p"
-                                                                                                                   "a"
-                                                                                                                   "r"
-                                                                                                                   "k"
-                                                                                                                   "_"
-                                                                                                                   "m"
-                                                                                                                   "s",
-                                                                                                                   CAMPAIGN_ENGAGED | CAMPAIGN_LIES,
-                                                                                                                   NOTHING,
-                                                                                                                   "v"
-                                                                                                                   "c"
-                                                                                                                   "u"
-                                                                                                                   ":"
-                                                                                                                   " "
-                                                                                                                   "s"
-                                                                                                                   "e"
-                                                                                                                   "t"
-                                                                                                                   ","
-                                                                                                                   " "
-                                                                                                                   "f"
-                                                                                                                   "i"
-                                                                                                                   "e"
-                                                                                                                   "l"
-                                                                                                                   "d"
-                                                                                                                   ":"
-                                                                                                                   " "
-                                                                                                                   "g"
-                                                                                                                   "e"
-                                                                                                                   "a"
-                                                                                                                   "r"
-                                                                                                                   ","
-                                                                                                                   " "
-                                                                                                                   "v"
-                                                                                                                   "a"
-                                                                                                                   "l"
-                                                                                                                   "u"
-                                                                                                                   "e"
-                                                                                                                   ":"
-                                                                                                                   " "
-                                                                                                                   "0"
-                                                                                                                   "8"
-                                                                                                                   "h")
-                                                                                            ROW(FOREIGN_COMMAND_SENDER,
-                                                                                                CAMPAIGN_FRAME,
-                                                                                                AGV_MSG_GEAR_COMMAND,
-                                                                                                NULL, CAMPAIGN_GATEWAY,
+                                                                                            AGV_MSG_GEAR_STATUS, "status_invalid_frames",
+                                                                                            CAMPAIGN_ENGAGED |
+                                                                                                CAMPAIGN_LIES,
+                                                                                            NOTHING,
+                                                                                            "vcu: set, field: gear, "
+                                                                                            "value: 03h")
+                                                                                            ROW(THROTTLE_STATUS_INVALID,
+                                                                                                CAMPAIGN_FRAMES,
+                                                                                                AGV_MSG_THROTTLE_STATUS,
+                                                                                                "status_"
+                                                                                                "invalid_"
+                                                                                                "frames",
+                                                                                                CAMPAIGN_ENGAGED,
                                                                                                 NOTHING,
-                                                                                                "bus: send, side: "
-                                                                                                "vehicle, message: "
-                                                                                                "gear_command, bytes: "
-                                                                                                "\"02 00 00 00 00 00 "
-                                                                                                "00 00\"") ROW_AFTER(SAFE_STATE_UNCONFIRMED,
-                                                                                                                     STEERING_COMMAND_TIMEOUT,
-                                                                                                                     CAMPAIGN_UNCONFIRMED,
-                                                                                                                     AGV_MSG_STEERING_COMMAND,
-                                                                                                                     "c"
-                                                                                                                     "o"
-                                                                                                                     "n"
-                                                                                                                     "f"
-                                                                                                                     "i"
-                                                                                                                     "r"
-                                                                                                                     "m"
-                                                                                                                     "_"
-                                                                                                                     "t"
-                                                                                                                     "i"
-                                                                                                                     "m"
-                                                                                                                     "e"
-                                                                                                                     "o"
-                                                                                                                     "u"
-                                                                                                                     "t"
-                                                                                                                     "_"
-                                                                                                                     "m"
-                                                                                                                     "s",
-                                                                                                                     CAMPAIGN_ENGAGED |
-                                                                                                                         CAMPAIGN_BY_OUTPUT |
-                                                                                                                         CAMPAIGN_LIES |
-                                                                                                                         CAMPAIGN_AT_ONCE_P,
-                                                                                                                     NOTHING,
-                                                                                                                     "v"
-                                                                                                                     "c"
-                                                                                                                     "u"
-                                                                                                                     ":"
-                                                                                                                     " "
-                                                                                                                     "s"
-                                                                                                                     "e"
-                                                                                                                     "t"
-                                                                                                                     ","
-                                                                                                                     " "
-                                                                                                                     "f"
-                                                                                                                     "i"
-                                                                                                                     "e"
-                                                                                                                     "l"
-                                                                                                                     "d"
-                                                                                                                     ":"
-                                                                                                                     " "
-                                                                                                                     "g"
-                                                                                                                     "e"
-                                                                                                                     "a"
-                                                                                                                     "r"
-                                                                                                                     ","
-                                                                                                                     " "
-                                                                                                                     "v"
-                                                                                                                     "a"
-                                                                                                                     "l"
-                                                                                                                     "u"
-                                                                                                                     "e"
-                                                                                                                     ":"
-                                                                                                                     " "
-                                                                                                                     "0"
-                                                                                                                     "1"
-                                                                                                                     "h"
-                                                                                                                     "|"
-                                                                                                                     "a"
-                                                                                                                     "i"
-                                                                                                                     ":"
-                                                                                                                     " "
-                                                                                                                     "m"
-                                                                                                                     "u"
-                                                                                                                     "t"
-                                                                                                                     "e"
-                                                                                                                     ","
-                                                                                                                     " "
-                                                                                                                     "m"
-                                                                                                                     "e"
-                                                                                                                     "s"
-                                                                                                                     "s"
-                                                                                                                     "a"
-                                                                                                                     "g"
-                                                                                                                     "e"
-                                                                                                                     ":"
-                                                                                                                     " "
-                                                                                                                     "s"
-                                                                                                                     "t"
-                                                                                                                     "e"
-                                                                                                                     "e"
-                                                                                                                     "r"
-                                                                                                                     "i"
-                                                                                                                     "n"
-                                                                                                                     "g"
-                                                                                                                     "_"
-                                                                                                                     "c"
-                                                                                                                     "o"
-                                                                                                                     "m"
-                                                                                                                     "m"
-                                                                                                                     "a"
-                                                                                                                     "n"
-                                                                                                                     "d")
-                                                                                                ROW(COMMAND_TOO_FAST,
-                                                                                                    CAMPAIGN_GAPS,
-                                                                                                    AGV_MSG_GEAR_COMMAND,
-                                                                                                    "command_"
-                                                                                                    "too_fast_"
-                                                                                                    "gaps",
-                                                                                                    CAMPAIGN_AS_TRIP,
-                                                                                                    10u, 35u, "",
-                                                                                                    "ai: "
-                                                                                                    "send_"
-                                                                                                    "every, "
-                                                                                                    "message: "
-                                                                                                    "gear_"
-                                                                                                    "command, "
-                                                                                                    "every_ms: "
-                                                                                                    "$n") ROW(RX_OVERRUN,
-                                                                                                              CAMPAIGN_TICK,
-                                                                                                              NONE, NULL, CAMPAIGN_AS_TRIP,
-                                                                                                              NOTHING, "supervisor: overrun")
-                                                                                                    ROW(ERROR_PASSIVE,
-                                                                                                        CAMPAIGN_TICK,
-                                                                                                        NONE, NULL,
-                                                                                                        CAMPAIGN_AS_TRIP |
-                                                                                                            CAMPAIGN_LATE_AI,
+                                                                                                "vcu: "
+                                                                                                "set, "
+                                                                                                "field: "
+                                                                                                "throttle"
+                                                                                                ", "
+                                                                                                "value: "
+                                                                                                "FBh")
+                                                                                                ROW(STEERING_ANGLE_INVALID,
+                                                                                                    CAMPAIGN_FRAMES,
+                                                                                                    AGV_MSG_STEERING_STATUS,
+                                                                                                    "status_invalid_"
+                                                                                                    "frames",
+                                                                                                    CAMPAIGN_ENGAGED,
+                                                                                                    NOTHING,
+                                                                                                    "eps: set, field: "
+                                                                                                    "angle, "
+                                                                                                    "value: "
+                                                                                                    "4651h") ROW(STEERING_DEVIATION,
+                                                                                                                 CAMPAIGN_LASTS,
+                                                                                                                 AGV_MSG_STEERING_COMMAND,
+                                                                                                                 "steer"
+                                                                                                                 "ing_"
+                                                                                                                 "devia"
+                                                                                                                 "tion_"
+                                                                                                                 "ms",
+                                                                                                                 CAMPAIGN_ENGAGED,
+                                                                                                                 90u, 300u,
+                                                                                                                 "",
+                                                                                                                 "eps: "
+                                                                                                                 "stick"
+                                                                                                                 "|ai: "
+                                                                                                                 "drive"
+                                                                                                                 ", "
+                                                                                                                 "gear:"
+                                                                                                                 " D, "
+                                                                                                                 "throt"
+                                                                                                                 "tle_"
+                                                                                                                 "pct:"
+                                                                                                                 " 20, "
+                                                                                                                 "steer"
+                                                                                                                 "_deg:"
+                                                                                                                 " "
+                                                                                                                 "$n")
+                                                                                                    ROW(THROTTLE_IN_PARK,
+                                                                                                        CAMPAIGN_LASTS,
+                                                                                                        AGV_MSG_GEAR_STATUS,
+                                                                                                        "t"
+                                                                                                        "h"
+                                                                                                        "r"
+                                                                                                        "o"
+                                                                                                        "t"
+                                                                                                        "t"
+                                                                                                        "l"
+                                                                                                        "e"
+                                                                                                        "_"
+                                                                                                        "i"
+                                                                                                        "n"
+                                                                                                        "_"
+                                                                                                        "p"
+                                                                                                        "a"
+                                                                                                        "r"
+                                                                                                        "k"
+                                                                                                        "_"
+                                                                                                        "m"
+                                                                                                        "s",
+                                                                                                        CAMPAIGN_ENGAGED |
+                                                                                                            CAMPAIGN_LIES,
                                                                                                         NOTHING,
-                                                                                                        "superv"
-                                                                                                        "isor: "
-                                                                                                        "error_"
-                                                                                                        "passiv"
-                                                                                                        "e")
-                                                                                                        ROW(AI_BUS_OFF,
-                                                                                                            CAMPAIGN_TICK,
-                                                                                                            NONE, NULL,
-                                                                                                            CAMPAIGN_GATEWAY |
-                                                                                                                CAMPAIGN_AS_TRIP,
+                                                                                                        "v"
+                                                                                                        "c"
+                                                                                                        "u"
+                                                                                                        ":"
+                                                                                                        " "
+                                                                                                        "s"
+                                                                                                        "e"
+                                                                                                        "t"
+                                                                                                        ","
+                                                                                                        " "
+                                                                                                        "f"
+                                                                                                        "i"
+                                                                                                        "e"
+                                                                                                        "l"
+                                                                                                        "d"
+                                                                                                        ":"
+                                                                                                        " "
+                                                                                                        "g"
+                                                                                                        "e"
+                                                                                                        "a"
+                                                                                                        "r"
+                                                                                                        ","
+                                                                                                        " "
+                                                                                                        "v"
+                                                                                                        "a"
+                                                                                                        "l"
+                                                                                                        "u"
+                                                                                                        "e"
+                                                                                                        ":"
+                                                                                                        " "
+                                                                                                        "0"
+                                                                                                        "8"
+                                                                                                        "h") ROW(FOREIGN_COMMAND_SENDER,
+                                                                                                                 CAMPAIGN_FRAME,
+                                                                                                                 AGV_MSG_GEAR_COMMAND,
+                                                                                                                 NULL,
+                                                                                                                 CAMPAIGN_GATEWAY,
+                                                                                                                 NOTHING,
+                                                                                                                 "bus: "
+                                                                                                                 "send,"
+                                                                                                                 " side"
+                                                                                                                 ": "
+                                                                                                                 "vehic"
+                                                                                                                 "le, "
+                                                                                                                 "messa"
+                                                                                                                 "ge: "
+                                                                                                                 "gear_"
+                                                                                                                 "comma"
+                                                                                                                 "nd, "
+                                                                                                                 "bytes"
+                                                                                                                 ": "
+                                                                                                                 "\"02 "
+                                                                                                                 "00 "
+                                                                                                                 "00 "
+                                                                                                                 "00 "
+                                                                                                                 "00 "
+                                                                                                                 "00 "
+                                                                                                                 "00 "
+                                                                                                                 "00\"")
+                                                                                                        ROW_AFTER(
+                                                                                                            SAFE_STATE_UNCONFIRMED,
+                                                                                                            STEERING_COMMAND_TIMEOUT,
+                                                                                                            CAMPAIGN_UNCONFIRMED,
+                                                                                                            AGV_MSG_STEERING_COMMAND,
+                                                                                                            "c"
+                                                                                                            "o"
+                                                                                                            "n"
+                                                                                                            "f"
+                                                                                                            "i"
+                                                                                                            "r"
+                                                                                                            "m"
+                                                                                                            "_"
+                                                                                                            "t"
+                                                                                                            "i"
+                                                                                                            "m"
+                                                                                                            "e"
+                                                                                                            "o"
+                                                                                                            "u"
+                                                                                                            "t"
+                                                                                                            "_"
+                                                                                                            "m"
+                                                                                                            "s",
+                                                                                                            CAMPAIGN_ENGAGED |
+                                                                                                                CAMPAIGN_BY_OUTPUT |
+                                                                                                                CAMPAIGN_LIES |
+                                                                                                                CAMPAIGN_AT_ONCE_P,
                                                                                                             NOTHING,
-                                                                                                            "superviso"
-                                                                                                            "r: "
-                                                                                                            "bus_off, "
-                                                                                                            "side: ai")
-                                                                                                            ROW(WRONG_ID_SET,
-                                                                                                                CAMPAIGN_SILENCE,
-                                                                                                                AGV_MSG_TURN_SIGNAL_COMMAND,
-                                                                                                                "wr"
-                                                                                                                "on"
-                                                                                                                "g_"
-                                                                                                                "id"
-                                                                                                                "_s"
-                                                                                                                "et"
-                                                                                                                "_m"
-                                                                                                                "s",
-                                                                                                                CAMPAIGN_MANUAL |
-                                                                                                                    CAMPAIGN_AS_TRIP,
+                                                                                                            "v"
+                                                                                                            "c"
+                                                                                                            "u"
+                                                                                                            ":"
+                                                                                                            " "
+                                                                                                            "s"
+                                                                                                            "e"
+                                                                                                            "t"
+                                                                                                            ","
+                                                                                                            " "
+                                                                                                            "f"
+                                                                                                            "i"
+                                                                                                            "e"
+                                                                                                            "l"
+                                                                                                            "d"
+                                                                                                            ":"
+                                                                                                            " "
+                                                                                                            "g"
+                                                                                                            "e"
+                                                                                                            "a"
+                                                                                                            "r"
+                                                                                                            ","
+                                                                                                            " "
+                                                                                                            "v"
+                                                                                                            "a"
+                                                                                                            "l"
+                                                                                                            "u"
+                                                                                                            "e"
+                                                                                                            ":"
+                                                                                                            " "
+                                                                                                            "0"
+                                                                                                            "1"
+                                                                                                            "h"
+                                                                                                            "|"
+                                                                                                            "a"
+                                                                                                            "i"
+                                                                                                            ":"
+                                                                                                            " "
+                                                                                                            "m"
+                                                                                                            "u"
+                                                                                                            "t"
+                                                                                                            "e"
+                                                                                                            ","
+                                                                                                            " "
+                                                                                                            "m"
+                                                                                                            "e"
+                                                                                                            "s"
+                                                                                                            "s"
+                                                                                                            "a"
+                                                                                                            "g"
+                                                                                                            "e"
+                                                                                                            ":"
+                                                                                                            " "
+                                                                                                            "s"
+                                                                                                            "t"
+                                                                                                            "e"
+                                                                                                            "e"
+                                                                                                            "r"
+                                                                                                            "i"
+                                                                                                            "n"
+                                                                                                            "g"
+                                                                                                            "_"
+                                                                                                            "c"
+                                                                                                            "o"
+                                                                                                            "m"
+                                                                                                            "m"
+                                                                                                            "a"
+                                                                                                            "n"
+                                                                                                            "d") ROW(COMMAND_TOO_FAST,
+                                                                                                                     CAMPAIGN_GAPS,
+                                                                                                                     AGV_MSG_GEAR_COMMAND,
+                                                                                                                     "c"
+                                                                                                                     "o"
+                                                                                                                     "m"
+                                                                                                                     "m"
+                                                                                                                     "a"
+                                                                                                                     "n"
+                                                                                                                     "d"
+                                                                                                                     "_"
+                                                                                                                     "t"
+                                                                                                                     "o"
+                                                                                                                     "o"
+                                                                                                                     "_"
+                                                                                                                     "f"
+                                                                                                                     "a"
+                                                                                                                     "s"
+                                                                                                                     "t"
+                                                                                                                     "_"
+                                                                                                                     "g"
+                                                                                                                     "a"
+                                                                                                                     "p"
+                                                                                                                     "s",
+                                                                                                                     CAMPAIGN_AS_TRIP,
+                                                                                                                     10u, 35u, "",
+                                                                                                                     "a"
+                                                                                                                     "i"
+                                                                                                                     ":"
+                                                                                                                     " "
+                                                                                                                     "s"
+                                                                                                                     "e"
+                                                                                                                     "n"
+                                                                                                                     "d"
+                                                                                                                     "_"
+                                                                                                                     "e"
+                                                                                                                     "v"
+                                                                                                                     "e"
+                                                                                                                     "r"
+                                                                                                                     "y"
+                                                                                                                     ","
+                                                                                                                     " "
+                                                                                                                     "m"
+                                                                                                                     "e"
+                                                                                                                     "s"
+                                                                                                                     "s"
+                                                                                                                     "a"
+                                                                                                                     "g"
+                                                                                                                     "e"
+                                                                                                                     ":"
+                                                                                                                     " "
+                                                                                                                     "g"
+                                                                                                                     "e"
+                                                                                                                     "a"
+                                                                                                                     "r"
+                                                                                                                     "_"
+                                                                                                                     "c"
+                                                                                                                     "o"
+                                                                                                                     "m"
+                                                                                                                     "m"
+                                                                                                                     "a"
+                                                                                                                     "n"
+                                                                                                                     "d"
+                                                                                                                     ","
+                                                                                                                     " "
+                                                                                                                     "e"
+                                                                                                                     "v"
+                                                                                                                     "e"
+                                                                                                                     "r"
+                                                                                                                     "y"
+                                                                                                                     "_"
+                                                                                                                     "m"
+                                                                                                                     "s"
+                                                                                                                     ":"
+                                                                                                                     " "
+                                                                                                                     "$"
+                                                                                                                     "n") ROW(RX_OVERRUN,
+                                                                                                                              CAMPAIGN_TICK,
+                                                                                                                              NONE, NULL, CAMPAIGN_AS_TRIP,
+                                                                                                                              NOTHING,
+                                                                                                                              "supervisor: overrun")
+                                                                                                            ROW(ERROR_PASSIVE,
+                                                                                                                CAMPAIGN_TICK,
+                                                                                                                NONE,
+                                                                                                                NULL,
+                                                                                                                CAMPAIGN_AS_TRIP |
+                                                                                                                    CAMPAIGN_LATE_AI,
                                                                                                                 NOTHING,
-                                                                                                                "ai"
-                                                                                                                ": "
-                                                                                                                "mu"
-                                                                                                                "te"
-                                                                                                                ", "
-                                                                                                                "me"
-                                                                                                                "ss"
-                                                                                                                "ag"
-                                                                                                                "e:"
-                                                                                                                " t"
-                                                                                                                "ur"
-                                                                                                                "n_"
-                                                                                                                "si"
-                                                                                                                "gn"
-                                                                                                                "al"
-                                                                                                                "_c"
-                                                                                                                "om"
-                                                                                                                "ma"
-                                                                                                                "nd"
-                                                                                                                "|"
-                                                                                                                "bu"
-                                                                                                                "s:"
-                                                                                                                " s"
-                                                                                                                "en"
-                                                                                                                "d,"
-                                                                                                                " s"
-                                                                                                                "id"
-                                                                                                                "e:"
-                                                                                                                " $"
-                                                                                                                "s,"
-                                                                                                                " i"
-                                                                                                                "d:"
-                                                                                                                " $"
-                                                                                                                "o,"
-                                                                                                                " b"
-                                                                                                                "yt"
-                                                                                                                "es"
-                                                                                                                ": "
-                                                                                                                "\""
-                                                                                                                "00"
-                                                                                                                " 0"
-                                                                                                                "0 "
-                                                                                                                "00"
-                                                                                                                " 0"
-                                                                                                                "0 "
-                                                                                                                "10"
-                                                                                                                " 0"
-                                                                                                                "0 "
-                                                                                                                "00"
-                                                                                                                " 0"
-                                                                                                                "0"
-                                                                                                                "\""
-                                                                                                                ", "
-                                                                                                                "ev"
-                                                                                                                "er"
-                                                                                                                "y_"
-                                                                                                                "ms"
-                                                                                                                ": "
-                                                                                                                "10"
-                                                                                                                "0")
-                                                                                                                ROW_AFTER(
-                                                                                                                    STORE_INVALID,
-                                                                                                                    SUPERVISOR_RESET,
-                                                                                                                    CAMPAIGN_AT_ONCE,
-                                                                                                                    NONE,
-                                                                                                                    NULL,
-                                                                                                                    0u,
+                                                                                                                "superv"
+                                                                                                                "isor: "
+                                                                                                                "error_"
+                                                                                                                "passiv"
+                                                                                                                "e") ROW(AI_BUS_OFF,
+                                                                                                                         CAMPAIGN_TICK,
+                                                                                                                         NONE,
+                                                                                                                         NULL,
+                                                                                                                         CAMPAIGN_GATEWAY |
+                                                                                                                             CAMPAIGN_AS_TRIP,
+                                                                                                                         NOTHING,
+                                                                                                                         "superviso"
+                                                                                                                         "r: "
+                                                                                                                         "bus_off, "
+                                                                                                                         "side: ai")
+                                                                                                                ROW(WRONG_ID_SET,
+                                                                                                                    CAMPAIGN_SILENCE,
+                                                                                                                    AGV_MSG_TURN_SIGNAL_COMMAND,
+                                                                                                                    "wr"
+                                                                                                                    "on"
+                                                                                                                    "g_"
+                                                                                                                    "id"
+                                                                                                                    "_s"
+                                                                                                                    "et"
+                                                                                                                    "_m"
+                                                                                                                    "s",
+                                                                                                                    CAMPAIGN_MANUAL |
+                                                                                                                        CAMPAIGN_AS_TRIP,
                                                                                                                     NOTHING,
-                                                                                                                    "su"
-                                                                                                                    "pe"
-                                                                                                                    "rv"
-                                                                                                                    "is"
-                                                                                                                    "or"
+                                                                                                                    "ai"
                                                                                                                     ": "
-                                                                                                                    "co"
-                                                                                                                    "rr"
-                                                                                                                    "up"
-                                                                                                                    "t_"
-                                                                                                                    "la"
-                                                                                                                    "tc"
-                                                                                                                    "h|"
-                                                                                                                    "su"
-                                                                                                                    "pe"
-                                                                                                                    "rv"
-                                                                                                                    "is"
-                                                                                                                    "or"
+                                                                                                                    "mu"
+                                                                                                                    "te"
+                                                                                                                    ", "
+                                                                                                                    "me"
+                                                                                                                    "ss"
+                                                                                                                    "ag"
+                                                                                                                    "e:"
+                                                                                                                    " t"
+                                                                                                                    "ur"
+                                                                                                                    "n_"
+                                                                                                                    "si"
+                                                                                                                    "gn"
+                                                                                                                    "al"
+                                                                                                                    "_c"
+                                                                                                                    "om"
+                                                                                                                    "ma"
+                                                                                                                    "nd"
+                                                                                                                    "|"
+                                                                                                                    "bu"
+                                                                                                                    "s:"
+                                                                                                                    " s"
+                                                                                                                    "en"
+                                                                                                                    "d,"
+                                                                                                                    " s"
+                                                                                                                    "id"
+                                                                                                                    "e:"
+                                                                                                                    " $"
+                                                                                                                    "s,"
+                                                                                                                    " i"
+                                                                                                                    "d:"
+                                                                                                                    " $"
+                                                                                                                    "o,"
+                                                                                                                    " b"
+                                                                                                                    "yt"
+                                                                                                                    "es"
                                                                                                                     ": "
-                                                                                                                    "re"
-                                                                                                                    "st"
-                                                                                                                    "ar"
-                                                                                                                    "t,"
-                                                                                                                    " c"
-                                                                                                                    "au"
-                                                                                                                    "se"
+                                                                                                                    "\""
+                                                                                                                    "00"
+                                                                                                                    " 0"
+                                                                                                                    "0 "
+                                                                                                                    "00"
+                                                                                                                    " 0"
+                                                                                                                    "0 "
+                                                                                                                    "10"
+                                                                                                                    " 0"
+                                                                                                                    "0 "
+                                                                                                                    "00"
+                                                                                                                    " 0"
+                                                                                                                    "0"
+                                                                                                                    "\""
+                                                                                                                    ", "
+                                                                                                                    "ev"
+                                                                                                                    "er"
+                                                                                                                    "y_"
+                                                                                                                    "ms"
                                                                                                                     ": "
-                                                                                                                    "wa"
-                                                                                                                    "tc"
-                                                                                                                    "hd"
-                                                                                                                    "o"
-                                                                                                                    "g")};
+                                                                                                                    "10"
+                                                                                                                    "0")
+                                                                                                                    ROW_AFTER(
+                                                                                                                        STORE_INVALID,
+                                                                                                                        SUPERVISOR_RESET,
+                                                                                                                        CAMPAIGN_AT_ONCE,
+                                                                                                                        NONE,
+                                                                                                                        NULL,
+                                                                                                                        0u,
+                                                                                                                        NOTHING,
+                                                                                                                        "su"
+                                                                                                                        "pe"
+                                                                                                                        "rv"
+                                                                                                                        "is"
+                                                                                                                        "or"
+                                                                                                                        ": "
+                                                                                                                        "co"
+                                                                                                                        "rr"
+                                                                                                                        "up"
+                                                                                                                        "t_"
+                                                                                                                        "la"
+                                                                                                                        "tc"
+                                                                                                                        "h|"
+                                                                                                                        "su"
+                                                                                                                        "pe"
+                                                                                                                        "rv"
+                                                                                                                        "is"
+                                                                                                                        "or"
+                                                                                                                        ": "
+                                                                                                                        "re"
+                                                                                                                        "st"
+                                                                                                                        "ar"
+                                                                                                                        "t,"
+                                                                                                                        " c"
+                                                                                                                        "au"
+                                                                                                                        "se"
+                                                                                                                        ": "
+                                                                                                                        "wa"
+                                                                                                                        "tc"
+                                                                                                                        "hd"
+                                                                                                                        "o"
+                                                                                                                        "g")};
 
 const size_t CAMPAIGN_ROW_COUNT = sizeof CAMPAIGN_ROWS / sizeof CAMPAIGN_ROWS[0];
 
