@@ -30,6 +30,9 @@ command_fn cmd_scenario;
 /** `host_sim vehicle`: VCU, EPS and AI computer as nodes on SocketCAN. */
 command_fn cmd_vehicle;
 
+/** `host_sim campaign`: randomised fault campaigns on the simulated bus. */
+command_fn cmd_campaign;
+
 /** `host_sim config`: every setting, as YAML or as a Kconfig fragment. */
 command_fn cmd_config;
 

@@ -20,6 +20,7 @@ typedef struct {
 } command_t;
 
 static const command_t commands[] = {
+    {"campaign", "cause faults at random on the simulated bus, thousands of times, and judge", cmd_campaign},
     {"config", "print every setting as a configuration file, or a configuration as Kconfig", cmd_config},
     {"demo", "see the supervisor at work: a vehicle drives off, loses its AI computer, is parked", cmd_demo},
     {"replay", "feed a recorded candump log to the supervisor in virtual time", cmd_replay},

@@ -187,7 +187,8 @@ typedef struct {
     vehicle_config_t vehicle;
     uint32_t bitrate;
     uint32_t clock_start_ms;
-    uint32_t watchdog_ms; /**< UINT32_MAX: there is none */
+    uint16_t tick_phase_us; /**< by which the supervisor's ticks lie behind the milliseconds of the vehicle */
+    uint32_t watchdog_ms;   /**< UINT32_MAX: there is none */
     hal_reset_cause_t reset_cause;
     uint32_t duration_ms;
     scenario_step_t steps[SCENARIO_STEPS_MAX];
@@ -208,6 +209,9 @@ typedef struct {
  * @return false: it makes no sense; was reported with file and line.
  */
 bool scenario_read(scenario_t *scenario, const char *file, const scenario_options_t *options);
+
+/** The same from memory. @param name for messages, in the place of the file's */
+bool scenario_read_text(scenario_t *scenario, const char *name, const char *text, const scenario_options_t *options);
 
 /** The identifier that a frame expectation is about; SCENARIO_NO_ID = any. */
 uint32_t scenario_frame_id(const scenario_t *scenario, const scenario_frame_t *frame);

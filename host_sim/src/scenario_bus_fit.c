@@ -69,6 +69,9 @@ static const char *why_not_start(const scenario_t *scenario) {
     if (scenario->clock_start_ms != 0u) {
         return "clock_start_ms: the clock of a node starts at 0";
     }
+    if (scenario->tick_phase_us != 0u) {
+        return "tick_phase_us: a computer ticks when it can";
+    }
     if (scenario->reset_cause != HAL_RESET_POWER_ON) {
         return "reset_cause: a program starts by power-on only";
     }

@@ -11,9 +11,12 @@
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
+enum { TICK_PHASE_MAX_US = 999 };
+
 const yaml_word_t SCENARIO_GEARS[] = {
     {"P", AGV_GEAR_P}, {"R", AGV_GEAR_R}, {"N", AGV_GEAR_N}, {"D", AGV_GEAR_D}, {NULL, 0}};
 const yaml_word_t SCENARIO_SIDES[] = {{"vehicle", HAL_CAN_VEHICLE}, {"ai", HAL_CAN_AI}, {NULL, 0}};
+const yaml_word_t SCENARIO_ID_SETS[] = {{"heading", AGV_ID_SET_HEADING}, {"table", AGV_ID_SET_TABLE}, {NULL, 0}};
 const yaml_word_t SCENARIO_CAUSES[] = {{"power-on", HAL_RESET_POWER_ON},
                                        {"watchdog", HAL_RESET_WATCHDOG},
                                        {"brown-out", HAL_RESET_BROWN_OUT},
@@ -21,8 +24,6 @@ const yaml_word_t SCENARIO_CAUSES[] = {{"power-on", HAL_RESET_POWER_ON},
                                        {"software", HAL_RESET_SOFTWARE},
                                        {"unknown", HAL_RESET_UNKNOWN},
                                        {NULL, 0}};
-
-static const yaml_word_t ID_SETS[] = {{"heading", AGV_ID_SET_HEADING}, {"table", AGV_ID_SET_TABLE}, {NULL, 0}};
 
 /** What the file holds is read into this. */
 typedef struct {
@@ -145,7 +146,7 @@ static bool read_id_set(const yaml_reader_t *reader, const yaml_node_t *node, vo
     int value = 0;
 
     scenario->fixes_id_set = true;
-    if (!yaml_reader_word(reader, node, "id_set", ID_SETS, &value)) {
+    if (!yaml_reader_word(reader, node, "id_set", SCENARIO_ID_SETS, &value)) {
         return false;
     }
     scenario->config.id_set = (uint16_t)value;
@@ -205,6 +206,16 @@ static bool read_clock(const yaml_reader_t *reader, const yaml_node_t *node, voi
                               &((reading_t *)target)->scenario->clock_start_ms);
 }
 
+static bool read_tick_phase(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    uint32_t us = 0u;
+
+    if (!scenario_parse_u32(reader, node, "tick_phase_us", 0u, TICK_PHASE_MAX_US, &us)) {
+        return false;
+    }
+    ((reading_t *)target)->scenario->tick_phase_us = (uint16_t)us;
+    return true;
+}
+
 static bool read_watchdog(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     static const yaml_word_t words[] = {{"fitted", 0}, {"none", 1}, {NULL, 0}};
     int value = 0;
@@ -231,96 +242,8 @@ static bool read_duration(const yaml_reader_t *reader, const yaml_node_t *node, 
                               &((reading_t *)target)->scenario->duration_ms);
 }
 
-static bool read_start(const yaml_reader_t *reader, const yaml_node_t *node, uint32_t *start_ms) {
-    const char *text = yaml_node_text(node);
-
-    if ((text != NULL) && (strcmp(text, "never") == 0)) {
-        *start_ms = VEHICLE_NEVER;
-        return true;
-    }
-    return scenario_parse_time(reader, node, "start (a time in ms, or never)", start_ms);
-}
-
-static bool read_start_vcu(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return read_start(reader, node, &((vehicle_config_t *)target)->start_ms[VEHICLE_VCU]);
-}
-
-static bool read_start_eps(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return read_start(reader, node, &((vehicle_config_t *)target)->start_ms[VEHICLE_EPS]);
-}
-
-static bool read_start_ai(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return read_start(reader, node, &((vehicle_config_t *)target)->start_ms[VEHICLE_AI]);
-}
-
-static bool read_guard(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return yaml_reader_bool(reader, node, "park_guard", &((vehicle_config_t *)target)->park_guard);
-}
-
-static bool read_short(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return yaml_reader_bool(reader, node, "obeys_short_frames", &((vehicle_config_t *)target)->obeys_short_frames);
-}
-
-static bool read_seed(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return scenario_parse_u32(reader, node, "seed", 1u, UINT32_MAX, &((vehicle_config_t *)target)->seed);
-}
-
-/* The figures of the vehicle, each a 16-bit number. */
-#define FIGURE(name, lowest)                                                                                           \
-    static bool read_##name(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {                      \
-        uint32_t value = 0u;                                                                                           \
-        if (!scenario_parse_u32(reader, node, #name, (lowest), UINT16_MAX, &value)) {                                  \
-            return false;                                                                                              \
-        }                                                                                                              \
-        ((vehicle_config_t *)target)->name = (uint16_t)value;                                                          \
-        return true;                                                                                                   \
-    }
-FIGURE(gear_change_ms, 0u)
-FIGURE(walking_pace_mm_s, 1u)
-FIGURE(top_speed_mm_s, 1u)
-FIGURE(acceleration_mm_s2, 1u)
-FIGURE(coasting_mm_s2, 1u)
-FIGURE(braking_mm_s2, 1u)
-FIGURE(locked_mm_s2, 1u)
-FIGURE(steering_rate_ddeg_s, 0u)
-FIGURE(eps_mode_change_ms, 0u)
-FIGURE(ai_lost_ms, 1u)
-FIGURE(eps_lost_ms, 1u)
-
-static bool read_vehicle_id_set(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    int value = 0;
-
-    if (!yaml_reader_word(reader, node, "id_set", ID_SETS, &value)) {
-        return false;
-    }
-    ((vehicle_config_t *)target)->id_set = (agv_id_set_t)value;
-    return true;
-}
-
 static bool read_vehicle(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {
-        {"id_set", read_vehicle_id_set, false},
-        {"park_guard", read_guard, false},
-        {"obeys_short_frames", read_short, false},
-        {"vcu_starts_ms", read_start_vcu, false},
-        {"eps_starts_ms", read_start_eps, false},
-        {"ai_starts_ms", read_start_ai, false},
-        {"seed", read_seed, false},
-        {"gear_change_ms", read_gear_change_ms, false},
-        {"walking_pace_mm_s", read_walking_pace_mm_s, false},
-        {"top_speed_mm_s", read_top_speed_mm_s, false},
-        {"acceleration_mm_s2", read_acceleration_mm_s2, false},
-        {"coasting_mm_s2", read_coasting_mm_s2, false},
-        {"braking_mm_s2", read_braking_mm_s2, false},
-        {"locked_mm_s2", read_locked_mm_s2, false},
-        {"steering_rate_ddeg_s", read_steering_rate_ddeg_s, false},
-        {"eps_mode_change_ms", read_eps_mode_change_ms, false},
-        {"ai_lost_ms", read_ai_lost_ms, false},
-        {"eps_lost_ms", read_eps_lost_ms, false},
-    };
-    scenario_t *scenario = ((reading_t *)target)->scenario;
-
-    return yaml_reader_map(reader, node, "vehicle", keys, COUNT(keys), &scenario->vehicle);
+    return scenario_parse_vehicle_config(reader, node, &((reading_t *)target)->scenario->vehicle);
 }
 
 static bool read_steps(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
@@ -342,6 +265,7 @@ static const yaml_key_t TOP[] = {
     {"self_test", read_self_test, false},
     {"bitrate", read_bitrate, false},
     {"clock_start_ms", read_clock, false},
+    {"tick_phase_us", read_tick_phase, false},
     {"hardware_watchdog", read_watchdog, false},
     {"reset_cause", read_cause, false},
     {"vehicle", read_vehicle, false},
@@ -427,18 +351,29 @@ static bool read_document(reading_t *reading, yaml_document_t *document, const c
     return true;
 }
 
-bool scenario_read(scenario_t *scenario, const char *file, const scenario_options_t *options) {
+/** Read what was loaded, and free it. */
+static bool read_loaded(scenario_t *scenario, const char *file, yaml_document_t *document,
+                        const scenario_options_t *options) {
     reading_t reading = {.scenario = scenario, .lines = {.path = file}};
+    const bool good = read_document(&reading, document, file);
+
+    yaml_document_delete(document);
+    return good && agrees(scenario, file, options) &&
+           (scenario->config_unchecked || config_check(&scenario->config, &reading.lines));
+}
+
+bool scenario_read(scenario_t *scenario, const char *file, const scenario_options_t *options) {
     yaml_document_t document;
 
     preset(scenario, options);
-    if (!yaml_file_load(file, &document)) {
-        return false;
-    }
-    const bool good = read_document(&reading, &document, file);
-    yaml_document_delete(&document);
-    return good && agrees(scenario, file, options) &&
-           (scenario->config_unchecked || config_check(&scenario->config, &reading.lines));
+    return yaml_file_load(file, &document) && read_loaded(scenario, file, &document, options);
+}
+
+bool scenario_read_text(scenario_t *scenario, const char *name, const char *text, const scenario_options_t *options) {
+    yaml_document_t document;
+
+    preset(scenario, options);
+    return yaml_text_load(name, text, &document) && read_loaded(scenario, name, &document, options);
 }
 
 uint32_t scenario_frame_id(const scenario_t *scenario, const scenario_frame_t *frame) {

@@ -11,6 +11,7 @@
 extern const yaml_word_t SCENARIO_GEARS[];
 extern const yaml_word_t SCENARIO_SIDES[];
 extern const yaml_word_t SCENARIO_CAUSES[];
+extern const yaml_word_t SCENARIO_ID_SETS[];
 
 /** The next free place of a list; NULL when it is full, which was reported. */
 #define SCENARIO_NEXT(reader, node, list)                                                                              \
@@ -28,6 +29,9 @@ yaml_read_fn scenario_parse_never;
 yaml_read_fn scenario_parse_vehicle;
 yaml_read_fn scenario_parse_counters;
 /** @} */
+
+/** How the vehicle is built; the target is a vehicle_config_t. */
+yaml_read_fn scenario_parse_vehicle_config;
 
 /** The steps and the expectations; their target is the scenario_t. */
 yaml_read_fn scenario_parse_steps;

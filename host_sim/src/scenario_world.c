@@ -124,7 +124,9 @@ static bool attach(scenario_world_t *world, hal_can_side_t side) {
 
 bool scenario_world_init(scenario_world_t *world, const scenario_t *scenario, scenario_planted_t planted) {
     memset(world, 0, sizeof *world);
+    const uint32_t phase_us = scenario->tick_phase_us;
     const sim_hal_config_t port = {.clock_start_ms = scenario->clock_start_ms,
+                                   .clock_phase_us = (uint16_t)((US_PER_MS - phase_us) % US_PER_MS),
                                    .watchdog_ms = (scenario->watchdog_ms != 0u) ? scenario->watchdog_ms
                                                                                 : scenario->config.watchdog_period_ms,
                                    .reset_cause = scenario->reset_cause,
@@ -132,6 +134,7 @@ bool scenario_world_init(scenario_world_t *world, const scenario_t *scenario, sc
 
     world->planted = planted;
     world->config = scenario->config;
+    world->tick_phase_us = scenario->tick_phase_us;
     world->bus_count = scenario->vehicle.gateway ? HAL_CAN_SIDES : 1u;
     sim_store_init(&world->store);
     sim_hal_init(&world->hal, &port);
@@ -312,6 +315,14 @@ static void step_supervisor(scenario_world_t *world) {
     }
 }
 
+static void run_buses(scenario_world_t *world, uint64_t until_us) {
+    if (world->bus_count == 1u) {
+        sim_bus_run_until(&world->buses[HAL_CAN_VEHICLE], until_us);
+    } else {
+        sim_bus_run_all_until(world->running, world->bus_count, until_us);
+    }
+}
+
 void scenario_world_tick(scenario_world_t *world, uint64_t t_ms) {
     const uint64_t until_us = (t_ms + 1u) * US_PER_MS;
 
@@ -323,10 +334,9 @@ void scenario_world_tick(scenario_world_t *world, uint64_t t_ms) {
             follow_power(world, (vehicle_node_t)n);
         }
     }
-    step_supervisor(world);
-    if (world->bus_count == 1u) {
-        sim_bus_run_until(&world->buses[HAL_CAN_VEHICLE], until_us);
-    } else {
-        sim_bus_run_all_until(world->running, world->bus_count, until_us);
+    if (world->tick_phase_us != 0u) {
+        run_buses(world, (t_ms * US_PER_MS) + world->tick_phase_us);
     }
+    step_supervisor(world);
+    run_buses(world, until_us);
 }

@@ -71,6 +71,7 @@ struct scenario_world {
     scenario_watch_t watches[SCENARIO_WATCHES_MAX];
     size_t watch_count;
     uint64_t t_ms;
+    uint16_t tick_phase_us; /**< of scenario_t */
     uint64_t deaf_until_ms; /**< the supervisor hangs, or is without power, until then */
     bool was_deaf;          /**< it hung: frames may wait for it */
     bool off;               /**< it is without power */

@@ -37,6 +37,9 @@ void vehicle_defaults(vehicle_config_t *config) {
         .ai_lost_ms = 1000u,
         .eps_lost_ms = 100u,
     };
+    for (int m = 0; m < AGV_MSG_COUNT; m++) {
+        config->phase_ms[m] = VEHICLE_ROWS[m].phase_ms;
+    }
 }
 
 void vehicle_init(vehicle_t *vehicle, const vehicle_config_t *config, vehicle_send_fn *send, void *ctx) {
@@ -80,7 +83,7 @@ uint8_t vehicle_count(vehicle_t *vehicle, vehicle_node_t node) {
 static void schedule_messages(vehicle_t *vehicle, vehicle_node_t node, bool on, uint64_t now_ms) {
     for (int m = 0; m < AGV_MSG_COUNT; m++) {
         if (VEHICLE_ROWS[m].node == node) {
-            vehicle->message_ms[m] = on ? now_ms + VEHICLE_ROWS[m].phase_ms : UINT64_MAX;
+            vehicle->message_ms[m] = on ? now_ms + vehicle->config.phase_ms[m] : UINT64_MAX;
         }
     }
 }

@@ -63,6 +63,7 @@ typedef struct {
     uint16_t locked_mm_s2;            /**< 5000: gear P */
     uint16_t steering_rate_ddeg_s;    /**< 3000 */
     uint16_t eps_mode_change_ms;      /**< 200 */
+    uint16_t phase_ms[AGV_MSG_COUNT]; /**< of the first frame of each message, after the start of its node */
     uint16_t ai_lost_ms;              /**< 1000 */
     uint16_t eps_lost_ms;             /**< 100 */
 } vehicle_config_t;

@@ -13,7 +13,7 @@ typedef void vehicle_compose_fn(vehicle_t *vehicle, uint64_t now_ms, uint8_t dat
 /** A message of the vehicle. */
 typedef struct {
     vehicle_node_t node;
-    uint16_t phase_ms; /**< of its first frame, after the start of the node: spread, so that few fall together */
+    uint16_t phase_ms; /**< the preset of vehicle_config_t: spread, so that few fall together */
     uint16_t cycle_ms;
     vehicle_compose_fn *compose;
 } vehicle_row_t;

@@ -120,6 +120,12 @@ bool yaml_file_load(const char *path, yaml_document_t *document) {
     return loaded;
 }
 
+bool yaml_text_load(const char *name, const char *text, yaml_document_t *document) {
+    const unsigned char *bytes = (const unsigned char *)text;
+    const size_t size = strlen(text);
+    return check(name, bytes, size) && load(name, bytes, size, document);
+}
+
 size_t yaml_node_line(const yaml_node_t *node) {
     return node->start_mark.line + 1u;
 }

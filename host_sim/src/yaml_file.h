@@ -19,6 +19,9 @@
  */
 bool yaml_file_load(const char *path, yaml_document_t *document);
 
+/** The same from memory. @param name for messages, in the place of the path */
+bool yaml_text_load(const char *name, const char *text, yaml_document_t *document);
+
 /** The line on which a node begins, from 1. */
 size_t yaml_node_line(const yaml_node_t *node);
 

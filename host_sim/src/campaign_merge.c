@@ -1,0 +1,177 @@
+/* The shards of a campaign, read side by side: run k is in the file of shard k % n + 1. */
+#include <errno.h>
+#include <inttypes.h>
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "agv/names.h"
+#include "campaign_result.h"
+#include "report.h"
+
+/** A file that is being read. */
+typedef struct {
+    const char *path;
+    FILE *stream;
+    char *line;
+    size_t room;
+    size_t number; /**< of the line, from 1 */
+} shard_t;
+
+/** Read the next line as an object. @return NULL: reported; the caller drops the reference */
+static json_t *read_object(shard_t *shard) {
+    errno = 0;
+    const ssize_t length = getline(&shard->line, &shard->room, shard->stream);
+    if (length < 0) {
+        if (errno != 0) {
+            (void)report("%s: %s", shard->path, strerror(errno));
+        } else {
+            (void)report("%s: it ends after line %zu, runs are missing", shard->path, shard->number);
+        }
+        return NULL;
+    }
+    shard->number++;
+    json_error_t error;
+    json_t *object = json_loadb(shard->line, (size_t)length, 0, &error);
+    if (!json_is_object(object)) {
+        (void)report_at(shard->path, shard->number, "no result of a campaign");
+        json_decref(object);
+        return NULL;
+    }
+    return object;
+}
+
+/** The first line. @return false: reported */
+static bool read_part(shard_t *shard, campaign_part_t *part) {
+    json_t *object = read_object(shard);
+    json_int_t kind = 0;
+    json_int_t runs = 0;
+    json_int_t seed = 0;
+    int number = 0;
+    int count = 0;
+    if (object == NULL) {
+        return false;
+    }
+    const bool good = json_unpack(object, "{s:I, s:I, s:I, s:i, s:i}", "campaign", &kind, "runs", &runs, "seed", &seed,
+                                  "shard", &number, "shards", &count) == 0;
+    const char *fault = json_string_value(json_object_get(object, "fault"));
+    *part = (campaign_part_t){.runs = (uint64_t)runs,
+                              .seed = (uint64_t)seed,
+                              .shard = (uint32_t)number,
+                              .shards = (uint32_t)count,
+                              .only = (fault != NULL) ? campaign_row(agv_fault_from_name(fault)) : NULL};
+    json_decref(object);
+    return (good && (kind == 1) && (runs > 0) && (number > 0) && (number <= count)) ||
+           report_at(shard->path, shard->number, "no results of a campaign of this version");
+}
+
+static bool is_time(const json_t *object, const char *key, int32_t *us) {
+    const json_t *value = json_object_get(object, key);
+    *us = json_is_integer(value) ? (int32_t)json_integer_value(value) : CAMPAIGN_NO_TIME;
+    return json_is_integer(value) || json_is_null(value);
+}
+
+/** Read run @p run into a sample. */
+static bool read_run(shard_t *shard, uint64_t run, campaign_sample_t *sample) {
+    json_t *object = read_object(shard);
+    if (object == NULL) {
+        return false;
+    }
+    const char *name = json_string_value(json_object_get(object, "fault"));
+    const campaign_row_t *row = (name != NULL) ? campaign_row(agv_fault_from_name(name)) : NULL;
+    const json_t *number = json_object_get(object, "run");
+    const bool good = (row != NULL) && is_time(object, "safe_us", &sample->safe_us) &&
+                      is_time(object, "confirmed_us", &sample->confirmed_us) &&
+                      is_time(object, "opened_us", &sample->opened_us);
+    const bool its_turn = json_is_integer(number) && ((uint64_t)json_integer_value(number) == run);
+    sample->row = (row != NULL) ? (uint8_t)(row - CAMPAIGN_ROWS) : 0u;
+    sample->broken = json_is_string(json_object_get(object, "broken"));
+    json_decref(object);
+    return (good && its_turn) || report_at(shard->path, shard->number, "run %" PRIu64 " is expected here", run);
+}
+
+/** Put the shards in their order. @return false: they are not of one campaign; reported */
+static bool sort_shards(shard_t *shards, size_t count, campaign_part_t *whole) {
+    shard_t sorted[CAMPAIGN_SHARDS_MAX] = {{NULL}};
+    for (size_t i = 0u; i < count; i++) {
+        campaign_part_t part;
+        if (!read_part(&shards[i], &part)) {
+            return false;
+        }
+        *whole = (i == 0u) ? part : *whole;
+        if ((part.runs != whole->runs) || (part.seed != whole->seed) || (part.shards != whole->shards) ||
+            (part.only != whole->only)) {
+            return report("%s: another campaign than that of %s", shards[i].path, shards[0].path);
+        }
+        if (part.shards != count) {
+            return report("%s: one of %" PRIu32 " shards, %zu were given", shards[i].path, part.shards, count);
+        }
+        if (sorted[part.shard - 1u].path != NULL) {
+            return report("%s: shard %" PRIu32 " once more", shards[i].path, part.shard);
+        }
+        sorted[part.shard - 1u] = shards[i];
+    }
+    memcpy(shards, sorted, count * sizeof *shards);
+    whole->shard = 1u;
+    whole->shards = 1u;
+    return true;
+}
+
+static bool is_at_end(shard_t *shard) {
+    const bool at_end = getline(&shard->line, &shard->room, shard->stream) < 0;
+    return at_end || report_at(shard->path, shard->number + 1u, "more runs than there are");
+}
+
+static bool merge(shard_t *shards, size_t count, campaign_samples_t *samples, output_t *merged) {
+    campaign_part_t whole = {0};
+    campaign_sample_t sample;
+
+    if (!sort_shards(shards, count, &whole)) {
+        return false;
+    }
+    if (merged->is_open) {
+        campaign_write_part(merged, &whole);
+    }
+    for (uint64_t run = 0u; run < whole.runs; run++) {
+        shard_t *shard = &shards[run % count];
+        if (!read_run(shard, run, &sample) || !campaign_samples_add(samples, &sample)) {
+            return false;
+        }
+        if (merged->is_open) {
+            (void)output_write(merged, shard->line, strlen(shard->line));
+        }
+    }
+    bool good = true;
+    for (size_t i = 0u; good && (i < count); i++) {
+        good = is_at_end(&shards[i]);
+    }
+    return good;
+}
+
+static bool open_shards(shard_t *shards, char *const files[], size_t count) {
+    for (size_t i = 0u; i < count; i++) {
+        shards[i].path = files[i];
+        shards[i].stream = fopen(files[i], "r");
+        if (shards[i].stream == NULL) {
+            return report("%s: %s", files[i], strerror(errno));
+        }
+    }
+    return true;
+}
+
+bool campaign_merge(char *const files[], size_t count, campaign_samples_t *samples, output_t *merged) {
+    shard_t *shards = calloc(count, sizeof *shards);
+    if (shards == NULL) {
+        return report("out of memory");
+    }
+    const bool good = open_shards(shards, files, count) && merge(shards, count, samples, merged);
+    for (size_t i = 0u; i < count; i++) {
+        if (shards[i].stream != NULL) {
+            (void)fclose(shards[i].stream);
+        }
+        free(shards[i].line);
+    }
+    free(shards);
+    return good;
+}

@@ -1,0 +1,189 @@
+"""Campaigns: the same runs in every sharding, results that merge, breaks that leave a scenario, one line for what is wrong."""
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import unittest
+
+import hostsim
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PICTURE = ROOT / "scripts/campaign-picture"
+RUNS = 150
+
+
+class Campaign(hostsim.Case):
+    def campaign(self, *arguments, status=0, **options):
+        result = self.run_program("campaign", *arguments, **options)
+        self.assertEqual(result.status, status, result.stdout + result.stderr)
+        return result
+
+    def shard(self, number, of, runs=RUNS, seed=7, name=None):
+        name = name or f"{number}.jsonl"
+        self.campaign("--runs", runs, "--seed", seed, "--shard", f"{number}/{of}", "--results", name)
+        return name
+
+    def lines(self, name):
+        return [json.loads(line) for line in (self.folder / name).read_text(encoding="ascii").splitlines()]
+
+
+class Results(Campaign):
+    def test_every_sharding_merges_to_the_same_bytes_and_the_same_table(self):
+        whole = self.campaign("--runs", RUNS, "--seed", 7, "--results", "whole.jsonl")
+        for shards in (1, 2, 7):
+            files = [self.shard(number, shards) for number in range(shards, 0, -1)]
+            merged = self.campaign("--merge", *files, "--results", "merged.jsonl")
+            self.assertEqual(merged.stdout, whole.stdout)
+            self.assertEqual((self.folder / "merged.jsonl").read_bytes(), (self.folder / "whole.jsonl").read_bytes())
+
+    def test_a_shard_without_runs_is_one_that_merges(self):
+        files = [self.shard(number, 3, runs=2) for number in (1, 2, 3)]
+        self.assertEqual(len(self.lines("3.jsonl")), 1)
+        self.assertIn("2 runs, 0 broken", self.campaign("--merge", *files).stdout)
+
+    def test_another_seed_is_another_campaign(self):
+        self.shard(1, 1, seed=7, name="a")
+        self.shard(1, 1, seed=8, name="b")
+        self.assertNotEqual(self.lines("a")[1:], self.lines("b")[1:])
+
+    def test_a_line_says_what_was_done_and_what_came_of_it(self):
+        self.shard(1, 1, name="a")
+        head, *runs = self.lines("a")
+        self.assertEqual((head["campaign"], head["runs"], head["seed"], head["shard"], head["shards"]), (1, RUNS, 7, 1, 1))
+        self.assertEqual([run["run"] for run in runs], list(range(RUNS)))
+        for key, values in (("topology", {"shared", "gateway"}), ("bitrate", {125000, 250000, 500000}),
+                            ("id_set", {"heading", "table"}), ("park_guard", {True, False}),
+                            ("park", {"at_once", "at_standstill"}), ("mode", {"autopilot", "manual"}),
+                            ("bunched", {True, False}), ("broken", {None})):
+            self.assertEqual({run[key] for run in runs}, values, key)
+        for run in runs:
+            if run["safe_us"] is not None:
+                self.assertGreater(run["safe_us"], 0)
+
+    def test_the_table_is_what_the_lines_say(self):
+        table = self.campaign("--runs", RUNS, "--seed", 7, "--results", "a").stdout
+        runs = self.lines("a")[1:]
+        for fault in {run["fault"] for run in runs}:
+            times = sorted(run["safe_us"] for run in runs if run["fault"] == fault and run["safe_us"] is not None)
+            line = re.search(rf"(?m)^{fault} +(\d+) +(\S+) +(\S+) +(\S+) ", table)
+            self.assertEqual(int(line[1]), sum(run["fault"] == fault for run in runs))
+            for shown, time in zip(line.groups()[1:], (times[0], times[len(times) // 2], times[-1])):
+                self.assertEqual(shown, f"{time // 1000}.{time % 1000:03}")
+
+    def test_one_fault_alone(self):
+        self.campaign("--runs", 20, "--seed", 1, "--fault", "BUS_OFF", "--results", "a")
+        self.assertEqual({run["fault"] for run in self.lines("a")[1:]}, {"BUS_OFF"})
+
+    def test_no_bar_where_there_is_no_terminal(self):
+        self.assertEqual(self.campaign("--runs", 5, "--seed", 1).stderr, "")
+
+    def test_all_faults_but_two_are_caused(self):
+        tables = json.loads(self.campaign("--tables").stdout)
+        rows = [row["fault"] for row in tables["rows"]]
+        self.assertEqual(len(rows), len(set(rows)))
+        self.assertEqual(set(tables["faults"]) - set(rows), {"TX_GATE_REFUSED", "STARTUP_TIMEOUT"})
+        self.assertEqual(rows, [fault for fault in tables["faults"] if fault in rows])
+
+
+class Broken(Campaign):
+    def broken(self, planted):
+        self.campaign("--runs", 30, "--seed", 3, "--planted", planted, "--broken", ".", "--results", "a", status=1)
+        self.assertTrue(all(run["broken"] for run in self.lines("a")[1:]))
+        files = [name for name in self.files() if name.endswith(".yaml")]
+        self.assertEqual(len(files), 20)
+        return files
+
+    def test_a_supervisor_that_does_nothing_breaks_every_run_and_its_scenarios_fail(self):
+        files = self.broken("mute")
+        result = self.run_program("scenario", "--planted", "mute", *files)
+        self.assertEqual(result.status, 1)
+        self.assertIn("20 scenarios: 0 passed, 20 failed", result.stdout)
+
+    def test_one_that_is_always_tripped_too(self):
+        files = self.broken("tripped")
+        result = self.run_program("scenario", "--planted", "tripped", *files)
+        self.assertEqual(result.status, 1)
+        self.assertIn("20 scenarios: 0 passed, 20 failed", result.stdout)
+        self.assertTrue({run["broken"] for run in self.lines("a")[1:]} <= {"NOT_READY", "FALSE_TRIP", "WRONG_REASON"})
+
+    def test_a_run_is_a_scenario_that_passes(self):
+        files = []
+        for run in range(60):
+            files.append(f"{run}.yaml")
+            self.write(files[-1], self.campaign("--runs", 60, "--seed", 5, "--show", run).stdout)
+        result = self.run_good("scenario", *files)
+        self.assertIn("60 scenarios: 60 passed, 0 failed", result.stdout)
+
+
+class Refused(Campaign):
+    def refuse(self, *arguments, says):
+        self.assert_refused(self.run_program("campaign", *arguments), says)
+        self.assertEqual([name for name in self.files() if name == "out.jsonl"], [])
+
+    def test_options(self):
+        good = ("--runs", "3", "--seed", "1")
+        self.refuse(says="--runs is missing")
+        self.refuse("--runs", "3", says="--seed is missing")
+        self.refuse("--runs", "0", "--seed", "1", says="--runs")
+        self.refuse("--runs", "100000001", "--seed", "1", says="--runs")
+        self.refuse("--runs", "3", "--seed", "-1", says="--seed")
+        self.refuse("--runs", "3", "--seed", "9223372036854775808", says="--seed")
+        for shard in ("1", "0/2", "3/2", "1/0", "1/1001", "a/b", "1/2/3", "/2", "1/", "-1/2", "1 /2", "123456789/2"):
+            self.refuse(*good, "--shard", shard, says="--shard: '" + shard + "'")
+        self.refuse(*good, "--fault", "NONSENSE", says="'NONSENSE' is no fault")
+        self.refuse(*good, "--fault", "TX_GATE_REFUSED", says="causes TX_GATE_REFUSED")
+        self.refuse(*good, "--show", "3", says="no run 3")
+        self.refuse(*good, "--broken", "nowhere", says="'nowhere' is no folder")
+        self.refuse(*good, "--results", "no/where", says="no/where")
+        self.refuse(*good, "file", says="'file' is one too many")
+        self.refuse(*good, "--planted", "nothing", says="--planted")
+
+    def test_what_does_not_merge(self):
+        one, two = self.shard(1, 2), self.shard(2, 2)
+        out = ("--results", "out.jsonl")
+        self.refuse("--merge", *out, says="FILE is missing")
+        self.refuse("--merge", one, *out, says="one of 2 shards, 1 were given")
+        self.refuse("--merge", one, one, *out, says="shard 1 once more")
+        self.refuse("--merge", one, "nowhere", *out, says="nowhere")
+        self.refuse("--merge", one, two, "--runs", "3", says="--merge takes files")
+        self.refuse("--merge", one, two, "--results", one, says="are the same file")
+        self.refuse("--merge", one, self.shard(2, 2, seed=8, name="seed"), *out, says="another campaign")
+        self.refuse("--merge", one, self.shard(2, 2, runs=RUNS - 2, name="runs"), *out, says="another campaign")
+        lines = (self.folder / two).read_text(encoding="ascii").splitlines(keepends=True)
+        for name, changed, says in (("cut", lines[:-1], "it ends after line"),
+                                    ("more", lines + lines[-1:], "more runs than there are"),
+                                    ("gap", lines[:5] + lines[6:], ":6: run 9 is expected here"),
+                                    ("torn", lines[:-1] + [lines[-1][:20]], "no result of a campaign"),
+                                    ("text", ["hello\n"], ":1: no result of a campaign"),
+                                    ("other", ["{}\n"], ":1: no results of a campaign"),
+                                    ("empty", [], "it ends after line 0")):
+            self.write(name, "".join(changed))
+            self.refuse("--merge", one, name, *out, says=says)
+
+
+class Picture(Campaign):
+    def draw(self, *arguments):
+        return subprocess.run([sys.executable, PICTURE, *arguments], cwd=self.folder, capture_output=True, text=True,
+                              check=False)
+
+    def test_a_histogram_of_all_runs(self):
+        self.shard(1, 1, name="a")
+        done = self.draw("a", "picture.svg")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        text = (self.folder / "picture.svg").read_text(encoding="utf-8")
+        self.assertIn(f"{RUNS} runs", text)
+        self.assertIn("500 kbit/s", text)
+
+    def test_what_cannot_be_drawn(self):
+        self.shard(1, 1, runs=2, name="a")
+        self.write("b", "hello\n")
+        for arguments, says in ((("a", "picture.txt"), "neither .svg nor .png"), (("b", "b.svg"), "b"),
+                                (("nowhere", "b.svg"), "nowhere"), (("a", "no/where.svg"), "gnuplot failed")):
+            done = self.draw(*arguments)
+            self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1), done.stderr)
+            self.assertIn(says, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
