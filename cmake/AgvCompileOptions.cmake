@@ -1,8 +1,8 @@
 # How this project's own code is compiled. Link `agv_options` (PRIVATE) to get it; generated and foreign code does not.
 
 option(AGV_WARNINGS_AS_ERRORS "Warnings in the project's own code are errors" ON)
-set(AGV_INSTRUMENT "" CACHE STRING "Instrumentation: empty, sanitize or coverage")
-set_property(CACHE AGV_INSTRUMENT PROPERTY STRINGS "" sanitize coverage)
+set(AGV_INSTRUMENT "" CACHE STRING "Instrumentation: empty, sanitize, coverage or mutation")
+set_property(CACHE AGV_INSTRUMENT PROPERTY STRINGS "" sanitize coverage mutation)
 
 add_library(agv_options INTERFACE)
 target_compile_options(agv_options INTERFACE
@@ -20,6 +20,7 @@ if(AGV_WARNINGS_AS_ERRORS)
   target_compile_options(agv_options INTERFACE -Werror)
 endif()
 
+set(AGV_CORE_KIND STATIC)
 # Instrumentation is for everything that is linked, generated code included: a mock must not hide an overflow.
 if(AGV_INSTRUMENT STREQUAL "sanitize")
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -27,6 +28,11 @@ if(AGV_INSTRUMENT STREQUAL "sanitize")
 elseif(AGV_INSTRUMENT STREQUAL "coverage")
   add_compile_options(--coverage)
   add_link_options(--coverage)
+elseif(AGV_INSTRUMENT STREQUAL "mutation")
+  # The core is one shared object, which tests/mutation replaces; a test need not have all of the port that it asks for.
+  set(AGV_CORE_KIND SHARED)
+  set(CMAKE_SKIP_RPATH ON)
+  add_link_options(-Wl,--allow-shlib-undefined)
 elseif(NOT AGV_INSTRUMENT STREQUAL "")
-  message(FATAL_ERROR "AGV_INSTRUMENT is '${AGV_INSTRUMENT}': it must be empty, sanitize or coverage")
+  message(FATAL_ERROR "AGV_INSTRUMENT is '${AGV_INSTRUMENT}': it must be empty, sanitize, coverage or mutation")
 endif()
