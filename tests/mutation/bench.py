@@ -28,7 +28,7 @@ INCLUDES = [f"-I{ROOT}/firmware/include", f"-I{ROOT}/hal/include"]
 COMPILE = ["gcc", "-std=c11", "-w", "-fPIC", "-fno-semantic-interposition", f"-I{SOURCES}", *INCLUDES]
 LINK = ["gcc", "-shared", "-Wl,-Bsymbolic"]
 SLOW_SECONDS = 1.0  # which lines such a test runs is not asked: it is taken to run all
-QUICK_SECONDS = 0.15  # tests that take longer, and those from other starts of the clock, run last
+QUICK_SECONDS = 0.3  # tests that take longer, and those from other starts of the clock, run last
 CRASHES, TIMEOUTS = 12, 3  # after so many nobody waits any more for an assertion that fails
 
 # what a test program did: passed, failed (an assertion, by: where), crash or timeout

@@ -162,18 +162,25 @@ class Finder:
         for text in new:
             self.add(around, "return", cursor.extent.start.offset, start, end, text, "+1" if text.endswith("+ 1)") else text)
 
-    def body(self, cursor, children, around):
-        """Deletes statements; not the last return of a function that has a result."""
-        whole = len(around) == 2 and around[0].result_type.kind != TypeKind.VOID
-        for child in children[:-1] if whole and children and children[-1].kind == Kind.RETURN_STMT else children:
-            last = child.kind in (Kind.CASE_STMT, Kind.DEFAULT_STMT)
+    def body(self, _cursor, children, around):
+        """Deletes statements, but no return without which a function with a result would end without one."""
+        for child in children:
+            outer = around
             while child.kind in (Kind.CASE_STMT, Kind.DEFAULT_STMT):
+                outer = outer + [child]
                 child = list(child.get_children())[-1]
-            if child.kind in STATEMENTS and not (last and child.kind == Kind.RETURN_STMT and child == children[-1]):
+            needed = child.kind == Kind.RETURN_STMT and around[0].result_type.kind != TypeKind.VOID and ends(outer + [child])
+            if child.kind in STATEMENTS and not needed:
                 start, end = child.extent.start.offset, child.extent.end.offset
-                self.add(around + [child], "statement", start, start, end, "(void)0", "deleted")
+                self.add(outer + [child], "statement", start, start, end, "(void)0", "deleted")
 
 
+def ends(around):
+    """Whether nothing of the function comes behind the last of these cursors."""
+    return all(list(outer.get_children())[-1] == inner for outer, inner in zip(around, around[1:]))
+
+
+# statements stand in these
 BODIES = (Kind.COMPOUND_STMT, Kind.CASE_STMT, Kind.DEFAULT_STMT)
 VISITS = {
     Kind.BINARY_OPERATOR: Finder.binary,
