@@ -71,11 +71,15 @@ class Finder:
             if cursor.kind != Kind.VAR_DECL or child.extent.end.offset == cursor.extent.end.offset:
                 self.walk(child, around)
 
+    def operator(self, children):
+        """What stands between two operands, and where."""
+        begin, end = children[0].extent.end.offset, children[1].extent.start.offset
+        token = re.sub(r"/\*.*?\*/", "", self.source[begin:end], flags=re.DOTALL).strip()
+        return token, self.source.find(token, begin)
+
     def binary(self, cursor, children, around):
         left, right = (self.text(child) for child in children)
-        between = children[0].extent.end.offset, children[1].extent.start.offset
-        token = re.sub(r"/\*.*?\*/", "", self.source[slice(*between)], flags=re.DOTALL).strip()
-        at = self.source.find(token, between[0])
+        token, at = self.operator(children)
         start, end = cursor.extent.start.offset, cursor.extent.end.offset
 
         def replace(operator, new):
@@ -91,9 +95,7 @@ class Finder:
             self.add(around, "logical", at, start, end, f"({right})", "right")
 
     def assignment(self, _cursor, children, around):
-        between = children[0].extent.end.offset, children[1].extent.start.offset
-        token = self.source[slice(*between)].strip()
-        at = self.source.find(token, between[0])
+        token, at = self.operator(children)
         self.add(around, "arithmetic", at, at, at + len(token), ARITHMETIC[token[:-1]] + "=")
 
     def unary(self, cursor, children, around):
@@ -113,7 +115,7 @@ class Finder:
         while inner.kind in (Kind.PAREN_EXPR, Kind.UNEXPOSED_EXPR):
             inner = next(inner.get_children())
         text = self.text(inner)
-        relation = inner.kind == Kind.BINARY_OPERATOR and inner.binary_operator.name in ("LT", "GT", "LE", "GE", "EQ", "NE")
+        relation = inner.kind == Kind.BINARY_OPERATOR and self.operator(list(inner.get_children()))[0] in RELATIONAL
         if not relation and not (inner.kind == Kind.UNARY_OPERATOR and text.startswith("!")):
             start, end = cursor.extent.start.offset, cursor.extent.end.offset
             self.add(around, "logical", start, start, end, f"(!({self.text(cursor)}))", "!")

@@ -79,6 +79,7 @@ void test_reserved_bits_are_passed_as_0(void) {
         uint8_t out[8];
     } cases[] = {
         {AGV_MSG_TURN_SIGNAL_COMMAND, {1, 2, 4, 8, 0xFF, 0x80, 0x7F, 200}, {0, 0, 0, 0, 0xF0, 0, 0, 200}},
+        {AGV_MSG_TURN_SIGNAL_COMMAND, {0, 0, 0, 0, 0, 0, 0, 255}, {0, 0, 0, 0, 0, 0, 0, 255}},
         {AGV_MSG_TURN_SIGNAL_COMMAND, {0xFF, 0, 0, 0, 0x0F, 0, 0, 0}, {0}},
         {AGV_MSG_GEAR_COMMAND, {2, 9, 9, 9, 9, 9, 9, 9}, {2}},
         {AGV_MSG_THROTTLE_COMMAND, {100, 1, 0, 0, 0, 0, 0, 255}, {100}},
