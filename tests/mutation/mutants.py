@@ -31,15 +31,14 @@ class Finder:
 
     def __init__(self, path, name, arguments):
         self.source = path.read_bytes().decode("ascii")
-        self.name = name
+        self.path, self.name = str(path), name
         self.found = {}
         unit = clang.cindex.Index.create().parse(str(path), args=arguments)
         errors = [d.spelling for d in unit.diagnostics if d.severity >= clang.cindex.Diagnostic.Error]
         if errors:
             raise SystemExit(f"{path}: {errors[0]}")
         for cursor in unit.cursor.get_children():
-            if cursor.location.file is not None and cursor.location.file.name == str(path):
-                self.walk(cursor, [])
+            self.walk(cursor, [])
 
     def text(self, cursor):
         return self.source[cursor.extent.start.offset:cursor.extent.end.offset]
@@ -60,7 +59,8 @@ class Finder:
         self.found[changed] = Mutant(key, self.name, line, operator, start, end, text, lines, function)
 
     def walk(self, cursor, around):
-        if cursor.kind in (Kind.STATIC_ASSERT, Kind.PARM_DECL, Kind.CXX_UNARY_EXPR, Kind.STRUCT_DECL):
+        here = cursor.location.file is not None and cursor.location.file.name == self.path
+        if not here or cursor.kind in (Kind.STATIC_ASSERT, Kind.PARM_DECL, Kind.CXX_UNARY_EXPR, Kind.STRUCT_DECL):
             return
         around = around + [cursor]
         visit = VISITS.get(cursor.kind)
