@@ -341,6 +341,7 @@ void test_a_dead_ai_computer_does_not_hinder_though_it_trips_in_manual(void) {
     expect_fault(&f, AGV_FAULT_AI_HEARTBEAT_LOST, true);
     press(true);
     expect_reset_after(1000);
+    expect_fault(&f, AGV_FAULT_AI_HEARTBEAT_LOST, false);
     fixture_run(&f, 3000); /* the reset forgot that the AI was seen */
     expect_state(&f, AGV_STATE_STANDBY);
 }
@@ -357,6 +358,7 @@ void test_a_frozen_ai_computer_does_not_hinder_though_it_trips_in_manual(void) {
     fixture_run(&f, 300);
     press(true);
     expect_reset_after(1000);
+    expect_fault(&f, AGV_FAULT_AI_HEARTBEAT_STUCK, false);
 }
 
 /* Three of four frames are D, 100 % and out of range, one a millisecond. */

@@ -26,9 +26,10 @@ INPUTS = ("CMakePresets.json", "cmake", "firmware", "hal/include", "hal/sim", "t
           "tests/mutation/mutants.py", "tests/mutation/bench.py", "tests/mutation/stop_at_failure.c")
 INCLUDES = [f"-I{ROOT}/firmware/include", f"-I{ROOT}/hal/include"]
 COMPILE = ["gcc", "-std=c11", "-w", "-fPIC", "-fno-semantic-interposition", f"-I{SOURCES}", *INCLUDES]
-LINK = ["gcc", "-shared", "-Wl,-Bsymbolic"]
+LINK = ["ld", "-shared", "-Bsymbolic"]
 SLOW_SECONDS = 1.0  # which lines such a test runs is not asked: it is taken to run all
 QUICK_SECONDS = 0.3  # tests that take longer, and those from other starts of the clock, run last
+START_SECONDS, LIKELY = 0.01, 0.3  # of a program; how likely it is to kill when nothing is known
 CRASHES, TIMEOUTS = 12, 3  # after so many nobody waits any more for an assertion that fails
 
 # what a test program did: passed, failed (an assertion, by: where), crash or timeout
@@ -75,7 +76,8 @@ class Bench:
             if self.plan.get("digest") != self.digest:
                 self.plan = prepare(self.digest, self.plan, say)
                 (BUILD / "plan.json").write_text(json.dumps(self.plan), encoding="utf-8")
-        self.killed = collections.defaultdict(collections.Counter)  # by what mutants of a function were killed so far
+        self.tries = collections.defaultdict(collections.Counter)  # of mutants of a function: how often each test ran,
+        self.kills = collections.defaultdict(collections.Counter)  # and how often it killed
         self.work = pathlib.Path(tempfile.mkdtemp(prefix="work-", dir=BUILD))
 
     def __enter__(self):
@@ -90,10 +92,8 @@ class Bench:
         source.write_text(text, encoding="ascii")
         if not compile_file(source, self.work / "mutant.o"):
             return False
-        others = [str(CORE / f"{path.stem}.o") for path in core_files() if path.name != name]
-        library = self.work / "libagv_core.so"
-        return subprocess.run([*LINK, str(self.work / "mutant.o"), *others, "-o", str(library)],
-                              stderr=subprocess.DEVNULL).returncode == 0
+        call([*LINK, str(self.work / "mutant.o"), str(CORE / f"without-{name}.o"), "-o", str(self.work / "libagv_core.so")])
+        return True
 
     def same_code(self, name):
         """Whether the file that was built last is, optimised, the same machine code as the one of the project."""
@@ -105,23 +105,25 @@ class Bench:
         return run_test(test, self.work, go_on)
 
     def tests_for(self, name, lines, function):
-        """Those that run one of the lines: first what killed there before, then the quick ones."""
+        """Those that run one of the lines: first those that kill soonest, by what they did in this function so far."""
         covering = self.plan["lines"].get(name, {})
         indices = set().union(*(covering.get(str(line), ()) for line in range(lines[0], lines[1] + 1)))
         slow = {index for index, test in enumerate(self.plan["tests"]) if test["seconds"] >= SLOW_SECONDS}
-        if not function and indices <= slow:
-            indices = set(range(len(self.plan["tests"])))  # a table: anybody may read it
+        if indices <= slow:
+            indices = set(range(len(self.plan["tests"])))  # a table: gcov counts no lines there
         tests = [test for index, test in enumerate(self.plan["tests"]) if index in indices]
-        kills = self.killed[name, function]
-        return sorted(tests, key=lambda test: (-kills[test["name"]], test["seconds"]))
+        kills, tries = self.kills[name, function], self.tries[name, function]
+        return sorted(tests, key=lambda test: (test["seconds"] + START_SECONDS) * (tries[test["name"]] + 1)
+                      / (kills[test["name"]] + LIKELY))
 
     def kill(self, mutant, tests, counts):
         """Run until an assertion fails: where, or nothing."""
         for test in tests:
             run = self.run(test)
             counts[run.verdict] += 1
+            self.tries[mutant.file, mutant.function][test["name"]] += 1
             if run.verdict == "failed":
-                self.killed[mutant.file, mutant.function][test["name"]] += 1
+                self.kills[mutant.file, mutant.function][test["name"]] += 1
                 return run.by
             if counts["crash"] >= CRASHES or counts["timeout"] >= TIMEOUTS:
                 break
@@ -170,7 +172,11 @@ def prepare(key, old, say):
     for path in core_files():
         if not compile_file(path, CORE / f"{path.stem}.o"):
             raise SystemExit(f"{path} does not compile")
-    call([*LINK, *(str(CORE / f"{path.stem}.o") for path in core_files()), "-o", str(CORE / "libagv_core.so")])
+    objects = {path.name: str(CORE / f"{path.stem}.o") for path in core_files()}
+    call([*LINK, *objects.values(), "-o", str(CORE / "libagv_core.so")])
+    for name in objects:
+        others = [path for other, path in objects.items() if other != name]
+        call(["ld", "-r", *others, "-o", str(CORE / f"without-{name}.o")])
     tests = read_tests()
     with tempfile.TemporaryDirectory(dir=BUILD) as folder:
         programs = measure(tests, old.get("programs", {}), pathlib.Path(folder), say)
@@ -238,7 +244,7 @@ def build_covered(folder):
     for path in core_files():
         compile_file(path, folder / f"{path.stem}.o", "-O0", "--coverage")
     objects = [str(folder / f"{path.stem}.o") for path in core_files()]
-    call([*LINK, "--coverage", *objects, "-o", str(folder / "libagv_core.so")])
+    call(["gcc", "-shared", "-Wl,-Bsymbolic", "--coverage", *objects, "-o", str(folder / "libagv_core.so")])
 
 
 def covered_lines(test, folder):

@@ -100,6 +100,8 @@ void test_the_throttle_ceiling(void) {
     TEST_ASSERT_EQUAL_UINT(74, throttle(74));
     core.config.throttle_ceiling_pct = 33; /* 82.5 counts, rounded down */
     TEST_ASSERT_EQUAL_UINT(82, throttle(250));
+    core.config.throttle_ceiling_pct = 99; /* 247.5 */
+    TEST_ASSERT_EQUAL_UINT(247, throttle(250));
     core.config.throttle_ceiling_pct = 0;
     TEST_ASSERT_EQUAL_UINT(0, throttle(1));
 }
@@ -146,6 +148,16 @@ void test_a_pause_gives_at_most_a_second_of_slew(void) {
     TEST_ASSERT_EQUAL_INT(-9000, steer(0, -9000));
     TEST_ASSERT_EQUAL_INT(-8500, steer(1000, 9000));
     TEST_ASSERT_EQUAL_INT(-8000, steer(5000, 9000));
+}
+
+/* 900.0 degrees a second: a millisecond more would be 0.9 degrees more. */
+/* Shows: TOP-2 */
+void test_a_second_of_slew_is_exact(void) {
+    core.config.steering_slew_ddeg_s = 9000;
+    TEST_ASSERT_EQUAL_INT(-9000, steer(0, -9000));
+    TEST_ASSERT_EQUAL_INT(-9, steer(999, 9000));
+    TEST_ASSERT_EQUAL_INT(8991, steer(1000, 9000));
+    TEST_ASSERT_EQUAL_INT(-9, steer(1001, -9000));
 }
 
 /* 1.0 degree a second: a tenth takes 100 ms, and 25 ms frames must not round it away. */
