@@ -341,7 +341,6 @@ void test_a_dead_ai_computer_does_not_hinder_though_it_trips_in_manual(void) {
     expect_fault(&f, AGV_FAULT_AI_HEARTBEAT_LOST, true);
     press(true);
     expect_reset_after(1000);
-    expect_fault(&f, AGV_FAULT_AI_HEARTBEAT_LOST, false);
     fixture_run(&f, 3000); /* the reset forgot that the AI was seen */
     expect_state(&f, AGV_STATE_STANDBY);
 }
@@ -358,7 +357,33 @@ void test_a_frozen_ai_computer_does_not_hinder_though_it_trips_in_manual(void) {
     fixture_run(&f, 300);
     press(true);
     expect_reset_after(1000);
-    expect_fault(&f, AGV_FAULT_AI_HEARTBEAT_STUCK, false);
+}
+
+/* In the frame that accepts the reset, not only in the tick after it. */
+static void expect_reset_in_a_frame(agv_fault_t forgotten) {
+    fixture_vehicle_confirms(&f);
+    fixture_run(&f, 300);
+    expect_fault(&f, forgotten, true);
+    press(true);
+    fixture_run(&f, 999);
+    expect_state(&f, AGV_STATE_SAFE);
+    fixture_run_without_ticks(&f, 1);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_STANDBY);
+    expect_fault(&f, forgotten, false);
+}
+
+/* Shows: FSM-3, SUP-8, AI_HEARTBEAT_LOST, AI_HEARTBEAT_STUCK */
+void test_a_reset_forgets_the_ai_computer_at_once(void) {
+    fixture_active(&f);
+    fixture_mute_ai(&f, true);
+    fixture_run(&f, 500);
+    expect_reset_in_a_frame(AGV_FAULT_AI_HEARTBEAT_LOST);
+    fixture_init(&f);
+    fixture_active(&f);
+    f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].frozen = true;
+    fixture_run(&f, 500);
+    expect_reset_in_a_frame(AGV_FAULT_AI_HEARTBEAT_STUCK);
 }
 
 /* Three of four frames are D, 100 % and out of range, one a millisecond. */

@@ -193,3 +193,16 @@ void test_the_time_is_a_setting(void) {
     fixture_run(&f, 1);
     expect_fault(&f, WRONG, true);
 }
+
+/* Nobody is heard on the own identifiers, but nobody on the others either. */
+/* Shows: P1, WRONG_ID_SET */
+void test_silence_alone_is_no_wrong_set(void) {
+    for (unsigned i = 0; i < SET_COUNT; i++) {
+        init(&SETS[i]);
+        fixture_mute_vcu(&f, true);
+        fixture_mute_ai(&f, true);
+        fixture_start(&f);
+        fixture_run(&f, 12000);
+        TEST_ASSERT_EQUAL_UINT32_MESSAGE(0, fixture_raised(&f, WRONG), f.what);
+    }
+}

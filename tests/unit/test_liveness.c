@@ -255,7 +255,8 @@ void test_silence_is_lost(void) {
     repeat_until(0);
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_LOST);
     beat(AGV_NODE_VCU, 2, 500);
-    judge_beat(AGV_NODE_VCU, 505); /* it was lost when its deadline expired: an old counter later does not make it stuck */
+    judge_beat(AGV_NODE_VCU,
+               505); /* it was lost when its deadline expired: an old counter later does not make it stuck */
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_LOST);
     beat(AGV_NODE_VCU, 3, 510);
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
