@@ -43,6 +43,10 @@ void test_bus_off_trips_and_opens_the_output(void) {
     expect_nothing(&f, AGV_FAULT_BUS_OFF, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_bus_off_trip();
+    fixture_run(&f, 200);
+    expect_fault(&f, AGV_FAULT_TX_STALLED, false); /* and nothing else of the bus */
+    expect_fault(&f, AGV_FAULT_ERROR_PASSIVE, false);
+    expect_fault(&f, AGV_FAULT_AI_BUS_OFF, false);
 }
 
 /* 100 ms after it, and again and again. What was queued is purged with it. */

@@ -78,6 +78,7 @@ class Bench:
                 (BUILD / "plan.json").write_text(json.dumps(self.plan), encoding="utf-8")
         self.tries = collections.defaultdict(collections.Counter)  # of mutants of a function: how often each test ran,
         self.kills = collections.defaultdict(collections.Counter)  # and how often it killed
+        self.sources = {path.name: path.read_text(encoding="ascii") for path in core_files()}  # they may change meanwhile
         self.work = pathlib.Path(tempfile.mkdtemp(prefix="work-", dir=BUILD))
 
     def __enter__(self):
@@ -98,7 +99,10 @@ class Bench:
     def same_code(self, name):
         """Whether the file that was built last is, optimised, the same machine code as the one of the project."""
         original, mutant = self.work / "original.O2", self.work / "mutant.O2"
-        compile_file(SOURCES / name, original, "-O2")
+        reference = self.work / "reference" / name  # an object keeps the name of its source
+        reference.parent.mkdir(exist_ok=True)
+        reference.write_text(self.sources[name], encoding="ascii")
+        compile_file(reference, original, "-O2")
         return compile_file(self.work / name, mutant, "-O2") and original.read_bytes() == mutant.read_bytes()
 
     def run(self, test, go_on=False):
@@ -131,7 +135,7 @@ class Bench:
 
     def try_mutant(self, mutant, only_quick=False):
         """killed, survived, same, compile, crash or timeout, or open when only quick tests were to run; and by whom."""
-        source = (SOURCES / mutant.file).read_text(encoding="ascii")
+        source = self.sources[mutant.file]
         if not self.build(mutant.file, source[:mutant.start] + mutant.text + source[mutant.end:]):
             return "compile", ""
         tests = self.tests_for(mutant.file, mutant.lines, mutant.function)

@@ -56,7 +56,7 @@ def changed_text(text, change):
 
 def try_source(at, change, shown):
     """Whether it is noticed, and by whom or why not."""
-    text = changed_text((bench.SOURCES / change.file).read_text(encoding="ascii"), change)
+    text = changed_text(at.sources[change.file], change)
     if text is None:
         return False, "the old line does not stand in the file once"
     if not at.build(change.file, text):

@@ -221,6 +221,15 @@ void test_a_restart_counts_on_wherever_the_numbers_stand(void) {
     TEST_ASSERT_EQUAL_UINT32(15, store_all(0x90000015u));
 }
 
+/* Shows: INT-3 */
+void test_a_mark_beyond_large_numbers_stores_all(void) {
+    recorder.next_sequence = 0x90000010u;
+    add(20);
+    recorder.stored_sequence = 0xA0000010u;
+    agv_recorder_start(&recorder);
+    TEST_ASSERT_EQUAL_UINT32(20, store_all(0x90000010u));
+}
+
 /* Up to half of all numbers ahead is newer. */
 /* Shows: TIM-2 */
 void test_a_number_far_ahead_is_newer(void) {
@@ -264,6 +273,8 @@ void test_what_was_replaced_before_it_was_stored_is_lost(void) {
     TEST_ASSERT_EQUAL_UINT32(2, store_all(0));
     add(300);
     TEST_ASSERT_EQUAL_UINT32(256, store_all(46));
+    add(1000); /* however many: 302 to 1301 */
+    TEST_ASSERT_EQUAL_UINT32(256, store_all(1046));
 }
 
 void test_a_mark_that_makes_no_sense_stores_all(void) {
