@@ -1,8 +1,8 @@
 # How this project's own code is compiled. Link `agv_options` (PRIVATE) to get it; generated and foreign code does not.
 
 option(AGV_WARNINGS_AS_ERRORS "Warnings in the project's own code are errors" ON)
-set(AGV_INSTRUMENT "" CACHE STRING "Instrumentation: empty, sanitize, coverage, mcdc or fuzz")
-set_property(CACHE AGV_INSTRUMENT PROPERTY STRINGS "" sanitize coverage mcdc fuzz)
+set(AGV_INSTRUMENT "" CACHE STRING "Instrumentation: empty, sanitize, coverage, mcdc, mutation or fuzz")
+set_property(CACHE AGV_INSTRUMENT PROPERTY STRINGS "" sanitize coverage mcdc mutation fuzz)
 
 add_library(agv_options INTERFACE)
 target_compile_options(agv_options INTERFACE
@@ -20,6 +20,7 @@ if(AGV_WARNINGS_AS_ERRORS)
   target_compile_options(agv_options INTERFACE -Werror)
 endif()
 
+set(AGV_CORE_KIND STATIC)
 # Instrumentation is for everything that is linked, generated code included: a mock must not hide an overflow.
 if(AGV_INSTRUMENT STREQUAL "sanitize")
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -39,6 +40,12 @@ elseif(AGV_INSTRUMENT STREQUAL "mcdc")
   # clang only, and of the core only: what is judged is the core, and a test's own decisions would only slow it down.
   set(AGV_CORE_INSTRUMENT_OPTIONS -fprofile-instr-generate -fcoverage-mapping -fcoverage-mcdc)
   add_link_options(-fprofile-instr-generate)
+elseif(AGV_INSTRUMENT STREQUAL "mutation")
+  # The core is one shared object, which tests/mutation replaces; a test need not have all of the port that it asks for.
+  set(AGV_CORE_KIND SHARED)
+  set(CMAKE_SKIP_RPATH ON)
+  add_link_options(-Wl,--allow-shlib-undefined)
 elseif(NOT AGV_INSTRUMENT STREQUAL "")
-  message(FATAL_ERROR "AGV_INSTRUMENT is '${AGV_INSTRUMENT}': it must be empty, sanitize, coverage, mcdc or fuzz")
+  message(FATAL_ERROR
+    "AGV_INSTRUMENT is '${AGV_INSTRUMENT}': it must be empty, sanitize, coverage, mcdc, mutation or fuzz")
 endif()

@@ -44,6 +44,11 @@ add_custom_command(
 )
 add_library(unity STATIC ${AGV_UNITY_COPY}/unity.c ${AGV_UNITY_COPY}/cmock.c)
 target_include_directories(unity SYSTEM PUBLIC ${AGV_UNITY_COPY})
+if(AGV_INSTRUMENT STREQUAL "mutation")
+  target_sources(unity PRIVATE ${PROJECT_SOURCE_DIR}/tests/mutation/stop_at_failure.c)
+  target_compile_definitions(unity PRIVATE "UNITY_OUTPUT_FLUSH=agv_stop_at_failure"
+    "UNITY_OUTPUT_FLUSH_HEADER_DECLARATION=agv_stop_at_failure(void)")
+endif()
 
 # The library target of the mock of one header of the HAL contract, made when it is first asked for.
 function(agv_mock_of HEADER TARGET_VARIABLE)

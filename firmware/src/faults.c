@@ -94,7 +94,6 @@ void agv_faults_event(agv_core_t *core, uint32_t fault) {
         if (event_faults[i] == fault) {
             agv_watch_start(core, (uint32_t)AGV_WATCH_EVENT + i);
             agv_faults_level(core, fault, true);
-            break;
         }
     }
 }

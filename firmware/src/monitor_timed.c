@@ -92,9 +92,8 @@ bool agv_monitor_autopilot_off(const agv_core_t *core) {
 }
 
 bool agv_monitor_steering_holdable(const agv_core_t *core) {
-    return agv_core_alive(core, AGV_NODE_EPS) && agv_liveness_fresh(core, AGV_MSG_EPS_STATUS) &&
-           core->vehicle.eps_in_angle_mode && (core->vehicle.mode != (uint8_t)AGV_MODE_MANUAL) &&
-           !core->summary.eps_fault;
+    return agv_core_alive(core, AGV_NODE_EPS) && core->vehicle.eps_in_angle_mode &&
+           (core->vehicle.mode != (uint8_t)AGV_MODE_MANUAL) && !core->summary.eps_fault; /* a stale 167h is one */
 }
 
 /* Both mode bits for too long: the mode is none. */
@@ -136,7 +135,7 @@ static void judge_steering(agv_core_t *core, bool settled) {
     const bool known = core->vehicle.command_known && core->vehicle.angle_known;
     const bool off = settled && known && (ddeg > (int32_t)core->config.steering_deviation_ddeg);
     const bool gained = ddeg <= ((int32_t)monitor->steering_off_ddeg - (int32_t)core->config.steering_gain_ddeg);
-    if (gained || !off) {
+    if (gained) {
         agv_watch_stop(core, AGV_WATCH_STEERING_OFF);
     }
     if (off && (!agv_watch_runs(core, AGV_WATCH_STEERING_OFF) || (ddeg > (int32_t)monitor->steering_off_ddeg))) {

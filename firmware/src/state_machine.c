@@ -146,7 +146,7 @@ static void release_park(agv_core_t *core, uint32_t facts) {
 static void judge_output(agv_core_t *core, uint32_t facts) {
     agv_state_machine_t *const machine = &core->machine;
     const bool off_late = agv_watch_reached(core, AGV_WATCH_UNCONFIRMED) && ((facts & AGV_FACT_AUTOPILOT_OFF) == 0u);
-    const bool park_late = agv_watch_reached(core, AGV_WATCH_PARK_SENT) && ((facts & AGV_FACT_IN_PARK) == 0u);
+    const bool park_late = agv_watch_reached(core, AGV_WATCH_PARK_SENT); /* in P: SAFE, or autopilot off is late too */
     machine->safe_state_unconfirmed = (machine->state == (uint8_t)AGV_STATE_TRIPPED) && (off_late || park_late);
     if (machine->safe_state_unconfirmed || ((facts & AGV_FACT_OUTPUT_UNSAFE) != 0u) ||
         (machine->unresettable != (uint8_t)AGV_FAULT_NONE)) {

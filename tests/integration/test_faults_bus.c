@@ -43,6 +43,10 @@ void test_bus_off_trips_and_opens_the_output(void) {
     expect_nothing(&f, AGV_FAULT_BUS_OFF, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_bus_off_trip();
+    fixture_run(&f, 200);
+    expect_fault(&f, AGV_FAULT_TX_STALLED, false); /* and nothing else of the bus */
+    expect_fault(&f, AGV_FAULT_ERROR_PASSIVE, false);
+    expect_fault(&f, AGV_FAULT_AI_BUS_OFF, false);
 }
 
 /* 100 ms after it, and again and again. What was queued is purged with it. */
@@ -279,6 +283,26 @@ void test_bus_off_of_the_ai_side(void) {
     expect_fault(&f, AGV_FAULT_AI_BUS_OFF, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_AI_BUS_OFF));
     expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* What waited for it when it went off is dropped in that tick, one a status message, and never sent. */
+/* Shows: SUP-7, TOP-2, AI_BUS_OFF */
+void test_what_waits_for_the_ai_side_is_gone_in_its_bus_off(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    fixture_standby(&f);
+    sim_hal_set_full(&f.hal, HAL_CAN_AI, true);
+    fixture_run(&f, 30); /* every status message has come */
+    fixture_mute_vcu(&f, true);
+    fixture_mute_eps(&f, true);
+    const uint32_t dropped = agv_supervisor_counters(&f.supervisor)->dropped;
+    set_state(HAL_CAN_AI, HAL_CAN_BUS_OFF);
+    fixture_run(&f, 1);
+    TEST_ASSERT_EQUAL_UINT32(dropped + 7, agv_supervisor_counters(&f.supervisor)->dropped);
+    sim_hal_set_full(&f.hal, HAL_CAN_AI, false);
+    set_state(HAL_CAN_AI, HAL_CAN_ERROR_ACTIVE);
+    fixture_forget_sent(&f);
+    fixture_run(&f, 10);
+    expect_silence(&f);
 }
 
 /* While engaged the AI side's bus-off does not trip by itself: the AI's silence does. */

@@ -225,3 +225,15 @@ void test_both_modes_at_once_after_engaged_confirm_nothing(void) {
     fixture_run(&f, 50);
     expect_state(&f, AGV_STATE_TRIPPED);
 }
+
+/* Both modes at once are no report of "not engaged", whatever was before. */
+/* Shows: FSM-4, MODE_INVALID */
+void test_both_modes_at_once_after_manual_take_the_confirmation_back(void) {
+    walk_to_safe(&f);
+    fixture_mode(&f, MODE_BOTH);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_SAFE);
+}

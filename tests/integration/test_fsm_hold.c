@@ -233,6 +233,23 @@ void test_after_a_restart_the_first_valid_angle_is_held(void) {
     expect_held_for_a_second(9210);
 }
 
+/* The first counter after a start proves nothing; LOST comes 50 ms later only. */
+/* Shows: FSM-10, FSM-7 */
+void test_after_a_restart_nothing_is_held_before_the_eps_is_alive(void) {
+    fixture_angle(&f, 9100);
+    fixture_command_angle(&f, 9100);
+    fixture_active(&f);
+    fixture_mute_ai(&f, true);
+    eps_frozen(true);
+    fixture_restart(&f, HAL_RESET_WATCHDOG);
+    fixture_run(&f, 45); /* a slot of 065h is among them */
+    expect_fault(&f, AGV_FAULT_EPS_HEARTBEAT_STUCK, false);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
+    eps_frozen(false);
+    fixture_run(&f, 100);
+    expect_held_for_a_second(9100);
+}
+
 /* Shows: FSM-10, FSM-3 */
 void test_a_second_trip_holds_its_own_angle(void) {
     fixture_angle(&f, 9100);

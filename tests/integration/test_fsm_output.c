@@ -201,3 +201,33 @@ void test_a_start_opens_it(void) {
     agv_supervisor_start(&f.supervisor, &f.ports, &f.config, true, f.now_ms); /* the port still has it closed */
     expect_output(&f, false);
 }
+
+/* What the first trip has counted does not shorten the second one's 500 ms. */
+/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
+void test_a_second_trip_has_its_own_500_ms(void) {
+    walk_to_safe(&f);
+    reset_by_button();
+    fixture_gear(&f, GEAR_D);
+    fixture_run(&f, 50);
+    walk_trip(&f); /* in manual: what is missing is P */
+    fixture_run(&f, 495);
+    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
+    expect_output(&f, true);
+    fixture_run(&f, 10);
+    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
+    expect_output(&f, false);
+}
+
+/* After a restart in P, with the autopilot still engaged: the 500 ms count from the start. */
+/* Shows: FSM-4, FSM-7, SAFE_STATE_UNCONFIRMED */
+void test_after_a_restart_autopilot_off_is_awaited_from_the_start(void) {
+    fixture_active(&f);
+    fixture_gear(&f, GEAR_P);
+    fixture_mute_ai(&f, true);
+    fixture_run(&f, 50);
+    fixture_restart(&f, HAL_RESET_WATCHDOG);
+    fixture_run(&f, 495);
+    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
+    fixture_run(&f, 10);
+    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
+}

@@ -171,4 +171,8 @@ void test_safe_commands_that_are_not_taken_wait_one_a_message(void) {
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
     fixture_run(&f, 1);
     expect_each_command_sent(1);
+    fixture_run(&f, 28); /* the schedule stands: 43Fh is due 100 ms after the trip */
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x43F));
+    fixture_run(&f, 1);
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x43F));
 }

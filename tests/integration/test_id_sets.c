@@ -193,3 +193,35 @@ void test_the_time_is_a_setting(void) {
     fixture_run(&f, 1);
     expect_fault(&f, WRONG, true);
 }
+
+/* Nobody is heard on the own identifiers, but nobody on the others either. */
+/* Shows: P1, WRONG_ID_SET */
+void test_silence_alone_is_no_wrong_set(void) {
+    for (unsigned i = 0; i < SET_COUNT; i++) {
+        init(&SETS[i]);
+        fixture_mute_vcu(&f, true);
+        fixture_mute_ai(&f, true);
+        fixture_start(&f);
+        fixture_run(&f, 12000);
+        TEST_ASSERT_EQUAL_UINT32_MESSAGE(0, fixture_raised(&f, WRONG), f.what);
+    }
+}
+
+/* A VCU that is silent, and frames of nobody, or of an identifier of the other set that comes from the wrong side. */
+/* Shows: P1, WRONG_ID_SET */
+void test_what_is_not_of_the_other_set(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    fixture_standby(&f);
+    fixture_mute_vcu(&f, true);
+    fixture_mute_ai(&f, true);
+    for (unsigned i = 0; i < 400; i++) {
+        fixture_run(&f, 10);
+        fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x700, .length = 8});
+        fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x201, .length = 8});
+        fixture_raw(&f, HAL_CAN_AI, (hal_can_frame_t){.id = 0x203, .length = 8});
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, WRONG));
+    fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x203, .length = 8});
+    fixture_run(&f, 1);
+    expect_fault(&f, WRONG, true);
+}

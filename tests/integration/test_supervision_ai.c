@@ -2,6 +2,7 @@
  * Hand-worked: the deadline is 350 ms, 43Fh comes each 100 ms, two cycles are 200 ms. */
 #include "expect.h"
 #include "unity.h"
+#include "walk.h"
 
 static fixture_t f;
 
@@ -433,4 +434,57 @@ void test_the_vcus_ai_alarm_at_the_engagement(void) {
     fixture_mode(&f, MODE_ENGAGED);
     fixture_run_past(&f, VCU);
     expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
+}
+
+/* It was clear while the AI computer was silent only, then it is engaged: what does not count cannot trip. */
+/* Shows: SUP-8, VCU_AI_CAN_LOST */
+void test_the_vcus_ai_alarm_of_an_ai_that_was_never_there(void) {
+    fixture_mute_ai(&f, true);
+    fixture_standby(&f);
+    fixture_run(&f, 500);
+    engage();
+    set_alarm(true);
+    fixture_run(&f, 100); /* the commands are missed after 125 ms */
+    expect_nothing(&f, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_STANDBY);
+}
+
+/* The AI computer goes off and on in manual driving while the alarm is set: it has to be clear again. */
+/* Shows: SUP-8, VCU_AI_CAN_LOST */
+void test_the_vcus_ai_alarm_has_to_be_clear_again_after_a_pause(void) {
+    fixture_standby(&f);
+    fixture_run(&f, 500);
+    fixture_mute_ai(&f, true);
+    set_alarm(true);
+    fixture_run(&f, 1000);
+    fixture_mute_ai(&f, false);
+    fixture_run(&f, 500);
+    engage();
+    fixture_run(&f, 200);
+    expect_nothing(&f, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_ACTIVE);
+}
+
+/* Another alarm of the same byte (the remote's signal, here a warning) does not keep it from having been clear. */
+/* Shows: SUP-8, VCU_AI_CAN_LOST */
+void test_the_vcus_ai_alarm_beside_another_alarm(void) {
+    f.config.trips &= ~agv_fault_bit(AGV_FAULT_REMOTE_SIGNAL_LOST);
+    f.traffic[VCU].data[4] = 0x01;
+    fixture_active(&f);
+    f.traffic[VCU].data[4] = 0x09;
+    fixture_run_past(&f, VCU);
+    expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
+}
+
+/* A reset forgets the AI computer, and with it that the alarm was clear: also when the very next 363h says engaged. */
+/* Shows: SUP-8, VCU_AI_CAN_LOST */
+void test_the_vcus_ai_alarm_has_to_be_clear_again_after_a_reset(void) {
+    fixture_active(&f);
+    walk_trip(&f);
+    fixture_vehicle_confirms(&f);
+    fixture_run(&f, 1000);
+    fixture_button(&f, true);
+    (void)walk_until(&f, AGV_STATE_STANDBY, 1100);
+    set_alarm(true);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_send_now(&f, VCU);
+    expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, false);
 }

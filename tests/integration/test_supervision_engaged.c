@@ -299,6 +299,18 @@ void test_throttle_in_park_counts_after_the_grace(void) {
     expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
 }
 
+/* However long: here an invalid throttle only warns. */
+/* Shows: SUP-5, THROTTLE_IN_PARK */
+void test_an_invalid_throttle_that_lasts_is_no_throttle_in_park(void) {
+    f.config.trips &= ~agv_fault_bit(AGV_FAULT_THROTTLE_STATUS_INVALID);
+    fixture_active(&f);
+    fixture_gear(&f, GEAR_P);
+    set_throttle(251);
+    fixture_run(&f, 1000);
+    expect_fault(&f, AGV_FAULT_THROTTLE_STATUS_INVALID, true);
+    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+}
+
 /* An invalid throttle is not above 0, an invalid gear is not P. */
 /* Shows: SUP-5, THROTTLE_IN_PARK */
 void test_invalid_values_are_no_throttle_in_park(void) {
@@ -402,4 +414,69 @@ void test_commands_in_range(void) {
     }
     TEST_ASSERT_EQUAL_UINT64(0, agv_supervisor_active_faults(&f.supervisor));
     TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->dropped);
+}
+
+/* ---- Counts of frames and the engagement ---- */
+
+/* Between two frames of another message. */
+static void report_mode(uint8_t mode) {
+    fixture_mode(&f, mode);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+}
+
+/* The fault is there; then an engagement ends and another begins, and settles, before the next bad frame comes: that is the
+ * first one again. */
+static void check_counts_anew(agv_fault_t fault, agv_message_t message, unsigned frames) {
+    fixture_run(&f, 300);
+    fixture_run_past(&f, message);
+    expect_fault(&f, fault, true);
+    f.traffic[message].muted = true;
+    report_mode(MODE_MANUAL);
+    expect_fault(&f, fault, false);
+    report_mode(MODE_ENGAGED);
+    fixture_run(&f, 50); /* the grace; for 0A3h no gap, which would count anew by itself */
+    for (unsigned i = 1; i <= frames; i++) {
+        fixture_send_now(&f, message);
+        expect_fault(&f, fault, i == frames);
+        fixture_run(&f, 10);
+    }
+}
+
+/* Shows: SUP-5, EPS_MODE_OFF */
+void test_every_engagement_counts_eps_modes_anew(void) {
+    f.config.engaged_grace_ms = 50;
+    fixture_active(&f);
+    f.traffic[AGV_MSG_EPS_STATUS].data[3] = 0xFF;
+    check_counts_anew(AGV_FAULT_EPS_MODE_OFF, AGV_MSG_EPS_STATUS, 5);
+}
+
+/* Shows: SUP-5, GEAR_STATUS_INVALID */
+void test_every_engagement_counts_invalid_gears_anew(void) {
+    f.config.engaged_grace_ms = 50;
+    fixture_active(&f);
+    fixture_gear(&f, 0);
+    check_counts_anew(AGV_FAULT_GEAR_STATUS_INVALID, AGV_MSG_GEAR_STATUS, 3);
+}
+
+/* Shows: SUP-5, STEERING_ANGLE_INVALID */
+void test_every_engagement_counts_invalid_angles_anew(void) {
+    f.config.engaged_grace_ms = 50;
+    f.config.eps_heartbeat_timeout_ms = 100;
+    fixture_active(&f);
+    fixture_angle(&f, 18001);
+    check_counts_anew(AGV_FAULT_STEERING_ANGLE_INVALID, AGV_MSG_STEERING_STATUS, 3);
+}
+
+/* The bits of 167h are counted in every mode: the end of an engagement starts nothing anew. */
+/* Shows: SUP-4, EPS_UNDER_VOLTAGE */
+void test_the_end_of_an_engagement_does_not_end_the_count_of_a_bit(void) {
+    fixture_active(&f);
+    f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x01;
+    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
+    fixture_run(&f, 10);
+    report_mode(MODE_MANUAL);
+    fixture_run(&f, 9);
+    expect_fault(&f, AGV_FAULT_EPS_UNDER_VOLTAGE, false);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_EPS_UNDER_VOLTAGE, true);
 }

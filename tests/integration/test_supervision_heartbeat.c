@@ -333,3 +333,18 @@ void test_the_deadlines_are_settings(void) {
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, f.call, NO_HOLD);
 }
+
+/* Engagement begins the deadlines of three commands, and no other: 363h itself says engaged, with a counter that stands. */
+/* Shows: SUP-2, SUP-3, VCU_HEARTBEAT_STUCK */
+void test_an_engagement_is_no_beat_of_the_vcu(void) {
+    fixture_standby(&f);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].frozen = true;
+    fixture_run(&f, 15);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run(&f, 35);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    fixture_run(&f, 1);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, AGV_FAULT_VCU_HEARTBEAT_STUCK);
+}

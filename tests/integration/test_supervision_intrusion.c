@@ -230,3 +230,16 @@ void test_malformed_frames_are_not_too_fast(void) {
     }
     expect_nothing(&f, FAST, AGV_STATE_STANDBY);
 }
+
+/* The rate is watched in every mode: the end of an engagement starts nothing anew. */
+/* Shows: SUP-6, COMMAND_TOO_FAST */
+void test_gaps_are_counted_across_the_end_of_an_engagement(void) {
+    fixture_active(&f);
+    send_first(AGV_MSG_TURN_SIGNAL_COMMAND);
+    send_gaps(AGV_MSG_TURN_SIGNAL_COMMAND, 5, 10);
+    fixture_mode(&f, MODE_MANUAL);
+    send_gaps(AGV_MSG_TURN_SIGNAL_COMMAND, 4, 10);
+    expect_fault(&f, FAST, false);
+    send_gaps(AGV_MSG_TURN_SIGNAL_COMMAND, 1, 10);
+    expect_fault(&f, FAST, true);
+}

@@ -120,6 +120,30 @@ void test_a_gain_in_small_steps(void) {
     expect_trip_at(gained_ms + 500u, 9250);
 }
 
+/* The gain counts from the largest difference since the 500 ms began: 60.0 degrees at first, then 200.0. */
+/* Shows: SUP-5, STEERING_DEVIATION */
+void test_a_gain_after_the_difference_grew(void) {
+    fixture_active(&f);
+    command(9600);
+    fixture_run(&f, 100);
+    command(11000);
+    fixture_run(&f, 300);
+    measure(9250);
+    expect_trip_at(f.now_ms + 500u, 9250);
+}
+
+/* Without any valid measured angle there is nothing to compare. */
+/* Shows: SUP-5, STEERING_DEVIATION */
+void test_without_a_measured_angle_there_is_no_deviation(void) {
+    fixture_angle(&f, 18001);
+    fixture_standby(&f);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run(&f, 2000);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, AGV_FAULT_STEERING_ANGLE_INVALID);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, FAULT));
+}
+
 /* An EPS that follows slowly but steadily, 25.0 degrees in less than 500 ms each, from one end to the other. */
 /* Shows: SUP-5, STEERING_DEVIATION */
 void test_a_slow_eps_is_no_deviation(void) {

@@ -422,3 +422,18 @@ void test_what_comes_within_5_ms_is_answered_when_they_are_over(void) {
     fixture_run(&f, 40);
     TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168)); /* one answer for both */
 }
+
+/* 43Fh waits for its 5 ms to be over; an override of another identifier in between is not its answer. */
+/* Shows: TOP-1 */
+void test_an_answer_that_waits_is_not_forgotten_for_another_one(void) {
+    tripped();
+    foreign_signals(0x30);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x43F));
+    fixture_run(&f, 1);
+    foreign_signals(0x30);
+    foreign_gear(1);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x43F));
+    fixture_run(&f, 4);
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x43F));
+}

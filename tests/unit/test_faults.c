@@ -1,8 +1,9 @@
 /* The faults of one supervisor: levels, events, sets; and that what is no fault changes nothing. */
 #include "agv/faults.h"
 
-#include "agv/core.h"
+#include <string.h>
 
+#include "agv/core.h"
 #include "unity.h"
 
 static agv_core_t core;
@@ -93,6 +94,25 @@ void test_eight_faults_are_events_and_the_others_are_not(void) {
         tick(1000, 1000);
         TEST_ASSERT_EQUAL_HEX64(0, agv_faults_marked(&core.faults, AGV_MARK_ACTIVE));
     }
+}
+
+/* Of 64 bits, one a fault. */
+void test_a_fault_is_in_the_sets_that_have_its_bit(void) {
+    for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
+        for (unsigned bit = 0; bit < 64; bit++) {
+            TEST_ASSERT_EQUAL(i == bit, agv_fault_is_in((agv_fault_set_t)1 << bit, i));
+        }
+        TEST_ASSERT_EQUAL_HEX64((agv_fault_set_t)1 << i, agv_fault_bit(i));
+    }
+    TEST_ASSERT_FALSE(agv_fault_is_in(UINT64_MAX, AGV_FAULT_NONE));
+    TEST_ASSERT_FALSE(agv_fault_is_in(UINT64_MAX, 63));
+}
+
+/* Whatever stands behind the marks. */
+void test_what_is_no_fault_is_never_active(void) {
+    memset(&core, 0xFF, sizeof core);
+    TEST_ASSERT_TRUE(is_active((agv_fault_t)(AGV_FAULT_COUNT - 1)));
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_NONE));
 }
 
 void test_what_is_no_fault_changes_nothing(void) {

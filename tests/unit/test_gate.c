@@ -6,6 +6,7 @@
 #include "agv/protocol.h"
 
 #include <stdio.h>
+#include <string.h>
 
 #include "agv/state.h"
 #include "mock_can.h"
@@ -279,6 +280,52 @@ void test_without_a_status_frame_identifier_0_does_not_leave(void) {
     config.status_frame_id = 0;
     TEST_ASSERT_FALSE(allows(HAL_CAN_VEHICLE, 0, any));
     TEST_ASSERT_FALSE(allows(HAL_CAN_VEHICLE, STATUS_ID, any));
+}
+
+/* Of the 64 bits of each safe command only those of the alive counter are free. */
+/* Shows: INT-4, FSM-6 */
+void test_every_bit_of_a_safe_command_counts(void) {
+    static const struct {
+        uint32_t id;
+        uint8_t data[8];
+    } safe[] = {{0x43F, {0, 0, 0, 0, 0x70}}, {0x168, {8}}, {0x075, {0}}, {0x065, {0xA3, 0x23}}};
+    for (size_t i = 0; i < sizeof safe / sizeof safe[0]; i++) {
+        TEST_ASSERT_TRUE(allows(HAL_CAN_VEHICLE, safe[i].id, safe[i].data));
+        for (unsigned bit = 0; bit < 64; bit++) {
+            uint8_t data[8];
+            memcpy(data, safe[i].data, sizeof data);
+            data[bit / 8] = (uint8_t)(data[bit / 8] ^ (1u << (bit % 8)));
+            TEST_ASSERT_EQUAL((safe[i].id == 0x43F) && (bit >= 56), allows(HAL_CAN_VEHICLE, safe[i].id, data));
+        }
+    }
+}
+
+/* In the gateway: one bit of a command at a time. Throttle 64 is under the ceiling of 75 counts, angle 16384 under 18000. */
+/* Shows: INT-4, TOP-2 */
+void test_every_reserved_bit_of_a_passed_command_counts(void) {
+    static const uint8_t free_bits[4][8] = {{0, 0, 0, 0, 0xF0, 0, 0, 0xFF}, {0x0F}, {0x7F}, {0xFF, 0x7F}};
+    static const uint32_t ids[4] = {0x43F, 0x168, 0x075, 0x065};
+    config.topology = AGV_TOPOLOGY_GATEWAY;
+    gate.state = AGV_STATE_ACTIVE;
+    for (unsigned i = 0; i < 4; i++) {
+        for (unsigned bit = 0; bit < 64; bit++) {
+            const uint8_t byte = (uint8_t)(1u << (bit % 8));
+            uint8_t data[8] = {0};
+            data[0] = (ids[i] == 0x168) ? 8 : 0;
+            data[bit / 8] = byte;
+            TEST_ASSERT_EQUAL((free_bits[i][bit / 8] & byte) != 0, allows(HAL_CAN_VEHICLE, ids[i], data));
+        }
+    }
+}
+
+/* A configuration with such a status frame is refused; the gate would hold it back all the same. */
+/* Shows: INT-4, TOP-3 */
+void test_an_identifier_of_the_protocol_is_no_status_frame(void) {
+    static const uint8_t any[8] = {0};
+    config.status_frame_id = 0x101;
+    TEST_ASSERT_FALSE(allows(HAL_CAN_VEHICLE, 0x101, any));
+    config.status_frame_id = 0x363;
+    TEST_ASSERT_FALSE(allows(HAL_CAN_VEHICLE, 0x363, any));
 }
 
 /* Shows: INT-4 */

@@ -79,6 +79,7 @@ void test_reserved_bits_are_passed_as_0(void) {
         uint8_t out[8];
     } cases[] = {
         {AGV_MSG_TURN_SIGNAL_COMMAND, {1, 2, 4, 8, 0xFF, 0x80, 0x7F, 200}, {0, 0, 0, 0, 0xF0, 0, 0, 200}},
+        {AGV_MSG_TURN_SIGNAL_COMMAND, {0, 0, 0, 0, 0, 0, 0, 255}, {0, 0, 0, 0, 0, 0, 0, 255}},
         {AGV_MSG_TURN_SIGNAL_COMMAND, {0xFF, 0, 0, 0, 0x0F, 0, 0, 0}, {0}},
         {AGV_MSG_GEAR_COMMAND, {2, 9, 9, 9, 9, 9, 9, 9}, {2}},
         {AGV_MSG_THROTTLE_COMMAND, {100, 1, 0, 0, 0, 0, 0, 255}, {100}},
@@ -99,6 +100,8 @@ void test_the_throttle_ceiling(void) {
     TEST_ASSERT_EQUAL_UINT(74, throttle(74));
     core.config.throttle_ceiling_pct = 33; /* 82.5 counts, rounded down */
     TEST_ASSERT_EQUAL_UINT(82, throttle(250));
+    core.config.throttle_ceiling_pct = 99; /* 247.5 */
+    TEST_ASSERT_EQUAL_UINT(247, throttle(250));
     core.config.throttle_ceiling_pct = 0;
     TEST_ASSERT_EQUAL_UINT(0, throttle(1));
 }
@@ -145,6 +148,16 @@ void test_a_pause_gives_at_most_a_second_of_slew(void) {
     TEST_ASSERT_EQUAL_INT(-9000, steer(0, -9000));
     TEST_ASSERT_EQUAL_INT(-8500, steer(1000, 9000));
     TEST_ASSERT_EQUAL_INT(-8000, steer(5000, 9000));
+}
+
+/* 900.0 degrees a second: a millisecond more would be 0.9 degrees more. */
+/* Shows: TOP-2 */
+void test_a_second_of_slew_is_exact(void) {
+    core.config.steering_slew_ddeg_s = 9000;
+    TEST_ASSERT_EQUAL_INT(-9000, steer(0, -9000));
+    TEST_ASSERT_EQUAL_INT(-9, steer(999, 9000));
+    TEST_ASSERT_EQUAL_INT(8991, steer(1000, 9000));
+    TEST_ASSERT_EQUAL_INT(-9, steer(1001, -9000));
 }
 
 /* 1.0 degree a second: a tenth takes 100 ms, and 25 ms frames must not round it away. */

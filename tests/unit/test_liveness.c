@@ -107,12 +107,22 @@ void test_what_is_lost_stays_lost_over_the_whole_turn_of_the_clock(void) {
     TEST_ASSERT_TRUE(judge(AGV_MSG_EPS_STATUS, 2));
 }
 
-void test_nothing_is_fresh_before_it_was_heard(void) {
+TEST_CASE(0)
+TEST_CASE(0xFFFFFFE0)
+TEST_CASE(1000)
+void test_nothing_is_fresh_before_it_was_heard(uint32_t start_ms) {
+    start(start_ms);
     for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
         TEST_ASSERT_FALSE(is_heard((agv_message_t)i));
         TEST_ASSERT_FALSE(agv_liveness_fresh(&core, (agv_message_t)i));
-        TEST_ASSERT_EQUAL_UINT32(7, age_ms((agv_message_t)i, 7));                         /* since the start */
-        TEST_ASSERT_EQUAL(i != AGV_MSG_TURN_SIGNAL_COMMAND, judge((agv_message_t)i, 61)); /* the AI is not awaited */
+        TEST_ASSERT_EQUAL_UINT32(7, age_ms((agv_message_t)i, start_ms + 7)); /* since the start */
+        /* the AI is not awaited */
+        TEST_ASSERT_EQUAL(i != AGV_MSG_TURN_SIGNAL_COMMAND, judge((agv_message_t)i, start_ms + 61));
+    }
+    tick(start_ms + 6001);
+    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
+        TEST_ASSERT_FALSE(is_heard((agv_message_t)i));
+        TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, age_ms((agv_message_t)i, start_ms + 6001));
     }
 }
 
@@ -153,6 +163,16 @@ TEST_CASE(1)
 void test_vcu_and_eps_are_awaited_from_the_start(unsigned node) {
     judge_beat((agv_node_t)node, 50);
     expect_heartbeat((agv_node_t)node, AGV_HEARTBEAT_UNSEEN);
+    judge_beat((agv_node_t)node, 51);
+    expect_heartbeat((agv_node_t)node, AGV_HEARTBEAT_LOST);
+}
+
+/* No counter was before the first one: what comes late is lost, not stuck. */
+/* Shows: SUP-2 */
+TEST_CASE(0)
+TEST_CASE(1)
+void test_a_first_frame_just_before_the_deadline_is_no_repeat(unsigned node) {
+    beat((agv_node_t)node, 200, 45);
     judge_beat((agv_node_t)node, 51);
     expect_heartbeat((agv_node_t)node, AGV_HEARTBEAT_LOST);
 }
@@ -235,6 +255,8 @@ void test_silence_is_lost(void) {
     repeat_until(0);
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_LOST);
     beat(AGV_NODE_VCU, 2, 500);
+    judge_beat(AGV_NODE_VCU,
+               505); /* it was lost when its deadline expired: an old counter later does not make it stuck */
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_LOST);
     beat(AGV_NODE_VCU, 3, 510);
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);

@@ -46,6 +46,21 @@ static uint32_t store_all(uint32_t first) {
     return count;
 }
 
+/* 00000000 00000000 02 01 02 03 04 05 06 00 0000, then 88 bytes 0: CRC-32 346C2F9Ch, of which the inverse's upper half is kept. */
+void test_the_checksum_of_an_event_is_known(void) {
+    agv_event_t event;
+    add(1);
+    TEST_ASSERT_TRUE(agv_recorder_get(&recorder, 0, &event));
+    TEST_ASSERT_EQUAL_HEX16(0xCB93, event.checksum);
+}
+
+/* Kinds count from 1. */
+void test_what_has_no_kind_is_no_event(void) {
+    const agv_entry_t entry = {.kind = 0, .a = 1};
+    agv_recorder_add(&recorder, &entry, 0);
+    expect_gone(0);
+}
+
 void test_an_event_holds_what_was_said_of_it(void) {
     const uint8_t gear[8] = {8, 0, 0, 0, 0, 0, 0, 1};
     const uint8_t wheels[8] = {1, 2, 3, 4, 5, 6, 7, 8};
@@ -191,6 +206,41 @@ void test_the_sequence_wraps(void) {
     TEST_ASSERT_EQUAL_UINT32(10, store_all(0xFFFFFFFCu));
 }
 
+/* Shows: INT-3, TIM-2 */
+void test_a_restart_counts_on_wherever_the_numbers_stand(void) {
+    recorder.next_sequence = 0x90000010u;
+    recorder.stored_sequence = 0x90000010u;
+    add(20);
+    for (unsigned i = 0; i < 5; i++) {
+        TEST_ASSERT_NOT_NULL(agv_recorder_next_to_store(&recorder));
+        agv_recorder_stored(&recorder);
+    }
+    agv_recorder_start(&recorder);
+    TEST_ASSERT_EQUAL_UINT32(0x90000024u, agv_recorder_next_sequence(&recorder));
+    expect_there(0x90000010u);
+    TEST_ASSERT_EQUAL_UINT32(15, store_all(0x90000015u));
+}
+
+/* Shows: INT-3 */
+void test_a_mark_beyond_large_numbers_stores_all(void) {
+    recorder.next_sequence = 0x90000010u;
+    add(20);
+    recorder.stored_sequence = 0xA0000010u;
+    agv_recorder_start(&recorder);
+    TEST_ASSERT_EQUAL_UINT32(20, store_all(0x90000010u));
+}
+
+/* Up to half of all numbers ahead is newer. */
+/* Shows: TIM-2 */
+void test_a_number_far_ahead_is_newer(void) {
+    recorder.next_sequence = 10;
+    add(1);
+    recorder.next_sequence = 0x60000010u;
+    add(1);
+    agv_recorder_start(&recorder);
+    TEST_ASSERT_EQUAL_UINT32(0x60000011u, agv_recorder_next_sequence(&recorder));
+}
+
 /* Shows: TIM-2 */
 void test_runs_wrap(void) {
     agv_event_t event;
@@ -223,6 +273,8 @@ void test_what_was_replaced_before_it_was_stored_is_lost(void) {
     TEST_ASSERT_EQUAL_UINT32(2, store_all(0));
     add(300);
     TEST_ASSERT_EQUAL_UINT32(256, store_all(46));
+    add(1000); /* however many: 302 to 1301 */
+    TEST_ASSERT_EQUAL_UINT32(256, store_all(1046));
 }
 
 void test_a_mark_that_makes_no_sense_stores_all(void) {

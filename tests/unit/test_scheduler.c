@@ -168,3 +168,27 @@ void test_when_all_are_sent_what_waited_is_forgotten(void) {
     restart(12);
     TEST_ASSERT_FALSE(answer_due(100));
 }
+
+/* After a restart nothing waits to be answered, and nothing was overridden just now: not even a turn of the microseconds
+ * ago. */
+/* Shows: TOP-1, TIM-2 */
+void test_a_restart_forgets_overrides(void) {
+    for (unsigned i = 0; i < 4; i++) {
+        overridden(SLOTS[i].command, 7, 7000);
+        TEST_ASSERT_FALSE(agv_scheduler_override(&core, SLOTS[i].command));
+    }
+    restart(4294974);
+    core.now_us = 7001;
+    for (unsigned i = 0; i < 4; i++) {
+        TEST_ASSERT_FALSE(agv_scheduler_override_due(&core, SLOTS[i].command));
+        TEST_ASSERT_TRUE(agv_scheduler_override(&core, SLOTS[i].command));
+    }
+}
+
+/* 18 days without a step: 60000000h ms are 16106127 cycles of 100 ms and 36 ms. */
+/* Shows: TIM-1 */
+void test_a_slot_that_is_very_late_is_due(void) {
+    restart(0);
+    core.now_ms = 100u + 0x60000000u;
+    TEST_ASSERT_EQUAL_UINT32(16106128, agv_scheduler_due(&core, AGV_MSG_TURN_SIGNAL_COMMAND));
+}

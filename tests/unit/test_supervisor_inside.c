@@ -174,3 +174,33 @@ void test_microseconds_do_not_go_backwards_either(void) {
     fixture_jump(&f, 6);
     TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168));
 }
+
+/* A stamp of 4294967 ms ago: 1000 times that is 2^32 but for 296 microseconds, which is no later moment of now. */
+/* Shows: TIM-2 */
+void test_a_stamp_of_a_turn_of_the_microseconds_ago_is_old(void) {
+    f.now_ms = 5000000;
+    fixture_standby(&f);
+    foreign_drive_at(f.now_ms - 4294967u, 0);
+    TEST_ASSERT_EQUAL_UINT32(f.now_ms, core->now_ms);
+}
+
+/* From the start, and from a restart on: 1234567 ms are 1234567000 us. */
+void test_both_clocks_say_the_same(void) {
+    f.now_ms = 1234567;
+    fixture_start(&f);
+    TEST_ASSERT_EQUAL_UINT32(1234567000, core->now_us);
+    core->now_us = 5;
+    fixture_jump(&f, 1); /* found corrupted */
+    expect_fault(&f, AGV_FAULT_MEMORY_CORRUPTED, true);
+    TEST_ASSERT_EQUAL_UINT32(1234568000, core->now_us);
+}
+
+/* Shows: INT-5 */
+void test_between_two_calls_no_pointer_is_kept(void) {
+    fixture_start(&f);
+    TEST_ASSERT_NULL(core->hal);
+    TEST_ASSERT_NULL(core->recorder);
+    fixture_run(&f, 20);
+    TEST_ASSERT_NULL(core->hal);
+    TEST_ASSERT_NULL(core->recorder);
+}

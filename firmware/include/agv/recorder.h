@@ -50,7 +50,7 @@ typedef struct {
     uint8_t run;                            /**< counts starts of the supervisor; wraps */
     uint16_t seen;                          /**< bit n: message n was received in this run */
     uint8_t frames[AGV_MSG_COUNT][AGV_DLC]; /**< last payload of each message */
-    uint16_t checksum;                      /**< upper half of the CRC-32 over the fields before it */
+    uint16_t checksum;                      /**< upper half of the inverted CRC-32 over the fields before it */
 } agv_event_t;
 
 /** The recorder. Contents are for the functions below only. */

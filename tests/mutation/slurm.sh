@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+#SBATCH --job-name=agv-mutation
+#SBATCH --array=1-32
+#SBATCH --cpus-per-task=1
+#SBATCH --time=02:00:00
+# One shard a task of the array, on a file system that the nodes share. From the folder of the project:
+#   tests/mutation/mutate prepare && sbatch tests/mutation/slurm.sh
+# and when all have ended: tests/mutation/mutate merge. A second sbatch goes on where the first one was stopped.
+set -euo pipefail
+exec tests/mutation/mutate run --shard "$SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT"
