@@ -1,4 +1,5 @@
 /* What may not be switched off, found at build time. */
+#include <zephyr/devicetree.h>
 #include <zephyr/sys/util.h>
 #include <zephyr/toolchain.h>
 
@@ -10,7 +11,9 @@ BUILD_ASSERT(IS_ENABLED(CONFIG_ASSERT), "release: assertions stay on");
 BUILD_ASSERT(!IS_ENABLED(CONFIG_ARCH_HAS_STACK_PROTECTION) || IS_ENABLED(CONFIG_HW_STACK_PROTECTION),
              "release: stacks are guarded");
 BUILD_ASSERT(!IS_ENABLED(CONFIG_SHELL), "release: no shell");
-BUILD_ASSERT(IS_ENABLED(CONFIG_WATCHDOG) && IS_ENABLED(CONFIG_TASK_WDT_HW_FALLBACK), "release: a hardware watchdog");
+BUILD_ASSERT(IS_ENABLED(CONFIG_WATCHDOG) && IS_ENABLED(CONFIG_TASK_WDT_HW_FALLBACK) &&
+                 DT_NODE_HAS_STATUS(DT_ALIAS(watchdog0), okay),
+             "release: a hardware watchdog");
 BUILD_ASSERT(!IS_ENABLED(CONFIG_AGV_WITHOUT_HARDWARE_WATCHDOG) && !IS_ENABLED(CONFIG_AGV_EVERY_START_IS_POWER_ON),
              "release: not for a simulator");
 #endif
