@@ -1,0 +1,10 @@
+# The sources of the application but for main.c, for it and for its tests.
+include(${CMAKE_CURRENT_LIST_DIR}/../sources.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/../../hal/zephyr/sources.cmake)
+set(AGV_APP_DIR ${CMAKE_CURRENT_LIST_DIR})
+set(AGV_APP_SOURCES
+  ${AGV_APP_DIR}/src/checks.c
+  ${AGV_APP_DIR}/src/events.c
+  ${AGV_APP_DIR}/src/kconfig.c
+  ${AGV_APP_DIR}/src/supervise.c
+)

@@ -1,0 +1,55 @@
+#include "supervise.h"
+
+#include "events.h"
+#include "kconfig.h"
+
+/* More than fit into the queues at once come only while they are emptied: then the tick goes first. */
+enum { FRAMES_A_ROUND = 2 * HAL_CAN_SIDES * CONFIG_AGV_CAN_RX_QUEUE };
+
+__weak bool supervise_self_test(void) {
+    return true;
+}
+
+void supervise_start(supervise_t *self, agv_recorder_t *recorder, zephyr_hal_retained_t *retained) {
+    agv_config_t config;
+    kconfig_read(&config);
+    const zephyr_hal_config_t wiring = {.bitrate = CONFIG_AGV_CAN_BITRATE,
+                                        .sample_point_permille = CONFIG_AGV_CAN_SAMPLE_POINT,
+                                        .watchdog_ms = CONFIG_AGV_WATCHDOG_PERIOD_MS,
+                                        .listen_only = IS_ENABLED(CONFIG_AGV_CAN_LISTEN_ONLY),
+                                        .retained = retained};
+    const bool port_works = zephyr_hal_init(&self->hal, &wiring);
+    const bool passed = supervise_self_test() && port_works;
+    self->ports = (agv_ports_t){.hal = &self->hal, .recorder = recorder};
+    self->ticked_ms = hal_clock_now_ms(&self->hal);
+    agv_supervisor_start(&self->supervisor, &self->ports, &config, passed, self->ticked_ms);
+    self->told = events_begin(&config, recorder);
+    events_tell(recorder, &self->told);
+}
+
+/* Whether the queues were emptied. */
+static bool take_frames(supervise_t *self) {
+    hal_can_side_t side;
+    hal_can_frame_t frame;
+    for (uint32_t i = 0u; i < (uint32_t)FRAMES_A_ROUND; i++) {
+        if (!zephyr_hal_receive(&self->hal, &side, &frame)) {
+            return true;
+        }
+        agv_supervisor_frame(&self->supervisor, &self->ports, side, &frame);
+    }
+    return false;
+}
+
+void supervise_once(supervise_t *self) {
+    zephyr_hal_wait(&self->hal);
+    const uint32_t now_ms = hal_clock_now_ms(&self->hal); /* before the frames: all stamped up to it are handed over */
+    if (take_frames(self)) {
+        agv_supervisor_receive_alive(&self->supervisor);
+    }
+    if (now_ms != self->ticked_ms) {
+        self->ticked_ms = now_ms;
+        agv_supervisor_tick(&self->supervisor, &self->ports, now_ms);
+    }
+    zephyr_hal_transmit(&self->hal);
+    events_tell(self->ports.recorder, &self->told);
+}

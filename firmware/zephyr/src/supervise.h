@@ -1,0 +1,36 @@
+/**
+ * @file supervise.h
+ * One supervisor on the Zephyr port: what its thread does.
+ */
+#ifndef AGV_APP_SUPERVISE_H
+#define AGV_APP_SUPERVISE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "agv/recorder.h"
+#include "agv/supervisor.h"
+#include "hal_zephyr/zephyr_hal.h"
+
+/** All of it, in static memory. */
+typedef struct {
+    hal_t hal;
+    agv_supervisor_t supervisor;
+    agv_ports_t ports;
+    uint32_t ticked_ms;
+    uint32_t told; /**< the recorder's next sequence number when events were last printed */
+} supervise_t;
+
+/** Start it. The recorder and the port's retained memory outlive a reset; the program owns both. */
+void supervise_start(supervise_t *self, agv_recorder_t *recorder, zephyr_hal_retained_t *retained);
+
+/** Wait for a frame or a millisecond, and handle it. */
+void supervise_once(supervise_t *self);
+
+/**
+ * Integrator's own test of RAM, flash and processor, before anything begins; weak, true.
+ * @return false: the supervisor starts with SELF_TEST_FAILED
+ */
+bool supervise_self_test(void);
+
+#endif

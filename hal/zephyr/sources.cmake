@@ -1,0 +1,12 @@
+# The sources of the Zephyr port, for the application and for its tests.
+set(AGV_ZEPHYR_PORT_DIR ${CMAKE_CURRENT_LIST_DIR})
+set(AGV_ZEPHYR_PORT_SOURCES
+  ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_can.c
+  ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_hal.c
+  ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_log.c
+  ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_pins.c
+  ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_queue.c
+  ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_retained.c
+  ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_watchdog.c
+)
+set(AGV_ZEPHYR_PORT_INCLUDES ${AGV_ZEPHYR_PORT_DIR}/include)

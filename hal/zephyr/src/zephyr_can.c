@@ -1,0 +1,256 @@
+/* hal/can.h: the controllers. The driver has one frame at a time; what waits stays here, where it can be purged. */
+#include "zephyr_hal_internal.h"
+
+#include <string.h>
+
+enum { US_PER_MS = 1000 };
+
+BUILD_ASSERT(sizeof(((hal_can_frame_t *)0)->data) <= CAN_MAX_DLEN, "a frame's first bytes fit");
+
+static void stamp(hal_can_frame_t *frame) {
+    const uint64_t now_us = k_ticks_to_us_floor64((uint64_t)k_uptime_ticks());
+    frame->time_ms = (uint32_t)(now_us / US_PER_MS);
+    frame->time_us = (uint16_t)(now_us % US_PER_MS);
+}
+
+static void convert(hal_can_frame_t *to, const struct can_frame *from) {
+    *to = (hal_can_frame_t){.id = from->id, .length = can_dlc_to_bytes(from->dlc)};
+    to->flags |= ((from->flags & CAN_FRAME_IDE) != 0u) ? HAL_CAN_EXTENDED : 0u;
+    to->flags |= ((from->flags & CAN_FRAME_RTR) != 0u) ? HAL_CAN_REMOTE : 0u;
+    to->flags |= ((from->flags & CAN_FRAME_FDF) != 0u) ? HAL_CAN_FD : 0u;
+    if ((to->flags & HAL_CAN_REMOTE) == 0u) {
+        (void)memcpy(to->data, from->data, MIN(to->length, sizeof to->data));
+    }
+}
+
+/* In the receive interrupt: stamped here, so that a backlog does not look fresh. */
+static void on_frame(const struct device *device, struct can_frame *frame, void *user_data) {
+    zephyr_hal_side_t *const side = user_data;
+    hal_can_frame_t received;
+    ARG_UNUSED(device);
+    convert(&received, frame);
+    stamp(&received);
+    if (k_msgq_put(&side->received, &received, K_NO_WAIT) != 0) {
+        const k_spinlock_key_t key = k_spin_lock(&side->lock);
+        side->lost++;
+        k_spin_unlock(&side->lock, key);
+    }
+    k_sem_give(side->wake);
+}
+
+/* In the transmit interrupt, or in bus-off: sent or discarded, the driver has it no more. */
+static void on_sent(const struct device *device, int error, void *user_data) {
+    zephyr_hal_side_t *const side = user_data;
+    ARG_UNUSED(device);
+    ARG_UNUSED(error);
+    const k_spinlock_key_t key = k_spin_lock(&side->lock);
+    side->in_flight = false;
+    k_spin_unlock(&side->lock, key);
+    k_sem_give(side->wake);
+}
+
+static hal_can_state_t state_of(enum can_state state) {
+    switch (state) {
+    case CAN_STATE_ERROR_ACTIVE:
+    case CAN_STATE_ERROR_WARNING:
+        return HAL_CAN_ERROR_ACTIVE;
+    case CAN_STATE_ERROR_PASSIVE:
+        return HAL_CAN_ERROR_PASSIVE;
+    default:
+        return HAL_CAN_BUS_OFF; /* a controller that is stopped takes no part either */
+    }
+}
+
+/* With the lock held. */
+static void enter(zephyr_hal_side_t *side, hal_can_state_t state) {
+    if ((state == HAL_CAN_BUS_OFF) && (side->state != HAL_CAN_BUS_OFF)) {
+        side->bus_offs++;
+    }
+    side->state = state;
+}
+
+/* In the controller's interrupt: a bus-off that is over when somebody looks is still one. */
+static void on_state(const struct device *device, enum can_state state, struct can_bus_err_cnt errors,
+                     void *user_data) {
+    zephyr_hal_side_t *const side = user_data;
+    ARG_UNUSED(device);
+    ARG_UNUSED(errors);
+    const k_spinlock_key_t key = k_spin_lock(&side->lock);
+    side->callback_gave_state = true;
+    enter(side, state_of(state));
+    k_spin_unlock(&side->lock, key);
+    k_sem_give(side->wake);
+}
+
+/* What the controller says now; what an interrupt said in the meantime is newer. */
+static void look(zephyr_hal_side_t *side) {
+    enum can_state state = CAN_STATE_STOPPED;
+    k_spinlock_key_t key = k_spin_lock(&side->lock);
+    side->callback_gave_state = false;
+    k_spin_unlock(&side->lock, key);
+    const bool known = can_get_state(side->device, &state, NULL) == 0;
+    key = k_spin_lock(&side->lock);
+    if (!side->callback_gave_state) {
+        enter(side, known ? state_of(state) : HAL_CAN_BUS_OFF);
+    }
+    k_spin_unlock(&side->lock, key);
+}
+
+/* Every frame, with an 11-bit and with a 29-bit identifier: the supervisor counts what it rejects. */
+static bool listen(zephyr_hal_side_t *side) {
+    static const struct can_filter all[] = {{.flags = 0u}, {.flags = CAN_FILTER_IDE}};
+    bool works = true;
+    for (size_t i = 0u; i < ARRAY_SIZE(all); i++) {
+        works = (can_add_rx_filter(side->device, on_frame, side, &all[i]) >= 0) && works;
+    }
+    return works;
+}
+
+static bool set_mode(const struct device *device, bool listen_only) {
+    can_mode_t able = 0u;
+    can_mode_t mode = listen_only ? CAN_MODE_LISTENONLY : CAN_MODE_NORMAL;
+    if (can_get_capabilities(device, &able) != 0) {
+        return false;
+    }
+    mode |= able & CAN_MODE_MANUAL_RECOVERY;
+    const bool recovers_on_request =
+        ((able & CAN_MODE_MANUAL_RECOVERY) != 0u) || IS_ENABLED(CONFIG_AGV_CAN_WITHOUT_BUS_OFF);
+    return recovers_on_request && (can_set_mode(device, mode) == 0);
+}
+
+static bool set_timing(const struct device *device, const zephyr_hal_config_t *config) {
+    struct can_timing timing;
+    const int off_permille = can_calc_timing(device, &timing, config->bitrate, config->sample_point_permille);
+    return (off_permille >= 0) && (off_permille <= CONFIG_AGV_CAN_SAMPLE_POINT_TOLERANCE) &&
+           (can_set_timing(device, &timing) == 0);
+}
+
+bool zephyr_can_start(zephyr_hal_side_t *side, const zephyr_hal_config_t *config) {
+    if (!device_is_ready(side->device)) {
+        side->state = HAL_CAN_BUS_OFF;
+        return false;
+    }
+    can_set_state_change_callback(side->device, on_state, side);
+    const bool works = set_mode(side->device, config->listen_only) && set_timing(side->device, config) &&
+                       listen(side) && (can_start(side->device) == 0);
+    look(side);
+    return works;
+}
+
+static bool take(zephyr_hal_side_t *side, hal_can_frame_t *frame) {
+    return (side->device != NULL) && (k_msgq_peek(&side->received, frame) == 0);
+}
+
+static bool is_older(const hal_can_frame_t *a, const hal_can_frame_t *b) {
+    const int32_t ms = (int32_t)(a->time_ms - b->time_ms);
+    return (ms < 0) || ((ms == 0) && (a->time_us < b->time_us));
+}
+
+bool zephyr_hal_receive(hal_t *hal, hal_can_side_t *side, hal_can_frame_t *frame) {
+    hal_can_frame_t of_ai;
+    const bool vehicle = take(&hal->sides[HAL_CAN_VEHICLE], frame);
+    const bool ai = take(&hal->sides[HAL_CAN_AI], &of_ai);
+    *side = (ai && (!vehicle || is_older(&of_ai, frame))) ? HAL_CAN_AI : HAL_CAN_VEHICLE;
+    return (vehicle || ai) && (k_msgq_get(&hal->sides[*side].received, frame, K_NO_WAIT) == 0);
+}
+
+/* Set before the driver is asked: its interrupt may come before it returns. */
+static void set_in_flight(zephyr_hal_side_t *side, bool in_flight) {
+    const k_spinlock_key_t key = k_spin_lock(&side->lock);
+    side->in_flight = in_flight;
+    k_spin_unlock(&side->lock, key);
+}
+
+static bool is_in_flight(zephyr_hal_side_t *side) {
+    const k_spinlock_key_t key = k_spin_lock(&side->lock);
+    const bool in_flight = side->in_flight;
+    k_spin_unlock(&side->lock, key);
+    return in_flight;
+}
+
+static bool give(zephyr_hal_side_t *side, const hal_can_frame_t *frame, uint32_t taken_ms) {
+    struct can_frame sent = {.id = frame->id, .dlc = can_bytes_to_dlc(frame->length)};
+    (void)memcpy(sent.data, frame->data, MIN(frame->length, sizeof frame->data));
+    set_in_flight(side, true);
+    side->sent_is_purged = false;
+    side->sent_taken_ms = taken_ms;
+    const bool taken = can_send(side->device, &sent, K_NO_WAIT, on_sent, side) == 0;
+    if (!taken) {
+        set_in_flight(side, false);
+    }
+    return taken;
+}
+
+static bool can_be_sent(const hal_can_frame_t *frame) {
+    return (frame->flags == 0u) && (frame->length <= sizeof frame->data) && (frame->id <= CAN_STD_ID_MASK);
+}
+
+bool hal_can_send(hal_t *hal, hal_can_side_t side, const hal_can_frame_t *frame) {
+    zephyr_hal_side_t *const sender = zephyr_hal_side(hal, side);
+    if ((sender == NULL) || (sender->state == HAL_CAN_BUS_OFF) || !can_be_sent(frame)) {
+        return false;
+    }
+    const uint32_t now_ms = hal_clock_now_ms(hal);
+    if (!is_in_flight(sender) && (sender->waiting_count == 0u)) {
+        return give(sender, frame, now_ms);
+    }
+    return zephyr_queue_insert(sender, frame, now_ms);
+}
+
+static void transmit(zephyr_hal_side_t *side) {
+    if (side->state == HAL_CAN_BUS_OFF) {
+        side->waiting_count = 0u;
+    } else if (!is_in_flight(side) && (side->waiting_count > 0u) &&
+               give(side, &side->waiting[0].frame, side->waiting[0].taken_ms)) {
+        zephyr_queue_drop_first(side);
+    } else {
+        /* it waits for its turn, or nothing waits */
+    }
+}
+
+void zephyr_hal_transmit(hal_t *hal) {
+    for (uint32_t i = 0u; i < (uint32_t)HAL_CAN_SIDES; i++) {
+        if (hal->sides[i].device != NULL) {
+            transmit(&hal->sides[i]);
+        }
+    }
+}
+
+void hal_can_purge(hal_t *hal, hal_can_side_t side) {
+    zephyr_hal_side_t *const purged = zephyr_hal_side(hal, side);
+    if (purged != NULL) {
+        purged->waiting_count = 0u;
+        purged->sent_is_purged = true;
+    }
+}
+
+void hal_can_recover(hal_t *hal, hal_can_side_t side) {
+    const zephyr_hal_side_t *const off = zephyr_hal_side(hal, side);
+#if defined(CONFIG_CAN_MANUAL_RECOVERY_MODE)
+    if ((off != NULL) && (off->state == HAL_CAN_BUS_OFF)) {
+        (void)can_recover(off->device, K_NO_WAIT); /* the supervisor asks again while nothing follows */
+    }
+#else
+    ARG_UNUSED(off);
+#endif
+}
+
+static uint16_t overruns(const zephyr_hal_side_t *side) {
+#if defined(CONFIG_CAN_STATS)
+    return (uint16_t)(side->lost + can_stats_get_rx_overruns(side->device));
+#else
+    return side->lost;
+#endif
+}
+
+void hal_can_status(hal_t *hal, hal_can_side_t side, hal_can_status_t *status) {
+    zephyr_hal_side_t *const asked = zephyr_hal_side(hal, side);
+    *status = (hal_can_status_t){.state = HAL_CAN_ERROR_ACTIVE};
+    if (asked != NULL) {
+        look(asked);
+        status->tx_pending_ms = zephyr_queue_pending_ms(asked, is_in_flight(asked), hal_clock_now_ms(hal));
+        status->state = asked->state;
+        status->bus_off_count = asked->bus_offs;
+        status->overrun_count = overruns(asked);
+    }
+}

@@ -1,0 +1,39 @@
+/* hal/safety_output.h and hal/led.h. */
+#include <zephyr/init.h>
+
+#include "zephyr_hal_internal.h"
+
+static const struct gpio_dt_spec output = GPIO_DT_SPEC_GET(ZEPHYR_HAL_NODE, safety_output_gpios);
+static const struct gpio_dt_spec led = GPIO_DT_SPEC_GET(DT_PHANDLE(ZEPHYR_HAL_NODE, alarm_led), gpios);
+
+/* As soon as there are pins: before any other driver, and long before main(). */
+static int open_output_at_boot(void) {
+    return gpio_is_ready_dt(&output) ? gpio_pin_configure_dt(&output, GPIO_OUTPUT_INACTIVE | GPIO_INPUT) : -ENODEV;
+}
+
+BUILD_ASSERT(CONFIG_GPIO_INIT_PRIORITY < CONFIG_AGV_OUTPUT_INIT_PRIORITY, "pins come first, then the output");
+SYS_INIT(open_output_at_boot, POST_KERNEL, CONFIG_AGV_OUTPUT_INIT_PRIORITY);
+
+bool zephyr_hal_output_is_open(void) {
+    return gpio_is_ready_dt(&output) && (gpio_pin_get_dt(&output) == 0);
+}
+
+void zephyr_output_open_now(void) {
+    if (gpio_is_ready_dt(&output)) {
+        (void)gpio_pin_set_dt(&output, 0);
+    }
+}
+
+void hal_safety_output_set(hal_t *hal, bool closed) {
+    ARG_UNUSED(hal);
+    (void)gpio_pin_set_dt(&output, closed ? 1 : 0);
+}
+
+bool zephyr_led_start(void) {
+    return gpio_is_ready_dt(&led) && (gpio_pin_configure_dt(&led, GPIO_OUTPUT_INACTIVE) == 0);
+}
+
+void hal_led_set(hal_t *hal, bool on) {
+    ARG_UNUSED(hal);
+    (void)gpio_pin_set_dt(&led, on ? 1 : 0);
+}

@@ -1,0 +1,98 @@
+/* hal/reset.h, and the latch of hal/store.h: what is kept in memory that a reset does not clear. */
+#include <string.h>
+
+#include <zephyr/drivers/hwinfo.h>
+#include <zephyr/sys/crc.h>
+
+#include "zephyr_hal_internal.h"
+
+/* Where zephyr_hal_die() leaves its note, from any context; set once, at the start. */
+static zephyr_hal_retained_t *notes;
+
+static uint32_t latch_checksum(const zephyr_hal_retained_t *retained) {
+    return crc32_ieee((const uint8_t *)retained, offsetof(zephyr_hal_retained_t, latch_checksum));
+}
+
+static uint32_t note_checksum(uint32_t note) {
+    return ~crc32_ieee((const uint8_t *)&note, sizeof note);
+}
+
+void zephyr_reset_note(hal_reset_cause_t cause) {
+    if (notes != NULL) {
+        notes->note = (uint32_t)cause;
+        notes->note_checksum = note_checksum(notes->note);
+    }
+}
+
+/* The port's own note of the last run, which is then gone: a software reset that it made itself has a better reason. */
+static hal_reset_cause_t take_note(zephyr_hal_retained_t *retained) {
+    const uint32_t note = retained->note;
+    const bool valid = retained->note_checksum == note_checksum(note);
+    retained->note_checksum = ~note_checksum(note);
+    return (valid && ((note == (uint32_t)HAL_RESET_WATCHDOG) || (note == (uint32_t)HAL_RESET_LOCK_UP)))
+               ? (hal_reset_cause_t)note
+               : HAL_RESET_SOFTWARE;
+}
+
+/*
+ * Flags add up until they are cleared: whatever came after a power-on hides it, and only a sure power-on is one. A power-on
+ * also shows as a brown-out and as a low reset pin.
+ */
+static hal_reset_cause_t cause_of(uint32_t flags, hal_reset_cause_t noted) {
+    const uint32_t with_power_on = RESET_POR | RESET_BROWNOUT | RESET_PIN;
+    if ((flags & RESET_WATCHDOG) != 0u) {
+        return HAL_RESET_WATCHDOG;
+    }
+    if ((flags & RESET_CPU_LOCKUP) != 0u) {
+        return HAL_RESET_LOCK_UP;
+    }
+    if ((flags & RESET_SOFTWARE) != 0u) {
+        return noted;
+    }
+    if ((flags & RESET_POR) != 0u) {
+        return ((flags & ~with_power_on) == 0u) ? HAL_RESET_POWER_ON : HAL_RESET_UNKNOWN;
+    }
+    return ((flags & RESET_BROWNOUT) != 0u) ? HAL_RESET_BROWN_OUT : HAL_RESET_UNKNOWN;
+}
+
+hal_reset_cause_t zephyr_reset_read(zephyr_hal_retained_t *retained) {
+    uint32_t flags = 0u;
+    notes = retained;
+    const hal_reset_cause_t noted = take_note(retained);
+    const bool known = hwinfo_get_reset_cause(&flags) == 0;
+    if (known) {
+        (void)hwinfo_clear_reset_cause();
+    }
+    if (IS_ENABLED(CONFIG_AGV_EVERY_START_IS_POWER_ON)) {
+        return HAL_RESET_POWER_ON;
+    }
+    return known ? cause_of(flags, noted) : HAL_RESET_UNKNOWN;
+}
+
+hal_reset_cause_t hal_reset_cause(hal_t *hal) {
+    return hal->reset_cause;
+}
+
+/* After a power-on the memory holds anything: nothing is stored. After a reset what does not fit is handed on as it is. */
+size_t hal_store_read_latch(hal_t *hal, void *record, size_t size) {
+    const zephyr_hal_retained_t *const retained = hal->retained;
+    const bool fits =
+        (retained->latch_size <= sizeof retained->latch) && (retained->latch_checksum == latch_checksum(retained));
+    if (!fits && (hal->reset_cause == HAL_RESET_POWER_ON)) {
+        return 0u;
+    }
+    const size_t stored = fits ? retained->latch_size : sizeof retained->latch;
+    (void)memcpy(record, retained->latch, MIN(size, stored));
+    return stored;
+}
+
+bool hal_store_write_latch(hal_t *hal, const void *record, size_t size) {
+    zephyr_hal_retained_t *const retained = hal->retained;
+    if ((size == 0u) || (size > sizeof retained->latch)) {
+        return false;
+    }
+    retained->latch_size = size;
+    (void)memcpy(retained->latch, record, size);
+    retained->latch_checksum = latch_checksum(retained);
+    return true;
+}

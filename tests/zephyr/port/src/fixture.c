@@ -1,0 +1,32 @@
+#include "fixture.h"
+
+#include <zephyr/task_wdt/task_wdt.h>
+
+hal_t hal;
+zephyr_hal_retained_t retained;
+
+bool fixture_begin(void) {
+    static const zephyr_hal_config_t config = {
+        .bitrate = 500000u, .sample_point_permille = 875u, .watchdog_ms = 100u, .retained = &retained};
+    const bool works = zephyr_hal_init(&hal, &config);
+    (void)task_wdt_delete(hal.watchdog_channel); /* nobody feeds it in most tests */
+    return works;
+}
+
+void fixture_before(void *unused) {
+    ARG_UNUSED(unused);
+    fake_parts_reset();
+    (void)fixture_begin();
+}
+
+void fixture_after(void *unused) {
+    ARG_UNUSED(unused);
+    (void)task_wdt_delete(hal.watchdog_channel);
+    k_timer_stop(&hal.timer);
+}
+
+hal_can_status_t fixture_status(void) {
+    hal_can_status_t status;
+    hal_can_status(&hal, HAL_CAN_VEHICLE, &status);
+    return status;
+}

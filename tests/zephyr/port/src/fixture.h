@@ -1,0 +1,28 @@
+/**
+ * @file fixture.h
+ * A port on parts that the tests hold in their hands, new for every test.
+ */
+#ifndef FIXTURE_H
+#define FIXTURE_H
+
+#include <zephyr/ztest.h>
+
+#include "fake_parts.h"
+#include "hal_zephyr/zephyr_hal.h"
+
+extern hal_t hal;
+extern zephyr_hal_retained_t retained;
+
+/** Reset parts and port; every suite's "before". */
+void fixture_before(void *unused);
+
+/** Stop what runs; every suite's "after". */
+void fixture_after(void *unused);
+
+/** Begin the port once more, as after a reset. @return what zephyr_hal_init() says */
+bool fixture_begin(void);
+
+/** Read the vehicle side's status. */
+hal_can_status_t fixture_status(void);
+
+#endif

@@ -1,0 +1,260 @@
+/* The controllers, on can_fake: bus-off, a send that is refused, filters exhausted, and what waits. */
+#include <string.h>
+
+#include "fixture.h"
+
+ZTEST_SUITE(port_can, NULL, NULL, fixture_before, fixture_after, NULL);
+
+static fake_bus_t *const vehicle = &fake_buses[HAL_CAN_VEHICLE];
+
+static bool send(uint32_t id, uint8_t first) {
+    const hal_can_frame_t frame = {.id = id, .length = 8u, .data = {first}};
+    return hal_can_send(&hal, HAL_CAN_VEHICLE, &frame);
+}
+
+static void arrive(hal_can_side_t side, uint32_t id, uint8_t flags) {
+    const struct can_frame frame = {.id = id, .dlc = 8u, .flags = flags, .data = {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u}};
+    fake_bus_frame(side, &frame);
+}
+
+ZTEST(port_can, test_it_starts_as_the_contract_wants_it) {
+    zassert_true(vehicle->started && fake_buses[HAL_CAN_AI].started);
+    zassert_equal(vehicle->mode, CAN_MODE_NORMAL | CAN_MODE_MANUAL_RECOVERY);
+    zassert_equal(vehicle->filters, 2u, "one for 11 bits, one for 29");
+    const struct can_timing *const timing = &vehicle->timing;
+    const uint32_t quanta = 1u + timing->prop_seg + timing->phase_seg1 + timing->phase_seg2;
+    zassert_equal(80000000u / (timing->prescaler * quanta), 500000u);
+    zassert_equal((1u + timing->prop_seg + timing->phase_seg1) * 1000u / quanta, 875u);
+}
+
+ZTEST(port_can, test_without_a_free_filter_it_does_not_begin) {
+    fixture_after(NULL);
+    fake_parts_reset();
+    vehicle->filter_limit = 1u;
+    zassert_false(fixture_begin());
+    zassert_false(vehicle->started);
+    zassert_equal(fixture_status().state, HAL_CAN_BUS_OFF, "who hears nothing takes no part");
+    zassert_true(fake_buses[HAL_CAN_AI].started, "the other side begins");
+}
+
+ZTEST(port_can, test_a_controller_that_recovers_by_itself_is_refused) {
+    fixture_after(NULL);
+    fake_parts_reset();
+    vehicle->able = 0u;
+    zassert_false(fixture_begin());
+}
+
+ZTEST(port_can, test_a_frame_carries_the_time_of_its_arrival) {
+    hal_can_side_t side;
+    hal_can_frame_t frame;
+    k_msleep(5);
+    const uint32_t arrived_ms = hal_clock_now_ms(&hal);
+    arrive(HAL_CAN_VEHICLE, 0x363u, 0u);
+    k_msleep(20);
+    zassert_true(zephyr_hal_receive(&hal, &side, &frame));
+    zassert_within(frame.time_ms, arrived_ms, 1u);
+    zassert_true(frame.time_us < 1000u);
+    zassert_equal(frame.id, 0x363u);
+    zassert_equal(frame.length, 8u);
+    zassert_equal(frame.data[7], 8u);
+    zassert_equal(frame.flags, 0u);
+    zassert_false(zephyr_hal_receive(&hal, &side, &frame));
+}
+
+ZTEST(port_can, test_frames_that_are_rejected_are_handed_over_too) {
+    static const struct can_frame sent[] = {
+        {.id = 0x12345u, .dlc = 8u, .flags = CAN_FRAME_IDE},
+        {.id = 0x363u, .dlc = 8u, .flags = CAN_FRAME_RTR, .data = {1u}},
+        {.id = 0x363u, .dlc = 12u, .flags = CAN_FRAME_FDF, .data = {9u}},
+        {.id = 0x363u, .dlc = 3u, .data = {1u, 2u, 3u, 4u}},
+    };
+    static const hal_can_frame_t wanted[] = {
+        {.id = 0x12345u, .length = 8u, .flags = HAL_CAN_EXTENDED},
+        {.id = 0x363u, .length = 8u, .flags = HAL_CAN_REMOTE},
+        {.id = 0x363u, .length = 24u, .flags = HAL_CAN_FD, .data = {9u}},
+        {.id = 0x363u, .length = 3u, .data = {1u, 2u, 3u}},
+    };
+    for (size_t i = 0u; i < ARRAY_SIZE(sent); i++) {
+        hal_can_side_t side;
+        hal_can_frame_t frame;
+        fake_bus_frame(HAL_CAN_VEHICLE, &sent[i]);
+        zassert_true(zephyr_hal_receive(&hal, &side, &frame));
+        zassert_equal(frame.id, wanted[i].id);
+        zassert_equal(frame.length, wanted[i].length);
+        zassert_equal(frame.flags, wanted[i].flags);
+        zassert_mem_equal(frame.data, wanted[i].data, sizeof frame.data);
+    }
+}
+
+ZTEST(port_can, test_frames_of_both_sides_come_in_the_order_of_their_arrival) {
+    static const hal_can_side_t order[] = {HAL_CAN_AI, HAL_CAN_VEHICLE, HAL_CAN_VEHICLE, HAL_CAN_AI};
+    for (size_t i = 0u; i < ARRAY_SIZE(order); i++) {
+        arrive(order[i], 0x100u + i, 0u);
+        k_msleep(2);
+    }
+    for (size_t i = 0u; i < ARRAY_SIZE(order); i++) {
+        hal_can_side_t side;
+        hal_can_frame_t frame;
+        zassert_true(zephyr_hal_receive(&hal, &side, &frame));
+        zassert_equal(frame.id, 0x100u + i);
+        zassert_equal(side, order[i]);
+    }
+}
+
+ZTEST(port_can, test_a_full_queue_is_an_overrun) {
+    for (uint32_t i = 0u; i < (CONFIG_AGV_CAN_RX_QUEUE + 3u); i++) {
+        arrive(HAL_CAN_VEHICLE, 0x100u, 0u);
+    }
+    zassert_equal(fixture_status().overrun_count, 3u);
+    arrive(HAL_CAN_AI, 0x101u, 0u);
+    zassert_equal(fixture_status().overrun_count, 3u, "a side does not crowd out the other");
+}
+
+ZTEST(port_can, test_the_driver_has_one_frame_and_the_lowest_identifier_goes_next) {
+    zassert_true(send(0x168u, 1u));
+    zassert_true(send(0x43Fu, 2u));
+    zassert_true(send(0x065u, 3u));
+    zassert_true(send(0x43Fu, 4u));
+    zassert_equal(vehicle->sent_count, 1u);
+    static const uint8_t order[] = {1u, 3u, 2u, 4u};
+    for (uint32_t i = 0u; i < ARRAY_SIZE(order); i++) {
+        zassert_equal(vehicle->sent_count, i + 1u);
+        zassert_equal(vehicle->in_mailbox, 1u);
+        zassert_equal(vehicle->sent[i].data[0], order[i]);
+        fake_bus_complete(HAL_CAN_VEHICLE, 0);
+        zephyr_hal_transmit(&hal);
+    }
+    zassert_equal(fixture_status().tx_pending_ms, 0u);
+}
+
+ZTEST(port_can, test_what_the_driver_refuses_the_caller_keeps) {
+    vehicle->send_error = -EAGAIN;
+    zassert_false(send(0x168u, 1u));
+    zassert_equal(fixture_status().tx_pending_ms, 0u);
+    vehicle->send_error = 0;
+    zassert_true(send(0x168u, 2u));
+    zassert_true(send(0x065u, 3u));
+    vehicle->send_error = -EAGAIN;
+    fake_bus_complete(HAL_CAN_VEHICLE, 0);
+    zephyr_hal_transmit(&hal);
+    zassert_equal(vehicle->sent_count, 1u, "it waits on");
+    vehicle->send_error = 0;
+    zephyr_hal_transmit(&hal);
+    zassert_equal(vehicle->sent[1].data[0], 3u);
+}
+
+ZTEST(port_can, test_a_queue_that_is_full_takes_nothing) {
+    for (uint32_t i = 0u; i <= ZEPHYR_HAL_QUEUE_SIZE; i++) {
+        zassert_true(send(0x100u + i, 0u));
+    }
+    zassert_false(send(0x050u, 0u));
+}
+
+ZTEST(port_can, test_only_what_can_be_sent_is_taken) {
+    const hal_can_frame_t extended = {.id = 0x168u, .length = 8u, .flags = HAL_CAN_EXTENDED};
+    const hal_can_frame_t long_id = {.id = 0x800u, .length = 8u};
+    const hal_can_frame_t long_frame = {.id = 0x168u, .length = 9u};
+    zassert_false(hal_can_send(&hal, HAL_CAN_VEHICLE, &extended));
+    zassert_false(hal_can_send(&hal, HAL_CAN_VEHICLE, &long_id));
+    zassert_false(hal_can_send(&hal, HAL_CAN_VEHICLE, &long_frame));
+    zassert_false(hal_can_send(&hal, HAL_CAN_SIDES, &(hal_can_frame_t){.id = 1u}));
+}
+
+ZTEST(port_can, test_after_a_purge_at_most_the_frame_in_the_controller_leaves) {
+    (void)send(0x168u, 1u);
+    (void)send(0x43Fu, 2u);
+    hal_can_purge(&hal, HAL_CAN_VEHICLE);
+    zassert_equal(fixture_status().tx_pending_ms, 0u);
+    zassert_true(send(0x065u, 3u));
+    fake_bus_complete(HAL_CAN_VEHICLE, 0);
+    zephyr_hal_transmit(&hal);
+    zassert_equal(vehicle->sent_count, 2u);
+    zassert_equal(vehicle->sent[1].data[0], 3u);
+}
+
+ZTEST(port_can, test_a_frame_that_does_not_leave_grows_old) {
+    (void)send(0x168u, 1u);
+    zassert_equal(fixture_status().tx_pending_ms, 1u);
+    k_msleep(30);
+    zassert_within(fixture_status().tx_pending_ms, 30u, 1u);
+    (void)send(0x065u, 2u);
+    zassert_within(fixture_status().tx_pending_ms, 30u, 1u, "the oldest counts");
+    fake_bus_complete(HAL_CAN_VEHICLE, 0);
+    zassert_true(fixture_status().tx_pending_ms <= 2u);
+}
+
+static void go_bus_off(void) {
+    fake_bus_state(HAL_CAN_VEHICLE, CAN_STATE_BUS_OFF, true);
+    if (vehicle->in_mailbox > 0u) {
+        fake_bus_complete(HAL_CAN_VEHICLE, -ENETUNREACH);
+    }
+}
+
+ZTEST(port_can, test_in_bus_off_what_waits_is_never_sent) {
+    (void)send(0x168u, 1u);
+    (void)send(0x43Fu, 2u);
+    go_bus_off();
+    zephyr_hal_transmit(&hal);
+    const hal_can_status_t status = fixture_status();
+    zassert_equal(status.state, HAL_CAN_BUS_OFF);
+    zassert_equal(status.bus_off_count, 1u);
+    zassert_equal(status.tx_pending_ms, 0u);
+    zassert_false(send(0x065u, 3u));
+    fake_bus_state(HAL_CAN_VEHICLE, CAN_STATE_ERROR_ACTIVE, false);
+    zassert_equal(fixture_status().state, HAL_CAN_ERROR_ACTIVE);
+    zephyr_hal_transmit(&hal);
+    zassert_equal(vehicle->sent_count, 1u);
+    zassert_true(send(0x065u, 4u));
+    zassert_equal(vehicle->sent[1].data[0], 4u);
+}
+
+ZTEST(port_can, test_recovery_is_on_request_and_in_bus_off_only) {
+    hal_can_recover(&hal, HAL_CAN_VEHICLE);
+    zassert_equal(vehicle->recoveries, 0u);
+    go_bus_off();
+    zassert_equal(vehicle->recoveries, 0u);
+    hal_can_recover(&hal, HAL_CAN_VEHICLE);
+    zassert_equal(vehicle->recoveries, 1u);
+}
+
+ZTEST(port_can, test_a_bus_off_that_is_over_when_somebody_looks_is_counted) {
+    fake_bus_state(HAL_CAN_VEHICLE, CAN_STATE_BUS_OFF, true);
+    fake_bus_state(HAL_CAN_VEHICLE, CAN_STATE_ERROR_ACTIVE, true);
+    const hal_can_status_t status = fixture_status();
+    zassert_equal(status.state, HAL_CAN_ERROR_ACTIVE);
+    zassert_equal(status.bus_off_count, 1u);
+}
+
+ZTEST(port_can, test_a_bus_off_without_an_interrupt_is_counted_once) {
+    fake_bus_state(HAL_CAN_VEHICLE, CAN_STATE_BUS_OFF, false);
+    zassert_equal(fixture_status().bus_off_count, 1u);
+    zassert_equal(fixture_status().bus_off_count, 1u);
+}
+
+ZTEST(port_can, test_error_states) {
+    static const struct {
+        enum can_state is;
+        hal_can_state_t shown;
+    } cases[] = {{CAN_STATE_ERROR_WARNING, HAL_CAN_ERROR_ACTIVE},
+                 {CAN_STATE_ERROR_PASSIVE, HAL_CAN_ERROR_PASSIVE},
+                 {CAN_STATE_ERROR_ACTIVE, HAL_CAN_ERROR_ACTIVE},
+                 {CAN_STATE_STOPPED, HAL_CAN_BUS_OFF}};
+    for (size_t i = 0u; i < ARRAY_SIZE(cases); i++) {
+        fake_bus_state(HAL_CAN_VEHICLE, cases[i].is, false);
+        zassert_equal(fixture_status().state, cases[i].shown);
+    }
+}
+
+ZTEST(port_can, test_the_thread_is_woken_by_a_frame_and_by_each_millisecond_once) {
+    while (k_sem_take(&hal.wake, K_NO_WAIT) == 0) {
+    }
+    arrive(HAL_CAN_VEHICLE, 0x363u, 0u);
+    zassert_equal(k_sem_take(&hal.wake, K_NO_WAIT), 0);
+    k_busy_wait(20000);
+    zassert_equal(k_sem_take(&hal.wake, K_MSEC(1)), 0);
+    uint32_t more = 0u;
+    while (k_sem_take(&hal.wake, K_NO_WAIT) == 0) {
+        more++;
+    }
+    zassert_true(more <= 1u, "20 ms late: no burst of ticks");
+}

@@ -1,0 +1,199 @@
+/* The log in flash, on the flash simulator: what is kept, what is dropped, and a power cut at every write. */
+#include <string.h>
+
+#include <zephyr/stats/stats.h>
+#include <zephyr/storage/flash_map.h>
+
+#include "fixture.h"
+
+enum { RECORD = 108, WRITES_MAX = 40 }; /* as large as an event of the recorder */
+
+static uint32_t *writes_so_far;
+static uint32_t *writes_until_the_cut;
+static uint32_t *bytes_of_the_last;
+static uint32_t *erases_until_the_cut;
+static uint32_t *erases_so_far;
+
+static int find(struct stats_hdr *head, void *unused, const char *name, uint16_t offset) {
+    ARG_UNUSED(unused);
+    uint32_t *const value = (uint32_t *)((uint8_t *)head + offset);
+    if (strcmp(name, "flash_write_calls") == 0) {
+        writes_so_far = value;
+    } else if (strcmp(name, "flash_erase_calls") == 0) {
+        erases_so_far = value;
+    } else if (strcmp(name, "max_write_calls") == 0) {
+        writes_until_the_cut = value;
+    } else if (strcmp(name, "max_erase_calls") == 0) {
+        erases_until_the_cut = value;
+    } else if (strcmp(name, "max_len") == 0) {
+        bytes_of_the_last = value;
+    }
+    return 0;
+}
+
+static void *setup(void) {
+    (void)stats_walk(stats_group_find("flash_sim_stats"), find, NULL);
+    (void)stats_walk(stats_group_find("flash_sim_thresholds"), find, NULL);
+    zassert_not_null(writes_until_the_cut);
+    return NULL;
+}
+
+static void erase_all(void) {
+    const struct flash_area *area = NULL;
+    zassert_ok(flash_area_open(FIXED_PARTITION_ID(storage_partition), &area));
+    zassert_ok(flash_area_flatten(area, 0, area->fa_size));
+    flash_area_close(area);
+}
+
+static void power_is_back(void) {
+    *writes_until_the_cut = 0u;
+    *erases_until_the_cut = 0u;
+    fixture_after(NULL);
+    (void)fixture_begin();
+}
+
+static void before(void *unused) {
+    fixture_before(unused);
+    erase_all();
+    power_is_back();
+}
+
+ZTEST_SUITE(port_log, NULL, setup, before, fixture_after, NULL);
+
+static bool append(uint32_t number) {
+    uint8_t record[RECORD];
+    (void)memset(record, (int)(number & 0xFFu), sizeof record);
+    (void)memcpy(record, &number, sizeof number);
+    return hal_store_append(&hal, record, sizeof record);
+}
+
+/* The number in a record; UINT32_MAX where there is none, or one that is torn. */
+static uint32_t number_at(uint32_t index) {
+    uint8_t record[RECORD] = {0};
+    uint32_t number = UINT32_MAX;
+    if (hal_store_read_record(&hal, index, record, sizeof record) == sizeof record) {
+        (void)memcpy(&number, record, sizeof number);
+        for (size_t i = sizeof number; i < sizeof record; i++) {
+            number = (record[i] == (uint8_t)number) ? number : UINT32_MAX - 1u;
+        }
+    }
+    return number;
+}
+
+static uint32_t count(void) {
+    uint32_t records = 0u;
+    while (number_at(records) != UINT32_MAX) {
+        records++;
+    }
+    return records;
+}
+
+ZTEST(port_log, test_records_come_back_in_order_and_outlive_a_reset) {
+    for (uint32_t i = 0u; i < 20u; i++) {
+        zassert_true(append(i));
+    }
+    power_is_back();
+    for (uint32_t i = 0u; i < 20u; i++) {
+        zassert_equal(number_at(i), i);
+    }
+    zassert_equal(number_at(20u), UINT32_MAX);
+}
+
+ZTEST(port_log, test_records_of_every_size) {
+    uint8_t record[HAL_STORE_RECORD_SIZE_MAX + 1u] = {0};
+    zassert_false(hal_store_append(&hal, record, 0u));
+    zassert_false(hal_store_append(&hal, record, sizeof record));
+    for (size_t size = 1u; size <= HAL_STORE_RECORD_SIZE_MAX; size++) {
+        uint8_t read[HAL_STORE_RECORD_SIZE_MAX] = {0};
+        (void)memset(record, (int)size, size);
+        zassert_true(hal_store_append(&hal, record, size));
+        uint32_t index = 0u;
+        while (hal_store_read_record(&hal, index + 1u, read, sizeof read) != 0u) {
+            index++;
+        }
+        zassert_equal(hal_store_read_record(&hal, index, read, sizeof read), size);
+        zassert_mem_equal(read, record, size);
+    }
+}
+
+ZTEST(port_log, test_when_it_is_full_the_oldest_are_dropped) {
+    uint32_t kept = 0u;
+    for (uint32_t i = 0u; i < 500u; i++) {
+        zassert_true(append(i));
+    }
+    kept = count();
+    zassert_true(kept > 20u, "%u", kept);
+    for (uint32_t i = 0u; i < kept; i++) {
+        zassert_equal(number_at(i), 500u - kept + i);
+    }
+}
+
+/* Whether what is stored are numbers that follow each other, up to the last that was stored for sure. */
+static void assert_all_but_the_torn_one(uint32_t appended, const char *where, uint32_t writes, uint32_t bytes) {
+    const uint32_t kept = count();
+    uint32_t last = (kept > 0u) ? number_at(kept - 1u) : UINT32_MAX;
+    zassert_true(kept > 0u, "%s: nothing is left after %u writes and %u bytes", where, writes, bytes);
+    zassert_true((last == appended) || (last == (appended - 1u)), "%s: the last is %u of %u after %u writes, %u bytes",
+                 where, last, appended, writes, bytes);
+    for (uint32_t i = 0u; i < kept; i++) {
+        zassert_equal(number_at(i), last + 1u - kept + i, "%s: a gap after %u writes, %u bytes", where, writes, bytes);
+    }
+}
+
+/* Cut the power in the nth write from now, after some of its bytes, while one record is appended to `before` others. */
+static void cut(uint32_t others, uint32_t nth, uint32_t bytes, const char *where) {
+    erase_all();
+    power_is_back();
+    for (uint32_t i = 0u; i < others; i++) {
+        zassert_true(append(i));
+    }
+    *writes_until_the_cut = *writes_so_far + nth;
+    *bytes_of_the_last = bytes;
+    (void)append(others);
+    power_is_back();
+    assert_all_but_the_torn_one(others, where, nth, bytes);
+    zassert_true(append(others + 1u), "%s: it goes on", where);
+    power_is_back();
+    const uint32_t kept = count();
+    zassert_equal(number_at(kept - 1u), others + 1u, "%s: and finds what was stored after the cut", where);
+}
+
+ZTEST(port_log, test_a_power_cut_at_every_byte_of_an_append_loses_at_most_this_record) {
+    for (uint32_t nth = 1u; nth <= 4u; nth++) {
+        for (uint32_t bytes = 0u; bytes <= RECORD; bytes += (bytes < 10u) ? 1u : 14u) {
+            cut(5u, nth, bytes, "an append");
+        }
+    }
+}
+
+/* How many records fit before a sector is begun, or the oldest one erased: both have writes of their own. */
+static uint32_t records_until(uint32_t writes_of_an_append, uint32_t erases) {
+    const uint32_t erased = *erases_so_far;
+    for (uint32_t i = 0u; i < 1000u; i++) {
+        const uint32_t written = *writes_so_far;
+        zassert_true(append(i));
+        if (((*writes_so_far - written) > writes_of_an_append) && ((*erases_so_far - erased) >= erases)) {
+            return i;
+        }
+    }
+    zassert_unreachable("no sector was begun");
+    return 0u;
+}
+
+ZTEST(port_log, test_a_power_cut_while_a_sector_is_begun) {
+    const uint32_t others = records_until(3u, 0u);
+    for (uint32_t nth = 1u; nth <= 5u; nth++) {
+        for (uint32_t bytes = 0u; bytes <= 9u; bytes++) {
+            cut(others, nth, bytes, "a sector is begun");
+        }
+    }
+}
+
+ZTEST(port_log, test_a_power_cut_while_the_oldest_sector_is_dropped) {
+    const uint32_t others = records_until(3u, 1u);
+    for (uint32_t nth = 1u; nth <= 5u; nth++) {
+        for (uint32_t bytes = 0u; bytes <= 9u; bytes += 3u) {
+            cut(others, nth, bytes, "the oldest sector is dropped");
+        }
+    }
+}

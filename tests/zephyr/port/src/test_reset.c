@@ -1,0 +1,146 @@
+/* Reset causes, latch, watchdog, pins, and the settings that were chosen. */
+#include <string.h>
+
+#include <zephyr/drivers/hwinfo.h>
+
+#include "agv/config.h"
+#include "fixture.h"
+#include "kconfig.h"
+#include "zephyr_hal_internal.h"
+
+ZTEST_SUITE(port_reset, NULL, NULL, fixture_before, fixture_after, NULL);
+
+static hal_reset_cause_t cause_after(uint32_t flags) {
+    fixture_after(NULL);
+    fake_reset_flags = flags;
+    (void)fixture_begin();
+    return hal_reset_cause(&hal);
+}
+
+ZTEST(port_reset, test_only_a_sure_power_on_is_one) {
+    static const struct {
+        uint32_t flags;
+        hal_reset_cause_t cause;
+    } cases[] = {
+        {RESET_POR, HAL_RESET_POWER_ON},
+        {RESET_POR | RESET_BROWNOUT | RESET_PIN, HAL_RESET_POWER_ON},
+        {RESET_POR | RESET_WATCHDOG, HAL_RESET_WATCHDOG},
+        {RESET_POR | RESET_SOFTWARE, HAL_RESET_SOFTWARE},
+        {RESET_POR | RESET_LOW_POWER_WAKE, HAL_RESET_UNKNOWN},
+        {RESET_BROWNOUT | RESET_PIN, HAL_RESET_BROWN_OUT},
+        {RESET_WATCHDOG | RESET_PIN, HAL_RESET_WATCHDOG},
+        {RESET_CPU_LOCKUP, HAL_RESET_LOCK_UP},
+        {RESET_SOFTWARE | RESET_PIN, HAL_RESET_SOFTWARE},
+        {RESET_PIN, HAL_RESET_UNKNOWN},
+        {0u, HAL_RESET_UNKNOWN},
+    };
+    for (size_t i = 0u; i < ARRAY_SIZE(cases); i++) {
+        zassert_equal(cause_after(cases[i].flags), cases[i].cause, "case %u", (unsigned)i);
+    }
+}
+
+ZTEST(port_reset, test_the_flags_are_read_once_and_cleared) {
+    fake_reset_reads = 0u;
+    fake_reset_clears = 0u;
+    zassert_equal(cause_after(RESET_WATCHDOG), HAL_RESET_WATCHDOG);
+    zassert_equal(hal_reset_cause(&hal), HAL_RESET_WATCHDOG);
+    zassert_equal(fake_reset_reads, 1u);
+    zassert_equal(fake_reset_clears, 1u);
+}
+
+ZTEST(port_reset, test_without_flags_the_cause_is_unknown) {
+    fake_reset_error = -ENOSYS;
+    zassert_equal(cause_after(RESET_POR), HAL_RESET_UNKNOWN);
+}
+
+ZTEST(port_reset, test_a_reset_of_the_port_itself_says_why_and_once) {
+    zephyr_reset_note(HAL_RESET_WATCHDOG);
+    zassert_equal(cause_after(RESET_SOFTWARE), HAL_RESET_WATCHDOG);
+    zassert_equal(cause_after(RESET_SOFTWARE), HAL_RESET_SOFTWARE);
+    zephyr_reset_note(HAL_RESET_LOCK_UP);
+    zassert_equal(cause_after(RESET_SOFTWARE), HAL_RESET_LOCK_UP);
+    zephyr_reset_note(HAL_RESET_POWER_ON);
+    zassert_equal(cause_after(RESET_SOFTWARE), HAL_RESET_SOFTWARE, "a note never makes a power-on");
+}
+
+ZTEST(port_reset, test_the_latch_outlives_a_reset) {
+    static const uint8_t record[] = {1u, 2u, 3u, 4u, 5u};
+    uint8_t read[HAL_STORE_LATCH_SIZE_MAX] = {0};
+    zassert_true(hal_store_write_latch(&hal, record, sizeof record));
+    (void)cause_after(RESET_WATCHDOG);
+    zassert_equal(hal_store_read_latch(&hal, read, sizeof read), sizeof record);
+    zassert_mem_equal(read, record, sizeof record);
+    zassert_equal(hal_store_read_latch(&hal, read, 2u), sizeof record);
+    zassert_false(hal_store_write_latch(&hal, record, 0u));
+    zassert_false(hal_store_write_latch(&hal, read, HAL_STORE_LATCH_SIZE_MAX + 1u));
+}
+
+ZTEST(port_reset, test_each_flipped_bit_of_the_latch_is_seen) {
+    static const uint8_t record[8] = {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u};
+    uint8_t read[HAL_STORE_LATCH_SIZE_MAX];
+    for (size_t bit = 0u; bit < (offsetof(zephyr_hal_retained_t, note) * 8u); bit++) {
+        zassert_true(hal_store_write_latch(&hal, record, sizeof record));
+        ((uint8_t *)&retained)[bit / 8u] ^= (uint8_t)(1u << (bit % 8u));
+        hal.reset_cause = HAL_RESET_POWER_ON;
+        zassert_equal(hal_store_read_latch(&hal, read, sizeof read), 0u, "power-on: nothing is stored");
+        hal.reset_cause = HAL_RESET_WATCHDOG;
+        zassert_equal(hal_store_read_latch(&hal, read, sizeof read), HAL_STORE_LATCH_SIZE_MAX,
+                      "a reset: of no size that anybody wrote");
+    }
+}
+
+ZTEST(port_reset, test_nothing_but_the_core_feeds_the_watchdog) {
+    zassert_true(fake_watchdog_started);
+    zassert_equal(fake_watchdog_ms, 120u);
+    zassert_true(zephyr_watchdog_start(&hal, 100u));
+    const uint32_t before = fake_watchdog_feeds;
+    k_msleep(90);
+    zassert_equal(fake_watchdog_feeds, before);
+    hal_watchdog_feed(&hal);
+    zassert_equal(fake_watchdog_feeds, before + 1u);
+    k_msleep(90);
+    zassert_equal(fake_watchdog_feeds, before + 1u);
+}
+
+ZTEST(port_reset, test_the_pins) {
+    zassert_true(zephyr_hal_output_is_open());
+    hal_safety_output_set(&hal, true);
+    zassert_true(fake_output_is_closed());
+    zassert_false(zephyr_hal_output_is_open());
+    zephyr_output_open_now();
+    zassert_false(fake_output_is_closed());
+    hal_led_set(&hal, true);
+    zassert_true(fake_led_is_on());
+    hal_led_set(&hal, false);
+    zassert_false(fake_led_is_on());
+}
+
+ZTEST(port_reset, test_an_output_that_reads_closed_at_the_start_fails_the_self_test) {
+    hal_safety_output_set(&hal, true);
+    fixture_after(NULL);
+    zassert_false(fixture_begin());
+    zephyr_output_open_now();
+    fixture_after(NULL);
+    fake_parts_reset();
+    zassert_true(fixture_begin());
+}
+
+ZTEST(port_reset, test_the_settings_of_the_build_make_sense) {
+    agv_config_t config;
+    kconfig_read(&config);
+    zassert_equal(agv_config_check(&config).problem, AGV_CONFIG_OK);
+    zassert_equal(config.topology, AGV_TOPOLOGY_GATEWAY);
+    agv_config_t defaults;
+    agv_config_defaults(&defaults);
+    defaults.topology = AGV_TOPOLOGY_GATEWAY;
+    zassert_equal(agv_config_checksum(&config), agv_config_checksum(&defaults));
+}
+
+ZTEST(port_reset, test_the_build_knows_the_identifiers_of_the_protocol) {
+    agv_config_t config;
+    kconfig_read(&config);
+    for (uint32_t id = 0u; id <= 0x7FFu; id++) {
+        config.status_frame_id = (uint16_t)id;
+        zassert_equal(agv_config_check(&config).problem == AGV_CONFIG_ID_TWICE, KCONFIG_ID_IS_TAKEN(id), "%03x", id);
+    }
+}
