@@ -9,7 +9,16 @@
 
 enum { SIGNALS = 0, GEAR = 1, THROTTLE = 2, STEERING = 3 };
 enum { VEHICLE = 0, GEAR_STATUS, THROTTLE_STATUS, STEERING_STATUS, EPS_STATUS, POSITION, WHEELS };
-enum { HEARTBEAT_MS = 50, STATUS_MS = 60, GEAR_STATUS_MS = 125, RESET_MS = 1000, CONFIRM_MS = 500, SLOW_MM_S = 50 };
+/* STEP_MS: so late a tick may be, and only ticks look at deadlines; a later one is a trip cause itself (TIM-4). */
+enum {
+    HEARTBEAT_MS = 50,
+    STEP_MS = 101,
+    STATUS_MS = 60,
+    GEAR_STATUS_MS = 125,
+    RESET_MS = 1000,
+    CONFIRM_MS = 500,
+    SLOW_MM_S = 50
+};
 enum { CYCLE_MS = 100, OVERRIDE_GAP_MS = 5 };
 
 __attribute__((format(printf, 2, 3))) static void broken(rules_t *rules, const char *format, ...) {
@@ -71,7 +80,6 @@ void rules_init(rules_t *rules, const agv_config_t *config) {
 
 /* Nothing of before counts, but for what was judged. */
 static void forget(rules_t *rules, uint64_t now_ms) {
-    rules->ticked_ms = now_ms;
     rules->vcu = (rules_beat_t){.changed_ms = now_ms};
     rules->eps = (rules_beat_t){.changed_ms = now_ms};
     for (int i = 0; i < RULES_STATUS; i++) {
@@ -374,9 +382,8 @@ static void judge_reset(rules_t *rules) {
         missing = "manual for a second";
     } else if (age_ms(rules, rules->fast_ms) < RESET_MS) {
         missing = "standstill for a second";
-    } else if ((rules->ticked_ms > rules->vcu.changed_ms + HEARTBEAT_MS) ||
-               (rules->ticked_ms > rules->eps.changed_ms + HEARTBEAT_MS)) {
-        /* of the last tick: only ticks look at deadlines */
+    } else if ((age_ms(rules, rules->vcu.changed_ms) > HEARTBEAT_MS + STEP_MS) ||
+               (age_ms(rules, rules->eps.changed_ms) > HEARTBEAT_MS + STEP_MS)) {
         missing = "a VCU and an EPS that are alive";
     } else {
         return;
@@ -461,9 +468,6 @@ static void judge_sending(rules_t *rules, const rules_seen_t *seen, uint64_t tic
 
 void rules_returned(rules_t *rules, const rules_seen_t *seen, bool tick, uint64_t tick_gap_ms) {
     rules->calls++;
-    if (tick) {
-        rules->ticked_ms = rules->now_ms;
-    }
     judge_state(rules, seen);
     judge_output(rules, seen, tick);
     if (tick && is_supervising(seen->state)) {

@@ -55,8 +55,7 @@ typedef struct {
     uint8_t throttle_max;
 
     uint64_t now_ms;
-    uint64_t ticked_ms; /* the last tick */
-    rules_seen_t last;  /* what was seen after the call before */
+    rules_seen_t last; /* what was seen after the call before */
     rules_bus_t bus;
 
     rules_beat_t vcu;

@@ -142,6 +142,35 @@ void test_after_a_second_it_can_be_reset(void) {
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
+/* No tick after T. Frames of up to T + 101 change nothing, the next one tells of it: T + 110 at the latest. */
+/* Shows: TIM-4, STEP_OVERRUN */
+void test_a_late_step_is_told_by_the_next_frame_too(void) {
+    fixture_standby(&f);
+    f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF;
+    fixture_run_without_ticks(&f, 101);
+    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_run_without_ticks(&f, 10);
+    expect_state(&f, AGV_STATE_SAFE); /* it stands in P and in manual already */
+    expect_reason(&f, AGV_FAULT_STEP_OVERRUN);
+}
+
+/* Only ticks judge deadlines: so nobody has noticed that the VCU is silent when the second of the press is over. */
+/* Shows: TIM-4, FSM-3, FSM-4 */
+void test_no_reset_is_accepted_while_steps_stay_away(void) {
+    fixture_standby(&f);
+    step_late_by(500);
+    fixture_run(&f, 1200);
+    expect_state(&f, AGV_STATE_SAFE);
+    fixture_button(&f, true);
+    fixture_run(&f, 500);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].muted = true;
+    fixture_run_without_ticks(&f, 1500);
+    expect_state(&f, AGV_STATE_SAFE);
+    fixture_run(&f, 1);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_fault(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, true);
+}
+
 /* ---- A backlog does not look fresh ---- */
 
 static bool hold_back(fixture_t *fixture, agv_message_t message, hal_can_frame_t *frame) {
