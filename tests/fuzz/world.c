@@ -38,8 +38,15 @@ static const agv_state_t STATES[WORLD_STATES] = {AGV_STATE_INIT, AGV_STATE_STAND
 
 /* ---- Judging ---- */
 
+void (*world_on_broken)(void);
+
 void world_judge(void) {
-    if (world.rules.broken[0] != '\0') {
+    if (world.rules.broken[0] == '\0') {
+        return;
+    }
+    if (world_on_broken != NULL) {
+        world_on_broken();
+    } else {
         (void)fprintf(stderr, "broken rule after %u ms: %s\n", (unsigned)world.now_ms, world.rules.broken);
         abort();
     }
@@ -57,6 +64,7 @@ static rules_seen_t look(void) {
 static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
     (void)ctx;
     rules_sent(&world.rules, side, frame, agv_supervisor_state(&world.supervisor));
+    world_judge();
 }
 
 /* A controller that was in trouble is not judged before the supervisor has had ticks to see that it is over. */

@@ -78,7 +78,8 @@ void world_gear(uint8_t gear);
 void world_wheels(uint8_t mm_s);
 void world_heal(void);
 
-/* End the program when a rule was broken. */
+/* End the program when a rule was broken, or do this instead, once it is set. */
 void world_judge(void);
+extern void (*world_on_broken)(void);
 
 #endif

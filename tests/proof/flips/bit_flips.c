@@ -1,0 +1,333 @@
+/*
+ * Each single bit of a supervisor's memory flipped, one at a time, at moments of each state (INT-5), between two calls of
+ * it: never a frame that FSM-6 forbids, never a latch undone but by a reset under its conditions, and what is found is
+ * latched for good with the output open. rules.h judges, which shares nothing with the gate.
+ *
+ * usage: bit_flips [--shard I/N] [--every N]     the moments of one shard, the N-th bits only
+ */
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "agv/names.h"
+#include "world.h"
+
+enum { BITS = 8 * sizeof(agv_supervisor_t), SEALED_BITS = 8 * offsetof(agv_supervisor_t, receive_alive) };
+enum { SHORT_MS = 40, LONG_MS = 1300, LONG_EVERY = 61 };
+enum { MANUAL = 0x40, ENGAGED = 0x80, DRIVE = 1, PARK = 8 };
+enum { SIGNALS = 0, GEAR = 1, THROTTLE = 2, STEERING = 3, VEHICLE = 4, THROTTLE_STATUS = 6 };
+
+/* ---- A moment, to come back to; not what is in the log and the recorder, which decide nothing ---- */
+
+typedef struct {
+    agv_supervisor_t supervisor;
+    struct hal hal;
+    rules_t rules;
+    world_message_t traffic[WORLD_MESSAGES];
+    uint8_t store[offsetof(sim_store_t, log)];
+    uint8_t recorder[offsetof(agv_recorder_t, events)];
+    uint64_t now_ms;
+    uint64_t ticked_ms;
+    uint32_t unsettled;
+} moment_t;
+
+static moment_t moment;
+
+static void save(void) {
+    moment.supervisor = world.supervisor;
+    moment.hal = world.hal;
+    moment.rules = world.rules;
+    memcpy(moment.traffic, world.traffic, sizeof moment.traffic);
+    memcpy(moment.store, &world.store, sizeof moment.store);
+    memcpy(moment.recorder, &world.recorder, sizeof moment.recorder);
+    moment.now_ms = world.now_ms;
+    moment.ticked_ms = world.ticked_ms;
+    moment.unsettled = world.unsettled;
+}
+
+static void restore(void) {
+    world.supervisor = moment.supervisor;
+    world.hal = moment.hal;
+    world.rules = moment.rules;
+    memcpy(world.traffic, moment.traffic, sizeof moment.traffic);
+    memcpy(&world.store, moment.store, sizeof moment.store);
+    memcpy(&world.recorder, moment.recorder, sizeof moment.recorder);
+    world.now_ms = moment.now_ms;
+    world.ticked_ms = moment.ticked_ms;
+    world.unsettled = moment.unsettled;
+}
+
+/* ---- What is judged ---- */
+
+static struct {
+    uint64_t moments;
+    uint64_t flips;
+    uint64_t detected;
+    uint64_t harmless;
+    uint64_t late; /* of the detected ones: not in the first millisecond */
+    uint64_t frames;
+    uint64_t resets; /* by a button, under all conditions */
+    uint64_t harms;
+    uint64_t moments_of[WORLD_STATES];
+    uint64_t latched_flips;
+} sum;
+
+/* What may come of a supervisor that found itself corrupt and began anew with built-in constants (FSM-9). */
+static struct {
+    const char *text;
+    uint64_t seen;
+} borne[] = {
+    {"INT-5: memory was found corrupt", 0},
+    {"INT-4: the gate had to refuse", 0}, /* the counter of it is flipped */
+    {"FSM-8: the own alive counter", 0},
+    {"TOP-4: ", 0}, /* shadow is off in the built-in constants */
+};
+
+static char harm[240];
+static const char *situation;
+
+static void note_harm(const char *what) {
+    if (harm[0] == '\0') {
+        (void)snprintf(harm, sizeof harm, "%s", what);
+    }
+}
+
+static void on_broken(void) {
+    bool is_borne = false;
+    for (unsigned i = 0; i < sizeof borne / sizeof borne[0]; i++) {
+        if (strncmp(world.rules.broken, borne[i].text, strlen(borne[i].text)) == 0) {
+            borne[i].seen++;
+            is_borne = true;
+        }
+    }
+    if (!is_borne) {
+        note_harm(world.rules.broken);
+    }
+    world.rules.broken[0] = '\0';
+}
+
+static bool is_found(void) {
+    return (agv_supervisor_active_faults(&world.supervisor) & agv_fault_bit(AGV_FAULT_MEMORY_CORRUPTED)) != 0u;
+}
+
+static bool is_latched(void) {
+    const agv_state_t state = agv_supervisor_state(&world.supervisor);
+    return (state != AGV_STATE_INIT) && (state != AGV_STATE_STANDBY) && (state != AGV_STATE_ACTIVE);
+}
+
+/* FSM-9: only a power-on ends it. */
+static void judge_found(void) {
+    if (!is_latched()) {
+        note_harm("found corrupt, and not latched");
+    }
+    if (world.hal.safety_output.on) {
+        note_harm("found corrupt, and the safety output is closed");
+    }
+}
+
+/* The vehicle obeys and the operator presses the button: all that a reset needs, if there is one to be had. */
+static void ask_for_reset(void) {
+    world_mode(MANUAL);
+    world_gear(PARK);
+    world_wheels(0);
+    world.traffic[THROTTLE_STATUS].data[0] = 0;
+    world_button(true);
+}
+
+static void run_found(uint32_t ms) {
+    for (uint32_t i = 0; (i < ms) && (harm[0] == '\0'); i++) {
+        world_run(1);
+        judge_found();
+    }
+}
+
+static void follow(unsigned bit) {
+    const bool for_long = (bit % (unsigned)LONG_EVERY) == (unsigned)(sum.moments % (unsigned)LONG_EVERY);
+    world_run(1);
+    if (!is_found()) {
+        world_run(SHORT_MS);
+        sum.late += is_found() ? 1u : 0u;
+    }
+    if (is_found()) {
+        sum.detected++;
+        run_found(SHORT_MS);
+        if (for_long) {
+            ask_for_reset();
+            run_found(LONG_MS);
+        }
+        return;
+    }
+    sum.harmless++;
+    world_run(LONG_MS);
+}
+
+static void flip(unsigned bit) {
+    ((uint8_t *)&world.supervisor)[bit / 8u] ^= (uint8_t)(1u << (bit % 8u));
+    harm[0] = '\0';
+    sum.flips++;
+    sum.latched_flips += is_latched() ? 1u : 0u;
+    follow(bit);
+    sum.frames += world.rules.sent - moment.rules.sent;
+    sum.resets += world.rules.resets - moment.rules.resets;
+    if (harm[0] != '\0') {
+        sum.harms++;
+        if (sum.harms <= 20u) {
+            (void)printf("HARM: %s, byte %u bit %u of %u bytes, after %u ms: %s\n", situation, bit / 8u, bit % 8u,
+                         (unsigned)sizeof(agv_supervisor_t), (unsigned)(world.now_ms - moment.now_ms), harm);
+        }
+    }
+}
+
+/* ---- Moments ---- */
+
+static unsigned shard;
+static unsigned shards = 1;
+static unsigned every = 1;
+static unsigned moment_number;
+
+static void flip_each_bit(const char *name, unsigned variant, unsigned state) {
+    static char text[120];
+    if (moment_number++ % shards != shard) {
+        return;
+    }
+    (void)snprintf(text, sizeof text, "variant %u, state %u, %s", variant, state, name);
+    situation = text;
+    save();
+    for (unsigned bit = (unsigned)(sum.moments % every); bit < (unsigned)BITS; bit += every) {
+        restore();
+        flip(bit);
+    }
+    restore();
+    sum.moments++;
+    sum.moments_of[state]++;
+}
+
+/* An AI computer that drives, whatever the state: what a supervisor has to hold back. */
+static void drive_on(void) {
+    world.traffic[SIGNALS].data[4] = 0x80;
+    world.traffic[GEAR].data[0] = DRIVE;
+    world.traffic[THROTTLE].data[0] = 100;
+    world.traffic[STEERING].data[0] = 0x64;
+}
+
+static void load(unsigned variant, unsigned state) {
+    world_load(variant, state);
+    drive_on();
+    world_run(30);
+}
+
+/* Between the same two frames of their cycles, some before a frame, some before a tick only. */
+static void quiet_moments(unsigned variant, unsigned state) {
+    static const unsigned STEPS_MS[] = {0, 1, 2, 5, 19, 41};
+    load(variant, state);
+    for (unsigned i = 0; i < sizeof STEPS_MS / sizeof STEPS_MS[0]; i++) {
+        world_run(STEPS_MS[i]);
+        flip_each_bit("in its traffic", variant, state);
+    }
+}
+
+static void foreign_gear(void) {
+    world_frame(HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .length = 8, .data = {DRIVE}}, 0);
+}
+
+static void waiting_moments(unsigned variant, unsigned state) {
+    load(variant, state);
+    world_disturb(HAL_CAN_VEHICLE, 1, 1);
+    world_run(40);
+    flip_each_bit("frames wait for a full queue", variant, state);
+    world_disturb(HAL_CAN_VEHICLE, 1, 0);
+    world_run(5);
+    foreign_gear();
+    foreign_gear();
+    flip_each_bit("an answer waits", variant, state);
+}
+
+static void bus_off_moment(unsigned variant, unsigned state) {
+    load(variant, state);
+    world_disturb(HAL_CAN_VEHICLE, 0, 2);
+    world_run(50);
+    flip_each_bit("in bus-off", variant, state);
+}
+
+static void pressed_moment(unsigned variant) {
+    load(variant, 4);
+    ask_for_reset();
+    world_run(700);
+    flip_each_bit("the button is held for 0.7 s", variant, 4);
+}
+
+static void restarted_moment(unsigned variant, unsigned state) {
+    load(variant, state);
+    world_restart(HAL_RESET_WATCHDOG);
+    world_run(30);
+    flip_each_bit("after the watchdog has bitten", variant, 3);
+}
+
+/* Pressed since before the trip: only a flipped bit could make a press of it. */
+static void old_press_moment(unsigned variant) {
+    load(variant, 2);
+    world_button(true);
+    world_run(50);
+    world.traffic[VEHICLE].data[4] = 0x80;
+    world_run(20);
+    world.traffic[VEHICLE].data[4] = 0;
+    world_mode(MANUAL);
+    world_gear(PARK);
+    world_wheels(0);
+    world_run(900);
+    flip_each_bit("the button is held since before the trip", variant, 4);
+}
+
+static void all_moments(void) {
+    for (unsigned variant = 0; variant < (unsigned)WORLD_VARIANTS; variant++) {
+        for (unsigned state = 0; state < (unsigned)WORLD_STATES; state++) {
+            quiet_moments(variant, state);
+        }
+        waiting_moments(variant, 3);
+        bus_off_moment(variant, 3);
+        pressed_moment(variant);
+        restarted_moment(variant, 4);
+        old_press_moment(variant);
+    }
+}
+
+/* ---- */
+
+static void read_options(int argc, char **argv) {
+    for (int i = 1; i + 1 < argc; i += 2) {
+        if (strcmp(argv[i], "--shard") == 0) {
+            char *end = NULL;
+            shard = (unsigned)strtoul(argv[i + 1], &end, 10);
+            shards = (*end == '/') ? (unsigned)strtoul(end + 1, NULL, 10) : 0u;
+        } else if (strcmp(argv[i], "--every") == 0) {
+            every = (unsigned)strtoul(argv[i + 1], NULL, 10);
+        } else {
+            shards = 0;
+        }
+    }
+    if (((argc % 2) == 0) || (shards == 0u) || (shard >= shards) || (every == 0u)) {
+        (void)fprintf(stderr, "usage: bit_flips [--shard I/N] [--every N]     I from 0\n");
+        exit(2);
+    }
+}
+
+int main(int argc, char **argv) {
+    read_options(argc, argv);
+    world_on_broken = on_broken;
+    all_moments();
+    (void)printf("moments: %llu INIT, %llu STANDBY, %llu ACTIVE, %llu TRIPPED, %llu SAFE; %u of %u bits are sealed\n",
+                 (unsigned long long)sum.moments_of[0], (unsigned long long)sum.moments_of[1],
+                 (unsigned long long)sum.moments_of[2], (unsigned long long)sum.moments_of[3],
+                 (unsigned long long)sum.moments_of[4], (unsigned)SEALED_BITS, (unsigned)BITS);
+    for (unsigned i = 0; i < sizeof borne / sizeof borne[0]; i++) {
+        (void)printf("afterwards, as it may be: %s... %llu times\n", borne[i].text, (unsigned long long)borne[i].seen);
+    }
+    (void)printf("%llu frames judged, %llu flips in a latched state, %llu resets by the button, %llu detected late\n",
+                 (unsigned long long)sum.frames, (unsigned long long)sum.latched_flips, (unsigned long long)sum.resets,
+                 (unsigned long long)sum.late);
+    (void)printf("%u bits at %llu moments: %llu flips, %llu detected, %llu harmless, forbidden: %llu\n", (unsigned)BITS,
+                 (unsigned long long)sum.moments, (unsigned long long)sum.flips, (unsigned long long)sum.detected,
+                 (unsigned long long)sum.harmless, (unsigned long long)sum.harms);
+    return ((sum.harms == 0u) && (sum.moments > 0u)) ? 0 : 1;
+}
