@@ -532,3 +532,14 @@ void test_a_button_that_is_held_over_a_restart_resets_nothing(void) {
     press(true);
     expect_reset_after(1000);
 }
+
+/* Shows: FSM-3, INT-3 */
+void test_the_event_of_the_reset_names_no_fault(void) {
+    agv_event_t event = {0};
+    walk_to_safe(&f);
+    press(true);
+    expect_reset_after(1000);
+    TEST_ASSERT_EQUAL_UINT32(1, walk_events(&f, AGV_EVENT_STATE, AGV_STATE_SAFE, &event));
+    TEST_ASSERT_EQUAL_HEX8(AGV_STATE_STANDBY, event.b);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_NONE, event.c);
+}

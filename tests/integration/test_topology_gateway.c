@@ -440,3 +440,19 @@ void test_what_waits_when_the_autopilot_is_disengaged_is_dropped(void) {
     TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->gate_refused);
     expect_state(&f, AGV_STATE_STANDBY);
 }
+
+/* In STANDBY a 43Fh without "autopilot off" waits for a queue that is full; then comes a trip. */
+/* Shows: TOP-2, FSM-2, FSM-6 */
+void test_what_waits_at_a_trip_in_manual_is_dropped(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    fixture_standby(&f);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    fixture_run_past(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
+    fixture_mute_ai(&f, true);
+    walk_trip(&f);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    fixture_run(&f, 20);
+    TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->gate_refused);
+    expect_fault(&f, AGV_FAULT_TX_GATE_REFUSED, false);
+    TEST_ASSERT_EQUAL_HEX8(0x70, fixture_nth_sent(&f, 0x43F, 0)->data[4]);
+}
