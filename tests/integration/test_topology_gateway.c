@@ -233,6 +233,22 @@ void test_the_slew_rate_starts_from_the_measured_angle(void) {
     expect_steering(9000, 9275);
 }
 
+/* And so does the first one of the next engagement, wherever the last one of this one was. */
+/* Shows: TOP-2 */
+void test_the_slew_rate_starts_anew_with_every_engagement(void) {
+    f.config.steering_slew_ddeg_s = 1000;
+    fixture_active(&f);
+    fixture_mute_ai(&f, true);
+    expect_steering(9000, 9000);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_angle(&f, 9300);
+    fixture_run(&f, 50);
+    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_steering(9000, 9275);
+}
+
 /* 2.0 degrees a second are half a count in 25 ms: one count every 50 ms. */
 /* Shows: TOP-2 */
 void test_a_slow_slew_rate_adds_up(void) {
