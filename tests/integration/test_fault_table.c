@@ -194,3 +194,22 @@ void test_the_led_shows_the_highest(void) {
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     expect_led(&f, 8);
 }
+
+/* A warning counts when it is raised; its end does not, nor does a trip, raised or ended. */
+/* Shows: VCU_LEVEL2_ALARM, S_DRIVER_ALARM */
+void test_warnings_are_counted(void) {
+    fixture_standby(&f);
+    const uint32_t before = agv_supervisor_counters(&f.supervisor)->warnings;
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 1;
+    fixture_run(&f, 20);
+    TEST_ASSERT_EQUAL_UINT32(before + 1, agv_supervisor_counters(&f.supervisor)->warnings);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 0;
+    fixture_run(&f, 20);
+    TEST_ASSERT_EQUAL_UINT32(before + 1, agv_supervisor_counters(&f.supervisor)->warnings);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x80;
+    fixture_run(&f, 20);
+    expect_fault(&f, AGV_FAULT_S_DRIVER_ALARM, true);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0;
+    fixture_run(&f, 20);
+    TEST_ASSERT_EQUAL_UINT32(before + 1, agv_supervisor_counters(&f.supervisor)->warnings);
+}

@@ -212,6 +212,17 @@ void test_a_trip_in_manual_driving_holds_nothing(void) {
     expect_held_for_a_second(9300); /* of the moment of the trip */
 }
 
+/* Shows: FSM-10, FSM-3 */
+void test_a_press_in_vain_leaves_the_held_angle(void) {
+    uint8_t missing = 0;
+    trip_at(9123);
+    fixture_angle(&f, 8700);
+    fixture_button(&f, true);
+    fixture_run(&f, 1100);
+    TEST_ASSERT_EQUAL_UINT32(1, walk_refusals(&f, &missing));
+    expect_held_for_a_second(9123);
+}
+
 /* ---- After a restart ---- */
 
 /* Shows: FSM-10, FSM-7 */

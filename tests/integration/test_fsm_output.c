@@ -218,11 +218,12 @@ void test_a_second_trip_has_its_own_500_ms(void) {
     expect_output(&f, false);
 }
 
-/* After a restart in P, with the autopilot still engaged: the 500 ms count from the start. */
+/* After a restart while driving engaged, when P has to wait for standstill: the 500 ms count from the start. */
 /* Shows: FSM-4, FSM-7, SAFE_STATE_UNCONFIRMED */
 void test_after_a_restart_autopilot_off_is_awaited_from_the_start(void) {
+    f.config.park = AGV_PARK_AT_STANDSTILL;
     fixture_active(&f);
-    fixture_gear(&f, GEAR_P);
+    fixture_wheels(&f, 1000, 1000);
     fixture_mute_ai(&f, true);
     fixture_run(&f, 50);
     fixture_restart(&f, HAL_RESET_WATCHDOG);

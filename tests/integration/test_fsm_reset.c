@@ -359,33 +359,6 @@ void test_a_frozen_ai_computer_does_not_hinder_though_it_trips_in_manual(void) {
     expect_reset_after(1000);
 }
 
-/* In the frame that accepts the reset, not only in the tick after it. */
-static void expect_reset_in_a_frame(agv_fault_t forgotten) {
-    fixture_vehicle_confirms(&f);
-    fixture_run(&f, 300);
-    expect_fault(&f, forgotten, true);
-    press(true);
-    fixture_run(&f, 999);
-    expect_state(&f, AGV_STATE_SAFE);
-    fixture_run_without_ticks(&f, 1);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-    expect_state(&f, AGV_STATE_STANDBY);
-    expect_fault(&f, forgotten, false);
-}
-
-/* Shows: FSM-3, SUP-8, AI_HEARTBEAT_LOST, AI_HEARTBEAT_STUCK */
-void test_a_reset_forgets_the_ai_computer_at_once(void) {
-    fixture_active(&f);
-    fixture_mute_ai(&f, true);
-    fixture_run(&f, 500);
-    expect_reset_in_a_frame(AGV_FAULT_AI_HEARTBEAT_LOST);
-    fixture_init(&f);
-    fixture_active(&f);
-    f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].frozen = true;
-    fixture_run(&f, 500);
-    expect_reset_in_a_frame(AGV_FAULT_AI_HEARTBEAT_STUCK);
-}
-
 /* Three of four frames are D, 100 % and out of range, one a millisecond. */
 static bool babble(fixture_t *fixture, agv_message_t message, hal_can_frame_t *frame) {
     static const uint8_t values[] = {1, 250, 3, 0xFF};
@@ -484,51 +457,4 @@ void test_a_press_that_began_before_a_restart_does_not_count(void) {
     fixture_run(&f, 500);
     fixture_restart(&f, HAL_RESET_WATCHDOG);
     expect_no_reset_before_a_new_press();
-}
-
-/* ---- What an earlier reset or start leaves behind ---- */
-
-/* A trip just after a reset; the button is pressed in the very next frame, with which all conditions hold again. */
-/* Shows: FSM-3 */
-void test_a_second_reset_needs_its_own_second(void) {
-    walk_to_safe(&f);
-    press(true);
-    expect_reset_after(1000);
-    press(false);
-    fixture_run(&f, 20);
-    walk_trip(&f);
-    press(true);
-    expect_state(&f, AGV_STATE_SAFE);
-    expect_reset_after(1000);
-}
-
-/* Shows: FSM-3 */
-void test_a_press_that_outlives_its_reset_is_refused_a_second_after_the_trip(void) {
-    uint8_t missing = 0;
-    walk_to_safe(&f);
-    press(true);
-    expect_reset_after(1000);
-    fixture_run(&f, 500);
-    walk_trip(&f);
-    fixture_run(&f, 990);
-    TEST_ASSERT_EQUAL_UINT32(0, walk_refusals(&f, &missing));
-    fixture_run(&f, 20);
-    TEST_ASSERT_EQUAL_UINT32(1, walk_refusals(&f, &missing));
-    TEST_ASSERT_BITS_HIGH(AGV_MISSING_BUTTON, missing);
-    expect_state(&f, AGV_STATE_SAFE);
-}
-
-/* The first frame after the start, before any tick, says pressed: that is no press that came after the trip. */
-/* Shows: FSM-3, FSM-7 */
-void test_a_button_that_is_held_over_a_restart_resets_nothing(void) {
-    walk_to_safe(&f);
-    fixture_button(&f, true);
-    fixture_restart(&f, HAL_RESET_WATCHDOG);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-    fixture_run(&f, 3000);
-    expect_state(&f, AGV_STATE_SAFE);
-    press(false);
-    fixture_run(&f, 20);
-    press(true);
-    expect_reset_after(1000);
 }

@@ -89,6 +89,8 @@ void test_the_safety_output_is_recorded_when_it_closes_and_opens(void) {
     fixture_run(&f, 500);
     TEST_ASSERT_EQUAL_UINT32(2, walk_events(&f, AGV_EVENT_OUTPUT, 0, &event));
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_BUS_OFF, event.first_reason);
+    TEST_ASSERT_EQUAL_UINT8(0, event.b); /* nothing more is said of it */
+    TEST_ASSERT_EQUAL_UINT8(0, event.c);
 }
 
 /* Shows: INT-3 */

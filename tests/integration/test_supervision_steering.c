@@ -275,3 +275,16 @@ void test_gateway_compares_with_what_was_sent_on(void) {
     check_gateway(0, 500);
     check_gateway(4000, 625);
 }
+
+/* Tripped, the gateway sends nothing on: what the AI computer goes on commanding is not what the steering was told. */
+/* Shows: SUP-5, TOP-2, STEERING_DEVIATION */
+void test_a_command_that_was_not_sent_on_is_not_compared(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    fixture_active(&f);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x80; /* S-driver alarm */
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    fixture_command_angle(&f, 11000);
+    fixture_run(&f, 1500);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, FAULT));
+}

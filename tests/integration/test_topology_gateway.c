@@ -233,6 +233,22 @@ void test_the_slew_rate_starts_from_the_measured_angle(void) {
     expect_steering(9000, 9275);
 }
 
+/* And so does the first one of the next engagement, wherever the last one of this one was. */
+/* Shows: TOP-2 */
+void test_the_slew_rate_starts_anew_with_every_engagement(void) {
+    f.config.steering_slew_ddeg_s = 1000;
+    fixture_active(&f);
+    fixture_mute_ai(&f, true);
+    expect_steering(9000, 9000);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_angle(&f, 9300);
+    fixture_run(&f, 50);
+    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_steering(9000, 9275);
+}
+
 /* 2.0 degrees a second are half a count in 25 ms: one count every 50 ms. */
 /* Shows: TOP-2 */
 void test_a_slow_slew_rate_adds_up(void) {
@@ -439,4 +455,20 @@ void test_what_waits_when_the_autopilot_is_disengaged_is_dropped(void) {
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
     TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->gate_refused);
     expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* In STANDBY a 43Fh without "autopilot off" waits for a queue that is full; then comes a trip. */
+/* Shows: TOP-2, FSM-2, FSM-6 */
+void test_what_waits_at_a_trip_in_manual_is_dropped(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    fixture_standby(&f);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    fixture_run_past(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
+    fixture_mute_ai(&f, true);
+    walk_trip(&f);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    fixture_run(&f, 20);
+    TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->gate_refused);
+    expect_fault(&f, AGV_FAULT_TX_GATE_REFUSED, false);
+    TEST_ASSERT_EQUAL_HEX8(0x70, fixture_nth_sent(&f, 0x43F, 0)->data[4]);
 }

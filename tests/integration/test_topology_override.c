@@ -437,3 +437,12 @@ void test_an_answer_that_waits_is_not_forgotten_for_another_one(void) {
     fixture_run(&f, 4);
     TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x43F));
 }
+
+/* A VCU that knows CAN FD may obey it. */
+/* Shows: TOP-1, P15 */
+void test_a_command_in_an_fd_frame_is_answered(void) {
+    tripped();
+    fixture_raw(&f, HAL_CAN_VEHICLE,
+                (hal_can_frame_t){.id = 0x168, .flags = HAL_CAN_FD, .length = 8, .data = {GEAR_D}});
+    expect_answered_in_this_call(0x168, "FD");
+}

@@ -230,6 +230,14 @@ void test_a_mark_beyond_large_numbers_stores_all(void) {
     TEST_ASSERT_EQUAL_UINT32(20, store_all(0x90000010u));
 }
 
+/* Shows: INT-3 */
+void test_a_mark_before_the_oldest_event_stores_all(void) {
+    add(1000);
+    recorder.stored_sequence = 5;
+    agv_recorder_start(&recorder);
+    TEST_ASSERT_EQUAL_UINT32(256, store_all(744));
+}
+
 /* Up to half of all numbers ahead is newer. */
 /* Shows: TIM-2 */
 void test_a_number_far_ahead_is_newer(void) {

@@ -189,10 +189,14 @@ void test_both_clocks_say_the_same(void) {
     f.now_ms = 1234567;
     fixture_start(&f);
     TEST_ASSERT_EQUAL_UINT32(1234567000, core->now_us);
+    fixture_jump(&f, 1);
+    TEST_ASSERT_EQUAL_UINT32(1234568000, core->now_us);
+    foreign_drive_at(1234568, 999);
+    TEST_ASSERT_EQUAL_UINT32(1234568999, core->now_us);
     core->now_us = 5;
     fixture_jump(&f, 1); /* found corrupted */
     expect_fault(&f, AGV_FAULT_MEMORY_CORRUPTED, true);
-    TEST_ASSERT_EQUAL_UINT32(1234568000, core->now_us);
+    TEST_ASSERT_EQUAL_UINT32(1234569000, core->now_us);
 }
 
 /* Shows: INT-5 */

@@ -1,0 +1,108 @@
+/* What an earlier reset, trip or start leaves behind for the next reset, and what a reset forgets. */
+#include "fixture.h"
+#include "unity.h"
+#include "walk.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+static void press(bool pressed) {
+    fixture_button(&f, pressed);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+}
+
+static void expect_reset_after(uint32_t ms) {
+    fixture_run(&f, ms - 1);
+    expect_state(&f, AGV_STATE_SAFE);
+    fixture_run(&f, 1);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* In the frame that accepts the reset, not only in the tick after it. */
+static void expect_reset_in_a_frame(agv_fault_t forgotten) {
+    fixture_vehicle_confirms(&f);
+    fixture_run(&f, 300);
+    expect_fault(&f, forgotten, true);
+    press(true);
+    fixture_run(&f, 999);
+    expect_state(&f, AGV_STATE_SAFE);
+    fixture_run_without_ticks(&f, 1);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_STANDBY);
+    expect_fault(&f, forgotten, false);
+}
+
+/* Shows: FSM-3, SUP-8, AI_HEARTBEAT_LOST, AI_HEARTBEAT_STUCK */
+void test_a_reset_forgets_the_ai_computer_at_once(void) {
+    fixture_active(&f);
+    fixture_mute_ai(&f, true);
+    fixture_run(&f, 500);
+    expect_reset_in_a_frame(AGV_FAULT_AI_HEARTBEAT_LOST);
+    fixture_init(&f);
+    fixture_active(&f);
+    f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].frozen = true;
+    fixture_run(&f, 500);
+    expect_reset_in_a_frame(AGV_FAULT_AI_HEARTBEAT_STUCK);
+}
+
+/* A trip just after a reset; the button is pressed in the very next frame, with which all conditions hold again. */
+/* Shows: FSM-3 */
+void test_a_second_reset_needs_its_own_second(void) {
+    walk_to_safe(&f);
+    press(true);
+    expect_reset_after(1000);
+    press(false);
+    fixture_run(&f, 20);
+    walk_trip(&f);
+    press(true);
+    expect_state(&f, AGV_STATE_SAFE);
+    expect_reset_after(1000);
+}
+
+/* Shows: FSM-3 */
+void test_a_press_that_outlives_its_reset_is_refused_a_second_after_the_trip(void) {
+    uint8_t missing = 0;
+    walk_to_safe(&f);
+    press(true);
+    expect_reset_after(1000);
+    fixture_run(&f, 500);
+    walk_trip(&f);
+    fixture_run(&f, 990);
+    TEST_ASSERT_EQUAL_UINT32(0, walk_refusals(&f, &missing));
+    fixture_run(&f, 20);
+    TEST_ASSERT_EQUAL_UINT32(1, walk_refusals(&f, &missing));
+    TEST_ASSERT_EQUAL_HEX8(AGV_MISSING_BUTTON | AGV_MISSING_TRIP_CAUSE, missing); /* the alarm was there for 10 ms */
+    expect_state(&f, AGV_STATE_SAFE);
+}
+
+/* The first frame after the start, before any tick, says pressed: that is no press that came after the trip. */
+/* Shows: FSM-3, FSM-7 */
+void test_a_button_that_is_held_over_a_restart_resets_nothing(void) {
+    walk_to_safe(&f);
+    fixture_button(&f, true);
+    fixture_restart(&f, HAL_RESET_WATCHDOG);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_run(&f, 3000);
+    expect_state(&f, AGV_STATE_SAFE);
+    press(false);
+    fixture_run(&f, 20);
+    press(true);
+    expect_reset_after(1000);
+}
+
+/* Shows: FSM-3, INT-3 */
+void test_the_event_of_the_reset_names_no_fault(void) {
+    agv_event_t event = {0};
+    walk_to_safe(&f);
+    press(true);
+    expect_reset_after(1000);
+    TEST_ASSERT_EQUAL_UINT32(1, walk_events(&f, AGV_EVENT_STATE, AGV_STATE_SAFE, &event));
+    TEST_ASSERT_EQUAL_HEX8(AGV_STATE_STANDBY, event.b);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_NONE, event.c);
+}
