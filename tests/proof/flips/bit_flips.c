@@ -10,53 +10,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "agv/names.h"
-#include "world.h"
+#include "moment.h"
 
 enum { BITS = 8 * sizeof(agv_supervisor_t), SEALED_BITS = 8 * offsetof(agv_supervisor_t, receive_alive) };
 enum { SHORT_MS = 40, LONG_MS = 1300, LONG_EVERY = 61 };
 enum { MANUAL = 0x40, ENGAGED = 0x80, DRIVE = 1, PARK = 8 };
 enum { SIGNALS = 0, GEAR = 1, THROTTLE = 2, STEERING = 3, VEHICLE = 4, THROTTLE_STATUS = 6 };
-
-/* ---- A moment, to come back to; not what is in the log and the recorder, which decide nothing ---- */
-
-typedef struct {
-    agv_supervisor_t supervisor;
-    struct hal hal;
-    rules_t rules;
-    world_message_t traffic[WORLD_MESSAGES];
-    uint8_t store[offsetof(sim_store_t, log)];
-    uint8_t recorder[offsetof(agv_recorder_t, events)];
-    uint64_t now_ms;
-    uint64_t ticked_ms;
-    uint32_t unsettled;
-} moment_t;
-
-static moment_t moment;
-
-static void save(void) {
-    moment.supervisor = world.supervisor;
-    moment.hal = world.hal;
-    moment.rules = world.rules;
-    memcpy(moment.traffic, world.traffic, sizeof moment.traffic);
-    memcpy(moment.store, &world.store, sizeof moment.store);
-    memcpy(moment.recorder, &world.recorder, sizeof moment.recorder);
-    moment.now_ms = world.now_ms;
-    moment.ticked_ms = world.ticked_ms;
-    moment.unsettled = world.unsettled;
-}
-
-static void restore(void) {
-    world.supervisor = moment.supervisor;
-    world.hal = moment.hal;
-    world.rules = moment.rules;
-    memcpy(world.traffic, moment.traffic, sizeof moment.traffic);
-    memcpy(&world.store, moment.store, sizeof moment.store);
-    memcpy(&world.recorder, moment.recorder, sizeof moment.recorder);
-    world.now_ms = moment.now_ms;
-    world.ticked_ms = moment.ticked_ms;
-    world.unsettled = moment.unsettled;
-}
 
 /* ---- What is judged ---- */
 
@@ -193,12 +152,12 @@ static void flip_each_bit(const char *name, unsigned variant, unsigned state) {
     }
     (void)snprintf(text, sizeof text, "variant %u, state %u, %s", variant, state, name);
     situation = text;
-    save();
+    moment_save();
     for (unsigned bit = (unsigned)(sum.moments % every); bit < (unsigned)BITS; bit += every) {
-        restore();
+        moment_restore();
         flip(bit);
     }
-    restore();
+    moment_restore();
     sum.moments++;
     sum.moments_of[state]++;
 }

@@ -1,0 +1,322 @@
+/*
+ * Failure at every operation: a round through all states, a bus-off and two restarts, in which each single call of the HAL
+ * is made to fail once; where it is one of the rarer ones also with the 24 calls after it, and for good. Never a frame
+ * that FSM-6 forbids, never a latch undone but by a reset under its conditions; what was sent is what is counted, and a
+ * controller that takes nothing is noticed. rules.h judges.
+ *
+ * usage: hal_failures [--shard I/N] [--every N]     the calls of one shard, the N-th calls only
+ */
+#define _POSIX_C_SOURCE 200809L
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "moment.h"
+
+enum {
+    FOLLOW_COMMON_MS = 120,
+    FOLLOW_MS = 400,
+    FOLLOW_LONG_MS = 700,
+    RUN_OF_CALLS = 25,
+    COMMON_EVERY = 16,
+    HANG_S = 100
+};
+enum { MANUAL = 0x40, ENGAGED = 0x80, DRIVE = 1, PARK = 8 };
+enum { SIGNALS = 0, GEAR = 1, THROTTLE = 2, STEERING = 3, VEHICLE = 4, THROTTLE_STATUS = 6 };
+
+static const char *const NAMES[SIM_HAL_OP_COUNT] = {
+    "can_send",     "can_purge",         "can_recover",       "can_status",       "clock_now",
+    "led_set",      "reset_cause",       "safety_output_set", "store_read_latch", "store_write_latch",
+    "store_append", "store_read_record", "watchdog_feed"};
+
+/* ---- What is judged ---- */
+
+/* What a failing operation may come to: no frame leaves that should, a pin does not move, a record is not there. */
+typedef struct {
+    sim_hal_op_t op;
+    bool one_is_enough; /* else not when a single call fails */
+    const char *text;
+} borne_t;
+
+static const borne_t BORNE[] = {
+    {SIM_HAL_OP_CAN_SEND, true, "FSM-2: "},
+    {SIM_HAL_OP_CAN_SEND, false, "TIM-1: "},
+    {SIM_HAL_OP_CAN_SEND, false, "TOP-1: "},
+    {SIM_HAL_OP_CAN_STATUS, true, "FSM-4: the safety output is closed in bus-off"},
+    {SIM_HAL_OP_CAN_STATUS, true, "TIM-1: "},
+    {SIM_HAL_OP_CAN_STATUS, true, "TOP-1: "},
+    {SIM_HAL_OP_CAN_STATUS, true, "FSM-2: "},
+    {SIM_HAL_OP_SAFETY_OUTPUT_SET, true, "FSM-4: the safety output is closed"},
+    {SIM_HAL_OP_RESET_CAUSE, true, "FSM-7: "},
+    {SIM_HAL_OP_STORE_READ_LATCH, true, "FSM-7: after a reset the first reason is"},
+    {SIM_HAL_OP_STORE_WRITE_LATCH, true, "FSM-7: after a reset the first reason is"},
+};
+
+static struct {
+    uint64_t calls; /* that were made to fail */
+    uint64_t runs;
+    uint64_t failures; /* calls that failed, all of them */
+    uint64_t borne;
+    uint64_t noticed; /* runs in which nothing was taken any more, and TX_STALLED said so */
+    uint64_t frames;
+    uint64_t resets;
+    uint64_t harms;
+    uint64_t of_op[SIM_HAL_OP_COUNT];
+} sum;
+
+static uint32_t failing_ops;
+static uint32_t failing_count;
+static bool is_failing; /* false: in the round itself, where nothing may break */
+static char harm[240];
+
+static void note_harm(const char *what) {
+    if (harm[0] == '\0') {
+        (void)snprintf(harm, sizeof harm, "%s", what);
+    }
+}
+
+static void on_broken(void) {
+    bool is_borne = false;
+    for (unsigned i = 0; is_failing && (i < sizeof BORNE / sizeof BORNE[0]); i++) {
+        is_borne = is_borne ||
+                   ((((failing_ops >> BORNE[i].op) & 1u) != 0u) && (BORNE[i].one_is_enough || (failing_count > 1u)) &&
+                    (strncmp(world.rules.broken, BORNE[i].text, strlen(BORNE[i].text)) == 0));
+    }
+    sum.borne += is_borne ? 1u : 0u;
+    if (!is_borne) {
+        note_harm(world.rules.broken);
+    }
+    world.rules.broken[0] = '\0';
+}
+
+static bool is_latched(void) {
+    const agv_state_t state = agv_supervisor_state(&world.supervisor);
+    return (state == AGV_STATE_TRIPPED) || (state == AGV_STATE_SAFE);
+}
+
+static bool has(agv_fault_t fault) {
+    return (agv_supervisor_active_faults(&world.supervisor) & agv_fault_bit(fault)) != 0u;
+}
+
+/* ---- One step of the round, and what fails in it ---- */
+
+typedef enum { RUN, RESTART_WATCHDOG, RESTART_POWER_ON } act_t;
+
+static void act(act_t what) {
+    switch (what) {
+    case RUN:
+        world_run(1);
+        break;
+    case RESTART_WATCHDOG:
+        world_restart(HAL_RESET_WATCHDOG);
+        break;
+    default:
+        world_restart(HAL_RESET_POWER_ON);
+        break;
+    }
+}
+
+static void report(const char *where, uint32_t call, uint32_t count, uint32_t ops) {
+    sum.harms++;
+    if (sum.harms <= 20u) {
+        (void)printf("HARM: %s, call %u (%s), %u in a row, operations %X: %s\n", where, (unsigned)call,
+                     NAMES[world.hal.last_failed], (unsigned)count, (unsigned)ops, harm);
+    }
+}
+
+/* Frames that left are counted as sent, and nothing else is. */
+static void judge_counters(act_t what) {
+    const uint32_t before = (what == RUN) ? agv_supervisor_counters(&moment.supervisor)->sent : 0u;
+    const uint32_t counted = agv_supervisor_counters(&world.supervisor)->sent - before;
+    if (counted != (uint32_t)(world.rules.sent - moment.rules.sent)) {
+        note_harm("what was sent is not what is counted");
+    }
+}
+
+/* SUP-7: frames that wait and are not taken. */
+static void judge_stalled(uint32_t count, uint32_t ops) {
+    const bool dead = (count == UINT32_MAX) && (((ops >> SIM_HAL_OP_CAN_SEND) & 1u) != 0u);
+    if (!dead || !is_latched() || world.rules.shadow || has(AGV_FAULT_BUS_OFF)) {
+        return;
+    }
+    if (!has(AGV_FAULT_TX_STALLED) || world.hal.safety_output.on) {
+        note_harm("no frame is taken any more, and nobody says so");
+    }
+    sum.noticed++;
+}
+
+static void fail(const char *where, act_t what, uint32_t call, uint32_t count, uint32_t ops, uint32_t follow_ms) {
+    const uint32_t before = moment.hal.failures;
+    moment_restore();
+    harm[0] = '\0';
+    is_failing = true;
+    failing_ops = ops;
+    failing_count = count;
+    sim_hal_fail_at(&world.hal, call, count, ops);
+    act(what);
+    world_run(follow_ms);
+    is_failing = false;
+    judge_counters(what);
+    judge_stalled(count, ops);
+    sum.runs++;
+    sum.failures += world.hal.failures - before;
+    sum.frames += world.rules.sent - moment.rules.sent;
+    sum.resets += world.rules.resets - moment.rules.resets;
+    if (world.hal.failures == before) {
+        note_harm("nothing has failed");
+    }
+    if (harm[0] != '\0') {
+        report(where, call, count, ops);
+    }
+}
+
+/* No step of the round takes that long, even on a busy computer. */
+static void on_alarm(int number) {
+    static const char TEXT[] = "HARM: a call does not return: it hangs\n";
+    (void)number;
+    _exit(write(STDOUT_FILENO, TEXT, sizeof TEXT - 1u) > 0 ? 1 : 3);
+}
+
+static unsigned shard;
+static unsigned shards = 1;
+static unsigned every = 1;
+static unsigned call_number;
+
+/* Which operation the call of this number is. */
+static sim_hal_op_t find_op(act_t what, uint32_t call) {
+    moment_restore();
+    is_failing = true;
+    failing_ops = SIM_HAL_OP_ALL;
+    failing_count = RUN_OF_CALLS;
+    sim_hal_fail_at(&world.hal, call, 1, SIM_HAL_OP_ALL);
+    act(what);
+    is_failing = false;
+    return world.hal.last_failed;
+}
+
+static void fail_one(const char *where, act_t what, uint32_t call) {
+    const sim_hal_op_t op = find_op(what, call);
+    const bool common = (op == SIM_HAL_OP_CAN_STATUS) || (op == SIM_HAL_OP_WATCHDOG_FEED);
+    sum.calls++;
+    sum.of_op[op]++;
+    fail(where, what, call, 1, 1u << op, common ? FOLLOW_COMMON_MS : FOLLOW_MS);
+    if (!common || (sum.of_op[op] % (unsigned)COMMON_EVERY == 0u)) {
+        fail(where, what, call, RUN_OF_CALLS, SIM_HAL_OP_ALL, FOLLOW_MS);
+        fail(where, what, call, UINT32_MAX, 1u << op, FOLLOW_LONG_MS);
+    }
+}
+
+static void step(const char *where, act_t what) {
+    moment_save();
+    (void)alarm(HANG_S);
+    const uint32_t calls = world.hal.calls;
+    harm[0] = '\0';
+    act(what);
+    const uint32_t count = world.hal.calls - calls;
+    if (harm[0] != '\0') {
+        (void)printf("HARM: %s, without any failure: %s\n", where, harm);
+        sum.harms++;
+    }
+    for (uint32_t i = 1; i <= count; i++) {
+        const unsigned number = call_number++;
+        if ((number % shards == shard) && ((number / shards) % every == 0u)) {
+            fail_one(where, what, calls + i);
+        }
+    }
+    moment_restore();
+    act(what);
+}
+
+static void steps(const char *where, uint32_t ms) {
+    for (uint32_t i = 0; i < ms; i++) {
+        step(where, RUN);
+    }
+}
+
+/* ---- The round ---- */
+
+/* An AI computer that drives, whatever the state: what a supervisor has to hold back. */
+static void drive_on(void) {
+    world.traffic[SIGNALS].data[4] = 0x80;
+    world.traffic[GEAR].data[0] = DRIVE;
+    world.traffic[THROTTLE].data[0] = 100;
+    world.traffic[STEERING].data[0] = 0x64;
+}
+
+static void vehicle(uint8_t mode, uint8_t gear, uint8_t wheels) {
+    world_mode(mode);
+    world_gear(gear);
+    world_wheels(wheels);
+}
+
+static void alarm_and_trip(void) {
+    world.traffic[VEHICLE].data[4] = 0x80;
+    steps("trip", 10);
+    world.traffic[VEHICLE].data[4] = 0;
+    steps("TRIPPED", 150);
+}
+
+static void round_of(unsigned variant) {
+    world_load(variant, 0);
+    drive_on();
+    step("power-on", RESTART_POWER_ON);
+    steps("INIT and STANDBY", 650);
+    vehicle(ENGAGED, DRIVE, 200);
+    steps("ACTIVE", 300);
+    alarm_and_trip();
+    world_disturb(HAL_CAN_VEHICLE, 0, 2);
+    steps("bus-off", 130);
+    world_disturb(HAL_CAN_VEHICLE, 0, 0);
+    steps("after bus-off", 40);
+    vehicle(MANUAL, PARK, 0);
+    steps("SAFE", 150);
+    step("restart in SAFE", RESTART_WATCHDOG);
+    steps("after the restart", 250);
+    world_button(true);
+    steps("the button", 1050);
+    world_button(false);
+    steps("STANDBY again", 30);
+    if (agv_supervisor_state(&world.supervisor) != AGV_STATE_STANDBY) {
+        (void)printf("HARM: variant %u: the round itself does not end in STANDBY\n", variant);
+        sum.harms++;
+    }
+}
+
+static void read_options(int argc, char **argv) {
+    for (int i = 1; i + 1 < argc; i += 2) {
+        if (strcmp(argv[i], "--shard") == 0) {
+            char *end = NULL;
+            shard = (unsigned)strtoul(argv[i + 1], &end, 10);
+            shards = (*end == '/') ? (unsigned)strtoul(end + 1, NULL, 10) : 0u;
+        } else if (strcmp(argv[i], "--every") == 0) {
+            every = (unsigned)strtoul(argv[i + 1], NULL, 10);
+        } else {
+            shards = 0;
+        }
+    }
+    if (((argc % 2) == 0) || (shards == 0u) || (shard >= shards) || (every == 0u)) {
+        (void)fprintf(stderr, "usage: hal_failures [--shard I/N] [--every N]     I from 0\n");
+        exit(2);
+    }
+}
+
+int main(int argc, char **argv) {
+    read_options(argc, argv);
+    world_on_broken = on_broken;
+    (void)signal(SIGALRM, on_alarm);
+    for (unsigned variant = 0; variant < (unsigned)WORLD_VARIANTS; variant++) {
+        round_of(variant);
+    }
+    for (unsigned op = 0; op < (unsigned)SIM_HAL_OP_COUNT; op++) {
+        (void)printf("%-18s %8llu calls\n", NAMES[op], (unsigned long long)sum.of_op[op]);
+    }
+    (void)printf("%llu rules borne, %llu dead controllers noticed, %llu frames judged, %llu resets by the button\n",
+                 (unsigned long long)sum.borne, (unsigned long long)sum.noticed, (unsigned long long)sum.frames,
+                 (unsigned long long)sum.resets);
+    (void)printf("%d rounds: %llu calls made to fail in %llu runs, %llu failures, harm: %llu\n", (int)WORLD_VARIANTS,
+                 (unsigned long long)sum.calls, (unsigned long long)sum.runs, (unsigned long long)sum.failures,
+                 (unsigned long long)sum.harms);
+    return ((sum.harms == 0u) && (sum.calls > 0u)) ? 0 : 1;
+}
