@@ -30,8 +30,8 @@ class Soak(hostsim.Case):
 
     # Shows: TIM-2
     def test_the_hour_in_which_the_clock_wraps(self):
-        # 4294967.296 s are 1193.05 hours: the 1194th
-        self.soak("--hours", 8760, "--seed", 1, "--shard", "137/1000", "--results", "a")
+        # 4294967.296 s are 1193.05 hours; the last of a thousand parts of 1194 hours begins at 1192.8
+        self.soak("--hours", 1194, "--seed", 1, "--shard", "1000/1000", "--results", "a")
         self.assertEqual((self.figures("a")["wraps"], self.figures("a")["broken"]), (1, False))
 
     def test_planted_mistakes_are_found(self):
@@ -53,7 +53,7 @@ class Soak(hostsim.Case):
         return process.returncode != 0
 
     def test_a_soak_that_was_stopped_ends_as_one_that_was_not(self):
-        arguments = ("--hours", "16", "--seed", "3", "--shard", "2/4")
+        arguments = ("--hours", "4", "--seed", "3", "--shard", "2/2")
         self.soak(*arguments, "--results", "whole")
         parts = (*arguments, "--results", "parts", "--checkpoint", "checkpoint")
         self.assertTrue(self.stopped(*parts))
