@@ -6,6 +6,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "chance.h"
 #include "interrupt.h"
 #include "progress.h"
 #include "soak_internal.h"
@@ -19,19 +20,6 @@ enum {
     PLANTED_MS = 60000,
     HOURS_PER_DAY = 24
 };
-
-/** splitmix64 */
-static uint64_t next(uint64_t *state) {
-    *state += 0x9E3779B97F4A7C15u;
-    uint64_t z = *state;
-    z = (z ^ (z >> 30u)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27u)) * 0x94D049BB133111EBu;
-    return z ^ (z >> 31u);
-}
-
-static uint32_t draw(uint64_t *state, uint32_t lowest, uint32_t highest) {
-    return lowest + (uint32_t)(next(state) % ((uint64_t)highest - lowest + 1u));
-}
 
 /** Whether a row's steps make sense in this topology. */
 static bool fits(const soak_t *soak, const soak_row_t *row) {
@@ -96,7 +84,7 @@ static uint32_t choose(soak_t *soak) {
     for (size_t i = 0u; i < SOAK_ROW_COUNT; i++) {
         weight += may_come(soak, &SOAK_ROWS[i]) ? SOAK_ROWS[i].weight : 0u;
     }
-    uint32_t left = draw(&soak->state.random, 1u, weight);
+    uint32_t left = chance_draw(&soak->state.random, 1u, weight);
     for (uint32_t i = 0u;; i++) {
         const uint32_t own = may_come(soak, &SOAK_ROWS[i]) ? SOAK_ROWS[i].weight : 0u;
         if (left <= own) {
@@ -116,14 +104,14 @@ static void disturb(soak_t *soak) {
     if (state->row < SOAK_ROW_COUNT) {
         act(soak, soak->steps[state->row].end, soak->steps[state->row].after);
         state->row = (uint32_t)SOAK_ROW_COUNT;
-        state->next_ms = state->t_ms + draw(&state->random, QUIET_MIN_MS, QUIET_MAX_MS);
+        state->next_ms = state->t_ms + chance_draw(&state->random, QUIET_MIN_MS, QUIET_MAX_MS);
         return;
     }
     const bool plants = (soak->request->planted == SOAK_PLANTED_TRIP) && (state->t_ms > PLANTED_MS);
     state->row = plants ? (uint32_t)SOAK_ROW_COUNT - 1u : choose(soak);
     state->counts[state->row]++;
     const soak_row_t *row = &SOAK_ROWS[state->row];
-    state->next_ms = state->t_ms + draw(&state->random, row->lowest_ms, row->highest_ms);
+    state->next_ms = state->t_ms + chance_draw(&state->random, row->lowest_ms, row->highest_ms);
     act(soak, soak->steps[state->row].begin, soak->steps[state->row].end);
     if ((soak->request->planted == SOAK_PLANTED_COUNT) && (state->t_ms > PLANTED_MS)) {
         state->wire_others++; /* a frame that nobody received */
@@ -250,8 +238,8 @@ static bool prepare(soak_t *soak, const soak_request_t *request) {
     soak->start_ms = all_ms * (request->shard - 1u) / request->shards;
     soak->duration_ms = (all_ms * request->shard / request->shards) - soak->start_ms;
     soak->gateway = (request->shard % 2u) == 0u;
-    soak->table_ids = (next(&random) % 2u) == 0u;
-    soak->state.random = next(&random);
+    soak->table_ids = (chance_next(&random) % 2u) == 0u;
+    soak->state.random = chance_next(&random);
     soak->state.row = (uint32_t)SOAK_ROW_COUNT;
     soak->state.next_ms = READY_MS;
     if (!read_rows(soak)) {
