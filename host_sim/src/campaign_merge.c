@@ -9,6 +9,7 @@
 #include "agv/names.h"
 #include "campaign_result.h"
 #include "report.h"
+#include "shard_option.h"
 
 /** A file that is being read. */
 typedef struct {
@@ -93,7 +94,7 @@ static bool read_run(shard_t *shard, uint64_t run, campaign_sample_t *sample) {
 
 /** Put the shards in their order. @return false: they are not of one campaign; reported */
 static bool sort_shards(shard_t *shards, size_t count, campaign_part_t *whole) {
-    shard_t sorted[CAMPAIGN_SHARDS_MAX] = {{NULL}};
+    shard_t sorted[SHARDS_MAX] = {{NULL}};
     for (size_t i = 0u; i < count; i++) {
         campaign_part_t part;
         if (!read_part(&shards[i], &part)) {

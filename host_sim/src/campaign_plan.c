@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "agv/names.h"
+#include "chance.h"
 
 enum {
     US_PER_MS = 1000,
@@ -36,22 +37,8 @@ void campaign_text_add(campaign_text_t *text, const char *format, ...) {
     text->used += (size_t)length;
 }
 
-/** splitmix64 */
-static uint64_t next(uint64_t *state) {
-    *state += 0x9E3779B97F4A7C15u;
-    uint64_t z = *state;
-    z = (z ^ (z >> 30u)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27u)) * 0x94D049BB133111EBu;
-    return z ^ (z >> 31u);
-}
-
-/** A number from @p lowest up to and with @p highest. */
-static uint32_t draw(uint64_t *state, uint32_t lowest, uint32_t highest) {
-    return lowest + (uint32_t)(next(state) % ((uint64_t)highest - lowest + 1u));
-}
-
 static bool toss(uint64_t *state, uint32_t in) {
-    return draw(state, 1u, in) == 1u;
+    return chance_draw(state, 1u, in) == 1u;
 }
 
 /** What kind of vehicle and supervisor. */
@@ -61,21 +48,21 @@ static void choose_kind(campaign_plan_t *plan, uint64_t *state) {
     const bool gateway = toss(state, 2u);
     const bool manual = toss(state, 4u);
 
-    plan->bitrate = bitrates[draw(state, 0u, 2u)];
+    plan->bitrate = bitrates[chance_draw(state, 0u, 2u)];
     plan->gateway = ((flags & CAMPAIGN_GATEWAY) != 0u) || (((flags & CAMPAIGN_SHARED) == 0u) && gateway);
     plan->table_ids = toss(state, 4u);
     plan->park_guard = !toss(state, 4u);
     plan->at_standstill = toss(state, 4u) && ((flags & CAMPAIGN_AT_ONCE_P) == 0u);
     plan->engaged = ((flags & CAMPAIGN_ENGAGED) != 0u) || (((flags & CAMPAIGN_MANUAL) == 0u) && !manual);
     plan->bunched = toss(state, 2u);
-    plan->tick_phase_us = toss(state, 2u) ? 0u : (uint16_t)draw(state, 0u, TICK_SPAN_US - 1u);
-    plan->clock_start_ms = (uint32_t)next(state);
-    plan->number = draw(state, plan->row->lowest, plan->row->highest);
+    plan->tick_phase_us = toss(state, 2u) ? 0u : (uint16_t)chance_draw(state, 0u, TICK_SPAN_US - 1u);
+    plan->clock_start_ms = (uint32_t)chance_next(state);
+    plan->number = chance_draw(state, plan->row->lowest, plan->row->highest);
 }
 
 static void choose_times(campaign_plan_t *plan, uint64_t *state, const agv_config_t *config) {
     const uint32_t flags = plan->row->flags;
-    const uint32_t step_ms = ENGAGE_MS + SETTLED_MS + draw(state, 0u, SPAN_MS);
+    const uint32_t step_ms = ENGAGE_MS + SETTLED_MS + chance_draw(state, 0u, SPAN_MS);
 
     plan->cause_ms = ((flags & CAMPAIGN_START) != 0u) ? 0u : step_ms;
     plan->cause_ms += ((flags & CAMPAIGN_LATER) != 0u) ? plan->number : 0u;
@@ -114,18 +101,19 @@ static void add_kind(campaign_plan_t *plan) {
 static void add_phases(campaign_plan_t *plan, uint64_t *state) {
     campaign_text_t *text = &plan->head;
     const bool at_start = (plan->row->flags & CAMPAIGN_START) != 0u;
-    const uint32_t together_ms = draw(state, 0u, 9u);
+    const uint32_t together_ms = chance_draw(state, 0u, 9u);
     const uint32_t span_ms = (plan->bunched || at_start) ? 0u : (uint32_t)START_SPAN_MS - 1u;
 
     campaign_text_add(text, "vehicle:\n  park_guard: %s\n", plan->park_guard ? "true" : "false");
-    campaign_text_add(text, "  vcu_starts_ms: %" PRIu32 "\n", draw(state, 0u, span_ms));
-    campaign_text_add(text, "  eps_starts_ms: %" PRIu32 "\n", draw(state, 0u, span_ms));
+    campaign_text_add(text, "  vcu_starts_ms: %" PRIu32 "\n", chance_draw(state, 0u, span_ms));
+    campaign_text_add(text, "  eps_starts_ms: %" PRIu32 "\n", chance_draw(state, 0u, span_ms));
     campaign_text_add(text, "  ai_starts_ms: %" PRIu32 "\n",
-                      draw(state, 0u, span_ms) + (((plan->row->flags & CAMPAIGN_LATE_AI) != 0u) ? LATE_AI_MS : 0u));
+                      chance_draw(state, 0u, span_ms) +
+                          (((plan->row->flags & CAMPAIGN_LATE_AI) != 0u) ? LATE_AI_MS : 0u));
     campaign_text_add(text, "  phases_ms: {");
     for (int m = 0; m < AGV_MSG_COUNT; m++) {
         const uint32_t cycle_ms = agv_message_cycle_ms((agv_message_t)m);
-        const uint32_t own_ms = draw(state, 0u, cycle_ms - 1u);
+        const uint32_t own_ms = chance_draw(state, 0u, cycle_ms - 1u);
         const uint32_t near_ms = together_ms + (toss(state, 4u) ? 1u : 0u);
         campaign_text_add(text, "%s%s: %" PRIu32, (m > 0) ? ", " : "", agv_message_name((agv_message_t)m),
                           plan->bunched ? near_ms : own_ms);
@@ -135,9 +123,9 @@ static void add_phases(campaign_plan_t *plan, uint64_t *state) {
 
 static void add_drive(campaign_plan_t *plan, uint64_t *state) {
     campaign_text_t *text = &plan->head;
-    const uint32_t throttle_pct = draw(state, THROTTLE_MIN_PCT, CAMPAIGN_THROTTLE_MAX_PCT);
-    const int steer_deg = (int)draw(state, 0u, 2u * STEER_MAX_DEG) - STEER_MAX_DEG;
-    const uint32_t engage_ms = ENGAGE_MS + draw(state, 0u, START_SPAN_MS - 1u);
+    const uint32_t throttle_pct = chance_draw(state, THROTTLE_MIN_PCT, CAMPAIGN_THROTTLE_MAX_PCT);
+    const int steer_deg = (int)chance_draw(state, 0u, 2u * STEER_MAX_DEG) - STEER_MAX_DEG;
+    const uint32_t engage_ms = ENGAGE_MS + chance_draw(state, 0u, START_SPAN_MS - 1u);
 
     if ((plan->row->flags & CAMPAIGN_START) != 0u) {
         return;
@@ -182,7 +170,7 @@ static const char *choose_steps(const char *steps, uint64_t *state, const char *
     for (const char *at = steps; *at != '\0'; at++) {
         count += (*at == '/') ? 1u : 0u;
     }
-    for (uint32_t skip = draw(state, 0u, count - 1u); skip > 0u; skip--) {
+    for (uint32_t skip = chance_draw(state, 0u, count - 1u); skip > 0u; skip--) {
         steps = strchr(steps, '/') + 1;
     }
     *end = steps + strcspn(steps, "/");
@@ -213,12 +201,12 @@ void campaign_plan_make(campaign_plan_t *plan, uint64_t seed, uint64_t run, cons
     uint64_t state = seed;
     agv_config_t config;
 
-    state = next(&state) ^ run;
+    state = chance_next(&state) ^ run;
     agv_config_defaults(&config);
     memset(plan, 0, sizeof *plan);
     plan->seed = seed;
     plan->run = run;
-    plan->row = &CAMPAIGN_ROWS[draw(&state, 0u, (uint32_t)CAMPAIGN_ROW_COUNT - 1u)];
+    plan->row = &CAMPAIGN_ROWS[chance_draw(&state, 0u, (uint32_t)CAMPAIGN_ROW_COUNT - 1u)];
     plan->row = (only != NULL) ? only : plan->row;
     choose_kind(plan, &state);
     choose_times(plan, &state, &config);

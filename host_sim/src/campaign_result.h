@@ -12,9 +12,6 @@
 #include "campaign_judge.h"
 #include "output.h"
 
-/** Files of one campaign. */
-#define CAMPAIGN_SHARDS_MAX 1000u
-
 /** Which runs: those whose number leaves the rest `shard` - 1 when divided by `shards`. */
 typedef struct {
     uint64_t runs; /**< of all shards */
@@ -59,7 +56,7 @@ bool campaign_print_table(const campaign_samples_t *samples);
 
 /**
  * Read the files of all shards of one campaign, and write them as that of the whole.
- * @param count at most CAMPAIGN_SHARDS_MAX
+ * @param count at most SHARDS_MAX
  * @param merged not open: nothing is written
  * @return false: they are no whole campaign; was reported
  */

@@ -11,6 +11,7 @@
 #include "campaign_run.h"
 #include "commands.h"
 #include "options.h"
+#include "shard_option.h"
 
 /** The words of --planted, in the order of scenario_planted_t without SCENARIO_REAL. */
 #define PLANTED "mute|tripped"
@@ -82,31 +83,10 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
             "rate, topology, ID set, kind of vehicle), judge each run, and sum the reaction times up.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
-        .operands_max = CAMPAIGN_SHARDS_MAX,
+        .operands_max = SHARDS_MAX,
         .operand = "FILE",
     };
     return options_parse(&syntax, argc, argv, &given->file_count);
-}
-
-/** "2/8" */
-static bool take_shard(const char *text, campaign_part_t *part) {
-    char first[8];
-    uint64_t shard = 0u;
-    uint64_t shards = 0u;
-    const size_t length = strcspn(text, "/");
-
-    if ((length >= sizeof first) || (text[length] != '/')) {
-        return report("--shard: '%s' is no I/N such as 2/8", text);
-    }
-    memcpy(first, text, length);
-    first[length] = '\0';
-    if (!options_number(&text[length + 1u], 1u, CAMPAIGN_SHARDS_MAX, &shards) ||
-        !options_number(first, 1u, shards, &shard)) {
-        return report("--shard: '%s' is no I/N with I from 1 to N, and N up to %u", text, CAMPAIGN_SHARDS_MAX);
-    }
-    part->shard = (uint32_t)shard;
-    part->shards = (uint32_t)shards;
-    return true;
 }
 
 static bool take_fault(const char *name, campaign_part_t *part) {
@@ -145,7 +125,7 @@ static bool make_request(given_t *given, char **operands) {
     if (request->shows_one && (given->show >= given->runs)) {
         return report("--show: there is no run %" PRIu64 ", they are 0 to %" PRIu64, given->show, given->runs - 1u);
     }
-    return ((given->shard == NULL) || take_shard(given->shard, &request->part)) &&
+    return ((given->shard == NULL) || shard_option_take(given->shard, &request->part.shard, &request->part.shards)) &&
            ((given->fault == NULL) || take_fault(given->fault, &request->part)) && is_folder(request->folder);
 }
 

@@ -33,6 +33,9 @@ command_fn cmd_vehicle;
 /** `host_sim campaign`: randomised fault campaigns on the simulated bus. */
 command_fn cmd_campaign;
 
+/** `host_sim soak`: months of virtual time with disturbances that have to be survived. */
+command_fn cmd_soak;
+
 /** `host_sim config`: every setting, as YAML or as a Kconfig fragment. */
 command_fn cmd_config;
 

@@ -26,6 +26,7 @@ static const command_t commands[] = {
     {"replay", "feed a recorded candump log to the supervisor in virtual time", cmd_replay},
     {"run", "run the supervisor as a node on SocketCAN, in real time", cmd_run},
     {"scenario", "play scenario files with a simulated vehicle and judge them", cmd_scenario},
+    {"soak", "let supervisor and vehicle run for months of virtual time, with survivable disturbances", cmd_soak},
     {"vehicle", "simulate VCU, EPS and AI computer as nodes on SocketCAN", cmd_vehicle},
 };
 

@@ -264,13 +264,45 @@ static void do_to_supervisor(scenario_world_t *world, const scenario_action_t *a
     }
 }
 
-void scenario_world_do(scenario_world_t *world, const scenario_step_t *step) {
-    world->t_ms = step->at_ms;
+void scenario_world_act(scenario_world_t *world, uint64_t t_ms, const scenario_step_t *step) {
+    world->t_ms = t_ms;
     if (step->of_vehicle) {
-        (void)vehicle_do(&world->vehicle, step->at_ms, &step->vehicle);
+        (void)vehicle_do(&world->vehicle, t_ms, &step->vehicle);
     } else {
         do_to_supervisor(world, &step->supervisor);
     }
+}
+
+void scenario_world_do(scenario_world_t *world, const scenario_step_t *step) {
+    scenario_world_act(world, step->at_ms, step);
+}
+
+static void restore_bus(const sim_bus_t *bus, sim_bus_t *saved) {
+    memcpy(saved->taps, bus->taps, sizeof saved->taps);
+    for (size_t i = 0u; i < SIM_BUS_NODES_MAX; i++) {
+        saved->nodes[i].config = bus->nodes[i].config;
+    }
+}
+
+void scenario_world_restore(scenario_world_t *world, scenario_world_t *saved) {
+    for (size_t side = 0u; side < HAL_CAN_SIDES; side++) {
+        restore_bus(&world->buses[side], &saved->buses[side]);
+        saved->running[side] = world->running[side];
+        saved->hal.can[side].bus = world->hal.can[side].bus;
+        saved->sides[side].world = world->sides[side].world;
+    }
+    for (int n = 0; n < VEHICLE_NODES; n++) {
+        saved->stations[n].world = world->stations[n].world;
+    }
+    saved->hal.config.store = world->hal.config.store;
+    saved->hal.sink = world->hal.sink;
+    saved->hal.sink_ctx = world->hal.sink_ctx;
+    saved->session.ports = world->session.ports;
+    memcpy(saved->session.observers, world->session.observers, sizeof saved->session.observers);
+    saved->vehicle.send = world->vehicle.send;
+    saved->vehicle.send_ctx = world->vehicle.send_ctx;
+    memcpy(saved->watches, world->watches, sizeof saved->watches);
+    *world = *saved;
 }
 
 static void send_planted(scenario_world_t *world) {

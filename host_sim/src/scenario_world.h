@@ -91,6 +91,16 @@ void scenario_world_start(scenario_world_t *world);
 /** Do what a step says, now: before the tick of its millisecond. */
 void scenario_world_do(scenario_world_t *world, const scenario_step_t *step);
 
+/** The same at another time: steps carry 32 bits of it, a world lasts longer. */
+void scenario_world_act(scenario_world_t *world, uint64_t t_ms, const scenario_step_t *step);
+
+/**
+ * Go on from a copy of another world, of another run of this program perhaps: @p world was made of the same scenario, has
+ * the same watches, and was started.
+ * @param saved its pointers are put right
+ */
+void scenario_world_restore(scenario_world_t *world, scenario_world_t *saved);
+
 /** A millisecond: @p t_ms is 0 and then one more each time. */
 void scenario_world_tick(scenario_world_t *world, uint64_t t_ms);
 

@@ -1,0 +1,16 @@
+/**
+ * @file chance.h
+ * Random numbers that follow from a state alone: the same state, the same numbers, on every computer.
+ */
+#ifndef HOST_SIM_CHANCE_H
+#define HOST_SIM_CHANCE_H
+
+#include <stdint.h>
+
+/** The next 64 bits (splitmix64); @p state may begin with any value. */
+uint64_t chance_next(uint64_t *state);
+
+/** A number from @p lowest up to and with @p highest; @p lowest when that is the larger one. */
+uint32_t chance_draw(uint64_t *state, uint32_t lowest, uint32_t highest);
+
+#endif

@@ -1,0 +1,87 @@
+"""Soaks: nothing trips, drifts or is miscounted; planted mistakes are found; a soak that was stopped goes on."""
+import json
+import signal
+import subprocess
+import time
+import unittest
+
+import hostsim
+
+
+class Soak(hostsim.Case):
+    def soak(self, *arguments, status=0, **options):
+        result = self.run_program("soak", *arguments, timeout=600, **options)
+        self.assertEqual(result.status, status, result.stdout + result.stderr)
+        return result
+
+    def figures(self, name):
+        figures = json.loads((self.folder / name).read_text(encoding="ascii"))
+        del figures["real_ms"]
+        return figures
+
+    # Shows: TIM-1, TIM-2
+    def test_an_hour_on_each_topology(self):
+        for shard, topology in ((1, "shared"), (2, "gateway")):
+            self.soak("--hours", 2, "--seed", 1, "--shard", f"{shard}/2", "--results", "a")
+            figures = self.figures("a")
+            self.assertEqual((figures["topology"], figures["ms"], figures["broken"]), (topology, 3600000, False))
+            self.assertGreater(figures["disturbances"], 500)
+            self.assertLessEqual(figures["status_late_ms"], 30)
+
+    # Shows: TIM-2
+    def test_the_hour_in_which_the_clock_wraps(self):
+        # 4294967.296 s are 1193.05 hours; the last of a thousand parts of 1194 hours begins at 1192.8
+        self.soak("--hours", 1194, "--seed", 1, "--shard", "1000/1000", "--results", "a")
+        self.assertEqual((self.figures("a")["wraps"], self.figures("a")["broken"]), (1, False))
+
+    def test_planted_mistakes_are_found(self):
+        for word, said in (("trip", "VCU_HEARTBEAT_LOST"), ("drift", "drift: status frame"),
+                           ("count", "frames received: counted")):
+            result = self.soak("--hours", 2, "--seed", 1, "--planted", word, "--results", "a", status=1)
+            self.assertIn("BROKEN: " + said, result.stdout)
+            self.assertTrue(self.figures("a")["broken"])
+
+    def stopped(self, *arguments):
+        """Run it for a second; whether it was stopped."""
+        with subprocess.Popen([hostsim.PROGRAM, "soak", *arguments], cwd=self.folder, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True) as process:
+            time.sleep(1)
+            process.send_signal(signal.SIGINT)
+            _, said = process.communicate(timeout=600)
+        if process.returncode != 0:
+            self.assertIn("the same command goes on", said)
+        return process.returncode != 0
+
+    def test_a_soak_that_was_stopped_ends_as_one_that_was_not(self):
+        arguments = ("--hours", "4", "--seed", "3", "--shard", "2/2")
+        self.soak(*arguments, "--results", "whole")
+        parts = (*arguments, "--results", "parts", "--checkpoint", "checkpoint")
+        self.assertTrue(self.stopped(*parts))
+        self.stopped(*parts)
+        self.soak(*parts)
+        self.assertEqual(self.figures("parts"), self.figures("whole"))
+
+    def test_options(self):
+        for arguments, says in (((), "--hours is missing"), (("--hours", "1"), "--seed is missing"),
+                                (("--hours", "0", "--seed", "1"), "--hours"), (("--hours", "1", "--seed", "x"), "--seed"),
+                                (("--hours", "1", "--seed", "1", "--shard", "2"), "--shard: '2'"),
+                                (("--hours", "1", "--seed", "1", "--planted", "x"), "--planted"),
+                                (("--hours", "1", "--seed", "1", "more"), "'more' is one too many"),
+                                (("--hours", "1", "--seed", "1", "--results", "a", "--checkpoint", "a"), "same file")):
+            self.assert_refused(self.run_program("soak", *arguments), says)
+
+    def test_checkpoints_that_are_none(self):
+        self.assertTrue(self.stopped("--hours", "100", "--seed", "1", "--checkpoint", "good"))
+        good = (self.folder / "good").read_bytes()
+        torn = good[:5000] + bytes([good[5000] ^ 1]) + good[5001:]
+        for name, content, says in (("text", b"hello\n", "no checkpoint"), ("torn", torn, "a torn checkpoint"),
+                                    ("cut", good[:-1], "a torn checkpoint"), ("more", good + b"x", "a torn checkpoint")):
+            self.write(name, content)
+            self.assert_refused(self.run_program("soak", "--hours", 100, "--seed", 1, "--checkpoint", name), name, says)
+        for other in (("--hours", 100, "--seed", 2), ("--hours", 101, "--seed", 1),
+                      ("--hours", 100, "--seed", 1, "--shard", "1/2")):
+            self.assert_refused(self.run_program("soak", *other, "--checkpoint", "good"), "another soak")
+
+
+if __name__ == "__main__":
+    unittest.main()
