@@ -160,3 +160,13 @@ void test_in_shadow_it_decides_as_always_and_counts_what_it_would_have_sent(void
         expect_the_same_decisions();
     }
 }
+
+/* Without a shadow what leaves is counted as sent, and as nothing else. */
+/* Shows: TOP-4 */
+void test_what_is_sent_is_counted_once(void) {
+    fixture_start(&f); /* INIT sends */
+    fixture_run(&f, 100);
+    TEST_ASSERT_EQUAL_UINT32(f.sent_count, agv_supervisor_counters(&f.supervisor)->sent);
+    TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->shadowed);
+    TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->gate_refused);
+}
