@@ -2,6 +2,7 @@
  * between two ticks; the next tick sees it. */
 #include "expect.h"
 #include "unity.h"
+#include "walk.h"
 
 static fixture_t f;
 
@@ -411,4 +412,17 @@ void test_a_late_step_in_init(void) {
     expect_reason(&f, AGV_FAULT_NONE);
     fixture_run(&f, 150);
     expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* 065h waits for a queue that is full, and is not wanted any more (manual): it cannot stall. */
+/* Shows: SUP-7, FSM-10, TX_STALLED */
+void test_what_is_not_wanted_any_more_is_not_stalled(void) {
+    walk_to_tripped(&f);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    fixture_run(&f, 30);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run(&f, 20);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    fixture_run(&f, 300);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_TX_STALLED));
 }
