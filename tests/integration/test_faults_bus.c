@@ -2,6 +2,7 @@
  * between two ticks; the next tick sees it. */
 #include "expect.h"
 #include "unity.h"
+#include "walk.h"
 
 static fixture_t f;
 
@@ -290,6 +291,8 @@ void test_bus_off_of_the_ai_side(void) {
 void test_what_waits_for_the_ai_side_is_gone_in_its_bus_off(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
     fixture_standby(&f);
+    fixture_run_before(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true); /* 43Fh waits for the other side: that is not touched */
     sim_hal_set_full(&f.hal, HAL_CAN_AI, true);
     fixture_run(&f, 30); /* every status message has come */
     fixture_mute_vcu(&f, true);
@@ -300,9 +303,25 @@ void test_what_waits_for_the_ai_side_is_gone_in_its_bus_off(void) {
     TEST_ASSERT_EQUAL_UINT32(dropped + 7, agv_supervisor_counters(&f.supervisor)->dropped);
     sim_hal_set_full(&f.hal, HAL_CAN_AI, false);
     set_state(HAL_CAN_AI, HAL_CAN_ERROR_ACTIVE);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
     fixture_forget_sent(&f);
     fixture_run(&f, 10);
-    expect_silence(&f);
+    TEST_ASSERT_EQUAL_UINT32(1, f.sent_count);
+    TEST_ASSERT_EQUAL_HEX16(0x43F, f.sent[0].id);
+}
+
+/* The safe commands wait for a queue that is full when it goes off: that is a bus-off, and no stalled request. */
+/* Shows: SUP-7, BUS_OFF, TX_STALLED */
+void test_in_bus_off_nothing_is_stalled(void) {
+    fixture_active(&f);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x80; /* S-driver alarm: trips */
+    fixture_run(&f, 50);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    set_state(HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
+    fixture_run(&f, 300);
+    expect_fault(&f, AGV_FAULT_BUS_OFF, true);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_TX_STALLED));
 }
 
 /* While engaged the AI side's bus-off does not trip by itself: the AI's silence does. */
@@ -393,4 +412,17 @@ void test_a_late_step_in_init(void) {
     expect_reason(&f, AGV_FAULT_NONE);
     fixture_run(&f, 150);
     expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* 065h waits for a queue that is full, and is not wanted any more (manual): it cannot stall. */
+/* Shows: SUP-7, FSM-10, TX_STALLED */
+void test_what_is_not_wanted_any_more_is_not_stalled(void) {
+    walk_to_tripped(&f);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    fixture_run(&f, 30);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run(&f, 20);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    fixture_run(&f, 300);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_TX_STALLED));
 }

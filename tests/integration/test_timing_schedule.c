@@ -165,3 +165,14 @@ void test_a_vehicle_that_stands_in_safe_for_longer_than_the_clock_can_be_reset(v
     fixture_run(&f, 1050);
     expect_state(&f, AGV_STATE_STANDBY);
 }
+
+/* 065h is due 25 ms and 50 ms after the trip, 075h 33 ms: a step 60 ms after it skips one slot. */
+/* Shows: TIM-1 */
+void test_one_skipped_slot_is_counted(void) {
+    f.config.eps_heartbeat_timeout_ms = 100;
+    f.config.eps_status_timeout_ms = 100;
+    walk_to_tripped(&f);
+    const uint32_t before = agv_supervisor_counters(&f.supervisor)->skipped_slots;
+    fixture_jump(&f, 60);
+    TEST_ASSERT_EQUAL_UINT32(before + 1, agv_supervisor_counters(&f.supervisor)->skipped_slots);
+}

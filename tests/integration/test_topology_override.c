@@ -446,3 +446,15 @@ void test_a_command_in_an_fd_frame_is_answered(void) {
                 (hal_can_frame_t){.id = 0x168, .flags = HAL_CAN_FD, .length = 8, .data = {GEAR_D}});
     expect_answered_in_this_call(0x168, "FD");
 }
+
+/* A step comes so late that an answer is due and the periodic slot too: one frame is enough. */
+/* Shows: TOP-1, TIM-1 */
+void test_an_answer_that_is_late_stands_for_the_slot_too(void) {
+    tripped();
+    foreign_gear(GEAR_D);
+    fixture_run(&f, 1);
+    foreign_gear(GEAR_D);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    fixture_jump(&f, 60);
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168));
+}

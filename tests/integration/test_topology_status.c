@@ -160,3 +160,29 @@ void test_in_shadow_it_decides_as_always_and_counts_what_it_would_have_sent(void
         expect_the_same_decisions();
     }
 }
+
+/* Without a shadow what leaves is counted as sent, and as nothing else. */
+/* Shows: TOP-4 */
+void test_what_is_sent_is_counted_once(void) {
+    fixture_start(&f); /* INIT sends */
+    fixture_run(&f, 100);
+    TEST_ASSERT_EQUAL_UINT32(f.sent_count, agv_supervisor_counters(&f.supervisor)->sent);
+    TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->shadowed);
+    TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->gate_refused);
+}
+
+/* After an overrun the frames stand on their old grid again: every 50 ms from the start. */
+/* Shows: TOP-3, TIM-1 */
+void test_the_status_frame_keeps_its_grid(void) {
+    f.config.status_frame_id = 0x123;
+    f.config.status_frame_period_ms = 50;
+    fixture_start(&f);
+    fixture_run(&f, 101);
+    fixture_forget_sent(&f);
+    fixture_jump(&f, 74); /* 175 ms: the one of 150 ms is late */
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x123));
+    fixture_run(&f, 24);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x123));
+    fixture_run(&f, 1);
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x123));
+}
