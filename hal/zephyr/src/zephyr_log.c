@@ -16,30 +16,49 @@ enum { LOG_MAGIC = 0x4C564741, BLOCK_MAX = 8 };
 static struct flash_sector sectors[CONFIG_AGV_LOG_SECTORS];
 static struct fcb log_buffer;
 
-static bool open_log(void) {
-    uint32_t count = ARRAY_SIZE(sectors);
-    log_buffer = (struct fcb){.f_magic = LOG_MAGIC, .f_version = LOG_VERSION, .f_sectors = sectors};
-    const int found = flash_area_get_sectors(LOG_AREA, &count, sectors);
-    log_buffer.f_sector_cnt = (uint8_t)count;
-    return ((found == 0) || (found == -ENOMEM)) && (fcb_init(LOG_AREA, &log_buffer) == 0);
+static bool head_is_broken(const struct flash_area *area, const struct flash_sector *sector) {
+    const uint32_t erased = flash_area_erased_val(area) * 0x01010101u;
+    const uint32_t wanted = LOG_MAGIC ^ ~erased;
+    uint32_t magic = 0u;
+    const bool read = flash_area_read(area, sector->fs_off, &magic, sizeof magic) == 0;
+    return !read || ((magic != erased) && (magic != wanted));
 }
 
-/* A power cut while a sector was begun or erased leaves a head that is none: FCB refuses the whole, so erase that one. */
-static void erase_broken_sectors(void) {
-    const struct flash_area *area = NULL;
-    if (flash_area_open(LOG_AREA, &area) != 0) {
-        return;
-    }
-    for (uint32_t i = 0u; i < log_buffer.f_sector_cnt; i++) {
-        const uint32_t erased = flash_area_erased_val(area) * 0x01010101u;
-        const uint32_t wanted = LOG_MAGIC ^ ~erased;
-        uint32_t magic = 0u;
-        const bool read = flash_area_read(area, sectors[i].fs_off, &magic, sizeof magic) == 0;
-        if (!read || ((magic != erased) && (magic != wanted))) {
-            (void)flash_area_flatten(area, sectors[i].fs_off, sectors[i].fs_size);
+/*
+ * A power cut while a sector was begun or erased leaves a head that is none, and FCB would refuse the whole for it. Such a
+ * sector is left out, or erased when `repair` says that the processor may stall. Returns how many are left in `sectors`.
+ */
+static uint32_t find_sectors(const struct flash_area *area, bool repair, bool *all) {
+    uint32_t count = ARRAY_SIZE(sectors);
+    uint32_t sound = 0u;
+    const int status = flash_area_get_sectors(LOG_AREA, &count, sectors);
+    *all = true;
+    for (uint32_t i = 0u; ((status == 0) || (status == -ENOMEM)) && (i < count); i++) {
+        bool broken = head_is_broken(area, &sectors[i]);
+        if (broken && repair) {
+            broken = flash_area_flatten(area, sectors[i].fs_off, sectors[i].fs_size) != 0;
+        }
+        if (broken) {
+            *all = false;
+        } else {
+            sectors[sound] = sectors[i];
+            sound++;
         }
     }
-    flash_area_close(area);
+    return sound;
+}
+
+static void open_log(hal_t *hal, bool repair) {
+    const struct flash_area *area = NULL;
+    hal->log_ready = false;
+    hal->log_is_whole = false;
+    if (flash_area_open(LOG_AREA, &area) == 0) {
+        const uint32_t count = find_sectors(area, repair, &hal->log_is_whole);
+        flash_area_close(area);
+        log_buffer = (struct fcb){
+            .f_magic = LOG_MAGIC, .f_version = LOG_VERSION, .f_sectors = sectors, .f_sector_cnt = (uint8_t)count};
+        hal->log_ready = (count > 0u) && (fcb_init(LOG_AREA, &log_buffer) == 0);
+    }
 }
 
 /* Never erases: what is broken is repaired when something is to be stored, where the processor may stall. */
@@ -50,14 +69,15 @@ bool zephyr_log_start(hal_t *hal) {
     }
     const bool fits = flash_area_align(area) <= BLOCK_MAX;
     flash_area_close(area);
-    hal->log_ready = fits && open_log();
+    if (fits) {
+        open_log(hal, false);
+    }
     return fits;
 }
 
 static bool ready(hal_t *hal) {
-    if (!hal->log_ready) {
-        erase_broken_sectors();
-        hal->log_ready = open_log();
+    if (!hal->log_ready || !hal->log_is_whole) {
+        open_log(hal, true);
     }
     return hal->log_ready;
 }

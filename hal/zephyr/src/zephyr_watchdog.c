@@ -23,7 +23,8 @@ static void on_expired(int channel, void *user_data) {
 bool zephyr_watchdog_start(hal_t *hal, uint32_t period_ms) {
     const struct device *const hardware = DEVICE_DT_GET_OR_NULL(DT_ALIAS(watchdog0));
     const bool is_there = (hardware != NULL) && device_is_ready(hardware);
-    const bool started = (task_wdt_init(is_there ? hardware : NULL) == 0);
+    static bool started; /* there is one in the kernel, and it cannot be stopped */
+    started = started || (task_wdt_init(is_there ? hardware : NULL) == 0);
     hal->watchdog_channel = task_wdt_add(period_ms, on_expired, NULL);
     return started && (hal->watchdog_channel >= 0) && (is_there || IS_ENABLED(CONFIG_AGV_WITHOUT_HARDWARE_WATCHDOG));
 }

@@ -9,6 +9,8 @@
 #include <zephyr/irq_offload.h>
 #include <zephyr/kernel.h>
 
+DEFINE_FFF_GLOBALS;
+
 fake_bus_t fake_buses[HAL_CAN_SIDES];
 
 static fake_bus_t *bus_of(const struct device *device) {

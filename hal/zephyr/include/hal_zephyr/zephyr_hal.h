@@ -79,8 +79,8 @@ struct hal {
     hal_reset_cause_t reset_cause;
     zephyr_hal_retained_t *retained;
     int watchdog_channel;
-    bool fed_once;
-    bool log_ready;
+    bool log_ready;    /**< it can be read */
+    bool log_is_whole; /**< and written: no sector has to be repaired first */
 };
 
 /** What the program says of its wiring. */

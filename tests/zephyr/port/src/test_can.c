@@ -47,6 +47,7 @@ ZTEST(port_can, test_a_controller_that_recovers_by_itself_is_refused) {
 ZTEST(port_can, test_a_frame_carries_the_time_of_its_arrival) {
     hal_can_side_t side;
     hal_can_frame_t frame;
+    k_msleep(5);
     const uint32_t arrived_ms = hal_clock_now_ms(&hal);
     arrive(HAL_CAN_VEHICLE, 0x363u, 0u);
     k_msleep(20);

@@ -120,6 +120,7 @@ ZTEST(port_reset, test_an_output_that_reads_closed_at_the_start_fails_the_self_t
     zassert_false(fixture_begin());
     zephyr_output_open_now();
     fixture_after(NULL);
+    fake_parts_reset();
     zassert_true(fixture_begin());
 }
 
