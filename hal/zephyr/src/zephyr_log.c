@@ -11,17 +11,26 @@
 enum { LOG_AREA = DT_FIXED_PARTITION_ID(DT_PHANDLE(ZEPHYR_HAL_NODE, log_partition)), LOG_VERSION = 1 };
 
 /* FCB writes a head of 8 bytes: flash that is written in larger blocks does not fit. */
-enum { LOG_MAGIC = 0x4C564741, BLOCK_MAX = 8 };
+enum { LOG_MAGIC = 0x4C564741, BLOCK_MAX = 8, ERASED = 0xFF };
 
 static struct flash_sector sectors[CONFIG_AGV_LOG_SECTORS];
 static struct fcb log_buffer;
 
+/* What FCB writes at the begin of a sector: 8 bytes. */
+typedef struct {
+    uint32_t magic;
+    uint8_t version;
+    uint8_t padding;
+    uint16_t id;
+} head_t;
+
+/* Neither erased nor written to its end. */
 static bool head_is_broken(const struct flash_area *area, const struct flash_sector *sector) {
-    const uint32_t erased = flash_area_erased_val(area) * 0x01010101u;
-    const uint32_t wanted = LOG_MAGIC ^ ~erased;
-    uint32_t magic = 0u;
-    const bool read = flash_area_read(area, sector->fs_off, &magic, sizeof magic) == 0;
-    return !read || ((magic != erased) && (magic != wanted));
+    head_t head;
+    const bool read = flash_area_read(area, sector->fs_off, &head, sizeof head) == 0;
+    const bool erased = head.magic == UINT32_MAX;
+    const bool whole = (head.magic == (uint32_t)LOG_MAGIC) && (head.version == LOG_VERSION) && (head.id != UINT16_MAX);
+    return !read || (!erased && !whole);
 }
 
 /*
@@ -67,7 +76,7 @@ bool zephyr_log_start(hal_t *hal) {
     if (flash_area_open(LOG_AREA, &area) != 0) {
         return false;
     }
-    const bool fits = flash_area_align(area) <= BLOCK_MAX;
+    const bool fits = (flash_area_align(area) <= BLOCK_MAX) && (flash_area_erased_val(area) == ERASED);
     flash_area_close(area);
     if (fits) {
         open_log(hal, false);
@@ -86,7 +95,7 @@ static bool ready(hal_t *hal) {
 static bool write_padded(struct fcb_entry place, const void *record, size_t size) {
     uint8_t padded[HAL_STORE_RECORD_SIZE_MAX];
     const struct flash_area *const area = log_buffer.fap;
-    (void)memset(padded, flash_area_erased_val(area), sizeof padded);
+    (void)memset(padded, ERASED, sizeof padded);
     (void)memcpy(padded, record, size);
     return flash_area_write(area, FCB_ENTRY_FA_DATA_OFF(place), padded, ROUND_UP(size, flash_area_align(area))) == 0;
 }

@@ -9,6 +9,13 @@ if(EXISTS ${AGV_TEST_COMMON}/boards/${BOARD}.overlay)
   list(APPEND DTC_OVERLAY_FILE ${AGV_TEST_COMMON}/boards/${BOARD}.overlay)
 endif()
 
+if(EXISTS ${AGV_TEST_COMMON}/boards/${BOARD}.conf)
+  list(APPEND CONF_FILE ${AGV_TEST_COMMON}/boards/${BOARD}.conf)
+endif()
+if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/app.overlay)
+  list(APPEND DTC_OVERLAY_FILE ${CMAKE_CURRENT_SOURCE_DIR}/app.overlay)
+endif()
+
 macro(add_agv_test)
   include(${AGV_ROOT}/firmware/zephyr/sources.cmake)
   target_sources(app PRIVATE ${AGV_CORE_SOURCES} ${AGV_ZEPHYR_PORT_SOURCES} ${AGV_APP_SOURCES} ${ARGN})

@@ -112,8 +112,7 @@ static void reset_buses(void) {
     }
 }
 
-void fake_parts_reset(void) {
-    reset_buses();
+void fake_parts_connect(void) {
     fake_can_start_fake.custom_fake = start;
     fake_can_get_capabilities_fake.custom_fake = get_capabilities;
     fake_can_set_mode_fake.custom_fake = set_mode;
@@ -124,6 +123,11 @@ void fake_parts_reset(void) {
     fake_can_get_state_fake.custom_fake = get_state;
     fake_can_recover_fake.custom_fake = recover;
     fake_can_set_state_change_callback_fake.custom_fake = set_state_callback;
+}
+
+void fake_parts_reset(void) {
+    reset_buses();
+    fake_parts_connect();
     fake_watchdog_feeds = 0u;
     fake_reset_flags = RESET_POR;
     fake_reset_error = 0;
@@ -170,6 +174,7 @@ uint32_t fake_watchdog_feeds;
 uint32_t fake_watchdog_ms;
 bool fake_watchdog_started;
 
+#if DT_HAS_COMPAT_STATUS_OKAY(agv_test_watchdog)
 static int watchdog_setup(const struct device *device, uint8_t options) {
     ARG_UNUSED(device);
     ARG_UNUSED(options);
@@ -198,7 +203,6 @@ static int watchdog_feed(const struct device *device, int channel) {
 static const struct wdt_driver_api watchdog_api = {
     .setup = watchdog_setup, .disable = watchdog_disable, .install_timeout = watchdog_install, .feed = watchdog_feed};
 
-#if DT_HAS_COMPAT_STATUS_OKAY(agv_test_watchdog)
 DEVICE_DT_DEFINE(DT_NODELABEL(test_watchdog), NULL, NULL, NULL, NULL, POST_KERNEL, CONFIG_KERNEL_INIT_PRIORITY_DEVICE,
                  &watchdog_api);
 #endif

@@ -45,6 +45,9 @@ extern fake_bus_t fake_buses[HAL_CAN_SIDES];
 /** All as after a power-on, in every test's "before". */
 void fake_parts_reset(void);
 
+/** can_fake forgets who stands behind it before each test; a suite that runs through several says it again. */
+void fake_parts_connect(void);
+
 /** A frame arrives, in an interrupt. */
 void fake_bus_frame(hal_can_side_t side, const struct can_frame *frame);
 

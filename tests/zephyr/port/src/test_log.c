@@ -107,8 +107,6 @@ ZTEST(port_log, test_records_of_every_size) {
         uint8_t read[HAL_STORE_RECORD_SIZE_MAX] = {0};
         (void)memset(record, (int)size, size);
         zassert_true(hal_store_append(&hal, record, size));
-        const uint32_t last = count() - 1u;
-        ARG_UNUSED(last);
         uint32_t index = 0u;
         while (hal_store_read_record(&hal, index + 1u, read, sizeof read) != 0u) {
             index++;
@@ -120,13 +118,13 @@ ZTEST(port_log, test_records_of_every_size) {
 
 ZTEST(port_log, test_when_it_is_full_the_oldest_are_dropped) {
     uint32_t kept = 0u;
-    for (uint32_t i = 0u; i < 2000u; i++) {
+    for (uint32_t i = 0u; i < 500u; i++) {
         zassert_true(append(i));
     }
     kept = count();
-    zassert_true(kept > 50u, "%u", kept);
+    zassert_true(kept > 20u, "%u", kept);
     for (uint32_t i = 0u; i < kept; i++) {
-        zassert_equal(number_at(i), 2000u - kept + i);
+        zassert_equal(number_at(i), 500u - kept + i);
     }
 }
 
