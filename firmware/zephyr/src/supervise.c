@@ -27,6 +27,18 @@ void supervise_start(supervise_t *self, agv_recorder_t *recorder, zephyr_hal_ret
     events_tell(recorder, &self->told);
 }
 
+static void count(supervise_t *self, const hal_can_frame_t *frame) {
+#if defined(CONFIG_AGV_SHELL)
+    const uint32_t message = agv_message_from_id(frame->id, agv_supervisor_config(&self->supervisor)->id_set);
+    if (message < (uint32_t)AGV_MSG_COUNT) {
+        self->frames[message]++;
+    }
+#else
+    ARG_UNUSED(self);
+    ARG_UNUSED(frame);
+#endif
+}
+
 /* Whether the queues were emptied. */
 static bool take_frames(supervise_t *self) {
     hal_can_side_t side;
@@ -36,6 +48,7 @@ static bool take_frames(supervise_t *self) {
             return true;
         }
         agv_supervisor_frame(&self->supervisor, &self->ports, side, &frame);
+        count(self, &frame);
     }
     return false;
 }
