@@ -54,6 +54,14 @@ plant() {
     plant firmware/src/codec.c 'bool x(void) { return hal_can_send(0, HAL_CAN_VEHICLE, 0); }' 'past the gate'
 }
 
+@test "layers: the firmware's program that sends by itself" {
+    plant firmware/zephyr/src/planted.c 'bool x(void) { return hal_can_send(0, HAL_CAN_VEHICLE, 0); }' 'past the gate'
+}
+
+@test "layers: the firmware's program that uses a driver" {
+    plant firmware/zephyr/src/planted.c '#include <zephyr/drivers/can.h>' 'goes past the port'
+}
+
 @test "layers: nothing to check" {
     mkdir -p firmware/include firmware/src hal/include
     fails_with "nothing to check" "$ROOT/scripts/check-layers" "$PWD"
