@@ -1,8 +1,8 @@
 /*
  * Failure at every operation: a round through all states, a bus-off and two restarts, in which each single call of the HAL
- * is made to fail once; where it is one of the rarer ones also with the 24 calls after it, and for good. Never a frame
- * that FSM-6 forbids, never a latch undone but by a reset under its conditions; what was sent is what is counted, and a
- * controller that takes nothing is noticed. rules.h judges.
+ * is made to fail once; where it is one of the rarer ones also with the 24 calls after it, with these while the vehicle
+ * trips it, and for good. Never a frame that FSM-6 forbids, never a latch undone but by a reset under its conditions; what
+ * was sent is what is counted, and a controller that takes nothing is noticed. rules.h judges.
  *
  * usage: hal_failures [--shard I/N] [--every N]     the calls of one shard, the N-th calls only
  */
@@ -147,9 +147,11 @@ static void judge_stalled(uint32_t count, uint32_t ops) {
     sum.noticed++;
 }
 
-static void fail(const char *where, act_t what, uint32_t call, uint32_t count, uint32_t ops, uint32_t follow_ms) {
+static void fail(const char *where, act_t what, uint32_t call, uint32_t count, uint32_t ops, uint32_t follow_ms,
+                 bool trip) {
     const uint32_t before = moment.hal.failures;
     moment_restore();
+    world.traffic[VEHICLE].data[4] = trip ? 0x80 : world.traffic[VEHICLE].data[4]; /* the S-driver alarm */
     harm[0] = '\0';
     is_failing = true;
     failing_ops = ops;
@@ -201,10 +203,11 @@ static void fail_one(const char *where, act_t what, uint32_t call) {
     const bool common = (op == SIM_HAL_OP_CAN_STATUS) || (op == SIM_HAL_OP_WATCHDOG_FEED);
     sum.calls++;
     sum.of_op[op]++;
-    fail(where, what, call, 1, 1u << op, common ? FOLLOW_COMMON_MS : FOLLOW_MS);
+    fail(where, what, call, 1, 1u << op, common ? FOLLOW_COMMON_MS : FOLLOW_MS, false);
     if (!common || (sum.of_op[op] % (unsigned)COMMON_EVERY == 0u)) {
-        fail(where, what, call, RUN_OF_CALLS, SIM_HAL_OP_ALL, FOLLOW_MS);
-        fail(where, what, call, UINT32_MAX, 1u << op, FOLLOW_LONG_MS);
+        fail(where, what, call, RUN_OF_CALLS, SIM_HAL_OP_ALL, FOLLOW_MS, false);
+        fail(where, what, call, RUN_OF_CALLS, SIM_HAL_OP_ALL, FOLLOW_MS, true);
+        fail(where, what, call, UINT32_MAX, 1u << op, FOLLOW_LONG_MS, false);
     }
 }
 
