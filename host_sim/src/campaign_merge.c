@@ -94,7 +94,8 @@ static bool read_run(shard_t *shard, uint64_t run, campaign_sample_t *sample) {
 
 /** Put the shards in their order. @return false: they are not of one campaign; reported */
 static bool sort_shards(shard_t *shards, size_t count, campaign_part_t *whole) {
-    shard_t sorted[SHARDS_MAX] = {{NULL}};
+    shard_t sorted[SHARDS_MAX];
+    memset(sorted, 0, sizeof sorted);
     for (size_t i = 0u; i < count; i++) {
         campaign_part_t part;
         if (!read_part(&shards[i], &part)) {
