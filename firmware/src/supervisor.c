@@ -24,13 +24,6 @@ static void advance(agv_core_t *core, uint32_t moment_ms, uint32_t moment_us) {
     }
 }
 
-/* TIM-4. Frames may tell of it first: with a backlog they come before the tick, and only ticks judge deadlines. */
-static void judge_step(agv_core_t *core) {
-    if ((core->now_ms - core->last_tick_ms) > ((uint32_t)core->config.watchdog_period_ms + 1u)) {
-        agv_faults_event(core, AGV_FAULT_STEP_OVERRUN);
-    }
-}
-
 static void attach(agv_core_t *core, const agv_ports_t *ports) {
     core->hal = ports->hal;
     core->recorder = ports->recorder;
@@ -45,7 +38,6 @@ static agv_core_t *open_core(agv_supervisor_t *supervisor, const agv_ports_t *po
     attach(core, ports);
     if (intact) {
         advance(core, moment_ms, moment_us);
-        judge_step(core);
     } else {
         core->now_ms = moment_ms;
         core->now_us = moment_ms * 1000u;
@@ -62,6 +54,9 @@ static void close_core(agv_supervisor_t *supervisor) {
 
 static uint32_t step_time(agv_core_t *core) {
     const uint32_t elapsed_ms = core->now_ms - core->last_tick_ms;
+    if (agv_core_step_is_late(core)) {
+        agv_faults_event(core, AGV_FAULT_STEP_OVERRUN);
+    }
     core->last_tick_ms = core->now_ms;
     return elapsed_ms;
 }

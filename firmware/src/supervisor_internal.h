@@ -14,6 +14,9 @@
  */
 bool agv_core_react(agv_core_t *core);
 
+/** Whether the next step is overdue by more than the watchdog's period (TIM-4): only steps look at deadlines. */
+bool agv_core_step_is_late(const agv_core_t *core);
+
 /** Record an event. @param what agv_event_kind_t, and AGV_MISSING_* in the byte above */
 void agv_core_record(const agv_core_t *core, uint32_t what, uint32_t a, uint32_t b, uint32_t c);
 

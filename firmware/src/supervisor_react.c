@@ -112,13 +112,19 @@ static bool output_is_unsafe(agv_core_t *core) {
            agv_faults_is_active(core, AGV_FAULT_TX_STALLED);
 }
 
+bool agv_core_step_is_late(const agv_core_t *core) {
+    return (core->now_ms - core->last_tick_ms) > ((uint32_t)core->config.watchdog_period_ms + 1u);
+}
+
 static uint32_t facts_of(agv_core_t *core) {
     uint32_t facts = agv_monitor_standstill(core) ? AGV_FACT_STANDSTILL : 0u;
     facts |= output_is_unsafe(core) ? AGV_FACT_OUTPUT_UNSAFE : 0u;
     facts |= agv_monitor_messages_fresh(core) ? AGV_FACT_MESSAGES : 0u;
     facts |= agv_monitor_autopilot_off(core) ? AGV_FACT_AUTOPILOT_OFF : 0u;
     facts |= agv_monitor_in_park(core) ? AGV_FACT_IN_PARK : 0u;
-    facts |= agv_core_alive(core, AGV_NODE_VCU) ? AGV_FACT_VCU_ALIVE : 0u;
+    if (agv_core_alive(core, AGV_NODE_VCU) && !agv_core_step_is_late(core)) { /* else nobody looked at deadlines */
+        facts |= AGV_FACT_VCU_ALIVE;
+    }
     facts |= agv_core_alive(core, AGV_NODE_EPS) ? AGV_FACT_EPS_ALIVE : 0u;
     facts |= agv_core_alive(core, AGV_NODE_AI) ? AGV_FACT_AI_ALIVE : 0u;
     facts |= core->vehicle.mode;

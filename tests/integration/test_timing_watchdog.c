@@ -142,16 +142,18 @@ void test_after_a_second_it_can_be_reset(void) {
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
-/* No tick after T. Frames of up to T + 101 change nothing, the next one tells of it: T + 110 at the latest. */
-/* Shows: TIM-4, STEP_OVERRUN */
-void test_a_late_step_is_told_by_the_next_frame_too(void) {
-    fixture_standby(&f);
+/* Only ticks judge deadlines: what is alive and fresh is not known without them. */
+/* Shows: TIM-4, FSM-4 */
+void test_init_is_not_left_while_steps_stay_away(void) {
+    fixture_start(&f);
+    fixture_run(&f, 300);
     f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF;
-    fixture_run_without_ticks(&f, 101);
-    expect_state(&f, AGV_STATE_STANDBY);
-    fixture_run_without_ticks(&f, 10);
-    expect_state(&f, AGV_STATE_SAFE); /* it stands in P and in manual already */
-    expect_reason(&f, AGV_FAULT_STEP_OVERRUN);
+    fixture_run_without_ticks(&f, 1500);
+    expect_state(&f, AGV_STATE_INIT);
+    expect_output(&f, false);
+    fixture_run(&f, 1);
+    expect_state(&f, AGV_STATE_INIT);
+    expect_fault(&f, AGV_FAULT_STEP_OVERRUN, true);
 }
 
 /* Only ticks judge deadlines: so nobody has noticed that the VCU is silent when the second of the press is over. */
