@@ -21,8 +21,8 @@ static const uint8_t reserved[AGV_COMMAND_COUNT][AGV_DLC] = {{0xFFu, 0xFFu, 0xFF
 
 static bool reserved_are_zero(uint32_t command, const uint8_t data[AGV_DLC]) {
     uint32_t any = 0u;
-    /*@ // for scripts/proofs/gate
-        loop invariant 0 <= i <= 8;
+    /* for scripts/proofs/gate */
+    /*@ loop invariant 0 <= i <= 8;
         loop invariant any == 0 <==> \forall integer j; 0 <= j < i ==> (data[j] & reserved[command][j]) == 0;
         loop assigns i, any;
         loop variant 8 - i; */

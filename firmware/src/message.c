@@ -23,8 +23,8 @@ uint16_t agv_message_id(uint32_t message, uint32_t id_set) {
 
 uint32_t agv_message_from_id(uint32_t id, uint32_t id_set) {
     uint32_t message = is_id_set(id_set) ? 0u : (uint32_t)AGV_MSG_NONE;
-    /*@ // for scripts/proofs/gate
-        loop invariant message <= 11 && (id_set > 1 ==> message == 11);
+    /* for scripts/proofs/gate */
+    /*@ loop invariant message <= 11 && (id_set > 1 ==> message == 11);
         loop invariant id_set <= 1 ==> \forall integer m; 0 <= m < message ==> ids[id_set][m] != id;
         loop assigns message;
         loop variant 11 - message; */
