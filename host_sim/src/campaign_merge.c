@@ -1,10 +1,12 @@
 /* The shards of a campaign, read side by side: run k is in the file of shard k % n + 1. */
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "agv/names.h"
 #include "campaign_result.h"
@@ -151,15 +153,34 @@ static bool merge(shard_t *shards, size_t count, campaign_samples_t *samples, ou
     return good;
 }
 
+static bool open_shard(shard_t *shard) {
+    const int fd = open(shard->path, O_RDONLY | O_CLOEXEC);
+    if (fd < 0) {
+        return report("%s: %s", shard->path, strerror(errno));
+    }
+    shard->stream = fdopen(fd, "r");
+    if (shard->stream == NULL) {
+        (void)close(fd);
+        return report("%s: %s", shard->path, strerror(errno));
+    }
+    return true;
+}
+
 static bool open_shards(shard_t *shards, char *const files[], size_t count) {
     for (size_t i = 0u; i < count; i++) {
         shards[i].path = files[i];
-        shards[i].stream = fopen(files[i], "r");
-        if (shards[i].stream == NULL) {
-            return report("%s: %s", files[i], strerror(errno));
+        if (!open_shard(&shards[i])) {
+            return false;
         }
     }
     return true;
+}
+
+static void close_shard(shard_t *shard) {
+    if (shard->stream != NULL) {
+        (void)fclose(shard->stream);
+    }
+    free(shard->line);
 }
 
 bool campaign_merge(char *const files[], size_t count, campaign_samples_t *samples, output_t *merged) {
@@ -169,10 +190,7 @@ bool campaign_merge(char *const files[], size_t count, campaign_samples_t *sampl
     }
     const bool good = open_shards(shards, files, count) && merge(shards, count, samples, merged);
     for (size_t i = 0u; i < count; i++) {
-        if (shards[i].stream != NULL) {
-            (void)fclose(shards[i].stream);
-        }
-        free(shards[i].line);
+        close_shard(&shards[i]);
     }
     free(shards);
     return good;
