@@ -1,8 +1,8 @@
 # How this project's own code is compiled. Link `agv_options` (PRIVATE) to get it; generated and foreign code does not.
 
 option(AGV_WARNINGS_AS_ERRORS "Warnings in the project's own code are errors" ON)
-set(AGV_INSTRUMENT "" CACHE STRING "Instrumentation: empty, sanitize, coverage, mcdc, mutation or fuzz")
-set_property(CACHE AGV_INSTRUMENT PROPERTY STRINGS "" sanitize coverage mcdc mutation fuzz)
+set(AGV_INSTRUMENT "" CACHE STRING "Instrumentation: empty, sanitize, coverage, mcdc, mutation, fuzz or profile")
+set_property(CACHE AGV_INSTRUMENT PROPERTY STRINGS "" sanitize coverage mcdc mutation fuzz profile)
 
 add_library(agv_options INTERFACE)
 target_compile_options(agv_options INTERFACE
@@ -45,7 +45,10 @@ elseif(AGV_INSTRUMENT STREQUAL "mutation")
   set(AGV_CORE_KIND SHARED)
   set(CMAKE_SKIP_RPATH ON)
   add_link_options(-Wl,--allow-shlib-undefined)
+elseif(AGV_INSTRUMENT STREQUAL "profile") # see AgvProfile.cmake
+  add_compile_options(-fprofile-generate -fprofile-update=single)
+  add_link_options(-fprofile-generate)
 elseif(NOT AGV_INSTRUMENT STREQUAL "")
   message(FATAL_ERROR
-    "AGV_INSTRUMENT is '${AGV_INSTRUMENT}': it must be empty, sanitize, coverage, mcdc, mutation or fuzz")
+    "AGV_INSTRUMENT is '${AGV_INSTRUMENT}': it must be empty, sanitize, coverage, mcdc, mutation, fuzz or profile")
 endif()
