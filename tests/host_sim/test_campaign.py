@@ -10,7 +10,7 @@ import hostsim
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PICTURE = ROOT / "scripts/campaign-picture"
-RUNS = 150
+RUNS = 150 if hostsim.PART == 1 else 45
 
 
 class Campaign(hostsim.Case):
