@@ -7,7 +7,7 @@ compile() {
     ${CC:-cc} -std=c11 -O2 -w -I"$2" -Ifirmware/include -Ihal/include -Ihal/sim/include -Itests/fuzz -Itests/integration \
         -Itests/proof \
         "$2"/*.c hal/sim/src/*.c tests/fuzz/world.c tests/fuzz/rules.c tests/integration/oracle.c \
-        tests/proof/moment.c "$1" -o "$3"
+        tests/proof/moment.c tests/proof/part.c "$1" -o "$3"
 }
 
 # A copy of the core with texts replaced. plant FOLDER [FILE OLD NEW]...

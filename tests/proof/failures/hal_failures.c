@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "moment.h"
+#include "part.h"
 
 enum {
     FOLLOW_COMMON_MS = 120,
@@ -181,9 +182,7 @@ static void on_alarm(int number) {
     _exit(write(STDOUT_FILENO, TEXT, sizeof TEXT - 1u) > 0 ? 1 : 3);
 }
 
-static unsigned shard;
-static unsigned shards = 1;
-static unsigned every = 1;
+static part_t part;
 static unsigned call_number;
 
 /* Which operation the call of this number is. */
@@ -224,7 +223,7 @@ static void step(const char *where, act_t what) {
     }
     for (uint32_t i = 1; i <= count; i++) {
         const unsigned number = call_number++;
-        if ((number % shards == shard) && ((number / shards) % every == 0u)) {
+        if ((number % part.shards == part.shard) && ((number / part.shards) % part.every == 0u)) {
             fail_one(where, what, calls + i);
         }
     }
@@ -287,26 +286,8 @@ static void round_of(unsigned variant) {
     }
 }
 
-static void read_options(int argc, char **argv) {
-    for (int i = 1; i + 1 < argc; i += 2) {
-        if (strcmp(argv[i], "--shard") == 0) {
-            char *end = NULL;
-            shard = (unsigned)strtoul(argv[i + 1], &end, 10);
-            shards = (*end == '/') ? (unsigned)strtoul(end + 1, NULL, 10) : 0u;
-        } else if (strcmp(argv[i], "--every") == 0) {
-            every = (unsigned)strtoul(argv[i + 1], NULL, 10);
-        } else {
-            shards = 0;
-        }
-    }
-    if (((argc % 2) == 0) || (shards == 0u) || (shard >= shards) || (every == 0u)) {
-        (void)fprintf(stderr, "usage: hal_failures [--shard I/N] [--every N]     I from 0\n");
-        exit(2);
-    }
-}
-
 int main(int argc, char **argv) {
-    read_options(argc, argv);
+    part = part_read("hal_failures", argc, argv);
     world_on_broken = on_broken;
     (void)signal(SIGALRM, on_alarm);
     for (unsigned variant = 0; variant < (unsigned)WORLD_VARIANTS; variant++) {

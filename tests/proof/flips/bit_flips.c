@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "moment.h"
+#include "part.h"
 
 enum { BITS = 8 * sizeof(agv_supervisor_t), SEALED_BITS = 8 * offsetof(agv_supervisor_t, receive_alive) };
 enum { SHORT_MS = 40, LONG_MS = 1300, LONG_EVERY = 61 };
@@ -140,20 +141,18 @@ static void flip(unsigned bit) {
 
 /* ---- Moments ---- */
 
-static unsigned shard;
-static unsigned shards = 1;
-static unsigned every = 1;
+static part_t part;
 static unsigned moment_number;
 
 static void flip_each_bit(const char *name, unsigned variant, unsigned state) {
     static char text[120];
-    if (moment_number++ % shards != shard) {
+    if (moment_number++ % part.shards != part.shard) {
         return;
     }
     (void)snprintf(text, sizeof text, "variant %u, state %u, %s", variant, state, name);
     situation = text;
     moment_save();
-    for (unsigned bit = (unsigned)(sum.moments % every); bit < (unsigned)BITS; bit += every) {
+    for (unsigned bit = (unsigned)(sum.moments % part.every); bit < (unsigned)BITS; bit += part.every) {
         moment_restore();
         flip(bit);
     }
@@ -253,26 +252,8 @@ static void all_moments(void) {
 
 /* ---- */
 
-static void read_options(int argc, char **argv) {
-    for (int i = 1; i + 1 < argc; i += 2) {
-        if (strcmp(argv[i], "--shard") == 0) {
-            char *end = NULL;
-            shard = (unsigned)strtoul(argv[i + 1], &end, 10);
-            shards = (*end == '/') ? (unsigned)strtoul(end + 1, NULL, 10) : 0u;
-        } else if (strcmp(argv[i], "--every") == 0) {
-            every = (unsigned)strtoul(argv[i + 1], NULL, 10);
-        } else {
-            shards = 0;
-        }
-    }
-    if (((argc % 2) == 0) || (shards == 0u) || (shard >= shards) || (every == 0u)) {
-        (void)fprintf(stderr, "usage: bit_flips [--shard I/N] [--every N]     I from 0\n");
-        exit(2);
-    }
-}
-
 int main(int argc, char **argv) {
-    read_options(argc, argv);
+    part = part_read("bit_flips", argc, argv);
     world_on_broken = on_broken;
     all_moments();
     (void)printf("moments: %llu INIT, %llu STANDBY, %llu ACTIVE, %llu TRIPPED, %llu SAFE; %u of %u bits are sealed\n",
