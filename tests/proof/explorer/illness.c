@@ -1,0 +1,150 @@
+/* What may be wrong with the vehicle, and what its traffic looks like then. */
+#include "stage.h"
+
+const illness_row_t ILLNESS[ILLNESSES] = {
+    [ILL_NOTHING] = {"healthy", NULL, NULL, true},
+    [ILL_VCU_SILENT] = {"VCU silent", "VCU_HEARTBEAT_LOST", NULL, true},
+    [ILL_VCU_FROZEN] = {"VCU counter frozen", "VCU_HEARTBEAT_STUCK", NULL, false},
+    [ILL_VCU_SHORT] = {"VCU sends short frames", "VCU_HEARTBEAT_LOST", NULL, false},
+    [ILL_EPS_SILENT] = {"EPS silent", "EPS_HEARTBEAT_LOST", NULL, false},
+    [ILL_EPS_FROZEN] = {"EPS counter frozen", "EPS_HEARTBEAT_STUCK", NULL, false},
+    [ILL_AI_SILENT] = {"AI silent", "STEERING_COMMAND_TIMEOUT", NULL, true},
+    [ILL_AI_FROZEN] = {"AI counter frozen", "AI_HEARTBEAT_STUCK", NULL, false},
+    [ILL_AI_SHORT] = {"AI sends short frames", "STEERING_COMMAND_TIMEOUT", NULL, false},
+    [ILL_ALL_SILENT] = {"all silent", "VCU_HEARTBEAT_LOST", "EPS_HEARTBEAT_LOST", false},
+    [ILL_GEAR_STATUS_SILENT] = {"0A3h silent", "GEAR_STATUS_TIMEOUT", NULL, false},
+    [ILL_THROTTLE_STATUS_SILENT] = {"050h silent", "THROTTLE_STATUS_TIMEOUT", NULL, false},
+    [ILL_WHEELS_SILENT] = {"101h silent", "WHEEL_SPEED_TIMEOUT", NULL, false},
+    [ILL_EPS_STATUS_SILENT] = {"167h silent", "EPS_STATUS_TIMEOUT", NULL, false},
+    [ILL_GEAR_COMMAND_SILENT] = {"168h silent", "GEAR_COMMAND_TIMEOUT", NULL, false},
+    [ILL_STEERING_COMMAND_SILENT] = {"065h silent", "STEERING_COMMAND_TIMEOUT", NULL, false},
+    [ILL_EPS_FAULT] = {"EPS fault bit", "EPS_OVER_CURRENT_SHUTDOWN", NULL, true},
+    [ILL_EPS_SUPPLY] = {"EPS under voltage", "EPS_UNDER_VOLTAGE", NULL, false},
+    [ILL_VCU_ALARM] = {"S-driver alarm", "S_DRIVER_ALARM", NULL, false},
+    [ILL_VCU_AI_ALARM] = {"VCU alarm: AI lost", "VCU_AI_CAN_LOST", NULL, false},
+    [ILL_AI_OUT_OF_RANGE] = {"AI gear out of range", "AI_COMMAND_OUT_OF_RANGE", NULL, false},
+    [ILL_AI_BABBLES] = {"AI babbles 168h", "COMMAND_TOO_FAST", NULL, false},
+    [ILL_GEAR_INVALID] = {"0A3h invalid", "GEAR_STATUS_INVALID", NULL, false},
+    [ILL_ANGLE_INVALID] = {"067h angle invalid", "STEERING_ANGLE_INVALID", NULL, false},
+    [ILL_EPS_MODE_OFF] = {"EPS mode off", "EPS_MODE_OFF", NULL, false},
+    [ILL_STEERING_OFF] = {"steering 60 degrees off", "STEERING_DEVIATION", NULL, false},
+    [ILL_THROTTLE] = {"050h above 0", "THROTTLE_IN_PARK", NULL, false},
+    [ILL_FOREIGN] = {"foreign 168h D on the vehicle side", "FOREIGN_COMMAND_SENDER", NULL, true},
+    [ILL_RECEIVE_DEAD] = {"receive path does not check in", NULL, NULL, false},
+};
+
+enum { SHORT = 5, EPS_FAULTS = 7, ALARMS = 4, EPS_MODE = 3, ANGLE_LOW = 2, ANGLE_HIGH = 3 };
+
+static void mute(unsigned first, unsigned last) {
+    for (unsigned m = first; m <= last; m++) {
+        world.traffic[m].muted = true;
+    }
+}
+
+static void shorten(unsigned first, unsigned last) {
+    for (unsigned m = first; m <= last; m++) {
+        world.traffic[m].length = SHORT;
+    }
+}
+
+/* Nodes and messages that do not come, or not as they should. */
+static void dress_silent(illness_t illness) {
+    switch (illness) {
+    case ILL_VCU_SILENT:
+        mute(M_VEHICLE, M_THROTTLE_STATUS);
+        mute(M_WHEELS, M_WHEELS);
+        break;
+    case ILL_EPS_SILENT:
+        mute(M_STEERING_STATUS, M_POSITION);
+        break;
+    case ILL_AI_SILENT:
+        mute(M_SIGNALS, M_STEERING);
+        break;
+    case ILL_ALL_SILENT:
+        mute(M_SIGNALS, M_WHEELS);
+        break;
+    case ILL_GEAR_STATUS_SILENT:
+        mute(M_GEAR_STATUS, M_GEAR_STATUS);
+        break;
+    case ILL_THROTTLE_STATUS_SILENT:
+        mute(M_THROTTLE_STATUS, M_THROTTLE_STATUS);
+        break;
+    case ILL_WHEELS_SILENT:
+        mute(M_WHEELS, M_WHEELS);
+        break;
+    case ILL_EPS_STATUS_SILENT:
+        mute(M_EPS_STATUS, M_EPS_STATUS);
+        break;
+    case ILL_GEAR_COMMAND_SILENT:
+        mute(M_GEAR, M_GEAR);
+        break;
+    case ILL_STEERING_COMMAND_SILENT:
+        mute(M_STEERING, M_STEERING);
+        break;
+    case ILL_VCU_SHORT:
+        shorten(M_VEHICLE, M_THROTTLE_STATUS);
+        shorten(M_WHEELS, M_WHEELS);
+        break;
+    case ILL_AI_SHORT:
+        shorten(M_SIGNALS, M_STEERING);
+        break;
+    default:
+        break;
+    }
+}
+
+/* Values. */
+static void dress_values(illness_t illness) {
+    world_message_t *t = world.traffic;
+    switch (illness) {
+    case ILL_VCU_FROZEN:
+        t[M_VEHICLE].frozen = true;
+        break;
+    case ILL_EPS_FROZEN:
+        t[M_STEERING_STATUS].frozen = true;
+        break;
+    case ILL_AI_FROZEN:
+        t[M_SIGNALS].frozen = true;
+        break;
+    case ILL_EPS_FAULT:
+        t[M_EPS_STATUS].data[EPS_FAULTS] = 0x08;
+        break;
+    case ILL_EPS_SUPPLY:
+        t[M_EPS_STATUS].data[EPS_FAULTS] = 0x01;
+        break;
+    case ILL_VCU_ALARM:
+        t[M_VEHICLE].data[ALARMS] = 0x80;
+        break;
+    case ILL_VCU_AI_ALARM:
+        t[M_VEHICLE].data[ALARMS] = 0x08;
+        break;
+    case ILL_AI_OUT_OF_RANGE:
+        t[M_GEAR].data[0] = 3;
+        break;
+    case ILL_GEAR_INVALID:
+        t[M_GEAR_STATUS].data[0] = 3;
+        break;
+    case ILL_ANGLE_INVALID:
+        t[M_STEERING_STATUS].data[ANGLE_LOW] = 0xFF;
+        t[M_STEERING_STATUS].data[ANGLE_HIGH] = 0xFF;
+        break;
+    case ILL_EPS_MODE_OFF:
+        t[M_EPS_STATUS].data[EPS_MODE] = 0;
+        break;
+    case ILL_STEERING_OFF:
+        t[M_STEERING_STATUS].data[ANGLE_LOW] = 0xD0; /* 20D0h: 60.0 degrees from the middle, 66.0 from the command */
+        t[M_STEERING_STATUS].data[ANGLE_HIGH] = 0x20;
+        break;
+    case ILL_THROTTLE:
+        t[M_THROTTLE_STATUS].data[0] = 100;
+        break;
+    default:
+        break;
+    }
+}
+
+void illness_dress(illness_t illness) {
+    dress_silent(illness);
+    dress_values(illness);
+    world.receive_path_dead = illness == ILL_RECEIVE_DEAD;
+}
