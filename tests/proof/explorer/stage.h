@@ -161,7 +161,7 @@ typedef struct {
     const char *name;
     const char *fault;        /* that is the reason of a trip, when it trips */
     const char *frozen_fault; /* NULL, or the other one it may be */
-    bool quick;               /* in the short run, too */
+    uint8_t like;             /* illness that has the same effect where no autopilot is supervised (abstract.h) */
 } illness_row_t;
 extern const illness_row_t ILLNESS[ILLNESSES];
 void illness_dress(illness_t illness);
