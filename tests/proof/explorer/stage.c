@@ -29,8 +29,7 @@ stage_t stage;
 const stage_variant_t *stage_variant;
 hal_can_frame_t stage_last_frame;
 hal_can_side_t stage_last_side;
-void (*stage_before)(uint32_t at_ms);
-void (*stage_after)(void);
+const stage_teller_t *stage_teller;
 
 static sim_hal_sink_fn *judge_sent;
 
@@ -182,15 +181,15 @@ static void follow_controller(void) {
 }
 
 static void before(void) {
-    if (stage_before != NULL) {
-        stage_before(stage_now_ms() + 1u);
+    if (stage_teller != NULL) {
+        stage_teller->before(stage_now_ms() + 1u);
     }
 }
 
 static void after(void) {
     judge();
-    if (stage_after != NULL) {
-        stage_after();
+    if (stage_teller != NULL) {
+        stage_teller->after();
     }
 }
 
@@ -228,6 +227,9 @@ void stage_deliver(hal_can_side_t side, const hal_can_frame_t *frames, unsigned 
     before();
     world.now_ms++;
     for (unsigned i = 0; i < count; i++) {
+        if (stage_teller != NULL) {
+            stage_teller->delivered(side, &frames[i]);
+        }
         world_frame(side, frames[i], 0);
     }
     finish_ms();
@@ -255,6 +257,9 @@ void stage_speak(void) {
             world.traffic[m].frozen = false;
             world.traffic[m].counter = (uint8_t)(kept.counter + 100u);
             send(m);
+            if (stage_teller != NULL) {
+                stage_teller->spoke(m);
+            }
             world.traffic[m].frozen = kept.frozen;
             world.traffic[m].muted = kept.muted;
         }
@@ -278,8 +283,11 @@ static void judge_damaged(bool power_on) {
 }
 
 void stage_restart(hal_reset_cause_t cause) {
-    empty_recorder();
     before();
+    empty_recorder();
+    if (stage_teller != NULL) {
+        stage_teller->restarted(cause);
+    }
     world.now_ms++;
     sim_hal_set_now_ms(&world.hal, (uint32_t)world.now_ms + world.offset_ms);
     stage.frames = 0;
@@ -295,9 +303,18 @@ void stage_restart(hal_reset_cause_t cause) {
     finish_ms();
 }
 
+static void tell_pause(uint32_t ms, bool frames_come) {
+    if (stage_teller != NULL) {
+        stage_teller->without_ticks(ms, frames_come);
+    }
+}
+
 void stage_late(uint32_t ms) {
     for (uint32_t i = 0; i < ms; i++) {
         before();
+        if (i == 0u) {
+            tell_pause(ms, true);
+        }
         world.now_ms++;
         send_due();
     }
@@ -308,6 +325,7 @@ void stage_late(uint32_t ms) {
 
 void stage_sleep(uint32_t ms) {
     before();
+    tell_pause(ms, false);
     world.now_ms += ms;
     finish_ms();
 }

@@ -128,9 +128,16 @@ const char *stage_broken(void);
 extern hal_can_frame_t stage_last_frame;
 extern hal_can_side_t stage_last_side;
 
-/* Called before each millisecond with its number, and after it. For the one who writes it all down; else NULL. */
-extern void (*stage_before)(uint32_t at_ms);
-extern void (*stage_after)(void);
+/* Who is told what happens, to write it down. A millisecond begins with `before`, then comes what is done in it. */
+typedef struct {
+    void (*before)(uint32_t at_ms);
+    void (*after)(void);
+    void (*delivered)(hal_can_side_t side, const hal_can_frame_t *frame);
+    void (*spoke)(unsigned message);
+    void (*restarted)(hal_reset_cause_t cause);
+    void (*without_ticks)(uint32_t ms, bool frames_come);
+} stage_teller_t;
+extern const stage_teller_t *stage_teller; /* NULL: nobody */
 
 /* The messages, in the order of world.h. */
 enum {
