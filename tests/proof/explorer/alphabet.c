@@ -47,6 +47,7 @@ static void go_on(unsigned how) {
 
 static void apply_mode(unsigned mode) {
     stage.mode = (uint8_t)mode;
+    stage.engaged_ms = world.now_ms;
     stage_dress();
     stage_run_past(M_VEHICLE);
 }
@@ -110,6 +111,7 @@ static bool may_be_troubled(void) {
 static void apply_illness(unsigned illness) {
     stage.illness = (uint8_t)illness;
     stage.foreign_ms = world.now_ms + 1u;
+    stage.ill_ms = world.now_ms;
     stage_dress();
     stage_run(1);
 }
@@ -122,6 +124,12 @@ static bool other_illness(unsigned illness) {
 static void speak(unsigned how) {
     (void)how;
     stage_speak();
+}
+
+/* Where the clock wraps, it has to be met in the midst of what happens, and not in a sleep. */
+static bool may_sleep(unsigned how) {
+    (void)how;
+    return !stage_variant->wraps;
 }
 
 static bool can_speak(unsigned how) {
@@ -202,7 +210,8 @@ static void apply_bus(unsigned bus) {
 }
 
 static bool other_bus(unsigned bus) {
-    return (bus == (unsigned)BUS_FINE) ? (stage.bus != (uint8_t)BUS_FINE) : may_be_troubled();
+    const bool stays = (stage.bus == (uint8_t)BUS_PASSIVE) || (stage.bus == (uint8_t)BUS_DEAD);
+    return (bus == (unsigned)BUS_FINE) ? stays : may_be_troubled();
 }
 
 static void controller(unsigned how) {
@@ -297,9 +306,9 @@ static const symbol_t SYMBOLS[] = {
     ILL(EPS_FAULT),
     {"stranger: 168h D", stranger, vehicle_hears, S_GEAR},
     {"bus-off", apply_bus, other_bus, BUS_OFF},
-    {"tick late by 101 ms", late, always, LATE_MS},
     {"restart: power-on", restart, always, HAL_RESET_POWER_ON},
     {"restart: watchdog", restart, always, HAL_RESET_WATCHDOG},
+    {"tick late by 101 ms", late, always, LATE_MS},
     /* the others */
     {"363h: both modes", apply_mode, other_mode, STAGE_BOTH},
     {"363h: neither mode", apply_mode, other_mode, STAGE_NEITHER},
@@ -348,7 +357,7 @@ static const symbol_t SYMBOLS[] = {
     {"AI side: queue full", controller, other_controller, C_AI_FULL},
     {"AI side: queue free", controller, other_controller, C_AI_FREE},
     {"tick late by 40 ms", late, always, BIT_LATE_MS},
-    {"eleven days without a tick", doze, always, SLEEP_MS},
+    {"eleven days without a tick", doze, may_sleep, SLEEP_MS},
     {"the stored latch is damaged", spoil_latch, latch_is_good, 0},
     {"restart: brown-out", restart, always, HAL_RESET_BROWN_OUT},
     {"restart: unknown", restart, always, HAL_RESET_UNKNOWN},

@@ -1,5 +1,6 @@
 #include "stage.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -13,6 +14,7 @@ const stage_time_t STAGE_TIME[WORLD_MESSAGES] = {
 
 enum { WRAP = 0, MIDDLE = 0x7FFFFFFF };
 enum { RECOVERY_MS = 2, BABBLE_MS = 5, FOREIGN_MS = 20, WHEEL_MM_S = 200 };
+enum { ALWAYS_MS = 250, ENGAGED_MS = 1200 };
 
 const stage_variant_t STAGE_VARIANT[STAGE_VARIANTS] = {
     {"shared bus", 0, 0, false},
@@ -94,12 +96,49 @@ bool stage_wrapped(void) {
 
 /* ---- What is judged beside the rules ---- */
 
-static void judge(void) {
-    const uint32_t counted = agv_supervisor_counters(&world.supervisor)->sent;
-    if ((counted != stage.frames) && (world.rules.broken[0] == '\0')) {
-        (void)snprintf(world.rules.broken, sizeof world.rules.broken,
-                       "INT-4: %u frames have left, the gate let out %u", (unsigned)stage.frames, (unsigned)counted);
+__attribute__((format(printf, 1, 2))) static void broken(const char *format, ...) {
+    va_list arguments;
+    if (world.rules.broken[0] == '\0') {
+        va_start(arguments, format);
+        (void)vsnprintf(world.rules.broken, sizeof world.rules.broken, format, arguments);
+        va_end(arguments);
     }
+}
+
+/* How long the vehicle has been ill in a way that has to trip, by the protocol and not by the supervisor's own times. */
+static bool must_trip(void) {
+    const uint64_t ill_ms = world.now_ms - stage.ill_ms;
+    const uint64_t engaged_ms = (stage.mode == (uint8_t)STAGE_ENGAGED) ? (world.now_ms - stage.engaged_ms) : 0u;
+    switch (ILLNESS[stage.illness].trips) {
+    case TRIPS_ALWAYS:
+        return ill_ms > (uint64_t)ALWAYS_MS;
+    case TRIPS_ENGAGED:
+        return (ill_ms > (uint64_t)ENGAGED_MS) && (engaged_ms > (uint64_t)ENGAGED_MS);
+    default:
+        return false;
+    }
+}
+
+/* Whatever the counts and deadlines are, in the end it trips, and no reset is accepted (but for an AI computer). */
+static void judge_illness(bool was_latched) {
+    const agv_state_t state = agv_supervisor_state(&world.supervisor);
+    if (agv_state_commands_safe(state) || !must_trip()) {
+        return;
+    }
+    if (was_latched) {
+        broken("FSM-3: the latch was left with a trip cause: %s", ILLNESS[stage.illness].name);
+    } else {
+        broken("SUP-4: %s for %u ms, and it has not tripped", ILLNESS[stage.illness].name,
+               (unsigned)(world.now_ms - stage.ill_ms));
+    }
+}
+
+static void judge(bool was_latched) {
+    const uint32_t counted = agv_supervisor_counters(&world.supervisor)->sent;
+    if (counted != stage.frames) {
+        broken("INT-4: %u frames have left, the gate let out %u", (unsigned)stage.frames, (unsigned)counted);
+    }
+    judge_illness(was_latched);
 }
 
 const char *stage_broken(void) {
@@ -186,8 +225,8 @@ static void before(void) {
     }
 }
 
-static void after(void) {
-    judge();
+static void after(bool was_latched) {
+    judge(was_latched);
     if (stage_teller != NULL) {
         stage_teller->after();
     }
@@ -196,6 +235,7 @@ static void after(void) {
 /* The rest of a millisecond whose actions are done. */
 static void finish_ms(void) {
     const uint32_t sent_before = world.hal.can[HAL_CAN_VEHICLE].sent;
+    const bool was_latched = agv_state_is_latched(agv_supervisor_state(&world.supervisor));
     world_jump(0);
     send_due();
     follow_controller();
@@ -203,7 +243,7 @@ static void finish_ms(void) {
         (world.hal.can[HAL_CAN_VEHICLE].status.tx_pending_ms == 0u)) {
         sim_hal_set_tx_pending_ms(&world.hal, HAL_CAN_VEHICLE, 1);
     }
-    after();
+    after(was_latched);
 }
 
 void stage_run(uint32_t ms) {

@@ -67,6 +67,8 @@ extern const stage_variant_t STAGE_VARIANT[STAGE_VARIANTS];
 typedef struct {
     uint64_t root_ms;
     uint64_t foreign_ms; /* since when a foreign sender sends */
+    uint64_t ill_ms;     /* since when the vehicle is ill, and while that reaches the supervisor at all */
+    uint64_t engaged_ms; /* since when it reports autopilot */
     uint32_t frames;     /* that left since the last start */
     uint32_t recover_requests;
     uint8_t recover_in_ms;
@@ -164,11 +166,14 @@ typedef struct {
 extern const stage_time_t STAGE_TIME[WORLD_MESSAGES];
 
 /* illness.c */
+typedef enum { TRIPS_NEVER, TRIPS_ALWAYS, TRIPS_ENGAGED } illness_trips_t;
+
 typedef struct {
     const char *name;
     const char *fault;        /* that is the reason of a trip, when it trips */
     const char *frozen_fault; /* NULL, or the other one it may be */
     uint8_t like;             /* illness that has the same effect where no autopilot is supervised (abstract.h) */
+    uint8_t trips;            /* when it trips: illness_trips_t */
 } illness_row_t;
 extern const illness_row_t ILLNESS[ILLNESSES];
 void illness_dress(illness_t illness);

@@ -331,6 +331,11 @@ static void write_config(FILE *file) {
 #include "agv/config_settings.def"
 #undef AGV_CHOICE
 #undef AGV_SETTING
+    if (story_expect_needs_status()) {
+        (void)fprintf(file, "%sstatus_frame_id: %u, status_frame_period_ms: %u", between, (unsigned)STORY_STATUS_ID,
+                      (unsigned)STORY_STATUS_MS);
+        between = ", ";
+    }
     if (between[0] == ',') {
         (void)fprintf(file, "}\n");
     }
@@ -360,6 +365,5 @@ void story_write(FILE *file) {
                   (unsigned)stage_variant->clock_ms);
     write_phases(file);
     (void)fprintf(file, "duration_ms: %u\nsteps:\n%s", (unsigned)story_expect_duration_ms(), text);
-    story_expect_steps(file);
     story_expect_write(file);
 }

@@ -32,9 +32,12 @@ void story_expect_restarted(void);
 /* A millisecond is over. */
 void story_expect_ms(uint32_t t_ms);
 
+/* Whether the file needs a status frame that the configuration has not; this one. */
+enum { STORY_STATUS_ID = 0x7FF, STORY_STATUS_MS = 10 };
+bool story_expect_needs_status(void);
+
 /* How long the file runs; and its expectations. */
 uint32_t story_expect_duration_ms(void);
-void story_expect_steps(FILE *file);
 void story_expect_write(FILE *file);
 
 #endif

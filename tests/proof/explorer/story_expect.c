@@ -111,21 +111,23 @@ static const char *trip_reason(void) {
     return (row->fault != NULL) ? row->fault : "VCU_HEARTBEAT_LOST";
 }
 
-/* FSM-5: another restart shows what the first reason is. */
+/* FSM-5: what the first reason is, the status frame tells (TOP-3). */
 static bool first_reason_was(char name[64]) {
     return sscanf(stage_broken(), "FSM-5: the first reason was %63s and is", name) == 1;
 }
 
-uint32_t story_expect_duration_ms(void) {
-    return broken_ms + 1u;
+bool story_expect_needs_status(void) {
+    char name[64];
+    return first_reason_was(name) && (world.config.status_frame_id == 0u);
 }
 
-void story_expect_steps(FILE *file) {
+static uint32_t status_period_ms(void) {
+    return story_expect_needs_status() ? (uint32_t)STORY_STATUS_MS : world.config.status_frame_period_ms;
+}
+
+uint32_t story_expect_duration_ms(void) {
     char name[64];
-    if (first_reason_was(name)) {
-        (void)fprintf(file, "  # what the first reason is, a restart shows\n");
-        (void)fprintf(file, "  - {at_ms: %u, supervisor: restart, cause: watchdog}\n", (unsigned)broken_ms + 1u);
-    }
+    return broken_ms + (first_reason_was(name) ? (status_period_ms() + 1u) : (says("FSM-3") ? 0u : 1u));
 }
 
 static void write_at(FILE *file, uint32_t t_ms) {
@@ -168,7 +170,6 @@ static void write_start(FILE *file) {
 }
 
 static void write_states(FILE *file) {
-    char name[64];
     (void)fprintf(file, "  states:\n");
     for (unsigned i = 0; i < seen_count; i++) {
         if (seen[i].event.kind == (uint8_t)AGV_EVENT_STATE) {
@@ -179,9 +180,6 @@ static void write_states(FILE *file) {
     write_start(file);
     if (says("SUP-2") || says("SUP-3") || says("SUP-4")) {
         write_state(file, AGV_STATE_TRIPPED, trip_reason(), broken_ms);
-    }
-    if (first_reason_was(name)) {
-        write_state(file, AGV_STATE_TRIPPED, name, broken_ms + 1u);
     }
 }
 
@@ -194,9 +192,19 @@ static void write_frame(FILE *file, unsigned command, uint32_t from_ms) {
                   (unsigned)broken_ms + 1u);
 }
 
+static void write_first_reason(FILE *file, const char *name) {
+    const unsigned id = story_expect_needs_status() ? (unsigned)STORY_STATUS_ID : world.config.status_frame_id;
+    (void)fprintf(file, "  frames:\n    - {id: %03Xh, side: vehicle, bytes: \".. %02X .. .. .. .. .. ..\", at_ms: [%u, %u]}\n", id,
+                  (unsigned)agv_fault_from_name(name), (unsigned)broken_ms + 1u,
+                  (unsigned)(broken_ms + status_period_ms() + 1u));
+}
+
 static void write_frames(FILE *file) {
     unsigned command = 0;
-    if (says("FSM-2")) {
+    char name[64];
+    if (first_reason_was(name)) {
+        write_first_reason(file, name);
+    } else if (says("FSM-2")) {
         (void)fprintf(file, "  frames:\n");
         for (command = 0; command <= (unsigned)M_THROTTLE; command++) {
             if ((command != (unsigned)M_GEAR) || world.rules.park_at_once) {
@@ -239,10 +247,10 @@ static void write_output(FILE *file) {
         (void)fprintf(file, "%s    - {closed: %s, ", (i == 0u) ? "\n" : "", closed ? "true" : "false");
         write_at(file, outputs[i].t_ms);
     }
-    if (closed && (says("FSM-5: the first reason was") || says("FSM-4: the safety output is closed in bus-off") ||
+    if (closed && (says("FSM-4: the safety output is closed in bus-off") ||
                    says("FSM-4: the safety output is closed, and"))) {
         (void)fprintf(file, "    - {closed: false, ");
-        write_at(file, says("FSM-5") ? (broken_ms + 1u) : broken_ms);
+        write_at(file, broken_ms);
     }
     (void)fprintf(file, "%s", (output_count == 0u) ? " []\n" : "");
 }
@@ -259,25 +267,48 @@ static void write_missing(FILE *file, const seen_t *s) {
     write_at(file, s->t_ms);
 }
 
+/* A press that was held for a second in vain is answered at that moment (FSM-3). */
+static bool is_refused(void) {
+    return says("FSM-3: the latch was left w") && (world.now_ms == world.rules.pressed_ms + 1000u);
+}
+
+static const char *refused_for(void) {
+    static const char *const WORDS[][2] = {{"SAFE", "state"},         {"the button", "button"},
+                                           {"manual", "manual"},      {"standstill", "standstill"},
+                                           {"a trip", "trip_cause"}, {"a VCU", "vcu_heartbeat, eps_heartbeat"}};
+    for (unsigned i = 0; i < sizeof WORDS / sizeof WORDS[0]; i++) {
+        if (strstr(stage_broken(), WORDS[i][0]) != NULL) {
+            return WORDS[i][1];
+        }
+    }
+    return "";
+}
+
+static void write_answer(FILE *file, const seen_t *s) {
+    if (s->event.kind == (uint8_t)AGV_EVENT_STARTUP) {
+        (void)fprintf(file, "    - {missing: [");
+        write_missing(file, s);
+    } else if (s->event.a != 0u) {
+        (void)fprintf(file, "    - {accepted: true, ");
+        write_at(file, s->t_ms);
+    } else {
+        (void)fprintf(file, "    - {accepted: false, why: [");
+        write_missing(file, s);
+    }
+}
+
 static void write_answers(FILE *file, agv_event_kind_t kind, const char *list) {
     bool any = false;
     for (unsigned i = 0; i < seen_count; i++) {
-        if (seen[i].event.kind != (uint8_t)kind) {
-            continue;
+        if (seen[i].event.kind == (uint8_t)kind) {
+            (void)fprintf(file, "%s", any ? "" : list);
+            any = true;
+            write_answer(file, &seen[i]);
         }
-        (void)fprintf(file, "%s%s", any ? "" : "  ", any ? "" : list);
-        any = true;
-        if (kind == AGV_EVENT_STARTUP) {
-            (void)fprintf(file, "    - {missing: [");
-        } else {
-            (void)fprintf(file, "    - {accepted: %s, ", (seen[i].event.a != 0u) ? "true" : "false");
-        }
-        if ((kind == AGV_EVENT_RESET) && (seen[i].event.a != 0u)) {
-            write_at(file, seen[i].t_ms);
-            continue;
-        }
-        (void)fprintf(file, "%s", (kind == AGV_EVENT_RESET) ? "why: [" : "");
-        write_missing(file, &seen[i]);
+    }
+    if ((kind == AGV_EVENT_RESET) && is_refused()) {
+        (void)fprintf(file, "%s    - {accepted: false, why: [%s], ", any ? "" : list, refused_for());
+        write_at(file, broken_ms);
     }
 }
 
@@ -287,6 +318,6 @@ void story_expect_write(FILE *file) {
     write_frames(file);
     write_never(file);
     write_output(file);
-    write_answers(file, AGV_EVENT_RESET, "resets:\n");
-    write_answers(file, AGV_EVENT_STARTUP, "startup:\n");
+    write_answers(file, AGV_EVENT_RESET, "  resets:\n");
+    write_answers(file, AGV_EVENT_STARTUP, "  startup:\n");
 }
