@@ -10,6 +10,8 @@
  * A broken rule ends the search. As it is breadth first, the way there has as few symbols as any; it is written as a
  * scenario file (story.h).
  *
+ * A symbol that leads to a known state is followed for some milliseconds all the same, so that what it began is judged.
+ *
  * What is shown: no abstract state is left out, and from one stage (or more: --representatives) of each every symbol was
  * tried. What is not: two stages of one abstract state may differ in what the abstraction leaves out, as the phases of
  * cycles, and only those that were reached first were explored.
@@ -49,6 +51,15 @@ static struct {
     uint64_t depth;
 } sum;
 
+enum { FOLLOW_MS = 8 };
+
+/* Where a symbol leads to nothing new, what it began is still seen to its end: an answer that is owed, say. */
+static void follow(void) {
+    for (unsigned ms = 0; (ms < (unsigned)FOLLOW_MS) && (stage_broken()[0] == '\0'); ms++) {
+        stage_run(1);
+    }
+}
+
 /* Apply a symbol to the stage; false: a rule was broken. */
 static bool apply(unsigned symbol) {
     const uint64_t calls = world.rules.calls;
@@ -74,6 +85,7 @@ static void tell_again(const uint8_t *path, unsigned length) {
         story_says(alphabet_name(path[i]));
         alphabet_apply(path[i]);
     }
+    follow();
     story_write(file);
     if (file != stdout) {
         (void)fclose(file);
@@ -105,12 +117,18 @@ static bool explore(uint32_t index) {
         if (!alphabet_enabled(symbol)) {
             continue;
         }
-        if (!apply(symbol)) {
-            report_broken(index, symbol);
+        const uint32_t before = visited_count();
+        bool good = apply(symbol);
+        if (good && !visited_reached(index, symbol, option.representatives)) {
+            (void)printf("HARM: out of memory after %u states\n", (unsigned)visited_states());
             return false;
         }
-        if (!visited_reached(index, symbol, option.representatives)) {
-            (void)printf("HARM: out of memory after %u states\n", (unsigned)visited_states());
+        if (good && (visited_count() == before)) {
+            follow();
+            good = stage_broken()[0] == '\0';
+        }
+        if (!good) {
+            report_broken(index, symbol);
             return false;
         }
     }

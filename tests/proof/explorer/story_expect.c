@@ -7,7 +7,7 @@
 #include "stage.h"
 #include "story.h"
 
-enum { EVENTS_MAX = 400, MISSING_BITS = 8, FRAME_MS = 95, ANSWER_MS = 5 };
+enum { EVENTS_MAX = 400, MISSING_BITS = 8, FRAME_MS = 95, ANSWER_MS = 8 };
 
 typedef struct {
     uint32_t t_ms;
