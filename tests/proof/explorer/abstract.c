@@ -9,13 +9,15 @@
 #define WATCH(name) (UINT64_C(1) << (unsigned)AGV_WATCH_##name)
 #define MESSAGE(name) (UINT64_C(1) << ((unsigned)AGV_WATCH_MESSAGE + (unsigned)AGV_MSG_##name))
 
-static const uint64_t ALWAYS = WATCH(BUS_OFF) | WATCH(BOTH_MODES) | WATCH(UNFED) | (UINT64_C(0xF) << (unsigned)AGV_WATCH_TX) |
-                               MESSAGE(VEHICLE_STATUS) | MESSAGE(STEERING_STATUS) | MESSAGE(GEAR_STATUS) |
-                               MESSAGE(THROTTLE_STATUS) | MESSAGE(EPS_STATUS) | MESSAGE(WHEEL_SPEED);
+static const uint64_t ALWAYS = WATCH(BUS_OFF) | WATCH(BOTH_MODES) | WATCH(UNFED) |
+                               (UINT64_C(0xF) << (unsigned)AGV_WATCH_TX) | MESSAGE(VEHICLE_STATUS) |
+                               MESSAGE(STEERING_STATUS) | MESSAGE(GEAR_STATUS) | MESSAGE(THROTTLE_STATUS) |
+                               MESSAGE(EPS_STATUS) | MESSAGE(WHEEL_SPEED);
 static const uint64_t IN_INIT = WATCH(INIT_GOOD) | WATCH(INIT);
 static const uint64_t SUPERVISING = MESSAGE(TURN_SIGNAL_COMMAND);
-static const uint64_t WHILE_ENGAGED = WATCH(ENGAGED) | WATCH(AI_AWAITED) | WATCH(STEERING_OFF) | WATCH(THROTTLE_IN_PARK) |
-                                      MESSAGE(GEAR_COMMAND) | MESSAGE(THROTTLE_COMMAND) | MESSAGE(STEERING_COMMAND);
+static const uint64_t WHILE_ENGAGED = WATCH(ENGAGED) | WATCH(AI_AWAITED) | WATCH(STEERING_OFF) |
+                                      WATCH(THROTTLE_IN_PARK) | MESSAGE(GEAR_COMMAND) | MESSAGE(THROTTLE_COMMAND) |
+                                      MESSAGE(STEERING_COMMAND);
 static const uint64_t IN_SAFE = WATCH(STANDSTILL) | WATCH(RESET_GOOD) | WATCH(PRESS);
 static const uint64_t UNTIL_SAFE = WATCH(UNCONFIRMED) | WATCH(PARK_SENT);
 
@@ -25,7 +27,8 @@ static const agv_core_t *core(void) {
 
 /* An event is over event_hold_ms after it; those that trip keep a reset from being accepted. */
 static uint64_t events(void) {
-    static const uint8_t TRIPS[] = {0, 1, 2, 4}; /* of the events in their order: the others come from the AI, or warn */
+    static const uint8_t TRIPS[] = {0, 1, 2,
+                                    4}; /* of the events in their order: the others come from the AI, or warn */
     uint64_t set = 0;
     for (unsigned i = 0; i < sizeof TRIPS; i++) {
         set |= UINT64_C(1) << ((unsigned)AGV_WATCH_EVENT + TRIPS[i]);

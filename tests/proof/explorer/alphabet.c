@@ -159,8 +159,8 @@ static void malformed(void) {
         frames[i].id = ((i % 2u) == 0u) ? 0x168u : 0x167u;
         frames[i].flags = FLAGS[i];
         frames[i].length = 8;
-        frames[i].data[0] = (FLAGS[i] == (uint8_t)HAL_CAN_REMOTE) ? 0u : (uint8_t)STAGE_D;
-        frames[i].data[7] = (FLAGS[i] == (uint8_t)HAL_CAN_REMOTE) ? 0u : 0xFFu;
+        frames[i].data[0] = (FLAGS[i] == (uint8_t)HAL_CAN_REMOTE) ? (uint8_t)0 : (uint8_t)STAGE_D;
+        frames[i].data[7] = (FLAGS[i] == (uint8_t)HAL_CAN_REMOTE) ? (uint8_t)0 : (uint8_t)0xFF;
     }
     stage_deliver(HAL_CAN_VEHICLE, frames, 4);
 }

@@ -218,7 +218,7 @@ int main(int argc, char **argv) {
                  (unsigned long long)sum.judged, (unsigned long long)sum.frames, (unsigned long long)sum.resets,
                  (unsigned long long)sum.depth);
     (void)printf("%u symbols, %u variants: %llu states, %llu transitions, broken rules: %u\n",
-                 alphabet_size(option.quick), variants, (unsigned long long)sum.states, (unsigned long long)sum.transitions,
-                 good ? 0u : 1u);
+                 alphabet_size(option.quick), variants, (unsigned long long)sum.states,
+                 (unsigned long long)sum.transitions, good ? 0u : 1u);
     return good ? 0 : 1;
 }

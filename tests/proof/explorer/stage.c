@@ -6,10 +6,10 @@
 
 /* Two of 10 ms share no millisecond with each other, nor with those of 25 ms: little delays anything on a real bus. */
 const stage_time_t STAGE_TIME[WORLD_MESSAGES] = {
-    [M_SIGNALS] = {100, 21, 7},       [M_GEAR] = {100, 45, -1},         [M_THROTTLE] = {100, 76, -1},
-    [M_STEERING] = {25, 8, -1},       [M_VEHICLE] = {10, 1, 7},         [M_GEAR_STATUS] = {25, 2, -1},
+    [M_SIGNALS] = {100, 21, 7},        [M_GEAR] = {100, 45, -1},         [M_THROTTLE] = {100, 76, -1},
+    [M_STEERING] = {25, 8, -1},        [M_VEHICLE] = {10, 1, 7},         [M_GEAR_STATUS] = {25, 2, -1},
     [M_THROTTLE_STATUS] = {10, 4, -1}, [M_STEERING_STATUS] = {10, 5, 0}, [M_EPS_STATUS] = {10, 6, -1},
-    [M_POSITION] = {10, 9, -1},       [M_WHEELS] = {10, 0, -1},
+    [M_POSITION] = {10, 9, -1},        [M_WHEELS] = {10, 0, -1},
 };
 
 enum { WRAP = 0, MIDDLE = 0x7FFFFFFF };
@@ -194,8 +194,8 @@ static void send_due(void) {
             send(m);
         }
     }
-    if ((stage.illness == (uint8_t)ILL_FOREIGN) &&
-        ((world.now_ms - stage.foreign_ms) % (uint64_t)FOREIGN_MS == 0u) && !is_off(HAL_CAN_VEHICLE)) {
+    if ((stage.illness == (uint8_t)ILL_FOREIGN) && ((world.now_ms - stage.foreign_ms) % (uint64_t)FOREIGN_MS == 0u) &&
+        !is_off(HAL_CAN_VEHICLE)) {
         world_frame(HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .length = 8, .data = {STAGE_D}}, 0);
     }
 }

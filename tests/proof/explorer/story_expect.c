@@ -173,8 +173,7 @@ static void write_states(FILE *file) {
     (void)fprintf(file, "  states:\n");
     for (unsigned i = 0; i < seen_count; i++) {
         if (seen[i].event.kind == (uint8_t)AGV_EVENT_STATE) {
-            write_state(file, (agv_state_t)seen[i].event.b, agv_fault_name((agv_fault_t)seen[i].event.c),
-                        seen[i].t_ms);
+            write_state(file, (agv_state_t)seen[i].event.b, agv_fault_name((agv_fault_t)seen[i].event.c), seen[i].t_ms);
         }
     }
     write_start(file);
@@ -185,8 +184,8 @@ static void write_states(FILE *file) {
 
 /* A frame of the supervisor that has to come, by its number among the safe commands. */
 static void write_frame(FILE *file, unsigned command, uint32_t from_ms) {
-    static const char *const BYTES[] = {"00 00 00 00 70 00 00 ..", "08 00 00 00 00 00 00 00",
-                                        "00 00 00 00 00 00 00 00", ".. .. 00 00 00 00 00 00"};
+    static const char *const BYTES[] = {"00 00 00 00 70 00 00 ..", "08 00 00 00 00 00 00 00", "00 00 00 00 00 00 00 00",
+                                        ".. .. 00 00 00 00 00 00"};
     (void)fprintf(file, "    - {message: %s, side: vehicle, bytes: \"%s\", at_ms: [%u, %u]}\n",
                   agv_message_name((agv_message_t)command), BYTES[command % (unsigned)COMMANDS], (unsigned)from_ms,
                   (unsigned)broken_ms + 1u);
@@ -194,9 +193,10 @@ static void write_frame(FILE *file, unsigned command, uint32_t from_ms) {
 
 static void write_first_reason(FILE *file, const char *name) {
     const unsigned id = story_expect_needs_status() ? (unsigned)STORY_STATUS_ID : world.config.status_frame_id;
-    (void)fprintf(file, "  frames:\n    - {id: %03Xh, side: vehicle, bytes: \".. %02X .. .. .. .. .. ..\", at_ms: [%u, %u]}\n", id,
-                  (unsigned)agv_fault_from_name(name), (unsigned)broken_ms + 1u,
-                  (unsigned)(broken_ms + status_period_ms() + 1u));
+    (void)fprintf(
+        file, "  frames:\n    - {id: %03Xh, side: vehicle, bytes: \".. %02X .. .. .. .. .. ..\", at_ms: [%u, %u]}\n",
+        id, (unsigned)agv_fault_from_name(name), (unsigned)broken_ms + 1u,
+        (unsigned)(broken_ms + status_period_ms() + 1u));
 }
 
 static void write_frames(FILE *file) {
@@ -247,8 +247,8 @@ static void write_output(FILE *file) {
         (void)fprintf(file, "%s    - {closed: %s, ", (i == 0u) ? "\n" : "", closed ? "true" : "false");
         write_at(file, outputs[i].t_ms);
     }
-    if (closed && (says("FSM-4: the safety output is closed in bus-off") ||
-                   says("FSM-4: the safety output is closed, and"))) {
+    if (closed &&
+        (says("FSM-4: the safety output is closed in bus-off") || says("FSM-4: the safety output is closed, and"))) {
         (void)fprintf(file, "    - {closed: false, ");
         write_at(file, broken_ms);
     }
@@ -273,8 +273,8 @@ static bool is_refused(void) {
 }
 
 static const char *refused_for(void) {
-    static const char *const WORDS[][2] = {{"SAFE", "state"},         {"the button", "button"},
-                                           {"manual", "manual"},      {"standstill", "standstill"},
+    static const char *const WORDS[][2] = {{"SAFE", "state"},        {"the button", "button"},
+                                           {"manual", "manual"},     {"standstill", "standstill"},
                                            {"a trip", "trip_cause"}, {"a VCU", "vcu_heartbeat, eps_heartbeat"}};
     for (unsigned i = 0; i < sizeof WORDS / sizeof WORDS[0]; i++) {
         if (strstr(stage_broken(), WORDS[i][0]) != NULL) {

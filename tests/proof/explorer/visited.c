@@ -66,7 +66,7 @@ static bool add(const abstract_t *key, uint32_t hash, uint32_t parent, unsigned 
     *v = (visited_t){.key = *key,
                      .parent = parent,
                      .next = bucket[hash],
-                     .depth = (uint16_t)((parent == (uint32_t)VISITED_NONE) ? 0 : (visited_at(parent)->depth + 1)),
+                     .depth = (uint16_t)((parent == VISITED_NONE) ? 0 : (visited_at(parent)->depth + 1)),
                      .symbol = (uint8_t)symbol,
                      .stage = saved};
     bucket[hash] = index;
@@ -79,7 +79,7 @@ bool visited_reached(uint32_t parent, unsigned symbol, unsigned representatives)
     const uint32_t hash = hash_of(&key);
     unsigned known = 0;
     bool same_way = false;
-    for (uint32_t i = bucket[hash]; i != (uint32_t)VISITED_NONE; i = visited_at(i)->next) {
+    for (uint32_t i = bucket[hash]; i != VISITED_NONE; i = visited_at(i)->next) {
         const visited_t *v = visited_at(i);
         if (memcmp(&v->key, &key, sizeof key) == 0) {
             known++;
@@ -95,7 +95,7 @@ bool visited_reached(uint32_t parent, unsigned symbol, unsigned representatives)
 
 unsigned visited_path(uint32_t index, uint8_t path[PATH_MAX_SYMBOLS]) {
     unsigned length = 0;
-    for (uint32_t i = index; visited_at(i)->parent != (uint32_t)VISITED_NONE; i = visited_at(i)->parent) {
+    for (uint32_t i = index; visited_at(i)->parent != VISITED_NONE; i = visited_at(i)->parent) {
         length++;
     }
     if (length > (unsigned)PATH_MAX_SYMBOLS) {

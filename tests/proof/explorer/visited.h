@@ -11,7 +11,8 @@
 #include "abstract.h"
 #include "stage.h"
 
-enum { VISITED_NONE = 0xFFFFFFFF, PATH_MAX_SYMBOLS = 400 };
+#define VISITED_NONE UINT32_MAX
+enum { PATH_MAX_SYMBOLS = 400 };
 
 typedef struct {
     abstract_t key;
