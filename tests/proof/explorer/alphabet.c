@@ -377,6 +377,11 @@ bool alphabet_enabled(unsigned symbol) {
     return SYMBOLS[symbol].enabled(SYMBOLS[symbol].how);
 }
 
+bool alphabet_leaves_no_trace(unsigned symbol) {
+    void (*const apply)(unsigned) = SYMBOLS[symbol].apply;
+    return (apply == stranger) || (apply == controller) || (apply == late) || (apply == speak) || (apply == restart);
+}
+
 void alphabet_apply(unsigned symbol) {
     SYMBOLS[symbol].apply(SYMBOLS[symbol].how);
 }

@@ -27,4 +27,7 @@ bool alphabet_enabled(unsigned symbol);
 
 void alphabet_apply(unsigned symbol);
 
+/* Whether it may begin something that no key shows: an answer that is owed, say. */
+bool alphabet_leaves_no_trace(unsigned symbol);
+
 #endif

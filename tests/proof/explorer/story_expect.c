@@ -7,7 +7,7 @@
 #include "stage.h"
 #include "story.h"
 
-enum { EVENTS_MAX = 400, MISSING_BITS = 8, FRAME_MS = 95, ANSWER_MS = 8 };
+enum { EVENTS_MAX = 400, MISSING_BITS = 8 };
 
 typedef struct {
     uint32_t t_ms;
@@ -199,6 +199,12 @@ static void write_first_reason(FILE *file, const char *name) {
         (unsigned)(broken_ms + status_period_ms() + 1u));
 }
 
+/* The later of two moments of the rules, in the time of the file. */
+static uint32_t since(uint64_t a_ms, uint64_t b_ms) {
+    const uint64_t later_ms = (a_ms > b_ms) ? a_ms : b_ms;
+    return (later_ms > stage.root_ms) ? (uint32_t)(later_ms - stage.root_ms) : 0u;
+}
+
 static void write_frames(FILE *file) {
     unsigned command = 0;
     char name[64];
@@ -213,10 +219,10 @@ static void write_frames(FILE *file) {
         }
     } else if (sscanf(stage_broken(), "TIM-1: safe command %u", &command) == 1) {
         (void)fprintf(file, "  frames:\n");
-        write_frame(file, command, broken_ms - (uint32_t)FRAME_MS);
+        write_frame(file, command, since(world.rules.sent_ms[command], world.rules.commanding_ms) + 1u);
     } else if (sscanf(stage_broken(), "TOP-1: a command of another was not answered (command %u", &command) == 1) {
         (void)fprintf(file, "  frames:\n");
-        write_frame(file, command, broken_ms - (uint32_t)ANSWER_MS);
+        write_frame(file, command, since(world.rules.answer_owed_ms[command], 0));
     } else {
         /* of frames the rule says what must not come, or nothing */
     }
