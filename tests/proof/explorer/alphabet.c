@@ -373,7 +373,19 @@ const char *alphabet_name(unsigned symbol) {
     return (s->name != NULL) ? s->name : ILLNESS[s->how].name;
 }
 
+bool alphabet_tellable;
+
+/* What story.c cannot say. */
+static bool cannot_be_told(const symbol_t *s) {
+    return (s->apply == doze) || ((s->apply == apply_bus) && (s->how == (unsigned)BUS_DEAD)) ||
+           ((s->apply == apply_illness) && (s->how == (unsigned)ILL_RECEIVE_DEAD)) ||
+           ((s->apply == controller) && (s->how == (unsigned)C_AI_OFF));
+}
+
 bool alphabet_enabled(unsigned symbol) {
+    if (alphabet_tellable && cannot_be_told(&SYMBOLS[symbol])) {
+        return false;
+    }
     return SYMBOLS[symbol].enabled(SYMBOLS[symbol].how);
 }
 

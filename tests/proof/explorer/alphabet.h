@@ -17,6 +17,9 @@
 /* Whether an illness of the vehicle and a trouble of a controller or of the stored latch may be there together. */
 extern bool alphabet_pairs;
 
+/* Whether only what a scenario can say is tried: a counterexample that is found so can be played. */
+extern bool alphabet_tellable;
+
 /* How many symbols there are; the short run has those below the second. */
 unsigned alphabet_size(bool quick);
 
