@@ -41,11 +41,20 @@ static bool was_closed(void) {
     return (output_count > 0u) && outputs[output_count - 1u].closed;
 }
 
+/* Something should have tripped; but it was tripped, until a reset in that very call. */
+static bool undoes_latch(void) {
+    uint8_t state = 0;
+    for (unsigned i = 0; i < seen_count; i++) {
+        state = (seen[i].event.kind == (uint8_t)AGV_EVENT_STATE) ? seen[i].event.b : state;
+    }
+    return says("SUP-") && agv_state_is_latched((agv_state_t)state);
+}
+
 static void judge(uint32_t t_ms) {
     is_broken = stage_broken()[0] != '\0';
     broken_ms = t_ms;
-    drops_events = is_broken && (says("FSM-3") || says("FSM-7") || says("INT-5") || says("back to INIT") ||
-                                 (says("FSM-5") && !says("FSM-5: the first reason was")));
+    drops_events = is_broken && (undoes_latch() || says("FSM-3") || says("FSM-7") || says("INT-5") ||
+                                 says("back to INIT") || (says("FSM-5") && !says("FSM-5: the first reason was")));
     drops_output = is_broken && (drops_events || says("FSM-4: the safety output has closed") ||
                                  says("FSM-4: the safety output is closed in INIT") ||
                                  says("FSM-4: the safety output is closed after"));
@@ -127,7 +136,8 @@ static uint32_t status_period_ms(void) {
 
 uint32_t story_expect_duration_ms(void) {
     char name[64];
-    return broken_ms + (first_reason_was(name) ? (status_period_ms() + 1u) : (says("FSM-3") ? 0u : 1u));
+    return broken_ms +
+           (first_reason_was(name) ? (status_period_ms() + 1u) : ((undoes_latch() || says("FSM-3")) ? 0u : 1u));
 }
 
 static void write_at(FILE *file, uint32_t t_ms) {
@@ -177,7 +187,7 @@ static void write_states(FILE *file) {
         }
     }
     write_start(file);
-    if (says("SUP-2") || says("SUP-3") || says("SUP-4")) {
+    if (!undoes_latch() && (says("SUP-2") || says("SUP-3") || says("SUP-4"))) {
         write_state(file, AGV_STATE_TRIPPED, trip_reason(), broken_ms);
     }
 }
@@ -275,13 +285,17 @@ static void write_missing(FILE *file, const seen_t *s) {
 
 /* A press that was held for a second in vain is answered at that moment (FSM-3). */
 static bool is_refused(void) {
-    return says("FSM-3: the latch was left w") && (world.now_ms == world.rules.pressed_ms + 1000u);
+    return (undoes_latch() || says("FSM-3: the latch was left w")) && (world.now_ms == world.rules.pressed_ms + 1000u);
 }
 
 static const char *refused_for(void) {
-    static const char *const WORDS[][2] = {{"SAFE", "state"},        {"the button", "button"},
-                                           {"manual", "manual"},     {"standstill", "standstill"},
-                                           {"a trip", "trip_cause"}, {"a VCU", "vcu_heartbeat, eps_heartbeat"}};
+    static const char *const WORDS[][2] = {{"SAFE", "state"},
+                                           {"the button", "button"},
+                                           {"manual", "manual"},
+                                           {"standstill", "standstill"},
+                                           {"a trip", "trip_cause"},
+                                           {"a fault bit", "trip_cause"},
+                                           {"a VCU", "vcu_heartbeat, eps_heartbeat"}};
     for (unsigned i = 0; i < sizeof WORDS / sizeof WORDS[0]; i++) {
         if (strstr(stage_broken(), WORDS[i][0]) != NULL) {
             return WORDS[i][1];
