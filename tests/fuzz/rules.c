@@ -294,6 +294,9 @@ static void judge_passed(rules_t *rules, hal_can_side_t side, const hal_can_fram
         const uint8_t most = (state == AGV_STATE_ACTIVE) ? rules->throttle_max : 0u;
         expected[0] = (expected[0] < most) ? expected[0] : most;
     }
+    if ((command == THROTTLE) && rules->oracle.pass_all_in_manual && (frame->data[0] == 0u)) {
+        expected[0] = 0; /* it was heard in STANDBY and had to wait for a full queue until ACTIVE */
+    }
     const bool same = memcmp(expected, frame->data, 8) == 0;
     if (!rules->command_heard[command] || (!same && ((command != STEERING) || !rules->limits_commands))) {
         broken(rules, "TOP-2: %03X was passed to the vehicle side and not heard so", (unsigned)frame->id);
@@ -361,7 +364,7 @@ static void judge_trip(rules_t *rules) {
     const uint8_t needed = (uint8_t)((1u << SIGNALS) | (1u << THROTTLE) | (rules->park_at_once ? (1u << GEAR) : 0u));
     rules->trips++;
     rules->unconfirmed_ms = rules->now_ms;
-    rules->button_was_up = false;
+    rules->button_was_up = rules->status_heard[VEHICLE] && !rules->button_down; /* its next press is a new one */
     rules->confirmed_off = false;
     rules->own_counter_known = false;
     rules->commanding_ms = rules->now_ms;

@@ -1,0 +1,399 @@
+#include "alphabet.h"
+
+#include <stdint.h>
+#include <string.h>
+
+#include "abstract.h"
+#include "stage.h"
+
+enum { LATE_MS = 101, BIT_LATE_MS = 40, SLEEP_MS = 1000000000 };
+
+/* A symbol: what is done, and with what. */
+typedef struct {
+    const char *name;
+    void (*apply)(unsigned how);
+    bool (*enabled)(unsigned how);
+    unsigned how;
+} symbol_t;
+
+static bool always(unsigned how) {
+    (void)how;
+    return true;
+}
+
+static bool gateway(unsigned how) {
+    (void)how;
+    return world.config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+}
+
+/* ---- Time ---- */
+
+static void go_on(unsigned how) {
+    const uint32_t horizon_ms = abstract_horizon_ms();
+    abstract_t before;
+    abstract_t now;
+    (void)how;
+    abstract_now(&before);
+    for (uint32_t ms = 0; ms < horizon_ms; ms++) {
+        stage_run(1);
+        abstract_now(&now);
+        if ((memcmp(&before, &now, sizeof now) != 0) || (stage_broken()[0] != '\0')) {
+            return;
+        }
+    }
+}
+
+/* ---- The vehicle's own frames ---- */
+
+static void apply_mode(unsigned mode) {
+    stage.mode = (uint8_t)mode;
+    stage.engaged_ms = world.now_ms;
+    stage_dress();
+    stage_run_past(M_VEHICLE);
+}
+
+static bool other_mode(unsigned mode) {
+    return (stage.mode != (uint8_t)mode) && stage_flows(M_VEHICLE);
+}
+
+static void apply_button(unsigned down) {
+    stage.button = down != 0u;
+    stage_dress();
+    stage_run_past(M_VEHICLE);
+}
+
+static bool other_button(unsigned down) {
+    return (stage.button != (down != 0u)) && stage_flows(M_VEHICLE);
+}
+
+static void apply_gear(unsigned gear) {
+    stage.gear = (uint8_t)gear;
+    stage_dress();
+    stage_run_past(M_GEAR_STATUS);
+}
+
+static bool other_gear(unsigned gear) {
+    return (stage.gear != (uint8_t)gear) && stage_flows(M_GEAR_STATUS);
+}
+
+static void apply_wheels(unsigned turn) {
+    stage.wheels_turn = turn != 0u;
+    stage_dress();
+    stage_run_past(M_WHEELS);
+}
+
+static bool other_wheels(unsigned turn) {
+    return (stage.wheels_turn != (turn != 0u)) && stage_flows(M_WHEELS);
+}
+
+bool alphabet_pairs;
+
+/* One controller or the stored latch is not as it should be. */
+static bool is_troubled(void) {
+    const sim_hal_can_t *can = world.hal.can;
+    return (stage.bus != (uint8_t)BUS_FINE) || stage.ai_off || stage.stalled || stage.bad_latch ||
+           can[HAL_CAN_VEHICLE].full || can[HAL_CAN_AI].full;
+}
+
+static bool is_ill(void) {
+    return stage.illness != (uint8_t)ILL_NOTHING;
+}
+
+/* Of two illnesses one has to end before the other begins, of two troubles too; with pairs there may be one of each. */
+static bool may_be_ill(void) {
+    return !is_ill() && (alphabet_pairs || !is_troubled());
+}
+
+static bool may_be_troubled(void) {
+    return !is_troubled() && (alphabet_pairs || !is_ill());
+}
+
+static void apply_illness(unsigned illness) {
+    stage.illness = (uint8_t)illness;
+    stage.foreign_ms = world.now_ms + 1u;
+    stage.ill_ms = world.now_ms;
+    stage_dress();
+    stage_run(1);
+}
+
+static bool other_illness(unsigned illness) {
+    return (illness == (unsigned)ILL_NOTHING) ? is_ill() : may_be_ill();
+}
+
+/* A frame of what is mute or frozen, just before the tick; tried where a time is nearly over. */
+static void speak(unsigned how) {
+    (void)how;
+    stage_speak();
+}
+
+/* Where the clock wraps, it has to be met in the midst of what happens, and not in a sleep. */
+static bool may_sleep(unsigned how) {
+    (void)how;
+    return !stage_variant->wraps;
+}
+
+static bool can_speak(unsigned how) {
+    (void)how;
+    return stage_can_speak();
+}
+
+/* ---- Strangers' frames ---- */
+
+enum { S_GEAR, S_SHORT, S_SIGNALS, S_FAULT, S_MALFORMED, S_OTHER_SET, S_AI_SIDE };
+
+static uint32_t signal_id(bool other) {
+    const bool table = world.config.id_set == (uint16_t)AGV_ID_SET_TABLE;
+    return (table != other) ? 0x201u : 0x43Fu;
+}
+
+static void deliver_one(hal_can_side_t side, uint32_t id, uint8_t length, uint8_t byte0, uint8_t byte7) {
+    const hal_can_frame_t frame = {.id = id, .length = length, .data = {byte0, 0, 0, 0, 0, 0, 0, byte7}};
+    stage_deliver(side, &frame, 1);
+}
+
+static void malformed(void) {
+    static const uint8_t FLAGS[] = {HAL_CAN_EXTENDED, HAL_CAN_REMOTE, HAL_CAN_FD, HAL_CAN_ERROR};
+    hal_can_frame_t frames[4];
+    memset(frames, 0, sizeof frames);
+    for (unsigned i = 0; i < 4u; i++) {
+        frames[i].id = ((i % 2u) == 0u) ? 0x168u : 0x167u;
+        frames[i].flags = FLAGS[i];
+        frames[i].length = 8;
+        frames[i].data[0] = (FLAGS[i] == (uint8_t)HAL_CAN_REMOTE) ? (uint8_t)0 : (uint8_t)STAGE_D;
+        frames[i].data[7] = (FLAGS[i] == (uint8_t)HAL_CAN_REMOTE) ? (uint8_t)0 : (uint8_t)0xFF;
+    }
+    stage_deliver(HAL_CAN_VEHICLE, frames, 4);
+}
+
+static void stranger(unsigned how) {
+    switch (how) {
+    case S_GEAR:
+        deliver_one(HAL_CAN_VEHICLE, 0x168, 8, STAGE_D, 0);
+        break;
+    case S_SHORT:
+        deliver_one(HAL_CAN_VEHICLE, 0x168, 1, STAGE_D, 0);
+        break;
+    case S_SIGNALS:
+        deliver_one(HAL_CAN_VEHICLE, signal_id(false), 8, 0, 200);
+        break;
+    case S_FAULT:
+        deliver_one(HAL_CAN_VEHICLE, 0x167, 8, 0, 0x40);
+        break;
+    case S_OTHER_SET:
+        deliver_one(HAL_CAN_VEHICLE, signal_id(true), 8, 0, 200);
+        break;
+    case S_AI_SIDE:
+        deliver_one(HAL_CAN_AI, 0x167, 8, 0, 0x40);
+        break;
+    default:
+        malformed();
+        break;
+    }
+}
+
+static bool vehicle_hears(unsigned how) {
+    (void)how;
+    return world.hal.can[HAL_CAN_VEHICLE].status.state != HAL_CAN_BUS_OFF;
+}
+
+static bool ai_side_hears(unsigned how) {
+    return gateway(how) && !stage.ai_off;
+}
+
+/* ---- Controllers ---- */
+
+enum { C_OVERRUN, C_FULL, C_FREE, C_STALL, C_FLOW, C_AI_OFF, C_AI_BACK, C_AI_FULL, C_AI_FREE };
+
+static void apply_bus(unsigned bus) {
+    stage_set_bus((stage_bus_t)bus);
+    stage_run(1);
+}
+
+static bool other_bus(unsigned bus) {
+    const bool stays = (stage.bus == (uint8_t)BUS_PASSIVE) || (stage.bus == (uint8_t)BUS_DEAD);
+    return (bus == (unsigned)BUS_FINE) ? stays : may_be_troubled();
+}
+
+static void controller(unsigned how) {
+    switch (how) {
+    case C_OVERRUN:
+        sim_hal_add_overrun(&world.hal, HAL_CAN_VEHICLE);
+        break;
+    case C_FULL:
+    case C_FREE:
+        world_disturb(HAL_CAN_VEHICLE, 1, (how == (unsigned)C_FULL) ? 1 : 0);
+        break;
+    case C_STALL:
+    case C_FLOW:
+        stage.stalled = how == (unsigned)C_STALL;
+        world_disturb(HAL_CAN_VEHICLE, 2, 0);
+        break;
+    case C_AI_OFF:
+    case C_AI_BACK:
+        stage_set_ai_off(how == (unsigned)C_AI_OFF);
+        break;
+    default:
+        world_disturb(HAL_CAN_AI, 1, (how == (unsigned)C_AI_FULL) ? 1 : 0);
+        break;
+    }
+    stage_run(1);
+}
+
+static bool other_controller(unsigned how) {
+    switch (how) {
+    case C_FULL:
+    case C_STALL:
+        return may_be_troubled();
+    case C_AI_OFF:
+    case C_AI_FULL:
+        return gateway(0) && may_be_troubled();
+    case C_FREE:
+        return world.hal.can[HAL_CAN_VEHICLE].full;
+    case C_FLOW:
+        return stage.stalled;
+    case C_AI_BACK:
+        return stage.ai_off;
+    case C_AI_FREE:
+        return world.hal.can[HAL_CAN_AI].full;
+    default:
+        return true;
+    }
+}
+
+/* ---- The supervisor itself ---- */
+
+static void late(unsigned ms) {
+    stage_late(ms);
+}
+
+static void doze(unsigned ms) {
+    stage_sleep(ms);
+}
+
+static void restart(unsigned cause) {
+    stage_restart((hal_reset_cause_t)cause);
+}
+
+static void spoil_latch(unsigned how) {
+    (void)how;
+    (void)sim_store_corrupt_latch(&world.store, 0, 1);
+    stage.bad_latch = true;
+    stage_run(1);
+}
+
+static bool latch_is_good(unsigned how) {
+    (void)how;
+    return may_be_troubled();
+}
+
+/* ---- The table. Those of the short run come first. ---- */
+
+#define ILL(kind) {NULL, apply_illness, other_illness, ILL_##kind}
+
+static const symbol_t SYMBOLS[] = {
+    {"time goes on", go_on, always, 0},
+    {"363h: manual", apply_mode, other_mode, STAGE_MANUAL},
+    {"363h: autopilot", apply_mode, other_mode, STAGE_ENGAGED},
+    {"button 1 down", apply_button, other_button, 1},
+    {"button 1 up", apply_button, other_button, 0},
+    {"0A3h: P", apply_gear, other_gear, STAGE_P},
+    {"0A3h: D", apply_gear, other_gear, STAGE_D},
+    {"wheels turn", apply_wheels, other_wheels, 1},
+    {"wheels stand", apply_wheels, other_wheels, 0},
+    ILL(NOTHING),
+    ILL(VCU_SILENT),
+    ILL(AI_SILENT),
+    ILL(EPS_FAULT),
+    {"stranger: 168h D", stranger, vehicle_hears, S_GEAR},
+    {"bus-off", apply_bus, other_bus, BUS_OFF},
+    {"restart: power-on", restart, always, HAL_RESET_POWER_ON},
+    {"restart: watchdog", restart, always, HAL_RESET_WATCHDOG},
+    {"tick late by 101 ms", late, always, LATE_MS},
+    /* the others */
+    {"363h: both modes", apply_mode, other_mode, STAGE_BOTH},
+    {"363h: neither mode", apply_mode, other_mode, STAGE_NEITHER},
+    {"what is mute speaks once", speak, can_speak, 0},
+    ILL(VCU_FROZEN),
+    ILL(VCU_SHORT),
+    ILL(EPS_SILENT),
+    ILL(EPS_FROZEN),
+    ILL(AI_FROZEN),
+    ILL(AI_SHORT),
+    ILL(ALL_SILENT),
+    ILL(GEAR_STATUS_SILENT),
+    ILL(THROTTLE_STATUS_SILENT),
+    ILL(WHEELS_SILENT),
+    ILL(EPS_STATUS_SILENT),
+    ILL(GEAR_COMMAND_SILENT),
+    ILL(STEERING_COMMAND_SILENT),
+    ILL(EPS_SUPPLY),
+    ILL(VCU_ALARM),
+    ILL(VCU_AI_ALARM),
+    ILL(AI_OUT_OF_RANGE),
+    ILL(AI_BABBLES),
+    ILL(GEAR_INVALID),
+    ILL(ANGLE_INVALID),
+    ILL(EPS_MODE_OFF),
+    ILL(STEERING_OFF),
+    ILL(THROTTLE),
+    ILL(FOREIGN),
+    ILL(RECEIVE_DEAD),
+    {"stranger: 168h of one byte", stranger, vehicle_hears, S_SHORT},
+    {"stranger: 43Fh", stranger, vehicle_hears, S_SIGNALS},
+    {"one 167h with a fault bit", stranger, vehicle_hears, S_FAULT},
+    {"malformed frames", stranger, vehicle_hears, S_MALFORMED},
+    {"43Fh of the other set", stranger, vehicle_hears, S_OTHER_SET},
+    {"167h on the AI side", stranger, ai_side_hears, S_AI_SIDE},
+    {"error-active", apply_bus, other_bus, BUS_FINE},
+    {"error-passive", apply_bus, other_bus, BUS_PASSIVE},
+    {"bus-off for good", apply_bus, other_bus, BUS_DEAD},
+    {"overrun", controller, other_controller, C_OVERRUN},
+    {"queue full", controller, other_controller, C_FULL},
+    {"queue free", controller, other_controller, C_FREE},
+    {"frames do not leave", controller, other_controller, C_STALL},
+    {"frames leave", controller, other_controller, C_FLOW},
+    {"AI side: bus-off", controller, other_controller, C_AI_OFF},
+    {"AI side: back", controller, other_controller, C_AI_BACK},
+    {"AI side: queue full", controller, other_controller, C_AI_FULL},
+    {"AI side: queue free", controller, other_controller, C_AI_FREE},
+    {"tick late by 40 ms", late, always, BIT_LATE_MS},
+    {"eleven days without a tick", doze, may_sleep, SLEEP_MS},
+    {"the stored latch is damaged", spoil_latch, latch_is_good, 0},
+    {"restart: brown-out", restart, always, HAL_RESET_BROWN_OUT},
+    {"restart: unknown", restart, always, HAL_RESET_UNKNOWN},
+};
+enum { SIZE = sizeof SYMBOLS / sizeof SYMBOLS[0], QUICK_SIZE = 18 };
+
+unsigned alphabet_size(bool quick) {
+    return quick ? (unsigned)QUICK_SIZE : (unsigned)SIZE;
+}
+
+const char *alphabet_name(unsigned symbol) {
+    const symbol_t *s = &SYMBOLS[symbol];
+    return (s->name != NULL) ? s->name : ILLNESS[s->how].name;
+}
+
+bool alphabet_tellable;
+
+/* What story.c cannot say, or not exactly: in a pause of host_sim frames wait until its end. */
+static bool cannot_be_told(const symbol_t *s) {
+    return (s->apply == doze) || (s->apply == late) || ((s->apply == apply_bus) && (s->how == (unsigned)BUS_DEAD)) ||
+           ((s->apply == apply_illness) && (s->how == (unsigned)ILL_RECEIVE_DEAD)) ||
+           ((s->apply == controller) && (s->how == (unsigned)C_AI_OFF));
+}
+
+bool alphabet_enabled(unsigned symbol) {
+    if (alphabet_tellable && cannot_be_told(&SYMBOLS[symbol])) {
+        return false;
+    }
+    return SYMBOLS[symbol].enabled(SYMBOLS[symbol].how);
+}
+
+bool alphabet_leaves_no_trace(unsigned symbol) {
+    void (*const apply)(unsigned) = SYMBOLS[symbol].apply;
+    return (apply == stranger) || (apply == controller) || (apply == late) || (apply == speak) || (apply == restart);
+}
+
+void alphabet_apply(unsigned symbol) {
+    SYMBOLS[symbol].apply(SYMBOLS[symbol].how);
+}

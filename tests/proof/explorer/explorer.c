@@ -1,0 +1,235 @@
+/*
+ * Every reachable abstract state of the shipped supervisor.
+ *
+ * A breadth-first search: from the first moment of a variant of the configuration (stage.h), each symbol of the alphabet
+ * (alphabet.h) is tried in each state, and where it leads is a state not seen before (abstract.h, visited.h), that is
+ * explored in its turn, until there is none left. In every call of the supervisor on the way all rules are judged:
+ * rules.h and oracle.h (FSM-6, TOP-1, latch, safety output, first reason, starts, silence, sending), and that nothing
+ * leaves but through the gate.
+ *
+ * A broken rule ends the search. As it is breadth first, the way there has as few symbols as any; it is written as a
+ * scenario file (story.h).
+ *
+ * A frame, a late tick or a restart that leads to a known state is followed for some milliseconds all the same, so that
+ * what it began is judged.
+ *
+ * What is shown: no abstract state is left out, and from one stage (or more: --representatives) of each every symbol was
+ * tried. What is not: two stages of one abstract state may differ in what the abstraction leaves out, as the phases of
+ * cycles, and only those that were reached first were explored.
+ *
+ * usage: explorer [--quick] [--pairs] [--tellable] [--variant N] [--shard I/N] [--representatives N] [--most STATES]
+ *                 [--scenario FILE]
+ *   --quick     the short alphabet
+ *   --pairs     something may be wrong with the vehicle and with a controller at the same time
+ *   --tellable  only what a scenario file can say, so that a counterexample can be played
+ *   --shard     every N-th variant from I on
+ *   --most      give up, and fail, beyond so many states of a variant
+ *   --scenario  where a counterexample goes; without it to standard output
+ */
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "abstract.h"
+#include "alphabet.h"
+#include "stage.h"
+#include "story.h"
+#include "visited.h"
+
+static struct {
+    bool quick;
+    int variant;
+    unsigned representatives;
+    uint32_t most;
+    const char *scenario;
+    unsigned shard;
+    unsigned shards;
+} option = {.variant = -1, .shards = 1, .representatives = 1, .most = 4000000};
+
+static struct {
+    uint64_t states;
+    uint64_t transitions;
+    uint64_t judged; /* calls */
+    uint64_t frames;
+    uint64_t resets;
+    uint64_t depth;
+} sum;
+
+enum { FOLLOW_MS = 8 };
+
+/* Where a symbol leads to nothing new, what it began is still seen to its end: an answer that is owed, say. */
+static void follow(void) {
+    for (unsigned ms = 0; (ms < (unsigned)FOLLOW_MS) && (stage_broken()[0] == '\0'); ms++) {
+        stage_run(1);
+    }
+}
+
+/* Apply a symbol to the stage; false: a rule was broken. */
+static bool apply(unsigned symbol) {
+    const uint64_t calls = world.rules.calls;
+    const uint64_t frames = world.rules.sent;
+    const uint64_t resets = world.rules.resets;
+    alphabet_apply(symbol);
+    sum.transitions++;
+    sum.judged += world.rules.calls - calls;
+    sum.frames += world.rules.sent - frames;
+    sum.resets += world.rules.resets - resets;
+    return stage_broken()[0] == '\0';
+}
+
+static void tell_again(const uint8_t *path, unsigned length) {
+    FILE *file = (option.scenario != NULL) ? fopen(option.scenario, "w") : stdout;
+    if (file == NULL) {
+        perror(option.scenario);
+        exit(2);
+    }
+    stage_root(stage_variant);
+    story_begin();
+    for (unsigned i = 0; i < length; i++) {
+        story_says(alphabet_name(path[i]));
+        alphabet_apply(path[i]);
+    }
+    follow(); /* nothing, when it is broken by now */
+    story_write(file);
+    if (file != stdout) {
+        (void)fclose(file);
+    }
+}
+
+static void report_broken(uint32_t state, unsigned symbol) {
+    uint8_t path[PATH_MAX_SYMBOLS + 1];
+    unsigned length = visited_path(state, path);
+    path[length] = (uint8_t)symbol;
+    length++;
+    (void)printf("HARM: depth %u, %u ms: %s\n", length, (unsigned)stage_now_ms(), stage_broken());
+    (void)printf("  after %u states, in: %s\n  by:", (unsigned)visited_states(), stage_variant->name);
+    for (unsigned i = 0; i < length; i++) {
+        (void)printf("%s %s", (i == 0u) ? "" : ",", alphabet_name(path[i]));
+    }
+    (void)printf("\n");
+    tell_again(path, length);
+}
+
+/* Try every symbol in a state. Returns false: broken, or no room. */
+static bool explore(uint32_t index) {
+    static stage_saved_t here;
+    here = *visited_at(index)->stage;
+    free(visited_at(index)->stage);
+    visited_at(index)->stage = NULL;
+    for (unsigned symbol = 0; symbol < alphabet_size(option.quick); symbol++) {
+        stage_restore(&here);
+        if (!alphabet_enabled(symbol)) {
+            continue;
+        }
+        const uint32_t before = visited_count();
+        bool good = apply(symbol);
+        if (good && !visited_reached(index, symbol, option.representatives)) {
+            (void)printf("HARM: out of memory after %u states\n", (unsigned)visited_states());
+            return false;
+        }
+        if (good && (visited_count() == before) && alphabet_leaves_no_trace(symbol)) {
+            follow();
+            good = stage_broken()[0] == '\0';
+        }
+        if (!good) {
+            report_broken(index, symbol);
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool search(const stage_variant_t *variant) {
+    const clock_t began = clock();
+    const uint64_t transitions = sum.transitions;
+    uint32_t done = 0;
+    visited_begin();
+    stage_root(variant);
+    bool good = (stage_broken()[0] == '\0') && visited_reached(VISITED_NONE, 0, 1);
+    for (; good && (done < visited_count()); done++) {
+        good = explore(done);
+        if (good && (visited_states() > option.most)) {
+            (void)printf("HARM: there are more than %u states: the search is not complete\n", (unsigned)option.most);
+            good = false;
+        }
+    }
+    const unsigned depth = visited_at(done - 1u)->depth;
+    sum.states += visited_states();
+    sum.depth = (depth > sum.depth) ? depth : sum.depth;
+    (void)printf("%-84s %8u states %9llu transitions, depth %2u, %4u s%s\n", variant->name, (unsigned)visited_states(),
+                 (unsigned long long)(sum.transitions - transitions), depth,
+                 (unsigned)((clock() - began) / CLOCKS_PER_SEC), good ? "" : ", NOT COMPLETE");
+    (void)fflush(stdout);
+    return good;
+}
+
+static unsigned number(const char *text) {
+    char *end = NULL;
+    const unsigned long value = strtoul(text, &end, 10);
+    return ((end == text) || (*end != '\0')) ? 0u : (unsigned)value;
+}
+
+static bool take_option(const char *name, const char *value) {
+    if (strcmp(name, "--variant") == 0) {
+        option.variant = (int)number(value);
+        return option.variant < (int)STAGE_VARIANTS;
+    }
+    if (strcmp(name, "--representatives") == 0) {
+        option.representatives = number(value);
+        return option.representatives > 0u;
+    }
+    if (strcmp(name, "--most") == 0) {
+        option.most = number(value);
+        return true;
+    }
+    if (strcmp(name, "--shard") == 0) {
+        return (sscanf(value, "%u/%u", &option.shard, &option.shards) == 2) && (option.shard < option.shards);
+    }
+    option.scenario = value;
+    return strcmp(name, "--scenario") == 0;
+}
+
+static void read_options(int argc, char **argv) {
+    bool good = true;
+    for (int i = 1; good && (i < argc); i++) {
+        if (strcmp(argv[i], "--quick") == 0) {
+            option.quick = true;
+        } else if (strcmp(argv[i], "--pairs") == 0) {
+            alphabet_pairs = true;
+        } else if (strcmp(argv[i], "--tellable") == 0) {
+            alphabet_tellable = true;
+        } else {
+            good = (i + 1 < argc) && take_option(argv[i], argv[i + 1]);
+            i++;
+        }
+    }
+    if (!good) {
+        (void)fprintf(
+            stderr,
+            "usage: explorer [--quick] [--pairs] [--tellable] [--variant N] [--shard I/N] [--representatives N] "
+            "[--most STATES] [--scenario FILE]\n");
+        exit(2);
+    }
+}
+
+int main(int argc, char **argv) {
+    bool good = true;
+    unsigned variants = 0;
+    read_options(argc, argv);
+    for (unsigned i = option.shard; good && (i < (unsigned)STAGE_VARIANTS); i += option.shards) {
+        if ((option.variant < 0) || (option.variant == (int)i)) {
+            good = search(&STAGE_VARIANT[i]);
+            variants++;
+        }
+    }
+    (void)printf("%llu calls judged, %llu frames that left, %llu resets by the button, longest way %llu symbols\n",
+                 (unsigned long long)sum.judged, (unsigned long long)sum.frames, (unsigned long long)sum.resets,
+                 (unsigned long long)sum.depth);
+    (void)printf("%u symbols, %u variants: %llu states, %llu transitions, broken rules: %u\n",
+                 alphabet_size(option.quick), variants, (unsigned long long)sum.states,
+                 (unsigned long long)sum.transitions, good ? 0u : 1u);
+    return good ? 0 : 1;
+}

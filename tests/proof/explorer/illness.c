@@ -1,0 +1,152 @@
+/* What may be wrong with the vehicle, and what its traffic looks like then. */
+#include "stage.h"
+
+/* Steering and throttle depend on more than the illness: rules for them are not said here. */
+const illness_row_t ILLNESS[ILLNESSES] = {
+    [ILL_NOTHING] = {"healthy", NULL, NULL, ILL_NOTHING, TRIPS_NEVER},
+    [ILL_VCU_SILENT] = {"VCU silent", "VCU_HEARTBEAT_LOST", NULL, ILL_VCU_SILENT, TRIPS_ALWAYS},
+    [ILL_VCU_FROZEN] = {"VCU counter frozen", "VCU_HEARTBEAT_STUCK", NULL, ILL_VCU_FROZEN, TRIPS_ALWAYS},
+    [ILL_VCU_SHORT] = {"VCU sends short frames", "VCU_HEARTBEAT_LOST", NULL, ILL_VCU_SILENT, TRIPS_ALWAYS},
+    [ILL_EPS_SILENT] = {"EPS silent", "EPS_HEARTBEAT_LOST", NULL, ILL_EPS_SILENT, TRIPS_ALWAYS},
+    [ILL_EPS_FROZEN] = {"EPS counter frozen", "EPS_HEARTBEAT_STUCK", NULL, ILL_EPS_SILENT, TRIPS_ALWAYS},
+    [ILL_AI_SILENT] = {"AI silent", "STEERING_COMMAND_TIMEOUT", NULL, ILL_AI_SILENT, TRIPS_ENGAGED},
+    [ILL_AI_FROZEN] = {"AI counter frozen", "AI_HEARTBEAT_STUCK", NULL, ILL_AI_SILENT, TRIPS_ENGAGED},
+    [ILL_AI_SHORT] = {"AI sends short frames", "STEERING_COMMAND_TIMEOUT", NULL, ILL_AI_SILENT, TRIPS_ENGAGED},
+    [ILL_ALL_SILENT] = {"all silent", "VCU_HEARTBEAT_LOST", "EPS_HEARTBEAT_LOST", ILL_ALL_SILENT, TRIPS_ALWAYS},
+    [ILL_GEAR_STATUS_SILENT] = {"0A3h silent", "GEAR_STATUS_TIMEOUT", NULL, ILL_GEAR_STATUS_SILENT, TRIPS_ALWAYS},
+    [ILL_THROTTLE_STATUS_SILENT] = {"050h silent", "THROTTLE_STATUS_TIMEOUT", NULL, ILL_THROTTLE_STATUS_SILENT,
+                                    TRIPS_ALWAYS},
+    [ILL_WHEELS_SILENT] = {"101h silent", "WHEEL_SPEED_TIMEOUT", NULL, ILL_WHEELS_SILENT, TRIPS_ALWAYS},
+    [ILL_EPS_STATUS_SILENT] = {"167h silent", "EPS_STATUS_TIMEOUT", NULL, ILL_THROTTLE_STATUS_SILENT, TRIPS_ALWAYS},
+    [ILL_GEAR_COMMAND_SILENT] = {"168h silent", "GEAR_COMMAND_TIMEOUT", NULL, ILL_AI_SILENT, TRIPS_ENGAGED},
+    [ILL_STEERING_COMMAND_SILENT] = {"065h silent", "STEERING_COMMAND_TIMEOUT", NULL, ILL_AI_SILENT, TRIPS_ENGAGED},
+    [ILL_EPS_FAULT] = {"EPS fault bit", "EPS_OVER_CURRENT_SHUTDOWN", NULL, ILL_EPS_FAULT, TRIPS_ALWAYS},
+    [ILL_EPS_SUPPLY] = {"EPS under voltage", "EPS_UNDER_VOLTAGE", NULL, ILL_EPS_FAULT, TRIPS_ALWAYS},
+    [ILL_VCU_ALARM] = {"S-driver alarm", "S_DRIVER_ALARM", NULL, ILL_EPS_FAULT, TRIPS_ALWAYS},
+    [ILL_VCU_AI_ALARM] = {"VCU alarm: AI lost", "VCU_AI_CAN_LOST", NULL, ILL_AI_SILENT, TRIPS_NEVER},
+    [ILL_AI_OUT_OF_RANGE] = {"AI gear out of range", "AI_COMMAND_OUT_OF_RANGE", NULL, ILL_AI_SILENT, TRIPS_ENGAGED},
+    [ILL_AI_BABBLES] = {"AI babbles 168h", "COMMAND_TOO_FAST", NULL, ILL_AI_SILENT, TRIPS_NEVER},
+    [ILL_GEAR_INVALID] = {"0A3h invalid", "GEAR_STATUS_INVALID", NULL, ILL_GEAR_STATUS_SILENT, TRIPS_ENGAGED},
+    [ILL_ANGLE_INVALID] = {"067h angle invalid", "STEERING_ANGLE_INVALID", NULL, ILL_THROTTLE, TRIPS_ENGAGED},
+    [ILL_EPS_MODE_OFF] = {"EPS mode off", "EPS_MODE_OFF", NULL, ILL_THROTTLE, TRIPS_ENGAGED},
+    [ILL_STEERING_OFF] = {"steering 60 degrees off", "STEERING_DEVIATION", NULL, ILL_THROTTLE, TRIPS_NEVER},
+    [ILL_THROTTLE] = {"050h above 0", "THROTTLE_IN_PARK", NULL, ILL_THROTTLE, TRIPS_NEVER},
+    [ILL_FOREIGN] = {"foreign 168h D on the vehicle side", "FOREIGN_COMMAND_SENDER", NULL, ILL_FOREIGN, TRIPS_NEVER},
+    [ILL_RECEIVE_DEAD] = {"receive path does not check in", NULL, NULL, ILL_RECEIVE_DEAD, TRIPS_NEVER},
+};
+
+enum { SHORT = 5, EPS_FAULTS = 7, ALARMS = 4, EPS_MODE = 3, ANGLE_LOW = 2, ANGLE_HIGH = 3 };
+
+static void mute(unsigned first, unsigned last) {
+    for (unsigned m = first; m <= last; m++) {
+        world.traffic[m].muted = true;
+    }
+}
+
+static void shorten(unsigned first, unsigned last) {
+    for (unsigned m = first; m <= last; m++) {
+        world.traffic[m].length = SHORT;
+    }
+}
+
+/* Nodes and messages that do not come, or not as they should. */
+static void dress_silent(illness_t illness) {
+    switch (illness) {
+    case ILL_VCU_SILENT:
+        mute(M_VEHICLE, M_THROTTLE_STATUS);
+        mute(M_WHEELS, M_WHEELS);
+        break;
+    case ILL_EPS_SILENT:
+        mute(M_STEERING_STATUS, M_POSITION);
+        break;
+    case ILL_AI_SILENT:
+        mute(M_SIGNALS, M_STEERING);
+        break;
+    case ILL_ALL_SILENT:
+        mute(M_SIGNALS, M_WHEELS);
+        break;
+    case ILL_GEAR_STATUS_SILENT:
+        mute(M_GEAR_STATUS, M_GEAR_STATUS);
+        break;
+    case ILL_THROTTLE_STATUS_SILENT:
+        mute(M_THROTTLE_STATUS, M_THROTTLE_STATUS);
+        break;
+    case ILL_WHEELS_SILENT:
+        mute(M_WHEELS, M_WHEELS);
+        break;
+    case ILL_EPS_STATUS_SILENT:
+        mute(M_EPS_STATUS, M_EPS_STATUS);
+        break;
+    case ILL_GEAR_COMMAND_SILENT:
+        mute(M_GEAR, M_GEAR);
+        break;
+    case ILL_STEERING_COMMAND_SILENT:
+        mute(M_STEERING, M_STEERING);
+        break;
+    case ILL_VCU_SHORT:
+        shorten(M_VEHICLE, M_THROTTLE_STATUS);
+        shorten(M_WHEELS, M_WHEELS);
+        break;
+    case ILL_AI_SHORT:
+        shorten(M_SIGNALS, M_STEERING);
+        break;
+    default:
+        break;
+    }
+}
+
+/* Values. */
+static void dress_values(illness_t illness) {
+    world_message_t *t = world.traffic;
+    switch (illness) {
+    case ILL_VCU_FROZEN:
+        t[M_VEHICLE].frozen = true;
+        break;
+    case ILL_EPS_FROZEN:
+        t[M_STEERING_STATUS].frozen = true;
+        break;
+    case ILL_AI_FROZEN:
+        t[M_SIGNALS].frozen = true;
+        break;
+    case ILL_EPS_FAULT:
+        t[M_EPS_STATUS].data[EPS_FAULTS] = 0x08;
+        break;
+    case ILL_EPS_SUPPLY:
+        t[M_EPS_STATUS].data[EPS_FAULTS] = 0x01;
+        break;
+    case ILL_VCU_ALARM:
+        t[M_VEHICLE].data[ALARMS] = 0x80;
+        break;
+    case ILL_VCU_AI_ALARM:
+        t[M_VEHICLE].data[ALARMS] = 0x08;
+        break;
+    case ILL_AI_OUT_OF_RANGE:
+        t[M_GEAR].data[0] = 3;
+        break;
+    case ILL_GEAR_INVALID:
+        t[M_GEAR_STATUS].data[0] = 3;
+        break;
+    case ILL_ANGLE_INVALID:
+        t[M_STEERING_STATUS].data[ANGLE_LOW] = 0xFF;
+        t[M_STEERING_STATUS].data[ANGLE_HIGH] = 0xFF;
+        break;
+    case ILL_EPS_MODE_OFF:
+        t[M_EPS_STATUS].data[EPS_MODE] = 0;
+        break;
+    case ILL_STEERING_OFF:
+        t[M_STEERING_STATUS].data[ANGLE_LOW] = 0xD0; /* 20D0h: 60.0 degrees from the middle, 66.0 from the command */
+        t[M_STEERING_STATUS].data[ANGLE_HIGH] = 0x20;
+        break;
+    case ILL_THROTTLE:
+        t[M_THROTTLE_STATUS].data[0] = 100;
+        break;
+    default:
+        break;
+    }
+}
+
+void illness_dress(illness_t illness) {
+    dress_silent(illness);
+    dress_values(illness);
+    world.receive_path_dead = illness == ILL_RECEIVE_DEAD;
+}

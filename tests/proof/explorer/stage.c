@@ -1,0 +1,383 @@
+#include "stage.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Two of 10 ms share no millisecond with each other, nor with those of 25 ms: little delays anything on a real bus. */
+const stage_time_t STAGE_TIME[WORLD_MESSAGES] = {
+    [M_SIGNALS] = {100, 21, 7},        [M_GEAR] = {100, 45, -1},         [M_THROTTLE] = {100, 76, -1},
+    [M_STEERING] = {25, 8, -1},        [M_VEHICLE] = {10, 1, 7},         [M_GEAR_STATUS] = {25, 2, -1},
+    [M_THROTTLE_STATUS] = {10, 4, -1}, [M_STEERING_STATUS] = {10, 5, 0}, [M_EPS_STATUS] = {10, 6, -1},
+    [M_POSITION] = {10, 9, -1},        [M_WHEELS] = {10, 0, -1},
+};
+
+enum { WRAP = 0, MIDDLE = 0x7FFFFFFF };
+enum { RECOVERY_MS = 2, BABBLE_MS = 5, FOREIGN_MS = 20, WHEEL_MM_S = 200 };
+enum { ALWAYS_MS = 250, ENGAGED_MS = 1200 };
+
+const stage_variant_t STAGE_VARIANT[STAGE_VARIANTS] = {
+    {"shared bus", 0, 0, false},
+    {"shared bus, table, the clock wraps", 1, 0u - 2500u, true},
+    {"shared bus, park at standstill, AI lost trips, status frame, the clock passes its middle", 2, 0x80000000u - 4000u,
+     true},
+    {"gateway, the clock wraps", 3, 0u - 4000u, true},
+    {"gateway, table, all pass in manual, frozen heartbeat, ceiling", 4, 0, false},
+    {"gateway, park at standstill, slew, status frame, the clock wraps", 5, 0u - 1500u, true},
+    {"shadow", 6, 0, false},
+};
+
+stage_t stage;
+const stage_variant_t *stage_variant;
+hal_can_frame_t stage_last_frame;
+hal_can_side_t stage_last_side;
+const stage_teller_t *stage_teller;
+
+static sim_hal_sink_fn *judge_sent;
+
+static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
+    if (world.rules.broken[0] == '\0') {
+        stage_last_frame = *frame;
+        stage_last_side = side;
+    }
+    stage.frames++;
+    judge_sent(ctx, side, frame);
+}
+
+static void go_on(void) {
+    /* what is broken is asked for after each symbol */
+}
+
+/* ---- Beginning, saving ---- */
+
+void stage_root(const stage_variant_t *variant) {
+    stage_variant = variant;
+    world_on_broken = go_on;
+    world_load(variant->world, 0);
+    if (world.hal.sink != on_sent) {
+        judge_sent = world.hal.sink;
+        world.hal.sink = on_sent;
+    }
+    memset(&stage, 0, sizeof stage);
+    stage.root_ms = world.now_ms;
+    stage.mode = STAGE_MANUAL;
+    stage.gear = STAGE_P;
+    stage.recover_requests = world.hal.can[HAL_CAN_VEHICLE].recover_requests;
+    world.offset_ms = variant->clock_ms - (uint32_t)world.now_ms;
+    sim_hal_set_now_ms(&world.hal, variant->clock_ms);
+    for (unsigned m = 0; m < (unsigned)WORLD_MESSAGES; m++) {
+        world.traffic[m].counter = 0;
+    }
+    stage_dress();
+    world_restart(HAL_RESET_POWER_ON);
+}
+
+void stage_save(stage_saved_t *saved) {
+    moment_save();
+    saved->world = moment;
+    saved->stage = stage;
+}
+
+void stage_restore(const stage_saved_t *saved) {
+    moment = saved->world;
+    moment_restore();
+    stage = saved->stage;
+    world.receive_path_dead = stage.illness == (uint8_t)ILL_RECEIVE_DEAD;
+}
+
+uint32_t stage_now_ms(void) {
+    return (uint32_t)(world.now_ms - stage.root_ms);
+}
+
+bool stage_wrapped(void) {
+    const uint32_t middle = (stage_variant->clock_ms < 0x80000000u) ? 0x80000000u : 0u;
+    return stage_variant->wraps && (stage_now_ms() >= middle - stage_variant->clock_ms);
+}
+
+/* ---- What is judged beside the rules ---- */
+
+__attribute__((format(printf, 1, 2))) static void broken(const char *format, ...) {
+    va_list arguments;
+    if (world.rules.broken[0] == '\0') {
+        va_start(arguments, format);
+        (void)vsnprintf(world.rules.broken, sizeof world.rules.broken, format, arguments);
+        va_end(arguments);
+    }
+}
+
+/* How long the vehicle has been ill in a way that has to trip, by the protocol and not by the supervisor's own times. */
+static bool must_trip(void) {
+    const uint64_t ill_ms = world.now_ms - stage.ill_ms;
+    const uint64_t engaged_ms = (stage.mode == (uint8_t)STAGE_ENGAGED) ? (world.now_ms - stage.engaged_ms) : 0u;
+    switch (ILLNESS[stage.illness].trips) {
+    case TRIPS_ALWAYS:
+        return ill_ms > (uint64_t)ALWAYS_MS;
+    case TRIPS_ENGAGED:
+        return (ill_ms > (uint64_t)ENGAGED_MS) && (engaged_ms > (uint64_t)ENGAGED_MS);
+    default:
+        return false;
+    }
+}
+
+/* Whatever the counts and deadlines are, in the end it trips, and no reset is accepted (but for an AI computer). */
+static void judge_illness(bool was_latched) {
+    const agv_state_t state = agv_supervisor_state(&world.supervisor);
+    if (agv_state_commands_safe(state) || !must_trip()) {
+        return;
+    }
+    if (was_latched) {
+        broken("FSM-3: the latch was left with a trip cause: %s", ILLNESS[stage.illness].name);
+    } else {
+        broken("SUP-4: %s for %u ms, and it has not tripped", ILLNESS[stage.illness].name,
+               (unsigned)(world.now_ms - stage.ill_ms));
+    }
+}
+
+static void judge(bool was_latched) {
+    const uint32_t counted = agv_supervisor_counters(&world.supervisor)->sent;
+    if (counted != stage.frames) {
+        broken("INT-4: %u frames have left, the gate let out %u", (unsigned)stage.frames, (unsigned)counted);
+    }
+    judge_illness(was_latched);
+}
+
+const char *stage_broken(void) {
+    return world.rules.broken;
+}
+
+/* ---- Traffic ---- */
+
+void stage_dress(void) {
+    world_heal();
+    world_mode(stage.mode);
+    world_button(stage.button);
+    world_gear(stage.gear);
+    world_wheels(stage.wheels_turn ? (uint8_t)WHEEL_MM_S : 0u);
+    world.traffic[M_GEAR].data[0] = STAGE_D; /* an AI computer that drives, whatever the state */
+    world.traffic[M_THROTTLE].data[0] = 100;
+    world.traffic[M_STEERING].data[0] = 0x64;
+    illness_dress((illness_t)stage.illness);
+}
+
+static bool is_off(hal_can_side_t side) {
+    return world.hal.can[side].status.state == HAL_CAN_BUS_OFF;
+}
+
+static hal_can_side_t side_of(unsigned message) {
+    const bool gateway = world.config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    return (gateway && (message < (unsigned)COMMANDS)) ? HAL_CAN_AI : HAL_CAN_VEHICLE;
+}
+
+bool stage_flows(unsigned message) {
+    const world_message_t *m = &world.traffic[message];
+    return !m->muted && (m->length == 8u) && !is_off(side_of(message));
+}
+
+/* A controller in bus-off hears nothing. */
+static void send(unsigned message) {
+    if (!is_off(side_of(message))) {
+        world_send(message);
+    }
+}
+
+static bool is_due(unsigned message, uint32_t t_ms) {
+    if ((message == (unsigned)M_GEAR) && (stage.illness == (uint8_t)ILL_AI_BABBLES)) {
+        return t_ms % (uint32_t)BABBLE_MS == 0u;
+    }
+    return t_ms % STAGE_TIME[message].cycle_ms == STAGE_TIME[message].phase_ms;
+}
+
+static void send_due(void) {
+    const uint32_t t_ms = stage_now_ms();
+    for (unsigned m = 0; m < (unsigned)WORLD_MESSAGES; m++) {
+        if (!world.traffic[m].muted && is_due(m, t_ms)) {
+            send(m);
+        }
+    }
+    if ((stage.illness == (uint8_t)ILL_FOREIGN) && ((world.now_ms - stage.foreign_ms) % (uint64_t)FOREIGN_MS == 0u) &&
+        !is_off(HAL_CAN_VEHICLE)) {
+        world_frame(HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .length = 8, .data = {STAGE_D}}, 0);
+    }
+}
+
+/* ---- Milliseconds ---- */
+
+static void follow_controller(void) {
+    sim_hal_can_t *can = &world.hal.can[HAL_CAN_VEHICLE];
+    if (stage.recover_in_ms != 0u) {
+        stage.recover_in_ms--;
+        if ((stage.recover_in_ms == 0u) && (stage.bus == (uint8_t)BUS_OFF)) {
+            stage_set_bus(BUS_FINE);
+        }
+    }
+    if ((stage.bus == (uint8_t)BUS_OFF) && (can->recover_requests != stage.recover_requests)) {
+        stage.recover_in_ms = RECOVERY_MS;
+    }
+    stage.recover_requests = can->recover_requests;
+    if (stage.stalled && (can->status.tx_pending_ms != 0u)) {
+        can->status.tx_pending_ms++;
+    }
+}
+
+static void before(void) {
+    if (stage_teller != NULL) {
+        stage_teller->before(stage_now_ms() + 1u);
+    }
+}
+
+static void after(bool was_latched) {
+    judge(was_latched);
+    if (stage_teller != NULL) {
+        stage_teller->after();
+    }
+}
+
+/* The rest of a millisecond whose actions are done. */
+static void finish_ms(void) {
+    const uint32_t sent_before = world.hal.can[HAL_CAN_VEHICLE].sent;
+    const bool was_latched = agv_state_is_latched(agv_supervisor_state(&world.supervisor));
+    world_jump(0);
+    send_due();
+    follow_controller();
+    if (stage.stalled && (world.hal.can[HAL_CAN_VEHICLE].sent != sent_before) &&
+        (world.hal.can[HAL_CAN_VEHICLE].status.tx_pending_ms == 0u)) {
+        sim_hal_set_tx_pending_ms(&world.hal, HAL_CAN_VEHICLE, 1);
+    }
+    after(was_latched);
+}
+
+void stage_run(uint32_t ms) {
+    for (uint32_t i = 0; i < ms; i++) {
+        before();
+        world.now_ms++;
+        finish_ms();
+    }
+}
+
+void stage_run_past(unsigned message) {
+    for (unsigned i = 0; i < STAGE_TIME[message].cycle_ms; i++) {
+        stage_run(1);
+        if (is_due(message, stage_now_ms())) {
+            return;
+        }
+    }
+}
+
+void stage_deliver(hal_can_side_t side, const hal_can_frame_t *frames, unsigned count) {
+    before();
+    world.now_ms++;
+    for (unsigned i = 0; i < count; i++) {
+        if (stage_teller != NULL) {
+            stage_teller->delivered(side, &frames[i]);
+        }
+        world_frame(side, frames[i], 0);
+    }
+    finish_ms();
+}
+
+static bool could_speak(unsigned message) {
+    const world_message_t *m = &world.traffic[message];
+    return (m->muted || m->frozen) && !is_off(side_of(message));
+}
+
+bool stage_can_speak(void) {
+    bool can = false;
+    for (unsigned m = 0; m < (unsigned)WORLD_MESSAGES; m++) {
+        can = can || could_speak(m);
+    }
+    return can;
+}
+
+void stage_speak(void) {
+    before();
+    world.now_ms++;
+    for (unsigned m = 0; m < (unsigned)WORLD_MESSAGES; m++) {
+        const world_message_t kept = world.traffic[m];
+        if (could_speak(m)) {
+            world.traffic[m].frozen = false;
+            world.traffic[m].counter = (uint8_t)(kept.counter + 100u);
+            send(m);
+            if (stage_teller != NULL) {
+                stage_teller->spoke(m);
+            }
+            world.traffic[m].frozen = kept.frozen;
+            world.traffic[m].muted = kept.muted;
+        }
+    }
+    finish_ms();
+}
+
+/* What was recorded decides nothing, and a start looks through all of it: it finds nothing there. */
+static void empty_recorder(void) {
+    for (unsigned i = 0; i < (unsigned)AGV_RECORDER_EVENTS; i++) {
+        world.recorder.events[i].kind = 0;
+    }
+}
+
+/* rules.h knows of no damaged latch: the reason that stood in it is lost, and only that (FSM-7). */
+static void judge_damaged(bool power_on) {
+    static const char LOST[] = "FSM-7: after a reset the first reason is SUPERVISOR_RESET";
+    if (!power_on && (strcmp(world.rules.broken, LOST) == 0)) {
+        world.rules.broken[0] = '\0';
+    }
+}
+
+void stage_restart(hal_reset_cause_t cause) {
+    before();
+    empty_recorder();
+    if (stage_teller != NULL) {
+        stage_teller->restarted(cause);
+    }
+    world.now_ms++;
+    sim_hal_set_now_ms(&world.hal, (uint32_t)world.now_ms + world.offset_ms);
+    stage.frames = 0;
+    stage.bus = BUS_FINE;
+    stage.ai_off = false;
+    stage.stalled = false;
+    stage.recover_in_ms = 0;
+    world_restart(cause);
+    if (stage.bad_latch) {
+        judge_damaged(cause == HAL_RESET_POWER_ON);
+    }
+    stage.bad_latch = false;
+    finish_ms();
+}
+
+static void tell_pause(uint32_t ms, bool frames_come) {
+    if (stage_teller != NULL) {
+        stage_teller->without_ticks(ms, frames_come);
+    }
+}
+
+void stage_late(uint32_t ms) {
+    for (uint32_t i = 0; i < ms; i++) {
+        before();
+        if (i == 0u) {
+            tell_pause(ms, true);
+        }
+        world.now_ms++;
+        send_due();
+    }
+    before();
+    world.now_ms++;
+    finish_ms();
+}
+
+void stage_sleep(uint32_t ms) {
+    before();
+    tell_pause(ms, false);
+    world.now_ms += ms;
+    finish_ms();
+}
+
+void stage_set_bus(stage_bus_t bus) {
+    static const hal_can_state_t STATES[] = {HAL_CAN_ERROR_ACTIVE, HAL_CAN_ERROR_PASSIVE, HAL_CAN_BUS_OFF,
+                                             HAL_CAN_BUS_OFF};
+    stage.bus = (uint8_t)bus;
+    world_disturb(HAL_CAN_VEHICLE, 0, (uint8_t)STATES[bus]);
+}
+
+void stage_set_ai_off(bool off) {
+    stage.ai_off = off;
+    world_disturb(HAL_CAN_AI, 0, off ? (uint8_t)HAL_CAN_BUS_OFF : (uint8_t)HAL_CAN_ERROR_ACTIVE);
+}
