@@ -144,7 +144,8 @@ static void bus_off(void) {
     obey_and_reset();
 }
 
-static void whole_round(void *a, void *b, void *c) {
+/* Shows: SUP-7, FSM-2, FSM-3, FSM-4, FSM-5, TOP-1 */
+static void test_the_image(void *a, void *b, void *c) {
     ARG_UNUSED(a);
     ARG_UNUSED(b);
     ARG_UNUSED(c);
@@ -173,4 +174,4 @@ static int listen(void) {
 }
 
 SYS_INIT(listen, APPLICATION, 0); /* before main() begins */
-K_THREAD_DEFINE(rounds, STACK_SIZE, whole_round, NULL, NULL, NULL, PRIORITY, 0, 0);
+K_THREAD_DEFINE(rounds, STACK_SIZE, test_the_image, NULL, NULL, NULL, PRIORITY, 0, 0);

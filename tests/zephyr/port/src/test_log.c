@@ -97,6 +97,7 @@ static uint32_t count(void) {
     return records;
 }
 
+/* Shows: INT-3 */
 ZTEST(port_log, test_records_come_back_in_order_and_outlive_a_reset) {
     for (uint32_t i = 0u; i < 20u; i++) {
         zassert_true(append(i));
@@ -125,6 +126,7 @@ ZTEST(port_log, test_records_of_every_size) {
     }
 }
 
+/* Shows: INT-3 */
 ZTEST(port_log, test_when_it_is_full_the_oldest_are_dropped) {
     uint32_t kept = 0u;
     for (uint32_t i = 0u; i < 500u; i++) {
@@ -167,6 +169,7 @@ static void cut(uint32_t others, uint32_t nth, uint32_t bytes, const char *where
     zassert_equal(number_at(kept - 1u), others + 1u, "%s: and finds what was stored after the cut", where);
 }
 
+/* Shows: INT-3 */
 ZTEST(port_log, test_a_power_cut_at_every_byte_of_an_append_loses_at_most_this_record) {
     for (uint32_t nth = 1u; nth <= 4u; nth++) {
         for (uint32_t bytes = 0u; bytes <= RECORD; bytes += (bytes < 10u) ? 1u : 14u) {
@@ -189,6 +192,7 @@ static uint32_t records_until(uint32_t writes_of_an_append, uint32_t erases) {
     return 0u;
 }
 
+/* Shows: INT-3 */
 ZTEST(port_log, test_a_power_cut_while_a_sector_is_begun) {
     const uint32_t others = records_until(3u, 0u);
     for (uint32_t nth = 1u; nth <= 5u; nth++) {
@@ -198,6 +202,7 @@ ZTEST(port_log, test_a_power_cut_while_a_sector_is_begun) {
     }
 }
 
+/* Shows: INT-3 */
 ZTEST(port_log, test_a_power_cut_while_the_oldest_sector_is_dropped) {
     const uint32_t others = records_until(3u, 1u);
     for (uint32_t nth = 1u; nth <= 5u; nth++) {
@@ -249,6 +254,7 @@ static void cut_this_append(uint32_t number, uint32_t nth, uint32_t bytes) {
 }
 
 /* For every record from an empty log until it has been full twice: in every one of its writes. */
+/* Shows: INT-3 */
 ZTEST(port_log, test_a_power_cut_in_every_write) {
     size_t size = 0u;
     size_t sector = 0u;
@@ -305,6 +311,7 @@ static void assert_that_it_goes_on(uint32_t newest, uint32_t way) {
 }
 
 /* For each sector in turn, as the log goes around. */
+/* Shows: INT-3 */
 ZTEST(port_log, test_a_power_cut_during_an_erase) {
     size_t size = 0u;
     size_t sector = 0u;
