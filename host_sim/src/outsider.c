@@ -170,6 +170,20 @@ static _Noreturn void become(const char *command, int output) {
     _exit(NO_COMMAND);
 }
 
+/** Kill it, if it runs. */
+static void stop(outsider_t *outsider) {
+    if (outsider->pid > 0) {
+        (void)kill(-outsider->pid, SIGKILL);
+        (void)waitpid(outsider->pid, NULL, 0);
+        outsider->pid = 0;
+    }
+    if (outsider->output >= 0) {
+        (void)close(outsider->output);
+        outsider->output = -1;
+    }
+    outsider->output_closed = false;
+}
+
 bool outsider_start(outsider_t *outsider) {
     int ends[2];
     if (pipe(ends) != 0) {
@@ -185,7 +199,7 @@ bool outsider_start(outsider_t *outsider) {
     outsider->output = ends[0];
     if (outsider->pid < 0) {
         outsider->pid = 0;
-        outsider_stop(outsider);
+        stop(outsider);
         return report("no process: %s", strerror(errno));
     }
     (void)setpgid(outsider->pid, outsider->pid);
@@ -208,23 +222,6 @@ bool outsider_wait(outsider_t *outsider) {
     return true;
 }
 
-void outsider_stop(outsider_t *outsider) {
-    if (outsider->pid > 0) {
-        (void)kill(-outsider->pid, SIGKILL);
-        (void)waitpid(outsider->pid, NULL, 0);
-        outsider->pid = 0;
-    }
-    if (outsider->output >= 0) {
-        (void)close(outsider->output);
-        outsider->output = -1;
-    }
-    outsider->output_closed = false;
-}
-
-bool outsider_runs(const outsider_t *outsider) {
-    return outsider->pid > 0;
-}
-
 void outsider_vehicle_sent(outsider_t *outsider, hal_can_side_t side, const hal_can_frame_t *frame) {
     if (!add(&outsider->vehicle, side, frame, 0u)) {
         drop(&outsider->vehicle, 0u); /* of something that was not heard */
@@ -237,7 +234,7 @@ bool outsider_listen(outsider_t *outsider) {
     for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
         hear(outsider, (hal_can_side_t)side);
     }
-    return !outsider_runs(outsider) || read_output(outsider);
+    return read_output(outsider);
 }
 
 bool outsider_output_closed(const outsider_t *outsider) {
@@ -246,7 +243,7 @@ bool outsider_output_closed(const outsider_t *outsider) {
 
 void outsider_close(outsider_t *outsider) {
     if (outsider != NULL) {
-        outsider_stop(outsider);
+        stop(outsider);
         for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
             linux_can_close(&outsider->ears[side]);
         }

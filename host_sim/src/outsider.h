@@ -40,11 +40,6 @@ bool outsider_start(outsider_t *outsider);
 /** Wait until it has told something; it is there then. @return false: it did not for long, or ended; reported */
 bool outsider_wait(outsider_t *outsider);
 
-/** Kill it, if it runs. */
-void outsider_stop(outsider_t *outsider);
-
-bool outsider_runs(const outsider_t *outsider);
-
 /** The vehicle has sent a frame. */
 void outsider_vehicle_sent(outsider_t *outsider, hal_can_side_t side, const hal_can_frame_t *frame);
 

@@ -168,9 +168,6 @@ static void play_controller(run_t *run, hal_can_side_t side, uint32_t classes, u
 }
 
 static bool switch_on(run_t *run) {
-    if (run->outsider != NULL) {
-        return outsider_start(run->outsider);
-    }
     if (!open_node(run)) {
         return false;
     }
@@ -181,9 +178,6 @@ static bool switch_on(run_t *run) {
 /** Switch the supervisor off, and at once or later on again. */
 static bool restart(run_t *run, uint64_t t_ms, uint32_t off_ms) {
     close_node(run);
-    if (run->outsider != NULL) {
-        outsider_stop(run->outsider);
-    }
     run->deaf_until_ms = t_ms + off_ms;
     return (off_ms > 0u) || switch_on(run);
 }
@@ -239,14 +233,9 @@ static bool wake(run_t *run) {
     return (run->node != NULL) ? live_files_follow(&run->files, &run->loop, run->node) : switch_on(run);
 }
 
-static bool serve_outsider(run_t *run, uint64_t t_ms, bool is_tick) {
-    const bool needs_power = (t_ms >= run->deaf_until_ms) && !outsider_runs(run->outsider);
-    return (!needs_power || switch_on(run)) && (!is_tick || outsider_listen(run->outsider));
-}
-
 static bool serve_supervisor(run_t *run, uint64_t t_ms, bool is_tick) {
     if (run->outsider != NULL) {
-        return serve_outsider(run, t_ms, is_tick);
+        return !is_tick || outsider_listen(run->outsider);
     }
     if (t_ms < run->deaf_until_ms) {
         return true;

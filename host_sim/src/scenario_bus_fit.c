@@ -46,6 +46,8 @@ static const char *why_not_bus_off(const scenario_bus_t *bus, const scenario_t *
 /** Nobody reaches into another program, nor plays its controller. */
 static const char *why_not_of_outsider(const scenario_action_t *action) {
     switch (action->what) {
+    case SCENARIO_RESTART:
+        return "restart: another program takes its time to start";
     case SCENARIO_HANG:
         return "hang: another program is not held up";
     case SCENARIO_BUS_OFF:
