@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "candump_line.h"
 #include "commands.h"
 #include "config_options.h"
 #include "events.h"
@@ -34,6 +35,8 @@ typedef struct {
     const char *junit;
     const char *events;
     const char *bus;
+    const char *supervisor;
+    const char *sent;
     char interface_names[HAL_CAN_SIDES][INTERFACE_SIZE]; /**< "": none; no vehicle side: the simulated bus */
     uint64_t tolerance_ms;
     int planted;
@@ -60,6 +63,7 @@ typedef struct {
     given_t given;
     output_t events;
     output_t junit;
+    output_t sent;
     scenario_run_t run;
     result_t results[];
 } work_t;
@@ -80,6 +84,14 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .help = "on CAN interfaces: how far times may be off (50)",
          .number = &given->tolerance_ms,
          .highest = TOLERANCE_MAX_MS},
+        {.name = "--supervisor",
+         .value = "COMMAND",
+         .help = "on CAN interfaces: a supervisor that is another program, started by this and telling its events",
+         .text = &given->supervisor},
+        {.name = "--sent",
+         .value = "FILE",
+         .help = "on CAN interfaces: what the supervisor sent, as a candump log (of one scenario)",
+         .text = &given->sent},
         {.name = "--planted",
          .value = PLANTED,
          .help = "test of the scenarios: this stands in for the supervisor, all must fail",
@@ -111,6 +123,7 @@ static bool check_files(const given_t *given, char **files) {
             {.role = "--config", .path = given->config.path},
             {.role = "--junit", .path = given->junit, .is_written = true},
             {.role = "--events", .path = given->events, .is_written = true},
+            {.role = "--sent", .path = given->sent, .is_written = true},
         };
         if (!output_check_distinct(roles, sizeof roles / sizeof roles[0])) {
             return false;
@@ -131,7 +144,9 @@ static bool take_interface(given_t *given, hal_can_side_t side, const char *name
 /** What --bus says: the simulated bus, or interfaces. */
 static bool check_bus(given_t *given) {
     if ((given->bus == NULL) || (strcmp(given->bus, "sim") == 0)) {
-        return (given->tolerance_ms == NOT_GIVEN) || report("--tolerance is for CAN interfaces: --bus IF[,IF]");
+        const bool is_simulated =
+            (given->tolerance_ms == NOT_GIVEN) && (given->supervisor == NULL) && (given->sent == NULL);
+        return is_simulated || report("--tolerance, --supervisor, --sent are for CAN interfaces: --bus IF[,IF]");
     }
     const size_t length = strcspn(given->bus, ",");
     const char *second = (given->bus[length] == ',') ? &given->bus[length + 1u] : NULL;
@@ -160,6 +175,7 @@ static scenario_bus_t real_bus(const given_t *given) {
         .interfaces =
             {[HAL_CAN_VEHICLE] = given->interface_names[HAL_CAN_VEHICLE], [HAL_CAN_AI] = (ai[0] != '\0') ? ai : NULL},
         .tolerance_ms = (uint32_t)given->tolerance_ms,
+        .command = given->supervisor,
     };
 }
 
@@ -167,8 +183,8 @@ static bool check_given(given_t *given, char **files) {
     if (!check_bus(given)) {
         return false;
     }
-    if ((given->events != NULL) && (given->file_count > 1u)) {
-        return report("--events is for one scenario, %zu were given", given->file_count);
+    if (((given->events != NULL) || (given->sent != NULL)) && (given->file_count > 1u)) {
+        return report("--events and --sent are for one scenario, %zu were given", given->file_count);
     }
     if (!check_files(given, files) || !config_options_make(&given->config, &given->options.config)) {
         return false;
@@ -223,18 +239,30 @@ static void play_simulated(work_t *work, events_summary_t *summary) {
     events_summarise(&work->run.world.session, summary);
 }
 
+/** A frame of the supervisor, as a line of a log. */
+static void write_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t at_us) {
+    work_t *work = ctx;
+    char line[CANDUMP_WRITE_MAX];
+    (void)output_write(&work->sent, line, candump_write(line, at_us, work->given.interface_names[side], frame));
+}
+
 /** Play it on CAN interfaces, or leave it out. @return false: reported */
 static bool play_real(work_t *work, events_summary_t *summary, const char **left_out) {
-    const scenario_bus_watch_t watch = {.on_event = events_write, .ctx = &work->events};
+    const scenario_bus_watch_t watch = {
+        .on_event = (work->given.events != NULL) ? events_write : NULL,
+        .event_ctx = &work->events,
+        .on_sent = (work->given.sent != NULL) ? write_sent : NULL,
+        .sent_ctx = work,
+    };
     const scenario_bus_t bus = real_bus(&work->given);
 
     *left_out = scenario_bus_leaves_out(&bus, &work->run.scenario);
     if (*left_out != NULL) {
         return true;
     }
-    scenario_bus_tolerate(&work->run.scenario, bus.tolerance_ms);
+    scenario_bus_tolerate(&bus, &work->run.scenario);
     scenario_check_init(&work->run.check, &work->run.scenario);
-    return scenario_bus_play(&bus, &work->run.check, (work->given.events != NULL) ? &watch : NULL, summary);
+    return scenario_bus_play(&bus, &work->run.check, &watch, summary);
 }
 
 static bool play(work_t *work, const char *file, result_t *result) {
@@ -252,7 +280,7 @@ static bool play(work_t *work, const char *file, result_t *result) {
     } else {
         /* played */
     }
-    if (work->given.events != NULL) {
+    if ((work->given.events != NULL) && (work->given.supervisor == NULL)) {
         events_write_summary(&work->events, &summary);
     }
     memcpy(result->name, work->run.scenario.name, sizeof result->name);
@@ -315,7 +343,7 @@ static status_t play_all(work_t *work, char **files) {
     if (work->given.junit != NULL) {
         write_junit(work, files, &totals);
     }
-    if (!output_commit(&work->events) || !output_commit(&work->junit)) {
+    if (!output_commit(&work->events) || !output_commit(&work->junit) || !output_commit(&work->sent)) {
         return STATUS_UNUSABLE;
     }
     return (totals.failed == 0u) ? STATUS_OK : STATUS_UNMET;
@@ -325,7 +353,8 @@ static status_t run_all(work_t *work, char **files) {
     const given_t *given = &work->given;
 
     if (!check_scenarios(work, files) || ((given->junit != NULL) && !output_open(&work->junit, given->junit)) ||
-        ((given->events != NULL) && !output_open(&work->events, given->events))) {
+        ((given->events != NULL) && !output_open(&work->events, given->events)) ||
+        ((given->sent != NULL) && !output_open(&work->sent, given->sent))) {
         return STATUS_UNUSABLE;
     }
     return play_all(work, files);
@@ -349,6 +378,7 @@ status_t cmd_scenario(int argc, char **argv) {
     const status_t status = run_all(work, argv);
     output_discard(&work->events);
     output_discard(&work->junit);
+    output_discard(&work->sent);
     free(work);
     return status;
 }

@@ -9,6 +9,7 @@
 #include "hal_linux/linux_loop.h"
 #include "live_files.h"
 #include "node.h"
+#include "outsider.h"
 #include "report.h"
 #include "vehicle_bus.h"
 
@@ -22,9 +23,11 @@ typedef struct {
     scenario_check_t *check;
     const scenario_bus_watch_t *watch;
     linux_clock_t clock;
+    bool has_begun; /* the clock counts the run's time: not while another program starts */
     linux_loop_t loop;
     bool loop_is_open;
-    node_t *node; /* NULL: without power */
+    node_t *node;         /* NULL: without power, or another program */
+    outsider_t *outsider; /* NULL: it is none */
     live_files_t files;
     int64_t node_began_us;  /* when its own time began, in that of the run */
     uint64_t deaf_until_ms; /* it hangs, or has no power, until then */
@@ -45,28 +48,49 @@ static uint64_t now_ms(const run_t *run) {
 static void on_event(void *ctx, const session_event_t *told) {
     const run_t *run = ctx;
     session_event_t event = *told;
-    event.t_ms = now_ms(run);
+    event.t_ms = run->has_begun ? now_ms(run) : 0u;
     scenario_check_event(run->check, &event);
-    if (run->watch != NULL) {
-        run->watch->on_event(run->watch->ctx, &event);
+    if (run->watch->on_event != NULL) {
+        run->watch->on_event(run->watch->event_ctx, &event);
     }
 }
 
 static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t at_us) {
     const run_t *run = ctx;
-    const int64_t t_us = run->node_began_us + (int64_t)at_us;
-    scenario_check_frame(run->check, (t_us > 0) ? (uint64_t)t_us : 0u, side, SCENARIO_FROM_SUPERVISOR, frame);
+    const int64_t since_us = run->node_began_us + (int64_t)at_us;
+    const uint64_t t_us = (since_us > 0) ? (uint64_t)since_us : 0u;
+    scenario_check_frame(run->check, t_us, side, SCENARIO_FROM_SUPERVISOR, frame);
+    if (run->watch->on_sent != NULL) {
+        run->watch->on_sent(run->watch->sent_ctx, side, frame, t_us);
+    }
 }
 
 static void on_vehicle_sent(void *ctx, vehicle_node_t from, hal_can_side_t side, const hal_can_frame_t *frame,
                             uint64_t at_us) {
     const run_t *run = ctx;
     scenario_check_frame(run->check, at_us, side, (int)from, frame);
+    if (run->outsider != NULL) {
+        outsider_vehicle_sent(run->outsider, side, frame);
+    }
 }
 
 /** On the shared bus a second interface that was named has nothing to do. */
 static const char *interface_of(const run_t *run, hal_can_side_t side) {
     return ((side == HAL_CAN_VEHICLE) || run->scenario->vehicle.gateway) ? run->bus->interfaces[side] : NULL;
+}
+
+static bool open_outsider(run_t *run) {
+    const outsider_config_t config = {
+        .command = run->bus->command,
+        .interfaces =
+            {[HAL_CAN_VEHICLE] = interface_of(run, HAL_CAN_VEHICLE), [HAL_CAN_AI] = interface_of(run, HAL_CAN_AI)},
+        .clock = &run->clock,
+        .on_event = on_event,
+        .on_sent = on_sent,
+        .ctx = run,
+    };
+    run->outsider = outsider_open(&config);
+    return (run->outsider != NULL) && outsider_start(run->outsider) && outsider_wait(run->outsider);
 }
 
 static bool open_node(run_t *run) {
@@ -143,18 +167,19 @@ static void play_controller(run_t *run, hal_can_side_t side, uint32_t classes, u
     (void)linux_can_write(&run->controllers[side], &frame);
 }
 
-/** Switch the supervisor off, and at once or later on again. */
-static bool restart(run_t *run, uint64_t t_ms, uint32_t off_ms) {
-    close_node(run);
-    run->deaf_until_ms = t_ms + off_ms;
-    if (off_ms > 0u) {
-        return true;
-    }
+static bool switch_on(run_t *run) {
     if (!open_node(run)) {
         return false;
     }
     start_node(run);
     return true;
+}
+
+/** Switch the supervisor off, and at once or later on again. */
+static bool restart(run_t *run, uint64_t t_ms, uint32_t off_ms) {
+    close_node(run);
+    run->deaf_until_ms = t_ms + off_ms;
+    return (off_ms > 0u) || switch_on(run);
 }
 
 static bool do_to_supervisor(run_t *run, uint64_t t_ms, const scenario_action_t *action) {
@@ -205,17 +230,13 @@ static bool do_steps(run_t *run, uint64_t t_ms) {
 /** It has power again, or does not hang any more. */
 static bool wake(run_t *run) {
     run->hangs = false;
-    if (run->node != NULL) {
-        return live_files_follow(&run->files, &run->loop, run->node);
-    }
-    if (!open_node(run)) {
-        return false;
-    }
-    start_node(run);
-    return true;
+    return (run->node != NULL) ? live_files_follow(&run->files, &run->loop, run->node) : switch_on(run);
 }
 
 static bool serve_supervisor(run_t *run, uint64_t t_ms, bool is_tick) {
+    if (run->outsider != NULL) {
+        return !is_tick || outsider_listen(run->outsider);
+    }
     if (t_ms < run->deaf_until_ms) {
         return true;
     }
@@ -229,9 +250,15 @@ static bool serve_supervisor(run_t *run, uint64_t t_ms, bool is_tick) {
     return !node_tick(run->node) || live_files_follow(&run->files, &run->loop, run->node);
 }
 
+static bool is_output_closed(const run_t *run) {
+    if (run->outsider != NULL) {
+        return outsider_output_closed(run->outsider);
+    }
+    return (run->node != NULL) && agv_supervisor_output_closed(&node_session(run->node)->supervisor);
+}
+
 static void judge(run_t *run, uint64_t t_ms) {
-    const bool closed = (run->node != NULL) && agv_supervisor_output_closed(&node_session(run->node)->supervisor);
-    scenario_check_output(run->check, (uint32_t)t_ms, closed);
+    scenario_check_output(run->check, (uint32_t)t_ms, is_output_closed(run));
     for (; run->next_view_ms <= t_ms; run->next_view_ms++) {
         if (scenario_check_wants_vehicle(run->check, (uint32_t)run->next_view_ms)) {
             vehicle_view_t view;
@@ -266,17 +293,22 @@ static bool prepare(run_t *run) {
         return report("the timer of the ticks cannot be had: %s", strerror(errno));
     }
     linux_clock_start(&run->clock);
-    if (!open_controllers(run) || !open_vehicle(run) || !open_node(run)) {
+    const bool is_outside = run->bus->command != NULL;
+    if (!open_controllers(run) || !open_vehicle(run) || !(is_outside ? open_outsider(run) : open_node(run))) {
         return false;
     }
     linux_clock_start(&run->clock); /* opening took its time: now it begins */
+    run->has_begun = true;
     (void)linux_loop_align(&run->loop, linux_clock_now_us(&run->clock));
-    start_node(run);
+    if (!is_outside) {
+        start_node(run);
+    }
     return true;
 }
 
 static void close_run(run_t *run) {
     close_node(run);
+    outsider_close(run->outsider);
     if (run->vehicle_is_open) {
         vehicle_bus_close(&run->vehicle);
     }

@@ -14,6 +14,7 @@
 
 #include "events.h"
 #include "hal/can.h"
+#include "node.h"
 #include "scenario.h"
 #include "scenario_check.h"
 #include "session.h"
@@ -22,12 +23,16 @@
 typedef struct {
     const char *interfaces[HAL_CAN_SIDES]; /**< the AI side: NULL, there is one interface only */
     uint32_t tolerance_ms;
+    const char
+        *command; /**< starts a supervisor that is another program (outsider.h); NULL: it is one of this program */
 } scenario_bus_t;
 
-/** Told of the supervisor's events, beside the judgement; NULL: nobody. */
+/** Told of the supervisor's events and frames, beside the judgement. */
 typedef struct {
-    session_observer_fn *on_event;
-    void *ctx;
+    session_observer_fn *on_event; /**< NULL: nobody */
+    void *event_ctx;
+    node_sent_fn *on_sent; /**< NULL: nobody; the time is that of the run */
+    void *sent_ctx;
 } scenario_bus_watch_t;
 
 /** Whether the interfaces are there. @return false: one is not; was reported */
@@ -39,11 +44,15 @@ bool scenario_bus_check(const scenario_bus_t *bus);
  */
 const char *scenario_bus_leaves_out(const scenario_bus_t *bus, const scenario_t *scenario);
 
-/** Widen and narrow the times of a scenario's expectations. Once, before it is played. */
-void scenario_bus_tolerate(scenario_t *scenario, uint32_t tolerance_ms);
+/**
+ * Widen and narrow the times of a scenario's expectations, and drop what cannot be seen from outside of another program:
+ * its counters. Once, before it is played.
+ */
+void scenario_bus_tolerate(const scenario_bus_t *bus, scenario_t *scenario);
 
 /**
- * Play a scenario; takes its duration_ms. check->scenario must be it, and tolerated.
+ * Play a scenario; takes its duration_ms. check->scenario must be it, and tolerated. What another program is the
+ * supervisor of, its configuration included, is not looked into.
  * @param summary what its last line says
  * @return false: not to its end (a signal, an interface that is gone); was reported
  */

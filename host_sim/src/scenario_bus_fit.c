@@ -43,8 +43,28 @@ static const char *why_not_bus_off(const scenario_bus_t *bus, const scenario_t *
     return why_not_controller(bus, action);
 }
 
+/** Nobody reaches into another program, nor plays its controller. */
+static const char *why_not_of_outsider(const scenario_action_t *action) {
+    switch (action->what) {
+    case SCENARIO_RESTART:
+        return "restart: another program takes its time to start";
+    case SCENARIO_HANG:
+        return "hang: another program is not held up";
+    case SCENARIO_BUS_OFF:
+    case SCENARIO_OVERRUN:
+    case SCENARIO_ERROR_PASSIVE:
+        return "bus_off, overrun, error_passive: not played to another program";
+    default:
+        return NULL;
+    }
+}
+
 static const char *why_not_step(const scenario_bus_t *bus, const scenario_t *scenario,
                                 const scenario_action_t *action) {
+    const char *why = (bus->command != NULL) ? why_not_of_outsider(action) : NULL;
+    if (why != NULL) {
+        return why;
+    }
     switch (action->what) {
     case SCENARIO_RESTART:
         return (action->cause == HAL_RESET_POWER_ON) ? NULL : "restart: a program starts by power-on only";
@@ -172,8 +192,12 @@ static void tolerate_frames(scenario_t *scenario, uint32_t by_ms) {
     }
 }
 
-void scenario_bus_tolerate(scenario_t *scenario, uint32_t tolerance_ms) {
+void scenario_bus_tolerate(const scenario_bus_t *bus, scenario_t *scenario) {
+    const uint32_t tolerance_ms = bus->tolerance_ms;
     scenario_expect_t *expect = &scenario->expect;
+    if (bus->command != NULL) {
+        expect->counters.count = 0u;
+    }
     tolerate_frames(scenario, tolerance_ms);
     for (size_t i = 0u; i < expect->states.count; i++) {
         widen(&expect->states.items[i].at_ms, tolerance_ms);

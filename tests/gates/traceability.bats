@@ -67,6 +67,19 @@ trace() {
     fails_with "is not built" trace
 }
 
+@test "a ztest: one that names no row, one that is not built" {
+    mkdir -p tests/zephyr/z/src
+    echo 'add_agv_test(src/test_z.c)' >tests/zephyr/z/CMakeLists.txt
+    printf '/* Shows: SUP-1 */\nZTEST(z, test_z) {\n}\n' >tests/zephyr/z/src/test_z.c
+    trace --markdown
+    passes trace --check
+    grep -q '| SUP-1 | emulated target, host, native_sim |' docs/requirements.md
+    sed -i 's/SUP-1/SUP-9/' tests/zephyr/z/src/test_z.c
+    fails_with "test_z shows SUP-9, which is no row" trace
+    : >tests/zephyr/z/CMakeLists.txt
+    fails_with "is not built" trace
+}
+
 @test "a scenario that does not say what it shows" {
     echo 'name: x' >host_sim/scenarios/other.yaml
     fails_with "does not say what it shows" trace

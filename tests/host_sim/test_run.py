@@ -77,7 +77,8 @@ class ScenarioBus(hostsim.Case):
         self.assertEqual(result.stdout, "")
 
     def test_what_belongs_to_the_other_bus(self):
-        self.assert_refused(self.scenario("sim", "--tolerance", "5"), "--tolerance is for CAN interfaces")
+        for option in (("--tolerance", "5"), ("--supervisor", "true"), ("--sent", "sent.log")):
+            self.assert_refused(self.scenario("sim", *option), "--tolerance, --supervisor, --sent are for CAN interfaces")
         self.assert_refused(self.scenario("a", "--planted", "mute"), "--planted is for the simulated bus")
 
     def test_the_gateway_needs_two_interfaces(self):

@@ -10,7 +10,8 @@
 #define NO_STATES "expect:\n  states: []\n"
 
 static scenario_t scenario;
-static const scenario_bus_t virtual_bus = {.interfaces = {[HAL_CAN_VEHICLE] = "lo"}}; /* which is a virtual interface */
+/* The interface is a virtual one. */
+static const scenario_bus_t virtual_bus = {.interfaces = {[HAL_CAN_VEHICLE] = "lo"}, .tolerance_ms = 50u};
 
 void setUp(void) {
     scratch_open();
@@ -103,7 +104,7 @@ void test_moments_are_widened(void) {
                         "  faults: [{name: BUS_OFF, raised_ms: 300, ended_ms: [400, 401]}]\n"
                         "  resets: [{accepted: true, at_ms: 600}]\n"
                         "  startup: [{missing: [messages], at_ms: 700}]\n");
-    scenario_bus_tolerate(&scenario, 50u);
+    scenario_bus_tolerate(&virtual_bus, &scenario);
     const scenario_expect_t *expect = &scenario.expect;
     is_window(expect->states.items[0].at_ms, 0u, 50u);
     is_window(expect->states.items[1].at_ms, 460u, 563u);
@@ -120,7 +121,7 @@ void test_what_lasts_is_narrowed_but_for_the_ends_of_the_run(void) {
         BEGIN "expect:\n  states: []\n  led:\n    - {code: 0, at_ms: [0, 1000]}\n    - {code: 1, at_ms: [100, 300]}\n"
               "    - {code: 2, at_ms: [400, 480]}\n  never: [{at_ms: [600, 800]}, {id: 168h}]\n"
               "  frames: [{id: 43Fh, at_ms: [100, 900], every_ms: 100}]\n");
-    scenario_bus_tolerate(&scenario, 50u);
+    scenario_bus_tolerate(&virtual_bus, &scenario);
     const scenario_expect_t *expect = &scenario.expect;
     is_window(expect->leds.items[0].at_ms, 0u, 1000u);
     is_window(expect->leds.items[1].at_ms, 150u, 250u);
@@ -134,7 +135,23 @@ void test_what_lasts_is_narrowed_but_for_the_ends_of_the_run(void) {
 
 void test_counts_hold_in_the_time_as_it_stands(void) {
     read_scenario(BEGIN "expect:\n  states: []\n  frames: [{id: 168h, at_ms: [100, 200], count: [3, 4]}]\n");
-    scenario_bus_tolerate(&scenario, 50u);
+    scenario_bus_tolerate(&virtual_bus, &scenario);
     is_window(scenario.expect.frames.items[0].at_ms, 100u, 200u);
     is_window(scenario.expect.frames.items[0].count, 3u, 4u);
+}
+
+void test_of_another_program_more_is_left_out_and_its_counters_are_not_judged(void) {
+    const scenario_bus_t outside = {.interfaces = {[HAL_CAN_VEHICLE] = "lo"}, .tolerance_ms = 50u, .command = "true"};
+    static const char *const steps[] = {STEP("supervisor: bus_off"), STEP("supervisor: overrun"),
+                                        STEP("supervisor: error_passive"), STEP("supervisor: hang, for_ms: 20"),
+                                        STEP("supervisor: restart, cause: power-on")};
+    for (size_t i = 0u; i < sizeof steps / sizeof steps[0]; i++) {
+        read_scenario(steps[i]);
+        TEST_ASSERT_NULL_MESSAGE(scenario_bus_leaves_out(&virtual_bus, &scenario), steps[i]);
+        TEST_ASSERT_NOT_NULL_MESSAGE(scenario_bus_leaves_out(&outside, &scenario), steps[i]);
+    }
+    read_scenario(BEGIN NO_STATES "  counters_at_end: {sent: 0}\n");
+    TEST_ASSERT_EQUAL_size_t(1u, scenario.expect.counters.count);
+    scenario_bus_tolerate(&outside, &scenario);
+    TEST_ASSERT_EQUAL_size_t(0u, scenario.expect.counters.count);
 }

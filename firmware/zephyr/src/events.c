@@ -1,6 +1,7 @@
 #include "events.h"
 
 #include <zephyr/logging/log.h>
+#include <zephyr/sys/printk.h>
 #include <zephyr/sys/util.h>
 
 #include "app_version.h"
@@ -26,8 +27,23 @@ const char *events_version(void) {
 
 LOG_MODULE_REGISTER(agv, LOG_LEVEL_INF);
 
+enum { WORDS_SIZE = 100 };
+
 static const char *text(const char *name) {
     return (name != NULL) ? name : "-";
+}
+
+/* For the line that follows. */
+static const char *words_of(uint8_t missing) {
+    static char words[WORDS_SIZE];
+    size_t used = 0u;
+    words[0] = '\0';
+    for (uint8_t bit = 0u; agv_missing_name(bit) != NULL; bit++) {
+        if (((missing & (1u << bit)) != 0u) && (used < sizeof words)) {
+            used += (size_t)snprintk(&words[used], sizeof words - used, " %s", agv_missing_name(bit));
+        }
+    }
+    return words;
 }
 
 static void tell_fault(const agv_event_t *event) {
@@ -53,11 +69,11 @@ static void tell(const agv_event_t *event) {
         LOG_INF("%u ms: safety output %s", event->time_ms, (event->a != 0u) ? "closed" : "open");
         break;
     case AGV_EVENT_RESET:
-        LOG_INF("%u ms: reset %s, missing %02x", event->time_ms, (event->a != 0u) ? "accepted" : "refused",
-                event->missing);
+        LOG_INF("%u ms: reset %s%s", event->time_ms,
+                (event->a != 0u) ? "accepted" : "refused:", words_of(event->missing));
         break;
     default:
-        LOG_INF("%u ms: startup waits for %02x", event->time_ms, event->missing);
+        LOG_INF("%u ms: startup waits for%s", event->time_ms, words_of(event->missing));
         break;
     }
 }
@@ -109,6 +125,13 @@ void events_tell(const agv_recorder_t *recorder, uint32_t *told) {
     }
 }
 
+void events_tell_led(uint32_t now_ms, int8_t code, int8_t *told) {
+    if (code != *told) {
+        *told = code;
+        LOG_INF("%u ms: LED code %d", now_ms, code);
+    }
+}
+
 #else
 
 uint32_t events_begin(const agv_config_t *config, const agv_recorder_t *recorder) {
@@ -118,6 +141,11 @@ uint32_t events_begin(const agv_config_t *config, const agv_recorder_t *recorder
 
 void events_tell(const agv_recorder_t *recorder, uint32_t *told) {
     *told = agv_recorder_next_sequence(recorder);
+}
+
+void events_tell_led(uint32_t now_ms, int8_t code, int8_t *told) {
+    ARG_UNUSED(now_ms);
+    *told = code;
 }
 
 #endif

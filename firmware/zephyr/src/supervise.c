@@ -10,6 +10,11 @@ __weak bool supervise_self_test(void) {
     return true;
 }
 
+static void tell(supervise_t *self) {
+    events_tell(self->ports.recorder, &self->told);
+    events_tell_led(self->ticked_ms, agv_supervisor_led_code(&self->supervisor), &self->told_led);
+}
+
 void supervise_start(supervise_t *self, agv_recorder_t *recorder, zephyr_hal_retained_t *retained) {
     agv_config_t config;
     kconfig_read(&config);
@@ -24,7 +29,8 @@ void supervise_start(supervise_t *self, agv_recorder_t *recorder, zephyr_hal_ret
     self->ticked_ms = hal_clock_now_ms(&self->hal);
     agv_supervisor_start(&self->supervisor, &self->ports, &config, passed, self->ticked_ms);
     self->told = events_begin(&config, recorder);
-    events_tell(recorder, &self->told);
+    self->told_led = EVENTS_NO_LED;
+    tell(self);
 }
 
 static void count(supervise_t *self, const hal_can_frame_t *frame) {
@@ -64,5 +70,5 @@ void supervise_once(supervise_t *self) {
         agv_supervisor_tick(&self->supervisor, &self->ports, now_ms);
     }
     zephyr_hal_transmit(&self->hal);
-    events_tell(self->ports.recorder, &self->told);
+    tell(self);
 }

@@ -19,6 +19,7 @@ typedef struct {
     agv_ports_t ports;
     uint32_t ticked_ms;
     uint32_t told; /**< the recorder's next sequence number when events were last printed */
+    int8_t told_led;
 #if defined(CONFIG_AGV_SHELL)
     uint32_t frames[AGV_MSG_COUNT]; /**< received of each message, for the shell's rates */
 #endif

@@ -11,7 +11,7 @@
 enum { LOG_AREA = DT_FIXED_PARTITION_ID(DT_PHANDLE(ZEPHYR_HAL_NODE, log_partition)), LOG_VERSION = 1 };
 
 /* FCB writes a head of 8 bytes: flash that is written in larger blocks does not fit. */
-enum { LOG_MAGIC = 0x4C564741, BLOCK_MAX = 8, ERASED = 0xFF };
+enum { LOG_MAGIC = 0x4C564741, BLOCK_MAX = 8, ERASED = 0xFF, CHUNK_WORDS = 16 };
 
 static struct flash_sector sectors[CONFIG_AGV_LOG_SECTORS];
 static struct fcb log_buffer;
@@ -24,18 +24,35 @@ typedef struct {
     uint16_t id;
 } head_t;
 
-/* Neither erased nor written to its end. */
-static bool head_is_broken(const struct flash_area *area, const struct flash_sector *sector) {
+static bool is_erased(const struct flash_area *area, const struct flash_sector *sector) {
+    uint32_t words[CHUNK_WORDS];
+    for (size_t done = 0u; done < sector->fs_size; done += sizeof words) {
+        if (flash_area_read(area, sector->fs_off + (off_t)done, words, sizeof words) != 0) {
+            return false;
+        }
+        for (size_t i = 0u; i < ARRAY_SIZE(words); i++) {
+            if (words[i] != UINT32_MAX) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/* Neither erased to its end nor begun with a head that is whole. */
+static bool is_broken(const struct flash_area *area, const struct flash_sector *sector) {
     head_t head;
-    const bool read = flash_area_read(area, sector->fs_off, &head, sizeof head) == 0;
-    const bool erased = head.magic == UINT32_MAX;
+    if (flash_area_read(area, sector->fs_off, &head, sizeof head) != 0) {
+        return true;
+    }
     const bool whole = (head.magic == (uint32_t)LOG_MAGIC) && (head.version == LOG_VERSION) && (head.id != UINT16_MAX);
-    return !read || (!erased && !whole);
+    return !whole && !is_erased(area, sector);
 }
 
 /*
- * A power cut while a sector was begun or erased leaves a head that is none, and FCB would refuse the whole for it. Such a
- * sector is left out, or erased when `repair` says that the processor may stall. Returns how many are left in `sectors`.
+ * A power cut while a sector was begun or erased leaves a head that is none, and FCB would refuse the whole for it; or one
+ * that looks erased in front of what is not, into which FCB would write. Such a sector is left out, or erased when `repair`
+ * says that the processor may stall. Returns how many are left in `sectors`.
  */
 static uint32_t find_sectors(const struct flash_area *area, bool repair, bool *all) {
     uint32_t count = ARRAY_SIZE(sectors);
@@ -43,7 +60,7 @@ static uint32_t find_sectors(const struct flash_area *area, bool repair, bool *a
     const int status = flash_area_get_sectors(LOG_AREA, &count, sectors);
     *all = true;
     for (uint32_t i = 0u; ((status == 0) || (status == -ENOMEM)) && (i < count); i++) {
-        bool broken = head_is_broken(area, &sectors[i]);
+        bool broken = is_broken(area, &sectors[i]);
         if (broken && repair) {
             broken = flash_area_flatten(area, sectors[i].fs_off, sectors[i].fs_size) != 0;
         }

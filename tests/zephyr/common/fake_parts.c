@@ -9,6 +9,8 @@
 #include <zephyr/irq_offload.h>
 #include <zephyr/kernel.h>
 
+#include "vehicle.h"
+
 DEFINE_FFF_GLOBALS;
 
 fake_bus_t fake_buses[HAL_CAN_SIDES];
@@ -153,6 +155,10 @@ static void arrive(const void *argument) {
 void fake_bus_frame(hal_can_side_t side, const struct can_frame *frame) {
     arrival_t arrival = {.bus = &fake_buses[side], .frame = *frame};
     irq_offload(arrive, &arrival);
+}
+
+void vehicle_sends(const struct can_frame *frame) {
+    fake_bus_frame(HAL_CAN_VEHICLE, frame);
 }
 
 void fake_bus_complete(hal_can_side_t side, int error) {

@@ -6,7 +6,6 @@
 
 #include "agv/codec.h"
 #include "agv/protocol.h"
-#include "fake_parts.h"
 
 vehicle_t vehicle;
 
@@ -15,7 +14,7 @@ static uint8_t counter;
 static void send(uint32_t message, const uint8_t data[AGV_DLC]) {
     struct can_frame frame = {.id = agv_message_id(message, AGV_ID_SET_HEADING), .dlc = AGV_DLC};
     (void)memcpy(frame.data, data, AGV_DLC);
-    fake_bus_frame(HAL_CAN_VEHICLE, &frame);
+    vehicle_sends(&frame);
 }
 
 static void send_vcu(uint8_t data[AGV_DLC]) {

@@ -1,12 +1,14 @@
 /**
  * @file vehicle.h
- * A vehicle and an AI computer that send what they should, on the fake controller of the vehicle side.
+ * A vehicle and an AI computer that send what they should.
  */
 #ifndef VEHICLE_H
 #define VEHICLE_H
 
 #include <stdbool.h>
 #include <stdint.h>
+
+#include <zephyr/drivers/can.h>
 
 /** What it reports. */
 typedef struct {
@@ -19,6 +21,9 @@ typedef struct {
 } vehicle_t;
 
 extern vehicle_t vehicle;
+
+/** A frame of theirs; what stands for the bus defines it. */
+void vehicle_sends(const struct can_frame *frame);
 
 /** A millisecond of it: the frames that are due. */
 void vehicle_millisecond(uint32_t now_ms);

@@ -27,6 +27,7 @@ ZTEST(port_can, test_it_starts_as_the_contract_wants_it) {
     zassert_equal((1u + timing->prop_seg + timing->phase_seg1) * 1000u / quanta, 875u);
 }
 
+/* Shows: SUP-7 */
 ZTEST(port_can, test_without_a_free_filter_it_does_not_begin) {
     fixture_after(NULL);
     fake_parts_reset();
@@ -37,6 +38,7 @@ ZTEST(port_can, test_without_a_free_filter_it_does_not_begin) {
     zassert_true(fake_buses[HAL_CAN_AI].started, "the other side begins");
 }
 
+/* Shows: SUP-7 */
 ZTEST(port_can, test_a_controller_that_recovers_by_itself_is_refused) {
     fixture_after(NULL);
     fake_parts_reset();
@@ -44,6 +46,7 @@ ZTEST(port_can, test_a_controller_that_recovers_by_itself_is_refused) {
     zassert_false(fixture_begin());
 }
 
+/* Shows: TIM-4 */
 ZTEST(port_can, test_a_frame_carries_the_time_of_its_arrival) {
     hal_can_side_t side;
     hal_can_frame_t frame;
@@ -61,6 +64,7 @@ ZTEST(port_can, test_a_frame_carries_the_time_of_its_arrival) {
     zassert_false(zephyr_hal_receive(&hal, &side, &frame));
 }
 
+/* Shows: INT-2 */
 ZTEST(port_can, test_frames_that_are_rejected_are_handed_over_too) {
     static const struct can_frame sent[] = {
         {.id = 0x12345u, .dlc = 8u, .flags = CAN_FRAME_IDE},
@@ -86,6 +90,7 @@ ZTEST(port_can, test_frames_that_are_rejected_are_handed_over_too) {
     }
 }
 
+/* Shows: TOP-2 */
 ZTEST(port_can, test_frames_of_both_sides_come_in_the_order_of_their_arrival) {
     static const hal_can_side_t order[] = {HAL_CAN_AI, HAL_CAN_VEHICLE, HAL_CAN_VEHICLE, HAL_CAN_AI};
     for (size_t i = 0u; i < ARRAY_SIZE(order); i++) {
@@ -101,6 +106,7 @@ ZTEST(port_can, test_frames_of_both_sides_come_in_the_order_of_their_arrival) {
     }
 }
 
+/* Shows: SUP-7 */
 ZTEST(port_can, test_a_full_queue_is_an_overrun) {
     for (uint32_t i = 0u; i < (CONFIG_AGV_CAN_RX_QUEUE + 3u); i++) {
         arrive(HAL_CAN_VEHICLE, 0x100u, 0u);
@@ -110,6 +116,7 @@ ZTEST(port_can, test_a_full_queue_is_an_overrun) {
     zassert_equal(fixture_status().overrun_count, 3u, "a side does not crowd out the other");
 }
 
+/* Shows: FSM-2 */
 ZTEST(port_can, test_the_driver_has_one_frame_and_the_lowest_identifier_goes_next) {
     zassert_true(send(0x168u, 1u));
     zassert_true(send(0x43Fu, 2u));
@@ -160,6 +167,7 @@ ZTEST(port_can, test_only_what_can_be_sent_is_taken) {
     zassert_false(hal_can_send(&hal, HAL_CAN_SIDES, &(hal_can_frame_t){.id = 1u}));
 }
 
+/* Shows: FSM-2 */
 ZTEST(port_can, test_after_a_purge_at_most_the_frame_in_the_controller_leaves) {
     (void)send(0x168u, 1u);
     (void)send(0x43Fu, 2u);
@@ -172,6 +180,7 @@ ZTEST(port_can, test_after_a_purge_at_most_the_frame_in_the_controller_leaves) {
     zassert_equal(vehicle->sent[1].data[0], 3u);
 }
 
+/* Shows: SUP-7 */
 ZTEST(port_can, test_a_frame_that_does_not_leave_grows_old) {
     (void)send(0x168u, 1u);
     zassert_equal(fixture_status().tx_pending_ms, 1u);
@@ -190,6 +199,7 @@ static void go_bus_off(void) {
     }
 }
 
+/* Shows: SUP-7 */
 ZTEST(port_can, test_in_bus_off_what_waits_is_never_sent) {
     (void)send(0x168u, 1u);
     (void)send(0x43Fu, 2u);
@@ -208,6 +218,7 @@ ZTEST(port_can, test_in_bus_off_what_waits_is_never_sent) {
     zassert_equal(vehicle->sent[1].data[0], 4u);
 }
 
+/* Shows: SUP-7 */
 ZTEST(port_can, test_recovery_is_on_request_and_in_bus_off_only) {
     hal_can_recover(&hal, HAL_CAN_VEHICLE);
     zassert_equal(vehicle->recoveries, 0u);
@@ -217,6 +228,7 @@ ZTEST(port_can, test_recovery_is_on_request_and_in_bus_off_only) {
     zassert_equal(vehicle->recoveries, 1u);
 }
 
+/* Shows: SUP-7 */
 ZTEST(port_can, test_a_bus_off_that_is_over_when_somebody_looks_is_counted) {
     fake_bus_state(HAL_CAN_VEHICLE, CAN_STATE_BUS_OFF, true);
     fake_bus_state(HAL_CAN_VEHICLE, CAN_STATE_ERROR_ACTIVE, true);
@@ -225,12 +237,14 @@ ZTEST(port_can, test_a_bus_off_that_is_over_when_somebody_looks_is_counted) {
     zassert_equal(status.bus_off_count, 1u);
 }
 
+/* Shows: SUP-7 */
 ZTEST(port_can, test_a_bus_off_without_an_interrupt_is_counted_once) {
     fake_bus_state(HAL_CAN_VEHICLE, CAN_STATE_BUS_OFF, false);
     zassert_equal(fixture_status().bus_off_count, 1u);
     zassert_equal(fixture_status().bus_off_count, 1u);
 }
 
+/* Shows: SUP-7 */
 ZTEST(port_can, test_error_states) {
     static const struct {
         enum can_state is;
@@ -245,6 +259,7 @@ ZTEST(port_can, test_error_states) {
     }
 }
 
+/* Shows: TIM-4 */
 ZTEST(port_can, test_the_thread_is_woken_by_a_frame_and_by_each_millisecond_once) {
     while (k_sem_take(&hal.wake, K_NO_WAIT) == 0) {
     }

@@ -17,6 +17,7 @@ static hal_reset_cause_t cause_after(uint32_t flags) {
     return hal_reset_cause(&hal);
 }
 
+/* Shows: FSM-7 */
 ZTEST(port_reset, test_only_a_sure_power_on_is_one) {
     static const struct {
         uint32_t flags;
@@ -39,6 +40,7 @@ ZTEST(port_reset, test_only_a_sure_power_on_is_one) {
     }
 }
 
+/* Shows: FSM-7 */
 ZTEST(port_reset, test_the_flags_are_read_once_and_cleared) {
     fake_reset_reads = 0u;
     fake_reset_clears = 0u;
@@ -48,11 +50,13 @@ ZTEST(port_reset, test_the_flags_are_read_once_and_cleared) {
     zassert_equal(fake_reset_clears, 1u);
 }
 
+/* Shows: FSM-7 */
 ZTEST(port_reset, test_without_flags_the_cause_is_unknown) {
     fake_reset_error = -ENOSYS;
     zassert_equal(cause_after(RESET_POR), HAL_RESET_UNKNOWN);
 }
 
+/* Shows: FSM-7 */
 ZTEST(port_reset, test_a_reset_of_the_port_itself_says_why_and_once) {
     zephyr_reset_note(HAL_RESET_WATCHDOG);
     zassert_equal(cause_after(RESET_SOFTWARE), HAL_RESET_WATCHDOG);
@@ -63,6 +67,7 @@ ZTEST(port_reset, test_a_reset_of_the_port_itself_says_why_and_once) {
     zassert_equal(cause_after(RESET_SOFTWARE), HAL_RESET_SOFTWARE, "a note never makes a power-on");
 }
 
+/* Shows: FSM-7 */
 ZTEST(port_reset, test_the_latch_outlives_a_reset) {
     static const uint8_t record[] = {1u, 2u, 3u, 4u, 5u};
     uint8_t read[HAL_STORE_LATCH_SIZE_MAX] = {0};
@@ -75,6 +80,7 @@ ZTEST(port_reset, test_the_latch_outlives_a_reset) {
     zassert_false(hal_store_write_latch(&hal, read, HAL_STORE_LATCH_SIZE_MAX + 1u));
 }
 
+/* Shows: FSM-7 */
 ZTEST(port_reset, test_each_flipped_bit_of_the_latch_is_seen) {
     static const uint8_t record[8] = {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u};
     uint8_t read[HAL_STORE_LATCH_SIZE_MAX];
@@ -89,6 +95,7 @@ ZTEST(port_reset, test_each_flipped_bit_of_the_latch_is_seen) {
     }
 }
 
+/* Shows: TIM-3 */
 ZTEST(port_reset, test_nothing_but_the_core_feeds_the_watchdog) {
     zassert_true(fake_watchdog_started);
     zassert_equal(fake_watchdog_ms, 120u);
@@ -102,6 +109,7 @@ ZTEST(port_reset, test_nothing_but_the_core_feeds_the_watchdog) {
     zassert_equal(fake_watchdog_feeds, before + 1u);
 }
 
+/* Shows: FSM-4 */
 ZTEST(port_reset, test_the_pins) {
     zassert_true(zephyr_hal_output_is_open());
     hal_safety_output_set(&hal, true);
@@ -115,6 +123,7 @@ ZTEST(port_reset, test_the_pins) {
     zassert_false(fake_led_is_on());
 }
 
+/* Shows: FSM-9 */
 ZTEST(port_reset, test_an_output_that_reads_closed_at_the_start_fails_the_self_test) {
     hal_safety_output_set(&hal, true);
     fixture_after(NULL);
@@ -125,6 +134,7 @@ ZTEST(port_reset, test_an_output_that_reads_closed_at_the_start_fails_the_self_t
     zassert_true(fixture_begin());
 }
 
+/* Shows: INT-2 */
 ZTEST(port_reset, test_the_settings_of_the_build_make_sense) {
     agv_config_t config;
     kconfig_read(&config);
@@ -136,6 +146,7 @@ ZTEST(port_reset, test_the_settings_of_the_build_make_sense) {
     zassert_equal(agv_config_checksum(&config), agv_config_checksum(&defaults));
 }
 
+/* Shows: INT-2 */
 ZTEST(port_reset, test_the_build_knows_the_identifiers_of_the_protocol) {
     agv_config_t config;
     kconfig_read(&config);

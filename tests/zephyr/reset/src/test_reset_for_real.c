@@ -139,6 +139,7 @@ static void look_at_what_outlived(uint32_t run) {
 
 ZTEST_SUITE(resets, NULL, NULL, NULL, NULL, NULL);
 
+/* Shows: FSM-4, FSM-5, FSM-7, TIM-3, INT-3 */
 ZTEST(resets, test_what_outlives_each_kind_of_reset) {
     if ((story.magic != (uint32_t)STORY) || (story.run >= (uint32_t)RUNS)) {
         story.magic = STORY;

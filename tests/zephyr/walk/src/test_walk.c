@@ -123,6 +123,7 @@ static void operator_resets(void) {
     assert_state(AGV_STATE_STANDBY, "reset");
 }
 
+/* Shows: FSM-2, FSM-3, FSM-4, FSM-5, TOP-1, INT-3 */
 ZTEST(walk, test_the_whole_round) {
     start_to_standby();
     drive_off();
