@@ -33,8 +33,10 @@ function(agv_use_profile)
     return()
   endif()
   foreach(target IN LISTS ARGN)
-    # -fprofile-partial-training: what was not run, a reaction to a fault for one, is not made slow
-    set(options -fprofile-use=${AGV_PROFILE_COUNTS} -fprofile-partial-training -Wno-missing-profile -Wno-coverage-mismatch)
+    # -fprofile-partial-training: what was not run, a reaction to a fault for one, is not made slow.
+    # -fprofile-correction: a function that is new or changed since, and so has no counts, is no warning.
+    set(options -fprofile-use=${AGV_PROFILE_COUNTS} -fprofile-partial-training -fprofile-correction
+      -Wno-missing-profile -Wno-coverage-mismatch)
     target_compile_options(${target} PRIVATE ${options})
     target_link_options(${target} PRIVATE ${options})
     add_dependencies(${target} agv_profile)

@@ -32,6 +32,7 @@ static void engage(agv_core_t *core, uint32_t stamp_ms) {
     for (uint32_t command = AGV_MSG_GEAR_COMMAND; command < AGV_COMMAND_COUNT; command++) {
         agv_watch_start_at(core, (uint32_t)AGV_WATCH_MESSAGE + command, stamp_ms);
     }
+    agv_watch_start_at(core, AGV_WATCH_AI_AWAITED, stamp_ms);
     agv_watch_start(core, AGV_WATCH_ENGAGED);
     core->summary.changed = true; /* the class of AI_HEARTBEAT_* */
 }

@@ -212,6 +212,19 @@ void test_never_seen(void) {
     expect_led(&f, 14);
 }
 
+/* The 500 ms are those since the frame that told of the engagement, not since the tick after it. */
+/* Shows: SUP-8, FSM-2, AI_HEARTBEAT_LOST */
+void test_never_seen_when_engaged_between_two_ticks(void) {
+    f.traffic[AI].muted = true;
+    fixture_standby(&f);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_send_now(&f, VCU);
+    fixture_run(&f, 500);
+    expect_no_fault(AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_trip(&f, LOST, f.call, ANGLE_CENTRE);
+}
+
 /* The 500 ms belong to one engagement. */
 /* Shows: SUP-8, AI_HEARTBEAT_LOST */
 void test_never_seen_and_not_engaged_for_long_enough(void) {
