@@ -236,6 +236,24 @@ void test_what_does_not_keep_init(void) {
 }
 
 /* An event counts as a cause for 1 s after the last one. */
+/* An AI computer that was seen and is lost keeps INIT where that is a trip, until it is back. */
+/* Shows: SUP-8, FSM-7, AI_HEARTBEAT_LOST */
+void test_a_lost_ai_computer_keeps_init_where_it_is_a_trip_in_manual(void) {
+    f.config.ai_lost_in_manual = AGV_AI_LOST_TRIP;
+    fixture_mute_vcu(&f, true);
+    fixture_start(&f);
+    fixture_run(&f, 500);
+    fixture_mute_ai(&f, true);
+    fixture_run(&f, 500);
+    fixture_mute_vcu(&f, false);
+    fixture_run(&f, 2000);
+    expect_state(&f, AGV_STATE_INIT);
+    fixture_mute_ai(&f, false);
+    fixture_run(&f, 1000);
+    expect_state(&f, AGV_STATE_STANDBY);
+    expect_reason(&f, AGV_FAULT_NONE);
+}
+
 /* Shows: FOREIGN_COMMAND_SENDER, FSM-7 */
 void test_an_event_keeps_init_until_it_has_ended(void) {
     static const uint8_t park[8] = {GEAR_P};
