@@ -59,16 +59,10 @@ static void update_mode(agv_core_t *core, uint32_t flags, uint32_t stamp_ms) {
 /* Bit 3 counts while engaged, after it was once clear with the AI alive (SUP-8). */
 static bool ai_alarm_counts(agv_core_t *core, bool alarm) {
     agv_monitor_t *const monitor = &core->monitor;
-    const bool alive = agv_core_alive(core, AGV_NODE_AI);
-    const bool engaged = agv_core_engaged(core);
-    if (alive && !alarm) {
+    if (!alarm && agv_core_alive(core, AGV_NODE_AI)) {
         monitor->ai_alarm_armed = true;
-    } else if (!alive && !engaged) {
-        monitor->ai_alarm_armed = false; /* switched off in manual driving: it has to be clear again */
-    } else {
-        /* an AI that dies while engaged is what the alarm is for */
     }
-    return monitor->ai_alarm_armed && engaged;
+    return monitor->ai_alarm_armed && agv_core_engaged(core);
 }
 
 static void on_vehicle_status(agv_core_t *core, const hal_can_frame_t *frame) {
@@ -141,15 +135,14 @@ static void on_wheel_speed(agv_core_t *core, const uint8_t data[AGV_DLC]) {
 /* A gear, throttle or angle that the protocol does not know counts once the engagement has settled (SUP-5). */
 static void on_value(agv_core_t *core, uint32_t message, const uint8_t data[AGV_DLC], bool valid) {
     const uint32_t which = message - (uint32_t)AGV_MSG_GEAR_STATUS;
-    const uint8_t value = valid ? data[0] : 0u;
     if (message == (uint32_t)AGV_MSG_GEAR_STATUS) {
-        core->vehicle.gear = value;
+        core->vehicle.gear = valid ? data[0] : 0u;
+    } else if (!valid) {
+        /* the throttle or angle before stands */
     } else if (message == (uint32_t)AGV_MSG_THROTTLE_STATUS) {
-        core->vehicle.throttle = value;
-    } else if (valid) {
-        on_steering_angle(core, data);
+        core->vehicle.throttle = data[0];
     } else {
-        /* the angle before stands */
+        on_steering_angle(core, data);
     }
     agv_faults_level(core, (uint32_t)AGV_FAULT_GEAR_STATUS_INVALID + which,
                      in_a_row(core, (uint32_t)AGV_ROW_GEAR_STATUS + which, !valid && agv_monitor_settled(core),

@@ -64,7 +64,7 @@ static uint32_t step_time(agv_core_t *core) {
 /* SUP-7, one side: recovery is asked for after a purge; what waited is never sent. */
 static uint32_t follow_bus(agv_core_t *core, hal_can_side_t side) {
     const uint32_t report = agv_bus_tick(core, side);
-    if ((report & AGV_BUS_OFF) != 0u) {
+    if ((report & (AGV_BUS_OFF | AGV_BUS_RECOVERED)) != 0u) {
         agv_transmitter_discard(core, side);
     }
     if ((report & AGV_BUS_ASK_RECOVERY) != 0u) {

@@ -310,6 +310,25 @@ void test_what_waits_for_the_ai_side_is_gone_in_its_bus_off(void) {
     TEST_ASSERT_EQUAL_HEX16(0x43F, f.sent[0].id);
 }
 
+/* So is what came while it was off and waits, though it is back before the next tick. */
+/* Shows: SUP-7, TOP-2, AI_BUS_OFF */
+void test_what_waits_for_the_ai_side_is_gone_when_it_comes_back_before_a_tick(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    fixture_mute_ai(&f, true);
+    fixture_standby(&f);
+    set_state(HAL_CAN_AI, HAL_CAN_BUS_OFF);
+    fixture_run(&f, 50);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_mute_vcu(&f, true);
+    fixture_mute_eps(&f, true);
+    const uint32_t dropped = agv_supervisor_counters(&f.supervisor)->dropped;
+    fixture_forget_sent(&f);
+    set_state(HAL_CAN_AI, HAL_CAN_ERROR_ACTIVE);
+    fixture_run(&f, 10);
+    TEST_ASSERT_EQUAL_UINT32(0, f.sent_count);
+    TEST_ASSERT_EQUAL_UINT32(dropped + 1, agv_supervisor_counters(&f.supervisor)->dropped);
+}
+
 /* The safe commands wait for a queue that is full when it goes off: that is a bus-off, and no stalled request. */
 /* Shows: SUP-7, BUS_OFF, TX_STALLED */
 void test_in_bus_off_nothing_is_stalled(void) {

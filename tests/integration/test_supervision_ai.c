@@ -461,9 +461,9 @@ void test_the_vcus_ai_alarm_of_an_ai_that_was_never_there(void) {
     expect_nothing(&f, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_STANDBY);
 }
 
-/* The AI computer goes off and on in manual driving while the alarm is set: it has to be clear again. */
+/* Once is enough: an alarm that stands since the AI computer was off in manual driving counts at the engagement. */
 /* Shows: SUP-8, VCU_AI_CAN_LOST */
-void test_the_vcus_ai_alarm_has_to_be_clear_again_after_a_pause(void) {
+void test_the_vcus_ai_alarm_that_stands_since_a_pause_counts_when_engaged(void) {
     fixture_standby(&f);
     fixture_run(&f, 500);
     fixture_mute_ai(&f, true);
@@ -471,6 +471,23 @@ void test_the_vcus_ai_alarm_has_to_be_clear_again_after_a_pause(void) {
     fixture_run(&f, 1000);
     fixture_mute_ai(&f, false);
     fixture_run(&f, 500);
+    expect_nothing(&f, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_STANDBY);
+    engage();
+    expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
+}
+
+/* The AI computer goes off and on in manual driving, and the alarm with it: nothing comes of it when engaged. */
+/* Shows: SUP-8, VCU_AI_CAN_LOST */
+void test_the_vcus_ai_alarm_of_a_pause_in_manual_that_is_over(void) {
+    fixture_standby(&f);
+    fixture_run(&f, 500);
+    fixture_mute_ai(&f, true);
+    set_alarm(true);
+    fixture_run(&f, 1000);
+    fixture_mute_ai(&f, false);
+    fixture_run(&f, 300);
+    set_alarm(false);
+    fixture_run_past(&f, VCU);
     engage();
     fixture_run(&f, 200);
     expect_nothing(&f, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_ACTIVE);

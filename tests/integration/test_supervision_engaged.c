@@ -251,6 +251,22 @@ void test_throttle_in_park(void) {
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_THROTTLE_IN_PARK));
 }
 
+/* An invalid throttle is not used: the one before stands. */
+/* Shows: SUP-5, THROTTLE_IN_PARK */
+void test_an_invalid_throttle_between_does_not_end_throttle_in_park(void) {
+    fixture_active(&f);
+    fixture_gear(&f, GEAR_P);
+    set_throttle(1);
+    fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
+    fixture_run(&f, 99);
+    set_throttle(255);
+    fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
+    set_throttle(1);
+    fixture_run(&f, 150);
+    expect_fault(&f, AGV_FAULT_THROTTLE_IN_PARK, true);
+    expect_reason(&f, AGV_FAULT_THROTTLE_IN_PARK);
+}
+
 /* The gear may also come second; leaving P ends it. */
 /* Shows: SUP-5, THROTTLE_IN_PARK */
 void test_park_with_throttle(void) {
