@@ -30,7 +30,9 @@ static uint8_t missing_of(const json_t *words) {
     for (size_t i = 0u; i < json_array_size(words); i++) {
         const char *word = json_string_value(json_array_get(words, i));
         for (uint8_t bit = 0u; (word != NULL) && (bit < MISSING_BITS); bit++) {
-            missing |= (strcmp(word, agv_missing_name(bit)) == 0) ? (uint8_t)(1u << bit) : 0u;
+            if (strcmp(word, agv_missing_name(bit)) == 0) {
+                missing = (uint8_t)(missing | (1u << bit));
+            }
         }
     }
     return missing;
