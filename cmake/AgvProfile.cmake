@@ -1,4 +1,4 @@
-# The host program optimised by a profile of itself (gcc): an hour on the simulated bus then takes about a third less time.
+# The host program optimised by a profile of itself (gcc): an hour on the simulated bus then takes about a fifth less time.
 #
 #   agv_use_profile(target ...)
 #

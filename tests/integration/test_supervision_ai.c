@@ -461,15 +461,20 @@ void test_the_vcus_ai_alarm_of_an_ai_that_was_never_there(void) {
     expect_nothing(&f, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_STANDBY);
 }
 
-/* Once is enough: an alarm that stands since the AI computer was off in manual driving counts at the engagement. */
-/* Shows: SUP-8, VCU_AI_CAN_LOST */
-void test_the_vcus_ai_alarm_that_stands_since_a_pause_counts_when_engaged(void) {
+/* Alive with the alarm clear, then off for a second of manual driving, with the alarm, and on again. */
+static void pause_ai_in_manual(void) {
     fixture_standby(&f);
     fixture_run(&f, 500);
     fixture_mute_ai(&f, true);
     set_alarm(true);
     fixture_run(&f, 1000);
     fixture_mute_ai(&f, false);
+}
+
+/* Once is enough: an alarm that stands since the AI computer was off in manual driving counts at the engagement. */
+/* Shows: SUP-8, VCU_AI_CAN_LOST */
+void test_the_vcus_ai_alarm_that_stands_since_a_pause_counts_when_engaged(void) {
+    pause_ai_in_manual();
     fixture_run(&f, 500);
     expect_nothing(&f, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_STANDBY);
     engage();
@@ -479,12 +484,7 @@ void test_the_vcus_ai_alarm_that_stands_since_a_pause_counts_when_engaged(void) 
 /* The AI computer goes off and on in manual driving, and the alarm with it: nothing comes of it when engaged. */
 /* Shows: SUP-8, VCU_AI_CAN_LOST */
 void test_the_vcus_ai_alarm_of_a_pause_in_manual_that_is_over(void) {
-    fixture_standby(&f);
-    fixture_run(&f, 500);
-    fixture_mute_ai(&f, true);
-    set_alarm(true);
-    fixture_run(&f, 1000);
-    fixture_mute_ai(&f, false);
+    pause_ai_in_manual();
     fixture_run(&f, 300);
     set_alarm(false);
     fixture_run_past(&f, VCU);
