@@ -87,11 +87,16 @@ static void tell_frames(outsider_t *outsider) {
     outsider->heard.count = 0u;
 }
 
-static void hear(outsider_t *outsider, hal_can_side_t side) {
+/** @return false: more frames than there is room for, and a lost one could be the one that must not be; reported */
+static bool hear(outsider_t *outsider, hal_can_side_t side) {
     linux_can_record_t record;
     while ((outsider->ears[side].fd >= 0) && (linux_can_read(&outsider->ears[side], &record) == LINUX_CAN_RECORD)) {
-        (void)add(&outsider->heard, side, &record.frame, linux_clock_of_stamp(outsider->config.clock, record.stamp_us));
+        const uint64_t at_us = linux_clock_of_stamp(outsider->config.clock, record.stamp_us);
+        if (!add(&outsider->heard, side, &record.frame, at_us)) {
+            return report("more than %d frames at once from '%s'", (int)FRAMES_MAX, outsider->config.command);
+        }
     }
+    return true;
 }
 
 static void tell_line(outsider_t *outsider, size_t length) {
@@ -231,10 +236,7 @@ void outsider_vehicle_sent(outsider_t *outsider, hal_can_side_t side, const hal_
 
 bool outsider_listen(outsider_t *outsider) {
     tell_frames(outsider);
-    for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
-        hear(outsider, (hal_can_side_t)side);
-    }
-    return read_output(outsider);
+    return hear(outsider, HAL_CAN_VEHICLE) && hear(outsider, HAL_CAN_AI) && read_output(outsider);
 }
 
 bool outsider_output_closed(const outsider_t *outsider) {
