@@ -43,7 +43,10 @@ bool outsider_wait(outsider_t *outsider);
 /** The vehicle has sent a frame. */
 void outsider_vehicle_sent(outsider_t *outsider, hal_can_side_t side, const hal_can_frame_t *frame);
 
-/** Tell what was heard; every millisecond, after all of outsider_vehicle_sent(). @return false: it has ended, or too much was heard; reported */
+/**
+ * Tell what was heard; every millisecond, after all of outsider_vehicle_sent().
+ * @return false: it has ended, or more was heard than there is room for; reported
+ */
 bool outsider_listen(outsider_t *outsider);
 
 /** Whether it said last that its safety output is closed. */
