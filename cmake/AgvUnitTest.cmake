@@ -73,21 +73,48 @@ function(agv_mock_of HEADER TARGET_VARIABLE)
   target_link_libraries(${mock} PUBLIC unity)
 endfunction()
 
+# The runner of a test: a header in front of it, so that both are compiled at once. The runners of a folder are made together.
+function(agv_runner_of SOURCE RUNNER_VARIABLE)
+  get_filename_component(name ${SOURCE} NAME_WE)
+  get_filename_component(path ${SOURCE} ABSOLUTE)
+  set(runner ${CMAKE_CURRENT_BINARY_DIR}/${name}_runner.h)
+  set(${RUNNER_VARIABLE} ${runner} PARENT_SCOPE)
+  set_source_files_properties(${SOURCE} PROPERTIES COMPILE_OPTIONS "-include;${runner}" OBJECT_DEPENDS ${runner})
+  get_property(tests DIRECTORY PROPERTY AGV_TESTS)
+  if(NOT tests)
+    cmake_language(DEFER CALL agv_make_runners)
+  endif()
+  if(NOT path IN_LIST tests)
+    set_property(DIRECTORY APPEND PROPERTY AGV_TESTS ${path})
+  endif()
+endfunction()
+
+# At the end of a folder, when all its tests are known.
+function(agv_make_runners)
+  get_property(tests DIRECTORY PROPERTY AGV_TESTS)
+  set(runners)
+  foreach(test IN LISTS tests)
+    get_filename_component(name ${test} NAME_WE)
+    list(APPEND runners ${CMAKE_CURRENT_BINARY_DIR}/${name}_runner.h)
+  endforeach()
+  set(maker ${PROJECT_SOURCE_DIR}/tests/make_runners.rb)
+  add_custom_command(
+    OUTPUT ${runners}
+    COMMAND ${AGV_RUBY} --disable-gems -r ${AGV_UNITY}/auto/generate_test_runner.rb ${maker} ${AGV_CMOCK_CONFIG}
+      ${CMAKE_CURRENT_BINARY_DIR} ${tests}
+    DEPENDS ${tests} ${maker} ${AGV_CMOCK_CONFIG} ${AGV_GEMS_STAMP}
+    COMMENT "Generating the runners of the tests"
+    VERBATIM
+  )
+endfunction()
+
 function(agv_add_unit_test)
   cmake_parse_arguments(PARSE_ARGV 0 TEST "PLANTED;NO_TEST" "NAME" "SOURCES;MOCKS;LIBS")
   if(NOT TEST_NAME OR NOT TEST_SOURCES OR TEST_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "usage: agv_add_unit_test(NAME name SOURCES file.c ... [MOCKS hal/x.h ...] [LIBS lib ...])")
   endif()
   list(GET TEST_SOURCES 0 first)
-  get_filename_component(first ${first} ABSOLUTE)
-  set(runner ${CMAKE_CURRENT_BINARY_DIR}/${TEST_NAME}_runner.c)
-  add_custom_command(
-    OUTPUT ${runner}
-    COMMAND ${AGV_RUBY} --disable-gems ${AGV_UNITY}/auto/generate_test_runner.rb ${AGV_CMOCK_CONFIG} ${first} ${runner}
-    DEPENDS ${first} ${AGV_CMOCK_CONFIG} ${AGV_GEMS_STAMP}
-    COMMENT "Generating the runner of ${TEST_NAME}"
-    VERBATIM
-  )
+  agv_runner_of(${first} runner)
   set(mocks)
   foreach(header IN LISTS TEST_MOCKS)
     agv_mock_of(${header} mock)
@@ -97,9 +124,6 @@ function(agv_add_unit_test)
   add_executable(${TEST_NAME} ${TEST_SOURCES} ${runner})
   target_link_libraries(${TEST_NAME} PRIVATE agv_options ${TEST_LIBS} agv_core ${mocks} unity ${AGV_TEST_START})
   target_link_options(${TEST_NAME} PRIVATE -fno-lto) # see host_sim: for so many programs it would take minutes
-  # The runner calls the test functions by name, so they are not static and have no prototype.
-  set_source_files_properties(${TEST_SOURCES} PROPERTIES COMPILE_OPTIONS -Wno-missing-prototypes)
-  set_source_files_properties(${runner} PROPERTIES COMPILE_OPTIONS -w)
   if(TEST_NO_TEST)
     return()
   endif()
