@@ -32,7 +32,7 @@ class Soak(hostsim.Case):
     def test_planted_mistakes_are_found(self):
         for word, said in (("trip", "VCU_HEARTBEAT_LOST"), ("drift", "drift: status frame"),
                            ("count", "frames received: counted")):
-            result = self.soak("--hours", 2, "--seed", 1, "--planted", word, "--results", "a", status=1)
+            result = self.soak("--hours", 2, "--seed", 1, "--shard", "1/20", "--planted", word, "--results", "a", status=1)
             self.assertIn("BROKEN: " + said, result.stdout)
             self.assertTrue(self.figures("a")["broken"])
 

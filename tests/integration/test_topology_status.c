@@ -106,6 +106,22 @@ void test_the_status_frame_does_not_burst_after_an_overrun(void) {
     TEST_ASSERT_EQUAL_UINT32(6, fixture_count_sent(&f, STATUS_ID));
 }
 
+/* Shows: TOP-3 */
+void test_a_status_frame_that_does_not_leave_is_not_counted(void) {
+    f.config.status_frame_id = STATUS_ID;
+    fixture_standby(&f);
+    fixture_run(&f, 200);
+    const uint8_t before = last_status()->data[3];
+    fixture_forget_sent(&f);
+    sim_hal_fail_at(&f.hal, 1, UINT32_MAX, 1u << SIM_HAL_OP_CAN_SEND);
+    fixture_run(&f, 200); /* two of them */
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, STATUS_ID));
+    sim_hal_fail_at(&f.hal, 0, 0, 0);
+    fixture_run(&f, 100);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, STATUS_ID));
+    TEST_ASSERT_EQUAL_HEX8((uint8_t)(before + 1), last_status()->data[3]);
+}
+
 /* ---- Shadow ---- */
 
 /* From the start through a trip, with an AI computer that is overridden, to SAFE and back. */

@@ -297,6 +297,11 @@ class Scene:
             time.sleep(0.1)
 
 
+def long(test):
+    """Marks one that run_clients.py --quick leaves out."""
+    return test
+
+
 class Case(unittest.TestCase):
     """A test with buses of its own. Ends every process that it started."""
 

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Foreign CAN tools against host_sim run. usage: with-vcan run_clients.py [--lanes N] [--share I/N] [NAME...]
+"""Foreign CAN tools against host_sim run. usage: with-vcan run_clients.py [--lanes N] [--quick] [NAME...]
 
 Runs the tests of test_clients.py and test_python_can.py, several at a time, each on buses of its own: all of them, or
-every Nth. HOST_SIM in the environment is the program. Prints what it ran on and what candump saw. Fails when a test fails, a tool is missing, or
+those that are not marked as long. HOST_SIM in the environment is the program. Prints what it ran on and what candump saw. Fails when a test fails, a tool is missing, or
 fewer tests ran than there are to be.
 """
 import argparse
@@ -20,6 +20,7 @@ import traceback
 import unittest
 
 EXPECTED_TESTS = 24
+EXPECTED_QUICK_TESTS = 14
 FILES = ("test_clients", "test_python_can")
 
 
@@ -42,12 +43,13 @@ def bring_programs():
         clients.PROGRAM = os.path.join(into, os.path.basename(os.environ["HOST_SIM"]))
 
 
-def names_of(file):
-    """The tests of a file, without importing it: python-can takes long."""
+def names_of(file, quick):
+    """The tests of a file, without importing it: python-can takes long. quick: those that are not @clients.long"""
     import ast
     tree = ast.parse((pathlib.Path(__file__).parent / (file + ".py")).read_text(encoding="utf-8"))
     return ["%s.%s.%s" % (file, case.name, test.name) for case in tree.body if isinstance(case, ast.ClassDef)
-            for test in case.body if isinstance(test, ast.FunctionDef) and test.name.startswith("test_")]
+            for test in case.body if isinstance(test, ast.FunctionDef) and test.name.startswith("test_")
+            and not (quick and "clients.long" in map(ast.unparse, test.decorator_list))]
 
 
 def run_one(name):
@@ -103,15 +105,11 @@ class Queue:
             yield self.names[place[0]]
 
 
-def choose(files, wanted, share):
-    """{file: names of its tests that are to run}"""
-    number, of_all = share
-    chosen = {file: [] for file in files}
-    names = [(file, name) for file in files for name in names_of(file)]
-    for place, (file, name) in enumerate(names):
-        if place % of_all == number - 1 and (not wanted or any(word in name for word in wanted)):
-            chosen[file].append(name)
-    return chosen, len(names)
+def choose(files, wanted, quick):
+    """{file: names of its tests that are to run}, and how many there are"""
+    names = {file: names_of(file, quick) for file in files}
+    chosen = {file: [name for name in names[file] if not wanted or any(word in name for word in wanted)] for file in files}
+    return chosen, sum(map(len, names.values()))
 
 
 def run_all(chosen, files, lanes):
@@ -144,14 +142,6 @@ def report(name, seconds, tally, wrong):
         print(wrong, flush=True)
 
 
-def share(text):
-    """2/3: the second third"""
-    match = re.fullmatch(r"([1-9]\d?)/([1-9]\d?)", text)
-    if not match or int(match[1]) > int(match[2]):
-        raise argparse.ArgumentTypeError("%r is no share like 1/2" % text)
-    return int(match[1]), int(match[2])
-
-
 def reason(traceback_text):
     """The line of a traceback that names the exception, the last one."""
     named = [line for line in traceback_text.splitlines() if re.match(r"[\w.]*(Error|Exception|HeldUp|Expired)\b", line)]
@@ -161,7 +151,7 @@ def reason(traceback_text):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--lanes", type=int, default=2)
-    parser.add_argument("--share", type=share, default=(1, 1), metavar="I/N")
+    parser.add_argument("--quick", action="store_true")
     parser.add_argument("names", nargs="*")
     args = parser.parse_args()
     if not os.access(os.environ.get("HOST_SIM", ""), os.X_OK):
@@ -171,7 +161,7 @@ def main():
         sys.exit("run_clients: missing: %s; 'scripts/install-deps vcan' installs them" % ", ".join(missing))
     begin = time.monotonic()
     bring_programs()
-    chosen, there_are = choose(FILES, args.names, args.share)
+    chosen, there_are = choose(FILES, args.names, args.quick)
     results = run_all(chosen, FILES, args.lanes)
     wrongs = {name: wrong for name, _, _, wrong in results if wrong}
     failed = list(wrongs)
@@ -184,9 +174,10 @@ def main():
     times = os.times()
     print("%.0f s by the clock in here, %.0f s of a processor" % (time.monotonic() - begin, sum(times[:4])))
     expected = sum(map(len, chosen.values()))
-    if there_are < EXPECTED_TESTS or len(results) < expected:
+    there_should = EXPECTED_QUICK_TESTS if args.quick else EXPECTED_TESTS
+    if there_are < there_should or len(results) < expected:
         failed.append("run_clients")
-        print("FAILED: %d of %d tests ran, and there are %d, not %d" % (len(results), expected, there_are, EXPECTED_TESTS))
+        print("FAILED: %d of %d tests ran, and there are %d, not %d" % (len(results), expected, there_are, there_should))
     for name, wrong in wrongs.items():  # once more: the last lines are what one sees
         print("FAILED %s: %s" % (name, reason(wrong)))
     print("%d Tests %d Failures 0 Ignored" % (max(len(results), len(failed)), len(failed)))

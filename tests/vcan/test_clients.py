@@ -203,6 +203,7 @@ class Deadlines(Played):
         self.assertLess(holds[-1].at, manual.at + 0.006)
 
     # Shows: SUP-2, FSM-10, VCU_HEARTBEAT_STUCK
+    @clients.long
     def test_a_vcu_that_repeats_its_last_frame(self):
         _, frames, sent, first = self.trip(self.log(setter(frozen=True)), "VCU_HEARTBEAT_STUCK")
         beats = of(frames, 0x363)
@@ -223,6 +224,7 @@ class Deadlines(Played):
 
 class Replayed(Played):
     # Shows: FSM-3, STEERING_COMMAND_TIMEOUT
+    @clients.long
     def test_a_log_of_candump_comes_to_the_same_again(self):
         _, frames, sent, _ = self.trip(self.log(ai_falls_silent), "STEERING_COMMAND_TIMEOUT")
         mine = set(sent)
@@ -302,6 +304,7 @@ class Disturbed(clients.Case):
         self.assertEqual(supervisor.events()[-1]["first_reason"], "BUS_OFF")
 
     # Shows: TIM-4, TIM-1, STEP_OVERRUN
+    @clients.long
     def test_a_supervisor_that_stood_still_for_two_seconds(self):
         bus = self.bus()
         supervisor = self.supervisor("--can", bus, config=STATUS)
@@ -418,6 +421,7 @@ class Noise(clients.Case):
                 for place, text in enumerate(texts)]
 
     # Shows: INT-2, TOP-1
+    @clients.long
     def test_noise_beside_healthy_traffic_trips_nothing(self, count=2000, duration_ms=3200, seed=1):
         bus = self.bus()
         used = {"%03X" % can_id for can_id in clients.IN_USE}
@@ -444,6 +448,7 @@ class Noise(clients.Case):
         self.assertGreater(len(of(frames, 0x363)), duration_ms / 10 - 2)
 
     # Shows: FSM-6, INT-2, TOP-1
+    @clients.long
     def test_noise_on_all_identifiers(self, count=1600, duration_ms=2000, seed=2):
         bus = self.bus()
         texts = self.noise(count, ids=sorted(clients.MESSAGES)) + self.noise(count // 4)
@@ -459,6 +464,7 @@ class Noise(clients.Case):
         self.assertGreater(len(of(self.supervisors_frames(bus), 0x168)), 50)
 
     # Shows: FSM-6, TOP-2
+    @clients.long
     def test_noise_on_both_sides_of_a_gateway(self, count=1000, duration_ms=2000, seed=3):
         vehicle, ai = self.bus(), self.bus()
         ids = sorted(clients.MESSAGES)
@@ -558,6 +564,7 @@ class Gateway(clients.Case):
         self.assertIn(answer, sent)
 
     # Shows: SUP-7, AI_BUS_OFF
+    @clients.long
     def test_a_full_queue_on_the_ai_side_only_warns(self):
         self.shaped = True
         vehicle, ai = self.bus(), self.bus()
@@ -583,6 +590,7 @@ class Gateway(clients.Case):
 
 class TwoSupervisors(clients.Case):
     # Shows: TOP-1
+    @clients.long
     def test_on_one_bus_they_end_their_exchange(self):
         bus = self.bus()
         both = [self.supervisor("--can", bus, name=name, config=clients.PATIENT.replace("0x7F0", status))
@@ -621,6 +629,7 @@ class TwoSupervisors(clients.Case):
             self.assertGreaterEqual(len(rest), 2 * (10 * (last - ended) - 1.5), "%03X" % can_id)
 
     # Shows: TOP-1, FSM-10
+    @clients.long
     def test_that_hold_two_angles_do_not_drown_the_bus(self):
         def engage(vehicle):
             vehicle.engaged()

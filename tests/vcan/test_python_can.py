@@ -77,6 +77,7 @@ class Override(clients.Case):
         self.at_most(0.010, abs(following.at - answer.at - 0.050), "the next 168h after an override")
 
     # Shows: TOP-1
+    @clients.long
     def test_a_babbling_ai_computer_is_answered_every_5_ms_and_last(self):
         bus, supervisor, ai = self.tripped()
         for _ in range(60):
