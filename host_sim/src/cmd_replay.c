@@ -38,7 +38,10 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .number = &given->start_ms,
          .highest = UINT32_MAX},
         {.name = "--skip-bad-lines", .help = "count lines that are none", .flag = &given->request.skip_bad_lines},
-        {.name = "--ai-if", .value = "NAME", .help = "gateway: the AI side", .text = &given->request.ai_interface},
+        {.name = "--ai-if",
+         .value = "NAME",
+         .help = "the interface of the AI side: a gateway",
+         .text = &given->request.ai_interface},
         {.name = "--reset-cause",
          .value = "CAUSE",
          .help = RESET_CAUSES,
@@ -88,6 +91,7 @@ status_t cmd_replay(int argc, char **argv) {
     given.request.log = argv[0];
     given.request.start_ms = (uint32_t)given.start_ms;
     given.request.reset_cause = (hal_reset_cause_t)given.reset_cause;
+    given.config.has_ai_side = given.request.ai_interface != NULL;
     if (!check_files(&given) || !config_options_make(&given.config, &given.request.config)) {
         return STATUS_UNUSABLE;
     }

@@ -3,10 +3,10 @@
  * `host_sim run`: its options.
  */
 #include <stddef.h>
-#include <string.h>
 
 #include "commands.h"
 #include "config_options.h"
+#include "interface_options.h"
 #include "live.h"
 #include "options.h"
 #include "output.h"
@@ -31,7 +31,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .text = &request->interfaces[HAL_CAN_VEHICLE]},
         {.name = "--ai-can",
          .value = "IF",
-         .help = "gateway: the interface of the AI side",
+         .help = "the interface of the AI side: a gateway",
          .text = &request->interfaces[HAL_CAN_AI]},
         {.name = "--for",
          .value = "MS",
@@ -65,22 +65,6 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     return options_parse(&syntax, argc, argv, &operands);
 }
 
-static bool check_interfaces(const live_request_t *request) {
-    const bool is_gateway = request->config.topology == AGV_TOPOLOGY_GATEWAY;
-    const char *vehicle = request->interfaces[HAL_CAN_VEHICLE];
-    const char *ai = request->interfaces[HAL_CAN_AI];
-    if (is_gateway && (ai == NULL)) {
-        return report("the gateway topology needs --ai-can: the interface of the AI side");
-    }
-    if (!is_gateway && (ai != NULL)) {
-        return report("--ai-can is for --topology gateway: on the shared bus there is no AI side");
-    }
-    if ((ai != NULL) && (strcmp(vehicle, ai) == 0)) {
-        return report("--can and --ai-can are the same interface, '%s'", ai);
-    }
-    return true;
-}
-
 static bool check_files(const given_t *given) {
     const output_role_t roles[] = {
         {.role = "--config", .path = given->config.path},
@@ -96,12 +80,10 @@ status_t cmd_run(int argc, char **argv) {
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
-    if (given.request.interfaces[HAL_CAN_VEHICLE] == NULL) {
-        (void)report("--can is missing: the interface of the vehicle side; see host_sim run --help");
-        return STATUS_UNUSABLE;
-    }
+    given.config.has_ai_side = given.request.interfaces[HAL_CAN_AI] != NULL;
     if (!check_files(&given) || !config_options_make(&given.config, &given.request.config) ||
-        !check_interfaces(&given.request)) {
+        !interface_options_check("run", given.request.interfaces,
+                                 given.request.config.topology == AGV_TOPOLOGY_GATEWAY)) {
         return STATUS_UNUSABLE;
     }
     return live_run(&given.request);

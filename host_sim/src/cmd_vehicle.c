@@ -2,9 +2,8 @@
  * @file cmd_vehicle.c
  * `host_sim vehicle`: its options.
  */
-#include <string.h>
-
 #include "commands.h"
+#include "interface_options.h"
 #include "options.h"
 #include "vehicle_run.h"
 
@@ -42,7 +41,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .text = &request->interfaces[HAL_CAN_VEHICLE]},
         {.name = "--ai-can",
          .value = "IF",
-         .help = "gateway: the interface of the AI computer",
+         .help = "the interface of the AI computer: a gateway",
          .text = &request->interfaces[HAL_CAN_AI]},
         {.name = "--topology",
          .value = "shared|gateway",
@@ -88,29 +87,12 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     return options_parse(&syntax, argc, argv, &operands);
 }
 
-static bool check_interfaces(const given_t *given) {
-    const char *vehicle = given->request.interfaces[HAL_CAN_VEHICLE];
-    const char *ai = given->request.interfaces[HAL_CAN_AI];
-
-    if (vehicle == NULL) {
-        return report("--can is missing: the interface of the vehicle side; see host_sim vehicle --help");
-    }
-    if ((given->topology == (int)AGV_TOPOLOGY_GATEWAY) && (ai == NULL)) {
-        return report("the gateway topology needs --ai-can: the interface of the AI side");
-    }
-    if ((given->topology == (int)AGV_TOPOLOGY_SHARED) && (ai != NULL)) {
-        return report("--ai-can is for --topology gateway: on the shared bus there is no AI side");
-    }
-    if ((ai != NULL) && (strcmp(vehicle, ai) == 0)) {
-        return report("--can and --ai-can are the same interface, '%s'", ai);
-    }
-    return true;
-}
-
 static void make_config(const given_t *given, agv_config_t *config) {
     agv_config_defaults(config);
-    if (given->request.interfaces[HAL_CAN_AI] != NULL) {
-        config->topology = (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    if (given->topology != NOT_GIVEN) {
+        config->topology = (uint16_t)given->topology;
+    } else if (given->request.interfaces[HAL_CAN_AI] != NULL) {
+        config->topology = AGV_TOPOLOGY_GATEWAY;
     }
     if (given->id_set != NOT_GIVEN) {
         config->id_set = (uint16_t)given->id_set;
@@ -145,9 +127,10 @@ status_t cmd_vehicle(int argc, char **argv) {
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
-    if (!check_interfaces(&given)) {
+    make_config(&given, &given.request.config);
+    if (!interface_options_check("vehicle", given.request.interfaces,
+                                 given.request.config.topology == AGV_TOPOLOGY_GATEWAY)) {
         return STATUS_UNUSABLE;
     }
-    make_config(&given, &given.request.config);
     return make_faults(&given, &given.request) ? vehicle_run_nodes(&given.request) : STATUS_UNUSABLE;
 }

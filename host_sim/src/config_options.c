@@ -11,6 +11,7 @@ void config_options_init(config_options_t *options, option_t rows[CONFIG_OPTIONS
     options->topology = NOT_GIVEN;
     options->id_set = NOT_GIVEN;
     options->shadow = false;
+    options->has_ai_side = false;
     const option_t all[CONFIG_OPTIONS] = {
         {.name = "--config", .value = "FILE", .help = "settings (YAML); see host_sim config", .text = &options->path},
         {.name = "--topology",
@@ -37,6 +38,8 @@ bool config_options_make(const config_options_t *options, agv_config_t *config) 
     }
     if (options->topology != NOT_GIVEN) {
         config->topology = (uint16_t)options->topology;
+    } else if (options->has_ai_side && (lines.settings[AGV_SETTING_topology] == 0u)) {
+        config->topology = AGV_TOPOLOGY_GATEWAY;
     }
     if (options->id_set != NOT_GIVEN) {
         config->id_set = (uint16_t)options->id_set;

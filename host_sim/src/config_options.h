@@ -18,6 +18,7 @@ typedef struct {
     int topology;     /**< --topology; -1: not given */
     int id_set;       /**< --id-set; -1: not given */
     bool shadow;      /**< --shadow */
+    bool has_ai_side; /**< an interface of the AI side was named: a gateway, unless option or file says otherwise */
 } config_options_t;
 
 /**

@@ -396,6 +396,14 @@ class Interfaces(hostsim.Case):
         self.assertIn("FOREIGN_COMMAND_SENDER", [name for _, name, _ in result.faults()])
         self.assertIn("no frame in the log is from ai1", result.stderr)
 
+    def test_an_interface_of_the_ai_side_makes_a_gateway(self):
+        log = traffic.log(traffic.frames(2000, engage_ms=1000, interface="veh0", ai_interface="ai0"))
+        stated = self.replay(log, "--topology", "gateway", "--ai-if", "ai0")
+        self.write("c.yaml", "id_set: heading\n")
+        for arguments in ((), ("--config", "c.yaml")):
+            result = self.replay(log, "--ai-if", "ai0", *arguments)
+            self.assertEqual(list(map(str, result.sent())), list(map(str, stated.sent())))
+
     def test_what_is_sent_waits_for_the_name_of_its_interface(self):
         lines = ["(1700000000.000000) ai0 43F#0000000080000000\n", "(1700000000.500000) veh0 000#\n"]
         result = self.replay("".join(lines), "--topology=gateway", "--ai-if=ai0", "--tail=0")
@@ -412,7 +420,9 @@ class Interfaces(hostsim.Case):
     def test_the_ai_side_and_the_topology_go_together(self):
         log = traffic.log(traffic.frames(50))
         self.assert_refused(self.refuse(log, "--topology", "gateway"), "--ai-if")
-        self.assert_refused(self.refuse(log, "--ai-if", "can0"), "--ai-if", "gateway")
+        self.assert_refused(self.refuse(log, "--ai-if", "can0", "--topology", "shared"), "--ai-if", "gateway")
+        self.write("c.yaml", "topology: shared\n")
+        self.assert_refused(self.refuse(log, "--ai-if", "can0", "--config", "c.yaml"), "--ai-if", "gateway")
         self.assert_refused(self.refuse(log, "--topology=gateway", "--ai-if=0123456789abcdef"), "--ai-if", "longer")
         self.write("c.yaml", "topology: gateway\n")
         self.assert_refused(self.refuse(log, "--config", "c.yaml"), "--ai-if")

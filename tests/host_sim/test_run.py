@@ -34,9 +34,13 @@ class Run(hostsim.Case):
 
     def test_the_gateway_needs_two_interfaces_and_the_shared_bus_has_one(self):
         self.assert_refused(self.run_program("run", "--can", "a", "--topology", "gateway"), "needs --ai-can")
-        self.assert_refused(self.run_program("run", "--can", "a", "--ai-can", "b"), "--ai-can is for --topology gateway")
-        self.assert_refused(self.run_program("run", "--can", "a", "--ai-can", "a", "--topology", "gateway"),
-                            "--can and --ai-can are the same interface, 'a'")
+        for shared in (("--topology", "shared"), ("--config", "shared.yaml")):
+            self.write("shared.yaml", "id_set: table\ntopology: shared\n")
+            self.assert_refused(self.run_program("run", "--can", "a", "--ai-can", "b", *shared),
+                                "--ai-can is for --topology gateway")
+        for gateway in (("--topology", "gateway"), ()):
+            self.assert_refused(self.run_program("run", "--can", "a", "--ai-can", "a", *gateway),
+                                "--can and --ai-can are the same interface, 'a'")
         self.write("gateway.yaml", "topology: gateway\n")
         self.assert_refused(self.run_program("run", "--can", "a", "--config", "gateway.yaml"), "needs --ai-can")
 
