@@ -96,6 +96,11 @@ trace() {
     fails_with "no code names FSM-1" trace --check
 }
 
+@test "a level of evidence that no test has" {
+    sed -i 's/^| TOP-1 | text | host |/| TOP-1 | text | host, native_sim |/' docs/requirements.md
+    fails_with "TOP-1 claims native_sim, and no test there shows it" trace --check
+}
+
 @test "a requirement without a level of evidence" {
     sed -i 's/^| TOP-1 | text | host |/| TOP-1 | text | surely |/' docs/requirements.md
     fails_with "TOP-1 has no level of evidence" trace --check

@@ -7,4 +7,8 @@
 #   tests/mutation/mutate prepare && sbatch tests/mutation/slurm.sh
 # and when all have ended: tests/mutation/mutate merge. A second sbatch goes on where the first one was stopped.
 set -euo pipefail
+if [[ $SLURM_ARRAY_TASK_MIN-$SLURM_ARRAY_TASK_MAX != 1-$SLURM_ARRAY_TASK_COUNT ]]; then
+    echo "slurm.sh: the tasks of the array are to be 1 to N: a second sbatch of all of them does only what is missing" >&2
+    exit 2
+fi
 exec tests/mutation/mutate run --shard "$SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT"
