@@ -22,6 +22,14 @@ typedef struct {
     size_t number; /**< of the line, from 1 */
 } shard_t;
 
+/** Whether the line is what this program writes: it goes into the merged file as it is. */
+static bool is_as_written(const shard_t *shard, size_t length, const json_t *object) {
+    char *text = json_dumps(object, 0);
+    const bool same = (text != NULL) && (strlen(text) == length - 1u) && (memcmp(text, shard->line, length - 1u) == 0);
+    free(text);
+    return same;
+}
+
 /** Read the next line as an object. @return NULL: reported; the caller drops the reference */
 static json_t *read_object(shard_t *shard) {
     assert(shard->stream != NULL);
@@ -39,9 +47,9 @@ static json_t *read_object(shard_t *shard) {
     json_error_t error;
     const bool torn = shard->line[length - 1] != '\n';
     json_t *object = json_loadb(shard->line, (size_t)length, JSON_REJECT_DUPLICATES, &error);
-    if (torn || !json_is_object(object)) {
+    if (torn || !json_is_object(object) || !is_as_written(shard, (size_t)length, object)) {
         (void)report_at(shard->path, shard->number, "no result of a campaign%s",
-                        torn ? ": it is torn, its line break is missing" : "");
+                        torn ? ": it is torn, its line break is missing" : ", as this program writes it");
         json_decref(object);
         return NULL;
     }

@@ -191,6 +191,9 @@ class Refused(Campaign):
             for value in values:
                 self.refuse_line(number, {**good, key: value}, self.KIND[number] + says)
         self.refuse_line(number, {**good, "more": 1}, self.KIND[number] + "its 'number of keys' is missing or wrong")
+        written = json.dumps(good)
+        for other in (written + "\r\n", " " + written + "\n", written.replace(" ", "") + "\n"):
+            self.refuse_line(number, other, "no result of a campaign")
         key = next(iter(good))
         self.refuse_line(number, "{" + f'"{key}": {good[key]}, ' + json.dumps(good)[1:] + "\n", "no result of a campaign")
 
