@@ -9,8 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "agv/names.h"
-#include "campaign_result.h"
+#include "campaign_line.h"
 #include "report.h"
 #include "shard_option.h"
 
@@ -22,6 +21,14 @@ typedef struct {
     size_t room;
     size_t number; /**< of the line, from 1 */
 } shard_t;
+
+/** Whether the line is what this program writes: it goes into the merged file as it is. */
+static bool is_as_written(const shard_t *shard, size_t length, const json_t *object) {
+    char *text = json_dumps(object, 0);
+    const bool same = (text != NULL) && (strlen(text) == length - 1u) && (memcmp(text, shard->line, length - 1u) == 0);
+    free(text);
+    return same;
+}
 
 /** Read the next line as an object. @return NULL: reported; the caller drops the reference */
 static json_t *read_object(shard_t *shard) {
@@ -38,9 +45,11 @@ static json_t *read_object(shard_t *shard) {
     }
     shard->number++;
     json_error_t error;
-    json_t *object = json_loadb(shard->line, (size_t)length, 0, &error);
-    if (!json_is_object(object)) {
-        (void)report_at(shard->path, shard->number, "no result of a campaign");
+    const bool torn = shard->line[length - 1] != '\n';
+    json_t *object = json_loadb(shard->line, (size_t)length, JSON_REJECT_DUPLICATES, &error);
+    if (torn || !json_is_object(object) || !is_as_written(shard, (size_t)length, object)) {
+        (void)report_at(shard->path, shard->number, "no result of a campaign%s",
+                        torn ? ": it is torn, its line break is missing" : ", as this program writes it");
         json_decref(object);
         return NULL;
     }
@@ -50,50 +59,30 @@ static json_t *read_object(shard_t *shard) {
 /** The first line. @return false: reported */
 static bool read_part(shard_t *shard, campaign_part_t *part) {
     json_t *object = read_object(shard);
-    json_int_t kind = 0;
-    json_int_t runs = 0;
-    json_int_t seed = 0;
-    int number = 0;
-    int count = 0;
-    if (object == NULL) {
-        return false;
-    }
-    const bool good = json_unpack(object, "{s:I, s:I, s:I, s:i, s:i}", "campaign", &kind, "runs", &runs, "seed", &seed,
-                                  "shard", &number, "shards", &count) == 0;
-    const char *fault = json_string_value(json_object_get(object, "fault"));
-    *part = (campaign_part_t){.runs = (uint64_t)runs,
-                              .seed = (uint64_t)seed,
-                              .shard = (uint32_t)number,
-                              .shards = (uint32_t)count,
-                              .only = (fault != NULL) ? campaign_row(agv_fault_from_name(fault)) : NULL};
+    const bool good = (object != NULL) && campaign_line_part(shard->path, shard->number, object, part);
     json_decref(object);
-    return (good && (kind == 1) && (runs > 0) && (number > 0) && (number <= count)) ||
-           report_at(shard->path, shard->number, "no results of a campaign of this version");
-}
-
-static bool is_time(const json_t *object, const char *key, int32_t *us) {
-    const json_t *value = json_object_get(object, key);
-    *us = json_is_integer(value) ? (int32_t)json_integer_value(value) : CAMPAIGN_NO_TIME;
-    return json_is_integer(value) || json_is_null(value);
+    return good;
 }
 
 /** Read run @p run into a sample. */
-static bool read_run(shard_t *shard, uint64_t run, campaign_sample_t *sample) {
+static bool read_run(shard_t *shard, const campaign_part_t *whole, uint64_t run, campaign_sample_t *sample) {
+    uint64_t number = 0u;
     json_t *object = read_object(shard);
-    if (object == NULL) {
+    const bool good = (object != NULL) && campaign_line_run(shard->path, shard->number, object, &number, sample);
+    json_decref(object);
+    if (!good) {
         return false;
     }
-    const char *name = json_string_value(json_object_get(object, "fault"));
-    const campaign_row_t *row = (name != NULL) ? campaign_row(agv_fault_from_name(name)) : NULL;
-    const json_t *number = json_object_get(object, "run");
-    const bool good = (row != NULL) && is_time(object, "safe_us", &sample->safe_us) &&
-                      is_time(object, "confirmed_us", &sample->confirmed_us) &&
-                      is_time(object, "opened_us", &sample->opened_us);
-    const bool its_turn = json_is_integer(number) && ((uint64_t)json_integer_value(number) == run);
-    sample->row = (row != NULL) ? (uint8_t)(row - CAMPAIGN_ROWS) : 0u;
-    sample->broken = json_is_string(json_object_get(object, "broken"));
-    json_decref(object);
-    return (good && its_turn) || report_at(shard->path, shard->number, "run %" PRIu64 " is expected here", run);
+    if (number != run) {
+        return report_at(shard->path, shard->number, "run %" PRIu64 " is expected here", run);
+    }
+    return (whole->only == NULL) || (whole->only == &CAMPAIGN_ROWS[sample->row]) ||
+           report_at(shard->path, shard->number, "another fault than that of the campaign");
+}
+
+static bool is_same(const campaign_part_t *a, const campaign_part_t *b) {
+    return (a->runs == b->runs) && (a->seed == b->seed) && (a->shards == b->shards) && (a->only == b->only) &&
+           (a->planted == b->planted);
 }
 
 /** Put the shards in their order. @return false: they are not of one campaign; reported */
@@ -106,15 +95,15 @@ static bool sort_shards(shard_t *shards, size_t count, campaign_part_t *whole) {
             return false;
         }
         *whole = (i == 0u) ? part : *whole;
-        if ((part.runs != whole->runs) || (part.seed != whole->seed) || (part.shards != whole->shards) ||
-            (part.only != whole->only)) {
-            return report("%s: another campaign than that of %s", shards[i].path, shards[0].path);
+        if (!is_same(&part, whole)) {
+            return report_at(shards[i].path, shards[i].number, "another campaign than that of %s", shards[0].path);
         }
         if (part.shards != count) {
-            return report("%s: one of %" PRIu32 " shards, %zu were given", shards[i].path, part.shards, count);
+            return report_at(shards[i].path, shards[i].number, "one of %" PRIu32 " shards, %zu were given", part.shards,
+                             count);
         }
         if (sorted[part.shard - 1u].path != NULL) {
-            return report("%s: shard %" PRIu32 " once more", shards[i].path, part.shard);
+            return report_at(shards[i].path, shards[i].number, "shard %" PRIu32 " once more", part.shard);
         }
         sorted[part.shard - 1u] = shards[i];
     }
@@ -141,7 +130,7 @@ static bool merge(shard_t *shards, size_t count, campaign_samples_t *samples, ou
     }
     for (uint64_t run = 0u; run < whole.runs; run++) {
         shard_t *shard = &shards[run % count];
-        if (!read_run(shard, run, &sample) || !campaign_samples_add(samples, &sample)) {
+        if (!read_run(shard, &whole, run, &sample) || !campaign_samples_add(samples, &sample)) {
             return false;
         }
         if (merged->is_open) {

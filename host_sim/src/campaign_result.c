@@ -69,11 +69,18 @@ static json_t *time_or_null(int32_t us) {
     return (us != CAMPAIGN_NO_TIME) ? json_integer(us) : json_null();
 }
 
+const char *campaign_planted_name(scenario_planted_t planted) {
+    static const char *const names[] = {"", "mute", "tripped"};
+    return names[planted];
+}
+
 void campaign_write_part(output_t *output, const campaign_part_t *part) {
-    write_line(output, json_pack("{s:i, s:s, s:I, s:I, s:i, s:i, s:o}", "campaign", 1, "version", HOST_SIM_VERSION,
-                                 "runs", (json_int_t)part->runs, "seed", (json_int_t)part->seed, "shard",
-                                 (int)part->shard, "shards", (int)part->shards, "fault",
-                                 fault_or_null((part->only != NULL) ? (int)part->only->fault : -1)));
+    const bool real = part->planted == SCENARIO_REAL;
+    write_line(output,
+               json_pack("{s:i, s:s, s:I, s:I, s:i, s:i, s:o, s:o}", "campaign", 1, "version", HOST_SIM_VERSION, "runs",
+                         (json_int_t)part->runs, "seed", (json_int_t)part->seed, "shard", (int)part->shard, "shards",
+                         (int)part->shards, "fault", fault_or_null((part->only != NULL) ? (int)part->only->fault : -1),
+                         "planted", real ? json_null() : json_string(campaign_planted_name(part->planted))));
 }
 
 void campaign_write_run(output_t *output, const campaign_judge_t *judge) {

@@ -13,8 +13,7 @@ typedef struct {
     campaign_part_t part;
     const char *results; /**< file; NULL: none */
     const char *folder;  /**< for the scenarios of broken runs */
-    scenario_planted_t planted;
-    bool shows_one; /**< print run `one` as a scenario, nothing else */
+    bool shows_one;      /**< print run `one` as a scenario, nothing else */
     uint64_t one;
 } campaign_request_t;
 

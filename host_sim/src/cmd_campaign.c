@@ -119,7 +119,7 @@ static bool make_request(given_t *given, char **operands) {
     request->part = (campaign_part_t){.runs = given->runs, .seed = given->seed, .shard = 1u, .shards = 1u};
     request->results = given->results;
     request->folder = (given->folder != NULL) ? given->folder : ".";
-    request->planted = (given->planted == NOT_PLANTED) ? SCENARIO_REAL : (scenario_planted_t)(given->planted + 1);
+    request->part.planted = (given->planted == NOT_PLANTED) ? SCENARIO_REAL : (scenario_planted_t)(given->planted + 1);
     request->shows_one = given->show != NOT_GIVEN;
     request->one = given->show;
     if (request->shows_one && (given->show >= given->runs)) {
@@ -134,7 +134,7 @@ static bool check_merge(const given_t *given, char **files) {
         return report("--merge: FILE is missing; see host_sim campaign --help");
     }
     if ((given->runs != NOT_GIVEN) || (given->seed != NOT_GIVEN) || (given->shard != NULL) || (given->fault != NULL) ||
-        (given->show != NOT_GIVEN) || (given->planted != NOT_PLANTED)) {
+        (given->show != NOT_GIVEN) || (given->planted != NOT_PLANTED) || (given->folder != NULL)) {
         return report("--merge takes files, and of the other options only --results");
     }
     for (size_t i = 0u; i < given->file_count; i++) {

@@ -9,7 +9,7 @@
 #include "soak.h"
 
 /** The words of --planted, in the order of soak_planted_t without SOAK_SOUND. */
-#define PLANTED "trip|drift|count"
+#define PLANTED "trip|drift|count|speak"
 
 /** As a number that was not given. */
 #define NOT_GIVEN UINT64_MAX

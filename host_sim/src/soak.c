@@ -94,6 +94,21 @@ static uint32_t choose(soak_t *soak) {
     }
 }
 
+/** The mistakes that are not made with a row. */
+static void plant(soak_t *soak) {
+    static const hal_can_frame_t unasked = {.id = SOAK_STATUS_ID - 1u, .length = AGV_DLC};
+
+    if (soak->state.t_ms <= PLANTED_MS) {
+        return;
+    }
+    if (soak->request->planted == SOAK_PLANTED_COUNT) {
+        soak->state.wire_others++; /* a frame that nobody received */
+    }
+    if (soak->request->planted == SOAK_PLANTED_SPEAK) {
+        (void)hal_can_send(&soak->world.hal, HAL_CAN_VEHICLE, &unasked);
+    }
+}
+
 /** Begin a disturbance, or end it. */
 static void disturb(soak_t *soak) {
     soak_state_t *state = &soak->state;
@@ -113,9 +128,7 @@ static void disturb(soak_t *soak) {
     const soak_row_t *row = &SOAK_ROWS[state->row];
     state->next_ms = state->t_ms + chance_draw(&state->random, row->lowest_ms, row->highest_ms);
     act(soak, soak->steps[state->row].begin, soak->steps[state->row].end);
-    if ((soak->request->planted == SOAK_PLANTED_COUNT) && (state->t_ms > PLANTED_MS)) {
-        state->wire_others++; /* a frame that nobody received */
-    }
+    plant(soak);
 }
 
 static uint64_t real_ms(void) {
@@ -135,31 +148,38 @@ static void step(soak_t *soak) {
     soak->state.t_ms++;
 }
 
-/** Until the end, or something is broken. @return false: interrupted, or a checkpoint cannot be written */
-static bool go(soak_t *soak) {
+/** How it went. */
+typedef enum { OVER, INTERRUPTED, UNSAVED } went_t;
+
+/** Until the end, or something is broken. @return UNSAVED: a checkpoint could not be written; reported */
+static went_t go(soak_t *soak) {
     soak_state_t *state = &soak->state;
     uint64_t began_ms = real_ms();
     progress_t progress;
-    bool goes_on = true;
+    bool saved = true;
+    bool interrupted = false;
 
     progress_begin(&progress, soak->duration_ms / LOOK_EVERY_MS);
     interrupt_hold();
-    while (goes_on && (state->t_ms < soak->duration_ms) && (state->broken[0] == '\0')) {
+    while (saved && !interrupted && (state->t_ms < soak->duration_ms) && (state->broken[0] == '\0')) {
         step(soak);
         if ((state->t_ms % LOOK_EVERY_MS) != 0u) {
             continue;
         }
         progress_show(&progress, state->t_ms / LOOK_EVERY_MS, "simulated seconds");
-        goes_on = !interrupt_pending();
-        if (!goes_on || ((state->t_ms % SAVE_EVERY_MS) == 0u)) {
+        interrupted = interrupt_pending();
+        if (interrupted || ((state->t_ms % SAVE_EVERY_MS) == 0u)) {
             state->real_ms += real_ms() - began_ms;
             began_ms = real_ms();
-            goes_on = soak_save(soak) && goes_on;
+            saved = soak_save(soak);
         }
     }
     progress_end(&progress);
     state->real_ms += real_ms() - began_ms;
-    return goes_on;
+    if (!saved) {
+        return UNSAVED;
+    }
+    return interrupted ? INTERRUPTED : OVER;
 }
 
 static uint64_t disturbances(const soak_state_t *state) {
@@ -196,7 +216,7 @@ static void print_result(const soak_t *soak) {
 static bool write_results(soak_t *soak) {
     const soak_state_t *state = &soak->state;
 
-    if (soak->request->results == NULL) {
+    if (!soak->results.is_open) {
         return true;
     }
     soak->text.used = 0u;
@@ -212,21 +232,20 @@ static bool write_results(soak_t *soak) {
                       ", \"real_ms\": %" PRIu64 ", \"broken\": %s}\n",
                       state->warnings, disturbances(state), state->status_late_ms, state->real_ms,
                       (state->broken[0] != '\0') ? "true" : "false");
-    if (!output_open(&soak->file, soak->request->results)) {
-        return false;
-    }
-    (void)output_write(&soak->file, soak->text.bytes, soak->text.used);
-    return output_commit(&soak->file);
+    (void)output_write(&soak->results, soak->text.bytes, soak->text.used);
+    return output_commit(&soak->results);
 }
 
 static status_t conclude(soak_t *soak) {
     if (soak->state.broken[0] == '\0') {
         soak_judge_counters(soak);
     }
-    if (!soak_save(soak) || !write_results(soak)) {
+    print_result(soak);
+    (void)fflush(stdout); /* seen whatever becomes of the files; a failure is reported at the end of the program */
+    const bool saved = soak_save(soak);
+    if (!write_results(soak) || !saved) {
         return STATUS_UNUSABLE;
     }
-    print_result(soak);
     return (soak->state.broken[0] == '\0') ? STATUS_OK : STATUS_UNMET;
 }
 
@@ -251,7 +270,8 @@ static bool prepare(soak_t *soak, const soak_request_t *request) {
     const scenario_watch_t watch = soak_watch(soak);
     scenario_world_watch(&soak->world, &watch);
     scenario_world_start(&soak->world);
-    return soak_load(soak);
+    return soak_load(soak) && soak_may_save(soak) &&
+           ((request->results == NULL) || output_open(&soak->results, request->results));
 }
 
 status_t soak_run(const soak_request_t *request) {
@@ -263,14 +283,18 @@ status_t soak_run(const soak_request_t *request) {
         return STATUS_UNUSABLE;
     }
     if (prepare(soak, request)) {
-        if (go(soak)) {
+        const went_t went = go(soak);
+        if (went == OVER) {
             status = conclude(soak);
-        } else {
+        } else if (went == INTERRUPTED) {
             note("interrupted after %" PRIu64 " simulated hours%s", soak->state.t_ms / SOAK_MS_PER_HOUR,
                  (request->checkpoint != NULL) ? "; the same command goes on" : "");
+        } else {
+            /* reported */
         }
     }
     output_discard(&soak->file);
+    output_discard(&soak->results);
     free(soak);
     interrupt_release();
     return status;

@@ -12,7 +12,13 @@
 #include "report.h"
 
 /** A mistake to be found. */
-typedef enum { SOAK_SOUND, SOAK_PLANTED_TRIP, SOAK_PLANTED_DRIFT, SOAK_PLANTED_COUNT } soak_planted_t;
+typedef enum {
+    SOAK_SOUND,
+    SOAK_PLANTED_TRIP,
+    SOAK_PLANTED_DRIFT,
+    SOAK_PLANTED_COUNT,
+    SOAK_PLANTED_SPEAK
+} soak_planted_t;
 
 /** What is asked for. */
 typedef struct {

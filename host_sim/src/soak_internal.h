@@ -23,6 +23,7 @@ typedef struct {
     uint64_t next_ms; /**< of the next disturbance, or of the end of the present one */
     uint32_t row;     /**< the present disturbance; SOAK_ROW_COUNT: none */
     bool ready;       /**< STANDBY was reached: from now on nothing may happen */
+    uint64_t ready_ms;
     uint64_t counts[SOAK_ROWS_MAX];
     uint64_t ticks;          /**< that the supervisor was given */
     uint64_t ticks_before;   /**< of those, when it was ready */
@@ -60,7 +61,8 @@ typedef struct {
     scenario_t scenario;
     scenario_world_t world;
     scenario_world_t saved; /**< what a checkpoint is read into */
-    output_t file;
+    output_t file;          /**< of the checkpoint */
+    output_t results;       /**< open from the start on, so that it is known that it can be written */
 } soak_t;
 
 /** Something is not as it must be; the first one counts. */
@@ -77,6 +79,8 @@ void soak_judge_counters(soak_t *soak);
 /** @name soak_state.c @{ */
 /** Write the checkpoint. @return false: reported */
 bool soak_save(soak_t *soak);
+/** Whether the checkpoint could be written; one that is there stays as it is. @return false: reported */
+bool soak_may_save(soak_t *soak);
 /** Go on from the checkpoint, if there is one. @return false: it is none of this soak; reported */
 bool soak_load(soak_t *soak);
 /** @} */

@@ -11,6 +11,9 @@
 /* A status frame waits for others; a late step of 20 ms is one of the disturbances. */
 enum { STATUS_LATE_MS = 30, US_PER_MS = 1000, WAITING_MAX = 8 };
 
+/* Safe commands of INIT that the controller has already when STANDBY comes; they wait for a few frames of others. */
+enum { HANDED_OVER_MS = 4 };
+
 void soak_break(soak_t *soak, const char *format, ...) {
     soak_state_t *state = &soak->state;
     if (state->broken[0] != '\0') {
@@ -37,6 +40,7 @@ static void on_state(soak_t *soak, uint64_t t_ms, const agv_event_t *event) {
     }
     if (!state->ready && (event->b == (uint8_t)AGV_STATE_STANDBY)) {
         state->ready = true;
+        state->ready_ms = t_ms;
         state->ticks_before = state->ticks + 1u; /* told of after the tick that it happened in */
         state->feeds_before = soak->world.hal.feeds;
     }
@@ -102,7 +106,7 @@ static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, co
     soak->state.wire_own++;
     if ((side == HAL_CAN_VEHICLE) && (frame->id == SOAK_STATUS_ID)) {
         judge_status(soak, t_us, frame);
-    } else if (!soak->gateway && soak->state.ready && (t_us / US_PER_MS > soak->state.status_ms + SOAK_MS_PER_HOUR)) {
+    } else if (!soak->gateway && soak->state.ready && (t_us > (soak->state.ready_ms + HANDED_OVER_MS) * US_PER_MS)) {
         soak_break(soak, "%03" PRIX32 "h sent at %" PRIu64 " us", frame->id, t_us);
     } else {
         /* passed on */

@@ -57,6 +57,13 @@ bool soak_save(soak_t *soak) {
     return output_commit(&soak->file);
 }
 
+bool soak_may_save(soak_t *soak) {
+    const char *path = soak->request->checkpoint;
+    const bool may = (path == NULL) || output_open(&soak->file, path);
+    output_discard(&soak->file);
+    return may;
+}
+
 static bool read_all(soak_t *soak, FILE *stream) {
     const char *path = soak->request->checkpoint;
     const head_t expected = head_of(soak);

@@ -10,6 +10,7 @@ import hostsim
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PICTURE = ROOT / "scripts/campaign-picture"
+VERSION = subprocess.run([hostsim.PROGRAM, "--version"], capture_output=True, text=True, check=True).stdout.split()[1]
 RUNS = 150 if hostsim.PART == 1 else 45
 
 
@@ -118,7 +119,9 @@ class Broken(Campaign):
 
 class Refused(Campaign):
     def refuse(self, *arguments, says):
-        self.assert_refused(self.run_program("campaign", *arguments), says)
+        result = self.run_program("campaign", *arguments)
+        self.assert_refused(result, says)
+        self.assertEqual(result.stdout, "")
         self.assertEqual([name for name in self.files() if name == "out.jsonl"], [])
 
     def test_options(self):
@@ -147,6 +150,7 @@ class Refused(Campaign):
         self.refuse("--merge", one, one, *out, says="shard 1 once more")
         self.refuse("--merge", one, "nowhere", *out, says="nowhere")
         self.refuse("--merge", one, two, "--runs", "3", says="--merge takes files")
+        self.refuse("--merge", one, two, "--broken", ".", says="--merge takes files")
         self.refuse("--merge", one, two, "--results", one, says="are the same file")
         self.refuse("--merge", one, self.shard(2, 2, seed=8, name="seed"), *out, says="another campaign")
         self.refuse("--merge", one, self.shard(2, 2, runs=RUNS - 2, name="runs"), *out, says="another campaign")
@@ -160,6 +164,81 @@ class Refused(Campaign):
                                     ("empty", [], "it ends after line 0")):
             self.write(name, "".join(changed))
             self.refuse("--merge", one, name, *out, says=says)
+
+    def test_a_shard_without_its_last_line_break_is_torn(self):
+        one, two = self.shard(1, 2), self.shard(2, 2)
+        for torn, other in ((one, two), (two, one)):
+            whole = (self.folder / torn).read_bytes()
+            self.write("torn", whole[:-1])
+            count = whole.count(b"\n")
+            self.refuse("--merge", "torn", other, "--results", "out.jsonl",
+                        says=f"torn:{count}: no result of a campaign: it is torn, its line break is missing")
+
+    def refuse_line(self, number, line, says):
+        """Shard 2 of 2, of which a line is another."""
+        lines = (self.folder / "2.jsonl").read_text(encoding="ascii").splitlines(keepends=True)
+        lines[number - 1] = line if isinstance(line, str) else json.dumps(line) + "\n"
+        self.write("bad", "".join(lines))
+        self.refuse("--merge", "1.jsonl", "bad", "--results", "out.jsonl", says=f"bad:{number}: {says}")
+
+    def refuse_values(self, number, wrong):
+        """Each key in turn missing, and with each of its wrong values; a key too many; one that is there twice."""
+        good = self.lines("2.jsonl")[number - 1]
+        self.assertEqual(set(good), set(wrong))
+        for key, values in wrong.items():
+            says = f"its '{key}' is missing or wrong"
+            self.refuse_line(number, {name: value for name, value in good.items() if name != key}, self.KIND[number] + says)
+            for value in values:
+                self.refuse_line(number, {**good, key: value}, self.KIND[number] + says)
+        self.refuse_line(number, {**good, "more": 1}, self.KIND[number] + "its 'number of keys' is missing or wrong")
+        written = json.dumps(good)
+        for other in (written + "\r\n", " " + written + "\n", written.replace(" ", "") + "\n"):
+            self.refuse_line(number, other, "no result of a campaign")
+        key = next(iter(good))
+        self.refuse_line(number, "{" + f'"{key}": {good[key]}, ' + json.dumps(good)[1:] + "\n", "no result of a campaign")
+
+    KIND = {1: f"no results of a campaign of host_sim {VERSION}: ", 3: "no result of a campaign: "}
+
+    def test_a_damaged_head_does_not_merge(self):
+        self.shard(1, 2, runs=6)
+        self.shard(2, 2, runs=6)
+        self.refuse_values(1, {
+            "campaign": (2, "1", None), "version": ("0.0.0", 1, None), "runs": (0, -6, "6", 6.0), "seed": (-7, "7", None),
+            "shard": (0, 3, -2, 4294967298, "2"), "shards": (0, 1001, 4294967298, None),
+            "fault": ("NONSENSE", "TX_GATE_REFUSED", 1), "planted": ("real", "", 0, False)})
+        self.refuse_line(1, {**self.lines("2.jsonl")[0], "fault": "BUS_OFF"}, "another campaign than that of 1.jsonl")
+
+    def test_a_damaged_run_does_not_merge(self):
+        self.shard(1, 2, runs=6)
+        self.shard(2, 2, runs=6)
+        figure, flag, word = (-1, 2147483648, 1.0, "1", None), (0, 1, "true", None), ("nonsense", "", 1, None)
+        time = (-5, 99999999999999, 2147483648, 1.0, "1", False)
+        self.refuse_values(3, {
+            "run": (-3, "3", None), "fault": ("NONSENSE", "TX_GATE_REFUSED", 1, None), "topology": word, "id_set": word,
+            "bitrate": figure, "park_guard": flag, "park": word, "mode": word, "bunched": flag, "tick_phase_us": figure,
+            "cause_ms": figure, "bound_us": figure, "safe_us": time, "confirmed_us": time, "opened_us": time,
+            "bus_off": flag, "reason": ("NONSENSE", "", 1, False), "broken": (1, True, False, "NONSENSE", "")})
+        self.refuse_line(3, {**self.lines("2.jsonl")[2], "run": 1}, "run 3 is expected here")
+
+    def test_a_run_of_another_fault_does_not_merge(self):
+        for number in (1, 2):
+            self.campaign("--runs", 6, "--seed", 7, "--fault", "BUS_OFF", "--shard", f"{number}/2", "--results",
+                          f"{number}.jsonl")
+        self.refuse_line(3, {**self.lines("2.jsonl")[2], "fault": "TX_STALLED"}, "another fault than that of the campaign")
+
+    def test_runs_of_another_supervisor_are_another_campaign(self):
+        self.shard(1, 2, runs=6)
+        for word in ("mute", "tripped"):
+            self.campaign("--runs", 6, "--seed", 7, "--shard", "2/2", "--planted", word, "--results", "planted", status=1)
+            self.assertEqual(self.lines("planted")[0]["planted"], word)
+            self.refuse("--merge", "1.jsonl", "planted", "--results", "out.jsonl", says="planted:1: another campaign")
+        self.campaign("--runs", 6, "--seed", 7, "--shard", "1/2", "--planted", "mute", "--results", "mute", status=1)
+        self.refuse("--merge", "mute", "planted", "--results", "out.jsonl", says="planted:1: another campaign")
+        whole = self.campaign("--runs", 6, "--seed", 7, "--planted", "tripped", "--results", "whole", status=1)
+        self.campaign("--runs", 6, "--seed", 7, "--shard", "1/2", "--planted", "tripped", "--results", "tripped", status=1)
+        merged = self.campaign("--merge", "planted", "tripped", "--results", "merged", status=1)
+        self.assertIn(merged.stdout, whole.stdout)
+        self.assertEqual((self.folder / "merged").read_bytes(), (self.folder / "whole").read_bytes())
 
 
 class Picture(Campaign):

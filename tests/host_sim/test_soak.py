@@ -1,5 +1,7 @@
 """Soaks: nothing trips, drifts or is miscounted; planted mistakes are found; a soak that was stopped goes on."""
 import json
+import os
+import shutil
 import signal
 import subprocess
 import time
@@ -31,7 +33,7 @@ class Soak(hostsim.Case):
 
     def test_planted_mistakes_are_found(self):
         for word, said in (("trip", "VCU_HEARTBEAT_LOST"), ("drift", "drift: status frame"),
-                           ("count", "frames received: counted")):
+                           ("count", "frames received: counted"), ("speak", "7EFh sent at")):
             result = self.soak("--hours", 2, "--seed", 1, "--shard", "1/20", "--planted", word, "--results", "a", status=1)
             self.assertIn("BROKEN: " + said, result.stdout)
             self.assertTrue(self.figures("a")["broken"])
@@ -64,6 +66,64 @@ class Soak(hostsim.Case):
                                 (("--hours", "1", "--seed", "1", "more"), "'more' is one too many"),
                                 (("--hours", "1", "--seed", "1", "--results", "a", "--checkpoint", "a"), "same file")):
             self.assert_refused(self.run_program("soak", *arguments), says)
+
+    # so long that a soak which is not refused at its start runs into the limit of time
+    LONG = ("--hours", 876000, "--seed", 1)
+
+    def test_what_cannot_be_written_is_refused_before_the_soak(self):
+        self.write("old", "hello\n")
+        self.write("text", "hello\n")
+        (self.folder / "folder").mkdir()
+        for option in ("--results", "--checkpoint"):
+            for name in ("no/where", "folder", "text/file"):
+                result = self.run_program("soak", *self.LONG, option, name)
+                self.assert_refused(result, name)
+                self.assertEqual(result.stdout, "")
+        self.assert_refused(self.run_program("soak", *self.LONG, "--results", "old", "--checkpoint", "no/where"), "no/where")
+        self.assert_refused(self.run_program("soak", *self.LONG, "--results", "no/where", "--checkpoint", "new"), "no/where")
+        self.assert_refused(self.run_program("soak", *self.LONG, "--results", "old", "--checkpoint", "text"), "no checkpoint")
+        self.assertEqual((self.folder / "old").read_text(encoding="ascii"), "hello\n")
+        self.assertEqual(self.files(), ["folder", "old", "text"])
+
+    @unittest.skipIf(os.geteuid() == 0, "root may write everything")
+    def test_a_file_that_may_not_be_written_is_refused_before_the_soak(self):
+        self.write("old", "hello\n").chmod(0o444)
+        self.assert_refused(self.run_program("soak", *self.LONG, "--results", "old"), "old")
+
+    def in_a_folder_that_vanishes(self, *arguments, stops=False):
+        """Its results or checkpoint are in the folder `gone`, which is removed while it runs. Status, output, errors."""
+        folder = self.folder / "gone"
+        folder.mkdir()
+        with subprocess.Popen([hostsim.PROGRAM, "soak", *map(str, arguments)], cwd=self.folder, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True) as process:
+            time.sleep(0.5)
+            shutil.rmtree(folder)
+            if stops:
+                process.send_signal(signal.SIGINT)
+            printed, said = process.communicate(timeout=600)
+        return process.returncode, printed, said
+
+    def test_the_table_is_printed_though_the_results_are_lost(self):
+        status, printed, said = self.in_a_folder_that_vanishes("--hours", 4, "--seed", 1, "--shard",
+                                                               f"1/{hostsim.PART}", "--results", "gone/a")
+        self.assertEqual((status, said.count("\n")), (2, 1), said)
+        self.assertIn("gone/a: ", said)
+        self.assertIn(" disturbances, status frames at most ", printed)
+
+    def test_the_results_are_written_though_the_checkpoint_is_lost(self):
+        status, printed, said = self.in_a_folder_that_vanishes("--hours", 4, "--seed", 1, "--shard",
+                                                               f"1/{hostsim.PART}", "--results", "a",
+                                                               "--checkpoint", "gone/c")
+        self.assertEqual((status, said.count("\n")), (2, 1), said)
+        self.assertIn("gone/c: ", said)
+        self.assertIn(" disturbances, status frames at most ", printed)
+        self.assertFalse(self.figures("a")["broken"])
+
+    def test_nothing_goes_on_where_no_checkpoint_was_saved(self):
+        status, _, said = self.in_a_folder_that_vanishes(*self.LONG, "--checkpoint", "gone/c", stops=True)
+        self.assertNotEqual(status, 0)
+        self.assertEqual(said.count("\n"), 1, said)
+        self.assertIn("gone/c: ", said)
 
     def test_checkpoints_that_are_none(self):
         self.assertTrue(self.stopped("--hours", "100", "--seed", "1", "--checkpoint", "good"))
