@@ -6,19 +6,11 @@
 
 #include "agv/names.h"
 #include "agv/protocol.h"
+#include "rules_bytes.h"
 
-enum { SIGNALS = 0, GEAR = 1, THROTTLE = 2, STEERING = 3 };
 enum { VEHICLE = 0, GEAR_STATUS, THROTTLE_STATUS, STEERING_STATUS, EPS_STATUS, POSITION, WHEELS };
 /* STEP_MS: so late a tick may be, and only ticks look at deadlines; a later one is a trip cause itself (TIM-4). */
-enum {
-    HEARTBEAT_MS = 50,
-    STEP_MS = 101,
-    STATUS_MS = 60,
-    GEAR_STATUS_MS = 125,
-    RESET_MS = 1000,
-    CONFIRM_MS = 500,
-    SLOW_MM_S = 50
-};
+enum { HEARTBEAT_MS = 50, STEP_MS = 101, STATUS_MS = 60, GEAR_STATUS_MS = 125, RESET_MS = 1000, CONFIRM_MS = 500 };
 enum { CYCLE_MS = 100, OVERRIDE_GAP_MS = 5 };
 
 __attribute__((format(printf, 2, 3))) static void broken(rules_t *rules, const char *format, ...) {
@@ -75,6 +67,8 @@ void rules_init(rules_t *rules, const agv_config_t *config) {
     rules->running_heartbeat = config->own_heartbeat == (uint16_t)AGV_OWN_HEARTBEAT_RUNNING;
     rules->limits_commands = (config->throttle_ceiling_pct != 100u) || (config->steering_slew_ddeg_s != 0u);
     rules->throttle_max = (uint8_t)(config->throttle_ceiling_pct * 250u / 100u);
+    rules->tx_stalled_ms = config->tx_stalled_ms;
+    rules->watchdog_period_ms = config->watchdog_period_ms;
     rules->bus = (rules_bus_t){.takes_frames = true};
 }
 
@@ -98,6 +92,7 @@ static void forget(rules_t *rules, uint64_t now_ms) {
     rules->unconfirmed_ms = now_ms;
     rules->confirmed_off = false;
     rules->commanding_ms = now_ms;
+    rules->fed_ms = now_ms;
     rules->own_counter_known = false;
     oracle_restart(&rules->oracle);
 }
@@ -158,13 +153,6 @@ static void hear_button(rules_t *rules, bool down, uint64_t stamp_ms) {
     rules->button_down = down;
 }
 
-static bool is_fast(const uint8_t *data) {
-    const uint32_t raw =
-        (uint32_t)data[0] | ((uint32_t)data[1] << 8u) | ((uint32_t)data[2] << 16u) | ((uint32_t)data[3] << 24u);
-    const uint32_t amount = (raw < 0x80000000u) ? raw : (0u - raw);
-    return amount >= (uint32_t)SLOW_MM_S;
-}
-
 static void hear_status(rules_t *rules, int status, const hal_can_frame_t *frame, uint64_t stamp_ms) {
     const uint8_t *data = frame->data;
     rules->status_ms[status] = stamp_ms;
@@ -191,47 +179,11 @@ static void hear_status(rules_t *rules, int status, const hal_can_frame_t *frame
     }
 }
 
-static bool in_range(int command, const uint8_t *data) {
-    switch (command) {
-    case GEAR:
-        return (data[0] == 1u) || (data[0] == 2u) || (data[0] == 4u) || (data[0] == 8u);
-    case THROTTLE:
-        return data[0] <= 250u;
-    case STEERING:
-        return ((unsigned)data[0] | ((unsigned)data[1] << 8u)) <= 18000u;
-    default:
-        return true;
-    }
-}
-
-/* Reserved bits of a command as 0 (P14). */
-static void clear_reserved(int command, uint8_t data[8]) {
-    static const uint8_t USED[RULES_COMMANDS][8] = {{0, 0, 0, 0, 0xF0, 0, 0, 0xFF}, {0xFF}, {0xFF}, {0xFF, 0xFF}};
-    for (int i = 0; i < 8; i++) {
-        data[i] &= USED[command][i];
-    }
-}
-
 static void hear_command(rules_t *rules, int command, const hal_can_frame_t *frame) {
     if (in_range(command, frame->data)) {
         memcpy(rules->command_data[command], frame->data, 8);
         clear_reserved(command, rules->command_data[command]);
         rules->command_heard[command] = true;
-    }
-}
-
-/* TOP-1: whether a VCU may have taken it for a command other than the safe one. */
-static bool differs_from_safe(int command, const hal_can_frame_t *frame) {
-    if (frame->length != 8u) {
-        return true;
-    }
-    switch (command) {
-    case SIGNALS:
-        return (frame->data[4] & 0xF0u) != 0x70u;
-    case GEAR:
-        return frame->data[0] != 8u;
-    default:
-        return frame->data[0] != 0u;
     }
 }
 
@@ -428,6 +380,24 @@ static void judge_state(rules_t *rules, const rules_seen_t *seen) {
     }
 }
 
+/*
+ * FSM-4: what keeps it open in every state (SUP-7, TIM-3); only a tick looks at the controller and at the clock. What it
+ * found there counts: a trip takes back what waited, and the tick feeds the watchdog after all else.
+ */
+static void judge_closed(rules_t *rules) {
+    if (rules->bus.is_bus_off) {
+        broken(rules, "FSM-4: the safety output is closed in bus-off");
+    }
+    if (rules->bus.tx_pending_ms > rules->tx_stalled_ms) {
+        broken(rules, "FSM-4: the safety output is closed, and a frame has not left for %u ms",
+               (unsigned)rules->bus.tx_pending_ms);
+    }
+    if (age_ms(rules, rules->fed_ms) > rules->watchdog_period_ms) {
+        broken(rules, "FSM-4: the safety output is closed, and the watchdog has not been fed for %u ms",
+               (unsigned)age_ms(rules, rules->fed_ms));
+    }
+}
+
 /* FSM-4 */
 static void judge_output(rules_t *rules, const rules_seen_t *seen, bool tick) {
     const bool entered = (seen->state == AGV_STATE_STANDBY) && commands_safe(rules->last.state);
@@ -440,8 +410,8 @@ static void judge_output(rules_t *rules, const rules_seen_t *seen, bool tick) {
     if (seen->state == AGV_STATE_INIT) {
         broken(rules, "FSM-4: the safety output is closed in INIT");
     }
-    if (tick && rules->bus.is_bus_off) {
-        broken(rules, "FSM-4: the safety output is closed in bus-off");
+    if (tick) {
+        judge_closed(rules);
     }
     if (tick && is_latched(seen->state) && !rules->confirmed_off &&
         (age_ms(rules, rules->unconfirmed_ms) > CONFIRM_MS)) {
@@ -484,6 +454,9 @@ void rules_returned(rules_t *rules, const rules_seen_t *seen, bool tick, uint64_
     }
     if ((seen->active & agv_fault_bit(AGV_FAULT_MEMORY_CORRUPTED)) != 0u) {
         broken(rules, "INT-5: memory was found corrupt, and nobody touched it");
+    }
+    if (seen->watchdog_feeds != rules->last.watchdog_feeds) {
+        rules->fed_ms = rules->now_ms;
     }
     rules->last = *seen;
     oracle_returned(&rules->oracle, seen->state);

@@ -31,19 +31,21 @@ typedef struct {
     uint64_t changed_ms; /* stamp of the last frame with another counter; at first the start */
 } rules_beat_t;
 
-/* What a supervisor says of itself, and its safety output. */
+/* What a supervisor says of itself, its safety output, and its hardware watchdog. */
 typedef struct {
     agv_state_t state;
     agv_fault_t first_reason;
     agv_fault_set_t active;
     bool output_closed;
     uint32_t gate_refused;
+    uint32_t watchdog_feeds; /* that the hardware watchdog has seen */
 } rules_seen_t;
 
 /* What its controller on the vehicle side is like at the moment. */
 typedef struct {
     bool takes_frames;
     bool is_bus_off;
+    uint32_t tx_pending_ms; /* age of the oldest frame that it has taken and not sent; 0: none */
 } rules_bus_t;
 
 typedef struct {
@@ -53,6 +55,8 @@ typedef struct {
     bool running_heartbeat;
     bool limits_commands; /* throttle ceiling or steering slew are on */
     uint8_t throttle_max;
+    uint16_t tx_stalled_ms;
+    uint16_t watchdog_period_ms;
 
     uint64_t now_ms;
     rules_seen_t last; /* what was seen after the call before */
@@ -78,6 +82,7 @@ typedef struct {
     /* for the safety output */
     uint64_t unconfirmed_ms; /* since the trip, or since a confirmation was withdrawn */
     bool confirmed_off;      /* since then a 363h without autopilot mode came */
+    uint64_t fed_ms;         /* when the hardware watchdog was last fed; at first the start */
 
     /* for the sending */
     uint8_t sent_now;       /* bits of the commands that left in this call, safe or passed */

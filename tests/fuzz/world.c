@@ -57,7 +57,8 @@ static rules_seen_t look(void) {
                                .first_reason = agv_supervisor_first_reason(&world.supervisor),
                                .active = agv_supervisor_active_faults(&world.supervisor),
                                .output_closed = world.hal.safety_output.on,
-                               .gate_refused = agv_supervisor_counters(&world.supervisor)->gate_refused};
+                               .gate_refused = agv_supervisor_counters(&world.supervisor)->gate_refused,
+                               .watchdog_feeds = world.hal.feeds};
     return seen;
 }
 
@@ -71,7 +72,9 @@ static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame
 static rules_bus_t bus(void) {
     const sim_hal_can_t *can = &world.hal.can[HAL_CAN_VEHICLE];
     const bool off = can->status.state == HAL_CAN_BUS_OFF;
-    return (rules_bus_t){.takes_frames = !off && !can->full && (world.unsettled == 0u), .is_bus_off = off};
+    return (rules_bus_t){.takes_frames = !off && !can->full && (world.unsettled == 0u),
+                         .is_bus_off = off,
+                         .tx_pending_ms = can->status.tx_pending_ms};
 }
 
 /* ---- Calls ---- */

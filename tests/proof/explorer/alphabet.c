@@ -374,10 +374,13 @@ const char *alphabet_name(unsigned symbol) {
 }
 
 bool alphabet_tellable;
+bool alphabet_hangs;
 
 /* What story.c cannot say, or not exactly: in a pause of host_sim frames wait until its end. */
 static bool cannot_be_told(const symbol_t *s) {
-    return (s->apply == doze) || (s->apply == late) || ((s->apply == apply_bus) && (s->how == (unsigned)BUS_DEAD)) ||
+    const bool waits = !alphabet_hangs || agv_state_commands_safe(agv_supervisor_state(&world.supervisor));
+    return (s->apply == doze) || ((s->apply == late) && waits) ||
+           ((s->apply == apply_bus) && (s->how == (unsigned)BUS_DEAD)) ||
            ((s->apply == apply_illness) && (s->how == (unsigned)ILL_RECEIVE_DEAD)) ||
            ((s->apply == controller) && (s->how == (unsigned)C_AI_OFF));
 }

@@ -20,6 +20,12 @@ extern bool alphabet_pairs;
 /* Whether only what a scenario can say is tried: a counterexample that is found so can be played. */
 extern bool alphabet_tellable;
 
+/*
+ * Whether late ticks are tried with these, in STANDBY and ACTIVE. In a pause of host_sim frames wait until its end, with
+ * their own stamps: what their handling leads to is seen later, and INIT or a reset would end at another time.
+ */
+extern bool alphabet_hangs;
+
 /* How many symbols there are; the short run has those below the second. */
 unsigned alphabet_size(bool quick);
 

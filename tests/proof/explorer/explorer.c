@@ -17,11 +17,12 @@
  * tried. What is not: two stages of one abstract state may differ in what the abstraction leaves out, as the phases of
  * cycles, and only those that were reached first were explored.
  *
- * usage: explorer [--quick] [--pairs] [--tellable] [--variant N] [--shard I/N] [--representatives N] [--most STATES]
- *                 [--scenario FILE]
+ * usage: explorer [--quick] [--pairs] [--tellable [--hangs]] [--variant N] [--shard I/N] [--representatives N]
+ *                 [--most STATES] [--scenario FILE]
  *   --quick     the short alphabet
  *   --pairs     something may be wrong with the vehicle and with a controller at the same time
  *   --tellable  only what a scenario file can say, so that a counterexample can be played
+ *   --hangs     with it: late ticks in STANDBY and ACTIVE
  *   --shard     every N-th variant from I on
  *   --most      give up, and fail, beyond so many states of a variant
  *   --scenario  where a counterexample goes; without it to standard output
@@ -201,16 +202,16 @@ static void read_options(int argc, char **argv) {
             alphabet_pairs = true;
         } else if (strcmp(argv[i], "--tellable") == 0) {
             alphabet_tellable = true;
+        } else if (strcmp(argv[i], "--hangs") == 0) {
+            alphabet_hangs = true;
         } else {
             good = (i + 1 < argc) && take_option(argv[i], argv[i + 1]);
             i++;
         }
     }
     if (!good) {
-        (void)fprintf(
-            stderr,
-            "usage: explorer [--quick] [--pairs] [--tellable] [--variant N] [--shard I/N] [--representatives N] "
-            "[--most STATES] [--scenario FILE]\n");
+        (void)fprintf(stderr, "usage: explorer [--quick] [--pairs] [--tellable [--hangs]] [--variant N] [--shard I/N] "
+                              "[--representatives N] [--most STATES] [--scenario FILE]\n");
         exit(2);
     }
 }

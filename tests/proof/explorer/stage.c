@@ -41,6 +41,10 @@ static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame
         stage_last_side = side;
     }
     stage.frames++;
+    if (stage.stalled && (side == HAL_CAN_VEHICLE) && (world.hal.can[side].status.tx_pending_ms == 0u)) {
+        stage.taken_ms = world.now_ms;
+        world.hal.can[side].status.tx_pending_ms = 1;
+    }
     judge_sent(ctx, side, frame);
 }
 
@@ -214,8 +218,13 @@ static void follow_controller(void) {
         stage.recover_in_ms = RECOVERY_MS;
     }
     stage.recover_requests = can->recover_requests;
-    if (stage.stalled && (can->status.tx_pending_ms != 0u)) {
-        can->status.tx_pending_ms++;
+}
+
+/* What does not leave has waited for full milliseconds, at least 1 (hal/can.h). */
+static void age_pending(void) {
+    sim_hal_can_t *can = &world.hal.can[HAL_CAN_VEHICLE];
+    if (stage.stalled && (can->status.tx_pending_ms != 0u) && (world.now_ms > stage.taken_ms)) {
+        can->status.tx_pending_ms = (uint32_t)(world.now_ms - stage.taken_ms);
     }
 }
 
@@ -234,15 +243,11 @@ static void after(bool was_latched) {
 
 /* The rest of a millisecond whose actions are done. */
 static void finish_ms(void) {
-    const uint32_t sent_before = world.hal.can[HAL_CAN_VEHICLE].sent;
     const bool was_latched = agv_state_is_latched(agv_supervisor_state(&world.supervisor));
+    age_pending();
     world_jump(0);
     send_due();
     follow_controller();
-    if (stage.stalled && (world.hal.can[HAL_CAN_VEHICLE].sent != sent_before) &&
-        (world.hal.can[HAL_CAN_VEHICLE].status.tx_pending_ms == 0u)) {
-        sim_hal_set_tx_pending_ms(&world.hal, HAL_CAN_VEHICLE, 1);
-    }
     after(was_latched);
 }
 

@@ -69,6 +69,7 @@ typedef struct {
     uint64_t foreign_ms; /* since when a foreign sender sends */
     uint64_t ill_ms;     /* since when the vehicle is ill, and while that reaches the supervisor at all */
     uint64_t engaged_ms; /* since when it reports autopilot */
+    uint64_t taken_ms;   /* when the oldest frame that does not leave was taken */
     uint32_t frames;     /* that left since the last start */
     uint32_t recover_requests;
     uint8_t recover_in_ms;

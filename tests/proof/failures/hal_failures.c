@@ -50,6 +50,8 @@ static const borne_t BORNE[] = {
     {SIM_HAL_OP_CAN_STATUS, true, "TOP-1: "},
     {SIM_HAL_OP_CAN_STATUS, true, "FSM-2: "},
     {SIM_HAL_OP_SAFETY_OUTPUT_SET, true, "FSM-4: the safety output is closed"},
+    /* Nothing tells the supervisor; a watchdog would bite, but it is off here. */
+    {SIM_HAL_OP_WATCHDOG_FEED, false, "FSM-4: the safety output is closed, and the watchdog has not been fed"},
     {SIM_HAL_OP_RESET_CAUSE, true, "FSM-7: "},
     {SIM_HAL_OP_STORE_READ_LATCH, true, "FSM-7: after a reset the first reason is"},
     {SIM_HAL_OP_STORE_WRITE_LATCH, true, "FSM-7: after a reset the first reason is"},
