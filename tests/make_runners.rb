@@ -1,6 +1,7 @@
 # The runners of several tests (Unity's generator) in one start of Ruby.
 # usage: ruby -r .../unity/auto/generate_test_runner.rb make_runners.rb CONFIG.yml FOLDER TEST.c...
-# FOLDER/TEST_runner.h is included at the head of TEST.c. One that comes out as it was is not touched: its test is not compiled again.
+# FOLDER/TEST_runner.h is included at the head of TEST.c. One that comes out as it was is not touched, so that its test is
+# not compiled again.
 config, folder, *tests = ARGV
 tests.each do |test|
   runner = File.join(folder, "#{File.basename(test, '.c')}_runner.h")
