@@ -119,11 +119,22 @@ static void judge_beat(campaign_judge_t *judge, uint64_t t_us) {
     }
 }
 
+/** The angle of the steering, as 067h counts it. */
+static int32_t measured_ddeg(const campaign_judge_t *judge) {
+    return (judge->world->vehicle.eps.angle_mddeg / MDDEG_PER_DDEG) + CENTRE_DDEG;
+}
+
+/** With an engagement, throttle 0 of an AI computer that has not seen it yet is passed on: only after a trip it counts. */
+static bool is_reaction(const campaign_judge_t *judge, agv_message_t message, const hal_can_frame_t *frame) {
+    return is_safe_command(message, frame) && ((judge->plan->engagement == NULL) || (judge->reason >= 0));
+}
+
 static void judge_after(campaign_judge_t *judge, uint64_t t_us, agv_message_t message, const hal_can_frame_t *frame) {
-    if ((judge->first_safe_us == CAMPAIGN_NEVER) && is_safe_command(message, frame)) {
+    const bool is_blind = judge->plan->row->fault == AGV_FAULT_STEERING_ANGLE_INVALID;
+    if ((judge->first_safe_us == CAMPAIGN_NEVER) && is_reaction(judge, message, frame)) {
         judge->first_safe_us = t_us;
         judge->last_beat_us = t_us;
-        judge->angle_ddeg = (judge->world->vehicle.eps.angle_mddeg / MDDEG_PER_DDEG) + CENTRE_DDEG;
+        judge->angle_ddeg = is_blind ? judge->told_ddeg : measured_ddeg(judge);
     }
     if (judge->first_safe_us == CAMPAIGN_NEVER) {
         return; /* the frame that was in the controller, or the held angle, which goes first */
@@ -199,7 +210,8 @@ scenario_watch_t campaign_judge_watch(campaign_judge_t *judge) {
 static void judge_readiness(campaign_judge_t *judge) {
     const campaign_plan_t *plan = judge->plan;
     judge->engaged = judge->world->vehicle.vcu.autopilot;
-    if ((plan->cause_ms != 0u) && (!judge->was_closed || (judge->engaged != plan->engaged))) {
+    const bool as_planned = (judge->engaged == plan->engaged) || (plan->engagement != NULL);
+    if ((plan->cause_ms != 0u) && (!judge->was_closed || !as_planned)) {
         is_broken(judge, CAMPAIGN_NOT_READY, judge->cause_us);
     }
 }
@@ -229,6 +241,9 @@ void campaign_judge_tick(campaign_judge_t *judge, uint64_t t_ms) {
     judge->was_closed = closed;
     if (t_ms + 1u == step_ms) {
         judge_readiness(judge);
+    }
+    if (t_ms == plan->steps_ms) {
+        judge->told_ddeg = measured_ddeg(judge);
     }
 }
 

@@ -18,7 +18,7 @@
 /** What must hold; the first one that did not. */
 typedef enum {
     CAMPAIGN_SOUND,
-    CAMPAIGN_NOT_READY,     /**< before the cause the output was not closed, or the autopilot not engaged */
+    CAMPAIGN_NOT_READY,     /**< before the cause the output was not closed, or (under way) the autopilot not engaged */
     CAMPAIGN_FALSE_TRIP,    /**< a safe command or an open output before the cause */
     CAMPAIGN_LATE,          /**< no safe frame (no open output) within the bound */
     CAMPAIGN_UNSAFE_FRAME,  /**< FSM-6: a frame that is not safe in INIT, or after the first safe one */
@@ -57,8 +57,10 @@ typedef struct {
     bool was_closed;
     int reason; /**< of the first trip; -1: none */
     bool holds;
-    uint16_t held;      /**< angle in the first 065h of its own */
-    int32_t angle_ddeg; /**< of the steering, as 067h counts it, when the first safe frame was out */
+    uint16_t held;     /**< angle in the first 065h of its own */
+    int32_t told_ddeg; /**< the angle when the steps came: the last one that 067h tells, when they make it invalid */
+    int32_t
+        angle_ddeg; /**< the angle to be held: that of the moment in which the first safe frame was out, or the told one */
     campaign_state_t states[CAMPAIGN_STATES_MAX];
     size_t state_count;
 } campaign_judge_t;

@@ -124,16 +124,18 @@ static scenario_planted_t planted_of(const json_t *value) {
 }
 
 bool campaign_line_part(const char *path, size_t line, const json_t *object, campaign_part_t *part) {
-    static const key_line_t keys[] = {{"campaign", is_format},      {"version", is_version}, {"runs", is_count},
-                                      {"seed", is_natural},         {"shard", is_shard},     {"shards", is_shard},
-                                      {"fault", is_caused_or_null}, {"planted", is_planted}};
+    static const key_line_t keys[] = {
+        {"campaign", is_format},      {"version", is_version},    {"runs", is_count},
+        {"seed", is_natural},         {"shard", is_shard},        {"shards", is_shard},
+        {"fault", is_caused_or_null}, {"newly_engaged", is_flag}, {"planted", is_planted}};
     const char *wrong = misfit(object, keys, sizeof keys / sizeof keys[0]);
     if (wrong == NULL) {
         *part = (campaign_part_t){.runs = (uint64_t)number(object, "runs"),
                                   .seed = (uint64_t)number(object, "seed"),
                                   .shard = (uint32_t)number(object, "shard"),
                                   .shards = (uint32_t)number(object, "shards"),
-                                  .only = row_of(json_object_get(object, "fault")),
+                                  .causes = {.only = row_of(json_object_get(object, "fault")),
+                                             .newly_engaged = json_is_true(json_object_get(object, "newly_engaged"))},
                                   .planted = planted_of(json_object_get(object, "planted"))};
         wrong = (part->shard > part->shards) ? "shard" : NULL;
     }

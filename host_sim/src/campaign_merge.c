@@ -76,13 +76,17 @@ static bool read_run(shard_t *shard, const campaign_part_t *whole, uint64_t run,
     if (number != run) {
         return report_at(shard->path, shard->number, "run %" PRIu64 " is expected here", run);
     }
-    return (whole->only == NULL) || (whole->only == &CAMPAIGN_ROWS[sample->row]) ||
+    const campaign_row_t *only = whole->causes.only;
+    if (whole->causes.newly_engaged && (campaign_engagement(CAMPAIGN_ROWS[sample->row].fault) == NULL)) {
+        return report_at(shard->path, shard->number, "a fault that an engagement does not delay");
+    }
+    return (only == NULL) || (only == &CAMPAIGN_ROWS[sample->row]) ||
            report_at(shard->path, shard->number, "another fault than that of the campaign");
 }
 
 static bool is_same(const campaign_part_t *a, const campaign_part_t *b) {
-    return (a->runs == b->runs) && (a->seed == b->seed) && (a->shards == b->shards) && (a->only == b->only) &&
-           (a->planted == b->planted);
+    return (a->runs == b->runs) && (a->seed == b->seed) && (a->shards == b->shards) && (a->planted == b->planted) &&
+           (a->causes.only == b->causes.only) && (a->causes.newly_engaged == b->causes.newly_engaged);
 }
 
 /** Put the shards in their order. @return false: they are not of one campaign; reported */

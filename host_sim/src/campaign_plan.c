@@ -18,6 +18,9 @@ enum {
     LATE_AI_MS = 800
 };
 
+/** An engagement and its cause: the autopilot can be switched on by then; so long before, or so long after it. */
+enum { SWITCH_MS = 1500, SWITCH_SPAN_MS = 100, BEFORE_MS = 50, AFTER_MS = 500 };
+
 /** After the reaction: brakes and gear box, or P at standstill (3 s), and a while in which nothing may come undone. */
 enum { AFTERWARDS_MS = 1500, AFTER_STANDSTILL_MS = 4500, AFTER_STALL_MS = 3000 };
 
@@ -60,13 +63,32 @@ static void choose_kind(campaign_plan_t *plan, uint64_t *state) {
     plan->number = chance_draw(state, plan->row->lowest, plan->row->highest);
 }
 
+/** The cause comes under way, or is there from the start on. @return from the cause to the decision at the latest */
+static uint32_t choose_moment(campaign_plan_t *plan, uint64_t *state, const agv_config_t *config) {
+    const uint32_t flags = plan->row->flags;
+    const uint32_t under_way_ms = ENGAGE_MS + SETTLED_MS + chance_draw(state, 0u, SPAN_MS);
+
+    plan->steps_ms = ((flags & CAMPAIGN_START) != 0u) ? 0u : under_way_ms;
+    plan->cause_ms = plan->steps_ms + (((flags & CAMPAIGN_LATER) != 0u) ? plan->number : 0u);
+    return campaign_decision_ms(plan->row, config);
+}
+
+/** The cause comes shortly before or after an engagement, which it waits for. */
+static uint32_t choose_engagement(campaign_plan_t *plan, uint64_t *state, const agv_config_t *config) {
+    const uint32_t shift_ms = chance_draw(state, 0u, BEFORE_MS + AFTER_MS);
+
+    plan->engage_ms = SWITCH_MS + chance_draw(state, 0u, SWITCH_SPAN_MS - 1u);
+    plan->steps_ms = plan->engagement->never_seen ? 0u : plan->engage_ms - BEFORE_MS + shift_ms;
+    plan->cause_ms = (plan->steps_ms > plan->engage_ms) ? plan->steps_ms : plan->engage_ms;
+    return campaign_engaged_decision_ms(plan->engagement, config);
+}
+
 static void choose_times(campaign_plan_t *plan, uint64_t *state, const agv_config_t *config) {
     const uint32_t flags = plan->row->flags;
-    const uint32_t step_ms = ENGAGE_MS + SETTLED_MS + chance_draw(state, 0u, SPAN_MS);
+    const uint32_t decision_ms =
+        (plan->engagement != NULL) ? choose_engagement(plan, state, config) : choose_moment(plan, state, config);
 
-    plan->cause_ms = ((flags & CAMPAIGN_START) != 0u) ? 0u : step_ms;
-    plan->cause_ms += ((flags & CAMPAIGN_LATER) != 0u) ? plan->number : 0u;
-    plan->bound_us = (campaign_decision_ms(plan->row, config) * (uint32_t)US_PER_MS) + campaign_wire_us(plan->bitrate);
+    plan->bound_us = (decision_ms * (uint32_t)US_PER_MS) + campaign_wire_us(plan->bitrate);
     uint32_t afterwards_ms = ((flags & CAMPAIGN_NO_WIRE) != 0u) ? AFTER_STALL_MS : AFTERWARDS_MS;
     afterwards_ms = plan->at_standstill ? (uint32_t)AFTER_STANDSTILL_MS : afterwards_ms;
     plan->duration_ms = plan->cause_ms + (plan->bound_us / (uint32_t)US_PER_MS) + afterwards_ms;
@@ -121,18 +143,21 @@ static void add_phases(campaign_plan_t *plan, uint64_t *state) {
     campaign_text_add(text, "}\n");
 }
 
-static void add_drive(campaign_plan_t *plan, uint64_t *state) {
-    campaign_text_t *text = &plan->head;
+/** The driver who brings the vehicle to where the cause comes. @return throttle */
+static uint32_t add_driver(campaign_plan_t *plan, uint64_t *state) {
     const uint32_t throttle_pct = chance_draw(state, THROTTLE_MIN_PCT, CAMPAIGN_THROTTLE_MAX_PCT);
     const int steer_deg = (int)chance_draw(state, 0u, 2u * STEER_MAX_DEG) - STEER_MAX_DEG;
+
+    campaign_text_add(&plan->head, "  - {at_ms: %d, ai: drive, gear: D, throttle_pct: %" PRIu32 ", steer_deg: %d}\n",
+                      DRIVE_MS, throttle_pct, steer_deg);
+    return throttle_pct;
+}
+
+static void add_drive(campaign_plan_t *plan, uint64_t *state) {
+    campaign_text_t *text = &plan->head;
+    const uint32_t throttle_pct = add_driver(plan, state);
     const uint32_t engage_ms = ENGAGE_MS + chance_draw(state, 0u, START_SPAN_MS - 1u);
 
-    if ((plan->row->flags & CAMPAIGN_START) != 0u) {
-        return;
-    }
-    campaign_text_add(text, "steps:\n");
-    campaign_text_add(text, "  - {at_ms: %d, ai: drive, gear: D, throttle_pct: %" PRIu32 ", steer_deg: %d}\n", DRIVE_MS,
-                      throttle_pct, steer_deg);
     if (plan->engaged) {
         campaign_text_add(text, "  - {at_ms: %" PRIu32 ", operator: engage}\n", engage_ms);
     } else {
@@ -178,14 +203,13 @@ static const char *choose_steps(const char *steps, uint64_t *state, const char *
 }
 
 static void add_cause(campaign_plan_t *plan, uint64_t *state) {
-    const uint32_t later_ms = ((plan->row->flags & CAMPAIGN_LATER) != 0u) ? plan->number : 0u;
     const char *end = NULL;
     const char *at = choose_steps(plan->row->steps, state, &end);
 
     while (at < end) {
-        uint32_t at_ms = plan->cause_ms - later_ms;
+        uint32_t at_ms = plan->steps_ms;
         if (*at == '+') {
-            for (uint32_t ms = 0u; *at != ' '; at_ms = plan->cause_ms - later_ms + ms) {
+            for (uint32_t ms = 0u; *at != ' '; at_ms = plan->steps_ms + ms) {
                 at++;
                 ms = (*at != ' ') ? (ms * 10u) + (uint32_t)(*at - '0') : ms;
             }
@@ -197,7 +221,47 @@ static void add_cause(campaign_plan_t *plan, uint64_t *state) {
     }
 }
 
-void campaign_plan_make(campaign_plan_t *plan, uint64_t seed, uint64_t run, const campaign_row_t *only) {
+/** Driven by remote control, then an engagement and the cause, in their order. */
+static void add_engaged_steps(campaign_plan_t *plan, uint64_t *state) {
+    const bool first = plan->steps_ms < (uint32_t)DRIVE_MS;
+    const bool last = plan->steps_ms > plan->engage_ms;
+
+    if (first) {
+        add_cause(plan, state);
+    }
+    const uint32_t throttle_pct = add_driver(plan, state);
+    campaign_text_add(&plan->head, "  - {at_ms: %d, operator: drive, gear: D, throttle_pct: %" PRIu32 "}\n", DRIVE_MS,
+                      throttle_pct);
+    if (!first && !last) {
+        add_cause(plan, state);
+    }
+    campaign_text_add(&plan->head, "  - {at_ms: %" PRIu32 ", operator: engage}\n", plan->engage_ms);
+    if (last) {
+        add_cause(plan, state);
+    }
+}
+
+static void add_steps(campaign_plan_t *plan, uint64_t *state) {
+    campaign_text_add(&plan->head, "steps:\n");
+    if (plan->engagement != NULL) {
+        add_engaged_steps(plan, state);
+        return;
+    }
+    add_drive(plan, state);
+    add_cause(plan, state);
+}
+
+/** What is caused. */
+static void choose_row(campaign_plan_t *plan, uint64_t *state, const campaign_causes_t *causes) {
+    const size_t count = causes->newly_engaged ? CAMPAIGN_ENGAGEMENT_COUNT : CAMPAIGN_ROW_COUNT;
+    const uint32_t any = chance_draw(state, 0u, (uint32_t)count - 1u);
+
+    plan->row = causes->newly_engaged ? campaign_row(CAMPAIGN_ENGAGEMENTS[any].fault) : &CAMPAIGN_ROWS[any];
+    plan->row = (causes->only != NULL) ? causes->only : plan->row;
+    plan->engagement = causes->newly_engaged ? campaign_engagement(plan->row->fault) : NULL;
+}
+
+void campaign_plan_make(campaign_plan_t *plan, uint64_t seed, uint64_t run, const campaign_causes_t *causes) {
     uint64_t state = seed;
     agv_config_t config;
 
@@ -206,13 +270,13 @@ void campaign_plan_make(campaign_plan_t *plan, uint64_t seed, uint64_t run, cons
     memset(plan, 0, sizeof *plan);
     plan->seed = seed;
     plan->run = run;
-    plan->row = &CAMPAIGN_ROWS[chance_draw(&state, 0u, (uint32_t)CAMPAIGN_ROW_COUNT - 1u)];
-    plan->row = (only != NULL) ? only : plan->row;
+    choose_row(plan, &state, causes);
     choose_kind(plan, &state);
     choose_times(plan, &state, &config);
     add_kind(plan);
     add_phases(plan, &state);
     campaign_text_add(&plan->head, "duration_ms: %" PRIu32 "\n", plan->duration_ms);
-    add_drive(plan, &state);
-    add_cause(plan, &state);
+    if ((plan->row->flags & CAMPAIGN_START) == 0u) {
+        add_steps(plan, &state);
+    }
 }

@@ -29,6 +29,7 @@ typedef struct {
     uint64_t seed;
     uint64_t run;
     const campaign_row_t *row;
+    const campaign_engagement_t *engagement; /**< NULL: the cause comes under way */
     bool gateway;
     bool table_ids;
     uint32_t bitrate;
@@ -38,14 +39,22 @@ typedef struct {
     bool bunched; /**< all messages are due in the same milliseconds */
     uint16_t tick_phase_us;
     uint32_t clock_start_ms;
-    uint32_t number; /**< $n */
-    uint32_t cause_ms;
-    uint32_t bound_us; /**< after the cause: the reaction has come */
+    uint32_t number;    /**< $n */
+    uint32_t engage_ms; /**< with an engagement: when the operator switches */
+    uint32_t steps_ms;  /**< when the steps of the row come */
+    uint32_t cause_ms;  /**< from here on times count: the steps, what is later than they are, or the switch */
+    uint32_t bound_us;  /**< after the cause: the reaction has come */
     uint32_t duration_ms;
     campaign_text_t head; /**< the scenario up to its steps; without what is expected */
 } campaign_plan_t;
 
-/** Make a run. @param only NULL: any fault */
-void campaign_plan_make(campaign_plan_t *plan, uint64_t seed, uint64_t run, const campaign_row_t *only);
+/** Which causes a campaign has. */
+typedef struct {
+    const campaign_row_t *only; /**< NULL: any fault; with `newly_engaged` one that an engagement delays */
+    bool newly_engaged;         /**< the cause comes with an engagement, and not under way */
+} campaign_causes_t;
+
+/** Make a run. */
+void campaign_plan_make(campaign_plan_t *plan, uint64_t seed, uint64_t run, const campaign_causes_t *causes);
 
 #endif

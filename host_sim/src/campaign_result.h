@@ -18,7 +18,7 @@ typedef struct {
     uint64_t seed;
     uint32_t shard; /**< 1 .. shards */
     uint32_t shards;
-    const campaign_row_t *only; /**< NULL: any fault */
+    campaign_causes_t causes;
     scenario_planted_t planted; /**< in the supervisor's place */
 } campaign_part_t;
 

@@ -137,6 +137,33 @@ const campaign_row_t CAMPAIGN_ROWS[] = {
 
 const size_t CAMPAIGN_ROW_COUNT = sizeof CAMPAIGN_ROWS / sizeof CAMPAIGN_ROWS[0];
 
+const campaign_engagement_t CAMPAIGN_ENGAGEMENTS[] = {
+    {AGV_FAULT_AI_HEARTBEAT_LOST, "ai_never_seen_timeout_ms", true},
+    {AGV_FAULT_GEAR_COMMAND_TIMEOUT, NULL, false},
+    {AGV_FAULT_THROTTLE_COMMAND_TIMEOUT, NULL, false},
+    {AGV_FAULT_STEERING_COMMAND_TIMEOUT, NULL, false},
+    {AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, NULL, false},
+    {AGV_FAULT_EPS_MODE_OFF, "engaged_grace_ms", false},
+    {AGV_FAULT_EPS_MODE_INVALID, "engaged_grace_ms", false},
+    {AGV_FAULT_EPS_MODE_NOT_ANGLE, "engaged_grace_ms", false},
+    {AGV_FAULT_GEAR_STATUS_INVALID, "engaged_grace_ms", false},
+    {AGV_FAULT_THROTTLE_STATUS_INVALID, "engaged_grace_ms", false},
+    {AGV_FAULT_STEERING_ANGLE_INVALID, "engaged_grace_ms", false},
+    {AGV_FAULT_STEERING_DEVIATION, "engaged_grace_ms", false},
+    {AGV_FAULT_THROTTLE_IN_PARK, "engaged_grace_ms", false},
+};
+
+const size_t CAMPAIGN_ENGAGEMENT_COUNT = sizeof CAMPAIGN_ENGAGEMENTS / sizeof CAMPAIGN_ENGAGEMENTS[0];
+
+const campaign_engagement_t *campaign_engagement(agv_fault_t fault) {
+    for (size_t i = 0u; i < CAMPAIGN_ENGAGEMENT_COUNT; i++) {
+        if (CAMPAIGN_ENGAGEMENTS[i].fault == fault) {
+            return &CAMPAIGN_ENGAGEMENTS[i];
+        }
+    }
+    return NULL;
+}
+
 const campaign_row_t *campaign_row(agv_fault_t fault) {
     for (size_t i = 0u; i < CAMPAIGN_ROW_COUNT; i++) {
         if (CAMPAIGN_ROWS[i].fault == fault) {
@@ -178,6 +205,14 @@ uint32_t campaign_decision_ms(const campaign_row_t *row, const agv_config_t *con
     default:
         return 0u;
     }
+}
+
+uint32_t campaign_engaged_decision_ms(const campaign_engagement_t *engagement, const agv_config_t *config) {
+    const uint32_t known_ms = agv_message_cycle_ms(AGV_MSG_VEHICLE_STATUS) + setting(config, engagement->wait);
+    if (engagement->never_seen) {
+        return known_ms + 1u;
+    }
+    return known_ms + campaign_decision_ms(campaign_row(engagement->fault), config);
 }
 
 uint32_t campaign_wire_us(uint32_t bitrate) {

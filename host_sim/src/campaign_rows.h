@@ -69,8 +69,26 @@ extern const size_t CAMPAIGN_ROW_COUNT;
 /** The row of a fault; NULL: a campaign cannot cause it. */
 const campaign_row_t *campaign_row(agv_fault_t fault);
 
+/** A fault that is known later when its cause comes with an engagement than under way (SUP-3, SUP-5, SUP-8). */
+typedef struct {
+    agv_fault_t fault;
+    const char
+        *wait; /**< setting: for so long after the engagement it is not judged; NULL: from the engagement on it is */
+    bool never_seen; /**< the cause is there from the start on, and `wait` is all the time that it takes */
+} campaign_engagement_t;
+
+/** All of them. */
+extern const campaign_engagement_t CAMPAIGN_ENGAGEMENTS[];
+extern const size_t CAMPAIGN_ENGAGEMENT_COUNT;
+
+/** That of a fault; NULL: an engagement does not delay it. */
+const campaign_engagement_t *campaign_engagement(agv_fault_t fault);
+
 /** From the cause to the decision at the latest, in ms, on an idle wire. */
 uint32_t campaign_decision_ms(const campaign_row_t *row, const agv_config_t *config);
+
+/** The same with a cause that comes with an engagement: from the operator's switch, or from the cause if that is later. */
+uint32_t campaign_engaged_decision_ms(const campaign_engagement_t *engagement, const agv_config_t *config);
 
 /** What the wire may take of it, in us: some frames on the way to the supervisor, and from it. */
 uint32_t campaign_wire_us(uint32_t bitrate);

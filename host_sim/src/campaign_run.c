@@ -59,7 +59,7 @@ static void play(campaign_t *campaign) {
 static bool run_one(campaign_t *campaign, uint64_t run) {
     const campaign_request_t *request = campaign->request;
 
-    campaign_plan_make(&campaign->plan, request->part.seed, run, request->part.only);
+    campaign_plan_make(&campaign->plan, request->part.seed, run, &request->part.causes);
     if (!read_plan(campaign)) {
         return false;
     }

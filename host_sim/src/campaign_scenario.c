@@ -49,7 +49,7 @@ static void add_states(campaign_text_t *text, const campaign_judge_t *judge) {
     if (!is_like(judge, CAMPAIGN_START)) {
         add_state(text, AGV_STATE_INIT, -1, 0u, 0u);
         add_state(text, AGV_STATE_STANDBY, -1, READY_FROM_MS, READY_TO_MS);
-        if (plan->engaged) {
+        if (plan->engaged && ((plan->engagement == NULL) || !plan->engagement->never_seen)) {
             add_state(text, AGV_STATE_ACTIVE, -1, READY_TO_MS + 1u, ENGAGED_TO_MS);
         }
     }
@@ -108,7 +108,7 @@ void campaign_scenario_write(campaign_text_t *text, const campaign_judge_t *judg
     add_states(text, judge);
     add_frames(text, judge);
     add_output(text, judge);
-    if (!is_like(judge, CAMPAIGN_START)) {
+    if (!is_like(judge, CAMPAIGN_START) && (plan->engagement == NULL)) {
         const uint32_t later_ms = is_like(judge, CAMPAIGN_LATER) ? plan->number : 0u;
         campaign_text_add(text, "  vehicle:\n    - {at_ms: %" PRIu32 ", mode: %s}\n", plan->cause_ms - later_ms - 1u,
                           plan->engaged ? "autopilot" : "manual");

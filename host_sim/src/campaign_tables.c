@@ -61,6 +61,17 @@ static json_t *rows(void) {
     return list;
 }
 
+static json_t *engagements(void) {
+    json_t *list = json_array();
+    for (size_t i = 0u; i < CAMPAIGN_ENGAGEMENT_COUNT; i++) {
+        const campaign_engagement_t *engagement = &CAMPAIGN_ENGAGEMENTS[i];
+        (void)json_array_append_new(list,
+                                    json_pack("{s:s, s:s?, s:b}", "fault", agv_fault_name(engagement->fault), "wait",
+                                              engagement->wait, "never_seen", (int)engagement->never_seen));
+    }
+    return list;
+}
+
 static json_t *faults(void) {
     json_t *list = json_array();
     for (int fault = 0; fault < (int)AGV_FAULT_COUNT; fault++) {
@@ -89,11 +100,12 @@ static json_t *vehicle(void) {
 }
 
 bool campaign_print_tables(output_t *output) {
-    json_t *all = json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:i, s:i, s:i, s:i}", "messages", messages(),
-                            "settings", settings(), "faults", faults(), "rows", rows(), "vehicle", vehicle(),
-                            "standard_bits", frame_bits(false), "extended_bits", frame_bits(true), "interframe_bits",
-                            (int)SIM_BUS_INTERFRAME_BITS, "suspend_bits", (int)SIM_BUS_SUSPEND_BITS, "error_bits",
-                            (int)SIM_BUS_ERROR_BITS, "recovery_sequences", (int)SIM_BUS_RECOVERY_SEQUENCES);
+    json_t *all =
+        json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:i, s:i, s:i, s:i}", "messages", messages(), "settings",
+                  settings(), "faults", faults(), "rows", rows(), "engagements", engagements(), "vehicle", vehicle(),
+                  "standard_bits", frame_bits(false), "extended_bits", frame_bits(true), "interframe_bits",
+                  (int)SIM_BUS_INTERFRAME_BITS, "suspend_bits", (int)SIM_BUS_SUSPEND_BITS, "error_bits",
+                  (int)SIM_BUS_ERROR_BITS, "recovery_sequences", (int)SIM_BUS_RECOVERY_SEQUENCES);
     char *text = (all != NULL) ? json_dumps(all, JSON_INDENT(1)) : NULL;
     json_decref(all);
     if (text == NULL) {

@@ -35,6 +35,7 @@ typedef struct {
     const char *results;
     const char *folder;
     int planted;
+    bool newly_engaged;
     bool merge;
     bool tables;
     size_t file_count;
@@ -55,6 +56,9 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .highest = INT64_MAX},
         {.name = "--shard", .value = "I/N", .help = "only part I of N of the runs (1/1)", .text = &given->shard},
         {.name = "--fault", .value = "NAME", .help = "cause this one in every run", .text = &given->fault},
+        {.name = "--newly-engaged",
+         .help = "the cause comes with an engagement, of faults which that delays",
+         .flag = &given->newly_engaged},
         {.name = "--results", .value = "FILE", .help = "results as JSON Lines", .text = &given->results},
         {.name = "--broken",
          .value = "FOLDER",
@@ -89,13 +93,17 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     return options_parse(&syntax, argc, argv, &given->file_count);
 }
 
-static bool take_fault(const char *name, campaign_part_t *part) {
+static bool take_fault(const char *name, campaign_causes_t *causes) {
     const agv_fault_t fault = agv_fault_from_name(name);
     if (fault == AGV_FAULT_NONE) {
         return report("--fault: '%s' is no fault; docs/faults.md lists them", name);
     }
-    part->only = campaign_row(fault);
-    return (part->only != NULL) || report("--fault: nothing that a campaign can do causes %s", name);
+    causes->only = campaign_row(fault);
+    if (causes->only == NULL) {
+        return report("--fault: nothing that a campaign can do causes %s", name);
+    }
+    return !causes->newly_engaged || (campaign_engagement(fault) != NULL) ||
+           report("--newly-engaged: an engagement does not delay %s", name);
 }
 
 static bool is_folder(const char *path) {
@@ -117,6 +125,7 @@ static bool make_request(given_t *given, char **operands) {
         return report("--seed is missing; see host_sim campaign --help");
     }
     request->part = (campaign_part_t){.runs = given->runs, .seed = given->seed, .shard = 1u, .shards = 1u};
+    request->part.causes.newly_engaged = given->newly_engaged;
     request->results = given->results;
     request->folder = (given->folder != NULL) ? given->folder : ".";
     request->part.planted = (given->planted == NOT_PLANTED) ? SCENARIO_REAL : (scenario_planted_t)(given->planted + 1);
@@ -126,7 +135,7 @@ static bool make_request(given_t *given, char **operands) {
         return report("--show: there is no run %" PRIu64 ", they are 0 to %" PRIu64, given->show, given->runs - 1u);
     }
     return ((given->shard == NULL) || shard_option_take(given->shard, &request->part.shard, &request->part.shards)) &&
-           ((given->fault == NULL) || take_fault(given->fault, &request->part)) && is_folder(request->folder);
+           ((given->fault == NULL) || take_fault(given->fault, &request->part.causes)) && is_folder(request->folder);
 }
 
 static bool check_merge(const given_t *given, char **files) {
@@ -134,7 +143,8 @@ static bool check_merge(const given_t *given, char **files) {
         return report("--merge: FILE is missing; see host_sim campaign --help");
     }
     if ((given->runs != NOT_GIVEN) || (given->seed != NOT_GIVEN) || (given->shard != NULL) || (given->fault != NULL) ||
-        (given->show != NOT_GIVEN) || (given->planted != NOT_PLANTED) || (given->folder != NULL)) {
+        (given->show != NOT_GIVEN) || (given->planted != NOT_PLANTED) || (given->folder != NULL) ||
+        given->newly_engaged) {
         return report("--merge takes files, and of the other options only --results");
     }
     for (size_t i = 0u; i < given->file_count; i++) {

@@ -28,6 +28,12 @@ class Campaign(hostsim.Case):
     def lines(self, name):
         return [json.loads(line) for line in (self.folder / name).read_text(encoding="ascii").splitlines()]
 
+    def refuse(self, *arguments, says):
+        result = self.run_program("campaign", *arguments)
+        self.assert_refused(result, says)
+        self.assertEqual(result.stdout, "")
+        self.assertEqual([name for name in self.files() if name == "out.jsonl"], [])
+
 
 class Results(Campaign):
     def test_every_sharding_merges_to_the_same_bytes_and_the_same_table(self):
@@ -87,6 +93,47 @@ class Results(Campaign):
         self.assertEqual(rows, [fault for fault in tables["faults"] if fault in rows])
 
 
+class NewlyEngaged(Campaign):
+    FAULTS = {"AI_HEARTBEAT_LOST", "GEAR_COMMAND_TIMEOUT", "THROTTLE_COMMAND_TIMEOUT", "STEERING_COMMAND_TIMEOUT",
+              "AI_COMMAND_OUT_OF_RANGE", "EPS_MODE_OFF", "EPS_MODE_INVALID", "EPS_MODE_NOT_ANGLE", "GEAR_STATUS_INVALID",
+              "THROTTLE_STATUS_INVALID", "STEERING_ANGLE_INVALID", "STEERING_DEVIATION", "THROTTLE_IN_PARK"}
+
+    def test_the_faults_that_an_engagement_delays(self):
+        self.campaign("--runs", RUNS, "--seed", 3, "--newly-engaged", "--results", "a")
+        head, *runs = self.lines("a")
+        self.assertIs(head["newly_engaged"], True)
+        self.assertEqual({run["fault"] for run in runs}, self.FAULTS)
+        self.assertEqual({(run["mode"], run["broken"]) for run in runs}, {("autopilot", None)})
+
+    def test_nothing_is_judged_in_the_first_half_second(self):
+        self.campaign("--runs", 20, "--seed", 4, "--newly-engaged", "--fault", "EPS_MODE_OFF", "--results", "a")
+        for run in self.lines("a")[1:]:
+            # A cause that comes up to 500 ms after the switch waits for the rest of the 500 ms; then five frames of 10 ms.
+            self.assertTrue(40000 < run["safe_us"] < 620000, run)
+        self.assertGreater(max(run["safe_us"] for run in self.lines("a")[1:]), 300000)
+
+    def test_a_supervisor_that_does_nothing_breaks_every_run(self):
+        table = self.campaign("--runs", 10, "--seed", 3, "--newly-engaged", "--planted", "mute", status=1).stdout
+        self.assertIn("10 runs, 10 broken", table)
+
+    def test_a_run_is_a_scenario_that_passes(self):
+        for run in range(13):
+            shown = self.campaign("--runs", 13, "--seed", 3, "--newly-engaged", "--show", run).stdout
+            self.write("run.yaml", shown)
+            self.run_good("scenario", "run.yaml")
+
+    def test_what_is_refused(self):
+        good = ("--runs", "4", "--seed", "1", "--newly-engaged")
+        self.refuse(*good, "--fault", "BUS_OFF", says="--newly-engaged: an engagement does not delay BUS_OFF")
+        self.campaign(*good, "--shard", "1/2", "--results", "1")
+        self.campaign(*good[:4], "--shard", "2/2", "--results", "2")
+        self.refuse("--merge", "1", "2", says="2:1: another campaign than that of 1")
+        head, *runs = (self.folder / "2").read_text(encoding="ascii").splitlines(keepends=True)
+        runs[0] = json.dumps({**json.loads(runs[0]), "fault": "BUS_OFF"}) + "\n"
+        self.write("2", "".join([head.replace('"newly_engaged": false', '"newly_engaged": true'), *runs]))
+        self.refuse("--merge", "1", "2", says="2:2: a fault that an engagement does not delay")
+
+
 class Broken(Campaign):
     def broken(self, planted):
         self.campaign("--runs", 30, "--seed", 3, "--planted", planted, "--broken", ".", "--results", "a", status=1)
@@ -118,12 +165,6 @@ class Broken(Campaign):
 
 
 class Refused(Campaign):
-    def refuse(self, *arguments, says):
-        result = self.run_program("campaign", *arguments)
-        self.assert_refused(result, says)
-        self.assertEqual(result.stdout, "")
-        self.assertEqual([name for name in self.files() if name == "out.jsonl"], [])
-
     def test_options(self):
         good = ("--runs", "3", "--seed", "1")
         self.refuse(says="--runs is missing")
@@ -151,6 +192,7 @@ class Refused(Campaign):
         self.refuse("--merge", one, "nowhere", *out, says="nowhere")
         self.refuse("--merge", one, two, "--runs", "3", says="--merge takes files")
         self.refuse("--merge", one, two, "--broken", ".", says="--merge takes files")
+        self.refuse("--merge", one, two, "--newly-engaged", says="--merge takes files")
         self.refuse("--merge", one, two, "--results", one, says="are the same file")
         self.refuse("--merge", one, self.shard(2, 2, seed=8, name="seed"), *out, says="another campaign")
         self.refuse("--merge", one, self.shard(2, 2, runs=RUNS - 2, name="runs"), *out, says="another campaign")
@@ -205,7 +247,7 @@ class Refused(Campaign):
         self.refuse_values(1, {
             "campaign": (2, "1", None), "version": ("0.0.0", 1, None), "runs": (0, -6, "6", 6.0), "seed": (-7, "7", None),
             "shard": (0, 3, -2, 4294967298, "2"), "shards": (0, 1001, 4294967298, None),
-            "fault": ("NONSENSE", "TX_GATE_REFUSED", 1), "planted": ("real", "", 0, False)})
+            "fault": ("NONSENSE", "TX_GATE_REFUSED", 1), "newly_engaged": (0, "true", None), "planted": ("real", "", 0, False)})
         self.refuse_line(1, {**self.lines("2.jsonl")[0], "fault": "BUS_OFF"}, "another campaign than that of 1.jsonl")
 
     def test_a_damaged_run_does_not_merge(self):
