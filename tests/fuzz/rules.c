@@ -11,7 +11,7 @@
 enum { VEHICLE = 0, GEAR_STATUS, THROTTLE_STATUS, STEERING_STATUS, EPS_STATUS, POSITION, WHEELS };
 /* STEP_MS: so late a tick may be, and only ticks look at deadlines; a later one is a trip cause itself (TIM-4). */
 enum { HEARTBEAT_MS = 50, STEP_MS = 101, STATUS_MS = 60, GEAR_STATUS_MS = 125, RESET_MS = 1000, CONFIRM_MS = 500 };
-enum { CYCLE_MS = 100, OVERRIDE_GAP_MS = 5 };
+enum { P = 8, CYCLE_MS = 100, OVERRIDE_GAP_MS = 5 };
 
 __attribute__((format(printf, 2, 3))) static void broken(rules_t *rules, const char *format, ...) {
     va_list arguments;
@@ -91,6 +91,7 @@ static void forget(rules_t *rules, uint64_t now_ms) {
     rules->fast_ms = now_ms;
     rules->unconfirmed_ms = now_ms;
     rules->confirmed_off = false;
+    rules->park_sent = false;
     rules->commanding_ms = now_ms;
     rules->fed_ms = now_ms;
     rules->own_counter_known = false;
@@ -285,6 +286,10 @@ void rules_sent(rules_t *rules, hal_can_side_t side, const hal_can_frame_t *fram
         if ((command == SIGNALS) && commands_safe(state)) {
             judge_own_counter(rules, frame->data[7]);
         }
+        if ((command == GEAR) && is_latched(state) && !rules->park_sent) {
+            rules->park_sent = true;
+            rules->park_sent_ms = rules->now_ms;
+        }
     }
 }
 
@@ -318,6 +323,8 @@ static void judge_trip(rules_t *rules) {
     rules->unconfirmed_ms = rules->now_ms;
     rules->button_was_up = rules->status_heard[VEHICLE] && !rules->button_down; /* its next press is a new one */
     rules->confirmed_off = false;
+    rules->park_sent = (rules->sent_now & (1u << GEAR)) != 0u;
+    rules->park_sent_ms = rules->now_ms;
     rules->own_counter_known = false;
     rules->commanding_ms = rules->now_ms;
     if (rules->bus.takes_frames && !rules->shadow && ((rules->sent_now & needed) != needed)) {
@@ -398,6 +405,18 @@ static void judge_closed(rules_t *rules) {
     }
 }
 
+/* FSM-4: P that was commanded has to be reported in time, by a 0A3h that is not too old; a tick looks at it. */
+static void judge_park(rules_t *rules) {
+    const bool reported = rules->status_heard[GEAR_STATUS] && (rules->status_data[GEAR_STATUS][0] == (uint8_t)P) &&
+                          (age_ms(rules, rules->status_ms[GEAR_STATUS]) <= GEAR_STATUS_MS);
+    const uint64_t since_ms =
+        (rules->park_sent_ms > rules->unconfirmed_ms) ? rules->park_sent_ms : rules->unconfirmed_ms;
+    if (rules->park_sent && !reported && (age_ms(rules, since_ms) > CONFIRM_MS)) {
+        broken(rules, "FSM-4: the safety output is closed, and the vehicle is not in P %u ms after it was commanded",
+               (unsigned)age_ms(rules, since_ms));
+    }
+}
+
 /* FSM-4 */
 static void judge_output(rules_t *rules, const rules_seen_t *seen, bool tick) {
     const bool entered = (seen->state == AGV_STATE_STANDBY) && commands_safe(rules->last.state);
@@ -416,6 +435,9 @@ static void judge_output(rules_t *rules, const rules_seen_t *seen, bool tick) {
     if (tick && is_latched(seen->state) && !rules->confirmed_off &&
         (age_ms(rules, rules->unconfirmed_ms) > CONFIRM_MS)) {
         broken(rules, "FSM-4: the safety output is closed, and the vehicle has confirmed nothing");
+    }
+    if (tick && is_latched(seen->state)) {
+        judge_park(rules);
     }
 }
 

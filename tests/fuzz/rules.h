@@ -82,7 +82,9 @@ typedef struct {
     /* for the safety output */
     uint64_t unconfirmed_ms; /* since the trip, or since a confirmation was withdrawn */
     bool confirmed_off;      /* since then a 363h without autopilot mode came */
-    uint64_t fed_ms;         /* when the hardware watchdog was last fed; at first the start */
+    bool park_sent;          /* since the trip a 168h with P has left, the first one then */
+    uint64_t park_sent_ms;
+    uint64_t fed_ms; /* when the hardware watchdog was last fed; at first the start */
 
     /* for the sending */
     uint8_t sent_now;       /* bits of the commands that left in this call, safe or passed */
