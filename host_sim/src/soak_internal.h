@@ -53,6 +53,7 @@ typedef struct {
     const soak_request_t *request;
     soak_state_t state;
     soak_steps_t steps[SOAK_ROWS_MAX];
+    uint32_t program;     /**< checksum of the program, when there is a checkpoint */
     uint64_t start_ms;    /**< of this shard, in the time of all */
     uint64_t duration_ms; /**< of this shard */
     bool gateway;

@@ -18,8 +18,30 @@ typedef struct {
     uint32_t shards;
     uint32_t planted;
     uint32_t checksum; /**< of state and world */
-    uint32_t reserved;
+    uint32_t program;  /**< checksum of the program's file */
 } head_t;
+
+enum { CHUNK_SIZE = 65536 };
+
+/** What a checkpoint says of the program: another build may have another layout of the world. */
+static bool identify_program(soak_t *soak) {
+    static const char path[] = "/proc/self/exe";
+    uint8_t chunk[CHUNK_SIZE];
+    FILE *stream = fopen(path, "rb");
+    size_t length = 0u;
+
+    if (stream == NULL) {
+        return report("--checkpoint: %s: %s", path, strerror(errno));
+    }
+    soak->program = AGV_CRC32_START;
+    do {
+        length = fread(chunk, 1u, sizeof chunk, stream);
+        soak->program = agv_crc32(soak->program, chunk, length);
+    } while (length > 0u);
+    const bool good = ferror(stream) == 0;
+    (void)fclose(stream);
+    return good || report("--checkpoint: %s cannot be read", path);
+}
 
 static head_t head_of(const soak_t *soak) {
     head_t head;
@@ -33,6 +55,7 @@ static head_t head_of(const soak_t *soak) {
     head.shard = soak->request->shard;
     head.shards = soak->request->shards;
     head.planted = (uint32_t)soak->request->planted;
+    head.program = soak->program;
     return head;
 }
 
@@ -76,7 +99,8 @@ static bool read_all(soak_t *soak, FILE *stream) {
     const uint32_t checksum = head.checksum;
     head.checksum = 0u;
     if (memcmp(&head, &expected, sizeof head) != 0) {
-        return report("%s: the checkpoint of another soak, or of another program", path);
+        return report("%s: the checkpoint of another soak, or of another build of the program; remove it to begin anew",
+                      path);
     }
     if ((fread(&state, sizeof state, 1u, stream) != 1u) ||
         (fread(&soak->saved, sizeof soak->saved, 1u, stream) != 1u) || (fgetc(stream) != EOF) ||
@@ -90,10 +114,16 @@ static bool read_all(soak_t *soak, FILE *stream) {
 
 bool soak_load(soak_t *soak) {
     const char *path = soak->request->checkpoint;
-    FILE *stream = (path != NULL) ? fopen(path, "rb") : NULL;
 
+    if (path == NULL) {
+        return true;
+    }
+    if (!identify_program(soak)) {
+        return false;
+    }
+    FILE *stream = fopen(path, "rb");
     if (stream == NULL) {
-        return (path == NULL) || (errno == ENOENT) || report("%s: %s", path, strerror(errno));
+        return (errno == ENOENT) || report("%s: %s", path, strerror(errno));
     }
     const bool good = read_all(soak, stream);
     (void)fclose(stream);

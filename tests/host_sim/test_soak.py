@@ -1,5 +1,6 @@
 """Soaks: nothing trips, drifts or is miscounted; planted mistakes are found; a soak that was stopped goes on."""
 import json
+import pathlib
 import shutil
 import signal
 import subprocess
@@ -130,6 +131,16 @@ class Soak(hostsim.Case):
         for other in (("--hours", 100, "--seed", 2), ("--hours", 101, "--seed", 1),
                       ("--hours", 100, "--seed", 1, "--shard", "1/2")):
             self.assert_refused(self.run_program("soak", *other, "--checkpoint", "good"), "another soak")
+
+    def test_another_build_does_not_go_on(self):
+        self.assertTrue(self.stopped("--hours", "100", "--seed", "1", "--checkpoint", "good"))
+        other = self.folder / "other_build"
+        other.write_bytes(pathlib.Path(hostsim.PROGRAM).read_bytes() + b"\0")
+        other.chmod(0o755)
+        done = subprocess.run([other, "soak", "--hours", "100", "--seed", "1", "--checkpoint", "good"], cwd=self.folder,
+                              capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+        self.assertIn("good: the checkpoint of another soak, or of another build of the program", done.stderr)
 
 
 if __name__ == "__main__":
