@@ -18,8 +18,8 @@ enum {
     LATE_AI_MS = 800
 };
 
-/** An engagement and its cause: the autopilot can be switched on by then; so long before, or so long after it. */
-enum { SWITCH_MS = 1500, SWITCH_SPAN_MS = 100, BEFORE_MS = 50, AFTER_MS = 500 };
+/** A cause that comes with an engagement: so long before or after it at most. */
+enum { BEFORE_MS = 50, AFTER_MS = 500 };
 
 /** After the reaction: brakes and gear box, or P at standstill (3 s), and a while in which nothing may come undone. */
 enum { AFTERWARDS_MS = 1500, AFTER_STANDSTILL_MS = 4500, AFTER_STALL_MS = 3000 };
@@ -77,7 +77,7 @@ static uint32_t choose_moment(campaign_plan_t *plan, uint64_t *state, const agv_
 static uint32_t choose_engagement(campaign_plan_t *plan, uint64_t *state, const agv_config_t *config) {
     const uint32_t shift_ms = chance_draw(state, 0u, BEFORE_MS + AFTER_MS);
 
-    plan->engage_ms = SWITCH_MS + chance_draw(state, 0u, SWITCH_SPAN_MS - 1u);
+    plan->engage_ms = ENGAGE_MS + chance_draw(state, 0u, START_SPAN_MS - 1u);
     plan->steps_ms = plan->engagement->never_seen ? 0u : plan->engage_ms - BEFORE_MS + shift_ms;
     plan->cause_ms = (plan->steps_ms > plan->engage_ms) ? plan->steps_ms : plan->engage_ms;
     return campaign_engaged_decision_ms(plan->engagement, config);
