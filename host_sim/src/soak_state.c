@@ -28,16 +28,15 @@ static bool identify_program(soak_t *soak) {
     static const char path[] = "/proc/self/exe";
     uint8_t chunk[CHUNK_SIZE];
     FILE *stream = fopen(path, "rb");
-    size_t length = 0u;
 
     if (stream == NULL) {
         return report("--checkpoint: %s: %s", path, strerror(errno));
     }
     soak->program = AGV_CRC32_START;
-    do {
-        length = fread(chunk, 1u, sizeof chunk, stream);
+    while ((feof(stream) == 0) && (ferror(stream) == 0)) {
+        const size_t length = fread(chunk, 1u, sizeof chunk, stream);
         soak->program = agv_crc32(soak->program, chunk, length);
-    } while (length > 0u);
+    }
     const bool good = ferror(stream) == 0;
     (void)fclose(stream);
     return good || report("--checkpoint: %s cannot be read", path);
