@@ -80,7 +80,7 @@ static uint32_t choose_engagement(campaign_plan_t *plan, uint64_t *state, const 
     plan->engage_ms = ENGAGE_MS + chance_draw(state, 0u, START_SPAN_MS - 1u);
     plan->steps_ms = plan->engagement->never_seen ? 0u : plan->engage_ms - BEFORE_MS + shift_ms;
     plan->cause_ms = (plan->steps_ms > plan->engage_ms) ? plan->steps_ms : plan->engage_ms;
-    return campaign_engaged_decision_ms(plan->engagement, config);
+    return campaign_engaged_decision_ms(plan->row, plan->engagement, config);
 }
 
 static void choose_times(campaign_plan_t *plan, uint64_t *state, const agv_config_t *config) {

@@ -207,12 +207,13 @@ uint32_t campaign_decision_ms(const campaign_row_t *row, const agv_config_t *con
     }
 }
 
-uint32_t campaign_engaged_decision_ms(const campaign_engagement_t *engagement, const agv_config_t *config) {
+uint32_t campaign_engaged_decision_ms(const campaign_row_t *row, const campaign_engagement_t *engagement,
+                                      const agv_config_t *config) {
     const uint32_t known_ms = agv_message_cycle_ms(AGV_MSG_VEHICLE_STATUS) + setting(config, engagement->wait);
     if (engagement->never_seen) {
         return known_ms + 1u;
     }
-    return known_ms + campaign_decision_ms(campaign_row(engagement->fault), config);
+    return known_ms + campaign_decision_ms(row, config);
 }
 
 uint32_t campaign_wire_us(uint32_t bitrate) {

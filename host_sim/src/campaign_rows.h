@@ -88,7 +88,8 @@ const campaign_engagement_t *campaign_engagement(agv_fault_t fault);
 uint32_t campaign_decision_ms(const campaign_row_t *row, const agv_config_t *config);
 
 /** The same with a cause that comes with an engagement: from the operator's switch, or from the cause if that is later. */
-uint32_t campaign_engaged_decision_ms(const campaign_engagement_t *engagement, const agv_config_t *config);
+uint32_t campaign_engaged_decision_ms(const campaign_row_t *row, const campaign_engagement_t *engagement,
+                                      const agv_config_t *config);
 
 /** What the wire may take of it, in us: some frames on the way to the supervisor, and from it. */
 uint32_t campaign_wire_us(uint32_t bitrate);

@@ -149,7 +149,8 @@ void test_decision_times_after_an_engagement_worked_out_by_hand(void) {
     };
     for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
         TEST_ASSERT_EQUAL_MESSAGE(rows[i].ms,
-                                  campaign_engaged_decision_ms(campaign_engagement(rows[i].fault), &options.config),
+                                  campaign_engaged_decision_ms(campaign_row(rows[i].fault),
+                                                               campaign_engagement(rows[i].fault), &options.config),
                                   agv_fault_name(rows[i].fault));
     }
     TEST_ASSERT_NULL(campaign_engagement(AGV_FAULT_VCU_HEARTBEAT_LOST));
