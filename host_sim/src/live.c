@@ -106,8 +106,11 @@ static bool prepare(live_t *live) {
     if (!live->loop_is_open || !linux_loop_align(&live->loop, node_now_us(live->node))) {
         return report("the timer of the ticks cannot be had: %s", strerror(errno));
     }
+    if (!live_files_follow(&live->files, &live->loop, live->node)) {
+        return false;
+    }
     config_note_deviations(&request->config);
-    return live_files_follow(&live->files, &live->loop, live->node);
+    return live_output_begin(&live->outputs[OUT]) && live_output_begin(&live->outputs[EVENTS]);
 }
 
 /** What is for people and files comes when the supervisor has done its part. */

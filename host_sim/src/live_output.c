@@ -17,17 +17,24 @@ bool live_output_takes(int fd, int wait_ms) {
     return poll(&file, 1, wait_ms) > 0;
 }
 
-static bool is_file(const char *path) {
+bool live_output_open(live_output_t *output, const char *path) {
     struct stat existing;
-    if (output_is_stdout(path)) {
-        return false;
+    const bool exists = stat(path, &existing) == 0;
+    const bool is_missing = !exists && (errno == ENOENT);
+
+    output->lost_lines = 0u;
+    output->is_file = !output_is_stdout(path) && (exists ? S_ISREG(existing.st_mode) : is_missing);
+    if (output->is_file) {
+        return output_open_in_place(&output->lines, path);
     }
-    return (stat(path, &existing) == 0) ? S_ISREG(existing.st_mode) : (errno == ENOENT);
+    if (!output_is_stdout(path) && exists && S_ISFIFO(existing.st_mode)) {
+        return output_open_pipe(&output->lines, path);
+    }
+    return output_open(&output->lines, path);
 }
 
-bool live_output_open(live_output_t *output, const char *path) {
-    output->lost_lines = 0u;
-    return is_file(path) ? output_open_in_place(&output->lines, path) : output_open(&output->lines, path);
+bool live_output_begin(live_output_t *output) {
+    return !output->lines.is_open || !output->is_file || output_empty(&output->lines);
 }
 
 bool live_output_has_room(live_output_t *output) {

@@ -16,14 +16,19 @@
 typedef struct {
     output_t lines;      /**< where a writer puts its line when live_output_has_room() says so */
     uint64_t lost_lines; /**< that found no room */
+    bool is_file;        /**< a regular one */
 } live_output_t;
 
 /**
- * Open an output; a file that is there is emptied.
+ * Open an output. A file that is there stays as it is until live_output_begin(); for the reader of a named pipe nobody
+ * waits.
  * @param path as output_open()
  * @return false: it cannot be written; was reported.
  */
 bool live_output_open(live_output_t *output, const char *path);
+
+/** Lines are to come: a file that was there is emptied. @return false: reported; true also when it is not open */
+bool live_output_begin(live_output_t *output);
 
 /** Whether a line can be put into `lines`: it is open and has room. A line that has none is counted. */
 bool live_output_has_room(live_output_t *output);

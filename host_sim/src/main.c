@@ -77,6 +77,7 @@ int main(int argc, char **argv) {
     occupy_closed_streams();
     /* A reader that goes away is a write error like any other, with a message and an exit status. */
     (void)signal(SIGPIPE, SIG_IGN);
+    (void)signal(SIGXFSZ, SIG_IGN); /* so is a file that may not grow any more */
     status_t status = STATUS_OK;
     if (argc < 2) {
         (void)report("no command given; see host_sim --help");

@@ -95,7 +95,19 @@ static void begin(output_t *output, const char *path) {
 
 bool output_open_in_place(output_t *output, const char *path) {
     begin(output, path);
-    output->fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    output->fd = open(path, O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    output->is_open = output->fd >= 0;
+    return output->is_open || report("%s: %s", path, strerror(errno));
+}
+
+bool output_empty(output_t *output) {
+    return (ftruncate(output->fd, 0) == 0) || report("%s: %s", output->name, strerror(errno));
+}
+
+bool output_open_pipe(output_t *output, const char *path) {
+    begin(output, path);
+    output->is_slow = true;
+    output->fd = open(path, O_RDWR | O_NONBLOCK | O_CLOEXEC); /* for reading, too: so nobody is waited for */
     output->is_open = output->fd >= 0;
     return output->is_open || report("%s: %s", path, strerror(errno));
 }

@@ -33,10 +33,19 @@ bool output_open(output_t *output, const char *path);
 
 /**
  * Open a regular file that is written as it comes, for what is read while it grows: no temporary file. One that is there
- * is emptied.
+ * stays as it is until output_empty().
  * @return false: it cannot be written; was reported.
  */
 bool output_open_in_place(output_t *output, const char *path);
+
+/** Empty a file that output_open_in_place() has opened. @return false: was reported. */
+bool output_empty(output_t *output);
+
+/**
+ * Open a named pipe without waiting for who reads it: what it holds is kept for a reader that comes later.
+ * @return false: it cannot be written; was reported.
+ */
+bool output_open_pipe(output_t *output, const char *path);
 
 /** Write. After a failure nothing more is written. @return false: this or an earlier write failed; not reported. */
 bool output_write(output_t *output, const void *bytes, size_t size);

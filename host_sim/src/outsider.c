@@ -11,12 +11,15 @@
 
 #include "event_line.h"
 #include "hal_linux/linux_can.h"
+#include "interrupt.h"
 #include "report.h"
 
 enum {
     LINE_SIZE = 1024,
     FRAMES_MAX = 8192,
-    START_PATIENCE_MS = 300000,
+    LOOK_EVERY_MS = 100,
+    LOOKS_MAX = 3000, /* five minutes for its start; fewer when it prints without end, and no event */
+    READS_AT_ONCE = 64,
     RECEIVE_SIZE = 4 * 1024 * 1024,
     NO_COMMAND = 127
 };
@@ -124,18 +127,18 @@ static void tell_lines(outsider_t *outsider) {
     }
 }
 
-/** Read what it has printed. @return false: it has ended; reported */
+/** Read what it has printed; of much only some, as other things wait, too. @return false: it has ended; reported */
 static bool read_output(outsider_t *outsider) {
-    ssize_t got = 0;
-    do {
+    ssize_t got = 1;
+    for (unsigned i = 0u; (i < READS_AT_ONCE) && (got > 0); i++) {
         got = read(outsider->output, &outsider->line[outsider->line_length],
                    sizeof outsider->line - outsider->line_length);
         if (got > 0) {
             outsider->line_length += (size_t)got;
             tell_lines(outsider);
         }
-    } while (got > 0);
-    return ((got < 0) && (errno == EAGAIN)) || report("'%s' has ended", outsider->config.command);
+    }
+    return (got > 0) || ((got < 0) && (errno == EAGAIN)) || report("'%s' has ended", outsider->config.command);
 }
 
 outsider_t *outsider_open(const outsider_config_t *config) {
@@ -216,15 +219,15 @@ bool outsider_start(outsider_t *outsider) {
 
 bool outsider_wait(outsider_t *outsider) {
     struct pollfd file = {.fd = outsider->output, .events = POLLIN};
-    while (!outsider->has_told) {
-        if (poll(&file, 1u, START_PATIENCE_MS) <= 0) {
-            return report("'%s' tells nothing", outsider->config.command);
+    for (unsigned look = 0u; (look < LOOKS_MAX) && !outsider->has_told; look++) {
+        if (interrupt_pending()) {
+            return report("interrupted");
         }
-        if (!read_output(outsider)) {
+        if ((poll(&file, 1u, LOOK_EVERY_MS) > 0) && !read_output(outsider)) {
             return false;
         }
     }
-    return true;
+    return outsider->has_told || report("'%s' tells nothing", outsider->config.command);
 }
 
 void outsider_vehicle_sent(outsider_t *outsider, hal_can_side_t side, const hal_can_frame_t *frame) {

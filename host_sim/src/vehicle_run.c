@@ -12,7 +12,7 @@
 #include "vehicle_bus.h"
 #include "vehicle_show.h"
 
-enum { ENGAGE_MS = 1500, ENGAGE_AGAIN_MS = 500, THROTTLE_PERMILLE = 300, MS_PER_S = 1000 };
+enum { ENGAGE_MS = 1500, ENGAGE_AGAIN_MS = 500, THROTTLE_PERMILLE = 300, MS_PER_S = 1000, LINES_AT_ONCE = 16 };
 
 /** A run. */
 typedef struct {
@@ -25,6 +25,7 @@ typedef struct {
     size_t next_fault;
     uint64_t engage_ms; /**< when the operator engages the autopilot; UINT64_MAX: no more */
     bool was_refused;
+    bool has_more_typed;  /**< lines may be left that were not taken yet */
     bool waits_for_typed; /**< the loop tells of typed lines; else they are looked for with every tick */
     bool was_down[HAL_CAN_SIDES];
     bool quits;
@@ -124,16 +125,22 @@ static void obey(run_t *run, const char *line) {
     }
 }
 
+/** Some of the lines that are there: the vehicle drives on while more of them come than can be taken. */
 static void take_typed(run_t *run) {
     typed_lines_t *typed = &run->typed;
+    const char *line = "";
 
-    if (typed->ended) {
+    if (typed->ended && !run->has_more_typed) {
         return;
     }
-    for (const char *line = typed_lines_next(typed); (line != NULL) && !run->quits; line = typed_lines_next(typed)) {
-        obey(run, line);
+    for (unsigned i = 0u; (i < (unsigned)LINES_AT_ONCE) && !run->quits && (line != NULL); i++) {
+        line = typed_lines_next(typed);
+        if (line != NULL) {
+            obey(run, line);
+        }
     }
-    if (typed->ended) {
+    run->has_more_typed = line != NULL;
+    if (typed->ended && !run->has_more_typed) {
         linux_loop_remove(&run->loop, typed->fd);
         run->waits_for_typed = true; /* for nothing, then */
     }
@@ -178,7 +185,7 @@ static bool go(run_t *run) {
         if ((events & LINUX_LOOP_TICK) != 0u) {
             there = tick(run);
         }
-        if (((events & LINUX_LOOP_FILE) != 0u) || !run->waits_for_typed) {
+        if (((events & LINUX_LOOP_FILE) != 0u) || !run->waits_for_typed || run->has_more_typed) {
             take_typed(run);
         }
         events = there ? linux_loop_wait(&run->loop) : 0u;

@@ -38,6 +38,8 @@ static bool put(size_t size) {
 void test_a_line_is_in_the_file_once_it_was_passed(void) {
     (void)scratch_write("a", "of an earlier run\n", 18);
     TEST_ASSERT_TRUE(live_output_open(output, scratch_path("a")));
+    TEST_ASSERT_EQUAL_STRING("of an earlier run\n", scratch_read("a")); /* whoever opens it may still be refused */
+    TEST_ASSERT_TRUE(live_output_begin(output));
     TEST_ASSERT_EQUAL_STRING("", scratch_read("a"));
     TEST_ASSERT_TRUE(put(3));
     live_output_pass(output);
@@ -69,6 +71,22 @@ void test_a_full_disk_is_reported_at_the_end(void) {
     TEST_ASSERT_EQUAL_STRING("", scratch_said());
     TEST_ASSERT_FALSE(live_output_end(output));
     TEST_ASSERT_EQUAL_STRING("host_sim: /dev/full: No space left on device\n", scratch_said());
+}
+
+void test_a_named_pipe_keeps_lines_for_a_reader_that_comes_later(void) {
+    char name[] = "fifo";
+    char read_line[10] = "";
+    TEST_ASSERT_EQUAL_INT(0, mkfifo(scratch_path(name), 0600));
+    TEST_ASSERT_TRUE(live_output_open(output, scratch_path(name)));
+    TEST_ASSERT_TRUE(live_output_begin(output));
+    TEST_ASSERT_TRUE(put(3));
+    live_output_pass(output);
+    const int reader = open(scratch_path(name), O_RDONLY | O_NONBLOCK);
+    TEST_ASSERT_EQUAL_INT(3, read(reader, read_line, sizeof read_line));
+    TEST_ASSERT_EQUAL_STRING("xx\n", read_line);
+    TEST_ASSERT_TRUE(live_output_end(output));
+    TEST_ASSERT_EQUAL_INT(0, read(reader, read_line, sizeof read_line)); /* the end */
+    (void)close(reader);
 }
 
 void test_a_reader_that_does_not_read_is_not_waited_for(void) {

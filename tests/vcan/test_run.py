@@ -8,6 +8,7 @@ import os
 import pathlib
 import pty
 import re
+import resource
 import select
 import signal
 import struct
@@ -237,6 +238,23 @@ class Writes(Case):
             self.assertAlmostEqual(logged[(frame.id, frame.data)], frame.at, delta=0.01)
 
     @on_time
+    def test_a_refused_start_leaves_the_files_as_they_are(self):
+        out = self.folder / "out.log"
+        out.write_text("of an earlier run\n")
+        status, _, errors = self.run_to_end("run", "--can", "vcan0", "--out", out, "--events", "/no/such/folder/e")
+        self.assertEqual((status, errors.count("\n")), (2, 1), errors)
+        self.assertEqual(out.read_text(), "of an earlier run\n")
+
+    @on_time
+    def test_a_log_that_may_not_grow_ends_no_supervisor(self):
+        process = self.run_node("--out", self.folder / "out.log")
+        resource.prlimit(process.process.pid, resource.RLIMIT_FSIZE, (1024, 1024))
+        self.bus().listen(1)
+        self.assertTrue(process.is_running())
+        self.assertEqual(process.end(), 2)
+        self.assertRegex(process.text("stderr"), r"(?m)^host_sim: .*/out\.log: File too large$")
+
+    @on_time
     def test_a_terminal_shows_one_line_that_is_rewritten(self):
         ours, theirs = pty.openpty()
         fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 60, 0, 0))
@@ -331,6 +349,15 @@ class Scenarios(Case):
         process = self.start("scenario", "--bus", "vcan0", self.scenario("s.yaml", "STEERING_COMMAND_TIMEOUT"))
         self.bus().wait_for(0x363)
         self.assertEqual((process.end(signal.SIGINT), process.text("stderr")), (2, "host_sim: interrupted\n"))
+
+    @on_time
+    def test_a_signal_ends_the_wait_for_another_supervisor(self):
+        for command in ("sleep 1000", "yes"):
+            process = self.start("scenario", "--bus", "vcan0", "--supervisor", command,
+                                 self.scenario("s.yaml", "STEERING_COMMAND_TIMEOUT"))
+            time.sleep(0.5)
+            self.assertTrue(process.is_running())
+            self.assertEqual((process.end(signal.SIGTERM), process.text("stderr")), (2, "host_sim: interrupted\n"))
 
     @on_time
     def test_the_gateway_needs_two_interfaces(self):

@@ -4,6 +4,7 @@ Bytes are written out from docs/protocol.md.
 """
 import pathlib
 import statistics
+import subprocess
 import tempfile
 import time
 import unittest
@@ -209,6 +210,16 @@ class Faults(canbus.Case):
         self.assertEqual(vehicle.end(), 0)
         bus.forget()
         self.assertEqual(bus.listen(0.2), [])
+
+    def test_lines_without_end_do_not_stop_the_vehicle(self):
+        bus = self.bus()
+        with subprocess.Popen(["yes", "vcu run_counter"], stdout=subprocess.PIPE) as lines:
+            vehicle = self.start("vehicle", "--can", "vcan0", "--manual", stdin=lines.stdout)
+            bus.wait_for(0x363)
+            bus.forget()
+            self.assertGreater(len(canbus.of(bus.listen(0.5), 0x363)), 25)
+            self.assertEqual(vehicle.end(), 0)
+            lines.kill()
 
     def test_standard_input_may_be_a_file(self):
         bus = self.bus()
