@@ -98,7 +98,66 @@ surroundings() {
     same "$(for i in {1..200}; do printf '%s\n%s\n' "$i" "$i"; done)" "$(<both)"
 }
 
+@test "machine: standard input and output can be opened anew, also where the other end is gone" {
+    local statuses
+    printf 'one\ntwo\n' | timeout 60 "$vcan" --vm --quiet bash -c 'sleep 1; read -r line </dev/stdin; echo "$line" >/dev/stdout
+        cat /dev/stdin; echo end; exit 7' >out || status=$?
+    [[ ${status:-0} -eq 7 ]]
+    same $'one\ntwo\nend' "$(<out)"
+
+    timeout 60 "$vcan" --vm --quiet bash -c 'trap "" PIPE; echo first; until ! echo more 2>/dev/null; do sleep 0.1; done
+        : >/dev/stdout; : </dev/stdin; exit 8' </dev/null | head -n 1 >out
+    statuses=${PIPESTATUS[*]}
+    [[ $statuses == "8 0" && $(<out) == first ]]
+}
+
+@test "machine: what is closed at the start reads as empty, and swallows what is written" {
+    local status=0
+    timeout 60 "$vcan" --vm sh -c 'cat; echo end; echo error >&2; exit 5' <&- >out 2>&- || status=$?
+    [[ $status -eq 5 ]]
+    same end "$(<out)"
+    echo input | timeout 60 "$vcan" --vm --quiet sh -c 'echo output; cat >&2' 2>err >&-
+    same input "$(<err)"
+}
+
+@test "machine: output that cannot be written: one line that says why, and 125" {
+    local status=0
+    "$vcan" --vm --quiet sh -c 'echo lost; echo told >&2' </dev/null >/dev/full 2>err || status=$?
+    [[ $status -eq 125 ]]
+    same $'told\nwith-vcan: standard output: No space left on device' "$(sort err)"
+}
+
+@test "folders: by a link, in one that the machine does not have, and in one that is gone" {
+    ln -s "$vcan" link
+    mkdir gone
+    cd gone
+    rmdir ../gone
+    run "$BATS_TEST_TMPDIR/link" --vm true
+    echo "$output"
+    [[ $status -eq 125 && ${lines[-1]} == "with-vcan: the working directory is not there any more" ]]
+    [[ $(grep -vc '^shell-init: ' <<<"$output") -eq 1 ]] # bash says that before it looks at the script
+
+    folder=$(mktemp -d -p /dev/shm)
+    cd "$folder"
+    run "$BATS_TEST_TMPDIR/link" --vm --quiet true
+    rmdir "$folder"
+    [[ $status -eq 125 ]]
+    same "with-vcan: no way into $folder in the virtual machine, whose /run, /dev, /proc and /sys are its own" "$output"
+}
+
+# A start that comes as far as QEMU.
+start_only() {
+    fails_with "ended before the command did" /usr/bin/python3 -I "$ROOT/scripts/vcan/run-machine" --kernel "$PWD" \
+        --qemu false --accel tcg --interfaces vcan0 -- true
+}
+
+# The folders that with-vcan has for its machines.
+folders() {
+    find "$TMPDIR" -maxdepth 1 -name 'with-vcan.*' | wc -l
+}
+
 @test "machine: signals reach the command, which ends as it likes; killed, with-vcan takes its machine along" {
+    export TMPDIR=$PWD
     env --default-signal=INT "$vcan" --vm --quiet bash -c 'trap "echo term; : >told" TERM; trap "echo int; exit 9" INT
         : >started; while :; do sleep 0.1; done' </dev/null >out 3>&- &
     local command=$! victim machine status=0
@@ -114,8 +173,12 @@ surroundings() {
 
     await running
     machine=$(pgrep -P $victim qemu-system)
+    start_only
+    [[ $(folders) -eq 1 ]]
     kill -KILL $victim
     await_end "$machine"
+    start_only # clears up
+    [[ $(folders) -eq 0 ]]
 }
 
 @test "machine: nobody reads its output any more: the command learns it, and ends" {
@@ -140,7 +203,7 @@ surroundings() {
     chmod 600 secret
     mkdir -m 777 shared
     run "${as_user[@]}" "$vcan" --vm --quiet bash -c 'id -u; id -G; echo mine >shared/mine; cat secret
-        tc qdisc add dev vcan0 root netem limit 5 && ip link set vcan0 down && echo changed; exit 4'
+        tc qdisc add dev vcan0 root netem limit 5 && ip link set vcan0 down && echo changed >/dev/stdout; exit 4'
     same $'1234\n1234 1235\ncat: secret: Permission denied\nchanged' "$output"
     [[ $status -eq 4 ]]
     same '1234 1234 mine' "$(stat -c '%u %g' shared/mine) $(<shared/mine)"
@@ -187,7 +250,7 @@ END
 only() {
     local name
     mkdir -p bin
-    for name in bash env dirname basename uname "$@"; do
+    for name in bash env dirname basename readlink uname "$@"; do
         ln -sf "$(command -v "$name")" bin/
     done
 }
@@ -233,7 +296,7 @@ virtual machine: 'qemu-system-"*"' is missing: run 'scripts/install-deps vcan'" 
 @test "options: help, and in one line what is wrong" {
     run "$vcan" --help
     [[ $status -eq 0 && $output == "usage: with-vcan "* ]]
-    for bad in "" --slow "--quiet --"; do
+    for bad in "" --slow "--quiet --" "--vm --namespace true"; do
         # shellcheck disable=SC2086 # several words
         run "$vcan" $bad
         [[ $status -eq 2 && ${#lines[@]} -eq 1 && $output == "with-vcan: "* ]]
