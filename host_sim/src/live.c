@@ -182,6 +182,7 @@ static bool conclude(live_t *live, const events_summary_t *summary) {
 static status_t run_prepared(live_t *live) {
     events_summary_t summary;
     bool good = run(live);
+    node_finish(live->node);
     events_summarise(node_session(live->node), &summary);
     node_close(live->node); /* nothing leaves from here on */
     live->node = NULL;

@@ -119,6 +119,12 @@ const session_t *node_session(const node_t *node) {
     return &node->session;
 }
 
+void node_finish(node_t *node) {
+    if (node != NULL) {
+        linux_hal_finish(&node->hal);
+    }
+}
+
 void node_close(node_t *node) {
     if (node != NULL) {
         linux_hal_close(&node->hal);

@@ -53,7 +53,10 @@ uint64_t node_now_us(const node_t *node);
 /** Its session, to read. */
 const session_t *node_session(const node_t *node);
 
-/** End: nothing more is sent, what waits is discarded. Nothing for NULL. */
+/** The supervisor has had its last call: let what it handed over leave, for LINUX_HAL_FINISH_MS at most. Nothing for NULL. */
+void node_finish(node_t *node);
+
+/** End: nothing more is sent, what waits is discarded, as when the power fails. Nothing for NULL. */
 void node_close(node_t *node);
 
 #endif

@@ -307,6 +307,7 @@ static bool prepare(run_t *run) {
 }
 
 static void close_run(run_t *run) {
+    node_finish(run->node);
     close_node(run);
     outsider_close(run->outsider);
     if (run->vehicle_is_open) {

@@ -236,6 +236,17 @@ void test_what_has_left_is_told_of_at_the_close_and_nothing_follows(void) {
     vcan_expect_nothing(tester);
 }
 
+void test_the_ai_side_is_closed_first(void) {
+    port_open(&hal, "vcan0", "vcan1", &left);
+    const hal_can_frame_t frame = vcan_frame(0x100);
+    TEST_ASSERT_TRUE(hal_can_send(&hal, HAL_CAN_VEHICLE, &frame));
+    TEST_ASSERT_TRUE(hal_can_send(&hal, HAL_CAN_AI, &frame));
+    linux_hal_close(&hal); /* a side tells of its last frame when it is closed */
+    TEST_ASSERT_EQUAL_UINT(2, left.count);
+    TEST_ASSERT_EQUAL(HAL_CAN_AI, left.sides[0]);
+    TEST_ASSERT_EQUAL(HAL_CAN_VEHICLE, left.sides[1]);
+}
+
 void test_a_closed_port_does_nothing(void) {
     port_open(&hal, "vcan0", "vcan1", NULL);
     const int tester = vcan_open("vcan0");

@@ -241,3 +241,45 @@ void test_a_loss_before_a_frame_was_given_says_nothing_of_it(void) {
     (void)port_drain(&hal);
     vcan_expect_id(tester, 0x101);
 }
+
+void test_a_port_that_finishes_sends_what_waits(void) {
+    const hal_can_frame_t foreign = vcan_frame(0x105);
+    TEST_ASSERT_TRUE(port_send(&hal, 0x065));
+    TEST_ASSERT_TRUE(port_send(&hal, 0x101));
+    TEST_ASSERT_TRUE(port_send(&hal, 0x100));
+    vcan_send(tester, 0x105, 8, foreign.data); /* what is received does not hold it up */
+    linux_hal_finish(&hal);
+    TEST_ASSERT_EQUAL_UINT32(0, pending_ms());
+    vcan_expect_id(tester, 0x065);
+    vcan_expect_id(tester, 0x100);
+    vcan_expect_id(tester, 0x101);
+    vcan_expect_nothing(tester);
+    TEST_ASSERT_EQUAL_UINT(3, left.count);
+}
+
+void test_a_port_that_finishes_tries_a_full_kernel_again(void) {
+    vcan_stick();
+    TEST_ASSERT_TRUE(port_send(&hal, 0x10F));
+    TEST_ASSERT_TRUE(port_send(&hal, 0x100));
+    fill_kernel_queue();
+    const unsigned before = vcan_dropped();
+    const uint64_t began_us = linux_hal_now_us(&hal);
+    linux_hal_finish(&hal);
+    const uint64_t took_us = linux_hal_now_us(&hal) - began_us;
+    TEST_ASSERT_EQUAL_UINT(1, left.count);
+    TEST_ASSERT_TRUE(took_us >= LINUX_HAL_FINISH_MS * 1000u); /* it does give up, and not before */
+    const unsigned tries = vcan_dropped() - before;
+    TEST_ASSERT_TRUE(tries > 1 && tries <= LINUX_HAL_FINISH_MS + 2u); /* once a millisecond: no busy loop */
+}
+
+void test_a_port_that_finishes_does_not_send_on_a_side_that_is_down(void) {
+    TEST_ASSERT_TRUE(port_send(&hal, 0x10F));
+    TEST_ASSERT_TRUE(port_send(&hal, 0x100));
+    vcan_down("vcan0");
+    (void)linux_hal_tick(&hal);
+    vcan_up("vcan0");
+    linux_hal_finish(&hal);
+    linux_hal_close(&hal);
+    TEST_ASSERT_EQUAL_UINT(1, left.count);
+    TEST_ASSERT_EQUAL_HEX32(0x10F, left.frames[0].id);
+}

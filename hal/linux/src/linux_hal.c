@@ -1,6 +1,7 @@
 /* The port as a whole: opening, closing, receiving, and what happens every millisecond. */
 #include "hal_linux/linux_hal.h"
 
+#include <poll.h>
 #include <stdio.h>
 
 #include "linux_hal_internal.h"
@@ -11,7 +12,7 @@ enum { US_PER_MS = 1000, LOOK_EVERY_US = 100000 };
 #define RECORDS_AT_ONCE_MAX (2u * LINUX_HAL_QUEUE_SIZE)
 
 /* More than a socket's queue usually holds. */
-#define RECORDS_AT_CLOSE_MAX 4096u
+#define RECORDS_AT_END_MAX 4096u
 
 linux_hal_side_t *linux_hal_side(hal_t *hal, hal_can_side_t side) {
     const bool exists = (unsigned)side < (unsigned)HAL_CAN_SIDES && hal->sides[side].interface != NULL;
@@ -123,26 +124,55 @@ static void frame_left(hal_t *hal, hal_can_side_t which, const linux_can_record_
     }
 }
 
-/* Frames that have left and whose echo waits to be read. Nothing follows them: the queue is empty. */
-static void tell_of_last(hal_t *hal, hal_can_side_t which) {
+/* Frames that have left and whose echo waits to be read, also behind the word that the interface went down. What others
+ * sent is of no use any more. */
+static void read_echoes(hal_t *hal, hal_can_side_t which) {
     linux_hal_side_t *side = &hal->sides[which];
     linux_can_record_t record;
-    for (unsigned i = 0; i < RECORDS_AT_CLOSE_MAX && linux_can_read(&side->can, &record) == LINUX_CAN_RECORD; i++) {
-        if (record.own) {
+    for (unsigned i = 0; i < RECORDS_AT_END_MAX; i++) {
+        const linux_can_read_t result = linux_can_read(&side->can, &record);
+        if (result == LINUX_CAN_NOTHING || result == LINUX_CAN_IS_GONE) {
+            return;
+        }
+        if (result == LINUX_CAN_RECORD && record.own) {
             frame_left(hal, which, &record, linux_clock_of_stamp(&hal->clock, record.stamp_us));
         }
     }
 }
 
-void linux_hal_close(hal_t *hal) {
-    for (size_t i = 0; i < (size_t)HAL_CAN_SIDES; i++) {
-        linux_hal_queue_discard(&hal->sides[i]);
-        tell_of_last(hal, (hal_can_side_t)i);
-        linux_can_close(&hal->sides[i].can);
-        hal->sides[i].is_open = false;
-        hal->sides[i].is_up = false;
-        hal->sides[i].has_next = false;
+static bool is_sending(const linux_hal_side_t *side) {
+    return side->is_up && (side->in_flight || side->waiting_count > 0);
+}
+
+void linux_hal_finish(hal_t *hal) {
+    const uint64_t end_us = linux_hal_now_us(hal) + (uint64_t)LINUX_HAL_FINISH_MS * US_PER_MS;
+    linux_hal_side_t *vehicle = &hal->sides[HAL_CAN_VEHICLE];
+    linux_hal_side_t *ai = &hal->sides[HAL_CAN_AI];
+    while ((is_sending(vehicle) || is_sending(ai)) && linux_hal_now_us(hal) < end_us) {
+        struct pollfd files[HAL_CAN_SIDES] = {{.fd = vehicle->can.fd, .events = POLLIN},
+                                              {.fd = ai->can.fd, .events = POLLIN}};
+        (void)poll(files, HAL_CAN_SIDES, 1); /* nobody tells when a full kernel has room again */
+        for (size_t i = 0; i < (size_t)HAL_CAN_SIDES; i++) {
+            read_echoes(hal, (hal_can_side_t)i);
+            linux_hal_queue_give(&hal->sides[i], linux_hal_now_us(hal));
+        }
     }
+}
+
+static void close_side(hal_t *hal, hal_can_side_t which) {
+    linux_hal_side_t *side = &hal->sides[which];
+    linux_hal_queue_discard(side);
+    read_echoes(hal, which);
+    linux_can_close(&side->can);
+    side->is_open = false;
+    side->is_up = false;
+    side->has_next = false;
+}
+
+/* The vehicle side last: whoever watches a gateway end sees the commands cease before the vehicle's status does. */
+void linux_hal_close(hal_t *hal) {
+    close_side(hal, HAL_CAN_AI);
+    close_side(hal, HAL_CAN_VEHICLE);
 }
 
 static void take_record(hal_t *hal, hal_can_side_t which, const linux_can_record_t *record) {

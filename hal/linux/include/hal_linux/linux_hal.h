@@ -93,7 +93,17 @@ struct hal {
  */
 bool linux_hal_open(hal_t *hal, const linux_hal_config_t *config, char *error);
 
-/** Close. What waits is discarded; what has left is told of (on_left). */
+/** How long linux_hal_finish() takes at most: what waits at 125 kbit/s, some 1 ms a frame, and a frame that is on its way. */
+#define LINUX_HAL_FINISH_MS 20
+
+/**
+ * Let what waits leave, and tell of it (on_left), so that no half of a set of commands is what the bus saw last. Returns when
+ * nothing waits, or after LINUX_HAL_FINISH_MS; a side that is down or gone is not waited for. What is received is
+ * forgotten: only linux_hal_close() may follow.
+ */
+void linux_hal_finish(hal_t *hal);
+
+/** Close, the AI side first. What still waits is discarded; what has left is told of (on_left). */
 void linux_hal_close(hal_t *hal);
 
 /** The file of a side, to wait for (linux_loop.h); it changes when an interface comes back. -1: none at the moment. */
