@@ -304,6 +304,33 @@ void test_an_interface_that_is_down_can_be_opened(void) {
     TEST_ASSERT_FALSE(linux_can_is_up(&can));
 }
 
+void test_whether_it_is_up_does_not_depend_on_its_name(void) {
+    open_plain();
+    TEST_ASSERT_TRUE(linux_can_is_up(&can));
+    vcan_down("vcan0");
+    vcan_run("ip link set dev vcan0 name other0");
+    TEST_ASSERT_FALSE(linux_can_is_up(&can));
+    vcan_up("other0");
+    TEST_ASSERT_TRUE(linux_can_is_up(&can));
+    vcan_down("vcan1"); /* another one */
+    TEST_ASSERT_TRUE(linux_can_is_up(&can));
+    vcan_down("other0");
+    vcan_run("ip link set dev other0 name vcan0");
+    TEST_ASSERT_FALSE(linux_can_is_up(&can));
+}
+
+/* The kernel keeps some hundred changes for a socket that does not read them. */
+void test_whether_it_is_up_is_known_after_more_changes_than_the_kernel_keeps(void) {
+    open_plain();
+    TEST_ASSERT_TRUE(linux_can_is_up(&can));
+    vcan_run("for i in $(seq 500); do printf 'link set vcan1 down\\nlink set vcan1 up\\n'; done | ip -batch -");
+    vcan_down("vcan0");
+    TEST_ASSERT_FALSE(linux_can_is_up(&can));
+    TEST_ASSERT_FALSE(linux_can_is_up(&can));
+    vcan_up("vcan0");
+    TEST_ASSERT_TRUE(linux_can_is_up(&can));
+}
+
 void test_an_interface_that_was_removed_is_gone(void) {
     const linux_can_options_t plain = {0};
     const hal_can_frame_t frame = vcan_frame(0x065);

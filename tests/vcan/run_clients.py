@@ -2,8 +2,8 @@
 """Foreign CAN tools against host_sim run. usage: with-vcan run_clients.py [--lanes N] [--quick] [NAME...]
 
 Runs the tests of test_clients.py and test_python_can.py, several at a time, each on buses of its own: all of them, or
-those that are not marked as long. HOST_SIM in the environment is the program. Prints what it ran on and what candump saw. Fails when a test fails, a tool is missing, or
-fewer tests ran than there are to be.
+those that are not marked as long. HOST_SIM in the environment is the program. Prints what it ran on and what candump saw.
+Fails when a test fails, a tool is missing, or fewer tests ran than there are to be.
 """
 import argparse
 import io

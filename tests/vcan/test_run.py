@@ -203,18 +203,21 @@ class Ends(Case):
             self.assertIn(why, errors)
 
     @on_time
-    def test_it_goes_on_when_its_interface_was_down(self):
+    def test_it_goes_on_when_its_interface_was_down_and_renamed(self):
         bus = self.bus("vcan2")
         self.addCleanup(canbus.ip, "link", "set", "vcan2", "up")
         process = self.start("run", "--can", "vcan2", "--config", self.config, "--events", "-")
         bus.wait_for(0x168)
         canbus.ip("link", "set", "vcan2", "down")
         process.wait_line('"name": "BUS_OFF", "class": "trip", "active": true')
+        canbus.ip("link", "set", "vcan2", "name", "renamed2")  # a kernel that is asked by name meanwhile starts modprobe
+        canbus.ip("link", "set", "renamed2", "name", "vcan2")
         canbus.ip("link", "set", "vcan2", "up")
         process.wait_line('"name": "BUS_OFF", "class": "trip", "active": false')
         again = self.bus("vcan2")
         again.wait_for(0x168)
         self.assertEqual(process.end(), 0)
+        self.assertNotIn("STEP_OVERRUN", process.text())
 
 
 class Writes(Case):

@@ -5,11 +5,9 @@
 #include <linux/can.h>
 #include <linux/can/error.h>
 #include <linux/can/raw.h>
-#include <net/if.h>
 #include <net/if_arp.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -111,12 +109,8 @@ void linux_can_close(linux_can_t *can) {
     if (can->fd >= 0) {
         (void)close(can->fd); /* there is nothing to write back, and the file is gone either way */
     }
+    if (can->has_link) {
+        (void)close(can->link_fd);
+    }
     *can = (linux_can_t){.fd = -1};
-}
-
-/* From the index to the name, so that the second question is about one that exists (see linux_can_find()). */
-bool linux_can_is_up(const linux_can_t *can) {
-    struct ifreq request = {.ifr_ifindex = can->index};
-    return can->fd >= 0 && ioctl(can->fd, SIOCGIFNAME, &request) == 0 && ioctl(can->fd, SIOCGIFFLAGS, &request) == 0 &&
-           ((unsigned)request.ifr_flags & (unsigned)IFF_UP) != 0;
 }

@@ -1,4 +1,4 @@
-/* What needs rtnetlink: finding an interface, and what `ip link set IF type can restart` does. */
+/* What needs rtnetlink: finding an interface, whether it is up, and what `ip link set IF type can restart` does. */
 #include <errno.h>
 #include <linux/can/netlink.h>
 #include <linux/if_link.h>
@@ -11,6 +11,14 @@
 
 #include "hal_linux/linux_can.h"
 #include "linux_can_internal.h"
+
+/* More than the kernel keeps for a socket. */
+#define NEWS_AT_ONCE_MAX 1024u
+
+typedef struct {
+    struct nlmsghdr header;
+    struct ifinfomsg interface;
+} look_t;
 
 typedef struct {
     struct nlmsghdr header;
@@ -98,4 +106,65 @@ bool linux_can_restart(const linux_can_t *can) {
     request.data = attribute(IFLA_INFO_DATA, offsetof(restart_t, data), sizeof request);
     request.restart = attribute(IFLA_CAN_RESTART, offsetof(restart_t, restart), sizeof request);
     return can->fd >= 0 && ask(&request, sizeof request, &answer) == 0;
+}
+
+static bool ask_whether_up(const linux_can_t *can) {
+    answer_t answer = {0};
+    const look_t request = {
+        .header = {.nlmsg_len = sizeof request, .nlmsg_type = RTM_GETLINK, .nlmsg_flags = NLM_F_REQUEST},
+        .interface = {.ifi_family = AF_UNSPEC, .ifi_index = can->index}};
+    return ask(&request, sizeof request, &answer) == 0 && (answer.is.interface.ifi_flags & (unsigned)IFF_UP) != 0;
+}
+
+/* To listen comes first, so that no change is between the question and the news. */
+static bool open_link(linux_can_t *can) {
+    const struct sockaddr_nl changes = {.nl_family = AF_NETLINK, .nl_groups = RTMGRP_LINK};
+    const int fd = socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, NETLINK_ROUTE);
+    if (fd < 0 || bind(fd, (const struct sockaddr *)&changes, sizeof changes) != 0) {
+        (void)close(fd);
+        return false;
+    }
+    can->has_link = true;
+    can->link_fd = fd;
+    can->link_is_up = ask_whether_up(can);
+    return true;
+}
+
+static void take_news(linux_can_t *can, const answer_t *news, size_t size) {
+    const struct ifinfomsg *interface = &news->is.interface;
+    const bool tells = news->header.nlmsg_type == RTM_NEWLINK || news->header.nlmsg_type == RTM_DELLINK;
+    if (tells && size >= sizeof(look_t) && interface->ifi_index == can->index && interface->ifi_family == AF_UNSPEC) {
+        can->link_is_up = news->header.nlmsg_type == RTM_NEWLINK && (interface->ifi_flags & (unsigned)IFF_UP) != 0;
+    }
+}
+
+/* When news were lost, the question comes after those that were kept, which are older. */
+static void read_news(linux_can_t *can) {
+    bool has_lost = false;
+    for (unsigned i = 0; i < NEWS_AT_ONCE_MAX; i++) {
+        answer_t news = {0};
+        const ssize_t size = recv(can->link_fd, &news, sizeof news, MSG_DONTWAIT);
+        if (size >= 0) {
+            take_news(can, &news, (size_t)size);
+        } else if (errno == ENOBUFS) {
+            has_lost = true;
+        } else {
+            break;
+        }
+    }
+    if (has_lost) {
+        can->link_is_up = ask_whether_up(can);
+    }
+}
+
+/* By index, not by an ioctl that wants the name: asked while somebody renames the interface, that starts modprobe. */
+bool linux_can_is_up(linux_can_t *can) {
+    if (can->fd < 0) {
+        return false;
+    }
+    if (!can->has_link) {
+        return open_link(can) && can->link_is_up;
+    }
+    read_news(can);
+    return can->link_is_up;
 }

@@ -36,6 +36,9 @@ typedef struct {
     bool is_down;    /**< it was down when last written or read */
     bool tells_down; /**< a write found that out, and linux_can_read() has still to tell */
     bool is_gone;    /**< the interface does not exist any more */
+    bool has_link;   /**< linux_can_is_up() was called */
+    int link_fd;     /**< then: where the kernel tells of changes of interfaces */
+    bool link_is_up; /**< then: what it told last */
 } linux_can_t;
 
 /** What linux_can_read() found. */
@@ -77,8 +80,11 @@ linux_can_read_t linux_can_read(linux_can_t *can, linux_can_record_t *record);
 /** Send a classic data frame (flags HAL_CAN_EXTENDED and HAL_CAN_REMOTE as they say), or an error frame. */
 linux_can_write_t linux_can_write(linux_can_t *can, const hal_can_frame_t *frame);
 
-/** Whether the interface is up at the moment. */
-bool linux_can_is_up(const linux_can_t *can);
+/**
+ * Whether the interface is up at the moment. The first call asks the kernel, which can wait for somebody who changes an
+ * interface; the later ones only read what it has told since, and never wait.
+ */
+bool linux_can_is_up(linux_can_t *can);
 
 /**
  * Ask the kernel to restart a controller that is in bus-off (`ip link set IF type can restart`). Needs CAP_NET_ADMIN.
