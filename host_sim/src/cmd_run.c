@@ -56,8 +56,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_syntax_t syntax = {
         .usage = "run --can IF [OPTION]...",
         .summary = "Run the supervisor as a node on SocketCAN, in real time, until SIGINT, SIGTERM or SIGHUP: then it\n"
-                   "stops at once and sends nothing more than what it had begun with. A terminal shows its state while\n"
-                   "it runs.\n",
+                   "stops at once, and no more leaves than what it had begun to send. A terminal shows its state\n"
+                   "while it runs.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
         .operand = "argument",

@@ -206,7 +206,7 @@ class Ends(Case):
     def test_it_goes_on_when_its_interface_was_down_and_renamed(self):
         bus = self.bus("vcan2")
         self.addCleanup(canbus.ip, "link", "set", "vcan2", "up")
-        process = self.start("run", "--can", "vcan2", "--config", self.config, "--events", "-")
+        process = self.start("run", "--can", "vcan2", "--events", "-")
         bus.wait_for(0x168)
         canbus.ip("link", "set", "vcan2", "down")
         process.wait_line('"name": "BUS_OFF", "class": "trip", "active": true')
