@@ -172,6 +172,11 @@ bool vehicle_words_typed(const char *text, const agv_config_t *config, vehicle_w
     return take_text(&line, text, "'", "'") && read_line(&line, " \t", config, words);
 }
 
+/** Whether nothing stands between two separators, or behind the last. */
+static bool has_empty_part(const char *text, const char *dash, const char *at) {
+    return (strstr(text, ",,") != NULL) || (dash[1] == ',') || (at[-1] == ',');
+}
+
 bool vehicle_words_fault(const char *text, const agv_config_t *config, vehicle_words_t *words) {
     line_t line = {.count = 0u};
 
@@ -180,7 +185,7 @@ bool vehicle_words_fault(const char *text, const agv_config_t *config, vehicle_w
     }
     char *at = strrchr(line.text, '@');
     char *dash = strchr(line.text, '-');
-    if ((at == NULL) || (dash == NULL) || (dash > at)) {
+    if ((at == NULL) || (dash == NULL) || (dash > at) || has_empty_part(line.text, dash, at)) {
         return wrong(&line, FAULT_FORM " is needed, such as ai-stop@2000");
     }
     *at = '\0';

@@ -7,6 +7,9 @@ import hostsim
 FORM = "WHO-WHAT[,NAME=VALUE]...@MS is needed, such as ai-stop@2000"
 FAULTS = {
     "ai-stop": FORM,
+    "ai-stop,@2000": FORM,
+    "ai-,stop@2000": FORM,
+    "ai-freeze,,for=100@2000": FORM,
     "@2000": FORM,
     "ai_stop@2000": FORM,
     "ai@-2000": FORM,
