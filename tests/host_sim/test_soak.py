@@ -1,6 +1,7 @@
 """Soaks: nothing trips, drifts or is miscounted; planted mistakes are found; a soak that was stopped goes on."""
 import json
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -38,11 +39,22 @@ class Soak(hostsim.Case):
             self.assertIn("BROKEN: " + said, result.stdout)
             self.assertTrue(self.figures("a")["broken"])
 
+    def wait_until_it_can_be_stopped(self, pid):
+        """A program that is still being loaded would be killed."""
+        for _ in range(1000):
+            with open(f"/proc/{pid}/status", encoding="ascii") as status:
+                blocked = int(re.search(r"^SigBlk:\s+(\w+)$", status.read(), re.MULTILINE)[1], 16)
+            if blocked & (1 << (signal.SIGINT - 1)) != 0:
+                return
+            time.sleep(0.05)
+        self.fail("it does not look for SIGINT")
+
     def stopped(self, *arguments):
-        """Run it for half a second; whether it was stopped."""
+        """Run it for some tenths of a second; whether it was stopped."""
         with subprocess.Popen([hostsim.PROGRAM, "soak", *arguments], cwd=self.folder, stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE, text=True) as process:
-            time.sleep(0.5)
+            self.wait_until_it_can_be_stopped(process.pid)
+            time.sleep(0.3)
             process.send_signal(signal.SIGINT)
             _, said = process.communicate(timeout=600)
         if process.returncode != 0:
