@@ -240,7 +240,7 @@ END
     same $'77\n137\n9' "$(<statuses)"
     same "$(cut -d ' ' -f 3 sent)" "$(cut -d ' ' -f 3 received)"
     same '7FF#C0FFEE' "$(cut -d ' ' -f 3 other)"
-    if ((EUID == 0)); then
+    if ((EUID == 0)) && setpriv --reuid 1234 --regid 1234 --clear-groups test -r "$vcan"; then
         cat user
         [[ $(head -n 1 user) == 1234 && $(<user) == *vcan2*DOWN* ]]
     fi
