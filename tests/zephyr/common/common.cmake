@@ -1,11 +1,8 @@
 # What the tests of the Zephyr application share. Before find_package(Zephyr): the folders; after project(): add_agv_test().
 get_filename_component(AGV_ROOT ${CMAKE_CURRENT_LIST_DIR}/../../.. ABSOLUTE)
 set(AGV_TEST_COMMON ${CMAKE_CURRENT_LIST_DIR})
-# A copy of the sources in a workspace of west takes the bindings of the original: west's module has those, and twice is an error.
-if(NOT DEFINED AGV_DTS_ROOT)
-  set(AGV_DTS_ROOT ${AGV_ROOT}/hal/zephyr)
-endif()
-list(APPEND DTS_ROOT ${AGV_DTS_ROOT} ${AGV_TEST_COMMON})
+include(${AGV_TEST_COMMON}/bindings.cmake)
+list(APPEND DTS_ROOT ${AGV_TEST_COMMON})
 set(KCONFIG_ROOT ${AGV_TEST_COMMON}/Kconfig)
 list(APPEND CONF_FILE ${AGV_TEST_COMMON}/common.conf prj.conf)
 list(APPEND DTC_OVERLAY_FILE ${AGV_TEST_COMMON}/common.overlay)
