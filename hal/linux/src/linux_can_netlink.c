@@ -120,7 +120,10 @@ static bool ask_whether_up(const linux_can_t *can) {
 static bool open_link(linux_can_t *can) {
     const struct sockaddr_nl changes = {.nl_family = AF_NETLINK, .nl_groups = RTMGRP_LINK};
     const int fd = socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, NETLINK_ROUTE);
-    if (fd < 0 || bind(fd, (const struct sockaddr *)&changes, sizeof changes) != 0) {
+    if (fd < 0) {
+        return false;
+    }
+    if (bind(fd, (const struct sockaddr *)&changes, sizeof changes) != 0) {
         (void)close(fd);
         return false;
     }

@@ -81,8 +81,9 @@ linux_can_read_t linux_can_read(linux_can_t *can, linux_can_record_t *record);
 linux_can_write_t linux_can_write(linux_can_t *can, const hal_can_frame_t *frame);
 
 /**
- * Whether the interface is up at the moment. The first call asks the kernel, which can wait for somebody who changes an
- * interface; the later ones only read what it has told since, and never wait.
+ * Whether the interface is up at the moment; false also where that cannot be found out. The first call asks the kernel, which
+ * can wait for somebody who changes an interface; the later ones read what it has told since, and ask only when some of that
+ * was lost: hundreds of changes between two calls.
  */
 bool linux_can_is_up(linux_can_t *can);
 
