@@ -522,9 +522,12 @@ class Gateway(clients.Case):
                          {"43F#" + "00000000800000", "168#" + GEAR_D[:14], "075#" + THROTTLE_30[:14], "065#" + STEER[:14]})
         self.assertEqual([frame.data[14:] for frame in of(passed, 0x43F)],
                          [frame.data[14:] for frame in of(said_then, 0x43F)])
-        self.assertEqual([frame.id for frame in passed], [frame.id for frame in said_then])
-        for cause, answer in zip(said_then, passed):
-            self.at_once(cause, answer)
+        # Each identifier in its order; of those that wait behind a frame in flight the lowest goes first.
+        for can_id in COMMANDS:
+            causes, answers = of(said_then, can_id), of(passed, can_id)
+            self.assertEqual(len(answers), len(causes), can_id)
+            for cause, answer in zip(causes, answers):
+                self.at_once(cause, answer)
         # And then the safe ones, in the handling of that very frame; the culprit has not passed, and nothing does.
         after = [frame for frame in of(sent, *COMMANDS) if frame.at > culprit.at]
         self.assertEqual({clients.key(frame)[:18] for frame in after[:4]},
