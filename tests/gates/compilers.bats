@@ -7,6 +7,7 @@ load helper
 }
 
 @test "a warning stops clang" {
+    passes cmake --preset host-clang -S "$ROOT"
     fails_with "-Werror,-Wimplicit-int-conversion" cmake --build "$ROOT/build/host-clang" --target planted_warning
 }
 

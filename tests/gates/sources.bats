@@ -83,6 +83,16 @@ plant() {
     fails_with "bugprone-assignment-in-if-condition" "$ROOT/scripts/check-tidy" "$PWD/bad.c"
 }
 
+@test "clang-tidy: a suspicious line in a file that was right before" {
+    command -v clang-tidy-19 || skip "no clang-tidy-19"
+    printf 'int main(void) {\n    return 0;\n}\n' >changes.c
+    passes "$ROOT/scripts/check-tidy" --changed "$PWD/changes.c"
+    printf 'int main(int argc, char **argv) {\n    (void)argv;\n    if (argc = 1) {\n        return 1;\n    }\n    return 0;\n}\n' >changes.c
+    for _ in 1 2; do
+        fails_with "bugprone-assignment-in-if-condition" "$ROOT/scripts/check-tidy" --changed "$PWD/changes.c"
+    done
+}
+
 @test "shellcheck: a name that is not quoted" {
     printf '#!/bin/sh\necho "%s"\n' "\$1" >good
     printf '#!/bin/sh\necho %s\n' "\$1" >bad
