@@ -34,7 +34,7 @@ typedef void session_observer_fn(void *ctx, const session_event_t *event);
 
 /** Read the members freely; change nothing but through the functions. */
 typedef struct {
-    _Alignas(16) agv_supervisor_t supervisor; /* its seal is made over whole vectors */
+    _Alignas(16) agv_supervisor_t supervisor; /**< aligned, for the speed of its seal */
     agv_recorder_t recorder;
     agv_ports_t ports;
     uint64_t t_ms;         /**< time of the last call, since the start of the run */

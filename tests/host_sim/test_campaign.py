@@ -11,7 +11,8 @@ import hostsim
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PICTURE = ROOT / "scripts/campaign-picture"
 VERSION = subprocess.run([hostsim.PROGRAM, "--version"], capture_output=True, text=True, check=True).stdout.split()[1]
-RUNS = 150 if hostsim.PART == 1 else 45
+RUNS = 150 if hostsim.PART == 1 else 20
+RUNS_WITH_EACH_FAULT = max(RUNS, 45)
 
 
 class Campaign(hostsim.Case):
@@ -99,7 +100,7 @@ class NewlyEngaged(Campaign):
               "THROTTLE_STATUS_INVALID", "STEERING_ANGLE_INVALID", "STEERING_DEVIATION", "THROTTLE_IN_PARK"}
 
     def test_the_faults_that_an_engagement_delays(self):
-        self.campaign("--runs", RUNS, "--seed", 3, "--newly-engaged", "--results", "a")
+        self.campaign("--runs", RUNS_WITH_EACH_FAULT, "--seed", 3, "--newly-engaged", "--results", "a")
         head, *runs = self.lines("a")
         self.assertIs(head["newly_engaged"], True)
         self.assertEqual({run["fault"] for run in runs}, self.FAULTS)
