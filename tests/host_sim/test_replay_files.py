@@ -132,7 +132,11 @@ class Outputs(hostsim.Case):
         self.write("log", LOG)
         os.mkfifo(self.folder / "pipe")
         with subprocess.Popen(["cat", "pipe"], cwd=self.folder, stdout=subprocess.PIPE) as reader:
-            self.run_good("replay", "--out", "pipe", "--events", "/dev/null", "log")
+            try:
+                self.run_good("replay", "--out", "pipe", "--events", "/dev/null", "log")
+            except BaseException:
+                reader.kill()  # it would wait for a writer for ever
+                raise
             self.assertIn(b"(1700000000.000000) can0 43F#", reader.communicate()[0])
         self.assertEqual(self.files(), ["log", "pipe"])
         result = self.run_good("replay", "--events", "/dev/stdout", "log")
