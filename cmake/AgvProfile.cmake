@@ -36,7 +36,7 @@ function(agv_use_profile)
     # -fprofile-partial-training: what was not run, a reaction to a fault for one, is not made slow.
     # -fprofile-correction: a function that is new or changed since, and so has no counts, is no warning.
     # --param: what is counted as hot may grow together; the loop over the words under the seal (agv_seal) is unrolled, in
-    # four chains side by side. A tenth fewer instructions a tick.
+    # four chains side by side. A tenth less time a tick.
     set(options -fprofile-use=${AGV_PROFILE_COUNTS} -fprofile-partial-training -fprofile-correction
       -Wno-missing-profile -Wno-coverage-mismatch
       "SHELL:--param max-inline-insns-auto=200" "SHELL:--param max-completely-peel-times=64"

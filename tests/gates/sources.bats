@@ -75,19 +75,27 @@ plant() {
     fails_with "bad.c:1" "$ROOT/scripts/check-format" "$PWD/bad.c"
 }
 
+write_right_program() {
+    printf 'int main(void) {\n    return 0;\n}\n' >"$1"
+}
+
+write_suspicious_program() {
+    printf 'int main(int argc, char **argv) {\n    (void)argv;\n    if (argc = 1) {\n        return 1;\n    }\n    return 0;\n}\n' >"$1"
+}
+
 @test "clang-tidy: a suspicious line" {
     command -v clang-tidy-19 || skip "no clang-tidy-19"
-    printf 'int main(void) {\n    return 0;\n}\n' >good.c
-    printf 'int main(int argc, char **argv) {\n    (void)argv;\n    if (argc = 1) {\n        return 1;\n    }\n    return 0;\n}\n' >bad.c
+    write_right_program good.c
+    write_suspicious_program bad.c
     passes "$ROOT/scripts/check-tidy" "$PWD/good.c"
     fails_with "bugprone-assignment-in-if-condition" "$ROOT/scripts/check-tidy" "$PWD/bad.c"
 }
 
 @test "clang-tidy: a suspicious line in a file that was right before" {
     command -v clang-tidy-19 || skip "no clang-tidy-19"
-    printf 'int main(void) {\n    return 0;\n}\n' >changes.c
+    write_right_program changes.c
     passes "$ROOT/scripts/check-tidy" --changed "$PWD/changes.c"
-    printf 'int main(int argc, char **argv) {\n    (void)argv;\n    if (argc = 1) {\n        return 1;\n    }\n    return 0;\n}\n' >changes.c
+    write_suspicious_program changes.c
     for _ in 1 2; do
         fails_with "bugprone-assignment-in-if-condition" "$ROOT/scripts/check-tidy" --changed "$PWD/changes.c"
     done
