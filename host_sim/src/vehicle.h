@@ -96,8 +96,8 @@ typedef enum {
     VEHICLE_DO_MUTE, /**< it is not sent; for `count` frames (VEHICLE_FOREVER) */
     VEHICLE_DO_UNMUTE,
     VEHICLE_DO_PERIOD, /**< its cycle is `ms`; 0 = as it should be */
-    VEHICLE_DO_PATCH,  /**< payload = (payload & `keep`) | `value` in the next `count` frames (VEHICLE_FOREVER) */
-    VEHICLE_DO_UNPATCH,
+    VEHICLE_DO_PATCH, /**< bits that are 0 in `keep` are as in `value` in the next `count` frames (VEHICLE_FOREVER) */
+    VEHICLE_DO_UNPATCH, /**< no bit is patched any more */
     /* the AI computer */
     VEHICLE_DO_AI_DRIVE,         /**< `gear`, `throttle_permille`, `angle_ddeg` while engaged */
     VEHICLE_DO_AI_IDLE,          /**< gear N, throttle 0, angle 0 */
@@ -154,9 +154,9 @@ typedef struct {
 typedef struct {
     uint32_t period_ms;
     uint16_t muted;
-    uint16_t patched;
-    uint8_t keep[AGV_DLC];
+    bool patched;
     uint8_t value[AGV_DLC];
+    uint16_t patched_for[AGV_DLC * 8u]; /* frames; a bit of the payload each */
 } vehicle_message_t;
 
 typedef struct {

@@ -1,6 +1,4 @@
 /* What can be asked of the vehicle at any moment. */
-#include <string.h>
-
 #include "vehicle_internal.h"
 
 static bool gear_is_valid(uint8_t gear) {
@@ -65,12 +63,10 @@ static bool do_to_message(vehicle_t *vehicle, uint64_t now_ms, const vehicle_act
         }
         break;
     case VEHICLE_DO_PATCH:
-        message->patched = action->count;
-        memcpy(message->keep, action->keep, sizeof message->keep);
-        memcpy(message->value, action->value, sizeof message->value);
+        vehicle_patch(message, action);
         break;
     default:
-        message->patched = 0u;
+        vehicle_unpatch(message);
         break;
     }
     return true;

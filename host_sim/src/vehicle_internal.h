@@ -72,6 +72,10 @@ vehicle_compose_fn vehicle_ai_steering_command;
 /** @name vehicle_send.c: how nodes send, and misbehave @{ */
 /** Send the frame of a message that is due, as its node and the message misbehave. */
 void vehicle_send_message(vehicle_t *vehicle, agv_message_t message, uint64_t now_ms);
+/** Bits of its payload keep a value from now on, those that were patched before too (VEHICLE_DO_PATCH). */
+void vehicle_patch(vehicle_message_t *message, const vehicle_action_t *action);
+/** End of that for all bits. */
+void vehicle_unpatch(vehicle_message_t *message);
 /** Send what strangers have due. @return when the next one is due. */
 uint64_t vehicle_send_strangers(vehicle_t *vehicle, uint64_t now_ms);
 bool vehicle_add_stranger(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action);

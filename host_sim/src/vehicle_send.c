@@ -51,11 +51,38 @@ static void make_garbage(vehicle_t *vehicle, vehicle_garbage_t kind, hal_can_fra
     }
 }
 
-static void patch(vehicle_message_t *message, uint8_t data[AGV_DLC]) {
-    for (unsigned i = 0; i < AGV_DLC; i++) {
-        data[i] = (uint8_t)((data[i] & message->keep[i]) | message->value[i]);
+static void set_bit(uint8_t bytes[AGV_DLC], unsigned bit, const uint8_t value[AGV_DLC]) {
+    const uint8_t mask = (uint8_t)(1u << (bit % 8u));
+
+    bytes[bit / 8u] = (uint8_t)((bytes[bit / 8u] & ~mask) | (value[bit / 8u] & mask));
+}
+
+void vehicle_patch(vehicle_message_t *message, const vehicle_action_t *action) {
+    for (unsigned bit = 0; bit < AGV_DLC * 8u; bit++) {
+        if ((action->keep[bit / 8u] >> (bit % 8u) & 1u) == 0u) {
+            set_bit(message->value, bit, action->value);
+            message->patched_for[bit] = action->count;
+        }
     }
-    use_up(&message->patched);
+    message->patched = true;
+}
+
+void vehicle_unpatch(vehicle_message_t *message) {
+    memset(message->patched_for, 0, sizeof message->patched_for);
+    message->patched = false;
+}
+
+static void apply_patches(vehicle_message_t *message, uint8_t data[AGV_DLC]) {
+    bool more = false;
+
+    for (unsigned bit = 0; bit < AGV_DLC * 8u; bit++) {
+        if (message->patched_for[bit] != 0u) {
+            set_bit(data, bit, message->value);
+            use_up(&message->patched_for[bit]);
+            more = more || (message->patched_for[bit] != 0u);
+        }
+    }
+    message->patched = more;
 }
 
 void vehicle_send_message(vehicle_t *vehicle, agv_message_t message, uint64_t now_ms) {
@@ -76,8 +103,8 @@ void vehicle_send_message(vehicle_t *vehicle, agv_message_t message, uint64_t no
         use_up(&state->muted);
         return;
     }
-    if (state->patched != 0u) {
-        patch(state, frame.data);
+    if (state->patched) {
+        apply_patches(state, frame.data);
     }
     if (node->garbage != VEHICLE_GARBAGE_OFF) {
         make_garbage(vehicle, (vehicle_garbage_t)node->garbage, &frame);
@@ -97,7 +124,7 @@ void vehicle_recover(vehicle_t *vehicle, vehicle_node_t node) {
     for (int m = 0; m < AGV_MSG_COUNT; m++) {
         if (VEHICLE_ROWS[m].node == node) {
             vehicle->messages[m].muted = 0u;
-            vehicle->messages[m].patched = 0u;
+            vehicle_unpatch(&vehicle->messages[m]);
             vehicle->messages[m].period_ms = 0u;
         }
     }

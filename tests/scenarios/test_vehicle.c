@@ -287,6 +287,7 @@ void test_the_vcu_hears_of_faults_of_the_eps(void) {
     connected = true;
     vehicle_action_t fault = {.what = VEHICLE_DO_PATCH, .message = AGV_MSG_EPS_STATUS, .count = VEHICLE_FOREVER};
     memset(fault.keep, 0xFF, sizeof fault.keep);
+    fault.keep[7] = 0x00u;
     fault.value[7] = AGV_EPS_FAULT_TEMP_ABOVE_110;
     (void)act(fault);
     run_until(100u);

@@ -165,6 +165,35 @@ void test_a_field_keeps_a_value_for_so_many_frames(void) {
     TEST_ASSERT_EQUAL_HEX8(0x40u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[6]);
 }
 
+/* Byte @p index of 363h: the bits of @p mask as in @p value, for @p count frames. */
+static void patch_vehicle_status(unsigned index, uint8_t mask, uint8_t value, uint16_t count) {
+    vehicle_action_t patch = {.what = VEHICLE_DO_PATCH, .message = AGV_MSG_VEHICLE_STATUS, .count = count};
+
+    memset(patch.keep, 0xFF, sizeof patch.keep);
+    patch.keep[index] = (uint8_t)~mask;
+    patch.value[index] = value;
+    (void)act(patch);
+}
+
+static void expect_vehicle_status(uint32_t t_ms, uint8_t byte_1, uint8_t byte_2) {
+    run_until(t_ms);
+    TEST_ASSERT_EQUAL_HEX8(byte_1, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[1]);
+    TEST_ASSERT_EQUAL_HEX8(byte_2, last_of(AGV_MSG_VEHICLE_STATUS)->frame.data[2]);
+}
+
+void test_several_fields_of_a_message_keep_values_each_for_its_own_time(void) {
+    expect_vehicle_status(10u, 0x00u, 0x00u);
+    patch_vehicle_status(1u, 0xFFu, 0xA5u, 2u);
+    patch_vehicle_status(2u, 0xFFu, 0x5Au, VEHICLE_FOREVER);
+    expect_vehicle_status(20u, 0xA5u, 0x5Au);
+    patch_vehicle_status(2u, 0x0Fu, 0x03u, 2u);
+    expect_vehicle_status(30u, 0xA5u, 0x53u);
+    expect_vehicle_status(40u, 0x00u, 0x53u);
+    expect_vehicle_status(50u, 0x00u, 0x50u);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_UNPATCH, .message = AGV_MSG_VEHICLE_STATUS});
+    expect_vehicle_status(60u, 0x00u, 0x00u);
+}
+
 void test_recovery_ends_every_misbehaviour_of_a_node(void) {
     run_until(100u);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_FREEZE, .node = VEHICLE_EPS});
