@@ -9,7 +9,9 @@
 
 #include "commands.h"
 #include "config_options.h"
+#include "events.h"
 #include "options.h"
+#include "output.h"
 #include "scenario_run.h"
 #include "timeline.h"
 
@@ -21,6 +23,7 @@ enum { PATH_SIZE = 4096 };
 typedef struct {
     config_options_t config;
     const char *scenario;
+    const char *events;
 } given_t;
 
 /** What the command works with. */
@@ -28,6 +31,9 @@ typedef struct {
     char path[PATH_SIZE];
     scenario_options_t options;
     timeline_t timeline;
+    scenario_watch_t show; /* the timeline; nobody where events go to standard output */
+    output_t events;
+    FILE *said_to;
     scenario_run_t run;
 } work_t;
 
@@ -39,6 +45,10 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .value = "NAME",
          .help = "another one: its name, or the path of a file",
          .text = &given->scenario},
+        {.name = "--events",
+         .value = "FILE",
+         .help = "events as JSON Lines; -, standard output: in place of the timeline",
+         .text = &given->events},
     };
     const option_group_t groups[] = {
         {.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]},
@@ -75,24 +85,80 @@ static bool find_scenario(const char *name, char path[PATH_SIZE]) {
     return true;
 }
 
-static status_t play(work_t *work) {
-    if (!scenario_read(&work->run.scenario, work->path, &work->options)) {
-        return STATUS_UNUSABLE;
+static void tell_event(void *ctx, const session_event_t *event) {
+    work_t *work = ctx;
+
+    if (work->events.is_open) {
+        events_write(&work->events, event);
     }
-    timeline_init(&work->timeline, &work->run.world);
-    const scenario_watch_t watch = timeline_watch(&work->timeline);
-    (void)printf("%s\n\n", work->run.scenario.name);
-    const bool good = scenario_run(&work->run, SCENARIO_REAL, &watch, timeline_step);
+    if (work->show.on_event != NULL) {
+        work->show.on_event(work->show.ctx, event);
+    }
+}
+
+static void tell_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
+    const work_t *work = ctx;
+
+    if (work->show.on_frame != NULL) {
+        work->show.on_frame(work->show.ctx, t_us, side, from, frame);
+    }
+}
+
+static void tell_step(void *ctx, const scenario_step_t *step) {
+    const work_t *work = ctx;
+
+    if (work->show.ctx != NULL) {
+        timeline_step(work->show.ctx, step);
+    }
+}
+
+static status_t judge(const work_t *work, bool good) {
     const scenario_check_t *check = &work->run.check;
+
     if (good) {
-        (void)printf("\nSeen as promised: all %zu expectations of the scenario held.\n", check->expectation_count);
+        (void)fprintf(work->said_to, "\nSeen as promised: all %zu expectations of the scenario held.\n",
+                      check->expectation_count);
         return STATUS_OK;
     }
-    (void)printf("\nNOT as promised, %s:\n", work->path);
+    (void)fprintf(work->said_to, "\nNOT as promised, %s:\n", work->path);
     for (size_t i = 0u; (i < check->failure_count) && (i < SCENARIO_FAILURES_MAX); i++) {
-        (void)printf("  %s\n", check->failures[i]);
+        (void)fprintf(work->said_to, "  %s\n", check->failures[i]);
     }
     return STATUS_UNMET;
+}
+
+static status_t play(work_t *work, const char *events) {
+    if (!scenario_read(&work->run.scenario, work->path, &work->options) ||
+        ((events != NULL) && !output_open(&work->events, events))) {
+        return STATUS_UNUSABLE;
+    }
+    const bool is_told = (events == NULL) || !output_is_stdout(events);
+    work->said_to = is_told ? stdout : stderr;
+    if (is_told) {
+        timeline_init(&work->timeline, &work->run.world);
+        work->show = timeline_watch(&work->timeline);
+        (void)printf("%s\n\n", work->run.scenario.name);
+    }
+    const scenario_watch_t watch = {tell_event, tell_frame, work};
+    const bool good = scenario_run(&work->run, SCENARIO_REAL, &watch, tell_step);
+    if (work->events.is_open) {
+        events_summary_t summary = {0};
+        events_summarise(&work->run.world.session, &summary);
+        events_write_summary(&work->events, &summary);
+    }
+    if (!output_commit(&work->events)) {
+        return STATUS_UNUSABLE;
+    }
+    return judge(work, good);
+}
+
+static bool check_files(const given_t *given, const char *path) {
+    const output_role_t roles[] = {
+        {.role = "--scenario", .path = path},
+        {.role = "--config", .path = given->config.path},
+        {.role = "--events", .path = given->events, .is_written = true},
+    };
+    return output_check_distinct(roles, sizeof roles / sizeof roles[0]);
 }
 
 status_t cmd_demo(int argc, char **argv) {
@@ -109,9 +175,11 @@ status_t cmd_demo(int argc, char **argv) {
     status_t status = STATUS_UNUSABLE;
     work->options.topology = given.config.topology;
     work->options.id_set = given.config.id_set;
-    if (config_options_make(&given.config, &work->options.config) && find_scenario(given.scenario, work->path)) {
-        status = play(work);
+    if (find_scenario(given.scenario, work->path) && check_files(&given, work->path) &&
+        config_options_make(&given.config, &work->options.config)) {
+        status = play(work, given.events);
     }
+    output_discard(&work->events);
     free(work);
     return status;
 }

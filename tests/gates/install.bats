@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# install-deps says in one line what to do where it can do nothing.
+# install-deps says in one line what to do where it can do nothing, and the test command what it does not take.
 load helper
 
 # A PATH with these commands only.
@@ -29,4 +29,9 @@ only() {
 
 @test "a word that it does not know" {
     fails_with "neither demo nor vcan nor test" "$ROOT/scripts/install-deps" everything
+}
+
+@test "the test command takes no arguments" {
+    fails_with "it takes no arguments, not 'all'" "$ROOT/scripts/test" all
+    [[ ${#lines[@]} -eq 1 ]]
 }

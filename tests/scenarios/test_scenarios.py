@@ -200,6 +200,24 @@ class Demo(hostsim.Case):
         self.assertEqual(result.status, 1)
         self.assertIn("NOT as promised, s.yaml:\n  line 5: STANDBY", result.stdout)
 
+    def test_events_are_those_of_the_scenario_command(self):
+        self.run_good("scenario", "--events", "of_scenario.jsonl", FOLDER / "demo.yaml")
+        result = self.run_good("demo", "--events", "of_demo.jsonl")
+        self.assertIn("Seen as promised", result.stdout)
+        events = (self.folder / "of_demo.jsonl").read_text(encoding="ascii")
+        self.assertEqual(events, (self.folder / "of_scenario.jsonl").read_text(encoding="ascii"))
+        result = self.run_good("demo", "--events", "-")
+        self.assertEqual(result.stdout, events)
+        self.assertIn("Seen as promised", result.stderr)
+
+    def test_events_that_cannot_be_written(self):
+        self.assert_refused(self.run_program("demo", "--events", "no/where"), "no/where")
+        self.write("s.yaml", GOOD)
+        self.assert_refused(self.run_program("demo", "--scenario", "./s.yaml", "--events", "s.yaml"), "same file")
+        self.assertEqual((self.folder / "s.yaml").read_text(encoding="ascii"), GOOD)
+        result = self.run_program("demo", "--events", "/dev/full")
+        self.assertEqual((result.status, result.stderr), (2, "host_sim: /dev/full: No space left on device\n"))
+
     def test_a_name_that_there_is_not(self):
         self.assert_refused(self.run_program("demo", "--scenario", "nonesuch"), "nonesuch", "host_sim/scenarios")
         self.assert_refused(self.run_program("demo", "--scenario", "x" * 5000), "too long")
