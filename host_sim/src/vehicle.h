@@ -95,8 +95,8 @@ typedef enum {
     /* a message: `message` */
     VEHICLE_DO_MUTE, /**< it is not sent; for `count` frames (VEHICLE_FOREVER) */
     VEHICLE_DO_UNMUTE,
-    VEHICLE_DO_PERIOD, /**< its cycle is `ms`; 0 = as it should be */
-    VEHICLE_DO_PATCH, /**< bits that are 0 in `keep` are as in `value` in the next `count` frames (VEHICLE_FOREVER) */
+    VEHICLE_DO_PERIOD,  /**< its cycle is `ms`; 0 = as it should be */
+    VEHICLE_DO_PATCH,   /**< bits that are 0 in `keep` are as in `value` in the next `count` frames (VEHICLE_FOREVER) */
     VEHICLE_DO_UNPATCH, /**< no bit is patched any more */
     /* the AI computer */
     VEHICLE_DO_AI_DRIVE,         /**< `gear`, `throttle_permille`, `angle_ddeg` while engaged */

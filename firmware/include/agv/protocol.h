@@ -7,7 +7,7 @@
  * significant one. docs/protocol.md lists every decision on how the document is read, with its reason.
  *
  * To add a message: a row here (enumerator), its identifiers and cycle in message.c, its codec in codec.h/.c, its
- * deadline in liveness.c, its handler in monitor.c.
+ * deadline in config_settings.def, watch.c and monitor_timed.c, its handler in monitor_frames.c.
  */
 #ifndef AGV_PROTOCOL_H
 #define AGV_PROTOCOL_H

@@ -45,6 +45,8 @@ typedef struct {
 
 /**
  * Ask for a frame to be sent. Never blocks.
+ * @param frame the core hands over classic data frames alone (no flags, 11-bit identifier, 8 bytes); a port refuses what
+ *              its controller cannot send
  * @return true: taken, it leaves when the bus lets it, or is discarded by hal_can_purge or bus-off, and then is never
  *         sent. false: not taken (queue full, bus-off, no such controller); the caller keeps it.
  */
@@ -52,11 +54,14 @@ bool hal_can_send(hal_t *hal, hal_can_side_t side, const hal_can_frame_t *frame)
 
 /**
  * Discard every frame taken and not yet sent. At most one frame that the controller is already shifting out may still
- * leave. tx_pending_ms is 0 afterwards.
+ * leave. tx_pending_ms is 0 afterwards. Nothing on a side that does not exist.
  */
 void hal_can_purge(hal_t *hal, hal_can_side_t side);
 
-/** Start the recovery of a controller that is in bus-off; does nothing otherwise. A port never recovers by itself. */
+/**
+ * Start the recovery of a controller that is in bus-off; does nothing otherwise, nor on a side that does not exist. A port
+ * never recovers by itself.
+ */
 void hal_can_recover(hal_t *hal, hal_can_side_t side);
 
 /** Read the controller's state. A side that does not exist reports HAL_CAN_ERROR_ACTIVE and zeros. */

@@ -12,7 +12,7 @@
 
 /**
  * Close (true) or open (false) the output. The port keeps it open from reset until the first call with true, and opens
- * it in its fault handlers (FSM-4).
+ * it in its fault handlers (FSM-4). The core hears of no failure: the contact is wired so that it falls open.
  */
 void hal_safety_output_set(hal_t *hal, bool closed);
 

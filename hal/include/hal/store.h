@@ -1,7 +1,7 @@
 /**
  * @file store.h
  * What outlives a reset: the latch record in RAM that a reset does not clear (and that may be gone after a power-on),
- * and a log of the flight recorder's events in flash. Bytes that come back may be corrupt: the caller has its own
+ * and a log of the flight recorder's events in flash. Pointers are never NULL. Bytes that come back may be corrupt: the caller has its own
  * checksum in them.
  */
 #ifndef HAL_STORE_H
@@ -27,7 +27,8 @@ size_t hal_store_read_latch(hal_t *hal, void *record, size_t size);
 
 /**
  * Replace the latch record. Quick: it is called in the handling of a trip.
- * @return false when it could not be stored; the caller goes on without.
+ * @param size 1..HAL_STORE_LATCH_SIZE_MAX
+ * @return false when it could not be stored, or is of another size; the caller goes on without.
  */
 bool hal_store_write_latch(hal_t *hal, const void *record, size_t size);
 
@@ -35,7 +36,8 @@ bool hal_store_write_latch(hal_t *hal, const void *record, size_t size);
  * Append one record of @p size bytes to the log in flash; when it is full the port drops the oldest ones. May stall the
  * processor for longer than a reaction may take: the core calls it only where INT-3 allows it. A power cut during the
  * call loses at most this record.
- * @return false when it could not be stored.
+ * @param size 1..HAL_STORE_RECORD_SIZE_MAX
+ * @return false when it could not be stored, or is of another size.
  */
 bool hal_store_append(hal_t *hal, const void *record, size_t size);
 

@@ -7,7 +7,10 @@
 
 #include "hal/hal.h"
 
-/** Feed the watchdog. Called by the core only, under the conditions of TIM-3. */
+/**
+ * Feed the watchdog. Called by the core only, under the conditions of TIM-3. Where that fails the watchdog resets the MCU,
+ * which is the safe end of it.
+ */
 void hal_watchdog_feed(hal_t *hal);
 
 #endif
