@@ -85,13 +85,26 @@ static void vehicle_alone(uint32_t duration_ms) {
                  ((double)duration_ms / MS_PER_S) / took, took * 1e9 / duration_ms, frames);
 }
 
+/** An argument that is a whole number, digits alone. @return -1: it is none */
+static long number_of(int argc, char **argv, int index, long otherwise) {
+    if (index >= argc) {
+        return otherwise;
+    }
+    char *end = NULL;
+    const long number = strtol(argv[index], &end, 10);
+    return ((argv[index][0] >= '0') && (argv[index][0] <= '9') && (*end == '\0')) ? number : -1;
+}
+
 int main(int argc, char **argv) {
-    const long seconds = (argc > 1) ? strtol(argv[1], NULL, 10) : DEFAULT_S;
-    const double least = (argc > 2) ? strtod(argv[2], NULL) : 0.0;
-    scenario_world_t *world = malloc(sizeof *world);
-    if ((world == NULL) || (seconds < 4) || (seconds > 4000000)) {
+    const long seconds = number_of(argc, argv, 1, DEFAULT_S);
+    const long least = number_of(argc, argv, 2, 0);
+    if ((argc > 3) || (seconds < 4) || (seconds > 4000000) || (least < 0)) {
         (void)fprintf(stderr, "usage: bench_sim [SECONDS (4 .. 4000000)] [LEAST]\n");
-        free(world);
+        return 2;
+    }
+    scenario_world_t *world = malloc(sizeof *world);
+    if (world == NULL) {
+        (void)fprintf(stderr, "bench_sim: out of memory\n");
         return 2;
     }
     const uint32_t duration_ms = (uint32_t)seconds * MS_PER_S;
@@ -99,8 +112,8 @@ int main(int argc, char **argv) {
     const double gateway = drive(world, AGV_TOPOLOGY_GATEWAY, duration_ms);
     vehicle_alone(duration_ms);
     free(world);
-    if ((shared <= least) || (gateway <= 0.0)) {
-        (void)fprintf(stderr, "bench_sim: the shared bus is asked to be healthy and above %.0f times real time\n",
+    if ((shared <= (double)least) || (gateway <= 0.0)) {
+        (void)fprintf(stderr, "bench_sim: the shared bus is asked to be healthy and above %ld times real time\n",
                       least);
         return 1;
     }

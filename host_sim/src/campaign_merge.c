@@ -10,8 +10,11 @@
 #include <unistd.h>
 
 #include "campaign_line.h"
+#include "interrupt.h"
 #include "report.h"
 #include "shard_option.h"
+
+enum { LOOK_FOR_SIGNALS_EVERY = 1024 };
 
 /** A file that is being read. */
 typedef struct {
@@ -133,6 +136,9 @@ static bool merge(shard_t *shards, size_t count, campaign_samples_t *samples, ou
         campaign_write_part(merged, &whole);
     }
     for (uint64_t run = 0u; run < whole.runs; run++) {
+        if (((run % LOOK_FOR_SIGNALS_EVERY) == 0u) && interrupt_pending()) {
+            return false;
+        }
         shard_t *shard = &shards[run % count];
         if (!read_run(shard, &whole, run, &sample) || !campaign_samples_add(samples, &sample)) {
             return false;

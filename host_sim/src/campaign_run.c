@@ -92,8 +92,9 @@ static bool write_file(campaign_t *campaign) {
     if (!output_commit(&campaign->file)) {
         return false;
     }
-    (void)printf("BROKEN  run %" PRIu64 ", %s: %s; %s\n", plan->run, agv_fault_name(plan->row->fault),
-                 campaign_break_name(campaign->judge.broken), path);
+    (void)fprintf(output_is_stdout(campaign->request->results) ? stderr : stdout,
+                  "BROKEN  run %" PRIu64 ", %s: %s; %s\n", plan->run, agv_fault_name(plan->row->fault),
+                  campaign_break_name(campaign->judge.broken), path);
     return true;
 }
 
@@ -134,6 +135,9 @@ static bool run_all(campaign_t *campaign) {
 }
 
 static status_t conclude(campaign_t *campaign) {
+    if (output_is_stdout(campaign->request->results)) {
+        return (campaign->broken == 0u) ? STATUS_OK : STATUS_UNMET; /* a table is made of results */
+    }
     if (campaign->broken > FILES_MAX) {
         (void)printf("%zu broken runs, scenarios of the first %d\n", campaign->broken, FILES_MAX);
     }

@@ -10,7 +10,9 @@
 #include "agv/names.h"
 #include "campaign_run.h"
 #include "commands.h"
+#include "interrupt.h"
 #include "options.h"
+#include "output.h"
 #include "shard_option.h"
 
 /** The words of --planted, in the order of scenario_planted_t without SCENARIO_REAL. */
@@ -131,6 +133,9 @@ static bool make_request(given_t *given, char **operands) {
     request->part.planted = (given->planted == NOT_PLANTED) ? SCENARIO_REAL : (scenario_planted_t)(given->planted + 1);
     request->shows_one = given->show != NOT_GIVEN;
     request->one = given->show;
+    if (request->shows_one && ((given->results != NULL) || (given->shard != NULL))) {
+        return report("--show prints one run: neither --results nor --shard go with it");
+    }
     if (request->shows_one && (given->show >= given->runs)) {
         return report("--show: there is no run %" PRIu64 ", they are 0 to %" PRIu64, given->show, given->runs - 1u);
     }
@@ -168,7 +173,7 @@ static status_t merge(const given_t *given, char **files) {
     }
     if (((given->results == NULL) || output_open(merged, given->results)) &&
         campaign_merge(files, given->file_count, &samples, merged) && output_commit(merged) &&
-        campaign_print_table(&samples)) {
+        (output_is_stdout(given->results) || campaign_print_table(&samples))) {
         status = STATUS_OK;
         for (size_t i = 0u; i < samples.count; i++) {
             status = samples.samples[i].broken ? STATUS_UNMET : status;
@@ -177,6 +182,7 @@ static status_t merge(const given_t *given, char **files) {
     output_discard(merged);
     campaign_samples_free(&samples);
     free(merged);
+    interrupt_release();
     return status;
 }
 

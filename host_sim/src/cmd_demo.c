@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "config_options.h"
 #include "events.h"
+#include "interrupt.h"
 #include "options.h"
 #include "output.h"
 #include "scenario_run.h"
@@ -132,7 +133,7 @@ static status_t play(work_t *work, const char *events) {
         ((events != NULL) && !output_open(&work->events, events))) {
         return STATUS_UNUSABLE;
     }
-    const bool is_told = (events == NULL) || !output_is_stdout(events);
+    const bool is_told = !output_is_stdout(events);
     work->said_to = is_told ? stdout : stderr;
     if (is_told) {
         timeline_init(&work->timeline, &work->run.world);
@@ -141,6 +142,9 @@ static status_t play(work_t *work, const char *events) {
     }
     const scenario_watch_t watch = {tell_event, tell_frame, work};
     const bool good = scenario_run(&work->run, SCENARIO_REAL, &watch, tell_step);
+    if (work->run.was_interrupted) {
+        return STATUS_UNUSABLE;
+    }
     if (work->events.is_open) {
         events_summary_t summary = {0};
         events_summarise(&work->run.world.session, &summary);
@@ -181,5 +185,6 @@ status_t cmd_demo(int argc, char **argv) {
     }
     output_discard(&work->events);
     free(work);
+    interrupt_release();
     return status;
 }

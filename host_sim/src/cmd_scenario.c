@@ -5,12 +5,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "candump_line.h"
 #include "commands.h"
 #include "config_options.h"
 #include "events.h"
 #include "hal_linux/linux_can.h"
+#include "interrupt.h"
 #include "junit.h"
 #include "options.h"
 #include "output.h"
@@ -21,6 +23,9 @@
 #define PLANTED "mute|tripped"
 
 enum { FILES_MAX = 1000, NOT_PLANTED = -1, DEFAULT_TOLERANCE_MS = 50, TOLERANCE_MAX_MS = 1000 };
+
+/** Its outputs. */
+enum { EVENTS, JUNIT, SENT, OUTPUTS };
 
 /** As a tolerance. */
 #define NOT_GIVEN UINT64_MAX
@@ -61,9 +66,8 @@ typedef struct {
 /** What the command works with. */
 typedef struct {
     given_t given;
-    output_t events;
-    output_t junit;
-    output_t sent;
+    FILE *said_to; /* results, for people: standard error where an output goes to standard output */
+    output_t outputs[OUTPUTS];
     scenario_run_t run;
     result_t results[];
 } work_t;
@@ -205,10 +209,18 @@ static bool check_place(const work_t *work, const char *file) {
     return true;
 }
 
+/** Several files are read twice, which a pipe cannot be. One that is not there is for who reads it. */
+static bool check_readable_twice(const given_t *given, const char *file) {
+    struct stat found;
+    return (given->file_count == 1u) || (stat(file, &found) != 0) || S_ISREG(found.st_mode) ||
+           report("%s: is no regular file; several scenarios have to be", file);
+}
+
 /** Read every file once, so that nothing runs when one of them makes no sense. */
 static bool check_scenarios(work_t *work, char **files) {
     for (size_t i = 0u; i < work->given.file_count; i++) {
-        if (!scenario_read(&work->run.scenario, files[i], &work->given.options) || !check_place(work, files[i])) {
+        if (!check_readable_twice(&work->given, files[i]) ||
+            !scenario_read(&work->run.scenario, files[i], &work->given.options) || !check_place(work, files[i])) {
             return false;
         }
     }
@@ -218,19 +230,19 @@ static bool check_scenarios(work_t *work, char **files) {
 
 static void print_result(const work_t *work, const char *file, const result_t *result) {
     if (result->failure_count == 0u) {
-        (void)printf("ok      %s: %zu expectations\n", file, work->run.check.expectation_count);
+        (void)fprintf(work->said_to, "ok      %s: %zu expectations\n", file, work->run.check.expectation_count);
         return;
     }
-    (void)printf("FAILED  %s: %zu of %zu expectations\n", file, result->failure_count,
-                 work->run.check.expectation_count);
+    (void)fprintf(work->said_to, "FAILED  %s: %zu of %zu expectations\n", file, result->failure_count,
+                  work->run.check.expectation_count);
     for (size_t i = 0u; (i < result->failure_count) && (i < SCENARIO_FAILURES_MAX); i++) {
-        (void)printf("        %s\n", result->failures[i]);
+        (void)fprintf(work->said_to, "        %s\n", result->failures[i]);
     }
 }
 
 /** Play it on the simulated bus. */
 static void play_simulated(work_t *work, events_summary_t *summary) {
-    const scenario_watch_t watch = {.on_event = events_write, .ctx = &work->events};
+    const scenario_watch_t watch = {.on_event = events_write, .ctx = &work->outputs[EVENTS]};
     const given_t *given = &work->given;
     const scenario_planted_t planted =
         (given->planted == NOT_PLANTED) ? SCENARIO_REAL : (scenario_planted_t)(given->planted + 1);
@@ -243,14 +255,15 @@ static void play_simulated(work_t *work, events_summary_t *summary) {
 static void write_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t at_us) {
     work_t *work = ctx;
     char line[CANDUMP_WRITE_MAX];
-    (void)output_write(&work->sent, line, candump_write(line, at_us, work->given.interface_names[side], frame));
+    (void)output_write(&work->outputs[SENT], line,
+                       candump_write(line, at_us, work->given.interface_names[side], frame));
 }
 
 /** Play it on CAN interfaces, or leave it out. @return false: reported */
 static bool play_real(work_t *work, events_summary_t *summary, const char **left_out) {
     const scenario_bus_watch_t watch = {
         .on_event = (work->given.events != NULL) ? events_write : NULL,
-        .event_ctx = &work->events,
+        .event_ctx = &work->outputs[EVENTS],
         .on_sent = (work->given.sent != NULL) ? write_sent : NULL,
         .sent_ctx = work,
     };
@@ -268,11 +281,14 @@ static bool play_real(work_t *work, events_summary_t *summary, const char **left
 static bool play(work_t *work, const char *file, result_t *result) {
     events_summary_t summary = {0};
 
-    if (!scenario_read(&work->run.scenario, file, &work->given.options)) {
+    if ((work->given.file_count > 1u) && !scenario_read(&work->run.scenario, file, &work->given.options)) {
         return false;
     }
     if (!is_real(&work->given)) {
         play_simulated(work, &summary);
+        if (work->run.was_interrupted) {
+            return false;
+        }
     } else if (!play_real(work, &summary, &result->left_out)) {
         return false;
     } else if (result->left_out != NULL) {
@@ -281,7 +297,7 @@ static bool play(work_t *work, const char *file, result_t *result) {
         /* played */
     }
     if ((work->given.events != NULL) && (work->given.supervisor == NULL)) {
-        events_write_summary(&work->events, &summary);
+        events_write_summary(&work->outputs[EVENTS], &summary);
     }
     memcpy(result->name, work->run.scenario.name, sizeof result->name);
     memcpy(result->failures, work->run.check.failures, sizeof result->failures);
@@ -291,16 +307,17 @@ static bool play(work_t *work, const char *file, result_t *result) {
 }
 
 static void write_junit(work_t *work, char **files, const totals_t *totals) {
-    junit_begin(&work->junit, "scenarios", totals->passed + totals->failed, totals->failed);
+    junit_begin(&work->outputs[JUNIT], "scenarios", totals->passed + totals->failed, totals->failed);
     for (size_t i = 0u; i < work->given.file_count; i++) {
         const result_t *result = &work->results[i];
         const size_t shown =
             (result->failure_count < SCENARIO_FAILURES_MAX) ? result->failure_count : SCENARIO_FAILURES_MAX;
         if (result->left_out == NULL) {
-            junit_test(&work->junit, files[i], result->name, result->failures[0], shown, SCENARIO_FAILURE_SIZE);
+            junit_test(&work->outputs[JUNIT], files[i], result->name, result->failures[0], shown,
+                       SCENARIO_FAILURE_SIZE);
         }
     }
-    junit_end(&work->junit);
+    junit_end(&work->outputs[JUNIT]);
 }
 
 static void count(totals_t *totals, const result_t *result) {
@@ -317,14 +334,15 @@ static void count(totals_t *totals, const result_t *result) {
 static void print_totals(const work_t *work, char **files, const totals_t *totals) {
     for (size_t i = 0u; i < work->given.file_count; i++) {
         if (work->results[i].left_out != NULL) {
-            (void)printf("left out %s: %s\n", files[i], work->results[i].left_out);
+            (void)fprintf(work->said_to, "left out %s: %s\n", files[i], work->results[i].left_out);
         }
     }
-    (void)printf("%zu scenarios: %zu passed, %zu failed", work->given.file_count, totals->passed, totals->failed);
+    (void)fprintf(work->said_to, "%zu scenarios: %zu passed, %zu failed", work->given.file_count, totals->passed,
+                  totals->failed);
     if (is_real(&work->given)) {
-        (void)printf(", %zu left out", totals->left_out);
+        (void)fprintf(work->said_to, ", %zu left out", totals->left_out);
     }
-    (void)printf("\n");
+    (void)fprintf(work->said_to, "\n");
 }
 
 static status_t play_all(work_t *work, char **files) {
@@ -336,14 +354,14 @@ static status_t play_all(work_t *work, char **files) {
         }
         count(&totals, &work->results[i]);
         if (is_real(&work->given)) {
-            (void)fflush(stdout); /* it takes its time until the next line */
+            (void)fflush(work->said_to); /* it takes its time until the next line */
         }
     }
     print_totals(work, files, &totals);
     if (work->given.junit != NULL) {
         write_junit(work, files, &totals);
     }
-    if (!output_commit(&work->events) || !output_commit(&work->junit) || !output_commit(&work->sent)) {
+    if (!output_commit_all(work->outputs, OUTPUTS)) {
         return STATUS_UNUSABLE;
     }
     return (totals.failed == 0u) ? STATUS_OK : STATUS_UNMET;
@@ -352,9 +370,10 @@ static status_t play_all(work_t *work, char **files) {
 static status_t run_all(work_t *work, char **files) {
     const given_t *given = &work->given;
 
-    if (!check_scenarios(work, files) || ((given->junit != NULL) && !output_open(&work->junit, given->junit)) ||
-        ((given->events != NULL) && !output_open(&work->events, given->events)) ||
-        ((given->sent != NULL) && !output_open(&work->sent, given->sent))) {
+    if (!check_scenarios(work, files) ||
+        ((given->junit != NULL) && !output_open(&work->outputs[JUNIT], given->junit)) ||
+        ((given->events != NULL) && !output_open(&work->outputs[EVENTS], given->events)) ||
+        ((given->sent != NULL) && !output_open(&work->outputs[SENT], given->sent))) {
         return STATUS_UNUSABLE;
     }
     return play_all(work, files);
@@ -375,10 +394,14 @@ status_t cmd_scenario(int argc, char **argv) {
         return STATUS_UNUSABLE;
     }
     work->given = given;
+    const bool is_taken =
+        output_is_stdout(given.junit) || output_is_stdout(given.events) || output_is_stdout(given.sent);
+    work->said_to = is_taken ? stderr : stdout;
     const status_t status = run_all(work, argv);
-    output_discard(&work->events);
-    output_discard(&work->junit);
-    output_discard(&work->sent);
+    for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
+        output_discard(&work->outputs[i]);
+    }
     free(work);
+    interrupt_release();
     return status;
 }

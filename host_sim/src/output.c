@@ -15,7 +15,7 @@
 enum { SLOW_CHUNK = 4096 };
 
 bool output_is_stdout(const char *path) {
-    return (strcmp(path, "-") == 0) || (strcmp(path, "/dev/stdout") == 0);
+    return (path != NULL) && ((strcmp(path, "-") == 0) || (strcmp(path, "/dev/stdout") == 0));
 }
 
 /** The permissions of the file that is replaced, or those of a new one. */
@@ -34,9 +34,10 @@ static mode_t permissions(const char *path) {
  * The caller frees it. NULL: see errno.
  */
 static char *destination(const char *path) {
+    struct stat there;
     char *real = realpath(path, NULL);
-    if ((real != NULL) || (errno != ENOENT)) {
-        return real;
+    if ((real != NULL) || (errno != ENOENT) || (lstat(path, &there) == 0)) {
+        return real; /* NULL for a link to nothing, too: it is not replaced by a file */
     }
     const char *slash = strrchr(path, '/');
     const char *name = (slash != NULL) ? &slash[1] : path;
@@ -197,6 +198,23 @@ bool output_commit(output_t *output) {
     return (error == 0) ? true : report("%s: %s", output->name, strerror(error));
 }
 
+bool output_flush_all(output_t outputs[], size_t count) {
+    for (size_t i = 0u; i < count; i++) {
+        if (outputs[i].is_open && !output_flush(&outputs[i])) {
+            return output_commit(&outputs[i]);
+        }
+    }
+    return true;
+}
+
+bool output_commit_all(output_t outputs[], size_t count) {
+    bool good = output_flush_all(outputs, count);
+    for (size_t i = 0u; good && (i < count); i++) {
+        good = output_commit(&outputs[i]);
+    }
+    return good;
+}
+
 void output_discard(output_t *output) {
     if (output->is_open) {
         if (output->fd != STDOUT_FILENO) {
@@ -209,17 +227,27 @@ void output_discard(output_t *output) {
     }
 }
 
-/** Whether two paths are one file, be it there or not. */
-static bool is_same_file(const char *a, const char *b) {
+static bool find(const output_role_t *role, struct stat *found) {
+    if (role->is_written && output_is_stdout(role->path)) {
+        return fstat(STDOUT_FILENO, found) == 0;
+    }
+    if (!role->is_written && (strcmp(role->path, "-") == 0)) {
+        return fstat(STDIN_FILENO, found) == 0;
+    }
+    return stat(role->path, found) == 0;
+}
+
+/** Whether two roles are one file, be it there or not. */
+static bool is_same_file(const output_role_t *a, const output_role_t *b) {
     struct stat of_a;
     struct stat of_b;
-    bool has_a = stat(a, &of_a) == 0;
-    bool has_b = stat(b, &of_b) == 0;
+    bool has_a = find(a, &of_a);
+    bool has_b = find(b, &of_b);
     if (has_a && has_b) {
         return S_ISREG(of_a.st_mode) && (of_a.st_dev == of_b.st_dev) && (of_a.st_ino == of_b.st_ino);
     }
-    char *real_a = destination(a);
-    char *real_b = destination(b);
+    char *real_a = destination(a->path);
+    char *real_b = destination(b->path);
     bool same = (real_a != NULL) && (real_b != NULL) && (strcmp(real_a, real_b) == 0);
     free(real_a);
     free(real_b);
@@ -230,10 +258,10 @@ static bool is_conflict(const output_role_t *a, const output_role_t *b) {
     if ((a->path == NULL) || (b->path == NULL) || !(a->is_written || b->is_written)) {
         return false;
     }
-    if (output_is_stdout(a->path) || output_is_stdout(b->path)) {
-        return a->is_written && b->is_written && output_is_stdout(a->path) && output_is_stdout(b->path);
+    if (a->is_written && b->is_written && output_is_stdout(a->path) && output_is_stdout(b->path)) {
+        return true;
     }
-    return is_same_file(a->path, b->path);
+    return is_same_file(a, b);
 }
 
 bool output_check_distinct(const output_role_t *roles, size_t count) {

@@ -59,10 +59,19 @@ bool output_flush(output_t *output);
  */
 bool output_commit(output_t *output);
 
+/** Flush several. @return false: one failed, now or before; was reported, and its temporary file is gone. */
+bool output_flush_all(output_t outputs[], size_t count);
+
+/**
+ * Commit several: none is put in its place unless all could be written.
+ * @return false: not everything arrived; was reported, for the first of them.
+ */
+bool output_commit_all(output_t outputs[], size_t count);
+
 /** Forget it: an unfinished file is removed. Nothing when it is not open. */
 void output_discard(output_t *output);
 
-/** Whether a path means standard output: "-", /dev/stdout. */
+/** Whether a path means standard output: "-", /dev/stdout. NULL does not. */
 bool output_is_stdout(const char *path);
 
 /** The role of a file in a command, for output_check_distinct(). */
@@ -73,7 +82,8 @@ typedef struct {
 } output_role_t;
 
 /**
- * Check that no file has two roles of which one is written ("-" as two outputs counts).
+ * Check that no file has two roles of which one is written. "-" is the file that standard input or output is; as two
+ * outputs it counts whatever it is.
  * @return false: two have; was reported.
  */
 bool output_check_distinct(const output_role_t *roles, size_t count);

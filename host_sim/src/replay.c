@@ -181,17 +181,6 @@ static void print_summary(const replay_t *replay, const events_summary_t *summar
     summary_print_state(summary);
 }
 
-/** Report the output that failed, if one did. @return whether none did. */
-static bool check_outputs(replay_t *replay) {
-    for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
-        (void)output_flush(&replay->outputs[i]);
-        if (replay->outputs[i].error != 0) {
-            return output_commit(&replay->outputs[i]);
-        }
-    }
-    return true;
-}
-
 /** The log is over: write what comes last, put every file in its place. @return false: reported. */
 static bool conclude(replay_t *replay) {
     const replay_request_t *request = replay->request;
@@ -206,11 +195,8 @@ static bool conclude(replay_t *replay) {
     if (request->store != NULL) {
         store_file_save(&replay->outputs[STORE], &replay->store, &replay->session.recorder);
     }
-    bool good = check_outputs(replay);
-    for (size_t i = 0u; good && (i < (size_t)OUTPUTS); i++) {
-        good = output_commit(&replay->outputs[i]);
-    }
-    if (good && (request->events == NULL) && ((request->out == NULL) || !output_is_stdout(request->out))) {
+    const bool good = output_commit_all(replay->outputs, OUTPUTS);
+    if (good && (request->events == NULL) && !output_is_stdout(request->out)) {
         print_summary(replay, &summary);
     }
     if (good && (request->ai_interface != NULL) && !replay->ai_was_heard) {
@@ -249,7 +235,7 @@ static bool run(replay_t *replay) {
         return false;
     }
     start(replay, record.stamp_us);
-    return pass_log(replay, &record) ? conclude(replay) : check_outputs(replay) && false;
+    return pass_log(replay, &record) ? conclude(replay) : output_flush_all(replay->outputs, OUTPUTS) && false;
 }
 
 static bool check_request(const replay_request_t *request) {

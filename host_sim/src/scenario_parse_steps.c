@@ -166,7 +166,8 @@ static bool take_patch_bytes(const yaml_reader_t *reader, const reading_t *readi
     return (length == AGV_DLC) || yaml_reader_fail(reader, node, "bytes: all 8 are needed, '..' for one that stays");
 }
 
-static bool take_kind(const yaml_reader_t *reader, const reading_t *reading, hal_can_frame_t *frame) {
+/** @param on_wire whether the simulated bus is to carry it */
+static bool take_kind(const yaml_reader_t *reader, const reading_t *reading, bool on_wire, hal_can_frame_t *frame) {
     static const yaml_word_t words[] = {{"data", 0},        {"extended", HAL_CAN_EXTENDED}, {"remote", HAL_CAN_REMOTE},
                                         {"fd", HAL_CAN_FD}, {"error", HAL_CAN_ERROR},       {NULL, 0}};
     const yaml_node_t *node = given(reading, P_KIND);
@@ -177,6 +178,10 @@ static bool take_kind(const yaml_reader_t *reader, const reading_t *reading, hal
     }
     if (!yaml_reader_word(reader, node, "kind", words, &word)) {
         return false;
+    }
+    if (on_wire && ((word & (int)(HAL_CAN_FD | HAL_CAN_ERROR)) != 0)) {
+        return yaml_reader_fail(reader, node,
+                                "kind: the bus carries data, extended and remote; fd and error are for deliver");
     }
     frame->flags = (uint8_t)word;
     return true;
@@ -190,7 +195,7 @@ static bool take_frame(const yaml_reader_t *reader, const reading_t *reading, co
     if ((id != NULL) == (given(reading, P_MESSAGE) != NULL)) {
         return yaml_reader_fail(reader, reading->node, "either 'id' or 'message' is needed");
     }
-    if (!take_kind(reader, reading, frame) ||
+    if (!take_kind(reader, reading, step->of_vehicle, frame) ||
         !yaml_reader_bytes(reader, given(reading, P_BYTES), "bytes", frame->data, NULL, &frame->length)) {
         return false;
     }

@@ -2,6 +2,10 @@
 
 #include <stddef.h>
 
+#include "interrupt.h"
+
+enum { LOOK_FOR_SIGNALS_EVERY_MS = 1000 };
+
 static void judge_event(void *ctx, const session_event_t *event) {
     scenario_check_event(ctx, event);
 }
@@ -14,7 +18,7 @@ static void play(scenario_run_t *run, void *ctx, scenario_step_fn *on_step) {
     const scenario_t *scenario = &run->scenario;
     size_t next = 0u;
 
-    for (uint32_t t_ms = 0u; t_ms <= scenario->duration_ms; t_ms++) {
+    for (uint32_t t_ms = 0u; (t_ms <= scenario->duration_ms) && !run->was_interrupted; t_ms++) {
         for (; (next < scenario->step_count) && (scenario->steps[next].at_ms == t_ms); next++) {
             if (on_step != NULL) {
                 on_step(ctx, &scenario->steps[next]);
@@ -28,6 +32,7 @@ static void play(scenario_run_t *run, void *ctx, scenario_step_fn *on_step) {
             vehicle_view(&run->world.vehicle, t_ms, &view);
             scenario_check_vehicle(&run->check, t_ms, &view);
         }
+        run->was_interrupted = ((t_ms % LOOK_FOR_SIGNALS_EVERY_MS) == 0u) && interrupt_pending();
     }
 }
 
@@ -35,6 +40,7 @@ bool scenario_run(scenario_run_t *run, scenario_planted_t planted, const scenari
                   scenario_step_fn *on_step) {
     const scenario_watch_t judge = {judge_event, judge_frame, &run->check};
 
+    run->was_interrupted = false;
     scenario_check_init(&run->check, &run->scenario);
     if (!scenario_world_init(&run->world, &run->scenario, planted)) {
         scenario_check_fail(&run->check, 0u, "the world could not be built");
@@ -48,5 +54,5 @@ bool scenario_run(scenario_run_t *run, scenario_planted_t planted, const scenari
     play(run, (watch != NULL) ? watch->ctx : NULL, on_step);
     scenario_check_finish(&run->check,
                           (planted == SCENARIO_REAL) ? agv_supervisor_counters(&run->world.session.supervisor) : NULL);
-    return run->check.failure_count == 0u;
+    return !run->was_interrupted && (run->check.failure_count == 0u);
 }

@@ -17,13 +17,14 @@ typedef struct {
     scenario_t scenario;
     scenario_world_t world;
     scenario_check_t check;
+    bool was_interrupted; /**< by a signal that is held back (interrupt.h): not played to its end */
 } scenario_run_t;
 
 /**
  * Play run->scenario, which was read.
  * @param watch told of what happens, beside the judgement; NULL: nobody
  * @param on_step likewise, with watch->ctx; may be NULL
- * @return whether every expectation held; run->check says which did not
+ * @return whether every expectation held; run->check says which did not. false too when it was interrupted
  */
 bool scenario_run(scenario_run_t *run, scenario_planted_t planted, const scenario_watch_t *watch,
                   scenario_step_fn *on_step);

@@ -240,8 +240,14 @@ static status_t conclude(soak_t *soak) {
     if (soak->state.broken[0] == '\0') {
         soak_judge_counters(soak);
     }
-    print_result(soak);
-    (void)fflush(stdout); /* seen whatever becomes of the files; a failure is reported at the end of the program */
+    if (!output_is_stdout(soak->request->results)) {
+        print_result(soak);
+        (void)fflush(stdout); /* seen whatever becomes of the files; a failure is reported at the end of the program */
+    } else if (soak->state.broken[0] != '\0') {
+        note("BROKEN: %s", soak->state.broken);
+    } else {
+        /* the results say it */
+    }
     const bool saved = soak_save(soak);
     if (!write_results(soak) || !saved) {
         return STATUS_UNUSABLE;

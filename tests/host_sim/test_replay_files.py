@@ -154,6 +154,24 @@ class Outputs(hostsim.Case):
         self.assertEqual((self.folder / "log").read_text(encoding="ascii"), LOG)
         self.assertEqual(self.files(), ["c.yaml", "link", "log"])
 
+    def test_a_file_is_one_also_as_standard_input_or_output(self):
+        self.write("log", LOG)
+        with open(self.folder / "log", "rb") as log:
+            result = subprocess.run([hostsim.PROGRAM, "replay", "--out", "log", "-"], cwd=self.folder, stdin=log,
+                                    stderr=subprocess.PIPE, check=False)
+            self.assertEqual((result.returncode, b"LOG and --out are the same file" in result.stderr), (2, True))
+        with open(self.folder / "both", "wb") as both:
+            result = subprocess.run([hostsim.PROGRAM, "replay", "--out", "-", "--events", "both", "log"], cwd=self.folder,
+                                    stdout=both, stderr=subprocess.PIPE, check=False)
+            self.assertEqual((result.returncode, b"same file" in result.stderr), (2, True), result.stderr)
+        self.assertEqual((self.folder / "log").read_text(encoding="ascii"), LOG)
+
+    def test_a_link_to_nothing_is_not_replaced(self):
+        self.write("log", LOG)
+        os.symlink("nothing", self.folder / "link")
+        self.assert_refused(self.run_program("replay", "--out", "link", "log"), "link: No such file")
+        self.assertEqual(os.readlink(self.folder / "link"), "nothing")
+
     def test_a_signal_leaves_nothing_behind(self):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             with subprocess.Popen([hostsim.PROGRAM, "replay", "--out", "out", "--events", "events", "-"],

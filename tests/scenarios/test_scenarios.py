@@ -3,7 +3,10 @@ import json
 import os
 import pathlib
 import re
+import signal
+import subprocess
 import sys
+import time
 import unittest
 import xml.etree.ElementTree
 
@@ -138,6 +141,50 @@ class Command(hostsim.Case):
 
     def test_an_output_that_is_an_input(self):
         self.assert_refused(self.scenario(GOOD, "--junit", "s.yaml"), "s.yaml")
+
+    def test_no_output_is_put_in_place_unless_all_can_be(self):
+        self.write("e.jsonl", "old")
+        result = self.scenario(GOOD, "--events", "e.jsonl", "--junit", "/dev/full")
+        self.assertEqual((result.status, result.stderr), (2, "host_sim: /dev/full: No space left on device\n"))
+        self.assertEqual((self.folder / "e.jsonl").read_text(encoding="ascii"), "old")
+
+    def test_standard_output_as_an_output_gets_nothing_else(self):
+        result = self.scenario(GOOD, "--events", "-")
+        events = [json.loads(line) for line in result.stdout.splitlines()]
+        self.assertEqual(events[-1]["event"], "summary")
+        self.assertEqual(result.stderr, "ok      s.yaml: 3 expectations\n1 scenarios: 1 passed, 0 failed\n")
+        suite = xml.etree.ElementTree.fromstring(self.scenario(GOOD, "--junit", "-").stdout)
+        self.assertEqual(suite.get("tests"), "1")
+
+    def test_a_signal_ends_it_and_leaves_what_was_there(self):
+        self.write("s.yaml", GOOD.replace("duration_ms: 600", "duration_ms: 86400000"))
+        for number in (signal.SIGINT, signal.SIGTERM):
+            self.write("j.xml", "old")
+            with subprocess.Popen([hostsim.PROGRAM, "scenario", "--junit", "j.xml", "s.yaml"], cwd=self.folder,
+                                  stdout=subprocess.PIPE) as program:
+                deadline = time.monotonic() + 30
+                while len(self.files()) < 3 and time.monotonic() < deadline:
+                    time.sleep(0.01)
+                program.send_signal(number)
+                self.assertEqual((program.wait(timeout=30), program.stdout.read()), (-number, b""))
+            self.assertEqual((self.folder / "j.xml").read_text(encoding="ascii"), "old")
+            self.assertEqual(self.files(), ["j.xml", "s.yaml"])
+
+    def test_a_pipe_is_read_once(self):
+        with subprocess.Popen(["cat"], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as cat:
+            cat.stdin.write(GOOD.encode())
+            cat.stdin.close()
+            result = subprocess.run([hostsim.PROGRAM, "scenario", "/dev/stdin"], stdin=cat.stdout, capture_output=True,
+                                    text=True, check=False)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.write("s.yaml", GOOD)
+        self.assert_refused(self.run_program("scenario", "s.yaml", "/dev/null"), "/dev/null: is no regular file")
+
+    def test_what_the_bus_does_not_carry_is_not_sent(self):
+        for kind in ("fd", "error"):
+            step = f'steps:\n  - {{at_ms: 100, bus: send, id: 124h, bytes: "01", kind: {kind}}}\n'
+            self.assert_refused(self.scenario(GOOD + step), "s.yaml:", "are for deliver")
+            self.assertEqual(self.scenario(GOOD + step.replace("bus: send", "bus: deliver")).status, 0)
 
     def test_options_that_make_no_sense(self):
         self.assert_refused(self.scenario(GOOD, "--planted", "garden"), "--planted", "garden")
