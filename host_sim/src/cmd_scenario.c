@@ -401,7 +401,10 @@ status_t cmd_scenario(int argc, char **argv) {
     for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
         output_discard(&work->outputs[i]);
     }
+    const bool was_interrupted = work->run.was_interrupted;
     free(work);
-    interrupt_release();
+    if (was_interrupted) {
+        interrupt_release(); /* on CAN interfaces it was reported */
+    }
     return status;
 }
