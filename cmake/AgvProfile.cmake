@@ -1,4 +1,4 @@
-# The host program optimised by a profile of itself (gcc): an hour on the simulated bus then takes about a fifth less time.
+# The host program optimised by a profile of itself (gcc): an hour on the simulated bus then takes more than a third less time.
 #
 #   agv_use_profile(target ...)
 #
