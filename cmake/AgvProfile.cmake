@@ -37,7 +37,7 @@ function(agv_use_profile)
     # -fprofile-correction: a function that is new or changed since, and so has no counts, is no warning.
     # --param: what is counted as hot may grow together; short loops over tables of fixed size are unrolled whole, that
     # over the words under the seal (agv_seal) in four chains side by side. Invariants are not moved out of loops: the
-    # addresses of all these words would be, to the stack. A fifth less time a tick.
+    # addresses of all these words would be, to the stack. A sixth less time a tick.
     set(options -fprofile-use=${AGV_PROFILE_COUNTS} -fprofile-partial-training -fprofile-correction
       -Wno-missing-profile -Wno-coverage-mismatch
       "SHELL:--param max-inline-insns-auto=200" "SHELL:--param max-completely-peel-times=64"

@@ -45,6 +45,12 @@ class Results(Campaign):
             self.assertEqual(merged.stdout, whole.stdout)
             self.assertEqual((self.folder / "merged.jsonl").read_bytes(), (self.folder / "whole.jsonl").read_bytes())
 
+    def test_results_on_standard_output_are_all_that_is_there(self):
+        self.campaign("--runs", 5, "--seed", 7, "--results", "file.jsonl")
+        printed = self.campaign("--runs", 5, "--seed", 7, "--results", "-").stdout
+        self.assertEqual(printed, (self.folder / "file.jsonl").read_text(encoding="ascii"))
+        self.assertEqual(self.campaign("--merge", "file.jsonl", "--results", "-").stdout, printed)
+
     def test_a_shard_without_runs_is_one_that_merges(self):
         files = [self.shard(number, 3, runs=2) for number in (1, 2, 3)]
         self.assertEqual(len(self.lines("3.jsonl")), 1)
@@ -169,6 +175,8 @@ class Refused(Campaign):
     def test_options(self):
         good = ("--runs", "3", "--seed", "1")
         self.refuse(says="--runs is missing")
+        self.refuse(*good, "--show", "1", "--results", "out.jsonl", says="--show prints one run")
+        self.refuse(*good, "--show", "1", "--shard", "1/2", says="--show prints one run")
         self.refuse("--runs", "3", says="--seed is missing")
         self.refuse("--runs", "0", "--seed", "1", says="--runs")
         self.refuse("--runs", "100000001", "--seed", "1", says="--runs")

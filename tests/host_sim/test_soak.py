@@ -32,6 +32,16 @@ class Soak(hostsim.Case):
             self.assertGreater(figures["disturbances"], 500 // hostsim.PART)
             self.assertLessEqual(figures["status_late_ms"], 30)
 
+    def test_results_on_standard_output_are_all_that_is_there(self):
+        arguments = ("--hours", 2, "--seed", 1, "--shard", "1/60")
+        self.soak(*arguments, "--results", "file")
+        printed = json.loads(self.soak(*arguments, "--results", "-").stdout)
+        del printed["real_ms"]
+        self.assertEqual(printed, self.figures("file"))
+        broken = self.soak("--hours", 2, "--seed", 1, "--shard", "1/20", "--planted", "trip", "--results", "-", status=1)
+        self.assertTrue(json.loads(broken.stdout)["broken"])
+        self.assertIn("BROKEN: VCU_HEARTBEAT_LOST", broken.stderr)
+
     def test_planted_mistakes_are_found(self):
         for word, said in (("trip", "VCU_HEARTBEAT_LOST"), ("drift", "drift: status frame"),
                            ("count", "frames received: counted"), ("speak", "7EFh sent at")):
