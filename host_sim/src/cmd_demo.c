@@ -32,7 +32,6 @@ typedef struct {
     char path[PATH_SIZE];
     scenario_options_t options;
     timeline_t timeline;
-    scenario_watch_t show; /* the timeline; nobody where events go to standard output */
     output_t events;
     FILE *said_to;
     scenario_run_t run;
@@ -86,33 +85,6 @@ static bool find_scenario(const char *name, char path[PATH_SIZE]) {
     return true;
 }
 
-static void tell_event(void *ctx, const session_event_t *event) {
-    work_t *work = ctx;
-
-    if (work->events.is_open) {
-        events_write(&work->events, event);
-    }
-    if (work->show.on_event != NULL) {
-        work->show.on_event(work->show.ctx, event);
-    }
-}
-
-static void tell_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
-    const work_t *work = ctx;
-
-    if (work->show.on_frame != NULL) {
-        work->show.on_frame(work->show.ctx, t_us, side, from, frame);
-    }
-}
-
-static void tell_step(void *ctx, const scenario_step_t *step) {
-    const work_t *work = ctx;
-
-    if (work->show.ctx != NULL) {
-        timeline_step(work->show.ctx, step);
-    }
-}
-
 static status_t judge(const work_t *work, bool good) {
     const scenario_check_t *check = &work->run.check;
 
@@ -133,15 +105,21 @@ static status_t play(work_t *work, const char *events) {
         ((events != NULL) && !output_open(&work->events, events))) {
         return STATUS_UNUSABLE;
     }
+    scenario_watch_t watches[2];
+    size_t count = 0u;
     const bool is_told = !output_is_stdout(events);
     work->said_to = is_told ? stdout : stderr;
     if (is_told) {
         timeline_init(&work->timeline, &work->run.world);
-        work->show = timeline_watch(&work->timeline);
+        watches[count] = timeline_watch(&work->timeline);
+        count++;
         (void)printf("%s\n\n", work->run.scenario.name);
     }
-    const scenario_watch_t watch = {tell_event, tell_frame, work};
-    const bool good = scenario_run(&work->run, SCENARIO_REAL, &watch, tell_step);
+    if (events != NULL) {
+        watches[count] = (scenario_watch_t){.on_event = events_write, .ctx = &work->events};
+        count++;
+    }
+    const bool good = scenario_run(&work->run, SCENARIO_REAL, watches, count, is_told ? timeline_step : NULL);
     if (work->run.was_interrupted) {
         return STATUS_UNUSABLE;
     }

@@ -247,7 +247,7 @@ static void play_simulated(work_t *work, events_summary_t *summary) {
     const scenario_planted_t planted =
         (given->planted == NOT_PLANTED) ? SCENARIO_REAL : (scenario_planted_t)(given->planted + 1);
 
-    (void)scenario_run(&work->run, planted, (given->events != NULL) ? &watch : NULL, NULL);
+    (void)scenario_run(&work->run, planted, &watch, (given->events != NULL) ? 1u : 0u, NULL);
     events_summarise(&work->run.world.session, summary);
 }
 

@@ -1,7 +1,5 @@
 #include "scenario_run.h"
 
-#include <stddef.h>
-
 #include "interrupt.h"
 
 enum { LOOK_FOR_SIGNALS_EVERY_MS = 1000 };
@@ -36,7 +34,7 @@ static void play(scenario_run_t *run, void *ctx, scenario_step_fn *on_step) {
     }
 }
 
-bool scenario_run(scenario_run_t *run, scenario_planted_t planted, const scenario_watch_t *watch,
+bool scenario_run(scenario_run_t *run, scenario_planted_t planted, const scenario_watch_t watches[], size_t count,
                   scenario_step_fn *on_step) {
     const scenario_watch_t judge = {judge_event, judge_frame, &run->check};
 
@@ -47,11 +45,11 @@ bool scenario_run(scenario_run_t *run, scenario_planted_t planted, const scenari
         return false;
     }
     scenario_world_watch(&run->world, &judge);
-    if (watch != NULL) {
-        scenario_world_watch(&run->world, watch);
+    for (size_t i = 0u; i < count; i++) {
+        scenario_world_watch(&run->world, &watches[i]);
     }
     scenario_world_start(&run->world);
-    play(run, (watch != NULL) ? watch->ctx : NULL, on_step);
+    play(run, (count > 0u) ? watches[0].ctx : NULL, on_step);
     scenario_check_finish(&run->check,
                           (planted == SCENARIO_REAL) ? agv_supervisor_counters(&run->world.session.supervisor) : NULL);
     return !run->was_interrupted && (run->check.failure_count == 0u);

@@ -5,6 +5,8 @@
 #ifndef HOST_SIM_SCENARIO_RUN_H
 #define HOST_SIM_SCENARIO_RUN_H
 
+#include <stddef.h>
+
 #include "scenario.h"
 #include "scenario_check.h"
 #include "scenario_world.h"
@@ -22,11 +24,11 @@ typedef struct {
 
 /**
  * Play run->scenario, which was read.
- * @param watch told of what happens, beside the judgement; NULL: nobody
- * @param on_step likewise, with watch->ctx; may be NULL
+ * @param watches told of what happens, beside the judgement: @p count of them
+ * @param on_step likewise, with the ctx of the first; NULL: nobody is told
  * @return whether every expectation held; run->check says which did not. false too when it was interrupted
  */
-bool scenario_run(scenario_run_t *run, scenario_planted_t planted, const scenario_watch_t *watch,
+bool scenario_run(scenario_run_t *run, scenario_planted_t planted, const scenario_watch_t watches[], size_t count,
                   scenario_step_fn *on_step);
 
 #endif

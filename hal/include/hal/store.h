@@ -1,8 +1,8 @@
 /**
  * @file store.h
  * What outlives a reset: the latch record in RAM that a reset does not clear (and that may be gone after a power-on),
- * and a log of the flight recorder's events in flash. Pointers are never NULL. Bytes that come back may be corrupt: the caller has its own
- * checksum in them.
+ * and a log of the flight recorder's events in flash. Pointers are never NULL. Bytes that come back may be corrupt: the
+ * caller has its own checksum in them.
  */
 #ifndef HAL_STORE_H
 #define HAL_STORE_H
