@@ -124,9 +124,9 @@ static bool take_class(const reading_t *reading, agv_fault_t fault) {
     }
     int index = take_word(reading, CLASS_WORDS);
     if (index == CLASS_WORD_TRIP) {
-        reading->config->trips |= agv_fault_bit(fault);
+        agv_fault_set_put(&reading->config->trips, fault, true);
     } else if (index == CLASS_WORD_WARN) {
-        reading->config->trips &= ~agv_fault_bit(fault);
+        agv_fault_set_put(&reading->config->trips, fault, false);
     }
     return index >= 0;
 }

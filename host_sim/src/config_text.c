@@ -21,13 +21,17 @@ static void value_text(const agv_setting_info_t *info, uint16_t value, char text
     }
 }
 
-static const char *class_word(agv_fault_set_t trips, agv_fault_t fault) {
-    return agv_class_name(((trips & agv_fault_bit(fault)) != 0u) ? AGV_CLASS_TRIP : AGV_CLASS_WARN);
+static const char *class_word(const agv_config_t *config, agv_fault_t fault) {
+    return agv_class_name(agv_config_is_trip(config, fault) ? AGV_CLASS_TRIP : AGV_CLASS_WARN);
+}
+
+static const char *default_word(agv_fault_t fault) {
+    return agv_class_name(agv_fault_default_class(fault));
 }
 
 /** Whether the class of a fault may be chosen at all. */
 static bool may_be_chosen(agv_fault_t fault) {
-    return (agv_faults_fixed & agv_fault_bit(fault)) == 0u;
+    return (agv_fault_flags(fault) & AGV_FAULT_FLAG_FIXED) == 0u;
 }
 
 void config_print_yaml(const agv_config_t *config) {
@@ -55,8 +59,8 @@ void config_print_yaml(const agv_config_t *config) {
         const agv_fault_t fault = (agv_fault_t)i;
         char key[CONFIG_CLASS_KEY_SIZE];
         config_class_key(fault, key);
-        (void)printf("%s: %s  # default %s%s\n", key, class_word(config->trips, fault),
-                     class_word(agv_faults_default_trips, fault), may_be_chosen(fault) ? "" : ", must stay");
+        (void)printf("%s: %s  # default %s%s\n", key, class_word(config, fault),
+                     default_word(fault), may_be_chosen(fault) ? "" : ", must stay");
     }
 }
 
@@ -84,7 +88,7 @@ void config_print_kconfig(const agv_config_t *config) {
         const agv_fault_t fault = (agv_fault_t)i;
         if (may_be_chosen(fault)) {
             (void)printf("CONFIG_AGV_CLASS_%s_", agv_fault_name(fault));
-            print_upper(class_word(config->trips, fault));
+            print_upper(class_word(config, fault));
             (void)printf("=y\n");
         }
     }
@@ -110,10 +114,10 @@ void config_note_deviations(const agv_config_t *config) {
     }
     for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
         const agv_fault_t fault = (agv_fault_t)i;
-        if (((config->trips ^ agv_faults_default_trips) & agv_fault_bit(fault)) != 0u) {
+        if (agv_config_is_trip(config, fault) != (agv_fault_default_class(fault) == AGV_CLASS_TRIP)) {
             char key[CONFIG_CLASS_KEY_SIZE];
             config_class_key(fault, key);
-            print_deviation(&any, key, class_word(config->trips, fault), class_word(agv_faults_default_trips, fault));
+            print_deviation(&any, key, class_word(config, fault), default_word(fault));
         }
     }
     if (any) {

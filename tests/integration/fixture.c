@@ -295,7 +295,7 @@ void fixture_run_without_ticks(fixture_t *f, uint32_t ms) {
 /* ---- Looking ---- */
 
 bool fixture_has(const fixture_t *f, agv_fault_t fault) {
-    return (agv_supervisor_active_faults(&f->supervisor) & agv_fault_bit(fault)) != 0;
+    return agv_supervisor_has_fault(&f->supervisor, fault);
 }
 
 static uint32_t find_fault(const fixture_t *f, agv_fault_t fault, bool raised, agv_event_t *last) {

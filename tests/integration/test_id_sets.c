@@ -39,7 +39,7 @@ void test_both_sets_work(void) {
         init(&SETS[i]);
         fixture_active(&f);
         TEST_ASSERT_EQUAL_HEX32(SETS[i].status_id, f.traffic[AGV_MSG_VEHICLE_STATUS].id);
-        TEST_ASSERT_EQUAL_UINT64(0, agv_supervisor_active_faults(&f.supervisor));
+        TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
         f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x01;
         fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
         expect_trip(&f, AGV_FAULT_REMOTE_SIGNAL_LOST, f.traffic[AGV_MSG_VEHICLE_STATUS].call, ANGLE_CENTRE);

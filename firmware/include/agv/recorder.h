@@ -25,13 +25,24 @@ typedef enum {
     AGV_EVENT_STARTUP = 5 /**< missing = AGV_MISSING_*: what keeps INIT from being left */
 } agv_event_kind_t;
 
+/** What may be missing for a reset or for leaving INIT: words of the events `reset` and `startup` (names.h). */
+#define AGV_MISSING_STATE 0x01u         /**< not in SAFE */
+#define AGV_MISSING_VCU_HEARTBEAT 0x02u /**< VCU not alive */
+#define AGV_MISSING_EPS_HEARTBEAT 0x04u /**< EPS not alive */
+#define AGV_MISSING_TRIP_CAUSE 0x08u    /**< a trip cause is active */
+#define AGV_MISSING_STANDSTILL 0x10u
+#define AGV_MISSING_MANUAL 0x20u   /**< manual is not reported */
+#define AGV_MISSING_BUTTON 0x40u   /**< the press began before the trip, or there is none */
+#define AGV_MISSING_MESSAGES 0x80u /**< a trip-class status message is not fresh */
+#define AGV_MISSING_ALL 0xFFu
+
 /** What the supervisor says of an event. */
 typedef struct {
     uint8_t kind; /**< agv_event_kind_t */
     uint8_t a;
     uint8_t b;
     uint8_t c;
-    uint8_t missing;      /**< AGV_MISSING_* bits (state_machine.h) */
+    uint8_t missing;      /**< AGV_MISSING_* bits */
     uint8_t state;        /**< agv_state_t at that moment */
     uint8_t first_reason; /**< agv_fault_t, AGV_FAULT_NONE when not tripped */
 } agv_entry_t;

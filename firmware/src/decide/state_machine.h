@@ -1,0 +1,89 @@
+/**
+ * @file state_machine.h
+ * What to do: INIT, STANDBY, ACTIVE, TRIPPED, SAFE (FSM-1 to FSM-5, FSM-9), the reset, the safety output. It knows facts
+ * only, no frames and no hardware, and says what is to be done as a list of actions; the supervisor carries them out.
+ */
+#ifndef AGV_STATE_MACHINE_H
+#define AGV_STATE_MACHINE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "agv/recorder.h"
+#include "agv/state.h"
+#include "base/timers.h"
+#include "decide/fault_monitor.h"
+
+/** The facts that a step goes by: bits. A fact whose lack may be what is missing has the bit of AGV_MISSING_X. */
+#define AGV_FACT_VCU_ALIVE AGV_MISSING_VCU_HEARTBEAT
+#define AGV_FACT_EPS_ALIVE AGV_MISSING_EPS_HEARTBEAT
+#define AGV_FACT_STANDSTILL AGV_MISSING_STANDSTILL
+#define AGV_FACT_MANUAL AGV_MISSING_MANUAL
+#define AGV_FACT_MESSAGES AGV_MISSING_MESSAGES /**< every trip-class status message is fresh */
+#define AGV_FACT_ENGAGED 0x0100u
+#define AGV_FACT_AI_ALIVE 0x0200u
+#define AGV_FACT_AUTOPILOT_OFF 0x0400u /**< confirmed by the VCU */
+#define AGV_FACT_IN_PARK 0x0800u       /**< confirmed by the VCU */
+#define AGV_FACT_BUTTON_DOWN 0x1000u   /**< remote button 1 is pressed */
+#define AGV_FACT_BUTTON_UP 0x2000u     /**< and is not; neither before the first 363h */
+#define AGV_FACT_OUTPUT_UNSAFE 0x4000u /**< bus-off, transmit stalled, watchdog not fed: the output opens at once */
+
+/** Actions: bits, and the AGV_MISSING_* of what is reported. */
+#define AGV_ACTION_TRIP 0x0100u           /**< entered TRIPPED by a trip: send all safe commands at once */
+#define AGV_ACTION_RESET_ACCEPTED 0x0200u /**< left SAFE */
+#define AGV_ACTION_RESET_REFUSED 0x0400u  /**< report a press that was in vain; the missing bits say why */
+#define AGV_ACTION_STARTUP_LATE 0x0800u   /**< report that INIT lasts; the missing bits say what keeps it */
+#define AGV_ACTION_STATE 0x1000u          /**< the state is another one: `from` says which it was */
+#define AGV_ACTION_DISCARD 0x2000u        /**< what waits to be sent to the vehicle is never sent */
+#define AGV_ACTION_PURGE 0x4000u          /**< nor what the controller has taken */
+#define AGV_ACTION_UNLATCH 0x8000u        /**< what was latched is over */
+#define AGV_ACTION_STORE_LATCH 0x10000u   /**< the latch record is another one */
+#define AGV_ACTION_OPEN_OUTPUT 0x20000u   /**< open the safety output, before anything that takes time */
+#define AGV_ACTION_CLOSE_OUTPUT 0x40000u  /**< close it, after everything else */
+
+/** What a step wants done. */
+typedef struct {
+    uint32_t what;        /**< AGV_ACTION_* and AGV_MISSING_* */
+    uint8_t from;         /**< agv_state_t before the step */
+    uint8_t first_reason; /**< agv_fault_t before the step */
+} agv_actions_t;
+
+/** The machine. */
+typedef struct {
+    uint8_t state;         /**< agv_state_t */
+    uint8_t latched;       /**< AGV_LATCH_CLOSED in TRIPPED and SAFE, else AGV_LATCH_OPEN */
+    uint8_t first_reason;  /**< agv_fault_t */
+    uint8_t unresettable;  /**< agv_fault_t: what only a power-on ends */
+    uint8_t press_missing; /**< AGV_MISSING_* seen during the press */
+    bool button_before;
+    bool pressed_after_trip; /**< a rising edge came after the trip */
+    bool press_refused;      /**< and was reported */
+    bool park_released;      /**< 168h may be sent */
+    bool output_closed;
+    bool startup_reported;
+} agv_state_machine_t;
+
+/** Start, from zeroed memory, in INIT (@p reason AGV_FAULT_NONE) or in TRIPPED; the output is open. */
+void agv_state_machine_start(agv_state_machine_t *machine, agv_timers_t *timers, const agv_config_t *config,
+                             uint32_t reason);
+
+/** An unresettable fault was found before the start. Ignored for AGV_FAULT_NONE. */
+void agv_state_machine_forbid_reset(agv_state_machine_t *machine, uint32_t fault);
+
+/** One step, after each frame and each tick. At most one transition. */
+agv_actions_t agv_state_machine_step(agv_state_machine_t *machine, agv_timers_t *timers, const agv_config_t *config,
+                                     const agv_fault_summary_t *faults, uint32_t facts);
+
+/** 168h P was sent: from its first time after the trip the vehicle has confirm_timeout_ms. */
+void agv_state_machine_park_sent(const agv_state_machine_t *machine, agv_timers_t *timers);
+
+/** Whether the safe state is not confirmed in time (FSM-4): SAFE_STATE_UNCONFIRMED has a cause. */
+bool agv_state_machine_is_unconfirmed(const agv_state_machine_t *machine, const agv_timers_t *timers, uint32_t facts);
+
+/** Whether INIT lasts for too long: STARTUP_TIMEOUT has a cause. */
+bool agv_state_machine_is_startup_late(const agv_state_machine_t *machine, const agv_timers_t *timers);
+
+/** Whether state and latch fit together (INT-5). */
+bool agv_state_machine_is_sound(const agv_state_machine_t *machine);
+
+#endif
