@@ -7,16 +7,22 @@ set(AGV_CORE_SOURCES
   ${AGV_CORE_DIR}/src/base/fault_table.c
   ${AGV_CORE_DIR}/src/base/message.c
   ${AGV_CORE_DIR}/src/base/names.c
+  ${AGV_CORE_DIR}/src/base/score.c
   ${AGV_CORE_DIR}/src/base/state.c
   ${AGV_CORE_DIR}/src/base/timers.c
+  ${AGV_CORE_DIR}/src/decide/confirmation.c
   ${AGV_CORE_DIR}/src/decide/fault_monitor.c
   ${AGV_CORE_DIR}/src/decide/hold.c
+  ${AGV_CORE_DIR}/src/decide/reset_button.c
   ${AGV_CORE_DIR}/src/decide/state_machine.c
+  ${AGV_CORE_DIR}/src/decide/stopping.c
   ${AGV_CORE_DIR}/src/keep/latch.c
   ${AGV_CORE_DIR}/src/keep/led.c
   ${AGV_CORE_DIR}/src/keep/recorder.c
   ${AGV_CORE_DIR}/src/observe/bus.c
+  ${AGV_CORE_DIR}/src/observe/commands.c
   ${AGV_CORE_DIR}/src/observe/deadlines.c
+  ${AGV_CORE_DIR}/src/observe/intrusion.c
   ${AGV_CORE_DIR}/src/observe/liveness.c
   ${AGV_CORE_DIR}/src/observe/mode.c
   ${AGV_CORE_DIR}/src/observe/motion_checks.c

@@ -4,15 +4,23 @@
 #include <inttypes.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "agv/names.h"
 #include "config_file.h"
 
 enum { TEXT_SIZE = 96 };
 
+/** Identifiers are written in hexadecimal. */
+static bool is_identifier(const agv_setting_info_t *info) {
+    return (strncmp(info->name, "id_", 3u) == 0 && (info->words == NULL)) || (strcmp(info->name, "status_frame_id") == 0);
+}
+
 /** The value of a setting as it stands in a file. */
 static void value_text(const agv_setting_info_t *info, uint16_t value, char text[TEXT_SIZE]) {
-    if (info->words == NULL) {
+    if (is_identifier(info)) {
+        (void)snprintf(text, TEXT_SIZE, "0x%03X", value);
+    } else if (info->words == NULL) {
         (void)snprintf(text, TEXT_SIZE, "%u", value);
     } else {
         const char *word = NULL;
@@ -34,6 +42,23 @@ static bool may_be_chosen(agv_fault_t fault) {
     return (agv_fault_flags(fault) & AGV_FAULT_FLAG_FIXED) == 0u;
 }
 
+/** Which values weaken the supervision. */
+static const char *weakens_text(const agv_setting_info_t *info) {
+    static const struct {
+        const char *weakens;
+        const char *text;
+    } texts[] = {{"ABOVE", "; more weakens"},
+                 {"BELOW", "; less weakens"},
+                 {"ZERO", "; 0 weakens"},
+                 {"CHOSEN", "; the second weakens"}};
+    for (size_t i = 0u; i < sizeof texts / sizeof texts[0]; i++) {
+        if (strcmp(info->weakens, texts[i].weakens) == 0) {
+            return texts[i].text;
+        }
+    }
+    return "";
+}
+
 void config_print_yaml(const agv_config_t *config) {
     (void)printf("# Configuration of the supervisor: every setting with its meaning, range and default.\n"
                  "# Checksum: %08" PRIX32 "\n",
@@ -46,11 +71,12 @@ void config_print_yaml(const agv_config_t *config) {
         value_text(info, agv_config_get(config, i), value);
         (void)printf("\n# %s\n", info->meaning);
         if (info->words == NULL) {
-            (void)printf("# %u to %u%s%s, default %s\n", info->lowest, info->highest,
+            (void)printf("# %u to %u%s%s, default %s", info->lowest, info->highest,
                          (info->unit[0] != '\0') ? " " : "", info->unit, preset);
         } else {
-            (void)printf("# %s, default %s\n", info->words, preset);
+            (void)printf("# %s, default %s", info->words, preset);
         }
+        (void)printf("%s%s\n", weakens_text(info), info->gateway_only ? "; gateway only" : "");
         (void)printf("%s: %s\n", info->name, value);
     }
     (void)printf(
@@ -95,8 +121,9 @@ void config_print_kconfig(const agv_config_t *config) {
 }
 
 /** Begin or go on with the line of deviations. */
-static void print_deviation(bool *any, const char *key, const char *value, const char *preset) {
-    (void)fprintf(stderr, "%s%s: %s (%s)", *any ? ", " : "host_sim: not the default: ", key, value, preset);
+static void print_deviation(bool *any, const char *key, const char *value, const char *preset, bool weakens) {
+    (void)fprintf(stderr, "%s%s: %s (%s%s)", *any ? ", " : "host_sim: not the default: ", key, value, preset,
+                  weakens ? ", WEAKER" : "");
     *any = true;
 }
 
@@ -109,7 +136,7 @@ void config_note_deviations(const agv_config_t *config) {
             char value[TEXT_SIZE];
             value_text(info, info->preset, preset);
             value_text(info, agv_config_get(config, i), value);
-            print_deviation(&any, info->name, value, preset);
+            print_deviation(&any, info->name, value, preset, agv_config_weakens(config, i));
         }
     }
     for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
@@ -117,7 +144,8 @@ void config_note_deviations(const agv_config_t *config) {
         if (agv_config_is_trip(config, fault) != (agv_fault_default_class(fault) == AGV_CLASS_TRIP)) {
             char key[CONFIG_CLASS_KEY_SIZE];
             config_class_key(fault, key);
-            print_deviation(&any, key, class_word(config, fault), default_word(fault));
+            print_deviation(&any, key, class_word(config, fault), default_word(fault),
+                            !agv_config_is_trip(config, fault));
         }
     }
     if (any) {

@@ -169,7 +169,7 @@ static bool read_missing_word(const yaml_reader_t *reader, const yaml_node_t *no
     }
     for (uint8_t i = 0u; i < MISSING_KINDS; i++) {
         if (strcmp(agv_missing_name(i), text) == 0) {
-            ((scenario_reset_t *)target)->missing |= (uint8_t)(1u << i);
+            ((scenario_reset_t *)target)->missing |= (uint16_t)(1u << i);
             return true;
         }
     }

@@ -19,11 +19,17 @@ enum { AGV_PARK_AT_ONCE = 0, AGV_PARK_AT_STANDSTILL = 1 };
 enum { AGV_AI_LOST_WARN = 0, AGV_AI_LOST_TRIP = 1 };
 enum { AGV_OWN_HEARTBEAT_RUNNING = 0, AGV_OWN_HEARTBEAT_FROZEN = 1 };
 enum { AGV_IN_MANUAL_HEARTBEAT = 0, AGV_IN_MANUAL_ALL = 1 };
+enum { AGV_COUNTER_ANY = 0, AGV_COUNTER_INCREMENTS = 1 };
+enum { AGV_AFTER_POWER_ON_INIT = 0, AGV_AFTER_POWER_ON_TRIPPED = 1 };
+enum { AGV_GEAR_CHANGE_AT_STANDSTILL = 0, AGV_GEAR_CHANGE_ANY = 1 };
+
+/** standstill_vcu_counts: the speed of 363h is not looked at. */
+#define AGV_STANDSTILL_VCU_ANY 65535u
 
 /** All settings, in the order of config_settings.def, then the identifiers, and the classes of the faults. */
 typedef struct {
-#define AGV_SETTING(name, preset, lowest, highest, unit, meaning) uint16_t name;
-#define AGV_CHOICE(name, preset, words, meaning) uint16_t name;
+#define AGV_SETTING(name, preset, lowest, highest, unit, weakens, scope, meaning) uint16_t name;
+#define AGV_CHOICE(name, words, weakens, scope, meaning) uint16_t name;
 #include "agv/config_settings.def"
 #undef AGV_SETTING
 #undef AGV_CHOICE
@@ -37,8 +43,8 @@ typedef struct {
 
 /** Index of each setting, `trips` not among them, and their number. */
 enum {
-#define AGV_SETTING(name, preset, lowest, highest, unit, meaning) AGV_SETTING_##name,
-#define AGV_CHOICE(name, preset, words, meaning) AGV_SETTING_##name,
+#define AGV_SETTING(name, preset, lowest, highest, unit, weakens, scope, meaning) AGV_SETTING_##name,
+#define AGV_CHOICE(name, words, weakens, scope, meaning) AGV_SETTING_##name,
 #include "agv/config_settings.def"
 #undef AGV_SETTING
 #undef AGV_CHOICE
@@ -56,7 +62,8 @@ typedef enum {
     AGV_CONFIG_OK,
     AGV_CONFIG_OUT_OF_RANGE,   /**< a setting below its lowest or above its highest value; `setting` says which */
     AGV_CONFIG_ID_TWICE,       /**< `setting` is an identifier that another message has, or the status frame */
-    AGV_CONFIG_NEEDS_GATEWAY,  /**< `setting` only makes sense in the gateway topology */
+    AGV_CONFIG_NEEDS_GATEWAY,  /**< `setting` is not at its default and has no effect on a shared bus */
+    AGV_CONFIG_PRESS_TOO_SHORT, /**< reset_hold_max_ms is not above reset_hold_ms: no press would reset */
     AGV_CONFIG_FAULT_TOO_WEAK, /**< `fault` is made weaker than it may be */
     AGV_CONFIG_NO_SUCH_FAULT   /**< bits in `trips` beyond the faults */
 } agv_config_problem_t;
@@ -95,6 +102,9 @@ agv_config_verdict_t agv_config_check(const agv_config_t *config);
  */
 uint32_t agv_config_checksum(const agv_config_t *config);
 
+/** Whether a setting has a value that weakens the supervision against its default (INT-2). False beyond the last. */
+bool agv_config_weakens(const agv_config_t *config, uint32_t setting);
+
 /** What a setting is, for programs that list or read configurations. Not used by the supervisor itself. */
 typedef struct {
     const char *name;
@@ -104,6 +114,8 @@ typedef struct {
     const char *unit;    /**< "" for choices */
     const char *words;   /**< "a|b" for choices, NULL for numbers */
     const char *meaning; /**< one line, with the requirement row */
+    const char *weakens; /**< "ABOVE", "BELOW", "ZERO", "CHOSEN" or "NEVER", as config_settings.def explains */
+    bool gateway_only;   /**< without effect on a shared bus */
 } agv_setting_info_t;
 
 /** Describe a setting; NULL beyond the last. */

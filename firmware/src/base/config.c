@@ -5,38 +5,30 @@
 
 #include "agv/checksum.h"
 
-/* The choices come first, then what has a row here. Every choice has two words: its values are 0 and 1, 0 the default. */
-enum {
-#define AGV_SETTING(name, preset, lowest, highest, unit, meaning)
-#define AGV_CHOICE(name, preset, words, meaning) CHOICE_##name,
-#include "agv/config_settings.def"
-#undef AGV_SETTING
-#undef AGV_CHOICE
-    CHOICES,
-    CHOICE_MAX = 1
-};
+/* Every choice has two words: its values are 0, the default, and 1. */
+enum { CHOICE_MAX = 1 };
 
-#define AGV_SETTING(name, preset, lowest, highest, unit, meaning)                                                      \
-    _Static_assert((int)AGV_SETTING_##name >= (int)CHOICES, #name);
-#define AGV_CHOICE(name, preset, words, meaning) _Static_assert((preset) == 0, #name);
-#include "agv/config_settings.def"
-#undef AGV_SETTING
-#undef AGV_CHOICE
+/* Which values weaken, and where a setting has an effect. */
+enum { NEVER, ABOVE, BELOW, ZERO, CHOSEN = ABOVE, ANY = 0, GATEWAY = 1 };
 
 static const struct {
     uint16_t preset;
     uint16_t lowest;
     uint16_t highest;
-} rows[AGV_SETTING_COUNT - CHOICES] = {
-#define AGV_SETTING(name, preset, lowest, highest, unit, meaning)                                                      \
-    [AGV_SETTING_##name - (int)CHOICES] = {(preset), (lowest), (highest)},
-#define AGV_CHOICE(name, preset, words, meaning)
+    uint8_t weakens;
+    uint8_t scope;
+} rows[AGV_SETTING_COUNT] = {
+#define AGV_SETTING(name, by_default, low, high, unit, weak, where, meaning)                                           \
+    [AGV_SETTING_##name] = {                                                                                           \
+        .preset = (by_default), .lowest = (low), .highest = (high), .weakens = (weak), .scope = (where)},
+#define AGV_CHOICE(name, words, weak, where, meaning)                                                                  \
+    [AGV_SETTING_##name] = {.highest = CHOICE_MAX, .weakens = (weak), .scope = (where)},
 #include "agv/config_settings.def"
 #undef AGV_SETTING
 #undef AGV_CHOICE
 #define AGV_COMMAND AGV_STATUS
 #define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter)                                        \
-    [AGV_SETTING_id_##name - (int)CHOICES] = {(heading), 1, AGV_ID_MAX},
+    [AGV_SETTING_id_##name] = {.preset = (heading), .lowest = 1, .highest = AGV_ID_MAX},
 #include "agv/message_table.def"
 #undef AGV_COMMAND
 #undef AGV_STATUS
@@ -70,8 +62,8 @@ bool agv_config_is_trip(const agv_config_t *config, uint32_t fault) {
 
 void agv_config_defaults(agv_config_t *config) {
     (void)memset(config, 0, sizeof *config);
-    for (uint32_t i = CHOICES; i < (uint32_t)AGV_SETTING_COUNT; i++) {
-        (void)agv_config_set(config, i, rows[i - CHOICES].preset);
+    for (uint32_t i = 0u; i < (uint32_t)AGV_SETTING_COUNT; i++) {
+        (void)agv_config_set(config, i, rows[i].preset);
     }
     for (uint32_t fault = 0u; fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
         agv_fault_set_put(&config->trips, fault, agv_fault_default_class(fault) == AGV_CLASS_TRIP);
@@ -79,10 +71,7 @@ void agv_config_defaults(agv_config_t *config) {
 }
 
 static bool is_in_range(uint32_t setting, uint32_t value) {
-    if (setting < (uint32_t)CHOICES) {
-        return value <= (uint32_t)CHOICE_MAX;
-    }
-    return (value >= rows[setting - CHOICES].lowest) && (value <= rows[setting - CHOICES].highest);
+    return (value >= rows[setting].lowest) && (value <= rows[setting].highest);
 }
 
 /* The setting that is out of range; AGV_SETTING_COUNT when none is. */
@@ -134,20 +123,44 @@ static bool has_unknown_fault(const agv_config_t *config) {
     return (used != 0u) && ((config->trips.words[AGV_FAULT_WORDS - 1u] >> used) != 0u);
 }
 
+/* On a shared bus: the first setting that is not at its default and has no effect; AGV_SETTING_COUNT when there is none. */
+static uint32_t without_effect(const agv_config_t *config) {
+    uint32_t setting = (config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? (uint32_t)AGV_SETTING_COUNT : 0u;
+    while ((setting < (uint32_t)AGV_SETTING_COUNT) &&
+           ((rows[setting].scope == (uint8_t)ANY) || (agv_config_get(config, setting) == rows[setting].preset))) {
+        setting++;
+    }
+    return setting;
+}
+
+/* What is wrong with a setting, if anything is. */
+static agv_config_problem_t check_settings(const agv_config_t *config, uint16_t *setting) {
+    *setting = (uint16_t)out_of_range(config);
+    if (*setting < (uint16_t)AGV_SETTING_COUNT) {
+        return AGV_CONFIG_OUT_OF_RANGE;
+    }
+    *setting = (uint16_t)id_twice(config);
+    if (*setting < (uint16_t)AGV_SETTING_COUNT) {
+        return AGV_CONFIG_ID_TWICE;
+    }
+    *setting = (uint16_t)without_effect(config);
+    if (*setting < (uint16_t)AGV_SETTING_COUNT) {
+        return AGV_CONFIG_NEEDS_GATEWAY;
+    }
+    if (config->reset_hold_max_ms <= config->reset_hold_ms) {
+        *setting = AGV_SETTING_reset_hold_max_ms;
+        return AGV_CONFIG_PRESS_TOO_SHORT;
+    }
+    return AGV_CONFIG_OK;
+}
+
 agv_config_verdict_t agv_config_check(const agv_config_t *config) {
-    agv_config_verdict_t verdict = {AGV_CONFIG_OK, (uint16_t)out_of_range(config), (agv_fault_t)too_weak(config)};
-    if (verdict.setting < (uint16_t)AGV_SETTING_COUNT) {
-        verdict.problem = AGV_CONFIG_OUT_OF_RANGE;
+    agv_config_verdict_t verdict = {AGV_CONFIG_OK, AGV_SETTING_COUNT, (agv_fault_t)too_weak(config)};
+    verdict.problem = check_settings(config, &verdict.setting);
+    if (verdict.problem != AGV_CONFIG_OK) {
         return verdict;
     }
-    verdict.setting = (uint16_t)id_twice(config);
-    if (verdict.setting < (uint16_t)AGV_SETTING_COUNT) {
-        verdict.problem = AGV_CONFIG_ID_TWICE;
-    } else if ((config->own_heartbeat == (uint16_t)AGV_OWN_HEARTBEAT_FROZEN) &&
-               (config->topology != (uint16_t)AGV_TOPOLOGY_GATEWAY)) {
-        verdict.problem = AGV_CONFIG_NEEDS_GATEWAY;
-        verdict.setting = AGV_SETTING_own_heartbeat;
-    } else if (verdict.fault != AGV_FAULT_NONE) {
+    if (verdict.fault != AGV_FAULT_NONE) {
         verdict.problem = AGV_CONFIG_FAULT_TOO_WEAK;
     } else if (has_unknown_fault(config)) {
         verdict.problem = AGV_CONFIG_NO_SUCH_FAULT;
@@ -155,6 +168,23 @@ agv_config_verdict_t agv_config_check(const agv_config_t *config) {
         /* sound */
     }
     return verdict;
+}
+
+bool agv_config_weakens(const agv_config_t *config, uint32_t setting) {
+    const uint32_t value = agv_config_get(config, setting);
+    if (setting >= (uint32_t)AGV_SETTING_COUNT) {
+        return false;
+    }
+    switch (rows[setting].weakens) {
+    case ABOVE: /* and CHOSEN */
+        return value > rows[setting].preset;
+    case BELOW:
+        return value < rows[setting].preset;
+    case ZERO:
+        return value == 0u;
+    default:
+        return false;
+    }
 }
 
 uint32_t agv_config_checksum(const agv_config_t *config) {

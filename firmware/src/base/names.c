@@ -19,17 +19,22 @@ static const char *const message_names[AGV_MSG_COUNT] = {
 };
 
 static const char *const missing_names[] = {"state",      "vcu_heartbeat", "eps_heartbeat", "trip_cause",
-                                            "standstill", "manual",        "button",        "messages"};
+                                            "standstill", "manual",        "button",        "messages",
+                                            "throttle",   "released"};
 
 static const agv_setting_info_t settings[AGV_SETTING_COUNT] = {
-#define AGV_SETTING(name, preset, lowest, highest, unit, meaning)                                                      \
-    [AGV_SETTING_##name] = {#name, (preset), (lowest), (highest), unit, NULL, meaning},
-#define AGV_CHOICE(name, preset, words, meaning) [AGV_SETTING_##name] = {#name, (preset), 0, 1, "", words, meaning},
+#define ANY false
+#define GATEWAY true
+#define AGV_SETTING(name, preset, lowest, highest, unit, weakens, scope, meaning)                                      \
+    [AGV_SETTING_##name] = {#name, (preset), (lowest), (highest), unit, NULL, meaning, #weakens, scope},
+#define AGV_CHOICE(name, words, weakens, scope, meaning)                                                               \
+    [AGV_SETTING_##name] = {#name, 0, 0, 1, "", words, meaning, #weakens, scope},
 #include "agv/config_settings.def"
 #undef AGV_SETTING
 #undef AGV_CHOICE
 #define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter)                                        \
-    [AGV_SETTING_id_##name] = {"id_" #name, (heading), 1, AGV_ID_MAX, "", NULL, "identifier of " #name " (P1)"},
+    [AGV_SETTING_id_##name] = {"id_" #name, (heading), 1, AGV_ID_MAX, "", NULL, "identifier of " #name " (P1)",         \
+                               "NEVER", ANY},
 #include "agv/message_table.def"
 #undef AGV_STATUS
 };

@@ -36,6 +36,8 @@ void agv_fault_monitor_event(agv_fault_monitor_t *monitor, agv_timers_t *timers,
         if (events[i].fault == fault) {
             agv_timer_start(timers, events[i].timer);
             agv_fault_monitor_set(monitor, fault, true);
+            agv_fault_set_put(&monitor->occurred, fault, true);
+            monitor->outdated = true;
         }
     }
 }
@@ -101,13 +103,14 @@ void agv_fault_monitor_evaluate(agv_fault_monitor_t *monitor, const agv_fault_se
     const agv_fault_set_t tripping = tripping_now(monitor, trips);
     agv_fault_set_t raised;
     for (uint32_t i = 0u; i < AGV_FAULT_WORDS; i++) {
-        raised.words[i] = tripping.words[i] & ~monitor->tripping.words[i];
+        raised.words[i] = tripping.words[i] & (~monitor->tripping.words[i] | monitor->occurred.words[i]);
         monitor->changed.words[i] = (monitor->active.words[i] ^ monitor->reported.words[i]) |
                                     (tripping.words[i] ^ monitor->tripping.words[i]);
     }
     monitor->was_trip = monitor->tripping;
     monitor->tripping = tripping;
     monitor->reported = monitor->active;
+    (void)memset(&monitor->occurred, 0, sizeof monitor->occurred);
     sum_up_all(monitor);
     monitor->summary.raised = (uint8_t)agv_fault_first(&raised);
 }

@@ -14,7 +14,7 @@
 
 /** What the active and latched faults amount to; faults by rank, AGV_FAULT_NONE where there is none. */
 typedef struct {
-    uint8_t raised;       /**< highest-ranking fault that became a trip at the last evaluation */
+    uint8_t raised;       /**< highest-ranking trip that was raised, or occurred again, since the last evaluation */
     uint8_t cause;        /**< highest-ranking trip with a cause that does not come from the AI computer */
     uint8_t ai_cause;     /**< highest-ranking trip with a cause that comes from the AI computer */
     uint8_t unresettable; /**< highest-ranking unresettable fault with a cause */
@@ -29,6 +29,7 @@ typedef struct {
     agv_fault_set_t latched;  /**< raised as trips since the last reset */
     agv_fault_set_t changed;  /**< raised, raised with another class, or ended at the last evaluation */
     agv_fault_set_t was_trip; /**< counted as trips before it */
+    agv_fault_set_t occurred; /**< events since the last evaluation: each occurrence counts (FSM-11) */
     agv_fault_summary_t summary;
     bool outdated;      /**< a cause came or went since the last evaluation */
     bool ai_loss_warns; /**< at the last evaluation a lost AI heartbeat only warned (SUP-8) */

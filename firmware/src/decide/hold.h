@@ -16,8 +16,14 @@ typedef struct {
     uint16_t check;
 } agv_hold_t;
 
-/** Follow the state: a trip takes the last valid angle, the first one after it where there is none; a reset drops it. */
-void agv_hold_step(agv_hold_t *hold, const agv_vehicle_t *vehicle, bool tripped, bool latched);
+/** A trip: the angle of the last valid 067h is held, when that is not older than hold_age_ms. */
+void agv_hold_trip(agv_hold_t *hold, const agv_vehicle_t *vehicle, const agv_timers_t *timers);
+
+/** No angle is held: a reset, or manual is reported, and the operator steers. */
+void agv_hold_drop(agv_hold_t *hold);
+
+/** A valid 067h, in TRIPPED or SAFE, with manual not reported: its angle is held when none is. */
+void agv_hold_take(agv_hold_t *hold, const agv_vehicle_t *vehicle);
 
 /** Whether an angle is held. */
 bool agv_hold_is_held(const agv_hold_t *hold);

@@ -2,10 +2,9 @@
 
 #include "keep/latch.h"
 
-static void enter(agv_state_machine_t *machine, agv_timers_t *timers, agv_state_t state) {
+static void enter(agv_state_machine_t *machine, agv_state_t state) {
     machine->state = (uint8_t)state;
     machine->latched = (uint8_t)(agv_state_is_latched(state) ? AGV_LATCH_CLOSED : AGV_LATCH_OPEN);
-    agv_timer_stop(timers, AGV_TIMER_RESET_GOOD);
 }
 
 void agv_state_machine_start(agv_state_machine_t *machine, agv_timers_t *timers, const agv_config_t *config,
@@ -13,12 +12,10 @@ void agv_state_machine_start(agv_state_machine_t *machine, agv_timers_t *timers,
     const bool tripped = reason != (uint32_t)AGV_FAULT_NONE;
     machine->first_reason = (uint8_t)reason;
     machine->unresettable = AGV_FAULT_NONE;
-    machine->button_before = true; /* what is held since before the start has no rising edge */
     machine->park_released = config->park == (uint16_t)AGV_PARK_AT_ONCE;
-    enter(machine, timers, tripped ? AGV_STATE_TRIPPED : AGV_STATE_INIT);
+    enter(machine, tripped ? AGV_STATE_TRIPPED : AGV_STATE_INIT);
     agv_timer_start(timers, AGV_TIMER_PARK_WAIT);
-    agv_timer_start(timers, AGV_TIMER_STARTUP); /* of these two the one of the state counts */
-    agv_timer_start(timers, AGV_TIMER_UNCONFIRMED);
+    agv_timer_start(timers, AGV_TIMER_STARTUP);
 }
 
 void agv_state_machine_forbid_reset(agv_state_machine_t *machine, uint32_t fault) {
@@ -27,51 +24,42 @@ void agv_state_machine_forbid_reset(agv_state_machine_t *machine, uint32_t fault
     }
 }
 
-static uint32_t enter_standby(agv_state_machine_t *machine, agv_timers_t *timers) {
-    enter(machine, timers, AGV_STATE_STANDBY);
+static uint32_t enter_standby(agv_state_machine_t *machine) {
+    enter(machine, AGV_STATE_STANDBY);
     machine->first_reason = AGV_FAULT_NONE;
     machine->output_closed = true;
     return AGV_ACTION_DISCARD | AGV_ACTION_PURGE | AGV_ACTION_UNLATCH;
 }
 
-/* No press counts that began before now. */
-static void forget_press(agv_state_machine_t *machine) {
-    machine->pressed_after_trip = false;
-    machine->press_refused = false;
-    machine->press_missing = 0u;
-}
-
 static uint32_t trip(agv_state_machine_t *machine, agv_timers_t *timers, uint32_t reason) {
-    enter(machine, timers, AGV_STATE_TRIPPED);
+    enter(machine, AGV_STATE_TRIPPED);
     machine->first_reason = (uint8_t)reason;
     machine->park_released = false;
-    forget_press(machine);
-    agv_timer_stop(timers, AGV_TIMER_PRESS);
-    agv_timer_stop(timers, AGV_TIMER_PARK_SENT);
     agv_timer_start(timers, AGV_TIMER_PARK_WAIT);
-    agv_timer_start(timers, AGV_TIMER_UNCONFIRMED);
     return AGV_ACTION_TRIP | AGV_ACTION_DISCARD | AGV_ACTION_PURGE;
 }
 
-static void withdraw_confirmation(agv_state_machine_t *machine, agv_timers_t *timers) {
-    enter(machine, timers, AGV_STATE_TRIPPED);
-    agv_timer_start(timers, AGV_TIMER_UNCONFIRMED);
-    if (agv_timer_runs(timers, AGV_TIMER_PARK_SENT)) {
-        agv_timer_start(timers, AGV_TIMER_PARK_SENT);
-    }
+static bool has_cause(uint8_t fault) {
+    return fault != (uint8_t)AGV_FAULT_NONE;
+}
+
+static uint32_t missing_in_init(const agv_fault_summary_t *faults, uint32_t facts) {
+    const uint32_t needed = AGV_FACT_VCU_ALIVE | AGV_FACT_EPS_ALIVE | AGV_FACT_MANUAL | AGV_FACT_MESSAGES;
+    uint32_t missing = needed & ~facts;
+    missing |= ((facts & AGV_FACT_SLOW) == 0u) ? AGV_MISSING_STANDSTILL : 0u;
+    missing |= (has_cause(faults->cause) || has_cause(faults->ai_cause)) ? AGV_MISSING_TRIP_CAUSE : 0u;
+    return missing;
 }
 
 static uint32_t step_init(agv_state_machine_t *machine, agv_timers_t *timers, const agv_fault_summary_t *faults,
-                          uint32_t facts) {
-    const bool cause = (faults->cause != (uint8_t)AGV_FAULT_NONE) || (faults->ai_cause != (uint8_t)AGV_FAULT_NONE);
-    const uint32_t needed = AGV_FACT_VCU_ALIVE | AGV_FACT_EPS_ALIVE | AGV_FACT_MANUAL | AGV_FACT_MESSAGES;
-    const uint32_t missing = (needed & ~facts) | (cause ? AGV_MISSING_TRIP_CAUSE : 0u);
-    if (agv_timer_while(timers, AGV_TIMER_INIT_GOOD, missing == 0u)) {
-        return enter_standby(machine, timers);
+                          uint32_t facts, uint16_t *missing) {
+    *missing = (uint16_t)missing_in_init(faults, facts);
+    if (agv_timer_while(timers, AGV_TIMER_INIT_GOOD, *missing == 0u)) {
+        return enter_standby(machine);
     }
     if (!machine->startup_reported && agv_timer_reached(timers, AGV_TIMER_STARTUP)) {
         machine->startup_reported = true;
-        return AGV_ACTION_STARTUP_LATE | missing;
+        return AGV_ACTION_STARTUP_LATE;
     }
     return 0u;
 }
@@ -80,118 +68,81 @@ static uint32_t follow_engagement(agv_state_machine_t *machine, uint32_t facts) 
     const bool was_active = machine->state == (uint8_t)AGV_STATE_ACTIVE;
     if ((facts & AGV_FACT_ENGAGED) == 0u) {
         machine->state = (uint8_t)AGV_STATE_STANDBY;
-    } else if ((facts & AGV_FACT_AI_ALIVE) != 0u) {
-        machine->state = (uint8_t)AGV_STATE_ACTIVE;
-    } else {
-        /* engaged without the AI alive: AI_HEARTBEAT_* trips in its time */
+        return was_active ? (AGV_ACTION_DISCARD | AGV_ACTION_END_ENGAGEMENT) : 0u;
     }
-    /* From ACTIVE: motion commands that wait for a stalled side. */
-    return (was_active && (machine->state != (uint8_t)AGV_STATE_ACTIVE)) ? AGV_ACTION_DISCARD : 0u;
+    if ((facts & AGV_FACT_AI_ALIVE) != 0u) {
+        machine->state = (uint8_t)AGV_STATE_ACTIVE;
+    }
+    return 0u; /* engaged without the AI alive: AI_HEARTBEAT_* trips in its time */
 }
 
-static uint32_t missing_for_reset(const agv_state_machine_t *machine, const agv_fault_summary_t *faults,
-                                  uint32_t facts) {
+static bool is_confirmed(uint32_t facts) {
+    const uint32_t confirmation = AGV_FACT_AUTOPILOT_OFF | AGV_FACT_IN_PARK;
+    return (facts & confirmation) == confirmation;
+}
+
+uint32_t agv_state_machine_lacks_for_reset(const agv_state_machine_t *machine, const agv_fault_summary_t *faults,
+                                           uint32_t facts) {
     const uint32_t needed =
-        AGV_FACT_VCU_ALIVE | AGV_FACT_EPS_ALIVE | AGV_FACT_STANDSTILL | AGV_FACT_MANUAL | AGV_FACT_MESSAGES;
+        AGV_FACT_VCU_ALIVE | AGV_FACT_EPS_ALIVE | AGV_FACT_STANDSTILL | AGV_FACT_MANUAL | AGV_FACT_IDLE;
     uint32_t missing = needed & ~facts;
-    if ((faults->cause != (uint8_t)AGV_FAULT_NONE) || (machine->unresettable != (uint8_t)AGV_FAULT_NONE)) {
+    if (has_cause(faults->cause) || has_cause(machine->unresettable)) {
         missing |= AGV_MISSING_TRIP_CAUSE;
     }
-    if (machine->state != (uint8_t)AGV_STATE_SAFE) {
+    if ((machine->state != (uint8_t)AGV_STATE_SAFE) || !is_confirmed(facts)) {
         missing |= AGV_MISSING_STATE;
-    }
-    if (!machine->pressed_after_trip) {
-        missing |= AGV_MISSING_BUTTON;
     }
     return missing;
 }
 
-static uint32_t step_reset(agv_state_machine_t *machine, agv_timers_t *timers, const agv_fault_summary_t *faults,
-                           uint32_t facts) {
-    const bool button = (facts & AGV_FACT_BUTTON_DOWN) != 0u;
-    if (!button) {
-        forget_press(machine);
-    } else if (!machine->button_before) {
-        machine->pressed_after_trip = true;
-    } else {
-        /* held */
+static uint32_t step_latched(agv_state_machine_t *machine, uint32_t facts) {
+    if ((facts & AGV_FACT_RESET) != 0u) {
+        return enter_standby(machine) | AGV_ACTION_RESET_ACCEPTED;
     }
-    const bool held = agv_timer_while(timers, AGV_TIMER_PRESS, button);
-    const uint32_t missing = missing_for_reset(machine, faults, facts);
-    if (button) {
-        machine->press_missing |= (uint8_t)missing;
-    }
-    if (agv_timer_while(timers, AGV_TIMER_RESET_GOOD, missing == 0u)) {
-        return enter_standby(machine, timers) | AGV_ACTION_RESET_ACCEPTED;
-    }
-    if (held && !machine->press_refused) {
-        machine->press_refused = true;
-        return AGV_ACTION_RESET_REFUSED | machine->press_missing;
-    }
+    enter(machine, is_confirmed(facts) ? AGV_STATE_SAFE : AGV_STATE_TRIPPED);
     return 0u;
 }
 
-static uint32_t step_latched(agv_state_machine_t *machine, agv_timers_t *timers, const agv_fault_summary_t *faults,
-                             uint32_t facts) {
-    const uint32_t confirmation = AGV_FACT_AUTOPILOT_OFF | AGV_FACT_IN_PARK;
-    const bool confirmed = (facts & confirmation) == confirmation;
-    const bool safe = machine->state == (uint8_t)AGV_STATE_SAFE;
-    if (confirmed && !safe) {
-        enter(machine, timers, AGV_STATE_SAFE);
-    } else if (!confirmed && safe) {
-        withdraw_confirmation(machine, timers);
-    } else {
-        /* stays */
-    }
-    return step_reset(machine, timers, faults, facts);
-}
-
-/* park: at_standstill holds P back until the vehicle stands, or for park_timeout_ms (FSM-1). */
+/* park: at_standstill holds P back until the wheels stand, or for park_timeout_ms (FSM-1). */
 static void release_park(agv_state_machine_t *machine, const agv_timers_t *timers, const agv_config_t *config,
                          uint32_t facts) {
-    if ((config->park == (uint16_t)AGV_PARK_AT_ONCE) || ((facts & AGV_FACT_STANDSTILL) != 0u) ||
+    if ((config->park == (uint16_t)AGV_PARK_AT_ONCE) || ((facts & AGV_FACT_WHEELS_STAND) != 0u) ||
         agv_timer_reached(timers, AGV_TIMER_PARK_WAIT)) {
         machine->park_released = true;
     }
-}
-
-bool agv_state_machine_is_unconfirmed(const agv_state_machine_t *machine, const agv_timers_t *timers, uint32_t facts) {
-    const bool off_missing = (facts & AGV_FACT_AUTOPILOT_OFF) == 0u;
-    const bool park_missing = (facts & AGV_FACT_IN_PARK) == 0u;
-    const bool off_late = off_missing && agv_timer_reached(timers, AGV_TIMER_UNCONFIRMED);
-    const bool park_late = (off_missing || park_missing) && agv_timer_reached(timers, AGV_TIMER_PARK_SENT);
-    return (machine->state == (uint8_t)AGV_STATE_TRIPPED) && (off_late || park_late);
 }
 
 bool agv_state_machine_is_startup_late(const agv_state_machine_t *machine, const agv_timers_t *timers) {
     return (machine->state == (uint8_t)AGV_STATE_INIT) && agv_timer_reached(timers, AGV_TIMER_STARTUP);
 }
 
-static void open_output(agv_state_machine_t *machine, const agv_timers_t *timers, uint32_t facts) {
-    if (agv_state_machine_is_unconfirmed(machine, timers, facts) || ((facts & AGV_FACT_OUTPUT_UNSAFE) != 0u) ||
-        (machine->unresettable != (uint8_t)AGV_FAULT_NONE)) {
-        machine->output_closed = false;
-    }
-}
-
-/* The reason of a trip; AGV_FAULT_NONE: none. In INIT only the unresettable ones latch. */
-static uint32_t reason_to_trip(const agv_state_machine_t *machine, const agv_fault_summary_t *faults) {
+/*
+ * The reason of a trip; AGV_FAULT_NONE: none. In INIT only the unresettable ones latch. A cause from the AI computer that
+ * outlived a reset trips when the autopilot is engaged (FSM-11).
+ */
+static uint32_t reason_to_trip(const agv_state_machine_t *machine, const agv_fault_summary_t *faults, uint32_t facts) {
     if (machine->state == (uint8_t)AGV_STATE_INIT) {
         return faults->unresettable;
     }
-    return (faults->raised != (uint8_t)AGV_FAULT_NONE) ? faults->raised : faults->cause;
+    if (has_cause(faults->raised)) {
+        return faults->raised;
+    }
+    if (has_cause(faults->cause)) {
+        return faults->cause;
+    }
+    return ((facts & AGV_FACT_ENGAGED) != 0u) ? faults->ai_cause : (uint32_t)AGV_FAULT_NONE;
 }
 
 static uint32_t step_state(agv_state_machine_t *machine, agv_timers_t *timers, const agv_fault_summary_t *faults,
-                           uint32_t facts) {
-    const uint32_t reason = reason_to_trip(machine, faults);
+                           uint32_t facts, uint16_t *missing) {
+    const uint32_t reason = reason_to_trip(machine, faults, facts);
     if (agv_state_is_latched((agv_state_t)machine->state)) {
-        return step_latched(machine, timers, faults, facts);
+        return step_latched(machine, facts);
     }
     if (reason != (uint32_t)AGV_FAULT_NONE) {
         return trip(machine, timers, reason);
     }
-    return (machine->state == (uint8_t)AGV_STATE_INIT) ? step_init(machine, timers, faults, facts)
+    return (machine->state == (uint8_t)AGV_STATE_INIT) ? step_init(machine, timers, faults, facts, missing)
                                                        : follow_engagement(machine, facts);
 }
 
@@ -212,16 +163,13 @@ agv_actions_t agv_state_machine_step(agv_state_machine_t *machine, agv_timers_t 
     const agv_state_machine_t before = *machine;
     agv_actions_t actions = {.from = before.state, .first_reason = before.first_reason};
     agv_state_machine_forbid_reset(machine, faults->unresettable);
-    actions.what = step_state(machine, timers, faults, facts);
-    machine->button_before = (facts & AGV_FACT_BUTTON_UP) == 0u;
+    actions.what = step_state(machine, timers, faults, facts, &actions.missing);
     release_park(machine, timers, config, facts);
-    open_output(machine, timers, facts);
+    if (((facts & AGV_FACT_OUTPUT_UNSAFE) != 0u) || has_cause(machine->unresettable)) {
+        machine->output_closed = false;
+    }
     actions.what |= changes(machine, &before);
     return actions;
-}
-
-void agv_state_machine_park_sent(const agv_state_machine_t *machine, agv_timers_t *timers) {
-    (void)agv_timer_while(timers, AGV_TIMER_PARK_SENT, agv_state_is_latched((agv_state_t)machine->state));
 }
 
 bool agv_state_machine_is_sound(const agv_state_machine_t *machine) {

@@ -20,45 +20,45 @@
 #define AGV_FACT_STANDSTILL AGV_MISSING_STANDSTILL
 #define AGV_FACT_MANUAL AGV_MISSING_MANUAL
 #define AGV_FACT_MESSAGES AGV_MISSING_MESSAGES /**< every trip-class status message is fresh */
-#define AGV_FACT_ENGAGED 0x0100u
-#define AGV_FACT_AI_ALIVE 0x0200u
-#define AGV_FACT_AUTOPILOT_OFF 0x0400u /**< confirmed by the VCU */
-#define AGV_FACT_IN_PARK 0x0800u       /**< confirmed by the VCU */
-#define AGV_FACT_BUTTON_DOWN 0x1000u   /**< remote button 1 is pressed */
-#define AGV_FACT_BUTTON_UP 0x2000u     /**< and is not; neither before the first 363h */
-#define AGV_FACT_OUTPUT_UNSAFE 0x4000u /**< bus-off, transmit stalled, watchdog not fed: the output opens at once */
+#define AGV_FACT_IDLE AGV_MISSING_THROTTLE     /**< 050h is at idle */
+#define AGV_FACT_ENGAGED 0x1000u
+#define AGV_FACT_AI_ALIVE 0x2000u
+#define AGV_FACT_AUTOPILOT_OFF 0x4000u  /**< confirmed by the VCU */
+#define AGV_FACT_IN_PARK 0x8000u        /**< confirmed by the VCU */
+#define AGV_FACT_SLOW 0x10000u          /**< wheels and VCU report the speeds of a standstill now */
+#define AGV_FACT_WHEELS_STAND 0x20000u  /**< both wheels have been slow for standstill_ms */
+#define AGV_FACT_OUTPUT_UNSAFE 0x40000u /**< a reason for the output to be open (FSM-4) */
+#define AGV_FACT_RESET 0x80000u         /**< a press of the button resets (reset_button.h) */
 
-/** Actions: bits, and the AGV_MISSING_* of what is reported. */
-#define AGV_ACTION_TRIP 0x0100u           /**< entered TRIPPED by a trip: send all safe commands at once */
-#define AGV_ACTION_RESET_ACCEPTED 0x0200u /**< left SAFE */
-#define AGV_ACTION_RESET_REFUSED 0x0400u  /**< report a press that was in vain; the missing bits say why */
-#define AGV_ACTION_STARTUP_LATE 0x0800u   /**< report that INIT lasts; the missing bits say what keeps it */
-#define AGV_ACTION_STATE 0x1000u          /**< the state is another one: `from` says which it was */
-#define AGV_ACTION_DISCARD 0x2000u        /**< what waits to be sent to the vehicle is never sent */
-#define AGV_ACTION_PURGE 0x4000u          /**< nor what the controller has taken */
-#define AGV_ACTION_UNLATCH 0x8000u        /**< what was latched is over */
-#define AGV_ACTION_STORE_LATCH 0x10000u   /**< the latch record is another one */
-#define AGV_ACTION_OPEN_OUTPUT 0x20000u   /**< open the safety output, before anything that takes time */
-#define AGV_ACTION_CLOSE_OUTPUT 0x40000u  /**< close it, after everything else */
+/** Actions: bits. */
+#define AGV_ACTION_TRIP 0x0001u           /**< entered TRIPPED by a trip: send all safe commands at once */
+#define AGV_ACTION_RESET_ACCEPTED 0x0002u /**< left SAFE */
+#define AGV_ACTION_RESET_REFUSED 0x0004u  /**< report a press that was in vain; `missing` says why */
+#define AGV_ACTION_STARTUP_LATE 0x0008u   /**< report that INIT lasts; `missing` says what keeps it */
+#define AGV_ACTION_STATE 0x0010u          /**< the state is another one: `from` says which it was */
+#define AGV_ACTION_DISCARD 0x0020u        /**< what waits to be sent to the vehicle is never sent */
+#define AGV_ACTION_PURGE 0x0040u          /**< nor what the controller has taken */
+#define AGV_ACTION_UNLATCH 0x0080u        /**< what was latched is over */
+#define AGV_ACTION_STORE_LATCH 0x0100u    /**< the latch record is another one */
+#define AGV_ACTION_OPEN_OUTPUT 0x0200u    /**< open the safety output, before anything that takes time */
+#define AGV_ACTION_CLOSE_OUTPUT 0x0400u   /**< close it, after everything else */
+#define AGV_ACTION_END_ENGAGEMENT 0x0800u /**< left ACTIVE for STANDBY: a gateway sends throttle 0 (TOP-2) */
 
 /** What a step wants done. */
 typedef struct {
-    uint32_t what;        /**< AGV_ACTION_* and AGV_MISSING_* */
+    uint32_t what;        /**< AGV_ACTION_* */
+    uint16_t missing;     /**< AGV_MISSING_* */
     uint8_t from;         /**< agv_state_t before the step */
     uint8_t first_reason; /**< agv_fault_t before the step */
 } agv_actions_t;
 
 /** The machine. */
 typedef struct {
-    uint8_t state;         /**< agv_state_t */
-    uint8_t latched;       /**< AGV_LATCH_CLOSED in TRIPPED and SAFE, else AGV_LATCH_OPEN */
-    uint8_t first_reason;  /**< agv_fault_t */
-    uint8_t unresettable;  /**< agv_fault_t: what only a power-on ends */
-    uint8_t press_missing; /**< AGV_MISSING_* seen during the press */
-    bool button_before;
-    bool pressed_after_trip; /**< a rising edge came after the trip */
-    bool press_refused;      /**< and was reported */
-    bool park_released;      /**< 168h may be sent */
+    uint8_t state;        /**< agv_state_t */
+    uint8_t latched;      /**< AGV_LATCH_CLOSED in TRIPPED and SAFE, else AGV_LATCH_OPEN */
+    uint8_t first_reason; /**< agv_fault_t */
+    uint8_t unresettable; /**< agv_fault_t: what only a power-on ends */
+    bool park_released;   /**< 168h may be sent */
     bool output_closed;
     bool startup_reported;
 } agv_state_machine_t;
@@ -74,11 +74,9 @@ void agv_state_machine_forbid_reset(agv_state_machine_t *machine, uint32_t fault
 agv_actions_t agv_state_machine_step(agv_state_machine_t *machine, agv_timers_t *timers, const agv_config_t *config,
                                      const agv_fault_summary_t *faults, uint32_t facts);
 
-/** 168h P was sent: from its first time after the trip the vehicle has confirm_timeout_ms. */
-void agv_state_machine_park_sent(const agv_state_machine_t *machine, agv_timers_t *timers);
-
-/** Whether the safe state is not confirmed in time (FSM-4): SAFE_STATE_UNCONFIRMED has a cause. */
-bool agv_state_machine_is_unconfirmed(const agv_state_machine_t *machine, const agv_timers_t *timers, uint32_t facts);
+/** The conditions of a reset that do not hold (FSM-3): AGV_MISSING_* bits. */
+uint32_t agv_state_machine_lacks_for_reset(const agv_state_machine_t *machine, const agv_fault_summary_t *faults,
+                                           uint32_t facts);
 
 /** Whether INIT lasts for too long: STARTUP_TIMEOUT has a cause. */
 bool agv_state_machine_is_startup_late(const agv_state_machine_t *machine, const agv_timers_t *timers);

@@ -25,8 +25,8 @@ static void check_silences(agv_fault_monitor_t *faults, const agv_timers_t *time
     }
 }
 
-static void check_heartbeats(agv_fault_monitor_t *faults, agv_timers_t *timers, const agv_liveness_t *liveness,
-                             bool engaged) {
+void agv_deadlines_heartbeats(agv_fault_monitor_t *faults, agv_timers_t *timers, const agv_liveness_t *liveness,
+                              bool engaged) {
     const bool unseen = agv_liveness_heartbeat(liveness, AGV_NODE_AI) == AGV_HEARTBEAT_UNSEEN;
     const bool never_seen = agv_timer_while(timers, AGV_TIMER_AI_NEVER_SEEN, unseen && engaged);
     for (uint32_t node = 0u; node < (uint32_t)AGV_NODE_COUNT; node++) {
@@ -46,7 +46,7 @@ static bool is_wrong_set(const agv_timers_t *timers, const agv_liveness_t *liven
 void agv_deadlines_tick(agv_fault_monitor_t *faults, agv_timers_t *timers, const agv_liveness_t *liveness,
                         bool engaged) {
     check_silences(faults, timers, engaged);
-    check_heartbeats(faults, timers, liveness, engaged);
+    agv_deadlines_heartbeats(faults, timers, liveness, engaged);
     agv_fault_monitor_set(
         faults, AGV_FAULT_WRONG_ID_SET,
         is_wrong_set(timers, liveness, AGV_TIMER_OTHER_TURN_SIGNAL, AGV_MSG_TURN_SIGNAL_COMMAND) ||

@@ -15,6 +15,10 @@
 /** Evaluate all deadlines and heartbeats. Call at every tick, after agv_liveness_tick. */
 void agv_deadlines_tick(agv_fault_monitor_t *faults, agv_timers_t *timers, const agv_liveness_t *liveness, bool engaged);
 
+/** Evaluate the heartbeats alone. Call when an engagement begins: an AI computer that is lost then trips at once. */
+void agv_deadlines_heartbeats(agv_fault_monitor_t *faults, agv_timers_t *timers, const agv_liveness_t *liveness,
+                              bool engaged);
+
 /** A frame of the right shape came with an identifier that this message has in the other set only. */
 void agv_deadlines_other_id_set(agv_timers_t *timers, uint32_t message);
 

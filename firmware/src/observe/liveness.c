@@ -38,13 +38,31 @@ uint32_t agv_liveness_arrived(agv_liveness_t *liveness, uint32_t message, uint32
     return known ? agv_age_ms(time_ms, last_ms) : AGV_AGE_MAX;
 }
 
+/* Steps of an alive counter that counts up: up to two frames may be lost in between (SUP-2). */
+enum { STEP_MAX = 3, STEPS_AFTER_WRONG = 2 };
+
+/* Whether a counter counts as changed. */
+static bool is_changed(agv_heartbeat_t *heartbeat, uint8_t counter, bool increments) {
+    const uint32_t step = ((uint32_t)counter - heartbeat->counter) & 0xFFu;
+    if (!increments) {
+        return step != 0u;
+    }
+    if ((step == 0u) || (step > (uint32_t)STEP_MAX)) {
+        heartbeat->steps_needed = STEPS_AFTER_WRONG;
+        return false;
+    }
+    if (heartbeat->steps_needed > 0u) {
+        heartbeat->steps_needed--;
+    }
+    return heartbeat->steps_needed == 0u;
+}
+
 /* Returns whether the deadline begins anew. */
-static bool beat(agv_liveness_t *liveness, uint32_t node, uint8_t counter) {
+static bool beat(agv_liveness_t *liveness, uint32_t node, uint8_t counter, bool increments) {
     agv_heartbeat_t *const heartbeat = &liveness->heartbeats[node];
-    const bool same = heartbeat->counter == counter;
-    heartbeat->counter = counter;
     if (!heartbeat->counter_known) {
         heartbeat->counter_known = true;
+        heartbeat->counter = counter;
         if (node != (uint32_t)AGV_NODE_AI) {
             return false; /* proves nothing */
         }
@@ -52,11 +70,19 @@ static bool beat(agv_liveness_t *liveness, uint32_t node, uint8_t counter) {
         heartbeat->state = AGV_HEARTBEAT_BASELINE;
         return true;
     }
-    heartbeat->repeated = same;
-    if (!same) {
+    const bool changed = is_changed(heartbeat, counter, increments);
+    heartbeat->counter = counter;
+    heartbeat->repeated = !changed;
+    if (changed) {
         heartbeat->state = AGV_HEARTBEAT_ALIVE;
     }
-    return !same;
+    return changed;
+}
+
+static bool counts_up(const agv_config_t *config, uint32_t node) {
+    const uint16_t choices[AGV_NODE_COUNT] = {
+        [AGV_NODE_VCU] = config->vcu_counter, [AGV_NODE_EPS] = config->eps_counter, [AGV_NODE_AI] = config->ai_counter};
+    return choices[node] == (uint16_t)AGV_COUNTER_INCREMENTS;
 }
 
 /* The node whose heartbeat a message with an alive counter carries. */
@@ -67,10 +93,11 @@ static uint32_t node_of(uint32_t message) {
     return (message == (uint32_t)AGV_MSG_STEERING_STATUS) ? AGV_NODE_EPS : AGV_NODE_AI;
 }
 
-void agv_liveness_refresh(agv_liveness_t *liveness, agv_timers_t *timers, uint32_t message,
+void agv_liveness_refresh(agv_liveness_t *liveness, agv_timers_t *timers, const agv_config_t *config, uint32_t message,
                           const hal_can_frame_t *frame) {
     const uint32_t at = counters_at[message];
-    if ((at == (uint32_t)NO_COUNTER) || beat(liveness, node_of(message), frame->data[at])) {
+    const uint32_t node = node_of(message);
+    if ((at == (uint32_t)NO_COUNTER) || beat(liveness, node, frame->data[at], counts_up(config, node))) {
         agv_timer_start_at(timers, deadline_of(message), frame->time_ms);
     }
 }
@@ -81,15 +108,18 @@ void agv_liveness_restart_commands(agv_timers_t *timers, uint32_t time_ms) {
     }
 }
 
-void agv_liveness_forget_ai(agv_liveness_t *liveness, agv_timers_t *timers) {
-    liveness->heartbeats[AGV_NODE_AI].state = AGV_HEARTBEAT_UNSEEN;
-    agv_timer_stop(timers, deadline_of(AGV_MSG_TURN_SIGNAL_COMMAND));
+void agv_liveness_forget_ai(agv_liveness_t *liveness) {
+    agv_heartbeat_t *const heartbeat = &liveness->heartbeats[AGV_NODE_AI];
+    if (heartbeat->state != (uint8_t)AGV_HEARTBEAT_UNSEEN) {
+        heartbeat->state = AGV_HEARTBEAT_FORGOTTEN;
+    }
 }
 
-static void expire(agv_liveness_t *liveness, const agv_timers_t *timers, uint32_t node) {
+static void expire(agv_liveness_t *liveness, const agv_timers_t *timers, uint32_t node, bool engaged) {
     agv_heartbeat_t *const heartbeat = &liveness->heartbeats[node];
     const uint32_t message = carriers[node];
-    const bool running = heartbeat->state <= (uint8_t)AGV_HEARTBEAT_ALIVE;
+    const bool running = (heartbeat->state <= (uint8_t)AGV_HEARTBEAT_ALIVE) ||
+                         ((heartbeat->state == (uint8_t)AGV_HEARTBEAT_FORGOTTEN) && engaged);
     if (running && agv_timer_reached(timers, deadline_of(message))) {
         const uint32_t age_ms = agv_age_ms(timers->now_ms, liveness->last_ms[message]);
         const bool recent = age_ms <= (2u * agv_message_cycle_ms(message));
@@ -97,14 +127,14 @@ static void expire(agv_liveness_t *liveness, const agv_timers_t *timers, uint32_
     }
 }
 
-void agv_liveness_tick(agv_liveness_t *liveness, const agv_timers_t *timers) {
+void agv_liveness_tick(agv_liveness_t *liveness, const agv_timers_t *timers, bool engaged) {
     for (uint32_t i = 0u; i < (uint32_t)AGV_MSG_COUNT; i++) {
         if (agv_age_ms(timers->now_ms, liveness->last_ms[i]) > AGV_AGE_LIMIT_MS) {
             liveness->old[i] = true;
         }
     }
     for (uint32_t node = 0u; node < (uint32_t)AGV_NODE_COUNT; node++) {
-        expire(liveness, timers, node);
+        expire(liveness, timers, node, engaged);
     }
 }
 

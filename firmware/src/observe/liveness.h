@@ -21,6 +21,7 @@ typedef enum {
     AGV_HEARTBEAT_UNSEEN = 0,   /**< no changed counter yet */
     AGV_HEARTBEAT_BASELINE = 1, /**< AI: one value seen, which proves nothing yet, but begins the deadline */
     AGV_HEARTBEAT_ALIVE = 2,    /**< the counter changed within the deadline */
+    AGV_HEARTBEAT_FORGOTTEN = 3, /**< AI: it was seen before the last reset; its deadline runs on (SUP-8) */
     AGV_HEARTBEAT_LOST = 4,     /**< deadline expired; stays until the counter changes again */
     AGV_HEARTBEAT_STUCK = 5     /**< as LOST, but frames with the old counter went on coming */
 } agv_heartbeat_state_t;
@@ -30,7 +31,8 @@ typedef struct {
     uint8_t state;   /**< agv_heartbeat_state_t */
     uint8_t counter; /**< value last seen */
     bool counter_known;
-    bool repeated; /**< the last frame had the value of the one before */
+    bool repeated;        /**< the last frame did not count as changed */
+    uint8_t steps_needed; /**< right steps until one counts again (`increments`, SUP-2) */
 } agv_heartbeat_t;
 
 /** Age returned for what is older than AGV_AGE_LIMIT_MS or was never heard: ages saturate (TIM-2). */
@@ -55,17 +57,20 @@ void agv_liveness_start(agv_liveness_t *liveness, agv_timers_t *timers);
 uint32_t agv_liveness_arrived(agv_liveness_t *liveness, uint32_t message, uint32_t time_ms);
 
 /** A usable frame arrived: its deadline begins anew. One with an alive counter is usable when that has changed. */
-void agv_liveness_refresh(agv_liveness_t *liveness, agv_timers_t *timers, uint32_t message,
+void agv_liveness_refresh(agv_liveness_t *liveness, agv_timers_t *timers, const agv_config_t *config, uint32_t message,
                           const hal_can_frame_t *frame);
 
 /** The autopilot was engaged at that time: the deadlines of the commands begin anew, but the AI's heartbeat (SUP-3). */
 void agv_liveness_restart_commands(agv_timers_t *timers, uint32_t time_ms);
 
-/** A reset was accepted: the AI computer counts as never seen (SUP-8). */
-void agv_liveness_forget_ai(agv_liveness_t *liveness, agv_timers_t *timers);
+/** A reset was accepted: the AI computer is not alive before its counter changes (SUP-8). */
+void agv_liveness_forget_ai(agv_liveness_t *liveness);
 
-/** Let ages saturate and heartbeats expire. Call at every tick, after the timers. */
-void agv_liveness_tick(agv_liveness_t *liveness, const agv_timers_t *timers);
+/**
+ * Let ages saturate and heartbeats expire. Call at every tick, after the timers, and when an engagement begins.
+ * @param engaged an AI computer that a reset made forget is expected again
+ */
+void agv_liveness_tick(agv_liveness_t *liveness, const agv_timers_t *timers, bool engaged);
 
 /** What is known of a heartbeat. */
 agv_heartbeat_state_t agv_liveness_heartbeat(const agv_liveness_t *liveness, agv_node_t node);

@@ -1,7 +1,7 @@
 /**
  * @file status_checks.h
- * Faults that the content of a frame is: fault bits and alarms (SUP-4), EPS mode and invalid values (SUP-5), commands that
- * come too fast (SUP-6).
+ * Faults that the content of status frames is: fault bits and alarms (SUP-4), EPS mode and invalid values (SUP-5). Faults
+ * that need several frames are scored (score.h).
  */
 #ifndef AGV_STATUS_CHECKS_H
 #define AGV_STATUS_CHECKS_H
@@ -11,59 +11,46 @@
 
 #include "agv/config.h"
 #include "agv/protocol.h"
+#include "base/score.h"
 #include "decide/fault_monitor.h"
 
-/** Frames are counted in a row: each row is one fault bit, one value or one command. */
-enum {
-    AGV_ROW_EPS_FAULTS = 0,      /**< eight: the fault bits of 167h */
-    AGV_ROW_EPS_SUPPLY_LAST = 2, /**< the first three of them are those of the supply */
-    AGV_ROW_VCU_ALARMS = 8,      /**< eight: the alarm bits of 363h */
-    AGV_ROW_EPS_MODE = 16,
-    AGV_ROW_GEAR_STATUS,
-    AGV_ROW_THROTTLE_STATUS,
-    AGV_ROW_STEERING_ANGLE,
-    AGV_ROW_FAST_GAPS, /**< and the three after it: one a command */
-    AGV_ROW_COUNT = AGV_ROW_FAST_GAPS + (int)AGV_COMMAND_COUNT
-};
+/** How many fault bits of 167h are scored: under voltage, over voltage, excessive current. */
+#define AGV_SCORED_EPS_BITS 3u
 
-/** What is counted. */
+/** The values that are scored, in the order of their messages: gear (0A3h), throttle (050h), angle (067h). */
+#define AGV_SCORED_VALUES 3u
+
+/** The scores. */
 typedef struct {
-    uint8_t in_a_row[AGV_ROW_COUNT];
-    bool ai_alarm_armed; /**< VCU alarm bit 3 was clear with the AI alive (SUP-8) */
-    bool after_gap;      /**< this frame came more than two cycles after the one before */
+    agv_score_t eps_bits[AGV_SCORED_EPS_BITS];
+    agv_score_t eps_mode;
+    agv_score_t values[AGV_SCORED_VALUES];
+    agv_score_t hold_angle;  /**< of the angle, counted also while not judged (FSM-10) */
+    uint8_t eps_mode_fault;  /**< agv_fault_t: what the last EPS mode that was not angle control is called */
+    bool ai_alarm;           /**< VCU alarm bit 3 was set in the last 363h */
+    bool ai_alarm_armed;     /**< and was once clear with the AI alive (SUP-8) */
 } agv_status_checks_t;
 
-/** What the checks go by. */
-typedef struct {
-    const agv_config_t *config;
-    bool engaged;
-    bool settled;  /**< engaged for engaged_grace_ms: the checks of SUP-5 count */
-    bool ai_alive;
-} agv_status_facts_t;
-
-/** A frame of a message begins to be checked. @param gap_ms since the one before, AGV_AGE_MAX: unknown */
-void agv_status_checks_frame(agv_status_checks_t *checks, uint32_t message, uint32_t gap_ms);
-
 /** 363h: alarms. */
-void agv_status_checks_vehicle(agv_status_checks_t *checks, agv_fault_monitor_t *faults,
-                               const agv_status_facts_t *facts, const uint8_t data[AGV_DLC]);
+void agv_status_checks_vehicle(agv_status_checks_t *checks, agv_fault_monitor_t *faults, const uint8_t data[AGV_DLC],
+                               bool ai_alive);
 
-/** 167h: mode and fault bits. */
-void agv_status_checks_eps(agv_status_checks_t *checks, agv_fault_monitor_t *faults, const agv_status_facts_t *facts,
-                           const uint8_t data[AGV_DLC], bool valid);
+/** 167h: mode and fault bits. @param judged the mode counts */
+void agv_status_checks_eps(agv_status_checks_t *checks, agv_fault_monitor_t *faults, const agv_config_t *config,
+                           const uint8_t data[AGV_DLC], bool valid, bool judged);
 
-/** 0A3h, 050h, 067h: whether the value is one that the protocol knows. */
-void agv_status_checks_value(agv_status_checks_t *checks, agv_fault_monitor_t *faults, const agv_status_facts_t *facts,
-                             uint32_t message, bool valid);
+/** 0A3h, 050h, 067h: whether the value is one that the protocol knows. @param judged it counts */
+void agv_status_checks_value(agv_status_checks_t *checks, const agv_config_t *config, uint32_t message, bool valid,
+                             bool judged);
 
-/** A command: its gap to the one before (SUP-6). */
-void agv_status_checks_rate(agv_status_checks_t *checks, agv_fault_monitor_t *faults, agv_timers_t *timers,
-                            const agv_config_t *config, uint32_t command, uint32_t gap_ms);
+/** Set the faults that depend on the engagement, too. Call in every call, when scores and mode are up to date. */
+void agv_status_checks_evaluate(const agv_status_checks_t *checks, agv_fault_monitor_t *faults, bool engaged,
+                                bool judged);
 
-/** The autopilot was disengaged: what only counts while engaged ends. */
-void agv_status_checks_disengage(agv_status_checks_t *checks, agv_fault_monitor_t *faults);
+/** An engagement began: the scores of what is judged begin at 0. */
+void agv_status_checks_engage(agv_status_checks_t *checks);
 
-/** A reset was accepted: VCU alarm bit 3 does not count before it was clear with the AI alive (SUP-8). */
-void agv_status_checks_forget_ai(agv_status_checks_t *checks);
+/** Whether the measured angle is usable for the steering hold (FSM-10). */
+bool agv_status_checks_angle_is_usable(const agv_status_checks_t *checks);
 
 #endif

@@ -11,11 +11,16 @@
 
 #include "agv/supervisor.h"
 #include "base/timers.h"
+#include "decide/confirmation.h"
 #include "decide/fault_monitor.h"
 #include "decide/hold.h"
+#include "decide/reset_button.h"
 #include "decide/state_machine.h"
+#include "decide/stopping.h"
 #include "keep/led.h"
 #include "observe/bus.h"
+#include "observe/commands.h"
+#include "observe/intrusion.h"
 #include "observe/liveness.h"
 #include "observe/mode.h"
 #include "observe/motion_checks.h"
@@ -39,12 +44,19 @@ typedef struct {
     agv_vehicle_t vehicle;
     agv_status_checks_t status_checks;
     agv_motion_checks_t motion_checks;
+    agv_intrusion_t intrusion;
+    agv_commands_t commands;
+    agv_confirmation_t confirmation;
+    agv_stopping_t stopping;
+    agv_reset_button_t reset_button;
     agv_hold_t hold;
     agv_bus_t buses[HAL_CAN_SIDES];
     agv_gateway_t gateway;
     agv_transmitter_t transmitter;
     agv_led_t led;
     uint32_t last_tick_ms;
+    uint16_t store_credit_ms; /**< time until flash may be written once more (INT-3) */
+    uint8_t store_credits;    /**< how often flash may be written now */
     uint8_t checked_in; /**< activities since the watchdog was fed (TIM-3) */
     int8_t led_code;    /**< of the highest-ranking fault, as last evaluated */
 } agv_core_t;

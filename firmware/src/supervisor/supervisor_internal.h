@@ -11,9 +11,13 @@
 /**
  * Evaluate the faults, once, step the state machine, and carry out at once what cannot wait: open the output, discard what
  * waits to be sent, send all safe commands.
+ * @param elapsed_ms since the last tick; 0 for a frame
  * @return what remains to be concluded
  */
-agv_actions_t agv_core_decide(agv_core_t *core, const agv_ports_t *ports);
+agv_actions_t agv_core_decide(agv_core_t *core, const agv_ports_t *ports, uint32_t elapsed_ms);
+
+/** A start in TRIPPED, or a trip: what is awaited of the vehicle begins anew. */
+void agv_core_await_safe_state(agv_core_t *core);
 
 /** The rest, after everything was sent: latch record, counters, events, closing the output. */
 void agv_core_conclude(agv_core_t *core, const agv_ports_t *ports, agv_actions_t actions);
@@ -30,8 +34,17 @@ bool agv_core_is_in_park(const agv_core_t *core);
 /** The engagement began or ended: what follows from it. */
 void agv_core_follow_mode(agv_core_t *core, agv_mode_change_t change, uint32_t time_ms);
 
-/** Record an event with the state and first reason of now. @param what agv_event_kind_t, and AGV_MISSING_* one byte up */
-void agv_core_record(const agv_core_t *core, const agv_ports_t *ports, uint32_t what, uint32_t a, uint32_t b,
+/** What the checks of motion go by. */
+agv_motion_facts_t agv_core_motion_facts(const agv_core_t *core);
+
+/** What the gateway goes by. */
+agv_gateway_facts_t agv_core_gateway_facts(const agv_core_t *core);
+
+/** Whether autopilot supervision is on: STANDBY or ACTIVE. */
+bool agv_core_is_supervising(const agv_core_t *core);
+
+/** Record a change of state or output, with the state and first reason of now. @param kind agv_event_kind_t */
+void agv_core_record(const agv_core_t *core, const agv_ports_t *ports, uint32_t kind, uint32_t a, uint32_t b,
                      uint32_t c);
 
 /** Record which faults were raised or ended at the last evaluation, in the state of then. */

@@ -80,6 +80,7 @@ static void begin_state(agv_core_t *core, const agv_ports_t *ports, uint32_t kep
     agv_fault_monitor_evaluate(&core->faults, &core->config.trips,
                                core->config.ai_lost_in_manual == (uint16_t)AGV_AI_LOST_WARN);
     agv_state_machine_forbid_reset(&core->machine, core->faults.summary.unresettable);
+    agv_core_await_safe_state(core);
 }
 
 static void raise_found(agv_core_t *core, uint32_t found) {
@@ -90,12 +91,13 @@ static void raise_found(agv_core_t *core, uint32_t found) {
 
 void agv_core_begin(agv_core_t *core, const agv_ports_t *ports, uint32_t found) {
     const bool corrupted = (found & AGV_FOUND_CORRUPTED) != 0u;
-    const bool restarted = corrupted || (hal_reset_cause(ports->hal) != HAL_RESET_POWER_ON);
+    const bool powered_on = !corrupted && (hal_reset_cause(ports->hal) == HAL_RESET_POWER_ON);
+    const bool trips = core->config.after_power_on == (uint16_t)AGV_AFTER_POWER_ON_TRIPPED;
     hal_safety_output_set(ports->hal, false);
     begin_modules(core, ports->hal);
     raise_found(core, found | self_test(core));
-    const uint32_t kept_reason = begin_from_latch(core, ports->hal, restarted);
-    if (restarted && !corrupted && (kept_reason == (uint32_t)AGV_FAULT_NONE)) {
+    const uint32_t kept_reason = begin_from_latch(core, ports->hal, !powered_on);
+    if ((!powered_on || trips) && !corrupted && (kept_reason == (uint32_t)AGV_FAULT_NONE)) {
         agv_fault_monitor_event(&core->faults, &core->timers, AGV_FAULT_SUPERVISOR_RESET);
     }
     begin_state(core, ports, kept_reason);
@@ -103,6 +105,7 @@ void agv_core_begin(agv_core_t *core, const agv_ports_t *ports, uint32_t found) 
     hal_can_purge(ports->hal, HAL_CAN_VEHICLE);
     const agv_tx_orders_t orders = agv_core_orders(core, ports);
     agv_transmitter_burst(&core->transmitter, &orders);
+    agv_transmitter_status(&core->transmitter, &orders);
     const agv_actions_t none = {.from = core->machine.state, .first_reason = core->machine.first_reason};
     agv_core_conclude(core, ports, none);
     agv_core_show_led(core, ports, 0u);

@@ -1,3 +1,5 @@
+#include <stddef.h>
+
 #include "hal/led.h"
 #include "hal/store.h"
 #include "hal/watchdog.h"
@@ -46,19 +48,20 @@ static bool observe_buses(agv_core_t *core, hal_t *hal) {
     return (vehicle & AGV_BUS_RECOVERED) != 0u;
 }
 
-static void observe_time(agv_core_t *core) {
+static void observe_time(agv_core_t *core, uint32_t elapsed_ms) {
     agv_timers_t *const timers = &core->timers;
     agv_fault_monitor_t *const faults = &core->faults;
     agv_fault_monitor_tick(faults, timers);
-    agv_core_follow_mode(core, agv_mode_tick(&core->mode, timers), timers->now_ms);
-    agv_fault_monitor_set(faults, AGV_FAULT_MODE_INVALID, agv_mode_is_invalid(timers));
-    agv_liveness_tick(&core->liveness, timers);
-    agv_deadlines_tick(faults, timers, &core->liveness, agv_mode_is_engaged(&core->mode));
-    if (!agv_liveness_fresh(&core->liveness, timers, AGV_MSG_WHEEL_SPEED)) {
-        agv_vehicle_wheels_lost(timers);
+    agv_liveness_tick(&core->liveness, timers, agv_mode_is_engaged(&core->mode));
+    const bool vcu_alive = agv_liveness_alive(&core->liveness, AGV_NODE_VCU);
+    agv_core_follow_mode(core, agv_mode_tick(&core->mode, timers, vcu_alive), timers->now_ms);
+    if (!vcu_alive) {
+        agv_reset_button_lose(&core->reset_button);
     }
-    agv_motion_checks_tick(&core->motion_checks, faults, timers, &core->config, &core->vehicle,
-                           agv_mode_is_settled(timers), agv_core_is_in_park(core));
+    agv_mode_check(&core->mode, timers, faults, agv_core_is_supervising(core), agv_vehicle_is_at_standstill(timers));
+    agv_deadlines_tick(faults, timers, &core->liveness, agv_mode_is_engaged(&core->mode));
+    const agv_motion_facts_t facts = agv_core_motion_facts(core);
+    agv_motion_checks_tick(&core->motion_checks, &facts, elapsed_ms);
 }
 
 void agv_core_show_led(agv_core_t *core, const agv_ports_t *ports, uint32_t elapsed_ms) {
@@ -67,14 +70,31 @@ void agv_core_show_led(agv_core_t *core, const agv_ports_t *ports, uint32_t elap
     }
 }
 
+/* INT-3: once a second on average over a minute. */
+enum { STORE_CREDIT_MS = 1000, STORE_CREDITS_MAX = 60 };
+
+static void earn_store_credits(agv_core_t *core, uint32_t elapsed_ms) {
+    const uint32_t time_ms = core->store_credit_ms + ((elapsed_ms < STORE_CREDIT_MS) ? elapsed_ms : STORE_CREDIT_MS);
+    if (time_ms < STORE_CREDIT_MS) {
+        core->store_credit_ms = (uint16_t)time_ms;
+        return;
+    }
+    core->store_credit_ms = (uint16_t)(time_ms - STORE_CREDIT_MS);
+    if (core->store_credits < (uint8_t)STORE_CREDITS_MAX) {
+        core->store_credits++;
+    }
+}
+
 /* INT-3: flash may stall the processor, so only where no reaction can be due. One event a tick. */
-static void store_events(const agv_core_t *core, const agv_ports_t *ports) {
-    if ((core->machine.state != (uint8_t)AGV_STATE_SAFE) &&
-        ((core->machine.state != (uint8_t)AGV_STATE_STANDBY) || !agv_vehicle_stands(&core->timers))) {
+static void store_events(agv_core_t *core, const agv_ports_t *ports) {
+    const bool idle = (core->machine.state == (uint8_t)AGV_STATE_SAFE) ||
+                      ((core->machine.state == (uint8_t)AGV_STATE_STANDBY) && agv_vehicle_is_at_standstill(&core->timers));
+    if (!idle || (core->store_credits == 0u)) {
         return;
     }
     const agv_event_t *const event = agv_recorder_next_to_store(ports->recorder);
-    if (event != 0) {
+    if (event != NULL) {
+        core->store_credits--;
         (void)hal_store_append(ports->hal, event, sizeof *event);
         agv_recorder_stored(ports->recorder);
     }
@@ -92,8 +112,8 @@ void agv_core_tick(agv_core_t *core, const agv_ports_t *ports, bool receive_aliv
     const uint32_t elapsed_ms = step_time(core);
     core->checked_in |= (uint8_t)(CHECKED_STEP | (receive_alive ? CHECKED_RECEIVE : 0));
     const bool recovered = observe_buses(core, ports->hal);
-    observe_time(core);
-    const agv_actions_t actions = agv_core_decide(core, ports);
+    observe_time(core, elapsed_ms);
+    const agv_actions_t actions = agv_core_decide(core, ports, elapsed_ms);
     const agv_tx_orders_t orders = agv_core_orders(core, ports);
     if (recovered && ((actions.what & AGV_ACTION_TRIP) == 0u)) {
         agv_transmitter_burst(&core->transmitter, &orders);
@@ -103,5 +123,6 @@ void agv_core_tick(agv_core_t *core, const agv_ports_t *ports, bool receive_aliv
     agv_core_conclude(core, ports, actions);
     feed_watchdog(core, ports);
     agv_core_show_led(core, ports, elapsed_ms);
+    earn_store_credits(core, elapsed_ms);
     store_events(core, ports);
 }

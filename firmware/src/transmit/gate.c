@@ -70,6 +70,7 @@ static bool value_allowed(const agv_gate_t *gate, uint32_t message, const uint8_
 static bool may_pass(const agv_gate_t *gate, uint32_t message) {
     return (gate->config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) &&
            ((gate->state == (uint8_t)AGV_STATE_ACTIVE) || (message == (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND) ||
+            (message == (uint32_t)AGV_MSG_THROTTLE_COMMAND) || /* up to throttle_max_counts: 0 */
             (gate->config->gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL));
 }
 

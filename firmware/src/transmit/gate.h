@@ -5,8 +5,8 @@
  *
  * - INIT, TRIPPED, SAFE (and whatever is no state), vehicle side: 43Fh with autopilot off, both turn signals and
  *   headlight on; 168h P; 075h 0; 065h with the held angle (not in INIT). Reserved bits 0, nothing else.
- * - STANDBY, ACTIVE, vehicle side: shared bus nothing; gateway 43Fh with any lights, and in ACTIVE (or when all commands
- *   pass in manual, then with throttle 0) valid gear, throttle up to the ceiling, angle in range. Reserved bits 0.
+ * - STANDBY, ACTIVE, vehicle side: shared bus nothing; gateway 43Fh with any lights, 075h with 0, and in ACTIVE (or when
+ *   all commands pass in manual) valid gear, throttle up to the ceiling (not in manual), angle in range. Reserved bits 0.
  * - AI side: the seven status messages, gateway only.
  * - The supervisor's own status frame, vehicle side, when it is configured.
  */

@@ -28,10 +28,12 @@ void agv_transmitter_discard(agv_transmitter_t *transmitter, agv_timers_t *timer
     }
     transmitter->kept &= ~messages;
     if (side == HAL_CAN_VEHICLE) {
+        transmitter->throttle_0_waits = false;
         agv_scheduler_discard(&transmitter->scheduler);
         for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
             agv_timer_stop(timers, waits[i]);
         }
+        agv_timer_stop(timers, AGV_TIMER_TX_STATUS);
     }
 }
 
@@ -162,19 +164,62 @@ void agv_transmitter_answer(agv_transmitter_t *transmitter, const agv_tx_orders_
     }
 }
 
-/* Send a passed frame, or keep it until the HAL takes it. */
+/* Whether a command was passed on less than half its cycle ago. Once that is over it stays over. */
+static bool is_too_soon(agv_transmitter_t *transmitter, uint32_t message, uint32_t now_ms) {
+    if (message >= AGV_COMMAND_COUNT) {
+        return false;
+    }
+    if ((2u * (now_ms - transmitter->passed_ms[message])) >= agv_message_cycle_ms(message)) {
+        transmitter->passed_lately &= (uint8_t)~bit_of(message);
+    }
+    return (transmitter->passed_lately & bit_of(message)) != 0u;
+}
+
+static void note_passed(agv_transmitter_t *transmitter, uint32_t message, uint32_t now_ms) {
+    transmitter->kept &= ~bit_of(message);
+    if (message < AGV_COMMAND_COUNT) {
+        transmitter->report.passed |= (uint8_t)bit_of(message);
+        transmitter->passed_lately |= (uint8_t)bit_of(message);
+        transmitter->passed_ms[message] = now_ms;
+    }
+}
+
+/* Send a frame that is passed on, or keep it until its time has come and the HAL takes it. */
 static void send_passed(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t message) {
-    if (send_message(transmitter, orders, message, transmitter->kept_data[message])) {
+    const uint32_t now_ms = orders->timers->now_ms;
+    if (is_too_soon(transmitter, message, now_ms) ||
+        send_message(transmitter, orders, message, transmitter->kept_data[message])) {
         transmitter->kept |= bit_of(message);
     } else {
-        transmitter->kept &= ~bit_of(message);
+        note_passed(transmitter, message, now_ms);
     }
+}
+
+void agv_transmitter_drop(agv_transmitter_t *transmitter, agv_timers_t *timers, uint32_t command) {
+    if ((transmitter->kept & bit_of(command)) != 0u) {
+        transmitter->kept &= ~bit_of(command);
+        transmitter->report.dropped++;
+        agv_timer_stop(timers, waits[command]);
+    }
+}
+
+void agv_transmitter_end_engagement(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
+    static const uint8_t throttle_0[AGV_DLC] = {0};
+    transmitter->throttle_0_waits = !agv_bus_is_off(orders->timers, HAL_CAN_VEHICLE) &&
+                                    send_message(transmitter, orders, AGV_MSG_THROTTLE_COMMAND, throttle_0);
+}
+
+const uint8_t *agv_transmitter_passed(const agv_transmitter_t *transmitter, uint32_t command) {
+    return transmitter->kept_data[command];
 }
 
 void agv_transmitter_pass(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t message,
                           const uint8_t data[AGV_DLC]) {
     if ((transmitter->kept & bit_of(message)) != 0u) {
         transmitter->report.dropped++; /* the older one that waited */
+    }
+    if (message == (uint32_t)AGV_MSG_THROTTLE_COMMAND) {
+        transmitter->throttle_0_waits = false;
     }
     (void)memcpy(transmitter->kept_data[message], data, AGV_DLC);
     send_passed(transmitter, orders, message);
@@ -207,32 +252,52 @@ static void tick_own(agv_transmitter_t *transmitter, const agv_tx_orders_t *orde
     }
 }
 
-/* TOP-3: state, first reason, safety output, alive counter, configuration checksum. */
-static void send_status_frame(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
-    const uint32_t now_ms = orders->timers->now_ms;
-    const uint32_t late_ms = now_ms - transmitter->status_due_ms;
-    const uint32_t period_ms = orders->config->status_frame_period_ms;
-    uint8_t data[AGV_DLC] = {orders->state, orders->first_reason, (uint8_t)(orders->output_closed ? 1u : 0u),
-                             transmitter->status_counter};
-    if ((orders->config->status_frame_id == 0u) || (late_ms > (UINT32_MAX / 2u)) ||
-        agv_bus_is_off(orders->timers, HAL_CAN_VEHICLE)) {
-        return;
-    }
+/* TOP-3: state, first reason, safety output, alive counter, configuration checksum. Returns whether it has to wait. */
+static bool emit_status_frame(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
+    const bool tripped = orders->first_reason < (uint8_t)AGV_FAULT_COUNT;
+    uint8_t data[AGV_DLC] = {orders->state, tripped ? orders->first_reason : (uint8_t)AGV_STATUS_FRAME_NO_REASON,
+                             (uint8_t)(orders->output_closed ? 1u : 0u), transmitter->status_counter};
     for (uint32_t i = 0u; i < 4u; i++) {
         data[4u + i] = (uint8_t)(orders->config_checksum >> (8u * i));
     }
-    transmitter->status_due_ms = (now_ms + period_ms) - (late_ms % period_ms);
-    if (!emit(transmitter, orders, HAL_CAN_VEHICLE, orders->config->status_frame_id, data)) {
-        transmitter->status_counter++;
+    if (emit(transmitter, orders, HAL_CAN_VEHICLE, orders->config->status_frame_id, data)) {
+        return true;
     }
+    transmitter->status_counter++;
+    return false;
+}
+
+/* What the HAL does not take is tried again at every tick: the standing test of the transmit path. */
+void agv_transmitter_status(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
+    const agv_config_t *const config = orders->config;
+    const uint32_t late_ms = orders->timers->now_ms - transmitter->status_due_ms;
+    const bool due = late_ms <= (UINT32_MAX / 2u);
+    bool has_to_wait = agv_timer_runs(orders->timers, AGV_TIMER_TX_STATUS);
+    if ((config->status_frame_id == 0u) || (config->shadow == (uint16_t)AGV_SHADOW_ON) ||
+        agv_bus_is_off(orders->timers, HAL_CAN_VEHICLE)) {
+        has_to_wait = false;
+    } else if (due || has_to_wait) {
+        has_to_wait = emit_status_frame(transmitter, orders);
+    } else {
+        /* not yet */
+    }
+    if (due) {
+        transmitter->status_due_ms += ((late_ms / config->status_frame_period_ms) + 1u) * config->status_frame_period_ms;
+    }
+    (void)agv_timer_while(orders->timers, AGV_TIMER_TX_STATUS, has_to_wait);
 }
 
 void agv_transmitter_tick(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
     const uint32_t wanted = wanted_commands(orders);
-    for (uint32_t i = 0u; (transmitter->kept >> i) != 0u; i++) {
+    for (uint32_t i = 0u; ((transmitter->kept | transmitter->passed_lately) >> i) != 0u; i++) {
         if ((transmitter->kept & bit_of(i)) != 0u) {
             send_passed(transmitter, orders, i);
+        } else {
+            (void)is_too_soon(transmitter, i, orders->timers->now_ms);
         }
+    }
+    if (transmitter->throttle_0_waits) {
+        agv_transmitter_end_engagement(transmitter, orders);
     }
     if ((wanted | transmitter->wanted_before) != 0u) {
         for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
@@ -240,7 +305,7 @@ void agv_transmitter_tick(agv_transmitter_t *transmitter, const agv_tx_orders_t 
         }
     }
     transmitter->wanted_before = (uint8_t)wanted;
-    send_status_frame(transmitter, orders);
+    agv_transmitter_status(transmitter, orders);
 }
 
 bool agv_transmitter_is_stalled(const agv_timers_t *timers) {
@@ -250,7 +315,7 @@ bool agv_transmitter_is_stalled(const agv_timers_t *timers) {
             stalled = true;
         }
     }
-    return stalled;
+    return stalled || agv_timer_reached(timers, AGV_TIMER_TX_STATUS);
 }
 
 agv_tx_report_t agv_transmitter_take_report(agv_transmitter_t *transmitter) {

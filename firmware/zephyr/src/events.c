@@ -36,7 +36,7 @@ static const char *text(const char *name) {
 }
 
 /* For the line that follows. */
-static const char *words_of(uint8_t missing) {
+static const char *words_of(uint16_t missing) {
     static char words[WORDS_SIZE];
     size_t used = 0u;
     words[0] = '\0';
