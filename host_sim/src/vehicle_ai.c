@@ -1,24 +1,58 @@
 /* The AI computer: its four commands. */
+#include <stdlib.h>
+
 #include "vehicle_internal.h"
 
+#define STANDING_MM_S 50
 #define MODE_BYTE 6
 #define MANUAL_BIT 0x40u /* 363h byte 7 */
 #define AUTOPILOT_BIT 0x80u
 
 void vehicle_ai_start(vehicle_t *vehicle, uint64_t now_ms) {
     (void)now_ms;
-    vehicle->ai.engaged = false;
+    vehicle->ai = (vehicle_ai_t){.gear = 0u};
+}
+
+static void hear_wheels(vehicle_ai_t *ai, const uint8_t data[AGV_DLC]) {
+    agv_wheel_speed_t speed;
+
+    (void)agv_unpack_wheel_speed(&speed, data);
+    ai->moving = (abs(speed.left_mm_s) >= STANDING_MM_S) || (abs(speed.right_mm_s) >= STANDING_MM_S);
 }
 
 void vehicle_ai_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_frame_t *frame) {
+    vehicle_ai_t *ai = &vehicle->ai;
+
     (void)now_ms;
-    if ((frame->id == vehicle->id[AGV_MSG_VEHICLE_STATUS]) && (frame->length == AGV_DLC)) {
-        vehicle->ai.engaged = (frame->data[MODE_BYTE] & AUTOPILOT_BIT) != 0u;
+    if (frame->length != AGV_DLC) {
+        return;
+    }
+    if (frame->id == vehicle->id[AGV_MSG_VEHICLE_STATUS]) {
+        ai->engaged = (frame->data[MODE_BYTE] & AUTOPILOT_BIT) != 0u;
+    } else if (frame->id == vehicle->id[AGV_MSG_GEAR_STATUS]) {
+        ai->gear = frame->data[0];
+    } else if (frame->id == vehicle->id[AGV_MSG_WHEEL_SPEED]) {
+        hear_wheels(ai, frame->data);
+    } else {
+        /* of no interest */
     }
 }
 
 static bool drives(const vehicle_t *vehicle) {
     return vehicle->ai.engaged || vehicle->people.ai_stubborn;
+}
+
+static bool is_direction(uint8_t gear) {
+    return (gear == AGV_GEAR_D) || (gear == AGV_GEAR_R);
+}
+
+/** It wants another direction than the gear that the vehicle is in, which moves: it lets it come to a stop first. */
+static bool waits(const vehicle_t *vehicle) {
+    const vehicle_ai_t *ai = &vehicle->ai;
+    const uint8_t wish = vehicle->people.ai_gear;
+
+    return !vehicle->people.ai_stubborn && ai->moving && is_direction(wish) && (ai->gear != wish) &&
+           (is_direction(ai->gear) || (ai->gear == AGV_GEAR_N));
 }
 
 void vehicle_ai_turn_signal_command(vehicle_t *vehicle, uint64_t now_ms, uint8_t data[AGV_DLC]) {
@@ -33,22 +67,26 @@ void vehicle_ai_turn_signal_command(vehicle_t *vehicle, uint64_t now_ms, uint8_t
 }
 
 void vehicle_ai_gear_command(vehicle_t *vehicle, uint64_t now_ms, uint8_t data[AGV_DLC]) {
-    const agv_gear_command_t command = {drives(vehicle) ? vehicle->people.ai_gear : AGV_GEAR_N};
+    agv_gear_command_t command = {drives(vehicle) ? vehicle->people.ai_gear : AGV_GEAR_N};
 
     (void)now_ms;
+    if (drives(vehicle) && waits(vehicle)) {
+        command.gear = vehicle->ai.gear;
+    }
     (void)agv_pack_gear_command(data, &command);
 }
 
 void vehicle_ai_throttle_command(vehicle_t *vehicle, uint64_t now_ms, uint8_t data[AGV_DLC]) {
-    const agv_throttle_command_t command = {drives(vehicle) ? vehicle->people.ai_throttle_permille : (uint16_t)0};
+    const bool pulls = drives(vehicle) && !waits(vehicle);
+    const agv_throttle_command_t command = {pulls ? vehicle->people.ai_throttle_permille : (uint16_t)0};
 
     (void)now_ms;
     (void)agv_pack_throttle_command(data, &command);
 }
 
 void vehicle_ai_steering_command(vehicle_t *vehicle, uint64_t now_ms, uint8_t data[AGV_DLC]) {
-    const agv_steering_command_t command = {drives(vehicle) ? vehicle->people.ai_angle_ddeg : 0};
+    const int32_t angle_ddeg = vehicle->people.ai_angle_ddeg + vehicle_swing_ddeg(&vehicle->people.ai_weave, now_ms);
+    const agv_steering_command_t command = {drives(vehicle) ? vehicle_limit_angle(angle_ddeg) : 0};
 
-    (void)now_ms;
     (void)agv_pack_steering_command(data, &command);
 }

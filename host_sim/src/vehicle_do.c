@@ -1,5 +1,9 @@
 /* What can be asked of the vehicle at any moment. */
+#include <stdlib.h>
+
 #include "vehicle_internal.h"
+
+#define UM_PER_MM 1000
 
 static bool gear_is_valid(uint8_t gear) {
     return (gear == AGV_GEAR_P) || (gear == AGV_GEAR_R) || (gear == AGV_GEAR_N) || (gear == AGV_GEAR_D);
@@ -39,10 +43,19 @@ static bool do_to_node(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action
         node->garbage = (uint8_t)action->garbage;
         break;
     default:
+        vehicle_body_move(vehicle, now_ms); /* until now it was as it was */
+        vehicle_eps_move(vehicle, now_ms);
         vehicle_recover(vehicle, action->node);
         break;
     }
     return true;
+}
+
+static void set_delay(vehicle_message_t *message, uint32_t ms) {
+    if (message->delay_ms == 0u) {
+        message->past.count = 0u;
+    }
+    message->delay_ms = ms;
 }
 
 static bool do_to_message(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action) {
@@ -51,10 +64,10 @@ static bool do_to_message(vehicle_t *vehicle, uint64_t now_ms, const vehicle_act
 
     switch (action->what) {
     case VEHICLE_DO_MUTE:
-        message->muted = action->count;
+        message->muted = vehicle_stretch(action->count, action->every);
         break;
     case VEHICLE_DO_UNMUTE:
-        message->muted = 0u;
+        message->muted = vehicle_stretch(0u, 0u);
         break;
     case VEHICLE_DO_PERIOD:
         message->period_ms = action->ms;
@@ -63,7 +76,14 @@ static bool do_to_message(vehicle_t *vehicle, uint64_t now_ms, const vehicle_act
         }
         break;
     case VEHICLE_DO_PATCH:
+    case VEHICLE_DO_HOLD:
         vehicle_patch(message, action);
+        break;
+    case VEHICLE_DO_DELAY:
+        set_delay(message, action->ms);
+        break;
+    case VEHICLE_DO_IGNORE:
+        message->ignored = action->on;
         break;
     default:
         vehicle_unpatch(message);
@@ -72,7 +92,48 @@ static bool do_to_message(vehicle_t *vehicle, uint64_t now_ms, const vehicle_act
     return true;
 }
 
-static bool do_to_ai(vehicle_t *vehicle, const vehicle_action_t *action) {
+static bool do_to_vcu(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action) {
+    vehicle_vcu_faults_t *faults = &vehicle->vcu_faults;
+
+    vehicle_body_move(vehicle, now_ms); /* until now it was as it was */
+    switch (action->what) {
+    case VEHICLE_DO_VCU_RAMP:
+        faults->ramps = true;
+        faults->throttle_fall_pct_s = action->count;
+        break;
+    case VEHICLE_DO_VCU_ROLL:
+        faults->rolls = action->on;
+        faults->roll_um_s = action->speed_mm_s * UM_PER_MM;
+        break;
+    case VEHICLE_DO_VCU_ROLL_ON:
+        faults->rolls = true;
+        faults->roll_um_s = vehicle->body.speed_um_s;
+        break;
+    case VEHICLE_DO_VCU_REFUSE_PARK:
+        faults->refuses_park = action->on;
+        break;
+    default:
+        faults->is_sloppy = action->on;
+        break;
+    }
+    return true;
+}
+
+static vehicle_swing_t swing_of(uint64_t now_ms, const vehicle_action_t *action) {
+    return (vehicle_swing_t){.from_ms = now_ms, .period_ms = action->ms, .amplitude_ddeg = action->angle_ddeg};
+}
+
+static bool do_to_eps(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action) {
+    vehicle_eps_move(vehicle, now_ms);
+    if (action->what == VEHICLE_DO_EPS_STUCK) {
+        vehicle->people.eps_stuck = action->on;
+    } else {
+        vehicle->people.eps_hunt = swing_of(now_ms, action);
+    }
+    return true;
+}
+
+static bool do_to_ai(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action) {
     vehicle_people_t *people = &vehicle->people;
 
     switch (action->what) {
@@ -88,6 +149,9 @@ static bool do_to_ai(vehicle_t *vehicle, const vehicle_action_t *action) {
         return true;
     case VEHICLE_DO_AI_STUBBORN:
         people->ai_stubborn = action->on;
+        return true;
+    case VEHICLE_DO_AI_WEAVE:
+        people->ai_weave = swing_of(now_ms, action);
         return true;
     default:
         people->ai_autopilot_off = action->on;
@@ -151,7 +215,13 @@ static bool is_sane(const vehicle_action_t *action) {
     case VEHICLE_DO_REMOTE_DRIVE:
         return drive_is_valid(action);
     case VEHICLE_DO_HAND_STEER:
+    case VEHICLE_DO_AI_WEAVE:
+    case VEHICLE_DO_EPS_HUNT:
         return angle_is_valid(action);
+    case VEHICLE_DO_DELAY:
+        return action->ms <= VEHICLE_DELAY_MAX_MS;
+    case VEHICLE_DO_VCU_ROLL:
+        return abs(action->speed_mm_s) <= VEHICLE_ROLL_MAX_MM_S;
     case VEHICLE_DO_SEND:
         return (unsigned)action->side < (unsigned)HAL_CAN_SIDES;
     default:
@@ -170,13 +240,14 @@ bool vehicle_do(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *act
     if (action->what <= VEHICLE_DO_UNPATCH) {
         return ((unsigned)action->message < (unsigned)AGV_MSG_COUNT) && do_to_message(vehicle, now_ms, action);
     }
-    if (action->what <= VEHICLE_DO_AI_AUTOPILOT_OFF) {
-        return do_to_ai(vehicle, action);
+    if (action->what <= VEHICLE_DO_VCU_SLOPPY) {
+        return do_to_vcu(vehicle, now_ms, action);
     }
-    if (action->what == VEHICLE_DO_EPS_STUCK) {
-        vehicle_eps_move(vehicle, now_ms);
-        vehicle->people.eps_stuck = action->on;
-        return true;
+    if (action->what <= VEHICLE_DO_AI_WEAVE) {
+        return do_to_ai(vehicle, now_ms, action);
+    }
+    if (action->what <= VEHICLE_DO_EPS_HUNT) {
+        return do_to_eps(vehicle, now_ms, action);
     }
     if (action->what <= VEHICLE_DO_REMOTE_POWER) {
         return do_as_operator(vehicle, now_ms, action);
