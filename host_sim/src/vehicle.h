@@ -265,6 +265,8 @@ typedef struct {
 typedef struct {
     bool engaged;
     bool moving;
+    bool waits;   /* for the wheels to stand, before it commands the gear that it was told */
+    bool shifts;  /* and then for 0A3h to report it, before it commands a throttle */
     uint8_t gear; /* that 0A3h reports; 0: not heard yet */
 } vehicle_ai_t;
 

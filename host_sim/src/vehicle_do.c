@@ -141,14 +141,17 @@ static bool do_to_ai(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t
         people->ai_gear = action->gear;
         people->ai_throttle_permille = action->throttle_permille;
         people->ai_angle_ddeg = action->angle_ddeg;
+        vehicle_ai_reconsider(vehicle);
         return true;
     case VEHICLE_DO_AI_IDLE:
         people->ai_gear = AGV_GEAR_N;
         people->ai_throttle_permille = 0u;
         people->ai_angle_ddeg = 0;
+        vehicle_ai_reconsider(vehicle);
         return true;
     case VEHICLE_DO_AI_STUBBORN:
         people->ai_stubborn = action->on;
+        vehicle_ai_reconsider(vehicle);
         return true;
     case VEHICLE_DO_AI_WEAVE:
         people->ai_weave = swing_of(now_ms, action);

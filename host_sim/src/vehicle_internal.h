@@ -77,6 +77,8 @@ vehicle_compose_fn vehicle_eps_steering_position;
 
 /** @name vehicle_ai.c @{ */
 void vehicle_ai_start(vehicle_t *vehicle, uint64_t now_ms);
+/** It was told something else, or is engaged: does it have to stop first? */
+void vehicle_ai_reconsider(vehicle_t *vehicle);
 void vehicle_ai_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_frame_t *frame);
 vehicle_compose_fn vehicle_ai_turn_signal_command;
 vehicle_compose_fn vehicle_ai_gear_command;
