@@ -17,6 +17,13 @@ static bool angle_is_valid(const vehicle_action_t *action) {
     return (action->angle_ddeg >= -AGV_ANGLE_MAX_DDEG) && (action->angle_ddeg <= AGV_ANGLE_MAX_DDEG);
 }
 
+/** Wheels and steering have run until now as they were. */
+static void recover(vehicle_t *vehicle, uint64_t now_ms, vehicle_node_t node) {
+    vehicle_body_move(vehicle, now_ms);
+    vehicle_eps_move(vehicle, now_ms);
+    vehicle_recover(vehicle, node);
+}
+
 static bool do_to_node(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action) {
     vehicle_node_state_t *node = &vehicle->nodes[action->node];
 
@@ -43,9 +50,7 @@ static bool do_to_node(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action
         node->garbage = (uint8_t)action->garbage;
         break;
     default:
-        vehicle_body_move(vehicle, now_ms); /* until now it was as it was */
-        vehicle_eps_move(vehicle, now_ms);
-        vehicle_recover(vehicle, action->node);
+        recover(vehicle, now_ms, action->node);
         break;
     }
     return true;
@@ -64,10 +69,9 @@ static bool do_to_message(vehicle_t *vehicle, uint64_t now_ms, const vehicle_act
 
     switch (action->what) {
     case VEHICLE_DO_MUTE:
-        message->muted = vehicle_stretch(action->count, action->every);
-        break;
     case VEHICLE_DO_UNMUTE:
-        message->muted = vehicle_stretch(0u, 0u);
+        message->muted =
+            vehicle_stretch((action->what == VEHICLE_DO_MUTE) ? action->count : (uint16_t)0, action->every);
         break;
     case VEHICLE_DO_PERIOD:
         message->period_ms = action->ms;
@@ -232,6 +236,12 @@ static bool is_sane(const vehicle_action_t *action) {
     }
 }
 
+static void stop_strangers(vehicle_t *vehicle) {
+    for (unsigned i = 0; i < VEHICLE_STRANGERS_MAX; i++) {
+        vehicle->strangers[i].left = 0u;
+    }
+}
+
 bool vehicle_do(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action) {
     vehicle_look_again(vehicle, now_ms);
     if (!is_sane(action)) {
@@ -258,8 +268,6 @@ bool vehicle_do(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *act
     if (action->what == VEHICLE_DO_SEND) {
         return vehicle_add_stranger(vehicle, now_ms, action);
     }
-    for (unsigned i = 0; i < VEHICLE_STRANGERS_MAX; i++) {
-        vehicle->strangers[i].left = 0u;
-    }
+    stop_strangers(vehicle);
     return action->what == VEHICLE_DO_STOP_SENDING;
 }
