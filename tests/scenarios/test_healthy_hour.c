@@ -147,10 +147,10 @@ static void hear_throttle(int throttle) {
 }
 
 static void hear_angle(int angle_ddeg) {
-    const int before = abs(witness.angle_command_ddeg - witness.angle_ddeg);
+    const int command_ddeg = witness.angle_command_ddeg;
 
-    if (witness.angle_command_ddeg != INT32_MAX) {
-        witness.nearer_ddeg += before - abs(witness.angle_command_ddeg - angle_ddeg);
+    if (command_ddeg != INT32_MAX) {
+        witness.nearer_ddeg += abs(command_ddeg - witness.angle_ddeg) - abs(command_ddeg - angle_ddeg);
     }
     witness.angle_ddeg = angle_ddeg;
     if (witness.nearer_ddeg >= ANGLE_NEARER_DDEG) {
