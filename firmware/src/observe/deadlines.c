@@ -47,15 +47,19 @@ void agv_deadlines_tick(agv_fault_monitor_t *faults, agv_timers_t *timers, const
                         bool engaged) {
     check_silences(faults, timers, engaged);
     check_heartbeats(faults, timers, liveness, engaged);
-    agv_fault_monitor_set(
-        faults, AGV_FAULT_WRONG_ID_SET,
-        is_wrong_set(timers, liveness, AGV_TIMER_OTHER_TURN_SIGNAL, AGV_MSG_TURN_SIGNAL_COMMAND) ||
-            is_wrong_set(timers, liveness, AGV_TIMER_OTHER_VEHICLE_STATUS, AGV_MSG_VEHICLE_STATUS));
+    agv_fault_monitor_set(faults, AGV_FAULT_WRONG_ID_SET,
+                          is_wrong_set(timers, liveness, AGV_TIMER_OTHER_TURN_SIGNAL, AGV_MSG_TURN_SIGNAL_COMMAND) ||
+                              is_wrong_set(timers, liveness, AGV_TIMER_OTHER_VEHICLE_STATUS, AGV_MSG_VEHICLE_STATUS));
 }
 
 void agv_deadlines_other_id_set(agv_timers_t *timers, uint32_t message) {
     agv_timer_start(timers, (message == (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND) ? AGV_TIMER_OTHER_TURN_SIGNAL
                                                                                : AGV_TIMER_OTHER_VEHICLE_STATUS);
+}
+
+void agv_deadlines_forget_ai(agv_fault_monitor_t *faults) {
+    agv_fault_monitor_set(faults, heartbeat_faults[AGV_NODE_AI].lost, false);
+    agv_fault_monitor_set(faults, heartbeat_faults[AGV_NODE_AI].stuck, false);
 }
 
 bool agv_deadlines_messages_fresh(const agv_liveness_t *liveness, const agv_timers_t *timers,

@@ -31,6 +31,9 @@ typedef struct {
     uint32_t config_checksum; /**< agv_config_checksum at the start */
     agv_ids_t ids;            /**< made of config; and a second copy, for when the configuration is corrupted */
     uint16_t topology;        /**< second copy, likewise */
+    uint16_t id_set;          /**< second copy, likewise */
+    uint8_t checked_in;       /**< activities since the watchdog was fed (TIM-3) */
+    int8_t led_code;          /**< of the highest-ranking fault, as last evaluated */
     agv_counters_t counters;
     agv_state_machine_t machine;
     agv_fault_monitor_t faults;
@@ -45,8 +48,6 @@ typedef struct {
     agv_transmitter_t transmitter;
     agv_led_t led;
     uint32_t last_tick_ms;
-    uint8_t checked_in; /**< activities since the watchdog was fed (TIM-3) */
-    int8_t led_code;    /**< of the highest-ranking fault, as last evaluated */
 } agv_core_t;
 
 _Static_assert(sizeof(agv_core_t) == AGV_SUPERVISOR_MEMORY, "agv_supervisor_t holds just the core");

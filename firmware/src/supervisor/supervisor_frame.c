@@ -216,12 +216,14 @@ static void transmit(agv_core_t *core, const agv_ports_t *ports, const intake_t 
 
 void agv_core_frame(agv_core_t *core, const agv_ports_t *ports, hal_can_side_t side, const hal_can_frame_t *frame) {
     intake_t intake = {.side = side, .frame = frame, .message = agv_ids_find(&core->ids, frame->id)};
-    agv_actions_t actions = {.from = core->machine.state, .first_reason = core->machine.first_reason};
     intake.rejected = reason_to_reject(frame, intake.message);
     observe(core, ports, &intake);
     if (intake.decides) {
-        actions = agv_core_decide(core, ports);
+        const agv_actions_t actions = agv_core_decide(core, ports);
+        transmit(core, ports, &intake, (actions.what & AGV_ACTION_TRIP) != 0u);
+        agv_core_conclude(core, ports, actions);
+    } else {
+        transmit(core, ports, &intake, false);
+        agv_core_take_tx_report(core);
     }
-    transmit(core, ports, &intake, (actions.what & AGV_ACTION_TRIP) != 0u);
-    agv_core_conclude(core, ports, actions);
 }

@@ -15,6 +15,9 @@
  */
 agv_actions_t agv_core_decide(agv_core_t *core, const agv_ports_t *ports);
 
+/** Count what was sent, and what the gate refused. For a call that decides nothing it is all that remains to be done. */
+void agv_core_take_tx_report(agv_core_t *core);
+
 /** The rest, after everything was sent: latch record, counters, events, closing the output. */
 void agv_core_conclude(agv_core_t *core, const agv_ports_t *ports, agv_actions_t actions);
 

@@ -131,7 +131,7 @@ agv_actions_t agv_core_decide(agv_core_t *core, const agv_ports_t *ports) {
     return actions;
 }
 
-static void take_tx_report(agv_core_t *core) {
+void agv_core_take_tx_report(agv_core_t *core) {
     const agv_tx_report_t report = agv_transmitter_take_report(&core->transmitter);
     core->counters.sent += report.sent;
     core->counters.shadowed += report.shadowed;
@@ -139,7 +139,8 @@ static void take_tx_report(agv_core_t *core) {
     core->counters.gate_refused += report.refused;
     core->counters.skipped_slots += report.skipped_slots;
     if (report.refused != 0u) {
-        agv_fault_monitor_event(&core->faults, &core->timers, AGV_FAULT_TX_GATE_REFUSED); /* evaluated at the next call */
+        agv_fault_monitor_event(&core->faults, &core->timers,
+                                AGV_FAULT_TX_GATE_REFUSED); /* evaluated at the next call */
     }
     if (report.park_sent) {
         agv_state_machine_park_sent(&core->machine, &core->timers);
@@ -192,6 +193,7 @@ static void conclude_actions(agv_core_t *core, const agv_ports_t *ports, agv_act
     if ((what & AGV_ACTION_RESET_ACCEPTED) != 0u) {
         agv_liveness_forget_ai(&core->liveness, &core->timers);
         agv_status_checks_forget_ai(&core->status_checks);
+        agv_deadlines_forget_ai(&core->faults);
     }
     if ((what & AGV_ACTION_STORE_LATCH) != 0u) {
         agv_core_store_latch(core, ports);
@@ -210,7 +212,7 @@ static void conclude_actions(agv_core_t *core, const agv_ports_t *ports, agv_act
 }
 
 void agv_core_conclude(agv_core_t *core, const agv_ports_t *ports, agv_actions_t actions) {
-    take_tx_report(core);
+    agv_core_take_tx_report(core);
     agv_core_record_faults(core, ports, actions.from, actions.first_reason);
     conclude_actions(core, ports, actions);
     if (is_latched(core)) {

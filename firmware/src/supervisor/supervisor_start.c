@@ -111,6 +111,7 @@ void agv_core_begin(agv_core_t *core, const agv_ports_t *ports, uint32_t found) 
 void agv_core_keep_wiring(agv_core_t *core) {
     agv_config_ids(&core->config, &core->ids);
     core->topology = core->config.topology;
+    core->id_set = core->config.id_set;
 }
 
 /* The defaults, with the wiring and the identifiers of this vehicle, unless those make no sense. */
@@ -118,8 +119,11 @@ static void fall_back(agv_core_t *core) {
     agv_config_t *const config = &core->config;
     agv_config_defaults(config);
     config->topology = (core->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? AGV_TOPOLOGY_GATEWAY : config->topology;
+    config->id_set = (core->id_set == (uint16_t)AGV_ID_SET_TABLE) ? (uint16_t)AGV_ID_SET_TABLE : config->id_set;
     for (uint32_t i = 0u; i < (uint32_t)AGV_MSG_COUNT; i++) {
-        (void)agv_config_set(config, (uint32_t)AGV_SETTING_ID + i, core->ids.of[i]);
+        if (core->ids.of[i] != agv_message_id(i, config->id_set)) {
+            (void)agv_config_set(config, (uint32_t)AGV_SETTING_ID + i, core->ids.of[i]);
+        }
     }
     if (agv_config_check(config).problem != AGV_CONFIG_OK) {
         for (uint32_t i = 0u; i < (uint32_t)AGV_MSG_COUNT; i++) {
