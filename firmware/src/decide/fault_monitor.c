@@ -18,14 +18,12 @@ static const struct {
 enum { EVENTS = sizeof events / sizeof events[0] };
 
 void agv_fault_monitor_start(agv_fault_monitor_t *monitor) {
-    monitor->summary = (agv_fault_summary_t){.raised = AGV_FAULT_NONE,
-                                             .cause = AGV_FAULT_NONE,
-                                             .ai_cause = AGV_FAULT_NONE,
-                                             .unresettable = AGV_FAULT_NONE};
+    monitor->summary = (agv_fault_summary_t){
+        .raised = AGV_FAULT_NONE, .cause = AGV_FAULT_NONE, .ai_cause = AGV_FAULT_NONE, .unresettable = AGV_FAULT_NONE};
 }
 
 void agv_fault_monitor_set(agv_fault_monitor_t *monitor, uint32_t fault, bool cause) {
-    if (agv_fault_is_in(&monitor->active, fault) != cause) {
+    if ((fault < (uint32_t)AGV_FAULT_COUNT) && (agv_fault_is_in(&monitor->active, fault) != cause)) {
         agv_fault_set_put(&monitor->active, fault, cause);
         monitor->outdated = true;
     }
@@ -102,8 +100,8 @@ void agv_fault_monitor_evaluate(agv_fault_monitor_t *monitor, const agv_fault_se
     agv_fault_set_t raised;
     for (uint32_t i = 0u; i < AGV_FAULT_WORDS; i++) {
         raised.words[i] = tripping.words[i] & ~monitor->tripping.words[i];
-        monitor->changed.words[i] = (monitor->active.words[i] ^ monitor->reported.words[i]) |
-                                    (tripping.words[i] ^ monitor->tripping.words[i]);
+        monitor->changed.words[i] =
+            (monitor->active.words[i] ^ monitor->reported.words[i]) | (tripping.words[i] ^ monitor->tripping.words[i]);
     }
     monitor->was_trip = monitor->tripping;
     monitor->tripping = tripping;
