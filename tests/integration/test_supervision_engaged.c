@@ -318,7 +318,7 @@ void test_throttle_in_park_counts_after_the_grace(void) {
 /* However long: here an invalid throttle only warns. */
 /* Shows: SUP-5, THROTTLE_IN_PARK */
 void test_an_invalid_throttle_that_lasts_is_no_throttle_in_park(void) {
-    f.config.trips &= ~agv_fault_bit(AGV_FAULT_THROTTLE_STATUS_INVALID);
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_THROTTLE_STATUS_INVALID, false);
     fixture_active(&f);
     fixture_gear(&f, GEAR_P);
     set_throttle(251);

@@ -1,8 +1,9 @@
 #include "base/timers.h"
 
 #include <stddef.h>
+#include <string.h>
 
-/* A timer is reached when it has run for longer than its bound: a duration's bound is one less than its limit. */
+/* Added to the age, which then has to be above the limit: durations are reached at their limit, deadlines above it. */
 enum { DURATION = 1, DEADLINE = 0 };
 
 /* Which setting is the limit, and the kind. */
@@ -32,12 +33,12 @@ uint32_t agv_age_ms(uint32_t now_ms, uint32_t then_ms) {
     return (difference > (UINT32_MAX / 2u)) ? 0u : difference;
 }
 
-void agv_timers_start(agv_timers_t *timers, const agv_config_t *config) {
-    for (uint32_t i = 0u; i < (uint32_t)AGV_TIMER_COUNT; i++) {
-        timers->since_ms[i] = timers->now_ms;
-        timers->limit_ms[i] = (uint16_t)(agv_config_get(config, rows[i].setting) - rows[i].kind);
-        timers->phase[i] = AGV_TIMER_STOPPED;
-    }
+uint32_t agv_timer_limit_ms(const agv_config_t *config, uint32_t timer) {
+    return agv_config_get(config, rows[timer].setting);
+}
+
+void agv_timers_start(agv_timers_t *timers) {
+    (void)memset(timers->phase, AGV_TIMER_STOPPED, sizeof timers->phase);
 }
 
 void agv_timers_set_time(agv_timers_t *timers, uint32_t time_ms) {
@@ -45,20 +46,27 @@ void agv_timers_set_time(agv_timers_t *timers, uint32_t time_ms) {
     timers->now_us = time_ms * 1000u;
 }
 
-void agv_timers_advance(agv_timers_t *timers, uint32_t time_ms, uint32_t time_us) {
-    const uint32_t now_us = (time_ms * 1000u) + time_us;
-    const bool later_in_ms = (time_ms == timers->now_ms) && ((now_us - timers->now_us) < 1000u);
-    if (later_in_ms || (agv_age_ms(time_ms, timers->now_ms) > 0u)) {
-        timers->now_ms = time_ms;
-        timers->now_us = now_us;
+static void evaluate(agv_timers_t *timers, const agv_config_t *config) {
+    for (uint32_t i = 0u; i < (uint32_t)AGV_TIMER_COUNT; i++) {
+        if (timers->phase[i] == (uint8_t)AGV_TIMER_RUNNING) {
+            const uint32_t age_ms = agv_age_ms(timers->now_ms, timers->since_ms[i]) + rows[i].kind;
+            if (age_ms > agv_timer_limit_ms(config, i)) {
+                timers->phase[i] = AGV_TIMER_REACHED;
+            }
+        }
     }
 }
 
-void agv_timers_tick(agv_timers_t *timers) {
-    for (uint32_t i = 0u; i < (uint32_t)AGV_TIMER_COUNT; i++) {
-        if (agv_timer_reached(timers, i)) {
-            timers->phase[i] = AGV_TIMER_REACHED;
-        }
+void agv_timers_advance(agv_timers_t *timers, const agv_config_t *config, uint32_t time_ms, uint32_t time_us) {
+    const uint32_t now_us = (time_ms * 1000u) + time_us;
+    if (time_ms == timers->now_ms) {
+        timers->now_us = ((now_us - timers->now_us) < 1000u) ? now_us : timers->now_us;
+    } else if (agv_age_ms(time_ms, timers->now_ms) > 0u) {
+        timers->now_ms = time_ms;
+        timers->now_us = now_us;
+        evaluate(timers, config);
+    } else {
+        /* from before */
     }
 }
 
@@ -76,10 +84,7 @@ void agv_timer_stop(agv_timers_t *timers, uint32_t timer) {
 }
 
 bool agv_timer_reached(const agv_timers_t *timers, uint32_t timer) {
-    const uint32_t phase = timers->phase[timer];
-    const uint32_t age_ms = agv_age_ms(timers->now_ms, timers->since_ms[timer]);
-    return (phase == (uint32_t)AGV_TIMER_REACHED) ||
-           ((phase == (uint32_t)AGV_TIMER_RUNNING) && (age_ms > timers->limit_ms[timer]));
+    return timers->phase[timer] == (uint8_t)AGV_TIMER_REACHED;
 }
 
 bool agv_timer_while(agv_timers_t *timers, uint32_t timer, bool condition) {

@@ -39,8 +39,7 @@ typedef struct {
     uint32_t now_ms; /**< latest time seen */
     uint32_t now_us; /**< the same in microseconds, wraps */
     uint32_t since_ms[AGV_TIMER_COUNT];
-    uint16_t limit_ms[AGV_TIMER_COUNT]; /**< reached when a timer has run for longer than this */
-    uint8_t phase[AGV_TIMER_COUNT];     /**< AGV_TIMER_STOPPED ... */
+    uint8_t phase[AGV_TIMER_COUNT]; /**< AGV_TIMER_STOPPED ... */
 } agv_timers_t;
 
 /**
@@ -49,17 +48,21 @@ typedef struct {
  */
 uint32_t agv_age_ms(uint32_t now_ms, uint32_t then_ms);
 
-/** Stop all timers and take their limits from the configuration. The time stays. */
-void agv_timers_start(agv_timers_t *timers, const agv_config_t *config);
+/** The limit of a timer, ms. */
+uint32_t agv_timer_limit_ms(const agv_config_t *config, uint32_t timer);
+
+/** Stop all timers. The time stays. */
+void agv_timers_start(agv_timers_t *timers);
 
 /** Set the time, also backwards. */
 void agv_timers_set_time(agv_timers_t *timers, uint32_t time_ms);
 
-/** Advance the time to a stamp. An earlier one changes nothing: time never goes backwards, whatever stamps frames carry. */
-void agv_timers_advance(agv_timers_t *timers, uint32_t time_ms, uint32_t time_us);
-
-/** Note which timers have reached their limit. Call at every tick, so that it holds across the wrap. */
-void agv_timers_tick(agv_timers_t *timers);
+/**
+ * Advance the time to a stamp, and note which timers have reached their limit by then. An earlier stamp changes nothing:
+ * time never goes backwards, whatever stamps frames carry. Called at least once in every 24 days, so that it holds across
+ * the wrap.
+ */
+void agv_timers_advance(agv_timers_t *timers, const agv_config_t *config, uint32_t time_ms, uint32_t time_us);
 
 /** Start a timer anew from now. */
 void agv_timer_start(agv_timers_t *timers, uint32_t timer);
@@ -70,13 +73,13 @@ void agv_timer_start_at(agv_timers_t *timers, uint32_t timer, uint32_t since_ms)
 /** Stop a timer. */
 void agv_timer_stop(agv_timers_t *timers, uint32_t timer);
 
-/** Whether a timer has reached its limit. False when it is stopped. */
+/** Whether a timer had reached its limit when the time last advanced. False when it is stopped. */
 bool agv_timer_reached(const agv_timers_t *timers, uint32_t timer);
 
 /** Let a timer run while a condition holds, and stop it when not. @return whether it has reached its limit */
 bool agv_timer_while(agv_timers_t *timers, uint32_t timer, bool condition);
 
-/** Whether a timer runs and had not reached its limit at the last tick. */
+/** Whether a timer runs and has not reached its limit. */
 bool agv_timer_is_within(const agv_timers_t *timers, uint32_t timer);
 
 /** Whether a timer runs or has reached its limit. */

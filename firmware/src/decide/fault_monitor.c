@@ -25,7 +25,7 @@ void agv_fault_monitor_start(agv_fault_monitor_t *monitor) {
 }
 
 void agv_fault_monitor_set(agv_fault_monitor_t *monitor, uint32_t fault, bool cause) {
-    if (agv_fault_is_in(&monitor->active, fault) != cause) {
+    if ((fault < (uint32_t)AGV_FAULT_COUNT) && (agv_fault_is_in(&monitor->active, fault) != cause)) {
         agv_fault_set_put(&monitor->active, fault, cause);
         monitor->outdated = true;
     }
@@ -91,10 +91,11 @@ static agv_fault_set_t tripping_now(const agv_fault_monitor_t *monitor, const ag
     return set;
 }
 
-void agv_fault_monitor_evaluate(agv_fault_monitor_t *monitor, const agv_fault_set_t *trips, bool ai_loss_warns) {
+void agv_fault_monitor_evaluate(agv_fault_monitor_t *monitor, const agv_fault_set_t *trips, bool ai_loss_warns,
+                                agv_fault_changes_t *changes) {
     const bool same = !monitor->outdated && (monitor->ai_loss_warns == ai_loss_warns);
     monitor->summary.raised = AGV_FAULT_NONE;
-    (void)memset(&monitor->changed, 0, sizeof monitor->changed);
+    (void)memset(changes, 0, sizeof *changes);
     if (same) {
         return;
     }
@@ -104,10 +105,10 @@ void agv_fault_monitor_evaluate(agv_fault_monitor_t *monitor, const agv_fault_se
     agv_fault_set_t raised;
     for (uint32_t i = 0u; i < AGV_FAULT_WORDS; i++) {
         raised.words[i] = tripping.words[i] & (~monitor->tripping.words[i] | monitor->occurred.words[i]);
-        monitor->changed.words[i] = (monitor->active.words[i] ^ monitor->reported.words[i]) |
+        changes->changed.words[i] = (monitor->active.words[i] ^ monitor->reported.words[i]) |
                                     (tripping.words[i] ^ monitor->tripping.words[i]);
     }
-    monitor->was_trip = monitor->tripping;
+    changes->was_trip = monitor->tripping;
     monitor->tripping = tripping;
     monitor->reported = monitor->active;
     (void)memset(&monitor->occurred, 0, sizeof monitor->occurred);

@@ -27,13 +27,17 @@ typedef struct {
     agv_fault_set_t reported; /**< were active at the last evaluation */
     agv_fault_set_t tripping; /**< and counted as trips */
     agv_fault_set_t latched;  /**< raised as trips since the last reset */
-    agv_fault_set_t changed;  /**< raised, raised with another class, or ended at the last evaluation */
-    agv_fault_set_t was_trip; /**< counted as trips before it */
     agv_fault_set_t occurred; /**< events since the last evaluation: each occurrence counts (FSM-11) */
     agv_fault_summary_t summary;
     bool outdated;      /**< a cause came or went since the last evaluation */
     bool ai_loss_warns; /**< at the last evaluation a lost AI heartbeat only warned (SUP-8) */
 } agv_fault_monitor_t;
+
+/** What an evaluation has changed. */
+typedef struct {
+    agv_fault_set_t changed;  /**< raised, raised with another class, or ended */
+    agv_fault_set_t was_trip; /**< counted as trips before it */
+} agv_fault_changes_t;
 
 /** No fault, from zeroed memory. */
 void agv_fault_monitor_start(agv_fault_monitor_t *monitor);
@@ -48,11 +52,13 @@ void agv_fault_monitor_event(agv_fault_monitor_t *monitor, agv_timers_t *timers,
 void agv_fault_monitor_tick(agv_fault_monitor_t *monitor, const agv_timers_t *timers);
 
 /**
- * Evaluate what came and went since the last call; `changed` and `summary` say what that amounts to.
+ * Evaluate what came and went since the last call; `summary` says what that amounts to.
  * @param trips         the faults whose class is trip
  * @param ai_loss_warns the faults of the AI computer's heartbeat only warn at the moment (SUP-8)
+ * @param changes       out: what is to be reported
  */
-void agv_fault_monitor_evaluate(agv_fault_monitor_t *monitor, const agv_fault_set_t *trips, bool ai_loss_warns);
+void agv_fault_monitor_evaluate(agv_fault_monitor_t *monitor, const agv_fault_set_t *trips, bool ai_loss_warns,
+                                agv_fault_changes_t *changes);
 
 /** A trip: the faults that count as trips are latched; so are, until the reset, those that come to count. */
 void agv_fault_monitor_latch(agv_fault_monitor_t *monitor);

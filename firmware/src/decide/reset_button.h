@@ -15,8 +15,12 @@
 /** Remote button 1. */
 typedef enum { AGV_BUTTON_UNKNOWN, AGV_BUTTON_DOWN, AGV_BUTTON_UP } agv_button_t;
 
+/** How many conditions a reset has. */
+#define AGV_RESET_CONDITIONS 8u
+
 /** The button and the press. */
 typedef struct {
+    uint16_t held_ms[AGV_RESET_CONDITIONS]; /**< how long each condition has held, up to reset_hold_ms */
     uint8_t button;       /**< agv_button_t, as the last 363h of a VCU that is alive reports it */
     uint8_t before;       /**< the same at the last step */
     bool began_after;     /**< this press began with a rising edge after the trip */
@@ -37,10 +41,11 @@ void agv_reset_button_trip(agv_reset_button_t *reset, agv_timers_t *timers);
 
 /**
  * Evaluate, in TRIPPED and SAFE.
- * @param lacking AGV_MISSING_* bits of the conditions that do not hold now
- * @param missing out, when a press was in vain: what was missing at any time in its last reset_hold_ms
+ * @param elapsed_ms since the last tick; 0 for a frame
+ * @param lacking    AGV_MISSING_* bits of the conditions that do not hold now
+ * @param missing    out, when a press was in vain: what was missing at any time in its last reset_hold_ms
  */
-agv_press_result_t agv_reset_button_step(agv_reset_button_t *reset, agv_timers_t *timers, uint32_t lacking,
-                                         uint32_t *missing);
+agv_press_result_t agv_reset_button_step(agv_reset_button_t *reset, agv_timers_t *timers, const agv_config_t *config,
+                                         uint32_t elapsed_ms, uint32_t lacking, uint32_t *missing);
 
 #endif

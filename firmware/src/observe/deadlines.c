@@ -38,24 +38,30 @@ void agv_deadlines_heartbeats(agv_fault_monitor_t *faults, agv_timers_t *timers,
 }
 
 /* The other set's identifier came while the own one is silent (P1). */
-static bool is_wrong_set(const agv_timers_t *timers, const agv_liveness_t *liveness, uint32_t heard, uint32_t message) {
+static bool is_wrong_set(const agv_timers_t *timers, const agv_config_t *config, const agv_liveness_t *liveness,
+                         uint32_t heard, uint32_t message) {
     return agv_timer_is_within(timers, heard) &&
-           (agv_liveness_age_ms(liveness, timers, message) > timers->limit_ms[heard]);
+           (agv_liveness_age_ms(liveness, timers, message) > config->wrong_id_set_ms);
 }
 
-void agv_deadlines_tick(agv_fault_monitor_t *faults, agv_timers_t *timers, const agv_liveness_t *liveness,
-                        bool engaged) {
+void agv_deadlines_tick(agv_fault_monitor_t *faults, agv_timers_t *timers, const agv_config_t *config,
+                        const agv_liveness_t *liveness, bool engaged) {
     check_silences(faults, timers, engaged);
     agv_deadlines_heartbeats(faults, timers, liveness, engaged);
     agv_fault_monitor_set(
         faults, AGV_FAULT_WRONG_ID_SET,
-        is_wrong_set(timers, liveness, AGV_TIMER_OTHER_TURN_SIGNAL, AGV_MSG_TURN_SIGNAL_COMMAND) ||
-            is_wrong_set(timers, liveness, AGV_TIMER_OTHER_VEHICLE_STATUS, AGV_MSG_VEHICLE_STATUS));
+        is_wrong_set(timers, config, liveness, AGV_TIMER_OTHER_TURN_SIGNAL, AGV_MSG_TURN_SIGNAL_COMMAND) ||
+            is_wrong_set(timers, config, liveness, AGV_TIMER_OTHER_VEHICLE_STATUS, AGV_MSG_VEHICLE_STATUS));
 }
 
 void agv_deadlines_other_id_set(agv_timers_t *timers, uint32_t message) {
     agv_timer_start(timers, (message == (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND) ? AGV_TIMER_OTHER_TURN_SIGNAL
                                                                                : AGV_TIMER_OTHER_VEHICLE_STATUS);
+}
+
+void agv_deadlines_forget_ai(agv_fault_monitor_t *faults) {
+    agv_fault_monitor_set(faults, heartbeat_faults[AGV_NODE_AI].lost, false);
+    agv_fault_monitor_set(faults, heartbeat_faults[AGV_NODE_AI].stuck, false);
 }
 
 bool agv_deadlines_messages_fresh(const agv_liveness_t *liveness, const agv_timers_t *timers,

@@ -17,6 +17,14 @@ static const uint8_t counters_at[AGV_MSG_COUNT] = {
 #undef AGV_STATUS
 };
 
+static uint16_t bit_of(uint32_t message) {
+    return (uint16_t)((uint32_t)1u << message);
+}
+
+static bool has(uint32_t set, uint32_t message) {
+    return ((set >> message) & 1u) != 0u;
+}
+
 static uint32_t deadline_of(uint32_t message) {
     return (uint32_t)AGV_TIMER_MESSAGE + message;
 }
@@ -31,10 +39,10 @@ void agv_liveness_start(agv_liveness_t *liveness, agv_timers_t *timers) {
 
 uint32_t agv_liveness_arrived(agv_liveness_t *liveness, uint32_t message, uint32_t time_ms) {
     const uint32_t last_ms = liveness->last_ms[message];
-    const bool known = liveness->heard[message] && !liveness->old[message];
+    const bool known = has(liveness->heard, message) && !has(liveness->old, message);
     liveness->last_ms[message] = time_ms;
-    liveness->heard[message] = true;
-    liveness->old[message] = false;
+    liveness->heard |= bit_of(message);
+    liveness->old &= (uint16_t)~bit_of(message);
     return known ? agv_age_ms(time_ms, last_ms) : AGV_AGE_MAX;
 }
 
@@ -130,7 +138,7 @@ static void expire(agv_liveness_t *liveness, const agv_timers_t *timers, uint32_
 void agv_liveness_tick(agv_liveness_t *liveness, const agv_timers_t *timers, bool engaged) {
     for (uint32_t i = 0u; i < (uint32_t)AGV_MSG_COUNT; i++) {
         if (agv_age_ms(timers->now_ms, liveness->last_ms[i]) > AGV_AGE_LIMIT_MS) {
-            liveness->old[i] = true;
+            liveness->old |= bit_of(i);
         }
     }
     for (uint32_t node = 0u; node < (uint32_t)AGV_NODE_COUNT; node++) {
@@ -147,9 +155,9 @@ bool agv_liveness_alive(const agv_liveness_t *liveness, agv_node_t node) {
 }
 
 bool agv_liveness_fresh(const agv_liveness_t *liveness, const agv_timers_t *timers, uint32_t message) {
-    return liveness->heard[message] && agv_timer_is_within(timers, deadline_of(message));
+    return has(liveness->heard, message) && agv_timer_is_within(timers, deadline_of(message));
 }
 
 uint32_t agv_liveness_age_ms(const agv_liveness_t *liveness, const agv_timers_t *timers, uint32_t message) {
-    return liveness->old[message] ? AGV_AGE_MAX : agv_age_ms(timers->now_ms, liveness->last_ms[message]);
+    return has(liveness->old, message) ? AGV_AGE_MAX : agv_age_ms(timers->now_ms, liveness->last_ms[message]);
 }

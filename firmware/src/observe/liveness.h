@@ -42,8 +42,8 @@ typedef struct {
 /** Ages of all messages, and the heartbeats. */
 typedef struct {
     uint32_t last_ms[AGV_MSG_COUNT]; /**< last frame of the right shape; before: the start */
-    bool heard[AGV_MSG_COUNT];       /**< received at least once */
-    bool old[AGV_MSG_COUNT];         /**< last_ms is older than AGV_AGE_LIMIT_MS */
+    uint16_t heard;                  /**< bit n: message n was received at least once */
+    uint16_t old;                    /**< bit n: its last_ms is older than AGV_AGE_LIMIT_MS */
     agv_heartbeat_t heartbeats[AGV_NODE_COUNT];
 } agv_liveness_t;
 

@@ -36,6 +36,7 @@ typedef struct {
     uint32_t config_checksum; /**< agv_config_checksum at the start */
     agv_ids_t ids;            /**< made of config; and a second copy, for when the configuration is corrupted */
     uint16_t topology;        /**< second copy, likewise */
+    uint16_t id_set;          /**< second copy, likewise */
     agv_counters_t counters;
     agv_state_machine_t machine;
     agv_fault_monitor_t faults;

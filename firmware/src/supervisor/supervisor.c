@@ -13,7 +13,7 @@ static agv_core_t *open_core(agv_supervisor_t *supervisor, const agv_ports_t *po
     const bool intact =
         (supervisor->seal == agv_seal(core, sizeof *core)) && agv_state_machine_is_sound(&core->machine);
     if (intact) {
-        agv_timers_advance(&core->timers, time_ms, time_us);
+        agv_timers_advance(&core->timers, &core->config, time_ms, time_us);
     } else {
         agv_timers_set_time(&core->timers, time_ms);
         agv_core_begin_corrupted(core, ports);

@@ -161,7 +161,7 @@ static void observe_message(agv_core_t *core, const agv_ports_t *ports, intake_t
     const bool valid = agv_value_is_valid(message, frame->data);
     agv_recorder_frame(ports->recorder, message, frame->data);
     if (is_command(message)) {
-        agv_intrusion_command(&core->intrusion, &core->config, &core->timers, message, gap_ms);
+        agv_intrusion_command(&core->intrusion, &core->config, message, gap_ms);
     }
     intake->passes = valid || !is_command(message);
     if (intake->passes) {
@@ -275,12 +275,14 @@ static void transmit(agv_core_t *core, const agv_ports_t *ports, const intake_t 
 
 void agv_core_frame(agv_core_t *core, const agv_ports_t *ports, hal_can_side_t side, const hal_can_frame_t *frame) {
     intake_t intake = {.side = side, .frame = frame, .message = agv_ids_find(&core->ids, frame->id)};
-    agv_actions_t actions = {.from = core->machine.state, .first_reason = core->machine.first_reason};
     intake.rejected = reason_to_reject(frame, intake.message);
     observe(core, ports, &intake);
     if (intake.decides) {
-        actions = agv_core_decide(core, ports, 0u);
+        const agv_pass_t pass = agv_core_decide(core, ports, 0u);
+        transmit(core, ports, &intake, (pass.actions.what & AGV_ACTION_TRIP) != 0u);
+        agv_core_conclude(core, ports, &pass);
+    } else {
+        transmit(core, ports, &intake, false);
+        agv_core_take_tx_report(core);
     }
-    transmit(core, ports, &intake, (actions.what & AGV_ACTION_TRIP) != 0u);
-    agv_core_conclude(core, ports, actions);
 }

@@ -8,19 +8,28 @@
 
 #include "supervisor/core.h"
 
+/** What a pass has decided. */
+typedef struct {
+    agv_actions_t actions;
+    agv_fault_changes_t faults;
+} agv_pass_t;
+
 /**
  * Evaluate the faults, once, step the state machine, and carry out at once what cannot wait: open the output, discard what
  * waits to be sent, send all safe commands.
  * @param elapsed_ms since the last tick; 0 for a frame
  * @return what remains to be concluded
  */
-agv_actions_t agv_core_decide(agv_core_t *core, const agv_ports_t *ports, uint32_t elapsed_ms);
+agv_pass_t agv_core_decide(agv_core_t *core, const agv_ports_t *ports, uint32_t elapsed_ms);
 
 /** A start in TRIPPED, or a trip: what is awaited of the vehicle begins anew. */
 void agv_core_await_safe_state(agv_core_t *core);
 
+/** Count what was sent, and what the gate refused. For a call that decides nothing it is all that remains to be done. */
+void agv_core_take_tx_report(agv_core_t *core);
+
 /** The rest, after everything was sent: latch record, counters, events, closing the output. */
-void agv_core_conclude(agv_core_t *core, const agv_ports_t *ports, agv_actions_t actions);
+void agv_core_conclude(agv_core_t *core, const agv_ports_t *ports, const agv_pass_t *pass);
 
 /** What the transmitter is told. */
 agv_tx_orders_t agv_core_orders(agv_core_t *core, const agv_ports_t *ports);
@@ -46,9 +55,6 @@ bool agv_core_is_supervising(const agv_core_t *core);
 /** Record a change of state or output, with the state and first reason of now. @param kind agv_event_kind_t */
 void agv_core_record(const agv_core_t *core, const agv_ports_t *ports, uint32_t kind, uint32_t a, uint32_t b,
                      uint32_t c);
-
-/** Record which faults were raised or ended at the last evaluation, in the state of then. */
-void agv_core_record_faults(agv_core_t *core, const agv_ports_t *ports, uint8_t state, uint8_t first_reason);
 
 /** Write the latch record. */
 void agv_core_store_latch(const agv_core_t *core, const agv_ports_t *ports);

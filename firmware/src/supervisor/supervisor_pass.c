@@ -132,7 +132,7 @@ static void evaluate_checks(agv_core_t *core) {
                          agv_liveness_alive(&core->liveness, AGV_NODE_VCU));
     agv_status_checks_evaluate(&core->status_checks, &core->faults, agv_mode_is_engaged(&core->mode), judged);
     agv_motion_checks_evaluate(&core->motion_checks, &core->faults, judged);
-    agv_intrusion_evaluate(&core->intrusion, &core->faults, &core->timers, &core->liveness);
+    agv_intrusion_evaluate(&core->intrusion, &core->faults, &core->timers, &core->config, &core->liveness);
 }
 
 /* In TRIPPED and SAFE: whether the vehicle confirms and stops (FSM-4, FSM-12). */
@@ -147,22 +147,22 @@ static void evaluate_safe_state(agv_core_t *core, uint32_t facts, uint32_t elaps
     agv_fault_monitor_set(&core->faults, AGV_FAULT_MOVING_WHILE_SAFE, core->stopping.moving);
 }
 
-static void evaluate_faults(agv_core_t *core, uint32_t facts, uint32_t elapsed_ms) {
+static void evaluate_faults(agv_core_t *core, uint32_t facts, uint32_t elapsed_ms, agv_fault_changes_t *changes) {
     const bool ai_loss_warns =
         ((facts & AGV_FACT_ENGAGED) == 0u) && (core->config.ai_lost_in_manual == (uint16_t)AGV_AI_LOST_WARN);
     evaluate_safe_state(core, facts, elapsed_ms);
     agv_fault_monitor_set(&core->faults, AGV_FAULT_STARTUP_TIMEOUT,
                           agv_state_machine_is_startup_late(&core->machine, &core->timers));
-    agv_fault_monitor_evaluate(&core->faults, &core->config.trips, ai_loss_warns);
+    agv_fault_monitor_evaluate(&core->faults, &core->config.trips, ai_loss_warns, changes);
 }
 
 /* A press of the reset button, in TRIPPED and SAFE (FSM-3). */
-static agv_press_result_t evaluate_press(agv_core_t *core, uint32_t facts, uint32_t *missing) {
+static agv_press_result_t evaluate_press(agv_core_t *core, uint32_t facts, uint32_t elapsed_ms, uint32_t *missing) {
     if (!is_latched(core)) {
         return AGV_PRESS_NOTHING;
     }
     const uint32_t lacking = agv_state_machine_lacks_for_reset(&core->machine, &core->faults.summary, facts);
-    return agv_reset_button_step(&core->reset_button, &core->timers, lacking, missing);
+    return agv_reset_button_step(&core->reset_button, &core->timers, &core->config, elapsed_ms, lacking, missing);
 }
 
 void agv_core_await_safe_state(agv_core_t *core) {
@@ -184,6 +184,7 @@ static void follow_state(agv_core_t *core, uint32_t what) {
         agv_confirmation_start(&core->confirmation, &core->timers);
         agv_stopping_end(&core->stopping);
         agv_liveness_forget_ai(&core->liveness);
+        agv_deadlines_forget_ai(&core->faults);
     }
     if ((what & AGV_ACTION_STATE) != 0u) {
         agv_gateway_restart(&core->gateway);
@@ -222,22 +223,23 @@ static void carry_out_at_once(agv_core_t *core, const agv_ports_t *ports, uint32
     }
 }
 
-agv_actions_t agv_core_decide(agv_core_t *core, const agv_ports_t *ports, uint32_t elapsed_ms) {
+agv_pass_t agv_core_decide(agv_core_t *core, const agv_ports_t *ports, uint32_t elapsed_ms) {
     uint32_t missing = 0u;
+    agv_pass_t pass;
     evaluate_checks(core);
     uint32_t facts = facts_of(core);
-    evaluate_faults(core, facts, elapsed_ms);
+    evaluate_faults(core, facts, elapsed_ms, &pass.faults);
     facts |= output_is_unsafe(core) ? AGV_FACT_OUTPUT_UNSAFE : 0u;
-    const agv_press_result_t press = evaluate_press(core, facts, &missing);
+    const agv_press_result_t press = evaluate_press(core, facts, elapsed_ms, &missing);
     facts |= (press == AGV_PRESS_RESETS) ? AGV_FACT_RESET : 0u;
-    agv_actions_t actions =
+    pass.actions =
         agv_state_machine_step(&core->machine, &core->timers, &core->config, &core->faults.summary, facts);
     if (press == AGV_PRESS_IN_VAIN) {
-        actions.what |= AGV_ACTION_RESET_REFUSED;
-        actions.missing = (uint16_t)missing;
+        pass.actions.what |= AGV_ACTION_RESET_REFUSED;
+        pass.actions.missing = (uint16_t)missing;
     }
-    carry_out_at_once(core, ports, actions.what);
-    return actions;
+    carry_out_at_once(core, ports, pass.actions.what);
+    return pass;
 }
 
 /* What was passed on counts from now on as what the vehicle was told (SUP-5). */
@@ -249,7 +251,7 @@ static void take_passed_commands(agv_core_t *core, uint32_t passed) {
     }
 }
 
-static void take_tx_report(agv_core_t *core) {
+void agv_core_take_tx_report(agv_core_t *core) {
     const agv_tx_report_t report = agv_transmitter_take_report(&core->transmitter);
     core->counters.sent += report.sent;
     core->counters.shadowed += report.shadowed;
@@ -258,16 +260,18 @@ static void take_tx_report(agv_core_t *core) {
     core->counters.skipped_slots += report.skipped_slots;
     take_passed_commands(core, report.passed);
     if (report.refused != 0u) {
-        agv_fault_monitor_event(&core->faults, &core->timers, AGV_FAULT_TX_GATE_REFUSED); /* evaluated at the next call */
+        agv_fault_monitor_event(&core->faults, &core->timers,
+                                AGV_FAULT_TX_GATE_REFUSED); /* evaluated at the next call */
     }
     if (report.park_sent && is_latched(core)) {
         agv_confirmation_park_sent(&core->confirmation);
     }
 }
 
-static void record_fault(agv_core_t *core, const agv_ports_t *ports, uint32_t fault, agv_entry_t *entry) {
+static void record_fault(agv_core_t *core, const agv_ports_t *ports, const agv_fault_changes_t *changes, uint32_t fault,
+                         agv_entry_t *entry) {
     const bool active = agv_fault_is_in(&core->faults.active, fault);
-    const agv_fault_set_t *const trips = active ? &core->faults.tripping : &core->faults.was_trip;
+    const agv_fault_set_t *const trips = active ? &core->faults.tripping : &changes->was_trip;
     const bool trip = agv_fault_is_in(trips, fault);
     if (active && !trip) {
         core->counters.warnings++;
@@ -278,13 +282,15 @@ static void record_fault(agv_core_t *core, const agv_ports_t *ports, uint32_t fa
     record(core, ports, entry);
 }
 
-void agv_core_record_faults(agv_core_t *core, const agv_ports_t *ports, uint8_t state, uint8_t first_reason) {
-    agv_entry_t entry = {.kind = AGV_EVENT_FAULT, .state = state, .first_reason = first_reason};
+/* Which faults were raised or ended, in the state of then. */
+static void record_faults(agv_core_t *core, const agv_ports_t *ports, const agv_pass_t *pass) {
+    agv_entry_t entry = {
+        .kind = AGV_EVENT_FAULT, .state = pass->actions.from, .first_reason = pass->actions.first_reason};
     for (uint32_t word = 0u; word < AGV_FAULT_WORDS; word++) {
-        uint32_t changed = core->faults.changed.words[word];
+        uint32_t changed = pass->faults.changed.words[word];
         for (uint32_t fault = word * 32u; changed != 0u; fault++) {
             if ((changed & 1u) != 0u) {
-                record_fault(core, ports, fault, &entry);
+                record_fault(core, ports, &pass->faults, fault, &entry);
             }
             changed >>= 1u;
         }
@@ -331,10 +337,10 @@ static void conclude_actions(agv_core_t *core, const agv_ports_t *ports, agv_act
     }
 }
 
-void agv_core_conclude(agv_core_t *core, const agv_ports_t *ports, agv_actions_t actions) {
-    take_tx_report(core);
-    agv_core_record_faults(core, ports, actions.from, actions.first_reason);
-    conclude_actions(core, ports, actions);
+void agv_core_conclude(agv_core_t *core, const agv_ports_t *ports, const agv_pass_t *pass) {
+    agv_core_take_tx_report(core);
+    record_faults(core, ports, pass);
+    conclude_actions(core, ports, pass->actions);
     if (is_latched(core)) {
         agv_fault_monitor_latch(&core->faults);
     }

@@ -36,7 +36,7 @@ static void begin_modules(agv_core_t *core, hal_t *hal) {
     core->config_checksum = agv_config_checksum(&core->config);
     core->last_tick_ms = core->timers.now_ms;
     agv_core_keep_wiring(core);
-    agv_timers_start(&core->timers, &core->config);
+    agv_timers_start(&core->timers);
     agv_timer_start(&core->timers, AGV_TIMER_WATCHDOG_FED);
     agv_fault_monitor_start(&core->faults);
     agv_liveness_start(&core->liveness, &core->timers);
@@ -70,7 +70,7 @@ static uint32_t first_found(const agv_core_t *core) {
 }
 
 /* INIT, or TRIPPED when an earlier run was or when something found now is reason enough. */
-static void begin_state(agv_core_t *core, const agv_ports_t *ports, uint32_t kept_reason) {
+static void begin_state(agv_core_t *core, const agv_ports_t *ports, uint32_t kept_reason, agv_pass_t *pass) {
     const uint32_t found = first_found(core);
     agv_state_machine_start(&core->machine, &core->timers, &core->config,
                             (kept_reason != (uint32_t)AGV_FAULT_NONE) ? kept_reason : found);
@@ -78,7 +78,8 @@ static void begin_state(agv_core_t *core, const agv_ports_t *ports, uint32_t kep
     agv_core_record(core, ports, AGV_EVENT_OUTPUT, 0u, 0u, 0u);
     agv_fault_monitor_latch_one(&core->faults, kept_reason);
     agv_fault_monitor_evaluate(&core->faults, &core->config.trips,
-                               core->config.ai_lost_in_manual == (uint16_t)AGV_AI_LOST_WARN);
+                               core->config.ai_lost_in_manual == (uint16_t)AGV_AI_LOST_WARN, &pass->faults);
+    pass->actions = (agv_actions_t){.from = core->machine.state, .first_reason = core->machine.first_reason};
     agv_state_machine_forbid_reset(&core->machine, core->faults.summary.unresettable);
     agv_core_await_safe_state(core);
 }
@@ -100,20 +101,21 @@ void agv_core_begin(agv_core_t *core, const agv_ports_t *ports, uint32_t found) 
     if ((!powered_on || trips) && !corrupted && (kept_reason == (uint32_t)AGV_FAULT_NONE)) {
         agv_fault_monitor_event(&core->faults, &core->timers, AGV_FAULT_SUPERVISOR_RESET);
     }
-    begin_state(core, ports, kept_reason);
+    agv_pass_t pass;
+    begin_state(core, ports, kept_reason, &pass);
     agv_core_store_latch(core, ports);
     hal_can_purge(ports->hal, HAL_CAN_VEHICLE);
     const agv_tx_orders_t orders = agv_core_orders(core, ports);
     agv_transmitter_burst(&core->transmitter, &orders);
     agv_transmitter_status(&core->transmitter, &orders);
-    const agv_actions_t none = {.from = core->machine.state, .first_reason = core->machine.first_reason};
-    agv_core_conclude(core, ports, none);
+    agv_core_conclude(core, ports, &pass);
     agv_core_show_led(core, ports, 0u);
 }
 
 void agv_core_keep_wiring(agv_core_t *core) {
     agv_config_ids(&core->config, &core->ids);
     core->topology = core->config.topology;
+    core->id_set = core->config.id_set;
 }
 
 /* The defaults, with the wiring and the identifiers of this vehicle, unless those make no sense. */
@@ -121,8 +123,11 @@ static void fall_back(agv_core_t *core) {
     agv_config_t *const config = &core->config;
     agv_config_defaults(config);
     config->topology = (core->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? AGV_TOPOLOGY_GATEWAY : config->topology;
+    config->id_set = (core->id_set == (uint16_t)AGV_ID_SET_TABLE) ? (uint16_t)AGV_ID_SET_TABLE : config->id_set;
     for (uint32_t i = 0u; i < (uint32_t)AGV_MSG_COUNT; i++) {
-        (void)agv_config_set(config, (uint32_t)AGV_SETTING_ID + i, core->ids.of[i]);
+        if (core->ids.of[i] != agv_message_id(i, config->id_set)) {
+            (void)agv_config_set(config, (uint32_t)AGV_SETTING_ID + i, core->ids.of[i]);
+        }
     }
     if (agv_config_check(config).problem != AGV_CONFIG_OK) {
         for (uint32_t i = 0u; i < (uint32_t)AGV_MSG_COUNT; i++) {

@@ -15,7 +15,6 @@ static uint32_t step_time(agv_core_t *core) {
         agv_fault_monitor_event(&core->faults, &core->timers, AGV_FAULT_STEP_OVERRUN);
     }
     core->last_tick_ms = core->timers.now_ms;
-    agv_timers_tick(&core->timers);
     return elapsed_ms;
 }
 
@@ -59,7 +58,7 @@ static void observe_time(agv_core_t *core, uint32_t elapsed_ms) {
         agv_reset_button_lose(&core->reset_button);
     }
     agv_mode_check(&core->mode, timers, faults, agv_core_is_supervising(core), agv_vehicle_is_at_standstill(timers));
-    agv_deadlines_tick(faults, timers, &core->liveness, agv_mode_is_engaged(&core->mode));
+    agv_deadlines_tick(faults, timers, &core->config, &core->liveness, agv_mode_is_engaged(&core->mode));
     const agv_motion_facts_t facts = agv_core_motion_facts(core);
     agv_motion_checks_tick(&core->motion_checks, &facts, elapsed_ms);
 }
@@ -113,14 +112,14 @@ void agv_core_tick(agv_core_t *core, const agv_ports_t *ports, bool receive_aliv
     core->checked_in |= (uint8_t)(CHECKED_STEP | (receive_alive ? CHECKED_RECEIVE : 0));
     const bool recovered = observe_buses(core, ports->hal);
     observe_time(core, elapsed_ms);
-    const agv_actions_t actions = agv_core_decide(core, ports, elapsed_ms);
+    const agv_pass_t pass = agv_core_decide(core, ports, elapsed_ms);
     const agv_tx_orders_t orders = agv_core_orders(core, ports);
-    if (recovered && ((actions.what & AGV_ACTION_TRIP) == 0u)) {
+    if (recovered && ((pass.actions.what & AGV_ACTION_TRIP) == 0u)) {
         agv_transmitter_burst(&core->transmitter, &orders);
     }
     agv_transmitter_tick(&core->transmitter, &orders);
     core->checked_in |= CHECKED_SEND;
-    agv_core_conclude(core, ports, actions);
+    agv_core_conclude(core, ports, &pass);
     feed_watchdog(core, ports);
     agv_core_show_led(core, ports, elapsed_ms);
     earn_store_credits(core, elapsed_ms);

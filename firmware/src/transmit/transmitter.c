@@ -13,12 +13,16 @@ static const uint8_t waits[AGV_COMMAND_COUNT] = {[AGV_MSG_TURN_SIGNAL_COMMAND] =
                                                  [AGV_MSG_THROTTLE_COMMAND] = AGV_TIMER_TX_THROTTLE,
                                                  [AGV_MSG_STEERING_COMMAND] = AGV_TIMER_TX_STEERING};
 
+/* A status frame that was handed over so short a time ago may not have left yet. */
+enum { STATUS_ON_WIRE_MS = 2 };
+
 static uint32_t bit_of(uint32_t message) {
     return (uint32_t)1u << message;
 }
 
 void agv_transmitter_start(agv_transmitter_t *transmitter, uint32_t now_ms) {
     transmitter->status_due_ms = now_ms;
+    transmitter->status_ms = now_ms - (uint32_t)STATUS_ON_WIRE_MS - 1u;
 }
 
 void agv_transmitter_discard(agv_transmitter_t *transmitter, agv_timers_t *timers, hal_can_side_t side) {
@@ -28,6 +32,8 @@ void agv_transmitter_discard(agv_transmitter_t *transmitter, agv_timers_t *timer
     }
     transmitter->kept &= ~messages;
     if (side == HAL_CAN_VEHICLE) {
+        transmitter->status_again = agv_age_ms(timers->now_ms, transmitter->status_ms) <= (uint32_t)STATUS_ON_WIRE_MS;
+
         transmitter->throttle_0_waits = false;
         agv_scheduler_discard(&transmitter->scheduler);
         for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
@@ -264,6 +270,8 @@ static bool emit_status_frame(agv_transmitter_t *transmitter, const agv_tx_order
         return true;
     }
     transmitter->status_counter++;
+    transmitter->status_ms = orders->timers->now_ms;
+    transmitter->status_again = false;
     return false;
 }
 
@@ -272,7 +280,7 @@ void agv_transmitter_status(agv_transmitter_t *transmitter, const agv_tx_orders_
     const agv_config_t *const config = orders->config;
     const uint32_t late_ms = orders->timers->now_ms - transmitter->status_due_ms;
     const bool due = late_ms <= (UINT32_MAX / 2u);
-    bool has_to_wait = agv_timer_runs(orders->timers, AGV_TIMER_TX_STATUS);
+    bool has_to_wait = agv_timer_runs(orders->timers, AGV_TIMER_TX_STATUS) || transmitter->status_again;
     if ((config->status_frame_id == 0u) || (config->shadow == (uint16_t)AGV_SHADOW_ON) ||
         agv_bus_is_off(orders->timers, HAL_CAN_VEHICLE)) {
         has_to_wait = false;

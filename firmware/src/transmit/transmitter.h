@@ -38,13 +38,15 @@ typedef struct {
 /** The transmitter. */
 typedef struct {
     agv_scheduler_t scheduler;
-    uint32_t status_due_ms;
+    uint32_t status_due_ms; /**< when the next status frame is due */
+    uint32_t status_ms;     /**< when the last one was handed to the HAL */
     uint32_t kept;                       /**< frames to be passed that wait, bit n = message n */
     uint32_t passed_ms[AGV_COMMAND_COUNT]; /**< when a command was last passed on */
     agv_tx_report_t report;
     uint8_t kept_data[AGV_MSG_COUNT][AGV_DLC];
     uint8_t wanted_before;  /**< own commands that were sent at the last tick */
     uint8_t passed_lately;  /**< commands that were passed on less than half their cycle ago */
+    bool status_again;      /**< the last status frame may have been discarded with what waited */
     bool throttle_0_waits;  /**< the engagement ended, and the HAL has not taken the 075h of that */
     uint8_t alive_counter;  /**< of the own 43Fh */
     uint8_t status_counter; /**< alive counter of the status frame */
