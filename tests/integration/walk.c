@@ -52,7 +52,7 @@ uint32_t walk_events(const fixture_t *f, agv_event_kind_t kind, uint8_t a, agv_e
     return count;
 }
 
-uint32_t walk_refusals(const fixture_t *f, uint8_t *missing) {
+uint32_t walk_refusals(const fixture_t *f, uint16_t *missing) {
     agv_event_t event = {0};
     const uint32_t count = walk_events(f, AGV_EVENT_RESET, 0, &event);
     *missing = event.missing;

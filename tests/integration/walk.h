@@ -34,6 +34,6 @@ void walk_to_tripped(fixture_t *f);
 uint32_t walk_events(const fixture_t *f, agv_event_kind_t kind, uint8_t a, agv_event_t *last);
 
 /* Events of presses that were held in vain; what the last one missed. */
-uint32_t walk_refusals(const fixture_t *f, uint8_t *missing);
+uint32_t walk_refusals(const fixture_t *f, uint16_t *missing);
 
 #endif
