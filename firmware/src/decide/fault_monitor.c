@@ -93,7 +93,7 @@ void agv_fault_monitor_evaluate(agv_fault_monitor_t *monitor, const agv_fault_se
                                 agv_fault_changes_t *changes) {
     const bool same = !monitor->outdated && (monitor->ai_loss_warns == ai_loss_warns);
     monitor->summary.raised = AGV_FAULT_NONE;
-    (void)memset(changes, 0, sizeof *changes);
+    changes->any = !same;
     if (same) {
         return;
     }
