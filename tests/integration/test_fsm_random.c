@@ -19,8 +19,12 @@ static uint32_t resets;
 static uint32_t restarts;
 static uint32_t malformed;
 
-/* When the vehicle last reported that the button is not pressed, or that it is not manual. */
-static uint32_t released_ms;
+/* What the vehicle reported of button 1 and of its mode. */
+static bool down;
+static uint32_t pressed_ms;  /* last rising edge */
+static uint32_t released_ms; /* last falling edge */
+static uint32_t held_ms;     /* of the press that ended then */
+static uint32_t unwell_ms;   /* last report of another mode than manual */
 
 void setUp(void) {
     fixture_init(&f);
@@ -70,8 +74,20 @@ static hal_can_frame_t any_frame(void) {
 /* What the vehicle says in a frame that the supervisor believes. */
 static void note_button(hal_can_side_t side, const hal_can_frame_t *frame) {
     const bool is_status = side == HAL_CAN_VEHICLE && frame->id == 0x363 && frame->flags == 0 && frame->length == 8;
-    if (is_status && ((frame->data[6] & BUTTON_1) == 0 || (frame->data[6] & MODE_BOTH) != MODE_MANUAL)) {
+    if (!is_status) {
+        return;
+    }
+    const bool is_down = (frame->data[6] & BUTTON_1) != 0;
+    if (is_down && !down) {
+        pressed_ms = f.now_ms;
+    }
+    if (!is_down && down) {
         released_ms = f.now_ms;
+        held_ms = f.now_ms - pressed_ms;
+    }
+    down = is_down;
+    if ((frame->data[6] & MODE_BOTH) != MODE_MANUAL) {
+        unwell_ms = f.now_ms;
     }
 }
 
@@ -93,6 +109,7 @@ static void hand_over_random_frames(void) {
 
 static void heal(void) {
     fixture_vehicle_confirms(&f);
+    fixture_angle(&f, ANGLE_CENTRE);
     walk_alarm(&f, ALARM_NONE);
     f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0;
     f.traffic[AGV_MSG_EPS_STATUS].data[3] = 1;
@@ -108,7 +125,7 @@ static void heal(void) {
 
 static void hurt(void) {
     static const uint8_t MODES[] = {MODE_MANUAL, MODE_ENGAGED, MODE_NEITHER, MODE_BOTH};
-    switch (draw(12)) {
+    switch (draw(14)) {
     case 0:
         f.traffic[draw(AGV_MSG_COUNT)].muted = true;
         break;
@@ -142,6 +159,12 @@ static void hurt(void) {
     case 10:
         sim_hal_set_full(&f.hal, one_in(2) ? HAL_CAN_AI : HAL_CAN_VEHICLE, one_in(2));
         break;
+    case 11:
+        fixture_throttle(&f, any_byte());
+        break;
+    case 12:
+        fixture_speed(&f, (uint16_t)draw(4000));
+        break;
     default:
         sim_hal_add_overrun(&f.hal, HAL_CAN_VEHICLE);
         break;
@@ -151,7 +174,7 @@ static void hurt(void) {
 static void drive_the_vehicle(void) {
     fixture_mode(&f, MODE_ENGAGED);
     fixture_gear(&f, GEAR_D);
-    fixture_wheels(&f, 900, 900);
+    fixture_drive(&f, 900);
 }
 
 /* ---- Steps ---- */
@@ -171,13 +194,16 @@ static bool is_latched(agv_state_t state) {
     return state == AGV_STATE_TRIPPED || state == AGV_STATE_SAFE;
 }
 
-/* The latch is left for STANDBY only, and only when the button was pressed in manual for the whole second before. */
-static void judge_step(agv_state_t before) {
+/* The latch is left for STANDBY only, and only when in this step the button was released that had been held for 1 s to
+ * 5 s, in manual for the whole second before. */
+static void judge_step(agv_state_t before, uint32_t before_ms) {
     const agv_state_t after = agv_supervisor_state(&f.supervisor);
     steps_in[index_of(after)]++;
     if (is_latched(before) && !is_latched(after)) {
         TEST_ASSERT_EQUAL_HEX8(AGV_STATE_STANDBY, after);
-        TEST_ASSERT_TRUE(f.now_ms - released_ms >= 1000);
+        TEST_ASSERT_TRUE(f.now_ms - released_ms <= f.now_ms - before_ms);
+        TEST_ASSERT_TRUE(held_ms >= 1000 && held_ms <= 5000);
+        TEST_ASSERT_TRUE(f.now_ms - unwell_ms >= 1000);
         resets++;
     }
     if (!is_latched(before) && is_latched(after)) {
@@ -189,17 +215,18 @@ static void judge_step(agv_state_t before) {
 }
 
 static void restart(void) {
-    const hal_reset_cause_t cause = (hal_reset_cause_t)draw(HAL_RESET_UNKNOWN + 1u);
+    const hal_reset_cause_t cause = one_in(2) ? HAL_RESET_POWER_ON : (hal_reset_cause_t)draw(HAL_RESET_UNKNOWN + 1u);
     fixture_restart(&f, cause);
     restarts++;
     TEST_ASSERT_EQUAL_HEX8(cause == HAL_RESET_POWER_ON ? AGV_STATE_INIT : AGV_STATE_TRIPPED,
                            agv_supervisor_state(&f.supervisor));
-    released_ms = f.now_ms;
+    unwell_ms = f.now_ms;
 }
 
 /* Stretches: the vehicle is healthy, driven, hurt, or everything is random. */
 static void step(uint32_t stretch) {
     const agv_state_t before = agv_supervisor_state(&f.supervisor);
+    const uint32_t before_ms = f.now_ms;
     if (stretch >= 5) {
         hand_over_random_frames();
     }
@@ -211,7 +238,20 @@ static void step(uint32_t stretch) {
     } else {
         fixture_run(&f, 1);
     }
-    judge_step(before);
+    judge_step(before, before_ms);
+}
+
+/* The last second and a half of the stretch: pressed, and released 30 ms before its end. */
+static bool presses_at_last(uint32_t stretch) {
+    return stretch == 1 || stretch == 2;
+}
+
+enum { PRESS_MS = 1500, RELEASE_MS = 30 };
+
+static void follow_press(uint32_t stretch, uint32_t left) {
+    if (presses_at_last(stretch) && (left == PRESS_MS || left == RELEASE_MS)) {
+        fixture_button(&f, left == PRESS_MS);
+    }
 }
 
 static void begin_stretch(uint32_t stretch) {
@@ -221,8 +261,8 @@ static void begin_stretch(uint32_t stretch) {
     if (stretch == 3) {
         drive_the_vehicle();
     }
-    fixture_button(&f, stretch == 1 || stretch == 2 || one_in(4));
-    if (one_in(20)) {
+    fixture_button(&f, !presses_at_last(stretch) && one_in(4));
+    if (one_in(12)) {
         restart();
     }
 }
@@ -230,20 +270,21 @@ static void begin_stretch(uint32_t stretch) {
 static void run_randomly(uint16_t topology, uint32_t seed) {
     random_state = seed;
     f.config.topology = topology;
-    f.config.gateway_in_manual = (uint16_t)draw(2);
+    f.config.gateway_in_manual = (uint16_t)(topology == AGV_TOPOLOGY_GATEWAY ? draw(2) : 0); /* else refused */
     f.edit = note_traffic;
     fixture_start(&f);
     f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF;
-    released_ms = f.now_ms;
+    unwell_ms = f.now_ms;
     uint32_t stretch = 0;
     uint32_t left = 0;
     for (uint32_t i = 0; i < STEPS; i++) {
         if (left == 0) {
-            stretch = draw(8);
-            left = 400 + draw(2500);
+            stretch = stretch == 2 ? 3 : draw(8); /* a reset, and the vehicle is driven */
+            left = 400 + draw(2500) + (presses_at_last(stretch) ? 1500 : 0);
             begin_stretch(stretch);
         }
         left--;
+        follow_press(stretch, left);
         step(stretch);
     }
 }

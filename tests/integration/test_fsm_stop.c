@@ -1,0 +1,232 @@
+/* The safe state is a vehicle that stands (FSM-12): one that does not stop in time, and one that moves again. */
+#include "fixture.h"
+#include "unity.h"
+#include "walk.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+    f.long_run = true;
+}
+
+void tearDown(void) {
+}
+
+/* Autopilot off and P are confirmed, so that nothing but the motion is at fault. The wheels turn on. */
+static void confirm(void) {
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_gear(&f, GEAR_P);
+}
+
+static void expect_moving_fault(agv_fault_t fault, bool active) {
+    expect_fault(&f, fault, active);
+    expect_output(&f, !active);
+    expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
+}
+
+/* The wheels come to stand 100 ms after the first slow 101h; the fault ends, the output waits for the reset. */
+static void expect_ends_when_the_wheels_stand(agv_fault_t fault) {
+    fixture_drive(&f, 0);
+    fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
+    fixture_run(&f, 99);
+    expect_fault(&f, fault, true);
+    fixture_run(&f, 1);
+    expect_fault(&f, fault, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, fault));
+    expect_output(&f, false);
+    fixture_run(&f, 1500);
+    expect_state(&f, AGV_STATE_SAFE);
+    fixture_press(&f, 1000);
+    expect_state(&f, AGV_STATE_STANDBY);
+    expect_output(&f, true);
+}
+
+/* ---- VEHICLE_NOT_STOPPING ---- */
+
+static void expect_not_stopping_after(uint32_t ms) {
+    fixture_run(&f, ms - 1);
+    expect_moving_fault(AGV_FAULT_VEHICLE_NOT_STOPPING, false);
+    fixture_run(&f, 1);
+    expect_moving_fault(AGV_FAULT_VEHICLE_NOT_STOPPING, true);
+}
+
+/* Shows: FSM-12, FSM-4, VEHICLE_NOT_STOPPING */
+void test_a_vehicle_that_drives_on_for_5_s(void) {
+    walk_to_tripped_driving(&f, 1000);
+    confirm();
+    expect_not_stopping_after(5000);
+    expect_state(&f, AGV_STATE_SAFE);
+    expect_fault(&f, AGV_FAULT_MOVING_WHILE_SAFE, false);
+    fixture_run(&f, 3000);
+    expect_fault(&f, AGV_FAULT_VEHICLE_NOT_STOPPING, true);
+    expect_ends_when_the_wheels_stand(AGV_FAULT_VEHICLE_NOT_STOPPING);
+}
+
+/* Shows: FSM-12, VEHICLE_NOT_STOPPING */
+void test_one_slow_wheel_is_enough_to_move(void) {
+    walk_to_tripped_driving(&f, 1000);
+    confirm();
+    fixture_wheels(&f, 0, -50);
+    expect_not_stopping_after(5000);
+}
+
+/* Shows: FSM-12, VEHICLE_NOT_STOPPING */
+void test_the_time_to_stop_is_a_setting(void) {
+    f.config.stop_timeout_ms = 1000;
+    walk_to_tripped_driving(&f, 1000);
+    confirm();
+    expect_not_stopping_after(1000);
+}
+
+/* Whether 363h reports a speed does not matter: the wheels are the witness. */
+/* Shows: FSM-12 */
+void test_a_vehicle_that_stops_within_5_s(void) {
+    walk_to_tripped_driving(&f, 1000);
+    confirm();
+    fixture_run(&f, 4880);
+    fixture_wheels(&f, 49, 49);
+    fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
+    fixture_run(&f, 5000);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_VEHICLE_NOT_STOPPING));
+    expect_output(&f, true);
+}
+
+/* Shows: FSM-12, VEHICLE_NOT_STOPPING, WHEEL_SPEED_TIMEOUT */
+void test_wheels_that_are_not_seen_do_not_stand(void) {
+    walk_to_tripped_driving(&f, 1000);
+    confirm();
+    f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
+    expect_not_stopping_after(5000);
+    fixture_drive(&f, 0);
+    f.traffic[AGV_MSG_WHEEL_SPEED].muted = false;
+    expect_ends_when_the_wheels_stand(AGV_FAULT_VEHICLE_NOT_STOPPING);
+}
+
+/* Standing at the moment of the trip counts: that 101h is silent from then on is a fault of its own. */
+/* Shows: FSM-12 */
+void test_wheels_that_stand_at_the_trip_are_seen_to_stand(void) {
+    walk_to_tripped(&f);
+    confirm();
+    f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
+    fixture_run(&f, 10000);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_VEHICLE_NOT_STOPPING));
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_MOVING_WHILE_SAFE));
+    expect_output(&f, true);
+}
+
+/* Shows: FSM-12, FSM-7, VEHICLE_NOT_STOPPING */
+void test_after_a_restart_the_5_s_run_from_the_start(void) {
+    walk_driving(&f, 1000);
+    fixture_mute_ai(&f, true);
+    fixture_restart(&f, HAL_RESET_WATCHDOG);
+    fixture_run(&f, 4999);
+    expect_fault(&f, AGV_FAULT_VEHICLE_NOT_STOPPING, false);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_VEHICLE_NOT_STOPPING, true);
+}
+
+/* What the first trip has seen is not what the second one needs. */
+/* Shows: FSM-12, VEHICLE_NOT_STOPPING */
+void test_a_second_trip_has_its_own_5_s(void) {
+    walk_to_safe(&f);
+    fixture_press(&f, 1000);
+    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_drive(&f, 500);
+    fixture_run(&f, 300);
+    walk_trip(&f);
+    expect_not_stopping_after(5000);
+}
+
+/* ---- MOVING_WHILE_SAFE ---- */
+
+/* These wheel speeds for so long, from the next 101h on, then it stands again. The 101h come every 10 ms. */
+static void move_for(int32_t left_mm_s, int32_t right_mm_s, uint32_t ms) {
+    fixture_run_before(&f, AGV_MSG_WHEEL_SPEED);
+    fixture_wheels(&f, left_mm_s, right_mm_s);
+    fixture_run(&f, ms);
+    fixture_wheels(&f, 0, 0);
+    fixture_run(&f, 10);
+}
+
+/* Shows: FSM-12, FSM-4, MOVING_WHILE_SAFE */
+void test_a_vehicle_that_moves_again_for_200_ms(void) {
+    walk_to_safe(&f);
+    move_for(100, 100, 190);
+    expect_moving_fault(AGV_FAULT_MOVING_WHILE_SAFE, false);
+    fixture_run_before(&f, AGV_MSG_WHEEL_SPEED);
+    fixture_drive(&f, 100);
+    fixture_run(&f, 200);
+    expect_moving_fault(AGV_FAULT_MOVING_WHILE_SAFE, true);
+    expect_fault(&f, AGV_FAULT_VEHICLE_NOT_STOPPING, false);
+    expect_ends_when_the_wheels_stand(AGV_FAULT_MOVING_WHILE_SAFE);
+}
+
+/* Shows: FSM-12, MOVING_WHILE_SAFE */
+void test_either_wheel_in_either_direction(void) {
+    static const int32_t ROWS[][2] = {{100, 0},    {0, 100},       {-100, 0},     {0, -100},
+                                      {100, -100}, {INT32_MIN, 0}, {0, INT32_MAX}};
+    for (unsigned i = 0; i < sizeof ROWS / sizeof ROWS[0]; i++) {
+        fixture_init(&f);
+        walk_to_safe(&f);
+        move_for(ROWS[i][0], ROWS[i][1], 200);
+        expect_fault(&f, AGV_FAULT_MOVING_WHILE_SAFE, true);
+    }
+}
+
+/* Shows: FSM-12 */
+void test_creeping_is_not_moving(void) {
+    walk_to_safe(&f);
+    move_for(99, -99, 5000);
+    expect_fault(&f, AGV_FAULT_MOVING_WHILE_SAFE, false);
+    expect_output(&f, true);
+}
+
+/* Shows: FSM-12 */
+void test_one_slow_101h_starts_the_200_ms_anew(void) {
+    walk_to_safe(&f);
+    for (unsigned i = 0; i < 10; i++) {
+        move_for(100, 100, 190);
+    }
+    expect_fault(&f, AGV_FAULT_MOVING_WHILE_SAFE, false);
+    expect_output(&f, true);
+}
+
+/* The last 101h reported motion, then none comes. */
+/* Shows: FSM-12, WHEEL_SPEED_TIMEOUT */
+void test_a_stale_101h_is_not_moving(void) {
+    walk_to_safe(&f);
+    fixture_run_before(&f, AGV_MSG_WHEEL_SPEED);
+    fixture_wheels(&f, 2000, 2000);
+    fixture_run(&f, 100);
+    f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
+    fixture_run(&f, 5000);
+    expect_fault(&f, AGV_FAULT_MOVING_WHILE_SAFE, false);
+}
+
+/* In TRIPPED, too: nothing is confirmed, but it has stood. */
+/* Shows: FSM-12, MOVING_WHILE_SAFE */
+void test_a_vehicle_that_moves_again_in_tripped(void) {
+    walk_to_tripped(&f);
+    move_for(100, 0, 200);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_fault(&f, AGV_FAULT_MOVING_WHILE_SAFE, true);
+    expect_output(&f, false);
+}
+
+/* Before it has stood the vehicle is expected to roll; outside of the latch it may drive. */
+/* Shows: FSM-12 */
+void test_what_is_not_moving_while_safe(void) {
+    walk_to_tripped_driving(&f, 1000);
+    confirm();
+    fixture_run(&f, 3000);
+    expect_fault(&f, AGV_FAULT_MOVING_WHILE_SAFE, false);
+    fixture_drive(&f, 0);
+    fixture_run(&f, 1500);
+    fixture_press(&f, 1000);
+    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_drive(&f, 1000);
+    fixture_run(&f, 10000);
+    expect_state(&f, AGV_STATE_STANDBY);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_MOVING_WHILE_SAFE));
+}

@@ -1,0 +1,162 @@
+/* What trips again after a reset (FSM-11): causes from the AI computer, which never hinder a reset. */
+#include "expect.h"
+#include "fixture.h"
+#include "unity.h"
+#include "walk.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+    f.long_run = true;
+}
+
+void tearDown(void) {
+}
+
+/* The operator resets; the vehicle is in manual then. */
+static void reset(void) {
+    fixture_vehicle_confirms(&f);
+    fixture_run(&f, 1500);
+    fixture_press(&f, 1000);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* The 363h that begins an engagement, now. */
+static void engage(void) {
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+}
+
+static void expect_tripped_at_once(agv_fault_t reason) {
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, reason);
+}
+
+/* Dead since before the reset: manual driving goes on without it, an engagement does not begin. */
+/* Shows: FSM-11, SUP-8, AI_HEARTBEAT_LOST */
+void test_a_dead_ai_computer_trips_at_the_next_engagement(void) {
+    fixture_active(&f);
+    fixture_mute_ai(&f, true);
+    fixture_run(&f, 500);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    reset();
+    fixture_run(&f, 20000);
+    expect_state(&f, AGV_STATE_STANDBY);
+    engage();
+    expect_tripped_at_once(AGV_FAULT_AI_HEARTBEAT_LOST);
+}
+
+/* Shows: FSM-11, SUP-8, AI_HEARTBEAT_STUCK */
+void test_a_frozen_ai_computer_trips_at_the_next_engagement(void) {
+    fixture_active(&f);
+    f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].frozen = true;
+    fixture_run(&f, 500);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    reset();
+    fixture_run(&f, 5000);
+    expect_state(&f, AGV_STATE_STANDBY);
+    engage();
+    expect_tripped_at_once(AGV_FAULT_AI_HEARTBEAT_STUCK);
+}
+
+/* Alive all the time: the value of before the reset is the baseline, so it waits for the next 43Fh. */
+/* Shows: FSM-11, SUP-8 */
+void test_a_living_ai_computer_that_the_reset_has_forgotten(void) {
+    fixture_active(&f);
+    walk_trip(&f);
+    fixture_vehicle_confirms(&f);
+    fixture_run(&f, 1500);
+    fixture_run_past(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
+    fixture_button(&f, true);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_run(&f, 1010);
+    fixture_button(&f, false);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    engage();
+    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_run_before(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
+    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_state(&f, AGV_STATE_ACTIVE);
+}
+
+/* 168h comes every 10 ms: gaps under half its cycle. As a trip it does not hinder the reset, nor trip in manual. */
+static void babble(bool on) {
+    f.traffic[AGV_MSG_GEAR_COMMAND].cycle_ms = on ? 10 : 100;
+    f.traffic[AGV_MSG_GEAR_COMMAND].phase_ms = 8;
+}
+
+static void reset_while_the_ai_babbles(void) {
+    fixture_init(&f);
+    f.long_run = true;
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_COMMAND_TOO_FAST, true);
+    fixture_active(&f);
+    babble(true);
+    fixture_run(&f, 300);
+    expect_tripped_at_once(AGV_FAULT_COMMAND_TOO_FAST);
+    reset();
+    fixture_run(&f, 5000);
+    expect_fault(&f, AGV_FAULT_COMMAND_TOO_FAST, true);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* Shows: FSM-11, FSM-3, COMMAND_TOO_FAST */
+void test_a_cause_that_outlived_the_reset_trips_at_the_next_engagement(void) {
+    reset_while_the_ai_babbles();
+    engage();
+    expect_tripped_at_once(AGV_FAULT_COMMAND_TOO_FAST);
+}
+
+/* Shows: FSM-11, COMMAND_TOO_FAST */
+void test_in_manual_it_trips_when_it_has_ended_and_comes_again(void) {
+    reset_while_the_ai_babbles();
+    babble(false);
+    fixture_run(&f, 5000);
+    expect_fault(&f, AGV_FAULT_COMMAND_TOO_FAST, false);
+    expect_state(&f, AGV_STATE_STANDBY);
+    babble(true);
+    fixture_run(&f, 300);
+    expect_reason(&f, AGV_FAULT_COMMAND_TOO_FAST);
+    expect_state(&f, AGV_STATE_SAFE); /* the vehicle stands in P */
+}
+
+/* An event that is held for longer than the reset takes. */
+/* Shows: FSM-11, AI_COMMAND_OUT_OF_RANGE */
+void test_an_event_that_has_not_ended_trips_at_the_next_engagement(void) {
+    static const uint8_t no_gear[8] = {3};
+    f.config.event_hold_ms = 10000;
+    fixture_active(&f);
+    fixture_frame(&f, AGV_MSG_GEAR_COMMAND, no_gear);
+    expect_tripped_at_once(AGV_FAULT_AI_COMMAND_OUT_OF_RANGE);
+    reset();
+    expect_fault(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, true);
+    engage();
+    expect_tripped_at_once(AGV_FAULT_AI_COMMAND_OUT_OF_RANGE);
+}
+
+/* The VCU's alarm stays armed over the reset. */
+/* Shows: FSM-11, SUP-8, VCU_AI_CAN_LOST */
+void test_the_alarm_of_the_vcu_stays_armed(void) {
+    fixture_active(&f);
+    walk_alarm(&f, 0x08);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_tripped_at_once(AGV_FAULT_VCU_AI_CAN_LOST);
+    reset();
+    fixture_run(&f, 1000);
+    engage();
+    expect_tripped_at_once(AGV_FAULT_VCU_AI_CAN_LOST);
+}
+
+/* Nothing is active in ACTIVE: with the engagement the warnings of manual driving become trips. */
+/* Shows: FSM-11, SUP-8, AI_HEARTBEAT_LOST */
+void test_what_warns_in_manual_trips_at_the_engagement(void) {
+    fixture_standby(&f);
+    fixture_run(&f, 300);
+    fixture_mute_ai(&f, true);
+    fixture_run(&f, 1000);
+    expect_fault(&f, AGV_FAULT_AI_HEARTBEAT_LOST, true);
+    expect_state(&f, AGV_STATE_STANDBY);
+    engage();
+    expect_trip(&f, AGV_FAULT_AI_HEARTBEAT_LOST, f.call, ANGLE_CENTRE);
+}
