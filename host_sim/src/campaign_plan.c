@@ -61,6 +61,8 @@ static void choose_kind(campaign_plan_t *plan, uint64_t *state) {
     plan->tick_phase_us = toss(state, 2u) ? 0u : (uint16_t)chance_draw(state, 0u, TICK_SPAN_US - 1u);
     plan->clock_start_ms = (uint32_t)chance_next(state);
     plan->number = chance_draw(state, plan->row->lowest, plan->row->highest);
+    /* One that knows no configuration goes by its built-in identifiers. */
+    plan->renumbered = toss(state, 8u) && (plan->row->fault > AGV_FAULT_CONFIG_INVALID);
 }
 
 /** The cause comes under way, or is there from the start on. @return from the cause to the decision at the latest */
@@ -94,6 +96,14 @@ static void choose_times(campaign_plan_t *plan, uint64_t *state, const agv_confi
     plan->duration_ms = plan->cause_ms + (plan->bound_us / (uint32_t)US_PER_MS) + afterwards_ms;
 }
 
+/** All identifiers are settings. Their order, which decides who waits on the wire, stays as it is. */
+static void add_identifiers(campaign_plan_t *plan) {
+    for (uint32_t m = 0u; m < (uint32_t)AGV_MSG_COUNT; m++) {
+        campaign_text_add(&plan->head, "  id_%s: 0x%03X\n", agv_message_name((agv_message_t)m),
+                          agv_message_id(m, plan->table_ids ? AGV_ID_SET_TABLE : AGV_ID_SET_HEADING) + 1u);
+    }
+}
+
 static void add_kind(campaign_plan_t *plan) {
     campaign_text_t *text = &plan->head;
     const campaign_row_t *row = plan->row;
@@ -108,6 +118,9 @@ static void add_kind(campaign_plan_t *plan) {
     campaign_text_add(text, "config:\n  park: %s\n", plan->at_standstill ? "at_standstill" : "at_once");
     if (row->fault == AGV_FAULT_CONFIG_INVALID) {
         campaign_text_add(text, "  own_heartbeat: frozen\n");
+    }
+    if (plan->renumbered) {
+        add_identifiers(plan);
     }
     if ((row->flags & CAMPAIGN_AS_TRIP) != 0u) {
         campaign_text_add(text, "  class_");

@@ -32,6 +32,7 @@ typedef struct {
     const campaign_engagement_t *engagement; /**< NULL: the cause comes under way */
     bool gateway;
     bool table_ids;
+    bool renumbered; /**< each identifier is one more than that of the set */
     uint32_t bitrate;
     bool park_guard;
     bool at_standstill; /**< park: at_standstill */

@@ -41,6 +41,19 @@ static void add_later_states(campaign_text_t *text, const campaign_judge_t *judg
     }
 }
 
+/** Between the first engagement and the trip: as seen. */
+static void add_changes(campaign_text_t *text, const campaign_judge_t *judge) {
+    static const size_t first_changes = 3u; /* INIT, STANDBY, ACTIVE */
+
+    for (size_t i = first_changes; i < judge->state_count; i++) {
+        const campaign_state_t *seen = &judge->states[i];
+        if (seen->to == (uint8_t)AGV_STATE_TRIPPED) {
+            return;
+        }
+        add_state(text, (agv_state_t)seen->to, -1, (uint32_t)seen->t_ms, (uint32_t)seen->t_ms);
+    }
+}
+
 static void add_states(campaign_text_t *text, const campaign_judge_t *judge) {
     const campaign_plan_t *plan = judge->plan;
     uint32_t latest_ms = bound_ms(plan);
@@ -52,6 +65,9 @@ static void add_states(campaign_text_t *text, const campaign_judge_t *judge) {
         if (plan->engaged && ((plan->engagement == NULL) || !plan->engagement->never_seen)) {
             add_state(text, AGV_STATE_ACTIVE, -1, READY_TO_MS + 1u, ENGAGED_TO_MS);
         }
+    }
+    if (is_like(judge, CAMPAIGN_AGAIN)) {
+        add_changes(text, judge);
     }
     add_state(text, AGV_STATE_TRIPPED, (int)plan->row->first, plan->cause_ms, latest_ms);
     add_later_states(text, judge);

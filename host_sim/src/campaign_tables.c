@@ -36,7 +36,7 @@ static json_t *settings(void) {
 static json_t *flags_of(const campaign_row_t *row) {
     static const char *const names[] = {"gateway", "shared",    "engaged", "manual",     "start",
                                         "later",   "output",    "as_trip", "unreliable", "no_output",
-                                        "no_wire", "at_once_p", "late_ai"};
+                                        "no_wire", "at_once_p", "late_ai", "again"};
     json_t *list = json_array();
     for (size_t bit = 0u; bit < sizeof names / sizeof names[0]; bit++) {
         if (((row->flags >> bit) & 1u) != 0u) {

@@ -107,9 +107,13 @@ void config_print_kconfig(const agv_config_t *config) {
         value_text(info, agv_config_get(config, i), value);
         (void)printf("CONFIG_AGV_");
         print_upper(info->name);
-        (void)putchar((info->words == NULL) ? '=' : '_');
-        print_upper(value);
-        (void)printf((info->words == NULL) ? "\n" : "=y\n");
+        if (info->words == NULL) {
+            (void)printf("=%s\n", value);
+        } else {
+            (void)putchar('_');
+            print_upper(value);
+            (void)printf("=y\n");
+        }
     }
     for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
         const agv_fault_t fault = (agv_fault_t)i;

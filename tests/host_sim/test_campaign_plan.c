@@ -43,6 +43,7 @@ void test_every_run_of_every_fault_is_a_scenario(void) {
             TEST_ASSERT_EQUAL(plan.duration_ms, scenario.duration_ms);
             TEST_ASSERT_EQUAL(plan.gateway, scenario.vehicle.gateway);
             TEST_ASSERT_EQUAL(plan.tick_phase_us, scenario.tick_phase_us);
+            TEST_ASSERT_EQUAL_HEX16(plan.renumbered ? 0x169 : 0x168, scenario.ids.of[AGV_MSG_GEAR_COMMAND]);
         }
     }
 }
@@ -124,6 +125,15 @@ void test_decision_times_worked_out_by_hand(void) {
         {AGV_FAULT_GEAR_STATUS_INVALID, 75u},
         {AGV_FAULT_MODE_INVALID, 62u},
         {AGV_FAULT_STEERING_DEVIATION, 527u},
+        {AGV_FAULT_MODE_FLAPPING, 10u},
+        {AGV_FAULT_MODE_NONE, 512u},
+        {AGV_FAULT_THROTTLE_DEVIATION, 512u},
+        {AGV_FAULT_GEAR_DEVIATION, 1027u},
+        {AGV_FAULT_AUTOPILOT_OFF_IGNORED, 1102u},
+        {AGV_FAULT_SAFE_STATE_UNCONFIRMED, 627u},
+        {AGV_FAULT_VEHICLE_NOT_STOPPING, 5127u},
+        {AGV_FAULT_SPEED_IMPLAUSIBLE, 1012u},
+        {AGV_FAULT_STATUS_ID_IN_USE, 1u},
         {AGV_FAULT_FOREIGN_COMMAND_SENDER, 0u},
         {AGV_FAULT_COMMAND_TOO_FAST, 385u},
     };
@@ -146,6 +156,8 @@ void test_decision_times_after_an_engagement_worked_out_by_hand(void) {
         {AGV_FAULT_GEAR_STATUS_INVALID, 10u + 500u + 75u},
         {AGV_FAULT_STEERING_DEVIATION, 10u + 500u + 25u + 500u + 2u},
         {AGV_FAULT_THROTTLE_IN_PARK, 10u + 500u + 25u + 200u + 2u},
+        {AGV_FAULT_THROTTLE_DEVIATION, 10u + 500u + 10u + 500u + 2u},
+        {AGV_FAULT_AUTOPILOT_OFF_IGNORED, 10u + 500u + 100u + 1000u + 2u},
     };
     for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
         TEST_ASSERT_EQUAL_MESSAGE(rows[i].ms,
@@ -154,6 +166,7 @@ void test_decision_times_after_an_engagement_worked_out_by_hand(void) {
                                   agv_fault_name(rows[i].fault));
     }
     TEST_ASSERT_NULL(campaign_engagement(AGV_FAULT_VCU_HEARTBEAT_LOST));
+    TEST_ASSERT_NULL(campaign_engagement(AGV_FAULT_GEAR_DEVIATION)); /* the gateway passes no 168h then: not judged */
 }
 
 void test_a_text_that_is_full_says_so(void) {

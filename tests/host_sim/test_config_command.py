@@ -22,6 +22,9 @@ DEFAULTS = {
     "class_command_too_fast": "warn", "class_store_invalid": "warn",
 }
 
+# What a setting needs beside it, to be at its limits.
+COMPANY = {"reset_hold_ms": "reset_hold_max_ms: 30000\n", "reset_hold_max_ms": "reset_hold_ms: 500\n"}
+
 ENTRY = re.compile(r"^([a-z][a-z0-9_]*): (\S+)(?:  # .*)?$")
 
 
@@ -37,6 +40,10 @@ def entries(text):
     return result
 
 
+def is_number(value):
+    return re.fullmatch(r"\d+|0x[0-9A-F]{3}", value) is not None
+
+
 def checksum_of(text):
     return re.search(r"^# Checksum: ([0-9A-F]{8})$", text, re.MULTILINE)[1]
 
@@ -49,8 +56,13 @@ class Listing(hostsim.Case):
             self.assertEqual(found.get(key), value, key)
         for key in found:
             if not key.startswith("class_"):
-                self.assertRegex(text, r"(?m)^# \S.*\n# (\d+ to \d+.*|[a-z_]+\|[a-z_]+), default \S+\n%s: " % key)
-        self.assertIn("# 30 to 500 ms, default 50\nvcu_heartbeat_timeout_ms: 50\n", text)
+                self.assertRegex(text, r"(?m)^# \S.*\n# (\d+ to \d+.*|[a-z_]+\|[a-z_]+), default \w+(; [^;\n]+)*\n%s: " % key)
+        self.assertIn("# 30 to 500 ms, default 50; more weakens\nvcu_heartbeat_timeout_ms: 50\n", text)
+        self.assertIn("# 1 to 2047, default 0x168\nid_gear_command: 0x168\n", text)
+        self.assertIn("default 0x7F0; 0 weakens\nstatus_frame_id: 0x7F0\n", text)
+        self.assertIn("# shared|gateway, default shared\n", text)
+        self.assertIn("# at_once|at_standstill, default at_once; the second weakens\n", text)
+        self.assertIn("default 100; gateway only\nthrottle_ceiling_pct: 100\n", text)
 
     def test_what_is_listed_is_taken_back(self):
         text = self.run_good("config").stdout
@@ -59,9 +71,10 @@ class Listing(hostsim.Case):
 
     def test_a_changed_configuration_is_taken_back(self):
         self.write("a.yaml", "topology: gateway\nown_heartbeat: frozen\nid_set: table\nstatus_frame_id: 0x7A0\n"
-                             "class_remote_signal_lost: warn\nclass_store_invalid: trip\nshadow: on\n")
+                             "class_remote_signal_lost: warn\nclass_store_invalid: trip\nshadow: on\nid_gear_command: 361\n")
         text = self.run_good("config", "--config", "a.yaml").stdout
-        self.assertEqual(entries(text)["status_frame_id"], str(0x7A0))
+        self.assertEqual(entries(text)["status_frame_id"], "0x7A0")
+        self.assertEqual(entries(text)["id_gear_command"], "0x169")
         self.assertEqual(entries(text)["class_remote_signal_lost"], "warn")
         self.write("b.yaml", text)
         self.assertEqual(self.run_good("config", "--config", "b.yaml").stdout, text)
@@ -78,7 +91,7 @@ class Listing(hostsim.Case):
         self.assertGreater(len(limits), 30)
         for lowest, highest, key in limits:
             for value in (int(lowest), int(highest)):
-                self.write("c.yaml", "%s: %d\n" % (key, value))
+                self.write("c.yaml", "topology: gateway\n%s%s: %d\n" % (COMPANY.get(key, ""), key, value))
                 self.run_good("config", "--config", "c.yaml")
             for value in (int(lowest) - 1, int(highest) + 1):
                 self.write("c.yaml", "# first\n%s: %d\n" % (key, value))
@@ -87,7 +100,7 @@ class Listing(hostsim.Case):
 
 class Kconfig(hostsim.Case):
     def test_the_fragment_says_the_same(self):
-        self.write("c.yaml", "topology: gateway\ninit_hold_ms: 700\nclass_remote_signal_lost: warn\n"
+        self.write("c.yaml", "topology: gateway\ninit_hold_ms: 700\nid_gear_command: 0x169\nclass_remote_signal_lost: warn\n"
                              "class_eps_temp_above_110: trip\n")
         yaml = self.run_good("config", "--config", "c.yaml").stdout
         kconfig = self.run_good("config", "--config", "c.yaml", "--to-kconfig").stdout
@@ -97,7 +110,7 @@ class Kconfig(hostsim.Case):
         classes = 0
         for key, value in entries(yaml).items():
             name = "CONFIG_AGV_" + key.upper()
-            if value.isdigit():
+            if is_number(value):
                 self.assertIn("%s=%s" % (name, value), lines)
             elif not key.startswith("class_"):
                 self.assertIn("%s_%s=y" % (name, value.upper()), lines)
@@ -106,24 +119,26 @@ class Kconfig(hostsim.Case):
             else:  # only a class that cannot be chosen may be missing
                 self.assertRegex(yaml, r"(?m)^%s: .*must stay$" % key)
         self.assertIn("CONFIG_AGV_CLASS_REMOTE_SIGNAL_LOST_WARN=y", lines)
+        self.assertIn("CONFIG_AGV_ID_GEAR_COMMAND=0x169", lines)
+        self.assertIn("CONFIG_AGV_ID_THROTTLE_COMMAND=0x075", lines)
         self.assertIn("CONFIG_AGV_CLASS_EPS_TEMP_ABOVE_110_TRIP=y", lines)
         settings = [key for key in entries(yaml) if not key.startswith("class_")]
         self.assertEqual(len(lines), len(settings) + classes)
 
     def test_the_checksum_is_what_the_header_says(self):
-        """CRC-32 over all settings, 16 bit little-endian each, then the trips, 64 bit little-endian."""
+        """CRC-32 over all settings, 16 bit little-endian each, then the trips, 32 bit little-endian words."""
         text = self.run_good("config").stdout
         values, trips, faults = b"", 0, 0
         for key, value in entries(text).items():
             if key.startswith("class_"):
                 trips |= (value == "trip") << faults
                 faults += 1
-            elif value.isdigit():
-                values += int(value).to_bytes(2, "little")
+            elif is_number(value):
+                values += int(value, 0).to_bytes(2, "little")
             else:
-                words = re.search(r"^# ([a-z_|]+), default \S+\n%s: " % key, text, re.MULTILINE)[1].split("|")
+                words = re.search(r"^# ([a-z_|]+), default \S+.*\n%s: " % key, text, re.MULTILINE)[1].split("|")
                 values += words.index(value).to_bytes(2, "little")
-        expected = zlib.crc32(values + trips.to_bytes(8, "little"))
+        expected = zlib.crc32(values + trips.to_bytes((faults + 31) // 32 * 4, "little"))
         self.assertEqual(checksum_of(text), "%08X" % expected)
 
     def test_another_configuration_has_another_checksum(self):
@@ -161,6 +176,10 @@ class Refusals(hostsim.Case):
                 ("# deadline under three cycles\nvcu_heartbeat_timeout_ms: 29\n", "c.yaml:2: vcu_heartbeat_timeout_ms"),
                 ("status_frame_period_ms: 0\n", "c.yaml:1: status_frame_period_ms: 0 "),
                 ("status_frame_id: 0x43F\n", "c.yaml:1: status_frame_id: "),
+                ("park: at_once\nid_gear_command: 0x101\n", "c.yaml:2: id_gear_command: another message has"),
+                ("id_gear_command: 0x169\nid_eps_status: 0x169\n", "c.yaml:2: id_eps_status: another message has"),
+                ("id_gear_command: 0x800\n", "c.yaml:1: id_gear_command: 2048 is not within 1 to 2047"),
+                ("throttle_ceiling_pct: 50\n", "c.yaml:1: throttle_ceiling_pct: ", "gateway"),
                 ("\nown_heartbeat: frozen\n", "c.yaml:2: own_heartbeat: ", "gateway"),
                 ("class_bus_off: warn\n", "c.yaml:1: class_bus_off: "),
                 ("park: at_once\nclass_ai_heartbeat_lost: warn\n", "c.yaml:2: class_ai_heartbeat_lost: "),
@@ -202,8 +221,10 @@ class Deviations(hostsim.Case):
         self.write("c.yaml", "init_hold_ms: 700\npark: at_standstill\nclass_remote_signal_lost: warn\n"
                              "tx_stalled_ms: 100\n")
         result = self.run_good("replay", "--config", "c.yaml", "--shadow", "--events", "-", "log")
-        self.assertEqual(result.stderr, "host_sim: not the default: shadow: on (off), park: at_standstill (at_once), "
-                                        "init_hold_ms: 700 (500), class_remote_signal_lost: warn (trip)\n")
+        self.assertEqual(result.stderr, "host_sim: not the default: shadow: on (default off, WEAKER), "
+                                        "park: at_standstill (default at_once, WEAKER), "
+                                        "init_hold_ms: 700 (default 500), "
+                                        "class_remote_signal_lost: warn (default trip, WEAKER)\n")
         self.assertTrue(result.stdout.startswith('{"t_ms"'))
 
     def test_the_defaults_are_not_listed(self):

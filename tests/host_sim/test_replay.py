@@ -11,8 +11,9 @@ SAFE_LIGHTS = 0x43F
 SAFE_GEAR = (0x168, bytes([8, 0, 0, 0, 0, 0, 0, 0]))
 SAFE_THROTTLE = (0x075, bytes(8))
 
-SUMMARY_KEYS = {"t_ms", "event", "received", "rejected", "dropped", "sent", "shadowed", "warnings", "skipped_lines",
-                "backward_stamps", "final_state", "first_reason"}
+SUMMARY_KEYS = {"t_ms", "event", "received", "rejected", "dropped", "sent", "shadowed", "limited", "warnings",
+                "supervised_ms", "skipped_lines", "backward_stamps", "final_state", "first_reason"}
+STATUS = 0x7F0  # the status frame of the supervisor
 
 
 def edit_payload(name, at_ms, change, until_ms=None):
@@ -44,15 +45,18 @@ def raise_remote_signal_lost(data):
 
 
 class Healthy(hostsim.Case):
-    # Shows: FSM-4
-    def test_manual_traffic_reaches_standby_and_nothing_is_sent_from_then_on(self):
+    # Shows: FSM-4, TOP-3
+    def test_manual_traffic_reaches_standby_and_nothing_but_its_status_is_sent_from_then_on(self):
         result = self.replay(traffic.log(traffic.frames(3000)), "--tail", "0")
         states = [(event["from"], event["to"], event["reason"]) for event in result.of("state")]
         self.assertEqual(states, [(None, "INIT", None), ("INIT", "STANDBY", None)])
         standby = result.of("state")[1]["t_ms"]
         self.assertTrue(500 <= standby <= 520, standby)
         self.assertEqual([event["closed"] for event in result.of("safety_output")], [False, True])
-        self.assertTrue(all(sent.us < BASE_US + standby * US_PER_MS for sent in result.sent()))
+        later = [sent for sent in result.sent() if sent.us >= BASE_US + standby * US_PER_MS]
+        self.assertEqual([(sent.can_id, (sent.us - BASE_US) / US_PER_MS) for sent in later],
+                         [(STATUS, t_ms) for t_ms in range(600, 3000, 100)])
+        self.assertEqual(result.summary()["supervised_ms"], result.summary()["t_ms"] - standby)
         self.assertEqual(result.summary()["first_reason"], None)
         self.assertEqual(result.summary()["final_state"], "STANDBY")
 
@@ -64,11 +68,29 @@ class Healthy(hostsim.Case):
 
     def test_init_sends_the_safe_commands_from_the_first_stamp_on(self):
         result = self.replay(traffic.log(traffic.frames(1000)))
-        first = result.sent()[:3]
+        first = [sent for sent in result.sent() if sent.can_id != STATUS][:3]
         self.assertEqual([sent.us for sent in first], [BASE_US] * 3)
         self.assertEqual([(sent.can_id, sent.data) for sent in first[1:]], [SAFE_GEAR, SAFE_THROTTLE])
         self.assertEqual((first[0].can_id, first[0].data[:7]), (SAFE_LIGHTS, bytes([0, 0, 0, 0, 0x70, 0, 0])))
         self.assertNotIn(0x065, [sent.can_id for sent in result.sent()])
+
+    # Shows: P1
+    def test_identifiers_of_a_configuration(self):
+        ids = dict(traffic.IDS, gear_command=0x169, vehicle_status=0x364)
+        self.write("c.yaml", "id_gear_command: 0x169\nid_vehicle_status: 0x364\n")
+        log = traffic.log(traffic.frames(2000, ids=ids, engage_ms=1000))
+        result = self.replay(log, "--config", "c.yaml")
+        self.assertEqual(result.summary()["final_state"], "ACTIVE")
+        self.assertEqual(result.of("fault"), [])
+        self.assertEqual({sent.can_id for sent in result.sent()}, {0x43F, 0x169, 0x075, STATUS})
+
+    # Shows: TOP-3, STATUS_ID_IN_USE
+    def test_a_status_frame_in_the_log_is_that_of_another_sender(self):
+        lines = traffic.log(traffic.frames(2000)).splitlines(keepends=True)
+        lines += ["%s can0 7F0#0000000000000000\n" % traffic.stamp(BASE_US + 1000500)]
+        result = self.replay("".join(sorted(lines)))
+        self.assertEqual(result.faults()[0][:2], (1000, "STATUS_ID_IN_USE"))
+        self.assertEqual(result.summary()["final_state"], "STANDBY")
 
     # Shows: P1
     def test_the_other_set_of_identifiers(self):
@@ -93,7 +115,7 @@ class Time(hostsim.Case):
         culprit.t_us += 123
         result = self.replay(traffic.log(frames), "--tail", "10")
         self.assertEqual(result.trips(), [(1500, "REMOTE_SIGNAL_LOST")])
-        after = [sent for sent in result.sent() if sent.us >= BASE_US + 1400 * US_PER_MS]
+        after = [sent for sent in result.sent() if sent.us > BASE_US + 1500 * US_PER_MS]
         # All safe commands at once; manual is reported, so no steering hold; no tick comes in between.
         self.assertEqual([sent.us - BASE_US for sent in after[:3]], [1500123] * 3)
         self.assertEqual({sent.can_id for sent in after[:3]}, {0x43F, 0x168, 0x075})
@@ -136,7 +158,7 @@ class Time(hostsim.Case):
     def test_the_run_goes_on_for_the_tail(self):
         log = traffic.log(traffic.frames(1000))  # ends at 994.1
         self.assertEqual(self.replay(log, "--tail", "0").summary()["t_ms"], 994)
-        self.assertEqual(self.replay(log).summary()["t_ms"], 1994)
+        self.assertEqual(self.replay(log).summary()["t_ms"], 994)
         self.assertEqual(self.replay(log, "--tail", "5").summary()["t_ms"], 999)
         last = "(1700000001.000000) can0 000#\n"
         self.assertEqual(self.replay(log + last, "--tail", "5").summary()["t_ms"], 1005)
@@ -224,7 +246,7 @@ class Events(hostsim.Case):
             held = 2000 <= frame.t_ms < 3500 or 4000 <= frame.t_ms < 5500
             if frame.name == "vehicle_status" and held:
                 frame.data = frame.data[:6] + bytes([frame.data[6] | traffic.BUTTON_1]) + frame.data[7:]
-            if frame.name == "wheel_speed" and frame.t_ms < 3800:  # rolls
+            if frame.name == "wheel_speed" and 700 <= frame.t_ms < 3800:  # rolls
                 frame.data = (500).to_bytes(4, "little") * 2
             return frame
         result = self.replay(traffic.log(traffic.frames(6000, edit=edit)), "--tail", "0")
@@ -261,7 +283,7 @@ class Events(hostsim.Case):
         self.assertEqual([hostsim.Sent(line).us for line in result.stdout.splitlines()][:3], [BASE_US] * 3)
 
     def test_the_exit_status_is_0_also_when_it_tripped(self):
-        result = self.replay(traffic.log(traffic.frames(1000)))
+        result = self.replay(traffic.log(traffic.frames(1000)), "--tail", "60")
         self.assertEqual(result.summary()["final_state"], "TRIPPED")
 
 
@@ -292,13 +314,13 @@ class Counting(hostsim.Case):
     # Shows: TOP-4
     def test_shadow_sends_nothing_and_counts_it(self):
         log = traffic.log(traffic.frames(1000))
-        loud = self.replay(log)
-        shadow = self.replay(log, "--shadow")
+        loud = self.replay(log, "--tail", "100")
+        shadow = self.replay(log, "--shadow", "--tail", "100")
         self.assertEqual(shadow.sent(), [])
         self.assertEqual(shadow.summary()["sent"], 0)
         self.assertGreater(shadow.summary()["shadowed"], 0)
         self.assertEqual(shadow.trips()[0], loud.trips()[0])
-        self.assertIn("shadow: on (off)", shadow.stderr)
+        self.assertIn("shadow: on (default off, WEAKER)", shadow.stderr)
 
 
 class Controller(hostsim.Case):
@@ -316,7 +338,7 @@ class Controller(hostsim.Case):
         trip_ms, reason = result.trips()[0]
         self.assertEqual(reason, "BUS_OFF")
         self.assertTrue(1000 <= trip_ms <= 1001)
-        sent = [(frame.us - BASE_US) / US_PER_MS for frame in result.sent() if frame.us >= BASE_US + 1 * S]
+        sent = [(frame.us - BASE_US) / US_PER_MS for frame in result.sent() if frame.us > BASE_US + 1001 * US_PER_MS]
         self.assertTrue(2000 <= sent[0] <= 2001.5, sent[0])
         ended = [t_ms for t_ms, name, _ in result.faults(active=False) if name == "BUS_OFF"]
         self.assertEqual(len(ended), 1)
@@ -383,11 +405,11 @@ class Interfaces(hostsim.Case):
         self.assertEqual(result.summary()["final_state"], "ACTIVE")
         self.assertEqual(result.of("fault"), [])
         late = [sent for sent in result.sent() if sent.us >= BASE_US + 1200 * US_PER_MS]
-        self.assertEqual({sent.can_id for sent in late if sent.interface == "veh0"}, {0x43F, 0x168, 0x075, 0x065})
+        self.assertEqual({sent.can_id for sent in late if sent.interface == "veh0"}, {0x43F, 0x168, 0x075, 0x065, STATUS})
         self.assertEqual({sent.can_id for sent in late if sent.interface == "ai0"},
                          {IDS[name] for name in VCU + EPS})
         stamps = {BASE_US + frame.t_us for frame in traffic.frames(2000)}
-        self.assertTrue(all(sent.us in stamps for sent in late))
+        self.assertTrue(all(sent.us in stamps for sent in late if sent.can_id != STATUS))
 
     # Shows: FOREIGN_COMMAND_SENDER, SUP-6
     def test_an_interface_that_is_not_the_ai_side_is_the_vehicle_side(self):
