@@ -90,6 +90,7 @@ typedef struct {
     uint32_t stored_sequence; /**< events before this one are in flash */
     uint16_t seen;
     uint8_t run;
+    uint8_t next_trip; /**< which of the trips is replaced next */
     uint8_t frames[AGV_MSG_COUNT][AGV_DLC];
     agv_fault_rate_t rates[AGV_FAULT_COUNT];
     agv_event_t trips[AGV_RECORDER_TRIPS]; /**< the events of the last trips, by the order of their sequence numbers */

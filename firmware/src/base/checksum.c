@@ -2,35 +2,43 @@
 
 #include <string.h>
 
+/* CRC-32 of four bits: a compromise between the time of a loop over bits and the memory of a table of 256. */
+static const uint32_t crc_of_nibble[16] = {0x00000000u, 0x1DB71064u, 0x3B6E20C8u, 0x26D930ACu, 0x76DC4190u, 0x6B6B51F4u,
+                                           0x4DB26158u, 0x5005713Cu, 0xEDB88320u, 0xF00F9344u, 0xD6D6A3E8u, 0xCB61B38Cu,
+                                           0x9B64C2B0u, 0x86D3D2D4u, 0xA00AE278u, 0xBDBDF21Cu};
+
 uint32_t agv_crc32(uint32_t crc, const void *bytes, size_t size) {
     const uint8_t *byte = bytes;
     for (size_t i = 0u; i < size; i++) {
         crc ^= byte[i];
-        for (uint32_t bit = 0u; bit < 8u; bit++) {
-            crc = ((crc & 1u) != 0u) ? ((crc >> 1u) ^ 0xEDB88320u) : (crc >> 1u);
-        }
+        crc = (crc >> 4u) ^ crc_of_nibble[crc & 15u];
+        crc = (crc >> 4u) ^ crc_of_nibble[crc & 15u];
     }
     return crc;
 }
 
-/* Words that are folded side by side: quicker, as they do not wait for each other. */
-enum { LANES = 4 };
+static uint32_t word_at(const unsigned char *bytes) {
+    uint32_t word;
+    (void)memcpy(&word, bytes, sizeof word);
+    return word;
+}
+
+/* Words that are folded at once: a loop costs more than what it does, at every call of the supervisor. */
+enum { LANES = 4, LANES_SIZE = 16 };
 
 uint32_t agv_seal(const void *words, size_t size) {
-    const unsigned char *const block = words;
-    const size_t in_lanes = size - (size % (LANES * sizeof(uint32_t)));
+    const unsigned char *at = words;
+    const unsigned char *const end = &at[size];
     uint32_t lanes[LANES] = {UINT32_MAX, 0u, 0u, 0u};
-    for (size_t at = 0u; at < in_lanes; at += sizeof lanes) {
-        uint32_t next[LANES];
-        (void)memcpy(next, &block[at], sizeof next);
-        for (uint32_t lane = 0u; lane < (uint32_t)LANES; lane++) {
-            lanes[lane] ^= next[lane];
-        }
+    for (size_t left = size / (size_t)LANES_SIZE; left != 0u; left--) {
+        lanes[0] ^= word_at(at);
+        lanes[1] ^= word_at(&at[4]);
+        lanes[2] ^= word_at(&at[8]);
+        lanes[3] ^= word_at(&at[12]);
+        at = &at[LANES_SIZE];
     }
-    for (size_t at = in_lanes; at < size; at += sizeof(uint32_t)) {
-        uint32_t word;
-        (void)memcpy(&word, &block[at], sizeof word);
-        lanes[0] ^= word;
+    for (; at != end; at = &at[4]) {
+        lanes[0] ^= word_at(at);
     }
     return lanes[0] ^ lanes[1] ^ lanes[2] ^ lanes[3];
 }

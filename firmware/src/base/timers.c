@@ -33,8 +33,15 @@ uint32_t agv_age_ms(uint32_t now_ms, uint32_t then_ms) {
     return (difference > (UINT32_MAX / 2u)) ? 0u : difference;
 }
 
+/* Settings stand in the order of their indices (config.c). */
+static uint32_t limit_of(const agv_config_t *config, uint32_t timer) {
+    uint16_t limit_ms;
+    (void)memcpy(&limit_ms, &((const unsigned char *)config)[rows[timer].setting * sizeof limit_ms], sizeof limit_ms);
+    return limit_ms;
+}
+
 uint32_t agv_timer_limit_ms(const agv_config_t *config, uint32_t timer) {
-    return agv_config_get(config, rows[timer].setting);
+    return limit_of(config, timer);
 }
 
 void agv_timers_start(agv_timers_t *timers) {
@@ -46,13 +53,16 @@ void agv_timers_set_time(agv_timers_t *timers, uint32_t time_ms) {
     timers->now_us = time_ms * 1000u;
 }
 
+/* An age of more than half the range is that of a stamp in the future: 0. */
+static bool is_over(const agv_timers_t *timers, const agv_config_t *config, uint32_t timer) {
+    const uint32_t age_ms = timers->now_ms - timers->since_ms[timer];
+    return (age_ms <= (UINT32_MAX / 2u)) && ((age_ms + rows[timer].kind) > limit_of(config, timer));
+}
+
 static void evaluate(agv_timers_t *timers, const agv_config_t *config) {
     for (uint32_t i = 0u; i < (uint32_t)AGV_TIMER_COUNT; i++) {
-        if (timers->phase[i] == (uint8_t)AGV_TIMER_RUNNING) {
-            const uint32_t age_ms = agv_age_ms(timers->now_ms, timers->since_ms[i]) + rows[i].kind;
-            if (age_ms > agv_timer_limit_ms(config, i)) {
-                timers->phase[i] = AGV_TIMER_REACHED;
-            }
+        if ((timers->phase[i] == (uint8_t)AGV_TIMER_RUNNING) && is_over(timers, config, i)) {
+            timers->phase[i] = AGV_TIMER_REACHED;
         }
     }
 }

@@ -23,9 +23,13 @@ void agv_fault_monitor_start(agv_fault_monitor_t *monitor) {
 }
 
 void agv_fault_monitor_set(agv_fault_monitor_t *monitor, uint32_t fault, bool cause) {
-    if ((fault < (uint32_t)AGV_FAULT_COUNT) && (agv_fault_is_in(&monitor->active, fault) != cause)) {
-        agv_fault_set_put(&monitor->active, fault, cause);
-        monitor->outdated = true;
+    if (fault < (uint32_t)AGV_FAULT_COUNT) {
+        uint32_t *const word = &monitor->active.words[fault / 32u];
+        const uint32_t bit = (uint32_t)1u << (fault % 32u);
+        if (((*word & bit) != 0u) != cause) {
+            *word ^= bit;
+            monitor->outdated = true;
+        }
     }
 }
 

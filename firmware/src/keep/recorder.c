@@ -27,6 +27,22 @@ static bool is_newer(uint32_t sequence, uint32_t other) {
     return ((sequence - other) - 1u) < (UINT32_MAX / 2u);
 }
 
+/* Drops what is not valid, and finds the place of the next trip: that of the oldest, or the first free one. */
+static void start_trips(agv_recorder_t *recorder) {
+    uint32_t oldest = 0u;
+    for (uint32_t i = 0u; i < AGV_RECORDER_TRIPS; i++) {
+        agv_event_t *const trip = &recorder->trips[i];
+        if (!is_valid(trip)) {
+            (void)memset(trip, 0, sizeof *trip);
+        }
+        const bool older = (trip->kind == 0u) || is_newer(recorder->trips[oldest].sequence, trip->sequence);
+        if ((recorder->trips[oldest].kind != 0u) && older) {
+            oldest = i;
+        }
+    }
+    recorder->next_trip = (uint8_t)oldest;
+}
+
 void agv_recorder_start(agv_recorder_t *recorder) {
     bool found = false;
     uint32_t first = 0u;
@@ -56,11 +72,7 @@ void agv_recorder_start(agv_recorder_t *recorder) {
     if ((recorder->stored_sequence - first) > (next - first)) {
         recorder->stored_sequence = first;
     }
-    for (uint32_t i = 0u; i < AGV_RECORDER_TRIPS; i++) {
-        if (!is_valid(&recorder->trips[i])) {
-            (void)memset(&recorder->trips[i], 0, sizeof recorder->trips[i]);
-        }
-    }
+    start_trips(recorder);
     (void)memset(recorder->rates, 0, sizeof recorder->rates);
     recorder->seen = 0u;
     (void)memset(recorder->frames, 0, sizeof recorder->frames);
@@ -108,16 +120,10 @@ static bool is_trip(const agv_event_t *event) {
            (event->c < (uint8_t)AGV_FAULT_COUNT);
 }
 
-/* A trip takes the place of the oldest one, or of one that is not valid. */
+/* A trip takes the place of the oldest one. */
 static void keep_trip(agv_recorder_t *recorder, const agv_event_t *event) {
-    agv_event_t *place = &recorder->trips[0];
-    for (uint32_t i = 1u; (i < AGV_RECORDER_TRIPS) && is_valid(place); i++) {
-        agv_event_t *const other = &recorder->trips[i];
-        if (!is_valid(other) || is_newer(place->sequence, other->sequence)) {
-            place = other;
-        }
-    }
-    *place = *event;
+    recorder->trips[recorder->next_trip % AGV_RECORDER_TRIPS] = *event;
+    recorder->next_trip = (uint8_t)((recorder->next_trip + 1u) % AGV_RECORDER_TRIPS);
 }
 
 void agv_recorder_add(agv_recorder_t *recorder, const agv_entry_t *entry, uint32_t time_ms) {
