@@ -4,6 +4,7 @@
  */
 #include <stdio.h>
 
+#include "agv/names.h"
 #include "fixture.h"
 #include "unity.h"
 #include "walk.h"
@@ -194,11 +195,32 @@ static bool is_latched(agv_state_t state) {
     return state == AGV_STATE_TRIPPED || state == AGV_STATE_SAFE;
 }
 
+static bool may_be_closed(agv_state_t state) {
+    static const agv_fault_t OPENING[] = {AGV_FAULT_BUS_OFF, AGV_FAULT_TX_STALLED, AGV_FAULT_SAFE_STATE_UNCONFIRMED,
+                                          AGV_FAULT_VEHICLE_NOT_STOPPING, AGV_FAULT_MOVING_WHILE_SAFE};
+    bool closable = state != AGV_STATE_INIT;
+    for (unsigned i = 0; i < sizeof OPENING / sizeof OPENING[0]; i++) {
+        closable = closable && !fixture_has(&f, OPENING[i]);
+    }
+    return closable;
+}
+
+/* No cause of a trip is there in ACTIVE; the output is not closed while there is a reason to have it open. */
+static void judge_moment(agv_state_t state) {
+    const agv_fault_set_t trips = agv_supervisor_active_trips(&f.supervisor);
+    if (state == AGV_STATE_ACTIVE) {
+        TEST_ASSERT_EQUAL_STRING(
+            "", agv_fault_first(&trips) == AGV_FAULT_NONE ? "" : agv_fault_name((agv_fault_t)agv_fault_first(&trips)));
+    }
+    TEST_ASSERT_TRUE(may_be_closed(state) || !f.hal.safety_output.on);
+}
+
 /* The latch is left for STANDBY only, and only when in this step the button was released that had been held for 1 s to
  * 5 s, in manual for the whole second before. */
 static void judge_step(agv_state_t before, uint32_t before_ms) {
     const agv_state_t after = agv_supervisor_state(&f.supervisor);
     steps_in[index_of(after)]++;
+    judge_moment(after);
     if (is_latched(before) && !is_latched(after)) {
         TEST_ASSERT_EQUAL_HEX8(AGV_STATE_STANDBY, after);
         TEST_ASSERT_TRUE(f.now_ms - released_ms <= f.now_ms - before_ms);
@@ -271,6 +293,7 @@ static void run_randomly(uint16_t topology, uint32_t seed) {
     random_state = seed;
     f.config.topology = topology;
     f.config.gateway_in_manual = (uint16_t)(topology == AGV_TOPOLOGY_GATEWAY ? draw(2) : 0); /* else refused */
+    f.config.park = (uint16_t)draw(2);
     f.edit = note_traffic;
     fixture_start(&f);
     f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF;
@@ -309,13 +332,13 @@ static void expect_everything_was_seen(const char *topology) {
     restarts = 0;
 }
 
-/* Shows: FSM-6, FSM-3, FSM-7, INT-2 */
+/* Shows: FSM-6, FSM-3, FSM-4, FSM-7, FSM-11, INT-2 */
 void test_random_input_on_the_shared_bus(void) {
     run_randomly(AGV_TOPOLOGY_SHARED, 20261121);
     expect_everything_was_seen("shared bus");
 }
 
-/* Shows: FSM-6, FSM-3, FSM-7, INT-2, TOP-2 */
+/* Shows: FSM-6, FSM-3, FSM-4, FSM-7, FSM-11, INT-2, TOP-2 */
 void test_random_input_in_the_gateway(void) {
     run_randomly(AGV_TOPOLOGY_GATEWAY, 1121);
     expect_everything_was_seen("gateway");
