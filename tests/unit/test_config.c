@@ -24,7 +24,7 @@ static void expect_good(void) {
     TEST_ASSERT_EQUAL(AGV_CONFIG_OK, agv_config_check(&config).problem);
 }
 
-/* By hand from the rows SUP-2, SUP-3, SUP-5 to SUP-8, FSM-1 to FSM-4, TOP-1, TIM-4. */
+/* By hand from the rows SUP-2 to SUP-12, FSM-1 to FSM-12, TOP-1 to TOP-3, TIM-4, and the words. */
 /* Shows: SUP-2, SUP-3, INT-2 */
 void test_the_defaults_are_those_of_the_requirements(void) {
     expect_good();
@@ -49,7 +49,47 @@ void test_the_defaults_are_those_of_the_requirements(void) {
     TEST_ASSERT_EQUAL_UINT16(100, config.watchdog_period_ms);
     TEST_ASSERT_EQUAL_UINT16(AGV_TOPOLOGY_SHARED, config.topology);
     TEST_ASSERT_EQUAL_UINT16(AGV_PARK_AT_ONCE, config.park);
-    TEST_ASSERT_EQUAL_UINT16(0, config.status_frame_id);
+    TEST_ASSERT_EQUAL_UINT16(0x7F0, config.status_frame_id);
+    TEST_ASSERT_EQUAL_UINT16(100, config.status_frame_period_ms);
+}
+
+/* The numbers of the second edition. */
+/* Shows: SUP-9, SUP-10, SUP-11, SUP-12, FSM-3, FSM-4, FSM-10, FSM-12 */
+void test_the_defaults_of_scores_budgets_and_times(void) {
+    TEST_ASSERT_EQUAL_UINT16(500, config.engaged_grace_ms);
+    TEST_ASSERT_EQUAL_UINT16(3, config.mode_frames);
+    TEST_ASSERT_EQUAL_UINT16(100, config.reengage_ms);
+    TEST_ASSERT_EQUAL_UINT16(5000, config.mode_flapping_ms);
+    TEST_ASSERT_EQUAL_UINT16(500, config.mode_none_ms);
+    TEST_ASSERT_EQUAL_UINT16(3, config.eps_supply_fault_frames);
+    TEST_ASSERT_EQUAL_UINT16(5, config.eps_mode_frames);
+    TEST_ASSERT_EQUAL_UINT16(3, config.status_invalid_frames);
+    TEST_ASSERT_EQUAL_UINT16(10, config.command_too_fast_gaps);
+    TEST_ASSERT_EQUAL_UINT16(500, config.steering_deviation_ms);
+    TEST_ASSERT_EQUAL_UINT16(250, config.steering_gain_ddeg);
+    TEST_ASSERT_EQUAL_UINT16(25, config.throttle_deviation_counts);
+    TEST_ASSERT_EQUAL_UINT16(500, config.throttle_deviation_ms);
+    TEST_ASSERT_EQUAL_UINT16(1000, config.gear_deviation_ms);
+    TEST_ASSERT_EQUAL_UINT16(1000, config.autopilot_off_ms);
+    TEST_ASSERT_EQUAL_UINT16(200, config.throttle_in_park_ms);
+    TEST_ASSERT_EQUAL_UINT16(2, config.throttle_idle_counts);
+    TEST_ASSERT_EQUAL_UINT16(1000, config.speed_implausible_ms);
+    TEST_ASSERT_EQUAL_UINT16(500, config.park_confirm_timeout_ms);
+    TEST_ASSERT_EQUAL_UINT16(5000, config.confirmed_ms);
+    TEST_ASSERT_EQUAL_UINT16(5000, config.stop_timeout_ms);
+    TEST_ASSERT_EQUAL_UINT16(50, config.hold_age_ms);
+    TEST_ASSERT_EQUAL_UINT16(5000, config.hold_standstill_ms);
+    TEST_ASSERT_EQUAL_UINT16(5000, config.reset_hold_max_ms);
+    TEST_ASSERT_EQUAL_UINT16(180, config.standstill_vcu_counts);
+    TEST_ASSERT_EQUAL_UINT16(50, config.standstill_speed_mm_s);
+    TEST_ASSERT_EQUAL_UINT16(100, config.standstill_ms);
+    TEST_ASSERT_EQUAL_UINT16(AGV_COUNTER_ANY, config.vcu_counter);
+    TEST_ASSERT_EQUAL_UINT16(AGV_AFTER_POWER_ON_INIT, config.after_power_on);
+    TEST_ASSERT_EQUAL_UINT16(AGV_GEAR_CHANGE_AT_STANDSTILL, config.gear_change);
+    TEST_ASSERT_EQUAL_UINT16(100, config.throttle_ceiling_pct);
+    TEST_ASSERT_EQUAL_UINT16(0, config.throttle_rise_pct_s);
+    TEST_ASSERT_EQUAL_UINT16(0, config.steering_slew_ddeg_s);
+    TEST_ASSERT_EQUAL_UINT16(0, config.steering_fast_max_ddeg);
 }
 
 /* Shows: INT-2 */
@@ -74,19 +114,24 @@ void test_a_deadline_under_three_cycles_is_refused(void) {
     }
 }
 
-/* The documented ends are good, one beyond is not; frozen needs the gateway, so that all is tried in it. */
+/* The documented ends are good, one beyond is not. Some need the gateway, so that all is tried in it; a press has a shortest
+ * and a longest time, so that the other one makes room. */
 /* Shows: INT-2 */
 void test_every_setting_is_held_to_its_range(void) {
     for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
         const agv_setting_info_t *info = agv_setting_info(i);
         setUp();
         config.topology = AGV_TOPOLOGY_GATEWAY;
+        config.reset_hold_ms = 500;
+        config.reset_hold_max_ms = 30000;
         (void)agv_config_set(&config, i, info->lowest);
         expect_good();
         (void)agv_config_set(&config, i, info->highest);
         expect_good();
-        (void)agv_config_set(&config, i, (uint16_t)(info->highest + 1));
-        expect_problem(AGV_CONFIG_OUT_OF_RANGE, i);
+        if (info->highest < UINT16_MAX) {
+            (void)agv_config_set(&config, i, (uint16_t)(info->highest + 1));
+            expect_problem(AGV_CONFIG_OUT_OF_RANGE, i);
+        }
         if (info->lowest > 0) {
             (void)agv_config_set(&config, i, (uint16_t)(info->lowest - 1));
             expect_problem(AGV_CONFIG_OUT_OF_RANGE, i);
@@ -182,12 +227,125 @@ void test_the_status_frame_may_not_have_an_identifier_that_was_changed(void) {
     expect_good();
 }
 
-/* Shows: FSM-8, INT-2 */
-void test_a_frozen_heartbeat_needs_the_gateway(void) {
-    config.own_heartbeat = AGV_OWN_HEARTBEAT_FROZEN;
-    expect_problem(AGV_CONFIG_NEEDS_GATEWAY, AGV_SETTING_own_heartbeat);
-    config.topology = AGV_TOPOLOGY_GATEWAY;
+/* By hand: what protects nobody on a shared bus is refused there, and the others are not. */
+/* Shows: FSM-8, TOP-2, INT-2 */
+void test_what_has_no_effect_on_a_shared_bus_is_refused(void) {
+    static const uint16_t gateway_only[] = {
+        AGV_SETTING_own_heartbeat,        AGV_SETTING_gateway_in_manual,   AGV_SETTING_gear_change,
+        AGV_SETTING_throttle_ceiling_pct, AGV_SETTING_throttle_rise_pct_s, AGV_SETTING_steering_slew_ddeg_s,
+        AGV_SETTING_steering_fast_max_ddeg, AGV_SETTING_fast_mm_s};
+    for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
+        const agv_setting_info_t *const info = agv_setting_info(i);
+        bool needs_gateway = false;
+        for (unsigned k = 0; k < sizeof gateway_only / sizeof gateway_only[0]; k++) {
+            needs_gateway = needs_gateway || gateway_only[k] == i;
+        }
+        setUp();
+        (void)agv_config_set(&config, i, (info->preset == info->highest) ? info->lowest : info->highest);
+        config.reset_hold_ms = 500;
+        config.reset_hold_max_ms = 30000;
+        TEST_ASSERT_EQUAL(needs_gateway, info->gateway_only);
+        if (needs_gateway) {
+            expect_problem(AGV_CONFIG_NEEDS_GATEWAY, i);
+            config.topology = AGV_TOPOLOGY_GATEWAY;
+        }
+        expect_good();
+    }
+}
+
+/* The first of several is named. */
+/* Shows: INT-2 */
+void test_the_first_setting_without_effect_is_named(void) {
+    config.fast_mm_s = 1;
+    config.throttle_ceiling_pct = 50;
+    expect_problem(AGV_CONFIG_NEEDS_GATEWAY, AGV_SETTING_throttle_ceiling_pct);
+    config.throttle_ceiling_pct = 101; /* out of range says more */
+    expect_problem(AGV_CONFIG_OUT_OF_RANGE, AGV_SETTING_throttle_ceiling_pct);
+}
+
+/* No press would be long enough and not too long. */
+/* Shows: FSM-3, INT-2 */
+TEST_CASE(1000, 1000, 0)
+TEST_CASE(5001, 5000, 0)
+TEST_CASE(10000, 1000, 0)
+TEST_CASE(1000, 1001, 1)
+TEST_CASE(10000, 10001, 1)
+void test_a_press_that_is_too_short_is_refused(unsigned hold_ms, unsigned most_ms, int good) {
+    config.reset_hold_ms = (uint16_t)hold_ms;
+    config.reset_hold_max_ms = (uint16_t)most_ms;
+    if (good) {
+        expect_good();
+    } else {
+        expect_problem(AGV_CONFIG_PRESS_TOO_SHORT, AGV_SETTING_reset_hold_max_ms);
+    }
+}
+
+/* The status frame is on by default: its identifier is taken. */
+/* Shows: INT-2, TOP-3 */
+void test_a_message_may_not_have_the_identifier_of_the_status_frame(void) {
+    config.id_eps_status = 0x7F0;
+    expect_problem(AGV_CONFIG_ID_TWICE, AGV_SETTING_status_frame_id);
+    config.status_frame_id = 0;
     expect_good();
+}
+
+/* ---- What weakens ---- */
+
+/* By hand, one or more of each kind: a value below, the default, a value above. */
+static const struct {
+    uint16_t setting;
+    uint16_t lower;
+    uint16_t higher;
+    bool lower_weakens;
+    bool higher_weakens;
+} WEAKENING[] = {
+    {AGV_SETTING_vcu_heartbeat_timeout_ms, 49, 51, false, true},
+    {AGV_SETTING_steering_deviation_ddeg, 499, 501, false, true},
+    {AGV_SETTING_steering_gain_ddeg, 249, 251, true, false},
+    {AGV_SETTING_mode_flapping_ms, 4999, 5001, true, false},
+    {AGV_SETTING_mode_frames, 2, 4, true, false},
+    {AGV_SETTING_reengage_ms, 99, 101, true, false},
+    {AGV_SETTING_init_hold_ms, 499, 501, true, false},
+    {AGV_SETTING_standstill_ms, 99, 101, true, false},
+    {AGV_SETTING_standstill_vcu_counts, 179, 65535, false, true},
+    {AGV_SETTING_reset_hold_ms, 999, 1001, true, false},
+    {AGV_SETTING_reset_hold_max_ms, 4999, 5001, false, true},
+    {AGV_SETTING_confirmed_ms, 4999, 5001, true, false},
+    {AGV_SETTING_stop_timeout_ms, 4999, 5001, false, true},
+    {AGV_SETTING_hold_standstill_ms, 4999, 5001, false, false},
+    {AGV_SETTING_status_frame_id, 0, 0x7F1, true, false},
+    {AGV_SETTING_status_frame_id, 1, 0x7FF, false, false},
+    {AGV_SETTING_throttle_ceiling_pct, 0, 100, false, false},
+    {AGV_SETTING_topology, 0, 1, false, false},
+    {AGV_SETTING_shadow, 0, 1, false, true},
+    {AGV_SETTING_park, 0, 1, false, true},
+    {AGV_SETTING_ai_lost_in_manual, 0, 1, false, false},
+    {AGV_SETTING_gateway_in_manual, 0, 1, false, true},
+    {AGV_SETTING_gear_change, 0, 1, false, true},
+    {AGV_SETTING_vcu_counter, 0, 1, false, false},
+    {AGV_SETTING_after_power_on, 0, 1, false, false},
+    {AGV_SETTING_id_gear_command, 1, 0x7FF, false, false},
+};
+
+/* Shows: INT-2 */
+void test_which_values_weaken_the_supervision(void) {
+    for (unsigned i = 0; i < sizeof WEAKENING / sizeof WEAKENING[0]; i++) {
+        setUp();
+        (void)agv_config_set(&config, WEAKENING[i].setting, WEAKENING[i].lower);
+        TEST_ASSERT_EQUAL(WEAKENING[i].lower_weakens, agv_config_weakens(&config, WEAKENING[i].setting));
+        (void)agv_config_set(&config, WEAKENING[i].setting, WEAKENING[i].higher);
+        TEST_ASSERT_EQUAL(WEAKENING[i].higher_weakens, agv_config_weakens(&config, WEAKENING[i].setting));
+    }
+}
+
+/* Shows: INT-2 */
+void test_no_default_weakens_and_nothing_beyond_the_last_setting(void) {
+    for (uint32_t i = 0; i < AGV_SETTING_COUNT; i++) {
+        TEST_ASSERT_FALSE(agv_config_weakens(&config, i));
+    }
+    memset(&config, 0xFF, sizeof config);
+    TEST_ASSERT_FALSE(agv_config_weakens(&config, AGV_SETTING_COUNT));
+    TEST_ASSERT_FALSE(agv_config_weakens(&config, UINT32_MAX));
 }
 
 /* Shows: INT-2 */
@@ -209,6 +367,14 @@ void test_what_must_trip_cannot_be_made_a_warning(void) {
         AGV_FAULT_VCU_EPS_CAN_BUS_FAULT,
         AGV_FAULT_VCU_EPS_HARDWARE_FAULT,
         AGV_FAULT_EPS_STATUS_TIMEOUT,
+        AGV_FAULT_VCU_AI_CAN_LOST,
+        AGV_FAULT_AI_COMMAND_OUT_OF_RANGE,
+        AGV_FAULT_STEERING_COMMAND_TIMEOUT,
+        AGV_FAULT_STEERING_DEVIATION,
+        AGV_FAULT_MODE_FLAPPING,
+        AGV_FAULT_SAFE_STATE_UNCONFIRMED,
+        AGV_FAULT_VEHICLE_NOT_STOPPING,
+        AGV_FAULT_MOVING_WHILE_SAFE,
         AGV_FAULT_MEMORY_CORRUPTED,
         AGV_FAULT_TX_GATE_REFUSED,
         AGV_FAULT_CONFIG_INVALID,
@@ -262,12 +428,12 @@ void test_there_is_no_setting_beyond_the_last(void) {
 
 /*
  * By an independent CRC-32, zlib.crc32 of Python, over the defaults of config_settings.def and the identifiers of
- * message_table.def (heading) packed as "<H" and the rows of fault_table.def with the class TRIP as "<Q". A new setting,
+ * message_table.def (heading) packed as "<H" and the rows of fault_table.def with the class TRIP as three "<I". A new setting,
  * message or fault changes it.
  */
 /* Shows: TOP-3 */
 void test_the_checksum_of_the_defaults_is_known(void) {
-    TEST_ASSERT_EQUAL_HEX32(0xEF349A8Cu, agv_config_checksum(&config));
+    TEST_ASSERT_EQUAL_HEX32(0x021080A4u, agv_config_checksum(&config));
 }
 
 /* Shows: INT-5 */

@@ -1,4 +1,4 @@
-/* What the gateway passes on: which commands in which state, reserved bits, throttle ceiling, steering slew. */
+/* What the gateway passes on: which commands in which state and mode, reserved bits, the envelope. */
 #include "transmit/gateway.h"
 
 #include <string.h>
@@ -10,6 +10,9 @@ static agv_config_t config;
 static agv_vehicle_t vehicle;
 static agv_state_t state;
 static uint32_t now_ms;
+static bool autopilot;
+static bool standstill;
+static bool limited;
 static uint8_t data[8];
 
 void setUp(void) {
@@ -19,18 +22,39 @@ void setUp(void) {
     config.topology = AGV_TOPOLOGY_GATEWAY;
     state = AGV_STATE_ACTIVE;
     now_ms = 1000;
+    autopilot = true;
+    standstill = false;
+    vehicle.wheels_fresh = true;
+    vehicle.gear = 1;
 }
 
 void tearDown(void) {
 }
 
-/* The adaptor to the module: everything below goes through these two. */
-static bool passes(agv_message_t command) {
-    return agv_gateway_passes(&config, state, command);
+/* The adaptor to the module: everything below goes through these. */
+static agv_gateway_facts_t facts(void) {
+    return (agv_gateway_facts_t){.config = &config,
+                                 .vehicle = &vehicle,
+                                 .state = state,
+                                 .now_ms = now_ms,
+                                 .autopilot = autopilot,
+                                 .standstill = standstill};
+}
+
+static bool passes(unsigned command, uint8_t first_byte) {
+    const agv_gateway_facts_t now = facts();
+    const uint8_t payload[8] = {first_byte};
+    return agv_gateway_passes(&now, command, payload);
+}
+
+static bool may_wait(unsigned command) {
+    const agv_gateway_facts_t now = facts();
+    return agv_gateway_may_wait(&now, command);
 }
 
 static void limit(agv_message_t command) {
-    agv_gateway_limit(&gateway, &config, &vehicle, state, now_ms, command, data);
+    const agv_gateway_facts_t now = facts();
+    limited = agv_gateway_limit(&gateway, &now, command, data);
 }
 
 /* Hand in 8 bytes, look at those that come out. */
@@ -58,20 +82,64 @@ static int steer(uint32_t after_ms, int wanted_ddeg) {
     return (data[0] | data[1] << 8) - 9000;
 }
 
+/* ---- Which pass ---- */
+
+/* Motion commands in ACTIVE with autopilot reported; 43Fh in STANDBY, too. All eight bits of the state. */
 /* Shows: TOP-2 */
-void test_which_commands_pass_in_which_state(void) {
-    for (unsigned value = 0; value < 256; value++) {
+void test_which_commands_pass_in_which_state_and_mode(void) {
+    for (unsigned value = 0; value < 512; value++) {
         for (unsigned command = 0; command < 4; command++) {
-            const bool active = value == 0x3C;
-            const bool standby = value == 0x33;
-            state = (agv_state_t)value;
+            const bool active = (value & 0xFF) == 0x3C;
+            const bool standby = (value & 0xFF) == 0x33;
+            state = (agv_state_t)(value & 0xFF);
+            autopilot = value > 0xFF;
             config.gateway_in_manual = AGV_IN_MANUAL_HEARTBEAT;
-            TEST_ASSERT_EQUAL(active || (standby && command == 0), passes((agv_message_t)command));
+            const bool motion = active && autopilot;
+            TEST_ASSERT_EQUAL(motion || ((active || standby) && command == 0), passes(command, 1));
+            TEST_ASSERT_EQUAL(motion || ((active || standby) && command == 0), may_wait(command));
             config.gateway_in_manual = AGV_IN_MANUAL_ALL;
-            TEST_ASSERT_EQUAL(active || standby, passes((agv_message_t)command));
+            TEST_ASSERT_EQUAL(motion || standby || (active && command == 0), passes(command, 1));
+            TEST_ASSERT_EQUAL(motion || standby || (active && command == 0), may_wait(command));
         }
     }
 }
+
+/* D or R other than 0A3h reports: 1 D, 2 R, 4 N, 8 P, 0 none known. */
+/* Shows: TOP-2 */
+void test_a_change_of_gear_waits_for_standstill(void) {
+    static const uint8_t gears[] = {1, 2, 4, 8, 0};
+    for (unsigned wanted = 0; wanted < 4; wanted++) {
+        for (unsigned is = 0; is < 5; is++) {
+            vehicle.gear = gears[is];
+            config.gear_change = AGV_GEAR_CHANGE_AT_STANDSTILL;
+            standstill = false;
+            TEST_ASSERT_EQUAL(wanted >= 2 || wanted == is, passes(AGV_MSG_GEAR_COMMAND, gears[wanted]));
+            standstill = true;
+            TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, gears[wanted]));
+            standstill = false;
+            config.gear_change = AGV_GEAR_CHANGE_ANY;
+            TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, gears[wanted]));
+        }
+    }
+}
+
+/* The first byte of the others is no gear; and standstill alone passes nothing. */
+/* Shows: TOP-2 */
+void test_only_168h_changes_the_gear(void) {
+    vehicle.gear = 8;
+    TEST_ASSERT_TRUE(passes(AGV_MSG_THROTTLE_COMMAND, 1));
+    TEST_ASSERT_TRUE(passes(AGV_MSG_STEERING_COMMAND, 2));
+    TEST_ASSERT_TRUE(passes(AGV_MSG_TURN_SIGNAL_COMMAND, 2));
+    standstill = true;
+    state = AGV_STATE_STANDBY;
+    TEST_ASSERT_FALSE(passes(AGV_MSG_GEAR_COMMAND, 1));
+    config.gateway_in_manual = AGV_IN_MANUAL_ALL;
+    TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 1));
+    standstill = false;
+    TEST_ASSERT_FALSE(passes(AGV_MSG_GEAR_COMMAND, 1));
+}
+
+/* ---- How they pass ---- */
 
 /* P14: the document says nothing of the other bits. */
 /* Shows: TOP-2, P14 */
@@ -90,6 +158,7 @@ void test_reserved_bits_are_passed_as_0(void) {
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         expect_passed(cases[i].command, cases[i].in, cases[i].out);
+        TEST_ASSERT_FALSE(limited); /* the envelope has not changed it */
     }
 }
 
@@ -97,9 +166,12 @@ void test_reserved_bits_are_passed_as_0(void) {
 /* Shows: TOP-2 */
 void test_the_throttle_ceiling(void) {
     TEST_ASSERT_EQUAL_UINT(250, throttle(250));
+    TEST_ASSERT_FALSE(limited);
     config.throttle_ceiling_pct = 30;
     TEST_ASSERT_EQUAL_UINT(75, throttle(250));
+    TEST_ASSERT_TRUE(limited);
     TEST_ASSERT_EQUAL_UINT(75, throttle(75));
+    TEST_ASSERT_FALSE(limited);
     TEST_ASSERT_EQUAL_UINT(74, throttle(74));
     config.throttle_ceiling_pct = 33; /* 82.5 counts, rounded down */
     TEST_ASSERT_EQUAL_UINT(82, throttle(250));
@@ -113,8 +185,145 @@ void test_the_throttle_ceiling(void) {
 void test_in_manual_the_throttle_is_0(void) {
     state = AGV_STATE_STANDBY;
     TEST_ASSERT_EQUAL_UINT(0, throttle(250));
+    TEST_ASSERT_TRUE(limited);
     TEST_ASSERT_EQUAL_UINT(0, throttle(0));
+    TEST_ASSERT_FALSE(limited);
 }
+
+/* ---- Throttle rise ---- */
+
+/* 100 % a second: 25 counts in the 100 ms of a cycle. The first one starts at 0 and may use one cycle. */
+/* Shows: TOP-2 */
+void test_the_throttle_rises_at_its_rate(void) {
+    config.throttle_rise_pct_s = 100;
+    TEST_ASSERT_EQUAL_UINT(25, throttle(250));
+    TEST_ASSERT_TRUE(limited);
+    now_ms += 100;
+    TEST_ASSERT_EQUAL_UINT(50, throttle(250));
+    now_ms += 50;
+    TEST_ASSERT_EQUAL_UINT(62, throttle(250)); /* 12.5 */
+    now_ms += 100;
+    TEST_ASSERT_EQUAL_UINT(70, throttle(70));
+    TEST_ASSERT_FALSE(limited);
+}
+
+/* Down at once, and up again from there. */
+/* Shows: TOP-2 */
+void test_the_throttle_falls_at_once(void) {
+    config.throttle_rise_pct_s = 100;
+    for (unsigned i = 1; i <= 10; i++) {
+        TEST_ASSERT_EQUAL_UINT(25 * i, throttle(250));
+        now_ms += 100;
+    }
+    TEST_ASSERT_EQUAL_UINT(3, throttle(3));
+    TEST_ASSERT_FALSE(limited);
+    now_ms += 100;
+    TEST_ASSERT_EQUAL_UINT(28, throttle(250));
+}
+
+/* 1 % a second: a count takes 400 ms, and cycles of 100 ms must not round it away. */
+/* Shows: TOP-2 */
+void test_a_slow_rise_adds_up(void) {
+    config.throttle_rise_pct_s = 1;
+    for (unsigned i = 1; i <= 40; i++) {
+        TEST_ASSERT_EQUAL_UINT(i / 4, throttle(250));
+        now_ms += 100;
+    }
+}
+
+/* A pause gives no more than a second does: 125 counts, with the ceiling over all. */
+/* Shows: TOP-2, TIM-2 */
+void test_a_pause_gives_at_most_a_second_of_rise(void) {
+    config.throttle_rise_pct_s = 50;
+    now_ms = 0xFFFFFF00u;
+    TEST_ASSERT_EQUAL_UINT(12, throttle(250));
+    now_ms += 999;
+    TEST_ASSERT_EQUAL_UINT(12 + 124, throttle(250));
+    TEST_ASSERT_EQUAL_UINT(0, throttle(0));
+    now_ms += 5000;
+    TEST_ASSERT_EQUAL_UINT(125, throttle(250));
+    config.throttle_ceiling_pct = 52;
+    now_ms += 5000;
+    TEST_ASSERT_EQUAL_UINT(130, throttle(250));
+}
+
+/* 1000 % a second is 250 counts in 100 ms: the largest rate overflows nothing. */
+void test_the_largest_rise(void) {
+    config.throttle_rise_pct_s = 1000;
+    now_ms += 4000;
+    TEST_ASSERT_EQUAL_UINT(250, throttle(250));
+    TEST_ASSERT_EQUAL_UINT(0, throttle(0));
+    now_ms += 4000;
+    TEST_ASSERT_EQUAL_UINT(250, throttle(250));
+}
+
+/* Shows: TOP-2 */
+void test_after_a_restart_the_rise_starts_at_0(void) {
+    config.throttle_rise_pct_s = 100;
+    (void)throttle(250);
+    now_ms += 100;
+    TEST_ASSERT_EQUAL_UINT(50, throttle(250));
+    agv_gateway_restart(&gateway);
+    TEST_ASSERT_EQUAL_UINT(25, throttle(250));
+}
+
+/* ---- Steering above a speed ---- */
+
+static void wheels(int32_t left_mm_s, int32_t right_mm_s) {
+    vehicle.wheels = (agv_wheel_speed_t){.left_mm_s = left_mm_s, .right_mm_s = right_mm_s};
+}
+
+/* To both sides; one wheel is enough, either way; at the speed itself it is not fast. */
+/* Shows: TOP-2 */
+void test_steering_is_limited_above_a_speed(void) {
+    static const int32_t fast[] = {1001, -1001, 20000, INT32_MAX};
+    config.steering_fast_max_ddeg = 100;
+    config.fast_mm_s = 1000;
+    wheels(1000, -1000);
+    TEST_ASSERT_EQUAL_INT(9000, steer(25, 9000));
+    TEST_ASSERT_FALSE(limited);
+    for (unsigned i = 0; i < 4; i++) {
+        wheels(fast[i], 0);
+        TEST_ASSERT_EQUAL_INT(100, steer(25, 9000));
+        TEST_ASSERT_TRUE(limited);
+        wheels(0, fast[i]);
+        TEST_ASSERT_EQUAL_INT(-100, steer(25, -101));
+        TEST_ASSERT_EQUAL_INT(-100, steer(25, -100));
+        TEST_ASSERT_FALSE(limited);
+        TEST_ASSERT_EQUAL_INT(100, steer(25, 100));
+    }
+}
+
+/* Shows: TOP-2 */
+void test_stale_wheel_speeds_count_as_fast(void) {
+    config.steering_fast_max_ddeg = 100;
+    config.fast_mm_s = 20000;
+    TEST_ASSERT_EQUAL_INT(500, steer(25, 500));
+    vehicle.wheels_fresh = false;
+    TEST_ASSERT_EQUAL_INT(100, steer(25, 500));
+    config.steering_fast_max_ddeg = 0; /* off */
+    TEST_ASSERT_EQUAL_INT(500, steer(25, 500));
+}
+
+/* The way to the limit is one of the slew, too: 10.0 degrees a cycle. */
+/* Shows: TOP-2 */
+void test_slew_applies_to_the_limit_above_a_speed(void) {
+    config.steering_slew_ddeg_s = 4000;
+    config.steering_fast_max_ddeg = 100;
+    config.fast_mm_s = 1000;
+    vehicle.angle_known = true;
+    vehicle.angle_raw = 9000 + 400;
+    TEST_ASSERT_EQUAL_INT(400, steer(0, 400));
+    wheels(1001, 1001);
+    TEST_ASSERT_EQUAL_INT(300, steer(25, 400));
+    TEST_ASSERT_EQUAL_INT(200, steer(25, 400));
+    TEST_ASSERT_EQUAL_INT(100, steer(25, 400));
+    TEST_ASSERT_EQUAL_INT(100, steer(25, 400));
+    TEST_ASSERT_TRUE(limited);
+}
+
+/* ---- Steering slew ---- */
+
 
 /* Shows: TOP-2 */
 void test_without_a_slew_limit_steering_passes_as_it_is(void) {

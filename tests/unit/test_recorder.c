@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "agv/state.h"
 #include "unity.h"
 
 static agv_recorder_t recorder;
@@ -19,7 +20,7 @@ void tearDown(void) {
 static void add(uint32_t count) {
     for (uint32_t i = 0; i < count; i++) {
         const agv_entry_t entry = {
-            .kind = AGV_EVENT_FAULT, .a = 1, .b = 2, .c = 3, .missing = 4, .state = 5, .first_reason = 6};
+            .kind = AGV_EVENT_OUTPUT, .a = 1, .b = 2, .c = 3, .missing = 4, .state = 5, .first_reason = 6};
         agv_recorder_add(&recorder, &entry, agv_recorder_next_sequence(&recorder));
     }
 }
@@ -46,12 +47,12 @@ static uint32_t store_all(uint32_t first) {
     return count;
 }
 
-/* 00000000 00000000 02 01 02 03 04 05 06 00 0000, then 88 bytes 0: CRC-32 346C2F9Ch, of which the inverse's upper half is kept. */
+/* 00000000 00000000 03 01 02 03 0400 05 06 0000 0000, then 90 bytes 0: CRC-32 F7821234h; the upper half of its inverse is kept. */
 void test_the_checksum_of_an_event_is_known(void) {
     agv_event_t event;
     add(1);
     TEST_ASSERT_TRUE(agv_recorder_get(&recorder, 0, &event));
-    TEST_ASSERT_EQUAL_HEX16(0xCB93, event.checksum);
+    TEST_ASSERT_EQUAL_HEX16(0x087D, event.checksum);
 }
 
 /* Kinds count from 1. */
@@ -70,11 +71,12 @@ void test_an_event_holds_what_was_said_of_it(void) {
     agv_recorder_frame(&recorder, AGV_MSG_NONE, gear);
     add(1);
     TEST_ASSERT_TRUE(agv_recorder_get(&recorder, 0, &event));
-    TEST_ASSERT_EQUAL_UINT8(AGV_EVENT_FAULT, event.kind);
+    TEST_ASSERT_EQUAL_UINT8(AGV_EVENT_OUTPUT, event.kind);
     TEST_ASSERT_EQUAL_UINT8(1, event.a);
     TEST_ASSERT_EQUAL_UINT8(2, event.b);
     TEST_ASSERT_EQUAL_UINT8(3, event.c);
-    TEST_ASSERT_EQUAL_UINT8(4, event.missing);
+    TEST_ASSERT_EQUAL_UINT16(4, event.missing);
+    TEST_ASSERT_EQUAL_UINT16(0, event.left_out);
     TEST_ASSERT_EQUAL_UINT8(5, event.state);
     TEST_ASSERT_EQUAL_UINT8(6, event.first_reason);
     TEST_ASSERT_EQUAL_UINT8(0, event.run);
@@ -307,4 +309,179 @@ void test_a_ring_of_holes_stores_nothing_but_the_last(void) {
     }
     TEST_ASSERT_NULL(agv_recorder_next_to_store(&recorder));
     TEST_ASSERT_NULL(agv_recorder_next_to_store(&recorder));
+}
+
+/* ---- The last 8 trips ---- */
+
+/* A change to TRIPPED for this reason, at a time that says which it was. */
+static void trip(uint32_t number) {
+    const agv_entry_t entry = {.kind = AGV_EVENT_STATE,
+                               .a = AGV_STATE_ACTIVE,
+                               .b = AGV_STATE_TRIPPED,
+                               .c = AGV_FAULT_BUS_OFF,
+                               .state = AGV_STATE_TRIPPED,
+                               .first_reason = AGV_FAULT_BUS_OFF};
+    agv_recorder_add(&recorder, &entry, number);
+}
+
+/* Of these trips the last ones are there, the latest first, and no other. */
+static void expect_trips(uint32_t latest, uint32_t count) {
+    agv_event_t event = {.time_ms = 77};
+    for (uint32_t i = 0; i < count; i++) {
+        TEST_ASSERT_TRUE(agv_recorder_get_trip(&recorder, i, &event));
+        TEST_ASSERT_EQUAL_UINT32(latest - i, event.time_ms);
+        TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_BUS_OFF, event.c);
+    }
+    event.time_ms = 77;
+    TEST_ASSERT_FALSE(agv_recorder_get_trip(&recorder, count, &event));
+    TEST_ASSERT_FALSE(agv_recorder_get_trip(&recorder, UINT32_MAX, &event));
+    TEST_ASSERT_EQUAL_UINT32(77, event.time_ms); /* not touched */
+}
+
+/* Shows: INT-3 */
+void test_the_last_8_trips_are_kept_apart(void) {
+    expect_trips(0, 0);
+    for (uint32_t number = 1; number <= 30; number++) {
+        trip(number);
+        expect_trips(number, (number < 8) ? number : 8);
+        add(40); /* whatever comes after it */
+    }
+    add(1000);
+    expect_trips(30, 8);
+}
+
+/* With the snapshot of then. */
+/* Shows: INT-3 */
+void test_a_trip_is_kept_with_its_snapshot(void) {
+    const uint8_t gear[8] = {1, 0, 0, 0, 0, 0, 0, 7};
+    agv_event_t event;
+    agv_recorder_frame(&recorder, AGV_MSG_GEAR_STATUS, gear);
+    trip(1);
+    agv_recorder_frame(&recorder, AGV_MSG_GEAR_STATUS, (const uint8_t[8]){8});
+    add(300);
+    TEST_ASSERT_TRUE(agv_recorder_get_trip(&recorder, 0, &event));
+    TEST_ASSERT_EQUAL_UINT8_ARRAY(gear, event.frames[AGV_MSG_GEAR_STATUS], 8);
+    TEST_ASSERT_EQUAL_UINT8(AGV_STATE_ACTIVE, event.a);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_BUS_OFF, event.first_reason);
+}
+
+/* A confirmation that was withdrawn, another state, another kind of event. */
+/* Shows: INT-3 */
+void test_what_is_no_trip_replaces_none(void) {
+    const agv_entry_t others[] = {
+        {.kind = AGV_EVENT_STATE, .a = AGV_STATE_SAFE, .b = AGV_STATE_TRIPPED, .c = AGV_FAULT_NONE},
+        {.kind = AGV_EVENT_STATE, .a = AGV_STATE_TRIPPED, .b = AGV_STATE_SAFE, .c = AGV_FAULT_BUS_OFF},
+        {.kind = AGV_EVENT_FAULT, .a = AGV_FAULT_BUS_OFF, .b = AGV_STATE_TRIPPED, .c = 1}};
+    trip(1);
+    for (unsigned i = 0; i < 3; i++) {
+        agv_recorder_add(&recorder, &others[i], 2);
+        expect_trips(1, 1);
+    }
+}
+
+/* Shows: INT-3 */
+void test_trips_outlive_a_restart_and_the_wrap_of_the_numbers(void) {
+    recorder.next_sequence = 0xFFFFFFFBu;
+    recorder.stored_sequence = 0xFFFFFFFBu;
+    for (uint32_t number = 1; number <= 10; number++) {
+        trip(number);
+        agv_recorder_start(&recorder);
+    }
+    expect_trips(10, 8);
+}
+
+/* A torn one is dropped, and its place is the next to be used. */
+/* Shows: INT-3, INT-5 */
+void test_a_torn_trip_loses_that_one_only(void) {
+    for (uint32_t number = 1; number <= 8; number++) {
+        trip(number);
+    }
+    recorder.trips[7].c ^= 1; /* the latest */
+    expect_trips(7, 7);
+    agv_recorder_start(&recorder);
+    expect_trips(7, 7);
+    TEST_ASSERT_EQUAL_UINT8(0, recorder.trips[7].kind);
+    trip(8);
+    expect_trips(8, 8);
+    recorder.trips[0].checksum ^= 1; /* found at its use as well */
+    trip(9);
+    expect_trips(9, 8);
+}
+
+/* ---- Four times a second ---- */
+
+/* Whether an event of this fault is recorded, and how many were left out before it. */
+static int recorded(unsigned fault, uint32_t time_ms) {
+    const agv_entry_t entry = {.kind = AGV_EVENT_FAULT, .a = (uint8_t)fault, .b = AGV_CLASS_TRIP, .c = 1};
+    const uint32_t sequence = agv_recorder_next_sequence(&recorder);
+    agv_event_t event;
+    agv_recorder_add(&recorder, &entry, time_ms);
+    if (agv_recorder_next_sequence(&recorder) == sequence) {
+        return -1;
+    }
+    TEST_ASSERT_TRUE(agv_recorder_get(&recorder, sequence, &event));
+    TEST_ASSERT_EQUAL_UINT8(fault, event.a);
+    return event.left_out;
+}
+
+/* The fourth one before it has to be a second ago. */
+/* Shows: INT-3, TIM-2 */
+TEST_CASE(0)
+TEST_CASE(0xFFFFFE00)
+void test_one_fault_is_recorded_four_times_a_second(uint32_t start_ms) {
+    for (uint32_t ms = 0; ms < 400; ms += 100) {
+        TEST_ASSERT_EQUAL_INT(0, recorded(AGV_FAULT_RX_OVERRUN, start_ms + ms));
+    }
+    for (uint32_t ms = 400; ms < 1000; ms++) {
+        TEST_ASSERT_EQUAL_INT(-1, recorded(AGV_FAULT_RX_OVERRUN, start_ms + ms));
+    }
+    TEST_ASSERT_EQUAL_INT(600, recorded(AGV_FAULT_RX_OVERRUN, start_ms + 1000));
+    TEST_ASSERT_EQUAL_INT(-1, recorded(AGV_FAULT_RX_OVERRUN, start_ms + 1099));
+    TEST_ASSERT_EQUAL_INT(1, recorded(AGV_FAULT_RX_OVERRUN, start_ms + 1100));
+    TEST_ASSERT_EQUAL_INT(0, recorded(AGV_FAULT_RX_OVERRUN, start_ms + 5000));
+}
+
+/* Each fault by itself, and nothing but faults. */
+/* Shows: INT-3 */
+void test_a_fault_that_flickers_leaves_room_for_the_others(void) {
+    for (uint32_t i = 0; i < 1000; i++) {
+        (void)recorded(AGV_FAULT_RX_OVERRUN, 50);
+    }
+    TEST_ASSERT_EQUAL_UINT32(4, agv_recorder_next_sequence(&recorder));
+    for (unsigned fault = 0; fault < AGV_FAULT_COUNT; fault++) {
+        TEST_ASSERT_EQUAL_INT((fault == AGV_FAULT_RX_OVERRUN) ? -1 : 0, recorded(fault, 50));
+    }
+    const agv_entry_t state = {.kind = AGV_EVENT_STATE, .a = AGV_FAULT_RX_OVERRUN, .b = AGV_STATE_SAFE};
+    const agv_entry_t none = {.kind = AGV_EVENT_FAULT, .a = AGV_FAULT_NONE};
+    const uint32_t sequence = agv_recorder_next_sequence(&recorder);
+    for (unsigned i = 0; i < 10; i++) {
+        agv_recorder_add(&recorder, &state, 50);
+        agv_recorder_add(&recorder, &none, 50);
+    }
+    TEST_ASSERT_EQUAL_UINT32(sequence + 20, agv_recorder_next_sequence(&recorder));
+}
+
+/* However many. */
+/* Shows: INT-3 */
+void test_the_number_left_out_saturates(void) {
+    for (uint32_t i = 0; i < 4; i++) {
+        TEST_ASSERT_EQUAL_INT(0, recorded(AGV_FAULT_BUS_OFF, 0));
+    }
+    for (uint32_t i = 0; i < 70000; i++) {
+        TEST_ASSERT_EQUAL_INT(-1, recorded(AGV_FAULT_BUS_OFF, 999));
+    }
+    TEST_ASSERT_EQUAL_INT(65535, recorded(AGV_FAULT_BUS_OFF, 1000));
+}
+
+/* Another run knows nothing of it. */
+/* Shows: INT-3 */
+void test_a_restart_begins_the_rates_anew(void) {
+    for (uint32_t i = 0; i < 10; i++) {
+        (void)recorded(AGV_FAULT_BUS_OFF, 0);
+    }
+    agv_recorder_start(&recorder);
+    for (uint32_t i = 0; i < 4; i++) {
+        TEST_ASSERT_EQUAL_INT(0, recorded(AGV_FAULT_BUS_OFF, 5));
+    }
+    TEST_ASSERT_EQUAL_INT(-1, recorded(AGV_FAULT_BUS_OFF, 5));
 }

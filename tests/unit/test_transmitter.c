@@ -1,4 +1,4 @@
-/* What is sent: own commands, passed frames, the status frame; what waits, and what is reported of it. */
+/* What is sent: own commands, passed frames and their pace, the status frame; what waits, and what is reported of it. */
 #include "transmit/transmitter.h"
 
 #include <string.h>
@@ -43,9 +43,10 @@ void setUp(void) {
     hal_takes = true;
     sent_count = 0;
     agv_config_defaults(&config);
+    config.status_frame_id = 0; /* has tests of its own */
     agv_config_ids(&config, &ids);
     agv_timers_set_time(&timers, 1000);
-    agv_timers_start(&timers, &config);
+    agv_timers_start(&timers);
     transmitter = (agv_transmitter_t){0};
     agv_transmitter_start(&transmitter, 1000);
     orders = (agv_tx_orders_t){.hal = &hal,
@@ -65,8 +66,7 @@ void tearDown(void) {
 
 static void tick(uint32_t ms) {
     for (uint32_t i = 0; i < ms; i++) {
-        agv_timers_set_time(&timers, timers.now_ms + 1);
-        agv_timers_tick(&timers);
+        agv_timers_advance(&timers, &config, timers.now_ms + 1, 0);
         agv_transmitter_tick(&transmitter, &orders);
     }
 }
@@ -82,6 +82,13 @@ static void expect_sent(unsigned n, hal_can_side_t side, uint32_t id, const uint
     TEST_ASSERT_EQUAL_UINT8(8, sent[n].frame.length);
     TEST_ASSERT_EQUAL_UINT8(0, sent[n].frame.flags);
     TEST_ASSERT_EQUAL_UINT32(timers.now_ms, sent[n].frame.time_ms);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(data, sent[n].frame.data, 8);
+}
+
+/* Whenever it was sent. */
+static void expect_sent_data(unsigned n, uint32_t id, const uint8_t data[8]) {
+    TEST_ASSERT_TRUE(n < sent_count);
+    TEST_ASSERT_EQUAL_HEX32(id, sent[n].frame.id);
     TEST_ASSERT_EQUAL_HEX8_ARRAY(data, sent[n].frame.data, 8);
 }
 
@@ -229,7 +236,7 @@ void test_what_the_gate_refuses_is_reported(void) {
 /* Shows: TIM-1 */
 void test_missed_slots_are_reported(void) {
     burst();
-    agv_timers_set_time(&timers, 1330);
+    agv_timers_advance(&timers, &config, 1330, 0);
     agv_transmitter_tick(&transmitter, &orders);
     TEST_ASSERT_EQUAL_UINT32(12 + 2 + 2 + 2, report().skipped_slots);
     TEST_ASSERT_EQUAL_UINT(8, sent_count);
@@ -346,6 +353,237 @@ void test_in_bus_off_the_hal_is_handed_nothing_of_its_own(void) {
     TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
 }
 
+/* ---- The pace of the gateway ---- */
+
+static const uint8_t REVERSE[8] = {2};
+static const uint8_t NEUTRAL[8] = {4};
+
+static void pass(unsigned message, const uint8_t data[8]) {
+    agv_transmitter_pass(&transmitter, &orders, message, data);
+}
+
+/* Of those that come within half a cycle the newest goes when it is over; the others are dropped and counted. */
+/* Shows: TOP-2 */
+void test_a_command_passes_at_most_once_in_half_its_cycle(void) {
+    be_gateway();
+    pass(AGV_MSG_GEAR_COMMAND, DRIVE);
+    tick(10);
+    pass(AGV_MSG_GEAR_COMMAND, REVERSE);
+    tick(10);
+    pass(AGV_MSG_GEAR_COMMAND, NEUTRAL);
+    TEST_ASSERT_EQUAL_UINT16(1, report().dropped);
+    tick(29);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+    tick(1);
+    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+    expect_sent(1, HAL_CAN_VEHICLE, 0x168, NEUTRAL);
+    tick(49); /* from when it went */
+    pass(AGV_MSG_GEAR_COMMAND, DRIVE);
+    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+    tick(1);
+    expect_sent(2, HAL_CAN_VEHICLE, 0x168, DRIVE);
+    TEST_ASSERT_EQUAL_UINT16(0, report().dropped);
+    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
+}
+
+/* Half of 100 ms is 50; half of 25 is 12.5, so that the first whole ms after it is 13. What comes then goes at once. */
+/* Shows: TOP-2 */
+TEST_CASE(AGV_MSG_TURN_SIGNAL_COMMAND, 50)
+TEST_CASE(AGV_MSG_GEAR_COMMAND, 50)
+TEST_CASE(AGV_MSG_THROTTLE_COMMAND, 50)
+TEST_CASE(AGV_MSG_STEERING_COMMAND, 13)
+void test_half_a_cycle_of_each_command(unsigned command, uint32_t half_ms) {
+    static const uint8_t drive[8] = {1};
+    static const uint8_t lights[8] = {0};
+    const uint8_t *const data = (command == AGV_MSG_TURN_SIGNAL_COMMAND) ? lights : drive;
+    be_gateway();
+    pass(command, data);
+    tick(half_ms - 1);
+    pass(command, data);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+    tick(1);
+    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+    tick(half_ms);
+    pass(command, data);
+    TEST_ASSERT_EQUAL_UINT(3, sent_count);
+}
+
+/* A frame is handled before the tick of its time: the half cycle is over by its stamp. */
+/* Shows: TOP-2 */
+void test_a_frame_at_the_end_of_the_half_cycle_goes_at_once(void) {
+    be_gateway();
+    pass(AGV_MSG_GEAR_COMMAND, DRIVE);
+    tick(49);
+    agv_timers_advance(&timers, &config, timers.now_ms + 1, 0);
+    pass(AGV_MSG_GEAR_COMMAND, NEUTRAL);
+    expect_sent(1, HAL_CAN_VEHICLE, 0x168, NEUTRAL);
+}
+
+/* Each command by itself, and no status message at all. */
+/* Shows: TOP-2 */
+void test_the_pace_is_one_of_each_command(void) {
+    be_gateway();
+    for (unsigned command = AGV_MSG_GEAR_COMMAND; command <= AGV_MSG_STEERING_COMMAND; command++) {
+        pass(command, DRIVE);
+        TEST_ASSERT_EQUAL_UINT(command, sent_count);
+    }
+    sent_count = 0;
+    for (unsigned i = 0; i < 20; i++) {
+        pass(AGV_MSG_WHEEL_SPEED, ZEROS);
+    }
+    TEST_ASSERT_EQUAL_UINT(20, sent_count);
+}
+
+/* A flood from the AI side leaves as 20 frames a second. */
+/* Shows: TOP-2, SUP-6 */
+void test_a_flood_leaves_at_the_pace(void) {
+    be_gateway();
+    for (unsigned i = 0; i < 500; i++) {
+        pass(AGV_MSG_GEAR_COMMAND, DRIVE);
+        pass(AGV_MSG_GEAR_COMMAND, DRIVE);
+        tick(1);
+    }
+    const agv_tx_report_t did = report();
+    TEST_ASSERT_EQUAL_UINT(11, sent_count); /* at 0, 50 ... 500 */
+    TEST_ASSERT_EQUAL_UINT16(1000 - 11, did.dropped);
+}
+
+/* The last command was 49.7 days ago but for some ms: it is not too soon. */
+/* Shows: TOP-2, TIM-2 */
+void test_what_passed_a_turn_of_the_clock_ago_is_not_lately(void) {
+    be_gateway();
+    pass(AGV_MSG_GEAR_COMMAND, DRIVE);
+    tick(50);
+    agv_timers_set_time(&timers, 1000 + 10);
+    pass(AGV_MSG_GEAR_COMMAND, NEUTRAL);
+    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+}
+
+/* Shows: TOP-2 */
+void test_what_may_not_wait_any_more_is_dropped(void) {
+    be_gateway();
+    pass(AGV_MSG_GEAR_COMMAND, DRIVE);
+    pass(AGV_MSG_GEAR_COMMAND, REVERSE);
+    agv_transmitter_drop(&transmitter, &timers, AGV_MSG_THROTTLE_COMMAND); /* none waits */
+    TEST_ASSERT_EQUAL_UINT16(0, report().dropped);
+    agv_transmitter_drop(&transmitter, &timers, AGV_MSG_GEAR_COMMAND);
+    TEST_ASSERT_EQUAL_UINT16(1, report().dropped);
+    tick(200);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+}
+
+/* One that the HAL did not take is not stalled any more when it is dropped. */
+/* Shows: TOP-2, SUP-7 */
+void test_a_dropped_command_does_not_stall(void) {
+    be_gateway();
+    hal_takes = false;
+    pass(AGV_MSG_GEAR_COMMAND, DRIVE);
+    tick(50);
+    agv_transmitter_drop(&transmitter, &timers, AGV_MSG_GEAR_COMMAND);
+    tick(200);
+    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
+}
+
+/* What the vehicle was told is what left, when it left. */
+/* Shows: SUP-5, SUP-11 */
+void test_what_was_passed_on_is_reported_when_it_has_left(void) {
+    be_gateway();
+    pass(AGV_MSG_GEAR_COMMAND, DRIVE);
+    pass(AGV_MSG_STEERING_COMMAND, HELD);
+    TEST_ASSERT_EQUAL_HEX8(1u << AGV_MSG_GEAR_COMMAND | 1u << AGV_MSG_STEERING_COMMAND, report().passed);
+    pass(AGV_MSG_GEAR_COMMAND, NEUTRAL);
+    pass(AGV_MSG_WHEEL_SPEED, ZEROS);
+    TEST_ASSERT_EQUAL_HEX8(0, report().passed);
+    tick(50);
+    TEST_ASSERT_EQUAL_HEX8(1u << AGV_MSG_GEAR_COMMAND, report().passed);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(NEUTRAL, agv_transmitter_passed(&transmitter, AGV_MSG_GEAR_COMMAND), 8);
+    hal_takes = false;
+    tick(50);
+    pass(AGV_MSG_GEAR_COMMAND, DRIVE);
+    tick(10);
+    TEST_ASSERT_EQUAL_HEX8(0, report().passed);
+}
+
+/* ---- Throttle 0 at the end of an engagement ---- */
+
+static void end_engagement(void) {
+    orders.state = AGV_STATE_STANDBY;
+    agv_transmitter_end_engagement(&transmitter, &orders);
+}
+
+/* One, and at once, however lately a 075h passed; it is no pass and nobody is told that it was commanded. */
+/* Shows: TOP-2 */
+void test_an_engagement_ends_with_throttle_0(void) {
+    static const uint8_t half[8] = {125};
+    be_gateway();
+    pass(AGV_MSG_THROTTLE_COMMAND, half);
+    tick(1);
+    (void)report();
+    end_engagement();
+    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+    expect_sent(1, HAL_CAN_VEHICLE, 0x075, ZEROS);
+    TEST_ASSERT_EQUAL_HEX8(0, report().passed);
+    tick(48);
+    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+    orders.state = AGV_STATE_ACTIVE;
+    tick(1);
+    pass(AGV_MSG_THROTTLE_COMMAND, half); /* 50 ms after the last pass */
+    TEST_ASSERT_EQUAL_UINT(3, sent_count);
+}
+
+/* Tried again until it leaves. */
+/* Shows: TOP-2, SUP-7 */
+void test_throttle_0_waits_for_the_hal(void) {
+    be_gateway();
+    hal_takes = false;
+    end_engagement();
+    tick(100);
+    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
+    tick(1);
+    TEST_ASSERT_TRUE(agv_transmitter_is_stalled(&timers));
+    hal_takes = true;
+    tick(1);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+    expect_sent(0, HAL_CAN_VEHICLE, 0x075, ZEROS);
+    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
+    tick(100);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+}
+
+/* Of a trip, and of the next engagement: then it would come after what is newer. */
+/* Shows: TOP-2, FSM-2 */
+void test_throttle_0_that_waits_is_discarded_and_replaced(void) {
+    static const uint8_t half[8] = {125};
+    be_gateway();
+    hal_takes = false;
+    end_engagement();
+    agv_transmitter_discard(&transmitter, &timers, HAL_CAN_VEHICLE);
+    hal_takes = true;
+    tick(10);
+    TEST_ASSERT_EQUAL_UINT(0, sent_count);
+    hal_takes = false;
+    end_engagement();
+    orders.state = AGV_STATE_ACTIVE;
+    pass(AGV_MSG_GEAR_COMMAND, DRIVE); /* not by another command */
+    pass(AGV_MSG_THROTTLE_COMMAND, half);
+    hal_takes = true;
+    tick(10);
+    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+    expect_sent_data(0, 0x168, DRIVE);
+    expect_sent_data(1, 0x075, half);
+}
+
+/* Shows: TOP-2, SUP-7 */
+void test_in_bus_off_no_throttle_0_is_handed_over(void) {
+    be_gateway();
+    agv_timer_start(&timers, AGV_TIMER_BUS_OFF);
+    end_engagement();
+    TEST_ASSERT_EQUAL_UINT(0, sent_count);
+    agv_timer_stop(&timers, AGV_TIMER_BUS_OFF);
+    tick(10);
+    TEST_ASSERT_EQUAL_UINT(0, sent_count);
+}
+
 /* ---- Answers ---- */
 
 /* Shows: TOP-1 */
@@ -399,35 +637,151 @@ void test_within_5_ms_the_answer_waits_and_comes_with_a_tick(void) {
 
 /* ---- The status frame ---- */
 
-/* State, rank of the reason, output, counter, checksum with the low byte first. */
-/* Shows: TOP-3 */
-void test_the_status_frame(void) {
-    const uint8_t first[8] = {0x33, AGV_FAULT_NONE, 1, 0, 0x78, 0x56, 0x34, 0x12};
-    const uint8_t second[8] = {0x33, AGV_FAULT_NONE, 0, 1, 0x78, 0x56, 0x34, 0x12};
+static void with_status_frame(void) {
     config.status_frame_id = 0x123;
     orders.state = AGV_STATE_STANDBY;
     orders.first_reason = AGV_FAULT_NONE;
-    orders.output_closed = true;
-    tick(1);
-    expect_sent(0, HAL_CAN_VEHICLE, 0x123, first);
-    orders.output_closed = false;
-    tick(98);
-    TEST_ASSERT_EQUAL_UINT(1, sent_count);
-    tick(1); /* on the grid that began with the start */
-    expect_sent(1, HAL_CAN_VEHICLE, 0x123, second);
 }
 
-/* One that is not taken is left out; its counter is that of the next one. */
+/* State, rank of the reason or FFh, output, counter, checksum with the low byte first. The first one at the start. */
 /* Shows: TOP-3 */
-void test_a_status_frame_that_is_not_taken_is_left_out(void) {
-    config.status_frame_id = 0x123;
-    orders.state = AGV_STATE_STANDBY;
-    hal_takes = false;
+void test_the_status_frame(void) {
+    const uint8_t first[8] = {0x33, 0xFF, 1, 0, 0x78, 0x56, 0x34, 0x12};
+    const uint8_t second[8] = {0x55, AGV_FAULT_BUS_OFF, 0, 1, 0x78, 0x56, 0x34, 0x12};
+    with_status_frame();
+    orders.output_closed = true;
+    agv_transmitter_status(&transmitter, &orders);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+    expect_sent(0, HAL_CAN_VEHICLE, 0x123, first);
+    TEST_ASSERT_EQUAL_UINT16(1, report().sent);
+    orders.output_closed = false;
+    tick(99);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+    orders.state = AGV_STATE_TRIPPED;
+    orders.first_reason = AGV_FAULT_BUS_OFF;
+    orders.park_released = false;
+    orders.holdable = false;
     tick(1);
+    expect_sent(sent_count - 1, HAL_CAN_VEHICLE, 0x123, second);
+}
+
+/* 100 ms by default, and its counter wraps. */
+/* Shows: TOP-3 */
+void test_the_period_of_the_status_frame(void) {
+    with_status_frame();
+    for (unsigned i = 0; i < 300; i++) {
+        sent_count = 0;
+        tick((i == 0) ? 1 : 100);
+        TEST_ASSERT_EQUAL_UINT(1, sent_count);
+        TEST_ASSERT_EQUAL_UINT8(i, sent[0].frame.data[3]);
+    }
+    config.status_frame_period_ms = 10;
+    tick(100);
+    sent_count = 0;
+    tick(100);
+    TEST_ASSERT_EQUAL_UINT(10, sent_count);
+}
+
+/* Of several that were missed one is sent, and the grid stays. */
+/* Shows: TOP-3, TIM-1 */
+void test_a_late_step_sends_one_status_frame(void) {
+    with_status_frame();
+    tick(1);
+    agv_timers_advance(&timers, &config, 1430, 0);
+    agv_transmitter_tick(&transmitter, &orders);
+    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+    tick(69);
+    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+    tick(1);
+    TEST_ASSERT_EQUAL_UINT(3, sent_count);
+}
+
+/* The standing test of the transmit path: tried again at every tick, and stalled after more than 100 ms. */
+/* Shows: TOP-3, SUP-7, TX_STALLED */
+void test_a_status_frame_that_is_not_taken_waits_and_stalls(void) {
+    with_status_frame();
+    hal_takes = false;
+    agv_transmitter_status(&transmitter, &orders);
+    tick(100);
+    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
+    tick(1);
+    TEST_ASSERT_TRUE(agv_transmitter_is_stalled(&timers));
     hal_takes = true;
-    tick(98);
-    TEST_ASSERT_EQUAL_UINT(0, sent_count);
     tick(1);
     TEST_ASSERT_EQUAL_UINT(1, sent_count);
     TEST_ASSERT_EQUAL_UINT8(0, sent[0].frame.data[3]);
+    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
+    tick(97);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+    tick(1); /* 200 ms after the start: on the grid */
+    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+}
+
+/* Shows: TOP-3, TOP-4 */
+void test_there_is_no_status_frame_in_shadow_or_when_it_is_off(void) {
+    with_status_frame();
+    config.shadow = AGV_SHADOW_ON;
+    tick(250);
+    TEST_ASSERT_EQUAL_UINT16(0, report().shadowed);
+    config.shadow = AGV_SHADOW_OFF;
+    config.status_frame_id = 0;
+    tick(250);
+    TEST_ASSERT_EQUAL_UINT(0, sent_count);
+    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
+}
+
+/* None during bus-off: not one that waits either. After it on the grid again. */
+/* Shows: TOP-3, SUP-7 */
+void test_there_is_no_status_frame_in_bus_off(void) {
+    with_status_frame();
+    hal_takes = false;
+    tick(50);
+    agv_timer_start(&timers, AGV_TIMER_BUS_OFF);
+    hal_takes = true;
+    tick(100);
+    TEST_ASSERT_EQUAL_UINT(0, sent_count);
+    agv_timer_stop(&timers, AGV_TIMER_BUS_OFF);
+    tick(49);
+    TEST_ASSERT_EQUAL_UINT(0, sent_count);
+    tick(1);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+}
+
+/* Handed over up to 2 ms before what waits was discarded, it may be among that: once more. */
+/* Shows: TOP-3, FSM-2 */
+TEST_CASE(0, 1)
+TEST_CASE(2, 1)
+TEST_CASE(3, 0)
+void test_a_status_frame_that_may_have_been_discarded_is_sent_again(uint32_t before_ms, unsigned again) {
+    with_status_frame();
+    agv_transmitter_status(&transmitter, &orders);
+    tick(before_ms);
+    agv_transmitter_discard(&transmitter, &timers, HAL_CAN_VEHICLE);
+    tick(1);
+    TEST_ASSERT_EQUAL_UINT(1 + again, sent_count);
+    tick(50);
+    TEST_ASSERT_EQUAL_UINT(1 + again, sent_count);
+}
+
+/* The AI side is another one. */
+void test_what_is_discarded_for_the_ai_side_is_no_status_frame(void) {
+    with_status_frame();
+    agv_transmitter_status(&transmitter, &orders);
+    agv_transmitter_discard(&transmitter, &timers, HAL_CAN_AI);
+    tick(50);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+}
+
+/* A start just before the wrap. */
+/* Shows: TOP-3, TIM-2 */
+void test_the_status_frame_across_the_wrap(void) {
+    with_status_frame();
+    agv_timers_set_time(&timers, 0xFFFFFFF0u);
+    transmitter = (agv_transmitter_t){0};
+    agv_transmitter_start(&transmitter, timers.now_ms);
+    agv_transmitter_status(&transmitter, &orders);
+    tick(99);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+    tick(201);
+    TEST_ASSERT_EQUAL_UINT(4, sent_count);
 }
