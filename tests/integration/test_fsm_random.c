@@ -124,9 +124,8 @@ static void heal(void) {
     sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 0);
 }
 
-static void hurt(void) {
-    static const uint8_t MODES[] = {MODE_MANUAL, MODE_ENGAGED, MODE_NEITHER, MODE_BOTH};
-    switch (draw(14)) {
+static void hurt_a_message(void) {
+    switch (draw(5)) {
     case 0:
         f.traffic[draw(AGV_MSG_COUNT)].muted = true;
         break;
@@ -139,37 +138,54 @@ static void hurt(void) {
     case 3:
         f.traffic[AGV_MSG_EPS_STATUS].data[7] = any_byte();
         break;
-    case 4:
+    default:
         f.traffic[AGV_MSG_EPS_STATUS].data[3] = any_byte();
         break;
-    case 5:
+    }
+}
+
+static void hurt_the_vehicle(void) {
+    static const uint8_t MODES[] = {MODE_MANUAL, MODE_ENGAGED, MODE_NEITHER, MODE_BOTH};
+    switch (draw(6)) {
+    case 0:
         fixture_mode(&f, MODES[draw(4)]);
         break;
-    case 6:
+    case 1:
         fixture_gear(&f, any_byte());
         break;
-    case 7:
+    case 2:
         fixture_wheels(&f, (int32_t)draw(2000) - 1000, (int32_t)draw(200) - 100);
         break;
-    case 8:
+    case 3:
         fixture_angle(&f, (uint16_t)draw(19000));
         break;
-    case 9:
-        sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, (hal_can_state_t)draw(3));
-        break;
-    case 10:
-        sim_hal_set_full(&f.hal, one_in(2) ? HAL_CAN_AI : HAL_CAN_VEHICLE, one_in(2));
-        break;
-    case 11:
+    case 4:
         fixture_throttle(&f, any_byte());
         break;
-    case 12:
+    default:
         fixture_speed(&f, (uint16_t)draw(4000));
+        break;
+    }
+}
+
+static void hurt_a_bus(void) {
+    switch (draw(3)) {
+    case 0:
+        sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, (hal_can_state_t)draw(3));
+        break;
+    case 1:
+        sim_hal_set_full(&f.hal, one_in(2) ? HAL_CAN_AI : HAL_CAN_VEHICLE, one_in(2));
         break;
     default:
         sim_hal_add_overrun(&f.hal, HAL_CAN_VEHICLE);
         break;
     }
+}
+
+static void hurt(void) {
+    static void (*const WAYS[])(void) = {hurt_a_message, hurt_a_message, hurt_the_vehicle, hurt_the_vehicle,
+                                         hurt_a_bus};
+    WAYS[draw(5)]();
 }
 
 static void drive_the_vehicle(void) {
