@@ -10,7 +10,7 @@
 #include "walk.h"
 
 enum { ROUND_MS = 3400, CALLS_MAX = 200000 };
-enum { START_MS = 700, ENGAGED_MS = 600, TRIPPED_MS = 300, SAFE_MS = 500, PRESSED_MS = 1200 };
+enum { START_MS = 700, ENGAGED_MS = 600, TRIPPED_MS = 300, SAFE_MS = 500, PRESSED_MS = 1200, RELEASED_MS = 20 };
 
 static fixture_t f;
 static bool
@@ -93,6 +93,10 @@ static void go_round(uint16_t topology, uint32_t first, uint32_t count, uint32_t
     run_and_watch(SAFE_MS);
     fixture_button(&f, true);
     for (uint32_t i = 0; i < PRESSED_MS; i++) {
+        step();
+    }
+    fixture_button(&f, false);
+    for (uint32_t i = 0; i < RELEASED_MS; i++) {
         step();
     }
     rounds++;

@@ -61,10 +61,11 @@ void test_20_minutes_of_slots_without_drift(void) {
     TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->skipped_slots);
 }
 
-/* The EPS is there and holds: 065h every 25 ms. */
+/* The EPS is there and holds, because the wheels turn: 065h every 25 ms. */
 /* Shows: TIM-1, FSM-10 */
 void test_2_minutes_of_steering_hold_without_drift(void) {
     walk_to_tripped(&f);
+    fixture_wheels(&f, 800, 800);
     const uint32_t trip_ms = f.now_ms;
     fixture_forget_sent(&f);
     for (unsigned i = 0; i < 4; i++) {
