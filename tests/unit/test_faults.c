@@ -74,7 +74,7 @@ void test_what_is_no_fault_is_in_no_set(void) {
 }
 
 void test_what_is_no_fault_changes_nothing(void) {
-    static const unsigned none[] = {AGV_FAULT_NONE, 63, 64, 255, UINT32_MAX};
+    static const unsigned none[] = {AGV_FAULT_NONE, 32u * AGV_FAULT_WORDS - 1u, 32u * AGV_FAULT_WORDS, 255, UINT32_MAX};
     for (unsigned i = 0; i < sizeof none / sizeof none[0]; i++) {
         agv_fault_set_put(&set, none[i], true);
         TEST_ASSERT_FALSE(agv_fault_is_in(&set, none[i]));
@@ -85,11 +85,11 @@ void test_what_is_no_fault_changes_nothing(void) {
     }
 }
 
-/* Shows: FSM-9 */
-void test_three_faults_are_unresettable(void) {
+/* Shows: FSM-9, HW-1 */
+void test_four_faults_are_unresettable(void) {
     for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
-        const bool unresettable =
-            i == AGV_FAULT_SELF_TEST_FAILED || i == AGV_FAULT_MEMORY_CORRUPTED || i == AGV_FAULT_CONFIG_INVALID;
+        const bool unresettable = i == AGV_FAULT_SELF_TEST_FAILED || i == AGV_FAULT_MEMORY_CORRUPTED ||
+                                  i == AGV_FAULT_CONFIG_INVALID || i == AGV_FAULT_OUTPUT_FEEDBACK;
         TEST_ASSERT_EQUAL(unresettable, (agv_fault_flags(i) & AGV_FAULT_FLAG_UNRESETTABLE) != 0);
     }
 }
@@ -112,5 +112,8 @@ void test_the_other_properties_of_some_faults(void) {
     TEST_ASSERT_EQUAL_HEX8(AGV_FAULT_FLAG_FROM_AI, agv_fault_flags(AGV_FAULT_COMMAND_TOO_FAST));
     TEST_ASSERT_EQUAL_HEX8(AGV_FAULT_FLAG_FIXED | AGV_FAULT_FLAG_OF_EPS, agv_fault_flags(AGV_FAULT_EPS_STATUS_TIMEOUT));
     TEST_ASSERT_EQUAL_HEX8(AGV_FAULT_FLAG_FIXED, agv_fault_flags(AGV_FAULT_EPS_MODE_OFF));
+    TEST_ASSERT_EQUAL_HEX8(AGV_FAULT_FLAG_FROM_AI, agv_fault_flags(AGV_FAULT_AI_BUS_OFF));
+    TEST_ASSERT_EQUAL_HEX8(AGV_FAULT_FLAG_FIXED | AGV_FAULT_FLAG_FROM_AI, agv_fault_flags(AGV_FAULT_VCU_AI_CAN_LOST));
+    TEST_ASSERT_EQUAL_HEX8(AGV_FAULT_FLAG_FIXED, agv_fault_flags(AGV_FAULT_FOREIGN_COMMAND_SENDER));
     TEST_ASSERT_EQUAL_HEX8(0, agv_fault_flags(AGV_FAULT_S_DRIVER_ALARM));
 }

@@ -46,7 +46,7 @@ typedef struct {
 } payload_t;
 
 static const payload_t PAYLOADS[] = {
-    {{0}, "bBa", "", "itsBa", "Ba"},
+    {{0}, "bBa", "", "itsbBa", "Ba"}, /* throttle 0: at the end of an engagement */
     {{1}, "", "Ba", "a", "Ba"},
     {{2}, "", "Ba", "a", "Ba"},
     {{3}, "", "", "a", "Ba"},

@@ -165,6 +165,32 @@ void test_a_press_from_before_the_trip_does_not_count(void) {
     expect_reset();
 }
 
+/* The same when nobody looked at the button since the last reset: in STANDBY it was pressed, then came the trip. */
+/* Shows: FSM-3 */
+void test_a_press_in_standby_is_one_from_before_the_trip(void) {
+    agv_reset_button_report(&reset, true, true);
+    agv_timers_advance(&timers, &config, timers.now_ms + 50, 0);
+    agv_reset_button_trip(&reset, &timers);
+    run(1500);
+    frame(false);
+    expect_in_vain(AGV_MISSING_BUTTON);
+    in_vain = 0;
+    run(100);
+    press(1000);
+    expect_reset();
+}
+
+/* A button that was up in STANDBY and is pressed after the trip has an edge, whatever it was at the last reset. */
+/* Shows: FSM-3 */
+void test_a_press_after_a_trip_from_standby_counts(void) {
+    frame(true);
+    agv_reset_button_report(&reset, true, false);
+    agv_reset_button_trip(&reset, &timers);
+    run(1000);
+    press(1000);
+    expect_reset();
+}
+
 /* The first frame of all says "down": nobody has seen the edge. */
 /* Shows: FSM-3, FSM-7 */
 void test_a_button_that_is_stuck_resets_nothing(void) {

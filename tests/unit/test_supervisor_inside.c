@@ -57,7 +57,7 @@ void test_a_frame_of_its_own_that_the_gate_refuses_trips(void) {
     agv_transmitter_pass(&core->transmitter, &orders, AGV_MSG_GEAR_COMMAND,
                          drive); /* shared bus: nobody may send this */
     agv_core_take_tx_report(core);
-    TEST_ASSERT_TRUE((agv_core_decide(core, &f.ports).what & AGV_ACTION_TRIP) != 0u);
+    TEST_ASSERT_TRUE((agv_core_decide(core, &f.ports, 0).actions.what & AGV_ACTION_TRIP) != 0u);
     expect_state(&f, AGV_STATE_TRIPPED);
     expect_reason(&f, AGV_FAULT_TX_GATE_REFUSED);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
