@@ -35,7 +35,9 @@ typedef struct {
     uint64_t status_frames;  /**< of its status frame, after the first */
     uint64_t status_ms;      /**< when the first came */
     uint32_t status_late_ms; /**< the most that one was late */
-    uint8_t status_counter;  /**< of the first */
+    uint8_t status_counter;  /**< of the last */
+    uint64_t status_last_ms; /**< when it came */
+    uint64_t status_again;   /**< that came right after another: what waited was discarded, and perhaps it with it */
     bool status_seen;
     uint64_t real_ms; /**< that it has taken */
     char broken[SOAK_BROKEN_SIZE];

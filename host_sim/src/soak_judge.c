@@ -9,7 +9,7 @@
 #include "soak_internal.h"
 
 /* A status frame waits for others; a late step of 20 ms is one of the disturbances. */
-enum { STATUS_LATE_MS = 30, US_PER_MS = 1000, WAITING_MAX = 8 };
+enum { STATUS_LATE_MS = 30, STATUS_AGAIN_MS = 4, US_PER_MS = 1000, WAITING_MAX = 8 };
 
 /* Safe commands of INIT that the controller has already when STANDBY comes; they wait for a few frames of others. */
 enum { HANDED_OVER_MS = 4 };
@@ -68,32 +68,48 @@ static void on_event(void *ctx, const session_event_t *event) {
     }
 }
 
-/** The status frame keeps its slots and counts: no drift, none lost, none twice. */
-static void judge_status(soak_t *soak, uint64_t t_us, const hal_can_frame_t *frame) {
-    soak_state_t *state = &soak->state;
-    const uint64_t t_ms = t_us / US_PER_MS;
+/** Whether it is the one before again, as that one may have been discarded with what waited (FSM-2). */
+static bool is_again(const soak_state_t *state, uint64_t t_ms) {
+    return state->status_seen && (t_ms - state->status_last_ms <= STATUS_AGAIN_MS);
+}
 
-    if (!state->status_seen) {
-        state->status_seen = true;
-        state->status_ms = t_ms;
-        state->status_counter = frame->data[3];
-        return;
-    }
+/** The status frame keeps its slots: no drift, none lost. */
+static void judge_slot(soak_t *soak, uint64_t t_ms) {
+    soak_state_t *state = &soak->state;
+
     state->status_frames++;
     const uint64_t slot_ms = state->status_ms + (state->status_frames * SOAK_STATUS_MS);
-    const uint8_t counter = (uint8_t)(state->status_counter + state->status_frames);
     /* The first one may have waited itself. */
     if ((t_ms + STATUS_LATE_MS < slot_ms) || (t_ms > slot_ms + STATUS_LATE_MS)) {
-        soak_break(soak, "drift: status frame %" PRIu64 " at %" PRIu64 " ms, its slot is %" PRIu64 " ms",
-                   state->status_frames, t_ms, slot_ms);
-    } else if (frame->data[3] != counter) {
-        soak_break(soak, "status frame %" PRIu64 " carries the counter %u, not %u", state->status_frames,
-                   frame->data[3], counter);
+        soak_break(soak, "drift: status frame %" PRIu64 " at %" PRIu64 " ms, its slot is %" PRIu64 " ms, in: %s",
+                   state->status_frames, t_ms, slot_ms, present_row(soak));
     } else if ((t_ms > slot_ms) && (t_ms - slot_ms > state->status_late_ms)) {
         state->status_late_ms = (uint32_t)(t_ms - slot_ms);
     } else {
         /* in time */
     }
+}
+
+/** The status frame keeps its slots and counts; one that was discarded is missing in the count, once. */
+static void judge_status(soak_t *soak, uint64_t t_us, const hal_can_frame_t *frame) {
+    soak_state_t *state = &soak->state;
+    const uint64_t t_ms = t_us / US_PER_MS;
+    const uint8_t steps = (uint8_t)(frame->data[3] - state->status_counter);
+
+    if (!state->status_seen) {
+        state->status_seen = true;
+        state->status_ms = t_ms;
+    } else if (is_again(state, t_ms)) {
+        state->status_again++;
+    } else {
+        judge_slot(soak, t_ms);
+    }
+    if ((state->status_last_ms != 0u) && (steps != 1u) && (steps != 2u)) {
+        soak_break(soak, "the status frame at %" PRIu64 " ms carries the counter %u, the last one %u", t_ms,
+                   frame->data[3], state->status_counter);
+    }
+    state->status_counter = frame->data[3];
+    state->status_last_ms = t_ms;
 }
 
 static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {

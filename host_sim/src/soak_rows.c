@@ -2,7 +2,8 @@
 
 /*
  * The limits that these stay below, with the defaults: heartbeats of VCU and EPS 50 ms, other status messages 60 ms, 0A3h
- * 125 ms, 065h 125 ms, the other commands 350 ms; supply faults 3 frames, EPS mode 5, invalid values 3, mode 50 ms.
+ * 125 ms, 065h 125 ms, the other commands 350 ms; supply faults 3 frames, EPS mode 5, invalid values 3, both modes 50 ms,
+ * neither 500 ms, throttle 500 ms, gear 1 s, speeds 1 s, a fourth engagement within 5 s.
  */
 const soak_row_t SOAK_ROWS[] = {
     {"lost 363h", 0u, 4u, 60u, 60u, "vcu: mute, message: vehicle_status, frames: 3", ""},
@@ -72,6 +73,16 @@ const soak_row_t SOAK_ROWS[] = {
      "vcu: unmute, message: wheel_speed"},
     {"another mode now and then", SOAK_ENGAGED, 3u, 1000u, 5000u,
      "vcu: set, field: mode_bits, value: 1h, frames: 1, every_frames: 20", "vcu: unset, message: vehicle_status"},
+    {"neither mode", SOAK_MANUAL, 3u, 350u, 350u, "vcu: set, field: mode_bits, value: 0h, frames: 30", ""},
+    {"manual for five frames", SOAK_ENGAGED, 3u, 5200u, 6000u, "vcu: set, field: mode_bits, value: 1h, frames: 5", ""},
+    {"throttle above its command", SOAK_ENGAGED, 3u, 1200u, 2000u, "vcu: set, field: throttle, value: C8h, frames: 30",
+     ""},
+    {"gear other than its command", SOAK_ENGAGED, 3u, 2000u, 3000u, "vcu: set, field: gear, value: 02h, frames: 20",
+     ""},
+    {"two speeds", 0u, 3u, 2500u, 4000u,
+     "vcu: set_bytes, message: wheel_speed, bytes: \"B8 0B 00 00 B8 0B 00 00\", frames: 60", ""},
+    {"status frame of another", 0u, 3u, 1200u, 3000u, "bus: send, id: 7F0h, bytes: \"00\"", ""},
+    {"repeated by AI", 0u, 2u, 100u, 3000u, "ai: repeat, times: 1", "ai: repeat, times: 0"},
     {"planted trip", SOAK_PLANTED, 0u, 100u, 100u, "vcu: mute, message: vehicle_status, frames: 6", ""},
 };
 
