@@ -291,6 +291,14 @@ void test_the_conditions_hold_in_the_releasing_frame_too(void) {
     press(false);
     expect_refusals(1, AGV_MISSING_TRIP_CAUSE);
     expect_state(&f, AGV_STATE_SAFE);
+    fixture_init(&f);
+    walk_to_safe(&f);
+    press(true);
+    fixture_run(&f, 1500);
+    fixture_mode(&f, MODE_BOTH); /* manual stands, but both bits confirm nothing */
+    press(false);
+    expect_refusals(1, AGV_MISSING_STATE);
+    expect_state(&f, AGV_STATE_TRIPPED);
 }
 
 /* 067h comes for the last time so many milliseconds after the press, which is released 1000 ms after it. */

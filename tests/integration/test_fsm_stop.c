@@ -115,6 +115,21 @@ void test_wheels_that_stand_at_the_trip_are_seen_to_stand(void) {
     expect_output(&f, true);
 }
 
+/* It stood until then, but when it tripped nobody saw that any more. */
+/* Shows: FSM-12, VEHICLE_NOT_STOPPING, WHEEL_SPEED_TIMEOUT */
+void test_a_trip_because_the_wheels_are_not_seen(void) {
+    fixture_active(&f);
+    f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
+    (void)walk_until(&f, AGV_STATE_TRIPPED, 100);
+    expect_reason(&f, AGV_FAULT_WHEEL_SPEED_TIMEOUT);
+    confirm();
+    fixture_run(&f, 4999);
+    expect_fault(&f, AGV_FAULT_VEHICLE_NOT_STOPPING, false);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_VEHICLE_NOT_STOPPING, true);
+    expect_output(&f, false);
+}
+
 /* Shows: FSM-12, FSM-7, VEHICLE_NOT_STOPPING */
 void test_after_a_restart_the_5_s_run_from_the_start(void) {
     walk_driving(&f, 1000);
@@ -160,6 +175,18 @@ void test_a_vehicle_that_moves_again_for_200_ms(void) {
     expect_moving_fault(AGV_FAULT_MOVING_WHILE_SAFE, true);
     expect_fault(&f, AGV_FAULT_VEHICLE_NOT_STOPPING, false);
     expect_ends_when_the_wheels_stand(AGV_FAULT_MOVING_WHILE_SAFE);
+}
+
+/* To the millisecond: 101h comes in each. */
+/* Shows: FSM-12, MOVING_WHILE_SAFE */
+void test_199_ms_are_not_200_ms(void) {
+    walk_to_safe(&f);
+    f.traffic[AGV_MSG_WHEEL_SPEED].cycle_ms = 1;
+    f.traffic[AGV_MSG_WHEEL_SPEED].phase_ms = 0;
+    move_for(100, 0, 199);
+    expect_moving_fault(AGV_FAULT_MOVING_WHILE_SAFE, false);
+    move_for(100, 0, 200);
+    expect_moving_fault(AGV_FAULT_MOVING_WHILE_SAFE, true);
 }
 
 /* Shows: FSM-12, MOVING_WHILE_SAFE */
