@@ -230,10 +230,14 @@ void test_the_status_frame_may_not_have_an_identifier_that_was_changed(void) {
 /* By hand: what protects nobody on a shared bus is refused there, and the others are not. */
 /* Shows: FSM-8, TOP-2, INT-2 */
 void test_what_has_no_effect_on_a_shared_bus_is_refused(void) {
-    static const uint16_t gateway_only[] = {
-        AGV_SETTING_own_heartbeat,        AGV_SETTING_gateway_in_manual,   AGV_SETTING_gear_change,
-        AGV_SETTING_throttle_ceiling_pct, AGV_SETTING_throttle_rise_pct_s, AGV_SETTING_steering_slew_ddeg_s,
-        AGV_SETTING_steering_fast_max_ddeg, AGV_SETTING_fast_mm_s};
+    static const uint16_t gateway_only[] = {AGV_SETTING_own_heartbeat,
+                                            AGV_SETTING_gateway_in_manual,
+                                            AGV_SETTING_gear_change,
+                                            AGV_SETTING_throttle_ceiling_pct,
+                                            AGV_SETTING_throttle_rise_pct_s,
+                                            AGV_SETTING_steering_slew_ddeg_s,
+                                            AGV_SETTING_steering_fast_max_ddeg,
+                                            AGV_SETTING_fast_mm_s};
     for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
         const agv_setting_info_t *const info = agv_setting_info(i);
         bool needs_gateway = false;
@@ -351,33 +355,15 @@ void test_no_default_weakens_and_nothing_beyond_the_last_setting(void) {
 /* Shows: INT-2 */
 void test_what_must_trip_cannot_be_made_a_warning(void) {
     static const agv_fault_t must[] = {
-        AGV_FAULT_VCU_HEARTBEAT_LOST,
-        AGV_FAULT_VCU_HEARTBEAT_STUCK,
-        AGV_FAULT_EPS_HEARTBEAT_LOST,
-        AGV_FAULT_EPS_HEARTBEAT_STUCK,
-        AGV_FAULT_AI_HEARTBEAT_LOST,
-        AGV_FAULT_AI_HEARTBEAT_STUCK,
-        AGV_FAULT_EPS_OVER_CURRENT_SHUTDOWN,
-        AGV_FAULT_EPS_MOTOR_ENCODER,
-        AGV_FAULT_EPS_POSITION_ENCODER,
-        AGV_FAULT_EPS_UNDER_VOLTAGE,
-        AGV_FAULT_EPS_OVER_VOLTAGE,
-        AGV_FAULT_EPS_EXCESSIVE_CURRENT,
-        AGV_FAULT_EPS_TEMP_ABOVE_120,
-        AGV_FAULT_VCU_EPS_CAN_BUS_FAULT,
-        AGV_FAULT_VCU_EPS_HARDWARE_FAULT,
-        AGV_FAULT_EPS_STATUS_TIMEOUT,
-        AGV_FAULT_VCU_AI_CAN_LOST,
-        AGV_FAULT_AI_COMMAND_OUT_OF_RANGE,
-        AGV_FAULT_STEERING_COMMAND_TIMEOUT,
-        AGV_FAULT_STEERING_DEVIATION,
-        AGV_FAULT_MODE_FLAPPING,
-        AGV_FAULT_SAFE_STATE_UNCONFIRMED,
-        AGV_FAULT_VEHICLE_NOT_STOPPING,
-        AGV_FAULT_MOVING_WHILE_SAFE,
-        AGV_FAULT_MEMORY_CORRUPTED,
-        AGV_FAULT_TX_GATE_REFUSED,
-        AGV_FAULT_CONFIG_INVALID,
+        AGV_FAULT_VCU_HEARTBEAT_LOST,        AGV_FAULT_VCU_HEARTBEAT_STUCK,   AGV_FAULT_EPS_HEARTBEAT_LOST,
+        AGV_FAULT_EPS_HEARTBEAT_STUCK,       AGV_FAULT_AI_HEARTBEAT_LOST,     AGV_FAULT_AI_HEARTBEAT_STUCK,
+        AGV_FAULT_EPS_OVER_CURRENT_SHUTDOWN, AGV_FAULT_EPS_MOTOR_ENCODER,     AGV_FAULT_EPS_POSITION_ENCODER,
+        AGV_FAULT_EPS_UNDER_VOLTAGE,         AGV_FAULT_EPS_OVER_VOLTAGE,      AGV_FAULT_EPS_EXCESSIVE_CURRENT,
+        AGV_FAULT_EPS_TEMP_ABOVE_120,        AGV_FAULT_VCU_EPS_CAN_BUS_FAULT, AGV_FAULT_VCU_EPS_HARDWARE_FAULT,
+        AGV_FAULT_EPS_STATUS_TIMEOUT,        AGV_FAULT_VCU_AI_CAN_LOST,       AGV_FAULT_AI_COMMAND_OUT_OF_RANGE,
+        AGV_FAULT_STEERING_COMMAND_TIMEOUT,  AGV_FAULT_STEERING_DEVIATION,    AGV_FAULT_MODE_FLAPPING,
+        AGV_FAULT_SAFE_STATE_UNCONFIRMED,    AGV_FAULT_VEHICLE_NOT_STOPPING,  AGV_FAULT_MOVING_WHILE_SAFE,
+        AGV_FAULT_MEMORY_CORRUPTED,          AGV_FAULT_TX_GATE_REFUSED,       AGV_FAULT_CONFIG_INVALID,
         AGV_FAULT_SELF_TEST_FAILED,
     };
     for (size_t i = 0; i < sizeof must / sizeof must[0]; i++) {

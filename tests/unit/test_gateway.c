@@ -324,7 +324,6 @@ void test_slew_applies_to_the_limit_above_a_speed(void) {
 
 /* ---- Steering slew ---- */
 
-
 /* Shows: TOP-2 */
 void test_without_a_slew_limit_steering_passes_as_it_is(void) {
     TEST_ASSERT_EQUAL_INT(9000, steer(25, 9000));

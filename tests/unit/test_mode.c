@@ -265,7 +265,7 @@ void test_the_fourth_engagement_within_5_s_is_flapping(uint32_t fourth_ms, int f
     TEST_ASSERT_FALSE(flaps_at(1000));
     TEST_ASSERT_FALSE(flaps_at(4000));
     TEST_ASSERT_EQUAL(flapping, flaps_at(fourth_ms));
-    TEST_ASSERT_TRUE(flaps_at(6000)); /* four again: from 1000 on */
+    TEST_ASSERT_TRUE(flaps_at(6000));  /* four again: from 1000 on */
     TEST_ASSERT_FALSE(flaps_at(9001)); /* from 4000 on */
 }
 

@@ -13,8 +13,7 @@ static uint32_t resets;
 
 static void step(uint32_t elapsed_ms) {
     uint32_t found = 0;
-    const agv_press_result_t result =
-        agv_reset_button_step(&reset, &timers, &config, elapsed_ms, lacking, &found);
+    const agv_press_result_t result = agv_reset_button_step(&reset, &timers, &config, elapsed_ms, lacking, &found);
     if (result == AGV_PRESS_IN_VAIN) {
         in_vain++;
         missing = found;

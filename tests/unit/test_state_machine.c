@@ -36,8 +36,7 @@ static unsigned missing(void) {
 }
 
 static uint32_t words_of_facts(void) {
-    const uint32_t with_missing =
-        AGV_FACT_VCU_ALIVE | AGV_FACT_EPS_ALIVE | AGV_FACT_STANDSTILL | AGV_FACT_MANUAL |
+    const uint32_t with_missing = AGV_FACT_VCU_ALIVE | AGV_FACT_EPS_ALIVE | AGV_FACT_STANDSTILL | AGV_FACT_MANUAL |
                                   AGV_FACT_MESSAGES | AGV_FACT_IDLE;
     uint32_t words = with_missing & ~facts.missing;
     words |= facts.engaged ? AGV_FACT_ENGAGED : 0;

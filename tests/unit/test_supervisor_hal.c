@@ -31,6 +31,7 @@ static uint8_t mode;        /* 363h byte 7: 40h manual, 80h autopilot */
 static uint8_t wheel_speed; /* 101h, both wheels, low byte */
 static bool hal_takes;      /* what the stub of hal_can_send returns */
 static bool closed;         /* the output, as the stub saw it */
+static unsigned written;    /* events that were written to flash */
 
 static bool send_stub(hal_t *port, hal_can_side_t side, const hal_can_frame_t *frame, int calls) {
     (void)port, (void)side, (void)frame, (void)calls;
@@ -47,6 +48,12 @@ static void output_stub(hal_t *port, bool close, int calls) {
     closed = close;
 }
 
+static bool append_stub(hal_t *port, const void *record, size_t size, int calls) {
+    (void)port, (void)record, (void)size, (void)calls;
+    written++;
+    return true;
+}
+
 static void use_stubs(void) {
     hal_can_send_Stub(send_stub);
     hal_can_status_Stub(status_stub);
@@ -56,7 +63,7 @@ static void use_stubs(void) {
     hal_reset_cause_IgnoreAndReturn(HAL_RESET_POWER_ON);
     hal_store_read_latch_IgnoreAndReturn(0);
     hal_store_write_latch_IgnoreAndReturn(true);
-    hal_store_append_IgnoreAndReturn(true);
+    hal_store_append_Stub(append_stub);
     hal_watchdog_feed_Ignore();
 }
 
@@ -70,7 +77,7 @@ static void be_strict(void) {
     hal_reset_cause_StopIgnore();
     hal_store_read_latch_StopIgnore();
     hal_store_write_latch_StopIgnore();
-    hal_store_append_StopIgnore();
+    hal_store_append_Stub(NULL);
     hal_watchdog_feed_StopIgnore();
 }
 
@@ -81,9 +88,10 @@ void setUp(void) {
     agv_config_defaults(&config);
     now_ms = 1000;
     mode = 0x40;
-    wheel_speed = 100; /* 100 mm/s: no standstill, so that nothing is written to flash */
+    wheel_speed = 0;
     hal_takes = true;
     closed = false;
+    written = 0;
 }
 
 void tearDown(void) {
@@ -123,6 +131,16 @@ static void expect_safe_commands(uint8_t signal_counter) {
     expect_frame(0x075, 0, 0, 0);
 }
 
+/* 7F0h: state, first reason or FFh, output open, counter, checksum of the configuration with the low byte first. */
+static void expect_first_status_frame(agv_state_t state, uint8_t reason) {
+    hal_can_frame_t frame = {.id = 0x7F0, .time_ms = now_ms, .length = 8, .data = {(uint8_t)state, reason}};
+    const uint32_t checksum = agv_config_checksum(&config);
+    for (unsigned i = 0; i < 4; i++) {
+        frame.data[4 + i] = (uint8_t)(checksum >> (8 * i));
+    }
+    hal_can_send_ExpectAndReturn(&hal, HAL_CAN_VEHICLE, kept(frame), true);
+}
+
 /* 065h, +12.3 degrees: 9123 = 23A3h. */
 static void expect_held_angle(void) {
     const hal_can_frame_t frame = {.id = 0x065, .time_ms = now_ms, .length = 8, .data = {0xA3, 0x23}};
@@ -148,6 +166,8 @@ static void expect_start(hal_reset_cause_t cause, uint8_t latched, agv_fault_t r
     expect_latch(latched, reason, unresettable);
     hal_can_purge_Expect(&hal, HAL_CAN_VEHICLE);
     expect_safe_commands(0);
+    const bool tripped = reason != AGV_FAULT_NONE;
+    expect_first_status_frame(tripped ? AGV_STATE_TRIPPED : AGV_STATE_INIT, tripped ? (uint8_t)reason : 0xFF);
     hal_led_set_Expect(&hal, true);
 }
 
@@ -185,7 +205,7 @@ static void tick(void) {
     agv_supervisor_tick(&supervisor, &ports, now_ms);
 }
 
-/* A healthy vehicle: P or D is not asked, throttle 0, steering +12.3 degrees in angle control. */
+/* A healthy vehicle: P, throttle 0, steering +12.3 degrees in angle control. */
 static void cycle_of_10_ms(void) {
     static const uint8_t park[8] = {8};
     static const uint8_t zeros[8] = {0};
@@ -223,7 +243,9 @@ static void walk_to_standby(void) {
     }
     TEST_ASSERT_EQUAL(AGV_STATE_STANDBY, agv_supervisor_state(&supervisor));
     TEST_ASSERT_TRUE(closed);
-    run(300); /* two 43Fh: the AI is alive */
+    wheel_speed = 100; /* 100 mm/s: no standstill, so that nothing is written to flash */
+    run(300);          /* two 43Fh: the AI is alive */
+    TEST_ASSERT_EQUAL_UINT(0, written);
 }
 
 static void walk_to_active(void) {
@@ -289,24 +311,68 @@ void test_a_tick_without_the_receive_path_does_not_feed_the_watchdog(void) {
     agv_supervisor_tick(&supervisor, &ports, now_ms);
 }
 
-/* A fresh event waits: the flash is written last, when all else of the tick is done. */
+static void expect_quiet_tick(void) {
+    now_ms++;
+    expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    hal_watchdog_feed_Expect(&hal);
+}
+
+/* Events wait: the flash is written last, when all else of the tick is done, and once in the first second: at 2000. */
 /* Shows: INT-3 */
 void test_the_flash_is_written_at_the_end_of_a_tick_at_standstill(void) {
     walk_to_standby();
     TEST_ASSERT_NOT_NULL(agv_recorder_next_to_store(&recorder));
     wheel_speed = 0;
-    run(115);
+    run(1999 - now_ms);
+    TEST_ASSERT_EQUAL_UINT(0, written);
     be_strict();
     now_ms++;
     expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    const hal_can_frame_t status = {.id = 0x7F0};
+    hal_can_send_ExpectAndReturn(&hal, HAL_CAN_VEHICLE, &status, true);
+    hal_can_send_IgnoreArg_frame();
     hal_watchdog_feed_Expect(&hal);
+    hal_led_set_Expect(&hal, false); /* a second of healthy light is over, too */
     hal_store_append_ExpectAndReturn(&hal, NULL, sizeof(agv_event_t), true);
     hal_store_append_IgnoreArg_record();
-    for (uint32_t i = 0; i < 300; i++) { /* events for later, so that one is there in this tick */
-        const agv_entry_t entry = {.kind = AGV_EVENT_STARTUP};
+    tick();
+    TEST_ASSERT_NOT_NULL(agv_recorder_next_to_store(&recorder));
+    expect_quiet_tick();
+    tick();
+}
+
+static void add_events(unsigned count) {
+    const agv_entry_t entry = {.kind = AGV_EVENT_STARTUP};
+    for (unsigned i = 0; i < count; i++) {
         agv_recorder_add(&recorder, &entry, now_ms);
     }
+}
+
+/* What was not used in up to a minute may be used at once; then it is once a second. */
+/* Shows: INT-3 */
+void test_the_flash_is_written_at_most_once_a_second_on_average_over_a_minute(void) {
+    walk_to_standby();
+    run(100000);
+    wheel_speed = 0;
+    run(50); /* not at standstill yet */
+    TEST_ASSERT_EQUAL_UINT(0, written);
+    add_events(256);
+    run(500);
+    TEST_ASSERT_TRUE(written == 60 || written == 61);
+    const unsigned before = written;
+    run(10000);
+    TEST_ASSERT_EQUAL_UINT(10, written - before);
+}
+
+/* A step that is 5 s late earns no more than a second does; this one trips, so that its flash has to wait. */
+/* Shows: INT-3 */
+void test_a_late_step_earns_a_second_of_flash_at_most(void) {
+    walk_to_standby();
+    now_ms += 5000;
     tick();
+    TEST_ASSERT_EQUAL(AGV_STATE_TRIPPED, agv_supervisor_state(&supervisor));
+    TEST_ASSERT_EQUAL_UINT8(1, core->store_credits);
+    TEST_ASSERT_EQUAL_UINT(0, written);
 }
 
 /* What INIT had queued must not follow into STANDBY; only then the output closes. All is well since the second frame of
@@ -384,6 +450,7 @@ void test_corrupted_memory_starts_anew_in_tripped(void) {
     expect_latch(0x96, AGV_FAULT_MEMORY_CORRUPTED, AGV_FAULT_MEMORY_CORRUPTED);
     hal_can_purge_Expect(&hal, HAL_CAN_VEHICLE);
     expect_safe_commands(0);
+    expect_first_status_frame(AGV_STATE_TRIPPED, AGV_FAULT_MEMORY_CORRUPTED);
     hal_led_set_Expect(&hal, true);
     expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
     hal_watchdog_feed_Expect(&hal);
@@ -398,6 +465,7 @@ void test_corrupted_memory_starts_anew_in_tripped(void) {
 /* Shows: INT-4, TX_GATE_REFUSED */
 void test_a_refused_frame_does_not_leave_and_trips(void) {
     config.topology = AGV_TOPOLOGY_GATEWAY;
+    config.gear_change = AGV_GEAR_CHANGE_ANY;
     walk_to_active();
     hal_takes = false;
     ai_frame(0x168, 1, 0);
