@@ -187,6 +187,23 @@ void test_each_sum_has_its_own_limit(void) {
     expect_output(&f, false);
 }
 
+/* Raised because the autopilot is not off; that P is not confirmed either is still in time, but keeps it. */
+/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
+void test_it_is_unconfirmed_until_both_are_confirmed(void) {
+    f.config.park_confirm_timeout_ms = 5000;
+    walk_to_tripped(&f);
+    fixture_run(&f, 700);
+    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run(&f, 1000);
+    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
+    fixture_gear(&f, GEAR_P);
+    fixture_send_now(&f, AGV_MSG_GEAR_STATUS);
+    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
+    expect_open_until_the_reset();
+}
+
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
 void test_a_withdrawn_autopilot_off_counts_from_its_withdrawal(void) {
     stay_in_safe();
