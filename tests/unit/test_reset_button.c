@@ -31,7 +31,7 @@ static void run(uint32_t ms) {
 
 /* A 363h. */
 static void frame(bool down) {
-    agv_reset_button_report(&reset, true, down);
+    agv_reset_button_report(&reset, true, false, down);
     step(0);
 }
 
@@ -167,7 +167,7 @@ void test_a_press_from_before_the_trip_does_not_count(void) {
 /* The same when nobody looked at the button since the last reset: in STANDBY it was pressed, then came the trip. */
 /* Shows: FSM-3 */
 void test_a_press_in_standby_is_one_from_before_the_trip(void) {
-    agv_reset_button_report(&reset, true, true);
+    agv_reset_button_report(&reset, true, false, true);
     agv_timers_advance(&timers, &config, timers.now_ms + 50, 0);
     agv_reset_button_trip(&reset, &timers);
     run(1500);
@@ -183,7 +183,7 @@ void test_a_press_in_standby_is_one_from_before_the_trip(void) {
 /* Shows: FSM-3 */
 void test_a_press_after_a_trip_from_standby_counts(void) {
     frame(true);
-    agv_reset_button_report(&reset, true, false);
+    agv_reset_button_report(&reset, true, false, false);
     agv_reset_button_trip(&reset, &timers);
     run(1000);
     press(1000);
@@ -200,17 +200,42 @@ void test_a_button_that_is_stuck_resets_nothing(void) {
     expect_in_vain(AGV_MISSING_BUTTON | AGV_MISSING_RELEASED);
 }
 
+/* A press that began before the trip is cut by the loss of the remote receiver, and seen again when that comes back. */
+/* Shows: FSM-3, REMOTE_SIGNAL_LOST */
+void test_a_receiver_that_comes_back_makes_no_press(void) {
+    frame(true);
+    agv_reset_button_trip(&reset, &timers);
+    run(100);
+    agv_reset_button_report(&reset, true, true, false);
+    run(500);
+    frame(true);
+    run(2000);
+    frame(false);
+    expect_in_vain(AGV_MISSING_BUTTON);
+}
+
+/* The loss of the remote receiver is no release. */
+/* Shows: FSM-3, REMOTE_POWER_LOST */
+void test_a_receiver_that_is_lost_releases_nothing(void) {
+    run(2000);
+    frame(true);
+    run(2000);
+    agv_reset_button_report(&reset, true, true, false);
+    step(0);
+    expect_in_vain(AGV_MISSING_BUTTON);
+}
+
 /* What a VCU that is not alive reports is nothing: neither an edge nor a release. */
 /* Shows: FSM-3 */
 void test_frames_of_a_vcu_that_is_not_alive_say_nothing(void) {
-    agv_reset_button_report(&reset, false, true);
+    agv_reset_button_report(&reset, false, false, true);
     run(2000);
-    agv_reset_button_report(&reset, false, false);
+    agv_reset_button_report(&reset, false, false, false);
     run(10);
     expect_nothing();
     frame(true);
     run(500);
-    agv_reset_button_report(&reset, false, false);
+    agv_reset_button_report(&reset, false, false, false);
     run(500);
     expect_nothing();
     frame(false);

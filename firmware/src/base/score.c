@@ -19,8 +19,9 @@ void agv_budget_add(agv_budget_t *budget, bool condition, uint32_t elapsed_ms, u
     if (condition) {
         value_ms = (elapsed_ms < (limit_ms - value_ms)) ? (value_ms + elapsed_ms) : limit_ms;
     } else {
-        const uint32_t down_ms = (elapsed_ms / 2u) + (((elapsed_ms & 1u) != 0u) && budget->half ? 1u : 0u);
-        budget->half = ((elapsed_ms & 1u) != 0u) != budget->half;
+        const bool odd = (elapsed_ms & 1u) != 0u;
+        const uint32_t down_ms = (elapsed_ms / 2u) + ((odd && budget->half) ? 1u : 0u);
+        budget->half = odd != budget->half;
         value_ms = (value_ms > down_ms) ? (value_ms - down_ms) : 0u;
     }
     if (value_ms == 0u) {

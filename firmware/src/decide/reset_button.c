@@ -8,9 +8,10 @@ static const uint16_t conditions[AGV_RESET_CONDITIONS] = {
     AGV_MISSING_STATE,      AGV_MISSING_VCU_HEARTBEAT, AGV_MISSING_EPS_HEARTBEAT, AGV_MISSING_TRIP_CAUSE,
     AGV_MISSING_STANDSTILL, AGV_MISSING_MANUAL,        AGV_MISSING_MESSAGES,      AGV_MISSING_THROTTLE};
 
-void agv_reset_button_report(agv_reset_button_t *reset, bool vcu_alive, bool down) {
+void agv_reset_button_report(agv_reset_button_t *reset, bool vcu_alive, bool remote_lost, bool down) {
+    const agv_button_t up = remote_lost ? AGV_BUTTON_UNHEARD : AGV_BUTTON_UP;
     if (vcu_alive) {
-        reset->button = (uint8_t)(down ? AGV_BUTTON_DOWN : AGV_BUTTON_UP);
+        reset->button = (uint8_t)(down ? AGV_BUTTON_DOWN : up);
     }
 }
 
@@ -60,7 +61,8 @@ static void follow_press(agv_reset_button_t *reset, agv_timers_t *timers) {
 /* The press has just ended, or has come to its longest time. */
 static agv_press_result_t answer(const agv_reset_button_t *reset, const agv_timers_t *timers, uint32_t *missing) {
     const bool too_long = agv_timer_reached(timers, AGV_TIMER_PRESS_LONG);
-    *missing |= reset->began_after ? 0u : AGV_MISSING_BUTTON;
+    const bool unheard = reset->button == (uint8_t)AGV_BUTTON_UNHEARD;
+    *missing |= (reset->began_after && !unheard) ? 0u : AGV_MISSING_BUTTON;
     *missing |= too_long ? AGV_MISSING_RELEASED : 0u;
     *missing |= (reset->button == (uint8_t)AGV_BUTTON_UNKNOWN) ? AGV_MISSING_VCU_HEARTBEAT : 0u;
     return (*missing == 0u) ? AGV_PRESS_RESETS : AGV_PRESS_IN_VAIN;

@@ -13,7 +13,12 @@
 #include "base/timers.h"
 
 /** Remote button 1. */
-typedef enum { AGV_BUTTON_UNKNOWN, AGV_BUTTON_DOWN, AGV_BUTTON_UP } agv_button_t;
+typedef enum {
+    AGV_BUTTON_UNKNOWN,
+    AGV_BUTTON_DOWN,
+    AGV_BUTTON_UP,
+    AGV_BUTTON_UNHEARD /**< reported as not pressed while the remote receiver has lost signal or power */
+} agv_button_t;
 
 /** How many conditions a reset has. */
 #define AGV_RESET_CONDITIONS 8u
@@ -30,8 +35,11 @@ typedef struct {
 /** What became of a press. */
 typedef enum { AGV_PRESS_NOTHING, AGV_PRESS_RESETS, AGV_PRESS_IN_VAIN } agv_press_result_t;
 
-/** A 363h reports the button. Of a VCU that is not alive it says nothing. */
-void agv_reset_button_report(agv_reset_button_t *reset, bool vcu_alive, bool down);
+/**
+ * A 363h reports the button. Of a VCU that is not alive it says nothing. Without the remote receiver "not pressed" is no
+ * release, and what is pressed when the receiver comes back is no rising edge: nobody's finger did that.
+ */
+void agv_reset_button_report(agv_reset_button_t *reset, bool vcu_alive, bool remote_lost, bool down);
 
 /** The VCU is lost: the button is unknown until it reports again. */
 void agv_reset_button_lose(agv_reset_button_t *reset);

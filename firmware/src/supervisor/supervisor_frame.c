@@ -76,12 +76,14 @@ void agv_core_follow_mode(agv_core_t *core, agv_mode_change_t change, uint32_t t
 
 static void observe_vehicle_status(agv_core_t *core, const hal_can_frame_t *frame) {
     const bool down = (frame->data[6] & AGV_VCU_FLAG_BUTTON_1) != 0u;
+    const bool remote_lost =
+        (frame->data[4] & (AGV_VCU_ALARM_REMOTE_SIGNAL_LOST | AGV_VCU_ALARM_REMOTE_POWER_LOST)) != 0u;
     const agv_mode_change_t change =
         agv_mode_report(&core->mode, &core->timers, &core->config, frame->data[6], vcu_is_alive(core), frame->time_ms);
     agv_core_follow_mode(core, change, frame->time_ms);
     agv_vehicle_status(&core->vehicle, frame->data);
     agv_core_evaluate_standstill(core);
-    agv_reset_button_report(&core->reset_button, vcu_is_alive(core), down);
+    agv_reset_button_report(&core->reset_button, vcu_is_alive(core), remote_lost, down);
     agv_status_checks_vehicle(&core->status_checks, &core->faults, frame->data,
                               agv_liveness_alive(&core->liveness, AGV_NODE_AI));
 }
