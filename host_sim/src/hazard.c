@@ -86,6 +86,8 @@ static void read_limits(hazard_t *hazard) {
     limits->command_ms[AGV_MSG_STEERING_COMMAND] = hazard_setting(hazard, "steering_command_timeout_ms", 125u);
     limits->command_too_fast_gaps = hazard_setting(hazard, "command_too_fast_gaps", 10u);
     limits->steering_deviation_ddeg = hazard_setting(hazard, "steering_deviation_ddeg", 500u);
+    limits->steering_deviation_ms = hazard_setting(hazard, "steering_deviation_ms", 500u);
+    limits->steering_gain_ddeg = (int32_t)hazard_setting(hazard, "steering_gain_ddeg", 250u);
     limits->throttle_deviation_counts = hazard_setting(hazard, "throttle_deviation_counts", 25u);
     limits->limits_steering = (hazard_setting(hazard, "steering_slew_ddeg_s", 0u) != 0u) ||
                               (hazard_setting(hazard, "steering_fast_max_ddeg", 0u) != 0u);
@@ -115,8 +117,7 @@ static void on_own_command(hazard_t *hazard, agv_message_t message, const hal_ca
 static void on_foreign_command(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
     const uint8_t value = (frame->length > 0u) ? frame->data[0] : 0u;
     const bool moves = ((message == AGV_MSG_GEAR_COMMAND) && (value != (uint8_t)AGV_GEAR_P)) ||
-                       ((message == AGV_MSG_THROTTLE_COMMAND) && (value > 0u)) ||
-                       (message == AGV_MSG_STEERING_COMMAND);
+                       ((message == AGV_MSG_THROTTLE_COMMAND) && (value > 0u)) || (message == AGV_MSG_STEERING_COMMAND);
 
     if (moves && hazard->closed && !hazard->trip.tripped && (hazard->foreign_ms == 0u)) {
         hazard->foreign_ms = hazard->t_ms;
@@ -150,7 +151,7 @@ static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, co
     hazard_t *hazard = ctx;
 
     hazard->t_us = t_us;
-    hazard->t_ms = t_us / US_PER_MS;
+    hazard->t_ms = hazard->world->t_ms; /* a frame that ends with the millisecond belongs to it */
     on_data(hazard, side, from, frame);
 }
 

@@ -70,31 +70,35 @@ typedef struct {
     uint32_t command_ms[AGV_COMMAND_COUNT];
     uint32_t command_too_fast_gaps;
     uint32_t steering_deviation_ddeg;
+    uint32_t steering_deviation_ms;
+    int32_t steering_gain_ddeg;
     uint32_t throttle_deviation_counts;
     bool limits_steering;
 } hazard_limits_t;
 
 /** The mode as 363h reports it. */
 typedef struct {
-    bool autopilot;        /**< bit 8 in the last one */
-    bool manual;           /**< bit 7 and not bit 8 */
+    bool autopilot; /**< bit 8 in the last one */
+    bool manual;    /**< bit 7 and not bit 8 */
     bool both;
-    uint64_t clear_ms;     /**< since when bit 8 is clear */
-    uint64_t handback_ms;  /**< when manual ended last */
-    uint64_t manual_ms;    /**< last 363h that reported manual */
+    uint64_t clear_ms;    /**< since when bit 8 is clear */
+    uint64_t handback_ms; /**< when manual ended last */
+    uint64_t manual_ms;   /**< last 363h that reported manual */
 } hazard_mode_t;
 
 /** The supervisor's own safe commands, as the wire shows them. */
 typedef struct {
-    bool ready;            /**< the safety output was closed, with no safe commands */
-    bool tripped;          /**< they came since */
-    bool parks;            /**< the first 168h P */
-    uint64_t first_ms;     /**< of the first since then */
-    uint64_t last_ms;      /**< of the last 43Fh with the whole safe payload */
-    bool pressed;          /**< the operator pressed button 1 since the first */
-    bool released;         /**< and released it */
+    bool ready;        /**< the safety output was closed, with no safe commands */
+    bool tripped;      /**< they came since */
+    bool parks;        /**< the first 168h P */
+    uint64_t first_ms; /**< of the first since then */
+    uint64_t last_ms;  /**< of the last 43Fh with the whole safe payload */
+    bool pressed;      /**< the operator pressed button 1 since the first */
+    bool released;     /**< and released it */
     bool button;
     bool was_closed;
+    uint64_t press_ms;
+    uint64_t closed_ms;    /**< the safety output was closed */
     uint64_t reset_ms;     /**< they ended, or the output was closed again; 0: not */
     uint32_t unparked_ms;  /**< sum of the time in which P was not confirmed */
     uint32_t engaged_ms;   /**< the same of the autopilot that is off */
@@ -108,9 +112,9 @@ typedef struct {
     int32_t measured_ddeg; /**< and what 067h last said */
     int32_t trip_ddeg[2];  /**< the same two at the trip */
     bool has_trip;
-    int32_t first_ddeg;    /**< the first measured angle after the trip, or after manual ended */
+    int32_t first_ddeg; /**< the first measured angle after the trip, or after manual ended */
     bool has_first;
-    int32_t wrong_ddeg;    /**< commanded, and none of these */
+    int32_t wrong_ddeg; /**< commanded, and none of these */
     bool is_wrong;
 } hazard_hold_t;
 
@@ -137,20 +141,21 @@ typedef struct {
     hazard_mode_t mode;
     hazard_trip_t trip;
     hazard_hold_t hold;
-    uint64_t bad_command_ms;     /**< the last AI command that is none */
+    uint64_t bad_command_ms; /**< the last AI command that is none */
     bool has_bad_command;
-    uint64_t foreign_ms;         /**< first foreign command on the vehicle side that was not answered; 0: none */
-    uint64_t false_ms;           /**< first 065h on the vehicle side that nobody sent; 0: none */
-    uint64_t throttle_ms;        /**< last 075h above 0 on the vehicle side; newest one there */
+    uint64_t foreign_ms;  /**< first foreign command on the vehicle side that was not answered; 0: none */
+    uint64_t false_ms;    /**< first 065h on the vehicle side that nobody sent; 0: none */
+    uint64_t throttle_ms; /**< last 075h above 0 on the vehicle side; newest one there */
     bool throttle_is_newest;
-    uint64_t asked_off_ms;       /**< since when the AI computer asks for autopilot off; 0: it does not */
+    uint64_t asked_off_ms; /**< since when the AI computer asks for autopilot off; 0: it does not */
     int32_t speeds_mm_s[HAZARD_SPEEDS];
     uint32_t speed_at;
     uint32_t passed[HAZARD_FLOOD_SLOTS];
     uint32_t passed_at;
     uint64_t rolling_since_ms;
-    int32_t stuck_at_mddeg;
-    uint64_t stuck_since_ms;
+    int32_t still_at_ddeg; /**< 067h: the last angle */
+    int32_t moved_ddeg;    /**< 067h: way to and fro, since */
+    uint64_t still_since_ms;
     int32_t scores[HAZARD_ROWS_MAX];
     int32_t budgets_ms[HAZARD_ROWS_MAX];
     uint32_t limits_ms[HAZARD_ROWS_MAX];

@@ -23,9 +23,8 @@ static bool was_sent(const hazard_t *hazard, agv_message_t message, uint16_t val
 }
 
 static uint16_t value_of(agv_message_t message, const hal_can_frame_t *frame) {
-    return (message == AGV_MSG_STEERING_COMMAND)
-               ? (uint16_t)(frame->data[0] | ((uint32_t)frame->data[1] << 8u))
-               : frame->data[0];
+    return (message == AGV_MSG_STEERING_COMMAND) ? (uint16_t)(frame->data[0] | ((uint32_t)frame->data[1] << 8u))
+                                                 : frame->data[0];
 }
 
 static bool is_motion(agv_message_t message, uint16_t value) {
@@ -48,7 +47,9 @@ void hazard_passed(hazard_t *hazard, agv_message_t message, const hal_can_frame_
         hazard->throttle_is_newest = value != 0u;
         hazard->throttle_ms = hazard->t_ms;
     }
-    const bool is_hold = (message == AGV_MSG_STEERING_COMMAND) && (hazard->trip.tripped || hazard->limits.limits_steering);
+    const bool is_hold =
+        (message == AGV_MSG_STEERING_COMMAND) &&
+        (hazard->trip.tripped || hazard_is_safe_now(hazard, SAFE_MS) || hazard->limits.limits_steering);
     if (is_motion(message, value) && !is_hold && !was_sent(hazard, message, value) && (hazard->false_ms == 0u)) {
         hazard->false_ms = hazard->t_ms; /* 065h of a hold leaves before the other safe commands */
     }

@@ -6,7 +6,7 @@
 #include "hazard.h"
 
 enum { STEP_MS = 10, MARGIN_MS = 1500, MOVING_MM_S = 300, REACTED_MS = 350, REENGAGE_MS = 100, MANUAL_WEIGHT = 2 };
-enum { SCORE_CAP = 4, EVENT_MS = 400, STUCK_MS = 500, STUCK_MDDEG = 50000, DEVIATION_DDEG = 50, CLOSE = 16 };
+enum { SCORE_CAP = 4, EVENT_MS = 400, STILL_MARGIN_MS = 200, DEVIATION_DDEG = 50, CLOSE = 16 };
 enum { THROTTLE_SPARE = 10, IDLE_COUNTS = 2, FALL_MS = 700, EPS_ANGLE_MODE = 0x01, MODE_BYTE = 6, MODE_BITS = 0xC0 };
 
 /** How a row is judged. */
@@ -72,7 +72,8 @@ static bool is_steering_stuck(const hazard_t *hazard) {
     const int32_t told_ddeg = (int32_t)hazard->told[AGV_MSG_STEERING_COMMAND] - 9000;
     const int32_t limit_ddeg = (int32_t)hazard->limits.steering_deviation_ddeg + DEVIATION_DDEG;
 
-    return hazard->is_told[AGV_MSG_STEERING_COMMAND] && (hazard->t_ms - hazard->stuck_since_ms > STUCK_MS) &&
+    return hazard->is_told[AGV_MSG_STEERING_COMMAND] &&
+           (hazard->t_ms - hazard->still_since_ms > hazard->limits.steering_deviation_ms + STILL_MARGIN_MS) &&
            (abs(hazard_measured_ddeg(hazard) - told_ddeg) > limit_ddeg);
 }
 
@@ -200,16 +201,15 @@ static bool gave_up_status_frame(const hazard_t *hazard) {
 void hazard_rows_init(hazard_t *hazard) {
     for (unsigned r = 0u; r < (unsigned)ROW_COUNT; r++) {
         const row_t *row = &ROWS[r];
-        const uint32_t value =
-            (row->setting != NULL) ? hazard_setting(hazard, row->setting, row->preset) : row->preset;
+        const uint32_t value = (row->setting != NULL) ? hazard_setting(hazard, row->setting, row->preset) : row->preset;
         hazard->thresholds[r] = value;
-        hazard->limits_ms[r] = MARGIN_MS + ((row->form == LEVEL) ? value : 0u) +
-                               (row->engaged ? hazard_setting(hazard, "engaged_grace_ms", 500u) : 0u) +
-                               ((row->message == AGV_MSG_TURN_SIGNAL_COMMAND)
-                                    ? hazard_setting(hazard, "ai_never_seen_timeout_ms", 500u)
-                                    : 0u);
-        hazard->off[r] = only_warns(hazard, row->fault) ||
-                         ((row->holds == is_transmitter_dead) && gave_up_status_frame(hazard));
+        hazard->limits_ms[r] =
+            MARGIN_MS + ((row->form == LEVEL) ? value : 0u) +
+            (row->engaged ? hazard_setting(hazard, "engaged_grace_ms", 500u) : 0u) +
+            ((row->message == AGV_MSG_TURN_SIGNAL_COMMAND) ? hazard_setting(hazard, "ai_never_seen_timeout_ms", 500u)
+                                                           : 0u);
+        hazard->off[r] =
+            only_warns(hazard, row->fault) || ((row->holds == is_transmitter_dead) && gave_up_status_frame(hazard));
     }
 }
 
@@ -265,21 +265,10 @@ static void add_up(hazard_t *hazard, unsigned r) {
     }
 }
 
-/** Whether the steering moves by itself. */
-static void follow_steering(hazard_t *hazard) {
-    const int32_t angle_mddeg = hazard->world->vehicle.eps.angle_mddeg;
-
-    if (abs(angle_mddeg - hazard->stuck_at_mddeg) > STUCK_MDDEG) {
-        hazard->stuck_at_mddeg = angle_mddeg;
-        hazard->stuck_since_ms = hazard->t_ms;
-    }
-}
-
 void hazard_rows_tick(hazard_t *hazard) {
     if ((hazard->t_ms % STEP_MS) != 0u) {
         return;
     }
-    follow_steering(hazard);
     if (!hazard->closed || hazard_is_safe_now(hazard, REACTED_MS) || (hazard_speed_mm_s(hazard) < MOVING_MM_S)) {
         memset(hazard->budgets_ms, 0, sizeof hazard->budgets_ms);
         return;

@@ -3,7 +3,7 @@
 
 #include "hazard.h"
 
-enum { SIGNALS_BYTES = 7, QUIET_MS = 160, GONE_MS = 700, RELEASE_MS = 1000, PENDING_MS = 50 };
+enum { SIGNALS_BYTES = 7, IN_FLIGHT_MS = 12, GONE_MS = 700, RELEASE_MS = 1000, PENDING_MS = 50, PRESS_SEEN_MS = 100 };
 enum { CONFIRM_MARGIN_MS = 300, CLEARED_MS = 5000, STALE_MARGIN_MS = 100 };
 enum { SPEED_SLOT_MS = 100, SLOWER_MM_S = 50, MOVING_MM_S = 300, STANDS_MM_S = 100, FRESH_MS = 100, MARGIN_MS = 1500 };
 
@@ -16,7 +16,7 @@ static void begin_trip(hazard_t *hazard) {
     trip->tripped = true;
     trip->parks = false;
     trip->first_ms = hazard->t_ms;
-    trip->pressed = false;
+    trip->pressed = trip->button && (hazard->t_ms - trip->press_ms <= PRESS_SEEN_MS); /* 363h says so later */
     trip->released = false;
     trip->unparked_ms = 0u;
     trip->engaged_ms = 0u;
@@ -29,14 +29,26 @@ static void begin_trip(hazard_t *hazard) {
     hazard->hold.has_first = false;
 }
 
+/** Gateway: the AI computer asks for all of the same, which is passed on. */
+static bool is_of_ai(const hazard_t *hazard) {
+    const hazard_message_t *seen = &hazard->messages[AGV_MSG_TURN_SIGNAL_COMMAND];
+    agv_turn_signal_command_t command;
+
+    if (!hazard->gateway || !seen->has || (hazard->t_ms - seen->seen_ms > SPEED_SLOT_MS)) {
+        return false;
+    }
+    (void)agv_unpack_turn_signal_command(&command, seen->data);
+    return command.autopilot_off && command.turn_left_on && command.turn_right_on && command.headlight_on;
+}
+
 void hazard_safe_frame(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
     hazard_trip_t *trip = &hazard->trip;
 
     if ((message == AGV_MSG_GEAR_COMMAND) && (frame->data[0] == (uint8_t)AGV_GEAR_P)) {
         trip->parks = trip->parks || trip->tripped;
     }
-    if ((message != AGV_MSG_TURN_SIGNAL_COMMAND) ||
-        (memcmp(frame->data, SAFE_SIGNALS, sizeof SAFE_SIGNALS) != 0)) {
+    if ((message != AGV_MSG_TURN_SIGNAL_COMMAND) || (memcmp(frame->data, SAFE_SIGNALS, sizeof SAFE_SIGNALS) != 0) ||
+        is_of_ai(hazard)) {
         return;
     }
     trip->last_ms = hazard->t_ms;
@@ -79,7 +91,10 @@ static void follow_button(hazard_t *hazard) {
     hazard_trip_t *trip = &hazard->trip;
     const bool button = hazard->world->vehicle.people.button_1;
 
-    trip->pressed = trip->pressed || (button && !trip->button);
+    if (button && !trip->button) {
+        trip->pressed = true;
+        trip->press_ms = hazard->t_ms;
+    }
     trip->released = trip->released || (trip->pressed && !button && trip->button);
     trip->button = button;
 }
@@ -143,16 +158,30 @@ static void judge_stopping(hazard_t *hazard) {
     }
 }
 
+/** The supervision begins when the output is closed and no safe command follows, and ends with one, or with an open output. */
+static void follow_output(hazard_t *hazard, bool was_closed) {
+    hazard_trip_t *trip = &hazard->trip;
+
+    trip->was_closed = hazard->closed;
+    if (hazard->closed && !was_closed) {
+        trip->closed_ms = hazard->t_ms;
+    }
+    if (hazard->closed && !trip->tripped && (hazard->t_ms - trip->closed_ms > IN_FLIGHT_MS) &&
+        (trip->last_ms <= trip->closed_ms + IN_FLIGHT_MS)) {
+        trip->ready = true;
+    }
+    if (!hazard->closed && was_closed && trip->ready && !trip->tripped) {
+        begin_trip(hazard);
+    }
+}
+
 void hazard_safe_tick(hazard_t *hazard) {
     hazard_trip_t *trip = &hazard->trip;
     const bool was_closed = trip->was_closed;
 
     follow_button(hazard);
     judge_reset(hazard, was_closed);
-    trip->was_closed = hazard->closed;
-    if (hazard->closed && !trip->tripped && !hazard_is_safe_now(hazard, QUIET_MS)) {
-        trip->ready = true;
-    }
+    follow_output(hazard, was_closed);
     if (trip->tripped && hazard->closed) {
         judge_confirmation(hazard);
     }

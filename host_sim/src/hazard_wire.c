@@ -1,4 +1,5 @@
 /* What was on the wire last: status of the vehicle, commands of the AI computer, the mode. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "hazard.h"
@@ -106,9 +107,23 @@ static void note_throttle(hazard_t *hazard, uint8_t value) {
     hazard->throttle_high = (value > hazard->throttle_high) ? value : hazard->throttle_high;
 }
 
-void hazard_wire_status(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
-    hazard_hold_t *hold = &hazard->hold;
+/** The steering moves when its way, to and fro, comes to four fifths of what the supervisor asks for. */
+static void note_angle(hazard_t *hazard) {
+    const int32_t angle_ddeg = hazard_measured_ddeg(hazard);
 
+    hazard->moved_ddeg += abs(angle_ddeg - hazard->still_at_ddeg);
+    hazard->still_at_ddeg = angle_ddeg;
+    if (hazard->moved_ddeg * 5 >= hazard->limits.steering_gain_ddeg * 4) {
+        hazard->moved_ddeg = 0;
+        hazard->still_since_ms = hazard->t_ms;
+    }
+    if (!hazard->hold.has_first) {
+        hazard->hold.has_first = true;
+        hazard->hold.first_ddeg = angle_ddeg;
+    }
+}
+
+void hazard_wire_status(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
     if ((frame->flags != 0u) || (frame->length != AGV_DLC)) {
         return;
     }
@@ -117,9 +132,10 @@ void hazard_wire_status(hazard_t *hazard, agv_message_t message, const hal_can_f
         note_mode(hazard, frame->data[MODE_BYTE]);
     } else if (message == AGV_MSG_THROTTLE_STATUS) {
         note_throttle(hazard, frame->data[0]);
-    } else if ((message == AGV_MSG_STEERING_STATUS) && !hold->has_first && is_usable(message, frame->data)) {
-        hold->has_first = true;
-        hold->first_ddeg = hazard_measured_ddeg(hazard);
+    } else if ((message == AGV_MSG_STEERING_STATUS) && is_usable(message, frame->data)) {
+        note_angle(hazard);
+    } else {
+        /* noted */
     }
     hazard_rows_frame(hazard, message, frame->data);
 }

@@ -14,9 +14,9 @@
 #define HUNT_PARAMETERS 4u
 
 /** @name Where an attack makes sense, and what it is. @{ */
-#define HUNT_GATEWAY 0x01u    /**< only in the gateway topology */
-#define HUNT_MESSAGE 0x02u    /**< its first parameter is a message */
-#define HUNT_PATTERN 0x04u    /**< its third and fourth are: so many frames bad (0: all), so many good, again and again */
+#define HUNT_GATEWAY 0x01u /**< only in the gateway topology */
+#define HUNT_MESSAGE 0x02u /**< its first parameter is a message */
+#define HUNT_PATTERN 0x04u /**< its third and fourth are: so many frames bad (0: all), so many good, again and again */
 #define HUNT_SHORT_BYTES 0x08u /**< its fourth is a length; more than 8 counts as 8 */
 /** @} */
 

@@ -65,8 +65,7 @@ static bool keep_if_same(hunt_play_t *play, hunt_program_t *program, const hunt_
 static void shrink(hunt_play_t *play, hunt_program_t *program, hazard_kind_t kind, const char *cause) {
     for (uint32_t i = program->action_count; (i > 0u) && (program->action_count > 1u); i--) {
         hunt_program_t changed = *program;
-        memmove(&changed.actions[i - 1u], &changed.actions[i],
-                (changed.action_count - i) * sizeof changed.actions[0]);
+        memmove(&changed.actions[i - 1u], &changed.actions[i], (changed.action_count - i) * sizeof changed.actions[0]);
         changed.action_count--;
         (void)keep_if_same(play, program, &changed, kind, cause);
     }
@@ -127,8 +126,8 @@ static void cut_end(hunt_play_t *play, hunt_program_t *program, hazard_kind_t ki
 static bool write_file(hunt_play_t *play, const hunt_program_t *program, const hunt_place_t *place) {
     char path[PATH_SIZE];
     campaign_text_t line = {.used = 0u};
-    const int length = snprintf(path, sizeof path, "%s/hunt-%" PRIu64 "-%" PRIu64 ".yaml", place->folder, place->seed,
-                                place->run);
+    const int length =
+        snprintf(path, sizeof path, "%s/hunt-%" PRIu64 "-%" PRIu64 ".yaml", place->folder, place->seed, place->run);
 
     if ((length < 0) || (length >= PATH_SIZE)) {
         return report("--found: the name of the folder is too long");

@@ -5,7 +5,7 @@
 #include "report.h"
 #include "scenario_player.h"
 
-enum { OPEN_MS = 1500, HASH_START = 5381, HASH_FACTOR = 33 };
+enum { OPEN_MS = 700, STANDS_MS = 2000, HASH_START = 5381, HASH_FACTOR = 33 };
 
 /** Kinds of features. */
 enum { OF_STATE = 1, OF_FAULT, OF_CLOSENESS, OF_SPEED };
@@ -65,19 +65,22 @@ static uint32_t last_step_ms(const scenario_t *scenario) {
     return last_ms;
 }
 
-/** Nothing can come any more: the output is open, and nobody does anything. */
-static bool is_over(const hunt_play_t *play, uint32_t t_ms, uint32_t last_ms, uint32_t *closed_ms) {
-    if (play->world.hal.safety_output.on || (t_ms <= last_ms)) {
-        *closed_ms = t_ms;
+/** Nothing can come any more: nobody does anything new, and the output is open or the vehicle stands in the safe state. */
+static bool is_over(const hunt_play_t *play, uint32_t t_ms, uint32_t last_ms, uint32_t *quiet_ms) {
+    const bool stands = play->hazard.trip.tripped && (hazard_speed_mm_s(&play->hazard) == 0);
+    const bool open = !play->world.hal.safety_output.on;
+
+    if ((!open && !stands) || (t_ms <= last_ms)) {
+        *quiet_ms = t_ms;
     }
-    return t_ms - *closed_ms > (uint32_t)OPEN_MS;
+    return t_ms - *quiet_ms > (uint32_t)(open ? OPEN_MS : STANDS_MS);
 }
 
 static void run(hunt_play_t *play) {
     const scenario_t *scenario = &play->scenario;
     const uint32_t last_ms = last_step_ms(scenario);
     const scenario_step_t *step = NULL;
-    uint32_t closed_ms = 0u;
+    uint32_t quiet_ms = 0u;
     scenario_player_t player;
 
     scenario_player_init(&player, scenario);
@@ -90,7 +93,7 @@ static void run(hunt_play_t *play) {
         scenario_world_tick(&play->world, t_ms);
         hazard_tick(&play->hazard, t_ms);
         play->played_ms = t_ms;
-        if ((play->hazard.kind != HAZARD_NONE) || is_over(play, t_ms, last_ms, &closed_ms)) {
+        if ((play->hazard.kind != HAZARD_NONE) || is_over(play, t_ms, last_ms, &quiet_ms)) {
             return;
         }
     }

@@ -7,7 +7,7 @@
 #include "options.h"
 
 enum { BEGIN_FIRST_MS = 600, BEGIN_MIN_MS = 1600, BEGIN_MAX_MS = 7000, RESET_MIN_MS = 3000, RESET_MAX_MS = 7000 };
-enum { LASTS_MIN_MS = 20, LASTS_MAX_MS = 4000, DURATION_MIN_MS = 9000, DURATION_MAX_MS = 15000 };
+enum { LASTS_MIN_MS = 20, LASTS_MAX_MS = 4000, DURATION_MIN_MS = 8000, DURATION_MAX_MS = 14000 };
 enum { THROTTLE_MIN_PCT = 10, THROTTLE_MAX_PCT = 100, STEER_MAX_DEG = 90, TICK_SPAN_US = 999, TRIES = 20 };
 enum { SHORT_PATTERN = 4, PATTERN_BAD = 2, PATTERN_GOOD = 3, RATE_DDEG_S = 3000, SLOW_DDEG_S = 300 };
 
@@ -49,8 +49,8 @@ static void draw_times(const hunt_program_t *program, hunt_action_t *action, uin
 
     action->begin_ms = is_reset ? chance_draw(state, RESET_MIN_MS, RESET_MAX_MS)
                                 : chance_draw(state, toss(state, 5u) ? BEGIN_FIRST_MS : BEGIN_MIN_MS, BEGIN_MAX_MS);
-    action->end_ms = toss(state, 2u) ? program->duration_ms
-                                     : action->begin_ms + chance_draw(state, LASTS_MIN_MS, LASTS_MAX_MS);
+    action->end_ms =
+        toss(state, 2u) ? program->duration_ms : action->begin_ms + chance_draw(state, LASTS_MIN_MS, LASTS_MAX_MS);
     action->end_ms = (action->end_ms < program->duration_ms) ? action->end_ms : program->duration_ms;
 }
 
@@ -174,7 +174,7 @@ static void draw_vehicle(hunt_program_t *program, uint64_t *state) {
     program->park_guard = !toss(state, 3u);
     program->rolls = toss(state, 6u);
     program->obeys_short = toss(state, 4u);
-    program->tick_phase_us = toss(state, 2u) ? 0u : (uint16_t)chance_draw(state, 0u, TICK_SPAN_US);
+    program->tick_phase_us = toss(state, 8u) ? (uint16_t)chance_draw(state, 1u, TICK_SPAN_US) : 0u;
     program->steering_rate_ddeg_s = toss(state, 6u) ? SLOW_DDEG_S : RATE_DDEG_S;
     program->throttle_pct = chance_draw(state, THROTTLE_MIN_PCT, THROTTLE_MAX_PCT);
     program->steer_deg = (int32_t)chance_draw(state, 0u, 2u * STEER_MAX_DEG) - STEER_MAX_DEG;

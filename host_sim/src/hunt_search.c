@@ -162,8 +162,8 @@ static went_t run_all(hunt_t *hunt) {
 }
 
 static uint64_t total_of(const hunt_request_t *request) {
-    const uint64_t total = (request->minutes != UINT64_MAX) ? request->minutes * (MS_PER_MIN / MS_PER_S)
-                                                            : request->runs / request->shards;
+    const uint64_t total =
+        (request->minutes != UINT64_MAX) ? request->minutes * (MS_PER_MIN / MS_PER_S) : request->runs / request->shards;
     return (total > 0u) ? total : 1u;
 }
 

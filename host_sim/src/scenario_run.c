@@ -26,8 +26,9 @@ static void check_hazards(scenario_run_t *run) {
     const hazard_t *hazard = &run->hazard;
 
     if ((run->scenario.expect.no_hazards != 0u) && (hazard->kind != HAZARD_NONE)) {
-        scenario_check_fail(&run->check, run->scenario.expect.no_hazards, "no hazard is expected, seen: %s (%s) at %u ms",
-                            hazard_info(hazard->kind)->name, hazard->cause, (unsigned)hazard->at_ms);
+        scenario_check_fail(&run->check, run->scenario.expect.no_hazards,
+                            "no hazard is expected, seen: %s (%s) at %u ms", hazard_info(hazard->kind)->name,
+                            hazard->cause, (unsigned)hazard->at_ms);
     }
 }
 
