@@ -13,7 +13,7 @@
 
 #include "report.h"
 
-#define HUNT_PIECE_RUNS 1000u
+#define HUNT_PIECE_RUNS 500u
 
 /** What is asked for. */
 typedef struct {

@@ -12,6 +12,8 @@
 #include "agv/protocol.h"
 
 #define HUNT_PARAMETERS 4u
+#define HUNT_PATTERN_BAD 2u  /**< the parameter: so many bad frames */
+#define HUNT_PATTERN_GOOD 3u /**< and good ones */
 
 /** @name Where an attack makes sense, and what it is. @{ */
 #define HUNT_GATEWAY 0x01u /**< only in the gateway topology */

@@ -18,7 +18,12 @@ static hunt_signature_t sign(const hunt_program_t *program, const hazard_t *haza
     signature.gateway = program->gateway ? 1u : 0u;
     (void)snprintf(signature.cause, sizeof signature.cause, "%s", hazard->cause);
     for (uint32_t i = 0u; i < program->action_count; i++) {
-        signature.attacks |= UINT64_C(1) << (program->actions[i].attack % BITS);
+        const hunt_action_t *action = &program->actions[i];
+        const uint64_t bit = UINT64_C(1) << (action->attack % BITS);
+        const bool is_pattern =
+            ((HUNT_ATTACKS[action->attack].flags & HUNT_PATTERN) != 0u) && (action->parameters[HUNT_PATTERN_BAD] != 0u);
+        signature.attacks |= bit;
+        signature.patterns |= is_pattern ? bit : 0u;
     }
     for (uint32_t i = 0u; i < program->setting_count; i++) {
         const uint16_t setting = program->settings[i].setting;
@@ -34,7 +39,7 @@ static hunt_signature_t sign(const hunt_program_t *program, const hazard_t *haza
 static bool is_part_of(const hunt_signature_t *known, const hunt_signature_t *signature) {
     bool part = (known->kind == signature->kind) && (known->gateway == signature->gateway) &&
                 (strcmp(known->cause, signature->cause) == 0) && ((known->attacks & ~signature->attacks) == 0u) &&
-                ((known->classes & ~signature->classes) == 0u);
+                ((known->classes & ~signature->classes) == 0u) && ((known->patterns & ~signature->patterns) == 0u);
 
     for (unsigned i = 0u; i < (unsigned)HUNT_SETTING_WORDS; i++) {
         part = part && ((known->settings[i] & ~signature->settings[i]) == 0u);

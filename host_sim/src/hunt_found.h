@@ -15,7 +15,8 @@ typedef struct {
     uint32_t kind;
     uint32_t gateway;
     char cause[HUNT_CAUSE_SIZE];
-    uint64_t attacks; /**< one bit a row of HUNT_ATTACKS */
+    uint64_t attacks;  /**< one bit a row of HUNT_ATTACKS */
+    uint64_t patterns; /**< of those with bad frames and good ones in turn */
     uint64_t settings[HUNT_SETTING_WORDS];
     uint64_t classes;
     uint64_t run;  /**< the first that found it */

@@ -6,10 +6,10 @@
 #include "chance.h"
 #include "options.h"
 
-enum { BEGIN_FIRST_MS = 600, BEGIN_MIN_MS = 1600, BEGIN_MAX_MS = 7000, RESET_MIN_MS = 3000, RESET_MAX_MS = 7000 };
+enum { BEGIN_FIRST_MS = 600, BEGIN_MIN_MS = 1600, BEGIN_MAX_MS = 7000, RESET_MIN_MS = 500, RESET_MAX_MS = 4000 };
 enum { LASTS_MIN_MS = 20, LASTS_MAX_MS = 4000, DURATION_MIN_MS = 8000, DURATION_MAX_MS = 14000 };
 enum { THROTTLE_MIN_PCT = 10, THROTTLE_MAX_PCT = 100, STEER_MAX_DEG = 90, TICK_SPAN_US = 999, TRIES = 20 };
-enum { SHORT_PATTERN = 4, PATTERN_BAD = 2, PATTERN_GOOD = 3, RATE_DDEG_S = 3000, SLOW_DDEG_S = 300 };
+enum { SHORT_PATTERN = 4, RATE_DDEG_S = 3000, SLOW_DDEG_S = 300 };
 
 static bool toss(uint64_t *state, uint32_t in) {
     return chance_draw(state, 1u, in) == 1u;
@@ -25,17 +25,21 @@ static uint32_t count_words(const char *words) {
 
 /** A number of frames: most patterns that matter are short. */
 static uint32_t draw_pattern(const hunt_attack_t *attack, unsigned i, uint64_t *state) {
-    if ((i == (unsigned)PATTERN_BAD) && toss(state, 3u)) {
+    if ((i == HUNT_PATTERN_BAD) && toss(state, 3u)) {
         return 0u;
     }
     return toss(state, 2u) ? chance_draw(state, 1u, SHORT_PATTERN) : chance_draw(state, 1u, attack->highest[i]);
 }
 
 static uint32_t draw_parameter(const hunt_attack_t *attack, unsigned i, uint64_t *state) {
+    if ((i == 0u) && ((attack->flags & HUNT_PATTERN) != 0u) && ((attack->flags & HUNT_MESSAGE) == 0u) &&
+        toss(state, 3u)) {
+        return 0u; /* the first word is the worst */
+    }
     if (attack->words[i] != NULL) {
         return chance_draw(state, 0u, count_words(attack->words[i]) - 1u);
     }
-    if (((attack->flags & HUNT_PATTERN) != 0u) && (i >= (unsigned)PATTERN_BAD)) {
+    if (((attack->flags & HUNT_PATTERN) != 0u) && (i >= HUNT_PATTERN_BAD)) {
         return draw_pattern(attack, i, state);
     }
     if (toss(state, 4u)) {
@@ -44,10 +48,21 @@ static uint32_t draw_parameter(const hunt_attack_t *attack, unsigned i, uint64_t
     return chance_draw(state, attack->lowest[i], attack->highest[i]);
 }
 
+/** A reset comes some time after the other attacks have begun. */
+static uint32_t draw_reset_ms(const hunt_program_t *program, uint64_t *state) {
+    uint32_t latest_ms = BEGIN_MIN_MS;
+
+    for (uint32_t i = 0u; i < program->action_count; i++) {
+        const uint32_t begin_ms = program->actions[i].begin_ms;
+        latest_ms = (begin_ms > latest_ms) ? begin_ms : latest_ms;
+    }
+    return latest_ms + chance_draw(state, RESET_MIN_MS, RESET_MAX_MS);
+}
+
 static void draw_times(const hunt_program_t *program, hunt_action_t *action, uint64_t *state) {
     const bool is_reset = action->attack == hunt_attack_of_reset();
 
-    action->begin_ms = is_reset ? chance_draw(state, RESET_MIN_MS, RESET_MAX_MS)
+    action->begin_ms = is_reset ? draw_reset_ms(program, state)
                                 : chance_draw(state, toss(state, 5u) ? BEGIN_FIRST_MS : BEGIN_MIN_MS, BEGIN_MAX_MS);
     action->end_ms =
         toss(state, 2u) ? program->duration_ms : action->begin_ms + chance_draw(state, LASTS_MIN_MS, LASTS_MAX_MS);

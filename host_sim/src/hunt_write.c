@@ -11,7 +11,7 @@
 #include "vehicle.h"
 
 enum { STEPS_MAX = 64, STEP_SIZE = 200, DRIVE_MS = 1000, ENGAGE_MS = 1500, DECIMAL = 10, STRETCH = 20 };
-enum { PATTERN_BAD = 2, PATTERN_GOOD = 3, ZERO_DEG = 90, ROLLS_MM_S2 = 1 };
+enum { ZERO_DEG = 90, ROLLS_MM_S2 = 1 };
 
 /** A step in the making. */
 typedef struct {
@@ -69,18 +69,18 @@ static void add_again(const steps_t *steps, line_t *line, uint32_t every_ms) {
 }
 
 static void add_pattern(const steps_t *steps, line_t *line) {
-    const uint32_t bad = steps->action->parameters[PATTERN_BAD];
+    const uint32_t bad = steps->action->parameters[HUNT_PATTERN_BAD];
 
     if (bad > 0u) {
         append(line, ", frames: %" PRIu32, bad);
-        add_again(steps, line, cycle_of(steps) * (bad + steps->action->parameters[PATTERN_GOOD]));
+        add_again(steps, line, cycle_of(steps) * (bad + steps->action->parameters[HUNT_PATTERN_GOOD]));
     }
 }
 
 static void add_bytes(const steps_t *steps, line_t *line) {
-    const uint32_t length = steps->action->parameters[PATTERN_GOOD];
+    const uint32_t length = steps->action->parameters[HUNT_PATTERN_GOOD];
 
-    add_parameter(steps, line, PATTERN_BAD);
+    add_parameter(steps, line, HUNT_PATTERN_BAD);
     for (uint32_t i = 1u; (i < length) && (i < AGV_DLC); i++) {
         append(line, " 00");
     }
@@ -121,10 +121,10 @@ static void add_placeholder(const steps_t *steps, line_t *line, char letter) {
         add_again(steps, line, parameters[1]);
         break;
     case 'w':
-        add_again(steps, line, 2u * parameters[PATTERN_BAD]);
+        add_again(steps, line, 2u * parameters[HUNT_PATTERN_BAD]);
         break;
     case 'g':
-        add_again(steps, line, parameters[PATTERN_GOOD]);
+        add_again(steps, line, parameters[HUNT_PATTERN_GOOD]);
         break;
     case 's':
         append(line, "%s", steps->program->gateway ? "ai" : "vehicle");
@@ -133,7 +133,7 @@ static void add_placeholder(const steps_t *steps, line_t *line, char letter) {
         add_bytes(steps, line);
         break;
     case 'z':
-        append(line, "%" PRId32, (int32_t)parameters[PATTERN_BAD] - ZERO_DEG);
+        append(line, "%" PRId32, (int32_t)parameters[HUNT_PATTERN_BAD] - ZERO_DEG);
         break;
     case 'i':
         append(line, "%03" PRIX32 "h", free_id(parameters[0]));

@@ -24,7 +24,7 @@ class Hunt(hostsim.Case):
 
     def test_the_same_seed_the_same_runs(self):
         self.folders("a", "b", "c")
-        runs = max(400 // hostsim.PART, 20)
+        runs = max(200 // hostsim.PART, 20)
         first = self.hunt("--seed", 7, "--runs", runs, "--found", "a")
         second = self.hunt("--seed", 7, "--runs", runs, "--found", "b")
         other = self.hunt("--seed", 8, "--runs", runs, "--found", "c")
@@ -35,7 +35,7 @@ class Hunt(hostsim.Case):
 
     def test_what_is_found_can_be_played(self):
         self.folders("a")
-        result = self.hunt("--seed", 1, "--runs", max(600 // hostsim.PART, 40), "--found", "a")
+        result = self.hunt("--seed", 1, "--runs", max(300 // hostsim.PART, 40), "--found", "a")
         found = FOUND.findall(result.stdout)
         self.assertEqual(result.status, 1 if found else 0)
         self.assertEqual(len(found), int(LAST.search(result.stdout)[4]))
@@ -49,15 +49,15 @@ class Hunt(hostsim.Case):
         if hostsim.PART > 1:
             return  # a piece takes minutes in a program full of checks
         self.folders("whole", "parts")
-        self.hunt("--seed", 3, "--runs", 1300, "--found", "whole")
-        self.hunt("--seed", 3, "--runs", 1000, "--found", "parts", "--checkpoint", "state")
-        rest = self.hunt("--seed", 3, "--runs", 1300, "--found", "parts", "--checkpoint", "state")
-        self.assertEqual(LAST.search(rest.stdout)[1], "300")
+        self.hunt("--seed", 3, "--runs", 650, "--found", "whole")
+        self.hunt("--seed", 3, "--runs", 500, "--found", "parts", "--checkpoint", "state")
+        rest = self.hunt("--seed", 3, "--runs", 650, "--found", "parts", "--checkpoint", "state")
+        self.assertEqual(LAST.search(rest.stdout)[1], "150")
         self.assertEqual(self.found_in("whole"), self.found_in("parts"))
-        bad = self.hunt("--seed", 4, "--runs", 1300, "--checkpoint", "state", status=(2,))
+        bad = self.hunt("--seed", 4, "--runs", 650, "--checkpoint", "state", status=(2,))
         self.assertIn("the checkpoint of another hunt", bad.stderr)
         (self.folder / "state").write_bytes((self.folder / "state").read_bytes()[:-1])
-        torn = self.hunt("--seed", 3, "--runs", 1300, "--checkpoint", "state", status=(2,))
+        torn = self.hunt("--seed", 3, "--runs", 650, "--checkpoint", "state", status=(2,))
         self.assertIn("torn", torn.stderr)
 
     def test_hazards_are_listed(self):
