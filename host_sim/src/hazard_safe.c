@@ -107,7 +107,8 @@ static bool has_ended(hazard_t *hazard) {
         return false;
     }
     hal_can_status(&hazard->world->hal, HAL_CAN_VEHICLE, &status);
-    return (status.state != HAL_CAN_BUS_OFF) && (status.tx_pending_ms < PENDING_MS);
+    return (status.state != HAL_CAN_BUS_OFF) && (status.tx_pending_ms < PENDING_MS) &&
+           !hazard->world->hal.can[HAL_CAN_VEHICLE].swallows;
 }
 
 static void judge_reset(hazard_t *hazard, bool was_closed) {

@@ -24,7 +24,7 @@
 
 /**
  * An attack. In the steps `|` divides; `+N ` or `+$b ` before a step: so many ms after the begin; and these stand for
- * something: `$a` .. `$d` a parameter (its word where it has words), `$n` the node that sends the message, `$t` its cycle,
+ * something: `$a` .. `$d` a parameter (its word where it has words), `$n` the node that sends the message, `$v` the one that receives it, `$t` its cycle,
  * `$e` a cycle lengthened by the second parameter (in steps of a twentieth), `$f` the pattern, `$r` again every $b ms,
  * `$w` again every two times $c ms, `$g` every $d ms, `$s` the AI computer's side, `$y` bytes ($c and its length), `$z` $c less 90,
  * `$i` an identifier that no status message has, `$k` the time to the message's next slot.

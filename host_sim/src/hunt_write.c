@@ -108,6 +108,9 @@ static void add_placeholder(const steps_t *steps, line_t *line, char letter) {
     case 'n':
         append(line, "%s", node_name(vehicle_sender_of(message_of(steps))));
         break;
+    case 'v':
+        append(line, "%s", node_name(vehicle_receiver_of(message_of(steps))));
+        break;
     case 't':
         append(line, "%" PRIu32, cycle_of(steps));
         break;

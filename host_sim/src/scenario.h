@@ -39,6 +39,7 @@ typedef enum {
     SCENARIO_HANG,          /**< for `ms` it neither hears nor steps */
     SCENARIO_BUS_OFF,       /**< `side` */
     SCENARIO_TX_STALL,      /**< `side`, `on`: its frames do not leave */
+    SCENARIO_TX_SWALLOW,    /**< `side`, `on`: its frames are lost, and its controller says that they were sent */
     SCENARIO_QUEUE_FULL,    /**< `side`, `on`: it takes no frame to send */
     SCENARIO_OVERRUN,       /**< `side` */
     SCENARIO_ERROR_PASSIVE, /**< `side`, `on` */

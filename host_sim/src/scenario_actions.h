@@ -39,6 +39,9 @@ typedef enum {
 #define P_OFF_MS (1u << 16)
 #define P_FOR_MS (1u << 17)
 #define P_BIT (1u << 18)
+#define P_EVERY_FRAMES (1u << 19)
+#define P_PCT_S (1u << 20)
+#define P_SPEED (1u << 21)
 
 /** What an actor can do. */
 typedef struct {
@@ -62,7 +65,7 @@ typedef struct {
     uint8_t shift;
 } scenario_field_row_t;
 
-#define SCENARIO_PARAMETERS 19u
+#define SCENARIO_PARAMETERS 22u
 
 extern const yaml_word_t SCENARIO_ACTORS[];
 /** Names of the parameters, in the order of their bits. */

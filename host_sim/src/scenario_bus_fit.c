@@ -11,6 +11,7 @@ enum { PATH_SIZE = 64 };
 /** Why a step of the supervisor or the bus cannot be played; NULL: it can. */
 static const char *const left_out_steps[] = {
     [SCENARIO_TX_STALL] = "stall_tx: nothing holds the frames of a real interface back",
+    [SCENARIO_TX_SWALLOW] = "swallow_tx: nothing swallows the frames of a real interface",
     [SCENARIO_QUEUE_FULL] = "fill_queue: the queue of a real interface cannot be filled on demand",
     [SCENARIO_DELIVER] = "deliver: on a real bus every frame passes the wire",
     [SCENARIO_CORRUPT_LATCH] = "corrupt_latch: the memory of the node is not reached from outside",
@@ -82,6 +83,11 @@ static const char *why_not_step(const scenario_bus_t *bus, const scenario_t *sce
     }
 }
 
+static const char *why_not_vehicle(const vehicle_action_t *action) {
+    const bool is_fd = (action->what == VEHICLE_DO_SEND) && ((action->frame.flags & HAL_CAN_FD) != 0u);
+    return is_fd ? "send, kind: fd: the interfaces are taken for classic ones" : NULL;
+}
+
 static const char *why_not_start(const scenario_t *scenario) {
     if (scenario->bitrate != SCENARIO_DEFAULT_BITRATE) {
         return "bitrate: a real interface has its own";
@@ -150,9 +156,8 @@ static const char *why_not_counters(const scenario_t *scenario) {
 const char *scenario_bus_leaves_out(const scenario_bus_t *bus, const scenario_t *scenario) {
     const char *why = why_not_start(scenario);
     for (size_t i = 0u; (why == NULL) && (i < scenario->step_count); i++) {
-        if (!scenario->steps[i].of_vehicle) {
-            why = why_not_step(bus, scenario, &scenario->steps[i].supervisor);
-        }
+        const scenario_step_t *step = &scenario->steps[i];
+        why = step->of_vehicle ? why_not_vehicle(&step->vehicle) : why_not_step(bus, scenario, &step->supervisor);
     }
     why = (why != NULL) ? why : why_not_faults(&scenario->expect);
     why = (why != NULL) ? why : why_not_ai_side(scenario);

@@ -9,7 +9,8 @@
 #include "yaml_file.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
-#define FIELD_BYTES_MAX 2u
+#define BITS_OF_BYTE 8u
+#define BITS_OF_VALUE 32u
 
 /** A step that is being read. */
 typedef struct {
@@ -32,7 +33,8 @@ static const yaml_node_t *given(const reading_t *reading, uint32_t parameter) {
     return NULL;
 }
 
-static bool take_message(const yaml_reader_t *reader, const reading_t *reading, scenario_step_t *step) {
+static bool take_message(const yaml_reader_t *reader, const reading_t *reading, const scenario_action_row_t *row,
+                         scenario_step_t *step) {
     const yaml_node_t *message = given(reading, P_MESSAGE);
 
     if (message == NULL) {
@@ -40,6 +42,11 @@ static bool take_message(const yaml_reader_t *reader, const reading_t *reading, 
     }
     if (!scenario_parse_message(reader, message, &step->vehicle.message)) {
         return false;
+    }
+    if (((row->what == (int)VEHICLE_DO_IGNORE) && row->of_vehicle)) {
+        return ((int)vehicle_receiver_of(step->vehicle.message) == (int)reading->actor) ||
+               yaml_reader_fail(reader, message, "message: %.40s is no command that this node obeys",
+                                yaml_node_text(message));
     }
     if ((reading->actor <= ACTOR_AI) && ((int)vehicle_sender_of(step->vehicle.message) != (int)reading->actor)) {
         return yaml_reader_fail(reader, message, "message: another node sends %.40s", yaml_node_text(message));
@@ -59,6 +66,7 @@ static bool take_numbers(const yaml_reader_t *reader, const reading_t *reading, 
         {P_FRAMES, "frames", 1u, UINT16_MAX - 1u, true},
         {P_TIMES, "times", 0u, UINT16_MAX - 1u, true},
         {P_BUTTON, "button", 1u, 2u, true},
+        {P_PCT_S, "pct_s", 1u, 10000u, true},
         {P_BY_MS, "by_ms", 0u, 60000u, false},
         {P_EVERY_MS, "every_ms", 1u, 60000u, false},
         {P_OFF_MS, "off_ms", 0u, 3600000u, false},
@@ -81,6 +89,41 @@ static bool take_numbers(const yaml_reader_t *reader, const reading_t *reading, 
             step->vehicle.ms = number;
         }
     }
+    return true;
+}
+
+/** `every_frames`: again and again. */
+static bool take_every(const yaml_reader_t *reader, const reading_t *reading, vehicle_action_t *action) {
+    const yaml_node_t *node = given(reading, P_EVERY_FRAMES);
+    uint32_t every = 0u;
+
+    if (node == NULL) {
+        return true;
+    }
+    if (given(reading, P_FRAMES) == NULL) {
+        return yaml_reader_fail(reader, node, "every_frames: 'frames' is needed with it");
+    }
+    if (!scenario_parse_u32(reader, node, "every_frames", 2u, UINT16_MAX - 1u, &every)) {
+        return false;
+    }
+    action->every = (uint16_t)every;
+    return (action->count < action->every) ||
+           yaml_reader_fail(reader, node, "every_frames: must be more than 'frames', which is %u", action->count);
+}
+
+/** `roll`: at this speed, or at the one that it has. */
+static bool take_speed(const yaml_reader_t *reader, const reading_t *reading, vehicle_action_t *action) {
+    const yaml_node_t *node = given(reading, P_SPEED);
+    int64_t number = 0;
+
+    if (node == NULL) {
+        action->what = action->on ? VEHICLE_DO_VCU_ROLL_ON : VEHICLE_DO_VCU_ROLL;
+        return true;
+    }
+    if (!yaml_reader_number(reader, node, "speed_mm_s", -VEHICLE_ROLL_MAX_MM_S, VEHICLE_ROLL_MAX_MM_S, &number)) {
+        return false;
+    }
+    action->speed_mm_s = (int32_t)number;
     return true;
 }
 
@@ -127,7 +170,13 @@ static bool take_garbage(const yaml_reader_t *reader, const reading_t *reading, 
     return true;
 }
 
-/** `set`: a field keeps a value. */
+/** The largest value of a field. */
+static uint32_t highest_of(const scenario_field_row_t *row) {
+    return (row->size > 1u) ? UINT32_MAX >> (BITS_OF_VALUE - (BITS_OF_BYTE * row->size))
+                            : (uint32_t)row->mask >> row->shift;
+}
+
+/** `set`: a field keeps a value; `freeze_field`: the one that it has. */
 static bool take_field(const yaml_reader_t *reader, const reading_t *reading, vehicle_action_t *action) {
     const yaml_node_t *node = given(reading, P_FIELD);
     const char *name = yaml_reader_text(reader, node, "field");
@@ -140,15 +189,15 @@ static bool take_field(const yaml_reader_t *reader, const reading_t *reading, ve
     if (row == NULL) {
         return yaml_reader_fail(reader, node, "field: this node has no field '%.40s'", name);
     }
-    const uint32_t highest = (row->size == FIELD_BYTES_MAX) ? UINT16_MAX : (uint32_t)row->mask >> row->shift;
-    if (!yaml_reader_hex(reader, given(reading, P_VALUE), "value", highest, &value)) {
+    const yaml_node_t *given_value = given(reading, P_VALUE);
+    if ((given_value != NULL) && !yaml_reader_hex(reader, given_value, "value", highest_of(row), &value)) {
         return false;
     }
     action->message = row->message;
     memset(action->keep, UINT8_MAX, sizeof action->keep);
     for (unsigned i = 0u; i < row->size; i++) {
         action->keep[row->byte + i] = (uint8_t)~row->mask;
-        action->value[row->byte + i] = (uint8_t)((value >> (8u * i)) << row->shift);
+        action->value[row->byte + i] = (uint8_t)((value >> (BITS_OF_BYTE * i)) << row->shift);
     }
     return true;
 }
@@ -181,9 +230,11 @@ static bool take_kind(const yaml_reader_t *reader, const reading_t *reading, boo
     if (!yaml_reader_word(reader, node, "kind", words, &word)) {
         return false;
     }
-    if (on_wire && ((word & (int)(HAL_CAN_FD | HAL_CAN_ERROR)) != 0)) {
-        return yaml_reader_fail(reader, node,
-                                "kind: the bus carries data, extended and remote; fd and error are for deliver");
+    if (on_wire && ((word & (int)HAL_CAN_ERROR) != 0)) {
+        return yaml_reader_fail(reader, node, "kind: nobody sends error; it is for deliver");
+    }
+    if (on_wire && reader->is_line && ((word & (int)HAL_CAN_FD) != 0)) {
+        return yaml_reader_fail(reader, node, "kind: fd is for the simulated bus only");
     }
     frame->flags = (uint8_t)word;
     return true;
@@ -231,10 +282,18 @@ static bool take_for_vehicle(const yaml_reader_t *reader, const reading_t *readi
     action->on = row->on;
     action->node = (vehicle_node_t)reading->actor;
     action->count = ((row->takes & P_FRAMES) != 0u) ? VEHICLE_FOREVER : 0u;
-    if (!take_numbers(reader, reading, step) || !take_driving(reader, reading, action)) {
+    if (!take_numbers(reader, reading, step) || !take_every(reader, reading, action) ||
+        !take_driving(reader, reading, action)) {
         return false;
     }
     switch (action->what) {
+    case VEHICLE_DO_VCU_ROLL:
+        return take_speed(reader, reading, action);
+    case VEHICLE_DO_DELAY:
+        return (action->ms <= VEHICLE_DELAY_MAX_MS) ||
+               yaml_reader_fail(reader, given(reading, P_BY_MS), "by_ms: at most %u for 'delay'", VEHICLE_DELAY_MAX_MS);
+    case VEHICLE_DO_HOLD:
+        return take_field(reader, reading, action);
     case VEHICLE_DO_GARBAGE:
         return take_garbage(reader, reading, action);
     case VEHICLE_DO_PATCH:
@@ -386,7 +445,7 @@ bool scenario_parse_step(const yaml_reader_t *reader, const yaml_node_t *node, c
                               .word = row->word,
                               .of_vehicle = row->of_vehicle};
     step->vehicle.message = AGV_MSG_NONE;
-    if (!has_what_it_needs(reader, &reading, row) || !take_message(reader, &reading, step)) {
+    if (!has_what_it_needs(reader, &reading, row) || !take_message(reader, &reading, row, step)) {
         return false;
     }
     return row->of_vehicle ? take_for_vehicle(reader, &reading, row, config, step)

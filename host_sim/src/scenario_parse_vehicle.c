@@ -59,6 +59,9 @@ FIGURE(braking_mm_s2, 1u)
 FIGURE(locked_mm_s2, 1u)
 FIGURE(steering_rate_ddeg_s, 0u)
 FIGURE(eps_mode_change_ms, 0u)
+FIGURE(throttle_rise_pct_s, 0u)
+FIGURE(throttle_fall_pct_s, 0u)
+FIGURE(reported_speed_pct, 0u)
 FIGURE(ai_lost_ms, 1u)
 FIGURE(eps_lost_ms, 1u)
 
@@ -129,6 +132,9 @@ bool scenario_parse_vehicle_config(const yaml_reader_t *reader, const yaml_node_
         {"locked_mm_s2", read_locked_mm_s2, false},
         {"steering_rate_ddeg_s", read_steering_rate_ddeg_s, false},
         {"eps_mode_change_ms", read_eps_mode_change_ms, false},
+        {"throttle_rise_pct_s", read_throttle_rise_pct_s, false},
+        {"throttle_fall_pct_s", read_throttle_fall_pct_s, false},
+        {"reported_speed_pct", read_reported_speed_pct, false},
         {"ai_lost_ms", read_ai_lost_ms, false},
         {"eps_lost_ms", read_eps_lost_ms, false},
         {"phases_ms", read_phases, false},

@@ -53,10 +53,38 @@ static void follow_power(scenario_world_t *world, vehicle_node_t node) {
     }
 }
 
+/** The bus is a classic one: a frame in FD format takes no time on it, and is heard by everybody with power. */
+static void deliver_past_wire(scenario_world_t *world) {
+    for (size_t i = 0u; i < world->past_wire_count; i++) {
+        const scenario_past_wire_t *waiting = &world->past_wire[i];
+        sim_bus_t *bus = &world->buses[waiting->side];
+        for (int n = 0; n < VEHICLE_NODES; n++) {
+            if (vehicle_side_of(&world->vehicle, (vehicle_node_t)n) == waiting->side) {
+                sim_bus_deliver(bus, world->stations[n].number, &waiting->frame);
+            }
+        }
+        sim_bus_deliver(bus, world->hal.can[waiting->side].node, &waiting->frame);
+    }
+    world->past_wire_count = 0u;
+}
+
+static void send_past_wire(scenario_world_t *world, hal_can_side_t side, const hal_can_frame_t *frame) {
+    if (world->past_wire_count < VEHICLE_STRANGERS_MAX) {
+        world->past_wire[world->past_wire_count] = (scenario_past_wire_t){side, *frame};
+        world->past_wire_count++;
+    } else {
+        world->lost_frames++;
+    }
+}
+
 static void send_of_vehicle(void *ctx, vehicle_node_t from, hal_can_side_t side, const hal_can_frame_t *frame) {
     scenario_world_t *world = ctx;
     sim_bus_node_t number = world->strangers[side];
 
+    if ((frame->flags & HAL_CAN_FD) != 0u) {
+        send_past_wire(world, side, frame);
+        return;
+    }
     if (from != VEHICLE_STRANGER) {
         follow_power(world, from);
         number = world->stations[from].number;
@@ -240,6 +268,9 @@ static void do_to_supervisor(scenario_world_t *world, const scenario_action_t *a
     case SCENARIO_TX_STALL:
         sim_bus_set_stalled(bus, node, action->on);
         break;
+    case SCENARIO_TX_SWALLOW:
+        sim_hal_set_swallowing(&world->hal, action->side, action->on);
+        break;
     case SCENARIO_QUEUE_FULL:
         sim_hal_set_full(&world->hal, action->side, action->on);
         break;
@@ -365,6 +396,9 @@ void scenario_world_tick(scenario_world_t *world, uint64_t t_ms) {
         for (int n = 0; n < VEHICLE_NODES; n++) {
             follow_power(world, (vehicle_node_t)n);
         }
+    }
+    if (world->past_wire_count != 0u) {
+        deliver_past_wire(world);
     }
     if (world->tick_phase_us != 0u) {
         run_buses(world, (t_ms * US_PER_MS) + world->tick_phase_us);

@@ -53,6 +53,12 @@ typedef struct {
     hal_can_side_t side;
 } scenario_side_t;
 
+/** A frame that this bus does not carry, on its way to all nodes of a side. */
+typedef struct {
+    hal_can_side_t side;
+    hal_can_frame_t frame;
+} scenario_past_wire_t;
+
 /** Some 200 KiB: not for the stack. Read the members, change them through the functions. */
 struct scenario_world {
     sim_bus_t buses[HAL_CAN_SIDES];
@@ -71,12 +77,14 @@ struct scenario_world {
     scenario_watch_t watches[SCENARIO_WATCHES_MAX];
     size_t watch_count;
     uint64_t t_ms;
-    uint16_t tick_phase_us; /**< of scenario_t */
-    uint64_t deaf_until_ms; /**< the supervisor hangs, or is without power, until then */
-    bool was_deaf;          /**< it hung: frames may wait for it */
-    bool off;               /**< it is without power */
-    uint32_t power_changes; /**< of the vehicle, that the buses know of */
-    uint32_t lost_frames;   /**< of the vehicle, that found no room in a mailbox */
+    uint16_t tick_phase_us;                                /**< of scenario_t */
+    uint64_t deaf_until_ms;                                /**< the supervisor hangs, or is without power, until then */
+    bool was_deaf;                                         /**< it hung: frames may wait for it */
+    bool off;                                              /**< it is without power */
+    uint32_t power_changes;                                /**< of the vehicle, that the buses know of */
+    uint32_t lost_frames;                                  /**< of the vehicle, that found no room in a mailbox */
+    scenario_past_wire_t past_wire[VEHICLE_STRANGERS_MAX]; /**< FD frames of this millisecond */
+    size_t past_wire_count;
 };
 
 /** Build a world as a scenario begins. @return false: a bit rate that there is not */

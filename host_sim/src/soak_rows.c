@@ -63,6 +63,15 @@ const soak_row_t SOAK_ROWS[] = {
      "operator: release, button: 1|operator: release, button: 2"},
     {"AI restarts in manual", SOAK_MANUAL, 3u, 4000u, 4000u, "ai: restart, off_ms: 2000", ""},
     {"to autopilot", SOAK_MANUAL, 12u, 3000u, 60000u, "ai: drive, gear: D, throttle_pct: 30|operator: engage", ""},
+    {"weaving", SOAK_ENGAGED, 4u, 3000u, 20000u, "ai: weave, steer_deg: 60, every_ms: 3000", "ai: stop_weaving"},
+    {"hunting EPS", 0u, 3u, 500u, 5000u, "eps: hunt, steer_deg: 8, every_ms: 300", "eps: stop_hunting"},
+    {"slow throttle", 0u, 3u, 2000u, 9000u, "vcu: ramp_throttle, pct_s: 100", "vcu: recover"},
+    {"late 363h", 0u, 3u, 500u, 5000u, "vcu: delay, message: vehicle_status, by_ms: 100",
+     "vcu: delay, message: vehicle_status, by_ms: 0"},
+    {"101h comes and goes", 0u, 3u, 500u, 5000u, "vcu: mute, message: wheel_speed, frames: 3, every_frames: 8",
+     "vcu: unmute, message: wheel_speed"},
+    {"another mode now and then", SOAK_ENGAGED, 3u, 1000u, 5000u,
+     "vcu: set, field: mode_bits, value: 1h, frames: 1, every_frames: 20", "vcu: unset, message: vehicle_status"},
     {"planted trip", SOAK_PLANTED, 0u, 100u, 100u, "vcu: mute, message: vehicle_status, frames: 6", ""},
 };
 

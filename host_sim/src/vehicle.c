@@ -7,17 +7,17 @@
 
 /* Phases: at most two frames start in one millisecond. The cycles are those of agv_message_cycle_ms() (a test compares). */
 const vehicle_row_t VEHICLE_ROWS[AGV_MSG_COUNT] = {
-    [AGV_MSG_TURN_SIGNAL_COMMAND] = {VEHICLE_AI, 9u, 100u, vehicle_ai_turn_signal_command},
-    [AGV_MSG_GEAR_COMMAND] = {VEHICLE_AI, 37u, 100u, vehicle_ai_gear_command},
-    [AGV_MSG_THROTTLE_COMMAND] = {VEHICLE_AI, 67u, 100u, vehicle_ai_throttle_command},
-    [AGV_MSG_STEERING_COMMAND] = {VEHICLE_AI, 8u, 25u, vehicle_ai_steering_command},
-    [AGV_MSG_VEHICLE_STATUS] = {VEHICLE_VCU, 0u, 10u, vehicle_vcu_vehicle_status},
-    [AGV_MSG_GEAR_STATUS] = {VEHICLE_VCU, 6u, 25u, vehicle_vcu_gear_status},
-    [AGV_MSG_THROTTLE_STATUS] = {VEHICLE_VCU, 4u, 10u, vehicle_vcu_throttle_status},
-    [AGV_MSG_STEERING_STATUS] = {VEHICLE_EPS, 1u, 10u, vehicle_eps_steering_status},
-    [AGV_MSG_EPS_STATUS] = {VEHICLE_EPS, 3u, 10u, vehicle_eps_eps_status},
-    [AGV_MSG_STEERING_POSITION] = {VEHICLE_EPS, 5u, 10u, vehicle_eps_steering_position},
-    [AGV_MSG_WHEEL_SPEED] = {VEHICLE_VCU, 2u, 10u, vehicle_vcu_wheel_speed},
+    [AGV_MSG_TURN_SIGNAL_COMMAND] = {VEHICLE_AI, 9u, 100u, vehicle_ai_turn_signal_command, 7u},
+    [AGV_MSG_GEAR_COMMAND] = {VEHICLE_AI, 37u, 100u, vehicle_ai_gear_command, VEHICLE_NO_COUNTER},
+    [AGV_MSG_THROTTLE_COMMAND] = {VEHICLE_AI, 67u, 100u, vehicle_ai_throttle_command, VEHICLE_NO_COUNTER},
+    [AGV_MSG_STEERING_COMMAND] = {VEHICLE_AI, 8u, 25u, vehicle_ai_steering_command, VEHICLE_NO_COUNTER},
+    [AGV_MSG_VEHICLE_STATUS] = {VEHICLE_VCU, 0u, 10u, vehicle_vcu_vehicle_status, 7u},
+    [AGV_MSG_GEAR_STATUS] = {VEHICLE_VCU, 6u, 25u, vehicle_vcu_gear_status, VEHICLE_NO_COUNTER},
+    [AGV_MSG_THROTTLE_STATUS] = {VEHICLE_VCU, 4u, 10u, vehicle_vcu_throttle_status, VEHICLE_NO_COUNTER},
+    [AGV_MSG_STEERING_STATUS] = {VEHICLE_EPS, 1u, 10u, vehicle_eps_steering_status, 0u},
+    [AGV_MSG_EPS_STATUS] = {VEHICLE_EPS, 3u, 10u, vehicle_eps_eps_status, VEHICLE_NO_COUNTER},
+    [AGV_MSG_STEERING_POSITION] = {VEHICLE_EPS, 5u, 10u, vehicle_eps_steering_position, VEHICLE_NO_COUNTER},
+    [AGV_MSG_WHEEL_SPEED] = {VEHICLE_VCU, 2u, 10u, vehicle_vcu_wheel_speed, VEHICLE_NO_COUNTER},
 };
 
 void vehicle_defaults(vehicle_config_t *config) {
@@ -34,6 +34,9 @@ void vehicle_defaults(vehicle_config_t *config) {
         .locked_mm_s2 = 5000u,
         .steering_rate_ddeg_s = 3000u,
         .eps_mode_change_ms = 200u,
+        .throttle_rise_pct_s = 500u,
+        .throttle_fall_pct_s = 500u,
+        .reported_speed_pct = 100u,
         .ai_lost_ms = 1000u,
         .eps_lost_ms = 100u,
     };
@@ -68,8 +71,39 @@ vehicle_node_t vehicle_sender_of(agv_message_t message) {
     return VEHICLE_ROWS[message].node;
 }
 
+vehicle_node_t vehicle_receiver_of(agv_message_t message) {
+    if (VEHICLE_ROWS[message].node != VEHICLE_AI) {
+        return VEHICLE_NODES;
+    }
+    return (message == AGV_MSG_STEERING_COMMAND) ? VEHICLE_EPS : VEHICLE_VCU;
+}
+
 hal_can_side_t vehicle_side_of(const vehicle_t *vehicle, vehicle_node_t node) {
     return (vehicle->config.gateway && (node == VEHICLE_AI)) ? HAL_CAN_AI : HAL_CAN_VEHICLE;
+}
+
+int32_t vehicle_limit_angle(int32_t angle_ddeg) {
+    if (angle_ddeg > AGV_ANGLE_MAX_DDEG) {
+        return AGV_ANGLE_MAX_DDEG;
+    }
+    return (angle_ddeg < -AGV_ANGLE_MAX_DDEG) ? -AGV_ANGLE_MAX_DDEG : angle_ddeg;
+}
+
+int32_t vehicle_swing_ddeg(const vehicle_swing_t *swing, uint64_t now_ms) {
+    if (swing->period_ms == 0u) {
+        return 0;
+    }
+    const int64_t period_ms = swing->period_ms;
+    const int64_t phase_ms = (int64_t)((now_ms - swing->from_ms) % swing->period_ms);
+    int64_t quarters = 4 * phase_ms; /* of the period, as a part of it: 0 .. 4 */
+    if (quarters > 3 * period_ms) {
+        quarters -= 4 * period_ms;
+    } else if (quarters > period_ms) {
+        quarters = (2 * period_ms) - quarters;
+    } else {
+        /* the first quarter goes up */
+    }
+    return (int32_t)(swing->amplitude_ddeg * quarters / period_ms);
 }
 
 uint8_t vehicle_count(vehicle_t *vehicle, vehicle_node_t node) {
@@ -159,7 +193,11 @@ void vehicle_run(vehicle_t *vehicle, uint64_t now_ms) {
 }
 
 void vehicle_receive(vehicle_t *vehicle, vehicle_node_t node, uint64_t now_ms, const hal_can_frame_t *frame) {
-    if (((unsigned)node >= (unsigned)VEHICLE_NODES) || !vehicle->nodes[node].running || (frame->flags != 0u)) {
+    if (((unsigned)node >= (unsigned)VEHICLE_NODES) || !vehicle->nodes[node].running) {
+        return;
+    }
+    const bool is_fd_for_vcu = (frame->flags == HAL_CAN_FD) && (node == VEHICLE_VCU);
+    if ((frame->flags != 0u) && !is_fd_for_vcu) {
         return;
     }
     switch (node) {
@@ -182,9 +220,9 @@ void vehicle_view(vehicle_t *vehicle, uint64_t now_ms, vehicle_view_t *view) {
         .gear = vehicle->body.gear,
         .autopilot = vehicle->vcu.autopilot,
         .speed_mm_s = vehicle->body.speed_um_s / 1000,
-        .throttle_permille = vehicle->body.throttle_permille,
+        .throttle_permille = vehicle_body_throttle_permille(vehicle),
         .eps_mode = vehicle->eps.mode,
-        .angle_ddeg = vehicle->eps.angle_mddeg / 1000,
+        .angle_ddeg = vehicle_eps_angle_ddeg(vehicle, now_ms),
         .alarms = vehicle_vcu_alarms(vehicle, now_ms),
         .fastest_park_mm_s = vehicle->body.fastest_park_mm_s,
     };

@@ -13,13 +13,16 @@
  *   within 300 ms) and until the operator drives anew, the remote controller moves nothing.
  *   A gear takes time to engage. With the guard, P is taken only below walking pace: it brakes until then; without it, P
  *   is taken at speed, and the wheels lock. 075h that stays away for 500 ms is throttle 0.
+ *   The throttle (050h) follows what is commanded at a limited rate. D and R engage against the motion only when the
+ *   vehicle stands: it brakes until then, with throttle 0. 363h carries the speed of the wheels in metres per hour.
  *   Alarms: AI CAN signal lost (43Fh counter unchanged for ai_lost_ms; the throttle goes to 0), EPS CAN bus fault (067h
  *   counter unchanged for eps_lost_ms), EPS hardware fault (a bit in 167h byte 8), remote signal and power lost (it
  *   brakes in manual). After a start: manual, gear P when it stands still, else N, all counters at 0.
  * - *EPS*. Angle control while 363h reports autopilot, steering assist otherwise; a change takes eps_mode_change_ms. In
  *   angle control it follows 065h, in assist the driver's hand, both with a limited rate.
  * - *AI computer*. It drives as told while 363h reports autopilot; otherwise it sends gear N, throttle 0, angle 0.
- *   Stubborn, it commands what it was told in every mode.
+ *   To change between D and R, or out of N, it waits with throttle 0 until the wheels stand.
+ *   Stubborn, it commands what it was told at once and in every mode.
  *
  * Single-threaded, no allocation, no globals. All times are milliseconds since the start of the run.
  */
@@ -40,6 +43,10 @@ typedef enum { VEHICLE_VCU, VEHICLE_EPS, VEHICLE_AI, VEHICLE_NODES, VEHICLE_STRA
 #define VEHICLE_NEVER UINT32_MAX
 /** As a number of frames: until it is cleared. */
 #define VEHICLE_FOREVER UINT16_MAX
+/** The longest VEHICLE_DO_DELAY. */
+#define VEHICLE_DELAY_MAX_MS 1000u
+/** The highest speed of VEHICLE_DO_VCU_ROLL, either way. */
+#define VEHICLE_ROLL_MAX_MM_S 20000
 /** Periodic senders of raw frames at one time. */
 #define VEHICLE_STRANGERS_MAX 8u
 
@@ -51,7 +58,7 @@ typedef struct {
     agv_id_set_t id_set;
     bool gateway;                     /**< the AI computer is on the AI side, the others on the vehicle side */
     bool park_guard;                  /**< the VCU takes P only below walking pace (default) */
-    bool obeys_short_frames;          /**< the VCU takes a 168h, 075h or 43Fh of any length (missing bytes are 0) */
+    bool obeys_short_frames;          /**< the VCU takes a 168h, 075h or 43Fh of any length and in FD format */
     uint32_t start_ms[VEHICLE_NODES]; /**< when each node starts; VEHICLE_NEVER */
     uint32_t seed;                    /**< of the garbage */
     uint16_t gear_change_ms;          /**< 120 */
@@ -63,6 +70,9 @@ typedef struct {
     uint16_t locked_mm_s2;            /**< 5000: gear P */
     uint16_t steering_rate_ddeg_s;    /**< 3000 */
     uint16_t eps_mode_change_ms;      /**< 200 */
+    uint16_t throttle_rise_pct_s;     /**< 500: how fast the throttle goes up; 0 = at once */
+    uint16_t throttle_fall_pct_s;     /**< 500: and down */
+    uint16_t reported_speed_pct;      /**< 100: of the speed of the wheels, in 363h */
     uint16_t phase_ms[AGV_MSG_COUNT]; /**< of the first frame of each message, after the start of its node */
     uint16_t ai_lost_ms;              /**< 1000 */
     uint16_t eps_lost_ms;             /**< 100 */
@@ -93,18 +103,30 @@ typedef enum {
     VEHICLE_DO_GARBAGE, /**< `garbage` */
     VEHICLE_DO_RECOVER, /**< end of every misbehaviour of this node, its messages included */
     /* a message: `message` */
-    VEHICLE_DO_MUTE, /**< it is not sent; for `count` frames (VEHICLE_FOREVER) */
+    VEHICLE_DO_MUTE, /**< it is not sent; for `count` frames (VEHICLE_FOREVER), again after every `every` frames */
     VEHICLE_DO_UNMUTE,
-    VEHICLE_DO_PERIOD,  /**< its cycle is `ms`; 0 = as it should be */
-    VEHICLE_DO_PATCH,   /**< bits that are 0 in `keep` are as in `value` in the next `count` frames (VEHICLE_FOREVER) */
+    VEHICLE_DO_PERIOD, /**< its cycle is `ms`; 0 = as it should be */
+    VEHICLE_DO_PATCH, /**< bits that are 0 in `keep` are as in `value` in the next `count` frames (VEHICLE_FOREVER), and
+                             again in the first `count` of every `every` frames; `every` 0 = once */
+    VEHICLE_DO_HOLD,  /**< the same, the value being that of the next frame */
+    VEHICLE_DO_DELAY, /**< what it carries is `ms` old (at most VEHICLE_DELAY_MAX_MS), but for its counter; 0 = no more */
+    VEHICLE_DO_IGNORE,  /**< `on`: a command whose receiver hears it and does not do what it says */
     VEHICLE_DO_UNPATCH, /**< no bit is patched any more */
+    /* the VCU */
+    VEHICLE_DO_VCU_RAMP,        /**< `count`: percent a second at which the throttle comes down */
+    VEHICLE_DO_VCU_ROLL,        /**< `on`: nothing holds the wheels, in no gear; they turn at `speed_mm_s` */
+    VEHICLE_DO_VCU_ROLL_ON,     /**< the same, at the speed that they have */
+    VEHICLE_DO_VCU_REFUSE_PARK, /**< `on`: gear P of the bus is ignored from walking pace on */
+    VEHICLE_DO_VCU_SLOPPY,      /**< `on`: as obeys_short_frames */
     /* the AI computer */
     VEHICLE_DO_AI_DRIVE,         /**< `gear`, `throttle_permille`, `angle_ddeg` while engaged */
     VEHICLE_DO_AI_IDLE,          /**< gear N, throttle 0, angle 0 */
     VEHICLE_DO_AI_STUBBORN,      /**< `on`: commands what it was told in every mode */
     VEHICLE_DO_AI_AUTOPILOT_OFF, /**< `on`: asks for autopilot off in 43Fh */
+    VEHICLE_DO_AI_WEAVE,         /**< its angle swings by `angle_ddeg` to both sides, once in `ms`; 0 = no more */
     /* the EPS */
     VEHICLE_DO_EPS_STUCK, /**< `on`: the steering does not move */
+    VEHICLE_DO_EPS_HUNT, /**< in angle control the angle swings by `angle_ddeg` to both sides, once in `ms`; 0 = no more */
     /* the operator */
     VEHICLE_DO_ENGAGE,
     VEHICLE_DO_DISENGAGE,
@@ -128,8 +150,10 @@ typedef struct {
     hal_can_side_t side;
     uint32_t ms;
     uint16_t count;
+    uint16_t every;
     bool on;
     uint8_t gear; /**< agv_gear_t */
+    int32_t speed_mm_s;
     uint16_t throttle_permille;
     int32_t angle_ddeg;
     uint8_t keep[AGV_DLC];
@@ -151,12 +175,33 @@ typedef struct {
 } vehicle_view_t;
 
 /** @name Private: layout only, so that a program can own a vehicle. @{ */
+#define VEHICLE_PAST_MAX ((VEHICLE_DELAY_MAX_MS / 10u) + 1u) /* frames of the shortest cycle */
+
+/* A number of frames, and again after a gap of so many. */
+typedef struct {
+    uint16_t left;
+    uint16_t frames;
+    uint16_t gap;
+    uint16_t gap_left;
+} vehicle_stretch_t;
+
+/* What a message carried before. */
+typedef struct {
+    uint16_t next;
+    uint16_t count;
+    uint8_t data[VEHICLE_PAST_MAX][AGV_DLC];
+} vehicle_past_t;
+
 typedef struct {
     uint32_t period_ms;
-    uint16_t muted;
+    uint32_t delay_ms;
+    vehicle_stretch_t muted;
+    bool ignored;
     bool patched;
     uint8_t value[AGV_DLC];
-    uint16_t patched_for[AGV_DLC * 8u]; /* frames; a bit of the payload each */
+    uint8_t held[AGV_DLC];                   /* bits whose value is that of the next frame */
+    vehicle_stretch_t patches[AGV_DLC * 8u]; /* a bit of the payload each */
+    vehicle_past_t past;
 } vehicle_message_t;
 
 typedef struct {
@@ -174,10 +219,20 @@ typedef struct {
     uint64_t changed_ms; /* when the target of a change under way was set */
     int32_t speed_um_s;
     int32_t fastest_park_mm_s;
-    uint16_t throttle_permille;
+    int32_t throttle_mpermille; /* 1/1000 permille */
     uint8_t gear;
     uint8_t target;
 } vehicle_body_t;
+
+/* How VCU and brakes misbehave; outlives every restart of the VCU. */
+typedef struct {
+    int32_t roll_um_s;
+    uint16_t throttle_fall_pct_s;
+    bool ramps;
+    bool rolls;
+    bool refuses_park;
+    bool is_sloppy;
+} vehicle_vcu_faults_t;
 
 typedef struct {
     uint64_t park_until_ms;
@@ -209,7 +264,18 @@ typedef struct {
 
 typedef struct {
     bool engaged;
+    bool moving;
+    bool waits;   /* for the wheels to stand, before it commands the gear that it was told */
+    bool shifts;  /* and then for 0A3h to report it, before it commands a throttle */
+    uint8_t gear; /* that 0A3h reports; 0: not heard yet */
 } vehicle_ai_t;
+
+/* A value that swings to both sides. */
+typedef struct {
+    uint64_t from_ms;
+    uint32_t period_ms;
+    int32_t amplitude_ddeg;
+} vehicle_swing_t;
 
 /* What people and the world outside do; outlives every restart of a node. */
 typedef struct {
@@ -227,6 +293,8 @@ typedef struct {
     bool ai_stubborn;
     bool ai_autopilot_off;
     bool eps_stuck;
+    vehicle_swing_t ai_weave;
+    vehicle_swing_t eps_hunt;
 } vehicle_people_t;
 
 typedef struct {
@@ -250,6 +318,7 @@ typedef struct {
     vehicle_node_state_t nodes[VEHICLE_NODES];
     vehicle_body_t body;
     vehicle_vcu_t vcu;
+    vehicle_vcu_faults_t vcu_faults;
     vehicle_eps_t eps;
     vehicle_ai_t ai;
     vehicle_people_t people;
@@ -291,5 +360,8 @@ hal_can_side_t vehicle_side_of(const vehicle_t *vehicle, vehicle_node_t node);
 
 /** The node that sends a message. */
 vehicle_node_t vehicle_sender_of(agv_message_t message);
+
+/** The node that obeys a command; VEHICLE_NODES: it is no command. */
+vehicle_node_t vehicle_receiver_of(agv_message_t message);
 
 #endif

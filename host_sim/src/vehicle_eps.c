@@ -36,6 +36,7 @@ void vehicle_eps_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_fram
             eps->commanded = false;
         }
     } else if ((frame->id == vehicle->id[AGV_MSG_STEERING_COMMAND]) &&
+               !vehicle->messages[AGV_MSG_STEERING_COMMAND].ignored &&
                agv_unpack_steering_command(&command, frame->data)) {
         vehicle_eps_move(vehicle, now_ms);
         eps->command_ddeg = command.angle_ddeg;
@@ -71,6 +72,12 @@ void vehicle_eps_move(vehicle_t *vehicle, uint64_t now_ms) {
     }
 }
 
+int32_t vehicle_eps_angle_ddeg(const vehicle_t *vehicle, uint64_t now_ms) {
+    const bool hunts = vehicle->eps.mode == AGV_EPS_MODE_ANGLE;
+    const int32_t swing_ddeg = hunts ? vehicle_swing_ddeg(&vehicle->people.eps_hunt, now_ms) : 0;
+    return vehicle_limit_angle((vehicle->eps.angle_mddeg / 1000) + swing_ddeg);
+}
+
 void vehicle_eps_steering_status(vehicle_t *vehicle, uint64_t now_ms, uint8_t data[AGV_DLC]) {
     agv_steering_status_t status;
 
@@ -78,7 +85,7 @@ void vehicle_eps_steering_status(vehicle_t *vehicle, uint64_t now_ms, uint8_t da
     status = (agv_steering_status_t){
         .alive_counter = vehicle_count(vehicle, VEHICLE_EPS),
         .supply_pct_of_12v = SUPPLY_PCT,
-        .angle_ddeg = vehicle->eps.angle_mddeg / 1000,
+        .angle_ddeg = vehicle_eps_angle_ddeg(vehicle, now_ms),
     };
     (void)agv_pack_steering_status(data, &status);
 }

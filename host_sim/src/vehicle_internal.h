@@ -16,7 +16,10 @@ typedef struct {
     uint16_t phase_ms; /**< the preset of vehicle_config_t: spread, so that few fall together */
     uint16_t cycle_ms;
     vehicle_compose_fn *compose;
+    uint8_t counter_byte; /**< that its alive counter is in; VEHICLE_NO_COUNTER */
 } vehicle_row_t;
+
+#define VEHICLE_NO_COUNTER UINT8_MAX
 
 extern const vehicle_row_t VEHICLE_ROWS[AGV_MSG_COUNT];
 
@@ -27,6 +30,12 @@ static inline int32_t vehicle_approach(int32_t value, int32_t target, int32_t st
     }
     return (value - target <= step) ? target : value - step;
 }
+
+/** Where a swing is now: a triangle that begins at 0 and goes up first. */
+int32_t vehicle_swing_ddeg(const vehicle_swing_t *swing, uint64_t now_ms);
+
+/** An angle within what the messages can carry. */
+int32_t vehicle_limit_angle(int32_t angle_ddeg);
 
 /** The alive counter of the next frame. */
 uint8_t vehicle_count(vehicle_t *vehicle, vehicle_node_t node);
@@ -48,6 +57,10 @@ vehicle_compose_fn vehicle_vcu_wheel_speed;
 /** @name vehicle_body.c @{ */
 /** Let gear box and wheels come to @p now_ms, as the VCU has them do since the last call. */
 void vehicle_body_move(vehicle_t *vehicle, uint64_t now_ms);
+/** What 050h reports. */
+uint16_t vehicle_body_throttle_permille(const vehicle_t *vehicle);
+/** Walking pace or faster: no speed at which to take P. */
+bool vehicle_body_is_fast(const vehicle_t *vehicle);
 /** @} */
 
 /** @name vehicle_eps.c @{ */
@@ -55,6 +68,8 @@ void vehicle_eps_start(vehicle_t *vehicle, uint64_t now_ms);
 void vehicle_eps_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_frame_t *frame);
 /** Let the steering come to @p now_ms. */
 void vehicle_eps_move(vehicle_t *vehicle, uint64_t now_ms);
+/** The angle as it is measured. */
+int32_t vehicle_eps_angle_ddeg(const vehicle_t *vehicle, uint64_t now_ms);
 vehicle_compose_fn vehicle_eps_steering_status;
 vehicle_compose_fn vehicle_eps_eps_status;
 vehicle_compose_fn vehicle_eps_steering_position;
@@ -62,6 +77,8 @@ vehicle_compose_fn vehicle_eps_steering_position;
 
 /** @name vehicle_ai.c @{ */
 void vehicle_ai_start(vehicle_t *vehicle, uint64_t now_ms);
+/** It was told something else, or is engaged: does it have to stop first? */
+void vehicle_ai_reconsider(vehicle_t *vehicle);
 void vehicle_ai_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_frame_t *frame);
 vehicle_compose_fn vehicle_ai_turn_signal_command;
 vehicle_compose_fn vehicle_ai_gear_command;
@@ -72,7 +89,9 @@ vehicle_compose_fn vehicle_ai_steering_command;
 /** @name vehicle_send.c: how nodes send, and misbehave @{ */
 /** Send the frame of a message that is due, as its node and the message misbehave. */
 void vehicle_send_message(vehicle_t *vehicle, agv_message_t message, uint64_t now_ms);
-/** Bits of its payload keep a value from now on, those that were patched before too (VEHICLE_DO_PATCH). */
+/** Begin a stretch of `count` frames (VEHICLE_FOREVER), once or again and again. */
+vehicle_stretch_t vehicle_stretch(uint16_t count, uint16_t every);
+/** Bits of its payload keep a value from now on, those that were patched before too (VEHICLE_DO_PATCH, _HOLD). */
 void vehicle_patch(vehicle_message_t *message, const vehicle_action_t *action);
 /** End of that for all bits. */
 void vehicle_unpatch(vehicle_message_t *message);

@@ -57,32 +57,87 @@ static void set_bit(uint8_t bytes[AGV_DLC], unsigned bit, const uint8_t value[AG
     bytes[bit / 8u] = (uint8_t)((bytes[bit / 8u] & ~mask) | (value[bit / 8u] & mask));
 }
 
+vehicle_stretch_t vehicle_stretch(uint16_t count, uint16_t every) {
+    return (vehicle_stretch_t){
+        .left = count, .frames = count, .gap = (every > count) ? (uint16_t)(every - count) : (uint16_t)0};
+}
+
+/** One more frame. @return whether it is in the stretch, and not in a gap or after the end */
+static bool pass_frame(vehicle_stretch_t *stretch) {
+    if (stretch->left != 0u) {
+        use_up(&stretch->left);
+        stretch->gap_left = (stretch->left == 0u) ? stretch->gap : (uint16_t)0;
+        return true;
+    }
+    if (stretch->gap_left != 0u) {
+        stretch->gap_left--;
+        stretch->left = (stretch->gap_left == 0u) ? stretch->frames : (uint16_t)0;
+    }
+    return false;
+}
+
+static bool goes_on(const vehicle_stretch_t *stretch) {
+    return (stretch->left != 0u) || (stretch->gap_left != 0u);
+}
+
 void vehicle_patch(vehicle_message_t *message, const vehicle_action_t *action) {
+    for (unsigned byte = 0; byte < AGV_DLC; byte++) {
+        const uint8_t mask = (uint8_t)~action->keep[byte];
+        const uint8_t held = (action->what == VEHICLE_DO_HOLD) ? mask : (uint8_t)0;
+        message->held[byte] = (uint8_t)((message->held[byte] & action->keep[byte]) | held);
+    }
     for (unsigned bit = 0; bit < AGV_DLC * 8u; bit++) {
         if ((action->keep[bit / 8u] >> (bit % 8u) & 1u) == 0u) {
             set_bit(message->value, bit, action->value);
-            message->patched_for[bit] = action->count;
+            message->patches[bit] = vehicle_stretch(action->count, action->every);
         }
     }
     message->patched = true;
 }
 
 void vehicle_unpatch(vehicle_message_t *message) {
-    memset(message->patched_for, 0, sizeof message->patched_for);
+    memset(message->patches, 0, sizeof message->patches);
+    memset(message->held, 0, sizeof message->held);
     message->patched = false;
+}
+
+/** What is to be held is what this frame carries. */
+static void take_held(vehicle_message_t *message, const uint8_t data[AGV_DLC]) {
+    for (unsigned byte = 0; byte < AGV_DLC; byte++) {
+        const uint8_t held = message->held[byte];
+        message->value[byte] = (uint8_t)((message->value[byte] & ~held) | (data[byte] & held));
+        message->held[byte] = 0u;
+    }
 }
 
 static void apply_patches(vehicle_message_t *message, uint8_t data[AGV_DLC]) {
     bool more = false;
 
+    take_held(message, data);
     for (unsigned bit = 0; bit < AGV_DLC * 8u; bit++) {
-        if (message->patched_for[bit] != 0u) {
+        vehicle_stretch_t *patch = &message->patches[bit];
+        if (pass_frame(patch)) {
             set_bit(data, bit, message->value);
-            use_up(&message->patched_for[bit]);
-            more = more || (message->patched_for[bit] != 0u);
         }
+        more = more || goes_on(patch);
     }
     message->patched = more;
+}
+
+/** Put what was carried `delay_ms` ago in the place of what would be carried now; the counter runs on. */
+static void delay(vehicle_message_t *message, const vehicle_row_t *row, uint8_t data[AGV_DLC]) {
+    vehicle_past_t *past = &message->past;
+    const uint32_t wanted = message->delay_ms / row->cycle_ms;
+    const uint8_t counter = (row->counter_byte != VEHICLE_NO_COUNTER) ? data[row->counter_byte] : (uint8_t)0;
+
+    memcpy(past->data[past->next], data, AGV_DLC);
+    const uint32_t back = (wanted < past->count) ? wanted : past->count;
+    memcpy(data, past->data[(past->next + VEHICLE_PAST_MAX - back) % VEHICLE_PAST_MAX], AGV_DLC);
+    past->next = (uint16_t)((past->next + 1u) % VEHICLE_PAST_MAX);
+    past->count = (past->count < VEHICLE_PAST_MAX - 1u) ? (uint16_t)(past->count + 1u) : past->count;
+    if (row->counter_byte != VEHICLE_NO_COUNTER) {
+        data[row->counter_byte] = counter;
+    }
 }
 
 void vehicle_send_message(vehicle_t *vehicle, agv_message_t message, uint64_t now_ms) {
@@ -99,8 +154,10 @@ void vehicle_send_message(vehicle_t *vehicle, agv_message_t message, uint64_t no
         *due_ms = now_ms + period_ms;
     }
     row->compose(vehicle, now_ms, frame.data);
-    if (state->muted != 0u) {
-        use_up(&state->muted);
+    if (state->delay_ms != 0u) {
+        delay(state, row, frame.data);
+    }
+    if (pass_frame(&state->muted)) {
         return;
     }
     if (state->patched) {
@@ -122,14 +179,21 @@ void vehicle_recover(vehicle_t *vehicle, vehicle_node_t node) {
     state->repeat = 0u;
     state->garbage = VEHICLE_GARBAGE_OFF;
     for (int m = 0; m < AGV_MSG_COUNT; m++) {
+        vehicle_message_t *message = &vehicle->messages[m];
         if (VEHICLE_ROWS[m].node == node) {
-            vehicle->messages[m].muted = 0u;
-            vehicle_unpatch(&vehicle->messages[m]);
-            vehicle->messages[m].period_ms = 0u;
+            message->muted = vehicle_stretch(0u, 0u);
+            vehicle_unpatch(message);
+            message->period_ms = 0u;
+            message->delay_ms = 0u;
         }
+        message->ignored = message->ignored && (vehicle_receiver_of((agv_message_t)m) != node);
     }
     if (node == VEHICLE_EPS) {
         vehicle->people.eps_stuck = false;
+        vehicle->people.eps_hunt = (vehicle_swing_t){.period_ms = 0u};
+    }
+    if (node == VEHICLE_VCU) {
+        vehicle->vcu_faults = (vehicle_vcu_faults_t){.rolls = false};
     }
 }
 

@@ -6,7 +6,9 @@
 
 #define COMMAND_HOLD_MS 300u  /* for which gear P and autopilot off stand after their last frame */
 #define THROTTLE_HOLD_MS 500u /* after which a 075h that stays away is throttle 0 */
-#define M_PER_H_PER_10_MM_S 36
+#define M_PER_H_NUMERATOR 36  /* 1 um/s is 0.0036 m/h */
+#define M_PER_H_DENOMINATOR 10000
+#define SIGNALS_LENGTH 5u /* of a 43Fh that is cut short and still carries the lights and autopilot off */
 
 void vehicle_vcu_start(vehicle_t *vehicle, uint64_t now_ms) {
     vehicle_vcu_t *vcu = &vehicle->vcu;
@@ -67,6 +69,9 @@ static void obey_gear(vehicle_t *vehicle, uint64_t now_ms, const uint8_t data[AG
         return;
     }
     vehicle_body_move(vehicle, now_ms);
+    if ((command.gear == AGV_GEAR_P) && vehicle->vcu_faults.refuses_park && vehicle_body_is_fast(vehicle)) {
+        return;
+    }
     if (command.gear == AGV_GEAR_P) {
         vcu->park_until_ms = now_ms + COMMAND_HOLD_MS;
         vcu->throttle_permille = 0u;
@@ -80,28 +85,40 @@ static void obey_gear(vehicle_t *vehicle, uint64_t now_ms, const uint8_t data[AG
 
 static void obey_throttle(vehicle_t *vehicle, uint64_t now_ms, const uint8_t data[AGV_DLC]) {
     vehicle_vcu_t *vcu = &vehicle->vcu;
+    const bool ignored = vehicle->messages[AGV_MSG_THROTTLE_COMMAND].ignored;
     agv_throttle_command_t command;
 
     if (vcu->autopilot && agv_unpack_throttle_command(&command, data)) {
         vehicle_body_move(vehicle, now_ms);
-        vcu->throttle_permille = command.throttle_permille;
+        vcu->throttle_permille = ignored ? vcu->throttle_permille : command.throttle_permille;
         vcu->throttle_until_ms = now_ms + THROTTLE_HOLD_MS;
         vehicle_body_move(vehicle, now_ms);
     }
 }
 
-static void obey_turn_signals(vehicle_t *vehicle, uint64_t now_ms, const uint8_t data[AGV_DLC]) {
+static void hear_ai(vehicle_t *vehicle, uint64_t now_ms, uint8_t counter) {
+    vehicle_vcu_t *vcu = &vehicle->vcu;
+
+    if (!vcu->ai_heard || (counter != vcu->ai_counter)) {
+        vcu->ai_heard = true;
+        vcu->ai_counter = counter;
+        vcu->ai_until_ms = now_ms + vehicle->config.ai_lost_ms;
+    }
+}
+
+static void obey_turn_signals(vehicle_t *vehicle, uint64_t now_ms, const hal_can_frame_t *frame) {
     vehicle_vcu_t *vcu = &vehicle->vcu;
     agv_turn_signal_command_t command;
 
-    (void)agv_unpack_turn_signal_command(&command, data);
+    (void)agv_unpack_turn_signal_command(&command, frame->data);
+    if (frame->length >= AGV_DLC) {
+        hear_ai(vehicle, now_ms, command.alive_counter);
+    }
+    if ((frame->length < SIGNALS_LENGTH) || vehicle->messages[AGV_MSG_TURN_SIGNAL_COMMAND].ignored) {
+        return;
+    }
     vcu->turn_left_on = command.turn_left_on;
     vcu->turn_right_on = command.turn_right_on;
-    if (!vcu->ai_heard || (command.alive_counter != vcu->ai_counter)) {
-        vcu->ai_heard = true;
-        vcu->ai_counter = command.alive_counter;
-        vcu->ai_until_ms = now_ms + vehicle->config.ai_lost_ms;
-    }
     if (command.autopilot_off) {
         vcu->off_until_ms = now_ms + COMMAND_HOLD_MS;
         vehicle_vcu_disengage(vehicle, now_ms);
@@ -120,8 +137,9 @@ static void hear_eps(vehicle_t *vehicle, uint64_t now_ms, const uint8_t data[AGV
 
 void vehicle_vcu_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_frame_t *frame) {
     const uint16_t *id = vehicle->id;
-    const bool whole = frame->length == AGV_DLC;
-    const bool usable = whole || vehicle->config.obeys_short_frames;
+    const bool whole = (frame->length == AGV_DLC) && (frame->flags == 0u);
+    const bool is_sloppy = vehicle->config.obeys_short_frames || vehicle->vcu_faults.is_sloppy;
+    const bool usable = whole || (is_sloppy && (frame->length > 0u));
 
     if (frame->id == id[AGV_MSG_STEERING_STATUS]) {
         if (whole) {
@@ -134,11 +152,13 @@ void vehicle_vcu_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_fram
     } else if (!usable) {
         return;
     } else if (frame->id == id[AGV_MSG_GEAR_COMMAND]) {
-        obey_gear(vehicle, now_ms, frame->data);
+        if (!vehicle->messages[AGV_MSG_GEAR_COMMAND].ignored) {
+            obey_gear(vehicle, now_ms, frame->data);
+        }
     } else if (frame->id == id[AGV_MSG_THROTTLE_COMMAND]) {
         obey_throttle(vehicle, now_ms, frame->data);
     } else if (frame->id == id[AGV_MSG_TURN_SIGNAL_COMMAND]) {
-        obey_turn_signals(vehicle, now_ms, frame->data);
+        obey_turn_signals(vehicle, now_ms, frame);
     }
 }
 
@@ -155,6 +175,13 @@ uint8_t vehicle_vcu_alarms(const vehicle_t *vehicle, uint64_t now_ms) {
     return (uint8_t)alarms;
 }
 
+/** The speed of the wheels in metres per hour (P7), as far as 16 bits go. */
+static uint16_t reported_speed_m_per_h(const vehicle_t *vehicle) {
+    const int64_t m_per_h = (int64_t)abs(vehicle->body.speed_um_s) * M_PER_H_NUMERATOR / M_PER_H_DENOMINATOR;
+    const int64_t reported = m_per_h * vehicle->config.reported_speed_pct / 100;
+    return (reported > UINT16_MAX) ? UINT16_MAX : (uint16_t)reported;
+}
+
 void vehicle_vcu_vehicle_status(vehicle_t *vehicle, uint64_t now_ms, uint8_t data[AGV_DLC]) {
     const vehicle_vcu_t *vcu = &vehicle->vcu;
     const vehicle_people_t *people = &vehicle->people;
@@ -163,7 +190,7 @@ void vehicle_vcu_vehicle_status(vehicle_t *vehicle, uint64_t now_ms, uint8_t dat
 
     vehicle_body_move(vehicle, now_ms);
     status = (agv_vehicle_status_t){
-        .speed_m_per_h = (uint16_t)((abs(vehicle->body.speed_um_s) / 10000) * M_PER_H_PER_10_MM_S),
+        .speed_m_per_h = reported_speed_m_per_h(vehicle),
         .level1_alarms = vehicle_vcu_alarms(vehicle, now_ms),
         .button_1 = remote && people->button_1,
         .button_2 = remote && people->button_2,
@@ -188,7 +215,7 @@ void vehicle_vcu_throttle_status(vehicle_t *vehicle, uint64_t now_ms, uint8_t da
     agv_throttle_status_t status;
 
     vehicle_body_move(vehicle, now_ms);
-    status.throttle_permille = vehicle->body.throttle_permille;
+    status.throttle_permille = vehicle_body_throttle_permille(vehicle);
     (void)agv_pack_throttle_status(data, &status);
 }
 

@@ -269,7 +269,7 @@ static void print_messages(void) {
 void vehicle_words_help(void) {
     print_actions(ACTOR_NONE, "vcu, eps, ai");
     for (const yaml_word_t *actor = SCENARIO_ACTORS; actor->word != NULL; actor++) {
-        if ((actor->value != (int)ACTOR_SUPERVISOR) && (actor->value != (int)ACTOR_VCU)) {
+        if (actor->value != (int)ACTOR_SUPERVISOR) {
             print_actions((scenario_actor_t)actor->value, actor->word);
         }
     }

@@ -1,6 +1,7 @@
 /* Steps that are typed, or follow --fault: the same as in a scenario file, and one line for what makes no sense. */
 #include "vehicle_words.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "scratch.h"
@@ -90,6 +91,61 @@ void test_what_makes_no_sense_is_one_line(void) {
     refused_when_typed("ai a=1 b=2 c=3 d=4 e=5 f=6 g=7 h=8 i=9 j=10 k=11 l=12",
                        "host_sim: 'ai a=1 b=2 c=3 d=4 e=5 f=6 g=7 h=8 i=9 j=10 k=11 l=12': these are too many words\n");
     refused_when_typed("ai sto\xFFp", "host_sim: 'ai sto\xFFp': this is no text (UTF-8)\n");
+}
+
+void test_what_makes_no_sense_in_the_parameters_of_a_fault_is_one_line(void) {
+    static const char *const rows[][2] = {
+        {"vcu set field=gear value=1h every_frames=5", "every_frames: 'frames' is needed with it"},
+        {"vcu set field=gear value=1h frames=5 every_frames=5", "every_frames: must be more than 'frames', which is 5"},
+        {"vcu mute message=gear_status frames=3 every_frames=2",
+         "every_frames: must be more than 'frames', which is 3"},
+        {"vcu delay message=vehicle_status by_ms=1001", "by_ms: at most 1000 for 'delay'"},
+        {"vcu delay message=eps_status by_ms=10", "message: another node sends eps_status"},
+        {"vcu ignore message=steering_command", "message: steering_command is no command that this node obeys"},
+        {"eps ignore message=gear_command", "message: gear_command is no command that this node obeys"},
+        {"vcu ignore message=gear_status", "message: gear_status is no command that this node obeys"},
+        {"ai ignore message=gear_command", "ai: there is no 'ignore' to do"},
+        {"vcu roll speed_mm_s=20001", "speed_mm_s: 20001 is not within -20000 to 20000"},
+        {"vcu ramp_throttle pct_s=0", "pct_s: 0 is not within 1 to 10000"},
+        {"vcu set field=speed value=10000h", "value: 10000h is above FFFFh"},
+        {"vcu freeze_field field=angle", "field: this node has no field 'angle'"},
+        {"vcu freeze_field field=speed value=1h", "'freeze_field' takes no 'value'"},
+        {"eps hunt steer_deg=901 every_ms=500", "steer_deg: 901 is not within -900 to 900"},
+        {"eps hunt steer_deg=60", "'hunt' needs 'every_ms'"},
+        {"ai weave steer_deg=60 every_ms=0", "every_ms: 0 is not within 1 to 60000"},
+        {"bus send message=gear_command kind=fd bytes=08", "kind: fd is for the simulated bus only"},
+        {"bus send message=gear_command kind=error bytes=08", "kind: nobody sends error; it is for deliver"},
+    };
+    for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
+        char expected[2u * VEHICLE_WORDS_MAX];
+        (void)snprintf(expected, sizeof expected, "host_sim: '%s': %s\n", rows[i][0], rows[i][1]);
+        refused_when_typed(rows[i][0], expected);
+    }
+}
+
+void test_the_parameters_of_a_fault_reach_the_vehicle(void) {
+    const vehicle_action_t *action = &words.step.vehicle;
+
+    TEST_ASSERT_TRUE(
+        vehicle_words_fault("vcu-set,field=mode_bits,value=2h,frames=1,every_frames=40@7", &config, &words));
+    TEST_ASSERT_EQUAL(1, action->count);
+    TEST_ASSERT_EQUAL(40, action->every);
+    TEST_ASSERT_TRUE(vehicle_words_fault("vcu-set,field=left_speed,value=FFFFFF9Ch@7", &config, &words));
+    TEST_ASSERT_EQUAL_HEX8(0x9C, action->value[0]);
+    TEST_ASSERT_EQUAL_HEX8(0xFF, action->value[3]);
+    TEST_ASSERT_EQUAL_HEX8(0x00, action->keep[3]);
+    TEST_ASSERT_EQUAL_HEX8(0xFF, action->keep[4]);
+    TEST_ASSERT_TRUE(vehicle_words_fault("vcu-roll,speed_mm_s=-300@7", &config, &words));
+    TEST_ASSERT_EQUAL(VEHICLE_DO_VCU_ROLL, action->what);
+    TEST_ASSERT_EQUAL(-300, action->speed_mm_s);
+    TEST_ASSERT_TRUE(vehicle_words_fault("vcu-roll@7", &config, &words));
+    TEST_ASSERT_EQUAL(VEHICLE_DO_VCU_ROLL_ON, action->what);
+    TEST_ASSERT_TRUE(vehicle_words_fault("vcu-hold@7", &config, &words));
+    TEST_ASSERT_EQUAL(VEHICLE_DO_VCU_ROLL, action->what);
+    TEST_ASSERT_FALSE(action->on);
+    TEST_ASSERT_TRUE(vehicle_words_fault("eps-ignore,message=steering_command@7", &config, &words));
+    TEST_ASSERT_EQUAL(AGV_MSG_STEERING_COMMAND, action->message);
+    TEST_ASSERT_TRUE(action->on);
 }
 
 void test_what_needs_a_simulated_bus_is_refused(void) {

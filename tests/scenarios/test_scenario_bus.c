@@ -60,6 +60,8 @@ void test_steps(void) {
     is_left_out(STEP("supervisor: corrupt_latch"), "corrupt_latch: ");
     is_left_out(STEP("supervisor: flip_bit, bit: 1"), "flip_bit: ");
     is_left_out(STEP("bus: destroy, frames: 1"), "destroy: ");
+    is_left_out(STEP("bus: send, kind: fd, id: 363h, bytes: \"00\""), "send, kind: fd: ");
+    is_left_out(STEP("supervisor: swallow_tx"), "swallow_tx: ");
     is_left_out(STEP("bus: deliver, kind: data, id: 363h, bytes: \"00\""), "deliver: ");
     is_left_out(BEGIN "hardware_watchdog: none\nsteps:\n  - {at_ms: 5, supervisor: hang, for_ms: 500}\n" NO_STATES,
                 NULL);

@@ -180,11 +180,32 @@ class Command(hostsim.Case):
         self.write("s.yaml", GOOD)
         self.assert_refused(self.run_program("scenario", "s.yaml", "/dev/null"), "/dev/null: is no regular file")
 
-    def test_what_the_bus_does_not_carry_is_not_sent(self):
-        for kind in ("fd", "error"):
-            step = f'steps:\n  - {{at_ms: 100, bus: send, id: 124h, bytes: "01", kind: {kind}}}\n'
-            self.assert_refused(self.scenario(GOOD + step), "s.yaml:", "are for deliver")
-            self.assertEqual(self.scenario(GOOD + step.replace("bus: send", "bus: deliver")).status, 0)
+    def test_an_error_frame_is_delivered_and_not_sent(self):
+        step = 'steps:\n  - {at_ms: 100, bus: send, id: 124h, bytes: "01", kind: error}\n'
+        self.assert_refused(self.scenario(GOOD + step), "s.yaml:", "it is for deliver")
+        self.assertEqual(self.scenario(GOOD + step.replace("bus: send", "bus: deliver")).status, 0)
+
+    def test_a_frame_in_fd_format_is_heard_by_supervisor_and_vehicle(self):
+        """A sloppy VCU that stands without power to the wheels takes the gear of it; the supervisor counts it."""
+        text = GOOD.replace("duration_ms: 600", "duration_ms: 3000") + """\
+  counters_at_end: {rejected_fd: 1}
+  vehicle: [{at_ms: 2900, gear: %s, mode: manual}]
+steps:
+  - {at_ms: 1000, vcu: %s}
+  - {at_ms: 1000, operator: drive, gear: D, throttle_pct: 0}
+  - {at_ms: 2000, bus: send, message: gear_command, bytes: "08", kind: fd}
+"""
+        for word, gear in (("be_sloppy", "P"), ("be_strict", "D")):
+            result = self.scenario(text % (gear, word))
+            self.assertEqual(result.status, 0, result.stdout + result.stderr)
+
+    # Shows: TX_STALLED
+    def test_swallowed_frames_never_leave(self):
+        step = "steps:\n  - {at_ms: %d, supervisor: swallow_tx}\n  - {at_ms: 300, supervisor: pass_tx}\n"
+        expected = "  frames: [{message: gear_command, at_ms: [10, 250], count: %s}]\n"
+        for at_ms, count in ((0, "0"), (290, "[2, 8]")):
+            result = self.scenario(GOOD + expected % count + step % at_ms)
+            self.assertEqual(result.status, 0, result.stdout + result.stderr)
 
     def test_options_that_make_no_sense(self):
         self.assert_refused(self.scenario(GOOD, "--planted", "garden"), "--planted", "garden")

@@ -128,7 +128,7 @@ void test_throttle_that_stays_away_is_throttle_0_after_500_ms(void) {
         run_until(now_ms + 1u);
     }
     TEST_ASSERT_EQUAL_UINT16(300u, look().throttle_permille);
-    run_until(3401u);
+    run_until(3470u); /* 30 % at 500 % a second: 60 ms */
     TEST_ASSERT_EQUAL_UINT16(0u, look().throttle_permille);
     run_until(4401u);
     TEST_ASSERT_INT32_WITHIN(10, 800, look().speed_mm_s); /* coasts at 0.4 m/s2 */
@@ -167,8 +167,9 @@ void test_autopilot_off_ends_autopilot_mode_and_holds_for_300_ms(void) {
     drive(3000u, 75u);
     command_signals(AUTOPILOT_OFF, 1u);
     TEST_ASSERT_FALSE(look().autopilot);
-    TEST_ASSERT_EQUAL_UINT16(0u, look().throttle_permille);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_D, look().gear); /* that is another command's */
+    run_until(3061u);
+    TEST_ASSERT_EQUAL_UINT16(0u, look().throttle_permille);
     run_until(3299u);
     (void)act((vehicle_action_t){.what = VEHICLE_DO_ENGAGE});
     TEST_ASSERT_FALSE(look().autopilot);
@@ -305,7 +306,7 @@ void test_without_the_ai_computer_the_vcu_takes_the_throttle_away(void) {
         run_until(now_ms + 10u);
     }
     TEST_ASSERT_EQUAL_UINT16(300u, look().throttle_permille);
-    run_until(3901u);
+    run_until(3970u);
     TEST_ASSERT_EQUAL_UINT16(0u, look().throttle_permille);
     TEST_ASSERT_TRUE(look().autopilot);
 }

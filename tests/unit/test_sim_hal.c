@@ -152,6 +152,18 @@ void test_bus_off_purge_and_recovery_through_the_port(void) {
     TEST_ASSERT_FALSE(hal_can_send(&hal, HAL_CAN_VEHICLE, &FRAME));
 }
 
+void test_a_swallowed_frame_counts_as_sent_and_never_leaves(void) {
+    sim_hal_set_swallowing(&hal, HAL_CAN_VEHICLE, true);
+    sim_hal_set_swallowing(&hal, HAL_CAN_SIDES, true); /* no such side: nothing */
+    TEST_ASSERT_TRUE(hal_can_send(&hal, HAL_CAN_VEHICLE, &FRAME));
+    TEST_ASSERT_EQUAL_UINT32(1, hal.can[HAL_CAN_VEHICLE].sent);
+    TEST_ASSERT_EQUAL_UINT32(0, status_of(HAL_CAN_VEHICLE).tx_pending_ms);
+    TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(&bus, hal.can[HAL_CAN_VEHICLE].node));
+    sim_hal_set_swallowing(&hal, HAL_CAN_VEHICLE, false);
+    TEST_ASSERT_TRUE(hal_can_send(&hal, HAL_CAN_VEHICLE, &FRAME));
+    TEST_ASSERT_EQUAL_size_t(1, sim_bus_waiting(&bus, hal.can[HAL_CAN_VEHICLE].node));
+}
+
 /* What is set from outside without a bus is the bus's business with one. */
 void test_on_a_bus_the_state_is_the_controllers(void) {
     sim_hal_set_can_state(&hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);

@@ -191,6 +191,7 @@ class Faults(canbus.Case):
         vehicle.say("status")
         vehicle.wait_line(r"^gear P, manual, 0\.00 m/s, throttle 0 %, steering 0\.0 deg, alarms: EPS_HARDWARE")
         vehicle.say("help")
+        vehicle.wait_line("^vcu +ignore message=, obey message=, ramp_throttle pct_s=, roll ")
         vehicle.wait_line("^ai +drive gear= throttle_pct= ")
         for _ in range(9):
             vehicle.say("bus send message=gear_command bytes=\"08 00\" every_ms=100")

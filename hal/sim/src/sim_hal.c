@@ -164,6 +164,13 @@ void sim_hal_set_tx_pending_ms(hal_t *hal, hal_can_side_t side, uint32_t tx_pend
     }
 }
 
+void sim_hal_set_swallowing(hal_t *hal, hal_can_side_t side, bool swallows) {
+    sim_hal_can_t *can = sim_hal_controller(hal, side);
+    if (can != NULL) {
+        can->swallows = swallows;
+    }
+}
+
 void sim_hal_set_full(hal_t *hal, hal_can_side_t side, bool full) {
     sim_hal_can_t *can = sim_hal_controller(hal, side);
     if (can != NULL) {

@@ -35,7 +35,7 @@ bool hal_can_send(hal_t *hal, hal_can_side_t side, const hal_can_frame_t *frame)
         return false;
     }
     bool taken = works && !can->full;
-    if (taken) {
+    if (taken && !can->swallows) {
         taken = hal->direct ? send_direct(hal, can, side, frame) : sim_bus_send(can->bus, can->node, frame);
     }
     can->sent += taken ? 1u : 0u;

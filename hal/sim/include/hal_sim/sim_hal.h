@@ -82,6 +82,7 @@ typedef struct {
     uint32_t recover_requests; /**< read: hal_can_recover() calls that came in bus-off */
     hal_can_status_t status;   /**< direct mode: what is reported; bus mode: the last one that was */
     bool full;                 /**< direct mode: sim_hal_set_full() */
+    bool swallows;             /**< sim_hal_set_swallowing() */
     sim_bus_t *bus;
     sim_bus_node_t node;
 } sim_hal_can_t;
@@ -202,6 +203,12 @@ void sim_hal_set_tx_pending_ms(hal_t *hal, hal_can_side_t side, uint32_t tx_pend
 
 /** While set, hal_can_send() returns false (queue full). Works on a bus, too. */
 void sim_hal_set_full(hal_t *hal, hal_can_side_t side, bool full);
+
+/**
+ * While set, frames that are taken never leave, and nothing shows it: a transmitter that died behind the controller. Works
+ * on a bus, too.
+ */
+void sim_hal_set_swallowing(hal_t *hal, hal_can_side_t side, bool swallows);
 /** @} */
 
 #endif
