@@ -161,8 +161,8 @@ scenario_watch_t hazard_watch(hazard_t *hazard) {
 
 void hazard_step(hazard_t *hazard, uint64_t t_ms, const scenario_step_t *step) {
     const bool is_delivered = !step->of_vehicle && (step->supervisor.what == SCENARIO_DELIVER);
-    const bool is_fd = step->of_vehicle && (step->vehicle.what == VEHICLE_DO_SEND) &&
-                       ((step->vehicle.frame.flags & HAL_CAN_FD) != 0u);
+    const bool is_fd =
+        step->of_vehicle && (step->vehicle.what == VEHICLE_DO_SEND) && ((step->vehicle.frame.flags & HAL_CAN_FD) != 0u);
 
     hazard->t_ms = t_ms;
     hazard->t_us = t_ms * US_PER_MS;

@@ -8,7 +8,7 @@
 
 enum { PATH_SIZE = 4096, BITS = 64, AFTER_MS = 500, MS_PER_S = 1000 };
 _Static_assert((unsigned)AGV_SETTING_COUNT <= 64u * (unsigned)HUNT_SETTING_WORDS, "a setting has no bit");
-_Static_assert((unsigned)AGV_FAULT_COUNT <= 64u, "a fault has no bit");
+_Static_assert((unsigned)AGV_FAULT_COUNT <= 64u * (unsigned)HUNT_CLASS_WORDS, "a fault has no bit");
 
 static hunt_signature_t sign(const hunt_program_t *program, const hazard_t *hazard) {
     hunt_signature_t signature;
@@ -30,21 +30,27 @@ static hunt_signature_t sign(const hunt_program_t *program, const hazard_t *haza
         signature.settings[setting / BITS] |= UINT64_C(1) << (setting % BITS);
     }
     for (uint32_t i = 0u; i < program->class_count; i++) {
-        signature.classes |= UINT64_C(1) << (program->classes[i] % BITS);
+        signature.classes[program->classes[i] / BITS] |= UINT64_C(1) << (program->classes[i] % BITS);
     }
     return signature;
 }
 
+static bool are_part_of(const uint64_t *known, const uint64_t *bits, unsigned words) {
+    for (unsigned i = 0u; i < words; i++) {
+        if ((known[i] & ~bits[i]) != 0u) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /** All of @p known is in @p signature too. */
 static bool is_part_of(const hunt_signature_t *known, const hunt_signature_t *signature) {
-    bool part = (known->kind == signature->kind) && (known->gateway == signature->gateway) &&
-                (strcmp(known->cause, signature->cause) == 0) && ((known->attacks & ~signature->attacks) == 0u) &&
-                ((known->classes & ~signature->classes) == 0u) && ((known->patterns & ~signature->patterns) == 0u);
-
-    for (unsigned i = 0u; i < (unsigned)HUNT_SETTING_WORDS; i++) {
-        part = part && ((known->settings[i] & ~signature->settings[i]) == 0u);
-    }
-    return part;
+    return (known->kind == signature->kind) && (known->gateway == signature->gateway) &&
+           (strcmp(known->cause, signature->cause) == 0) && are_part_of(&known->attacks, &signature->attacks, 1u) &&
+           are_part_of(&known->patterns, &signature->patterns, 1u) &&
+           are_part_of(known->classes, signature->classes, HUNT_CLASS_WORDS) &&
+           are_part_of(known->settings, signature->settings, HUNT_SETTING_WORDS);
 }
 
 static hunt_signature_t *find(hunt_found_t *found, const hunt_signature_t *signature) {

@@ -8,7 +8,7 @@
 #include "hunt_play.h"
 #include "output.h"
 
-enum { HUNT_FOUND_MAX = 1000, HUNT_CAUSE_SIZE = 64, HUNT_SETTING_WORDS = 4 };
+enum { HUNT_FOUND_MAX = 1000, HUNT_CAUSE_SIZE = 64, HUNT_SETTING_WORDS = 4, HUNT_CLASS_WORDS = 2 };
 
 /** What a hazard is made of: two that are made of the same are one. */
 typedef struct {
@@ -18,7 +18,7 @@ typedef struct {
     uint64_t attacks;  /**< one bit a row of HUNT_ATTACKS */
     uint64_t patterns; /**< of those with bad frames and good ones in turn */
     uint64_t settings[HUNT_SETTING_WORDS];
-    uint64_t classes;
+    uint64_t classes[HUNT_CLASS_WORDS];
     uint64_t run;  /**< the first that found it */
     uint64_t more; /**< others since */
 } hunt_signature_t;
