@@ -1,5 +1,4 @@
-# The portable core for Cortex-M: one static library a processor, and two linked images whose sections scripts/size counts,
-# without and with link-time optimisation.
+# The portable core for Cortex-M: one static library a processor, and a linked image whose sections scripts/size counts.
 
 set(AGV_CPUS cortex-m0plus cortex-m4 cortex-m7)
 
@@ -25,10 +24,8 @@ if(AGV_TARGET_TESTS)
   return()
 endif()
 
-# The target `target` compiled once more, for one processor, from the same sources: `<target>_<cpu>`, or with a suffix and
-# further options.
+# The target `target` compiled once more, for one processor, from the same sources: `<target>_<cpu>`.
 function(agv_build_for_cpu target cpu)
-  cmake_parse_arguments(PARSE_ARGV 2 arg "" "SUFFIX" "OPTIONS")
   get_target_property(sources ${target} SOURCES)
   get_target_property(folder ${target} SOURCE_DIR)
   get_target_property(includes ${target} INCLUDE_DIRECTORIES)
@@ -37,12 +34,12 @@ function(agv_build_for_cpu target cpu)
     get_filename_component(path ${source} ABSOLUTE BASE_DIR ${folder})
     list(APPEND paths ${path})
   endforeach()
-  set(library ${target}_${cpu}${arg_SUFFIX})
+  set(library ${target}_${cpu})
   add_library(${library} STATIC ${paths})
   target_include_directories(${library} PUBLIC ${includes})
   target_compile_options(${library} PRIVATE
     -mcpu=${cpu} -mthumb -ffunction-sections -fdata-sections -fstack-usage -fcallgraph-info=su
-    ${AGV_SMALL_OPTIONS} ${arg_OPTIONS})
+    ${AGV_SMALL_OPTIONS})
   target_link_libraries(${library} PRIVATE agv_options)
 endfunction()
 
@@ -53,7 +50,6 @@ foreach(cpu IN LISTS AGV_CPUS)
   agv_build_for_cpu(agv_core ${cpu})
   agv_build_for_cpu(hal_template ${cpu})
 endforeach()
-agv_build_for_cpu(agv_core cortex-m4 SUFFIX _lto OPTIONS -flto -ffat-lto-objects)
 
 # Every function that a firmware image has to call; the linker keeps these and what they reach, and nothing else.
 set(AGV_ENTRY_POINTS
@@ -64,21 +60,13 @@ set(AGV_ENTRY_POINTS
   agv_supervisor_receive_alive
 )
 
-# An image of a core for a Cortex-M4. Options of the link are those of what is optimised then, the core only.
-function(agv_add_size_image image core)
-  add_executable(${image} ${PROJECT_SOURCE_DIR}/tests/size/size_image.c)
-  target_compile_options(${image} PRIVATE -mcpu=cortex-m4 -mthumb)
-  target_link_libraries(${image} PRIVATE agv_options ${core} hal_template_cortex-m4)
-  target_link_options(${image} PRIVATE
-    -mcpu=cortex-m4 -mthumb -nostartfiles -Wl,--entry=main -Wl,--gc-sections -Wl,-Map=${PROJECT_BINARY_DIR}/${image}.map
-    ${ARGN})
-  foreach(entry IN LISTS AGV_ENTRY_POINTS)
-    target_link_options(${image} PRIVATE -Wl,--require-defined=${entry})
-  endforeach()
-endfunction()
-
-agv_add_size_image(size_image agv_core_cortex-m4)
-agv_add_size_image(size_image_lto agv_core_cortex-m4_lto
-  -flto -ffunction-sections -fdata-sections -fcallgraph-info=su ${AGV_SMALL_OPTIONS})
+add_executable(size_image ${PROJECT_SOURCE_DIR}/tests/size/size_image.c)
+target_compile_options(size_image PRIVATE -mcpu=cortex-m4 -mthumb)
+target_link_libraries(size_image PRIVATE agv_options agv_core_cortex-m4 hal_template_cortex-m4)
+target_link_options(size_image PRIVATE
+  -mcpu=cortex-m4 -mthumb -nostartfiles -Wl,--entry=main -Wl,--gc-sections -Wl,-Map=${PROJECT_BINARY_DIR}/size_image.map)
+foreach(entry IN LISTS AGV_ENTRY_POINTS)
+  target_link_options(size_image PRIVATE -Wl,--require-defined=${entry})
+endforeach()
 
 add_test(NAME size_budget COMMAND ${PROJECT_SOURCE_DIR}/scripts/size --build ${PROJECT_BINARY_DIR})

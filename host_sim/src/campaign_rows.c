@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "agv/core.h"
+#include "agv/supervisor.h"
 
 enum { US_PER_S = 1000000, BITS_PER_BYTE = 8, CONFIRM_LEAD_MS = 2 };
 
@@ -11,7 +11,7 @@ enum { ALLOWED_BITS = 40 * 138 };
 
 #define NONE AGV_MSG_NONE
 #define NOTHING 0u, 0u, ""
-#define BITS_OF_CORE ((uint32_t)sizeof(agv_core_t) * (uint32_t)BITS_PER_BYTE)
+#define BITS_OF_CORE (AGV_SUPERVISOR_MEMORY * (uint32_t)BITS_PER_BYTE)
 /* A VCU that reports nothing of the EPS by itself: its alarm would come first. */
 #define MUTE_VCU "vcu: set, field: alarms, value: 00h|"
 

@@ -124,9 +124,9 @@ static bool take_class(const reading_t *reading, agv_fault_t fault) {
     }
     int index = take_word(reading, CLASS_WORDS);
     if (index == CLASS_WORD_TRIP) {
-        reading->config->trips |= agv_fault_bit(fault);
+        agv_fault_set_put(&reading->config->trips, fault, true);
     } else if (index == CLASS_WORD_WARN) {
-        reading->config->trips &= ~agv_fault_bit(fault);
+        agv_fault_set_put(&reading->config->trips, fault, false);
     }
     return index >= 0;
 }
@@ -206,9 +206,11 @@ bool config_check(const agv_config_t *config, const config_lines_t *lines) {
     case AGV_CONFIG_OUT_OF_RANGE:
         return blame(lines, line, name, "the value is out of range");
     case AGV_CONFIG_ID_TWICE:
-        return blame(lines, line, name, "this is an identifier of the protocol");
+        return blame(lines, line, name, "another message has this identifier");
     case AGV_CONFIG_NEEDS_GATEWAY:
-        return blame(lines, line, name, "this value needs the gateway topology");
+        return blame(lines, line, name, "has no effect on a shared bus; this value needs the gateway topology");
+    case AGV_CONFIG_PRESS_TOO_SHORT:
+        return blame(lines, line, name, "must be above reset_hold_ms");
     case AGV_CONFIG_FAULT_TOO_WEAK:
         config_class_key(verdict.fault, key);
         return blame(lines, lines->classes[verdict.fault], key, "this fault must stay a trip");

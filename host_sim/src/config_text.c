@@ -4,15 +4,23 @@
 #include <inttypes.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "agv/names.h"
 #include "config_file.h"
 
 enum { TEXT_SIZE = 96 };
 
+/** Identifiers are written in hexadecimal. */
+static bool is_identifier(const agv_setting_info_t *info) {
+    return (strncmp(info->name, "id_", 3u) == 0 && (info->words == NULL)) || (strcmp(info->name, "status_frame_id") == 0);
+}
+
 /** The value of a setting as it stands in a file. */
 static void value_text(const agv_setting_info_t *info, uint16_t value, char text[TEXT_SIZE]) {
-    if (info->words == NULL) {
+    if (is_identifier(info)) {
+        (void)snprintf(text, TEXT_SIZE, "0x%03X", value);
+    } else if (info->words == NULL) {
         (void)snprintf(text, TEXT_SIZE, "%u", value);
     } else {
         const char *word = NULL;
@@ -21,13 +29,34 @@ static void value_text(const agv_setting_info_t *info, uint16_t value, char text
     }
 }
 
-static const char *class_word(agv_fault_set_t trips, agv_fault_t fault) {
-    return agv_class_name(((trips & agv_fault_bit(fault)) != 0u) ? AGV_CLASS_TRIP : AGV_CLASS_WARN);
+static const char *class_word(const agv_config_t *config, agv_fault_t fault) {
+    return agv_class_name(agv_config_is_trip(config, fault) ? AGV_CLASS_TRIP : AGV_CLASS_WARN);
+}
+
+static const char *default_word(agv_fault_t fault) {
+    return agv_class_name(agv_fault_default_class(fault));
 }
 
 /** Whether the class of a fault may be chosen at all. */
 static bool may_be_chosen(agv_fault_t fault) {
-    return (agv_faults_fixed & agv_fault_bit(fault)) == 0u;
+    return (agv_fault_flags(fault) & AGV_FAULT_FLAG_FIXED) == 0u;
+}
+
+/** Which values weaken the supervision. */
+static const char *weakens_text(const agv_setting_info_t *info) {
+    static const struct {
+        const char *weakens;
+        const char *text;
+    } texts[] = {{"ABOVE", "; more weakens"},
+                 {"BELOW", "; less weakens"},
+                 {"ZERO", "; 0 weakens"},
+                 {"CHOSEN", "; the second weakens"}};
+    for (size_t i = 0u; i < sizeof texts / sizeof texts[0]; i++) {
+        if (strcmp(info->weakens, texts[i].weakens) == 0) {
+            return texts[i].text;
+        }
+    }
+    return "";
 }
 
 void config_print_yaml(const agv_config_t *config) {
@@ -42,11 +71,12 @@ void config_print_yaml(const agv_config_t *config) {
         value_text(info, agv_config_get(config, i), value);
         (void)printf("\n# %s\n", info->meaning);
         if (info->words == NULL) {
-            (void)printf("# %u to %u%s%s, default %s\n", info->lowest, info->highest,
+            (void)printf("# %u to %u%s%s, default %s", info->lowest, info->highest,
                          (info->unit[0] != '\0') ? " " : "", info->unit, preset);
         } else {
-            (void)printf("# %s, default %s\n", info->words, preset);
+            (void)printf("# %s, default %s", info->words, preset);
         }
+        (void)printf("%s%s\n", weakens_text(info), info->gateway_only ? "; gateway only" : "");
         (void)printf("%s: %s\n", info->name, value);
     }
     (void)printf(
@@ -55,8 +85,8 @@ void config_print_yaml(const agv_config_t *config) {
         const agv_fault_t fault = (agv_fault_t)i;
         char key[CONFIG_CLASS_KEY_SIZE];
         config_class_key(fault, key);
-        (void)printf("%s: %s  # default %s%s\n", key, class_word(config->trips, fault),
-                     class_word(agv_faults_default_trips, fault), may_be_chosen(fault) ? "" : ", must stay");
+        (void)printf("%s: %s  # default %s%s\n", key, class_word(config, fault),
+                     default_word(fault), may_be_chosen(fault) ? "" : ", must stay");
     }
 }
 
@@ -84,15 +114,16 @@ void config_print_kconfig(const agv_config_t *config) {
         const agv_fault_t fault = (agv_fault_t)i;
         if (may_be_chosen(fault)) {
             (void)printf("CONFIG_AGV_CLASS_%s_", agv_fault_name(fault));
-            print_upper(class_word(config->trips, fault));
+            print_upper(class_word(config, fault));
             (void)printf("=y\n");
         }
     }
 }
 
 /** Begin or go on with the line of deviations. */
-static void print_deviation(bool *any, const char *key, const char *value, const char *preset) {
-    (void)fprintf(stderr, "%s%s: %s (%s)", *any ? ", " : "host_sim: not the default: ", key, value, preset);
+static void print_deviation(bool *any, const char *key, const char *value, const char *preset, bool weakens) {
+    (void)fprintf(stderr, "%s%s: %s (%s%s)", *any ? ", " : "host_sim: not the default: ", key, value, preset,
+                  weakens ? ", WEAKER" : "");
     *any = true;
 }
 
@@ -105,15 +136,16 @@ void config_note_deviations(const agv_config_t *config) {
             char value[TEXT_SIZE];
             value_text(info, info->preset, preset);
             value_text(info, agv_config_get(config, i), value);
-            print_deviation(&any, info->name, value, preset);
+            print_deviation(&any, info->name, value, preset, agv_config_weakens(config, i));
         }
     }
     for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
         const agv_fault_t fault = (agv_fault_t)i;
-        if (((config->trips ^ agv_faults_default_trips) & agv_fault_bit(fault)) != 0u) {
+        if (agv_config_is_trip(config, fault) != (agv_fault_default_class(fault) == AGV_CLASS_TRIP)) {
             char key[CONFIG_CLASS_KEY_SIZE];
             config_class_key(fault, key);
-            print_deviation(&any, key, class_word(config->trips, fault), class_word(agv_faults_default_trips, fault));
+            print_deviation(&any, key, class_word(config, fault), default_word(fault),
+                            !agv_config_is_trip(config, fault));
         }
     }
     if (any) {

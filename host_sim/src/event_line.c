@@ -7,7 +7,7 @@
 #include "agv/recorder.h"
 #include "agv/state.h"
 
-enum { MISSING_BITS = 8 };
+enum { MISSING_BITS = 10 };
 
 static const char *text_of(const json_t *object, const char *key) {
     const char *text = json_string_value(json_object_get(object, key));
@@ -25,13 +25,13 @@ static uint8_t state_of(const char *name) {
     return 0u;
 }
 
-static uint8_t missing_of(const json_t *words) {
-    uint8_t missing = 0u;
+static uint16_t missing_of(const json_t *words) {
+    uint16_t missing = 0u;
     for (size_t i = 0u; i < json_array_size(words); i++) {
         const char *word = json_string_value(json_array_get(words, i));
         for (uint8_t bit = 0u; (word != NULL) && (bit < MISSING_BITS); bit++) {
             if (strcmp(word, agv_missing_name(bit)) == 0) {
-                missing = (uint8_t)(missing | (1u << bit));
+                missing = (uint16_t)(missing | (1u << bit));
             }
         }
     }

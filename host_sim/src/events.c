@@ -7,7 +7,7 @@
 #include "agv/names.h"
 #include "agv/recorder.h"
 
-enum { MISSING_BITS = 8 };
+enum { MISSING_BITS = 10 };
 
 /** Write an object as a line. Takes the reference. */
 static void write_line(output_t *output, json_t *object) {
@@ -27,7 +27,7 @@ static json_t *text_or_null(const char *text) {
     return (text != NULL) ? json_string(text) : json_null();
 }
 
-static json_t *missing_words(uint8_t missing) {
+static json_t *missing_words(uint16_t missing) {
     json_t *words = json_array();
     for (uint8_t bit = 0u; bit < MISSING_BITS; bit++) {
         if ((missing & (1u << bit)) != 0u) {
@@ -105,6 +105,7 @@ void events_write(void *ctx, const session_event_t *event) {
 void events_summarise(const session_t *session, events_summary_t *summary) {
     (void)memset(summary, 0, sizeof *summary);
     summary->t_ms = session->t_ms;
+    summary->supervised_ms = session->supervised_ms;
     summary->counters = *agv_supervisor_counters(&session->supervisor);
     summary->final_state = agv_supervisor_state(&session->supervisor);
     summary->first_reason = agv_supervisor_first_reason(&session->supervisor);
@@ -128,7 +129,9 @@ void events_write_summary(output_t *output, const events_summary_t *summary) {
     set(object, "dropped", number(counters->dropped));
     set(object, "sent", number(counters->sent));
     set(object, "shadowed", number(counters->shadowed));
+    set(object, "limited", number(counters->limited));
     set(object, "warnings", number(counters->warnings));
+    set(object, "supervised_ms", number(summary->supervised_ms));
     set(object, "skipped_lines", number(summary->skipped_lines));
     set(object, "backward_stamps", number(summary->backward_stamps));
     set(object, "final_state", text_or_null(agv_state_name(summary->final_state)));

@@ -17,6 +17,7 @@
 typedef struct {
     uint64_t t_ms;
     agv_counters_t counters;
+    uint64_t supervised_ms; /**< time outside INIT */
     uint64_t skipped_lines;
     uint64_t backward_stamps;
     agv_state_t final_state;

@@ -21,13 +21,7 @@ static int columns(void) {
 
 /** The fault of highest rank whose cause is there; NULL: none is. */
 static const char *present_fault(const session_t *session) {
-    const agv_fault_set_t faults = agv_supervisor_active_faults(&session->supervisor);
-    for (int fault = 0; fault < (int)AGV_FAULT_COUNT; fault++) {
-        if ((faults & agv_fault_bit((agv_fault_t)fault)) != 0u) {
-            return agv_fault_name((agv_fault_t)fault);
-        }
-    }
-    return NULL;
+    return agv_fault_name(agv_supervisor_first_active(&session->supervisor));
 }
 
 static int compose(char line[LINE_SIZE], const session_t *session, uint64_t now_ms) {

@@ -131,7 +131,7 @@ typedef struct {
 typedef struct {
     size_t line;
     bool accepted;
-    uint8_t missing; /**< AGV_MISSING_* */
+    uint16_t missing; /**< AGV_MISSING_* */
     scenario_window_t at_ms;
 } scenario_reset_t;
 

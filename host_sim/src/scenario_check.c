@@ -7,7 +7,7 @@
 
 #include "agv/names.h"
 
-enum { MISSING_BITS = 8, MISSING_TEXT_SIZE = 120, NOT_YET = -128 };
+enum { MISSING_BITS = 10, MISSING_TEXT_SIZE = 160, NOT_YET = -128 };
 
 void scenario_check_fail(scenario_check_t *check, size_t line, const char *format, ...) {
     if (check->failure_count < SCENARIO_FAILURES_MAX) {
@@ -121,7 +121,7 @@ static void end_fault(scenario_check_t *check, uint32_t t_ms, const agv_event_t 
     }
 }
 
-static const char *missing_text(uint8_t missing, char text[MISSING_TEXT_SIZE]) {
+static const char *missing_text(uint16_t missing, char text[MISSING_TEXT_SIZE]) {
     text[0] = '\0';
     for (uint8_t bit = 0u; bit < MISSING_BITS; bit++) {
         if ((missing & (1u << bit)) != 0u) {

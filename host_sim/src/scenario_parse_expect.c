@@ -7,7 +7,7 @@
 #include "yaml_file.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
-#define MISSING_KINDS 8u
+#define MISSING_KINDS 10u
 
 bool scenario_parse_window(const yaml_reader_t *reader, const yaml_node_t *node, const char *what,
                            scenario_window_t *window) {
@@ -169,13 +169,13 @@ static bool read_missing_word(const yaml_reader_t *reader, const yaml_node_t *no
     }
     for (uint8_t i = 0u; i < MISSING_KINDS; i++) {
         if (strcmp(agv_missing_name(i), text) == 0) {
-            ((scenario_reset_t *)target)->missing |= (uint8_t)(1u << i);
+            ((scenario_reset_t *)target)->missing |= (uint16_t)(1u << i);
             return true;
         }
     }
     return yaml_reader_fail(reader, node,
                             "'%.40s' is none of state, vcu_heartbeat, eps_heartbeat, trip_cause, standstill, manual, "
-                            "button, messages",
+                            "button, messages, throttle, released",
                             text);
 }
 

@@ -72,6 +72,7 @@ void session_fail_self_test(session_t *session) {
 
 void session_start(session_t *session, const agv_config_t *config, uint64_t t_ms, uint32_t clock_ms) {
     session->t_ms = t_ms;
+    session->ticked_ms = t_ms;
     agv_supervisor_start(&session->supervisor, &session->ports, config, !session->self_test_failed, clock_ms);
     session->next = first_of_run(&session->recorder);
     tell_recorded(session, false);
@@ -88,6 +89,10 @@ void session_frame(session_t *session, hal_can_side_t side, const hal_can_frame_
 }
 
 void session_tick(session_t *session, uint64_t t_ms, uint32_t clock_ms) {
+    if (agv_supervisor_state(&session->supervisor) != AGV_STATE_INIT) {
+        session->supervised_ms += t_ms - session->ticked_ms;
+    }
+    session->ticked_ms = t_ms;
     session->t_ms = t_ms;
     agv_supervisor_receive_alive(&session->supervisor);
     agv_supervisor_tick(&session->supervisor, &session->ports, clock_ms);

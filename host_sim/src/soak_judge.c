@@ -154,7 +154,7 @@ void soak_judge_counters(soak_t *soak) {
     judge_count(soak, "bites of the watchdog", hal->bites, 0u, 0u);
     judge_count(soak, "feeds of the watchdog", (uint64_t)hal->feeds - state->feeds_before,
                 state->ticks - state->ticks_before, 0u);
-    judge_count(soak, "the supervisor's clock", world->session.supervisor.core.last_tick_ms,
+    judge_count(soak, "the supervisor's clock", agv_supervisor_tick_ms(&world->session.supervisor),
                 soak->start_ms + world->t_ms, 0u);
     const uint64_t slots = (state->t_ms - state->status_ms) / SOAK_STATUS_MS;
     judge_count(soak, "status frames", slots + 1u, state->status_frames, 2u);

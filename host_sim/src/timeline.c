@@ -9,7 +9,7 @@
 #include "agv/codec.h"
 #include "agv/names.h"
 
-enum { US_PER_MS = 1000, US_PER_S = 1000000, MM_PER_CM = 10, MISSING_BITS = 8, WHAT_SIZE = 160 };
+enum { US_PER_MS = 1000, US_PER_S = 1000000, MM_PER_CM = 10, MISSING_BITS = 10, WHAT_SIZE = 160 };
 
 #define MODE_BITS 0xC0
 #define MODE_MANUAL 0x40
@@ -99,7 +99,7 @@ static void show_state(timeline_t *timeline, uint64_t t_us, const agv_event_t *e
          (reason != NULL) ? reason : "");
 }
 
-static void show_missing(timeline_t *timeline, uint64_t t_us, const char *what, uint8_t missing) {
+static void show_missing(timeline_t *timeline, uint64_t t_us, const char *what, uint16_t missing) {
     char list[WHAT_SIZE] = "";
 
     for (uint8_t bit = 0u; bit < MISSING_BITS; bit++) {

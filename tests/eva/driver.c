@@ -4,12 +4,12 @@
  */
 #include <stddef.h>
 
-#include "agv/supervisor.h"
 #include "hal/led.h"
 #include "hal/reset.h"
 #include "hal/safety_output.h"
 #include "hal/store.h"
 #include "hal/watchdog.h"
+#include "supervisor/core.h"
 
 /* EVA's generators: any bytes, and any number between two. */
 /*@ assigns \result \from min, max;
@@ -103,6 +103,12 @@ static void sound_config(agv_config_t *config) {
 #include "agv/config_settings.def"
 #undef AGV_SETTING
 #undef AGV_CHOICE
+#define AGV_COMMAND AGV_STATUS
+#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter)                                        \
+    config->id_##name = (uint16_t)any(1u, AGV_ID_MAX);
+#include "agv/message_table.def"
+#undef AGV_COMMAND
+#undef AGV_STATUS
 }
 
 /* A truth is 0 or 1 in memory. */
@@ -114,33 +120,35 @@ static void sound_truths(agv_core_t *core) {
     machine->park_released = any_bool();
     machine->output_closed = any_bool();
     machine->startup_reported = any_bool();
-    machine->safe_state_unconfirmed = any_bool();
-    core->summary.changed = any_bool();
-    core->summary.ai_cause = any_bool();
-    core->summary.eps_fault = any_bool();
+    core->faults.summary.eps_fault = any_bool();
+    core->faults.outdated = any_bool();
+    core->faults.ai_loss_warns = any_bool();
     core->vehicle.eps_in_angle_mode = any_bool();
     core->vehicle.angle_known = any_bool();
-    core->vehicle.command_known = any_bool();
+    core->motion_checks.command_known = any_bool();
     core->gateway.sent = any_bool();
     core->led.on = any_bool();
-    core->monitor.after_gap = any_bool();
-    core->monitor.ai_alarm_armed = any_bool();
+    core->status_checks.after_gap = any_bool();
+    core->status_checks.ai_alarm_armed = any_bool();
+    core->transmitter.report.park_sent = any_bool();
+    for (unsigned i = 0u; i < AGV_MSG_COUNT; i++) {
+        core->liveness.heard[i] = any_bool();
+        core->liveness.old[i] = any_bool();
+    }
     for (unsigned i = 0u; i < AGV_NODE_COUNT; i++) {
         core->liveness.heartbeats[i].counter_known = any_bool();
         core->liveness.heartbeats[i].repeated = any_bool();
     }
 }
 
-/* Bits of `kept` are messages, and no pointer is kept between two calls. All else is any bytes. */
+/* Bits of `kept` are messages. All else is any bytes. */
 static void any_sound_state(void) {
-    agv_core_t *const core = &supervisor.core;
+    agv_core_t *const core = agv_core_of(&supervisor);
     any_bytes(&supervisor, sizeof supervisor);
     any_bytes(&recorder, sizeof recorder);
     sound_config(&core->config);
     sound_truths(core);
     core->transmitter.kept = any(0u, (1u << AGV_MSG_COUNT) - 1u);
-    core->hal = NULL;
-    core->recorder = NULL;
     supervisor.receive_alive = any_bool();
 }
 
@@ -152,7 +160,6 @@ static void within(uint32_t value, uint32_t lowest, uint32_t highest) {
 
 static void check_memory(const agv_core_t *core) {
     /*@ assert core->transmitter.kept < (1 << AGV_MSG_COUNT); */
-    /*@ assert core->hal == \null && core->recorder == \null; */
 }
 
 static void check_invariants(const agv_core_t *core) {
@@ -162,6 +169,12 @@ static void check_invariants(const agv_core_t *core) {
 #include "agv/config_settings.def"
 #undef AGV_SETTING
 #undef AGV_CHOICE
+#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter)                                        \
+    within(core->config.id_##name, 1u, AGV_ID_MAX);
+#define AGV_COMMAND AGV_STATUS
+#include "agv/message_table.def"
+#undef AGV_COMMAND
+#undef AGV_STATUS
 }
 
 /* ---- The entry points ---- */
@@ -176,14 +189,14 @@ void eva_frame(void) {
     any_sound_state();
     any_bytes(&frame, sizeof frame);
     agv_supervisor_frame(&supervisor, &ports, (hal_can_side_t)any(HAL_CAN_VEHICLE, HAL_CAN_AI), &frame);
-    check_invariants(&supervisor.core);
+    check_invariants(agv_core_read(&supervisor));
 }
 
 void eva_tick(void) {
     const agv_ports_t ports = any_ports();
     any_sound_state();
     agv_supervisor_tick(&supervisor, &ports, any(0u, UINT32_MAX));
-    check_invariants(&supervisor.core);
+    check_invariants(agv_core_read(&supervisor));
 }
 
 /* Any memory before, any configuration. That the start takes none with a setting out of its range is for the tests to show. */
@@ -194,5 +207,5 @@ void eva_start(void) {
     any_bytes(&recorder, sizeof recorder);
     any_bytes(&config, sizeof config);
     agv_supervisor_start(&supervisor, &ports, &config, any_bool(), any(0u, UINT32_MAX));
-    check_memory(&supervisor.core);
+    check_memory(agv_core_read(&supervisor));
 }

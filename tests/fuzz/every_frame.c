@@ -52,8 +52,9 @@ static trace_t look(void) {
 }
 
 static bool is_same(const trace_t *a, const trace_t *b, bool answered) {
-    return (a->state == b->state) && (a->first_reason == b->first_reason) && (a->active == b->active) &&
-           (a->output_closed == b->output_closed) && (a->led == b->led) && (answered || (a->sent == b->sent));
+    return (a->state == b->state) && (a->first_reason == b->first_reason) &&
+           (memcmp(&a->active, &b->active, sizeof a->active) == 0) && (a->output_closed == b->output_closed) &&
+           (a->led == b->led) && (answered || (a->sent == b->sent));
 }
 
 /* The parts of the world that a supervisor changes; the recorder and the log only tell. */

@@ -5,10 +5,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "agv/gate.h"
 #include "agv/protocol.h"
 #include "input.h"
 #include "oracle.h"
+#include "transmit/gate.h"
 
 static const uint16_t IDS[16] = {0x43F, 0x168, 0x075, 0x065, 0x363, 0x0A3, 0x050, 0x067,
                                  0x167, 0x267, 0x101, 0x201, 0x203, 0x700, 0x7FF, 0x000};
@@ -66,12 +66,14 @@ static void read_frame(input_t *input, hal_can_frame_t *frame) {
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     input_t input = {.at = data, .left = size};
     agv_config_t config;
+    agv_ids_t ids;
     hal_can_frame_t frame;
     const uint8_t state = input_byte(&input);
     const uint8_t more = input_byte(&input);
     const hal_can_side_t side = (hal_can_side_t)(more & 1u);
     read_config(&input, &config);
-    agv_gate_t gate = {.config = &config, .state = (state < 200u) ? STATES[state % 5u] : state};
+    agv_config_ids(&config, &ids);
+    agv_gate_t gate = {.config = &config, .ids = &ids, .state = (state < 200u) ? STATES[state % 5u] : state};
     gate.hold_raw = input_word(&input);
     gate.hold_check = ((more & 2u) != 0u) ? input_word(&input) : (uint16_t)~gate.hold_raw;
     read_frame(&input, &frame);

@@ -474,7 +474,7 @@ void rules_returned(rules_t *rules, const rules_seen_t *seen, bool tick, uint64_
     if (seen->gate_refused != rules->last.gate_refused) {
         broken(rules, "INT-4: the gate had to refuse a frame in state %02Xh", (unsigned)seen->state);
     }
-    if ((seen->active & agv_fault_bit(AGV_FAULT_MEMORY_CORRUPTED)) != 0u) {
+    if (agv_fault_is_in(&seen->active, AGV_FAULT_MEMORY_CORRUPTED)) {
         broken(rules, "INT-5: memory was found corrupt, and nobody touched it");
     }
     if (seen->watchdog_feeds != rules->last.watchdog_feeds) {

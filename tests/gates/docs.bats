@@ -6,7 +6,7 @@ load helper
 setup() {
     cd "$BATS_TEST_TMPDIR" || exit
     mkdir -p docs firmware/include/agv scripts
-    printf 'AGV_FAULT(BUS_OFF, TRIP, 14, FIXED)\nAGV_FAULT(RX_OVERRUN, WARN, 14, EVENT)\n' \
+    printf 'AGV_FAULT(BUS_OFF, TRIP, 14, FIXED)\nAGV_FAULT_EVENT(RX_OVERRUN, WARN, 14, NONE)\n' \
         >firmware/include/agv/fault_table.def
     echo 'AGV_SETTING(gap_ms, 50, 30, 500, "ms", "a gap")' >firmware/include/agv/config_settings.def
     {

@@ -5,7 +5,7 @@ load helper
 setup() {
     cd "$BATS_TEST_TMPDIR" || exit
     mkdir -p firmware/include/agv firmware/zephyr/src
-    cp "$ROOT"/firmware/include/agv/{config_settings,fault_table}.def firmware/include/agv/
+    cp "$ROOT"/firmware/include/agv/{config_settings,message_table,fault_table}.def firmware/include/agv/
     cp "$ROOT/firmware/zephyr/Kconfig.settings" firmware/zephyr/
     cp "$ROOT/firmware/zephyr/src/kconfig_settings.def" firmware/zephyr/src/
     passes settings
@@ -28,6 +28,12 @@ settings() {
 @test "kconfig: a setting that the firmware does not hand on" {
     sed -i '/reset_hold_ms/d' firmware/zephyr/src/kconfig_settings.def
     fails_with "kconfig_settings.def is out of date" settings
+}
+
+@test "kconfig: an identifier that was changed in the core" {
+    sed -i 's/^AGV_STATUS(GEAR_STATUS, gear_status, 0x0A3/AGV_STATUS(GEAR_STATUS, gear_status, 0x0A4/' \
+        firmware/include/agv/message_table.def
+    fails_with "Kconfig.settings is out of date" settings
 }
 
 @test "kconfig: a fault that may be weakened now" {

@@ -23,7 +23,7 @@ plant() {
 }
 
 @test "layers: an operating system's header in the core" {
-    plant firmware/src/codec.c '#include <pthread.h>' 'firmware/ includes something other'
+    plant firmware/src/base/codec.c '#include <pthread.h>' 'firmware/ includes something other'
 }
 
 @test "layers: a port's header in the core" {
@@ -31,15 +31,55 @@ plant() {
 }
 
 @test "layers: a library's header in the core" {
-    plant firmware/src/codec.c '#include "yaml.h"' 'firmware/ includes something other'
+    plant firmware/src/base/codec.c '#include "yaml.h"' 'firmware/ includes something other'
+}
+
+@test "layers: a header that is in no room" {
+    plant firmware/src/base/codec.c '#include "base/planted.h"' 'firmware/ includes something other'
+}
+
+@test "layers: a header without its room" {
+    plant firmware/src/base/codec.c '#include "timers.h"' 'firmware/ includes something other'
+}
+
+@test "layers: a private header in a public one" {
+    plant firmware/include/agv/codec.h '#include "base/timers.h"' 'firmware/ includes something other'
+}
+
+@test "layers: a source outside of the rooms" {
+    plant firmware/src/planted.c '#include "agv/codec.h"' 'lies in no room'
+}
+
+@test "layers: the memory of a supervisor in a module" {
+    plant firmware/src/decide/hold.c '#include "supervisor/core.h"' 'knows the memory of a supervisor'
+}
+
+@test "layers: what the supervisor's sources share in a module" {
+    plant firmware/src/supervisor/planted.c '#include "supervisor/supervisor_internal.h"' 'knows the memory of a supervisor'
+}
+
+@test "layers: a private header in a port" {
+    plant hal/sim/planted.c '#include "base/timers.h"' 'a header of firmware/src in'
+}
+
+@test "layers: a private header in the host program" {
+    plant host_sim/src/planted.c '#include "decide/fault_monitor.h"' 'a header of firmware/src in'
+}
+
+@test "layers: a private header in the firmware's program" {
+    plant firmware/zephyr/src/planted.c '#include "../../src/observe/mode.h"' 'a header of firmware/src in'
+}
+
+@test "layers: a private header in a test that is not to look inside" {
+    plant tests/integration/planted.c '#include "observe/mode.h"' 'a header of firmware/src in'
 }
 
 @test "layers: a platform #ifdef in the core" {
-    plant firmware/src/codec.c '#ifdef __linux__' 'a platform #if'
+    plant firmware/src/base/codec.c '#ifdef __linux__' 'a platform #if'
 }
 
 @test "layers: a platform #if defined behind another one" {
-    plant firmware/src/codec.c '#if defined(AGV_X) && defined(CONFIG_ARM)' 'a platform #if'
+    plant firmware/src/base/codec.c '#if defined(AGV_X) && defined(CONFIG_ARM)' 'a platform #if'
 }
 
 @test "layers: a header of the core in a port" {
@@ -51,7 +91,7 @@ plant() {
 }
 
 @test "layers: a frame that leaves past the gate" {
-    plant firmware/src/codec.c 'bool x(void) { return hal_can_send(0, HAL_CAN_VEHICLE, 0); }' 'past the gate'
+    plant firmware/src/base/codec.c 'bool x(void) { return hal_can_send(0, HAL_CAN_VEHICLE, 0); }' 'past the gate'
 }
 
 @test "layers: the firmware's program that sends by itself" {

@@ -136,12 +136,12 @@ void test_every_class_may_be_strengthened_and_weakened_as_far_as_allowed(void) {
         agv_config_defaults(&config);
         (void)snprintf(text, sizeof text, "%s: trip\n", key);
         load_good(text);
-        TEST_ASSERT_TRUE((config.trips & agv_fault_bit(fault)) != 0);
+        TEST_ASSERT_TRUE(agv_fault_is_in(&config.trips, fault));
         agv_config_defaults(&config);
         (void)snprintf(text, sizeof text, "\n\n%s: warn\n", key);
-        if ((agv_faults_fixed & agv_fault_bit(fault)) == 0) {
+        if ((agv_fault_flags(fault) & AGV_FAULT_FLAG_FIXED) == 0) {
             load_good(text);
-            TEST_ASSERT_TRUE((config.trips & agv_fault_bit(fault)) == 0);
+            TEST_ASSERT_FALSE(agv_fault_is_in(&config.trips, fault));
         } else {
             char expected[128];
             (void)snprintf(expected, sizeof expected, "c.yaml:3: %s: this fault must stay a trip\n", key);
@@ -220,7 +220,7 @@ void test_a_problem_without_a_line_is_named_without_one(void) {
     config.own_heartbeat = AGV_OWN_HEARTBEAT_FROZEN;
     TEST_ASSERT_FALSE(config_check(&config, &lines));
     TEST_ASSERT_EQUAL_STRING("host_sim: own_heartbeat: this value needs the gateway topology\n", scratch_said());
-    config.trips |= 1ull << AGV_FAULT_COUNT;
+    config.trips.words[AGV_FAULT_COUNT / 32] |= 1u << (AGV_FAULT_COUNT % 32);
     config.own_heartbeat = AGV_OWN_HEARTBEAT_RUNNING;
     TEST_ASSERT_FALSE(config_check(&config, &lines));
     TEST_ASSERT_EQUAL_STRING("host_sim: the configuration makes no sense\n", scratch_said());

@@ -31,12 +31,34 @@ static const healthy_t HEALTHY[AGV_MSG_COUNT] = {
     [AGV_MSG_WHEEL_SPEED] = {0x101, 0x101, 10, 3, -1, {0}},
 };
 
-enum { COMMANDS = 4, STANDBY_WITHIN_MS = 1000, ENGAGED_MS = 1000 };
+enum { COMMANDS = 4, STANDBY_WITHIN_MS = 1000, ENGAGED_MS = 1000, NOBODYS_ID = 0x7FE };
 
 /* ---- Building ---- */
 
-static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
+static uint16_t id_of_set(const fixture_t *f, unsigned message) {
+    return f->config.id_set == (uint16_t)AGV_ID_SET_TABLE ? HEALTHY[message].table_id : HEALTHY[message].id;
+}
+
+static uint16_t id_on_the_wire(const fixture_t *f, unsigned message) {
+    return f->other_ids ? agv_config_get(&f->config, AGV_SETTING_ID + message) : id_of_set(f, message);
+}
+
+/* A frame with the identifier of its set. One that is no more on this vehicle becomes one of nobody. */
+static hal_can_frame_t with_id_of_set(const fixture_t *f, const hal_can_frame_t *frame) {
+    hal_can_frame_t renamed = *frame;
+    for (unsigned i = 0; f->other_ids && i < AGV_MSG_COUNT; i++) {
+        renamed.id = frame->id == id_of_set(f, i) ? NOBODYS_ID : renamed.id;
+    }
+    for (unsigned i = 0; f->other_ids && i < AGV_MSG_COUNT; i++) {
+        renamed.id = frame->id == id_on_the_wire(f, i) ? id_of_set(f, i) : renamed.id;
+    }
+    return renamed;
+}
+
+static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *on_wire) {
     fixture_t *f = (fixture_t *)ctx;
+    const hal_can_frame_t renamed = with_id_of_set(f, on_wire);
+    const hal_can_frame_t *frame = &renamed;
     oracle_sent(&f->oracle, side, frame, agv_supervisor_state(&f->supervisor));
     TEST_ASSERT_EQUAL_STRING_MESSAGE("", oracle_verdict(&f->oracle), f->what);
     if (f->long_run && f->sent_count == FIXTURE_SENT_MAX) {
@@ -80,7 +102,7 @@ void fixture_init(fixture_t *f) {
 static void address_traffic(fixture_t *f) {
     const bool gateway = f->config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
     for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
-        f->traffic[i].id = f->config.id_set == (uint16_t)AGV_ID_SET_TABLE ? HEALTHY[i].table_id : HEALTHY[i].id;
+        f->traffic[i].id = id_on_the_wire(f, i);
         f->traffic[i].side = gateway && i < COMMANDS ? HAL_CAN_AI : HAL_CAN_VEHICLE;
     }
 }
@@ -135,7 +157,8 @@ void fixture_active(fixture_t *f) {
 void fixture_raw(fixture_t *f, hal_can_side_t side, hal_can_frame_t frame) {
     frame.time_ms = f->now_ms;
     f->call++;
-    oracle_heard(&f->oracle, side, &frame);
+    const hal_can_frame_t heard = with_id_of_set(f, &frame);
+    oracle_heard(&f->oracle, side, &heard);
     agv_supervisor_frame(&f->supervisor, &f->ports, side, &frame);
     oracle_returned(&f->oracle, agv_supervisor_state(&f->supervisor));
 }
@@ -295,7 +318,7 @@ void fixture_run_without_ticks(fixture_t *f, uint32_t ms) {
 /* ---- Looking ---- */
 
 bool fixture_has(const fixture_t *f, agv_fault_t fault) {
-    return (agv_supervisor_active_faults(&f->supervisor) & agv_fault_bit(fault)) != 0;
+    return agv_supervisor_has_fault(&f->supervisor, fault);
 }
 
 static uint32_t find_fault(const fixture_t *f, agv_fault_t fault, bool raised, agv_event_t *last) {

@@ -80,7 +80,9 @@ typedef struct fixture {
     fixture_message_t traffic[AGV_MSG_COUNT];
     const char *what; /**< the case of a table, for messages of failures */
     oracle_t oracle;  /**< judges every frame that leaves (FSM-6): a forbidden one ends the test */
-    bool long_run;    /**< a full log of sent frames begins anew instead of ending the test */
+    bool
+        other_ids; /**< the id_... of the configuration are what is on the wire; frames are logged and judged as if not */
+    bool long_run; /**< a full log of sent frames begins anew instead of ending the test */
     uint32_t sent_count;
     fixture_sent_t sent[FIXTURE_SENT_MAX];
 } fixture_t;
@@ -93,7 +95,7 @@ typedef struct fixture {
  */
 void fixture_init(fixture_t *f);
 
-/** Start the supervisor at now_ms. Identifiers and sides of the traffic follow config.id_set and config.topology. */
+/** Start the supervisor at now_ms. Identifiers and sides of the traffic follow config.id_set, other_ids, config.topology. */
 void fixture_start(fixture_t *f);
 
 /** Start it once more, on the same port, store, recorder, clock and traffic, after a reset with this cause. */

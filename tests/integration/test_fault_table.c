@@ -79,7 +79,7 @@ static const row_t ROWS[] = {
 enum { ROW_COUNT = sizeof ROWS / sizeof ROWS[0] };
 
 static bool trips(const row_t *row) {
-    return (f.config.trips & agv_fault_bit(agv_fault_from_name(row->name))) != 0;
+    return agv_fault_is_in(&f.config.trips, agv_fault_from_name(row->name));
 }
 
 void test_names_and_default_classes(void) {
@@ -100,7 +100,7 @@ void test_the_order_is_the_rank(void) {
 /* ---- Classes that configuration has changed ---- */
 
 static void set_class(agv_fault_t fault, bool trip) {
-    f.config.trips = trip ? f.config.trips | agv_fault_bit(fault) : f.config.trips & ~agv_fault_bit(fault);
+    agv_fault_set_put(&f.config.trips, fault, trip);
 }
 
 /* Shows: SUP-4, INT-2, EPS_TEMP_ABOVE_110, COMMAND_TOO_FAST */

@@ -259,7 +259,7 @@ void test_reserved_alarm_bits_are_ignored(void) {
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x44;
     fixture_run(&f, 2000);
     expect_state(&f, AGV_STATE_ACTIVE);
-    TEST_ASSERT_EQUAL_UINT64(0, agv_supervisor_active_faults(&f.supervisor));
+    TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
 }
 
 /* The number of frames is a setting: 1 is at once. */

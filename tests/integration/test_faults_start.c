@@ -226,6 +226,8 @@ void test_the_gate_refuses_what_may_not_leave(void) {
     TEST_ASSERT_TRUE(tamper.corrupted);
     TEST_ASSERT_EQUAL_UINT32(1, agv_supervisor_counters(&f.supervisor)->gate_refused);
     expect_fault(&f, AGV_FAULT_TX_GATE_REFUSED, true);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
+    fixture_run(&f, 1); /* faults are evaluated once a call, before anything is sent */
     expect_reason(&f, AGV_FAULT_TX_GATE_REFUSED);
     expect_state(&f, AGV_STATE_TRIPPED);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x065)); /* the held angle, and not what waited */
@@ -233,7 +235,6 @@ void test_the_gate_refuses_what_may_not_leave(void) {
     TEST_ASSERT_EQUAL_HEX8_ARRAY(hold, fixture_nth_sent(&f, 0x065, 0)->data, 8);
     TEST_ASSERT_EQUAL_HEX8(0x70, fixture_nth_sent(&f, 0x43F, 1)->data[4]);
     TEST_ASSERT_EQUAL_HEX8(8, fixture_nth_sent(&f, 0x168, 0)->data[0]);
-    fixture_run(&f, 1);
     expect_led(&f, -1);
     fixture_run(&f, 998);
     expect_fault(&f, AGV_FAULT_TX_GATE_REFUSED, true);

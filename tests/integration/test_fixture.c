@@ -31,7 +31,7 @@ void test_healthy_traffic_raises_nothing_and_nothing_is_sent(void) {
     expect_silence(&f);
     expect_output(&f, true);
     expect_led(&f, 0);
-    TEST_ASSERT_EQUAL_UINT64(0, agv_supervisor_active_faults(&f.supervisor));
+    TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
 }
 
 void test_run_past_and_run_before(void) {

@@ -173,6 +173,39 @@ void test_a_corrupted_configuration_is_replaced_by_one_that_fits_the_vehicle(voi
     }
 }
 
+/* Identifiers that were changed one by one are those of this vehicle, too. */
+/* Shows: FSM-9, INT-5, MEMORY_CORRUPTED, P1 */
+void test_a_corrupted_configuration_keeps_identifiers_that_were_changed(void) {
+    f.config.id_gear_command = 0x169;
+    f.config.id_wheel_speed = 0x102;
+    f.other_ids = true;
+    f.long_run = true;
+    fixture_active(&f);
+    const agv_supervisor_t intact = f.supervisor;
+    const size_t at = (size_t)((const uint8_t *)agv_supervisor_config(&f.supervisor) - (const uint8_t *)&f.supervisor);
+    for (size_t bit = 0; bit < 8 * sizeof(agv_config_t); bit++) {
+        f.supervisor = intact;
+        ((uint8_t *)&f.supervisor)[at + bit / 8] ^= (uint8_t)(1u << (bit % 8));
+        fixture_send_now(&f, AGV_MSG_WHEEL_SPEED);
+        expect_fault(&f, AGV_FAULT_MEMORY_CORRUPTED, true);
+        TEST_ASSERT_EQUAL_HEX16(0x169, agv_supervisor_config(&f.supervisor)->id_gear_command);
+        TEST_ASSERT_EQUAL_HEX16(0x102, agv_supervisor_config(&f.supervisor)->id_wheel_speed);
+        TEST_ASSERT_EQUAL_HEX16(0x43F, agv_supervisor_config(&f.supervisor)->id_turn_signal_command);
+    }
+}
+
+/* An identifier that makes no sense is not one of this vehicle: all of them are those of its set then. */
+/* Shows: FSM-9, CONFIG_INVALID, P1 */
+void test_an_identifier_twice_falls_back_to_those_of_the_set(void) {
+    f.config.id_set = AGV_ID_SET_TABLE;
+    f.config.id_gear_command = 0x075;
+    fixture_start(&f);
+    expect_reason(&f, AGV_FAULT_CONFIG_INVALID);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x201));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    TEST_ASSERT_EQUAL_INT(AGV_CONFIG_OK, agv_config_check(agv_supervisor_config(&f.supervisor)).problem);
+}
+
 /* Shows: FSM-9 */
 void test_both_at_the_start_the_left_one_is_the_first(void) {
     f.self_test_passed = false;

@@ -287,8 +287,8 @@ void test_a_press_in_tripped_is_refused_and_then_accepted(void) {
     TEST_ASSERT_EQUAL_UINT32(1, walk_refusals(&f, &missing));
     TEST_ASSERT_BITS_HIGH(AGV_MISSING_STATE, missing);
     fixture_gear(&f, GEAR_P);
-    fixture_send_now(&f, AGV_MSG_GEAR_STATUS); /* ends SAFE_STATE_UNCONFIRMED, too: the next tick sees no trip cause */
-    expect_reset_after(1001);
+    fixture_send_now(&f, AGV_MSG_GEAR_STATUS); /* ends SAFE_STATE_UNCONFIRMED, too: all is well from this frame on */
+    expect_reset_after(1000);
 }
 
 /* Shows: FSM-3 */

@@ -106,3 +106,25 @@ void test_the_event_of_the_reset_names_no_fault(void) {
     TEST_ASSERT_EQUAL_HEX8(AGV_STATE_STANDBY, event.b);
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_NONE, event.c);
 }
+
+/* The driver engages the autopilot before the next tick: the AI computer is awaited anew, and nothing has tripped. */
+/* Shows: FSM-3, SUP-8, AI_HEARTBEAT_LOST */
+void test_an_engagement_in_the_frame_after_a_reset_finds_the_ai_computer_forgotten(void) {
+    fixture_active(&f);
+    fixture_mute_ai(&f, true);
+    fixture_run(&f, 500);
+    fixture_vehicle_confirms(&f);
+    fixture_run(&f, 300);
+    press(true);
+    fixture_run(&f, 999);
+    fixture_run_without_ticks(&f, 1);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_run(&f, 100);
+    expect_state(&f, AGV_STATE_STANDBY);
+    TEST_ASSERT_EQUAL_UINT32(
+        2, fixture_raised(&f, AGV_FAULT_AI_HEARTBEAT_LOST)); /* before: as a trip, then as a warning */
+}

@@ -1,5 +1,5 @@
 /* The two identifier sets (P1): 43Fh and 363h, or 201h and 203h. Each is supervised alike; traffic on the other set's
- * identifiers is never accepted, and is told as WRONG_ID_SET. */
+ * identifiers is never accepted, and is told as WRONG_ID_SET. And identifiers that are changed one by one. */
 #include "expect.h"
 #include "unity.h"
 
@@ -39,7 +39,7 @@ void test_both_sets_work(void) {
         init(&SETS[i]);
         fixture_active(&f);
         TEST_ASSERT_EQUAL_HEX32(SETS[i].status_id, f.traffic[AGV_MSG_VEHICLE_STATUS].id);
-        TEST_ASSERT_EQUAL_UINT64(0, agv_supervisor_active_faults(&f.supervisor));
+        TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
         f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x01;
         fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
         expect_trip(&f, AGV_FAULT_REMOTE_SIGNAL_LOST, f.traffic[AGV_MSG_VEHICLE_STATUS].call, ANGLE_CENTRE);
@@ -224,4 +224,84 @@ void test_what_is_not_of_the_other_set(void) {
     fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x203, .length = 8});
     fixture_run(&f, 1);
     expect_fault(&f, WRONG, true);
+}
+
+/* ---- Identifiers changed one by one: id_... ---- */
+
+/* None of them is one of the protocol; gear and throttle command change places. */
+static const uint16_t OTHER[AGV_MSG_COUNT] = {0x301, 0x075, 0x168, 0x304, 0x305, 0x306,
+                                              0x307, 0x308, 0x309, 0x30A, 0x30B};
+
+static void change_ids(void) {
+    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
+        (void)agv_config_set(&f.config, AGV_SETTING_ID + i, OTHER[i]);
+    }
+    f.other_ids = true;
+}
+
+/* The oracle judges what leaves: on the changed identifiers, and on no other one. */
+/* Shows: P1 */
+void test_every_identifier_may_be_another_one(void) {
+    change_ids();
+    fixture_active(&f);
+    TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
+    TEST_ASSERT_EQUAL_HEX32(0x305, f.traffic[AGV_MSG_VEHICLE_STATUS].id);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x01;
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_trip(&f, AGV_FAULT_REMOTE_SIGNAL_LOST, f.traffic[AGV_MSG_VEHICLE_STATUS].call, ANGLE_CENTRE);
+    fixture_mute_ai(&f, true);
+    fixture_run(&f, 1000);
+    TEST_ASSERT_EQUAL_UINT32(11, fixture_count_sent(&f, 0x43F));
+    TEST_ASSERT_EQUAL_UINT32(11, fixture_count_sent(&f, 0x168));
+}
+
+/* D on the identifier of the gear command is answered; 43Fh, 065h are nobody's now. */
+/* Shows: P1, TOP-1 */
+void test_a_foreign_command_is_one_on_the_changed_identifier(void) {
+    change_ids();
+    fixture_standby(&f);
+    fixture_mute_ai(&f, true);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x01;
+    fixture_run(&f, 50);
+    expect_state(&f, AGV_STATE_SAFE);
+    fixture_forget_sent(&f);
+    fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x43F, .length = 8});
+    fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x065, .length = 8, .data = {1}});
+    TEST_ASSERT_EQUAL_UINT32(0, f.sent_count);
+    fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x075, .length = 8, .data = {GEAR_D}});
+    TEST_ASSERT_EQUAL_UINT32(1, f.sent_count);
+    TEST_ASSERT_EQUAL_HEX32(0x168, f.sent[0].id); /* in words of the protocol: its own gear command */
+    TEST_ASSERT_EQUAL_HEX8(GEAR_P, f.sent[0].data[0]);
+}
+
+/* Shows: P1, TOP-2 */
+void test_a_gateway_passes_on_the_changed_identifiers(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    change_ids();
+    fixture_active(&f);
+    fixture_run(&f, 100);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x43F));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x075));
+    TEST_ASSERT_EQUAL_UINT32(4, fixture_count_sent(&f, 0x065));
+    TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x363));
+    TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x101));
+}
+
+/* One that is changed, and the set for the others. */
+/* Shows: P1 */
+void test_an_identifier_that_is_not_changed_is_that_of_the_set(void) {
+    agv_ids_t ids;
+    f.config.id_set = AGV_ID_SET_TABLE;
+    f.config.id_gear_command = 0x169;
+    agv_config_ids(&f.config, &ids);
+    TEST_ASSERT_EQUAL_HEX16(0x201, ids.of[AGV_MSG_TURN_SIGNAL_COMMAND]);
+    TEST_ASSERT_EQUAL_HEX16(0x169, ids.of[AGV_MSG_GEAR_COMMAND]);
+    TEST_ASSERT_EQUAL_HEX16(0x075, ids.of[AGV_MSG_THROTTLE_COMMAND]);
+    TEST_ASSERT_EQUAL_HEX16(0x203, ids.of[AGV_MSG_VEHICLE_STATUS]);
+    f.config.id_turn_signal_command = 0x201; /* the table's own, whichever set is asked for */
+    f.config.id_vehicle_status = 0x203;
+    f.other_ids = true;
+    fixture_active(&f);
+    TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
 }

@@ -1,4 +1,6 @@
 /* A configuration that makes no sense is refused, each with its reason, and a supervisor that is given one is tripped. */
+#include <string.h>
+
 #include "fixture.h"
 #include "unity.h"
 #include "walk.h"
@@ -170,18 +172,18 @@ static const agv_fault_t FIXED[] = {
 void test_a_fault_made_weaker_than_it_may_be_is_refused(void) {
     for (unsigned i = 0; i < sizeof FIXED / sizeof FIXED[0]; i++) {
         agv_config_defaults(&config);
-        config.trips &= ~agv_fault_bit(FIXED[i]);
+        agv_fault_set_put(&config.trips, FIXED[i], false);
         expect_too_weak(FIXED[i]);
     }
     agv_config_defaults(&config);
-    config.trips = 0;
+    config.trips = (agv_fault_set_t){0};
     expect_too_weak(AGV_FAULT_SELF_TEST_FAILED); /* the highest-ranking one is named */
 }
 
 /* Shows: INT-2, S_DRIVER_ALARM, EPS_TEMP_ABOVE_110 */
 void test_others_may_be_made_weaker_and_warnings_stronger(void) {
-    config.trips &= ~agv_fault_bit(AGV_FAULT_S_DRIVER_ALARM);
-    config.trips |= agv_fault_bit(AGV_FAULT_EPS_TEMP_ABOVE_110);
+    agv_fault_set_put(&config.trips, AGV_FAULT_S_DRIVER_ALARM, false);
+    agv_fault_set_put(&config.trips, AGV_FAULT_EPS_TEMP_ABOVE_110, true);
     expect_good("other classes");
     f.config = config;
     fixture_active(&f);
@@ -197,9 +199,9 @@ void test_others_may_be_made_weaker_and_warnings_stronger(void) {
 
 /* Shows: INT-2 */
 void test_a_class_for_no_fault_is_refused(void) {
-    for (unsigned bit = AGV_FAULT_COUNT; bit < 64; bit++) {
+    for (unsigned bit = AGV_FAULT_COUNT; bit < 32u * AGV_FAULT_WORDS; bit++) {
         agv_config_defaults(&config);
-        config.trips |= (agv_fault_set_t)1u << bit;
+        config.trips.words[bit / 32u] |= 1u << (bit % 32u);
         TEST_ASSERT_EQUAL_INT(AGV_CONFIG_NO_SUCH_FAULT, agv_config_check(&config).problem);
     }
 }
@@ -230,9 +232,9 @@ void test_a_supervisor_that_is_given_one_is_tripped_and_runs_on_the_defaults(voi
     expect_refused_at_start("an identifier twice");
     config.own_heartbeat = AGV_OWN_HEARTBEAT_FROZEN;
     expect_refused_at_start("needs the gateway");
-    config.trips &= ~agv_fault_bit(AGV_FAULT_BUS_OFF);
+    agv_fault_set_put(&config.trips, AGV_FAULT_BUS_OFF, false);
     expect_refused_at_start("too weak");
-    config.trips = ~(agv_fault_set_t)0;
+    memset(&config.trips, 0xFF, sizeof config.trips);
     expect_refused_at_start("no such fault");
 }
 
@@ -245,6 +247,6 @@ void test_the_checksum_of_the_defaults_depends_on_every_setting(void) {
         TEST_ASSERT_NOT_EQUAL(defaults, agv_config_checksum(&config));
     }
     agv_config_defaults(&config);
-    config.trips ^= 1u;
+    config.trips.words[0] ^= 1u;
     TEST_ASSERT_NOT_EQUAL(defaults, agv_config_checksum(&config));
 }

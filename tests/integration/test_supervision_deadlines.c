@@ -298,5 +298,5 @@ void test_neither_mode_is_not_engaged(void) {
     fixture_mode(&f, MODE_NEITHER);
     fixture_run(&f, 500);
     expect_state(&f, AGV_STATE_STANDBY);
-    TEST_ASSERT_EQUAL_UINT64(0, agv_supervisor_active_faults(&f.supervisor));
+    TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
 }

@@ -224,7 +224,7 @@ void test_values_at_the_edge_are_valid(void) {
         fixture_run(&f, 200);
         expect_state(&f, AGV_STATE_ACTIVE);
     }
-    TEST_ASSERT_EQUAL_UINT64(0, agv_supervisor_active_faults(&f.supervisor));
+    TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
 }
 
 /* ---- THROTTLE_IN_PARK ---- */
@@ -318,7 +318,7 @@ void test_throttle_in_park_counts_after_the_grace(void) {
 /* However long: here an invalid throttle only warns. */
 /* Shows: SUP-5, THROTTLE_IN_PARK */
 void test_an_invalid_throttle_that_lasts_is_no_throttle_in_park(void) {
-    f.config.trips &= ~agv_fault_bit(AGV_FAULT_THROTTLE_STATUS_INVALID);
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_THROTTLE_STATUS_INVALID, false);
     fixture_active(&f);
     fixture_gear(&f, GEAR_P);
     set_throttle(251);
@@ -428,7 +428,7 @@ void test_commands_in_range(void) {
         fixture_run(&f, 60);
         expect_state(&f, AGV_STATE_ACTIVE);
     }
-    TEST_ASSERT_EQUAL_UINT64(0, agv_supervisor_active_faults(&f.supervisor));
+    TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
     TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->dropped);
 }
 

@@ -276,7 +276,7 @@ void test_a_frame_with_an_invalid_angle_is_a_heartbeat(void) {
     fixture_angle(&f, 18001);
     fixture_run(&f, 2000);
     expect_state(&f, AGV_STATE_STANDBY);
-    TEST_ASSERT_EQUAL_UINT64(0, agv_supervisor_active_faults(&f.supervisor));
+    TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
     take_over(&EPS);
     fixture_run(&f, 51);
     expect_trip(&f, AGV_FAULT_EPS_HEARTBEAT_LOST, f.call, NO_HOLD);

@@ -63,7 +63,7 @@ void test_50_degrees_are_no_deviation(void) {
     command(8500);
     fixture_run(&f, 3000);
     expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
-    TEST_ASSERT_EQUAL_UINT64(0, agv_supervisor_active_faults(&f.supervisor));
+    TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
 }
 
 /* 499 ms of it are none; 50.0 degrees in between start them anew. */

@@ -6,17 +6,16 @@
 compile() {
     ${CC:-cc} -std=c11 -O2 -w -I"$2" -Ifirmware/include -Ihal/include -Ihal/sim/include -Itests/fuzz -Itests/integration \
         -Itests/proof \
-        "$2"/*.c hal/sim/src/*.c tests/fuzz/world.c tests/fuzz/rules.c tests/integration/oracle.c \
+        "$2"/*/*.c hal/sim/src/*.c tests/fuzz/world.c tests/fuzz/rules.c tests/integration/oracle.c \
         tests/proof/moment.c tests/proof/part.c "$1" -o "$3"
 }
 
-# A copy of the core with texts replaced. plant FOLDER [FILE OLD NEW]...
+# A copy of the core with texts replaced. plant FOLDER [ROOM/FILE OLD NEW]...
 plant() {
     local folder=$1 text
     shift
     rm -rf "$folder"
-    mkdir -p "$folder"
-    cp firmware/src/*.[ch] "$folder/"
+    cp -r firmware/src "$folder"
     while (($# > 0)); do
         text=$(<"$folder/$1")
         [[ $text == *"$2"* ]] || die "'$2' is not in $1 any more"

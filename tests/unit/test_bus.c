@@ -1,12 +1,14 @@
 /* One CAN controller as the supervisor follows it. */
-#include "agv/bus.h"
+#include "observe/bus.h"
 
-#include "agv/core.h"
+#include <stddef.h>
 
 #include "unity.h"
 
 /* Recovery 100 ms after bus-off, stalled when a frame waits for more than 50 ms. */
-static agv_core_t core;
+static agv_bus_t bus;
+static agv_timers_t timers;
+static agv_config_t config;
 static hal_can_status_t controller;
 
 void hal_can_status(hal_t *hal, hal_can_side_t side, hal_can_status_t *status) {
@@ -25,19 +27,23 @@ enum {
 };
 
 static uint32_t look(uint32_t now_ms) {
-    core.now_ms = now_ms;
-    return agv_bus_tick(&core, HAL_CAN_VEHICLE);
+    agv_timers_set_time(&timers, now_ms);
+    agv_timers_tick(&timers);
+    return agv_bus_tick(&bus, &timers, &config, NULL, HAL_CAN_VEHICLE);
 }
 
 static bool is_off(void) {
-    return agv_bus_is_off(&core, HAL_CAN_VEHICLE);
+    return agv_bus_is_off(&timers, HAL_CAN_VEHICLE);
 }
 
 /* The controller has counted before: what it counted then is no news. */
 void setUp(void) {
     controller = (hal_can_status_t){.state = HAL_CAN_ERROR_ACTIVE, .bus_off_count = 65535, .overrun_count = 65535};
-    core = (agv_core_t){.config = {.bus_off_recovery_ms = 100, .tx_stalled_ms = 50}};
-    agv_bus_start(&core, HAL_CAN_VEHICLE);
+    agv_config_defaults(&config);
+    config.bus_off_recovery_ms = 100;
+    config.tx_stalled_ms = 50;
+    agv_timers_start(&timers, &config);
+    agv_bus_start(&bus, NULL, HAL_CAN_VEHICLE);
 }
 
 void tearDown(void) {
@@ -109,4 +115,20 @@ void test_a_frame_that_waits_for_too_long(void) {
     TEST_ASSERT_EQUAL_HEX(STALLED, look(1));
     enter_bus_off(); /* says more than "stalled" */
     TEST_ASSERT_EQUAL_HEX(OFF, look(2));
+}
+
+/* Each side has its own. */
+void test_the_two_sides_do_not_know_of_each_other(void) {
+    agv_bus_t ai = {0};
+    agv_bus_start(&ai, NULL, HAL_CAN_AI);
+    enter_bus_off();
+    TEST_ASSERT_EQUAL_HEX(OFF, look(0));
+    TEST_ASSERT_TRUE(is_off());
+    TEST_ASSERT_FALSE(agv_bus_is_off(&timers, HAL_CAN_AI));
+    TEST_ASSERT_EQUAL_HEX(OFF, agv_bus_tick(&ai, &timers, &config, NULL, HAL_CAN_AI));
+    TEST_ASSERT_TRUE(agv_bus_is_off(&timers, HAL_CAN_AI));
+    controller.state = HAL_CAN_ERROR_ACTIVE;
+    TEST_ASSERT_EQUAL_HEX(RECOVERED, look(1));
+    TEST_ASSERT_FALSE(is_off());
+    TEST_ASSERT_TRUE(agv_bus_is_off(&timers, HAL_CAN_AI));
 }

@@ -120,6 +120,68 @@ void test_the_status_frame_may_not_have_an_identifier_of_the_protocol(void) {
     expect_problem(AGV_CONFIG_ID_TWICE, AGV_SETTING_status_frame_id);
 }
 
+/* By hand: an identifier stands for its message in both sets as long as it has not been changed. */
+/* Shows: P1 */
+void test_the_set_is_the_preset_of_the_identifiers(void) {
+    static const uint16_t heading[] = {0x43F, 0x168, 0x075, 0x065, 0x363, 0x0A3, 0x050, 0x067, 0x167, 0x267, 0x101};
+    static const uint16_t table[] = {0x201, 0x168, 0x075, 0x065, 0x203, 0x0A3, 0x050, 0x067, 0x167, 0x267, 0x101};
+    agv_ids_t ids;
+    agv_config_ids(&config, &ids);
+    TEST_ASSERT_EQUAL_HEX16_ARRAY(heading, ids.of, AGV_MSG_COUNT);
+    config.id_set = AGV_ID_SET_TABLE;
+    agv_config_ids(&config, &ids);
+    TEST_ASSERT_EQUAL_HEX16_ARRAY(table, ids.of, AGV_MSG_COUNT);
+    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
+        agv_config_defaults(&config);
+        config.id_set = AGV_ID_SET_TABLE;
+        TEST_ASSERT_EQUAL_HEX16(heading[i], agv_config_get(&config, AGV_SETTING_ID + i));
+        TEST_ASSERT_TRUE(agv_config_set(&config, AGV_SETTING_ID + i, 0x7FF));
+        agv_config_ids(&config, &ids);
+        expect_good();
+        for (unsigned k = 0; k < AGV_MSG_COUNT; k++) {
+            TEST_ASSERT_EQUAL_HEX16((k == i) ? 0x7FF : table[k], ids.of[k]);
+        }
+    }
+}
+
+/* Two messages never have one identifier: the second of them is named. */
+/* Shows: INT-2, P1 */
+void test_an_identifier_twice_is_refused(void) {
+    for (uint16_t first = 0; first < AGV_MSG_COUNT; first++) {
+        for (uint16_t second = (uint16_t)(first + 1); second < AGV_MSG_COUNT; second++) {
+            setUp();
+            (void)agv_config_set(&config, AGV_SETTING_ID + first, 0x300);
+            (void)agv_config_set(&config, AGV_SETTING_ID + second, 0x300);
+            expect_problem(AGV_CONFIG_ID_TWICE, (uint16_t)(AGV_SETTING_ID + second));
+        }
+    }
+}
+
+/* 201h is free while the headings are used, and taken by the table; a swap is no conflict. */
+/* Shows: INT-2, P1 */
+void test_which_identifiers_are_taken_depends_on_the_set(void) {
+    config.id_gear_command = 0x201;
+    expect_good();
+    config.id_set = AGV_ID_SET_TABLE;
+    expect_problem(AGV_CONFIG_ID_TWICE, AGV_SETTING_id_gear_command);
+    setUp();
+    config.id_gear_command = 0x075;
+    expect_problem(AGV_CONFIG_ID_TWICE, AGV_SETTING_id_throttle_command);
+    config.id_throttle_command = 0x168;
+    expect_good();
+}
+
+/* Shows: INT-2, TOP-3 */
+void test_the_status_frame_may_not_have_an_identifier_that_was_changed(void) {
+    config.id_eps_status = 0x300;
+    config.status_frame_id = 0x300;
+    expect_problem(AGV_CONFIG_ID_TWICE, AGV_SETTING_status_frame_id);
+    config.status_frame_id = 0x167; /* free on this vehicle, and still one of the protocol */
+    expect_problem(AGV_CONFIG_ID_TWICE, AGV_SETTING_status_frame_id);
+    config.status_frame_id = 0x301;
+    expect_good();
+}
+
 /* Shows: FSM-8, INT-2 */
 void test_a_frozen_heartbeat_needs_the_gateway(void) {
     config.own_heartbeat = AGV_OWN_HEARTBEAT_FROZEN;
@@ -155,7 +217,7 @@ void test_what_must_trip_cannot_be_made_a_warning(void) {
     for (size_t i = 0; i < sizeof must / sizeof must[0]; i++) {
         setUp();
         TEST_ASSERT_TRUE(agv_config_is_trip(&config, must[i]));
-        config.trips &= ~agv_fault_bit(must[i]);
+        agv_fault_set_put(&config.trips, must[i], false);
         TEST_ASSERT_FALSE(agv_config_is_trip(&config, must[i]));
         TEST_ASSERT_EQUAL(AGV_CONFIG_FAULT_TOO_WEAK, agv_config_check(&config).problem);
         TEST_ASSERT_EQUAL(must[i], agv_config_check(&config).fault);
@@ -163,15 +225,16 @@ void test_what_must_trip_cannot_be_made_a_warning(void) {
 }
 
 void test_the_highest_ranking_weak_fault_is_named(void) {
-    config.trips = 0;
+    config.trips = (agv_fault_set_t){0};
     TEST_ASSERT_EQUAL(AGV_FAULT_SELF_TEST_FAILED, agv_config_check(&config).fault);
 }
 
 /* Shows: INT-2 */
 void test_other_classes_are_free(void) {
-    config.trips &= ~agv_fault_bit(AGV_FAULT_REMOTE_SIGNAL_LOST);
+    agv_fault_set_put(&config.trips, AGV_FAULT_REMOTE_SIGNAL_LOST, false);
     expect_good();
-    config.trips |= agv_fault_bit(AGV_FAULT_EPS_TEMP_ABOVE_110) | agv_fault_bit(AGV_FAULT_COMMAND_TOO_FAST);
+    agv_fault_set_put(&config.trips, AGV_FAULT_EPS_TEMP_ABOVE_110, true);
+    agv_fault_set_put(&config.trips, AGV_FAULT_COMMAND_TOO_FAST, true);
     expect_good();
     TEST_ASSERT_FALSE(agv_config_is_trip(&config, AGV_FAULT_REMOTE_SIGNAL_LOST));
     TEST_ASSERT_TRUE(agv_config_is_trip(&config, AGV_FAULT_EPS_TEMP_ABOVE_110));
@@ -180,8 +243,11 @@ void test_other_classes_are_free(void) {
 
 /* Shows: INT-2 */
 void test_bits_beyond_the_faults_are_refused(void) {
-    config.trips |= (agv_fault_set_t)1 << 63;
-    expect_problem(AGV_CONFIG_NO_SUCH_FAULT, AGV_SETTING_COUNT);
+    for (unsigned bit = AGV_FAULT_COUNT; bit < 32u * AGV_FAULT_WORDS; bit++) {
+        setUp();
+        config.trips.words[bit / 32u] |= 1u << (bit % 32u);
+        expect_problem(AGV_CONFIG_NO_SUCH_FAULT, AGV_SETTING_COUNT);
+    }
 }
 
 void test_there_is_no_setting_beyond_the_last(void) {
@@ -195,12 +261,13 @@ void test_there_is_no_setting_beyond_the_last(void) {
 }
 
 /*
- * By an independent CRC-32, zlib.crc32 of Python, over the defaults of config_settings.def packed as "<H" and the rows of
- * fault_table.def with the class TRIP as "<Q". A new setting or fault changes it.
+ * By an independent CRC-32, zlib.crc32 of Python, over the defaults of config_settings.def and the identifiers of
+ * message_table.def (heading) packed as "<H" and the rows of fault_table.def with the class TRIP as "<Q". A new setting,
+ * message or fault changes it.
  */
 /* Shows: TOP-3 */
 void test_the_checksum_of_the_defaults_is_known(void) {
-    TEST_ASSERT_EQUAL_HEX32(0x6EBBA770u, agv_config_checksum(&config));
+    TEST_ASSERT_EQUAL_HEX32(0xEF349A8Cu, agv_config_checksum(&config));
 }
 
 /* Shows: INT-5 */
@@ -214,10 +281,10 @@ void test_every_flipped_bit_changes_the_checksum(void) {
             (void)agv_config_set(&config, i, value);
         }
     }
-    for (unsigned bit = 0; bit < 64; bit++) {
-        config.trips ^= (agv_fault_set_t)1 << bit;
+    for (unsigned bit = 0; bit < 32u * AGV_FAULT_WORDS; bit++) {
+        config.trips.words[bit / 32u] ^= 1u << (bit % 32u);
         TEST_ASSERT_TRUE(agv_config_checksum(&config) != checksum);
-        config.trips ^= (agv_fault_set_t)1 << bit;
+        config.trips.words[bit / 32u] ^= 1u << (bit % 32u);
     }
     TEST_ASSERT_EQUAL_HEX32(checksum, agv_config_checksum(&config));
 }

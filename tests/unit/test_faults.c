@@ -1,132 +1,88 @@
-/* The faults of one supervisor: levels, events, sets; and that what is no fault changes nothing. */
+/* The table of faults and sets of them; and that what is no fault is in no set and has no properties. */
 #include "agv/faults.h"
 
 #include <string.h>
 
-#include "agv/core.h"
 #include "unity.h"
 
-static agv_core_t core;
+enum { BITS = 32 * AGV_FAULT_WORDS };
+
+static agv_fault_set_t set;
 
 void setUp(void) {
-    core = (agv_core_t){0};
+    set = (agv_fault_set_t){0};
 }
 
 void tearDown(void) {
 }
 
-static void event(agv_fault_t fault, uint32_t now_ms) {
-    core.now_ms = now_ms;
-    agv_faults_event(&core, fault);
+/* Whether a bit of the set is on, by hand. */
+static bool bit(unsigned n) {
+    return ((set.words[n / 32u] >> (n % 32u)) & 1u) != 0;
 }
 
-static void tick(uint32_t now_ms, uint16_t hold_ms) {
-    core.now_ms = now_ms;
-    core.config.event_hold_ms = hold_ms;
-    agv_faults_tick(&core);
-}
-
-static bool is_active(agv_fault_t fault) {
-    return agv_faults_is_active(&core, fault);
-}
-
-void test_a_level_is_active_while_its_cause_is(void) {
-    agv_faults_level(&core, AGV_FAULT_MODE_INVALID, true);
-    TEST_ASSERT_TRUE(is_active(AGV_FAULT_MODE_INVALID));
-    TEST_ASSERT_TRUE(core.summary.changed);
-    TEST_ASSERT_EQUAL_HEX64(agv_fault_bit(AGV_FAULT_MODE_INVALID), agv_faults_marked(&core.faults, AGV_MARK_ACTIVE));
-    core.summary.changed = false;
-    agv_faults_level(&core, AGV_FAULT_MODE_INVALID, true);
-    TEST_ASSERT_FALSE(core.summary.changed);
-    agv_faults_level(&core, AGV_FAULT_MODE_INVALID, false);
-    TEST_ASSERT_FALSE(is_active(AGV_FAULT_MODE_INVALID));
-    TEST_ASSERT_TRUE(core.summary.changed);
-    TEST_ASSERT_EQUAL_HEX64(0, agv_faults_marked(&core.faults, AGV_MARK_ACTIVE));
-}
-
-void test_a_level_leaves_other_marks_alone(void) {
-    core.faults.marks[AGV_FAULT_BUS_OFF] = AGV_MARK_LATCHED;
-    agv_faults_level(&core, AGV_FAULT_BUS_OFF, true);
-    agv_faults_level(&core, AGV_FAULT_BUS_OFF, false);
-    TEST_ASSERT_EQUAL_HEX8(AGV_MARK_LATCHED, core.faults.marks[AGV_FAULT_BUS_OFF]);
-}
-
-void test_a_set_has_the_faults_with_all_of_the_marks(void) {
-    core.faults.marks[0] = AGV_MARK_ACTIVE;
-    core.faults.marks[1] = AGV_MARK_ACTIVE | AGV_MARK_TRIPPING;
-    core.faults.marks[AGV_FAULT_COUNT - 1] = AGV_MARK_ACTIVE | AGV_MARK_TRIPPING | AGV_MARK_LATCHED;
-    const agv_fault_set_t last = (agv_fault_set_t)1 << (AGV_FAULT_COUNT - 1);
-    TEST_ASSERT_EQUAL_HEX64(3u | last, agv_faults_marked(&core.faults, AGV_MARK_ACTIVE));
-    TEST_ASSERT_EQUAL_HEX64(2u | last, agv_faults_marked(&core.faults, AGV_MARK_ACTIVE | AGV_MARK_TRIPPING));
-    TEST_ASSERT_EQUAL_HEX64(last, agv_faults_marked(&core.faults, AGV_MARK_LATCHED));
-}
-
-/* Shows: TIM-2 */
-TEST_CASE(0)
-TEST_CASE(0xFFFFFE0C)
-void test_an_event_ends_when_its_time_after_the_last_one_is_over(uint32_t start_ms) {
-    event(AGV_FAULT_STEP_OVERRUN, start_ms);
-    tick(start_ms + 600, 1000);
-    event(AGV_FAULT_STEP_OVERRUN, start_ms + 600);
-    event(AGV_FAULT_RX_OVERRUN, start_ms + 601);
-    tick(start_ms + 1599, 1000);
-    TEST_ASSERT_TRUE(is_active(AGV_FAULT_STEP_OVERRUN));
-    tick(start_ms + 1600, 1000);
-    TEST_ASSERT_FALSE(is_active(AGV_FAULT_STEP_OVERRUN));
-    TEST_ASSERT_TRUE(is_active(AGV_FAULT_RX_OVERRUN));
-    tick(start_ms + 1601, 1000);
-    TEST_ASSERT_EQUAL_HEX64(0, agv_faults_marked(&core.faults, AGV_MARK_ACTIVE));
-}
-
-/* The eight rows that the table calls events, by hand. */
-void test_eight_faults_are_events_and_the_others_are_not(void) {
-    const agv_fault_set_t events =
-        agv_fault_bit(AGV_FAULT_SUPERVISOR_RESET) | agv_fault_bit(AGV_FAULT_TX_GATE_REFUSED) |
-        agv_fault_bit(AGV_FAULT_STEP_OVERRUN) | agv_fault_bit(AGV_FAULT_AI_COMMAND_OUT_OF_RANGE) |
-        agv_fault_bit(AGV_FAULT_FOREIGN_COMMAND_SENDER) | agv_fault_bit(AGV_FAULT_COMMAND_TOO_FAST) |
-        agv_fault_bit(AGV_FAULT_RX_OVERRUN) | agv_fault_bit(AGV_FAULT_STORE_INVALID);
-    TEST_ASSERT_EQUAL_HEX64(events, agv_faults_events);
+void test_a_fault_is_the_bit_of_its_rank(void) {
     for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
-        const bool is_event = ((events >> i) & 1u) != 0;
         setUp();
-        event((agv_fault_t)i, 0);
-        TEST_ASSERT_EQUAL(is_event, is_active((agv_fault_t)i));
-        tick(1000, 1000);
-        TEST_ASSERT_EQUAL_HEX64(0, agv_faults_marked(&core.faults, AGV_MARK_ACTIVE));
-    }
-}
-
-/* Of 64 bits, one a fault. */
-void test_a_fault_is_in_the_sets_that_have_its_bit(void) {
-    for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
-        for (unsigned bit = 0; bit < 64; bit++) {
-            TEST_ASSERT_EQUAL(i == bit, agv_fault_is_in((agv_fault_set_t)1 << bit, i));
+        agv_fault_set_put(&set, i, true);
+        for (unsigned n = 0; n < BITS; n++) {
+            TEST_ASSERT_EQUAL(n == i, bit(n));
+            TEST_ASSERT_EQUAL(n == i, agv_fault_is_in(&set, n));
         }
-        TEST_ASSERT_EQUAL_HEX64((agv_fault_set_t)1 << i, agv_fault_bit(i));
+        TEST_ASSERT_EQUAL_UINT32(i, agv_fault_first(&set));
+        agv_fault_set_put(&set, i, true);
+        TEST_ASSERT_TRUE(bit(i));
+        agv_fault_set_put(&set, i, false);
+        TEST_ASSERT_FALSE(bit(i));
     }
-    TEST_ASSERT_FALSE(agv_fault_is_in(UINT64_MAX, AGV_FAULT_NONE));
-    TEST_ASSERT_FALSE(agv_fault_is_in(UINT64_MAX, 63));
 }
 
-/* Whatever stands behind the marks. */
-void test_what_is_no_fault_is_never_active(void) {
-    memset(&core, 0xFF, sizeof core);
-    TEST_ASSERT_TRUE(is_active((agv_fault_t)(AGV_FAULT_COUNT - 1)));
-    TEST_ASSERT_FALSE(is_active(AGV_FAULT_NONE));
+void test_a_fault_that_is_taken_out_leaves_the_others(void) {
+    for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
+        memset(&set, 0xFF, sizeof set);
+        agv_fault_set_put(&set, i, false);
+        for (unsigned n = 0; n < BITS; n++) {
+            TEST_ASSERT_EQUAL(n != i, bit(n));
+        }
+    }
+}
+
+/* Across the words; the upper row is the first. */
+void test_the_first_of_a_set_is_the_highest_ranking_one(void) {
+    TEST_ASSERT_EQUAL_UINT32(AGV_FAULT_NONE, agv_fault_first(&set));
+    for (unsigned i = AGV_FAULT_COUNT; i-- > 0;) {
+        agv_fault_set_put(&set, i, true);
+        TEST_ASSERT_EQUAL_UINT32(i, agv_fault_first(&set));
+    }
+    agv_fault_set_put(&set, 0, false);
+    TEST_ASSERT_EQUAL_UINT32(1, agv_fault_first(&set));
+    setUp();
+    agv_fault_set_put(&set, 31, true);
+    agv_fault_set_put(&set, 32, true);
+    TEST_ASSERT_EQUAL_UINT32(31, agv_fault_first(&set));
+}
+
+/* Bits beyond the last fault. */
+void test_what_is_no_fault_is_in_no_set(void) {
+    memset(&set, 0xFF, sizeof set);
+    TEST_ASSERT_TRUE(agv_fault_is_in(&set, AGV_FAULT_COUNT - 1u));
+    TEST_ASSERT_FALSE(agv_fault_is_in(&set, AGV_FAULT_NONE));
+    for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
+        agv_fault_set_put(&set, i, false);
+    }
+    TEST_ASSERT_EQUAL_UINT32(AGV_FAULT_NONE, agv_fault_first(&set));
 }
 
 void test_what_is_no_fault_changes_nothing(void) {
-    const agv_fault_t none[] = {AGV_FAULT_NONE, (agv_fault_t)63, (agv_fault_t)64, (agv_fault_t)255};
-    for (unsigned i = 0; i < 4; i++) {
-        agv_faults_level(&core, none[i], true);
-        event(none[i], 0);
-        TEST_ASSERT_FALSE(is_active(none[i]));
-        TEST_ASSERT_EQUAL_HEX64(0, agv_fault_bit(none[i]));
+    static const unsigned none[] = {AGV_FAULT_NONE, 63, 64, 255, UINT32_MAX};
+    for (unsigned i = 0; i < sizeof none / sizeof none[0]; i++) {
+        agv_fault_set_put(&set, none[i], true);
+        TEST_ASSERT_FALSE(agv_fault_is_in(&set, none[i]));
+        TEST_ASSERT_EACH_EQUAL_HEX32(0, set.words, AGV_FAULT_WORDS);
         TEST_ASSERT_EQUAL_HEX8(0, agv_fault_flags(none[i]));
         TEST_ASSERT_EQUAL_UINT8(0, agv_fault_led_code(none[i]));
+        TEST_ASSERT_EQUAL(AGV_CLASS_WARN, agv_fault_default_class(none[i]));
     }
-    TEST_ASSERT_FALSE(core.summary.changed);
-    TEST_ASSERT_EQUAL_HEX64(0, agv_faults_marked(&core.faults, AGV_MARK_ACTIVE));
 }
 
 /* Shows: FSM-9 */
@@ -134,13 +90,27 @@ void test_three_faults_are_unresettable(void) {
     for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
         const bool unresettable =
             i == AGV_FAULT_SELF_TEST_FAILED || i == AGV_FAULT_MEMORY_CORRUPTED || i == AGV_FAULT_CONFIG_INVALID;
-        TEST_ASSERT_EQUAL(unresettable, (agv_fault_flags((agv_fault_t)i) & AGV_FAULT_FLAG_UNRESETTABLE) != 0);
+        TEST_ASSERT_EQUAL(unresettable, (agv_fault_flags(i) & AGV_FAULT_FLAG_UNRESETTABLE) != 0);
     }
 }
 
 /* What must not be made weaker is a trip to begin with. */
 void test_fixed_faults_are_trips(void) {
-    TEST_ASSERT_EQUAL_HEX64(0, agv_faults_fixed & ~agv_faults_default_trips);
-    TEST_ASSERT_TRUE((agv_faults_fixed & agv_fault_bit(AGV_FAULT_BUS_OFF)) != 0);
-    TEST_ASSERT_TRUE((agv_faults_default_trips & agv_fault_bit(AGV_FAULT_RX_OVERRUN)) == 0);
+    for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
+        if ((agv_fault_flags(i) & AGV_FAULT_FLAG_FIXED) != 0) {
+            TEST_ASSERT_EQUAL(AGV_CLASS_TRIP, agv_fault_default_class(i));
+        }
+    }
+    TEST_ASSERT_TRUE((agv_fault_flags(AGV_FAULT_BUS_OFF) & AGV_FAULT_FLAG_FIXED) != 0);
+    TEST_ASSERT_EQUAL(AGV_CLASS_WARN, agv_fault_default_class(AGV_FAULT_RX_OVERRUN));
+}
+
+/* By hand from the rows of the AI computer and of the EPS. */
+/* Shows: FSM-3, FSM-10 */
+void test_the_other_properties_of_some_faults(void) {
+    TEST_ASSERT_EQUAL_HEX8(AGV_FAULT_FLAG_FIXED | AGV_FAULT_FLAG_FROM_AI, agv_fault_flags(AGV_FAULT_AI_HEARTBEAT_LOST));
+    TEST_ASSERT_EQUAL_HEX8(AGV_FAULT_FLAG_FROM_AI, agv_fault_flags(AGV_FAULT_COMMAND_TOO_FAST));
+    TEST_ASSERT_EQUAL_HEX8(AGV_FAULT_FLAG_FIXED | AGV_FAULT_FLAG_OF_EPS, agv_fault_flags(AGV_FAULT_EPS_STATUS_TIMEOUT));
+    TEST_ASSERT_EQUAL_HEX8(AGV_FAULT_FLAG_FIXED, agv_fault_flags(AGV_FAULT_EPS_MODE_OFF));
+    TEST_ASSERT_EQUAL_HEX8(0, agv_fault_flags(AGV_FAULT_S_DRIVER_ALARM));
 }

@@ -2,8 +2,7 @@
  * The gate: what may leave in which state, on which side, with which identifier and which bytes. The oracle is a table
  * written by hand from the rows FSM-6 and TOP-2: every payload class with the states in which each command may carry it.
  */
-#include "agv/gate.h"
-#include "agv/protocol.h"
+#include "transmit/gate.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -22,12 +21,15 @@ static agv_config_t config;
 /* Throttle ceiling 30 %: 75 counts. Held angle 9123 = 23A3h. */
 enum { CEILING_PCT = 30, HELD_RAW = 0x23A3, STATUS_ID = 0x123 };
 static agv_gate_t gate;
+static agv_ids_t ids;
 
 void setUp(void) {
     agv_config_defaults(&config);
     config.throttle_ceiling_pct = CEILING_PCT;
     config.status_frame_id = STATUS_ID;
-    gate = (agv_gate_t){.config = &config, .hold_raw = HELD_RAW, .hold_check = 0xDC5C, .state = AGV_STATE_TRIPPED};
+    gate = (agv_gate_t){
+        .config = &config, .ids = &ids, .hold_raw = HELD_RAW, .hold_check = 0xDC5C, .state = AGV_STATE_TRIPPED};
+    agv_config_ids(&config, &ids);
 }
 
 void tearDown(void) {
@@ -188,6 +190,7 @@ void test_the_shared_bus(void) {
 /* Shows: INT-4, FSM-6, TOP-1 */
 void test_the_shared_bus_with_the_other_id_set(void) {
     config.id_set = AGV_ID_SET_TABLE;
+    agv_config_ids(&config, &ids);
     expect_as_the_oracle_in_every_state();
 }
 
@@ -202,6 +205,7 @@ void test_the_gateway_that_passes_all_in_manual(void) {
     config.topology = AGV_TOPOLOGY_GATEWAY;
     config.gateway_in_manual = AGV_IN_MANUAL_ALL;
     config.id_set = AGV_ID_SET_TABLE;
+    agv_config_ids(&config, &ids);
     expect_as_the_oracle_in_every_state();
 }
 
@@ -304,16 +308,16 @@ void test_every_bit_of_a_safe_command_counts(void) {
 /* Shows: INT-4, TOP-2 */
 void test_every_reserved_bit_of_a_passed_command_counts(void) {
     static const uint8_t free_bits[4][8] = {{0, 0, 0, 0, 0xF0, 0, 0, 0xFF}, {0x0F}, {0x7F}, {0xFF, 0x7F}};
-    static const uint32_t ids[4] = {0x43F, 0x168, 0x075, 0x065};
+    static const uint32_t commands[4] = {0x43F, 0x168, 0x075, 0x065};
     config.topology = AGV_TOPOLOGY_GATEWAY;
     gate.state = AGV_STATE_ACTIVE;
     for (unsigned i = 0; i < 4; i++) {
         for (unsigned bit = 0; bit < 64; bit++) {
             const uint8_t byte = (uint8_t)(1u << (bit % 8));
             uint8_t data[8] = {0};
-            data[0] = (ids[i] == 0x168) ? 8 : 0;
+            data[0] = (commands[i] == 0x168) ? 8 : 0;
             data[bit / 8] = byte;
-            TEST_ASSERT_EQUAL((free_bits[i][bit / 8] & byte) != 0, allows(HAL_CAN_VEHICLE, ids[i], data));
+            TEST_ASSERT_EQUAL((free_bits[i][bit / 8] & byte) != 0, allows(HAL_CAN_VEHICLE, commands[i], data));
         }
     }
 }
@@ -355,4 +359,30 @@ void test_in_shadow_mode_nothing_reaches_the_hal(void) {
     TEST_ASSERT_EQUAL(AGV_GATE_SHADOWED, agv_gate_send(&gate, &hal, HAL_CAN_VEHICLE, &frame));
     frame.data[0] = 1;
     TEST_ASSERT_EQUAL(AGV_GATE_REFUSED, agv_gate_send(&gate, &hal, HAL_CAN_VEHICLE, &frame));
+}
+
+/* Whatever the protocol says: the gate goes by the identifiers that it is handed. */
+/* Shows: INT-4, P1 */
+void test_the_gate_goes_by_the_identifiers_of_this_vehicle(void) {
+    static const uint8_t park[8] = {8};
+    static const uint8_t any[8] = {0};
+    config.id_gear_command = 0x169;
+    config.id_wheel_speed = 0x102;
+    config.topology = AGV_TOPOLOGY_GATEWAY;
+    agv_config_ids(&config, &ids);
+    for (uint32_t id = 0; id <= 0x800; id++) {
+        TEST_ASSERT_EQUAL(id == 0x169 || id == STATUS_ID, allows(HAL_CAN_VEHICLE, id, park));
+    }
+    TEST_ASSERT_TRUE(allows(HAL_CAN_AI, 0x102, any));
+    TEST_ASSERT_FALSE(allows(HAL_CAN_AI, 0x101, any));
+}
+
+/* Such a configuration is refused; the gate would still hold back the command that another message has the place of. */
+/* Shows: INT-4, P1 */
+void test_an_identifier_twice_is_that_of_the_first_message(void) {
+    static const uint8_t zeros[8] = {0};
+    static const uint8_t park[8] = {8};
+    ids.of[AGV_MSG_WHEEL_SPEED] = 0x168;
+    TEST_ASSERT_TRUE(allows(HAL_CAN_VEHICLE, 0x168, park));
+    TEST_ASSERT_FALSE(allows(HAL_CAN_VEHICLE, 0x168, zeros));
 }

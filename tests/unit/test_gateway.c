@@ -1,18 +1,24 @@
 /* What the gateway passes on: which commands in which state, reserved bits, throttle ceiling, steering slew. */
-#include "agv/gateway.h"
+#include "transmit/gateway.h"
 
 #include <string.h>
 
-#include "agv/core.h"
 #include "unity.h"
 
-static agv_core_t core;
+static agv_gateway_t gateway;
+static agv_config_t config;
+static agv_vehicle_t vehicle;
+static agv_state_t state;
+static uint32_t now_ms;
 static uint8_t data[8];
 
 void setUp(void) {
-    core = (agv_core_t){.now_ms = 1000, .machine = {.state = AGV_STATE_ACTIVE}};
-    agv_config_defaults(&core.config);
-    core.config.topology = AGV_TOPOLOGY_GATEWAY;
+    gateway = (agv_gateway_t){0};
+    vehicle = (agv_vehicle_t){0};
+    agv_config_defaults(&config);
+    config.topology = AGV_TOPOLOGY_GATEWAY;
+    state = AGV_STATE_ACTIVE;
+    now_ms = 1000;
 }
 
 void tearDown(void) {
@@ -20,14 +26,11 @@ void tearDown(void) {
 
 /* The adaptor to the module: everything below goes through these two. */
 static bool passes(agv_message_t command) {
-    return agv_gateway_passes(&core, command);
+    return agv_gateway_passes(&config, state, command);
 }
 
 static void limit(agv_message_t command) {
-    core.vehicle.command_raw = 0;
-    agv_gateway_limit(&core, command, data);
-    const int raw = data[0] | data[1] << 8;
-    TEST_ASSERT_EQUAL_INT((command == AGV_MSG_STEERING_COMMAND) ? raw : 0, core.vehicle.command_raw);
+    agv_gateway_limit(&gateway, &config, &vehicle, state, now_ms, command, data);
 }
 
 /* Hand in 8 bytes, look at those that come out. */
@@ -50,7 +53,7 @@ static int steer(uint32_t after_ms, int wanted_ddeg) {
     memset(data, 0, sizeof data);
     data[0] = (uint8_t)(raw & 0xFF);
     data[1] = (uint8_t)(raw >> 8);
-    core.now_ms += after_ms;
+    now_ms += after_ms;
     limit(AGV_MSG_STEERING_COMMAND);
     return (data[0] | data[1] << 8) - 9000;
 }
@@ -61,10 +64,10 @@ void test_which_commands_pass_in_which_state(void) {
         for (unsigned command = 0; command < 4; command++) {
             const bool active = value == 0x3C;
             const bool standby = value == 0x33;
-            core.machine.state = (uint8_t)value;
-            core.config.gateway_in_manual = AGV_IN_MANUAL_HEARTBEAT;
+            state = (agv_state_t)value;
+            config.gateway_in_manual = AGV_IN_MANUAL_HEARTBEAT;
             TEST_ASSERT_EQUAL(active || (standby && command == 0), passes((agv_message_t)command));
-            core.config.gateway_in_manual = AGV_IN_MANUAL_ALL;
+            config.gateway_in_manual = AGV_IN_MANUAL_ALL;
             TEST_ASSERT_EQUAL(active || standby, passes((agv_message_t)command));
         }
     }
@@ -94,21 +97,21 @@ void test_reserved_bits_are_passed_as_0(void) {
 /* Shows: TOP-2 */
 void test_the_throttle_ceiling(void) {
     TEST_ASSERT_EQUAL_UINT(250, throttle(250));
-    core.config.throttle_ceiling_pct = 30;
+    config.throttle_ceiling_pct = 30;
     TEST_ASSERT_EQUAL_UINT(75, throttle(250));
     TEST_ASSERT_EQUAL_UINT(75, throttle(75));
     TEST_ASSERT_EQUAL_UINT(74, throttle(74));
-    core.config.throttle_ceiling_pct = 33; /* 82.5 counts, rounded down */
+    config.throttle_ceiling_pct = 33; /* 82.5 counts, rounded down */
     TEST_ASSERT_EQUAL_UINT(82, throttle(250));
-    core.config.throttle_ceiling_pct = 99; /* 247.5 */
+    config.throttle_ceiling_pct = 99; /* 247.5 */
     TEST_ASSERT_EQUAL_UINT(247, throttle(250));
-    core.config.throttle_ceiling_pct = 0;
+    config.throttle_ceiling_pct = 0;
     TEST_ASSERT_EQUAL_UINT(0, throttle(1));
 }
 
 /* Shows: TOP-2 */
 void test_in_manual_the_throttle_is_0(void) {
-    core.machine.state = AGV_STATE_STANDBY;
+    state = AGV_STATE_STANDBY;
     TEST_ASSERT_EQUAL_UINT(0, throttle(250));
     TEST_ASSERT_EQUAL_UINT(0, throttle(0));
 }
@@ -123,9 +126,9 @@ void test_without_a_slew_limit_steering_passes_as_it_is(void) {
 /* 400.0 degrees a second are 10.0 in the 25 ms of a cycle. */
 /* Shows: TOP-2 */
 void test_the_slew_limit_starts_from_the_measured_angle(void) {
-    core.config.steering_slew_ddeg_s = 4000;
-    core.vehicle.angle_known = true;
-    core.vehicle.angle_raw = 9000 - 200;
+    config.steering_slew_ddeg_s = 4000;
+    vehicle.angle_known = true;
+    vehicle.angle_raw = 9000 - 200;
     TEST_ASSERT_EQUAL_INT(-100, steer(0, 500)); /* the first one may use one cycle */
     TEST_ASSERT_EQUAL_INT(0, steer(25, 500));
     TEST_ASSERT_EQUAL_INT(40, steer(10, 500));
@@ -135,7 +138,7 @@ void test_the_slew_limit_starts_from_the_measured_angle(void) {
 }
 
 void test_without_a_measured_angle_the_first_command_is_the_start(void) {
-    core.config.steering_slew_ddeg_s = 4000;
+    config.steering_slew_ddeg_s = 4000;
     TEST_ASSERT_EQUAL_INT(500, steer(0, 500));
     TEST_ASSERT_EQUAL_INT(400, steer(25, 0));
 }
@@ -143,8 +146,8 @@ void test_without_a_measured_angle_the_first_command_is_the_start(void) {
 /* Longer pauses than a second give no more than a second does: 50.0 degrees. */
 /* Shows: TOP-2, TIM-2 */
 void test_a_pause_gives_at_most_a_second_of_slew(void) {
-    core.config.steering_slew_ddeg_s = 500;
-    core.now_ms = 0xFFFFFF00u;
+    config.steering_slew_ddeg_s = 500;
+    now_ms = 0xFFFFFF00u;
     TEST_ASSERT_EQUAL_INT(-9000, steer(0, -9000));
     TEST_ASSERT_EQUAL_INT(-8500, steer(1000, 9000));
     TEST_ASSERT_EQUAL_INT(-8000, steer(5000, 9000));
@@ -153,7 +156,7 @@ void test_a_pause_gives_at_most_a_second_of_slew(void) {
 /* 900.0 degrees a second: a millisecond more would be 0.9 degrees more. */
 /* Shows: TOP-2 */
 void test_a_second_of_slew_is_exact(void) {
-    core.config.steering_slew_ddeg_s = 9000;
+    config.steering_slew_ddeg_s = 9000;
     TEST_ASSERT_EQUAL_INT(-9000, steer(0, -9000));
     TEST_ASSERT_EQUAL_INT(-9, steer(999, 9000));
     TEST_ASSERT_EQUAL_INT(8991, steer(1000, 9000));
@@ -163,7 +166,7 @@ void test_a_second_of_slew_is_exact(void) {
 /* 1.0 degree a second: a tenth takes 100 ms, and 25 ms frames must not round it away. */
 /* Shows: TOP-2 */
 void test_a_slow_slew_adds_up(void) {
-    core.config.steering_slew_ddeg_s = 10;
+    config.steering_slew_ddeg_s = 10;
     (void)steer(0, 0);
     for (int i = 1; i <= 40; i++) {
         TEST_ASSERT_EQUAL_INT(i / 4, steer(25, 1000));
@@ -172,9 +175,22 @@ void test_a_slow_slew_adds_up(void) {
 
 /* The last command was reached while time added up: from there on time counts anew. */
 void test_time_does_not_add_up_while_the_command_is_followed(void) {
-    core.config.steering_slew_ddeg_s = 10;
+    config.steering_slew_ddeg_s = 10;
     for (int i = 0; i < 100; i++) {
         TEST_ASSERT_EQUAL_INT(0, steer(25, 0));
     }
     TEST_ASSERT_EQUAL_INT(0, steer(25, 1000));
+}
+
+/* The slew limit begins anew: from the measured angle of now, with the time of one cycle. */
+/* Shows: TOP-2 */
+void test_after_a_restart_the_slew_limit_starts_from_the_measured_angle(void) {
+    config.steering_slew_ddeg_s = 4000;
+    vehicle.angle_known = true;
+    vehicle.angle_raw = 9000;
+    TEST_ASSERT_EQUAL_INT(100, steer(0, 500));
+    vehicle.angle_raw = 9000 - 300;
+    TEST_ASSERT_EQUAL_INT(200, steer(25, 500));
+    agv_gateway_restart(&gateway);
+    TEST_ASSERT_EQUAL_INT(-200, steer(0, 500));
 }

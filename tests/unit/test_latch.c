@@ -1,5 +1,5 @@
 /* The latch record: what is handed to the store and what comes back from it. */
-#include "agv/latch.h"
+#include "keep/latch.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* The LED, millisecond by millisecond. */
-#include "agv/led.h"
+#include "keep/led.h"
 
 #include "unity.h"
 

@@ -1,56 +1,48 @@
 /* Who is alive, and how old is what is known: deadlines, heartbeats, ages that saturate. */
-#include "agv/liveness.h"
-
-#include "agv/core.h"
+#include "observe/liveness.h"
 
 #include "unity.h"
 
-static agv_core_t core;
+static agv_liveness_t liveness;
+static agv_timers_t timers;
 
 static void start(uint32_t now_ms) {
-    core = (agv_core_t){.now_ms = now_ms};
-    core.config.vcu_heartbeat_timeout_ms = 50;
-    core.config.eps_heartbeat_timeout_ms = 50;
-    core.config.ai_heartbeat_timeout_ms = 350;
-    core.config.gear_command_timeout_ms = 60;
-    core.config.throttle_command_timeout_ms = 60;
-    core.config.steering_command_timeout_ms = 60;
-    core.config.gear_status_timeout_ms = 60;
-    core.config.throttle_status_timeout_ms = 60;
-    core.config.eps_status_timeout_ms = 60;
-    core.config.steering_position_timeout_ms = 60;
-    core.config.wheel_speed_timeout_ms = 60;
-    agv_liveness_start(&core);
-}
-
-static bool judge(agv_message_t message, uint32_t now_ms) {
-    core.now_ms = now_ms;
-    return agv_liveness_judge(&core, message);
+    agv_config_t config;
+    agv_config_defaults(&config);
+    config.gear_command_timeout_ms = 60;
+    config.throttle_command_timeout_ms = 60;
+    config.steering_command_timeout_ms = 60;
+    config.gear_status_timeout_ms = 60;
+    liveness = (agv_liveness_t){0};
+    agv_timers_set_time(&timers, now_ms);
+    agv_timers_start(&timers, &config);
+    agv_liveness_start(&liveness, &timers);
 }
 
 static void tick(uint32_t now_ms) {
-    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
-        (void)judge((agv_message_t)i, now_ms);
-    }
+    agv_timers_set_time(&timers, now_ms);
+    agv_timers_tick(&timers);
+    agv_liveness_tick(&liveness, &timers);
 }
 
-static void judge_beat(agv_node_t node, uint32_t now_ms) {
-    core.now_ms = now_ms;
-    (void)agv_liveness_judge_beat(&core, node);
+/* Whether the deadline of a message has expired. */
+static bool judge(agv_message_t message, uint32_t now_ms) {
+    tick(now_ms);
+    return agv_timer_reached(&timers, (uint32_t)AGV_TIMER_MESSAGE + message);
 }
 
 static void refresh(agv_message_t message, uint32_t now_ms) {
     const hal_can_frame_t frame = {.time_ms = now_ms, .length = 8};
-    agv_liveness_refresh(&core, message, &frame);
+    agv_liveness_refresh(&liveness, &timers, message, &frame);
 }
 
 static uint32_t age_ms(agv_message_t message, uint32_t now_ms) {
-    core.now_ms = now_ms;
-    return agv_liveness_age_ms(&core, message);
+    agv_timers_set_time(&timers, now_ms);
+    return agv_liveness_age_ms(&liveness, &timers, message);
 }
 
 static bool is_heard(agv_message_t message) {
-    return (core.liveness.seen[message] & AGV_SEEN_HEARD) != 0u;
+    return liveness.heard[message];
 }
 
 void setUp(void) {
@@ -61,8 +53,8 @@ void tearDown(void) {
 }
 
 static void expect_heartbeat(agv_node_t node, agv_heartbeat_state_t expected) {
-    TEST_ASSERT_EQUAL(expected, core.liveness.heartbeats[node].state);
-    TEST_ASSERT_EQUAL(expected == AGV_HEARTBEAT_ALIVE, agv_core_alive(&core, node));
+    TEST_ASSERT_EQUAL(expected, agv_liveness_heartbeat(&liveness, node));
+    TEST_ASSERT_EQUAL(expected == AGV_HEARTBEAT_ALIVE, agv_liveness_alive(&liveness, node));
 }
 
 /* A frame with an alive counter, as the monitor hands it on: 363h byte 8, 067h byte 1, 43Fh byte 8. */
@@ -71,8 +63,8 @@ static void beat(agv_node_t node, uint8_t counter, uint32_t time_ms) {
                                             AGV_MSG_TURN_SIGNAL_COMMAND};
     hal_can_frame_t frame = {.time_ms = time_ms, .length = 8};
     frame.data[(node == AGV_NODE_EPS) ? 0 : 7] = counter;
-    (void)agv_liveness_arrived(&core, carrier[node], time_ms);
-    agv_liveness_refresh(&core, carrier[node], &frame);
+    (void)agv_liveness_arrived(&liveness, carrier[node], time_ms);
+    agv_liveness_refresh(&liveness, &timers, carrier[node], &frame);
 }
 
 /* Shows: SUP-2, SUP-3, TIM-2 */
@@ -80,15 +72,15 @@ TEST_CASE(0)
 TEST_CASE(0xFFFFFFE0)
 void test_a_deadline_expires_when_the_age_is_greater(uint32_t start_ms) {
     start(start_ms);
-    (void)agv_liveness_arrived(&core, AGV_MSG_EPS_STATUS, start_ms + 10);
+    (void)agv_liveness_arrived(&liveness, AGV_MSG_EPS_STATUS, start_ms + 10);
     refresh(AGV_MSG_EPS_STATUS, start_ms + 10);
     TEST_ASSERT_FALSE(judge(AGV_MSG_EPS_STATUS, start_ms + 70));
-    TEST_ASSERT_TRUE(agv_liveness_fresh(&core, AGV_MSG_EPS_STATUS));
+    TEST_ASSERT_TRUE(agv_liveness_fresh(&liveness, &timers, AGV_MSG_EPS_STATUS));
     TEST_ASSERT_TRUE(judge(AGV_MSG_EPS_STATUS, start_ms + 71));
-    TEST_ASSERT_FALSE(agv_liveness_fresh(&core, AGV_MSG_EPS_STATUS));
+    TEST_ASSERT_FALSE(agv_liveness_fresh(&liveness, &timers, AGV_MSG_EPS_STATUS));
     refresh(AGV_MSG_EPS_STATUS, start_ms + 72);
     TEST_ASSERT_FALSE(judge(AGV_MSG_EPS_STATUS, start_ms + 72));
-    TEST_ASSERT_TRUE(agv_liveness_fresh(&core, AGV_MSG_EPS_STATUS));
+    TEST_ASSERT_TRUE(agv_liveness_fresh(&liveness, &timers, AGV_MSG_EPS_STATUS));
 }
 
 /* Shows: TIM-2 */
@@ -98,7 +90,6 @@ void test_what_is_lost_stays_lost_over_the_whole_turn_of_the_clock(void) {
     for (uint32_t day = 0; day < 60; day++) {
         const uint32_t now_ms = 100u + day * 86400000u;
         tick(now_ms);
-        judge_beat(AGV_NODE_VCU, now_ms);
         TEST_ASSERT_TRUE(judge(AGV_MSG_VEHICLE_STATUS, now_ms));
         TEST_ASSERT_TRUE(judge(AGV_MSG_EPS_STATUS, now_ms));
         expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_LOST);
@@ -114,7 +105,7 @@ void test_nothing_is_fresh_before_it_was_heard(uint32_t start_ms) {
     start(start_ms);
     for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
         TEST_ASSERT_FALSE(is_heard((agv_message_t)i));
-        TEST_ASSERT_FALSE(agv_liveness_fresh(&core, (agv_message_t)i));
+        TEST_ASSERT_FALSE(agv_liveness_fresh(&liveness, &timers, (agv_message_t)i));
         TEST_ASSERT_EQUAL_UINT32(7, age_ms((agv_message_t)i, start_ms + 7)); /* since the start */
         /* the AI is not awaited */
         TEST_ASSERT_EQUAL(i != AGV_MSG_TURN_SIGNAL_COMMAND, judge((agv_message_t)i, start_ms + 61));
@@ -127,11 +118,11 @@ void test_nothing_is_fresh_before_it_was_heard(uint32_t start_ms) {
 }
 
 void test_a_message_concerns_no_other(void) {
-    (void)agv_liveness_arrived(&core, AGV_MSG_GEAR_STATUS, 5);
+    (void)agv_liveness_arrived(&liveness, AGV_MSG_GEAR_STATUS, 5);
     refresh(AGV_MSG_GEAR_STATUS, 5);
     for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
         TEST_ASSERT_EQUAL(i == AGV_MSG_GEAR_STATUS, is_heard((agv_message_t)i));
-        TEST_ASSERT_EQUAL(i == AGV_MSG_GEAR_STATUS, agv_liveness_fresh(&core, (agv_message_t)i));
+        TEST_ASSERT_EQUAL(i == AGV_MSG_GEAR_STATUS, agv_liveness_fresh(&liveness, &timers, (agv_message_t)i));
     }
 }
 
@@ -140,30 +131,30 @@ TEST_CASE(0)
 TEST_CASE(0xFFFFF000)
 void test_ages_and_gaps_saturate(uint32_t start_ms) {
     start(start_ms);
-    TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, agv_liveness_arrived(&core, AGV_MSG_WHEEL_SPEED, start_ms));
-    TEST_ASSERT_EQUAL_UINT32(10, agv_liveness_arrived(&core, AGV_MSG_WHEEL_SPEED, start_ms + 10));
+    TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, start_ms));
+    TEST_ASSERT_EQUAL_UINT32(10, agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, start_ms + 10));
     tick(start_ms + 6010);
     TEST_ASSERT_EQUAL_UINT32(6000, age_ms(AGV_MSG_WHEEL_SPEED, start_ms + 6010));
     tick(start_ms + 6011);
     TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, age_ms(AGV_MSG_WHEEL_SPEED, start_ms + 6011));
     TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, age_ms(AGV_MSG_WHEEL_SPEED, start_ms + 11));
-    TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, agv_liveness_arrived(&core, AGV_MSG_WHEEL_SPEED, start_ms + 11));
+    TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, start_ms + 11));
     TEST_ASSERT_EQUAL_UINT32(0, age_ms(AGV_MSG_WHEEL_SPEED, start_ms + 11));
 }
 
 /* A stamp that lies before the one before it (frames of two queues) makes no gap of 49 days. */
 void test_a_stamp_that_goes_backwards_is_no_gap(void) {
-    (void)agv_liveness_arrived(&core, AGV_MSG_WHEEL_SPEED, 20);
-    TEST_ASSERT_EQUAL_UINT32(0, agv_liveness_arrived(&core, AGV_MSG_WHEEL_SPEED, 19));
+    (void)agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, 20);
+    TEST_ASSERT_EQUAL_UINT32(0, agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, 19));
 }
 
 /* Shows: SUP-1, SUP-2 */
 TEST_CASE(0)
 TEST_CASE(1)
 void test_vcu_and_eps_are_awaited_from_the_start(unsigned node) {
-    judge_beat((agv_node_t)node, 50);
+    tick(50);
     expect_heartbeat((agv_node_t)node, AGV_HEARTBEAT_UNSEEN);
-    judge_beat((agv_node_t)node, 51);
+    tick(51);
     expect_heartbeat((agv_node_t)node, AGV_HEARTBEAT_LOST);
 }
 
@@ -173,19 +164,19 @@ TEST_CASE(0)
 TEST_CASE(1)
 void test_a_first_frame_just_before_the_deadline_is_no_repeat(unsigned node) {
     beat((agv_node_t)node, 200, 45);
-    judge_beat((agv_node_t)node, 51);
+    tick(51);
     expect_heartbeat((agv_node_t)node, AGV_HEARTBEAT_LOST);
 }
 
 /* Shows: SUP-8 */
 void test_the_ai_is_not_awaited_before_it_was_seen(void) {
-    judge_beat(AGV_NODE_AI, 1000000);
+    tick(1000000);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_UNSEEN);
     beat(AGV_NODE_AI, 9, 1000000);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_BASELINE);
-    judge_beat(AGV_NODE_AI, 1000350);
+    tick(1000350);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_BASELINE);
-    judge_beat(AGV_NODE_AI, 1000351);
+    tick(1000351);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_LOST);
 }
 
@@ -195,9 +186,9 @@ TEST_CASE(1)
 TEST_CASE(2)
 void test_the_first_frame_is_only_the_baseline(unsigned node) {
     beat((agv_node_t)node, 200, 10);
-    TEST_ASSERT_FALSE(agv_core_alive(&core, (agv_node_t)node));
+    TEST_ASSERT_FALSE(agv_liveness_alive(&liveness, (agv_node_t)node));
     beat((agv_node_t)node, 200, 20);
-    TEST_ASSERT_FALSE(agv_core_alive(&core, (agv_node_t)node));
+    TEST_ASSERT_FALSE(agv_liveness_alive(&liveness, (agv_node_t)node));
     beat((agv_node_t)node, 201, 30);
     expect_heartbeat((agv_node_t)node, AGV_HEARTBEAT_ALIVE);
 }
@@ -208,7 +199,7 @@ void test_any_change_of_the_counter_is_a_beat(void) {
     beat(AGV_NODE_VCU, 254, 0);
     for (uint32_t i = 0; i < sizeof counters; i++) {
         beat(AGV_NODE_VCU, counters[i], 40 * (i + 1));
-        judge_beat(AGV_NODE_VCU, 40 * (i + 1) + 50);
+        tick(40 * (i + 1) + 50);
         expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
     }
 }
@@ -220,9 +211,9 @@ static void repeat_until(uint32_t last_frame_ms) {
     for (uint32_t ms = 110; ms <= last_frame_ms; ms += 10) {
         beat(AGV_NODE_VCU, 2, ms);
     }
-    judge_beat(AGV_NODE_VCU, 150);
+    tick(150);
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
-    judge_beat(AGV_NODE_VCU, 151);
+    tick(151);
 }
 
 /* Shows: SUP-2 */
@@ -240,7 +231,7 @@ void test_an_old_counter_two_cycles_ago_is_stuck(void) {
     beat(AGV_NODE_VCU, 1, 90);
     beat(AGV_NODE_VCU, 2, 100);
     beat(AGV_NODE_VCU, 2, 131);
-    judge_beat(AGV_NODE_VCU, 151);
+    tick(151);
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_STUCK);
 }
 
@@ -255,8 +246,7 @@ void test_silence_is_lost(void) {
     repeat_until(0);
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_LOST);
     beat(AGV_NODE_VCU, 2, 500);
-    judge_beat(AGV_NODE_VCU,
-               505); /* it was lost when its deadline expired: an old counter later does not make it stuck */
+    tick(505); /* it was lost when its deadline expired: an old counter later does not make it stuck */
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_LOST);
     beat(AGV_NODE_VCU, 3, 510);
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
@@ -266,11 +256,29 @@ void test_silence_is_lost(void) {
 void test_a_forgotten_node_is_seen_again_when_its_counter_changes(void) {
     beat(AGV_NODE_AI, 1, 0);
     beat(AGV_NODE_AI, 2, 100);
-    agv_monitor_forget_ai(&core);
+    agv_liveness_forget_ai(&liveness, &timers);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_UNSEEN);
     beat(AGV_NODE_AI, 2, 200);
-    judge_beat(AGV_NODE_AI, 10000);
+    tick(10000);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_UNSEEN);
     beat(AGV_NODE_AI, 3, 10000);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_ALIVE);
+}
+
+/* The commands are awaited from the engagement on, however long there were none; the heartbeat of the AI is not. */
+/* Shows: SUP-3 */
+TEST_CASE(0)
+TEST_CASE(0xFFFFFFE0)
+void test_at_the_engagement_the_deadlines_of_commands_begin_anew(uint32_t start_ms) {
+    start(start_ms);
+    tick(start_ms + 5000);
+    agv_liveness_restart_commands(&timers, start_ms + 5000);
+    for (unsigned i = AGV_MSG_GEAR_COMMAND; i <= AGV_MSG_STEERING_COMMAND; i++) {
+        TEST_ASSERT_FALSE(judge((agv_message_t)i, start_ms + 5060));
+    }
+    for (unsigned i = AGV_MSG_GEAR_COMMAND; i <= AGV_MSG_STEERING_COMMAND; i++) {
+        TEST_ASSERT_TRUE(judge((agv_message_t)i, start_ms + 5061));
+    }
+    TEST_ASSERT_FALSE(judge(AGV_MSG_TURN_SIGNAL_COMMAND, start_ms + 5061));
+    TEST_ASSERT_TRUE(judge(AGV_MSG_EPS_STATUS, start_ms + 5061));
 }

@@ -1,6 +1,8 @@
 /* The message table: identifiers in both sets, cycle times, and what is no message. */
 #include "agv/protocol.h"
 
+#include <stdbool.h>
+
 #include "unity.h"
 
 void setUp(void) {
@@ -113,4 +115,29 @@ void test_a_set_that_does_not_exist_knows_neither_changed_identifier(void) {
         TEST_ASSERT_EQUAL(AGV_MSG_NONE, agv_message_from_id(0x363, none));
         TEST_ASSERT_EQUAL(AGV_MSG_NONE, agv_message_from_id(0x203, none));
     }
+}
+
+/* ---- Identifiers that a supervisor uses ---- */
+
+/* Shows: P1 */
+void test_a_message_is_found_by_the_identifier_that_it_has(void) {
+    agv_ids_t ids;
+    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
+        ids.of[i] = (uint16_t)(0x400 + i);
+    }
+    for (uint32_t id = 0; id <= 0x800; id++) {
+        const bool is_one = id >= 0x400 && id < 0x400 + AGV_MSG_COUNT;
+        TEST_ASSERT_EQUAL_UINT32(is_one ? id - 0x400 : AGV_MSG_NONE, agv_ids_find(&ids, id));
+    }
+    TEST_ASSERT_EQUAL_UINT32(AGV_MSG_NONE, agv_ids_find(&ids, 0x10400u));
+    TEST_ASSERT_EQUAL_UINT32(AGV_MSG_NONE, agv_ids_find(&ids, UINT32_MAX));
+}
+
+/* The first in the order of the document. */
+void test_of_two_messages_with_one_identifier_the_first_is_found(void) {
+    agv_ids_t ids;
+    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
+        ids.of[i] = 0x123;
+    }
+    TEST_ASSERT_EQUAL_UINT32(AGV_MSG_TURN_SIGNAL_COMMAND, agv_ids_find(&ids, 0x123));
 }

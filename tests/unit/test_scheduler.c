@@ -1,35 +1,37 @@
 /* When to send: slots on their grid, overruns, overrides. */
-#include "agv/scheduler.h"
-
-#include "agv/core.h"
+#include "transmit/scheduler.h"
 
 #include "unity.h"
 
-static agv_core_t core;
+enum { GAP_MS = 5 };
+
+static agv_scheduler_t scheduler;
+static agv_timers_t timers;
+static uint32_t now_us;
 
 void setUp(void) {
-    core = (agv_core_t){.config = {.override_gap_ms = 5}};
+    scheduler = (agv_scheduler_t){0};
+    now_us = 0;
 }
 
 void tearDown(void) {
 }
 
 static void restart(uint32_t now_ms) {
-    core.now_ms = now_ms;
-    agv_scheduler_restart(&core);
+    agv_scheduler_restart(&scheduler, now_ms);
 }
 
 static bool due(agv_message_t command, uint32_t now_ms, uint32_t *skipped) {
-    core.now_ms = now_ms;
-    const uint32_t slots = agv_scheduler_due(&core, command);
+    const uint32_t slots = agv_scheduler_due(&scheduler, now_ms, command);
     *skipped += (slots > 1) ? slots - 1 : 0;
     return slots != 0;
 }
 
-static void overridden(agv_message_t command, uint32_t now_ms, uint32_t now_us) {
-    core.now_ms = now_ms;
-    core.now_us = now_us;
-    agv_scheduler_overridden(&core, command);
+static void overridden(agv_message_t command, uint32_t at_ms, uint32_t at_us) {
+    timers.now_ms = at_ms;
+    timers.now_us = at_us;
+    now_us = at_us;
+    agv_scheduler_overridden(&scheduler, &timers, command);
 }
 
 static const struct {
@@ -104,15 +106,14 @@ void test_a_late_frame_misses_no_slot(void) {
 void test_a_slot_that_begins_later_has_its_own_grid(void) {
     uint32_t skipped = 0;
     restart(0);
-    core.now_ms = 40;
-    agv_scheduler_restart_slot(&core, AGV_MSG_GEAR_COMMAND);
+    agv_scheduler_restart_slot(&scheduler, 40, AGV_MSG_GEAR_COMMAND);
     TEST_ASSERT_FALSE(due(AGV_MSG_GEAR_COMMAND, 139, &skipped));
     TEST_ASSERT_TRUE(due(AGV_MSG_GEAR_COMMAND, 140, &skipped));
 }
 
 static bool answered(uint32_t ms) {
-    core.now_us = ms * 1000;
-    if (!agv_scheduler_override(&core, AGV_MSG_GEAR_COMMAND)) {
+    now_us = ms * 1000;
+    if (!agv_scheduler_override(&scheduler, now_us, GAP_MS, AGV_MSG_GEAR_COMMAND)) {
         return false;
     }
     overridden(AGV_MSG_GEAR_COMMAND, ms, ms * 1000);
@@ -120,8 +121,8 @@ static bool answered(uint32_t ms) {
 }
 
 static bool answer_due(uint32_t ms) {
-    core.now_us = ms * 1000;
-    return agv_scheduler_override_due(&core, AGV_MSG_GEAR_COMMAND);
+    now_us = ms * 1000;
+    return agv_scheduler_override_due(&scheduler, now_us, GAP_MS, AGV_MSG_GEAR_COMMAND);
 }
 
 /* Shows: TOP-1, TIM-2 */
@@ -175,13 +176,13 @@ void test_when_all_are_sent_what_waited_is_forgotten(void) {
 void test_a_restart_forgets_overrides(void) {
     for (unsigned i = 0; i < 4; i++) {
         overridden(SLOTS[i].command, 7, 7000);
-        TEST_ASSERT_FALSE(agv_scheduler_override(&core, SLOTS[i].command));
+        TEST_ASSERT_FALSE(agv_scheduler_override(&scheduler, now_us, GAP_MS, SLOTS[i].command));
     }
     restart(4294974);
-    core.now_us = 7001;
+    now_us = 7001;
     for (unsigned i = 0; i < 4; i++) {
-        TEST_ASSERT_FALSE(agv_scheduler_override_due(&core, SLOTS[i].command));
-        TEST_ASSERT_TRUE(agv_scheduler_override(&core, SLOTS[i].command));
+        TEST_ASSERT_FALSE(agv_scheduler_override_due(&scheduler, now_us, GAP_MS, SLOTS[i].command));
+        TEST_ASSERT_TRUE(agv_scheduler_override(&scheduler, now_us, GAP_MS, SLOTS[i].command));
     }
 }
 
@@ -189,6 +190,5 @@ void test_a_restart_forgets_overrides(void) {
 /* Shows: TIM-1 */
 void test_a_slot_that_is_very_late_is_due(void) {
     restart(0);
-    core.now_ms = 100u + 0x60000000u;
-    TEST_ASSERT_EQUAL_UINT32(16106128, agv_scheduler_due(&core, AGV_MSG_TURN_SIGNAL_COMMAND));
+    TEST_ASSERT_EQUAL_UINT32(16106128, agv_scheduler_due(&scheduler, 100u + 0x60000000u, AGV_MSG_TURN_SIGNAL_COMMAND));
 }

@@ -1,7 +1,7 @@
 /* The states: far apart, and on the safe side for whatever is no state. */
 #include "agv/state.h"
 
-#include "agv/latch.h"
+#include "keep/latch.h"
 #include "unity.h"
 
 static const uint8_t STATES[] = {AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_STATE_ACTIVE, AGV_STATE_TRIPPED,

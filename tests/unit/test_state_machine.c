@@ -1,11 +1,10 @@
 /* The state machine by itself: facts in, states out. */
-#include "agv/state_machine.h"
+#include "decide/state_machine.h"
 
-#include "agv/core.h"
-#include "agv/latch.h"
+#include "keep/latch.h"
 #include "unity.h"
 
-/* Facts and what a step did by name. missing: AGV_MISSING_* */
+/* Facts by name. missing: AGV_MISSING_* */
 typedef struct {
     agv_fault_t raised;
     agv_fault_t cause;
@@ -21,18 +20,19 @@ typedef struct {
     bool output_unsafe;
 } situation_t;
 
-typedef struct {
-    uint8_t from;
-    uint8_t missing;
-    bool tripped;
-    bool reset_accepted;
-    bool reset_refused;
-    bool startup_timed_out;
-} step_t;
-
-static agv_core_t core;
+static agv_state_machine_t machine;
+static agv_timers_t timers;
+static agv_config_t config;
 static situation_t facts;
-static step_t did;
+static agv_actions_t did;
+
+static bool has_done(uint32_t action) {
+    return (did.what & action) != 0;
+}
+
+static unsigned missing(void) {
+    return did.what & AGV_MISSING_ALL;
+}
 
 static uint32_t words_of_facts(void) {
     const uint32_t with_missing =
@@ -49,9 +49,9 @@ static uint32_t words_of_facts(void) {
 }
 
 static void start(agv_fault_t reason) {
-    const agv_config_t config = core.config;
-    core = (agv_core_t){.config = config, .now_ms = core.now_ms};
-    agv_state_machine_start(&core, reason);
+    machine = (agv_state_machine_t){0};
+    agv_timers_start(&timers, &config);
+    agv_state_machine_start(&machine, &timers, &config, reason);
 }
 
 /* A vehicle in manual that stands in P, all well. */
@@ -66,10 +66,9 @@ static void all_well(void) {
 }
 
 void setUp(void) {
-    core = (agv_core_t){0};
-    agv_config_defaults(&core.config);
+    agv_config_defaults(&config);
     all_well();
-    core.now_ms = 0xFFFFFF00u; /* every test wraps */
+    agv_timers_set_time(&timers, 0xFFFFFF00u); /* every test wraps */
     start(AGV_FAULT_NONE);
 }
 
@@ -78,20 +77,24 @@ void tearDown(void) {
 
 /* The adaptor to the module: everything below goes through these. */
 static void step(uint32_t after_ms) {
-    core.now_ms += after_ms;
-    core.summary.raised = (uint8_t)facts.raised;
-    core.summary.cause = (uint8_t)facts.cause;
-    core.summary.forever = (uint8_t)facts.forever;
-    core.summary.ai_cause = facts.ai_cause;
-    did.from = core.machine.state;
-    const uint32_t done = agv_state_machine_step(&core, words_of_facts());
-    did.missing = (uint8_t)(done & AGV_MISSING_ALL);
-    did.tripped = (done & AGV_STEP_TRIPPED) != 0;
-    did.reset_accepted = (done & AGV_STEP_RESET_ACCEPTED) != 0;
-    did.reset_refused = (done & AGV_STEP_RESET_REFUSED) != 0;
-    did.startup_timed_out = (done & AGV_STEP_STARTUP_TIMED_OUT) != 0;
-    TEST_ASSERT_TRUE(agv_state_machine_is_sound(&core.machine));
+    const agv_fault_summary_t faults = {.raised = (uint8_t)facts.raised,
+                                        .cause = (uint8_t)facts.cause,
+                                        .ai_cause = facts.ai_cause ? AGV_FAULT_AI_HEARTBEAT_LOST : AGV_FAULT_NONE,
+                                        .unresettable = (uint8_t)facts.forever};
+    const uint8_t from = machine.state;
+    const uint8_t first_reason = machine.first_reason;
+    agv_timers_set_time(&timers, timers.now_ms + after_ms);
+    agv_timers_tick(&timers);
+    did = agv_state_machine_step(&machine, &timers, &config, &faults, words_of_facts());
+    TEST_ASSERT_EQUAL_HEX8(from, did.from);
+    TEST_ASSERT_EQUAL_UINT8(first_reason, did.first_reason);
+    TEST_ASSERT_EQUAL(machine.state != from, has_done(AGV_ACTION_STATE));
+    TEST_ASSERT_TRUE(agv_state_machine_is_sound(&machine));
     facts.raised = AGV_FAULT_NONE; /* told once */
+}
+
+static bool is_unconfirmed(void) {
+    return agv_state_machine_is_unconfirmed(&machine, &timers, words_of_facts());
 }
 
 static void run(uint32_t ms) {
@@ -101,7 +104,7 @@ static void run(uint32_t ms) {
 }
 
 static void expect_state(agv_state_t state) {
-    TEST_ASSERT_EQUAL_HEX8(state, core.machine.state);
+    TEST_ASSERT_EQUAL_HEX8(state, machine.state);
 }
 
 static void trip(agv_fault_t reason) {
@@ -127,9 +130,9 @@ static void to_safe(void) {
 void test_of_all_states_and_latches_five_pairs_are_sound(void) {
     unsigned sound = 0;
     for (unsigned pair = 0; pair < 65536; pair++) {
-        core.machine.state = (uint8_t)(pair & 0xFF);
-        core.machine.latched = (uint8_t)(pair >> 8);
-        sound += agv_state_machine_is_sound(&core.machine) ? 1u : 0u;
+        machine.state = (uint8_t)(pair & 0xFF);
+        machine.latched = (uint8_t)(pair >> 8);
+        sound += agv_state_machine_is_sound(&machine) ? 1u : 0u;
     }
     TEST_ASSERT_EQUAL_UINT(5, sound);
 }
@@ -144,11 +147,11 @@ void test_init_is_left_after_500_ms_without_a_break(void) {
     step(1);
     run(499);
     expect_state(AGV_STATE_INIT);
-    TEST_ASSERT_FALSE(core.machine.output_closed);
+    TEST_ASSERT_FALSE(machine.output_closed);
     step(1);
     expect_state(AGV_STATE_STANDBY);
-    TEST_ASSERT_TRUE(core.machine.output_closed);
-    TEST_ASSERT_EQUAL_HEX8(AGV_LATCH_OPEN, core.machine.latched);
+    TEST_ASSERT_TRUE(machine.output_closed);
+    TEST_ASSERT_EQUAL_HEX8(AGV_LATCH_OPEN, machine.latched);
 }
 
 /* Standstill is not asked for; everything else that may be missing keeps it. */
@@ -180,12 +183,12 @@ void test_after_10_s_the_start_says_once_what_is_missing(void) {
     facts.missing = AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_STANDSTILL;
     facts.cause = AGV_FAULT_BUS_OFF;
     run(10000);
-    TEST_ASSERT_FALSE(did.startup_timed_out);
+    TEST_ASSERT_FALSE(has_done(AGV_ACTION_STARTUP_LATE));
     step(1);
-    TEST_ASSERT_TRUE(did.startup_timed_out);
-    TEST_ASSERT_EQUAL_HEX8(AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_TRIP_CAUSE, did.missing);
+    TEST_ASSERT_TRUE(has_done(AGV_ACTION_STARTUP_LATE));
+    TEST_ASSERT_EQUAL_HEX8(AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_TRIP_CAUSE, missing());
     step(1);
-    TEST_ASSERT_FALSE(did.startup_timed_out);
+    TEST_ASSERT_FALSE(has_done(AGV_ACTION_STARTUP_LATE));
 }
 
 /* Shows: FSM-9 */
@@ -194,14 +197,14 @@ void test_an_unresettable_fault_trips_in_init_and_is_never_reset(void) {
     facts.forever = AGV_FAULT_MEMORY_CORRUPTED;
     step(1);
     expect_state(AGV_STATE_TRIPPED);
-    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_MEMORY_CORRUPTED, core.machine.first_reason);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_MEMORY_CORRUPTED, machine.first_reason);
     facts.forever = AGV_FAULT_NONE; /* even if its cause were gone */
     run(10);
     facts.button = true;
     run(3000);
     expect_state(AGV_STATE_SAFE);
-    TEST_ASSERT_FALSE(core.machine.output_closed);
-    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_MEMORY_CORRUPTED, core.machine.unresettable);
+    TEST_ASSERT_FALSE(machine.output_closed);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_MEMORY_CORRUPTED, machine.unresettable);
 }
 
 void test_active_while_engaged_with_the_ai_alive(void) {
@@ -225,11 +228,11 @@ void test_active_while_engaged_with_the_ai_alive(void) {
 void test_the_first_reason_stays(void) {
     to_standby();
     trip(AGV_FAULT_THROTTLE_IN_PARK);
-    TEST_ASSERT_TRUE(did.tripped);
+    TEST_ASSERT_TRUE(has_done(AGV_ACTION_TRIP));
     facts.raised = AGV_FAULT_BUS_OFF;
     step(1);
-    TEST_ASSERT_FALSE(did.tripped);
-    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_THROTTLE_IN_PARK, core.machine.first_reason);
+    TEST_ASSERT_FALSE(has_done(AGV_ACTION_TRIP));
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_THROTTLE_IN_PARK, machine.first_reason);
 }
 
 /* A cause that was there before the state could trip for it. */
@@ -238,7 +241,7 @@ void test_a_cause_that_stands_trips_as_well(void) {
     facts.cause = AGV_FAULT_MODE_INVALID;
     step(1);
     expect_state(AGV_STATE_TRIPPED);
-    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_MODE_INVALID, core.machine.first_reason);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_MODE_INVALID, machine.first_reason);
 }
 
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
@@ -247,16 +250,16 @@ void test_autopilot_off_that_is_not_confirmed_opens_the_output(void) {
     facts.autopilot_off = false;
     trip(AGV_FAULT_BUS_OFF);
     run(500);
-    TEST_ASSERT_TRUE(core.machine.output_closed);
-    TEST_ASSERT_FALSE(core.machine.safe_state_unconfirmed);
+    TEST_ASSERT_TRUE(machine.output_closed);
+    TEST_ASSERT_FALSE(is_unconfirmed());
     step(1);
-    TEST_ASSERT_FALSE(core.machine.output_closed);
-    TEST_ASSERT_TRUE(core.machine.safe_state_unconfirmed);
+    TEST_ASSERT_FALSE(machine.output_closed);
+    TEST_ASSERT_TRUE(is_unconfirmed());
     facts.autopilot_off = true;
     step(1);
     expect_state(AGV_STATE_SAFE);
-    TEST_ASSERT_FALSE(core.machine.safe_state_unconfirmed);
-    TEST_ASSERT_FALSE(core.machine.output_closed); /* until the next STANDBY */
+    TEST_ASSERT_FALSE(is_unconfirmed());
+    TEST_ASSERT_FALSE(machine.output_closed); /* until the next STANDBY */
 }
 
 /* 500 ms from the first P, which here was sent 200 ms after the trip. */
@@ -266,29 +269,29 @@ void test_p_that_is_not_confirmed_opens_the_output(void) {
     facts.in_park = false;
     trip(AGV_FAULT_BUS_OFF);
     run(200);
-    agv_state_machine_park_sent(&core);
+    agv_state_machine_park_sent(&machine, &timers);
     run(100);
-    agv_state_machine_park_sent(&core); /* the first one counts */
+    agv_state_machine_park_sent(&machine, &timers); /* the first one counts */
     run(400);
-    TEST_ASSERT_TRUE(core.machine.output_closed);
+    TEST_ASSERT_TRUE(machine.output_closed);
     step(1);
-    TEST_ASSERT_FALSE(core.machine.output_closed);
+    TEST_ASSERT_FALSE(machine.output_closed);
 }
 
 /* Shows: FSM-4 */
 void test_a_withdrawn_confirmation_begins_the_500_ms_anew(void) {
     to_standby();
     trip(AGV_FAULT_BUS_OFF);
-    agv_state_machine_park_sent(&core);
+    agv_state_machine_park_sent(&machine, &timers);
     run(2000);
     expect_state(AGV_STATE_SAFE);
     facts.in_park = false;
     step(1);
     expect_state(AGV_STATE_TRIPPED);
     run(500);
-    TEST_ASSERT_TRUE(core.machine.output_closed);
+    TEST_ASSERT_TRUE(machine.output_closed);
     step(1);
-    TEST_ASSERT_FALSE(core.machine.output_closed);
+    TEST_ASSERT_FALSE(machine.output_closed);
 }
 
 /* Shows: FSM-4 */
@@ -296,10 +299,10 @@ void test_what_is_unsafe_for_the_output_opens_it_at_once(void) {
     to_standby();
     facts.output_unsafe = true;
     step(1);
-    TEST_ASSERT_FALSE(core.machine.output_closed);
+    TEST_ASSERT_FALSE(machine.output_closed);
     facts.output_unsafe = false;
     step(1);
-    TEST_ASSERT_FALSE(core.machine.output_closed);
+    TEST_ASSERT_FALSE(machine.output_closed);
 }
 
 /* Shows: FSM-3 */
@@ -311,9 +314,9 @@ void test_a_press_of_a_second_in_safe_resets(void) {
     expect_state(AGV_STATE_SAFE);
     step(1);
     expect_state(AGV_STATE_STANDBY);
-    TEST_ASSERT_TRUE(did.reset_accepted);
-    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_NONE, core.machine.first_reason);
-    TEST_ASSERT_TRUE(core.machine.output_closed);
+    TEST_ASSERT_TRUE(has_done(AGV_ACTION_RESET_ACCEPTED));
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_NONE, machine.first_reason);
+    TEST_ASSERT_TRUE(machine.output_closed);
 }
 
 /* Shows: FSM-3 */
@@ -335,12 +338,12 @@ void test_a_press_in_vain_is_reported_once_with_what_was_missing(void) {
     step(1);
     facts.missing = AGV_MISSING_MANUAL;
     run(999);
-    TEST_ASSERT_FALSE(did.reset_refused);
+    TEST_ASSERT_FALSE(has_done(AGV_ACTION_RESET_REFUSED));
     step(1);
-    TEST_ASSERT_TRUE(did.reset_refused);
-    TEST_ASSERT_EQUAL_HEX8(AGV_MISSING_TRIP_CAUSE | AGV_MISSING_STANDSTILL | AGV_MISSING_MANUAL, did.missing);
+    TEST_ASSERT_TRUE(has_done(AGV_ACTION_RESET_REFUSED));
+    TEST_ASSERT_EQUAL_HEX8(AGV_MISSING_TRIP_CAUSE | AGV_MISSING_STANDSTILL | AGV_MISSING_MANUAL, missing());
     step(1);
-    TEST_ASSERT_FALSE(did.reset_refused);
+    TEST_ASSERT_FALSE(has_done(AGV_ACTION_RESET_REFUSED));
     facts.cause = AGV_FAULT_NONE; /* the button need not be released */
     facts.missing = 0;
     run(1000);
@@ -357,8 +360,8 @@ void test_a_press_from_before_the_trip_does_not_count(void) {
     trip(AGV_FAULT_BUS_OFF);
     run(1001);
     expect_state(AGV_STATE_SAFE);
-    TEST_ASSERT_TRUE(did.reset_refused);
-    TEST_ASSERT_TRUE((did.missing & AGV_MISSING_BUTTON) != 0);
+    TEST_ASSERT_TRUE(has_done(AGV_ACTION_RESET_REFUSED));
+    TEST_ASSERT_TRUE((missing() & AGV_MISSING_BUTTON) != 0);
     facts.button = false;
     step(1);
     facts.button = true;
@@ -379,37 +382,114 @@ void test_a_press_from_before_a_restart_does_not_count(void) {
 
 /* Shows: FSM-1 */
 void test_p_waits_for_standstill_or_3_s(void) {
-    core.config.park = AGV_PARK_AT_STANDSTILL;
+    config.park = AGV_PARK_AT_STANDSTILL;
     to_standby();
     facts.missing = AGV_MISSING_STANDSTILL;
     facts.in_park = false;
     trip(AGV_FAULT_BUS_OFF);
     run(2999);
-    TEST_ASSERT_FALSE(core.machine.park_released);
+    TEST_ASSERT_FALSE(machine.park_released);
     step(1);
-    TEST_ASSERT_TRUE(core.machine.park_released);
+    TEST_ASSERT_TRUE(machine.park_released);
     setUp();
-    core.config.park = AGV_PARK_AT_STANDSTILL;
+    config.park = AGV_PARK_AT_STANDSTILL;
     to_standby();
     facts.missing = AGV_MISSING_STANDSTILL;
     trip(AGV_FAULT_BUS_OFF);
     run(100);
-    TEST_ASSERT_FALSE(core.machine.park_released);
+    TEST_ASSERT_FALSE(machine.park_released);
     facts.missing = 0;
     step(1);
-    TEST_ASSERT_TRUE(core.machine.park_released);
+    TEST_ASSERT_TRUE(machine.park_released);
     setUp();
     to_standby();
     facts.missing = AGV_MISSING_STANDSTILL;
     trip(AGV_FAULT_BUS_OFF);
-    TEST_ASSERT_TRUE(core.machine.park_released); /* at_once */
+    TEST_ASSERT_TRUE(machine.park_released); /* at_once */
 }
 
 /* Shows: FSM-7 */
 void test_a_start_in_tripped(void) {
     start(AGV_FAULT_EPS_HEARTBEAT_LOST);
     expect_state(AGV_STATE_TRIPPED);
-    TEST_ASSERT_EQUAL_HEX8(AGV_LATCH_CLOSED, core.machine.latched);
-    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_EPS_HEARTBEAT_LOST, core.machine.first_reason);
-    TEST_ASSERT_FALSE(core.machine.output_closed);
+    TEST_ASSERT_EQUAL_HEX8(AGV_LATCH_CLOSED, machine.latched);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_EPS_HEARTBEAT_LOST, machine.first_reason);
+    TEST_ASSERT_FALSE(machine.output_closed);
+}
+
+/* ---- What is to be done, as a list ---- */
+
+static const uint32_t SENDING = AGV_ACTION_DISCARD | AGV_ACTION_PURGE;
+
+/* Shows: FSM-2, FSM-7 */
+void test_what_a_trip_wants_done(void) {
+    to_standby();
+    trip(AGV_FAULT_BUS_OFF);
+    TEST_ASSERT_EQUAL_HEX32(AGV_ACTION_TRIP | AGV_ACTION_STATE | SENDING | AGV_ACTION_STORE_LATCH, did.what);
+    facts.output_unsafe = true;
+    step(1);
+    expect_state(AGV_STATE_SAFE);
+    TEST_ASSERT_EQUAL_HEX32(AGV_ACTION_STATE | AGV_ACTION_OPEN_OUTPUT, did.what);
+    step(1);
+    TEST_ASSERT_EQUAL_HEX32(0, did.what);
+}
+
+/* Shows: FSM-4, FSM-7 */
+void test_what_the_end_of_init_wants_done(void) {
+    step(0);
+    TEST_ASSERT_EQUAL_HEX32(0, did.what);
+    run(500);
+    TEST_ASSERT_EQUAL_HEX32(AGV_ACTION_STATE | SENDING | AGV_ACTION_UNLATCH | AGV_ACTION_CLOSE_OUTPUT, did.what);
+}
+
+/* The output is closed still: it opens only when the confirmation is late. */
+/* Shows: FSM-3, FSM-7 */
+void test_what_a_reset_wants_done(void) {
+    to_safe();
+    facts.button = true;
+    run(1001);
+    TEST_ASSERT_EQUAL_HEX32(
+        AGV_ACTION_RESET_ACCEPTED | AGV_ACTION_STATE | SENDING | AGV_ACTION_UNLATCH | AGV_ACTION_STORE_LATCH, did.what);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_BUS_OFF, did.first_reason);
+}
+
+/* Motion commands that wait for a stalled side. */
+void test_from_active_to_standby_what_waits_is_discarded(void) {
+    to_standby();
+    facts.engaged = true;
+    step(1);
+    TEST_ASSERT_EQUAL_HEX32(AGV_ACTION_STATE, did.what);
+    facts.engaged = false;
+    step(1);
+    TEST_ASSERT_EQUAL_HEX32(AGV_ACTION_STATE | AGV_ACTION_DISCARD, did.what);
+}
+
+/* Shows: FSM-9 */
+void test_an_unresettable_fault_that_comes_while_tripped_is_stored(void) {
+    to_safe();
+    facts.forever = AGV_FAULT_MEMORY_CORRUPTED;
+    step(1);
+    TEST_ASSERT_EQUAL_HEX32(AGV_ACTION_STORE_LATCH | AGV_ACTION_OPEN_OUTPUT, did.what);
+}
+
+/* Shows: FSM-9 */
+void test_what_forbids_a_reset(void) {
+    agv_state_machine_forbid_reset(&machine, AGV_FAULT_NONE);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_NONE, machine.unresettable);
+    agv_state_machine_forbid_reset(&machine, AGV_FAULT_CONFIG_INVALID);
+    agv_state_machine_forbid_reset(&machine, AGV_FAULT_NONE);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_CONFIG_INVALID, machine.unresettable);
+}
+
+/* Shows: STARTUP_TIMEOUT */
+void test_the_startup_is_late_in_init_only(void) {
+    facts.missing = AGV_MISSING_MANUAL;
+    run(10000);
+    TEST_ASSERT_FALSE(agv_state_machine_is_startup_late(&machine, &timers));
+    step(1);
+    TEST_ASSERT_TRUE(agv_state_machine_is_startup_late(&machine, &timers));
+    facts.missing = 0;
+    run(501);
+    expect_state(AGV_STATE_STANDBY);
+    TEST_ASSERT_FALSE(agv_state_machine_is_startup_late(&machine, &timers));
 }

@@ -5,14 +5,14 @@
 #include <string.h>
 
 #include "agv/checksum.h"
-#include "agv/latch.h"
-#include "agv/supervisor.h"
+#include "keep/latch.h"
 #include "mock_can.h"
 #include "mock_led.h"
 #include "mock_reset.h"
 #include "mock_safety_output.h"
 #include "mock_store.h"
 #include "mock_watchdog.h"
+#include "supervisor/core.h"
 #include "unity.h"
 
 /* A port's context: the core never looks inside. */
@@ -22,6 +22,7 @@ struct hal {
 static hal_t hal;
 static agv_recorder_t recorder;
 static agv_supervisor_t supervisor;
+static agv_core_t *core;
 static agv_config_t config;
 static const agv_ports_t ports = {&hal, &recorder};
 static uint32_t now_ms;
@@ -76,6 +77,7 @@ static void be_strict(void) {
 void setUp(void) {
     memset(&recorder, 0, sizeof recorder);
     memset(&supervisor, 0xA5, sizeof supervisor);
+    core = agv_core_of(&supervisor);
     agv_config_defaults(&config);
     now_ms = 1000;
     mode = 0x40;
@@ -151,7 +153,7 @@ static void expect_start(hal_reset_cause_t cause, uint8_t latched, agv_fault_t r
 
 /* Every pattern begins lit; the LED is only switched when it is dark before. */
 static void expect_led_on(void) {
-    if (!supervisor.core.led.on) {
+    if (!core->led.on) {
         hal_led_set_Expect(&hal, true);
     }
 }
@@ -232,7 +234,7 @@ static void walk_to_active(void) {
 }
 
 static uint8_t own_counter(void) {
-    return supervisor.core.transmitter.alive_counter;
+    return core->transmitter.alive_counter;
 }
 
 /* --- the start --- */
@@ -373,7 +375,7 @@ void test_corrupted_memory_starts_anew_in_tripped(void) {
     walk_to_standby();
     be_strict();
     now_ms++;
-    supervisor.core.vehicle.angle_raw ^= 4;
+    core->vehicle.angle_raw ^= 4;
     hal_safety_output_set_Expect(&hal, false);
     expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
     expect_status(HAL_CAN_AI, HAL_CAN_ERROR_ACTIVE);
@@ -399,11 +401,17 @@ void test_a_refused_frame_does_not_leave_and_trips(void) {
     walk_to_active();
     hal_takes = false;
     ai_frame(0x168, 1, 0);
-    TEST_ASSERT_EQUAL_HEX8(1, supervisor.core.transmitter.kept_data[AGV_MSG_GEAR_COMMAND][0]);
-    supervisor.core.transmitter.kept_data[AGV_MSG_GEAR_COMMAND][0] = 3;
-    supervisor.seal = agv_seal(&supervisor.core, sizeof supervisor.core);
+    TEST_ASSERT_EQUAL_HEX8(1, core->transmitter.kept_data[AGV_MSG_GEAR_COMMAND][0]);
+    core->transmitter.kept_data[AGV_MSG_GEAR_COMMAND][0] = 3;
+    supervisor.seal = agv_seal(core, sizeof *core);
     be_strict();
     now_ms++;
+    expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    expect_status(HAL_CAN_AI, HAL_CAN_ERROR_ACTIVE);
+    hal_watchdog_feed_Expect(&hal);
+    tick();
+    TEST_ASSERT_EQUAL_UINT32(1, agv_supervisor_counters(&supervisor)->gate_refused);
+    now_ms++; /* faults are evaluated once a call, before anything is sent */
     expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
     expect_status(HAL_CAN_AI, HAL_CAN_ERROR_ACTIVE);
     hal_can_purge_Expect(&hal, HAL_CAN_VEHICLE);

@@ -2,20 +2,22 @@
  * What no frame and no tick leads to: memory that was changed behind the supervisor's back, under a seal that fits. The
  * last line of defence has to hold all the same.
  */
-#include "../../firmware/src/supervisor_internal.h"
+#include "supervisor/supervisor_internal.h"
+
 #include "agv/checksum.h"
-#include "agv/latch.h"
 #include "fixture.h"
+#include "keep/latch.h"
 #include "unity.h"
 #include "walk.h"
 
 enum { STATUS_ID = 0x123 };
 
 static fixture_t f;
-static agv_core_t *const core = &f.supervisor.core;
+static agv_core_t *core;
 
 void setUp(void) {
     fixture_init(&f);
+    core = agv_core_of(&f.supervisor);
 }
 
 void tearDown(void) {
@@ -27,17 +29,13 @@ static void seal(void) {
 
 /* Start from a configuration as it stands in memory, checked by nobody. */
 static void begin(void) {
-    core->hal = &f.hal;
-    core->recorder = &f.recorder;
-    agv_core_begin(core, 0);
-    core->hal = NULL;
-    core->recorder = NULL;
+    agv_core_begin(core, &f.ports, 0);
     seal();
 }
 
-/* 20000 is no angle: the frame cannot be built, and what is built instead (-900.0 degrees) is not what is held. */
+/* 20000 is no angle. The fault is there at once, and is told in the next call. */
 /* Shows: INT-4, FSM-10, TX_GATE_REFUSED */
-void test_an_answer_that_the_gate_refuses_trips_in_the_handling_of_the_frame(void) {
+void test_an_answer_that_the_gate_refuses_is_a_fault(void) {
     static const uint8_t other_angle[8] = {1};
     walk_to_tripped(&f);
     fixture_forget_sent(&f);
@@ -47,6 +45,7 @@ void test_an_answer_that_the_gate_refuses_trips_in_the_handling_of_the_frame(voi
     expect_fault(&f, AGV_FAULT_TX_GATE_REFUSED, true);
     expect_silence(&f);
     TEST_ASSERT_EQUAL_UINT32(1, agv_supervisor_counters(&f.supervisor)->gate_refused);
+    fixture_run(&f, 1);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_TX_GATE_REFUSED));
 }
 
@@ -54,27 +53,30 @@ void test_an_answer_that_the_gate_refuses_trips_in_the_handling_of_the_frame(voi
 void test_a_frame_of_its_own_that_the_gate_refuses_trips(void) {
     static const uint8_t drive[8] = {1};
     fixture_standby(&f);
-    core->hal = &f.hal;
-    core->recorder = &f.recorder;
-    agv_transmitter_pass(core, AGV_MSG_GEAR_COMMAND, drive); /* shared bus, STANDBY: nobody may send this */
-    TEST_ASSERT_TRUE(agv_core_react(core));
+    const agv_tx_orders_t orders = agv_core_orders(core, &f.ports);
+    agv_transmitter_pass(&core->transmitter, &orders, AGV_MSG_GEAR_COMMAND,
+                         drive); /* shared bus: nobody may send this */
+    agv_core_take_tx_report(core);
+    TEST_ASSERT_TRUE((agv_core_decide(core, &f.ports).what & AGV_ACTION_TRIP) != 0u);
     expect_state(&f, AGV_STATE_TRIPPED);
     expect_reason(&f, AGV_FAULT_TX_GATE_REFUSED);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
     TEST_ASSERT_EQUAL_HEX8(GEAR_P, fixture_nth_sent(&f, 0x168, 0)->data[0]);
 }
 
-/* No such ID set: P has no identifier any more, and nothing may leave. */
+/* 168h has the identifier of 43Fh, which the gate takes it for: P does not leave. */
 /* Shows: INT-4, FSM-9, SELF_TEST_FAILED */
 void test_a_gate_that_lets_p_not_out_fails_the_self_test(void) {
     fixture_start(&f);
     fixture_forget_sent(&f);
-    core->config.id_set = 7;
+    core->config.id_gear_command = 0x43F;
     begin();
     expect_state(&f, AGV_STATE_TRIPPED);
     expect_reason(&f, AGV_FAULT_SELF_TEST_FAILED);
     expect_output(&f, false);
-    expect_silence(&f);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x43F)); /* its own, not P */
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
+    TEST_ASSERT_EQUAL_UINT32(1, agv_supervisor_counters(&f.supervisor)->gate_refused);
 }
 
 /* The checksum is that of what stands there, and yet it makes no sense: the defaults instead. */
@@ -108,7 +110,7 @@ void test_an_unresettable_fault_that_comes_while_tripped_is_stored(void) {
     walk_to_tripped(&f);
     TEST_ASSERT_EQUAL(AGV_LATCH_VALID, agv_latch_read(&f.hal, &latch));
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_NONE, latch.unresettable);
-    agv_faults_level(core, AGV_FAULT_SELF_TEST_FAILED, true);
+    agv_fault_monitor_set(&core->faults, AGV_FAULT_SELF_TEST_FAILED, true);
     seal();
     fixture_run(&f, 1);
     TEST_ASSERT_EQUAL(AGV_LATCH_VALID, agv_latch_read(&f.hal, &latch));
@@ -181,30 +183,80 @@ void test_a_stamp_of_a_turn_of_the_microseconds_ago_is_old(void) {
     f.now_ms = 5000000;
     fixture_standby(&f);
     foreign_drive_at(f.now_ms - 4294967u, 0);
-    TEST_ASSERT_EQUAL_UINT32(f.now_ms, core->now_ms);
+    TEST_ASSERT_EQUAL_UINT32(f.now_ms, core->timers.now_ms);
 }
 
 /* From the start, and from a restart on: 1234567 ms are 1234567000 us. */
 void test_both_clocks_say_the_same(void) {
     f.now_ms = 1234567;
     fixture_start(&f);
-    TEST_ASSERT_EQUAL_UINT32(1234567000, core->now_us);
+    TEST_ASSERT_EQUAL_UINT32(1234567000, core->timers.now_us);
     fixture_jump(&f, 1);
-    TEST_ASSERT_EQUAL_UINT32(1234568000, core->now_us);
+    TEST_ASSERT_EQUAL_UINT32(1234568000, core->timers.now_us);
     foreign_drive_at(1234568, 999);
-    TEST_ASSERT_EQUAL_UINT32(1234568999, core->now_us);
-    core->now_us = 5;
+    TEST_ASSERT_EQUAL_UINT32(1234568999, core->timers.now_us);
+    core->timers.now_us = 5;
     fixture_jump(&f, 1); /* found corrupted */
     expect_fault(&f, AGV_FAULT_MEMORY_CORRUPTED, true);
-    TEST_ASSERT_EQUAL_UINT32(1234569000, core->now_us);
+    TEST_ASSERT_EQUAL_UINT32(1234569000, core->timers.now_us);
 }
 
+/* The identifiers in use are made of the configuration; a flipped bit in them is found, and they are made anew. */
+/* Shows: INT-5, P1, MEMORY_CORRUPTED */
+void test_a_flipped_bit_in_the_identifiers_is_mended(void) {
+    fixture_standby(&f);
+    core->ids.of[AGV_MSG_GEAR_COMMAND] ^= 1u;
+    fixture_run(&f, 1);
+    expect_reason(&f, AGV_FAULT_MEMORY_CORRUPTED);
+    TEST_ASSERT_EQUAL_HEX16(0x168, core->ids.of[AGV_MSG_GEAR_COMMAND]);
+}
+
+/* A frame that decides nothing tells nothing again of what the call before it has told. */
+/* Shows: INT-3 */
+void test_a_frame_of_nobody_after_a_fault_records_nothing(void) {
+    fixture_standby(&f);
+    f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x10; /* EPS_TEMP_ABOVE_110 warns */
+    fixture_send_now(&f, AGV_MSG_EPS_STATUS);
+    expect_fault(&f, AGV_FAULT_EPS_TEMP_ABOVE_110, true);
+    const uint32_t recorded = agv_recorder_next_sequence(&f.recorder);
+    TEST_ASSERT_EQUAL_UINT32(1, agv_supervisor_counters(&f.supervisor)->warnings);
+    for (unsigned i = 0; i < 10; i++) {
+        fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x700, .length = 8});
+        fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x363, .length = 7});
+    }
+    TEST_ASSERT_EQUAL_UINT32(recorded, agv_recorder_next_sequence(&f.recorder));
+    TEST_ASSERT_EQUAL_UINT32(1, agv_supervisor_counters(&f.supervisor)->warnings);
+}
+
+/* No pointer is kept: two supervisors that have seen the same are the same, wherever they and their ports lie. */
 /* Shows: INT-5 */
-void test_between_two_calls_no_pointer_is_kept(void) {
+void test_two_supervisors_that_have_seen_the_same_are_the_same(void) {
+    static fixture_t other;
+    fixture_init(&other);
+    other.now_ms = f.now_ms;
+    fixture_active(&f);
+    fixture_active(&other);
+    TEST_ASSERT_EQUAL_MEMORY(f.supervisor.memory, other.supervisor.memory, sizeof f.supervisor.memory);
+}
+
+/* Shows: SUP-1 */
+void test_the_readers_of_ages_and_of_the_time(void) {
     fixture_start(&f);
-    TEST_ASSERT_NULL(core->hal);
-    TEST_ASSERT_NULL(core->recorder);
-    fixture_run(&f, 20);
-    TEST_ASSERT_NULL(core->hal);
-    TEST_ASSERT_NULL(core->recorder);
+    fixture_mute_vcu(&f, true);
+    TEST_ASSERT_EQUAL_UINT32(f.now_ms, agv_supervisor_tick_ms(&f.supervisor));
+    TEST_ASSERT_FALSE(agv_supervisor_is_fresh(&f.supervisor, AGV_MSG_VEHICLE_STATUS));
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    TEST_ASSERT_TRUE(agv_supervisor_is_fresh(&f.supervisor, AGV_MSG_VEHICLE_STATUS));
+    fixture_run(&f, 50);
+    TEST_ASSERT_EQUAL_UINT32(50, agv_supervisor_age_ms(&f.supervisor, AGV_MSG_VEHICLE_STATUS));
+    TEST_ASSERT_TRUE(agv_supervisor_is_fresh(&f.supervisor, AGV_MSG_VEHICLE_STATUS));
+    TEST_ASSERT_EQUAL_UINT32(f.now_ms, agv_supervisor_tick_ms(&f.supervisor));
+    fixture_run(&f, 1);
+    TEST_ASSERT_FALSE(agv_supervisor_is_fresh(&f.supervisor, AGV_MSG_VEHICLE_STATUS));
+    TEST_ASSERT_TRUE(agv_supervisor_has_fault(&f.supervisor, AGV_FAULT_VCU_HEARTBEAT_LOST));
+    TEST_ASSERT_FALSE(agv_supervisor_has_fault(&f.supervisor, AGV_FAULT_NONE));
+    TEST_ASSERT_EQUAL(AGV_FAULT_VCU_HEARTBEAT_LOST, agv_supervisor_first_active(&f.supervisor));
+    fixture_run(&f, 6000);
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, agv_supervisor_age_ms(&f.supervisor, AGV_MSG_VEHICLE_STATUS));
 }

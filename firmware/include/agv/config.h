@@ -1,6 +1,7 @@
 /**
  * @file config.h
- * The configuration: one struct with checked defaults (INT-2). Rows, ranges and meanings stand in config_settings.def.
+ * The configuration: one struct with checked defaults (INT-2). Rows, ranges and meanings stand in config_settings.def;
+ * the identifiers of the messages (id_...) have their rows in message_table.def.
  */
 #ifndef AGV_CONFIG_H
 #define AGV_CONFIG_H
@@ -9,6 +10,7 @@
 #include <stdint.h>
 
 #include "agv/faults.h"
+#include "agv/protocol.h"
 
 /** Values of the choices. */
 enum { AGV_TOPOLOGY_SHARED = 0, AGV_TOPOLOGY_GATEWAY = 1 };
@@ -17,33 +19,51 @@ enum { AGV_PARK_AT_ONCE = 0, AGV_PARK_AT_STANDSTILL = 1 };
 enum { AGV_AI_LOST_WARN = 0, AGV_AI_LOST_TRIP = 1 };
 enum { AGV_OWN_HEARTBEAT_RUNNING = 0, AGV_OWN_HEARTBEAT_FROZEN = 1 };
 enum { AGV_IN_MANUAL_HEARTBEAT = 0, AGV_IN_MANUAL_ALL = 1 };
+enum { AGV_COUNTER_ANY = 0, AGV_COUNTER_INCREMENTS = 1 };
+enum { AGV_AFTER_POWER_ON_INIT = 0, AGV_AFTER_POWER_ON_TRIPPED = 1 };
+enum { AGV_GEAR_CHANGE_AT_STANDSTILL = 0, AGV_GEAR_CHANGE_ANY = 1 };
 
-/** All settings, in the order of config_settings.def, and the classes of the faults. */
+/** standstill_vcu_counts: the speed of 363h is not looked at. */
+#define AGV_STANDSTILL_VCU_ANY 65535u
+
+/** All settings, in the order of config_settings.def, then the identifiers, and the classes of the faults. */
 typedef struct {
-#define AGV_SETTING(name, preset, lowest, highest, unit, meaning) uint16_t name;
-#define AGV_CHOICE(name, preset, words, meaning) uint16_t name;
+#define AGV_SETTING(name, preset, lowest, highest, unit, weakens, scope, meaning) uint16_t name;
+#define AGV_CHOICE(name, words, weakens, scope, meaning) uint16_t name;
 #include "agv/config_settings.def"
 #undef AGV_SETTING
 #undef AGV_CHOICE
+#define AGV_COMMAND(NAME, name, heading, table, cycle, deadline, fault, counter) uint16_t id_##name;
+#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter) uint16_t id_##name;
+#include "agv/message_table.def"
+#undef AGV_COMMAND
+#undef AGV_STATUS
     agv_fault_set_t trips; /**< the faults whose class is trip; the others warn */
 } agv_config_t;
 
 /** Index of each setting, `trips` not among them, and their number. */
 enum {
-#define AGV_SETTING(name, preset, lowest, highest, unit, meaning) AGV_SETTING_##name,
-#define AGV_CHOICE(name, preset, words, meaning) AGV_SETTING_##name,
+#define AGV_SETTING(name, preset, lowest, highest, unit, weakens, scope, meaning) AGV_SETTING_##name,
+#define AGV_CHOICE(name, words, weakens, scope, meaning) AGV_SETTING_##name,
 #include "agv/config_settings.def"
 #undef AGV_SETTING
 #undef AGV_CHOICE
-    AGV_SETTING_COUNT
+#define AGV_COMMAND(NAME, name, heading, table, cycle, deadline, fault, counter) AGV_SETTING_id_##name,
+#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter) AGV_SETTING_id_##name,
+#include "agv/message_table.def"
+#undef AGV_COMMAND
+#undef AGV_STATUS
+    AGV_SETTING_COUNT,
+    AGV_SETTING_ID = AGV_SETTING_id_turn_signal_command /**< of message n: AGV_SETTING_ID + n */
 };
 
 /** What is wrong with a configuration. */
 typedef enum {
     AGV_CONFIG_OK,
     AGV_CONFIG_OUT_OF_RANGE,   /**< a setting below its lowest or above its highest value; `setting` says which */
-    AGV_CONFIG_ID_TWICE,       /**< status_frame_id is an identifier of the protocol, in one of the ID sets */
-    AGV_CONFIG_NEEDS_GATEWAY,  /**< `setting` only makes sense in the gateway topology */
+    AGV_CONFIG_ID_TWICE,       /**< `setting` is an identifier that another message has, or the status frame */
+    AGV_CONFIG_NEEDS_GATEWAY,  /**< `setting` is not at its default and has no effect on a shared bus */
+    AGV_CONFIG_PRESS_TOO_SHORT, /**< reset_hold_max_ms is not above reset_hold_ms: no press would reset */
     AGV_CONFIG_FAULT_TOO_WEAK, /**< `fault` is made weaker than it may be */
     AGV_CONFIG_NO_SUCH_FAULT   /**< bits in `trips` beyond the faults */
 } agv_config_problem_t;
@@ -67,14 +87,23 @@ bool agv_config_set(agv_config_t *config, uint32_t setting, uint16_t value);
 /** Whether the configured class of a fault is trip. False for AGV_FAULT_NONE. */
 bool agv_config_is_trip(const agv_config_t *config, uint32_t fault);
 
+/**
+ * The identifiers that a configuration asks for (P1): each id_... as it is set; one of the heading's where it has not been
+ * changed and `id_set` is table is that of the table.
+ */
+void agv_config_ids(const agv_config_t *config, agv_ids_t *ids);
+
 /** Check a configuration as a whole. @return the first problem found, or AGV_CONFIG_OK. */
 agv_config_verdict_t agv_config_check(const agv_config_t *config);
 
 /**
- * Checksum of a configuration: CRC-32 (IEEE 802.3) over all settings in their order, 16 bit little-endian each, then
- * `trips`, 64 bit little-endian. The same on every platform.
+ * Checksum of a configuration: CRC-32 (IEEE 802.3) over all settings in their order, 16 bit little-endian each, then the
+ * words of `trips`, 32 bit little-endian each. The same on every platform.
  */
 uint32_t agv_config_checksum(const agv_config_t *config);
+
+/** Whether a setting has a value that weakens the supervision against its default (INT-2). False beyond the last. */
+bool agv_config_weakens(const agv_config_t *config, uint32_t setting);
 
 /** What a setting is, for programs that list or read configurations. Not used by the supervisor itself. */
 typedef struct {
@@ -85,6 +114,8 @@ typedef struct {
     const char *unit;    /**< "" for choices */
     const char *words;   /**< "a|b" for choices, NULL for numbers */
     const char *meaning; /**< one line, with the requirement row */
+    const char *weakens; /**< "ABOVE", "BELOW", "ZERO", "CHOSEN" or "NEVER", as config_settings.def explains */
+    bool gateway_only;   /**< without effect on a shared bus */
 } agv_setting_info_t;
 
 /** Describe a setting; NULL beyond the last. */

@@ -26,6 +26,7 @@ typedef struct {
     uint32_t shadowed; /**< frames that would have been sent, but for the shadow mode (TOP-4) */
     uint32_t gate_refused;  /**< frames that the gate refused (INT-4) */
     uint32_t skipped_slots; /**< periodic slots missed after an overrun (TIM-1) */
+    uint32_t limited;       /**< commands that the envelope of the gateway changed (TOP-2) */
     uint32_t warnings;      /**< faults raised as warnings */
 } agv_counters_t;
 

@@ -28,8 +28,8 @@ const char *agv_message_name(agv_message_t message);
 
 /**
  * The words of the AGV_MISSING_* bits: "state", "vcu_heartbeat", "eps_heartbeat", "trip_cause", "standstill", "manual",
- * "button", "messages".
- * @param index number of the bit, 0..7
+ * "button", "messages", "throttle", "released".
+ * @param index number of the bit, 0..9
  * @return NULL beyond.
  */
 const char *agv_missing_name(uint8_t index);

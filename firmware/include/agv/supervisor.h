@@ -14,9 +14,10 @@
 #include <stdint.h>
 
 #include "agv/config.h"
-#include "agv/core.h"
+#include "agv/counters.h"
 #include "agv/faults.h"
 #include "agv/recorder.h"
+#include "agv/state.h"
 #include "hal/can.h"
 #include "hal/hal.h"
 
@@ -26,13 +27,16 @@ typedef struct {
     agv_recorder_t *recorder;
 } agv_ports_t;
 
+/** Bytes that a supervisor needs, on every platform. */
+#define AGV_SUPERVISOR_MEMORY 1008u
+
 /**
- * One supervisor: static memory of the caller. Read it through the functions below. `seal` is a checksum over `core`,
+ * One supervisor: static memory of the caller. Read it through the functions below. `seal` is a checksum over `memory`,
  * made at the end of every call and checked at the start of the next (INT-5); a flipped bit in `receive_alive`, outside
  * of it, feeds the watchdog a tick early or late.
  */
 typedef struct {
-    agv_core_t core;
+    _Alignas(uint32_t) unsigned char memory[AGV_SUPERVISOR_MEMORY];
     uint32_t seal;
     bool receive_alive; /**< the receive path has checked in since the last tick (TIM-3) */
 } agv_supervisor_t;
@@ -77,6 +81,21 @@ agv_fault_set_t agv_supervisor_active_faults(const agv_supervisor_t *supervisor)
 
 /** Those of them that count as trips at the moment. */
 agv_fault_set_t agv_supervisor_active_trips(const agv_supervisor_t *supervisor);
+
+/** The highest-ranking fault whose cause is present now; AGV_FAULT_NONE when there is none. */
+agv_fault_t agv_supervisor_first_active(const agv_supervisor_t *supervisor);
+
+/** Whether the cause of a fault is present now. False for AGV_FAULT_NONE. */
+bool agv_supervisor_has_fault(const agv_supervisor_t *supervisor, agv_fault_t fault);
+
+/** Age of the last frame of a message, ms; since the start when none was heard; UINT32_MAX when that is long ago. */
+uint32_t agv_supervisor_age_ms(const agv_supervisor_t *supervisor, agv_message_t message);
+
+/** Whether a message was heard and its deadline has not expired. */
+bool agv_supervisor_is_fresh(const agv_supervisor_t *supervisor, agv_message_t message);
+
+/** Time of the last tick, or of the start. */
+uint32_t agv_supervisor_tick_ms(const agv_supervisor_t *supervisor);
 
 /** Whether the safety output is closed (FSM-4). */
 bool agv_supervisor_output_closed(const agv_supervisor_t *supervisor);

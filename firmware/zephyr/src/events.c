@@ -1,5 +1,7 @@
 #include "events.h"
 
+#include <string.h>
+
 #include <zephyr/logging/log.h>
 #include <zephyr/sys/printk.h>
 #include <zephyr/sys/util.h>
@@ -34,7 +36,7 @@ static const char *text(const char *name) {
 }
 
 /* For the line that follows. */
-static const char *words_of(uint8_t missing) {
+static const char *words_of(uint16_t missing) {
     static char words[WORDS_SIZE];
     size_t used = 0u;
     words[0] = '\0';
@@ -101,7 +103,7 @@ static void tell_deviations(const agv_config_t *config) {
             LOG_WRN("not the default: %s %u", agv_setting_info(i)->name, agv_config_get(config, i));
         }
     }
-    if (config->trips != defaults.trips) {
+    if (memcmp(&config->trips, &defaults.trips, sizeof config->trips) != 0) {
         LOG_WRN("not the default: what faults do");
     }
 }

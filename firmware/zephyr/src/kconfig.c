@@ -38,8 +38,7 @@ BUILD_ASSERT(!IS_ENABLED(CONFIG_AGV_CAN_LISTEN_ONLY) || IS_ENABLED(CONFIG_AGV_SH
              "a supervisor that is to act cannot listen only: CONFIG_AGV_SHADOW_ON");
 
 static void set_class(agv_config_t *config, uint32_t fault, bool is_trip) {
-    const agv_fault_set_t bit = agv_fault_bit(fault);
-    config->trips = is_trip ? (config->trips | bit) : (config->trips & ~bit);
+    agv_fault_set_put(&config->trips, fault, is_trip);
 }
 
 void kconfig_read(agv_config_t *config) {

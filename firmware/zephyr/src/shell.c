@@ -41,10 +41,11 @@ static int print_faults(const struct shell *shell, size_t argc, char **argv) {
     ARG_UNUSED(argc);
     ARG_UNUSED(argv);
     const agv_supervisor_t *const seen = look();
+    const agv_fault_set_t trips = agv_supervisor_active_trips(seen);
     for (uint32_t fault = 0u; fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
-        if (agv_fault_is_in(agv_supervisor_active_faults(seen), fault)) {
+        if (agv_supervisor_has_fault(seen, (agv_fault_t)fault)) {
             shell_print(shell, "%s (%s)", text(agv_fault_name((agv_fault_t)fault)),
-                        agv_fault_is_in(agv_supervisor_active_trips(seen), fault) ? "trip" : "warn");
+                        agv_fault_is_in(&trips, fault) ? "trip" : "warn");
         }
     }
     return 0;
@@ -78,10 +79,10 @@ static int print_messages(const struct shell *shell, size_t argc, char **argv) {
     (void)k_sleep(K_SECONDS(1));
     const agv_supervisor_t *const seen = look();
     for (uint32_t i = 0u; i < (uint32_t)AGV_MSG_COUNT; i++) {
-        const uint32_t age_ms = agv_liveness_age_ms(&seen->core, i);
+        const uint32_t age_ms = agv_supervisor_age_ms(seen, (agv_message_t)i);
         shell_print(shell, "%03x %s: %u/s, age %d ms%s", agv_message_id(i, agv_supervisor_config(seen)->id_set),
                     text(agv_message_name((agv_message_t)i)), agv_supervise.frames[i] - before[i],
-                    (age_ms == AGV_AGE_MAX) ? -1 : (int)age_ms, agv_liveness_fresh(&seen->core, i) ? "" : ", stale");
+                    (age_ms == UINT32_MAX) ? -1 : (int)age_ms, agv_supervisor_is_fresh(seen, (agv_message_t)i) ? "" : ", stale");
     }
     return 0;
 }

@@ -2,74 +2,69 @@
 
 #include <string.h>
 
-#include "agv/core.h"
+#include "observe/deadlines.h"
 #include "stage.h"
+#include "supervisor/supervisor_internal.h"
 
-/* Which of the times of a supervisor (watch.h) count in a state; bit n of a set is the watch n. */
-#define WATCH(name) (UINT64_C(1) << (unsigned)AGV_WATCH_##name)
-#define MESSAGE(name) (UINT64_C(1) << ((unsigned)AGV_WATCH_MESSAGE + (unsigned)AGV_MSG_##name))
+/* Which of the timers of a supervisor (timers.h) count in a state; bit n of a set is the timer n. */
+#define TIMER(name) (UINT64_C(1) << (unsigned)AGV_TIMER_##name)
+#define EVENT(fault) TIMER(EVENT_##fault)
+#define MESSAGE(name) TIMER(MESSAGE_##name)
 
-static const uint64_t ALWAYS = WATCH(BUS_OFF) | WATCH(BOTH_MODES) | WATCH(UNFED) |
-                               (UINT64_C(0xF) << (unsigned)AGV_WATCH_TX) | MESSAGE(VEHICLE_STATUS) |
+_Static_assert(AGV_TIMER_COUNT <= 64, "a set of timers is a word");
+
+static const uint64_t ALWAYS = TIMER(BUS_OFF) | TIMER(BOTH_MODES) | TIMER(WATCHDOG_FED) | TIMER(TX_TURN_SIGNAL) |
+                               TIMER(TX_GEAR) | TIMER(TX_THROTTLE) | TIMER(TX_STEERING) | MESSAGE(VEHICLE_STATUS) |
                                MESSAGE(STEERING_STATUS) | MESSAGE(GEAR_STATUS) | MESSAGE(THROTTLE_STATUS) |
                                MESSAGE(EPS_STATUS) | MESSAGE(WHEEL_SPEED);
-static const uint64_t IN_INIT = WATCH(INIT_GOOD) | WATCH(INIT);
+static const uint64_t IN_INIT = TIMER(INIT_GOOD) | TIMER(STARTUP);
 static const uint64_t SUPERVISING = MESSAGE(TURN_SIGNAL_COMMAND);
-static const uint64_t WHILE_ENGAGED = WATCH(ENGAGED) | WATCH(AI_AWAITED) | WATCH(STEERING_OFF) |
-                                      WATCH(THROTTLE_IN_PARK) | MESSAGE(GEAR_COMMAND) | MESSAGE(THROTTLE_COMMAND) |
+static const uint64_t WHILE_ENGAGED = TIMER(ENGAGED) | TIMER(AI_NEVER_SEEN) | TIMER(STEERING_OFF) |
+                                      TIMER(THROTTLE_IN_PARK) | MESSAGE(GEAR_COMMAND) | MESSAGE(THROTTLE_COMMAND) |
                                       MESSAGE(STEERING_COMMAND);
-static const uint64_t IN_SAFE = WATCH(STANDSTILL) | WATCH(RESET_GOOD) | WATCH(PRESS);
-static const uint64_t UNTIL_SAFE = WATCH(UNCONFIRMED) | WATCH(PARK_SENT);
+static const uint64_t IN_SAFE = TIMER(STANDSTILL) | TIMER(RESET_GOOD) | TIMER(PRESS);
+static const uint64_t UNTIL_SAFE = TIMER(UNCONFIRMED) | TIMER(PARK_SENT);
 
 static const agv_core_t *core(void) {
-    return &world.supervisor.core;
+    return agv_core_read(&world.supervisor);
 }
 
-/* An event is over event_hold_ms after it; those that trip keep a reset from being accepted. */
-static uint64_t events(void) {
-    static const uint8_t TRIPS[] = {0, 1, 2,
-                                    4}; /* of the events in their order: the others come from the AI, or warn */
-    uint64_t set = 0;
-    for (unsigned i = 0; i < sizeof TRIPS; i++) {
-        set |= UINT64_C(1) << ((unsigned)AGV_WATCH_EVENT + TRIPS[i]);
-    }
-    return set;
-}
+/* A transient fault is over event_hold_ms after it; those that trip keep a reset from being accepted, but the AI's. */
+static const uint64_t EVENTS =
+    EVENT(SUPERVISOR_RESET) | EVENT(TX_GATE_REFUSED) | EVENT(STEP_OVERRUN) | EVENT(FOREIGN_COMMAND_SENDER);
 
-static uint64_t watches(void) {
+static uint64_t timers(void) {
     const bool waits_for_park = core()->config.park == (uint16_t)AGV_PARK_AT_STANDSTILL;
     uint64_t set = ALWAYS;
     switch (core()->machine.state) {
     case AGV_STATE_INIT:
-        set |= IN_INIT | events() | (waits_for_park ? (WATCH(PARK_WAIT) | WATCH(STANDSTILL)) : 0u);
+        set |= IN_INIT | EVENTS | (waits_for_park ? (TIMER(PARK_WAIT) | TIMER(STANDSTILL)) : 0u);
         break;
     case AGV_STATE_STANDBY:
     case AGV_STATE_ACTIVE:
-        set |= SUPERVISING | (agv_core_engaged(core()) ? WHILE_ENGAGED : 0u);
+        set |= SUPERVISING | (agv_mode_is_engaged(&core()->mode) ? WHILE_ENGAGED : 0u);
         break;
     case AGV_STATE_TRIPPED:
-        set |= UNTIL_SAFE | (waits_for_park ? (WATCH(PARK_WAIT) | WATCH(STANDSTILL)) : 0u);
+        set |= UNTIL_SAFE | (waits_for_park ? (TIMER(PARK_WAIT) | TIMER(STANDSTILL)) : 0u);
         break;
     default:
-        set |= IN_SAFE | events();
+        set |= IN_SAFE | EVENTS;
         break;
     }
     return set;
 }
 
-static bool runs(unsigned watch) {
-    return core()->watches.phase[watch] == (uint8_t)AGV_WATCH_RUNNING;
+static bool runs(unsigned timer) {
+    return core()->timers.phase[timer] == (uint8_t)AGV_TIMER_RUNNING;
 }
 
-/* Asks a copy of the supervisor, as it would be so much later; the watches that are over by then. */
+/* The timers of a set that have reached their limit so much later, and not yet. */
 static uint64_t over_in(uint64_t set, uint32_t ms) {
-    static agv_core_t copy;
+    agv_timers_t copy = core()->timers;
     uint64_t over = 0;
-    copy.watches = core()->watches;
-    copy.config = core()->config;
-    copy.now_ms = core()->now_ms + ms;
-    for (unsigned i = 0; i < (unsigned)AGV_WATCH_COUNT; i++) {
-        if ((((set >> i) & 1u) != 0u) && runs(i) && agv_watch_reached(&copy, i)) {
+    copy.now_ms += ms;
+    for (unsigned i = 0; i < (unsigned)AGV_TIMER_COUNT; i++) {
+        if ((((set >> i) & 1u) != 0u) && runs(i) && agv_timer_reached(&copy, i)) {
             over |= UINT64_C(1) << i;
         }
     }
@@ -78,8 +73,8 @@ static uint64_t over_in(uint64_t set, uint32_t ms) {
 
 /* The first of the times that will be over with the next tick, and not before; 0: none. */
 static uint8_t eve(void) {
-    const uint64_t set = over_in(watches(), 1);
-    for (unsigned i = 0; i < (unsigned)AGV_WATCH_COUNT; i++) {
+    const uint64_t set = over_in(timers(), 1);
+    for (unsigned i = 0; i < (unsigned)AGV_TIMER_COUNT; i++) {
         if (((set >> i) & 1u) != 0u) {
             return (uint8_t)(i + 1u);
         }
@@ -88,14 +83,14 @@ static uint8_t eve(void) {
 }
 
 static uint64_t running(void) {
-    const uint64_t set = watches();
+    const uint64_t set = timers();
     uint64_t some = 0;
-    for (unsigned i = 0; i < (unsigned)AGV_WATCH_COUNT; i++) {
+    for (unsigned i = 0; i < (unsigned)AGV_TIMER_COUNT; i++) {
         some |= ((((set >> i) & 1u) != 0u) && runs(i)) ? (UINT64_C(1) << i) : 0u;
     }
     for (unsigned m = 0; m < (unsigned)WORLD_MESSAGES; m++) {
         if (stage_flows(m) && !world.traffic[m].frozen) {
-            some &= ~(UINT64_C(1) << ((unsigned)AGV_WATCH_MESSAGE + m)); /* comes on */
+            some &= ~(UINT64_C(1) << ((unsigned)AGV_TIMER_MESSAGE + m)); /* comes on */
         }
     }
     return some;
@@ -124,8 +119,8 @@ static uint8_t bits(const bool *bit, unsigned count) {
     return byte;
 }
 
-static uint8_t phase(unsigned watch) {
-    return core()->watches.phase[watch];
+static uint8_t phase(unsigned timer) {
+    return core()->timers.phase[timer];
 }
 
 static uint8_t phases(unsigned a, unsigned b, unsigned c) {
@@ -135,15 +130,27 @@ static uint8_t phases(unsigned a, unsigned b, unsigned c) {
 static bool is_counting(unsigned first, unsigned last) {
     bool counts = false;
     for (unsigned row = first; row <= last; row++) {
-        counts = counts || ((core()->monitor.in_a_row[row] != 0u) && (core()->monitor.in_a_row[row] != UINT8_MAX));
+        counts = counts ||
+                 ((core()->status_checks.in_a_row[row] != 0u) && (core()->status_checks.in_a_row[row] != UINT8_MAX));
     }
     return counts;
+}
+
+static bool messages_fresh(void) {
+    return agv_deadlines_messages_fresh(&core()->liveness, &core()->timers, &core()->config);
+}
+
+/* Whether 065h may be sent, as the supervisor tells its transmitter. */
+static bool is_holdable(void) {
+    const agv_ports_t none = {0};
+    agv_core_t copy = *core();
+    return agv_core_orders(&copy, &none).holdable;
 }
 
 static bool waits_to_send(void) {
     bool waits = false;
     for (unsigned i = 0; i < (unsigned)AGV_COMMAND_COUNT; i++) {
-        waits = waits || agv_watch_runs(core(), (unsigned)AGV_WATCH_TX + i);
+        waits = waits || agv_timer_runs(&core()->timers, (unsigned)AGV_TIMER_TX_TURN_SIGNAL + i);
     }
     return waits;
 }
@@ -151,15 +158,16 @@ static bool waits_to_send(void) {
 static void always(abstract_t *key) {
     const agv_core_t *c = core();
     const sim_hal_can_t *can = world.hal.can;
-    const bool whats[] = {agv_core_alive(c, AGV_NODE_VCU),
-                          agv_core_alive(c, AGV_NODE_EPS),
-                          (c->machine.state == (uint8_t)AGV_STATE_INIT) && agv_monitor_messages_fresh(c),
+    const bool whats[] = {agv_liveness_alive(&c->liveness, AGV_NODE_VCU),
+                          agv_liveness_alive(&c->liveness, AGV_NODE_EPS),
+                          (c->machine.state == (uint8_t)AGV_STATE_INIT) && messages_fresh(),
                           c->transmitter.kept != 0u,
                           waits_to_send(),
                           can[HAL_CAN_VEHICLE].full,
                           can[HAL_CAN_AI].full};
-    const bool supervises = !agv_state_commands_safe(agv_core_state(c));
-    const bool goes_by_gear = agv_core_is_latched(c) || (supervises && agv_core_engaged(c));
+    const bool supervises = !agv_state_commands_safe((agv_state_t)c->machine.state);
+    const bool goes_by_gear =
+        agv_state_is_latched((agv_state_t)c->machine.state) || (supervises && agv_mode_is_engaged(&c->mode));
     const bool more[] = {agv_supervisor_output_closed(&world.supervisor),
                          stage.button && (c->machine.state != (uint8_t)AGV_STATE_INIT),
                          goes_by_gear && (stage.gear == (uint8_t)STAGE_P),
@@ -167,36 +175,37 @@ static void always(abstract_t *key) {
                          stage.bad_latch,
                          stage.stalled,
                          stage_wrapped(),
-                         (phase(AGV_WATCH_UNFED) == (uint8_t)AGV_WATCH_REACHED)};
+                         (phase(AGV_TIMER_WATCHDOG_FED) == (uint8_t)AGV_TIMER_REACHED)};
     key->byte[0] = c->machine.state;
     key->byte[1] = supervises ? stage.illness : ILLNESS[stage.illness].like;
     key->byte[2] = bits(whats, 7);
     key->byte[3] = bits(more, 8);
-    key->byte[4] = (uint8_t)(c->vehicle.mode | (phase(AGV_WATCH_BOTH_MODES) << 2u));
-    if ((c->machine.state == (uint8_t)AGV_STATE_INIT) && (c->vehicle.mode != (uint8_t)AGV_MODE_MANUAL)) {
+    key->byte[4] = (uint8_t)(c->mode.value | (phase(AGV_TIMER_BOTH_MODES) << 2u));
+    if ((c->machine.state == (uint8_t)AGV_STATE_INIT) && (c->mode.value != (uint8_t)AGV_MODE_MANUAL)) {
         key->byte[4] = 0;
     }
-    key->byte[5] = (uint8_t)(stage.bus | (phase(AGV_WATCH_BUS_OFF) << 2u));
+    key->byte[5] = (uint8_t)(stage.bus | (phase(AGV_TIMER_BUS_OFF) << 2u));
     key->byte[6] = eve();
 }
 
 static void in_init(abstract_t *key) {
-    const bool whats[] = {core()->machine.startup_reported, core()->summary.cause != (uint8_t)AGV_FAULT_NONE,
-                          core()->summary.ai_cause, core()->machine.park_released};
+    const bool whats[] = {core()->machine.startup_reported, core()->faults.summary.cause != (uint8_t)AGV_FAULT_NONE,
+                          core()->faults.summary.ai_cause != (uint8_t)AGV_FAULT_NONE, core()->machine.park_released};
     key->byte[8] = bits(whats, 4);
-    key->byte[9] = phases(AGV_WATCH_INIT_GOOD, AGV_WATCH_INIT, AGV_WATCH_INIT);
+    key->byte[9] = phases(AGV_TIMER_INIT_GOOD, AGV_TIMER_STARTUP, AGV_TIMER_STARTUP);
 }
 
 static void supervising(abstract_t *key) {
     const agv_core_t *c = core();
-    const bool whats[] = {c->monitor.ai_alarm_armed, is_counting(0, AGV_ROW_EPS_SUPPLY_LAST),
-                          is_counting(AGV_ROW_EPS_MODE, AGV_ROW_STEERING_ANGLE), c->summary.ai_cause};
+    const bool whats[] = {c->status_checks.ai_alarm_armed, is_counting(0, AGV_ROW_EPS_SUPPLY_LAST),
+                          is_counting(AGV_ROW_EPS_MODE, AGV_ROW_STEERING_ANGLE),
+                          c->faults.summary.ai_cause != (uint8_t)AGV_FAULT_NONE};
     key->byte[8] = bits(whats, 4);
     key->byte[9] = c->liveness.heartbeats[AGV_NODE_AI].state;
-    if (agv_core_engaged(c)) {
-        key->byte[10] = phases(AGV_WATCH_ENGAGED, AGV_WATCH_AI_AWAITED, AGV_WATCH_STEERING_OFF);
-        key->byte[11] = phases(AGV_WATCH_THROTTLE_IN_PARK, (unsigned)AGV_WATCH_MESSAGE + (unsigned)AGV_MSG_GEAR_COMMAND,
-                               (unsigned)AGV_WATCH_MESSAGE + (unsigned)AGV_MSG_STEERING_COMMAND);
+    if (agv_mode_is_engaged(&c->mode)) {
+        key->byte[10] = phases(AGV_TIMER_ENGAGED, AGV_TIMER_AI_NEVER_SEEN, AGV_TIMER_STEERING_OFF);
+        key->byte[11] =
+            phases(AGV_TIMER_THROTTLE_IN_PARK, AGV_TIMER_MESSAGE_GEAR_COMMAND, AGV_TIMER_MESSAGE_STEERING_COMMAND);
     }
 }
 
@@ -206,13 +215,13 @@ static void tripped(abstract_t *key) {
     const bool waits = (c->config.park == (uint16_t)AGV_PARK_AT_STANDSTILL) && !m->park_released;
     const bool whats[] = {m->pressed_after_trip,
                           m->park_released,
-                          agv_monitor_steering_holdable(c),
+                          is_holdable(),
                           m->unresettable != (uint8_t)AGV_FAULT_NONE,
-                          m->safe_state_unconfirmed,
+                          agv_fault_monitor_is_active(&c->faults, AGV_FAULT_SAFE_STATE_UNCONFIRMED),
                           waits && stage.wheels_turn,
-                          waits && agv_watch_runs(c, AGV_WATCH_STANDSTILL)};
+                          waits && agv_timer_runs(&c->timers, AGV_TIMER_STANDSTILL)};
     key->byte[8] = bits(whats, 7);
-    key->byte[9] = phases(AGV_WATCH_UNCONFIRMED, AGV_WATCH_PARK_SENT, AGV_WATCH_PARK_SENT);
+    key->byte[9] = phases(AGV_TIMER_UNCONFIRMED, AGV_TIMER_PARK_SENT, AGV_TIMER_PARK_SENT);
 }
 
 static void in_safe(abstract_t *key) {
@@ -221,14 +230,14 @@ static void in_safe(abstract_t *key) {
     const bool whats[] = {m->button_before,
                           m->pressed_after_trip,
                           m->press_refused,
-                          agv_monitor_messages_fresh(c),
-                          agv_monitor_steering_holdable(c),
+                          messages_fresh(),
+                          is_holdable(),
                           stage.wheels_turn,
-                          c->summary.cause != (uint8_t)AGV_FAULT_NONE,
-                          c->summary.ai_cause};
+                          c->faults.summary.cause != (uint8_t)AGV_FAULT_NONE,
+                          c->faults.summary.ai_cause != (uint8_t)AGV_FAULT_NONE};
     key->byte[8] = bits(whats, 8);
     key->byte[9] = m->unresettable;
-    key->byte[10] = phases(AGV_WATCH_STANDSTILL, AGV_WATCH_RESET_GOOD, AGV_WATCH_PRESS);
+    key->byte[10] = phases(AGV_TIMER_STANDSTILL, AGV_TIMER_RESET_GOOD, AGV_TIMER_PRESS);
 }
 
 void abstract_now(abstract_t *key) {

@@ -100,7 +100,7 @@ static bool is_latched(void) {
 }
 
 static bool has(agv_fault_t fault) {
-    return (agv_supervisor_active_faults(&world.supervisor) & agv_fault_bit(fault)) != 0u;
+    return agv_supervisor_has_fault(&world.supervisor, fault);
 }
 
 /* ---- One step of the round, and what fails in it ---- */

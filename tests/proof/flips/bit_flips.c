@@ -68,7 +68,7 @@ static void on_broken(void) {
 }
 
 static bool is_found(void) {
-    return (agv_supervisor_active_faults(&world.supervisor) & agv_fault_bit(AGV_FAULT_MEMORY_CORRUPTED)) != 0u;
+    return agv_supervisor_has_fault(&world.supervisor, AGV_FAULT_MEMORY_CORRUPTED);
 }
 
 static bool is_latched(void) {

@@ -1,6 +1,6 @@
 /* What frama-c is given: the contract, then the shipped sources as they are. */
 #include "contract.h"
 
-#include "gate.c"
-#include "message.c"
-#include "state.c"
+#include "base/message.c"
+#include "base/state.c"
+#include "transmit/gate.c"

@@ -20,7 +20,7 @@ endif()
 macro(add_agv_test)
   include(${AGV_ROOT}/firmware/zephyr/sources.cmake)
   target_sources(app PRIVATE ${AGV_CORE_SOURCES} ${AGV_ZEPHYR_PORT_SOURCES} ${AGV_APP_SOURCES} ${ARGN})
-  target_include_directories(app PRIVATE ${AGV_CORE_INCLUDES} ${AGV_ZEPHYR_PORT_INCLUDES} ${AGV_APP_DIR}/src
+  target_include_directories(app PRIVATE ${AGV_CORE_INCLUDES} ${AGV_CORE_PRIVATE_INCLUDES} ${AGV_ZEPHYR_PORT_INCLUDES} ${AGV_APP_DIR}/src
     ${AGV_ZEPHYR_PORT_DIR}/src ${AGV_TEST_COMMON} ${APPLICATION_BINARY_DIR}/agv)
   file(WRITE ${APPLICATION_BINARY_DIR}/agv/app_version.h "#define APP_VERSION_STRING \"test\"\n")
 endmacro()

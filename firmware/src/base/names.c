@@ -1,0 +1,85 @@
+#include "agv/names.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#define AGV_FAULT_EVENT AGV_FAULT
+#define AGV_COMMAND AGV_STATUS
+
+static const char *const fault_names[AGV_FAULT_COUNT] = {
+#define AGV_FAULT(name, class, led, flags) [AGV_FAULT_##name] = #name,
+#include "agv/fault_table.def"
+#undef AGV_FAULT
+};
+
+static const char *const message_names[AGV_MSG_COUNT] = {
+#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter) [AGV_MSG_##NAME] = #name,
+#include "agv/message_table.def"
+#undef AGV_STATUS
+};
+
+static const char *const missing_names[] = {"state",      "vcu_heartbeat", "eps_heartbeat", "trip_cause",
+                                            "standstill", "manual",        "button",        "messages",
+                                            "throttle",   "released"};
+
+static const agv_setting_info_t settings[AGV_SETTING_COUNT] = {
+#define ANY false
+#define GATEWAY true
+#define AGV_SETTING(name, preset, lowest, highest, unit, weakens, scope, meaning)                                      \
+    [AGV_SETTING_##name] = {#name, (preset), (lowest), (highest), unit, NULL, meaning, #weakens, scope},
+#define AGV_CHOICE(name, words, weakens, scope, meaning)                                                               \
+    [AGV_SETTING_##name] = {#name, 0, 0, 1, "", words, meaning, #weakens, scope},
+#include "agv/config_settings.def"
+#undef AGV_SETTING
+#undef AGV_CHOICE
+#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter)                                        \
+    [AGV_SETTING_id_##name] = {"id_" #name, (heading), 1, AGV_ID_MAX, "", NULL, "identifier of " #name " (P1)",         \
+                               "NEVER", ANY},
+#include "agv/message_table.def"
+#undef AGV_STATUS
+};
+
+const char *agv_fault_name(agv_fault_t fault) {
+    return ((uint32_t)fault < (uint32_t)AGV_FAULT_COUNT) ? fault_names[fault] : NULL;
+}
+
+agv_fault_t agv_fault_from_name(const char *name) {
+    uint32_t i = 0u;
+    while ((i < (uint32_t)AGV_FAULT_COUNT) && (strcmp(fault_names[i], name) != 0)) {
+        i++;
+    }
+    return (agv_fault_t)i;
+}
+
+const char *agv_class_name(agv_fault_class_t fault_class) {
+    return (fault_class == AGV_CLASS_TRIP) ? "trip" : "warn";
+}
+
+const char *agv_state_name(agv_state_t state) {
+    switch (state) {
+    case AGV_STATE_INIT:
+        return "INIT";
+    case AGV_STATE_STANDBY:
+        return "STANDBY";
+    case AGV_STATE_ACTIVE:
+        return "ACTIVE";
+    case AGV_STATE_TRIPPED:
+        return "TRIPPED";
+    case AGV_STATE_SAFE:
+        return "SAFE";
+    default:
+        return NULL;
+    }
+}
+
+const char *agv_message_name(agv_message_t message) {
+    return ((uint32_t)message < (uint32_t)AGV_MSG_COUNT) ? message_names[message] : NULL;
+}
+
+const char *agv_missing_name(uint8_t index) {
+    return (index < (sizeof(missing_names) / sizeof(missing_names[0]))) ? missing_names[index] : NULL;
+}
+
+const agv_setting_info_t *agv_setting_info(uint16_t setting) {
+    return (setting < (uint16_t)AGV_SETTING_COUNT) ? &settings[setting] : NULL;
+}

@@ -1,0 +1,88 @@
+/**
+ * @file timers.h
+ * The time of one supervisor: the latest time seen, and its timers by name (timer_table.def). Each timer has one setting
+ * as its limit. Time is unsigned 32-bit milliseconds that wrap (TIM-2); no module reads a clock.
+ */
+#ifndef AGV_TIMERS_H
+#define AGV_TIMERS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "agv/config.h"
+#include "agv/protocol.h"
+
+/** The timers. Those of messages stand in the order of agv_message_t. */
+typedef enum {
+#define AGV_TIMER(name, setting, kind) AGV_TIMER_##name,
+#include "base/timer_table.def"
+#undef AGV_TIMER
+#define AGV_FAULT(name, class, led, flags)
+#define AGV_FAULT_EVENT(name, class, led, flags) AGV_TIMER_EVENT_##name,
+#include "agv/fault_table.def"
+#undef AGV_FAULT
+#undef AGV_FAULT_EVENT
+#define AGV_COMMAND(NAME, name, heading, table, cycle, deadline, fault, counter) AGV_TIMER_MESSAGE_##NAME,
+#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter) AGV_TIMER_MESSAGE_##NAME,
+#include "agv/message_table.def"
+#undef AGV_COMMAND
+#undef AGV_STATUS
+    AGV_TIMER_COUNT,
+    AGV_TIMER_MESSAGE = AGV_TIMER_MESSAGE_TURN_SIGNAL_COMMAND /**< of message n: AGV_TIMER_MESSAGE + n */
+} agv_timer_t;
+
+/** Phases of a timer. One that has reached its limit stays so until it is started again: nothing un-expires (TIM-2). */
+enum { AGV_TIMER_STOPPED = 0, AGV_TIMER_RUNNING = 1, AGV_TIMER_REACHED = 2 };
+
+/** Time and timers of one supervisor. */
+typedef struct {
+    uint32_t now_ms; /**< latest time seen */
+    uint32_t now_us; /**< the same in microseconds, wraps */
+    uint32_t since_ms[AGV_TIMER_COUNT];
+    uint8_t phase[AGV_TIMER_COUNT]; /**< AGV_TIMER_STOPPED ... */
+} agv_timers_t;
+
+/**
+ * Milliseconds from @p then_ms to @p now_ms across the wrap. A time in the future has the age 0: frames may carry stamps
+ * that are a little ahead of the tick.
+ */
+uint32_t agv_age_ms(uint32_t now_ms, uint32_t then_ms);
+
+/** The limit of a timer, ms. */
+uint32_t agv_timer_limit_ms(const agv_config_t *config, uint32_t timer);
+
+/** Stop all timers. The time stays. */
+void agv_timers_start(agv_timers_t *timers);
+
+/** Set the time, also backwards. */
+void agv_timers_set_time(agv_timers_t *timers, uint32_t time_ms);
+
+/**
+ * Advance the time to a stamp, and note which timers have reached their limit by then. An earlier stamp changes nothing:
+ * time never goes backwards, whatever stamps frames carry. Called at least once in every 24 days, so that it holds across
+ * the wrap.
+ */
+void agv_timers_advance(agv_timers_t *timers, const agv_config_t *config, uint32_t time_ms, uint32_t time_us);
+
+/** Start a timer anew from now. */
+void agv_timer_start(agv_timers_t *timers, uint32_t timer);
+
+/** Start a timer anew from a given time. */
+void agv_timer_start_at(agv_timers_t *timers, uint32_t timer, uint32_t since_ms);
+
+/** Stop a timer. */
+void agv_timer_stop(agv_timers_t *timers, uint32_t timer);
+
+/** Whether a timer had reached its limit when the time last advanced. False when it is stopped. */
+bool agv_timer_reached(const agv_timers_t *timers, uint32_t timer);
+
+/** Let a timer run while a condition holds, and stop it when not. @return whether it has reached its limit */
+bool agv_timer_while(agv_timers_t *timers, uint32_t timer, bool condition);
+
+/** Whether a timer runs and has not reached its limit. */
+bool agv_timer_is_within(const agv_timers_t *timers, uint32_t timer);
+
+/** Whether a timer runs or has reached its limit. */
+bool agv_timer_runs(const agv_timers_t *timers, uint32_t timer);
+
+#endif

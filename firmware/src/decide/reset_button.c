@@ -1,0 +1,87 @@
+#include "decide/reset_button.h"
+
+#include <stddef.h>
+#include <string.h>
+
+/* The conditions. */
+static const uint16_t conditions[AGV_RESET_CONDITIONS] = {
+    AGV_MISSING_STATE,      AGV_MISSING_VCU_HEARTBEAT, AGV_MISSING_EPS_HEARTBEAT, AGV_MISSING_TRIP_CAUSE,
+    AGV_MISSING_STANDSTILL, AGV_MISSING_MANUAL,        AGV_MISSING_MESSAGES,      AGV_MISSING_THROTTLE};
+
+void agv_reset_button_report(agv_reset_button_t *reset, bool vcu_alive, bool down) {
+    if (vcu_alive) {
+        reset->button = (uint8_t)(down ? AGV_BUTTON_DOWN : AGV_BUTTON_UP);
+    }
+}
+
+void agv_reset_button_lose(agv_reset_button_t *reset) {
+    reset->button = AGV_BUTTON_UNKNOWN;
+}
+
+static void forget_press(agv_reset_button_t *reset, agv_timers_t *timers) {
+    reset->began_after = false;
+    reset->answered = false;
+    agv_timer_stop(timers, AGV_TIMER_PRESS);
+    agv_timer_stop(timers, AGV_TIMER_PRESS_LONG);
+}
+
+void agv_reset_button_trip(agv_reset_button_t *reset, agv_timers_t *timers) {
+    forget_press(reset, timers);
+    (void)memset(reset->held_ms, 0, sizeof reset->held_ms);
+}
+
+/* What was missing at any time in the last reset_hold_ms. */
+static uint32_t missing_lately(const agv_reset_button_t *reset, const agv_config_t *config) {
+    uint32_t missing = 0u;
+    for (uint32_t i = 0u; i < AGV_RESET_CONDITIONS; i++) {
+        missing |= (reset->held_ms[i] < config->reset_hold_ms) ? conditions[i] : 0u;
+    }
+    return missing;
+}
+
+static void follow_conditions(agv_reset_button_t *reset, const agv_config_t *config, uint32_t elapsed_ms,
+                              uint32_t lacking) {
+    for (uint32_t i = 0u; i < AGV_RESET_CONDITIONS; i++) {
+        const uint32_t room_ms = (uint32_t)config->reset_hold_ms - reset->held_ms[i];
+        const uint32_t more_ms = (elapsed_ms < room_ms) ? elapsed_ms : room_ms;
+        reset->held_ms[i] = (uint16_t)(((lacking & conditions[i]) == 0u) ? (reset->held_ms[i] + more_ms) : 0u);
+    }
+}
+
+static void follow_press(agv_reset_button_t *reset, agv_timers_t *timers) {
+    if (reset->button == (uint8_t)AGV_BUTTON_DOWN) {
+        reset->began_after = reset->began_after || (reset->before == (uint8_t)AGV_BUTTON_UP);
+        (void)agv_timer_while(timers, AGV_TIMER_PRESS, true);
+        (void)agv_timer_while(timers, AGV_TIMER_PRESS_LONG, true);
+    }
+}
+
+/* The press has just ended, or has come to its longest time. */
+static agv_press_result_t answer(const agv_reset_button_t *reset, const agv_timers_t *timers, uint32_t *missing) {
+    const bool too_long = agv_timer_reached(timers, AGV_TIMER_PRESS_LONG);
+    *missing |= reset->began_after ? 0u : AGV_MISSING_BUTTON;
+    *missing |= too_long ? AGV_MISSING_RELEASED : 0u;
+    *missing |= (reset->button == (uint8_t)AGV_BUTTON_UNKNOWN) ? AGV_MISSING_VCU_HEARTBEAT : 0u;
+    return (*missing == 0u) ? AGV_PRESS_RESETS : AGV_PRESS_IN_VAIN;
+}
+
+agv_press_result_t agv_reset_button_step(agv_reset_button_t *reset, agv_timers_t *timers, const agv_config_t *config,
+                                         uint32_t elapsed_ms, uint32_t lacking, uint32_t *missing) {
+    agv_press_result_t result = AGV_PRESS_NOTHING;
+    const uint32_t before = missing_lately(reset, config);
+    follow_conditions(reset, config, elapsed_ms, lacking);
+    /* The loss of the VCU ends the press: what follows from it was not missing before. */
+    *missing = (reset->button == (uint8_t)AGV_BUTTON_UNKNOWN) ? before : missing_lately(reset, config);
+    follow_press(reset, timers);
+    const bool is_down = reset->button == (uint8_t)AGV_BUTTON_DOWN;
+    const bool ends = !is_down || agv_timer_reached(timers, AGV_TIMER_PRESS_LONG);
+    if (ends && !reset->answered && agv_timer_reached(timers, AGV_TIMER_PRESS)) {
+        result = answer(reset, timers, missing);
+        reset->answered = true;
+    }
+    if (!is_down) {
+        forget_press(reset, timers);
+    }
+    reset->before = reset->button;
+    return result;
+}

@@ -1,0 +1,198 @@
+#include "agv/recorder.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#include "agv/checksum.h"
+#include "agv/state.h"
+
+_Static_assert((AGV_RECORDER_EVENTS & (AGV_RECORDER_EVENTS - 1u)) == 0u, "a power of two");
+_Static_assert(sizeof(agv_event_t) == 112u, "no padding: the checksum runs over all bytes");
+
+
+#define RATE_TIME_MS 1000u
+
+static uint32_t slot_of(uint32_t sequence) {
+    return sequence & (AGV_RECORDER_EVENTS - 1u);
+}
+
+static uint32_t checksum(const agv_event_t *event) {
+    return agv_crc32(AGV_CRC32_START, event, offsetof(agv_event_t, checksum)) >> 16u;
+}
+
+static bool is_valid(const agv_event_t *event) {
+    return (event->kind != 0u) && (event->checksum == checksum(event));
+}
+
+static bool is_newer(uint32_t sequence, uint32_t other) {
+    return ((sequence - other) - 1u) < (UINT32_MAX / 2u);
+}
+
+void agv_recorder_start(agv_recorder_t *recorder) {
+    bool found = false;
+    uint32_t first = 0u;
+    uint32_t next = 0u;
+    recorder->run = 0u;
+    for (uint32_t i = 0u; i < AGV_RECORDER_EVENTS; i++) {
+        agv_event_t *const event = &recorder->events[i];
+        if (!is_valid(event) || (slot_of(event->sequence) != i)) {
+            (void)memset(event, 0, sizeof *event);
+            continue;
+        }
+        if (!found) {
+            found = true;
+            first = event->sequence;
+            next = event->sequence;
+        }
+        if (is_newer(event->sequence + 1u, next)) {
+            next = event->sequence + 1u;
+            recorder->run = (uint8_t)(event->run + 1u);
+        }
+        if (is_newer(first, event->sequence)) {
+            first = event->sequence;
+        }
+    }
+    recorder->next_sequence = next;
+    /* The mark of what is in flash counts if it lies among what is here. */
+    if ((recorder->stored_sequence - first) > (next - first)) {
+        recorder->stored_sequence = first;
+    }
+    for (uint32_t i = 0u; i < AGV_RECORDER_TRIPS; i++) {
+        if (!is_valid(&recorder->trips[i])) {
+            (void)memset(&recorder->trips[i], 0, sizeof recorder->trips[i]);
+        }
+    }
+    (void)memset(recorder->rates, 0, sizeof recorder->rates);
+    recorder->seen = 0u;
+    (void)memset(recorder->frames, 0, sizeof recorder->frames);
+}
+
+void agv_recorder_frame(agv_recorder_t *recorder, uint32_t message, const uint8_t data[AGV_DLC]) {
+    if (message < (uint32_t)AGV_MSG_COUNT) {
+        (void)memcpy(recorder->frames[message], data, AGV_DLC);
+        recorder->seen |= (uint16_t)((uint32_t)1u << message);
+    }
+}
+
+/* Whether a fault may be recorded once more: the fourth event before this one is a second ago. */
+static bool is_within_rate(agv_fault_rate_t *rate, uint32_t time_ms) {
+    uint32_t *const oldest_ms = &rate->recorded_ms[rate->oldest];
+    if ((rate->count == (uint8_t)AGV_RECORDER_FAULTS_PER_S) && ((time_ms - *oldest_ms) < RATE_TIME_MS)) {
+        rate->left_out = (uint16_t)(rate->left_out + ((rate->left_out < UINT16_MAX) ? 1u : 0u));
+        return false;
+    }
+    *oldest_ms = time_ms;
+    rate->oldest = (uint8_t)((rate->oldest + 1u) % AGV_RECORDER_FAULTS_PER_S);
+    rate->count = (uint8_t)(rate->count + ((rate->count < (uint8_t)AGV_RECORDER_FAULTS_PER_S) ? 1u : 0u));
+    return true;
+}
+
+static void fill(const agv_recorder_t *recorder, const agv_entry_t *entry, uint32_t time_ms, agv_event_t *event) {
+    event->sequence = recorder->next_sequence;
+    event->time_ms = time_ms;
+    event->kind = entry->kind;
+    event->a = entry->a;
+    event->b = entry->b;
+    event->c = entry->c;
+    event->missing = entry->missing;
+    event->state = entry->state;
+    event->first_reason = entry->first_reason;
+    event->left_out = 0u;
+    event->seen = recorder->seen;
+    (void)memcpy(event->frames, recorder->frames, sizeof event->frames);
+    event->run = recorder->run;
+    event->reserved = 0u;
+}
+
+static bool is_trip(const agv_event_t *event) {
+    return (event->kind == (uint8_t)AGV_EVENT_STATE) && (event->b == (uint8_t)AGV_STATE_TRIPPED) &&
+           (event->c < (uint8_t)AGV_FAULT_COUNT);
+}
+
+/* A trip takes the place of the oldest one, or of one that is not valid. */
+static void keep_trip(agv_recorder_t *recorder, const agv_event_t *event) {
+    agv_event_t *place = &recorder->trips[0];
+    for (uint32_t i = 1u; (i < AGV_RECORDER_TRIPS) && is_valid(place); i++) {
+        agv_event_t *const other = &recorder->trips[i];
+        if (!is_valid(other) || is_newer(place->sequence, other->sequence)) {
+            place = other;
+        }
+    }
+    *place = *event;
+}
+
+void agv_recorder_add(agv_recorder_t *recorder, const agv_entry_t *entry, uint32_t time_ms) {
+    agv_event_t *const event = &recorder->events[slot_of(recorder->next_sequence)];
+    const bool is_fault = (entry->kind == (uint8_t)AGV_EVENT_FAULT) && (entry->a < (uint8_t)AGV_FAULT_COUNT);
+    if (is_fault && !is_within_rate(&recorder->rates[entry->a], time_ms)) {
+        return;
+    }
+    fill(recorder, entry, time_ms, event);
+    if (is_fault) {
+        event->left_out = recorder->rates[entry->a].left_out;
+        recorder->rates[entry->a].left_out = 0u;
+    }
+    event->checksum = (uint16_t)checksum(event);
+    recorder->next_sequence++;
+    if ((recorder->next_sequence - recorder->stored_sequence) > AGV_RECORDER_EVENTS) {
+        recorder->stored_sequence++;
+    }
+    if (is_trip(event)) {
+        keep_trip(recorder, event);
+    }
+}
+
+/* How many trips came after this one. */
+static uint32_t newer_trips(const agv_recorder_t *recorder, const agv_event_t *trip) {
+    uint32_t newer = 0u;
+    for (uint32_t i = 0u; i < AGV_RECORDER_TRIPS; i++) {
+        const agv_event_t *const other = &recorder->trips[i];
+        newer += (is_valid(other) && is_newer(other->sequence, trip->sequence)) ? 1u : 0u;
+    }
+    return newer;
+}
+
+bool agv_recorder_get_trip(const agv_recorder_t *recorder, uint32_t index, agv_event_t *event) {
+    for (uint32_t i = 0u; i < AGV_RECORDER_TRIPS; i++) {
+        const agv_event_t *const trip = &recorder->trips[i];
+        if (is_valid(trip) && (newer_trips(recorder, trip) == index)) {
+            *event = *trip;
+            return true;
+        }
+    }
+    return false;
+}
+
+uint32_t agv_recorder_next_sequence(const agv_recorder_t *recorder) {
+    return recorder->next_sequence;
+}
+
+/* The event in the ring, NULL when it is not there any more or not valid. */
+static const agv_event_t *find(const agv_recorder_t *recorder, uint32_t sequence) {
+    const agv_event_t *event = &recorder->events[slot_of(sequence)];
+    return ((event->sequence == sequence) && is_valid(event)) ? event : NULL;
+}
+
+bool agv_recorder_get(const agv_recorder_t *recorder, uint32_t sequence, agv_event_t *event) {
+    const agv_event_t *found = find(recorder, sequence);
+    if (found != NULL) {
+        *event = *found;
+    }
+    return found != NULL;
+}
+
+const agv_event_t *agv_recorder_next_to_store(agv_recorder_t *recorder) {
+    const agv_event_t *event = NULL;
+    for (uint32_t i = 0u; (i < AGV_RECORDER_EVENTS) && (recorder->stored_sequence != recorder->next_sequence); i++) {
+        event = find(recorder, recorder->stored_sequence);
+        if (event != NULL) {
+            break;
+        }
+        recorder->stored_sequence++;
+    }
+    return event;
+}
+
+void agv_recorder_stored(agv_recorder_t *recorder) {
+    recorder->stored_sequence++;
+}

@@ -1,0 +1,123 @@
+#include "observe/motion_checks.h"
+
+#include <stddef.h>
+#include <string.h>
+
+/* SUP-11: by so much 050h has to come down to be on its way. */
+enum { THROTTLE_DROP_COUNTS = 25 };
+
+/* SUP-12: metres per hour to mm/s is 1000 / 3600; the speeds may differ by so much, and by a quarter of the larger one. */
+enum { MM_S_PER_18_COUNTS = 5, SPEED_SLACK_MM_S = 500, SPEED_SHARE = 4, WHEEL_MAX_MM_S = 1000000 };
+
+static const uint8_t faults_of[AGV_BUDGET_COUNT] = {[AGV_BUDGET_STEERING] = AGV_FAULT_STEERING_DEVIATION,
+                                                    [AGV_BUDGET_THROTTLE] = AGV_FAULT_THROTTLE_DEVIATION,
+                                                    [AGV_BUDGET_GEAR] = AGV_FAULT_GEAR_DEVIATION,
+                                                    [AGV_BUDGET_AUTOPILOT_OFF] = AGV_FAULT_AUTOPILOT_OFF_IGNORED,
+                                                    [AGV_BUDGET_THROTTLE_IN_PARK] = AGV_FAULT_THROTTLE_IN_PARK,
+                                                    [AGV_BUDGET_SPEED] = AGV_FAULT_SPEED_IMPLAUSIBLE};
+
+static int32_t amount(int32_t value) {
+    return (value < 0) ? -value : value;
+}
+
+static int32_t clamp(int32_t value, int32_t limit) {
+    if (value > limit) {
+        return limit;
+    }
+    return (value < -limit) ? -limit : value;
+}
+
+static int32_t off_by_ddeg(const agv_motion_facts_t *facts, uint32_t angle_raw) {
+    return amount((int32_t)angle_raw - (int32_t)facts->commands->angle_raw);
+}
+
+/* Empties a budget whose cause is on its way to end. What was counted for that begins anew with the budget. */
+static void follow_progress(agv_budget_t *budget, int32_t *progress, int32_t enough) {
+    if ((budget->value_ms != 0u) && (*progress >= enough)) {
+        *budget = (agv_budget_t){0};
+    }
+    if (budget->value_ms == 0u) {
+        *progress = 0;
+    }
+}
+
+void agv_motion_checks_angle(agv_motion_checks_t *checks, const agv_motion_facts_t *facts, uint32_t before_raw) {
+    if (facts->judged && agv_commands_has(facts->commands, AGV_MSG_STEERING_COMMAND)) {
+        const int32_t step_ddeg = off_by_ddeg(facts, before_raw) - off_by_ddeg(facts, facts->vehicle->angle_raw);
+        checks->steering_gain_ddeg = clamp(checks->steering_gain_ddeg + step_ddeg, AGV_ANGLE_RAW_MAX);
+        follow_progress(&checks->budgets[AGV_BUDGET_STEERING], &checks->steering_gain_ddeg,
+                        (int32_t)facts->config->steering_gain_ddeg);
+    }
+}
+
+void agv_motion_checks_throttle(agv_motion_checks_t *checks, const agv_motion_facts_t *facts, uint32_t before) {
+    if (facts->judged) {
+        checks->throttle_drop += (int32_t)before - (int32_t)facts->vehicle->throttle;
+        follow_progress(&checks->budgets[AGV_BUDGET_THROTTLE], &checks->throttle_drop, THROTTLE_DROP_COUNTS);
+    }
+}
+
+static bool steering_is_off(const agv_motion_facts_t *facts) {
+    return facts->vehicle->angle_known && agv_commands_has(facts->commands, AGV_MSG_STEERING_COMMAND) &&
+           (off_by_ddeg(facts, facts->vehicle->angle_raw) > (int32_t)facts->config->steering_deviation_ddeg);
+}
+
+static bool throttle_is_above(const agv_motion_facts_t *facts) {
+    return agv_commands_has(facts->commands, AGV_MSG_THROTTLE_COMMAND) &&
+           (facts->vehicle->throttle > ((uint32_t)facts->commands->throttle + facts->config->throttle_deviation_counts));
+}
+
+static bool throttle_is_above_idle(const agv_motion_facts_t *facts) {
+    return facts->vehicle->throttle > facts->config->throttle_idle_counts;
+}
+
+static bool gear_is_another(const agv_motion_facts_t *facts) {
+    const uint32_t gear = facts->vehicle->gear;
+    return agv_commands_has(facts->commands, AGV_MSG_GEAR_COMMAND) &&
+           ((gear == (uint32_t)AGV_GEAR_D) || (gear == (uint32_t)AGV_GEAR_R)) && (gear != facts->commands->gear) &&
+           throttle_is_above_idle(facts);
+}
+
+static bool speeds_differ(const agv_vehicle_t *vehicle) {
+    const int32_t left_mm_s = clamp(vehicle->wheels.left_mm_s, WHEEL_MAX_MM_S);
+    const int32_t right_mm_s = clamp(vehicle->wheels.right_mm_s, WHEEL_MAX_MM_S);
+    const int32_t wheels_mm_s = amount(left_mm_s + right_mm_s) / 2;
+    const int32_t vcu_mm_s = ((int32_t)vehicle->vcu_speed * MM_S_PER_18_COUNTS) / 18;
+    const int32_t larger_mm_s = (wheels_mm_s > vcu_mm_s) ? wheels_mm_s : vcu_mm_s;
+    return vehicle->wheels_fresh && vehicle->vcu_alive && vehicle->vcu_speed_seen &&
+           (amount(wheels_mm_s - vcu_mm_s) > (SPEED_SLACK_MM_S + (larger_mm_s / SPEED_SHARE)));
+}
+
+void agv_motion_checks_tick(agv_motion_checks_t *checks, const agv_motion_facts_t *facts, uint32_t elapsed_ms) {
+    const agv_config_t *const config = facts->config;
+    agv_budget_t *const budgets = checks->budgets;
+    agv_budget_add(&budgets[AGV_BUDGET_SPEED], speeds_differ(facts->vehicle), elapsed_ms,
+                   config->speed_implausible_ms);
+    if (!facts->judged) {
+        return; /* the others stand still */
+    }
+    agv_budget_add(&budgets[AGV_BUDGET_STEERING], steering_is_off(facts), elapsed_ms, config->steering_deviation_ms);
+    agv_budget_add(&budgets[AGV_BUDGET_THROTTLE], throttle_is_above(facts), elapsed_ms, config->throttle_deviation_ms);
+    agv_budget_add(&budgets[AGV_BUDGET_GEAR], gear_is_another(facts), elapsed_ms, config->gear_deviation_ms);
+    agv_budget_add(&budgets[AGV_BUDGET_AUTOPILOT_OFF],
+                   agv_commands_has(facts->commands, AGV_MSG_TURN_SIGNAL_COMMAND) && facts->commands->autopilot_off,
+                   elapsed_ms, config->autopilot_off_ms);
+    agv_budget_add(&budgets[AGV_BUDGET_THROTTLE_IN_PARK],
+                   facts->gear_fresh && (facts->vehicle->gear == (uint8_t)AGV_GEAR_P) && throttle_is_above_idle(facts),
+                   elapsed_ms, config->throttle_in_park_ms);
+    follow_progress(&budgets[AGV_BUDGET_STEERING], &checks->steering_gain_ddeg, (int32_t)config->steering_gain_ddeg);
+    follow_progress(&budgets[AGV_BUDGET_THROTTLE], &checks->throttle_drop, THROTTLE_DROP_COUNTS);
+}
+
+void agv_motion_checks_evaluate(const agv_motion_checks_t *checks, agv_fault_monitor_t *faults, bool judged) {
+    for (uint32_t i = 0u; i < (uint32_t)AGV_BUDGET_COUNT; i++) {
+        const bool counts = judged || (i == (uint32_t)AGV_BUDGET_SPEED);
+        agv_fault_monitor_set(faults, faults_of[i], counts && checks->budgets[i].present);
+    }
+}
+
+void agv_motion_checks_engage(agv_motion_checks_t *checks) {
+    (void)memset(checks->budgets, 0, sizeof(agv_budget_t) * (size_t)AGV_BUDGET_SPEED);
+    checks->steering_gain_ddeg = 0;
+    checks->throttle_drop = 0;
+}

@@ -1,0 +1,83 @@
+/**
+ * @file core.h
+ * The memory of one supervisor: the structs of its modules side by side. Known to supervisor*.c alone (scripts/check-layers):
+ * each struct is written by the source of its own module, which is handed it.
+ */
+#ifndef AGV_CORE_H
+#define AGV_CORE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "agv/supervisor.h"
+#include "base/timers.h"
+#include "decide/confirmation.h"
+#include "decide/fault_monitor.h"
+#include "decide/hold.h"
+#include "decide/reset_button.h"
+#include "decide/state_machine.h"
+#include "decide/stopping.h"
+#include "keep/led.h"
+#include "observe/bus.h"
+#include "observe/commands.h"
+#include "observe/intrusion.h"
+#include "observe/liveness.h"
+#include "observe/mode.h"
+#include "observe/motion_checks.h"
+#include "observe/status_checks.h"
+#include "observe/vehicle.h"
+#include "transmit/gateway.h"
+#include "transmit/transmitter.h"
+
+/** All of it. No pointers: a flipped bit would lead anywhere, and the size is the same on every platform. */
+typedef struct {
+    agv_timers_t timers;
+    agv_config_t config;
+    uint32_t config_checksum; /**< agv_config_checksum at the start */
+    agv_ids_t ids;            /**< made of config; and a second copy, for when the configuration is corrupted */
+    uint16_t topology;        /**< second copy, likewise */
+    uint16_t id_set;          /**< second copy, likewise */
+    agv_counters_t counters;
+    agv_state_machine_t machine;
+    agv_fault_monitor_t faults;
+    agv_liveness_t liveness;
+    agv_mode_t mode;
+    agv_vehicle_t vehicle;
+    agv_status_checks_t status_checks;
+    agv_motion_checks_t motion_checks;
+    agv_intrusion_t intrusion;
+    agv_commands_t commands;
+    agv_confirmation_t confirmation;
+    agv_stopping_t stopping;
+    agv_reset_button_t reset_button;
+    agv_hold_t hold;
+    agv_bus_t buses[HAL_CAN_SIDES];
+    agv_gateway_t gateway;
+    agv_transmitter_t transmitter;
+    agv_led_t led;
+    uint32_t last_tick_ms;
+    uint16_t store_credit_ms; /**< time until flash may be written once more (INT-3) */
+    uint8_t store_credits;    /**< how often flash may be written now */
+    uint8_t checked_in; /**< activities since the watchdog was fed (TIM-3) */
+    int8_t led_code;    /**< of the highest-ranking fault, as last evaluated */
+} agv_core_t;
+
+_Static_assert(sizeof(agv_core_t) == AGV_SUPERVISOR_MEMORY, "agv_supervisor_t holds just the core");
+_Static_assert(sizeof(agv_core_t) % sizeof(uint32_t) == 0u, "whole words: all of it is under the seal");
+
+/** The core of a supervisor. */
+static inline agv_core_t *agv_core_of(agv_supervisor_t *supervisor) {
+    return (agv_core_t *)(void *)supervisor->memory;
+}
+
+/** The same to read. */
+static inline const agv_core_t *agv_core_read(const agv_supervisor_t *supervisor) {
+    return (const agv_core_t *)(const void *)supervisor->memory;
+}
+
+/** Whether there are two sides. */
+static inline bool agv_core_is_gateway(const agv_core_t *core) {
+    return core->config.topology != (uint16_t)AGV_TOPOLOGY_SHARED;
+}
+
+#endif

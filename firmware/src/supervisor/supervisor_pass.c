@@ -1,0 +1,348 @@
+#include "hal/safety_output.h"
+#include "keep/latch.h"
+#include "observe/deadlines.h"
+#include "supervisor/supervisor_internal.h"
+
+static void record(const agv_core_t *core, const agv_ports_t *ports, const agv_entry_t *entry) {
+    agv_recorder_add(ports->recorder, entry, core->timers.now_ms);
+}
+
+void agv_core_record(const agv_core_t *core, const agv_ports_t *ports, uint32_t kind, uint32_t a, uint32_t b,
+                     uint32_t c) {
+    const agv_entry_t entry = {.kind = (uint8_t)kind,
+                               .a = (uint8_t)a,
+                               .b = (uint8_t)b,
+                               .c = (uint8_t)c,
+                               .state = core->machine.state,
+                               .first_reason = core->machine.first_reason};
+    record(core, ports, &entry);
+}
+
+void agv_core_store_latch(const agv_core_t *core, const agv_ports_t *ports) {
+    agv_latch_write(ports->hal, core->machine.latched, core->machine.first_reason, core->machine.unresettable);
+}
+
+bool agv_core_step_is_late(const agv_core_t *core) {
+    return (core->timers.now_ms - core->last_tick_ms) > ((uint32_t)core->config.watchdog_period_ms + 1u);
+}
+
+bool agv_core_is_in_park(const agv_core_t *core) {
+    return agv_liveness_fresh(&core->liveness, &core->timers, AGV_MSG_GEAR_STATUS) &&
+           (core->vehicle.gear == (uint8_t)AGV_GEAR_P);
+}
+
+static bool is_latched(const agv_core_t *core) {
+    return agv_state_is_latched((agv_state_t)core->machine.state);
+}
+
+bool agv_core_is_supervising(const agv_core_t *core) {
+    return (core->machine.state == (uint8_t)AGV_STATE_STANDBY) || (core->machine.state == (uint8_t)AGV_STATE_ACTIVE);
+}
+
+agv_motion_facts_t agv_core_motion_facts(const agv_core_t *core) {
+    return (agv_motion_facts_t){
+        .config = &core->config,
+        .vehicle = &core->vehicle,
+        .commands = &core->commands,
+        .judged = agv_mode_is_judged(&core->mode, &core->timers),
+        .gear_fresh = agv_liveness_fresh(&core->liveness, &core->timers, AGV_MSG_GEAR_STATUS)};
+}
+
+agv_gateway_facts_t agv_core_gateway_facts(const agv_core_t *core) {
+    return (agv_gateway_facts_t){.config = &core->config,
+                                 .vehicle = &core->vehicle,
+                                 .state = (agv_state_t)core->machine.state,
+                                 .now_ms = core->timers.now_ms,
+                                 .autopilot = agv_mode_reports_autopilot(&core->mode),
+                                 .standstill = agv_vehicle_is_at_standstill(&core->timers)};
+}
+
+/*
+ * FSM-10: EPS alive and without a fault, in angle control, manual not reported, the wheels have not stood for long. A stale
+ * 167h is a fault of the EPS.
+ */
+static bool is_holdable(const agv_core_t *core) {
+    return agv_liveness_alive(&core->liveness, AGV_NODE_EPS) && core->vehicle.eps_in_angle_mode &&
+           !agv_mode_is_manual(&core->mode) && !core->faults.summary.eps_fault &&
+           agv_status_checks_angle_is_usable(&core->status_checks) &&
+           !agv_timer_reached(&core->timers, AGV_TIMER_WHEELS_STOOD);
+}
+
+agv_tx_orders_t agv_core_orders(agv_core_t *core, const agv_ports_t *ports) {
+    return (agv_tx_orders_t){.hal = ports->hal,
+                             .config = &core->config,
+                             .ids = &core->ids,
+                             .timers = &core->timers,
+                             .hold = core->hold,
+                             .state = core->machine.state,
+                             .first_reason = core->machine.first_reason,
+                             .output_closed = core->machine.output_closed,
+                             .park_released = core->machine.park_released,
+                             .holdable = is_holdable(core),
+                             .config_checksum = core->config_checksum};
+}
+
+/* FSM-4: what opens the output at once. */
+static const uint8_t output_faults[] = {AGV_FAULT_BUS_OFF,         AGV_FAULT_TX_STALLED,
+                                        AGV_FAULT_EMERGENCY_STOP,  AGV_FAULT_SAFE_STATE_UNCONFIRMED,
+                                        AGV_FAULT_VEHICLE_NOT_STOPPING, AGV_FAULT_MOVING_WHILE_SAFE};
+
+static bool output_is_unsafe(const agv_core_t *core) {
+    bool unsafe = agv_timer_reached(&core->timers, AGV_TIMER_WATCHDOG_FED);
+    for (uint32_t i = 0u; i < (sizeof output_faults / sizeof output_faults[0]); i++) {
+        unsafe = unsafe || agv_fault_monitor_is_active(&core->faults, output_faults[i]);
+    }
+    return unsafe;
+}
+
+static uint32_t alive_facts(const agv_core_t *core) {
+    uint32_t facts = 0u;
+    if (agv_liveness_alive(&core->liveness, AGV_NODE_VCU)) {
+        const bool off = !agv_mode_is_engaged(&core->mode) && !agv_mode_is_ambiguous(&core->mode);
+        facts |= off ? AGV_FACT_AUTOPILOT_OFF : 0u;
+        facts |= agv_core_step_is_late(core) ? 0u : AGV_FACT_VCU_ALIVE; /* late: deadlines have not been looked at */
+    }
+    facts |= agv_liveness_alive(&core->liveness, AGV_NODE_EPS) ? AGV_FACT_EPS_ALIVE : 0u;
+    facts |= agv_liveness_alive(&core->liveness, AGV_NODE_AI) ? AGV_FACT_AI_ALIVE : 0u;
+    return facts;
+}
+
+static uint32_t motion_facts(const agv_core_t *core) {
+    uint32_t facts = agv_vehicle_is_at_standstill(&core->timers) ? AGV_FACT_STANDSTILL : 0u;
+    facts |= agv_vehicle_wheels_stand(&core->timers) ? AGV_FACT_WHEELS_STAND : 0u;
+    facts |= agv_vehicle_is_slow(&core->vehicle, &core->config) ? AGV_FACT_SLOW : 0u;
+    facts |= agv_vehicle_throttle_is_idle(&core->vehicle, &core->config) ? AGV_FACT_IDLE : 0u;
+    facts |= agv_core_is_in_park(core) ? AGV_FACT_IN_PARK : 0u;
+    return facts;
+}
+
+static uint32_t facts_of(const agv_core_t *core) {
+    uint32_t facts = alive_facts(core) | motion_facts(core);
+    facts |= agv_deadlines_messages_fresh(&core->liveness, &core->timers, &core->config) ? AGV_FACT_MESSAGES : 0u;
+    facts |= agv_mode_is_manual(&core->mode) ? AGV_FACT_MANUAL : 0u;
+    facts |= agv_mode_is_engaged(&core->mode) ? AGV_FACT_ENGAGED : 0u;
+    return facts;
+}
+
+/* The checks whose result depends on the mode or the time of now. */
+static void evaluate_checks(agv_core_t *core) {
+    const bool judged = agv_mode_is_judged(&core->mode, &core->timers);
+    agv_vehicle_evaluate(&core->vehicle, &core->timers, &core->config,
+                         agv_liveness_fresh(&core->liveness, &core->timers, AGV_MSG_WHEEL_SPEED),
+                         agv_liveness_alive(&core->liveness, AGV_NODE_VCU));
+    agv_status_checks_evaluate(&core->status_checks, &core->faults, agv_mode_is_engaged(&core->mode), judged);
+    agv_motion_checks_evaluate(&core->motion_checks, &core->faults, judged);
+    agv_intrusion_evaluate(&core->intrusion, &core->faults, &core->timers, &core->config, &core->liveness);
+}
+
+/* In TRIPPED and SAFE: whether the vehicle confirms and stops (FSM-4, FSM-12). */
+static void evaluate_safe_state(agv_core_t *core, uint32_t facts, uint32_t elapsed_ms) {
+    if (is_latched(core)) {
+        agv_confirmation_step(&core->confirmation, &core->timers, &core->config, elapsed_ms,
+                              (facts & AGV_FACT_AUTOPILOT_OFF) != 0u, (facts & AGV_FACT_IN_PARK) != 0u);
+        agv_stopping_step(&core->stopping, &core->timers, &core->vehicle, elapsed_ms);
+    }
+    agv_fault_monitor_set(&core->faults, AGV_FAULT_SAFE_STATE_UNCONFIRMED, core->confirmation.unconfirmed);
+    agv_fault_monitor_set(&core->faults, AGV_FAULT_VEHICLE_NOT_STOPPING, core->stopping.not_stopping);
+    agv_fault_monitor_set(&core->faults, AGV_FAULT_MOVING_WHILE_SAFE, core->stopping.moving);
+}
+
+static void evaluate_faults(agv_core_t *core, uint32_t facts, uint32_t elapsed_ms, agv_fault_changes_t *changes) {
+    const bool ai_loss_warns =
+        ((facts & AGV_FACT_ENGAGED) == 0u) && (core->config.ai_lost_in_manual == (uint16_t)AGV_AI_LOST_WARN);
+    evaluate_safe_state(core, facts, elapsed_ms);
+    agv_fault_monitor_set(&core->faults, AGV_FAULT_STARTUP_TIMEOUT,
+                          agv_state_machine_is_startup_late(&core->machine, &core->timers));
+    agv_fault_monitor_evaluate(&core->faults, &core->config.trips, ai_loss_warns, changes);
+}
+
+/* A press of the reset button, in TRIPPED and SAFE (FSM-3). */
+static agv_press_result_t evaluate_press(agv_core_t *core, uint32_t facts, uint32_t elapsed_ms, uint32_t *missing) {
+    if (!is_latched(core)) {
+        return AGV_PRESS_NOTHING;
+    }
+    const uint32_t lacking = agv_state_machine_lacks_for_reset(&core->machine, &core->faults.summary, facts);
+    return agv_reset_button_step(&core->reset_button, &core->timers, &core->config, elapsed_ms, lacking, missing);
+}
+
+void agv_core_await_safe_state(agv_core_t *core) {
+    agv_confirmation_start(&core->confirmation, &core->timers);
+    agv_stopping_start(&core->stopping, &core->timers);
+    agv_reset_button_trip(&core->reset_button, &core->timers);
+}
+
+/* What is held, awaited and limited goes by the state. */
+static void follow_state(agv_core_t *core, uint32_t what) {
+    if ((what & AGV_ACTION_TRIP) != 0u) {
+        agv_core_await_safe_state(core);
+        agv_hold_trip(&core->hold, &core->vehicle, &core->timers);
+    }
+    if (!is_latched(core) || agv_mode_is_manual(&core->mode)) {
+        agv_hold_drop(&core->hold);
+    }
+    if ((what & AGV_ACTION_RESET_ACCEPTED) != 0u) {
+        agv_confirmation_start(&core->confirmation, &core->timers);
+        agv_stopping_end(&core->stopping);
+        agv_liveness_forget_ai(&core->liveness);
+        agv_deadlines_forget_ai(&core->faults);
+    }
+    if ((what & AGV_ACTION_STATE) != 0u) {
+        agv_gateway_restart(&core->gateway);
+    }
+}
+
+static void drop_what_may_not_wait(agv_core_t *core) {
+    const agv_gateway_facts_t facts = agv_core_gateway_facts(core);
+    for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
+        if (!agv_gateway_may_wait(&facts, i)) {
+            agv_transmitter_drop(&core->transmitter, &core->timers, i);
+        }
+    }
+}
+
+static void carry_out_at_once(agv_core_t *core, const agv_ports_t *ports, uint32_t what) {
+    if ((what & AGV_ACTION_OPEN_OUTPUT) != 0u) {
+        hal_safety_output_set(ports->hal, false);
+    }
+    follow_state(core, what);
+    if ((what & AGV_ACTION_DISCARD) != 0u) {
+        agv_transmitter_discard(&core->transmitter, &core->timers, HAL_CAN_VEHICLE);
+    }
+    if ((what & AGV_ACTION_PURGE) != 0u) {
+        hal_can_purge(ports->hal, HAL_CAN_VEHICLE);
+    }
+    if (core->transmitter.kept != 0u) {
+        drop_what_may_not_wait(core);
+    }
+    const agv_tx_orders_t orders = agv_core_orders(core, ports);
+    if ((what & AGV_ACTION_TRIP) != 0u) {
+        agv_transmitter_burst(&core->transmitter, &orders);
+    }
+    if (((what & AGV_ACTION_END_ENGAGEMENT) != 0u) && agv_core_is_gateway(core)) {
+        agv_transmitter_end_engagement(&core->transmitter, &orders);
+    }
+}
+
+agv_pass_t agv_core_decide(agv_core_t *core, const agv_ports_t *ports, uint32_t elapsed_ms) {
+    uint32_t missing = 0u;
+    agv_pass_t pass;
+    evaluate_checks(core);
+    uint32_t facts = facts_of(core);
+    evaluate_faults(core, facts, elapsed_ms, &pass.faults);
+    facts |= output_is_unsafe(core) ? AGV_FACT_OUTPUT_UNSAFE : 0u;
+    const agv_press_result_t press = evaluate_press(core, facts, elapsed_ms, &missing);
+    facts |= (press == AGV_PRESS_RESETS) ? AGV_FACT_RESET : 0u;
+    pass.actions =
+        agv_state_machine_step(&core->machine, &core->timers, &core->config, &core->faults.summary, facts);
+    if (press == AGV_PRESS_IN_VAIN) {
+        pass.actions.what |= AGV_ACTION_RESET_REFUSED;
+        pass.actions.missing = (uint16_t)missing;
+    }
+    carry_out_at_once(core, ports, pass.actions.what);
+    return pass;
+}
+
+/* What was passed on counts from now on as what the vehicle was told (SUP-5). */
+static void take_passed_commands(agv_core_t *core, uint32_t passed) {
+    for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
+        if (((passed >> i) & 1u) != 0u) {
+            agv_commands_take(&core->commands, i, agv_transmitter_passed(&core->transmitter, i));
+        }
+    }
+}
+
+void agv_core_take_tx_report(agv_core_t *core) {
+    const agv_tx_report_t report = agv_transmitter_take_report(&core->transmitter);
+    core->counters.sent += report.sent;
+    core->counters.shadowed += report.shadowed;
+    core->counters.dropped += report.dropped;
+    core->counters.gate_refused += report.refused;
+    core->counters.skipped_slots += report.skipped_slots;
+    take_passed_commands(core, report.passed);
+    if (report.refused != 0u) {
+        agv_fault_monitor_event(&core->faults, &core->timers,
+                                AGV_FAULT_TX_GATE_REFUSED); /* evaluated at the next call */
+    }
+    if (report.park_sent && is_latched(core)) {
+        agv_confirmation_park_sent(&core->confirmation);
+    }
+}
+
+static void record_fault(agv_core_t *core, const agv_ports_t *ports, const agv_fault_changes_t *changes, uint32_t fault,
+                         agv_entry_t *entry) {
+    const bool active = agv_fault_is_in(&core->faults.active, fault);
+    const agv_fault_set_t *const trips = active ? &core->faults.tripping : &changes->was_trip;
+    const bool trip = agv_fault_is_in(trips, fault);
+    if (active && !trip) {
+        core->counters.warnings++;
+    }
+    entry->a = (uint8_t)fault;
+    entry->b = (uint8_t)(trip ? AGV_CLASS_TRIP : AGV_CLASS_WARN);
+    entry->c = active ? 1u : 0u;
+    record(core, ports, entry);
+}
+
+/* Which faults were raised or ended, in the state of then. */
+static void record_faults(agv_core_t *core, const agv_ports_t *ports, const agv_pass_t *pass) {
+    agv_entry_t entry = {
+        .kind = AGV_EVENT_FAULT, .state = pass->actions.from, .first_reason = pass->actions.first_reason};
+    for (uint32_t word = 0u; word < AGV_FAULT_WORDS; word++) {
+        uint32_t changed = pass->faults.changed.words[word];
+        for (uint32_t fault = word * 32u; changed != 0u; fault++) {
+            if ((changed & 1u) != 0u) {
+                record_fault(core, ports, &pass->faults, fault, &entry);
+            }
+            changed >>= 1u;
+        }
+    }
+}
+
+/* A press of the reset button was answered, or INIT has lasted too long. */
+static void record_answer(const agv_core_t *core, const agv_ports_t *ports, agv_actions_t actions) {
+    agv_entry_t entry = {.kind = AGV_EVENT_RESET,
+                         .missing = actions.missing,
+                         .state = core->machine.state,
+                         .first_reason = core->machine.first_reason};
+    if ((actions.what & AGV_ACTION_RESET_ACCEPTED) != 0u) {
+        entry.a = 1u;
+        record(core, ports, &entry);
+    }
+    if ((actions.what & AGV_ACTION_RESET_REFUSED) != 0u) {
+        record(core, ports, &entry);
+    }
+    if ((actions.what & AGV_ACTION_STARTUP_LATE) != 0u) {
+        entry.kind = AGV_EVENT_STARTUP;
+        record(core, ports, &entry);
+    }
+}
+
+static void conclude_actions(agv_core_t *core, const agv_ports_t *ports, agv_actions_t actions) {
+    const uint32_t what = actions.what;
+    if ((what & AGV_ACTION_UNLATCH) != 0u) {
+        agv_fault_monitor_forget(&core->faults);
+    }
+    if ((what & AGV_ACTION_STORE_LATCH) != 0u) {
+        agv_core_store_latch(core, ports);
+    }
+    if ((what & AGV_ACTION_STATE) != 0u) {
+        agv_core_record(core, ports, AGV_EVENT_STATE, actions.from, core->machine.state,
+                        ((what & AGV_ACTION_TRIP) != 0u) ? core->machine.first_reason : (uint32_t)AGV_FAULT_NONE);
+    }
+    record_answer(core, ports, actions);
+    if ((what & AGV_ACTION_CLOSE_OUTPUT) != 0u) {
+        hal_safety_output_set(ports->hal, true);
+    }
+    if ((what & (AGV_ACTION_OPEN_OUTPUT | AGV_ACTION_CLOSE_OUTPUT)) != 0u) {
+        agv_core_record(core, ports, AGV_EVENT_OUTPUT, core->machine.output_closed ? 1u : 0u, 0u, 0u);
+    }
+}
+
+void agv_core_conclude(agv_core_t *core, const agv_ports_t *ports, const agv_pass_t *pass) {
+    agv_core_take_tx_report(core);
+    record_faults(core, ports, pass);
+    conclude_actions(core, ports, pass->actions);
+    if (is_latched(core)) {
+        agv_fault_monitor_latch(&core->faults);
+    }
+    core->led_code = (int8_t)agv_led_code(agv_fault_monitor_shown(&core->faults));
+}

@@ -1,0 +1,127 @@
+#include <stddef.h>
+
+#include "hal/led.h"
+#include "hal/store.h"
+#include "hal/watchdog.h"
+#include "observe/deadlines.h"
+#include "supervisor/supervisor_internal.h"
+
+/* Activities that check in before the hardware watchdog is fed (TIM-3). */
+enum { CHECKED_RECEIVE = 1, CHECKED_STEP = 2, CHECKED_SEND = 4, CHECKED_ALL = 7 };
+
+static uint32_t step_time(agv_core_t *core) {
+    const uint32_t elapsed_ms = core->timers.now_ms - core->last_tick_ms;
+    if (agv_core_step_is_late(core)) {
+        agv_fault_monitor_event(&core->faults, &core->timers, AGV_FAULT_STEP_OVERRUN);
+    }
+    core->last_tick_ms = core->timers.now_ms;
+    return elapsed_ms;
+}
+
+/* SUP-7, one side: recovery is asked for after a purge; what waited is never sent. */
+static uint32_t follow_bus(agv_core_t *core, hal_t *hal, hal_can_side_t side) {
+    const uint32_t report = agv_bus_tick(&core->buses[side], &core->timers, &core->config, hal, side);
+    if ((report & (AGV_BUS_OFF | AGV_BUS_RECOVERED)) != 0u) {
+        agv_transmitter_discard(&core->transmitter, &core->timers, side);
+    }
+    if ((report & AGV_BUS_ASK_RECOVERY) != 0u) {
+        hal_can_purge(hal, side);
+        hal_can_recover(hal, side);
+    }
+    return report;
+}
+
+/* Returns whether the vehicle side has come back from bus-off. */
+static bool observe_buses(agv_core_t *core, hal_t *hal) {
+    agv_fault_monitor_t *const faults = &core->faults;
+    const uint32_t vehicle = follow_bus(core, hal, HAL_CAN_VEHICLE);
+    const uint32_t ai = agv_core_is_gateway(core) ? follow_bus(core, hal, HAL_CAN_AI) : 0u;
+    const bool stalled = agv_transmitter_is_stalled(&core->timers) || ((vehicle & AGV_BUS_STALLED) != 0u);
+    if (((vehicle | ai) & AGV_BUS_OVERRUN) != 0u) {
+        agv_fault_monitor_event(faults, &core->timers, AGV_FAULT_RX_OVERRUN);
+    }
+    agv_fault_monitor_set(faults, AGV_FAULT_BUS_OFF, (vehicle & AGV_BUS_OFF) != 0u);
+    agv_fault_monitor_set(faults, AGV_FAULT_TX_STALLED, stalled);
+    agv_fault_monitor_set(faults, AGV_FAULT_ERROR_PASSIVE, (vehicle & AGV_BUS_PASSIVE) != 0u);
+    agv_fault_monitor_set(faults, AGV_FAULT_AI_BUS_OFF, (ai & (AGV_BUS_OFF | AGV_BUS_STALLED)) != 0u);
+    return (vehicle & AGV_BUS_RECOVERED) != 0u;
+}
+
+static void observe_time(agv_core_t *core, uint32_t elapsed_ms) {
+    agv_timers_t *const timers = &core->timers;
+    agv_fault_monitor_t *const faults = &core->faults;
+    agv_fault_monitor_tick(faults, timers);
+    agv_liveness_tick(&core->liveness, timers, agv_mode_is_engaged(&core->mode));
+    const bool vcu_alive = agv_liveness_alive(&core->liveness, AGV_NODE_VCU);
+    agv_core_follow_mode(core, agv_mode_tick(&core->mode, timers, vcu_alive), timers->now_ms);
+    if (!vcu_alive) {
+        agv_reset_button_lose(&core->reset_button);
+    }
+    agv_mode_check(&core->mode, timers, faults, agv_core_is_supervising(core), agv_vehicle_is_at_standstill(timers));
+    agv_deadlines_tick(faults, timers, &core->config, &core->liveness, agv_mode_is_engaged(&core->mode));
+    const agv_motion_facts_t facts = agv_core_motion_facts(core);
+    agv_motion_checks_tick(&core->motion_checks, &facts, elapsed_ms);
+}
+
+void agv_core_show_led(agv_core_t *core, const agv_ports_t *ports, uint32_t elapsed_ms) {
+    if (agv_led_tick(&core->led, core->led_code, core->config.shadow == (uint16_t)AGV_SHADOW_ON, elapsed_ms)) {
+        hal_led_set(ports->hal, core->led.on);
+    }
+}
+
+/* INT-3: once a second on average over a minute. */
+enum { STORE_CREDIT_MS = 1000, STORE_CREDITS_MAX = 60 };
+
+static void earn_store_credits(agv_core_t *core, uint32_t elapsed_ms) {
+    const uint32_t time_ms = core->store_credit_ms + ((elapsed_ms < STORE_CREDIT_MS) ? elapsed_ms : STORE_CREDIT_MS);
+    if (time_ms < STORE_CREDIT_MS) {
+        core->store_credit_ms = (uint16_t)time_ms;
+        return;
+    }
+    core->store_credit_ms = (uint16_t)(time_ms - STORE_CREDIT_MS);
+    if (core->store_credits < (uint8_t)STORE_CREDITS_MAX) {
+        core->store_credits++;
+    }
+}
+
+/* INT-3: flash may stall the processor, so only where no reaction can be due. One event a tick. */
+static void store_events(agv_core_t *core, const agv_ports_t *ports) {
+    const bool idle = (core->machine.state == (uint8_t)AGV_STATE_SAFE) ||
+                      ((core->machine.state == (uint8_t)AGV_STATE_STANDBY) && agv_vehicle_is_at_standstill(&core->timers));
+    if (!idle || (core->store_credits == 0u)) {
+        return;
+    }
+    const agv_event_t *const event = agv_recorder_next_to_store(ports->recorder);
+    if (event != NULL) {
+        core->store_credits--;
+        (void)hal_store_append(ports->hal, event, sizeof *event);
+        agv_recorder_stored(ports->recorder);
+    }
+}
+
+static void feed_watchdog(agv_core_t *core, const agv_ports_t *ports) {
+    if (core->checked_in == (uint8_t)CHECKED_ALL) {
+        core->checked_in = 0u;
+        agv_timer_start(&core->timers, AGV_TIMER_WATCHDOG_FED);
+        hal_watchdog_feed(ports->hal);
+    }
+}
+
+void agv_core_tick(agv_core_t *core, const agv_ports_t *ports, bool receive_alive) {
+    const uint32_t elapsed_ms = step_time(core);
+    core->checked_in |= (uint8_t)(CHECKED_STEP | (receive_alive ? CHECKED_RECEIVE : 0));
+    const bool recovered = observe_buses(core, ports->hal);
+    observe_time(core, elapsed_ms);
+    const agv_pass_t pass = agv_core_decide(core, ports, elapsed_ms);
+    const agv_tx_orders_t orders = agv_core_orders(core, ports);
+    if (recovered && ((pass.actions.what & AGV_ACTION_TRIP) == 0u)) {
+        agv_transmitter_burst(&core->transmitter, &orders);
+    }
+    agv_transmitter_tick(&core->transmitter, &orders);
+    core->checked_in |= CHECKED_SEND;
+    agv_core_conclude(core, ports, &pass);
+    feed_watchdog(core, ports);
+    agv_core_show_led(core, ports, elapsed_ms);
+    earn_store_credits(core, elapsed_ms);
+    store_events(core, ports);
+}

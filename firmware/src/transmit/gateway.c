@@ -1,0 +1,127 @@
+#include "transmit/gateway.h"
+
+#include "agv/codec.h"
+
+/* Longer pauses give no more than this to a rate limit. */
+#define RATE_TIME_MAX_MS 1000u
+
+bool agv_gateway_may_wait(const agv_gateway_facts_t *facts, uint32_t command) {
+    if (command == (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND) {
+        return !agv_state_commands_safe(facts->state);
+    }
+    if (facts->state == AGV_STATE_ACTIVE) {
+        return facts->autopilot;
+    }
+    return (facts->state == AGV_STATE_STANDBY) && (facts->config->gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL);
+}
+
+/* D or R other than what the vehicle reports, while it does not stand. */
+static bool changes_gear_in_motion(const agv_gateway_facts_t *facts, uint8_t gear) {
+    const bool drives = (gear == (uint8_t)AGV_GEAR_D) || (gear == (uint8_t)AGV_GEAR_R);
+    return drives && (gear != facts->vehicle->gear) && !facts->standstill &&
+           (facts->config->gear_change == (uint16_t)AGV_GEAR_CHANGE_AT_STANDSTILL);
+}
+
+bool agv_gateway_passes(const agv_gateway_facts_t *facts, uint32_t command, const uint8_t data[AGV_DLC]) {
+    const bool gear_stays = (command != (uint32_t)AGV_MSG_GEAR_COMMAND) || !changes_gear_in_motion(facts, data[0]);
+    return agv_gateway_may_wait(facts, command) && gear_stays;
+}
+
+void agv_gateway_restart(agv_gateway_t *gateway) {
+    *gateway = (agv_gateway_t){0};
+}
+
+static int32_t clamp(int32_t value, int32_t lowest, int32_t highest) {
+    if (value < lowest) {
+        return lowest;
+    }
+    return (value > highest) ? highest : value;
+}
+
+/* How far a rate lets go in the time since then: steps of 1 / @p per_s of the rate. */
+static uint32_t steps_since(uint32_t rate_per_s, uint32_t scale, uint32_t now_ms, uint32_t then_ms) {
+    const uint32_t since_ms = now_ms - then_ms;
+    const uint32_t time_ms = (since_ms < RATE_TIME_MAX_MS) ? since_ms : RATE_TIME_MAX_MS;
+    return (rate_per_s * time_ms) / scale;
+}
+
+/* In counts of the wire; 5 counts are 2 %. The rise begins at 0, with the time of one cycle. */
+static uint32_t limit_throttle(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t wanted) {
+    const uint32_t rate_pct_s = facts->config->throttle_rise_pct_s;
+    const uint32_t ceiling = ((uint32_t)facts->config->throttle_ceiling_pct * AGV_THROTTLE_MAX_COUNTS) / 100u;
+    uint32_t limited = (wanted < ceiling) ? wanted : ceiling;
+    if (facts->state != AGV_STATE_ACTIVE) {
+        return 0u;
+    }
+    if (!gateway->throttle_known) {
+        gateway->throttle_known = true;
+        gateway->throttle_ms = facts->now_ms - agv_message_cycle_ms(AGV_MSG_THROTTLE_COMMAND);
+    }
+    if ((rate_pct_s != 0u) && (limited > gateway->throttle)) {
+        const uint32_t rise = steps_since(rate_pct_s * 5u, 2000u, facts->now_ms, gateway->throttle_ms);
+        if (rise == 0u) {
+            return gateway->throttle; /* time goes on adding up until it makes a whole step */
+        }
+        limited = (limited < (gateway->throttle + rise)) ? limited : (gateway->throttle + rise);
+    }
+    gateway->throttle = (uint8_t)limited;
+    gateway->throttle_ms = facts->now_ms;
+    return limited;
+}
+
+/* Above a speed the angle is limited to both sides of the centre. */
+static uint32_t limit_to_speed(const agv_gateway_facts_t *facts, uint32_t wanted_raw) {
+    const int32_t max_ddeg = (int32_t)facts->config->steering_fast_max_ddeg;
+    const bool fast = !facts->vehicle->wheels_fresh ||
+                      agv_vehicle_wheel_turns(facts->vehicle, (uint32_t)facts->config->fast_mm_s + 1u);
+    if ((max_ddeg == 0) || !fast) {
+        return wanted_raw;
+    }
+    return (uint32_t)clamp((int32_t)wanted_raw, AGV_ANGLE_RAW_CENTRE - max_ddeg, AGV_ANGLE_RAW_CENTRE + max_ddeg);
+}
+
+/* What the first command may start from: the angle that the steering has, a cycle ago. */
+static void begin_slew(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t wanted_raw) {
+    if (!gateway->steering_known) {
+        gateway->steering_raw = facts->vehicle->angle_known ? facts->vehicle->angle_raw : (uint16_t)wanted_raw;
+        gateway->steering_ms = facts->now_ms - agv_message_cycle_ms(AGV_MSG_STEERING_COMMAND);
+        gateway->steering_known = true;
+    }
+}
+
+/* Raw angles: a step is a tenth of a degree. */
+static uint32_t limit_slew(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t wanted_raw) {
+    const uint32_t rate_ddeg_s = facts->config->steering_slew_ddeg_s;
+    uint32_t limited_raw = wanted_raw;
+    begin_slew(gateway, facts, wanted_raw);
+    if (rate_ddeg_s != 0u) {
+        const int32_t step = (int32_t)steps_since(rate_ddeg_s, 1000u, facts->now_ms, gateway->steering_ms);
+        const int32_t from = (int32_t)gateway->steering_raw;
+        limited_raw = (uint32_t)clamp((int32_t)wanted_raw, from - step, from + step);
+        if ((step == 0) && (limited_raw != wanted_raw)) {
+            return limited_raw; /* time goes on adding up until it makes a whole step */
+        }
+    }
+    gateway->steering_raw = (uint16_t)limited_raw;
+    gateway->steering_ms = facts->now_ms;
+    return limited_raw;
+}
+
+bool agv_gateway_limit(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t command,
+                       uint8_t data[AGV_DLC]) {
+    for (uint32_t i = 0u; i < AGV_DLC; i++) {
+        data[i] &= agv_command_bits[command][i];
+    }
+    if (command == (uint32_t)AGV_MSG_THROTTLE_COMMAND) {
+        const uint32_t wanted = data[0];
+        data[0] = (uint8_t)limit_throttle(gateway, facts, wanted);
+        return data[0] != wanted;
+    }
+    if (command == (uint32_t)AGV_MSG_STEERING_COMMAND) {
+        const uint32_t wanted_raw = agv_angle_read(data);
+        const uint32_t raw = limit_slew(gateway, facts, limit_to_speed(facts, wanted_raw));
+        agv_angle_write(data, raw);
+        return raw != wanted_raw;
+    }
+    return false; /* as received */
+}

@@ -1,0 +1,64 @@
+#include "transmit/scheduler.h"
+
+/* First periodic frame after all were sent at once: spread, so that they do not meet again (FSM-2). */
+static const uint8_t first_ms[AGV_COMMAND_COUNT] = {[AGV_MSG_TURN_SIGNAL_COMMAND] = 100u,
+                                                    [AGV_MSG_GEAR_COMMAND] = 66u,
+                                                    [AGV_MSG_THROTTLE_COMMAND] = 33u,
+                                                    [AGV_MSG_STEERING_COMMAND] = 25u};
+
+static uint32_t bit_of(uint32_t command) {
+    return (uint32_t)1u << command;
+}
+
+void agv_scheduler_restart(agv_scheduler_t *scheduler, uint32_t now_ms) {
+    for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
+        scheduler->slots[i].next_ms = now_ms + first_ms[i];
+    }
+    scheduler->override_recent = 0u;
+    scheduler->override_waits = 0u;
+}
+
+void agv_scheduler_restart_slot(agv_scheduler_t *scheduler, uint32_t now_ms, uint32_t command) {
+    scheduler->slots[command].next_ms = now_ms + agv_message_cycle_ms(command);
+}
+
+uint32_t agv_scheduler_due(agv_scheduler_t *scheduler, uint32_t now_ms, uint32_t command) {
+    agv_slot_t *const slot = &scheduler->slots[command];
+    const uint32_t late_ms = now_ms - slot->next_ms;
+    if (late_ms > (UINT32_MAX / 2u)) {
+        return 0u;
+    }
+    const uint32_t cycle_ms = agv_message_cycle_ms(command);
+    const uint32_t slots = (late_ms / cycle_ms) + 1u;
+    slot->next_ms += slots * cycle_ms;
+    return slots;
+}
+
+/* Once the gap is over it stays over: differences of wrapping microseconds are only taken while it is not. */
+bool agv_scheduler_override_due(agv_scheduler_t *scheduler, uint32_t now_us, uint32_t gap_ms, uint32_t command) {
+    if ((now_us - scheduler->slots[command].overridden_us) >= (gap_ms * 1000u)) {
+        scheduler->override_recent &= ~bit_of(command);
+    }
+    return (scheduler->override_waits & ~scheduler->override_recent & bit_of(command)) != 0u;
+}
+
+bool agv_scheduler_override(agv_scheduler_t *scheduler, uint32_t now_us, uint32_t gap_ms, uint32_t command) {
+    scheduler->override_waits |= bit_of(command);
+    return agv_scheduler_override_due(scheduler, now_us, gap_ms, command);
+}
+
+void agv_scheduler_overridden(agv_scheduler_t *scheduler, const agv_timers_t *timers, uint32_t command) {
+    agv_slot_t *const slot = &scheduler->slots[command];
+    slot->next_ms = timers->now_ms + (agv_message_cycle_ms(command) / 2u);
+    slot->overridden_us = timers->now_us;
+    scheduler->override_recent |= bit_of(command);
+    scheduler->override_waits &= ~bit_of(command);
+}
+
+void agv_scheduler_answered(agv_scheduler_t *scheduler, uint32_t command) {
+    scheduler->override_waits &= ~bit_of(command);
+}
+
+void agv_scheduler_discard(agv_scheduler_t *scheduler) {
+    scheduler->override_waits = 0u;
+}

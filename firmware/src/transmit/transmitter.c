@@ -1,0 +1,333 @@
+#include "transmit/transmitter.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#include "agv/codec.h"
+#include "observe/bus.h"
+#include "transmit/gate.h"
+
+/* Since when the HAL does not take a command. */
+static const uint8_t waits[AGV_COMMAND_COUNT] = {[AGV_MSG_TURN_SIGNAL_COMMAND] = AGV_TIMER_TX_TURN_SIGNAL,
+                                                 [AGV_MSG_GEAR_COMMAND] = AGV_TIMER_TX_GEAR,
+                                                 [AGV_MSG_THROTTLE_COMMAND] = AGV_TIMER_TX_THROTTLE,
+                                                 [AGV_MSG_STEERING_COMMAND] = AGV_TIMER_TX_STEERING};
+
+/* A status frame that was handed over so short a time ago may not have left yet. */
+enum { STATUS_ON_WIRE_MS = 2 };
+
+static uint32_t bit_of(uint32_t message) {
+    return (uint32_t)1u << message;
+}
+
+void agv_transmitter_start(agv_transmitter_t *transmitter, uint32_t now_ms) {
+    transmitter->status_due_ms = now_ms;
+    transmitter->status_ms = now_ms - (uint32_t)STATUS_ON_WIRE_MS - 1u;
+}
+
+void agv_transmitter_discard(agv_transmitter_t *transmitter, agv_timers_t *timers, hal_can_side_t side) {
+    const uint32_t messages = (side == HAL_CAN_VEHICLE) ? AGV_SET_COMMANDS : AGV_SET_STATUS;
+    for (uint32_t waiting = transmitter->kept & messages; waiting != 0u; waiting &= waiting - 1u) {
+        transmitter->report.dropped++;
+    }
+    transmitter->kept &= ~messages;
+    if (side == HAL_CAN_VEHICLE) {
+        transmitter->status_again = agv_age_ms(timers->now_ms, transmitter->status_ms) <= (uint32_t)STATUS_ON_WIRE_MS;
+
+        transmitter->throttle_0_waits = false;
+        agv_scheduler_discard(&transmitter->scheduler);
+        for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
+            agv_timer_stop(timers, waits[i]);
+        }
+        agv_timer_stop(timers, AGV_TIMER_TX_STATUS);
+    }
+}
+
+/* The own commands that are sent in this state (FSM-1, FSM-10). */
+static uint32_t wanted_commands(const agv_tx_orders_t *orders) {
+    uint32_t wanted = 0u;
+    if (agv_state_commands_safe((agv_state_t)orders->state)) {
+        wanted = bit_of(AGV_MSG_TURN_SIGNAL_COMMAND) | bit_of(AGV_MSG_THROTTLE_COMMAND);
+        if (orders->park_released) {
+            wanted |= bit_of(AGV_MSG_GEAR_COMMAND);
+        }
+        if (orders->holdable && agv_hold_is_held(&orders->hold)) {
+            wanted |= bit_of(AGV_MSG_STEERING_COMMAND);
+        }
+    }
+    return wanted;
+}
+
+/* The safe command: built-in constants, but for the alive counter and the held angle. */
+static void build(const agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command,
+                  uint8_t data[AGV_DLC]) {
+    (void)memset(data, 0, AGV_DLC); /* throttle 0 */
+    if (command == (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND) {
+        data[4] = AGV_SIGNAL_LEFT | AGV_SIGNAL_RIGHT | AGV_SIGNAL_AUTOPILOT_OFF;
+        data[7] = transmitter->alive_counter;
+    } else if (command == (uint32_t)AGV_MSG_GEAR_COMMAND) {
+        data[0] = AGV_GEAR_P;
+    } else if (command == (uint32_t)AGV_MSG_STEERING_COMMAND) {
+        agv_angle_write(data, orders->hold.raw);
+    } else {
+        /* throttle: all zero */
+    }
+}
+
+/* Through the gate. Returns whether the HAL did not take the frame. */
+static bool emit(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, hal_can_side_t side, uint32_t id,
+                 const uint8_t data[AGV_DLC]) {
+    const agv_gate_t gate = {.config = orders->config,
+                             .ids = orders->ids,
+                             .hold_raw = orders->hold.raw,
+                             .hold_check = orders->hold.check,
+                             .state = orders->state};
+    hal_can_frame_t frame = {.id = id, .time_ms = orders->timers->now_ms, .length = AGV_DLC};
+    (void)memcpy(frame.data, data, AGV_DLC);
+    switch (agv_gate_send(&gate, orders->hal, side, &frame)) {
+    case AGV_GATE_BUSY:
+        return true;
+    case AGV_GATE_SENT:
+        transmitter->report.sent++;
+        break;
+    case AGV_GATE_SHADOWED:
+        transmitter->report.shadowed++;
+        break;
+    default:
+        transmitter->report.refused++;
+        break;
+    }
+    return false;
+}
+
+/* To the side that a message goes to. Returns whether it has to wait; how long a command does is timed. */
+static bool send_message(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t message,
+                         const uint8_t data[AGV_DLC]) {
+    const bool command = message < AGV_COMMAND_COUNT;
+    const bool has_to_wait =
+        emit(transmitter, orders, command ? HAL_CAN_VEHICLE : HAL_CAN_AI, orders->ids->of[message], data);
+    if (command) {
+        (void)agv_timer_while(orders->timers, waits[message], has_to_wait);
+    }
+    return has_to_wait;
+}
+
+/* Send an own command. It answers whatever was heard before. In bus-off nothing is handed to the HAL. */
+static void send_own(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command) {
+    uint8_t data[AGV_DLC];
+    if (agv_bus_is_off(orders->timers, HAL_CAN_VEHICLE)) {
+        return;
+    }
+    build(transmitter, orders, command, data);
+    if (send_message(transmitter, orders, command, data)) {
+        return;
+    }
+    agv_scheduler_answered(&transmitter->scheduler, command);
+    if (command == (uint32_t)AGV_MSG_GEAR_COMMAND) {
+        transmitter->report.park_sent = true;
+    }
+    if ((command == (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND) &&
+        (orders->config->own_heartbeat == (uint16_t)AGV_OWN_HEARTBEAT_RUNNING)) {
+        transmitter->alive_counter++;
+    }
+}
+
+void agv_transmitter_burst(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
+    const uint32_t wanted = wanted_commands(orders);
+    agv_scheduler_restart(&transmitter->scheduler, orders->timers->now_ms);
+    for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
+        if ((wanted & bit_of(i)) != 0u) {
+            send_own(transmitter, orders, i);
+        }
+    }
+    transmitter->wanted_before = (uint8_t)wanted;
+}
+
+/* Whether a payload commands what the own command does. Reserved bits and the alive counter command nothing. */
+static bool is_same_command(const agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command,
+                            const uint8_t data[AGV_DLC]) {
+    uint8_t own[AGV_DLC];
+    uint32_t differences = 0u;
+    build(transmitter, orders, command, own);
+    for (uint32_t i = 0u; i < (AGV_DLC - 1u); i++) {
+        differences |= ((uint32_t)own[i] ^ data[i]) & agv_command_bits[command][i];
+    }
+    return differences == 0u;
+}
+
+static void override(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command) {
+    send_own(transmitter, orders, command);
+    agv_scheduler_overridden(&transmitter->scheduler, orders->timers, command);
+}
+
+void agv_transmitter_answer(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command,
+                            const uint8_t *data) {
+    const bool differs = (data == NULL) || !is_same_command(transmitter, orders, command, data);
+    if (differs && ((wanted_commands(orders) & bit_of(command)) != 0u) &&
+        agv_scheduler_override(&transmitter->scheduler, orders->timers->now_us, orders->config->override_gap_ms,
+                               command)) {
+        override(transmitter, orders, command);
+    }
+}
+
+/* Whether a command was passed on less than half its cycle ago. Once that is over it stays over. */
+static bool is_too_soon(agv_transmitter_t *transmitter, uint32_t message, uint32_t now_ms) {
+    if (message >= AGV_COMMAND_COUNT) {
+        return false;
+    }
+    if ((2u * (now_ms - transmitter->passed_ms[message])) >= agv_message_cycle_ms(message)) {
+        transmitter->passed_lately &= (uint8_t)~bit_of(message);
+    }
+    return (transmitter->passed_lately & bit_of(message)) != 0u;
+}
+
+static void note_passed(agv_transmitter_t *transmitter, uint32_t message, uint32_t now_ms) {
+    transmitter->kept &= ~bit_of(message);
+    if (message < AGV_COMMAND_COUNT) {
+        transmitter->report.passed |= (uint8_t)bit_of(message);
+        transmitter->passed_lately |= (uint8_t)bit_of(message);
+        transmitter->passed_ms[message] = now_ms;
+    }
+}
+
+/* Send a frame that is passed on, or keep it until its time has come and the HAL takes it. */
+static void send_passed(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t message) {
+    const uint32_t now_ms = orders->timers->now_ms;
+    if (is_too_soon(transmitter, message, now_ms) ||
+        send_message(transmitter, orders, message, transmitter->kept_data[message])) {
+        transmitter->kept |= bit_of(message);
+    } else {
+        note_passed(transmitter, message, now_ms);
+    }
+}
+
+void agv_transmitter_drop(agv_transmitter_t *transmitter, agv_timers_t *timers, uint32_t command) {
+    if ((transmitter->kept & bit_of(command)) != 0u) {
+        transmitter->kept &= ~bit_of(command);
+        transmitter->report.dropped++;
+        agv_timer_stop(timers, waits[command]);
+    }
+}
+
+void agv_transmitter_end_engagement(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
+    static const uint8_t throttle_0[AGV_DLC] = {0};
+    transmitter->throttle_0_waits = !agv_bus_is_off(orders->timers, HAL_CAN_VEHICLE) &&
+                                    send_message(transmitter, orders, AGV_MSG_THROTTLE_COMMAND, throttle_0);
+}
+
+const uint8_t *agv_transmitter_passed(const agv_transmitter_t *transmitter, uint32_t command) {
+    return transmitter->kept_data[command];
+}
+
+void agv_transmitter_pass(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t message,
+                          const uint8_t data[AGV_DLC]) {
+    if ((transmitter->kept & bit_of(message)) != 0u) {
+        transmitter->report.dropped++; /* the older one that waited */
+    }
+    if (message == (uint32_t)AGV_MSG_THROTTLE_COMMAND) {
+        transmitter->throttle_0_waits = false;
+    }
+    (void)memcpy(transmitter->kept_data[message], data, AGV_DLC);
+    send_passed(transmitter, orders, message);
+}
+
+static void tick_own(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command,
+                     uint32_t wanted) {
+    const uint32_t slots = agv_scheduler_due(&transmitter->scheduler, orders->timers->now_ms, command);
+    const bool foreign = agv_scheduler_override_due(&transmitter->scheduler, orders->timers->now_us,
+                                                    orders->config->override_gap_ms, command);
+    if ((wanted & bit_of(command)) == 0u) {
+        agv_timer_stop(orders->timers, waits[command]);
+        return;
+    }
+    if (slots > 1u) {
+        transmitter->report.skipped_slots += slots - 1u;
+    }
+    if (foreign) {
+        override(transmitter, orders, command);
+        return;
+    }
+    /* park: at_standstill held P back; 065h waits for its slot */
+    const bool first_park =
+        (command == (uint32_t)AGV_MSG_GEAR_COMMAND) && ((transmitter->wanted_before & bit_of(command)) == 0u);
+    if (first_park) {
+        agv_scheduler_restart_slot(&transmitter->scheduler, orders->timers->now_ms, command);
+    }
+    if (first_park || (slots != 0u) || agv_timer_runs(orders->timers, waits[command])) {
+        send_own(transmitter, orders, command);
+    }
+}
+
+/* TOP-3: state, first reason, safety output, alive counter, configuration checksum. Returns whether it has to wait. */
+static bool emit_status_frame(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
+    const bool tripped = orders->first_reason < (uint8_t)AGV_FAULT_COUNT;
+    uint8_t data[AGV_DLC] = {orders->state, tripped ? orders->first_reason : (uint8_t)AGV_STATUS_FRAME_NO_REASON,
+                             (uint8_t)(orders->output_closed ? 1u : 0u), transmitter->status_counter};
+    for (uint32_t i = 0u; i < 4u; i++) {
+        data[4u + i] = (uint8_t)(orders->config_checksum >> (8u * i));
+    }
+    if (emit(transmitter, orders, HAL_CAN_VEHICLE, orders->config->status_frame_id, data)) {
+        return true;
+    }
+    transmitter->status_counter++;
+    transmitter->status_ms = orders->timers->now_ms;
+    transmitter->status_again = false;
+    return false;
+}
+
+/* What the HAL does not take is tried again at every tick: the standing test of the transmit path. */
+void agv_transmitter_status(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
+    const agv_config_t *const config = orders->config;
+    const uint32_t late_ms = orders->timers->now_ms - transmitter->status_due_ms;
+    const bool due = late_ms <= (UINT32_MAX / 2u);
+    bool has_to_wait = agv_timer_runs(orders->timers, AGV_TIMER_TX_STATUS) || transmitter->status_again;
+    if ((config->status_frame_id == 0u) || (config->shadow == (uint16_t)AGV_SHADOW_ON) ||
+        agv_bus_is_off(orders->timers, HAL_CAN_VEHICLE)) {
+        has_to_wait = false;
+    } else if (due || has_to_wait) {
+        has_to_wait = emit_status_frame(transmitter, orders);
+    } else {
+        /* not yet */
+    }
+    if (due) {
+        transmitter->status_due_ms += ((late_ms / config->status_frame_period_ms) + 1u) * config->status_frame_period_ms;
+    }
+    (void)agv_timer_while(orders->timers, AGV_TIMER_TX_STATUS, has_to_wait);
+}
+
+void agv_transmitter_tick(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
+    const uint32_t wanted = wanted_commands(orders);
+    for (uint32_t i = 0u; ((transmitter->kept | transmitter->passed_lately) >> i) != 0u; i++) {
+        if ((transmitter->kept & bit_of(i)) != 0u) {
+            send_passed(transmitter, orders, i);
+        } else {
+            (void)is_too_soon(transmitter, i, orders->timers->now_ms);
+        }
+    }
+    if (transmitter->throttle_0_waits) {
+        agv_transmitter_end_engagement(transmitter, orders);
+    }
+    if ((wanted | transmitter->wanted_before) != 0u) {
+        for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
+            tick_own(transmitter, orders, i, wanted);
+        }
+    }
+    transmitter->wanted_before = (uint8_t)wanted;
+    agv_transmitter_status(transmitter, orders);
+}
+
+bool agv_transmitter_is_stalled(const agv_timers_t *timers) {
+    bool stalled = false;
+    for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
+        if (agv_timer_reached(timers, waits[i])) {
+            stalled = true;
+        }
+    }
+    return stalled || agv_timer_reached(timers, AGV_TIMER_TX_STATUS);
+}
+
+agv_tx_report_t agv_transmitter_take_report(agv_transmitter_t *transmitter) {
+    const agv_tx_report_t report = transmitter->report;
+    transmitter->report = (agv_tx_report_t){0};
+    return report;
+}

@@ -1,0 +1,226 @@
+/* Which fault a silence is: of messages, of heartbeats, of the own identifiers. */
+#include "observe/deadlines.h"
+
+#include "unity.h"
+
+enum { NONE = AGV_FAULT_NONE };
+
+static agv_fault_monitor_t faults;
+static agv_timers_t timers;
+static agv_liveness_t liveness;
+static agv_config_t config;
+static bool engaged;
+
+/* Every test wraps. */
+static uint32_t at(uint32_t ms) {
+    return 0xFFFFFFE0u + ms;
+}
+
+void setUp(void) {
+    agv_config_defaults(&config);
+    faults = (agv_fault_monitor_t){0};
+    liveness = (agv_liveness_t){0};
+    engaged = false;
+    agv_timers_set_time(&timers, at(0));
+    agv_timers_start(&timers, &config);
+    agv_liveness_start(&liveness, &timers);
+}
+
+void tearDown(void) {
+}
+
+static void tick(uint32_t ms) {
+    agv_timers_set_time(&timers, at(ms));
+    agv_timers_tick(&timers);
+    agv_liveness_tick(&liveness, &timers);
+    agv_deadlines_tick(&faults, &timers, &liveness, engaged);
+}
+
+/* A frame whose alive counter is at every place. */
+static void arrives(unsigned message, uint8_t counter, uint32_t ms) {
+    hal_can_frame_t frame = {.time_ms = at(ms), .length = 8};
+    for (unsigned i = 0; i < 8; i++) {
+        frame.data[i] = counter;
+    }
+    (void)agv_liveness_arrived(&liveness, message, frame.time_ms);
+    agv_liveness_refresh(&liveness, &timers, message, &frame);
+}
+
+/* All but one, at that time. */
+static void others_arrive(unsigned silent, uint8_t counter, uint32_t ms) {
+    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
+        if (i != silent) {
+            arrives(i, counter, ms);
+        }
+    }
+}
+
+static bool is_active(unsigned fault) {
+    return agv_fault_monitor_is_active(&faults, fault);
+}
+
+static void expect_only(unsigned fault) {
+    for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
+        TEST_ASSERT_EQUAL(i == fault, is_active(i));
+    }
+}
+
+/* By hand from SUP-2 and SUP-3. */
+static const struct {
+    unsigned message;
+    unsigned fault;
+    uint32_t timeout_ms;
+    bool while_engaged;
+} SILENCES[] = {
+    {AGV_MSG_GEAR_COMMAND, AGV_FAULT_GEAR_COMMAND_TIMEOUT, 350, true},
+    {AGV_MSG_THROTTLE_COMMAND, AGV_FAULT_THROTTLE_COMMAND_TIMEOUT, 350, true},
+    {AGV_MSG_STEERING_COMMAND, AGV_FAULT_STEERING_COMMAND_TIMEOUT, 125, true},
+    {AGV_MSG_GEAR_STATUS, AGV_FAULT_GEAR_STATUS_TIMEOUT, 125, false},
+    {AGV_MSG_THROTTLE_STATUS, AGV_FAULT_THROTTLE_STATUS_TIMEOUT, 60, false},
+    {AGV_MSG_EPS_STATUS, AGV_FAULT_EPS_STATUS_TIMEOUT, 60, false},
+    {AGV_MSG_STEERING_POSITION, AGV_FAULT_STEERING_POSITION_TIMEOUT, 60, false},
+    {AGV_MSG_WHEEL_SPEED, AGV_FAULT_WHEEL_SPEED_TIMEOUT, 60, false},
+};
+enum { SILENCE_COUNT = sizeof SILENCES / sizeof SILENCES[0] };
+
+/* Two frames first: the heartbeats are alive. Then all but one come until its deadline has expired. */
+static void be_silent(unsigned message, uint32_t timeout_ms) {
+    others_arrive(NONE, 1, 0);
+    others_arrive(NONE, 2, 0);
+    others_arrive(message, 3, timeout_ms);
+    tick(timeout_ms);
+    expect_only(NONE);
+    tick(timeout_ms + 1);
+}
+
+/* Shows: SUP-3 */
+void test_the_fault_of_each_silence(void) {
+    for (unsigned i = 0; i < SILENCE_COUNT; i++) {
+        setUp();
+        engaged = true;
+        be_silent(SILENCES[i].message, SILENCES[i].timeout_ms);
+        expect_only(SILENCES[i].fault);
+        arrives(SILENCES[i].message, 4, SILENCES[i].timeout_ms + 2);
+        tick(SILENCES[i].timeout_ms + 2);
+        expect_only(NONE);
+    }
+}
+
+/* Shows: SUP-3 */
+void test_silent_commands_count_while_engaged(void) {
+    for (unsigned i = 0; i < SILENCE_COUNT; i++) {
+        setUp();
+        be_silent(SILENCES[i].message, SILENCES[i].timeout_ms);
+        expect_only(SILENCES[i].while_engaged ? (unsigned)NONE : SILENCES[i].fault);
+    }
+}
+
+/* Shows: SUP-2 */
+TEST_CASE(AGV_MSG_VEHICLE_STATUS, AGV_FAULT_VCU_HEARTBEAT_LOST, 50)
+TEST_CASE(AGV_MSG_STEERING_STATUS, AGV_FAULT_EPS_HEARTBEAT_LOST, 50)
+TEST_CASE(AGV_MSG_TURN_SIGNAL_COMMAND, AGV_FAULT_AI_HEARTBEAT_LOST, 350)
+void test_a_heartbeat_is_lost(unsigned message, unsigned fault, uint32_t timeout_ms) {
+    be_silent(message, timeout_ms);
+    expect_only(fault);
+}
+
+/* The last frame with the old counter came just before. */
+/* Shows: SUP-2 */
+TEST_CASE(AGV_MSG_VEHICLE_STATUS, AGV_FAULT_VCU_HEARTBEAT_STUCK, 50)
+TEST_CASE(AGV_MSG_STEERING_STATUS, AGV_FAULT_EPS_HEARTBEAT_STUCK, 50)
+TEST_CASE(AGV_MSG_TURN_SIGNAL_COMMAND, AGV_FAULT_AI_HEARTBEAT_STUCK, 350)
+void test_a_heartbeat_is_stuck(unsigned message, unsigned fault, uint32_t timeout_ms) {
+    others_arrive(NONE, 1, 0);
+    others_arrive(NONE, 2, 0);
+    others_arrive(message, 3, timeout_ms);
+    arrives(message, 2, timeout_ms);
+    tick(timeout_ms);
+    expect_only(NONE);
+    tick(timeout_ms + 1);
+    expect_only(fault);
+    arrives(message, 3, timeout_ms + 2);
+    tick(timeout_ms + 2);
+    expect_only(NONE);
+}
+
+/* Engaged without ever a 43Fh. */
+/* Shows: SUP-8, AI_HEARTBEAT_LOST */
+void test_an_ai_computer_that_was_never_seen(void) {
+    tick(10000);
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_AI_HEARTBEAT_LOST));
+    engaged = true;
+    tick(10001);
+    tick(10501);
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_AI_HEARTBEAT_LOST));
+    tick(10502);
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_AI_HEARTBEAT_LOST));
+    engaged = false;
+    tick(10503);
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_AI_HEARTBEAT_LOST));
+}
+
+/* A reset: at once, not in the next tick only. */
+/* Shows: SUP-8 */
+TEST_CASE(AGV_FAULT_AI_HEARTBEAT_LOST)
+TEST_CASE(AGV_FAULT_AI_HEARTBEAT_STUCK)
+void test_a_forgotten_ai_computer_is_not_lost(unsigned fault) {
+    agv_fault_monitor_set(&faults, fault, true);
+    agv_fault_monitor_set(&faults, AGV_FAULT_VCU_HEARTBEAT_LOST, true);
+    agv_deadlines_forget_ai(&faults);
+    expect_only(AGV_FAULT_VCU_HEARTBEAT_LOST);
+}
+
+/* ---- The other set's identifiers ---- */
+
+/* Shows: P1, WRONG_ID_SET */
+TEST_CASE(AGV_MSG_TURN_SIGNAL_COMMAND)
+TEST_CASE(AGV_MSG_VEHICLE_STATUS)
+void test_the_other_identifier_while_the_own_one_is_silent(unsigned message) {
+    arrives(message, 1, 0);
+    tick(500);
+    agv_deadlines_other_id_set(&timers, message);
+    tick(500);
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_WRONG_ID_SET));
+    tick(501);
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_WRONG_ID_SET));
+    tick(1000);
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_WRONG_ID_SET));
+    tick(1001); /* the other one is silent, too */
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_WRONG_ID_SET));
+}
+
+/* Shows: P1, WRONG_ID_SET */
+void test_the_own_identifier_ends_it_and_that_of_another_message_does_not(void) {
+    tick(501);
+    agv_deadlines_other_id_set(&timers, AGV_MSG_VEHICLE_STATUS);
+    tick(502);
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_WRONG_ID_SET));
+    arrives(AGV_MSG_TURN_SIGNAL_COMMAND, 1, 503);
+    tick(503);
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_WRONG_ID_SET));
+    arrives(AGV_MSG_VEHICLE_STATUS, 1, 504);
+    tick(504);
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_WRONG_ID_SET));
+}
+
+/* ---- Fresh messages ---- */
+
+/* 363h and 067h are heartbeats, commands are the AI's, and a silent 267h warns: they are not asked for. */
+void test_the_messages_whose_silence_trips_have_to_be_fresh(void) {
+    static const bool needed[AGV_MSG_COUNT] = {[AGV_MSG_GEAR_STATUS] = true,
+                                               [AGV_MSG_THROTTLE_STATUS] = true,
+                                               [AGV_MSG_EPS_STATUS] = true,
+                                               [AGV_MSG_WHEEL_SPEED] = true};
+    TEST_ASSERT_FALSE(agv_deadlines_messages_fresh(&liveness, &timers, &config));
+    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
+        setUp();
+        others_arrive(i, 1, 0);
+        TEST_ASSERT_EQUAL(!needed[i], agv_deadlines_messages_fresh(&liveness, &timers, &config));
+        arrives(i, 1, 0);
+        TEST_ASSERT_TRUE(agv_deadlines_messages_fresh(&liveness, &timers, &config));
+    }
+    setUp();
+    agv_fault_set_put(&config.trips, AGV_FAULT_STEERING_POSITION_TIMEOUT, true);
+    others_arrive(AGV_MSG_STEERING_POSITION, 1, 0);
+    TEST_ASSERT_FALSE(agv_deadlines_messages_fresh(&liveness, &timers, &config));
+}

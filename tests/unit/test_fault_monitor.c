@@ -1,0 +1,290 @@
+/* The faults of one supervisor: causes, events, and what an evaluation makes of them. */
+#include "decide/fault_monitor.h"
+
+#include <string.h>
+
+#include "unity.h"
+
+static agv_fault_monitor_t monitor;
+static agv_timers_t timers;
+static agv_config_t config; /* the default classes */
+
+void setUp(void) {
+    agv_config_defaults(&config);
+    agv_timers_start(&timers, &config);
+    monitor = (agv_fault_monitor_t){0};
+    agv_fault_monitor_start(&monitor);
+}
+
+void tearDown(void) {
+}
+
+static void set(unsigned fault, bool cause) {
+    agv_fault_monitor_set(&monitor, fault, cause);
+}
+
+static void event(unsigned fault, uint32_t now_ms) {
+    agv_timers_set_time(&timers, now_ms);
+    agv_fault_monitor_event(&monitor, &timers, fault);
+}
+
+static void tick(uint32_t now_ms) {
+    agv_timers_set_time(&timers, now_ms);
+    agv_timers_tick(&timers);
+    agv_fault_monitor_tick(&monitor, &timers);
+}
+
+static void evaluate(void) {
+    agv_fault_monitor_evaluate(&monitor, &config.trips, true);
+}
+
+static void evaluate_engaged(void) {
+    agv_fault_monitor_evaluate(&monitor, &config.trips, false);
+}
+
+static bool is_active(unsigned fault) {
+    return agv_fault_monitor_is_active(&monitor, fault);
+}
+
+/* No fault, or just this one. */
+static void expect_set(unsigned only, const agv_fault_set_t *actual) {
+    agv_fault_set_t expected = {0};
+    agv_fault_set_put(&expected, only, true);
+    TEST_ASSERT_EQUAL_HEX32_ARRAY(expected.words, actual->words, AGV_FAULT_WORDS);
+}
+
+static void expect_summary(unsigned raised, unsigned cause, unsigned ai_cause, unsigned unresettable) {
+    TEST_ASSERT_EQUAL_UINT8(raised, monitor.summary.raised);
+    TEST_ASSERT_EQUAL_UINT8(cause, monitor.summary.cause);
+    TEST_ASSERT_EQUAL_UINT8(ai_cause, monitor.summary.ai_cause);
+    TEST_ASSERT_EQUAL_UINT8(unresettable, monitor.summary.unresettable);
+}
+
+enum { NONE = AGV_FAULT_NONE };
+
+/* ---- Causes and events ---- */
+
+void test_a_fault_is_active_while_its_cause_is(void) {
+    set(AGV_FAULT_MODE_INVALID, true);
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_MODE_INVALID));
+    expect_set(AGV_FAULT_MODE_INVALID, &monitor.active);
+    set(AGV_FAULT_MODE_INVALID, true);
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_MODE_INVALID));
+    set(AGV_FAULT_MODE_INVALID, false);
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_MODE_INVALID));
+    expect_set(NONE, &monitor.active);
+}
+
+/* Shows: TIM-2 */
+TEST_CASE(0)
+TEST_CASE(0xFFFFFE0C)
+void test_an_event_ends_when_its_time_after_the_last_one_is_over(uint32_t start_ms) {
+    event(AGV_FAULT_STEP_OVERRUN, start_ms);
+    tick(start_ms + 600);
+    event(AGV_FAULT_STEP_OVERRUN, start_ms + 600);
+    event(AGV_FAULT_RX_OVERRUN, start_ms + 601);
+    tick(start_ms + 1599);
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_STEP_OVERRUN));
+    tick(start_ms + 1600);
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_STEP_OVERRUN));
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_RX_OVERRUN));
+    tick(start_ms + 1601);
+    expect_set(NONE, &monitor.active);
+}
+
+/* The eight rows that the table calls events, by hand. */
+void test_eight_faults_are_events_and_the_others_are_not(void) {
+    static const unsigned events[] = {AGV_FAULT_SUPERVISOR_RESET,
+                                      AGV_FAULT_TX_GATE_REFUSED,
+                                      AGV_FAULT_STEP_OVERRUN,
+                                      AGV_FAULT_AI_COMMAND_OUT_OF_RANGE,
+                                      AGV_FAULT_FOREIGN_COMMAND_SENDER,
+                                      AGV_FAULT_COMMAND_TOO_FAST,
+                                      AGV_FAULT_RX_OVERRUN,
+                                      AGV_FAULT_STORE_INVALID};
+    for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
+        bool is_event = false;
+        for (unsigned k = 0; k < 8; k++) {
+            is_event = is_event || events[k] == i;
+        }
+        setUp();
+        event(i, 0);
+        TEST_ASSERT_EQUAL(is_event, is_active(i));
+        tick(1000);
+        expect_set(NONE, &monitor.active);
+    }
+}
+
+/* A condition is ended by its rule alone. */
+void test_a_tick_ends_no_condition(void) {
+    set(AGV_FAULT_BUS_OFF, true);
+    for (uint32_t day = 0; day < 60; day++) {
+        tick(day * 86400000u);
+    }
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_BUS_OFF));
+}
+
+void test_what_is_no_fault_changes_nothing(void) {
+    static const unsigned none[] = {AGV_FAULT_NONE, 63, 64, 255};
+    for (unsigned i = 0; i < 4; i++) {
+        set(none[i], true);
+        event(none[i], 0);
+        agv_fault_monitor_latch_one(&monitor, none[i]);
+        TEST_ASSERT_FALSE(is_active(none[i]));
+    }
+    expect_set(NONE, &monitor.active);
+    expect_set(NONE, &monitor.latched);
+    TEST_ASSERT_FALSE(monitor.outdated);
+}
+
+/* Whatever stands behind the last one. */
+void test_what_is_no_fault_is_never_active(void) {
+    memset(&monitor, 0xFF, sizeof monitor);
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_COUNT - 1));
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_NONE));
+}
+
+/* ---- The evaluation ---- */
+
+/* Shows: FSM-5 */
+void test_a_trip_is_raised_once_and_its_cause_stands(void) {
+    evaluate();
+    expect_summary(NONE, NONE, NONE, NONE);
+    set(AGV_FAULT_S_DRIVER_ALARM, true);
+    expect_summary(NONE, NONE, NONE, NONE); /* not yet evaluated */
+    evaluate();
+    expect_summary(AGV_FAULT_S_DRIVER_ALARM, AGV_FAULT_S_DRIVER_ALARM, NONE, NONE);
+    expect_set(AGV_FAULT_S_DRIVER_ALARM, &monitor.changed);
+    expect_set(AGV_FAULT_S_DRIVER_ALARM, &monitor.tripping);
+    expect_set(NONE, &monitor.was_trip);
+    evaluate();
+    expect_summary(NONE, AGV_FAULT_S_DRIVER_ALARM, NONE, NONE);
+    expect_set(NONE, &monitor.changed);
+    set(AGV_FAULT_S_DRIVER_ALARM, false);
+    evaluate();
+    expect_summary(NONE, NONE, NONE, NONE);
+    expect_set(AGV_FAULT_S_DRIVER_ALARM, &monitor.changed);
+    expect_set(AGV_FAULT_S_DRIVER_ALARM, &monitor.was_trip);
+    expect_set(NONE, &monitor.tripping);
+}
+
+void test_a_warning_changes_but_is_no_trip(void) {
+    set(AGV_FAULT_EPS_TEMP_ABOVE_110, true);
+    evaluate();
+    expect_summary(NONE, NONE, NONE, NONE);
+    expect_set(AGV_FAULT_EPS_TEMP_ABOVE_110, &monitor.changed);
+    expect_set(NONE, &monitor.tripping);
+    set(AGV_FAULT_EPS_TEMP_ABOVE_110, false);
+    agv_fault_set_put(&config.trips, AGV_FAULT_EPS_TEMP_ABOVE_110, true);
+    evaluate();
+    set(AGV_FAULT_EPS_TEMP_ABOVE_110, true);
+    evaluate();
+    expect_summary(AGV_FAULT_EPS_TEMP_ABOVE_110, AGV_FAULT_EPS_TEMP_ABOVE_110, NONE, NONE);
+}
+
+/* What came and went between two evaluations is not told. */
+void test_what_is_over_again_has_not_changed(void) {
+    set(AGV_FAULT_BUS_OFF, true);
+    set(AGV_FAULT_BUS_OFF, false);
+    evaluate();
+    expect_summary(NONE, NONE, NONE, NONE);
+    expect_set(NONE, &monitor.changed);
+}
+
+/* Of several at once the highest-ranking one of each kind. */
+/* Shows: FSM-5 */
+void test_the_highest_ranking_one_of_each_kind(void) {
+    set(AGV_FAULT_FOREIGN_COMMAND_SENDER, true);
+    set(AGV_FAULT_S_DRIVER_ALARM, true);
+    set(AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, true);
+    set(AGV_FAULT_VCU_AI_CAN_LOST, true);
+    evaluate();
+    expect_summary(AGV_FAULT_S_DRIVER_ALARM, AGV_FAULT_S_DRIVER_ALARM, AGV_FAULT_VCU_AI_CAN_LOST, NONE);
+    set(AGV_FAULT_CONFIG_INVALID, true);
+    set(AGV_FAULT_MEMORY_CORRUPTED, true);
+    evaluate();
+    expect_summary(AGV_FAULT_MEMORY_CORRUPTED, AGV_FAULT_MEMORY_CORRUPTED, AGV_FAULT_VCU_AI_CAN_LOST,
+                   AGV_FAULT_MEMORY_CORRUPTED);
+    set(AGV_FAULT_THROTTLE_IN_PARK, true); /* lower than what stands: raised all the same */
+    evaluate();
+    expect_summary(AGV_FAULT_THROTTLE_IN_PARK, AGV_FAULT_MEMORY_CORRUPTED, AGV_FAULT_VCU_AI_CAN_LOST,
+                   AGV_FAULT_MEMORY_CORRUPTED);
+}
+
+/* Shows: FSM-10 */
+void test_a_fault_of_the_eps_is_told_whatever_its_class(void) {
+    set(AGV_FAULT_EPS_UNDER_VOLTAGE, true);
+    evaluate();
+    TEST_ASSERT_TRUE(monitor.summary.eps_fault);
+    set(AGV_FAULT_EPS_UNDER_VOLTAGE, false);
+    set(AGV_FAULT_EPS_MODE_OFF, true);
+    evaluate();
+    TEST_ASSERT_FALSE(monitor.summary.eps_fault);
+    set(AGV_FAULT_EPS_HEARTBEAT_LOST, true);
+    agv_fault_set_put(&config.trips, AGV_FAULT_EPS_HEARTBEAT_LOST, false);
+    evaluate();
+    TEST_ASSERT_TRUE(monitor.summary.eps_fault);
+}
+
+/* Of the AI's heartbeat only; the class changes while the fault is there, so it is raised again. */
+/* Shows: SUP-8, AI_HEARTBEAT_LOST, AI_HEARTBEAT_STUCK */
+TEST_CASE(AGV_FAULT_AI_HEARTBEAT_LOST)
+TEST_CASE(AGV_FAULT_AI_HEARTBEAT_STUCK)
+void test_a_lost_ai_computer_warns_while_that_is_asked_for(unsigned fault) {
+    set(fault, true);
+    evaluate();
+    expect_summary(NONE, NONE, NONE, NONE);
+    expect_set((unsigned)fault, &monitor.changed);
+    evaluate_engaged();
+    expect_summary(fault, NONE, fault, NONE);
+    expect_set(fault, &monitor.changed);
+    expect_set(NONE, &monitor.was_trip);
+    evaluate_engaged();
+    expect_summary(NONE, NONE, fault, NONE);
+    expect_set(NONE, &monitor.changed);
+    evaluate();
+    expect_summary(NONE, NONE, NONE, NONE);
+    expect_set(fault, &monitor.changed);
+    expect_set(fault, &monitor.was_trip);
+}
+
+void test_other_faults_of_the_ai_computer_trip_in_manual_too(void) {
+    set(AGV_FAULT_GEAR_COMMAND_TIMEOUT, true);
+    evaluate();
+    expect_summary(AGV_FAULT_GEAR_COMMAND_TIMEOUT, NONE, AGV_FAULT_GEAR_COMMAND_TIMEOUT, NONE);
+}
+
+/* ---- The latch, and what is shown ---- */
+
+/* Shows: LED-1 */
+void test_latched_trips_are_shown_before_warnings(void) {
+    TEST_ASSERT_EQUAL_UINT32(NONE, agv_fault_monitor_shown(&monitor));
+    set(AGV_FAULT_EPS_TEMP_ABOVE_110, true);
+    evaluate();
+    TEST_ASSERT_EQUAL_UINT32(AGV_FAULT_EPS_TEMP_ABOVE_110, agv_fault_monitor_shown(&monitor));
+    set(AGV_FAULT_THROTTLE_IN_PARK, true);
+    evaluate();
+    agv_fault_monitor_latch(&monitor);
+    expect_set(AGV_FAULT_THROTTLE_IN_PARK, &monitor.latched); /* no warning */
+    TEST_ASSERT_EQUAL_UINT32(AGV_FAULT_THROTTLE_IN_PARK, agv_fault_monitor_shown(&monitor));
+    set(AGV_FAULT_THROTTLE_IN_PARK, false);
+    evaluate();
+    agv_fault_monitor_latch(&monitor);
+    TEST_ASSERT_EQUAL_UINT32(AGV_FAULT_THROTTLE_IN_PARK, agv_fault_monitor_shown(&monitor));
+    set(AGV_FAULT_BUS_OFF, true); /* a trip that is not latched yet */
+    evaluate();
+    TEST_ASSERT_EQUAL_UINT32(AGV_FAULT_BUS_OFF, agv_fault_monitor_shown(&monitor));
+    set(AGV_FAULT_BUS_OFF, false);
+    evaluate();
+    agv_fault_monitor_forget(&monitor);
+    expect_set(NONE, &monitor.latched);
+    TEST_ASSERT_EQUAL_UINT32(AGV_FAULT_EPS_TEMP_ABOVE_110, agv_fault_monitor_shown(&monitor));
+}
+
+/* Shows: FSM-7, LED-1 */
+void test_the_reason_of_an_earlier_run_is_shown(void) {
+    agv_fault_monitor_latch_one(&monitor, AGV_FAULT_VCU_HEARTBEAT_LOST);
+    evaluate();
+    expect_summary(NONE, NONE, NONE, NONE);
+    TEST_ASSERT_EQUAL_UINT32(AGV_FAULT_VCU_HEARTBEAT_LOST, agv_fault_monitor_shown(&monitor));
+}

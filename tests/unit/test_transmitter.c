@@ -1,0 +1,433 @@
+/* What is sent: own commands, passed frames, the status frame; what waits, and what is reported of it. */
+#include "transmit/transmitter.h"
+
+#include <string.h>
+
+#include "mock_can.h"
+#include "unity.h"
+
+/* A port's context: the core never looks inside. */
+struct hal {
+    int unused;
+};
+static hal_t hal;
+
+static agv_transmitter_t transmitter;
+static agv_timers_t timers;
+static agv_config_t config;
+static agv_ids_t ids;
+static agv_tx_orders_t orders;
+
+/* What the HAL was handed and took. */
+typedef struct {
+    hal_can_side_t side;
+    hal_can_frame_t frame;
+} sent_t;
+static sent_t sent[64];
+static unsigned sent_count;
+static bool hal_takes;
+
+static bool send_stub(hal_t *port, hal_can_side_t side, const hal_can_frame_t *frame, int calls) {
+    (void)calls;
+    TEST_ASSERT_EQUAL_PTR(&hal, port);
+    if (hal_takes) {
+        TEST_ASSERT_TRUE(sent_count < sizeof sent / sizeof sent[0]);
+        sent[sent_count++] = (sent_t){side, *frame};
+    }
+    return hal_takes;
+}
+
+/* TRIPPED, with an angle of +12.3 degrees held: 9123 = 23A3h. */
+void setUp(void) {
+    hal_can_send_Stub(send_stub);
+    hal_takes = true;
+    sent_count = 0;
+    agv_config_defaults(&config);
+    agv_config_ids(&config, &ids);
+    agv_timers_set_time(&timers, 1000);
+    agv_timers_start(&timers, &config);
+    transmitter = (agv_transmitter_t){0};
+    agv_transmitter_start(&transmitter, 1000);
+    orders = (agv_tx_orders_t){.hal = &hal,
+                               .config = &config,
+                               .ids = &ids,
+                               .timers = &timers,
+                               .hold = {.raw = 9123, .check = 0xDC5C},
+                               .state = AGV_STATE_TRIPPED,
+                               .first_reason = AGV_FAULT_BUS_OFF,
+                               .park_released = true,
+                               .holdable = true,
+                               .config_checksum = 0x12345678};
+}
+
+void tearDown(void) {
+}
+
+static void tick(uint32_t ms) {
+    for (uint32_t i = 0; i < ms; i++) {
+        agv_timers_set_time(&timers, timers.now_ms + 1);
+        agv_timers_tick(&timers);
+        agv_transmitter_tick(&transmitter, &orders);
+    }
+}
+
+static void burst(void) {
+    agv_transmitter_burst(&transmitter, &orders);
+}
+
+static void expect_sent(unsigned n, hal_can_side_t side, uint32_t id, const uint8_t data[8]) {
+    TEST_ASSERT_TRUE(n < sent_count);
+    TEST_ASSERT_EQUAL(side, sent[n].side);
+    TEST_ASSERT_EQUAL_HEX32(id, sent[n].frame.id);
+    TEST_ASSERT_EQUAL_UINT8(8, sent[n].frame.length);
+    TEST_ASSERT_EQUAL_UINT8(0, sent[n].frame.flags);
+    TEST_ASSERT_EQUAL_UINT32(timers.now_ms, sent[n].frame.time_ms);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(data, sent[n].frame.data, 8);
+}
+
+static agv_tx_report_t report(void) {
+    return agv_transmitter_take_report(&transmitter);
+}
+
+static const uint8_t SIGNALS[8] = {0, 0, 0, 0, 0x70};
+static const uint8_t PARK[8] = {8};
+static const uint8_t ZEROS[8] = {0};
+static const uint8_t HELD[8] = {0xA3, 0x23};
+static const uint8_t DRIVE[8] = {1};
+
+/* ---- The safe commands ---- */
+
+/* Shows: FSM-1, FSM-2, FSM-10 */
+void test_all_safe_commands_at_once(void) {
+    burst();
+    TEST_ASSERT_EQUAL_UINT(4, sent_count);
+    expect_sent(0, HAL_CAN_VEHICLE, 0x43F, SIGNALS);
+    expect_sent(1, HAL_CAN_VEHICLE, 0x168, PARK);
+    expect_sent(2, HAL_CAN_VEHICLE, 0x075, ZEROS);
+    expect_sent(3, HAL_CAN_VEHICLE, 0x065, HELD);
+}
+
+/* Shows: P1 */
+void test_the_safe_commands_on_the_identifiers_of_this_vehicle(void) {
+    config.id_set = AGV_ID_SET_TABLE;
+    config.id_gear_command = 0x300;
+    agv_config_ids(&config, &ids);
+    burst();
+    expect_sent(0, HAL_CAN_VEHICLE, 0x201, SIGNALS);
+    expect_sent(1, HAL_CAN_VEHICLE, 0x300, PARK);
+}
+
+/* Shows: FSM-1, FSM-10 */
+void test_p_and_the_held_angle_are_sent_when_they_may_be(void) {
+    orders.park_released = false;
+    orders.holdable = false;
+    burst();
+    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+    expect_sent(0, HAL_CAN_VEHICLE, 0x43F, SIGNALS);
+    expect_sent(1, HAL_CAN_VEHICLE, 0x075, ZEROS);
+    TEST_ASSERT_FALSE(report().park_sent);
+    orders.holdable = true;
+    orders.hold.check = 0; /* none is held */
+    burst();
+    TEST_ASSERT_EQUAL_UINT(4, sent_count);
+}
+
+/* Shows: FSM-6 */
+void test_in_standby_and_active_there_is_no_own_command(void) {
+    orders.state = AGV_STATE_STANDBY;
+    burst();
+    tick(500);
+    orders.state = AGV_STATE_ACTIVE;
+    tick(500);
+    TEST_ASSERT_EQUAL_UINT(0, sent_count);
+}
+
+/* 43Fh after 100 ms, 168h after 66, 075h after 33, 065h after 25. */
+/* Shows: FSM-2, TIM-1 */
+void test_the_slots_after_all_were_sent_at_once(void) {
+    burst();
+    tick(24);
+    TEST_ASSERT_EQUAL_UINT(4, sent_count);
+    tick(1);
+    expect_sent(4, HAL_CAN_VEHICLE, 0x065, HELD);
+    tick(8);
+    expect_sent(5, HAL_CAN_VEHICLE, 0x075, ZEROS);
+    tick(33);
+    TEST_ASSERT_EQUAL_UINT(8, sent_count); /* 065h at 50, 168h at 66 */
+    expect_sent(7, HAL_CAN_VEHICLE, 0x168, PARK);
+    tick(34);
+    TEST_ASSERT_EQUAL_UINT(11, sent_count); /* 065h at 75 and 100, 43Fh at 100 */
+}
+
+/* Shows: FSM-8 */
+TEST_CASE(AGV_OWN_HEARTBEAT_RUNNING, 1)
+TEST_CASE(AGV_OWN_HEARTBEAT_FROZEN, 0)
+void test_the_own_alive_counter_runs_or_is_frozen(int heartbeat, int counter) {
+    const uint8_t second[8] = {0, 0, 0, 0, 0x70, 0, 0, (uint8_t)counter};
+    config.own_heartbeat = (uint16_t)heartbeat;
+    burst();
+    burst();
+    expect_sent(0, HAL_CAN_VEHICLE, 0x43F, SIGNALS);
+    expect_sent(4, HAL_CAN_VEHICLE, 0x43F, second);
+}
+
+/* The first P after it was released goes at once; then on its cycle from there. */
+/* Shows: FSM-1 */
+void test_p_that_was_held_back_is_sent_as_soon_as_it_may_be(void) {
+    orders.park_released = false;
+    orders.holdable = false;
+    burst();
+    tick(10);
+    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+    orders.park_released = true;
+    tick(1);
+    expect_sent(2, HAL_CAN_VEHICLE, 0x168, PARK);
+    tick(99);
+    TEST_ASSERT_EQUAL_UINT(5, sent_count); /* 075h, 43Fh */
+    tick(1);
+    expect_sent(5, HAL_CAN_VEHICLE, 0x168, PARK);
+}
+
+/* ---- The report ---- */
+
+void test_a_report_is_taken_once(void) {
+    burst();
+    agv_tx_report_t first = report();
+    TEST_ASSERT_EQUAL_UINT16(4, first.sent);
+    TEST_ASSERT_TRUE(first.park_sent);
+    TEST_ASSERT_EQUAL_UINT16(0, first.shadowed);
+    TEST_ASSERT_EQUAL_UINT16(0, first.refused);
+    TEST_ASSERT_EQUAL_UINT16(0, first.dropped);
+    TEST_ASSERT_EQUAL_UINT32(0, first.skipped_slots);
+    first = report();
+    TEST_ASSERT_EQUAL_UINT16(0, first.sent);
+    TEST_ASSERT_FALSE(first.park_sent);
+}
+
+/* Shows: TOP-4 */
+void test_in_shadow_mode_all_is_reported_and_nothing_sent(void) {
+    config.shadow = AGV_SHADOW_ON;
+    burst();
+    const agv_tx_report_t did = report();
+    TEST_ASSERT_EQUAL_UINT(0, sent_count);
+    TEST_ASSERT_EQUAL_UINT16(4, did.shadowed);
+    TEST_ASSERT_EQUAL_UINT16(0, did.sent);
+}
+
+/* Shows: INT-4, TX_GATE_REFUSED */
+void test_what_the_gate_refuses_is_reported(void) {
+    orders.state = AGV_STATE_STANDBY;
+    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, DRIVE); /* shared bus */
+    const agv_tx_report_t did = report();
+    TEST_ASSERT_EQUAL_UINT(0, sent_count);
+    TEST_ASSERT_EQUAL_UINT16(1, did.refused);
+    tick(10);
+    TEST_ASSERT_EQUAL_UINT16(0, report().refused); /* it does not wait */
+}
+
+/* 330 ms late: of 065h twelve slots are missed, of 43Fh two, of 168h and 075h two each (at 66, 166, 266 and 33 ...). */
+/* Shows: TIM-1 */
+void test_missed_slots_are_reported(void) {
+    burst();
+    agv_timers_set_time(&timers, 1330);
+    agv_transmitter_tick(&transmitter, &orders);
+    TEST_ASSERT_EQUAL_UINT32(12 + 2 + 2 + 2, report().skipped_slots);
+    TEST_ASSERT_EQUAL_UINT(8, sent_count);
+}
+
+/* ---- What the HAL does not take ---- */
+
+/* Built anew at every tick until it leaves; it is stalled after more than 100 ms. */
+/* Shows: SUP-7, TX_STALLED */
+void test_an_own_command_waits_and_is_stalled(void) {
+    hal_takes = false;
+    burst();
+    TEST_ASSERT_FALSE(report().park_sent);
+    tick(100);
+    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
+    tick(1);
+    TEST_ASSERT_TRUE(agv_transmitter_is_stalled(&timers));
+    hal_takes = true;
+    tick(1);
+    TEST_ASSERT_EQUAL_UINT(4, sent_count);
+    expect_sent(0, HAL_CAN_VEHICLE, 0x43F, SIGNALS); /* the counter has not run on */
+    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
+    TEST_ASSERT_TRUE(report().park_sent);
+}
+
+/* What is no more wanted waits no more. */
+void test_a_command_that_is_not_wanted_any_more_is_not_stalled(void) {
+    hal_takes = false;
+    burst();
+    tick(50);
+    orders.state = AGV_STATE_STANDBY;
+    tick(200);
+    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
+}
+
+static void be_gateway(void) {
+    config.topology = AGV_TOPOLOGY_GATEWAY;
+    orders.state = AGV_STATE_ACTIVE;
+}
+
+/* Shows: TOP-2 */
+void test_commands_pass_to_the_vehicle_and_status_to_the_ai(void) {
+    static const uint8_t speeds[8] = {1, 2, 3, 4, 5, 6, 7, 8};
+    be_gateway();
+    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, DRIVE);
+    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_WHEEL_SPEED, speeds);
+    expect_sent(0, HAL_CAN_VEHICLE, 0x168, DRIVE);
+    expect_sent(1, HAL_CAN_AI, 0x101, speeds);
+    TEST_ASSERT_EQUAL_UINT16(2, report().sent);
+}
+
+/* One a message, the newest. */
+/* Shows: TOP-2 */
+void test_what_waits_is_replaced_by_what_is_newer(void) {
+    static const uint8_t older[8] = {2};
+    be_gateway();
+    hal_takes = false;
+    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, older);
+    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_THROTTLE_COMMAND, older);
+    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, DRIVE);
+    TEST_ASSERT_EQUAL_UINT16(1, report().dropped);
+    tick(5);
+    hal_takes = true;
+    tick(1);
+    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+    expect_sent(0, HAL_CAN_VEHICLE, 0x168, DRIVE);
+    expect_sent(1, HAL_CAN_VEHICLE, 0x075, older);
+    tick(5);
+    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+}
+
+/* Each side alone. */
+/* Shows: FSM-2, TOP-2 */
+void test_what_is_discarded_is_never_sent(void) {
+    be_gateway();
+    hal_takes = false;
+    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, DRIVE);
+    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_STEERING_COMMAND, ZEROS);
+    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_WHEEL_SPEED, ZEROS);
+    tick(101);
+    TEST_ASSERT_TRUE(agv_transmitter_is_stalled(&timers));
+    agv_transmitter_discard(&transmitter, &timers, HAL_CAN_VEHICLE);
+    TEST_ASSERT_EQUAL_UINT16(2, report().dropped);
+    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
+    hal_takes = true;
+    tick(1);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+    expect_sent(0, HAL_CAN_AI, 0x101, ZEROS);
+    hal_takes = false;
+    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_WHEEL_SPEED, ZEROS);
+    agv_transmitter_discard(&transmitter, &timers, HAL_CAN_AI);
+    TEST_ASSERT_EQUAL_UINT16(1, report().dropped);
+    hal_takes = true;
+    tick(10);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+}
+
+/* A stalled AI side is no reason to open the output. */
+void test_only_the_vehicle_side_is_stalled(void) {
+    be_gateway();
+    hal_takes = false;
+    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_WHEEL_SPEED, ZEROS);
+    tick(500);
+    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
+}
+
+/* Shows: SUP-7, TOP-3 */
+void test_in_bus_off_the_hal_is_handed_nothing_of_its_own(void) {
+    config.status_frame_id = 0x123;
+    agv_timer_start(&timers, AGV_TIMER_BUS_OFF);
+    burst();
+    tick(500);
+    TEST_ASSERT_EQUAL_UINT(0, sent_count);
+    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
+}
+
+/* ---- Answers ---- */
+
+/* Shows: TOP-1 */
+void test_a_command_that_differs_is_answered(void) {
+    static const uint8_t reserved[8] = {8, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF};
+    agv_transmitter_answer(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, PARK);
+    agv_transmitter_answer(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, reserved); /* reserved bits command nothing */
+    TEST_ASSERT_EQUAL_UINT(0, sent_count);
+    agv_transmitter_answer(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, DRIVE);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+    expect_sent(0, HAL_CAN_VEHICLE, 0x168, PARK);
+    agv_transmitter_answer(&transmitter, &orders, AGV_MSG_THROTTLE_COMMAND, NULL); /* malformed */
+    expect_sent(1, HAL_CAN_VEHICLE, 0x075, ZEROS);
+}
+
+/* Another counter is no other command. */
+/* Shows: TOP-1 */
+void test_the_alive_counter_of_a_foreign_43f_commands_nothing(void) {
+    static const uint8_t same[8] = {0, 0, 0, 0, 0x70, 0, 0, 77};
+    static const uint8_t other[8] = {0, 0, 0, 0, 0x30, 0, 0, 77};
+    agv_transmitter_answer(&transmitter, &orders, AGV_MSG_TURN_SIGNAL_COMMAND, same);
+    TEST_ASSERT_EQUAL_UINT(0, sent_count);
+    agv_transmitter_answer(&transmitter, &orders, AGV_MSG_TURN_SIGNAL_COMMAND, other);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+}
+
+/* Shows: TOP-1 */
+void test_what_is_not_sent_is_not_answered(void) {
+    orders.park_released = false;
+    agv_transmitter_answer(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, DRIVE);
+    orders.state = AGV_STATE_STANDBY;
+    agv_transmitter_answer(&transmitter, &orders, AGV_MSG_THROTTLE_COMMAND, DRIVE);
+    TEST_ASSERT_EQUAL_UINT(0, sent_count);
+}
+
+/* Shows: TOP-1 */
+void test_within_5_ms_the_answer_waits_and_comes_with_a_tick(void) {
+    burst();
+    sent_count = 0;
+    tick(1);
+    agv_transmitter_answer(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, DRIVE);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+    tick(1);
+    agv_transmitter_answer(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, DRIVE);
+    tick(3);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+    tick(1);
+    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+    expect_sent(1, HAL_CAN_VEHICLE, 0x168, PARK);
+}
+
+/* ---- The status frame ---- */
+
+/* State, rank of the reason, output, counter, checksum with the low byte first. */
+/* Shows: TOP-3 */
+void test_the_status_frame(void) {
+    const uint8_t first[8] = {0x33, AGV_FAULT_NONE, 1, 0, 0x78, 0x56, 0x34, 0x12};
+    const uint8_t second[8] = {0x33, AGV_FAULT_NONE, 0, 1, 0x78, 0x56, 0x34, 0x12};
+    config.status_frame_id = 0x123;
+    orders.state = AGV_STATE_STANDBY;
+    orders.first_reason = AGV_FAULT_NONE;
+    orders.output_closed = true;
+    tick(1);
+    expect_sent(0, HAL_CAN_VEHICLE, 0x123, first);
+    orders.output_closed = false;
+    tick(98);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+    tick(1); /* on the grid that began with the start */
+    expect_sent(1, HAL_CAN_VEHICLE, 0x123, second);
+}
+
+/* One that is not taken is left out; its counter is that of the next one. */
+/* Shows: TOP-3 */
+void test_a_status_frame_that_is_not_taken_is_left_out(void) {
+    config.status_frame_id = 0x123;
+    orders.state = AGV_STATE_STANDBY;
+    hal_takes = false;
+    tick(1);
+    hal_takes = true;
+    tick(98);
+    TEST_ASSERT_EQUAL_UINT(0, sent_count);
+    tick(1);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+    TEST_ASSERT_EQUAL_UINT8(0, sent[0].frame.data[3]);
+}
