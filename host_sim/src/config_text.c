@@ -13,7 +13,8 @@ enum { TEXT_SIZE = 96 };
 
 /** Identifiers are written in hexadecimal. */
 static bool is_identifier(const agv_setting_info_t *info) {
-    return (strncmp(info->name, "id_", 3u) == 0 && (info->words == NULL)) || (strcmp(info->name, "status_frame_id") == 0);
+    return (strncmp(info->name, "id_", 3u) == 0 && (info->words == NULL)) ||
+           (strcmp(info->name, "status_frame_id") == 0);
 }
 
 /** The value of a setting as it stands in a file. */
@@ -71,8 +72,8 @@ void config_print_yaml(const agv_config_t *config) {
         value_text(info, agv_config_get(config, i), value);
         (void)printf("\n# %s\n", info->meaning);
         if (info->words == NULL) {
-            (void)printf("# %u to %u%s%s, default %s", info->lowest, info->highest,
-                         (info->unit[0] != '\0') ? " " : "", info->unit, preset);
+            (void)printf("# %u to %u%s%s, default %s", info->lowest, info->highest, (info->unit[0] != '\0') ? " " : "",
+                         info->unit, preset);
         } else {
             (void)printf("# %s, default %s", info->words, preset);
         }
@@ -85,8 +86,8 @@ void config_print_yaml(const agv_config_t *config) {
         const agv_fault_t fault = (agv_fault_t)i;
         char key[CONFIG_CLASS_KEY_SIZE];
         config_class_key(fault, key);
-        (void)printf("%s: %s  # default %s%s\n", key, class_word(config, fault),
-                     default_word(fault), may_be_chosen(fault) ? "" : ", must stay");
+        (void)printf("%s: %s  # default %s%s\n", key, class_word(config, fault), default_word(fault),
+                     may_be_chosen(fault) ? "" : ", must stay");
     }
 }
 

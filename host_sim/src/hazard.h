@@ -187,6 +187,7 @@ void hazard_rows_frame(hazard_t *hazard, agv_message_t message, const uint8_t da
 void hazard_rows_tick(hazard_t *hazard);
 void hazard_wire_status(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame);
 void hazard_wire_command(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame);
+bool hazard_was_sent(const hazard_t *hazard, agv_message_t message, uint16_t value);
 void hazard_passed(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame);
 void hazard_passed_tick(hazard_t *hazard);
 void hazard_safe_frame(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame);

@@ -25,8 +25,12 @@ static bool may_be_held(const hazard_t *hazard, int32_t held_ddeg) {
 
 void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame) {
     hazard_hold_t *hold = &hazard->hold;
-    const int32_t held_ddeg = (int32_t)(frame->data[0] | ((uint32_t)frame->data[1] << 8u)) - CENTRE_DDEG;
+    const uint16_t value = (uint16_t)(frame->data[0] | ((uint32_t)frame->data[1] << 8u));
+    const int32_t held_ddeg = (int32_t)value - CENTRE_DDEG;
 
+    if (hazard->gateway && hazard_was_sent(hazard, AGV_MSG_STEERING_COMMAND, value)) {
+        return; /* passed on: after a reset the safe commands may have ended already */
+    }
     if ((hold->last_ms == 0u) || (hazard->t_ms - hold->last_ms > NEW_HOLD_MS)) {
         hold->start_ddeg = hazard_angle_ddeg(hazard);
         hold->measured_ddeg = is_fresh(hazard) ? hazard_measured_ddeg(hazard) : hold->start_ddeg;

@@ -5,7 +5,7 @@ enum { MARGIN_MS = 100, IN_FLIGHT_MS = 60, ANSWER_MS = 200, SLOT_MS = 100, SAFE_
 enum { NOMINAL_PER_S = 10 + 10 + 10 + 40, SPARE_PER_S = 8 };
 
 /** Whether the AI side carried this value (of a throttle: this or a higher one) lately. */
-static bool was_sent(const hazard_t *hazard, agv_message_t message, uint16_t value) {
+bool hazard_was_sent(const hazard_t *hazard, agv_message_t message, uint16_t value) {
     const hazard_recent_t *recent = &hazard->recent[message];
     const uint32_t count = (recent->next < HAZARD_RECENT) ? recent->next : (uint32_t)HAZARD_RECENT;
     const uint64_t within_ms = (uint64_t)hazard->limits.command_ms[message] + MARGIN_MS;
@@ -50,7 +50,7 @@ void hazard_passed(hazard_t *hazard, agv_message_t message, const hal_can_frame_
     const bool is_hold =
         (message == AGV_MSG_STEERING_COMMAND) &&
         (hazard->trip.tripped || hazard_is_safe_now(hazard, SAFE_MS) || hazard->limits.limits_steering);
-    if (is_motion(message, value) && !is_hold && !was_sent(hazard, message, value) && (hazard->false_ms == 0u)) {
+    if (is_motion(message, value) && !is_hold && !hazard_was_sent(hazard, message, value) && (hazard->false_ms == 0u)) {
         hazard->false_ms = hazard->t_ms; /* 065h of a hold leaves before the other safe commands */
     }
 }

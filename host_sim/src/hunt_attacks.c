@@ -233,7 +233,6 @@ const hunt_attack_t HUNT_ATTACKS[] = {
      {NULL},
      {0u, 10u, 100u, 0u},
      {0u, 120u, 2000u, 0u}},
-    {"swallowed_frames", 0u, NONE, "supervisor: swallow_tx", "supervisor: pass_tx", {NULL}, {0u}, {0u}},
     {"dead_transmitter", 0u, NONE, "supervisor: stall_tx", "supervisor: free_tx", {NULL}, {0u}, {0u}},
     {"ai_bus_off",
      HUNT_GATEWAY,

@@ -147,8 +147,8 @@ static void add_class(hunt_program_t *program, uint64_t *state) {
     }
     for (unsigned i = 0u; i < (unsigned)TRIES; i++) {
         fault = chance_draw(state, 0u, AGV_FAULT_COUNT - 1u);
-        if (!agv_fault_is_in(agv_faults_fixed, fault) &&
-            (agv_fault_is_in(agv_faults_default_trips, fault) != is_warning)) {
+        const bool warns = agv_fault_default_class(fault) == AGV_CLASS_WARN;
+        if (((agv_fault_flags(fault) & AGV_FAULT_FLAG_FIXED) == 0u) && (warns == is_warning)) {
             program->classes[0] = (uint8_t)fault;
             program->class_count = 1u;
             return;
@@ -163,7 +163,8 @@ void hunt_program_config(const hunt_program_t *program, agv_config_t *config) {
         (void)agv_config_set(config, program->settings[i].setting, program->settings[i].value);
     }
     for (uint32_t i = 0u; i < program->class_count; i++) {
-        config->trips ^= agv_fault_bit(program->classes[i]);
+        const uint32_t fault = program->classes[i];
+        agv_fault_set_put(&config->trips, fault, !agv_fault_is_in(&config->trips, fault));
     }
 }
 

@@ -173,6 +173,7 @@ static status_t conclude(const hunt_t *hunt, uint64_t took_ms) {
     (void)printf("%" PRIu64 " runs, %" PRIu64 " simulated seconds, took %" PRIu64 " s; %" PRIu64
                  " runs with a hazard, %" PRIu32 " different ones\n",
                  hunt->done, hunt->virtual_ms / MS_PER_S, took_ms / MS_PER_S, found->runs, found->count);
+    (void)fflush(stdout); /* also when a signal that came ends the program */
     return (found->count == 0u) ? STATUS_OK : STATUS_UNMET;
 }
 

@@ -60,12 +60,12 @@ enum {
 /** What is wrong with a configuration. */
 typedef enum {
     AGV_CONFIG_OK,
-    AGV_CONFIG_OUT_OF_RANGE,   /**< a setting below its lowest or above its highest value; `setting` says which */
-    AGV_CONFIG_ID_TWICE,       /**< `setting` is an identifier that another message has, or the status frame */
-    AGV_CONFIG_NEEDS_GATEWAY,  /**< `setting` is not at its default and has no effect on a shared bus */
+    AGV_CONFIG_OUT_OF_RANGE,    /**< a setting below its lowest or above its highest value; `setting` says which */
+    AGV_CONFIG_ID_TWICE,        /**< `setting` is an identifier that another message has, or the status frame */
+    AGV_CONFIG_NEEDS_GATEWAY,   /**< `setting` is not at its default and has no effect on a shared bus */
     AGV_CONFIG_PRESS_TOO_SHORT, /**< reset_hold_max_ms is not above reset_hold_ms: no press would reset */
-    AGV_CONFIG_FAULT_TOO_WEAK, /**< `fault` is made weaker than it may be */
-    AGV_CONFIG_NO_SUCH_FAULT   /**< bits in `trips` beyond the faults */
+    AGV_CONFIG_FAULT_TOO_WEAK,  /**< `fault` is made weaker than it may be */
+    AGV_CONFIG_NO_SUCH_FAULT    /**< bits in `trips` beyond the faults */
 } agv_config_problem_t;
 
 /** Result of agv_config_check. */

@@ -39,8 +39,8 @@ typedef enum {
 #define AGV_MISSING_EPS_HEARTBEAT 0x04u /**< EPS not alive */
 #define AGV_MISSING_TRIP_CAUSE 0x08u    /**< a trip cause is active */
 #define AGV_MISSING_STANDSTILL 0x10u
-#define AGV_MISSING_MANUAL 0x20u   /**< manual is not reported */
-#define AGV_MISSING_BUTTON 0x40u   /**< the press began before the trip, or there is none */
+#define AGV_MISSING_MANUAL 0x20u    /**< manual is not reported */
+#define AGV_MISSING_BUTTON 0x40u    /**< the press began before the trip, or there is none */
 #define AGV_MISSING_MESSAGES 0x80u  /**< a trip-class status message is not fresh */
 #define AGV_MISSING_THROTTLE 0x100u /**< 050h is above idle */
 #define AGV_MISSING_RELEASED 0x200u /**< the button was held for longer than reset_hold_max_ms */

@@ -19,8 +19,8 @@ static const struct {
     uint8_t scope;
 } rows[AGV_SETTING_COUNT] = {
 #define AGV_SETTING(name, by_default, low, high, unit, weak, where, meaning)                                           \
-    [AGV_SETTING_##name] = {                                                                                           \
-        .preset = (by_default), .lowest = (low), .highest = (high), .weakens = (weak), .scope = (where)},
+    [AGV_SETTING_##                                                                                                    \
+        name] = {.preset = (by_default), .lowest = (low), .highest = (high), .weakens = (weak), .scope = (where)},
 #define AGV_CHOICE(name, words, weak, where, meaning)                                                                  \
     [AGV_SETTING_##name] = {.highest = CHOICE_MAX, .weakens = (weak), .scope = (where)},
 #include "agv/config_settings.def"

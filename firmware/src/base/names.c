@@ -18,9 +18,8 @@ static const char *const message_names[AGV_MSG_COUNT] = {
 #undef AGV_STATUS
 };
 
-static const char *const missing_names[] = {"state",      "vcu_heartbeat", "eps_heartbeat", "trip_cause",
-                                            "standstill", "manual",        "button",        "messages",
-                                            "throttle",   "released"};
+static const char *const missing_names[] = {"state",  "vcu_heartbeat", "eps_heartbeat", "trip_cause", "standstill",
+                                            "manual", "button",        "messages",      "throttle",   "released"};
 
 static const agv_setting_info_t settings[AGV_SETTING_COUNT] = {
 #define ANY false
@@ -33,8 +32,8 @@ static const agv_setting_info_t settings[AGV_SETTING_COUNT] = {
 #undef AGV_SETTING
 #undef AGV_CHOICE
 #define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter)                                        \
-    [AGV_SETTING_id_##name] = {"id_" #name, (heading), 1, AGV_ID_MAX, "", NULL, "identifier of " #name " (P1)",         \
-                               "NEVER", ANY},
+    [AGV_SETTING_id_##                                                                                                 \
+        name] = {"id_" #name, (heading), 1, AGV_ID_MAX, "", NULL, "identifier of " #name " (P1)", "NEVER", ANY},
 #include "agv/message_table.def"
 #undef AGV_STATUS
 };

@@ -20,8 +20,7 @@ static bool add(uint16_t *sum_ms, bool missing, uint32_t elapsed_ms, uint32_t li
 
 void agv_confirmation_step(agv_confirmation_t *confirmation, agv_timers_t *timers, const agv_config_t *config,
                            uint32_t elapsed_ms, bool autopilot_off, bool in_park) {
-    const bool off_late =
-        add(&confirmation->off_missing_ms, !autopilot_off, elapsed_ms, config->confirm_timeout_ms);
+    const bool off_late = add(&confirmation->off_missing_ms, !autopilot_off, elapsed_ms, config->confirm_timeout_ms);
     const bool park_late = add(&confirmation->park_missing_ms, confirmation->park_sent && !in_park, elapsed_ms,
                                config->park_confirm_timeout_ms);
     const bool both = autopilot_off && in_park;

@@ -18,10 +18,8 @@ static const struct {
 enum { EVENTS = sizeof events / sizeof events[0] };
 
 void agv_fault_monitor_start(agv_fault_monitor_t *monitor) {
-    monitor->summary = (agv_fault_summary_t){.raised = AGV_FAULT_NONE,
-                                             .cause = AGV_FAULT_NONE,
-                                             .ai_cause = AGV_FAULT_NONE,
-                                             .unresettable = AGV_FAULT_NONE};
+    monitor->summary = (agv_fault_summary_t){
+        .raised = AGV_FAULT_NONE, .cause = AGV_FAULT_NONE, .ai_cause = AGV_FAULT_NONE, .unresettable = AGV_FAULT_NONE};
 }
 
 void agv_fault_monitor_set(agv_fault_monitor_t *monitor, uint32_t fault, bool cause) {
@@ -105,8 +103,8 @@ void agv_fault_monitor_evaluate(agv_fault_monitor_t *monitor, const agv_fault_se
     agv_fault_set_t raised;
     for (uint32_t i = 0u; i < AGV_FAULT_WORDS; i++) {
         raised.words[i] = tripping.words[i] & (~monitor->tripping.words[i] | monitor->occurred.words[i]);
-        changes->changed.words[i] = (monitor->active.words[i] ^ monitor->reported.words[i]) |
-                                    (tripping.words[i] ^ monitor->tripping.words[i]);
+        changes->changed.words[i] =
+            (monitor->active.words[i] ^ monitor->reported.words[i]) | (tripping.words[i] ^ monitor->tripping.words[i]);
     }
     changes->was_trip = monitor->tripping;
     monitor->tripping = tripping;

@@ -21,10 +21,10 @@ typedef enum { AGV_BUTTON_UNKNOWN, AGV_BUTTON_DOWN, AGV_BUTTON_UP } agv_button_t
 /** The button and the press. */
 typedef struct {
     uint16_t held_ms[AGV_RESET_CONDITIONS]; /**< how long each condition has held, up to reset_hold_ms */
-    uint8_t button;       /**< agv_button_t, as the last 363h of a VCU that is alive reports it */
-    uint8_t before;       /**< the same at the last step */
-    bool began_after;     /**< this press began with a rising edge after the trip */
-    bool answered;        /**< this press was reported */
+    uint8_t button;                         /**< agv_button_t, as the last 363h of a VCU that is alive reports it */
+    uint8_t before;                         /**< the same at the last step */
+    bool began_after;                       /**< this press began with a rising edge after the trip */
+    bool answered;                          /**< this press was reported */
 } agv_reset_button_t;
 
 /** What became of a press. */

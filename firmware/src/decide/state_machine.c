@@ -83,8 +83,7 @@ static bool is_confirmed(uint32_t facts) {
 
 uint32_t agv_state_machine_lacks_for_reset(const agv_state_machine_t *machine, const agv_fault_summary_t *faults,
                                            uint32_t facts) {
-    const uint32_t needed =
-        AGV_FACT_VCU_ALIVE | AGV_FACT_EPS_ALIVE | AGV_FACT_STANDSTILL | AGV_FACT_MANUAL |
+    const uint32_t needed = AGV_FACT_VCU_ALIVE | AGV_FACT_EPS_ALIVE | AGV_FACT_STANDSTILL | AGV_FACT_MANUAL |
                             AGV_FACT_MESSAGES | AGV_FACT_IDLE;
     uint32_t missing = needed & ~facts;
     if (has_cause(faults->cause) || has_cause(machine->unresettable)) {

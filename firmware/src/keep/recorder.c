@@ -9,7 +9,6 @@
 _Static_assert((AGV_RECORDER_EVENTS & (AGV_RECORDER_EVENTS - 1u)) == 0u, "a power of two");
 _Static_assert(sizeof(agv_event_t) == 112u, "no padding: the checksum runs over all bytes");
 
-
 #define RATE_TIME_MS 1000u
 
 static uint32_t slot_of(uint32_t sequence) {

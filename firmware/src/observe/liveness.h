@@ -18,12 +18,12 @@ typedef enum { AGV_NODE_VCU, AGV_NODE_EPS, AGV_NODE_AI, AGV_NODE_COUNT } agv_nod
 
 /** State of a heartbeat. */
 typedef enum {
-    AGV_HEARTBEAT_UNSEEN = 0,   /**< no changed counter yet */
-    AGV_HEARTBEAT_BASELINE = 1, /**< AI: one value seen, which proves nothing yet, but begins the deadline */
-    AGV_HEARTBEAT_ALIVE = 2,    /**< the counter changed within the deadline */
+    AGV_HEARTBEAT_UNSEEN = 0,    /**< no changed counter yet */
+    AGV_HEARTBEAT_BASELINE = 1,  /**< AI: one value seen, which proves nothing yet, but begins the deadline */
+    AGV_HEARTBEAT_ALIVE = 2,     /**< the counter changed within the deadline */
     AGV_HEARTBEAT_FORGOTTEN = 3, /**< AI: it was seen before the last reset; its deadline runs on (SUP-8) */
-    AGV_HEARTBEAT_LOST = 4,     /**< deadline expired; stays until the counter changes again */
-    AGV_HEARTBEAT_STUCK = 5     /**< as LOST, but frames with the old counter went on coming */
+    AGV_HEARTBEAT_LOST = 4,      /**< deadline expired; stays until the counter changes again */
+    AGV_HEARTBEAT_STUCK = 5      /**< as LOST, but frames with the old counter went on coming */
 } agv_heartbeat_state_t;
 
 /** One heartbeat. Its deadline is the one of the message that carries it (AGV_TIMER_MESSAGE). */

@@ -14,8 +14,8 @@ static bool has(const agv_mode_t *mode, uint32_t bit) {
 }
 
 static agv_mode_change_t begin(agv_mode_t *mode, agv_timers_t *timers, uint32_t time_ms) {
-    const bool continues = agv_timer_runs(timers, AGV_TIMER_DISENGAGED) &&
-                           !agv_timer_reached(timers, AGV_TIMER_DISENGAGED);
+    const bool continues =
+        agv_timer_runs(timers, AGV_TIMER_DISENGAGED) && !agv_timer_reached(timers, AGV_TIMER_DISENGAGED);
     mode->engaged = true;
     mode->off_frames = 0u;
     agv_timer_stop(timers, AGV_TIMER_DISENGAGED);

@@ -64,7 +64,8 @@ static bool steering_is_off(const agv_motion_facts_t *facts) {
 
 static bool throttle_is_above(const agv_motion_facts_t *facts) {
     return agv_commands_has(facts->commands, AGV_MSG_THROTTLE_COMMAND) &&
-           (facts->vehicle->throttle > ((uint32_t)facts->commands->throttle + facts->config->throttle_deviation_counts));
+           (facts->vehicle->throttle >
+            ((uint32_t)facts->commands->throttle + facts->config->throttle_deviation_counts));
 }
 
 static bool throttle_is_above_idle(const agv_motion_facts_t *facts) {
@@ -91,8 +92,7 @@ static bool speeds_differ(const agv_vehicle_t *vehicle) {
 void agv_motion_checks_tick(agv_motion_checks_t *checks, const agv_motion_facts_t *facts, uint32_t elapsed_ms) {
     const agv_config_t *const config = facts->config;
     agv_budget_t *const budgets = checks->budgets;
-    agv_budget_add(&budgets[AGV_BUDGET_SPEED], speeds_differ(facts->vehicle), elapsed_ms,
-                   config->speed_implausible_ms);
+    agv_budget_add(&budgets[AGV_BUDGET_SPEED], speeds_differ(facts->vehicle), elapsed_ms, config->speed_implausible_ms);
     if (!facts->judged) {
         return; /* the others stand still */
     }

@@ -3,14 +3,9 @@
 #include "agv/codec.h"
 
 /* By bit of 363h byte 5; NONE: reserved, or depends on the engagement. */
-static const uint8_t alarm_faults[8] = {AGV_FAULT_REMOTE_SIGNAL_LOST,
-                                        AGV_FAULT_REMOTE_POWER_LOST,
-                                        AGV_FAULT_NONE,
-                                        AGV_FAULT_NONE,
-                                        AGV_FAULT_VCU_EPS_HARDWARE_FAULT,
-                                        AGV_FAULT_VCU_EPS_CAN_BUS_FAULT,
-                                        AGV_FAULT_NONE,
-                                        AGV_FAULT_S_DRIVER_ALARM};
+static const uint8_t alarm_faults[8] = {
+    AGV_FAULT_REMOTE_SIGNAL_LOST,     AGV_FAULT_REMOTE_POWER_LOST,     AGV_FAULT_NONE, AGV_FAULT_NONE,
+    AGV_FAULT_VCU_EPS_HARDWARE_FAULT, AGV_FAULT_VCU_EPS_CAN_BUS_FAULT, AGV_FAULT_NONE, AGV_FAULT_S_DRIVER_ALARM};
 
 /* By bit of 167h byte 8; the first ones are scored. */
 static const uint8_t eps_faults[8] = {AGV_FAULT_EPS_UNDER_VOLTAGE,     AGV_FAULT_EPS_OVER_VOLTAGE,
@@ -19,8 +14,8 @@ static const uint8_t eps_faults[8] = {AGV_FAULT_EPS_UNDER_VOLTAGE,     AGV_FAULT
                                       AGV_FAULT_EPS_MOTOR_ENCODER,     AGV_FAULT_EPS_POSITION_ENCODER};
 
 /* By scored value. */
-static const uint8_t value_faults[AGV_SCORED_VALUES] = {AGV_FAULT_GEAR_STATUS_INVALID, AGV_FAULT_THROTTLE_STATUS_INVALID,
-                                                        AGV_FAULT_STEERING_ANGLE_INVALID};
+static const uint8_t value_faults[AGV_SCORED_VALUES] = {
+    AGV_FAULT_GEAR_STATUS_INVALID, AGV_FAULT_THROTTLE_STATUS_INVALID, AGV_FAULT_STEERING_ANGLE_INVALID};
 
 void agv_status_checks_vehicle(agv_status_checks_t *checks, agv_fault_monitor_t *faults, const uint8_t data[AGV_DLC],
                                bool ai_alive) {

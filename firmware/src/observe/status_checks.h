@@ -25,10 +25,10 @@ typedef struct {
     agv_score_t eps_bits[AGV_SCORED_EPS_BITS];
     agv_score_t eps_mode;
     agv_score_t values[AGV_SCORED_VALUES];
-    agv_score_t hold_angle;  /**< of the angle, counted also while not judged (FSM-10) */
-    uint8_t eps_mode_fault;  /**< agv_fault_t: what the last EPS mode that was not angle control is called */
-    bool ai_alarm;           /**< VCU alarm bit 3 was set in the last 363h */
-    bool ai_alarm_armed;     /**< and was once clear with the AI alive (SUP-8) */
+    agv_score_t hold_angle; /**< of the angle, counted also while not judged (FSM-10) */
+    uint8_t eps_mode_fault; /**< agv_fault_t: what the last EPS mode that was not angle control is called */
+    bool ai_alarm;          /**< VCU alarm bit 3 was set in the last 363h */
+    bool ai_alarm_armed;    /**< and was once clear with the AI alive (SUP-8) */
 } agv_status_checks_t;
 
 /** 363h: alarms. */

@@ -17,16 +17,16 @@
 /** What the vehicle reported. */
 typedef struct {
     agv_wheel_speed_t wheels;
-    uint16_t vcu_speed;       /**< 363h, metres per hour (P7) */
-    uint16_t angle_raw;       /**< last valid measured steering angle, 0.1 degree above the leftmost one (P5) */
-    uint8_t gear;             /**< agv_gear_t of the last 0A3h; 0 when that was invalid */
-    uint8_t throttle;         /**< counts of the last valid 050h */
-    bool throttle_known;      /**< there was a valid 050h */
-    bool angle_known;         /**< there was a valid 067h */
-    bool eps_in_angle_mode;   /**< mode of the last 167h */
-    bool vcu_speed_seen;      /**< 363h reported a speed above 0 in this run */
-    bool wheels_fresh;        /**< 101h is fresh, as of the last evaluation */
-    bool vcu_alive;           /**< the VCU is alive, as of the last evaluation */
+    uint16_t vcu_speed;     /**< 363h, metres per hour (P7) */
+    uint16_t angle_raw;     /**< last valid measured steering angle, 0.1 degree above the leftmost one (P5) */
+    uint8_t gear;           /**< agv_gear_t of the last 0A3h; 0 when that was invalid */
+    uint8_t throttle;       /**< counts of the last valid 050h */
+    bool throttle_known;    /**< there was a valid 050h */
+    bool angle_known;       /**< there was a valid 067h */
+    bool eps_in_angle_mode; /**< mode of the last 167h */
+    bool vcu_speed_seen;    /**< 363h reported a speed above 0 in this run */
+    bool wheels_fresh;      /**< 101h is fresh, as of the last evaluation */
+    bool vcu_alive;         /**< the VCU is alive, as of the last evaluation */
 } agv_vehicle_t;
 
 /** 363h: the VCU's speed. */

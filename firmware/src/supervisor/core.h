@@ -58,8 +58,8 @@ typedef struct {
     uint32_t last_tick_ms;
     uint16_t store_credit_ms; /**< time until flash may be written once more (INT-3) */
     uint8_t store_credits;    /**< how often flash may be written now */
-    uint8_t checked_in; /**< activities since the watchdog was fed (TIM-3) */
-    int8_t led_code;    /**< of the highest-ranking fault, as last evaluated */
+    uint8_t checked_in;       /**< activities since the watchdog was fed (TIM-3) */
+    int8_t led_code;          /**< of the highest-ranking fault, as last evaluated */
 } agv_core_t;
 
 _Static_assert(sizeof(agv_core_t) == AGV_SUPERVISOR_MEMORY, "agv_supervisor_t holds just the core");

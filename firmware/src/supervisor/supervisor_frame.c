@@ -132,8 +132,7 @@ static void observe_content(agv_core_t *core, uint32_t message, const hal_can_fr
         break;
     case AGV_MSG_EPS_STATUS:
         agv_vehicle_eps(&core->vehicle, frame->data);
-        agv_status_checks_eps(&core->status_checks, &core->faults, &core->config, frame->data, valid,
-                              is_judged(core));
+        agv_status_checks_eps(&core->status_checks, &core->faults, &core->config, frame->data, valid, is_judged(core));
         break;
     case AGV_MSG_WHEEL_SPEED:
         agv_vehicle_wheels(&core->vehicle, frame->data);

@@ -40,12 +40,11 @@ bool agv_core_is_supervising(const agv_core_t *core) {
 }
 
 agv_motion_facts_t agv_core_motion_facts(const agv_core_t *core) {
-    return (agv_motion_facts_t){
-        .config = &core->config,
-        .vehicle = &core->vehicle,
-        .commands = &core->commands,
-        .judged = agv_mode_is_judged(&core->mode, &core->timers),
-        .gear_fresh = agv_liveness_fresh(&core->liveness, &core->timers, AGV_MSG_GEAR_STATUS)};
+    return (agv_motion_facts_t){.config = &core->config,
+                                .vehicle = &core->vehicle,
+                                .commands = &core->commands,
+                                .judged = agv_mode_is_judged(&core->mode, &core->timers),
+                                .gear_fresh = agv_liveness_fresh(&core->liveness, &core->timers, AGV_MSG_GEAR_STATUS)};
 }
 
 agv_gateway_facts_t agv_core_gateway_facts(const agv_core_t *core) {
@@ -83,9 +82,12 @@ agv_tx_orders_t agv_core_orders(agv_core_t *core, const agv_ports_t *ports) {
 }
 
 /* FSM-4: what opens the output at once. */
-static const uint8_t output_faults[] = {AGV_FAULT_BUS_OFF,         AGV_FAULT_TX_STALLED,
-                                        AGV_FAULT_EMERGENCY_STOP,  AGV_FAULT_SAFE_STATE_UNCONFIRMED,
-                                        AGV_FAULT_VEHICLE_NOT_STOPPING, AGV_FAULT_MOVING_WHILE_SAFE};
+static const uint8_t output_faults[] = {AGV_FAULT_BUS_OFF,
+                                        AGV_FAULT_TX_STALLED,
+                                        AGV_FAULT_EMERGENCY_STOP,
+                                        AGV_FAULT_SAFE_STATE_UNCONFIRMED,
+                                        AGV_FAULT_VEHICLE_NOT_STOPPING,
+                                        AGV_FAULT_MOVING_WHILE_SAFE};
 
 static bool output_is_unsafe(const agv_core_t *core) {
     bool unsafe = agv_timer_reached(&core->timers, AGV_TIMER_WATCHDOG_FED);
@@ -232,8 +234,7 @@ agv_pass_t agv_core_decide(agv_core_t *core, const agv_ports_t *ports, uint32_t 
     facts |= output_is_unsafe(core) ? AGV_FACT_OUTPUT_UNSAFE : 0u;
     const agv_press_result_t press = evaluate_press(core, facts, elapsed_ms, &missing);
     facts |= (press == AGV_PRESS_RESETS) ? AGV_FACT_RESET : 0u;
-    pass.actions =
-        agv_state_machine_step(&core->machine, &core->timers, &core->config, &core->faults.summary, facts);
+    pass.actions = agv_state_machine_step(&core->machine, &core->timers, &core->config, &core->faults.summary, facts);
     if (press == AGV_PRESS_IN_VAIN) {
         pass.actions.what |= AGV_ACTION_RESET_REFUSED;
         pass.actions.missing = (uint16_t)missing;

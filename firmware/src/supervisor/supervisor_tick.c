@@ -86,8 +86,9 @@ static void earn_store_credits(agv_core_t *core, uint32_t elapsed_ms) {
 
 /* INT-3: flash may stall the processor, so only where no reaction can be due. One event a tick. */
 static void store_events(agv_core_t *core, const agv_ports_t *ports) {
-    const bool idle = (core->machine.state == (uint8_t)AGV_STATE_SAFE) ||
-                      ((core->machine.state == (uint8_t)AGV_STATE_STANDBY) && agv_vehicle_is_at_standstill(&core->timers));
+    const bool idle =
+        (core->machine.state == (uint8_t)AGV_STATE_SAFE) ||
+        ((core->machine.state == (uint8_t)AGV_STATE_STANDBY) && agv_vehicle_is_at_standstill(&core->timers));
     if (!idle || (core->store_credits == 0u)) {
         return;
     }

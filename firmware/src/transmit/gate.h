@@ -24,9 +24,9 @@
 typedef struct {
     const agv_config_t *config; /**< topology, ceiling, shadow, status frame */
     const agv_ids_t *ids;
-    uint16_t hold_raw;          /**< held steering angle, raw 0..18000 */
-    uint16_t hold_check;        /**< its complement; anything else: no angle is held */
-    uint8_t state;              /**< agv_state_t */
+    uint16_t hold_raw;   /**< held steering angle, raw 0..18000 */
+    uint16_t hold_check; /**< its complement; anything else: no angle is held */
+    uint8_t state;       /**< agv_state_t */
 } agv_gate_t;
 
 /** What became of a frame. */

@@ -15,10 +15,10 @@
 
 /** What the rate limits start from. All zero: no command was limited since the engagement. */
 typedef struct {
-    uint32_t steering_ms;   /**< when the last 065h was limited */
-    uint32_t throttle_ms;   /**< when the last 075h was limited */
-    uint16_t steering_raw;  /**< and to what */
-    uint8_t throttle;       /**< and to what, counts */
+    uint32_t steering_ms;  /**< when the last 065h was limited */
+    uint32_t throttle_ms;  /**< when the last 075h was limited */
+    uint16_t steering_raw; /**< and to what */
+    uint8_t throttle;      /**< and to what, counts */
     bool steering_known;
     bool throttle_known;
 } agv_gateway_t;
@@ -29,7 +29,7 @@ typedef struct {
     const agv_vehicle_t *vehicle;
     agv_state_t state;
     uint32_t now_ms;
-    bool autopilot;  /**< the last 363h reports autopilot */
+    bool autopilot; /**< the last 363h reports autopilot */
     bool standstill;
 } agv_gateway_facts_t;
 

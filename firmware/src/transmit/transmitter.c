@@ -231,8 +231,7 @@ void agv_transmitter_pass(agv_transmitter_t *transmitter, const agv_tx_orders_t 
     send_passed(transmitter, orders, message);
 }
 
-static void tick_own(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command,
-                     uint32_t wanted) {
+static void tick_own(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command, uint32_t wanted) {
     const uint32_t slots = agv_scheduler_due(&transmitter->scheduler, orders->timers->now_ms, command);
     const bool foreign = agv_scheduler_override_due(&transmitter->scheduler, orders->timers->now_us,
                                                     orders->config->override_gap_ms, command);
@@ -290,7 +289,8 @@ void agv_transmitter_status(agv_transmitter_t *transmitter, const agv_tx_orders_
         /* not yet */
     }
     if (due) {
-        transmitter->status_due_ms += ((late_ms / config->status_frame_period_ms) + 1u) * config->status_frame_period_ms;
+        transmitter->status_due_ms +=
+            ((late_ms / config->status_frame_period_ms) + 1u) * config->status_frame_period_ms;
     }
     (void)agv_timer_while(orders->timers, AGV_TIMER_TX_STATUS, has_to_wait);
 }

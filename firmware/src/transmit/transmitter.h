@@ -38,9 +38,9 @@ typedef struct {
 /** The transmitter. */
 typedef struct {
     agv_scheduler_t scheduler;
-    uint32_t status_due_ms; /**< when the next status frame is due */
-    uint32_t status_ms;     /**< when the last one was handed to the HAL */
-    uint32_t kept;                       /**< frames to be passed that wait, bit n = message n */
+    uint32_t status_due_ms;                /**< when the next status frame is due */
+    uint32_t status_ms;                    /**< when the last one was handed to the HAL */
+    uint32_t kept;                         /**< frames to be passed that wait, bit n = message n */
     uint32_t passed_ms[AGV_COMMAND_COUNT]; /**< when a command was last passed on */
     agv_tx_report_t report;
     uint8_t kept_data[AGV_MSG_COUNT][AGV_DLC];

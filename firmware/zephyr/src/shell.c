@@ -82,7 +82,8 @@ static int print_messages(const struct shell *shell, size_t argc, char **argv) {
         const uint32_t age_ms = agv_supervisor_age_ms(seen, (agv_message_t)i);
         shell_print(shell, "%03x %s: %u/s, age %d ms%s", agv_message_id(i, agv_supervisor_config(seen)->id_set),
                     text(agv_message_name((agv_message_t)i)), agv_supervise.frames[i] - before[i],
-                    (age_ms == UINT32_MAX) ? -1 : (int)age_ms, agv_supervisor_is_fresh(seen, (agv_message_t)i) ? "" : ", stale");
+                    (age_ms == UINT32_MAX) ? -1 : (int)age_ms,
+                    agv_supervisor_is_fresh(seen, (agv_message_t)i) ? "" : ", stale");
     }
     return 0;
 }
