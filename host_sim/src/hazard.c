@@ -118,8 +118,11 @@ static void on_foreign_command(hazard_t *hazard, agv_message_t message, const ha
     const uint8_t value = (frame->length > 0u) ? frame->data[0] : 0u;
     const bool moves = ((message == AGV_MSG_GEAR_COMMAND) && (value != (uint8_t)AGV_GEAR_P)) ||
                        ((message == AGV_MSG_THROTTLE_COMMAND) && (value > 0u)) || (message == AGV_MSG_STEERING_COMMAND);
+    hal_can_status_t status;
 
-    if (moves && hazard->closed && !hazard->trip.tripped && (hazard->foreign_ms == 0u)) {
+    hal_can_status(&hazard->world->hal, HAL_CAN_VEHICLE, &status);
+    const bool heard = status.state == HAL_CAN_ERROR_ACTIVE; /* after a collision it may miss one */
+    if (moves && heard && hazard->closed && !hazard->trip.tripped && (hazard->foreign_ms == 0u)) {
         hazard->foreign_ms = hazard->t_ms;
     }
 }

@@ -38,7 +38,7 @@ typedef struct {
 
 const hazard_info_t *hazard_info(hazard_kind_t kind);
 
-enum { HAZARD_ROWS_MAX = 48, HAZARD_RECENT = 256, HAZARD_SPEEDS = 11, HAZARD_FLOOD_SLOTS = 10 };
+enum { HAZARD_ROWS_MAX = 48, HAZARD_RECENT = 256, HAZARD_SPEEDS = 11, HAZARD_ANGLES = 8, HAZARD_FLOOD_SLOTS = 10 };
 
 /** A message as it was on the wire: commands where the AI computer sends them, status on the vehicle side. */
 typedef struct {
@@ -105,17 +105,27 @@ typedef struct {
     uint32_t confirmed_ms; /**< both, without a break */
 } hazard_trip_t;
 
+/** Angles that may be held: from the one to the other, and a little more. */
+typedef struct {
+    int32_t low_ddeg;
+    int32_t high_ddeg;
+} hazard_range_t;
+
 /** 065h of the supervisor. */
 typedef struct {
     uint64_t last_ms;
-    int32_t start_ddeg;    /**< where the steering really was when this hold began */
-    int32_t measured_ddeg; /**< and what 067h last said */
-    int32_t trip_ddeg[2];  /**< the same two at the trip */
+    uint16_t value;         /**< that it carried last */
+    int32_t start_ddeg;     /**< where the steering really was when this angle was sent first */
+    hazard_range_t now;     /**< real and lately measured angles then */
+    hazard_range_t at_trip; /**< the same at the trip */
     bool has_trip;
     int32_t first_ddeg; /**< the first measured angle after the trip, or after manual ended */
     bool has_first;
     int32_t wrong_ddeg; /**< commanded, and none of these */
     bool is_wrong;
+    int32_t measured_ddeg[HAZARD_ANGLES]; /**< the last ones */
+    uint64_t measured_ms[HAZARD_ANGLES];
+    uint32_t measured_count;
 } hazard_hold_t;
 
 /** A judgement in the making. Read `kind`, `cause`, `at_ms` and `closeness`. */
@@ -194,6 +204,8 @@ void hazard_safe_frame(hazard_t *hazard, agv_message_t message, const hal_can_fr
 void hazard_safe_tick(hazard_t *hazard);
 void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame);
 void hazard_hold_tick(hazard_t *hazard);
+void hazard_hold_measured(hazard_t *hazard, int32_t angle_ddeg);
+void hazard_hold_trip(hazard_t *hazard);
 /** @} */
 
 #endif

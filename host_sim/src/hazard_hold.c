@@ -9,17 +9,43 @@ static bool is_near(int32_t a_ddeg, int32_t b_ddeg) {
     return abs(a_ddeg - b_ddeg) <= TOLERANCE_DDEG;
 }
 
-static bool is_fresh(const hazard_t *hazard) {
-    const hazard_message_t *measured = &hazard->messages[AGV_MSG_STEERING_STATUS];
-    return measured->has_valid && (hazard->t_ms - measured->valid_ms <= FRESH_MS);
+static bool is_within(const hazard_range_t *range, int32_t ddeg) {
+    return (ddeg >= range->low_ddeg - TOLERANCE_DDEG) && (ddeg <= range->high_ddeg + TOLERANCE_DDEG);
+}
+
+void hazard_hold_measured(hazard_t *hazard, int32_t angle_ddeg) {
+    hazard_hold_t *hold = &hazard->hold;
+    const uint32_t at = hold->measured_count % HAZARD_ANGLES;
+
+    hold->measured_ddeg[at] = angle_ddeg;
+    hold->measured_ms[at] = hazard->t_ms;
+    hold->measured_count++;
+}
+
+/** The real angle, and those that 067h lately carried. */
+static hazard_range_t range_now(const hazard_t *hazard) {
+    const hazard_hold_t *hold = &hazard->hold;
+    hazard_range_t range = {hazard_angle_ddeg(hazard), hazard_angle_ddeg(hazard)};
+
+    for (uint32_t i = 0u; (i < HAZARD_ANGLES) && (i < hold->measured_count); i++) {
+        if (hazard->t_ms - hold->measured_ms[i] <= FRESH_MS) {
+            const int32_t ddeg = hold->measured_ddeg[i];
+            range.low_ddeg = (ddeg < range.low_ddeg) ? ddeg : range.low_ddeg;
+            range.high_ddeg = (ddeg > range.high_ddeg) ? ddeg : range.high_ddeg;
+        }
+    }
+    return range;
+}
+
+void hazard_hold_trip(hazard_t *hazard) {
+    hazard->hold.at_trip = range_now(hazard);
+    hazard->hold.has_trip = true;
+    hazard->hold.has_first = false;
 }
 
 /** Whether the angle is one that may be held. */
-static bool may_be_held(const hazard_t *hazard, int32_t held_ddeg) {
-    const hazard_hold_t *hold = &hazard->hold;
-
-    return is_near(held_ddeg, hold->start_ddeg) || is_near(held_ddeg, hold->measured_ddeg) ||
-           (hold->has_trip && (is_near(held_ddeg, hold->trip_ddeg[0]) || is_near(held_ddeg, hold->trip_ddeg[1]))) ||
+static bool may_be_held(const hazard_hold_t *hold, int32_t held_ddeg) {
+    return is_within(&hold->now, held_ddeg) || (hold->has_trip && is_within(&hold->at_trip, held_ddeg)) ||
            (hold->has_first && is_near(held_ddeg, hold->first_ddeg));
 }
 
@@ -31,13 +57,14 @@ void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame) {
     if (hazard->gateway && hazard_was_sent(hazard, AGV_MSG_STEERING_COMMAND, value)) {
         return; /* passed on: after a reset the safe commands may have ended already */
     }
-    if ((hold->last_ms == 0u) || (hazard->t_ms - hold->last_ms > NEW_HOLD_MS)) {
+    if ((hold->last_ms == 0u) || (hazard->t_ms - hold->last_ms > NEW_HOLD_MS) || (value != hold->value)) {
         hold->start_ddeg = hazard_angle_ddeg(hazard);
-        hold->measured_ddeg = is_fresh(hazard) ? hazard_measured_ddeg(hazard) : hold->start_ddeg;
+        hold->now = range_now(hazard);
         hold->is_wrong = false;
     }
     hold->last_ms = hazard->t_ms;
-    if (!may_be_held(hazard, held_ddeg)) {
+    hold->value = value;
+    if (!may_be_held(hold, held_ddeg)) {
         hold->is_wrong = true;
         hold->wrong_ddeg = held_ddeg;
     }

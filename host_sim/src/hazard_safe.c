@@ -11,7 +11,6 @@ static const uint8_t SAFE_SIGNALS[SIGNALS_BYTES] = {0x00, 0x00, 0x00, 0x00, 0x70
 
 static void begin_trip(hazard_t *hazard) {
     hazard_trip_t *trip = &hazard->trip;
-    const hazard_message_t *measured = &hazard->messages[AGV_MSG_STEERING_STATUS];
 
     trip->tripped = true;
     trip->parks = false;
@@ -21,12 +20,7 @@ static void begin_trip(hazard_t *hazard) {
     trip->unparked_ms = 0u;
     trip->engaged_ms = 0u;
     trip->confirmed_ms = 0u;
-    hazard->hold.trip_ddeg[0] = hazard_angle_ddeg(hazard);
-    hazard->hold.trip_ddeg[1] = (measured->has_valid && (hazard->t_ms - measured->valid_ms <= FRESH_MS))
-                                    ? hazard_measured_ddeg(hazard)
-                                    : hazard->hold.trip_ddeg[0];
-    hazard->hold.has_trip = true;
-    hazard->hold.has_first = false;
+    hazard_hold_trip(hazard);
 }
 
 /** Gateway: the AI computer asks for all of the same, which is passed on. */

@@ -111,6 +111,7 @@ static void note_throttle(hazard_t *hazard, uint8_t value) {
 static void note_angle(hazard_t *hazard) {
     const int32_t angle_ddeg = hazard_measured_ddeg(hazard);
 
+    hazard_hold_measured(hazard, angle_ddeg);
     hazard->moved_ddeg += abs(angle_ddeg - hazard->still_at_ddeg);
     hazard->still_at_ddeg = angle_ddeg;
     if (hazard->moved_ddeg * 5 >= hazard->limits.steering_gain_ddeg * 4) {

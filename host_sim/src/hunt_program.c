@@ -119,8 +119,26 @@ static bool is_fixed(const char *name) {
     return (options_word("topology|id_set|shadow|status_frame_id", name) >= 0) || (strncmp(name, "id_", 3u) == 0);
 }
 
+/** How long something is remembered or waited for decides most: such a setting, or any. */
+static uint16_t draw_setting(uint64_t *state) {
+    static const char *const names[] = {"event_hold_ms",        "reset_hold_ms",   "engaged_grace_ms",
+                                        "confirm_timeout_ms",   "eps_mode_frames", "reengage_ms",
+                                        "standstill_speed_mm_s"};
+    const uint32_t count = sizeof names / sizeof names[0];
+    const uint16_t any = (uint16_t)chance_draw(state, 0u, AGV_SETTING_COUNT - 1u);
+    const char *name = names[chance_draw(state, 0u, count - 1u)];
+
+    for (uint16_t i = 0u; i < AGV_SETTING_COUNT; i++) {
+        if (strcmp(agv_setting_info(i)->name, name) == 0) {
+            return i;
+        }
+    }
+    return any;
+}
+
 static void add_setting(hunt_program_t *program, uint64_t *state) {
-    const uint16_t setting = (uint16_t)chance_draw(state, 0u, AGV_SETTING_COUNT - 1u);
+    const uint16_t setting =
+        toss(state, 3u) ? draw_setting(state) : (uint16_t)chance_draw(state, 0u, AGV_SETTING_COUNT - 1u);
     const agv_setting_info_t *info = agv_setting_info(setting);
 
     if (is_fixed(info->name) || (program->setting_count == (uint32_t)HUNT_SETTINGS_MAX)) {
