@@ -38,7 +38,7 @@ typedef struct {
 
 const hazard_info_t *hazard_info(hazard_kind_t kind);
 
-enum { HAZARD_ROWS_MAX = 48, HAZARD_RECENT = 256, HAZARD_SPEEDS = 11, HAZARD_ANGLES = 8, HAZARD_FLOOD_SLOTS = 10 };
+enum { HAZARD_ROWS_MAX = 48, HAZARD_RECENT = 256, HAZARD_SPEEDS = 11, HAZARD_ANGLES = 64, HAZARD_FLOOD_SLOTS = 10 };
 
 /** A message as it was on the wire: commands where the AI computer sends them, status on the vehicle side. */
 typedef struct {
@@ -66,6 +66,7 @@ typedef struct {
     uint32_t park_confirm_ms;
     uint32_t stop_ms;
     uint32_t vcu_ms;
+    uint32_t tx_stalled_ms;
     uint32_t gear_status_ms;
     uint32_t command_ms[AGV_COMMAND_COUNT];
     uint32_t command_too_fast_gaps;

@@ -23,12 +23,12 @@ void hazard_hold_measured(hazard_t *hazard, int32_t angle_ddeg) {
 }
 
 /** The real angle, and those that 067h lately carried. */
-static hazard_range_t range_now(const hazard_t *hazard) {
+static hazard_range_t range_now(const hazard_t *hazard, uint32_t within_ms) {
     const hazard_hold_t *hold = &hazard->hold;
     hazard_range_t range = {hazard_angle_ddeg(hazard), hazard_angle_ddeg(hazard)};
 
     for (uint32_t i = 0u; (i < HAZARD_ANGLES) && (i < hold->measured_count); i++) {
-        if (hazard->t_ms - hold->measured_ms[i] <= FRESH_MS) {
+        if (hazard->t_ms - hold->measured_ms[i] <= within_ms) {
             const int32_t ddeg = hold->measured_ddeg[i];
             range.low_ddeg = (ddeg < range.low_ddeg) ? ddeg : range.low_ddeg;
             range.high_ddeg = (ddeg > range.high_ddeg) ? ddeg : range.high_ddeg;
@@ -38,7 +38,10 @@ static hazard_range_t range_now(const hazard_t *hazard) {
 }
 
 void hazard_hold_trip(hazard_t *hazard) {
-    hazard->hold.at_trip = range_now(hazard);
+    /* An open output without a safe command: the trip came when the first frame did not leave. */
+    const uint32_t within_ms = (uint32_t)FRESH_MS + (hazard->closed ? 0u : hazard->limits.tx_stalled_ms);
+
+    hazard->hold.at_trip = range_now(hazard, within_ms);
     hazard->hold.has_trip = true;
     hazard->hold.has_first = false;
 }
@@ -59,7 +62,7 @@ void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame) {
     }
     if ((hold->last_ms == 0u) || (hazard->t_ms - hold->last_ms > NEW_HOLD_MS) || (value != hold->value)) {
         hold->start_ddeg = hazard_angle_ddeg(hazard);
-        hold->now = range_now(hazard);
+        hold->now = range_now(hazard, FRESH_MS);
         hold->is_wrong = false;
     }
     hold->last_ms = hazard->t_ms;
