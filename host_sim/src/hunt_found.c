@@ -167,10 +167,8 @@ bool hunt_found_take(hunt_found_t *found, hunt_play_t *play, const hunt_program_
 
     found->runs++;
     if ((known != NULL) || (found->count == (uint32_t)HUNT_FOUND_MAX)) {
-        found->items[0].more += (known == NULL) ? 1u : 0u;
-        if (known != NULL) {
-            known->more++;
-        }
+        known = (known != NULL) ? known : &found->items[0];
+        known->more++;
         return true;
     }
     shrink(play, &small, kind, cause);

@@ -28,9 +28,7 @@ typedef struct {
     const hunt_attack_t *attack;
 } steps_t;
 
-static void append(line_t *line, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-static void append(line_t *line, const char *format, ...) {
+__attribute__((format(printf, 2, 3))) static void append(line_t *line, const char *format, ...) {
     const size_t used = strlen(line->text);
     va_list arguments;
     va_start(arguments, format);
@@ -231,16 +229,14 @@ static void write_steps(const hunt_program_t *program, campaign_text_t *text) {
 /** A setting as its file has it: a word, or a number. */
 static void write_setting(const hunt_setting_t *setting, campaign_text_t *text) {
     const agv_setting_info_t *info = agv_setting_info(setting->setting);
-    const char *words = info->words;
+    const char *word = NULL;
 
-    if (words == NULL) {
+    if (info->words == NULL) {
         campaign_text_add(text, "%s: %u", info->name, setting->value);
         return;
     }
-    for (uint16_t skip = setting->value; skip > 0u; skip--) {
-        words += strcspn(words, "|") + 1u;
-    }
-    campaign_text_add(text, "%s: %.*s", info->name, (int)strcspn(words, "|"), words);
+    const size_t length = config_word(info->words, setting->value, &word);
+    campaign_text_add(text, "%s: %.*s", info->name, (int)length, word);
 }
 
 static void write_class(const hunt_program_t *program, uint8_t fault, campaign_text_t *text) {
