@@ -62,7 +62,7 @@ static void judge_confirmation(hazard_t *hazard) {
     const hazard_message_t *gear = &hazard->messages[AGV_MSG_GEAR_STATUS];
     const bool alive = is_fresh(hazard, AGV_MSG_VEHICLE_STATUS, hazard->limits.vcu_ms);
     const bool off = alive && !hazard->mode.autopilot;
-    const bool parked = alive && gear->has_valid && (gear->valid[0] == (uint8_t)AGV_GEAR_P) &&
+    const bool parked = gear->has_valid && (gear->valid[0] == (uint8_t)AGV_GEAR_P) &&
                         is_fresh(hazard, AGV_MSG_GEAR_STATUS, hazard->limits.gear_status_ms);
 
     trip->engaged_ms += off ? 0u : 1u;
