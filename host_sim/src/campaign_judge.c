@@ -56,8 +56,7 @@ static bool is_like(const campaign_judge_t *judge, uint32_t flag) {
 }
 
 static agv_message_t message_of(const campaign_judge_t *judge, const hal_can_frame_t *frame) {
-    return (agv_message_t)agv_message_from_id(frame->id,
-                                              judge->plan->table_ids ? AGV_ID_SET_TABLE : AGV_ID_SET_HEADING);
+    return (agv_message_t)agv_ids_find(&judge->world->ids, frame->id);
 }
 
 /** A command that takes the drive away. (065h, which holds the steering, is not counted as one.) */
@@ -153,6 +152,9 @@ static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, co
     campaign_judge_t *judge = ctx;
     if ((from != SCENARIO_FROM_SUPERVISOR) || (side != HAL_CAN_VEHICLE)) {
         return;
+    }
+    if (frame->id == judge->world->config.status_frame_id) {
+        return; /* it commands nothing */
     }
     const agv_message_t message = message_of(judge, frame);
     if (judge->world->hal.safety_output.on && (judge->closed_us == CAMPAIGN_NEVER)) {

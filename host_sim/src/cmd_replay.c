@@ -11,8 +11,6 @@
 /** The words of --reset-cause, in the order of hal_reset_cause_t. */
 #define RESET_CAUSES "power-on|watchdog|brown-out|lock-up|software|unknown"
 
-enum { DEFAULT_TAIL_MS = 1000 };
-
 /** What was given. */
 typedef struct {
     replay_request_t request;
@@ -29,7 +27,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         {.name = "--events", .value = "FILE", .help = "events as JSON Lines", .text = &given->request.events},
         {.name = "--tail",
          .value = "MS",
-         .help = "go on for so long after the last line (1000)",
+         .help = "go on for so long after the last line (0)",
          .number = &given->request.tail_ms,
          .highest = REPLAY_GAP_MAX_MS},
         {.name = "--start-ms",
@@ -83,7 +81,7 @@ static bool check_files(const given_t *given) {
 }
 
 status_t cmd_replay(int argc, char **argv) {
-    given_t given = {.request = {.tail_ms = DEFAULT_TAIL_MS}, .reset_cause = (int)HAL_RESET_POWER_ON};
+    given_t given = {.reset_cause = (int)HAL_RESET_POWER_ON};
     const options_result_t parsed = parse(argc, argv, &given);
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;

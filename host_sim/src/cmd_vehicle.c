@@ -3,6 +3,7 @@
  * `host_sim vehicle`: its options.
  */
 #include "commands.h"
+#include "config_options.h"
 #include "interface_options.h"
 #include "options.h"
 #include "vehicle_run.h"
@@ -15,8 +16,7 @@ enum { NOT_GIVEN = -1 };
 /** What was given. */
 typedef struct {
     vehicle_run_request_t request;
-    int topology;
-    int id_set;
+    config_options_t config;
     const char *faults[VEHICLE_RUN_FAULTS_MAX];
     size_t fault_count;
 } given_t;
@@ -43,15 +43,19 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .value = "IF",
          .help = "the interface of the AI computer: a gateway",
          .text = &request->interfaces[HAL_CAN_AI]},
+        {.name = "--config",
+         .value = "FILE",
+         .help = "settings of the supervisor (YAML): its topology and identifiers",
+         .text = &given->config.path},
         {.name = "--topology",
          .value = "shared|gateway",
          .help = "one bus for all, or one for the AI computer (default with --ai-can)",
-         .word = &given->topology,
+         .word = &given->config.topology,
          .words = "shared|gateway"},
         {.name = "--id-set",
          .value = "heading|table",
          .help = "43Fh and 363h, or 201h and 203h",
-         .word = &given->id_set,
+         .word = &given->config.id_set,
          .words = "heading|table"},
         {.name = "--fault",
          .value = "WHO-WHAT[,NAME=VALUE]...@MS",
@@ -87,18 +91,6 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     return options_parse(&syntax, argc, argv, &operands);
 }
 
-static void make_config(const given_t *given, agv_config_t *config) {
-    agv_config_defaults(config);
-    if (given->topology != NOT_GIVEN) {
-        config->topology = (uint16_t)given->topology;
-    } else if (given->request.interfaces[HAL_CAN_AI] != NULL) {
-        config->topology = AGV_TOPOLOGY_GATEWAY;
-    }
-    if (given->id_set != NOT_GIVEN) {
-        config->id_set = (uint16_t)given->id_set;
-    }
-}
-
 /** Read the faults, in the order of their time. */
 static bool make_faults(const given_t *given, vehicle_run_request_t *request) {
     for (size_t i = 0u; i < given->fault_count; i++) {
@@ -120,15 +112,16 @@ static bool make_faults(const given_t *given, vehicle_run_request_t *request) {
 }
 
 status_t cmd_vehicle(int argc, char **argv) {
-    given_t given = {
-        .request = {.for_ms = VEHICLE_RUN_FOREVER}, .topology = NOT_GIVEN, .id_set = NOT_GIVEN, .fault_count = 0u};
+    given_t given = {.request = {.for_ms = VEHICLE_RUN_FOREVER},
+                     .config = {.topology = NOT_GIVEN, .id_set = NOT_GIVEN}};
     const options_result_t parsed = parse(argc, argv, &given);
 
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
-    make_config(&given, &given.request.config);
-    if (!interface_options_check("vehicle", given.request.interfaces,
+    given.config.has_ai_side = given.request.interfaces[HAL_CAN_AI] != NULL;
+    if (!config_options_make(&given.config, &given.request.config) ||
+        !interface_options_check("vehicle", given.request.interfaces,
                                  given.request.config.topology == AGV_TOPOLOGY_GATEWAY)) {
         return STATUS_UNUSABLE;
     }

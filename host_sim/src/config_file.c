@@ -194,6 +194,29 @@ static bool blame(const config_lines_t *lines, size_t line, const char *key, con
     return report_at(lines->path, line, "%s: %s", key, reason);
 }
 
+/** The setting of the file that gives a message the identifier of another. */
+static bool blame_twice(const agv_config_t *config, const config_lines_t *lines, uint16_t setting) {
+    agv_ids_t ids;
+    agv_config_ids(config, &ids);
+    const bool is_status = setting == (uint16_t)AGV_SETTING_status_frame_id;
+    const uint16_t id = is_status ? config->status_frame_id : ids.of[setting - (uint16_t)AGV_SETTING_ID];
+    uint16_t blamed = setting;
+    for (uint16_t i = 0u; (lines->settings[blamed] == 0u) && (i < (uint16_t)AGV_MSG_COUNT); i++) {
+        blamed = (ids.of[i] == id) ? (uint16_t)((uint16_t)AGV_SETTING_ID + i) : blamed;
+    }
+    return blame(lines, lines->settings[blamed], agv_setting_info(blamed)->name, "another message has this identifier");
+}
+
+/** The setting of the file because of which no press would reset. */
+static bool blame_press(const config_lines_t *lines) {
+    const size_t longest = lines->settings[AGV_SETTING_reset_hold_max_ms];
+    const size_t shortest = lines->settings[AGV_SETTING_reset_hold_ms];
+    if ((longest == 0u) && (shortest != 0u)) {
+        return blame(lines, shortest, "reset_hold_ms", "must be below reset_hold_max_ms");
+    }
+    return blame(lines, longest, "reset_hold_max_ms", "must be above reset_hold_ms");
+}
+
 bool config_check(const agv_config_t *config, const config_lines_t *lines) {
     const agv_config_verdict_t verdict = agv_config_check(config);
     const agv_setting_info_t *info = agv_setting_info(verdict.setting);
@@ -206,11 +229,11 @@ bool config_check(const agv_config_t *config, const config_lines_t *lines) {
     case AGV_CONFIG_OUT_OF_RANGE:
         return blame(lines, line, name, "the value is out of range");
     case AGV_CONFIG_ID_TWICE:
-        return blame(lines, line, name, "another message has this identifier");
+        return blame_twice(config, lines, verdict.setting);
     case AGV_CONFIG_NEEDS_GATEWAY:
         return blame(lines, line, name, "has no effect on a shared bus; this value needs the gateway topology");
     case AGV_CONFIG_PRESS_TOO_SHORT:
-        return blame(lines, line, name, "must be above reset_hold_ms");
+        return blame_press(lines);
     case AGV_CONFIG_FAULT_TOO_WEAK:
         config_class_key(verdict.fault, key);
         return blame(lines, lines->classes[verdict.fault], key, "this fault must stay a trip");

@@ -123,7 +123,7 @@ void config_print_kconfig(const agv_config_t *config) {
 
 /** Begin or go on with the line of deviations. */
 static void print_deviation(bool *any, const char *key, const char *value, const char *preset, bool weakens) {
-    (void)fprintf(stderr, "%s%s: %s (%s%s)", *any ? ", " : "host_sim: not the default: ", key, value, preset,
+    (void)fprintf(stderr, "%s%s: %s (default %s%s)", *any ? ", " : "host_sim: not the default: ", key, value, preset,
                   weakens ? ", WEAKER" : "");
     *any = true;
 }

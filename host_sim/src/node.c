@@ -7,7 +7,7 @@
 #include "hal_linux/linux_hal.h"
 #include "report.h"
 
-enum { US_PER_MS = 1000, ID_SETS = 2, IDS_MAX = (int)AGV_MSG_COUNT * ID_SETS + 1 };
+enum { US_PER_MS = 1000, ID_SETS = 3, IDS_MAX = (int)AGV_MSG_COUNT * ID_SETS + 1 };
 
 /** Frames that are handed over before the next tick has its turn, whatever comes in: more than a bus carries in 20 ms. */
 enum { FRAMES_AT_ONCE = 256 };
@@ -31,9 +31,13 @@ static void add_id(node_t *node, uint16_t id) {
     node->id_count++;
 }
 
-/** What the kernel lets through: the protocol in both ID sets, as the supervisor watches for the other one (P1). */
+/** What the kernel lets through: the protocol as configured and in both ID sets, as the supervisor watches for the other
+ * one (P1). */
 static void choose_ids(node_t *node) {
+    agv_ids_t ids;
+    agv_config_ids(&node->config, &ids);
     for (int message = 0; message < (int)AGV_MSG_COUNT; message++) {
+        add_id(node, ids.of[message]);
         add_id(node, agv_message_id((agv_message_t)message, AGV_ID_SET_HEADING));
         add_id(node, agv_message_id((agv_message_t)message, AGV_ID_SET_TABLE));
     }

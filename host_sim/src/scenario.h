@@ -188,6 +188,7 @@ typedef struct {
     bool fixes_topology; /**< the file names it; else the command line may choose */
     bool fixes_id_set;
     agv_config_t config;
+    agv_ids_t ids;         /**< that `config` asks for; the vehicle may have others */
     bool config_unchecked; /**< handed to the supervisor though it makes no sense */
     bool self_test_passed;
     vehicle_config_t vehicle;

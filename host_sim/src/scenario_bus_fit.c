@@ -128,8 +128,9 @@ static const char *why_not_ai_side(const scenario_t *scenario) {
 }
 
 /** Whether a frame is one that the kernel hands over to the supervisor (node.c). */
-static bool is_of_protocol(uint32_t id) {
-    return (agv_message_from_id(id, AGV_ID_SET_HEADING) != AGV_MSG_NONE) ||
+static bool is_of_protocol(const scenario_t *scenario, uint32_t id) {
+    return (agv_ids_find(&scenario->ids, id) != AGV_MSG_NONE) || (id == scenario->config.status_frame_id) ||
+           (agv_message_from_id(id, AGV_ID_SET_HEADING) != AGV_MSG_NONE) ||
            (agv_message_from_id(id, AGV_ID_SET_TABLE) != AGV_MSG_NONE);
 }
 
@@ -140,7 +141,7 @@ static const char *why_not_counters(const scenario_t *scenario) {
     for (size_t i = 0u; i < scenario->step_count; i++) {
         const scenario_step_t *step = &scenario->steps[i];
         foreign = foreign || (step->of_vehicle && (step->vehicle.what == VEHICLE_DO_SEND) &&
-                              !is_of_protocol(step->vehicle.frame.id));
+                              !is_of_protocol(scenario, step->vehicle.frame.id));
     }
     for (size_t i = 0u; foreign && (i < scenario->expect.counters.count); i++) {
         const scenario_counter_t *counter = &scenario->expect.counters.items[i];

@@ -10,6 +10,8 @@
 #include "yaml_file.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
+/* The first identifier of a vehicle that has those of the configuration. */
+#define AS_CONFIGURED UINT16_MAX
 
 enum { TICK_PHASE_MAX_US = 999 };
 
@@ -150,7 +152,6 @@ static bool read_id_set(const yaml_reader_t *reader, const yaml_node_t *node, vo
         return false;
     }
     scenario->config.id_set = (uint16_t)value;
-    scenario->vehicle.id_set = (agv_id_set_t)value; /* unless the vehicle's own part, read later, says otherwise */
     return true;
 }
 
@@ -283,7 +284,7 @@ static void preset(scenario_t *scenario, const scenario_options_t *options) {
     scenario->bitrate = SCENARIO_DEFAULT_BITRATE;
     scenario->reset_cause = HAL_RESET_POWER_ON;
     vehicle_defaults(&scenario->vehicle);
-    scenario->vehicle.id_set = (agv_id_set_t)scenario->config.id_set;
+    scenario->vehicle.ids.of[0] = AS_CONFIGURED;
 }
 
 /** What the file fixes, the command line cannot change. */
@@ -348,6 +349,10 @@ static bool read_document(reading_t *reading, yaml_document_t *document, const c
         return false;
     }
     scenario->vehicle.gateway = scenario->config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    agv_config_ids(&scenario->config, &scenario->ids);
+    if (scenario->vehicle.ids.of[0] == AS_CONFIGURED) {
+        scenario->vehicle.ids = scenario->ids;
+    }
     return true;
 }
 
@@ -380,5 +385,5 @@ uint32_t scenario_frame_id(const scenario_t *scenario, const scenario_frame_t *f
     if (frame->message == AGV_MSG_NONE) {
         return frame->id;
     }
-    return agv_message_id(frame->message, (agv_id_set_t)scenario->config.id_set);
+    return scenario->ids.of[frame->message];
 }

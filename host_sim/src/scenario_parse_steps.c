@@ -253,7 +253,9 @@ static bool take_frame(const yaml_reader_t *reader, const reading_t *reading, co
         return false;
     }
     if (id == NULL) {
-        frame->id = agv_message_id(step->vehicle.message, (agv_id_set_t)config->id_set);
+        agv_ids_t ids;
+        agv_config_ids(config, &ids);
+        frame->id = ids.of[step->vehicle.message];
         return true;
     }
     return yaml_reader_hex(reader, id, "id", (frame->flags == HAL_CAN_EXTENDED) ? 0x1FFFFFFFu : AGV_ID_MAX, &frame->id);

@@ -162,6 +162,7 @@ bool scenario_world_init(scenario_world_t *world, const scenario_t *scenario, sc
 
     world->planted = planted;
     world->config = scenario->config;
+    world->ids = scenario->ids;
     world->tick_phase_us = scenario->tick_phase_us;
     world->bus_count = scenario->vehicle.gateway ? HAL_CAN_SIDES : 1u;
     sim_store_init(&world->store);
@@ -341,13 +342,13 @@ static void send_planted(scenario_world_t *world) {
     const agv_gear_command_t gear = {AGV_GEAR_P};
     hal_can_frame_t frame = {.length = AGV_DLC};
 
-    frame.id = agv_message_id(AGV_MSG_GEAR_COMMAND, (agv_id_set_t)world->config.id_set);
+    frame.id = world->ids.of[AGV_MSG_GEAR_COMMAND];
     (void)agv_pack_gear_command(frame.data, &gear);
     (void)hal_can_send(&world->hal, HAL_CAN_VEHICLE, &frame);
-    frame.id = agv_message_id(AGV_MSG_TURN_SIGNAL_COMMAND, (agv_id_set_t)world->config.id_set);
+    frame.id = world->ids.of[AGV_MSG_TURN_SIGNAL_COMMAND];
     (void)agv_pack_turn_signal_command(frame.data, &signals);
     (void)hal_can_send(&world->hal, HAL_CAN_VEHICLE, &frame);
-    frame.id = agv_message_id(AGV_MSG_THROTTLE_COMMAND, (agv_id_set_t)world->config.id_set);
+    frame.id = world->ids.of[AGV_MSG_THROTTLE_COMMAND];
     memset(frame.data, 0, sizeof frame.data);
     (void)hal_can_send(&world->hal, HAL_CAN_VEHICLE, &frame);
 }

@@ -69,6 +69,7 @@ struct scenario_world {
     session_t session;
     vehicle_t vehicle;
     agv_config_t config;
+    agv_ids_t ids; /**< of `config` */
     scenario_planted_t planted;
     scenario_station_t stations[VEHICLE_NODES];
     sim_bus_node_t strangers[HAL_CAN_SIDES];

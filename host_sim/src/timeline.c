@@ -159,7 +159,7 @@ static void show_reaction(timeline_t *timeline, uint64_t t_us) {
 
 /** The first frame of each message that the supervisor sends in a state. */
 static void show_sent(timeline_t *timeline, uint64_t t_us, const hal_can_frame_t *frame) {
-    const agv_message_t message = agv_message_from_id(frame->id, (agv_id_set_t)timeline->world->config.id_set);
+    const agv_message_t message = (agv_message_t)agv_ids_find(&timeline->world->ids, frame->id);
     const uint8_t *d = frame->data;
 
     if ((message == AGV_MSG_NONE) || ((timeline->shown & (1u << message)) != 0u)) {
@@ -174,7 +174,7 @@ static void show_sent(timeline_t *timeline, uint64_t t_us, const hal_can_frame_t
 }
 
 static void show_reported(timeline_t *timeline, uint64_t t_us, const hal_can_frame_t *frame) {
-    const agv_message_t message = agv_message_from_id(frame->id, (agv_id_set_t)timeline->world->config.id_set);
+    const agv_message_t message = (agv_message_t)agv_ids_find(&timeline->world->ids, frame->id);
     agv_wheel_speed_t wheels;
 
     if ((message == AGV_MSG_GEAR_STATUS) && (frame->data[0] != timeline->gear)) {

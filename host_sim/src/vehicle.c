@@ -22,7 +22,6 @@ const vehicle_row_t VEHICLE_ROWS[AGV_MSG_COUNT] = {
 
 void vehicle_defaults(vehicle_config_t *config) {
     *config = (vehicle_config_t){
-        .id_set = AGV_ID_SET_HEADING,
         .park_guard = true,
         .seed = 1u,
         .gear_change_ms = 120u,
@@ -42,6 +41,7 @@ void vehicle_defaults(vehicle_config_t *config) {
     };
     for (int m = 0; m < AGV_MSG_COUNT; m++) {
         config->phase_ms[m] = VEHICLE_ROWS[m].phase_ms;
+        config->ids.of[m] = agv_message_id((uint32_t)m, AGV_ID_SET_HEADING);
     }
 }
 
@@ -59,7 +59,7 @@ void vehicle_init(vehicle_t *vehicle, const vehicle_config_t *config, vehicle_se
     vehicle->people.ai_gear = AGV_GEAR_N;
     for (int m = 0; m < AGV_MSG_COUNT; m++) {
         vehicle->message_ms[m] = UINT64_MAX;
-        vehicle->id[m] = agv_message_id((agv_message_t)m, config->id_set);
+        vehicle->id[m] = config->ids.of[m];
     }
     for (int n = 0; n < VEHICLE_NODES; n++) {
         const uint32_t start_ms = config->start_ms[n];

@@ -55,7 +55,7 @@ typedef void vehicle_send_fn(void *ctx, vehicle_node_t from, hal_can_side_t side
 
 /** How a vehicle is built. Start from vehicle_defaults(). */
 typedef struct {
-    agv_id_set_t id_set;
+    agv_ids_t ids;                    /**< of all messages */
     bool gateway;                     /**< the AI computer is on the AI side, the others on the vehicle side */
     bool park_guard;                  /**< the VCU takes P only below walking pace (default) */
     bool obeys_short_frames;          /**< the VCU takes a 168h, 075h or 43Fh of any length and in FD format */

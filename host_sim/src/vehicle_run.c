@@ -202,7 +202,7 @@ static bool open_bus(run_t *run) {
     };
 
     vehicle_defaults(&config.vehicle);
-    config.vehicle.id_set = (agv_id_set_t)request->config.id_set;
+    agv_config_ids(&request->config, &config.vehicle.ids);
     config.vehicle.gateway = request->interfaces[HAL_CAN_AI] != NULL;
     return vehicle_bus_open(&run->bus, &config);
 }

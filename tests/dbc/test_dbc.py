@@ -4,7 +4,7 @@
 canmatrix knows nothing of the C code, and the C code nothing of the DBC file: what both agree on was written twice.
 Every comparison runs for all messages and both identifier sets, on boundaries and on random values.
 
-usage: test_dbc.py --dbc FILE --codec PROGRAM --document FILE [--seed N] [--random N] [--expect TEST:MESSAGE ...]
+usage: test_dbc.py --dbc FILE --codec PROGRAM --status PROGRAM --document FILE [--seed N] [--random N] [--expect TEST:MESSAGE ...]
 
 --expect turns the test round, to prove that it can fail: the run succeeds when exactly these comparisons find a
 difference, and no other does (MESSAGE - for a test that compares all messages at once).
@@ -32,6 +32,8 @@ OPTIONS = argparse.Namespace(compared=0)
 
 # The DBC file has each message once an identifier; the second one of these has this ending.
 TABLE_SUFFIX = "_table"
+
+STATUS_FRAME = "supervisor_status"
 
 # By hand, from the protocol document. AI commands may also come from the supervisor.
 SENDERS = {
@@ -260,6 +262,8 @@ class DbcAgainstCodec(unittest.TestCase):
         cls.codec = Codec(OPTIONS.codec)
         with open(OPTIONS.document, encoding="utf-8") as document:
             cls.document = document.read()
+        lines = subprocess.run([OPTIONS.status], text=True, capture_output=True, check=True).stdout.splitlines()
+        cls.status = [line.split() for line in lines]
         complaints = io.StringIO()
         handler = logging.StreamHandler(complaints)
         logging.getLogger().addHandler(handler)
@@ -297,8 +301,47 @@ class DbcAgainstCodec(unittest.TestCase):
                 self.assertEqual(frame.name, name + (TABLE_SUFFIX if other else ""))
                 self.assertEqual(self.codec.ask([f"from_id {frame.arbitration_id.id} {id_set}"]), [name])
                 ids.add(frame.arbitration_id.id)
-        self.assertEqual(sorted(ids), sorted(frame.arbitration_id.id for frame in self.dbc.frames))
-        self.assertEqual(len(self.dbc.frames), 13)
+        of_protocol = [frame for frame in self.dbc.frames if frame.name != STATUS_FRAME]
+        self.assertEqual(sorted(ids), sorted(frame.arbitration_id.id for frame in of_protocol))
+        self.assertEqual(len(of_protocol), 13)
+
+    # Shows: TOP-3
+    def test_status_codes(self):
+        frame = self.dbc.frame_by_name(STATUS_FRAME)
+        words = {kind: [row[1:] for row in self.status if row[0] == kind] for kind in ("id", "period", "state", "reason")}
+        self.assertEqual([[str(frame.arbitration_id.id)], [str(frame.cycle_time)]], words["id"] + words["period"])
+        self.assertEqual(frame.size, 8)
+        self.assertEqual(frame.transmitters, ["Supervisor"])
+        self.assertEqual(frame.signal_by_name("state").values, {int(code): name for name, code in words["state"]})
+        reasons = {int(code): name for name, code in words["reason"]} | {255: "none"}
+        self.assertEqual(frame.signal_by_name("first_reason").values, reasons)
+
+    # Shows: TOP-3
+    def test_status_frames(self):
+        frame = self.dbc.frame_by_name(STATUS_FRAME)
+        seen, counters = set(), []
+        for payload, state, reason, output, checksum in (row[1:] for row in self.status if row[0] == "frame"):
+            signals = frame.decode(bytes.fromhex(payload))
+            names = {name: signal.named_value for name, signal in signals.items()}
+            self.assertEqual((names["state"], names["first_reason"], names["safety_output"]), (state, reason, output))
+            self.assertEqual(signals["config_checksum"].raw_value, int(checksum), payload)
+            counters.append(signals["alive_counter"].raw_value)
+            seen.add((state, reason, output))
+        self.assertEqual(counters, [*range(len(counters) // 2)] * 2)
+        fault = "EPS_OVER_CURRENT_SHUTDOWN"
+        self.assertEqual(seen, {("INIT", "none", "open"), ("STANDBY", "none", "closed"), ("ACTIVE", "none", "closed"),
+                                ("TRIPPED", fault, "closed"), ("SAFE", fault, "closed"), ("TRIPPED", fault, "open")})
+
+    # Shows: TOP-3
+    def test_status_document(self):
+        frame = self.dbc.frame_by_name(STATUS_FRAME)
+        rows = document_rows(self.document, f"{frame.arbitration_id.id:X}h {STATUS_FRAME}")
+        self.assertEqual([row[2].strip("`") for row in rows], [signal.name for signal in frame.signals])
+        for byte, bit, field, _ in rows:
+            ones = int.from_bytes(place(frame.signal_by_name(field.strip("`")), -1, bytes(8)), "little")
+            self.assertEqual(documented_bits(byte, bit), ones, field)
+        states = {f"{code:02X}h {name}" for code, name in frame.signal_by_name("state").values.items()}
+        self.assertEqual(set(rows[0][3].split(", ")), states)
 
     # Shows: P16
     def test_cycle_times(self):
@@ -444,6 +487,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--dbc", required=True)
     parser.add_argument("--codec", required=True)
+    parser.add_argument("--status", required=True)
     parser.add_argument("--document", required=True)
     parser.add_argument("--seed", type=int, default=20261121)
     parser.add_argument("--random", type=int, default=2000)

@@ -96,19 +96,14 @@ void hal_watchdog_feed(hal_t *hal) {
 
 /* ---- The invariants: all that is assumed of the memory between two calls ---- */
 
-/* Every setting within its range: agv_config_check refuses others at the start, and the seal finds what changes later. */
+/* Every setting within its range: agv_config_check refuses others at the start, and the seal finds what changes later. Of the
+   identifiers nothing is assumed. */
 static void sound_config(agv_config_t *config) {
 #define AGV_SETTING(name, preset, lowest, highest, unit, meaning) config->name = (uint16_t)any(lowest, highest);
 #define AGV_CHOICE(name, preset, words, meaning) config->name = (uint16_t)any(0u, 1u);
 #include "agv/config_settings.def"
 #undef AGV_SETTING
 #undef AGV_CHOICE
-#define AGV_COMMAND AGV_STATUS
-#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter)                                        \
-    config->id_##name = (uint16_t)any(1u, AGV_ID_MAX);
-#include "agv/message_table.def"
-#undef AGV_COMMAND
-#undef AGV_STATUS
 }
 
 /* A truth is 0 or 1 in memory. */
@@ -169,12 +164,6 @@ static void check_invariants(const agv_core_t *core) {
 #include "agv/config_settings.def"
 #undef AGV_SETTING
 #undef AGV_CHOICE
-#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter)                                        \
-    within(core->config.id_##name, 1u, AGV_ID_MAX);
-#define AGV_COMMAND AGV_STATUS
-#include "agv/message_table.def"
-#undef AGV_COMMAND
-#undef AGV_STATUS
 }
 
 /* ---- The entry points ---- */

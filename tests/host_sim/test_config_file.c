@@ -56,6 +56,17 @@ void test_a_file_that_says_nothing(void) {
     load_bad("---\n...\n", "c.yaml:2: no settings"); /* a document with nothing in it is a value, null */
 }
 
+/* What a setting needs beside it. */
+static const char *company(const agv_setting_info_t *info) {
+    if (strcmp(info->name, "reset_hold_ms") == 0) {
+        return "reset_hold_max_ms: 30000\n";
+    }
+    if (strcmp(info->name, "reset_hold_max_ms") == 0) {
+        return "reset_hold_ms: 500\n";
+    }
+    return info->gateway_only ? "topology: gateway\n" : "";
+}
+
 /* Shows: INT-2 */
 void test_every_setting_is_read_by_its_name_up_to_its_limits(void) {
     for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
@@ -66,11 +77,14 @@ void test_every_setting_is_read_by_its_name_up_to_its_limits(void) {
         const uint16_t values[] = {info->lowest, info->highest};
         for (size_t v = 0; v < 2; v++) {
             char text[128];
-            (void)snprintf(text, sizeof text, "%s: %u\n", info->name, values[v]);
+            (void)snprintf(text, sizeof text, "%s%s: %u\n", company(info), info->name, values[v]);
             agv_config_defaults(&config);
             load_good(text);
             TEST_ASSERT_EQUAL_UINT16_MESSAGE(values[v], agv_config_get(&config, i), text);
             (void)agv_config_set(&config, i, info->preset);
+            config.reset_hold_ms = defaults.reset_hold_ms;
+            config.reset_hold_max_ms = defaults.reset_hold_max_ms;
+            config.topology = defaults.topology;
             assert_default();
         }
     }
@@ -209,17 +223,44 @@ void test_what_is_no_yaml(void) {
 /* Shows: INT-2 */
 void test_settings_that_do_not_fit_together(void) {
     load_bad("park: at_once\nown_heartbeat: frozen\n",
-             "c.yaml:2: own_heartbeat: this value needs the gateway topology\n");
+             "c.yaml:2: own_heartbeat: has no effect on a shared bus; this value needs the gateway topology\n");
     load_good("own_heartbeat: frozen\ntopology: gateway\n");
     agv_config_defaults(&config);
-    load_bad("status_frame_id: 0x203\n", "c.yaml:1: status_frame_id: this is an identifier of the protocol\n");
+    load_bad("status_frame_id: 0x203\n", "c.yaml:1: status_frame_id: another message has this identifier\n");
+    agv_config_defaults(&config);
+    load_bad("\nthrottle_ceiling_pct: 50\n",
+             "c.yaml:2: throttle_ceiling_pct: has no effect on a shared bus; this value needs the gateway topology\n");
+    agv_config_defaults(&config);
+    load_bad("reset_hold_ms: 5000\n", "c.yaml:1: reset_hold_ms: must be below reset_hold_max_ms\n");
+    agv_config_defaults(&config);
+    load_bad("reset_hold_max_ms: 1000\n", "c.yaml:1: reset_hold_max_ms: must be above reset_hold_ms\n");
+}
+
+/* Shows: INT-2, P1 */
+void test_an_identifier_twice_is_refused_with_the_line_that_makes_it_so(void) {
+    load_good("id_gear_command: 0x169\nid_vehicle_status: 868\n");
+    TEST_ASSERT_EQUAL_HEX16(0x169, config.id_gear_command);
+    TEST_ASSERT_EQUAL_HEX16(0x364, config.id_vehicle_status);
+    agv_config_defaults(&config);
+    load_bad("id_gear_command: 0x169\nid_throttle_command: 0x169\n",
+             "c.yaml:2: id_throttle_command: another message has this identifier\n");
+    agv_config_defaults(&config);
+    load_bad("park: at_once\nid_gear_command: 0x101\n",
+             "c.yaml:2: id_gear_command: another message has this identifier\n");
+    agv_config_defaults(&config);
+    load_bad("\nid_gear_command: 0x7F0\n", "c.yaml:2: id_gear_command: another message has this identifier\n");
+    agv_config_defaults(&config);
+    load_bad("id_set: table\nid_gear_command: 0x203\n",
+             "c.yaml:2: id_gear_command: another message has this identifier\n");
 }
 
 void test_a_problem_without_a_line_is_named_without_one(void) {
     memset(&lines, 0, sizeof lines);
     config.own_heartbeat = AGV_OWN_HEARTBEAT_FROZEN;
     TEST_ASSERT_FALSE(config_check(&config, &lines));
-    TEST_ASSERT_EQUAL_STRING("host_sim: own_heartbeat: this value needs the gateway topology\n", scratch_said());
+    TEST_ASSERT_EQUAL_STRING(
+        "host_sim: own_heartbeat: has no effect on a shared bus; this value needs the gateway topology\n",
+        scratch_said());
     config.trips.words[AGV_FAULT_COUNT / 32] |= 1u << (AGV_FAULT_COUNT % 32);
     config.own_heartbeat = AGV_OWN_HEARTBEAT_RUNNING;
     TEST_ASSERT_FALSE(config_check(&config, &lines));
@@ -256,5 +297,7 @@ void test_options_change_what_the_file_says(void) {
     TEST_ASSERT_EQUAL_UINT16(AGV_SHADOW_ON, config.shadow);
     options.topology = AGV_TOPOLOGY_SHARED;
     TEST_ASSERT_FALSE(config_options_make(&options, &config));
-    TEST_ASSERT_NOT_NULL(strstr(scratch_said(), "c.yaml:3: own_heartbeat: this value needs the gateway topology\n"));
+    TEST_ASSERT_NOT_NULL(
+        strstr(scratch_said(),
+               "c.yaml:3: own_heartbeat: has no effect on a shared bus; this value needs the gateway topology\n"));
 }

@@ -99,7 +99,9 @@ void test_the_summary(void) {
                                                    .dropped = 8,
                                                    .sent = 9,
                                                    .shadowed = 10,
+                                                   .limited = 14,
                                                    .warnings = 11},
+                                      .supervised_ms = 15,
                                       .skipped_lines = 12,
                                       .backward_stamps = 13,
                                       .final_state = AGV_STATE_SAFE,
@@ -107,7 +109,8 @@ void test_the_summary(void) {
     events_write_summary(output, &summary);
     TEST_ASSERT_EQUAL_STRING("{\"t_ms\": 1, \"event\": \"summary\", \"received\": 2, \"rejected\": {\"length\": 3, "
                              "\"extended\": 4, \"remote\": 5, \"fd\": 6, \"error\": 7}, \"dropped\": 8, \"sent\": 9, "
-                             "\"shadowed\": 10, \"warnings\": 11, \"skipped_lines\": 12, \"backward_stamps\": 13, "
+                             "\"shadowed\": 10, \"limited\": 14, \"warnings\": 11, \"supervised_ms\": 15, "
+                             "\"skipped_lines\": 12, \"backward_stamps\": 13, "
                              "\"final_state\": \"SAFE\", \"first_reason\": \"BUS_OFF\"}\n",
                              lines());
 }

@@ -55,12 +55,22 @@ static hal_can_frame_t with_id_of_set(const fixture_t *f, const hal_can_frame_t 
     return renamed;
 }
 
+static bool is_status_frame(const fixture_t *f, hal_can_side_t side, const hal_can_frame_t *frame) {
+    return side == HAL_CAN_VEHICLE && f->config.status_frame_id != 0 && frame->id == f->config.status_frame_id;
+}
+
 static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *on_wire) {
     fixture_t *f = (fixture_t *)ctx;
     const hal_can_frame_t renamed = with_id_of_set(f, on_wire);
     const hal_can_frame_t *frame = &renamed;
     oracle_sent(&f->oracle, side, frame, agv_supervisor_state(&f->supervisor));
     TEST_ASSERT_EQUAL_STRING_MESSAGE("", oracle_verdict(&f->oracle), f->what);
+    if (is_status_frame(f, side, on_wire)) {
+        f->status_count++;
+        if (!f->log_status) {
+            return;
+        }
+    }
     if (f->long_run && f->sent_count == FIXTURE_SENT_MAX) {
         f->sent_count = 0;
     }
@@ -114,6 +124,9 @@ static void start_supervisor(fixture_t *f) {
     f->oracle.signal_id = table ? 0x201 : 0x43F;
     f->oracle.vehicle_id = table ? 0x203 : 0x363;
     f->oracle.own_status_id = f->config.status_frame_id;
+    f->oracle.hold_age_ms = f->config.hold_age_ms;
+    f->oracle.mode_invalid_ms = f->config.mode_invalid_ms;
+    f->oracle.now_ms = f->now_ms;
     oracle_restart(&f->oracle);
     f->call++;
     agv_supervisor_start(&f->supervisor, &f->ports, &f->config, f->self_test_passed, f->now_ms);
@@ -233,6 +246,14 @@ void fixture_gear(fixture_t *f, uint8_t gear) {
     f->traffic[AGV_MSG_GEAR_STATUS].data[0] = gear;
 }
 
+void fixture_throttle(fixture_t *f, uint8_t counts) {
+    f->traffic[AGV_MSG_THROTTLE_STATUS].data[0] = counts;
+}
+
+void fixture_speed(fixture_t *f, uint16_t counts) {
+    put_u16(f->traffic[AGV_MSG_VEHICLE_STATUS].data, counts);
+}
+
 void fixture_angle(fixture_t *f, uint16_t raw) {
     put_u16(&f->traffic[AGV_MSG_STEERING_STATUS].data[2], raw);
 }
@@ -249,11 +270,17 @@ void fixture_wheels(fixture_t *f, int32_t left_mm_s, int32_t right_mm_s) {
     put_u16(&data[6], (uint16_t)((uint32_t)right_mm_s >> 16u));
 }
 
+void fixture_drive(fixture_t *f, int32_t mm_s) {
+    const uint32_t amount_mm_s = (uint32_t)(mm_s < 0 ? -mm_s : mm_s);
+    fixture_wheels(f, mm_s, mm_s);
+    fixture_speed(f, (uint16_t)(amount_mm_s * 36u / 10u));
+}
+
 void fixture_vehicle_confirms(fixture_t *f) {
     fixture_mode(f, MODE_MANUAL);
     fixture_gear(f, GEAR_P);
-    fixture_wheels(f, 0, 0);
-    f->traffic[AGV_MSG_THROTTLE_STATUS].data[0] = 0;
+    fixture_throttle(f, 0);
+    fixture_drive(f, 0);
 }
 
 /* ---- Time ---- */
@@ -263,6 +290,7 @@ static void tick(fixture_t *f) {
         agv_supervisor_receive_alive(&f->supervisor);
     }
     f->call++;
+    f->oracle.now_ms = f->now_ms;
     agv_supervisor_tick(&f->supervisor, &f->ports, f->now_ms);
     oracle_returned(&f->oracle, agv_supervisor_state(&f->supervisor));
     (void)sim_hal_poll(&f->hal);
@@ -299,6 +327,14 @@ void fixture_run_before(fixture_t *f, agv_message_t message) {
 
 void fixture_run_past(fixture_t *f, agv_message_t message) {
     fixture_run_before(f, message);
+    step(f);
+}
+
+void fixture_press(fixture_t *f, uint32_t held_ms) {
+    fixture_run_before(f, AGV_MSG_VEHICLE_STATUS);
+    fixture_button(f, true);
+    fixture_run(f, held_ms);
+    fixture_button(f, false);
     step(f);
 }
 

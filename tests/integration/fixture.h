@@ -82,7 +82,9 @@ typedef struct fixture {
     oracle_t oracle;  /**< judges every frame that leaves (FSM-6): a forbidden one ends the test */
     bool
         other_ids; /**< the id_... of the configuration are what is on the wire; frames are logged and judged as if not */
-    bool long_run; /**< a full log of sent frames begins anew instead of ending the test */
+    bool long_run;         /**< a full log of sent frames begins anew instead of ending the test */
+    bool log_status;       /**< the supervisor's status frames (TOP-3) are logged too; else only counted and judged */
+    uint32_t status_count; /**< status frames sent since fixture_init() */
     uint32_t sent_count;
     fixture_sent_t sent[FIXTURE_SENT_MAX];
 } fixture_t;
@@ -146,13 +148,28 @@ void fixture_mute_ai(fixture_t *f, bool muted);
 void fixture_mode(fixture_t *f, uint8_t mode);
 void fixture_button(fixture_t *f, bool pressed);
 
-/** Set gear status, raw measured angle, raw commanded angle, both wheel speeds. */
+/**
+ * Press button 1 now, hold it for so many milliseconds, release it (FSM-3): it is down in 363h from the frame of this
+ * moment on, and the frame that many milliseconds later, which is the last thing handed over and is followed by a tick,
+ * reports it up. A multiple of 10 ms, as 363h comes. The button was reported up before.
+ */
+void fixture_press(fixture_t *f, uint32_t held_ms);
+
+/** Set gear status, throttle status, speed of 363h (counts of 1 m/h), raw measured and commanded angle, wheel speeds. */
 void fixture_gear(fixture_t *f, uint8_t gear);
+void fixture_throttle(fixture_t *f, uint8_t counts);
+void fixture_speed(fixture_t *f, uint16_t counts);
 void fixture_angle(fixture_t *f, uint16_t raw);
 void fixture_command_angle(fixture_t *f, uint16_t raw);
 void fixture_wheels(fixture_t *f, int32_t left_mm_s, int32_t right_mm_s);
 
-/** The vehicle obeys: autopilot mode off (manual), gear P, throttle 0, wheels stand. */
+/** The vehicle moves: both wheels with this speed, and 363h reports it. 0: it stands. */
+void fixture_drive(fixture_t *f, int32_t mm_s);
+
+/**
+ * The vehicle obeys: autopilot mode off (manual), gear P, throttle 0, it stands. The engagement ends with the third 363h
+ * from now on.
+ */
 void fixture_vehicle_confirms(fixture_t *f);
 /** @} */
 

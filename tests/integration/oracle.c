@@ -28,28 +28,79 @@ void oracle_restart(oracle_t *oracle) {
     oracle->angle_known = false;
     oracle->latched = false;
     oracle->held = false;
+    oracle->manual = false;
+    oracle->mode_bits = 0u;
+    oracle->ending = false;
+    oracle->before = AGV_STATE_INIT;
 }
 
-/* The hold angle is the last valid one of the moment of the trip, or the first valid one after it. */
-static void follow(oracle_t *oracle, bool latched) {
-    if (!latched) {
-        oracle->held = false;
-    } else if (!oracle->held && oracle->angle_known) {
-        oracle->held = true;
-        oracle->held_raw = oracle->angle_raw;
-    } else {
-        /* as it was */
+/* While both bits are set the mode before stands, for a while. */
+static bool manual_is_reported(const oracle_t *oracle) {
+    const bool invalid =
+        (oracle->mode_bits == 0xC0u) && ((oracle->now_ms - oracle->both_since_ms) > oracle->mode_invalid_ms);
+    return oracle->manual && !invalid;
+}
+
+static void hold(oracle_t *oracle) {
+    oracle->held = true;
+    oracle->held_raw = oracle->angle_raw;
+}
+
+/* FSM-10: the last valid angle of the moment of the trip, unless it is old. Manual drops what is held. */
+static void follow(oracle_t *oracle, agv_state_t state) {
+    const bool latched = is_latched(state);
+    if (latched && !oracle->latched && oracle->angle_known &&
+        ((oracle->now_ms - oracle->angle_ms) <= oracle->hold_age_ms)) {
+        hold(oracle);
     }
+    if (!latched || manual_is_reported(oracle)) {
+        oracle->held = false;
+    }
+    if (state != oracle->before) {
+        oracle->ending = (oracle->before == AGV_STATE_ACTIVE) && (state == AGV_STATE_STANDBY);
+    }
+    oracle->before = state;
     oracle->latched = latched;
 }
 
-void oracle_heard(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *frame) {
+/* The first valid angle after it is held when none is. */
+static void heard_angle(oracle_t *oracle, const hal_can_frame_t *frame) {
     const uint16_t raw = word_of(&frame->data[2]);
-    if ((side == HAL_CAN_VEHICLE) && (frame->id == 0x067u) && (frame->flags == 0u) && (frame->length == 8u) &&
-        (raw <= 18000u)) {
-        oracle->angle_known = true;
-        oracle->angle_raw = raw;
-        follow(oracle, oracle->latched);
+    if (raw > 18000u) {
+        return;
+    }
+    oracle->angle_known = true;
+    oracle->angle_raw = raw;
+    oracle->angle_ms = frame->time_ms;
+    if (oracle->latched && !oracle->held && !manual_is_reported(oracle)) {
+        hold(oracle);
+    }
+}
+
+static void heard_mode(oracle_t *oracle, const hal_can_frame_t *frame) {
+    const uint8_t bits = (uint8_t)(frame->data[6] & 0xC0u);
+    if ((bits == 0xC0u) && (oracle->mode_bits != 0xC0u)) {
+        oracle->both_since_ms = frame->time_ms;
+    }
+    if (bits != 0xC0u) {
+        oracle->manual = bits == 0x40u;
+    }
+    oracle->mode_bits = bits;
+}
+
+void oracle_heard(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *frame) {
+    if ((int32_t)(frame->time_ms - oracle->now_ms) > 0) {
+        oracle->now_ms = frame->time_ms;
+    }
+    if ((side != HAL_CAN_VEHICLE) || (frame->flags != 0u) || (frame->length != 8u)) {
+        return;
+    }
+    if (frame->id == 0x067u) {
+        heard_angle(oracle, frame);
+    } else if (frame->id == oracle->vehicle_id) {
+        heard_mode(oracle, frame);
+    } else {
+        /* nothing that matters here */
     }
 }
 
@@ -73,9 +124,18 @@ static bool safe_to_vehicle(const oracle_t *oracle, const hal_can_frame_t *frame
     }
 }
 
-static bool passed_to_vehicle(const oracle_t *oracle, const hal_can_frame_t *frame, agv_state_t state) {
-    const bool all = (state == AGV_STATE_ACTIVE) || oracle->pass_all_in_manual;
+/* Motion: while engaged only when the last 363h says so; the end of an engagement is told once. */
+static bool may_move(const oracle_t *oracle, agv_state_t state) {
+    return (state == AGV_STATE_ACTIVE) ? (oracle->mode_bits == 0x80u) : oracle->pass_all_in_manual;
+}
+
+static bool passed_to_vehicle(oracle_t *oracle, const hal_can_frame_t *frame, agv_state_t state) {
+    const bool all = may_move(oracle, state);
     const uint8_t gear = frame->data[0];
+    if (oracle->ending && (frame->id == 0x075u) && zeros_from(frame, 0)) {
+        oracle->ending = false;
+        return true;
+    }
     if (frame->id == oracle->signal_id) {
         return ((frame->data[4] & 0x0Fu) == 0u) && (word_of(&frame->data[0]) == 0u) &&
                (word_of(&frame->data[2]) == 0u) && (word_of(&frame->data[5]) == 0u);
@@ -97,7 +157,7 @@ static bool is_status(const oracle_t *oracle, uint32_t id) {
            (id == 0x267u) || (id == 0x101u);
 }
 
-static bool may_leave(const oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *frame, agv_state_t state) {
+static bool may_leave(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *frame, agv_state_t state) {
     if ((frame->flags != 0u) || (frame->length != 8u)) {
         return false;
     }
@@ -114,7 +174,7 @@ static bool may_leave(const oracle_t *oracle, hal_can_side_t side, const hal_can
 }
 
 void oracle_sent(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *frame, agv_state_t state) {
-    follow(oracle, is_latched(state));
+    follow(oracle, state);
     if (sends_safe_commands(state)) {
         oracle->judged++;
     } else {
@@ -131,7 +191,7 @@ void oracle_sent(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *f
 }
 
 void oracle_returned(oracle_t *oracle, agv_state_t state) {
-    follow(oracle, is_latched(state));
+    follow(oracle, state);
 }
 
 const char *oracle_verdict(const oracle_t *oracle) {

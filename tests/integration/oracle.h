@@ -18,10 +18,23 @@ typedef struct {
     uint32_t signal_id;     /* 43Fh or 201h */
     uint32_t vehicle_id;    /* 363h or 203h */
     uint32_t own_status_id; /* 0 = none */
+    uint32_t hold_age_ms;
+    uint32_t mode_invalid_ms;
+    uint32_t now_ms; /* to be kept up with the clock */
+
+    /* what is known of the mode: the bits of the last 363h, and the mode that stands */
+    uint8_t mode_bits;
+    bool manual;
+    uint32_t both_since_ms;
+
+    /* an engagement has ended: one throttle 0 may go to the vehicle */
+    agv_state_t before;
+    bool ending;
 
     /* what is known of the steering */
     bool angle_known;
     uint16_t angle_raw;
+    uint32_t angle_ms;
     bool latched;
     bool held;
     uint16_t held_raw;

@@ -9,7 +9,7 @@ typedef struct {
     agv_message_t message;
     unsigned byte;    /* 1..8, as the document counts */
     uint8_t bits;     /* set in it */
-    unsigned frames;  /* in a row before it counts */
+    unsigned frames;  /* in a row before it counts (score: N) */
     int32_t hold_raw; /* angle in the 065h at a trip while engaged; an EPS at fault is not commanded */
 } row_t;
 
@@ -40,9 +40,12 @@ static void raise(const row_t *row, agv_state_t state) {
     fixture_run(&f, 1);
 }
 
-/* The first frame without the bit ends it. */
+/* The first frame without the bit ends it; where frames are scored, the last of 2 N. */
 static void end(const row_t *row) {
     set_bits(row, false);
+    for (unsigned i = 1; row->frames > 1 && i < 2 * row->frames; i++) {
+        fixture_run_past(&f, row->message);
+    }
     fixture_run_before(&f, row->message);
     expect_fault(&f, row->fault, true);
     fixture_run(&f, 1);
@@ -109,7 +112,8 @@ static void check(const row_t *row) {
     check_init(row);
 }
 
-static void send_bad(const row_t *row, unsigned count, uint32_t gap_ms) {
+/* Nothing comes of any of them before the last one is there. */
+static void send_frames(const row_t *row, unsigned count, uint32_t gap_ms) {
     for (unsigned i = 0; i < count; i++) {
         fixture_run(&f, gap_ms);
         expect_nothing(&f, row->fault, AGV_STATE_STANDBY);
@@ -117,24 +121,44 @@ static void send_bad(const row_t *row, unsigned count, uint32_t gap_ms) {
     }
 }
 
-/* A good frame, or a gap of more than two cycles, restarts the count; a gap of exactly two cycles does not. */
-static void check_restarts(const row_t *row) {
+/* Every second frame is bad: 2, 1, 3, 2, 4, 3, 5, 4, 6: the fifth bad one brings the score to 2 N. */
+static void check_every_second(const row_t *row) {
+    f.what = "every second frame";
     fixture_standby(&f);
-    f.what = "good frame";
     fixture_run_past(&f, row->message);
     f.traffic[row->message].muted = true;
+    for (unsigned i = 0; i < 4; i++) {
+        set_bits(row, true);
+        send_frames(row, 1, 10);
+        set_bits(row, false);
+        send_frames(row, 1, 10);
+    }
     set_bits(row, true);
-    send_bad(row, row->frames - 1, 10);
-    set_bits(row, false);
-    send_bad(row, 1, 10);
-    set_bits(row, true);
-    f.what = "more than two cycles";
-    send_bad(row, row->frames - 1, 10);
-    send_bad(row, 1, 21);
-    expect_nothing(&f, row->fault, AGV_STATE_STANDBY);
-    f.what = "two cycles";
-    send_bad(row, row->frames - 1, 20);
+    send_frames(row, 1, 10);
     expect_trip(&f, row->fault, f.call, NO_HOLD);
+}
+
+/* Gaps between frames change nothing; a third of the frames bad never counts: 2, 1, 0. */
+static void check_gaps_and_thirds(const row_t *row) {
+    fixture_init(&f);
+    fixture_standby(&f);
+    fixture_run_past(&f, row->message);
+    f.traffic[row->message].muted = true;
+    f.what = "every third frame";
+    for (unsigned i = 0; i < 30; i++) {
+        set_bits(row, i % 3 == 0);
+        send_frames(row, 1, 10);
+    }
+    f.what = "gaps";
+    set_bits(row, true);
+    send_frames(row, row->frames, 60);
+    expect_trip(&f, row->fault, f.call, NO_HOLD);
+}
+
+static void check_score(const row_t *row) {
+    fixture_init(&f);
+    check_every_second(row);
+    check_gaps_and_thirds(row);
 }
 
 /* ---- EPS: 167h byte 8, bits 1 to 8 of the document ---- */
@@ -143,24 +167,21 @@ static void check_restarts(const row_t *row) {
 void test_eps_under_voltage(void) {
     const row_t row = {AGV_FAULT_EPS_UNDER_VOLTAGE, AGV_CLASS_TRIP, 13, AGV_MSG_EPS_STATUS, 8, 0x01, 3, NO_HOLD};
     check(&row);
-    fixture_init(&f);
-    check_restarts(&row);
+    check_score(&row);
 }
 
 /* Shows: SUP-4, FSM-2, EPS_OVER_VOLTAGE */
 void test_eps_over_voltage(void) {
     const row_t row = {AGV_FAULT_EPS_OVER_VOLTAGE, AGV_CLASS_TRIP, 13, AGV_MSG_EPS_STATUS, 8, 0x02, 3, NO_HOLD};
     check(&row);
-    fixture_init(&f);
-    check_restarts(&row);
+    check_score(&row);
 }
 
 /* Shows: SUP-4, FSM-2, EPS_EXCESSIVE_CURRENT */
 void test_eps_excessive_current(void) {
     const row_t row = {AGV_FAULT_EPS_EXCESSIVE_CURRENT, AGV_CLASS_TRIP, 13, AGV_MSG_EPS_STATUS, 8, 0x04, 3, NO_HOLD};
     check(&row);
-    fixture_init(&f);
-    check_restarts(&row);
+    check_score(&row);
 }
 
 /* Shows: SUP-4, FSM-2, EPS_OVER_CURRENT_SHUTDOWN */
@@ -188,17 +209,20 @@ void test_eps_position_encoder(void) {
     check(&(row_t){AGV_FAULT_EPS_POSITION_ENCODER, AGV_CLASS_TRIP, 13, AGV_MSG_EPS_STATUS, 8, 0x80, 1, NO_HOLD});
 }
 
-/* The three counts are kept apart: two frames of one and one of another are not three in a row. */
+/* The three scores are kept apart: each bit in every third frame is none of them. */
 /* Shows: SUP-4 */
-void test_counts_of_different_bits_do_not_add_up(void) {
+void test_scores_of_different_bits_do_not_add_up(void) {
     const row_t under = {AGV_FAULT_EPS_UNDER_VOLTAGE, AGV_CLASS_TRIP, 13, AGV_MSG_EPS_STATUS, 8, 0x01, 3, NO_HOLD};
     const row_t over = {AGV_FAULT_EPS_OVER_VOLTAGE, AGV_CLASS_TRIP, 13, AGV_MSG_EPS_STATUS, 8, 0x02, 3, NO_HOLD};
+    const row_t current = {
+        AGV_FAULT_EPS_EXCESSIVE_CURRENT, AGV_CLASS_TRIP, 13, AGV_MSG_EPS_STATUS, 8, 0x04, 3, NO_HOLD};
     fixture_standby(&f);
-    for (unsigned round = 0; round < 20; round++) {
-        set_bits(round % 3 == 2 ? &over : &under, true);
+    for (unsigned round = 0; round < 30; round++) {
+        set_bits(&under, round % 3 == 0);
+        set_bits(&over, round % 3 == 1);
+        set_bits(&current, round % 3 == 2);
         fixture_run_past(&f, AGV_MSG_EPS_STATUS);
-        set_bits(&under, false);
-        set_bits(&over, false);
+        expect_nothing(&f, AGV_FAULT_EPS_EXCESSIVE_CURRENT, AGV_STATE_STANDBY);
         expect_nothing(&f, AGV_FAULT_EPS_UNDER_VOLTAGE, AGV_STATE_STANDBY);
         expect_nothing(&f, AGV_FAULT_EPS_OVER_VOLTAGE, AGV_STATE_STANDBY);
     }

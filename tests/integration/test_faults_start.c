@@ -33,8 +33,7 @@ static void expect_tripped_at_the_start(agv_fault_t fault) {
 static void expect_no_reset(agv_fault_t fault) {
     fixture_run(&f, 500);
     expect_state(&f, AGV_STATE_SAFE);
-    fixture_button(&f, true);
-    fixture_run(&f, 3000);
+    fixture_press(&f, 3000);
     expect_state(&f, AGV_STATE_SAFE);
     expect_reason(&f, fault);
     expect_fault(&f, fault, true);
@@ -268,7 +267,7 @@ void test_startup_timeout(void) {
     expect_led(&f, 0);
 }
 
-/* 500 ms after the trip the vehicle still reports the autopilot as engaged; ends with the confirmation. */
+/* 500 ms, that of the trip among them, the vehicle still reports the autopilot as engaged; ends with the confirmation. */
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
 void test_safe_state_unconfirmed(void) {
     agv_event_t event;
@@ -276,7 +275,7 @@ void test_safe_state_unconfirmed(void) {
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x02;
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     expect_reason(&f, AGV_FAULT_REMOTE_POWER_LOST);
-    fixture_run(&f, 500);
+    fixture_run(&f, 498);
     expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
     expect_output(&f, true);
     fixture_run(&f, 1);
@@ -286,7 +285,7 @@ void test_safe_state_unconfirmed(void) {
     TEST_ASSERT_EQUAL_INT(AGV_CLASS_TRIP, event.b);
     expect_led(&f, 16); /* the reason of the trip ranks higher */
     fixture_vehicle_confirms(&f);
-    fixture_run(&f, 30);
+    fixture_run(&f, 40); /* three 363h */
     expect_state(&f, AGV_STATE_SAFE);
     expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));

@@ -68,6 +68,9 @@ void test_an_invalid_angle_is_no_hold_angle(void) {
     fixture_run(&f, 30); /* three of them */
     expect_state(&f, AGV_STATE_TRIPPED);
     expect_reason(&f, AGV_FAULT_STEERING_ANGLE_INVALID);
+    expect_not_held_for_a_second(); /* an EPS that reports no angle is not commanded */
+    fixture_angle(&f, 9400);
+    fixture_run(&f, 100); /* six good ones take the score from 6 to 0 */
     expect_held_for_a_second(9050);
 }
 
@@ -141,10 +144,6 @@ static void mode_unknown(bool spoilt) {
     f.traffic[AGV_MSG_EPS_STATUS].data[3] = spoilt ? 0x11 : 0x01;
 }
 
-static void manual(bool spoilt) {
-    fixture_mode(&f, spoilt ? MODE_MANUAL : MODE_ENGAGED);
-}
-
 static const struct {
     const char *what;
     void (*spoil)(bool spoilt);
@@ -162,11 +161,10 @@ static const struct {
     {"torque control", mode_torque},
     {"EPS off", mode_off},
     {"unknown mode", mode_unknown},
-    {"manual", manual},
 };
 
 /* Shows: FSM-10 */
-void test_it_is_held_only_while_the_eps_is_fit_and_nobody_steers_by_remote(void) {
+void test_it_is_held_only_while_the_eps_is_fit(void) {
     for (unsigned i = 0; i < sizeof UNFIT / sizeof UNFIT[0]; i++) {
         fixture_init(&f);
         f.what = UNFIT[i].what;
@@ -209,16 +207,97 @@ void test_a_trip_in_manual_driving_holds_nothing(void) {
     fixture_run(&f, 50);
     fixture_mode(&f, MODE_NEITHER);
     fixture_run(&f, 50);
-    expect_held_for_a_second(9300); /* of the moment of the trip */
+    fixture_angle(&f, 9100);
+    expect_held_for_a_second(9700); /* of the moment when manual ended */
+}
+
+/* The operator has steered: what was held is dropped, and taken anew from the first valid 067h after manual. */
+/* Shows: FSM-10 */
+void test_manual_after_the_trip_drops_what_is_held(void) {
+    trip_at(9123);
+    fixture_run(&f, 100);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_not_held_for_a_second();
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_angle(&f, 18001);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_run(&f, 20);
+    fixture_angle(&f, 8700);
+    fixture_run_past(&f, AGV_MSG_STEERING_STATUS);
+    fixture_angle(&f, 8800);
+    fixture_run(&f, 50);
+    expect_held_for_a_second(8700);
+}
+
+/* ---- The age of the angle ---- */
+
+/* The last valid angle is so old at the trip; since then only invalid ones came, not enough of them to be a fault. */
+static void trip_with_an_angle_of_age(uint32_t age_ms) {
+    fixture_init(&f);
+    f.config.status_invalid_frames = 10;
+    fixture_angle(&f, 9123);
+    fixture_command_angle(&f, 9123);
+    fixture_active(&f);
+    fixture_mute_ai(&f, true);
+    fixture_run_past(&f, AGV_MSG_STEERING_STATUS);
+    fixture_angle(&f, 18001);
+    fixture_run(&f, age_ms);
+    walk_trip(&f);
+}
+
+/* Shows: FSM-10 */
+void test_an_angle_of_50_ms_before_the_trip_is_held_and_an_older_one_is_not(void) {
+    trip_with_an_angle_of_age(50);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x065));
+    fixture_angle(&f, 9400);
+    expect_held_for_a_second(9123);
+    trip_with_an_angle_of_age(51);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
+    fixture_angle(&f, 9400);
+    fixture_run_past(&f, AGV_MSG_STEERING_STATUS);
+    fixture_angle(&f, 9500);
+    fixture_run(&f, 30);
+    expect_held_for_a_second(9400);
+}
+
+/* ---- The wheels stand ---- */
+
+/* Standing begins 100 ms after the first slow 101h. The last 065h leaves before its 5 s are over. */
+/* Shows: FSM-10 */
+void test_it_ends_when_the_wheels_have_stood_for_5_s(void) {
+    f.long_run = true;
+    walk_to_tripped_driving(&f, 1000);
+    fixture_run(&f, 2000);
+    fixture_wheels(&f, 0, 0);
+    fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
+    fixture_run(&f, 100 + 4000 - 1);
+    expect_held_for_a_second(ANGLE_CENTRE);
+    expect_not_held_for_a_second();
+    fixture_wheels(&f, 50, 0);
+    fixture_run(&f, 30);
+    expect_held_for_a_second(ANGLE_CENTRE);
+}
+
+/* Shows: FSM-10 */
+void test_a_trip_after_the_wheels_have_stood_for_5_s_holds_nothing(void) {
+    fixture_active(&f);
+    fixture_run(&f, 5000);
+    fixture_mute_ai(&f, true);
+    walk_trip(&f);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
+    expect_not_held_for_a_second();
+    fixture_wheels(&f, 0, 60);
+    fixture_run(&f, 30);
+    expect_held_for_a_second(ANGLE_CENTRE);
 }
 
 /* Shows: FSM-10, FSM-3 */
 void test_a_press_in_vain_leaves_the_held_angle(void) {
-    uint8_t missing = 0;
+    uint16_t missing = 0;
     trip_at(9123);
     fixture_angle(&f, 8700);
-    fixture_button(&f, true);
-    fixture_run(&f, 1100);
+    fixture_press(&f, 1100);
     TEST_ASSERT_EQUAL_UINT32(1, walk_refusals(&f, &missing));
     expect_held_for_a_second(9123);
 }
@@ -265,9 +344,7 @@ void test_after_a_restart_nothing_is_held_before_the_eps_is_alive(void) {
 void test_a_second_trip_holds_its_own_angle(void) {
     fixture_angle(&f, 9100);
     walk_to_safe(&f);
-    fixture_button(&f, true);
-    fixture_run(&f, 1100);
-    fixture_button(&f, false);
+    fixture_press(&f, 1000);
     expect_state(&f, AGV_STATE_STANDBY);
     fixture_angle(&f, 9900);
     fixture_mode(&f, MODE_NEITHER);

@@ -95,7 +95,7 @@ void test_one_frame_that_is_not_well_starts_the_500_ms_anew(void) {
 typedef struct {
     const char *what;
     void (*spoil)(bool spoilt);
-    uint8_t missing;
+    uint16_t missing;
 } obstacle_t;
 
 static void freeze_vcu(bool spoilt) {
@@ -130,6 +130,14 @@ static void mute_101(bool spoilt) {
     f.traffic[AGV_MSG_WHEEL_SPEED].muted = spoilt;
 }
 
+static void turn_a_wheel(bool spoilt) {
+    fixture_wheels(&f, 0, spoilt ? -50 : -49);
+}
+
+static void report_speed(bool spoilt) {
+    fixture_speed(&f, spoilt ? 181 : 180);
+}
+
 static void engage(bool spoilt) {
     fixture_mode(&f, spoilt ? MODE_ENGAGED : MODE_MANUAL);
     fixture_mute_ai(&f, !spoilt); /* engaged without an AI computer would be a trip cause, too */
@@ -152,14 +160,18 @@ static void bus_off(bool spoilt) {
 }
 
 static const obstacle_t OBSTACLES[] = {
-    {"VCU counter stands still", freeze_vcu, AGV_MISSING_VCU_HEARTBEAT | AGV_MISSING_TRIP_CAUSE},
+    {"VCU counter stands still", freeze_vcu,
+     AGV_MISSING_VCU_HEARTBEAT | AGV_MISSING_TRIP_CAUSE | AGV_MISSING_STANDSTILL},
     {"EPS counter stands still", freeze_eps, AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_TRIP_CAUSE},
-    {"no 363h", mute_363, AGV_MISSING_VCU_HEARTBEAT | AGV_MISSING_TRIP_CAUSE | AGV_MISSING_MANUAL},
+    {"no 363h", mute_363,
+     AGV_MISSING_VCU_HEARTBEAT | AGV_MISSING_TRIP_CAUSE | AGV_MISSING_MANUAL | AGV_MISSING_STANDSTILL},
     {"no 067h", mute_067, AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_TRIP_CAUSE},
     {"no 167h", mute_167, AGV_MISSING_MESSAGES | AGV_MISSING_TRIP_CAUSE},
     {"no 0A3h", mute_0a3, AGV_MISSING_MESSAGES | AGV_MISSING_TRIP_CAUSE},
     {"no 050h", mute_050, AGV_MISSING_MESSAGES | AGV_MISSING_TRIP_CAUSE},
-    {"no 101h", mute_101, AGV_MISSING_MESSAGES | AGV_MISSING_TRIP_CAUSE},
+    {"no 101h", mute_101, AGV_MISSING_MESSAGES | AGV_MISSING_TRIP_CAUSE | AGV_MISSING_STANDSTILL},
+    {"a wheel turns", turn_a_wheel, AGV_MISSING_STANDSTILL},
+    {"the VCU reports a speed", report_speed, AGV_MISSING_STANDSTILL},
     {"engaged", engage, AGV_MISSING_MANUAL},
     {"neither mode", no_mode, AGV_MISSING_MANUAL},
     {"VCU alarm", alarm, AGV_MISSING_TRIP_CAUSE},
@@ -198,7 +210,7 @@ void test_each_missing_condition_keeps_init_and_is_named_after_10_s(void) {
         expect_output(&f, false);
         expect_fault(&f, AGV_FAULT_STARTUP_TIMEOUT, true);
         TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, startup_reports(&report), f.what);
-        TEST_ASSERT_EQUAL_HEX8_MESSAGE(OBSTACLES[i].missing, report.missing, f.what);
+        TEST_ASSERT_EQUAL_HEX16_MESSAGE(OBSTACLES[i].missing, report.missing, f.what);
         const agv_fault_set_t trips = agv_supervisor_active_trips(&f.supervisor);
         TEST_ASSERT_FALSE_MESSAGE(agv_fault_is_in(&trips, AGV_FAULT_STARTUP_TIMEOUT), f.what); /* it warns */
     }
@@ -227,10 +239,35 @@ void test_what_does_not_keep_init(void) {
     f.traffic[AGV_MSG_STEERING_POSITION].muted = true; /* 267h only warns */
     fixture_mute_ai(&f, true);
     fixture_gear(&f, GEAR_D);
-    fixture_wheels(&f, 2000, 2000);
+    fixture_throttle(&f, 100);
+    fixture_wheels(&f, 49, -49); /* these are values of standstill */
+    fixture_speed(&f, 180);
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 0x01; /* level 2 alarm */
     fixture_start(&f);
     fixture_run(&f, 514);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* Shows: FSM-7 */
+void test_the_speed_of_the_vcu_may_be_left_out(void) {
+    f.config.standstill_vcu_counts = AGV_STANDSTILL_VCU_ANY;
+    fixture_speed(&f, 65535);
+    fixture_start(&f);
+    fixture_run(&f, 514);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* Moving, then standing: the 500 ms begin with the first slow value. */
+/* Shows: FSM-7 */
+void test_a_vehicle_that_moves_for_a_moment_starts_the_500_ms_anew(void) {
+    fixture_start(&f);
+    fixture_run(&f, 402);
+    fixture_wheels(&f, 50, 0);
+    fixture_run(&f, 1); /* 101h at 403 ms */
+    fixture_wheels(&f, 0, 0);
+    fixture_run(&f, 509); /* well again from 413 ms on; now it is 912 ms */
+    expect_state(&f, AGV_STATE_INIT);
+    fixture_run(&f, 1);
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
@@ -275,13 +312,16 @@ void test_an_event_keeps_init_until_it_has_ended(void) {
 void test_a_vehicle_that_is_engaged_at_power_on_is_not_resumed(void) {
     fixture_mode(&f, MODE_ENGAGED);
     fixture_gear(&f, GEAR_D);
-    fixture_wheels(&f, 1500, 1500);
+    fixture_drive(&f, 1500);
     fixture_start(&f);
     f.long_run = true;
     fixture_run(&f, 30000);
     expect_state(&f, AGV_STATE_INIT);
     expect_output(&f, false);
     fixture_mode(&f, MODE_MANUAL);
+    fixture_run(&f, 2000);
+    expect_state(&f, AGV_STATE_INIT); /* it still moves */
+    fixture_drive(&f, 0);
     fixture_run(&f, 600);
     expect_state(&f, AGV_STATE_STANDBY);
 }

@@ -17,8 +17,7 @@ void tearDown(void) {
 static void press_for(uint32_t ms) {
     fixture_button(&f, false);
     fixture_run(&f, 20);
-    fixture_button(&f, true);
-    fixture_run(&f, ms);
+    fixture_press(&f, ms);
 }
 
 /* ---- The first reason ---- */
@@ -97,7 +96,7 @@ static void corrupt_memory(void) {
 }
 
 static void expect_cannot_be_reset(agv_fault_t fault) {
-    uint8_t missing = 0;
+    uint16_t missing = 0;
     const uint32_t refusals = walk_refusals(&f, &missing);
     f.long_run = true;
     expect_state(&f, AGV_STATE_TRIPPED);
@@ -107,12 +106,12 @@ static void expect_cannot_be_reset(agv_fault_t fault) {
     fixture_mute_ai(&f, true);
     fixture_run(&f, 2000);
     expect_state(&f, AGV_STATE_SAFE);
-    press_for(5000);
+    press_for(3000);
     expect_state(&f, AGV_STATE_SAFE);
     expect_reason(&f, fault);
     expect_output(&f, false);
     TEST_ASSERT_EQUAL_UINT32(refusals + 1, walk_refusals(&f, &missing));
-    TEST_ASSERT_EQUAL_HEX8(AGV_MISSING_TRIP_CAUSE, missing);
+    TEST_ASSERT_EQUAL_HEX16(AGV_MISSING_TRIP_CAUSE, missing);
 }
 
 static void expect_a_power_on_ends(agv_fault_t fault) {

@@ -13,9 +13,7 @@ void tearDown(void) {
 }
 
 static void reset_by_button(void) {
-    fixture_button(&f, true);
-    fixture_run(&f, 1020);
-    fixture_button(&f, false);
+    fixture_press(&f, 1020);
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
@@ -36,9 +34,9 @@ void test_it_stays_closed_while_the_vehicle_obeys(void) {
     TEST_ASSERT_EQUAL_UINT32(1, f.hal.safety_output.changes);
 }
 
-/* From 500 ms on without the confirmation it is open until the next STANDBY. */
+/* After 500 ms without the confirmation it is open until the next STANDBY. */
 static void expect_opens_at(uint32_t moment_ms) {
-    fixture_run(&f, moment_ms + 500 - f.now_ms);
+    fixture_run(&f, moment_ms + 499 - f.now_ms);
     expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
     expect_output(&f, true);
     fixture_run(&f, 1);
@@ -79,8 +77,7 @@ void test_p_is_not_confirmed(void) {
 /* Shows: FSM-4, FSM-1, SAFE_STATE_UNCONFIRMED */
 void test_p_counts_from_the_first_p_that_was_sent(void) {
     f.config.park = AGV_PARK_AT_STANDSTILL;
-    fixture_wheels(&f, 1000, 1000);
-    walk_to_tripped(&f);
+    walk_to_tripped_driving(&f, 1000);
     const uint32_t trip_ms = f.now_ms;
     fixture_mode(&f, MODE_MANUAL);
     expect_opens_at(trip_ms + 3000);
@@ -100,27 +97,99 @@ void test_a_confirmation_in_time_keeps_it_closed(void) {
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
 }
 
-/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
-void test_after_a_withdrawn_confirmation_the_500_ms_begin_anew(void) {
-    walk_to_safe(&f);
+/* P is not reported for so long, then it is again. */
+static void lose_p_for(uint32_t ms) {
     fixture_gear(&f, GEAR_D);
     fixture_send_now(&f, AGV_MSG_GEAR_STATUS);
     expect_state(&f, AGV_STATE_TRIPPED);
-    const uint32_t back_ms = f.now_ms;
-    fixture_run(&f, 400);
+    fixture_run(&f, ms);
     fixture_gear(&f, GEAR_P);
-    fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
-    expect_state(&f, AGV_STATE_SAFE);
-    TEST_ASSERT_TRUE(f.now_ms - back_ms < 500);
-    fixture_gear(&f, GEAR_D);
     fixture_send_now(&f, AGV_MSG_GEAR_STATUS);
-    expect_opens_at(f.now_ms);
+}
+
+/* SAFE, and the sums are empty: confirmed for 5 s. */
+static void stay_in_safe(void) {
+    walk_to_safe(&f);
+    fixture_run(&f, 5100);
+    expect_state(&f, AGV_STATE_SAFE);
+}
+
+/* In all: 500 ms since the trip, in pieces. */
+/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
+void test_a_confirmation_that_comes_and_goes_opens_it(void) {
+    stay_in_safe();
+    for (unsigned i = 0; i < 4; i++) {
+        lose_p_for(100);
+        expect_state(&f, AGV_STATE_SAFE);
+        fixture_run(&f, 1000);
+    }
+    expect_output(&f, true);
+    lose_p_for(99);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
+    expect_output(&f, true);
+    lose_p_for(1);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
     expect_open_until_the_reset();
+}
+
+/* Full, it is raised again by the next millisecond, until both were confirmed for 5 s without a break. */
+/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
+void test_only_5_s_of_both_confirmations_empty_the_sums(void) {
+    stay_in_safe();
+    lose_p_for(500);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
+    fixture_run(&f, 4999);
+    lose_p_for(1);
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
+    fixture_run(&f, 5000);
+    lose_p_for(499);
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
+    lose_p_for(1);
+    TEST_ASSERT_EQUAL_UINT32(3, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
+}
+
+/* Engaged for so long, then manual: the third 363h of it ends the engagement. */
+static void engage_for(uint32_t ms) {
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_run(&f, ms);
+    fixture_mode(&f, MODE_MANUAL);
+    for (unsigned i = 0; i < 3; i++) {
+        fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    }
+}
+
+/* Shows: FSM-4 */
+void test_the_two_sums_do_not_add_up(void) {
+    stay_in_safe();
+    lose_p_for(499);
+    engage_for(499);
+    expect_output(&f, true);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
+    engage_for(1);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
+}
+
+/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
+void test_each_sum_has_its_own_limit(void) {
+    f.config.park_confirm_timeout_ms = 2000;
+    stay_in_safe();
+    lose_p_for(1999);
+    expect_output(&f, true);
+    lose_p_for(1);
+    expect_output(&f, false);
+    fixture_init(&f);
+    f.config.confirm_timeout_ms = 300;
+    stay_in_safe();
+    engage_for(299);
+    expect_output(&f, true);
+    engage_for(1);
+    expect_output(&f, false);
 }
 
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
 void test_a_withdrawn_autopilot_off_counts_from_its_withdrawal(void) {
-    walk_to_safe(&f);
+    stay_in_safe();
     fixture_mode(&f, MODE_ENGAGED);
     fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
     expect_opens_at(f.now_ms);

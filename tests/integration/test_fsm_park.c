@@ -19,15 +19,13 @@ static void start_moving(int32_t left_mm_s, int32_t right_mm_s) {
 /* A vehicle that drives at 1 m/s trips; the AI computer is silent from then on. Returns the moment. */
 static uint32_t trip_while_driving(void) {
     f.config.park = AGV_PARK_AT_STANDSTILL;
-    start_moving(1000, 1000);
-    walk_to_tripped(&f);
+    walk_to_tripped_driving(&f, 1000);
     return f.now_ms;
 }
 
 /* Shows: FSM-1 */
 void test_by_default_p_is_commanded_at_once_while_driving(void) {
-    start_moving(1000, 1000);
-    walk_to_tripped(&f);
+    walk_to_tripped_driving(&f, 1000);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
     TEST_ASSERT_EQUAL_HEX8(GEAR_P, fixture_nth_sent(&f, 0x168, 0)->data[0]);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x43F));
@@ -71,7 +69,7 @@ void test_at_standstill_throttle_0_and_autopilot_off_go_out_at_once_and_p_does_n
 void test_at_standstill_p_is_sent_when_the_vehicle_stands(void) {
     (void)trip_while_driving();
     fixture_run(&f, 500);
-    fixture_wheels(&f, 49, -49);
+    fixture_wheels(&f, 49, -49); /* that 363h still reports 1 m/s does not matter: the wheels stand */
     fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
     const uint32_t slow_ms = f.now_ms;
     fixture_run(&f, 99);
@@ -187,8 +185,7 @@ void test_at_standstill_in_init_p_is_sent_when_the_vehicle_stands(void) {
 /* Shows: FSM-1, FSM-7, SUPERVISOR_RESET */
 void test_at_standstill_after_a_restart_the_3_s_run_from_the_start(void) {
     f.config.park = AGV_PARK_AT_STANDSTILL;
-    start_moving(1000, 1000);
-    fixture_active(&f);
+    walk_driving(&f, 1000);
     fixture_mute_ai(&f, true);
     fixture_restart(&f, HAL_RESET_WATCHDOG);
     expect_state(&f, AGV_STATE_TRIPPED);
@@ -201,10 +198,9 @@ void test_at_standstill_after_a_restart_the_3_s_run_from_the_start(void) {
 void test_at_standstill_a_second_trip_waits_anew(void) {
     f.config.park = AGV_PARK_AT_STANDSTILL;
     walk_to_safe(&f);
-    fixture_button(&f, true);
-    fixture_run(&f, 1100);
+    fixture_press(&f, 1000);
     expect_state(&f, AGV_STATE_STANDBY);
-    start_moving(300, 300);
+    fixture_drive(&f, 300);
     fixture_run(&f, 200);
     fixture_forget_sent(&f);
     walk_trip(&f);

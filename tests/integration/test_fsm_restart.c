@@ -129,8 +129,7 @@ void test_after_a_restart_a_reset_is_possible_and_forgets_the_latch(void) {
     fixture_restart(&f, HAL_RESET_WATCHDOG);
     fixture_run(&f, 1500);
     expect_state(&f, AGV_STATE_SAFE);
-    fixture_button(&f, true);
-    fixture_run(&f, 1050);
+    fixture_press(&f, 1050);
     expect_state(&f, AGV_STATE_STANDBY);
     fixture_restart(&f, HAL_RESET_WATCHDOG);
     expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET); /* not the alarm of before */
@@ -158,6 +157,61 @@ void test_a_power_on_waits_for_manual(void) {
     fixture_vehicle_confirms(&f);
     fixture_run(&f, 600);
     expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* By choice a power-on asks for an operator, too. What was stored is not taken up. */
+/* Shows: FSM-7, FSM-3, SUPERVISOR_RESET */
+void test_a_power_on_that_starts_tripped(void) {
+    f.config.after_power_on = AGV_AFTER_POWER_ON_TRIPPED;
+    fixture_start(&f);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
+    expect_output(&f, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    fixture_run(&f, 1500);
+    expect_state(&f, AGV_STATE_SAFE);
+    fixture_run(&f, 10000);
+    expect_state(&f, AGV_STATE_SAFE);
+    expect_output(&f, false);
+    fixture_press(&f, 1000);
+    expect_state(&f, AGV_STATE_STANDBY);
+    expect_output(&f, true);
+    walk_trip(&f);
+    f.store.keep_latch = true;
+    fixture_restart(&f, HAL_RESET_POWER_ON);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
+}
+
+/* A stored latch that was tripped, one that cannot be read, and none: no difference but the warning. */
+/* Shows: FSM-7, STORE_INVALID, SUPERVISOR_RESET */
+void test_a_power_on_that_starts_tripped_with_each_state_of_the_store(void) {
+    static const store_t STORES[] = {STORE_OK, STORE_CORRUPT, STORE_EMPTY};
+    for (unsigned i = 0; i < 3; i++) {
+        fixture_init(&f);
+        f.config.after_power_on = AGV_AFTER_POWER_ON_TRIPPED;
+        f.reset_cause = HAL_RESET_POWER_ON;
+        fixture_start(&f);
+        f.store.keep_latch = true;
+        spoil_store(STORES[i]);
+        fixture_restart(&f, HAL_RESET_POWER_ON);
+        expect_state(&f, AGV_STATE_TRIPPED);
+        expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
+        expect_fault(&f, AGV_FAULT_STORE_INVALID, STORES[i] == STORE_CORRUPT);
+    }
+}
+
+/* Any other reset is as it always is: the stored reason is taken up. */
+/* Shows: FSM-7 */
+void test_after_power_on_changes_no_other_reset(void) {
+    f.config.after_power_on = AGV_AFTER_POWER_ON_TRIPPED;
+    fixture_start(&f);
+    fixture_run(&f, 2500);
+    fixture_press(&f, 1000);
+    expect_state(&f, AGV_STATE_STANDBY);
+    walk_trip(&f);
+    fixture_restart(&f, HAL_RESET_WATCHDOG);
+    expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
 }
 
 /* Shows: FSM-7, STORE_INVALID */

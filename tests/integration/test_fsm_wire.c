@@ -17,7 +17,8 @@ static uint32_t wire_count;
 
 static void on_wire(void *ctx, const sim_bus_event_t *event) {
     (void)ctx;
-    if (!event->error && event->sender == f.hal.can[HAL_CAN_VEHICLE].node && wire_count < WIRE_MAX) {
+    if (!event->error && event->frame->id != 0x7F0 && /* the status frame is not the matter here */
+        event->sender == f.hal.can[HAL_CAN_VEHICLE].node && wire_count < WIRE_MAX) {
         wire[wire_count++] = *event->frame;
     }
 }

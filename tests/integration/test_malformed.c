@@ -1,5 +1,6 @@
 /* Malformed frames (P15): each kind on each message is counted and refreshes nothing, so that the silence which they
- * leave is what trips. Reserved bits (P14) are ignored. */
+ * leave is what trips. A data frame with the identifier of a command trips by itself while engaged (SUP-5). Reserved bits
+ * (P14) are ignored. */
 #include <string.h>
 
 #include "expect.h"
@@ -71,10 +72,45 @@ static void check(const kind_t *kind, agv_message_t message, uint32_t deadline_m
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, fault));
 }
 
+/* A VCU may obey it. */
+static bool is_data_frame(const kind_t *kind) {
+    return (kind->flags & (HAL_CAN_REMOTE | HAL_CAN_EXTENDED | HAL_CAN_ERROR)) == 0;
+}
+
+/* In manual it is counted, and nothing else; engaged it trips at once, and the deadline of its own message runs on. */
+static void check_no_command(const kind_t *kind, agv_message_t message, uint32_t deadline_ms, agv_fault_t fault) {
+    fixture_init(&f);
+    f.what = kind->name;
+    fixture_standby(&f);
+    f.traffic[message].flags = kind->flags;
+    f.traffic[message].length = kind->length;
+    fixture_send_now(&f, message);
+    expect_nothing(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, AGV_STATE_STANDBY);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, rejected(kind->counted), f.what);
+    fixture_init(&f);
+    fixture_active(&f);
+    fixture_run_past(&f, message);
+    const uint32_t refreshed_ms = f.now_ms;
+    f.traffic[message].flags = kind->flags;
+    f.traffic[message].length = kind->length;
+    fixture_send_now(&f, message);
+    expect_trip(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, f.call, ANGLE_CENTRE);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, rejected(kind->counted), f.what);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, rejected_in_all(), f.what);
+    fixture_run(&f, deadline_ms - (f.now_ms - refreshed_ms));
+    expect_fault(&f, fault, false);
+    fixture_run(&f, 1);
+    expect_fault(&f, fault, true);
+}
+
 static void check_all_kinds(agv_message_t message, uint32_t deadline_ms, agv_fault_t fault) {
     for (unsigned i = 0; i < KIND_COUNT; i++) {
-        check(&KINDS[i], message, deadline_ms, fault);
-        expect_reason(&f, fault);
+        if (message < AGV_COMMAND_COUNT && is_data_frame(&KINDS[i])) {
+            check_no_command(&KINDS[i], message, deadline_ms, fault);
+        } else {
+            check(&KINDS[i], message, deadline_ms, fault);
+            expect_reason(&f, fault);
+        }
     }
 }
 
@@ -88,7 +124,7 @@ void test_malformed_steering_status(void) {
     check_all_kinds(AGV_MSG_STEERING_STATUS, 50, AGV_FAULT_EPS_HEARTBEAT_LOST);
 }
 
-/* Shows: P15, SUP-2, AI_HEARTBEAT_LOST */
+/* Shows: P15, SUP-5, SUP-2, AI_HEARTBEAT_LOST, AI_COMMAND_OUT_OF_RANGE */
 void test_malformed_turn_signal_command(void) {
     check_all_kinds(AGV_MSG_TURN_SIGNAL_COMMAND, 350, AGV_FAULT_AI_HEARTBEAT_LOST);
 }
@@ -121,47 +157,79 @@ void test_malformed_steering_position(void) {
     }
 }
 
-/* Shows: P15, SUP-3, GEAR_COMMAND_TIMEOUT */
+/* Shows: P15, SUP-5, SUP-3, GEAR_COMMAND_TIMEOUT, AI_COMMAND_OUT_OF_RANGE */
 void test_malformed_gear_command(void) {
     check_all_kinds(AGV_MSG_GEAR_COMMAND, 350, AGV_FAULT_GEAR_COMMAND_TIMEOUT);
 }
 
-/* Shows: P15, SUP-3, THROTTLE_COMMAND_TIMEOUT */
+/* Shows: P15, SUP-5, SUP-3, THROTTLE_COMMAND_TIMEOUT, AI_COMMAND_OUT_OF_RANGE */
 void test_malformed_throttle_command(void) {
     check_all_kinds(AGV_MSG_THROTTLE_COMMAND, 350, AGV_FAULT_THROTTLE_COMMAND_TIMEOUT);
 }
 
-/* Shows: P15, SUP-3, STEERING_COMMAND_TIMEOUT */
+/* Shows: P15, SUP-5, SUP-3, STEERING_COMMAND_TIMEOUT, AI_COMMAND_OUT_OF_RANGE */
 void test_malformed_steering_command(void) {
     check_all_kinds(AGV_MSG_STEERING_COMMAND, 125, AGV_FAULT_STEERING_COMMAND_TIMEOUT);
 }
 
-/* ---- Whatever they carry, they raise nothing ---- */
+/* The same from the AI side of a gateway. */
+/* Shows: P15, SUP-5, TOP-2, AI_COMMAND_OUT_OF_RANGE */
+void test_malformed_commands_from_the_ai_side(void) {
+    for (unsigned i = 0; i < KIND_COUNT; i++) {
+        for (unsigned message = 0; message < AGV_COMMAND_COUNT; message++) {
+            fixture_init(&f);
+            f.config.topology = AGV_TOPOLOGY_GATEWAY;
+            f.what = KINDS[i].name;
+            fixture_active(&f);
+            f.traffic[message].flags = KINDS[i].flags;
+            f.traffic[message].length = KINDS[i].length;
+            fixture_forget_sent(&f);
+            fixture_send_now(&f, (agv_message_t)message);
+            if (is_data_frame(&KINDS[i])) {
+                expect_trip(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, f.call, ANGLE_CENTRE);
+            } else {
+                expect_nothing(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, AGV_STATE_ACTIVE);
+                expect_silence(&f);
+            }
+        }
+    }
+}
+
+/* ---- Whatever else they carry, they raise nothing ---- */
 
 /* Every kind on every message in every millisecond, with all bits set: alarms, faults, modes, values out of range. */
-static void storm(unsigned round) {
+static void storm(unsigned round, bool with_commands) {
     const kind_t *kind = &KINDS[round % KIND_COUNT];
-    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
+    for (unsigned i = with_commands || !is_data_frame(kind) ? 0 : AGV_COMMAND_COUNT; i < AGV_MSG_COUNT; i++) {
         hal_can_frame_t frame = {.id = f.traffic[i].id, .flags = kind->flags, .length = kind->length};
         memset(frame.data, 0xFF, kind->length < 8 ? kind->length : 8);
         fixture_raw(&f, f.traffic[i].side, frame);
     }
 }
 
+static void run_storm(agv_state_t state) {
+    for (unsigned round = 0; round < 1000; round++) {
+        storm(round, state == AGV_STATE_STANDBY);
+        fixture_run(&f, 1);
+        f.sent_count = f.config.topology == AGV_TOPOLOGY_GATEWAY ? 0 : f.sent_count;
+    }
+    expect_state(&f, state);
+    expect_silence(&f);
+    TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
+    TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->warnings);
+}
+
+/* Commands among them while a human drives. */
 static void check_storm(unsigned topology) {
     fixture_init(&f);
     f.config.topology = (uint16_t)topology;
-    fixture_active(&f);
-    for (unsigned round = 0; round < 1000; round++) {
-        storm(round);
-        fixture_run(&f, 1);
-        f.sent_count = topology == AGV_TOPOLOGY_GATEWAY ? 0 : f.sent_count;
-    }
-    expect_state(&f, AGV_STATE_ACTIVE);
-    expect_silence(&f);
-    TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
+    fixture_standby(&f);
+    run_storm(AGV_STATE_STANDBY);
     TEST_ASSERT_EQUAL_UINT32(1000 * AGV_MSG_COUNT, rejected_in_all());
-    TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->warnings);
+    fixture_init(&f);
+    f.config.topology = (uint16_t)topology;
+    fixture_active(&f);
+    run_storm(AGV_STATE_ACTIVE);
 }
 
 /* Shows: P15, INT-2 */
@@ -170,21 +238,19 @@ void test_a_storm_of_malformed_frames(void) {
     check_storm(AGV_TOPOLOGY_GATEWAY);
 }
 
-/* Nor do they fill a gap: of four bad frames in 30 ms the two in the middle are malformed, so it was a gap. */
+/* Nor do they count among the frames of a score, bad or good: two bad ones, two malformed ones, and the third. */
 /* Shows: P15, SUP-4, EPS_UNDER_VOLTAGE */
-void test_malformed_frames_do_not_fill_a_gap(void) {
+void test_malformed_frames_are_not_scored(void) {
     fixture_standby(&f);
     fixture_run_past(&f, AGV_MSG_EPS_STATUS);
-    f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x01;
-    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
-    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
-    f.traffic[AGV_MSG_EPS_STATUS].length = 7;
-    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
-    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
-    f.traffic[AGV_MSG_EPS_STATUS].length = 8;
-    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
-    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
+    for (unsigned i = 0; i < 4; i++) {
+        f.traffic[AGV_MSG_EPS_STATUS].data[7] = i % 2 == 0;
+        f.traffic[AGV_MSG_EPS_STATUS].length = i % 2 == 0 ? 8 : 7;
+        fixture_run_past(&f, AGV_MSG_EPS_STATUS);
+        f.traffic[AGV_MSG_EPS_STATUS].data[7] = 1;
+    }
     expect_nothing(&f, AGV_FAULT_EPS_UNDER_VOLTAGE, AGV_STATE_STANDBY);
+    f.traffic[AGV_MSG_EPS_STATUS].length = 8;
     fixture_run_past(&f, AGV_MSG_EPS_STATUS);
     expect_trip(&f, AGV_FAULT_EPS_UNDER_VOLTAGE, f.traffic[AGV_MSG_EPS_STATUS].call, NO_HOLD);
 }

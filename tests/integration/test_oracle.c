@@ -20,12 +20,21 @@ static uint32_t forbidden(hal_can_side_t side, hal_can_frame_t frame, agv_state_
 
 /* 067h with this raw angle. */
 static void measured(uint16_t raw) {
-    const hal_can_frame_t frame = {.id = 0x067, .length = 8, .data = {1, 100, (uint8_t)raw, (uint8_t)(raw >> 8u)}};
+    const hal_can_frame_t frame = {
+        .id = 0x067, .length = 8, .data = {1, 100, (uint8_t)raw, (uint8_t)(raw >> 8u)}, .time_ms = oracle.now_ms};
+    oracle_heard(&oracle, HAL_CAN_VEHICLE, &frame);
+}
+
+/* 363h with these mode bits. */
+static void reported(uint8_t bits) {
+    const hal_can_frame_t frame = {
+        .id = 0x363, .length = 8, .data = {0, 0, 0, 0, 0, 0, bits}, .time_ms = oracle.now_ms};
     oracle_heard(&oracle, HAL_CAN_VEHICLE, &frame);
 }
 
 void setUp(void) {
-    oracle = (oracle_t){.signal_id = 0x43F, .vehicle_id = 0x363};
+    oracle = (oracle_t){.signal_id = 0x43F, .vehicle_id = 0x363, .hold_age_ms = 50, .mode_invalid_ms = 50};
+    oracle_restart(&oracle);
 }
 
 void tearDown(void) {
@@ -99,6 +108,59 @@ void test_after_a_restart_the_first_valid_angle_is_held(void) {
     TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED));
 }
 
+/* Shows: FSM-6, FSM-10 */
+void test_an_angle_of_more_than_50_ms_before_the_trip_is_not_held(void) {
+    measured(9200);
+    oracle.now_ms = 50;
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED));
+    oracle_returned(&oracle, AGV_STATE_STANDBY);
+    oracle.now_ms = 51;
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED));
+    measured(9100);
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x8C, 0x23), AGV_STATE_TRIPPED));
+}
+
+/* Both bits: the mode before stands for 50 ms. */
+/* Shows: FSM-6, FSM-10 */
+void test_manual_drops_what_is_held(void) {
+    measured(9200);
+    oracle_returned(&oracle, AGV_STATE_TRIPPED);
+    reported(0x40);
+    oracle_returned(&oracle, AGV_STATE_TRIPPED);
+    measured(9100);
+    reported(0xC0);
+    oracle.now_ms = 50;
+    measured(9100);
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x8C, 0x23), AGV_STATE_TRIPPED));
+    reported(0x80);
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x8C, 0x23), AGV_STATE_TRIPPED));
+    measured(9100);
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x8C, 0x23), AGV_STATE_TRIPPED));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED));
+}
+
+/* Shows: FSM-6, TOP-2 */
+void test_of_motion_a_gateway_passes_only_what_the_mode_allows(void) {
+    oracle.gateway = true;
+    oracle_returned(&oracle, AGV_STATE_ACTIVE);
+    reported(0x40); /* one 363h does not end the engagement */
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 1, 0), AGV_STATE_ACTIVE));
+    reported(0xC0);
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x28, 0x23), AGV_STATE_ACTIVE));
+    reported(0x80);
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 1, 0), AGV_STATE_ACTIVE));
+}
+
+/* Shows: FSM-6, TOP-2 */
+void test_one_throttle_0_ends_an_engagement(void) {
+    oracle.gateway = true;
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 0, 0), AGV_STATE_STANDBY));
+    oracle_returned(&oracle, AGV_STATE_ACTIVE);
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 1, 0), AGV_STATE_STANDBY));
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 0, 0), AGV_STATE_STANDBY));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 0, 0), AGV_STATE_STANDBY));
+}
+
 /* Shows: FSM-6 */
 void test_on_the_shared_bus_nothing_leaves_in_standby_and_active(void) {
     TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x168, 8, 0), AGV_STATE_STANDBY));
@@ -111,6 +173,7 @@ void test_on_the_shared_bus_nothing_leaves_in_standby_and_active(void) {
 /* Shows: FSM-6, TOP-2 */
 void test_what_a_gateway_passes(void) {
     oracle.gateway = true;
+    reported(0x80);
     TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, signals(0x80, 1), AGV_STATE_STANDBY));
     TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, signals(0x81, 1), AGV_STATE_STANDBY)); /* a reserved bit */
     TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x168, 1, 0), AGV_STATE_STANDBY));

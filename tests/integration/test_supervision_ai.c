@@ -29,6 +29,14 @@ static void engage(void) {
     fixture_run_past(&f, VCU);
 }
 
+/* The engagement ends with the third 363h without it. */
+static void disengage(void) {
+    fixture_mode(&f, MODE_MANUAL);
+    for (unsigned i = 0; i < 3; i++) {
+        fixture_run_past(&f, VCU);
+    }
+}
+
 /* ---- Lost and stuck ---- */
 
 /* Muted: silent from now on. Frozen: goes on with the counter that it has. */
@@ -194,6 +202,9 @@ void test_the_class_follows_the_mode(void) {
     expect_active_trips(LOST);
     fixture_vehicle_confirms(&f);
     fixture_run_past(&f, VCU);
+    fixture_run_past(&f, VCU);
+    expect_active_trips(LOST);
+    fixture_run_past(&f, VCU);
     expect_fault(&f, LOST, true);
     expect_active_trips(AGV_FAULT_NONE);
     TEST_ASSERT_TRUE(fixture_last_raised(&f, LOST, &event));
@@ -212,6 +223,7 @@ void test_never_seen(void) {
     fixture_run(&f, 5000);
     expect_no_fault(AGV_STATE_STANDBY);
     expect_led(&f, 0);
+    fixture_wheels(&f, 800, 800);
     engage();
     fixture_run(&f, 500);
     expect_no_fault(AGV_STATE_STANDBY);
@@ -240,11 +252,29 @@ void test_never_seen_and_not_engaged_for_long_enough(void) {
     fixture_standby(&f);
     for (unsigned i = 0; i < 3; i++) {
         engage();
-        fixture_run(&f, 490);
-        fixture_mode(&f, MODE_MANUAL);
-        fixture_run(&f, 10);
+        fixture_run(&f, 460);
+        disengage();
+        fixture_run(&f, 110);
     }
     expect_no_fault(AGV_STATE_STANDBY);
+}
+
+/* One that is continued within 100 ms goes on with them: 300 ms, 30 ms and 90 ms, 80 ms more. */
+/* Shows: SUP-8, AI_HEARTBEAT_LOST */
+void test_never_seen_in_an_engagement_that_is_continued(void) {
+    f.traffic[AI].muted = true;
+    fixture_standby(&f);
+    engage();
+    const uint32_t began_ms = f.now_ms;
+    fixture_run(&f, 300);
+    disengage();
+    fixture_run(&f, 80);
+    engage();
+    fixture_run(&f, 500 - (f.now_ms - began_ms));
+    expect_no_fault(AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_reason(&f, LOST);
+    TEST_ASSERT_EQUAL_UINT32(501, f.now_ms - began_ms);
 }
 
 /* It comes up while engaged: the first 43Fh is the baseline, with the second it is alive. */
@@ -324,15 +354,121 @@ static void trip_and_reset(agv_fault_t fault, bool *how) {
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, fault));
 }
 
-/* Engaged again it is one that was never seen. */
-/* Shows: SUP-8, FSM-3, AI_HEARTBEAT_LOST */
-void test_a_reset_forgets_a_silent_ai(void) {
-    trip_and_reset(LOST, &f.traffic[AI].muted);
-    engage();
-    fixture_run(&f, 500);
+/* Engaged again it is one that was there and is lost: at once, not 500 ms later. */
+static void check_engaged_after_a_reset(agv_fault_t fault, bool *how) {
+    fixture_init(&f);
+    trip_and_reset(fault, how);
+    fixture_wheels(&f, 800, 800);
+    fixture_run(&f, 100);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run_before(&f, VCU);
     expect_no_fault(AGV_STATE_STANDBY);
     fixture_run(&f, 1);
-    expect_trip(&f, LOST, f.call, ANGLE_CENTRE);
+    expect_trip(&f, fault, f.traffic[VCU].call, ANGLE_CENTRE);
+}
+
+/* Shows: SUP-8, FSM-3, FSM-11, AI_HEARTBEAT_LOST, AI_HEARTBEAT_STUCK */
+void test_a_reset_forgets_a_dead_ai_until_the_next_engagement(void) {
+    check_engaged_after_a_reset(LOST, &f.traffic[AI].muted);
+    check_engaged_after_a_reset(STUCK, &f.traffic[AI].frozen);
+}
+
+/* Alive at the reset and engaged within its cycle: ACTIVE with its next changed counter, the value before being the baseline;
+ * its deadline has run on. */
+static void check_reset_with_ai_alive(bool goes_on) {
+    fixture_init(&f);
+    fixture_active(&f);
+    walk_trip(&f);
+    fixture_vehicle_confirms(&f);
+    fixture_run(&f, 300);
+    fixture_button(&f, true);
+    fixture_run(&f, 1100);
+    fixture_run_past(&f, AI);
+    const uint32_t beat_ms = f.now_ms;
+    expect_state(&f, AGV_STATE_SAFE);
+    fixture_button(&f, false);
+    f.traffic[AI].muted = !goes_on;
+    fixture_run_past(&f, VCU);
+    expect_state(&f, AGV_STATE_STANDBY);
+    engage();
+    expect_no_fault(AGV_STATE_STANDBY);
+    if (goes_on) {
+        fixture_run_before(&f, AI);
+        expect_no_fault(AGV_STATE_STANDBY);
+        fixture_run(&f, 1);
+        expect_no_fault(AGV_STATE_ACTIVE);
+    } else {
+        fixture_run(&f, 350 - (f.now_ms - beat_ms));
+        expect_no_fault(AGV_STATE_STANDBY);
+        fixture_run(&f, 1);
+        expect_reason(&f, LOST);
+    }
+}
+
+/* Shows: SUP-8, FSM-11, AI_HEARTBEAT_LOST */
+void test_an_ai_that_was_alive_at_the_reset(void) {
+    check_reset_with_ai_alive(true);
+    check_reset_with_ai_alive(false);
+}
+
+/* ai_lost_in_manual: trip. What was forgotten does not trip in manual: somebody has to be able to drive away. */
+/* Shows: SUP-8, FSM-3, AI_HEARTBEAT_LOST */
+void test_a_reset_forgets_it_also_if_its_loss_trips_in_manual(void) {
+    f.config.ai_lost_in_manual = AGV_AI_LOST_TRIP;
+    fixture_active(&f);
+    f.traffic[AI].muted = true;
+    fixture_run(&f, 1000);
+    reset();
+    fixture_run(&f, 5000);
+    expect_no_fault(AGV_STATE_STANDBY);
+    f.traffic[AI].muted = false;
+    fixture_run_past(&f, AI);
+    f.traffic[AI].muted = true;
+    fixture_run(&f, 350);
+    expect_no_fault(AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_reason(&f, LOST);
+}
+
+/* A cause from the AI computer that outlived the reset (here it babbles, and that trips) does not trip in manual; it does with
+ * the next engagement, and in manual when it has ended and comes again. */
+static void babble(uint32_t ms) {
+    for (uint32_t i = 0; i < ms; i += 10) {
+        fixture_send_now(&f, AGV_MSG_GEAR_COMMAND);
+        fixture_run(&f, 10);
+    }
+}
+
+static void babble_through_a_reset(void) {
+    fixture_init(&f);
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_COMMAND_TOO_FAST, true);
+    fixture_active(&f);
+    babble(300);
+    expect_reason(&f, AGV_FAULT_COMMAND_TOO_FAST);
+    fixture_vehicle_confirms(&f);
+    babble(300);
+    fixture_button(&f, true);
+    babble(1100);
+    fixture_button(&f, false);
+    babble(1000);
+    expect_state(&f, AGV_STATE_STANDBY);
+    expect_fault(&f, AGV_FAULT_COMMAND_TOO_FAST, true);
+}
+
+/* Shows: FSM-3, FSM-11, COMMAND_TOO_FAST */
+void test_a_cause_from_the_ai_that_outlived_the_reset(void) {
+    babble_through_a_reset();
+    fixture_mode(&f, MODE_ENGAGED);
+    babble(10);
+    expect_reason(&f, AGV_FAULT_COMMAND_TOO_FAST);
+    babble_through_a_reset();
+    fixture_run(&f, 400);
+    fixture_mute_ai(&f, true);
+    fixture_run(&f, 400);
+    expect_fault(&f, AGV_FAULT_COMMAND_TOO_FAST, false);
+    expect_state(&f, AGV_STATE_STANDBY);
+    babble(200);
+    expect_reason(&f, AGV_FAULT_COMMAND_TOO_FAST);
 }
 
 /* It is seen again when its counter changes, not by frames with the old one. */
@@ -380,7 +516,10 @@ void test_the_vcus_ai_alarm_ends_with_the_engagement(void) {
     fixture_run(&f, 100);
     expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, true);
     fixture_mode(&f, MODE_MANUAL);
-    fixture_run_past(&f, VCU);
+    for (unsigned i = 0; i < 3; i++) {
+        expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, true);
+        fixture_run_past(&f, VCU);
+    }
     expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, false);
 }
 
@@ -441,7 +580,10 @@ void test_the_vcus_ai_alarm_outlives_the_ai(void) {
     fixture_run(&f, 500);
     expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, true);
     fixture_mode(&f, MODE_MANUAL);
-    fixture_run_past(&f, VCU);
+    for (unsigned i = 0; i < 3; i++) {
+        expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, true);
+        fixture_run_past(&f, VCU);
+    }
     expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, false);
 }
 
@@ -512,17 +654,38 @@ void test_the_vcus_ai_alarm_beside_another_alarm(void) {
     expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
 }
 
-/* A reset forgets the AI computer, and with it that the alarm was clear: also when the very next 363h says engaged. */
-/* Shows: SUP-8, VCU_AI_CAN_LOST */
-void test_the_vcus_ai_alarm_has_to_be_clear_again_after_a_reset(void) {
+/* A reset forgets only that the AI computer was alive: the alarm stays armed, also when the very next 363h says engaged. */
+/* Shows: SUP-8, FSM-11, VCU_AI_CAN_LOST */
+void test_the_vcus_ai_alarm_stays_armed_after_a_reset(void) {
     fixture_active(&f);
     walk_trip(&f);
-    fixture_vehicle_confirms(&f);
-    fixture_run(&f, 1000);
-    fixture_button(&f, true);
-    (void)walk_until(&f, AGV_STATE_STANDBY, 1100);
+    reset();
     set_alarm(true);
     fixture_mode(&f, MODE_ENGAGED);
     fixture_send_now(&f, VCU);
-    expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, false);
+    expect_reason(&f, AGV_FAULT_VCU_AI_CAN_LOST);
+}
+
+/* ai_counter: increments. Steps of 1 to 3 are beats; others are none, and after one it takes two right ones. */
+/* Shows: SUP-2, AI_HEARTBEAT_STUCK */
+void test_a_counter_that_has_to_count_up(void) {
+    f.config.ai_counter = AGV_COUNTER_INCREMENTS;
+    fixture_standby(&f);
+    for (uint8_t i = 0; i < 20; i++) {
+        f.traffic[AI].counter = (uint8_t)(f.traffic[AI].counter + i % 3);
+        fixture_run_past(&f, AI);
+        expect_no_fault(AGV_STATE_STANDBY);
+    }
+    for (unsigned i = 0; i < 3; i++) {
+        f.traffic[AI].counter = (uint8_t)(f.traffic[AI].counter + 3);
+        fixture_run_past(&f, AI);
+    }
+    fixture_run(&f, 50);
+    expect_no_fault(AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_warning(&f, STUCK, AGV_STATE_STANDBY);
+    fixture_run_past(&f, AI);
+    expect_fault(&f, STUCK, true);
+    fixture_run_past(&f, AI);
+    expect_fault(&f, STUCK, false);
 }

@@ -138,6 +138,7 @@ static void check_never_in_manual(const row_t *row) {
 /* Silent for 5 s already when it is engaged (the state before continues: no command has come since). */
 static void check_afresh(const row_t *row) {
     f.what = "afresh at the engagement";
+    fixture_wheels(&f, 800, 800);
     fixture_mode(&f, MODE_ENGAGED);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     expect_state(&f, AGV_STATE_ACTIVE);
@@ -147,7 +148,10 @@ static void check_afresh(const row_t *row) {
     expect_trip(&f, row->fault, f.call, ANGLE_CENTRE);
     expect_led(&f, row->led);
     fixture_mode(&f, MODE_MANUAL);
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    for (unsigned i = 0; i < 3; i++) {
+        expect_fault(&f, row->fault, true);
+        fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    }
     expect_fault(&f, row->fault, false); /* not engaged: it does not count */
     expect_reason(&f, row->fault);
 }
@@ -183,6 +187,7 @@ void test_command_timeout_in_init(void) {
     fixture_mode(&f, MODE_ENGAGED);
     fixture_start(&f);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS); /* the VCU is alive: engaged */
     fixture_run(&f, 125);
     expect_nothing(&f, AGV_FAULT_STEERING_COMMAND_TIMEOUT, AGV_STATE_INIT);
     fixture_run(&f, 1);

@@ -1,5 +1,7 @@
-/* What trips only while engaged and after 500 ms of grace (SUP-5): EPS mode, invalid status values, throttle in park;
- * and commands out of range, which have no grace. */
+/* What trips only while judged (SUP-5), from 500 ms after the engagement on and while 363h reports autopilot: EPS mode and
+ * invalid status values, by their score, and throttle in park, by its budget; and commands out of range, which have no
+ * grace. Hand-worked: a fault that needs N frames is there when bad frames (+2) and good ones (-1) have come to 2 N, and
+ * until they are back at 0. */
 #include "expect.h"
 #include "unity.h"
 
@@ -7,7 +9,7 @@ typedef struct {
     agv_fault_t fault;
     int led;
     agv_message_t message;
-    unsigned frames; /* in a row */
+    unsigned frames; /* N */
     uint8_t bad[8];  /* payload; the alive counter is filled in */
     int32_t hold_raw;
 } row_t;
@@ -50,9 +52,11 @@ static void check_trips(const row_t *row) {
     fixture_run(&f, 300);
     expect_fault(&f, row->fault, true);
     set_payload(row->message, good);
-    fixture_run_before(&f, row->message);
-    expect_fault(&f, row->fault, true);
-    fixture_run(&f, 1);
+    for (unsigned i = 1; i < 2 * row->frames; i++) {
+        fixture_run_past(&f, row->message);
+        expect_fault(&f, row->fault, true);
+    }
+    fixture_run_past(&f, row->message);
     expect_fault(&f, row->fault, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, row->fault));
     expect_reason(&f, row->fault);
@@ -81,30 +85,67 @@ static void check_grace(const row_t *row, uint16_t phase_ms, unsigned not_counte
     expect_fault(&f, row->fault, false); /* no longer engaged */
 }
 
-/* A good frame, or a gap of more than two cycles, restarts the count. */
-static void check_restarts(const row_t *row, uint32_t cycle_ms) {
+/* The next frame is bad or good. */
+static void send_one(const row_t *row, const uint8_t good[8], bool is_bad) {
+    set_payload(row->message, is_bad ? row->bad : good);
+    fixture_run_past(&f, row->message);
+}
+
+static void begin_scoring(const row_t *row, uint8_t good[8], const char *what) {
     fixture_init(&f);
     fixture_active(&f);
-    uint8_t good[8];
+    f.what = what;
     fixture_run_past(&f, row->message);
     for (unsigned i = 0; i < 8; i++) {
         good[i] = f.traffic[row->message].data[i];
     }
-    f.what = "good frame";
+}
+
+/* One good frame before the last bad one: 2 (N - 1) - 1 + 2 is one too few, so it takes one bad frame more. */
+static void check_one_good(const row_t *row) {
+    uint8_t good[8];
+    begin_scoring(row, good, "one good frame");
     set_payload(row->message, row->bad);
     send_bad_frames(row, row->frames - 1, AGV_STATE_ACTIVE);
-    set_payload(row->message, good);
-    fixture_run_past(&f, row->message);
+    send_one(row, good, false);
+    send_one(row, good, true);
+    expect_nothing(&f, row->fault, AGV_STATE_ACTIVE);
+    send_one(row, good, true);
+    expect_trip(&f, row->fault, f.traffic[row->message].call, row->hold_raw);
+}
+
+/* Every second frame bad is 1 for each two: with the bad one after 2 N - 2 such pairs it is 2 N. */
+static void check_every_second(const row_t *row) {
+    uint8_t good[8];
+    begin_scoring(row, good, "every second frame");
+    for (unsigned i = 0; i < 2 * row->frames - 2; i++) {
+        send_one(row, good, true);
+        expect_nothing(&f, row->fault, AGV_STATE_ACTIVE);
+        send_one(row, good, false);
+    }
+    send_one(row, good, true);
+    expect_trip(&f, row->fault, f.traffic[row->message].call, row->hold_raw);
+}
+
+/* Every third frame bad comes to nothing. */
+static void check_every_third(const row_t *row) {
+    uint8_t good[8];
+    begin_scoring(row, good, "every third frame");
+    for (unsigned i = 0; i < 90; i++) {
+        send_one(row, good, i % 3 == 0);
+        expect_nothing(&f, row->fault, AGV_STATE_ACTIVE);
+    }
+}
+
+/* Gaps between frames change nothing. */
+static void check_gaps(const row_t *row, uint32_t cycle_ms) {
+    uint8_t good[8];
+    begin_scoring(row, good, "gaps");
     set_payload(row->message, row->bad);
-    send_bad_frames(row, row->frames - 1, AGV_STATE_ACTIVE);
-    f.what = "more than two cycles";
     f.traffic[row->message].muted = true;
-    fixture_run(&f, 2 * cycle_ms + 1);
-    fixture_send_now(&f, row->message);
-    for (unsigned i = 1; i < row->frames; i++) {
+    for (unsigned i = 1; i <= row->frames; i++) {
         expect_nothing(&f, row->fault, AGV_STATE_ACTIVE);
-        fixture_run(&f, 2 * cycle_ms); /* exactly two cycles: goes on counting */
-        expect_nothing(&f, row->fault, AGV_STATE_ACTIVE);
+        fixture_run(&f, 4 * cycle_ms);
         fixture_send_now(&f, row->message);
     }
     expect_trip(&f, row->fault, f.call, row->hold_raw);
@@ -114,10 +155,13 @@ static void check(const row_t *row) {
     check_trips(row);
     check_grace(row, 1, 0);
     check_grace(row, 0, 1);
-    check_restarts(row, row->message == AGV_MSG_GEAR_STATUS ? 25 : 10);
+    check_one_good(row);
+    check_every_second(row);
+    check_every_third(row);
+    check_gaps(row, row->message == AGV_MSG_GEAR_STATUS ? 25 : 10);
 }
 
-/* ---- EPS mode: 167h byte 4, five in a row ---- */
+/* ---- EPS mode: 167h byte 4, N = 5 ---- */
 
 /* Shows: SUP-5, P18, FSM-10, EPS_MODE_OFF */
 void test_eps_mode_off(void) {
@@ -165,7 +209,7 @@ void test_eps_modes_mixed(void) {
     check_named_after_the_last((const uint8_t[5]){0xFF, 0x04, 0x00, 0x02, 0x03}, AGV_FAULT_EPS_MODE_NOT_ANGLE);
 }
 
-/* While the cause goes on the fault does, also after a gap that would restart the count. */
+/* While the cause goes on the fault does, also after a gap. */
 /* Shows: SUP-5, EPS_MODE_OFF, EPS_MODE_INVALID, EPS_MODE_NOT_ANGLE */
 void test_a_gap_does_not_end_an_eps_mode_fault(void) {
     static const uint8_t MODES[] = {0xFF, 0x04, 0x00};
@@ -185,7 +229,7 @@ void test_a_gap_does_not_end_an_eps_mode_fault(void) {
     }
 }
 
-/* ---- Status values that are none: three in a row ---- */
+/* ---- Status values that are none: N = 3 ---- */
 
 /* Shows: SUP-5, P2, GEAR_STATUS_INVALID */
 void test_gear_status_invalid(void) {
@@ -203,12 +247,20 @@ void test_throttle_status_invalid(void) {
     check(&(row_t){AGV_FAULT_THROTTLE_STATUS_INVALID, 7, AGV_MSG_THROTTLE_STATUS, 3, {255}, ANGLE_CENTRE});
 }
 
-/* 18001 = 4651h. The angle that is held is the last valid one. */
+/* 18001 = 4651h. With it the EPS is not without a fault: the steering is not held. */
 /* Shows: SUP-5, P5, FSM-10, STEERING_ANGLE_INVALID */
 void test_steering_angle_invalid(void) {
-    check(&(row_t){AGV_FAULT_STEERING_ANGLE_INVALID, 13, AGV_MSG_STEERING_STATUS, 3, {0, 100, 0x51, 0x46}, 9000});
+    check(&(row_t){AGV_FAULT_STEERING_ANGLE_INVALID, 13, AGV_MSG_STEERING_STATUS, 3, {0, 100, 0x51, 0x46}, NO_HOLD});
     fixture_init(&f);
-    check(&(row_t){AGV_FAULT_STEERING_ANGLE_INVALID, 13, AGV_MSG_STEERING_STATUS, 3, {0, 100, 0xFF, 0xFF}, 9000});
+    check(&(row_t){AGV_FAULT_STEERING_ANGLE_INVALID, 13, AGV_MSG_STEERING_STATUS, 3, {0, 100, 0xFF, 0xFF}, NO_HOLD});
+}
+
+static void command_throttle(uint8_t counts) {
+    f.traffic[AGV_MSG_THROTTLE_COMMAND].data[0] = counts;
+}
+
+static void command_gear(uint8_t gear) {
+    f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = gear;
 }
 
 /* The largest and smallest values that are valid. */
@@ -221,6 +273,8 @@ void test_values_at_the_edge_are_valid(void) {
         f.traffic[AGV_MSG_THROTTLE_STATUS].data[0] = GEARS[i % 4] == GEAR_P ? 0 : 250;
         fixture_angle(&f, i % 2 == 0 ? 18000 : 0);
         fixture_command_angle(&f, i % 2 == 0 ? 18000 : 0);
+        command_throttle(f.traffic[AGV_MSG_THROTTLE_STATUS].data[0]);
+        command_gear(GEARS[i % 4]);
         fixture_run(&f, 200);
         expect_state(&f, AGV_STATE_ACTIVE);
     }
@@ -233,71 +287,138 @@ static void set_throttle(uint8_t counts) {
     f.traffic[AGV_MSG_THROTTLE_STATUS].data[0] = counts;
 }
 
-/* Shows: SUP-5, FSM-2, THROTTLE_IN_PARK */
-void test_throttle_in_park(void) {
+/* Engaged in P. */
+static void active_in_park(void) {
     fixture_active(&f);
     fixture_gear(&f, GEAR_P);
     fixture_run(&f, 1000); /* P alone is nothing */
-    set_throttle(1);
+    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+}
+
+/* Above idle is more than 2 counts. Budget of 200 ms: from the frame on that is 200 ticks; then 1 ms down in each 2. */
+/* Shows: SUP-5, FSM-2, THROTTLE_IN_PARK */
+void test_throttle_in_park(void) {
+    active_in_park();
+    set_throttle(2);
+    fixture_run(&f, 1000);
+    set_throttle(3);
     fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
-    fixture_run(&f, 199);
+    fixture_run(&f, 198);
     expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
     expect_led(&f, 7);
-    set_throttle(0);
+    fixture_run(&f, 500); /* never more than 200 */
+    set_throttle(2);
     fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
+    fixture_run(&f, 398);
+    expect_fault(&f, AGV_FAULT_THROTTLE_IN_PARK, true);
+    fixture_run(&f, 1);
     expect_fault(&f, AGV_FAULT_THROTTLE_IN_PARK, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_THROTTLE_IN_PARK));
+}
+
+/* What is idle is a setting. */
+/* Shows: SUP-5, THROTTLE_IN_PARK */
+void test_idle_is_a_setting(void) {
+    f.config.throttle_idle_counts = 10;
+    active_in_park();
+    set_throttle(10);
+    fixture_run(&f, 1000);
+    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    set_throttle(11);
+    fixture_run(&f, 210);
+    expect_reason(&f, AGV_FAULT_THROTTLE_IN_PARK);
 }
 
 /* An invalid throttle is not used: the one before stands. */
 /* Shows: SUP-5, THROTTLE_IN_PARK */
 void test_an_invalid_throttle_between_does_not_end_throttle_in_park(void) {
-    fixture_active(&f);
-    fixture_gear(&f, GEAR_P);
-    set_throttle(1);
+    active_in_park();
+    set_throttle(3);
     fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
     fixture_run(&f, 99);
     set_throttle(255);
     fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
-    set_throttle(1);
-    fixture_run(&f, 150);
-    expect_fault(&f, AGV_FAULT_THROTTLE_IN_PARK, true);
-    expect_reason(&f, AGV_FAULT_THROTTLE_IN_PARK);
+    set_throttle(3);
+    fixture_run(&f, 98);
+    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    fixture_run(&f, 1);
+    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
 }
 
-/* The gear may also come second; leaving P ends it. */
+/* The gear may also come second; out of P the budget goes down. */
 /* Shows: SUP-5, THROTTLE_IN_PARK */
 void test_park_with_throttle(void) {
     fixture_active(&f);
+    command_throttle(250);
+    command_gear(GEAR_D);
+    fixture_run(&f, 100);
     set_throttle(250);
     fixture_run(&f, 1000);
     fixture_gear(&f, GEAR_P);
     fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
-    fixture_run(&f, 199);
+    fixture_run(&f, 198);
     expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
     fixture_gear(&f, GEAR_D);
     fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
+    fixture_run(&f, 500);
     expect_fault(&f, AGV_FAULT_THROTTLE_IN_PARK, false);
 }
 
-/* One frame with throttle 0 starts the 200 ms anew. */
+/* One good frame in twenty does not restart it: 190 - 5 are left, 15 more make 200. */
 /* Shows: SUP-5, THROTTLE_IN_PARK */
-void test_throttle_in_park_with_interruptions(void) {
-    fixture_active(&f);
-    fixture_gear(&f, GEAR_P);
-    fixture_run(&f, 50);
-    for (unsigned i = 0; i < 5; i++) {
+void test_one_good_frame_does_not_restart_throttle_in_park(void) {
+    active_in_park();
+    fixture_run_before(&f, AGV_MSG_THROTTLE_STATUS);
+    set_throttle(10);
+    fixture_run(&f, 190);
+    set_throttle(0);
+    fixture_run(&f, 10);
+    set_throttle(10);
+    fixture_run(&f, 14);
+    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    fixture_run(&f, 1);
+    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
+}
+
+/* A third of the time is as much down as up. */
+/* Shows: SUP-5, THROTTLE_IN_PARK */
+void test_throttle_in_park_for_a_third_of_the_time(void) {
+    active_in_park();
+    fixture_run_before(&f, AGV_MSG_THROTTLE_STATUS);
+    for (unsigned i = 0; i < 100; i++) {
         set_throttle(10);
-        fixture_run(&f, 190);
+        fixture_run(&f, 100);
         set_throttle(0);
-        fixture_run(&f, 10);
+        fixture_run(&f, 200);
     }
     expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_THROTTLE_IN_PARK));
+}
+
+/* While the last 363h has bit 8 clear nothing is judged: the budget stands still, and so does a score. */
+/* Shows: SUP-5, THROTTLE_IN_PARK, EPS_MODE_OFF */
+void test_what_is_not_judged_stands_still(void) {
+    active_in_park();
+    set_throttle(10);
+    fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS); /* 1 ms of the budget */
+    fixture_run_before(&f, AGV_MSG_VEHICLE_STATUS);
+    const uint32_t began_ms = f.now_ms; /* 9 ms of it */
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run(&f, 1);
+    f.traffic[AGV_MSG_EPS_STATUS].data[3] = 0xFF;
+    fixture_run(&f, 19); /* two 363h without bit 8; two 167h */
+    f.traffic[AGV_MSG_EPS_STATUS].data[3] = 1;
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run(&f, 190);
+    TEST_ASSERT_EQUAL_UINT32(210, f.now_ms - began_ms);
+    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    fixture_run(&f, 1);
+    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_EPS_MODE_OFF));
 }
 
 /* Not in manual; and after the engagement the 200 ms begin when the grace of 500 ms is over. */
@@ -309,7 +430,7 @@ void test_throttle_in_park_counts_after_the_grace(void) {
     expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_STANDBY);
     fixture_mode(&f, MODE_ENGAGED);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    fixture_run(&f, 699);
+    fixture_run(&f, 698);
     expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
@@ -330,7 +451,8 @@ void test_an_invalid_throttle_that_lasts_is_no_throttle_in_park(void) {
 /* An invalid throttle is not above 0, an invalid gear is not P. */
 /* Shows: SUP-5, THROTTLE_IN_PARK */
 void test_invalid_values_are_no_throttle_in_park(void) {
-    f.config.status_invalid_frames = 10; /* the largest: 100 ms of 050h, 250 ms of 0A3h */
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_THROTTLE_STATUS_INVALID, false);
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_GEAR_STATUS_INVALID, false);
     fixture_active(&f);
     fixture_gear(&f, GEAR_P);
     for (unsigned i = 0; i < 10; i++) {
@@ -432,25 +554,36 @@ void test_commands_in_range(void) {
     TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->dropped);
 }
 
-/* ---- Counts of frames and the engagement ---- */
+/* ---- Scores and the engagement ---- */
 
-/* Between two frames of another message. */
-static void report_mode(uint8_t mode) {
-    fixture_mode(&f, mode);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+/* The engagement ends with the third 363h without bit 8, and begins so long after it. */
+static void engage_again_after(uint32_t ms) {
+    fixture_mode(&f, MODE_MANUAL);
+    for (unsigned i = 0; i < 3; i++) {
+        fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    }
+    fixture_mode(&f, MODE_ENGAGED);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].muted = true; /* no fourth one */
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[6] = MODE_MANUAL;
+    for (uint32_t i = 10; i < ms; i += 10) {
+        fixture_run(&f, 10);
+        fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    }
+    f.traffic[AGV_MSG_VEHICLE_STATUS].muted = false;
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run(&f, 10);
 }
 
-/* The fault is there; then an engagement ends and another begins, and settles, before the next bad frame comes: that is the
- * first one again. */
-static void check_counts_anew(agv_fault_t fault, agv_message_t message, unsigned frames) {
+/* The fault is there; it ends with the engagement. The next one begins more than 100 ms later and settles before the next bad
+ * frame comes: the score begins at 0. */
+static void check_scores_anew(agv_fault_t fault, agv_message_t message, unsigned frames) {
     fixture_run(&f, 300);
     fixture_run_past(&f, message);
     expect_fault(&f, fault, true);
     f.traffic[message].muted = true;
-    report_mode(MODE_MANUAL);
+    engage_again_after(110);
     expect_fault(&f, fault, false);
-    report_mode(MODE_ENGAGED);
-    fixture_run(&f, 50); /* the grace; for 0A3h no gap, which would count anew by itself */
+    fixture_run(&f, 50); /* the grace */
     for (unsigned i = 1; i <= frames; i++) {
         fixture_send_now(&f, message);
         expect_fault(&f, fault, i == frames);
@@ -459,28 +592,44 @@ static void check_counts_anew(agv_fault_t fault, agv_message_t message, unsigned
 }
 
 /* Shows: SUP-5, EPS_MODE_OFF */
-void test_every_engagement_counts_eps_modes_anew(void) {
+void test_every_engagement_scores_eps_modes_anew(void) {
     f.config.engaged_grace_ms = 50;
     fixture_active(&f);
     f.traffic[AGV_MSG_EPS_STATUS].data[3] = 0xFF;
-    check_counts_anew(AGV_FAULT_EPS_MODE_OFF, AGV_MSG_EPS_STATUS, 5);
+    check_scores_anew(AGV_FAULT_EPS_MODE_OFF, AGV_MSG_EPS_STATUS, 5);
 }
 
 /* Shows: SUP-5, GEAR_STATUS_INVALID */
-void test_every_engagement_counts_invalid_gears_anew(void) {
+void test_every_engagement_scores_invalid_gears_anew(void) {
     f.config.engaged_grace_ms = 50;
     fixture_active(&f);
     fixture_gear(&f, 0);
-    check_counts_anew(AGV_FAULT_GEAR_STATUS_INVALID, AGV_MSG_GEAR_STATUS, 3);
+    check_scores_anew(AGV_FAULT_GEAR_STATUS_INVALID, AGV_MSG_GEAR_STATUS, 3);
 }
 
 /* Shows: SUP-5, STEERING_ANGLE_INVALID */
-void test_every_engagement_counts_invalid_angles_anew(void) {
+void test_every_engagement_scores_invalid_angles_anew(void) {
     f.config.engaged_grace_ms = 50;
     f.config.eps_heartbeat_timeout_ms = 100;
     fixture_active(&f);
     fixture_angle(&f, 18001);
-    check_counts_anew(AGV_FAULT_STEERING_ANGLE_INVALID, AGV_MSG_STEERING_STATUS, 3);
+    check_scores_anew(AGV_FAULT_STEERING_ANGLE_INVALID, AGV_MSG_STEERING_STATUS, 3);
+}
+
+/* One that begins within 100 ms continues the last one: no grace and no score begins afresh. */
+/* Shows: SUP-5, EPS_MODE_OFF */
+void test_a_continued_engagement_goes_on_with_its_scores(void) {
+    fixture_active(&f);
+    f.traffic[AGV_MSG_EPS_STATUS].data[3] = 0xFF;
+    for (unsigned i = 0; i < 4; i++) {
+        fixture_run_past(&f, AGV_MSG_EPS_STATUS);
+    }
+    f.traffic[AGV_MSG_EPS_STATUS].data[3] = 1;
+    engage_again_after(100);
+    expect_nothing(&f, AGV_FAULT_EPS_MODE_OFF, AGV_STATE_ACTIVE);
+    f.traffic[AGV_MSG_EPS_STATUS].data[3] = 0xFF;
+    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
+    expect_trip(&f, AGV_FAULT_EPS_MODE_OFF, f.traffic[AGV_MSG_EPS_STATUS].call, NO_HOLD);
 }
 
 /* The bits of 167h are counted in every mode: the end of an engagement starts nothing anew. */
@@ -490,7 +639,7 @@ void test_the_end_of_an_engagement_does_not_end_the_count_of_a_bit(void) {
     f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x01;
     fixture_run_past(&f, AGV_MSG_EPS_STATUS);
     fixture_run(&f, 10);
-    report_mode(MODE_MANUAL);
+    fixture_mode(&f, MODE_MANUAL);
     fixture_run(&f, 9);
     expect_fault(&f, AGV_FAULT_EPS_UNDER_VOLTAGE, false);
     fixture_run(&f, 1);

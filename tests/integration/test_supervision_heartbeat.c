@@ -348,3 +348,126 @@ void test_an_engagement_is_no_beat_of_the_vcu(void) {
     expect_state(&f, AGV_STATE_TRIPPED);
     expect_reason(&f, AGV_FAULT_VCU_HEARTBEAT_STUCK);
 }
+
+/* ---- increments: the counter has to count up ---- */
+
+/* A right step has just come. */
+static void begin_counting(const node_t *node) {
+    fixture_init(&f);
+    f.config.vcu_counter = AGV_COUNTER_INCREMENTS;
+    f.config.eps_counter = AGV_COUNTER_INCREMENTS;
+    fixture_standby(&f);
+    take_over(node);
+    send_counter(node, (uint8_t)(f.traffic[node->message].counter + 1u));
+}
+
+static void step_counter(const node_t *node, unsigned step) {
+    send_counter(node, (uint8_t)(f.traffic[node->message].counter + step));
+}
+
+/* 1 to 3 more, also across 255, each just in time. */
+/* Shows: SUP-2, P13 */
+void test_steps_of_1_to_3_are_beats(void) {
+    static const node_t *const NODES[] = {&VCU, &EPS};
+    for (unsigned n = 0; n < 2; n++) {
+        begin_counting(NODES[n]);
+        for (unsigned i = 0; i < 300; i++) {
+            fixture_run(&f, 50);
+            expect_no_trip(NODES[n], AGV_STATE_STANDBY);
+            step_counter(NODES[n], 1 + i % 3);
+        }
+        expect_no_trip(NODES[n], AGV_STATE_STANDBY);
+    }
+}
+
+/* Every other step is a frame that does not refresh: at the deadline its sender is stuck, though all counters changed. */
+static void check_wrong_steps(const node_t *node, unsigned step) {
+    begin_counting(node);
+    f.what = node->name;
+    for (unsigned i = 0; i < 5; i++) {
+        fixture_run(&f, 10);
+        expect_no_trip(node, AGV_STATE_STANDBY);
+        step_counter(node, step);
+    }
+    expect_no_trip(node, AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_trip(&f, node->stuck, f.call, NO_HOLD);
+}
+
+/* Shows: SUP-2, P13, VCU_HEARTBEAT_STUCK, EPS_HEARTBEAT_STUCK */
+void test_other_steps_are_no_beats(void) {
+    static const uint8_t STEPS[] = {0, 4, 5, 127, 128, 254, 255};
+    for (unsigned i = 0; i < sizeof STEPS; i++) {
+        check_wrong_steps(&VCU, STEPS[i]);
+        check_wrong_steps(&EPS, STEPS[i]);
+    }
+}
+
+/* After a wrong one the first right step does not refresh the age, the second does. */
+/* Shows: SUP-2, VCU_HEARTBEAT_STUCK */
+void test_after_a_wrong_step_it_takes_two_right_ones(void) {
+    begin_counting(&VCU);
+    fixture_run(&f, 10);
+    step_counter(&VCU, 4);
+    fixture_run(&f, 30);
+    step_counter(&VCU, 1);
+    fixture_run(&f, 10);
+    expect_no_trip(&VCU, AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_trip(&f, AGV_FAULT_VCU_HEARTBEAT_STUCK, f.call, NO_HOLD);
+    step_counter(&VCU, 1); /* the second one */
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_VCU_HEARTBEAT_STUCK, false);
+    begin_counting(&VCU);
+    fixture_run(&f, 10);
+    step_counter(&VCU, 4);
+    fixture_run(&f, 10);
+    step_counter(&VCU, 1);
+    fixture_run(&f, 10);
+    step_counter(&VCU, 3);
+    fixture_run(&f, 50);
+    expect_no_trip(&VCU, AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_trip(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, f.call, NO_HOLD);
+}
+
+/* Right and wrong in turn never are two right ones in a row. */
+/* Shows: SUP-2, VCU_HEARTBEAT_STUCK */
+void test_every_second_step_wrong(void) {
+    begin_counting(&VCU);
+    for (unsigned i = 0; i < 5; i++) {
+        fixture_run(&f, 10);
+        expect_no_trip(&VCU, AGV_STATE_STANDBY);
+        step_counter(&VCU, i % 2 == 0 ? 4 : 1);
+    }
+    fixture_run(&f, 1);
+    expect_trip(&f, AGV_FAULT_VCU_HEARTBEAT_STUCK, f.call, NO_HOLD);
+}
+
+/* The step is from the frame before, whether that one counted or not. */
+/* Shows: SUP-2 */
+void test_a_step_is_from_the_frame_before(void) {
+    begin_counting(&VCU);
+    for (unsigned i = 0; i < 20; i++) {
+        step_counter(&VCU, 100);
+        fixture_run(&f, 15);
+        step_counter(&VCU, 1);
+        fixture_run(&f, 15);
+        step_counter(&VCU, 2);
+        fixture_run(&f, 15);
+        expect_no_trip(&VCU, AGV_STATE_STANDBY);
+    }
+}
+
+/* A choice of each sender: by default any change is a beat of the other one. */
+/* Shows: SUP-2 */
+void test_each_sender_has_its_own_choice(void) {
+    f.config.vcu_counter = AGV_COUNTER_INCREMENTS;
+    fixture_standby(&f);
+    take_over(&EPS);
+    for (unsigned i = 0; i < 20; i++) {
+        fixture_run(&f, 50);
+        step_counter(&EPS, 100);
+        expect_no_trip(&EPS, AGV_STATE_STANDBY);
+    }
+}

@@ -87,16 +87,35 @@ void test_a_foreign_sender_in_init(void) {
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
-/* A malformed one raises nothing, nor does the other set's identifier, nor one of nobody. */
+/* Any data frame with the 11-bit identifier of a command, of any length, classic or FD: a VCU may obey it. */
+/* Shows: SUP-6, P15, FSM-2, FOREIGN_COMMAND_SENDER */
+void test_a_foreign_command_of_any_length(void) {
+    static const uint32_t IDS[] = {0x43F, 0x168, 0x075, 0x065};
+    for (unsigned i = 0; i < 4 * 9 * 2; i++) {
+        const uint8_t flags = i % 2 == 0 ? 0 : HAL_CAN_FD;
+        gateway(AGV_ID_SET_HEADING);
+        fixture_standby(&f);
+        fixture_raw(&f, HAL_CAN_VEHICLE,
+                    (hal_can_frame_t){.id = IDS[i / 18], .length = (uint8_t)(i / 2 % 9), .flags = flags});
+        expect_trip(&f, FOREIGN, f.call, NO_HOLD);
+    }
+}
+
+/* A remote request or a frame with a 29-bit identifier is none, nor is the other set's identifier, nor one of nobody. */
 /* Shows: SUP-6, P1, P15, FOREIGN_COMMAND_SENDER */
 void test_what_is_no_foreign_command(void) {
+    static const uint8_t FLAGS[] = {HAL_CAN_EXTENDED, HAL_CAN_REMOTE, HAL_CAN_ERROR};
     gateway(AGV_ID_SET_HEADING);
     fixture_active(&f);
-    send_foreign(0x168, 7);
     send_foreign(0x201, 8);
     send_foreign(0x169, 8);
-    fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .length = 8, .flags = HAL_CAN_EXTENDED});
-    fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .length = 8, .flags = HAL_CAN_REMOTE});
+    send_foreign(0x169, 7);
+    for (unsigned i = 0; i < 3; i++) {
+        fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .length = 8, .flags = FLAGS[i]});
+        fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .length = 3, .flags = FLAGS[i]});
+        fixture_raw(&f, HAL_CAN_VEHICLE,
+                    (hal_can_frame_t){.id = 0x168, .length = 8, .flags = (uint8_t)(FLAGS[i] | HAL_CAN_FD)});
+    }
     fixture_run(&f, 100);
     expect_nothing(&f, FOREIGN, AGV_STATE_ACTIVE);
 }
@@ -130,7 +149,8 @@ static void send_gaps(agv_message_t message, unsigned count, uint32_t gap_ms) {
     }
 }
 
-static void check_fast(unsigned topology, agv_message_t message, uint32_t gap_ms) {
+/* Ten gaps are the score of 2 * 10; a silence longer than the deadline ends it. */
+static void check_fast(unsigned topology, agv_message_t message, uint32_t gap_ms, uint32_t deadline_ms) {
     fixture_init(&f);
     f.config.topology = (uint16_t)topology;
     fixture_standby(&f);
@@ -141,7 +161,7 @@ static void check_fast(unsigned topology, agv_message_t message, uint32_t gap_ms
     fixture_send_now(&f, message);
     expect_warning(&f, FAST, AGV_STATE_STANDBY);
     send_gaps(message, 5, gap_ms); /* goes on: raised already */
-    fixture_run(&f, 999);
+    fixture_run(&f, deadline_ms);
     expect_fault(&f, FAST, true);
     expect_led(&f, 14);
     fixture_run(&f, 1);
@@ -156,20 +176,21 @@ typedef struct {
     agv_message_t message;
     uint32_t fast_ms;
     uint32_t slow_ms;
+    uint32_t deadline_ms;
 } gap_t;
 static const gap_t GAPS[] = {
-    {AGV_MSG_TURN_SIGNAL_COMMAND, 49, 50},
-    {AGV_MSG_GEAR_COMMAND, 49, 50},
-    {AGV_MSG_THROTTLE_COMMAND, 49, 50},
-    {AGV_MSG_STEERING_COMMAND, 12, 13},
+    {AGV_MSG_TURN_SIGNAL_COMMAND, 49, 50, 350},
+    {AGV_MSG_GEAR_COMMAND, 49, 50, 350},
+    {AGV_MSG_THROTTLE_COMMAND, 49, 50, 350},
+    {AGV_MSG_STEERING_COMMAND, 12, 13, 125},
 };
 
 /* Shows: SUP-6, P16, COMMAND_TOO_FAST */
 void test_ten_gaps_in_a_row_under_half_the_cycle(void) {
     for (unsigned i = 0; i < 4; i++) {
-        check_fast(AGV_TOPOLOGY_SHARED, GAPS[i].message, GAPS[i].fast_ms);
-        check_fast(AGV_TOPOLOGY_SHARED, GAPS[i].message, 1);
-        check_fast(AGV_TOPOLOGY_GATEWAY, GAPS[i].message, GAPS[i].fast_ms);
+        check_fast(AGV_TOPOLOGY_SHARED, GAPS[i].message, GAPS[i].fast_ms, GAPS[i].deadline_ms);
+        check_fast(AGV_TOPOLOGY_SHARED, GAPS[i].message, 1, GAPS[i].deadline_ms);
+        check_fast(AGV_TOPOLOGY_GATEWAY, GAPS[i].message, GAPS[i].fast_ms, GAPS[i].deadline_ms);
     }
 }
 
@@ -181,13 +202,84 @@ void test_gaps_of_half_the_cycle_are_not_too_fast(void) {
         send_first(GAPS[i].message);
         send_gaps(GAPS[i].message, 40, GAPS[i].slow_ms);
         expect_nothing(&f, FAST, AGV_STATE_ACTIVE);
-        for (unsigned round = 0; round < 4; round++) { /* nine, and one that is not */
-            send_gaps(GAPS[i].message, 9, GAPS[i].fast_ms);
-            send_gaps(GAPS[i].message, 1, GAPS[i].slow_ms);
+        for (unsigned round = 0; round < 30; round++) { /* one in three: up 2, down 2 */
+            send_gaps(GAPS[i].message, 1, GAPS[i].fast_ms);
+            send_gaps(GAPS[i].message, 2, GAPS[i].slow_ms);
         }
         expect_nothing(&f, FAST, AGV_STATE_ACTIVE);
         TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, FAST));
     }
+}
+
+/* A second sender right behind each frame of the first: up 2, down 1. Its 19th frame makes it 20. */
+/* Shows: SUP-6, P16, COMMAND_TOO_FAST */
+void test_a_second_sender_that_hides_behind_the_first(void) {
+    for (unsigned i = 0; i < 4; i++) {
+        const uint32_t cycle_ms = f.traffic[GAPS[i].message].cycle_ms;
+        fixture_init(&f);
+        fixture_active(&f);
+        send_first(GAPS[i].message);
+        for (unsigned frames = 1; frames < 19; frames++) {
+            send_gaps(GAPS[i].message, 1, 1);
+            expect_nothing(&f, FAST, AGV_STATE_ACTIVE);
+            send_gaps(GAPS[i].message, 1, cycle_ms - 1);
+        }
+        send_gaps(GAPS[i].message, 1, 1);
+        expect_warning(&f, FAST, AGV_STATE_ACTIVE);
+    }
+}
+
+/* Gaps as they should be take 1 each from the 20. */
+/* Shows: SUP-6, COMMAND_TOO_FAST */
+void test_twenty_good_gaps_end_it(void) {
+    fixture_standby(&f);
+    send_first(AGV_MSG_GEAR_COMMAND);
+    send_gaps(AGV_MSG_GEAR_COMMAND, 30, 10);
+    expect_fault(&f, FAST, true);
+    send_gaps(AGV_MSG_GEAR_COMMAND, 19, 100);
+    expect_fault(&f, FAST, true);
+    send_gaps(AGV_MSG_GEAR_COMMAND, 1, 100);
+    expect_fault(&f, FAST, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, FAST));
+}
+
+/* 350 ms are a good gap: 9 * 2 - 1, and two more fast ones. 351 ms are a silence: ten fast ones. */
+/* Shows: SUP-6, COMMAND_TOO_FAST */
+void test_a_silence_longer_than_the_deadline_sets_the_score_to_0(void) {
+    for (unsigned i = 0; i < 2; i++) {
+        const unsigned needed = i == 0 ? 2 : 10;
+        fixture_init(&f);
+        fixture_standby(&f);
+        send_first(AGV_MSG_THROTTLE_COMMAND);
+        send_gaps(AGV_MSG_THROTTLE_COMMAND, 9, 10);
+        send_gaps(AGV_MSG_THROTTLE_COMMAND, 1, 350 + i);
+        send_gaps(AGV_MSG_THROTTLE_COMMAND, needed - 1, 10);
+        expect_nothing(&f, FAST, AGV_STATE_STANDBY);
+        send_gaps(AGV_MSG_THROTTLE_COMMAND, 1, 10);
+        expect_warning(&f, FAST, AGV_STATE_STANDBY);
+    }
+}
+
+/* It trips by choice: in that frame. */
+/* Shows: SUP-6, COMMAND_TOO_FAST */
+void test_too_fast_may_be_made_a_trip(void) {
+    agv_fault_set_put(&f.config.trips, FAST, true);
+    fixture_active(&f);
+    send_first(AGV_MSG_GEAR_COMMAND);
+    send_gaps(AGV_MSG_GEAR_COMMAND, 10, 10);
+    expect_trip(&f, FAST, f.call, ANGLE_CENTRE);
+}
+
+/* A value out of range does not keep a frame from being one of too many (in manual it is dropped). */
+/* Shows: SUP-5, SUP-6, COMMAND_TOO_FAST */
+void test_frames_out_of_range_count_too(void) {
+    fixture_standby(&f);
+    send_first(AGV_MSG_GEAR_COMMAND);
+    f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = 3;
+    send_gaps(AGV_MSG_GEAR_COMMAND, 9, 10);
+    expect_nothing(&f, FAST, AGV_STATE_STANDBY);
+    send_gaps(AGV_MSG_GEAR_COMMAND, 1, 10);
+    expect_warning(&f, FAST, AGV_STATE_STANDBY);
 }
 
 /* Each command is counted for itself. */

@@ -39,6 +39,19 @@ void walk_to_tripped(fixture_t *f) {
     walk_trip(f);
 }
 
+void walk_driving(fixture_t *f, int32_t mm_s) {
+    fixture_active(f);
+    fixture_drive(f, mm_s);
+    fixture_run(f, 300);
+    fixture_forget_sent(f);
+}
+
+void walk_to_tripped_driving(fixture_t *f, int32_t mm_s) {
+    walk_driving(f, mm_s);
+    fixture_mute_ai(f, true);
+    walk_trip(f);
+}
+
 uint32_t walk_events(const fixture_t *f, agv_event_kind_t kind, uint8_t a, agv_event_t *last) {
     const uint32_t next = agv_recorder_next_sequence(&f->recorder);
     uint32_t count = 0;
@@ -52,7 +65,7 @@ uint32_t walk_events(const fixture_t *f, agv_event_kind_t kind, uint8_t a, agv_e
     return count;
 }
 
-uint32_t walk_refusals(const fixture_t *f, uint8_t *missing) {
+uint32_t walk_refusals(const fixture_t *f, uint16_t *missing) {
     agv_event_t event = {0};
     const uint32_t count = walk_events(f, AGV_EVENT_RESET, 0, &event);
     *missing = event.missing;

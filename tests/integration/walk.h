@@ -30,10 +30,16 @@ void walk_to_safe(fixture_t *f);
 /* fixture_active(), and a trip that the vehicle does not confirm: it stays engaged and in D. The AI computer is silent. */
 void walk_to_tripped(fixture_t *f);
 
+/* fixture_active(), then the vehicle drives with this speed, steadily: wheels and VCU say so. */
+void walk_driving(fixture_t *f, int32_t mm_s);
+
+/* walk_driving(), and a trip that the vehicle does not confirm: it drives on, engaged and in D. The AI computer is silent. */
+void walk_to_tripped_driving(fixture_t *f, int32_t mm_s);
+
 /* How many events of this kind with this first parameter the recorder has, and the last of them. */
 uint32_t walk_events(const fixture_t *f, agv_event_kind_t kind, uint8_t a, agv_event_t *last);
 
 /* Events of presses that were held in vain; what the last one missed. */
-uint32_t walk_refusals(const fixture_t *f, uint8_t *missing);
+uint32_t walk_refusals(const fixture_t *f, uint16_t *missing);
 
 #endif

@@ -24,8 +24,8 @@ SOURCES = ROOT / "firmware/src"
 # What a verdict rests on. Not the equivalents: they are asked for when results are merged.
 INPUTS = ("CMakePresets.json", "cmake", "firmware", "hal/include", "hal/sim", "tests/unit", "tests/integration",
           "tests/mutation/mutants.py", "tests/mutation/bench.py", "tests/mutation/stop_at_failure.c")
-INCLUDES = [f"-I{ROOT}/firmware/include", f"-I{ROOT}/hal/include"]
-COMPILE = ["gcc", "-std=c11", "-w", "-fPIC", "-fno-semantic-interposition", f"-I{SOURCES}", *INCLUDES]
+INCLUDES = [f"-I{ROOT}/firmware/include", f"-I{SOURCES}", f"-I{ROOT}/hal/include"]
+COMPILE = ["gcc", "-std=c11", "-w", "-fPIC", "-fno-semantic-interposition", *INCLUDES]
 LINK = ["ld", "-shared", "-Bsymbolic"]
 SLOW_SECONDS = 1.0  # which lines such a test runs is not asked: it is taken to run all
 QUICK_SECONDS = 0.3  # tests that take longer, and those from other starts of the clock, run last
@@ -58,7 +58,8 @@ def compile_file(source, output, *options):
 
 
 def core_files():
-    return sorted(SOURCES.glob("*.c"))
+    """Of all rooms; a file is named by its name alone, which is there once."""
+    return sorted(SOURCES.rglob("*.c"))
 
 
 class Bench:
@@ -262,7 +263,8 @@ def covered_lines(test, folder):
     out = subprocess.run(["gcov", "--json-format", "--stdout", *data], cwd=folder, check=True, stdout=subprocess.PIPE,
                          stderr=subprocess.DEVNULL).stdout
     covered = collections.defaultdict(list)
+    known = {path.name for path in core_files()}
     for document in out.splitlines():
         for file in json.loads(document)["files"] if document.strip() else ():
             covered[pathlib.Path(file["file"]).name] += [line["line_number"] for line in file["lines"] if line["count"]]
-    return {name: numbers for name, numbers in covered.items() if (SOURCES / name).exists()}
+    return {name: numbers for name, numbers in covered.items() if name in known}

@@ -4,7 +4,7 @@ In the file rows an entry is
     ROW FILE
     - the old line
     + the new one
-where the old line stands once in firmware/src/FILE; how far it is indented does not matter. A change counts when an
+where the old line stands once in FILE, a source of the core; how far it is indented does not matter. A change counts when an
 assertion fails in a test that names the row.
 """
 import collections

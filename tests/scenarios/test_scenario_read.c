@@ -76,7 +76,7 @@ void test_everything_about_the_beginning(void) {
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, scenario.watchdog_ms);
     TEST_ASSERT_EQUAL(HAL_RESET_BROWN_OUT, scenario.reset_cause);
     TEST_ASSERT_TRUE(scenario.vehicle.gateway);
-    TEST_ASSERT_EQUAL(AGV_ID_SET_HEADING, scenario.vehicle.id_set);
+    TEST_ASSERT_EQUAL_HEX16(0x43F, scenario.vehicle.ids.of[AGV_MSG_TURN_SIGNAL_COMMAND]);
     TEST_ASSERT_FALSE(scenario.vehicle.park_guard);
     TEST_ASSERT_TRUE(scenario.vehicle.obeys_short_frames);
     TEST_ASSERT_EQUAL_UINT32(5u, scenario.vehicle.start_ms[VEHICLE_VCU]);
@@ -167,7 +167,7 @@ void test_the_command_line_chooses_what_the_file_leaves_open(void) {
     options.id_set = AGV_ID_SET_TABLE;
     read_good(HEAD STATES);
     TEST_ASSERT_TRUE(scenario.vehicle.gateway);
-    TEST_ASSERT_EQUAL(AGV_ID_SET_TABLE, scenario.vehicle.id_set);
+    TEST_ASSERT_EQUAL_HEX16(0x201, scenario.vehicle.ids.of[AGV_MSG_TURN_SIGNAL_COMMAND]);
     read_good("topology: gateway\nid_set: table\n" HEAD STATES);
     read_bad("topology: shared\n" HEAD STATES, "the file fixes the topology");
     read_bad("id_set: heading\n" HEAD STATES, "the file fixes the ID set");
@@ -224,7 +224,8 @@ void test_what_is_wrong_at_the_top_is_refused_with_its_line(void) {
          "s.yaml:6: vcu_heartbeat_timeout_ms: 29 is not within"},
         {HEAD STATES "config:\n  bogus: 1\n", "s.yaml:6: bogus: no such setting"},
         {HEAD STATES "config:\n  topology: gateway\n", "s.yaml:6: topology: belongs to the top level"},
-        {HEAD STATES "config:\n  own_heartbeat: frozen\n", "s.yaml:6: own_heartbeat: this value needs the gateway"},
+        {HEAD STATES "config:\n  own_heartbeat: frozen\n",
+         "s.yaml:6: own_heartbeat: has no effect on a shared bus; this value needs the gateway"},
         {HEAD STATES "vehicle: {wings: 2}\n", "s.yaml:5: unknown key 'wings' in vehicle"},
         {HEAD STATES "vehicle: {park_guard: 1}\n", "s.yaml:5: park_guard: '1' is none of true, false"},
         {HEAD STATES "vehicle: {vcu_starts_ms: soon}\n", "s.yaml:5: start (a time in ms, or never): 'soon' is no"},

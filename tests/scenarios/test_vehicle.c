@@ -3,6 +3,8 @@
 
 #include <stdlib.h>
 
+#include "agv/config.h"
+
 #define AUTOPILOT_OFF 0x40u
 
 void setUp(void) {
@@ -16,7 +18,7 @@ void tearDown(void) {
 }
 
 static void command_signals(uint8_t flags, uint8_t counter) {
-    hal_can_frame_t frame = {.id = agv_message_id(AGV_MSG_TURN_SIGNAL_COMMAND, config.id_set), .length = AGV_DLC};
+    hal_can_frame_t frame = {.id = config.ids.of[AGV_MSG_TURN_SIGNAL_COMMAND], .length = AGV_DLC};
     frame.data[4] = flags;
     frame.data[7] = counter;
     vehicle_receive(&vehicle, VEHICLE_VCU, now_ms, &frame);
@@ -57,12 +59,17 @@ void test_at_most_two_frames_start_in_one_millisecond(void) {
 }
 
 /* Shows: P1 */
-void test_identifiers_follow_the_id_set(void) {
-    config.id_set = AGV_ID_SET_TABLE;
+void test_identifiers_are_those_of_the_configuration(void) {
+    agv_config_t settings;
+    agv_config_defaults(&settings);
+    settings.id_set = AGV_ID_SET_TABLE;
+    settings.id_gear_command = 0x169u;
+    agv_config_ids(&settings, &config.ids);
     begin();
     run_until(100u);
     TEST_ASSERT_EQUAL_HEX32(0x203u, last_of(AGV_MSG_VEHICLE_STATUS)->frame.id);
     TEST_ASSERT_EQUAL_HEX32(0x201u, last_of(AGV_MSG_TURN_SIGNAL_COMMAND)->frame.id);
+    TEST_ASSERT_EQUAL_HEX32(0x169u, last_of(AGV_MSG_GEAR_COMMAND)->frame.id);
 }
 
 void test_only_the_ai_computer_of_a_gateway_is_on_the_ai_side(void) {

@@ -51,7 +51,7 @@ static int32_t measured_ddeg(void) {
 static size_t count_other(agv_message_t message, unsigned byte, uint8_t value, size_t first) {
     size_t count = 0u;
     for (size_t i = first; i < sent_count; i++) {
-        const bool is_it = sent[i].frame.id == agv_message_id(message, config.id_set);
+        const bool is_it = sent[i].frame.id == config.ids.of[message];
         count += (is_it && (sent[i].frame.data[byte] != value)) ? 1u : 0u;
     }
     return count;
@@ -314,7 +314,7 @@ static void range_of(agv_message_t message, unsigned byte, size_t first, int32_t
     range[0] = INT32_MAX;
     range[1] = INT32_MIN;
     for (size_t i = first; i < sent_count; i++) {
-        if (sent[i].frame.id == agv_message_id(message, config.id_set)) {
+        if (sent[i].frame.id == config.ids.of[message]) {
             const int32_t ddeg = sent[i].frame.data[byte] + (sent[i].frame.data[byte + 1u] * 256) - 9000;
             range[0] = (ddeg < range[0]) ? ddeg : range[0];
             range[1] = (ddeg > range[1]) ? ddeg : range[1];

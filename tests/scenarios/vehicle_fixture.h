@@ -73,8 +73,7 @@ static vehicle_view_t look(void) {
 
 /* A command comes from the bus. */
 static void command(agv_message_t message, uint8_t byte0, uint8_t byte1) {
-    const hal_can_frame_t frame = {
-        .id = agv_message_id(message, config.id_set), .length = AGV_DLC, .data = {byte0, byte1}};
+    const hal_can_frame_t frame = {.id = config.ids.of[message], .length = AGV_DLC, .data = {byte0, byte1}};
     vehicle_receive(&vehicle, VEHICLE_VCU, now_ms, &frame);
     vehicle_receive(&vehicle, VEHICLE_EPS, now_ms, &frame);
 }
@@ -83,7 +82,7 @@ static void command(agv_message_t message, uint8_t byte0, uint8_t byte1) {
 static size_t count_of(agv_message_t message, size_t first) {
     size_t count = 0u;
     for (size_t i = first; i < sent_count; i++) {
-        count += (sent[i].frame.id == agv_message_id(message, config.id_set)) ? 1u : 0u;
+        count += (sent[i].frame.id == config.ids.of[message]) ? 1u : 0u;
     }
     return count;
 }
@@ -91,7 +90,7 @@ static size_t count_of(agv_message_t message, size_t first) {
 /* The newest frame of a message. */
 static const sent_t *last_of(agv_message_t message) {
     for (size_t i = sent_count; i > 0u; i--) {
-        if (sent[i - 1u].frame.id == agv_message_id(message, config.id_set)) {
+        if (sent[i - 1u].frame.id == config.ids.of[message]) {
             return &sent[i - 1u];
         }
     }

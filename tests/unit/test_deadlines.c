@@ -22,7 +22,7 @@ void setUp(void) {
     liveness = (agv_liveness_t){0};
     engaged = false;
     agv_timers_set_time(&timers, at(0));
-    agv_timers_start(&timers, &config);
+    agv_timers_start(&timers);
     agv_liveness_start(&liveness, &timers);
 }
 
@@ -30,10 +30,9 @@ void tearDown(void) {
 }
 
 static void tick(uint32_t ms) {
-    agv_timers_set_time(&timers, at(ms));
-    agv_timers_tick(&timers);
-    agv_liveness_tick(&liveness, &timers);
-    agv_deadlines_tick(&faults, &timers, &liveness, engaged);
+    agv_timers_advance(&timers, &config, at(ms), 0);
+    agv_liveness_tick(&liveness, &timers, engaged);
+    agv_deadlines_tick(&faults, &timers, &config, &liveness, engaged);
 }
 
 /* A frame whose alive counter is at every place. */
@@ -43,7 +42,7 @@ static void arrives(unsigned message, uint8_t counter, uint32_t ms) {
         frame.data[i] = counter;
     }
     (void)agv_liveness_arrived(&liveness, message, frame.time_ms);
-    agv_liveness_refresh(&liveness, &timers, message, &frame);
+    agv_liveness_refresh(&liveness, &timers, &config, message, &frame);
 }
 
 /* All but one, at that time. */
@@ -143,13 +142,17 @@ void test_a_heartbeat_is_stuck(unsigned message, unsigned fault, uint32_t timeou
     expect_only(NONE);
 }
 
-/* Engaged without ever a 43Fh. */
+/* Engaged without ever a 43Fh. The time begins with the engagement, which mode.c starts; a break of it does not end it. */
 /* Shows: SUP-8, AI_HEARTBEAT_LOST */
 void test_an_ai_computer_that_was_never_seen(void) {
     tick(10000);
     TEST_ASSERT_FALSE(is_active(AGV_FAULT_AI_HEARTBEAT_LOST));
     engaged = true;
-    tick(10001);
+    agv_timer_start_at(&timers, AGV_TIMER_AI_NEVER_SEEN, at(10001));
+    tick(10400);
+    engaged = false; /* a glitch, and the engagement is continued */
+    tick(10401);
+    engaged = true;
     tick(10501);
     TEST_ASSERT_FALSE(is_active(AGV_FAULT_AI_HEARTBEAT_LOST));
     tick(10502);
@@ -168,6 +171,38 @@ void test_a_forgotten_ai_computer_is_not_lost(unsigned fault) {
     agv_fault_monitor_set(&faults, AGV_FAULT_VCU_HEARTBEAT_LOST, true);
     agv_deadlines_forget_ai(&faults);
     expect_only(AGV_FAULT_VCU_HEARTBEAT_LOST);
+}
+
+/* Lost in manual: at the moment of the engagement it is a fault of an engaged vehicle, without waiting for a tick. */
+/* Shows: SUP-8, FSM-11 */
+void test_a_forgotten_ai_computer_is_lost_at_the_next_engagement(void) {
+    arrives(AGV_MSG_TURN_SIGNAL_COMMAND, 1, 0);
+    arrives(AGV_MSG_TURN_SIGNAL_COMMAND, 2, 0);
+    agv_liveness_forget_ai(&liveness);
+    agv_deadlines_forget_ai(&faults);
+    tick(5000);
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_AI_HEARTBEAT_LOST));
+    engaged = true;
+    agv_liveness_tick(&liveness, &timers, engaged);
+    agv_deadlines_heartbeats(&faults, &timers, &liveness, engaged);
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_AI_HEARTBEAT_LOST));
+    arrives(AGV_MSG_TURN_SIGNAL_COMMAND, 3, 5001);
+    agv_deadlines_heartbeats(&faults, &timers, &liveness, engaged);
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_AI_HEARTBEAT_LOST));
+}
+
+/* Its deadline runs on from before the reset: 350 ms after its last changed counter. */
+/* Shows: SUP-8, FSM-11 */
+void test_the_deadline_of_a_forgotten_ai_computer_runs_on(void) {
+    arrives(AGV_MSG_TURN_SIGNAL_COMMAND, 1, 0);
+    arrives(AGV_MSG_TURN_SIGNAL_COMMAND, 2, 0);
+    tick(200);
+    agv_liveness_forget_ai(&liveness);
+    engaged = true;
+    tick(350);
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_AI_HEARTBEAT_LOST));
+    tick(351);
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_AI_HEARTBEAT_LOST));
 }
 
 /* ---- The other set's identifiers ---- */

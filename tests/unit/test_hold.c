@@ -1,14 +1,37 @@
-/* The held steering angle: that of the moment of the trip, or the first valid one after it. */
+/* The held steering angle: that of the moment of the trip when it is young enough, or the first valid one after it. */
 #include "decide/hold.h"
 
 #include "unity.h"
 
 static agv_hold_t hold;
 static agv_vehicle_t vehicle;
+static agv_timers_t timers;
+static agv_config_t config;
+
+/* Every test wraps. */
+static uint32_t at(uint32_t ms) {
+    return 0xFFFFFFE0u + ms;
+}
+
+/* A valid 067h with this angle, received at that time. */
+static void measured(unsigned raw, uint32_t ms) {
+    const hal_can_frame_t frame = {
+        .time_ms = at(ms), .length = 8, .data = {0, 0, (uint8_t)(raw & 0xFFu), (uint8_t)(raw >> 8)}};
+    agv_timers_advance(&timers, &config, at(ms), 0);
+    agv_vehicle_steering(&vehicle, &timers, &frame, true);
+}
+
+static void trip(uint32_t ms) {
+    agv_timers_advance(&timers, &config, at(ms), 0);
+    agv_hold_trip(&hold, &vehicle, &timers);
+}
 
 void setUp(void) {
+    agv_config_defaults(&config);
+    agv_timers_set_time(&timers, at(0));
+    agv_timers_start(&timers);
     hold = (agv_hold_t){0};
-    vehicle = (agv_vehicle_t){.angle_raw = 9123, .angle_known = true};
+    vehicle = (agv_vehicle_t){0};
 }
 
 void tearDown(void) {
@@ -19,51 +42,78 @@ static void expect_held(uint16_t raw) {
     TEST_ASSERT_EQUAL_UINT16(raw, hold.raw);
 }
 
-void test_none_is_held_before_a_trip(void) {
-    TEST_ASSERT_FALSE(agv_hold_is_held(&hold));
-    agv_hold_step(&hold, &vehicle, false, false);
+static void expect_none(void) {
     TEST_ASSERT_FALSE(agv_hold_is_held(&hold));
 }
 
 /* Shows: FSM-10 */
-void test_a_trip_holds_the_angle_of_that_moment(void) {
-    agv_hold_step(&hold, &vehicle, true, true);
+void test_without_any_067h_none_is_held(void) {
+    expect_none();
+    trip(0);
+    expect_none();
+    measured(9123, 100);
+    agv_hold_take(&hold, &vehicle);
     expect_held(9123);
-    vehicle.angle_raw = 5000;
-    agv_hold_step(&hold, &vehicle, false, true);
+}
+
+/* 50 ms are young enough. */
+/* Shows: FSM-10 */
+void test_an_angle_of_up_to_50_ms_before_the_trip_is_held(void) {
+    measured(9123, 10);
+    trip(60);
     expect_held(9123);
-    agv_hold_step(&hold, &vehicle, true, true); /* of another trip */
+    setUp();
+    measured(9123, 10);
+    trip(61);
+    expect_none();
+}
+
+/* Shows: FSM-10 */
+void test_after_the_trip_the_first_one_is_held(void) {
+    measured(9123, 0);
+    trip(200);
+    measured(5000, 201);
+    agv_hold_take(&hold, &vehicle);
     expect_held(5000);
+    measured(6000, 211);
+    agv_hold_take(&hold, &vehicle);
+    expect_held(5000);
+    trip(212); /* another trip: the angle of its moment */
+    expect_held(6000);
 }
 
+/* The one of a trip before is not kept when there is no young one. */
 /* Shows: FSM-10 */
-void test_without_an_angle_the_first_one_after_the_trip_is_held(void) {
-    vehicle.angle_known = false;
-    agv_hold_step(&hold, &vehicle, true, true);
-    TEST_ASSERT_FALSE(agv_hold_is_held(&hold));
-    agv_hold_step(&hold, &vehicle, false, true);
-    TEST_ASSERT_FALSE(agv_hold_is_held(&hold));
-    vehicle = (agv_vehicle_t){.angle_raw = 1, .angle_known = true};
-    agv_hold_step(&hold, &vehicle, false, true);
-    expect_held(1);
+void test_another_trip_forgets_an_old_angle(void) {
+    measured(9123, 0);
+    trip(0);
+    expect_held(9123);
+    trip(51);
+    expect_none();
 }
 
+/* Manual: the operator steers; and a reset. */
 /* Shows: FSM-10 */
-void test_a_reset_drops_it(void) {
-    agv_hold_step(&hold, &vehicle, true, true);
-    agv_hold_step(&hold, &vehicle, false, false);
-    TEST_ASSERT_FALSE(agv_hold_is_held(&hold));
+void test_it_is_dropped_and_taken_anew(void) {
+    measured(9123, 0);
+    trip(0);
+    agv_hold_drop(&hold);
+    expect_none();
+    measured(4000, 500);
+    agv_hold_take(&hold, &vehicle);
+    expect_held(4000);
 }
 
 /* Shows: INT-5 */
 void test_a_flipped_bit_in_it_or_in_its_complement_drops_it(void) {
-    agv_hold_step(&hold, &vehicle, true, true);
+    measured(9123, 0);
+    trip(0);
     for (unsigned bit = 0; bit < 16; bit++) {
         hold.raw = (uint16_t)(hold.raw ^ (1u << bit));
-        TEST_ASSERT_FALSE(agv_hold_is_held(&hold));
+        expect_none();
         hold.raw = (uint16_t)(hold.raw ^ (1u << bit));
         hold.check = (uint16_t)(hold.check ^ (1u << bit));
-        TEST_ASSERT_FALSE(agv_hold_is_held(&hold));
+        expect_none();
         hold.check = (uint16_t)(hold.check ^ (1u << bit));
     }
     expect_held(9123);
@@ -72,8 +122,8 @@ void test_a_flipped_bit_in_it_or_in_its_complement_drops_it(void) {
 /* All values, the ends among them: 0 is an angle like any other. */
 void test_every_angle_may_be_held(void) {
     for (unsigned raw = 0; raw <= 18000; raw++) {
-        vehicle.angle_raw = (uint16_t)raw;
-        agv_hold_step(&hold, &vehicle, true, true);
+        measured(raw, 0);
+        trip(0);
         expect_held((uint16_t)raw);
     }
 }

@@ -5,9 +5,9 @@
 
 static agv_liveness_t liveness;
 static agv_timers_t timers;
+static agv_config_t config;
 
 static void start(uint32_t now_ms) {
-    agv_config_t config;
     agv_config_defaults(&config);
     config.gear_command_timeout_ms = 60;
     config.throttle_command_timeout_ms = 60;
@@ -15,14 +15,17 @@ static void start(uint32_t now_ms) {
     config.gear_status_timeout_ms = 60;
     liveness = (agv_liveness_t){0};
     agv_timers_set_time(&timers, now_ms);
-    agv_timers_start(&timers, &config);
+    agv_timers_start(&timers);
     agv_liveness_start(&liveness, &timers);
 }
 
+static void tick_while(bool engaged, uint32_t now_ms) {
+    agv_timers_advance(&timers, &config, now_ms, 0);
+    agv_liveness_tick(&liveness, &timers, engaged);
+}
+
 static void tick(uint32_t now_ms) {
-    agv_timers_set_time(&timers, now_ms);
-    agv_timers_tick(&timers);
-    agv_liveness_tick(&liveness, &timers);
+    tick_while(false, now_ms);
 }
 
 /* Whether the deadline of a message has expired. */
@@ -33,7 +36,7 @@ static bool judge(agv_message_t message, uint32_t now_ms) {
 
 static void refresh(agv_message_t message, uint32_t now_ms) {
     const hal_can_frame_t frame = {.time_ms = now_ms, .length = 8};
-    agv_liveness_refresh(&liveness, &timers, message, &frame);
+    agv_liveness_refresh(&liveness, &timers, &config, message, &frame);
 }
 
 static uint32_t age_ms(agv_message_t message, uint32_t now_ms) {
@@ -42,7 +45,7 @@ static uint32_t age_ms(agv_message_t message, uint32_t now_ms) {
 }
 
 static bool is_heard(agv_message_t message) {
-    return liveness.heard[message];
+    return (liveness.heard & (1u << (unsigned)message)) != 0;
 }
 
 void setUp(void) {
@@ -64,7 +67,7 @@ static void beat(agv_node_t node, uint8_t counter, uint32_t time_ms) {
     hal_can_frame_t frame = {.time_ms = time_ms, .length = 8};
     frame.data[(node == AGV_NODE_EPS) ? 0 : 7] = counter;
     (void)agv_liveness_arrived(&liveness, carrier[node], time_ms);
-    agv_liveness_refresh(&liveness, &timers, carrier[node], &frame);
+    agv_liveness_refresh(&liveness, &timers, &config, carrier[node], &frame);
 }
 
 /* Shows: SUP-2, SUP-3, TIM-2 */
@@ -252,17 +255,124 @@ void test_silence_is_lost(void) {
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
 }
 
+/* In manual a forgotten AI computer is nobody's concern; the value from before the reset is the baseline. */
 /* Shows: SUP-8 */
-void test_a_forgotten_node_is_seen_again_when_its_counter_changes(void) {
+void test_a_forgotten_ai_is_seen_again_when_its_counter_changes(void) {
     beat(AGV_NODE_AI, 1, 0);
     beat(AGV_NODE_AI, 2, 100);
-    agv_liveness_forget_ai(&liveness, &timers);
-    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_UNSEEN);
+    agv_liveness_forget_ai(&liveness);
+    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_FORGOTTEN);
     beat(AGV_NODE_AI, 2, 200);
     tick(10000);
-    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_UNSEEN);
+    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_FORGOTTEN);
     beat(AGV_NODE_AI, 3, 10000);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_ALIVE);
+}
+
+/* Its deadline of 350 ms runs on: engaged, it is lost when that has expired, at once if it had before. */
+/* Shows: SUP-8, FSM-11 */
+TEST_CASE(450, 451)
+TEST_CASE(5000, 5000)
+void test_a_forgotten_ai_is_lost_when_engaged(uint32_t engaged_ms, uint32_t lost_ms) {
+    beat(AGV_NODE_AI, 1, 0);
+    beat(AGV_NODE_AI, 2, 100);
+    tick(150);
+    agv_liveness_forget_ai(&liveness);
+    tick(engaged_ms);
+    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_FORGOTTEN);
+    tick_while(true, engaged_ms);
+    expect_heartbeat(AGV_NODE_AI, (lost_ms == engaged_ms) ? AGV_HEARTBEAT_LOST : AGV_HEARTBEAT_FORGOTTEN);
+    tick_while(true, lost_ms);
+    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_LOST);
+}
+
+/* A reset forgets that it was lost, too; frames with the old counter leave it stuck at the next engagement. */
+/* Shows: SUP-8, FSM-11 */
+void test_a_forgotten_ai_whose_counter_stands_is_stuck_when_engaged(void) {
+    beat(AGV_NODE_AI, 1, 0);
+    beat(AGV_NODE_AI, 2, 100);
+    tick(1000);
+    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_LOST);
+    agv_liveness_forget_ai(&liveness);
+    beat(AGV_NODE_AI, 2, 1100);
+    tick_while(true, 1101);
+    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_STUCK);
+}
+
+/* Shows: SUP-8 */
+void test_an_ai_that_never_was_there_is_not_forgotten(void) {
+    agv_liveness_forget_ai(&liveness);
+    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_UNSEEN);
+    tick_while(true, 1000);
+    expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_UNSEEN);
+}
+
+/* ---- Counters that count up ---- */
+
+static void count_up(uint16_t vcu, uint16_t eps, uint16_t ai) {
+    config.vcu_counter = vcu;
+    config.eps_counter = eps;
+    config.ai_counter = ai;
+}
+
+/* 1 to 3 more, modulo 256. */
+/* Shows: SUP-2 */
+void test_steps_of_one_to_three_count(void) {
+    for (unsigned step = 0; step < 256; step++) {
+        start(0);
+        count_up(AGV_COUNTER_INCREMENTS, AGV_COUNTER_ANY, AGV_COUNTER_ANY);
+        beat(AGV_NODE_VCU, 254, 10);
+        beat(AGV_NODE_VCU, (uint8_t)(254 + step), 20);
+        TEST_ASSERT_EQUAL(step >= 1 && step <= 3, agv_liveness_alive(&liveness, AGV_NODE_VCU));
+    }
+}
+
+/* The choice is one of each sender alone. */
+/* Shows: SUP-2 */
+TEST_CASE(0)
+TEST_CASE(1)
+TEST_CASE(2)
+void test_each_sender_has_its_own_choice(unsigned node) {
+    count_up(node == 0, node == 1, node == 2);
+    for (unsigned i = 0; i < 3; i++) {
+        beat((agv_node_t)i, 100, 10);
+        beat((agv_node_t)i, 50, 20);
+        TEST_ASSERT_EQUAL(i != node, agv_liveness_alive(&liveness, (agv_node_t)i));
+    }
+}
+
+/* After a wrong step two right ones in a row. 363h every 10 ms, alive at 20, deadline 50 ms. */
+/* Shows: SUP-2 */
+void test_after_a_wrong_step_two_right_ones_in_a_row_refresh(void) {
+    count_up(1, 1, 1);
+    beat(AGV_NODE_VCU, 1, 10);
+    beat(AGV_NODE_VCU, 2, 20);
+    beat(AGV_NODE_VCU, 200, 30); /* wrong */
+    beat(AGV_NODE_VCU, 201, 40); /* right, the first one */
+    beat(AGV_NODE_VCU, 201, 50); /* wrong */
+    beat(AGV_NODE_VCU, 202, 60);
+    tick(70);
+    expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
+    tick(71);
+    expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_STUCK);
+    beat(AGV_NODE_VCU, 205, 72); /* the second one */
+    expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
+    beat(AGV_NODE_VCU, 206, 80); /* from here on each */
+    tick(130);
+    expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
+    tick(131);
+    expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_LOST);
+}
+
+/* Two senders with counters of their own never look alive. */
+/* Shows: SUP-2 */
+void test_two_senders_that_take_turns_are_stuck(void) {
+    count_up(1, 1, 1);
+    for (uint32_t i = 0; i < 20; i++) {
+        beat(AGV_NODE_EPS, (uint8_t)(i % 2 == 0 ? 100 + i : 20 + i), 10 * i);
+        tick(10 * i + 9);
+    }
+    expect_heartbeat(AGV_NODE_EPS, AGV_HEARTBEAT_STUCK);
 }
 
 /* The commands are awaited from the engagement on, however long there were none; the heartbeat of the AI is not. */

@@ -1,13 +1,14 @@
-/* The mode that 363h reports: manual, engaged, both at once; the engagement and its grace. */
+/* The mode that 363h reports: manual, engaged, both at once; engagements that go on, judged, SUP-9. */
 #include "observe/mode.h"
 
 #include "unity.h"
 
-enum { MANUAL = 0x40, ENGAGED = 0x80, BOTH = 0xC0 }; /* 363h byte 7 */
+enum { NONE = 0, MANUAL = 0x40, ENGAGED = 0x80, BOTH = 0xC0 }; /* 363h byte 7 */
 
 static agv_mode_t mode;
 static agv_timers_t timers;
 static agv_config_t config;
+static agv_fault_monitor_t faults;
 
 /* Every test wraps. */
 static uint32_t at(uint32_t ms) {
@@ -17,22 +18,33 @@ static uint32_t at(uint32_t ms) {
 void setUp(void) {
     agv_config_defaults(&config);
     mode = (agv_mode_t){0};
+    faults = (agv_fault_monitor_t){0};
     agv_timers_set_time(&timers, at(0));
-    agv_timers_start(&timers, &config);
+    agv_timers_start(&timers);
 }
 
 void tearDown(void) {
 }
 
+static void advance(uint32_t ms) {
+    agv_timers_advance(&timers, &config, at(ms), 0);
+}
+
 static agv_mode_change_t report(uint32_t flags, uint32_t ms) {
-    agv_timers_set_time(&timers, at(ms));
-    return agv_mode_report(&mode, &timers, flags, at(ms));
+    advance(ms);
+    return agv_mode_report(&mode, &timers, &config, flags, true, at(ms));
+}
+
+/* Three 363h, 10 ms apart, the first of them at that time. */
+static agv_mode_change_t disengage(uint32_t ms) {
+    TEST_ASSERT_EQUAL(AGV_MODE_SAME, report(MANUAL, ms));
+    TEST_ASSERT_EQUAL(AGV_MODE_SAME, report(MANUAL, ms + 10));
+    return report(MANUAL, ms + 20);
 }
 
 static agv_mode_change_t tick(uint32_t ms) {
-    agv_timers_set_time(&timers, at(ms));
-    agv_timers_tick(&timers);
-    return agv_mode_tick(&mode, &timers);
+    advance(ms);
+    return agv_mode_tick(&mode, &timers, true);
 }
 
 static void expect_mode(bool manual, bool engaged) {
@@ -40,56 +52,165 @@ static void expect_mode(bool manual, bool engaged) {
     TEST_ASSERT_EQUAL(engaged, agv_mode_is_engaged(&mode));
 }
 
+static bool is_judged(void) {
+    return agv_mode_is_judged(&mode, &timers);
+}
+
+static bool is_active(unsigned fault) {
+    return agv_fault_monitor_is_active(&faults, fault);
+}
+
+/* ---- The bits ---- */
+
 /* Of the eight bits of byte 7 only two count. */
 void test_the_two_bits_of_the_mode(void) {
     expect_mode(false, false);
     for (unsigned flags = 0; flags < 256; flags++) {
-        if ((flags & BOTH) != BOTH) {
-            setUp();
-            const bool engaged = (flags & ENGAGED) != 0;
-            TEST_ASSERT_EQUAL(engaged ? AGV_MODE_BEGAN : AGV_MODE_SAME, report(flags, 0));
-            expect_mode((flags & MANUAL) != 0, engaged);
-            TEST_ASSERT_FALSE(agv_mode_is_ambiguous(&timers));
-        }
+        setUp();
+        const bool both = (flags & BOTH) == BOTH;
+        const bool engaged = (flags & BOTH) == ENGAGED;
+        TEST_ASSERT_EQUAL(engaged ? AGV_MODE_BEGAN : AGV_MODE_SAME, report(flags, 0));
+        expect_mode((flags & BOTH) == MANUAL, engaged);
+        TEST_ASSERT_EQUAL(both, agv_mode_is_ambiguous(&mode));
+        TEST_ASSERT_EQUAL(engaged, agv_mode_reports_autopilot(&mode));
     }
 }
 
-void test_the_engagement_begins_and_ends_once(void) {
+/* Manual is what the last frame says; the engagement ends with the third in a row. */
+/* Shows: FSM-10 */
+void test_the_third_frame_without_the_bit_ends_the_engagement(void) {
     TEST_ASSERT_EQUAL(AGV_MODE_SAME, report(MANUAL, 0));
     TEST_ASSERT_EQUAL(AGV_MODE_BEGAN, report(ENGAGED, 10));
     TEST_ASSERT_EQUAL(AGV_MODE_SAME, report(ENGAGED, 20));
-    TEST_ASSERT_EQUAL(AGV_MODE_ENDED, report(MANUAL, 30));
-    TEST_ASSERT_EQUAL(AGV_MODE_SAME, report(0, 40));
-    expect_mode(false, false);
-    TEST_ASSERT_EQUAL(AGV_MODE_BEGAN, report(ENGAGED, 50));
-    TEST_ASSERT_EQUAL(AGV_MODE_ENDED, report(0, 60));
+    TEST_ASSERT_EQUAL(AGV_MODE_SAME, report(MANUAL, 30));
+    expect_mode(true, true);
+    TEST_ASSERT_FALSE(agv_mode_reports_autopilot(&mode));
+    TEST_ASSERT_EQUAL(AGV_MODE_SAME, report(NONE, 40));
+    expect_mode(false, true);
+    TEST_ASSERT_EQUAL(AGV_MODE_ENDED, report(MANUAL, 50));
+    expect_mode(true, false);
+    TEST_ASSERT_EQUAL(AGV_MODE_SAME, report(MANUAL, 60));
 }
+
+/* In a row: the autopilot bit, alone or with that of manual, begins the count anew. */
+TEST_CASE(0x80)
+TEST_CASE(0xC0)
+void test_a_frame_with_the_bit_begins_the_count_anew(unsigned flags) {
+    (void)report(ENGAGED, 0);
+    for (uint32_t ms = 10; ms < 1000; ms += 30) {
+        TEST_ASSERT_EQUAL(AGV_MODE_SAME, report(NONE, ms));
+        TEST_ASSERT_EQUAL(AGV_MODE_SAME, report(MANUAL, ms + 10));
+        TEST_ASSERT_EQUAL(AGV_MODE_SAME, report(flags, ms + 20));
+    }
+    TEST_ASSERT_TRUE(agv_mode_is_engaged(&mode));
+    TEST_ASSERT_EQUAL(AGV_MODE_ENDED, disengage(1000));
+}
+
+/* What was counted before an engagement does not count in it. */
+TEST_CASE(1)
+TEST_CASE(5)
+void test_how_many_frames_is_a_setting(unsigned frames) {
+    config.mode_frames = (uint16_t)frames;
+    for (uint32_t round = 0; round < 3; round++) {
+        (void)report(NONE, 0);
+        (void)report(ENGAGED, 0);
+        for (unsigned i = 1; i < frames; i++) {
+            TEST_ASSERT_EQUAL(AGV_MODE_SAME, report(NONE, 0));
+        }
+        TEST_ASSERT_EQUAL(AGV_MODE_ENDED, report(NONE, 0));
+    }
+}
+
+/* ---- The VCU ---- */
+
+/* Neither a frame of a VCU that is not alive nor its loss leaves anybody engaged. */
+void test_an_engagement_needs_a_vcu_that_is_alive(void) {
+    advance(10);
+    TEST_ASSERT_EQUAL(AGV_MODE_SAME, agv_mode_report(&mode, &timers, &config, ENGAGED, false, at(10)));
+    expect_mode(false, false);
+    TEST_ASSERT_EQUAL(AGV_MODE_BEGAN, report(ENGAGED, 20));
+    TEST_ASSERT_EQUAL(AGV_MODE_SAME, tick(30));
+    TEST_ASSERT_EQUAL(AGV_MODE_ENDED, agv_mode_tick(&mode, &timers, false));
+    expect_mode(false, false);
+    TEST_ASSERT_EQUAL(AGV_MODE_SAME, agv_mode_tick(&mode, &timers, false));
+}
+
+/* ---- One engagement ---- */
+
+/* From the end, with its third frame, up to 100 ms: no human. The grace does not begin afresh. */
+/* Shows: SUP-5 */
+TEST_CASE(100, 1)
+TEST_CASE(101, 0)
+void test_an_engagement_within_100_ms_of_the_last_one_continues_it(uint32_t gap_ms, int continued) {
+    TEST_ASSERT_EQUAL(AGV_MODE_BEGAN, report(ENGAGED, 0));
+    TEST_ASSERT_EQUAL(AGV_MODE_ENDED, disengage(380));
+    TEST_ASSERT_EQUAL(continued ? AGV_MODE_CONTINUED : AGV_MODE_BEGAN, report(ENGAGED, 400 + gap_ms));
+    (void)tick(599);
+    TEST_ASSERT_EQUAL(continued, is_judged());
+    (void)tick(400 + gap_ms + 499);
+    TEST_ASSERT_EQUAL(continued, is_judged());
+    (void)tick(400 + gap_ms + 500);
+    TEST_ASSERT_TRUE(is_judged());
+}
+
+/* A continued one that ends is continued again: the time counts from each end. */
+void test_a_continued_engagement_is_continued_again(void) {
+    (void)report(ENGAGED, 0);
+    for (uint32_t ms = 100; ms < 1000; ms += 100) {
+        TEST_ASSERT_EQUAL(AGV_MODE_ENDED, disengage(ms));
+        TEST_ASSERT_EQUAL(AGV_MODE_CONTINUED, report(ENGAGED, ms + 90));
+    }
+    TEST_ASSERT_TRUE(is_judged());
+    (void)disengage(1100);
+    TEST_ASSERT_EQUAL(AGV_MODE_BEGAN, report(ENGAGED, 2000));
+    TEST_ASSERT_FALSE(is_judged());
+}
+
+void test_with_a_time_of_0_only_the_same_moment_continues(void) {
+    config.reengage_ms = 0;
+    (void)report(ENGAGED, 0);
+    (void)disengage(10);
+    TEST_ASSERT_EQUAL(AGV_MODE_BEGAN, report(ENGAGED, 31));
+}
+
+/* ---- Judged ---- */
 
 /* Shows: SUP-5 */
-void test_the_grace_is_over_500_ms_after_the_engagement(void) {
+void test_judged_from_500_ms_on_and_while_the_last_frame_has_the_bit(void) {
+    TEST_ASSERT_FALSE(is_judged());
     (void)report(ENGAGED, 10);
     (void)tick(509);
-    TEST_ASSERT_FALSE(agv_mode_is_settled(&timers));
+    TEST_ASSERT_FALSE(is_judged());
     (void)tick(510);
-    TEST_ASSERT_TRUE(agv_mode_is_settled(&timers));
+    TEST_ASSERT_TRUE(is_judged());
     (void)report(MANUAL, 511);
-    TEST_ASSERT_FALSE(agv_mode_is_settled(&timers));
-    (void)report(ENGAGED, 512);
-    (void)tick(1011);
-    TEST_ASSERT_FALSE(agv_mode_is_settled(&timers));
-    (void)tick(1012);
-    TEST_ASSERT_TRUE(agv_mode_is_settled(&timers));
+    TEST_ASSERT_FALSE(is_judged());
+    (void)report(BOTH, 521); /* the bit is set */
+    TEST_ASSERT_TRUE(is_judged());
+    (void)report(ENGAGED, 531);
+    TEST_ASSERT_TRUE(is_judged());
+    (void)disengage(541);
+    TEST_ASSERT_FALSE(is_judged());
 }
 
-/* The AI computer has its time from the stamp of the frame on. */
+/* The AI computer has its time from the stamp of the frame on; a continued engagement goes on with it. */
 /* Shows: SUP-8 */
 void test_at_the_engagement_the_ai_computer_is_awaited(void) {
-    agv_timers_set_time(&timers, at(12));
-    (void)agv_mode_report(&mode, &timers, ENGAGED, at(10));
-    agv_timers_set_time(&timers, at(510));
+    advance(12);
+    (void)agv_mode_report(&mode, &timers, &config, ENGAGED, true, at(10));
+    (void)disengage(100);
+    TEST_ASSERT_EQUAL(AGV_MODE_CONTINUED, report(ENGAGED, 130));
+    advance(510);
     TEST_ASSERT_FALSE(agv_timer_reached(&timers, AGV_TIMER_AI_NEVER_SEEN));
-    agv_timers_set_time(&timers, at(511));
+    advance(511);
     TEST_ASSERT_TRUE(agv_timer_reached(&timers, AGV_TIMER_AI_NEVER_SEEN));
+}
+
+/* ---- Both bits ---- */
+
+static bool is_invalid(void) {
+    agv_mode_check(&mode, &timers, &faults, true, true);
+    return is_active(AGV_FAULT_MODE_INVALID);
 }
 
 /* Shows: MODE_INVALID */
@@ -97,31 +218,116 @@ void test_both_bits_leave_the_mode_before_until_they_last(void) {
     (void)report(ENGAGED, 0);
     TEST_ASSERT_EQUAL(AGV_MODE_SAME, report(BOTH, 10));
     expect_mode(false, true);
-    TEST_ASSERT_TRUE(agv_mode_is_ambiguous(&timers));
+    TEST_ASSERT_TRUE(agv_mode_is_ambiguous(&mode));
     TEST_ASSERT_EQUAL(AGV_MODE_SAME, tick(60));
-    TEST_ASSERT_FALSE(agv_mode_is_invalid(&timers));
+    TEST_ASSERT_FALSE(is_invalid());
     TEST_ASSERT_EQUAL(AGV_MODE_ENDED, tick(61));
-    TEST_ASSERT_TRUE(agv_mode_is_invalid(&timers));
+    TEST_ASSERT_TRUE(is_invalid());
     expect_mode(false, false);
-    TEST_ASSERT_FALSE(agv_mode_is_settled(&timers));
+    TEST_ASSERT_FALSE(is_judged());
     TEST_ASSERT_EQUAL(AGV_MODE_SAME, tick(62));
     TEST_ASSERT_EQUAL(AGV_MODE_SAME, report(BOTH, 70)); /* goes on */
-    TEST_ASSERT_TRUE(agv_mode_is_invalid(&timers));
-    TEST_ASSERT_EQUAL(AGV_MODE_BEGAN, report(ENGAGED, 80));
-    TEST_ASSERT_FALSE(agv_mode_is_invalid(&timers));
-    TEST_ASSERT_FALSE(agv_mode_is_ambiguous(&timers));
+    TEST_ASSERT_TRUE(is_invalid());
+    TEST_ASSERT_EQUAL(AGV_MODE_BEGAN, report(ENGAGED, 200));
+    TEST_ASSERT_FALSE(is_invalid());
+    TEST_ASSERT_FALSE(agv_mode_is_ambiguous(&mode));
 }
 
 /* Shows: MODE_INVALID */
 void test_one_good_frame_begins_the_time_of_both_bits_anew(void) {
     (void)report(MANUAL, 0);
     (void)report(BOTH, 10);
+    expect_mode(true, false);
     (void)report(MANUAL, 60);
     (void)report(BOTH, 61);
     TEST_ASSERT_EQUAL(AGV_MODE_SAME, tick(111));
-    TEST_ASSERT_FALSE(agv_mode_is_invalid(&timers));
+    TEST_ASSERT_FALSE(is_invalid());
     expect_mode(true, false);
     TEST_ASSERT_EQUAL(AGV_MODE_SAME, tick(112)); /* from manual to none: nothing was engaged */
-    TEST_ASSERT_TRUE(agv_mode_is_invalid(&timers));
+    TEST_ASSERT_TRUE(is_invalid());
     expect_mode(false, false);
+}
+
+/* ---- Flapping ---- */
+
+static bool flaps_at(uint32_t ms) {
+    advance(ms);
+    faults = (agv_fault_monitor_t){0};
+    agv_mode_count_engagement(&mode, &timers, &faults);
+    return is_active(AGV_FAULT_MODE_FLAPPING);
+}
+
+/* Shows: SUP-9, MODE_FLAPPING */
+TEST_CASE(5000, 1)
+TEST_CASE(5001, 0)
+void test_the_fourth_engagement_within_5_s_is_flapping(uint32_t fourth_ms, int flapping) {
+    TEST_ASSERT_FALSE(flaps_at(0));
+    TEST_ASSERT_FALSE(flaps_at(1000));
+    TEST_ASSERT_FALSE(flaps_at(4000));
+    TEST_ASSERT_EQUAL(flapping, flaps_at(fourth_ms));
+    TEST_ASSERT_TRUE(flaps_at(6000)); /* four again: from 1000 on */
+    TEST_ASSERT_FALSE(flaps_at(9001)); /* from 4000 on */
+}
+
+/* Any three of them, a pause of more than 5 s between: never. */
+/* Shows: SUP-9 */
+void test_three_engagements_within_5_s_are_none(void) {
+    for (uint32_t ms = 0; ms < 60000; ms += 5001) {
+        TEST_ASSERT_FALSE(flaps_at(ms));
+        TEST_ASSERT_FALSE(flaps_at(ms + 1));
+        TEST_ASSERT_FALSE(flaps_at(ms + 2));
+    }
+}
+
+/* ---- No mode ---- */
+
+static bool none_at(uint32_t ms, bool supervising, bool standstill) {
+    advance(ms);
+    agv_mode_check(&mode, &timers, &faults, supervising, standstill);
+    return is_active(AGV_FAULT_MODE_NONE);
+}
+
+/* Shows: SUP-9, MODE_NONE */
+void test_no_mode_for_500_ms_while_not_at_standstill(void) {
+    (void)report(NONE, 0);
+    TEST_ASSERT_FALSE(none_at(10, true, false));
+    TEST_ASSERT_FALSE(none_at(509, true, false));
+    TEST_ASSERT_TRUE(none_at(510, true, false));
+    TEST_ASSERT_TRUE(none_at(520, true, false));
+    TEST_ASSERT_FALSE(none_at(530, true, true)); /* standstill ends it */
+    TEST_ASSERT_FALSE(none_at(1029, true, false));
+    TEST_ASSERT_FALSE(none_at(1528, true, false));
+    TEST_ASSERT_TRUE(none_at(1529, true, false));
+    (void)report(MANUAL, 1530); /* so does a mode */
+    TEST_ASSERT_FALSE(none_at(1530, true, false));
+}
+
+/* It is looked for in STANDBY and ACTIVE; what trips there lasts as long as its cause. */
+/* Shows: SUP-9, MODE_NONE */
+void test_no_mode_counts_in_standby_and_active(void) {
+    (void)report(NONE, 0);
+    for (uint32_t ms = 10; ms < 2000; ms += 10) {
+        TEST_ASSERT_FALSE(none_at(ms, false, false));
+    }
+    (void)none_at(2000, true, false);
+    TEST_ASSERT_TRUE(none_at(2500, true, false));
+    TEST_ASSERT_TRUE(none_at(2510, false, false)); /* tripped now */
+    TEST_ASSERT_FALSE(none_at(2520, false, true));
+    TEST_ASSERT_FALSE(none_at(2530, false, false));
+}
+
+/* Each bit is a mode, also both; and without any 363h there is nothing to look at. */
+/* Shows: SUP-9 */
+void test_what_is_no_lack_of_a_mode(void) {
+    static const uint32_t flags[] = {MANUAL, ENGAGED, BOTH};
+    for (uint32_t ms = 0; ms < 1000; ms += 10) {
+        TEST_ASSERT_FALSE(none_at(ms, true, false));
+    }
+    for (unsigned i = 0; i < 3; i++) {
+        setUp();
+        for (uint32_t ms = 0; ms < 1000; ms += 10) {
+            (void)report(flags[i], ms);
+            TEST_ASSERT_FALSE(none_at(ms, true, false));
+        }
+    }
 }

@@ -1,26 +1,25 @@
-/* Steering that does not follow its command, throttle above 0 in P. */
+/* Whether the vehicle does what it was told: steering, throttle, gear, autopilot off, P; and its two speeds. */
 #include "observe/motion_checks.h"
 
+#include "agv/codec.h"
 #include "unity.h"
 
-/* Difference 50.0 degrees for 500 ms, gain 25.0; throttle for 200 ms. Every test wraps. */
+/* SUP-10: 50.0 degrees, 500 ms, 25.0 degrees. SUP-11: 25 counts, 500 ms; 1 s; 1 s. SUP-5: 200 ms. SUP-12: 1 s. */
 static agv_motion_checks_t checks;
 static agv_fault_monitor_t faults;
-static agv_timers_t timers;
 static agv_config_t config;
 static agv_vehicle_t vehicle;
-static bool settled;
-static bool in_park;
+static agv_commands_t commands;
+static agv_motion_facts_t facts;
 
 void setUp(void) {
     agv_config_defaults(&config);
     checks = (agv_motion_checks_t){0};
     faults = (agv_fault_monitor_t){0};
-    vehicle = (agv_vehicle_t){.angle_raw = 9000, .angle_known = true};
-    settled = true;
-    in_park = false;
-    agv_timers_set_time(&timers, 0xFFFFFF00u);
-    agv_timers_start(&timers, &config);
+    vehicle = (agv_vehicle_t){.angle_raw = 9000, .angle_known = true, .wheels_fresh = true, .vcu_alive = true};
+    commands = (agv_commands_t){0};
+    facts = (agv_motion_facts_t){
+        .config = &config, .vehicle = &vehicle, .commands = &commands, .judged = true, .gear_fresh = true};
 }
 
 void tearDown(void) {
@@ -28,146 +27,507 @@ void tearDown(void) {
 
 static void run(uint32_t ms) {
     for (uint32_t i = 0; i < ms; i++) {
-        agv_timers_set_time(&timers, timers.now_ms + 1);
-        agv_timers_tick(&timers);
-        agv_motion_checks_tick(&checks, &faults, &timers, &config, &vehicle, settled, in_park);
+        agv_motion_checks_tick(&checks, &facts, 1);
     }
+    agv_motion_checks_evaluate(&checks, &faults, facts.judged);
 }
 
-static bool deviates(void) {
-    return agv_fault_monitor_is_active(&faults, AGV_FAULT_STEERING_DEVIATION);
+static bool is_active(unsigned fault) {
+    agv_motion_checks_evaluate(&checks, &faults, facts.judged);
+    return agv_fault_monitor_is_active(&faults, fault);
 }
 
-static bool drives_in_park(void) {
-    return agv_fault_monitor_is_active(&faults, AGV_FAULT_THROTTLE_IN_PARK);
-}
-
-static void command(unsigned raw) {
-    agv_motion_checks_steering_commanded(&checks, raw, true);
-}
-
-/* The first tick begins the time. */
-static void expect_deviation_after_500_ms(void) {
-    run(500);
-    TEST_ASSERT_FALSE(deviates());
+/* It becomes active with just this millisecond from now on. */
+static void expect_after(uint32_t ms, unsigned fault) {
+    run(ms - 1);
+    TEST_ASSERT_FALSE(is_active(fault));
     run(1);
-    TEST_ASSERT_TRUE(deviates());
+    TEST_ASSERT_TRUE(is_active(fault));
 }
 
-/* Shows: SUP-5, STEERING_DEVIATION */
+static void expect_never(unsigned fault) {
+    run(5000);
+    TEST_ASSERT_FALSE(is_active(fault));
+}
+
+/* ---- Steering (SUP-10) ---- */
+
+enum { STEERING = AGV_FAULT_STEERING_DEVIATION };
+
+static void steer(unsigned raw) {
+    agv_commands_take(&commands, AGV_MSG_STEERING_COMMAND,
+                      (const uint8_t[8]){(uint8_t)(raw & 0xFFu), (uint8_t)(raw >> 8)});
+}
+
+/* A valid 067h with this angle. */
+static void measured(unsigned raw) {
+    const uint32_t before_raw = vehicle.angle_raw;
+    vehicle.angle_raw = (uint16_t)raw;
+    agv_motion_checks_angle(&checks, &facts, before_raw);
+}
+
+/* Shows: SUP-10, STEERING_DEVIATION */
 TEST_CASE(9501)
 TEST_CASE(8499)
 TEST_CASE(18000)
 TEST_CASE(0)
 void test_more_than_50_degrees_for_500_ms(unsigned raw) {
-    command(raw);
-    expect_deviation_after_500_ms();
-    vehicle.angle_raw = (uint16_t)raw;
-    run(1);
-    TEST_ASSERT_FALSE(deviates());
+    steer(raw);
+    expect_after(500, STEERING);
 }
 
-/* Shows: SUP-5, STEERING_DEVIATION */
+/* Shows: SUP-10, STEERING_DEVIATION */
 TEST_CASE(9500)
 TEST_CASE(8500)
 void test_50_degrees_are_not_too_much(unsigned raw) {
-    command(raw);
-    run(5000);
-    TEST_ASSERT_FALSE(deviates());
+    steer(raw);
+    expect_never(STEERING);
 }
 
-/* From 100.0 degrees off it has to be 25.0 nearer in each 500 ms. */
-/* Shows: SUP-5, STEERING_DEVIATION */
-void test_steering_that_gains_is_given_time(void) {
-    command(10000);
-    run(500);
-    vehicle.angle_raw = 9250;
-    run(500);
-    TEST_ASSERT_FALSE(deviates());
-    run(1);
-    TEST_ASSERT_TRUE(deviates());
+/* Shows: SUP-10, STEERING_DEVIATION */
+void test_25_degrees_nearer_empty_the_budget(void) {
+    steer(10000);
+    run(499);
+    measured(9250);
+    expect_after(500, STEERING);
+    measured(9500); /* 25.0 more: it is over, though 50.0 are left */
+    TEST_ASSERT_FALSE(is_active(STEERING));
 }
 
-/* Shows: SUP-5, STEERING_DEVIATION */
+/* The other way round. */
+/* Shows: SUP-10 */
+void test_a_gain_to_the_other_side_counts_as_well(void) {
+    steer(8000);
+    run(499);
+    measured(8750);
+    expect_after(500, STEERING);
+}
+
+/* Shows: SUP-10, STEERING_DEVIATION */
 void test_a_gain_of_less_than_25_degrees_is_none(void) {
-    command(10000);
-    run(100);
-    vehicle.angle_raw = 9249;
+    steer(10000);
     run(400);
-    TEST_ASSERT_FALSE(deviates());
-    run(1);
-    TEST_ASSERT_TRUE(deviates());
+    measured(9249);
+    expect_after(100, STEERING);
 }
 
-/* The gain is counted from the largest difference of the time. */
-/* Shows: SUP-5, STEERING_DEVIATION */
-void test_what_has_moved_away_first_gains_from_there(void) {
-    command(10000);
-    run(100);
-    vehicle.angle_raw = 8900;
-    run(100);
-    vehicle.angle_raw = 9150;
-    run(500);
-    TEST_ASSERT_FALSE(deviates());
-    run(1);
-    TEST_ASSERT_TRUE(deviates());
+/* From one 067h to the next. */
+/* Shows: SUP-10 */
+void test_small_steps_add_up(void) {
+    steer(18000);
+    run(400);
+    for (unsigned raw = 9010; raw < 9250; raw += 10) {
+        measured(raw);
+    }
+    run(99);
+    TEST_ASSERT_FALSE(is_active(STEERING));
+    measured(9250);
+    expect_after(500, STEERING);
 }
 
-/* Shows: SUP-5 */
-void test_without_command_angle_or_engagement_nothing_is_compared(void) {
-    run(1000);
-    TEST_ASSERT_FALSE(deviates()); /* never commanded */
-    agv_motion_checks_steering_commanded(&checks, 18000, false);
-    run(1000);
-    TEST_ASSERT_FALSE(deviates()); /* not while engaged */
-    command(18000);
+/* There and back again is no way. */
+/* Shows: SUP-10, STEERING_DEVIATION */
+void test_steps_away_count_against_it(void) {
+    steer(18000);
+    run(400);
+    for (unsigned i = 0; i < 20; i++) {
+        measured(9240);
+        measured(9000);
+    }
+    measured(8900);
+    measured(9149); /* 25.0 less a tenth nearer than the start but for what it went away */
+    expect_after(100, STEERING);
+}
+
+/* A command that comes nearer, goes away and comes again is no motion of the steering. */
+/* Shows: SUP-10, STEERING_DEVIATION */
+void test_the_motion_of_the_command_does_not_count(void) {
+    steer(18000);
+    run(100);
+    for (unsigned raw = 17000; raw >= 10000; raw -= 500) {
+        steer(raw);
+        measured(9000);
+    }
+    expect_after(400, STEERING);
+}
+
+/* A command that sweeps past: near for a moment in each 20 ms. */
+/* Shows: SUP-10, STEERING_DEVIATION */
+void test_a_command_that_is_near_for_1_ms_in_20_restarts_nothing(void) {
+    for (unsigned ms = 0; ms < 539; ms++) {
+        TEST_ASSERT_FALSE(is_active(STEERING));
+        steer((ms % 20 == 19) ? 9000 : 12000);
+        run(1);
+    }
+    TEST_ASSERT_TRUE(is_active(STEERING)); /* 26 times 19 less 13, and 19 */
+}
+
+/* Against the command of that moment: past it is away from it. */
+/* Shows: SUP-10 */
+void test_motion_past_the_command_is_no_gain(void) {
+    steer(9600);
+    run(400);
+    measured(9849); /* 60.0 before it, 24.9 behind it: 35.1 nearer */
+    steer(9000);
+    run(99);
+    TEST_ASSERT_FALSE(is_active(STEERING));
+    setUp();
+    steer(9600);
+    run(400);
+    measured(10201); /* as far behind it and a tenth */
+    expect_after(100, STEERING);
+}
+
+/* What was too much for one emptying does not count for the next. */
+/* Shows: SUP-10, STEERING_DEVIATION */
+void test_no_remainder_is_kept(void) {
+    steer(18000);
+    run(499);
+    measured(9490);
+    run(490);
+    measured(9500);
+    expect_after(10, STEERING);
+}
+
+/* Shows: SUP-10, STEERING_DEVIATION */
+void test_motion_while_the_budget_is_empty_does_not_count(void) {
+    steer(18000);
+    measured(9240);
+    run(499);
+    measured(9250);
+    TEST_ASSERT_FALSE(is_active(STEERING));
+    run(1);
+    TEST_ASSERT_TRUE(is_active(STEERING));
+    measured(9489); /* 10 + 239 */
+    TEST_ASSERT_TRUE(is_active(STEERING));
+    measured(9490);
+    TEST_ASSERT_FALSE(is_active(STEERING));
+}
+
+/* A budget that time has emptied forgets the way too. */
+/* Shows: SUP-10 */
+void test_the_way_is_forgotten_when_time_has_emptied_the_budget(void) {
+    steer(10000);
+    run(10);
+    measured(9200);
+    steer(9200);
+    run(20); /* 10 ms down */
+    steer(10000);
+    run(450);
+    measured(9250);
+    expect_after(50, STEERING);
+}
+
+/* Shows: SUP-10 */
+void test_without_command_or_angle_nothing_is_compared(void) {
+    measured(0);
+    expect_never(STEERING);
+    steer(18000);
     vehicle.angle_known = false;
-    run(1000);
-    TEST_ASSERT_FALSE(deviates());
+    expect_never(STEERING);
     vehicle.angle_known = true;
-    settled = false;
-    run(1000);
-    TEST_ASSERT_FALSE(deviates());
-    settled = true;
-    expect_deviation_after_500_ms();
-    agv_motion_checks_disengage(&checks);
-    run(1);
-    TEST_ASSERT_FALSE(deviates());
+    expect_after(500, STEERING);
 }
+
+/* The budget stands still, the way too; the fault ends. */
+/* Shows: SUP-10 */
+void test_while_not_judged_everything_stands_still(void) {
+    steer(10000);
+    run(300);
+    facts.judged = false;
+    run(1000);
+    measured(9400);
+    facts.judged = true;
+    expect_after(200, STEERING);
+    facts.judged = false;
+    TEST_ASSERT_FALSE(is_active(STEERING));
+    facts.judged = true;
+    TEST_ASSERT_TRUE(is_active(STEERING));
+}
+
+/* ---- Throttle (SUP-11) ---- */
+
+enum { THROTTLE = AGV_FAULT_THROTTLE_DEVIATION };
+
+static void command_throttle(unsigned counts) {
+    agv_commands_take(&commands, AGV_MSG_THROTTLE_COMMAND, (const uint8_t[8]){(uint8_t)counts});
+}
+
+/* A valid 050h. */
+static void throttle(unsigned counts) {
+    const uint32_t before = vehicle.throttle;
+    vehicle.throttle = (uint8_t)counts;
+    agv_motion_checks_throttle(&checks, &facts, before);
+}
+
+/* Shows: SUP-11, THROTTLE_DEVIATION */
+TEST_CASE(0, 25)
+TEST_CASE(100, 125)
+TEST_CASE(220, 245)
+void test_more_than_25_counts_above_the_command(unsigned commanded, unsigned most) {
+    command_throttle(commanded);
+    throttle(most);
+    expect_never(THROTTLE);
+    throttle(most + 1);
+    expect_after(500, THROTTLE);
+}
+
+/* 225 and 25 are all that there is; below the command is no harm. */
+/* Shows: SUP-11 */
+void test_what_is_no_throttle_above_the_command(void) {
+    throttle(250);
+    expect_never(THROTTLE); /* none was commanded */
+    command_throttle(225);
+    expect_never(THROTTLE);
+    command_throttle(250);
+    throttle(0);
+    expect_never(THROTTLE);
+}
+
+/* A ramp down is no fault. */
+/* Shows: SUP-11, THROTTLE_DEVIATION */
+void test_a_drop_of_25_counts_empties_the_budget(void) {
+    command_throttle(0);
+    throttle(250);
+    run(499);
+    throttle(225);
+    run(499);
+    TEST_ASSERT_FALSE(is_active(THROTTLE));
+    throttle(201); /* 24 are too few */
+    run(1);
+    TEST_ASSERT_TRUE(is_active(THROTTLE));
+    throttle(200);
+    TEST_ASSERT_FALSE(is_active(THROTTLE));
+    for (unsigned counts = 200; counts >= 26; counts--) {
+        throttle(counts);
+        run(19);
+    }
+    TEST_ASSERT_FALSE(is_active(THROTTLE)); /* 25 counts in 475 ms */
+}
+
+/* They are fixed, and a rise counts against them. */
+/* Shows: SUP-11, THROTTLE_DEVIATION */
+void test_a_rise_counts_against_the_drop(void) {
+    config.throttle_deviation_counts = 50;
+    command_throttle(0);
+    throttle(200);
+    run(400);
+    for (unsigned i = 0; i < 10; i++) {
+        throttle(180);
+        throttle(200);
+    }
+    throttle(210);
+    throttle(176);
+    run(99);
+    TEST_ASSERT_FALSE(is_active(THROTTLE));
+    throttle(175);
+    expect_after(500, THROTTLE);
+}
+
+/* No remainder, and nothing of before. */
+/* Shows: SUP-11 */
+void test_the_drop_begins_with_the_budget(void) {
+    command_throttle(0);
+    throttle(250);
+    throttle(228);
+    run(450);
+    throttle(225);
+    expect_after(50, THROTTLE);
+    throttle(150); /* 3 + 75: once */
+    TEST_ASSERT_FALSE(is_active(THROTTLE));
+    run(450);
+    throttle(126);
+    expect_after(50, THROTTLE);
+}
+
+/* Shows: SUP-11 */
+void test_a_drop_while_not_judged_does_not_count(void) {
+    command_throttle(0);
+    throttle(250);
+    run(300);
+    facts.judged = false;
+    throttle(100);
+    run(1000);
+    facts.judged = true;
+    expect_after(200, THROTTLE);
+}
+
+/* ---- Gear (SUP-11) ---- */
+
+enum { GEAR = AGV_FAULT_GEAR_DEVIATION };
+
+/* Commanded, reported: any other than D or R is no motion. */
+/* Shows: SUP-11, GEAR_DEVIATION */
+void test_d_or_r_other_than_commanded_for_1_s(void) {
+    static const unsigned gears[] = {1, 2, 4, 8, 0};
+    for (unsigned wanted = 0; wanted < 4; wanted++) {
+        for (unsigned is = 0; is < 5; is++) {
+            setUp();
+            agv_commands_take(&commands, AGV_MSG_GEAR_COMMAND, (const uint8_t[8]){(uint8_t)gears[wanted]});
+            command_throttle(250);
+            vehicle.gear = (uint8_t)gears[is];
+            vehicle.throttle = 3;
+            run(999);
+            TEST_ASSERT_FALSE(is_active(GEAR));
+            run(1);
+            TEST_ASSERT_EQUAL(is < 2 && is != wanted, is_active(GEAR));
+        }
+    }
+}
+
+/* Shows: SUP-11, GEAR_DEVIATION */
+void test_idle_or_no_command_is_no_gear_deviation(void) {
+    vehicle.gear = AGV_GEAR_R;
+    vehicle.throttle = 250;
+    expect_never(GEAR);
+    agv_commands_take(&commands, AGV_MSG_GEAR_COMMAND, (const uint8_t[8]){AGV_GEAR_D});
+    vehicle.throttle = 2;
+    expect_never(GEAR);
+    vehicle.throttle = 3;
+    expect_after(1000, GEAR);
+    vehicle.throttle = 2;
+    run(1999);
+    TEST_ASSERT_TRUE(is_active(GEAR)); /* until the budget is empty */
+    run(1);
+    TEST_ASSERT_FALSE(is_active(GEAR));
+}
+
+/* ---- Autopilot off (SUP-11) ---- */
+
+/* Shows: SUP-11, AUTOPILOT_OFF_IGNORED */
+void test_autopilot_off_is_ignored_for_1_s(void) {
+    static const uint8_t off[8] = {0, 0, 0, 0, 0x40};
+    static const uint8_t on[8] = {0, 0, 0, 0, 0xBF};
+    commands.autopilot_off = true;
+    expect_never(AGV_FAULT_AUTOPILOT_OFF_IGNORED); /* of the engagement before */
+    agv_commands_take(&commands, AGV_MSG_TURN_SIGNAL_COMMAND, on);
+    expect_never(AGV_FAULT_AUTOPILOT_OFF_IGNORED);
+    agv_commands_take(&commands, AGV_MSG_TURN_SIGNAL_COMMAND, off);
+    expect_after(1000, AGV_FAULT_AUTOPILOT_OFF_IGNORED);
+}
+
+/* ---- Throttle in P (SUP-5) ---- */
+
+enum { IN_PARK = AGV_FAULT_THROTTLE_IN_PARK };
 
 /* Shows: SUP-5, THROTTLE_IN_PARK */
-void test_throttle_in_park_for_200_ms(void) {
-    vehicle.throttle = 1;
-    in_park = true;
-    run(200);
-    TEST_ASSERT_FALSE(drives_in_park());
-    run(1);
-    TEST_ASSERT_TRUE(drives_in_park());
-    vehicle.throttle = 0;
-    run(1);
-    TEST_ASSERT_FALSE(drives_in_park());
+void test_throttle_above_idle_in_park_for_200_ms(void) {
+    vehicle.gear = AGV_GEAR_P;
+    vehicle.throttle = 2;
+    expect_never(IN_PARK);
+    vehicle.throttle = 3;
+    expect_after(200, IN_PARK);
 }
 
 /* Shows: SUP-5, THROTTLE_IN_PARK */
 void test_each_condition_of_throttle_in_park_counts(void) {
     vehicle.throttle = 250;
-    run(1000);
-    TEST_ASSERT_FALSE(drives_in_park());
-    in_park = true;
-    settled = false;
-    run(1000);
-    TEST_ASSERT_FALSE(drives_in_park());
-    settled = true;
-    vehicle.throttle = 0;
-    run(1000);
-    TEST_ASSERT_FALSE(drives_in_park());
-    vehicle.throttle = 250;
+    for (unsigned gear = 0; gear < 8; gear++) {
+        vehicle.gear = (uint8_t)gear;
+        expect_never(IN_PARK);
+    }
+    vehicle.gear = AGV_GEAR_P;
+    facts.gear_fresh = false;
+    expect_never(IN_PARK);
+    facts.gear_fresh = true;
     run(100);
-    in_park = false; /* a break begins the time anew */
+    facts.judged = false;
+    run(1000);
+    facts.judged = true;
+    run(50);
+    facts.gear_fresh = false; /* a break takes half of its time away */
+    run(10);
+    facts.gear_fresh = true;
+    expect_after(55, IN_PARK);
+}
+
+/* ---- Two speeds (SUP-12) ---- */
+
+enum { SPEED = AGV_FAULT_SPEED_IMPLAUSIBLE };
+
+static void speeds(int left_mm_s, int right_mm_s, unsigned vcu_m_h) {
+    vehicle.wheels = (agv_wheel_speed_t){.left_mm_s = left_mm_s, .right_mm_s = right_mm_s};
+    vehicle.vcu_speed = (uint16_t)vcu_m_h;
+    vehicle.vcu_speed_seen = true;
+}
+
+/* 500 mm/s and a quarter of the larger one: 667 against 0, 7200 m/h = 2000 mm/s against 1000. */
+/* Shows: SUP-12, SPEED_IMPLAUSIBLE */
+TEST_CASE(666, 666, 0, 0)
+TEST_CASE(667, 667, 0, 1)
+TEST_CASE(-667, -667, 0, 1)
+TEST_CASE(667, 668, 0, 1)
+TEST_CASE(0, 0, 2390, 0)
+TEST_CASE(0, 0, 2410, 1)
+TEST_CASE(1000, 1000, 7200, 0)
+TEST_CASE(999, 999, 7200, 1)
+TEST_CASE(3333, 3333, 7200, 0)
+TEST_CASE(3335, 3335, 7200, 1)
+TEST_CASE(5000, -5000, 0, 0)
+TEST_CASE(2000, 0, 3600, 0)
+TEST_CASE(-4000, 0, 7200, 0)
+TEST_CASE(0x7FFFFFFF, 0x7FFFFFFF, 0, 1)
+TEST_CASE(-0x7FFFFFFF, -0x7FFFFFFF, 65535, 1)
+void test_how_much_two_speeds_may_differ(int left_mm_s, int right_mm_s, unsigned vcu_m_h, int differ) {
+    speeds(left_mm_s, right_mm_s, vcu_m_h);
+    run(999);
+    TEST_ASSERT_FALSE(is_active(SPEED));
     run(1);
-    in_park = true;
-    run(200);
-    TEST_ASSERT_FALSE(drives_in_park());
-    run(1);
-    TEST_ASSERT_TRUE(drives_in_park());
+    TEST_ASSERT_EQUAL(differ, is_active(SPEED));
+}
+
+/* Always, also while nothing is judged; an engagement begins nothing anew. */
+/* Shows: SUP-12 */
+void test_speeds_are_compared_always(void) {
+    facts.judged = false;
+    speeds(5000, 5000, 0);
+    run(500);
+    agv_motion_checks_engage(&checks);
+    expect_after(500, SPEED);
+    agv_motion_checks_engage(&checks);
+    TEST_ASSERT_TRUE(is_active(SPEED));
+}
+
+/* Shows: SUP-12 */
+void test_both_witnesses_have_to_be_there(void) {
+    speeds(5000, 5000, 0);
+    vehicle.vcu_speed_seen = false;
+    expect_never(SPEED);
+    vehicle.vcu_speed_seen = true;
+    vehicle.wheels_fresh = false;
+    expect_never(SPEED);
+    vehicle.wheels_fresh = true;
+    vehicle.vcu_alive = false;
+    expect_never(SPEED);
+    vehicle.vcu_alive = true;
+    expect_after(1000, SPEED);
+}
+
+/* ---- One engagement ---- */
+
+/* Shows: SUP-10, SUP-11 */
+void test_an_engagement_begins_all_budgets_anew(void) {
+    static const unsigned judged[] = {STEERING, THROTTLE, GEAR, AGV_FAULT_AUTOPILOT_OFF_IGNORED};
+    steer(18000);
+    command_throttle(0);
+    agv_commands_take(&commands, AGV_MSG_GEAR_COMMAND, (const uint8_t[8]){AGV_GEAR_D});
+    agv_commands_take(&commands, AGV_MSG_TURN_SIGNAL_COMMAND, (const uint8_t[8]){0, 0, 0, 0, 0x40});
+    vehicle.gear = AGV_GEAR_R;
+    throttle(250);
+    run(1000);
+    measured(9249);
+    throttle(226);
+    for (unsigned i = 0; i < 4; i++) {
+        TEST_ASSERT_TRUE(is_active(judged[i]));
+    }
+    agv_motion_checks_engage(&checks);
+    for (unsigned i = 0; i < 4; i++) {
+        TEST_ASSERT_FALSE(is_active(judged[i]));
+    }
+    run(400);
+    measured(9250); /* a tenth, and one count: the way before does not count */
+    throttle(225);
+    run(100);
+    TEST_ASSERT_TRUE(is_active(STEERING));
+    TEST_ASSERT_TRUE(is_active(THROTTLE));
 }

@@ -1,63 +1,68 @@
-/* Faults that the content of frames is: bits, modes, values, gaps; how many frames in a row each takes. */
+/* Faults that the content of status frames is: bits, alarms, modes, values; how they are scored. */
 #include "observe/status_checks.h"
 
-#include "observe/liveness.h"
 #include "unity.h"
 
 enum { NONE = AGV_FAULT_NONE };
 
 static agv_status_checks_t checks;
 static agv_fault_monitor_t faults;
-static agv_timers_t timers;
 static agv_config_t config;
-static agv_status_facts_t facts;
+static bool engaged;
+static bool judged;
+static bool ai_alive;
 
 void setUp(void) {
     agv_config_defaults(&config);
-    agv_timers_start(&timers, &config);
     checks = (agv_status_checks_t){0};
     faults = (agv_fault_monitor_t){0};
-    facts = (agv_status_facts_t){.config = &config, .engaged = true, .settled = true, .ai_alive = true};
+    engaged = true;
+    judged = true;
+    ai_alive = true;
 }
 
 void tearDown(void) {
 }
 
+static void evaluate(void) {
+    agv_status_checks_evaluate(&checks, &faults, engaged, judged);
+}
+
 /* This fault is active, and no other. */
 static void expect_only(unsigned fault) {
+    evaluate();
     for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
         TEST_ASSERT_EQUAL(i == fault, agv_fault_monitor_is_active(&faults, i));
     }
 }
 
-/* 167h after so many ms: mode in byte 4, fault bits in byte 8. */
-static void eps_after(uint32_t gap_ms, unsigned mode, unsigned bits) {
+/* 167h: mode in byte 4, fault bits in byte 8. */
+static void eps(unsigned mode, unsigned bits) {
     const uint8_t data[8] = {0xFF, 0xFF, 0xFF, (uint8_t)mode, 0xFF, 0xFF, 0xFF, (uint8_t)bits};
-    agv_status_checks_frame(&checks, AGV_MSG_EPS_STATUS, gap_ms);
-    agv_status_checks_eps(&checks, &faults, &facts, data, mode <= 3 || mode == 0xFF);
+    agv_status_checks_eps(&checks, &faults, &config, data, mode <= 3 || mode == 0xFF, judged);
 }
 
-static void eps(unsigned mode, unsigned bits) {
-    eps_after(10, mode, bits);
+static void eps_frames(unsigned count, unsigned mode, unsigned bits) {
+    for (unsigned i = 0; i < count; i++) {
+        eps(mode, bits);
+    }
 }
 
 /* 363h: alarms in byte 5, level 2 in byte 6. */
 static void vcu(unsigned alarms, unsigned level_2) {
     const uint8_t data[8] = {0xFF, 0xFF, 0xFF, 0xFF, (uint8_t)alarms, (uint8_t)level_2, 0xFF, 0xFF};
-    agv_status_checks_frame(&checks, AGV_MSG_VEHICLE_STATUS, 10);
-    agv_status_checks_vehicle(&checks, &faults, &facts, data);
+    agv_status_checks_vehicle(&checks, &faults, data, ai_alive);
 }
 
-static void value(agv_message_t message, bool valid) {
-    agv_status_checks_frame(&checks, message, agv_message_cycle_ms(message));
-    agv_status_checks_value(&checks, &faults, &facts, message, valid);
+static void value(unsigned message, bool valid) {
+    agv_status_checks_value(&checks, &config, message, valid, judged);
 }
 
 /* ---- 167h ---- */
 
-/* Under voltage, over voltage, excessive current. */
+/* Under voltage, over voltage, excessive current: N = 3, so that six good ones end it. */
 /* Shows: SUP-4 */
-void test_bits_of_the_supply_count_three_frames_and_the_others_one(void) {
+void test_bits_of_the_supply_are_scored_and_the_others_count_at_once(void) {
     static const unsigned fault_of[8] = {AGV_FAULT_EPS_UNDER_VOLTAGE,     AGV_FAULT_EPS_OVER_VOLTAGE,
                                          AGV_FAULT_EPS_EXCESSIVE_CURRENT, AGV_FAULT_EPS_OVER_CURRENT_SHUTDOWN,
                                          AGV_FAULT_EPS_TEMP_ABOVE_110,    AGV_FAULT_EPS_TEMP_ABOVE_120,
@@ -70,59 +75,34 @@ void test_bits_of_the_supply_count_three_frames_and_the_others_one(void) {
         expect_only(bit < 3 ? (unsigned)NONE : fault_of[bit]);
         eps(1, 1u << bit);
         expect_only(fault_of[bit]);
+        eps_frames(5, 1, 0);
+        expect_only(bit < 3 ? fault_of[bit] : (unsigned)NONE);
         eps(1, 0);
         expect_only(NONE);
     }
 }
 
+/* Bits of the supply that flicker: 2 1 3 2 4 3 5 4 6. */
 /* Shows: SUP-4 */
-void test_a_good_frame_between_bad_ones_begins_the_count_anew(void) {
-    eps(1, 1);
-    eps(1, 1);
-    eps(1, 0);
-    eps(1, 1);
-    eps(1, 1);
-    expect_only(NONE);
-    eps(1, 1);
-    expect_only(AGV_FAULT_EPS_UNDER_VOLTAGE);
-}
-
-/* More than two cycles: what was before is no row with what comes after. */
-/* Shows: SUP-4 */
-TEST_CASE(20, 3)
-TEST_CASE(21, 4)
-TEST_CASE(0xFFFFFFFF, 4)
-void test_a_long_gap_begins_the_count_anew(uint32_t gap_ms, unsigned frames) {
-    eps(1, 1);
-    eps_after(gap_ms, 1, 1);
-    for (unsigned i = 2; i < frames - 1; i++) {
-        eps(1, 1);
+void test_every_second_frame_bad_is_a_fault(void) {
+    for (unsigned i = 0; i < 8; i++) {
+        eps(1, (i % 2 == 0) ? 2 : 0);
         expect_only(NONE);
     }
-    eps(1, 1);
-    expect_only(AGV_FAULT_EPS_UNDER_VOLTAGE);
-}
-
-/* Shows: SUP-4 */
-void test_what_has_counted_goes_on_across_gaps(void) {
-    for (unsigned i = 0; i < 3; i++) {
-        eps(1, 1);
-    }
-    eps_after(AGV_AGE_MAX, 1, 1);
-    expect_only(AGV_FAULT_EPS_UNDER_VOLTAGE);
-}
-
-/* However often; the bits of one frame are counted apart. */
-void test_a_count_does_not_overflow(void) {
-    for (unsigned i = 0; i < 1000; i++) {
-        eps(1, 1);
-    }
-    expect_only(AGV_FAULT_EPS_UNDER_VOLTAGE);
-    eps(1, 2);
-    eps(1, 2);
-    expect_only(NONE);
     eps(1, 2);
     expect_only(AGV_FAULT_EPS_OVER_VOLTAGE);
+}
+
+/* The bits of one frame are scored apart. */
+/* Shows: SUP-4 */
+void test_two_bits_are_not_added_up(void) {
+    for (unsigned i = 0; i < 100; i++) {
+        eps(1, 1);
+        eps(1, 0);
+        eps(1, 2);
+        eps(1, 0);
+        expect_only(NONE);
+    }
 }
 
 /* Shows: SUP-4 */
@@ -130,9 +110,23 @@ void test_how_many_frames_of_the_supply_is_a_setting(void) {
     config.eps_supply_fault_frames = 1;
     eps(1, 2);
     expect_only(AGV_FAULT_EPS_OVER_VOLTAGE);
+    eps(1, 0);
+    expect_only(NONE);
 }
 
-/* FFh is off; 0, 2 and 3 are other modes; the rest is none. */
+/* The bits count always, judged or not. */
+/* Shows: SUP-4 */
+void test_fault_bits_count_always(void) {
+    engaged = false;
+    judged = false;
+    eps_frames(3, 0xFF, 0x84);
+    evaluate();
+    TEST_ASSERT_TRUE(agv_fault_monitor_is_active(&faults, AGV_FAULT_EPS_EXCESSIVE_CURRENT));
+    TEST_ASSERT_TRUE(agv_fault_monitor_is_active(&faults, AGV_FAULT_EPS_POSITION_ENCODER));
+    TEST_ASSERT_FALSE(agv_fault_monitor_is_active(&faults, AGV_FAULT_EPS_MODE_OFF));
+}
+
+/* FFh is off; 0, 2 and 3 are other modes; the rest is none. N = 5. */
 /* Shows: SUP-5 */
 TEST_CASE(0xFF, AGV_FAULT_EPS_MODE_OFF)
 TEST_CASE(4, AGV_FAULT_EPS_MODE_INVALID)
@@ -141,18 +135,19 @@ TEST_CASE(0, AGV_FAULT_EPS_MODE_NOT_ANGLE)
 TEST_CASE(2, AGV_FAULT_EPS_MODE_NOT_ANGLE)
 TEST_CASE(3, AGV_FAULT_EPS_MODE_NOT_ANGLE)
 void test_a_mode_that_is_not_angle_control_counts_five_frames(unsigned mode, unsigned fault) {
-    for (unsigned i = 0; i < 4; i++) {
-        eps(mode, 0);
-        expect_only(NONE);
-    }
+    eps_frames(4, mode, 0);
+    expect_only(NONE);
     eps(mode, 0);
     expect_only(fault);
+    eps_frames(9, 1, 0);
+    expect_only(fault); /* keeps its name */
     eps(1, 0);
     expect_only(NONE);
 }
 
+/* Any of these add up, whatever they are called. */
 /* Shows: SUP-5 */
-void test_the_mode_is_named_after_the_last_frame(void) {
+void test_the_mode_is_named_after_the_last_bad_frame(void) {
     eps(0, 0);
     eps(2, 0);
     eps(0xFF, 0);
@@ -161,27 +156,33 @@ void test_the_mode_is_named_after_the_last_frame(void) {
     expect_only(AGV_FAULT_EPS_MODE_NOT_ANGLE);
     eps(0xFF, 0);
     expect_only(AGV_FAULT_EPS_MODE_OFF);
+    eps(1, 0);
+    expect_only(AGV_FAULT_EPS_MODE_OFF);
+    eps(0x80, 0);
+    expect_only(AGV_FAULT_EPS_MODE_INVALID);
 }
 
+/* The score stands still, and the fault ends with what it is judged by. */
 /* Shows: SUP-5 */
-void test_before_the_grace_is_over_no_mode_counts(void) {
-    facts.settled = false;
-    for (unsigned i = 0; i < 10; i++) {
-        eps(0xFF, 0);
-    }
+void test_while_not_judged_no_mode_counts(void) {
+    eps_frames(4, 0xFF, 0);
+    judged = false;
+    eps_frames(10, 0xFF, 0);
+    eps_frames(20, 1, 0);
     expect_only(NONE);
-    facts.settled = true;
-    for (unsigned i = 0; i < 4; i++) {
-        eps(0xFF, 0);
-        expect_only(NONE);
-    }
+    judged = true;
+    expect_only(NONE);
     eps(0xFF, 0);
+    expect_only(AGV_FAULT_EPS_MODE_OFF);
+    judged = false;
+    expect_only(NONE);
+    judged = true;
     expect_only(AGV_FAULT_EPS_MODE_OFF);
 }
 
 /* ---- 363h ---- */
 
-/* Bits 3 and 7 mean nothing; bit 4 has a test of its own. */
+/* Bits 2 and 6 mean nothing; bit 3 has a test of its own. */
 /* Shows: SUP-4 */
 void test_an_alarm_counts_at_once(void) {
     static const unsigned fault_of[8] = {
@@ -206,101 +207,108 @@ void test_any_level_2_alarm(void) {
     expect_only(NONE);
 }
 
-/* Shows: SUP-8, VCU_AI_CAN_LOST */
+/* Once armed it stays so: a reset forgets only that the AI was alive. */
+/* Shows: SUP-8, FSM-11, VCU_AI_CAN_LOST */
 void test_the_alarm_of_the_ai_computer_counts_once_it_was_clear_with_the_ai_alive(void) {
     vcu(0x08, 0);
     expect_only(NONE); /* never clear */
-    facts.ai_alive = false;
+    ai_alive = false;
     vcu(0, 0);
     vcu(0x08, 0);
     expect_only(NONE); /* clear without the AI */
-    facts.ai_alive = true;
-    vcu(0x80, 0); /* another alarm leaves it clear */
-    facts.ai_alive = false;
+    ai_alive = true;
+    vcu(0x04, 0); /* another bit leaves it clear */
+    ai_alive = false;
     vcu(0x08, 0);
     expect_only(AGV_FAULT_VCU_AI_CAN_LOST);
-    facts.engaged = false;
-    vcu(0x08, 0);
+    engaged = false;
     expect_only(NONE);
-    facts.engaged = true;
-    vcu(0x08, 0);
+    engaged = true;
+    judged = false; /* engaged is enough */
     expect_only(AGV_FAULT_VCU_AI_CAN_LOST);
-    agv_status_checks_forget_ai(&checks);
-    vcu(0x08, 0);
+    agv_status_checks_engage(&checks);
+    expect_only(AGV_FAULT_VCU_AI_CAN_LOST);
+    vcu(0, 0);
     expect_only(NONE);
 }
 
-/* ---- Values, gaps, disengagement ---- */
+/* ---- Values ---- */
 
 /* Shows: SUP-5 */
 TEST_CASE(AGV_MSG_GEAR_STATUS, AGV_FAULT_GEAR_STATUS_INVALID)
 TEST_CASE(AGV_MSG_THROTTLE_STATUS, AGV_FAULT_THROTTLE_STATUS_INVALID)
 TEST_CASE(AGV_MSG_STEERING_STATUS, AGV_FAULT_STEERING_ANGLE_INVALID)
 void test_a_value_that_is_invalid_counts_three_frames(unsigned message, unsigned fault) {
-    value((agv_message_t)message, false);
-    value((agv_message_t)message, false);
+    value(message, false);
+    value(message, false);
     expect_only(NONE);
-    value((agv_message_t)message, true);
-    value((agv_message_t)message, false);
-    value((agv_message_t)message, false);
+    value(message, true);
     expect_only(NONE);
-    value((agv_message_t)message, false);
+    value(message, false); /* 5 */
+    expect_only(NONE);
+    value(message, false);
     expect_only(fault);
-    facts.settled = false; /* not while it does not count */
-    value((agv_message_t)message, false);
+    judged = false; /* not while it does not count, and the score stands still */
     expect_only(NONE);
-}
-
-/* Half a cycle: 50 ms, and 13 ms of 25. */
-/* Shows: SUP-6, COMMAND_TOO_FAST */
-TEST_CASE(AGV_MSG_TURN_SIGNAL_COMMAND, 50)
-TEST_CASE(AGV_MSG_GEAR_COMMAND, 50)
-TEST_CASE(AGV_MSG_THROTTLE_COMMAND, 50)
-TEST_CASE(AGV_MSG_STEERING_COMMAND, 13)
-void test_ten_gaps_under_half_a_cycle_are_too_fast(unsigned command, uint32_t half_ms) {
-    for (unsigned i = 0; i < 9; i++) {
-        agv_status_checks_rate(&checks, &faults, &timers, &config, command, half_ms - 1);
+    for (unsigned i = 0; i < 10; i++) {
+        value(message, true);
     }
-    agv_status_checks_rate(&checks, &faults, &timers, &config, command, half_ms);
-    for (unsigned i = 0; i < 9; i++) {
-        agv_status_checks_rate(&checks, &faults, &timers, &config, command, 0);
-    }
-    expect_only(NONE);
-    agv_status_checks_rate(&checks, &faults, &timers, &config, command, half_ms - 1);
-    expect_only(AGV_FAULT_COMMAND_TOO_FAST);
-}
-
-/* Each command has its own count. */
-/* Shows: SUP-6 */
-void test_gaps_of_two_commands_are_not_added_up(void) {
-    for (unsigned i = 0; i < 9; i++) {
-        agv_status_checks_rate(&checks, &faults, &timers, &config, AGV_MSG_GEAR_COMMAND, 1);
-        agv_status_checks_rate(&checks, &faults, &timers, &config, AGV_MSG_STEERING_COMMAND, 1);
+    judged = true;
+    expect_only(fault);
+    for (unsigned i = 0; i < 6; i++) {
+        expect_only(fault);
+        value(message, true);
     }
     expect_only(NONE);
 }
 
-/* What counts only while engaged; the bits of 167h and the other alarms stay. */
 /* Shows: SUP-5 */
-void test_a_disengagement_ends_what_only_counts_while_engaged(void) {
-    vcu(0, 0);
-    vcu(0x88, 0);
-    for (unsigned i = 0; i < 5; i++) {
-        eps(0, 0x80);
+void test_the_values_are_scored_apart(void) {
+    for (unsigned i = 0; i < 2; i++) {
         value(AGV_MSG_GEAR_STATUS, false);
         value(AGV_MSG_THROTTLE_STATUS, false);
         value(AGV_MSG_STEERING_STATUS, false);
     }
-    agv_status_checks_disengage(&checks, &faults);
-    for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
-        const bool stays = i == AGV_FAULT_S_DRIVER_ALARM || i == AGV_FAULT_EPS_POSITION_ENCODER;
-        TEST_ASSERT_EQUAL(stays, agv_fault_monitor_is_active(&faults, i));
+    expect_only(NONE);
+}
+
+/* For the hold the score of the angle counts always, and no engagement begins it anew. */
+/* Shows: FSM-10, STEERING_ANGLE_INVALID */
+void test_the_angle_is_usable_until_three_invalid_ones(void) {
+    judged = false;
+    value(AGV_MSG_GEAR_STATUS, false);
+    value(AGV_MSG_THROTTLE_STATUS, false);
+    value(AGV_MSG_STEERING_STATUS, false);
+    value(AGV_MSG_STEERING_STATUS, false);
+    TEST_ASSERT_TRUE(agv_status_checks_angle_is_usable(&checks));
+    value(AGV_MSG_STEERING_STATUS, false);
+    TEST_ASSERT_FALSE(agv_status_checks_angle_is_usable(&checks));
+    expect_only(NONE);
+    agv_status_checks_engage(&checks);
+    TEST_ASSERT_FALSE(agv_status_checks_angle_is_usable(&checks));
+    for (unsigned i = 0; i < 6; i++) {
+        TEST_ASSERT_FALSE(agv_status_checks_angle_is_usable(&checks));
+        value(AGV_MSG_STEERING_STATUS, true);
     }
-    agv_fault_monitor_set(&faults, AGV_FAULT_S_DRIVER_ALARM, false);
-    for (unsigned i = 0; i < 4; i++) { /* engaged anew, they count from the beginning */
-        eps(0, 0);
-        expect_only(NONE);
+    TEST_ASSERT_TRUE(agv_status_checks_angle_is_usable(&checks));
+}
+
+/* ---- One engagement ---- */
+
+/* What is judged begins at 0; the bits of 167h are no matter of it. */
+/* Shows: SUP-5 */
+void test_an_engagement_begins_what_is_judged_anew(void) {
+    eps_frames(5, 0, 0);
+    eps_frames(2, 0, 1);
+    for (unsigned message = AGV_MSG_GEAR_STATUS; message <= AGV_MSG_STEERING_STATUS; message++) {
+        value(message, false);
+        value(message, false);
+        value(message, false);
     }
-    eps(0, 0);
-    expect_only(AGV_FAULT_EPS_MODE_NOT_ANGLE);
+    agv_status_checks_engage(&checks);
+    expect_only(NONE);
+    value(AGV_MSG_GEAR_STATUS, false);
+    value(AGV_MSG_GEAR_STATUS, false);
+    eps_frames(4, 1, 1);
+    expect_only(AGV_FAULT_EPS_UNDER_VOLTAGE);
 }

@@ -10,14 +10,13 @@ static const uint32_t DEADLINE = AGV_TIMER_BOTH_MODES;
 static agv_timers_t timers;
 static agv_config_t config;
 
-static bool reached(uint32_t timer, uint32_t now_ms) {
-    agv_timers_set_time(&timers, now_ms);
-    return agv_timer_reached(&timers, timer);
+static void advance(uint32_t now_ms) {
+    agv_timers_advance(&timers, &config, now_ms, 0);
 }
 
-static void tick(uint32_t now_ms) {
-    agv_timers_set_time(&timers, now_ms);
-    agv_timers_tick(&timers);
+static bool reached(uint32_t timer, uint32_t now_ms) {
+    advance(now_ms);
+    return agv_timer_reached(&timers, timer);
 }
 
 static void begin(uint32_t timer, uint32_t now_ms) {
@@ -26,7 +25,7 @@ static void begin(uint32_t timer, uint32_t now_ms) {
 }
 
 static bool go_on_while(bool condition, uint32_t now_ms) {
-    agv_timers_set_time(&timers, now_ms);
+    advance(now_ms);
     return agv_timer_while(&timers, DURATION, condition);
 }
 
@@ -35,7 +34,7 @@ static void start(uint16_t limit_ms) {
     config.standstill_ms = limit_ms;
     config.mode_invalid_ms = limit_ms;
     agv_timers_set_time(&timers, 0);
-    agv_timers_start(&timers, &config);
+    agv_timers_start(&timers);
 }
 
 void setUp(void) {
@@ -58,14 +57,12 @@ void test_a_duration_is_reached_at_its_limit_and_a_deadline_a_millisecond_later(
     for (uint32_t ms = 0; ms <= 200; ms++) {
         TEST_ASSERT_EQUAL(ms >= 100, reached(DURATION, start_ms + ms));
         TEST_ASSERT_EQUAL(ms >= 101, reached(DEADLINE, start_ms + ms));
-        agv_timers_tick(&timers);
         TEST_ASSERT_EQUAL(ms < 100, agv_timer_is_within(&timers, DURATION));
         TEST_ASSERT_EQUAL(ms < 101, agv_timer_is_within(&timers, DEADLINE));
-        TEST_ASSERT_EQUAL(ms >= 100, reached(DURATION, start_ms + ms));
     }
 }
 
-/* Since when is given, and may lie ahead: then nothing has passed yet. */
+/* Since when is given, and may lie ahead: then nothing has passed yet. What lies behind counts when the time advances. */
 /* Shows: TIM-2 */
 TEST_CASE(0)
 TEST_CASE(0xFFFFFFB0)
@@ -73,11 +70,12 @@ void test_a_timer_may_begin_at_another_moment(uint32_t start_ms) {
     agv_timers_set_time(&timers, start_ms);
     agv_timer_start_at(&timers, DURATION, start_ms + 5);
     TEST_ASSERT_TRUE(agv_timer_is_within(&timers, DURATION));
-    TEST_ASSERT_FALSE(reached(DURATION, start_ms));
+    TEST_ASSERT_FALSE(reached(DURATION, start_ms + 1));
     TEST_ASSERT_FALSE(reached(DURATION, start_ms + 104));
     TEST_ASSERT_TRUE(reached(DURATION, start_ms + 105));
     agv_timer_start_at(&timers, DURATION, start_ms);
-    TEST_ASSERT_TRUE(reached(DURATION, start_ms + 100));
+    TEST_ASSERT_FALSE(reached(DURATION, start_ms + 105));
+    TEST_ASSERT_TRUE(reached(DURATION, start_ms + 106));
 }
 
 void test_a_duration_of_a_millisecond_is_reached_in_the_next_one(void) {
@@ -90,54 +88,71 @@ void test_a_duration_of_a_millisecond_is_reached_in_the_next_one(void) {
 void test_a_stopped_timer_reaches_nothing(void) {
     TEST_ASSERT_FALSE(agv_timer_runs(&timers, DURATION));
     TEST_ASSERT_FALSE(agv_timer_is_within(&timers, DURATION));
-    tick(1000);
     TEST_ASSERT_FALSE(reached(DURATION, 1000));
-    TEST_ASSERT_FALSE(reached(DEADLINE, 1000));
-    begin(DURATION, 1000);
+    TEST_ASSERT_FALSE(reached(DEADLINE, 1001));
+    begin(DURATION, 1001);
     TEST_ASSERT_TRUE(agv_timer_runs(&timers, DURATION));
     TEST_ASSERT_TRUE(agv_timer_is_within(&timers, DURATION));
-    tick(1100);
+    advance(1101);
     TEST_ASSERT_TRUE(agv_timer_runs(&timers, DURATION));
     TEST_ASSERT_FALSE(agv_timer_is_within(&timers, DURATION));
     agv_timer_stop(&timers, DURATION);
     TEST_ASSERT_FALSE(agv_timer_runs(&timers, DURATION));
-    tick(2000);
+    TEST_ASSERT_FALSE(agv_timer_reached(&timers, DURATION));
     TEST_ASSERT_FALSE(reached(DURATION, 2000));
 }
 
-/* By hand: a setting that stands for each kind of row. In 65535 ms all have reached theirs, and none has at once. */
+/* By hand from the rows of the requirements: "for 100 ms" is reached at 100, a deadline of 50 ms at 51. */
+static const struct {
+    uint32_t timer;
+    uint32_t reached_ms;
+} ROWS[] = {
+    {AGV_TIMER_BUS_OFF, 100},
+    {AGV_TIMER_AI_BUS_OFF, 100},
+    {AGV_TIMER_WHEELS_SLOW, 100},
+    {AGV_TIMER_STANDSTILL, 100},
+    {AGV_TIMER_WHEELS_STOOD, 5000},
+    {AGV_TIMER_ANGLE, 51},
+    {AGV_TIMER_ENGAGED, 500},
+    {AGV_TIMER_DISENGAGED, 101},
+    {AGV_TIMER_ENGAGEMENT_1, 5001},
+    {AGV_TIMER_ENGAGEMENT_2, 5001},
+    {AGV_TIMER_ENGAGEMENT_3, 5001},
+    {AGV_TIMER_BOTH_MODES, 51},
+    {AGV_TIMER_NO_MODE, 500},
+    {AGV_TIMER_AI_NEVER_SEEN, 501},
+    {AGV_TIMER_OTHER_TURN_SIGNAL, 501},
+    {AGV_TIMER_OTHER_VEHICLE_STATUS, 501},
+    {AGV_TIMER_INIT_GOOD, 500},
+    {AGV_TIMER_STARTUP, 10001},
+    {AGV_TIMER_PARK_WAIT, 3000},
+    {AGV_TIMER_CONFIRMED, 5000},
+    {AGV_TIMER_STOP, 5000},
+    {AGV_TIMER_PRESS, 1000},
+    {AGV_TIMER_PRESS_LONG, 5001},
+    {AGV_TIMER_WATCHDOG_FED, 101},
+    {AGV_TIMER_TX_TURN_SIGNAL, 101},
+    {AGV_TIMER_TX_STEERING, 101},
+    {AGV_TIMER_TX_STATUS, 101},
+    {AGV_TIMER_EVENT_RX_OVERRUN, 1000},
+    {AGV_TIMER_EVENT_MODE_FLAPPING, 1000},
+    {AGV_TIMER_MESSAGE + AGV_MSG_TURN_SIGNAL_COMMAND, 351},
+    {AGV_TIMER_MESSAGE + AGV_MSG_STEERING_COMMAND, 126},
+    {AGV_TIMER_MESSAGE + AGV_MSG_VEHICLE_STATUS, 51},
+    {AGV_TIMER_MESSAGE + AGV_MSG_GEAR_STATUS, 126},
+    {AGV_TIMER_MESSAGE + AGV_MSG_STEERING_STATUS, 51},
+    {AGV_TIMER_MESSAGE + AGV_MSG_WHEEL_SPEED, 61},
+};
+
 void test_every_timer_has_the_limit_of_its_setting(void) {
-    static const struct {
-        uint32_t timer;
-        uint32_t reached_ms;
-    } rows[] = {
-        {AGV_TIMER_BUS_OFF, 100},
-        {AGV_TIMER_ENGAGED, 500},
-        {AGV_TIMER_STEERING_OFF, 500},
-        {AGV_TIMER_THROTTLE_IN_PARK, 200},
-        {AGV_TIMER_INIT_GOOD, 500},
-        {AGV_TIMER_RESET_GOOD, 1000},
-        {AGV_TIMER_PRESS, 1000},
-        {AGV_TIMER_PARK_WAIT, 3000},
-        {AGV_TIMER_WATCHDOG_FED, 101},
-        {AGV_TIMER_AI_NEVER_SEEN, 501},
-        {AGV_TIMER_OTHER_TURN_SIGNAL, 501},
-        {AGV_TIMER_STARTUP, 10001},
-        {AGV_TIMER_UNCONFIRMED, 501},
-        {AGV_TIMER_PARK_SENT, 501},
-        {AGV_TIMER_TX_STEERING, 101},
-        {AGV_TIMER_EVENT_RX_OVERRUN, 1000},
-        {AGV_TIMER_MESSAGE + AGV_MSG_TURN_SIGNAL_COMMAND, 351},
-        {AGV_TIMER_MESSAGE + AGV_MSG_STEERING_COMMAND, 126},
-        {AGV_TIMER_MESSAGE + AGV_MSG_VEHICLE_STATUS, 51},
-        {AGV_TIMER_MESSAGE + AGV_MSG_STEERING_STATUS, 51},
-        {AGV_TIMER_MESSAGE + AGV_MSG_WHEEL_SPEED, 61},
-    };
-    for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        begin(rows[i].timer, 7);
-        TEST_ASSERT_FALSE(reached(rows[i].timer, 7 + rows[i].reached_ms - 1));
-        TEST_ASSERT_TRUE(reached(rows[i].timer, 7 + rows[i].reached_ms));
+    agv_config_defaults(&config);
+    for (unsigned i = 0; i < sizeof ROWS / sizeof ROWS[0]; i++) {
+        begin(ROWS[i].timer, 7);
+        TEST_ASSERT_FALSE(reached(ROWS[i].timer, 7 + ROWS[i].reached_ms - 1));
+        TEST_ASSERT_TRUE(reached(ROWS[i].timer, 7 + ROWS[i].reached_ms));
     }
+    TEST_ASSERT_EQUAL_UINT32(350, agv_timer_limit_ms(&config, AGV_TIMER_MESSAGE + AGV_MSG_GEAR_COMMAND));
+    TEST_ASSERT_EQUAL_UINT32(5000, agv_timer_limit_ms(&config, AGV_TIMER_PRESS_LONG));
 }
 
 /* Every timer has a limit, and moves no other one. */
@@ -145,10 +160,14 @@ void test_every_timer_runs_alone(void) {
     for (uint32_t timer = 0; timer < AGV_TIMER_COUNT; timer++) {
         setUp();
         begin(timer, 7);
+        advance(8);
         for (uint32_t other = 0; other < AGV_TIMER_COUNT; other++) {
             TEST_ASSERT_EQUAL(other == timer, agv_timer_runs(&timers, other));
-            TEST_ASSERT_FALSE(reached(other, 7));
-            TEST_ASSERT_EQUAL(other == timer, reached(other, 70000));
+            TEST_ASSERT_FALSE(agv_timer_reached(&timers, other));
+        }
+        advance(70000);
+        for (uint32_t other = 0; other < AGV_TIMER_COUNT; other++) {
+            TEST_ASSERT_EQUAL(other == timer, agv_timer_reached(&timers, other));
         }
         agv_timer_stop(&timers, timer);
         TEST_ASSERT_FALSE(agv_timer_runs(&timers, timer));
@@ -160,18 +179,21 @@ void test_what_was_reached_stays_so_over_the_whole_turn_of_the_clock(void) {
     begin(DURATION, 7);
     /* 2^32 ms are 49.7 days: in steps of one day, and once more around */
     for (uint32_t day = 0; day < 100; day++) {
-        tick(107u + day * 86400000u);
-        TEST_ASSERT_TRUE(agv_timer_reached(&timers, DURATION));
+        TEST_ASSERT_TRUE(reached(DURATION, 107u + day * 86400000u));
     }
-    TEST_ASSERT_TRUE(reached(DURATION, 7));
+}
+
+/* An old stamp, as frames carry them, ends nothing. */
+void test_what_was_reached_stays_so_when_an_old_stamp_comes(void) {
+    begin(DURATION, 0);
+    TEST_ASSERT_TRUE(reached(DURATION, 100));
+    TEST_ASSERT_TRUE(reached(DURATION, 50));
 }
 
 void test_a_timer_that_is_started_anew_begins_anew(void) {
     begin(DURATION, 0);
-    tick(100);
     TEST_ASSERT_TRUE(reached(DURATION, 100));
-    begin(DURATION, 100);
-    tick(199);
+    agv_timer_start(&timers, DURATION);
     TEST_ASSERT_FALSE(reached(DURATION, 199));
     TEST_ASSERT_TRUE(reached(DURATION, 200));
 }
@@ -192,7 +214,7 @@ void test_a_condition_that_breaks_starts_the_time_again(void) {
 void test_a_start_stops_all_timers(void) {
     begin(DURATION, 1000);
     begin(DEADLINE, 1000);
-    agv_timers_start(&timers, &config);
+    agv_timers_start(&timers);
     TEST_ASSERT_EQUAL_UINT32(1000, timers.now_ms);
     for (uint32_t timer = 0; timer < AGV_TIMER_COUNT; timer++) {
         TEST_ASSERT_FALSE(agv_timer_runs(&timers, timer));
@@ -215,20 +237,24 @@ static void expect_time(uint32_t ms, uint32_t us) {
     TEST_ASSERT_EQUAL_UINT32(us, timers.now_us);
 }
 
+static void stamp(uint32_t ms, uint32_t us) {
+    agv_timers_advance(&timers, &config, ms, us);
+}
+
 /* Both clocks say the same; 1234567 ms are 1234567000 us. */
 /* Shows: TIM-2 */
 void test_the_time_only_goes_forwards(void) {
     agv_timers_set_time(&timers, 1234567);
     expect_time(1234567, 1234567000);
-    agv_timers_advance(&timers, 1234567, 900);
+    stamp(1234567, 900);
     expect_time(1234567, 1234567900);
-    agv_timers_advance(&timers, 1234567, 200); /* within the same millisecond, too */
+    stamp(1234567, 200); /* within the same millisecond, too */
     expect_time(1234567, 1234567900);
-    agv_timers_advance(&timers, 1234566, 999);
+    stamp(1234566, 999);
     expect_time(1234567, 1234567900);
-    agv_timers_advance(&timers, 1234568, 0);
+    stamp(1234568, 0);
     expect_time(1234568, 1234568000);
-    agv_timers_advance(&timers, 1234568u - 4294967u, 296); /* a turn of the microseconds ago */
+    stamp(1234568u - 4294967u, 296); /* a turn of the microseconds ago */
     expect_time(1234568, 1234568000);
     agv_timers_set_time(&timers, 1000);
     expect_time(1000, 1000000);
@@ -237,8 +263,8 @@ void test_the_time_only_goes_forwards(void) {
 /* Shows: TIM-2 */
 void test_the_time_goes_on_across_the_wrap(void) {
     agv_timers_set_time(&timers, 0xFFFFFFFFu);
-    agv_timers_advance(&timers, 0, 5);
+    stamp(0, 5);
     expect_time(0, 5);
-    agv_timers_advance(&timers, 0xFFFFFFFFu, 999);
+    stamp(0xFFFFFFFFu, 999);
     expect_time(0, 5);
 }

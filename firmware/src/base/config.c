@@ -117,10 +117,11 @@ static uint32_t id_twice(const agv_config_t *config) {
     return taken ? (uint32_t)AGV_SETTING_status_frame_id : (uint32_t)AGV_SETTING_COUNT;
 }
 
-/* Whether `trips` has a bit beyond the last fault. */
+/* Whether `trips` has a bit beyond the last fault: in the last word, which may have some to spare. */
 static bool has_unknown_fault(const agv_config_t *config) {
-    const uint32_t used = (uint32_t)AGV_FAULT_COUNT % 32u;
-    return (used != 0u) && ((config->trips.words[AGV_FAULT_WORDS - 1u] >> used) != 0u);
+    const uint32_t spare = ((32u * AGV_FAULT_WORDS) - (uint32_t)AGV_FAULT_COUNT) % 32u;
+    const uint32_t known = UINT32_MAX >> spare;
+    return (config->trips.words[AGV_FAULT_WORDS - 1u] & ~known) != 0u;
 }
 
 /* On a shared bus: the first setting that is not at its default and has no effect; AGV_SETTING_COUNT when there is none. */

@@ -78,9 +78,9 @@ static void sum_up_all(agv_fault_monitor_t *monitor) {
 }
 
 static agv_fault_set_t tripping_now(const agv_fault_monitor_t *monitor, const agv_fault_set_t *trips) {
-    agv_fault_set_t set;
+    agv_fault_set_t set = monitor->active;
     for (uint32_t i = 0u; i < AGV_FAULT_WORDS; i++) {
-        set.words[i] = monitor->active.words[i] & trips->words[i];
+        set.words[i] &= trips->words[i];
     }
     if (monitor->ai_loss_warns) {
         agv_fault_set_put(&set, AGV_FAULT_AI_HEARTBEAT_LOST, false);
@@ -93,7 +93,7 @@ void agv_fault_monitor_evaluate(agv_fault_monitor_t *monitor, const agv_fault_se
                                 agv_fault_changes_t *changes) {
     const bool same = !monitor->outdated && (monitor->ai_loss_warns == ai_loss_warns);
     monitor->summary.raised = AGV_FAULT_NONE;
-    (void)memset(changes, 0, sizeof *changes);
+    changes->any = !same;
     if (same) {
         return;
     }

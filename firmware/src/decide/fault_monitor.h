@@ -37,6 +37,7 @@ typedef struct {
 typedef struct {
     agv_fault_set_t changed;  /**< raised, raised with another class, or ended */
     agv_fault_set_t was_trip; /**< counted as trips before it */
+    bool any;                 /**< something may have changed; when not, the sets are not filled in */
 } agv_fault_changes_t;
 
 /** No fault, from zeroed memory. */

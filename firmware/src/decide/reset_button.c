@@ -27,6 +27,7 @@ static void forget_press(agv_reset_button_t *reset, agv_timers_t *timers) {
 
 void agv_reset_button_trip(agv_reset_button_t *reset, agv_timers_t *timers) {
     forget_press(reset, timers);
+    reset->before = reset->button; /* what is down at the trip is no rising edge after it */
     (void)memset(reset->held_ms, 0, sizeof reset->held_ms);
 }
 

@@ -25,10 +25,11 @@ static void check_silences(agv_fault_monitor_t *faults, const agv_timers_t *time
     }
 }
 
-void agv_deadlines_heartbeats(agv_fault_monitor_t *faults, agv_timers_t *timers, const agv_liveness_t *liveness,
+void agv_deadlines_heartbeats(agv_fault_monitor_t *faults, const agv_timers_t *timers, const agv_liveness_t *liveness,
                               bool engaged) {
     const bool unseen = agv_liveness_heartbeat(liveness, AGV_NODE_AI) == AGV_HEARTBEAT_UNSEEN;
-    const bool never_seen = agv_timer_while(timers, AGV_TIMER_AI_NEVER_SEEN, unseen && engaged);
+    /* It was started with the engagement; one that is continued goes on with it. */
+    const bool never_seen = unseen && engaged && agv_timer_reached(timers, AGV_TIMER_AI_NEVER_SEEN);
     for (uint32_t node = 0u; node < (uint32_t)AGV_NODE_COUNT; node++) {
         const agv_heartbeat_state_t state = agv_liveness_heartbeat(liveness, (agv_node_t)node);
         const bool absent = never_seen && (node == (uint32_t)AGV_NODE_AI);
@@ -44,7 +45,7 @@ static bool is_wrong_set(const agv_timers_t *timers, const agv_config_t *config,
            (agv_liveness_age_ms(liveness, timers, message) > config->wrong_id_set_ms);
 }
 
-void agv_deadlines_tick(agv_fault_monitor_t *faults, agv_timers_t *timers, const agv_config_t *config,
+void agv_deadlines_tick(agv_fault_monitor_t *faults, const agv_timers_t *timers, const agv_config_t *config,
                         const agv_liveness_t *liveness, bool engaged) {
     check_silences(faults, timers, engaged);
     agv_deadlines_heartbeats(faults, timers, liveness, engaged);

@@ -13,11 +13,11 @@
 #include "observe/liveness.h"
 
 /** Evaluate all deadlines and heartbeats. Call at every tick, after agv_liveness_tick. */
-void agv_deadlines_tick(agv_fault_monitor_t *faults, agv_timers_t *timers, const agv_config_t *config,
+void agv_deadlines_tick(agv_fault_monitor_t *faults, const agv_timers_t *timers, const agv_config_t *config,
                         const agv_liveness_t *liveness, bool engaged);
 
 /** Evaluate the heartbeats alone. Call when an engagement begins: an AI computer that is lost then trips at once. */
-void agv_deadlines_heartbeats(agv_fault_monitor_t *faults, agv_timers_t *timers, const agv_liveness_t *liveness,
+void agv_deadlines_heartbeats(agv_fault_monitor_t *faults, const agv_timers_t *timers, const agv_liveness_t *liveness,
                               bool engaged);
 
 /** A frame of the right shape came with an identifier that this message has in the other set only. */

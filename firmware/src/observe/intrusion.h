@@ -22,7 +22,7 @@ typedef struct {
 /** A well-formed command arrived. @param gap_ms since the one before; AGV_AGE_MAX: unknown, does not count */
 void agv_intrusion_command(agv_intrusion_t *intrusion, const agv_config_t *config, uint32_t command, uint32_t gap_ms);
 
-/** Set the fault; a silence longer than the deadline of a command sets its score to 0. Call in every call. */
+/** Set the fault; a silence longer than the deadline of a command sets its score to 0. Call at every tick and command. */
 void agv_intrusion_evaluate(agv_intrusion_t *intrusion, agv_fault_monitor_t *faults, const agv_timers_t *timers,
                             const agv_config_t *config, const agv_liveness_t *liveness);
 

@@ -2,6 +2,10 @@
 
 #include <stddef.h>
 
+/* Ages are looked at in turn, one a ms. A power of two. */
+enum { AGES_IN_TURN = 16 };
+_Static_assert((int)AGV_MSG_COUNT <= (int)AGES_IN_TURN, "each message has its turn");
+
 /* The message that carries a heartbeat, by node. */
 static const uint8_t carriers[AGV_NODE_COUNT] = {[AGV_NODE_VCU] = AGV_MSG_VEHICLE_STATUS,
                                                  [AGV_NODE_EPS] = AGV_MSG_STEERING_STATUS,
@@ -136,10 +140,10 @@ static void expire(agv_liveness_t *liveness, const agv_timers_t *timers, uint32_
 }
 
 void agv_liveness_tick(agv_liveness_t *liveness, const agv_timers_t *timers, bool engaged) {
-    for (uint32_t i = 0u; i < (uint32_t)AGV_MSG_COUNT; i++) {
-        if (agv_age_ms(timers->now_ms, liveness->last_ms[i]) > AGV_AGE_LIMIT_MS) {
-            liveness->old |= bit_of(i);
-        }
+    /* One message a tick: what counts is that each is looked at before the time wraps. */
+    const uint32_t next = timers->now_ms % (uint32_t)AGES_IN_TURN;
+    if ((next < (uint32_t)AGV_MSG_COUNT) && (agv_age_ms(timers->now_ms, liveness->last_ms[next]) > AGV_AGE_LIMIT_MS)) {
+        liveness->old |= bit_of(next);
     }
     for (uint32_t node = 0u; node < (uint32_t)AGV_NODE_COUNT; node++) {
         expire(liveness, timers, node, engaged);

@@ -32,7 +32,7 @@ static int32_t off_by_ddeg(const agv_motion_facts_t *facts, uint32_t angle_raw) 
 }
 
 /* Empties a budget whose cause is on its way to end. What was counted for that begins anew with the budget. */
-static void follow_progress(agv_budget_t *budget, int32_t *progress, int32_t enough) {
+static void follow_progress(agv_budget_t *budget, int16_t *progress, int32_t enough) {
     if ((budget->value_ms != 0u) && (*progress >= enough)) {
         *budget = (agv_budget_t){0};
     }
@@ -44,7 +44,7 @@ static void follow_progress(agv_budget_t *budget, int32_t *progress, int32_t eno
 void agv_motion_checks_angle(agv_motion_checks_t *checks, const agv_motion_facts_t *facts, uint32_t before_raw) {
     if (facts->judged && agv_commands_has(facts->commands, AGV_MSG_STEERING_COMMAND)) {
         const int32_t step_ddeg = off_by_ddeg(facts, before_raw) - off_by_ddeg(facts, facts->vehicle->angle_raw);
-        checks->steering_gain_ddeg = clamp(checks->steering_gain_ddeg + step_ddeg, AGV_ANGLE_RAW_MAX);
+        checks->steering_gain_ddeg = (int16_t)clamp(checks->steering_gain_ddeg + step_ddeg, AGV_ANGLE_RAW_MAX);
         follow_progress(&checks->budgets[AGV_BUDGET_STEERING], &checks->steering_gain_ddeg,
                         (int32_t)facts->config->steering_gain_ddeg);
     }
@@ -52,7 +52,8 @@ void agv_motion_checks_angle(agv_motion_checks_t *checks, const agv_motion_facts
 
 void agv_motion_checks_throttle(agv_motion_checks_t *checks, const agv_motion_facts_t *facts, uint32_t before) {
     if (facts->judged) {
-        checks->throttle_drop += (int32_t)before - (int32_t)facts->vehicle->throttle;
+        const int32_t drop = (int32_t)before - (int32_t)facts->vehicle->throttle;
+        checks->throttle_drop = (int16_t)clamp(checks->throttle_drop + drop, AGV_ANGLE_RAW_MAX);
         follow_progress(&checks->budgets[AGV_BUDGET_THROTTLE], &checks->throttle_drop, THROTTLE_DROP_COUNTS);
     }
 }
@@ -109,7 +110,20 @@ void agv_motion_checks_tick(agv_motion_checks_t *checks, const agv_motion_facts_
     follow_progress(&budgets[AGV_BUDGET_THROTTLE], &checks->throttle_drop, THROTTLE_DROP_COUNTS);
 }
 
-void agv_motion_checks_evaluate(const agv_motion_checks_t *checks, agv_fault_monitor_t *faults, bool judged) {
+static bool is_any_present(const agv_motion_checks_t *checks) {
+    bool present = false;
+    for (uint32_t i = 0u; i < (uint32_t)AGV_BUDGET_COUNT; i++) {
+        present = present || checks->budgets[i].present;
+    }
+    return present;
+}
+
+void agv_motion_checks_evaluate(agv_motion_checks_t *checks, agv_fault_monitor_t *faults, bool judged) {
+    const bool present = is_any_present(checks);
+    if (!present && !checks->reported) {
+        return;
+    }
+    checks->reported = present;
     for (uint32_t i = 0u; i < (uint32_t)AGV_BUDGET_COUNT; i++) {
         const bool counts = judged || (i == (uint32_t)AGV_BUDGET_SPEED);
         agv_fault_monitor_set(faults, faults_of[i], counts && checks->budgets[i].present);

@@ -29,8 +29,9 @@ typedef enum {
 /** State of the checks. */
 typedef struct {
     agv_budget_t budgets[AGV_BUDGET_COUNT];
-    int32_t steering_gain_ddeg; /**< by which the steering has come nearer by its own motion */
-    int32_t throttle_drop;      /**< counts by which 050h has come down */
+    int16_t steering_gain_ddeg; /**< by which the steering has come nearer by its own motion */
+    int16_t throttle_drop;      /**< counts by which 050h has come down */
+    bool reported;              /**< one of the faults was set at the last evaluation */
 } agv_motion_checks_t;
 
 /** What the checks go by. */
@@ -52,7 +53,7 @@ void agv_motion_checks_throttle(agv_motion_checks_t *checks, const agv_motion_fa
 void agv_motion_checks_tick(agv_motion_checks_t *checks, const agv_motion_facts_t *facts, uint32_t elapsed_ms);
 
 /** Set the faults: what is judged ends when it is no longer. Call in every call. */
-void agv_motion_checks_evaluate(const agv_motion_checks_t *checks, agv_fault_monitor_t *faults, bool judged);
+void agv_motion_checks_evaluate(agv_motion_checks_t *checks, agv_fault_monitor_t *faults, bool judged);
 
 /** An engagement began: the budgets of what is judged begin at 0. */
 void agv_motion_checks_engage(agv_motion_checks_t *checks);

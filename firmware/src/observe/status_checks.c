@@ -68,8 +68,20 @@ void agv_status_checks_value(agv_status_checks_t *checks, const agv_config_t *co
     }
 }
 
-void agv_status_checks_evaluate(const agv_status_checks_t *checks, agv_fault_monitor_t *faults, bool engaged,
-                                bool judged) {
+/* Whether one of the faults that depend on the engagement may have to be set. */
+static bool has_news(const agv_status_checks_t *checks) {
+    bool present = checks->reported || checks->eps_mode.present || checks->ai_alarm;
+    for (uint32_t i = 0u; i < AGV_SCORED_VALUES; i++) {
+        present = present || checks->values[i].present;
+    }
+    return present;
+}
+
+void agv_status_checks_evaluate(agv_status_checks_t *checks, agv_fault_monitor_t *faults, bool engaged, bool judged) {
+    if (!has_news(checks)) {
+        return;
+    }
+    const bool ai_alarm = engaged && checks->ai_alarm && checks->ai_alarm_armed;
     for (uint32_t i = 0u; i < AGV_SCORED_VALUES; i++) {
         agv_fault_monitor_set(faults, value_faults[i], judged && checks->values[i].present);
     }
@@ -77,7 +89,9 @@ void agv_status_checks_evaluate(const agv_status_checks_t *checks, agv_fault_mon
         agv_fault_monitor_set(faults, fault,
                               judged && checks->eps_mode.present && (checks->eps_mode_fault == (uint8_t)fault));
     }
-    agv_fault_monitor_set(faults, AGV_FAULT_VCU_AI_CAN_LOST, engaged && checks->ai_alarm && checks->ai_alarm_armed);
+    agv_fault_monitor_set(faults, AGV_FAULT_VCU_AI_CAN_LOST, ai_alarm);
+    checks->reported = false;
+    checks->reported = has_news(checks);
 }
 
 void agv_status_checks_engage(agv_status_checks_t *checks) {

@@ -28,6 +28,7 @@ typedef struct {
     agv_score_t hold_angle; /**< of the angle, counted also while not judged (FSM-10) */
     uint8_t eps_mode_fault; /**< agv_fault_t: what the last EPS mode that was not angle control is called */
     bool ai_alarm;          /**< VCU alarm bit 3 was set in the last 363h */
+    bool reported;          /**< one of the faults that depend on the engagement was set at the last evaluation */
     bool ai_alarm_armed;    /**< and was once clear with the AI alive (SUP-8) */
 } agv_status_checks_t;
 
@@ -44,8 +45,7 @@ void agv_status_checks_value(agv_status_checks_t *checks, const agv_config_t *co
                              bool judged);
 
 /** Set the faults that depend on the engagement, too. Call in every call, when scores and mode are up to date. */
-void agv_status_checks_evaluate(const agv_status_checks_t *checks, agv_fault_monitor_t *faults, bool engaged,
-                                bool judged);
+void agv_status_checks_evaluate(agv_status_checks_t *checks, agv_fault_monitor_t *faults, bool engaged, bool judged);
 
 /** An engagement began: the scores of what is judged begin at 0. */
 void agv_status_checks_engage(agv_status_checks_t *checks);

@@ -67,11 +67,13 @@ _Static_assert(sizeof(agv_core_t) % sizeof(uint32_t) == 0u, "whole words: all of
 
 /** The core of a supervisor. */
 static inline agv_core_t *agv_core_of(agv_supervisor_t *supervisor) {
+    /* NOLINTNEXTLINE(bugprone-casting-through-void): the memory is aligned and as large as the core, asserted above */
     return (agv_core_t *)(void *)supervisor->memory;
 }
 
 /** The same to read. */
 static inline const agv_core_t *agv_core_read(const agv_supervisor_t *supervisor) {
+    /* NOLINTNEXTLINE(bugprone-casting-through-void): the memory is aligned and as large as the core, asserted above */
     return (const agv_core_t *)(const void *)supervisor->memory;
 }
 

@@ -42,6 +42,12 @@ static bool vcu_is_alive(const agv_core_t *core) {
     return agv_liveness_alive(&core->liveness, AGV_NODE_VCU);
 }
 
+/* Whether the vehicle stands goes by 101h, 363h and the time. */
+void agv_core_evaluate_standstill(agv_core_t *core) {
+    agv_vehicle_evaluate(&core->vehicle, &core->timers, &core->config,
+                         agv_liveness_fresh(&core->liveness, &core->timers, AGV_MSG_WHEEL_SPEED), vcu_is_alive(core));
+}
+
 static bool is_judged(const agv_core_t *core) {
     return agv_mode_is_judged(&core->mode, &core->timers);
 }
@@ -74,6 +80,7 @@ static void observe_vehicle_status(agv_core_t *core, const hal_can_frame_t *fram
         agv_mode_report(&core->mode, &core->timers, &core->config, frame->data[6], vcu_is_alive(core), frame->time_ms);
     agv_core_follow_mode(core, change, frame->time_ms);
     agv_vehicle_status(&core->vehicle, frame->data);
+    agv_core_evaluate_standstill(core);
     agv_reset_button_report(&core->reset_button, vcu_is_alive(core), down);
     agv_status_checks_vehicle(&core->status_checks, &core->faults, frame->data,
                               agv_liveness_alive(&core->liveness, AGV_NODE_AI));
@@ -136,6 +143,7 @@ static void observe_content(agv_core_t *core, uint32_t message, const hal_can_fr
         break;
     case AGV_MSG_WHEEL_SPEED:
         agv_vehicle_wheels(&core->vehicle, frame->data);
+        agv_core_evaluate_standstill(core);
         break;
     case AGV_MSG_STEERING_POSITION:
         break;
@@ -161,6 +169,7 @@ static void observe_message(agv_core_t *core, const agv_ports_t *ports, intake_t
     agv_recorder_frame(ports->recorder, message, frame->data);
     if (is_command(message)) {
         agv_intrusion_command(&core->intrusion, &core->config, message, gap_ms);
+        agv_intrusion_evaluate(&core->intrusion, &core->faults, &core->timers, &core->config, &core->liveness);
     }
     intake->passes = valid || !is_command(message);
     if (intake->passes) {

@@ -43,6 +43,9 @@ bool agv_core_is_in_park(const agv_core_t *core);
 /** The engagement began or ended: what follows from it. */
 void agv_core_follow_mode(agv_core_t *core, agv_mode_change_t change, uint32_t time_ms);
 
+/** Evaluate whether the vehicle stands. */
+void agv_core_evaluate_standstill(agv_core_t *core);
+
 /** What the checks of motion go by. */
 agv_motion_facts_t agv_core_motion_facts(const agv_core_t *core);
 

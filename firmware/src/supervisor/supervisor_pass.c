@@ -97,53 +97,50 @@ static bool output_is_unsafe(const agv_core_t *core) {
     return unsafe;
 }
 
-static uint32_t alive_facts(const agv_core_t *core) {
-    uint32_t facts = 0u;
-    if (agv_liveness_alive(&core->liveness, AGV_NODE_VCU)) {
-        const bool off = !agv_mode_is_engaged(&core->mode) && !agv_mode_is_ambiguous(&core->mode);
-        facts |= off ? AGV_FACT_AUTOPILOT_OFF : 0u;
-        facts |= agv_core_step_is_late(core) ? 0u : AGV_FACT_VCU_ALIVE; /* late: deadlines have not been looked at */
-    }
-    facts |= agv_liveness_alive(&core->liveness, AGV_NODE_EPS) ? AGV_FACT_EPS_ALIVE : 0u;
-    facts |= agv_liveness_alive(&core->liveness, AGV_NODE_AI) ? AGV_FACT_AI_ALIVE : 0u;
-    return facts;
+static uint32_t bit_if(bool condition, uint32_t bit) {
+    return condition ? bit : 0u;
 }
 
-static uint32_t motion_facts(const agv_core_t *core) {
-    uint32_t facts = agv_vehicle_is_at_standstill(&core->timers) ? AGV_FACT_STANDSTILL : 0u;
-    facts |= agv_vehicle_wheels_stand(&core->timers) ? AGV_FACT_WHEELS_STAND : 0u;
-    facts |= agv_vehicle_is_slow(&core->vehicle, &core->config) ? AGV_FACT_SLOW : 0u;
-    facts |= agv_vehicle_throttle_is_idle(&core->vehicle, &core->config) ? AGV_FACT_IDLE : 0u;
-    facts |= agv_core_is_in_park(core) ? AGV_FACT_IN_PARK : 0u;
-    return facts;
+static uint32_t vcu_facts(const agv_core_t *core) {
+    if (!agv_liveness_alive(&core->liveness, AGV_NODE_VCU)) {
+        return 0u;
+    }
+    const bool off = !agv_mode_is_engaged(&core->mode) && !agv_mode_is_ambiguous(&core->mode);
+    /* After a late step deadlines have not been looked at. */
+    return bit_if(off, AGV_FACT_AUTOPILOT_OFF) | bit_if(!agv_core_step_is_late(core), AGV_FACT_VCU_ALIVE);
+}
+
+/* What INIT, TRIPPED and SAFE go by. */
+static uint32_t safe_state_facts(const agv_core_t *core) {
+    const agv_timers_t *const timers = &core->timers;
+    return vcu_facts(core) | bit_if(agv_liveness_alive(&core->liveness, AGV_NODE_EPS), AGV_FACT_EPS_ALIVE) |
+           bit_if(agv_mode_is_manual(&core->mode), AGV_FACT_MANUAL) |
+           bit_if(agv_vehicle_is_at_standstill(timers), AGV_FACT_STANDSTILL) |
+           bit_if(agv_vehicle_is_slow(&core->vehicle, &core->config), AGV_FACT_SLOW) |
+           bit_if(agv_vehicle_throttle_is_idle(&core->vehicle, &core->config), AGV_FACT_IDLE) |
+           bit_if(agv_core_is_in_park(core), AGV_FACT_IN_PARK) |
+           bit_if(agv_deadlines_messages_fresh(&core->liveness, timers, &core->config), AGV_FACT_MESSAGES);
 }
 
 static uint32_t facts_of(const agv_core_t *core) {
-    uint32_t facts = alive_facts(core) | motion_facts(core);
-    facts |= agv_deadlines_messages_fresh(&core->liveness, &core->timers, &core->config) ? AGV_FACT_MESSAGES : 0u;
-    facts |= agv_mode_is_manual(&core->mode) ? AGV_FACT_MANUAL : 0u;
-    facts |= agv_mode_is_engaged(&core->mode) ? AGV_FACT_ENGAGED : 0u;
-    return facts;
+    const uint32_t facts = bit_if(agv_mode_is_engaged(&core->mode), AGV_FACT_ENGAGED) |
+                           bit_if(agv_liveness_alive(&core->liveness, AGV_NODE_AI), AGV_FACT_AI_ALIVE) |
+                           bit_if(agv_vehicle_wheels_stand(&core->timers), AGV_FACT_WHEELS_STAND);
+    return agv_core_is_supervising(core) ? facts : (facts | safe_state_facts(core));
 }
 
 /* The checks whose result depends on the mode or the time of now. */
 static void evaluate_checks(agv_core_t *core) {
     const bool judged = agv_mode_is_judged(&core->mode, &core->timers);
-    agv_vehicle_evaluate(&core->vehicle, &core->timers, &core->config,
-                         agv_liveness_fresh(&core->liveness, &core->timers, AGV_MSG_WHEEL_SPEED),
-                         agv_liveness_alive(&core->liveness, AGV_NODE_VCU));
     agv_status_checks_evaluate(&core->status_checks, &core->faults, agv_mode_is_engaged(&core->mode), judged);
     agv_motion_checks_evaluate(&core->motion_checks, &core->faults, judged);
-    agv_intrusion_evaluate(&core->intrusion, &core->faults, &core->timers, &core->config, &core->liveness);
 }
 
-/* In TRIPPED and SAFE: whether the vehicle confirms and stops (FSM-4, FSM-12). */
+/* In TRIPPED and SAFE: whether the vehicle confirms and stops (FSM-4, FSM-12). A reset is refused while it does not. */
 static void evaluate_safe_state(agv_core_t *core, uint32_t facts, uint32_t elapsed_ms) {
-    if (is_latched(core)) {
-        agv_confirmation_step(&core->confirmation, &core->timers, &core->config, elapsed_ms,
-                              (facts & AGV_FACT_AUTOPILOT_OFF) != 0u, (facts & AGV_FACT_IN_PARK) != 0u);
-        agv_stopping_step(&core->stopping, &core->timers, &core->vehicle, elapsed_ms);
-    }
+    agv_confirmation_step(&core->confirmation, &core->timers, &core->config, elapsed_ms,
+                          (facts & AGV_FACT_AUTOPILOT_OFF) != 0u, (facts & AGV_FACT_IN_PARK) != 0u);
+    agv_stopping_step(&core->stopping, &core->timers, &core->vehicle, elapsed_ms);
     agv_fault_monitor_set(&core->faults, AGV_FAULT_SAFE_STATE_UNCONFIRMED, core->confirmation.unconfirmed);
     agv_fault_monitor_set(&core->faults, AGV_FAULT_VEHICLE_NOT_STOPPING, core->stopping.not_stopping);
     agv_fault_monitor_set(&core->faults, AGV_FAULT_MOVING_WHILE_SAFE, core->stopping.moving);
@@ -152,7 +149,9 @@ static void evaluate_safe_state(agv_core_t *core, uint32_t facts, uint32_t elaps
 static void evaluate_faults(agv_core_t *core, uint32_t facts, uint32_t elapsed_ms, agv_fault_changes_t *changes) {
     const bool ai_loss_warns =
         ((facts & AGV_FACT_ENGAGED) == 0u) && (core->config.ai_lost_in_manual == (uint16_t)AGV_AI_LOST_WARN);
-    evaluate_safe_state(core, facts, elapsed_ms);
+    if (is_latched(core)) {
+        evaluate_safe_state(core, facts, elapsed_ms);
+    }
     agv_fault_monitor_set(&core->faults, AGV_FAULT_STARTUP_TIMEOUT,
                           agv_state_machine_is_startup_late(&core->machine, &core->timers));
     agv_fault_monitor_evaluate(&core->faults, &core->config.trips, ai_loss_warns, changes);
@@ -253,6 +252,9 @@ static void take_passed_commands(agv_core_t *core, uint32_t passed) {
 }
 
 void agv_core_take_tx_report(agv_core_t *core) {
+    if (!agv_transmitter_has_report(&core->transmitter)) {
+        return;
+    }
     const agv_tx_report_t report = agv_transmitter_take_report(&core->transmitter);
     core->counters.sent += report.sent;
     core->counters.shadowed += report.shadowed;
@@ -340,8 +342,13 @@ static void conclude_actions(agv_core_t *core, const agv_ports_t *ports, agv_act
 
 void agv_core_conclude(agv_core_t *core, const agv_ports_t *ports, const agv_pass_t *pass) {
     agv_core_take_tx_report(core);
-    record_faults(core, ports, pass);
+    if (pass->faults.any) {
+        record_faults(core, ports, pass);
+    }
     conclude_actions(core, ports, pass->actions);
+    if ((pass->actions.what == 0u) && !pass->faults.any) {
+        return;
+    }
     if (is_latched(core)) {
         agv_fault_monitor_latch(&core->faults);
     }

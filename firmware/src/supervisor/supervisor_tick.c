@@ -57,6 +57,8 @@ static void observe_time(agv_core_t *core, uint32_t elapsed_ms) {
     if (!vcu_alive) {
         agv_reset_button_lose(&core->reset_button);
     }
+    agv_core_evaluate_standstill(core);
+    agv_intrusion_evaluate(&core->intrusion, faults, timers, &core->config, &core->liveness);
     agv_mode_check(&core->mode, timers, faults, agv_core_is_supervising(core), agv_vehicle_is_at_standstill(timers));
     agv_deadlines_tick(faults, timers, &core->config, &core->liveness, agv_mode_is_engaged(&core->mode));
     const agv_motion_facts_t facts = agv_core_motion_facts(core);

@@ -326,6 +326,12 @@ bool agv_transmitter_is_stalled(const agv_timers_t *timers) {
     return stalled || agv_timer_reached(timers, AGV_TIMER_TX_STATUS);
 }
 
+bool agv_transmitter_has_report(const agv_transmitter_t *transmitter) {
+    const agv_tx_report_t *const report = &transmitter->report;
+    return ((uint32_t)report->sent | report->shadowed | report->refused | report->dropped | report->skipped_slots) !=
+           0u;
+}
+
 agv_tx_report_t agv_transmitter_take_report(agv_transmitter_t *transmitter) {
     const agv_tx_report_t report = transmitter->report;
     transmitter->report = (agv_tx_report_t){0};

@@ -108,6 +108,9 @@ void agv_transmitter_tick(agv_transmitter_t *transmitter, const agv_tx_orders_t 
 /** Whether the HAL has not taken a frame for the vehicle for longer than tx_stalled_ms (SUP-7). */
 bool agv_transmitter_is_stalled(const agv_timers_t *timers);
 
+/** Whether there is something to report. */
+bool agv_transmitter_has_report(const agv_transmitter_t *transmitter);
+
 /** What was done since the last call of this function. */
 agv_tx_report_t agv_transmitter_take_report(agv_transmitter_t *transmitter);
 

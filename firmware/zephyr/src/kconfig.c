@@ -3,17 +3,29 @@
 #include <zephyr/sys/util.h>
 #include <zephyr/toolchain.h>
 
-/* The ranges of Kconfig are made from the core's table; here the build looks whether they still are what it says. */
+/* Kconfig.settings is made from the core's tables; here the build checks that it still agrees with them. */
+enum { SCOPE_ANY, SCOPE_GATEWAY };
 enum {
-#define AGV_SETTING(name, preset, lowest, highest, unit, meaning) LOWEST_##name = (lowest), HIGHEST_##name = (highest),
-#define AGV_CHOICE(name, preset, words, meaning) LOWEST_##name = 0, HIGHEST_##name = 1,
+#define AGV_SETTING(name, preset, lowest, highest, unit, weakens, scope, meaning)                                      \
+    PRESET_##name = (preset), LOWEST_##name = (lowest), HIGHEST_##name = (highest), SCOPE_OF_##name = SCOPE_##scope,
+#define AGV_CHOICE(name, words, weakens, scope, meaning)                                                               \
+    PRESET_##name = 0, LOWEST_##name = 0, HIGHEST_##name = 1, SCOPE_OF_##name = SCOPE_##scope,
 #include "agv/config_settings.def"
 #undef AGV_SETTING
 #undef AGV_CHOICE
+#define AGV_COMMAND AGV_STATUS
+#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter)                                        \
+    PRESET_id_##name = (heading), LOWEST_id_##name = 1, HIGHEST_id_##name = AGV_ID_MAX, SCOPE_OF_id_##name = SCOPE_ANY,
+#include "agv/message_table.def"
+#undef AGV_COMMAND
+#undef AGV_STATUS
 };
 
 #define AGV_KCONFIG(name, value)                                                                                       \
-    BUILD_ASSERT(((value) >= LOWEST_##name) && ((value) <= HIGHEST_##name), #name " is out of range");
+    BUILD_ASSERT(((value) >= LOWEST_##name) && ((value) <= HIGHEST_##name), #name " is out of range");                 \
+    BUILD_ASSERT(IS_ENABLED(CONFIG_AGV_TOPOLOGY_GATEWAY) || ((int)SCOPE_OF_##name == (int)SCOPE_ANY) ||                \
+                     ((value) == PRESET_##name),                                                                       \
+                 #name " needs the gateway");
 #define AGV_KCONFIG_CLASS(name, is_trip)
 #include "kconfig_settings.def"
 #undef AGV_KCONFIG
@@ -32,8 +44,8 @@ BUILD_ASSERT((int)KCONFIG_SETTINGS == (int)AGV_SETTING_COUNT, "a setting has no 
 
 /* What is wrong only together. */
 BUILD_ASSERT(!KCONFIG_ID_IS_TAKEN(CONFIG_AGV_STATUS_FRAME_ID), "CONFIG_AGV_STATUS_FRAME_ID is one of the protocol's");
-BUILD_ASSERT(!IS_ENABLED(CONFIG_AGV_OWN_HEARTBEAT_FROZEN) || IS_ENABLED(CONFIG_AGV_TOPOLOGY_GATEWAY),
-             "CONFIG_AGV_OWN_HEARTBEAT_FROZEN needs the gateway");
+BUILD_ASSERT(CONFIG_AGV_RESET_HOLD_MAX_MS > CONFIG_AGV_RESET_HOLD_MS,
+             "CONFIG_AGV_RESET_HOLD_MAX_MS is not above CONFIG_AGV_RESET_HOLD_MS");
 BUILD_ASSERT(!IS_ENABLED(CONFIG_AGV_CAN_LISTEN_ONLY) || IS_ENABLED(CONFIG_AGV_SHADOW_ON),
              "a supervisor that is to act cannot listen only: CONFIG_AGV_SHADOW_ON");
 

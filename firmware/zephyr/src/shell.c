@@ -6,7 +6,6 @@
 
 #include <zephyr/shell/shell.h>
 
-#include "agv/liveness.h"
 #include "agv/names.h"
 #include "events.h"
 #include "supervise.h"
@@ -80,7 +79,7 @@ static int print_messages(const struct shell *shell, size_t argc, char **argv) {
     const agv_supervisor_t *const seen = look();
     for (uint32_t i = 0u; i < (uint32_t)AGV_MSG_COUNT; i++) {
         const uint32_t age_ms = agv_supervisor_age_ms(seen, (agv_message_t)i);
-        shell_print(shell, "%03x %s: %u/s, age %d ms%s", agv_message_id(i, agv_supervisor_config(seen)->id_set),
+        shell_print(shell, "%03x %s: %u/s, age %d ms%s", agv_supervise.ids.of[i],
                     text(agv_message_name((agv_message_t)i)), agv_supervise.frames[i] - before[i],
                     (age_ms == UINT32_MAX) ? -1 : (int)age_ms,
                     agv_supervisor_is_fresh(seen, (agv_message_t)i) ? "" : ", stale");

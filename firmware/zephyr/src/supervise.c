@@ -28,6 +28,9 @@ void supervise_start(supervise_t *self, agv_recorder_t *recorder, zephyr_hal_ret
     self->ports = (agv_ports_t){.hal = &self->hal, .recorder = recorder};
     self->ticked_ms = hal_clock_now_ms(&self->hal);
     agv_supervisor_start(&self->supervisor, &self->ports, &config, passed, self->ticked_ms);
+#if defined(CONFIG_AGV_SHELL)
+    agv_config_ids(agv_supervisor_config(&self->supervisor), &self->ids);
+#endif
     self->told = events_begin(&config, recorder);
     self->told_led = EVENTS_NO_LED;
     tell(self);
@@ -35,7 +38,7 @@ void supervise_start(supervise_t *self, agv_recorder_t *recorder, zephyr_hal_ret
 
 static void count(supervise_t *self, const hal_can_frame_t *frame) {
 #if defined(CONFIG_AGV_SHELL)
-    const uint32_t message = agv_message_from_id(frame->id, agv_supervisor_config(&self->supervisor)->id_set);
+    const uint32_t message = agv_ids_find(&self->ids, frame->id);
     if (message < (uint32_t)AGV_MSG_COUNT) {
         self->frames[message]++;
     }

@@ -21,6 +21,7 @@ typedef struct {
     uint32_t told; /**< the recorder's next sequence number when events were last printed */
     int8_t told_led;
 #if defined(CONFIG_AGV_SHELL)
+    agv_ids_t ids;                  /**< of the messages on this vehicle */
     uint32_t frames[AGV_MSG_COUNT]; /**< received of each message, for the shell's rates */
 #endif
 } supervise_t;

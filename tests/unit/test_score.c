@@ -1,0 +1,224 @@
+/* Scores of frames and budgets of time: how what comes and goes is counted. */
+#include "base/score.h"
+
+#include "unity.h"
+
+static agv_score_t score;
+static agv_budget_t budget;
+
+void setUp(void) {
+    score = (agv_score_t){0};
+    budget = (agv_budget_t){0};
+}
+
+void tearDown(void) {
+}
+
+/* ---- Scores ---- */
+
+static void frames(const char *of, uint32_t n) {
+    for (; *of != '\0'; of++) {
+        agv_score_add(&score, *of == 'x', n);
+    }
+}
+
+static void expect_score(unsigned value, bool present) {
+    TEST_ASSERT_EQUAL_UINT8(value, score.value);
+    TEST_ASSERT_EQUAL(present, score.present);
+}
+
+/* Shows: SUP-4, SUP-5 */
+void test_a_bad_frame_adds_two_and_a_good_one_takes_one_away(void) {
+    frames("x", 3);
+    expect_score(2, false);
+    frames(".", 3);
+    expect_score(1, false);
+    frames("x", 3);
+    expect_score(3, false);
+    frames("...", 3);
+    expect_score(0, false);
+    frames(".", 3);
+    expect_score(0, false);
+}
+
+/* N bad ones in a row, for every N that may be configured. */
+/* Shows: SUP-4, SUP-5, SUP-6 */
+void test_n_bad_frames_in_a_row_count(void) {
+    for (uint32_t n = 2; n <= 100; n++) {
+        setUp();
+        for (uint32_t i = 1; i < n; i++) {
+            frames("x", n);
+            TEST_ASSERT_FALSE(score.present);
+        }
+        frames("x", n);
+        expect_score(2 * n, true);
+    }
+}
+
+/* It stays within 2 N: six good frames end N of 3, however many bad ones there were. */
+/* Shows: SUP-4 */
+void test_it_is_there_until_the_score_is_back_at_0(void) {
+    frames("xxxxxxxxxxxxxxxxxxxx", 3);
+    expect_score(6, true);
+    frames(".....", 3);
+    expect_score(1, true);
+    frames("x", 3);
+    expect_score(3, true);
+    frames("..", 3);
+    expect_score(1, true);
+    frames(".", 3);
+    expect_score(0, false);
+    frames("xx", 3);
+    expect_score(4, false); /* from the beginning */
+}
+
+/* From 5 two more do not go beyond 6. */
+void test_the_limit_holds_from_an_odd_score_as_well(void) {
+    frames("xxx.", 3);
+    expect_score(5, true);
+    frames("x", 3);
+    expect_score(6, true);
+    setUp();
+    frames("x.xx", 3);
+    expect_score(5, false);
+    frames("x", 3);
+    expect_score(6, true);
+}
+
+/* +2 -1 is +1 in two frames: 2 N - 2 pairs and one bad frame more, some 4 N frames. */
+/* Shows: SUP-4, SUP-5, SUP-6 */
+TEST_CASE(3)
+TEST_CASE(5)
+TEST_CASE(10)
+TEST_CASE(100)
+void test_every_second_frame_bad_counts_after_some_4_n_frames(uint32_t n) {
+    unsigned counted = 0;
+    while (!score.present) {
+        agv_score_add(&score, counted % 2 == 0, n);
+        counted++;
+        TEST_ASSERT_TRUE(counted <= 4 * n);
+    }
+    TEST_ASSERT_EQUAL_UINT(2 * (2 * n - 2) + 1, counted);
+}
+
+/* Two good ones for each bad one: never. */
+void test_every_third_frame_bad_never_counts(void) {
+    for (unsigned i = 0; i < 3000; i++) {
+        agv_score_add(&score, i % 3 == 0, 2);
+        TEST_ASSERT_FALSE(score.present);
+    }
+}
+
+/* Shows: SUP-4 */
+void test_with_n_of_1_the_last_frame_decides(void) {
+    for (unsigned i = 0; i < 20; i++) {
+        frames("x", 1);
+        TEST_ASSERT_TRUE(score.present);
+        frames((i % 2 == 0) ? "." : "x.", 1);
+        expect_score(0, false);
+    }
+}
+
+/* ---- Budgets ---- */
+
+/* One by one, as ticks come. */
+static void run(bool condition, unsigned ms, uint32_t limit_ms) {
+    for (unsigned i = 0; i < ms; i++) {
+        agv_budget_add(&budget, condition, 1, limit_ms);
+    }
+}
+
+static void expect_budget(unsigned value_ms, bool present) {
+    TEST_ASSERT_EQUAL_UINT16(value_ms, budget.value_ms);
+    TEST_ASSERT_EQUAL(present, budget.present);
+}
+
+/* Shows: SUP-10, SUP-11, SUP-12 */
+void test_it_is_there_from_its_limit_on(void) {
+    run(true, 499, 500);
+    expect_budget(499, false);
+    run(true, 1, 500);
+    expect_budget(500, true);
+    run(true, 10000, 500);
+    expect_budget(500, true);
+}
+
+/* Shows: SUP-10, SUP-11, SUP-12 */
+void test_every_second_ms_without_the_condition_takes_one_away(void) {
+    run(true, 500, 500);
+    run(false, 1, 500);
+    expect_budget(500, true);
+    run(false, 1, 500);
+    expect_budget(499, true);
+    run(false, 997, 500);
+    expect_budget(1, true);
+    run(false, 1, 500);
+    expect_budget(0, false);
+    run(false, 7, 500);
+    expect_budget(0, false);
+    run(true, 499, 500);
+    expect_budget(499, false);
+}
+
+/* 19 up, half a one down: the second good ms of two counts, wherever it stands. */
+/* Shows: SUP-10, SUP-11 */
+void test_one_good_ms_in_twenty_does_not_restart_it(void) {
+    unsigned ms = 0;
+    while (!budget.present) {
+        agv_budget_add(&budget, ms % 20 != 19, 1, 500);
+        ms++;
+        TEST_ASSERT_TRUE(ms < 1000);
+    }
+    TEST_ASSERT_EQUAL_UINT(539, ms); /* 500 = 26 rows of 19 less 13, and 19 more: 26 * 20 + 19 ms */
+}
+
+/* One up, two down never fills it; one up, one down does, at half the pace. */
+void test_how_much_good_time_is_enough(void) {
+    for (unsigned i = 0; i < 3000; i++) {
+        agv_budget_add(&budget, i % 3 == 0, 1, 100);
+        TEST_ASSERT_FALSE(budget.present);
+    }
+    setUp();
+    for (unsigned i = 0; i < 398; i++) {
+        agv_budget_add(&budget, i % 2 == 0, 1, 100);
+    }
+    expect_budget(100, true);
+}
+
+/* What is left of a pair is forgotten with the rest. */
+void test_an_empty_budget_begins_anew(void) {
+    run(false, 1, 100);
+    run(true, 2, 100);
+    run(false, 1, 100);
+    expect_budget(2, false);
+    run(false, 1, 100);
+    expect_budget(1, false);
+    run(false, 3, 100);
+    expect_budget(0, false);
+    run(true, 1, 100);
+    run(false, 1, 100);
+    expect_budget(1, false);
+}
+
+/* Late steps bring several ms at once: the same as one by one. */
+/* Shows: TIM-4 */
+void test_several_ms_at_once_are_the_same_as_one_by_one(void) {
+    static const struct {
+        bool condition;
+        unsigned ms;
+    } times[] = {{true, 70}, {false, 3}, {false, 5}, {true, 11}, {false, 1}, {false, 1},  {true, 0},
+                 {false, 0}, {true, 55}, {false, 7}, {true, 90}, {false, 1}, {false, 396}};
+    agv_budget_t steps = {0};
+    for (unsigned i = 0; i < sizeof times / sizeof times[0]; i++) {
+        agv_budget_add(&steps, times[i].condition, times[i].ms, 200);
+        run(times[i].condition, times[i].ms, 200);
+        TEST_ASSERT_EQUAL_UINT16(budget.value_ms, steps.value_ms);
+        TEST_ASSERT_EQUAL(budget.present, steps.present);
+    }
+    expect_budget(1, true); /* 200 less half of 1 + 1 + 396: one good ms was left over from before */
+    agv_budget_add(&steps, true, 0xFFFFFFFFu, 65535);
+    TEST_ASSERT_EQUAL_UINT16(65535, steps.value_ms);
+    agv_budget_add(&steps, false, 0xFFFFFFFFu, 65535);
+    TEST_ASSERT_EQUAL_UINT16(0, steps.value_ms);
+    TEST_ASSERT_FALSE(steps.present);
+}
