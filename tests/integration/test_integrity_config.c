@@ -35,6 +35,9 @@ static void expect_good(const char *what) {
 static void expect_bounds(uint16_t setting, uint16_t lowest, uint16_t highest) {
     const char *name = agv_setting_info(setting)->name;
     agv_config_defaults(&config);
+    config.topology = agv_setting_info(setting)->gateway_only ? AGV_TOPOLOGY_GATEWAY : AGV_TOPOLOGY_SHARED;
+    config.reset_hold_ms = 500;
+    config.reset_hold_max_ms = 30000;
     TEST_ASSERT_TRUE(agv_config_set(&config, setting, lowest));
     expect_good(name);
     (void)agv_config_set(&config, setting, highest);
@@ -42,6 +45,9 @@ static void expect_bounds(uint16_t setting, uint16_t lowest, uint16_t highest) {
     if (lowest > 0) {
         (void)agv_config_set(&config, setting, (uint16_t)(lowest - 1u));
         expect_problem(AGV_CONFIG_OUT_OF_RANGE, setting, name);
+    }
+    if (highest == UINT16_MAX) {
+        return;
     }
     (void)agv_config_set(&config, setting, (uint16_t)(highest + 1u));
     expect_problem(AGV_CONFIG_OUT_OF_RANGE, setting, name);
@@ -92,7 +98,7 @@ void test_a_period_count_or_time_of_zero_is_refused(void) {
 
 /* Shows: INT-2 */
 void test_a_choice_beyond_its_words_is_refused(void) {
-    for (uint16_t setting = AGV_SETTING_topology; setting <= AGV_SETTING_gateway_in_manual; setting++) {
+    for (uint16_t setting = AGV_SETTING_topology; setting <= AGV_SETTING_gear_change; setting++) {
         agv_config_defaults(&config);
         (void)agv_config_set(&config, setting, 2);
         expect_problem(AGV_CONFIG_OUT_OF_RANGE, setting, agv_setting_info(setting)->name);
@@ -103,13 +109,83 @@ void test_a_choice_beyond_its_words_is_refused(void) {
 void test_every_setting_is_checked_at_both_ends(void) {
     for (uint16_t setting = 0; setting < AGV_SETTING_COUNT; setting++) {
         const agv_setting_info_t *info = agv_setting_info(setting);
-        if (setting != AGV_SETTING_own_heartbeat) { /* needs the gateway, too */
-            expect_bounds(setting, info->lowest, info->highest);
-        }
+        expect_bounds(setting, info->lowest, info->highest);
     }
     TEST_ASSERT_FALSE(agv_config_set(&config, AGV_SETTING_COUNT, 0));
     TEST_ASSERT_EQUAL_UINT16(0, agv_config_get(&config, AGV_SETTING_COUNT));
     TEST_ASSERT_NULL(agv_setting_info(AGV_SETTING_COUNT));
+}
+
+/* On a shared bus they protect nobody: only the default is accepted. */
+/* Shows: INT-2, FSM-8, TOP-2 */
+void test_a_setting_without_effect_is_refused(void) {
+    static const struct {
+        uint16_t setting;
+        uint16_t value;
+    } ROWS[] = {{AGV_SETTING_throttle_ceiling_pct, 99},
+                {AGV_SETTING_throttle_rise_pct_s, 1},
+                {AGV_SETTING_steering_slew_ddeg_s, 1},
+                {AGV_SETTING_steering_fast_max_ddeg, 1},
+                {AGV_SETTING_fast_mm_s, 1},
+                {AGV_SETTING_gear_change, AGV_GEAR_CHANGE_ANY},
+                {AGV_SETTING_gateway_in_manual, AGV_IN_MANUAL_ALL},
+                {AGV_SETTING_own_heartbeat, AGV_OWN_HEARTBEAT_FROZEN}};
+    unsigned gateway_only = 0;
+    for (unsigned i = 0; i < sizeof ROWS / sizeof ROWS[0]; i++) {
+        setUp();
+        (void)agv_config_set(&config, ROWS[i].setting, ROWS[i].value);
+        expect_problem(AGV_CONFIG_NEEDS_GATEWAY, ROWS[i].setting, agv_setting_info(ROWS[i].setting)->name);
+        config.topology = AGV_TOPOLOGY_GATEWAY;
+        expect_good(agv_setting_info(ROWS[i].setting)->name);
+    }
+    for (uint16_t setting = 0; setting < AGV_SETTING_COUNT; setting++) {
+        gateway_only += agv_setting_info(setting)->gateway_only ? 1u : 0u;
+    }
+    TEST_ASSERT_EQUAL_UINT32(sizeof ROWS / sizeof ROWS[0], gateway_only); /* no others */
+}
+
+/* No press could ever reset. */
+/* Shows: INT-2, FSM-3 */
+void test_a_longest_press_that_is_not_longer_is_refused(void) {
+    config.reset_hold_ms = 2000;
+    config.reset_hold_max_ms = 2000;
+    TEST_ASSERT_EQUAL_INT(AGV_CONFIG_PRESS_TOO_SHORT, agv_config_check(&config).problem);
+    config.reset_hold_max_ms = 2001;
+    expect_good("longer");
+}
+
+static void expect_weakens(uint16_t setting, uint16_t value, bool weakens) {
+    setUp();
+    (void)agv_config_set(&config, setting, value);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(weakens, agv_config_weakens(&config, setting), agv_setting_info(setting)->name);
+}
+
+/* Which direction weakens: longer deadlines, shorter waits, more that is let through. */
+/* Shows: INT-2, TOP-3 */
+void test_which_direction_weakens(void) {
+    expect_weakens(AGV_SETTING_vcu_heartbeat_timeout_ms, 51, true);
+    expect_weakens(AGV_SETTING_vcu_heartbeat_timeout_ms, 49, false);
+    expect_weakens(AGV_SETTING_reset_hold_ms, 999, true);
+    expect_weakens(AGV_SETTING_reset_hold_ms, 1001, false);
+    expect_weakens(AGV_SETTING_reset_hold_max_ms, 5001, true);
+    expect_weakens(AGV_SETTING_confirm_timeout_ms, 501, true);
+    expect_weakens(AGV_SETTING_confirmed_ms, 4999, true);
+    expect_weakens(AGV_SETTING_stop_timeout_ms, 5001, true);
+    expect_weakens(AGV_SETTING_hold_age_ms, 51, true);
+    expect_weakens(AGV_SETTING_mode_frames, 2, true);
+    expect_weakens(AGV_SETTING_mode_flapping_ms, 4999, true);
+    expect_weakens(AGV_SETTING_throttle_deviation_counts, 26, true);
+    expect_weakens(AGV_SETTING_steering_gain_ddeg, 249, true);
+    expect_weakens(AGV_SETTING_standstill_vcu_counts, 65535, true);
+    expect_weakens(AGV_SETTING_status_frame_id, 0, true);
+    expect_weakens(AGV_SETTING_status_frame_id, 0x123, false);
+    expect_weakens(AGV_SETTING_gear_change, AGV_GEAR_CHANGE_ANY, true);
+    expect_weakens(AGV_SETTING_after_power_on, AGV_AFTER_POWER_ON_TRIPPED, false);
+    expect_weakens(AGV_SETTING_ai_counter, AGV_COUNTER_INCREMENTS, false);
+    expect_weakens(AGV_SETTING_throttle_ceiling_pct, 50, false);
+    for (uint16_t setting = 0; setting < AGV_SETTING_COUNT; setting++) {
+        expect_weakens(setting, agv_setting_info(setting)->preset, false);
+    }
 }
 
 /* Shows: INT-2, TOP-3, P1 */
@@ -228,7 +304,7 @@ void test_a_supervisor_that_is_given_one_is_tripped_and_runs_on_the_defaults(voi
     expect_refused_at_start("no topology");
     config.id_set = 9;
     expect_refused_at_start("no ID set");
-    config.status_frame_id = 0x168;
+    config.id_throttle_command = 0x168;
     expect_refused_at_start("an identifier twice");
     config.own_heartbeat = AGV_OWN_HEARTBEAT_FROZEN;
     expect_refused_at_start("needs the gateway");

@@ -125,6 +125,8 @@ void test_a_latched_trip_is_shown_until_the_reset(void) {
     expect_led(&f, 8);
     fixture_button(&f, true);
     fixture_run(&f, 1050);
+    fixture_button(&f, false);
+    fixture_run(&f, 10);
     expect_state(&f, AGV_STATE_STANDBY);
     expect_led(&f, 0);
 }

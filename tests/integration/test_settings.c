@@ -120,7 +120,7 @@ void test_mode_invalid_time(void) {
     expect_trip(&f, AGV_FAULT_MODE_INVALID, f.call, ANGLE_CENTRE);
 }
 
-/* Grace 123 ms, then 67 ms of throttle in park. */
+/* Grace 123 ms, then a budget of 67 ms, of which the tick at 123 ms is the first. */
 /* Shows: SUP-5, THROTTLE_IN_PARK */
 void test_grace_and_throttle_in_park_time(void) {
     f.config.engaged_grace_ms = 123;
@@ -129,7 +129,7 @@ void test_grace_and_throttle_in_park_time(void) {
     f.traffic[AGV_MSG_THROTTLE_STATUS].data[0] = 10;
     fixture_mode(&f, MODE_ENGAGED);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    fixture_run(&f, 123 + 66);
+    fixture_run(&f, 123 + 65);
     expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
@@ -219,7 +219,7 @@ void test_confirm_timeout(void) {
     fixture_active(&f);
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x02;
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    fixture_run(&f, 111);
+    fixture_run(&f, 109); /* the tick of the trip's own millisecond is the first */
     expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
     fixture_run(&f, 1);
     expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
@@ -232,14 +232,18 @@ static void engage(void) {
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
 }
 
+/* With the third 363h without the autopilot bit. */
 static void disengage(void) {
     fixture_mode(&f, MODE_MANUAL);
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    for (unsigned i = 0; i < 3; i++) {
+        fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    }
 }
 
-/* Each engagement has its own grace: 500 ms, and five frames of 167h. */
+/* Each engagement has its own grace: 500 ms, and five frames of 167h. One that is continued has none. */
 /* Shows: SUP-5, EPS_MODE_OFF */
 void test_every_engagement_has_its_grace(void) {
+    f.config.mode_flapping_ms = 1000;
     fixture_active(&f);
     disengage();
     f.traffic[AGV_MSG_EPS_STATUS].data[3] = 0xFF;
@@ -250,9 +254,15 @@ void test_every_engagement_has_its_grace(void) {
         expect_nothing(&f, AGV_FAULT_EPS_MODE_OFF, AGV_STATE_ACTIVE);
         disengage();
         expect_nothing(&f, AGV_FAULT_EPS_MODE_OFF, AGV_STATE_STANDBY);
+        fixture_run(&f, 110);
     }
     engage();
-    fixture_run(&f, 550);
+    fixture_run(&f, 530);
+    disengage();
+    fixture_run(&f, 50);
+    expect_nothing(&f, AGV_FAULT_EPS_MODE_OFF, AGV_STATE_STANDBY);
+    engage();
+    fixture_run(&f, 5);
     expect_reason(&f, AGV_FAULT_EPS_MODE_OFF);
 }
 

@@ -163,6 +163,8 @@ void test_a_vehicle_that_stands_in_safe_for_longer_than_the_clock_can_be_reset(v
     fixture_run(&f, 1500);
     fixture_button(&f, true);
     fixture_run(&f, 1050);
+    fixture_button(&f, false);
+    fixture_run(&f, 10);
     expect_state(&f, AGV_STATE_STANDBY);
 }
 

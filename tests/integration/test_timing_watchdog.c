@@ -17,6 +17,8 @@ void test_it_is_fed_in_every_state_while_all_activities_check_in(void) {
     walk_to_safe(&f);
     fixture_button(&f, true);
     fixture_run(&f, 1100);
+    fixture_button(&f, false);
+    fixture_run(&f, 10);
     expect_state(&f, AGV_STATE_STANDBY);
     TEST_ASSERT_EQUAL_UINT32(0, f.hal.bites);
     for (unsigned i = 0; i < 50; i++) {
@@ -131,15 +133,33 @@ void test_in_init_a_late_step_is_an_event_that_keeps_init_for_a_second(void) {
 }
 
 /* Shows: TIM-4, STEP_OVERRUN, FSM-3 */
-void test_after_a_second_it_can_be_reset(void) {
+void test_a_second_after_it_has_ended_it_can_be_reset(void) {
+    for (unsigned i = 0; i < 2; i++) {
+        fixture_init(&f);
+        fixture_standby(&f);
+        step_late_by(500);
+        fixture_run(&f, 100);
+        fixture_button(&f, true);
+        fixture_run(&f, i == 0 ? 1850 : 1950); /* it ends 900 ms after the press, and then a second has to pass */
+        expect_state(&f, AGV_STATE_SAFE);
+        fixture_button(&f, false);
+        fixture_run(&f, 10);
+        expect_state(&f, i == 0 ? AGV_STATE_SAFE : AGV_STATE_STANDBY);
+    }
+}
+
+/* In SAFE it is not reset meanwhile: the event trips again each time. */
+/* Shows: TIM-4, FSM-11, STEP_OVERRUN */
+void test_each_late_step_trips(void) {
     fixture_standby(&f);
     step_late_by(500);
-    fixture_run(&f, 100);
-    fixture_button(&f, true);
-    fixture_run(&f, 1500);
-    expect_state(&f, AGV_STATE_SAFE);
-    fixture_run(&f, 500);
-    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_run(&f, 300);
+    step_late_by(500);
+    expect_fault(&f, AGV_FAULT_STEP_OVERRUN, true);
+    fixture_run(&f, 999);
+    expect_fault(&f, AGV_FAULT_STEP_OVERRUN, true);
+    fixture_run(&f, 1);
+    expect_fault(&f, AGV_FAULT_STEP_OVERRUN, false);
 }
 
 /* Only ticks judge deadlines: what is alive and fresh is not known without them. */
@@ -156,7 +176,7 @@ void test_init_is_not_left_while_steps_stay_away(void) {
     expect_fault(&f, AGV_FAULT_STEP_OVERRUN, true);
 }
 
-/* Only ticks judge deadlines: so nobody has noticed that the VCU is silent when the second of the press is over. */
+/* Only ticks judge deadlines: nobody notices that the VCU is silent; and a press that is released meanwhile resets nothing. */
 /* Shows: TIM-4, FSM-3, FSM-4 */
 void test_no_reset_is_accepted_while_steps_stay_away(void) {
     fixture_standby(&f);
@@ -165,8 +185,12 @@ void test_no_reset_is_accepted_while_steps_stay_away(void) {
     expect_state(&f, AGV_STATE_SAFE);
     fixture_button(&f, true);
     fixture_run(&f, 500);
+    fixture_run_without_ticks(&f, 1000);
+    fixture_button(&f, false);
+    fixture_run_without_ticks(&f, 20);
+    expect_state(&f, AGV_STATE_SAFE);
     f.traffic[AGV_MSG_VEHICLE_STATUS].muted = true;
-    fixture_run_without_ticks(&f, 1500);
+    fixture_run_without_ticks(&f, 500);
     expect_state(&f, AGV_STATE_SAFE);
     fixture_run(&f, 1);
     expect_state(&f, AGV_STATE_TRIPPED);

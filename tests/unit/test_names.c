@@ -62,12 +62,12 @@ void test_messages_in_the_order_of_the_document(void) {
 
 /* By bit of AGV_MISSING_*. */
 void test_what_is_missing(void) {
-    static const char *const expected[] = {"state",      "vcu_heartbeat", "eps_heartbeat", "trip_cause",
-                                           "standstill", "manual",        "button",        "messages"};
-    for (uint8_t i = 0; i < 8; i++) {
+    static const char *const expected[] = {"state",  "vcu_heartbeat", "eps_heartbeat", "trip_cause", "standstill",
+                                           "manual", "button",        "messages",      "throttle",   "released"};
+    for (uint8_t i = 0; i < 10; i++) {
         TEST_ASSERT_EQUAL_STRING(expected[i], agv_missing_name(i));
     }
-    TEST_ASSERT_NULL(agv_missing_name(8));
+    TEST_ASSERT_NULL(agv_missing_name(10));
     TEST_ASSERT_NULL(agv_missing_name(255));
 }
 

@@ -10,13 +10,14 @@ typedef struct {
     agv_fault_t cause;
     agv_fault_t forever;
     unsigned missing;
-    bool ai_cause;
+    agv_fault_t ai_cause;
     bool engaged;
     bool ai_alive;
     bool autopilot_off;
     bool in_park;
-    bool button;
-    bool button_known;
+    bool moving; /* wheels or VCU report a speed */
+    bool wheels_turn;
+    bool reset;
     bool output_unsafe;
 } situation_t;
 
@@ -31,26 +32,28 @@ static bool has_done(uint32_t action) {
 }
 
 static unsigned missing(void) {
-    return did.what & AGV_MISSING_ALL;
+    return did.missing;
 }
 
 static uint32_t words_of_facts(void) {
     const uint32_t with_missing =
-        AGV_FACT_VCU_ALIVE | AGV_FACT_EPS_ALIVE | AGV_FACT_STANDSTILL | AGV_FACT_MANUAL | AGV_FACT_MESSAGES;
+        AGV_FACT_VCU_ALIVE | AGV_FACT_EPS_ALIVE | AGV_FACT_STANDSTILL | AGV_FACT_MANUAL |
+                                  AGV_FACT_MESSAGES | AGV_FACT_IDLE;
     uint32_t words = with_missing & ~facts.missing;
     words |= facts.engaged ? AGV_FACT_ENGAGED : 0;
     words |= facts.ai_alive ? AGV_FACT_AI_ALIVE : 0;
     words |= facts.autopilot_off ? AGV_FACT_AUTOPILOT_OFF : 0;
     words |= facts.in_park ? AGV_FACT_IN_PARK : 0;
-    words |= facts.button ? AGV_FACT_BUTTON_DOWN : 0;
-    words |= (facts.button_known && !facts.button) ? AGV_FACT_BUTTON_UP : 0;
+    words |= facts.moving ? 0 : AGV_FACT_SLOW;
+    words |= facts.wheels_turn ? 0 : AGV_FACT_WHEELS_STAND;
+    words |= facts.reset ? AGV_FACT_RESET : 0;
     words |= facts.output_unsafe ? AGV_FACT_OUTPUT_UNSAFE : 0;
     return words;
 }
 
 static void start(agv_fault_t reason) {
     machine = (agv_state_machine_t){0};
-    agv_timers_start(&timers, &config);
+    agv_timers_start(&timers);
     agv_state_machine_start(&machine, &timers, &config, reason);
 }
 
@@ -59,10 +62,10 @@ static void all_well(void) {
     facts = (situation_t){.raised = AGV_FAULT_NONE,
                           .cause = AGV_FAULT_NONE,
                           .forever = AGV_FAULT_NONE,
+                          .ai_cause = AGV_FAULT_NONE,
                           .ai_alive = true,
                           .autopilot_off = true,
-                          .in_park = true,
-                          .button_known = true};
+                          .in_park = true};
 }
 
 void setUp(void) {
@@ -76,15 +79,18 @@ void tearDown(void) {
 }
 
 /* The adaptor to the module: everything below goes through these. */
+static agv_fault_summary_t summary(void) {
+    return (agv_fault_summary_t){.raised = (uint8_t)facts.raised,
+                                 .cause = (uint8_t)facts.cause,
+                                 .ai_cause = (uint8_t)facts.ai_cause,
+                                 .unresettable = (uint8_t)facts.forever};
+}
+
 static void step(uint32_t after_ms) {
-    const agv_fault_summary_t faults = {.raised = (uint8_t)facts.raised,
-                                        .cause = (uint8_t)facts.cause,
-                                        .ai_cause = facts.ai_cause ? AGV_FAULT_AI_HEARTBEAT_LOST : AGV_FAULT_NONE,
-                                        .unresettable = (uint8_t)facts.forever};
+    const agv_fault_summary_t faults = summary();
     const uint8_t from = machine.state;
     const uint8_t first_reason = machine.first_reason;
-    agv_timers_set_time(&timers, timers.now_ms + after_ms);
-    agv_timers_tick(&timers);
+    agv_timers_advance(&timers, &config, timers.now_ms + after_ms, 0);
     did = agv_state_machine_step(&machine, &timers, &config, &faults, words_of_facts());
     TEST_ASSERT_EQUAL_HEX8(from, did.from);
     TEST_ASSERT_EQUAL_UINT8(first_reason, did.first_reason);
@@ -93,8 +99,9 @@ static void step(uint32_t after_ms) {
     facts.raised = AGV_FAULT_NONE; /* told once */
 }
 
-static bool is_unconfirmed(void) {
-    return agv_state_machine_is_unconfirmed(&machine, &timers, words_of_facts());
+static uint32_t lacks(void) {
+    const agv_fault_summary_t faults = summary();
+    return agv_state_machine_lacks_for_reset(&machine, &faults, words_of_facts());
 }
 
 static void run(uint32_t ms) {
@@ -154,39 +161,46 @@ void test_init_is_left_after_500_ms_without_a_break(void) {
     TEST_ASSERT_EQUAL_HEX8(AGV_LATCH_OPEN, machine.latched);
 }
 
-/* Standstill is not asked for; everything else that may be missing keeps it. */
+/* Everything that may be missing keeps it; the speeds of a standstill are enough, 050h need not be at idle. */
 void test_what_keeps_init(void) {
-    static const uint8_t needed[] = {AGV_MISSING_VCU_HEARTBEAT, AGV_MISSING_EPS_HEARTBEAT, AGV_MISSING_MANUAL,
-                                     AGV_MISSING_MESSAGES};
-    for (unsigned i = 0; i < sizeof needed; i++) {
+    static const uint16_t needed[] = {AGV_MISSING_VCU_HEARTBEAT, AGV_MISSING_EPS_HEARTBEAT, AGV_MISSING_MANUAL,
+                                      AGV_MISSING_MESSAGES};
+    for (unsigned i = 0; i < sizeof needed / sizeof needed[0]; i++) {
         setUp();
         facts.missing = needed[i];
         run(1000);
         expect_state(AGV_STATE_INIT);
     }
     setUp();
-    facts.cause = AGV_FAULT_S_DRIVER_ALARM;
-    run(1000);
-    expect_state(AGV_STATE_INIT); /* no cause latches in INIT */
-    setUp();
-    facts.ai_cause = true;
+    facts.moving = true;
     run(1000);
     expect_state(AGV_STATE_INIT);
     setUp();
-    facts.missing = AGV_MISSING_STANDSTILL;
+    facts.cause = AGV_FAULT_S_DRIVER_ALARM;
+    facts.raised = AGV_FAULT_S_DRIVER_ALARM;
+    run(1000);
+    expect_state(AGV_STATE_INIT); /* no cause latches in INIT */
+    setUp();
+    facts.ai_cause = AGV_FAULT_AI_HEARTBEAT_LOST;
+    run(1000);
+    expect_state(AGV_STATE_INIT);
+    setUp();
+    facts.missing = AGV_MISSING_STANDSTILL | AGV_MISSING_THROTTLE;
+    facts.wheels_turn = true;
     run(1000);
     expect_state(AGV_STATE_STANDBY);
 }
 
 /* Shows: STARTUP_TIMEOUT */
 void test_after_10_s_the_start_says_once_what_is_missing(void) {
-    facts.missing = AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_STANDSTILL;
+    facts.missing = AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_THROTTLE;
+    facts.moving = true;
     facts.cause = AGV_FAULT_BUS_OFF;
     run(10000);
     TEST_ASSERT_FALSE(has_done(AGV_ACTION_STARTUP_LATE));
     step(1);
     TEST_ASSERT_TRUE(has_done(AGV_ACTION_STARTUP_LATE));
-    TEST_ASSERT_EQUAL_HEX8(AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_TRIP_CAUSE, missing());
+    TEST_ASSERT_EQUAL_HEX16(AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_STANDSTILL | AGV_MISSING_TRIP_CAUSE, missing());
     step(1);
     TEST_ASSERT_FALSE(has_done(AGV_ACTION_STARTUP_LATE));
 }
@@ -200,9 +214,8 @@ void test_an_unresettable_fault_trips_in_init_and_is_never_reset(void) {
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_MEMORY_CORRUPTED, machine.first_reason);
     facts.forever = AGV_FAULT_NONE; /* even if its cause were gone */
     run(10);
-    facts.button = true;
-    run(3000);
     expect_state(AGV_STATE_SAFE);
+    TEST_ASSERT_EQUAL_HEX32(AGV_MISSING_TRIP_CAUSE, lacks());
     TEST_ASSERT_FALSE(machine.output_closed);
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_MEMORY_CORRUPTED, machine.unresettable);
 }
@@ -244,54 +257,64 @@ void test_a_cause_that_stands_trips_as_well(void) {
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_MODE_INVALID, machine.first_reason);
 }
 
-/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
-void test_autopilot_off_that_is_not_confirmed_opens_the_output(void) {
+/* A cause of the AI computer that outlived a reset: in manual it waits for the engagement, or to come again. */
+/* Shows: FSM-11 */
+void test_a_cause_of_the_ai_trips_at_the_engagement(void) {
     to_standby();
-    facts.autopilot_off = false;
-    trip(AGV_FAULT_BUS_OFF);
-    run(500);
-    TEST_ASSERT_TRUE(machine.output_closed);
-    TEST_ASSERT_FALSE(is_unconfirmed());
+    facts.ai_cause = AGV_FAULT_AI_COMMAND_OUT_OF_RANGE;
+    run(100);
+    expect_state(AGV_STATE_STANDBY);
+    facts.engaged = true;
     step(1);
-    TEST_ASSERT_FALSE(machine.output_closed);
-    TEST_ASSERT_TRUE(is_unconfirmed());
+    expect_state(AGV_STATE_TRIPPED);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, machine.first_reason);
+    setUp();
+    to_standby();
+    facts.ai_cause = AGV_FAULT_AI_COMMAND_OUT_OF_RANGE;
+    run(100);
+    trip(AGV_FAULT_AI_COMMAND_OUT_OF_RANGE); /* raised again, in manual */
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, machine.first_reason);
+}
+
+/* What was raised, then what stands, then what the AI has left. */
+/* Shows: FSM-5, FSM-11 */
+void test_which_of_several_reasons_is_the_first(void) {
+    to_standby();
+    facts.engaged = true;
+    facts.cause = AGV_FAULT_MODE_INVALID;
+    facts.ai_cause = AGV_FAULT_AI_HEARTBEAT_LOST;
+    trip(AGV_FAULT_MODE_NONE);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_MODE_NONE, machine.first_reason);
+    setUp();
+    to_standby();
+    facts.engaged = true;
+    facts.cause = AGV_FAULT_MODE_INVALID;
+    facts.ai_cause = AGV_FAULT_AI_HEARTBEAT_LOST;
+    step(1);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_MODE_INVALID, machine.first_reason);
+}
+
+/* Both, and for as long as both. */
+/* Shows: FSM-4 */
+void test_safe_is_a_confirmed_state(void) {
+    to_standby();
+    facts.in_park = false;
+    trip(AGV_FAULT_BUS_OFF);
+    run(10);
+    expect_state(AGV_STATE_TRIPPED);
+    facts.in_park = true;
+    facts.autopilot_off = false;
+    step(1);
+    expect_state(AGV_STATE_TRIPPED);
     facts.autopilot_off = true;
     step(1);
     expect_state(AGV_STATE_SAFE);
-    TEST_ASSERT_FALSE(is_unconfirmed());
-    TEST_ASSERT_FALSE(machine.output_closed); /* until the next STANDBY */
-}
-
-/* 500 ms from the first P, which here was sent 200 ms after the trip. */
-/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
-void test_p_that_is_not_confirmed_opens_the_output(void) {
-    to_standby();
-    facts.in_park = false;
-    trip(AGV_FAULT_BUS_OFF);
-    run(200);
-    agv_state_machine_park_sent(&machine, &timers);
-    run(100);
-    agv_state_machine_park_sent(&machine, &timers); /* the first one counts */
-    run(400);
     TEST_ASSERT_TRUE(machine.output_closed);
-    step(1);
-    TEST_ASSERT_FALSE(machine.output_closed);
-}
-
-/* Shows: FSM-4 */
-void test_a_withdrawn_confirmation_begins_the_500_ms_anew(void) {
-    to_standby();
-    trip(AGV_FAULT_BUS_OFF);
-    agv_state_machine_park_sent(&machine, &timers);
-    run(2000);
-    expect_state(AGV_STATE_SAFE);
     facts.in_park = false;
     step(1);
     expect_state(AGV_STATE_TRIPPED);
-    run(500);
-    TEST_ASSERT_TRUE(machine.output_closed);
-    step(1);
-    TEST_ASSERT_FALSE(machine.output_closed);
+    TEST_ASSERT_FALSE(has_done(AGV_ACTION_TRIP)); /* it was */
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_BUS_OFF, machine.first_reason);
 }
 
 /* Shows: FSM-4 */
@@ -305,13 +328,11 @@ void test_what_is_unsafe_for_the_output_opens_it_at_once(void) {
     TEST_ASSERT_FALSE(machine.output_closed);
 }
 
+/* What presses reset, reset_button.c says. */
 /* Shows: FSM-3 */
-void test_a_press_of_a_second_in_safe_resets(void) {
+void test_a_press_that_resets(void) {
     to_safe();
-    facts.button = true;
-    step(1);
-    run(999);
-    expect_state(AGV_STATE_SAFE);
+    facts.reset = true;
     step(1);
     expect_state(AGV_STATE_STANDBY);
     TEST_ASSERT_TRUE(has_done(AGV_ACTION_RESET_ACCEPTED));
@@ -319,72 +340,65 @@ void test_a_press_of_a_second_in_safe_resets(void) {
     TEST_ASSERT_TRUE(machine.output_closed);
 }
 
+/* The output that had opened in the safe state closes with it. */
+/* Shows: FSM-3, FSM-4 */
+void test_a_reset_closes_the_output(void) {
+    to_safe();
+    facts.output_unsafe = true;
+    step(1);
+    TEST_ASSERT_FALSE(machine.output_closed);
+    facts.output_unsafe = false;
+    facts.reset = true;
+    step(1);
+    TEST_ASSERT_TRUE(machine.output_closed);
+    TEST_ASSERT_TRUE(has_done(AGV_ACTION_CLOSE_OUTPUT));
+}
+
+/* Each by itself. */
+/* Shows: FSM-3 */
+void test_what_a_reset_needs(void) {
+    static const uint16_t bits[] = {AGV_MISSING_VCU_HEARTBEAT, AGV_MISSING_EPS_HEARTBEAT, AGV_MISSING_STANDSTILL,
+                                    AGV_MISSING_MANUAL,        AGV_MISSING_MESSAGES,      AGV_MISSING_THROTTLE};
+    to_safe();
+    TEST_ASSERT_EQUAL_HEX32(0, lacks());
+    for (unsigned i = 0; i < sizeof bits / sizeof bits[0]; i++) {
+        facts.missing = bits[i];
+        TEST_ASSERT_EQUAL_HEX32(bits[i], lacks());
+    }
+    facts.missing = 0;
+    facts.cause = AGV_FAULT_S_DRIVER_ALARM;
+    TEST_ASSERT_EQUAL_HEX32(AGV_MISSING_TRIP_CAUSE, lacks());
+    facts.cause = AGV_FAULT_NONE;
+    facts.in_park = false; /* in SAFE still, but withdrawn with this very frame */
+    TEST_ASSERT_EQUAL_HEX32(AGV_MISSING_STATE, lacks());
+    facts.in_park = true;
+    facts.autopilot_off = false;
+    TEST_ASSERT_EQUAL_HEX32(AGV_MISSING_STATE, lacks());
+    step(1);
+    facts.autopilot_off = true; /* confirmed now, and not SAFE before */
+    TEST_ASSERT_EQUAL_HEX32(AGV_MISSING_STATE, lacks());
+}
+
 /* Shows: FSM-3 */
 void test_a_cause_of_the_ai_keeps_no_reset(void) {
     to_safe();
-    facts.ai_cause = true;
+    facts.ai_cause = AGV_FAULT_AI_HEARTBEAT_LOST;
     facts.ai_alive = false;
-    facts.button = true;
-    run(1001);
+    TEST_ASSERT_EQUAL_HEX32(0, lacks());
+    facts.reset = true;
+    step(1);
+    expect_state(AGV_STATE_STANDBY);
+    facts.reset = false;
+    run(100); /* and does not trip at once again */
     expect_state(AGV_STATE_STANDBY);
 }
 
-/* Shows: FSM-3 */
-void test_a_press_in_vain_is_reported_once_with_what_was_missing(void) {
-    to_safe();
-    facts.cause = AGV_FAULT_S_DRIVER_ALARM;
-    facts.missing = AGV_MISSING_STANDSTILL;
-    facts.button = true;
-    step(1);
-    facts.missing = AGV_MISSING_MANUAL;
-    run(999);
-    TEST_ASSERT_FALSE(has_done(AGV_ACTION_RESET_REFUSED));
-    step(1);
-    TEST_ASSERT_TRUE(has_done(AGV_ACTION_RESET_REFUSED));
-    TEST_ASSERT_EQUAL_HEX8(AGV_MISSING_TRIP_CAUSE | AGV_MISSING_STANDSTILL | AGV_MISSING_MANUAL, missing());
-    step(1);
-    TEST_ASSERT_FALSE(has_done(AGV_ACTION_RESET_REFUSED));
-    facts.cause = AGV_FAULT_NONE; /* the button need not be released */
-    facts.missing = 0;
-    run(1000);
-    expect_state(AGV_STATE_SAFE);
-    step(1);
-    expect_state(AGV_STATE_STANDBY);
-}
-
-/* Shows: FSM-3 */
-void test_a_press_from_before_the_trip_does_not_count(void) {
-    to_standby();
-    facts.button = true;
-    step(1);
-    trip(AGV_FAULT_BUS_OFF);
-    run(1001);
-    expect_state(AGV_STATE_SAFE);
-    TEST_ASSERT_TRUE(has_done(AGV_ACTION_RESET_REFUSED));
-    TEST_ASSERT_TRUE((missing() & AGV_MISSING_BUTTON) != 0);
-    facts.button = false;
-    step(1);
-    facts.button = true;
-    run(1001);
-    expect_state(AGV_STATE_STANDBY);
-}
-
-/* Shows: FSM-3, FSM-7 */
-void test_a_press_from_before_a_restart_does_not_count(void) {
-    start(AGV_FAULT_SUPERVISOR_RESET);
-    facts.button_known = false;
-    step(1);
-    facts.button_known = true;
-    facts.button = true;
-    run(3000);
-    expect_state(AGV_STATE_SAFE);
-}
-
+/* The wheels, not the VCU's speed. */
 /* Shows: FSM-1 */
-void test_p_waits_for_standstill_or_3_s(void) {
+void test_p_waits_for_wheels_that_stand_or_3_s(void) {
     config.park = AGV_PARK_AT_STANDSTILL;
     to_standby();
-    facts.missing = AGV_MISSING_STANDSTILL;
+    facts.wheels_turn = true;
     facts.in_park = false;
     trip(AGV_FAULT_BUS_OFF);
     run(2999);
@@ -394,18 +408,38 @@ void test_p_waits_for_standstill_or_3_s(void) {
     setUp();
     config.park = AGV_PARK_AT_STANDSTILL;
     to_standby();
-    facts.missing = AGV_MISSING_STANDSTILL;
+    facts.wheels_turn = true;
     trip(AGV_FAULT_BUS_OFF);
     run(100);
     TEST_ASSERT_FALSE(machine.park_released);
-    facts.missing = 0;
+    facts.wheels_turn = false;
+    facts.missing = AGV_MISSING_STANDSTILL;
+    step(1);
+    TEST_ASSERT_TRUE(machine.park_released);
+    facts.wheels_turn = true; /* what was released stays so */
     step(1);
     TEST_ASSERT_TRUE(machine.park_released);
     setUp();
     to_standby();
-    facts.missing = AGV_MISSING_STANDSTILL;
+    facts.wheels_turn = true;
     trip(AGV_FAULT_BUS_OFF);
     TEST_ASSERT_TRUE(machine.park_released); /* at_once */
+}
+
+/* In INIT, and after a restart: since the start. */
+/* Shows: FSM-1 */
+TEST_CASE(AGV_FAULT_NONE)
+TEST_CASE(AGV_FAULT_SUPERVISOR_RESET)
+void test_p_waits_at_a_start(unsigned reason) {
+    config.park = AGV_PARK_AT_STANDSTILL;
+    start((agv_fault_t)reason);
+    facts.wheels_turn = true;
+    facts.missing = AGV_MISSING_MANUAL;
+    TEST_ASSERT_FALSE(machine.park_released);
+    run(2999);
+    TEST_ASSERT_FALSE(machine.park_released);
+    step(1);
+    TEST_ASSERT_TRUE(machine.park_released);
 }
 
 /* Shows: FSM-7 */
@@ -446,8 +480,8 @@ void test_what_the_end_of_init_wants_done(void) {
 /* Shows: FSM-3, FSM-7 */
 void test_what_a_reset_wants_done(void) {
     to_safe();
-    facts.button = true;
-    run(1001);
+    facts.reset = true;
+    step(1);
     TEST_ASSERT_EQUAL_HEX32(
         AGV_ACTION_RESET_ACCEPTED | AGV_ACTION_STATE | SENDING | AGV_ACTION_UNLATCH | AGV_ACTION_STORE_LATCH, did.what);
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_BUS_OFF, did.first_reason);
@@ -461,7 +495,9 @@ void test_from_active_to_standby_what_waits_is_discarded(void) {
     TEST_ASSERT_EQUAL_HEX32(AGV_ACTION_STATE, did.what);
     facts.engaged = false;
     step(1);
-    TEST_ASSERT_EQUAL_HEX32(AGV_ACTION_STATE | AGV_ACTION_DISCARD, did.what);
+    TEST_ASSERT_EQUAL_HEX32(AGV_ACTION_STATE | AGV_ACTION_DISCARD | AGV_ACTION_END_ENGAGEMENT, did.what);
+    step(1);
+    TEST_ASSERT_EQUAL_HEX32(0, did.what);
 }
 
 /* Shows: FSM-9 */

@@ -1,6 +1,7 @@
 /**
  * @file clock.h
- * The clock. Read by programs only: the core takes its time as an argument.
+ * The clock. Read by programs only: the core takes its time as an argument. A second, independent clock to compare it with
+ * has no function yet (HW-4, CLOCK_DEVIATION).
  */
 #ifndef HAL_CLOCK_H
 #define HAL_CLOCK_H

@@ -1,6 +1,8 @@
 /**
  * @file reset.h
  * Why the MCU started.
+ *
+ * A push button on a pin that resets as remote button 1 does (HW-3) has no function yet.
  */
 #ifndef HAL_RESET_H
 #define HAL_RESET_H

@@ -2,6 +2,9 @@
  * @file safety_output.h
  * The hardware safety output: a contact that the integrator wires into the vehicle's drive enable. Open = safe. It must
  * not cut the supply of VCU, EPS or remote receiver.
+ *
+ * There is no feedback of the contact yet (HW-1), and no emergency stop input (HW-2): an optional function for each has its
+ * place here, with a stub for ports of boards that have none.
  */
 #ifndef HAL_SAFETY_OUTPUT_H
 #define HAL_SAFETY_OUTPUT_H

@@ -14,44 +14,52 @@
 _Static_assert(AGV_TIMER_COUNT <= 64, "a set of timers is a word");
 
 static const uint64_t ALWAYS = TIMER(BUS_OFF) | TIMER(BOTH_MODES) | TIMER(WATCHDOG_FED) | TIMER(TX_TURN_SIGNAL) |
-                               TIMER(TX_GEAR) | TIMER(TX_THROTTLE) | TIMER(TX_STEERING) | MESSAGE(VEHICLE_STATUS) |
-                               MESSAGE(STEERING_STATUS) | MESSAGE(GEAR_STATUS) | MESSAGE(THROTTLE_STATUS) |
-                               MESSAGE(EPS_STATUS) | MESSAGE(WHEEL_SPEED);
+                               TIMER(TX_GEAR) | TIMER(TX_THROTTLE) | TIMER(TX_STEERING) | TIMER(TX_STATUS) |
+                               MESSAGE(VEHICLE_STATUS) | MESSAGE(STEERING_STATUS) | MESSAGE(GEAR_STATUS) |
+                               MESSAGE(THROTTLE_STATUS) | MESSAGE(EPS_STATUS) | MESSAGE(WHEEL_SPEED);
 static const uint64_t IN_INIT = TIMER(INIT_GOOD) | TIMER(STARTUP);
-static const uint64_t SUPERVISING = MESSAGE(TURN_SIGNAL_COMMAND);
-static const uint64_t WHILE_ENGAGED = TIMER(ENGAGED) | TIMER(AI_NEVER_SEEN) | TIMER(STEERING_OFF) |
-                                      TIMER(THROTTLE_IN_PARK) | MESSAGE(GEAR_COMMAND) | MESSAGE(THROTTLE_COMMAND) |
-                                      MESSAGE(STEERING_COMMAND);
-static const uint64_t IN_SAFE = TIMER(STANDSTILL) | TIMER(RESET_GOOD) | TIMER(PRESS);
-static const uint64_t UNTIL_SAFE = TIMER(UNCONFIRMED) | TIMER(PARK_SENT);
+static const uint64_t SUPERVISING = MESSAGE(TURN_SIGNAL_COMMAND) | TIMER(DISENGAGED) | TIMER(NO_MODE);
+static const uint64_t WHILE_ENGAGED = TIMER(ENGAGED) | TIMER(AI_NEVER_SEEN) | MESSAGE(GEAR_COMMAND) |
+                                      MESSAGE(THROTTLE_COMMAND) | MESSAGE(STEERING_COMMAND);
+static const uint64_t LATCHED = TIMER(WHEELS_SLOW) | TIMER(STANDSTILL);
+
+enum { COUNTED_MS = 1220 };
+
+bool abstract_coarse;
 
 static const agv_core_t *core(void) {
     return agv_core_read(&world.supervisor);
 }
 
 /* A transient fault is over event_hold_ms after it; those that trip keep a reset from being accepted, but the AI's. */
-static const uint64_t EVENTS =
-    EVENT(SUPERVISOR_RESET) | EVENT(TX_GATE_REFUSED) | EVENT(STEP_OVERRUN) | EVENT(FOREIGN_COMMAND_SENDER);
+static const uint64_t EVENTS = EVENT(SUPERVISOR_RESET) | EVENT(TX_GATE_REFUSED) | EVENT(STEP_OVERRUN) |
+                               EVENT(FOREIGN_COMMAND_SENDER) | EVENT(MODE_FLAPPING);
+
+/* Times that are of no account any more are left out. */
+static uint64_t latched_timers(void) {
+    const agv_reset_button_t *reset = &core()->reset_button;
+    const agv_confirmation_t *sums = &core()->confirmation;
+    uint64_t set = LATCHED;
+    if (core()->machine.state == (uint8_t)AGV_STATE_SAFE) {
+        set |= EVENTS | ((reset->began_after && !reset->answered) ? (TIMER(PRESS) | TIMER(PRESS_LONG)) : 0u);
+    }
+    set |= core()->stopping.stood ? 0u : TIMER(STOP);
+    set |= ((sums->off_missing_ms | sums->park_missing_ms) != 0u) ? TIMER(CONFIRMED) : 0u;
+    return set;
+}
 
 static uint64_t timers(void) {
     const bool waits_for_park = core()->config.park == (uint16_t)AGV_PARK_AT_STANDSTILL;
-    uint64_t set = ALWAYS;
+    const uint64_t park = waits_for_park ? (TIMER(PARK_WAIT) | TIMER(WHEELS_SLOW)) : 0u;
     switch (core()->machine.state) {
     case AGV_STATE_INIT:
-        set |= IN_INIT | EVENTS | (waits_for_park ? (TIMER(PARK_WAIT) | TIMER(STANDSTILL)) : 0u);
-        break;
+        return ALWAYS | IN_INIT | EVENTS | park;
     case AGV_STATE_STANDBY:
     case AGV_STATE_ACTIVE:
-        set |= SUPERVISING | (agv_mode_is_engaged(&core()->mode) ? WHILE_ENGAGED : 0u);
-        break;
-    case AGV_STATE_TRIPPED:
-        set |= UNTIL_SAFE | (waits_for_park ? (TIMER(PARK_WAIT) | TIMER(STANDSTILL)) : 0u);
-        break;
+        return ALWAYS | SUPERVISING | (agv_mode_is_engaged(&core()->mode) ? WHILE_ENGAGED : 0u);
     default:
-        set |= IN_SAFE | EVENTS;
-        break;
+        return ALWAYS | latched_timers() | park;
     }
-    return set;
 }
 
 static bool runs(unsigned timer) {
@@ -62,7 +70,7 @@ static bool runs(unsigned timer) {
 static uint64_t over_in(uint64_t set, uint32_t ms) {
     agv_timers_t copy = core()->timers;
     uint64_t over = 0;
-    copy.now_ms += ms;
+    agv_timers_advance(&copy, &core()->config, copy.now_ms + ms, 0u);
     for (unsigned i = 0; i < (unsigned)AGV_TIMER_COUNT; i++) {
         if ((((set >> i) & 1u) != 0u) && runs(i) && agv_timer_reached(&copy, i)) {
             over |= UINT64_C(1) << i;
@@ -71,12 +79,49 @@ static uint64_t over_in(uint64_t set, uint32_t ms) {
     return over;
 }
 
+/* For how long all conditions of a reset have held. */
+static uint16_t all_held_ms(void) {
+    uint16_t least_ms = UINT16_MAX;
+    for (unsigned i = 0; i < AGV_RESET_CONDITIONS; i++) {
+        const uint16_t held_ms = core()->reset_button.held_ms[i];
+        least_ms = (held_ms < least_ms) ? held_ms : least_ms;
+    }
+    return least_ms;
+}
+
+/* The sums and budgets that are full with the next ms, and whether the conditions of a reset have held for long enough. */
+static unsigned full_next(void) {
+    const agv_core_t *c = core();
+    const agv_config_t *config = &c->config;
+    const uint32_t limits_ms[AGV_BUDGET_SPEED] = {config->steering_deviation_ms, config->throttle_deviation_ms,
+                                                  config->gear_deviation_ms, config->autopilot_off_ms,
+                                                  config->throttle_in_park_ms};
+    unsigned full = 0;
+    if (agv_state_is_latched((agv_state_t)c->machine.state)) {
+        full |= (c->confirmation.off_missing_ms + 1u == config->confirm_timeout_ms) ? 1u : 0u;
+        full |= (c->confirmation.park_missing_ms + 1u == config->park_confirm_timeout_ms) ? 2u : 0u;
+        full |= (all_held_ms() + 1u == config->reset_hold_ms) ? 4u : 0u;
+    } else if (agv_mode_is_engaged(&c->mode)) {
+        for (unsigned i = 0; i < (unsigned)AGV_BUDGET_SPEED; i++) {
+            full |= (c->motion_checks.budgets[i].value_ms + 1u == limits_ms[i]) ? (8u << i) : 0u;
+        }
+    } else {
+        /* nothing is counted */
+    }
+    return full;
+}
+
 /* The first of the times that will be over with the next tick, and not before; 0: none. */
 static uint8_t eve(void) {
     const uint64_t set = over_in(timers(), 1);
     for (unsigned i = 0; i < (unsigned)AGV_TIMER_COUNT; i++) {
         if (((set >> i) & 1u) != 0u) {
             return (uint8_t)(i + 1u);
+        }
+    }
+    for (unsigned i = 0; i < (unsigned)AGV_BUDGET_SPEED + 3u; i++) {
+        if (((full_next() >> i) & 1u) != 0u) {
+            return (uint8_t)((unsigned)AGV_TIMER_COUNT + 1u + i);
         }
     }
     return 0;
@@ -96,13 +141,18 @@ static uint64_t running(void) {
     return some;
 }
 
+/* Sums, budgets, and conditions that have to hold, are none of the timers. */
+static bool counts(void) {
+    return agv_state_is_latched((agv_state_t)core()->machine.state) || agv_mode_is_engaged(&core()->mode);
+}
+
 uint32_t abstract_horizon_ms(void) {
-    static const uint32_t HORIZONS_MS[] = {110, 520, 1020, 3020, 10020};
+    static const uint32_t HORIZONS_MS[] = {110, 1220, 3020, 5120, 10020};
     const uint64_t set = running();
     uint32_t ms = 0;
     for (unsigned i = 0; i < sizeof HORIZONS_MS / sizeof HORIZONS_MS[0]; i++) {
         ms = HORIZONS_MS[i];
-        if (over_in(set, ms) == set) {
+        if ((over_in(set, ms) == set) && ((ms >= (uint32_t)COUNTED_MS) || !counts())) {
             break;
         }
     }
@@ -127,13 +177,86 @@ static uint8_t phases(unsigned a, unsigned b, unsigned c) {
     return (uint8_t)(phase(a) | (phase(b) << 2u) | (phase(c) << 4u));
 }
 
-static bool is_counting(unsigned first, unsigned last) {
-    bool counts = false;
-    for (unsigned row = first; row <= last; row++) {
-        counts = counts ||
-                 ((core()->status_checks.in_a_row[row] != 0u) && (core()->status_checks.in_a_row[row] != UINT8_MAX));
+/* Nothing, on the way, full: what is between does not count. */
+static uint8_t third(uint32_t value, bool full) {
+    if (full) {
+        return 2;
     }
-    return counts;
+    return (value != 0u) ? 1 : 0;
+}
+
+static uint8_t worst(uint8_t a, uint8_t b) {
+    return (a > b) ? a : b;
+}
+
+static uint8_t score(const agv_score_t *s) {
+    return third(s->value, s->present);
+}
+
+/* Of those that are judged. */
+static uint8_t worst_score(void) {
+    const agv_status_checks_t *checks = &core()->status_checks;
+    uint8_t most = score(&checks->eps_mode);
+    for (unsigned i = 0; i < AGV_SCORED_EPS_BITS; i++) {
+        most = worst(most, score(&checks->eps_bits[i]));
+    }
+    for (unsigned i = 0; i < AGV_SCORED_VALUES; i++) {
+        most = worst(most, score(&checks->values[i]));
+    }
+    return most;
+}
+
+static uint8_t worst_budget(void) {
+    uint8_t most = 0;
+    for (unsigned i = 0; i < (unsigned)AGV_BUDGET_SPEED; i++) {
+        const agv_budget_t *b = &core()->motion_checks.budgets[i];
+        most = worst(most, third(b->value_ms, b->present));
+    }
+    return most;
+}
+
+/* Engagements that count for MODE_FLAPPING. */
+static uint8_t engagements(void) {
+    uint8_t count = 0;
+    for (unsigned i = (unsigned)AGV_TIMER_ENGAGEMENT_1; i <= (unsigned)AGV_TIMER_ENGAGEMENT_3; i++) {
+        count = (uint8_t)(count + (runs(i) ? 1u : 0u));
+    }
+    return count;
+}
+
+/*
+ * The press: none, one that began before the trip, or after it; of that in SAFE, too, whether it is long enough, or
+ * answered in vain.
+ */
+static uint8_t press(void) {
+    const agv_reset_button_t *reset = &core()->reset_button;
+    if (reset->button != (uint8_t)AGV_BUTTON_DOWN) {
+        return 0;
+    }
+    if (!reset->began_after || (core()->machine.state != (uint8_t)AGV_STATE_SAFE)) {
+        return reset->began_after ? 2 : 1;
+    }
+    if (reset->answered) {
+        return 4;
+    }
+    return agv_timer_reached(&core()->timers, AGV_TIMER_PRESS) ? 3 : 2;
+}
+
+/* Whether the vehicle stands since the trip: not yet, it does, too late or not any more. */
+static uint8_t stands(void) {
+    const agv_stopping_t *stopping = &core()->stopping;
+    if (stopping->not_stopping || stopping->moving) {
+        return 2;
+    }
+    return stopping->stood ? 1 : 0;
+}
+
+/* The worse of the two sums of FSM-4. */
+static uint8_t unconfirmed(void) {
+    const agv_confirmation_t *sums = &core()->confirmation;
+    const agv_config_t *config = &core()->config;
+    return worst(third(sums->off_missing_ms, sums->off_missing_ms >= config->confirm_timeout_ms),
+                 third(sums->park_missing_ms, sums->park_missing_ms >= config->park_confirm_timeout_ms));
 }
 
 static bool messages_fresh(void) {
@@ -152,7 +275,7 @@ static bool waits_to_send(void) {
     for (unsigned i = 0; i < (unsigned)AGV_COMMAND_COUNT; i++) {
         waits = waits || agv_timer_runs(&core()->timers, (unsigned)AGV_TIMER_TX_TURN_SIGNAL + i);
     }
-    return waits;
+    return waits || agv_timer_runs(&core()->timers, AGV_TIMER_TX_STATUS);
 }
 
 static void always(abstract_t *key) {
@@ -174,14 +297,15 @@ static void always(abstract_t *key) {
                          stage.ai_off,
                          stage.bad_latch,
                          stage.stalled,
-                         stage_wrapped(),
+                         !abstract_coarse && stage_wrapped(),
                          (phase(AGV_TIMER_WATCHDOG_FED) == (uint8_t)AGV_TIMER_REACHED)};
     key->byte[0] = c->machine.state;
     key->byte[1] = supervises ? stage.illness : ILLNESS[stage.illness].like;
     key->byte[2] = bits(whats, 7);
     key->byte[3] = bits(more, 8);
-    key->byte[4] = (uint8_t)(c->mode.value | (phase(AGV_TIMER_BOTH_MODES) << 2u));
-    if ((c->machine.state == (uint8_t)AGV_STATE_INIT) && (c->mode.value != (uint8_t)AGV_MODE_MANUAL)) {
+    key->byte[4] = (uint8_t)(c->mode.bits | phase(AGV_TIMER_BOTH_MODES) | (c->mode.engaged ? 4u : 0u) |
+                             (c->mode.manual ? 8u : 0u));
+    if ((c->machine.state == (uint8_t)AGV_STATE_INIT) && !c->mode.manual) {
         key->byte[4] = 0;
     }
     key->byte[5] = (uint8_t)(stage.bus | (phase(AGV_TIMER_BUS_OFF) << 2u));
@@ -197,47 +321,34 @@ static void in_init(abstract_t *key) {
 
 static void supervising(abstract_t *key) {
     const agv_core_t *c = core();
-    const bool whats[] = {c->status_checks.ai_alarm_armed, is_counting(0, AGV_ROW_EPS_SUPPLY_LAST),
-                          is_counting(AGV_ROW_EPS_MODE, AGV_ROW_STEERING_ANGLE),
-                          c->faults.summary.ai_cause != (uint8_t)AGV_FAULT_NONE};
-    key->byte[8] = bits(whats, 4);
-    key->byte[9] = c->liveness.heartbeats[AGV_NODE_AI].state;
+    const bool whats[] = {c->status_checks.ai_alarm_armed, c->faults.summary.ai_cause != (uint8_t)AGV_FAULT_NONE,
+                          c->transmitter.throttle_0_waits};
+    key->byte[8] = (uint8_t)(bits(whats, 3) | (engagements() << 4u) | (phase(AGV_TIMER_DISENGAGED) << 6u));
+    key->byte[9] = (uint8_t)(c->liveness.heartbeats[AGV_NODE_AI].state | (phase(AGV_TIMER_NO_MODE) << 4u));
     if (agv_mode_is_engaged(&c->mode)) {
-        key->byte[10] = phases(AGV_TIMER_ENGAGED, AGV_TIMER_AI_NEVER_SEEN, AGV_TIMER_STEERING_OFF);
+        key->byte[10] = phases(AGV_TIMER_ENGAGED, AGV_TIMER_AI_NEVER_SEEN, AGV_TIMER_MESSAGE_GEAR_COMMAND);
         key->byte[11] =
-            phases(AGV_TIMER_THROTTLE_IN_PARK, AGV_TIMER_MESSAGE_GEAR_COMMAND, AGV_TIMER_MESSAGE_STEERING_COMMAND);
+            (uint8_t)(phase(AGV_TIMER_MESSAGE_STEERING_COMMAND) | (worst_score() << 2u) | (worst_budget() << 4u));
     }
 }
 
-static void tripped(abstract_t *key) {
+static void in_latched(abstract_t *key) {
     const agv_core_t *c = core();
     const agv_state_machine_t *m = &c->machine;
     const bool waits = (c->config.park == (uint16_t)AGV_PARK_AT_STANDSTILL) && !m->park_released;
-    const bool whats[] = {m->pressed_after_trip,
-                          m->park_released,
+    const bool whats[] = {m->park_released,
                           is_holdable(),
                           m->unresettable != (uint8_t)AGV_FAULT_NONE,
-                          agv_fault_monitor_is_active(&c->faults, AGV_FAULT_SAFE_STATE_UNCONFIRMED),
-                          waits && stage.wheels_turn,
-                          waits && agv_timer_runs(&c->timers, AGV_TIMER_STANDSTILL)};
-    key->byte[8] = bits(whats, 7);
-    key->byte[9] = phases(AGV_TIMER_UNCONFIRMED, AGV_TIMER_PARK_SENT, AGV_TIMER_PARK_SENT);
-}
-
-static void in_safe(abstract_t *key) {
-    const agv_core_t *c = core();
-    const agv_state_machine_t *m = &c->machine;
-    const bool whats[] = {m->button_before,
-                          m->pressed_after_trip,
-                          m->press_refused,
-                          messages_fresh(),
-                          is_holdable(),
-                          stage.wheels_turn,
+                          stage.wheels_turn && (waits || (stands() != 0u)),
                           c->faults.summary.cause != (uint8_t)AGV_FAULT_NONE,
-                          c->faults.summary.ai_cause != (uint8_t)AGV_FAULT_NONE};
-    key->byte[8] = bits(whats, 8);
-    key->byte[9] = m->unresettable;
-    key->byte[10] = phases(AGV_TIMER_STANDSTILL, AGV_TIMER_RESET_GOOD, AGV_TIMER_PRESS);
+                          c->faults.summary.ai_cause != (uint8_t)AGV_FAULT_NONE,
+                          all_held_ms() >= c->config.reset_hold_ms};
+    key->byte[8] = bits(whats, 7);
+    if (abstract_coarse) {
+        key->byte[9] = (uint8_t)(press() | (worst(unconfirmed(), (stands() == 2u) ? 2u : 0u) << 5u));
+    } else {
+        key->byte[9] = (uint8_t)(press() | (stands() << 3u) | (unconfirmed() << 5u));
+    }
 }
 
 void abstract_now(abstract_t *key) {
@@ -251,11 +362,8 @@ void abstract_now(abstract_t *key) {
     case AGV_STATE_ACTIVE:
         supervising(key);
         break;
-    case AGV_STATE_TRIPPED:
-        tripped(key);
-        break;
     default:
-        in_safe(key);
+        in_latched(key);
         break;
     }
 }

@@ -19,7 +19,7 @@
  *
  * usage: explorer [--quick] [--pairs] [--tellable [--hangs]] [--variant N] [--shard I/N] [--representatives N]
  *                 [--most STATES] [--scenario FILE]
- *   --quick     the short alphabet
+ *   --quick     the short alphabet; before and after the wrap of the clock is one state
  *   --pairs     something may be wrong with the vehicle and with a controller at the same time
  *   --tellable  only what a scenario file can say, so that a counterexample can be played
  *   --hangs     with it: late ticks in STANDBY and ACTIVE
@@ -198,6 +198,7 @@ static void read_options(int argc, char **argv) {
     for (int i = 1; good && (i < argc); i++) {
         if (strcmp(argv[i], "--quick") == 0) {
             option.quick = true;
+            abstract_coarse = true;
         } else if (strcmp(argv[i], "--pairs") == 0) {
             alphabet_pairs = true;
         } else if (strcmp(argv[i], "--tellable") == 0) {

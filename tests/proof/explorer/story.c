@@ -317,13 +317,13 @@ static void write_config(FILE *file) {
     (void)fprintf(file, "topology: %s\nid_set: %s\n",
                   (config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? "gateway" : "shared",
                   (config->id_set == (uint16_t)AGV_ID_SET_TABLE) ? "table" : "heading");
-#define AGV_CHOICE(name, preset, words, meaning)                                                                       \
-    if ((AGV_SETTING_##name > AGV_SETTING_id_set) && (config->name != (preset))) {                                     \
+#define AGV_CHOICE(name, words, weakens, scope, meaning)                                                               \
+    if ((AGV_SETTING_##name > AGV_SETTING_id_set) && (config->name != 0u)) {                                           \
         (void)fprintf(file, "%s" #name ": ", between);                                                                 \
         write_word(file, words, config->name);                                                                         \
         between = ", ";                                                                                                \
     }
-#define AGV_SETTING(name, preset, lowest, highest, unit, meaning)                                                      \
+#define AGV_SETTING(name, preset, lowest, highest, unit, weakens, scope, meaning)                                      \
     if (config->name != (preset)) {                                                                                    \
         (void)fprintf(file, "%s" #name ": %u", between, config->name);                                                 \
         between = ", ";                                                                                                \

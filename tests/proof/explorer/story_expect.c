@@ -3,11 +3,10 @@
 
 #include "agv/names.h"
 #include "agv/recorder.h"
-#include "agv/state_machine.h"
 #include "stage.h"
 #include "story.h"
 
-enum { EVENTS_MAX = 400, MISSING_BITS = 8 };
+enum { EVENTS_MAX = 400, MISSING_BITS = 10 };
 
 typedef struct {
     uint32_t t_ms;

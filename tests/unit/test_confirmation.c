@@ -1,0 +1,171 @@
+/* Whether the vehicle confirms the safe state in time: two sums of 500 ms, cleared by 5 s. */
+#include "decide/confirmation.h"
+
+#include "unity.h"
+
+static agv_confirmation_t confirmation;
+static agv_timers_t timers;
+static agv_config_t config;
+
+/* A trip, just before the wrap. */
+void setUp(void) {
+    agv_config_defaults(&config);
+    agv_timers_set_time(&timers, 0xFFFFFF00u);
+    agv_timers_start(&timers);
+    agv_confirmation_start(&confirmation, &timers);
+}
+
+void tearDown(void) {
+}
+
+static void step(uint32_t elapsed_ms, bool autopilot_off, bool in_park) {
+    agv_timers_advance(&timers, &config, timers.now_ms + elapsed_ms, 0);
+    agv_confirmation_step(&confirmation, &timers, &config, elapsed_ms, autopilot_off, in_park);
+}
+
+static void run(uint32_t ms, bool autopilot_off, bool in_park) {
+    for (uint32_t i = 0; i < ms; i++) {
+        step(1, autopilot_off, in_park);
+    }
+}
+
+static void expect(bool unconfirmed) {
+    TEST_ASSERT_EQUAL(unconfirmed, confirmation.unconfirmed);
+}
+
+/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
+void test_autopilot_off_may_be_missing_for_500_ms(void) {
+    run(499, false, true);
+    expect(false);
+    run(1, false, true);
+    expect(true);
+    run(100, false, true);
+    expect(true);
+    step(0, true, true); /* a frame confirms */
+    expect(false);
+}
+
+/* From the first P on, however often it is sent. */
+/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
+void test_p_may_be_missing_for_500_ms_since_the_first_p_was_sent(void) {
+    run(3000, true, false);
+    expect(false);
+    agv_confirmation_park_sent(&confirmation);
+    run(300, true, false);
+    agv_confirmation_park_sent(&confirmation);
+    run(199, true, false);
+    expect(false);
+    run(1, true, false);
+    expect(true);
+}
+
+/* A VCU that guards P against speed wants more of it. */
+/* Shows: FSM-4 */
+void test_the_two_limits_are_two_settings(void) {
+    config.confirm_timeout_ms = 100;
+    config.park_confirm_timeout_ms = 10000;
+    agv_confirmation_park_sent(&confirmation);
+    run(9999, true, false);
+    expect(false);
+    run(1, true, false);
+    expect(true);
+    setUp();
+    config.confirm_timeout_ms = 100;
+    config.park_confirm_timeout_ms = 10000;
+    agv_confirmation_park_sent(&confirmation);
+    run(99, false, false);
+    expect(false);
+    run(1, false, false);
+    expect(true);
+}
+
+/* Each by its own unconfirmed ms: 300 of both at once are 300 each. */
+/* Shows: FSM-4 */
+void test_the_two_sums_are_not_added_up(void) {
+    agv_confirmation_park_sent(&confirmation);
+    run(300, false, false);
+    run(199, false, true);
+    run(199, true, false);
+    expect(false);
+    run(1, true, false);
+    expect(true);
+}
+
+/* In all: what comes and goes is not forgotten. */
+/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
+void test_a_confirmation_that_comes_and_goes(void) {
+    for (unsigned i = 0; i < 4; i++) {
+        run(100, false, true);
+        run(4999, true, true);
+        expect(false);
+    }
+    run(99, false, true);
+    expect(false);
+    run(1, false, true);
+    expect(true);
+}
+
+/* Shows: FSM-4 */
+void test_5_s_of_both_without_a_break_clear_the_sums(void) {
+    agv_confirmation_park_sent(&confirmation);
+    run(499, false, false);
+    step(0, true, true);
+    run(5000, true, true);
+    run(499, false, false);
+    expect(false);
+    run(1, false, true);
+    expect(true);
+}
+
+/* A moment without P begins the 5 s anew, though autopilot off stands all the time. */
+/* Shows: FSM-4 */
+void test_a_break_of_either_begins_the_5_s_anew(void) {
+    run(499, false, true);
+    run(4000, true, true);
+    step(0, true, false);
+    run(4999, true, true);
+    run(1, false, true);
+    expect(true);
+}
+
+/* It ends when both are confirmed, and comes again with the next ms that is not, until 5 s have cleared it. */
+/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
+void test_a_sum_at_its_limit_raises_it_again_at_once(void) {
+    agv_confirmation_park_sent(&confirmation);
+    run(500, false, true);
+    expect(true);
+    run(10, true, false); /* not both */
+    expect(true);
+    run(4000, true, true);
+    expect(false);
+    step(0, false, true); /* no ms has passed */
+    expect(false);
+    run(1, false, true);
+    expect(true);
+    step(0, true, true);
+    run(5000, true, true);
+    run(499, false, true);
+    expect(false);
+}
+
+/* Late steps count with all their time, and the sums saturate. */
+void test_late_steps(void) {
+    step(499, false, true);
+    expect(false);
+    step(70000, false, true);
+    expect(true);
+    TEST_ASSERT_EQUAL_UINT16(500, confirmation.off_missing_ms);
+    TEST_ASSERT_EQUAL_UINT16(0, confirmation.park_missing_ms);
+}
+
+/* Shows: FSM-4 */
+void test_a_trip_begins_everything_anew(void) {
+    agv_confirmation_park_sent(&confirmation);
+    run(600, false, false);
+    expect(true);
+    agv_confirmation_start(&confirmation, &timers);
+    expect(false);
+    run(499, false, false);
+    expect(false);
+    TEST_ASSERT_EQUAL_UINT16(0, confirmation.park_missing_ms); /* no P was sent yet */
+}

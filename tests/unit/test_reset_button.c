@@ -1,0 +1,336 @@
+/* The reset by remote button 1: at its release, after 1 s to 5 s, when all held in the last second. */
+#include "decide/reset_button.h"
+
+#include "unity.h"
+
+static agv_reset_button_t reset;
+static agv_timers_t timers;
+static agv_config_t config;
+static uint32_t lacking;
+static uint32_t missing;
+static uint32_t in_vain; /* how many presses, and what was missing then */
+static uint32_t resets;
+
+static void step(uint32_t elapsed_ms) {
+    uint32_t found = 0;
+    const agv_press_result_t result =
+        agv_reset_button_step(&reset, &timers, &config, elapsed_ms, lacking, &found);
+    if (result == AGV_PRESS_IN_VAIN) {
+        in_vain++;
+        missing = found;
+    }
+    resets += (result == AGV_PRESS_RESETS) ? 1u : 0u;
+}
+
+/* Each millisecond first the frames, then the tick. */
+static void run(uint32_t ms) {
+    for (uint32_t i = 0; i < ms; i++) {
+        step(1);
+        agv_timers_advance(&timers, &config, timers.now_ms + 1, 0);
+    }
+}
+
+/* A 363h. */
+static void frame(bool down) {
+    agv_reset_button_report(&reset, true, down);
+    step(0);
+}
+
+static void lose_vcu(void) {
+    agv_reset_button_lose(&reset);
+    lacking = AGV_MISSING_VCU_HEARTBEAT | AGV_MISSING_STATE | AGV_MISSING_TRIP_CAUSE | AGV_MISSING_STANDSTILL;
+    step(1);
+}
+
+static void press(uint32_t ms) {
+    frame(true);
+    run(ms);
+    frame(false);
+}
+
+static void expect_reset(void) {
+    TEST_ASSERT_EQUAL_UINT32(1, resets);
+    TEST_ASSERT_EQUAL_UINT32(0, in_vain);
+}
+
+static void expect_in_vain(uint32_t bits) {
+    TEST_ASSERT_EQUAL_UINT32(0, resets);
+    TEST_ASSERT_EQUAL_UINT32(1, in_vain);
+    TEST_ASSERT_EQUAL_HEX32(bits, missing);
+}
+
+static void expect_nothing(void) {
+    TEST_ASSERT_EQUAL_UINT32(0, resets);
+    TEST_ASSERT_EQUAL_UINT32(0, in_vain);
+}
+
+/* Tripped for 2 s, all well, button up; the clock wraps in every test. */
+void setUp(void) {
+    agv_config_defaults(&config);
+    agv_timers_set_time(&timers, 0xFFFFF000u);
+    agv_timers_start(&timers);
+    reset = (agv_reset_button_t){0};
+    lacking = 0;
+    in_vain = 0;
+    resets = 0;
+    missing = 0;
+    agv_reset_button_trip(&reset, &timers);
+    frame(false);
+    run(2000);
+}
+
+void tearDown(void) {
+}
+
+/* ---- How long ---- */
+
+/* 1000 and 5000 ms both count; a shorter press is not reported. */
+/* Shows: FSM-3 */
+TEST_CASE(999, 0)
+TEST_CASE(1000, 1)
+TEST_CASE(3000, 1)
+TEST_CASE(5000, 1)
+void test_a_press_of_1_s_to_5_s_resets_at_its_release(uint32_t ms, uint32_t expected) {
+    frame(true);
+    run(ms);
+    expect_nothing();
+    frame(false);
+    TEST_ASSERT_EQUAL_UINT32(expected, resets);
+    TEST_ASSERT_EQUAL_UINT32(0, in_vain);
+    run(10000);
+    TEST_ASSERT_EQUAL_UINT32(expected, resets);
+}
+
+/* Told once, at 5 s, not again at its release. */
+/* Shows: FSM-3 */
+void test_a_press_of_more_than_5_s_is_in_vain(void) {
+    frame(true);
+    run(5001);
+    expect_nothing();
+    run(1);
+    expect_in_vain(AGV_MISSING_RELEASED);
+    run(60000);
+    frame(false);
+    run(100);
+    expect_in_vain(AGV_MISSING_RELEASED);
+    in_vain = 0;
+    press(1000);
+    expect_reset();
+}
+
+/* The release comes with the first frame after 5 s. */
+/* Shows: FSM-3 */
+void test_a_release_a_millisecond_late_is_in_vain(void) {
+    press(5001);
+    expect_in_vain(AGV_MISSING_RELEASED);
+}
+
+/* Shows: FSM-3 */
+void test_both_times_are_settings(void) {
+    config.reset_hold_ms = 500;
+    config.reset_hold_max_ms = 1000;
+    press(499);
+    expect_nothing();
+    press(1001);
+    expect_in_vain(AGV_MISSING_RELEASED);
+    in_vain = 0;
+    press(500);
+    expect_reset();
+}
+
+/* Two presses of 600 ms are not one of 1200. */
+/* Shows: FSM-3 */
+void test_a_release_between_begins_the_time_anew(void) {
+    for (unsigned i = 0; i < 20; i++) {
+        press(999);
+        run(1);
+    }
+    expect_nothing();
+}
+
+/* ---- The edge ---- */
+
+/* Held at the trip and released 1 s later. */
+/* Shows: FSM-3 */
+void test_a_press_from_before_the_trip_does_not_count(void) {
+    frame(true);
+    run(500);
+    agv_reset_button_trip(&reset, &timers);
+    run(1500);
+    frame(false);
+    expect_in_vain(AGV_MISSING_BUTTON);
+    in_vain = 0;
+    run(100);
+    press(1000);
+    expect_reset();
+}
+
+/* The first frame of all says "down": nobody has seen the edge. */
+/* Shows: FSM-3, FSM-7 */
+void test_a_button_that_is_stuck_resets_nothing(void) {
+    reset = (agv_reset_button_t){0};
+    run(2000);
+    frame(true);
+    run(6000);
+    expect_in_vain(AGV_MISSING_BUTTON | AGV_MISSING_RELEASED);
+}
+
+/* What a VCU that is not alive reports is nothing: neither an edge nor a release. */
+/* Shows: FSM-3 */
+void test_frames_of_a_vcu_that_is_not_alive_say_nothing(void) {
+    agv_reset_button_report(&reset, false, true);
+    run(2000);
+    agv_reset_button_report(&reset, false, false);
+    run(10);
+    expect_nothing();
+    frame(true);
+    run(500);
+    agv_reset_button_report(&reset, false, false);
+    run(500);
+    expect_nothing();
+    frame(false);
+    expect_reset();
+}
+
+/* ---- The conditions ---- */
+
+/* Each is named by itself, when it was missing for a moment at the start of the last second. */
+/* Shows: FSM-3 */
+TEST_CASE(AGV_MISSING_STATE)
+TEST_CASE(AGV_MISSING_VCU_HEARTBEAT)
+TEST_CASE(AGV_MISSING_EPS_HEARTBEAT)
+TEST_CASE(AGV_MISSING_TRIP_CAUSE)
+TEST_CASE(AGV_MISSING_STANDSTILL)
+TEST_CASE(AGV_MISSING_MANUAL)
+TEST_CASE(AGV_MISSING_MESSAGES)
+TEST_CASE(AGV_MISSING_THROTTLE)
+void test_what_was_missing_at_any_time_in_the_last_second(uint32_t condition) {
+    frame(true);
+    run(2000);
+    lacking = condition;
+    step(0); /* a frame is enough */
+    lacking = 0;
+    run(999);
+    frame(false);
+    expect_in_vain(condition);
+    in_vain = 0;
+    frame(true);
+    run(2000);
+    lacking = condition;
+    step(0);
+    lacking = 0;
+    run(1000); /* a whole second ago */
+    frame(false);
+    expect_reset();
+}
+
+/* The releasing frame holds them, too. */
+/* Shows: FSM-3 */
+void test_what_the_releasing_frame_lacks(void) {
+    frame(true);
+    run(3000);
+    lacking = AGV_MISSING_MANUAL;
+    frame(false);
+    expect_in_vain(AGV_MISSING_MANUAL);
+}
+
+/* All that was missing in the second, at different moments; not what was missing before. */
+/* Shows: FSM-3 */
+void test_everything_that_was_missing_is_told(void) {
+    lacking = AGV_MISSING_EPS_HEARTBEAT;
+    frame(true);
+    run(1000);
+    lacking = AGV_MISSING_STANDSTILL;
+    run(500);
+    lacking = AGV_MISSING_THROTTLE | AGV_MISSING_STATE;
+    run(499);
+    lacking = 0;
+    run(1);
+    frame(false);
+    expect_in_vain(AGV_MISSING_STANDSTILL | AGV_MISSING_THROTTLE | AGV_MISSING_STATE);
+}
+
+/* Straight after the trip: nothing has held for a second before it. */
+/* Shows: FSM-3 */
+void test_time_before_the_trip_does_not_count(void) {
+    agv_reset_button_trip(&reset, &timers);
+    lacking = AGV_MISSING_STATE;
+    frame(false);
+    run(1);
+    lacking = 0;
+    press(1000);
+    expect_reset();
+    agv_reset_button_trip(&reset, &timers);
+    TEST_ASSERT_EQUAL_UINT16(0, reset.held_ms[0]);
+    TEST_ASSERT_EQUAL_UINT16(0, reset.held_ms[AGV_RESET_CONDITIONS - 1]);
+}
+
+/* ---- The VCU is lost ---- */
+
+/* What follows from its loss was not missing before: just the one word. */
+/* Shows: FSM-3 */
+void test_a_press_that_the_loss_of_the_vcu_ends(void) {
+    frame(true);
+    run(2000);
+    lose_vcu();
+    expect_in_vain(AGV_MISSING_VCU_HEARTBEAT);
+    run(100);
+    expect_in_vain(AGV_MISSING_VCU_HEARTBEAT);
+}
+
+/* With what was missing before it. */
+/* Shows: FSM-3 */
+void test_a_press_in_vain_that_the_loss_of_the_vcu_ends(void) {
+    frame(true);
+    run(1500);
+    lacking = AGV_MISSING_THROTTLE;
+    run(1);
+    lose_vcu();
+    expect_in_vain(AGV_MISSING_VCU_HEARTBEAT | AGV_MISSING_THROTTLE);
+}
+
+/* Shows: FSM-3 */
+void test_a_short_press_that_the_loss_of_the_vcu_ends_is_not_told(void) {
+    frame(true);
+    run(900);
+    lose_vcu();
+    run(1000);
+    expect_nothing();
+}
+
+/* The button is forgotten: pressed all the time, it has to be released first. */
+/* Shows: FSM-3 */
+void test_a_press_from_before_the_vcu_came_back_resets_nothing(void) {
+    frame(true);
+    run(500);
+    lose_vcu();
+    lacking = 0;
+    run(100);
+    frame(true);
+    run(2000);
+    frame(false);
+    expect_in_vain(AGV_MISSING_BUTTON);
+    in_vain = 0;
+    run(10);
+    press(2000);
+    expect_reset();
+}
+
+/* ---- Late steps ---- */
+
+/* Their time counts, up to what is needed. */
+void test_late_steps_count_with_all_their_time(void) {
+    lacking = AGV_MISSING_ALL;
+    frame(true);
+    run(1000);
+    lacking = 0;
+    step(999);
+    frame(false);
+    TEST_ASSERT_EQUAL_UINT32(1, in_vain);
+    frame(true);
+    run(1);
+    step(0xFFFFFFFFu);
+    agv_timers_advance(&timers, &config, timers.now_ms + 1000, 0);
+    frame(false);
+    TEST_ASSERT_EQUAL_UINT32(1, resets);
+}

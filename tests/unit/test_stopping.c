@@ -1,0 +1,204 @@
+/* The safe state is a vehicle that stands: VEHICLE_NOT_STOPPING, MOVING_WHILE_SAFE. */
+#include "decide/stopping.h"
+
+#include "unity.h"
+
+static agv_stopping_t stopping;
+static agv_timers_t timers;
+static agv_config_t config;
+static agv_vehicle_t vehicle;
+static bool wheels_fresh;
+
+static void run(uint32_t ms) {
+    for (uint32_t i = 0; i < ms; i++) {
+        agv_timers_advance(&timers, &config, timers.now_ms + 1, 0);
+        agv_vehicle_evaluate(&vehicle, &timers, &config, wheels_fresh, true);
+        agv_stopping_step(&stopping, &timers, &vehicle, 1);
+    }
+}
+
+static void wheels(int32_t left_mm_s, int32_t right_mm_s) {
+    vehicle.wheels = (agv_wheel_speed_t){.left_mm_s = left_mm_s, .right_mm_s = right_mm_s};
+    agv_vehicle_evaluate(&vehicle, &timers, &config, wheels_fresh, true);
+}
+
+static void trip(void) {
+    agv_stopping_start(&stopping, &timers);
+}
+
+static void expect(bool not_stopping, bool moving) {
+    TEST_ASSERT_EQUAL(not_stopping, stopping.not_stopping);
+    TEST_ASSERT_EQUAL(moving, stopping.moving);
+}
+
+/* At 2 m/s, just before the wrap. */
+void setUp(void) {
+    agv_config_defaults(&config);
+    agv_timers_set_time(&timers, 0xFFFFFF00u);
+    agv_timers_start(&timers);
+    stopping = (agv_stopping_t){0};
+    vehicle = (agv_vehicle_t){0};
+    wheels_fresh = true;
+    wheels(2000, 2000);
+}
+
+void tearDown(void) {
+}
+
+/* Shows: FSM-12, VEHICLE_NOT_STOPPING */
+void test_5_s_without_standing_wheels(void) {
+    run(1000);
+    trip();
+    run(4999);
+    expect(false, false);
+    run(1);
+    expect(true, false);
+    wheels(0, 0); /* it lasts until they stand, for 100 ms */
+    run(99);
+    expect(true, false);
+    run(1);
+    expect(false, false);
+    wheels(2000, 2000); /* they have stood since the trip: this is another fault */
+    run(10000);
+    expect(false, true);
+}
+
+/* Slow ones do not stand yet; to be seen for a moment is enough. */
+/* Shows: FSM-12 */
+void test_wheels_that_stand_within_5_s(void) {
+    trip();
+    wheels(60, 0);
+    run(4899);
+    wheels(0, 0);
+    run(100);
+    expect(false, false);
+    wheels(60, 0); /* neither do they stand nor do they move the vehicle */
+    run(10000);
+    expect(false, false);
+}
+
+/* Shows: FSM-12, VEHICLE_NOT_STOPPING */
+void test_stale_wheel_speeds_are_not_seen_to_stand(void) {
+    wheels_fresh = false;
+    wheels(0, 0);
+    trip();
+    run(4999);
+    expect(false, false);
+    run(1);
+    expect(true, false);
+}
+
+/* Shows: FSM-12 */
+void test_standing_at_the_moment_of_the_trip_counts_as_seen(void) {
+    wheels(0, 0);
+    run(100);
+    trip();
+    wheels_fresh = false;
+    run(10000);
+    expect(false, false);
+}
+
+/* How long it takes is a setting. */
+/* Shows: FSM-12 */
+void test_the_time_to_stop_is_a_setting(void) {
+    config.stop_timeout_ms = 30000;
+    trip();
+    run(29999);
+    expect(false, false);
+    run(1);
+    expect(true, false);
+}
+
+static void trip_and_stop(void) {
+    trip();
+    wheels(0, 0);
+    run(100);
+    expect(false, false);
+}
+
+/* One of them, either way. */
+/* Shows: FSM-12, MOVING_WHILE_SAFE */
+TEST_CASE(100, 0)
+TEST_CASE(0, -100)
+TEST_CASE(99, 3000)
+void test_a_wheel_that_turns_for_200_ms(int left_mm_s, int right_mm_s) {
+    trip_and_stop();
+    wheels(left_mm_s, right_mm_s);
+    run(199);
+    expect(false, false);
+    run(1);
+    expect(false, true);
+    wheels(99, 99); /* slower, but they do not stand */
+    run(1000);
+    expect(false, true);
+    wheels(0, 0);
+    run(99);
+    expect(false, true);
+    run(1);
+    expect(false, false);
+}
+
+/* Shows: FSM-12 */
+void test_slow_wheels_and_short_ones_do_not_move_the_vehicle(void) {
+    trip_and_stop();
+    wheels(99, -99);
+    run(10000);
+    expect(false, false);
+    for (unsigned i = 0; i < 20; i++) {
+        wheels(5000, 5000);
+        run(199);
+        wheels(99, 99);
+        run(1);
+    }
+    expect(false, false);
+}
+
+/* A stale 101h is not moving. */
+/* Shows: FSM-12 */
+void test_stale_wheel_speeds_are_not_moving(void) {
+    trip_and_stop();
+    wheels(5000, 5000);
+    run(150);
+    wheels_fresh = false;
+    run(1000);
+    expect(false, false);
+    wheels_fresh = true;
+    run(199);
+    expect(false, false);
+    run(1);
+    expect(false, true);
+}
+
+/* Before they have stood the wheels may turn: it is on its way to stop. */
+/* Shows: FSM-12 */
+void test_what_has_not_stood_yet_is_not_moving_while_safe(void) {
+    trip();
+    run(4000);
+    expect(false, false);
+}
+
+/* Late steps count with all their time. */
+void test_late_steps(void) {
+    trip_and_stop();
+    wheels(5000, 5000);
+    agv_stopping_step(&stopping, &timers, &vehicle, 199);
+    expect(false, false);
+    agv_stopping_step(&stopping, &timers, &vehicle, 0); /* a frame */
+    expect(false, false);
+    agv_stopping_step(&stopping, &timers, &vehicle, 100000);
+    expect(false, true);
+    TEST_ASSERT_EQUAL_UINT16(200, stopping.moving_ms);
+}
+
+/* Shows: FSM-12 */
+void test_another_trip_begins_anew_and_a_reset_ends_it(void) {
+    trip();
+    run(5000);
+    expect(true, false);
+    trip();
+    expect(false, false);
+    run(5000);
+    expect(true, false);
+    agv_stopping_end(&stopping);
+    expect(false, false);
+}
