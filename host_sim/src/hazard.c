@@ -130,7 +130,7 @@ static void on_foreign_command(hazard_t *hazard, agv_message_t message, const ha
 
 /** A data frame of the protocol, of any length and in any format. */
 static void on_data(hazard_t *hazard, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
-    const agv_message_t message = (agv_message_t)agv_message_from_id(frame->id, hazard->scenario->vehicle.id_set);
+    const agv_message_t message = (agv_message_t)agv_ids_find(&hazard->scenario->vehicle.ids, frame->id);
     const bool is_command = (uint32_t)message < AGV_COMMAND_COUNT;
 
     if ((message == AGV_MSG_NONE) || ((frame->flags & (uint8_t)~HAL_CAN_FD) != 0u)) {
