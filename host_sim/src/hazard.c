@@ -81,6 +81,7 @@ static void read_limits(hazard_t *hazard) {
     limits->stop_ms = hazard_setting(hazard, "stop_timeout_ms", 5000u);
     limits->vcu_ms = hazard_setting(hazard, "vcu_heartbeat_timeout_ms", 50u);
     limits->tx_stalled_ms = hazard_setting(hazard, "tx_stalled_ms", 100u);
+    limits->mode_invalid_ms = hazard_setting(hazard, "mode_invalid_ms", 50u);
     limits->gear_status_ms = hazard_setting(hazard, "gear_status_timeout_ms", 125u);
     limits->command_ms[AGV_MSG_GEAR_COMMAND] = hazard_setting(hazard, "gear_command_timeout_ms", 350u);
     limits->command_ms[AGV_MSG_THROTTLE_COMMAND] = hazard_setting(hazard, "throttle_command_timeout_ms", 350u);

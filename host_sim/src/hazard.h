@@ -67,6 +67,7 @@ typedef struct {
     uint32_t stop_ms;
     uint32_t vcu_ms;
     uint32_t tx_stalled_ms;
+    uint32_t mode_invalid_ms;
     uint32_t gear_status_ms;
     uint32_t command_ms[AGV_COMMAND_COUNT];
     uint32_t command_too_fast_gaps;
@@ -120,7 +121,8 @@ typedef struct {
     hazard_range_t now;     /**< real and lately measured angles then */
     hazard_range_t at_trip; /**< the same at the trip */
     bool has_trip;
-    int32_t first_ddeg; /**< the first measured angle after the trip, or after manual ended */
+    hazard_range_t first; /**< the first measured angles after the trip, or after manual ended */
+    uint64_t first_ms;    /**< when the first of them came */
     bool has_first;
     int32_t wrong_ddeg; /**< commanded, and none of these */
     bool is_wrong;

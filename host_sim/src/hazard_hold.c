@@ -3,7 +3,7 @@
 
 #include "hazard.h"
 
-enum { NEW_HOLD_MS = 300, FRESH_MS = 60, TOLERANCE_DDEG = 50, CENTRE_DDEG = 9000 };
+enum { NEW_HOLD_MS = 300, FRESH_MS = 150, TOLERANCE_DDEG = 50, CENTRE_DDEG = 9000 };
 
 static bool is_near(int32_t a_ddeg, int32_t b_ddeg) {
     return abs(a_ddeg - b_ddeg) <= TOLERANCE_DDEG;
@@ -13,6 +13,11 @@ static bool is_within(const hazard_range_t *range, int32_t ddeg) {
     return (ddeg >= range->low_ddeg - TOLERANCE_DDEG) && (ddeg <= range->high_ddeg + TOLERANCE_DDEG);
 }
 
+static void widen(hazard_range_t *range, int32_t ddeg) {
+    range->low_ddeg = (ddeg < range->low_ddeg) ? ddeg : range->low_ddeg;
+    range->high_ddeg = (ddeg > range->high_ddeg) ? ddeg : range->high_ddeg;
+}
+
 void hazard_hold_measured(hazard_t *hazard, int32_t angle_ddeg) {
     hazard_hold_t *hold = &hazard->hold;
     const uint32_t at = hold->measured_count % HAZARD_ANGLES;
@@ -20,6 +25,15 @@ void hazard_hold_measured(hazard_t *hazard, int32_t angle_ddeg) {
     hold->measured_ddeg[at] = angle_ddeg;
     hold->measured_ms[at] = hazard->t_ms;
     hold->measured_count++;
+    if (!hold->has_first) {
+        hold->has_first = true;
+        hold->first = (hazard_range_t){angle_ddeg, angle_ddeg};
+        hold->first_ms = hazard->t_ms;
+    }
+    /* Both mode bits: manual may end as late as they become MODE_INVALID. */
+    if (hazard->t_ms - hold->first_ms <= (uint64_t)hazard->limits.mode_invalid_ms + FRESH_MS) {
+        widen(&hold->first, angle_ddeg);
+    }
 }
 
 /** The real angle, and those that 067h lately carried. */
@@ -29,9 +43,7 @@ static hazard_range_t range_now(const hazard_t *hazard, uint32_t within_ms) {
 
     for (uint32_t i = 0u; (i < HAZARD_ANGLES) && (i < hold->measured_count); i++) {
         if (hazard->t_ms - hold->measured_ms[i] <= within_ms) {
-            const int32_t ddeg = hold->measured_ddeg[i];
-            range.low_ddeg = (ddeg < range.low_ddeg) ? ddeg : range.low_ddeg;
-            range.high_ddeg = (ddeg > range.high_ddeg) ? ddeg : range.high_ddeg;
+            widen(&range, hold->measured_ddeg[i]);
         }
     }
     return range;
@@ -49,7 +61,7 @@ void hazard_hold_trip(hazard_t *hazard) {
 /** Whether the angle is one that may be held. */
 static bool may_be_held(const hazard_hold_t *hold, int32_t held_ddeg) {
     return is_within(&hold->now, held_ddeg) || (hold->has_trip && is_within(&hold->at_trip, held_ddeg)) ||
-           (hold->has_first && is_near(held_ddeg, hold->first_ddeg));
+           (hold->has_first && is_within(&hold->first, held_ddeg));
 }
 
 void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame) {

@@ -118,10 +118,6 @@ static void note_angle(hazard_t *hazard) {
         hazard->moved_ddeg = 0;
         hazard->still_since_ms = hazard->t_ms;
     }
-    if (!hazard->hold.has_first) {
-        hazard->hold.has_first = true;
-        hazard->hold.first_ddeg = angle_ddeg;
-    }
 }
 
 void hazard_wire_status(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
