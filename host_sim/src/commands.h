@@ -36,6 +36,9 @@ command_fn cmd_campaign;
 /** `host_sim soak`: months of virtual time with disturbances that have to be survived. */
 command_fn cmd_soak;
 
+/** `host_sim hunt`: an adversary that searches for hazards. */
+command_fn cmd_hunt;
+
 /** `host_sim config`: every setting, as YAML or as a Kconfig fragment. */
 command_fn cmd_config;
 

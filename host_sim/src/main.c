@@ -23,6 +23,7 @@ static const command_t commands[] = {
     {"campaign", "cause faults at random on the simulated bus, thousands of times, and judge", cmd_campaign},
     {"config", "print every setting as a configuration file, or a configuration as Kconfig", cmd_config},
     {"demo", "see the supervisor at work: a vehicle drives off, loses its AI computer, is parked", cmd_demo},
+    {"hunt", "attack the supervisor at random, and search for runs that end in a hazard", cmd_hunt},
     {"replay", "feed a recorded candump log to the supervisor in virtual time", cmd_replay},
     {"run", "run the supervisor as a node on SocketCAN, in real time", cmd_run},
     {"scenario", "play scenario files with a simulated vehicle and judge them", cmd_scenario},

@@ -22,6 +22,7 @@
 #define SCENARIO_TEXT_MAX 96u
 #define SCENARIO_SHOWS_MAX 24u
 #define SCENARIO_STEPS_MAX 256u
+#define SCENARIO_AGAIN_MAX 32u  /* steps with again_every_ms */
 #define SCENARIO_EXPECT_MAX 64u /* of each kind */
 #define SCENARIO_DURATION_MAX_MS 86400000u
 #define SCENARIO_DEFAULT_BITRATE 500000u
@@ -60,6 +61,8 @@ typedef struct {
 /** What happens at a moment: to the vehicle, or to the supervisor. */
 typedef struct {
     uint32_t at_ms;
+    uint32_t again_every_ms; /**< 0: once */
+    uint32_t again_until_ms; /**< the last moment in which it may be done again */
     size_t line;
     const char *actor; /**< "ai" */
     const char *word;  /**< "stop" */
@@ -174,6 +177,8 @@ typedef struct {
     SCENARIO_LIST(scenario_vehicle_t) vehicle;
     SCENARIO_LIST(scenario_counter_t) counters;
     bool no_other_faults;
+    bool any_states;   /**< changes of state and of the safety output and resets are not listed, and not judged */
+    size_t no_hazards; /**< line on which `hazards: never` stands; 0: hazards are not judged */
 } scenario_expect_t;
 
 typedef struct {

@@ -11,6 +11,7 @@
 #include "node.h"
 #include "outsider.h"
 #include "report.h"
+#include "scenario_player.h"
 #include "vehicle_bus.h"
 
 /* 128 times 11 recessive bits at 500 kbit/s: how long the recovery of a controller takes on an idle bus. */
@@ -32,7 +33,7 @@ typedef struct {
     int64_t node_began_us;  /* when its own time began, in that of the run */
     uint64_t deaf_until_ms; /* it hangs, or has no power, until then */
     bool hangs;
-    size_t next_step;
+    scenario_player_t player;
     uint64_t next_view_ms;                  /* the first one that nobody has looked at */
     linux_can_t controllers[HAL_CAN_SIDES]; /* what sends the error frames of the supervisor's controllers */
     uint64_t recovered_ms[HAL_CAN_SIDES];   /* when bus-off ends; UINT64_MAX: there is none */
@@ -207,11 +208,9 @@ static bool do_to_supervisor(run_t *run, uint64_t t_ms, const scenario_action_t 
 }
 
 static bool do_steps(run_t *run, uint64_t t_ms) {
-    const scenario_t *scenario = run->scenario;
+    const scenario_step_t *step = NULL;
     bool good = true;
-    for (; good && (run->next_step < scenario->step_count) && (scenario->steps[run->next_step].at_ms <= t_ms);
-         run->next_step++) {
-        const scenario_step_t *step = &scenario->steps[run->next_step];
+    while (good && ((step = scenario_player_next(&run->player, t_ms)) != NULL)) {
         if (step->of_vehicle) {
             (void)vehicle_bus_do(&run->vehicle, &step->vehicle);
         } else {
@@ -336,6 +335,7 @@ bool scenario_bus_play(const scenario_bus_t *bus, scenario_check_t *check, const
                        events_summary_t *summary) {
     run_t run = {.bus = bus, .scenario = check->scenario, .check = check, .watch = watch, .summary = summary};
     live_files_none(&run.files);
+    scenario_player_init(&run.player, check->scenario);
     for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
         run.controllers[side].fd = -1;
         run.recovered_ms[side] = UINT64_MAX;

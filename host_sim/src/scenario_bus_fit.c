@@ -162,6 +162,9 @@ const char *scenario_bus_leaves_out(const scenario_bus_t *bus, const scenario_t 
     }
     why = (why != NULL) ? why : why_not_faults(&scenario->expect);
     why = (why != NULL) ? why : why_not_ai_side(scenario);
+    if ((why == NULL) && (scenario->expect.no_hazards != 0u)) {
+        why = "hazards: they are judged by the inside of the simulated vehicle";
+    }
     return (why != NULL) ? why : why_not_counters(scenario);
 }
 

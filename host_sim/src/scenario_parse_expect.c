@@ -224,7 +224,6 @@ static bool read_startup(const yaml_reader_t *reader, const yaml_node_t *node, v
     static bool read_list_##name(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {                 \
         return yaml_reader_list(reader, node, #name, (item), target);                                                  \
     }
-LIST(states, read_state)
 LIST(frames, scenario_parse_frame)
 LIST(never, scenario_parse_never)
 LIST(safety_output, read_output)
@@ -233,6 +232,28 @@ LIST(faults, read_fault)
 LIST(resets, read_reset)
 LIST(startup, read_startup)
 LIST(vehicle, scenario_parse_vehicle)
+
+/** A list of all changes of state, or `any`. */
+static bool read_list_states(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    const char *text = yaml_node_text(node);
+
+    if ((text != NULL) && (strcmp(text, "any") == 0)) {
+        ((scenario_t *)target)->expect.any_states = true;
+        return true;
+    }
+    return yaml_reader_list(reader, node, "states", read_state, target);
+}
+
+static bool read_hazards(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    static const yaml_word_t words[] = {{"never", 1}, {NULL, 0}};
+    int value = 0;
+
+    if (!yaml_reader_word(reader, node, "hazards", words, &value)) {
+        return false;
+    }
+    ((scenario_t *)target)->expect.no_hazards = yaml_node_line(node);
+    return true;
+}
 
 bool scenario_parse_expect(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     static const yaml_key_t keys[] = {
@@ -247,6 +268,7 @@ bool scenario_parse_expect(const yaml_reader_t *reader, const yaml_node_t *node,
         {"startup", read_list_startup, false},
         {"vehicle", read_list_vehicle, false},
         {"counters_at_end", scenario_parse_counters, false},
+        {"hazards", read_hazards, false},
     };
     return yaml_reader_map(reader, node, "expect", keys, COUNT(keys), target);
 }

@@ -16,6 +16,8 @@
 typedef struct {
     const yaml_node_t *node;
     uint32_t at_ms;
+    uint32_t again_every_ms;
+    uint32_t again_until_ms;
     scenario_actor_t actor;
     const yaml_node_t *word; /* what the actor does */
     uint32_t given;          /* P_* */
@@ -344,15 +346,31 @@ static bool has_what_it_needs(const yaml_reader_t *reader, const reading_t *read
     return true;
 }
 
+/** A key that says when. @return whether it is one */
+static bool is_time_key(const char *name, reading_t *reading, uint32_t **time) {
+    static const char *const names[] = {"at_ms", "again_every_ms", "again_until_ms"};
+    uint32_t *const times[] = {&reading->at_ms, &reading->again_every_ms, &reading->again_until_ms};
+
+    for (size_t i = 0u; i < COUNT(names); i++) {
+        if (strcmp(names[i], name) == 0) {
+            *time = times[i];
+            return true;
+        }
+    }
+    return false;
+}
+
 static bool take_key(const yaml_reader_t *reader, const yaml_node_t *key, const yaml_node_t *value,
                      reading_t *reading) {
     const char *name = yaml_node_text(key);
+    uint32_t *time = NULL;
 
     if (name == NULL) {
         return yaml_reader_fail(reader, key, "a key of a step must be a word");
     }
-    if (strcmp(name, "at_ms") == 0) {
-        return scenario_parse_time(reader, value, "at_ms", &reading->at_ms);
+    if (is_time_key(name, reading, &time)) {
+        return scenario_parse_u32(reader, value, name, (time == &reading->again_every_ms) ? 1u : 0u,
+                                  SCENARIO_DURATION_MAX_MS, time);
     }
     for (const yaml_word_t *actor = SCENARIO_ACTORS; actor->word != NULL; actor++) {
         if (strcmp(actor->word, name) == 0) {
@@ -398,13 +416,16 @@ static bool take_keys(const yaml_reader_t *reader, reading_t *reading) {
     if (!has_time) {
         return yaml_reader_fail(reader, node, "a step: 'at_ms' is missing");
     }
+    if ((reading->again_until_ms != UINT32_MAX) && (reading->again_every_ms == 0u)) {
+        return yaml_reader_fail(reader, node, "a step: 'again_until_ms' needs 'again_every_ms'");
+    }
     return (reading->actor != ACTOR_NONE) ||
            yaml_reader_fail(reader, node, "a step: who acts? one of vcu, eps, ai, operator, bus, supervisor");
 }
 
 bool scenario_parse_step(const yaml_reader_t *reader, const yaml_node_t *node, const agv_config_t *config,
                          scenario_step_t *step) {
-    reading_t reading = {.node = node, .actor = ACTOR_NONE};
+    reading_t reading = {.node = node, .again_until_ms = UINT32_MAX, .actor = ACTOR_NONE};
 
     if (!take_keys(reader, &reading)) {
         return false;
@@ -419,6 +440,8 @@ bool scenario_parse_step(const yaml_reader_t *reader, const yaml_node_t *node, c
                                 SCENARIO_ACTORS[reading.actor].word, word);
     }
     *step = (scenario_step_t){.at_ms = reading.at_ms,
+                              .again_every_ms = reading.again_every_ms,
+                              .again_until_ms = reading.again_until_ms,
                               .line = yaml_node_line(node),
                               .actor = SCENARIO_ACTORS[reading.actor].word,
                               .word = row->word,
@@ -431,6 +454,17 @@ bool scenario_parse_step(const yaml_reader_t *reader, const yaml_node_t *node, c
                            : take_for_supervisor(reader, &reading, row, config, step);
 }
 
+/** There is room for all steps that are done again and again. */
+static bool again_fits(const yaml_reader_t *reader, const yaml_node_t *node, const scenario_t *scenario) {
+    size_t count = 0u;
+
+    for (size_t i = 0u; i < scenario->step_count; i++) {
+        count += (scenario->steps[i].again_every_ms != 0u) ? 1u : 0u;
+    }
+    return (count <= SCENARIO_AGAIN_MAX) ||
+           yaml_reader_fail(reader, node, "more than %u steps with again_every_ms", SCENARIO_AGAIN_MAX);
+}
+
 static bool read_step(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     scenario_t *scenario = target;
 
@@ -438,7 +472,8 @@ static bool read_step(const yaml_reader_t *reader, const yaml_node_t *node, void
         return yaml_reader_fail(reader, node, "more than %u steps", SCENARIO_STEPS_MAX);
     }
     scenario->step_count++;
-    return scenario_parse_step(reader, node, &scenario->config, &scenario->steps[scenario->step_count - 1u]);
+    return scenario_parse_step(reader, node, &scenario->config, &scenario->steps[scenario->step_count - 1u]) &&
+           again_fits(reader, node, scenario);
 }
 
 bool scenario_parse_steps(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {

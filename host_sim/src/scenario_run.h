@@ -7,6 +7,7 @@
 
 #include <stddef.h>
 
+#include "hazard.h"
 #include "scenario.h"
 #include "scenario_check.h"
 #include "scenario_world.h"
@@ -19,6 +20,7 @@ typedef struct {
     scenario_t scenario;
     scenario_world_t world;
     scenario_check_t check;
+    hazard_t hazard;
     bool was_interrupted; /**< by a signal that is held back (interrupt.h): not played to its end */
 } scenario_run_t;
 

@@ -134,7 +134,7 @@ static bool read_step(const line_t *line, const agv_config_t *config, scenario_s
     const bool good =
         build(line, &document) && scenario_parse_step(&reader, yaml_document_get_root_node(&document), config, step);
     yaml_document_delete(&document);
-    return good;
+    return good && ((step->again_every_ms == 0u) || wrong(line, "again_every_ms is for scenario files"));
 }
 
 static void describe(const line_t *line, char what[VEHICLE_WORDS_MAX]) {
