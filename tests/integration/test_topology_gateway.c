@@ -58,11 +58,18 @@ static const uint8_t NO_GEAR[8] = {3};
 static const uint8_t TOO_MUCH_THROTTLE[8] = {251};
 static const uint8_t TOO_MUCH_ANGLE[8] = {0x51, 0x46}; /* 18001 */
 
+/* Silent for longer than half of each cycle: the next frame of each command passes at once. */
+static void pause_ai(void) {
+    fixture_mute_ai(&f, true);
+    fixture_run(&f, 60);
+}
+
 /* ---- Commands ---- */
 
 /* Shows: TOP-2, P14 */
 void test_in_active_the_four_commands_pass_packed_anew(void) {
     fixture_active(&f);
+    pause_ai();
     from_ai(0x43F, SIGNALS);
     expect_passed(HAL_CAN_VEHICLE, 0x43F, SIGNALS_PACKED);
     from_ai(0x168, DRIVE);
@@ -400,7 +407,7 @@ void test_no_other_identifier_passes(void) {
 /* Shows: TOP-2, INT-2, P15 */
 void test_no_malformed_frame_passes(void) {
     static const uint32_t IDS[] = {0x43F, 0x168, 0x075, 0x065, 0x363, 0x0A3, 0x050, 0x067, 0x167, 0x267, 0x101};
-    fixture_active(&f);
+    fixture_standby(&f); /* engaged, commands that are none trip */
     for (unsigned i = 0; i < sizeof IDS / sizeof IDS[0]; i++) {
         const hal_can_side_t side = i < 4 ? HAL_CAN_AI : HAL_CAN_VEHICLE;
         for (uint8_t length = 0; length < 8; length++) {
@@ -410,7 +417,7 @@ void test_no_malformed_frame_passes(void) {
             expect_nothing_passes(side, (hal_can_frame_t){.id = IDS[i], .flags = flags, .length = 8});
         }
     }
-    expect_state(&f, AGV_STATE_ACTIVE);
+    expect_state(&f, AGV_STATE_STANDBY);
 }
 
 /* Shows: TOP-2, FOREIGN_COMMAND_SENDER, SUP-6 */
@@ -436,23 +443,37 @@ void test_on_the_shared_bus_the_ai_side_is_ignored(void) {
     expect_state(&f, AGV_STATE_ACTIVE);
 }
 
-/* What waited in ACTIVE may not leave in STANDBY any more, and is no reason to trip. */
+/* The third 363h without bit 8 ends the engagement. */
+static void disengage(void) {
+    fixture_mode(&f, MODE_MANUAL);
+    for (unsigned i = 0; i < 3; i++) {
+        fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    }
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* What waited in ACTIVE may not leave any more with the first 363h without autopilot, and is no reason to trip. The throttle 0
+ * of the end of the engagement waits instead. */
 /* Shows: TOP-2 */
 void test_what_waits_when_the_autopilot_is_disengaged_is_dropped(void) {
     fixture_active(&f);
-    fixture_mute_ai(&f, true);
+    pause_ai();
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
     from_ai(0x168, DRIVE);
     from_ai(0x075, THROTTLE);
     from_ai(0x065, ANGLE);
+    const uint32_t before = dropped();
     fixture_mode(&f, MODE_MANUAL);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    TEST_ASSERT_EQUAL_UINT32(before + 3, dropped());
+    disengage();
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
     fixture_run(&f, 50);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x075));
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x075));
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(ZERO, fixture_nth_sent(&f, 0x075, 0)->data, 8);
     TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->gate_refused);
     expect_state(&f, AGV_STATE_STANDBY);
 }
@@ -471,4 +492,398 @@ void test_what_waits_at_a_trip_in_manual_is_dropped(void) {
     TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->gate_refused);
     expect_fault(&f, AGV_FAULT_TX_GATE_REFUSED, false);
     TEST_ASSERT_EQUAL_HEX8(0x70, fixture_nth_sent(&f, 0x43F, 0)->data[4]);
+}
+
+/* ---- Only while the last 363h reports autopilot ---- */
+
+static void report(uint8_t mode) {
+    fixture_mode(&f, mode);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_ACTIVE);
+}
+
+static void expect_no_motion_passes(void) {
+    expect_dropped(0x168, DRIVE);
+    expect_dropped(0x075, THROTTLE);
+    expect_dropped(0x065, ANGLE);
+    from_ai(0x43F, SIGNALS);
+    expect_passed(HAL_CAN_VEHICLE, 0x43F, SIGNALS_PACKED);
+}
+
+/* Engaged still, because that ends with the third 363h only; what passes in manual changes nothing about it. */
+/* Shows: TOP-2 */
+void test_no_motion_passes_when_the_last_363h_does_not_report_autopilot(void) {
+    static const uint8_t MODES[] = {MODE_MANUAL, MODE_NEITHER, MODE_BOTH};
+    for (unsigned i = 0; i < 6; i++) {
+        setUp();
+        f.config.gateway_in_manual = i < 3 ? AGV_IN_MANUAL_HEARTBEAT : AGV_IN_MANUAL_ALL;
+        fixture_active(&f);
+        pause_ai();
+        report(MODES[i % 3]);
+        expect_no_motion_passes();
+        report(MODE_ENGAGED);
+        from_ai(0x075, THROTTLE);
+        expect_passed(HAL_CAN_VEHICLE, 0x075, THROTTLE_PACKED);
+    }
+}
+
+/* ---- At most one in half a cycle ---- */
+
+typedef struct {
+    agv_message_t message;
+    uint32_t id;
+    uint32_t half_ms; /* the first whole millisecond of the other half */
+    uint8_t first[8];
+    uint8_t second[8];
+    uint8_t third[8];
+} too_soon_t;
+
+static const too_soon_t TOO_SOON[] = {{AGV_MSG_TURN_SIGNAL_COMMAND,
+                                       0x43F,
+                                       50,
+                                       {0, 0, 0, 0, 0x80, 0, 0, 1},
+                                       {0, 0, 0, 0, 0x80, 0, 0, 2},
+                                       {0, 0, 0, 0, 0x80, 0, 0, 3}},
+                                      {AGV_MSG_GEAR_COMMAND, 0x168, 50, {8}, {4}, {8}},
+                                      {AGV_MSG_THROTTLE_COMMAND, 0x075, 50, {10}, {20}, {30}},
+                                      {AGV_MSG_STEERING_COMMAND, 0x065, 13, {0x28, 0x23}, {0x29, 0x23}, {0x2A, 0x23}}};
+
+/* This one command comes only from the test, and has not for longer than half its cycle. */
+static void active_without(const too_soon_t *row) {
+    setUp();
+    fixture_active(&f);
+    f.traffic[row->message].muted = true;
+    fixture_run(&f, 60);
+}
+
+/* The first passes; the second and the third come too soon: the newest goes when the half cycle is over, once. */
+static void check_newest(const too_soon_t *row) {
+    active_without(row);
+    const uint32_t before = dropped();
+    from_ai(row->id, row->first);
+    expect_passed(HAL_CAN_VEHICLE, row->id, row->first);
+    fixture_run(&f, 1);
+    from_ai(row->id, row->second);
+    expect_silence(&f);
+    fixture_run(&f, row->half_ms - 2);
+    from_ai(row->id, row->third);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, row->id));
+    TEST_ASSERT_EQUAL_UINT32(before + 1, dropped());
+    fixture_run(&f, 1);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, row->id));
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(row->third, fixture_nth_sent(&f, row->id, 0)->data, 8);
+    fixture_run(&f, row->half_ms - 1);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, row->id));
+    from_ai(row->id, row->first); /* that one counted as a pass */
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, row->id));
+    TEST_ASSERT_EQUAL_UINT32(before + 1, dropped());
+}
+
+static void check_in_time(const too_soon_t *row) {
+    active_without(row);
+    from_ai(row->id, row->first);
+    fixture_run(&f, row->half_ms);
+    from_ai(row->id, row->second);
+    expect_passed(HAL_CAN_VEHICLE, row->id, row->second);
+}
+
+/* Shows: TOP-2 */
+void test_of_commands_that_come_too_soon_the_newest_goes(void) {
+    for (unsigned i = 0; i < 4; i++) {
+        check_newest(&TOO_SOON[i]);
+        check_in_time(&TOO_SOON[i]);
+    }
+}
+
+/* 5 frames a millisecond for 950 ms: one each 50 ms goes on. */
+/* Shows: TOP-2, SUP-6 */
+void test_a_flood_from_the_ai_side_does_not_fill_the_vehicles_bus(void) {
+    fixture_active(&f);
+    pause_ai();
+    fixture_mute_ai(&f, false);
+    f.traffic[AGV_MSG_GEAR_COMMAND].muted = true;
+    uint32_t passed = 0;
+    const uint32_t before = dropped();
+    for (unsigned i = 0; i < 5 * 950; i++) {
+        from_ai(0x168, (const uint8_t[8]){GEAR_P});
+        passed += fixture_count_sent(&f, 0x168);
+        fixture_forget_sent(&f);
+        if (i % 5 == 4) {
+            fixture_run(&f, 1);
+            passed += fixture_count_sent(&f, 0x168);
+        }
+    }
+    TEST_ASSERT_UINT32_WITHIN(1, 20, passed);
+    TEST_ASSERT_UINT32_WITHIN(1, 5 * 950 - 20, dropped() - before);
+    expect_state(&f, AGV_STATE_ACTIVE);
+}
+
+/* What waits is dropped at a trip; nothing of it leaves later. */
+/* Shows: TOP-2, FSM-2, FSM-6 */
+void test_what_came_too_soon_is_dropped_at_a_trip(void) {
+    for (unsigned i = 0; i < 4; i++) {
+        setUp();
+        fixture_active(&f);
+        pause_ai();
+        from_ai(TOO_SOON[i].id, TOO_SOON[i].first);
+        from_ai(TOO_SOON[i].id, TOO_SOON[i].second);
+        walk_trip(&f);
+        fixture_run(&f, 200); /* the oracle judges each frame */
+        TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->gate_refused);
+    }
+}
+
+/* P passes, N waits, what is no gear does not take its place. */
+/* Shows: TOP-2, SUP-5 */
+void test_an_invalid_frame_does_not_replace_one_that_waits(void) {
+    static const uint8_t park[8] = {8};
+    static const uint8_t neutral[8] = {4};
+    f.config.gateway_in_manual = AGV_IN_MANUAL_ALL;
+    fixture_standby(&f);
+    pause_ai();
+    from_ai(0x168, park);
+    expect_passed(HAL_CAN_VEHICLE, 0x168, park);
+    from_ai(0x168, neutral);
+    expect_dropped(0x168, NO_GEAR);
+    fixture_run(&f, 50);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(neutral, fixture_nth_sent(&f, 0x168, 0)->data, 8);
+}
+
+/* ---- The end of an engagement ---- */
+
+/* One 075h with throttle 0, in the handling of the 363h that ends it, and nothing else of motion. */
+/* Shows: TOP-2 */
+void test_the_end_of_an_engagement_sends_throttle_0(void) {
+    fixture_active(&f);
+    pause_ai();
+    from_ai(0x075, THROTTLE);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_run_before(&f, AGV_MSG_VEHICLE_STATUS);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x075));
+    fixture_forget_sent(&f);
+    fixture_run(&f, 1);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x075));
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(ZERO, fixture_nth_sent(&f, 0x075, 0)->data, 8);
+    TEST_ASSERT_EQUAL_UINT32(f.traffic[AGV_MSG_VEHICLE_STATUS].call, fixture_nth_sent(&f, 0x075, 0)->call);
+    fixture_run(&f, 500);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x075));
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
+}
+
+/* It counts as no pass: the next 075h of the AI computer (in manual, as 0) does not wait for it. */
+/* Shows: TOP-2 */
+void test_the_supervisors_throttle_0_is_no_pass(void) {
+    f.config.gateway_in_manual = AGV_IN_MANUAL_ALL;
+    fixture_active(&f);
+    pause_ai();
+    disengage();
+    from_ai(0x075, THROTTLE);
+    expect_passed(HAL_CAN_VEHICLE, 0x075, ZERO);
+}
+
+/* On a shared bus nothing is sent: the AI computer commands there itself. */
+/* Shows: TOP-1, TOP-2 */
+void test_on_the_shared_bus_the_end_of_an_engagement_sends_nothing(void) {
+    f.config.topology = AGV_TOPOLOGY_SHARED;
+    fixture_active(&f);
+    disengage();
+    fixture_run(&f, 200);
+    expect_silence(&f);
+}
+
+/* ---- Changes of the gear ---- */
+
+static const uint8_t REVERSE[8] = {2};
+static const uint8_t PARK[8] = {8};
+static const uint8_t NEUTRAL[8] = {4};
+
+/* The vehicle reports D and moves. */
+static void active_on_the_move(void) {
+    fixture_active(&f);
+    fixture_drive(&f, 500);
+    fixture_run(&f, 50);
+    f.traffic[AGV_MSG_GEAR_COMMAND].muted = true;
+    fixture_run(&f, 60);
+}
+
+/* Shows: TOP-2 */
+void test_the_gear_does_not_change_to_d_or_r_in_motion(void) {
+    active_on_the_move();
+    expect_dropped(0x168, REVERSE);
+    from_ai(0x168, DRIVE_PACKED); /* as reported */
+    expect_passed(HAL_CAN_VEHICLE, 0x168, DRIVE_PACKED);
+    fixture_run(&f, 50);
+    from_ai(0x168, NEUTRAL);
+    expect_passed(HAL_CAN_VEHICLE, 0x168, NEUTRAL);
+    fixture_gear(&f, GEAR_N);
+    fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
+    expect_dropped(0x168, DRIVE_PACKED); /* no longer as reported */
+    fixture_run(&f, 50);
+    from_ai(0x168, PARK);
+    expect_passed(HAL_CAN_VEHICLE, 0x168, PARK);
+}
+
+/* Standstill is 100 ms of it. */
+/* Shows: TOP-2 */
+void test_the_gear_changes_at_standstill(void) {
+    active_on_the_move();
+    fixture_drive(&f, 0);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
+    fixture_run(&f, 99);
+    expect_dropped(0x168, REVERSE);
+    fixture_run(&f, 1);
+    from_ai(0x168, REVERSE);
+    expect_passed(HAL_CAN_VEHICLE, 0x168, REVERSE);
+}
+
+/* Shows: TOP-2 */
+void test_the_gear_changes_in_motion_if_so_chosen(void) {
+    f.config.gear_change = AGV_GEAR_CHANGE_ANY;
+    active_on_the_move();
+    from_ai(0x168, REVERSE);
+    expect_passed(HAL_CAN_VEHICLE, 0x168, REVERSE);
+}
+
+/* A 168h that is dropped for that refreshes its deadline: the frame came. */
+/* Shows: TOP-2, SUP-3, GEAR_COMMAND_TIMEOUT */
+void test_a_gear_command_that_is_dropped_came_all_the_same(void) {
+    f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = GEAR_R;
+    fixture_active(&f);
+    fixture_drive(&f, 500);
+    f.long_run = true;
+    fixture_run(&f, 2000);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    fixture_forget_sent(&f);
+    fixture_run(&f, 500);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
+}
+
+/* ---- The rest of the envelope ---- */
+
+static uint32_t limited(void) {
+    return agv_supervisor_counters(&f.supervisor)->limited;
+}
+
+static void expect_rise(uint8_t commanded, uint8_t passed) {
+    const uint32_t before = limited();
+    const uint8_t command[8] = {commanded};
+    const uint8_t expected[8] = {passed};
+    from_ai(0x075, command);
+    expect_passed(HAL_CAN_VEHICLE, 0x075, expected);
+    TEST_ASSERT_EQUAL_UINT32(before + (commanded != passed ? 1u : 0u), limited());
+    fixture_run(&f, 100);
+}
+
+/* 100 % a second is 25 counts in 100 ms, from 0 on; down at once. */
+/* Shows: TOP-2 */
+void test_the_throttle_rises_no_faster_than_its_rate(void) {
+    f.config.throttle_rise_pct_s = 100;
+    fixture_active(&f);
+    fixture_run_past(&f, AGV_MSG_THROTTLE_COMMAND);
+    f.traffic[AGV_MSG_THROTTLE_COMMAND].muted = true;
+    fixture_run(&f, 100);
+    expect_rise(250, 25);
+    expect_rise(250, 50);
+    expect_rise(60, 60);
+    expect_rise(250, 85);
+    expect_rise(10, 10);
+    expect_rise(250, 35);
+    expect_rise(0, 0);
+    expect_rise(250, 25);
+}
+
+/* With each engagement from 0. */
+/* Shows: TOP-2 */
+void test_the_rise_begins_anew_with_every_engagement(void) {
+    f.config.throttle_rise_pct_s = 100;
+    fixture_active(&f);
+    fixture_run_past(&f, AGV_MSG_THROTTLE_COMMAND);
+    f.traffic[AGV_MSG_THROTTLE_COMMAND].muted = true;
+    fixture_run(&f, 100);
+    expect_rise(250, 25);
+    expect_rise(250, 50);
+    disengage();
+    fixture_run(&f, 50);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_rise(250, 25);
+}
+
+/* 30.0 degrees to both sides above 1000 mm/s. */
+static void active_and_fast(int32_t mm_s) {
+    setUp();
+    f.config.steering_fast_max_ddeg = 300;
+    f.config.fast_mm_s = 1000;
+    fixture_active(&f);
+    fixture_drive(&f, mm_s);
+    fixture_run(&f, 50);
+    f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
+}
+
+/* Shows: TOP-2 */
+void test_steering_is_limited_above_a_speed(void) {
+    active_and_fast(1000);
+    expect_steering(9400, 9400);
+    TEST_ASSERT_EQUAL_UINT32(0, limited());
+    active_and_fast(1001);
+    expect_steering(9400, 9300);
+    expect_steering(8600, 8700);
+    TEST_ASSERT_EQUAL_UINT32(2, limited());
+    expect_steering(9300, 9300);
+    expect_steering(8700, 8700);
+    TEST_ASSERT_EQUAL_UINT32(2, limited());
+    active_and_fast(-1001);
+    expect_steering(9400, 9300);
+}
+
+/* One wheel is enough, and a stale 101h (here a warning) counts as fast. */
+/* Shows: TOP-2, WHEEL_SPEED_TIMEOUT */
+void test_what_counts_as_fast(void) {
+    active_and_fast(0);
+    fixture_wheels(&f, 0, 1001);
+    fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
+    expect_steering(9400, 9300);
+    setUp();
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_WHEEL_SPEED_TIMEOUT, false);
+    f.config.steering_fast_max_ddeg = 300;
+    f.config.fast_mm_s = 1000;
+    fixture_active(&f);
+    f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
+    fixture_run(&f, 100);
+    f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
+    expect_steering(9400, 9300);
+}
+
+/* The slew applies to the limit too: the vehicle becomes fast with 40.0 degrees, the limit is reached in steps of 2.5. */
+/* Shows: TOP-2 */
+void test_the_slew_rate_applies_to_the_limit_above_a_speed(void) {
+    f.config.steering_fast_max_ddeg = 300;
+    f.config.fast_mm_s = 1000;
+    f.config.steering_slew_ddeg_s = 1000;
+    fixture_angle(&f, 9340);
+    fixture_command_angle(&f, 9340);
+    fixture_active(&f);
+    fixture_run_past(&f, AGV_MSG_STEERING_COMMAND);
+    f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
+    fixture_drive(&f, 2000);
+    expect_steering(9340, 9315);
+    expect_steering(9340, 9300);
+    expect_steering(9340, 9300);
+}
+
+/* What passes as it came is not counted. */
+/* Shows: TOP-2 */
+void test_nothing_is_limited_by_default(void) {
+    fixture_active(&f);
+    f.long_run = true;
+    fixture_run(&f, 2000);
+    pause_ai();
+    from_ai(0x075, (const uint8_t[8]){250, 0xFF});
+    from_ai(0x065, (const uint8_t[8]){0x50, 0x46, 0xFF});
+    TEST_ASSERT_EQUAL_UINT32(0, limited());
 }

@@ -10,6 +10,7 @@ enum { STATUS_ID = 0x6F0 };
 
 void setUp(void) {
     fixture_init(&f);
+    f.log_status = true;
 }
 
 void tearDown(void) {
@@ -27,7 +28,7 @@ static void expect_status(agv_state_t state, agv_fault_t reason, uint8_t closed)
     TEST_ASSERT_EQUAL_INT(HAL_CAN_VEHICLE, status->side);
     TEST_ASSERT_EQUAL_UINT8(8, status->length);
     TEST_ASSERT_EQUAL_HEX8(state, status->data[0]);
-    TEST_ASSERT_EQUAL_UINT8(reason, status->data[1]);
+    TEST_ASSERT_EQUAL_UINT8(reason == AGV_FAULT_NONE ? 0xFF : reason, status->data[1]);
     TEST_ASSERT_EQUAL_UINT8(closed, status->data[2]);
     TEST_ASSERT_EQUAL_HEX8(checksum, status->data[4]);
     TEST_ASSERT_EQUAL_HEX8(checksum >> 8, status->data[5]);
@@ -35,8 +36,39 @@ static void expect_status(agv_state_t state, agv_fault_t reason, uint8_t closed)
     TEST_ASSERT_EQUAL_HEX8(checksum >> 24, status->data[7]);
 }
 
+/* 7F0h each 100 ms, the first one at the start. */
 /* Shows: TOP-3 */
-void test_no_status_frame_by_default(void) {
+void test_the_status_frame_is_on_by_default(void) {
+    fixture_start(&f);
+    const fixture_sent_t *first = fixture_nth_sent(&f, 0x7F0, 0);
+    TEST_ASSERT_EQUAL_UINT32(f.now_ms, first->time_ms);
+    TEST_ASSERT_EQUAL_INT(HAL_CAN_VEHICLE, first->side);
+    TEST_ASSERT_EQUAL_HEX8(AGV_STATE_INIT, first->data[0]);
+    TEST_ASSERT_EQUAL_HEX8(0xFF, first->data[1]); /* no reason */
+    TEST_ASSERT_EQUAL_HEX8(0, first->data[2]);
+    fixture_run(&f, 99);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x7F0));
+    fixture_run(&f, 1);
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x7F0));
+    fixture_run(&f, 1900);
+    TEST_ASSERT_EQUAL_UINT32(21, fixture_count_sent(&f, 0x7F0));
+}
+
+/* Shows: TOP-3 */
+void test_a_restart_begins_with_a_status_frame(void) {
+    walk_to_safe(&f);
+    fixture_forget_sent(&f);
+    fixture_restart(&f, HAL_RESET_WATCHDOG);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x7F0));
+    TEST_ASSERT_EQUAL_HEX8(AGV_STATE_TRIPPED, fixture_nth_sent(&f, 0x7F0, 0)->data[0]);
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_S_DRIVER_ALARM, fixture_nth_sent(&f, 0x7F0, 0)->data[1]);
+}
+
+/* Switched off, which is listed as a weakening. */
+/* Shows: TOP-3, INT-2 */
+void test_the_status_frame_may_be_switched_off(void) {
+    f.config.status_frame_id = 0;
+    TEST_ASSERT_TRUE(agv_config_weakens(&f.config, AGV_SETTING_status_frame_id));
     fixture_active(&f);
     fixture_run(&f, 2000);
     expect_silence(&f);
@@ -70,7 +102,7 @@ void test_the_status_frame_says_it_in_the_gateway_too(void) {
 }
 
 static void expect_period(uint16_t period_ms) {
-    fixture_init(&f);
+    setUp();
     f.config.status_frame_id = 0x001;
     f.config.status_frame_period_ms = period_ms;
     fixture_active(&f);
@@ -100,26 +132,115 @@ void test_the_status_frame_does_not_burst_after_an_overrun(void) {
     fixture_run(&f, 100);
     fixture_forget_sent(&f);
     f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF; /* it would have bitten */
+    fixture_run(&f, 10);
+    fixture_forget_sent(&f);
     fixture_jump(&f, 750);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, STATUS_ID));
     fixture_run(&f, 500);
     TEST_ASSERT_EQUAL_UINT32(6, fixture_count_sent(&f, STATUS_ID));
 }
 
-/* Shows: TOP-3 */
-void test_a_status_frame_that_does_not_leave_is_not_counted(void) {
+/* The HAL takes nothing: tried again at each tick, and 100 ms later the transmitter counts as dead. */
+/* Shows: TOP-3, SUP-7, TX_STALLED */
+void test_a_dead_transmitter_shows_within_a_status_frame(void) {
     f.config.status_frame_id = STATUS_ID;
     fixture_standby(&f);
-    fixture_run(&f, 200);
+    fixture_run(&f, 110);
+    while (fixture_count_sent(&f, STATUS_ID) < 2) {
+        fixture_run(&f, 1);
+    }
     const uint8_t before = last_status()->data[3];
     fixture_forget_sent(&f);
-    sim_hal_fail_at(&f.hal, 1, UINT32_MAX, 1u << SIM_HAL_OP_CAN_SEND);
-    fixture_run(&f, 200); /* two of them */
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    fixture_run(&f, 100 + 100); /* the next one is due after 100 ms */
+    expect_state(&f, AGV_STATE_STANDBY);
+    expect_fault(&f, AGV_FAULT_TX_STALLED, false);
+    fixture_run(&f, 2);
+    expect_reason(&f, AGV_FAULT_TX_STALLED);
+    expect_output(&f, false);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, STATUS_ID));
-    sim_hal_fail_at(&f.hal, 0, 0, 0);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
     fixture_run(&f, 100);
+    TEST_ASSERT_TRUE(fixture_count_sent(&f, STATUS_ID) > 0);
+    TEST_ASSERT_EQUAL_HEX8((uint8_t)(before + 1), fixture_nth_sent(&f, STATUS_ID, 0)->data[3]);
+}
+
+/* A full queue for less than 100 ms is none: the frame leaves with the first tick in which there is room. */
+/* Shows: TOP-3, TX_STALLED */
+void test_a_status_frame_that_has_to_wait(void) {
+    f.config.status_frame_id = STATUS_ID;
+    fixture_standby(&f);
+    while (fixture_count_sent(&f, STATUS_ID) == 0) {
+        fixture_run(&f, 1);
+    }
+    fixture_forget_sent(&f);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    fixture_run(&f, 190);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    fixture_run(&f, 1);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, STATUS_ID));
-    TEST_ASSERT_EQUAL_HEX8((uint8_t)(before + 1), last_status()->data[3]);
+    fixture_run(&f, 8);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, STATUS_ID));
+    fixture_run(&f, 1); /* 200 ms after the last one but one: on its grid */
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, STATUS_ID));
+    expect_state(&f, AGV_STATE_STANDBY);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_TX_STALLED));
+}
+
+/* Shows: TOP-3, SUP-7 */
+void test_no_status_frame_during_bus_off(void) {
+    fixture_standby(&f);
+    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
+    fixture_run(&f, 1);
+    fixture_forget_sent(&f);
+    const uint32_t calls = f.hal.op_calls[SIM_HAL_OP_CAN_SEND];
+    fixture_run(&f, 500);
+    TEST_ASSERT_EQUAL_UINT32(calls, f.hal.op_calls[SIM_HAL_OP_CAN_SEND]);
+    expect_reason(&f, AGV_FAULT_BUS_OFF);
+}
+
+/* ---- Another sender of its identifier ---- */
+
+static const agv_fault_t IN_USE = AGV_FAULT_STATUS_ID_IN_USE;
+
+/* Any data frame of that identifier, of any length, FD too: a warning for a second after the last one. */
+/* Shows: TOP-3, STATUS_ID_IN_USE */
+void test_another_sender_of_the_status_frames_identifier_warns(void) {
+    for (uint8_t i = 0; i < 18; i++) {
+        setUp();
+        fixture_active(&f);
+        const uint8_t flags = i < 9 ? 0 : HAL_CAN_FD;
+        fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x7F0, .length = i % 9, .flags = flags});
+        expect_fault(&f, IN_USE, true);
+        expect_state(&f, AGV_STATE_ACTIVE);
+        TEST_ASSERT_EQUAL_UINT32(1, agv_supervisor_counters(&f.supervisor)->warnings);
+        fixture_run(&f, 999);
+        expect_fault(&f, IN_USE, true);
+        expect_led(&f, -1);
+        fixture_run(&f, 1);
+        expect_fault(&f, IN_USE, false);
+        expect_state(&f, AGV_STATE_ACTIVE);
+    }
+}
+
+/* Shows: TOP-3, P15, STATUS_ID_IN_USE */
+void test_what_is_no_other_sender_of_it(void) {
+    static const uint8_t FLAGS[] = {HAL_CAN_REMOTE, HAL_CAN_EXTENDED, HAL_CAN_ERROR};
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    f.long_run = true;
+    fixture_active(&f);
+    for (unsigned i = 0; i < 3; i++) {
+        fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x7F0, .length = 8, .flags = FLAGS[i]});
+    }
+    fixture_raw(&f, HAL_CAN_AI, (hal_can_frame_t){.id = 0x7F0, .length = 8});
+    fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x7F1, .length = 8});
+    expect_fault(&f, IN_USE, false);
+    setUp();
+    f.config.status_frame_id = 0; /* off: it may be anybody's, and 0 is no identifier of ours */
+    fixture_active(&f);
+    fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x7F0, .length = 8});
+    fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0, .length = 8});
+    expect_fault(&f, IN_USE, false);
 }
 
 /* ---- Shadow ---- */
@@ -158,7 +279,8 @@ static void expect_the_same_decisions(void) {
     TEST_ASSERT_EQUAL_UINT32(real.hal.safety_output.changes, f.hal.safety_output.changes);
 }
 
-/* Shows: TOP-4 */
+/* The status frame is not among it: there is none in shadow. */
+/* Shows: TOP-3, TOP-4 */
 void test_in_shadow_it_decides_as_always_and_counts_what_it_would_have_sent(void) {
     for (uint16_t topology = AGV_TOPOLOGY_SHARED; topology <= AGV_TOPOLOGY_GATEWAY; topology++) {
         fixture_init(&real);
@@ -172,7 +294,7 @@ void test_in_shadow_it_decides_as_always_and_counts_what_it_would_have_sent(void
         go_round(&f);
         const uint32_t would_have = agv_supervisor_counters(&f.supervisor)->shadowed;
         TEST_ASSERT_TRUE(would_have > 100);
-        TEST_ASSERT_EQUAL_UINT32(agv_supervisor_counters(&real.supervisor)->sent, would_have);
+        TEST_ASSERT_EQUAL_UINT32(agv_supervisor_counters(&real.supervisor)->sent - real.status_count, would_have);
         expect_the_same_decisions();
     }
 }
