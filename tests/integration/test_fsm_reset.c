@@ -127,7 +127,7 @@ static void eps_fault(bool spoilt) {
 }
 
 static void alarm(bool spoilt) {
-    walk_alarm(&f, spoilt ? ALARM_REMOTE_POWER : ALARM_NONE);
+    walk_alarm(&f, spoilt ? ALARM_S_DRIVER : ALARM_NONE);
 }
 
 static void no_throttle_status(bool spoilt) {
@@ -437,6 +437,37 @@ void test_a_vcu_that_is_not_alive_says_nothing_of_the_button(void) {
     press(false);
     expect_refusals(1, AGV_MISSING_BUTTON);
     expect_state(&f, AGV_STATE_SAFE);
+}
+
+/* ---- The remote receiver is lost ---- */
+
+/* The operator holds the button; the VCU reports the receiver as lost, and with it no button. */
+static void lose_the_receiver(uint8_t alarm_bits) {
+    fixture_init(&f);
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_REMOTE_SIGNAL_LOST, false); /* else that alone would keep SAFE */
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_REMOTE_POWER_LOST, false);
+    walk_to_safe(&f);
+    press(true);
+    fixture_run(&f, 1500);
+    walk_alarm(&f, alarm_bits);
+    press(false);
+}
+
+/* That is no release; and when it comes back with the button pressed, that is no rising edge. */
+/* Shows: FSM-3, REMOTE_SIGNAL_LOST, REMOTE_POWER_LOST */
+void test_a_receiver_that_is_lost_and_comes_back_is_neither_release_nor_press(void) {
+    static const uint8_t ALARMS[] = {ALARM_REMOTE_SIGNAL, ALARM_REMOTE_POWER};
+    for (unsigned i = 0; i < 2; i++) {
+        lose_the_receiver(ALARMS[i]);
+        expect_state(&f, AGV_STATE_SAFE);
+        expect_refusals(1, AGV_MISSING_BUTTON);
+        fixture_run(&f, 200);
+        walk_alarm(&f, ALARM_NONE);
+        hold_for(1500);
+        expect_state(&f, AGV_STATE_SAFE);
+        expect_refusals(2, AGV_MISSING_BUTTON);
+        expect_reset_by(1000);
+    }
 }
 
 /* Shows: FSM-3 */
