@@ -34,12 +34,20 @@ static void tick(uint32_t now_ms) {
     agv_fault_monitor_tick(&monitor, &timers);
 }
 
+/* Where nothing has changed nothing is said of what. */
+static void evaluate_with(bool ai_loss_warns) {
+    agv_fault_monitor_evaluate(&monitor, &config.trips, ai_loss_warns, &changes);
+    if (!changes.any) {
+        memset(&changes, 0, sizeof changes);
+    }
+}
+
 static void evaluate(void) {
-    agv_fault_monitor_evaluate(&monitor, &config.trips, true, &changes);
+    evaluate_with(true);
 }
 
 static void evaluate_engaged(void) {
-    agv_fault_monitor_evaluate(&monitor, &config.trips, false, &changes);
+    evaluate_with(false);
 }
 
 static bool is_active(unsigned fault) {

@@ -366,6 +366,64 @@ void test_a_press_from_before_the_vcu_came_back_resets_nothing(void) {
     expect_reset();
 }
 
+/* ---- The remote receiver has lost signal or power ---- */
+
+static void frame_without_receiver(bool down) {
+    agv_reset_button_report(&reset, true, true, down);
+    step(0);
+}
+
+/* "Not pressed" is then nobody's release. */
+/* Shows: FSM-3 */
+void test_a_press_that_the_loss_of_the_remote_ends(void) {
+    frame(true);
+    run(2000);
+    frame_without_receiver(false);
+    expect_in_vain(AGV_MISSING_BUTTON);
+    run(10);
+    frame(false);
+    run(10);
+    in_vain = 0;
+    press(1000);
+    expect_reset();
+}
+
+/* Nor is what is pressed when it comes back an edge: it may have been held all the time. */
+/* Shows: FSM-3 */
+void test_a_press_from_before_the_remote_came_back_resets_nothing(void) {
+    frame_without_receiver(false);
+    run(2000);
+    frame(true);
+    run(2000);
+    frame(false);
+    expect_in_vain(AGV_MISSING_BUTTON);
+    in_vain = 0;
+    run(10);
+    press(1000);
+    expect_reset();
+}
+
+/* A short press that it ends is told no more than any other. */
+/* Shows: FSM-3 */
+void test_a_short_press_that_the_loss_of_the_remote_ends_is_not_told(void) {
+    frame(true);
+    run(999);
+    frame_without_receiver(false);
+    run(2000);
+    expect_nothing();
+}
+
+/* A receiver with a fault may still say "pressed": that goes on, and its release counts when the receiver is well. */
+/* Shows: FSM-3 */
+void test_pressed_is_pressed_whatever_the_receiver_reports(void) {
+    frame(true);
+    run(500);
+    frame_without_receiver(true);
+    run(500);
+    frame(false);
+    expect_reset();
+}
+
 /* ---- Late steps ---- */
 
 /* Their time counts, up to what is needed. */
