@@ -44,12 +44,13 @@
       (is_of(id, of, 2) && d[0] == 0 && zero_from_2(d)) ||
       (is_of(id, of, 3) && state != 0x0F && held(raw, check) && word(d) == raw && word(d) <= 18000 && zero_from_3(d));
 
-  // ---- What a gateway passes on: 43Fh always; the others in ACTIVE, or in manual with throttle 0 when that is chosen.
+  // ---- What a gateway lets out: 43Fh always, throttle 0 always (the end of an engagement, TOP-2); the others in ACTIVE,
+  // or in manual with throttle 0 when that is chosen.
   predicate passed_command(uint8_t *d, integer id, uint16_t *of, integer state, integer in_manual, integer ceiling) =
       (is_of(id, of, 0) && only_signals(d)) ||
+      (is_of(id, of, 2) && (state == 0x3C ? 2 * d[0] <= 5 * ceiling : d[0] == 0) && zero_from_2(d)) ||
       ((state == 0x3C || in_manual == 1) &&
        ((is_of(id, of, 1) && (d[0] == 1 || d[0] == 2 || d[0] == 4 || d[0] == 8) && zero_from_2(d)) ||
-        (is_of(id, of, 2) && (state == 0x3C ? 2 * d[0] <= 5 * ceiling : d[0] == 0) && zero_from_2(d)) ||
         (is_of(id, of, 3) && word(d) <= 18000 && zero_from_3(d))));
 
   predicate own_status{L}(integer id, uint16_t *of, integer own_id) = id != 0 && id == own_id && is_no_id(id, of);
@@ -179,7 +180,7 @@ static bool value_allowed(const agv_gate_t *gate, uint32_t message, const uint8_
 /*@ requires \valid_read(gate) && \valid_read(gate->config);
     assigns \nothing;
     ensures \result <==> gate->config->topology == 1 &&
-                         (gate->state == 0x3C || message == 0 || gate->config->gateway_in_manual == 1);
+                         (gate->state == 0x3C || message == 0 || message == 2 || gate->config->gateway_in_manual == 1);
 */
 static bool may_pass(const agv_gate_t *gate, uint32_t message);
 
