@@ -1,0 +1,290 @@
+/* The mode itself (SUP-9): too many engagements, and a mode that is none. And what an engagement is: it ends with the third
+ * 363h in a row without bit 8, and one that begins within 100 ms continues it. */
+#include "expect.h"
+#include "unity.h"
+#include "walk.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+static const agv_message_t VCU = AGV_MSG_VEHICLE_STATUS;
+
+/* The next 363h report this, so many of them. */
+static void report(uint8_t mode, unsigned frames) {
+    fixture_mode(&f, mode);
+    for (unsigned i = 0; i < frames; i++) {
+        fixture_run_past(&f, VCU);
+    }
+}
+
+/* ---- The end of an engagement ---- */
+
+/* Shows: SUP-9, FSM-2 */
+void test_an_engagement_ends_with_the_third_frame(void) {
+    static const uint8_t MODES[] = {MODE_MANUAL, MODE_NEITHER};
+    for (unsigned i = 0; i < 2; i++) {
+        fixture_init(&f);
+        fixture_active(&f);
+        report(MODES[i], 2);
+        expect_state(&f, AGV_STATE_ACTIVE);
+        report(MODE_ENGAGED, 1);
+        report(MODES[i], 2); /* counted anew */
+        expect_state(&f, AGV_STATE_ACTIVE);
+        report(MODES[i], 1);
+        expect_state(&f, AGV_STATE_STANDBY);
+    }
+}
+
+/* Both bits are not without bit 8. */
+/* Shows: SUP-9, MODE_INVALID */
+void test_both_bits_in_between_count_anew(void) {
+    fixture_active(&f);
+    report(MODE_MANUAL, 2);
+    report(MODE_BOTH, 1);
+    report(MODE_MANUAL, 2);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    report(MODE_MANUAL, 1);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* Shows: SUP-9 */
+void test_how_many_frames_is_a_setting(void) {
+    f.config.mode_frames = 1;
+    fixture_active(&f);
+    report(MODE_MANUAL, 1);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* ---- MODE_FLAPPING ---- */
+
+static const agv_fault_t FLAPPING = AGV_FAULT_MODE_FLAPPING;
+
+/* The engagement ends, and begins again with the 363h that comes so long after the one that began it. */
+static void flap(uint32_t period_ms) {
+    const uint32_t began_ms = f.now_ms;
+    report(MODE_MANUAL, 3);
+    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_run(&f, period_ms - (f.now_ms - began_ms) - 1);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run(&f, 1);
+}
+
+/* Standing it is engaged; the wheels turn, so that the steering is held at the trip. */
+static void engage_first(void) {
+    fixture_standby(&f);
+    fixture_wheels(&f, 500, 500);
+    fixture_run(&f, 20);
+    report(MODE_ENGAGED, 1);
+    expect_state(&f, AGV_STATE_ACTIVE);
+}
+
+/* The fourth one 5000 ms after the first trips, in that frame; 5010 ms after it is nothing. */
+/* Shows: SUP-9, FSM-2, MODE_FLAPPING */
+void test_the_fourth_engagement_within_5_s(void) {
+    for (unsigned i = 0; i < 2; i++) {
+        fixture_init(&f);
+        engage_first();
+        const uint32_t first_ms = f.now_ms;
+        flap(1000);
+        flap(3000);
+        expect_nothing(&f, FLAPPING, AGV_STATE_ACTIVE);
+        fixture_forget_sent(&f);
+        flap(i == 0 ? 1000 : 1010);
+        TEST_ASSERT_EQUAL_UINT32(i == 0 ? 5000 : 5010, f.now_ms - first_ms);
+        if (i == 0) {
+            expect_trip(&f, FLAPPING, f.traffic[VCU].call, ANGLE_CENTRE);
+            expect_led(&f, -1);
+        } else {
+            expect_nothing(&f, FLAPPING, AGV_STATE_ACTIVE);
+        }
+    }
+}
+
+/* It is an event: it ends after a second. */
+/* Shows: SUP-9, MODE_FLAPPING */
+void test_mode_flapping_is_an_event(void) {
+    engage_first();
+    for (unsigned i = 0; i < 3; i++) {
+        flap(500);
+    }
+    expect_reason(&f, FLAPPING);
+    fixture_run(&f, 999);
+    expect_fault(&f, FLAPPING, true);
+    fixture_run(&f, 1);
+    expect_fault(&f, FLAPPING, false);
+}
+
+/* Any four that follow each other: the first ones may be long ago. */
+/* Shows: SUP-9, MODE_FLAPPING */
+void test_the_last_four_count(void) {
+    engage_first();
+    for (unsigned i = 0; i < 6; i++) {
+        flap(2000);
+        expect_nothing(&f, FLAPPING, AGV_STATE_ACTIVE);
+    }
+    flap(1010);
+    expect_nothing(&f, FLAPPING, AGV_STATE_ACTIVE); /* 2000 + 2000 + 1010 */
+    flap(1990);                                     /* 2000 + 1010 + 1990 */
+    expect_reason(&f, FLAPPING);
+}
+
+/* An engagement that is continued within 100 ms is a change to engaged, too: 30 ms off, 40 ms off. */
+/* Shows: SUP-9, MODE_FLAPPING */
+void test_glitches_count(void) {
+    engage_first();
+    for (unsigned i = 0; i < 2; i++) {
+        flap(70);
+        expect_nothing(&f, FLAPPING, AGV_STATE_ACTIVE);
+    }
+    flap(70);
+    expect_reason(&f, FLAPPING);
+}
+
+/* One or two frames without the bit end nothing, so they count nothing. */
+/* Shows: SUP-9, MODE_FLAPPING */
+void test_frames_that_end_no_engagement_do_not_count(void) {
+    fixture_active(&f);
+    for (unsigned i = 0; i < 50; i++) {
+        report(MODE_NEITHER, 2);
+        report(MODE_ENGAGED, 1);
+    }
+    expect_nothing(&f, FLAPPING, AGV_STATE_ACTIVE);
+}
+
+/* What began while it was TRIPPED does not count; what began before a reset does: three of them, a trip and a reset. */
+/* Shows: SUP-9, MODE_FLAPPING */
+void test_engagements_while_tripped_do_not_count(void) {
+    f.config.mode_flapping_ms = 60000;
+    fixture_active(&f); /* the first */
+    walk_trip(&f);
+    for (unsigned i = 0; i < 5; i++) {
+        report(MODE_MANUAL, 10);
+        report(MODE_ENGAGED, 10);
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, FLAPPING));
+    fixture_vehicle_confirms(&f);
+    fixture_run(&f, 2000);
+    fixture_press(&f, 1000);
+    expect_state(&f, AGV_STATE_STANDBY);
+    for (unsigned i = 0; i < 3; i++) {
+        fixture_run(&f, 200);
+        report(MODE_MANUAL, 3);
+        expect_fault(&f, FLAPPING, false);
+        report(MODE_ENGAGED, 1);
+    }
+    expect_reason(&f, FLAPPING);
+}
+
+/* The time is a setting. */
+/* Shows: SUP-9, MODE_FLAPPING */
+void test_the_time_of_four_engagements_is_a_setting(void) {
+    f.config.mode_flapping_ms = 1000;
+    engage_first();
+    flap(300);
+    flap(300);
+    flap(410);
+    expect_nothing(&f, FLAPPING, AGV_STATE_ACTIVE);
+    flap(280);
+    expect_reason(&f, FLAPPING);
+}
+
+/* ---- MODE_NONE ---- */
+
+static const agv_fault_t NONE = AGV_FAULT_MODE_NONE;
+
+static void drive_in_manual(void) {
+    fixture_standby(&f);
+    fixture_wheels(&f, 500, 500);
+    fixture_run(&f, 20);
+}
+
+/* Shows: SUP-9, FSM-2, MODE_NONE */
+void test_no_mode_for_500_ms_in_motion(void) {
+    drive_in_manual();
+    report(MODE_NEITHER, 1);
+    fixture_run(&f, 499);
+    expect_nothing(&f, NONE, AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_trip(&f, NONE, f.call, ANGLE_CENTRE);
+    expect_led(&f, -1);
+    fixture_run(&f, 1000);
+    expect_fault(&f, NONE, true);
+    report(MODE_MANUAL, 1);
+    expect_fault(&f, NONE, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, NONE));
+}
+
+/* While engaged, too: 20 ms later it is no longer engaged, and 500 ms after the first such frame it trips. */
+/* Shows: SUP-9, MODE_NONE */
+void test_no_mode_after_an_engagement(void) {
+    walk_driving(&f, 500);
+    report(MODE_NEITHER, 1);
+    fixture_run(&f, 499);
+    expect_nothing(&f, NONE, AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_trip(&f, NONE, f.call, ANGLE_CENTRE);
+}
+
+/* At standstill it is nothing, and standstill ends it. */
+/* Shows: SUP-9, MODE_NONE */
+void test_no_mode_at_standstill(void) {
+    fixture_standby(&f);
+    report(MODE_NEITHER, 1);
+    fixture_run(&f, 3000);
+    expect_nothing(&f, NONE, AGV_STATE_STANDBY);
+    fixture_wheels(&f, 500, 500);
+    fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
+    fixture_run(&f, 499);
+    expect_nothing(&f, NONE, AGV_STATE_STANDBY); /* both together for 500 ms */
+    fixture_run(&f, 2);
+    expect_reason(&f, NONE);
+    fixture_wheels(&f, 0, 0);
+    fixture_run(&f, 120);
+    expect_fault(&f, NONE, false);
+}
+
+/* One frame with a mode bit, or with both, begins the 500 ms anew. */
+/* Shows: SUP-9, MODE_NONE */
+void test_a_mode_in_between_begins_the_time_anew(void) {
+    static const uint8_t BETWEEN[] = {MODE_MANUAL, MODE_BOTH};
+    drive_in_manual();
+    for (unsigned i = 0; i < 6; i++) {
+        report(MODE_NEITHER, 49);
+        report(BETWEEN[i % 2], 1);
+    }
+    expect_nothing(&f, NONE, AGV_STATE_STANDBY);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, NONE));
+}
+
+/* In INIT and while TRIPPED it is none. */
+/* Shows: SUP-9, MODE_NONE */
+void test_no_mode_in_other_states(void) {
+    fixture_mode(&f, MODE_NEITHER);
+    fixture_wheels(&f, 500, 500);
+    fixture_start(&f);
+    fixture_run(&f, 2000);
+    expect_nothing(&f, NONE, AGV_STATE_INIT);
+    fixture_init(&f);
+    walk_to_tripped_driving(&f, 500);
+    report(MODE_NEITHER, 1);
+    fixture_run(&f, 2000);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, NONE));
+}
+
+/* The time is a setting. */
+/* Shows: SUP-9, MODE_NONE */
+void test_the_time_without_a_mode_is_a_setting(void) {
+    f.config.mode_none_ms = 123;
+    drive_in_manual();
+    report(MODE_NEITHER, 1);
+    fixture_run(&f, 122);
+    expect_nothing(&f, NONE, AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_reason(&f, NONE);
+}

@@ -1,0 +1,421 @@
+/* The vehicle does what it was told (SUP-11), and two witnesses of its speed agree (SUP-12): budgets. Hand-worked: the tick of a
+ * frame's own millisecond is the first of a budget, so T ms are over T - 1 ms later; it goes down at half the rate. */
+#include "expect.h"
+#include "unity.h"
+#include "walk.h"
+
+static fixture_t f;
+
+void setUp(void) {
+    fixture_init(&f);
+}
+
+void tearDown(void) {
+}
+
+static const agv_fault_t THROTTLE = AGV_FAULT_THROTTLE_DEVIATION;
+static const agv_fault_t GEAR = AGV_FAULT_GEAR_DEVIATION;
+static const agv_fault_t IGNORED = AGV_FAULT_AUTOPILOT_OFF_IGNORED;
+static const agv_fault_t SPEED = AGV_FAULT_SPEED_IMPLAUSIBLE;
+
+/* A new first byte, from the message's next frame on: that frame has just come. */
+static void send_first_byte(agv_message_t message, uint8_t value) {
+    fixture_run_before(&f, message);
+    f.traffic[message].data[0] = value;
+    fixture_run(&f, 1);
+}
+
+static void command_throttle(uint8_t counts) {
+    send_first_byte(AGV_MSG_THROTTLE_COMMAND, counts);
+}
+
+static void measure_throttle(uint8_t counts) {
+    send_first_byte(AGV_MSG_THROTTLE_STATUS, counts);
+}
+
+static void command_gear(uint8_t gear) {
+    send_first_byte(AGV_MSG_GEAR_COMMAND, gear);
+}
+
+static void run_until(uint32_t moment_ms) {
+    fixture_run(&f, moment_ms - f.now_ms);
+}
+
+static void expect_trip_at(agv_fault_t fault, uint32_t moment_ms, int led) {
+    run_until(moment_ms - 1u);
+    expect_nothing(&f, fault, AGV_STATE_ACTIVE);
+    fixture_forget_sent(&f);
+    fixture_run(&f, 1);
+    expect_trip(&f, fault, f.call, ANGLE_CENTRE);
+    expect_led(&f, led);
+}
+
+/* Engaged in D, commanded too. The wheels turn, so that the steering is held at a trip. */
+static void active_in_d(void) {
+    fixture_active(&f);
+    fixture_wheels(&f, 500, 500);
+    command_gear(GEAR_D);
+}
+
+/* ---- THROTTLE_DEVIATION ---- */
+
+/* 26 counts above the command for 500 ms. */
+/* Shows: SUP-11, FSM-2, THROTTLE_DEVIATION */
+void test_throttle_above_its_command(void) {
+    active_in_d();
+    command_throttle(100);
+    measure_throttle(126);
+    expect_trip_at(THROTTLE, f.now_ms + 499u, 7);
+    measure_throttle(124); /* down, but not by 25 */
+    fixture_run(&f, 998);
+    expect_fault(&f, THROTTLE, true);
+    fixture_run(&f, 1);
+    expect_fault(&f, THROTTLE, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, THROTTLE));
+}
+
+/* 25 counts are none, and below the command is none. */
+/* Shows: SUP-11, THROTTLE_DEVIATION */
+void test_throttle_that_is_as_commanded(void) {
+    active_in_d();
+    command_throttle(100);
+    measure_throttle(125);
+    fixture_run(&f, 3000);
+    measure_throttle(0);
+    fixture_run(&f, 3000);
+    expect_nothing(&f, THROTTLE, AGV_STATE_ACTIVE);
+}
+
+/* A ramp: each 25 counts that it comes down empty the budget, 24 do not. */
+/* Shows: SUP-11, THROTTLE_DEVIATION */
+void test_a_throttle_on_its_way_down(void) {
+    active_in_d();
+    command_throttle(250);
+    measure_throttle(250);
+    command_throttle(0);
+    for (uint8_t counts = 225; counts >= 50; counts = (uint8_t)(counts - 25)) {
+        fixture_run(&f, 460);
+        measure_throttle(counts);
+        expect_nothing(&f, THROTTLE, AGV_STATE_ACTIVE);
+    }
+    const uint32_t emptied_ms = f.now_ms;
+    fixture_run(&f, 100);
+    measure_throttle(26); /* 24 */
+    expect_trip_at(THROTTLE, emptied_ms + 499u, 7);
+}
+
+/* A rise counts against it: 20 up, 44 down is 24. */
+/* Shows: SUP-11, THROTTLE_DEVIATION */
+void test_a_rise_counts_against_the_ramp(void) {
+    for (unsigned i = 0; i < 2; i++) {
+        fixture_init(&f);
+        active_in_d();
+        command_throttle(100);
+        measure_throttle(200);
+        const uint32_t began_ms = f.now_ms;
+        fixture_run(&f, 100);
+        measure_throttle(220);
+        fixture_run(&f, 100);
+        measure_throttle(i == 0 ? 176 : 175);
+        expect_trip_at(THROTTLE, i == 0 ? began_ms + 499u : f.now_ms + 499u, 7);
+    }
+}
+
+/* What it came down while nothing was wrong does not count. */
+/* Shows: SUP-11, THROTTLE_DEVIATION */
+void test_a_ramp_from_before_does_not_count(void) {
+    active_in_d();
+    command_throttle(250);
+    measure_throttle(250);
+    measure_throttle(200);
+    command_throttle(0);
+    const uint32_t began_ms = f.now_ms;
+    fixture_run(&f, 100);
+    measure_throttle(176);
+    expect_trip_at(THROTTLE, began_ms + 499u, 7);
+}
+
+/* One good frame in twenty does not restart it: 190 - 5, and 315 more. */
+/* Shows: SUP-11, THROTTLE_DEVIATION */
+void test_one_good_throttle_does_not_restart_it(void) {
+    active_in_d();
+    fixture_run_before(&f, AGV_MSG_THROTTLE_STATUS);
+    measure_throttle(40);
+    fixture_run(&f, 189);
+    measure_throttle(20); /* by 20: not on its way */
+    measure_throttle(40);
+    expect_trip_at(THROTTLE, f.now_ms + 314u, 7);
+}
+
+/* No command yet: not judged; the deadline does that. An old one, of before the engagement, is none. */
+/* Shows: SUP-11, SUP-3, THROTTLE_COMMAND_TIMEOUT */
+void test_without_a_command_there_is_no_deviation(void) {
+    f.config.engaged_grace_ms = 50;
+    f.config.throttle_deviation_ms = 100;
+    f.config.throttle_command_timeout_ms = 2000;
+    fixture_standby(&f);
+    fixture_run(&f, 200);
+    f.traffic[AGV_MSG_THROTTLE_COMMAND].muted = true;
+    fixture_throttle(&f, 200);
+    f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = GEAR_D;
+    fixture_gear(&f, GEAR_D);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run(&f, 1500);
+    expect_nothing(&f, THROTTLE, AGV_STATE_ACTIVE);
+    f.traffic[AGV_MSG_THROTTLE_COMMAND].muted = false;
+    fixture_run(&f, 250);
+    expect_reason(&f, THROTTLE);
+}
+
+/* Not in manual; and after the engagement when the grace is over. */
+/* Shows: SUP-11, THROTTLE_DEVIATION */
+void test_throttle_deviation_counts_after_the_grace(void) {
+    fixture_standby(&f);
+    f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = GEAR_D;
+    fixture_gear(&f, GEAR_D);
+    fixture_throttle(&f, 200);
+    fixture_run(&f, 3000);
+    expect_nothing(&f, THROTTLE, AGV_STATE_STANDBY);
+    fixture_wheels(&f, 500, 500);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_trip_at(THROTTLE, f.now_ms + 999u, 7);
+}
+
+/* Gateway: compared with what was sent on. 40 % of 250 are 100 counts. */
+/* Shows: SUP-11, TOP-2, THROTTLE_DEVIATION */
+void test_the_throttle_is_compared_with_what_was_sent_on(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    f.config.throttle_ceiling_pct = 40;
+    f.long_run = true;
+    active_in_d();
+    command_throttle(250);
+    measure_throttle(125);
+    fixture_run(&f, 2000);
+    expect_nothing(&f, THROTTLE, AGV_STATE_ACTIVE);
+    measure_throttle(126);
+    expect_trip_at(THROTTLE, f.now_ms + 499u, 7);
+}
+
+/* ---- GEAR_DEVIATION ---- */
+
+/* D while another gear is commanded, and throttle above idle, for 1 s. */
+static void check_gear(uint8_t reported, uint8_t commanded, bool trips) {
+    fixture_init(&f);
+    fixture_active(&f);
+    command_throttle(100);
+    command_gear(reported);
+    send_first_byte(AGV_MSG_GEAR_STATUS, reported);
+    measure_throttle(3);
+    command_gear(commanded);
+    if (trips) {
+        expect_trip_at(GEAR, f.now_ms + 999u, 8);
+    } else {
+        fixture_run(&f, 3000);
+        expect_fault(&f, GEAR, false);
+        TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, GEAR));
+    }
+}
+
+/* Shows: SUP-11, FSM-2, GEAR_DEVIATION */
+void test_d_or_r_against_the_command(void) {
+    check_gear(GEAR_D, GEAR_R, true);
+    check_gear(GEAR_D, GEAR_P, true);
+    check_gear(GEAR_R, GEAR_N, true);
+    check_gear(GEAR_R, GEAR_D, true);
+    check_gear(GEAR_N, GEAR_D, false); /* N goes nowhere */
+    check_gear(GEAR_D, GEAR_D, false);
+}
+
+/* At idle it is none; 3 counts are above it. It goes down at half the rate. */
+/* Shows: SUP-11, GEAR_DEVIATION */
+void test_a_gear_deviation_needs_throttle(void) {
+    fixture_active(&f); /* D, commanded P */
+    measure_throttle(2);
+    fixture_run(&f, 3000);
+    expect_nothing(&f, GEAR, AGV_STATE_ACTIVE);
+    measure_throttle(3);
+    fixture_run(&f, 500 - 1);
+    measure_throttle(0); /* 508 or so up, then 250 down */
+    fixture_run(&f, 499);
+    measure_throttle(3);
+    const uint32_t again_ms = f.now_ms;
+    fixture_run(&f, 700);
+    expect_nothing(&f, GEAR, AGV_STATE_ACTIVE);
+    (void)walk_until(&f, AGV_STATE_TRIPPED, 60);
+    expect_reason(&f, GEAR);
+    TEST_ASSERT_UINT32_WITHIN(10, 745, f.now_ms - again_ms);
+}
+
+/* ---- AUTOPILOT_OFF_IGNORED ---- */
+
+/* 43Fh byte 5, bit 7: asks for autopilot off. */
+static void ask_for_off(bool off) {
+    fixture_run_before(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
+    f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].data[4] = off ? 0xC0 : 0x80;
+    fixture_run(&f, 1);
+}
+
+/* Shows: SUP-11, FSM-2, AUTOPILOT_OFF_IGNORED */
+void test_autopilot_off_is_ignored(void) {
+    active_in_d();
+    ask_for_off(true);
+    expect_trip_at(IGNORED, f.now_ms + 999u, -1);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_fault(&f, IGNORED, false);
+}
+
+/* The VCU obeys within the second: nothing, and the next engagement begins with a command of its own. */
+/* Shows: SUP-11, AUTOPILOT_OFF_IGNORED */
+void test_autopilot_off_is_obeyed(void) {
+    active_in_d();
+    ask_for_off(true);
+    fixture_run(&f, 900);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run(&f, 500);
+    expect_nothing(&f, IGNORED, AGV_STATE_STANDBY);
+    ask_for_off(false);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run(&f, 3000);
+    expect_nothing(&f, IGNORED, AGV_STATE_ACTIVE);
+}
+
+/* Every second 43Fh asks for it: as much up as down is 1 ms in each 4, so some 4 s. */
+/* Shows: SUP-11, AUTOPILOT_OFF_IGNORED */
+void test_autopilot_off_asked_for_now_and_then(void) {
+    active_in_d();
+    ask_for_off(true);
+    const uint32_t began_ms = f.now_ms;
+    while (agv_supervisor_state(&f.supervisor) == AGV_STATE_ACTIVE && f.now_ms - began_ms < 5000) {
+        ask_for_off(false);
+        ask_for_off(true);
+    }
+    expect_reason(&f, IGNORED);
+    TEST_ASSERT_UINT32_WITHIN(300, 3700, f.now_ms - began_ms);
+}
+
+/* Times are settings. */
+/* Shows: SUP-11, INT-2 */
+void test_the_budgets_are_settings(void) {
+    f.config.gear_deviation_ms = 321;
+    f.config.throttle_idle_counts = 5;
+    fixture_active(&f);
+    measure_throttle(6);
+    expect_trip_at(GEAR, f.now_ms + 320u, 8);
+    fixture_init(&f);
+    f.config.autopilot_off_ms = 234;
+    active_in_d();
+    ask_for_off(true);
+    expect_trip_at(IGNORED, f.now_ms + 233u, -1);
+    fixture_init(&f);
+    f.config.throttle_deviation_ms = 111;
+    f.config.throttle_deviation_counts = 5;
+    active_in_d();
+    measure_throttle(6);
+    expect_trip_at(THROTTLE, f.now_ms + 110u, 7);
+}
+
+/* ---- SPEED_IMPLAUSIBLE: 36 counts of 363h are 10 mm/s ---- */
+
+/* 363h and 101h with these speeds, from now on: both have just come, in the same millisecond. */
+static void set_speeds(uint16_t counts, int32_t left_mm_s, int32_t right_mm_s) {
+    f.traffic[AGV_MSG_WHEEL_SPEED].phase_ms = f.traffic[AGV_MSG_VEHICLE_STATUS].phase_ms;
+    fixture_run_before(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_speed(&f, counts);
+    fixture_wheels(&f, left_mm_s, right_mm_s);
+    fixture_run(&f, 1);
+}
+
+static void expect_warning_at(uint32_t moment_ms) {
+    run_until(moment_ms - 1u);
+    expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_warning(&f, SPEED, AGV_STATE_STANDBY);
+    expect_led(&f, 8);
+}
+
+/* 1000 mm/s of the VCU (3600 counts): a quarter of it and 500 are 750, so wheels at 250 agree, at 249 they do not. And the
+ * other way round: wheels at 2000 allow 1000. */
+/* Shows: SUP-12, SPEED_IMPLAUSIBLE */
+void test_two_witnesses_of_speed(void) {
+    fixture_standby(&f);
+    set_speeds(3600, 250, 250);
+    fixture_run(&f, 3000);
+    expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
+    set_speeds(3600, 2000, 2000);
+    fixture_run(&f, 3000);
+    expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
+    set_speeds(3600, 249, 249);
+    expect_warning_at(f.now_ms + 999u);
+    set_speeds(3600, 1000, 1000);
+    fixture_run(&f, 1998);
+    expect_fault(&f, SPEED, true);
+    fixture_run(&f, 1);
+    expect_fault(&f, SPEED, false);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, SPEED));
+}
+
+/* Shows: SUP-12, SPEED_IMPLAUSIBLE */
+void test_wheels_faster_than_the_vcu_says(void) {
+    fixture_standby(&f);
+    set_speeds(3600, 2004, 2004);
+    expect_warning_at(f.now_ms + 999u);
+}
+
+/* The amount of the mean: backwards is as fast as forwards, on the spot is no speed. */
+/* Shows: SUP-12, SPEED_IMPLAUSIBLE */
+void test_the_mean_of_both_wheels_in_amount(void) {
+    fixture_standby(&f);
+    set_speeds(3600, -1000, -1000);
+    fixture_run(&f, 3000);
+    set_speeds(3600, -500, -1500);
+    fixture_run(&f, 3000);
+    expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
+    set_speeds(3600, -2000, 2000);
+    expect_warning_at(f.now_ms + 999u);
+}
+
+/* As long as the VCU never reported a speed there is nothing to compare. */
+/* Shows: SUP-12, SPEED_IMPLAUSIBLE */
+void test_a_vcu_that_reports_no_speed(void) {
+    fixture_standby(&f);
+    set_speeds(0, 5000, 5000);
+    fixture_run(&f, 5000);
+    expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
+    fixture_speed(&f, 1);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_speed(&f, 0);
+    fixture_run(&f, 998);
+    expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_warning(&f, SPEED, AGV_STATE_STANDBY);
+}
+
+/* Without fresh 101h (here a warning) the budget goes down. */
+/* Shows: SUP-12, SPEED_IMPLAUSIBLE */
+void test_without_fresh_wheel_speeds_there_is_nothing_to_compare(void) {
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_WHEEL_SPEED_TIMEOUT, false);
+    fixture_standby(&f);
+    set_speeds(3600, 0, 0);
+    f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
+    fixture_run(&f, 5000);
+    expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
+}
+
+/* A trip by choice; the largest values on the wire are no problem. */
+/* Shows: SUP-12, SPEED_IMPLAUSIBLE */
+void test_it_may_be_made_a_trip(void) {
+    agv_fault_set_put(&f.config.trips, SPEED, true);
+    fixture_standby(&f);
+    set_speeds(1, INT32_MAX, INT32_MAX);
+    const uint32_t began_ms = f.now_ms;
+    run_until(began_ms + 998u);
+    expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
+    fixture_run(&f, 1);
+    expect_reason(&f, SPEED);
+    fixture_init(&f);
+    fixture_standby(&f);
+    set_speeds(65535, INT32_MIN, INT32_MIN);
+    expect_warning_at(f.now_ms + 999u);
+}
