@@ -6,12 +6,13 @@
  *               VCU, EPS, AI computer alive or not, status messages fresh, controller of each side, queue full, frames
  *               that wait, answers that wait, watchdog starved, the stored latch damaged, before or after the wrap
  *   INIT        how far the 500 ms of all well and the 10 s are, a trip cause, P released
- *   STANDBY, ACTIVE   engagement: grace, end, how many lately, AI computer awaited; commands fresh; scores and budgets, each
- *               as nothing, on the way, or full; the VCU's alarm armed; the AI computer lost, never seen, or forgotten
- *   TRIPPED, SAFE     press (began after the trip, answered, long enough, too long), which conditions of a reset have held
- *               for long enough, whether the wheels stood, confirmation sums (nothing, some, at their limit), P sent, P
- *               released, the steering holdable, a trip cause of the vehicle or of the AI computer, what only a power-on
- *               ends
+ *   STANDBY, ACTIVE   engagement: grace, end, how many lately, AI computer awaited; commands fresh; the worst of the scores
+ *               and of the budgets as nothing, on the way, or full; the VCU's alarm armed; the AI computer lost, or never
+ *               seen
+ *   TRIPPED, SAFE     press (began after the trip; in SAFE: long enough, answered), whether all conditions of a reset have
+ *               held for long enough, whether the wheels stood, the worse of the confirmation sums (nothing, some, at its
+ *               limit), P released, the steering holdable, a trip cause of the vehicle or of the AI computer, what only a
+ *               power-on ends
  *   eve         the first of these times that will be over with the next tick; so each time is met a millisecond before
  *               it is over, and everything is tried there
  *
@@ -24,7 +25,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Whether a state before the wrap of the clock and the same after it count as one: for the quick search. */
+/*
+ * For the quick search: before and after the wrap of the clock is one state, and so are a vehicle that stands since the trip
+ * and one that does not yet.
+ */
 extern bool abstract_coarse;
 
 enum { ABSTRACT_BYTES = 12 };

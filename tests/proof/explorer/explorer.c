@@ -19,7 +19,7 @@
  *
  * usage: explorer [--quick] [--pairs] [--tellable [--hangs]] [--variant N] [--shard I/N] [--representatives N]
  *                 [--most STATES] [--scenario FILE]
- *   --quick     the short alphabet; before and after the wrap of the clock is one state
+ *   --quick     the short alphabet, a coarser abstraction (abstract.h)
  *   --pairs     something may be wrong with the vehicle and with a controller at the same time
  *   --tellable  only what a scenario file can say, so that a counterexample can be played
  *   --hangs     with it: late ticks in STANDBY and ACTIVE

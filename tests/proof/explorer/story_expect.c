@@ -286,9 +286,10 @@ static void write_missing(FILE *file, const seen_t *s) {
     write_at(file, s->t_ms);
 }
 
-/* A press that was held for a second in vain is answered at that moment (FSM-3). */
+/* A press of 1 s to 5 s in vain is answered at its release (FSM-3). */
 static bool is_refused(void) {
-    return (undoes_latch() || says("FSM-3: the latch was left w")) && (world.now_ms == world.rules.pressed_ms + 1000u);
+    const uint64_t held_ms = world.now_ms - world.rules.pressed_ms;
+    return (undoes_latch() || says("FSM-3: the latch was left w")) && (held_ms >= 1000u) && (held_ms <= 5000u);
 }
 
 static const char *refused_for(void) {
@@ -296,6 +297,7 @@ static const char *refused_for(void) {
                                            {"the button", "button"},
                                            {"manual", "manual"},
                                            {"standstill", "standstill"},
+                                           {"throttle", "throttle"},
                                            {"a trip", "trip_cause"},
                                            {"a fault bit", "trip_cause"},
                                            {"a VCU", "vcu_heartbeat, eps_heartbeat"}};
