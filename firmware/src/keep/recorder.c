@@ -34,6 +34,11 @@ static void start_trips(agv_recorder_t *recorder) {
         agv_event_t *const trip = &recorder->trips[i];
         if (!is_valid(trip)) {
             (void)memset(trip, 0, sizeof *trip);
+        } else if (is_newer(trip->sequence + 1u, recorder->next_sequence)) {
+            recorder->next_sequence = trip->sequence + 1u; /* its event in the ring was torn */
+            recorder->run = (uint8_t)(trip->run + 1u);
+        } else {
+            /* its event is in the ring, or was replaced */
         }
         const bool older = (trip->kind == 0u) || is_newer(recorder->trips[oldest].sequence, trip->sequence);
         if ((recorder->trips[oldest].kind != 0u) && older) {
@@ -68,11 +73,11 @@ void agv_recorder_start(agv_recorder_t *recorder) {
         }
     }
     recorder->next_sequence = next;
+    start_trips(recorder);
     /* The mark of what is in flash counts if it lies among what is here. */
-    if ((recorder->stored_sequence - first) > (next - first)) {
+    if ((recorder->stored_sequence - first) > (recorder->next_sequence - first)) {
         recorder->stored_sequence = first;
     }
-    start_trips(recorder);
     (void)memset(recorder->rates, 0, sizeof recorder->rates);
     recorder->seen = 0u;
     (void)memset(recorder->frames, 0, sizeof recorder->frames);

@@ -2,10 +2,6 @@
 
 #include <stddef.h>
 
-/* Ages are looked at in turn, one a ms. A power of two. */
-enum { AGES_IN_TURN = 16 };
-_Static_assert((int)AGV_MSG_COUNT <= (int)AGES_IN_TURN, "each message has its turn");
-
 /* The message that carries a heartbeat, by node. */
 static const uint8_t carriers[AGV_NODE_COUNT] = {[AGV_NODE_VCU] = AGV_MSG_VEHICLE_STATUS,
                                                  [AGV_NODE_EPS] = AGV_MSG_STEERING_STATUS,
@@ -139,12 +135,17 @@ static void expire(agv_liveness_t *liveness, const agv_timers_t *timers, uint32_
     }
 }
 
-void agv_liveness_tick(agv_liveness_t *liveness, const agv_timers_t *timers, bool engaged) {
-    /* One message a tick: what counts is that each is looked at before the time wraps. */
-    const uint32_t next = timers->now_ms % (uint32_t)AGES_IN_TURN;
-    if ((next < (uint32_t)AGV_MSG_COUNT) && (agv_age_ms(timers->now_ms, liveness->last_ms[next]) > AGV_AGE_LIMIT_MS)) {
+/* Ages saturate one message a tick: what counts is that each is looked at before the time wraps. */
+static void age_one(agv_liveness_t *liveness, const agv_timers_t *timers) {
+    const uint32_t next = liveness->next_to_age;
+    if (agv_age_ms(timers->now_ms, liveness->last_ms[next]) > AGV_AGE_LIMIT_MS) {
         liveness->old |= bit_of(next);
     }
+    liveness->next_to_age = (uint8_t)((next + 1u) % (uint32_t)AGV_MSG_COUNT);
+}
+
+void agv_liveness_tick(agv_liveness_t *liveness, const agv_timers_t *timers, bool engaged) {
+    age_one(liveness, timers);
     for (uint32_t node = 0u; node < (uint32_t)AGV_NODE_COUNT; node++) {
         expire(liveness, timers, node, engaged);
     }

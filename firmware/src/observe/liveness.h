@@ -44,6 +44,7 @@ typedef struct {
     uint32_t last_ms[AGV_MSG_COUNT]; /**< last frame of the right shape; before: the start */
     uint16_t heard;                  /**< bit n: message n was received at least once */
     uint16_t old;                    /**< bit n: its last_ms is older than AGV_AGE_LIMIT_MS */
+    uint8_t next_to_age;             /**< message whose age is looked at by the next tick */
     agv_heartbeat_t heartbeats[AGV_NODE_COUNT];
 } agv_liveness_t;
 

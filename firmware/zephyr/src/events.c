@@ -100,7 +100,8 @@ static void tell_deviations(const agv_config_t *config) {
     agv_config_defaults(&defaults);
     for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
         if (agv_config_get(config, i) != agv_config_get(&defaults, i)) {
-            LOG_WRN("not the default: %s %u", agv_setting_info(i)->name, agv_config_get(config, i));
+            LOG_WRN("not the default: %s %u%s", agv_setting_info(i)->name, agv_config_get(config, i),
+                    agv_config_weakens(config, i) ? ", WEAKER" : "");
         }
     }
     if (memcmp(&config->trips, &defaults.trips, sizeof config->trips) != 0) {
