@@ -107,6 +107,25 @@ static bool is_status(uint32_t id) {
     return is_one_of(id, ids, 7);
 }
 
+/* Whether a VCU may obey it, or another take it for what it is not: of any length, FD too. */
+static bool is_data_frame(const hal_can_frame_t *frame) {
+    return (frame->flags & (HAL_CAN_EXTENDED | HAL_CAN_REMOTE | HAL_CAN_ERROR)) == 0u;
+}
+
+/* What says something though it is no whole message: commands of any length, from where none may come (SUP-6) and while
+ * engaged (SUP-5), and the identifier of the status frame (TOP-3). */
+static bool is_reported(hal_can_side_t side, const hal_can_frame_t *frame, agv_state_t state) {
+    const bool gateway = world.rules.oracle.gateway;
+    const bool engaged = (state == AGV_STATE_ACTIVE) || (state == AGV_STATE_TRIPPED);
+    if (!is_data_frame(frame) || (!gateway && (side == HAL_CAN_AI))) {
+        return false;
+    }
+    if (is_command(frame->id)) {
+        return engaged || (gateway && (side == HAL_CAN_VEHICLE));
+    }
+    return (side == HAL_CAN_VEHICLE) && (frame->id == world.rules.oracle.own_status_id) && (frame->id != 0u);
+}
+
 /* Whether it is a message, whole, on a side where it says something; a command on the wrong side is an intrusion. */
 static bool says_something(hal_can_side_t side, const hal_can_frame_t *frame) {
     const bool gateway = world.rules.oracle.gateway;
@@ -127,9 +146,8 @@ static void try_frame(const kept_t *kept, const trace_t *without, hal_can_side_t
     put_back(kept);
     cases++;
     world_frame(side, *frame, 1);
-    const bool speaks = says_something(side, frame);
-    const bool answered = is_command(frame->id) && (side == HAL_CAN_VEHICLE) &&
-                          ((frame->flags & (HAL_CAN_EXTENDED | HAL_CAN_REMOTE | HAL_CAN_ERROR)) == 0u);
+    const bool speaks = says_something(side, frame) || is_reported(side, frame, without->state);
+    const bool answered = is_command(frame->id) && (side == HAL_CAN_VEHICLE) && is_data_frame(frame);
     world_jump(0);
     ticks(speaks || answered ? TICKS : 0);
     if (speaks) {

@@ -25,6 +25,9 @@ static oracle_t make_oracle(const agv_gate_t *gate) {
                       .signal_id = table ? 0x201u : 0x43Fu,
                       .vehicle_id = table ? 0x203u : 0x363u,
                       .own_status_id = config->status_frame_id,
+                      .mode_bits = 0x80, /* the gate knows nothing of the last 363h, nor of an engagement that ended */
+                      .before = (agv_state_t)gate->state,
+                      .ending = gate->state == AGV_STATE_STANDBY,
                       .latched = !unlatched,
                       .held = !unlatched && ((unsigned)gate->hold_check + gate->hold_raw == 0xFFFFu) &&
                               (gate->hold_raw <= 18000u),

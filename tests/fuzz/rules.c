@@ -10,7 +10,10 @@
 
 enum { VEHICLE = 0, GEAR_STATUS, THROTTLE_STATUS, STEERING_STATUS, EPS_STATUS, POSITION, WHEELS };
 /* STEP_MS: so late a tick may be, and only ticks look at deadlines; a later one is a trip cause itself (TIM-4). */
-enum { HEARTBEAT_MS = 50, STEP_MS = 101, STATUS_MS = 60, GEAR_STATUS_MS = 125, RESET_MS = 1000, CONFIRM_MS = 500 };
+enum { HEARTBEAT_MS = 50, STEP_MS = 101, STATUS_MS = 60, GEAR_STATUS_MS = 125, CONFIRM_MS = 500, CONFIRMED_MS = 5000 };
+/* LATELY_MS: conditions of the last second are looked at by ticks. */
+enum { PRESS_MS = 1000, PRESS_MAX_MS = 5000, LATELY_MS = PRESS_MS - STEP_MS };
+enum { IDLE_COUNTS = 2, SLOW_COUNTS = 180, THROTTLE_COUNTS = 250, ENGAGED_ALONE = 0x80, MODE_BITS = 0xC0 };
 enum { P = 8, CYCLE_MS = 100, OVERRIDE_GAP_MS = 5 };
 
 __attribute__((format(printf, 2, 3))) static void broken(rules_t *rules, const char *format, ...) {
@@ -62,6 +65,8 @@ void rules_init(rules_t *rules, const agv_config_t *config) {
     rules->oracle.signal_id = table ? 0x201u : 0x43Fu;
     rules->oracle.vehicle_id = table ? 0x203u : 0x363u;
     rules->oracle.own_status_id = config->status_frame_id;
+    rules->oracle.hold_age_ms = config->hold_age_ms;
+    rules->oracle.mode_invalid_ms = config->mode_invalid_ms;
     rules->park_at_once = config->park == (uint16_t)AGV_PARK_AT_ONCE;
     rules->shadow = config->shadow == (uint16_t)AGV_SHADOW_ON;
     rules->running_heartbeat = config->own_heartbeat == (uint16_t)AGV_OWN_HEARTBEAT_RUNNING;
@@ -70,6 +75,16 @@ void rules_init(rules_t *rules, const agv_config_t *config) {
     rules->tx_stalled_ms = config->tx_stalled_ms;
     rules->watchdog_period_ms = config->watchdog_period_ms;
     rules->bus = (rules_bus_t){.takes_frames = true};
+}
+
+/* Both sums of FSM-4 begin anew. */
+static void forget_confirmation(rules_t *rules) {
+    rules->was_engaged = false;
+    rules->was_out_of_park = false;
+    rules->engaged_sum_ms = 0;
+    rules->no_park_sum_ms = 0;
+    rules->unconfirmed_ms = rules->now_ms;
+    rules->park_sent = false;
 }
 
 /* Nothing of before counts, but for what was judged. */
@@ -88,10 +103,14 @@ static void forget(rules_t *rules, uint64_t now_ms) {
     rules->button_was_up = false;
     rules->button_down = false;
     rules->manual = false;
+    rules->released = false;
     rules->fast_ms = now_ms;
-    rules->unconfirmed_ms = now_ms;
-    rules->confirmed_off = false;
-    rules->park_sent = false;
+    rules->throttle_high = false;
+    rules->throttle_ms = now_ms;
+    rules->gears_heard = 0;
+    rules->mode_bits = 0;
+    rules->ticked_ms = now_ms;
+    forget_confirmation(rules);
     rules->commanding_ms = now_ms;
     rules->fed_ms = now_ms;
     rules->own_counter_known = false;
@@ -138,20 +157,29 @@ static void hear_mode(rules_t *rules, uint8_t byte7, uint64_t stamp_ms) {
         rules->manual = manual;
         rules->manual_ms = stamp_ms;
     }
-    if ((byte7 & 0x80u) == 0u) {
-        rules->confirmed_off = true;
-    }
+    rules->mode_bits = byte7 & (uint8_t)MODE_BITS;
 }
 
-static void hear_button(rules_t *rules, bool down, uint64_t stamp_ms) {
+static void hear_button(rules_t *rules, bool down) {
     if (!down) {
+        rules->released = rules->button_down && rules->button_was_up;
+        rules->press_ms = rules->now_ms - rules->pressed_ms;
         rules->button_was_up = true;
     } else if (!rules->button_down) {
-        rules->pressed_ms = stamp_ms;
+        rules->pressed_ms = rules->now_ms;
     } else {
         /* held */
     }
     rules->button_down = down;
+}
+
+/* Idle is up to 2 counts; an invalid value is not used. */
+static void hear_throttle(rules_t *rules, uint8_t counts) {
+    const bool before = rules->throttle_high;
+    if (counts <= (uint8_t)THROTTLE_COUNTS) {
+        rules->throttle_high = counts > (uint8_t)IDLE_COUNTS;
+    }
+    rules->throttle_ms = (before || rules->throttle_high) ? rules->now_ms : rules->throttle_ms;
 }
 
 static void hear_status(rules_t *rules, int status, const hal_can_frame_t *frame, uint64_t stamp_ms) {
@@ -163,8 +191,12 @@ static void hear_status(rules_t *rules, int status, const hal_can_frame_t *frame
     case VEHICLE:
         hear_beat(&rules->vcu, data[7], stamp_ms);
         hear_mode(rules, data[6], stamp_ms);
-        hear_button(rules, (data[6] & 1u) != 0u, stamp_ms);
+        hear_button(rules, (data[6] & 1u) != 0u);
+        rules->fast_ms = (((unsigned)data[0] | ((unsigned)data[1] << 8u)) > SLOW_COUNTS) ? stamp_ms : rules->fast_ms;
         rules->alarm = (data[4] & 0xB3u) != 0u; /* bits 0, 1, 4, 5, 7 */
+        break;
+    case THROTTLE_STATUS:
+        hear_throttle(rules, data[0]);
         break;
     case STEERING_STATUS:
         hear_beat(&rules->eps, data[0], stamp_ms);
@@ -185,6 +217,7 @@ static void hear_command(rules_t *rules, int command, const hal_can_frame_t *fra
         memcpy(rules->command_data[command], frame->data, 8);
         clear_reserved(command, rules->command_data[command]);
         rules->command_heard[command] = true;
+        rules->gears_heard |= (command == GEAR) ? frame->data[0] : 0u;
     }
 }
 
@@ -204,6 +237,7 @@ void rules_heard(rules_t *rules, hal_can_side_t side, const hal_can_frame_t *fra
     rules->now_ms = (stamp_ms > rules->now_ms) ? stamp_ms : rules->now_ms;
     rules->sent_now = 0;
     rules->alarm = false;
+    rules->released = false;
     oracle_heard(&rules->oracle, side, frame);
     if (whole && (status >= 0) && (side == HAL_CAN_VEHICLE)) {
         hear_status(rules, status, frame, stamp_ms);
@@ -224,6 +258,7 @@ void rules_ticks(rules_t *rules, uint64_t now_ms, rules_bus_t bus) {
     rules->bus = bus;
     rules->sent_now = 0;
     rules->alarm = false;
+    rules->released = false;
 }
 
 /* ---- What is sent ---- */
@@ -241,14 +276,17 @@ static void judge_passed(rules_t *rules, hal_can_side_t side, const hal_can_fram
     if ((command < 0) || commands_safe(state)) {
         return;
     }
+    if ((command == THROTTLE) && (frame->data[0] == 0u)) {
+        return; /* the end of an engagement, or one of STANDBY that had to wait */
+    }
     uint8_t expected[8];
     memcpy(expected, rules->command_data[command], 8);
+    if ((command == GEAR) && ((rules->gears_heard & frame->data[0]) != 0u)) {
+        expected[0] = frame->data[0]; /* a later one may have been dropped, because the vehicle was on the move */
+    }
     if (command == THROTTLE) {
         const uint8_t most = (state == AGV_STATE_ACTIVE) ? rules->throttle_max : 0u;
         expected[0] = (expected[0] < most) ? expected[0] : most;
-    }
-    if ((command == THROTTLE) && rules->oracle.pass_all_in_manual && (frame->data[0] == 0u)) {
-        expected[0] = 0; /* it was heard in STANDBY and had to wait for a full queue until ACTIVE */
     }
     const bool same = memcmp(expected, frame->data, 8) == 0;
     if (!rules->command_heard[command] || (!same && ((command != STEERING) || !rules->limits_commands))) {
@@ -286,10 +324,7 @@ void rules_sent(rules_t *rules, hal_can_side_t side, const hal_can_frame_t *fram
         if ((command == SIGNALS) && commands_safe(state)) {
             judge_own_counter(rules, frame->data[7]);
         }
-        if ((command == GEAR) && is_latched(state) && !rules->park_sent) {
-            rules->park_sent = true;
-            rules->park_sent_ms = rules->now_ms;
-        }
+        rules->park_sent = rules->park_sent || ((command == GEAR) && is_latched(state));
     }
 }
 
@@ -320,11 +355,9 @@ static void judge_silence(rules_t *rules) {
 static void judge_trip(rules_t *rules) {
     const uint8_t needed = (uint8_t)((1u << SIGNALS) | (1u << THROTTLE) | (rules->park_at_once ? (1u << GEAR) : 0u));
     rules->trips++;
-    rules->unconfirmed_ms = rules->now_ms;
     rules->button_was_up = rules->status_heard[VEHICLE] && !rules->button_down; /* its next press is a new one */
-    rules->confirmed_off = false;
+    forget_confirmation(rules);
     rules->park_sent = (rules->sent_now & (1u << GEAR)) != 0u;
-    rules->park_sent_ms = rules->now_ms;
     rules->own_counter_known = false;
     rules->commanding_ms = rules->now_ms;
     if (rules->bus.takes_frames && !rules->shadow && ((rules->sent_now & needed) != needed)) {
@@ -336,14 +369,16 @@ static void judge_trip(rules_t *rules) {
 static void judge_reset(rules_t *rules) {
     const char *missing = NULL;
     rules->resets++;
-    if ((rules->last.state != AGV_STATE_SAFE) || (age_ms(rules, rules->safe_ms) < RESET_MS)) {
+    if ((rules->last.state != AGV_STATE_SAFE) || (age_ms(rules, rules->safe_ms) < LATELY_MS)) {
         missing = "SAFE for a second";
-    } else if (!rules->button_was_up || !rules->button_down || (age_ms(rules, rules->pressed_ms) < RESET_MS)) {
-        missing = "the button, pressed after the trip and held for a second";
-    } else if (!rules->manual || (age_ms(rules, rules->manual_ms) < RESET_MS)) {
+    } else if (!rules->released || (rules->press_ms < PRESS_MS) || (rules->press_ms > PRESS_MAX_MS)) {
+        missing = "a press of 1 s to 5 s that began after the trip and is released";
+    } else if (!rules->manual || (age_ms(rules, rules->manual_ms) < LATELY_MS)) {
         missing = "manual for a second";
-    } else if (age_ms(rules, rules->fast_ms) < RESET_MS) {
+    } else if (age_ms(rules, rules->fast_ms) < LATELY_MS) {
         missing = "standstill for a second";
+    } else if (rules->throttle_high || (age_ms(rules, rules->throttle_ms) < LATELY_MS)) {
+        missing = "throttle at idle for a second";
     } else if ((age_ms(rules, rules->vcu.changed_ms) > HEARTBEAT_MS + STEP_MS) ||
                (age_ms(rules, rules->eps.changed_ms) > HEARTBEAT_MS + STEP_MS)) {
         missing = "a VCU and an EPS that are alive";
@@ -378,10 +413,6 @@ static void judge_state(rules_t *rules, const rules_seen_t *seen) {
     if ((seen->state == AGV_STATE_SAFE) && (last->state != AGV_STATE_SAFE)) {
         rules->safe_ms = rules->now_ms;
     }
-    if ((seen->state == AGV_STATE_TRIPPED) && (last->state == AGV_STATE_SAFE)) {
-        rules->unconfirmed_ms = rules->now_ms; /* FSM-4: the time begins anew */
-        rules->confirmed_off = false;
-    }
     if (rules->alarm && is_supervising(seen->state)) {
         broken(rules, "SUP-4: a fault bit was heard in state %02Xh, and it has not tripped", (unsigned)last->state);
     }
@@ -405,15 +436,34 @@ static void judge_closed(rules_t *rules) {
     }
 }
 
-/* FSM-4: P that was commanded has to be reported in time, by a 0A3h that is not too old; a tick looks at it. */
-static void judge_park(rules_t *rules) {
-    const bool reported = rules->status_heard[GEAR_STATUS] && (rules->status_data[GEAR_STATUS][0] == (uint8_t)P) &&
-                          (age_ms(rules, rules->status_ms[GEAR_STATUS]) <= GEAR_STATUS_MS);
-    const uint64_t since_ms =
-        (rules->park_sent_ms > rules->unconfirmed_ms) ? rules->park_sent_ms : rules->unconfirmed_ms;
-    if (rules->park_sent && !reported && (age_ms(rules, since_ms) > CONFIRM_MS)) {
-        broken(rules, "FSM-4: the safety output is closed, and the vehicle is not in P %u ms after it was commanded",
-               (unsigned)age_ms(rules, since_ms));
+/*
+ * FSM-4: two sums of time, in which autopilot was reported, or P that was commanded was not reported by a 0A3h that is not too
+ * old; only what both of two ticks found is counted. Five seconds without either may have cleared them.
+ */
+static void add_up_confirmation(rules_t *rules) {
+    const uint64_t gap_ms = age_ms(rules, rules->ticked_ms);
+    const bool engaged = rules->status_heard[VEHICLE] && (rules->mode_bits == (uint8_t)ENGAGED_ALONE);
+    const bool in_park = rules->status_heard[GEAR_STATUS] && (rules->status_data[GEAR_STATUS][0] == (uint8_t)P) &&
+                         (age_ms(rules, rules->status_ms[GEAR_STATUS]) <= GEAR_STATUS_MS);
+    const bool out_of_park = rules->park_sent && !in_park;
+    rules->engaged_sum_ms += (engaged && rules->was_engaged) ? gap_ms : 0u;
+    rules->no_park_sum_ms += (out_of_park && rules->was_out_of_park) ? gap_ms : 0u;
+    if (engaged || out_of_park) {
+        rules->unconfirmed_ms = rules->now_ms;
+    } else if (age_ms(rules, rules->unconfirmed_ms) >= (CONFIRMED_MS - STEP_MS)) {
+        rules->engaged_sum_ms = 0;
+        rules->no_park_sum_ms = 0;
+    } else {
+        /* not yet */
+    }
+    rules->was_engaged = engaged;
+    rules->was_out_of_park = out_of_park;
+}
+
+static void judge_confirmation(rules_t *rules) {
+    if ((rules->engaged_sum_ms > CONFIRM_MS) || (rules->no_park_sum_ms > CONFIRM_MS)) {
+        broken(rules, "FSM-4: the safety output is closed after %u ms of autopilot and %u ms without P since the trip",
+               (unsigned)rules->engaged_sum_ms, (unsigned)rules->no_park_sum_ms);
     }
 }
 
@@ -432,12 +482,8 @@ static void judge_output(rules_t *rules, const rules_seen_t *seen, bool tick) {
     if (tick) {
         judge_closed(rules);
     }
-    if (tick && is_latched(seen->state) && !rules->confirmed_off &&
-        (age_ms(rules, rules->unconfirmed_ms) > CONFIRM_MS)) {
-        broken(rules, "FSM-4: the safety output is closed, and the vehicle has confirmed nothing");
-    }
     if (tick && is_latched(seen->state)) {
-        judge_park(rules);
+        judge_confirmation(rules);
     }
 }
 
@@ -464,6 +510,10 @@ static void judge_sending(rules_t *rules, const rules_seen_t *seen, uint64_t tic
 void rules_returned(rules_t *rules, const rules_seen_t *seen, bool tick, uint64_t tick_gap_ms) {
     rules->calls++;
     judge_state(rules, seen);
+    if (tick && is_latched(seen->state)) {
+        add_up_confirmation(rules);
+    }
+    rules->ticked_ms = tick ? rules->now_ms : rules->ticked_ms;
     judge_output(rules, seen, tick);
     if (tick && is_supervising(seen->state)) {
         judge_silence(rules);

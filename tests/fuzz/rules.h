@@ -5,7 +5,8 @@
  * The frames themselves are judged by oracle.h (FSM-6, TOP-1, TOP-2). Here stands what needs a memory:
  *   silence trips (SUP-2, SUP-3), so do alarm bits, in the very call (SUP-4, FSM-2), and all safe commands go with it;
  *   the latch is left by a reset only, under its conditions (FSM-3); the first reason is kept (FSM-5);
- *   the safety output closes on entering STANDBY only, and opens when it has to (FSM-4); a start is as FSM-7 says;
+ *   the safety output closes on entering STANDBY only, and opens when it has to, also for a confirmation that comes and goes
+ *   (FSM-4); a start is as FSM-7 says;
  *   while the safe commands are sent, they are sent often enough, and commands of others are answered (TOP-1, TIM-1);
  *   a gateway passes on what was heard, and nothing else (TOP-2); in shadow mode nothing leaves (TOP-4);
  *   the gate never has to refuse, and no memory is found corrupt.
@@ -68,23 +69,32 @@ typedef struct {
     uint8_t status_data[RULES_STATUS][8];
     bool status_heard[RULES_STATUS];
     uint8_t command_data[RULES_COMMANDS][8]; /* the last ones in range */
+    uint8_t gears_heard;                     /* all of them, one bit each, as on the wire */
     bool command_heard[RULES_COMMANDS];
 
     /* for the reset */
     bool button_was_up; /* since the trip */
     bool button_down;
+    bool released; /* by the frame of this call */
     uint64_t pressed_ms;
+    uint64_t press_ms; /* how long the press took that was released */
     bool manual;
     uint64_t manual_ms;
-    uint64_t fast_ms; /* when a wheel was last seen turning */
-    uint64_t safe_ms; /* SAFE since */
+    uint64_t fast_ms;     /* when a wheel, or the VCU's speed, was last seen above standstill */
+    bool throttle_high;   /* 050h is above idle */
+    uint64_t throttle_ms; /* when it last was */
+    uint64_t safe_ms;     /* SAFE since */
 
     /* for the safety output */
-    uint64_t unconfirmed_ms; /* since the trip, or since a confirmation was withdrawn */
-    bool confirmed_off;      /* since then a 363h without autopilot mode came */
-    bool park_sent;          /* since the trip a 168h with P has left, the first one then */
-    uint64_t park_sent_ms;
-    uint64_t fed_ms; /* when the hardware watchdog was last fed; at first the start */
+    uint8_t mode_bits;       /* of the last 363h */
+    bool was_engaged;        /* the last tick found autopilot reported */
+    bool was_out_of_park;    /* the last tick found P sent and not reported */
+    uint64_t engaged_sum_ms; /* in which that was surely so since the trip, in all (FSM-4) */
+    uint64_t no_park_sum_ms; /* and that */
+    uint64_t unconfirmed_ms; /* when one of them last was */
+    bool park_sent;          /* since the trip a 168h with P has left */
+    uint64_t ticked_ms;      /* the last tick */
+    uint64_t fed_ms;         /* when the hardware watchdog was last fed; at first the start */
 
     /* for the sending */
     uint8_t sent_now;       /* bits of the commands that left in this call, safe or passed */

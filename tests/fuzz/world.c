@@ -89,6 +89,7 @@ void world_frame(hal_can_side_t side, hal_can_frame_t frame, int32_t ahead_ms) {
     frame.time_ms = clock_at(stamp_ms);
     sim_hal_set_now_ms(&world.hal, clock_at(world.now_ms));
     world.rules.bus = bus();
+    world.rules.oracle.now_ms = clock_at(world.now_ms);
     rules_heard(&world.rules, side, &frame, stamp_ms);
     agv_supervisor_frame(&world.supervisor, &world.ports, side, &frame);
     const rules_seen_t seen = look();
@@ -99,6 +100,7 @@ void world_frame(hal_can_side_t side, hal_can_frame_t frame, int32_t ahead_ms) {
 void world_jump(uint32_t ms) {
     world.now_ms += ms;
     sim_hal_set_now_ms(&world.hal, clock_at(world.now_ms));
+    world.rules.oracle.now_ms = clock_at(world.now_ms);
     rules_ticks(&world.rules, world.now_ms, bus());
     if (!world.receive_path_dead) {
         agv_supervisor_receive_alive(&world.supervisor);
@@ -114,6 +116,7 @@ void world_jump(uint32_t ms) {
 }
 
 static void start(hal_reset_cause_t cause, const rules_seen_t *before) {
+    world.rules.oracle.now_ms = clock_at(world.now_ms);
     rules_ticks(&world.rules, world.now_ms, bus());
     agv_supervisor_start(&world.supervisor, &world.ports, &world.config, true, clock_at(world.now_ms));
     const rules_seen_t seen = look();
@@ -212,6 +215,11 @@ static void configure(unsigned variant) {
     config->topology = (variant >= 3u && variant <= 5u) ? AGV_TOPOLOGY_GATEWAY : AGV_TOPOLOGY_SHARED;
     config->id_set = (variant == 1u || variant == 4u) ? AGV_ID_SET_TABLE : AGV_ID_SET_HEADING;
     switch (variant) {
+    case 1:
+        config->vcu_counter = AGV_COUNTER_INCREMENTS;
+        config->eps_counter = AGV_COUNTER_INCREMENTS;
+        config->ai_counter = AGV_COUNTER_INCREMENTS;
+        break;
     case 2:
         config->park = AGV_PARK_AT_STANDSTILL;
         config->ai_lost_in_manual = AGV_AI_LOST_TRIP;
