@@ -152,6 +152,21 @@ void test_ages_and_gaps_saturate(uint32_t start_ms) {
     TEST_ASSERT_EQUAL_UINT32(0, age_ms(AGV_MSG_WHEEL_SPEED, start_ms + 11));
 }
 
+/* Steps that come late again and again, at whatever distance. */
+/* Shows: TIM-2 */
+TEST_CASE(2)
+TEST_CASE(11)
+TEST_CASE(16)
+TEST_CASE(100)
+void test_ages_saturate_at_any_stride_of_ticks(uint32_t stride_ms) {
+    for (uint32_t i = 0; i < 16; i++) {
+        tick(6001 + i * stride_ms);
+    }
+    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
+        TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, age_ms((agv_message_t)i, 6001 + 16 * stride_ms));
+    }
+}
+
 /* A stamp that lies before the one before it (frames of two queues) makes no gap of 49 days. */
 void test_a_stamp_that_goes_backwards_is_no_gap(void) {
     (void)agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, 20);

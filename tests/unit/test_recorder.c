@@ -408,6 +408,24 @@ void test_a_torn_trip_loses_that_one_only(void) {
     expect_trips(9, 8);
 }
 
+/* The event is torn, the trip that was kept of it is not: its number is not given again. */
+/* Shows: INT-3 */
+void test_a_torn_event_whose_trip_is_kept(void) {
+    trip(1);
+    trip(2);
+    recorder.events[1].kind = 0;
+    agv_recorder_start(&recorder);
+    TEST_ASSERT_EQUAL_UINT32(2, agv_recorder_next_sequence(&recorder));
+    trip(3);
+    expect_trips(3, 3);
+    memset(recorder.events, 0, sizeof recorder.events); /* all of them */
+    agv_recorder_start(&recorder);
+    for (uint32_t number = 4; number <= 20; number++) {
+        trip(number);
+        expect_trips(number, (number < 8) ? number : 8);
+    }
+}
+
 /* ---- Four times a second ---- */
 
 /* Whether an event of this fault is recorded, and how many were left out before it. */

@@ -259,6 +259,9 @@ void test_the_readers_of_ages_and_of_the_time(void) {
     TEST_ASSERT_TRUE(agv_supervisor_has_fault(&f.supervisor, AGV_FAULT_VCU_HEARTBEAT_LOST));
     TEST_ASSERT_FALSE(agv_supervisor_has_fault(&f.supervisor, AGV_FAULT_NONE));
     TEST_ASSERT_EQUAL(AGV_FAULT_VCU_HEARTBEAT_LOST, agv_supervisor_first_active(&f.supervisor));
+    const agv_fault_set_t active = agv_supervisor_active_faults(&f.supervisor);
+    TEST_ASSERT_TRUE(agv_fault_is_in(&active, AGV_FAULT_VCU_HEARTBEAT_LOST));
+    TEST_ASSERT_FALSE(agv_fault_is_in(&active, AGV_FAULT_BUS_OFF));
     fixture_run(&f, 6000);
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, agv_supervisor_age_ms(&f.supervisor, AGV_MSG_VEHICLE_STATUS));
 }
