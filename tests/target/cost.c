@@ -24,8 +24,7 @@ static void through_all_states(uint16_t topology) {
     fixture_vehicle_confirms(&f);
     fixture_run(&f, 2 * SECOND_MS);
     expect_state(&f, AGV_STATE_SAFE);
-    fixture_button(&f, true);
-    fixture_run(&f, 2 * SECOND_MS);
+    fixture_press(&f, SECOND_MS);
     expect_state(&f, AGV_STATE_STANDBY);
 }
 

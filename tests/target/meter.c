@@ -32,9 +32,12 @@ static const agv_state_t states[STATES] = {AGV_STATE_INIT, AGV_STATE_STANDBY, AG
 static row_t starts;
 static row_t frames[AGV_MSG_COUNT + 1];
 static row_t ticks[STATES];
-static uint32_t counted;  /* counts of the call that goes on, up to the last pause */
-static uint32_t began_at; /* SysTick when it began or went on */
-static uint32_t empty;    /* what looking at the clock costs */
+static row_t trips_by_frame; /* from the call to its first hal_can_send, of a frame that trips */
+static row_t trips_by_tick;  /* the same of a tick */
+static uint32_t first_send;  /* counts of this call up to its first hal_can_send; 0: none yet */
+static uint32_t counted;     /* counts of the call that goes on, up to the last pause */
+static uint32_t began_at;    /* SysTick when it began or went on */
+static uint32_t empty;       /* what looking at the clock costs */
 
 static void go_on(void) {
     began_at = SYSTICK[2];
@@ -59,6 +62,13 @@ static void note(row_t *row, uint32_t instructions) {
     row->calls++;
     row->sum += own;
     row->most = own > row->most ? own : row->most;
+}
+
+/* A call that was not tripped before it and is now: FSM-2. */
+static void note_trip(row_t *row, agv_state_t before, agv_state_t now) {
+    if (!agv_state_is_latched(before) && (now == AGV_STATE_TRIPPED) && (first_send != 0u)) {
+        note(row, ((first_send * 5u) + 4u) / 8u);
+    }
 }
 
 static row_t *row_of_tick(const agv_supervisor_t *supervisor) {
@@ -109,16 +119,22 @@ void __wrap_agv_supervisor_start(agv_supervisor_t *supervisor, const agv_ports_t
 void __wrap_agv_supervisor_frame(agv_supervisor_t *supervisor, const agv_ports_t *ports, hal_can_side_t side,
                                  const hal_can_frame_t *frame) {
     const uint32_t message = agv_message_from_id(frame->id, agv_supervisor_config(supervisor)->id_set);
+    const agv_state_t before = agv_supervisor_state(supervisor);
+    first_send = 0;
     begin();
     __real_agv_supervisor_frame(supervisor, ports, side, frame);
     note(&frames[message], end());
+    note_trip(&trips_by_frame, before, agv_supervisor_state(supervisor));
 }
 
 void __wrap_agv_supervisor_tick(agv_supervisor_t *supervisor, const agv_ports_t *ports, uint32_t now_ms) {
     row_t *row = row_of_tick(supervisor);
+    const agv_state_t before = agv_supervisor_state(supervisor);
+    first_send = 0;
     begin();
     __real_agv_supervisor_tick(supervisor, ports, now_ms);
     note(row, end());
+    note_trip(&trips_by_tick, before, agv_supervisor_state(supervisor));
 }
 
 /* ---- The port, which does not count ---- */
@@ -141,7 +157,19 @@ void __wrap_agv_supervisor_tick(agv_supervisor_t *supervisor, const agv_ports_t 
         go_on();                                                                                                       \
     }
 
-NOT_COUNTED(bool, hal_can_send, (hal_t * hal, hal_can_side_t side, const hal_can_frame_t *frame), (hal, side, frame))
+bool __real_hal_can_send(hal_t *hal, hal_can_side_t side, const hal_can_frame_t *frame);
+bool __wrap_hal_can_send(hal_t *hal, hal_can_side_t side, const hal_can_frame_t *frame);
+
+bool __wrap_hal_can_send(hal_t *hal, hal_can_side_t side, const hal_can_frame_t *frame) {
+    pause();
+    if (first_send == 0u) {
+        first_send = counted;
+    }
+    const bool taken = __real_hal_can_send(hal, side, frame);
+    go_on();
+    return taken;
+}
+
 NOT_COUNTED(size_t, hal_store_read_latch, (hal_t * hal, void *record, size_t size), (hal, record, size))
 NOT_COUNTED(bool, hal_store_write_latch, (hal_t * hal, const void *record, size_t size), (hal, record, size))
 NOT_COUNTED(bool, hal_store_append, (hal_t * hal, const void *record, size_t size), (hal, record, size))
@@ -181,6 +209,8 @@ __attribute__((destructor)) static void print_table(void) {
         const uint32_t most = print_row("tick", agv_state_name(states[i]), &ticks[i]);
         tick = most > tick ? most : tick;
     }
+    (void)print_row("trip", "by a frame, to send", &trips_by_frame);
+    (void)print_row("trip", "by a tick, to send", &trips_by_tick);
     print_most("frame", frame);
     print_most("tick", tick);
 }

@@ -50,11 +50,16 @@ bool agv_fault_is_in(const agv_fault_set_t *set, uint32_t fault) {
 }
 
 uint32_t agv_fault_first(const agv_fault_set_t *set) {
-    uint32_t fault = 0u;
-    while (is_fault(fault) && !agv_fault_is_in(set, fault)) {
-        fault += (set->words[fault / 32u] == 0u) ? 32u : 1u;
+    for (uint32_t i = 0u; i < AGV_FAULT_WORDS; i++) {
+        uint32_t fault = i * 32u;
+        for (uint32_t word = set->words[i]; word != 0u; word >>= 1u) {
+            if ((word & 1u) != 0u) {
+                return fault;
+            }
+            fault++;
+        }
     }
-    return is_fault(fault) ? fault : (uint32_t)AGV_FAULT_NONE;
+    return AGV_FAULT_NONE;
 }
 
 uint8_t agv_fault_flags(uint32_t fault) {

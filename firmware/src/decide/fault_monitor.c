@@ -74,9 +74,13 @@ static void sum_up(agv_fault_summary_t *summary, uint32_t fault, bool trips) {
 
 static void sum_up_all(agv_fault_monitor_t *monitor) {
     agv_fault_monitor_start(monitor);
-    for (uint32_t fault = agv_fault_first(&monitor->active); fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
-        if (agv_fault_is_in(&monitor->active, fault)) {
-            sum_up(&monitor->summary, fault, agv_fault_is_in(&monitor->tripping, fault));
+    for (uint32_t i = 0u; i < AGV_FAULT_WORDS; i++) {
+        uint32_t fault = i * 32u;
+        for (uint32_t word = monitor->active.words[i]; word != 0u; word >>= 1u) {
+            if ((word & 1u) != 0u) {
+                sum_up(&monitor->summary, fault, agv_fault_is_in(&monitor->tripping, fault));
+            }
+            fault++;
         }
     }
 }
