@@ -53,9 +53,8 @@ void test_the_defaults_are_those_of_the_requirements(void) {
     TEST_ASSERT_EQUAL_UINT16(100, config.status_frame_period_ms);
 }
 
-/* The numbers of the second edition. */
-/* Shows: SUP-9, SUP-10, SUP-11, SUP-12, FSM-3, FSM-4, FSM-10, FSM-12 */
-void test_the_defaults_of_scores_budgets_and_times(void) {
+/* Shows: SUP-4, SUP-5, SUP-6, SUP-9, SUP-10, SUP-11, SUP-12 */
+void test_the_defaults_of_engagements_scores_and_budgets(void) {
     TEST_ASSERT_EQUAL_UINT16(500, config.engaged_grace_ms);
     TEST_ASSERT_EQUAL_UINT16(3, config.mode_frames);
     TEST_ASSERT_EQUAL_UINT16(100, config.reengage_ms);
@@ -74,6 +73,10 @@ void test_the_defaults_of_scores_budgets_and_times(void) {
     TEST_ASSERT_EQUAL_UINT16(200, config.throttle_in_park_ms);
     TEST_ASSERT_EQUAL_UINT16(2, config.throttle_idle_counts);
     TEST_ASSERT_EQUAL_UINT16(1000, config.speed_implausible_ms);
+}
+
+/* Shows: FSM-3, FSM-4, FSM-7, FSM-10, FSM-12, SUP-2, TOP-2 */
+void test_the_defaults_of_the_safe_state_and_the_envelope(void) {
     TEST_ASSERT_EQUAL_UINT16(500, config.park_confirm_timeout_ms);
     TEST_ASSERT_EQUAL_UINT16(5000, config.confirmed_ms);
     TEST_ASSERT_EQUAL_UINT16(5000, config.stop_timeout_ms);
