@@ -129,11 +129,9 @@ static bool is_reaction(const campaign_judge_t *judge, agv_message_t message, co
 }
 
 static void judge_after(campaign_judge_t *judge, uint64_t t_us, agv_message_t message, const hal_can_frame_t *frame) {
-    const bool is_blind = judge->plan->row->fault == AGV_FAULT_STEERING_ANGLE_INVALID;
     if ((judge->first_safe_us == CAMPAIGN_NEVER) && is_reaction(judge, message, frame)) {
         judge->first_safe_us = t_us;
         judge->last_beat_us = t_us;
-        judge->angle_ddeg = is_blind ? judge->told_ddeg : measured_ddeg(judge);
     }
     if (judge->first_safe_us == CAMPAIGN_NEVER) {
         return; /* the frame that was in the controller, or the held angle, which goes first */
@@ -178,6 +176,8 @@ static void on_state(campaign_judge_t *judge, uint64_t t_ms, const agv_event_t *
     }
     if ((event->b == (uint8_t)AGV_STATE_TRIPPED) && (judge->reason < 0)) {
         judge->reason = event->c;
+        judge->angle_ddeg =
+            (judge->plan->row->fault == AGV_FAULT_STEERING_ANGLE_INVALID) ? judge->told_ddeg : measured_ddeg(judge);
     }
     if (event->b != (uint8_t)AGV_STATE_SAFE) {
         return;

@@ -57,10 +57,9 @@ typedef struct {
     bool was_closed;
     int reason; /**< of the first trip; -1: none */
     bool holds;
-    uint16_t held;     /**< angle in the first 065h of its own */
-    int32_t told_ddeg; /**< the angle when the steps came: the last one that 067h tells, when they make it invalid */
-    int32_t
-        angle_ddeg; /**< the angle to be held: that of the moment in which the first safe frame was out, or the told one */
+    uint16_t held;      /**< angle in the first 065h of its own */
+    int32_t told_ddeg;  /**< the angle when the steps came: the last one that 067h tells, when they make it invalid */
+    int32_t angle_ddeg; /**< the angle to be held: that of the moment of the trip, or the told one */
     campaign_state_t states[CAMPAIGN_STATES_MAX];
     size_t state_count;
 } campaign_judge_t;
