@@ -274,7 +274,7 @@ static void write_missing(FILE *file, const seen_t *s) {
     const char *between = "";
     /* the press that counted though it must not: it was the button, too, that was missing */
     const bool wrong_press =
-        says("FSM-3: the latch was left without the button") && (s->event.kind == (uint8_t)AGV_EVENT_RESET);
+        says("FSM-3: the latch was left without a press") && (s->event.kind == (uint8_t)AGV_EVENT_RESET);
     const uint32_t missing = s->event.missing | (wrong_press ? AGV_MISSING_BUTTON : 0u);
     for (uint8_t bit = 0; bit < (uint8_t)MISSING_BITS; bit++) {
         if ((missing & (1u << bit)) != 0u) {
@@ -294,7 +294,7 @@ static bool is_refused(void) {
 
 static const char *refused_for(void) {
     static const char *const WORDS[][2] = {{"SAFE", "state"},
-                                           {"the button", "button"},
+                                           {"a press", "button"},
                                            {"manual", "manual"},
                                            {"standstill", "standstill"},
                                            {"throttle", "throttle"},
