@@ -47,8 +47,15 @@ class Vehicle(hostsim.Case):
 
     def test_help_names_every_option(self):
         text = self.run_good("vehicle", "--help").stdout
-        for option in ("--can", "--ai-can", "--topology", "--id-set", "--fault", "--manual", "--for"):
+        for option in ("--can", "--ai-can", "--topology", "--id-set", "--config", "--fault", "--manual", "--for"):
             self.assertRegex(text, r"(?m)^  %s( |$)" % option)
+
+    def test_a_configuration(self):
+        self.write("c.yaml", "id_gear_command: 0x169\n")
+        self.assert_no_interface(self.vehicle("--can", "nosuch", "--config", "c.yaml"))
+        self.write("c.yaml", "id_gear_command: 0x169\nid_eps_status: 0x169\n")
+        self.assert_refused(self.vehicle("--can", "nosuch", "--config", "c.yaml"),
+                            "c.yaml:2: id_eps_status: another message has this identifier")
 
     def test_faults_that_make_no_sense(self):
         for fault, what in FAULTS.items():

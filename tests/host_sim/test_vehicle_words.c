@@ -65,7 +65,7 @@ void test_values_with_blanks_stand_in_quotes(void) {
     TEST_ASSERT_EQUAL(2, words.step.vehicle.frame.length);
 }
 
-void test_id_set_and_topology_are_those_of_the_vehicle(void) {
+void test_identifiers_and_topology_are_those_of_the_vehicle(void) {
     refused_when_typed("bus send message=vehicle_status bytes='' side=ai",
                        "host_sim: 'bus send message=vehicle_status bytes='' side=ai': side: there is an AI side only "
                        "with topology: gateway\n");
@@ -74,6 +74,9 @@ void test_id_set_and_topology_are_those_of_the_vehicle(void) {
     TEST_ASSERT_TRUE(vehicle_words_typed("bus send message=vehicle_status bytes='' side=ai", &config, &words));
     TEST_ASSERT_EQUAL_HEX32(0x203, words.step.vehicle.frame.id);
     TEST_ASSERT_EQUAL(HAL_CAN_AI, words.step.vehicle.side);
+    config.id_gear_command = 0x169;
+    TEST_ASSERT_TRUE(vehicle_words_typed("bus send message=gear_command bytes=''", &config, &words));
+    TEST_ASSERT_EQUAL_HEX32(0x169, words.step.vehicle.frame.id);
 }
 
 void test_what_makes_no_sense_is_one_line(void) {
