@@ -56,7 +56,7 @@ static void judge(uint32_t t_ms) {
                                  says("back to INIT") || (says("FSM-5") && !says("FSM-5: the first reason was")));
     drops_output = is_broken && (drops_events || says("FSM-4: the safety output has closed") ||
                                  says("FSM-4: the safety output is closed in INIT") ||
-                                 says("FSM-4: the safety output is closed after"));
+                                 says("FSM-4: the safety output is closed after a start"));
 }
 
 static void note_events(uint32_t t_ms) {
@@ -262,8 +262,7 @@ static void write_output(FILE *file) {
         (void)fprintf(file, "%s    - {closed: %s, ", (i == 0u) ? "\n" : "", closed ? "true" : "false");
         write_at(file, outputs[i].t_ms);
     }
-    if (closed &&
-        (says("FSM-4: the safety output is closed in bus-off") || says("FSM-4: the safety output is closed, and"))) {
+    if (closed && !drops_output && says("FSM-4: the safety output is closed")) {
         (void)fprintf(file, "    - {closed: false, ");
         write_at(file, broken_ms);
     }
@@ -274,7 +273,7 @@ static void write_missing(FILE *file, const seen_t *s) {
     const char *between = "";
     /* the press that counted though it must not: it was the button, too, that was missing */
     const bool wrong_press =
-        says("FSM-3: the latch was left without a press") && (s->event.kind == (uint8_t)AGV_EVENT_RESET);
+        says("FSM-3: the latch was left without the button") && (s->event.kind == (uint8_t)AGV_EVENT_RESET);
     const uint32_t missing = s->event.missing | (wrong_press ? AGV_MISSING_BUTTON : 0u);
     for (uint8_t bit = 0; bit < (uint8_t)MISSING_BITS; bit++) {
         if ((missing & (1u << bit)) != 0u) {
@@ -294,7 +293,7 @@ static bool is_refused(void) {
 
 static const char *refused_for(void) {
     static const char *const WORDS[][2] = {{"SAFE", "state"},
-                                           {"a press", "button"},
+                                           {"the button", "button"},
                                            {"manual", "manual"},
                                            {"standstill", "standstill"},
                                            {"throttle", "throttle"},
