@@ -372,7 +372,7 @@ static void judge_reset(rules_t *rules) {
     if ((rules->last.state != AGV_STATE_SAFE) || (age_ms(rules, rules->safe_ms) < LATELY_MS)) {
         missing = "SAFE for a second";
     } else if (!rules->released || (rules->press_ms < PRESS_MS) || (rules->press_ms > PRESS_MAX_MS)) {
-        missing = "a press of 1 s to 5 s that began after the trip and is released";
+        missing = "the button, pressed after the trip, held for 1 s to 5 s and released";
     } else if (!rules->manual || (age_ms(rules, rules->manual_ms) < LATELY_MS)) {
         missing = "manual for a second";
     } else if (age_ms(rules, rules->fast_ms) < LATELY_MS) {
