@@ -99,44 +99,83 @@ void hal_watchdog_feed(hal_t *hal) {
 /* Every setting within its range: agv_config_check refuses others at the start, and the seal finds what changes later. Of the
    identifiers nothing is assumed. */
 static void sound_config(agv_config_t *config) {
-#define AGV_SETTING(name, preset, lowest, highest, unit, meaning) config->name = (uint16_t)any(lowest, highest);
-#define AGV_CHOICE(name, preset, words, meaning) config->name = (uint16_t)any(0u, 1u);
+#define AGV_SETTING(name, preset, lowest, highest, unit, weakens, scope, meaning)                                      \
+    config->name = (uint16_t)any(lowest, highest);
+#define AGV_CHOICE(name, words, weakens, scope, meaning) config->name = (uint16_t)any(0u, 1u);
 #include "agv/config_settings.def"
 #undef AGV_SETTING
 #undef AGV_CHOICE
 }
 
 /* A truth is 0 or 1 in memory. */
-static void sound_truths(agv_core_t *core) {
-    agv_state_machine_t *const machine = &core->machine;
-    machine->button_before = any_bool();
-    machine->pressed_after_trip = any_bool();
-    machine->press_refused = any_bool();
-    machine->park_released = any_bool();
-    machine->output_closed = any_bool();
-    machine->startup_reported = any_bool();
+static void sound_decisions(agv_core_t *core) {
+    core->machine.park_released = any_bool();
+    core->machine.output_closed = any_bool();
+    core->machine.startup_reported = any_bool();
     core->faults.summary.eps_fault = any_bool();
     core->faults.outdated = any_bool();
     core->faults.ai_loss_warns = any_bool();
-    core->vehicle.eps_in_angle_mode = any_bool();
-    core->vehicle.angle_known = any_bool();
-    core->motion_checks.command_known = any_bool();
-    core->gateway.sent = any_bool();
+    core->confirmation.park_sent = any_bool();
+    core->confirmation.unconfirmed = any_bool();
+    core->reset_button.began_after = any_bool();
+    core->reset_button.answered = any_bool();
+    core->stopping.stood = any_bool();
+    core->stopping.not_stopping = any_bool();
+    core->stopping.moving = any_bool();
     core->led.on = any_bool();
-    core->status_checks.after_gap = any_bool();
-    core->status_checks.ai_alarm_armed = any_bool();
     core->transmitter.report.park_sent = any_bool();
-    for (unsigned i = 0u; i < AGV_MSG_COUNT; i++) {
-        core->liveness.heard[i] = any_bool();
-        core->liveness.old[i] = any_bool();
-    }
+    core->transmitter.status_again = any_bool();
+    core->transmitter.throttle_0_waits = any_bool();
+}
+
+static void sound_observations(agv_core_t *core) {
+    core->mode.heard = any_bool();
+    core->mode.engaged = any_bool();
+    core->mode.manual = any_bool();
+    core->vehicle.throttle_known = any_bool();
+    core->vehicle.angle_known = any_bool();
+    core->vehicle.eps_in_angle_mode = any_bool();
+    core->vehicle.vcu_speed_seen = any_bool();
+    core->vehicle.wheels_fresh = any_bool();
+    core->vehicle.vcu_alive = any_bool();
+    core->commands.autopilot_off = any_bool();
+    core->gateway.steering_known = any_bool();
+    core->gateway.throttle_known = any_bool();
+    core->motion_checks.reported = any_bool();
+    core->status_checks.ai_alarm = any_bool();
+    core->status_checks.reported = any_bool();
+    core->status_checks.ai_alarm_armed = any_bool();
     for (unsigned i = 0u; i < AGV_NODE_COUNT; i++) {
         core->liveness.heartbeats[i].counter_known = any_bool();
         core->liveness.heartbeats[i].repeated = any_bool();
     }
 }
 
-/* Bits of `kept` are messages. All else is any bytes. */
+static void sound_counts(agv_core_t *core) {
+    for (unsigned i = 0u; i < AGV_COMMAND_COUNT; i++) {
+        core->intrusion.fast_gaps[i].present = any_bool();
+    }
+    for (unsigned i = 0u; i < (unsigned)AGV_BUDGET_COUNT; i++) {
+        core->motion_checks.budgets[i].half = any_bool();
+        core->motion_checks.budgets[i].present = any_bool();
+    }
+    for (unsigned i = 0u; i < AGV_SCORED_EPS_BITS; i++) {
+        core->status_checks.eps_bits[i].present = any_bool();
+    }
+    for (unsigned i = 0u; i < AGV_SCORED_VALUES; i++) {
+        core->status_checks.values[i].present = any_bool();
+    }
+    core->status_checks.eps_mode.present = any_bool();
+    core->status_checks.hold_angle.present = any_bool();
+}
+
+static void sound_truths(agv_core_t *core) {
+    sound_decisions(core);
+    sound_observations(core);
+    sound_counts(core);
+}
+
+/* Bits of `kept` are messages, `oldest` and `next_to_age` are places. All else is any bytes. */
 static void any_sound_state(void) {
     agv_core_t *const core = agv_core_of(&supervisor);
     any_bytes(&supervisor, sizeof supervisor);
@@ -144,6 +183,8 @@ static void any_sound_state(void) {
     sound_config(&core->config);
     sound_truths(core);
     core->transmitter.kept = any(0u, (1u << AGV_MSG_COUNT) - 1u);
+    core->mode.oldest = any(0u, 2u);
+    core->liveness.next_to_age = any(0u, AGV_MSG_COUNT - 1u);
     supervisor.receive_alive = any_bool();
 }
 
@@ -155,12 +196,14 @@ static void within(uint32_t value, uint32_t lowest, uint32_t highest) {
 
 static void check_memory(const agv_core_t *core) {
     /*@ assert core->transmitter.kept < (1 << AGV_MSG_COUNT); */
+    /*@ assert core->mode.oldest < 3; */
 }
 
 static void check_invariants(const agv_core_t *core) {
     check_memory(core);
-#define AGV_SETTING(name, preset, lowest, highest, unit, meaning) within(core->config.name, lowest, highest);
-#define AGV_CHOICE(name, preset, words, meaning) within(core->config.name, 0u, 1u);
+#define AGV_SETTING(name, preset, lowest, highest, unit, weakens, scope, meaning)                                      \
+    within(core->config.name, lowest, highest);
+#define AGV_CHOICE(name, words, weakens, scope, meaning) within(core->config.name, 0u, 1u);
 #include "agv/config_settings.def"
 #undef AGV_SETTING
 #undef AGV_CHOICE
