@@ -136,12 +136,12 @@ static const struct {
     {AGV_TIMER_TX_STATUS, 101},
     {AGV_TIMER_EVENT_RX_OVERRUN, 1000},
     {AGV_TIMER_EVENT_MODE_FLAPPING, 1000},
-    {AGV_TIMER_MESSAGE + AGV_MSG_TURN_SIGNAL_COMMAND, 351},
-    {AGV_TIMER_MESSAGE + AGV_MSG_STEERING_COMMAND, 126},
-    {AGV_TIMER_MESSAGE + AGV_MSG_VEHICLE_STATUS, 51},
-    {AGV_TIMER_MESSAGE + AGV_MSG_GEAR_STATUS, 126},
-    {AGV_TIMER_MESSAGE + AGV_MSG_STEERING_STATUS, 51},
-    {AGV_TIMER_MESSAGE + AGV_MSG_WHEEL_SPEED, 61},
+    {(unsigned)AGV_TIMER_MESSAGE + (unsigned)AGV_MSG_TURN_SIGNAL_COMMAND, 351},
+    {(unsigned)AGV_TIMER_MESSAGE + (unsigned)AGV_MSG_STEERING_COMMAND, 126},
+    {(unsigned)AGV_TIMER_MESSAGE + (unsigned)AGV_MSG_VEHICLE_STATUS, 51},
+    {(unsigned)AGV_TIMER_MESSAGE + (unsigned)AGV_MSG_GEAR_STATUS, 126},
+    {(unsigned)AGV_TIMER_MESSAGE + (unsigned)AGV_MSG_STEERING_STATUS, 51},
+    {(unsigned)AGV_TIMER_MESSAGE + (unsigned)AGV_MSG_WHEEL_SPEED, 61},
 };
 
 void test_every_timer_has_the_limit_of_its_setting(void) {
@@ -151,7 +151,8 @@ void test_every_timer_has_the_limit_of_its_setting(void) {
         TEST_ASSERT_FALSE(reached(ROWS[i].timer, 7 + ROWS[i].reached_ms - 1));
         TEST_ASSERT_TRUE(reached(ROWS[i].timer, 7 + ROWS[i].reached_ms));
     }
-    TEST_ASSERT_EQUAL_UINT32(350, agv_timer_limit_ms(&config, AGV_TIMER_MESSAGE + AGV_MSG_GEAR_COMMAND));
+    TEST_ASSERT_EQUAL_UINT32(350,
+                             agv_timer_limit_ms(&config, (unsigned)AGV_TIMER_MESSAGE + (unsigned)AGV_MSG_GEAR_COMMAND));
     TEST_ASSERT_EQUAL_UINT32(5000, agv_timer_limit_ms(&config, AGV_TIMER_PRESS_LONG));
 }
 
