@@ -37,12 +37,12 @@ typedef struct {
     _Alignas(16) agv_supervisor_t supervisor; /**< aligned, for the speed of its seal */
     agv_recorder_t recorder;
     agv_ports_t ports;
-    uint64_t t_ms;         /**< time of the last call, since the start of the run */
+    uint64_t t_ms;          /**< time of the last call, since the start of the run */
     uint64_t ticked_ms;     /**< time of the last tick, or of the start */
     uint64_t supervised_ms; /**< time outside INIT */
-    uint32_t next;         /**< sequence number of the next event to tell of */
-    int8_t led_code;       /**< as last told */
-    bool self_test_failed; /**< session_fail_self_test() */
+    uint32_t next;          /**< sequence number of the next event to tell of */
+    int8_t led_code;        /**< as last told */
+    bool self_test_failed;  /**< session_fail_self_test() */
     size_t observer_count;
     struct {
         session_observer_fn *fn;

@@ -120,17 +120,10 @@ typedef struct {
     uint8_t counter_at; /* which byte counts; 8: none */
 } message_t;
 
-static message_t traffic[] = {{0x43F, 100, {0}, 7},
-                              {0x168, 100, {1}, 8},
-                              {0x075, 100, {0}, 8},
-                              {0x065, 25, {0x28, 0x23}, 8},
-                              {0x363, 10, {[6] = MANUAL}, 7},
-                              {0x0A3, 25, {8}, 8},
-                              {0x050, 10, {0}, 8},
-                              {0x067, 10, {0, 0, 0x28, 0x23}, 0},
-                              {0x167, 10, {[3] = 1}, 8},
-                              {0x267, 10, {0}, 8},
-                              {0x101, 10, {0}, 8}};
+static message_t traffic[] = {
+    {0x43F, 100, {0}, 7},           {0x168, 100, {1}, 8}, {0x075, 100, {0}, 8}, {0x065, 25, {0x28, 0x23}, 8},
+    {0x363, 10, {[6] = MANUAL}, 7}, {0x0A3, 25, {8}, 8},  {0x050, 10, {0}, 8},  {0x067, 10, {0, 0, 0x28, 0x23}, 0},
+    {0x167, 10, {[3] = 1}, 8},      {0x267, 10, {0}, 8},  {0x101, 10, {0}, 8}};
 enum { VEHICLE_STATUS = 4, EPS_STATUS = 8, MESSAGES = sizeof traffic / sizeof traffic[0] };
 
 static void send(message_t *message) {

@@ -84,9 +84,9 @@ class Watched(clients.Case):
             for place, frame in enumerate(found[1:]):
                 self.at_most(0.010, abs(frame.at - found[0].at - second - 0.1 * place), "%03X, again" % can_id)
             self.assertGreaterEqual(len(found), 10 * (last - cause.at) - 2)
-        # The status frame: state, rank of the reason (25), output closed, counter.
+        # The status frame: state, rank of the reason (28), output closed, counter.
         told = of(sent, STATUS_ID)
-        self.assertEqual({frame.data[:6] for frame in told if cause.at + 0.1 < frame.at <= last}, {"5A1901"})
+        self.assertEqual({frame.data[:6] for frame in told if cause.at + 0.1 < frame.at <= last}, {"5A1C01"})
         counters = [int(frame.data[6:8], 16) for frame in told]
         self.assertEqual({(b - a) & 0xFF for a, b in zip(counters, counters[1:])}, {1})
 
