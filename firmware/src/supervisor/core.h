@@ -33,11 +33,12 @@
 typedef struct {
     agv_timers_t timers;
     agv_config_t config;
+    agv_counters_t counters;
+    /* From here on everything begins anew with every start. */
     uint32_t config_checksum; /**< agv_config_checksum at the start */
     agv_ids_t ids;            /**< made of config; and a second copy, for when the configuration is corrupted */
     uint16_t topology;        /**< second copy, likewise */
     uint16_t id_set;          /**< second copy, likewise */
-    agv_counters_t counters;
     agv_state_machine_t machine;
     agv_fault_monitor_t faults;
     agv_liveness_t liveness;

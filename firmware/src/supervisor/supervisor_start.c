@@ -26,13 +26,8 @@ static uint32_t self_test(const agv_core_t *core) {
 
 /* Everything begins anew but the time, the configuration and the counters. */
 static void begin_modules(agv_core_t *core, hal_t *hal) {
-    const uint32_t now_ms = core->timers.now_ms;
-    const agv_config_t config = core->config;
-    const agv_counters_t counters = core->counters;
-    (void)memset(core, 0, sizeof *core);
-    agv_timers_set_time(&core->timers, now_ms);
-    core->config = config;
-    core->counters = counters;
+    const size_t anew = offsetof(agv_core_t, config_checksum);
+    (void)memset(&((unsigned char *)core)[anew], 0, sizeof *core - anew);
     core->config_checksum = agv_config_checksum(&core->config);
     core->last_tick_ms = core->timers.now_ms;
     agv_core_keep_wiring(core);
