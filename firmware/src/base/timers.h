@@ -31,7 +31,7 @@ typedef enum {
     AGV_TIMER_MESSAGE = AGV_TIMER_MESSAGE_TURN_SIGNAL_COMMAND /**< of message n: AGV_TIMER_MESSAGE + n */
 } agv_timer_t;
 
-/** Phases of a timer. One that has reached its limit stays so until it is started again: nothing un-expires (TIM-2). */
+/** Phases of a timer. One that has reached its limit stays so until it is started again (TIM-2). */
 enum { AGV_TIMER_STOPPED = 0, AGV_TIMER_RUNNING = 1, AGV_TIMER_REACHED = 2 };
 
 /** Time and timers of one supervisor. */
