@@ -121,6 +121,8 @@ typedef struct {
     hazard_range_t now;     /**< real and lately measured angles then */
     hazard_range_t at_trip; /**< the same at the trip */
     bool has_trip;
+    bool is_dropped; /**< manual was reported since */
+    uint64_t dropped_ms;
     hazard_range_t first; /**< the first measured angles after the trip, or after manual ended */
     uint64_t first_ms;    /**< when the first of them came */
     bool has_first;
@@ -209,6 +211,7 @@ void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame);
 void hazard_hold_tick(hazard_t *hazard);
 void hazard_hold_measured(hazard_t *hazard, int32_t angle_ddeg);
 void hazard_hold_trip(hazard_t *hazard);
+void hazard_hold_manual(hazard_t *hazard);
 /** @} */
 
 #endif

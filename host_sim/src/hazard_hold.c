@@ -3,7 +3,7 @@
 
 #include "hazard.h"
 
-enum { NEW_HOLD_MS = 300, FRESH_MS = 150, TOLERANCE_DDEG = 50, CENTRE_DDEG = 9000 };
+enum { NEW_HOLD_MS = 300, FRESH_MS = 150, IN_FLIGHT_MS = 20, TOLERANCE_DDEG = 50, CENTRE_DDEG = 9000 };
 
 static bool is_near(int32_t a_ddeg, int32_t b_ddeg) {
     return abs(a_ddeg - b_ddeg) <= TOLERANCE_DDEG;
@@ -55,12 +55,32 @@ void hazard_hold_trip(hazard_t *hazard) {
 
     hazard->hold.at_trip = range_now(hazard, within_ms);
     hazard->hold.has_trip = true;
+    hazard->hold.is_dropped = false;
     hazard->hold.has_first = false;
 }
 
+void hazard_hold_manual(hazard_t *hazard) {
+    hazard_hold_t *hold = &hazard->hold;
+
+    if (hold->has_trip && !hold->is_dropped) {
+        hold->is_dropped = true;
+        hold->dropped_ms = hazard->t_ms;
+    }
+}
+
+/** Manual drops the angle of the trip; a frame that was in the controller then may still leave. */
+static bool is_of_trip(const hazard_t *hazard, int32_t held_ddeg) {
+    const hazard_hold_t *hold = &hazard->hold;
+
+    return hold->has_trip && (!hold->is_dropped || (hazard->t_ms - hold->dropped_ms <= IN_FLIGHT_MS)) &&
+           is_within(&hold->at_trip, held_ddeg);
+}
+
 /** Whether the angle is one that may be held. */
-static bool may_be_held(const hazard_hold_t *hold, int32_t held_ddeg) {
-    return is_within(&hold->now, held_ddeg) || (hold->has_trip && is_within(&hold->at_trip, held_ddeg)) ||
+static bool may_be_held(const hazard_t *hazard, int32_t held_ddeg) {
+    const hazard_hold_t *hold = &hazard->hold;
+
+    return is_within(&hold->now, held_ddeg) || is_of_trip(hazard, held_ddeg) ||
            (hold->has_first && is_within(&hold->first, held_ddeg));
 }
 
@@ -79,7 +99,10 @@ void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame) {
     }
     hold->last_ms = hazard->t_ms;
     hold->value = value;
-    if (!may_be_held(hold, held_ddeg)) {
+    if (!may_be_held(hazard, held_ddeg)) {
+        if (!hold->is_wrong) {
+            hold->start_ddeg = hazard_angle_ddeg(hazard); /* it was right up to now: what it moved before is not wrong */
+        }
         hold->is_wrong = true;
         hold->wrong_ddeg = held_ddeg;
     }

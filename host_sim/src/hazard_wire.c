@@ -91,7 +91,7 @@ static void note_mode(hazard_t *hazard, uint8_t bits) {
     }
     if (manual) {
         mode->manual_ms = hazard->t_ms;
-        hazard->hold.has_trip = false;
+        hazard_hold_manual(hazard);
     }
     mode->autopilot = autopilot;
     mode->manual = manual;

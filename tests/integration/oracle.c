@@ -30,6 +30,7 @@ void oracle_restart(oracle_t *oracle) {
     oracle->held = false;
     oracle->manual = false;
     oracle->mode_bits = 0u;
+    oracle->both_halves = 0u;
     oracle->ending = false;
     oracle->before = AGV_STATE_INIT;
 }
@@ -77,11 +78,23 @@ static void heard_angle(oracle_t *oracle, const hal_can_frame_t *frame) {
     }
 }
 
+/* MODE_INVALID: a millisecond without both bits takes half a one off. */
+static void heard_both(oracle_t *oracle, bool both, uint32_t time_ms) {
+    const uint32_t past_ms = time_ms - oracle->both_since_ms;
+    const uint32_t left = (past_ms < oracle->both_halves) ? (oracle->both_halves - past_ms) : 0u;
+    if (both && (oracle->mode_bits != 0xC0u)) {
+        oracle->both_halves = (left > 1u) ? left : 0u;
+        oracle->both_since_ms = time_ms - ((oracle->both_halves + 1u) / 2u);
+    } else if (!both && (oracle->mode_bits == 0xC0u)) {
+        const uint32_t spent_ms = (past_ms < oracle->mode_invalid_ms) ? past_ms : oracle->mode_invalid_ms;
+        oracle->both_halves = (2u * spent_ms) - (oracle->both_halves % 2u);
+        oracle->both_since_ms = time_ms;
+    }
+}
+
 static void heard_mode(oracle_t *oracle, const hal_can_frame_t *frame) {
     const uint8_t bits = (uint8_t)(frame->data[6] & 0xC0u);
-    if ((bits == 0xC0u) && (oracle->mode_bits != 0xC0u)) {
-        oracle->both_since_ms = frame->time_ms;
-    }
+    heard_both(oracle, bits == 0xC0u, frame->time_ms);
     if (bits != 0xC0u) {
         oracle->manual = bits == 0x40u;
     }

@@ -26,6 +26,7 @@ typedef struct {
     uint8_t mode_bits;
     bool manual;
     uint32_t both_since_ms;
+    uint32_t both_halves; /* half milliseconds of both bits that are left, while they are not both set */
 
     /* an engagement has ended: one throttle 0 may go to the vehicle */
     agv_state_t before;

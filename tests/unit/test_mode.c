@@ -6,6 +6,7 @@
 enum { NONE = 0, MANUAL = 0x40, ENGAGED = 0x80, BOTH = 0xC0 }; /* 363h byte 7 */
 
 static agv_mode_t mode;
+static uint32_t ticked_ms;
 static agv_timers_t timers;
 static agv_config_t config;
 static agv_fault_monitor_t faults;
@@ -18,6 +19,7 @@ static uint32_t at(uint32_t ms) {
 void setUp(void) {
     agv_config_defaults(&config);
     mode = (agv_mode_t){0};
+    ticked_ms = 0;
     faults = (agv_fault_monitor_t){0};
     agv_timers_set_time(&timers, at(0));
     agv_timers_start(&timers);
@@ -43,8 +45,10 @@ static agv_mode_change_t disengage(uint32_t ms) {
 }
 
 static agv_mode_change_t tick(uint32_t ms) {
+    const uint32_t elapsed_ms = ms - ticked_ms;
     advance(ms);
-    return agv_mode_tick(&mode, &timers, true);
+    ticked_ms = ms;
+    return agv_mode_tick(&mode, &timers, true, elapsed_ms);
 }
 
 static void expect_mode(bool manual, bool engaged) {
@@ -130,9 +134,9 @@ void test_an_engagement_needs_a_vcu_that_is_alive(void) {
     expect_mode(false, false);
     TEST_ASSERT_EQUAL(AGV_MODE_BEGAN, report(ENGAGED, 20));
     TEST_ASSERT_EQUAL(AGV_MODE_SAME, tick(30));
-    TEST_ASSERT_EQUAL(AGV_MODE_ENDED, agv_mode_tick(&mode, &timers, false));
+    TEST_ASSERT_EQUAL(AGV_MODE_ENDED, agv_mode_tick(&mode, &timers, false, 1));
     expect_mode(false, false);
-    TEST_ASSERT_EQUAL(AGV_MODE_SAME, agv_mode_tick(&mode, &timers, false));
+    TEST_ASSERT_EQUAL(AGV_MODE_SAME, agv_mode_tick(&mode, &timers, false, 1));
 }
 
 /* ---- One engagement ---- */
@@ -209,7 +213,7 @@ void test_at_the_engagement_the_ai_computer_is_awaited(void) {
 /* ---- Both bits ---- */
 
 static bool is_invalid(void) {
-    agv_mode_check(&mode, &timers, &faults, true, true);
+    agv_mode_check(&mode, &timers, &faults, &config, true, true);
     return is_active(AGV_FAULT_MODE_INVALID);
 }
 
@@ -233,19 +237,31 @@ void test_both_bits_leave_the_mode_before_until_they_last(void) {
     TEST_ASSERT_FALSE(agv_mode_is_ambiguous(&mode));
 }
 
+/* 50 ms, then one good frame of 10 ms: 45 ms are left of them. */
 /* Shows: MODE_INVALID */
-void test_one_good_frame_begins_the_time_of_both_bits_anew(void) {
+void test_a_good_frame_takes_half_its_time_off_that_of_both_bits(void) {
     (void)report(MANUAL, 0);
+    (void)tick(9);
     (void)report(BOTH, 10);
     expect_mode(true, false);
+    (void)tick(59);
     (void)report(MANUAL, 60);
-    (void)report(BOTH, 61);
-    TEST_ASSERT_EQUAL(AGV_MODE_SAME, tick(111));
+    (void)tick(69);
+    (void)report(BOTH, 70);
+    TEST_ASSERT_EQUAL(AGV_MODE_SAME, tick(75));
     TEST_ASSERT_FALSE(is_invalid());
     expect_mode(true, false);
-    TEST_ASSERT_EQUAL(AGV_MODE_SAME, tick(112)); /* from manual to none: nothing was engaged */
+    TEST_ASSERT_EQUAL(AGV_MODE_SAME, tick(76)); /* from manual to none: nothing was engaged */
     TEST_ASSERT_TRUE(is_invalid());
     expect_mode(false, false);
+    (void)report(MANUAL, 77);
+    TEST_ASSERT_FALSE(is_invalid());
+    (void)tick(176);
+    (void)report(BOTH, 177); /* nothing is left after 100 ms */
+    (void)tick(227);
+    TEST_ASSERT_FALSE(is_invalid());
+    (void)tick(228);
+    TEST_ASSERT_TRUE(is_invalid());
 }
 
 /* ---- Flapping ---- */
@@ -282,8 +298,8 @@ void test_three_engagements_within_5_s_are_none(void) {
 /* ---- No mode ---- */
 
 static bool none_at(uint32_t ms, bool supervising, bool standstill) {
-    advance(ms);
-    agv_mode_check(&mode, &timers, &faults, supervising, standstill);
+    (void)tick(ms);
+    agv_mode_check(&mode, &timers, &faults, &config, supervising, standstill);
     return is_active(AGV_FAULT_MODE_NONE);
 }
 
@@ -295,11 +311,26 @@ void test_no_mode_for_500_ms_while_not_at_standstill(void) {
     TEST_ASSERT_TRUE(none_at(510, true, false));
     TEST_ASSERT_TRUE(none_at(520, true, false));
     TEST_ASSERT_FALSE(none_at(530, true, true)); /* standstill ends it */
-    TEST_ASSERT_FALSE(none_at(1029, true, false));
-    TEST_ASSERT_FALSE(none_at(1528, true, false));
-    TEST_ASSERT_TRUE(none_at(1529, true, false));
-    (void)report(MANUAL, 1530); /* so does a mode */
-    TEST_ASSERT_FALSE(none_at(1530, true, false));
+    TEST_ASSERT_FALSE(none_at(1529, true, true));
+    TEST_ASSERT_FALSE(none_at(1530, true, false)); /* a second later it begins anew */
+    TEST_ASSERT_FALSE(none_at(2029, true, false));
+    TEST_ASSERT_TRUE(none_at(2030, true, false));
+    (void)report(MANUAL, 2031); /* so does a mode */
+    TEST_ASSERT_FALSE(none_at(2031, true, false));
+}
+
+/* 499 ms, then 100 ms with a mode: 449 ms are left of them. */
+/* Shows: SUP-9, MODE_NONE */
+void test_a_mode_takes_half_its_time_off_that_without_one(void) {
+    (void)report(NONE, 0);
+    TEST_ASSERT_FALSE(none_at(10, true, false));
+    TEST_ASSERT_FALSE(none_at(508, true, false));
+    (void)report(MANUAL, 509);
+    TEST_ASSERT_FALSE(none_at(509, true, false));
+    (void)report(NONE, 608);
+    TEST_ASSERT_FALSE(none_at(609, true, false));
+    TEST_ASSERT_FALSE(none_at(659, true, false));
+    TEST_ASSERT_TRUE(none_at(660, true, false));
 }
 
 /* It is looked for in STANDBY and ACTIVE; what trips there lasts as long as its cause. */

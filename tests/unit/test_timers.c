@@ -1,6 +1,8 @@
 /* Timers on the wrapping clock: from several moments, of which some are just before the wrap. */
 #include "base/timers.h"
 
+#include <string.h>
+
 #include "unity.h"
 
 /* A duration and a deadline of 100 ms each. */
@@ -209,6 +211,81 @@ void test_a_condition_that_breaks_starts_the_time_again(void) {
     TEST_ASSERT_TRUE(go_on_while(true, 211));
     TEST_ASSERT_TRUE(go_on_while(true, 500));
     TEST_ASSERT_FALSE(go_on_while(false, 501));
+}
+
+/* ---- Which of them are looked at ---- */
+
+/* The timers are looked at only when one of them can be over. So a thousand changes at random, against a plain account. */
+typedef struct {
+    uint32_t since_ms;
+    bool runs;
+    bool reached;
+} account_t;
+
+enum { ACCOUNTS = 2 };
+static account_t accounts[ACCOUNTS]; /* of DURATION and of DEADLINE */
+
+static uint32_t draw(uint32_t below) {
+    static uint32_t seed = 1;
+    seed = seed * 1664525u + 1013904223u;
+    return (seed >> 8u) % below;
+}
+
+static void change_one(uint32_t now_ms) {
+    const unsigned which = draw(ACCOUNTS);
+    const uint32_t timer = (which == 0) ? DURATION : DEADLINE;
+    switch (draw(4)) {
+    case 0:
+        agv_timer_start(&timers, timer);
+        accounts[which] = (account_t){now_ms, true, false};
+        break;
+    case 1:
+        accounts[which] = (account_t){now_ms - draw(120), true, false};
+        agv_timer_start_at(&timers, timer, accounts[which].since_ms);
+        break;
+    case 2:
+        agv_timer_stop(&timers, timer);
+        accounts[which] = (account_t){0};
+        break;
+    default:
+        break;
+    }
+}
+
+/* Shows: TIM-2 */
+TEST_CASE(0)
+TEST_CASE(0xFFFF0000)
+void test_no_timer_is_overlooked(uint32_t start_ms) {
+    uint32_t now_ms = start_ms;
+    unsigned seen = 0;
+    agv_timers_set_time(&timers, now_ms);
+    (void)memset(accounts, 0, sizeof accounts);
+    for (unsigned step = 0; step < 5000; step++) {
+        change_one(now_ms);
+        now_ms += 1 + draw(60);
+        advance(now_ms);
+        for (uint32_t i = 0; i < ACCOUNTS; i++) {
+            account_t *const account = &accounts[i];
+            account->reached = account->reached || (account->runs && now_ms - account->since_ms >= 100 + i);
+            TEST_ASSERT_EQUAL(account->reached, agv_timer_reached(&timers, (i == 0) ? DURATION : DEADLINE));
+            seen += account->reached ? 1 : 0;
+        }
+    }
+    TEST_ASSERT_GREATER_THAN_UINT32(1000, seen);
+}
+
+static void expect_spent(uint32_t spent_ms, uint32_t now_ms) {
+    advance(now_ms);
+    TEST_ASSERT_EQUAL_UINT32(spent_ms, agv_timer_spent_ms(&timers, &config, DURATION));
+}
+
+void test_what_a_timer_has_run_for(void) {
+    begin(DURATION, 0xFFFFFFFFu);
+    expect_spent(0, 0xFFFFFFFFu);
+    expect_spent(99, 98);
+    expect_spent(100, 99);
+    expect_spent(100, 99 + 0x80000000u - 1u);
+    expect_spent(100, 99 + 0xF0000000u);
 }
 
 /* The time stays; what ran before is over. */

@@ -28,7 +28,7 @@ typedef struct {
 } agv_ports_t;
 
 /** Bytes that a supervisor needs, on every platform. */
-#define AGV_SUPERVISOR_MEMORY 1004u
+#define AGV_SUPERVISOR_MEMORY 1016u
 
 /**
  * One supervisor: static memory of the caller. Read it through the functions below. `seal` is a checksum over `memory`,

@@ -3,26 +3,26 @@
 #include <stddef.h>
 #include <string.h>
 
-/* Added to the age, which then has to be above the limit: durations are reached at their limit, deadlines above it. */
-enum { DURATION = 1, DEADLINE = 0 };
+/* By how much more than its limit a timer has to run, ms: durations are reached at their limit, deadlines above it. */
+enum { DURATION = 0, DEADLINE = 1 };
 
 /* Which setting is the limit, and the kind. */
 static const struct {
     uint8_t setting;
-    uint8_t kind;
+    uint8_t more_ms;
 } rows[AGV_TIMER_COUNT] = {
-#define AGV_TIMER(name, limit, of_kind) [AGV_TIMER_##name] = {.setting = AGV_SETTING_##limit, .kind = (of_kind)},
+#define AGV_TIMER(name, limit, kind) [AGV_TIMER_##name] = {.setting = AGV_SETTING_##limit, .more_ms = (kind)},
 #include "base/timer_table.def"
 #undef AGV_TIMER
 #define AGV_FAULT(name, class, led, flags)
 #define AGV_FAULT_EVENT(name, class, led, flags)                                                                       \
-    [AGV_TIMER_EVENT_##name] = {.setting = AGV_SETTING_event_hold_ms, .kind = DURATION},
+    [AGV_TIMER_EVENT_##name] = {.setting = AGV_SETTING_event_hold_ms, .more_ms = DURATION},
 #include "agv/fault_table.def"
 #undef AGV_FAULT
 #undef AGV_FAULT_EVENT
 #define AGV_COMMAND AGV_STATUS
 #define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter)                                        \
-    [AGV_TIMER_MESSAGE_##NAME] = {.setting = AGV_SETTING_##deadline, .kind = DEADLINE},
+    [AGV_TIMER_MESSAGE_##NAME] = {.setting = AGV_SETTING_##deadline, .more_ms = DEADLINE},
 #include "agv/message_table.def"
 #undef AGV_COMMAND
 #undef AGV_STATUS
@@ -46,25 +46,44 @@ uint32_t agv_timer_limit_ms(const agv_config_t *config, uint32_t timer) {
 
 void agv_timers_start(agv_timers_t *timers) {
     (void)memset(timers->phase, AGV_TIMER_STOPPED, sizeof timers->phase);
+    timers->due_ms = timers->now_ms;
 }
 
 void agv_timers_set_time(agv_timers_t *timers, uint32_t time_ms) {
     timers->now_ms = time_ms;
     timers->now_us = time_ms * 1000u;
+    timers->due_ms = time_ms;
 }
 
-/* An age of more than half the range is that of a stamp in the future: 0. */
-static bool is_over(const agv_timers_t *timers, const agv_config_t *config, uint32_t timer) {
-    const uint32_t age_ms = timers->now_ms - timers->since_ms[timer];
-    return (age_ms <= (UINT32_MAX / 2u)) && ((age_ms + rows[timer].kind) > limit_of(config, timer));
+/* The longest time until the timers are evaluated again. */
+enum { HORIZON_MS = 65536 };
+
+/* From since_ms to the time at which a timer has reached its limit. */
+static uint32_t span_of(const agv_config_t *config, uint32_t timer) {
+    return limit_of(config, timer) + rows[timer].more_ms;
 }
 
-static void evaluate(agv_timers_t *timers, const agv_config_t *config) {
+static bool is_running(const agv_timers_t *timers, uint32_t timer) {
+    return timers->phase[timer] == (uint8_t)AGV_TIMER_RUNNING;
+}
+
+/* Returns the time until the next timer reaches its limit, or less. */
+static uint32_t evaluate(agv_timers_t *timers, const agv_config_t *config) {
+    uint32_t next_ms = HORIZON_MS;
     for (uint32_t i = 0u; i < (uint32_t)AGV_TIMER_COUNT; i++) {
-        if ((timers->phase[i] == (uint8_t)AGV_TIMER_RUNNING) && is_over(timers, config, i)) {
-            timers->phase[i] = AGV_TIMER_REACHED;
+        if (is_running(timers, i)) {
+            const uint32_t age_ms = agv_age_ms(timers->now_ms, timers->since_ms[i]);
+            const uint32_t span_ms = span_of(config, i);
+            if (age_ms >= span_ms) {
+                timers->phase[i] = AGV_TIMER_REACHED;
+            } else if ((span_ms - age_ms) < next_ms) {
+                next_ms = span_ms - age_ms;
+            } else {
+                /* not the next one */
+            }
         }
     }
+    return next_ms;
 }
 
 void agv_timers_advance(agv_timers_t *timers, const agv_config_t *config, uint32_t time_ms, uint32_t time_us) {
@@ -74,13 +93,19 @@ void agv_timers_advance(agv_timers_t *timers, const agv_config_t *config, uint32
     } else if (agv_age_ms(time_ms, timers->now_ms) > 0u) {
         timers->now_ms = time_ms;
         timers->now_us = now_us;
-        evaluate(timers, config);
+        if ((time_ms - timers->due_ms) <= (UINT32_MAX / 2u)) {
+            timers->due_ms = time_ms + evaluate(timers, config);
+        }
     } else {
         /* from before */
     }
 }
 
+/* A timer that is started later than it was can only reach its limit later. */
 void agv_timer_start_at(agv_timers_t *timers, uint32_t timer, uint32_t since_ms) {
+    if (!is_running(timers, timer) || (agv_age_ms(timers->since_ms[timer], since_ms) > 0u)) {
+        timers->due_ms = timers->now_ms;
+    }
     timers->since_ms[timer] = since_ms;
     timers->phase[timer] = AGV_TIMER_RUNNING;
 }
@@ -91,6 +116,12 @@ void agv_timer_start(agv_timers_t *timers, uint32_t timer) {
 
 void agv_timer_stop(agv_timers_t *timers, uint32_t timer) {
     timers->phase[timer] = AGV_TIMER_STOPPED;
+}
+
+uint32_t agv_timer_spent_ms(const agv_timers_t *timers, const agv_config_t *config, uint32_t timer) {
+    const uint32_t limit_ms = limit_of(config, timer);
+    const uint32_t age_ms = agv_age_ms(timers->now_ms, timers->since_ms[timer]);
+    return (is_running(timers, timer) && (age_ms < limit_ms)) ? age_ms : limit_ms;
 }
 
 bool agv_timer_reached(const agv_timers_t *timers, uint32_t timer) {
@@ -109,7 +140,7 @@ bool agv_timer_while(agv_timers_t *timers, uint32_t timer, bool condition) {
 }
 
 bool agv_timer_is_within(const agv_timers_t *timers, uint32_t timer) {
-    return timers->phase[timer] == (uint8_t)AGV_TIMER_RUNNING;
+    return is_running(timers, timer);
 }
 
 bool agv_timer_runs(const agv_timers_t *timers, uint32_t timer) {

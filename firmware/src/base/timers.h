@@ -38,6 +38,7 @@ enum { AGV_TIMER_STOPPED = 0, AGV_TIMER_RUNNING = 1, AGV_TIMER_REACHED = 2 };
 typedef struct {
     uint32_t now_ms; /**< latest time seen */
     uint32_t now_us; /**< the same in microseconds, wraps */
+    uint32_t due_ms; /**< no running timer reaches its limit before this time */
     uint32_t since_ms[AGV_TIMER_COUNT];
     uint8_t phase[AGV_TIMER_COUNT]; /**< AGV_TIMER_STOPPED ... */
 } agv_timers_t;
@@ -58,11 +59,15 @@ void agv_timers_start(agv_timers_t *timers);
 void agv_timers_set_time(agv_timers_t *timers, uint32_t time_ms);
 
 /**
- * Advance the time to a stamp, and note which timers have reached their limit by then. An earlier stamp changes nothing:
+ * Advance the time to a stamp, and note which timers have reached their limit by then (they are looked at only when the
+ * first of them can have done so). An earlier stamp changes nothing:
  * time never goes backwards, whatever stamps frames carry. Called at least once in every 24 days, so that it holds across
  * the wrap.
  */
 void agv_timers_advance(agv_timers_t *timers, const agv_config_t *config, uint32_t time_ms, uint32_t time_us);
+
+/** The time for which a timer has run, ms; its limit when it has reached it. Ask of one that is not stopped. */
+uint32_t agv_timer_spent_ms(const agv_timers_t *timers, const agv_config_t *config, uint32_t timer);
 
 /** Start a timer anew from now. */
 void agv_timer_start(agv_timers_t *timers, uint32_t timer);

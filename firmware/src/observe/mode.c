@@ -46,11 +46,31 @@ static agv_mode_change_t count_off_frame(agv_mode_t *mode, agv_timers_t *timers,
     return (mode->off_frames >= config->mode_frames) ? end(mode, timers) : AGV_MODE_SAME;
 }
 
+/* A condition that is interrupted goes on with the time that is left of it. Returns whether it has lasted for long enough. */
+static bool resume_while(agv_timers_t *timers, const agv_config_t *config, uint32_t timer, agv_budget_t *spent,
+                         bool condition) {
+    if (condition && !agv_timer_runs(timers, timer)) {
+        agv_timer_start_at(timers, timer, timers->now_ms - spent->value_ms);
+    } else if (!condition && agv_timer_runs(timers, timer)) {
+        spent->value_ms = (uint16_t)agv_timer_spent_ms(timers, config, timer);
+        agv_timer_stop(timers, timer);
+    } else {
+        /* no change */
+    }
+    return agv_timer_reached(timers, timer);
+}
+
+static void fade(const agv_timers_t *timers, uint32_t timer, agv_budget_t *spent, uint32_t elapsed_ms) {
+    if (!agv_timer_runs(timers, timer)) {
+        agv_budget_add(spent, false, elapsed_ms, UINT16_MAX);
+    }
+}
+
 agv_mode_change_t agv_mode_report(agv_mode_t *mode, agv_timers_t *timers, const agv_config_t *config, uint32_t flags,
                                   bool vcu_alive, uint32_t time_ms) {
     mode->heard = true;
     mode->bits = (uint8_t)(flags & (uint32_t)BOTH);
-    (void)agv_timer_while(timers, AGV_TIMER_BOTH_MODES, mode->bits == (uint8_t)BOTH);
+    (void)resume_while(timers, config, AGV_TIMER_BOTH_MODES, &mode->both_spent, mode->bits == (uint8_t)BOTH);
     if (mode->bits == (uint8_t)BOTH) {
         mode->off_frames = 0u;
         return AGV_MODE_SAME; /* the mode before stands */
@@ -67,7 +87,9 @@ static bool is_invalid(const agv_timers_t *timers) {
     return agv_timer_reached(timers, AGV_TIMER_BOTH_MODES);
 }
 
-agv_mode_change_t agv_mode_tick(agv_mode_t *mode, agv_timers_t *timers, bool vcu_alive) {
+agv_mode_change_t agv_mode_tick(agv_mode_t *mode, agv_timers_t *timers, bool vcu_alive, uint32_t elapsed_ms) {
+    fade(timers, AGV_TIMER_BOTH_MODES, &mode->both_spent, elapsed_ms);
+    fade(timers, AGV_TIMER_NO_MODE, &mode->none_spent, elapsed_ms);
     if (is_invalid(timers)) {
         mode->manual = false;
     }
@@ -83,13 +105,14 @@ void agv_mode_count_engagement(agv_mode_t *mode, agv_timers_t *timers, agv_fault
     mode->oldest = (uint8_t)((mode->oldest + 1u) % (uint32_t)ENGAGEMENTS);
 }
 
-void agv_mode_check(const agv_mode_t *mode, agv_timers_t *timers, agv_fault_monitor_t *faults, bool supervising,
-                    bool standstill) {
+void agv_mode_check(agv_mode_t *mode, agv_timers_t *timers, agv_fault_monitor_t *faults, const agv_config_t *config,
+                    bool supervising, bool standstill) {
     const bool began = agv_timer_reached(timers, AGV_TIMER_NO_MODE);
     const bool none = mode->heard && (mode->bits == 0u) && !standstill;
     agv_fault_monitor_set(faults, AGV_FAULT_MODE_INVALID, is_invalid(timers));
-    agv_fault_monitor_set(faults, AGV_FAULT_MODE_NONE,
-                          agv_timer_while(timers, AGV_TIMER_NO_MODE, none && (supervising || began)));
+    agv_fault_monitor_set(
+        faults, AGV_FAULT_MODE_NONE,
+        resume_while(timers, config, AGV_TIMER_NO_MODE, &mode->none_spent, none && (supervising || began)));
 }
 
 bool agv_mode_is_engaged(const agv_mode_t *mode) {

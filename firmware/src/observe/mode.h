@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #include "agv/config.h"
+#include "base/score.h"
 #include "base/timers.h"
 #include "decide/fault_monitor.h"
 
@@ -21,6 +22,8 @@ typedef struct {
     bool heard;         /**< there was a 363h */
     bool engaged;
     bool manual;
+    agv_budget_t both_spent; /**< what the timer of both mode bits has run for, while they are not both set */
+    agv_budget_t none_spent; /**< the same of neither mode bit */
 } agv_mode_t;
 
 /** What became of the engagement. */
@@ -40,17 +43,18 @@ agv_mode_change_t agv_mode_report(agv_mode_t *mode, agv_timers_t *timers, const 
                                   bool vcu_alive, uint32_t time_ms);
 
 /** The time has passed: MODE_INVALID and the loss of the VCU end the engagement. Call at every tick. */
-agv_mode_change_t agv_mode_tick(agv_mode_t *mode, agv_timers_t *timers, bool vcu_alive);
+agv_mode_change_t agv_mode_tick(agv_mode_t *mode, agv_timers_t *timers, bool vcu_alive, uint32_t elapsed_ms);
 
 /** SUP-9: an engagement began or was continued in STANDBY or ACTIVE. The fourth within mode_flapping_ms is a fault. */
 void agv_mode_count_engagement(agv_mode_t *mode, agv_timers_t *timers, agv_fault_monitor_t *faults);
 
 /**
- * SUP-9, MODE_INVALID: set the faults of the mode. Call at every tick.
+ * SUP-9, MODE_INVALID: set the faults of the mode. Call at every tick. Each has a time for which its condition has to last.
+ * A ms without the condition takes half a ms off what has passed, so a right frame now and then does not hide the fault.
  * @param supervising the state is STANDBY or ACTIVE
  */
-void agv_mode_check(const agv_mode_t *mode, agv_timers_t *timers, agv_fault_monitor_t *faults, bool supervising,
-                    bool standstill);
+void agv_mode_check(agv_mode_t *mode, agv_timers_t *timers, agv_fault_monitor_t *faults, const agv_config_t *config,
+                    bool supervising, bool standstill);
 
 /** Engaged. */
 bool agv_mode_is_engaged(const agv_mode_t *mode);

@@ -53,13 +53,14 @@ static void observe_time(agv_core_t *core, uint32_t elapsed_ms) {
     agv_fault_monitor_tick(faults, timers);
     agv_liveness_tick(&core->liveness, timers, agv_mode_is_engaged(&core->mode));
     const bool vcu_alive = agv_liveness_alive(&core->liveness, AGV_NODE_VCU);
-    agv_core_follow_mode(core, agv_mode_tick(&core->mode, timers, vcu_alive), timers->now_ms);
+    agv_core_follow_mode(core, agv_mode_tick(&core->mode, timers, vcu_alive, elapsed_ms), timers->now_ms);
     if (!vcu_alive) {
         agv_reset_button_lose(&core->reset_button);
     }
     agv_core_evaluate_standstill(core);
     agv_intrusion_evaluate(&core->intrusion, faults, timers, &core->config, &core->liveness);
-    agv_mode_check(&core->mode, timers, faults, agv_core_is_supervising(core), agv_vehicle_is_at_standstill(timers));
+    agv_mode_check(&core->mode, timers, faults, &core->config, agv_core_is_supervising(core),
+                   agv_vehicle_is_at_standstill(timers));
     agv_deadlines_tick(faults, timers, &core->config, &core->liveness, agv_mode_is_engaged(&core->mode));
     const agv_motion_facts_t facts = agv_core_motion_facts(core);
     agv_motion_checks_tick(&core->motion_checks, &facts, elapsed_ms);
