@@ -101,7 +101,6 @@ typedef struct {
     bool was_closed;
     uint64_t press_ms;
     uint64_t closed_ms;    /**< the safety output was closed */
-    uint64_t reset_ms;     /**< they ended, or the output was closed again; 0: not */
     uint32_t unparked_ms;  /**< sum of the time in which P was not confirmed */
     uint32_t engaged_ms;   /**< the same of the autopilot that is off */
     uint32_t confirmed_ms; /**< both, without a break */
@@ -117,7 +116,7 @@ typedef struct {
 typedef struct {
     uint64_t last_ms;
     uint16_t value;         /**< that it carried last */
-    int32_t start_ddeg;     /**< where the steering really was when this angle was sent first */
+    int32_t start_ddeg;     /**< where the steering really was when this angle was wrong first */
     hazard_range_t now;     /**< real and lately measured angles then */
     hazard_range_t at_trip; /**< the same at the trip */
     bool has_trip;

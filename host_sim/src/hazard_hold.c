@@ -92,8 +92,8 @@ void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame) {
     if (hazard->gateway && hazard_was_sent(hazard, AGV_MSG_STEERING_COMMAND, value)) {
         return; /* passed on: after a reset the safe commands may have ended already */
     }
-    if ((hold->last_ms == 0u) || (hazard->t_ms - hold->last_ms > NEW_HOLD_MS) || (value != hold->value)) {
-        hold->start_ddeg = hazard_angle_ddeg(hazard);
+    if ((hold->last_ms == 0u) || (hazard->t_ms - hold->last_ms > NEW_HOLD_MS) || (value != hold->value) ||
+        (hold->last_ms < hazard->mode.handback_ms)) {
         hold->now = range_now(hazard, FRESH_MS);
         hold->is_wrong = false;
     }

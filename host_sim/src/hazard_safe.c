@@ -3,7 +3,7 @@
 
 #include "hazard.h"
 
-enum { SIGNALS_BYTES = 7, IN_FLIGHT_MS = 12, GONE_MS = 700, RELEASE_MS = 1000, PENDING_MS = 50, PRESS_SEEN_MS = 100 };
+enum { SIGNALS_BYTES = 7, IN_FLIGHT_MS = 12, GONE_MS = 700, PENDING_MS = 50, PRESS_SEEN_MS = 100 };
 enum { CONFIRM_MARGIN_MS = 300, CLEARED_MS = 5000, STALE_MARGIN_MS = 100 };
 enum { SPEED_SLOT_MS = 100, SLOWER_MM_S = 50, MOVING_MM_S = 300, STANDS_MM_S = 100, FRESH_MS = 100, MARGIN_MS = 1500 };
 
@@ -110,16 +110,13 @@ static void judge_reset(hazard_t *hazard, bool was_closed) {
 
     if (trip->tripped && ((hazard->closed && !was_closed) || has_ended(hazard))) {
         trip->tripped = false;
-        trip->reset_ms = hazard->t_ms;
         if (!trip->pressed) {
             hazard_found(hazard, HAZARD_RESET, "nobody pressed the button after the trip");
+        } else if (!trip->released) {
+            hazard_found(hazard, HAZARD_RESET, "the button was not released");
+        } else {
+            /* a reset as it should be */
         }
-    }
-    if ((trip->reset_ms != 0u) && (trip->tripped || trip->released)) {
-        trip->reset_ms = 0u;
-    }
-    if ((trip->reset_ms != 0u) && (hazard->t_ms - trip->reset_ms > RELEASE_MS)) {
-        hazard_found(hazard, HAZARD_RESET, "the button was not released");
     }
 }
 

@@ -19,7 +19,8 @@ typedef struct {
     uint32_t safe_ms;     /**< safe commands, from then on */
     uint32_t safe_end_ms; /**< until then */
     bool holds;           /**< 065h beside them */
-    int32_t hold_ddeg;    /**< more than the real angle */
+    int32_t hold_ddeg;    /**< more than the real angle at safe_ms */
+    uint32_t hold_ms;     /**< 065h begins; NEVER: with the others */
     unsigned passes;      /**< so many times each command of the AI computer */
     bool only_engaged;    /**< passes while the autopilot is engaged */
     uint32_t forges_ms;   /**< a throttle that nobody commanded */
@@ -83,7 +84,7 @@ static void send_safe(uint32_t t_ms) {
     }
     steering[0] = (uint8_t)held_ddeg;
     steering[1] = (uint8_t)(held_ddeg >> 8);
-    if (planted->holds && (t_ms % HOLD_CYCLE_MS == 0u)) {
+    if (planted->holds && (t_ms >= planted->hold_ms) && (t_ms % HOLD_CYCLE_MS == 0u)) {
         send(AGV_MSG_STEERING_COMMAND, steering);
     }
     if (t_ms % CYCLE_MS == 0u) {
@@ -191,6 +192,27 @@ void test_h2_another_angle(void) {
     const planted_t holds = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 400, .holds = true};
     expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&steers, steps));
     expect(HAZARD_NONE, "", play(&holds, steps));
+}
+
+/** The angle of the trip is sent late, and manual drops it soon after: one frame that was on its way still leaves. */
+void test_h2_manual_drops_the_angle_of_the_trip(void) {
+    const char *const steps = "  - {at_ms: 2850, ai: drive, gear: D, throttle_pct: 60, steer_deg: 80}\n"
+                              "  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
+                              "  - {at_ms: 3180, operator: disengage}\n"
+                              "  - {at_ms: 3180, operator: steer, steer_deg: -60}\n"
+                              "  - {at_ms: 5000, operator: engage}\n";
+    const planted_t keeps = {
+        .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 10, .holds = true, .hold_ddeg = -300, .hold_ms = TRIP_MS + 190};
+    const planted_t ends = {.safe_ms = TRIP_MS,
+                            .safe_end_ms = TRIP_MS + 205,
+                            .open_ms = TRIP_MS + 10,
+                            .holds = true,
+                            .hold_ddeg = -300,
+                            .hold_ms = TRIP_MS + 190};
+    const planted_t at_once = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 10, .holds = true};
+    expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&keeps, steps));
+    expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&at_once, steps));
+    expect(HAZARD_NONE, "", play(&ends, steps));
 }
 
 void test_h3_a_command_that_nobody_sent(void) {
