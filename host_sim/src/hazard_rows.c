@@ -198,16 +198,26 @@ static bool gave_up_status_frame(const hazard_t *hazard) {
     return false;
 }
 
+/** For how long it may be; @param value of its setting. */
+static uint32_t limit_ms(const hazard_t *hazard, const row_t *row, uint32_t value) {
+    uint32_t limit = MARGIN_MS + ((row->form == LEVEL) ? value : 0u);
+
+    limit += row->engaged ? hazard_setting(hazard, "engaged_grace_ms", 500u) : 0u;
+    if (row->message == AGV_MSG_TURN_SIGNAL_COMMAND) {
+        limit += hazard_setting(hazard, "ai_never_seen_timeout_ms", 500u);
+    }
+    if (row->holds == is_transmitter_dead) {
+        limit += hazard_setting(hazard, "status_frame_period_ms", 100u); /* the next frame shows it */
+    }
+    return limit;
+}
+
 void hazard_rows_init(hazard_t *hazard) {
     for (unsigned r = 0u; r < (unsigned)ROW_COUNT; r++) {
         const row_t *row = &ROWS[r];
         const uint32_t value = (row->setting != NULL) ? hazard_setting(hazard, row->setting, row->preset) : row->preset;
         hazard->thresholds[r] = value;
-        hazard->limits_ms[r] =
-            MARGIN_MS + ((row->form == LEVEL) ? value : 0u) +
-            (row->engaged ? hazard_setting(hazard, "engaged_grace_ms", 500u) : 0u) +
-            ((row->message == AGV_MSG_TURN_SIGNAL_COMMAND) ? hazard_setting(hazard, "ai_never_seen_timeout_ms", 500u)
-                                                           : 0u);
+        hazard->limits_ms[r] = limit_ms(hazard, row, value);
         hazard->off[r] =
             only_warns(hazard, row->fault) || ((row->holds == is_transmitter_dead) && gave_up_status_frame(hazard));
     }

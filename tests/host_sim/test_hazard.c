@@ -24,6 +24,7 @@ typedef struct {
     unsigned passes;      /**< so many times each command of the AI computer */
     bool only_engaged;    /**< passes while the autopilot is engaged */
     uint32_t forges_ms;   /**< a throttle that nobody commanded */
+    const char *setting;  /**< NULL: none */
 } planted_t;
 
 static scenario_t scenario;
@@ -128,10 +129,11 @@ static hazard_kind_t play(const planted_t *supervisor, const char *steps) {
     agv_config_defaults(&defaults.config);
     (void)snprintf(
         text, sizeof text,
-        "name: a hazard\nshows: [H1]\ntopology: %s\nvehicle:\n  park_guard: %s\n%sduration_ms: 12000\nsteps:\n"
+        "name: a hazard\nshows: [H1]\ntopology: %s\n%s%svehicle:\n  park_guard: %s\n%sduration_ms: 12000\nsteps:\n"
         "  - {at_ms: 1000, ai: drive, gear: D, throttle_pct: 60, steer_deg: 20}\n"
         "  - {at_ms: 1500, operator: engage}\n%sexpect: {states: any}\n",
-        supervisor->gateway ? "gateway" : "shared", supervisor->rolls ? "false" : "true",
+        supervisor->gateway ? "gateway" : "shared", (supervisor->setting != NULL) ? "config:\n  " : "",
+        (supervisor->setting != NULL) ? supervisor->setting : "", supervisor->rolls ? "false" : "true",
         supervisor->rolls ? "  coasting_mm_s2: 1\n  braking_mm_s2: 1\n  locked_mm_s2: 1\n" : "", steps);
     TEST_ASSERT_TRUE(scenario_read_text(&scenario, "test", text, &defaults));
     TEST_ASSERT_TRUE(scenario_world_init(&world, &scenario, SCENARIO_PLANTED_MUTE));
@@ -285,6 +287,16 @@ void test_h6_a_node_that_reports_what_cannot_be(void) {
         expect(HAZARD_FALSE_NODE, rows[i].cause, play(&MUTE, steps));
         expect(HAZARD_NONE, "", play(&GOOD, steps));
     }
+}
+
+void test_h6_a_dead_transmitter_shows_with_the_next_status_frame(void) {
+    const char *const steps = "  - {at_ms: 3000, supervisor: stall_tx}\n";
+    const planted_t never = {.setting = "status_frame_period_ms: 3000\n"};
+    const planted_t late = {.setting = "status_frame_period_ms: 3000\n", .open_ms = TRIP_MS + 3200};
+    const planted_t too_late = {.open_ms = TRIP_MS + 3200};
+    expect(HAZARD_FALSE_NODE, "the supervisor's transmitter is dead", play(&never, steps));
+    expect(HAZARD_FALSE_NODE, "the supervisor's transmitter is dead", play(&too_late, steps));
+    expect(HAZARD_NONE, "", play(&late, steps));
 }
 
 void test_h6_steering_that_is_stuck(void) {
