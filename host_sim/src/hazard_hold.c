@@ -101,7 +101,7 @@ void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame) {
     hold->value = value;
     if (!may_be_held(hazard, held_ddeg)) {
         if (!hold->is_wrong) {
-            hold->start_ddeg = hazard_angle_ddeg(hazard); /* it was right up to now: what it moved before is not wrong */
+            hold->start_ddeg = hazard_angle_ddeg(hazard); /* what a right angle moved before does not count */
         }
         hold->is_wrong = true;
         hold->wrong_ddeg = held_ddeg;
