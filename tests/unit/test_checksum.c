@@ -36,17 +36,21 @@ void test_pieces_give_what_the_whole_gives(void) {
 
 /* 12345678h ^ 0F0F0F0Fh = 1D3B5977h, inverted E2C4A688h. */
 void test_the_seal_is_the_inverted_exclusive_or_of_the_words(void) {
-    const uint32_t words[2] = {0x12345678u, 0x0F0F0F0Fu};
-    TEST_ASSERT_EQUAL_HEX32(0xE2C4A688u, agv_seal(words, sizeof words));
-    TEST_ASSERT_EQUAL_HEX32(0xEDCBA987u, agv_seal(words, sizeof words[0]));
+    const uint32_t words[10] = {0x12345678u, 0x0F0F0F0Fu, 0x00000001u, 0x00000020u, 0x00000300u,
+                                0x00004000u, 0x00050000u, 0x00600000u, 0x07000000u, 0x80000000u};
+    TEST_ASSERT_EQUAL_HEX32(0xE2C4A688u, agv_seal(words, 8));
+    TEST_ASSERT_EQUAL_HEX32(0xE2C4A6A9u, agv_seal(words, 16));
+    TEST_ASSERT_EQUAL_HEX32(0xE2A1E5A9u, agv_seal(words, 32)); /* a turn of the loop */
+    TEST_ASSERT_EQUAL_HEX32(0x65A1E5A9u, agv_seal(words, 40));
 }
 
 /* Shows: INT-5 */
 void test_every_flipped_bit_breaks_the_seal_and_the_checksums(void) {
-    uint32_t words[5] = {0x00000000u, 0xFFFFFFFFu, 0x12345678u, 0x80000001u, 0x00000010u};
+    uint32_t words[10] = {0x00000000u, 0xFFFFFFFFu, 0x12345678u, 0x80000001u, 0x00000010u,
+                          0x0F0F0F0Fu, 0x00000000u, 0x00000000u, 0xFFFFFFFFu, 0x76543210u};
     const uint32_t seal = agv_seal(words, sizeof words);
     const uint32_t crc32 = crc32_of(words, sizeof words);
-    for (uint32_t bit = 0; bit < 5u * 32u; bit++) {
+    for (uint32_t bit = 0; bit < 10u * 32u; bit++) {
         words[bit / 32u] ^= 1u << (bit % 32u);
         TEST_ASSERT_TRUE(agv_seal(words, sizeof words) != seal);
         TEST_ASSERT_TRUE(crc32_of(words, sizeof words) != crc32);

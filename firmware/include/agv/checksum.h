@@ -19,7 +19,7 @@ uint32_t agv_crc32(uint32_t crc, const void *bytes, size_t size);
 
 /**
  * Quick seal over memory: the exclusive-or of its 32-bit words, inverted. Any one flipped bit changes it.
- * @param size a multiple of 4
+ * @param size a multiple of 8
  */
 uint32_t agv_seal(const void *words, size_t size);
 

@@ -64,7 +64,7 @@ typedef struct {
 } agv_core_t;
 
 _Static_assert(sizeof(agv_core_t) == AGV_SUPERVISOR_MEMORY, "agv_supervisor_t holds just the core");
-_Static_assert(sizeof(agv_core_t) % sizeof(uint32_t) == 0u, "whole words: all of it is under the seal");
+_Static_assert(sizeof(agv_core_t) % sizeof(uint64_t) == 0u, "whole pairs of words: all of it is under the seal");
 
 /** The core of a supervisor. */
 static inline agv_core_t *agv_core_of(agv_supervisor_t *supervisor) {
