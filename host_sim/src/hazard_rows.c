@@ -122,9 +122,17 @@ static bool is_command_bad(const hazard_t *hazard) {
     return hazard->has_bad_command && (hazard->t_ms - hazard->bad_command_ms < EVENT_MS);
 }
 
+static bool is_stalled(const hazard_t *hazard, hal_can_side_t side) {
+    return hazard->world->buses[side].nodes[hazard->world->hal.can[side].node].stalled;
+}
+
 static bool is_transmitter_dead(const hazard_t *hazard) {
-    const hal_t *hal = &hazard->world->hal;
-    return hazard->world->buses[HAL_CAN_VEHICLE].nodes[hal->can[HAL_CAN_VEHICLE].node].stalled;
+    return is_stalled(hazard, HAL_CAN_VEHICLE);
+}
+
+/** The AI computer hears nothing of the vehicle; what it says still comes. */
+static bool is_ai_side_dead(const hazard_t *hazard) {
+    return hazard->gateway && is_stalled(hazard, HAL_CAN_AI);
 }
 
 #define NONE AGV_MSG_NONE
@@ -177,6 +185,7 @@ static const row_t ROWS[] = {
     {"a command that is none", LEVEL, true, NONE, NULL, 0u, NULL, NULL, 0u, is_command_bad},
     {"the supervisor's transmitter is dead", LEVEL, false, NONE, "tx_stalled_ms", 100u, NULL, NULL, 0u,
      is_transmitter_dead},
+    {"the AI side is stalled", LEVEL, true, NONE, "tx_stalled_ms", 100u, "AI_BUS_OFF", NULL, 0u, is_ai_side_dead},
 };
 enum { ROW_COUNT = sizeof ROWS / sizeof ROWS[0] };
 _Static_assert(sizeof ROWS / sizeof ROWS[0] <= (unsigned)HAZARD_ROWS_MAX, "a row has no place in hazard_t");

@@ -1,7 +1,5 @@
 #include "hunt_attacks.h"
 
-#include <string.h>
-
 /* The messages in the order of agv_message_t; the commands come first. */
 #define COMMANDS "turn_signal_command|gear_command|throttle_command|steering_command"
 #define MESSAGES                                                                                                       \
@@ -242,6 +240,14 @@ const hunt_attack_t HUNT_ATTACKS[] = {
      {NULL},
      {0u, 1u, 0u, 0u},
      {0u, 500u, 0u, 0u}},
+    {"ai_side_stalled",
+     HUNT_GATEWAY,
+     NONE,
+     "supervisor: stall_tx, side: ai",
+     "supervisor: free_tx, side: ai",
+     {NULL},
+     {0u},
+     {0u}},
     {"bus_off", 0u, NONE, "supervisor: bus_off", "", {NULL}, {0u}, {0u}},
     {"destroyed_frames", 0u, NONE, "bus: destroy, frames: $a$r", "", {NULL}, {1u, 2u, 0u, 0u}, {12u, 200u, 0u, 0u}},
     {"stuck_button", 0u, NONE, "operator: press, button: 1", "operator: release, button: 1", {NULL}, {0u}, {0u}},
@@ -285,12 +291,3 @@ const hunt_attack_t HUNT_ATTACKS[] = {
 };
 
 const size_t HUNT_ATTACK_COUNT = sizeof HUNT_ATTACKS / sizeof HUNT_ATTACKS[0];
-
-size_t hunt_attack_of_reset(void) {
-    for (size_t i = 0u; i < HUNT_ATTACK_COUNT; i++) {
-        if (strcmp(HUNT_ATTACKS[i].name, "reset_and_engage") == 0) {
-            return i;
-        }
-    }
-    return 0u;
-}

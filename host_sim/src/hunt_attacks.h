@@ -43,7 +43,4 @@ typedef struct {
 extern const hunt_attack_t HUNT_ATTACKS[];
 extern const size_t HUNT_ATTACK_COUNT;
 
-/** The attack that lets the operator reset, engage and drive off again. */
-size_t hunt_attack_of_reset(void);
-
 #endif

@@ -299,6 +299,17 @@ void test_h6_a_dead_transmitter_shows_with_the_next_status_frame(void) {
     expect(HAZARD_NONE, "", play(&late, steps));
 }
 
+void test_h6_an_ai_side_that_is_dead(void) {
+    const char *const steps = "  - {at_ms: 3000, supervisor: stall_tx, side: ai}\n";
+    planted_t trips = PASSING;
+    planted_t reacts = GOOD_GATEWAY;
+    trips.setting = "class_ai_bus_off: trip\n";
+    reacts.setting = trips.setting;
+    expect(HAZARD_FALSE_NODE, "the AI side is stalled", play(&trips, steps));
+    expect(HAZARD_NONE, "", play(&reacts, steps));
+    expect(HAZARD_NONE, "", play(&PASSING, steps)); /* it only warns */
+}
+
 void test_h6_steering_that_is_stuck(void) {
     const char *const steps =
         "  - {at_ms: 3000, eps: stick}\n"
