@@ -84,13 +84,20 @@ static bool may_be_held(const hazard_t *hazard, int32_t held_ddeg) {
            (hold->has_first && is_within(&hold->first, held_ddeg));
 }
 
+/** Passed on for the AI computer: after a reset the safe commands may have ended already. */
+static bool is_passed_on(const hazard_t *hazard, uint16_t value) {
+    const bool is_limited = hazard->limits.limits_steering && hazard->trip.released && hazard->mode.autopilot;
+
+    return hazard->gateway && (is_limited || hazard_was_sent(hazard, AGV_MSG_STEERING_COMMAND, value));
+}
+
 void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame) {
     hazard_hold_t *hold = &hazard->hold;
     const uint16_t value = (uint16_t)(frame->data[0] | ((uint32_t)frame->data[1] << 8u));
     const int32_t held_ddeg = (int32_t)value - CENTRE_DDEG;
 
-    if (hazard->gateway && hazard_was_sent(hazard, AGV_MSG_STEERING_COMMAND, value)) {
-        return; /* passed on: after a reset the safe commands may have ended already */
+    if (is_passed_on(hazard, value)) {
+        return;
     }
     if ((hold->last_ms == 0u) || (hazard->t_ms - hold->last_ms > NEW_HOLD_MS) || (value != hold->value) ||
         (hold->last_ms < hazard->mode.handback_ms)) {
