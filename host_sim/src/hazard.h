@@ -38,7 +38,14 @@ typedef struct {
 
 const hazard_info_t *hazard_info(hazard_kind_t kind);
 
-enum { HAZARD_ROWS_MAX = 48, HAZARD_RECENT = 256, HAZARD_SPEEDS = 11, HAZARD_ANGLES = 64, HAZARD_FLOOD_SLOTS = 10 };
+enum {
+    HAZARD_ROWS_MAX = 48,
+    HAZARD_SCORES_MAX = 5,
+    HAZARD_RECENT = 256,
+    HAZARD_SPEEDS = 11,
+    HAZARD_ANGLES = 64,
+    HAZARD_FLOOD_SLOTS = 10
+};
 
 /** A message as it was on the wire: commands where the AI computer sends them, status on the vehicle side. */
 typedef struct {
@@ -170,6 +177,8 @@ typedef struct {
     int32_t still_at_ddeg; /**< 067h: the last angle */
     int32_t moved_ddeg;    /**< 067h: way to and fro, since */
     uint64_t still_since_ms;
+    uint8_t score_rows[AGV_MSG_COUNT][HAZARD_SCORES_MAX]; /**< rows that a message has a score for */
+    uint8_t score_counts[AGV_MSG_COUNT];
     int32_t scores[HAZARD_ROWS_MAX];
     int32_t budgets_ms[HAZARD_ROWS_MAX];
     uint32_t limits_ms[HAZARD_ROWS_MAX];

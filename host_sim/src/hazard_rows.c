@@ -227,15 +227,20 @@ void hazard_rows_init(hazard_t *hazard) {
         const uint32_t value = (row->setting != NULL) ? hazard_setting(hazard, row->setting, row->preset) : row->preset;
         hazard->thresholds[r] = value;
         hazard->limits_ms[r] = limit_ms(hazard, row, value);
+        if ((row->form == SCORE) && (hazard->score_counts[row->message] < (uint8_t)HAZARD_SCORES_MAX)) {
+            hazard->score_rows[row->message][hazard->score_counts[row->message]] = (uint8_t)r;
+            hazard->score_counts[row->message]++;
+        }
         hazard->off[r] =
             only_warns(hazard, row->fault) || ((row->holds == is_transmitter_dead) && gave_up_status_frame(hazard));
     }
 }
 
 void hazard_rows_frame(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV_DLC]) {
-    for (unsigned r = 0u; r < (unsigned)ROW_COUNT; r++) {
+    for (unsigned i = 0u; i < hazard->score_counts[message]; i++) {
+        const unsigned r = hazard->score_rows[message][i];
         const row_t *row = &ROWS[r];
-        if ((row->form != SCORE) || (row->message != message) || (row->engaged && !hazard->mode.autopilot)) {
+        if (row->engaged && !hazard->mode.autopilot) {
             continue;
         }
         const int32_t cap = SCORE_CAP * (int32_t)hazard->thresholds[r];

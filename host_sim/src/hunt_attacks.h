@@ -14,6 +14,7 @@
 #define HUNT_PARAMETERS 4u
 #define HUNT_PATTERN_BAD 2u  /**< the parameter: so many bad frames */
 #define HUNT_PATTERN_GOOD 3u /**< and good ones */
+#define HUNT_ENGAGE_AFTER 2u /**< of a reset: so many ms after its begin the autopilot is engaged */
 
 /** @name Where an attack makes sense, and what it is. @{ */
 #define HUNT_GATEWAY 0x01u /**< only in the gateway topology */

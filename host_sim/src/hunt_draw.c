@@ -7,8 +7,8 @@
 #include "chance.h"
 #include "options.h"
 
-enum { BEGIN_FIRST_MS = 600, BEGIN_MIN_MS = 1600, BEGIN_MAX_MS = 7000, RESET_MIN_MS = 500, RESET_MAX_MS = 4000 };
-enum { LASTS_MIN_MS = 20, LASTS_MAX_MS = 4000, SHORT_PATTERN = 4, TRIES = 20 };
+enum { BEGIN_FIRST_MS = 530, BEGIN_MIN_MS = 900, BEGIN_MAX_MS = 4000, RESET_MIN_MS = 500, RESET_MAX_MS = 3000 };
+enum { LASTS_MIN_MS = 20, LASTS_MAX_MS = 3000, AFTER_ENGAGED_MS = 4000, SHORT_PATTERN = 4, TRIES = 20 };
 
 /** The attack of this name, which is one. */
 static size_t attack_named(const char *name) {
@@ -136,8 +136,27 @@ void hunt_add_action(hunt_program_t *program, uint64_t *state) {
     add_attack(program, attack, state);
 }
 
+/** The run becomes longer; what lasts up to its end still does. */
+static void lengthen(hunt_program_t *program, uint32_t duration_ms) {
+    const uint32_t before_ms = program->duration_ms;
+
+    if (duration_ms > before_ms) {
+        program->duration_ms = duration_ms;
+        for (uint32_t i = 0u; i < program->action_count; i++) {
+            hunt_action_t *action = &program->actions[i];
+            action->end_ms = (action->end_ms == before_ms) ? duration_ms : action->end_ms;
+        }
+    }
+}
+
 void hunt_add_reset(hunt_program_t *program, uint64_t *state) {
+    const uint32_t count = program->action_count;
+
     add_attack(program, attack_of_reset(), state);
+    if (program->action_count > count) {
+        const hunt_action_t *reset = &program->actions[count];
+        lengthen(program, reset->begin_ms + reset->parameters[HUNT_ENGAGE_AFTER] + AFTER_ENGAGED_MS);
+    }
 }
 
 /** Settings that say what stands where, or that switch the protection off, are not an attacker's. */

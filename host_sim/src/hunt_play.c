@@ -5,7 +5,7 @@
 #include "report.h"
 #include "scenario_player.h"
 
-enum { OPEN_MS = 700, STANDS_MS = 2000, HASH_START = 5381, HASH_FACTOR = 33 };
+enum { OPEN_MS = 700, STANDS_MS = 1000, HASH_START = 5381, HASH_FACTOR = 33 };
 
 /** Kinds of features. */
 enum { OF_STATE = 1, OF_FAULT, OF_CLOSENESS, OF_SPEED };

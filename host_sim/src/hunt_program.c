@@ -6,7 +6,7 @@
 #include "chance.h"
 #include "hunt_draw.h"
 
-enum { DURATION_MIN_MS = 8000, DURATION_MAX_MS = 14000, RATE_DDEG_S = 3000, SLOW_DDEG_S = 300 };
+enum { SHORT_MIN_MS = 5000, SHORT_MAX_MS = 8000, LONG_MAX_MS = 13000, RATE_DDEG_S = 3000, SLOW_DDEG_S = 300 };
 enum { THROTTLE_MIN_PCT = 10, THROTTLE_MAX_PCT = 100, STEER_MAX_DEG = 90, TICK_SPAN_US = 999 };
 
 void hunt_program_config(const hunt_program_t *program, agv_config_t *config) {
@@ -47,7 +47,8 @@ static void draw_vehicle(hunt_program_t *program, uint64_t *state) {
     program->steering_rate_ddeg_s = hunt_toss(state, 6u) ? SLOW_DDEG_S : RATE_DDEG_S;
     program->throttle_pct = chance_draw(state, THROTTLE_MIN_PCT, THROTTLE_MAX_PCT);
     program->steer_deg = (int32_t)chance_draw(state, 0u, 2u * STEER_MAX_DEG) - STEER_MAX_DEG;
-    program->duration_ms = chance_draw(state, DURATION_MIN_MS, DURATION_MAX_MS);
+    program->duration_ms = hunt_toss(state, 3u) ? chance_draw(state, SHORT_MAX_MS, LONG_MAX_MS)
+                                                : chance_draw(state, SHORT_MIN_MS, SHORT_MAX_MS);
 }
 
 void hunt_program_make(hunt_program_t *program, uint64_t *state) {

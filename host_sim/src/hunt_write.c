@@ -10,7 +10,7 @@
 #include "hunt_program.h"
 #include "vehicle.h"
 
-enum { STEPS_MAX = 64, STEP_SIZE = 200, DRIVE_MS = 1000, ENGAGE_MS = 1500, DECIMAL = 10, STRETCH = 20 };
+enum { STEPS_MAX = 64, STEP_SIZE = 200, DRIVE_MS = 520, ENGAGE_MS = 840, DECIMAL = 10, STRETCH = 20 };
 enum { ZERO_DEG = 90, ROLLS_MM_S2 = 1 };
 
 /** A step in the making. */
