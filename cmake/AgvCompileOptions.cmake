@@ -44,7 +44,7 @@ elseif(AGV_INSTRUMENT STREQUAL "mcdc")
   set(AGV_CORE_INSTRUMENT_OPTIONS -fprofile-instr-generate -fcoverage-mapping -fcoverage-mcdc)
   add_link_options(-fprofile-instr-generate)
 elseif(AGV_INSTRUMENT STREQUAL "mutation")
-  # The core is one shared object, which tests/mutation replaces; a test need not have all of the port that it asks for.
+  # The core is one shared object, which tests/proofs/mutation replaces; a test need not have all of the port that it asks for.
   set(AGV_CORE_KIND SHARED)
   set(CMAKE_SKIP_RPATH ON)
   add_link_options(-Wl,--allow-shlib-undefined)

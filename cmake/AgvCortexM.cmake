@@ -1,4 +1,4 @@
-# The portable core for Cortex-M: one static library a processor, and a linked image whose sections scripts/size counts.
+# The portable core for Cortex-M: one static library a processor, and a linked image whose sections scripts/tools/size.py counts.
 
 set(AGV_CPUS cortex-m0plus cortex-m4 cortex-m7)
 
@@ -69,4 +69,4 @@ foreach(entry IN LISTS AGV_ENTRY_POINTS)
   target_link_options(size_image PRIVATE -Wl,--require-defined=${entry})
 endforeach()
 
-add_test(NAME size_budget COMMAND ${PROJECT_SOURCE_DIR}/scripts/size --build ${PROJECT_BINARY_DIR})
+add_test(NAME size_budget COMMAND ${PROJECT_SOURCE_DIR}/scripts/tools/size.py --build ${PROJECT_BINARY_DIR})

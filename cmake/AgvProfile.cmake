@@ -10,7 +10,7 @@ option(AGV_PROFILE "Optimise the host program by a profile of itself (gcc)" OFF)
 set(AGV_PROFILE_DIR ${PROJECT_BINARY_DIR}/profile)
 set(AGV_PROFILE_COUNTS ${AGV_PROFILE_DIR}/counts)
 if(AGV_PROFILE AND CMAKE_C_COMPILER_ID STREQUAL "GNU" AND NOT AGV_INSTRUMENT)
-  file(GLOB scenarios CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/host_sim/scenarios/*.yaml)
+  file(GLOB scenarios CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/host_sim/scenarios/*/*.yaml)
   add_custom_command(
     OUTPUT ${AGV_PROFILE_COUNTS}
     COMMAND ${CMAKE_COMMAND} -S ${PROJECT_SOURCE_DIR} -B ${AGV_PROFILE_DIR} -G ${CMAKE_GENERATOR} -Wno-dev

@@ -26,9 +26,9 @@ endif()
 set(AGV_GEMS_STAMP ${PROJECT_BINARY_DIR}/gems.stamp)
 add_custom_command(
   OUTPUT ${AGV_GEMS_STAMP}
-  COMMAND ${PROJECT_SOURCE_DIR}/scripts/bundle-gems
+  COMMAND ${PROJECT_SOURCE_DIR}/scripts/tools/bundle-gems.sh
   COMMAND ${CMAKE_COMMAND} -E touch ${AGV_GEMS_STAMP}
-  DEPENDS ${PROJECT_SOURCE_DIR}/Gemfile.lock ${PROJECT_SOURCE_DIR}/scripts/bundle-gems
+  DEPENDS ${PROJECT_SOURCE_DIR}/Gemfile.lock ${PROJECT_SOURCE_DIR}/scripts/tools/bundle-gems.sh
   COMMENT "Installing Unity and CMock into build/gems"
 )
 set(AGV_UNITY_COPY ${PROJECT_BINARY_DIR}/unity)
@@ -45,7 +45,7 @@ add_custom_command(
 add_library(unity STATIC ${AGV_UNITY_COPY}/unity.c ${AGV_UNITY_COPY}/cmock.c)
 target_include_directories(unity SYSTEM PUBLIC ${AGV_UNITY_COPY})
 if(AGV_INSTRUMENT STREQUAL "mutation")
-  target_sources(unity PRIVATE ${PROJECT_SOURCE_DIR}/tests/mutation/stop_at_failure.c)
+  target_sources(unity PRIVATE ${PROJECT_SOURCE_DIR}/tests/proofs/mutation/stop_at_failure.c)
   target_compile_definitions(unity PRIVATE "UNITY_OUTPUT_FLUSH=agv_stop_at_failure"
     "UNITY_OUTPUT_FLUSH_HEADER_DECLARATION=agv_stop_at_failure(void)")
 endif()
@@ -133,11 +133,15 @@ function(agv_add_unit_test)
   else()
     add_test(NAME ${TEST_NAME} COMMAND ${TEST_NAME})
   endif()
-  get_filename_component(kind ${CMAKE_CURRENT_SOURCE_DIR} NAME)
+  set(kind ${AGV_TEST_KIND}) # the room of tests/ that it lies in, if its folder says no other
+  if(NOT kind)
+    file(RELATIVE_PATH kind ${PROJECT_SOURCE_DIR}/tests ${CMAKE_CURRENT_SOURCE_DIR})
+    string(REGEX REPLACE "/.*" "" kind ${kind})
+  endif()
   # An ignored test function, or a program with none, is a failure.
   set_tests_properties(${TEST_NAME} PROPERTIES LABELS "unity;${kind}" TIMEOUT ${AGV_TEST_TIMEOUT}
     FAIL_REGULAR_EXPRESSION ":IGNORE;(^|\n)0 Tests ")
-  if(AGV_INSTRUMENT STREQUAL "mcdc") # a profile a program: scripts/check-mcdc can leave one out
+  if(AGV_INSTRUMENT STREQUAL "mcdc") # a profile a program: tests/proofs/mcdc/check-mcdc.py can leave one out
     set_tests_properties(${TEST_NAME} PROPERTIES
       ENVIRONMENT LLVM_PROFILE_FILE=${PROJECT_BINARY_DIR}/profile/${TEST_NAME}.profraw)
   endif()

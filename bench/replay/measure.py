@@ -8,7 +8,7 @@ import sys
 import tempfile
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(REPOSITORY / "tests" / "host_sim"))
+sys.path.insert(0, str(REPOSITORY / "tests" / "host_sim" / "program"))
 import traffic  # noqa: E402
 
 BLOCK_MS = 25600  # after so long every counter is where it began

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "scenario_world.h"
+#include "scenario/scenario_world.h"
 
 enum { SETTLED_MS = 3000, DEFAULT_S = 3600 };
 

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "config_file.h"
-#include "config_text.h"
+#include "config/config_file.h"
+#include "config/config_text.h"
 #include "input.h"
 #include "said.h"
 

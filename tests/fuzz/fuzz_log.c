@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "candump_log.h"
 #include "input.h"
+#include "io/candump_log.h"
 #include "said.h"
 
 #define HEX "[0-9A-Fa-f]"

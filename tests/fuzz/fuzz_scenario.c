@@ -7,7 +7,7 @@
 
 #include "input.h"
 #include "said.h"
-#include "scenario.h"
+#include "scenario/scenario.h"
 
 static void check_rooms(const scenario_t *scenario) {
     const scenario_expect_t *expect = &scenario->expect;

@@ -11,8 +11,8 @@
 #include "agv/supervisor.h"
 #include "hal_sim/sim_hal.h"
 #include "input.h"
+#include "io/store_file.h"
 #include "said.h"
-#include "store_file.h"
 
 enum { ROOM = 32, SIZE_LIMIT = 1 << 16 };
 

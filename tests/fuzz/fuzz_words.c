@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "input.h"
+#include "live/vehicle_words.h"
 #include "said.h"
-#include "vehicle_words.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     input_t input = {.at = data, .left = size};

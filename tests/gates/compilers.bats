@@ -1,6 +1,6 @@
 #!/usr/bin/env bats
 # Warnings are errors in all three compilers, and the sanitizers are on.
-load helper
+load ../support/helper
 
 @test "a warning stops gcc" {
     fails_with "-Werror=conversion" cmake --build "$ROOT/build/host" --target planted_warning

@@ -1,14 +1,14 @@
 #!/usr/bin/env bats
 # Conditions that MC/DC would not see, planted in a core of one function.
-load helper
+load ../support/helper
 
 setup() {
     command -v clang-19 >/dev/null || skip "there is no clang-19"
     cd "$BATS_TEST_TMPDIR" || exit
-    mkdir -p firmware/src firmware/include hal/include tests/mcdc
-    echo "# none" >tests/mcdc/exceptions
+    mkdir -p firmware/src firmware/include hal/include tests/proofs/mcdc
+    echo "# none" >tests/proofs/mcdc/exceptions
     core 'if ((a > 1) && (b > 1)) { a = 0; } return !(a || (b == 3));'
-    passes "$ROOT/scripts/check-conditions" --root "$PWD"
+    passes "$ROOT/scripts/tools/check-conditions.py" --root "$PWD"
     [[ $output == "2 decisions of several conditions"* ]]
 }
 
@@ -21,7 +21,7 @@ core() {
 # hidden WHAT BODY
 hidden() {
     core "$2"
-    fails_with "firmware/src/f.c:4: $1" "$ROOT/scripts/check-conditions" --root "$PWD"
+    fails_with "firmware/src/f.c:4: $1" "$ROOT/scripts/tools/check-conditions.py" --root "$PWD"
 }
 
 @test "conditions: comparisons below a bitwise operator" {
@@ -44,10 +44,10 @@ hidden() {
 
 @test "conditions: an exception needs its reason, and something to except" {
     core 'return (a > 1) & c;'
-    echo 'firmware/src/f.c: return (a > 1) & c;' >tests/mcdc/exceptions
-    fails_with "has no reason" "$ROOT/scripts/check-conditions" --root "$PWD"
-    echo '    both are always looked at' >>tests/mcdc/exceptions
-    passes "$ROOT/scripts/check-conditions" --root "$PWD"
+    echo 'firmware/src/f.c: return (a > 1) & c;' >tests/proofs/mcdc/exceptions
+    fails_with "has no reason" "$ROOT/scripts/tools/check-conditions.py" --root "$PWD"
+    echo '    both are always looked at' >>tests/proofs/mcdc/exceptions
+    passes "$ROOT/scripts/tools/check-conditions.py" --root "$PWD"
     core 'return (a > 1) && c && (b > 1);'
-    fails_with "is not needed" "$ROOT/scripts/check-conditions" --root "$PWD"
+    fails_with "is not needed" "$ROOT/scripts/tools/check-conditions.py" --root "$PWD"
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bats
 # Pages: the table of faults, links, commands and defaults, each on a planted mistake in a small project made here.
 # shellcheck disable=SC2016 # backticks are what stands in pages
-load helper
+load ../support/helper
 
 setup() {
     cd "$BATS_TEST_TMPDIR" || exit
@@ -10,7 +10,7 @@ setup() {
         >firmware/include/agv/fault_table.def
     echo 'AGV_SETTING(gap_ms, 50, 30, 500, "ms", "a gap")' >firmware/include/agv/config_settings.def
     {
-        echo '<!-- fault table: made by scripts/fault-docs, but for the two columns on the right -->'
+        echo '<!-- fault table: made by scripts/tools/fault-docs.py, but for the two columns on the right -->'
         echo '| 0 | `BUS_OFF` | | | | | | the controller says so | always |'
         echo '| 0 | `RX_OVERRUN` | | | | | | frames were lost | always |'
         echo '<!-- end of fault table -->'
@@ -22,17 +22,17 @@ setup() {
     chmod +x scripts/run
     printf '[rows](docs/requirements.md#rows)\n\n```sh\n./scripts/run --fast | sed -n 1p # comment\n```\n' >README.md
     printf '\n```console\n$ sed -n 1p README.md\nno-such-program is only printed\n```\n' >>README.md
-    passes "$ROOT/scripts/fault-docs" --root "$PWD"
+    passes "$ROOT/scripts/tools/fault-docs.py" --root "$PWD"
     passes faults
     passes pages
 }
 
 faults() {
-    "$ROOT/scripts/fault-docs" --root "$PWD" --check
+    "$ROOT/scripts/tools/fault-docs.py" --root "$PWD" --check
 }
 
 pages() {
-    "$ROOT/scripts/check-docs" --root "$PWD"
+    "$ROOT/scripts/tools/check-docs.py" --root "$PWD"
 }
 
 @test "fault table: a class that was changed in the code" {
@@ -58,7 +58,7 @@ pages() {
 @test "fault table: a new fault without a text" {
     echo 'AGV_FAULT(AI_BUS_OFF, WARN, 14, NONE)' >>firmware/include/agv/fault_table.def
     fails_with "out of date" faults
-    fails_with "no text for AI_BUS_OFF" "$ROOT/scripts/fault-docs" --root "$PWD"
+    fails_with "no text for AI_BUS_OFF" "$ROOT/scripts/tools/fault-docs.py" --root "$PWD"
     fails_with "no text for AI_BUS_OFF" faults
 }
 

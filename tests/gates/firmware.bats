@@ -1,6 +1,6 @@
 #!/usr/bin/env bats
 # The firmware's settings as Kconfig, and its tests without a workspace: each on a planted mistake.
-load helper
+load ../support/helper
 
 setup() {
     cd "$BATS_TEST_TMPDIR" || exit
@@ -12,7 +12,7 @@ setup() {
 }
 
 settings() {
-    "$ROOT/scripts/kconfig" --root "$PWD" --check
+    "$ROOT/scripts/tools/kconfig.py" --root "$PWD" --check
 }
 
 @test "kconfig: a range that was changed in the core" {

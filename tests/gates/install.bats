@@ -1,6 +1,6 @@
 #!/usr/bin/env bats
 # install-deps says in one line what to do where it can do nothing, and the test command what it does not take.
-load helper
+load ../support/helper
 
 # A PATH with these commands only.
 only() {

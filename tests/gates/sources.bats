@@ -1,6 +1,6 @@
 #!/usr/bin/env bats
 # Layers, format, clang-tidy, shellcheck: each on a planted violation.
-load helper
+load ../support/helper
 
 setup() {
     cd "$BATS_TEST_TMPDIR" || exit
@@ -11,7 +11,7 @@ copy_sources() {
     mkdir -p firmware
     cp -R "$ROOT"/firmware/{include,src} firmware/
     cp -R "$ROOT/hal" hal
-    passes "$ROOT/scripts/check-layers" "$PWD"
+    passes "$ROOT/scripts/tools/check-layers.sh" "$PWD"
 }
 
 # plant FILE LINE MESSAGE
@@ -19,7 +19,7 @@ plant() {
     copy_sources
     mkdir -p "$(dirname "$1")"
     echo "$2" >>"$1"
-    fails_with "$3" "$ROOT/scripts/check-layers" "$PWD"
+    fails_with "$3" "$ROOT/scripts/tools/check-layers.sh" "$PWD"
 }
 
 @test "layers: an operating system's header in the core" {
@@ -63,7 +63,7 @@ plant() {
 }
 
 @test "layers: a private header in the host program" {
-    plant host_sim/src/planted.c '#include "decide/fault_monitor.h"' 'a header of firmware/src in'
+    plant host_sim/io/planted.c '#include "decide/fault_monitor.h"' 'a header of firmware/src in'
 }
 
 @test "layers: a private header in the firmware's program" {
@@ -104,15 +104,15 @@ plant() {
 
 @test "layers: nothing to check" {
     mkdir -p firmware/include firmware/src hal/include
-    fails_with "nothing to check" "$ROOT/scripts/check-layers" "$PWD"
+    fails_with "nothing to check" "$ROOT/scripts/tools/check-layers.sh" "$PWD"
 }
 
 @test "format: a badly formatted file" {
     command -v clang-format-19 || skip "no clang-format-19"
     printf 'int main(void) {\n    return 0;\n}\n' >good.c
     printf 'int main(void)\n{ return 0; }\n' >bad.c
-    passes "$ROOT/scripts/check-format" "$PWD/good.c"
-    fails_with "bad.c:1" "$ROOT/scripts/check-format" "$PWD/bad.c"
+    passes "$ROOT/scripts/tools/check-format.sh" "$PWD/good.c"
+    fails_with "bad.c:1" "$ROOT/scripts/tools/check-format.sh" "$PWD/bad.c"
 }
 
 write_right_program() {
@@ -127,23 +127,23 @@ write_suspicious_program() {
     command -v clang-tidy-19 || skip "no clang-tidy-19"
     write_right_program good.c
     write_suspicious_program bad.c
-    passes "$ROOT/scripts/check-tidy" "$PWD/good.c"
-    fails_with "bugprone-assignment-in-if-condition" "$ROOT/scripts/check-tidy" "$PWD/bad.c"
+    passes "$ROOT/scripts/tools/check-tidy.sh" "$PWD/good.c"
+    fails_with "bugprone-assignment-in-if-condition" "$ROOT/scripts/tools/check-tidy.sh" "$PWD/bad.c"
 }
 
 @test "clang-tidy: a suspicious line in a file that was right before" {
     command -v clang-tidy-19 || skip "no clang-tidy-19"
     write_right_program changes.c
-    passes "$ROOT/scripts/check-tidy" --changed "$PWD/changes.c"
+    passes "$ROOT/scripts/tools/check-tidy.sh" --changed "$PWD/changes.c"
     write_suspicious_program changes.c
     for _ in 1 2; do
-        fails_with "bugprone-assignment-in-if-condition" "$ROOT/scripts/check-tidy" --changed "$PWD/changes.c"
+        fails_with "bugprone-assignment-in-if-condition" "$ROOT/scripts/tools/check-tidy.sh" --changed "$PWD/changes.c"
     done
 }
 
 @test "shellcheck: a name that is not quoted" {
     printf '#!/bin/sh\necho "%s"\n' "\$1" >good
     printf '#!/bin/sh\necho %s\n' "\$1" >bad
-    passes "$ROOT/scripts/check-shell" "$PWD/good"
-    fails_with SC2086 "$ROOT/scripts/check-shell" "$PWD/bad"
+    passes "$ROOT/scripts/tools/check-shell.sh" "$PWD/good"
+    fails_with SC2086 "$ROOT/scripts/tools/check-shell.sh" "$PWD/bad"
 }

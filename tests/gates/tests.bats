@@ -1,6 +1,6 @@
 #!/usr/bin/env bats
 # A unit test that fails, is switched off, or is none, fails the run.
-load helper
+load ../support/helper
 
 # The whole way: the program is built, run by ctest, and counted.
 planted_test() {
@@ -9,7 +9,7 @@ planted_test() {
     run ctest --test-dir "$ROOT/build/host" -C planted -R "^$1\$" -V
     echo "$output" | tee "$log"
     [[ $status -ne 0 && $output == *"$2"* ]]
-    read -r _ failed < <("$ROOT/scripts/count-tests" "$log")
+    read -r _ failed < <("$ROOT/scripts/tools/count-tests.py" "$log")
     [[ $failed -eq 1 ]]
 }
 
@@ -40,5 +40,5 @@ planted_test() {
 
 @test "a crash counts as a failure" {
     printf '7: Test command: x\n1/1 Test #7: test_x .....***Exception: SegFault  0.01 sec\n' >"$BATS_TEST_TMPDIR/log"
-    [[ $("$ROOT/scripts/count-tests" "$BATS_TEST_TMPDIR/log") == "0 1" ]]
+    [[ $("$ROOT/scripts/tools/count-tests.py" "$BATS_TEST_TMPDIR/log") == "0 1" ]]
 }

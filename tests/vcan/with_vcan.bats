@@ -2,7 +2,7 @@
 # scripts/with-vcan: the virtual machine, and the network namespace; the latter inside the machine where the kernel that
 # runs the tests has no CAN. A start of the machine takes seconds, so a test looks at many things.
 # shellcheck disable=SC2016 # what stands in '' is for the shell in there
-load ../gates/helper
+load ../support/helper
 
 setup_file() {
     "$ROOT/scripts/with-vcan" --quiet --vm true # a new machine fetches its kernel, and says so
@@ -147,7 +147,7 @@ surroundings() {
 
 # A start that comes as far as QEMU.
 start_only() {
-    fails_with "ended before the command did" /usr/bin/python3 -I "$ROOT/scripts/vcan/run-machine" --kernel "$PWD" \
+    fails_with "ended before the command did" /usr/bin/python3 -I "$ROOT/scripts/tools/vcan/run-machine.py" --kernel "$PWD" \
         --qemu false --accel tcg --interfaces vcan0 -- true
 }
 
@@ -198,7 +198,7 @@ folders() {
     if ! "${as_user[@]}" test -r "$ROOT/scripts/with-vcan"; then
         skip "another user cannot read the project here"
     fi
-    "$ROOT/scripts/vcan/prepare-machine" >/dev/null # which that user cannot
+    "$ROOT/scripts/tools/vcan/prepare-machine.sh" >/dev/null # which that user cannot
     echo secret >secret
     chmod 600 secret
     mkdir -m 777 shared
@@ -284,9 +284,9 @@ virtual machine: 'qemu-system-"*"' is missing: run 'scripts/install-deps vcan'" 
 
 @test "machine: a kernel that panics: one line with its last words, and 125" {
     mkdir broken empty
-    cp "$("$ROOT/scripts/vcan/prepare-machine")/kernel" broken/
+    cp "$("$ROOT/scripts/tools/vcan/prepare-machine.sh")/kernel" broken/
     (cd empty && echo . | cpio --create --format=newc --quiet) >broken/initramfs
-    run /usr/bin/python3 -I "$ROOT/scripts/vcan/run-machine" --kernel "$PWD/broken" --qemu "qemu-system-$(uname -m)" \
+    run /usr/bin/python3 -I "$ROOT/scripts/tools/vcan/run-machine.py" --kernel "$PWD/broken" --qemu "qemu-system-$(uname -m)" \
         --accel tcg --interfaces vcan0 -- true
     echo "$output"
     [[ $status -eq 125 && ${#lines[@]} -eq 1 ]]

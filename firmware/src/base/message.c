@@ -38,7 +38,7 @@ static bool is_message(uint32_t message) {
 /* The place of an identifier among those of all messages. */
 static uint32_t find(const uint16_t ids[AGV_MSG_COUNT], uint32_t id) {
     uint32_t message = 0u;
-    /* for scripts/proofs/gate */
+    /* for tests/proofs/gate/run */
     /*@ loop invariant message <= 11;
         loop invariant \forall integer m; 0 <= m < message ==> ids[m] != id;
         loop assigns message;

@@ -1,6 +1,6 @@
 /**
  * @file core.h
- * The memory of one supervisor: the structs of its modules side by side. Known to supervisor*.c alone (scripts/check-layers):
+ * The memory of one supervisor: the structs of its modules side by side. Known to supervisor*.c alone (scripts/tools/check-layers.sh):
  * each struct is written by the source of its own module, which is handed it.
  */
 #ifndef AGV_CORE_H

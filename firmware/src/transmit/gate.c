@@ -21,7 +21,7 @@ static const uint8_t reserved[AGV_COMMAND_COUNT][AGV_DLC] = {
 
 static bool reserved_are_zero(uint32_t command, const uint8_t data[AGV_DLC]) {
     uint32_t any = 0u;
-    /* for scripts/proofs/gate */
+    /* for tests/proofs/gate/run */
     /*@ loop invariant 0 <= i <= 8;
         loop invariant any == 0 <==> \forall integer j; 0 <= j < i ==> (data[j] & reserved[command][j]) == 0;
         loop assigns i, any;

@@ -40,7 +40,7 @@ enum {
 #undef AGV_KCONFIG
 #undef AGV_KCONFIG_CLASS
 };
-BUILD_ASSERT((int)KCONFIG_SETTINGS == (int)AGV_SETTING_COUNT, "a setting has no symbol: run scripts/kconfig");
+BUILD_ASSERT((int)KCONFIG_SETTINGS == (int)AGV_SETTING_COUNT, "a setting has no symbol: run scripts/tools/kconfig.py");
 
 /* What is wrong only together. */
 BUILD_ASSERT(!KCONFIG_ID_IS_TAKEN(CONFIG_AGV_STATUS_FRAME_ID), "CONFIG_AGV_STATUS_FRAME_ID is one of the protocol's");

@@ -1,0 +1,78 @@
+/**
+ * @file campaign_judge.h
+ * The judge of a campaign's runs. It goes by what is on the wire, by the safety output and by what the vehicle does; of
+ * the supervisor's own word it takes the reason of the first trip, and that it takes the safe state for confirmed.
+ */
+#ifndef HOST_SIM_CAMPAIGN_JUDGE_H
+#define HOST_SIM_CAMPAIGN_JUDGE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "campaign/campaign_plan.h"
+#include "scenario/scenario_world.h"
+
+#define CAMPAIGN_NEVER UINT64_MAX
+#define CAMPAIGN_STATES_MAX 16u
+
+/** What must hold; the first one that did not. */
+typedef enum {
+    CAMPAIGN_SOUND,
+    CAMPAIGN_NOT_READY,     /**< before the cause the output was not closed, or (under way) the autopilot not engaged */
+    CAMPAIGN_FALSE_TRIP,    /**< a safe command or an open output before the cause */
+    CAMPAIGN_LATE,          /**< no safe frame (no open output) within the bound */
+    CAMPAIGN_UNSAFE_FRAME,  /**< FSM-6: a frame that is not safe in INIT, or after the first safe one */
+    CAMPAIGN_NOT_LATCHED,   /**< the output closed again, or the safe commands ended with it closed */
+    CAMPAIGN_WRONG_REASON,  /**< the first reason is not what was caused, or the fault was not raised */
+    CAMPAIGN_FALSE_CONFIRM, /**< SAFE, while the vehicle is not in P or not in manual */
+    CAMPAIGN_NEVER_SETTLED, /**< at the end neither confirmed nor the output open */
+    CAMPAIGN_BREAKS
+} campaign_break_t;
+
+/** "LATE"; "" for CAMPAIGN_SOUND. */
+const char *campaign_break_name(campaign_break_t broken);
+
+/** A change of state, as the supervisor told of it. */
+typedef struct {
+    uint64_t t_ms;
+    uint8_t to;
+    uint8_t reason;
+} campaign_state_t;
+
+typedef struct {
+    const campaign_plan_t *plan;
+    const scenario_world_t *world;
+    uint64_t cause_us;
+    uint64_t first_safe_us; /**< last bit of the first safe frame after the cause; CAMPAIGN_NEVER */
+    uint64_t confirmed_us;  /**< SAFE for the first time */
+    uint64_t opened_us;     /**< the output for the first time after the cause */
+    uint64_t closed_us;     /**< the output for the first time */
+    uint64_t last_beat_us;  /**< last 43Fh of its own since the first safe frame */
+    campaign_break_t broken;
+    uint64_t broken_us;
+    hal_can_frame_t broken_frame; /**< CAMPAIGN_UNSAFE_FRAME */
+    bool engaged;                 /**< when the cause came */
+    bool raised;                  /**< the fault of the row */
+    bool bus_off;                 /**< BUS_OFF was raised */
+    bool was_closed;
+    int reason; /**< of the first trip; -1: none */
+    bool holds;
+    uint16_t held;      /**< angle in the first 065h of its own */
+    int32_t told_ddeg;  /**< the angle when the steps came: the last one that 067h tells, when they make it invalid */
+    int32_t angle_ddeg; /**< the angle to be held: that of the moment of the trip, or the told one */
+    campaign_state_t states[CAMPAIGN_STATES_MAX];
+    size_t state_count;
+} campaign_judge_t;
+
+void campaign_judge_init(campaign_judge_t *judge, const campaign_plan_t *plan, const scenario_world_t *world);
+
+/** Who is to be told of events and frames. */
+scenario_watch_t campaign_judge_watch(campaign_judge_t *judge);
+
+/** At the end of every millisecond. */
+void campaign_judge_tick(campaign_judge_t *judge, uint64_t t_ms);
+
+/** The run is over. */
+void campaign_judge_finish(campaign_judge_t *judge);
+
+#endif

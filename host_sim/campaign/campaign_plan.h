@@ -1,0 +1,61 @@
+/**
+ * @file campaign_plan.h
+ * One run of a campaign: what its random numbers make of it, as the text of a scenario.
+ *
+ * Everything follows from the seed and the number of the run, and from nothing else: the same run in whatever shard.
+ */
+#ifndef HOST_SIM_CAMPAIGN_PLAN_H
+#define HOST_SIM_CAMPAIGN_PLAN_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "campaign/campaign_rows.h"
+
+#define CAMPAIGN_TEXT_SIZE 8192u
+
+/** A text in the making; what has no more room is cut, which `full` says. */
+typedef struct {
+    char bytes[CAMPAIGN_TEXT_SIZE];
+    size_t used;
+    bool full;
+} campaign_text_t;
+
+void campaign_text_add(campaign_text_t *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/** What is to be. */
+typedef struct {
+    uint64_t seed;
+    uint64_t run;
+    const campaign_row_t *row;
+    const campaign_engagement_t *engagement; /**< NULL: the cause comes under way */
+    bool gateway;
+    bool table_ids;
+    bool renumbered; /**< each identifier is one more than that of the set */
+    uint32_t bitrate;
+    bool park_guard;
+    bool at_standstill; /**< park: at_standstill */
+    bool engaged;
+    bool bunched; /**< all messages are due in the same milliseconds */
+    uint16_t tick_phase_us;
+    uint32_t clock_start_ms;
+    uint32_t number;    /**< $n */
+    uint32_t engage_ms; /**< with an engagement: when the operator switches */
+    uint32_t steps_ms;  /**< when the steps of the row come */
+    uint32_t cause_ms;  /**< from here on times count: the steps, what is later than they are, or the switch */
+    uint32_t bound_us;  /**< after the cause: the reaction has come */
+    uint32_t duration_ms;
+    campaign_text_t head; /**< the scenario up to its steps; without what is expected */
+} campaign_plan_t;
+
+/** Which causes a campaign has. */
+typedef struct {
+    const campaign_row_t *only; /**< NULL: any fault; with `newly_engaged` one that an engagement delays */
+    bool newly_engaged;         /**< the cause comes with an engagement, and not under way */
+} campaign_causes_t;
+
+/** Make a run. */
+void campaign_plan_make(campaign_plan_t *plan, uint64_t seed, uint64_t run, const campaign_causes_t *causes);
+
+#endif

@@ -1,0 +1,107 @@
+#include "campaign/campaign_result.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <jansson.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "agv/names.h"
+#include "io/report.h"
+
+enum { FIRST_ROOM = 1024 };
+
+bool campaign_samples_add(campaign_samples_t *samples, const campaign_sample_t *sample) {
+    if (samples->count == samples->room) {
+        const size_t room = (samples->room == 0u) ? (size_t)FIRST_ROOM : samples->room * 2u;
+        campaign_sample_t *larger = realloc(samples->samples, room * sizeof *larger);
+        if (larger == NULL) {
+            return report("out of memory");
+        }
+        samples->samples = larger;
+        samples->room = room;
+    }
+    samples->samples[samples->count] = *sample;
+    samples->count++;
+    return true;
+}
+
+void campaign_samples_free(campaign_samples_t *samples) {
+    free(samples->samples);
+    samples->samples = NULL;
+}
+
+static int32_t since_cause(const campaign_judge_t *judge, uint64_t t_us) {
+    const bool none = (t_us == CAMPAIGN_NEVER) || (t_us < judge->cause_us); /* it had opened by itself before */
+    return none ? CAMPAIGN_NO_TIME : (int32_t)((int64_t)t_us - (int64_t)judge->cause_us);
+}
+
+campaign_sample_t campaign_sample_of(const campaign_judge_t *judge) {
+    return (campaign_sample_t){
+        .row = (uint8_t)(judge->plan->row - CAMPAIGN_ROWS),
+        .broken = judge->broken != CAMPAIGN_SOUND,
+        .safe_us = since_cause(judge, judge->first_safe_us),
+        .confirmed_us = since_cause(judge, judge->confirmed_us),
+        .opened_us = since_cause(judge, judge->opened_us),
+    };
+}
+
+/** Write an object as a line. Takes the reference. */
+static void write_line(output_t *output, json_t *object) {
+    char *text = (object != NULL) ? json_dumps(object, 0) : NULL;
+    json_decref(object);
+    if (text == NULL) {
+        output->error = (output->error == 0) ? ENOMEM : output->error;
+        return;
+    }
+    const size_t length = strlen(text);
+    text[length] = '\n'; /* in the place of the terminating zero */
+    (void)output_write(output, text, length + 1u);
+    free(text);
+}
+
+static json_t *fault_or_null(int fault) {
+    const char *name = ((fault >= 0) && (fault < (int)AGV_FAULT_COUNT)) ? agv_fault_name((agv_fault_t)fault) : NULL;
+    return (name != NULL) ? json_string(name) : json_null();
+}
+
+static json_t *time_or_null(int32_t us) {
+    return (us != CAMPAIGN_NO_TIME) ? json_integer(us) : json_null();
+}
+
+const char *campaign_planted_name(scenario_planted_t planted) {
+    static const char *const names[] = {"", "mute", "tripped"};
+    return names[planted];
+}
+
+void campaign_write_part(output_t *output, const campaign_part_t *part) {
+    const bool real = part->planted == SCENARIO_REAL;
+    const campaign_row_t *only = part->causes.only;
+    write_line(output,
+               json_pack("{s:i, s:s, s:I, s:I, s:i, s:i, s:o, s:b, s:o}", "campaign", 1, "version", HOST_SIM_VERSION,
+                         "runs", (json_int_t)part->runs, "seed", (json_int_t)part->seed, "shard", (int)part->shard,
+                         "shards", (int)part->shards, "fault", fault_or_null((only != NULL) ? (int)only->fault : -1),
+                         "newly_engaged", (int)part->causes.newly_engaged, "planted",
+                         real ? json_null() : json_string(campaign_planted_name(part->planted))));
+}
+
+void campaign_write_run(output_t *output, const campaign_judge_t *judge) {
+    const campaign_plan_t *plan = judge->plan;
+    const campaign_sample_t sample = campaign_sample_of(judge);
+    json_t *object =
+        json_pack("{s:I, s:o, s:s, s:s, s:I, s:b, s:s, s:s, s:b, s:i, s:i}", "run", (json_int_t)plan->run, "fault",
+                  fault_or_null((int)plan->row->fault), "topology", plan->gateway ? "gateway" : "shared", "id_set",
+                  plan->table_ids ? "table" : "heading", "bitrate", (json_int_t)plan->bitrate, "park_guard",
+                  (int)plan->park_guard, "park", plan->at_standstill ? "at_standstill" : "at_once", "mode",
+                  plan->engaged ? "autopilot" : "manual", "bunched", (int)plan->bunched, "tick_phase_us",
+                  (int)plan->tick_phase_us, "cause_ms", (int)plan->cause_ms);
+    (void)json_object_set_new(object, "bound_us", json_integer((json_int_t)plan->bound_us));
+    (void)json_object_set_new(object, "safe_us", time_or_null(sample.safe_us));
+    (void)json_object_set_new(object, "confirmed_us", time_or_null(sample.confirmed_us));
+    (void)json_object_set_new(object, "opened_us", time_or_null(sample.opened_us));
+    (void)json_object_set_new(object, "bus_off", json_boolean(judge->bus_off));
+    (void)json_object_set_new(object, "reason", fault_or_null(judge->reason));
+    (void)json_object_set_new(object, "broken",
+                              sample.broken ? json_string(campaign_break_name(judge->broken)) : json_null());
+    write_line(output, object);
+}

@@ -1,0 +1,196 @@
+#include "campaign/campaign_run.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "agv/names.h"
+#include "campaign/campaign_scenario.h"
+#include "io/interrupt.h"
+#include "ui/progress.h"
+
+enum { PATH_SIZE = 4096, FILES_MAX = 20, LOOK_FOR_SIGNALS_EVERY = 16 };
+
+/** What the campaign works with; too large for the stack. */
+typedef struct {
+    const campaign_request_t *request;
+    campaign_plan_t plan;
+    campaign_judge_t judge;
+    campaign_text_t text;
+    scenario_options_t options;
+    scenario_t scenario;
+    scenario_world_t world;
+    campaign_samples_t samples;
+    output_t results;
+    output_t file; /**< of a broken run */
+    size_t broken;
+} campaign_t;
+
+/** Make the scenario of the planned run. What it expects is judged here. */
+static bool read_plan(campaign_t *campaign) {
+    campaign_text_t *text = &campaign->text;
+
+    text->used = 0u;
+    campaign_text_add(text, "%sexpect: {states: []}\n", campaign->plan.head.bytes);
+    if (campaign->plan.head.full || text->full) {
+        return report("run %" PRIu64 ": its scenario is too long", campaign->plan.run);
+    }
+    return scenario_read_text(&campaign->scenario, "a run of the campaign", text->bytes, &campaign->options);
+}
+
+static void play(campaign_t *campaign) {
+    const scenario_t *scenario = &campaign->scenario;
+    size_t next = 0u;
+
+    scenario_world_start(&campaign->world);
+    for (uint32_t t_ms = 0u; t_ms <= scenario->duration_ms; t_ms++) {
+        for (; (next < scenario->step_count) && (scenario->steps[next].at_ms == t_ms); next++) {
+            scenario_world_do(&campaign->world, &scenario->steps[next]);
+        }
+        scenario_world_tick(&campaign->world, t_ms);
+        campaign_judge_tick(&campaign->judge, t_ms);
+    }
+    campaign_judge_finish(&campaign->judge);
+}
+
+/** Play a run and judge it. @return false: reported */
+static bool run_one(campaign_t *campaign, uint64_t run) {
+    const campaign_request_t *request = campaign->request;
+
+    campaign_plan_make(&campaign->plan, request->part.seed, run, &request->part.causes);
+    if (!read_plan(campaign)) {
+        return false;
+    }
+    if (!scenario_world_init(&campaign->world, &campaign->scenario, request->part.planted)) {
+        return report("run %" PRIu64 ": its world could not be built", run);
+    }
+    campaign_judge_init(&campaign->judge, &campaign->plan, &campaign->world);
+    const scenario_watch_t watch = campaign_judge_watch(&campaign->judge);
+    scenario_world_watch(&campaign->world, &watch);
+    play(campaign);
+    return true;
+}
+
+/** Leave the scenario of a broken run. */
+static bool write_file(campaign_t *campaign) {
+    char path[PATH_SIZE];
+    const campaign_plan_t *plan = &campaign->plan;
+    const int length = snprintf(path, sizeof path, "%s/campaign-%" PRIu64 "-%" PRIu64 ".yaml",
+                                campaign->request->folder, plan->seed, plan->run);
+
+    if ((length < 0) || (length >= PATH_SIZE)) {
+        return report("--broken: the name of the folder is too long");
+    }
+    campaign->text.used = 0u;
+    campaign_scenario_write(&campaign->text, &campaign->judge);
+    if (!output_open(&campaign->file, path)) {
+        return false;
+    }
+    (void)output_write(&campaign->file, campaign->text.bytes, campaign->text.used);
+    if (!output_commit(&campaign->file)) {
+        return false;
+    }
+    (void)fprintf(output_is_stdout(campaign->request->results) ? stderr : stdout,
+                  "BROKEN  run %" PRIu64 ", %s: %s; %s\n", plan->run, agv_fault_name(plan->row->fault),
+                  campaign_break_name(campaign->judge.broken), path);
+    return true;
+}
+
+static bool keep(campaign_t *campaign) {
+    const campaign_sample_t sample = campaign_sample_of(&campaign->judge);
+
+    if (campaign->results.is_open) {
+        campaign_write_run(&campaign->results, &campaign->judge);
+    }
+    if (sample.broken) {
+        campaign->broken++;
+        if ((campaign->broken <= FILES_MAX) && !write_file(campaign)) {
+            return false;
+        }
+    }
+    return campaign_samples_add(&campaign->samples, &sample);
+}
+
+/** All runs of this shard. @return false: reported, or interrupted */
+static bool run_all(campaign_t *campaign) {
+    const campaign_part_t *part = &campaign->request->part;
+    const uint64_t mine = (part->runs - part->shard + part->shards) / part->shards;
+    progress_t progress;
+    uint64_t done = 0u;
+    bool good = true;
+
+    progress_begin(&progress, (mine > 0u) ? mine : 1u);
+    for (uint64_t run = part->shard - 1u; good && (run < part->runs); run += part->shards) {
+        good = run_one(campaign, run) && keep(campaign);
+        done++;
+        progress_show(&progress, done, "runs");
+        if (((done % LOOK_FOR_SIGNALS_EVERY) == 0u) && (interrupt_pending() || (campaign->results.error != 0))) {
+            good = false;
+        }
+    }
+    progress_end(&progress);
+    return good;
+}
+
+static status_t conclude(campaign_t *campaign) {
+    if (output_is_stdout(campaign->request->results)) {
+        return (campaign->broken == 0u) ? STATUS_OK : STATUS_UNMET; /* a table is made of results */
+    }
+    if (campaign->broken > FILES_MAX) {
+        (void)printf("%zu broken runs, scenarios of the first %d\n", campaign->broken, FILES_MAX);
+    }
+    if (!campaign_print_table(&campaign->samples)) {
+        return STATUS_UNUSABLE;
+    }
+    return (campaign->broken == 0u) ? STATUS_OK : STATUS_UNMET;
+}
+
+static status_t run_campaign(campaign_t *campaign) {
+    const campaign_request_t *request = campaign->request;
+
+    if ((request->results != NULL) && !output_open(&campaign->results, request->results)) {
+        return STATUS_UNUSABLE;
+    }
+    if (campaign->results.is_open) {
+        campaign_write_part(&campaign->results, &request->part);
+    }
+    const bool whole = run_all(campaign);
+    if (!whole && (campaign->results.error == 0)) {
+        return STATUS_UNUSABLE;
+    }
+    if (!output_commit(&campaign->results)) {
+        return STATUS_UNUSABLE;
+    }
+    return conclude(campaign);
+}
+
+/** Print one run as a scenario. */
+static status_t show_one(campaign_t *campaign) {
+    if (!run_one(campaign, campaign->request->one)) {
+        return STATUS_UNUSABLE;
+    }
+    campaign->text.used = 0u;
+    campaign_scenario_write(&campaign->text, &campaign->judge);
+    (void)fputs(campaign->text.bytes, stdout);
+    return (campaign->judge.broken == CAMPAIGN_SOUND) ? STATUS_OK : STATUS_UNMET;
+}
+
+status_t campaign_run(const campaign_request_t *request) {
+    campaign_t *campaign = calloc(1u, sizeof *campaign);
+    if (campaign == NULL) {
+        (void)report("out of memory");
+        return STATUS_UNUSABLE;
+    }
+    campaign->request = request;
+    campaign->options = (scenario_options_t){.topology = -1, .id_set = -1};
+    agv_config_defaults(&campaign->options.config);
+    const status_t status = request->shows_one ? show_one(campaign) : run_campaign(campaign);
+    output_discard(&campaign->results);
+    output_discard(&campaign->file);
+    campaign_samples_free(&campaign->samples);
+    free(campaign);
+    interrupt_release();
+    return status;
+}

@@ -1,0 +1,14 @@
+#include "campaign/chance.h"
+
+uint64_t chance_next(uint64_t *state) {
+    *state += 0x9E3779B97F4A7C15u;
+    uint64_t z = *state;
+    z = (z ^ (z >> 30u)) * 0xBF58476D1CE4E5B9u;
+    z = (z ^ (z >> 27u)) * 0x94D049BB133111EBu;
+    return z ^ (z >> 31u);
+}
+
+uint32_t chance_draw(uint64_t *state, uint32_t lowest, uint32_t highest) {
+    const uint64_t span = (highest > lowest) ? ((uint64_t)highest - lowest) + 1u : 1u;
+    return lowest + (uint32_t)(chance_next(state) % span);
+}

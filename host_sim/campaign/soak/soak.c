@@ -1,0 +1,307 @@
+#include "campaign/soak/soak.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "campaign/chance.h"
+#include "campaign/soak/soak_internal.h"
+#include "io/interrupt.h"
+#include "ui/progress.h"
+
+/* A disturbance comes when the one before is over and forgotten: counts in a row begin anew after a good frame. */
+enum { QUIET_MIN_MS = 500, QUIET_MAX_MS = 3000, READY_MS = 2000, NS_PER_MS = 1000000, MS_PER_S = 1000 };
+enum {
+    LOOK_EVERY_MS = 1000,
+    SAVE_EVERY_MS = 6 * 3600000,
+    STATUS_SLOW_MS = 101,
+    PLANTED_MS = 60000,
+    HOURS_PER_DAY = 24
+};
+
+/** Whether a row's steps make sense in this topology. */
+static bool fits(const soak_t *soak, const soak_row_t *row) {
+    const uint32_t other = soak->gateway ? SOAK_SHARED : SOAK_GATEWAY;
+    return (row->flags & other) == 0u;
+}
+
+static uint32_t add_steps(soak_t *soak, const char *words, uint32_t number) {
+    while (*words != '\0') {
+        const size_t length = strcspn(words, "|");
+        campaign_text_add(&soak->text, "  - {at_ms: %" PRIu32 ", %.*s}\n", number, (int)length, words);
+        number++;
+        words += length;
+        words += (*words == '|') ? 1 : 0;
+    }
+    return number;
+}
+
+/** All steps of all rows are read as those of one scenario, in their order. */
+static bool read_rows(soak_t *soak) {
+    scenario_options_t options = {.topology = -1, .id_set = -1};
+    const bool drifts = soak->request->planted == SOAK_PLANTED_DRIFT;
+    uint32_t number = 0u;
+
+    agv_config_defaults(&options.config);
+    campaign_text_add(
+        &soak->text, "name: soak\nshows: [TIM-1]\ntopology: %s\nid_set: %s\nclock_start_ms: %" PRIu32 "\n",
+        soak->gateway ? "gateway" : "shared", soak->table_ids ? "table" : "heading", (uint32_t)soak->start_ms);
+    campaign_text_add(&soak->text, "config: {status_frame_id: %u, status_frame_period_ms: %u}\n", SOAK_STATUS_ID,
+                      drifts ? (unsigned)STATUS_SLOW_MS : SOAK_STATUS_MS);
+    campaign_text_add(&soak->text, "duration_ms: 1000\nsteps:\n");
+    for (size_t i = 0u; i < SOAK_ROW_COUNT; i++) {
+        soak->steps[i].begin = number;
+        number = fits(soak, &SOAK_ROWS[i]) ? add_steps(soak, SOAK_ROWS[i].begin, number) : number;
+        soak->steps[i].end = number;
+        number = fits(soak, &SOAK_ROWS[i]) ? add_steps(soak, SOAK_ROWS[i].end, number) : number;
+        soak->steps[i].after = number;
+    }
+    campaign_text_add(&soak->text, "expect: {states: []}\n");
+    return soak->text.full ? report("the scenario of the soak is too long")
+                           : scenario_read_text(&soak->scenario, "the soak", soak->text.bytes, &options);
+}
+
+static void act(soak_t *soak, uint32_t from, uint32_t to) {
+    for (uint32_t i = from; i < to; i++) {
+        const scenario_step_t *step = &soak->scenario.steps[i];
+        if (!step->of_vehicle && (step->supervisor.what == SCENARIO_DELIVER)) {
+            soak->state.delivered++;
+        }
+        scenario_world_act(&soak->world, soak->state.t_ms, step);
+    }
+}
+
+static bool may_come(const soak_t *soak, const soak_row_t *row) {
+    const bool engaged = soak->world.vehicle.vcu.autopilot;
+    const uint32_t other = engaged ? SOAK_MANUAL : SOAK_ENGAGED;
+    return fits(soak, row) && ((row->flags & (other | SOAK_PLANTED)) == 0u);
+}
+
+static uint32_t choose(soak_t *soak) {
+    uint32_t weight = 0u;
+    for (size_t i = 0u; i < SOAK_ROW_COUNT; i++) {
+        weight += may_come(soak, &SOAK_ROWS[i]) ? SOAK_ROWS[i].weight : 0u;
+    }
+    uint32_t left = chance_draw(&soak->state.random, 1u, weight);
+    for (uint32_t i = 0u;; i++) {
+        const uint32_t own = may_come(soak, &SOAK_ROWS[i]) ? SOAK_ROWS[i].weight : 0u;
+        if (left <= own) {
+            return i;
+        }
+        left -= own;
+    }
+}
+
+/** The mistakes that are not made with a row. */
+static void plant(soak_t *soak) {
+    static const hal_can_frame_t unasked = {.id = SOAK_STATUS_ID - 1u, .length = AGV_DLC};
+
+    if (soak->state.t_ms <= PLANTED_MS) {
+        return;
+    }
+    if (soak->request->planted == SOAK_PLANTED_COUNT) {
+        soak->state.wire_others++; /* a frame that nobody received */
+    }
+    if (soak->request->planted == SOAK_PLANTED_SPEAK) {
+        (void)hal_can_send(&soak->world.hal, HAL_CAN_VEHICLE, &unasked);
+    }
+}
+
+/** Begin a disturbance, or end it. */
+static void disturb(soak_t *soak) {
+    soak_state_t *state = &soak->state;
+
+    if (state->t_ms < state->next_ms) {
+        return;
+    }
+    if (state->row < SOAK_ROW_COUNT) {
+        act(soak, soak->steps[state->row].end, soak->steps[state->row].after);
+        state->row = (uint32_t)SOAK_ROW_COUNT;
+        state->next_ms = state->t_ms + chance_draw(&state->random, QUIET_MIN_MS, QUIET_MAX_MS);
+        return;
+    }
+    const bool plants = (soak->request->planted == SOAK_PLANTED_TRIP) && (state->t_ms > PLANTED_MS);
+    state->row = plants ? (uint32_t)SOAK_ROW_COUNT - 1u : choose(soak);
+    state->counts[state->row]++;
+    const soak_row_t *row = &SOAK_ROWS[state->row];
+    state->next_ms = state->t_ms + chance_draw(&state->random, row->lowest_ms, row->highest_ms);
+    act(soak, soak->steps[state->row].begin, soak->steps[state->row].end);
+    plant(soak);
+}
+
+static uint64_t real_ms(void) {
+    struct timespec now;
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    return ((uint64_t)now.tv_sec * MS_PER_S) + ((uint64_t)now.tv_nsec / NS_PER_MS);
+}
+
+/** A millisecond. */
+static void step(soak_t *soak) {
+    disturb(soak);
+    scenario_world_tick(&soak->world, soak->state.t_ms);
+    soak_judge_tick(soak);
+    if ((soak->state.t_ms % SOAK_MS_PER_HOUR) == SOAK_MS_PER_HOUR - 1u) {
+        soak_judge_counters(soak);
+    }
+    soak->state.t_ms++;
+}
+
+/** How it went. */
+typedef enum { OVER, INTERRUPTED, UNSAVED } went_t;
+
+/** Until the end, or something is broken. @return UNSAVED: a checkpoint could not be written; reported */
+static went_t go(soak_t *soak) {
+    soak_state_t *state = &soak->state;
+    uint64_t began_ms = real_ms();
+    progress_t progress;
+    bool saved = true;
+    bool interrupted = false;
+
+    progress_begin(&progress, soak->duration_ms / LOOK_EVERY_MS);
+    interrupt_hold();
+    while (saved && !interrupted && (state->t_ms < soak->duration_ms) && (state->broken[0] == '\0')) {
+        step(soak);
+        if ((state->t_ms % LOOK_EVERY_MS) != 0u) {
+            continue;
+        }
+        progress_show(&progress, state->t_ms / LOOK_EVERY_MS, "simulated seconds");
+        interrupted = interrupt_pending();
+        if (interrupted || ((state->t_ms % SAVE_EVERY_MS) == 0u)) {
+            state->real_ms += real_ms() - began_ms;
+            began_ms = real_ms();
+            saved = soak_save(soak);
+        }
+    }
+    progress_end(&progress);
+    state->real_ms += real_ms() - began_ms;
+    if (!saved) {
+        return UNSAVED;
+    }
+    return interrupted ? INTERRUPTED : OVER;
+}
+
+static uint64_t disturbances(const soak_state_t *state) {
+    uint64_t sum = 0u;
+    for (size_t i = 0u; i < SOAK_ROW_COUNT; i++) {
+        sum += state->counts[i];
+    }
+    return sum;
+}
+
+static uint32_t wraps(const soak_t *soak) {
+    return (uint32_t)(((soak->start_ms + soak->state.t_ms) >> 32u) - (soak->start_ms >> 32u));
+}
+
+static void print_result(const soak_t *soak) {
+    const soak_state_t *state = &soak->state;
+    for (size_t i = 0u; i < SOAK_ROW_COUNT; i++) {
+        if (state->counts[i] > 0u) {
+            (void)printf("%-26s %8" PRIu64 "\n", SOAK_ROWS[i].name, state->counts[i]);
+        }
+    }
+    (void)printf("%s, %" PRIu64 ".%02" PRIu64 " days, %" PRIu32 " wraps of the clock, %" PRIu64 " ticks, %" PRIu64
+                 " frames received, %" PRIu64 " sent, %" PRIu64 " warnings, %" PRIu64
+                 " disturbances, status frames at most %" PRIu32 " ms late; took %" PRIu64 " s\n",
+                 soak->gateway ? "gateway" : "shared bus", state->t_ms / SOAK_MS_PER_HOUR / HOURS_PER_DAY,
+                 (state->t_ms / SOAK_MS_PER_HOUR % HOURS_PER_DAY) * 100u / HOURS_PER_DAY, wraps(soak), state->ticks,
+                 state->wire_others + state->delivered, state->wire_own, state->warnings, disturbances(state),
+                 state->status_late_ms, state->real_ms / MS_PER_S);
+    if (state->broken[0] != '\0') {
+        (void)printf("BROKEN: %s\n", state->broken);
+    }
+}
+
+static bool write_results(soak_t *soak) {
+    const soak_state_t *state = &soak->state;
+
+    if (!soak->results.is_open) {
+        return true;
+    }
+    soak->text.used = 0u;
+    campaign_text_add(&soak->text,
+                      "{\"soak\": 1, \"seed\": %" PRIu64 ", \"hours\": %" PRIu32 ", \"shard\": %" PRIu32
+                      ", \"shards\": %" PRIu32 ", \"topology\": \"%s\", \"ms\": %" PRIu64 ", \"wraps\": %" PRIu32
+                      ", \"ticks\": %" PRIu64 ", \"received\": %" PRIu64 ", \"sent\": %" PRIu64,
+                      soak->request->seed, soak->request->hours, soak->request->shard, soak->request->shards,
+                      soak->gateway ? "gateway" : "shared", state->t_ms, wraps(soak), state->ticks,
+                      state->wire_others + state->delivered, state->wire_own);
+    campaign_text_add(&soak->text,
+                      ", \"warnings\": %" PRIu64 ", \"disturbances\": %" PRIu64 ", \"status_late_ms\": %" PRIu32
+                      ", \"real_ms\": %" PRIu64 ", \"broken\": %s}\n",
+                      state->warnings, disturbances(state), state->status_late_ms, state->real_ms,
+                      (state->broken[0] != '\0') ? "true" : "false");
+    (void)output_write(&soak->results, soak->text.bytes, soak->text.used);
+    return output_commit(&soak->results);
+}
+
+static status_t conclude(soak_t *soak) {
+    if (soak->state.broken[0] == '\0') {
+        soak_judge_counters(soak);
+    }
+    if (!output_is_stdout(soak->request->results)) {
+        print_result(soak);
+        (void)fflush(stdout); /* seen whatever becomes of the files; a failure is reported at the end of the program */
+    } else if (soak->state.broken[0] != '\0') {
+        note("BROKEN: %s", soak->state.broken);
+    } else {
+        /* the results say it */
+    }
+    const bool saved = soak_save(soak);
+    if (!write_results(soak) || !saved) {
+        return STATUS_UNUSABLE;
+    }
+    return (soak->state.broken[0] == '\0') ? STATUS_OK : STATUS_UNMET;
+}
+
+static bool prepare(soak_t *soak, const soak_request_t *request) {
+    const uint64_t all_ms = (uint64_t)request->hours * SOAK_MS_PER_HOUR;
+    uint64_t random = request->seed ^ ((uint64_t)request->shard << 32u);
+
+    soak->request = request;
+    soak->start_ms = all_ms * (request->shard - 1u) / request->shards;
+    soak->duration_ms = (all_ms * request->shard / request->shards) - soak->start_ms;
+    soak->gateway = (request->shard % 2u) == 0u;
+    soak->table_ids = (chance_next(&random) % 2u) == 0u;
+    soak->state.random = chance_next(&random);
+    soak->state.row = (uint32_t)SOAK_ROW_COUNT;
+    soak->state.next_ms = READY_MS;
+    if (!read_rows(soak)) {
+        return false;
+    }
+    if (!scenario_world_init(&soak->world, &soak->scenario, SCENARIO_REAL)) {
+        return report("the world of the soak could not be built");
+    }
+    const scenario_watch_t watch = soak_watch(soak);
+    scenario_world_watch(&soak->world, &watch);
+    scenario_world_start(&soak->world);
+    return soak_load(soak) && soak_may_save(soak) &&
+           ((request->results == NULL) || output_open(&soak->results, request->results));
+}
+
+status_t soak_run(const soak_request_t *request) {
+    soak_t *soak = calloc(1u, sizeof *soak);
+    status_t status = STATUS_UNUSABLE;
+
+    if (soak == NULL) {
+        (void)report("out of memory");
+        return STATUS_UNUSABLE;
+    }
+    if (prepare(soak, request)) {
+        const went_t went = go(soak);
+        if (went == OVER) {
+            status = conclude(soak);
+        } else if (went == INTERRUPTED) {
+            note("interrupted after %" PRIu64 " simulated hours%s", soak->state.t_ms / SOAK_MS_PER_HOUR,
+                 (request->checkpoint != NULL) ? "; the same command goes on" : "");
+        } else {
+            /* reported */
+        }
+    }
+    output_discard(&soak->file);
+    output_discard(&soak->results);
+    free(soak);
+    interrupt_release();
+    return status;
+}

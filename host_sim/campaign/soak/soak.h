@@ -1,0 +1,37 @@
+/**
+ * @file soak.h
+ * A soak: the supervisor and its vehicle for days and months of virtual time, with random disturbances that it has to
+ * survive. Nothing may trip, drift or be miscounted.
+ */
+#ifndef HOST_SIM_SOAK_H
+#define HOST_SIM_SOAK_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "io/report.h"
+
+/** A mistake to be found. */
+typedef enum {
+    SOAK_SOUND,
+    SOAK_PLANTED_TRIP,
+    SOAK_PLANTED_DRIFT,
+    SOAK_PLANTED_COUNT,
+    SOAK_PLANTED_SPEAK
+} soak_planted_t;
+
+/** What is asked for. */
+typedef struct {
+    uint32_t hours; /**< of all shards together */
+    uint64_t seed;
+    uint32_t shard; /**< 1 .. shards; each is a stretch of the time, one after the other */
+    uint32_t shards;
+    const char *checkpoint; /**< file; NULL: none. What is there is gone on from */
+    const char *results;    /**< file; NULL: none */
+    soak_planted_t planted;
+} soak_request_t;
+
+/** Do it. @return STATUS_UNMET: something tripped, drifted or was miscounted */
+status_t soak_run(const soak_request_t *request);
+
+#endif

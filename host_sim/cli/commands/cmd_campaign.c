@@ -1,0 +1,210 @@
+/**
+ * @file cmd_campaign.c
+ * `host_sim campaign`: randomised fault campaigns on the simulated bus.
+ */
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "agv/names.h"
+#include "campaign/campaign_run.h"
+#include "cli/commands/commands.h"
+#include "cli/options.h"
+#include "cli/shard_option.h"
+#include "io/interrupt.h"
+#include "io/output.h"
+
+/** The words of --planted, in the order of scenario_planted_t without SCENARIO_REAL. */
+#define PLANTED "mute|tripped"
+
+/** As a number that was not given. */
+#define NOT_GIVEN UINT64_MAX
+
+/** Runs of a campaign: as many as a table in memory may hold. */
+#define RUNS_MAX 100000000u
+
+enum { NOT_PLANTED = -1 };
+
+/** What was given. */
+typedef struct {
+    campaign_request_t request;
+    uint64_t runs;
+    uint64_t seed;
+    uint64_t show;
+    const char *shard;
+    const char *fault;
+    const char *results;
+    const char *folder;
+    int planted;
+    bool newly_engaged;
+    bool merge;
+    bool tables;
+    size_t file_count;
+} given_t;
+
+static options_result_t parse(int argc, char **argv, given_t *given) {
+    const option_t rows[] = {
+        {.name = "--runs",
+         .value = "N",
+         .help = "runs of all shards together",
+         .number = &given->runs,
+         .lowest = 1u,
+         .highest = RUNS_MAX},
+        {.name = "--seed",
+         .value = "S",
+         .help = "what makes them; the same seed, the same runs",
+         .number = &given->seed,
+         .highest = INT64_MAX},
+        {.name = "--shard", .value = "I/N", .help = "only part I of N of the runs (1/1)", .text = &given->shard},
+        {.name = "--fault", .value = "NAME", .help = "cause this one in every run", .text = &given->fault},
+        {.name = "--newly-engaged",
+         .help = "the cause comes with an engagement, of faults which that delays",
+         .flag = &given->newly_engaged},
+        {.name = "--results", .value = "FILE", .help = "results as JSON Lines", .text = &given->results},
+        {.name = "--broken",
+         .value = "FOLDER",
+         .help = "where a run that breaks an invariant leaves its scenario (.)",
+         .text = &given->folder},
+        {.name = "--show",
+         .value = "RUN",
+         .help = "only this run, as a scenario on standard output",
+         .number = &given->show,
+         .highest = RUNS_MAX - 1u},
+        {.name = "--merge",
+         .help = "FILEs are results of all shards: one table, and --results of the whole",
+         .flag = &given->merge},
+        {.name = "--tables", .help = "print what reaction times follow from, as JSON", .flag = &given->tables},
+        {.name = "--planted",
+         .value = PLANTED,
+         .help = "test of the judge: this stands in for the supervisor, all must break",
+         .word = &given->planted,
+         .words = PLANTED},
+    };
+    const option_group_t groups[] = {{.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]}};
+    const option_syntax_t syntax = {
+        .usage = "campaign --runs N --seed S [OPTION]... | campaign --merge FILE...",
+        .summary =
+            "Cause faults at random on the simulated bus in virtual time (which one, when, phases of all senders, bit\n"
+            "rate, topology, ID set, kind of vehicle), judge each run, and sum the reaction times up.\n",
+        .groups = groups,
+        .group_count = sizeof groups / sizeof groups[0],
+        .operands_max = SHARDS_MAX,
+        .operand = "FILE",
+    };
+    return options_parse(&syntax, argc, argv, &given->file_count);
+}
+
+static bool take_fault(const char *name, campaign_causes_t *causes) {
+    const agv_fault_t fault = agv_fault_from_name(name);
+    if (fault == AGV_FAULT_NONE) {
+        return report("--fault: '%s' is no fault; docs/faults.md lists them", name);
+    }
+    causes->only = campaign_row(fault);
+    if (causes->only == NULL) {
+        return report("--fault: nothing that a campaign can do causes %s", name);
+    }
+    return !causes->newly_engaged || (campaign_engagement(fault) != NULL) ||
+           report("--newly-engaged: an engagement does not delay %s", name);
+}
+
+static bool is_folder(const char *path) {
+    struct stat about;
+    return ((stat(path, &about) == 0) && S_ISDIR(about.st_mode)) || report("--broken: '%s' is no folder", path);
+}
+
+/** Make the request of a campaign. */
+static bool make_request(given_t *given, char **operands) {
+    campaign_request_t *request = &given->request;
+
+    if (given->file_count > 0u) {
+        return report("'%s' is one too many; files are for --merge", operands[0]);
+    }
+    if (given->runs == NOT_GIVEN) {
+        return report("--runs is missing; see host_sim campaign --help");
+    }
+    if (given->seed == NOT_GIVEN) {
+        return report("--seed is missing; see host_sim campaign --help");
+    }
+    request->part = (campaign_part_t){.runs = given->runs, .seed = given->seed, .shard = 1u, .shards = 1u};
+    request->part.causes.newly_engaged = given->newly_engaged;
+    request->results = given->results;
+    request->folder = (given->folder != NULL) ? given->folder : ".";
+    request->part.planted = (given->planted == NOT_PLANTED) ? SCENARIO_REAL : (scenario_planted_t)(given->planted + 1);
+    request->shows_one = given->show != NOT_GIVEN;
+    request->one = given->show;
+    if (request->shows_one && ((given->results != NULL) || (given->shard != NULL))) {
+        return report("--show prints one run: neither --results nor --shard go with it");
+    }
+    if (request->shows_one && (given->show >= given->runs)) {
+        return report("--show: there is no run %" PRIu64 ", they are 0 to %" PRIu64, given->show, given->runs - 1u);
+    }
+    return ((given->shard == NULL) || shard_option_take(given->shard, &request->part.shard, &request->part.shards)) &&
+           ((given->fault == NULL) || take_fault(given->fault, &request->part.causes)) && is_folder(request->folder);
+}
+
+static bool check_merge(const given_t *given, char **files) {
+    if (given->file_count == 0u) {
+        return report("--merge: FILE is missing; see host_sim campaign --help");
+    }
+    if ((given->runs != NOT_GIVEN) || (given->seed != NOT_GIVEN) || (given->shard != NULL) || (given->fault != NULL) ||
+        (given->show != NOT_GIVEN) || (given->planted != NOT_PLANTED) || (given->folder != NULL) ||
+        given->newly_engaged) {
+        return report("--merge takes files, and of the other options only --results");
+    }
+    for (size_t i = 0u; i < given->file_count; i++) {
+        const output_role_t roles[] = {{.role = "FILE", .path = files[i]},
+                                       {.role = "--results", .path = given->results, .is_written = true}};
+        if (!output_check_distinct(roles, sizeof roles / sizeof roles[0])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static status_t merge(const given_t *given, char **files) {
+    campaign_samples_t samples = {0};
+    output_t *merged = calloc(1u, sizeof *merged);
+    status_t status = STATUS_UNUSABLE;
+
+    if (merged == NULL) {
+        (void)report("out of memory");
+        return STATUS_UNUSABLE;
+    }
+    if (((given->results == NULL) || output_open(merged, given->results)) &&
+        campaign_merge(files, given->file_count, &samples, merged) && output_commit(merged) &&
+        (output_is_stdout(given->results) || campaign_print_table(&samples))) {
+        status = STATUS_OK;
+        for (size_t i = 0u; i < samples.count; i++) {
+            status = samples.samples[i].broken ? STATUS_UNMET : status;
+        }
+    }
+    output_discard(merged);
+    campaign_samples_free(&samples);
+    free(merged);
+    interrupt_release();
+    return status;
+}
+
+static status_t print_tables(void) {
+    output_t *output = calloc(1u, sizeof *output);
+    const bool good = (output != NULL) && output_open(output, "-") && campaign_print_tables(output);
+    const bool written = good && output_commit(output);
+    free(output);
+    return written ? STATUS_OK : STATUS_UNUSABLE;
+}
+
+status_t cmd_campaign(int argc, char **argv) {
+    given_t given = {.runs = NOT_GIVEN, .seed = NOT_GIVEN, .show = NOT_GIVEN, .planted = NOT_PLANTED};
+    const options_result_t parsed = parse(argc, argv, &given);
+    if (parsed != OPTIONS_GO) {
+        return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
+    }
+    if (given.tables) {
+        return print_tables();
+    }
+    if (given.merge) {
+        return check_merge(&given, argv) ? merge(&given, argv) : STATUS_UNUSABLE;
+    }
+    return make_request(&given, argv) ? campaign_run(&given.request) : STATUS_UNUSABLE;
+}

@@ -1,0 +1,45 @@
+/**
+ * @file cmd_config.c
+ * `host_sim config`.
+ */
+#include "cli/commands/commands.h"
+#include "cli/options.h"
+#include "config/config_options.h"
+#include "config/config_text.h"
+
+status_t cmd_config(int argc, char **argv) {
+    config_options_t given;
+    option_t config_rows[CONFIG_OPTIONS];
+    config_options_init(&given, config_rows);
+    bool to_kconfig = false;
+    const option_t rows[] = {
+        {.name = "--to-kconfig", .help = "print a Kconfig fragment for the firmware instead", .flag = &to_kconfig},
+    };
+    const option_group_t groups[] = {
+        {.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]},
+        {.title = "Configuration of the supervisor", .options = config_rows, .count = CONFIG_OPTIONS},
+    };
+    const option_syntax_t syntax = {
+        .usage = "config [OPTION]...",
+        .summary = "Print every setting with its default, unit, range and meaning, as a YAML file that --config takes\n"
+                   "back; with --config FILE, that configuration.\n",
+        .groups = groups,
+        .group_count = sizeof groups / sizeof groups[0],
+        .operand = "",
+    };
+    size_t operands = 0u;
+    const options_result_t parsed = options_parse(&syntax, argc, argv, &operands);
+    if (parsed != OPTIONS_GO) {
+        return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
+    }
+    agv_config_t config;
+    if (!config_options_make(&given, &config)) {
+        return STATUS_UNUSABLE;
+    }
+    if (to_kconfig) {
+        config_print_kconfig(&config);
+    } else {
+        config_print_yaml(&config);
+    }
+    return STATUS_OK;
+}

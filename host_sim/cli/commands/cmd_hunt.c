@@ -1,0 +1,104 @@
+/**
+ * @file cmd_hunt.c
+ * `host_sim hunt`: an adversary that searches for hazards.
+ */
+#include <sys/stat.h>
+
+#include "cli/commands/commands.h"
+#include "cli/options.h"
+#include "cli/shard_option.h"
+#include "hunt/hunt.h"
+
+/** As a number that was not given. */
+#define NOT_GIVEN UINT64_MAX
+
+#define RUNS_MAX 1000000000u
+
+enum { MINUTES_MAX = 100000 };
+
+/** What was given. */
+typedef struct {
+    hunt_request_t request;
+    const char *shard;
+    const char *folder;
+    bool lists;
+} given_t;
+
+static options_result_t parse(int argc, char **argv, given_t *given) {
+    hunt_request_t *request = &given->request;
+    const option_t rows[] = {
+        {.name = "--runs",
+         .value = "N",
+         .help = "runs of all shards together",
+         .number = &request->runs,
+         .lowest = 1u,
+         .highest = RUNS_MAX},
+        {.name = "--for-minutes",
+         .value = "M",
+         .help = "stop after this time",
+         .number = &request->minutes,
+         .lowest = 1u,
+         .highest = MINUTES_MAX},
+        {.name = "--seed",
+         .value = "S",
+         .help = "what makes the runs; the same seed, the same runs",
+         .number = &request->seed,
+         .highest = INT64_MAX},
+        {.name = "--shard", .value = "I/N", .help = "only part I of N of the runs (1/1)", .text = &given->shard},
+        {.name = "--checkpoint",
+         .value = "FILE",
+         .help = "written after each piece of runs; the same command goes on from it",
+         .text = &request->checkpoint},
+        {.name = "--found",
+         .value = "FOLDER",
+         .help = "where a run with a hazard leaves its scenario (.)",
+         .text = &given->folder},
+        {.name = "--list-hazards", .help = "print what counts as a hazard", .flag = &given->lists},
+    };
+    const option_group_t groups[] = {{.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]}};
+    const option_syntax_t syntax = {
+        .usage = "hunt --seed S (--runs N | --for-minutes M) [OPTION]... | hunt --list-hazards",
+        .summary =
+            "Attack the supervisor with random attackers, broken nodes and configurations on the simulated bus, and\n"
+            "search for runs in which the vehicle gets into a hazard. Exit status 1 when one was found.\n",
+        .groups = groups,
+        .group_count = sizeof groups / sizeof groups[0],
+    };
+    size_t operands = 0u;
+    return options_parse(&syntax, argc, argv, &operands);
+}
+
+static bool is_folder(const char *path) {
+    struct stat about;
+    return ((stat(path, &about) == 0) && S_ISDIR(about.st_mode)) || report("--found: '%s' is no folder", path);
+}
+
+static bool make_request(given_t *given) {
+    hunt_request_t *request = &given->request;
+
+    if (request->seed == NOT_GIVEN) {
+        return report("--seed is missing; see host_sim hunt --help");
+    }
+    if ((request->runs == NOT_GIVEN) && (request->minutes == NOT_GIVEN)) {
+        return report("--runs or --for-minutes is missing; see host_sim hunt --help");
+    }
+    request->shard = 1u;
+    request->shards = 1u;
+    request->folder = (given->folder != NULL) ? given->folder : ".";
+    return ((given->shard == NULL) || shard_option_take(given->shard, &request->shard, &request->shards)) &&
+           is_folder(request->folder);
+}
+
+status_t cmd_hunt(int argc, char **argv) {
+    given_t given = {.request = {.runs = NOT_GIVEN, .minutes = NOT_GIVEN, .seed = NOT_GIVEN}};
+    const options_result_t parsed = parse(argc, argv, &given);
+
+    if (parsed != OPTIONS_GO) {
+        return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
+    }
+    if (given.lists) {
+        hunt_list_hazards();
+        return STATUS_OK;
+    }
+    return make_request(&given) ? hunt_run(&given.request) : STATUS_UNUSABLE;
+}

@@ -1,0 +1,97 @@
+/**
+ * @file cmd_replay.c
+ * `host_sim replay`: its options.
+ */
+#include "cli/commands/commands.h"
+#include "cli/options.h"
+#include "config/config_options.h"
+#include "io/output.h"
+#include "replay/replay.h"
+
+/** The words of --reset-cause, in the order of hal_reset_cause_t. */
+#define RESET_CAUSES "power-on|watchdog|brown-out|lock-up|software|unknown"
+
+/** What was given. */
+typedef struct {
+    replay_request_t request;
+    config_options_t config;
+    uint64_t start_ms;
+    int reset_cause;
+} given_t;
+
+static options_result_t parse(int argc, char **argv, given_t *given) {
+    option_t config_rows[CONFIG_OPTIONS];
+    config_options_init(&given->config, config_rows);
+    const option_t rows[] = {
+        {.name = "--out", .value = "FILE", .help = "log of what the supervisor sent", .text = &given->request.out},
+        {.name = "--events", .value = "FILE", .help = "events as JSON Lines", .text = &given->request.events},
+        {.name = "--tail",
+         .value = "MS",
+         .help = "go on for so long after the last line (0)",
+         .number = &given->request.tail_ms,
+         .highest = REPLAY_GAP_MAX_MS},
+        {.name = "--start-ms",
+         .value = "N",
+         .help = "what the supervisor's clock reads at the start (0)",
+         .number = &given->start_ms,
+         .highest = UINT32_MAX},
+        {.name = "--skip-bad-lines", .help = "count lines that are none", .flag = &given->request.skip_bad_lines},
+        {.name = "--ai-if",
+         .value = "NAME",
+         .help = "the interface of the AI side: a gateway",
+         .text = &given->request.ai_interface},
+        {.name = "--reset-cause",
+         .value = "CAUSE",
+         .help = RESET_CAUSES,
+         .word = &given->reset_cause,
+         .words = RESET_CAUSES},
+        {.name = "--store",
+         .value = "FILE",
+         .help = "what outlives a reset: latch and flight recorder",
+         .text = &given->request.store},
+    };
+    const option_group_t groups[] = {
+        {.title = "Options (FILE may be -, standard output)", .options = rows, .count = sizeof rows / sizeof rows[0]},
+        {.title = "Configuration of the supervisor", .options = config_rows, .count = CONFIG_OPTIONS},
+    };
+    const option_syntax_t syntax = {
+        .usage = "replay [OPTION]... LOG",
+        .summary =
+            "Feed a recorded log (candump -l; - = standard input) to the supervisor in virtual time, and say what\n"
+            "it made of it.\n",
+        .groups = groups,
+        .group_count = sizeof groups / sizeof groups[0],
+        .operands_min = 1u,
+        .operands_max = 1u,
+        .operand = "LOG",
+    };
+    size_t operands = 0u;
+    return options_parse(&syntax, argc, argv, &operands);
+}
+
+static bool check_files(const given_t *given) {
+    const output_role_t roles[] = {
+        {.role = "LOG", .path = given->request.log},
+        {.role = "--config", .path = given->config.path},
+        {.role = "--out", .path = given->request.out, .is_written = true},
+        {.role = "--events", .path = given->request.events, .is_written = true},
+        {.role = "--store", .path = given->request.store, .is_written = true},
+    };
+    return output_check_distinct(roles, sizeof roles / sizeof roles[0]);
+}
+
+status_t cmd_replay(int argc, char **argv) {
+    given_t given = {.reset_cause = (int)HAL_RESET_POWER_ON};
+    const options_result_t parsed = parse(argc, argv, &given);
+    if (parsed != OPTIONS_GO) {
+        return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
+    }
+    given.request.log = argv[0];
+    given.request.start_ms = (uint32_t)given.start_ms;
+    given.request.reset_cause = (hal_reset_cause_t)given.reset_cause;
+    given.config.has_ai_side = given.request.ai_interface != NULL;
+    if (!check_files(&given) || !config_options_make(&given.config, &given.request.config)) {
+        return STATUS_UNUSABLE;
+    }
+    return replay_run(&given.request);
+}

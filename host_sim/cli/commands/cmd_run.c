@@ -1,0 +1,91 @@
+/**
+ * @file cmd_run.c
+ * `host_sim run`: its options.
+ */
+#include <stddef.h>
+
+#include "cli/commands/commands.h"
+#include "cli/interface_options.h"
+#include "cli/options.h"
+#include "config/config_options.h"
+#include "io/output.h"
+#include "live/live.h"
+
+/** The longest time that can be asked for: 100 days. */
+#define FOR_MAX_MS 8640000000u
+
+/** What was given. */
+typedef struct {
+    live_request_t request;
+    config_options_t config;
+} given_t;
+
+static options_result_t parse(int argc, char **argv, given_t *given) {
+    option_t config_rows[CONFIG_OPTIONS];
+    config_options_init(&given->config, config_rows);
+    live_request_t *request = &given->request;
+    const option_t rows[] = {
+        {.name = "--can",
+         .value = "IF",
+         .help = "the interface of the vehicle side, or of the shared bus",
+         .text = &request->interfaces[HAL_CAN_VEHICLE]},
+        {.name = "--ai-can",
+         .value = "IF",
+         .help = "the interface of the AI side: a gateway",
+         .text = &request->interfaces[HAL_CAN_AI]},
+        {.name = "--for",
+         .value = "MS",
+         .help = "end after so long, not only by a signal",
+         .number = &request->for_ms,
+         .lowest = 1u,
+         .highest = FOR_MAX_MS},
+        {.name = "--fail-on-trip", .help = "exit status 1 when it tripped at any time", .flag = &request->fail_on_trip},
+        {.name = "--events", .value = "FILE", .help = "events as JSON Lines, as they come", .text = &request->events},
+        {.name = "--out",
+         .value = "FILE",
+         .help = "log of what the supervisor sent, as it leaves",
+         .text = &request->out},
+        {.name = "--realtime",
+         .help = "SCHED_FIFO, memory locked (CAP_SYS_NICE, CAP_IPC_LOCK)",
+         .flag = &request->realtime},
+    };
+    const option_group_t groups[] = {
+        {.title = "Options (FILE may be -, standard output)", .options = rows, .count = sizeof rows / sizeof rows[0]},
+        {.title = "Configuration of the supervisor", .options = config_rows, .count = CONFIG_OPTIONS},
+    };
+    const option_syntax_t syntax = {
+        .usage = "run --can IF [OPTION]...",
+        .summary = "Run the supervisor as a node on SocketCAN, in real time, until SIGINT, SIGTERM or SIGHUP: then it\n"
+                   "stops at once, and no more leaves than what it had begun to send. A terminal shows its state\n"
+                   "while it runs.\n",
+        .groups = groups,
+        .group_count = sizeof groups / sizeof groups[0],
+        .operand = "argument",
+    };
+    size_t operands = 0u;
+    return options_parse(&syntax, argc, argv, &operands);
+}
+
+static bool check_files(const given_t *given) {
+    const output_role_t roles[] = {
+        {.role = "--config", .path = given->config.path},
+        {.role = "--out", .path = given->request.out, .is_written = true},
+        {.role = "--events", .path = given->request.events, .is_written = true},
+    };
+    return output_check_distinct(roles, sizeof roles / sizeof roles[0]);
+}
+
+status_t cmd_run(int argc, char **argv) {
+    given_t given = {.request = {.for_ms = LIVE_FOREVER}};
+    const options_result_t parsed = parse(argc, argv, &given);
+    if (parsed != OPTIONS_GO) {
+        return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
+    }
+    given.config.has_ai_side = given.request.interfaces[HAL_CAN_AI] != NULL;
+    if (!check_files(&given) || !config_options_make(&given.config, &given.request.config) ||
+        !interface_options_check("run", given.request.interfaces,
+                                 given.request.config.topology == AGV_TOPOLOGY_GATEWAY)) {
+        return STATUS_UNUSABLE;
+    }
+    return live_run(&given.request);
+}

@@ -1,0 +1,410 @@
+/**
+ * @file cmd_scenario.c
+ * `host_sim scenario`: scenario files, played and judged.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "cli/commands/commands.h"
+#include "cli/options.h"
+#include "config/config_options.h"
+#include "hal_linux/linux_can.h"
+#include "io/candump_line.h"
+#include "io/events.h"
+#include "io/interrupt.h"
+#include "io/junit.h"
+#include "io/output.h"
+#include "live/scenario_bus.h"
+#include "scenario/scenario_run.h"
+
+/** The words of --planted, in the order of scenario_planted_t without SCENARIO_REAL. */
+#define PLANTED "mute|tripped"
+
+enum { FILES_MAX = 1000, NOT_PLANTED = -1, DEFAULT_TOLERANCE_MS = 50, TOLERANCE_MAX_MS = 1000 };
+
+/** Its outputs. */
+enum { EVENTS, JUNIT, SENT, OUTPUTS };
+
+/** As a tolerance. */
+#define NOT_GIVEN UINT64_MAX
+
+/** Room for the name of an interface. */
+#define INTERFACE_SIZE (LINUX_CAN_NAME_MAX + 1u)
+
+/** What was given. */
+typedef struct {
+    config_options_t config;
+    scenario_options_t options;
+    const char *junit;
+    const char *events;
+    const char *bus;
+    const char *supervisor;
+    const char *sent;
+    char interface_names[HAL_CAN_SIDES][INTERFACE_SIZE]; /**< "": none; no vehicle side: the simulated bus */
+    uint64_t tolerance_ms;
+    int planted;
+    size_t file_count;
+} given_t;
+
+/** What came of one file. */
+typedef struct {
+    char name[SCENARIO_TEXT_MAX];
+    char failures[SCENARIO_FAILURES_MAX][SCENARIO_FAILURE_SIZE];
+    size_t failure_count;
+    const char *left_out; /**< why it was not played; NULL: it was */
+} result_t;
+
+/** What came of all. */
+typedef struct {
+    size_t passed;
+    size_t failed;
+    size_t left_out;
+} totals_t;
+
+/** What the command works with. */
+typedef struct {
+    given_t given;
+    FILE *said_to; /* results, for people: standard error where an output goes to standard output */
+    output_t outputs[OUTPUTS];
+    scenario_run_t run;
+    result_t results[];
+} work_t;
+
+static options_result_t parse(int argc, char **argv, given_t *given) {
+    option_t config_rows[CONFIG_OPTIONS];
+    config_options_init(&given->config, config_rows);
+    const option_t rows[] = {
+        {.name = "--junit", .value = "FILE", .help = "results as JUnit XML", .text = &given->junit},
+        {.name = "--events", .value = "FILE", .help = "events as JSON Lines (of one scenario)", .text = &given->events},
+        {.name = "--bus",
+         .value = "sim|IF[,IF]",
+         .help =
+             "the simulated bus in virtual time (sim), or CAN interfaces (of the vehicle, of the AI side) in real time",
+         .text = &given->bus},
+        {.name = "--tolerance",
+         .value = "MS",
+         .help = "on CAN interfaces: how far times may be off (50)",
+         .number = &given->tolerance_ms,
+         .highest = TOLERANCE_MAX_MS},
+        {.name = "--supervisor",
+         .value = "COMMAND",
+         .help = "on CAN interfaces: a supervisor that is another program, started by this and telling its events",
+         .text = &given->supervisor},
+        {.name = "--sent",
+         .value = "FILE",
+         .help = "on CAN interfaces: what the supervisor sent, as a candump log (of one scenario)",
+         .text = &given->sent},
+        {.name = "--planted",
+         .value = PLANTED,
+         .help = "test of the scenarios: this stands in for the supervisor, all must fail",
+         .word = &given->planted,
+         .words = PLANTED},
+    };
+    const option_group_t groups[] = {
+        {.title = "Options (FILE may be -, standard output)", .options = rows, .count = sizeof rows / sizeof rows[0]},
+        {.title = "Configuration of the supervisor, under what a scenario says",
+         .options = config_rows,
+         .count = CONFIG_OPTIONS},
+    };
+    const option_syntax_t syntax = {
+        .usage = "scenario [OPTION]... FILE...",
+        .summary = "Play scenario files with a simulated vehicle, and say which expectations did not hold.\n",
+        .groups = groups,
+        .group_count = sizeof groups / sizeof groups[0],
+        .operands_min = 1u,
+        .operands_max = FILES_MAX,
+        .operand = "FILE",
+    };
+    return options_parse(&syntax, argc, argv, &given->file_count);
+}
+
+static bool check_files(const given_t *given, char **files) {
+    for (size_t i = 0u; i < given->file_count; i++) {
+        const output_role_t roles[] = {
+            {.role = "FILE", .path = files[i]},
+            {.role = "--config", .path = given->config.path},
+            {.role = "--junit", .path = given->junit, .is_written = true},
+            {.role = "--events", .path = given->events, .is_written = true},
+            {.role = "--sent", .path = given->sent, .is_written = true},
+        };
+        if (!output_check_distinct(roles, sizeof roles / sizeof roles[0])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/** Take the name of an interface out of --bus. */
+static bool take_interface(given_t *given, hal_can_side_t side, const char *name, size_t length) {
+    if ((length == 0u) || (length > LINUX_CAN_NAME_MAX) || (memchr(name, ',', length) != NULL)) {
+        return report("--bus: '%s' is neither sim nor one interface, or two with a comma between them", given->bus);
+    }
+    memcpy(given->interface_names[side], name, length);
+    return true;
+}
+
+/** What --bus says: the simulated bus, or interfaces. */
+static bool check_bus(given_t *given) {
+    if ((given->bus == NULL) || (strcmp(given->bus, "sim") == 0)) {
+        const bool is_simulated =
+            (given->tolerance_ms == NOT_GIVEN) && (given->supervisor == NULL) && (given->sent == NULL);
+        return is_simulated || report("--tolerance, --supervisor, --sent are for CAN interfaces: --bus IF[,IF]");
+    }
+    const size_t length = strcspn(given->bus, ",");
+    const char *second = (given->bus[length] == ',') ? &given->bus[length + 1u] : NULL;
+    if (!take_interface(given, HAL_CAN_VEHICLE, given->bus, length) ||
+        ((second != NULL) && !take_interface(given, HAL_CAN_AI, second, strlen(second)))) {
+        return false;
+    }
+    if ((second != NULL) && (strcmp(given->interface_names[HAL_CAN_VEHICLE], second) == 0)) {
+        return report("--bus: both sides are the same interface, '%s'", second);
+    }
+    if (given->planted != NOT_PLANTED) {
+        return report("--planted is for the simulated bus");
+    }
+    given->tolerance_ms = (given->tolerance_ms == NOT_GIVEN) ? DEFAULT_TOLERANCE_MS : given->tolerance_ms;
+    return true;
+}
+
+static bool is_real(const given_t *given) {
+    return given->interface_names[HAL_CAN_VEHICLE][0] != '\0';
+}
+
+/** The interfaces; not kept in given_t, which is copied. */
+static scenario_bus_t real_bus(const given_t *given) {
+    const char *ai = given->interface_names[HAL_CAN_AI];
+    return (scenario_bus_t){
+        .interfaces =
+            {[HAL_CAN_VEHICLE] = given->interface_names[HAL_CAN_VEHICLE], [HAL_CAN_AI] = (ai[0] != '\0') ? ai : NULL},
+        .tolerance_ms = (uint32_t)given->tolerance_ms,
+        .command = given->supervisor,
+    };
+}
+
+static bool check_given(given_t *given, char **files) {
+    if (!check_bus(given)) {
+        return false;
+    }
+    if (((given->events != NULL) || (given->sent != NULL)) && (given->file_count > 1u)) {
+        return report("--events and --sent are for one scenario, %zu were given", given->file_count);
+    }
+    if (!check_files(given, files) || !config_options_make(&given->config, &given->options.config)) {
+        return false;
+    }
+    given->options.topology = given->config.topology;
+    given->options.id_set = given->config.id_set;
+    return true;
+}
+
+/** Whether --bus names the interfaces that a scenario needs. */
+static bool check_place(const work_t *work, const char *file) {
+    const scenario_t *scenario = &work->run.scenario;
+    const scenario_bus_t bus = real_bus(&work->given);
+    if (is_real(&work->given) && scenario->vehicle.gateway && (bus.interfaces[HAL_CAN_AI] == NULL)) {
+        return report("%s: the gateway topology needs two interfaces: --bus %s,IF", file,
+                      bus.interfaces[HAL_CAN_VEHICLE]);
+    }
+    return true;
+}
+
+/** Several files are read twice, which a pipe cannot be. One that is not there is for who reads it. */
+static bool check_readable_twice(const given_t *given, const char *file) {
+    struct stat found;
+    return (given->file_count == 1u) || (stat(file, &found) != 0) || S_ISREG(found.st_mode) ||
+           report("%s: is no regular file; several scenarios have to be", file);
+}
+
+/** Read every file once, so that nothing runs when one of them makes no sense. */
+static bool check_scenarios(work_t *work, char **files) {
+    for (size_t i = 0u; i < work->given.file_count; i++) {
+        if (!check_readable_twice(&work->given, files[i]) ||
+            !scenario_read(&work->run.scenario, files[i], &work->given.options) || !check_place(work, files[i])) {
+            return false;
+        }
+    }
+    const scenario_bus_t bus = real_bus(&work->given);
+    return !is_real(&work->given) || scenario_bus_check(&bus);
+}
+
+static void print_result(const work_t *work, const char *file, const result_t *result) {
+    if (result->failure_count == 0u) {
+        (void)fprintf(work->said_to, "ok      %s: %zu expectations\n", file, work->run.check.expectation_count);
+        return;
+    }
+    (void)fprintf(work->said_to, "FAILED  %s: %zu of %zu expectations\n", file, result->failure_count,
+                  work->run.check.expectation_count);
+    for (size_t i = 0u; (i < result->failure_count) && (i < SCENARIO_FAILURES_MAX); i++) {
+        (void)fprintf(work->said_to, "        %s\n", result->failures[i]);
+    }
+}
+
+/** Play it on the simulated bus. */
+static void play_simulated(work_t *work, events_summary_t *summary) {
+    const scenario_watch_t watch = {.on_event = events_write, .ctx = &work->outputs[EVENTS]};
+    const given_t *given = &work->given;
+    const scenario_planted_t planted =
+        (given->planted == NOT_PLANTED) ? SCENARIO_REAL : (scenario_planted_t)(given->planted + 1);
+
+    (void)scenario_run(&work->run, planted, &watch, (given->events != NULL) ? 1u : 0u, NULL);
+    events_summarise(&work->run.world.session, summary);
+}
+
+/** A frame of the supervisor, as a line of a log. */
+static void write_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t at_us) {
+    work_t *work = ctx;
+    char line[CANDUMP_WRITE_MAX];
+    (void)output_write(&work->outputs[SENT], line,
+                       candump_write(line, at_us, work->given.interface_names[side], frame));
+}
+
+/** Play it on CAN interfaces, or leave it out. @return false: reported */
+static bool play_real(work_t *work, events_summary_t *summary, const char **left_out) {
+    const scenario_bus_watch_t watch = {
+        .on_event = (work->given.events != NULL) ? events_write : NULL,
+        .event_ctx = &work->outputs[EVENTS],
+        .on_sent = (work->given.sent != NULL) ? write_sent : NULL,
+        .sent_ctx = work,
+    };
+    const scenario_bus_t bus = real_bus(&work->given);
+
+    *left_out = scenario_bus_leaves_out(&bus, &work->run.scenario);
+    if (*left_out != NULL) {
+        return true;
+    }
+    scenario_bus_tolerate(&bus, &work->run.scenario);
+    scenario_check_init(&work->run.check, &work->run.scenario);
+    return scenario_bus_play(&bus, &work->run.check, &watch, summary);
+}
+
+static bool play(work_t *work, const char *file, result_t *result) {
+    events_summary_t summary = {0};
+
+    if ((work->given.file_count > 1u) && !scenario_read(&work->run.scenario, file, &work->given.options)) {
+        return false;
+    }
+    if (!is_real(&work->given)) {
+        play_simulated(work, &summary);
+        if (work->run.was_interrupted) {
+            return false;
+        }
+    } else if (!play_real(work, &summary, &result->left_out)) {
+        return false;
+    } else if (result->left_out != NULL) {
+        return true;
+    } else {
+        /* played */
+    }
+    if ((work->given.events != NULL) && (work->given.supervisor == NULL)) {
+        events_write_summary(&work->outputs[EVENTS], &summary);
+    }
+    memcpy(result->name, work->run.scenario.name, sizeof result->name);
+    memcpy(result->failures, work->run.check.failures, sizeof result->failures);
+    result->failure_count = work->run.check.failure_count;
+    print_result(work, file, result);
+    return true;
+}
+
+static void write_junit(work_t *work, char **files, const totals_t *totals) {
+    junit_begin(&work->outputs[JUNIT], "scenarios", totals->passed + totals->failed, totals->failed);
+    for (size_t i = 0u; i < work->given.file_count; i++) {
+        const result_t *result = &work->results[i];
+        const size_t shown =
+            (result->failure_count < SCENARIO_FAILURES_MAX) ? result->failure_count : SCENARIO_FAILURES_MAX;
+        if (result->left_out == NULL) {
+            junit_test(&work->outputs[JUNIT], files[i], result->name, result->failures[0], shown,
+                       SCENARIO_FAILURE_SIZE);
+        }
+    }
+    junit_end(&work->outputs[JUNIT]);
+}
+
+static void count(totals_t *totals, const result_t *result) {
+    if (result->left_out != NULL) {
+        totals->left_out++;
+    } else if (result->failure_count != 0u) {
+        totals->failed++;
+    } else {
+        totals->passed++;
+    }
+}
+
+/** The last lines: what was left out, and the sum. */
+static void print_totals(const work_t *work, char **files, const totals_t *totals) {
+    for (size_t i = 0u; i < work->given.file_count; i++) {
+        if (work->results[i].left_out != NULL) {
+            (void)fprintf(work->said_to, "left out %s: %s\n", files[i], work->results[i].left_out);
+        }
+    }
+    (void)fprintf(work->said_to, "%zu scenarios: %zu passed, %zu failed", work->given.file_count, totals->passed,
+                  totals->failed);
+    if (is_real(&work->given)) {
+        (void)fprintf(work->said_to, ", %zu left out", totals->left_out);
+    }
+    (void)fprintf(work->said_to, "\n");
+}
+
+static status_t play_all(work_t *work, char **files) {
+    totals_t totals = {0};
+
+    for (size_t i = 0u; i < work->given.file_count; i++) {
+        if (!play(work, files[i], &work->results[i])) {
+            return STATUS_UNUSABLE;
+        }
+        count(&totals, &work->results[i]);
+        if (is_real(&work->given)) {
+            (void)fflush(work->said_to); /* it takes its time until the next line */
+        }
+    }
+    print_totals(work, files, &totals);
+    if (work->given.junit != NULL) {
+        write_junit(work, files, &totals);
+    }
+    if (!output_commit_all(work->outputs, OUTPUTS)) {
+        return STATUS_UNUSABLE;
+    }
+    return (totals.failed == 0u) ? STATUS_OK : STATUS_UNMET;
+}
+
+static status_t run_all(work_t *work, char **files) {
+    const given_t *given = &work->given;
+
+    if (!check_scenarios(work, files) ||
+        ((given->junit != NULL) && !output_open(&work->outputs[JUNIT], given->junit)) ||
+        ((given->events != NULL) && !output_open(&work->outputs[EVENTS], given->events)) ||
+        ((given->sent != NULL) && !output_open(&work->outputs[SENT], given->sent))) {
+        return STATUS_UNUSABLE;
+    }
+    return play_all(work, files);
+}
+
+status_t cmd_scenario(int argc, char **argv) {
+    given_t given = {.planted = NOT_PLANTED, .tolerance_ms = NOT_GIVEN};
+    const options_result_t parsed = parse(argc, argv, &given);
+    if (parsed != OPTIONS_GO) {
+        return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
+    }
+    if (!check_given(&given, argv)) {
+        return STATUS_UNUSABLE;
+    }
+    work_t *work = calloc(1u, sizeof *work + (given.file_count * sizeof work->results[0]));
+    if (work == NULL) {
+        (void)report("out of memory");
+        return STATUS_UNUSABLE;
+    }
+    work->given = given;
+    const bool is_taken =
+        output_is_stdout(given.junit) || output_is_stdout(given.events) || output_is_stdout(given.sent);
+    work->said_to = is_taken ? stderr : stdout;
+    const status_t status = run_all(work, argv);
+    for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
+        output_discard(&work->outputs[i]);
+    }
+    const bool was_interrupted = work->run.was_interrupted;
+    free(work);
+    if (was_interrupted) {
+        interrupt_release(); /* on CAN interfaces it was reported */
+    }
+    return status;
+}

@@ -1,0 +1,129 @@
+/**
+ * @file cmd_vehicle.c
+ * `host_sim vehicle`: its options.
+ */
+#include "cli/commands/commands.h"
+#include "cli/interface_options.h"
+#include "cli/options.h"
+#include "config/config_options.h"
+#include "live/vehicle_run.h"
+
+/** The longest time that can be asked for: 100 days. */
+#define FOR_MAX_MS 8640000000u
+
+enum { NOT_GIVEN = -1 };
+
+/** What was given. */
+typedef struct {
+    vehicle_run_request_t request;
+    config_options_t config;
+    const char *faults[VEHICLE_RUN_FAULTS_MAX];
+    size_t fault_count;
+} given_t;
+
+static bool take_fault(void *ctx, const char *text) {
+    given_t *given = ctx;
+
+    if (given->fault_count == VEHICLE_RUN_FAULTS_MAX) {
+        return report("--fault: more than %u of them", VEHICLE_RUN_FAULTS_MAX);
+    }
+    given->faults[given->fault_count] = text;
+    given->fault_count++;
+    return true;
+}
+
+static options_result_t parse(int argc, char **argv, given_t *given) {
+    vehicle_run_request_t *request = &given->request;
+    const option_t rows[] = {
+        {.name = "--can",
+         .value = "IF",
+         .help = "the interface of VCU and EPS, on the shared bus also of the AI computer",
+         .text = &request->interfaces[HAL_CAN_VEHICLE]},
+        {.name = "--ai-can",
+         .value = "IF",
+         .help = "the interface of the AI computer: a gateway",
+         .text = &request->interfaces[HAL_CAN_AI]},
+        {.name = "--config",
+         .value = "FILE",
+         .help = "settings of the supervisor (YAML): its topology and identifiers",
+         .text = &given->config.path},
+        {.name = "--topology",
+         .value = "shared|gateway",
+         .help = "one bus for all, or one for the AI computer (default with --ai-can)",
+         .word = &given->config.topology,
+         .words = "shared|gateway"},
+        {.name = "--id-set",
+         .value = "heading|table",
+         .help = "43Fh and 363h, or 201h and 203h",
+         .word = &given->config.id_set,
+         .words = "heading|table"},
+        {.name = "--fault",
+         .value = "WHO-WHAT[,NAME=VALUE]...@MS",
+         .help = "do so at that time; may be given several times",
+         .each = take_fault,
+         .ctx = given},
+        {.name = "--manual", .help = "do not engage the autopilot", .flag = &request->manual},
+        {.name = "--for",
+         .value = "MS",
+         .help = "end after so long, not only by a signal",
+         .number = &request->for_ms,
+         .lowest = 1u,
+         .highest = FOR_MAX_MS},
+    };
+    const option_group_t groups[] = {
+        {.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]},
+    };
+    const option_syntax_t syntax = {
+        .usage = "vehicle --can IF [OPTION]...",
+        .summary =
+            "Simulate VCU, EPS and AI computer as nodes on SocketCAN, in real time, until SIGINT, SIGTERM or SIGHUP.\n"
+            "They obey the commands on the bus. After 1.5 s the operator engages the autopilot, and the AI computer\n"
+            "drives: gear D, throttle 30 %.\n"
+            "\n"
+            "Faults and whatever else can happen are the steps of scenarios: by option, --fault ai-stop@2000 or\n"
+            "--fault eps-set,field=faults,value=08h@3000, or typed while it runs: 'ai stop', 'eps set field=faults\n"
+            "value=08h'. 'help' lists them; 'status' and 'quit' can be typed, too.\n",
+        .groups = groups,
+        .group_count = sizeof groups / sizeof groups[0],
+        .operand = "argument",
+    };
+    size_t operands = 0u;
+    return options_parse(&syntax, argc, argv, &operands);
+}
+
+/** Read the faults, in the order of their time. */
+static bool make_faults(const given_t *given, vehicle_run_request_t *request) {
+    for (size_t i = 0u; i < given->fault_count; i++) {
+        vehicle_words_t words;
+        if (!vehicle_words_fault(given->faults[i], &request->config, &words)) {
+            return false;
+        }
+        if ((request->for_ms != VEHICLE_RUN_FOREVER) && (words.step.at_ms >= request->for_ms)) {
+            return report("--fault %.80s: that lies after the end (--for)", given->faults[i]);
+        }
+        size_t place = i;
+        for (; (place > 0u) && (request->faults[place - 1u].step.at_ms > words.step.at_ms); place--) {
+            request->faults[place] = request->faults[place - 1u];
+        }
+        request->faults[place] = words;
+    }
+    request->fault_count = given->fault_count;
+    return true;
+}
+
+status_t cmd_vehicle(int argc, char **argv) {
+    given_t given = {.request = {.for_ms = VEHICLE_RUN_FOREVER},
+                     .config = {.topology = NOT_GIVEN, .id_set = NOT_GIVEN}};
+    const options_result_t parsed = parse(argc, argv, &given);
+
+    if (parsed != OPTIONS_GO) {
+        return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
+    }
+    given.config.has_ai_side = given.request.interfaces[HAL_CAN_AI] != NULL;
+    if (!config_options_make(&given.config, &given.request.config) ||
+        !interface_options_check("vehicle", given.request.interfaces,
+                                 given.request.config.topology == AGV_TOPOLOGY_GATEWAY)) {
+        return STATUS_UNUSABLE;
+    }
+    return make_faults(&given, &given.request) ? vehicle_run_nodes(&given.request) : STATUS_UNUSABLE;
+}

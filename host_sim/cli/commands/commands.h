@@ -1,0 +1,45 @@
+/**
+ * @file commands.h
+ * The sub-commands. To add one: a file cmd_<name>.c with its function, a prototype here, a row in the table in main.c.
+ */
+#ifndef HOST_SIM_COMMANDS_H
+#define HOST_SIM_COMMANDS_H
+
+#include "io/report.h"
+
+/**
+ * Run a sub-command.
+ * @param argc number of its arguments, its own name not among them
+ * @param argv its arguments; the function may change their order
+ * @return exit status of the program; whatever is not STATUS_OK was reported on standard error
+ */
+typedef status_t command_fn(int argc, char **argv);
+
+/** `host_sim replay`: a recorded log, supervised in virtual time. */
+command_fn cmd_replay;
+
+/** `host_sim run`: the supervisor as a node on SocketCAN. */
+command_fn cmd_run;
+
+/** `host_sim demo`: the main job on the simulated bus, as a timeline. */
+command_fn cmd_demo;
+
+/** `host_sim scenario`: scenario files, played and judged. */
+command_fn cmd_scenario;
+
+/** `host_sim vehicle`: VCU, EPS and AI computer as nodes on SocketCAN. */
+command_fn cmd_vehicle;
+
+/** `host_sim campaign`: randomised fault campaigns on the simulated bus. */
+command_fn cmd_campaign;
+
+/** `host_sim soak`: months of virtual time with disturbances that have to be survived. */
+command_fn cmd_soak;
+
+/** `host_sim hunt`: an adversary that searches for hazards. */
+command_fn cmd_hunt;
+
+/** `host_sim config`: every setting, as YAML or as a Kconfig fragment. */
+command_fn cmd_config;
+
+#endif

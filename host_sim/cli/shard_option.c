@@ -1,0 +1,25 @@
+#include "cli/shard_option.h"
+
+#include <string.h>
+
+#include "cli/options.h"
+#include "io/report.h"
+
+bool shard_option_take(const char *text, uint32_t *shard, uint32_t *shards) {
+    char first[8];
+    uint64_t part = 0u;
+    uint64_t parts = 0u;
+    const size_t length = strcspn(text, "/");
+
+    if ((length >= sizeof first) || (text[length] != '/')) {
+        return report("--shard: '%s' is no I/N such as 2/8", text);
+    }
+    memcpy(first, text, length);
+    first[length] = '\0';
+    if (!options_number(&text[length + 1u], 1u, SHARDS_MAX, &parts) || !options_number(first, 1u, parts, &part)) {
+        return report("--shard: '%s' is no I/N with I from 1 to N, and N up to %u", text, SHARDS_MAX);
+    }
+    *shard = (uint32_t)part;
+    *shards = (uint32_t)parts;
+    return true;
+}

@@ -1,0 +1,244 @@
+#include "config/config_file.h"
+
+#include <ctype.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "agv/names.h"
+#include "cli/options.h"
+#include "io/report.h"
+#include "io/yaml_file.h"
+
+enum { HEX = 16, CLASS_WORD_TRIP = 0, CLASS_WORD_WARN = 1 };
+
+#define CLASS_WORDS "trip|warn"
+#define SWITCH_WORDS "off|on"
+#define SWITCH_BOOLEANS "false|true"
+
+/** What is being read. */
+typedef struct {
+    agv_config_t *config;
+    config_lines_t *lines;
+    const char *key;
+    size_t line;
+    const yaml_node_t *value;
+} reading_t;
+
+static bool wrong(const reading_t *reading, const char *reason) {
+    return report_at(reading->lines->path, reading->line, "%s: %s", reading->key, reason);
+}
+
+void config_class_key(agv_fault_t fault, char key[CONFIG_CLASS_KEY_SIZE]) {
+    (void)snprintf(key, CONFIG_CLASS_KEY_SIZE, "class_%s", agv_fault_name(fault));
+    for (char *at = key; *at != '\0'; at++) {
+        *at = (char)tolower((unsigned char)*at);
+    }
+}
+
+size_t config_word(const char *words, uint16_t index, const char **word) {
+    const char *at = words;
+    for (uint16_t i = 0u; i < index; i++) {
+        at += strcspn(at, "|");
+        at += (*at == '|') ? 1 : 0;
+    }
+    *word = at;
+    return strcspn(at, "|");
+}
+
+/** Read a number as YAML writes it: decimal, or hexadecimal with 0x. */
+static bool read_number(const char *text, uint64_t *number) {
+    if ((text[0] != '0') || (text[1] == '\0')) {
+        return options_number(text, 0u, UINT64_MAX, number);
+    }
+    static const char digits[] = "0123456789abcdef";
+    uint64_t value = 0u;
+    const char *at = &text[2];
+    for (; (*at != '\0') && ((size_t)(at - text) < 10u); at++) {
+        const char *digit = strchr(digits, tolower((unsigned char)*at));
+        if (digit == NULL) {
+            return false;
+        }
+        value = (value * HEX) + (uint64_t)(digit - digits);
+    }
+    *number = value;
+    return (text[1] == 'x') && (text[2] != '\0') && (*at == '\0');
+}
+
+static bool take_number(const reading_t *reading, uint16_t setting, const agv_setting_info_t *info) {
+    const char *text = yaml_node_plain(reading->value);
+    uint64_t number = 0u;
+    const char *blank = (info->unit[0] != '\0') ? " " : "";
+    if ((text == NULL) || !read_number(text, &number)) {
+        return report_at(reading->lines->path, reading->line, "%s: '%s' is no whole number; %u to %u%s%s", reading->key,
+                         yaml_node_text(reading->value), info->lowest, info->highest, blank, info->unit);
+    }
+    if ((number < info->lowest) || (number > info->highest)) {
+        return report_at(reading->lines->path, reading->line, "%s: %" PRIu64 " is not within %u to %u%s%s",
+                         reading->key, number, info->lowest, info->highest, blank, info->unit);
+    }
+    return agv_config_set(reading->config, setting, (uint16_t)number);
+}
+
+/** Read one of the words. @return its index; -1: reported. */
+static int take_word(const reading_t *reading, const char *words) {
+    const char *text = yaml_node_text(reading->value);
+    int index = options_word(words, text);
+    if ((index < 0) && (strcmp(words, SWITCH_WORDS) == 0)) {
+        index = options_word(SWITCH_BOOLEANS, text); /* how YAML writers put off and on */
+    }
+    if (index < 0) {
+        (void)report_at(reading->lines->path, reading->line, "%s: '%s' is none of %s", reading->key, text, words);
+    }
+    return index;
+}
+
+static bool note_line(const reading_t *reading, size_t *line) {
+    if (*line != 0u) {
+        return report_at(reading->lines->path, reading->line, "%s: stands on line %zu already", reading->key, *line);
+    }
+    *line = reading->line;
+    const char *text = yaml_node_text(reading->value);
+    if (text == NULL) {
+        return wrong(reading, (reading->value->type == YAML_SCALAR_NODE) ? "has a NUL character in it"
+                                                                         : "needs one value, not a list or a mapping");
+    }
+    return (text[0] != '\0') ? true : wrong(reading, "has no value");
+}
+
+static bool take_setting(const reading_t *reading, uint16_t setting) {
+    const agv_setting_info_t *info = agv_setting_info(setting);
+    if (!note_line(reading, &reading->lines->settings[setting])) {
+        return false;
+    }
+    if (info->words == NULL) {
+        return take_number(reading, setting, info);
+    }
+    int index = take_word(reading, info->words);
+    return (index >= 0) && agv_config_set(reading->config, setting, (uint16_t)index);
+}
+
+static bool take_class(const reading_t *reading, agv_fault_t fault) {
+    if (!note_line(reading, &reading->lines->classes[fault])) {
+        return false;
+    }
+    int index = take_word(reading, CLASS_WORDS);
+    if (index == CLASS_WORD_TRIP) {
+        agv_fault_set_put(&reading->config->trips, fault, true);
+    } else if (index == CLASS_WORD_WARN) {
+        agv_fault_set_put(&reading->config->trips, fault, false);
+    }
+    return index >= 0;
+}
+
+static bool take_pair(const reading_t *reading) {
+    for (uint16_t setting = 0u; setting < (uint16_t)AGV_SETTING_COUNT; setting++) {
+        if (strcmp(agv_setting_info(setting)->name, reading->key) == 0) {
+            return take_setting(reading, setting);
+        }
+    }
+    for (uint32_t fault = 0u; fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
+        char key[CONFIG_CLASS_KEY_SIZE];
+        config_class_key((agv_fault_t)fault, key);
+        if (strcmp(key, reading->key) == 0) {
+            return take_class(reading, (agv_fault_t)fault);
+        }
+    }
+    return wrong(reading, "no such setting");
+}
+
+bool config_read_mapping(yaml_document_t *document, const yaml_node_t *mapping, agv_config_t *config,
+                         config_lines_t *lines) {
+    if (mapping->type != YAML_MAPPING_NODE) {
+        return report_at(lines->path, yaml_node_line(mapping), "no settings: a line is 'setting: value'");
+    }
+    bool good = true;
+    for (const yaml_node_pair_t *pair = mapping->data.mapping.pairs.start;
+         good && (pair < mapping->data.mapping.pairs.top); pair++) {
+        const yaml_node_t *key = yaml_document_get_node(document, pair->key);
+        const reading_t reading = {.config = config,
+                                   .lines = lines,
+                                   .key = yaml_node_text(key),
+                                   .line = yaml_node_line(key),
+                                   .value = yaml_document_get_node(document, pair->value)};
+        good = (reading.key != NULL) ? take_pair(&reading)
+                                     : report_at(lines->path, reading.line, "the name of a setting is a word");
+    }
+    return good;
+}
+
+static bool take_root(yaml_document_t *document, agv_config_t *config, config_lines_t *lines) {
+    const yaml_node_t *root = yaml_document_get_root_node(document);
+    if (root == NULL) {
+        return true; /* nothing but comments: the defaults */
+    }
+    return config_read_mapping(document, root, config, lines);
+}
+
+bool config_file_load(const char *path, agv_config_t *config, config_lines_t *lines) {
+    (void)memset(lines, 0, sizeof *lines);
+    lines->path = path;
+    yaml_document_t document;
+    if (!yaml_file_load(path, &document)) {
+        return false;
+    }
+    bool good = take_root(&document, config, lines);
+    yaml_document_delete(&document);
+    return good;
+}
+
+static bool blame(const config_lines_t *lines, size_t line, const char *key, const char *reason) {
+    if ((lines->path == NULL) || (line == 0u)) {
+        return report("%s: %s", key, reason);
+    }
+    return report_at(lines->path, line, "%s: %s", key, reason);
+}
+
+/** The setting of the file that gives a message the identifier of another. */
+static bool blame_twice(const agv_config_t *config, const config_lines_t *lines, uint16_t setting) {
+    agv_ids_t ids;
+    agv_config_ids(config, &ids);
+    const bool is_status = setting == (uint16_t)AGV_SETTING_status_frame_id;
+    const uint16_t id = is_status ? config->status_frame_id : ids.of[setting - (uint16_t)AGV_SETTING_ID];
+    uint16_t blamed = setting;
+    for (uint16_t i = 0u; (lines->settings[blamed] == 0u) && (i < (uint16_t)AGV_MSG_COUNT); i++) {
+        blamed = (ids.of[i] == id) ? (uint16_t)((uint16_t)AGV_SETTING_ID + i) : blamed;
+    }
+    return blame(lines, lines->settings[blamed], agv_setting_info(blamed)->name, "another message has this identifier");
+}
+
+/** The setting of the file because of which no press would reset. */
+static bool blame_press(const config_lines_t *lines) {
+    const size_t longest = lines->settings[AGV_SETTING_reset_hold_max_ms];
+    const size_t shortest = lines->settings[AGV_SETTING_reset_hold_ms];
+    if ((longest == 0u) && (shortest != 0u)) {
+        return blame(lines, shortest, "reset_hold_ms", "must be below reset_hold_max_ms");
+    }
+    return blame(lines, longest, "reset_hold_max_ms", "must be above reset_hold_ms");
+}
+
+bool config_check(const agv_config_t *config, const config_lines_t *lines) {
+    const agv_config_verdict_t verdict = agv_config_check(config);
+    const agv_setting_info_t *info = agv_setting_info(verdict.setting);
+    const char *name = (info != NULL) ? info->name : "?";
+    size_t line = (info != NULL) ? lines->settings[verdict.setting] : 0u;
+    char key[CONFIG_CLASS_KEY_SIZE];
+    switch (verdict.problem) {
+    case AGV_CONFIG_OK:
+        return true;
+    case AGV_CONFIG_OUT_OF_RANGE:
+        return blame(lines, line, name, "the value is out of range");
+    case AGV_CONFIG_ID_TWICE:
+        return blame_twice(config, lines, verdict.setting);
+    case AGV_CONFIG_NEEDS_GATEWAY:
+        return blame(lines, line, name, "has no effect on a shared bus; this value needs the gateway topology");
+    case AGV_CONFIG_PRESS_TOO_SHORT:
+        return blame_press(lines);
+    case AGV_CONFIG_FAULT_TOO_WEAK:
+        config_class_key(verdict.fault, key);
+        return blame(lines, lines->classes[verdict.fault], key, "this fault must stay a trip");
+    case AGV_CONFIG_NO_SUCH_FAULT:
+    default:
+        return report("the configuration makes no sense");
+    }
+}

@@ -1,0 +1,159 @@
+#include "config/config_text.h"
+
+#include <ctype.h>
+#include <inttypes.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "agv/names.h"
+#include "config/config_file.h"
+
+enum { TEXT_SIZE = 96 };
+
+/** Identifiers are written in hexadecimal. */
+static bool is_identifier(const agv_setting_info_t *info) {
+    return (strncmp(info->name, "id_", 3u) == 0 && (info->words == NULL)) ||
+           (strcmp(info->name, "status_frame_id") == 0);
+}
+
+/** The value of a setting as it stands in a file. */
+static void value_text(const agv_setting_info_t *info, uint16_t value, char text[TEXT_SIZE]) {
+    if (is_identifier(info)) {
+        (void)snprintf(text, TEXT_SIZE, "0x%03X", value);
+    } else if (info->words == NULL) {
+        (void)snprintf(text, TEXT_SIZE, "%u", value);
+    } else {
+        const char *word = NULL;
+        size_t length = config_word(info->words, value, &word);
+        (void)snprintf(text, TEXT_SIZE, "%.*s", (int)length, word);
+    }
+}
+
+static const char *class_word(const agv_config_t *config, agv_fault_t fault) {
+    return agv_class_name(agv_config_is_trip(config, fault) ? AGV_CLASS_TRIP : AGV_CLASS_WARN);
+}
+
+static const char *default_word(agv_fault_t fault) {
+    return agv_class_name(agv_fault_default_class(fault));
+}
+
+/** Whether the class of a fault may be chosen at all. */
+static bool may_be_chosen(agv_fault_t fault) {
+    return (agv_fault_flags(fault) & AGV_FAULT_FLAG_FIXED) == 0u;
+}
+
+/** Which values weaken the supervision. */
+static const char *weakens_text(const agv_setting_info_t *info) {
+    static const struct {
+        const char *weakens;
+        const char *text;
+    } texts[] = {{"ABOVE", "; more weakens"},
+                 {"BELOW", "; less weakens"},
+                 {"ZERO", "; 0 weakens"},
+                 {"CHOSEN", "; the second weakens"}};
+    for (size_t i = 0u; i < sizeof texts / sizeof texts[0]; i++) {
+        if (strcmp(info->weakens, texts[i].weakens) == 0) {
+            return texts[i].text;
+        }
+    }
+    return "";
+}
+
+void config_print_yaml(const agv_config_t *config) {
+    (void)printf("# Configuration of the supervisor: every setting with its meaning, range and default.\n"
+                 "# Checksum: %08" PRIX32 "\n",
+                 agv_config_checksum(config));
+    for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
+        const agv_setting_info_t *info = agv_setting_info(i);
+        char preset[TEXT_SIZE];
+        char value[TEXT_SIZE];
+        value_text(info, info->preset, preset);
+        value_text(info, agv_config_get(config, i), value);
+        (void)printf("\n# %s\n", info->meaning);
+        if (info->words == NULL) {
+            (void)printf("# %u to %u%s%s, default %s", info->lowest, info->highest, (info->unit[0] != '\0') ? " " : "",
+                         info->unit, preset);
+        } else {
+            (void)printf("# %s, default %s", info->words, preset);
+        }
+        (void)printf("%s%s\n", weakens_text(info), info->gateway_only ? "; gateway only" : "");
+        (void)printf("%s: %s\n", info->name, value);
+    }
+    (void)printf(
+        "\n# What each fault does: trip|warn. A warning may be made a trip; a trip that must stay one says so.\n");
+    for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
+        const agv_fault_t fault = (agv_fault_t)i;
+        char key[CONFIG_CLASS_KEY_SIZE];
+        config_class_key(fault, key);
+        (void)printf("%s: %s  # default %s%s\n", key, class_word(config, fault), default_word(fault),
+                     may_be_chosen(fault) ? "" : ", must stay");
+    }
+}
+
+static void print_upper(const char *text) {
+    for (const char *at = text; *at != '\0'; at++) {
+        (void)putchar(toupper((unsigned char)*at));
+    }
+}
+
+void config_print_kconfig(const agv_config_t *config) {
+    (void)printf("# Configuration of the supervisor, for the firmware.\n"
+                 "# Checksum: %08" PRIX32 "\n",
+                 agv_config_checksum(config));
+    for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
+        const agv_setting_info_t *info = agv_setting_info(i);
+        char value[TEXT_SIZE];
+        value_text(info, agv_config_get(config, i), value);
+        (void)printf("CONFIG_AGV_");
+        print_upper(info->name);
+        if (info->words == NULL) {
+            (void)printf("=%s\n", value);
+        } else {
+            (void)putchar('_');
+            print_upper(value);
+            (void)printf("=y\n");
+        }
+    }
+    for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
+        const agv_fault_t fault = (agv_fault_t)i;
+        if (may_be_chosen(fault)) {
+            (void)printf("CONFIG_AGV_CLASS_%s_", agv_fault_name(fault));
+            print_upper(class_word(config, fault));
+            (void)printf("=y\n");
+        }
+    }
+}
+
+/** Begin or go on with the line of deviations. */
+static void print_deviation(bool *any, const char *key, const char *value, const char *preset, bool weakens) {
+    (void)fprintf(stderr, "%s%s: %s (default %s%s)", *any ? ", " : "host_sim: not the default: ", key, value, preset,
+                  weakens ? ", WEAKER" : "");
+    *any = true;
+}
+
+void config_note_deviations(const agv_config_t *config) {
+    bool any = false;
+    for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
+        const agv_setting_info_t *info = agv_setting_info(i);
+        if (agv_config_get(config, i) != info->preset) {
+            char preset[TEXT_SIZE];
+            char value[TEXT_SIZE];
+            value_text(info, info->preset, preset);
+            value_text(info, agv_config_get(config, i), value);
+            print_deviation(&any, info->name, value, preset, agv_config_weakens(config, i));
+        }
+    }
+    for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
+        const agv_fault_t fault = (agv_fault_t)i;
+        if (agv_config_is_trip(config, fault) != (agv_fault_default_class(fault) == AGV_CLASS_TRIP)) {
+            char key[CONFIG_CLASS_KEY_SIZE];
+            config_class_key(fault, key);
+            print_deviation(&any, key, class_word(config, fault), default_word(fault),
+                            !agv_config_is_trip(config, fault));
+        }
+    }
+    if (any) {
+        (void)fputc('\n', stderr);
+    }
+}

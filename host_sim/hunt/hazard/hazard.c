@@ -1,0 +1,190 @@
+#include "hunt/hazard/hazard.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "agv/names.h"
+
+enum { US_PER_MS = 1000, CENTRE_DDEG = 9000, MDDEG_PER_DDEG = 1000 };
+
+const hazard_info_t *hazard_info(hazard_kind_t kind) {
+    static const hazard_info_t rows[HAZARD_KINDS] = {
+        [HAZARD_NONE] = {"none", "no hazard", ""},
+        [HAZARD_NOT_STOPPING] = {"H1",
+                                 "the vehicle moves on with the safety output closed: a node or a command is gone, or "
+                                 "the vehicle does not obey the safe commands",
+                                 "the safe commands, and an open safety output when the vehicle does not stop"},
+        [HAZARD_STEERING] = {"H2",
+                             "065h of the supervisor moves the steering more than 5 degrees away from the angle that "
+                             "was measured at the trip or when manual ended",
+                             "065h carries the measured angle, or is not sent"},
+        [HAZARD_FALSE_COMMAND] = {"H3",
+                                  "a command to move on the vehicle side of a gateway that the AI computer did not "
+                                  "send, or not recently",
+                                  "such a command is never sent; one of a foreign sender is followed by the safe "
+                                  "commands"},
+        [HAZARD_UNCONFIRMED] = {"H4",
+                                "the safety output stays closed though the safe state is not confirmed for longer "
+                                "than the time allowed in all",
+                                "the safety output opens"},
+        [HAZARD_RESET] = {"H5", "a reset that no operator asked for by pressing and releasing button 1 after the trip",
+                          "the safe commands go on"},
+        [HAZARD_FALSE_NODE] = {"H6",
+                               "the vehicle moves on with the safety output closed though a node reports a fault or "
+                               "what cannot be",
+                               "the safe commands, or an open safety output"},
+        [HAZARD_FLOOD] = {"H7", "more than twice the nominal rate of commands passes the gateway",
+                          "what is too much is dropped"},
+    };
+    return &rows[kind];
+}
+
+void hazard_found(hazard_t *hazard, hazard_kind_t kind, const char *cause) {
+    if (hazard->kind == HAZARD_NONE) {
+        hazard->kind = kind;
+        hazard->cause = cause;
+        hazard->at_ms = hazard->t_ms;
+    }
+}
+
+uint32_t hazard_setting(const hazard_t *hazard, const char *name, uint32_t preset) {
+    for (uint16_t i = 0u; i < AGV_SETTING_COUNT; i++) {
+        if (strcmp(agv_setting_info(i)->name, name) == 0) {
+            return agv_config_get(&hazard->scenario->config, i);
+        }
+    }
+    return preset;
+}
+
+bool hazard_is_safe_now(const hazard_t *hazard, uint32_t within_ms) {
+    return (hazard->trip.last_ms != 0u) && (hazard->t_ms - hazard->trip.last_ms <= within_ms);
+}
+
+int32_t hazard_speed_mm_s(const hazard_t *hazard) {
+    return abs(hazard->world->vehicle.body.speed_um_s) / US_PER_MS;
+}
+
+int32_t hazard_angle_ddeg(const hazard_t *hazard) {
+    return hazard->world->vehicle.eps.angle_mddeg / MDDEG_PER_DDEG;
+}
+
+int32_t hazard_measured_ddeg(const hazard_t *hazard) {
+    const uint8_t *data = hazard->messages[AGV_MSG_STEERING_STATUS].valid;
+    return (int32_t)(data[2] | ((uint32_t)data[3] << 8u)) - CENTRE_DDEG;
+}
+
+static void read_limits(hazard_t *hazard) {
+    hazard_limits_t *limits = &hazard->limits;
+
+    limits->confirm_ms = hazard_setting(hazard, "confirm_timeout_ms", 500u);
+    limits->park_confirm_ms = hazard_setting(hazard, "park_confirm_timeout_ms", limits->confirm_ms);
+    limits->stop_ms = hazard_setting(hazard, "stop_timeout_ms", 5000u);
+    limits->vcu_ms = hazard_setting(hazard, "vcu_heartbeat_timeout_ms", 50u);
+    limits->tx_stalled_ms = hazard_setting(hazard, "tx_stalled_ms", 100u);
+    limits->mode_invalid_ms = hazard_setting(hazard, "mode_invalid_ms", 50u);
+    limits->gear_status_ms = hazard_setting(hazard, "gear_status_timeout_ms", 125u);
+    limits->command_ms[AGV_MSG_GEAR_COMMAND] = hazard_setting(hazard, "gear_command_timeout_ms", 350u);
+    limits->command_ms[AGV_MSG_THROTTLE_COMMAND] = hazard_setting(hazard, "throttle_command_timeout_ms", 350u);
+    limits->command_ms[AGV_MSG_STEERING_COMMAND] = hazard_setting(hazard, "steering_command_timeout_ms", 125u);
+    limits->command_too_fast_gaps = hazard_setting(hazard, "command_too_fast_gaps", 10u);
+    limits->steering_deviation_ddeg = hazard_setting(hazard, "steering_deviation_ddeg", 500u);
+    limits->steering_deviation_ms = hazard_setting(hazard, "steering_deviation_ms", 500u);
+    limits->steering_gain_ddeg = (int32_t)hazard_setting(hazard, "steering_gain_ddeg", 250u);
+    limits->throttle_deviation_counts = hazard_setting(hazard, "throttle_deviation_counts", 25u);
+    limits->limits_steering = (hazard_setting(hazard, "steering_slew_ddeg_s", 0u) != 0u) ||
+                              (hazard_setting(hazard, "steering_fast_max_ddeg", 0u) != 0u);
+}
+
+void hazard_init(hazard_t *hazard, const scenario_t *scenario, scenario_world_t *world) {
+    memset(hazard, 0, sizeof *hazard);
+    hazard->scenario = scenario;
+    hazard->world = world;
+    hazard->gateway = scenario->vehicle.gateway;
+    read_limits(hazard);
+    hazard_rows_init(hazard);
+}
+
+/** A command of the supervisor on the vehicle side: one of its own, or one that it passes on. */
+static void on_own_command(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
+    hazard_safe_frame(hazard, message, frame);
+    if (hazard->gateway) {
+        hazard_passed(hazard, message, frame);
+    }
+    if ((message == AGV_MSG_STEERING_COMMAND) && (!hazard->gateway || hazard->trip.tripped)) {
+        hazard_hold_frame(hazard, frame);
+    }
+}
+
+/** A command on the vehicle side of a gateway that is not the supervisor's. */
+static void on_foreign_command(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
+    const uint8_t value = (frame->length > 0u) ? frame->data[0] : 0u;
+    const bool moves = ((message == AGV_MSG_GEAR_COMMAND) && (value != (uint8_t)AGV_GEAR_P)) ||
+                       ((message == AGV_MSG_THROTTLE_COMMAND) && (value > 0u)) || (message == AGV_MSG_STEERING_COMMAND);
+    hal_can_status_t status;
+
+    hal_can_status(&hazard->world->hal, HAL_CAN_VEHICLE, &status);
+    const bool heard = status.state == HAL_CAN_ERROR_ACTIVE; /* after a collision it may miss one */
+    if (moves && heard && hazard->closed && !hazard->trip.tripped && (hazard->foreign_ms == 0u)) {
+        hazard->foreign_ms = hazard->t_ms;
+    }
+}
+
+/** A data frame of the protocol, of any length and in any format. */
+static void on_data(hazard_t *hazard, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
+    const agv_message_t message = (agv_message_t)agv_ids_find(&hazard->scenario->vehicle.ids, frame->id);
+    const bool is_command = (uint32_t)message < AGV_COMMAND_COUNT;
+
+    if ((message == AGV_MSG_NONE) || ((frame->flags & (uint8_t)~HAL_CAN_FD) != 0u)) {
+        return;
+    }
+    if (from == (int)SCENARIO_FROM_SUPERVISOR) {
+        if (is_command && (side == HAL_CAN_VEHICLE)) {
+            on_own_command(hazard, message, frame);
+        }
+    } else if (!is_command) {
+        if (side == HAL_CAN_VEHICLE) {
+            hazard_wire_status(hazard, message, frame);
+        }
+    } else if (hazard->gateway && (side == HAL_CAN_VEHICLE)) {
+        on_foreign_command(hazard, message, frame);
+    } else {
+        hazard_wire_command(hazard, message, frame);
+    }
+}
+
+static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
+    hazard_t *hazard = ctx;
+
+    hazard->t_us = t_us;
+    hazard->t_ms = hazard->world->t_ms; /* a frame that ends with the millisecond belongs to it */
+    on_data(hazard, side, from, frame);
+}
+
+scenario_watch_t hazard_watch(hazard_t *hazard) {
+    return (scenario_watch_t){.on_frame = on_frame, .ctx = hazard};
+}
+
+void hazard_step(hazard_t *hazard, uint64_t t_ms, const scenario_step_t *step) {
+    const bool is_delivered = !step->of_vehicle && (step->supervisor.what == SCENARIO_DELIVER);
+    const bool is_fd =
+        step->of_vehicle && (step->vehicle.what == VEHICLE_DO_SEND) && ((step->vehicle.frame.flags & HAL_CAN_FD) != 0u);
+
+    hazard->t_ms = t_ms;
+    hazard->t_us = t_ms * US_PER_MS;
+    if (is_delivered) {
+        on_data(hazard, step->supervisor.side, VEHICLE_STRANGER, &step->supervisor.frame);
+    } else if (is_fd) {
+        on_data(hazard, step->vehicle.side, VEHICLE_STRANGER, &step->vehicle.frame);
+    } else {
+        /* the wire shows it */
+    }
+}
+
+void hazard_tick(hazard_t *hazard, uint64_t t_ms) {
+    hazard->t_ms = t_ms;
+    hazard->closed = hazard->world->hal.safety_output.on;
+    hazard_safe_tick(hazard);
+    hazard_hold_tick(hazard);
+    hazard_passed_tick(hazard);
+    hazard_rows_tick(hazard);
+}

@@ -1,0 +1,225 @@
+/**
+ * @file hazard.h
+ * Judges whether a run put the vehicle into a hazard. It goes by what the simulated vehicle does, by the frames on the wire, by
+ * the safety output and by the buttons of the simulated operator. It asks the supervisor nothing.
+ *
+ * Every limit is that of the supervisor's row (from the settings of the run) and a second and a half more: what is reported is
+ * a hazard, not a late reaction. docs/hunt.md says what each hazard is.
+ */
+#ifndef HOST_SIM_HAZARD_H
+#define HOST_SIM_HAZARD_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "scenario/scenario.h"
+#include "scenario/scenario_world.h"
+
+/** What kind of hazard. */
+typedef enum {
+    HAZARD_NONE,
+    HAZARD_NOT_STOPPING,  /**< H1 */
+    HAZARD_STEERING,      /**< H2 */
+    HAZARD_FALSE_COMMAND, /**< H3 */
+    HAZARD_UNCONFIRMED,   /**< H4 */
+    HAZARD_RESET,         /**< H5 */
+    HAZARD_FALSE_NODE,    /**< H6 */
+    HAZARD_FLOOD,         /**< H7 */
+    HAZARD_KINDS
+} hazard_kind_t;
+
+/** A kind, for people. */
+typedef struct {
+    const char *name;    /**< "H1" */
+    const char *meaning; /**< one line */
+    const char *safe;    /**< what a safe supervisor does instead, one line */
+} hazard_info_t;
+
+const hazard_info_t *hazard_info(hazard_kind_t kind);
+
+enum {
+    HAZARD_ROWS_MAX = 48,
+    HAZARD_SCORES_MAX = 5,
+    HAZARD_RECENT = 256,
+    HAZARD_SPEEDS = 11,
+    HAZARD_ANGLES = 64,
+    HAZARD_FLOOD_SLOTS = 10
+};
+
+/** A message as it was on the wire: commands where the AI computer sends them, status on the vehicle side. */
+typedef struct {
+    bool has;
+    bool has_valid;
+    uint64_t seen_ms;    /**< last well-formed frame */
+    uint64_t changed_ms; /**< its alive counter changed */
+    uint64_t seen_us;
+    uint64_t valid_ms; /**< last frame with a usable value */
+    uint8_t data[AGV_DLC];
+    uint8_t valid[AGV_DLC];
+    int32_t fast; /**< gaps that were too short, less those that were not */
+} hazard_message_t;
+
+/** Values of one command that the AI side carried lately. */
+typedef struct {
+    uint64_t at_ms[HAZARD_RECENT];
+    uint16_t value[HAZARD_RECENT];
+    uint32_t next;
+} hazard_recent_t;
+
+/** Settings of the run that limits are made of. */
+typedef struct {
+    uint32_t confirm_ms;
+    uint32_t park_confirm_ms;
+    uint32_t stop_ms;
+    uint32_t vcu_ms;
+    uint32_t tx_stalled_ms;
+    uint32_t mode_invalid_ms;
+    uint32_t gear_status_ms;
+    uint32_t command_ms[AGV_COMMAND_COUNT];
+    uint32_t command_too_fast_gaps;
+    uint32_t steering_deviation_ddeg;
+    uint32_t steering_deviation_ms;
+    int32_t steering_gain_ddeg;
+    uint32_t throttle_deviation_counts;
+    bool limits_steering;
+} hazard_limits_t;
+
+/** The mode as 363h reports it. */
+typedef struct {
+    bool autopilot; /**< bit 8 in the last one */
+    bool manual;    /**< bit 7 and not bit 8 */
+    bool both;
+    uint64_t clear_ms;    /**< since when bit 8 is clear */
+    uint64_t handback_ms; /**< when manual ended last */
+    uint64_t manual_ms;   /**< last 363h that reported manual */
+} hazard_mode_t;
+
+/** The supervisor's own safe commands, as the wire shows them. */
+typedef struct {
+    bool ready;        /**< the safety output was closed, with no safe commands */
+    bool tripped;      /**< they came since */
+    bool parks;        /**< the first 168h P */
+    uint64_t first_ms; /**< of the first since then */
+    uint64_t last_ms;  /**< of the last 43Fh with the whole safe payload */
+    bool pressed;      /**< the operator pressed button 1 since the first */
+    bool released;     /**< and released it */
+    bool button;
+    bool was_closed;
+    uint64_t press_ms;
+    uint64_t closed_ms;    /**< the safety output was closed */
+    uint32_t unparked_ms;  /**< sum of the time in which P was not confirmed */
+    uint32_t engaged_ms;   /**< the same of the autopilot that is off */
+    uint32_t confirmed_ms; /**< both, without a break */
+} hazard_trip_t;
+
+/** Angles that may be held: from the one to the other, and a little more. */
+typedef struct {
+    int32_t low_ddeg;
+    int32_t high_ddeg;
+} hazard_range_t;
+
+/** 065h of the supervisor. */
+typedef struct {
+    uint64_t last_ms;
+    uint16_t value;         /**< that it carried last */
+    int32_t start_ddeg;     /**< where the steering really was when this angle was wrong first */
+    hazard_range_t now;     /**< real and lately measured angles then */
+    hazard_range_t at_trip; /**< the same at the trip */
+    bool has_trip;
+    bool is_dropped; /**< manual was reported since */
+    uint64_t dropped_ms;
+    hazard_range_t first; /**< the first measured angles after the trip, or after manual ended */
+    uint64_t first_ms;    /**< when the first of them came */
+    bool has_first;
+    int32_t wrong_ddeg; /**< commanded, and none of these */
+    bool is_wrong;
+    int32_t measured_ddeg[HAZARD_ANGLES]; /**< the last ones */
+    uint64_t measured_ms[HAZARD_ANGLES];
+    uint32_t measured_count;
+} hazard_hold_t;
+
+/** A judgement in the making. Read `kind`, `cause`, `at_ms` and `closeness`. */
+typedef struct {
+    hazard_kind_t kind; /**< the first hazard; HAZARD_NONE */
+    const char *cause;  /**< which of its conditions */
+    uint64_t at_ms;
+    uint8_t closeness[HAZARD_ROWS_MAX]; /**< the most that each condition came to: sixteenths of its limit */
+
+    const scenario_t *scenario;
+    scenario_world_t *world; /**< only read */
+    hazard_limits_t limits;
+    bool gateway;
+    uint64_t t_us;
+    uint64_t t_ms;
+    bool closed;
+    hazard_message_t messages[AGV_MSG_COUNT];
+    hazard_recent_t recent[AGV_COMMAND_COUNT];
+    uint16_t told[AGV_COMMAND_COUNT]; /**< what the vehicle was told last: value */
+    bool is_told[AGV_COMMAND_COUNT];  /**< in this engagement */
+    uint16_t throttle_high;           /**< 050h: the value from which it has to come down */
+    uint64_t throttle_high_ms;
+    hazard_mode_t mode;
+    hazard_trip_t trip;
+    hazard_hold_t hold;
+    uint64_t bad_command_ms; /**< the last AI command that is none */
+    bool has_bad_command;
+    uint64_t foreign_ms;  /**< first foreign command on the vehicle side that was not answered; 0: none */
+    uint64_t false_ms;    /**< first 065h on the vehicle side that nobody sent; 0: none */
+    uint64_t throttle_ms; /**< last 075h above 0 on the vehicle side; newest one there */
+    bool throttle_is_newest;
+    uint64_t asked_off_ms; /**< since when the AI computer asks for autopilot off; 0: it does not */
+    int32_t speeds_mm_s[HAZARD_SPEEDS];
+    uint32_t speed_at;
+    uint32_t passed[HAZARD_FLOOD_SLOTS];
+    uint32_t passed_at;
+    uint64_t rolling_since_ms;
+    int32_t still_at_ddeg; /**< 067h: the last angle */
+    int32_t moved_ddeg;    /**< 067h: way to and fro, since */
+    uint64_t still_since_ms;
+    uint8_t score_rows[AGV_MSG_COUNT][HAZARD_SCORES_MAX]; /**< rows that a message has a score for */
+    uint8_t score_counts[AGV_MSG_COUNT];
+    int32_t scores[HAZARD_ROWS_MAX];
+    int32_t budgets_ms[HAZARD_ROWS_MAX];
+    uint32_t limits_ms[HAZARD_ROWS_MAX];
+    uint32_t thresholds[HAZARD_ROWS_MAX];
+    bool off[HAZARD_ROWS_MAX]; /**< its fault only warns */
+} hazard_t;
+
+/** Begin. @param world must be built of @p scenario; both must outlive the judgement */
+void hazard_init(hazard_t *hazard, const scenario_t *scenario, scenario_world_t *world);
+
+/** Who has to see the frames. */
+scenario_watch_t hazard_watch(hazard_t *hazard);
+
+/** A step was done: frames that pass the wire by are seen here. */
+void hazard_step(hazard_t *hazard, uint64_t t_ms, const scenario_step_t *step);
+
+/** At the end of every millisecond. */
+void hazard_tick(hazard_t *hazard, uint64_t t_ms);
+
+/** @name Private: the parts. @{ */
+void hazard_found(hazard_t *hazard, hazard_kind_t kind, const char *cause);
+uint32_t hazard_setting(const hazard_t *hazard, const char *name, uint32_t preset);
+bool hazard_is_safe_now(const hazard_t *hazard, uint32_t within_ms);
+int32_t hazard_speed_mm_s(const hazard_t *hazard);
+int32_t hazard_angle_ddeg(const hazard_t *hazard);
+int32_t hazard_measured_ddeg(const hazard_t *hazard);
+void hazard_rows_init(hazard_t *hazard);
+void hazard_rows_frame(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV_DLC]);
+void hazard_rows_tick(hazard_t *hazard);
+void hazard_wire_status(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame);
+void hazard_wire_command(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame);
+bool hazard_was_sent(const hazard_t *hazard, agv_message_t message, uint16_t value);
+void hazard_passed(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame);
+void hazard_passed_tick(hazard_t *hazard);
+void hazard_safe_frame(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame);
+void hazard_safe_tick(hazard_t *hazard);
+void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame);
+void hazard_hold_tick(hazard_t *hazard);
+void hazard_hold_measured(hazard_t *hazard, int32_t angle_ddeg);
+void hazard_hold_trip(hazard_t *hazard);
+void hazard_hold_manual(hazard_t *hazard);
+/** @} */
+
+#endif

@@ -1,0 +1,130 @@
+/* Steering held by the supervisor: it must not move (H2). */
+#include <stdlib.h>
+
+#include "hunt/hazard/hazard.h"
+
+enum { NEW_HOLD_MS = 300, FRESH_MS = 150, IN_FLIGHT_MS = 20, TOLERANCE_DDEG = 50, CENTRE_DDEG = 9000 };
+
+static bool is_near(int32_t a_ddeg, int32_t b_ddeg) {
+    return abs(a_ddeg - b_ddeg) <= TOLERANCE_DDEG;
+}
+
+static bool is_within(const hazard_range_t *range, int32_t ddeg) {
+    return (ddeg >= range->low_ddeg - TOLERANCE_DDEG) && (ddeg <= range->high_ddeg + TOLERANCE_DDEG);
+}
+
+static void widen(hazard_range_t *range, int32_t ddeg) {
+    range->low_ddeg = (ddeg < range->low_ddeg) ? ddeg : range->low_ddeg;
+    range->high_ddeg = (ddeg > range->high_ddeg) ? ddeg : range->high_ddeg;
+}
+
+void hazard_hold_measured(hazard_t *hazard, int32_t angle_ddeg) {
+    hazard_hold_t *hold = &hazard->hold;
+    const uint32_t at = hold->measured_count % HAZARD_ANGLES;
+
+    hold->measured_ddeg[at] = angle_ddeg;
+    hold->measured_ms[at] = hazard->t_ms;
+    hold->measured_count++;
+    if (!hold->has_first) {
+        hold->has_first = true;
+        hold->first = (hazard_range_t){angle_ddeg, angle_ddeg};
+        hold->first_ms = hazard->t_ms;
+    }
+    /* Both mode bits: manual may end as late as they become MODE_INVALID. */
+    if (hazard->t_ms - hold->first_ms <= (uint64_t)hazard->limits.mode_invalid_ms + FRESH_MS) {
+        widen(&hold->first, angle_ddeg);
+    }
+}
+
+/** The real angle, and those that 067h lately carried. */
+static hazard_range_t range_now(const hazard_t *hazard, uint32_t within_ms) {
+    const hazard_hold_t *hold = &hazard->hold;
+    hazard_range_t range = {hazard_angle_ddeg(hazard), hazard_angle_ddeg(hazard)};
+
+    for (uint32_t i = 0u; (i < HAZARD_ANGLES) && (i < hold->measured_count); i++) {
+        if (hazard->t_ms - hold->measured_ms[i] <= within_ms) {
+            widen(&range, hold->measured_ddeg[i]);
+        }
+    }
+    return range;
+}
+
+void hazard_hold_trip(hazard_t *hazard) {
+    /* An open output without a safe command: the trip came when the first frame did not leave. */
+    const uint32_t within_ms = (uint32_t)FRESH_MS + (hazard->closed ? 0u : hazard->limits.tx_stalled_ms);
+
+    hazard->hold.at_trip = range_now(hazard, within_ms);
+    hazard->hold.has_trip = true;
+    hazard->hold.is_dropped = false;
+    hazard->hold.has_first = false;
+}
+
+void hazard_hold_manual(hazard_t *hazard) {
+    hazard_hold_t *hold = &hazard->hold;
+
+    if (hold->has_trip && !hold->is_dropped) {
+        hold->is_dropped = true;
+        hold->dropped_ms = hazard->t_ms;
+    }
+}
+
+/** Manual drops the angle of the trip; a frame that was in the controller then may still leave. */
+static bool is_of_trip(const hazard_t *hazard, int32_t held_ddeg) {
+    const hazard_hold_t *hold = &hazard->hold;
+
+    return hold->has_trip && (!hold->is_dropped || (hazard->t_ms - hold->dropped_ms <= IN_FLIGHT_MS)) &&
+           is_within(&hold->at_trip, held_ddeg);
+}
+
+/** Whether the angle is one that may be held. */
+static bool may_be_held(const hazard_t *hazard, int32_t held_ddeg) {
+    const hazard_hold_t *hold = &hazard->hold;
+
+    return is_within(&hold->now, held_ddeg) || is_of_trip(hazard, held_ddeg) ||
+           (hold->has_first && is_within(&hold->first, held_ddeg));
+}
+
+/** Passed on for the AI computer: after a reset the safe commands may have ended already. */
+static bool is_passed_on(const hazard_t *hazard, uint16_t value) {
+    const bool is_limited = hazard->limits.limits_steering && hazard->trip.released && hazard->mode.autopilot;
+
+    return hazard->gateway && (is_limited || hazard_was_sent(hazard, AGV_MSG_STEERING_COMMAND, value));
+}
+
+void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame) {
+    hazard_hold_t *hold = &hazard->hold;
+    const uint16_t value = (uint16_t)(frame->data[0] | ((uint32_t)frame->data[1] << 8u));
+    const int32_t held_ddeg = (int32_t)value - CENTRE_DDEG;
+
+    if (is_passed_on(hazard, value)) {
+        return;
+    }
+    if ((hold->last_ms == 0u) || (hazard->t_ms - hold->last_ms > NEW_HOLD_MS) || (value != hold->value) ||
+        (hold->last_ms < hazard->mode.handback_ms)) {
+        hold->now = range_now(hazard, FRESH_MS);
+        hold->is_wrong = false;
+    }
+    hold->last_ms = hazard->t_ms;
+    hold->value = value;
+    if (!may_be_held(hazard, held_ddeg)) {
+        if (!hold->is_wrong) {
+            hold->start_ddeg = hazard_angle_ddeg(hazard); /* what a right angle moved before does not count */
+        }
+        hold->is_wrong = true;
+        hold->wrong_ddeg = held_ddeg;
+    }
+}
+
+/** The steering went where the supervisor had it go. */
+void hazard_hold_tick(hazard_t *hazard) {
+    const hazard_hold_t *hold = &hazard->hold;
+
+    if (!hold->is_wrong || (hazard->t_ms - hold->last_ms > NEW_HOLD_MS)) {
+        return;
+    }
+    const int32_t now_ddeg = hazard_angle_ddeg(hazard);
+    const bool closer = abs(now_ddeg - hold->wrong_ddeg) < abs(hold->start_ddeg - hold->wrong_ddeg);
+    if (closer && !is_near(now_ddeg, hold->start_ddeg)) {
+        hazard_found(hazard, HAZARD_STEERING, "the supervisor steers to another angle");
+    }
+}

@@ -1,0 +1,92 @@
+/* Gateway: commands that the supervisor lets through, and those of foreign senders (H3, H7). */
+#include "hunt/hazard/hazard.h"
+
+enum { MARGIN_MS = 100, IN_FLIGHT_MS = 60, ANSWER_MS = 200, SLOT_MS = 100, SAFE_MS = 300, DROP_RATE = 2 };
+enum { NOMINAL_PER_S = 10 + 10 + 10 + 40, SPARE_PER_S = 8 };
+
+/** Whether the AI side carried this value (of a throttle: this or a higher one) lately. */
+bool hazard_was_sent(const hazard_t *hazard, agv_message_t message, uint16_t value) {
+    const hazard_recent_t *recent = &hazard->recent[message];
+    const uint32_t count = (recent->next < HAZARD_RECENT) ? recent->next : (uint32_t)HAZARD_RECENT;
+    const uint64_t within_ms = (uint64_t)hazard->limits.command_ms[message] + MARGIN_MS;
+
+    for (uint32_t i = 1u; i <= count; i++) {
+        const uint32_t at = (recent->next - i) % HAZARD_RECENT;
+        if (hazard->t_ms - recent->at_ms[at] > within_ms) {
+            return false;
+        }
+        if ((recent->value[at] == value) || ((message == AGV_MSG_THROTTLE_COMMAND) && (recent->value[at] > value))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static uint16_t value_of(agv_message_t message, const hal_can_frame_t *frame) {
+    return (message == AGV_MSG_STEERING_COMMAND) ? (uint16_t)(frame->data[0] | ((uint32_t)frame->data[1] << 8u))
+                                                 : frame->data[0];
+}
+
+static bool is_motion(agv_message_t message, uint16_t value) {
+    return ((message == AGV_MSG_GEAR_COMMAND) && (value != (uint16_t)AGV_GEAR_P)) ||
+           ((message == AGV_MSG_THROTTLE_COMMAND) && (value != 0u)) || (message == AGV_MSG_STEERING_COMMAND);
+}
+
+void hazard_passed(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
+    const uint16_t value = value_of(message, frame);
+
+    if (!hazard_is_safe_now(hazard, SAFE_MS)) {
+        hazard->passed[hazard->passed_at]++;
+    }
+    if (message == AGV_MSG_TURN_SIGNAL_COMMAND) {
+        return;
+    }
+    hazard->told[message] = value;
+    hazard->is_told[message] = true;
+    if (message == AGV_MSG_THROTTLE_COMMAND) {
+        hazard->throttle_is_newest = value != 0u;
+        hazard->throttle_ms = hazard->t_ms;
+    }
+    const bool is_hold =
+        (message == AGV_MSG_STEERING_COMMAND) &&
+        (hazard->trip.tripped || hazard_is_safe_now(hazard, SAFE_MS) || hazard->limits.limits_steering);
+    if (is_motion(message, value) && !is_hold && !hazard_was_sent(hazard, message, value) && (hazard->false_ms == 0u)) {
+        hazard->false_ms = hazard->t_ms; /* 065h of a hold leaves before the other safe commands */
+    }
+}
+
+/** Something came at @p since_ms that the safe commands have to follow. @return whether they do not */
+static bool is_unanswered(const hazard_t *hazard, uint64_t *since_ms, uint32_t within_ms) {
+    if (*since_ms == 0u) {
+        return false;
+    }
+    if (!hazard->closed || (hazard->trip.last_ms >= *since_ms)) {
+        *since_ms = 0u;
+        return false;
+    }
+    return hazard->t_ms - *since_ms > within_ms;
+}
+
+void hazard_passed_tick(hazard_t *hazard) {
+    if (!hazard->gateway) {
+        return;
+    }
+    if (is_unanswered(hazard, &hazard->foreign_ms, ANSWER_MS)) {
+        hazard_found(hazard, HAZARD_FALSE_COMMAND, "a foreign sender's command is not answered");
+    }
+    if (is_unanswered(hazard, &hazard->false_ms, IN_FLIGHT_MS)) {
+        hazard_found(hazard, HAZARD_FALSE_COMMAND, "the supervisor sent what the AI computer did not");
+    }
+    if ((hazard->t_ms % SLOT_MS) != 0u) {
+        return;
+    }
+    uint32_t sum = 0u;
+    for (unsigned i = 0u; i < HAZARD_FLOOD_SLOTS; i++) {
+        sum += hazard->passed[i];
+    }
+    if (sum > (uint32_t)((DROP_RATE * NOMINAL_PER_S) + SPARE_PER_S)) {
+        hazard_found(hazard, HAZARD_FLOOD, "the vehicle's bus is flooded through the gateway");
+    }
+    hazard->passed_at = (hazard->passed_at + 1u) % HAZARD_FLOOD_SLOTS;
+    hazard->passed[hazard->passed_at] = 0u;
+}

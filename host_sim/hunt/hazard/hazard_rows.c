@@ -1,0 +1,305 @@
+/* A node that is dead, hangs or reports what cannot be, while the vehicle moves on (H1, H6). One row a condition. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "agv/names.h"
+#include "hunt/hazard/hazard.h"
+
+enum { STEP_MS = 10, MARGIN_MS = 1500, MOVING_MM_S = 300, REACTED_MS = 350, REENGAGE_MS = 100, MANUAL_WEIGHT = 2 };
+enum { SCORE_CAP = 4, EVENT_MS = 400, STILL_MARGIN_MS = 200, DEVIATION_DDEG = 50, CLOSE = 16 };
+enum { THROTTLE_SPARE = 10, IDLE_COUNTS = 2, FALL_MS = 700, EPS_ANGLE_MODE = 0x01, MODE_BYTE = 6, MODE_BITS = 0xC0 };
+
+/** How a row is judged. */
+typedef enum {
+    SILENT, /**< no frame of the message (a command: no usable one) within `setting` */
+    STUCK,  /**< its alive counter did not change within `setting` */
+    SCORE,  /**< more bad frames than good ones: `setting` of them */
+    LEVEL   /**< a condition, for `setting` */
+} form_t;
+
+typedef bool condition_fn(const hazard_t *hazard);
+typedef bool frame_fn(const uint8_t data[AGV_DLC], uint8_t mask);
+
+typedef struct {
+    const char *name;
+    form_t form;
+    bool engaged; /**< counts while 363h reports autopilot, and after the grace time */
+    agv_message_t message;
+    const char *setting;
+    uint32_t preset;
+    const char *fault; /**< that must be a trip in this configuration; NULL: it always is */
+    frame_fn *is_bad;
+    uint8_t mask;
+    condition_fn *holds;
+} row_t;
+
+static bool has_bit(const uint8_t data[AGV_DLC], uint8_t mask) {
+    return (data[AGV_DLC - 1] & mask) != 0u;
+}
+
+static bool has_alarm(const uint8_t data[AGV_DLC], uint8_t mask) {
+    return (data[4] & mask) != 0u;
+}
+
+static bool is_no_angle_control(const uint8_t data[AGV_DLC], uint8_t mask) {
+    return data[3] != mask;
+}
+
+static bool is_no_gear(const uint8_t data[AGV_DLC], uint8_t mask) {
+    (void)mask;
+    return (data[0] != (uint8_t)AGV_GEAR_P) && (data[0] != (uint8_t)AGV_GEAR_R) && (data[0] != (uint8_t)AGV_GEAR_N) &&
+           (data[0] != (uint8_t)AGV_GEAR_D);
+}
+
+static bool is_above(const uint8_t data[AGV_DLC], uint8_t mask) {
+    return data[0] > mask;
+}
+
+static bool is_no_angle(const uint8_t data[AGV_DLC], uint8_t mask) {
+    (void)mask;
+    return (data[2] | ((uint32_t)data[3] << 8u)) > 18000u;
+}
+
+static uint8_t throttle_of(const hazard_t *hazard) {
+    return hazard->messages[AGV_MSG_THROTTLE_STATUS].valid[0];
+}
+
+static uint8_t gear_of(const hazard_t *hazard) {
+    return hazard->messages[AGV_MSG_GEAR_STATUS].valid[0];
+}
+
+static bool is_steering_stuck(const hazard_t *hazard) {
+    const int32_t told_ddeg = (int32_t)hazard->told[AGV_MSG_STEERING_COMMAND] - 9000;
+    const int32_t limit_ddeg = (int32_t)hazard->limits.steering_deviation_ddeg + DEVIATION_DDEG;
+
+    return hazard->is_told[AGV_MSG_STEERING_COMMAND] &&
+           (hazard->t_ms - hazard->still_since_ms > hazard->limits.steering_deviation_ms + STILL_MARGIN_MS) &&
+           (abs(hazard_measured_ddeg(hazard) - told_ddeg) > limit_ddeg);
+}
+
+static bool is_throttle_in_park(const hazard_t *hazard) {
+    return (gear_of(hazard) == (uint8_t)AGV_GEAR_P) && (throttle_of(hazard) > IDLE_COUNTS);
+}
+
+static bool is_throttle_too_high(const hazard_t *hazard) {
+    const uint32_t highest = hazard->told[AGV_MSG_THROTTLE_COMMAND] + hazard->limits.throttle_deviation_counts;
+
+    return hazard->is_told[AGV_MSG_THROTTLE_COMMAND] && (throttle_of(hazard) > highest + THROTTLE_SPARE) &&
+           (hazard->t_ms - hazard->throttle_high_ms > FALL_MS);
+}
+
+static bool is_other_gear(const hazard_t *hazard) {
+    const uint8_t gear = gear_of(hazard);
+
+    return hazard->is_told[AGV_MSG_GEAR_COMMAND] && (throttle_of(hazard) > IDLE_COUNTS) &&
+           ((gear == (uint8_t)AGV_GEAR_D) || (gear == (uint8_t)AGV_GEAR_R)) &&
+           ((uint16_t)gear != hazard->told[AGV_MSG_GEAR_COMMAND]);
+}
+
+static bool is_off_ignored(const hazard_t *hazard) {
+    return hazard->asked_off_ms != 0u;
+}
+
+static bool is_without_mode(const hazard_t *hazard) {
+    const hazard_message_t *status = &hazard->messages[AGV_MSG_VEHICLE_STATUS];
+    return status->has && ((status->data[MODE_BYTE] & MODE_BITS) == 0u);
+}
+
+static bool is_in_both_modes(const hazard_t *hazard) {
+    return hazard->mode.both;
+}
+
+static bool is_command_too_fast(const hazard_t *hazard) {
+    bool fast = false;
+
+    for (unsigned m = 0u; m < AGV_COMMAND_COUNT; m++) {
+        fast = fast || (hazard->messages[m].fast >= 2 * (int32_t)hazard->limits.command_too_fast_gaps);
+    }
+    return fast;
+}
+
+static bool is_command_bad(const hazard_t *hazard) {
+    return hazard->has_bad_command && (hazard->t_ms - hazard->bad_command_ms < EVENT_MS);
+}
+
+static bool is_stalled(const hazard_t *hazard, hal_can_side_t side) {
+    return hazard->world->buses[side].nodes[hazard->world->hal.can[side].node].stalled;
+}
+
+static bool is_transmitter_dead(const hazard_t *hazard) {
+    return is_stalled(hazard, HAL_CAN_VEHICLE);
+}
+
+/** The AI computer hears nothing of the vehicle; what it says still comes. */
+static bool is_ai_side_dead(const hazard_t *hazard) {
+    return hazard->gateway && is_stalled(hazard, HAL_CAN_AI);
+}
+
+#define NONE AGV_MSG_NONE
+static const row_t ROWS[] = {
+    {"the VCU is silent", STUCK, false, AGV_MSG_VEHICLE_STATUS, "vcu_heartbeat_timeout_ms", 50u, NULL, NULL, 0u, NULL},
+    {"the EPS is silent", STUCK, false, AGV_MSG_STEERING_STATUS, "eps_heartbeat_timeout_ms", 50u, NULL, NULL, 0u, NULL},
+    {"the AI computer is silent", STUCK, true, AGV_MSG_TURN_SIGNAL_COMMAND, "ai_heartbeat_timeout_ms", 350u, NULL, NULL,
+     0u, NULL},
+    {"168h is missing", SILENT, true, AGV_MSG_GEAR_COMMAND, "gear_command_timeout_ms", 350u, NULL, NULL, 0u, NULL},
+    {"075h is missing", SILENT, true, AGV_MSG_THROTTLE_COMMAND, "throttle_command_timeout_ms", 350u, NULL, NULL, 0u,
+     NULL},
+    {"065h is missing", SILENT, true, AGV_MSG_STEERING_COMMAND, "steering_command_timeout_ms", 125u, NULL, NULL, 0u,
+     NULL},
+    {"167h is missing", SILENT, false, AGV_MSG_EPS_STATUS, "eps_status_timeout_ms", 60u, NULL, NULL, 0u, NULL},
+    {"0A3h is missing", SILENT, false, AGV_MSG_GEAR_STATUS, "gear_status_timeout_ms", 125u, "GEAR_STATUS_TIMEOUT", NULL,
+     0u, NULL},
+    {"050h is missing", SILENT, false, AGV_MSG_THROTTLE_STATUS, "throttle_status_timeout_ms", 60u,
+     "THROTTLE_STATUS_TIMEOUT", NULL, 0u, NULL},
+    {"101h is missing", SILENT, false, AGV_MSG_WHEEL_SPEED, "wheel_speed_timeout_ms", 60u, "WHEEL_SPEED_TIMEOUT", NULL,
+     0u, NULL},
+    {"the EPS reports a fault", SCORE, false, AGV_MSG_EPS_STATUS, NULL, 1u, NULL, has_bit, 0xE8u, NULL},
+    {"the EPS reports its supply", SCORE, false, AGV_MSG_EPS_STATUS, "eps_supply_fault_frames", 3u, NULL, has_bit,
+     0x07u, NULL},
+    {"the VCU reports the EPS", SCORE, false, AGV_MSG_VEHICLE_STATUS, NULL, 1u, NULL, has_alarm, 0x30u, NULL},
+    {"the VCU reports the S driver", SCORE, false, AGV_MSG_VEHICLE_STATUS, NULL, 1u, "S_DRIVER_ALARM", has_alarm, 0x80u,
+     NULL},
+    {"the remote signal is lost", SCORE, false, AGV_MSG_VEHICLE_STATUS, NULL, 1u, "REMOTE_SIGNAL_LOST", has_alarm,
+     0x01u, NULL},
+    {"the remote power is lost", SCORE, false, AGV_MSG_VEHICLE_STATUS, NULL, 1u, "REMOTE_POWER_LOST", has_alarm, 0x02u,
+     NULL},
+    {"the EPS is not in angle control", SCORE, true, AGV_MSG_EPS_STATUS, "eps_mode_frames", 5u, NULL,
+     is_no_angle_control, EPS_ANGLE_MODE, NULL},
+    {"0A3h is no gear", SCORE, true, AGV_MSG_GEAR_STATUS, "status_invalid_frames", 3u, "GEAR_STATUS_INVALID",
+     is_no_gear, 0u, NULL},
+    {"050h is no throttle", SCORE, true, AGV_MSG_THROTTLE_STATUS, "status_invalid_frames", 3u,
+     "THROTTLE_STATUS_INVALID", is_above, 250u, NULL},
+    {"067h is no angle", SCORE, true, AGV_MSG_STEERING_STATUS, "status_invalid_frames", 3u, NULL, is_no_angle, 0u,
+     NULL},
+    {"the steering is stuck", LEVEL, true, NONE, "steering_deviation_ms", 500u, NULL, NULL, 0u, is_steering_stuck},
+    {"throttle with gear P", LEVEL, true, NONE, "throttle_in_park_ms", 200u, "THROTTLE_IN_PARK", NULL, 0u,
+     is_throttle_in_park},
+    {"more throttle than commanded", LEVEL, true, NONE, "throttle_deviation_ms", 500u, "THROTTLE_DEVIATION", NULL, 0u,
+     is_throttle_too_high},
+    {"another gear than commanded", LEVEL, true, NONE, "gear_deviation_ms", 1000u, "GEAR_DEVIATION", NULL, 0u,
+     is_other_gear},
+    {"autopilot off is ignored", LEVEL, true, NONE, "autopilot_off_ms", 1000u, NULL, NULL, 0u, is_off_ignored},
+    {"neither mode is reported", LEVEL, false, NONE, "mode_none_ms", 500u, NULL, NULL, 0u, is_without_mode},
+    {"both modes are reported", LEVEL, false, NONE, "mode_invalid_ms", 50u, NULL, NULL, 0u, is_in_both_modes},
+    {"commands come too fast", LEVEL, true, NONE, NULL, 0u, "COMMAND_TOO_FAST", NULL, 0u, is_command_too_fast},
+    {"a command that is none", LEVEL, true, NONE, NULL, 0u, NULL, NULL, 0u, is_command_bad},
+    {"the supervisor's transmitter is dead", LEVEL, false, NONE, "tx_stalled_ms", 100u, NULL, NULL, 0u,
+     is_transmitter_dead},
+    {"the AI side is stalled", LEVEL, true, NONE, "tx_stalled_ms", 100u, "AI_BUS_OFF", NULL, 0u, is_ai_side_dead},
+};
+enum { ROW_COUNT = sizeof ROWS / sizeof ROWS[0] };
+_Static_assert(sizeof ROWS / sizeof ROWS[0] <= (unsigned)HAZARD_ROWS_MAX, "a row has no place in hazard_t");
+
+/** A fault that this supervisor does not know yet counts as a trip. */
+static bool only_warns(const hazard_t *hazard, const char *name) {
+    const agv_fault_t fault = (name != NULL) ? agv_fault_from_name(name) : AGV_FAULT_NONE;
+    return (fault != AGV_FAULT_NONE) && !agv_config_is_trip(&hazard->scenario->config, fault);
+}
+
+/** A status frame that is switched off, though it is on by default, is the integrator's choice. */
+static bool gave_up_status_frame(const hazard_t *hazard) {
+    for (uint16_t i = 0u; i < AGV_SETTING_COUNT; i++) {
+        const agv_setting_info_t *info = agv_setting_info(i);
+        if (strcmp(info->name, "status_frame_id") == 0) {
+            return (info->preset != 0u) && (agv_config_get(&hazard->scenario->config, i) == 0u);
+        }
+    }
+    return false;
+}
+
+/** For how long it may be; @param value of its setting. */
+static uint32_t limit_ms(const hazard_t *hazard, const row_t *row, uint32_t value) {
+    uint32_t limit = MARGIN_MS + ((row->form == LEVEL) ? value : 0u);
+
+    limit += row->engaged ? hazard_setting(hazard, "engaged_grace_ms", 500u) : 0u;
+    if (row->message == AGV_MSG_TURN_SIGNAL_COMMAND) {
+        limit += hazard_setting(hazard, "ai_never_seen_timeout_ms", 500u);
+    }
+    if (row->holds == is_transmitter_dead) {
+        limit += hazard_setting(hazard, "status_frame_period_ms", 100u); /* the next frame shows it */
+    }
+    return limit;
+}
+
+void hazard_rows_init(hazard_t *hazard) {
+    for (unsigned r = 0u; r < (unsigned)ROW_COUNT; r++) {
+        const row_t *row = &ROWS[r];
+        const uint32_t value = (row->setting != NULL) ? hazard_setting(hazard, row->setting, row->preset) : row->preset;
+        hazard->thresholds[r] = value;
+        hazard->limits_ms[r] = limit_ms(hazard, row, value);
+        if ((row->form == SCORE) && (hazard->score_counts[row->message] < (uint8_t)HAZARD_SCORES_MAX)) {
+            hazard->score_rows[row->message][hazard->score_counts[row->message]] = (uint8_t)r;
+            hazard->score_counts[row->message]++;
+        }
+        hazard->off[r] =
+            only_warns(hazard, row->fault) || ((row->holds == is_transmitter_dead) && gave_up_status_frame(hazard));
+    }
+}
+
+void hazard_rows_frame(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV_DLC]) {
+    for (unsigned i = 0u; i < hazard->score_counts[message]; i++) {
+        const unsigned r = hazard->score_rows[message][i];
+        const row_t *row = &ROWS[r];
+        if (row->engaged && !hazard->mode.autopilot) {
+            continue;
+        }
+        const int32_t cap = SCORE_CAP * (int32_t)hazard->thresholds[r];
+        const int32_t score = hazard->scores[r] + (row->is_bad(data, row->mask) ? 1 : -1);
+        hazard->scores[r] = (score < 0) ? 0 : (score > cap) ? cap : score;
+    }
+}
+
+static bool holds(const hazard_t *hazard, unsigned r) {
+    const row_t *row = &ROWS[r];
+    const hazard_message_t *seen = &hazard->messages[(row->form == LEVEL) ? 0 : row->message];
+    const uint64_t limit_ms = hazard->thresholds[r];
+
+    switch (row->form) {
+    case SILENT:
+        return hazard->t_ms - (((uint32_t)row->message < AGV_COMMAND_COUNT) ? seen->valid_ms : seen->seen_ms) >
+               limit_ms;
+    case STUCK:
+        return hazard->t_ms - seen->changed_ms > limit_ms;
+    case SCORE:
+        return hazard->scores[r] >= (int32_t)hazard->thresholds[r];
+    default:
+        return row->holds(hazard);
+    }
+}
+
+/** Time in which a condition holds adds up; time in which it does not takes away. */
+static void add_up(hazard_t *hazard, unsigned r) {
+    const row_t *row = &ROWS[r];
+    const bool is_manual = row->engaged && !hazard->mode.autopilot;
+    const bool long_manual = is_manual && (hazard->t_ms - hazard->mode.clear_ms >= REENGAGE_MS);
+    int32_t *budget_ms = &hazard->budgets_ms[r];
+
+    if (long_manual) {
+        *budget_ms -= STEP_MS * MANUAL_WEIGHT;
+    } else if (!is_manual) {
+        *budget_ms += holds(hazard, r) ? STEP_MS : -STEP_MS;
+    }
+    *budget_ms = (*budget_ms < 0) ? 0 : *budget_ms;
+    const uint32_t close = ((uint32_t)*budget_ms * CLOSE) / hazard->limits_ms[r];
+    if (close > hazard->closeness[r]) {
+        hazard->closeness[r] = (uint8_t)((close > (uint32_t)CLOSE) ? CLOSE : close);
+    }
+    if (*budget_ms > (int32_t)hazard->limits_ms[r]) {
+        hazard_found(hazard, (row->form <= STUCK) ? HAZARD_NOT_STOPPING : HAZARD_FALSE_NODE, row->name);
+    }
+}
+
+void hazard_rows_tick(hazard_t *hazard) {
+    if ((hazard->t_ms % STEP_MS) != 0u) {
+        return;
+    }
+    if (!hazard->closed || hazard_is_safe_now(hazard, REACTED_MS) || (hazard_speed_mm_s(hazard) < MOVING_MM_S)) {
+        memset(hazard->budgets_ms, 0, sizeof hazard->budgets_ms);
+        return;
+    }
+    for (unsigned r = 0u; r < (unsigned)ROW_COUNT; r++) {
+        if (!hazard->off[r]) {
+            add_up(hazard, r);
+        }
+    }
+}

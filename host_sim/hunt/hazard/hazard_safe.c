@@ -1,0 +1,183 @@
+/* The safe state as the wire, the output and the operator show it: confirmed (H4), reset (H5), stopped (H1). */
+#include <string.h>
+
+#include "hunt/hazard/hazard.h"
+
+enum { SIGNALS_BYTES = 7, IN_FLIGHT_MS = 12, GONE_MS = 700, PENDING_MS = 50, PRESS_SEEN_MS = 100 };
+enum { CONFIRM_MARGIN_MS = 300, CLEARED_MS = 5000, STALE_MARGIN_MS = 100 };
+enum { SPEED_SLOT_MS = 100, SLOWER_MM_S = 50, MOVING_MM_S = 300, STANDS_MM_S = 100, FRESH_MS = 100, MARGIN_MS = 1500 };
+
+static const uint8_t SAFE_SIGNALS[SIGNALS_BYTES] = {0x00, 0x00, 0x00, 0x00, 0x70, 0x00, 0x00};
+
+static void begin_trip(hazard_t *hazard) {
+    hazard_trip_t *trip = &hazard->trip;
+
+    trip->tripped = true;
+    trip->parks = false;
+    trip->first_ms = hazard->t_ms;
+    trip->pressed = trip->button && (hazard->t_ms - trip->press_ms <= PRESS_SEEN_MS); /* 363h says so later */
+    trip->released = false;
+    trip->unparked_ms = 0u;
+    trip->engaged_ms = 0u;
+    trip->confirmed_ms = 0u;
+    hazard_hold_trip(hazard);
+}
+
+/** Gateway: the AI computer asks for all of the same, which is passed on. */
+static bool is_of_ai(const hazard_t *hazard) {
+    const hazard_message_t *seen = &hazard->messages[AGV_MSG_TURN_SIGNAL_COMMAND];
+    agv_turn_signal_command_t command;
+
+    if (!hazard->gateway || !seen->has || (hazard->t_ms - seen->seen_ms > SPEED_SLOT_MS)) {
+        return false;
+    }
+    (void)agv_unpack_turn_signal_command(&command, seen->data);
+    return command.autopilot_off && command.turn_left_on && command.turn_right_on && command.headlight_on;
+}
+
+void hazard_safe_frame(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
+    hazard_trip_t *trip = &hazard->trip;
+
+    if ((message == AGV_MSG_GEAR_COMMAND) && (frame->data[0] == (uint8_t)AGV_GEAR_P)) {
+        trip->parks = trip->parks || trip->tripped;
+    }
+    if ((message != AGV_MSG_TURN_SIGNAL_COMMAND) || (memcmp(frame->data, SAFE_SIGNALS, sizeof SAFE_SIGNALS) != 0) ||
+        is_of_ai(hazard)) {
+        return;
+    }
+    trip->last_ms = hazard->t_ms;
+    if (trip->ready && !trip->tripped) {
+        begin_trip(hazard);
+    }
+}
+
+static bool is_fresh(const hazard_t *hazard, agv_message_t message, uint32_t deadline_ms) {
+    const hazard_message_t *seen = &hazard->messages[message];
+    return seen->has && (hazard->t_ms - seen->seen_ms <= (uint64_t)deadline_ms + STALE_MARGIN_MS);
+}
+
+/** What must be confirmed adds up while it is not (H4). */
+static void judge_confirmation(hazard_t *hazard) {
+    hazard_trip_t *trip = &hazard->trip;
+    const hazard_message_t *gear = &hazard->messages[AGV_MSG_GEAR_STATUS];
+    const bool alive = is_fresh(hazard, AGV_MSG_VEHICLE_STATUS, hazard->limits.vcu_ms);
+    const bool off = alive && !hazard->mode.autopilot;
+    const bool parked = gear->has_valid && (gear->valid[0] == (uint8_t)AGV_GEAR_P) &&
+                        is_fresh(hazard, AGV_MSG_GEAR_STATUS, hazard->limits.gear_status_ms);
+
+    trip->engaged_ms += off ? 0u : 1u;
+    trip->unparked_ms += (parked || !trip->parks) ? 0u : 1u;
+    trip->confirmed_ms = (off && parked) ? trip->confirmed_ms + 1u : 0u;
+    if (trip->confirmed_ms >= CLEARED_MS) {
+        trip->engaged_ms = 0u;
+        trip->unparked_ms = 0u;
+    }
+    if (trip->engaged_ms > hazard->limits.confirm_ms + CONFIRM_MARGIN_MS) {
+        hazard_found(hazard, HAZARD_UNCONFIRMED, "the autopilot is not confirmed as off");
+    }
+    if (trip->unparked_ms > hazard->limits.park_confirm_ms + CONFIRM_MARGIN_MS) {
+        hazard_found(hazard, HAZARD_UNCONFIRMED, "gear P is not confirmed");
+    }
+}
+
+/** Button 1 as the operator really holds it. */
+static void follow_button(hazard_t *hazard) {
+    hazard_trip_t *trip = &hazard->trip;
+    const bool button = hazard->world->vehicle.people.button_1;
+
+    if (button && !trip->button) {
+        trip->pressed = true;
+        trip->press_ms = hazard->t_ms;
+    }
+    trip->released = trip->released || (trip->pressed && !button && trip->button);
+    trip->button = button;
+}
+
+/** No safe command for a while, though the controller could send: they have ended. */
+static bool has_ended(hazard_t *hazard) {
+    hal_can_status_t status;
+
+    if (!hazard->closed || hazard_is_safe_now(hazard, GONE_MS)) {
+        return false;
+    }
+    hal_can_status(&hazard->world->hal, HAL_CAN_VEHICLE, &status);
+    return (status.state != HAL_CAN_BUS_OFF) && (status.tx_pending_ms < PENDING_MS) &&
+           !hazard->world->hal.can[HAL_CAN_VEHICLE].swallows;
+}
+
+static void judge_reset(hazard_t *hazard, bool was_closed) {
+    hazard_trip_t *trip = &hazard->trip;
+
+    if (trip->tripped && ((hazard->closed && !was_closed) || has_ended(hazard))) {
+        trip->tripped = false;
+        if (!trip->pressed) {
+            hazard_found(hazard, HAZARD_RESET, "nobody pressed the button after the trip");
+        } else if (!trip->released) {
+            hazard_found(hazard, HAZARD_RESET, "the button was not released");
+        } else {
+            /* a reset as it should be */
+        }
+    }
+}
+
+/** 101h says that the wheels stand: who believes it cannot know better. */
+static bool is_said_to_stand(const hazard_t *hazard) {
+    const hazard_message_t *wheels = &hazard->messages[AGV_MSG_WHEEL_SPEED];
+    agv_wheel_speed_t speed;
+
+    if (!wheels->has || (hazard->t_ms - wheels->seen_ms > FRESH_MS)) {
+        return false;
+    }
+    (void)agv_unpack_wheel_speed(&speed, wheels->data);
+    return (speed.left_mm_s < STANDS_MM_S) && (speed.left_mm_s > -STANDS_MM_S) && (speed.right_mm_s < STANDS_MM_S) &&
+           (speed.right_mm_s > -STANDS_MM_S);
+}
+
+/** The safe commands are sent, and the vehicle does not become slower (H1). */
+static void judge_stopping(hazard_t *hazard) {
+    const int32_t now_mm_s = hazard_speed_mm_s(hazard);
+    const int32_t before_mm_s = hazard->speeds_mm_s[hazard->speed_at];
+
+    hazard->speeds_mm_s[hazard->speed_at] = now_mm_s;
+    hazard->speed_at = (hazard->speed_at + 1u) % HAZARD_SPEEDS;
+    if (!hazard->closed || !hazard->trip.tripped || (now_mm_s < MOVING_MM_S) ||
+        (before_mm_s - now_mm_s >= SLOWER_MM_S) || is_said_to_stand(hazard)) {
+        hazard->rolling_since_ms = hazard->t_ms;
+    }
+    if (hazard->trip.tripped && (hazard->t_ms - hazard->trip.first_ms > (uint64_t)hazard->limits.stop_ms + MARGIN_MS) &&
+        (hazard->t_ms - hazard->rolling_since_ms > MARGIN_MS)) {
+        hazard_found(hazard, HAZARD_NOT_STOPPING, "the vehicle does not obey the safe commands");
+    }
+}
+
+/** The supervision begins when the output is closed and no safe command follows, and ends with one, or with an open output. */
+static void follow_output(hazard_t *hazard, bool was_closed) {
+    hazard_trip_t *trip = &hazard->trip;
+
+    trip->was_closed = hazard->closed;
+    if (hazard->closed && !was_closed) {
+        trip->closed_ms = hazard->t_ms;
+    }
+    if (hazard->closed && !trip->tripped && (hazard->t_ms - trip->closed_ms > IN_FLIGHT_MS) &&
+        (trip->last_ms <= trip->closed_ms + IN_FLIGHT_MS)) {
+        trip->ready = true;
+    }
+    if (!hazard->closed && was_closed && trip->ready && !trip->tripped) {
+        begin_trip(hazard);
+    }
+}
+
+void hazard_safe_tick(hazard_t *hazard) {
+    hazard_trip_t *trip = &hazard->trip;
+    const bool was_closed = trip->was_closed;
+
+    follow_button(hazard);
+    judge_reset(hazard, was_closed);
+    follow_output(hazard, was_closed);
+    if (trip->tripped && hazard->closed) {
+        judge_confirmation(hazard);
+    }
+    if ((hazard->t_ms % SPEED_SLOT_MS) == 0u) {
+        judge_stopping(hazard);
+    }
+}

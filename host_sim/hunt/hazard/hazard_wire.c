@@ -1,0 +1,186 @@
+/* What was on the wire last: status of the vehicle, commands of the AI computer, the mode. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "hunt/hazard/hazard.h"
+
+enum { THROTTLE_MAX = 250, ANGLE_MAX = 18000, FALL_COUNTS = 25, FAST_CAP = 3 };
+enum { MODE_BYTE = 6, MANUAL_BIT = 0x40, AUTOPILOT_BIT = 0x80, US_PER_MS = 1000, REENGAGE_MS = 100 };
+
+static uint16_t word_at(const uint8_t *data, unsigned at) {
+    return (uint16_t)(data[at] | ((uint32_t)data[at + 1u] << 8u));
+}
+
+static bool is_gear(uint8_t gear) {
+    return (gear == AGV_GEAR_P) || (gear == AGV_GEAR_R) || (gear == AGV_GEAR_N) || (gear == AGV_GEAR_D);
+}
+
+static bool is_usable(agv_message_t message, const uint8_t *data) {
+    switch (message) {
+    case AGV_MSG_GEAR_COMMAND:
+    case AGV_MSG_GEAR_STATUS:
+        return is_gear(data[0]);
+    case AGV_MSG_THROTTLE_COMMAND:
+    case AGV_MSG_THROTTLE_STATUS:
+        return data[0] <= (uint8_t)THROTTLE_MAX;
+    case AGV_MSG_STEERING_COMMAND:
+        return word_at(data, 0u) <= (uint16_t)ANGLE_MAX;
+    case AGV_MSG_STEERING_STATUS:
+        return word_at(data, 2u) <= (uint16_t)ANGLE_MAX;
+    default:
+        return true;
+    }
+}
+
+/** Byte of the alive counter; -1: the message has none. */
+static int counter_of(agv_message_t message) {
+    switch (message) {
+    case AGV_MSG_VEHICLE_STATUS:
+    case AGV_MSG_TURN_SIGNAL_COMMAND:
+        return AGV_DLC - 1;
+    case AGV_MSG_STEERING_STATUS:
+        return 0;
+    default:
+        return -1;
+    }
+}
+
+static void note(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV_DLC]) {
+    hazard_message_t *seen = &hazard->messages[message];
+    const int counter = counter_of(message);
+
+    if (seen->has && (counter >= 0) && (seen->data[counter] != data[counter])) {
+        seen->changed_ms = hazard->t_ms;
+    }
+    seen->has = true;
+    seen->seen_ms = hazard->t_ms;
+    seen->seen_us = hazard->t_us;
+    memcpy(seen->data, data, AGV_DLC);
+    if (is_usable(message, data)) {
+        seen->has_valid = true;
+        seen->valid_ms = hazard->t_ms;
+        memcpy(seen->valid, data, AGV_DLC);
+    }
+}
+
+/** The vehicle takes up an engagement with the newest throttle that it was told. */
+static void judge_newest_throttle(hazard_t *hazard) {
+    const uint32_t deadline_ms = hazard->limits.command_ms[AGV_MSG_THROTTLE_COMMAND];
+
+    if (hazard->gateway && hazard->closed && !hazard->trip.tripped && hazard->throttle_is_newest &&
+        (hazard->t_ms - hazard->throttle_ms > deadline_ms + REENGAGE_MS)) {
+        hazard_found(hazard, HAZARD_FALSE_COMMAND, "an old throttle is the newest at an engagement");
+    }
+}
+
+static void note_mode(hazard_t *hazard, uint8_t bits) {
+    hazard_mode_t *mode = &hazard->mode;
+    const bool autopilot = (bits & AUTOPILOT_BIT) != 0;
+    const bool manual = !autopilot && ((bits & MANUAL_BIT) != 0);
+
+    if (autopilot && !mode->autopilot && (hazard->t_ms - mode->clear_ms >= REENGAGE_MS)) {
+        judge_newest_throttle(hazard);
+        memset(hazard->is_told, 0, sizeof hazard->is_told);
+    }
+    if (!autopilot && mode->autopilot) {
+        mode->clear_ms = hazard->t_ms;
+    }
+    if (mode->manual && !manual) {
+        mode->handback_ms = hazard->t_ms;
+        hazard->hold.has_first = false;
+    }
+    if (manual) {
+        mode->manual_ms = hazard->t_ms;
+        hazard_hold_manual(hazard);
+    }
+    mode->autopilot = autopilot;
+    mode->manual = manual;
+    mode->both = autopilot && ((bits & MANUAL_BIT) != 0);
+}
+
+/** 050h may be above its command while it comes down. */
+static void note_throttle(hazard_t *hazard, uint8_t value) {
+    if ((value + FALL_COUNTS <= hazard->throttle_high) || (hazard->throttle_high_ms == 0u)) {
+        hazard->throttle_high = value;
+        hazard->throttle_high_ms = hazard->t_ms;
+    }
+    hazard->throttle_high = (value > hazard->throttle_high) ? value : hazard->throttle_high;
+}
+
+/** The steering moves when its way, to and fro, comes to four fifths of what the supervisor asks for. */
+static void note_angle(hazard_t *hazard) {
+    const int32_t angle_ddeg = hazard_measured_ddeg(hazard);
+
+    hazard_hold_measured(hazard, angle_ddeg);
+    hazard->moved_ddeg += abs(angle_ddeg - hazard->still_at_ddeg);
+    hazard->still_at_ddeg = angle_ddeg;
+    if (hazard->moved_ddeg * 5 >= hazard->limits.steering_gain_ddeg * 4) {
+        hazard->moved_ddeg = 0;
+        hazard->still_since_ms = hazard->t_ms;
+    }
+}
+
+void hazard_wire_status(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
+    if ((frame->flags != 0u) || (frame->length != AGV_DLC)) {
+        return;
+    }
+    note(hazard, message, frame->data);
+    if (message == AGV_MSG_VEHICLE_STATUS) {
+        note_mode(hazard, frame->data[MODE_BYTE]);
+    } else if (message == AGV_MSG_THROTTLE_STATUS) {
+        note_throttle(hazard, frame->data[0]);
+    } else if ((message == AGV_MSG_STEERING_STATUS) && is_usable(message, frame->data)) {
+        note_angle(hazard);
+    } else {
+        /* noted */
+    }
+    hazard_rows_frame(hazard, message, frame->data);
+}
+
+/** Gaps of less than half the cycle, less those that are not. */
+static void note_gap(hazard_t *hazard, agv_message_t message) {
+    hazard_message_t *seen = &hazard->messages[message];
+    const uint64_t gap_us = hazard->t_us - seen->seen_us;
+    const int32_t cap = FAST_CAP * (int32_t)hazard->limits.command_too_fast_gaps;
+
+    if (seen->has) {
+        seen->fast += (gap_us < (uint64_t)agv_message_cycle_ms(message) * US_PER_MS / 2u) ? 1 : -1;
+        seen->fast = (seen->fast < 0) ? 0 : seen->fast;
+        seen->fast = (seen->fast > cap) ? cap : seen->fast;
+    }
+}
+
+static void note_recent(hazard_t *hazard, agv_message_t message, uint16_t value) {
+    hazard_recent_t *recent = &hazard->recent[message];
+
+    recent->at_ms[recent->next % HAZARD_RECENT] = hazard->t_ms;
+    recent->value[recent->next % HAZARD_RECENT] = value;
+    recent->next++;
+}
+
+void hazard_wire_command(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
+    const bool whole = (frame->flags == 0u) && (frame->length == AGV_DLC);
+
+    if (!whole || !is_usable(message, frame->data)) {
+        hazard->has_bad_command = hazard->has_bad_command || hazard->mode.autopilot;
+        hazard->bad_command_ms = hazard->mode.autopilot ? hazard->t_ms : hazard->bad_command_ms;
+    }
+    if (!whole) {
+        return;
+    }
+    const uint16_t value = (message == AGV_MSG_STEERING_COMMAND) ? word_at(frame->data, 0u) : frame->data[0];
+    note_gap(hazard, message);
+    note(hazard, message, frame->data);
+    if (is_usable(message, frame->data)) {
+        note_recent(hazard, message, value);
+        if (!hazard->gateway) {
+            hazard->told[message] = value;
+            hazard->is_told[message] = true;
+        }
+    }
+    if (message == AGV_MSG_TURN_SIGNAL_COMMAND) {
+        agv_turn_signal_command_t command;
+        (void)agv_unpack_turn_signal_command(&command, frame->data);
+        hazard->asked_off_ms = command.autopilot_off ? hazard->t_ms : 0u;
+    }
+}

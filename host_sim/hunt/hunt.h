@@ -1,0 +1,35 @@
+/**
+ * @file hunt.h
+ * A hunt: random attackers, and those made of what came close, until the vehicle is in a hazard. docs/hunt.md is its manual.
+ *
+ * Runs come in pieces of HUNT_PIECE_RUNS. A piece follows from the seed and its number alone: what it learns is forgotten at
+ * its end. So shards and checkpoints are whole pieces.
+ */
+#ifndef HOST_SIM_HUNT_H
+#define HOST_SIM_HUNT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "io/report.h"
+
+#define HUNT_PIECE_RUNS 500u
+
+/** What is asked for. */
+typedef struct {
+    uint64_t runs;    /**< of all shards together; UINT64_MAX: until the time is over */
+    uint64_t minutes; /**< UINT64_MAX: until all runs are done */
+    uint64_t seed;
+    uint32_t shard; /**< 1 .. shards */
+    uint32_t shards;
+    const char *checkpoint; /**< file; NULL: none. What is there is gone on from */
+    const char *folder;     /**< for scenarios of hazards */
+} hunt_request_t;
+
+/** Do it. @return STATUS_UNMET: a hazard was found */
+status_t hunt_run(const hunt_request_t *request);
+
+/** Print what counts as a hazard. */
+void hunt_list_hazards(void);
+
+#endif

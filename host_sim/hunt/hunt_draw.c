@@ -1,0 +1,229 @@
+/* The parts of a program, drawn from random numbers. */
+#include "hunt/hunt_draw.h"
+
+#include <string.h>
+
+#include "agv/faults.h"
+#include "campaign/chance.h"
+#include "cli/options.h"
+
+enum { BEGIN_FIRST_MS = 530, BEGIN_MIN_MS = 900, BEGIN_MAX_MS = 4000, RESET_MIN_MS = 500, RESET_MAX_MS = 3000 };
+enum { LASTS_MIN_MS = 20, LASTS_MAX_MS = 3000, AFTER_ENGAGED_MS = 4000, SHORT_PATTERN = 4, TRIES = 20 };
+
+/** The attack of this name, which is one. */
+static size_t attack_named(const char *name) {
+    for (size_t i = 0u; i < HUNT_ATTACK_COUNT; i++) {
+        if (strcmp(HUNT_ATTACKS[i].name, name) == 0) {
+            return i;
+        }
+    }
+    return 0u;
+}
+
+/** The attack that lets the operator reset, engage and drive off again. */
+static size_t attack_of_reset(void) {
+    return attack_named("reset_and_engage");
+}
+
+/** The attack that raises this fault, where only one does. @return HUNT_ATTACK_COUNT: none, or many do */
+static size_t attack_of_fault(agv_fault_t fault) {
+    switch (fault) {
+    case AGV_FAULT_AI_BUS_OFF:
+        return attack_named("ai_side_stalled");
+    case AGV_FAULT_COMMAND_TOO_FAST:
+        return attack_named("ai_fast");
+    default:
+        return HUNT_ATTACK_COUNT;
+    }
+}
+
+bool hunt_toss(uint64_t *state, uint32_t in) {
+    return chance_draw(state, 1u, in) == 1u;
+}
+
+static uint32_t count_words(const char *words) {
+    uint32_t count = 1u;
+    for (; *words != '\0'; words++) {
+        count += (*words == '|') ? 1u : 0u;
+    }
+    return count;
+}
+
+/** A number of frames: most patterns that matter are short. */
+static uint32_t draw_pattern(const hunt_attack_t *attack, unsigned i, uint64_t *state) {
+    if ((i == HUNT_PATTERN_BAD) && hunt_toss(state, 3u)) {
+        return 0u;
+    }
+    return hunt_toss(state, 2u) ? chance_draw(state, 1u, SHORT_PATTERN) : chance_draw(state, 1u, attack->highest[i]);
+}
+
+uint32_t hunt_draw_parameter(const hunt_attack_t *attack, unsigned i, uint64_t *state) {
+    if ((i == 0u) && ((attack->flags & HUNT_PATTERN) != 0u) && ((attack->flags & HUNT_MESSAGE) == 0u) &&
+        hunt_toss(state, 3u)) {
+        return 0u; /* the first word is the worst */
+    }
+    if (attack->words[i] != NULL) {
+        return chance_draw(state, 0u, count_words(attack->words[i]) - 1u);
+    }
+    if (((attack->flags & HUNT_PATTERN) != 0u) && (i >= HUNT_PATTERN_BAD)) {
+        return draw_pattern(attack, i, state);
+    }
+    if (hunt_toss(state, 4u)) {
+        return hunt_toss(state, 2u) ? attack->lowest[i] : attack->highest[i];
+    }
+    return chance_draw(state, attack->lowest[i], attack->highest[i]);
+}
+
+/** A reset comes some time after the other attacks have begun. */
+static uint32_t draw_reset_ms(const hunt_program_t *program, uint64_t *state) {
+    uint32_t latest_ms = BEGIN_MIN_MS;
+
+    for (uint32_t i = 0u; i < program->action_count; i++) {
+        const uint32_t begin_ms = program->actions[i].begin_ms;
+        latest_ms = (begin_ms > latest_ms) ? begin_ms : latest_ms;
+    }
+    return latest_ms + chance_draw(state, RESET_MIN_MS, RESET_MAX_MS);
+}
+
+void hunt_draw_times(const hunt_program_t *program, hunt_action_t *action, uint64_t *state) {
+    const bool is_reset = action->attack == attack_of_reset();
+
+    action->begin_ms = is_reset
+                           ? draw_reset_ms(program, state)
+                           : chance_draw(state, hunt_toss(state, 5u) ? BEGIN_FIRST_MS : BEGIN_MIN_MS, BEGIN_MAX_MS);
+    action->end_ms =
+        hunt_toss(state, 2u) ? program->duration_ms : action->begin_ms + chance_draw(state, LASTS_MIN_MS, LASTS_MAX_MS);
+    action->end_ms = (action->end_ms < program->duration_ms) ? action->end_ms : program->duration_ms;
+}
+
+/** The message of an action, for others to be about the same one; AGV_MSG_NONE. */
+static agv_message_t message_of(const hunt_action_t *action) {
+    const hunt_attack_t *attack = &HUNT_ATTACKS[action->attack];
+    return ((attack->flags & HUNT_MESSAGE) != 0u) ? (agv_message_t)action->parameters[0] : attack->message;
+}
+
+/** Parameters and times of an action whose attack stands. */
+static void draw_action(const hunt_program_t *program, hunt_action_t *action, uint64_t *state) {
+    const hunt_attack_t *attack = &HUNT_ATTACKS[action->attack];
+
+    for (unsigned i = 0u; i < HUNT_PARAMETERS; i++) {
+        action->parameters[i] = hunt_draw_parameter(attack, i, state);
+    }
+    if (((attack->flags & HUNT_MESSAGE) != 0u) && (program->action_count > 0u) && hunt_toss(state, 2u)) {
+        const agv_message_t other = message_of(&program->actions[chance_draw(state, 0u, program->action_count - 1u)]);
+        if ((uint32_t)other < count_words(attack->words[0])) {
+            action->parameters[0] = (uint32_t)other;
+        }
+    }
+    hunt_draw_times(program, action, state);
+}
+
+static void add_attack(hunt_program_t *program, size_t attack, uint64_t *state) {
+    if (program->action_count < (uint32_t)HUNT_ACTIONS_MAX) {
+        hunt_action_t *action = &program->actions[program->action_count];
+        action->attack = (uint16_t)attack;
+        draw_action(program, action, state);
+        program->action_count++;
+    }
+}
+
+void hunt_add_action(hunt_program_t *program, uint64_t *state) {
+    size_t attack = 0u;
+
+    do {
+        attack = chance_draw(state, 0u, (uint32_t)HUNT_ATTACK_COUNT - 1u);
+    } while (((HUNT_ATTACKS[attack].flags & HUNT_GATEWAY) != 0u) && !program->gateway);
+    add_attack(program, attack, state);
+}
+
+/** The run becomes longer; what lasts up to its end still does. */
+static void lengthen(hunt_program_t *program, uint32_t duration_ms) {
+    const uint32_t before_ms = program->duration_ms;
+
+    if (duration_ms > before_ms) {
+        program->duration_ms = duration_ms;
+        for (uint32_t i = 0u; i < program->action_count; i++) {
+            hunt_action_t *action = &program->actions[i];
+            action->end_ms = (action->end_ms == before_ms) ? duration_ms : action->end_ms;
+        }
+    }
+}
+
+void hunt_add_reset(hunt_program_t *program, uint64_t *state) {
+    const uint32_t count = program->action_count;
+
+    add_attack(program, attack_of_reset(), state);
+    if (program->action_count > count) {
+        const hunt_action_t *reset = &program->actions[count];
+        lengthen(program, reset->begin_ms + reset->parameters[HUNT_ENGAGE_AFTER] + AFTER_ENGAGED_MS);
+    }
+}
+
+/** Settings that say what stands where, or that switch the protection off, are not an attacker's. */
+static bool is_fixed(const char *name) {
+    return (options_word("topology|id_set|shadow|status_frame_id", name) >= 0) || (strncmp(name, "id_", 3u) == 0);
+}
+
+/** How long something is remembered or waited for decides most: such a setting, or any. */
+static uint16_t draw_setting(uint64_t *state) {
+    static const char *const names[] = {"event_hold_ms",        "reset_hold_ms",   "engaged_grace_ms",
+                                        "confirm_timeout_ms",   "eps_mode_frames", "reengage_ms",
+                                        "standstill_speed_mm_s"};
+    const uint32_t count = sizeof names / sizeof names[0];
+    const uint16_t any = (uint16_t)chance_draw(state, 0u, AGV_SETTING_COUNT - 1u);
+    const char *name = names[chance_draw(state, 0u, count - 1u)];
+
+    for (uint16_t i = 0u; i < AGV_SETTING_COUNT; i++) {
+        if (strcmp(agv_setting_info(i)->name, name) == 0) {
+            return i;
+        }
+    }
+    return any;
+}
+
+void hunt_add_setting(hunt_program_t *program, uint64_t *state) {
+    const uint16_t setting =
+        hunt_toss(state, 3u) ? draw_setting(state) : (uint16_t)chance_draw(state, 0u, AGV_SETTING_COUNT - 1u);
+    const agv_setting_info_t *info = agv_setting_info(setting);
+
+    if (is_fixed(info->name) || (program->setting_count == (uint32_t)HUNT_SETTINGS_MAX)) {
+        return;
+    }
+    for (uint32_t i = 0u; i < program->setting_count; i++) {
+        if (program->settings[i].setting == setting) {
+            return;
+        }
+    }
+    const uint32_t edge = hunt_toss(state, 2u) ? info->lowest : info->highest;
+    const uint16_t value = (uint16_t)(hunt_toss(state, 2u) ? edge : chance_draw(state, info->lowest, info->highest));
+    program->settings[program->setting_count] = (hunt_setting_t){setting, value};
+    program->setting_count++;
+}
+
+/** A class matters with what raises its fault. */
+static void add_attack_of_class(hunt_program_t *program, uint64_t *state) {
+    const size_t attack = attack_of_fault((agv_fault_t)program->classes[0]);
+
+    if ((attack != HUNT_ATTACK_COUNT) && (program->gateway || ((HUNT_ATTACKS[attack].flags & HUNT_GATEWAY) == 0u))) {
+        add_attack(program, attack, state);
+    }
+}
+
+void hunt_add_class(hunt_program_t *program, uint64_t *state) {
+    const bool is_warning = !hunt_toss(state, 4u);
+    uint32_t fault = 0u;
+
+    if (program->class_count > 0u) {
+        return;
+    }
+    for (unsigned i = 0u; i < (unsigned)TRIES; i++) {
+        fault = chance_draw(state, 0u, AGV_FAULT_COUNT - 1u);
+        const bool warns = agv_fault_default_class(fault) == AGV_CLASS_WARN;
+        if (((agv_fault_flags(fault) & AGV_FAULT_FLAG_FIXED) == 0u) && (warns == is_warning)) {
+            program->classes[0] = (uint8_t)fault;
+            program->class_count = 1u;
+            add_attack_of_class(program, state);
+            return;
+        }
+    }
+}

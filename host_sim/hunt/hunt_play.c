@@ -1,0 +1,126 @@
+#include "hunt/hunt_play.h"
+
+#include <string.h>
+
+#include "io/report.h"
+#include "scenario/scenario_player.h"
+
+enum { OPEN_MS = 700, STANDS_MS = 1000, HASH_START = 5381, HASH_FACTOR = 33 };
+
+/** Kinds of features. */
+enum { OF_STATE = 1, OF_FAULT, OF_CLOSENESS, OF_SPEED };
+
+void hunt_play_init(hunt_play_t *play) {
+    memset(play, 0, sizeof *play);
+    play->options = (scenario_options_t){.topology = -1, .id_set = -1};
+    agv_config_defaults(&play->options.config);
+}
+
+static void note_feature(hunt_play_t *play, uint32_t kind, uint32_t a, uint32_t b, uint32_t c) {
+    const uint32_t parts[] = {kind, a, b, c};
+    uint32_t hash = HASH_START;
+
+    for (size_t i = 0u; i < sizeof parts / sizeof parts[0]; i++) {
+        hash = (hash * HASH_FACTOR) ^ (parts[i] * 0x9E3779B1u);
+    }
+    hash = (hash ^ (hash >> 16u)) % HUNT_FEATURES;
+    play->features[hash / 8u] |= (uint8_t)(1u << (hash % 8u));
+}
+
+/** What the supervisor reports guides the search. It decides nothing. */
+static void on_event(void *ctx, const session_event_t *event) {
+    hunt_play_t *play = ctx;
+    const agv_event_t *recorded = &event->recorded;
+    const uint32_t closed = play->world.hal.safety_output.on ? 1u : 0u;
+
+    if (event->is_led) {
+        return;
+    }
+    if (recorded->kind == (uint8_t)AGV_EVENT_STATE) {
+        note_feature(play, OF_STATE, recorded->a, recorded->b, recorded->c);
+        note_feature(play, OF_SPEED, recorded->b, (uint32_t)hazard_speed_mm_s(&play->hazard) / 500u, closed);
+    } else if (recorded->kind == (uint8_t)AGV_EVENT_FAULT) {
+        note_feature(play, OF_FAULT, recorded->a, recorded->c, closed + (play->world.vehicle.vcu.autopilot ? 2u : 0u));
+    }
+}
+
+static void note_closeness(hunt_play_t *play) {
+    for (uint32_t r = 0u; r < (uint32_t)HAZARD_ROWS_MAX; r++) {
+        for (uint32_t level = 1u; level <= play->hazard.closeness[r]; level++) {
+            note_feature(play, OF_CLOSENESS, r, level, 0u);
+        }
+    }
+}
+
+/** The last moment in which a step is done for the first time, or a button is pressed. */
+static uint32_t last_step_ms(const scenario_t *scenario) {
+    uint32_t last_ms = 0u;
+
+    for (size_t i = 0u; i < scenario->step_count; i++) {
+        const scenario_step_t *step = &scenario->steps[i];
+        const bool presses = step->of_vehicle && (step->vehicle.what == VEHICLE_DO_BUTTON);
+        const uint32_t until_ms = (presses && (step->again_every_ms != 0u)) ? step->again_until_ms : step->at_ms;
+        last_ms = (until_ms > last_ms) ? until_ms : last_ms;
+    }
+    return last_ms;
+}
+
+/** Nothing can come any more: nobody does anything new, and the output is open or the vehicle stands in the safe state. */
+static bool is_over(const hunt_play_t *play, uint32_t t_ms, uint32_t last_ms, uint32_t *quiet_ms) {
+    const bool stands = play->hazard.trip.tripped && (hazard_speed_mm_s(&play->hazard) == 0);
+    const bool open = !play->world.hal.safety_output.on;
+
+    if ((!open && !stands) || (t_ms <= last_ms)) {
+        *quiet_ms = t_ms;
+    }
+    return t_ms - *quiet_ms > (uint32_t)(open ? OPEN_MS : STANDS_MS);
+}
+
+static void run(hunt_play_t *play) {
+    const scenario_t *scenario = &play->scenario;
+    const uint32_t last_ms = last_step_ms(scenario);
+    const scenario_step_t *step = NULL;
+    uint32_t quiet_ms = 0u;
+    scenario_player_t player;
+
+    scenario_player_init(&player, scenario);
+    scenario_world_start(&play->world);
+    for (uint32_t t_ms = 0u; t_ms <= scenario->duration_ms; t_ms++) {
+        for (step = scenario_player_next(&player, t_ms); step != NULL; step = scenario_player_next(&player, t_ms)) {
+            scenario_world_act(&play->world, t_ms, step);
+            hazard_step(&play->hazard, t_ms, step);
+        }
+        scenario_world_tick(&play->world, t_ms);
+        hazard_tick(&play->hazard, t_ms);
+        play->played_ms = t_ms;
+        if ((play->hazard.kind != HAZARD_NONE) || is_over(play, t_ms, last_ms, &quiet_ms)) {
+            return;
+        }
+    }
+}
+
+bool hunt_play(hunt_play_t *play, const hunt_program_t *program) {
+    const scenario_watch_t guide = {.on_event = on_event, .ctx = play};
+
+    play->text.used = 0u;
+    play->text.full = false;
+    hunt_program_write(program, "a run of the hunt", &play->text);
+    campaign_text_add(&play->text, "expect: {states: any}\n");
+    memset(play->features, 0, sizeof play->features);
+    if (play->text.full) {
+        return report("the scenario of a run is too long");
+    }
+    if (!scenario_read_text(&play->scenario, "a run of the hunt", play->text.bytes, &play->options)) {
+        return false;
+    }
+    if (!scenario_world_init(&play->world, &play->scenario, play->planted)) {
+        return report("a run of the hunt could not be built");
+    }
+    hazard_init(&play->hazard, &play->scenario, &play->world);
+    const scenario_watch_t watch = hazard_watch(&play->hazard);
+    scenario_world_watch(&play->world, &watch);
+    scenario_world_watch(&play->world, &guide);
+    run(play);
+    note_closeness(play);
+    return true;
+}

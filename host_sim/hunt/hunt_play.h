@@ -1,0 +1,30 @@
+/**
+ * @file hunt_play.h
+ * Plays a program of a hunt on the simulated bus, has it judged, and notes what was seen.
+ */
+#ifndef HOST_SIM_HUNT_PLAY_H
+#define HOST_SIM_HUNT_PLAY_H
+
+#include "hunt/hazard/hazard.h"
+#include "hunt/hunt_program.h"
+
+enum { HUNT_FEATURES = 16384, HUNT_FEATURE_BYTES = HUNT_FEATURES / 8 };
+
+/** All that one run needs; some 500 KiB: allocate it. */
+typedef struct {
+    campaign_text_t text; /**< the scenario as it was played */
+    scenario_options_t options;
+    scenario_t scenario;
+    scenario_world_t world;
+    hazard_t hazard;
+    uint8_t features[HUNT_FEATURE_BYTES]; /**< one bit for each thing that was seen */
+    uint32_t played_ms;
+    scenario_planted_t planted; /**< SCENARIO_REAL, but in tests */
+} hunt_play_t;
+
+void hunt_play_init(hunt_play_t *play);
+
+/** Play it up to its end or the first hazard. @return false: it is no scenario; reported */
+bool hunt_play(hunt_play_t *play, const hunt_program_t *program);
+
+#endif

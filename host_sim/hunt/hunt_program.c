@@ -1,0 +1,141 @@
+#include "hunt/hunt_program.h"
+
+#include <string.h>
+
+#include "agv/faults.h"
+#include "campaign/chance.h"
+#include "hunt/hunt_draw.h"
+
+enum { SHORT_MIN_MS = 5000, SHORT_MAX_MS = 8000, LONG_MAX_MS = 13000, RATE_DDEG_S = 3000, SLOW_DDEG_S = 300 };
+enum { THROTTLE_MIN_PCT = 10, THROTTLE_MAX_PCT = 100, STEER_MAX_DEG = 90, TICK_SPAN_US = 999 };
+
+void hunt_program_config(const hunt_program_t *program, agv_config_t *config) {
+    agv_config_defaults(config);
+    config->topology = program->gateway ? AGV_TOPOLOGY_GATEWAY : AGV_TOPOLOGY_SHARED;
+    for (uint32_t i = 0u; i < program->setting_count; i++) {
+        (void)agv_config_set(config, program->settings[i].setting, program->settings[i].value);
+    }
+    for (uint32_t i = 0u; i < program->class_count; i++) {
+        const uint32_t fault = program->classes[i];
+        agv_fault_set_put(&config->trips, fault, !agv_fault_is_in(&config->trips, fault));
+    }
+}
+
+static bool is_legal(const hunt_program_t *program) {
+    agv_config_t config;
+
+    hunt_program_config(program, &config);
+    return agv_config_check(&config).problem == AGV_CONFIG_OK;
+}
+
+/** What a supervisor would refuse is taken back. */
+static void make_legal(hunt_program_t *program) {
+    while ((program->setting_count > 0u) && !is_legal(program)) {
+        program->setting_count--;
+    }
+    if (!is_legal(program)) {
+        program->class_count = 0u;
+    }
+}
+
+static void draw_vehicle(hunt_program_t *program, uint64_t *state) {
+    program->gateway = hunt_toss(state, 2u);
+    program->park_guard = !hunt_toss(state, 3u);
+    program->rolls = hunt_toss(state, 6u);
+    program->obeys_short = hunt_toss(state, 4u);
+    program->tick_phase_us = hunt_toss(state, 8u) ? (uint16_t)chance_draw(state, 1u, TICK_SPAN_US) : 0u;
+    program->steering_rate_ddeg_s = hunt_toss(state, 6u) ? SLOW_DDEG_S : RATE_DDEG_S;
+    program->throttle_pct = chance_draw(state, THROTTLE_MIN_PCT, THROTTLE_MAX_PCT);
+    program->steer_deg = (int32_t)chance_draw(state, 0u, 2u * STEER_MAX_DEG) - STEER_MAX_DEG;
+    program->duration_ms = hunt_toss(state, 3u) ? chance_draw(state, SHORT_MAX_MS, LONG_MAX_MS)
+                                                : chance_draw(state, SHORT_MIN_MS, SHORT_MAX_MS);
+}
+
+void hunt_program_make(hunt_program_t *program, uint64_t *state) {
+    memset(program, 0, sizeof *program);
+    draw_vehicle(program, state);
+    for (uint32_t left = hunt_toss(state, 2u) ? chance_draw(state, 1u, 3u) : 0u; left > 0u; left--) {
+        hunt_add_setting(program, state);
+    }
+    if (hunt_toss(state, 4u)) {
+        hunt_add_class(program, state);
+    }
+    for (uint32_t left = chance_draw(state, 1u, 4u); left > 0u; left--) {
+        hunt_add_action(program, state);
+    }
+    if (hunt_toss(state, 3u)) {
+        hunt_add_reset(program, state);
+    }
+    make_legal(program);
+}
+
+static void remove_action(hunt_program_t *program, uint64_t *state) {
+    if (program->action_count > 1u) {
+        const uint32_t i = chance_draw(state, 0u, program->action_count - 1u);
+        program->action_count--;
+        program->actions[i] = program->actions[program->action_count];
+    }
+}
+
+/** Another parameter, or other times. */
+static void change_action(hunt_program_t *program, uint64_t *state) {
+    hunt_action_t *action = &program->actions[chance_draw(state, 0u, program->action_count - 1u)];
+    const uint32_t i = chance_draw(state, 0u, HUNT_PARAMETERS);
+
+    if (i < HUNT_PARAMETERS) {
+        action->parameters[i] = hunt_draw_parameter(&HUNT_ATTACKS[action->attack], i, state);
+    } else {
+        hunt_draw_times(program, action, state);
+    }
+}
+
+/** One of another program, where it makes sense. */
+static void take_action(hunt_program_t *program, const hunt_action_t *given) {
+    const bool fits = ((HUNT_ATTACKS[given->attack].flags & HUNT_GATEWAY) == 0u) || program->gateway;
+
+    if (fits && (program->action_count < (uint32_t)HUNT_ACTIONS_MAX)) {
+        program->actions[program->action_count] = *given;
+        program->action_count++;
+    }
+}
+
+static void change_once(hunt_program_t *program, const hunt_program_t *other, uint64_t *state) {
+    const hunt_action_t *given = &other->actions[chance_draw(state, 0u, other->action_count - 1u)];
+
+    switch (chance_draw(state, 0u, 8u)) {
+    case 0u:
+    case 1u:
+        hunt_add_action(program, state);
+        break;
+    case 2u:
+        remove_action(program, state);
+        break;
+    case 3u:
+        take_action(program, given);
+        break;
+    case 4u:
+        hunt_add_setting(program, state);
+        break;
+    case 5u:
+        if (hunt_toss(state, 2u)) {
+            hunt_add_class(program, state);
+        } else {
+            hunt_add_reset(program, state);
+        }
+        break;
+    default:
+        change_action(program, state);
+        break;
+    }
+}
+
+void hunt_program_mutate(hunt_program_t *program, const hunt_program_t *other, uint64_t *state) {
+    for (uint32_t left = chance_draw(state, 1u, 3u); left > 0u; left--) {
+        change_once(program, other, state);
+    }
+    for (uint32_t i = 0u; i < program->action_count; i++) {
+        hunt_action_t *action = &program->actions[i];
+        action->end_ms = (action->end_ms < program->duration_ms) ? action->end_ms : program->duration_ms;
+    }
+    make_legal(program);
+}

@@ -1,0 +1,214 @@
+/* The search: pieces of runs, each with a corpus of programs that showed something new. */
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "campaign/chance.h"
+#include "hunt/hunt.h"
+#include "hunt/hunt_state.h"
+#include "io/interrupt.h"
+#include "ui/progress.h"
+
+enum { CORPUS_MAX = 256, RANDOM_PERCENT = 35, PERCENT = 100, MS_PER_S = 1000, MS_PER_MIN = 60000, NS_PER_MS = 1000000 };
+enum { LOOK_EVERY = 16 };
+
+/** All of it. */
+typedef struct {
+    const hunt_request_t *request;
+    hunt_state_t state;
+    hunt_play_t play;
+    uint8_t seen[HUNT_FEATURE_BYTES]; /**< in this piece */
+    hunt_program_t corpus[CORPUS_MAX];
+    uint32_t corpus_count;
+    uint64_t began_ms;
+    uint64_t done; /**< runs, in this start of the program */
+    uint64_t virtual_ms;
+    output_t file;
+    progress_t progress;
+} hunt_t;
+
+/** How a part of it went. */
+typedef enum { GOES_ON, OVER, INTERRUPTED, FAILED } went_t;
+
+void hunt_list_hazards(void) {
+    for (int kind = (int)HAZARD_NONE + 1; kind < (int)HAZARD_KINDS; kind++) {
+        const hazard_info_t *info = hazard_info((hazard_kind_t)kind);
+        (void)printf("%s  %s\n    safe: %s\n", info->name, info->meaning, info->safe);
+    }
+}
+
+static uint64_t real_ms(void) {
+    struct timespec now;
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    return ((uint64_t)now.tv_sec * MS_PER_S) + ((uint64_t)now.tv_nsec / NS_PER_MS);
+}
+
+static uint64_t spent_ms(const hunt_t *hunt) {
+    return hunt->state.spent_ms + (real_ms() - hunt->began_ms);
+}
+
+/** Whether a run showed what no run of the piece did before. */
+static bool is_new(hunt_t *hunt) {
+    bool new = false;
+
+    for (size_t i = 0u; i < HUNT_FEATURE_BYTES; i++) {
+        const uint8_t more = (uint8_t)(hunt->play.features[i] & (uint8_t)~hunt->seen[i]);
+        new = new || (more != 0u);
+        hunt->seen[i] |= more;
+    }
+    return new;
+}
+
+static void draw_program(hunt_t *hunt, hunt_program_t *program, uint64_t *random) {
+    if ((hunt->corpus_count == 0u) || (chance_draw(random, 1u, PERCENT) <= (uint32_t)RANDOM_PERCENT)) {
+        hunt_program_make(program, random);
+        return;
+    }
+    *program = hunt->corpus[chance_draw(random, 0u, hunt->corpus_count - 1u)];
+    hunt_program_mutate(program, &hunt->corpus[chance_draw(random, 0u, hunt->corpus_count - 1u)], random);
+}
+
+static void learn(hunt_t *hunt, const hunt_program_t *program, uint64_t *random) {
+    if (!is_new(hunt)) {
+        return;
+    }
+    if (hunt->corpus_count < (uint32_t)CORPUS_MAX) {
+        hunt->corpus[hunt->corpus_count] = *program;
+        hunt->corpus_count++;
+    } else {
+        hunt->corpus[chance_draw(random, 0u, CORPUS_MAX - 1u)] = *program;
+    }
+}
+
+/** @return false: reported */
+static bool run_one(hunt_t *hunt, uint64_t run, uint64_t *random) {
+    const hunt_place_t place = {.folder = hunt->request->folder,
+                                .seed = hunt->request->seed,
+                                .run = run,
+                                .spent_ms = spent_ms(hunt),
+                                .file = &hunt->file};
+    hunt_program_t program;
+
+    draw_program(hunt, &program, random);
+    if (!hunt_play(&hunt->play, &program)) {
+        return report("run %" PRIu64 ": its scenario makes no sense", run);
+    }
+    hunt->done++;
+    hunt->virtual_ms += hunt->play.played_ms;
+    if (hunt->play.hazard.kind == HAZARD_NONE) {
+        learn(hunt, &program, random);
+        return true;
+    }
+    return hunt_found_take(&hunt->state.found, &hunt->play, &program, &place);
+}
+
+static void show_progress(hunt_t *hunt) {
+    if (hunt->request->minutes != UINT64_MAX) {
+        progress_show(&hunt->progress, spent_ms(hunt) / MS_PER_S, "seconds");
+    } else {
+        progress_show(&hunt->progress, hunt->done, "runs");
+    }
+}
+
+static bool is_time_over(const hunt_t *hunt) {
+    return (hunt->request->minutes != UINT64_MAX) && (spent_ms(hunt) >= hunt->request->minutes * MS_PER_MIN);
+}
+
+/** A piece of the whole, by its number. */
+static went_t run_piece(hunt_t *hunt, uint64_t piece) {
+    uint64_t random = hunt->request->seed;
+    const uint64_t first = piece * HUNT_PIECE_RUNS;
+
+    random = chance_next(&random) ^ piece;
+    memset(hunt->seen, 0, sizeof hunt->seen);
+    hunt->corpus_count = 0u;
+    for (uint64_t i = 0u; (i < HUNT_PIECE_RUNS) && (first + i < hunt->request->runs); i++) {
+        if (!run_one(hunt, first + i, &random)) {
+            return FAILED;
+        }
+        show_progress(hunt);
+        if ((i % LOOK_EVERY) == 0u) {
+            if (interrupt_pending()) {
+                return INTERRUPTED;
+            }
+            if (is_time_over(hunt)) {
+                return OVER;
+            }
+        }
+    }
+    return GOES_ON;
+}
+
+static went_t run_all(hunt_t *hunt) {
+    const hunt_request_t *request = hunt->request;
+    went_t went = GOES_ON;
+
+    while (went == GOES_ON) {
+        const uint64_t piece = (hunt->state.pieces * request->shards) + request->shard - 1u;
+        if (piece * HUNT_PIECE_RUNS >= request->runs) {
+            return OVER;
+        }
+        went = run_piece(hunt, piece);
+        if (went == GOES_ON) {
+            hunt->state.pieces++;
+            hunt->state.spent_ms = spent_ms(hunt);
+            hunt->began_ms = real_ms();
+            went = hunt_state_save(request, &hunt->state, &hunt->file) ? GOES_ON : FAILED;
+        }
+    }
+    return went;
+}
+
+static uint64_t total_of(const hunt_request_t *request) {
+    const uint64_t total =
+        (request->minutes != UINT64_MAX) ? request->minutes * (MS_PER_MIN / MS_PER_S) : request->runs / request->shards;
+    return (total > 0u) ? total : 1u;
+}
+
+static status_t conclude(const hunt_t *hunt, uint64_t took_ms) {
+    const hunt_found_t *found = &hunt->state.found;
+
+    (void)printf("%" PRIu64 " runs, %" PRIu64 " simulated seconds, took %" PRIu64 " s; %" PRIu64
+                 " runs with a hazard, %" PRIu32 " different ones\n",
+                 hunt->done, hunt->virtual_ms / MS_PER_S, took_ms / MS_PER_S, found->runs, found->count);
+    (void)fflush(stdout); /* also when a signal that came ends the program */
+    return (found->count == 0u) ? STATUS_OK : STATUS_UNMET;
+}
+
+static status_t go(hunt_t *hunt) {
+    if (!hunt_state_load(hunt->request, &hunt->state)) {
+        return STATUS_UNUSABLE;
+    }
+    interrupt_hold();
+    hunt->began_ms = real_ms();
+    const uint64_t start_ms = hunt->began_ms;
+    progress_begin(&hunt->progress, total_of(hunt->request));
+    const went_t went = run_all(hunt);
+    progress_end(&hunt->progress);
+    if (went == FAILED) {
+        return STATUS_UNUSABLE;
+    }
+    if (went == INTERRUPTED) {
+        note("interrupted after %" PRIu64 " runs%s", hunt->done,
+             (hunt->request->checkpoint != NULL) ? "; the same command goes on" : "");
+    }
+    return conclude(hunt, real_ms() - start_ms);
+}
+
+status_t hunt_run(const hunt_request_t *request) {
+    hunt_t *hunt = calloc(1u, sizeof *hunt);
+
+    if (hunt == NULL) {
+        (void)report("out of memory");
+        return STATUS_UNUSABLE;
+    }
+    hunt->request = request;
+    hunt_play_init(&hunt->play);
+    const status_t status = go(hunt);
+    output_discard(&hunt->file);
+    free(hunt);
+    interrupt_release();
+    return status;
+}

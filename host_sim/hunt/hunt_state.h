@@ -1,0 +1,24 @@
+/**
+ * @file hunt_state.h
+ * Checkpoints of a hunt: how many pieces are done, and what was found in them.
+ */
+#ifndef HOST_SIM_HUNT_STATE_H
+#define HOST_SIM_HUNT_STATE_H
+
+#include "hunt/hunt.h"
+#include "hunt/hunt_found.h"
+
+/** What is kept. */
+typedef struct {
+    uint64_t pieces; /**< of this shard that are done */
+    uint64_t spent_ms;
+    hunt_found_t found;
+} hunt_state_t;
+
+/** Write it. Nothing without a checkpoint. @return false: reported */
+bool hunt_state_save(const hunt_request_t *request, const hunt_state_t *state, output_t *file);
+
+/** Go on from the checkpoint, if there is one. @return false: it is none of this hunt; reported */
+bool hunt_state_load(const hunt_request_t *request, hunt_state_t *state);
+
+#endif

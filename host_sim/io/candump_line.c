@@ -1,0 +1,269 @@
+#include "io/candump_line.h"
+
+#include <stdbool.h>
+#include <string.h>
+
+/*
+ * Every scan stops at the line feed after the line: it belongs to no class of characters below, so no scan needs a
+ * bound of its own.
+ */
+
+enum { NO_DIGIT = 16 };
+
+#define EXTENDED_ID_MAX 0x1FFFFFFFu
+#define STANDARD_ID_MAX 0x7FFu
+#define ERROR_FLAG 0x20000000u
+#define SECONDS_DIGITS_MAX 12u
+#define DATA_MAX 8u
+#define FD_DATA_MAX 64u
+#define US_PER_S 1000000u
+
+/* One more than the value of a hexadecimal digit; 0 for what is none. */
+static const uint8_t digit_plus_1[256] = {
+    ['0'] = 1,  ['1'] = 2,  ['2'] = 3,  ['3'] = 4,  ['4'] = 5,  ['5'] = 6,  ['6'] = 7,  ['7'] = 8,
+    ['8'] = 9,  ['9'] = 10, ['A'] = 11, ['B'] = 12, ['C'] = 13, ['D'] = 14, ['E'] = 15, ['F'] = 16,
+    ['a'] = 11, ['b'] = 12, ['c'] = 13, ['d'] = 14, ['e'] = 15, ['f'] = 16,
+};
+
+/** Value of a hexadecimal digit; NO_DIGIT or more for what is none. */
+static inline uint32_t digit(char character) {
+    return (digit_plus_1[(unsigned char)character] + 255u) & 0xFFu;
+}
+
+static inline bool is_decimal(char character) {
+    return (character >= '0') && (character <= '9');
+}
+
+static const char *parse_fraction(const char **cursor, uint64_t *us) {
+    const char *at = *cursor;
+    uint32_t value = 0u;
+    uint32_t count = 0u;
+    for (; is_decimal(*at); at++) {
+        value = (count < 6u) ? ((value * 10u) + (uint32_t)(*at - '0')) : value;
+        count++;
+    }
+    if ((count != 6u) && (count != 9u)) {
+        return "the time stamp has neither 6 nor 9 decimals";
+    }
+    *us = value;
+    *cursor = at;
+    return NULL;
+}
+
+static const char *parse_stamp(const char **cursor, uint64_t *stamp_us) {
+    const char *at = *cursor;
+    if (*at != '(') {
+        return "the line does not begin with a time stamp in parentheses";
+    }
+    at++;
+    const char *seconds_at = at;
+    uint64_t seconds = 0u;
+    for (; is_decimal(*at) && ((size_t)(at - seconds_at) < SECONDS_DIGITS_MAX); at++) {
+        seconds = (seconds * 10u) + (uint64_t)(*at - '0');
+    }
+    if ((at == seconds_at) || (*at != '.')) {
+        return "the time stamp is no number of seconds with decimals";
+    }
+    at++;
+    uint64_t us = 0u;
+    const char *wrong = parse_fraction(&at, &us);
+    if (wrong != NULL) {
+        return wrong;
+    }
+    if ((at[0] != ')') || (at[1] != ' ')) {
+        return "the time stamp is not closed by a parenthesis and a blank";
+    }
+    *stamp_us = (seconds * US_PER_S) + us;
+    *cursor = &at[2];
+    return NULL;
+}
+
+static const char *parse_interface(const char **cursor, candump_record_t *record) {
+    const char *at = *cursor;
+    while (*at == ' ') {
+        at++;
+    }
+    record->interface = at;
+    while ((*at > ' ') && (*at < 0x7F)) {
+        at++;
+    }
+    record->interface_length = (size_t)(at - record->interface);
+    if ((record->interface_length == 0u) || (*at != ' ')) {
+        return "there is no name of an interface, or nothing after it";
+    }
+    if (record->interface_length > CANDUMP_INTERFACE_MAX) {
+        return "the name of the interface is longer than 15 characters";
+    }
+    *cursor = &at[1];
+    return NULL;
+}
+
+static const char *parse_id(const char **cursor, hal_can_frame_t *frame) {
+    const char *at = *cursor;
+    uint32_t id = 0u;
+    size_t count = 0u;
+    for (uint32_t value = digit(*at); (value < NO_DIGIT) && (count < 9u); value = digit(*at)) {
+        id = (id << 4u) | value;
+        count++;
+        at++;
+    }
+    if (*at != '#') {
+        return "there is no hexadecimal identifier with a # after it";
+    }
+    *cursor = &at[1];
+    if (count == 3u) {
+        frame->id = id;
+        return (id <= STANDARD_ID_MAX) ? NULL : "the identifier is above 7FF";
+    }
+    if (count != 8u) {
+        return (count == 5u) ? "CAN XL frames are not supported" : "the identifier has neither 3 nor 8 digits";
+    }
+    bool is_error = (id & ERROR_FLAG) != 0u;
+    frame->flags = is_error ? HAL_CAN_ERROR : HAL_CAN_EXTENDED;
+    frame->id = is_error ? (id & ~ERROR_FLAG) : id;
+    return (frame->id <= EXTENDED_ID_MAX) ? NULL : "the identifier is above 1FFFFFFF";
+}
+
+/** Skip a raw DLC, "_9" to "_F", if there is one. */
+static void skip_raw_dlc(const char **cursor) {
+    const char *at = *cursor;
+    if (at[0] == '_') {
+        uint32_t dlc = digit(at[1]);
+        *cursor = ((dlc > DATA_MAX) && (dlc < NO_DIGIT)) ? &at[2] : at;
+    }
+}
+
+static void parse_remote(const char **cursor, hal_can_frame_t *frame) {
+    frame->flags |= HAL_CAN_REMOTE;
+    uint32_t length = digit(**cursor);
+    if (length <= DATA_MAX) {
+        frame->length = (uint8_t)length;
+        (*cursor)++;
+    }
+    if (frame->length == DATA_MAX) {
+        skip_raw_dlc(cursor);
+    }
+}
+
+static const char *parse_data(const char **cursor, hal_can_frame_t *frame, uint32_t most) {
+    const char *at = *cursor;
+    uint32_t length = 0u;
+    for (;;) {
+        uint32_t high = digit(at[0]);
+        if (high >= NO_DIGIT) {
+            break;
+        }
+        uint32_t low = digit(at[1]);
+        if (low >= NO_DIGIT) {
+            return "the data has an odd number of digits";
+        }
+        if (length >= most) {
+            return (most == DATA_MAX) ? "the data is longer than 8 bytes" : "the data is longer than 64 bytes";
+        }
+        if (length < DATA_MAX) {
+            frame->data[length] = (uint8_t)((high << 4u) | low);
+        }
+        length++;
+        at += 2;
+    }
+    frame->length = (uint8_t)length;
+    *cursor = at;
+    return NULL;
+}
+
+static const char *parse_payload(const char **cursor, hal_can_frame_t *frame) {
+    const char *at = *cursor;
+    if ((*at == 'R') && ((frame->flags & HAL_CAN_ERROR) == 0u)) {
+        (*cursor)++;
+        parse_remote(cursor, frame);
+        return NULL;
+    }
+    if (*at != '#') {
+        const char *wrong = parse_data(cursor, frame, DATA_MAX);
+        if ((wrong == NULL) && (frame->length == DATA_MAX)) {
+            skip_raw_dlc(cursor);
+        }
+        return wrong;
+    }
+    if ((frame->flags & HAL_CAN_ERROR) != 0u) {
+        return "an error frame is not CAN FD";
+    }
+    if (digit(at[1]) >= NO_DIGIT) {
+        return "the flags of a CAN FD frame are missing";
+    }
+    frame->flags |= HAL_CAN_FD;
+    *cursor = &at[2];
+    return parse_data(cursor, frame, FD_DATA_MAX);
+}
+
+const char *candump_parse(const char *line, size_t length, candump_record_t *record) {
+    const char *at = line;
+    (void)memset(&record->frame, 0, sizeof record->frame);
+    const char *wrong = parse_stamp(&at, &record->stamp_us);
+    if (wrong == NULL) {
+        wrong = parse_interface(&at, record);
+    }
+    if (wrong == NULL) {
+        wrong = parse_id(&at, &record->frame);
+    }
+    if (wrong == NULL) {
+        wrong = parse_payload(&at, &record->frame);
+    }
+    if (wrong != NULL) {
+        return wrong;
+    }
+    if ((at[0] == ' ') && ((at[1] == 'R') || (at[1] == 'T'))) {
+        at += 2;
+    }
+    at += (*at == '\r') ? 1 : 0;
+    return (at == &line[length]) ? NULL : "there is something after the frame that does not belong there";
+}
+
+static char *put_decimal(char *to, uint64_t value, uint32_t least_digits) {
+    char digits[20];
+    uint32_t count = 0u;
+    do {
+        digits[count] = (char)('0' + (char)(value % 10u));
+        value /= 10u;
+        count++;
+    } while (value != 0u);
+    while (count < least_digits) {
+        digits[count] = '0';
+        count++;
+    }
+    while (count > 0u) {
+        count--;
+        *to = digits[count];
+        to++;
+    }
+    return to;
+}
+
+static char *put_hex(char *to, uint32_t value, uint32_t digits) {
+    for (uint32_t left = digits; left > 0u; left--) {
+        *to = "0123456789ABCDEF"[(value >> (4u * (left - 1u))) & 0xFu];
+        to++;
+    }
+    return to;
+}
+
+size_t candump_write(char *line, uint64_t stamp_us, const char *interface, const hal_can_frame_t *frame) {
+    char *to = line;
+    *to++ = '(';
+    to = put_decimal(to, stamp_us / US_PER_S, 10u);
+    *to++ = '.';
+    to = put_decimal(to, stamp_us % US_PER_S, 6u);
+    *to++ = ')';
+    *to++ = ' ';
+    size_t length = strlen(interface);
+    (void)memcpy(to, interface, length);
+    to += length;
+    *to++ = ' ';
+    to = put_hex(to, frame->id, ((frame->flags & HAL_CAN_EXTENDED) != 0u) ? 8u : 3u);
+    *to++ = '#';
+    for (uint32_t i = 0u; (i < frame->length) && (i < DATA_MAX); i++) {
+        to = put_hex(to, frame->data[i], 2u);
+    }
+    *to++ = '\n';
+    return (size_t)(to - line);
+}

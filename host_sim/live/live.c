@@ -1,0 +1,214 @@
+#include "live/live.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "config/config_text.h"
+#include "hal_linux/linux_can.h"
+#include "hal_linux/linux_loop.h"
+#include "io/events.h"
+#include "io/sent_log.h"
+#include "live/live_files.h"
+#include "live/live_output.h"
+#include "live/live_status.h"
+#include "live/node.h"
+#include "ui/summary.h"
+
+enum { US_PER_MS = 1000, US_PER_S = 1000000, NS_PER_US = 1000 };
+
+/** The files that are written. */
+enum { OUT, EVENTS, OUTPUTS };
+
+/** A run. Some 1 MiB: on the heap. */
+typedef struct {
+    const live_request_t *request;
+    node_t *node;
+    linux_loop_t loop;
+    bool loop_is_open;
+    live_files_t files;
+    uint64_t opened_us; /**< when the node was opened, by the time of day */
+    bool tripped;       /**< at any time */
+    bool is_terminal;   /**< standard output is one, and free for the status line */
+    live_status_t status;
+    live_output_t outputs[OUTPUTS];
+    sent_log_t sent;
+} live_t;
+
+static void on_event(void *ctx, const session_event_t *event) {
+    live_t *live = ctx;
+    const bool is_state = !event->is_led && (event->recorded.kind == (uint8_t)AGV_EVENT_STATE);
+    live->tripped = live->tripped || (is_state && agv_state_is_latched((agv_state_t)event->recorded.b));
+    if (live_output_has_room(&live->outputs[EVENTS])) {
+        events_write(&live->outputs[EVENTS].lines, event);
+    }
+}
+
+static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t at_us) {
+    live_t *live = ctx;
+    if (live_output_has_room(&live->outputs[OUT])) {
+        sent_log_add(&live->sent, side, frame, live->opened_us + at_us);
+    }
+}
+
+static uint64_t time_of_day_us(void) {
+    struct timespec now = {0};
+    (void)clock_gettime(CLOCK_REALTIME, &now);
+    return ((uint64_t)now.tv_sec * US_PER_S) + ((uint64_t)now.tv_nsec / NS_PER_US);
+}
+
+static bool open_outputs(live_t *live) {
+    const live_request_t *request = live->request;
+    const char *const paths[OUTPUTS] = {[OUT] = request->out, [EVENTS] = request->events};
+    bool stdout_is_free = true;
+    for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
+        if ((paths[i] != NULL) && !live_output_open(&live->outputs[i], paths[i])) {
+            return false;
+        }
+        stdout_is_free = stdout_is_free && ((paths[i] == NULL) || !output_is_stdout(paths[i]));
+    }
+    live->is_terminal = stdout_is_free && (isatty(STDOUT_FILENO) == 1);
+    live->sent.output = &live->outputs[OUT].lines;
+    for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
+        const char *interface = request->interfaces[side];
+        if (interface != NULL) {
+            sent_log_heard(&live->sent, (hal_can_side_t)side, interface, strlen(interface));
+        }
+    }
+    return true;
+}
+
+/** Everything that can fail comes before the supervisor starts. @return false: reported. */
+static bool prepare(live_t *live) {
+    const live_request_t *request = live->request;
+    const node_config_t node = {
+        .config = &request->config,
+        .interfaces =
+            {[HAL_CAN_VEHICLE] = request->interfaces[HAL_CAN_VEHICLE], [HAL_CAN_AI] = request->interfaces[HAL_CAN_AI]},
+        .on_event = on_event,
+        .on_sent = on_sent,
+        .ctx = live,
+    };
+    char error[LINUX_LOOP_ERROR_SIZE];
+    if (request->realtime && !linux_loop_realtime(error)) {
+        return report("%s", error);
+    }
+    live->node = node_open(&node);
+    if ((live->node == NULL) || !open_outputs(live)) {
+        return false;
+    }
+    live->opened_us = time_of_day_us() - node_now_us(live->node);
+    live->loop_is_open = linux_loop_open(&live->loop);
+    if (!live->loop_is_open || !linux_loop_align(&live->loop, node_now_us(live->node))) {
+        return report("the timer of the ticks cannot be had: %s", strerror(errno));
+    }
+    if (!live_files_follow(&live->files, &live->loop, live->node)) {
+        return false;
+    }
+    config_note_deviations(&request->config);
+    return live_output_begin(&live->outputs[OUT]) && live_output_begin(&live->outputs[EVENTS]);
+}
+
+/** What is for people and files comes when the supervisor has done its part. */
+static void tell(live_t *live, uint64_t now_ms) {
+    for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
+        live_output_pass(&live->outputs[i]);
+    }
+    if (live->is_terminal) {
+        live_status_show(&live->status, node_session(live->node), now_ms);
+    }
+}
+
+/** Run until a signal comes, or the time is over. A signal ends it before another call of the core. */
+static bool run(live_t *live) {
+    const uint64_t end_ms = (live->request->for_ms == LIVE_FOREVER) ? UINT64_MAX : live->request->for_ms;
+    uint64_t now_ms = 0u;
+    bool good = true;
+    node_start(live->node);
+    while (good && (now_ms < end_ms)) {
+        tell(live, now_ms);
+        const uint32_t what = linux_loop_wait(&live->loop);
+        now_ms = node_now_us(live->node) / US_PER_MS;
+        if (((what & LINUX_LOOP_SIGNAL) != 0u) || (now_ms >= end_ms)) {
+            break;
+        }
+        if ((what & LINUX_LOOP_TICK) == 0u) {
+            node_receive(live->node);
+        } else if (node_tick(live->node)) {
+            good = live_files_follow(&live->files, &live->loop, live->node);
+        }
+    }
+    return good;
+}
+
+static void print_summary(const live_t *live, const events_summary_t *summary) {
+    const char *ai = live->request->interfaces[HAL_CAN_AI];
+    char more[LINUX_CAN_NAME_MAX + sizeof ", "] = "";
+    if (ai != NULL) {
+        (void)snprintf(more, sizeof more, ", %s", ai);
+    }
+    summary_print_time(summary, live->request->interfaces[HAL_CAN_VEHICLE], more);
+    summary_print_frames(summary, live->request->config.shadow == AGV_SHADOW_ON);
+    (void)printf("warnings: %" PRIu32 "\n", summary->counters.warnings);
+    summary_print_state(summary);
+}
+
+static bool uses_stdout(const char *path) {
+    return (path != NULL) && output_is_stdout(path);
+}
+
+/** The supervisor has ended: write what comes last. @return false: reported. */
+static bool conclude(live_t *live, const events_summary_t *summary) {
+    const live_request_t *request = live->request;
+    if (request->events != NULL) {
+        events_write_summary(&live->outputs[EVENTS].lines, summary);
+    }
+    live_status_end(&live->status);
+    bool good = true;
+    for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
+        good = live_output_end(&live->outputs[i]) && good;
+    }
+    if (good && !uses_stdout(request->events) && !uses_stdout(request->out)) {
+        print_summary(live, summary);
+    }
+    return good;
+}
+
+/** The run from the first frame to the last. */
+static status_t run_prepared(live_t *live) {
+    events_summary_t summary;
+    bool good = run(live);
+    node_finish(live->node);
+    events_summarise(node_session(live->node), &summary);
+    node_close(live->node); /* nothing leaves from here on */
+    live->node = NULL;
+    good = conclude(live, &summary) && good;
+    if (!good) {
+        return STATUS_UNUSABLE;
+    }
+    return (live->tripped && live->request->fail_on_trip) ? STATUS_UNMET : STATUS_OK;
+}
+
+status_t live_run(const live_request_t *request) {
+    live_t *live = calloc(1u, sizeof *live);
+    if (live == NULL) {
+        (void)report("out of memory");
+        return STATUS_UNUSABLE;
+    }
+    live->request = request;
+    live_files_none(&live->files);
+    const status_t status = prepare(live) ? run_prepared(live) : STATUS_UNUSABLE;
+    node_close(live->node);
+    if (live->loop_is_open) {
+        linux_loop_close(&live->loop);
+    }
+    for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
+        output_discard(&live->outputs[i].lines);
+    }
+    free(live);
+    return status;
+}

@@ -1,0 +1,35 @@
+/**
+ * @file live.h
+ * The supervisor alone as a node on SocketCAN, in real time.
+ */
+#ifndef HOST_SIM_LIVE_H
+#define HOST_SIM_LIVE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "agv/config.h"
+#include "hal/can.h"
+#include "io/report.h"
+
+/** As a time to run for: until a signal comes. */
+#define LIVE_FOREVER 0u
+
+/** What to run. */
+typedef struct {
+    const char *interfaces[HAL_CAN_SIDES]; /**< the AI side: NULL on the shared bus */
+    const char *out;                       /**< log of what was sent; NULL: none */
+    const char *events;                    /**< NULL: none */
+    uint64_t for_ms;                       /**< or LIVE_FOREVER */
+    bool fail_on_trip;
+    bool realtime; /**< SCHED_FIFO, memory locked */
+    agv_config_t config;
+} live_request_t;
+
+/**
+ * Run until SIGINT, SIGTERM or SIGHUP, or for so long. The files are written line by line as things happen.
+ * @return STATUS_OK; STATUS_UNMET when it tripped and that is a failure; STATUS_UNUSABLE, which was reported.
+ */
+status_t live_run(const live_request_t *request);
+
+#endif

@@ -1,0 +1,137 @@
+#include "live/node.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "agv/protocol.h"
+#include "hal_linux/linux_hal.h"
+#include "io/report.h"
+
+enum { US_PER_MS = 1000, ID_SETS = 3, IDS_MAX = (int)AGV_MSG_COUNT * ID_SETS + 1 };
+
+/** Frames that are handed over before the next tick has its turn, whatever comes in: more than a bus carries in 20 ms. */
+enum { FRAMES_AT_ONCE = 256 };
+
+struct node {
+    node_config_t given;
+    agv_config_t config;
+    uint16_t ids[IDS_MAX];
+    size_t id_count;
+    hal_t hal;
+    session_t session;
+};
+
+static void add_id(node_t *node, uint16_t id) {
+    for (size_t i = 0u; i < node->id_count; i++) {
+        if (node->ids[i] == id) {
+            return;
+        }
+    }
+    node->ids[node->id_count] = id;
+    node->id_count++;
+}
+
+/** What the kernel lets through: the protocol as configured and in both ID sets, as the supervisor watches for the other
+ * one (P1). */
+static void choose_ids(node_t *node) {
+    agv_ids_t ids;
+    agv_config_ids(&node->config, &ids);
+    for (int message = 0; message < (int)AGV_MSG_COUNT; message++) {
+        add_id(node, ids.of[message]);
+        add_id(node, agv_message_id((agv_message_t)message, AGV_ID_SET_HEADING));
+        add_id(node, agv_message_id((agv_message_t)message, AGV_ID_SET_TABLE));
+    }
+    if (node->config.status_frame_id != 0u) {
+        add_id(node, node->config.status_frame_id);
+    }
+}
+
+static void on_left(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t at_us) {
+    const node_t *node = ctx;
+    if (node->given.on_sent != NULL) {
+        node->given.on_sent(node->given.ctx, side, frame, at_us);
+    }
+}
+
+static bool open_port(node_t *node) {
+    char error[LINUX_CAN_ERROR_SIZE];
+    const linux_hal_config_t port = {
+        .interfaces = {[HAL_CAN_VEHICLE] = node->given.interfaces[HAL_CAN_VEHICLE],
+                       [HAL_CAN_AI] = node->given.interfaces[HAL_CAN_AI]},
+        .ids = node->ids,
+        .id_count = node->id_count,
+        .on_left = on_left,
+        .ctx = node,
+    };
+    return linux_hal_open(&node->hal, &port, error) ? true : report("%s", error);
+}
+
+node_t *node_open(const node_config_t *config) {
+    node_t *node = calloc(1u, sizeof *node);
+    if (node == NULL) {
+        (void)report("out of memory");
+        return NULL;
+    }
+    node->given = *config;
+    node->config = *config->config;
+    choose_ids(node);
+    if (!open_port(node)) {
+        free(node);
+        return NULL;
+    }
+    session_init(&node->session, &node->hal);
+    if (config->on_event != NULL) {
+        (void)session_observe(&node->session, config->on_event, config->ctx);
+    }
+    return node;
+}
+
+/** Milliseconds since the node was opened; what happens now happens at that time, whenever its cause arrived. */
+static uint64_t now_ms(const node_t *node) {
+    return node_now_us(node) / US_PER_MS;
+}
+
+void node_start(node_t *node) {
+    session_start(&node->session, &node->config, now_ms(node), hal_clock_now_ms(&node->hal));
+}
+
+int node_fd(const node_t *node, hal_can_side_t side) {
+    return linux_hal_fd(&node->hal, side);
+}
+
+void node_receive(node_t *node) {
+    hal_can_side_t side = HAL_CAN_VEHICLE;
+    hal_can_frame_t frame;
+    uint64_t at_us = 0u;
+    for (int i = 0; (i < FRAMES_AT_ONCE) && linux_hal_receive(&node->hal, &side, &frame, &at_us); i++) {
+        session_frame(&node->session, side, &frame, now_ms(node));
+    }
+}
+
+bool node_tick(node_t *node) {
+    node_receive(node);
+    const bool changed = linux_hal_tick(&node->hal);
+    session_tick(&node->session, now_ms(node), hal_clock_now_ms(&node->hal));
+    return changed;
+}
+
+uint64_t node_now_us(const node_t *node) {
+    return linux_hal_now_us(&node->hal);
+}
+
+const session_t *node_session(const node_t *node) {
+    return &node->session;
+}
+
+void node_finish(node_t *node) {
+    if (node != NULL) {
+        linux_hal_finish(&node->hal);
+    }
+}
+
+void node_close(node_t *node) {
+    if (node != NULL) {
+        linux_hal_close(&node->hal);
+        free(node);
+    }
+}

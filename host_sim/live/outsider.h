@@ -1,0 +1,58 @@
+/**
+ * @file outsider.h
+ * A supervisor that is another program, on the same CAN interfaces: the firmware as a program of a computer, for one.
+ *
+ * A command starts it. It tells its events on standard output, as JSON Lines (events.h); other lines are no matter. What
+ * it sends is what is heard on the interfaces and was not sent by the vehicle, which has to be told here.
+ */
+#ifndef HOST_SIM_OUTSIDER_H
+#define HOST_SIM_OUTSIDER_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "hal/can.h"
+#include "hal_linux/linux_clock.h"
+#include "live/node.h"
+#include "session/session.h"
+
+typedef struct outsider outsider_t;
+
+/** How one is made. */
+typedef struct {
+    const char *command;                   /**< for the shell */
+    const char *interfaces[HAL_CAN_SIDES]; /**< the AI side: NULL on the shared bus */
+    const linux_clock_t *clock;            /**< of all times */
+    session_observer_fn *on_event;
+    node_sent_fn *on_sent; /**< at_us by the clock */
+    void *ctx;             /**< of both */
+} outsider_config_t;
+
+/**
+ * Listen on the interfaces. The program does not run yet.
+ * @return NULL: that was reported
+ */
+outsider_t *outsider_open(const outsider_config_t *config);
+
+/** Start the program. @return false: reported */
+bool outsider_start(outsider_t *outsider);
+
+/** Wait until it has told something; it is there then. @return false: it did not for long, or ended; reported */
+bool outsider_wait(outsider_t *outsider);
+
+/** The vehicle has sent a frame. */
+void outsider_vehicle_sent(outsider_t *outsider, hal_can_side_t side, const hal_can_frame_t *frame);
+
+/**
+ * Tell what was heard; every millisecond, after all of outsider_vehicle_sent().
+ * @return false: it has ended, or more was heard than there is room for; reported
+ */
+bool outsider_listen(outsider_t *outsider);
+
+/** Whether it said last that its safety output is closed. */
+bool outsider_output_closed(const outsider_t *outsider);
+
+/** Stop it, and listen no more; NULL: nothing. */
+void outsider_close(outsider_t *outsider);
+
+#endif

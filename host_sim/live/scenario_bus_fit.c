@@ -1,0 +1,230 @@
+/* What of a scenario can be shown on a real bus, and how strictly its times hold there. */
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "agv/protocol.h"
+#include "live/scenario_bus.h"
+
+enum { PATH_SIZE = 64 };
+
+/** Why a step of the supervisor or the bus cannot be played; NULL: it can. */
+static const char *const left_out_steps[] = {
+    [SCENARIO_TX_STALL] = "stall_tx: nothing holds the frames of a real interface back",
+    [SCENARIO_TX_SWALLOW] = "swallow_tx: nothing swallows the frames of a real interface",
+    [SCENARIO_QUEUE_FULL] = "fill_queue: the queue of a real interface cannot be filled on demand",
+    [SCENARIO_DELIVER] = "deliver: on a real bus every frame passes the wire",
+    [SCENARIO_CORRUPT_LATCH] = "corrupt_latch: the memory of the node is not reached from outside",
+    [SCENARIO_FLIP_BIT] = "flip_bit: the memory of the node is not reached from outside",
+    [SCENARIO_CORRUPT_FRAMES] = "destroy: frames on a real bus cannot be destroyed",
+};
+
+/** A virtual interface has no controller of its own: whoever sends its error frames plays it. */
+static bool is_virtual(const char *interface) {
+    char path[PATH_SIZE];
+    struct stat found;
+    (void)snprintf(path, sizeof path, "/sys/devices/virtual/net/%s", interface);
+    return stat(path, &found) == 0;
+}
+
+static const char *why_not_controller(const scenario_bus_t *bus, const scenario_action_t *action) {
+    const char *interface = bus->interfaces[action->side];
+    return ((interface == NULL) || is_virtual(interface))
+               ? NULL
+               : "bus_off, overrun, error_passive: played on a virtual interface only";
+}
+
+/** In bus-off a virtual interface goes on hearing: no matter but for an AI side of which nothing is heard for too long. */
+static const char *why_not_bus_off(const scenario_bus_t *bus, const scenario_t *scenario,
+                                   const scenario_action_t *action) {
+    if ((action->side == HAL_CAN_AI) &&
+        (scenario->config.bus_off_recovery_ms >= scenario->config.steering_command_timeout_ms)) {
+        return "bus_off: a virtual interface goes on hearing the AI computer";
+    }
+    return why_not_controller(bus, action);
+}
+
+/** Nobody reaches into another program, nor plays its controller. */
+static const char *why_not_of_outsider(const scenario_action_t *action) {
+    switch (action->what) {
+    case SCENARIO_RESTART:
+        return "restart: another program takes its time to start";
+    case SCENARIO_HANG:
+        return "hang: another program is not held up";
+    case SCENARIO_BUS_OFF:
+    case SCENARIO_OVERRUN:
+    case SCENARIO_ERROR_PASSIVE:
+        return "bus_off, overrun, error_passive: not played to another program";
+    default:
+        return NULL;
+    }
+}
+
+static const char *why_not_step(const scenario_bus_t *bus, const scenario_t *scenario,
+                                const scenario_action_t *action) {
+    const char *why = (bus->command != NULL) ? why_not_of_outsider(action) : NULL;
+    if (why != NULL) {
+        return why;
+    }
+    switch (action->what) {
+    case SCENARIO_RESTART:
+        return (action->cause == HAL_RESET_POWER_ON) ? NULL : "restart: a program starts by power-on only";
+    case SCENARIO_HANG:
+        return ((scenario->watchdog_ms == UINT32_MAX) || (action->ms < scenario->config.watchdog_period_ms))
+                   ? NULL
+                   : "hang: a computer has no hardware watchdog that bites";
+    case SCENARIO_BUS_OFF:
+        return why_not_bus_off(bus, scenario, action);
+    case SCENARIO_OVERRUN:
+    case SCENARIO_ERROR_PASSIVE:
+        return why_not_controller(bus, action);
+    default:
+        return left_out_steps[action->what];
+    }
+}
+
+static const char *why_not_vehicle(const vehicle_action_t *action) {
+    const bool is_fd = (action->what == VEHICLE_DO_SEND) && ((action->frame.flags & HAL_CAN_FD) != 0u);
+    return is_fd ? "send, kind: fd: the interfaces are taken for classic ones" : NULL;
+}
+
+static const char *why_not_start(const scenario_t *scenario) {
+    if (scenario->bitrate != SCENARIO_DEFAULT_BITRATE) {
+        return "bitrate: a real interface has its own";
+    }
+    if (scenario->clock_start_ms != 0u) {
+        return "clock_start_ms: the clock of a node starts at 0";
+    }
+    if (scenario->tick_phase_us != 0u) {
+        return "tick_phase_us: a computer ticks when it can";
+    }
+    if (scenario->reset_cause != HAL_RESET_POWER_ON) {
+        return "reset_cause: a program starts by power-on only";
+    }
+    return scenario->self_test_passed ? NULL : "self_test: the self-test of a node cannot be made to fail";
+}
+
+/** Faults that need a wire on which somebody has to acknowledge. */
+static const char *why_not_faults(const scenario_expect_t *expect) {
+    for (size_t i = 0u; i < expect->faults.count; i++) {
+        if (expect->faults.items[i].fault == AGV_FAULT_TX_STALLED) {
+            return "TX_STALLED: a virtual interface takes every frame, acknowledged or not";
+        }
+    }
+    return NULL;
+}
+
+/** On the AI side that is AI_BUS_OFF, which bus-off is, too. */
+static const char *why_not_ai_side(const scenario_t *scenario) {
+    bool expected = false;
+    for (size_t i = 0u; i < scenario->expect.faults.count; i++) {
+        expected = expected || (scenario->expect.faults.items[i].fault == AGV_FAULT_AI_BUS_OFF);
+    }
+    for (size_t i = 0u; i < scenario->step_count; i++) {
+        const scenario_step_t *step = &scenario->steps[i];
+        expected = expected && (step->of_vehicle || (step->supervisor.what != SCENARIO_BUS_OFF));
+    }
+    return expected ? "AI_BUS_OFF: a virtual interface takes every frame, acknowledged or not" : NULL;
+}
+
+/** Whether a frame is one that the kernel hands over to the supervisor (node.c). */
+static bool is_of_protocol(const scenario_t *scenario, uint32_t id) {
+    return (agv_ids_find(&scenario->ids, id) != AGV_MSG_NONE) || (id == scenario->config.status_frame_id) ||
+           (agv_message_from_id(id, AGV_ID_SET_HEADING) != AGV_MSG_NONE) ||
+           (agv_message_from_id(id, AGV_ID_SET_TABLE) != AGV_MSG_NONE);
+}
+
+/** What the supervisor counts of frames that it is not given here. */
+static const char *why_not_counters(const scenario_t *scenario) {
+    static const char *const of_received[] = {"received", "dropped", "rejected_extended", "rejected_remote"};
+    bool foreign = false;
+    for (size_t i = 0u; i < scenario->step_count; i++) {
+        const scenario_step_t *step = &scenario->steps[i];
+        foreign = foreign || (step->of_vehicle && (step->vehicle.what == VEHICLE_DO_SEND) &&
+                              !is_of_protocol(scenario, step->vehicle.frame.id));
+    }
+    for (size_t i = 0u; foreign && (i < scenario->expect.counters.count); i++) {
+        const scenario_counter_t *counter = &scenario->expect.counters.items[i];
+        for (size_t name = 0u; name < sizeof of_received / sizeof of_received[0]; name++) {
+            if ((counter->value.from > 0u) && (strcmp(counter->name, of_received[name]) == 0)) {
+                return "counters_at_end: the kernel keeps frames that are none of the protocol to itself";
+            }
+        }
+    }
+    return NULL;
+}
+
+const char *scenario_bus_leaves_out(const scenario_bus_t *bus, const scenario_t *scenario) {
+    const char *why = why_not_start(scenario);
+    for (size_t i = 0u; (why == NULL) && (i < scenario->step_count); i++) {
+        const scenario_step_t *step = &scenario->steps[i];
+        why = step->of_vehicle ? why_not_vehicle(&step->vehicle) : why_not_step(bus, scenario, &step->supervisor);
+    }
+    why = (why != NULL) ? why : why_not_faults(&scenario->expect);
+    why = (why != NULL) ? why : why_not_ai_side(scenario);
+    if ((why == NULL) && (scenario->expect.no_hazards != 0u)) {
+        why = "hazards: they are judged by the inside of the simulated vehicle";
+    }
+    return (why != NULL) ? why : why_not_counters(scenario);
+}
+
+/** Something is expected at some moment in it. */
+static void widen(scenario_window_t *window, uint32_t by_ms) {
+    window->from = (window->from > by_ms) ? window->from - by_ms : 0u;
+    window->to = (window->to < UINT32_MAX - by_ms) ? window->to + by_ms : UINT32_MAX;
+}
+
+/** Something holds all the time in it, from a change to a change; one that is shorter than both edges is not judged. */
+static void narrow(scenario_window_t *window, uint32_t by_ms, uint32_t end_ms) {
+    window->from += (window->from > 0u) ? by_ms : 0u;
+    window->to -= ((window->to < end_ms) && (window->to > by_ms)) ? by_ms : 0u;
+    if (window->from > window->to) {
+        *window = (scenario_window_t){.from = UINT32_MAX, .to = 0u};
+    }
+}
+
+static void tolerate_frames(scenario_t *scenario, uint32_t by_ms) {
+    scenario_expect_t *expect = &scenario->expect;
+    for (size_t i = 0u; i < expect->frames.count; i++) {
+        scenario_frame_t *frame = &expect->frames.items[i];
+        if (frame->every_ms != 0u) {
+            narrow(&frame->at_ms, by_ms, scenario->duration_ms);
+            frame->jitter_ms += by_ms;
+        } else if (frame->count.to == UINT32_MAX) {
+            widen(&frame->at_ms, by_ms);
+        } else {
+            /* as many as that fall into just this time */
+        }
+    }
+    for (size_t i = 0u; i < expect->never.count; i++) {
+        narrow(&expect->never.items[i].at_ms, by_ms, scenario->duration_ms);
+    }
+}
+
+void scenario_bus_tolerate(const scenario_bus_t *bus, scenario_t *scenario) {
+    const uint32_t tolerance_ms = bus->tolerance_ms;
+    scenario_expect_t *expect = &scenario->expect;
+    if (bus->command != NULL) {
+        expect->counters.count = 0u;
+    }
+    tolerate_frames(scenario, tolerance_ms);
+    for (size_t i = 0u; i < expect->states.count; i++) {
+        widen(&expect->states.items[i].at_ms, tolerance_ms);
+    }
+    for (size_t i = 0u; i < expect->outputs.count; i++) {
+        widen(&expect->outputs.items[i].at_ms, tolerance_ms);
+    }
+    for (size_t i = 0u; i < expect->leds.count; i++) {
+        narrow(&expect->leds.items[i].at_ms, tolerance_ms, scenario->duration_ms);
+    }
+    for (size_t i = 0u; i < expect->faults.count; i++) {
+        widen(&expect->faults.items[i].raised_ms, tolerance_ms);
+        widen(&expect->faults.items[i].ended_ms, tolerance_ms);
+    }
+    for (size_t i = 0u; i < expect->resets.count; i++) {
+        widen(&expect->resets.items[i].at_ms, tolerance_ms);
+    }
+    for (size_t i = 0u; i < expect->startups.count; i++) {
+        widen(&expect->startups.items[i].at_ms, tolerance_ms);
+    }
+}

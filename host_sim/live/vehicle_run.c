@@ -1,0 +1,238 @@
+#include "live/vehicle_run.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "hal_linux/linux_clock.h"
+#include "hal_linux/linux_loop.h"
+#include "live/typed_lines.h"
+#include "live/vehicle_bus.h"
+#include "ui/vehicle_show.h"
+
+enum { ENGAGE_MS = 1500, ENGAGE_AGAIN_MS = 500, THROTTLE_PERMILLE = 300, MS_PER_S = 1000, LINES_AT_ONCE = 16 };
+
+/** A run. */
+typedef struct {
+    const vehicle_run_request_t *request;
+    linux_clock_t clock;
+    linux_loop_t loop;
+    vehicle_bus_t bus;
+    vehicle_show_t show;
+    typed_lines_t typed;
+    size_t next_fault;
+    uint64_t engage_ms; /**< when the operator engages the autopilot; UINT64_MAX: no more */
+    bool was_refused;
+    bool has_more_typed;  /**< lines may be left that were not taken yet */
+    bool waits_for_typed; /**< the loop tells of typed lines; else they are looked for with every tick */
+    bool was_down[HAL_CAN_SIDES];
+    bool quits;
+} run_t;
+
+/** Do what a fault or a typed line says. */
+static void act(run_t *run, const vehicle_words_t *words) {
+    const vehicle_action_t *action = &words->step.vehicle;
+
+    const bool done = vehicle_bus_do(&run->bus, action);
+    vehicle_show_event(&run->show, run->bus.now_ms, words->step.actor, "%s", words->what);
+    if ((action->what == VEHICLE_DO_ENGAGE) || (action->what == VEHICLE_DO_DISENGAGE)) {
+        run->engage_ms = UINT64_MAX; /* somebody else operates now */
+    }
+    if (!done) {
+        vehicle_show_clear(&run->show, false);
+        (void)report("%s %s: not done; %u strangers send already", words->step.actor, words->what,
+                     VEHICLE_STRANGERS_MAX);
+    }
+}
+
+static void act_on_faults(run_t *run, uint64_t now_ms) {
+    const vehicle_run_request_t *request = run->request;
+
+    while ((run->next_fault < request->fault_count) && (request->faults[run->next_fault].step.at_ms <= now_ms)) {
+        run->next_fault++;
+        act(run, &request->faults[run->next_fault - 1u]);
+    }
+}
+
+static void be_told(run_t *run, vehicle_do_t what) {
+    const vehicle_action_t action = {.what = what, .gear = AGV_GEAR_D, .throttle_permille = THROTTLE_PERMILLE};
+    (void)vehicle_bus_do(&run->bus, &action);
+}
+
+/** The operator engages the autopilot; while the bus commands autopilot off he tries again. */
+static void operate(run_t *run, uint64_t now_ms) {
+    const vehicle_t *vehicle = &run->bus.vehicle;
+
+    if (now_ms < run->engage_ms) {
+        return;
+    }
+    run->engage_ms = now_ms + ENGAGE_AGAIN_MS;
+    if (!vehicle->nodes[VEHICLE_VCU].running) {
+        return;
+    }
+    be_told(run, VEHICLE_DO_ENGAGE);
+    if (vehicle->vcu.autopilot) {
+        vehicle_show_event(&run->show, run->bus.now_ms, "operator", "engage");
+        run->engage_ms = UINT64_MAX;
+    } else if (!run->was_refused) {
+        vehicle_show_event(&run->show, run->bus.now_ms, "operator", "engage: refused, autopilot off is commanded");
+        run->was_refused = true;
+    } else {
+        /* said already */
+    }
+}
+
+static void show_links(run_t *run) {
+    for (unsigned side = 0u; side < (unsigned)HAL_CAN_SIDES; side++) {
+        if (run->bus.is_down[side] != run->was_down[side]) {
+            run->was_down[side] = run->bus.is_down[side];
+            vehicle_show_event(&run->show, run->bus.now_ms, run->request->interfaces[side], "the interface is %s",
+                               run->was_down[side] ? "down" : "up again");
+        }
+    }
+}
+
+/** Look at the vehicle, and print what has changed. */
+static void show(run_t *run) {
+    vehicle_view_t view;
+
+    vehicle_bus_view(&run->bus, &view);
+    show_links(run);
+    vehicle_show_view(&run->show, run->bus.now_ms, &view);
+}
+
+/** A line was typed. */
+static void obey(run_t *run, const char *line) {
+    vehicle_words_t words;
+
+    vehicle_show_clear(&run->show, true);
+    if (line[strspn(line, " \t")] == '\0') {
+        return;
+    }
+    if (strcmp(line, "quit") == 0) {
+        run->quits = true;
+    } else if (strcmp(line, "help") == 0) {
+        vehicle_words_help();
+    } else if (strcmp(line, "status") == 0) {
+        show(run);
+        vehicle_show_status(&run->show);
+    } else if (vehicle_words_typed(line, &run->request->config, &words)) {
+        act(run, &words);
+    } else {
+        /* was reported */
+    }
+}
+
+/** Some of the lines that are there: the vehicle drives on while more of them come than can be taken. */
+static void take_typed(run_t *run) {
+    typed_lines_t *typed = &run->typed;
+    const char *line = "";
+
+    if (typed->ended && !run->has_more_typed) {
+        return;
+    }
+    for (unsigned i = 0u; (i < (unsigned)LINES_AT_ONCE) && !run->quits && (line != NULL); i++) {
+        line = typed_lines_next(typed);
+        if (line != NULL) {
+            obey(run, line);
+        }
+    }
+    run->has_more_typed = line != NULL;
+    if (typed->ended && !run->has_more_typed) {
+        linux_loop_remove(&run->loop, typed->fd);
+        run->waits_for_typed = true; /* for nothing, then */
+    }
+}
+
+/**
+ * A millisecond has passed. What has arrived in it is looked at now: the sockets are not waited for, which saves half of
+ * the work, and frames carry the stamps of their arrival. @return false: an interface is gone; was reported
+ */
+static bool tick(run_t *run) {
+    const uint64_t now_ms = vehicle_bus_now_ms(&run->bus);
+
+    act_on_faults(run, now_ms);
+    operate(run, now_ms);
+    const bool there = vehicle_bus_tick(&run->bus);
+    show(run);
+    return there;
+}
+
+static void show_end(run_t *run) {
+    const vehicle_bus_t *bus = &run->bus;
+
+    vehicle_show_clear(&run->show, false);
+    (void)printf("%" PRIu64 ".%03" PRIu64 " s; frames: %" PRIu64 " sent, %" PRIu64 " not taken by the kernel\n",
+                 bus->now_ms / MS_PER_S, bus->now_ms % MS_PER_S, bus->sent, bus->unsent);
+}
+
+/** Nobody has asked for the end, nobody has gone who reads what is printed. */
+static bool goes_on(const run_t *run, uint32_t events) {
+    const uint64_t for_ms = run->request->for_ms;
+
+    return ((events & LINUX_LOOP_SIGNAL) == 0u) && !run->quits && (ferror(stdout) == 0) &&
+           ((for_ms == VEHICLE_RUN_FOREVER) || (run->bus.now_ms < for_ms));
+}
+
+/** Go on until the end. @return false: an interface is gone; was reported */
+static bool go(run_t *run) {
+    uint32_t events = LINUX_LOOP_TICK;
+    bool there = true;
+
+    while (there && goes_on(run, events)) {
+        if ((events & LINUX_LOOP_TICK) != 0u) {
+            there = tick(run);
+        }
+        if (((events & LINUX_LOOP_FILE) != 0u) || !run->waits_for_typed || run->has_more_typed) {
+            take_typed(run);
+        }
+        events = there ? linux_loop_wait(&run->loop) : 0u;
+    }
+    return there;
+}
+
+static bool open_bus(run_t *run) {
+    const vehicle_run_request_t *request = run->request;
+    vehicle_bus_config_t config = {
+        .interfaces =
+            {[HAL_CAN_VEHICLE] = request->interfaces[HAL_CAN_VEHICLE], [HAL_CAN_AI] = request->interfaces[HAL_CAN_AI]},
+        .clock = &run->clock,
+    };
+
+    vehicle_defaults(&config.vehicle);
+    agv_config_ids(&request->config, &config.vehicle.ids);
+    config.vehicle.gateway = request->interfaces[HAL_CAN_AI] != NULL;
+    return vehicle_bus_open(&run->bus, &config);
+}
+
+static bool run_on_bus(run_t *run) {
+    vehicle_view_t view;
+
+    vehicle_bus_view(&run->bus, &view);
+    vehicle_show_init(&run->show, &view);
+    run->waits_for_typed = linux_loop_add(&run->loop, run->typed.fd); /* refused for a file */
+    be_told(run, VEHICLE_DO_AI_DRIVE);
+    const bool good = go(run);
+    show_end(run);
+    return good;
+}
+
+status_t vehicle_run_nodes(const vehicle_run_request_t *request) {
+    run_t run = {.request = request, .engage_ms = request->manual ? UINT64_MAX : ENGAGE_MS};
+    bool good = false;
+
+    typed_lines_init(&run.typed, STDIN_FILENO);
+    if (!linux_loop_open(&run.loop)) {
+        (void)report("the system refuses to wait for time and signals: %s", strerror(errno));
+        return STATUS_UNUSABLE;
+    }
+    linux_clock_start(&run.clock);
+    if (open_bus(&run)) {
+        good = run_on_bus(&run);
+        vehicle_bus_close(&run.bus);
+    }
+    linux_loop_close(&run.loop);
+    return good ? STATUS_OK : STATUS_UNUSABLE;
+}

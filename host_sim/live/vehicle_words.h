@@ -1,0 +1,36 @@
+/**
+ * @file vehicle_words.h
+ * Steps of a scenario (docs/scenarios.md) written as a line: what is typed while the vehicle runs, and `--fault`. Words,
+ * parameters and their ranges are those of scenario files, read by the same code.
+ */
+#ifndef HOST_SIM_VEHICLE_WORDS_H
+#define HOST_SIM_VEHICLE_WORDS_H
+
+#include <stdbool.h>
+
+#include "agv/config.h"
+#include "scenario/scenario.h"
+
+/** The longest line. */
+#define VEHICLE_WORDS_MAX 256u
+
+/** A step of the vehicle, and how it was written. */
+typedef struct {
+    scenario_step_t step;
+    char what[VEHICLE_WORDS_MAX]; /**< "set field=faults value=08h" */
+} vehicle_words_t;
+
+/**
+ * Read a typed line: `eps set field=faults value=08h`. A value with blanks stands in quotes.
+ * @param config its ID set and topology decide what may be named
+ * @return false: it makes no sense; was reported in one line
+ */
+bool vehicle_words_typed(const char *line, const agv_config_t *config, vehicle_words_t *words);
+
+/** Read what follows `--fault`: `eps-set,field=faults,value=08h@3000`. @return as vehicle_words_typed() */
+bool vehicle_words_fault(const char *text, const agv_config_t *config, vehicle_words_t *words);
+
+/** Print who can do what, and what that needs. */
+void vehicle_words_help(void);
+
+#endif

@@ -1,0 +1,97 @@
+/**
+ * @file main.c
+ * The program's front: finds the sub-command and runs it.
+ */
+#include <fcntl.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/commands/commands.h"
+#include "io/report.h"
+
+/** One sub-command, as `--help` lists it. */
+typedef struct {
+    const char *name;
+    const char *help; /**< one line */
+    command_fn *run;
+} command_t;
+
+static const command_t commands[] = {
+    {"campaign", "cause faults at random on the simulated bus, thousands of times, and judge", cmd_campaign},
+    {"config", "print every setting as a configuration file, or a configuration as Kconfig", cmd_config},
+    {"demo", "see the supervisor at work: a vehicle drives off, loses its AI computer, is parked", cmd_demo},
+    {"hunt", "attack the supervisor at random, and search for runs that end in a hazard", cmd_hunt},
+    {"replay", "feed a recorded candump log to the supervisor in virtual time", cmd_replay},
+    {"run", "run the supervisor as a node on SocketCAN, in real time", cmd_run},
+    {"scenario", "play scenario files with a simulated vehicle and judge them", cmd_scenario},
+    {"soak", "let supervisor and vehicle run for months of virtual time, with survivable disturbances", cmd_soak},
+    {"vehicle", "simulate VCU, EPS and AI computer as nodes on SocketCAN", cmd_vehicle},
+};
+
+static const size_t command_count = sizeof commands / sizeof commands[0];
+
+static void print_help(void) {
+    (void)printf("usage: host_sim COMMAND [OPTION]...\n"
+                 "\n"
+                 "The safety supervisor of an AGV's CAN bus, on a computer.\n"
+                 "\n"
+                 "Commands:\n");
+    for (size_t i = 0u; i < command_count; i++) {
+        (void)printf("  %-10s %s\n", commands[i].name, commands[i].help);
+    }
+    (void)printf(
+        "\n"
+        "  --help     print this help; after a command: its options\n"
+        "  --version  print the version\n"
+        "\n"
+        "Exit status: 0 it ran; 1 it ran, and an expectation did not hold; 2 it could not run, and one line on\n"
+        "standard error says why.\n");
+}
+
+static status_t run_command(int argc, char **argv) {
+    for (size_t i = 0u; i < command_count; i++) {
+        if (strcmp(argv[0], commands[i].name) == 0) {
+            return commands[i].run(argc - 1, &argv[1]);
+        }
+    }
+    (void)report("'%s' is no command; see host_sim --help", argv[0]);
+    return STATUS_UNUSABLE;
+}
+
+/**
+ * Occupy standard streams that the caller has closed, so that no file gets their numbers; using them is an error as
+ * before.
+ */
+static void occupy_closed_streams(void) {
+    bool occupied = true;
+    for (int stream = STDIN_FILENO; occupied && (stream <= STDERR_FILENO); stream++) {
+        if (fcntl(stream, F_GETFD) < 0) {
+            occupied = open("/dev/null", (stream == STDIN_FILENO) ? O_WRONLY : O_RDONLY) == stream;
+        }
+    }
+}
+
+int main(int argc, char **argv) {
+    occupy_closed_streams();
+    /* A reader that goes away is a write error like any other, with a message and an exit status. */
+    (void)signal(SIGPIPE, SIG_IGN);
+    (void)signal(SIGXFSZ, SIG_IGN); /* so is a file that may not grow any more */
+    status_t status = STATUS_OK;
+    if (argc < 2) {
+        (void)report("no command given; see host_sim --help");
+        status = STATUS_UNUSABLE;
+    } else if ((strcmp(argv[1], "--help") == 0) || (strcmp(argv[1], "-h") == 0)) {
+        print_help();
+    } else if (strcmp(argv[1], "--version") == 0) {
+        (void)printf("host_sim %s\n", HOST_SIM_VERSION);
+    } else {
+        status = run_command(argc - 1, &argv[1]);
+    }
+    if (!report_stdout() && (status == STATUS_OK)) {
+        status = STATUS_UNUSABLE;
+    }
+    return (int)status;
+}

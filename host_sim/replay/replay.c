@@ -1,0 +1,276 @@
+#include "replay/replay.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "config/config_text.h"
+#include "hal_sim/sim_hal.h"
+#include "io/candump_log.h"
+#include "io/events.h"
+#include "io/interrupt.h"
+#include "io/output.h"
+#include "io/sent_log.h"
+#include "io/store_file.h"
+#include "session/session.h"
+#include "ui/summary.h"
+
+enum { US_PER_MS = 1000, LOOK_FOR_SIGNALS_EVERY = 65536 };
+
+/** The files that are written. */
+enum { OUT, EVENTS, STORE, OUTPUTS };
+
+/** A replay as it runs. Some 2 MiB: on the heap. */
+typedef struct {
+    const replay_request_t *request;
+    uint64_t first_us;     /**< stamp of the first frame */
+    uint64_t last_us;      /**< stamp of the last frame, never going backwards */
+    uint64_t now_us;       /**< of the frame or tick in hand */
+    uint64_t next_tick_us; /**< stamp of the next tick */
+    uint64_t next_tick_ms; /**< and its time since the start */
+    uint64_t backward_stamps;
+    size_t ai_interface_length;
+    bool ai_was_heard;
+    hal_t hal;
+    sim_store_t store;
+    session_t session;
+    sent_log_t sent;
+    output_t outputs[OUTPUTS];
+    candump_log_t log;
+} replay_t;
+
+static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
+    replay_t *replay = ctx;
+    sent_log_add(&replay->sent, side, frame, replay->now_us);
+}
+
+static uint32_t clock_at(const replay_t *replay, uint64_t t_ms) {
+    return replay->request->start_ms + (uint32_t)t_ms;
+}
+
+static bool outputs_work(const replay_t *replay) {
+    return (replay->outputs[OUT].error == 0) && (replay->outputs[EVENTS].error == 0);
+}
+
+/** Run the ticks before a moment, or up to it. @return false: interrupted. */
+static bool run_ticks(replay_t *replay, uint64_t end_us) {
+    while (replay->next_tick_us < end_us) {
+        const uint64_t t_ms = replay->next_tick_ms;
+        const uint32_t clock_ms = clock_at(replay, t_ms);
+        replay->now_us = replay->next_tick_us;
+        sim_hal_set_now_ms(&replay->hal, clock_ms);
+        session_tick(&replay->session, t_ms, clock_ms);
+        replay->next_tick_us += US_PER_MS;
+        replay->next_tick_ms = t_ms + 1u;
+        if (((t_ms % LOOK_FOR_SIGNALS_EVERY) == 0u) && (interrupt_pending() || !outputs_work(replay))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/** Let an error frame act on the simulated controller. Bus-off lasts until the log shows its end. */
+static void act_on_controller(replay_t *replay, hal_can_side_t side, const hal_can_frame_t *frame) {
+    const uint8_t details = ((frame->id & CANDUMP_ERROR_CONTROLLER) != 0u) ? frame->data[1] : 0u;
+    if ((details & CANDUMP_CONTROLLER_RX_OVERFLOW) != 0u) {
+        sim_hal_add_overrun(&replay->hal, side);
+    }
+    if ((frame->id & CANDUMP_ERROR_BUS_OFF) != 0u) {
+        sim_hal_set_can_state(&replay->hal, side, HAL_CAN_BUS_OFF);
+        return;
+    }
+    if (((frame->id & CANDUMP_ERROR_RESTARTED) != 0u) || ((details & CANDUMP_CONTROLLER_ACTIVE) != 0u)) {
+        sim_hal_set_can_state(&replay->hal, side, HAL_CAN_ERROR_ACTIVE);
+    }
+    hal_can_status_t status;
+    hal_can_status(&replay->hal, side, &status);
+    if (status.state == HAL_CAN_BUS_OFF) {
+        return;
+    }
+    if ((details & CANDUMP_CONTROLLER_PASSIVE) != 0u) {
+        sim_hal_set_can_state(&replay->hal, side, HAL_CAN_ERROR_PASSIVE);
+    } else if ((details & CANDUMP_CONTROLLER_WARNING) != 0u) {
+        sim_hal_set_can_state(&replay->hal, side, HAL_CAN_ERROR_ACTIVE);
+    }
+}
+
+/** Which side an interface is; the side's first frame also says how its interface is called. */
+static hal_can_side_t side_of(replay_t *replay, const candump_record_t *record) {
+    const char *ai = replay->request->ai_interface;
+    if ((ai != NULL) && (record->interface_length == replay->ai_interface_length) &&
+        (memcmp(record->interface, ai, replay->ai_interface_length) == 0)) {
+        replay->ai_was_heard = true;
+        return HAL_CAN_AI;
+    }
+    if (replay->sent.interfaces[HAL_CAN_VEHICLE][0] == '\0') {
+        sent_log_heard(&replay->sent, HAL_CAN_VEHICLE, record->interface, record->interface_length);
+    }
+    return HAL_CAN_VEHICLE;
+}
+
+static void hand_over(replay_t *replay, candump_record_t *record, uint64_t t_ms) {
+    const hal_can_side_t side = side_of(replay, record);
+    record->frame.time_ms = clock_at(replay, t_ms);
+    record->frame.time_us = (uint16_t)((record->stamp_us - replay->first_us) % US_PER_MS);
+    sim_hal_set_now_ms(&replay->hal, record->frame.time_ms);
+    if ((record->frame.flags & HAL_CAN_ERROR) != 0u) {
+        act_on_controller(replay, side, &record->frame);
+    }
+    session_frame(&replay->session, side, &record->frame, t_ms);
+}
+
+/** Pass one line of the log. @return false: that was the end, not a good one. */
+static bool pass_record(replay_t *replay, candump_record_t *record) {
+    if (record->stamp_us < replay->last_us) {
+        replay->backward_stamps++;
+        record->stamp_us = replay->last_us;
+    } else if (record->stamp_us - replay->last_us > (uint64_t)REPLAY_GAP_MAX_MS * US_PER_MS) {
+        return candump_reject(&replay->log, "the time stamp is more than 100 days after the one before");
+    }
+    replay->last_us = record->stamp_us;
+    if (!run_ticks(replay, record->stamp_us)) {
+        return false;
+    }
+    replay->now_us = record->stamp_us;
+    const uint64_t t_ms = replay->next_tick_ms - ((record->stamp_us == replay->next_tick_us) ? 0u : 1u);
+    hand_over(replay, record, t_ms);
+    return outputs_work(replay);
+}
+
+/** Pass all lines, the first of which was read already, and the tail. @return false: not all of them. */
+static bool pass_log(replay_t *replay, candump_record_t *record) {
+    candump_result_t result = CANDUMP_RECORD;
+    while (result == CANDUMP_RECORD) {
+        if (!pass_record(replay, record)) {
+            return false;
+        }
+        result = candump_next(&replay->log, record);
+    }
+    return (result == CANDUMP_END) && run_ticks(replay, replay->last_us + (replay->request->tail_ms * US_PER_MS) + 1u);
+}
+
+static void start(replay_t *replay, uint64_t first_us) {
+    const replay_request_t *request = replay->request;
+    const bool is_gateway = request->config.topology == AGV_TOPOLOGY_GATEWAY;
+    const sim_hal_config_t config = {.clock_start_ms = request->start_ms,
+                                     .watchdog_ms = request->config.watchdog_period_ms,
+                                     .reset_cause = request->reset_cause,
+                                     .store = &replay->store};
+    replay->first_us = first_us;
+    replay->last_us = first_us;
+    replay->now_us = first_us;
+    replay->next_tick_us = first_us + US_PER_MS;
+    replay->next_tick_ms = 1u;
+    sim_hal_init_direct(&replay->hal, &config, is_gateway ? 2u : 1u, on_sent, replay);
+    if (request->ai_interface != NULL) {
+        replay->ai_interface_length = strlen(request->ai_interface);
+        sent_log_heard(&replay->sent, HAL_CAN_AI, request->ai_interface, replay->ai_interface_length);
+    }
+    if (replay->outputs[EVENTS].is_open) {
+        (void)session_observe(&replay->session, events_write, &replay->outputs[EVENTS]);
+    }
+    session_start(&replay->session, &request->config, 0u, request->start_ms);
+}
+
+static void print_summary(const replay_t *replay, const events_summary_t *summary) {
+    summary_print_time(summary, replay->log.name, "");
+    summary_print_frames(summary, replay->request->config.shadow == AGV_SHADOW_ON);
+    (void)printf("lines skipped: %" PRIu64 ", stamps that went backwards: %" PRIu64 ", warnings: %" PRIu32 "\n",
+                 summary->skipped_lines, summary->backward_stamps, summary->counters.warnings);
+    summary_print_state(summary);
+}
+
+/** The log is over: write what comes last, put every file in its place. @return false: reported. */
+static bool conclude(replay_t *replay) {
+    const replay_request_t *request = replay->request;
+    events_summary_t summary;
+    events_summarise(&replay->session, &summary);
+    summary.skipped_lines = replay->log.skipped;
+    summary.backward_stamps = replay->backward_stamps;
+    sent_log_finish(&replay->sent);
+    if (request->events != NULL) {
+        events_write_summary(&replay->outputs[EVENTS], &summary);
+    }
+    if (request->store != NULL) {
+        store_file_save(&replay->outputs[STORE], &replay->store, &replay->session.recorder);
+    }
+    const bool good = output_commit_all(replay->outputs, OUTPUTS);
+    if (good && (request->events == NULL) && !output_is_stdout(request->out)) {
+        print_summary(replay, &summary);
+    }
+    if (good && (request->ai_interface != NULL) && !replay->ai_was_heard) {
+        note("no frame in the log is from %s, the AI side", request->ai_interface);
+    }
+    return good;
+}
+
+/** Open what is read and what is written, and read the first frame. @return false: reported. */
+static bool prepare(replay_t *replay, candump_record_t *first) {
+    const replay_request_t *request = replay->request;
+    if (!candump_open(&replay->log, request->log, request->skip_bad_lines)) {
+        return false;
+    }
+    const candump_result_t result = candump_next(&replay->log, first);
+    if (result != CANDUMP_RECORD) {
+        return (result == CANDUMP_END) ? report("%s: there is no frame in it", replay->log.name) : false;
+    }
+    if ((request->store != NULL) && !store_file_load(request->store, &replay->store, &replay->session.recorder)) {
+        return false;
+    }
+    const char *const paths[OUTPUTS] = {[OUT] = request->out, [EVENTS] = request->events, [STORE] = request->store};
+    for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
+        if ((paths[i] != NULL) && !output_open(&replay->outputs[i], paths[i])) {
+            return false;
+        }
+    }
+    replay->sent.output = (request->out != NULL) ? &replay->outputs[OUT] : NULL;
+    config_note_deviations(&request->config);
+    return true;
+}
+
+static bool run(replay_t *replay) {
+    candump_record_t record;
+    if (!prepare(replay, &record)) {
+        return false;
+    }
+    start(replay, record.stamp_us);
+    return pass_log(replay, &record) ? conclude(replay) : output_flush_all(replay->outputs, OUTPUTS) && false;
+}
+
+static bool check_request(const replay_request_t *request) {
+    const bool is_gateway = request->config.topology == AGV_TOPOLOGY_GATEWAY;
+    if (is_gateway && (request->ai_interface == NULL)) {
+        return report("the gateway topology needs --ai-if: which interface of the log is the AI side");
+    }
+    if (!is_gateway && (request->ai_interface != NULL)) {
+        return report("--ai-if is for --topology gateway: on the shared bus there is no AI side");
+    }
+    if ((request->ai_interface != NULL) && (strlen(request->ai_interface) > CANDUMP_INTERFACE_MAX)) {
+        return report("--ai-if: '%s' is longer than the name of any interface", request->ai_interface);
+    }
+    return true;
+}
+
+status_t replay_run(const replay_request_t *request) {
+    if (!check_request(request)) {
+        return STATUS_UNUSABLE;
+    }
+    replay_t *replay = calloc(1u, sizeof *replay);
+    if (replay == NULL) {
+        (void)report("out of memory");
+        return STATUS_UNUSABLE;
+    }
+    replay->request = request;
+    replay->log.fd = -1;
+    sim_store_init(&replay->store);
+    session_init(&replay->session, &replay->hal);
+    const bool good = run(replay);
+    for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
+        output_discard(&replay->outputs[i]);
+    }
+    candump_close(&replay->log);
+    free(replay);
+    interrupt_release();
+    return good ? STATUS_OK : STATUS_UNUSABLE;
+}

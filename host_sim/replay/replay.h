@@ -1,0 +1,42 @@
+/**
+ * @file replay.h
+ * A recorded log, supervised in virtual time.
+ *
+ * Time begins with the stamp of the first frame. Ticks fall on the whole milliseconds after it; a frame is handed over
+ * at its own time, before the tick of the same moment. What a frame causes to be sent carries its stamp, what a tick
+ * causes the tick's. A stamp that goes backwards is taken as the last one.
+ */
+#ifndef HOST_SIM_REPLAY_H
+#define HOST_SIM_REPLAY_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "agv/config.h"
+#include "hal/reset.h"
+#include "io/report.h"
+
+/** The longest tail, and the longest that a log may be silent: a stamp that is later is a bad line. 100 days. */
+#define REPLAY_GAP_MAX_MS 8640000000u
+
+/** What to replay. */
+typedef struct {
+    const char *log;          /**< "-" = standard input */
+    const char *out;          /**< log of what was sent; NULL: none */
+    const char *events;       /**< NULL: none, a summary for people goes to standard output */
+    const char *store;        /**< what outlives a reset; NULL: nothing does */
+    const char *ai_interface; /**< gateway: the AI side; NULL on the shared bus */
+    uint32_t start_ms;        /**< what the supervisor's clock reads at the start */
+    uint64_t tail_ms;         /**< how long to go on after the last line */
+    bool skip_bad_lines;
+    hal_reset_cause_t reset_cause;
+    agv_config_t config;
+} replay_request_t;
+
+/**
+ * Replay. Files are written as a whole at the end, or not at all.
+ * @return STATUS_OK when it ran, whatever the supervisor made of it; else STATUS_UNUSABLE, which was reported.
+ */
+status_t replay_run(const replay_request_t *request);
+
+#endif

@@ -1,0 +1,136 @@
+/* The words that steps are made of. A new action is a row here; a new parameter a bit in the header and a name here. */
+#include "scenario/scenario_actions.h"
+
+#include <string.h>
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+const yaml_word_t SCENARIO_ACTORS[] = {{"vcu", ACTOR_VCU}, {"eps", ACTOR_EPS},
+                                       {"ai", ACTOR_AI},   {"operator", ACTOR_OPERATOR},
+                                       {"bus", ACTOR_BUS}, {"supervisor", ACTOR_SUPERVISOR},
+                                       {NULL, ACTOR_NONE}};
+
+static const scenario_action_row_t ACTIONS[] = {
+    {ACTOR_NONE, "start", true, true, VEHICLE_DO_START, 0u, 0u},
+    {ACTOR_NONE, "stop", true, false, VEHICLE_DO_STOP, 0u, 0u},
+    {ACTOR_NONE, "restart", true, true, VEHICLE_DO_RESTART, P_OFF_MS, 0u},
+    {ACTOR_NONE, "freeze_counter", true, true, VEHICLE_DO_FREEZE, 0u, 0u},
+    {ACTOR_NONE, "run_counter", true, false, VEHICLE_DO_UNFREEZE, 0u, 0u},
+    {ACTOR_NONE, "lag", true, true, VEHICLE_DO_LAG, P_BY_MS, 0u},
+    {ACTOR_NONE, "repeat", true, true, VEHICLE_DO_REPEAT, P_TIMES, 0u},
+    {ACTOR_NONE, "garbage", true, true, VEHICLE_DO_GARBAGE, P_KIND, 0u},
+    {ACTOR_NONE, "recover", true, true, VEHICLE_DO_RECOVER, 0u, 0u},
+    {ACTOR_NONE, "mute", true, true, VEHICLE_DO_MUTE, P_MESSAGE, P_FRAMES | P_EVERY_FRAMES},
+    {ACTOR_NONE, "unmute", true, false, VEHICLE_DO_UNMUTE, P_MESSAGE, 0u},
+    {ACTOR_NONE, "send_every", true, true, VEHICLE_DO_PERIOD, P_MESSAGE | P_EVERY_MS, 0u},
+    {ACTOR_NONE, "delay", true, true, VEHICLE_DO_DELAY, P_MESSAGE | P_BY_MS, 0u},
+    {ACTOR_NONE, "set", true, true, VEHICLE_DO_PATCH, P_FIELD | P_VALUE, P_FRAMES | P_EVERY_FRAMES},
+    {ACTOR_NONE, "set_bytes", true, true, VEHICLE_DO_PATCH, P_MESSAGE | P_BYTES, P_FRAMES | P_EVERY_FRAMES},
+    {ACTOR_NONE, "freeze_field", true, true, VEHICLE_DO_HOLD, P_FIELD, P_FRAMES | P_EVERY_FRAMES},
+    {ACTOR_NONE, "unset", true, false, VEHICLE_DO_UNPATCH, P_MESSAGE, 0u},
+    {ACTOR_VCU, "ignore", true, true, VEHICLE_DO_IGNORE, P_MESSAGE, 0u},
+    {ACTOR_VCU, "obey", true, false, VEHICLE_DO_IGNORE, P_MESSAGE, 0u},
+    {ACTOR_VCU, "ramp_throttle", true, true, VEHICLE_DO_VCU_RAMP, P_PCT_S, 0u},
+    {ACTOR_VCU, "roll", true, true, VEHICLE_DO_VCU_ROLL, 0u, P_SPEED},
+    {ACTOR_VCU, "hold", true, false, VEHICLE_DO_VCU_ROLL, 0u, 0u},
+    {ACTOR_VCU, "refuse_park", true, true, VEHICLE_DO_VCU_REFUSE_PARK, 0u, 0u},
+    {ACTOR_VCU, "take_park", true, false, VEHICLE_DO_VCU_REFUSE_PARK, 0u, 0u},
+    {ACTOR_VCU, "be_sloppy", true, true, VEHICLE_DO_VCU_SLOPPY, 0u, 0u},
+    {ACTOR_VCU, "be_strict", true, false, VEHICLE_DO_VCU_SLOPPY, 0u, 0u},
+    {ACTOR_AI, "drive", true, true, VEHICLE_DO_AI_DRIVE, P_GEAR | P_THROTTLE, P_STEER},
+    {ACTOR_AI, "idle", true, false, VEHICLE_DO_AI_IDLE, 0u, 0u},
+    {ACTOR_AI, "be_stubborn", true, true, VEHICLE_DO_AI_STUBBORN, 0u, 0u},
+    {ACTOR_AI, "be_obedient", true, false, VEHICLE_DO_AI_STUBBORN, 0u, 0u},
+    {ACTOR_AI, "ask_autopilot_off", true, true, VEHICLE_DO_AI_AUTOPILOT_OFF, 0u, 0u},
+    {ACTOR_AI, "ask_nothing", true, false, VEHICLE_DO_AI_AUTOPILOT_OFF, 0u, 0u},
+    {ACTOR_AI, "weave", true, true, VEHICLE_DO_AI_WEAVE, P_STEER | P_EVERY_MS, 0u},
+    {ACTOR_AI, "stop_weaving", true, false, VEHICLE_DO_AI_WEAVE, 0u, 0u},
+    {ACTOR_EPS, "ignore", true, true, VEHICLE_DO_IGNORE, P_MESSAGE, 0u},
+    {ACTOR_EPS, "obey", true, false, VEHICLE_DO_IGNORE, P_MESSAGE, 0u},
+    {ACTOR_EPS, "hunt", true, true, VEHICLE_DO_EPS_HUNT, P_STEER | P_EVERY_MS, 0u},
+    {ACTOR_EPS, "stop_hunting", true, false, VEHICLE_DO_EPS_HUNT, 0u, 0u},
+    {ACTOR_EPS, "stick", true, true, VEHICLE_DO_EPS_STUCK, 0u, 0u},
+    {ACTOR_EPS, "unstick", true, false, VEHICLE_DO_EPS_STUCK, 0u, 0u},
+    {ACTOR_OPERATOR, "engage", true, true, VEHICLE_DO_ENGAGE, 0u, 0u},
+    {ACTOR_OPERATOR, "disengage", true, false, VEHICLE_DO_DISENGAGE, 0u, 0u},
+    {ACTOR_OPERATOR, "press", true, true, VEHICLE_DO_BUTTON, P_BUTTON, 0u},
+    {ACTOR_OPERATOR, "release", true, false, VEHICLE_DO_BUTTON, P_BUTTON, 0u},
+    {ACTOR_OPERATOR, "drive", true, true, VEHICLE_DO_REMOTE_DRIVE, P_GEAR | P_THROTTLE, 0u},
+    {ACTOR_OPERATOR, "steer", true, true, VEHICLE_DO_HAND_STEER, P_STEER, 0u},
+    {ACTOR_OPERATOR, "lose_remote_signal", true, false, VEHICLE_DO_REMOTE_SIGNAL, 0u, 0u},
+    {ACTOR_OPERATOR, "regain_remote_signal", true, true, VEHICLE_DO_REMOTE_SIGNAL, 0u, 0u},
+    {ACTOR_OPERATOR, "lose_remote_power", true, false, VEHICLE_DO_REMOTE_POWER, 0u, 0u},
+    {ACTOR_OPERATOR, "regain_remote_power", true, true, VEHICLE_DO_REMOTE_POWER, 0u, 0u},
+    {ACTOR_BUS, "send", true, true, VEHICLE_DO_SEND, P_BYTES,
+     P_ID | P_MESSAGE | P_SIDE | P_KIND | P_EVERY_MS | P_TIMES},
+    {ACTOR_BUS, "stop_sending", true, false, VEHICLE_DO_STOP_SENDING, 0u, 0u},
+    {ACTOR_BUS, "destroy", false, true, SCENARIO_CORRUPT_FRAMES, P_FRAMES, P_SIDE},
+    {ACTOR_BUS, "deliver", false, true, SCENARIO_DELIVER, P_BYTES | P_KIND, P_ID | P_MESSAGE | P_SIDE},
+    {ACTOR_SUPERVISOR, "restart", false, true, SCENARIO_RESTART, P_CAUSE, P_OFF_MS},
+    {ACTOR_SUPERVISOR, "hang", false, true, SCENARIO_HANG, P_FOR_MS, 0u},
+    {ACTOR_SUPERVISOR, "bus_off", false, true, SCENARIO_BUS_OFF, 0u, P_SIDE},
+    {ACTOR_SUPERVISOR, "stall_tx", false, true, SCENARIO_TX_STALL, 0u, P_SIDE},
+    {ACTOR_SUPERVISOR, "free_tx", false, false, SCENARIO_TX_STALL, 0u, P_SIDE},
+    {ACTOR_SUPERVISOR, "swallow_tx", false, true, SCENARIO_TX_SWALLOW, 0u, P_SIDE},
+    {ACTOR_SUPERVISOR, "pass_tx", false, false, SCENARIO_TX_SWALLOW, 0u, P_SIDE},
+    {ACTOR_SUPERVISOR, "fill_queue", false, true, SCENARIO_QUEUE_FULL, 0u, P_SIDE},
+    {ACTOR_SUPERVISOR, "free_queue", false, false, SCENARIO_QUEUE_FULL, 0u, P_SIDE},
+    {ACTOR_SUPERVISOR, "overrun", false, true, SCENARIO_OVERRUN, 0u, P_SIDE},
+    {ACTOR_SUPERVISOR, "error_passive", false, true, SCENARIO_ERROR_PASSIVE, 0u, P_SIDE},
+    {ACTOR_SUPERVISOR, "error_active", false, false, SCENARIO_ERROR_PASSIVE, 0u, P_SIDE},
+    {ACTOR_SUPERVISOR, "corrupt_latch", false, true, SCENARIO_CORRUPT_LATCH, 0u, 0u},
+    {ACTOR_SUPERVISOR, "flip_bit", false, true, SCENARIO_FLIP_BIT, P_BIT, 0u},
+};
+
+static const scenario_field_row_t FIELDS[] = {
+    {"speed", ACTOR_VCU, AGV_MSG_VEHICLE_STATUS, 0u, 2u, 0xFFu, 0u},
+    {"alarms", ACTOR_VCU, AGV_MSG_VEHICLE_STATUS, 4u, 1u, 0xFFu, 0u},
+    {"level2_alarms", ACTOR_VCU, AGV_MSG_VEHICLE_STATUS, 5u, 1u, 0xFFu, 0u},
+    {"mode_bits", ACTOR_VCU, AGV_MSG_VEHICLE_STATUS, 6u, 1u, 0xC0u, 6u},
+    {"counter", ACTOR_VCU, AGV_MSG_VEHICLE_STATUS, 7u, 1u, 0xFFu, 0u},
+    {"gear", ACTOR_VCU, AGV_MSG_GEAR_STATUS, 0u, 1u, 0xFFu, 0u},
+    {"throttle", ACTOR_VCU, AGV_MSG_THROTTLE_STATUS, 0u, 1u, 0xFFu, 0u},
+    {"left_speed", ACTOR_VCU, AGV_MSG_WHEEL_SPEED, 0u, 4u, 0xFFu, 0u},
+    {"right_speed", ACTOR_VCU, AGV_MSG_WHEEL_SPEED, 4u, 4u, 0xFFu, 0u},
+    {"faults", ACTOR_EPS, AGV_MSG_EPS_STATUS, 7u, 1u, 0xFFu, 0u},
+    {"mode", ACTOR_EPS, AGV_MSG_EPS_STATUS, 3u, 1u, 0xFFu, 0u},
+    {"angle", ACTOR_EPS, AGV_MSG_STEERING_STATUS, 2u, 2u, 0xFFu, 0u},
+    {"counter", ACTOR_EPS, AGV_MSG_STEERING_STATUS, 0u, 1u, 0xFFu, 0u},
+    {"gear", ACTOR_AI, AGV_MSG_GEAR_COMMAND, 0u, 1u, 0xFFu, 0u},
+    {"throttle", ACTOR_AI, AGV_MSG_THROTTLE_COMMAND, 0u, 1u, 0xFFu, 0u},
+    {"angle", ACTOR_AI, AGV_MSG_STEERING_COMMAND, 0u, 2u, 0xFFu, 0u},
+    {"counter", ACTOR_AI, AGV_MSG_TURN_SIGNAL_COMMAND, 7u, 1u, 0xFFu, 0u},
+};
+
+const char *const SCENARIO_PARAMETER_NAMES[SCENARIO_PARAMETERS] = {
+    "message", "frames", "by_ms",        "times",        "kind",   "every_ms",  "bytes", "field",
+    "value",   "gear",   "throttle_pct", "steer_deg",    "button", "side",      "id",    "cause",
+    "off_ms",  "for_ms", "bit",          "every_frames", "pct_s",  "speed_mm_s"};
+
+const scenario_action_row_t *scenario_action(size_t number) {
+    return (number < COUNT(ACTIONS)) ? &ACTIONS[number] : NULL;
+}
+
+const scenario_field_row_t *scenario_field(size_t number) {
+    return (number < COUNT(FIELDS)) ? &FIELDS[number] : NULL;
+}
+
+const scenario_action_row_t *scenario_find_action(scenario_actor_t actor, const char *word) {
+    for (size_t i = 0u; i < COUNT(ACTIONS); i++) {
+        const scenario_action_row_t *row = &ACTIONS[i];
+        const bool mine = (row->actor == actor) || ((row->actor == ACTOR_NONE) && (actor <= ACTOR_AI));
+        if (mine && (strcmp(row->word, word) == 0)) {
+            return row;
+        }
+    }
+    return NULL;
+}
+
+const scenario_field_row_t *scenario_find_field(scenario_actor_t actor, const char *name) {
+    for (size_t i = 0u; i < COUNT(FIELDS); i++) {
+        if ((FIELDS[i].actor == actor) && (strcmp(FIELDS[i].name, name) == 0)) {
+            return &FIELDS[i];
+        }
+    }
+    return NULL;
+}

@@ -1,0 +1,397 @@
+/* Judging: states, faults, resets, outputs, the vehicle. */
+#include "scenario/scenario_check.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "agv/names.h"
+
+enum { MISSING_BITS = 10, MISSING_TEXT_SIZE = 160, NOT_YET = -128 };
+
+void scenario_check_fail(scenario_check_t *check, size_t line, const char *format, ...) {
+    if (check->failure_count < SCENARIO_FAILURES_MAX) {
+        char *text = check->failures[check->failure_count];
+        const int used = (line != 0u) ? snprintf(text, SCENARIO_FAILURE_SIZE, "line %zu: ", line) : 0;
+        va_list arguments;
+        va_start(arguments, format);
+        (void)vsnprintf(&text[used], SCENARIO_FAILURE_SIZE - (size_t)used, format, arguments);
+        va_end(arguments);
+    }
+    check->failure_count++;
+}
+
+static bool is_in(uint32_t t_ms, scenario_window_t window) {
+    return (t_ms >= window.from) && (t_ms <= window.to);
+}
+
+void scenario_check_window_text(scenario_window_t window, char text[40]) {
+    if (window.from == window.to) {
+        (void)snprintf(text, 40, "at %u ms", (unsigned)window.from);
+    } else {
+        (void)snprintf(text, 40, "in %u..%u ms", (unsigned)window.from, (unsigned)window.to);
+    }
+}
+
+static const char *name_of(agv_fault_t fault) {
+    const char *name = agv_fault_name(fault);
+    return (name != NULL) ? name : "no reason";
+}
+
+static const char *state_of(uint8_t state) {
+    const char *name = agv_state_name((agv_state_t)state);
+    return (name != NULL) ? name : "?";
+}
+
+void scenario_check_init(scenario_check_t *check, const scenario_t *scenario) {
+    const scenario_expect_t *expect = &scenario->expect;
+
+    memset(check, 0, sizeof *check);
+    check->scenario = scenario;
+    check->led_code = NOT_YET;
+    check->expectation_count = expect->states.count + expect->frames.count + expect->never.count +
+                               expect->outputs.count + expect->leds.count + expect->faults.count +
+                               expect->resets.count + expect->startups.count + expect->vehicle.count +
+                               expect->counters.count + ((expect->no_hazards != 0u) ? 1u : 0u);
+    scenario_check_frames_init(check);
+}
+
+static void check_state(scenario_check_t *check, uint32_t t_ms, const agv_event_t *event) {
+    const size_t index = check->next_state;
+    char window[40];
+
+    check->next_state++;
+    if (index >= check->scenario->expect.states.count) {
+        scenario_check_fail(check, 0u, "no further change of state is expected, but at %u ms: %s (%s)", (unsigned)t_ms,
+                            state_of(event->b), name_of((agv_fault_t)event->c));
+        return;
+    }
+    const scenario_state_t *state = &check->scenario->expect.states.items[index];
+    scenario_check_window_text(state->at_ms, window);
+    if ((event->b != (uint8_t)state->to) || (event->c != (uint8_t)state->reason) || !is_in(t_ms, state->at_ms)) {
+        scenario_check_fail(check, state->line, "%s (%s) is expected %s, seen: %s (%s) at %u ms",
+                            state_of((uint8_t)state->to), name_of(state->reason), window, state_of(event->b),
+                            name_of((agv_fault_t)event->c), (unsigned)t_ms);
+    }
+}
+
+static void raise_fault(scenario_check_t *check, uint32_t t_ms, const agv_event_t *event) {
+    const scenario_expect_t *expect = &check->scenario->expect;
+    bool named = false;
+
+    for (size_t i = 0u; i < expect->faults.count; i++) {
+        const scenario_fault_t *fault = &expect->faults.items[i];
+        scenario_fault_seen_t *seen = &check->faults[i];
+        if ((fault->fault != (agv_fault_t)event->a) || seen->raised) {
+            continue;
+        }
+        named = true;
+        if (is_in(t_ms, fault->raised_ms) && (!fault->has_class || ((uint8_t)fault->fault_class == event->b))) {
+            seen->raised = true;
+            return;
+        }
+        seen->early_or_late = true;
+        seen->seen_ms = t_ms;
+    }
+    if (expect->no_other_faults && !named) {
+        scenario_check_fail(check, 0u, "no other fault is expected, but at %u ms: %s (%s)", (unsigned)t_ms,
+                            name_of((agv_fault_t)event->a), agv_class_name((agv_fault_class_t)event->b));
+    }
+}
+
+static void end_fault(scenario_check_t *check, uint32_t t_ms, const agv_event_t *event) {
+    const scenario_expect_t *expect = &check->scenario->expect;
+
+    for (size_t i = 0u; i < expect->faults.count; i++) {
+        const scenario_fault_t *fault = &expect->faults.items[i];
+        scenario_fault_seen_t *seen = &check->faults[i];
+        if ((fault->fault != (agv_fault_t)event->a) || !seen->raised || seen->ended) {
+            continue;
+        }
+        seen->ended = true;
+        if (fault->has_end && (fault->never_ends || !is_in(t_ms, fault->ended_ms))) {
+            char window[40] = "never";
+            if (!fault->never_ends) {
+                scenario_check_window_text(fault->ended_ms, window);
+            }
+            scenario_check_fail(check, fault->line, "%s is expected to end %s, it ended at %u ms",
+                                name_of(fault->fault), window, (unsigned)t_ms);
+        }
+        return;
+    }
+}
+
+static const char *missing_text(uint16_t missing, char text[MISSING_TEXT_SIZE]) {
+    text[0] = '\0';
+    for (uint8_t bit = 0u; bit < MISSING_BITS; bit++) {
+        if ((missing & (1u << bit)) != 0u) {
+            const size_t used = strlen(text);
+            (void)snprintf(&text[used], MISSING_TEXT_SIZE - used, "%s%s", (used > 0u) ? ", " : "",
+                           agv_missing_name(bit));
+        }
+    }
+    return text;
+}
+
+static void check_reset(scenario_check_t *check, uint32_t t_ms, const agv_event_t *event) {
+    const size_t index = check->next_reset;
+    char seen_text[MISSING_TEXT_SIZE];
+    char text[MISSING_TEXT_SIZE];
+    char window[40];
+
+    check->next_reset++;
+    (void)missing_text(event->missing, seen_text);
+    if (index >= check->scenario->expect.resets.count) {
+        scenario_check_fail(check, 0u, "no further reset is expected, but at %u ms: %s [%s]", (unsigned)t_ms,
+                            (event->a != 0u) ? "accepted" : "refused", seen_text);
+        return;
+    }
+    const scenario_reset_t *reset = &check->scenario->expect.resets.items[index];
+    scenario_check_window_text(reset->at_ms, window);
+    if ((reset->accepted != (event->a != 0u)) || (reset->missing != event->missing) || !is_in(t_ms, reset->at_ms)) {
+        scenario_check_fail(check, reset->line, "reset %s [%s] is expected %s, seen: %s [%s] at %u ms",
+                            reset->accepted ? "accepted" : "refused", missing_text(reset->missing, text), window,
+                            (event->a != 0u) ? "accepted" : "refused", seen_text, (unsigned)t_ms);
+    }
+}
+
+static void check_startup(scenario_check_t *check, uint32_t t_ms, const agv_event_t *event) {
+    const size_t index = check->next_startup;
+    char seen_text[MISSING_TEXT_SIZE];
+    char text[MISSING_TEXT_SIZE];
+    char window[40];
+
+    check->next_startup++;
+    (void)missing_text(event->missing, seen_text);
+    if (index >= check->scenario->expect.startups.count) {
+        scenario_check_fail(check, 0u, "no report of what is missing at start is expected, but at %u ms: [%s]",
+                            (unsigned)t_ms, seen_text);
+        return;
+    }
+    const scenario_reset_t *startup = &check->scenario->expect.startups.items[index];
+    scenario_check_window_text(startup->at_ms, window);
+    if ((startup->missing != event->missing) || !is_in(t_ms, startup->at_ms)) {
+        scenario_check_fail(check, startup->line, "missing at start [%s] is expected %s, seen: [%s] at %u ms",
+                            missing_text(startup->missing, text), window, seen_text, (unsigned)t_ms);
+    }
+}
+
+/** The LED showed `led_code` from `led_since_ms` up to and with @p last_ms. */
+static void check_led(scenario_check_t *check, uint32_t last_ms) {
+    const scenario_expect_t *expect = &check->scenario->expect;
+
+    for (size_t i = 0u; i < expect->leds.count; i++) {
+        const scenario_led_t *led = &expect->leds.items[i];
+        const bool overlap = (led->at_ms.from <= last_ms) && (led->at_ms.to >= check->led_since_ms);
+        if (overlap && (led->code != check->led_code) && !check->led_broken[i]) {
+            char window[40];
+            check->led_broken[i] = true;
+            scenario_check_window_text(led->at_ms, window);
+            scenario_check_fail(check, led->line, "LED code %d is expected %s, seen: %d in %u..%u ms", led->code,
+                                window, check->led_code, (unsigned)check->led_since_ms, (unsigned)last_ms);
+        }
+    }
+}
+
+static void change_led(scenario_check_t *check, uint32_t t_ms, int8_t code) {
+    if ((check->led_code != NOT_YET) && (t_ms > check->led_since_ms)) {
+        check_led(check, t_ms - 1u);
+    }
+    check->led_code = code;
+    check->led_since_ms = t_ms;
+}
+
+void scenario_check_event(scenario_check_t *check, const session_event_t *event) {
+    const uint32_t t_ms = (uint32_t)event->t_ms;
+    const agv_event_t *recorded = &event->recorded;
+
+    if (event->is_led) {
+        change_led(check, t_ms, event->led_code);
+        return;
+    }
+    if (check->scenario->expect.any_states &&
+        ((recorded->kind == (uint8_t)AGV_EVENT_STATE) || (recorded->kind == (uint8_t)AGV_EVENT_RESET) ||
+         (recorded->kind == (uint8_t)AGV_EVENT_STARTUP))) {
+        return;
+    }
+    switch ((agv_event_kind_t)recorded->kind) {
+    case AGV_EVENT_STATE:
+        check_state(check, t_ms, recorded);
+        break;
+    case AGV_EVENT_FAULT:
+        if (recorded->c != 0u) {
+            raise_fault(check, t_ms, recorded);
+        } else {
+            end_fault(check, t_ms, recorded);
+        }
+        break;
+    case AGV_EVENT_RESET:
+        check_reset(check, t_ms, recorded);
+        break;
+    case AGV_EVENT_STARTUP:
+        check_startup(check, t_ms, recorded);
+        break;
+    case AGV_EVENT_OUTPUT: /* judged at the pin itself */
+    default:
+        break;
+    }
+}
+
+void scenario_check_output(scenario_check_t *check, uint32_t t_ms, bool closed) {
+    const scenario_expect_t *expect = &check->scenario->expect;
+    const size_t index = check->next_output;
+    char window[40];
+
+    if ((closed == check->closed) || expect->any_states) {
+        return;
+    }
+    check->closed = closed;
+    check->next_output++;
+    if (index >= expect->outputs.count) {
+        scenario_check_fail(check, 0u, "no further change of the safety output is expected, but at %u ms: %s",
+                            (unsigned)t_ms, closed ? "closed" : "open");
+        return;
+    }
+    const scenario_output_t *output = &expect->outputs.items[index];
+    scenario_check_window_text(output->at_ms, window);
+    if ((closed != output->closed) || !is_in(t_ms, output->at_ms)) {
+        scenario_check_fail(check, output->line, "safety output %s is expected %s, seen: %s at %u ms",
+                            output->closed ? "closed" : "open", window, closed ? "closed" : "open", (unsigned)t_ms);
+    }
+}
+
+bool scenario_check_wants_vehicle(const scenario_check_t *check, uint32_t t_ms) {
+    const scenario_expect_t *expect = &check->scenario->expect;
+
+    for (size_t i = 0u; i < expect->vehicle.count; i++) {
+        if (expect->vehicle.items[i].at_ms == t_ms) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void check_range(scenario_check_t *check, const scenario_vehicle_t *expected, bool has, const char *what,
+                        const int32_t range[2], int32_t seen) {
+    if (has && ((seen < range[0]) || (seen > range[1]))) {
+        scenario_check_fail(check, expected->line, "vehicle at %u ms: %s %d..%d is expected, seen: %d",
+                            (unsigned)expected->at_ms, what, (int)range[0], (int)range[1], (int)seen);
+    }
+}
+
+static void check_code(scenario_check_t *check, const scenario_vehicle_t *expected, bool has, const char *what,
+                       unsigned wanted, unsigned seen) {
+    if (has && (wanted != seen)) {
+        scenario_check_fail(check, expected->line, "vehicle at %u ms: %s %Xh is expected, seen: %Xh",
+                            (unsigned)expected->at_ms, what, wanted, seen);
+    }
+}
+
+void scenario_check_vehicle(scenario_check_t *check, uint32_t t_ms, const vehicle_view_t *view) {
+    const scenario_expect_t *expect = &check->scenario->expect;
+
+    for (size_t i = 0u; i < expect->vehicle.count; i++) {
+        const scenario_vehicle_t *vehicle = &expect->vehicle.items[i];
+        if (vehicle->at_ms != t_ms) {
+            continue;
+        }
+        check_code(check, vehicle, vehicle->has_gear, "gear (P 8, R 2, N 4, D 1)", vehicle->gear, view->gear);
+        check_code(check, vehicle, vehicle->has_mode, "mode (manual 0, autopilot 1)", vehicle->autopilot,
+                   view->autopilot);
+        check_code(check, vehicle, vehicle->has_eps_mode, "EPS mode", vehicle->eps_mode, view->eps_mode);
+        check_code(check, vehicle, vehicle->has_alarms, "VCU alarms", vehicle->alarms, view->alarms);
+        check_range(check, vehicle, vehicle->has_speed, "speed in mm/s", vehicle->speed_mm_s, view->speed_mm_s);
+        check_range(check, vehicle, vehicle->has_throttle, "throttle in %", vehicle->throttle_pct,
+                    view->throttle_permille / 10);
+        check_range(check, vehicle, vehicle->has_angle, "steering in degrees", vehicle->angle_deg,
+                    view->angle_ddeg / 10);
+        check_range(check, vehicle, vehicle->has_fastest_park, "highest speed in mm/s at which P was taken",
+                    vehicle->fastest_park_mm_s, view->fastest_park_mm_s);
+    }
+}
+
+static void finish_lists(scenario_check_t *check) {
+    const scenario_expect_t *expect = &check->scenario->expect;
+    char window[40];
+    char text[MISSING_TEXT_SIZE];
+
+    for (size_t i = check->next_state; i < expect->states.count; i++) {
+        const scenario_state_t *state = &expect->states.items[i];
+        scenario_check_window_text(state->at_ms, window);
+        scenario_check_fail(check, state->line, "%s (%s) is expected %s, not seen", state_of((uint8_t)state->to),
+                            name_of(state->reason), window);
+    }
+    for (size_t i = check->next_output; i < expect->outputs.count; i++) {
+        const scenario_output_t *output = &expect->outputs.items[i];
+        scenario_check_window_text(output->at_ms, window);
+        scenario_check_fail(check, output->line, "safety output %s is expected %s, not seen",
+                            output->closed ? "closed" : "open", window);
+    }
+    for (size_t i = check->next_reset; i < expect->resets.count; i++) {
+        const scenario_reset_t *reset = &expect->resets.items[i];
+        scenario_check_window_text(reset->at_ms, window);
+        scenario_check_fail(check, reset->line, "reset %s [%s] is expected %s, not seen",
+                            reset->accepted ? "accepted" : "refused", missing_text(reset->missing, text), window);
+    }
+    for (size_t i = check->next_startup; i < expect->startups.count; i++) {
+        const scenario_reset_t *startup = &expect->startups.items[i];
+        scenario_check_window_text(startup->at_ms, window);
+        scenario_check_fail(check, startup->line, "missing at start [%s] is expected %s, not seen",
+                            missing_text(startup->missing, text), window);
+    }
+}
+
+static void finish_faults(scenario_check_t *check) {
+    const scenario_expect_t *expect = &check->scenario->expect;
+    char window[40];
+
+    for (size_t i = 0u; i < expect->faults.count; i++) {
+        const scenario_fault_t *fault = &expect->faults.items[i];
+        const scenario_fault_seen_t *seen = &check->faults[i];
+        if (!seen->raised) {
+            scenario_check_window_text(fault->raised_ms, window);
+            if (seen->early_or_late) {
+                scenario_check_fail(check, fault->line, "%s is expected to be raised %s%s, seen at %u ms",
+                                    name_of(fault->fault), window,
+                                    !fault->has_class                      ? ""
+                                    : fault->fault_class == AGV_CLASS_TRIP ? " as a trip"
+                                                                           : " as a warning",
+                                    (unsigned)seen->seen_ms);
+            } else {
+                scenario_check_fail(check, fault->line, "%s is expected to be raised %s, not seen",
+                                    name_of(fault->fault), window);
+            }
+        } else if (fault->has_end && !fault->never_ends && !seen->ended) {
+            scenario_check_window_text(fault->ended_ms, window);
+            scenario_check_fail(check, fault->line, "%s is expected to end %s, it did not", name_of(fault->fault),
+                                window);
+        } else {
+            continue;
+        }
+    }
+}
+
+static void finish_counters(scenario_check_t *check, const agv_counters_t *counters) {
+    const scenario_expect_t *expect = &check->scenario->expect;
+
+    for (size_t i = 0u; i < expect->counters.count; i++) {
+        const scenario_counter_t *counter = &expect->counters.items[i];
+        uint32_t seen = 0u;
+        if (counters != NULL) {
+            memcpy(&seen, (const uint8_t *)counters + counter->offset, sizeof seen);
+        }
+        if ((counters == NULL) || !is_in(seen, counter->value)) {
+            scenario_check_fail(check, counter->line, "counter %s: %u..%u is expected at the end, seen: %u",
+                                counter->name, (unsigned)counter->value.from, (unsigned)counter->value.to,
+                                (unsigned)seen);
+        }
+    }
+}
+
+void scenario_check_finish(scenario_check_t *check, const agv_counters_t *counters) {
+    check_led(check, check->scenario->duration_ms);
+    finish_lists(check);
+    finish_faults(check);
+    scenario_check_frames_finish(check);
+    finish_counters(check, counters);
+}

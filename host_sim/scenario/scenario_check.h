@@ -1,0 +1,91 @@
+/**
+ * @file scenario_check.h
+ * Judges a run by what a scenario expects: told of everything as it happens, it says at the end which expectations did
+ * not hold. It knows no bus and no supervisor: who runs the scenario tells it.
+ */
+#ifndef HOST_SIM_SCENARIO_CHECK_H
+#define HOST_SIM_SCENARIO_CHECK_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "agv/counters.h"
+#include "scenario/scenario.h"
+#include "session/session.h"
+#include "vehicle/vehicle.h"
+
+#define SCENARIO_FAILURES_MAX 40u
+#define SCENARIO_FAILURE_SIZE 320u
+
+/** What was seen of one expected frame so far. */
+typedef struct {
+    uint32_t count;
+    uint32_t last_ms;
+    uint32_t nearest_ms; /* of a match outside its time */
+    bool near;
+    bool first_done;
+    bool broken; /* reported already */
+} scenario_frame_seen_t;
+
+/** What was seen of one expected fault so far. */
+typedef struct {
+    bool raised;
+    bool ended;
+    bool early_or_late;
+    uint32_t seen_ms;
+} scenario_fault_seen_t;
+
+/** A judgement in the making. Read `failures`; all else is for the functions. */
+typedef struct {
+    char failures[SCENARIO_FAILURES_MAX][SCENARIO_FAILURE_SIZE]; /**< "LINE: what was expected, what was seen" */
+    size_t failure_count;                                        /**< may be larger than SCENARIO_FAILURES_MAX */
+    size_t expectation_count;                                    /**< how many there are */
+    const scenario_t *scenario;
+    uint32_t ids[SCENARIO_EXPECT_MAX];
+    uint32_t never_ids[SCENARIO_EXPECT_MAX];
+    scenario_frame_seen_t frames[SCENARIO_EXPECT_MAX];
+    scenario_fault_seen_t faults[SCENARIO_EXPECT_MAX];
+    uint32_t never_count[SCENARIO_EXPECT_MAX];
+    bool led_broken[SCENARIO_EXPECT_MAX];
+    size_t next_state;
+    size_t next_output;
+    size_t next_reset;
+    size_t next_startup;
+    uint32_t led_since_ms;
+    int8_t led_code;
+    bool closed;
+    bool only_supervisor; /* no expectation is about a frame of anybody else */
+} scenario_check_t;
+
+/** Begin. @param scenario must outlive the check */
+void scenario_check_init(scenario_check_t *check, const scenario_t *scenario);
+
+/** The supervisor told of an event. */
+void scenario_check_event(scenario_check_t *check, const session_event_t *event);
+
+/** A frame was on a bus, complete at @p t_us. @param from SCENARIO_FROM_SUPERVISOR or a vehicle_node_t */
+void scenario_check_frame(scenario_check_t *check, uint64_t t_us, hal_can_side_t side, int from,
+                          const hal_can_frame_t *frame);
+
+/** The safety output is closed or open; at every millisecond. */
+void scenario_check_output(scenario_check_t *check, uint32_t t_ms, bool closed);
+
+/** What the vehicle does now; at every millisecond for which scenario_check_wants_vehicle() says so. */
+void scenario_check_vehicle(scenario_check_t *check, uint32_t t_ms, const vehicle_view_t *view);
+bool scenario_check_wants_vehicle(const scenario_check_t *check, uint32_t t_ms);
+
+/** The run is over. @param counters of the supervisor; NULL: it has none */
+void scenario_check_finish(scenario_check_t *check, const agv_counters_t *counters);
+
+/** Note a failure of the expectation on a line of the file (0: of the file as a whole). */
+void scenario_check_fail(scenario_check_t *check, size_t line, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/** @name Private: the parts. @{ */
+void scenario_check_frames_init(scenario_check_t *check);
+void scenario_check_frames_finish(scenario_check_t *check);
+void scenario_check_window_text(scenario_window_t window, char text[40]);
+/** @} */
+
+#endif

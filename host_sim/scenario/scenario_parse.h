@@ -1,0 +1,60 @@
+/**
+ * @file scenario_parse.h
+ * What the parts of the scenario reader share. For scenario_parse*.c, and for those who read single steps elsewhere.
+ */
+#ifndef HOST_SIM_SCENARIO_PARSE_H
+#define HOST_SIM_SCENARIO_PARSE_H
+
+#include "io/yaml_reader.h"
+#include "scenario/scenario.h"
+
+extern const yaml_word_t SCENARIO_GEARS[];
+extern const yaml_word_t SCENARIO_SIDES[];
+extern const yaml_word_t SCENARIO_CAUSES[];
+extern const yaml_word_t SCENARIO_ID_SETS[];
+
+/** The next free place of a list; NULL when it is full, which was reported. */
+#define SCENARIO_NEXT(reader, node, list)                                                                              \
+    (((list).count < SCENARIO_EXPECT_MAX)                                                                              \
+         ? &(list).items[(list).count++]                                                                               \
+         : (yaml_reader_fail((reader), (node), "more than %u of them", SCENARIO_EXPECT_MAX), NULL))
+
+/** "at_ms": one moment, or [earliest, latest]. */
+bool scenario_parse_window(const yaml_reader_t *reader, const yaml_node_t *node, const char *what,
+                           scenario_window_t *window);
+
+/** @name Single expectations @{ */
+yaml_read_fn scenario_parse_frame;
+yaml_read_fn scenario_parse_never;
+yaml_read_fn scenario_parse_vehicle;
+yaml_read_fn scenario_parse_counters;
+/** @} */
+
+/** How the vehicle is built; the target is a vehicle_config_t. */
+yaml_read_fn scenario_parse_vehicle_config;
+
+/** The steps and the expectations; their target is the scenario_t. */
+yaml_read_fn scenario_parse_steps;
+yaml_read_fn scenario_parse_expect;
+
+/**
+ * One step.
+ * @param config of its supervisor: the ID set and the topology decide what a step may name
+ */
+bool scenario_parse_step(const yaml_reader_t *reader, const yaml_node_t *node, const agv_config_t *config,
+                         scenario_step_t *step);
+
+/** A moment: 0 .. SCENARIO_DURATION_MAX_MS. */
+bool scenario_parse_time(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t *ms);
+
+/** A number that is 0 or more. */
+bool scenario_parse_u32(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t lowest,
+                        uint32_t highest, uint32_t *number);
+
+/** A message by its name. */
+bool scenario_parse_message(const yaml_reader_t *reader, const yaml_node_t *node, agv_message_t *message);
+
+/** A fault by its name. */
+bool scenario_parse_fault(const yaml_reader_t *reader, const yaml_node_t *node, agv_fault_t *fault);
+
+#endif

@@ -1,0 +1,82 @@
+#include "scenario/scenario_run.h"
+
+#include "io/interrupt.h"
+#include "scenario/scenario_player.h"
+
+enum { LOOK_FOR_SIGNALS_EVERY_MS = 1000 };
+
+static void judge_event(void *ctx, const session_event_t *event) {
+    scenario_check_event(ctx, event);
+}
+
+static void judge_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
+    scenario_check_frame(ctx, t_us, side, from, frame);
+}
+
+/** Hazards are judged where the file asks for it. */
+static void watch_hazards(scenario_run_t *run) {
+    hazard_init(&run->hazard, &run->scenario, &run->world);
+    if (run->scenario.expect.no_hazards != 0u) {
+        const scenario_watch_t watch = hazard_watch(&run->hazard);
+        scenario_world_watch(&run->world, &watch);
+    }
+}
+
+static void check_hazards(scenario_run_t *run) {
+    const hazard_t *hazard = &run->hazard;
+
+    if ((run->scenario.expect.no_hazards != 0u) && (hazard->kind != HAZARD_NONE)) {
+        scenario_check_fail(&run->check, run->scenario.expect.no_hazards,
+                            "no hazard is expected, seen: %s (%s) at %u ms", hazard_info(hazard->kind)->name,
+                            hazard->cause, (unsigned)hazard->at_ms);
+    }
+}
+
+static void play(scenario_run_t *run, void *ctx, scenario_step_fn *on_step) {
+    const scenario_t *scenario = &run->scenario;
+    const scenario_step_t *step = NULL;
+    scenario_player_t player;
+
+    scenario_player_init(&player, scenario);
+    for (uint32_t t_ms = 0u; (t_ms <= scenario->duration_ms) && !run->was_interrupted; t_ms++) {
+        for (step = scenario_player_next(&player, t_ms); step != NULL; step = scenario_player_next(&player, t_ms)) {
+            if ((on_step != NULL) && (step->at_ms == t_ms)) {
+                on_step(ctx, step);
+            }
+            scenario_world_act(&run->world, t_ms, step);
+            hazard_step(&run->hazard, t_ms, step);
+        }
+        scenario_world_tick(&run->world, t_ms);
+        hazard_tick(&run->hazard, t_ms);
+        scenario_check_output(&run->check, t_ms, run->world.hal.safety_output.on);
+        if (scenario_check_wants_vehicle(&run->check, t_ms)) {
+            vehicle_view_t view;
+            vehicle_view(&run->world.vehicle, t_ms, &view);
+            scenario_check_vehicle(&run->check, t_ms, &view);
+        }
+        run->was_interrupted = ((t_ms % LOOK_FOR_SIGNALS_EVERY_MS) == 0u) && interrupt_pending();
+    }
+}
+
+bool scenario_run(scenario_run_t *run, scenario_planted_t planted, const scenario_watch_t watches[], size_t count,
+                  scenario_step_fn *on_step) {
+    const scenario_watch_t judge = {judge_event, judge_frame, &run->check};
+
+    run->was_interrupted = false;
+    scenario_check_init(&run->check, &run->scenario);
+    if (!scenario_world_init(&run->world, &run->scenario, planted)) {
+        scenario_check_fail(&run->check, 0u, "the world could not be built");
+        return false;
+    }
+    scenario_world_watch(&run->world, &judge);
+    watch_hazards(run);
+    for (size_t i = 0u; i < count; i++) {
+        scenario_world_watch(&run->world, &watches[i]);
+    }
+    scenario_world_start(&run->world);
+    play(run, (count > 0u) ? watches[0].ctx : NULL, on_step);
+    check_hazards(run);
+    scenario_check_finish(&run->check,
+                          (planted == SCENARIO_REAL) ? agv_supervisor_counters(&run->world.session.supervisor) : NULL);
+    return !run->was_interrupted && (run->check.failure_count == 0u);
+}

@@ -1,0 +1,36 @@
+/**
+ * @file scenario_run.h
+ * A scenario file played on the simulated bus and judged.
+ */
+#ifndef HOST_SIM_SCENARIO_RUN_H
+#define HOST_SIM_SCENARIO_RUN_H
+
+#include <stddef.h>
+
+#include "hunt/hazard/hazard.h"
+#include "scenario/scenario.h"
+#include "scenario/scenario_check.h"
+#include "scenario/scenario_world.h"
+
+/** Told of every step before it is done. */
+typedef void scenario_step_fn(void *ctx, const scenario_step_t *step);
+
+/** All that one run needs; some 300 KiB: allocate it. */
+typedef struct {
+    scenario_t scenario;
+    scenario_world_t world;
+    scenario_check_t check;
+    hazard_t hazard;
+    bool was_interrupted; /**< by a signal that is held back (interrupt.h): not played to its end */
+} scenario_run_t;
+
+/**
+ * Play run->scenario, which was read.
+ * @param watches told of what happens, beside the judgement: @p count of them
+ * @param on_step likewise, with the ctx of the first; NULL: nobody is told
+ * @return whether every expectation held; run->check says which did not. false too when it was interrupted
+ */
+bool scenario_run(scenario_run_t *run, scenario_planted_t planted, const scenario_watch_t watches[], size_t count,
+                  scenario_step_fn *on_step);
+
+#endif

@@ -1,0 +1,116 @@
+/**
+ * @file scenario_world.h
+ * The simulated bus with everything on it: a supervisor, a vehicle, and what goes wrong, in virtual time.
+ *
+ * One call of scenario_world_tick() is a millisecond: the vehicle sends what is due, the supervisor steps, and the bus
+ * runs up to the next millisecond. A received frame reaches the supervisor at the very moment of its arrival.
+ */
+#ifndef HOST_SIM_SCENARIO_WORLD_H
+#define HOST_SIM_SCENARIO_WORLD_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "hal_sim/sim_bus.h"
+#include "hal_sim/sim_hal.h"
+#include "hal_sim/sim_store.h"
+#include "scenario/scenario.h"
+#include "session/session.h"
+#include "vehicle/vehicle.h"
+
+/** What stands in the supervisor's place. */
+typedef enum {
+    SCENARIO_REAL,           /**< the supervisor */
+    SCENARIO_PLANTED_MUTE,   /**< one that says INIT and never does anything */
+    SCENARIO_PLANTED_TRIPPED /**< one that is always tripped and sends the safe commands */
+} scenario_planted_t;
+
+/** A frame was on the wire. @param from SCENARIO_FROM_SUPERVISOR or a vehicle_node_t */
+typedef void scenario_frame_fn(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame);
+
+/** Who is told what; members may be NULL. */
+typedef struct {
+    session_observer_fn *on_event;
+    scenario_frame_fn *on_frame;
+    void *ctx;
+} scenario_watch_t;
+
+#define SCENARIO_WATCHES_MAX 3u
+
+typedef struct scenario_world scenario_world_t;
+
+/** One station's ear. */
+typedef struct {
+    scenario_world_t *world;
+    vehicle_node_t node;
+    sim_bus_node_t number;
+    bool powered;
+} scenario_station_t;
+
+/** A bus, as its listeners see it. */
+typedef struct {
+    scenario_world_t *world;
+    hal_can_side_t side;
+} scenario_side_t;
+
+/** A frame that this bus does not carry, on its way to all nodes of a side. */
+typedef struct {
+    hal_can_side_t side;
+    hal_can_frame_t frame;
+} scenario_past_wire_t;
+
+/** Some 200 KiB: not for the stack. Read the members, change them through the functions. */
+struct scenario_world {
+    sim_bus_t buses[HAL_CAN_SIDES];
+    sim_bus_t *running[HAL_CAN_SIDES];
+    size_t bus_count;
+    hal_t hal;
+    sim_store_t store;
+    session_t session;
+    vehicle_t vehicle;
+    agv_config_t config;
+    agv_ids_t ids; /**< of `config` */
+    scenario_planted_t planted;
+    scenario_station_t stations[VEHICLE_NODES];
+    sim_bus_node_t strangers[HAL_CAN_SIDES];
+    bool stranger_powered[HAL_CAN_SIDES];
+    scenario_side_t sides[HAL_CAN_SIDES];
+    scenario_watch_t watches[SCENARIO_WATCHES_MAX];
+    size_t watch_count;
+    uint64_t t_ms;
+    uint16_t tick_phase_us;                                /**< of scenario_t */
+    uint64_t deaf_until_ms;                                /**< the supervisor hangs, or is without power, until then */
+    bool was_deaf;                                         /**< it hung: frames may wait for it */
+    bool off;                                              /**< it is without power */
+    uint32_t power_changes;                                /**< of the vehicle, that the buses know of */
+    uint32_t lost_frames;                                  /**< of the vehicle, that found no room in a mailbox */
+    scenario_past_wire_t past_wire[VEHICLE_STRANGERS_MAX]; /**< FD frames of this millisecond */
+    size_t past_wire_count;
+};
+
+/** Build a world as a scenario begins. @return false: a bit rate that there is not */
+bool scenario_world_init(scenario_world_t *world, const scenario_t *scenario, scenario_planted_t planted);
+
+/** Tell one more of what happens; before scenario_world_start(). */
+void scenario_world_watch(scenario_world_t *world, const scenario_watch_t *watch);
+
+/** Switch the supervisor on, at 0 ms. */
+void scenario_world_start(scenario_world_t *world);
+
+/** Do what a step says, now: before the tick of its millisecond. */
+void scenario_world_do(scenario_world_t *world, const scenario_step_t *step);
+
+/** The same at another time: steps carry 32 bits of it, a world lasts longer. */
+void scenario_world_act(scenario_world_t *world, uint64_t t_ms, const scenario_step_t *step);
+
+/**
+ * Go on from a copy of another world, of another run of this program perhaps: @p world was made of the same scenario, has
+ * the same watches, and was started.
+ * @param saved its pointers are put right
+ */
+void scenario_world_restore(scenario_world_t *world, scenario_world_t *saved);
+
+/** A millisecond: @p t_ms is 0 and then one more each time. */
+void scenario_world_tick(scenario_world_t *world, uint64_t t_ms);
+
+#endif

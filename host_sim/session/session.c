@@ -1,0 +1,105 @@
+#include "session/session.h"
+
+#include <string.h>
+
+void session_init(session_t *session, hal_t *hal) {
+    (void)memset(session, 0, sizeof *session);
+    session->ports.hal = hal;
+    session->ports.recorder = &session->recorder;
+}
+
+bool session_observe(session_t *session, session_observer_fn *fn, void *ctx) {
+    bool fits = session->observer_count < SESSION_OBSERVERS_MAX;
+    if (fits) {
+        session->observers[session->observer_count].fn = fn;
+        session->observers[session->observer_count].ctx = ctx;
+        session->observer_count++;
+    }
+    return fits;
+}
+
+static void tell(const session_t *session, const session_event_t *event) {
+    for (size_t i = 0u; i < session->observer_count; i++) {
+        session->observers[i].fn(session->observers[i].ctx, event);
+    }
+}
+
+static void tell_output(const session_t *session, bool closed) {
+    const session_event_t event = {.t_ms = session->t_ms,
+                                   .recorded = {.kind = AGV_EVENT_OUTPUT, .a = closed ? 1u : 0u}};
+    tell(session, &event);
+}
+
+static void tell_led(session_t *session) {
+    session->led_code = agv_supervisor_led_code(&session->supervisor);
+    const session_event_t event = {.t_ms = session->t_ms, .is_led = true, .led_code = session->led_code};
+    tell(session, &event);
+}
+
+static void tell_recorded(session_t *session, bool with_output) {
+    uint32_t end = agv_recorder_next_sequence(&session->recorder);
+    for (; session->next != end; session->next++) {
+        session_event_t event = {.t_ms = session->t_ms, .is_led = false};
+        if (agv_recorder_get(&session->recorder, session->next, &event.recorded) &&
+            (with_output || (event.recorded.kind != (uint8_t)AGV_EVENT_OUTPUT))) {
+            tell(session, &event);
+        }
+    }
+}
+
+static inline bool has_news(const session_t *session) {
+    return agv_recorder_next_sequence(&session->recorder) != session->next;
+}
+
+/** Find the first event of the run that has just begun: its events carry the same run number as the newest one. */
+static uint32_t first_of_run(const agv_recorder_t *recorder) {
+    uint32_t end = agv_recorder_next_sequence(recorder);
+    uint32_t first = end;
+    agv_event_t newest;
+    agv_event_t event;
+    if (agv_recorder_get(recorder, end - 1u, &newest)) {
+        while ((end - first < AGV_RECORDER_EVENTS) && agv_recorder_get(recorder, first - 1u, &event) &&
+               (event.run == newest.run)) {
+            first--;
+        }
+    }
+    return first;
+}
+
+void session_fail_self_test(session_t *session) {
+    session->self_test_failed = true;
+}
+
+void session_start(session_t *session, const agv_config_t *config, uint64_t t_ms, uint32_t clock_ms) {
+    session->t_ms = t_ms;
+    session->ticked_ms = t_ms;
+    agv_supervisor_start(&session->supervisor, &session->ports, config, !session->self_test_failed, clock_ms);
+    session->next = first_of_run(&session->recorder);
+    tell_recorded(session, false);
+    tell_output(session, agv_supervisor_output_closed(&session->supervisor));
+    tell_led(session);
+}
+
+void session_frame(session_t *session, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_ms) {
+    session->t_ms = t_ms;
+    agv_supervisor_frame(&session->supervisor, &session->ports, side, frame);
+    if (has_news(session)) {
+        tell_recorded(session, true);
+    }
+}
+
+void session_tick(session_t *session, uint64_t t_ms, uint32_t clock_ms) {
+    if (agv_supervisor_state(&session->supervisor) != AGV_STATE_INIT) {
+        session->supervised_ms += t_ms - session->ticked_ms;
+    }
+    session->ticked_ms = t_ms;
+    session->t_ms = t_ms;
+    agv_supervisor_receive_alive(&session->supervisor);
+    agv_supervisor_tick(&session->supervisor, &session->ports, clock_ms);
+    if (has_news(session)) {
+        tell_recorded(session, true);
+    }
+    if (agv_supervisor_led_code(&session->supervisor) != session->led_code) {
+        tell_led(session); /* it follows a fault that a frame carried in the next tick */
+    }
+}

@@ -1,0 +1,214 @@
+#include "ui/timeline.h"
+
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "agv/codec.h"
+#include "agv/names.h"
+
+enum { US_PER_MS = 1000, US_PER_S = 1000000, MM_PER_CM = 10, MISSING_BITS = 10, WHAT_SIZE = 160 };
+
+#define MODE_BITS 0xC0
+#define MODE_MANUAL 0x40
+#define MODE_AUTOPILOT 0x80
+
+void timeline_init(timeline_t *timeline, const scenario_world_t *world) {
+    *timeline = (timeline_t){.world = world, .mode = -1};
+}
+
+static char gear_letter(uint8_t gear) {
+    switch (gear) {
+    case AGV_GEAR_P:
+        return 'P';
+    case AGV_GEAR_R:
+        return 'R';
+    case AGV_GEAR_N:
+        return 'N';
+    case AGV_GEAR_D:
+        return 'D';
+    default:
+        return (gear == 0u) ? '-' : '?';
+    }
+}
+
+static const char *mode_word(int mode) {
+    switch (mode) {
+    case MODE_MANUAL:
+        return "manual";
+    case MODE_AUTOPILOT:
+        return "autopilot";
+    default:
+        return (mode < 0) ? "-" : "invalid";
+    }
+}
+
+/** Print a line: when, who, what, and what the vehicle reports. */
+static void line(timeline_t *timeline, uint64_t t_us, const char *who, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+static void line(timeline_t *timeline, uint64_t t_us, const char *who, const char *format, ...) {
+    char what[WHAT_SIZE];
+    va_list arguments;
+
+    va_start(arguments, format);
+    (void)vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
+    if (!timeline->header_done) {
+        timeline->header_done = true;
+        (void)printf("%11s  %-10s  %-64s  %s\n", "time", "who", "what", "vehicle: gear, mode, speed");
+    }
+    const int32_t cm_s = timeline->speed_mm_s / MM_PER_CM;
+    (void)printf("%5" PRIu64 ".%03" PRIu64 " s  %-10s  %-64s  %c %-9s %s%d.%02d m/s\n", t_us / US_PER_S,
+                 (t_us % US_PER_S) / US_PER_MS, who, what, gear_letter(timeline->gear), mode_word(timeline->mode),
+                 (cm_s < 0) ? "-" : "", abs((int)cm_s) / 100, abs((int)cm_s) % 100);
+}
+
+void timeline_step(void *ctx, const scenario_step_t *step) {
+    timeline_t *timeline = ctx;
+    const vehicle_action_t *action = &step->vehicle;
+    char more[WHAT_SIZE] = "";
+
+    timeline->step_us = (uint64_t)step->at_ms * US_PER_MS;
+    timeline->step_actor = step->actor;
+    timeline->step_word = step->word;
+    if (step->of_vehicle && ((action->what == VEHICLE_DO_AI_DRIVE) || (action->what == VEHICLE_DO_REMOTE_DRIVE))) {
+        (void)snprintf(more, sizeof more, " (gear %c, throttle %d %%, steering %d deg)", gear_letter(action->gear),
+                       action->throttle_permille / 10, (int)(action->angle_ddeg / 10));
+    } else if (step->of_vehicle && (action->message != AGV_MSG_NONE)) {
+        (void)snprintf(more, sizeof more, " (%s)", agv_message_name(action->message));
+    } else if (step->of_vehicle && (action->what == VEHICLE_DO_BUTTON)) {
+        (void)snprintf(more, sizeof more, " button %u", (unsigned)action->count);
+    } else {
+        more[0] = '\0';
+    }
+    line(timeline, timeline->step_us, step->actor, "%s%s", step->word, more);
+}
+
+static void show_state(timeline_t *timeline, uint64_t t_us, const agv_event_t *event) {
+    const char *reason = agv_fault_name((agv_fault_t)event->c);
+
+    timeline->shown = 0u;
+    if (event->b == (uint8_t)AGV_STATE_TRIPPED) {
+        timeline->trip_us = sim_bus_now_us(&timeline->world->buses[HAL_CAN_VEHICLE]);
+        timeline->wants_reaction = reason != NULL;
+    }
+    line(timeline, t_us, "supervisor", "=> %s%s%s", agv_state_name((agv_state_t)event->b), (reason != NULL) ? ": " : "",
+         (reason != NULL) ? reason : "");
+}
+
+static void show_missing(timeline_t *timeline, uint64_t t_us, const char *what, uint16_t missing) {
+    char list[WHAT_SIZE] = "";
+
+    for (uint8_t bit = 0u; bit < MISSING_BITS; bit++) {
+        if ((missing & (1u << bit)) != 0u) {
+            const size_t used = strlen(list);
+            (void)snprintf(&list[used], sizeof list - used, "%s%s",
+                           (used > 0u) ? ", " : "; missing: ", agv_missing_name(bit));
+        }
+    }
+    line(timeline, t_us, "supervisor", "%s%s", what, list);
+}
+
+static void show_event(void *ctx, const session_event_t *event) {
+    timeline_t *timeline = ctx;
+    const uint64_t t_us = event->t_ms * US_PER_MS;
+    const agv_event_t *recorded = &event->recorded;
+
+    if (event->is_led) {
+        if (event->led_code != 0) {
+            line(timeline, t_us, "supervisor", "LED code %d", event->led_code);
+        }
+        return;
+    }
+    switch ((agv_event_kind_t)recorded->kind) {
+    case AGV_EVENT_STATE:
+        show_state(timeline, t_us, recorded);
+        break;
+    case AGV_EVENT_FAULT:
+        line(timeline, t_us, "supervisor", "%s %s%s", agv_fault_name((agv_fault_t)recorded->a),
+             (recorded->c != 0u) ? "raised" : "ended",
+             ((recorded->c != 0u) && (recorded->b == (uint8_t)AGV_CLASS_WARN)) ? " (warning)" : "");
+        break;
+    case AGV_EVENT_OUTPUT:
+        line(timeline, t_us, "supervisor", "safety output %s", (recorded->a != 0u) ? "closed" : "open");
+        break;
+    case AGV_EVENT_RESET:
+        show_missing(timeline, t_us, (recorded->a != 0u) ? "reset accepted" : "reset refused", recorded->missing);
+        break;
+    case AGV_EVENT_STARTUP:
+        show_missing(timeline, t_us, "still in INIT", recorded->missing);
+        break;
+    default:
+        break;
+    }
+}
+
+static void show_reaction(timeline_t *timeline, uint64_t t_us) {
+    const uint64_t after_us = t_us - timeline->trip_us;
+
+    timeline->wants_reaction = false;
+    line(timeline, t_us, "",
+         "first safe frame is out %" PRIu64 " us after the decision, %" PRIu64 ".%03" PRIu64 " ms after %s %s",
+         after_us, (t_us - timeline->step_us) / US_PER_MS, (t_us - timeline->step_us) % US_PER_MS,
+         (timeline->step_actor != NULL) ? timeline->step_actor : "the",
+         (timeline->step_word != NULL) ? timeline->step_word : "start");
+}
+
+/** The first frame of each message that the supervisor sends in a state. */
+static void show_sent(timeline_t *timeline, uint64_t t_us, const hal_can_frame_t *frame) {
+    const agv_message_t message = (agv_message_t)agv_ids_find(&timeline->world->ids, frame->id);
+    const uint8_t *d = frame->data;
+
+    if ((message == AGV_MSG_NONE) || ((timeline->shown & (1u << message)) != 0u)) {
+        return;
+    }
+    timeline->shown |= 1u << message;
+    line(timeline, t_us, "supervisor", "sends %03X [%02X %02X %02X %02X %02X %02X %02X %02X] %s", (unsigned)frame->id,
+         d[0], d[1], d[2], d[3], d[4], d[5], d[6], d[7], agv_message_name(message));
+    if (timeline->wants_reaction) {
+        show_reaction(timeline, t_us);
+    }
+}
+
+static void show_reported(timeline_t *timeline, uint64_t t_us, const hal_can_frame_t *frame) {
+    const agv_message_t message = (agv_message_t)agv_ids_find(&timeline->world->ids, frame->id);
+    agv_wheel_speed_t wheels;
+
+    if ((message == AGV_MSG_GEAR_STATUS) && (frame->data[0] != timeline->gear)) {
+        timeline->gear = frame->data[0];
+        line(timeline, t_us, "vcu", "reports gear %c", gear_letter(timeline->gear));
+    } else if ((message == AGV_MSG_VEHICLE_STATUS) && ((frame->data[6] & MODE_BITS) != timeline->mode)) {
+        timeline->mode = frame->data[6] & MODE_BITS;
+        line(timeline, t_us, "vcu", "reports %s", mode_word(timeline->mode));
+    } else if ((message == AGV_MSG_WHEEL_SPEED) && agv_unpack_wheel_speed(&wheels, frame->data)) {
+        const bool stopped = (wheels.left_mm_s == 0) && (timeline->speed_mm_s != 0);
+        timeline->speed_mm_s = wheels.left_mm_s;
+        if (stopped) {
+            line(timeline, t_us, "vcu", "stands still");
+        }
+    } else {
+        return;
+    }
+}
+
+static void show_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
+    timeline_t *timeline = ctx;
+
+    if ((side != HAL_CAN_VEHICLE) || (frame->flags != 0u) || (frame->length != AGV_DLC)) {
+        return;
+    }
+    if (from == SCENARIO_FROM_SUPERVISOR) {
+        show_sent(timeline, t_us, frame);
+    } else if (from == (int)VEHICLE_VCU) {
+        show_reported(timeline, t_us, frame);
+    } else {
+        return;
+    }
+}
+
+scenario_watch_t timeline_watch(timeline_t *timeline) {
+    return (scenario_watch_t){show_event, show_frame, timeline};
+}

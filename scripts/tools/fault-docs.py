@@ -1,0 +1,122 @@
+#!/usr/bin/python3
+"""The table of faults in docs/faults.md: what firmware/include/agv/fault_table.def says, and two columns of text.
+
+Rewrites the table between its markers: rank, name, class, LED code and kind come from fault_table.def; "raised when" and
+"counts in" are kept by hand, in the table itself, and stay with their fault. A fault that is new gets empty ones, to be
+filled in.
+
+--check: changes nothing; fails when the table is out of date, when a fault has no text, and when docs/faults.md or
+docs/requirements.md name a fault that there is not.
+"""
+import argparse
+import pathlib
+import re
+import sys
+
+BEGIN = "<!-- fault table: made by scripts/tools/fault-docs.py, but for the two columns on the right -->"
+END = "<!-- end of fault table -->"
+HEADING = "| rank | fault | class | may be | kind | LED | also | raised when | counts in |"
+ROW = re.compile(r"^AGV_FAULT(_EVENT)?\((\w+), (TRIP|WARN), (\d+), ([A-Z_]+(?: \| [A-Z_]+)*)\)$")
+FLAGS = {"NONE", "UNRESETTABLE", "FIXED", "FROM_AI", "OF_EPS"}
+NAMING = ("docs/faults.md", "docs/requirements.md")
+# `LIKE_THIS`, `LIKE_THIS_*`: faults; what begins with one of these is a name of the C code
+NAMED = re.compile(r"`([A-Z][A-Z0-9]*(?:_[A-Z0-9]+)+)(_\*)?`")
+OTHERS = ("AGV_", "HAL_", "CONFIG_")
+
+
+class Problem(Exception):
+    pass
+
+
+def read_faults(path):
+    """(name, class, LED code, flags, whether it is an event) of each fault, highest rank first."""
+    faults = []
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        if not line.startswith(("AGV_FAULT(", "AGV_FAULT_EVENT(")):
+            continue
+        match = ROW.match(line)
+        if not match:
+            raise Problem(f"{path}:{number}: not like AGV_FAULT(NAME, TRIP, 14, FLAG | FLAG)")
+        flags = set(match[5].split(" | "))
+        if not flags <= FLAGS:
+            raise Problem(f"{path}:{number}: unknown flags {sorted(flags - FLAGS)}: teach them to scripts/tools/fault-docs.py")
+        faults.append((match[2], match[3], int(match[4]), flags, match[1] is not None))
+    if not faults:
+        raise Problem(f"{path} holds no faults")
+    return faults
+
+
+def made_cells(rank, name, fault_class, led, flags, event):
+    other = "warn" if fault_class == "TRIP" else "trip"
+    kind = "unresettable" if "UNRESETTABLE" in flags else "transient" if event else "condition"
+    also = [word for flag, word in (("FROM_AI", "AI"), ("OF_EPS", "EPS")) if flag in flags]
+    return [str(rank), f"`{name}`", fault_class.lower(), "-" if "FIXED" in flags else other, kind,
+            f"{led:02}" if led else "-", ", ".join(also) or "-"]
+
+
+def split(document, text):
+    if text.count(BEGIN) != 1 or text.count(END) != 1:
+        raise Problem(f"{document} needs the lines '{BEGIN}' and '{END}'")
+    before, rest = text.split(BEGIN)
+    table, after = rest.split(END)
+    return before, table, after
+
+
+def read_texts(table):
+    """Fault -> the two cells on the right, as they stand."""
+    texts = {}
+    for line in table.splitlines():
+        cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
+        if len(cells) == HEADING.count("|") - 1 and cells[1].startswith("`"):
+            texts[cells[1].strip("`")] = cells[-2:]
+    return texts
+
+
+def make_table(faults, texts):
+    gone = sorted(set(texts) - {name for name, *_ in faults})
+    if gone:
+        raise Problem(f"docs/faults.md has a text for {', '.join(gone)}, which is no fault: rename or remove the row")
+    lines = [HEADING, "|" + "---|" * (HEADING.count("|") - 1)]
+    for rank, fault in enumerate(faults):
+        lines.append("| " + " | ".join(made_cells(rank, *fault) + texts.get(fault[0], ["", ""])) + " |")
+    return "\n".join(lines)
+
+
+def check_names(root, faults):
+    """A fault that a page names is one of the table."""
+    names = [name for name, *_ in faults]
+    for document in NAMING:
+        for name, star in NAMED.findall((root / document).read_text(encoding="utf-8")):
+            known = name in names if not star else any(other.startswith(name + "_") for other in names)
+            if not known and not name.startswith(OTHERS):
+                raise Problem(f"{document} names {name}{star}, which is no fault")
+
+
+def main():
+    parser = argparse.ArgumentParser(description="the table of faults in docs/faults.md")
+    parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[2])
+    parser.add_argument("--check", action="store_true", help="change nothing, fail when something is not right")
+    arguments = parser.parse_args()
+    document = arguments.root / "docs/faults.md"
+    faults = read_faults(arguments.root / "firmware/include/agv/fault_table.def")
+    text = document.read_text(encoding="utf-8")
+    before, table, after = split("docs/faults.md", text)
+    texts = read_texts(table)
+    wanted = f"{before}{BEGIN}\n\n{make_table(faults, texts)}\n\n{END}{after}"
+    if not arguments.check:
+        document.write_text(wanted, encoding="utf-8")
+    elif wanted != text:
+        raise Problem("docs/faults.md is out of date: run scripts/tools/fault-docs.py, then fill in what is empty")
+    empty = [name for name, *_ in faults if "" in texts.get(name, ["", ""])]
+    if empty:
+        raise Problem(f"docs/faults.md has no text for {', '.join(empty)}")
+    if arguments.check:
+        check_names(arguments.root, faults)
+    print(f"{len(faults)} faults")
+
+
+try:
+    main()
+except (Problem, OSError) as problem:
+    print(f"fault-docs: {problem}", file=sys.stderr)
+    sys.exit(1)

@@ -1,0 +1,72 @@
+#!/usr/bin/python3
+"""Flash and RAM of builds of the firmware, as a table. usage: zephyr-size [--write] BUILD...
+
+Each BUILD is the build folder of firmware/zephyr. --write puts the table between its markers in docs/firmware.md.
+Flash: code, constants and initial values. RAM: all that is static, with stacks and what outlives a reset; there is no heap.
+Stack: the deepest path through core, port and application by gcc's call graph (scripts/tools/stack-depth.py), without the frames of
+Zephyr's functions below them.
+"""
+import argparse
+import pathlib
+import re
+import subprocess
+import sys
+
+BEGIN = "<!-- size table: made by scripts/tools/zephyr-size.py -->"
+END = "<!-- end of size table -->"
+SIMULATED = "native_sim"
+
+
+def symbols(build):
+    text = (build / "zephyr/.config").read_text(encoding="utf-8")
+    return dict(re.findall(r"^CONFIG_(\w+)=(.*)$", text, re.MULTILINE))
+
+
+def kind(config):
+    words = ["gateway" if "AGV_TOPOLOGY_GATEWAY" in config else "shared bus"]
+    words += [word for name, word in (("AGV_RELEASE", "release"), ("AGV_SHELL", "shell"), ("AGV_SHADOW_ON", "shadow"))
+              if name in config]
+    return ", ".join(words)
+
+
+def stack(build):
+    """The deepest path from main() on, without Zephyr's own functions."""
+    graphs = sorted(map(str, build.glob("CMakeFiles/app.dir/**/*.ci")))
+    if not graphs:
+        sys.exit(f"zephyr-size: {build} has no call graph: its compiler is not gcc")
+    command = [pathlib.Path(__file__).resolve().parent / "stack-depth.py", *graphs, "--pointers-lead-outside", "--entry", "main"]
+    said = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    return int(re.match(r"stack +(\d+) bytes", said)[1])
+
+
+def row(build):
+    config = symbols(build)
+    board = config["BOARD"].strip('"')
+    if board == SIMULATED:
+        return None
+    sizes = subprocess.run(["arm-none-eabi-size", build / "zephyr/zephyr.elf"], check=True, capture_output=True, text=True)
+    text, data, bss = (int(cell) for cell in sizes.stdout.splitlines()[1].split()[:3])
+    return f"| `{board}` | {kind(config)} | {text + data} | {data + bss} | {stack(build)} | {config['MAIN_STACK_SIZE']} |"
+
+
+def main():
+    parser = argparse.ArgumentParser(description="flash and RAM of builds of the firmware")
+    parser.add_argument("--write", action="store_true", help="into docs/firmware.md")
+    parser.add_argument("builds", nargs="+", type=pathlib.Path)
+    arguments = parser.parse_args()
+    builds = [build for build in arguments.builds if (build / "zephyr/zephyr.elf").exists()]
+    rows = sorted(filter(None, map(row, builds)))
+    table = "\n".join(["| board | build | flash, bytes | RAM, bytes | deepest stack without Zephyr's | stack |",
+                       "|---|---|---|---|---|---|", *rows])
+    if not arguments.write:
+        print(table)
+        return
+    page = pathlib.Path(__file__).resolve().parents[2] / "docs/firmware.md"
+    text = page.read_text(encoding="utf-8")
+    if text.count(BEGIN) != 1 or text.count(END) != 1:
+        sys.exit(f"zephyr-size: {page} needs the lines '{BEGIN}' and '{END}'")
+    before, after = text.split(BEGIN)[0], text.split(END)[1]
+    page.write_text(f"{before}{BEGIN}\n\n{table}\n\n{END}{after}", encoding="utf-8")
+
+
+main()

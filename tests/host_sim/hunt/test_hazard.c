@@ -1,0 +1,325 @@
+/* The judge of hazards: a planted supervisor that does wrong is a hazard, one that does right in the same run is none. */
+#include "hunt/hazard/hazard.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "agv/codec.h"
+#include "hal/can.h"
+#include "scenario/scenario_player.h"
+#include "unity.h"
+
+enum { TEXT_SIZE = 4096, NEVER = 0, READY_MS = 600, TRIP_MS = 3000, QUEUE = 16, CYCLE_MS = 50, HOLD_CYCLE_MS = 25 };
+
+/** What stands in the supervisor's place does this. Times in ms; NEVER. */
+typedef struct {
+    bool gateway;
+    bool rolls;           /**< a vehicle without brakes */
+    uint32_t open_ms;     /**< the output opens, and stays open */
+    uint32_t safe_ms;     /**< safe commands, from then on */
+    uint32_t safe_end_ms; /**< until then */
+    bool holds;           /**< 065h beside them */
+    int32_t hold_ddeg;    /**< more than the real angle at safe_ms */
+    uint32_t hold_ms;     /**< 065h begins; NEVER: with the others */
+    unsigned passes;      /**< so many times each command of the AI computer */
+    bool only_engaged;    /**< passes while the autopilot is engaged */
+    uint32_t forges_ms;   /**< a throttle that nobody commanded */
+    const char *setting;  /**< NULL: none */
+} planted_t;
+
+static scenario_t scenario;
+static scenario_world_t world;
+static hazard_t hazard;
+static const planted_t *planted;
+static hal_can_frame_t queue[QUEUE];
+static hal_can_side_t towards[QUEUE];
+static unsigned queued;
+static int32_t held_ddeg;
+
+void setUp(void) {
+    queued = 0u;
+}
+
+void tearDown(void) {
+}
+
+static void send(agv_message_t message, const uint8_t data[AGV_DLC]) {
+    hal_can_frame_t frame = {.id = agv_message_id(message, AGV_ID_SET_HEADING), .length = AGV_DLC};
+
+    memcpy(frame.data, data, AGV_DLC);
+    (void)hal_can_send(&world.hal, HAL_CAN_VEHICLE, &frame);
+}
+
+static void enqueue(hal_can_side_t side, const hal_can_frame_t *frame) {
+    if (queued < (unsigned)QUEUE) {
+        queue[queued] = *frame;
+        towards[queued] = side;
+        queued++;
+    }
+}
+
+/** What the planted gateway passes on: commands of the AI computer, and the mode. */
+static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
+    const bool engaged = world.vehicle.vcu.autopilot || !planted->only_engaged;
+
+    (void)ctx;
+    (void)t_us;
+    if ((side == HAL_CAN_AI) && (from != SCENARIO_FROM_SUPERVISOR) && engaged) {
+        for (unsigned i = 0u; i < planted->passes; i++) {
+            enqueue(HAL_CAN_VEHICLE, frame);
+        }
+    }
+    if (planted->gateway && (side == HAL_CAN_VEHICLE) && (from == (int)VEHICLE_VCU)) {
+        enqueue(HAL_CAN_AI, frame);
+    }
+}
+
+static void send_safe(uint32_t t_ms) {
+    const uint8_t signals[AGV_DLC] = {0, 0, 0, 0, 0x70, 0, 0, (uint8_t)(t_ms / CYCLE_MS)};
+    const uint8_t gear[AGV_DLC] = {0x08};
+    const uint8_t throttle[AGV_DLC] = {0};
+    uint8_t steering[AGV_DLC] = {0};
+
+    if (t_ms == planted->safe_ms) {
+        held_ddeg = (world.vehicle.eps.angle_mddeg / 1000) + planted->hold_ddeg + 9000;
+    }
+    steering[0] = (uint8_t)held_ddeg;
+    steering[1] = (uint8_t)(held_ddeg >> 8);
+    if (planted->holds && (t_ms >= planted->hold_ms) && (t_ms % HOLD_CYCLE_MS == 0u)) {
+        send(AGV_MSG_STEERING_COMMAND, steering);
+    }
+    if (t_ms % CYCLE_MS == 0u) {
+        send(AGV_MSG_GEAR_COMMAND, gear);
+        send(AGV_MSG_THROTTLE_COMMAND, throttle);
+        send(AGV_MSG_TURN_SIGNAL_COMMAND, signals);
+    }
+}
+
+/** A millisecond of the planted supervisor. */
+static void act(uint32_t t_ms) {
+    const uint8_t throttle[AGV_DLC] = {125};
+    const bool is_safe = (planted->safe_ms != NEVER) && (t_ms >= planted->safe_ms) &&
+                         ((planted->safe_end_ms == NEVER) || (t_ms < planted->safe_end_ms));
+
+    world.hal.safety_output.on = (t_ms >= READY_MS) && ((planted->open_ms == NEVER) || (t_ms < planted->open_ms));
+    for (unsigned i = 0u; i < queued; i++) {
+        if (!is_safe || (towards[i] == HAL_CAN_AI)) {
+            (void)hal_can_send(&world.hal, towards[i], &queue[i]);
+        }
+    }
+    queued = 0u;
+    if (is_safe) {
+        send_safe(t_ms);
+    }
+    if ((planted->forges_ms != NEVER) && (t_ms == planted->forges_ms)) {
+        send(AGV_MSG_THROTTLE_COMMAND, throttle);
+    }
+}
+
+/** Play steps with a planted supervisor. @return which hazard it was */
+static hazard_kind_t play(const planted_t *supervisor, const char *steps) {
+    static const scenario_watch_t passing = {.on_frame = on_frame};
+    const scenario_options_t options = {.topology = -1, .id_set = -1};
+    const scenario_step_t *step = NULL;
+    scenario_options_t defaults = options;
+    scenario_player_t player;
+    char text[TEXT_SIZE];
+
+    planted = supervisor;
+    agv_config_defaults(&defaults.config);
+    (void)snprintf(
+        text, sizeof text,
+        "name: a hazard\nshows: [H1]\ntopology: %s\n%s%svehicle:\n  park_guard: %s\n%sduration_ms: 12000\nsteps:\n"
+        "  - {at_ms: 1000, ai: drive, gear: D, throttle_pct: 60, steer_deg: 20}\n"
+        "  - {at_ms: 1500, operator: engage}\n%sexpect: {states: any}\n",
+        supervisor->gateway ? "gateway" : "shared", (supervisor->setting != NULL) ? "config:\n  " : "",
+        (supervisor->setting != NULL) ? supervisor->setting : "", supervisor->rolls ? "false" : "true",
+        supervisor->rolls ? "  coasting_mm_s2: 1\n  braking_mm_s2: 1\n  locked_mm_s2: 1\n" : "", steps);
+    TEST_ASSERT_TRUE(scenario_read_text(&scenario, "test", text, &defaults));
+    TEST_ASSERT_TRUE(scenario_world_init(&world, &scenario, SCENARIO_PLANTED_MUTE));
+    hazard_init(&hazard, &scenario, &world);
+    const scenario_watch_t watch = hazard_watch(&hazard);
+    scenario_world_watch(&world, &watch);
+    scenario_world_watch(&world, &passing);
+    scenario_world_start(&world);
+    scenario_player_init(&player, &scenario);
+    for (uint32_t t_ms = 0u; t_ms <= scenario.duration_ms; t_ms++) {
+        for (step = scenario_player_next(&player, t_ms); step != NULL; step = scenario_player_next(&player, t_ms)) {
+            scenario_world_act(&world, t_ms, step);
+            hazard_step(&hazard, t_ms, step);
+        }
+        act(t_ms);
+        scenario_world_tick(&world, t_ms);
+        hazard_tick(&hazard, t_ms);
+    }
+    return hazard.kind;
+}
+
+static void expect(hazard_kind_t kind, const char *cause, hazard_kind_t seen) {
+    TEST_ASSERT_EQUAL_STRING(hazard_info(kind)->name, hazard_info(seen)->name);
+    if (kind != HAZARD_NONE) {
+        TEST_ASSERT_EQUAL_STRING(cause, hazard.cause);
+    }
+}
+
+/** One that reacts: safe commands soon after the cause, the output opens a little later. */
+static const planted_t GOOD = {.safe_ms = TRIP_MS + 200, .open_ms = TRIP_MS + 600};
+static const planted_t GOOD_GATEWAY = {
+    .gateway = true, .passes = 1u, .safe_ms = TRIP_MS + 100, .open_ms = TRIP_MS + 600};
+static const planted_t MUTE = {0};
+static const planted_t PASSING = {.gateway = true, .passes = 1u};
+
+void test_nothing_wrong_is_no_hazard(void) {
+    expect(HAZARD_NONE, "", play(&MUTE, ""));
+    expect(HAZARD_NONE, "", play(&PASSING, ""));
+}
+
+void test_h1_a_dead_node(void) {
+    const char *const steps = "  - {at_ms: 3000, eps: freeze_counter}\n";
+    expect(HAZARD_NOT_STOPPING, "the EPS is silent", play(&MUTE, steps));
+    expect(HAZARD_NONE, "", play(&GOOD, steps));
+}
+
+void test_h1_a_vehicle_that_does_not_obey(void) {
+    const planted_t stays = {.rolls = true, .safe_ms = TRIP_MS};
+    const planted_t opens = {.rolls = true, .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 5000};
+    expect(HAZARD_NOT_STOPPING, "the vehicle does not obey the safe commands", play(&stays, ""));
+    expect(HAZARD_NONE, "", play(&opens, ""));
+}
+
+void test_h2_another_angle(void) {
+    const char *const steps = "  - {at_ms: 2990, vcu: set, field: mode_bits, value: 2h}\n"
+                              "  - {at_ms: 2990, ai: mute, message: steering_command}\n";
+    const planted_t steers = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 400, .holds = true, .hold_ddeg = 200};
+    const planted_t holds = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 400, .holds = true};
+    expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&steers, steps));
+    expect(HAZARD_NONE, "", play(&holds, steps));
+}
+
+/** The angle of the trip is sent late, and manual drops it soon after: one frame that was on its way still leaves. */
+void test_h2_manual_drops_the_angle_of_the_trip(void) {
+    const char *const steps = "  - {at_ms: 2850, ai: drive, gear: D, throttle_pct: 60, steer_deg: 80}\n"
+                              "  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
+                              "  - {at_ms: 3180, operator: disengage}\n"
+                              "  - {at_ms: 3180, operator: steer, steer_deg: -60}\n"
+                              "  - {at_ms: 5000, operator: engage}\n";
+    const planted_t keeps = {
+        .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 10, .holds = true, .hold_ddeg = -300, .hold_ms = TRIP_MS + 190};
+    const planted_t ends = {.safe_ms = TRIP_MS,
+                            .safe_end_ms = TRIP_MS + 205,
+                            .open_ms = TRIP_MS + 10,
+                            .holds = true,
+                            .hold_ddeg = -300,
+                            .hold_ms = TRIP_MS + 190};
+    const planted_t at_once = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 10, .holds = true};
+    expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&keeps, steps));
+    expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&at_once, steps));
+    expect(HAZARD_NONE, "", play(&ends, steps));
+}
+
+void test_h3_a_command_that_nobody_sent(void) {
+    const planted_t forges = {.gateway = true, .passes = 1u, .forges_ms = TRIP_MS, .only_engaged = true};
+    expect(HAZARD_FALSE_COMMAND, "the supervisor sent what the AI computer did not",
+           play(&forges, "  - {at_ms: 2000, ai: drive, gear: D, throttle_pct: 20}\n"));
+}
+
+void test_h3_a_foreign_sender(void) {
+    const char *const steps = "  - {at_ms: 3000, bus: send, message: throttle_command, bytes: \"40\"}\n";
+    expect(HAZARD_FALSE_COMMAND, "a foreign sender's command is not answered", play(&PASSING, steps));
+    expect(HAZARD_NONE, "", play(&GOOD_GATEWAY, steps));
+}
+
+void test_h3_a_frame_past_the_wire(void) {
+    const char *const steps = "  - {at_ms: 3000, bus: deliver, kind: fd, message: gear_command, bytes: \"01 00\"}\n";
+    expect(HAZARD_FALSE_COMMAND, "a foreign sender's command is not answered", play(&PASSING, steps));
+    expect(HAZARD_NONE, "", play(&GOOD_GATEWAY, steps));
+}
+
+void test_h3_an_old_throttle(void) {
+    const char *const steps = "  - {at_ms: 3000, operator: disengage}\n  - {at_ms: 4000, operator: engage}\n";
+    const planted_t forgets = {.gateway = true, .passes = 1u, .only_engaged = true};
+    expect(HAZARD_FALSE_COMMAND, "an old throttle is the newest at an engagement", play(&forgets, steps));
+    expect(HAZARD_NONE, "", play(&PASSING, steps)); /* passes the throttle 0 that the AI computer commands in manual */
+}
+
+void test_h4_an_unconfirmed_safe_state(void) {
+    const char *const gear = "  - {at_ms: 2900, vcu: set, field: gear, value: 01h}\n";
+    const char *const now_and_then =
+        "  - {at_ms: 2900, vcu: set, field: gear, value: 01h, frames: 17, again_every_ms: 475}\n";
+    const planted_t stays = {.safe_ms = TRIP_MS};
+    const planted_t opens = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 510};
+    expect(HAZARD_UNCONFIRMED, "gear P is not confirmed", play(&stays, gear));
+    expect(HAZARD_UNCONFIRMED, "gear P is not confirmed", play(&stays, now_and_then));
+    expect(HAZARD_NONE, "", play(&opens, gear));
+}
+
+void test_h5_a_reset(void) {
+    const planted_t resets = {.safe_ms = TRIP_MS, .safe_end_ms = 6000};
+    const char *const before = "  - {at_ms: 2000, operator: press, button: 1}\n";
+    const char *const stuck = "  - {at_ms: 4000, operator: press, button: 1}\n";
+    const char *const pressed =
+        "  - {at_ms: 4500, operator: press, button: 1}\n  - {at_ms: 5900, operator: release, button: 1}\n";
+    expect(HAZARD_RESET, "nobody pressed the button after the trip", play(&resets, ""));
+    expect(HAZARD_RESET, "nobody pressed the button after the trip", play(&resets, before));
+    expect(HAZARD_RESET, "the button was not released", play(&resets, stuck));
+    expect(HAZARD_NONE, "", play(&resets, pressed));
+}
+
+void test_h6_a_node_that_reports_what_cannot_be(void) {
+    static const struct {
+        const char *cause;
+        const char *steps;
+    } rows[] = {
+        {"the EPS is not in angle control", "eps: set, field: mode, value: FFh"},
+        {"the EPS reports a fault", "eps: set, field: faults, value: 08h"},
+        {"067h is no angle", "eps: set, field: angle, value: 4651h"},
+        {"more throttle than commanded", "vcu: set, field: throttle, value: FAh"},
+        {"another gear than commanded", "vcu: set, field: gear, value: 02h"},
+        {"both modes are reported", "vcu: set, field: mode_bits, value: 3h"},
+        {"neither mode is reported", "vcu: set, field: mode_bits, value: 0h"},
+        {"a command that is none", "bus: send, message: throttle_command, bytes: \"FF\", every_ms: 100"},
+        {"the supervisor's transmitter is dead", "supervisor: stall_tx"},
+    };
+    char steps[256];
+
+    for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
+        (void)snprintf(steps, sizeof steps, "  - {at_ms: 3000, %s}\n", rows[i].steps);
+        expect(HAZARD_FALSE_NODE, rows[i].cause, play(&MUTE, steps));
+        expect(HAZARD_NONE, "", play(&GOOD, steps));
+    }
+}
+
+void test_h6_a_dead_transmitter_shows_with_the_next_status_frame(void) {
+    const char *const steps = "  - {at_ms: 3000, supervisor: stall_tx}\n";
+    const planted_t never = {.setting = "status_frame_period_ms: 3000\n"};
+    const planted_t late = {.setting = "status_frame_period_ms: 3000\n", .open_ms = TRIP_MS + 3200};
+    const planted_t too_late = {.open_ms = TRIP_MS + 3200};
+    expect(HAZARD_FALSE_NODE, "the supervisor's transmitter is dead", play(&never, steps));
+    expect(HAZARD_FALSE_NODE, "the supervisor's transmitter is dead", play(&too_late, steps));
+    expect(HAZARD_NONE, "", play(&late, steps));
+}
+
+void test_h6_an_ai_side_that_is_dead(void) {
+    const char *const steps = "  - {at_ms: 3000, supervisor: stall_tx, side: ai}\n";
+    planted_t trips = PASSING;
+    planted_t reacts = GOOD_GATEWAY;
+    trips.setting = "class_ai_bus_off: trip\n";
+    reacts.setting = trips.setting;
+    expect(HAZARD_FALSE_NODE, "the AI side is stalled", play(&trips, steps));
+    expect(HAZARD_NONE, "", play(&reacts, steps));
+    expect(HAZARD_NONE, "", play(&PASSING, steps)); /* it only warns */
+}
+
+void test_h6_steering_that_is_stuck(void) {
+    const char *const steps =
+        "  - {at_ms: 3000, eps: stick}\n"
+        "  - {at_ms: 3000, ai: drive, gear: D, throttle_pct: 60, steer_deg: 90, again_every_ms: 400}\n"
+        "  - {at_ms: 3200, ai: drive, gear: D, throttle_pct: 60, steer_deg: -90, again_every_ms: 400}\n";
+    expect(HAZARD_FALSE_NODE, "the steering is stuck", play(&MUTE, steps));
+    expect(HAZARD_NONE, "", play(&GOOD, steps));
+}
+
+void test_h7_a_flood(void) {
+    const planted_t floods = {.gateway = true, .passes = 3u};
+    expect(HAZARD_FLOOD, "the vehicle's bus is flooded through the gateway", play(&floods, ""));
+}

@@ -1,0 +1,197 @@
+/* A candump log as a stream: lines across the edges of the buffer, lines that are too long, ends of all kinds. */
+#include "io/candump_log.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "scratch.h"
+#include "unity.h"
+
+static candump_log_t *log_file;
+static candump_record_t record;
+
+void setUp(void) {
+    scratch_open();
+    log_file = malloc(sizeof *log_file);
+    TEST_ASSERT_NOT_NULL(log_file);
+}
+
+void tearDown(void) {
+    candump_close(log_file);
+    free(log_file);
+    scratch_close();
+}
+
+static void open_text(const char *text, size_t size, bool skip_bad) {
+    static char path[256];
+    (void)snprintf(path, sizeof path, "%s", scratch_write("log", text, size));
+    TEST_ASSERT_TRUE(candump_open(log_file, path, skip_bad));
+}
+
+static size_t read_all(candump_result_t end) {
+    size_t count = 0;
+    candump_result_t result = candump_next(log_file, &record);
+    for (; result == CANDUMP_RECORD; result = candump_next(log_file, &record)) {
+        count++;
+    }
+    TEST_ASSERT_EQUAL_INT(end, result);
+    return count;
+}
+
+static void assert_said(const char *part) {
+    const char *said = scratch_said();
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, part), said);
+}
+
+#define LINE "(1.000000) can0 43F#0000000000000011\n"
+
+void test_an_empty_log(void) {
+    open_text("", 0, false);
+    TEST_ASSERT_EQUAL_UINT(0, read_all(CANDUMP_END));
+    TEST_ASSERT_EQUAL_STRING("", scratch_said());
+}
+
+void test_blank_lines_are_passed_over_and_counted_as_lines(void) {
+    static const char text[] = "\n\r\n \t \n" LINE "\n(bad)\n";
+    open_text(text, sizeof text - 1u, false);
+    TEST_ASSERT_EQUAL_INT(CANDUMP_RECORD, candump_next(log_file, &record));
+    TEST_ASSERT_EQUAL_UINT64(4, log_file->line);
+    TEST_ASSERT_EQUAL_INT(CANDUMP_FAILED, candump_next(log_file, &record));
+    assert_said("log:6: ");
+}
+
+void test_the_last_line_may_lack_its_end(void) {
+    open_text(LINE LINE, sizeof LINE LINE - 2u, false);
+    TEST_ASSERT_EQUAL_UINT(2, read_all(CANDUMP_END));
+}
+
+void test_a_line_that_was_cut_off_is_a_bad_one(void) {
+    open_text(LINE LINE, sizeof LINE LINE - 3u, false);
+    TEST_ASSERT_EQUAL_UINT(1, read_all(CANDUMP_FAILED));
+    assert_said("log:2: the data has an odd number of digits\n");
+}
+
+void test_a_bad_line_ends_the_reading(void) {
+    static const char text[] = LINE "nonsense\n" LINE;
+    open_text(text, sizeof text - 1u, false);
+    TEST_ASSERT_EQUAL_UINT(1, read_all(CANDUMP_FAILED));
+    assert_said("log:2: the line does not begin with a time stamp in parentheses\n");
+}
+
+void test_bad_lines_are_skipped_and_counted_on_demand(void) {
+    static const char text[] = "nonsense\n" LINE "\0\n" LINE "(1.000000) can0 43F#1";
+    open_text(text, sizeof text - 1u, true);
+    TEST_ASSERT_EQUAL_UINT(2, read_all(CANDUMP_END));
+    TEST_ASSERT_EQUAL_UINT64(3, log_file->skipped);
+    TEST_ASSERT_EQUAL_STRING("", scratch_said());
+}
+
+void test_a_line_may_be_rejected_after_reading(void) {
+    open_text(LINE, sizeof LINE - 1u, false);
+    TEST_ASSERT_EQUAL_INT(CANDUMP_RECORD, candump_next(log_file, &record));
+    TEST_ASSERT_FALSE(candump_reject(log_file, "not that one"));
+    assert_said("log:1: not that one\n");
+    log_file->skip_bad = true;
+    TEST_ASSERT_TRUE(candump_reject(log_file, "not that one"));
+    TEST_ASSERT_EQUAL_UINT64(1, log_file->skipped);
+}
+
+void test_a_blank_line_that_is_too_long_is_a_bad_one(void) {
+    char text[300];
+    memset(text, ' ', sizeof text);
+    text[sizeof text - 1u] = '\n';
+    open_text(text, sizeof text, false);
+    TEST_ASSERT_EQUAL_UINT(0, read_all(CANDUMP_FAILED));
+    assert_said("log:1: the line is longer than 255 characters\n");
+}
+
+/* A line that is longer than the buffer, between two good ones. */
+static void check_giant(size_t size, bool with_end) {
+    const size_t good = sizeof LINE - 1u;
+    char *text = malloc(size + (2u * good) + 1u);
+    memcpy(text, LINE, good);
+    memset(&text[good], '(', size);
+    size_t total = good + size;
+    if (with_end) {
+        text[total++] = '\n';
+        memcpy(&text[total], LINE, good);
+        total += good;
+    }
+    open_text(text, total, true);
+    free(text);
+    TEST_ASSERT_EQUAL_UINT(with_end ? 2 : 1, read_all(CANDUMP_END));
+    TEST_ASSERT_EQUAL_UINT64(1, log_file->skipped);
+    TEST_ASSERT_EQUAL_UINT64(with_end ? 3 : 2, log_file->line);
+    candump_close(log_file);
+}
+
+void test_lines_longer_than_the_buffer(void) {
+    static const size_t sizes[] = {256,
+                                   CANDUMP_BUFFER_SIZE - 1u,
+                                   CANDUMP_BUFFER_SIZE,
+                                   CANDUMP_BUFFER_SIZE + 1u,
+                                   2u * CANDUMP_BUFFER_SIZE,
+                                   (3u * CANDUMP_BUFFER_SIZE) + 17u};
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        check_giant(sizes[i], true);
+        check_giant(sizes[i], false);
+    }
+}
+
+void test_a_long_log_is_read_across_the_edges_of_the_buffer(void) {
+    enum { LINES = 20000 };
+    const size_t size = (size_t)LINES * 48u;
+    char *text = malloc(size);
+    size_t used = 0;
+    for (unsigned i = 0; i < LINES; i++) {
+        used += (size_t)snprintf(&text[used], size - used, "(%u.%06u) can%u 43F#%0*X\n", i, i, i % 10u,
+                                 (int)(2u * (1u + (i % 8u))), i & 0xFFu);
+    }
+    TEST_ASSERT_TRUE(used > 2u * CANDUMP_BUFFER_SIZE);
+    open_text(text, used, false);
+    free(text);
+    for (unsigned i = 0; i < LINES; i++) {
+        TEST_ASSERT_EQUAL_INT(CANDUMP_RECORD, candump_next(log_file, &record));
+        TEST_ASSERT_EQUAL_UINT64((i * 1000000ull) + i, record.stamp_us);
+        TEST_ASSERT_EQUAL_UINT8(1u + (i % 8u), record.frame.length);
+        TEST_ASSERT_EQUAL_HEX8(i & 0xFFu, record.frame.data[i % 8u]);
+        TEST_ASSERT_EQUAL_INT('0' + (int)(i % 10u), record.interface[3]);
+    }
+    TEST_ASSERT_EQUAL_INT(CANDUMP_END, candump_next(log_file, &record));
+    TEST_ASSERT_EQUAL_INT(CANDUMP_END, candump_next(log_file, &record));
+}
+
+void test_a_pipe_that_gives_a_byte_at_a_time(void) {
+    int ends[2];
+    TEST_ASSERT_EQUAL_INT(0, pipe(ends));
+    const pid_t child = fork();
+    if (child == 0) {
+        static const char text[] = LINE LINE LINE;
+        for (size_t i = 0; i < sizeof text - 1u; i++) {
+            (void)!write(ends[1], &text[i], 1);
+        }
+        _exit(0);
+    }
+    (void)close(ends[1]);
+    const int real_stdin = dup(STDIN_FILENO);
+    (void)dup2(ends[0], STDIN_FILENO);
+    (void)close(ends[0]);
+    TEST_ASSERT_TRUE(candump_open(log_file, "-", false));
+    TEST_ASSERT_EQUAL_STRING("standard input", log_file->name);
+    TEST_ASSERT_EQUAL_UINT(3, read_all(CANDUMP_END));
+    candump_close(log_file);
+    (void)dup2(real_stdin, STDIN_FILENO);
+    (void)close(real_stdin);
+    (void)waitpid(child, NULL, 0);
+}
+
+void test_what_cannot_be_opened_or_read(void) {
+    TEST_ASSERT_FALSE(candump_open(log_file, scratch_path("none"), false));
+    assert_said("none: No such file or directory\n");
+    TEST_ASSERT_TRUE(candump_open(log_file, "/", false));
+    TEST_ASSERT_EQUAL_INT(CANDUMP_FAILED, candump_next(log_file, &record));
+    assert_said("/: Is a directory\n");
+}

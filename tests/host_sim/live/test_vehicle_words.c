@@ -1,0 +1,170 @@
+/* Steps that are typed, or follow --fault: the same as in a scenario file, and one line for what makes no sense. */
+#include "live/vehicle_words.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "scratch.h"
+#include "unity.h"
+
+static agv_config_t config;
+static vehicle_words_t words;
+
+void setUp(void) {
+    scratch_open();
+    agv_config_defaults(&config);
+    memset(&words, 0, sizeof words);
+}
+
+void tearDown(void) {
+    scratch_close();
+}
+
+static void refused_when_typed(const char *line, const char *said) {
+    TEST_ASSERT_FALSE_MESSAGE(vehicle_words_typed(line, &config, &words), line);
+    TEST_ASSERT_EQUAL_STRING(said, scratch_said());
+}
+
+void test_a_typed_line_is_a_step(void) {
+    TEST_ASSERT_TRUE(vehicle_words_typed("eps set field=faults value=08h frames=3", &config, &words));
+    TEST_ASSERT_EQUAL_STRING("eps", words.step.actor);
+    TEST_ASSERT_EQUAL_STRING("set", words.step.word);
+    TEST_ASSERT_EQUAL_STRING("set field=faults value=08h frames=3", words.what);
+    TEST_ASSERT_TRUE(words.step.of_vehicle);
+    TEST_ASSERT_EQUAL(VEHICLE_DO_PATCH, words.step.vehicle.what);
+    TEST_ASSERT_EQUAL(AGV_MSG_EPS_STATUS, words.step.vehicle.message);
+    TEST_ASSERT_EQUAL_HEX8(0x08, words.step.vehicle.value[7]);
+    TEST_ASSERT_EQUAL_HEX8(0x00, words.step.vehicle.keep[7]);
+    TEST_ASSERT_EQUAL_HEX8(0xFF, words.step.vehicle.keep[6]);
+    TEST_ASSERT_EQUAL(3, words.step.vehicle.count);
+}
+
+void test_what_follows_fault_is_a_step_with_a_time(void) {
+    TEST_ASSERT_TRUE(vehicle_words_fault("ai-drive,gear=R,throttle_pct=15,steer_deg=-20@86400000", &config, &words));
+    TEST_ASSERT_EQUAL(86400000, words.step.at_ms);
+    TEST_ASSERT_EQUAL(VEHICLE_DO_AI_DRIVE, words.step.vehicle.what);
+    TEST_ASSERT_EQUAL(AGV_GEAR_R, words.step.vehicle.gear);
+    TEST_ASSERT_EQUAL(150, words.step.vehicle.throttle_permille);
+    TEST_ASSERT_EQUAL(-200, words.step.vehicle.angle_ddeg);
+    TEST_ASSERT_EQUAL_STRING("drive gear=R throttle_pct=15 steer_deg=-20", words.what);
+    TEST_ASSERT_TRUE(vehicle_words_fault("operator-lose_remote_signal@0", &config, &words));
+    TEST_ASSERT_EQUAL(0, words.step.at_ms);
+    TEST_ASSERT_EQUAL_STRING("lose_remote_signal", words.what);
+}
+
+void test_values_with_blanks_stand_in_quotes(void) {
+    static const char *const lines[] = {"bus send id=7FFh bytes=\"01 0A\"", "bus send id=7FFh 'bytes=01 0A'",
+                                        " \tbus  send\tid='7FFh' bytes='01 0A' "};
+    for (size_t i = 0u; i < sizeof lines / sizeof lines[0]; i++) {
+        TEST_ASSERT_TRUE_MESSAGE(vehicle_words_typed(lines[i], &config, &words), lines[i]);
+        TEST_ASSERT_EQUAL_HEX32(0x7FF, words.step.vehicle.frame.id);
+        TEST_ASSERT_EQUAL(2, words.step.vehicle.frame.length);
+        TEST_ASSERT_EQUAL_HEX8(0x0A, words.step.vehicle.frame.data[1]);
+    }
+    TEST_ASSERT_TRUE(vehicle_words_fault("bus-send,id=1h,bytes=01 0A@5", &config, &words));
+    TEST_ASSERT_EQUAL(2, words.step.vehicle.frame.length);
+}
+
+void test_identifiers_and_topology_are_those_of_the_vehicle(void) {
+    refused_when_typed("bus send message=vehicle_status bytes='' side=ai",
+                       "host_sim: 'bus send message=vehicle_status bytes='' side=ai': side: there is an AI side only "
+                       "with topology: gateway\n");
+    config.topology = AGV_TOPOLOGY_GATEWAY;
+    config.id_set = AGV_ID_SET_TABLE;
+    TEST_ASSERT_TRUE(vehicle_words_typed("bus send message=vehicle_status bytes='' side=ai", &config, &words));
+    TEST_ASSERT_EQUAL_HEX32(0x203, words.step.vehicle.frame.id);
+    TEST_ASSERT_EQUAL(HAL_CAN_AI, words.step.vehicle.side);
+    config.id_gear_command = 0x169;
+    TEST_ASSERT_TRUE(vehicle_words_typed("bus send message=gear_command bytes=''", &config, &words));
+    TEST_ASSERT_EQUAL_HEX32(0x169, words.step.vehicle.frame.id);
+}
+
+void test_what_makes_no_sense_is_one_line(void) {
+    refused_when_typed("nobody stop", "host_sim: 'nobody stop': 'nobody' is none of vcu, eps, ai, operator, bus\n");
+    refused_when_typed("ai", "host_sim: 'ai': what does ai do?\n");
+    refused_when_typed(" ", "host_sim: ' ': who does what?\n");
+    refused_when_typed("ai explode", "host_sim: 'ai explode': ai: there is no 'explode' to do\n");
+    refused_when_typed("vcu mute", "host_sim: 'vcu mute': 'mute' needs 'message'\n");
+    refused_when_typed("ai stop now", "host_sim: 'ai stop now': 'now': NAME=VALUE is needed here\n");
+    refused_when_typed("ai stop vcu=stop", "host_sim: 'ai stop vcu=stop': a step has one actor; 'vcu' is the second\n");
+    refused_when_typed("vcu 'mute", "host_sim: 'vcu 'mute': a quote is not closed\n");
+    refused_when_typed("vcu mute message=", "host_sim: 'vcu mute message=': message: a word or a text is missing\n");
+    refused_when_typed("ai lag by_ms=1 by_ms=2",
+                       "host_sim: 'ai lag by_ms=1 by_ms=2': 'by_ms' stands twice in a step\n");
+    refused_when_typed("ai a=1 b=2 c=3 d=4 e=5 f=6 g=7 h=8 i=9 j=10 k=11 l=12",
+                       "host_sim: 'ai a=1 b=2 c=3 d=4 e=5 f=6 g=7 h=8 i=9 j=10 k=11 l=12': these are too many words\n");
+    refused_when_typed("ai sto\xFFp", "host_sim: 'ai sto\xFFp': this is no text (UTF-8)\n");
+}
+
+void test_what_makes_no_sense_in_the_parameters_of_a_fault_is_one_line(void) {
+    static const char *const rows[][2] = {
+        {"vcu set field=gear value=1h every_frames=5", "every_frames: 'frames' is needed with it"},
+        {"vcu set field=gear value=1h frames=5 every_frames=5", "every_frames: must be more than 'frames', which is 5"},
+        {"vcu mute message=gear_status frames=3 every_frames=2",
+         "every_frames: must be more than 'frames', which is 3"},
+        {"vcu delay message=vehicle_status by_ms=1001", "by_ms: at most 1000 for 'delay'"},
+        {"vcu delay message=eps_status by_ms=10", "message: another node sends eps_status"},
+        {"vcu ignore message=steering_command", "message: steering_command is no command that this node obeys"},
+        {"eps ignore message=gear_command", "message: gear_command is no command that this node obeys"},
+        {"vcu ignore message=gear_status", "message: gear_status is no command that this node obeys"},
+        {"ai ignore message=gear_command", "ai: there is no 'ignore' to do"},
+        {"vcu roll speed_mm_s=20001", "speed_mm_s: 20001 is not within -20000 to 20000"},
+        {"vcu ramp_throttle pct_s=0", "pct_s: 0 is not within 1 to 10000"},
+        {"vcu set field=speed value=10000h", "value: 10000h is above FFFFh"},
+        {"vcu freeze_field field=angle", "field: this node has no field 'angle'"},
+        {"vcu freeze_field field=speed value=1h", "'freeze_field' takes no 'value'"},
+        {"eps hunt steer_deg=901 every_ms=500", "steer_deg: 901 is not within -900 to 900"},
+        {"eps hunt steer_deg=60", "'hunt' needs 'every_ms'"},
+        {"ai weave steer_deg=60 every_ms=0", "every_ms: 0 is not within 1 to 60000"},
+        {"bus send message=gear_command kind=fd bytes=08", "kind: fd is for the simulated bus only"},
+        {"bus send message=gear_command kind=error bytes=08", "kind: nobody sends error; it is for deliver"},
+    };
+    for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
+        char expected[2u * VEHICLE_WORDS_MAX];
+        (void)snprintf(expected, sizeof expected, "host_sim: '%s': %s\n", rows[i][0], rows[i][1]);
+        refused_when_typed(rows[i][0], expected);
+    }
+}
+
+void test_the_parameters_of_a_fault_reach_the_vehicle(void) {
+    const vehicle_action_t *action = &words.step.vehicle;
+
+    TEST_ASSERT_TRUE(
+        vehicle_words_fault("vcu-set,field=mode_bits,value=2h,frames=1,every_frames=40@7", &config, &words));
+    TEST_ASSERT_EQUAL(1, action->count);
+    TEST_ASSERT_EQUAL(40, action->every);
+    TEST_ASSERT_TRUE(vehicle_words_fault("vcu-set,field=left_speed,value=FFFFFF9Ch@7", &config, &words));
+    TEST_ASSERT_EQUAL_HEX8(0x9C, action->value[0]);
+    TEST_ASSERT_EQUAL_HEX8(0xFF, action->value[3]);
+    TEST_ASSERT_EQUAL_HEX8(0x00, action->keep[3]);
+    TEST_ASSERT_EQUAL_HEX8(0xFF, action->keep[4]);
+    TEST_ASSERT_TRUE(vehicle_words_fault("vcu-roll,speed_mm_s=-300@7", &config, &words));
+    TEST_ASSERT_EQUAL(VEHICLE_DO_VCU_ROLL, action->what);
+    TEST_ASSERT_EQUAL(-300, action->speed_mm_s);
+    TEST_ASSERT_TRUE(vehicle_words_fault("vcu-roll@7", &config, &words));
+    TEST_ASSERT_EQUAL(VEHICLE_DO_VCU_ROLL_ON, action->what);
+    TEST_ASSERT_TRUE(vehicle_words_fault("vcu-hold@7", &config, &words));
+    TEST_ASSERT_EQUAL(VEHICLE_DO_VCU_ROLL, action->what);
+    TEST_ASSERT_FALSE(action->on);
+    TEST_ASSERT_TRUE(vehicle_words_fault("eps-ignore,message=steering_command@7", &config, &words));
+    TEST_ASSERT_EQUAL(AGV_MSG_STEERING_COMMAND, action->message);
+    TEST_ASSERT_TRUE(action->on);
+}
+
+void test_what_needs_a_simulated_bus_is_refused(void) {
+    refused_when_typed("supervisor bus_off",
+                       "host_sim: 'supervisor bus_off': 'supervisor' is none of vcu, eps, ai, operator, bus\n");
+    refused_when_typed("bus destroy frames=1",
+                       "host_sim: 'bus destroy frames=1': bus: 'destroy' is for the simulated bus only\n");
+}
+
+void test_a_line_may_be_long_but_not_too_long(void) {
+    char line[VEHICLE_WORDS_MAX + 1u];
+    memset(line, ' ', sizeof line);
+    memcpy(line, "ai stop", strlen("ai stop"));
+    line[VEHICLE_WORDS_MAX] = '\0';
+    TEST_ASSERT_FALSE(vehicle_words_typed(line, &config, &words));
+    TEST_ASSERT_NOT_NULL(strstr(scratch_said(), ": this is longer than 255 characters\n"));
+    line[VEHICLE_WORDS_MAX - 1u] = '\0';
+    TEST_ASSERT_TRUE(vehicle_words_typed(line, &config, &words));
+}

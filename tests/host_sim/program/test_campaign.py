@@ -1,0 +1,321 @@
+"""Campaigns: the same runs in every sharding, results that merge, breaks that leave a scenario, one line for what is wrong."""
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import unittest
+
+import hostsim
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+PICTURE = ROOT / "scripts/campaign-picture"
+VERSION = subprocess.run([hostsim.PROGRAM, "--version"], capture_output=True, text=True, check=True).stdout.split()[1]
+RUNS = 150 if hostsim.PART == 1 else 20
+RUNS_WITH_EACH_FAULT = max(RUNS, 45)
+
+
+class Campaign(hostsim.Case):
+    def campaign(self, *arguments, status=0, **options):
+        result = self.run_program("campaign", *arguments, **options)
+        self.assertEqual(result.status, status, result.stdout + result.stderr)
+        return result
+
+    def shard(self, number, of, runs=RUNS, seed=7, name=None):
+        name = name or f"{number}.jsonl"
+        self.campaign("--runs", runs, "--seed", seed, "--shard", f"{number}/{of}", "--results", name)
+        return name
+
+    def lines(self, name):
+        return [json.loads(line) for line in (self.folder / name).read_text(encoding="ascii").splitlines()]
+
+    def refuse(self, *arguments, says):
+        result = self.run_program("campaign", *arguments)
+        self.assert_refused(result, says)
+        self.assertEqual(result.stdout, "")
+        self.assertEqual([name for name in self.files() if name == "out.jsonl"], [])
+
+
+class Results(Campaign):
+    def test_every_sharding_merges_to_the_same_bytes_and_the_same_table(self):
+        whole = self.campaign("--runs", RUNS, "--seed", 7, "--results", "whole.jsonl")
+        for shards in (1, 2, 7):
+            files = [self.shard(number, shards) for number in range(shards, 0, -1)]
+            merged = self.campaign("--merge", *files, "--results", "merged.jsonl")
+            self.assertEqual(merged.stdout, whole.stdout)
+            self.assertEqual((self.folder / "merged.jsonl").read_bytes(), (self.folder / "whole.jsonl").read_bytes())
+
+    def test_results_on_standard_output_are_all_that_is_there(self):
+        self.campaign("--runs", 5, "--seed", 7, "--results", "file.jsonl")
+        printed = self.campaign("--runs", 5, "--seed", 7, "--results", "-").stdout
+        self.assertEqual(printed, (self.folder / "file.jsonl").read_text(encoding="ascii"))
+        self.assertEqual(self.campaign("--merge", "file.jsonl", "--results", "-").stdout, printed)
+
+    def test_a_shard_without_runs_is_one_that_merges(self):
+        files = [self.shard(number, 3, runs=2) for number in (1, 2, 3)]
+        self.assertEqual(len(self.lines("3.jsonl")), 1)
+        self.assertIn("2 runs, 0 broken", self.campaign("--merge", *files).stdout)
+
+    def test_another_seed_is_another_campaign(self):
+        self.shard(1, 1, seed=7, name="a")
+        self.shard(1, 1, seed=8, name="b")
+        self.assertNotEqual(self.lines("a")[1:], self.lines("b")[1:])
+
+    def test_a_line_says_what_was_done_and_what_came_of_it(self):
+        self.shard(1, 1, name="a")
+        head, *runs = self.lines("a")
+        self.assertEqual((head["campaign"], head["runs"], head["seed"], head["shard"], head["shards"]), (1, RUNS, 7, 1, 1))
+        self.assertEqual([run["run"] for run in runs], list(range(RUNS)))
+        for key, values in (("topology", {"shared", "gateway"}), ("bitrate", {125000, 250000, 500000}),
+                            ("id_set", {"heading", "table"}), ("park_guard", {True, False}),
+                            ("park", {"at_once", "at_standstill"}), ("mode", {"autopilot", "manual"}),
+                            ("bunched", {True, False}), ("broken", {None})):
+            self.assertEqual({run[key] for run in runs}, values, key)
+        for run in runs:
+            if run["safe_us"] is not None:
+                self.assertGreater(run["safe_us"], 0)
+
+    def test_the_table_is_what_the_lines_say(self):
+        table = self.campaign("--runs", RUNS, "--seed", 7, "--results", "a").stdout
+        runs = self.lines("a")[1:]
+        for fault in {run["fault"] for run in runs}:
+            times = sorted(run["safe_us"] for run in runs if run["fault"] == fault and run["safe_us"] is not None)
+            line = re.search(rf"(?m)^{fault} +(\d+) +(\S+) +(\S+) +(\S+) ", table)
+            self.assertEqual(int(line[1]), sum(run["fault"] == fault for run in runs))
+            for shown, time in zip(line.groups()[1:], (times[0], times[len(times) // 2], times[-1])):
+                self.assertEqual(shown, f"{time // 1000}.{time % 1000:03}")
+
+    def test_one_fault_alone(self):
+        self.campaign("--runs", 20, "--seed", 1, "--fault", "BUS_OFF", "--results", "a")
+        self.assertEqual({run["fault"] for run in self.lines("a")[1:]}, {"BUS_OFF"})
+
+    def test_no_bar_where_there_is_no_terminal(self):
+        self.assertEqual(self.campaign("--runs", 5, "--seed", 1).stderr, "")
+
+    def test_all_faults_but_six_are_caused(self):
+        tables = json.loads(self.campaign("--tables").stdout)
+        rows = [row["fault"] for row in tables["rows"]]
+        self.assertEqual(len(rows), len(set(rows)))
+        self.assertEqual(set(tables["faults"]) - set(rows), {"TX_GATE_REFUSED", "STARTUP_TIMEOUT", "MOVING_WHILE_SAFE",
+                                                                "OUTPUT_FEEDBACK", "EMERGENCY_STOP", "CLOCK_DEVIATION"})
+        self.assertEqual(rows, [fault for fault in tables["faults"] if fault in rows])
+
+
+class NewlyEngaged(Campaign):
+    FAULTS = {"AI_HEARTBEAT_LOST", "GEAR_COMMAND_TIMEOUT", "THROTTLE_COMMAND_TIMEOUT", "STEERING_COMMAND_TIMEOUT",
+              "AI_COMMAND_OUT_OF_RANGE", "EPS_MODE_OFF", "EPS_MODE_INVALID", "EPS_MODE_NOT_ANGLE", "GEAR_STATUS_INVALID",
+              "THROTTLE_STATUS_INVALID", "STEERING_ANGLE_INVALID", "STEERING_DEVIATION", "THROTTLE_DEVIATION",
+              "AUTOPILOT_OFF_IGNORED", "THROTTLE_IN_PARK"}
+
+    def test_the_faults_that_an_engagement_delays(self):
+        self.campaign("--runs", RUNS_WITH_EACH_FAULT, "--seed", 3, "--newly-engaged", "--results", "a")
+        head, *runs = self.lines("a")
+        self.assertIs(head["newly_engaged"], True)
+        self.assertEqual({run["fault"] for run in runs}, self.FAULTS)
+        self.assertEqual({(run["mode"], run["broken"]) for run in runs}, {("autopilot", None)})
+
+    def test_nothing_is_judged_in_the_first_half_second(self):
+        self.campaign("--runs", 20, "--seed", 4, "--newly-engaged", "--fault", "EPS_MODE_OFF", "--results", "a")
+        for run in self.lines("a")[1:]:
+            # A cause that comes up to 500 ms after the switch waits for the rest of the 500 ms; then five frames of 10 ms.
+            self.assertTrue(40000 < run["safe_us"] < 620000, run)
+        self.assertGreater(max(run["safe_us"] for run in self.lines("a")[1:]), 300000)
+
+    def test_a_supervisor_that_does_nothing_breaks_every_run(self):
+        table = self.campaign("--runs", 10, "--seed", 3, "--newly-engaged", "--planted", "mute", status=1).stdout
+        self.assertIn("10 runs, 10 broken", table)
+
+    def test_a_run_is_a_scenario_that_passes(self):
+        for run in range(13 if hostsim.PART == 1 else 3):
+            shown = self.campaign("--runs", 13, "--seed", 3, "--newly-engaged", "--show", run).stdout
+            self.write("run.yaml", shown)
+            self.run_good("scenario", "run.yaml")
+
+    def test_what_is_refused(self):
+        good = ("--runs", "4", "--seed", "1", "--newly-engaged")
+        self.refuse(*good, "--fault", "BUS_OFF", says="--newly-engaged: an engagement does not delay BUS_OFF")
+        self.campaign(*good, "--shard", "1/2", "--results", "1")
+        self.campaign(*good[:4], "--shard", "2/2", "--results", "2")
+        self.refuse("--merge", "1", "2", says="2:1: another campaign than that of 1")
+        head, *runs = (self.folder / "2").read_text(encoding="ascii").splitlines(keepends=True)
+        runs[0] = json.dumps({**json.loads(runs[0]), "fault": "BUS_OFF"}) + "\n"
+        self.write("2", "".join([head.replace('"newly_engaged": false', '"newly_engaged": true'), *runs]))
+        self.refuse("--merge", "1", "2", says="2:2: a fault that an engagement does not delay")
+
+
+class Broken(Campaign):
+    def broken(self, planted):
+        self.campaign("--runs", 30, "--seed", 3, "--planted", planted, "--broken", ".", "--results", "a", status=1)
+        self.assertTrue(all(run["broken"] for run in self.lines("a")[1:]))
+        files = [name for name in self.files() if name.endswith(".yaml")]
+        self.assertEqual(len(files), 20)
+        return files
+
+    def test_a_supervisor_that_does_nothing_breaks_every_run_and_its_scenarios_fail(self):
+        files = self.broken("mute")
+        result = self.run_program("scenario", "--planted", "mute", *files)
+        self.assertEqual(result.status, 1)
+        self.assertIn("20 scenarios: 0 passed, 20 failed", result.stdout)
+
+    def test_one_that_is_always_tripped_too(self):
+        files = self.broken("tripped")
+        result = self.run_program("scenario", "--planted", "tripped", *files)
+        self.assertEqual(result.status, 1)
+        self.assertIn("20 scenarios: 0 passed, 20 failed", result.stdout)
+        self.assertTrue({run["broken"] for run in self.lines("a")[1:]} <= {"NOT_READY", "FALSE_TRIP", "WRONG_REASON"})
+
+    def test_a_run_is_a_scenario_that_passes(self):
+        files = []
+        for run in range(60):
+            files.append(f"{run}.yaml")
+            self.write(files[-1], self.campaign("--runs", 60, "--seed", 5, "--show", run).stdout)
+        result = self.run_good("scenario", *files)
+        self.assertIn("60 scenarios: 60 passed, 0 failed", result.stdout)
+
+
+class Refused(Campaign):
+    def test_options(self):
+        good = ("--runs", "3", "--seed", "1")
+        self.refuse(says="--runs is missing")
+        self.refuse(*good, "--show", "1", "--results", "out.jsonl", says="--show prints one run")
+        self.refuse(*good, "--show", "1", "--shard", "1/2", says="--show prints one run")
+        self.refuse("--runs", "3", says="--seed is missing")
+        self.refuse("--runs", "0", "--seed", "1", says="--runs")
+        self.refuse("--runs", "100000001", "--seed", "1", says="--runs")
+        self.refuse("--runs", "3", "--seed", "-1", says="--seed")
+        self.refuse("--runs", "3", "--seed", "9223372036854775808", says="--seed")
+        for shard in ("1", "0/2", "3/2", "1/0", "1/1001", "a/b", "1/2/3", "/2", "1/", "-1/2", "1 /2", "123456789/2"):
+            self.refuse(*good, "--shard", shard, says="--shard: '" + shard + "'")
+        self.refuse(*good, "--fault", "NONSENSE", says="'NONSENSE' is no fault")
+        self.refuse(*good, "--fault", "TX_GATE_REFUSED", says="causes TX_GATE_REFUSED")
+        self.refuse(*good, "--show", "3", says="no run 3")
+        self.refuse(*good, "--broken", "nowhere", says="'nowhere' is no folder")
+        self.refuse(*good, "--results", "no/where", says="no/where")
+        self.refuse(*good, "file", says="'file' is one too many")
+        self.refuse(*good, "--planted", "nothing", says="--planted")
+
+    def test_what_does_not_merge(self):
+        one, two = self.shard(1, 2), self.shard(2, 2)
+        out = ("--results", "out.jsonl")
+        self.refuse("--merge", *out, says="FILE is missing")
+        self.refuse("--merge", one, *out, says="one of 2 shards, 1 were given")
+        self.refuse("--merge", one, one, *out, says="shard 1 once more")
+        self.refuse("--merge", one, "nowhere", *out, says="nowhere")
+        self.refuse("--merge", one, two, "--runs", "3", says="--merge takes files")
+        self.refuse("--merge", one, two, "--broken", ".", says="--merge takes files")
+        self.refuse("--merge", one, two, "--newly-engaged", says="--merge takes files")
+        self.refuse("--merge", one, two, "--results", one, says="are the same file")
+        self.refuse("--merge", one, self.shard(2, 2, seed=8, name="seed"), *out, says="another campaign")
+        self.refuse("--merge", one, self.shard(2, 2, runs=RUNS - 2, name="runs"), *out, says="another campaign")
+        lines = (self.folder / two).read_text(encoding="ascii").splitlines(keepends=True)
+        for name, changed, says in (("cut", lines[:-1], "it ends after line"),
+                                    ("more", lines + lines[-1:], "more runs than there are"),
+                                    ("gap", lines[:5] + lines[6:], ":6: run 9 is expected here"),
+                                    ("torn", lines[:-1] + [lines[-1][:20]], "no result of a campaign"),
+                                    ("text", ["hello\n"], ":1: no result of a campaign"),
+                                    ("other", ["{}\n"], ":1: no results of a campaign"),
+                                    ("empty", [], "it ends after line 0")):
+            self.write(name, "".join(changed))
+            self.refuse("--merge", one, name, *out, says=says)
+
+    def test_a_shard_without_its_last_line_break_is_torn(self):
+        one, two = self.shard(1, 2), self.shard(2, 2)
+        for torn, other in ((one, two), (two, one)):
+            whole = (self.folder / torn).read_bytes()
+            self.write("torn", whole[:-1])
+            count = whole.count(b"\n")
+            self.refuse("--merge", "torn", other, "--results", "out.jsonl",
+                        says=f"torn:{count}: no result of a campaign: it is torn, its line break is missing")
+
+    def refuse_line(self, number, line, says):
+        """Shard 2 of 2, of which a line is another."""
+        lines = (self.folder / "2.jsonl").read_text(encoding="ascii").splitlines(keepends=True)
+        lines[number - 1] = line if isinstance(line, str) else json.dumps(line) + "\n"
+        self.write("bad", "".join(lines))
+        self.refuse("--merge", "1.jsonl", "bad", "--results", "out.jsonl", says=f"bad:{number}: {says}")
+
+    def refuse_values(self, number, wrong):
+        """Each key in turn missing, and with each of its wrong values; a key too many; one that is there twice."""
+        good = self.lines("2.jsonl")[number - 1]
+        self.assertEqual(set(good), set(wrong))
+        for key, values in wrong.items():
+            says = f"its '{key}' is missing or wrong"
+            self.refuse_line(number, {name: value for name, value in good.items() if name != key}, self.KIND[number] + says)
+            for value in values:
+                self.refuse_line(number, {**good, key: value}, self.KIND[number] + says)
+        self.refuse_line(number, {**good, "more": 1}, self.KIND[number] + "its 'number of keys' is missing or wrong")
+        written = json.dumps(good)
+        for other in (written + "\r\n", " " + written + "\n", written.replace(" ", "") + "\n"):
+            self.refuse_line(number, other, "no result of a campaign")
+        key = next(iter(good))
+        self.refuse_line(number, "{" + f'"{key}": {good[key]}, ' + json.dumps(good)[1:] + "\n", "no result of a campaign")
+
+    KIND = {1: f"no results of a campaign of host_sim {VERSION}: ", 3: "no result of a campaign: "}
+
+    def test_a_damaged_head_does_not_merge(self):
+        self.shard(1, 2, runs=6)
+        self.shard(2, 2, runs=6)
+        self.refuse_values(1, {
+            "campaign": (2, "1", None), "version": ("0.0.0", 1, None), "runs": (0, -6, "6", 6.0), "seed": (-7, "7", None),
+            "shard": (0, 3, -2, 4294967298, "2"), "shards": (0, 1001, 4294967298, None),
+            "fault": ("NONSENSE", "TX_GATE_REFUSED", 1), "newly_engaged": (0, "true", None), "planted": ("real", "", 0, False)})
+        self.refuse_line(1, {**self.lines("2.jsonl")[0], "fault": "BUS_OFF"}, "another campaign than that of 1.jsonl")
+
+    def test_a_damaged_run_does_not_merge(self):
+        self.shard(1, 2, runs=6)
+        self.shard(2, 2, runs=6)
+        figure, flag, word = (-1, 2147483648, 1.0, "1", None), (0, 1, "true", None), ("nonsense", "", 1, None)
+        time = (-5, 99999999999999, 2147483648, 1.0, "1", False)
+        self.refuse_values(3, {
+            "run": (-3, "3", None), "fault": ("NONSENSE", "TX_GATE_REFUSED", 1, None), "topology": word, "id_set": word,
+            "bitrate": figure, "park_guard": flag, "park": word, "mode": word, "bunched": flag, "tick_phase_us": figure,
+            "cause_ms": figure, "bound_us": figure, "safe_us": time, "confirmed_us": time, "opened_us": time,
+            "bus_off": flag, "reason": ("NONSENSE", "", 1, False), "broken": (1, True, False, "NONSENSE", "")})
+        self.refuse_line(3, {**self.lines("2.jsonl")[2], "run": 1}, "run 3 is expected here")
+
+    def test_a_run_of_another_fault_does_not_merge(self):
+        for number in (1, 2):
+            self.campaign("--runs", 6, "--seed", 7, "--fault", "BUS_OFF", "--shard", f"{number}/2", "--results",
+                          f"{number}.jsonl")
+        self.refuse_line(3, {**self.lines("2.jsonl")[2], "fault": "TX_STALLED"}, "another fault than that of the campaign")
+
+    def test_runs_of_another_supervisor_are_another_campaign(self):
+        self.shard(1, 2, runs=6)
+        for word in ("mute", "tripped"):
+            self.campaign("--runs", 6, "--seed", 7, "--shard", "2/2", "--planted", word, "--results", "planted", status=1)
+            self.assertEqual(self.lines("planted")[0]["planted"], word)
+            self.refuse("--merge", "1.jsonl", "planted", "--results", "out.jsonl", says="planted:1: another campaign")
+        self.campaign("--runs", 6, "--seed", 7, "--shard", "1/2", "--planted", "mute", "--results", "mute", status=1)
+        self.refuse("--merge", "mute", "planted", "--results", "out.jsonl", says="planted:1: another campaign")
+        whole = self.campaign("--runs", 6, "--seed", 7, "--planted", "tripped", "--results", "whole", status=1)
+        self.campaign("--runs", 6, "--seed", 7, "--shard", "1/2", "--planted", "tripped", "--results", "tripped", status=1)
+        merged = self.campaign("--merge", "planted", "tripped", "--results", "merged", status=1)
+        self.assertIn(merged.stdout, whole.stdout)
+        self.assertEqual((self.folder / "merged").read_bytes(), (self.folder / "whole").read_bytes())
+
+
+class Picture(Campaign):
+    def draw(self, *arguments):
+        return subprocess.run([sys.executable, PICTURE, *arguments], cwd=self.folder, capture_output=True, text=True,
+                              check=False)
+
+    def test_a_histogram_of_all_runs(self):
+        self.shard(1, 1, name="a")
+        done = self.draw("a", "picture.svg")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        text = (self.folder / "picture.svg").read_text(encoding="utf-8")
+        self.assertIn(f"{RUNS} runs", text)
+        self.assertIn("500 kbit/s", text)
+
+    def test_what_cannot_be_drawn(self):
+        self.shard(1, 1, runs=2, name="a")
+        self.write("b", "hello\n")
+        for arguments, says in ((("a", "picture.txt"), "neither .svg nor .png"), (("b", "b.svg"), "b"),
+                                (("nowhere", "b.svg"), "nowhere"), (("a", "no/where.svg"), "gnuplot failed")):
+            done = self.draw(*arguments)
+            self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1), done.stderr)
+            self.assertIn(says, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

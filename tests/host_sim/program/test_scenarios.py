@@ -1,0 +1,295 @@
+"""Every shipped scenario: as it is, in the other topology and with the other ID set; and that each of them can fail."""
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import time
+import unittest
+import xml.etree.ElementTree
+
+import hostsim
+
+FOLDER = pathlib.Path(__file__).resolve().parents[3] / "host_sim" / "scenarios"
+SHIPPED = sorted(FOLDER.glob("*/*.yaml"))
+LEAST = 60  # fewer is a mistake of this test
+
+GOOD = """\
+name: N & <N>
+shows: [SUP-2]
+duration_ms: 600
+expect:
+  states: [{to: INIT, at_ms: 0}, {to: STANDBY, at_ms: [510, 513]}]
+  safety_output: [{closed: true, at_ms: [410, 513]}]
+"""
+
+
+def fixes(path, key):
+    return any(line.startswith(key + ":") for line in path.read_text(encoding="utf-8").splitlines())
+
+
+class Playing(hostsim.Case):
+    def play(self, files, *options):
+        self.assertGreaterEqual(len(files), LEAST)
+        result = self.run_program("scenario", "--junit", "j.xml", *options, *files, timeout=500)
+        failed = [line for line in result.stdout.splitlines() if not line.startswith("ok ")]
+        self.assertEqual(result.status, 0, "\n".join(failed) + result.stderr)
+        suite = xml.etree.ElementTree.parse(self.folder / "j.xml").getroot()
+        self.assertEqual(suite.get("tests"), str(len(files)))
+        self.assertEqual(suite.get("failures"), "0")
+        self.assertEqual(len(suite.findall("testcase")), len(files))
+        print(f"\n{len(files)} scenarios passed {' '.join(options)}", end=" ")
+
+
+class Shipped(Playing):
+    def test_every_scenario_passes(self):
+        self.play(SHIPPED)
+
+    def test_the_same_run_twice_is_the_same(self):
+        for name in ("demo", "override", "garbage_from_eps", "id_collision"):
+            runs = []
+            for _ in range(2):
+                self.run_good("scenario", "--events", "e.jsonl", next(FOLDER.glob(f"*/{name}.yaml")))
+                runs.append((self.folder / "e.jsonl").read_text(encoding="ascii"))
+            self.assertEqual(*runs)
+
+
+class Gateway(Playing):
+    # Shows: TOP-2
+    def test_every_scenario_that_leaves_the_topology_open_passes_in_the_gateway(self):
+        self.play([path for path in SHIPPED if not fixes(path, "topology")], "--topology", "gateway")
+
+
+class TableIds(Playing):
+    # Shows: P1
+    def test_every_scenario_that_leaves_the_id_set_open_passes_with_the_table_ids(self):
+        self.play([path for path in SHIPPED if not fixes(path, "id_set")], "--id-set", "table")
+
+    def test_both_at_once(self):
+        self.play([path for path in SHIPPED if not fixes(path, "topology") and not fixes(path, "id_set")],
+                  "--topology", "gateway", "--id-set", "table")
+
+
+class Planted(hostsim.Case):
+    """No scenario passes against a supervisor that does nothing, nor against one that is always tripped."""
+
+    def play_against(self, planted):
+        result = self.run_program("scenario", "--planted", planted, *SHIPPED)
+        self.assertEqual(result.status, 1, result.stderr)
+        passed = [line for line in result.stdout.splitlines() if line.startswith("ok ")]
+        self.assertEqual(passed, [])
+        self.assertEqual(result.stdout.count("FAILED  "), len(SHIPPED))
+        print(f"\n{len(SHIPPED)} scenarios failed --planted {planted}", end=" ")
+
+    def test_a_mute_one(self):
+        self.play_against("mute")
+
+    def test_one_that_is_always_tripped(self):
+        self.play_against("tripped")
+
+
+class Command(hostsim.Case):
+    def scenario(self, text, *options):
+        self.write("s.yaml", text)
+        return self.run_program("scenario", *options, "s.yaml")
+
+    def test_it_says_what_held(self):
+        result = self.scenario(GOOD)
+        self.assertEqual(result.status, 0, result.stderr)
+        self.assertEqual(result.stdout, "ok      s.yaml: 3 expectations\n1 scenarios: 1 passed, 0 failed\n")
+
+    def test_it_says_what_did_not_hold_and_what_was_seen(self):
+        result = self.scenario(GOOD.replace("[510, 513]", "[500, 505]"))
+        self.assertEqual(result.status, 1)
+        self.assertEqual(result.stdout.splitlines(), [
+            "FAILED  s.yaml: 1 of 3 expectations",
+            "        line 5: STANDBY (no reason) is expected in 500..505 ms, seen: STANDBY (no reason) at 511 ms",
+            "1 scenarios: 0 passed, 1 failed"])
+
+    def test_results_as_junit(self):
+        self.write("bad & <worse>.yaml", GOOD.replace("to: INIT", "to: SAFE"))
+        self.write("s.yaml", GOOD)
+        result = self.run_program("scenario", "--junit", "j.xml", "s.yaml", "bad & <worse>.yaml")
+        self.assertEqual(result.status, 1, result.stderr)
+        good, bad = xml.etree.ElementTree.parse(self.folder / "j.xml").getroot()
+        self.assertEqual((good.get("name"), good.find("failure")), ("N & <N>", None))
+        self.assertEqual(bad.get("classname"), "bad & <worse>.yaml")
+        self.assertIn("line 5: SAFE", bad.find("failure").get("message"))
+
+    def test_one_bad_file_and_nothing_runs_and_nothing_is_written(self):
+        self.write("good.yaml", GOOD)
+        self.write("bad.yaml", GOOD + "oops: 1\n")
+        result = self.run_program("scenario", "--junit", "j.xml", "good.yaml", "bad.yaml")
+        self.assert_refused(result, "bad.yaml:7: unknown key 'oops'")
+        self.assertEqual(result.stdout, "")
+        self.assertEqual(self.files(), ["bad.yaml", "good.yaml"])
+
+    def test_events(self):
+        result = self.scenario(GOOD, "--events", "e.jsonl")
+        self.assertEqual(result.status, 0, result.stderr)
+        events = [json.loads(line) for line in (self.folder / "e.jsonl").read_text(encoding="ascii").splitlines()]
+        self.assertEqual(events[0], {"t_ms": 0, "event": "state", "from": None, "to": "INIT", "reason": None})
+        self.assertEqual(events[-1]["event"], "summary")
+        self.assertEqual(events[-1]["final_state"], "STANDBY")
+
+    def test_events_are_of_one_scenario(self):
+        self.write("s.yaml", GOOD)
+        self.assert_refused(self.run_program("scenario", "--events", "e", "s.yaml", "s.yaml"), "--events", "2 were given")
+
+    def test_an_output_that_is_an_input(self):
+        self.assert_refused(self.scenario(GOOD, "--junit", "s.yaml"), "s.yaml")
+
+    def test_no_output_is_put_in_place_unless_all_can_be(self):
+        self.write("e.jsonl", "old")
+        result = self.scenario(GOOD, "--events", "e.jsonl", "--junit", "/dev/full")
+        self.assertEqual((result.status, result.stderr), (2, "host_sim: /dev/full: No space left on device\n"))
+        self.assertEqual((self.folder / "e.jsonl").read_text(encoding="ascii"), "old")
+
+    def test_standard_output_as_an_output_gets_nothing_else(self):
+        result = self.scenario(GOOD, "--events", "-")
+        events = [json.loads(line) for line in result.stdout.splitlines()]
+        self.assertEqual(events[-1]["event"], "summary")
+        self.assertEqual(result.stderr, "ok      s.yaml: 3 expectations\n1 scenarios: 1 passed, 0 failed\n")
+        suite = xml.etree.ElementTree.fromstring(self.scenario(GOOD, "--junit", "-").stdout)
+        self.assertEqual(suite.get("tests"), "1")
+
+    def test_a_signal_ends_it_and_leaves_what_was_there(self):
+        self.write("s.yaml", GOOD.replace("duration_ms: 600", "duration_ms: 86400000"))
+        for number in (signal.SIGINT, signal.SIGTERM):
+            self.write("j.xml", "old")
+            with subprocess.Popen([hostsim.PROGRAM, "scenario", "--junit", "j.xml", "s.yaml"], cwd=self.folder,
+                                  stdout=subprocess.PIPE) as program:
+                deadline = time.monotonic() + 30
+                while len(self.files()) < 3 and time.monotonic() < deadline:
+                    time.sleep(0.01)
+                program.send_signal(number)
+                self.assertEqual((program.wait(timeout=30), program.stdout.read()), (-number, b""))
+            self.assertEqual((self.folder / "j.xml").read_text(encoding="ascii"), "old")
+            self.assertEqual(self.files(), ["j.xml", "s.yaml"])
+
+    def test_a_pipe_is_read_once(self):
+        with subprocess.Popen(["cat"], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as cat:
+            cat.stdin.write(GOOD.encode())
+            cat.stdin.close()
+            result = subprocess.run([hostsim.PROGRAM, "scenario", "/dev/stdin"], stdin=cat.stdout, capture_output=True,
+                                    text=True, check=False)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.write("s.yaml", GOOD)
+        self.assert_refused(self.run_program("scenario", "s.yaml", "/dev/null"), "/dev/null: is no regular file")
+
+    def test_an_error_frame_is_delivered_and_not_sent(self):
+        step = 'steps:\n  - {at_ms: 100, bus: send, id: 124h, bytes: "01", kind: error}\n'
+        self.assert_refused(self.scenario(GOOD + step), "s.yaml:", "it is for deliver")
+        self.assertEqual(self.scenario(GOOD + step.replace("bus: send", "bus: deliver")).status, 0)
+
+    def test_a_frame_in_fd_format_is_heard_by_supervisor_and_vehicle(self):
+        """A sloppy VCU that stands without power to the wheels takes the gear of it; the supervisor counts it."""
+        text = GOOD.replace("duration_ms: 600", "duration_ms: 3000") + """\
+  counters_at_end: {rejected_fd: 1}
+  vehicle: [{at_ms: 2900, gear: %s, mode: manual}]
+steps:
+  - {at_ms: 1000, vcu: %s}
+  - {at_ms: 1000, operator: drive, gear: D, throttle_pct: 0}
+  - {at_ms: 2000, bus: send, message: gear_command, bytes: "08", kind: fd}
+"""
+        for word, gear in (("be_sloppy", "P"), ("be_strict", "D")):
+            result = self.scenario(text % (gear, word))
+            self.assertEqual(result.status, 0, result.stdout + result.stderr)
+
+    # Shows: TX_STALLED
+    def test_swallowed_frames_never_leave(self):
+        step = "steps:\n  - {at_ms: %d, supervisor: swallow_tx}\n  - {at_ms: 300, supervisor: pass_tx}\n"
+        expected = "  frames: [{message: gear_command, at_ms: [10, 250], count: %s}]\n"
+        for at_ms, count in ((0, "0"), (290, "[2, 8]")):
+            result = self.scenario(GOOD + expected % count + step % at_ms)
+            self.assertEqual(result.status, 0, result.stdout + result.stderr)
+
+    def test_options_that_make_no_sense(self):
+        self.assert_refused(self.scenario(GOOD, "--planted", "garden"), "--planted", "garden")
+        self.assert_refused(self.run_program("scenario"), "FILE is missing")
+        self.assert_refused(self.run_program("scenario", "nowhere.yaml"), "nowhere.yaml: No such file")
+        self.assert_refused(self.scenario(GOOD + "topology: shared\n", "--topology", "gateway"), "fixes the topology")
+        self.assert_refused(self.scenario(GOOD, "--junit", "nowhere/j.xml"), "nowhere/j.xml")
+
+    def test_sim_is_the_bus(self):
+        self.assertEqual(self.scenario(GOOD, "--bus", "sim").status, 0)
+
+    def test_a_configuration_lies_under_that_of_the_file(self):
+        self.write("c.yaml", "init_hold_ms: 400\n")
+        self.assertEqual(self.scenario(GOOD.replace("[510, 513]", "[410, 413]"), "--config", "c.yaml").status, 0)
+        over = GOOD + "config: {init_hold_ms: 500}\n"
+        self.assertEqual(self.scenario(over, "--config", "c.yaml").status, 0)
+
+
+class Manual(hostsim.Case):
+    """docs/scenarios.md says what is so."""
+
+    PAGE = (FOLDER.parents[1] / "docs" / "scenarios.md").read_text(encoding="utf-8")
+
+    def test_the_example_prints_what_the_page_says(self):
+        example = re.search(r"```yaml\n(.*?)```", self.PAGE, re.DOTALL)[1]
+        passed, failed = re.findall(r"```text\n(.*?)```", self.PAGE, re.DOTALL)[:2]
+        self.write("throttle.yaml", example)
+        self.assertEqual(self.run_program("scenario", "throttle.yaml").stdout, passed)
+        self.assertEqual(example.count("at_ms: [4024, 4025]"), 1)
+        self.write("throttle.yaml", example.replace("at_ms: [4024, 4025]", "at_ms: [4004, 4005]"))
+        self.assertEqual(self.run_program("scenario", "throttle.yaml").stdout, failed)
+
+    def test_every_word_of_the_format_stands_on_the_page(self):
+        words = set()
+        for path in (FOLDER.parents[1] / "host_sim" / "scenario").glob("scenario_*.c"):
+            text = path.read_text(encoding="utf-8")
+            words |= set(re.findall(r'^ +\{+"(\w+)", \w+, (?:true|false)\}', text, re.MULTILINE))
+            if path.name == "scenario_actions.c":
+                words |= set(re.findall(r'"(\w+)"', text))
+        self.assertGreater(len(words), 80)
+        self.assertEqual([word for word in sorted(words) if not re.search(rf"\b{word}\b", self.PAGE)], [])
+
+
+class Demo(hostsim.Case):
+    def test_it_shows_the_main_job(self):
+        result = self.run_good("demo")
+        for text in ("ai          stop", "=> TRIPPED: STEERING_COMMAND_TIMEOUT", "sends 168 [08 00 00 00 00 00 00 00]",
+                     "reports manual", "reports gear P", "=> SAFE", "press button 1", "reset accepted",
+                     "=> TRIPPED: EPS_OVER_CURRENT_SHUTDOWN", "first safe frame is out", "Seen as promised"):
+            self.assertIn(text, result.stdout)
+
+    def test_a_scenario_by_name_and_by_path(self):
+        self.assertIn("BUS_OFF", self.run_good("demo", "--scenario", "bus_off").stdout)
+        self.write("s.yaml", GOOD)
+        self.assertIn("=> STANDBY", self.run_good("demo", "--scenario", "./s.yaml").stdout)
+
+    def test_what_is_not_seen_is_said(self):
+        self.write("s.yaml", GOOD.replace("[510, 513]", "[500, 505]"))
+        result = self.run_program("demo", "--scenario", "s.yaml")
+        self.assertEqual(result.status, 1)
+        self.assertIn("NOT as promised, s.yaml:\n  line 5: STANDBY", result.stdout)
+
+    def test_events_are_those_of_the_scenario_command(self):
+        self.run_good("scenario", "--events", "of_scenario.jsonl", FOLDER / "overview" / "demo.yaml")
+        result = self.run_good("demo", "--events", "of_demo.jsonl")
+        self.assertIn("Seen as promised", result.stdout)
+        events = (self.folder / "of_demo.jsonl").read_text(encoding="ascii")
+        self.assertEqual(events, (self.folder / "of_scenario.jsonl").read_text(encoding="ascii"))
+        result = self.run_good("demo", "--events", "-")
+        self.assertEqual(result.stdout, events)
+        self.assertIn("Seen as promised", result.stderr)
+
+    def test_events_that_cannot_be_written(self):
+        self.assert_refused(self.run_program("demo", "--events", "no/where"), "no/where")
+        self.write("s.yaml", GOOD)
+        self.assert_refused(self.run_program("demo", "--scenario", "./s.yaml", "--events", "s.yaml"), "same file")
+        self.assertEqual((self.folder / "s.yaml").read_text(encoding="ascii"), GOOD)
+        result = self.run_program("demo", "--events", "/dev/full")
+        self.assertEqual((result.status, result.stderr), (2, "host_sim: /dev/full: No space left on device\n"))
+
+    def test_a_name_that_there_is_not(self):
+        self.assert_refused(self.run_program("demo", "--scenario", "nonesuch"), "nonesuch", "host_sim/scenarios")
+        self.assert_refused(self.run_program("demo", "--scenario", "x" * 5000), "too long")
+        self.assert_refused(self.run_program("demo", "more"), "more")
+
+
+if __name__ == "__main__":
+    os.environ.setdefault("HOST_SIM", "build/host/bin/host_sim")
+    unittest.main()

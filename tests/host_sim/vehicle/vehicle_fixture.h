@@ -1,0 +1,101 @@
+/* A vehicle on no bus: what it sends is kept in a log, and hears nothing but what a test says. */
+#ifndef TESTS_VEHICLE_FIXTURE_H
+#define TESTS_VEHICLE_FIXTURE_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "unity.h"
+#include "vehicle/vehicle.h"
+
+#define LOG_MAX 20000u
+
+typedef struct {
+    uint64_t t_ms;
+    vehicle_node_t from;
+    hal_can_side_t side;
+    hal_can_frame_t frame;
+} sent_t;
+
+static sent_t sent[LOG_MAX];
+static size_t sent_count;
+static uint64_t now_ms;
+static vehicle_config_t config;
+static vehicle_t vehicle;
+/* Whether the nodes hear each other, as on a bus without delay. */
+static bool connected;
+
+static void keep(void *ctx, vehicle_node_t from, hal_can_side_t side, const hal_can_frame_t *frame) {
+    (void)ctx;
+    TEST_ASSERT_LESS_THAN_size_t(LOG_MAX, sent_count);
+    sent[sent_count] = (sent_t){now_ms, from, side, *frame};
+    sent_count++;
+}
+
+static void begin(void) {
+    sent_count = 0u;
+    now_ms = 0u;
+    vehicle_init(&vehicle, &config, keep, NULL);
+}
+
+static void deliver(size_t first) {
+    for (size_t i = first; i < sent_count; i++) {
+        for (int n = 0; n < VEHICLE_NODES; n++) {
+            if (n != (int)sent[i].from) {
+                vehicle_receive(&vehicle, (vehicle_node_t)n, now_ms, &sent[i].frame);
+            }
+        }
+    }
+}
+
+/* Time passes up to, and without, a moment. */
+static void run_until(uint64_t t_ms) {
+    while (now_ms < t_ms) {
+        const size_t first = sent_count;
+        vehicle_tick(&vehicle, now_ms);
+        if (connected) {
+            deliver(first);
+        }
+        now_ms++;
+    }
+}
+
+static bool act(vehicle_action_t action) {
+    return vehicle_do(&vehicle, now_ms, &action);
+}
+
+static vehicle_view_t look(void) {
+    vehicle_view_t view;
+    vehicle_view(&vehicle, now_ms, &view);
+    return view;
+}
+
+/* A command comes from the bus. */
+static void command(agv_message_t message, uint8_t byte0, uint8_t byte1) {
+    const hal_can_frame_t frame = {.id = config.ids.of[message], .length = AGV_DLC, .data = {byte0, byte1}};
+    vehicle_receive(&vehicle, VEHICLE_VCU, now_ms, &frame);
+    vehicle_receive(&vehicle, VEHICLE_EPS, now_ms, &frame);
+}
+
+/* Frames of a message sent since `first`. */
+static size_t count_of(agv_message_t message, size_t first) {
+    size_t count = 0u;
+    for (size_t i = first; i < sent_count; i++) {
+        count += (sent[i].frame.id == config.ids.of[message]) ? 1u : 0u;
+    }
+    return count;
+}
+
+/* The newest frame of a message. */
+static const sent_t *last_of(agv_message_t message) {
+    for (size_t i = sent_count; i > 0u; i--) {
+        if (sent[i - 1u].frame.id == config.ids.of[message]) {
+            return &sent[i - 1u];
+        }
+    }
+    TEST_FAIL_MESSAGE("no such frame was sent");
+    return NULL;
+}
+
+#endif

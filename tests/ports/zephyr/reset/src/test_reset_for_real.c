@@ -1,0 +1,165 @@
+/*
+ * One supervisor over six starts of an emulated Cortex-M3. Each run but the last ends in a reset of its own kind, and the
+ * next one looks at what outlived it: latch, first reason, recorder, cause. hwinfo's flags are set by hand, as this
+ * machine has none; the task watchdog, the faults, the MPU's stack guard and the hardware watchdog are the real ones.
+ */
+#include <zephyr/drivers/hwinfo.h>
+#include <zephyr/ztest.h>
+
+#include "fake_parts.h"
+#include "supervise.h"
+#include "vehicle/vehicle.h"
+
+enum { STORY = 0x53544F52, RUNS = 6, ENDS_MS = 400 };
+
+static ZEPHYR_HAL_RETAINED agv_recorder_t recorder;
+static ZEPHYR_HAL_RETAINED zephyr_hal_retained_t retained;
+static ZEPHYR_HAL_RETAINED struct {
+    uint32_t magic;
+    uint32_t run;
+    uint32_t output_was_open;
+} story;
+
+static supervise_t self;
+static volatile bool hang;
+
+static K_THREAD_STACK_DEFINE(stack, 2048);
+static struct k_thread thread;
+
+static void supervise(void *a, void *b, void *c) {
+    ARG_UNUSED(a);
+    ARG_UNUSED(b);
+    ARG_UNUSED(c);
+    supervise_start(&self, &recorder, &retained);
+    while (!hang) {
+        supervise_once(&self);
+    }
+}
+
+static void begin(uint32_t flags) {
+    fake_parts_reset();
+    fake_reset_flags = flags;
+    fake_buses[HAL_CAN_VEHICLE].sends_at_once = true;
+    vehicle = (vehicle_t){.park = true};
+    (void)k_thread_create(&thread, stack, K_THREAD_STACK_SIZEOF(stack), supervise, NULL, NULL, NULL, K_PRIO_COOP(2), 0,
+                          K_NO_WAIT);
+    vehicle_run(5u);
+}
+
+/* In place of the kernel's own, its last step: is the output open by then? */
+void sys_arch_reboot(int type) {
+    ARG_UNUSED(type);
+    story.output_was_open = fake_output_is_closed() ? 0u : 1u;
+    NVIC_SystemReset();
+}
+
+static void drive_and_trip(void) {
+    vehicle_run(800u);
+    vehicle.autopilot = true;
+    vehicle.park = false;
+    vehicle_run(300u);
+    zassert_equal(agv_supervisor_state(&self.supervisor), AGV_STATE_ACTIVE);
+    vehicle.ai_is_silent = true;
+    vehicle_run(200u);
+    zassert_equal(agv_supervisor_state(&self.supervisor), AGV_STATE_TRIPPED);
+    zassert_true(fake_output_is_closed());
+}
+
+static uint32_t recurse(volatile uint32_t *above) {
+    volatile uint32_t here[64];
+    here[0] = *above + 1u;
+    if (here[0] == UINT32_MAX) {
+        return 0u;
+    }
+    return recurse(here) + here[63];
+}
+
+static K_THREAD_STACK_DEFINE(small_stack, 512);
+static struct k_thread small_thread;
+
+static void overflow(void *a, void *b, void *c) {
+    volatile uint32_t begin_of_stack = 0u;
+    ARG_UNUSED(a);
+    ARG_UNUSED(b);
+    ARG_UNUSED(c);
+    (void)recurse(&begin_of_stack);
+}
+
+static void end_by_a_supervisor_that_hangs(void) {
+    hang = true;
+    k_msleep(ENDS_MS);
+}
+
+static void end_by_a_fault(void) {
+    *(volatile uint32_t *)0xE0200000u = 1u; /* nothing is there */
+    k_msleep(ENDS_MS);
+}
+
+static void end_by_a_failed_assertion(void) {
+    __ASSERT(self.ticked_ms == 0u, "on purpose");
+    k_msleep(ENDS_MS);
+}
+
+static void end_by_a_stack_that_overflows(void) {
+    (void)k_thread_create(&small_thread, small_stack, K_THREAD_STACK_SIZEOF(small_stack), overflow, NULL, NULL, NULL,
+                          K_PRIO_PREEMPT(1), 0, K_NO_WAIT);
+    k_msleep(ENDS_MS);
+}
+
+static void end_by_a_kernel_that_hangs(void) {
+    (void)irq_lock();
+    for (;;) {
+    }
+}
+
+static const struct {
+    const char *what;
+    uint32_t flags; /* of the reset before */
+    hal_reset_cause_t cause;
+    void (*end)(void);
+} runs[RUNS] = {
+    {"power-on", RESET_POR, HAL_RESET_POWER_ON, end_by_a_supervisor_that_hangs},
+    {"the task watchdog", RESET_SOFTWARE, HAL_RESET_WATCHDOG, end_by_a_fault},
+    {"a fault", RESET_SOFTWARE, HAL_RESET_LOCK_UP, end_by_a_failed_assertion},
+    {"a failed assertion", RESET_SOFTWARE, HAL_RESET_LOCK_UP, end_by_a_stack_that_overflows},
+    {"a stack that overflowed", RESET_SOFTWARE, HAL_RESET_LOCK_UP, end_by_a_kernel_that_hangs},
+    {"the hardware watchdog", RESET_WATCHDOG, HAL_RESET_WATCHDOG, NULL},
+};
+
+static void look_at_what_outlived(uint32_t run) {
+    zassert_equal(hal_reset_cause(&self.hal), runs[run].cause, "after %s", runs[run].what);
+    if (runs[run].flags == (uint32_t)RESET_SOFTWARE) { /* a reset by hardware lets go of the pins by itself */
+        zassert_equal(story.output_was_open, 1u, "%s: the output was not open before the reset", runs[run].what);
+    }
+    zassert_false(fake_output_is_closed(), "and is open after it");
+    zassert_equal(agv_supervisor_state(&self.supervisor), AGV_STATE_TRIPPED, "nothing resumes by itself");
+    zassert_equal(agv_supervisor_first_reason(&self.supervisor), AGV_FAULT_STEERING_COMMAND_TIMEOUT);
+    zassert_true(agv_recorder_next_sequence(&recorder) > (5u + run), "events of earlier runs are there");
+}
+
+ZTEST_SUITE(resets, NULL, NULL, NULL, NULL, NULL);
+
+/* Shows: FSM-4, FSM-5, FSM-7, TIM-3, INT-3 */
+ZTEST(resets, test_what_outlives_each_kind_of_reset) {
+    if ((story.magic != (uint32_t)STORY) || (story.run >= (uint32_t)RUNS)) {
+        story.magic = STORY;
+        story.run = 0u;
+    }
+    const uint32_t run = story.run;
+    begin(runs[run].flags);
+    TC_PRINT("run %u, after %s\n", run, runs[run].what);
+    if (run == 0u) {
+        drive_and_trip();
+    } else {
+        look_at_what_outlived(run);
+    }
+    story.run = run + 1u;
+    story.output_was_open = 0u;
+    if (runs[run].end != NULL) {
+        hal_safety_output_set(&self.hal, true);
+        runs[run].end();
+        story.magic = 0u;
+        zassert_unreachable("after %s: nothing ended this run", runs[run].what);
+    }
+    story.magic = 0u;
+}

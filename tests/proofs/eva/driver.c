@@ -1,0 +1,243 @@
+/*
+ * What frama-c's EVA runs: each entry point once, from any memory that keeps the invariants below, with any frame, time and
+ * answer of the port. tests/proofs/eva/run says what is proved.
+ */
+#include <stddef.h>
+
+#include "hal/led.h"
+#include "hal/reset.h"
+#include "hal/safety_output.h"
+#include "hal/store.h"
+#include "hal/watchdog.h"
+#include "supervisor/core.h"
+
+/* EVA's generators: any bytes, and any number between two. */
+/*@ assigns \result \from min, max;
+    ensures min <= \result <= max; */
+extern unsigned int Frama_C_unsigned_int_interval(unsigned int min, unsigned int max);
+/*@ requires \valid(bytes + (0 .. size - 1));
+    assigns bytes[0 .. size - 1] \from size;
+    ensures \initialized(bytes + (0 .. size - 1)); */
+extern void Frama_C_make_unknown(char *bytes, size_t size);
+
+struct hal {
+    int nothing;
+};
+
+static struct hal port;
+static agv_supervisor_t supervisor;
+static agv_recorder_t recorder;
+
+static uint32_t any(uint32_t lowest, uint32_t highest) {
+    return Frama_C_unsigned_int_interval(lowest, highest);
+}
+
+static bool any_bool(void) {
+    return any(0u, 1u) != 0u;
+}
+
+static void any_bytes(void *bytes, size_t size) {
+    Frama_C_make_unknown((char *)bytes, size);
+}
+
+/* ---- The port: any answer that its contract allows; what it is handed is read ---- */
+
+bool hal_can_send(hal_t *hal, hal_can_side_t side, const hal_can_frame_t *frame) {
+    /*@ assert \valid(hal) && 0 <= side < HAL_CAN_SIDES && \valid_read(frame) && \initialized(&frame->data[0 .. 7]); */
+    return any_bool();
+}
+
+void hal_can_purge(hal_t *hal, hal_can_side_t side) {
+    /*@ assert \valid(hal) && 0 <= side < HAL_CAN_SIDES; */
+}
+
+void hal_can_recover(hal_t *hal, hal_can_side_t side) {
+    /*@ assert \valid(hal) && 0 <= side < HAL_CAN_SIDES; */
+}
+
+void hal_can_status(hal_t *hal, hal_can_side_t side, hal_can_status_t *status) {
+    /*@ assert \valid(hal) && 0 <= side < HAL_CAN_SIDES; */
+    any_bytes(status, sizeof *status);
+    status->state = (hal_can_state_t)any(HAL_CAN_ERROR_ACTIVE, HAL_CAN_BUS_OFF);
+}
+
+void hal_led_set(hal_t *hal, bool on) {
+    /*@ assert \valid(hal); */
+}
+
+hal_reset_cause_t hal_reset_cause(hal_t *hal) {
+    /*@ assert \valid(hal); */
+    return (hal_reset_cause_t)any(HAL_RESET_POWER_ON, HAL_RESET_UNKNOWN);
+}
+
+void hal_safety_output_set(hal_t *hal, bool closed) {
+    /*@ assert \valid(hal); */
+}
+
+size_t hal_store_read_latch(hal_t *hal, void *record, size_t size) {
+    /*@ assert \valid(hal) && \valid((char *)record + (0 .. size - 1)); */
+    any_bytes(record, size);
+    return any(0u, HAL_STORE_LATCH_SIZE_MAX);
+}
+
+bool hal_store_write_latch(hal_t *hal, const void *record, size_t size) {
+    /*@ assert \valid(hal) && size <= HAL_STORE_LATCH_SIZE_MAX && \initialized((char *)record + (0 .. size - 1)); */
+    return any_bool();
+}
+
+bool hal_store_append(hal_t *hal, const void *record, size_t size) {
+    /*@ assert \valid(hal) && size <= HAL_STORE_RECORD_SIZE_MAX && \initialized((char *)record + (0 .. size - 1)); */
+    return any_bool();
+}
+
+void hal_watchdog_feed(hal_t *hal) {
+    /*@ assert \valid(hal); */
+}
+
+/* ---- The invariants: all that is assumed of the memory between two calls ---- */
+
+/* Every setting within its range: agv_config_check refuses others at the start, and the seal finds what changes later. Of the
+   identifiers nothing is assumed. */
+static void sound_config(agv_config_t *config) {
+#define AGV_SETTING(name, preset, lowest, highest, unit, weakens, scope, meaning)                                      \
+    config->name = (uint16_t)any(lowest, highest);
+#define AGV_CHOICE(name, words, weakens, scope, meaning) config->name = (uint16_t)any(0u, 1u);
+#include "agv/config_settings.def"
+#undef AGV_SETTING
+#undef AGV_CHOICE
+}
+
+/* A truth is 0 or 1 in memory. */
+static void sound_decisions(agv_core_t *core) {
+    core->machine.park_released = any_bool();
+    core->machine.output_closed = any_bool();
+    core->machine.startup_reported = any_bool();
+    core->faults.summary.eps_fault = any_bool();
+    core->faults.outdated = any_bool();
+    core->faults.ai_loss_warns = any_bool();
+    core->confirmation.park_sent = any_bool();
+    core->confirmation.unconfirmed = any_bool();
+    core->reset_button.began_after = any_bool();
+    core->reset_button.answered = any_bool();
+    core->stopping.stood = any_bool();
+    core->stopping.not_stopping = any_bool();
+    core->stopping.moving = any_bool();
+    core->led.on = any_bool();
+    core->transmitter.report.park_sent = any_bool();
+    core->transmitter.status_again = any_bool();
+    core->transmitter.throttle_0_waits = any_bool();
+}
+
+static void sound_observations(agv_core_t *core) {
+    core->mode.heard = any_bool();
+    core->mode.engaged = any_bool();
+    core->mode.manual = any_bool();
+    core->vehicle.throttle_known = any_bool();
+    core->vehicle.angle_known = any_bool();
+    core->vehicle.eps_in_angle_mode = any_bool();
+    core->vehicle.vcu_speed_seen = any_bool();
+    core->vehicle.wheels_fresh = any_bool();
+    core->vehicle.vcu_alive = any_bool();
+    core->commands.autopilot_off = any_bool();
+    core->gateway.steering_known = any_bool();
+    core->gateway.throttle_known = any_bool();
+    core->motion_checks.reported = any_bool();
+    core->status_checks.ai_alarm = any_bool();
+    core->status_checks.reported = any_bool();
+    core->status_checks.ai_alarm_armed = any_bool();
+    for (unsigned i = 0u; i < AGV_NODE_COUNT; i++) {
+        core->liveness.heartbeats[i].counter_known = any_bool();
+        core->liveness.heartbeats[i].repeated = any_bool();
+    }
+}
+
+static void sound_counts(agv_core_t *core) {
+    for (unsigned i = 0u; i < AGV_COMMAND_COUNT; i++) {
+        core->intrusion.fast_gaps[i].present = any_bool();
+    }
+    for (unsigned i = 0u; i < (unsigned)AGV_BUDGET_COUNT; i++) {
+        core->motion_checks.budgets[i].half = any_bool();
+        core->motion_checks.budgets[i].present = any_bool();
+    }
+    for (unsigned i = 0u; i < AGV_SCORED_EPS_BITS; i++) {
+        core->status_checks.eps_bits[i].present = any_bool();
+    }
+    for (unsigned i = 0u; i < AGV_SCORED_VALUES; i++) {
+        core->status_checks.values[i].present = any_bool();
+    }
+    core->status_checks.eps_mode.present = any_bool();
+    core->status_checks.hold_angle.present = any_bool();
+}
+
+static void sound_truths(agv_core_t *core) {
+    sound_decisions(core);
+    sound_observations(core);
+    sound_counts(core);
+}
+
+/* Bits of `kept` are messages, `oldest` and `next_to_age` are places. All else is any bytes. */
+static void any_sound_state(void) {
+    agv_core_t *const core = agv_core_of(&supervisor);
+    any_bytes(&supervisor, sizeof supervisor);
+    any_bytes(&recorder, sizeof recorder);
+    sound_config(&core->config);
+    sound_truths(core);
+    core->transmitter.kept = any(0u, (1u << AGV_MSG_COUNT) - 1u);
+    core->mode.oldest = any(0u, 2u);
+    core->liveness.next_to_age = any(0u, AGV_MSG_COUNT - 1u);
+    supervisor.receive_alive = any_bool();
+}
+
+/* ---- And they hold again. A truth that were neither 0 nor 1 would be an alarm of its own ---- */
+
+static void within(uint32_t value, uint32_t lowest, uint32_t highest) {
+    /*@ assert lowest <= value <= highest; */
+}
+
+static void check_memory(const agv_core_t *core) {
+    /*@ assert core->transmitter.kept < (1 << AGV_MSG_COUNT); */
+    /*@ assert core->mode.oldest < 3; */
+}
+
+static void check_invariants(const agv_core_t *core) {
+    check_memory(core);
+#define AGV_SETTING(name, preset, lowest, highest, unit, weakens, scope, meaning)                                      \
+    within(core->config.name, lowest, highest);
+#define AGV_CHOICE(name, words, weakens, scope, meaning) within(core->config.name, 0u, 1u);
+#include "agv/config_settings.def"
+#undef AGV_SETTING
+#undef AGV_CHOICE
+}
+
+/* ---- The entry points ---- */
+
+static agv_ports_t any_ports(void) {
+    return (agv_ports_t){.hal = &port, .recorder = &recorder};
+}
+
+void eva_frame(void) {
+    const agv_ports_t ports = any_ports();
+    hal_can_frame_t frame;
+    any_sound_state();
+    any_bytes(&frame, sizeof frame);
+    agv_supervisor_frame(&supervisor, &ports, (hal_can_side_t)any(HAL_CAN_VEHICLE, HAL_CAN_AI), &frame);
+    check_invariants(agv_core_read(&supervisor));
+}
+
+void eva_tick(void) {
+    const agv_ports_t ports = any_ports();
+    any_sound_state();
+    agv_supervisor_tick(&supervisor, &ports, any(0u, UINT32_MAX));
+    check_invariants(agv_core_read(&supervisor));
+}
+
+/* Any memory before, any configuration. That the start takes none with a setting out of its range is for the tests to show. */
+void eva_start(void) {
+    const agv_ports_t ports = any_ports();
+    agv_config_t config;
+    any_bytes(&supervisor, sizeof supervisor);
+    any_bytes(&recorder, sizeof recorder);
+    any_bytes(&config, sizeof config);
+    agv_supervisor_start(&supervisor, &ports, &config, any_bool(), any(0u, UINT32_MAX));
+    check_memory(agv_core_read(&supervisor));
+}

@@ -1,0 +1,213 @@
+#!/usr/bin/python3
+"""Mutation testing of firmware/src; README.md beside this says what counts.
+
+  mutate list [FILE...]                    the mutants, an id a line
+  mutate prepare                           build what all shards need (they do it themselves, the first for all)
+  mutate run [--shard i/n] [FILE...]       try those that have no result yet; results are appended to a file of lines
+  mutate try ID...                         try some, and tell
+  mutate merge [RESULTS...]                sum up; fails below 95 % or above 3 %, or when a mutant has no result
+  mutate rows [ROW...]                     the kept changes of the file rows: each breaks its row, and a test notices
+"""
+import argparse
+import collections
+import json
+import pathlib
+import subprocess
+import sys
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+import bench  # noqa: E402
+import mutants  # noqa: E402
+import rows  # noqa: E402
+
+KILLED_AT_LEAST, EQUIVALENT_AT_MOST = 95.0, 3.0
+VERDICTS = ("killed", "crash", "timeout", "survived")
+
+
+def say(text):
+    print(text, file=sys.stderr, flush=True)
+
+
+def all_mutants(names=()):
+    known = [path.name for path in bench.core_files()]
+    for name in names:
+        if name not in known:
+            raise SystemExit(f"mutate: there is no {name} in firmware/src")
+    arguments = ["-std=c11", *bench.INCLUDES]
+    return [mutant for path in bench.core_files() if not names or path.name in names
+            for mutant in mutants.find(path, path.name, arguments)]
+
+
+def read_results(paths):
+    """id -> result; of several the last that is not open. A line that was cut off when a run was stopped counts for nothing."""
+    results = {}
+    for path in paths:
+        for line in path.read_text(encoding="utf-8").splitlines():
+            try:
+                result = json.loads(line)
+                if result["verdict"] != "open" or result["id"] not in results:
+                    results[result["id"]] = result
+            except (ValueError, KeyError):
+                say(f"{path.name}: a broken line is left out")
+    return results
+
+
+def results_folder(key):
+    return bench.BUILD / "results" / key
+
+
+def try_all(wanted, at, out, arguments):
+    """Append a result a mutant to the open file."""
+    equivalents = read_equivalents(arguments.equivalents, {mutant.id for mutant in wanted}, [])
+    counts = collections.Counter()
+    for number, mutant in enumerate(wanted, 1):
+        begin = time.monotonic()
+        verdict, by = at.try_mutant(mutant, only_quick=arguments.quick or mutant.id in equivalents)
+        counts[verdict] += 1
+        result = {"id": mutant.id, "verdict": verdict, "by": by, "seconds": round(time.monotonic() - begin, 2)}
+        out.write(json.dumps(result) + "\n")
+        out.flush()
+        if number % 100 == 0:
+            say(f"{number} of {len(wanted)}: {dict(counts)}")
+
+
+def command_list(arguments):
+    for mutant in all_mutants(arguments.names):
+        print(mutant.id)
+
+
+def command_prepare(arguments):
+    with open_bench(arguments):
+        pass
+
+
+def open_bench(arguments):
+    at = bench.Bench(say)
+    at.plan["tests"] = [test for test in at.plan["tests"] if test["name"].split("_wrap_in_")[0] not in arguments.without]
+    return at
+
+
+def command_run(arguments):
+    shard, shards = (int(part) for part in arguments.shard.split("/"))
+    if not 1 <= shard <= shards:
+        raise SystemExit(f"mutate: there is no shard {arguments.shard}")
+    with open_bench(arguments) as at:
+        folder = arguments.results or results_folder(at.digest)
+        folder.mkdir(parents=True, exist_ok=True)
+        done = read_results(sorted(folder.glob("*.jsonl")))
+        wanted = [mutant for mutant in all_mutants(arguments.names)[shard - 1::shards]
+                  if mutant.id not in done or (done[mutant.id]["verdict"] == "open" and not arguments.quick)]
+        say(f"shard {arguments.shard}: {len(wanted)} mutants")
+        with open(folder / f"{shard}-of-{shards}.jsonl", "a", encoding="utf-8") as out:
+            try_all(wanted, at, out, arguments)
+
+
+def command_try(arguments):
+    found = {mutant.id: mutant for mutant in all_mutants()}
+    with open_bench(arguments) as at:
+        for key in arguments.names:
+            if key not in found:
+                raise SystemExit(f"mutate: there is no mutant {key}")
+            print(f"{key}  {found[key].text!r}  {' '.join(map(str, at.try_mutant(found[key])))}", flush=True)
+
+
+def read_equivalents(path, found, problems):
+    """The ids that the file lists, each with an argument behind it."""
+    listed = []
+    for line in path.read_text(encoding="utf-8").splitlines():
+        key, _, argument = line.partition(" ")
+        if not key or key.startswith("#"):
+            continue
+        if key not in found:
+            problems.append(f"equivalents: there is no mutant {key}")
+        elif not argument.strip():
+            problems.append(f"equivalents: no argument for {key}")
+        else:
+            listed.append(key)
+    return set(listed)
+
+
+def table(found, verdicts):
+    """Mutants by operator and verdict."""
+    columns = ("mutants", "killed", "crash", "timeout", "survived", "equivalent", "same", "compile")
+    print(f"{'operator':12}" + "".join(f"{name:>11}" for name in columns))
+    for operator in (*mutants.OPERATORS, "all"):
+        of = [verdicts[key] for key, mutant in found.items() if key in verdicts and operator in (mutant.operator, "all")]
+        print(f"{operator:12}{len(of):11}" + "".join(f"{of.count(name):11}" for name in columns[1:]))
+
+
+def judge(found, results, equivalents, problems):
+    """id -> verdict."""
+    verdicts = {}
+    for key in found:
+        verdicts[key] = results.get(key, {"verdict": "open"})["verdict"]
+        if key in equivalents:
+            if verdicts[key] not in ("survived", "open"):
+                problems.append(f"equivalents: {key} is {verdicts[key]}")
+            else:
+                verdicts[key] = "equivalent"
+        if verdicts[key] == "open":
+            problems.append(f"no result: {key}")
+    return verdicts
+
+
+def sum_up(verdicts, problems):
+    """The figures as one line."""
+    of = collections.Counter(verdicts.values())
+    counted = sum(of[name] for name in VERDICTS)
+    killed = 100.0 * of["killed"] / max(counted, 1)
+    share = 100.0 * of["equivalent"] / max(counted + of["equivalent"], 1)
+    if killed < KILLED_AT_LEAST:
+        problems.append(f"only {killed:.2f} % are killed by an assertion, {KILLED_AT_LEAST} % are asked for")
+    if share > EQUIVALENT_AT_MOST:
+        problems.append(f"{share:.2f} % are equivalent, {EQUIVALENT_AT_MOST} % are allowed")
+    return (f"{counted} mutants, {of['killed']} killed by an assertion ({killed:.2f} %), {of['crash']} crashed, "
+            f"{of['timeout']} timed out, {of['survived']} survived; apart: {of['equivalent']} equivalent ({share:.2f} %), "
+            f"{of['same']} of the same machine code, {of['compile']} that do not compile")
+
+
+def command_merge(arguments):
+    folder = arguments.results or results_folder(bench.digest())
+    paths = [pathlib.Path(name) for name in arguments.names] or sorted(folder.glob("*.jsonl"))
+    found = {mutant.id: mutant for mutant in all_mutants()}
+    problems = []
+    equivalents = read_equivalents(arguments.equivalents, found, problems)
+    verdicts = judge(found, read_results(paths), equivalents, problems)
+    table(found, verdicts)
+    for key, verdict in verdicts.items():
+        if verdict in VERDICTS[1:]:
+            print(f"{verdict:9} {key}")
+    line = sum_up(verdicts, problems)
+    for problem in problems[:20]:
+        say(problem)
+    if len(problems) > 20:
+        say(f"... and {len(problems) - 20} more problems")
+    print(line)
+    return 1 if problems else 0
+
+
+def command_rows(arguments):
+    wanted = subprocess.run([bench.ROOT / "scripts/tools/traceability.py"], stdout=subprocess.PIPE, check=True, text=True).stdout
+    with open_bench(arguments) as at:
+        return rows.check(at, arguments.rows, rows.read_shown(wanted), arguments.names)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = {"list": command_list, "prepare": command_prepare, "run": command_run, "try": command_try,
+                "merge": command_merge, "rows": command_rows}
+    parser.add_argument("command", choices=commands)
+    parser.add_argument("names", nargs="*")
+    parser.add_argument("--shard", default="1/1", metavar="i/n")
+    parser.add_argument("--quick", action="store_true", help="only the quick tests: what they do not kill stays open")
+    parser.add_argument("--without", action="append", default=[], metavar="TEST", help="leave out a test program")
+    parser.add_argument("--equivalents", type=pathlib.Path, default=HERE / "equivalents", help="another such file")
+    parser.add_argument("--rows", type=pathlib.Path, default=HERE / "rows", help="another such file")
+    parser.add_argument("--results", type=pathlib.Path, help="folder of the results, instead of one named by the sources")
+    arguments = parser.parse_intermixed_args()
+    return commands[arguments.command](arguments)
+
+
+sys.exit(main())

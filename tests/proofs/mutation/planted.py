@@ -1,0 +1,144 @@
+#!/usr/bin/python3
+"""The planted failures of mutate: what it must not take for a kill, or must not leave unsaid."""
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[2]
+SCRATCH = ROOT / "build/mutation"
+# agv_missing_name is called by test_names alone
+BY_ONE_TEST = "return:NULL", "missing_names[index]"
+HARMLESS = """SUP-2 liveness.c
+- const bool recent = age_ms <= (2u * agv_message_cycle_ms(message));
++ const bool recent = age_ms <= (agv_message_cycle_ms(message) * 2u);
+"""
+
+
+def mutate(*arguments):
+    done = subprocess.run([HERE / "mutate.py", *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    return done.returncode, done.stdout
+
+
+def find(file, suffix, text):
+    """The mutant with this end of its id on the line that holds the text."""
+    (path,) = (ROOT / "firmware/src").rglob(file)
+    lines = path.read_text(encoding="ascii").splitlines()
+    for key in mutate("list", file)[1].split():
+        if key.endswith(suffix) and text in lines[int(key.split(":")[1]) - 1]:
+            return key
+    raise SystemExit(f"planted: there is no mutant {suffix} at '{text}' in {file}")
+
+
+def verdict(key, *options):
+    return mutate("try", key, *options)[1].split("\n")[-2].split("'  ")[-1].split()[0]
+
+
+def without_its_test(_):
+    """A mutant that one test kills survives without that test."""
+    key = find("names.c", *BY_ONE_TEST)
+    return verdict(key) == "killed" and verdict(key, "--without", "test_names") == "survived"
+
+
+def crash(_):
+    """A supervisor without its ports crashes: no assertion killed it."""
+    return verdict(find("supervisor.c", "statement:deleted", "agv_core_begin(core, ports, found);")) == "crash"
+
+
+def endless(_):
+    """A loop that does not end."""
+    return verdict(find("message.c", "statement:deleted", "message++;")) == "timeout"
+
+
+def broken(_):
+    """A case that stands twice."""
+    return verdict(find("codec.c", "constant:+1", "case AGV_MSG_GEAR_COMMAND:")) == "compile"
+
+
+def same_code(_):
+    """What the compiler makes the same of."""
+    return verdict(find("codec.c", "constant:254u", "to[5] = ")) == "same"
+
+
+def merged(folder, change, *options):
+    """What merge says of results in which all mutants but those of the change are killed."""
+    results = folder / "results.jsonl"
+    with open(results, "w", encoding="utf-8") as out:
+        for number, key in enumerate(mutate("list")[1].split()):
+            found = change(number, key)
+            if found:
+                out.write(json.dumps({"id": key, "verdict": found, "by": ""}) + "\n")
+    empty = folder / "equivalents"
+    empty.touch()
+    return mutate("merge", str(results), *(options or ("--equivalents", str(empty))))
+
+
+def no_result(folder):
+    good, _ = merged(folder, lambda number, key: "killed")
+    status, said = merged(folder, lambda number, key: "killed" if number != 7 else None)
+    return good == 0 and status != 0 and "no result: " in said
+
+
+def too_few(folder):
+    """One of 25 is not killed: passes; one of 16: does not."""
+    good, _ = merged(folder, lambda number, key: "survived" if number % 25 == 0 else "killed")
+    status, said = merged(folder, lambda number, key: "survived" if number % 16 == 0 else "killed")
+    return good == 0 and status != 0 and "are killed by an assertion, 95.0 % are asked for" in said
+
+
+def too_many_equivalents(folder):
+    """A twentieth is written off."""
+    listed = folder / "listed"
+    listed.write_text("".join(f"{key} planted\n" for key in mutate("list")[1].split()[::20]), encoding="utf-8")
+    status, said = merged(folder, lambda number, key: "killed" if number % 20 else "survived", "--equivalents", str(listed))
+    return status != 0 and "are equivalent, 3.0 % are allowed" in said
+
+
+def killed_equivalent(folder):
+    listed = folder / "listed"
+    listed.write_text(mutate("list", "bus.c")[1].split()[0] + " planted\n", encoding="utf-8")
+    status, said = merged(folder, lambda number, key: "killed", "--equivalents", str(listed))
+    return status != 0 and "is killed" in said
+
+
+def no_argument(folder):
+    listed = folder / "listed"
+    listed.write_text(mutate("list", "bus.c")[1].split()[0] + "\n", encoding="utf-8")
+    status, said = merged(folder, lambda number, key: "survived" if number == 0 else "killed", "--equivalents", str(listed))
+    return status != 0 and "no argument for" in said
+
+
+def harmless_row(folder):
+    (folder / "rows").write_text(HARMLESS, encoding="ascii")
+    status, said = mutate("rows", "SUP-2", "--rows", str(folder / "rows"))
+    return status != 0 and "SUP-2: liveness.c" in said and "no test that names the row fails" in said
+
+
+def missing_row(folder):
+    text = (HERE / "rows").read_text(encoding="ascii")
+    (folder / "rows").write_text(text.replace("SUP-2 ", "SUP-99 "), encoding="ascii")
+    status, said = mutate("rows", "SUP-1", "--rows", str(folder / "rows"))
+    return status != 0 and "no change is kept for SUP-2" in said and "SUP-99 is no row" in said
+
+
+PLANTED = (without_its_test, crash, endless, broken, same_code, no_result, too_few, too_many_equivalents, killed_equivalent,
+           no_argument, harmless_row, missing_row)
+
+
+def main():
+    SCRATCH.mkdir(parents=True, exist_ok=True)
+    caught = 0
+    for planted in PLANTED:
+        folder = pathlib.Path(tempfile.mkdtemp(prefix="planted-", dir=SCRATCH))
+        found = planted(folder)
+        shutil.rmtree(folder)
+        caught += found
+        print(f"{planted.__name__.replace('_', ' '):24} {'caught' if found else 'NOT CAUGHT'}", flush=True)
+    print(f"{caught} of {len(PLANTED)} planted failures caught")
+    return 0 if caught == len(PLANTED) else 1
+
+
+sys.exit(main())
