@@ -90,6 +90,7 @@ typedef struct {
     bool autopilot; /**< bit 8 in the last one */
     bool manual;    /**< bit 7 and not bit 8 */
     bool both;
+    bool heard;           /**< manual, by the supervisor */
     uint64_t clear_ms;    /**< since when bit 8 is clear */
     uint64_t handback_ms; /**< when manual ended last */
     uint64_t manual_ms;   /**< last 363h that reported manual */

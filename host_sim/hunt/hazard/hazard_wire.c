@@ -73,6 +73,31 @@ static void judge_newest_throttle(hazard_t *hazard) {
     }
 }
 
+/** A supervisor in bus-off does not hear that a human drives. */
+static bool is_heard(const hazard_t *hazard) {
+    hal_can_status_t status;
+
+    hal_can_status(&hazard->world->hal, HAL_CAN_VEHICLE, &status);
+    return status.state != HAL_CAN_BUS_OFF;
+}
+
+/** What manual drops. */
+static void note_manual(hazard_t *hazard, bool manual) {
+    hazard_mode_t *mode = &hazard->mode;
+
+    if (mode->manual && !manual && mode->heard) {
+        mode->handback_ms = hazard->t_ms;
+        hazard->hold.has_first = false;
+    }
+    if (manual) {
+        mode->heard = (mode->manual && mode->heard) || is_heard(hazard);
+        mode->manual_ms = hazard->t_ms;
+    }
+    if (manual && mode->heard) {
+        hazard_hold_manual(hazard);
+    }
+}
+
 static void note_mode(hazard_t *hazard, uint8_t bits) {
     hazard_mode_t *mode = &hazard->mode;
     const bool autopilot = (bits & AUTOPILOT_BIT) != 0;
@@ -85,14 +110,7 @@ static void note_mode(hazard_t *hazard, uint8_t bits) {
     if (!autopilot && mode->autopilot) {
         mode->clear_ms = hazard->t_ms;
     }
-    if (mode->manual && !manual) {
-        mode->handback_ms = hazard->t_ms;
-        hazard->hold.has_first = false;
-    }
-    if (manual) {
-        mode->manual_ms = hazard->t_ms;
-        hazard_hold_manual(hazard);
-    }
+    note_manual(hazard, manual);
     mode->autopilot = autopilot;
     mode->manual = manual;
     mode->both = autopilot && ((bits & MANUAL_BIT) != 0);

@@ -25,6 +25,7 @@ typedef struct {
     bool only_engaged;    /**< passes while the autopilot is engaged */
     uint32_t forges_ms;   /**< a throttle that nobody commanded */
     const char *setting;  /**< NULL: none */
+    uint32_t recovers_ms; /**< from bus-off */
 } planted_t;
 
 static scenario_t scenario;
@@ -110,6 +111,9 @@ static void act(uint32_t t_ms) {
     queued = 0u;
     if (is_safe) {
         send_safe(t_ms);
+    }
+    if ((planted->recovers_ms != NEVER) && (t_ms == planted->recovers_ms)) {
+        hal_can_recover(&world.hal, HAL_CAN_VEHICLE);
     }
     if ((planted->forges_ms != NEVER) && (t_ms == planted->forges_ms)) {
         send(AGV_MSG_THROTTLE_COMMAND, throttle);
@@ -215,6 +219,18 @@ void test_h2_manual_drops_the_angle_of_the_trip(void) {
     expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&keeps, steps));
     expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&at_once, steps));
     expect(HAZARD_NONE, "", play(&ends, steps));
+}
+
+void test_h2_who_is_bus_off_does_not_hear_of_manual(void) {
+    const char *const steps = "  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
+                              "  - {at_ms: 3100, supervisor: bus_off}\n"
+                              "  - {at_ms: 3150, operator: disengage}\n"
+                              "  - {at_ms: 3150, operator: steer, steer_deg: -60}\n"
+                              "  - {at_ms: 3650, operator: engage}\n";
+    const planted_t deaf = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .recovers_ms = TRIP_MS + 800};
+    const planted_t hears = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .recovers_ms = TRIP_MS + 300};
+    expect(HAZARD_NONE, "", play(&deaf, steps));
+    expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&hears, steps));
 }
 
 void test_h3_a_command_that_nobody_sent(void) {
