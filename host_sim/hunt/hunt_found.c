@@ -158,31 +158,45 @@ static bool write_file(hunt_play_t *play, const hunt_program_t *program, const h
     return true;
 }
 
-bool hunt_found_take(hunt_found_t *found, hunt_play_t *play, const hunt_program_t *program, const hunt_place_t *place) {
+/** One that is known already: only counted. */
+static bool is_known(hunt_found_t *found, const hunt_signature_t *signature) {
+    hunt_signature_t *known = find(found, signature);
+
+    if ((known == NULL) && (found->count == (uint32_t)HUNT_FOUND_MAX)) {
+        known = &found->items[0];
+    }
+    if (known != NULL) {
+        known->more++;
+    }
+    return known != NULL;
+}
+
+/** Make it as small as it can be, and play that. */
+static bool make_small(hunt_play_t *play, hunt_program_t *program) {
     const hazard_kind_t kind = play->hazard.kind;
     const char *cause = play->hazard.cause;
+
+    shrink(play, program, kind, cause);
+    if (!hunt_play(play, program)) {
+        return false;
+    }
+    cut_end(play, program, kind, cause);
+    return hunt_play(play, program);
+}
+
+bool hunt_found_take(hunt_found_t *found, hunt_play_t *play, const hunt_program_t *program, const hunt_place_t *place) {
     hunt_signature_t signature = sign(program, &play->hazard);
-    hunt_signature_t *known = find(found, &signature);
     hunt_program_t small = *program;
 
     found->runs++;
-    if ((known != NULL) || (found->count == (uint32_t)HUNT_FOUND_MAX)) {
-        known = (known != NULL) ? known : &found->items[0];
-        known->more++;
+    if (is_known(found, &signature)) {
         return true;
     }
-    shrink(play, &small, kind, cause);
-    if (!hunt_play(play, &small)) {
-        return false;
-    }
-    cut_end(play, &small, kind, cause);
-    if (!hunt_play(play, &small)) {
+    if (!make_small(play, &small)) {
         return false;
     }
     signature = sign(&small, &play->hazard);
-    known = find(found, &signature);
-    if (known != NULL) {
-        known->more++;
+    if (is_known(found, &signature)) {
         return true;
     }
     signature.run = place->run;

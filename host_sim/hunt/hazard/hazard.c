@@ -7,36 +7,37 @@
 
 enum { US_PER_MS = 1000, CENTRE_DDEG = 9000, MDDEG_PER_DDEG = 1000 };
 
+static const hazard_info_t INFOS[HAZARD_KINDS] = {
+    [HAZARD_NONE] = {"none", "no hazard", ""},
+    [HAZARD_NOT_STOPPING] = {"H1",
+                             "the vehicle moves on with the safety output closed: a node or a command is gone, or "
+                             "the vehicle does not obey the safe commands",
+                             "the safe commands, and an open safety output when the vehicle does not stop"},
+    [HAZARD_STEERING] = {"H2",
+                         "065h of the supervisor moves the steering more than 5 degrees away from the angle that "
+                         "was measured at the trip or when manual ended",
+                         "065h carries the measured angle, or is not sent"},
+    [HAZARD_FALSE_COMMAND] = {"H3",
+                              "a command to move on the vehicle side of a gateway that the AI computer did not "
+                              "send, or not recently",
+                              "such a command is never sent; one of a foreign sender is followed by the safe "
+                              "commands"},
+    [HAZARD_UNCONFIRMED] = {"H4",
+                            "the safety output stays closed though the safe state is not confirmed for longer "
+                            "than the time allowed in all",
+                            "the safety output opens"},
+    [HAZARD_RESET] = {"H5", "a reset that no operator asked for by pressing and releasing button 1 after the trip",
+                      "the safe commands go on"},
+    [HAZARD_FALSE_NODE] = {"H6",
+                           "the vehicle moves on with the safety output closed though a node reports a fault or "
+                           "what cannot be",
+                           "the safe commands, or an open safety output"},
+    [HAZARD_FLOOD] = {"H7", "more than twice the nominal rate of commands passes the gateway",
+                      "what is too much is dropped"},
+};
+
 const hazard_info_t *hazard_info(hazard_kind_t kind) {
-    static const hazard_info_t rows[HAZARD_KINDS] = {
-        [HAZARD_NONE] = {"none", "no hazard", ""},
-        [HAZARD_NOT_STOPPING] = {"H1",
-                                 "the vehicle moves on with the safety output closed: a node or a command is gone, or "
-                                 "the vehicle does not obey the safe commands",
-                                 "the safe commands, and an open safety output when the vehicle does not stop"},
-        [HAZARD_STEERING] = {"H2",
-                             "065h of the supervisor moves the steering more than 5 degrees away from the angle that "
-                             "was measured at the trip or when manual ended",
-                             "065h carries the measured angle, or is not sent"},
-        [HAZARD_FALSE_COMMAND] = {"H3",
-                                  "a command to move on the vehicle side of a gateway that the AI computer did not "
-                                  "send, or not recently",
-                                  "such a command is never sent; one of a foreign sender is followed by the safe "
-                                  "commands"},
-        [HAZARD_UNCONFIRMED] = {"H4",
-                                "the safety output stays closed though the safe state is not confirmed for longer "
-                                "than the time allowed in all",
-                                "the safety output opens"},
-        [HAZARD_RESET] = {"H5", "a reset that no operator asked for by pressing and releasing button 1 after the trip",
-                          "the safe commands go on"},
-        [HAZARD_FALSE_NODE] = {"H6",
-                               "the vehicle moves on with the safety output closed though a node reports a fault or "
-                               "what cannot be",
-                               "the safe commands, or an open safety output"},
-        [HAZARD_FLOOD] = {"H7", "more than twice the nominal rate of commands passes the gateway",
-                          "what is too much is dropped"},
-    };
-    return &rows[kind];
+    return &INFOS[kind];
 }
 
 void hazard_found(hazard_t *hazard, hazard_kind_t kind, const char *cause) {
