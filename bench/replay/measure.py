@@ -59,12 +59,12 @@ def peak_memory(program, log):
 
 def main():
     parser = argparse.ArgumentParser(prog="bench/replay/run", description="Measure host_sim replay.")
-    parser.add_argument("--host-sim", default=REPOSITORY / "build/host/bin/host_sim", metavar="PROGRAM")
+    parser.add_argument("--host-sim", default=REPOSITORY / "build/fast/bin/host_sim", metavar="PROGRAM")
     parser.add_argument("--least", type=float, default=2000, metavar="N", help="times real time (2000)")
     parser.add_argument("--seconds", type=int, default=3600, metavar="N", help="length of the log (3600)")
     arguments = parser.parse_args()
     if not os.access(arguments.host_sim, os.X_OK):
-        print("bench/replay: %s is not there: cmake --build --preset host" % arguments.host_sim, file=sys.stderr)
+        print("bench/replay: %s is not there: cmake --build --preset fast" % arguments.host_sim, file=sys.stderr)
         return 2
     with tempfile.TemporaryDirectory(prefix="bench_replay.") as folder:
         log = os.path.join(folder, "hour.log")

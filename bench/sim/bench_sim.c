@@ -35,7 +35,7 @@ static double drive(scenario_world_t *world, uint16_t topology, uint32_t duratio
     vehicle_defaults(&scenario.vehicle);
     scenario.config.topology = topology;
     scenario.vehicle.gateway = topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
-    if (!scenario_world_init(world, &scenario, SCENARIO_REAL)) {
+    if (!scenario_world_init(world, &scenario)) {
         return 0.0;
     }
     scenario_world_start(world);
