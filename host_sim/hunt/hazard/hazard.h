@@ -170,6 +170,7 @@ typedef struct {
     uint64_t throttle_ms; /**< last 075h above 0 on the vehicle side; newest one there */
     bool throttle_is_newest;
     uint64_t asked_off_ms; /**< since when the AI computer asks for autopilot off; 0: it does not */
+    uint64_t asked_all_ms; /**< when it asked for all that the safe 43Fh asks for */
     int32_t speeds_mm_s[HAZARD_SPEEDS];
     uint32_t speed_at;
     uint32_t passed[HAZARD_FLOOD_SLOTS];

@@ -23,16 +23,9 @@ static void begin_trip(hazard_t *hazard) {
     hazard_hold_trip(hazard);
 }
 
-/** Gateway: the AI computer asks for all of the same, which is passed on. */
+/** Gateway: the AI computer asked for all of the same, which is passed on. */
 static bool is_of_ai(const hazard_t *hazard) {
-    const hazard_message_t *seen = &hazard->messages[AGV_MSG_TURN_SIGNAL_COMMAND];
-    agv_turn_signal_command_t command;
-
-    if (!hazard->gateway || !seen->has || (hazard->t_ms - seen->seen_ms > SPEED_SLOT_MS)) {
-        return false;
-    }
-    (void)agv_unpack_turn_signal_command(&command, seen->data);
-    return command.autopilot_off && command.turn_left_on && command.turn_right_on && command.headlight_on;
+    return hazard->gateway && (hazard->asked_all_ms != 0u) && (hazard->t_ms - hazard->asked_all_ms <= SPEED_SLOT_MS);
 }
 
 void hazard_safe_frame(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
