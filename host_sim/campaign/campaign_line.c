@@ -88,9 +88,8 @@ static bool is_reason(const json_t *value) {
            (json_is_string(value) && (agv_fault_from_name(json_string_value(value)) != AGV_FAULT_NONE));
 }
 
-static bool is_planted(const json_t *value) {
-    return json_is_null(value) || is_text(value, campaign_planted_name(SCENARIO_PLANTED_MUTE)) ||
-           is_text(value, campaign_planted_name(SCENARIO_PLANTED_TRIPPED));
+static bool is_null(const json_t *value) {
+    return json_is_null(value);
 }
 
 static bool is_break(const json_t *value) {
@@ -115,19 +114,10 @@ static int64_t number(const json_t *object, const char *key) {
     return (int64_t)json_integer_value(json_object_get(object, key));
 }
 
-static scenario_planted_t planted_of(const json_t *value) {
-    if (json_is_null(value)) {
-        return SCENARIO_REAL;
-    }
-    return is_text(value, campaign_planted_name(SCENARIO_PLANTED_MUTE)) ? SCENARIO_PLANTED_MUTE
-                                                                        : SCENARIO_PLANTED_TRIPPED;
-}
-
 bool campaign_line_part(const char *path, size_t line, const json_t *object, campaign_part_t *part) {
-    static const key_line_t keys[] = {
-        {"campaign", is_format},      {"version", is_version},    {"runs", is_count},
-        {"seed", is_natural},         {"shard", is_shard},        {"shards", is_shard},
-        {"fault", is_caused_or_null}, {"newly_engaged", is_flag}, {"planted", is_planted}};
+    static const key_line_t keys[] = {{"campaign", is_format},      {"version", is_version},    {"runs", is_count},
+                                      {"seed", is_natural},         {"shard", is_shard},        {"shards", is_shard},
+                                      {"fault", is_caused_or_null}, {"newly_engaged", is_flag}, {"planted", is_null}};
     const char *wrong = misfit(object, keys, sizeof keys / sizeof keys[0]);
     if (wrong == NULL) {
         *part = (campaign_part_t){.runs = (uint64_t)number(object, "runs"),
@@ -135,8 +125,7 @@ bool campaign_line_part(const char *path, size_t line, const json_t *object, cam
                                   .shard = (uint32_t)number(object, "shard"),
                                   .shards = (uint32_t)number(object, "shards"),
                                   .causes = {.only = row_of(json_object_get(object, "fault")),
-                                             .newly_engaged = json_is_true(json_object_get(object, "newly_engaged"))},
-                                  .planted = planted_of(json_object_get(object, "planted"))};
+                                             .newly_engaged = json_is_true(json_object_get(object, "newly_engaged"))}};
         wrong = (part->shard > part->shards) ? "shard" : NULL;
     }
     return (wrong == NULL) ||

@@ -88,7 +88,7 @@ static bool read_run(shard_t *shard, const campaign_part_t *whole, uint64_t run,
 }
 
 static bool is_same(const campaign_part_t *a, const campaign_part_t *b) {
-    return (a->runs == b->runs) && (a->seed == b->seed) && (a->shards == b->shards) && (a->planted == b->planted) &&
+    return (a->runs == b->runs) && (a->seed == b->seed) && (a->shards == b->shards) &&
            (a->causes.only == b->causes.only) && (a->causes.newly_engaged == b->causes.newly_engaged);
 }
 

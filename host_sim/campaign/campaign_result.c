@@ -69,20 +69,14 @@ static json_t *time_or_null(int32_t us) {
     return (us != CAMPAIGN_NO_TIME) ? json_integer(us) : json_null();
 }
 
-const char *campaign_planted_name(scenario_planted_t planted) {
-    static const char *const names[] = {"", "mute", "tripped"};
-    return names[planted];
-}
-
 void campaign_write_part(output_t *output, const campaign_part_t *part) {
-    const bool real = part->planted == SCENARIO_REAL;
     const campaign_row_t *only = part->causes.only;
     write_line(output,
                json_pack("{s:i, s:s, s:I, s:I, s:i, s:i, s:o, s:b, s:o}", "campaign", 1, "version", HOST_SIM_VERSION,
                          "runs", (json_int_t)part->runs, "seed", (json_int_t)part->seed, "shard", (int)part->shard,
                          "shards", (int)part->shards, "fault", fault_or_null((only != NULL) ? (int)only->fault : -1),
                          "newly_engaged", (int)part->causes.newly_engaged, "planted",
-                         real ? json_null() : json_string(campaign_planted_name(part->planted))));
+                         json_null() /* kept for results of older versions */));
 }
 
 void campaign_write_run(output_t *output, const campaign_judge_t *judge) {

@@ -19,7 +19,6 @@ typedef struct {
     uint32_t shard; /**< 1 .. shards */
     uint32_t shards;
     campaign_causes_t causes;
-    scenario_planted_t planted; /**< in the supervisor's place */
 } campaign_part_t;
 
 /** A time that there is not. */
@@ -47,9 +46,6 @@ void campaign_samples_free(campaign_samples_t *samples);
 
 /** What a judged run is in the table. */
 campaign_sample_t campaign_sample_of(const campaign_judge_t *judge);
-
-/** "mute"; "" for SCENARIO_REAL. */
-const char *campaign_planted_name(scenario_planted_t planted);
 
 /** The first line of a file of results, and that of a run. Failures are remembered by the output. */
 void campaign_write_part(output_t *output, const campaign_part_t *part);

@@ -63,7 +63,7 @@ static bool run_one(campaign_t *campaign, uint64_t run) {
     if (!read_plan(campaign)) {
         return false;
     }
-    if (!scenario_world_init(&campaign->world, &campaign->scenario, request->part.planted)) {
+    if (!scenario_world_init(&campaign->world, &campaign->scenario)) {
         return report("run %" PRIu64 ": its world could not be built", run);
     }
     campaign_judge_init(&campaign->judge, &campaign->plan, &campaign->world);

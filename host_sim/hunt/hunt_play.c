@@ -113,7 +113,7 @@ bool hunt_play(hunt_play_t *play, const hunt_program_t *program) {
     if (!scenario_read_text(&play->scenario, "a run of the hunt", play->text.bytes, &play->options)) {
         return false;
     }
-    if (!scenario_world_init(&play->world, &play->scenario, play->planted)) {
+    if (!scenario_world_init(&play->world, &play->scenario)) {
         return report("a run of the hunt could not be built");
     }
     hazard_init(&play->hazard, &play->scenario, &play->world);

@@ -19,7 +19,6 @@ typedef struct {
     hazard_t hazard;
     uint8_t features[HUNT_FEATURE_BYTES]; /**< one bit for each thing that was seen */
     uint32_t played_ms;
-    scenario_planted_t planted; /**< SCENARIO_REAL, but in tests */
 } hunt_play_t;
 
 void hunt_play_init(hunt_play_t *play);

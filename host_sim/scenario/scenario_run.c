@@ -58,13 +58,12 @@ static void play(scenario_run_t *run, void *ctx, scenario_step_fn *on_step) {
     }
 }
 
-bool scenario_run(scenario_run_t *run, scenario_planted_t planted, const scenario_watch_t watches[], size_t count,
-                  scenario_step_fn *on_step) {
+bool scenario_run(scenario_run_t *run, const scenario_watch_t watches[], size_t count, scenario_step_fn *on_step) {
     const scenario_watch_t judge = {judge_event, judge_frame, &run->check};
 
     run->was_interrupted = false;
     scenario_check_init(&run->check, &run->scenario);
-    if (!scenario_world_init(&run->world, &run->scenario, planted)) {
+    if (!scenario_world_init(&run->world, &run->scenario)) {
         scenario_check_fail(&run->check, 0u, "the world could not be built");
         return false;
     }
@@ -76,7 +75,6 @@ bool scenario_run(scenario_run_t *run, scenario_planted_t planted, const scenari
     scenario_world_start(&run->world);
     play(run, (count > 0u) ? watches[0].ctx : NULL, on_step);
     check_hazards(run);
-    scenario_check_finish(&run->check,
-                          (planted == SCENARIO_REAL) ? agv_supervisor_counters(&run->world.session.supervisor) : NULL);
+    scenario_check_finish(&run->check, agv_supervisor_counters(&run->world.session.supervisor));
     return !run->was_interrupted && (run->check.failure_count == 0u);
 }

@@ -30,7 +30,6 @@ typedef struct {
  * @param on_step likewise, with the ctx of the first; NULL: nobody is told
  * @return whether every expectation held; run->check says which did not. false too when it was interrupted
  */
-bool scenario_run(scenario_run_t *run, scenario_planted_t planted, const scenario_watch_t watches[], size_t count,
-                  scenario_step_fn *on_step);
+bool scenario_run(scenario_run_t *run, const scenario_watch_t watches[], size_t count, scenario_step_fn *on_step);
 
 #endif

@@ -2,9 +2,7 @@
 
 #include <string.h>
 
-#include "agv/codec.h"
-
-enum { US_PER_MS = 1000, PLANTED_CYCLE_MS = 100, PASSIVE_TEC = 200, BITS_PER_BYTE = 8 };
+enum { US_PER_MS = 1000, PASSIVE_TEC = 200, BITS_PER_BYTE = 8 };
 
 static void tell_event(void *ctx, const session_event_t *event) {
     const scenario_world_t *world = ctx;
@@ -117,9 +115,7 @@ static void supervisor_hears(void *ctx, const hal_can_frame_t *arrived) {
     const uint64_t end_us = (world->t_ms + 1u) * US_PER_MS;
     const uint64_t t_ms = world->t_ms + ((sim_bus_now_us(&world->buses[side->side]) >= end_us) ? 1u : 0u);
     while (sim_hal_receive(&world->hal, side->side, &frame)) {
-        if (world->planted == SCENARIO_REAL) {
-            session_frame(&world->session, side->side, &frame, t_ms);
-        }
+        session_frame(&world->session, side->side, &frame, t_ms);
     }
 }
 
@@ -150,7 +146,7 @@ static bool attach(scenario_world_t *world, hal_can_side_t side) {
     return true;
 }
 
-bool scenario_world_init(scenario_world_t *world, const scenario_t *scenario, scenario_planted_t planted) {
+bool scenario_world_init(scenario_world_t *world, const scenario_t *scenario) {
     memset(world, 0, sizeof *world);
     const uint32_t phase_us = scenario->tick_phase_us;
     const sim_hal_config_t port = {.clock_start_ms = scenario->clock_start_ms,
@@ -160,7 +156,6 @@ bool scenario_world_init(scenario_world_t *world, const scenario_t *scenario, sc
                                    .reset_cause = scenario->reset_cause,
                                    .store = &world->store};
 
-    world->planted = planted;
     world->config = scenario->config;
     world->ids = scenario->ids;
     world->tick_phase_us = scenario->tick_phase_us;
@@ -200,21 +195,7 @@ void scenario_world_watch(scenario_world_t *world, const scenario_watch_t *watch
     }
 }
 
-/** What the planted supervisors report, once. */
-static void start_planted(scenario_world_t *world) {
-    const bool tripped = world->planted == SCENARIO_PLANTED_TRIPPED;
-    const session_event_t event = {.t_ms = world->t_ms,
-                                   .recorded = {.kind = AGV_EVENT_STATE,
-                                                .b = (uint8_t)(tripped ? AGV_STATE_TRIPPED : AGV_STATE_INIT),
-                                                .c = (uint8_t)(tripped ? AGV_FAULT_SUPERVISOR_RESET : AGV_FAULT_NONE)}};
-    tell_event(world, &event);
-}
-
 static void start_supervisor(scenario_world_t *world) {
-    if (world->planted != SCENARIO_REAL) {
-        start_planted(world);
-        return;
-    }
     session_start(&world->session, &world->config, world->t_ms, sim_hal_now_ms(&world->hal));
 }
 
@@ -337,35 +318,9 @@ void scenario_world_restore(scenario_world_t *world, scenario_world_t *saved) {
     *world = *saved;
 }
 
-static void send_planted(scenario_world_t *world) {
-    const agv_turn_signal_command_t signals = {true, true, true, true, (uint8_t)(world->t_ms / PLANTED_CYCLE_MS)};
-    const agv_gear_command_t gear = {AGV_GEAR_P};
-    hal_can_frame_t frame = {.length = AGV_DLC};
-
-    frame.id = world->ids.of[AGV_MSG_GEAR_COMMAND];
-    (void)agv_pack_gear_command(frame.data, &gear);
-    (void)hal_can_send(&world->hal, HAL_CAN_VEHICLE, &frame);
-    frame.id = world->ids.of[AGV_MSG_TURN_SIGNAL_COMMAND];
-    (void)agv_pack_turn_signal_command(frame.data, &signals);
-    (void)hal_can_send(&world->hal, HAL_CAN_VEHICLE, &frame);
-    frame.id = world->ids.of[AGV_MSG_THROTTLE_COMMAND];
-    memset(frame.data, 0, sizeof frame.data);
-    (void)hal_can_send(&world->hal, HAL_CAN_VEHICLE, &frame);
-}
-
-static void step_planted(scenario_world_t *world) {
-    if ((world->planted == SCENARIO_PLANTED_TRIPPED) && (world->t_ms % PLANTED_CYCLE_MS == 0u)) {
-        send_planted(world);
-    }
-}
-
 static void step_supervisor(scenario_world_t *world) {
     if (world->off && (world->t_ms >= world->deaf_until_ms)) {
         wake(world);
-    }
-    if (world->planted != SCENARIO_REAL) {
-        step_planted(world);
-        return;
     }
     if (world->t_ms >= world->deaf_until_ms) {
         for (size_t side = 0u; world->was_deaf && (side < world->bus_count); side++) {

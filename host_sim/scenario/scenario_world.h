@@ -18,13 +18,6 @@
 #include "session/session.h"
 #include "vehicle/vehicle.h"
 
-/** What stands in the supervisor's place. */
-typedef enum {
-    SCENARIO_REAL,           /**< the supervisor */
-    SCENARIO_PLANTED_MUTE,   /**< one that says INIT and never does anything */
-    SCENARIO_PLANTED_TRIPPED /**< one that is always tripped and sends the safe commands */
-} scenario_planted_t;
-
 /** A frame was on the wire. @param from SCENARIO_FROM_SUPERVISOR or a vehicle_node_t */
 typedef void scenario_frame_fn(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame);
 
@@ -70,7 +63,6 @@ struct scenario_world {
     vehicle_t vehicle;
     agv_config_t config;
     agv_ids_t ids; /**< of `config` */
-    scenario_planted_t planted;
     scenario_station_t stations[VEHICLE_NODES];
     sim_bus_node_t strangers[HAL_CAN_SIDES];
     bool stranger_powered[HAL_CAN_SIDES];
@@ -89,7 +81,7 @@ struct scenario_world {
 };
 
 /** Build a world as a scenario begins. @return false: a bit rate that there is not */
-bool scenario_world_init(scenario_world_t *world, const scenario_t *scenario, scenario_planted_t planted);
+bool scenario_world_init(scenario_world_t *world, const scenario_t *scenario);
 
 /** Tell one more of what happens; before scenario_world_start(). */
 void scenario_world_watch(scenario_world_t *world, const scenario_watch_t *watch);

@@ -13,13 +13,7 @@
 
 /* A disturbance comes when the one before is over and forgotten: counts in a row begin anew after a good frame. */
 enum { QUIET_MIN_MS = 500, QUIET_MAX_MS = 3000, READY_MS = 2000, NS_PER_MS = 1000000, MS_PER_S = 1000 };
-enum {
-    LOOK_EVERY_MS = 1000,
-    SAVE_EVERY_MS = 6 * 3600000,
-    STATUS_SLOW_MS = 101,
-    PLANTED_MS = 60000,
-    HOURS_PER_DAY = 24
-};
+enum { LOOK_EVERY_MS = 1000, SAVE_EVERY_MS = 6 * 3600000, HOURS_PER_DAY = 24 };
 
 /** Whether a row's steps make sense in this topology. */
 static bool fits(const soak_t *soak, const soak_row_t *row) {
@@ -41,7 +35,6 @@ static uint32_t add_steps(soak_t *soak, const char *words, uint32_t number) {
 /** All steps of all rows are read as those of one scenario, in their order. */
 static bool read_rows(soak_t *soak) {
     scenario_options_t options = {.topology = -1, .id_set = -1};
-    const bool drifts = soak->request->planted == SOAK_PLANTED_DRIFT;
     uint32_t number = 0u;
 
     agv_config_defaults(&options.config);
@@ -49,7 +42,7 @@ static bool read_rows(soak_t *soak) {
         &soak->text, "name: soak\nshows: [TIM-1]\ntopology: %s\nid_set: %s\nclock_start_ms: %" PRIu32 "\n",
         soak->gateway ? "gateway" : "shared", soak->table_ids ? "table" : "heading", (uint32_t)soak->start_ms);
     campaign_text_add(&soak->text, "config: {status_frame_id: %u, status_frame_period_ms: %u}\n", SOAK_STATUS_ID,
-                      drifts ? (unsigned)STATUS_SLOW_MS : SOAK_STATUS_MS);
+                      SOAK_STATUS_MS);
     campaign_text_add(&soak->text, "duration_ms: 1000\nsteps:\n");
     for (size_t i = 0u; i < SOAK_ROW_COUNT; i++) {
         soak->steps[i].begin = number;
@@ -76,7 +69,7 @@ static void act(soak_t *soak, uint32_t from, uint32_t to) {
 static bool may_come(const soak_t *soak, const soak_row_t *row) {
     const bool engaged = soak->world.vehicle.vcu.autopilot;
     const uint32_t other = engaged ? SOAK_MANUAL : SOAK_ENGAGED;
-    return fits(soak, row) && ((row->flags & (other | SOAK_PLANTED)) == 0u);
+    return fits(soak, row) && ((row->flags & other) == 0u);
 }
 
 static uint32_t choose(soak_t *soak) {
@@ -94,21 +87,6 @@ static uint32_t choose(soak_t *soak) {
     }
 }
 
-/** The mistakes that are not made with a row. */
-static void plant(soak_t *soak) {
-    static const hal_can_frame_t unasked = {.id = SOAK_STATUS_ID - 1u, .length = AGV_DLC};
-
-    if (soak->state.t_ms <= PLANTED_MS) {
-        return;
-    }
-    if (soak->request->planted == SOAK_PLANTED_COUNT) {
-        soak->state.wire_others++; /* a frame that nobody received */
-    }
-    if (soak->request->planted == SOAK_PLANTED_SPEAK) {
-        (void)hal_can_send(&soak->world.hal, HAL_CAN_VEHICLE, &unasked);
-    }
-}
-
 /** Begin a disturbance, or end it. */
 static void disturb(soak_t *soak) {
     soak_state_t *state = &soak->state;
@@ -122,13 +100,11 @@ static void disturb(soak_t *soak) {
         state->next_ms = state->t_ms + chance_draw(&state->random, QUIET_MIN_MS, QUIET_MAX_MS);
         return;
     }
-    const bool plants = (soak->request->planted == SOAK_PLANTED_TRIP) && (state->t_ms > PLANTED_MS);
-    state->row = plants ? (uint32_t)SOAK_ROW_COUNT - 1u : choose(soak);
+    state->row = choose(soak);
     state->counts[state->row]++;
     const soak_row_t *row = &SOAK_ROWS[state->row];
     state->next_ms = state->t_ms + chance_draw(&state->random, row->lowest_ms, row->highest_ms);
     act(soak, soak->steps[state->row].begin, soak->steps[state->row].end);
-    plant(soak);
 }
 
 static uint64_t real_ms(void) {
@@ -270,7 +246,7 @@ static bool prepare(soak_t *soak, const soak_request_t *request) {
     if (!read_rows(soak)) {
         return false;
     }
-    if (!scenario_world_init(&soak->world, &soak->scenario, SCENARIO_REAL)) {
+    if (!scenario_world_init(&soak->world, &soak->scenario)) {
         return report("the world of the soak could not be built");
     }
     const scenario_watch_t watch = soak_watch(soak);

@@ -11,15 +11,6 @@
 
 #include "io/report.h"
 
-/** A mistake to be found. */
-typedef enum {
-    SOAK_SOUND,
-    SOAK_PLANTED_TRIP,
-    SOAK_PLANTED_DRIFT,
-    SOAK_PLANTED_COUNT,
-    SOAK_PLANTED_SPEAK
-} soak_planted_t;
-
 /** What is asked for. */
 typedef struct {
     uint32_t hours; /**< of all shards together */
@@ -28,7 +19,6 @@ typedef struct {
     uint32_t shards;
     const char *checkpoint; /**< file; NULL: none. What is there is gone on from */
     const char *results;    /**< file; NULL: none */
-    soak_planted_t planted;
 } soak_request_t;
 
 /** Do it. @return STATUS_UNMET: something tripped, drifted or was miscounted */

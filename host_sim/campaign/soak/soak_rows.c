@@ -83,7 +83,6 @@ const soak_row_t SOAK_ROWS[] = {
      "vcu: set_bytes, message: wheel_speed, bytes: \"B8 0B 00 00 B8 0B 00 00\", frames: 60", ""},
     {"status frame of another", 0u, 3u, 1200u, 3000u, "bus: deliver, id: 7F0h, kind: fd, bytes: \"00\"", ""},
     {"repeated by AI", 0u, 2u, 100u, 3000u, "ai: repeat, times: 1", "ai: repeat, times: 0"},
-    {"planted trip", SOAK_PLANTED, 0u, 100u, 100u, "vcu: mute, message: vehicle_status, frames: 6", ""},
 };
 
 const size_t SOAK_ROW_COUNT = sizeof SOAK_ROWS / sizeof SOAK_ROWS[0];

@@ -13,7 +13,6 @@
 #define SOAK_MANUAL (1u << 1)
 #define SOAK_GATEWAY (1u << 2)
 #define SOAK_SHARED (1u << 3)
-#define SOAK_PLANTED (1u << 4) /**< never by chance */
 
 typedef struct {
     const char *name;

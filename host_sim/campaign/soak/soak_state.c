@@ -16,7 +16,6 @@ typedef struct {
     uint32_t hours;
     uint32_t shard;
     uint32_t shards;
-    uint32_t planted;
     uint32_t checksum; /**< of state and world */
     uint32_t program;  /**< checksum of the program's file */
 } head_t;
@@ -53,7 +52,6 @@ static head_t head_of(const soak_t *soak) {
     head.hours = soak->request->hours;
     head.shard = soak->request->shard;
     head.shards = soak->request->shards;
-    head.planted = (uint32_t)soak->request->planted;
     head.program = soak->program;
     return head;
 }

@@ -15,16 +15,11 @@
 #include "io/interrupt.h"
 #include "io/output.h"
 
-/** The words of --planted, in the order of scenario_planted_t without SCENARIO_REAL. */
-#define PLANTED "mute|tripped"
-
 /** As a number that was not given. */
 #define NOT_GIVEN UINT64_MAX
 
 /** Runs of a campaign: as many as a table in memory may hold. */
 #define RUNS_MAX 100000000u
-
-enum { NOT_PLANTED = -1 };
 
 /** What was given. */
 typedef struct {
@@ -36,7 +31,6 @@ typedef struct {
     const char *fault;
     const char *results;
     const char *folder;
-    int planted;
     bool newly_engaged;
     bool merge;
     bool tables;
@@ -75,11 +69,6 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .help = "FILEs are results of all shards: one table, and --results of the whole",
          .flag = &given->merge},
         {.name = "--tables", .help = "print what reaction times follow from, as JSON", .flag = &given->tables},
-        {.name = "--planted",
-         .value = PLANTED,
-         .help = "test of the judge: this stands in for the supervisor, all must break",
-         .word = &given->planted,
-         .words = PLANTED},
     };
     const option_group_t groups[] = {{.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]}};
     const option_syntax_t syntax = {
@@ -130,7 +119,6 @@ static bool make_request(given_t *given, char **operands) {
     request->part.causes.newly_engaged = given->newly_engaged;
     request->results = given->results;
     request->folder = (given->folder != NULL) ? given->folder : ".";
-    request->part.planted = (given->planted == NOT_PLANTED) ? SCENARIO_REAL : (scenario_planted_t)(given->planted + 1);
     request->shows_one = given->show != NOT_GIVEN;
     request->one = given->show;
     if (request->shows_one && ((given->results != NULL) || (given->shard != NULL))) {
@@ -148,8 +136,7 @@ static bool check_merge(const given_t *given, char **files) {
         return report("--merge: FILE is missing; see host_sim campaign --help");
     }
     if ((given->runs != NOT_GIVEN) || (given->seed != NOT_GIVEN) || (given->shard != NULL) || (given->fault != NULL) ||
-        (given->show != NOT_GIVEN) || (given->planted != NOT_PLANTED) || (given->folder != NULL) ||
-        given->newly_engaged) {
+        (given->show != NOT_GIVEN) || (given->folder != NULL) || given->newly_engaged) {
         return report("--merge takes files, and of the other options only --results");
     }
     for (size_t i = 0u; i < given->file_count; i++) {
@@ -195,7 +182,7 @@ static status_t print_tables(void) {
 }
 
 status_t cmd_campaign(int argc, char **argv) {
-    given_t given = {.runs = NOT_GIVEN, .seed = NOT_GIVEN, .show = NOT_GIVEN, .planted = NOT_PLANTED};
+    given_t given = {.runs = NOT_GIVEN, .seed = NOT_GIVEN, .show = NOT_GIVEN};
     const options_result_t parsed = parse(argc, argv, &given);
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;

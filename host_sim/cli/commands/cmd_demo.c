@@ -138,7 +138,7 @@ static status_t play(work_t *work, const char *events) {
         watches[count] = (scenario_watch_t){.on_event = events_write, .ctx = &work->events};
         count++;
     }
-    const bool good = scenario_run(&work->run, SCENARIO_REAL, watches, count, is_told ? timeline_step : NULL);
+    const bool good = scenario_run(&work->run, watches, count, is_told ? timeline_step : NULL);
     if (work->run.was_interrupted) {
         return STATUS_UNUSABLE;
     }

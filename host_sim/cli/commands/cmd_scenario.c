@@ -19,10 +19,7 @@
 #include "live/scenario_bus.h"
 #include "scenario/scenario_run.h"
 
-/** The words of --planted, in the order of scenario_planted_t without SCENARIO_REAL. */
-#define PLANTED "mute|tripped"
-
-enum { FILES_MAX = 1000, NOT_PLANTED = -1, DEFAULT_TOLERANCE_MS = 50, TOLERANCE_MAX_MS = 1000 };
+enum { FILES_MAX = 1000, DEFAULT_TOLERANCE_MS = 50, TOLERANCE_MAX_MS = 1000 };
 
 /** Its outputs. */
 enum { EVENTS, JUNIT, SENT, OUTPUTS };
@@ -44,7 +41,6 @@ typedef struct {
     const char *sent;
     char interface_names[HAL_CAN_SIDES][INTERFACE_SIZE]; /**< "": none; no vehicle side: the simulated bus */
     uint64_t tolerance_ms;
-    int planted;
     size_t file_count;
 } given_t;
 
@@ -96,11 +92,6 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .value = "FILE",
          .help = "on CAN interfaces: what the supervisor sent, as a candump log (of one scenario)",
          .text = &given->sent},
-        {.name = "--planted",
-         .value = PLANTED,
-         .help = "test of the scenarios: this stands in for the supervisor, all must fail",
-         .word = &given->planted,
-         .words = PLANTED},
     };
     const option_group_t groups[] = {
         {.title = "Options (FILE may be -, standard output)", .options = rows, .count = sizeof rows / sizeof rows[0]},
@@ -160,9 +151,6 @@ static bool check_bus(given_t *given) {
     }
     if ((second != NULL) && (strcmp(given->interface_names[HAL_CAN_VEHICLE], second) == 0)) {
         return report("--bus: both sides are the same interface, '%s'", second);
-    }
-    if (given->planted != NOT_PLANTED) {
-        return report("--planted is for the simulated bus");
     }
     given->tolerance_ms = (given->tolerance_ms == NOT_GIVEN) ? DEFAULT_TOLERANCE_MS : given->tolerance_ms;
     return true;
@@ -244,10 +232,8 @@ static void print_result(const work_t *work, const char *file, const result_t *r
 static void play_simulated(work_t *work, events_summary_t *summary) {
     const scenario_watch_t watch = {.on_event = events_write, .ctx = &work->outputs[EVENTS]};
     const given_t *given = &work->given;
-    const scenario_planted_t planted =
-        (given->planted == NOT_PLANTED) ? SCENARIO_REAL : (scenario_planted_t)(given->planted + 1);
 
-    (void)scenario_run(&work->run, planted, &watch, (given->events != NULL) ? 1u : 0u, NULL);
+    (void)scenario_run(&work->run, &watch, (given->events != NULL) ? 1u : 0u, NULL);
     events_summarise(&work->run.world.session, summary);
 }
 
@@ -380,7 +366,7 @@ static status_t run_all(work_t *work, char **files) {
 }
 
 status_t cmd_scenario(int argc, char **argv) {
-    given_t given = {.planted = NOT_PLANTED, .tolerance_ms = NOT_GIVEN};
+    given_t given = {.tolerance_ms = NOT_GIVEN};
     const options_result_t parsed = parse(argc, argv, &given);
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;

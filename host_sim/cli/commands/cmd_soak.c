@@ -8,13 +8,10 @@
 #include "cli/shard_option.h"
 #include "io/output.h"
 
-/** The words of --planted, in the order of soak_planted_t without SOAK_SOUND. */
-#define PLANTED "trip|drift|count|speak"
-
 /** As a number that was not given. */
 #define NOT_GIVEN UINT64_MAX
 
-enum { NOT_PLANTED = -1, HOURS_MAX = 876000 };
+enum { HOURS_MAX = 876000 };
 
 /** What was given. */
 typedef struct {
@@ -22,7 +19,6 @@ typedef struct {
     uint64_t hours;
     uint64_t seed;
     const char *shard;
-    int planted;
 } given_t;
 
 static options_result_t parse(int argc, char **argv, given_t *given) {
@@ -47,11 +43,6 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .value = "FILE",
          .help = "the figures as a line of JSON",
          .text = &given->request.results},
-        {.name = "--planted",
-         .value = PLANTED,
-         .help = "test of the judge: this mistake is made, and must be found",
-         .word = &given->planted,
-         .words = PLANTED},
     };
     const option_group_t groups[] = {{.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]}};
     const option_syntax_t syntax = {
@@ -81,13 +72,12 @@ static bool make_request(given_t *given) {
     request->seed = given->seed;
     request->shard = 1u;
     request->shards = 1u;
-    request->planted = (given->planted == NOT_PLANTED) ? SOAK_SOUND : (soak_planted_t)(given->planted + 1);
     return ((given->shard == NULL) || shard_option_take(given->shard, &request->shard, &request->shards)) &&
            output_check_distinct(roles, sizeof roles / sizeof roles[0]);
 }
 
 status_t cmd_soak(int argc, char **argv) {
-    given_t given = {.hours = NOT_GIVEN, .seed = NOT_GIVEN, .planted = NOT_PLANTED};
+    given_t given = {.hours = NOT_GIVEN, .seed = NOT_GIVEN};
     const options_result_t parsed = parse(argc, argv, &given);
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;

@@ -140,7 +140,7 @@ static hazard_kind_t play(const planted_t *supervisor, const char *steps) {
         (supervisor->setting != NULL) ? supervisor->setting : "", supervisor->rolls ? "false" : "true",
         supervisor->rolls ? "  coasting_mm_s2: 1\n  braking_mm_s2: 1\n  locked_mm_s2: 1\n" : "", steps);
     TEST_ASSERT_TRUE(scenario_read_text(&scenario, "test", text, &defaults));
-    TEST_ASSERT_TRUE(scenario_world_init(&world, &scenario, SCENARIO_PLANTED_MUTE));
+    TEST_ASSERT_TRUE(scenario_world_init(&world, &scenario));
     hazard_init(&hazard, &scenario, &world);
     const scenario_watch_t watch = hazard_watch(&hazard);
     scenario_world_watch(&world, &watch);

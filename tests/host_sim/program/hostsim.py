@@ -8,6 +8,7 @@ import tempfile
 import unittest
 
 PROGRAM = os.environ["HOST_SIM"]
+STUBS = {name: os.environ.get("HOST_SIM_" + name.upper()) for name in ("mute", "tripped")}  # with a stub supervisor
 PART = int(os.environ.get("HOST_SIM_PART", "1"))  # long runs do so small a part: a program full of checks is ten times slower
 
 SENT = re.compile(r"\((\d{10,})\.(\d{6})\) (\S+) ([0-9A-F]{3})#((?:[0-9A-F]{2})*)")
@@ -77,9 +78,9 @@ class Case(unittest.TestCase):
     def files(self):
         return sorted(path.name for path in self.folder.iterdir())
 
-    def run_program(self, *arguments, stdin=b"", timeout=120, **options):
+    def run_program(self, *arguments, stdin=b"", timeout=120, program=PROGRAM, **options):
         options.setdefault("stdout", subprocess.PIPE)
-        done = subprocess.run([PROGRAM, *map(str, arguments)], input=stdin, stderr=subprocess.PIPE, timeout=timeout,
+        done = subprocess.run([program, *map(str, arguments)], input=stdin, stderr=subprocess.PIPE, timeout=timeout,
                               cwd=self.folder, check=False, **options)
         stdout = (done.stdout or b"").decode("utf-8", "replace")
         return Result(done.returncode, stdout, done.stderr.decode("utf-8", "replace"), self.folder)

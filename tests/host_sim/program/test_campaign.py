@@ -122,7 +122,8 @@ class NewlyEngaged(Campaign):
         self.assertGreater(max(run["safe_us"] for run in self.lines("a")[1:]), 300000)
 
     def test_a_supervisor_that_does_nothing_breaks_every_run(self):
-        table = self.campaign("--runs", 10, "--seed", 3, "--newly-engaged", "--planted", "mute", status=1).stdout
+        table = self.campaign("--runs", 10, "--seed", 3, "--newly-engaged", status=1,
+                              program=hostsim.STUBS["mute"]).stdout
         self.assertIn("10 runs, 10 broken", table)
 
     def test_a_run_is_a_scenario_that_passes(self):
@@ -144,8 +145,8 @@ class NewlyEngaged(Campaign):
 
 
 class Broken(Campaign):
-    def broken(self, planted):
-        self.campaign("--runs", 30, "--seed", 3, "--planted", planted, "--broken", ".", "--results", "a", status=1)
+    def broken(self, stub):
+        self.campaign("--runs", 30, "--seed", 3, "--broken", ".", "--results", "a", status=1, program=hostsim.STUBS[stub])
         self.assertTrue(all(run["broken"] for run in self.lines("a")[1:]))
         files = [name for name in self.files() if name.endswith(".yaml")]
         self.assertEqual(len(files), 20)
@@ -153,13 +154,13 @@ class Broken(Campaign):
 
     def test_a_supervisor_that_does_nothing_breaks_every_run_and_its_scenarios_fail(self):
         files = self.broken("mute")
-        result = self.run_program("scenario", "--planted", "mute", *files)
+        result = self.run_program("scenario", *files, program=hostsim.STUBS["mute"])
         self.assertEqual(result.status, 1)
         self.assertIn("20 scenarios: 0 passed, 20 failed", result.stdout)
 
     def test_one_that_is_always_tripped_too(self):
         files = self.broken("tripped")
-        result = self.run_program("scenario", "--planted", "tripped", *files)
+        result = self.run_program("scenario", *files, program=hostsim.STUBS["tripped"])
         self.assertEqual(result.status, 1)
         self.assertIn("20 scenarios: 0 passed, 20 failed", result.stdout)
         self.assertTrue({run["broken"] for run in self.lines("a")[1:]} <= {"NOT_READY", "FALSE_TRIP", "WRONG_REASON"})
@@ -192,7 +193,7 @@ class Refused(Campaign):
         self.refuse(*good, "--broken", "nowhere", says="'nowhere' is no folder")
         self.refuse(*good, "--results", "no/where", says="no/where")
         self.refuse(*good, "file", says="'file' is one too many")
-        self.refuse(*good, "--planted", "nothing", says="--planted")
+        self.refuse(*good, "--planted", "mute", says="--planted")
 
     def test_what_does_not_merge(self):
         one, two = self.shard(1, 2), self.shard(2, 2)
@@ -258,7 +259,7 @@ class Refused(Campaign):
         self.refuse_values(1, {
             "campaign": (2, "1", None), "version": ("0.0.0", 1, None), "runs": (0, -6, "6", 6.0), "seed": (-7, "7", None),
             "shard": (0, 3, -2, 4294967298, "2"), "shards": (0, 1001, 4294967298, None),
-            "fault": ("NONSENSE", "TX_GATE_REFUSED", 1), "newly_engaged": (0, "true", None), "planted": ("real", "", 0, False)})
+            "fault": ("NONSENSE", "TX_GATE_REFUSED", 1), "newly_engaged": (0, "true", None), "planted": ("mute", "", 0, False)})
         self.refuse_line(1, {**self.lines("2.jsonl")[0], "fault": "BUS_OFF"}, "another campaign than that of 1.jsonl")
 
     def test_a_damaged_run_does_not_merge(self):
@@ -279,19 +280,6 @@ class Refused(Campaign):
                           f"{number}.jsonl")
         self.refuse_line(3, {**self.lines("2.jsonl")[2], "fault": "TX_STALLED"}, "another fault than that of the campaign")
 
-    def test_runs_of_another_supervisor_are_another_campaign(self):
-        self.shard(1, 2, runs=6)
-        for word in ("mute", "tripped"):
-            self.campaign("--runs", 6, "--seed", 7, "--shard", "2/2", "--planted", word, "--results", "planted", status=1)
-            self.assertEqual(self.lines("planted")[0]["planted"], word)
-            self.refuse("--merge", "1.jsonl", "planted", "--results", "out.jsonl", says="planted:1: another campaign")
-        self.campaign("--runs", 6, "--seed", 7, "--shard", "1/2", "--planted", "mute", "--results", "mute", status=1)
-        self.refuse("--merge", "mute", "planted", "--results", "out.jsonl", says="planted:1: another campaign")
-        whole = self.campaign("--runs", 6, "--seed", 7, "--planted", "tripped", "--results", "whole", status=1)
-        self.campaign("--runs", 6, "--seed", 7, "--shard", "1/2", "--planted", "tripped", "--results", "tripped", status=1)
-        merged = self.campaign("--merge", "planted", "tripped", "--results", "merged", status=1)
-        self.assertIn(merged.stdout, whole.stdout)
-        self.assertEqual((self.folder / "merged").read_bytes(), (self.folder / "whole").read_bytes())
 
 
 class Picture(Campaign):

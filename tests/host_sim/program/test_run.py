@@ -83,7 +83,6 @@ class ScenarioBus(hostsim.Case):
     def test_what_belongs_to_the_other_bus(self):
         for option in (("--tolerance", "5"), ("--supervisor", "true"), ("--sent", "sent.log")):
             self.assert_refused(self.scenario("sim", *option), "--tolerance, --supervisor, --sent are for CAN interfaces")
-        self.assert_refused(self.scenario("a", "--planted", "mute"), "--planted is for the simulated bus")
 
     def test_the_gateway_needs_two_interfaces(self):
         gateway = next(path for path in sorted(SCENARIOS.glob("*/*.yaml"))

@@ -365,7 +365,7 @@ static void begin(bool gateway, bool shadow) {
     scenario.config.topology = gateway ? AGV_TOPOLOGY_GATEWAY : AGV_TOPOLOGY_SHARED;
     scenario.config.shadow = shadow ? AGV_SHADOW_ON : AGV_SHADOW_OFF;
     agv_config_ids(&scenario.config, &scenario.ids);
-    TEST_ASSERT_TRUE(scenario_world_init(world, &scenario, SCENARIO_REAL));
+    TEST_ASSERT_TRUE(scenario_world_init(world, &scenario));
     scenario_world_watch(world, &watch);
     scenario_world_start(world);
 }
