@@ -12,14 +12,14 @@
 #define AGV_CRC32_START 0xFFFFFFFFu
 
 /**
- * CRC-32 (IEEE 802.3, reflected) of a byte sequence, in pieces: start with AGV_CRC32_START, hand the result on, and
- * invert the last one. "123456789" gives CBF43926h.
+ * CRC-32 (IEEE 802.3, reflected) over bytes, which may come in several calls: pass AGV_CRC32_START to the first call, the
+ * result of each call to the next, and invert the last result. "123456789" gives CBF43926h.
  */
 uint32_t agv_crc32(uint32_t crc, const void *bytes, size_t size);
 
 /**
- * Quick seal over memory: the exclusive-or of its 32-bit words, inverted. Any one flipped bit changes it.
- * @param size a multiple of 8
+ * Fast checksum over memory: the inverted exclusive-or of its 32-bit words. Detects every single flipped bit.
+ * @param size bytes, a multiple of 8
  */
 uint32_t agv_seal(const void *words, size_t size);
 

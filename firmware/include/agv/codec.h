@@ -2,16 +2,16 @@
  * @file codec.h
  * Pack and unpack the payload of each of the 11 messages.
  *
- * All functions are pure, straight code without loops, and work on the 8 payload bytes of a frame whose DLC was already
- * checked. They never keep a pointer. Pointers must not be NULL, and payload and struct must not overlap.
+ * All functions are pure and have no loops. They work on the 8 payload bytes of a frame; the caller has already checked
+ * the DLC. They never keep a pointer. Pointers must not be NULL, and payload and struct must not overlap.
  *
- * - `agv_pack_X(data, &in)` checks every field. In range: writes all 8 bytes (reserved bits as 0, P14), returns true.
- *   Out of range: returns false and leaves @p data untouched.
- * - `agv_unpack_X(&out, data)` ignores reserved bits and writes every field of @p out. It returns false when a field
- *   holds a value that the protocol does not know; that field then holds what was read and must not be used, the other
- *   fields (alive counter, fault bits) are good.
+ * - `agv_pack_X(data, &in)` checks every field. If all are in range, it writes all 8 bytes (reserved bits as 0, P14) and
+ *   returns true. Otherwise it returns false and leaves @p data unchanged.
+ * - `agv_unpack_X(&out, data)` ignores reserved bits and writes every field of @p out. It returns false if a field holds
+ *   a value that the protocol does not define. That field then holds the raw value and must not be used; the other
+ *   fields (alive counter, fault bits) are valid.
  *
- * Requirement rows: P2 to P14, P18 (docs/protocol.md).
+ * Requirements: P2 to P14, P18 (docs/protocol.md).
  */
 #ifndef AGV_CODEC_H
 #define AGV_CODEC_H
@@ -21,7 +21,7 @@
 
 #include "agv/protocol.h"
 
-/** Gear codes on the wire (the document's "stall", P2). Any other value is invalid. */
+/** Gear codes on the wire (P2; the protocol document calls the field "stall"). Any other value is invalid. */
 typedef enum { AGV_GEAR_D = 1, AGV_GEAR_R = 2, AGV_GEAR_N = 4, AGV_GEAR_P = 8 } agv_gear_t;
 
 /** EPS mode codes on the wire (P18). Any other value is invalid. */
@@ -43,12 +43,15 @@ typedef enum {
 #define AGV_ANGLE_RAW_MAX 18000
 #define AGV_ANGLE_MAX_DDEG 9000
 /**
- * Which side a positive angle turns to: not stated by the document, for the integrator to set. +1 left, -1 right. The
- * supervisor itself never needs it: it only compares angles and sends back the measured one.
+ * The side that a positive angle turns to: +1 left, -1 right. The protocol document does not state it; the integrator
+ * sets it. The supervisor does not use it: it compares angles and sends back the measured one.
  */
 #define AGV_ANGLE_POSITIVE_SIDE (+1)
 
-/** Vehicle speed: one count is 1 m/h = 0.001 km/h (P7). Nothing safety-relevant uses more than "is it zero". */
+/**
+ * Vehicle speed: one count is 1 m/h = 0.001 km/h (P7). Since the document's unit is ambiguous, the value serves only to
+ * detect standstill and to be compared with the wheel speeds (SUP-12, a warning by default).
+ */
 #define AGV_VEHICLE_SPEED_M_PER_H_PER_COUNT 1u
 
 /** Bits of 363h byte 5, VCU level 1 alarms (the document counts them from Bit0). */
@@ -59,7 +62,7 @@ typedef enum {
 #define AGV_VCU_ALARM_EPS_CAN_BUS 0x20u
 #define AGV_VCU_ALARM_S_DRIVER 0x80u
 
-/** Bits of 43Fh byte 5, and one that is inverted (P11). */
+/** Bits of 43Fh byte 5. The headlight bit is inverted (P11). */
 #define AGV_SIGNAL_LEFT 0x10u
 #define AGV_SIGNAL_RIGHT 0x20u
 #define AGV_SIGNAL_AUTOPILOT_OFF 0x40u
@@ -70,7 +73,7 @@ typedef enum {
 #define AGV_VCU_FLAG_MANUAL 0x40u
 #define AGV_VCU_FLAG_AUTOPILOT 0x80u
 
-/** Bits of 167h byte 8, EPS faults (bit 1 of the document is 0x01). */
+/** EPS fault bits of 167h byte 8 (bit 1 of the document is 0x01). */
 #define AGV_EPS_FAULT_UNDER_VOLTAGE 0x01u
 #define AGV_EPS_FAULT_OVER_VOLTAGE 0x02u
 #define AGV_EPS_FAULT_EXCESSIVE_CURRENT 0x04u
@@ -96,7 +99,7 @@ typedef struct {
 
 /** 075h. */
 typedef struct {
-    uint16_t throttle_permille; /**< 0..1000; the wire has steps of 4, packing rounds down */
+    uint16_t throttle_permille; /**< 0..1000; one count on the wire is 4, packing rounds down */
 } agv_throttle_command_t;
 
 /** 065h. */
@@ -104,11 +107,11 @@ typedef struct {
     int32_t angle_ddeg; /**< 0.1 degree, -9000..+9000 */
 } agv_steering_command_t;
 
-/** 363h. Every value is valid (both mode bits set is judged by the supervisor, MODE_INVALID). */
+/** 363h. Every value is valid; the supervisor evaluates the case that both mode bits are set (MODE_INVALID). */
 typedef struct {
     uint16_t speed_m_per_h; /**< metres per hour, unsigned (P7) */
-    uint8_t level1_alarms;  /**< AGV_VCU_ALARM_* bits; the two reserved bits are read and sent as 0 */
-    uint8_t level2_alarms;  /**< reserved by the document; 0 = none */
+    uint8_t level1_alarms;  /**< AGV_VCU_ALARM_* bits; the two reserved bits are unpacked and packed as 0 */
+    uint8_t level2_alarms;  /**< reserved in the protocol document; 0 = none */
     bool button_1;
     bool button_2;
     bool turn_left_on;
@@ -133,8 +136,8 @@ typedef struct {
     uint8_t alive_counter;
     uint8_t supply_pct_of_12v; /**< 100 = 12 V (P8) */
     int32_t angle_ddeg;        /**< 0.1 degree, -9000..+9000 */
-    uint16_t torque_raw;       /**< no unit, no sign in the document (P9) */
-    uint16_t speed_raw;        /**< no unit, no sign in the document (P9) */
+    uint16_t torque_raw;       /**< raw: the document gives no unit and no sign (P9) */
+    uint16_t speed_raw;        /**< raw: the document gives no unit and no sign (P9) */
 } agv_steering_status_t;
 
 /** 167h. */
@@ -143,7 +146,7 @@ typedef struct {
     uint8_t faults; /**< AGV_EPS_FAULT_* bits */
 } agv_eps_status_t;
 
-/** 267h, big-endian (P4). No unit in the document: raw values. */
+/** 267h, big-endian (P4). Raw values: the document gives no unit. */
 typedef struct {
     uint16_t centre_raw;
     uint16_t left_raw;
@@ -157,15 +160,16 @@ typedef struct {
 } agv_wheel_speed_t;
 
 /**
- * Whether the value that a message carries is one that the protocol knows: gear, throttle, steering angle, EPS mode. What
- * the agv_unpack_X of that message returns, without unpacking; true where every value is valid.
+ * Whether the gear, throttle, steering angle or EPS mode that a message carries is valid. The result is the one of the
+ * agv_unpack_X of that message, without unpacking it.
+ * @return true for messages in which every value is valid.
  */
 bool agv_value_is_valid(uint32_t message, const uint8_t data[AGV_DLC]);
 
-/** The bits of each command that carry something; all others are reserved (P14). */
+/** The used bits of each command; all others are reserved (P14). */
 extern const uint8_t agv_command_bits[AGV_COMMAND_COUNT][AGV_DLC];
 
-/** Read a raw steering angle from its two bytes (P5); above AGV_ANGLE_RAW_MAX when they hold what is no angle. */
+/** Read a raw steering angle from its two bytes (P5). @return a value above AGV_ANGLE_RAW_MAX if the angle is invalid. */
 uint32_t agv_angle_read(const uint8_t *bytes);
 
 /** Write a raw steering angle as two bytes. */

@@ -1,7 +1,7 @@
 /**
  * @file config.h
- * The configuration: one struct with checked defaults (INT-2). Rows, ranges and meanings stand in config_settings.def;
- * the identifiers of the messages (id_...) have their rows in message_table.def.
+ * The configuration: one struct with defaults and a check (INT-2). config_settings.def defines the settings with their
+ * ranges and meanings; message_table.def defines the identifiers of the messages (id_...).
  */
 #ifndef AGV_CONFIG_H
 #define AGV_CONFIG_H
@@ -12,7 +12,7 @@
 #include "agv/faults.h"
 #include "agv/protocol.h"
 
-/** Values of the choices. */
+/** Values of the settings that are a choice of two words. */
 enum { AGV_TOPOLOGY_SHARED = 0, AGV_TOPOLOGY_GATEWAY = 1 };
 enum { AGV_SHADOW_OFF = 0, AGV_SHADOW_ON = 1 };
 enum { AGV_PARK_AT_ONCE = 0, AGV_PARK_AT_STANDSTILL = 1 };
@@ -23,10 +23,10 @@ enum { AGV_COUNTER_ANY = 0, AGV_COUNTER_INCREMENTS = 1 };
 enum { AGV_AFTER_POWER_ON_INIT = 0, AGV_AFTER_POWER_ON_TRIPPED = 1 };
 enum { AGV_GEAR_CHANGE_AT_STANDSTILL = 0, AGV_GEAR_CHANGE_ANY = 1 };
 
-/** standstill_vcu_counts: the speed of 363h is not looked at. */
+/** Value of standstill_vcu_counts with which the speed of 363h is not checked. */
 #define AGV_STANDSTILL_VCU_ANY 65535u
 
-/** All settings, in the order of config_settings.def, then the identifiers, and the classes of the faults. */
+/** All settings in the order of config_settings.def, then the identifiers, then the classes of the faults. */
 typedef struct {
 #define AGV_SETTING(name, preset, lowest, highest, unit, weakens, scope, meaning) uint16_t name;
 #define AGV_CHOICE(name, words, weakens, scope, meaning) uint16_t name;
@@ -38,10 +38,10 @@ typedef struct {
 #include "agv/message_table.def"
 #undef AGV_COMMAND
 #undef AGV_STATUS
-    agv_fault_set_t trips; /**< the faults whose class is trip; the others warn */
+    agv_fault_set_t trips; /**< the faults of class trip; all others warn */
 } agv_config_t;
 
-/** Index of each setting, `trips` not among them, and their number. */
+/** Index of each setting (`trips` has none), and the number of settings. */
 enum {
 #define AGV_SETTING(name, preset, lowest, highest, unit, weakens, scope, meaning) AGV_SETTING_##name,
 #define AGV_CHOICE(name, words, weakens, scope, meaning) AGV_SETTING_##name,
@@ -57,39 +57,39 @@ enum {
     AGV_SETTING_ID = AGV_SETTING_id_turn_signal_command /**< of message n: AGV_SETTING_ID + n */
 };
 
-/** What is wrong with a configuration. */
+/** Why agv_config_check refuses a configuration. */
 typedef enum {
     AGV_CONFIG_OK,
-    AGV_CONFIG_OUT_OF_RANGE,    /**< a setting below its lowest or above its highest value; `setting` says which */
-    AGV_CONFIG_ID_TWICE,        /**< `setting` is an identifier that another message has, or the status frame */
-    AGV_CONFIG_NEEDS_GATEWAY,   /**< `setting` is not at its default and has no effect on a shared bus */
-    AGV_CONFIG_PRESS_TOO_SHORT, /**< reset_hold_max_ms is not above reset_hold_ms: no press would reset */
-    AGV_CONFIG_FAULT_TOO_WEAK,  /**< `fault` is made weaker than it may be */
-    AGV_CONFIG_NO_SUCH_FAULT    /**< bits in `trips` beyond the faults */
+    AGV_CONFIG_OUT_OF_RANGE,    /**< `setting` is below its lowest or above its highest value */
+    AGV_CONFIG_ID_TWICE,        /**< another message or the status frame has the same identifier as `setting` */
+    AGV_CONFIG_NEEDS_GATEWAY,   /**< `setting` has no effect on a shared bus and is not at its default */
+    AGV_CONFIG_PRESS_TOO_SHORT, /**< reset_hold_max_ms is not above reset_hold_ms: no press could reset */
+    AGV_CONFIG_FAULT_TOO_WEAK,  /**< `fault` is a mandatory trip and is configured as a warning */
+    AGV_CONFIG_NO_SUCH_FAULT    /**< `trips` has bits beyond the last fault */
 } agv_config_problem_t;
 
 /** Result of agv_config_check. */
 typedef struct {
     agv_config_problem_t problem;
-    uint16_t setting;  /**< index of the setting in config_settings.def */
-    agv_fault_t fault; /**< for AGV_CONFIG_FAULT_TOO_WEAK: the highest-ranking one */
+    uint16_t setting;  /**< AGV_SETTING_* index */
+    agv_fault_t fault; /**< of AGV_CONFIG_FAULT_TOO_WEAK: the highest-ranking one */
 } agv_config_verdict_t;
 
-/** The default configuration. */
+/** Fill in the default configuration. */
 void agv_config_defaults(agv_config_t *config);
 
-/** Read a setting by its index; 0 beyond the last. */
+/** Read a setting by its index. @return 0 if there is no such setting. */
 uint16_t agv_config_get(const agv_config_t *config, uint32_t setting);
 
-/** Write a setting by its index, unchecked. @return false when there is no such setting. */
+/** Write a setting by its index, without a check of its range. @return false if there is no such setting. */
 bool agv_config_set(agv_config_t *config, uint32_t setting, uint16_t value);
 
 /** Whether the configured class of a fault is trip. False for AGV_FAULT_NONE. */
 bool agv_config_is_trip(const agv_config_t *config, uint32_t fault);
 
 /**
- * The identifiers that a configuration asks for (P1): each id_... as it is set; one of the heading's where it has not been
- * changed and `id_set` is table is that of the table.
+ * The identifiers of a configuration (P1). Each is its setting id_...; one that is at its default is replaced by that of
+ * the table when `id_set` is `table`.
  */
 void agv_config_ids(const agv_config_t *config, agv_ids_t *ids);
 
@@ -97,15 +97,15 @@ void agv_config_ids(const agv_config_t *config, agv_ids_t *ids);
 agv_config_verdict_t agv_config_check(const agv_config_t *config);
 
 /**
- * Checksum of a configuration: CRC-32 (IEEE 802.3) over all settings in their order, 16 bit little-endian each, then the
- * words of `trips`, 32 bit little-endian each. The same on every platform.
+ * Checksum of a configuration: CRC-32 (IEEE 802.3) over all settings in their order (16-bit little-endian), then the
+ * words of `trips` (32-bit little-endian). It is the same on every platform.
  */
 uint32_t agv_config_checksum(const agv_config_t *config);
 
-/** Whether a setting has a value that weakens the supervision against its default (INT-2). False beyond the last. */
+/** Whether a setting weakens the supervision compared with its default (INT-2). False if there is no such setting. */
 bool agv_config_weakens(const agv_config_t *config, uint32_t setting);
 
-/** What a setting is, for programs that list or read configurations. Not used by the supervisor itself. */
+/** Description of a setting, for programs that list or read configurations. The supervisor does not use it. */
 typedef struct {
     const char *name;
     uint16_t preset; /**< default */
@@ -113,12 +113,12 @@ typedef struct {
     uint16_t highest;
     const char *unit;    /**< "" for choices */
     const char *words;   /**< "a|b" for choices, NULL for numbers */
-    const char *meaning; /**< one line, with the requirement row */
-    const char *weakens; /**< "ABOVE", "BELOW", "ZERO", "CHOSEN" or "NEVER", as config_settings.def explains */
-    bool gateway_only;   /**< without effect on a shared bus */
+    const char *meaning; /**< one line, with the requirement ID */
+    const char *weakens; /**< "ABOVE", "BELOW", "ZERO", "CHOSEN" or "NEVER": see config_settings.def */
+    bool gateway_only;   /**< has no effect on a shared bus */
 } agv_setting_info_t;
 
-/** Describe a setting; NULL beyond the last. */
+/** Describe a setting. @return NULL if there is no such setting. */
 const agv_setting_info_t *agv_setting_info(uint16_t setting);
 
 #endif

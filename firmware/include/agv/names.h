@@ -1,7 +1,7 @@
 /**
  * @file names.h
- * The public names, for programs that print: the supervisor itself does not use them, and a target that prints nothing
- * does not link them.
+ * Names as text, for programs that print. The supervisor does not use them; a target that prints nothing does not link
+ * them.
  */
 #ifndef AGV_NAMES_H
 #define AGV_NAMES_H
@@ -11,26 +11,26 @@
 #include "agv/protocol.h"
 #include "agv/state.h"
 
-/** "EPS_HEARTBEAT_LOST" ...; NULL for AGV_FAULT_NONE and beyond. */
+/** Name of a fault, such as "EPS_HEARTBEAT_LOST"; NULL for AGV_FAULT_NONE and values above. */
 const char *agv_fault_name(agv_fault_t fault);
 
-/** The fault with this name; AGV_FAULT_NONE when there is none. */
+/** The fault with this name; AGV_FAULT_NONE if there is none. */
 agv_fault_t agv_fault_from_name(const char *name);
 
-/** "trip" or "warn". */
+/** Name of a class: "trip" or "warn". */
 const char *agv_class_name(agv_fault_class_t fault_class);
 
-/** "INIT" ...; NULL for what is no state. */
+/** Name of a state, such as "INIT"; NULL for an invalid value. */
 const char *agv_state_name(agv_state_t state);
 
-/** "turn_signal_command" ...; NULL for AGV_MSG_NONE and beyond. */
+/** Name of a message, such as "turn_signal_command"; NULL for AGV_MSG_NONE and values above. */
 const char *agv_message_name(agv_message_t message);
 
 /**
- * The words of the AGV_MISSING_* bits: "state", "vcu_heartbeat", "eps_heartbeat", "trip_cause", "standstill", "manual",
+ * Name of an AGV_MISSING_* bit: "state", "vcu_heartbeat", "eps_heartbeat", "trip_cause", "standstill", "manual",
  * "button", "messages", "throttle", "released".
  * @param index number of the bit, 0..9
- * @return NULL beyond.
+ * @return NULL for any other index.
  */
 const char *agv_missing_name(uint8_t index);
 

@@ -1,23 +1,23 @@
 /**
  * @file protocol.h
- * The 11 messages of the AGV CAN protocol: names, identifiers, cycle times. Their rows stand in message_table.def.
+ * The 11 messages of the AGV CAN protocol: names, identifiers, cycle times. They are defined in message_table.def.
  *
- * Messages are named by what they carry (the section labels of the protocol document repeat). All of them are classic
- * CAN data frames with an 11-bit identifier and DLC 8. Byte n of the document is `data[n - 1]`, bit 1 is the least
- * significant one. docs/protocol.md lists every decision on how the document is read, with its reason.
+ * Messages are named by their content, because the section labels of the protocol document are not unique. All of them
+ * are classic CAN data frames with an 11-bit identifier and DLC 8. Byte n of the document is `data[n - 1]`; bit 1 is the
+ * least significant one. docs/protocol.md lists every interpretation of the document, with its reason.
  */
 #ifndef AGV_PROTOCOL_H
 #define AGV_PROTOCOL_H
 
 #include <stdint.h>
 
-/** DLC of every message, sent and accepted (P15: any other DLC is rejected and counted). */
+/** DLC of every message. Frames with any other DLC are rejected and counted (P15). */
 #define AGV_DLC 8u
 
 /** Largest 11-bit identifier. */
 #define AGV_ID_MAX 0x7FFu
 
-/** The messages: AGV_MSG_TURN_SIGNAL_COMMAND ... AGV_MSG_WHEEL_SPEED, commands first. */
+/** The messages, AGV_MSG_TURN_SIGNAL_COMMAND to AGV_MSG_WHEEL_SPEED; the commands come first. */
 typedef enum {
 #define AGV_COMMAND(NAME, name, heading, table, cycle, deadline, fault, counter) AGV_MSG_##NAME,
 #define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter) AGV_MSG_##NAME,
@@ -25,49 +25,49 @@ typedef enum {
 #undef AGV_COMMAND
 #undef AGV_STATUS
     AGV_MSG_COUNT,
-    AGV_MSG_NONE = AGV_MSG_COUNT /**< "no such message" */
+    AGV_MSG_NONE = AGV_MSG_COUNT /**< no message */
 } agv_message_t;
 
 /** Number of AI commands: the messages before AGV_MSG_VEHICLE_STATUS. */
 #define AGV_COMMAND_COUNT 4u
 
 /**
- * Which identifiers 43Fh/363h have (P1). The document contradicts itself: its headings say 43Fh and 363h, its table
- * cells 201h and 203h. All other messages have the same identifier in both sets. The sets are presets: each identifier
- * is a setting, too (config.h).
+ * The two sets of identifiers (P1). The protocol document contradicts itself: its headings say 43Fh and 363h, its table
+ * says 201h and 203h. All other messages have the same identifier in both sets. Besides, each identifier is a setting of
+ * its own (config.h).
  */
 typedef enum {
     AGV_ID_SET_HEADING = 0, /**< 43Fh and 363h, the default */
     AGV_ID_SET_TABLE = 1    /**< 201h and 203h */
 } agv_id_set_t;
 
-/** The identifiers that a supervisor uses, by message; agv_config_ids makes them of a configuration. */
+/** The identifiers that a supervisor uses, by message. agv_config_ids derives them from a configuration. */
 typedef struct {
     uint16_t of[AGV_MSG_COUNT];
 } agv_ids_t;
 
 /**
  * The identifier of a message in one of the two sets.
- * @return the 11-bit identifier; a value above AGV_ID_MAX for AGV_MSG_NONE and beyond, or when @p id_set is no set.
+ * @return the 11-bit identifier; a value above AGV_ID_MAX if @p message or @p id_set is invalid.
  */
 uint16_t agv_message_id(uint32_t message, uint32_t id_set);
 
 /**
  * The message with this identifier in one of the two sets.
- * @return the message, or AGV_MSG_NONE (also for identifiers that only the other set knows).
+ * @return the message; AGV_MSG_NONE if no message of this set has the identifier.
  */
 uint32_t agv_message_from_id(uint32_t id, uint32_t id_set);
 
 /**
- * The message that has this identifier. Whether a frame is extended, remote, FD or of another length is the caller's to
- * check (P15).
- * @return the message, or AGV_MSG_NONE.
+ * The message that has this identifier. The caller checks whether the frame is extended, remote, FD or of another length
+ * (P15).
+ * @return the message; AGV_MSG_NONE if no message has the identifier.
  */
 uint32_t agv_ids_find(const agv_ids_t *ids, uint32_t id);
 
 /**
- * The cycle time of a message, or of AGV_MSG_NONE, in milliseconds (P16).
- * @return 10, 25 or 100; 0 for AGV_MSG_NONE and beyond.
+ * The cycle time of a message in milliseconds (P16).
+ * @return 10, 25 or 100; 0 for AGV_MSG_NONE and values above.
  */
 uint32_t agv_message_cycle_ms(uint32_t message);
 

@@ -1,10 +1,11 @@
 /**
  * @file recorder.h
- * The flight recorder (INT-3): a ring of the last 256 events, each with a snapshot of the last frames, and the last 8
- * trips, which nothing but a later trip replaces. It is the one source of events: logs, `--events` of host_sim and a
- * target's shell print what was recorded here. One fault is recorded at most 4 times a second.
+ * The flight recorder (INT-3): a ring buffer of the last 256 events, each with a snapshot of the last frames, and the last
+ * 8 trips, which only later trips replace. It is the only source of events: logs, `--events` of host_sim and the shell of
+ * a target print what is recorded here. The same fault is recorded at most 4 times per second.
  *
- * The struct belongs in RAM that outlives a reset. Each event has its own checksum, so a torn write loses that one only.
+ * Place the struct in RAM that keeps its content over a reset. Each event has its own checksum: an interrupted write
+ * loses only that event.
  */
 #ifndef AGV_RECORDER_H
 #define AGV_RECORDER_H
@@ -15,123 +16,123 @@
 #include "agv/faults.h"
 #include "agv/protocol.h"
 
-/** Events that are kept. A power of two. */
+/** Number of events kept. A power of two. */
 #define AGV_RECORDER_EVENTS 256u
 
-/** Trips that are kept. */
+/** Number of trips kept. */
 #define AGV_RECORDER_TRIPS 8u
 
-/** How often one fault is recorded in a second. */
+/** Maximum number of events per second of the same fault. */
 #define AGV_RECORDER_FAULTS_PER_S 4u
 
-/** What happened. */
+/** Kind of an event, and the meaning of its fields. */
 typedef enum {
-    AGV_EVENT_STATE = 1,  /**< a = state before (0: the run starts here), b = state, c = fault or AGV_FAULT_NONE */
+    AGV_EVENT_STATE = 1,  /**< a = state before (0: the run starts), b = state, c = fault or AGV_FAULT_NONE */
     AGV_EVENT_FAULT = 2,  /**< a = fault, b = class, c = 1: raised, 0: ended */
     AGV_EVENT_OUTPUT = 3, /**< a = 1: safety output closed, 0: opened */
     AGV_EVENT_RESET = 4,  /**< a = 1: accepted, 0: refused; missing = AGV_MISSING_* */
-    AGV_EVENT_STARTUP = 5 /**< missing = AGV_MISSING_*: what keeps INIT from being left */
+    AGV_EVENT_STARTUP = 5 /**< missing = AGV_MISSING_*: the conditions for leaving INIT that do not hold */
 } agv_event_kind_t;
 
-/** What may be missing for a reset or for leaving INIT: words of the events `reset` and `startup` (names.h). */
-#define AGV_MISSING_STATE 0x01u         /**< not in SAFE */
-#define AGV_MISSING_VCU_HEARTBEAT 0x02u /**< VCU not alive */
-#define AGV_MISSING_EPS_HEARTBEAT 0x04u /**< EPS not alive */
-#define AGV_MISSING_TRIP_CAUSE 0x08u    /**< a trip cause is active */
-#define AGV_MISSING_STANDSTILL 0x10u
-#define AGV_MISSING_MANUAL 0x20u    /**< manual is not reported */
-#define AGV_MISSING_BUTTON 0x40u    /**< the press began before the trip, or there is none */
-#define AGV_MISSING_MESSAGES 0x80u  /**< a trip-class status message is not fresh */
-#define AGV_MISSING_THROTTLE 0x100u /**< 050h is above idle */
-#define AGV_MISSING_RELEASED 0x200u /**< the button was held for longer than reset_hold_max_ms */
-#define AGV_MISSING_ALL 0x3FFu
+/** Missing conditions of a reset, or of leaving INIT, in the events `reset` and `startup`. Their names: names.h. */
+#define AGV_MISSING_STATE 0x01u         /**< the state is not SAFE */
+#define AGV_MISSING_VCU_HEARTBEAT 0x02u /**< the VCU is not alive */
+#define AGV_MISSING_EPS_HEARTBEAT 0x04u /**< the EPS is not alive */
+#define AGV_MISSING_TRIP_CAUSE 0x08u    /**< the cause of a trip is present */
+#define AGV_MISSING_STANDSTILL 0x10u    /**< the vehicle is not at standstill */
+#define AGV_MISSING_MANUAL 0x20u        /**< 363h does not report manual */
+#define AGV_MISSING_BUTTON 0x40u        /**< the press began before the trip, or the button is not pressed */
+#define AGV_MISSING_MESSAGES 0x80u      /**< a status message whose silence trips is not fresh */
+#define AGV_MISSING_THROTTLE 0x100u     /**< 050h is above idle */
+#define AGV_MISSING_RELEASED 0x200u     /**< the button was held for longer than reset_hold_max_ms */
+#define AGV_MISSING_ALL 0x3FFu          /**< all of these bits */
 
-/** What the supervisor says of an event. */
+/** An event as the supervisor hands it to the recorder. */
 typedef struct {
     uint8_t kind; /**< agv_event_kind_t */
     uint8_t a;
     uint8_t b;
     uint8_t c;
     uint16_t missing;     /**< AGV_MISSING_* bits */
-    uint8_t state;        /**< agv_state_t at that moment */
-    uint8_t first_reason; /**< agv_fault_t, AGV_FAULT_NONE when not tripped */
+    uint8_t state;        /**< agv_state_t at that time */
+    uint8_t first_reason; /**< agv_fault_t; AGV_FAULT_NONE when not tripped */
 } agv_entry_t;
 
-/** One event as it is kept. */
+/** An event as the recorder keeps it. */
 typedef struct {
-    uint32_t sequence; /**< counts events over all runs; wraps */
-    uint32_t time_ms;  /**< the supervisor's clock */
-    uint8_t kind;      /**< from here on as in agv_entry_t */
+    uint32_t sequence; /**< number of the event, over all runs; wraps */
+    uint32_t time_ms;  /**< time of the supervisor, ms */
+    uint8_t kind;      /**< this field to first_reason: as in agv_entry_t */
     uint8_t a;
     uint8_t b;
     uint8_t c;
     uint16_t missing;
     uint8_t state;
     uint8_t first_reason;
-    uint16_t left_out;                      /**< a fault: how many of its events were left out before this one */
+    uint16_t left_out;                      /**< AGV_EVENT_FAULT: events of this fault not recorded before this one */
     uint16_t seen;                          /**< bit n: message n was received in this run */
     uint8_t frames[AGV_MSG_COUNT][AGV_DLC]; /**< last payload of each message */
-    uint8_t run;                            /**< counts starts of the supervisor; wraps */
+    uint8_t run;                            /**< number of the start of the supervisor; wraps */
     uint8_t reserved;                       /**< 0 */
     uint16_t checksum;                      /**< upper half of the inverted CRC-32 over the fields before it */
 } agv_event_t;
 
-/** How often one fault was recorded lately. */
+/** Rate limit of the events of one fault. */
 typedef struct {
-    uint32_t recorded_ms[AGV_RECORDER_FAULTS_PER_S]; /**< its last events */
-    uint16_t left_out;                               /**< events left out since the last one recorded */
-    uint8_t count;                                   /**< how many of recorded_ms are filled */
-    uint8_t oldest;
+    uint32_t recorded_ms[AGV_RECORDER_FAULTS_PER_S]; /**< times of its last recorded events */
+    uint16_t left_out;                               /**< events not recorded since the last recorded one */
+    uint8_t count;                                   /**< number of entries of recorded_ms in use */
+    uint8_t oldest;                                  /**< index of the oldest entry of recorded_ms */
 } agv_fault_rate_t;
 
-/** The recorder. Contents are for the functions below only. */
+/** The recorder. Use the functions below to access it. */
 typedef struct {
     uint32_t next_sequence;
-    uint32_t stored_sequence; /**< events before this one are in flash */
+    uint32_t stored_sequence; /**< events before this number are in flash */
     uint16_t seen;
     uint8_t run;
-    uint8_t next_trip; /**< which of the trips is replaced next */
+    uint8_t next_trip; /**< index of the trip that is replaced next */
     uint8_t frames[AGV_MSG_COUNT][AGV_DLC];
     agv_fault_rate_t rates[AGV_FAULT_COUNT];
-    agv_event_t trips[AGV_RECORDER_TRIPS]; /**< the events of the last trips, by the order of their sequence numbers */
+    agv_event_t trips[AGV_RECORDER_TRIPS]; /**< events of the last trips; their order is that of `sequence` */
     agv_event_t events[AGV_RECORDER_EVENTS];
 } agv_recorder_t;
 
 /**
- * Start a run: keeps the valid events of earlier runs and goes on counting after the newest of them; whatever is not
- * valid (a power-on, a torn write) is dropped.
+ * Start a run. Keeps the valid events of earlier runs and continues their sequence numbers. Drops events that are not
+ * valid (after a power-on or an interrupted write).
  */
 void agv_recorder_start(agv_recorder_t *recorder);
 
-/** Keep the payload of a message for the snapshots. Ignored for AGV_MSG_NONE. */
+/** Note the payload of a message for later snapshots. Ignored for AGV_MSG_NONE. */
 void agv_recorder_frame(agv_recorder_t *recorder, uint32_t message, const uint8_t data[AGV_DLC]);
 
 /**
- * Record an event with a snapshot of the last frames. When the ring is full the oldest event is replaced. A fault that was
- * recorded four times within the last second is left out and counted.
+ * Record an event with a snapshot of the last frames. It replaces the oldest one when the buffer is full. An event of a
+ * fault that was recorded four times within the last second is only counted.
  */
 void agv_recorder_add(agv_recorder_t *recorder, const agv_entry_t *entry, uint32_t time_ms);
 
-/** The sequence number that the next event will get: compare it to see whether something was recorded. */
+/** The sequence number of the next event. It changes when an event is recorded. */
 uint32_t agv_recorder_next_sequence(const agv_recorder_t *recorder);
 
 /**
  * Read an event by its sequence number.
- * @return false when it was replaced already, was never there, or its checksum is wrong.
+ * @return false if the event is not in the buffer (replaced, or never recorded), or its checksum is wrong.
  */
 bool agv_recorder_get(const agv_recorder_t *recorder, uint32_t sequence, agv_event_t *event);
 
 /**
- * Read one of the last trips: an event of the kind AGV_EVENT_STATE whose new state is TRIPPED.
+ * Read one of the last trips: an AGV_EVENT_STATE whose new state is TRIPPED.
  * @param index 0 = the latest
- * @return false when there is no such trip, or its checksum is wrong.
+ * @return false if there is no such trip, or its checksum is wrong.
  */
 bool agv_recorder_get_trip(const agv_recorder_t *recorder, uint32_t index, agv_event_t *event);
 
-/** The oldest valid event that is not in flash yet; NULL when there is none. */
+/** The oldest valid event that is not in flash yet; NULL if there is none. */
 const agv_event_t *agv_recorder_next_to_store(agv_recorder_t *recorder);
 
-/** That event is in flash now. */
+/** Note that the event of agv_recorder_next_to_store was written to flash. */
 void agv_recorder_stored(agv_recorder_t *recorder);
 
 #endif

@@ -1,15 +1,15 @@
 /**
  * @file hal.h
- * What every part of the hardware abstraction shares. Include the part you need; this one holds the context only.
+ * The context that all parts of the hardware abstraction share. Include the header of the part that you need.
  *
- * The contract is this folder. A port implements every function of it and defines `struct hal`; which port a program has
- * is decided by what it links. The core never looks inside `struct hal`, and never keeps the pointer: it is passed in at
- * every call. No function blocks, none allocates.
+ * The headers of this folder are the contract. A port implements all their functions and defines `struct hal`; a program
+ * selects its port by linking it. The core never accesses the members of `struct hal` and never keeps the pointer: it is
+ * passed to every call. No function blocks or allocates.
  */
 #ifndef HAL_HAL_H
 #define HAL_HAL_H
 
-/** Context of a port: one for each supervisor, owned by the program. */
+/** Context of a port. The program owns it; each supervisor has its own. */
 typedef struct hal hal_t;
 
 #endif

@@ -9,7 +9,7 @@
 
 #include "hal/hal.h"
 
-/** Switch the LED. Called when it changes, at most once a tick. Whether it lights up, nobody asks: no fault hangs on it. */
+/** Switch the LED. Called when its state changes, at most once per tick. LED failure is not monitored. */
 void hal_led_set(hal_t *hal, bool on);
 
 #endif

@@ -1,15 +1,15 @@
 /**
  * @file reset.h
- * Why the MCU started.
+ * The cause of the last MCU reset.
  *
- * A push button on a pin that resets as remote button 1 does (HW-3) has no function yet.
+ * There is no function yet for a reset button on a pin, in place of remote button 1 (HW-3).
  */
 #ifndef HAL_RESET_H
 #define HAL_RESET_H
 
 #include "hal/hal.h"
 
-/** Cause of the last reset. Whatever a port cannot tell apart is HAL_RESET_UNKNOWN, never HAL_RESET_POWER_ON. */
+/** A reset cause. A port reports HAL_RESET_POWER_ON only if it is certain, HAL_RESET_UNKNOWN if it cannot tell. */
 typedef enum {
     HAL_RESET_POWER_ON,
     HAL_RESET_WATCHDOG,
@@ -19,7 +19,7 @@ typedef enum {
     HAL_RESET_UNKNOWN
 } hal_reset_cause_t;
 
-/** The cause, read once from the hardware at boot and the same for the whole run. */
+/** The cause of the last reset. The port reads it once from the hardware at boot; it never changes in a run. */
 hal_reset_cause_t hal_reset_cause(hal_t *hal);
 
 #endif

@@ -1,8 +1,8 @@
 /**
  * @file store.h
- * What outlives a reset: the latch record in RAM that a reset does not clear (and that may be gone after a power-on),
- * and a log of the flight recorder's events in flash. Pointers are never NULL. Bytes that come back may be corrupt: the
- * caller has its own checksum in them.
+ * Storage over a reset: the latch record, in RAM that a reset does not clear (but a power-on may), and a log of the flight
+ * recorder's events in flash. The core never passes NULL pointers. Stored bytes may be read back corrupt: the caller puts
+ * its own checksum into them.
  */
 #ifndef HAL_STORE_H
 #define HAL_STORE_H
@@ -13,38 +13,38 @@
 
 #include "hal/hal.h"
 
-/** Largest latch record that a port must be able to keep. */
+/** Size in bytes of the largest latch record that a port must store. */
 #define HAL_STORE_LATCH_SIZE_MAX 32u
 
-/** Largest record of the log that a port must be able to keep. */
+/** Size in bytes of the largest log record that a port must store. */
 #define HAL_STORE_RECORD_SIZE_MAX 256u
 
 /**
  * Read the latch record.
- * @return how many bytes are stored, at most @p size of them were copied; 0 = nothing is stored.
+ * @return size of the stored record, of which at most @p size bytes were copied; 0 = nothing is stored.
  */
 size_t hal_store_read_latch(hal_t *hal, void *record, size_t size);
 
 /**
- * Replace the latch record. Quick: it is called in the handling of a trip.
+ * Replace the latch record. It must be fast, because it is called while a trip is handled.
  * @param size 1..HAL_STORE_LATCH_SIZE_MAX
- * @return false when it could not be stored, or is of another size; the caller goes on without.
+ * @return false if the record could not be stored, or @p size is out of range. The caller continues without it.
  */
 bool hal_store_write_latch(hal_t *hal, const void *record, size_t size);
 
 /**
- * Append one record of @p size bytes to the log in flash; when it is full the port drops the oldest ones. May stall the
- * processor for longer than a reaction may take: the core calls it only where INT-3 allows it. A power cut during the
- * call loses at most this record.
+ * Append a record to the log in flash. If the log is full, the port drops the oldest records. The call may stall the
+ * processor for longer than the permitted reaction time: the core calls it only where INT-3 allows it. A power cut during
+ * the call loses at most this record.
  * @param size 1..HAL_STORE_RECORD_SIZE_MAX
- * @return false when it could not be stored, or is of another size.
+ * @return false if the record could not be stored, or @p size is out of range.
  */
 bool hal_store_append(hal_t *hal, const void *record, size_t size);
 
 /**
- * Read back a record of the log.
+ * Read a record of the log.
  * @param index 0 = oldest
- * @return its size, at most @p size bytes of which were copied; 0 = there is none with this index.
+ * @return size of the record, of which at most @p size bytes were copied; 0 = there is no such record.
  */
 size_t hal_store_read_record(hal_t *hal, uint32_t index, void *record, size_t size);
 

@@ -8,8 +8,8 @@
 #include "hal/hal.h"
 
 /**
- * Feed the watchdog. Called by the core only, under the conditions of TIM-3. Where that fails the watchdog resets the MCU,
- * which is the safe end of it.
+ * Feed the watchdog. Only the core calls it, under the conditions of TIM-3. A port does not report a failure to feed: the
+ * watchdog then resets the MCU, which is safe.
  */
 void hal_watchdog_feed(hal_t *hal);
 
