@@ -16,22 +16,17 @@ static const uint8_t STATES[5] = {AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_STATE_A
                                   AGV_STATE_SAFE};
 
 static oracle_t make_oracle(const agv_gate_t *gate) {
-    const agv_config_t *config = gate->config;
-    const bool table = config->id_set == (uint16_t)AGV_ID_SET_TABLE;
     const bool unlatched =
         (gate->state == AGV_STATE_INIT) || (gate->state == AGV_STATE_STANDBY) || (gate->state == AGV_STATE_ACTIVE);
-    return (oracle_t){.gateway = config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY,
-                      .pass_all_in_manual = config->gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL,
-                      .signal_id = table ? 0x201u : 0x43Fu,
-                      .vehicle_id = table ? 0x203u : 0x363u,
-                      .own_status_id = config->status_frame_id,
-                      .mode_bits = 0x80, /* the gate knows nothing of the last 363h, nor of an engagement that ended */
-                      .before = (agv_state_t)gate->state,
-                      .ending = gate->state == AGV_STATE_STANDBY,
-                      .latched = !unlatched,
-                      .held = !unlatched && ((unsigned)gate->hold_check + gate->hold_raw == 0xFFFFu) &&
-                              (gate->hold_raw <= 18000u),
-                      .held_raw = gate->hold_raw};
+    oracle_t oracle = {.mode_bits = 0x80, /* the gate knows nothing of the last 363h, nor of an engagement that ended */
+                       .before = (agv_state_t)gate->state,
+                       .ending = gate->state == AGV_STATE_STANDBY,
+                       .latched = !unlatched,
+                       .held = !unlatched && ((unsigned)gate->hold_check + gate->hold_raw == 0xFFFFu) &&
+                               (gate->hold_raw <= 18000u),
+                       .held_raw = gate->hold_raw};
+    oracle_configure(&oracle, gate->config);
+    return oracle;
 }
 
 static bool expected(const agv_gate_t *gate, hal_can_side_t side, const hal_can_frame_t *frame) {

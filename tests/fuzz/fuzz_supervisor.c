@@ -42,7 +42,7 @@ static void any_frame(input_t *input, unsigned how) {
 }
 
 static void change_message(input_t *input, unsigned how) {
-    world_message_t *m = &world.traffic[input_byte(input) % (unsigned)WORLD_MESSAGES];
+    traffic_message_t *m = &world.traffic[input_byte(input) % (unsigned)TRAFFIC_MESSAGES];
     uint8_t where = 0;
     switch (how & 3u) {
     case 0:
@@ -111,7 +111,7 @@ static void step(input_t *input) {
         any_frame(input, how);
         break;
     case 3:
-        world_send(input_byte(input) % (unsigned)WORLD_MESSAGES);
+        world_send(input_byte(input) % (unsigned)TRAFFIC_MESSAGES);
         break;
     case 4:
         world_jump(how);

@@ -33,14 +33,10 @@ static uint32_t count_in_call(const fixture_t *f, uint32_t call) {
 }
 
 void expect_safe_commands(const fixture_t *f, uint32_t call, int32_t hold_raw) {
-    static const uint8_t SIGNALS[7] = {0, 0, 0, 0, 0x70, 0, 0}; /* byte 8 is the alive counter */
-    static const uint8_t PARK[8] = {8};
-    static const uint8_t NO_THROTTLE[8] = {0};
     const uint8_t hold[8] = {(uint8_t)((unsigned)hold_raw & 0xFFu), (uint8_t)((unsigned)hold_raw >> 8u)};
-    const uint32_t signals_id = f->config.id_set == (uint16_t)AGV_ID_SET_TABLE ? 0x201 : 0x43F;
-    expect_frame(f, call, signals_id, SIGNALS, 7);
-    expect_frame(f, call, 0x168, PARK, 8);
-    expect_frame(f, call, 0x075, NO_THROTTLE, 8);
+    expect_frame(f, call, traffic_id(&f->config, M_SIGNALS), SAFE_SIGNALS, SAFE_SIGNALS_BYTES);
+    expect_frame(f, call, 0x168, SAFE_PARK, 8);
+    expect_frame(f, call, 0x075, SAFE_THROTTLE, 8);
     if (hold_raw != NO_HOLD) {
         expect_frame(f, call, 0x065, hold, 8);
     }

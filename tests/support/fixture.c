@@ -7,50 +7,22 @@
 #include "agv/names.h"
 #include "unity.h"
 
-/* Healthy traffic, by hand: identifiers of both sets, cycle, phase, counter byte, payload in manual mode. */
-typedef struct {
-    uint16_t id;
-    uint16_t table_id;
-    uint16_t cycle_ms;
-    uint16_t phase_ms;
-    int8_t counter_at;
-    uint8_t data[8];
-} healthy_t;
-
-static const healthy_t HEALTHY[AGV_MSG_COUNT] = {
-    [AGV_MSG_TURN_SIGNAL_COMMAND] = {0x43F, 0x201, 100, 8, 7, {0, 0, 0, 0, 0x80}},
-    [AGV_MSG_GEAR_COMMAND] = {0x168, 0x168, 100, 18, -1, {GEAR_P}},
-    [AGV_MSG_THROTTLE_COMMAND] = {0x075, 0x075, 100, 28, -1, {0}},
-    [AGV_MSG_STEERING_COMMAND] = {0x065, 0x065, 25, 9, -1, {0x28, 0x23}},
-    [AGV_MSG_VEHICLE_STATUS] = {0x363, 0x203, 10, 1, 7, {0, 0, 0, 0, 0, 0, MODE_MANUAL}},
-    [AGV_MSG_GEAR_STATUS] = {0x0A3, 0x0A3, 25, 7, -1, {GEAR_P}},
-    [AGV_MSG_THROTTLE_STATUS] = {0x050, 0x050, 10, 2, -1, {0}},
-    [AGV_MSG_STEERING_STATUS] = {0x067, 0x067, 10, 4, 0, {0, 100, 0x28, 0x23}},
-    [AGV_MSG_EPS_STATUS] = {0x167, 0x167, 10, 5, -1, {0, 0, 0, 0x01}},
-    [AGV_MSG_STEERING_POSITION] = {0x267, 0x267, 10, 6, -1, {0x23, 0x28, 0, 0, 0x46, 0x50}},
-    [AGV_MSG_WHEEL_SPEED] = {0x101, 0x101, 10, 3, -1, {0}},
-};
-
-enum { COMMANDS = 4, STANDBY_WITHIN_MS = 1000, ENGAGED_MS = 1000, NOBODYS_ID = 0x7FE };
+enum { STANDBY_WITHIN_MS = 1000, ENGAGED_MS = 1000, NOBODYS_ID = 0x7FE };
 
 /* ---- Building ---- */
 
-static uint16_t id_of_set(const fixture_t *f, unsigned message) {
-    return f->config.id_set == (uint16_t)AGV_ID_SET_TABLE ? HEALTHY[message].table_id : HEALTHY[message].id;
-}
-
 static uint16_t id_on_the_wire(const fixture_t *f, unsigned message) {
-    return f->other_ids ? agv_config_get(&f->config, AGV_SETTING_ID + message) : id_of_set(f, message);
+    return f->other_ids ? agv_config_get(&f->config, AGV_SETTING_ID + message) : traffic_id(&f->config, message);
 }
 
 /* A frame with the identifier of its set. One that is no more on this vehicle becomes one of nobody. */
 static hal_can_frame_t with_id_of_set(const fixture_t *f, const hal_can_frame_t *frame) {
     hal_can_frame_t renamed = *frame;
     for (unsigned i = 0; f->other_ids && i < AGV_MSG_COUNT; i++) {
-        renamed.id = frame->id == id_of_set(f, i) ? NOBODYS_ID : renamed.id;
+        renamed.id = frame->id == traffic_id(&f->config, i) ? NOBODYS_ID : renamed.id;
     }
     for (unsigned i = 0; f->other_ids && i < AGV_MSG_COUNT; i++) {
-        renamed.id = frame->id == id_on_the_wire(f, i) ? id_of_set(f, i) : renamed.id;
+        renamed.id = frame->id == id_on_the_wire(f, i) ? traffic_id(&f->config, i) : renamed.id;
     }
     return renamed;
 }
@@ -100,32 +72,18 @@ void fixture_init(fixture_t *f) {
     f->self_test_passed = true;
     f->what = "";
     sim_store_init(&f->store);
-    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
-        f->traffic[i] = (fixture_message_t){.length = 8,
-                                            .counter_at = HEALTHY[i].counter_at,
-                                            .cycle_ms = HEALTHY[i].cycle_ms,
-                                            .phase_ms = HEALTHY[i].phase_ms};
-        memcpy(f->traffic[i].data, HEALTHY[i].data, sizeof HEALTHY[i].data);
-    }
+    traffic_heal(f->traffic);
 }
 
 static void address_traffic(fixture_t *f) {
-    const bool gateway = f->config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
-    for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
+    traffic_address(f->traffic, &f->config);
+    for (unsigned i = 0; i < (unsigned)TRAFFIC_MESSAGES; i++) {
         f->traffic[i].id = id_on_the_wire(f, i);
-        f->traffic[i].side = gateway && i < COMMANDS ? HAL_CAN_AI : HAL_CAN_VEHICLE;
     }
 }
 
 static void start_supervisor(fixture_t *f) {
-    const bool table = f->config.id_set == (uint16_t)AGV_ID_SET_TABLE;
-    f->oracle.gateway = f->config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
-    f->oracle.pass_all_in_manual = f->config.gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL;
-    f->oracle.signal_id = table ? 0x201 : 0x43F;
-    f->oracle.vehicle_id = table ? 0x203 : 0x363;
-    f->oracle.own_status_id = f->config.status_frame_id;
-    f->oracle.hold_age_ms = f->config.hold_age_ms;
-    f->oracle.mode_invalid_ms = f->config.mode_invalid_ms;
+    oracle_configure(&f->oracle, &f->config);
     f->oracle.now_ms = f->now_ms;
     oracle_restart(&f->oracle);
     f->call++;
@@ -183,25 +141,13 @@ void fixture_frame(fixture_t *f, agv_message_t message, const uint8_t data[8]) {
 }
 
 void fixture_send_now(fixture_t *f, agv_message_t message) {
-    fixture_message_t *m = &f->traffic[message];
-    if (!m->frozen) {
-        m->counter++;
-    }
-    if (m->counter_at >= 0) {
-        m->data[m->counter_at] = m->counter;
-    }
-    hal_can_frame_t frame = {.id = m->id, .flags = m->flags, .length = m->length};
-    memcpy(frame.data, m->data, sizeof frame.data);
-    m->sent++;
+    traffic_message_t *m = &f->traffic[message];
+    hal_can_frame_t frame = traffic_next(m);
     m->last_ms = f->now_ms;
     m->call = f->call + 1u;
     if (f->edit == NULL || f->edit(f, message, &frame)) {
         fixture_raw(f, m->side, frame);
     }
-}
-
-static bool is_due(const fixture_message_t *m, uint32_t elapsed_ms) {
-    return !m->muted && elapsed_ms % m->cycle_ms == m->phase_ms;
 }
 
 static void mute(fixture_t *f, const agv_message_t *messages, unsigned count, bool muted) {
@@ -224,26 +170,19 @@ void fixture_mute_eps(fixture_t *f, bool muted) {
 void fixture_mute_ai(fixture_t *f, bool muted) {
     static const agv_message_t OF_AI[] = {AGV_MSG_TURN_SIGNAL_COMMAND, AGV_MSG_GEAR_COMMAND, AGV_MSG_THROTTLE_COMMAND,
                                           AGV_MSG_STEERING_COMMAND};
-    mute(f, OF_AI, COMMANDS, muted);
+    mute(f, OF_AI, TRAFFIC_COMMANDS, muted);
 }
 
 void fixture_mode(fixture_t *f, uint8_t mode) {
-    uint8_t *byte = &f->traffic[AGV_MSG_VEHICLE_STATUS].data[6];
-    *byte = (uint8_t)((*byte & 0x3Fu) | mode);
+    traffic_mode(f->traffic, mode);
 }
 
 void fixture_button(fixture_t *f, bool pressed) {
-    uint8_t *byte = &f->traffic[AGV_MSG_VEHICLE_STATUS].data[6];
-    *byte = (uint8_t)((*byte & 0xFEu) | (pressed ? BUTTON_1 : 0u));
-}
-
-static void put_u16(uint8_t *data, uint16_t value) {
-    data[0] = (uint8_t)value;
-    data[1] = (uint8_t)(value >> 8u);
+    traffic_button(f->traffic, pressed);
 }
 
 void fixture_gear(fixture_t *f, uint8_t gear) {
-    f->traffic[AGV_MSG_GEAR_STATUS].data[0] = gear;
+    traffic_gear(f->traffic, gear);
 }
 
 void fixture_throttle(fixture_t *f, uint8_t counts) {
@@ -251,23 +190,19 @@ void fixture_throttle(fixture_t *f, uint8_t counts) {
 }
 
 void fixture_speed(fixture_t *f, uint16_t counts) {
-    put_u16(f->traffic[AGV_MSG_VEHICLE_STATUS].data, counts);
+    traffic_put_word(f->traffic[AGV_MSG_VEHICLE_STATUS].data, counts);
 }
 
 void fixture_angle(fixture_t *f, uint16_t raw) {
-    put_u16(&f->traffic[AGV_MSG_STEERING_STATUS].data[2], raw);
+    traffic_put_word(&f->traffic[AGV_MSG_STEERING_STATUS].data[2], raw);
 }
 
 void fixture_command_angle(fixture_t *f, uint16_t raw) {
-    put_u16(f->traffic[AGV_MSG_STEERING_COMMAND].data, raw);
+    traffic_put_word(f->traffic[AGV_MSG_STEERING_COMMAND].data, raw);
 }
 
 void fixture_wheels(fixture_t *f, int32_t left_mm_s, int32_t right_mm_s) {
-    uint8_t *data = f->traffic[AGV_MSG_WHEEL_SPEED].data;
-    put_u16(&data[0], (uint16_t)(uint32_t)left_mm_s);
-    put_u16(&data[2], (uint16_t)((uint32_t)left_mm_s >> 16u));
-    put_u16(&data[4], (uint16_t)(uint32_t)right_mm_s);
-    put_u16(&data[6], (uint16_t)((uint32_t)right_mm_s >> 16u));
+    traffic_wheels(f->traffic, left_mm_s, right_mm_s);
 }
 
 void fixture_drive(fixture_t *f, int32_t mm_s) {
@@ -301,7 +236,7 @@ static void hand_over_traffic(fixture_t *f) {
     f->elapsed_ms++;
     sim_hal_set_now_ms(&f->hal, f->now_ms);
     for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
-        if (is_due(&f->traffic[i], f->elapsed_ms)) {
+        if (traffic_is_due(&f->traffic[i], f->elapsed_ms)) {
             fixture_send_now(f, (agv_message_t)i);
         }
     }
@@ -320,7 +255,7 @@ void fixture_run(fixture_t *f, uint32_t ms) {
 
 void fixture_run_before(fixture_t *f, agv_message_t message) {
     TEST_ASSERT_FALSE_MESSAGE(f->traffic[message].muted, "a muted message never comes");
-    while (!is_due(&f->traffic[message], f->elapsed_ms + 1u)) {
+    while (!traffic_is_due(&f->traffic[message], f->elapsed_ms + 1u)) {
         step(f);
     }
 }

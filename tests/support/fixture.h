@@ -20,31 +20,9 @@
 #include "hal_sim/sim_hal.h"
 #include "hal_sim/sim_store.h"
 #include "oracle.h"
+#include "traffic.h"
 
 #define FIXTURE_SENT_MAX 4096u
-
-/** Values of 363h byte 7, of gears on the wire, and the raw angle that healthy traffic has. */
-enum { MODE_NEITHER = 0x00, MODE_MANUAL = 0x40, MODE_ENGAGED = 0x80, MODE_BOTH = 0xC0, BUTTON_1 = 0x01 };
-enum { GEAR_D = 1, GEAR_R = 2, GEAR_N = 4, GEAR_P = 8 };
-enum { ANGLE_CENTRE = 9000 };
-
-/** What one message does. Healthy at first; every member is for the test to change. */
-typedef struct {
-    bool muted;        /**< is not sent */
-    bool frozen;       /**< its alive counter stands still */
-    uint8_t flags;     /**< HAL_CAN_* bits it is sent with */
-    uint8_t length;    /**< DLC; 8 */
-    uint8_t data[8];   /**< payload; byte `counter_at` is filled in */
-    int8_t counter_at; /**< index of its alive counter; -1: none */
-    uint8_t counter;   /**< value that was sent last */
-    uint16_t cycle_ms; /**< sent when (elapsed_ms % cycle_ms) == phase_ms */
-    uint16_t phase_ms;
-    uint32_t id;         /**< identifier */
-    hal_can_side_t side; /**< where it arrives */
-    uint32_t sent;       /**< frames so far */
-    uint32_t last_ms;    /**< clock at the last one */
-    uint32_t call;       /**< number of the call in which the last one was handed over */
-} fixture_message_t;
 
 /** One frame that the supervisor sent. */
 typedef struct {
@@ -77,7 +55,7 @@ typedef struct fixture {
     bool receive_path_dead;        /**< the receive path does not check in */
     uint32_t call;                 /**< calls to the supervisor so far */
     fixture_edit_fn *edit;         /**< NULL: nothing is edited */
-    fixture_message_t traffic[AGV_MSG_COUNT];
+    traffic_message_t traffic[TRAFFIC_MESSAGES];
     const char *what; /**< the case of a table, for messages of failures */
     oracle_t oracle;  /**< judges every frame that leaves (FSM-6): a forbidden one ends the test */
     bool

@@ -13,7 +13,7 @@ typedef struct {
     agv_supervisor_t supervisor;
     struct hal hal;
     rules_t rules;
-    world_message_t traffic[WORLD_MESSAGES];
+    traffic_message_t traffic[TRAFFIC_MESSAGES];
     uint8_t store[offsetof(sim_store_t, log)];
     uint8_t recorder[offsetof(agv_recorder_t, events)];
     uint64_t now_ms;

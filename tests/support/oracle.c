@@ -3,16 +3,14 @@
 #include <stdio.h>
 #include <string.h>
 
-static bool sends_safe_commands(agv_state_t state) {
-    return (state != AGV_STATE_STANDBY) && (state != AGV_STATE_ACTIVE);
-}
+#include "frame_bytes.h"
 
-static bool is_latched(agv_state_t state) {
-    return sends_safe_commands(state) && (state != AGV_STATE_INIT);
-}
+const uint8_t SAFE_SIGNALS[SAFE_SIGNALS_BYTES] = {0, 0, 0, 0, 0x70, 0, 0};
+const uint8_t SAFE_PARK[8] = {8};
+const uint8_t SAFE_THROTTLE[8] = {0};
 
-static bool bytes_are(const hal_can_frame_t *frame, const uint8_t expected[8]) {
-    return memcmp(frame->data, expected, 8) == 0;
+static bool bytes_are(const hal_can_frame_t *frame, const uint8_t *expected, unsigned bytes) {
+    return memcmp(frame->data, expected, bytes) == 0;
 }
 
 static bool zeros_from(const hal_can_frame_t *frame, unsigned first) {
@@ -20,8 +18,15 @@ static bool zeros_from(const hal_can_frame_t *frame, unsigned first) {
     return memcmp(&frame->data[first], zeros, 8u - first) == 0;
 }
 
-static uint16_t word_of(const uint8_t *low) {
-    return (uint16_t)(low[0] | ((unsigned)low[1] << 8u));
+void oracle_configure(oracle_t *oracle, const agv_config_t *config) {
+    const bool table = config->id_set == (uint16_t)AGV_ID_SET_TABLE;
+    oracle->gateway = config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    oracle->pass_all_in_manual = config->gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL;
+    oracle->signal_id = table ? 0x201u : 0x43Fu;
+    oracle->vehicle_id = table ? 0x203u : 0x363u;
+    oracle->own_status_id = config->status_frame_id;
+    oracle->hold_age_ms = config->hold_age_ms;
+    oracle->mode_invalid_ms = config->mode_invalid_ms;
 }
 
 void oracle_restart(oracle_t *oracle) {
@@ -66,7 +71,7 @@ static void follow(oracle_t *oracle, agv_state_t state) {
 
 /* The first valid angle after it is held when none is. */
 static void heard_angle(oracle_t *oracle, const hal_can_frame_t *frame) {
-    const uint16_t raw = word_of(&frame->data[2]);
+    const uint16_t raw = word_at(&frame->data[2]);
     if (raw > 18000u) {
         return;
     }
@@ -118,19 +123,16 @@ void oracle_heard(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *
 }
 
 static bool safe_to_vehicle(const oracle_t *oracle, const hal_can_frame_t *frame, agv_state_t state) {
-    static const uint8_t park[8] = {0x08};
     if (frame->id == oracle->signal_id) {
-        /* reserved bytes 0; bits 5, 6, 7 on, bit 8 off = headlight on; any counter */
-        return (frame->data[4] == 0x70u) && (word_of(&frame->data[0]) == 0u) && (word_of(&frame->data[2]) == 0u) &&
-               (word_of(&frame->data[5]) == 0u);
+        return bytes_are(frame, SAFE_SIGNALS, SAFE_SIGNALS_BYTES); /* any counter */
     }
     switch (frame->id) {
     case 0x168u:
-        return bytes_are(frame, park);
+        return bytes_are(frame, SAFE_PARK, 8);
     case 0x075u:
-        return zeros_from(frame, 0);
+        return bytes_are(frame, SAFE_THROTTLE, 8);
     case 0x065u:
-        return (state != AGV_STATE_INIT) && oracle->held && (word_of(frame->data) == oracle->held_raw) &&
+        return (state != AGV_STATE_INIT) && oracle->held && (word_at(frame->data) == oracle->held_raw) &&
                zeros_from(frame, 2);
     default:
         return false;
@@ -150,16 +152,16 @@ static bool passed_to_vehicle(oracle_t *oracle, const hal_can_frame_t *frame, ag
         return true;
     }
     if (frame->id == oracle->signal_id) {
-        return ((frame->data[4] & 0x0Fu) == 0u) && (word_of(&frame->data[0]) == 0u) &&
-               (word_of(&frame->data[2]) == 0u) && (word_of(&frame->data[5]) == 0u);
+        return ((frame->data[4] & 0x0Fu) == 0u) && (word_at(&frame->data[0]) == 0u) &&
+               (word_at(&frame->data[2]) == 0u) && (word_at(&frame->data[5]) == 0u);
     }
     switch (frame->id) {
     case 0x168u:
-        return all && ((gear == 1u) || (gear == 2u) || (gear == 4u) || (gear == 8u)) && zeros_from(frame, 1);
+        return all && is_gear(gear) && zeros_from(frame, 1);
     case 0x075u:
         return all && (frame->data[0] <= ((state == AGV_STATE_ACTIVE) ? 250u : 0u)) && zeros_from(frame, 1);
     case 0x065u:
-        return all && (word_of(frame->data) <= 18000u) && zeros_from(frame, 2);
+        return all && (word_at(frame->data) <= 18000u) && zeros_from(frame, 2);
     default:
         return false;
     }
@@ -180,7 +182,7 @@ static bool may_leave(oracle_t *oracle, hal_can_side_t side, const hal_can_frame
     if ((oracle->own_status_id != 0u) && (frame->id == oracle->own_status_id)) {
         return true;
     }
-    if (sends_safe_commands(state)) {
+    if (commands_safe(state)) {
         return safe_to_vehicle(oracle, frame, state);
     }
     return oracle->gateway && passed_to_vehicle(oracle, frame, state);
@@ -188,7 +190,7 @@ static bool may_leave(oracle_t *oracle, hal_can_side_t side, const hal_can_frame
 
 void oracle_sent(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *frame, agv_state_t state) {
     follow(oracle, state);
-    if (sends_safe_commands(state)) {
+    if (commands_safe(state)) {
         oracle->judged++;
     } else {
         oracle->others++;

@@ -8,6 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "agv/config.h"
 #include "agv/state.h"
 #include "hal/can.h"
 
@@ -49,6 +50,9 @@ typedef struct {
     agv_state_t first_state;
 } oracle_t;
 
+/* What the vehicle is, by the configuration. */
+void oracle_configure(oracle_t *oracle, const agv_config_t *config);
+
 /* A supervisor starts: nothing is known. The counts go on. */
 void oracle_restart(oracle_t *oracle);
 
@@ -60,6 +64,12 @@ void oracle_sent(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *f
 
 /* An entry point has returned in this state. */
 void oracle_returned(oracle_t *oracle, agv_state_t state);
+
+/* The safe commands, byte for byte: hazard lights and headlight (byte 8 is the alive counter), gear P, no throttle. */
+enum { SAFE_SIGNALS_BYTES = 7 };
+extern const uint8_t SAFE_SIGNALS[SAFE_SIGNALS_BYTES];
+extern const uint8_t SAFE_PARK[8];
+extern const uint8_t SAFE_THROTTLE[8];
 
 /* "" when nothing forbidden was seen, else one line about the first such frame. */
 const char *oracle_verdict(const oracle_t *oracle);

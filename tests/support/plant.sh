@@ -5,8 +5,8 @@
 # Compile a program of tests/proofs. compile SOURCE CORE-FOLDER OUTPUT
 compile() {
     ${CC:-cc} -std=c11 -O2 -w -I"$2" -Ifirmware/include -Ihal/include -Ihal/sim/include -Itests/support \
-        "$2"/*/*.c hal/sim/src/*.c tests/support/world.c tests/support/rules.c tests/support/oracle.c \
-        tests/support/moment.c tests/support/part.c "$1" -o "$3"
+        "$2"/*/*.c hal/sim/src/*.c tests/support/{world,rules,oracle,traffic}.c \
+        tests/support/{moment,part,harm}.c "$1" -o "$3"
 }
 
 # A copy of the core with texts replaced. plant FOLDER [ROOM/FILE OLD NEW]...

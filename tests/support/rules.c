@@ -6,7 +6,7 @@
 
 #include "agv/names.h"
 #include "agv/protocol.h"
-#include "rules_bytes.h"
+#include "frame_bytes.h"
 
 enum { VEHICLE = 0, GEAR_STATUS, THROTTLE_STATUS, STEERING_STATUS, EPS_STATUS, POSITION, WHEELS };
 /* STEP_MS: so late a tick may be, and only ticks look at deadlines; a later one is a trip cause itself (TIM-4). */
@@ -23,14 +23,6 @@ __attribute__((format(printf, 2, 3))) static void broken(rules_t *rules, const c
         (void)vsnprintf(rules->broken, sizeof rules->broken, format, arguments);
         va_end(arguments);
     }
-}
-
-static bool commands_safe(agv_state_t state) {
-    return (state != AGV_STATE_STANDBY) && (state != AGV_STATE_ACTIVE);
-}
-
-static bool is_latched(agv_state_t state) {
-    return commands_safe(state) && (state != AGV_STATE_INIT);
 }
 
 static bool is_supervising(agv_state_t state) {
@@ -58,15 +50,8 @@ static int status_of(const rules_t *rules, uint32_t id) {
 }
 
 void rules_init(rules_t *rules, const agv_config_t *config) {
-    const bool table = config->id_set == (uint16_t)AGV_ID_SET_TABLE;
     memset(rules, 0, sizeof *rules);
-    rules->oracle.gateway = config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
-    rules->oracle.pass_all_in_manual = config->gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL;
-    rules->oracle.signal_id = table ? 0x201u : 0x43Fu;
-    rules->oracle.vehicle_id = table ? 0x203u : 0x363u;
-    rules->oracle.own_status_id = config->status_frame_id;
-    rules->oracle.hold_age_ms = config->hold_age_ms;
-    rules->oracle.mode_invalid_ms = config->mode_invalid_ms;
+    oracle_configure(&rules->oracle, config);
     rules->park_at_once = config->park == (uint16_t)AGV_PARK_AT_ONCE;
     rules->shadow = config->shadow == (uint16_t)AGV_SHADOW_ON;
     rules->running_heartbeat = config->own_heartbeat == (uint16_t)AGV_OWN_HEARTBEAT_RUNNING;
@@ -192,7 +177,7 @@ static void hear_status(rules_t *rules, int status, const hal_can_frame_t *frame
         hear_beat(&rules->vcu, data[7], stamp_ms);
         hear_mode(rules, data[6], stamp_ms);
         hear_button(rules, (data[6] & 1u) != 0u);
-        rules->fast_ms = (((unsigned)data[0] | ((unsigned)data[1] << 8u)) > SLOW_COUNTS) ? stamp_ms : rules->fast_ms;
+        rules->fast_ms = (word_at(data) > SLOW_COUNTS) ? stamp_ms : rules->fast_ms;
         rules->alarm = (data[4] & 0xB3u) != 0u; /* bits 0, 1, 4, 5, 7 */
         break;
     case THROTTLE_STATUS:

@@ -4,32 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MANUAL = 0x40, ENGAGED = 0x80, BOTH = 0xC0, SETTLE_TICKS = 4, BEFORE_WRAP_MS = 700, EPOCH_MS = 1000000 };
+#include "frame_bytes.h"
 
-/* Healthy traffic, by hand: identifiers of both sets, cycle, phase, which byte counts, payload in manual mode. */
-typedef struct {
-    uint16_t id;
-    uint16_t table_id;
-    uint16_t cycle_ms;
-    uint16_t phase_ms;
-    int8_t counter_at;
-    uint8_t data[8];
-} healthy_t;
-
-static const healthy_t HEALTHY[WORLD_MESSAGES] = {
-    {0x43F, 0x201, 100, 8, 7, {0, 0, 0, 0, 0x80}},
-    {0x168, 0x168, 100, 18, -1, {8}},
-    {0x075, 0x075, 100, 28, -1, {0}},
-    {0x065, 0x065, 25, 9, -1, {0x28, 0x23}},
-    {0x363, 0x203, 10, 1, 7, {0, 0, 0, 0, 0, 0, MANUAL}},
-    {0x0A3, 0x0A3, 25, 7, -1, {8}},
-    {0x050, 0x050, 10, 2, -1, {0}},
-    {0x067, 0x067, 10, 4, 0, {0, 100, 0x28, 0x23}},
-    {0x167, 0x167, 10, 5, -1, {0, 0, 0, 0x01}},
-    {0x267, 0x267, 10, 6, -1, {0x23, 0x28, 0, 0, 0x46, 0x50}},
-    {0x101, 0x101, 10, 3, -1, {0}},
-};
-enum { STATUS_363 = 4, STATUS_0A3 = 5, STATUS_050 = 6, STATUS_101 = 10, COMMANDS = 4 };
+enum { SETTLE_TICKS = 4, BEFORE_WRAP_MS = 700, EPOCH_MS = 1000000 };
 
 world_t world;
 
@@ -50,6 +27,14 @@ void world_judge(void) {
         (void)fprintf(stderr, "broken rule after %u ms: %s\n", (unsigned)world.now_ms, world.rules.broken);
         abort();
     }
+}
+
+bool world_is_latched(void) {
+    return is_latched(agv_supervisor_state(&world.supervisor));
+}
+
+bool world_has(agv_fault_t fault) {
+    return agv_supervisor_has_fault(&world.supervisor, fault);
 }
 
 static rules_seen_t look(void) {
@@ -137,24 +122,15 @@ void world_restart(hal_reset_cause_t cause) {
 /* ---- Traffic ---- */
 
 void world_send(unsigned message) {
-    const healthy_t *healthy = &HEALTHY[message];
-    world_message_t *m = &world.traffic[message];
-    const bool table = world.config.id_set == (uint16_t)AGV_ID_SET_TABLE;
-    const bool gateway = world.config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
-    m->counter = (uint8_t)(m->counter + (m->frozen ? 0 : 1));
-    if (healthy->counter_at >= 0) {
-        m->data[healthy->counter_at] = m->counter;
-    }
-    hal_can_frame_t frame = {.id = table ? healthy->table_id : healthy->id, .flags = m->flags, .length = m->length};
-    memcpy(frame.data, m->data, (m->length < 8u) ? m->length : 8u);
-    world_frame((gateway && (message < COMMANDS)) ? HAL_CAN_AI : HAL_CAN_VEHICLE, frame, 0);
+    traffic_message_t *m = &world.traffic[message];
+    world_frame(m->side, traffic_next(m), 0);
 }
 
 void world_run(uint32_t ms) {
     for (uint32_t i = 0; i < ms; i++) {
         world.now_ms++;
-        for (unsigned m = 0; m < WORLD_MESSAGES; m++) {
-            if (!world.traffic[m].muted && (world.now_ms % HEALTHY[m].cycle_ms == HEALTHY[m].phase_ms)) {
+        for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
+            if (traffic_is_due(&world.traffic[m], world.now_ms)) {
                 world_send(m);
             }
         }
@@ -162,31 +138,28 @@ void world_run(uint32_t ms) {
     }
 }
 
-void world_mode(uint8_t byte7_bits) {
-    uint8_t *byte = &world.traffic[STATUS_363].data[6];
-    *byte = (uint8_t)((*byte & 0x3Fu) | (byte7_bits & BOTH));
+void world_mode(uint8_t mode) {
+    traffic_mode(world.traffic, mode);
 }
 
 void world_button(bool down) {
-    uint8_t *byte = &world.traffic[STATUS_363].data[6];
-    *byte = (uint8_t)((*byte & 0xFEu) | (down ? 1u : 0u));
+    traffic_button(world.traffic, down);
 }
 
 void world_gear(uint8_t gear) {
-    world.traffic[STATUS_0A3].data[0] = gear;
+    traffic_gear(world.traffic, gear);
 }
 
 void world_wheels(uint8_t mm_s) {
-    world.traffic[STATUS_101].data[0] = mm_s;
-    world.traffic[STATUS_101].data[4] = mm_s;
+    traffic_wheels(world.traffic, mm_s, mm_s);
 }
 
 void world_heal(void) {
-    for (unsigned i = 0; i < WORLD_MESSAGES; i++) {
-        world_message_t *m = &world.traffic[i];
-        *m = (world_message_t){.length = 8, .counter = m->counter};
-        memcpy(m->data, HEALTHY[i].data, sizeof m->data);
-    }
+    traffic_heal(world.traffic);
+}
+
+void world_ai_drives(void) {
+    traffic_ai_drives(world.traffic);
 }
 
 void world_disturb(hal_can_side_t side, unsigned kind, uint8_t amount) {
@@ -250,6 +223,7 @@ static void begin(unsigned variant, uint32_t offset_ms) {
     world.offset_ms = offset_ms - (uint32_t)EPOCH_MS;
     world.ports = (agv_ports_t){.hal = &world.hal, .recorder = &world.recorder};
     configure(variant);
+    traffic_address(world.traffic, &world.config);
     world_heal();
     sim_store_init(&world.store);
     const bool gateway = world.config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
@@ -272,22 +246,22 @@ static void expect_state(unsigned state) {
 static void go_to(unsigned state) {
     world_run(state == 0u ? 50 : 700);
     if (state >= 2u) {
-        world_mode(ENGAGED);
-        world_gear(1);
+        world_mode(MODE_ENGAGED);
+        world_gear(GEAR_D);
         world_wheels(200);
         world_run(800);
     }
     if (state >= 3u) {
-        world.traffic[STATUS_363].data[4] = 0x80; /* the S-driver alarm */
+        world.traffic[M_VEHICLE].data[4] = 0x80; /* the S-driver alarm */
         world_run(10);
-        world.traffic[STATUS_363].data[4] = 0;
+        world.traffic[M_VEHICLE].data[4] = 0;
         world_run(40);
     }
     if (state >= 4u) {
-        world_mode(MANUAL);
-        world_gear(8);
+        world_mode(MODE_MANUAL);
+        world_gear(GEAR_P);
         world_wheels(0);
-        world.traffic[STATUS_050].data[0] = 0;
+        world.traffic[M_THROTTLE_STATUS].data[0] = 0;
         world_run(300);
     }
     expect_state(state);

@@ -14,18 +14,9 @@
 #include "hal_sim/sim_hal.h"
 #include "hal_sim/sim_store.h"
 #include "rules.h"
+#include "traffic.h"
 
-enum { WORLD_STATES = 5, WORLD_VARIANTS = 7, WORLD_MESSAGES = 11 };
-
-/* What one message of the traffic does. */
-typedef struct {
-    bool muted;
-    bool frozen; /* its alive counter stands still */
-    uint8_t length;
-    uint8_t flags;
-    uint8_t counter;
-    uint8_t data[8];
-} world_message_t;
+enum { WORLD_STATES = 5, WORLD_VARIANTS = 7 };
 
 typedef struct {
     agv_supervisor_t supervisor;
@@ -40,7 +31,7 @@ typedef struct {
     uint64_t ticked_ms; /* when the last tick came */
     uint32_t unsettled; /* ticks until what the controller went through counts as over */
     bool receive_path_dead;
-    world_message_t traffic[WORLD_MESSAGES];
+    traffic_message_t traffic[TRAFFIC_MESSAGES];
 } world_t;
 
 extern world_t world;
@@ -72,11 +63,16 @@ void world_restart(hal_reset_cause_t cause);
 void world_disturb(hal_can_side_t side, unsigned kind, uint8_t amount);
 
 /* Values of the traffic. */
-void world_mode(uint8_t byte7_bits);
+void world_mode(uint8_t mode);
 void world_button(bool down);
 void world_gear(uint8_t gear);
 void world_wheels(uint8_t mm_s);
 void world_heal(void);
+void world_ai_drives(void);
+
+/* Whether the supervisor is latched, also by a state code that is none of the five; whether a fault's cause is there. */
+bool world_is_latched(void);
+bool world_has(agv_fault_t fault);
 
 /* End the program when a rule was broken, or do this instead, once it is set. */
 void world_judge(void);

@@ -20,7 +20,7 @@ typedef struct {
     agv_supervisor_t supervisor;
     struct hal hal;
     oracle_t oracle;
-    fixture_message_t traffic[AGV_MSG_COUNT];
+    traffic_message_t traffic[AGV_MSG_COUNT];
     uint8_t latch[HAL_STORE_LATCH_SIZE_MAX];
     uint8_t latch_size;
     uint32_t now_ms;

@@ -8,15 +8,13 @@
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "harm.h"
 #include "moment.h"
 #include "part.h"
 
 enum { BITS = 8 * sizeof(agv_supervisor_t), SEALED_BITS = 8 * offsetof(agv_supervisor_t, receive_alive) };
 enum { SHORT_MS = 40, LONG_MS = 1300, LONG_EVERY = 61 };
-enum { MANUAL = 0x40, ENGAGED = 0x80, DRIVE = 1, PARK = 8 };
-enum { SIGNALS = 0, GEAR = 1, THROTTLE = 2, STEERING = 3, VEHICLE = 4, THROTTLE_STATUS = 6 };
 
 /* ---- What is judged ---- */
 
@@ -28,7 +26,6 @@ static struct {
     uint64_t late; /* of the detected ones: not in the first millisecond */
     uint64_t frames;
     uint64_t resets; /* by a button, under all conditions */
-    uint64_t harms;
     uint64_t moments_of[WORLD_STATES];
     uint64_t latched_flips;
 } sum;
@@ -44,36 +41,21 @@ static struct {
     {"TOP-4: ", 0}, /* shadow is off in the built-in constants */
 };
 
-static char harm[240];
 static const char *situation;
-
-static void note_harm(const char *what) {
-    if (harm[0] == '\0') {
-        (void)snprintf(harm, sizeof harm, "%s", what);
-    }
-}
 
 static void on_broken(void) {
     bool is_borne = false;
     for (unsigned i = 0; i < sizeof borne / sizeof borne[0]; i++) {
-        if (strncmp(world.rules.broken, borne[i].text, strlen(borne[i].text)) == 0) {
+        if (harm_rule_is(borne[i].text)) {
             borne[i].seen++;
             is_borne = true;
         }
     }
-    if (!is_borne) {
-        note_harm(world.rules.broken);
-    }
-    world.rules.broken[0] = '\0';
+    harm_take_rule(is_borne);
 }
 
 static bool is_found(void) {
-    return agv_supervisor_has_fault(&world.supervisor, AGV_FAULT_MEMORY_CORRUPTED);
-}
-
-static bool is_latched(void) {
-    const agv_state_t state = agv_supervisor_state(&world.supervisor);
-    return (state != AGV_STATE_INIT) && (state != AGV_STATE_STANDBY) && (state != AGV_STATE_ACTIVE);
+    return world_has(AGV_FAULT_MEMORY_CORRUPTED);
 }
 
 enum { BUILT_IN_STATUS_ID = 0x7F0 };
@@ -91,25 +73,25 @@ static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame
 
 /* FSM-9: only a power-on ends it. */
 static void judge_found(void) {
-    if (!is_latched()) {
-        note_harm("found corrupt, and not latched");
+    if (!world_is_latched()) {
+        harm_note("found corrupt, and not latched");
     }
     if (world.hal.safety_output.on) {
-        note_harm("found corrupt, and the safety output is closed");
+        harm_note("found corrupt, and the safety output is closed");
     }
 }
 
 /* The vehicle obeys and the operator presses the button: all that a reset needs, if there is one to be had. */
 static void ask_for_reset(void) {
-    world_mode(MANUAL);
-    world_gear(PARK);
+    world_mode(MODE_MANUAL);
+    world_gear(GEAR_P);
     world_wheels(0);
-    world.traffic[THROTTLE_STATUS].data[0] = 0;
+    world.traffic[M_THROTTLE_STATUS].data[0] = 0;
     world_button(true);
 }
 
 static void run_found(uint32_t ms) {
-    for (uint32_t i = 0; (i < ms) && (harm[0] == '\0'); i++) {
+    for (uint32_t i = 0; (i < ms) && (!harm_is_noted()); i++) {
         world_run(1);
         judge_found();
     }
@@ -141,19 +123,14 @@ static void follow(unsigned bit) {
 
 static void flip(unsigned bit) {
     ((uint8_t *)&world.supervisor)[bit / 8u] ^= (uint8_t)(1u << (bit % 8u));
-    harm[0] = '\0';
+    harm_begin();
     sum.flips++;
-    sum.latched_flips += is_latched() ? 1u : 0u;
+    sum.latched_flips += world_is_latched() ? 1u : 0u;
     follow(bit);
     sum.frames += world.rules.sent - moment.rules.sent;
     sum.resets += world.rules.resets - moment.rules.resets;
-    if (harm[0] != '\0') {
-        sum.harms++;
-        if (sum.harms <= 20u) {
-            (void)printf("HARM: %s, byte %u bit %u of %u bytes, after %u ms: %s\n", situation, bit / 8u, bit % 8u,
-                         (unsigned)sizeof(agv_supervisor_t), (unsigned)(world.now_ms - moment.now_ms), harm);
-        }
-    }
+    harm_report("%s, byte %u bit %u of %u bytes, after %u ms", situation, bit / 8u, bit % 8u,
+                (unsigned)sizeof(agv_supervisor_t), (unsigned)(world.now_ms - moment.now_ms));
 }
 
 /* ---- Moments ---- */
@@ -178,21 +155,13 @@ static void flip_each_bit(const char *name, unsigned variant, unsigned state) {
     sum.moments_of[state]++;
 }
 
-/* An AI computer that drives, whatever the state: what a supervisor has to hold back. */
-static void drive_on(void) {
-    world.traffic[SIGNALS].data[4] = 0x80;
-    world.traffic[GEAR].data[0] = DRIVE;
-    world.traffic[THROTTLE].data[0] = 100;
-    world.traffic[STEERING].data[0] = 0x64;
-}
-
 static void load(unsigned variant, unsigned state) {
     world_load(variant, state);
     if (world.hal.sink != on_sent) {
         judge_sent = world.hal.sink;
         world.hal.sink = on_sent;
     }
-    drive_on();
+    world_ai_drives();
     world_run(30);
 }
 
@@ -207,7 +176,7 @@ static void quiet_moments(unsigned variant, unsigned state) {
 }
 
 static void foreign_gear(void) {
-    world_frame(HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .length = 8, .data = {DRIVE}}, 0);
+    world_frame(HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .length = 8, .data = {GEAR_D}}, 0);
 }
 
 static void waiting_moments(unsigned variant, unsigned state) {
@@ -248,11 +217,11 @@ static void old_press_moment(unsigned variant) {
     load(variant, 2);
     world_button(true);
     world_run(50);
-    world.traffic[VEHICLE].data[4] = 0x80;
+    world.traffic[M_VEHICLE].data[4] = 0x80;
     world_run(20);
-    world.traffic[VEHICLE].data[4] = 0;
-    world_mode(MANUAL);
-    world_gear(PARK);
+    world.traffic[M_VEHICLE].data[4] = 0;
+    world_mode(MODE_MANUAL);
+    world_gear(GEAR_P);
     world_wheels(0);
     world_run(900);
     flip_each_bit("the button is held since before the trip", variant, 4);
@@ -289,6 +258,6 @@ int main(int argc, char **argv) {
                  (unsigned long long)sum.late);
     (void)printf("%u bits at %llu moments: %llu flips, %llu detected, %llu harmless, forbidden: %llu\n", (unsigned)BITS,
                  (unsigned long long)sum.moments, (unsigned long long)sum.flips, (unsigned long long)sum.detected,
-                 (unsigned long long)sum.harmless, (unsigned long long)sum.harms);
-    return ((sum.harms == 0u) && (sum.moments > 0u)) ? 0 : 1;
+                 (unsigned long long)sum.harmless, (unsigned long long)harm_count);
+    return ((harm_count == 0u) && (sum.moments > 0u)) ? 0 : 1;
 }

@@ -18,7 +18,8 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-DRIVER = ROOT / "tests/proofs/call-path/call_path.c"
+SUPPORT = ROOT / "tests/support"
+DRIVER = [ROOT / "tests/proofs/call-path/call_path.c", SUPPORT / "null_hal.c", SUPPORT / "traffic.c"]
 
 
 def fail(message):
@@ -43,7 +44,7 @@ def build(root, folder):
     for number, source in enumerate(sources):
         run("gcc", *options, "-finstrument-functions", "-c", source, "-o", folder / f"{number}.o")
     program = folder / "call_path"
-    run("gcc", *options, DRIVER, *sorted(folder.glob("*.o")), "-o", program)
+    run("gcc", *options, f"-I{SUPPORT}", *DRIVER, *sorted(folder.glob("*.o")), "-o", program)
     return program
 
 

@@ -133,7 +133,7 @@ static uint64_t running(void) {
     for (unsigned i = 0; i < (unsigned)AGV_TIMER_COUNT; i++) {
         some |= ((((set >> i) & 1u) != 0u) && runs(i)) ? (UINT64_C(1) << i) : 0u;
     }
-    for (unsigned m = 0; m < (unsigned)WORLD_MESSAGES; m++) {
+    for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
         if (stage_flows(m) && !world.traffic[m].frozen) {
             some &= ~(UINT64_C(1) << ((unsigned)AGV_TIMER_MESSAGE + m)); /* comes on */
         }

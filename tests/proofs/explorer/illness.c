@@ -97,7 +97,7 @@ static void dress_silent(illness_t illness) {
 
 /* Values. */
 static void dress_values(illness_t illness) {
-    world_message_t *t = world.traffic;
+    traffic_message_t *t = world.traffic;
     switch (illness) {
     case ILL_VCU_FROZEN:
         t[M_VEHICLE].frozen = true;

@@ -5,11 +5,10 @@
 #include <string.h>
 
 /* Two of 10 ms share no millisecond with each other, nor with those of 25 ms: little delays anything on a real bus. */
-const stage_time_t STAGE_TIME[WORLD_MESSAGES] = {
-    [M_SIGNALS] = {100, 21, 7},        [M_GEAR] = {100, 45, -1},         [M_THROTTLE] = {100, 76, -1},
-    [M_STEERING] = {25, 8, -1},        [M_VEHICLE] = {10, 1, 7},         [M_GEAR_STATUS] = {25, 2, -1},
-    [M_THROTTLE_STATUS] = {10, 4, -1}, [M_STEERING_STATUS] = {10, 5, 0}, [M_EPS_STATUS] = {10, 6, -1},
-    [M_POSITION] = {10, 9, -1},        [M_WHEELS] = {10, 0, -1},
+const uint8_t STAGE_PHASE_MS[TRAFFIC_MESSAGES] = {
+    [M_SIGNALS] = 21,   [M_GEAR] = 45,       [M_THROTTLE] = 76,       [M_STEERING] = 8,
+    [M_VEHICLE] = 1,    [M_GEAR_STATUS] = 2, [M_THROTTLE_STATUS] = 4, [M_STEERING_STATUS] = 5,
+    [M_EPS_STATUS] = 6, [M_POSITION] = 9,    [M_WHEELS] = 0,
 };
 
 enum { WRAP = 0, MIDDLE = 0x7FFFFFFF };
@@ -69,7 +68,7 @@ void stage_root(const stage_variant_t *variant) {
     stage.recover_requests = world.hal.can[HAL_CAN_VEHICLE].recover_requests;
     world.offset_ms = variant->clock_ms - (uint32_t)world.now_ms;
     sim_hal_set_now_ms(&world.hal, variant->clock_ms);
-    for (unsigned m = 0; m < (unsigned)WORLD_MESSAGES; m++) {
+    for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
         world.traffic[m].counter = 0;
     }
     stage_dress();
@@ -157,9 +156,7 @@ void stage_dress(void) {
     world_button(stage.button);
     world_gear(stage.gear);
     world_wheels(stage.wheels_turn ? (uint8_t)WHEEL_MM_S : 0u);
-    world.traffic[M_GEAR].data[0] = STAGE_D; /* an AI computer that drives, whatever the state */
-    world.traffic[M_THROTTLE].data[0] = 100;
-    world.traffic[M_STEERING].data[0] = 0x64;
+    world_ai_drives();
     illness_dress((illness_t)stage.illness);
 }
 
@@ -167,19 +164,14 @@ static bool is_off(hal_can_side_t side) {
     return world.hal.can[side].status.state == HAL_CAN_BUS_OFF;
 }
 
-static hal_can_side_t side_of(unsigned message) {
-    const bool gateway = world.config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
-    return (gateway && (message < (unsigned)COMMANDS)) ? HAL_CAN_AI : HAL_CAN_VEHICLE;
-}
-
 bool stage_flows(unsigned message) {
-    const world_message_t *m = &world.traffic[message];
-    return !m->muted && (m->length == 8u) && !is_off(side_of(message));
+    const traffic_message_t *m = &world.traffic[message];
+    return !m->muted && (m->length == 8u) && !is_off(world.traffic[message].side);
 }
 
 /* A controller in bus-off hears nothing. */
 static void send(unsigned message) {
-    if (!is_off(side_of(message))) {
+    if (!is_off(world.traffic[message].side)) {
         world_send(message);
     }
 }
@@ -188,12 +180,12 @@ static bool is_due(unsigned message, uint32_t t_ms) {
     if ((message == (unsigned)M_GEAR) && (stage.illness == (uint8_t)ILL_AI_BABBLES)) {
         return t_ms % (uint32_t)BABBLE_MS == 0u;
     }
-    return t_ms % STAGE_TIME[message].cycle_ms == STAGE_TIME[message].phase_ms;
+    return t_ms % TRAFFIC[message].cycle_ms == STAGE_PHASE_MS[message];
 }
 
 static void send_due(void) {
     const uint32_t t_ms = stage_now_ms();
-    for (unsigned m = 0; m < (unsigned)WORLD_MESSAGES; m++) {
+    for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
         if (!world.traffic[m].muted && is_due(m, t_ms)) {
             send(m);
         }
@@ -260,7 +252,7 @@ void stage_run(uint32_t ms) {
 }
 
 void stage_run_past(unsigned message) {
-    for (unsigned i = 0; i < STAGE_TIME[message].cycle_ms; i++) {
+    for (unsigned i = 0; i < TRAFFIC[message].cycle_ms; i++) {
         stage_run(1);
         if (is_due(message, stage_now_ms())) {
             return;
@@ -281,13 +273,13 @@ void stage_deliver(hal_can_side_t side, const hal_can_frame_t *frames, unsigned 
 }
 
 static bool could_speak(unsigned message) {
-    const world_message_t *m = &world.traffic[message];
-    return (m->muted || m->frozen) && !is_off(side_of(message));
+    const traffic_message_t *m = &world.traffic[message];
+    return (m->muted || m->frozen) && !is_off(world.traffic[message].side);
 }
 
 bool stage_can_speak(void) {
     bool can = false;
-    for (unsigned m = 0; m < (unsigned)WORLD_MESSAGES; m++) {
+    for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
         can = can || could_speak(m);
     }
     return can;
@@ -296,8 +288,8 @@ bool stage_can_speak(void) {
 void stage_speak(void) {
     before();
     world.now_ms++;
-    for (unsigned m = 0; m < (unsigned)WORLD_MESSAGES; m++) {
-        const world_message_t kept = world.traffic[m];
+    for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
+        const traffic_message_t kept = world.traffic[m];
         if (could_speak(m)) {
             world.traffic[m].frozen = false;
             world.traffic[m].counter = (uint8_t)(kept.counter + 100u);

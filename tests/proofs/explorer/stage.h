@@ -142,29 +142,8 @@ typedef struct {
 } stage_teller_t;
 extern const stage_teller_t *stage_teller; /* NULL: nobody */
 
-/* The messages, in the order of world.h. */
-enum {
-    M_SIGNALS,
-    M_GEAR,
-    M_THROTTLE,
-    M_STEERING,
-    M_VEHICLE,
-    M_GEAR_STATUS,
-    M_THROTTLE_STATUS,
-    M_STEERING_STATUS,
-    M_EPS_STATUS,
-    M_POSITION,
-    M_WHEELS
-};
-enum { COMMANDS = 4 };
-
-/* When each is sent. */
-typedef struct {
-    uint8_t cycle_ms;
-    uint8_t phase_ms;
-    int8_t counter_at;
-} stage_time_t;
-extern const stage_time_t STAGE_TIME[WORLD_MESSAGES];
+/* When each message is sent within its cycle. */
+extern const uint8_t STAGE_PHASE_MS[TRAFFIC_MESSAGES];
 
 /* illness.c */
 typedef enum { TRIPS_NEVER, TRIPS_ALWAYS, TRIPS_ENGAGED } illness_trips_t;

@@ -17,7 +17,7 @@ static const char *symbol;
 static bool complete; /* nothing in it could only be said as a comment */
 
 /* What the vehicle of the file does, as it was told so far. */
-static world_message_t told[WORLD_MESSAGES];
+static traffic_message_t told[TRAFFIC_MESSAGES];
 static stage_t told_stage;
 static bool told_full[HAL_CAN_SIDES];
 static uint16_t told_overruns;
@@ -70,7 +70,7 @@ static void add_bytes(const uint8_t *data, unsigned length, int skip) {
 }
 
 static unsigned node_of(unsigned message) {
-    if (message < (unsigned)COMMANDS) {
+    if (message < (unsigned)TRAFFIC_COMMANDS) {
         return AI;
     }
     return ((message >= (unsigned)M_STEERING_STATUS) && (message <= (unsigned)M_POSITION)) ? EPS : VCU;
@@ -81,14 +81,14 @@ static unsigned node_of(unsigned message) {
 static void set_bytes(unsigned m) {
     step(NODES[node_of(m)], "set_bytes");
     add(", message: %s", agv_message_name((agv_message_t)m));
-    add_bytes(world.traffic[m].data, 8, STAGE_TIME[m].counter_at);
+    add_bytes(world.traffic[m].data, 8, TRAFFIC[m].counter_at);
     add("}\n");
     memcpy(told[m].data, world.traffic[m].data, sizeof told[m].data);
 }
 
 static bool same_bytes(unsigned m) {
     for (int i = 0; i < 8; i++) {
-        if ((i != STAGE_TIME[m].counter_at) && (told[m].data[i] != world.traffic[m].data[i])) {
+        if ((i != TRAFFIC[m].counter_at) && (told[m].data[i] != world.traffic[m].data[i])) {
             return false;
         }
     }
@@ -123,7 +123,7 @@ static void tell_length(unsigned m) {
         return;
     }
     plain_step(NODES[node], "recover");
-    for (unsigned i = 0; i < (unsigned)WORLD_MESSAGES; i++) {
+    for (unsigned i = 0; i < (unsigned)TRAFFIC_MESSAGES; i++) {
         if (node_of(i) == node) {
             set_bytes(i);
         }
@@ -156,7 +156,7 @@ static void tell_illness(void) {
 static void tell_vehicle(void) {
     tell_length(M_VEHICLE);
     tell_length(M_SIGNALS);
-    for (unsigned m = 0; m < (unsigned)WORLD_MESSAGES; m++) {
+    for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
         tell_message(m);
     }
     tell_illness();
@@ -255,7 +255,7 @@ static void delivered(hal_can_side_t side, const hal_can_frame_t *frame) {
 }
 
 static void spoke(unsigned message) {
-    const bool ai = (message < (unsigned)COMMANDS) && (world.config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY);
+    const bool ai = (message < (unsigned)TRAFFIC_COMMANDS) && (world.config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY);
     step("bus", "deliver");
     add(", message: %s, kind: data, side: %s", agv_message_name((agv_message_t)message), ai ? "ai" : "vehicle");
     add_bytes(world.traffic[message].data, 8, -1);
@@ -292,7 +292,7 @@ void story_begin(void) {
     told_stage = stage;
     memset(told_full, 0, sizeof told_full);
     told_overruns = world.hal.can[HAL_CAN_VEHICLE].status.overrun_count;
-    for (unsigned m = 0; m < (unsigned)WORLD_MESSAGES; m++) {
+    for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
         set_bytes(m);
     }
     story_expect_begin();
@@ -343,9 +343,8 @@ static void write_config(FILE *file) {
 
 static void write_phases(FILE *file) {
     (void)fprintf(file, "vehicle:\n  phases_ms: {");
-    for (unsigned m = 0; m < (unsigned)WORLD_MESSAGES; m++) {
-        (void)fprintf(file, "%s%s: %u", (m > 0u) ? ", " : "", agv_message_name((agv_message_t)m),
-                      STAGE_TIME[m].phase_ms);
+    for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
+        (void)fprintf(file, "%s%s: %u", (m > 0u) ? ", " : "", agv_message_name((agv_message_t)m), STAGE_PHASE_MS[m]);
     }
     (void)fprintf(file, "}\n");
 }

@@ -196,7 +196,7 @@ static void write_frame(FILE *file, unsigned command, uint32_t from_ms) {
     static const char *const BYTES[] = {"00 00 00 00 70 00 00 ..", "08 00 00 00 00 00 00 00", "00 00 00 00 00 00 00 00",
                                         ".. .. 00 00 00 00 00 00"};
     (void)fprintf(file, "    - {message: %s, side: vehicle, bytes: \"%s\", at_ms: [%u, %u]}\n",
-                  agv_message_name((agv_message_t)command), BYTES[command % (unsigned)COMMANDS], (unsigned)from_ms,
+                  agv_message_name((agv_message_t)command), BYTES[command % (unsigned)TRAFFIC_COMMANDS], (unsigned)from_ms,
                   (unsigned)broken_ms + 1u);
 }
 

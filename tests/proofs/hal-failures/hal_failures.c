@@ -10,9 +10,9 @@
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
+#include "harm.h"
 #include "moment.h"
 #include "part.h"
 
@@ -24,8 +24,6 @@ enum {
     COMMON_EVERY = 16,
     HANG_S = 100
 };
-enum { MANUAL = 0x40, ENGAGED = 0x80, DRIVE = 1, PARK = 8 };
-enum { SIGNALS = 0, GEAR = 1, THROTTLE = 2, STEERING = 3, VEHICLE = 4, THROTTLE_STATUS = 6 };
 
 static const char *const NAMES[SIM_HAL_OP_COUNT] = {
     "can_send",     "can_purge",         "can_recover",       "can_status",       "clock_now",
@@ -65,42 +63,21 @@ static struct {
     uint64_t noticed; /* runs in which nothing was taken any more, and TX_STALLED said so */
     uint64_t frames;
     uint64_t resets;
-    uint64_t harms;
     uint64_t of_op[SIM_HAL_OP_COUNT];
 } sum;
 
 static uint32_t failing_ops;
 static uint32_t failing_count;
 static bool is_failing; /* false: in the round itself, where nothing may break */
-static char harm[240];
-
-static void note_harm(const char *what) {
-    if (harm[0] == '\0') {
-        (void)snprintf(harm, sizeof harm, "%s", what);
-    }
-}
 
 static void on_broken(void) {
     bool is_borne = false;
     for (unsigned i = 0; is_failing && (i < sizeof BORNE / sizeof BORNE[0]); i++) {
-        is_borne = is_borne ||
-                   ((((failing_ops >> BORNE[i].op) & 1u) != 0u) && (BORNE[i].one_is_enough || (failing_count > 1u)) &&
-                    (strncmp(world.rules.broken, BORNE[i].text, strlen(BORNE[i].text)) == 0));
+        is_borne = is_borne || ((((failing_ops >> BORNE[i].op) & 1u) != 0u) &&
+                                (BORNE[i].one_is_enough || (failing_count > 1u)) && harm_rule_is(BORNE[i].text));
     }
     sum.borne += is_borne ? 1u : 0u;
-    if (!is_borne) {
-        note_harm(world.rules.broken);
-    }
-    world.rules.broken[0] = '\0';
-}
-
-static bool is_latched(void) {
-    const agv_state_t state = agv_supervisor_state(&world.supervisor);
-    return (state == AGV_STATE_TRIPPED) || (state == AGV_STATE_SAFE);
-}
-
-static bool has(agv_fault_t fault) {
-    return agv_supervisor_has_fault(&world.supervisor, fault);
+    harm_take_rule(is_borne);
 }
 
 /* ---- One step of the round, and what fails in it ---- */
@@ -121,31 +98,23 @@ static void act(act_t what) {
     }
 }
 
-static void report(const char *where, uint32_t call, uint32_t count, uint32_t ops) {
-    sum.harms++;
-    if (sum.harms <= 20u) {
-        (void)printf("HARM: %s, call %u (%s), %u in a row, operations %X: %s\n", where, (unsigned)call,
-                     NAMES[world.hal.last_failed], (unsigned)count, (unsigned)ops, harm);
-    }
-}
-
 /* Frames that left are counted as sent, and nothing else is. */
 static void judge_counters(act_t what) {
     const uint32_t before = (what == RUN) ? agv_supervisor_counters(&moment.supervisor)->sent : 0u;
     const uint32_t counted = agv_supervisor_counters(&world.supervisor)->sent - before;
     if (counted != (uint32_t)(world.rules.sent - moment.rules.sent)) {
-        note_harm("what was sent is not what is counted");
+        harm_note("what was sent is not what is counted");
     }
 }
 
 /* SUP-7: frames that wait and are not taken. */
 static void judge_stalled(uint32_t count, uint32_t ops) {
     const bool dead = (count == UINT32_MAX) && (((ops >> SIM_HAL_OP_CAN_SEND) & 1u) != 0u);
-    if (!dead || !is_latched() || world.rules.shadow || has(AGV_FAULT_BUS_OFF)) {
+    if (!dead || !world_is_latched() || world.rules.shadow || world_has(AGV_FAULT_BUS_OFF)) {
         return;
     }
-    if (!has(AGV_FAULT_TX_STALLED) || world.hal.safety_output.on) {
-        note_harm("no frame is taken any more, and nobody says so");
+    if (!world_has(AGV_FAULT_TX_STALLED) || world.hal.safety_output.on) {
+        harm_note("no frame is taken any more, and nobody says so");
     }
     sum.noticed++;
 }
@@ -154,8 +123,8 @@ static void fail(const char *where, act_t what, uint32_t call, uint32_t count, u
                  bool trip) {
     const uint32_t before = moment.hal.failures;
     moment_restore();
-    world.traffic[VEHICLE].data[4] = trip ? 0x80 : world.traffic[VEHICLE].data[4]; /* the S-driver alarm */
-    harm[0] = '\0';
+    world.traffic[M_VEHICLE].data[4] = trip ? 0x80 : world.traffic[M_VEHICLE].data[4]; /* the S-driver alarm */
+    harm_begin();
     is_failing = true;
     failing_ops = ops;
     failing_count = count;
@@ -170,11 +139,10 @@ static void fail(const char *where, act_t what, uint32_t call, uint32_t count, u
     sum.frames += world.rules.sent - moment.rules.sent;
     sum.resets += world.rules.resets - moment.rules.resets;
     if (world.hal.failures == before) {
-        note_harm("nothing has failed");
+        harm_note("nothing has failed");
     }
-    if (harm[0] != '\0') {
-        report(where, call, count, ops);
-    }
+    harm_report("%s, call %u (%s), %u in a row, operations %X", where, (unsigned)call, NAMES[world.hal.last_failed],
+                (unsigned)count, (unsigned)ops);
 }
 
 /* No step of the round takes that long, even on a busy computer. */
@@ -216,13 +184,10 @@ static void step(const char *where, act_t what) {
     moment_save();
     (void)alarm(HANG_S);
     const uint32_t calls = world.hal.calls;
-    harm[0] = '\0';
+    harm_begin();
     act(what);
     const uint32_t count = world.hal.calls - calls;
-    if (harm[0] != '\0') {
-        (void)printf("HARM: %s, without any failure: %s\n", where, harm);
-        sum.harms++;
-    }
+    harm_report("%s, without any failure", where);
     for (uint32_t i = 1; i <= count; i++) {
         const unsigned number = call_number++;
         if ((number % part.shards == part.shard) && ((number / part.shards) % part.every == 0u)) {
@@ -241,14 +206,6 @@ static void steps(const char *where, uint32_t ms) {
 
 /* ---- The round ---- */
 
-/* An AI computer that drives, whatever the state: what a supervisor has to hold back. */
-static void drive_on(void) {
-    world.traffic[SIGNALS].data[4] = 0x80;
-    world.traffic[GEAR].data[0] = DRIVE;
-    world.traffic[THROTTLE].data[0] = 100;
-    world.traffic[STEERING].data[0] = 0x64;
-}
-
 static void vehicle(uint8_t mode, uint8_t gear, uint8_t wheels) {
     world_mode(mode);
     world_gear(gear);
@@ -256,25 +213,25 @@ static void vehicle(uint8_t mode, uint8_t gear, uint8_t wheels) {
 }
 
 static void alarm_and_trip(void) {
-    world.traffic[VEHICLE].data[4] = 0x80;
+    world.traffic[M_VEHICLE].data[4] = 0x80;
     steps("trip", 10);
-    world.traffic[VEHICLE].data[4] = 0;
+    world.traffic[M_VEHICLE].data[4] = 0;
     steps("TRIPPED", 150);
 }
 
 static void round_of(unsigned variant) {
     world_load(variant, 0);
-    drive_on();
+    world_ai_drives();
     step("power-on", RESTART_POWER_ON);
     steps("INIT and STANDBY", 650);
-    vehicle(ENGAGED, DRIVE, 200);
+    vehicle(MODE_ENGAGED, GEAR_D, 200);
     steps("ACTIVE", 300);
     alarm_and_trip();
     world_disturb(HAL_CAN_VEHICLE, 0, 2);
     steps("bus-off", 130);
     world_disturb(HAL_CAN_VEHICLE, 0, 0);
     steps("after bus-off", 40);
-    vehicle(MANUAL, PARK, 0);
+    vehicle(MODE_MANUAL, GEAR_P, 0);
     steps("SAFE", 150);
     step("restart in SAFE", RESTART_WATCHDOG);
     steps("after the restart", 250);
@@ -283,8 +240,8 @@ static void round_of(unsigned variant) {
     world_button(false);
     steps("STANDBY again", 30);
     if (agv_supervisor_state(&world.supervisor) != AGV_STATE_STANDBY) {
-        (void)printf("HARM: variant %u: the round itself does not end in STANDBY\n", variant);
-        sum.harms++;
+        harm_note("it does not end in STANDBY");
+        harm_report("variant %u: the round itself", variant);
     }
 }
 
@@ -303,6 +260,6 @@ int main(int argc, char **argv) {
                  (unsigned long long)sum.resets);
     (void)printf("%d rounds: %llu calls made to fail in %llu runs, %llu failures, harm: %llu\n", (int)WORLD_VARIANTS,
                  (unsigned long long)sum.calls, (unsigned long long)sum.runs, (unsigned long long)sum.failures,
-                 (unsigned long long)sum.harms);
-    return ((sum.harms == 0u) && (sum.calls > 0u)) ? 0 : 1;
+                 (unsigned long long)harm_count);
+    return ((harm_count == 0u) && (sum.calls > 0u)) ? 0 : 1;
 }

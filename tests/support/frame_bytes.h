@@ -1,18 +1,34 @@
-/* What single frames say in their bytes, for rules.c: nothing of it needs a memory. */
-#ifndef RULES_BYTES_H
-#define RULES_BYTES_H
+/* What states and single frames mean, for oracle.c and rules.c: nothing of it needs a memory. */
+#ifndef FRAME_BYTES_H
+#define FRAME_BYTES_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "rules.h"
+#include "agv/state.h"
+#include "hal/can.h"
 
 enum { SIGNALS = 0, GEAR = 1, THROTTLE = 2, STEERING = 3 };
 enum { SLOW_MM_S = 50 };
 
+static inline bool commands_safe(agv_state_t state) {
+    return (state != AGV_STATE_STANDBY) && (state != AGV_STATE_ACTIVE);
+}
+
+static inline bool is_latched(agv_state_t state) {
+    return commands_safe(state) && (state != AGV_STATE_INIT);
+}
+
+static inline uint16_t word_at(const uint8_t *low) {
+    return (uint16_t)(low[0] | ((unsigned)low[1] << 8u));
+}
+
+static inline bool is_gear(uint8_t gear) {
+    return (gear == 1u) || (gear == 2u) || (gear == 4u) || (gear == 8u);
+}
+
 static inline bool is_fast(const uint8_t *data) {
-    const uint32_t raw =
-        (uint32_t)data[0] | ((uint32_t)data[1] << 8u) | ((uint32_t)data[2] << 16u) | ((uint32_t)data[3] << 24u);
+    const uint32_t raw = word_at(data) | ((uint32_t)word_at(&data[2]) << 16u);
     const uint32_t amount = (raw < 0x80000000u) ? raw : (0u - raw);
     return amount >= (uint32_t)SLOW_MM_S;
 }
@@ -20,11 +36,11 @@ static inline bool is_fast(const uint8_t *data) {
 static inline bool in_range(int command, const uint8_t *data) {
     switch (command) {
     case GEAR:
-        return (data[0] == 1u) || (data[0] == 2u) || (data[0] == 4u) || (data[0] == 8u);
+        return is_gear(data[0]);
     case THROTTLE:
         return data[0] <= 250u;
     case STEERING:
-        return ((unsigned)data[0] | ((unsigned)data[1] << 8u)) <= 18000u;
+        return word_at(data) <= 18000u;
     default:
         return true;
     }
@@ -32,7 +48,7 @@ static inline bool in_range(int command, const uint8_t *data) {
 
 /* Reserved bits of a command as 0 (P14). */
 static inline void clear_reserved(int command, uint8_t data[8]) {
-    static const uint8_t USED[RULES_COMMANDS][8] = {{0, 0, 0, 0, 0xF0, 0, 0, 0xFF}, {0xFF}, {0xFF}, {0xFF, 0xFF}};
+    static const uint8_t USED[][8] = {{0, 0, 0, 0, 0xF0, 0, 0, 0xFF}, {0xFF}, {0xFF}, {0xFF, 0xFF}};
     for (int i = 0; i < 8; i++) {
         data[i] &= USED[command][i];
     }
