@@ -7,7 +7,8 @@ tests.each do |test|
   runner = File.join(folder, "#{File.basename(test, '.c')}_runner.h")
   made = "#{runner}.new"
   UnityTestRunnerGenerator.new(config).run(test, made)
-  text = "#pragma GCC system_header\n#{File.read(made)}" # no warnings of the generator's code
+  stub = File.read(test).include?('#include "one_fixture.h"') ? "void setUp(void) {}\n" : nil # it has a setUp() of its own
+  text = "#pragma GCC system_header\n#{File.read(made).sub(stub.to_s, '')}" # no warnings of the generator's code
   File.write(runner, text) unless File.exist?(runner) && File.read(runner) == text
   File.delete(made)
 end

@@ -1,15 +1,5 @@
 /* The fixture itself: healthy traffic is healthy, and what a test relies on is there. */
-#include "fixture.h"
-#include "unity.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
+#include "one_fixture.h"
 
 /* 700 frames a second but for the AI's 70: 7 messages each 10 ms or 25 ms, 4 commands. */
 void test_a_second_of_healthy_traffic(void) {

@@ -37,9 +37,6 @@ void setUp(void) {
     oracle_restart(&oracle);
 }
 
-void tearDown(void) {
-}
-
 static void judge_commands_in(agv_state_t state) {
     TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, signals(0x70, 0), state));
     TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, signals(0x70, 255), state));

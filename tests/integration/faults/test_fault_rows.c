@@ -3,18 +3,8 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "fixture.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 /* This byte (1..8) of the message, for so long. */
 static void report(agv_message_t message, unsigned byte, uint8_t value, uint32_t ms) {

@@ -2,16 +2,7 @@
  * one: test_fault_rows. */
 #include "agv/names.h"
 #include "expect.h"
-#include "unity.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
+#include "one_fixture.h"
 
 /* ---- Classes that configuration has changed ---- */
 

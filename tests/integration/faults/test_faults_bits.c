@@ -1,6 +1,6 @@
 /* Faults that a bit of 167h or 363h reports (SUP-4): raised, named, counted, ended, and not latched in INIT. */
 #include "expect.h"
-#include "unity.h"
+#include "one_fixture.h"
 
 typedef struct {
     agv_fault_t fault;
@@ -12,15 +12,6 @@ typedef struct {
     unsigned frames;  /* in a row before it counts (score: N) */
     int32_t hold_raw; /* angle in the 065h at a trip while engaged; an EPS at fault is not commanded */
 } row_t;
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 static void set_bits(const row_t *row, bool on) {
     uint8_t *byte = &f.traffic[row->message].data[row->byte - 1];

@@ -1,17 +1,8 @@
 /* Faults of the controllers (SUP-7) and of the supervisor's own time (TIM-4). The controller's state is set from outside
  * between two ticks; the next tick sees it. */
 #include "expect.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 static void set_state(hal_can_side_t side, hal_can_state_t state) {
     sim_hal_set_can_state(&f.hal, side, state);

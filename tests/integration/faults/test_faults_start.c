@@ -4,16 +4,7 @@
 #include <string.h>
 
 #include "expect.h"
-#include "unity.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
+#include "one_fixture.h"
 
 /* ---- At the start ---- */
 

@@ -1,16 +1,7 @@
 /* The first reason (FSM-5): of two faults in the same instant the upper row of the table, within a row the left name. The
  * rows below stand in that order, by hand. */
 #include "expect.h"
-#include "unity.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
+#include "one_fixture.h"
 
 /* ---- Two in one frame ---- */
 

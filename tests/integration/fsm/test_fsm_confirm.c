@@ -1,16 +1,6 @@
 /* TRIPPED and SAFE: what confirms the safe state, and what takes the confirmation back. */
-#include "fixture.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 static uint32_t send_now(agv_message_t message) {
     fixture_send_now(&f, message);

@@ -1,16 +1,6 @@
 /* Steering hold: which angle 065h carries in TRIPPED and SAFE, and when it is not sent. */
-#include "fixture.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 /* 40 a second on a 25 ms cycle; all with this raw angle. */
 static void expect_held_for_a_second(uint16_t raw) {

@@ -11,9 +11,6 @@ void setUp(void) {
     start_ms = f.now_ms;
 }
 
-void tearDown(void) {
-}
-
 /* The n-th frame with this identifier left so many milliseconds after the start. */
 static void expect_sent_at(uint32_t id, uint32_t n, uint32_t after_start_ms) {
     TEST_ASSERT_EQUAL_UINT32(after_start_ms, fixture_nth_sent(&f, id, n)->time_ms - start_ms);

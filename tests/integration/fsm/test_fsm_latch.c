@@ -1,18 +1,8 @@
 /* The first reason, faults that cannot be reset, and the alive counter of the own 43Fh. */
 #include <stddef.h>
 
-#include "fixture.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 static void press_for(uint32_t ms) {
     fixture_button(&f, false);

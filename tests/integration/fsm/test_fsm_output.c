@@ -1,16 +1,6 @@
 /* The hardware safety output: what closes it, what opens it, and that it then stays open. */
-#include "fixture.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 static void reset_by_button(void) {
     fixture_press(&f, 1020);

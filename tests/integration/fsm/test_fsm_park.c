@@ -1,16 +1,6 @@
 /* When a trip commands P: at once, or at standstill (`park`). */
-#include "fixture.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 static void start_moving(int32_t left_mm_s, int32_t right_mm_s) {
     fixture_wheels(&f, left_mm_s, right_mm_s);

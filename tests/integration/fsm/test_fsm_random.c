@@ -32,9 +32,6 @@ void setUp(void) {
     f.long_run = true;
 }
 
-void tearDown(void) {
-}
-
 static uint32_t draw(uint32_t below) {
     random_state = random_state * 1664525u + 1013904223u;
     return (random_state >> 8) % below;

@@ -1,17 +1,7 @@
 /* How fast it reacts, what goes out first, and what comes after. */
 #include "expect.h"
-#include "fixture.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 /* Hand over one frame, now; nothing else happens in between. */
 static uint32_t send_now(agv_message_t message) {

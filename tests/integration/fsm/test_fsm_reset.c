@@ -1,16 +1,6 @@
 /* The reset: what it needs, what breaks it, what a press in vain is told. */
-#include "fixture.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 /* Press (or release) the button in a 363h of its own, now. */
 static void press(bool pressed) {

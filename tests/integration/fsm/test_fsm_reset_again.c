@@ -1,16 +1,6 @@
 /* What an earlier reset, trip or start leaves behind for the next reset, and what a reset forgets. */
-#include "fixture.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 static void press(bool pressed) {
     fixture_button(&f, pressed);

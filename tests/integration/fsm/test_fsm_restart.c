@@ -1,16 +1,6 @@
 /* The latch outlives the MCU: every reset cause, tripped or not, with every state of the store. */
-#include "fixture.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 typedef enum { STORE_OK, STORE_CORRUPT, STORE_EMPTY } store_t;
 

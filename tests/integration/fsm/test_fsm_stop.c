@@ -10,9 +10,6 @@ void setUp(void) {
     f.long_run = true;
 }
 
-void tearDown(void) {
-}
-
 /* Autopilot off and P are confirmed, so that nothing but the motion is at fault. The wheels turn on. */
 static void confirm(void) {
     fixture_mode(&f, MODE_MANUAL);

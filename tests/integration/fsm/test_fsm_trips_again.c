@@ -11,9 +11,6 @@ void setUp(void) {
     f.long_run = true;
 }
 
-void tearDown(void) {
-}
-
 /* The operator resets; the vehicle is in manual then. */
 static void reset(void) {
     fixture_vehicle_confirms(&f);

@@ -62,9 +62,6 @@ void setUp(void) {
     wire_count = 0;
 }
 
-void tearDown(void) {
-}
-
 /* D, 20 %, 5.0 degrees: taken by the controller. */
 static void ai_commands(void) {
     static const uint8_t drive[8] = {GEAR_D};

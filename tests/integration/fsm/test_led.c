@@ -1,16 +1,6 @@
 /* The alarm LED, millisecond by millisecond. */
-#include "fixture.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 /* n flashes of 200 ms on and 200 ms off, then 1.4 s dark. */
 static bool flashes(unsigned n, unsigned ms) {

@@ -39,9 +39,6 @@ void setUp(void) {
     f.long_run = true;
 }
 
-void tearDown(void) {
-}
-
 static void save(void) {
     moment.supervisor = f.supervisor;
     moment.hal = f.hal;

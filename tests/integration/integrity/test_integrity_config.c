@@ -13,9 +13,6 @@ void setUp(void) {
     agv_config_defaults(&config);
 }
 
-void tearDown(void) {
-}
-
 static void expect_problem(agv_config_problem_t problem, uint16_t setting, const char *what) {
     const agv_config_verdict_t verdict = agv_config_check(&config);
     TEST_ASSERT_EQUAL_INT_MESSAGE(problem, verdict.problem, what);

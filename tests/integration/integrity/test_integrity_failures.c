@@ -5,25 +5,16 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "fixture.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
 
 enum { ROUND_MS = 3400, CALLS_MAX = 200000 };
 enum { START_MS = 700, ENGAGED_MS = 600, TRIPPED_MS = 300, SAFE_MS = 500, PRESSED_MS = 1200, RELEASED_MS = 20 };
 
-static fixture_t f;
 static bool
     rare_call[CALLS_MAX];   /* numbers of the calls in whose step something rarer than status and feed was called */
 static uint32_t first_call; /* of the start */
 static uint32_t rounds;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 static bool is_latched(void) {
     const agv_state_t state = agv_supervisor_state(&f.supervisor);

@@ -16,9 +16,6 @@ void setUp(void) {
     calm.long_run = true;
 }
 
-void tearDown(void) {
-}
-
 /* All bits set would mean every alarm and fault, both modes, the button, an invalid gear, throttle and angle. */
 static void pester(hal_can_side_t side, uint32_t id) {
     for (unsigned length = 0; length < 8; length++) {

@@ -1,18 +1,8 @@
 /* The flight recorder: what it keeps, through what, and when it is copied to flash. */
 #include <string.h>
 
-#include "fixture.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 static uint32_t next_sequence(void) {
     return agv_recorder_next_sequence(&f.recorder);

@@ -2,16 +2,7 @@
  * millisecond. And frames that come at the last possible moment. */
 #include "agv/names.h"
 #include "expect.h"
-#include "unity.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
+#include "one_fixture.h"
 
 /* ---- Deadlines ---- */
 

@@ -11,9 +11,6 @@ void setUp(void) {
     f.config.watchdog_period_ms = 1000;
 }
 
-void tearDown(void) {
-}
-
 static const agv_fault_t SILENCES[] = {AGV_FAULT_VCU_HEARTBEAT_LOST,     AGV_FAULT_EPS_HEARTBEAT_LOST,
                                        AGV_FAULT_AI_HEARTBEAT_LOST,      AGV_FAULT_EPS_STATUS_TIMEOUT,
                                        AGV_FAULT_GEAR_STATUS_TIMEOUT,    AGV_FAULT_THROTTLE_STATUS_TIMEOUT,

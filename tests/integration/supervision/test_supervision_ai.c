@@ -1,17 +1,8 @@
 /* The AI computer (SUP-8): required while engaged, a warning in manual, forgotten by a reset; and what the VCU says of it.
  * Hand-worked: the deadline is 350 ms, 43Fh comes each 100 ms, two cycles are 200 ms. */
 #include "expect.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 static const agv_fault_t LOST = AGV_FAULT_AI_HEARTBEAT_LOST;
 static const agv_fault_t STUCK = AGV_FAULT_AI_HEARTBEAT_STUCK;

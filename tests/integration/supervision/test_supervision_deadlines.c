@@ -1,7 +1,7 @@
 /* Deadlines of messages (SUP-3) and MODE_INVALID. Hand-worked: 60 ms after the last frame nothing, 61 ms after it the
  * fault, in that tick. */
 #include "expect.h"
-#include "unity.h"
+#include "one_fixture.h"
 
 typedef struct {
     agv_fault_t fault;
@@ -11,15 +11,6 @@ typedef struct {
     uint32_t deadline_ms;
     int32_t hold_raw; /* at a trip while engaged */
 } row_t;
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 static void fall_silent(const row_t *row, agv_state_t state) {
     fixture_run_past(&f, row->message);

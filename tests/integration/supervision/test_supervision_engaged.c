@@ -3,7 +3,7 @@
  * grace. Hand-worked: a fault that needs N frames is there when bad frames (+2) and good ones (-1) have come to 2 N, and
  * until they are back at 0. */
 #include "expect.h"
-#include "unity.h"
+#include "one_fixture.h"
 
 typedef struct {
     agv_fault_t fault;
@@ -13,15 +13,6 @@ typedef struct {
     uint8_t bad[8];  /* payload; the alive counter is filled in */
     int32_t hold_raw;
 } row_t;
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 static void set_payload(agv_message_t message, const uint8_t data[8]) {
     for (unsigned i = 0; i < 8; i++) {

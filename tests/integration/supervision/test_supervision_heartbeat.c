@@ -1,7 +1,7 @@
 /* The heartbeats of VCU and EPS (SUP-1, SUP-2): when they are lost, when stuck, what counts as a beat. Hand-worked: the
  * deadline is 50 ms, so 50 ms after the last change nothing, 51 ms after it the trip, in that tick. */
 #include "expect.h"
-#include "unity.h"
+#include "one_fixture.h"
 
 typedef struct {
     const char *name;
@@ -16,15 +16,6 @@ static const node_t VCU = {
     "VCU", AGV_MSG_VEHICLE_STATUS, AGV_FAULT_VCU_HEARTBEAT_LOST, AGV_FAULT_VCU_HEARTBEAT_STUCK, -1, ANGLE_CENTRE};
 static const node_t EPS = {
     "EPS", AGV_MSG_STEERING_STATUS, AGV_FAULT_EPS_HEARTBEAT_LOST, AGV_FAULT_EPS_HEARTBEAT_STUCK, 12, NO_HOLD};
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 static void expect_no_trip(const node_t *node, agv_state_t state) {
     expect_nothing(&f, node->lost, state);

@@ -1,16 +1,7 @@
 /* Intrusion (SUP-6): a foreign sender of a command on the vehicle side of a gateway, and commands that come faster than
  * half their cycle. */
 #include "expect.h"
-#include "unity.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
+#include "one_fixture.h"
 
 /* ---- FOREIGN_COMMAND_SENDER ---- */
 

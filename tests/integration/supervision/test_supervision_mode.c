@@ -1,17 +1,8 @@
 /* The mode itself (SUP-9): too many engagements, and a mode that is none. And what an engagement is: it ends with the third
  * 363h in a row without bit 8, and one that begins within 100 ms continues it. */
 #include "expect.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 static const agv_message_t VCU = AGV_MSG_VEHICLE_STATUS;
 

@@ -2,16 +2,7 @@
  * 25.0 degrees by which the measured angle has come nearer by its own motion empty it. Raw counts are 0.1 degree: 500 is 50.0
  * degrees. Hand-worked: the tick of a frame's own millisecond is the first of the budget, so 500 ms are over 499 ms later. */
 #include "expect.h"
-#include "unity.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
+#include "one_fixture.h"
 
 static const agv_fault_t FAULT = AGV_FAULT_STEERING_DEVIATION;
 

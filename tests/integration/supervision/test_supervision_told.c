@@ -1,17 +1,8 @@
 /* The vehicle does what it was told (SUP-11), and two witnesses of its speed agree (SUP-12): budgets. Hand-worked: the tick of a
  * frame's own millisecond is the first of a budget, so T ms are over T - 1 ms later; it goes down at half the rate. */
 #include "expect.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 static const agv_fault_t THROTTLE = AGV_FAULT_THROTTLE_DEVIATION;
 static const agv_fault_t GEAR = AGV_FAULT_GEAR_DEVIATION;

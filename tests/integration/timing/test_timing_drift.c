@@ -1,9 +1,7 @@
 /* Periodic sending for 20 minutes with a tick every millisecond, and for a day with late ones. Takes some seconds. */
-#include "fixture.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
 
-static fixture_t f;
 static uint32_t counts[4];
 
 typedef struct {
@@ -13,13 +11,6 @@ typedef struct {
 } slot_t;
 
 static const slot_t SLOTS[] = {{0x43F, 100, 100}, {0x168, 66, 100}, {0x075, 33, 100}, {0x065, 25, 25}};
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 /* Nobody is there any more; what is sent is 43Fh, 168h and 075h, on and on. */
 static uint32_t tripped_alone(void) {

@@ -1,16 +1,6 @@
 /* Periodic sending after an overrun, and silence that lasts longer than the clock. */
-#include "fixture.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 static uint32_t skipped(void) {
     return agv_supervisor_counters(&f.supervisor)->skipped_slots;

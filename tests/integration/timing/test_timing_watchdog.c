@@ -1,16 +1,6 @@
 /* The hardware watchdog, steps that come late, and frames that were waiting. */
-#include "fixture.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 /* Shows: TIM-3 */
 void test_it_is_fed_in_every_state_while_all_activities_check_in(void) {

@@ -1,16 +1,7 @@
 /* The two identifier sets (P1): 43Fh and 363h, or 201h and 203h. Each is supervised alike; traffic on the other set's
  * identifiers is never accepted, and is told as WRONG_ID_SET. And identifiers that are changed one by one. */
 #include "expect.h"
-#include "unity.h"
-
-static fixture_t f;
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
+#include "one_fixture.h"
 
 static const agv_fault_t WRONG = AGV_FAULT_WRONG_ID_SET;
 

@@ -12,9 +12,6 @@ void setUp(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
 }
 
-void tearDown(void) {
-}
-
 static void from_ai(uint32_t id, const uint8_t data[8]) {
     hal_can_frame_t frame = {.id = id, .length = 8};
     memcpy(frame.data, data, 8);

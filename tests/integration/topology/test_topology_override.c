@@ -1,19 +1,10 @@
 /* Overriding another sender: at once, for frames of any length, and not so often that it drowns the bus. */
 #include <string.h>
 
-#include "fixture.h"
-#include "unity.h"
+#include "one_fixture.h"
 #include "walk.h"
 
-static fixture_t f;
 static fixture_t g; /* a second supervisor on the same bus */
-
-void setUp(void) {
-    fixture_init(&f);
-}
-
-void tearDown(void) {
-}
 
 static void foreign(uint32_t id, uint8_t length, const uint8_t data[8]) {
     hal_can_frame_t frame = {.id = id, .length = length};

@@ -13,9 +13,6 @@ void setUp(void) {
     f.log_status = true;
 }
 
-void tearDown(void) {
-}
-
 static const fixture_sent_t *last_status(void) {
     return fixture_nth_sent(&f, STATUS_ID, fixture_count_sent(&f, STATUS_ID) - 1);
 }
