@@ -23,10 +23,7 @@ endif()
 set(AGV_CORE_KIND STATIC)
 # Instrumentation is for everything that is linked, generated code included: a mock must not hide an overflow.
 if(AGV_INSTRUMENT STREQUAL "sanitize")
-  # The last one: globals are registered object by object. By section, a program with an isolated object
-  # (AgvIsolatedObject.cmake) registers all of them twice.
-  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
-    $<$<C_COMPILER_ID:Clang>:-fno-sanitize-address-globals-dead-stripping>)
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
 elseif(AGV_INSTRUMENT STREQUAL "coverage")
   add_compile_options(--coverage)

@@ -2,8 +2,7 @@
  * @file node.h
  * A supervisor as a node on SocketCAN: the shipped core on the SocketCAN port (hal/linux), in a session.
  *
- * A program has one port; this one has two, the simulated and the real one. So this module, with a core and a session of
- * its own, is linked into one object in which everything but these functions is hidden (see CMakeLists.txt).
+ * This file alone knows the SocketCAN port; the rest of the program runs on the simulated one.
  */
 #ifndef HOST_SIM_NODE_H
 #define HOST_SIM_NODE_H

@@ -307,6 +307,7 @@ void scenario_world_restore(scenario_world_t *world, scenario_world_t *saved) {
     for (int n = 0; n < VEHICLE_NODES; n++) {
         saved->stations[n].world = world->stations[n].world;
     }
+    saved->hal.ops = world->hal.ops;
     saved->hal.config.store = world->hal.config.store;
     saved->hal.sink = world->hal.sink;
     saved->hal.sink_ctx = world->hal.sink_ctx;

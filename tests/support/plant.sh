@@ -4,8 +4,8 @@
 
 # Compile a program of tests/proofs. compile SOURCE CORE-FOLDER OUTPUT
 compile() {
-    ${CC:-cc} -std=c11 -O2 -w -I"$2" -Ifirmware/include -Ihal/include -Ihal/sim/include -Itests/support \
-        "$2"/*/*.c hal/sim/src/*.c tests/support/{world,rules,oracle,traffic}.c \
+    ${CC:-cc} -std=c11 -O2 -w -I"$2" -Ifirmware/include -Ihal/include -Ihal/forward/include -Ihal/sim/include -Itests/support \
+        "$2"/*/*.c hal/forward/*.c hal/sim/src/*.c tests/support/{world,rules,oracle,traffic}.c \
         tests/support/{moment,part,harm}.c "$1" -o "$3"
 }
 

@@ -80,7 +80,7 @@ static bool open_sides(hal_t *hal, char *error) {
 }
 
 bool linux_hal_open(hal_t *hal, const linux_hal_config_t *config, char *error) {
-    *hal = (hal_t){.config = *config};
+    *hal = (hal_t){.ops = &linux_hal_ops, .config = *config};
     error[0] = '\0';
     linux_clock_start(&hal->clock);
     for (size_t i = 0; i < (size_t)HAL_CAN_SIDES; i++) {

@@ -6,7 +6,10 @@
 #ifndef HAL_LINUX_LINUX_HAL_INTERNAL_H
 #define HAL_LINUX_LINUX_HAL_INTERNAL_H
 
+#include "hal_forward/hal_ops.h"
 #include "hal_linux/linux_hal.h"
+
+extern const hal_ops_t linux_hal_ops;
 
 /** The side, or NULL when it does not exist. */
 linux_hal_side_t *linux_hal_side(hal_t *hal, hal_can_side_t side);

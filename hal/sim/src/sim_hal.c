@@ -22,6 +22,7 @@ uint32_t sim_hal_now_ms(const hal_t *hal) {
 
 void sim_hal_init(hal_t *hal, const sim_hal_config_t *config) {
     memset(hal, 0, sizeof *hal);
+    hal->ops = &sim_hal_ops;
     if (config != NULL) {
         hal->config = *config;
     }

@@ -5,7 +5,10 @@
 #ifndef SIM_HAL_INTERNAL_H
 #define SIM_HAL_INTERNAL_H
 
+#include "hal_forward/hal_ops.h"
 #include "hal_sim/sim_hal.h"
+
+extern const hal_ops_t sim_hal_ops;
 
 /** The controller of a side; NULL = there is none. */
 static inline sim_hal_can_t *sim_hal_controller(hal_t *hal, hal_can_side_t side) {

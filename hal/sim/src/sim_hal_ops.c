@@ -1,4 +1,4 @@
-/* The functions of hal/include. Each is counted, and can be made to fail. */
+/* The functions of hal/include, behind hal_ops.h. Each is counted, and can be made to fail. */
 #include "sim_hal_internal.h"
 
 static bool is_to_fail(const hal_t *hal, sim_hal_op_t op) {
@@ -28,7 +28,7 @@ static bool send_direct(hal_t *hal, sim_hal_can_t *can, hal_can_side_t side, con
     return true;
 }
 
-bool hal_can_send(hal_t *hal, hal_can_side_t side, const hal_can_frame_t *frame) {
+static bool can_send(hal_t *hal, hal_can_side_t side, const hal_can_frame_t *frame) {
     const bool works = enter(hal, SIM_HAL_OP_CAN_SEND);
     sim_hal_can_t *can = sim_hal_controller(hal, side);
     if (can == NULL) {
@@ -43,7 +43,7 @@ bool hal_can_send(hal_t *hal, hal_can_side_t side, const hal_can_frame_t *frame)
     return taken;
 }
 
-void hal_can_purge(hal_t *hal, hal_can_side_t side) {
+static void can_purge(hal_t *hal, hal_can_side_t side) {
     const bool works = enter(hal, SIM_HAL_OP_CAN_PURGE);
     sim_hal_can_t *can = sim_hal_controller(hal, side);
     if (!works || can == NULL) {
@@ -56,7 +56,7 @@ void hal_can_purge(hal_t *hal, hal_can_side_t side) {
     }
 }
 
-void hal_can_recover(hal_t *hal, hal_can_side_t side) {
+static void can_recover(hal_t *hal, hal_can_side_t side) {
     const bool works = enter(hal, SIM_HAL_OP_CAN_RECOVER);
     sim_hal_can_t *can = sim_hal_controller(hal, side);
     if (!works || can == NULL) {
@@ -72,7 +72,7 @@ void hal_can_recover(hal_t *hal, hal_can_side_t side) {
     }
 }
 
-void hal_can_status(hal_t *hal, hal_can_side_t side, hal_can_status_t *status) {
+static void can_status(hal_t *hal, hal_can_side_t side, hal_can_status_t *status) {
     const bool works = enter(hal, SIM_HAL_OP_CAN_STATUS);
     sim_hal_can_t *can = sim_hal_controller(hal, side);
     if (can == NULL) {
@@ -85,30 +85,30 @@ void hal_can_status(hal_t *hal, hal_can_side_t side, hal_can_status_t *status) {
     *status = can->status;
 }
 
-uint32_t hal_clock_now_ms(hal_t *hal) {
+static uint32_t clock_now_ms(hal_t *hal) {
     if (enter(hal, SIM_HAL_OP_CLOCK_NOW)) {
         hal->last_now_ms = sim_hal_now_ms(hal);
     }
     return hal->last_now_ms;
 }
 
-void hal_led_set(hal_t *hal, bool on) {
+static void led_set(hal_t *hal, bool on) {
     if (enter(hal, SIM_HAL_OP_LED_SET)) {
         sim_hal_set_pin(&hal->led, on, sim_hal_now_ms(hal));
     }
 }
 
-void hal_safety_output_set(hal_t *hal, bool closed) {
+static void safety_output_set(hal_t *hal, bool closed) {
     if (enter(hal, SIM_HAL_OP_SAFETY_OUTPUT_SET)) {
         sim_hal_set_pin(&hal->safety_output, closed, sim_hal_now_ms(hal));
     }
 }
 
-hal_reset_cause_t hal_reset_cause(hal_t *hal) {
+static hal_reset_cause_t reset_cause(hal_t *hal) {
     return enter(hal, SIM_HAL_OP_RESET_CAUSE) ? hal->config.reset_cause : HAL_RESET_UNKNOWN;
 }
 
-void hal_watchdog_feed(hal_t *hal) {
+static void watchdog_feed(hal_t *hal) {
     const bool works = enter(hal, SIM_HAL_OP_WATCHDOG_FEED);
     const uint32_t now_ms = sim_hal_now_ms(hal);
     if (works && !sim_hal_watch(hal, now_ms)) {
@@ -117,22 +117,38 @@ void hal_watchdog_feed(hal_t *hal) {
     }
 }
 
-size_t hal_store_read_latch(hal_t *hal, void *record, size_t size) {
+static size_t store_read_latch(hal_t *hal, void *record, size_t size) {
     const bool works = enter(hal, SIM_HAL_OP_STORE_READ_LATCH) && hal->config.store != NULL;
     return works ? sim_store_read_latch(hal->config.store, record, size) : 0u;
 }
 
-bool hal_store_write_latch(hal_t *hal, const void *record, size_t size) {
+static bool store_write_latch(hal_t *hal, const void *record, size_t size) {
     const bool works = enter(hal, SIM_HAL_OP_STORE_WRITE_LATCH) && hal->config.store != NULL;
     return works && sim_store_write_latch(hal->config.store, record, size);
 }
 
-bool hal_store_append(hal_t *hal, const void *record, size_t size) {
+static bool store_append(hal_t *hal, const void *record, size_t size) {
     const bool works = enter(hal, SIM_HAL_OP_STORE_APPEND) && hal->config.store != NULL;
     return works && sim_store_append(hal->config.store, record, size);
 }
 
-size_t hal_store_read_record(hal_t *hal, uint32_t index, void *record, size_t size) {
+static size_t store_read_record(hal_t *hal, uint32_t index, void *record, size_t size) {
     const bool works = enter(hal, SIM_HAL_OP_STORE_READ_RECORD) && hal->config.store != NULL;
     return works ? sim_store_read_record(hal->config.store, index, record, size) : 0u;
 }
+
+const hal_ops_t sim_hal_ops = {
+    .can_send = can_send,
+    .can_purge = can_purge,
+    .can_recover = can_recover,
+    .can_status = can_status,
+    .clock_now_ms = clock_now_ms,
+    .led_set = led_set,
+    .safety_output_set = safety_output_set,
+    .reset_cause = reset_cause,
+    .watchdog_feed = watchdog_feed,
+    .store_read_latch = store_read_latch,
+    .store_write_latch = store_write_latch,
+    .store_append = store_append,
+    .store_read_record = store_read_record,
+};

@@ -25,6 +25,7 @@
 #include "hal/safety_output.h"
 #include "hal/store.h"
 #include "hal/watchdog.h"
+#include "hal_forward/hal_ops.h"
 #include "hal_linux/linux_can.h"
 #include "hal_linux/linux_clock.h"
 
@@ -74,6 +75,7 @@ typedef struct {
 
 /** Read the members freely; change nothing but through the functions. */
 struct hal {
+    const hal_ops_t *ops; /**< first: hal_ops.h */
     linux_hal_side_t sides[HAL_CAN_SIDES];
     linux_hal_config_t config;
     linux_clock_t clock;

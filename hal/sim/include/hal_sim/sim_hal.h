@@ -27,6 +27,7 @@
 #include "hal/safety_output.h"
 #include "hal/store.h"
 #include "hal/watchdog.h"
+#include "hal_forward/hal_ops.h"
 #include "hal_sim/sim_bus.h"
 #include "hal_sim/sim_store.h"
 
@@ -88,6 +89,7 @@ typedef struct {
 } sim_hal_can_t;
 
 struct hal {
+    const hal_ops_t *ops;             /**< first: hal_ops.h */
     sim_hal_can_t can[HAL_CAN_SIDES]; /**< read */
     sim_hal_pin_t led;                /**< read */
     sim_hal_pin_t safety_output;      /**< read */
