@@ -3,12 +3,6 @@
 
 #include "unity.h"
 
-void setUp(void) {
-}
-
-void tearDown(void) {
-}
-
 static uint32_t crc32_of(const void *bytes, size_t size) {
     return ~agv_crc32(AGV_CRC32_START, bytes, size);
 }

@@ -11,9 +11,6 @@ void setUp(void) {
     agv_config_defaults(&config);
 }
 
-void tearDown(void) {
-}
-
 static void expect_problem(agv_config_problem_t problem, uint16_t setting) {
     const agv_config_verdict_t verdict = agv_config_check(&config);
     TEST_ASSERT_EQUAL(problem, verdict.problem);

@@ -13,9 +13,6 @@ void setUp(void) {
     set = (agv_fault_set_t){0};
 }
 
-void tearDown(void) {
-}
-
 /* Whether a bit of the set is on, by hand. */
 static bool bit(unsigned n) {
     return ((set.words[n / 32u] >> (n % 32u)) & 1u) != 0;

@@ -5,12 +5,6 @@
 
 #include "unity.h"
 
-void setUp(void) {
-}
-
-void tearDown(void) {
-}
-
 typedef struct {
     agv_message_t message;
     uint16_t heading_id;

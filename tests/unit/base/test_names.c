@@ -6,12 +6,6 @@
 
 #include "unity.h"
 
-void setUp(void) {
-}
-
-void tearDown(void) {
-}
-
 void test_every_fault_is_found_by_its_name(void) {
     for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
         const char *name = agv_fault_name((agv_fault_t)i);

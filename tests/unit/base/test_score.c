@@ -11,9 +11,6 @@ void setUp(void) {
     budget = (agv_budget_t){0};
 }
 
-void tearDown(void) {
-}
-
 /* ---- Scores ---- */
 
 static void frames(const char *of, uint32_t n) {

@@ -7,12 +7,6 @@
 static const uint8_t STATES[] = {AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_STATE_ACTIVE, AGV_STATE_TRIPPED,
                                  AGV_STATE_SAFE};
 
-void setUp(void) {
-}
-
-void tearDown(void) {
-}
-
 static unsigned distance(unsigned a, unsigned b) {
     unsigned bits = 0;
     for (unsigned difference = a ^ b; difference != 0; difference >>= 1) {

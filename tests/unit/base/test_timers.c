@@ -43,9 +43,6 @@ void setUp(void) {
     start(100);
 }
 
-void tearDown(void) {
-}
-
 /* Shows: TIM-2 */
 TEST_CASE(0)
 TEST_CASE(1)

@@ -15,9 +15,6 @@ void setUp(void) {
     agv_confirmation_start(&confirmation, &timers);
 }
 
-void tearDown(void) {
-}
-
 static void step(uint32_t elapsed_ms, bool autopilot_off, bool in_park) {
     agv_timers_advance(&timers, &config, timers.now_ms + elapsed_ms, 0);
     agv_confirmation_step(&confirmation, &timers, &config, elapsed_ms, autopilot_off, in_park);

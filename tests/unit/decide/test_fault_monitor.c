@@ -17,9 +17,6 @@ void setUp(void) {
     agv_fault_monitor_start(&monitor);
 }
 
-void tearDown(void) {
-}
-
 static void set(unsigned fault, bool cause) {
     agv_fault_monitor_set(&monitor, fault, cause);
 }

@@ -34,9 +34,6 @@ void setUp(void) {
     vehicle = (agv_vehicle_t){0};
 }
 
-void tearDown(void) {
-}
-
 static void expect_held(uint16_t raw) {
     TEST_ASSERT_TRUE(agv_hold_is_held(&hold));
     TEST_ASSERT_EQUAL_UINT16(raw, hold.raw);
@@ -126,4 +123,21 @@ void test_every_angle_may_be_held(void) {
         trip(0);
         expect_held((uint16_t)raw);
     }
+}
+
+/* 065h does not leave: no angle is taken until the next trip, or until it is dropped. */
+/* Shows: FSM-10 */
+void test_a_block_lasts_until_the_next_trip_or_manual(void) {
+    measured(9123, 10);
+    trip(20);
+    agv_hold_block(&hold);
+    expect_none();
+    agv_hold_take(&hold, &vehicle);
+    expect_none();
+    agv_hold_drop(&hold);
+    agv_hold_take(&hold, &vehicle);
+    expect_held(9123);
+    agv_hold_block(&hold);
+    trip(30);
+    expect_held(9123);
 }

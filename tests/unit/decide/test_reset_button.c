@@ -78,9 +78,6 @@ void setUp(void) {
     run(2000);
 }
 
-void tearDown(void) {
-}
-
 /* ---- How long ---- */
 
 /* 1000 and 5000 ms both count; a shorter press is not reported. */

@@ -74,9 +74,6 @@ void setUp(void) {
     start(AGV_FAULT_NONE);
 }
 
-void tearDown(void) {
-}
-
 /* The adaptor to the module: everything below goes through these. */
 static agv_fault_summary_t summary(void) {
     return (agv_fault_summary_t){.raised = (uint8_t)facts.raised,

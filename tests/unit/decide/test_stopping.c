@@ -42,9 +42,6 @@ void setUp(void) {
     wheels(2000, 2000);
 }
 
-void tearDown(void) {
-}
-
 /* Shows: FSM-12, VEHICLE_NOT_STOPPING */
 void test_5_s_without_standing_wheels(void) {
     run(1000);

@@ -15,12 +15,6 @@ struct hal {
 };
 static hal_t hal;
 
-void setUp(void) {
-}
-
-void tearDown(void) {
-}
-
 void test_a_mock_compares_the_whole_frame(void) {
     const hal_can_frame_t frame = {.id = 0x168, .length = 8, .data = {8}};
     const hal_can_frame_t same = frame;

@@ -39,9 +39,6 @@ void setUp(void) {
     write_works = true;
 }
 
-void tearDown(void) {
-}
-
 static void use_stubs(void) {
     hal_store_read_latch_Stub(read_stub);
     hal_store_write_latch_Stub(write_stub);

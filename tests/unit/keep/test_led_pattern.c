@@ -9,9 +9,6 @@ void setUp(void) {
     led = (agv_led_t){0};
 }
 
-void tearDown(void) {
-}
-
 /* One pattern of a code as it stands in LED-1: what the LED is in each of its milliseconds; returns its length. */
 static uint32_t pattern_of(int code, bool pattern[10000]) {
     uint32_t length = 0;

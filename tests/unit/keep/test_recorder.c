@@ -13,9 +13,6 @@ void setUp(void) {
     agv_recorder_start(&recorder);
 }
 
-void tearDown(void) {
-}
-
 /* Events whose time is their number. */
 static void add(uint32_t count) {
     for (uint32_t i = 0; i < count; i++) {

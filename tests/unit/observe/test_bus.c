@@ -46,9 +46,6 @@ void setUp(void) {
     agv_bus_start(&bus, NULL, HAL_CAN_VEHICLE);
 }
 
-void tearDown(void) {
-}
-
 static void enter_bus_off(void) {
     controller.state = HAL_CAN_BUS_OFF;
     controller.bus_off_count++; /* 65535 to 0 */

@@ -9,9 +9,6 @@ void setUp(void) {
     commands = (agv_commands_t){0};
 }
 
-void tearDown(void) {
-}
-
 static void expect_known(unsigned set) {
     for (unsigned i = 0; i < 4; i++) {
         TEST_ASSERT_EQUAL((set >> i) & 1u, agv_commands_has(&commands, i));

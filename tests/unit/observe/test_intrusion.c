@@ -24,9 +24,6 @@ void setUp(void) {
     agv_liveness_start(&liveness, &timers);
 }
 
-void tearDown(void) {
-}
-
 static bool is_too_fast(uint32_t ms) {
     agv_timers_advance(&timers, &config, at(ms), 0);
     agv_liveness_tick(&liveness, &timers, true);

@@ -59,9 +59,6 @@ void setUp(void) {
     start(0);
 }
 
-void tearDown(void) {
-}
-
 static void expect_heartbeat(agv_node_t node, agv_heartbeat_state_t expected) {
     TEST_ASSERT_EQUAL(expected, agv_liveness_heartbeat(&liveness, node));
     TEST_ASSERT_EQUAL(expected == AGV_HEARTBEAT_ALIVE, agv_liveness_alive(&liveness, node));

@@ -25,9 +25,6 @@ void setUp(void) {
     agv_timers_start(&timers);
 }
 
-void tearDown(void) {
-}
-
 static void advance(uint32_t ms) {
     agv_timers_advance(&timers, &config, at(ms), 0);
 }

@@ -22,9 +22,6 @@ void setUp(void) {
         .config = &config, .vehicle = &vehicle, .commands = &commands, .judged = true, .gear_fresh = true};
 }
 
-void tearDown(void) {
-}
-
 static void run(uint32_t ms) {
     for (uint32_t i = 0; i < ms; i++) {
         agv_motion_checks_tick(&checks, &facts, 1);

@@ -21,9 +21,6 @@ void setUp(void) {
     ai_alive = true;
 }
 
-void tearDown(void) {
-}
-
 static void evaluate(void) {
     agv_status_checks_evaluate(&checks, &faults, engaged, judged);
 }

@@ -18,9 +18,6 @@ void setUp(void) {
     agv_timers_start(&timers);
 }
 
-void tearDown(void) {
-}
-
 static void evaluate(void) {
     agv_vehicle_evaluate(&vehicle, &timers, &config, wheels_fresh, vcu_alive);
 }

@@ -94,9 +94,6 @@ void setUp(void) {
     written = 0;
 }
 
-void tearDown(void) {
-}
-
 /* --- expectations --- */
 
 static void expect_status(hal_can_side_t side, hal_can_state_t state) {

@@ -20,9 +20,6 @@ void setUp(void) {
     core = agv_core_of(&f.supervisor);
 }
 
-void tearDown(void) {
-}
-
 static void seal(void) {
     f.supervisor.seal = agv_seal(core, sizeof *core);
 }

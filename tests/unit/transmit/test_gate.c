@@ -32,9 +32,6 @@ void setUp(void) {
     agv_config_ids(&config, &ids);
 }
 
-void tearDown(void) {
-}
-
 /* Who may send a payload as which command: i INIT, t TRIPPED and whatever is no state, s SAFE; with a gateway b STANDBY,
  * B STANDBY when all commands pass in manual, a ACTIVE. */
 typedef struct {

@@ -28,9 +28,6 @@ void setUp(void) {
     vehicle.gear = 1;
 }
 
-void tearDown(void) {
-}
-
 /* The adaptor to the module: everything below goes through these. */
 static agv_gateway_facts_t facts(void) {
     return (agv_gateway_facts_t){.config = &config,

@@ -14,9 +14,6 @@ void setUp(void) {
     now_us = 0;
 }
 
-void tearDown(void) {
-}
-
 static void restart(uint32_t now_ms) {
     agv_scheduler_restart(&scheduler, now_ms);
 }

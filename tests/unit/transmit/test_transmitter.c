@@ -61,9 +61,6 @@ void setUp(void) {
                                .config_checksum = 0x12345678};
 }
 
-void tearDown(void) {
-}
-
 static void tick(uint32_t ms) {
     for (uint32_t i = 0; i < ms; i++) {
         agv_timers_advance(&timers, &config, timers.now_ms + 1, 0);
