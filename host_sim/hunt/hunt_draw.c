@@ -7,7 +7,8 @@
 #include "campaign/chance.h"
 #include "cli/options.h"
 
-enum { BEGIN_FIRST_MS = 530, BEGIN_MIN_MS = 900, BEGIN_MAX_MS = 4000, RESET_MIN_MS = 500, RESET_MAX_MS = 3000 };
+enum { BEGIN_FIRST_MS = 530, BEGIN_MIN_MS = 900, BEGIN_MAX_MS = 4000, BEGIN_SOON_MS = 2200 };
+enum { RESET_MIN_MS = 500, RESET_MAX_MS = 3000 };
 enum { LASTS_MIN_MS = 20, LASTS_MAX_MS = 3000, AFTER_ENGAGED_MS = 4000, SHORT_PATTERN = 4, TRIES = 20 };
 
 /** The attack of this name, which is one. */
@@ -88,9 +89,10 @@ static uint32_t draw_reset_ms(const hunt_program_t *program, uint64_t *state) {
 void hunt_draw_times(const hunt_program_t *program, hunt_action_t *action, uint64_t *state) {
     const bool is_reset = action->attack == attack_of_reset();
 
-    action->begin_ms = is_reset
-                           ? draw_reset_ms(program, state)
-                           : chance_draw(state, hunt_toss(state, 5u) ? BEGIN_FIRST_MS : BEGIN_MIN_MS, BEGIN_MAX_MS);
+    const uint32_t first_ms = hunt_toss(state, 5u) ? BEGIN_FIRST_MS : BEGIN_MIN_MS;
+    const uint32_t last_ms = (program->action_count == 0u) ? BEGIN_SOON_MS : BEGIN_MAX_MS;
+
+    action->begin_ms = is_reset ? draw_reset_ms(program, state) : chance_draw(state, first_ms, last_ms);
     action->end_ms =
         hunt_toss(state, 2u) ? program->duration_ms : action->begin_ms + chance_draw(state, LASTS_MIN_MS, LASTS_MAX_MS);
     action->end_ms = (action->end_ms < program->duration_ms) ? action->end_ms : program->duration_ms;
