@@ -110,6 +110,18 @@ void test_a_silence_longer_than_the_deadline_ends_it(void) {
     TEST_ASSERT_EQUAL_UINT8(0, intrusion.fast_gaps[AGV_MSG_GEAR_COMMAND].value);
 }
 
+/* However little of the score is left. 065h: 125 ms. */
+/* Shows: SUP-6, COMMAND_TOO_FAST */
+void test_a_silence_ends_what_is_nearly_over(void) {
+    uint32_t ms = make_it_too_fast(AGV_MSG_STEERING_COMMAND);
+    for (unsigned i = 0; i < 19; i++) {
+        ms += 25;
+        TEST_ASSERT_TRUE(comes(AGV_MSG_STEERING_COMMAND, ms));
+    }
+    TEST_ASSERT_TRUE(is_too_fast(ms + 125));
+    TEST_ASSERT_FALSE(is_too_fast(ms + 126));
+}
+
 /* 065h: 125 ms. The other commands go on counting. */
 /* Shows: SUP-6 */
 void test_the_silence_of_one_command_is_its_own(void) {

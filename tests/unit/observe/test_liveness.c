@@ -28,10 +28,10 @@ static void tick(uint32_t now_ms) {
     tick_while(false, now_ms);
 }
 
-/* Ages saturate within 16 ticks: each looks at some of the messages only. */
-static void tick_until_all_are_looked_at(uint32_t now_ms) {
+/* Ages saturate within 16 ticks, here all of one moment: each looks at some of the messages only. */
+static void look_at_all(uint32_t now_ms) {
     for (uint32_t i = 0; i < 16; i++) {
-        tick(now_ms + i);
+        tick(now_ms);
     }
 }
 
@@ -117,7 +117,7 @@ void test_nothing_is_fresh_before_it_was_heard(uint32_t start_ms) {
         /* the AI is not awaited */
         TEST_ASSERT_EQUAL(i != AGV_MSG_TURN_SIGNAL_COMMAND, judge((agv_message_t)i, start_ms + 61));
     }
-    tick_until_all_are_looked_at(start_ms + 6001);
+    look_at_all(start_ms + 6001);
     for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
         TEST_ASSERT_FALSE(is_heard((agv_message_t)i));
         TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, age_ms((agv_message_t)i, start_ms + 6001));
@@ -140,9 +140,9 @@ void test_ages_and_gaps_saturate(uint32_t start_ms) {
     start(start_ms);
     TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, start_ms));
     TEST_ASSERT_EQUAL_UINT32(10, agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, start_ms + 10));
-    tick_until_all_are_looked_at(start_ms + 6010 - 15);
+    look_at_all(start_ms + 6010);
     TEST_ASSERT_EQUAL_UINT32(6000, age_ms(AGV_MSG_WHEEL_SPEED, start_ms + 6010));
-    tick_until_all_are_looked_at(start_ms + 6011);
+    look_at_all(start_ms + 6011);
     TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, age_ms(AGV_MSG_WHEEL_SPEED, start_ms + 6011));
     TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, age_ms(AGV_MSG_WHEEL_SPEED, start_ms + 11));
     TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, start_ms + 11));
@@ -158,6 +158,7 @@ TEST_CASE(100)
 void test_ages_saturate_at_any_stride_of_ticks(uint32_t stride_ms) {
     for (uint32_t i = 0; i < 16; i++) {
         tick(6001 + i * stride_ms);
+        TEST_ASSERT_TRUE(liveness.next_to_age < AGV_MSG_COUNT);
     }
     for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
         TEST_ASSERT_EQUAL_UINT32(AGV_AGE_MAX, age_ms((agv_message_t)i, 6001 + 16 * stride_ms));
@@ -269,6 +270,7 @@ void test_silence_is_lost(void) {
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_LOST);
     beat(AGV_NODE_VCU, 2, 500);
     tick(505); /* it was lost when its deadline expired: an old counter later does not make it stuck */
+    tick_while(true, 506);
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_LOST);
     beat(AGV_NODE_VCU, 3, 510);
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);

@@ -192,6 +192,11 @@ void test_judged_from_500_ms_on_and_while_the_last_frame_has_the_bit(void) {
     TEST_ASSERT_TRUE(is_judged());
     (void)disengage(541);
     TEST_ASSERT_FALSE(is_judged());
+    (void)report(ENGAGED, 700);
+    (void)tick(1200);
+    TEST_ASSERT_TRUE(is_judged());
+    (void)agv_mode_tick(&mode, &timers, false, 0); /* the VCU is lost, and its last frame had the bit */
+    TEST_ASSERT_FALSE(is_judged());
 }
 
 /* The AI computer has its time from the stamp of the frame on; a continued engagement goes on with it. */
@@ -258,6 +263,24 @@ void test_a_good_frame_takes_half_its_time_off_that_of_both_bits(void) {
     (void)tick(227);
     TEST_ASSERT_FALSE(is_invalid());
     (void)tick(228);
+    TEST_ASSERT_TRUE(is_invalid());
+}
+
+/* The time without any mode, too: 40 ms, then 40 ms with neither bit on the move: 20 ms are left of them. */
+/* Shows: MODE_INVALID, MODE_NONE */
+void test_neither_bit_takes_half_its_time_off_that_of_both_bits(void) {
+    (void)tick(9);
+    (void)report(BOTH, 10);
+    (void)tick(49);
+    (void)report(NONE, 50);
+    for (uint32_t ms = 50; ms <= 90; ms += 40) {
+        (void)tick(ms);
+        agv_mode_check(&mode, &timers, &faults, &config, true, false);
+    }
+    (void)report(BOTH, 90);
+    (void)tick(120);
+    TEST_ASSERT_FALSE(is_invalid());
+    (void)tick(121);
     TEST_ASSERT_TRUE(is_invalid());
 }
 

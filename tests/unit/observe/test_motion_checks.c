@@ -91,6 +91,15 @@ void test_25_degrees_nearer_empty_the_budget(void) {
     TEST_ASSERT_FALSE(is_active(STEERING));
 }
 
+/* However little of it there is. */
+/* Shows: SUP-10 */
+void test_25_degrees_nearer_empty_a_budget_of_1_ms(void) {
+    steer(10000);
+    run(1);
+    measured(9250);
+    expect_after(500, STEERING);
+}
+
 /* The other way round. */
 /* Shows: SUP-10 */
 void test_a_gain_to_the_other_side_counts_as_well(void) {
@@ -134,6 +143,25 @@ void test_steps_away_count_against_it(void) {
     measured(8900);
     measured(9149); /* 25.0 less a tenth nearer than the start but for what it went away */
     expect_after(100, STEERING);
+}
+
+/* However far: 1800.0 degrees, the whole range, count against it, and more does not. */
+/* Shows: SUP-10 */
+void test_steps_away_count_up_to_the_range_of_an_angle(void) {
+    steer(0);
+    run(400);
+    measured(18000);
+    steer(18000);
+    measured(0);
+    steer(0);
+    measured(18000); /* 4500.0 away */
+    measured(0);     /* 1800.0 nearer */
+    steer(9000);
+    measured(249);
+    run(99);
+    TEST_ASSERT_FALSE(is_active(STEERING));
+    measured(250);
+    expect_after(500, STEERING);
 }
 
 /* A command that comes nearer, goes away and comes again is no motion of the steering. */
@@ -224,6 +252,17 @@ void test_without_command_or_angle_nothing_is_compared(void) {
     expect_never(STEERING);
     vehicle.angle_known = true;
     expect_after(500, STEERING);
+}
+
+/* Nor is there a way to anything. */
+/* Shows: SUP-10 */
+void test_without_command_there_is_no_gain(void) {
+    steer(10000);
+    run(400);
+    agv_commands_forget(&commands);
+    measured(9400);
+    steer(10000);
+    expect_after(100, STEERING);
 }
 
 /* The budget stands still, the way too; the fault ends. */
