@@ -47,7 +47,7 @@ static void go_on(unsigned how) {
 
 static void apply_mode(unsigned mode) {
     stage.mode = (uint8_t)mode;
-    stage.engaged_ms = world.now_ms;
+    stage.mode_ms = world.now_ms;
     stage_dress();
     stage_run_past(M_VEHICLE);
 }
@@ -78,6 +78,7 @@ static bool other_gear(unsigned gear) {
 
 static void apply_wheels(unsigned turn) {
     stage.wheels_turn = turn != 0u;
+    stage.wheels_ms = world.now_ms;
     stage_dress();
     stage_run_past(M_WHEELS);
 }
@@ -336,6 +337,10 @@ static const symbol_t SYMBOLS[] = {
     ILL(EPS_MODE_OFF),
     ILL(STEERING_OFF),
     ILL(THROTTLE),
+    ILL(THROTTLE_ABOVE),
+    ILL(GEAR_AGAINST),
+    ILL(AUTOPILOT_STAYS),
+    ILL(MODE_FLAPS),
     ILL(FOREIGN),
     ILL(RECEIVE_DEAD),
     {"stranger: 168h of one byte", stranger, vehicle_hears, S_SHORT},

@@ -31,10 +31,16 @@ const illness_row_t ILLNESS[ILLNESSES] = {
     [ILL_EPS_MODE_OFF] = {"EPS mode off", "EPS_MODE_OFF", NULL, ILL_THROTTLE, TRIPS_ENGAGED},
     [ILL_STEERING_OFF] = {"steering 60 degrees off", "STEERING_DEVIATION", NULL, ILL_THROTTLE, TRIPS_NEVER},
     [ILL_THROTTLE] = {"050h above 0", "THROTTLE_IN_PARK", NULL, ILL_THROTTLE, TRIPS_NEVER},
+    [ILL_THROTTLE_ABOVE] = {"050h above the command", "THROTTLE_DEVIATION", NULL, ILL_THROTTLE, TRIPS_ENGAGED},
+    [ILL_GEAR_AGAINST] = {"0A3h R against the command", "GEAR_DEVIATION", NULL, ILL_GEAR_AGAINST, TRIPS_FOLLOWED},
+    [ILL_AUTOPILOT_STAYS] = {"autopilot off is ignored", "AUTOPILOT_OFF_IGNORED", NULL, ILL_AI_SILENT, TRIPS_FOLLOWED},
+    [ILL_MODE_FLAPS] = {"modes that flap", "MODE_FLAPPING", NULL, ILL_MODE_FLAPS, TRIPS_FLAPPING},
     [ILL_FOREIGN] = {"foreign 168h D on the vehicle side", "FOREIGN_COMMAND_SENDER", NULL, ILL_FOREIGN, TRIPS_NEVER},
     [ILL_RECEIVE_DEAD] = {"receive path does not check in", NULL, NULL, ILL_RECEIVE_DEAD, TRIPS_NEVER},
 };
 
+/* Modes change so often: an engagement that begins after so long is a new one. */
+enum { FLAP_MS = 200, R = 2, SIGNALS = 4, AUTOPILOT_OFF = 0x40 };
 enum { SHORT = 5, EPS_FAULTS = 7, ALARMS = 4, EPS_MODE = 3, ANGLE_LOW = 2, ANGLE_HIGH = 3 };
 
 static void mute(unsigned first, unsigned last) {
@@ -139,6 +145,19 @@ static void dress_values(illness_t illness) {
         break;
     case ILL_THROTTLE:
         t[M_THROTTLE_STATUS].data[0] = 100;
+        break;
+    case ILL_THROTTLE_ABOVE:
+        t[M_THROTTLE_STATUS].data[0] = 150; /* of 100 */
+        break;
+    case ILL_GEAR_AGAINST:
+        t[M_GEAR_STATUS].data[0] = R;
+        t[M_THROTTLE_STATUS].data[0] = 100;
+        break;
+    case ILL_AUTOPILOT_STAYS:
+        t[M_SIGNALS].data[SIGNALS] = AUTOPILOT_OFF;
+        break;
+    case ILL_MODE_FLAPS:
+        world_mode(((world.now_ms - stage.ill_ms) / (uint64_t)FLAP_MS % 2u == 0u) ? STAGE_ENGAGED : STAGE_MANUAL);
         break;
     default:
         break;

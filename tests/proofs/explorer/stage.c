@@ -13,7 +13,9 @@ const uint8_t STAGE_PHASE_MS[TRAFFIC_MESSAGES] = {
 
 enum { WRAP = 0, MIDDLE = 0x7FFFFFFF };
 enum { RECOVERY_MS = 2, BABBLE_MS = 5, FOREIGN_MS = 20, WHEEL_MM_S = 200 };
-enum { ALWAYS_MS = 250, ENGAGED_MS = 1200 };
+/* Until it has tripped: at any time; after four engagements; while engaged; a budget of 1 s after the grace time. */
+enum { ALWAYS_MS = 250, FLAPPING_MS = 2500, ENGAGED_MS = 1200, FOLLOWED_MS = 1800 };
+enum { BOTH_MS = 150, NEITHER_MS = 700, STOP_MS = 5200, SEEN_MS = 300 };
 
 const stage_variant_t STAGE_VARIANT[STAGE_VARIANTS] = {
     {"shared bus", 0, 0, false},
@@ -111,12 +113,17 @@ __attribute__((format(printf, 1, 2))) static void broken(const char *format, ...
 /* How long the vehicle has been ill in a way that has to trip, by the protocol and not by the supervisor's own times. */
 static bool must_trip(void) {
     const uint64_t ill_ms = world.now_ms - stage.ill_ms;
-    const uint64_t engaged_ms = (stage.mode == (uint8_t)STAGE_ENGAGED) ? (world.now_ms - stage.engaged_ms) : 0u;
+    const uint64_t engaged_ms = (stage.mode == (uint8_t)STAGE_ENGAGED) ? (world.now_ms - stage.mode_ms) : 0u;
+    const uint64_t both_ms = (ill_ms < engaged_ms) ? ill_ms : engaged_ms;
     switch (ILLNESS[stage.illness].trips) {
     case TRIPS_ALWAYS:
         return ill_ms > (uint64_t)ALWAYS_MS;
+    case TRIPS_FLAPPING:
+        return ill_ms > (uint64_t)FLAPPING_MS;
     case TRIPS_ENGAGED:
-        return (ill_ms > (uint64_t)ENGAGED_MS) && (engaged_ms > (uint64_t)ENGAGED_MS);
+        return both_ms > (uint64_t)ENGAGED_MS;
+    case TRIPS_FOLLOWED:
+        return both_ms > (uint64_t)FOLLOWED_MS;
     default:
         return false;
     }
@@ -136,12 +143,54 @@ static void judge_illness(bool was_latched) {
     }
 }
 
+/* SUP-9: both mode bits, or neither while the wheels turn. */
+static void judge_mode(void) {
+    const uint64_t mode_ms = world.now_ms - stage.mode_ms;
+    const uint64_t wheels_ms = world.now_ms - stage.wheels_ms;
+    if (agv_state_commands_safe(agv_supervisor_state(&world.supervisor)) ||
+        (stage.illness == (uint8_t)ILL_MODE_FLAPS)) {
+        return;
+    }
+    if ((stage.mode == (uint8_t)STAGE_BOTH) && (mode_ms > (uint64_t)BOTH_MS)) {
+        broken("SUP-9: both modes for %u ms, and it has not tripped", (unsigned)mode_ms);
+    }
+    if ((stage.mode == (uint8_t)STAGE_NEITHER) && stage.wheels_turn && (mode_ms > (uint64_t)NEITHER_MS) &&
+        (wheels_ms > (uint64_t)NEITHER_MS)) {
+        broken("SUP-9: neither mode for %u ms on the move, and it has not tripped", (unsigned)mode_ms);
+    }
+}
+
+/* FSM-12: a vehicle that does not stop, and one that moves again. */
+static void judge_stop(void) {
+    const uint64_t wheels_ms = world.now_ms - stage.wheels_ms;
+    const uint64_t latched_ms = world.now_ms - stage.latched_ms;
+    const bool seen = stage_flows(M_WHEELS) && (world.now_ms - stage.ill_ms > (uint64_t)SEEN_MS) &&
+                      (wheels_ms > (uint64_t)SEEN_MS) && (latched_ms > (uint64_t)SEEN_MS);
+    if (!agv_state_is_latched(agv_supervisor_state(&world.supervisor))) {
+        stage.latched_ms = world.now_ms;
+        stage.stood = false;
+        return;
+    }
+    stage.stood = stage.stood || (seen && !stage.wheels_turn);
+    if (!agv_supervisor_output_closed(&world.supervisor) || !stage.wheels_turn) {
+        return;
+    }
+    if ((latched_ms > (uint64_t)STOP_MS) && (wheels_ms > latched_ms + (uint64_t)SEEN_MS)) {
+        broken("FSM-12: the wheels turn %u ms after the trip, and the safety output is closed", (unsigned)latched_ms);
+    }
+    if (stage.stood && seen) {
+        broken("FSM-12: the wheels turn again for %u ms, and the safety output is closed", (unsigned)wheels_ms);
+    }
+}
+
 static void judge(bool was_latched) {
     const uint32_t counted = agv_supervisor_counters(&world.supervisor)->sent;
     if (counted != stage.frames) {
         broken("INT-4: %u frames have left, the gate let out %u", (unsigned)stage.frames, (unsigned)counted);
     }
     judge_illness(was_latched);
+    judge_mode();
+    judge_stop();
 }
 
 const char *stage_broken(void) {
@@ -241,6 +290,9 @@ static void finish_ms(void) {
     send_due();
     follow_controller();
     after(was_latched);
+    if (stage.illness == (uint8_t)ILL_MODE_FLAPS) {
+        stage_dress(); /* the next 363h may have another mode */
+    }
 }
 
 void stage_run(uint32_t ms) {
@@ -337,6 +389,8 @@ void stage_restart(hal_reset_cause_t cause) {
         judge_damaged(cause == HAL_RESET_POWER_ON);
     }
     stage.bad_latch = false;
+    stage.latched_ms = world.now_ms;
+    stage.stood = false;
     finish_ms();
 }
 
@@ -364,6 +418,7 @@ void stage_sleep(uint32_t ms) {
     before();
     tell_pause(ms, false);
     world.now_ms += ms;
+    stage.wheels_ms = world.now_ms; /* before nothing was heard of them */
     finish_ms();
 }
 

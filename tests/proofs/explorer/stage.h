@@ -42,6 +42,10 @@ typedef enum {
     ILL_EPS_MODE_OFF,
     ILL_STEERING_OFF,
     ILL_THROTTLE,
+    ILL_THROTTLE_ABOVE,
+    ILL_GEAR_AGAINST,
+    ILL_AUTOPILOT_STAYS,
+    ILL_MODE_FLAPS,
     ILL_FOREIGN,
     ILL_RECEIVE_DEAD,
     ILLNESSES
@@ -68,7 +72,9 @@ typedef struct {
     uint64_t root_ms;
     uint64_t foreign_ms; /* since when a foreign sender sends */
     uint64_t ill_ms;     /* since when the vehicle is ill, and while that reaches the supervisor at all */
-    uint64_t engaged_ms; /* since when it reports autopilot */
+    uint64_t mode_ms;    /* since when it reports its mode */
+    uint64_t wheels_ms;  /* since when its wheels turn, or stand */
+    uint64_t latched_ms; /* since when it is TRIPPED or SAFE */
     uint64_t taken_ms;   /* when the oldest frame that does not leave was taken */
     uint32_t frames;     /* that left since the last start */
     uint32_t recover_requests;
@@ -79,6 +85,7 @@ typedef struct {
     uint8_t gear;
     bool button;
     bool wheels_turn;
+    bool stood;   /* the wheels have stood since the trip, and that was seen */
     bool stalled; /* what was handed over does not leave */
     bool ai_off;  /* bus-off of the AI side */
     bool bad_latch;
@@ -146,7 +153,7 @@ extern const stage_teller_t *stage_teller; /* NULL: nobody */
 extern const uint8_t STAGE_PHASE_MS[TRAFFIC_MESSAGES];
 
 /* illness.c */
-typedef enum { TRIPS_NEVER, TRIPS_ALWAYS, TRIPS_ENGAGED } illness_trips_t;
+typedef enum { TRIPS_NEVER, TRIPS_ALWAYS, TRIPS_FLAPPING, TRIPS_ENGAGED, TRIPS_FOLLOWED } illness_trips_t;
 
 typedef struct {
     const char *name;
