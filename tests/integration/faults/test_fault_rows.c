@@ -1,23 +1,14 @@
-/* Every fault of the table: name, rank, default class, LED code, by hand; and each of them is raised, as what it is. */
+/* Every fault of the table: name, rank, default class, LED code, by hand; and those that no single message is the cause
+ * of (test_causes) are raised, each as what it is. */
 #include <stddef.h>
 #include <string.h>
 
 #include "agv/names.h"
+#include "causes.h"
 #include "one_fixture.h"
 #include "walk.h"
 
-/* This byte (1..8) of the message, for so long. */
-static void report(agv_message_t message, unsigned byte, uint8_t value, uint32_t ms) {
-    f.traffic[message].data[byte - 1] = value;
-    fixture_run(&f, ms);
-}
-
-static void silence(agv_message_t message, uint32_t ms) {
-    f.traffic[message].muted = true;
-    fixture_run(&f, ms);
-}
-
-/* ---- How each is raised ---- */
+/* ---- How each is raised that no single message is the cause of ---- */
 
 static void self_test_failed(void) {
     f.self_test_passed = false;
@@ -84,112 +75,10 @@ static void tx_stalled(void) {
     fixture_run(&f, 1);
 }
 
-static void vcu_heartbeat_lost(void) {
-    fixture_active(&f);
-    silence(AGV_MSG_VEHICLE_STATUS, 70);
-}
-
-static void vcu_heartbeat_stuck(void) {
-    fixture_active(&f);
-    f.traffic[AGV_MSG_VEHICLE_STATUS].frozen = true;
-    fixture_run(&f, 70);
-}
-
-static void eps_heartbeat_lost(void) {
-    fixture_active(&f);
-    silence(AGV_MSG_STEERING_STATUS, 70);
-}
-
-static void eps_heartbeat_stuck(void) {
-    fixture_active(&f);
-    f.traffic[AGV_MSG_STEERING_STATUS].frozen = true;
-    fixture_run(&f, 70);
-}
-
-static void ai_heartbeat_lost(void) {
-    fixture_active(&f);
-    silence(AGV_MSG_TURN_SIGNAL_COMMAND, 500);
-}
-
 static void ai_heartbeat_stuck(void) {
     fixture_active(&f);
     f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].frozen = true;
     fixture_run(&f, 500);
-}
-
-static void eps_over_current_shutdown(void) {
-    fixture_active(&f);
-    report(AGV_MSG_EPS_STATUS, 8, 0x08, 40);
-}
-
-static void eps_temp_above_120(void) {
-    fixture_active(&f);
-    report(AGV_MSG_EPS_STATUS, 8, 0x20, 40);
-}
-
-static void eps_motor_encoder(void) {
-    fixture_active(&f);
-    report(AGV_MSG_EPS_STATUS, 8, 0x40, 40);
-}
-
-static void eps_position_encoder(void) {
-    fixture_active(&f);
-    report(AGV_MSG_EPS_STATUS, 8, 0x80, 40);
-}
-
-static void eps_under_voltage(void) {
-    fixture_active(&f);
-    report(AGV_MSG_EPS_STATUS, 8, 0x01, 40);
-}
-
-static void eps_over_voltage(void) {
-    fixture_active(&f);
-    report(AGV_MSG_EPS_STATUS, 8, 0x02, 40);
-}
-
-static void eps_excessive_current(void) {
-    fixture_active(&f);
-    report(AGV_MSG_EPS_STATUS, 8, 0x04, 40);
-}
-
-static void eps_temp_above_110(void) {
-    fixture_active(&f);
-    report(AGV_MSG_EPS_STATUS, 8, 0x10, 40);
-}
-
-static void vcu_eps_hardware_fault(void) {
-    fixture_active(&f);
-    report(AGV_MSG_VEHICLE_STATUS, 5, 0x10, 10);
-}
-
-static void vcu_eps_can_bus_fault(void) {
-    fixture_active(&f);
-    report(AGV_MSG_VEHICLE_STATUS, 5, 0x20, 10);
-}
-
-static void s_driver_alarm(void) {
-    fixture_active(&f);
-    report(AGV_MSG_VEHICLE_STATUS, 5, 0x80, 10);
-}
-
-static void remote_signal_lost(void) {
-    fixture_active(&f);
-    report(AGV_MSG_VEHICLE_STATUS, 5, 0x01, 10);
-}
-
-static void remote_power_lost(void) {
-    fixture_active(&f);
-    report(AGV_MSG_VEHICLE_STATUS, 5, 0x02, 10);
-}
-
-static void vcu_ai_can_lost(void) {
-    fixture_active(&f);
-    report(AGV_MSG_VEHICLE_STATUS, 5, 0x08, 10);
-}
-
-static void vcu_level2_alarm(void) {
-    fixture_active(&f);
-    report(AGV_MSG_VEHICLE_STATUS, 6, 0x01, 10);
 }
 
 static void mode_invalid(void) {
@@ -215,76 +104,6 @@ static void mode_none(void) {
     fixture_run(&f, 600);
 }
 
-static void eps_status_timeout(void) {
-    fixture_active(&f);
-    silence(AGV_MSG_EPS_STATUS, 460);
-}
-
-static void gear_status_timeout(void) {
-    fixture_active(&f);
-    silence(AGV_MSG_GEAR_STATUS, 460);
-}
-
-static void throttle_status_timeout(void) {
-    fixture_active(&f);
-    silence(AGV_MSG_THROTTLE_STATUS, 460);
-}
-
-static void wheel_speed_timeout(void) {
-    fixture_active(&f);
-    silence(AGV_MSG_WHEEL_SPEED, 460);
-}
-
-static void steering_position_timeout(void) {
-    fixture_active(&f);
-    silence(AGV_MSG_STEERING_POSITION, 460);
-}
-
-static void gear_command_timeout(void) {
-    fixture_active(&f);
-    silence(AGV_MSG_GEAR_COMMAND, 460);
-}
-
-static void throttle_command_timeout(void) {
-    fixture_active(&f);
-    silence(AGV_MSG_THROTTLE_COMMAND, 460);
-}
-
-static void steering_command_timeout(void) {
-    fixture_active(&f);
-    silence(AGV_MSG_STEERING_COMMAND, 460);
-}
-
-static void ai_command_out_of_range(void) {
-    fixture_active(&f);
-    report(AGV_MSG_GEAR_COMMAND, 1, 3, 100);
-}
-
-static void eps_mode_off(void) {
-    fixture_active(&f);
-    report(AGV_MSG_EPS_STATUS, 4, 0xFF, 60);
-}
-
-static void eps_mode_invalid(void) {
-    fixture_active(&f);
-    report(AGV_MSG_EPS_STATUS, 4, 0x04, 60);
-}
-
-static void eps_mode_not_angle(void) {
-    fixture_active(&f);
-    report(AGV_MSG_EPS_STATUS, 4, 0x02, 60);
-}
-
-static void gear_status_invalid(void) {
-    fixture_active(&f);
-    report(AGV_MSG_GEAR_STATUS, 1, 3, 90);
-}
-
-static void throttle_status_invalid(void) {
-    fixture_active(&f);
-    report(AGV_MSG_THROTTLE_STATUS, 1, 251, 40);
-}
-
 static void steering_angle_invalid(void) {
     fixture_active(&f);
     fixture_angle(&f, 18001);
@@ -297,21 +116,10 @@ static void steering_deviation(void) {
     fixture_run(&f, 600);
 }
 
-static void throttle_deviation(void) {
-    fixture_active(&f);
-    fixture_throttle(&f, 26);
-    fixture_run(&f, 600);
-}
-
 static void gear_deviation(void) {
     fixture_active(&f);
     fixture_throttle(&f, 3);
     /* the command is P, the status D */ fixture_run(&f, 1100);
-}
-
-static void autopilot_off_ignored(void) {
-    fixture_active(&f);
-    report(AGV_MSG_TURN_SIGNAL_COMMAND, 5, 0xC0, 1200);
 }
 
 static void throttle_in_park(void) {
@@ -400,94 +208,48 @@ static void store_invalid(void) {
 
 /* ---- The table ---- */
 
-typedef struct {
-    const char *name;
-    bool trip;
-    uint8_t led;
-    void (*raise)(void);
-} row_t;
+typedef void raise_fn(void);
 
-/* By hand: the order is the rank. NULL: needs an input that the port does not have yet. */
-static const row_t ROWS[] = {
-    {"SELF_TEST_FAILED", true, 0, self_test_failed},
-    {"MEMORY_CORRUPTED", true, 0, memory_corrupted},
-    {"CONFIG_INVALID", true, 0, config_invalid},
-    {"OUTPUT_FEEDBACK", true, 0, NULL},
-    {"SUPERVISOR_RESET", true, 0, supervisor_reset},
-    {"EMERGENCY_STOP", true, 0, NULL},
-    {"TX_GATE_REFUSED", true, 0, tx_gate_refused},
-    {"STEP_OVERRUN", true, 0, step_overrun},
-    {"CLOCK_DEVIATION", true, 0, NULL},
-    {"BUS_OFF", true, 14, bus_off},
-    {"TX_STALLED", true, 14, tx_stalled},
-    {"VCU_HEARTBEAT_LOST", true, 0, vcu_heartbeat_lost},
-    {"VCU_HEARTBEAT_STUCK", true, 0, vcu_heartbeat_stuck},
-    {"EPS_HEARTBEAT_LOST", true, 12, eps_heartbeat_lost},
-    {"EPS_HEARTBEAT_STUCK", true, 12, eps_heartbeat_stuck},
-    {"AI_HEARTBEAT_LOST", true, 14, ai_heartbeat_lost},
-    {"AI_HEARTBEAT_STUCK", true, 14, ai_heartbeat_stuck},
-    {"EPS_OVER_CURRENT_SHUTDOWN", true, 13, eps_over_current_shutdown},
-    {"EPS_TEMP_ABOVE_120", true, 13, eps_temp_above_120},
-    {"EPS_MOTOR_ENCODER", true, 13, eps_motor_encoder},
-    {"EPS_POSITION_ENCODER", true, 13, eps_position_encoder},
-    {"EPS_UNDER_VOLTAGE", true, 13, eps_under_voltage},
-    {"EPS_OVER_VOLTAGE", true, 13, eps_over_voltage},
-    {"EPS_EXCESSIVE_CURRENT", true, 13, eps_excessive_current},
-    {"EPS_TEMP_ABOVE_110", false, 13, eps_temp_above_110},
-    {"VCU_EPS_HARDWARE_FAULT", true, 13, vcu_eps_hardware_fault},
-    {"VCU_EPS_CAN_BUS_FAULT", true, 12, vcu_eps_can_bus_fault},
-    {"S_DRIVER_ALARM", true, 8, s_driver_alarm},
-    {"REMOTE_SIGNAL_LOST", true, 17, remote_signal_lost},
-    {"REMOTE_POWER_LOST", true, 16, remote_power_lost},
-    {"VCU_AI_CAN_LOST", true, 14, vcu_ai_can_lost},
-    {"VCU_LEVEL2_ALARM", false, 0, vcu_level2_alarm},
-    {"MODE_INVALID", true, 0, mode_invalid},
-    {"MODE_FLAPPING", true, 0, mode_flapping},
-    {"MODE_NONE", true, 0, mode_none},
-    {"EPS_STATUS_TIMEOUT", true, 12, eps_status_timeout},
-    {"GEAR_STATUS_TIMEOUT", true, 8, gear_status_timeout},
-    {"THROTTLE_STATUS_TIMEOUT", true, 7, throttle_status_timeout},
-    {"WHEEL_SPEED_TIMEOUT", true, 8, wheel_speed_timeout},
-    {"STEERING_POSITION_TIMEOUT", false, 12, steering_position_timeout},
-    {"GEAR_COMMAND_TIMEOUT", true, 14, gear_command_timeout},
-    {"THROTTLE_COMMAND_TIMEOUT", true, 14, throttle_command_timeout},
-    {"STEERING_COMMAND_TIMEOUT", true, 14, steering_command_timeout},
-    {"AI_COMMAND_OUT_OF_RANGE", true, 14, ai_command_out_of_range},
-    {"EPS_MODE_OFF", true, 13, eps_mode_off},
-    {"EPS_MODE_INVALID", true, 13, eps_mode_invalid},
-    {"EPS_MODE_NOT_ANGLE", true, 13, eps_mode_not_angle},
-    {"GEAR_STATUS_INVALID", true, 8, gear_status_invalid},
-    {"THROTTLE_STATUS_INVALID", true, 7, throttle_status_invalid},
-    {"STEERING_ANGLE_INVALID", true, 13, steering_angle_invalid},
-    {"STEERING_DEVIATION", true, 13, steering_deviation},
-    {"THROTTLE_DEVIATION", true, 7, throttle_deviation},
-    {"GEAR_DEVIATION", true, 8, gear_deviation},
-    {"AUTOPILOT_OFF_IGNORED", true, 0, autopilot_off_ignored},
-    {"THROTTLE_IN_PARK", true, 7, throttle_in_park},
-    {"FOREIGN_COMMAND_SENDER", true, 14, foreign_command_sender},
-    {"SAFE_STATE_UNCONFIRMED", true, 0, safe_state_unconfirmed},
-    {"VEHICLE_NOT_STOPPING", true, 0, vehicle_not_stopping},
-    {"MOVING_WHILE_SAFE", true, 0, moving_while_safe},
-    {"COMMAND_TOO_FAST", false, 14, command_too_fast},
-    {"SPEED_IMPLAUSIBLE", false, 8, speed_implausible},
-    {"STATUS_ID_IN_USE", false, 0, status_id_in_use},
-    {"STARTUP_TIMEOUT", false, 0, startup_timeout},
-    {"RX_OVERRUN", false, 14, rx_overrun},
-    {"ERROR_PASSIVE", false, 14, error_passive},
-    {"AI_BUS_OFF", false, 14, ai_bus_off},
-    {"WRONG_ID_SET", false, 0, wrong_id_set},
-    {"STORE_INVALID", false, 0, store_invalid},
+static raise_fn *const RAISE[FAULT_ROWS] = {
+    [AGV_FAULT_SELF_TEST_FAILED] = self_test_failed,
+    [AGV_FAULT_MEMORY_CORRUPTED] = memory_corrupted,
+    [AGV_FAULT_CONFIG_INVALID] = config_invalid,
+    [AGV_FAULT_SUPERVISOR_RESET] = supervisor_reset,
+    [AGV_FAULT_TX_GATE_REFUSED] = tx_gate_refused,
+    [AGV_FAULT_STEP_OVERRUN] = step_overrun,
+    [AGV_FAULT_BUS_OFF] = bus_off,
+    [AGV_FAULT_TX_STALLED] = tx_stalled,
+    [AGV_FAULT_AI_HEARTBEAT_STUCK] = ai_heartbeat_stuck,
+    [AGV_FAULT_MODE_INVALID] = mode_invalid,
+    [AGV_FAULT_MODE_FLAPPING] = mode_flapping,
+    [AGV_FAULT_MODE_NONE] = mode_none,
+    [AGV_FAULT_STEERING_ANGLE_INVALID] = steering_angle_invalid,
+    [AGV_FAULT_STEERING_DEVIATION] = steering_deviation,
+    [AGV_FAULT_GEAR_DEVIATION] = gear_deviation,
+    [AGV_FAULT_THROTTLE_IN_PARK] = throttle_in_park,
+    [AGV_FAULT_FOREIGN_COMMAND_SENDER] = foreign_command_sender,
+    [AGV_FAULT_SAFE_STATE_UNCONFIRMED] = safe_state_unconfirmed,
+    [AGV_FAULT_VEHICLE_NOT_STOPPING] = vehicle_not_stopping,
+    [AGV_FAULT_MOVING_WHILE_SAFE] = moving_while_safe,
+    [AGV_FAULT_COMMAND_TOO_FAST] = command_too_fast,
+    [AGV_FAULT_SPEED_IMPLAUSIBLE] = speed_implausible,
+    [AGV_FAULT_STATUS_ID_IN_USE] = status_id_in_use,
+    [AGV_FAULT_STARTUP_TIMEOUT] = startup_timeout,
+    [AGV_FAULT_RX_OVERRUN] = rx_overrun,
+    [AGV_FAULT_ERROR_PASSIVE] = error_passive,
+    [AGV_FAULT_AI_BUS_OFF] = ai_bus_off,
+    [AGV_FAULT_WRONG_ID_SET] = wrong_id_set,
+    [AGV_FAULT_STORE_INVALID] = store_invalid,
 };
-enum { ROW_COUNT = sizeof ROWS / sizeof ROWS[0] };
 
 /* Shows: FSM-5, LED-1, SUP-4 */
 void test_names_ranks_classes_and_led_codes(void) {
-    TEST_ASSERT_EQUAL_INT(ROW_COUNT, AGV_FAULT_COUNT);
-    for (unsigned i = 0; i < ROW_COUNT; i++) {
-        TEST_ASSERT_EQUAL_STRING(ROWS[i].name, agv_fault_name((agv_fault_t)i));
-        TEST_ASSERT_EQUAL_UINT32_MESSAGE(i, agv_fault_from_name(ROWS[i].name), ROWS[i].name);
-        TEST_ASSERT_EQUAL_INT_MESSAGE(ROWS[i].trip, agv_fault_is_in(&f.config.trips, i), ROWS[i].name);
-        TEST_ASSERT_EQUAL_UINT8_MESSAGE(ROWS[i].led, agv_fault_led_code(i), ROWS[i].name);
+    TEST_ASSERT_EQUAL_INT(FAULT_ROWS, AGV_FAULT_COUNT);
+    for (unsigned i = 0; i < FAULT_ROWS; i++) {
+        TEST_ASSERT_EQUAL_STRING(FAULT_ROW[i].name, agv_fault_name((agv_fault_t)i));
+        TEST_ASSERT_EQUAL_UINT32_MESSAGE(i, agv_fault_from_name(FAULT_ROW[i].name), FAULT_ROW[i].name);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(FAULT_ROW[i].trip, agv_fault_is_in(&f.config.trips, i), FAULT_ROW[i].name);
+        TEST_ASSERT_EQUAL_UINT8_MESSAGE(FAULT_ROW[i].led, agv_fault_led_code(i), FAULT_ROW[i].name);
     }
 }
 
@@ -497,7 +259,7 @@ static bool comes_after_a_trip(agv_fault_t fault) {
            fault == AGV_FAULT_MOVING_WHILE_SAFE;
 }
 
-static void expect_raised(agv_fault_t fault, const row_t *row) {
+static void expect_raised(agv_fault_t fault, const fault_row_t *row) {
     agv_event_t event;
     TEST_ASSERT_TRUE_MESSAGE(fixture_last_raised(&f, fault, &event), row->name);
     TEST_ASSERT_EQUAL_INT_MESSAGE(row->trip ? AGV_CLASS_TRIP : AGV_CLASS_WARN, event.b, row->name);
@@ -514,29 +276,22 @@ static void expect_raised(agv_fault_t fault, const row_t *row) {
 }
 
 /* Shows: SELF_TEST_FAILED, MEMORY_CORRUPTED, CONFIG_INVALID, SUPERVISOR_RESET, TX_GATE_REFUSED, STEP_OVERRUN,
-   BUS_OFF, TX_STALLED, VCU_HEARTBEAT_LOST, VCU_HEARTBEAT_STUCK, EPS_HEARTBEAT_LOST, EPS_HEARTBEAT_STUCK,
-   AI_HEARTBEAT_LOST, AI_HEARTBEAT_STUCK, EPS_OVER_CURRENT_SHUTDOWN, EPS_TEMP_ABOVE_120, EPS_MOTOR_ENCODER,
-   EPS_POSITION_ENCODER, EPS_UNDER_VOLTAGE, EPS_OVER_VOLTAGE, EPS_EXCESSIVE_CURRENT, EPS_TEMP_ABOVE_110,
-   VCU_EPS_HARDWARE_FAULT, VCU_EPS_CAN_BUS_FAULT, S_DRIVER_ALARM, REMOTE_SIGNAL_LOST, REMOTE_POWER_LOST,
-   VCU_AI_CAN_LOST, VCU_LEVEL2_ALARM, MODE_INVALID, MODE_FLAPPING, MODE_NONE, EPS_STATUS_TIMEOUT,
-   GEAR_STATUS_TIMEOUT, THROTTLE_STATUS_TIMEOUT, WHEEL_SPEED_TIMEOUT, STEERING_POSITION_TIMEOUT,
-   GEAR_COMMAND_TIMEOUT, THROTTLE_COMMAND_TIMEOUT, STEERING_COMMAND_TIMEOUT, AI_COMMAND_OUT_OF_RANGE, EPS_MODE_OFF,
-   EPS_MODE_INVALID, EPS_MODE_NOT_ANGLE, GEAR_STATUS_INVALID, THROTTLE_STATUS_INVALID, STEERING_ANGLE_INVALID,
-   STEERING_DEVIATION, THROTTLE_DEVIATION, GEAR_DEVIATION, AUTOPILOT_OFF_IGNORED, THROTTLE_IN_PARK,
-   FOREIGN_COMMAND_SENDER, SAFE_STATE_UNCONFIRMED, VEHICLE_NOT_STOPPING, MOVING_WHILE_SAFE, COMMAND_TOO_FAST,
-   SPEED_IMPLAUSIBLE, STATUS_ID_IN_USE, STARTUP_TIMEOUT, RX_OVERRUN, ERROR_PASSIVE, AI_BUS_OFF, WRONG_ID_SET,
-   STORE_INVALID */
+   BUS_OFF, TX_STALLED, AI_HEARTBEAT_STUCK, MODE_INVALID, MODE_FLAPPING, MODE_NONE, STEERING_ANGLE_INVALID,
+   STEERING_DEVIATION, GEAR_DEVIATION,
+   THROTTLE_IN_PARK, FOREIGN_COMMAND_SENDER, SAFE_STATE_UNCONFIRMED, VEHICLE_NOT_STOPPING, MOVING_WHILE_SAFE,
+   COMMAND_TOO_FAST, SPEED_IMPLAUSIBLE, STATUS_ID_IN_USE, STARTUP_TIMEOUT, RX_OVERRUN, ERROR_PASSIVE,
+   AI_BUS_OFF, WRONG_ID_SET, STORE_INVALID */
 void test_each_is_raised_as_what_it_is(void) {
     unsigned raised = 0;
-    for (unsigned i = 0; i < ROW_COUNT; i++) {
-        if (ROWS[i].raise != NULL) {
+    for (unsigned i = 0; i < FAULT_ROWS; i++) {
+        if (RAISE[i] != NULL) {
             fixture_init(&f);
-            f.what = ROWS[i].name;
+            f.what = FAULT_ROW[i].name;
             f.long_run = true;
-            ROWS[i].raise();
-            expect_raised((agv_fault_t)i, &ROWS[i]);
+            RAISE[i]();
+            expect_raised((agv_fault_t)i, &FAULT_ROW[i]);
             raised++;
         }
     }
-    TEST_ASSERT_EQUAL_UINT32(ROW_COUNT - 3, raised);
+    TEST_ASSERT_EQUAL_UINT32(29, raised);
 }

@@ -1,0 +1,349 @@
+/* Each cause that a single message can be for a fault (causes.c): it is raised at the very frame or millisecond, as what
+ * it is, with its LED code, and it ends with the frame that ends it. In manual, engaged, and in INIT. */
+#include <stdio.h>
+
+#include "causes.h"
+#include "expect.h"
+#include "one_fixture.h"
+
+static const fault_row_t *row_of(const cause_t *cause) {
+    return &FAULT_ROW[cause->fault];
+}
+
+static int led_of(const cause_t *cause) {
+    return row_of(cause)->led != 0 ? row_of(cause)->led : -1;
+}
+
+static bool is_by_bits(const cause_t *cause) {
+    return cause->how == BY_BITS || cause->how == BY_BITS_ENGAGED;
+}
+
+static const cause_t *cause_of(agv_fault_t fault) {
+    for (unsigned i = 0; i < CAUSES; i++) {
+        if (CAUSE[i].fault == fault) {
+            return &CAUSE[i];
+        }
+    }
+    TEST_FAIL_MESSAGE(FAULT_ROW[fault].name);
+    return NULL;
+}
+
+static void begin_case(const cause_t *cause, const char *where) {
+    static char what[80];
+    (void)snprintf(what, sizeof what, "%s: %s", row_of(cause)->name, where);
+    fixture_init(&f);
+    f.what = what;
+}
+
+static void check_all(cause_how_t how, void (*check)(const cause_t *)) {
+    for (unsigned i = 0; i < CAUSES; i++) {
+        if (CAUSE[i].how == how) {
+            check(&CAUSE[i]);
+        }
+    }
+}
+
+/* ---- From healthy to raised to ended ---- */
+
+/* The frame, or the millisecond, before the last one raises nothing, the last one raises the fault and no other one. */
+static void raise(const cause_t *cause, agv_state_t state) {
+    fixture_run_past(&f, cause->message);
+    cause_set(f.traffic, cause, true);
+    for (unsigned i = 1; is_by_bits(cause) && i < cause->count; i++) {
+        fixture_run_past(&f, cause->message);
+        expect_nothing(&f, cause->fault, state);
+    }
+    if (is_by_bits(cause)) {
+        fixture_run_before(&f, cause->message);
+    } else {
+        fixture_run(&f, cause->count);
+    }
+    expect_nothing(&f, cause->fault, state);
+    fixture_run(&f, 1);
+    agv_fault_set_t active = agv_supervisor_active_faults(&f.supervisor);
+    agv_fault_set_put(&active, cause->fault, false);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(AGV_FAULT_NONE, agv_fault_first(&active), f.what);
+}
+
+/* The first good frame ends it; where frames are scored, the last of 2 N. */
+static void end(const cause_t *cause) {
+    fixture_run(&f, is_by_bits(cause) ? 0 : 300);
+    expect_fault(&f, cause->fault, true);
+    cause_set(f.traffic, cause, false);
+    for (unsigned i = 1; is_by_bits(cause) && cause->count > 1 && i < 2 * cause->count; i++) {
+        fixture_run_past(&f, cause->message);
+    }
+    fixture_run_before(&f, cause->message);
+    expect_fault(&f, cause->fault, true);
+    fixture_run(&f, 1);
+    expect_fault(&f, cause->fault, false);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, fixture_ended(&f, cause->fault), f.what);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, fixture_raised(&f, cause->fault), f.what);
+}
+
+static void check_trip(const cause_t *cause, agv_state_t state, int32_t hold_raw) {
+    raise(cause, state);
+    expect_trip(&f, cause->fault, is_by_bits(cause) ? f.traffic[cause->message].call : f.call, hold_raw);
+    expect_led(&f, led_of(cause));
+    end(cause);
+    expect_reason(&f, cause->fault); /* latched */
+    expect_led(&f, led_of(cause));
+}
+
+static void check_warning(const cause_t *cause, agv_state_t state) {
+    raise(cause, state);
+    expect_warning(&f, cause->fault, state);
+    expect_silence(&f);
+    expect_led(&f, led_of(cause));
+    end(cause);
+    expect_state(&f, state);
+    expect_silence(&f);
+    expect_led(&f, 0);
+}
+
+static void check_manual(const cause_t *cause) {
+    begin_case(cause, "manual");
+    fixture_standby(&f);
+    if (row_of(cause)->trip) {
+        check_trip(cause, AGV_STATE_STANDBY, NO_HOLD); /* in manual the steering is not held */
+    } else {
+        check_warning(cause, AGV_STATE_STANDBY);
+    }
+}
+
+static void check_engaged(const cause_t *cause) {
+    begin_case(cause, "engaged");
+    fixture_active(&f);
+    if (row_of(cause)->trip) {
+        check_trip(cause, AGV_STATE_ACTIVE, cause->steering_held ? ANGLE_CENTRE : NO_HOLD);
+    } else {
+        check_warning(cause, AGV_STATE_ACTIVE);
+    }
+}
+
+/* ---- Bits of 167h and 363h ---- */
+
+/* A cause in INIT latches nothing, a trip's keeps INIT from being left for as long as it is there. */
+static void check_bits(const cause_t *cause) {
+    check_manual(cause);
+    check_engaged(cause);
+    begin_case(cause, "INIT");
+    fixture_start(&f);
+    fixture_run(&f, 100);
+    raise(cause, AGV_STATE_INIT);
+    fixture_run(&f, 2000);
+    expect_fault(&f, cause->fault, true);
+    expect_led(&f, led_of(cause));
+    expect_reason(&f, AGV_FAULT_NONE);
+    if (row_of(cause)->trip) {
+        expect_state(&f, AGV_STATE_INIT);
+        end(cause);
+        fixture_run(&f, 600);
+    }
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* Shows: SUP-4, FSM-2, EPS_OVER_CURRENT_SHUTDOWN, EPS_TEMP_ABOVE_120, EPS_MOTOR_ENCODER, EPS_POSITION_ENCODER,
+   EPS_UNDER_VOLTAGE, EPS_OVER_VOLTAGE, EPS_EXCESSIVE_CURRENT, EPS_TEMP_ABOVE_110, VCU_EPS_HARDWARE_FAULT,
+   VCU_EPS_CAN_BUS_FAULT, S_DRIVER_ALARM, REMOTE_SIGNAL_LOST, REMOTE_POWER_LOST, VCU_LEVEL2_ALARM, VCU_AI_CAN_LOST */
+void test_each_fault_bit(void) {
+    check_all(BY_BITS, check_bits);
+    check_all(BY_BITS_ENGAGED, check_engaged);
+}
+
+/* Nothing comes of any of these frames before the last one is there. */
+static void send_frames(const cause_t *cause, unsigned count, uint32_t gap_ms) {
+    for (unsigned i = 0; i < count; i++) {
+        fixture_run(&f, gap_ms);
+        expect_nothing(&f, cause->fault, AGV_STATE_STANDBY);
+        fixture_send_now(&f, cause->message);
+    }
+}
+
+static void begin_score(const cause_t *cause, const char *where) {
+    begin_case(cause, where);
+    fixture_standby(&f);
+    fixture_run_past(&f, cause->message);
+    f.traffic[cause->message].muted = true;
+}
+
+/* Every second frame is bad: 2, 1, 3, 2, 4, 3, 5, 4, 6: the fifth bad one brings the score to 2 N. */
+static void check_every_second(const cause_t *cause) {
+    begin_score(cause, "every second frame");
+    for (unsigned i = 0; i < 9; i++) {
+        cause_set(f.traffic, cause, i % 2 == 0);
+        send_frames(cause, 1, 10);
+    }
+    expect_trip(&f, cause->fault, f.call, NO_HOLD);
+}
+
+/* Gaps between frames change nothing; a third of the frames bad never counts: 2, 1, 0. */
+static void check_gaps_and_thirds(const cause_t *cause) {
+    begin_score(cause, "every third frame, then gaps");
+    for (unsigned i = 0; i < 30; i++) {
+        cause_set(f.traffic, cause, i % 3 == 0);
+        send_frames(cause, 1, 10);
+    }
+    cause_set(f.traffic, cause, true);
+    send_frames(cause, cause->count, 60);
+    expect_trip(&f, cause->fault, f.call, NO_HOLD);
+}
+
+static void check_score(const cause_t *cause) {
+    if (cause->count > 1) {
+        check_every_second(cause);
+        check_gaps_and_thirds(cause);
+    }
+}
+
+/* Shows: SUP-4, FSM-2, EPS_UNDER_VOLTAGE, EPS_OVER_VOLTAGE, EPS_EXCESSIVE_CURRENT */
+void test_each_scored_bit(void) {
+    check_all(BY_BITS, check_score);
+}
+
+/* The three scores are kept apart: each bit in every third frame is none of them. */
+/* Shows: SUP-4 */
+void test_scores_of_different_bits_do_not_add_up(void) {
+    static const agv_fault_t SCORED[] = {AGV_FAULT_EPS_UNDER_VOLTAGE, AGV_FAULT_EPS_OVER_VOLTAGE,
+                                         AGV_FAULT_EPS_EXCESSIVE_CURRENT};
+    fixture_standby(&f);
+    for (unsigned i = 0; i < 30; i++) {
+        for (unsigned bit = 0; bit < 3; bit++) {
+            cause_set(f.traffic, cause_of(SCORED[bit]), i % 3 == bit);
+        }
+        fixture_run_past(&f, AGV_MSG_EPS_STATUS);
+        for (unsigned bit = 0; bit < 3; bit++) {
+            expect_nothing(&f, SCORED[bit], AGV_STATE_STANDBY);
+        }
+    }
+}
+
+/* A frame whose mode is unusable still carries good fault bits. */
+/* Shows: SUP-4, SUP-5, P18 */
+void test_fault_bits_count_in_a_frame_with_an_invalid_mode(void) {
+    fixture_standby(&f);
+    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
+    f.traffic[AGV_MSG_EPS_STATUS].data[3] = 0x77;
+    f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x40;
+    fixture_run_past(&f, AGV_MSG_EPS_STATUS);
+    expect_trip(&f, AGV_FAULT_EPS_MOTOR_ENCODER, f.traffic[AGV_MSG_EPS_STATUS].call, NO_HOLD);
+}
+
+/* Bit2 and Bit6 of 363h byte 5 are reserved (P14): they raise nothing. */
+/* Shows: SUP-4, P14 */
+void test_reserved_alarm_bits_are_ignored(void) {
+    fixture_active(&f);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x44;
+    fixture_run(&f, 2000);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
+}
+
+/* The number of frames is a setting: 1 is at once. */
+/* Shows: SUP-4, EPS_OVER_VOLTAGE */
+void test_the_count_is_a_setting(void) {
+    cause_t cause = *cause_of(AGV_FAULT_EPS_OVER_VOLTAGE);
+    cause.count = 1;
+    f.config.eps_supply_fault_frames = 1;
+    fixture_standby(&f);
+    check_trip(&cause, AGV_STATE_STANDBY, NO_HOLD);
+}
+
+/* ---- Heartbeats and deadlines of status messages: always ---- */
+
+/* A message that was never heard is not fresh either: its deadline runs from the start. */
+static void check_silence(const cause_t *cause) {
+    check_manual(cause);
+    check_engaged(cause);
+    begin_case(cause, "never heard");
+    cause_set(f.traffic, cause, true);
+    fixture_start(&f);
+    fixture_run(&f, cause->count);
+    expect_nothing(&f, cause->fault, AGV_STATE_INIT);
+    fixture_run(&f, 1);
+    expect_fault(&f, cause->fault, true);
+    expect_led(&f, led_of(cause));
+    fixture_run(&f, 2000);
+    expect_reason(&f, AGV_FAULT_NONE);
+    expect_state(&f, row_of(cause)->trip ? AGV_STATE_INIT : AGV_STATE_STANDBY);
+}
+
+/* Shows: SUP-1, SUP-2, SUP-3, FSM-2, VCU_HEARTBEAT_LOST, EPS_HEARTBEAT_LOST, EPS_STATUS_TIMEOUT, GEAR_STATUS_TIMEOUT,
+   THROTTLE_STATUS_TIMEOUT, WHEEL_SPEED_TIMEOUT, STEERING_POSITION_TIMEOUT */
+void test_each_silent_status(void) {
+    check_all(BY_SILENCE, check_silence);
+}
+
+static void check_freeze(const cause_t *cause) {
+    check_manual(cause);
+    check_engaged(cause);
+}
+
+/* Shows: SUP-1, SUP-2, P13, VCU_HEARTBEAT_STUCK, EPS_HEARTBEAT_STUCK */
+void test_each_frozen_counter(void) {
+    check_all(BY_FREEZE, check_freeze);
+}
+
+/* ---- Commands: while engaged, afresh from the moment of engagement ---- */
+
+static void check_never_in_manual(const cause_t *cause) {
+    begin_case(cause, "manual, then afresh at the engagement");
+    fixture_standby(&f);
+    cause_set(f.traffic, cause, true);
+    fixture_run(&f, 5000);
+    expect_nothing(&f, cause->fault, AGV_STATE_STANDBY);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, cause->fault));
+}
+
+/* Silent for 5 s already when it is engaged (the state before continues: no command has come since). */
+static void check_afresh(const cause_t *cause) {
+    fixture_wheels(&f, 800, 800);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    fixture_run(&f, cause->count);
+    expect_nothing(&f, cause->fault, AGV_STATE_ACTIVE);
+    fixture_run(&f, 1);
+    expect_trip(&f, cause->fault, f.call, ANGLE_CENTRE);
+    expect_led(&f, led_of(cause));
+    fixture_mode(&f, MODE_MANUAL);
+    for (unsigned i = 0; i < 3; i++) {
+        expect_fault(&f, cause->fault, true);
+        fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    }
+    expect_fault(&f, cause->fault, false); /* not engaged: it does not count */
+    expect_reason(&f, cause->fault);
+}
+
+/* 43Fh is a heartbeat: in manual test_supervision_ai looks at it. */
+static void check_command(const cause_t *cause) {
+    check_engaged(cause);
+    if (cause->message != M_SIGNALS) {
+        check_never_in_manual(cause);
+        check_afresh(cause);
+    }
+}
+
+/* Shows: SUP-2, SUP-3, FSM-2, AI_HEARTBEAT_LOST, GEAR_COMMAND_TIMEOUT, THROTTLE_COMMAND_TIMEOUT,
+   STEERING_COMMAND_TIMEOUT */
+void test_each_silent_command(void) {
+    check_all(BY_SILENCE_ENGAGED, check_command);
+}
+
+/* ---- Values ---- */
+
+static void check_value(const cause_t *cause) {
+    begin_case(cause, "value");
+    fixture_active(&f);
+    cause_set(f.traffic, cause, true);
+    fixture_run(&f, cause->count);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, fixture_raised(&f, cause->fault), f.what);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, cause->fault);
+}
+
+/* Shows: SUP-5, AI_COMMAND_OUT_OF_RANGE, EPS_MODE_OFF, EPS_MODE_INVALID, EPS_MODE_NOT_ANGLE, GEAR_STATUS_INVALID,
+   THROTTLE_STATUS_INVALID, THROTTLE_DEVIATION, AUTOPILOT_OFF_IGNORED */
+void test_each_value(void) {
+    check_all(BY_VALUE, check_value);
+}
