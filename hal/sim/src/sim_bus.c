@@ -44,14 +44,6 @@ bool sim_bus_add_tap(sim_bus_t *bus, sim_bus_tap_fn *fn, void *ctx) {
     return true;
 }
 
-void sim_bus_remove(sim_bus_node_state_t *node, unsigned slot) {
-    node->tx_count--;
-    for (unsigned i = slot; i < node->tx_count; i++) {
-        node->tx[i] = node->tx[i + 1u];
-        node->tx_key[i] = node->tx_key[i + 1u];
-    }
-}
-
 bool sim_bus_send(sim_bus_t *bus, sim_bus_node_t number, const hal_can_frame_t *frame) {
     if (number >= bus->node_count || !sim_frame_is_classic(frame)) {
         return false;

@@ -18,6 +18,14 @@ static void leave(sim_bus_t *bus, unsigned number) {
     }
 }
 
+/* How long a lone attempt takes until the node tries again. */
+static uint64_t alone_attempt_us(const sim_bus_t *bus, const sim_bus_node_state_t *node) {
+    const hal_can_frame_t *frame = &node->tx[sim_bus_choose(node)].frame;
+    const uint32_t bits =
+        sim_bus_frame_bits(frame) - SIM_BITS_AFTER_ACKNOWLEDGE + SIM_BUS_ERROR_BITS + SIM_BUS_INTERFRAME_BITS;
+    return (uint64_t)bits * bus->bit_us;
+}
+
 void sim_bus_refresh(sim_bus_t *bus, unsigned number) {
     sim_bus_node_state_t *node = &bus->nodes[number];
     const uint32_t bit = sim_bit(number);
@@ -31,7 +39,7 @@ void sim_bus_refresh(sim_bus_t *bus, unsigned number) {
     const bool was_alone = (bus->alone & bit) != 0;
     put(&bus->alone, bit, wants && !node->plugged && !sim_is_passive(node));
     if (!was_alone && (bus->alone & bit) != 0) {
-        node->alone_us = bus->now_us + sim_bus_alone_attempt_us(bus, node);
+        node->alone_us = bus->now_us + alone_attempt_us(bus, node);
     }
 }
 
@@ -56,21 +64,12 @@ void sim_bus_penalise(sim_bus_t *bus, unsigned number) {
     }
 }
 
-void sim_bus_misread(sim_bus_node_state_t *node, unsigned amount) {
-    const unsigned rec = node->rec + amount;
-    node->rec = (uint16_t)(rec > SIM_REC_MAX ? SIM_REC_MAX : rec);
-}
-
 /* ---- Recovery: 128 sequences of 11 recessive bits; recovery_from_us = NEVER while the count stands still ---- */
-
-static uint64_t sequence_us(const sim_bus_t *bus) {
-    return (uint64_t)SIM_BUS_RECOVERY_BITS * bus->bit_us;
-}
 
 /* Count what has passed since recovery_from_us. It is never more than is left: that was due. */
 static void settle(const sim_bus_t *bus, sim_bus_node_state_t *node) {
     if (node->recovery_from_us < bus->now_us) {
-        node->recovery_left -= (uint32_t)((bus->now_us - node->recovery_from_us) / sequence_us(bus));
+        node->recovery_left -= (uint32_t)((bus->now_us - node->recovery_from_us) / sim_bus_sequence_us(bus));
     }
 }
 
@@ -117,13 +116,6 @@ void sim_bus_resume_recovery(sim_bus_t *bus) {
     }
 }
 
-static uint64_t recovered_us(const sim_bus_t *bus, const sim_bus_node_state_t *node) {
-    if (node->recovery_from_us == SIM_BUS_NEVER) {
-        return SIM_BUS_NEVER;
-    }
-    return node->recovery_from_us + node->recovery_left * sequence_us(bus);
-}
-
 static void end_recovery(sim_bus_t *bus, unsigned number) {
     sim_bus_node_state_t *node = &bus->nodes[number];
     bus->recovering &= ~sim_bit(number);
@@ -135,31 +127,11 @@ static void end_recovery(sim_bus_t *bus, unsigned number) {
 
 /* ---- Nodes that are unplugged: nobody acknowledges, so they try again and again; once passive it changes nothing ---- */
 
-uint64_t sim_bus_alone_attempt_us(const sim_bus_t *bus, const sim_bus_node_state_t *node) {
-    const hal_can_frame_t *frame = &node->tx[sim_bus_choose(node)].frame;
-    const uint32_t bits =
-        sim_bus_frame_bits(frame) - SIM_BITS_AFTER_ACKNOWLEDGE + SIM_BUS_ERROR_BITS + SIM_BUS_INTERFRAME_BITS;
-    return (uint64_t)bits * bus->bit_us;
-}
-
 static void fail_alone(sim_bus_t *bus, unsigned number) {
     sim_bus_node_state_t *node = &bus->nodes[number];
     sim_bus_penalise(bus, number);
-    node->alone_us = bus->now_us + sim_bus_alone_attempt_us(bus, node);
+    node->alone_us = bus->now_us + alone_attempt_us(bus, node);
     sim_bus_refresh(bus, number);
-}
-
-uint64_t sim_bus_aside_due_us(const sim_bus_t *bus) {
-    uint64_t due_us = SIM_BUS_NEVER;
-    for (uint32_t set = bus->alone; set != 0; set &= set - 1u) {
-        const uint64_t alone_us = bus->nodes[sim_lowest(set)].alone_us;
-        due_us = alone_us < due_us ? alone_us : due_us;
-    }
-    for (uint32_t set = bus->recovering; set != 0; set &= set - 1u) {
-        const uint64_t end_us = recovered_us(bus, &bus->nodes[sim_lowest(set)]);
-        due_us = end_us < due_us ? end_us : due_us;
-    }
-    return due_us;
 }
 
 void sim_bus_run_aside(sim_bus_t *bus) {
@@ -169,7 +141,7 @@ void sim_bus_run_aside(sim_bus_t *bus) {
         }
     }
     for (uint32_t set = bus->recovering; set != 0; set &= set - 1u) {
-        if (recovered_us(bus, &bus->nodes[sim_lowest(set)]) <= bus->now_us) {
+        if (sim_bus_recovered_us(bus, &bus->nodes[sim_lowest(set)]) <= bus->now_us) {
             end_recovery(bus, sim_lowest(set));
         }
     }

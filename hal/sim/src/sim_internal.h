@@ -60,44 +60,12 @@ static inline unsigned sim_bus_choose(const sim_bus_node_state_t *node) {
     return chosen;
 }
 
-/** Empty a mailbox; those behind it move up, so that they stay in the order of their requests. */
-void sim_bus_remove(sim_bus_node_state_t *node, unsigned slot);
+/*
+ * The files from below to above; each calls only those before it:
+ * sim_frame.c, sim_node.c, sim_spoil.c, sim_schedule.c, sim_fault.c, sim_wire.c; sim_bus.c and sim_inject.c beside it.
+ */
 
-/** Bring the sets in line with what the node is now; one that has left the wire breaks off what it was sending. */
-void sim_bus_refresh(sim_bus_t *bus, unsigned number);
-
-/** Work out due_us anew. */
-void sim_bus_schedule(sim_bus_t *bus);
-
-/** A frame arrives at a node that can hear it. */
-void sim_bus_arrive(sim_bus_node_state_t *node, const hal_can_frame_t *frame, uint64_t time_us);
-
-/** A frame of this node failed: TEC + 8, and what follows from it. */
-void sim_bus_penalise(sim_bus_t *bus, unsigned number);
-
-void sim_bus_enter_bus_off(sim_bus_t *bus, unsigned number);
-
-/** REC + amount. */
-void sim_bus_misread(sim_bus_node_state_t *node, unsigned amount);
-
-/** A frame begins: the recessive bits of the idle wire until now count for the recovery, then the count stands still. */
-void sim_bus_pause_recovery(sim_bus_t *bus);
-
-/** The end of a frame or error frame: 11 recessive bits for all that are recovering on this wire. */
-void sim_bus_resume_recovery(sim_bus_t *bus);
-
-/** The next moment at which a node that is alone or recovering has something to do. */
-uint64_t sim_bus_aside_due_us(const sim_bus_t *bus);
-
-/** Do what is due now for the nodes that are alone or recovering. */
-void sim_bus_run_aside(sim_bus_t *bus);
-
-/** How long a lone attempt takes until the node tries again. */
-uint64_t sim_bus_alone_attempt_us(const sim_bus_t *bus, const sim_bus_node_state_t *node);
-
-/** Errors that were ordered and hit the frame that begins. @return true: it is destroyed. */
-bool sim_bus_spoil(sim_bus_t *bus);
-
+/** @name sim_frame.c @{ */
 /** Order of arbitration: the lower number wins. Only equal numbers collide. */
 uint32_t sim_frame_key(const hal_can_frame_t *frame);
 
@@ -112,5 +80,54 @@ bool sim_frame_bit(const hal_can_frame_t *frame, uint32_t index);
 
 /** Number of these bits: DLC and data. */
 uint32_t sim_frame_body_bits(const hal_can_frame_t *frame);
+/** @} */
+
+/** @name sim_node.c @{ */
+/** Empty a mailbox; those behind it move up, so that they stay in the order of their requests. */
+void sim_bus_remove(sim_bus_node_state_t *node, unsigned slot);
+
+/** A frame arrives at a node that can hear it. */
+void sim_bus_arrive(sim_bus_node_state_t *node, const hal_can_frame_t *frame, uint64_t time_us);
+
+/** REC + amount. */
+void sim_bus_misread(sim_bus_node_state_t *node, unsigned amount);
+/** @} */
+
+/** @name sim_spoil.c @{ */
+/** Errors that were ordered and hit the frame that begins. @return true: it is destroyed. */
+bool sim_bus_spoil(sim_bus_t *bus);
+/** @} */
+
+/** @name sim_schedule.c @{ */
+/** Work out due_us anew. */
+void sim_bus_schedule(sim_bus_t *bus);
+
+/** How long one sequence of recessive bits takes that counts for the recovery. */
+static inline uint64_t sim_bus_sequence_us(const sim_bus_t *bus) {
+    return (uint64_t)SIM_BUS_RECOVERY_BITS * bus->bit_us;
+}
+
+/** When a node that is recovering is back; SIM_BUS_NEVER while the count stands still. */
+uint64_t sim_bus_recovered_us(const sim_bus_t *bus, const sim_bus_node_state_t *node);
+/** @} */
+
+/** @name sim_fault.c @{ */
+/** Bring the sets in line with what the node is now; one that has left the wire breaks off what it was sending. */
+void sim_bus_refresh(sim_bus_t *bus, unsigned number);
+
+/** A frame of this node failed: TEC + 8, and what follows from it. */
+void sim_bus_penalise(sim_bus_t *bus, unsigned number);
+
+void sim_bus_enter_bus_off(sim_bus_t *bus, unsigned number);
+
+/** A frame begins: the recessive bits of the idle wire until now count for the recovery, then the count stands still. */
+void sim_bus_pause_recovery(sim_bus_t *bus);
+
+/** The end of a frame or error frame: 11 recessive bits for all that are recovering on this wire. */
+void sim_bus_resume_recovery(sim_bus_t *bus);
+
+/** Do what is due now for the nodes that are alone or recovering. */
+void sim_bus_run_aside(sim_bus_t *bus);
+/** @} */
 
 #endif

@@ -1,35 +1,6 @@
 /* The wire: arbitration, collisions, the end of a frame, and what happens when. */
 #include "sim_internal.h"
 
-/* The moment at which the wire is idle and a node that is ready may start. There is one. */
-static uint64_t next_start_us(const sim_bus_t *bus) {
-    const uint64_t idle_us = bus->free_us > bus->now_us ? bus->free_us : bus->now_us;
-    if ((bus->ready & ~bus->suspended) != 0) {
-        return idle_us;
-    }
-    uint64_t start_us = SIM_BUS_NEVER;
-    for (uint32_t set = bus->ready; set != 0; set &= set - 1u) {
-        const uint64_t until_us = bus->nodes[sim_lowest(set)].suspend_until_us;
-        start_us = until_us < start_us ? until_us : start_us;
-    }
-    return start_us > idle_us ? start_us : idle_us;
-}
-
-void sim_bus_schedule(sim_bus_t *bus) {
-    uint64_t due_us = SIM_BUS_NEVER;
-    if (bus->busy) {
-        due_us = bus->end_us;
-    } else if (bus->ready != 0) {
-        bus->start_us = next_start_us(bus);
-        due_us = bus->start_us + 1u; /* only when time moves on: all that is sent at this moment takes part */
-    }
-    if ((bus->alone | bus->recovering) != 0) {
-        const uint64_t aside_us = sim_bus_aside_due_us(bus);
-        due_us = aside_us < due_us ? aside_us : due_us;
-    }
-    bus->due_us = due_us;
-}
-
 /* The nodes that may start now: those whose suspend time is over. */
 static uint32_t contenders(sim_bus_t *bus) {
     for (uint32_t set = bus->suspended; set != 0; set &= set - 1u) {
@@ -180,24 +151,6 @@ static void sent(sim_bus_t *bus, unsigned number) {
     suspend(bus, number);
     if (node->tec > 0) {
         node->tec--;
-    }
-}
-
-void sim_bus_arrive(sim_bus_node_state_t *node, const hal_can_frame_t *frame, uint64_t time_us) {
-    if (node->config.rx_slots != 0) {
-        if (node->rx_count == node->config.rx_slots) {
-            node->overrun_count++;
-            return;
-        }
-        unsigned tail = (unsigned)node->rx_head + node->rx_count;
-        if (tail >= node->config.rx_slots) {
-            tail -= node->config.rx_slots;
-        }
-        node->rx[tail] = (sim_bus_slot_t){*frame, time_us};
-        node->rx_count++;
-    }
-    if (node->config.on_receive != NULL) {
-        node->config.on_receive(node->config.ctx, frame);
     }
 }
 
