@@ -1,0 +1,170 @@
+#!/usr/bin/env python3
+"""Seeded faults: one line each in seeded.tsv, and whoever checks must find it, for the reason that the line names.
+
+usage: seed.py check                    the old text of each line stands in its file exactly once
+       seed.py list CHECKER             name, what it is run with, and files of each seeded fault, between |
+       seed.py rows CHECKER             name, what it is run with, and what must be said, between tabs
+       seed.py apply CHECKER/NAME FOLDER [--paths]
+                                        copies of the changed files, with their paths or without
+       seed.py run CHECKER... [--bin FOLDER]
+                                        its programs, which CMake has built (seeded.cmake): each fails and says why
+       seed.py tree CHECKER...          the command of each line in a copy of this tree with the change: it fails and says why
+       seed.py fails CHECKER/NAME COMMAND...
+                                        this command fails and says why
+
+Several lines of one name are one fault. A line with no old text appends the new one; one with no file changes nothing.
+"""
+import concurrent.futures
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+SECONDS = 600
+
+
+class Fault:
+    """One seeded fault: what is changed, how it is run, what must be said."""
+
+    def __init__(self, checker, name, arguments, says):
+        self.checker, self.name, self.arguments, self.says = checker, name, arguments, says
+        self.changes = []
+
+    def files(self):
+        return list(dict.fromkeys(change[0] for change in self.changes))
+
+    def changed(self, root=ROOT):
+        """The changed files: a text for each path."""
+        texts = {}
+        for path, old, new in self.changes:
+            text = texts.get(path)
+            if text is None:
+                text = (root / path).read_text(encoding="utf-8") if (root / path).exists() else ""
+            if old and text.count(old) != 1:
+                sys.exit(f"seed: {self.checker}/{self.name}: {path} has {text.count(old)} times, not once: {old}")
+            texts[path] = text.replace(old, new) if old else text + new + "\n"
+        return texts
+
+    def judge(self, status, said):
+        """Whether it was found for its reason; the line to print."""
+        for line in said.splitlines():
+            if re.search(self.says, line) and status != 0:
+                return True, f"found {self.checker}/{self.name}: {line.strip()[:120]}"
+        end = "\n  ".join(said.splitlines()[-5:])
+        return False, f"NOT FOUND {self.checker}/{self.name} (status {status}, no line says '{self.says}'):\n  {end}"
+
+
+def read():
+    """All seeded faults, in the order of the table."""
+    faults = {}
+    for number, line in enumerate((HERE / "seeded.tsv").read_text(encoding="utf-8").splitlines(), 1):
+        if line.startswith("#") or not line:
+            continue
+        columns = line.split("\t")
+        if len(columns) != 7:
+            sys.exit(f"seed: seeded.tsv:{number}: {len(columns)} columns, not 7")
+        checker, name, arguments, path, old, new, says = columns
+        fault = faults.setdefault((checker, name), Fault(checker, name, arguments, says))
+        if path:
+            fault.changes.append((path, old, new))
+    return list(faults.values())
+
+
+def of(*checkers):
+    faults = [fault for fault in read() if fault.checker in checkers]
+    missing = set(checkers) - {fault.checker for fault in faults}
+    if missing:
+        sys.exit(f"seed: no seeded fault is for {', '.join(sorted(missing))}")
+    return faults
+
+
+def one(word):
+    found = [fault for fault in read() if f"{fault.checker}/{fault.name}" == word]
+    if not found:
+        sys.exit(f"seed: there is no seeded fault {word}")
+    return found[0]
+
+
+def apply(fault, folder, paths):
+    for path, text in fault.changed().items():
+        target = folder / (path if paths else pathlib.Path(path).name)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if not target.exists() or target.read_text(encoding="utf-8") != text:  # else nothing is built again
+            target.write_text(text, encoding="utf-8")
+
+
+def execute(command, cwd):
+    try:
+        result = subprocess.run(command, cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                errors="replace", timeout=SECONDS, shell=isinstance(command, str), check=False)
+        return result.returncode, result.stdout
+    except subprocess.TimeoutExpired:
+        return 0, f"nothing was said in {SECONDS} s"
+
+
+def run_program(fault, folder):
+    program = folder / f"seeded_{fault.checker}_{fault.name}"
+    return fault.judge(*execute([str(program), *fault.arguments.split()], ROOT))
+
+
+def run_in_tree(fault, _):
+    with tempfile.TemporaryDirectory(prefix="seed") as folder:
+        copy = pathlib.Path(folder)
+        files = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT, check=True,
+                               stdout=subprocess.PIPE, text=True).stdout.split("\0")
+        for name in filter(None, files):
+            if (ROOT / name).exists():
+                (copy / name).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy2(ROOT / name, copy / name, follow_symlinks=False)
+        (copy / "build").symlink_to(ROOT / "build")
+        apply(fault, copy, True)
+        return fault.judge(*execute(fault.arguments, copy))
+
+
+def run_all(faults, how, folder):
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        results = list(pool.map(lambda fault: how(fault, folder), faults))
+    for _, line in results:
+        print(line)
+    found = sum(good for good, _ in results)
+    print(f"{found} of {len(faults)} seeded faults found")
+    return found != len(faults)
+
+
+def main(words):
+    what, rest = (words[0], words[1:]) if words else ("", [])
+    if what == "check":
+        faults = read()
+        for fault in faults:
+            fault.changed()  # ends with the first that cannot
+        print(f"{len(faults)} seeded faults can be applied")
+    elif what == "list":
+        for fault in of(*rest):
+            print("|".join([fault.name, fault.arguments, *fault.files()]))
+    elif what == "rows":
+        for fault in of(*rest):
+            print("\t".join([fault.name, fault.arguments, fault.says]))
+    elif what == "apply":
+        apply(one(rest[0]), pathlib.Path(rest[1]), "--paths" in rest)
+    elif what == "run":
+        folder = pathlib.Path(rest[rest.index("--bin") + 1] if "--bin" in rest else ROOT / "build/host/bin")
+        checkers = rest[:rest.index("--bin")] if "--bin" in rest else rest
+        return run_all(of(*checkers), run_program, folder)
+    elif what == "tree":
+        return run_all(of(*rest), run_in_tree, None)
+    elif what == "fails":
+        good, line = one(rest[0]).judge(*execute(rest[1:], None))
+        print(line)
+        return not good
+    else:
+        sys.exit(__doc__)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
