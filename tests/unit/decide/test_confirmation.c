@@ -145,10 +145,25 @@ void test_a_sum_at_its_limit_raises_it_again_at_once(void) {
     expect(false);
 }
 
+/* Each sum by its own ms: one that is full says nothing of the other. */
+/* Shows: FSM-4 */
+void test_a_full_sum_of_the_one_raises_nothing_for_the_other(void) {
+    agv_confirmation_park_sent(&confirmation);
+    run(500, false, true);
+    expect(true);
+    step(0, true, true);
+    expect(false);
+    run(499, true, false);
+    expect(false);
+    run(1, true, false);
+    expect(true);
+}
+
 /* Late steps count with all their time, and the sums saturate. */
 void test_late_steps(void) {
     step(499, false, true);
     expect(false);
+    step(70000, false, true);
     step(70000, false, true);
     expect(true);
     TEST_ASSERT_EQUAL_UINT16(500, confirmation.off_missing_ms);

@@ -165,7 +165,7 @@ void test_a_trip_is_raised_once_and_its_cause_stands(void) {
     expect_set(NONE, &changes.was_trip);
     evaluate();
     expect_summary(NONE, AGV_FAULT_S_DRIVER_ALARM, NONE, NONE);
-    expect_set(NONE, &changes.changed);
+    TEST_ASSERT_FALSE(changes.any);
     set(AGV_FAULT_S_DRIVER_ALARM, false);
     evaluate();
     expect_summary(NONE, NONE, NONE, NONE);
@@ -193,6 +193,19 @@ void test_every_occurrence_of_an_event_is_raised(void) {
     event(AGV_FAULT_RX_OVERRUN, 4);
     evaluate();
     expect_summary(NONE, AGV_FAULT_BUS_OFF, NONE, NONE);
+}
+
+/* Whatever else changes. */
+/* Shows: FSM-5 */
+void test_no_trip_is_raised_again_by_another_fault(void) {
+    for (unsigned fault = 0; fault < AGV_FAULT_COUNT; fault++) {
+        setUp();
+        set(fault, true);
+        evaluate();
+        set(AGV_FAULT_ERROR_PASSIVE, fault != AGV_FAULT_ERROR_PASSIVE);
+        evaluate();
+        TEST_ASSERT_EQUAL_UINT8(NONE, monitor.summary.raised);
+    }
 }
 
 void test_a_warning_changes_but_is_no_trip(void) {
@@ -245,6 +258,7 @@ void test_a_fault_of_the_eps_is_told_whatever_its_class(void) {
     TEST_ASSERT_TRUE(monitor.summary.eps_fault);
     set(AGV_FAULT_EPS_UNDER_VOLTAGE, false);
     set(AGV_FAULT_EPS_MODE_OFF, true);
+    set(AGV_FAULT_CONFIG_INVALID, true);
     evaluate();
     TEST_ASSERT_FALSE(monitor.summary.eps_fault);
     set(AGV_FAULT_EPS_HEARTBEAT_LOST, true);

@@ -423,6 +423,14 @@ void test_pressed_is_pressed_whatever_the_receiver_reports(void) {
 
 /* ---- Late steps ---- */
 
+/* No more than 1 s is kept. */
+void test_for_how_long_all_was_well_saturates(void) {
+    run(3000);
+    for (unsigned i = 0; i < AGV_RESET_CONDITIONS; i++) {
+        TEST_ASSERT_EQUAL_UINT16(1000, reset.held_ms[i]);
+    }
+}
+
 /* Their time counts, up to what is needed. */
 void test_late_steps_count_with_all_their_time(void) {
     lacking = AGV_MISSING_ALL;

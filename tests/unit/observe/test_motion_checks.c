@@ -376,6 +376,21 @@ void test_the_drop_begins_with_the_budget(void) {
     expect_after(50, THROTTLE);
 }
 
+/* A budget that time has emptied forgets the drop too. */
+/* Shows: SUP-11 */
+void test_the_drop_is_forgotten_when_time_has_emptied_the_budget(void) {
+    command_throttle(0);
+    throttle(100);
+    run(10);
+    throttle(90);
+    command_throttle(100);
+    run(20); /* 10 ms down */
+    command_throttle(0);
+    run(450);
+    throttle(75);
+    expect_after(50, THROTTLE);
+}
+
 /* Shows: SUP-11 */
 void test_a_drop_while_not_judged_does_not_count(void) {
     command_throttle(0);
@@ -566,4 +581,21 @@ void test_an_engagement_begins_all_budgets_anew(void) {
     run(100);
     TEST_ASSERT_TRUE(is_active(STEERING));
     TEST_ASSERT_TRUE(is_active(THROTTLE));
+}
+
+/* What was counted of a way, too: 24.9 degrees and 24 counts are not enough. */
+/* Shows: SUP-10, SUP-11 */
+void test_an_engagement_begins_a_way_at_0(void) {
+    agv_motion_checks_engage(&checks);
+    steer(10000);
+    run(400);
+    measured(9249);
+    expect_after(100, STEERING);
+    setUp();
+    agv_motion_checks_engage(&checks);
+    command_throttle(0);
+    vehicle.throttle = 100;
+    run(400);
+    throttle(76);
+    expect_after(100, THROTTLE);
 }

@@ -309,3 +309,21 @@ void test_an_engagement_begins_what_is_judged_anew(void) {
     eps_frames(4, 1, 1);
     expect_only(AGV_FAULT_EPS_UNDER_VOLTAGE);
 }
+
+/* At 0, and not above: a good frame among the bad ones still makes it take longer. */
+/* Shows: SUP-5 */
+void test_an_engagement_begins_each_score_at_0(void) {
+    config.eps_mode_frames = 3;
+    agv_status_checks_engage(&checks);
+    for (unsigned message = AGV_MSG_GEAR_STATUS; message <= AGV_MSG_THROTTLE_STATUS; message++) {
+        value(message, false);
+        value(message, true);
+        value(message, false);
+        value(message, false); /* 2, 1, 3, 5 of 6 */
+        expect_only(NONE);
+    }
+    eps(0, 0);
+    eps(1, 0);
+    eps_frames(2, 0, 0);
+    expect_only(NONE);
+}
