@@ -14,7 +14,6 @@ enum {
     BEAT_GAP_US = 250000,     /* 43Fh every 100 ms, half a cycle later after an answer */
     HELD_TOLERANCE_DDEG = 50, /* between a measured angle and what the EPS sent last */
     CENTRE_DDEG = 9000,
-    MDDEG_PER_DDEG = 1000,
     SIGNALS_BYTES = 7,
 };
 static const uint8_t SAFE_SIGNALS[SIGNALS_BYTES] = {0x00, 0x00, 0x00, 0x00, 0x70, 0x00, 0x00};
@@ -51,12 +50,18 @@ static void is_broken(campaign_judge_t *judge, campaign_break_t broken, uint64_t
     }
 }
 
+static scenario_world_view_t look(const campaign_judge_t *judge) {
+    scenario_world_view_t view;
+    scenario_world_view(judge->world, &view);
+    return view;
+}
+
 static bool is_like(const campaign_judge_t *judge, uint32_t flag) {
     return (judge->plan->row->flags & flag) != 0u;
 }
 
 static agv_message_t message_of(const campaign_judge_t *judge, const hal_can_frame_t *frame) {
-    return (agv_message_t)agv_ids_find(&judge->world->ids, frame->id);
+    return scenario_world_message(judge->world, frame->id);
 }
 
 /** A command that takes the drive away. (065h, which holds the steering, is not counted as one.) */
@@ -113,14 +118,14 @@ static void judge_before(campaign_judge_t *judge, uint64_t t_us, agv_message_t m
 
 /** The safe commands go on. Where they cannot (bus-off after collisions with the other sender), the output is open. */
 static void judge_beat(campaign_judge_t *judge, uint64_t t_us) {
-    if ((t_us - judge->last_beat_us > BEAT_GAP_US) && judge->world->hal.safety_output.on) {
+    if ((t_us - judge->last_beat_us > BEAT_GAP_US) && look(judge).output_closed) {
         is_broken(judge, CAMPAIGN_NOT_LATCHED, t_us);
     }
 }
 
 /** The angle of the steering, as 067h counts it. */
 static int32_t measured_ddeg(const campaign_judge_t *judge) {
-    return (judge->world->vehicle.eps.angle_mddeg / MDDEG_PER_DDEG) + CENTRE_DDEG;
+    return look(judge).angle_ddeg + CENTRE_DDEG;
 }
 
 /** With an engagement, throttle 0 of an AI computer that has not seen it yet is passed on: only after a trip it counts. */
@@ -151,11 +156,11 @@ static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, co
     if ((from != SCENARIO_FROM_SUPERVISOR) || (side != HAL_CAN_VEHICLE)) {
         return;
     }
-    if (frame->id == judge->world->config.status_frame_id) {
+    if (frame->id == look(judge).status_frame_id) {
         return; /* it commands nothing */
     }
     const agv_message_t message = message_of(judge, frame);
-    if (judge->world->hal.safety_output.on && (judge->closed_us == CAMPAIGN_NEVER)) {
+    if ((judge->closed_us == CAMPAIGN_NEVER) && look(judge).output_closed) {
         judge->closed_us = t_us;
     }
     if ((t_us < judge->cause_us) && !is_like(judge, CAMPAIGN_START)) {
@@ -166,7 +171,7 @@ static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, co
 }
 
 static uint64_t now_us(const campaign_judge_t *judge) {
-    return sim_bus_now_us(&judge->world->buses[HAL_CAN_VEHICLE]);
+    return look(judge).now_us;
 }
 
 static void on_state(campaign_judge_t *judge, uint64_t t_ms, const agv_event_t *event) {
@@ -183,8 +188,8 @@ static void on_state(campaign_judge_t *judge, uint64_t t_ms, const agv_event_t *
         return;
     }
     judge->confirmed_us = (judge->confirmed_us == CAMPAIGN_NEVER) ? now_us(judge) : judge->confirmed_us;
-    const vehicle_t *vehicle = &judge->world->vehicle;
-    const bool parked = (vehicle->body.gear == (uint8_t)AGV_GEAR_P) && !vehicle->vcu.autopilot;
+    const scenario_world_view_t view = look(judge);
+    const bool parked = (view.gear == (uint8_t)AGV_GEAR_P) && !view.autopilot;
     if (!parked && !is_like(judge, CAMPAIGN_LIES)) {
         is_broken(judge, CAMPAIGN_FALSE_CONFIRM, now_us(judge));
     }
@@ -211,7 +216,7 @@ scenario_watch_t campaign_judge_watch(campaign_judge_t *judge) {
 /** Everything has to be as planned when the cause comes. */
 static void judge_readiness(campaign_judge_t *judge) {
     const campaign_plan_t *plan = judge->plan;
-    judge->engaged = judge->world->vehicle.vcu.autopilot;
+    judge->engaged = look(judge).autopilot;
     const bool as_planned = (judge->engaged == plan->engaged) || (plan->engagement != NULL);
     if ((plan->cause_ms != 0u) && (!judge->was_closed || !as_planned)) {
         is_broken(judge, CAMPAIGN_NOT_READY, judge->cause_us);
@@ -224,7 +229,7 @@ static uint64_t changed_us(const campaign_judge_t *judge, uint64_t t_ms) {
 }
 
 void campaign_judge_tick(campaign_judge_t *judge, uint64_t t_ms) {
-    const bool closed = judge->world->hal.safety_output.on;
+    const bool closed = look(judge).output_closed;
     const campaign_plan_t *plan = judge->plan;
     const uint64_t step_ms = plan->cause_ms - (is_like(judge, CAMPAIGN_LATER) ? plan->number : 0u);
 

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-enum { US_PER_MS = 1000, PASSIVE_TEC = 200, BITS_PER_BYTE = 8 };
+enum { US_PER_MS = 1000, MDDEG_PER_DDEG = 1000, PASSIVE_TEC = 200, BITS_PER_BYTE = 8 };
 
 static void tell_event(void *ctx, const session_event_t *event) {
     const scenario_world_t *world = ctx;
@@ -362,4 +362,33 @@ void scenario_world_tick(scenario_world_t *world, uint64_t t_ms) {
     }
     step_supervisor(world);
     run_buses(world, until_us);
+}
+
+void scenario_world_view(const scenario_world_t *world, scenario_world_view_t *view) {
+    const hal_t *hal = &world->hal;
+    *view = (scenario_world_view_t){
+        .t_ms = world->t_ms,
+        .now_us = sim_bus_now_us(&world->buses[HAL_CAN_VEHICLE]),
+        .status_frame_id = world->config.status_frame_id,
+        .output_closed = hal->safety_output.on,
+        .is_deaf = world->t_ms < world->deaf_until_ms,
+        .received = hal->can[HAL_CAN_VEHICLE].received + hal->can[HAL_CAN_AI].received,
+        .feeds = hal->feeds,
+        .bites = hal->bites,
+        .gear = world->vehicle.body.gear,
+        .autopilot = world->vehicle.vcu.autopilot,
+        .angle_ddeg = world->vehicle.eps.angle_mddeg / MDDEG_PER_DDEG,
+    };
+}
+
+void scenario_world_vehicle(scenario_world_t *world, vehicle_view_t *view) {
+    vehicle_view(&world->vehicle, world->t_ms, view);
+}
+
+agv_message_t scenario_world_message(const scenario_world_t *world, uint32_t id) {
+    return (agv_message_t)agv_ids_find(&world->ids, id);
+}
+
+const session_t *scenario_world_session(const scenario_world_t *world) {
+    return &world->session;
 }

@@ -52,7 +52,7 @@ typedef struct {
     hal_can_frame_t frame;
 } scenario_past_wire_t;
 
-/** Some 200 KiB: not for the stack. Read the members, change them through the functions. */
+/** Some 200 KiB: not for the stack. Change it through the functions, look at it by scenario_world_view(). */
 struct scenario_world {
     sim_bus_t buses[HAL_CAN_SIDES];
     sim_bus_t *running[HAL_CAN_SIDES];
@@ -80,6 +80,21 @@ struct scenario_world {
     size_t past_wire_count;
 };
 
+/** What judges and screens may see of a world. */
+typedef struct {
+    uint64_t t_ms;
+    uint64_t now_us;          /**< of the vehicle side's bus */
+    uint16_t status_frame_id; /**< as configured; 0: none */
+    bool output_closed;
+    bool is_deaf;       /**< the supervisor hangs or is without power: frames may wait for it */
+    uint32_t received;  /**< frames handed to it, of both sides */
+    uint32_t feeds;     /**< of its watchdog */
+    uint32_t bites;     /**< likewise */
+    uint8_t gear;       /**< agv_gear_t, engaged */
+    bool autopilot;     /**< mode of the VCU */
+    int32_t angle_ddeg; /**< of the steering, when it last moved */
+} scenario_world_view_t;
+
 /** Build a world as a scenario begins. @return false: a bit rate that there is not */
 bool scenario_world_init(scenario_world_t *world, const scenario_t *scenario);
 
@@ -101,6 +116,18 @@ void scenario_world_act(scenario_world_t *world, uint64_t t_ms, const scenario_s
  * @param saved its pointers are put right
  */
 void scenario_world_restore(scenario_world_t *world, scenario_world_t *saved);
+
+/** Look at it. */
+void scenario_world_view(const scenario_world_t *world, scenario_world_view_t *view);
+
+/** What the vehicle does, now. */
+void scenario_world_vehicle(scenario_world_t *world, vehicle_view_t *view);
+
+/** The message of an identifier, with the configured ID set; AGV_MSG_NONE: none. */
+agv_message_t scenario_world_message(const scenario_world_t *world, uint32_t id);
+
+/** The supervisor's session, to read. */
+const session_t *scenario_world_session(const scenario_world_t *world);
 
 /** A millisecond: @p t_ms is 0 and then one more each time. */
 void scenario_world_tick(scenario_world_t *world, uint64_t t_ms);

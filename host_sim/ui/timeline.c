@@ -92,7 +92,9 @@ static void show_state(timeline_t *timeline, uint64_t t_us, const agv_event_t *e
 
     timeline->shown = 0u;
     if (event->b == (uint8_t)AGV_STATE_TRIPPED) {
-        timeline->trip_us = sim_bus_now_us(&timeline->world->buses[HAL_CAN_VEHICLE]);
+        scenario_world_view_t view;
+        scenario_world_view(timeline->world, &view);
+        timeline->trip_us = view.now_us;
         timeline->wants_reaction = reason != NULL;
     }
     line(timeline, t_us, "supervisor", "=> %s%s%s", agv_state_name((agv_state_t)event->b), (reason != NULL) ? ": " : "",
@@ -159,7 +161,7 @@ static void show_reaction(timeline_t *timeline, uint64_t t_us) {
 
 /** The first frame of each message that the supervisor sends in a state. */
 static void show_sent(timeline_t *timeline, uint64_t t_us, const hal_can_frame_t *frame) {
-    const agv_message_t message = (agv_message_t)agv_ids_find(&timeline->world->ids, frame->id);
+    const agv_message_t message = scenario_world_message(timeline->world, frame->id);
     const uint8_t *d = frame->data;
 
     if ((message == AGV_MSG_NONE) || ((timeline->shown & (1u << message)) != 0u)) {
@@ -174,7 +176,7 @@ static void show_sent(timeline_t *timeline, uint64_t t_us, const hal_can_frame_t
 }
 
 static void show_reported(timeline_t *timeline, uint64_t t_us, const hal_can_frame_t *frame) {
-    const agv_message_t message = (agv_message_t)agv_ids_find(&timeline->world->ids, frame->id);
+    const agv_message_t message = scenario_world_message(timeline->world, frame->id);
     agv_wheel_speed_t wheels;
 
     if ((message == AGV_MSG_GEAR_STATUS) && (frame->data[0] != timeline->gear)) {

@@ -67,8 +67,9 @@ static void act(soak_t *soak, uint32_t from, uint32_t to) {
 }
 
 static bool may_come(const soak_t *soak, const soak_row_t *row) {
-    const bool engaged = soak->world.vehicle.vcu.autopilot;
-    const uint32_t other = engaged ? SOAK_MANUAL : SOAK_ENGAGED;
+    scenario_world_view_t view;
+    scenario_world_view(&soak->world, &view);
+    const uint32_t other = view.autopilot ? SOAK_MANUAL : SOAK_ENGAGED;
     return fits(soak, row) && ((row->flags & other) == 0u);
 }
 

@@ -42,7 +42,9 @@ static void on_state(soak_t *soak, uint64_t t_ms, const agv_event_t *event) {
         state->ready = true;
         state->ready_ms = t_ms;
         state->ticks_before = state->ticks + 1u; /* told of after the tick that it happened in */
-        state->feeds_before = soak->world.hal.feeds;
+        scenario_world_view_t view;
+        scenario_world_view(&soak->world, &view);
+        state->feeds_before = view.feeds;
     }
 }
 
@@ -134,11 +136,12 @@ scenario_watch_t soak_watch(soak_t *soak) {
 }
 
 void soak_judge_tick(soak_t *soak) {
-    const scenario_world_t *world = &soak->world;
-    if (world->t_ms >= world->deaf_until_ms) {
+    scenario_world_view_t view;
+    scenario_world_view(&soak->world, &view);
+    if (!view.is_deaf) {
         soak->state.ticks++;
     }
-    if (soak->state.ready && !world->hal.safety_output.on) {
+    if (soak->state.ready && !view.output_closed) {
         soak_break(soak, "the output is open at %" PRIu64 " ms, in: %s", soak->state.t_ms, present_row(soak));
     }
 }
@@ -153,25 +156,23 @@ static void judge_count(soak_t *soak, const char *what, uint64_t counted, uint64
 
 void soak_judge_counters(soak_t *soak) {
     const soak_state_t *state = &soak->state;
-    const scenario_world_t *world = &soak->world;
-    const hal_t *hal = &world->hal;
-    const agv_counters_t *counters = agv_supervisor_counters(&world->session.supervisor);
+    const agv_supervisor_t *supervisor = &scenario_world_session(&soak->world)->supervisor;
+    const agv_counters_t *counters = agv_supervisor_counters(supervisor);
+    scenario_world_view_t view;
 
-    if (world->t_ms < world->deaf_until_ms) {
+    scenario_world_view(&soak->world, &view);
+    if (view.is_deaf) {
         return; /* frames wait: the next time */
     }
     judge_count(soak, "frames received", counters->received, state->wire_others + state->delivered, 0u);
-    judge_count(soak, "frames received, by the port",
-                (uint64_t)hal->can[HAL_CAN_VEHICLE].received + hal->can[HAL_CAN_AI].received,
-                state->wire_others + state->delivered, 0u);
+    judge_count(soak, "frames received, by the port", view.received, state->wire_others + state->delivered, 0u);
     judge_count(soak, "frames sent", counters->sent, state->wire_own, WAITING_MAX);
     judge_count(soak, "warnings", counters->warnings, state->warnings, 0u);
     judge_count(soak, "refused by the gate", counters->gate_refused, 0u, 0u);
-    judge_count(soak, "bites of the watchdog", hal->bites, 0u, 0u);
-    judge_count(soak, "feeds of the watchdog", (uint64_t)hal->feeds - state->feeds_before,
+    judge_count(soak, "bites of the watchdog", view.bites, 0u, 0u);
+    judge_count(soak, "feeds of the watchdog", (uint64_t)view.feeds - state->feeds_before,
                 state->ticks - state->ticks_before, 0u);
-    judge_count(soak, "the supervisor's clock", agv_supervisor_tick_ms(&world->session.supervisor),
-                soak->start_ms + world->t_ms, 0u);
+    judge_count(soak, "the supervisor's clock", agv_supervisor_tick_ms(supervisor), soak->start_ms + view.t_ms, 0u);
     const uint64_t slots = (state->t_ms - state->status_ms) / SOAK_STATUS_MS;
     judge_count(soak, "status frames", slots + 1u, state->status_frames, 2u);
 }

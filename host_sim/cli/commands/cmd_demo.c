@@ -14,7 +14,7 @@
 #include "io/events.h"
 #include "io/interrupt.h"
 #include "io/output.h"
-#include "scenario/scenario_run.h"
+#include "scenario/run/scenario_run.h"
 #include "ui/timeline.h"
 
 #define MAIN_JOB "demo"
@@ -144,7 +144,7 @@ static status_t play(work_t *work, const char *events) {
     }
     if (work->events.is_open) {
         events_summary_t summary = {0};
-        events_summarise(&work->run.world.session, &summary);
+        events_summarise(scenario_world_session(&work->run.world), &summary);
         events_write_summary(&work->events, &summary);
     }
     if (!output_commit(&work->events)) {

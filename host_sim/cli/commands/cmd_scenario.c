@@ -17,7 +17,7 @@
 #include "io/junit.h"
 #include "io/output.h"
 #include "live/scenario_bus.h"
-#include "scenario/scenario_run.h"
+#include "scenario/run/scenario_run.h"
 
 enum { FILES_MAX = 1000, DEFAULT_TOLERANCE_MS = 50, TOLERANCE_MAX_MS = 1000 };
 
@@ -234,7 +234,7 @@ static void play_simulated(work_t *work, events_summary_t *summary) {
     const given_t *given = &work->given;
 
     (void)scenario_run(&work->run, &watch, (given->events != NULL) ? 1u : 0u, NULL);
-    events_summarise(&work->run.world.session, summary);
+    events_summarise(scenario_world_session(&work->run.world), summary);
 }
 
 /** A frame of the supervisor, as a line of a log. */

@@ -1,4 +1,4 @@
-#include "scenario/scenario_run.h"
+#include "scenario/run/scenario_run.h"
 
 #include "io/interrupt.h"
 #include "scenario/scenario_player.h"
@@ -48,10 +48,12 @@ static void play(scenario_run_t *run, void *ctx, scenario_step_fn *on_step) {
         }
         scenario_world_tick(&run->world, t_ms);
         hazard_tick(&run->hazard, t_ms);
-        scenario_check_output(&run->check, t_ms, run->world.hal.safety_output.on);
+        scenario_world_view_t seen;
+        scenario_world_view(&run->world, &seen);
+        scenario_check_output(&run->check, t_ms, seen.output_closed);
         if (scenario_check_wants_vehicle(&run->check, t_ms)) {
             vehicle_view_t view;
-            vehicle_view(&run->world.vehicle, t_ms, &view);
+            scenario_world_vehicle(&run->world, &view);
             scenario_check_vehicle(&run->check, t_ms, &view);
         }
         run->was_interrupted = ((t_ms % LOOK_FOR_SIGNALS_EVERY_MS) == 0u) && interrupt_pending();
@@ -75,6 +77,6 @@ bool scenario_run(scenario_run_t *run, const scenario_watch_t watches[], size_t 
     scenario_world_start(&run->world);
     play(run, (count > 0u) ? watches[0].ctx : NULL, on_step);
     check_hazards(run);
-    scenario_check_finish(&run->check, agv_supervisor_counters(&run->world.session.supervisor));
+    scenario_check_finish(&run->check, agv_supervisor_counters(&scenario_world_session(&run->world)->supervisor));
     return !run->was_interrupted && (run->check.failure_count == 0u);
 }
