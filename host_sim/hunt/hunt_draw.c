@@ -9,7 +9,7 @@
 
 enum { BEGIN_FIRST_MS = 530, BEGIN_MIN_MS = 900, BEGIN_MAX_MS = 4000, BEGIN_SOON_MS = 2200 };
 enum { RESET_MIN_MS = 500, RESET_MAX_MS = 3000 };
-enum { LASTS_MIN_MS = 20, LASTS_MAX_MS = 3000, AFTER_ENGAGED_MS = 4000, SHORT_PATTERN = 4, TRIES = 20 };
+enum { LASTS_MIN_MS = 20, LASTS_MAX_MS = 3000, AFTER_ENGAGED_MS = 4000, PATTERN_MS = 9000, SHORT_PATTERN = 4, TRIES = 20 };
 
 /** The attack of this name, which is one. */
 static size_t attack_named(const char *name) {
@@ -120,24 +120,6 @@ static void draw_action(const hunt_program_t *program, hunt_action_t *action, ui
     hunt_draw_times(program, action, state);
 }
 
-static void add_attack(hunt_program_t *program, size_t attack, uint64_t *state) {
-    if (program->action_count < (uint32_t)HUNT_ACTIONS_MAX) {
-        hunt_action_t *action = &program->actions[program->action_count];
-        action->attack = (uint16_t)attack;
-        draw_action(program, action, state);
-        program->action_count++;
-    }
-}
-
-void hunt_add_action(hunt_program_t *program, uint64_t *state) {
-    size_t attack = 0u;
-
-    do {
-        attack = chance_draw(state, 0u, (uint32_t)HUNT_ATTACK_COUNT - 1u);
-    } while (((HUNT_ATTACKS[attack].flags & HUNT_GATEWAY) != 0u) && !program->gateway);
-    add_attack(program, attack, state);
-}
-
 /** The run becomes longer; what lasts up to its end still does. */
 static void lengthen(hunt_program_t *program, uint32_t duration_ms) {
     const uint32_t before_ms = program->duration_ms;
@@ -149,6 +131,33 @@ static void lengthen(hunt_program_t *program, uint32_t duration_ms) {
             action->end_ms = (action->end_ms == before_ms) ? duration_ms : action->end_ms;
         }
     }
+}
+
+/** A pattern may need long: what is right now and then takes back what is wrong. */
+static bool needs_long(const hunt_action_t *action) {
+    return ((HUNT_ATTACKS[action->attack].flags & HUNT_PATTERN) != 0u) && (action->parameters[HUNT_PATTERN_BAD] != 0u);
+}
+
+static void add_attack(hunt_program_t *program, size_t attack, uint64_t *state) {
+    if (program->action_count < (uint32_t)HUNT_ACTIONS_MAX) {
+        hunt_action_t *action = &program->actions[program->action_count];
+        action->attack = (uint16_t)attack;
+        draw_action(program, action, state);
+        program->action_count++;
+        if (needs_long(action) && hunt_toss(state, 2u)) {
+            lengthen(program, action->begin_ms + PATTERN_MS);
+            action->end_ms = program->duration_ms;
+        }
+    }
+}
+
+void hunt_add_action(hunt_program_t *program, uint64_t *state) {
+    size_t attack = 0u;
+
+    do {
+        attack = chance_draw(state, 0u, (uint32_t)HUNT_ATTACK_COUNT - 1u);
+    } while (((HUNT_ATTACKS[attack].flags & HUNT_GATEWAY) != 0u) && !program->gateway);
+    add_attack(program, attack, state);
 }
 
 void hunt_add_reset(hunt_program_t *program, uint64_t *state) {
