@@ -1,6 +1,6 @@
 /*
  * All 2,048 identifiers by every length, on each side, with several payloads, in each state of each variant of the
- * configuration (world.h): exhaustively, not by chance, against the rules of rules.h. And what is no whole message of the
+ * configuration (testbed.h): exhaustively, not by chance, against the rules of rules.h. And what is no whole message of the
  * protocol from the side where it belongs has to leave no trace but in the counters (INT-2): after it, and after the
  * ticks that follow, everything is as without it, but for the answer to a command of another (TOP-1).
  *
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "world.h"
+#include "testbed.h"
 
 enum { ID_COUNT = 0x800, PATTERNS = 6, TICKS = 8, LENGTHS = 11, KINDS = 4 };
 
@@ -26,7 +26,7 @@ static const uint8_t PATTERN[PATTERNS][8] = {
     {0x28, 0x23, 0x28, 0x23, 0, 1, 0xC0, 0x10},
 };
 static const uint8_t KIND[KINDS] = {0, HAL_CAN_EXTENDED, HAL_CAN_REMOTE, HAL_CAN_ERROR};
-static const char *const STATE_NAMES[WORLD_STATES] = {"INIT", "STANDBY", "ACTIVE", "TRIPPED", "SAFE"};
+static const char *const STATE_NAMES[TESTBED_STATES] = {"INIT", "STANDBY", "ACTIVE", "TRIPPED", "SAFE"};
 
 /* What a frame must not change. */
 typedef struct {
@@ -43,12 +43,12 @@ static uint64_t without_trace;
 static uint64_t tripped;
 
 static trace_t look(void) {
-    return (trace_t){.state = agv_supervisor_state(&world.supervisor),
-                     .first_reason = agv_supervisor_first_reason(&world.supervisor),
-                     .active = agv_supervisor_active_faults(&world.supervisor),
-                     .output_closed = world.hal.safety_output.on,
-                     .led = agv_supervisor_led_code(&world.supervisor),
-                     .sent = world.rules.sent};
+    return (trace_t){.state = agv_supervisor_state(&testbed.supervisor),
+                     .first_reason = agv_supervisor_first_reason(&testbed.supervisor),
+                     .active = agv_supervisor_active_faults(&testbed.supervisor),
+                     .output_closed = testbed.hal.safety_output.on,
+                     .led = agv_supervisor_led_code(&testbed.supervisor),
+                     .sent = testbed.rules.sent};
 }
 
 static bool is_same(const trace_t *a, const trace_t *b, bool answered) {
@@ -57,7 +57,7 @@ static bool is_same(const trace_t *a, const trace_t *b, bool answered) {
            (a->led == b->led) && (answered || (a->sent == b->sent));
 }
 
-/* The parts of the world that a supervisor changes; the recorder and the log only tell. */
+/* The parts of the testbed that a supervisor changes; the recorder and the log decide nothing. */
 typedef struct {
     agv_supervisor_t supervisor;
     struct hal hal;
@@ -67,24 +67,24 @@ typedef struct {
 } kept_t;
 
 static void keep(kept_t *kept) {
-    *kept = (kept_t){.supervisor = world.supervisor,
-                     .hal = world.hal,
-                     .rules = world.rules,
-                     .now_ms = world.now_ms,
-                     .ticked_ms = world.ticked_ms};
+    *kept = (kept_t){.supervisor = testbed.supervisor,
+                     .hal = testbed.hal,
+                     .rules = testbed.rules,
+                     .now_ms = testbed.now_ms,
+                     .ticked_ms = testbed.ticked_ms};
 }
 
 static void put_back(const kept_t *kept) {
-    world.supervisor = kept->supervisor;
-    world.hal = kept->hal;
-    world.rules = kept->rules;
-    world.now_ms = kept->now_ms;
-    world.ticked_ms = kept->ticked_ms;
+    testbed.supervisor = kept->supervisor;
+    testbed.hal = kept->hal;
+    testbed.rules = kept->rules;
+    testbed.now_ms = kept->now_ms;
+    testbed.ticked_ms = kept->ticked_ms;
 }
 
 static void ticks(unsigned count) {
     for (unsigned i = 0; i < count; i++) {
-        world_jump(1);
+        testbed_jump(1);
     }
 }
 
@@ -98,12 +98,12 @@ static bool is_one_of(uint32_t id, const uint16_t *ids, unsigned count) {
 }
 
 static bool is_command(uint32_t id) {
-    const uint16_t ids[] = {(uint16_t)world.rules.oracle.signal_id, 0x168, 0x075, 0x065};
+    const uint16_t ids[] = {(uint16_t)testbed.rules.oracle.signal_id, 0x168, 0x075, 0x065};
     return is_one_of(id, ids, 4);
 }
 
 static bool is_status(uint32_t id) {
-    const uint16_t ids[] = {(uint16_t)world.rules.oracle.vehicle_id, 0x0A3, 0x050, 0x067, 0x167, 0x267, 0x101};
+    const uint16_t ids[] = {(uint16_t)testbed.rules.oracle.vehicle_id, 0x0A3, 0x050, 0x067, 0x167, 0x267, 0x101};
     return is_one_of(id, ids, 7);
 }
 
@@ -115,7 +115,7 @@ static bool is_data_frame(const hal_can_frame_t *frame) {
 /* What says something though it is no whole message: commands of any length, from where none may come (SUP-6) and while
  * engaged (SUP-5), and the identifier of the status frame (TOP-3). */
 static bool is_reported(hal_can_side_t side, const hal_can_frame_t *frame, agv_state_t state) {
-    const bool gateway = world.rules.oracle.gateway;
+    const bool gateway = testbed.rules.oracle.gateway;
     const bool engaged = (state == AGV_STATE_ACTIVE) || (state == AGV_STATE_TRIPPED);
     if (!is_data_frame(frame) || (!gateway && (side == HAL_CAN_AI))) {
         return false;
@@ -123,12 +123,12 @@ static bool is_reported(hal_can_side_t side, const hal_can_frame_t *frame, agv_s
     if (is_command(frame->id)) {
         return engaged || (gateway && (side == HAL_CAN_VEHICLE));
     }
-    return (side == HAL_CAN_VEHICLE) && (frame->id == world.rules.oracle.own_status_id) && (frame->id != 0u);
+    return (side == HAL_CAN_VEHICLE) && (frame->id == testbed.rules.oracle.own_status_id) && (frame->id != 0u);
 }
 
 /* Whether it is a message, whole, on a side where it says something; a command on the wrong side is an intrusion. */
 static bool says_something(hal_can_side_t side, const hal_can_frame_t *frame) {
-    const bool gateway = world.rules.oracle.gateway;
+    const bool gateway = testbed.rules.oracle.gateway;
     if ((frame->flags != 0u) || (frame->length != 8u) || (!gateway && (side == HAL_CAN_AI))) {
         return false;
     }
@@ -145,10 +145,10 @@ static void fail(const char *what, hal_can_side_t side, const hal_can_frame_t *f
 static void try_frame(const kept_t *kept, const trace_t *without, hal_can_side_t side, const hal_can_frame_t *frame) {
     put_back(kept);
     cases++;
-    world_frame(side, *frame, 1);
+    testbed_frame(side, *frame, 1);
     const bool speaks = says_something(side, frame) || is_reported(side, frame, without->state);
     const bool answered = is_command(frame->id) && (side == HAL_CAN_VEHICLE) && is_data_frame(frame);
-    world_jump(0);
+    testbed_jump(0);
     ticks(speaks || answered ? TICKS : 0);
     if (speaks) {
         tripped += ((without->state != AGV_STATE_TRIPPED) && (look().state == AGV_STATE_TRIPPED)) ? 1u : 0u;
@@ -185,7 +185,7 @@ static void try_id(const kept_t *kept, const trace_t *without, uint32_t id, unsi
 static void try_state(unsigned variant, unsigned state, unsigned payloads) {
     static kept_t kept;
     const uint64_t before = cases;
-    world_load(variant, state);
+    testbed_load(variant, state);
     keep(&kept);
     ticks(1);
     const trace_t without = look();
@@ -201,8 +201,8 @@ int main(int argc, char **argv) {
         (void)fprintf(stderr, "usage: every_frame [PAYLOADS]\n");
         return 2;
     }
-    for (unsigned variant = 0; variant < (unsigned)WORLD_VARIANTS; variant++) {
-        for (unsigned state = 0; state < (unsigned)WORLD_STATES; state++) {
+    for (unsigned variant = 0; variant < (unsigned)TESTBED_VARIANTS; variant++) {
+        for (unsigned state = 0; state < (unsigned)TESTBED_STATES; state++) {
             try_state(variant, state, (unsigned)payloads);
         }
     }

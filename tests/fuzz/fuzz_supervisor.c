@@ -5,7 +5,7 @@
  * and how (upper half), and what that needs.
  */
 #include "input.h"
-#include "world.h"
+#include "testbed.h"
 
 enum { STEPS_MAX = 64, RUN_MAX_MS = 3000 };
 
@@ -18,7 +18,7 @@ static void run(uint32_t ms) {
     const uint32_t left = RUN_MAX_MS - ran_ms;
     const uint32_t now = (ms < left) ? ms : left;
     ran_ms += now;
-    world_run(now);
+    testbed_run(now);
 }
 
 /* Any frame: how & 1 the AI side, how & 2 any identifier, how & 4 any kind and length, how & 8 another stamp. */
@@ -38,11 +38,11 @@ static void any_frame(input_t *input, unsigned how) {
         ahead_ms = (int8_t)input_byte(input);
     }
     input_bytes(input, frame.data, (frame.length < 8u) ? frame.length : 8u);
-    world_frame(((how & 1u) != 0u) ? HAL_CAN_AI : HAL_CAN_VEHICLE, frame, ahead_ms);
+    testbed_frame(((how & 1u) != 0u) ? HAL_CAN_AI : HAL_CAN_VEHICLE, frame, ahead_ms);
 }
 
 static void change_message(input_t *input, unsigned how) {
-    traffic_message_t *m = &world.traffic[input_byte(input) % (unsigned)TRAFFIC_MESSAGES];
+    traffic_message_t *m = &testbed.traffic[input_byte(input) % (unsigned)TRAFFIC_MESSAGES];
     uint8_t where = 0;
     switch (how & 3u) {
     case 0:
@@ -66,39 +66,39 @@ static void change_message(input_t *input, unsigned how) {
 static void change_vehicle(unsigned how) {
     switch (how & 7u) {
     case 0:
-        world_heal();
+        testbed_heal();
         break;
     case 1: /* drives on autopilot */
-        world_mode(0x80);
-        world_gear(1);
-        world_wheels(200);
+        testbed_mode(0x80);
+        testbed_gear(1);
+        testbed_wheels(200);
         break;
     case 2: /* obeys */
-        world_mode(0x40);
-        world_gear(8);
-        world_wheels(0);
+        testbed_mode(0x40);
+        testbed_gear(8);
+        testbed_wheels(0);
         break;
     case 3:
-        world_button(true);
+        testbed_button(true);
         break;
     case 4:
-        world_button(false);
+        testbed_button(false);
         break;
     case 5:
-        world_mode(0xC0);
+        testbed_mode(0xC0);
         break;
     case 6:
-        world_mode(0x00);
+        testbed_mode(0x00);
         break;
     default:
-        world.receive_path_dead = (how & 8u) != 0u;
+        testbed.receive_path_dead = (how & 8u) != 0u;
         break;
     }
 }
 
 static void long_silence(input_t *input, unsigned how) {
     const uint32_t days[4] = {1, 1000, 86400000, 1000000000}; /* in ms; in one step less than half of the clock */
-    world_jump(days[how & 3u] * (1u + (input_byte(input) & 1u)));
+    testbed_jump(days[how & 3u] * (1u + (input_byte(input) & 1u)));
 }
 
 static void step(input_t *input) {
@@ -111,10 +111,10 @@ static void step(input_t *input) {
         any_frame(input, how);
         break;
     case 3:
-        world_send(input_byte(input) % (unsigned)TRAFFIC_MESSAGES);
+        testbed_send(input_byte(input) % (unsigned)TRAFFIC_MESSAGES);
         break;
     case 4:
-        world_jump(how);
+        testbed_jump(how);
         break;
     case 5:
         run(how + 1u);
@@ -135,10 +135,10 @@ static void step(input_t *input) {
         change_vehicle(how);
         break;
     case 13:
-        world_disturb((how & 1u) != 0u ? HAL_CAN_AI : HAL_CAN_VEHICLE, how >> 1u, input_byte(input));
+        testbed_disturb((how & 1u) != 0u ? HAL_CAN_AI : HAL_CAN_VEHICLE, how >> 1u, input_byte(input));
         break;
     case 14:
-        world_restart((hal_reset_cause_t)(how % 6u));
+        testbed_restart((hal_reset_cause_t)(how % 6u));
         break;
     default:
         long_silence(input, how);
@@ -148,9 +148,9 @@ static void step(input_t *input) {
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     input_t input = {.at = data, .left = size};
-    const unsigned state = input_byte(&input) % (unsigned)WORLD_STATES;
-    const unsigned variant = input_byte(&input) % (unsigned)WORLD_VARIANTS;
-    world_load(variant, state);
+    const unsigned state = input_byte(&input) % (unsigned)TESTBED_STATES;
+    const unsigned variant = input_byte(&input) % (unsigned)TESTBED_VARIANTS;
+    testbed_load(variant, state);
     ran_ms = 0;
     for (unsigned i = 0; (i < STEPS_MAX) && (input.left > 0u); i++) {
         step(&input);

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "world.h"
+#include "testbed.h"
 
 enum { PRINTED_MAX = 20 };
 
@@ -27,14 +27,14 @@ bool harm_is_noted(void) {
 }
 
 bool harm_rule_is(const char *text) {
-    return strncmp(world.rules.broken, text, strlen(text)) == 0;
+    return strncmp(testbed.rules.broken, text, strlen(text)) == 0;
 }
 
 void harm_take_rule(bool expected) {
     if (!expected) {
-        harm_note(world.rules.broken);
+        harm_note(testbed.rules.broken);
     }
-    world.rules.broken[0] = '\0';
+    testbed.rules.broken[0] = '\0';
 }
 
 void harm_report(const char *format, ...) {

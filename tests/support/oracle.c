@@ -139,7 +139,7 @@ static bool safe_to_vehicle(const oracle_t *oracle, const hal_can_frame_t *frame
     }
 }
 
-/* Motion: while engaged only when the last 363h says so; the end of an engagement is told once. */
+/* Motion: while engaged only when the last 363h says so; the end of an engagement is reported once. */
 static bool may_move(const oracle_t *oracle, agv_state_t state) {
     return (state == AGV_STATE_ACTIVE) ? (oracle->mode_bits == 0x80u) : oracle->pass_all_in_manual;
 }

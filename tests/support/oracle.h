@@ -1,5 +1,5 @@
 /*
- * What may leave in which state (FSM-6, and nothing of its own in STANDBY and ACTIVE on the shared bus), said once more
+ * What may leave in which state (FSM-6, and nothing of its own in STANDBY and ACTIVE on the shared bus), stated once more
  * in raw identifiers and bytes. It shares nothing with the gate: tests hand it every frame in and every frame out.
  */
 #ifndef ORACLE_H

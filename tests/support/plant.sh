@@ -5,8 +5,8 @@
 # Compile a program of tests/proofs. compile SOURCE CORE-FOLDER OUTPUT
 compile() {
     ${CC:-cc} -std=c11 -O2 -w -I"$2" -Ifirmware/include -Ihal/include -Ihal/forward/include -Ihal/sim/include -Itests/support \
-        "$2"/*/*.c hal/forward/*.c hal/sim/src/*.c tests/support/{world,rules,oracle,traffic}.c \
-        tests/support/{moment,part,harm}.c "$1" -o "$3"
+        "$2"/*/*.c hal/forward/*.c hal/sim/src/*.c tests/support/{testbed,rules,oracle,traffic}.c \
+        tests/support/{testbed_state,part,harm}.c "$1" -o "$3"
 }
 
 # A copy of the core with texts replaced. plant FOLDER [ROOM/FILE OLD NEW]...

@@ -1,5 +1,5 @@
 /*
- * What a supervisor must do and must never do, said once more in raw identifiers and bytes, from docs/requirements.md and
+ * What a supervisor must do and must never do, stated once more in raw identifiers and bytes, from docs/requirements.md and
  * docs/protocol.md and not from the code. It shares nothing with what it judges but the names of the states.
  *
  * The frames themselves are judged by oracle.h (FSM-6, TOP-1, TOP-2). Here stands what needs a memory:

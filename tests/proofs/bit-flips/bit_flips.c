@@ -10,8 +10,8 @@
 #include <stdlib.h>
 
 #include "harm.h"
-#include "moment.h"
 #include "part.h"
+#include "testbed_state.h"
 
 enum { BITS = 8 * sizeof(agv_supervisor_t), SEALED_BITS = 8 * offsetof(agv_supervisor_t, receive_alive) };
 enum { SHORT_MS = 40, LONG_MS = 1300, LONG_EVERY = 61 };
@@ -26,7 +26,7 @@ static struct {
     uint64_t late; /* of the detected ones: not in the first millisecond */
     uint64_t frames;
     uint64_t resets; /* by a button, under all conditions */
-    uint64_t moments_of[WORLD_STATES];
+    uint64_t moments_of[TESTBED_STATES];
     uint64_t latched_flips;
 } sum;
 
@@ -41,6 +41,7 @@ static struct {
     {"TOP-4: ", 0}, /* shadow is off in the built-in constants */
 };
 
+static testbed_state_t saved;
 static const char *situation;
 
 static void on_broken(void) {
@@ -55,7 +56,7 @@ static void on_broken(void) {
 }
 
 static bool is_found(void) {
-    return world_has(AGV_FAULT_MEMORY_CORRUPTED);
+    return testbed_has(AGV_FAULT_MEMORY_CORRUPTED);
 }
 
 enum { BUILT_IN_STATUS_ID = 0x7F0 };
@@ -63,45 +64,45 @@ static sim_hal_sink_fn *judge_sent;
 
 /* What began anew with built-in constants sends its status frame with the identifier that stands there (FSM-9, TOP-3). */
 static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
-    const uint32_t configured = world.rules.oracle.own_status_id;
+    const uint32_t configured = testbed.rules.oracle.own_status_id;
     if (is_found() && (frame->id == (uint32_t)BUILT_IN_STATUS_ID)) {
-        world.rules.oracle.own_status_id = frame->id;
+        testbed.rules.oracle.own_status_id = frame->id;
     }
     judge_sent(ctx, side, frame);
-    world.rules.oracle.own_status_id = configured;
+    testbed.rules.oracle.own_status_id = configured;
 }
 
 /* FSM-9: only a power-on ends it. */
 static void judge_found(void) {
-    if (!world_is_latched()) {
+    if (!testbed_is_latched()) {
         harm_note("found corrupt, and not latched");
     }
-    if (world.hal.safety_output.on) {
+    if (testbed.hal.safety_output.on) {
         harm_note("found corrupt, and the safety output is closed");
     }
 }
 
 /* The vehicle obeys and the operator presses the button: all that a reset needs, if there is one to be had. */
 static void ask_for_reset(void) {
-    world_mode(MODE_MANUAL);
-    world_gear(GEAR_P);
-    world_wheels(0);
-    world.traffic[M_THROTTLE_STATUS].data[0] = 0;
-    world_button(true);
+    testbed_mode(MODE_MANUAL);
+    testbed_gear(GEAR_P);
+    testbed_wheels(0);
+    testbed.traffic[M_THROTTLE_STATUS].data[0] = 0;
+    testbed_button(true);
 }
 
 static void run_found(uint32_t ms) {
     for (uint32_t i = 0; (i < ms) && (!harm_is_noted()); i++) {
-        world_run(1);
+        testbed_run(1);
         judge_found();
     }
 }
 
 static void follow(unsigned bit) {
     const bool for_long = (bit % (unsigned)LONG_EVERY) == (unsigned)(sum.moments % (unsigned)LONG_EVERY);
-    world_run(1);
+    testbed_run(1);
     if (!is_found()) {
-        world_run(SHORT_MS);
+        testbed_run(SHORT_MS);
         sum.late += is_found() ? 1u : 0u;
     }
     if (is_found()) {
@@ -110,27 +111,27 @@ static void follow(unsigned bit) {
         if (for_long) {
             ask_for_reset();
             run_found(LONG_MS);
-            world_button(false);
+            testbed_button(false);
             run_found(SHORT_MS);
         }
         return;
     }
     sum.harmless++;
-    world_run(LONG_MS);
-    world_button(false); /* a press counts at its release */
-    world_run(SHORT_MS);
+    testbed_run(LONG_MS);
+    testbed_button(false); /* a press counts at its release */
+    testbed_run(SHORT_MS);
 }
 
 static void flip(unsigned bit) {
-    ((uint8_t *)&world.supervisor)[bit / 8u] ^= (uint8_t)(1u << (bit % 8u));
+    ((uint8_t *)&testbed.supervisor)[bit / 8u] ^= (uint8_t)(1u << (bit % 8u));
     harm_begin();
     sum.flips++;
-    sum.latched_flips += world_is_latched() ? 1u : 0u;
+    sum.latched_flips += testbed_is_latched() ? 1u : 0u;
     follow(bit);
-    sum.frames += world.rules.sent - moment.rules.sent;
-    sum.resets += world.rules.resets - moment.rules.resets;
+    sum.frames += testbed.rules.sent - saved.rules.sent;
+    sum.resets += testbed.rules.resets - saved.rules.resets;
     harm_report("%s, byte %u bit %u of %u bytes, after %u ms", situation, bit / 8u, bit % 8u,
-                (unsigned)sizeof(agv_supervisor_t), (unsigned)(world.now_ms - moment.now_ms));
+                (unsigned)sizeof(agv_supervisor_t), (unsigned)(testbed.now_ms - saved.now_ms));
 }
 
 /* ---- Moments ---- */
@@ -145,24 +146,24 @@ static void flip_each_bit(const char *name, unsigned variant, unsigned state) {
     }
     (void)snprintf(text, sizeof text, "variant %u, state %u, %s", variant, state, name);
     situation = text;
-    moment_save();
+    testbed_save(&saved);
     for (unsigned bit = (unsigned)(sum.moments % part.every); bit < (unsigned)BITS; bit += part.every) {
-        moment_restore();
+        testbed_restore(&saved);
         flip(bit);
     }
-    moment_restore();
+    testbed_restore(&saved);
     sum.moments++;
     sum.moments_of[state]++;
 }
 
 static void load(unsigned variant, unsigned state) {
-    world_load(variant, state);
-    if (world.hal.sink != on_sent) {
-        judge_sent = world.hal.sink;
-        world.hal.sink = on_sent;
+    testbed_load(variant, state);
+    if (testbed.hal.sink != on_sent) {
+        judge_sent = testbed.hal.sink;
+        testbed.hal.sink = on_sent;
     }
-    world_ai_drives();
-    world_run(30);
+    testbed_ai_drives();
+    testbed_run(30);
 }
 
 /* Between the same two frames of their cycles, some before a frame, some before a tick only. */
@@ -170,22 +171,22 @@ static void quiet_moments(unsigned variant, unsigned state) {
     static const unsigned STEPS_MS[] = {0, 1, 2, 5, 19, 41};
     load(variant, state);
     for (unsigned i = 0; i < sizeof STEPS_MS / sizeof STEPS_MS[0]; i++) {
-        world_run(STEPS_MS[i]);
+        testbed_run(STEPS_MS[i]);
         flip_each_bit("in its traffic", variant, state);
     }
 }
 
 static void foreign_gear(void) {
-    world_frame(HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .length = 8, .data = {GEAR_D}}, 0);
+    testbed_frame(HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .length = 8, .data = {GEAR_D}}, 0);
 }
 
 static void waiting_moments(unsigned variant, unsigned state) {
     load(variant, state);
-    world_disturb(HAL_CAN_VEHICLE, 1, 1);
-    world_run(40);
+    testbed_disturb(HAL_CAN_VEHICLE, 1, 1);
+    testbed_run(40);
     flip_each_bit("frames wait for a full queue", variant, state);
-    world_disturb(HAL_CAN_VEHICLE, 1, 0);
-    world_run(5);
+    testbed_disturb(HAL_CAN_VEHICLE, 1, 0);
+    testbed_run(5);
     foreign_gear();
     foreign_gear();
     flip_each_bit("an answer waits", variant, state);
@@ -193,43 +194,43 @@ static void waiting_moments(unsigned variant, unsigned state) {
 
 static void bus_off_moment(unsigned variant, unsigned state) {
     load(variant, state);
-    world_disturb(HAL_CAN_VEHICLE, 0, 2);
-    world_run(50);
+    testbed_disturb(HAL_CAN_VEHICLE, 0, 2);
+    testbed_run(50);
     flip_each_bit("in bus-off", variant, state);
 }
 
 static void pressed_moment(unsigned variant) {
     load(variant, 4);
     ask_for_reset();
-    world_run(700);
+    testbed_run(700);
     flip_each_bit("the button is held for 0.7 s", variant, 4);
 }
 
 static void restarted_moment(unsigned variant, unsigned state) {
     load(variant, state);
-    world_restart(HAL_RESET_WATCHDOG);
-    world_run(30);
+    testbed_restart(HAL_RESET_WATCHDOG);
+    testbed_run(30);
     flip_each_bit("after the watchdog has bitten", variant, 3);
 }
 
 /* Pressed since before the trip: only a flipped bit could make a press of it. */
 static void old_press_moment(unsigned variant) {
     load(variant, 2);
-    world_button(true);
-    world_run(50);
-    world.traffic[M_VEHICLE].data[4] = 0x80;
-    world_run(20);
-    world.traffic[M_VEHICLE].data[4] = 0;
-    world_mode(MODE_MANUAL);
-    world_gear(GEAR_P);
-    world_wheels(0);
-    world_run(900);
+    testbed_button(true);
+    testbed_run(50);
+    testbed.traffic[M_VEHICLE].data[4] = 0x80;
+    testbed_run(20);
+    testbed.traffic[M_VEHICLE].data[4] = 0;
+    testbed_mode(MODE_MANUAL);
+    testbed_gear(GEAR_P);
+    testbed_wheels(0);
+    testbed_run(900);
     flip_each_bit("the button is held since before the trip", variant, 4);
 }
 
 static void all_moments(void) {
-    for (unsigned variant = 0; variant < (unsigned)WORLD_VARIANTS; variant++) {
-        for (unsigned state = 0; state < (unsigned)WORLD_STATES; state++) {
+    for (unsigned variant = 0; variant < (unsigned)TESTBED_VARIANTS; variant++) {
+        for (unsigned state = 0; state < (unsigned)TESTBED_STATES; state++) {
             quiet_moments(variant, state);
         }
         waiting_moments(variant, 3);
@@ -244,7 +245,7 @@ static void all_moments(void) {
 
 int main(int argc, char **argv) {
     part = part_read("bit_flips", argc, argv);
-    world_on_broken = on_broken;
+    testbed_on_broken = on_broken;
     all_moments();
     (void)printf("moments: %llu INIT, %llu STANDBY, %llu ACTIVE, %llu TRIPPED, %llu SAFE; %u of %u bits are sealed\n",
                  (unsigned long long)sum.moments_of[0], (unsigned long long)sum.moments_of[1],

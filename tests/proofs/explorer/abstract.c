@@ -2,8 +2,8 @@
 
 #include <string.h>
 
+#include "model.h"
 #include "observe/deadlines.h"
-#include "stage.h"
 #include "supervisor/supervisor_internal.h"
 
 /* Which of the timers of a supervisor (timers.h) count in a state; bit n of a set is the timer n. */
@@ -28,7 +28,7 @@ enum { COUNTED_MS = 1220 };
 bool abstract_coarse;
 
 static const agv_core_t *core(void) {
-    return agv_core_read(&world.supervisor);
+    return agv_core_read(&testbed.supervisor);
 }
 
 /* A transient fault is over event_hold_ms after it; those that trip keep a reset from being accepted, but the AI's. */
@@ -134,7 +134,7 @@ static uint64_t running(void) {
         some |= ((((set >> i) & 1u) != 0u) && runs(i)) ? (UINT64_C(1) << i) : 0u;
     }
     for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
-        if (stage_flows(m) && !world.traffic[m].frozen) {
+        if (model_flows(m) && !testbed.traffic[m].frozen) {
             some &= ~(UINT64_C(1) << ((unsigned)AGV_TIMER_MESSAGE + m)); /* comes on */
         }
     }
@@ -280,7 +280,7 @@ static bool waits_to_send(void) {
 
 static void always(abstract_t *key) {
     const agv_core_t *c = core();
-    const sim_hal_can_t *can = world.hal.can;
+    const sim_hal_can_t *can = testbed.hal.can;
     const bool whats[] = {agv_liveness_alive(&c->liveness, AGV_NODE_VCU),
                           agv_liveness_alive(&c->liveness, AGV_NODE_EPS),
                           (c->machine.state == (uint8_t)AGV_STATE_INIT) && messages_fresh(),
@@ -291,16 +291,16 @@ static void always(abstract_t *key) {
     const bool supervises = !agv_state_commands_safe((agv_state_t)c->machine.state);
     const bool goes_by_gear =
         agv_state_is_latched((agv_state_t)c->machine.state) || (supervises && agv_mode_is_engaged(&c->mode));
-    const bool more[] = {agv_supervisor_output_closed(&world.supervisor),
-                         stage.button && (c->machine.state != (uint8_t)AGV_STATE_INIT),
-                         goes_by_gear && (stage.gear == (uint8_t)STAGE_P),
-                         stage.ai_off,
-                         stage.bad_latch,
-                         stage.stalled,
-                         !abstract_coarse && stage_wrapped(),
+    const bool more[] = {agv_supervisor_output_closed(&testbed.supervisor),
+                         model.button && (c->machine.state != (uint8_t)AGV_STATE_INIT),
+                         goes_by_gear && (model.gear == (uint8_t)MODEL_P),
+                         model.ai_off,
+                         model.bad_latch,
+                         model.stalled,
+                         !abstract_coarse && model_wrapped(),
                          (phase(AGV_TIMER_WATCHDOG_FED) == (uint8_t)AGV_TIMER_REACHED)};
     key->byte[0] = c->machine.state;
-    key->byte[1] = supervises ? stage.illness : ILLNESS[stage.illness].like;
+    key->byte[1] = supervises ? model.illness : ILLNESS[model.illness].like;
     key->byte[2] = bits(whats, 7);
     key->byte[3] = bits(more, 8);
     key->byte[4] = (uint8_t)(c->mode.bits | phase(AGV_TIMER_BOTH_MODES) | (c->mode.engaged ? 4u : 0u) |
@@ -308,7 +308,7 @@ static void always(abstract_t *key) {
     if ((c->machine.state == (uint8_t)AGV_STATE_INIT) && !c->mode.manual) {
         key->byte[4] = 0;
     }
-    key->byte[5] = (uint8_t)(stage.bus | (phase(AGV_TIMER_BUS_OFF) << 2u));
+    key->byte[5] = (uint8_t)(model.bus | (phase(AGV_TIMER_BUS_OFF) << 2u));
     key->byte[6] = eve();
 }
 
@@ -339,7 +339,7 @@ static void in_latched(abstract_t *key) {
     const bool whats[] = {m->park_released,
                           is_holdable(),
                           m->unresettable != (uint8_t)AGV_FAULT_NONE,
-                          stage.wheels_turn && (waits || (stands() != 0u)),
+                          model.wheels_turn && (waits || (stands() != 0u)),
                           c->faults.summary.cause != (uint8_t)AGV_FAULT_NONE,
                           c->faults.summary.ai_cause != (uint8_t)AGV_FAULT_NONE,
                           all_held_ms() >= c->config.reset_hold_ms};

@@ -1,5 +1,5 @@
 /*
- * What the explorer takes for one state: two stages with the same key are explored as one. The key is made of what the
+ * What the explorer takes for one state: two models with the same key are explored as one. The key is made of what the
  * supervisor's memory says, but only to tell states apart; what it does is judged from outside (rules.h, oracle.h).
  *
  *   always      state, safety output, illness of the vehicle, mode (both bits at once apart), button, gear in P or not,
@@ -37,7 +37,7 @@ typedef struct {
     uint8_t byte[ABSTRACT_BYTES];
 } abstract_t;
 
-/* The key of the stage as it is. */
+/* The key of the model as it is. */
 void abstract_now(abstract_t *key);
 
 /* After so many milliseconds all the times of the key that run now are over, and what is periodic has come. */

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "abstract.h"
-#include "stage.h"
+#include "model.h"
 
 enum { LATE_MS = 101, BIT_LATE_MS = 40, SLEEP_MS = 1000000000 };
 
@@ -23,7 +23,7 @@ static bool always(unsigned how) {
 
 static bool gateway(unsigned how) {
     (void)how;
-    return world.config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    return testbed.config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
 }
 
 /* ---- Time ---- */
@@ -35,9 +35,9 @@ static void go_on(unsigned how) {
     (void)how;
     abstract_now(&before);
     for (uint32_t ms = 0; ms < horizon_ms; ms++) {
-        stage_run(1);
+        model_run(1);
         abstract_now(&now);
-        if ((memcmp(&before, &now, sizeof now) != 0) || (stage_broken()[0] != '\0')) {
+        if ((memcmp(&before, &now, sizeof now) != 0) || (model_broken()[0] != '\0')) {
             return;
         }
     }
@@ -46,58 +46,58 @@ static void go_on(unsigned how) {
 /* ---- The vehicle's own frames ---- */
 
 static void apply_mode(unsigned mode) {
-    stage.mode = (uint8_t)mode;
-    stage.mode_ms = world.now_ms;
-    stage_dress();
-    stage_run_past(M_VEHICLE);
+    model.mode = (uint8_t)mode;
+    model.mode_ms = testbed.now_ms;
+    model_dress();
+    model_run_past(M_VEHICLE);
 }
 
 static bool other_mode(unsigned mode) {
-    return (stage.mode != (uint8_t)mode) && stage_flows(M_VEHICLE);
+    return (model.mode != (uint8_t)mode) && model_flows(M_VEHICLE);
 }
 
 static void apply_button(unsigned down) {
-    stage.button = down != 0u;
-    stage_dress();
-    stage_run_past(M_VEHICLE);
+    model.button = down != 0u;
+    model_dress();
+    model_run_past(M_VEHICLE);
 }
 
 static bool other_button(unsigned down) {
-    return (stage.button != (down != 0u)) && stage_flows(M_VEHICLE);
+    return (model.button != (down != 0u)) && model_flows(M_VEHICLE);
 }
 
 static void apply_gear(unsigned gear) {
-    stage.gear = (uint8_t)gear;
-    stage_dress();
-    stage_run_past(M_GEAR_STATUS);
+    model.gear = (uint8_t)gear;
+    model_dress();
+    model_run_past(M_GEAR_STATUS);
 }
 
 static bool other_gear(unsigned gear) {
-    return (stage.gear != (uint8_t)gear) && stage_flows(M_GEAR_STATUS);
+    return (model.gear != (uint8_t)gear) && model_flows(M_GEAR_STATUS);
 }
 
 static void apply_wheels(unsigned turn) {
-    stage.wheels_turn = turn != 0u;
-    stage.wheels_ms = world.now_ms;
-    stage_dress();
-    stage_run_past(M_WHEELS);
+    model.wheels_turn = turn != 0u;
+    model.wheels_ms = testbed.now_ms;
+    model_dress();
+    model_run_past(M_WHEELS);
 }
 
 static bool other_wheels(unsigned turn) {
-    return (stage.wheels_turn != (turn != 0u)) && stage_flows(M_WHEELS);
+    return (model.wheels_turn != (turn != 0u)) && model_flows(M_WHEELS);
 }
 
 bool alphabet_pairs;
 
 /* One controller or the stored latch is not as it should be. */
 static bool is_troubled(void) {
-    const sim_hal_can_t *can = world.hal.can;
-    return (stage.bus != (uint8_t)BUS_FINE) || stage.ai_off || stage.stalled || stage.bad_latch ||
+    const sim_hal_can_t *can = testbed.hal.can;
+    return (model.bus != (uint8_t)BUS_FINE) || model.ai_off || model.stalled || model.bad_latch ||
            can[HAL_CAN_VEHICLE].full || can[HAL_CAN_AI].full;
 }
 
 static bool is_ill(void) {
-    return stage.illness != (uint8_t)ILL_NOTHING;
+    return model.illness != (uint8_t)ILL_NOTHING;
 }
 
 /* Of two illnesses one has to end before the other begins, of two troubles too; with pairs there may be one of each. */
@@ -110,11 +110,11 @@ static bool may_be_troubled(void) {
 }
 
 static void apply_illness(unsigned illness) {
-    stage.illness = (uint8_t)illness;
-    stage.foreign_ms = world.now_ms + 1u;
-    stage.ill_ms = world.now_ms;
-    stage_dress();
-    stage_run(1);
+    model.illness = (uint8_t)illness;
+    model.foreign_ms = testbed.now_ms + 1u;
+    model.ill_ms = testbed.now_ms;
+    model_dress();
+    model_run(1);
 }
 
 static bool other_illness(unsigned illness) {
@@ -124,18 +124,18 @@ static bool other_illness(unsigned illness) {
 /* A frame of what is mute or frozen, just before the tick; tried where a time is nearly over. */
 static void speak(unsigned how) {
     (void)how;
-    stage_speak();
+    model_speak();
 }
 
 /* Where the clock wraps, it has to be met in the midst of what happens, and not in a sleep. */
 static bool may_sleep(unsigned how) {
     (void)how;
-    return !stage_variant->wraps;
+    return !model_variant->wraps;
 }
 
 static bool can_speak(unsigned how) {
     (void)how;
-    return stage_can_speak();
+    return model_can_speak();
 }
 
 /* ---- Strangers' frames ---- */
@@ -143,13 +143,13 @@ static bool can_speak(unsigned how) {
 enum { S_GEAR, S_SHORT, S_SIGNALS, S_FAULT, S_MALFORMED, S_OTHER_SET, S_AI_SIDE };
 
 static uint32_t signal_id(bool other) {
-    const bool table = world.config.id_set == (uint16_t)AGV_ID_SET_TABLE;
+    const bool table = testbed.config.id_set == (uint16_t)AGV_ID_SET_TABLE;
     return (table != other) ? 0x201u : 0x43Fu;
 }
 
 static void deliver_one(hal_can_side_t side, uint32_t id, uint8_t length, uint8_t byte0, uint8_t byte7) {
     const hal_can_frame_t frame = {.id = id, .length = length, .data = {byte0, 0, 0, 0, 0, 0, 0, byte7}};
-    stage_deliver(side, &frame, 1);
+    model_deliver(side, &frame, 1);
 }
 
 static void malformed(void) {
@@ -160,19 +160,19 @@ static void malformed(void) {
         frames[i].id = ((i % 2u) == 0u) ? 0x168u : 0x167u;
         frames[i].flags = FLAGS[i];
         frames[i].length = 8;
-        frames[i].data[0] = (FLAGS[i] == (uint8_t)HAL_CAN_REMOTE) ? (uint8_t)0 : (uint8_t)STAGE_D;
+        frames[i].data[0] = (FLAGS[i] == (uint8_t)HAL_CAN_REMOTE) ? (uint8_t)0 : (uint8_t)MODEL_D;
         frames[i].data[7] = (FLAGS[i] == (uint8_t)HAL_CAN_REMOTE) ? (uint8_t)0 : (uint8_t)0xFF;
     }
-    stage_deliver(HAL_CAN_VEHICLE, frames, 4);
+    model_deliver(HAL_CAN_VEHICLE, frames, 4);
 }
 
 static void stranger(unsigned how) {
     switch (how) {
     case S_GEAR:
-        deliver_one(HAL_CAN_VEHICLE, 0x168, 8, STAGE_D, 0);
+        deliver_one(HAL_CAN_VEHICLE, 0x168, 8, MODEL_D, 0);
         break;
     case S_SHORT:
-        deliver_one(HAL_CAN_VEHICLE, 0x168, 1, STAGE_D, 0);
+        deliver_one(HAL_CAN_VEHICLE, 0x168, 1, MODEL_D, 0);
         break;
     case S_SIGNALS:
         deliver_one(HAL_CAN_VEHICLE, signal_id(false), 8, 0, 200);
@@ -194,11 +194,11 @@ static void stranger(unsigned how) {
 
 static bool vehicle_hears(unsigned how) {
     (void)how;
-    return world.hal.can[HAL_CAN_VEHICLE].status.state != HAL_CAN_BUS_OFF;
+    return testbed.hal.can[HAL_CAN_VEHICLE].status.state != HAL_CAN_BUS_OFF;
 }
 
 static bool ai_side_hears(unsigned how) {
-    return gateway(how) && !stage.ai_off;
+    return gateway(how) && !model.ai_off;
 }
 
 /* ---- Controllers ---- */
@@ -206,38 +206,38 @@ static bool ai_side_hears(unsigned how) {
 enum { C_OVERRUN, C_FULL, C_FREE, C_STALL, C_FLOW, C_AI_OFF, C_AI_BACK, C_AI_FULL, C_AI_FREE };
 
 static void apply_bus(unsigned bus) {
-    stage_set_bus((stage_bus_t)bus);
-    stage_run(1);
+    model_set_bus((model_bus_t)bus);
+    model_run(1);
 }
 
 static bool other_bus(unsigned bus) {
-    const bool stays = (stage.bus == (uint8_t)BUS_PASSIVE) || (stage.bus == (uint8_t)BUS_DEAD);
+    const bool stays = (model.bus == (uint8_t)BUS_PASSIVE) || (model.bus == (uint8_t)BUS_DEAD);
     return (bus == (unsigned)BUS_FINE) ? stays : may_be_troubled();
 }
 
 static void controller(unsigned how) {
     switch (how) {
     case C_OVERRUN:
-        sim_hal_add_overrun(&world.hal, HAL_CAN_VEHICLE);
+        sim_hal_add_overrun(&testbed.hal, HAL_CAN_VEHICLE);
         break;
     case C_FULL:
     case C_FREE:
-        world_disturb(HAL_CAN_VEHICLE, 1, (how == (unsigned)C_FULL) ? 1 : 0);
+        testbed_disturb(HAL_CAN_VEHICLE, 1, (how == (unsigned)C_FULL) ? 1 : 0);
         break;
     case C_STALL:
     case C_FLOW:
-        stage.stalled = how == (unsigned)C_STALL;
-        world_disturb(HAL_CAN_VEHICLE, 2, 0);
+        model.stalled = how == (unsigned)C_STALL;
+        testbed_disturb(HAL_CAN_VEHICLE, 2, 0);
         break;
     case C_AI_OFF:
     case C_AI_BACK:
-        stage_set_ai_off(how == (unsigned)C_AI_OFF);
+        model_set_ai_off(how == (unsigned)C_AI_OFF);
         break;
     default:
-        world_disturb(HAL_CAN_AI, 1, (how == (unsigned)C_AI_FULL) ? 1 : 0);
+        testbed_disturb(HAL_CAN_AI, 1, (how == (unsigned)C_AI_FULL) ? 1 : 0);
         break;
     }
-    stage_run(1);
+    model_run(1);
 }
 
 static bool other_controller(unsigned how) {
@@ -249,13 +249,13 @@ static bool other_controller(unsigned how) {
     case C_AI_FULL:
         return gateway(0) && may_be_troubled();
     case C_FREE:
-        return world.hal.can[HAL_CAN_VEHICLE].full;
+        return testbed.hal.can[HAL_CAN_VEHICLE].full;
     case C_FLOW:
-        return stage.stalled;
+        return model.stalled;
     case C_AI_BACK:
-        return stage.ai_off;
+        return model.ai_off;
     case C_AI_FREE:
-        return world.hal.can[HAL_CAN_AI].full;
+        return testbed.hal.can[HAL_CAN_AI].full;
     default:
         return true;
     }
@@ -264,22 +264,22 @@ static bool other_controller(unsigned how) {
 /* ---- The supervisor itself ---- */
 
 static void late(unsigned ms) {
-    stage_late(ms);
+    model_late(ms);
 }
 
 static void doze(unsigned ms) {
-    stage_sleep(ms);
+    model_sleep(ms);
 }
 
 static void restart(unsigned cause) {
-    stage_restart((hal_reset_cause_t)cause);
+    model_restart((hal_reset_cause_t)cause);
 }
 
 static void spoil_latch(unsigned how) {
     (void)how;
-    (void)sim_store_corrupt_latch(&world.store, 0, 1);
-    stage.bad_latch = true;
-    stage_run(1);
+    (void)sim_store_corrupt_latch(&testbed.store, 0, 1);
+    model.bad_latch = true;
+    model_run(1);
 }
 
 static bool latch_is_good(unsigned how) {
@@ -293,12 +293,12 @@ static bool latch_is_good(unsigned how) {
 
 static const symbol_t SYMBOLS[] = {
     {"time goes on", go_on, always, 0},
-    {"363h: manual", apply_mode, other_mode, STAGE_MANUAL},
-    {"363h: autopilot", apply_mode, other_mode, STAGE_ENGAGED},
+    {"363h: manual", apply_mode, other_mode, MODEL_MANUAL},
+    {"363h: autopilot", apply_mode, other_mode, MODEL_ENGAGED},
     {"button 1 down", apply_button, other_button, 1},
     {"button 1 up", apply_button, other_button, 0},
-    {"0A3h: P", apply_gear, other_gear, STAGE_P},
-    {"0A3h: D", apply_gear, other_gear, STAGE_D},
+    {"0A3h: P", apply_gear, other_gear, MODEL_P},
+    {"0A3h: D", apply_gear, other_gear, MODEL_D},
     {"wheels turn", apply_wheels, other_wheels, 1},
     {"wheels stand", apply_wheels, other_wheels, 0},
     ILL(NOTHING),
@@ -311,8 +311,8 @@ static const symbol_t SYMBOLS[] = {
     {"restart: watchdog", restart, always, HAL_RESET_WATCHDOG},
     {"tick late by 101 ms", late, always, LATE_MS},
     /* the others */
-    {"363h: both modes", apply_mode, other_mode, STAGE_BOTH},
-    {"363h: neither mode", apply_mode, other_mode, STAGE_NEITHER},
+    {"363h: both modes", apply_mode, other_mode, MODEL_BOTH},
+    {"363h: neither mode", apply_mode, other_mode, MODEL_NEITHER},
     {"what is mute speaks once", speak, can_speak, 0},
     ILL(VCU_FROZEN),
     ILL(VCU_SHORT),
@@ -381,9 +381,9 @@ const char *alphabet_name(unsigned symbol) {
 bool alphabet_tellable;
 bool alphabet_hangs;
 
-/* What story.c cannot say, or not exactly: in a pause of host_sim frames wait until its end. */
+/* What trace.c cannot say, or not exactly: in a pause of host_sim frames wait until its end. */
 static bool cannot_be_told(const symbol_t *s) {
-    const bool waits = !alphabet_hangs || agv_state_commands_safe(agv_supervisor_state(&world.supervisor));
+    const bool waits = !alphabet_hangs || agv_state_commands_safe(agv_supervisor_state(&testbed.supervisor));
     return (s->apply == doze) || ((s->apply == late) && waits) ||
            ((s->apply == apply_bus) && (s->how == (unsigned)BUS_DEAD)) ||
            ((s->apply == apply_illness) && (s->how == (unsigned)ILL_RECEIVE_DEAD)) ||

@@ -1,5 +1,5 @@
 /*
- * The abstract inputs that the explorer tries in each state (alphabet.c has the table). Each is a change of the stage and
+ * The abstract inputs that the explorer tries in each state (alphabet.c has the table). Each is a change of the model and
  * the least time in which the supervisor hears of it:
  *
  *   time        on, until the abstract state changes or all its times are over; so it also stops a millisecond before

@@ -1,20 +1,20 @@
 /*
  * Every reachable abstract state of the shipped supervisor.
  *
- * A breadth-first search: from the first moment of a variant of the configuration (stage.h), each symbol of the alphabet
+ * A breadth-first search: from the first moment of a variant of the configuration (model.h), each symbol of the alphabet
  * (alphabet.h) is tried in each state, and where it leads is a state not seen before (abstract.h, visited.h), that is
  * explored in its turn, until there is none left. In every call of the supervisor on the way all rules are judged:
  * rules.h and oracle.h (FSM-6, TOP-1, latch, safety output, first reason, starts, silence, sending), and that nothing
  * leaves but through the gate.
  *
  * A broken rule ends the search. As it is breadth first, the way there has as few symbols as any; it is written as a
- * scenario file (story.h).
+ * scenario file (trace.h).
  *
  * A frame, a late tick or a restart that leads to a known state is followed for some milliseconds all the same, so that
  * what it began is judged.
  *
- * What is shown: no abstract state is left out, and from one stage (or more: --representatives) of each every symbol was
- * tried. What is not: two stages of one abstract state may differ in what the abstraction leaves out, as the phases of
+ * What is shown: no abstract state is left out, and from one model (or more: --representatives) of each every symbol was
+ * tried. What is not: two models of one abstract state may differ in what the abstraction leaves out, as the phases of
  * cycles, and only those that were reached first were explored.
  *
  * usage: explorer [--quick] [--pairs] [--tellable [--hangs]] [--variant N] [--shard I/N] [--representatives N]
@@ -36,8 +36,8 @@
 
 #include "abstract.h"
 #include "alphabet.h"
-#include "stage.h"
-#include "story.h"
+#include "model.h"
+#include "trace.h"
 #include "visited.h"
 
 static struct {
@@ -63,38 +63,38 @@ enum { FOLLOW_MS = 8 };
 
 /* Where a symbol leads to nothing new, what it began is still seen to its end: an answer that is owed, say. */
 static void follow(void) {
-    for (unsigned ms = 0; (ms < (unsigned)FOLLOW_MS) && (stage_broken()[0] == '\0'); ms++) {
-        stage_run(1);
+    for (unsigned ms = 0; (ms < (unsigned)FOLLOW_MS) && (model_broken()[0] == '\0'); ms++) {
+        model_run(1);
     }
 }
 
-/* Apply a symbol to the stage; false: a rule was broken. */
+/* Apply a symbol to the model; false: a rule was broken. */
 static bool apply(unsigned symbol) {
-    const uint64_t calls = world.rules.calls;
-    const uint64_t frames = world.rules.sent;
-    const uint64_t resets = world.rules.resets;
+    const uint64_t calls = testbed.rules.calls;
+    const uint64_t frames = testbed.rules.sent;
+    const uint64_t resets = testbed.rules.resets;
     alphabet_apply(symbol);
     sum.transitions++;
-    sum.judged += world.rules.calls - calls;
-    sum.frames += world.rules.sent - frames;
-    sum.resets += world.rules.resets - resets;
-    return stage_broken()[0] == '\0';
+    sum.judged += testbed.rules.calls - calls;
+    sum.frames += testbed.rules.sent - frames;
+    sum.resets += testbed.rules.resets - resets;
+    return model_broken()[0] == '\0';
 }
 
-static void tell_again(const uint8_t *path, unsigned length) {
+static void log_again(const uint8_t *path, unsigned length) {
     FILE *file = (option.scenario != NULL) ? fopen(option.scenario, "w") : stdout;
     if (file == NULL) {
         perror(option.scenario);
         exit(2);
     }
-    stage_root(stage_variant);
-    story_begin();
+    model_root(model_variant);
+    trace_begin();
     for (unsigned i = 0; i < length; i++) {
-        story_says(alphabet_name(path[i]));
+        trace_says(alphabet_name(path[i]));
         alphabet_apply(path[i]);
     }
     follow(); /* nothing, when it is broken by now */
-    story_write(file);
+    trace_write(file);
     if (file != stdout) {
         (void)fclose(file);
     }
@@ -105,23 +105,23 @@ static void report_broken(uint32_t state, unsigned symbol) {
     unsigned length = visited_path(state, path);
     path[length] = (uint8_t)symbol;
     length++;
-    (void)printf("HARM: depth %u, %u ms: %s\n", length, (unsigned)stage_now_ms(), stage_broken());
-    (void)printf("  after %u states, in: %s\n  by:", (unsigned)visited_states(), stage_variant->name);
+    (void)printf("HARM: depth %u, %u ms: %s\n", length, (unsigned)model_now_ms(), model_broken());
+    (void)printf("  after %u states, in: %s\n  by:", (unsigned)visited_states(), model_variant->name);
     for (unsigned i = 0; i < length; i++) {
         (void)printf("%s %s", (i == 0u) ? "" : ",", alphabet_name(path[i]));
     }
     (void)printf("\n");
-    tell_again(path, length);
+    log_again(path, length);
 }
 
 /* Try every symbol in a state. Returns false: broken, or no room. */
 static bool explore(uint32_t index) {
-    static stage_saved_t here;
-    here = *visited_at(index)->stage;
-    free(visited_at(index)->stage);
-    visited_at(index)->stage = NULL;
+    static model_saved_t here;
+    here = *visited_at(index)->model;
+    free(visited_at(index)->model);
+    visited_at(index)->model = NULL;
     for (unsigned symbol = 0; symbol < alphabet_size(option.quick); symbol++) {
-        stage_restore(&here);
+        model_restore(&here);
         if (!alphabet_enabled(symbol)) {
             continue;
         }
@@ -133,7 +133,7 @@ static bool explore(uint32_t index) {
         }
         if (good && (visited_count() == before) && alphabet_leaves_no_trace(symbol)) {
             follow();
-            good = stage_broken()[0] == '\0';
+            good = model_broken()[0] == '\0';
         }
         if (!good) {
             report_broken(index, symbol);
@@ -143,13 +143,13 @@ static bool explore(uint32_t index) {
     return true;
 }
 
-static bool search(const stage_variant_t *variant) {
+static bool search(const model_variant_t *variant) {
     const clock_t began = clock();
     const uint64_t transitions = sum.transitions;
     uint32_t done = 0;
     visited_begin();
-    stage_root(variant);
-    bool good = (stage_broken()[0] == '\0') && visited_reached(VISITED_NONE, 0, 1);
+    model_root(variant);
+    bool good = (model_broken()[0] == '\0') && visited_reached(VISITED_NONE, 0, 1);
     for (; good && (done < visited_count()); done++) {
         good = explore(done);
         if (good && (visited_states() > option.most)) {
@@ -176,7 +176,7 @@ static unsigned number(const char *text) {
 static bool take_option(const char *name, const char *value) {
     if (strcmp(name, "--variant") == 0) {
         option.variant = (int)number(value);
-        return option.variant < (int)STAGE_VARIANTS;
+        return option.variant < (int)MODEL_VARIANTS;
     }
     if (strcmp(name, "--representatives") == 0) {
         option.representatives = number(value);
@@ -221,9 +221,9 @@ int main(int argc, char **argv) {
     bool good = true;
     unsigned variants = 0;
     read_options(argc, argv);
-    for (unsigned i = option.shard; good && (i < (unsigned)STAGE_VARIANTS); i += option.shards) {
+    for (unsigned i = option.shard; good && (i < (unsigned)MODEL_VARIANTS); i += option.shards) {
         if ((option.variant < 0) || (option.variant == (int)i)) {
-            good = search(&STAGE_VARIANT[i]);
+            good = search(&MODEL_VARIANT[i]);
             variants++;
         }
     }

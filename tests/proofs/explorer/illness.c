@@ -1,7 +1,7 @@
 /* What may be wrong with the vehicle, and what its traffic looks like then. */
-#include "stage.h"
+#include "model.h"
 
-/* Steering and throttle depend on more than the illness: rules for them are not said here. */
+/* Steering and throttle depend on more than the illness: no rules for them stand here. */
 const illness_row_t ILLNESS[ILLNESSES] = {
     [ILL_NOTHING] = {"healthy", NULL, NULL, ILL_NOTHING, TRIPS_NEVER},
     [ILL_VCU_SILENT] = {"VCU silent", "VCU_HEARTBEAT_LOST", NULL, ILL_VCU_SILENT, TRIPS_ALWAYS},
@@ -45,13 +45,13 @@ enum { SHORT = 5, EPS_FAULTS = 7, ALARMS = 4, EPS_MODE = 3, ANGLE_LOW = 2, ANGLE
 
 static void mute(unsigned first, unsigned last) {
     for (unsigned m = first; m <= last; m++) {
-        world.traffic[m].muted = true;
+        testbed.traffic[m].muted = true;
     }
 }
 
 static void shorten(unsigned first, unsigned last) {
     for (unsigned m = first; m <= last; m++) {
-        world.traffic[m].length = SHORT;
+        testbed.traffic[m].length = SHORT;
     }
 }
 
@@ -103,7 +103,7 @@ static void dress_silent(illness_t illness) {
 
 /* Values. */
 static void dress_values(illness_t illness) {
-    traffic_message_t *t = world.traffic;
+    traffic_message_t *t = testbed.traffic;
     switch (illness) {
     case ILL_VCU_FROZEN:
         t[M_VEHICLE].frozen = true;
@@ -157,7 +157,7 @@ static void dress_values(illness_t illness) {
         t[M_SIGNALS].data[SIGNALS] = AUTOPILOT_OFF;
         break;
     case ILL_MODE_FLAPS:
-        world_mode(((world.now_ms - stage.ill_ms) / (uint64_t)FLAP_MS % 2u == 0u) ? STAGE_ENGAGED : STAGE_MANUAL);
+        testbed_mode(((testbed.now_ms - model.ill_ms) / (uint64_t)FLAP_MS % 2u == 0u) ? MODEL_ENGAGED : MODEL_MANUAL);
         break;
     default:
         break;
@@ -167,5 +167,5 @@ static void dress_values(illness_t illness) {
 void illness_dress(illness_t illness) {
     dress_silent(illness);
     dress_values(illness);
-    world.receive_path_dead = illness == ILL_RECEIVE_DEAD;
+    testbed.receive_path_dead = illness == ILL_RECEIVE_DEAD;
 }

@@ -12,7 +12,7 @@ static uint32_t states;
 
 void visited_begin(void) {
     for (uint32_t i = 0; i < count; i++) {
-        free(visited_at(i)->stage);
+        free(visited_at(i)->model);
     }
     count = 0;
     states = 0;
@@ -57,18 +57,18 @@ static visited_t *append(void) {
 static bool add(const abstract_t *key, uint32_t hash, uint32_t parent, unsigned symbol) {
     const uint32_t index = count;
     visited_t *v = append();
-    stage_saved_t *saved = malloc(sizeof *saved);
+    model_saved_t *saved = malloc(sizeof *saved);
     if ((v == NULL) || (saved == NULL)) {
         free(saved);
         return false;
     }
-    stage_save(saved);
+    model_save(saved);
     *v = (visited_t){.key = *key,
                      .parent = parent,
                      .next = bucket[hash],
                      .depth = (uint16_t)((parent == VISITED_NONE) ? 0 : (visited_at(parent)->depth + 1)),
                      .symbol = (uint8_t)symbol,
-                     .stage = saved};
+                     .model = saved};
     bucket[hash] = index;
     return true;
 }

@@ -1,5 +1,5 @@
 /*
- * The abstract states that were found, in the order in which they were: that is the queue of the search, too. A stage is
+ * The abstract states that were found, in the order in which they were: that is the queue of the search, too. A model is
  * kept of each until it was explored; then only how it was reached.
  */
 #ifndef VISITED_H
@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 #include "abstract.h"
-#include "stage.h"
+#include "model.h"
 
 #define VISITED_NONE UINT32_MAX
 enum { PATH_MAX_SYMBOLS = 400 };
@@ -20,7 +20,7 @@ typedef struct {
     uint32_t next;   /* of the same hash */
     uint16_t depth;
     uint8_t symbol; /* by which it was reached */
-    stage_saved_t *stage;
+    model_saved_t *model;
 } visited_t;
 
 /* Empty it. */
@@ -30,7 +30,7 @@ uint32_t visited_count(void);
 visited_t *visited_at(uint32_t index);
 
 /*
- * The stage as it is was reached. It is added unless there are as many of its abstract state as are wanted, or one of
+ * The model as it is was reached. It is added unless there are as many of its abstract state as are wanted, or one of
  * them did the same.
  * @return false: no memory
  */

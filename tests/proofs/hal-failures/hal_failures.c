@@ -13,8 +13,8 @@
 #include <unistd.h>
 
 #include "harm.h"
-#include "moment.h"
 #include "part.h"
+#include "testbed_state.h"
 
 enum {
     FOLLOW_COMMON_MS = 120,
@@ -48,7 +48,7 @@ static const borne_t BORNE[] = {
     {SIM_HAL_OP_CAN_STATUS, true, "TOP-1: "},
     {SIM_HAL_OP_CAN_STATUS, true, "FSM-2: "},
     {SIM_HAL_OP_SAFETY_OUTPUT_SET, true, "FSM-4: the safety output is closed"},
-    /* Nothing tells the supervisor; a watchdog would bite, but it is off here. */
+    /* The supervisor cannot notice it; a watchdog would bite, but it is off here. */
     {SIM_HAL_OP_WATCHDOG_FEED, false, "FSM-4: the safety output is closed, and the watchdog has not been fed"},
     {SIM_HAL_OP_RESET_CAUSE, true, "FSM-7: "},
     {SIM_HAL_OP_STORE_READ_LATCH, true, "FSM-7: after a reset the first reason is"},
@@ -60,12 +60,13 @@ static struct {
     uint64_t runs;
     uint64_t failures; /* calls that failed, all of them */
     uint64_t borne;
-    uint64_t noticed; /* runs in which nothing was taken any more, and TX_STALLED said so */
+    uint64_t noticed; /* runs in which nothing was taken any more, and TX_STALLED was raised */
     uint64_t frames;
     uint64_t resets;
     uint64_t of_op[SIM_HAL_OP_COUNT];
 } sum;
 
+static testbed_state_t saved; /* before the call that fails */
 static uint32_t failing_ops;
 static uint32_t failing_count;
 static bool is_failing; /* false: in the round itself, where nothing may break */
@@ -87,22 +88,22 @@ typedef enum { RUN, RESTART_WATCHDOG, RESTART_POWER_ON } act_t;
 static void act(act_t what) {
     switch (what) {
     case RUN:
-        world_run(1);
+        testbed_run(1);
         break;
     case RESTART_WATCHDOG:
-        world_restart(HAL_RESET_WATCHDOG);
+        testbed_restart(HAL_RESET_WATCHDOG);
         break;
     default:
-        world_restart(HAL_RESET_POWER_ON);
+        testbed_restart(HAL_RESET_POWER_ON);
         break;
     }
 }
 
 /* Frames that left are counted as sent, and nothing else is. */
 static void judge_counters(act_t what) {
-    const uint32_t before = (what == RUN) ? agv_supervisor_counters(&moment.supervisor)->sent : 0u;
-    const uint32_t counted = agv_supervisor_counters(&world.supervisor)->sent - before;
-    if (counted != (uint32_t)(world.rules.sent - moment.rules.sent)) {
+    const uint32_t before = (what == RUN) ? agv_supervisor_counters(&saved.supervisor)->sent : 0u;
+    const uint32_t counted = agv_supervisor_counters(&testbed.supervisor)->sent - before;
+    if (counted != (uint32_t)(testbed.rules.sent - saved.rules.sent)) {
         harm_note("what was sent is not what is counted");
     }
 }
@@ -110,38 +111,38 @@ static void judge_counters(act_t what) {
 /* SUP-7: frames that wait and are not taken. */
 static void judge_stalled(uint32_t count, uint32_t ops) {
     const bool dead = (count == UINT32_MAX) && (((ops >> SIM_HAL_OP_CAN_SEND) & 1u) != 0u);
-    if (!dead || !world_is_latched() || world.rules.shadow || world_has(AGV_FAULT_BUS_OFF)) {
+    if (!dead || !testbed_is_latched() || testbed.rules.shadow || testbed_has(AGV_FAULT_BUS_OFF)) {
         return;
     }
-    if (!world_has(AGV_FAULT_TX_STALLED) || world.hal.safety_output.on) {
-        harm_note("no frame is taken any more, and nobody says so");
+    if (!testbed_has(AGV_FAULT_TX_STALLED) || testbed.hal.safety_output.on) {
+        harm_note("no frame is taken any more, and TX_STALLED is not raised");
     }
     sum.noticed++;
 }
 
 static void fail(const char *where, act_t what, uint32_t call, uint32_t count, uint32_t ops, uint32_t follow_ms,
                  bool trip) {
-    const uint32_t before = moment.hal.failures;
-    moment_restore();
-    world.traffic[M_VEHICLE].data[4] = trip ? 0x80 : world.traffic[M_VEHICLE].data[4]; /* the S-driver alarm */
+    const uint32_t before = saved.hal.failures;
+    testbed_restore(&saved);
+    testbed.traffic[M_VEHICLE].data[4] = trip ? 0x80 : testbed.traffic[M_VEHICLE].data[4]; /* the S-driver alarm */
     harm_begin();
     is_failing = true;
     failing_ops = ops;
     failing_count = count;
-    sim_hal_fail_at(&world.hal, call, count, ops);
+    sim_hal_fail_at(&testbed.hal, call, count, ops);
     act(what);
-    world_run(follow_ms);
+    testbed_run(follow_ms);
     is_failing = false;
     judge_counters(what);
     judge_stalled(count, ops);
     sum.runs++;
-    sum.failures += world.hal.failures - before;
-    sum.frames += world.rules.sent - moment.rules.sent;
-    sum.resets += world.rules.resets - moment.rules.resets;
-    if (world.hal.failures == before) {
+    sum.failures += testbed.hal.failures - before;
+    sum.frames += testbed.rules.sent - saved.rules.sent;
+    sum.resets += testbed.rules.resets - saved.rules.resets;
+    if (testbed.hal.failures == before) {
         harm_note("nothing has failed");
     }
-    harm_report("%s, call %u (%s), %u in a row, operations %X", where, (unsigned)call, NAMES[world.hal.last_failed],
+    harm_report("%s, call %u (%s), %u in a row, operations %X", where, (unsigned)call, NAMES[testbed.hal.last_failed],
                 (unsigned)count, (unsigned)ops);
 }
 
@@ -157,14 +158,14 @@ static unsigned call_number;
 
 /* Which operation the call of this number is. */
 static sim_hal_op_t find_op(act_t what, uint32_t call) {
-    moment_restore();
+    testbed_restore(&saved);
     is_failing = true;
     failing_ops = SIM_HAL_OP_ALL;
     failing_count = RUN_OF_CALLS;
-    sim_hal_fail_at(&world.hal, call, 1, SIM_HAL_OP_ALL);
+    sim_hal_fail_at(&testbed.hal, call, 1, SIM_HAL_OP_ALL);
     act(what);
     is_failing = false;
-    return world.hal.last_failed;
+    return testbed.hal.last_failed;
 }
 
 static void fail_one(const char *where, act_t what, uint32_t call) {
@@ -181,12 +182,12 @@ static void fail_one(const char *where, act_t what, uint32_t call) {
 }
 
 static void step(const char *where, act_t what) {
-    moment_save();
+    testbed_save(&saved);
     (void)alarm(HANG_S);
-    const uint32_t calls = world.hal.calls;
+    const uint32_t calls = testbed.hal.calls;
     harm_begin();
     act(what);
-    const uint32_t count = world.hal.calls - calls;
+    const uint32_t count = testbed.hal.calls - calls;
     harm_report("%s, without any failure", where);
     for (uint32_t i = 1; i <= count; i++) {
         const unsigned number = call_number++;
@@ -194,7 +195,7 @@ static void step(const char *where, act_t what) {
             fail_one(where, what, calls + i);
         }
     }
-    moment_restore();
+    testbed_restore(&saved);
     act(what);
 }
 
@@ -207,39 +208,39 @@ static void steps(const char *where, uint32_t ms) {
 /* ---- The round ---- */
 
 static void vehicle(uint8_t mode, uint8_t gear, uint8_t wheels) {
-    world_mode(mode);
-    world_gear(gear);
-    world_wheels(wheels);
+    testbed_mode(mode);
+    testbed_gear(gear);
+    testbed_wheels(wheels);
 }
 
 static void alarm_and_trip(void) {
-    world.traffic[M_VEHICLE].data[4] = 0x80;
+    testbed.traffic[M_VEHICLE].data[4] = 0x80;
     steps("trip", 10);
-    world.traffic[M_VEHICLE].data[4] = 0;
+    testbed.traffic[M_VEHICLE].data[4] = 0;
     steps("TRIPPED", 150);
 }
 
 static void round_of(unsigned variant) {
-    world_load(variant, 0);
-    world_ai_drives();
+    testbed_load(variant, 0);
+    testbed_ai_drives();
     step("power-on", RESTART_POWER_ON);
     steps("INIT and STANDBY", 650);
     vehicle(MODE_ENGAGED, GEAR_D, 200);
     steps("ACTIVE", 300);
     alarm_and_trip();
-    world_disturb(HAL_CAN_VEHICLE, 0, 2);
+    testbed_disturb(HAL_CAN_VEHICLE, 0, 2);
     steps("bus-off", 130);
-    world_disturb(HAL_CAN_VEHICLE, 0, 0);
+    testbed_disturb(HAL_CAN_VEHICLE, 0, 0);
     steps("after bus-off", 40);
     vehicle(MODE_MANUAL, GEAR_P, 0);
     steps("SAFE", 150);
     step("restart in SAFE", RESTART_WATCHDOG);
     steps("after the restart", 250);
-    world_button(true);
+    testbed_button(true);
     steps("the button", 1050);
-    world_button(false);
+    testbed_button(false);
     steps("STANDBY again", 30);
-    if (agv_supervisor_state(&world.supervisor) != AGV_STATE_STANDBY) {
+    if (agv_supervisor_state(&testbed.supervisor) != AGV_STATE_STANDBY) {
         harm_note("it does not end in STANDBY");
         harm_report("variant %u: the round itself", variant);
     }
@@ -247,9 +248,9 @@ static void round_of(unsigned variant) {
 
 int main(int argc, char **argv) {
     part = part_read("hal_failures", argc, argv);
-    world_on_broken = on_broken;
+    testbed_on_broken = on_broken;
     (void)signal(SIGALRM, on_alarm);
-    for (unsigned variant = 0; variant < (unsigned)WORLD_VARIANTS; variant++) {
+    for (unsigned variant = 0; variant < (unsigned)TESTBED_VARIANTS; variant++) {
         round_of(variant);
     }
     for (unsigned op = 0; op < (unsigned)SIM_HAL_OP_COUNT; op++) {
@@ -258,7 +259,7 @@ int main(int argc, char **argv) {
     (void)printf("%llu rules borne, %llu dead controllers noticed, %llu frames judged, %llu resets by the button\n",
                  (unsigned long long)sum.borne, (unsigned long long)sum.noticed, (unsigned long long)sum.frames,
                  (unsigned long long)sum.resets);
-    (void)printf("%d rounds: %llu calls made to fail in %llu runs, %llu failures, harm: %llu\n", (int)WORLD_VARIANTS,
+    (void)printf("%d rounds: %llu calls made to fail in %llu runs, %llu failures, harm: %llu\n", (int)TESTBED_VARIANTS,
                  (unsigned long long)sum.calls, (unsigned long long)sum.runs, (unsigned long long)sum.failures,
                  (unsigned long long)harm_count);
     return ((harm_count == 0u) && (sum.calls > 0u)) ? 0 : 1;

@@ -1,13 +1,13 @@
 /*
- * A moment of the world (world.h), to come back to very often. What is in the log and in the recorder decides nothing and
- * is left as it is.
+ * A state of the testbed (testbed.h), to come back to very often. What is in the log and in the recorder decides nothing
+ * and is left as it is.
  */
-#ifndef MOMENT_H
-#define MOMENT_H
+#ifndef TESTBED_STATE_H
+#define TESTBED_STATE_H
 
 #include <stddef.h>
 
-#include "world.h"
+#include "testbed.h"
 
 typedef struct {
     agv_supervisor_t supervisor;
@@ -19,12 +19,9 @@ typedef struct {
     uint64_t now_ms;
     uint64_t ticked_ms;
     uint32_t unsettled;
-} moment_t;
+} testbed_state_t;
 
-/* The one that is kept. */
-extern moment_t moment;
-
-void moment_save(void);
-void moment_restore(void);
+void testbed_save(testbed_state_t *state);
+void testbed_restore(const testbed_state_t *state);
 
 #endif

@@ -2,10 +2,10 @@
  * One supervisor on the simulated port, the traffic of a vehicle around it, and the rules that judge it (rules.h). For
  * programs that start from the same state very often: a state is reached once and then copied.
  *
- * There is one live world; it is judged in every call, and the first broken rule ends the program.
+ * There is one live testbed; it is judged in every call, and the first broken rule ends the program.
  */
-#ifndef WORLD_H
-#define WORLD_H
+#ifndef TESTBED_H
+#define TESTBED_H
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -16,7 +16,7 @@
 #include "rules.h"
 #include "traffic.h"
 
-enum { WORLD_STATES = 5, WORLD_VARIANTS = 7 };
+enum { TESTBED_STATES = 5, TESTBED_VARIANTS = 7 };
 
 typedef struct {
     agv_supervisor_t supervisor;
@@ -26,56 +26,56 @@ typedef struct {
     agv_config_t config;
     agv_ports_t ports;
     rules_t rules;
-    uint64_t now_ms;    /* since the world began; never wraps */
+    uint64_t now_ms;    /* since the testbed began; never wraps */
     uint32_t offset_ms; /* the supervisor's clock reads now_ms + offset_ms */
     uint64_t ticked_ms; /* when the last tick came */
     uint32_t unsettled; /* ticks until what the controller went through counts as over */
     bool receive_path_dead;
     traffic_message_t traffic[TRAFFIC_MESSAGES];
-} world_t;
+} testbed_t;
 
-extern world_t world;
+extern testbed_t testbed;
 
 /*
- * Put the world into a state, as it is just after it was entered and has settled.
- * @param variant of the configuration, below WORLD_VARIANTS: topologies, identifier sets, choices, and where the clock
+ * Put the testbed into a state, as it is just after it was entered and has settled.
+ * @param variant of the configuration, below TESTBED_VARIANTS: topologies, identifier sets, choices, and where the clock
  *                stands; in some it wraps soon after
  * @param state   0 INIT, 1 STANDBY, 2 ACTIVE, 3 TRIPPED, 4 SAFE
  */
-void world_load(unsigned variant, unsigned state);
+void testbed_load(unsigned variant, unsigned state);
 
 /* Hand over any frame, `ahead_ms` later than now; less than 0: its stamp is so much older. */
-void world_frame(hal_can_side_t side, hal_can_frame_t frame, int32_t ahead_ms);
+void testbed_frame(hal_can_side_t side, hal_can_frame_t frame, int32_t ahead_ms);
 
 /* The message's own next frame, now. */
-void world_send(unsigned message);
+void testbed_send(unsigned message);
 
 /* One tick, so much later, without traffic in between. */
-void world_jump(uint32_t ms);
+void testbed_jump(uint32_t ms);
 
 /* So many steps of a millisecond, with traffic and a tick each. */
-void world_run(uint32_t ms);
+void testbed_run(uint32_t ms);
 
 /* Restart the supervisor after a reset with this cause. */
-void world_restart(hal_reset_cause_t cause);
+void testbed_restart(hal_reset_cause_t cause);
 
 /* The controller of a side goes through something. */
-void world_disturb(hal_can_side_t side, unsigned kind, uint8_t amount);
+void testbed_disturb(hal_can_side_t side, unsigned kind, uint8_t amount);
 
 /* Values of the traffic. */
-void world_mode(uint8_t mode);
-void world_button(bool down);
-void world_gear(uint8_t gear);
-void world_wheels(uint8_t mm_s);
-void world_heal(void);
-void world_ai_drives(void);
+void testbed_mode(uint8_t mode);
+void testbed_button(bool down);
+void testbed_gear(uint8_t gear);
+void testbed_wheels(uint8_t mm_s);
+void testbed_heal(void);
+void testbed_ai_drives(void);
 
 /* Whether the supervisor is latched, also by a state code that is none of the five; whether a fault's cause is there. */
-bool world_is_latched(void);
-bool world_has(agv_fault_t fault);
+bool testbed_is_latched(void);
+bool testbed_has(agv_fault_t fault);
 
 /* End the program when a rule was broken, or do this instead, once it is set. */
-void world_judge(void);
-extern void (*world_on_broken)(void);
+void testbed_judge(void);
+extern void (*testbed_on_broken)(void);
 
 #endif

@@ -1,0 +1,433 @@
+#include "model.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Two of 10 ms share no millisecond with each other, nor with those of 25 ms: little delays anything on a real bus. */
+const uint8_t MODEL_PHASE_MS[TRAFFIC_MESSAGES] = {
+    [M_SIGNALS] = 21,   [M_GEAR] = 45,       [M_THROTTLE] = 76,       [M_STEERING] = 8,
+    [M_VEHICLE] = 1,    [M_GEAR_STATUS] = 2, [M_THROTTLE_STATUS] = 4, [M_STEERING_STATUS] = 5,
+    [M_EPS_STATUS] = 6, [M_POSITION] = 9,    [M_WHEELS] = 0,
+};
+
+enum { WRAP = 0, MIDDLE = 0x7FFFFFFF };
+enum { RECOVERY_MS = 2, BABBLE_MS = 5, FOREIGN_MS = 20, WHEEL_MM_S = 200 };
+/* Until it has tripped: at any time; after four engagements; while engaged; a budget of 1 s after the grace time. */
+enum { ALWAYS_MS = 250, FLAPPING_MS = 2500, ENGAGED_MS = 1200, FOLLOWED_MS = 1800 };
+enum { BOTH_MS = 150, NEITHER_MS = 700, STOP_MS = 5200, SEEN_MS = 300 };
+
+const model_variant_t MODEL_VARIANT[MODEL_VARIANTS] = {
+    {"shared bus", 0, 0, false},
+    {"shared bus, table, the clock wraps", 1, 0u - 2500u, true},
+    {"shared bus, park at standstill, AI lost trips, status frame, the clock passes its middle", 2, 0x80000000u - 4000u,
+     true},
+    {"gateway, the clock wraps", 3, 0u - 4000u, true},
+    {"gateway, table, all pass in manual, frozen heartbeat, ceiling", 4, 0, false},
+    {"gateway, park at standstill, slew, status frame, the clock wraps", 5, 0u - 1500u, true},
+    {"shadow", 6, 0, false},
+};
+
+model_t model;
+const model_variant_t *model_variant;
+hal_can_frame_t model_last_frame;
+hal_can_side_t model_last_side;
+const model_listener_t *model_listener;
+
+static sim_hal_sink_fn *judge_sent;
+
+static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
+    if (testbed.rules.broken[0] == '\0') {
+        model_last_frame = *frame;
+        model_last_side = side;
+    }
+    model.frames++;
+    if (model.stalled && (side == HAL_CAN_VEHICLE) && (testbed.hal.can[side].status.tx_pending_ms == 0u)) {
+        model.taken_ms = testbed.now_ms;
+        testbed.hal.can[side].status.tx_pending_ms = 1;
+    }
+    judge_sent(ctx, side, frame);
+}
+
+static void go_on(void) {
+    /* what is broken is asked for after each symbol */
+}
+
+/* ---- Beginning, saving ---- */
+
+void model_root(const model_variant_t *variant) {
+    model_variant = variant;
+    testbed_on_broken = go_on;
+    testbed_load(variant->testbed, 0);
+    if (testbed.hal.sink != on_sent) {
+        judge_sent = testbed.hal.sink;
+        testbed.hal.sink = on_sent;
+    }
+    memset(&model, 0, sizeof model);
+    model.root_ms = testbed.now_ms;
+    model.mode = MODEL_MANUAL;
+    model.gear = MODEL_P;
+    model.recover_requests = testbed.hal.can[HAL_CAN_VEHICLE].recover_requests;
+    testbed.offset_ms = variant->clock_ms - (uint32_t)testbed.now_ms;
+    sim_hal_set_now_ms(&testbed.hal, variant->clock_ms);
+    for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
+        testbed.traffic[m].counter = 0;
+    }
+    model_dress();
+    testbed_restart(HAL_RESET_POWER_ON);
+}
+
+void model_save(model_saved_t *saved) {
+    testbed_save(&saved->testbed);
+    saved->model = model;
+}
+
+void model_restore(const model_saved_t *saved) {
+    testbed_restore(&saved->testbed);
+    model = saved->model;
+    testbed.receive_path_dead = model.illness == (uint8_t)ILL_RECEIVE_DEAD;
+}
+
+uint32_t model_now_ms(void) {
+    return (uint32_t)(testbed.now_ms - model.root_ms);
+}
+
+bool model_wrapped(void) {
+    const uint32_t middle = (model_variant->clock_ms < 0x80000000u) ? 0x80000000u : 0u;
+    return model_variant->wraps && (model_now_ms() >= middle - model_variant->clock_ms);
+}
+
+/* ---- What is judged beside the rules ---- */
+
+__attribute__((format(printf, 1, 2))) static void broken(const char *format, ...) {
+    va_list arguments;
+    if (testbed.rules.broken[0] == '\0') {
+        va_start(arguments, format);
+        (void)vsnprintf(testbed.rules.broken, sizeof testbed.rules.broken, format, arguments);
+        va_end(arguments);
+    }
+}
+
+/* How long the vehicle has been ill in a way that has to trip, by the protocol and not by the supervisor's own times. */
+static bool must_trip(void) {
+    const uint64_t ill_ms = testbed.now_ms - model.ill_ms;
+    const uint64_t engaged_ms = (model.mode == (uint8_t)MODEL_ENGAGED) ? (testbed.now_ms - model.mode_ms) : 0u;
+    const uint64_t both_ms = (ill_ms < engaged_ms) ? ill_ms : engaged_ms;
+    switch (ILLNESS[model.illness].trips) {
+    case TRIPS_ALWAYS:
+        return ill_ms > (uint64_t)ALWAYS_MS;
+    case TRIPS_FLAPPING:
+        return ill_ms > (uint64_t)FLAPPING_MS;
+    case TRIPS_ENGAGED:
+        return both_ms > (uint64_t)ENGAGED_MS;
+    case TRIPS_FOLLOWED:
+        return both_ms > (uint64_t)FOLLOWED_MS;
+    default:
+        return false;
+    }
+}
+
+/* Whatever the counts and deadlines are, in the end it trips, and no reset is accepted (but for an AI computer). */
+static void judge_illness(bool was_latched) {
+    const agv_state_t state = agv_supervisor_state(&testbed.supervisor);
+    if (agv_state_commands_safe(state) || !must_trip()) {
+        return;
+    }
+    if (was_latched) {
+        broken("FSM-3: the latch was left with a trip cause: %s", ILLNESS[model.illness].name);
+    } else {
+        broken("SUP-4: %s for %u ms, and it has not tripped", ILLNESS[model.illness].name,
+               (unsigned)(testbed.now_ms - model.ill_ms));
+    }
+}
+
+/* SUP-9: both mode bits, or neither while the wheels turn. */
+static void judge_mode(void) {
+    const uint64_t mode_ms = testbed.now_ms - model.mode_ms;
+    const uint64_t wheels_ms = testbed.now_ms - model.wheels_ms;
+    if (agv_state_commands_safe(agv_supervisor_state(&testbed.supervisor)) ||
+        (model.illness == (uint8_t)ILL_MODE_FLAPS)) {
+        return;
+    }
+    if ((model.mode == (uint8_t)MODEL_BOTH) && (mode_ms > (uint64_t)BOTH_MS)) {
+        broken("SUP-9: both modes for %u ms, and it has not tripped", (unsigned)mode_ms);
+    }
+    if ((model.mode == (uint8_t)MODEL_NEITHER) && model.wheels_turn && (mode_ms > (uint64_t)NEITHER_MS) &&
+        (wheels_ms > (uint64_t)NEITHER_MS)) {
+        broken("SUP-9: neither mode for %u ms on the move, and it has not tripped", (unsigned)mode_ms);
+    }
+}
+
+/* FSM-12: a vehicle that does not stop, and one that moves again. */
+static void judge_stop(void) {
+    const uint64_t wheels_ms = testbed.now_ms - model.wheels_ms;
+    const uint64_t latched_ms = testbed.now_ms - model.latched_ms;
+    const bool seen = model_flows(M_WHEELS) && (testbed.now_ms - model.ill_ms > (uint64_t)SEEN_MS) &&
+                      (wheels_ms > (uint64_t)SEEN_MS) && (latched_ms > (uint64_t)SEEN_MS);
+    if (!agv_state_is_latched(agv_supervisor_state(&testbed.supervisor))) {
+        model.latched_ms = testbed.now_ms;
+        model.stood = false;
+        return;
+    }
+    model.stood = model.stood || (seen && !model.wheels_turn);
+    if (!agv_supervisor_output_closed(&testbed.supervisor) || !model.wheels_turn) {
+        return;
+    }
+    if ((latched_ms > (uint64_t)STOP_MS) && (wheels_ms > latched_ms + (uint64_t)SEEN_MS)) {
+        broken("FSM-12: the wheels turn %u ms after the trip, and the safety output is closed", (unsigned)latched_ms);
+    }
+    if (model.stood && seen) {
+        broken("FSM-12: the wheels turn again for %u ms, and the safety output is closed", (unsigned)wheels_ms);
+    }
+}
+
+static void judge(bool was_latched) {
+    const uint32_t counted = agv_supervisor_counters(&testbed.supervisor)->sent;
+    if (counted != model.frames) {
+        broken("INT-4: %u frames have left, the gate let out %u", (unsigned)model.frames, (unsigned)counted);
+    }
+    judge_illness(was_latched);
+    judge_mode();
+    judge_stop();
+}
+
+const char *model_broken(void) {
+    return testbed.rules.broken;
+}
+
+/* ---- Traffic ---- */
+
+void model_dress(void) {
+    testbed_heal();
+    testbed_mode(model.mode);
+    testbed_button(model.button);
+    testbed_gear(model.gear);
+    testbed_wheels(model.wheels_turn ? (uint8_t)WHEEL_MM_S : 0u);
+    testbed_ai_drives();
+    illness_dress((illness_t)model.illness);
+}
+
+static bool is_off(hal_can_side_t side) {
+    return testbed.hal.can[side].status.state == HAL_CAN_BUS_OFF;
+}
+
+bool model_flows(unsigned message) {
+    const traffic_message_t *m = &testbed.traffic[message];
+    return !m->muted && (m->length == 8u) && !is_off(testbed.traffic[message].side);
+}
+
+/* A controller in bus-off hears nothing. */
+static void send(unsigned message) {
+    if (!is_off(testbed.traffic[message].side)) {
+        testbed_send(message);
+    }
+}
+
+static bool is_due(unsigned message, uint32_t t_ms) {
+    if ((message == (unsigned)M_GEAR) && (model.illness == (uint8_t)ILL_AI_BABBLES)) {
+        return t_ms % (uint32_t)BABBLE_MS == 0u;
+    }
+    return t_ms % TRAFFIC[message].cycle_ms == MODEL_PHASE_MS[message];
+}
+
+static void send_due(void) {
+    const uint32_t t_ms = model_now_ms();
+    for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
+        if (!testbed.traffic[m].muted && is_due(m, t_ms)) {
+            send(m);
+        }
+    }
+    if ((model.illness == (uint8_t)ILL_FOREIGN) && ((testbed.now_ms - model.foreign_ms) % (uint64_t)FOREIGN_MS == 0u) &&
+        !is_off(HAL_CAN_VEHICLE)) {
+        testbed_frame(HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .length = 8, .data = {MODEL_D}}, 0);
+    }
+}
+
+/* ---- Milliseconds ---- */
+
+static void follow_controller(void) {
+    sim_hal_can_t *can = &testbed.hal.can[HAL_CAN_VEHICLE];
+    if (model.recover_in_ms != 0u) {
+        model.recover_in_ms--;
+        if ((model.recover_in_ms == 0u) && (model.bus == (uint8_t)BUS_OFF)) {
+            model_set_bus(BUS_FINE);
+        }
+    }
+    if ((model.bus == (uint8_t)BUS_OFF) && (can->recover_requests != model.recover_requests)) {
+        model.recover_in_ms = RECOVERY_MS;
+    }
+    model.recover_requests = can->recover_requests;
+}
+
+/* What does not leave has waited for full milliseconds, at least 1 (hal/can.h). */
+static void age_pending(void) {
+    sim_hal_can_t *can = &testbed.hal.can[HAL_CAN_VEHICLE];
+    if (model.stalled && (can->status.tx_pending_ms != 0u) && (testbed.now_ms > model.taken_ms)) {
+        can->status.tx_pending_ms = (uint32_t)(testbed.now_ms - model.taken_ms);
+    }
+}
+
+static void before(void) {
+    if (model_listener != NULL) {
+        model_listener->before(model_now_ms() + 1u);
+    }
+}
+
+static void after(bool was_latched) {
+    judge(was_latched);
+    if (model_listener != NULL) {
+        model_listener->after();
+    }
+}
+
+/* The rest of a millisecond whose actions are done. */
+static void finish_ms(void) {
+    const bool was_latched = agv_state_is_latched(agv_supervisor_state(&testbed.supervisor));
+    age_pending();
+    testbed_jump(0);
+    send_due();
+    follow_controller();
+    after(was_latched);
+    if (model.illness == (uint8_t)ILL_MODE_FLAPS) {
+        model_dress(); /* the next 363h may have another mode */
+    }
+}
+
+void model_run(uint32_t ms) {
+    for (uint32_t i = 0; i < ms; i++) {
+        before();
+        testbed.now_ms++;
+        finish_ms();
+    }
+}
+
+void model_run_past(unsigned message) {
+    for (unsigned i = 0; i < TRAFFIC[message].cycle_ms; i++) {
+        model_run(1);
+        if (is_due(message, model_now_ms())) {
+            return;
+        }
+    }
+}
+
+void model_deliver(hal_can_side_t side, const hal_can_frame_t *frames, unsigned count) {
+    before();
+    testbed.now_ms++;
+    for (unsigned i = 0; i < count; i++) {
+        if (model_listener != NULL) {
+            model_listener->delivered(side, &frames[i]);
+        }
+        testbed_frame(side, frames[i], 0);
+    }
+    finish_ms();
+}
+
+static bool could_speak(unsigned message) {
+    const traffic_message_t *m = &testbed.traffic[message];
+    return (m->muted || m->frozen) && !is_off(testbed.traffic[message].side);
+}
+
+bool model_can_speak(void) {
+    bool can = false;
+    for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
+        can = can || could_speak(m);
+    }
+    return can;
+}
+
+void model_speak(void) {
+    before();
+    testbed.now_ms++;
+    for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
+        const traffic_message_t kept = testbed.traffic[m];
+        if (could_speak(m)) {
+            testbed.traffic[m].frozen = false;
+            testbed.traffic[m].counter = (uint8_t)(kept.counter + 100u);
+            send(m);
+            if (model_listener != NULL) {
+                model_listener->spoke(m);
+            }
+            testbed.traffic[m].frozen = kept.frozen;
+            testbed.traffic[m].muted = kept.muted;
+        }
+    }
+    finish_ms();
+}
+
+/* What was recorded decides nothing, and a start looks through all of it: it finds nothing there. */
+static void empty_recorder(void) {
+    for (unsigned i = 0; i < (unsigned)AGV_RECORDER_EVENTS; i++) {
+        testbed.recorder.events[i].kind = 0;
+    }
+}
+
+/* rules.h knows of no damaged latch: the reason that stood in it is lost, and only that (FSM-7). */
+static void judge_damaged(bool power_on) {
+    static const char LOST[] = "FSM-7: after a reset the first reason is SUPERVISOR_RESET";
+    if (!power_on && (strcmp(testbed.rules.broken, LOST) == 0)) {
+        testbed.rules.broken[0] = '\0';
+    }
+}
+
+void model_restart(hal_reset_cause_t cause) {
+    before();
+    empty_recorder();
+    if (model_listener != NULL) {
+        model_listener->restarted(cause);
+    }
+    testbed.now_ms++;
+    sim_hal_set_now_ms(&testbed.hal, (uint32_t)testbed.now_ms + testbed.offset_ms);
+    model.frames = 0;
+    model.bus = BUS_FINE;
+    model.ai_off = false;
+    model.stalled = false;
+    model.recover_in_ms = 0;
+    testbed_restart(cause);
+    if (model.bad_latch) {
+        judge_damaged(cause == HAL_RESET_POWER_ON);
+    }
+    model.bad_latch = false;
+    model.latched_ms = testbed.now_ms;
+    model.stood = false;
+    finish_ms();
+}
+
+static void log_pause(uint32_t ms, bool frames_come) {
+    if (model_listener != NULL) {
+        model_listener->without_ticks(ms, frames_come);
+    }
+}
+
+void model_late(uint32_t ms) {
+    for (uint32_t i = 0; i < ms; i++) {
+        before();
+        if (i == 0u) {
+            log_pause(ms, true);
+        }
+        testbed.now_ms++;
+        send_due();
+    }
+    before();
+    testbed.now_ms++;
+    finish_ms();
+}
+
+void model_sleep(uint32_t ms) {
+    before();
+    log_pause(ms, false);
+    testbed.now_ms += ms;
+    model.wheels_ms = testbed.now_ms; /* before nothing was heard of them */
+    finish_ms();
+}
+
+void model_set_bus(model_bus_t bus) {
+    static const hal_can_state_t STATES[] = {HAL_CAN_ERROR_ACTIVE, HAL_CAN_ERROR_PASSIVE, HAL_CAN_BUS_OFF,
+                                             HAL_CAN_BUS_OFF};
+    model.bus = (uint8_t)bus;
+    testbed_disturb(HAL_CAN_VEHICLE, 0, (uint8_t)STATES[bus]);
+}
+
+void model_set_ai_off(bool off) {
+    model.ai_off = off;
+    testbed_disturb(HAL_CAN_AI, 0, off ? (uint8_t)HAL_CAN_BUS_OFF : (uint8_t)HAL_CAN_ERROR_ACTIVE);
+}

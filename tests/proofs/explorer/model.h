@@ -1,0 +1,168 @@
+/*
+ * What the explorer plays on: one supervisor and its vehicle (testbed.h), a millisecond at a time, with the vehicle put
+ * together from few values: mode, button, gear, wheels, and at most one thing that is wrong with it at a time (an
+ * illness). From these the traffic follows, so that a model is saved and compared by few bytes.
+ *
+ * A millisecond is as in host_sim: what is done to the model, the tick, then the frames that are due.
+ */
+#ifndef MODEL_H
+#define MODEL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "testbed_state.h"
+
+/* What is wrong with the vehicle. Names, and the fault that has to come of each, stand in illness.c. */
+typedef enum {
+    ILL_NOTHING,
+    ILL_VCU_SILENT,
+    ILL_VCU_FROZEN,
+    ILL_VCU_SHORT,
+    ILL_EPS_SILENT,
+    ILL_EPS_FROZEN,
+    ILL_AI_SILENT,
+    ILL_AI_FROZEN,
+    ILL_AI_SHORT,
+    ILL_ALL_SILENT,
+    ILL_GEAR_STATUS_SILENT,
+    ILL_THROTTLE_STATUS_SILENT,
+    ILL_WHEELS_SILENT,
+    ILL_EPS_STATUS_SILENT,
+    ILL_GEAR_COMMAND_SILENT,
+    ILL_STEERING_COMMAND_SILENT,
+    ILL_EPS_FAULT,
+    ILL_EPS_SUPPLY,
+    ILL_VCU_ALARM,
+    ILL_VCU_AI_ALARM,
+    ILL_AI_OUT_OF_RANGE,
+    ILL_AI_BABBLES,
+    ILL_GEAR_INVALID,
+    ILL_ANGLE_INVALID,
+    ILL_EPS_MODE_OFF,
+    ILL_STEERING_OFF,
+    ILL_THROTTLE,
+    ILL_THROTTLE_ABOVE,
+    ILL_GEAR_AGAINST,
+    ILL_AUTOPILOT_STAYS,
+    ILL_MODE_FLAPS,
+    ILL_FOREIGN,
+    ILL_RECEIVE_DEAD,
+    ILLNESSES
+} illness_t;
+
+/* The controller on the vehicle side. One that is off recovers when asked to, one that is dead does not. */
+typedef enum { BUS_FINE, BUS_PASSIVE, BUS_OFF, BUS_DEAD } model_bus_t;
+
+enum { MODEL_MANUAL = 0x40, MODEL_ENGAGED = 0x80, MODEL_BOTH = 0xC0, MODEL_NEITHER = 0 };
+enum { MODEL_D = 1, MODEL_P = 8 };
+
+/* One variant of the configuration. */
+typedef struct {
+    const char *name;
+    unsigned testbed;  /* of testbed_load() */
+    uint32_t clock_ms; /* what the clock reads at the start */
+    bool wraps;        /* it wraps, or passes the middle of its range, while states are found */
+} model_variant_t;
+
+enum { MODEL_VARIANTS = 7 };
+extern const model_variant_t MODEL_VARIANT[MODEL_VARIANTS];
+
+typedef struct {
+    uint64_t root_ms;
+    uint64_t foreign_ms; /* since when a foreign sender sends */
+    uint64_t ill_ms;     /* since when the vehicle is ill, and while that reaches the supervisor at all */
+    uint64_t mode_ms;    /* since when it reports its mode */
+    uint64_t wheels_ms;  /* since when its wheels turn, or stand */
+    uint64_t latched_ms; /* since when it is TRIPPED or SAFE */
+    uint64_t taken_ms;   /* when the oldest frame that does not leave was taken */
+    uint32_t frames;     /* that left since the last start */
+    uint32_t recover_requests;
+    uint8_t recover_in_ms;
+    uint8_t bus;     /* model_bus_t */
+    uint8_t illness; /* illness_t */
+    uint8_t mode;
+    uint8_t gear;
+    bool button;
+    bool wheels_turn;
+    bool stood;   /* the wheels have stood since the trip, and that was seen */
+    bool stalled; /* what was handed over does not leave */
+    bool ai_off;  /* bus-off of the AI side */
+    bool bad_latch;
+} model_t;
+
+extern model_t model;
+extern const model_variant_t *model_variant;
+
+/* A model to come back to. */
+typedef struct {
+    testbed_state_t testbed;
+    model_t model;
+} model_saved_t;
+
+/* The first moment of a variant: the supervisor has just started from a power-on. */
+void model_root(const model_variant_t *variant);
+
+void model_save(model_saved_t *saved);
+void model_restore(const model_saved_t *saved);
+
+/* Milliseconds since the root; and whether the clock has wrapped, or passed the middle of its range, since then. */
+uint32_t model_now_ms(void);
+bool model_wrapped(void);
+
+/* The traffic, as the values of the model have it; then milliseconds, with all checks. */
+void model_dress(void);
+void model_run(uint32_t ms);
+void model_run_past(unsigned message);
+
+/* What takes a millisecond: frames, or a restart, before its tick. */
+void model_deliver(hal_can_side_t side, const hal_can_frame_t *frames, unsigned count);
+void model_speak(void);
+void model_restart(hal_reset_cause_t cause);
+
+/* Frames come, the tick does not, for so long; or nothing at all comes. */
+void model_late(uint32_t ms);
+void model_sleep(uint32_t ms);
+
+void model_set_bus(model_bus_t bus);
+void model_set_ai_off(bool off);
+
+/* Whether the message's own frames reach the supervisor as they should; whether something is mute that could speak. */
+bool model_flows(unsigned message);
+bool model_can_speak(void);
+
+/* The first rule that was broken; "" = none. */
+const char *model_broken(void);
+
+/* The last frame that left. */
+extern hal_can_frame_t model_last_frame;
+extern hal_can_side_t model_last_side;
+
+/* Called for what happens, to write it down. A millisecond begins with `before`, then comes what is done in it. */
+typedef struct {
+    void (*before)(uint32_t at_ms);
+    void (*after)(void);
+    void (*delivered)(hal_can_side_t side, const hal_can_frame_t *frame);
+    void (*spoke)(unsigned message);
+    void (*restarted)(hal_reset_cause_t cause);
+    void (*without_ticks)(uint32_t ms, bool frames_come);
+} model_listener_t;
+extern const model_listener_t *model_listener; /* NULL: none */
+
+/* When each message is sent within its cycle. */
+extern const uint8_t MODEL_PHASE_MS[TRAFFIC_MESSAGES];
+
+/* illness.c */
+typedef enum { TRIPS_NEVER, TRIPS_ALWAYS, TRIPS_FLAPPING, TRIPS_ENGAGED, TRIPS_FOLLOWED } illness_trips_t;
+
+typedef struct {
+    const char *name;
+    const char *fault;        /* that is the reason of a trip, when it trips */
+    const char *frozen_fault; /* NULL, or the other one it may be */
+    uint8_t like;             /* illness that has the same effect where no autopilot is supervised (abstract.h) */
+    uint8_t trips;            /* when it trips: illness_trips_t */
+} illness_row_t;
+extern const illness_row_t ILLNESS[ILLNESSES];
+void illness_dress(illness_t illness);
+
+#endif
