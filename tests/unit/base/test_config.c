@@ -18,7 +18,7 @@ static void expect_problem(agv_config_problem_t problem, uint16_t setting) {
 }
 
 static void expect_good(void) {
-    TEST_ASSERT_EQUAL(AGV_CONFIG_OK, agv_config_check(&config).problem);
+    expect_problem(AGV_CONFIG_OK, AGV_SETTING_COUNT);
 }
 
 /* By hand from the rows SUP-2 to SUP-12, FSM-1 to FSM-12, TOP-1 to TOP-3, TIM-4, and the words. */
@@ -391,6 +391,14 @@ void test_other_classes_are_free(void) {
     TEST_ASSERT_FALSE(agv_config_is_trip(&config, AGV_FAULT_REMOTE_SIGNAL_LOST));
     TEST_ASSERT_TRUE(agv_config_is_trip(&config, AGV_FAULT_EPS_TEMP_ABOVE_110));
     TEST_ASSERT_FALSE(agv_config_is_trip(&config, AGV_FAULT_NONE));
+}
+
+/* Shows: INT-2 */
+void test_every_fault_may_be_made_a_trip(void) {
+    for (unsigned fault = 0; fault < AGV_FAULT_COUNT; fault++) {
+        agv_fault_set_put(&config.trips, fault, true);
+        expect_good();
+    }
 }
 
 /* Shows: INT-2 */

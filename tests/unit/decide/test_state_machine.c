@@ -196,6 +196,7 @@ void test_after_10_s_the_start_says_once_what_is_missing(void) {
     TEST_ASSERT_FALSE(has_done(AGV_ACTION_STARTUP_LATE));
     step(1);
     TEST_ASSERT_TRUE(has_done(AGV_ACTION_STARTUP_LATE));
+    TEST_ASSERT_FALSE(has_done(AGV_ACTION_TRIP));
     TEST_ASSERT_EQUAL_HEX16(AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_STANDSTILL | AGV_MISSING_TRIP_CAUSE, missing());
     step(1);
     TEST_ASSERT_FALSE(has_done(AGV_ACTION_STARTUP_LATE));
