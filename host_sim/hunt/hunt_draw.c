@@ -9,7 +9,14 @@
 
 enum { BEGIN_FIRST_MS = 530, BEGIN_MIN_MS = 900, BEGIN_MAX_MS = 4000, BEGIN_SOON_MS = 2200 };
 enum { RESET_MIN_MS = 500, RESET_MAX_MS = 3000 };
-enum { LASTS_MIN_MS = 20, LASTS_MAX_MS = 3000, AFTER_ENGAGED_MS = 4000, PATTERN_MS = 9000, SHORT_PATTERN = 4, TRIES = 20 };
+enum {
+    LASTS_MIN_MS = 20,
+    LASTS_MAX_MS = 3000,
+    AFTER_ENGAGED_MS = 4000,
+    PATTERN_MS = 9000,
+    SHORT_PATTERN = 4,
+    TRIES = 20
+};
 
 /** The attack of this name, which is one. */
 static size_t attack_named(const char *name) {
