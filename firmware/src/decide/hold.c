@@ -1,7 +1,9 @@
 #include "decide/hold.h"
 
-void agv_hold_drop(agv_hold_t *hold) {
+bool agv_hold_drop(agv_hold_t *hold) {
+    const bool dropped = agv_hold_is_held(hold);
     *hold = (agv_hold_t){0};
+    return dropped;
 }
 
 void agv_hold_take(agv_hold_t *hold, const agv_vehicle_t *vehicle) {
@@ -12,7 +14,7 @@ void agv_hold_take(agv_hold_t *hold, const agv_vehicle_t *vehicle) {
 }
 
 void agv_hold_trip(agv_hold_t *hold, const agv_vehicle_t *vehicle, const agv_timers_t *timers) {
-    agv_hold_drop(hold);
+    (void)agv_hold_drop(hold);
     if (agv_timer_runs(timers, AGV_TIMER_ANGLE) && !agv_timer_reached(timers, AGV_TIMER_ANGLE)) {
         agv_hold_take(hold, vehicle);
     }

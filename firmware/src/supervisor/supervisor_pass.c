@@ -172,15 +172,22 @@ void agv_core_await_safe_state(agv_core_t *core) {
     agv_reset_button_trip(&core->reset_button, &core->timers);
 }
 
+/* FSM-10: manual drops what is held. What waits of it in a transmitter that has stalled would leave at some later time. */
+static void follow_hold(agv_core_t *core, hal_t *hal) {
+    const bool dropped = (!is_latched(core) || agv_mode_is_manual(&core->mode)) && agv_hold_drop(&core->hold);
+    if (dropped && agv_fault_monitor_is_active(&core->faults, AGV_FAULT_TX_STALLED)) {
+        agv_transmitter_discard(&core->transmitter, &core->timers, HAL_CAN_VEHICLE);
+        hal_can_purge(hal, HAL_CAN_VEHICLE);
+    }
+}
+
 /* What is held, awaited and limited goes by the state. */
-static void follow_state(agv_core_t *core, uint32_t what) {
+static void follow_state(agv_core_t *core, hal_t *hal, uint32_t what) {
     if ((what & AGV_ACTION_TRIP) != 0u) {
         agv_core_await_safe_state(core);
         agv_hold_trip(&core->hold, &core->vehicle, &core->timers);
     }
-    if (!is_latched(core) || agv_mode_is_manual(&core->mode)) {
-        agv_hold_drop(&core->hold);
-    }
+    follow_hold(core, hal);
     if ((what & AGV_ACTION_RESET_ACCEPTED) != 0u) {
         agv_confirmation_start(&core->confirmation, &core->timers);
         agv_stopping_end(&core->stopping);
@@ -205,7 +212,7 @@ static void carry_out_at_once(agv_core_t *core, const agv_ports_t *ports, uint32
     if ((what & AGV_ACTION_OPEN_OUTPUT) != 0u) {
         hal_safety_output_set(ports->hal, false);
     }
-    follow_state(core, what);
+    follow_state(core, ports->hal, what);
     if ((what & AGV_ACTION_DISCARD) != 0u) {
         agv_transmitter_discard(&core->transmitter, &core->timers, HAL_CAN_VEHICLE);
     }

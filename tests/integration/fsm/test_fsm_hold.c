@@ -220,6 +220,28 @@ void test_manual_after_the_trip_drops_what_is_held(void) {
     expect_held_for_a_second(8700);
 }
 
+static uint32_t purges(void) {
+    return f.hal.can[HAL_CAN_VEHICLE].purges;
+}
+
+/* What waits of it in a transmitter that has stalled is withdrawn when manual drops it; what waits in one that sends is not. */
+/* Shows: FSM-10, SUP-7, TX_STALLED */
+void test_manual_withdraws_an_angle_that_waits_in_a_stalled_transmitter(void) {
+    static const uint32_t PENDING_MS[] = {100, 101};
+    for (unsigned stalled = 0; stalled < 2; stalled++) {
+        fixture_init(&f);
+        trip_at(9123);
+        fixture_run(&f, 100);
+        sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, PENDING_MS[stalled]);
+        fixture_run(&f, 100);
+        const uint32_t purged = purges();
+        fixture_mode(&f, MODE_MANUAL);
+        fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+        fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+        TEST_ASSERT_EQUAL_UINT32(purged + stalled, purges());
+    }
+}
+
 /* ---- The age of the angle ---- */
 
 /* The last valid angle is so old at the trip; since then only invalid ones came, not enough of them to be a fault. */
