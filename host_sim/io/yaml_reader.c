@@ -58,6 +58,81 @@ static bool sort_pairs(const yaml_reader_t *reader, const yaml_node_t *node, con
     return true;
 }
 
+/** Store a number in the member of a row. */
+static void store(const yaml_key_t *key, int64_t value, void *target) {
+    const uint8_t byte = (uint8_t)value;
+    const uint16_t half = (uint16_t)value;
+    const uint32_t word = (uint32_t)value;
+    uint8_t *member = (uint8_t *)target + key->offset;
+
+    if (key->size == sizeof byte) {
+        memcpy(member, &byte, sizeof byte);
+    } else if (key->size == sizeof half) {
+        memcpy(member, &half, sizeof half);
+    } else {
+        memcpy(member, &word, sizeof word);
+    }
+}
+
+static bool read_range(const yaml_reader_t *reader, const yaml_node_t *node, const yaml_key_t *key, void *target) {
+    int64_t range[2];
+
+    if (!yaml_reader_range(reader, node, key->name, key->lowest, key->highest, range)) {
+        return false;
+    }
+    const uint32_t both[2] = {(uint32_t)range[0], (uint32_t)range[1]};
+    memcpy((uint8_t *)target + key->offset, both, sizeof both);
+    return true;
+}
+
+/** Read a value that is one number in the end. */
+static bool read_number(const yaml_reader_t *reader, const yaml_node_t *node, const yaml_key_t *key, int64_t *value) {
+    bool flag = false;
+    uint32_t hex = 0;
+    int word = 0;
+    bool good = false;
+
+    switch (key->kind) {
+    case YAML_KIND_FLAG:
+        good = yaml_reader_bool(reader, node, key->name, &flag);
+        *value = flag ? 1 : 0;
+        return good;
+    case YAML_KIND_HEX:
+        good = yaml_reader_hex(reader, node, key->name, (uint32_t)key->highest, &hex);
+        *value = hex;
+        return good;
+    case YAML_KIND_WORD:
+        good = yaml_reader_word(reader, node, key->name, key->words, &word);
+        *value = word;
+        return good;
+    default:
+        return yaml_reader_number(reader, node, key->name, key->lowest, key->highest, value);
+    }
+}
+
+static bool read_value(const yaml_reader_t *reader, const yaml_node_t *node, const yaml_key_t *key, void *target) {
+    const bool given = true;
+    int64_t value = 0;
+
+    if (key->given != 0) {
+        memcpy((uint8_t *)target + key->given, &given, sizeof given);
+    }
+    switch (key->kind) {
+    case YAML_KIND_CALL:
+        return key->read(reader, node, target);
+    case YAML_KIND_LIST:
+        return yaml_reader_list(reader, node, key->name, key->read, target);
+    case YAML_KIND_RANGE:
+        return read_range(reader, node, key, target);
+    default:
+        if (!read_number(reader, node, key, &value)) {
+            return false;
+        }
+        store(key, value, target);
+        return true;
+    }
+}
+
 bool yaml_reader_map(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, const yaml_key_t *keys,
                      size_t count, void *target) {
     const yaml_node_t *values[YAML_READER_KEYS_MAX] = {NULL};
@@ -70,7 +145,7 @@ bool yaml_reader_map(const yaml_reader_t *reader, const yaml_node_t *node, const
     }
     for (size_t i = 0u; i < count; i++) {
         if (values[i] != NULL) {
-            if (!keys[i].read(reader, values[i], target)) {
+            if (!read_value(reader, values[i], &keys[i], target)) {
                 return false;
             }
         } else if (keys[i].required) {

@@ -30,19 +30,55 @@ typedef struct {
 /** Reads the value of a key into whatever @p target is. @return false: it makes no sense; was reported. */
 typedef bool yaml_read_fn(const yaml_reader_t *reader, const yaml_node_t *value, void *target);
 
-/** A key of a mapping. */
+/** How the value of a key is read. */
+typedef enum {
+    YAML_KIND_CALL, /**< by a function */
+    YAML_KIND_LIST, /**< each item by a function */
+    YAML_KIND_FLAG, /**< true, false */
+    YAML_KIND_NUMBER,
+    YAML_KIND_HEX,
+    YAML_KIND_WORD,
+    YAML_KIND_RANGE, /**< one number or two, into two members of 32 bits */
+} yaml_kind_t;
+
+/** A key of a mapping; made by the macros below. */
 typedef struct {
     const char *name;
-    yaml_read_fn *read;
     bool required;
+    yaml_kind_t kind;
+    yaml_read_fn *read;
+    size_t offset; /**< of the member of the target */
+    size_t size;   /**< of this member: 1, 2 or 4 bytes */
+    size_t given;  /**< offset of a bool that is set, too; 0: none */
+    int64_t lowest;
+    int64_t highest;
+    const yaml_word_t *words;
 } yaml_key_t;
+
+/** @name Rows of a table of keys: OPTIONAL or REQUIRED, the key, and what its kind needs @{ */
+#define YAML_OPTIONAL(...) {.required = false, __VA_ARGS__}
+#define YAML_REQUIRED(...) {.required = true, __VA_ARGS__}
+#define YAML_CALL(key, function) .name = (key), .kind = YAML_KIND_CALL, .read = (function)
+#define YAML_LIST(key, function) .name = (key), .kind = YAML_KIND_LIST, .read = (function)
+#define YAML_MEMBER(type, member) .offset = offsetof(type, member), .size = sizeof(((type *)NULL)->member)
+#define YAML_FLAG(key, type, member) .name = (key), .kind = YAML_KIND_FLAG, YAML_MEMBER(type, member)
+#define YAML_NUMBER(key, type, member, low, high)                                                                      \
+    .name = (key), .kind = YAML_KIND_NUMBER, YAML_MEMBER(type, member), .lowest = (low), .highest = (high)
+#define YAML_HEX(key, type, member, high)                                                                              \
+    .name = (key), .kind = YAML_KIND_HEX, YAML_MEMBER(type, member), .highest = (high)
+#define YAML_WORD(key, type, member, list)                                                                             \
+    .name = (key), .kind = YAML_KIND_WORD, YAML_MEMBER(type, member), .words = (list)
+#define YAML_RANGE(key, type, member, low, high)                                                                       \
+    .name = (key), .kind = YAML_KIND_RANGE, YAML_MEMBER(type, member), .lowest = (low), .highest = (high)
+#define YAML_GIVEN(type, member) .given = offsetof(type, member)
+/** @} */
 
 /** Report what is wrong with a node. @return false */
 bool yaml_reader_fail(const yaml_reader_t *reader, const yaml_node_t *node, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 /**
- * Read a mapping: each key with its function of the table, all with one target, in the order of the table (so that a row
+ * Read a mapping: each key by its row of the table, all with one target, in the order of the table (so that a row
  * may go by what an earlier one has read).
  * @param what  names the mapping in messages
  * @param count at most YAML_READER_KEYS_MAX

@@ -15,6 +15,7 @@
 
 #include "agv/config.h"
 #include "agv/state.h"
+#include "config/config_file.h"
 #include "hal/can.h"
 #include "hal/reset.h"
 #include "vehicle/vehicle.h"
@@ -189,6 +190,7 @@ typedef struct {
     bool fixes_id_set;
     agv_config_t config;
     agv_ids_t ids;         /**< that `config` asks for; the vehicle may have others */
+    config_lines_t lines;  /**< where the settings stand, while the file is read */
     bool config_unchecked; /**< handed to the supervisor though it makes no sense */
     bool self_test_passed;
     vehicle_config_t vehicle;

@@ -27,12 +27,6 @@ const yaml_word_t SCENARIO_CAUSES[] = {{"power-on", HAL_RESET_POWER_ON},
                                        {"unknown", HAL_RESET_UNKNOWN},
                                        {NULL, 0}};
 
-/** What the file holds is read into this. */
-typedef struct {
-    scenario_t *scenario;
-    config_lines_t lines;
-} reading_t;
-
 bool scenario_parse_u32(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t lowest,
                         uint32_t highest, uint32_t *number) {
     int64_t value = 0;
@@ -74,7 +68,7 @@ bool scenario_parse_fault(const yaml_reader_t *reader, const yaml_node_t *node, 
 }
 
 static bool read_name(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    scenario_t *scenario = ((reading_t *)target)->scenario;
+    scenario_t *scenario = target;
     const char *text = yaml_reader_text(reader, node, "name");
 
     if (text == NULL) {
@@ -103,7 +97,7 @@ static bool is_requirement(const char *text) {
 }
 
 static bool read_shown(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    scenario_t *scenario = ((reading_t *)target)->scenario;
+    scenario_t *scenario = target;
     const char *text = yaml_reader_text(reader, node, "shows");
 
     if (text == NULL) {
@@ -121,158 +115,61 @@ static bool read_shown(const yaml_reader_t *reader, const yaml_node_t *node, voi
     return true;
 }
 
-static bool read_shows(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return yaml_reader_list(reader, node, "shows", read_shown, target);
-}
-
 static bool read_description(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     (void)target;
     return yaml_reader_text(reader, node, "description") != NULL;
 }
 
-static bool read_topology(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_word_t words[] = {{"shared", AGV_TOPOLOGY_SHARED}, {"gateway", AGV_TOPOLOGY_GATEWAY}, {NULL, 0}};
-    scenario_t *scenario = ((reading_t *)target)->scenario;
-    int value = 0;
-
-    scenario->fixes_topology = true;
-    if (!yaml_reader_word(reader, node, "topology", words, &value)) {
-        return false;
-    }
-    scenario->config.topology = (uint16_t)value;
-    return true;
-}
-
-static bool read_id_set(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    scenario_t *scenario = ((reading_t *)target)->scenario;
-    int value = 0;
-
-    scenario->fixes_id_set = true;
-    if (!yaml_reader_word(reader, node, "id_set", SCENARIO_ID_SETS, &value)) {
-        return false;
-    }
-    scenario->config.id_set = (uint16_t)value;
-    return true;
-}
-
 static bool read_config(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    reading_t *reading = target;
-    const uint16_t topology = reading->scenario->config.topology;
-    const uint16_t id_set = reading->scenario->config.id_set;
+    scenario_t *scenario = target;
+    const uint16_t topology = scenario->config.topology;
+    const uint16_t id_set = scenario->config.id_set;
 
-    if (!config_read_mapping(reader->document, node, &reading->scenario->config, &reading->lines)) {
+    if (!config_read_mapping(reader->document, node, &scenario->config, &scenario->lines)) {
         return false;
     }
-    reading->scenario->config.topology = topology;
-    reading->scenario->config.id_set = id_set;
+    scenario->config.topology = topology;
+    scenario->config.id_set = id_set;
     for (uint16_t i = 0u; i < AGV_SETTING_COUNT; i++) {
         const char *name = agv_setting_info(i)->name;
-        if ((reading->lines.settings[i] != 0u) && ((strcmp(name, "topology") == 0) || (strcmp(name, "id_set") == 0))) {
-            return report_at(reader->file, reading->lines.settings[i], "%s: belongs to the top level of the file",
+        if ((scenario->lines.settings[i] != 0u) && ((strcmp(name, "topology") == 0) || (strcmp(name, "id_set") == 0))) {
+            return report_at(reader->file, scenario->lines.settings[i], "%s: belongs to the top level of the file",
                              name);
         }
     }
     return true;
 }
 
-static bool read_unchecked(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return yaml_reader_bool(reader, node, "config_unchecked", &((reading_t *)target)->scenario->config_unchecked);
-}
-
-static bool read_self_test(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_word_t words[] = {{"passed", 1}, {"failed", 0}, {NULL, 0}};
-    int value = 0;
-
-    if (!yaml_reader_word(reader, node, "self_test", words, &value)) {
-        return false;
-    }
-    ((reading_t *)target)->scenario->self_test_passed = value != 0;
-    return true;
-}
-
-static bool read_bitrate(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_word_t words[] = {
-        {"125000", 125000}, {"250000", 250000}, {"500000", 500000}, {"1000000", 1000000}, {NULL, 0}};
-    int value = 0;
-
-    if (!yaml_reader_word(reader, node, "bitrate", words, &value)) {
-        return false;
-    }
-    ((reading_t *)target)->scenario->bitrate = (uint32_t)value;
-    return true;
-}
-
-static bool read_clock(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return scenario_parse_u32(reader, node, "clock_start_ms", 0u, UINT32_MAX,
-                              &((reading_t *)target)->scenario->clock_start_ms);
-}
-
-static bool read_tick_phase(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    uint32_t us = 0u;
-
-    if (!scenario_parse_u32(reader, node, "tick_phase_us", 0u, TICK_PHASE_MAX_US, &us)) {
-        return false;
-    }
-    ((reading_t *)target)->scenario->tick_phase_us = (uint16_t)us;
-    return true;
-}
-
-static bool read_watchdog(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_word_t words[] = {{"fitted", 0}, {"none", 1}, {NULL, 0}};
-    int value = 0;
-
-    if (!yaml_reader_word(reader, node, "hardware_watchdog", words, &value)) {
-        return false;
-    }
-    ((reading_t *)target)->scenario->watchdog_ms = (value != 0) ? UINT32_MAX : 0u;
-    return true;
-}
-
-static bool read_cause(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    int value = 0;
-
-    if (!yaml_reader_word(reader, node, "reset_cause", SCENARIO_CAUSES, &value)) {
-        return false;
-    }
-    ((reading_t *)target)->scenario->reset_cause = (hal_reset_cause_t)value;
-    return true;
-}
-
-static bool read_duration(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return scenario_parse_u32(reader, node, "duration_ms", 1u, SCENARIO_DURATION_MAX_MS,
-                              &((reading_t *)target)->scenario->duration_ms);
-}
-
 static bool read_vehicle(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return scenario_parse_vehicle_config(reader, node, &((reading_t *)target)->scenario->vehicle);
+    return scenario_parse_vehicle_config(reader, node, &((scenario_t *)target)->vehicle);
 }
 
-static bool read_steps(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return scenario_parse_steps(reader, node, ((reading_t *)target)->scenario);
-}
+static const yaml_word_t TOPOLOGIES[] = {{"shared", AGV_TOPOLOGY_SHARED}, {"gateway", AGV_TOPOLOGY_GATEWAY}, {NULL, 0}};
+static const yaml_word_t RESULTS[] = {{"passed", 1}, {"failed", 0}, {NULL, 0}};
+static const yaml_word_t BITRATES[] = {
+    {"125000", 125000}, {"250000", 250000}, {"500000", 500000}, {"1000000", 1000000}, {NULL, 0}};
+static const yaml_word_t WATCHDOGS[] = {{"fitted", 0}, {"none", -1}, {NULL, 0}}; /* -1: UINT32_MAX ms */
 
-static bool read_expect(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return scenario_parse_expect(reader, node, ((reading_t *)target)->scenario);
-}
+#define MEMBER(kind, key, ...) YAML_##kind(key, scenario_t, __VA_ARGS__)
 
 static const yaml_key_t TOP[] = {
-    {"name", read_name, true},
-    {"shows", read_shows, true},
-    {"description", read_description, false},
-    {"topology", read_topology, false},
-    {"id_set", read_id_set, false},
-    {"config", read_config, false},
-    {"config_unchecked", read_unchecked, false},
-    {"self_test", read_self_test, false},
-    {"bitrate", read_bitrate, false},
-    {"clock_start_ms", read_clock, false},
-    {"tick_phase_us", read_tick_phase, false},
-    {"hardware_watchdog", read_watchdog, false},
-    {"reset_cause", read_cause, false},
-    {"vehicle", read_vehicle, false},
-    {"duration_ms", read_duration, true},
-    {"steps", read_steps, false},
-    {"expect", read_expect, true},
+    YAML_REQUIRED(YAML_CALL("name", read_name)),
+    YAML_REQUIRED(YAML_LIST("shows", read_shown)),
+    YAML_OPTIONAL(YAML_CALL("description", read_description)),
+    YAML_OPTIONAL(MEMBER(WORD, "topology", config.topology, TOPOLOGIES), YAML_GIVEN(scenario_t, fixes_topology)),
+    YAML_OPTIONAL(MEMBER(WORD, "id_set", config.id_set, SCENARIO_ID_SETS), YAML_GIVEN(scenario_t, fixes_id_set)),
+    YAML_OPTIONAL(YAML_CALL("config", read_config)),
+    YAML_OPTIONAL(MEMBER(FLAG, "config_unchecked", config_unchecked)),
+    YAML_OPTIONAL(MEMBER(WORD, "self_test", self_test_passed, RESULTS)),
+    YAML_OPTIONAL(MEMBER(WORD, "bitrate", bitrate, BITRATES)),
+    YAML_OPTIONAL(MEMBER(NUMBER, "clock_start_ms", clock_start_ms, 0, UINT32_MAX)),
+    YAML_OPTIONAL(MEMBER(NUMBER, "tick_phase_us", tick_phase_us, 0, TICK_PHASE_MAX_US)),
+    YAML_OPTIONAL(MEMBER(WORD, "hardware_watchdog", watchdog_ms, WATCHDOGS)),
+    YAML_OPTIONAL(MEMBER(WORD, "reset_cause", reset_cause, SCENARIO_CAUSES)),
+    YAML_OPTIONAL(YAML_CALL("vehicle", read_vehicle)),
+    YAML_REQUIRED(MEMBER(NUMBER, "duration_ms", duration_ms, 1, SCENARIO_DURATION_MAX_MS)),
+    YAML_OPTIONAL(YAML_CALL("steps", scenario_parse_steps)),
+    YAML_REQUIRED(YAML_CALL("expect", scenario_parse_expect)),
 };
 
 static void preset(scenario_t *scenario, const scenario_options_t *options) {
@@ -336,15 +233,14 @@ static bool expectations_fit(const scenario_t *scenario, const char *file) {
     return good;
 }
 
-static bool read_document(reading_t *reading, yaml_document_t *document, const char *file) {
+static bool read_document(scenario_t *scenario, yaml_document_t *document, const char *file) {
     const yaml_reader_t reader = {.file = file, .document = document};
     const yaml_node_t *root = yaml_document_get_root_node(document);
-    scenario_t *scenario = reading->scenario;
 
     if (root == NULL) {
         return report("%s: there is no scenario in it", file);
     }
-    if (!yaml_reader_map(&reader, root, "a scenario", TOP, COUNT(TOP), reading) || !steps_fit(scenario, file) ||
+    if (!yaml_reader_map(&reader, root, "a scenario", TOP, COUNT(TOP), scenario) || !steps_fit(scenario, file) ||
         !expectations_fit(scenario, file)) {
         return false;
     }
@@ -359,12 +255,12 @@ static bool read_document(reading_t *reading, yaml_document_t *document, const c
 /** Read what was loaded, and free it. */
 static bool read_loaded(scenario_t *scenario, const char *file, yaml_document_t *document,
                         const scenario_options_t *options) {
-    reading_t reading = {.scenario = scenario, .lines = {.path = file}};
-    const bool good = read_document(&reading, document, file);
+    scenario->lines.path = file;
+    const bool good = read_document(scenario, document, file);
 
     yaml_document_delete(document);
     return good && agrees(scenario, file, options) &&
-           (scenario->config_unchecked || config_check(&scenario->config, &reading.lines));
+           (scenario->config_unchecked || config_check(&scenario->config, &scenario->lines));
 }
 
 bool scenario_read(scenario_t *scenario, const char *file, const scenario_options_t *options) {

@@ -20,32 +20,24 @@ bool scenario_parse_window(const yaml_reader_t *reader, const yaml_node_t *node,
     return true;
 }
 
+#define WINDOW(type, key, member) YAML_RANGE(key, type, member, 0, SCENARIO_DURATION_MAX_MS)
+
+static const yaml_word_t STATES[] = {{"INIT", AGV_STATE_INIT},     {"STANDBY", AGV_STATE_STANDBY},
+                                     {"ACTIVE", AGV_STATE_ACTIVE}, {"TRIPPED", AGV_STATE_TRIPPED},
+                                     {"SAFE", AGV_STATE_SAFE},     {NULL, 0}};
+static const yaml_word_t CLASSES[] = {{"trip", AGV_CLASS_TRIP}, {"warn", AGV_CLASS_WARN}, {NULL, 0}};
+static const yaml_word_t OTHERS[] = {{"allowed", 0}, {"never", 1}, {NULL, 0}};
+
 /* --- states --- */
-
-static bool read_state_to(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_word_t words[] = {{"INIT", AGV_STATE_INIT},     {"STANDBY", AGV_STATE_STANDBY},
-                                        {"ACTIVE", AGV_STATE_ACTIVE}, {"TRIPPED", AGV_STATE_TRIPPED},
-                                        {"SAFE", AGV_STATE_SAFE},     {NULL, 0}};
-    int value = 0;
-
-    if (!yaml_reader_word(reader, node, "to", words, &value)) {
-        return false;
-    }
-    ((scenario_state_t *)target)->to = (agv_state_t)value;
-    return true;
-}
 
 static bool read_state_reason(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     return scenario_parse_fault(reader, node, &((scenario_state_t *)target)->reason);
 }
 
-static bool read_state_time(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return scenario_parse_window(reader, node, "at_ms", &((scenario_state_t *)target)->at_ms);
-}
-
 static bool read_state(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {
-        {"to", read_state_to, true}, {"reason", read_state_reason, false}, {"at_ms", read_state_time, true}};
+    static const yaml_key_t keys[] = {YAML_REQUIRED(YAML_WORD("to", scenario_state_t, to, STATES)),
+                                      YAML_OPTIONAL(YAML_CALL("reason", read_state_reason)),
+                                      YAML_REQUIRED(WINDOW(scenario_state_t, "at_ms", at_ms))};
     scenario_state_t *state = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.states);
 
     if (state == NULL) {
@@ -58,16 +50,9 @@ static bool read_state(const yaml_reader_t *reader, const yaml_node_t *node, voi
 
 /* --- safety output, LED --- */
 
-static bool read_output_closed(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return yaml_reader_bool(reader, node, "closed", &((scenario_output_t *)target)->closed);
-}
-
-static bool read_output_time(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return scenario_parse_window(reader, node, "at_ms", &((scenario_output_t *)target)->at_ms);
-}
-
 static bool read_output(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {{"closed", read_output_closed, true}, {"at_ms", read_output_time, true}};
+    static const yaml_key_t keys[] = {YAML_REQUIRED(YAML_FLAG("closed", scenario_output_t, closed)),
+                                      YAML_REQUIRED(WINDOW(scenario_output_t, "at_ms", at_ms))};
     scenario_output_t *output = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.outputs);
 
     if (output == NULL) {
@@ -77,22 +62,9 @@ static bool read_output(const yaml_reader_t *reader, const yaml_node_t *node, vo
     return yaml_reader_map(reader, node, "a change of the safety output", keys, COUNT(keys), output);
 }
 
-static bool read_led_code(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    int64_t code = 0;
-
-    if (!yaml_reader_number(reader, node, "code", -1, 17, &code)) {
-        return false;
-    }
-    ((scenario_led_t *)target)->code = (int8_t)code;
-    return true;
-}
-
-static bool read_led_time(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return scenario_parse_window(reader, node, "at_ms", &((scenario_led_t *)target)->at_ms);
-}
-
 static bool read_led(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {{"code", read_led_code, true}, {"at_ms", read_led_time, true}};
+    static const yaml_key_t keys[] = {YAML_REQUIRED(YAML_NUMBER("code", scenario_led_t, code, -1, 17)),
+                                      YAML_REQUIRED(WINDOW(scenario_led_t, "at_ms", at_ms))};
     scenario_led_t *led = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.leds);
 
     if (led == NULL) {
@@ -108,23 +80,6 @@ static bool read_fault_name(const yaml_reader_t *reader, const yaml_node_t *node
     return scenario_parse_fault(reader, node, &((scenario_fault_t *)target)->fault);
 }
 
-static bool read_fault_class(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_word_t words[] = {{"trip", AGV_CLASS_TRIP}, {"warn", AGV_CLASS_WARN}, {NULL, 0}};
-    scenario_fault_t *fault = target;
-    int value = 0;
-
-    if (!yaml_reader_word(reader, node, "class", words, &value)) {
-        return false;
-    }
-    fault->fault_class = (agv_fault_class_t)value;
-    fault->has_class = true;
-    return true;
-}
-
-static bool read_fault_raised(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return scenario_parse_window(reader, node, "raised_ms", &((scenario_fault_t *)target)->raised_ms);
-}
-
 static bool read_fault_ended(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     scenario_fault_t *fault = target;
     const char *text = yaml_node_text(node);
@@ -135,10 +90,11 @@ static bool read_fault_ended(const yaml_reader_t *reader, const yaml_node_t *nod
 }
 
 static bool read_fault(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {{"name", read_fault_name, true},
-                                      {"class", read_fault_class, false},
-                                      {"raised_ms", read_fault_raised, true},
-                                      {"ended_ms", read_fault_ended, false}};
+    static const yaml_key_t keys[] = {YAML_REQUIRED(YAML_CALL("name", read_fault_name)),
+                                      YAML_OPTIONAL(YAML_WORD("class", scenario_fault_t, fault_class, CLASSES),
+                                                    YAML_GIVEN(scenario_fault_t, has_class)),
+                                      YAML_REQUIRED(WINDOW(scenario_fault_t, "raised_ms", raised_ms)),
+                                      YAML_OPTIONAL(YAML_CALL("ended_ms", read_fault_ended))};
     scenario_fault_t *fault = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.faults);
 
     if (fault == NULL) {
@@ -146,17 +102,6 @@ static bool read_fault(const yaml_reader_t *reader, const yaml_node_t *node, voi
     }
     fault->line = yaml_node_line(node);
     return yaml_reader_map(reader, node, "a fault", keys, COUNT(keys), fault);
-}
-
-static bool read_other_faults(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_word_t words[] = {{"allowed", 0}, {"never", 1}, {NULL, 0}};
-    int value = 0;
-
-    if (!yaml_reader_word(reader, node, "other_faults", words, &value)) {
-        return false;
-    }
-    ((scenario_t *)target)->expect.no_other_faults = value != 0;
-    return true;
 }
 
 /* --- resets and reports at start --- */
@@ -179,21 +124,14 @@ static bool read_missing_word(const yaml_reader_t *reader, const yaml_node_t *no
                             text);
 }
 
-static bool read_reset_missing(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+static bool read_missing(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     return yaml_reader_list(reader, node, "what is missing", read_missing_word, target);
 }
 
-static bool read_reset_accepted(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return yaml_reader_bool(reader, node, "accepted", &((scenario_reset_t *)target)->accepted);
-}
-
-static bool read_reset_time(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return scenario_parse_window(reader, node, "at_ms", &((scenario_reset_t *)target)->at_ms);
-}
-
 static bool read_reset(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {
-        {"accepted", read_reset_accepted, true}, {"why", read_reset_missing, false}, {"at_ms", read_reset_time, true}};
+    static const yaml_key_t keys[] = {YAML_REQUIRED(YAML_FLAG("accepted", scenario_reset_t, accepted)),
+                                      YAML_OPTIONAL(YAML_CALL("why", read_missing)),
+                                      YAML_REQUIRED(WINDOW(scenario_reset_t, "at_ms", at_ms))};
     scenario_reset_t *reset = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.resets);
 
     if (reset == NULL) {
@@ -208,7 +146,8 @@ static bool read_reset(const yaml_reader_t *reader, const yaml_node_t *node, voi
 }
 
 static bool read_startup(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {{"missing", read_reset_missing, true}, {"at_ms", read_reset_time, true}};
+    static const yaml_key_t keys[] = {YAML_REQUIRED(YAML_CALL("missing", read_missing)),
+                                      YAML_REQUIRED(WINDOW(scenario_reset_t, "at_ms", at_ms))};
     scenario_reset_t *startup = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.startups);
 
     if (startup == NULL) {
@@ -219,19 +158,6 @@ static bool read_startup(const yaml_reader_t *reader, const yaml_node_t *node, v
 }
 
 /* --- all of it --- */
-
-#define LIST(name, item)                                                                                               \
-    static bool read_list_##name(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {                 \
-        return yaml_reader_list(reader, node, #name, (item), target);                                                  \
-    }
-LIST(frames, scenario_parse_frame)
-LIST(never, scenario_parse_never)
-LIST(safety_output, read_output)
-LIST(led, read_led)
-LIST(faults, read_fault)
-LIST(resets, read_reset)
-LIST(startup, read_startup)
-LIST(vehicle, scenario_parse_vehicle)
 
 /** A list of all changes of state, or `any`. */
 static bool read_list_states(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
@@ -257,18 +183,18 @@ static bool read_hazards(const yaml_reader_t *reader, const yaml_node_t *node, v
 
 bool scenario_parse_expect(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     static const yaml_key_t keys[] = {
-        {"states", read_list_states, true},
-        {"frames", read_list_frames, false},
-        {"never", read_list_never, false},
-        {"safety_output", read_list_safety_output, false},
-        {"led", read_list_led, false},
-        {"faults", read_list_faults, false},
-        {"other_faults", read_other_faults, false},
-        {"resets", read_list_resets, false},
-        {"startup", read_list_startup, false},
-        {"vehicle", read_list_vehicle, false},
-        {"counters_at_end", scenario_parse_counters, false},
-        {"hazards", read_hazards, false},
+        YAML_REQUIRED(YAML_CALL("states", read_list_states)),
+        YAML_OPTIONAL(YAML_LIST("frames", scenario_parse_frame)),
+        YAML_OPTIONAL(YAML_LIST("never", scenario_parse_never)),
+        YAML_OPTIONAL(YAML_LIST("safety_output", read_output)),
+        YAML_OPTIONAL(YAML_LIST("led", read_led)),
+        YAML_OPTIONAL(YAML_LIST("faults", read_fault)),
+        YAML_OPTIONAL(YAML_WORD("other_faults", scenario_t, expect.no_other_faults, OTHERS)),
+        YAML_OPTIONAL(YAML_LIST("resets", read_reset)),
+        YAML_OPTIONAL(YAML_LIST("startup", read_startup)),
+        YAML_OPTIONAL(YAML_LIST("vehicle", scenario_parse_vehicle)),
+        YAML_OPTIONAL(YAML_CALL("counters_at_end", scenario_parse_counters)),
+        YAML_OPTIONAL(YAML_CALL("hazards", read_hazards)),
     };
     return yaml_reader_map(reader, node, "expect", keys, COUNT(keys), target);
 }

@@ -6,16 +6,13 @@
 #define ENDLESS UINT32_MAX
 #define JITTER_PRESET_MS 2u
 
-static bool read_frame_from(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_word_t words[] = {{"supervisor", SCENARIO_FROM_SUPERVISOR},
-                                        {"vcu", VEHICLE_VCU},
-                                        {"eps", VEHICLE_EPS},
-                                        {"ai", VEHICLE_AI},
-                                        {"stranger", VEHICLE_STRANGER},
-                                        {"anybody", SCENARIO_FROM_ANY},
-                                        {NULL, 0}};
-    return yaml_reader_word(reader, node, "from", words, &((scenario_frame_t *)target)->from);
-}
+static const yaml_word_t SENDERS[] = {{"supervisor", SCENARIO_FROM_SUPERVISOR},
+                                      {"vcu", VEHICLE_VCU},
+                                      {"eps", VEHICLE_EPS},
+                                      {"ai", VEHICLE_AI},
+                                      {"stranger", VEHICLE_STRANGER},
+                                      {"anybody", SCENARIO_FROM_ANY},
+                                      {NULL, 0}};
 
 static bool read_frame_side(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     scenario_frame_t *frame = target;
@@ -29,10 +26,6 @@ static bool read_frame_side(const yaml_reader_t *reader, const yaml_node_t *node
     return true;
 }
 
-static bool read_frame_id(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return yaml_reader_hex(reader, node, "id", 0x1FFFFFFFu, &((scenario_frame_t *)target)->id);
-}
-
 static bool read_frame_message(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     return scenario_parse_message(reader, node, &((scenario_frame_t *)target)->message);
 }
@@ -43,27 +36,12 @@ static bool read_frame_bytes(const yaml_reader_t *reader, const yaml_node_t *nod
     return yaml_reader_bytes(reader, node, "bytes", frame->value, frame->mask, &frame->length);
 }
 
-static bool read_frame_time(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return scenario_parse_window(reader, node, "at_ms", &((scenario_frame_t *)target)->at_ms);
-}
-
-static bool read_frame_first(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    scenario_frame_t *frame = target;
-    frame->is_first = true;
-    return scenario_parse_time(reader, node, "first_since_ms", &frame->first_since_ms);
-}
-
-static bool read_frame_count(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return scenario_parse_window(reader, node, "count", &((scenario_frame_t *)target)->count);
-}
-
-static bool read_frame_every(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return scenario_parse_u32(reader, node, "every_ms", 1u, 60000u, &((scenario_frame_t *)target)->every_ms);
-}
-
-static bool read_frame_jitter(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return scenario_parse_u32(reader, node, "jitter_ms", 0u, 60000u, &((scenario_frame_t *)target)->jitter_ms);
-}
+#define MEMBER(kind, key, ...) YAML_##kind(key, scenario_frame_t, __VA_ARGS__)
+/* What expected and forbidden frames have in common. */
+#define WHICH_FRAME                                                                                                    \
+    YAML_OPTIONAL(MEMBER(WORD, "from", from, SENDERS)), YAML_OPTIONAL(YAML_CALL("side", read_frame_side)),             \
+        YAML_OPTIONAL(MEMBER(HEX, "id", id, 0x1FFFFFFF)), YAML_OPTIONAL(YAML_CALL("message", read_frame_message)),     \
+        YAML_OPTIONAL(YAML_CALL("bytes", read_frame_bytes))
 
 static void preset_frame(scenario_frame_t *frame, const yaml_node_t *node) {
     frame->line = yaml_node_line(node);
@@ -83,16 +61,13 @@ static bool names_one_id(const yaml_reader_t *reader, const yaml_node_t *node, c
 
 bool scenario_parse_frame(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     static const yaml_key_t keys[] = {
-        {"from", read_frame_from, false},
-        {"side", read_frame_side, false},
-        {"id", read_frame_id, false},
-        {"message", read_frame_message, false},
-        {"bytes", read_frame_bytes, false},
-        {"at_ms", read_frame_time, true},
-        {"first_since_ms", read_frame_first, false},
-        {"count", read_frame_count, false},
-        {"every_ms", read_frame_every, false},
-        {"jitter_ms", read_frame_jitter, false},
+        WHICH_FRAME,
+        YAML_REQUIRED(MEMBER(RANGE, "at_ms", at_ms, 0, SCENARIO_DURATION_MAX_MS)),
+        YAML_OPTIONAL(MEMBER(NUMBER, "first_since_ms", first_since_ms, 0, SCENARIO_DURATION_MAX_MS),
+                      YAML_GIVEN(scenario_frame_t, is_first)),
+        YAML_OPTIONAL(MEMBER(RANGE, "count", count, 0, SCENARIO_DURATION_MAX_MS)),
+        YAML_OPTIONAL(MEMBER(NUMBER, "every_ms", every_ms, 1, 60000)),
+        YAML_OPTIONAL(MEMBER(NUMBER, "jitter_ms", jitter_ms, 0, 60000)),
     };
     scenario_frame_t *frame = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.frames);
 
@@ -112,10 +87,8 @@ bool scenario_parse_frame(const yaml_reader_t *reader, const yaml_node_t *node, 
 }
 
 bool scenario_parse_never(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {
-        {"from", read_frame_from, false},       {"side", read_frame_side, false},   {"id", read_frame_id, false},
-        {"message", read_frame_message, false}, {"bytes", read_frame_bytes, false}, {"at_ms", read_frame_time, false},
-    };
+    static const yaml_key_t keys[] = {WHICH_FRAME,
+                                      YAML_OPTIONAL(MEMBER(RANGE, "at_ms", at_ms, 0, SCENARIO_DURATION_MAX_MS))};
     scenario_frame_t *frame = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.never);
 
     if (frame == NULL) {
