@@ -381,6 +381,14 @@ void test_the_highest_ranking_weak_fault_is_named(void) {
     TEST_ASSERT_EQUAL(AGV_FAULT_SELF_TEST_FAILED, agv_config_check(&config).fault);
 }
 
+/* Of several things the setting is what is wrong; the fault is named as well. */
+void test_a_setting_is_told_before_a_weak_fault(void) {
+    config.trips = (agv_fault_set_t){0};
+    config.mode_frames = 0;
+    expect_problem(AGV_CONFIG_OUT_OF_RANGE, AGV_SETTING_mode_frames);
+    TEST_ASSERT_EQUAL(AGV_FAULT_SELF_TEST_FAILED, agv_config_check(&config).fault);
+}
+
 /* Shows: INT-2 */
 void test_other_classes_are_free(void) {
     agv_fault_set_put(&config.trips, AGV_FAULT_REMOTE_SIGNAL_LOST, false);

@@ -69,6 +69,21 @@ void test_it_is_there_until_the_score_is_back_at_0(void) {
     expect_score(4, false); /* from the beginning */
 }
 
+/* With N of 2 as well: only with N of 1 the last frame decides. */
+/* Shows: SUP-4 */
+void test_two_frames_are_scored_too(void) {
+    frames("x.", 2);
+    expect_score(1, false);
+    frames("x.", 2);
+    expect_score(2, false);
+    frames("x", 2);
+    expect_score(4, true);
+    frames("...", 2);
+    expect_score(1, true);
+    frames(".", 2);
+    expect_score(0, false);
+}
+
 /* From 5 two more do not go beyond 6. */
 void test_the_limit_holds_from_an_odd_score_as_well(void) {
     frames("xxx.", 3);
