@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "testbed.h"
+#include "testbed_state.h"
 
 enum { ID_COUNT = 0x800, PATTERNS = 6, TICKS = 8, LENGTHS = 11, KINDS = 4 };
 
@@ -55,31 +55,6 @@ static bool is_same(const trace_t *a, const trace_t *b, bool answered) {
     return (a->state == b->state) && (a->first_reason == b->first_reason) &&
            (memcmp(&a->active, &b->active, sizeof a->active) == 0) && (a->output_closed == b->output_closed) &&
            (a->led == b->led) && (answered || (a->sent == b->sent));
-}
-
-/* The parts of the testbed that a supervisor changes; the recorder and the log decide nothing. */
-typedef struct {
-    agv_supervisor_t supervisor;
-    struct hal hal;
-    rules_t rules;
-    uint64_t now_ms;
-    uint64_t ticked_ms;
-} kept_t;
-
-static void keep(kept_t *kept) {
-    *kept = (kept_t){.supervisor = testbed.supervisor,
-                     .hal = testbed.hal,
-                     .rules = testbed.rules,
-                     .now_ms = testbed.now_ms,
-                     .ticked_ms = testbed.ticked_ms};
-}
-
-static void put_back(const kept_t *kept) {
-    testbed.supervisor = kept->supervisor;
-    testbed.hal = kept->hal;
-    testbed.rules = kept->rules;
-    testbed.now_ms = kept->now_ms;
-    testbed.ticked_ms = kept->ticked_ms;
 }
 
 static void ticks(unsigned count) {
@@ -142,8 +117,9 @@ static void fail(const char *what, hal_can_side_t side, const hal_can_frame_t *f
     exit(1);
 }
 
-static void try_frame(const kept_t *kept, const trace_t *without, hal_can_side_t side, const hal_can_frame_t *frame) {
-    put_back(kept);
+static void try_frame(const testbed_state_t *kept, const trace_t *without, hal_can_side_t side,
+                      const hal_can_frame_t *frame) {
+    testbed_restore(kept);
     cases++;
     testbed_frame(side, *frame, 1);
     const bool speaks = says_something(side, frame) || is_reported(side, frame, without->state);
@@ -156,7 +132,7 @@ static void try_frame(const kept_t *kept, const trace_t *without, hal_can_side_t
     }
     const trace_t with = look();
     if (answered) {
-        put_back(kept);
+        testbed_restore(kept);
         ticks(TICKS + 1u);
     }
     const trace_t compared = answered ? look() : *without;
@@ -166,7 +142,7 @@ static void try_frame(const kept_t *kept, const trace_t *without, hal_can_side_t
     without_trace++;
 }
 
-static void try_id(const kept_t *kept, const trace_t *without, uint32_t id, unsigned payloads) {
+static void try_id(const testbed_state_t *kept, const trace_t *without, uint32_t id, unsigned payloads) {
     for (unsigned i = 0; i < (unsigned)LENGTHS * payloads * HAL_CAN_SIDES; i++) {
         const uint8_t length = LENGTH_OF[i % LENGTHS];
         const uint8_t *pattern = PATTERN[(i / LENGTHS) % payloads];
@@ -183,10 +159,10 @@ static void try_id(const kept_t *kept, const trace_t *without, uint32_t id, unsi
 }
 
 static void try_state(unsigned variant, unsigned state, unsigned payloads) {
-    static kept_t kept;
+    static testbed_state_t kept;
     const uint64_t before = cases;
     testbed_load(variant, state);
-    keep(&kept);
+    testbed_save(&kept);
     ticks(1);
     const trace_t without = look();
     for (uint32_t id = 0; id < ID_COUNT; id++) {

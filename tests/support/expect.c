@@ -16,12 +16,18 @@ static const fixture_sent_t *the_one_in_call(const fixture_t *f, uint32_t call, 
     return found;
 }
 
-static void expect_frame(const fixture_t *f, uint32_t call, uint32_t id, const uint8_t *data, unsigned bytes) {
-    const fixture_sent_t *frame = the_one_in_call(f, call, id);
+void expect_safe_frame(const fixture_t *f, const fixture_sent_t *frame, int32_t hold_raw) {
+    const uint8_t hold[8] = {(uint8_t)((unsigned)hold_raw & 0xFFu), (uint8_t)((unsigned)hold_raw >> 8u)};
+    const bool signals = frame->id == traffic_id(&f->config, M_SIGNALS);
+    const uint8_t *expected = signals              ? SAFE_SIGNALS
+                              : frame->id == 0x168 ? SAFE_PARK
+                              : frame->id == 0x075 ? SAFE_THROTTLE
+                                                   : hold;
     TEST_ASSERT_EQUAL_INT_MESSAGE(HAL_CAN_VEHICLE, frame->side, f->what);
     TEST_ASSERT_EQUAL_UINT8_MESSAGE(0, frame->flags, f->what);
     TEST_ASSERT_EQUAL_UINT8_MESSAGE(8, frame->length, f->what);
-    TEST_ASSERT_EQUAL_HEX8_ARRAY_MESSAGE(data, frame->data, bytes, f->what);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY_MESSAGE(expected, frame->data, signals ? SAFE_SIGNALS_BYTES : 8, f->what);
+    TEST_ASSERT_TRUE_MESSAGE(expected != hold || (frame->id == 0x065 && hold_raw != NO_HOLD), f->what);
 }
 
 static uint32_t count_in_call(const fixture_t *f, uint32_t call) {
@@ -33,28 +39,16 @@ static uint32_t count_in_call(const fixture_t *f, uint32_t call) {
 }
 
 void expect_safe_commands(const fixture_t *f, uint32_t call, int32_t hold_raw) {
-    const uint8_t hold[8] = {(uint8_t)((unsigned)hold_raw & 0xFFu), (uint8_t)((unsigned)hold_raw >> 8u)};
-    expect_frame(f, call, traffic_id(&f->config, M_SIGNALS), SAFE_SIGNALS, SAFE_SIGNALS_BYTES);
-    expect_frame(f, call, 0x168, SAFE_PARK, 8);
-    expect_frame(f, call, 0x075, SAFE_THROTTLE, 8);
-    if (hold_raw != NO_HOLD) {
-        expect_frame(f, call, 0x065, hold, 8);
+    const uint32_t ids[] = {traffic_id(&f->config, M_SIGNALS), 0x168, 0x075, 0x065};
+    for (unsigned i = 0; i < (hold_raw != NO_HOLD ? 4u : 3u); i++) {
+        expect_safe_frame(f, the_one_in_call(f, call, ids[i]), hold_raw);
     }
     TEST_ASSERT_EQUAL_UINT32_MESSAGE(hold_raw != NO_HOLD ? 4 : 3, count_in_call(f, call), f->what);
 }
 
-/* The recorder's last event of this kind. */
 static agv_event_t last_event(const fixture_t *f, agv_event_kind_t kind) {
-    agv_event_t event;
-    for (uint32_t i = agv_recorder_next_sequence(&f->recorder); i-- > 0;) {
-        if (!agv_recorder_get(&f->recorder, i, &event)) {
-            break;
-        }
-        if (event.kind == kind) {
-            return event;
-        }
-    }
-    TEST_FAIL_MESSAGE("no such event was recorded");
+    agv_event_t event = {0};
+    TEST_ASSERT_TRUE_MESSAGE(fixture_events(f, kind, ANY, ANY, &event) > 0, f->what);
     return event;
 }
 

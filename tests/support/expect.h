@@ -11,6 +11,9 @@
 /** No 065h is among the safe commands. */
 enum { NO_HOLD = -1 };
 
+/** This frame is one of the safe commands, byte for byte but for the alive counter; 065h commands this angle. */
+void expect_safe_frame(const fixture_t *f, const fixture_sent_t *frame, int32_t hold_raw);
+
 /**
  * In this call to the supervisor all safe commands were sent at once, one each and to the vehicle, and nothing else:
  * 43Fh, 168h, 075h, and 065h with the held angle.

@@ -292,14 +292,14 @@ bool fixture_has(const fixture_t *f, agv_fault_t fault) {
     return agv_supervisor_has_fault(&f->supervisor, fault);
 }
 
-static uint32_t find_fault(const fixture_t *f, agv_fault_t fault, bool raised, agv_event_t *last) {
+uint32_t fixture_events(const fixture_t *f, agv_event_kind_t kind, int a, int c, agv_event_t *last) {
     const uint32_t next = agv_recorder_next_sequence(&f->recorder);
     const uint32_t kept = next < AGV_RECORDER_EVENTS ? next : AGV_RECORDER_EVENTS;
     uint32_t count = 0;
     agv_event_t event;
     for (uint32_t i = next - kept; i != next; i++) {
-        if (agv_recorder_get(&f->recorder, i, &event) && event.kind == AGV_EVENT_FAULT && event.a == fault &&
-            event.c == (raised ? 1 : 0)) {
+        if (agv_recorder_get(&f->recorder, i, &event) && event.kind == kind && (a == ANY || event.a == a) &&
+            (c == ANY || event.c == c)) {
             count++;
             *last = event;
         }
@@ -309,16 +309,16 @@ static uint32_t find_fault(const fixture_t *f, agv_fault_t fault, bool raised, a
 
 uint32_t fixture_raised(const fixture_t *f, agv_fault_t fault) {
     agv_event_t event;
-    return find_fault(f, fault, true, &event);
+    return fixture_events(f, AGV_EVENT_FAULT, (int)fault, 1, &event);
 }
 
 uint32_t fixture_ended(const fixture_t *f, agv_fault_t fault) {
     agv_event_t event;
-    return find_fault(f, fault, false, &event);
+    return fixture_events(f, AGV_EVENT_FAULT, (int)fault, 0, &event);
 }
 
 bool fixture_last_raised(const fixture_t *f, agv_fault_t fault, agv_event_t *event) {
-    return find_fault(f, fault, true, event) > 0;
+    return fixture_events(f, AGV_EVENT_FAULT, (int)fault, 1, event) > 0;
 }
 
 void fixture_forget_sent(fixture_t *f) {

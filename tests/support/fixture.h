@@ -156,6 +156,10 @@ void fixture_vehicle_confirms(fixture_t *f);
 /** Whether a fault's cause is there now. */
 bool fixture_has(const fixture_t *f, agv_fault_t fault);
 
+/** Events of this kind, and with these parameters a and c, that the recorder still has, and the last of them. */
+enum { ANY = -1 };
+uint32_t fixture_events(const fixture_t *f, agv_event_kind_t kind, int a, int c, agv_event_t *last);
+
 /** How often a fault was raised (or ended) since fixture_start(), of the events that the recorder still has. */
 uint32_t fixture_raised(const fixture_t *f, agv_fault_t fault);
 uint32_t fixture_ended(const fixture_t *f, agv_fault_t fault);

@@ -52,22 +52,9 @@ void walk_to_tripped_driving(fixture_t *f, int32_t mm_s) {
     walk_trip(f);
 }
 
-uint32_t walk_events(const fixture_t *f, agv_event_kind_t kind, uint8_t a, agv_event_t *last) {
-    const uint32_t next = agv_recorder_next_sequence(&f->recorder);
-    uint32_t count = 0;
-    agv_event_t event;
-    for (uint32_t i = next - AGV_RECORDER_EVENTS; i != next; i++) {
-        if (agv_recorder_get(&f->recorder, i, &event) && event.kind == kind && event.a == a) {
-            count++;
-            *last = event;
-        }
-    }
-    return count;
-}
-
 uint32_t walk_refusals(const fixture_t *f, uint16_t *missing) {
     agv_event_t event = {0};
-    const uint32_t count = walk_events(f, AGV_EVENT_RESET, 0, &event);
+    const uint32_t count = fixture_events(f, AGV_EVENT_RESET, 0, ANY, &event);
     *missing = event.missing;
     return count;
 }

@@ -36,9 +36,6 @@ void walk_driving(fixture_t *f, int32_t mm_s);
 /* walk_driving(), and a trip that the vehicle does not confirm: it drives on, engaged and in D. The AI computer is silent. */
 void walk_to_tripped_driving(fixture_t *f, int32_t mm_s);
 
-/* How many events of this kind with this first parameter the recorder has, and the last of them. */
-uint32_t walk_events(const fixture_t *f, agv_event_kind_t kind, uint8_t a, agv_event_t *last);
-
 /* Events of presses that were held in vain; what the last one missed. */
 uint32_t walk_refusals(const fixture_t *f, uint16_t *missing);
 

@@ -189,7 +189,7 @@ static void begin(const obstacle_t *obstacle) {
 }
 
 static uint32_t startup_reports(agv_event_t *last) {
-    return walk_events(&f, AGV_EVENT_STARTUP, 0, last);
+    return fixture_events(&f, AGV_EVENT_STARTUP, 0, ANY, last);
 }
 
 /* Shows: STARTUP_TIMEOUT, FSM-4 */

@@ -33,7 +33,7 @@ void test_the_reason_goes_with_the_reset_and_the_recorder_keeps_it(void) {
     expect_reason(&f, AGV_FAULT_NONE);
     TEST_ASSERT_TRUE(fixture_last_raised(&f, AGV_FAULT_S_DRIVER_ALARM, &event));
     TEST_ASSERT_EQUAL_UINT8(AGV_CLASS_TRIP, event.b);
-    TEST_ASSERT_EQUAL_UINT32(1, walk_events(&f, AGV_EVENT_STATE, AGV_STATE_ACTIVE, &event));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_events(&f, AGV_EVENT_STATE, AGV_STATE_ACTIVE, ANY, &event));
     TEST_ASSERT_EQUAL_HEX8(AGV_STATE_TRIPPED, event.b);
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_S_DRIVER_ALARM, event.c);
 }

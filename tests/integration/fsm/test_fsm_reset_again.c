@@ -77,7 +77,7 @@ void test_the_event_of_the_reset_names_no_fault(void) {
     agv_event_t event = {0};
     walk_to_safe(&f);
     expect_reset_by(1000);
-    TEST_ASSERT_EQUAL_UINT32(1, walk_events(&f, AGV_EVENT_STATE, AGV_STATE_SAFE, &event));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_events(&f, AGV_EVENT_STATE, AGV_STATE_SAFE, ANY, &event));
     TEST_ASSERT_EQUAL_HEX8(AGV_STATE_STANDBY, event.b);
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_NONE, event.c);
 }

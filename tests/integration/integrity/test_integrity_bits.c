@@ -15,7 +15,7 @@ enum { BITS = 8 * sizeof(agv_supervisor_t) };
 
 static fixture_t f;
 
-/* What a moment consists of; recorder and flash do not matter here. */
+/* What a state consists of; recorder and flash do not matter here. */
 typedef struct {
     agv_supervisor_t supervisor;
     struct hal hal;
@@ -25,9 +25,9 @@ typedef struct {
     uint8_t latch_size;
     uint32_t now_ms;
     uint32_t elapsed_ms;
-} moment_t;
+} state_t;
 
-static moment_t moment;
+static state_t saved;
 static uint32_t moments;
 static uint32_t flips;
 static uint32_t detected;
@@ -40,26 +40,26 @@ void setUp(void) {
 }
 
 static void save(void) {
-    moment.supervisor = f.supervisor;
-    moment.hal = f.hal;
-    moment.oracle = f.oracle;
-    memcpy(moment.traffic, f.traffic, sizeof f.traffic);
-    memcpy(moment.latch, f.store.latch, sizeof f.store.latch);
-    moment.latch_size = f.store.latch_size;
-    moment.now_ms = f.now_ms;
-    moment.elapsed_ms = f.elapsed_ms;
+    saved.supervisor = f.supervisor;
+    saved.hal = f.hal;
+    saved.oracle = f.oracle;
+    memcpy(saved.traffic, f.traffic, sizeof f.traffic);
+    memcpy(saved.latch, f.store.latch, sizeof f.store.latch);
+    saved.latch_size = f.store.latch_size;
+    saved.now_ms = f.now_ms;
+    saved.elapsed_ms = f.elapsed_ms;
 }
 
 static void restore(void) {
-    f.supervisor = moment.supervisor;
-    f.hal = moment.hal;
-    judged += f.oracle.judged - moment.oracle.judged;
-    f.oracle = moment.oracle;
-    memcpy(f.traffic, moment.traffic, sizeof f.traffic);
-    memcpy(f.store.latch, moment.latch, sizeof f.store.latch);
-    f.store.latch_size = moment.latch_size;
-    f.now_ms = moment.now_ms;
-    f.elapsed_ms = moment.elapsed_ms;
+    f.supervisor = saved.supervisor;
+    f.hal = saved.hal;
+    judged += f.oracle.judged - saved.oracle.judged;
+    f.oracle = saved.oracle;
+    memcpy(f.traffic, saved.traffic, sizeof f.traffic);
+    memcpy(f.store.latch, saved.latch, sizeof f.store.latch);
+    f.store.latch_size = saved.latch_size;
+    f.now_ms = saved.now_ms;
+    f.elapsed_ms = saved.elapsed_ms;
 }
 
 static bool is_latched(void) {

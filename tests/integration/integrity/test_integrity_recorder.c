@@ -77,13 +77,13 @@ void test_an_event_says_when_in_which_state_and_for_which_reason(void) {
 void test_the_safety_output_is_recorded_when_it_closes_and_opens(void) {
     agv_event_t event = {0};
     fixture_standby(&f);
-    TEST_ASSERT_EQUAL_UINT32(1, walk_events(&f, AGV_EVENT_OUTPUT, 1, &event));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_events(&f, AGV_EVENT_OUTPUT, 1, ANY, &event));
     TEST_ASSERT_EQUAL_UINT32(f.now_ms, event.time_ms);
     TEST_ASSERT_EQUAL_HEX8(AGV_STATE_STANDBY, event.state);
-    TEST_ASSERT_EQUAL_UINT32(1, walk_events(&f, AGV_EVENT_OUTPUT, 0, &event)); /* at the start */
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_events(&f, AGV_EVENT_OUTPUT, 0, ANY, &event)); /* at the start */
     sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
     fixture_run(&f, 500);
-    TEST_ASSERT_EQUAL_UINT32(2, walk_events(&f, AGV_EVENT_OUTPUT, 0, &event));
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_events(&f, AGV_EVENT_OUTPUT, 0, ANY, &event));
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_BUS_OFF, event.first_reason);
     TEST_ASSERT_EQUAL_UINT8(0, event.b); /* nothing more is said of it */
     TEST_ASSERT_EQUAL_UINT8(0, event.c);
@@ -339,7 +339,7 @@ void test_what_was_replaced_before_it_could_be_copied_is_lost(void) {
 /* ---- One fault at most 4 times a second ---- */
 
 static uint32_t level2_events(agv_event_t *last) {
-    return walk_events(&f, AGV_EVENT_FAULT, AGV_FAULT_VCU_LEVEL2_ALARM, last);
+    return fixture_events(&f, AGV_EVENT_FAULT, AGV_FAULT_VCU_LEVEL2_ALARM, ANY, last);
 }
 
 /* Raised and ended 20 times within 100 ms: four events, then none until a second after the first of them. */
@@ -376,7 +376,7 @@ void test_a_fault_that_flutters_hides_no_other(void) {
         two_events();
     }
     walk_trip(&f);
-    TEST_ASSERT_EQUAL_UINT32(1, walk_events(&f, AGV_EVENT_FAULT, AGV_FAULT_S_DRIVER_ALARM, &event));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_events(&f, AGV_EVENT_FAULT, AGV_FAULT_S_DRIVER_ALARM, ANY, &event));
     TEST_ASSERT_EQUAL_UINT16(0, event.left_out);
 }
 

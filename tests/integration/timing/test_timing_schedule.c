@@ -113,7 +113,7 @@ void test_silence_that_lasts_longer_than_the_clock_stays_silence(void) {
 static void expect_still_in_init(void) {
     agv_event_t event;
     expect_state(&f, AGV_STATE_INIT);
-    TEST_ASSERT_EQUAL_UINT32(1, walk_events(&f, AGV_EVENT_STARTUP, 0, &event));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_events(&f, AGV_EVENT_STARTUP, 0, ANY, &event));
     expect_fault(&f, AGV_FAULT_STARTUP_TIMEOUT, true);
 }
 

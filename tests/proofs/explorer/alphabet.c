@@ -166,7 +166,7 @@ static void malformed(void) {
     model_deliver(HAL_CAN_VEHICLE, frames, 4);
 }
 
-static void stranger(unsigned how) {
+static void rogue_node(unsigned how) {
     switch (how) {
     case S_GEAR:
         deliver_one(HAL_CAN_VEHICLE, 0x168, 8, MODEL_D, 0);
@@ -305,7 +305,7 @@ static const symbol_t SYMBOLS[] = {
     ILL(VCU_SILENT),
     ILL(AI_SILENT),
     ILL(EPS_FAULT),
-    {"stranger: 168h D", stranger, vehicle_hears, S_GEAR},
+    {"rogue node: 168h D", rogue_node, vehicle_hears, S_GEAR},
     {"bus-off", apply_bus, other_bus, BUS_OFF},
     {"restart: power-on", restart, always, HAL_RESET_POWER_ON},
     {"restart: watchdog", restart, always, HAL_RESET_WATCHDOG},
@@ -343,12 +343,12 @@ static const symbol_t SYMBOLS[] = {
     ILL(MODE_FLAPS),
     ILL(FOREIGN),
     ILL(RECEIVE_DEAD),
-    {"stranger: 168h of one byte", stranger, vehicle_hears, S_SHORT},
-    {"stranger: 43Fh", stranger, vehicle_hears, S_SIGNALS},
-    {"one 167h with a fault bit", stranger, vehicle_hears, S_FAULT},
-    {"malformed frames", stranger, vehicle_hears, S_MALFORMED},
-    {"43Fh of the other set", stranger, vehicle_hears, S_OTHER_SET},
-    {"167h on the AI side", stranger, ai_side_hears, S_AI_SIDE},
+    {"rogue node: 168h of one byte", rogue_node, vehicle_hears, S_SHORT},
+    {"rogue node: 43Fh", rogue_node, vehicle_hears, S_SIGNALS},
+    {"one 167h with a fault bit", rogue_node, vehicle_hears, S_FAULT},
+    {"malformed frames", rogue_node, vehicle_hears, S_MALFORMED},
+    {"43Fh of the other set", rogue_node, vehicle_hears, S_OTHER_SET},
+    {"167h on the AI side", rogue_node, ai_side_hears, S_AI_SIDE},
     {"error-active", apply_bus, other_bus, BUS_FINE},
     {"error-passive", apply_bus, other_bus, BUS_PASSIVE},
     {"bus-off for good", apply_bus, other_bus, BUS_DEAD},
@@ -399,7 +399,7 @@ bool alphabet_enabled(unsigned symbol) {
 
 bool alphabet_leaves_no_trace(unsigned symbol) {
     void (*const apply)(unsigned) = SYMBOLS[symbol].apply;
-    return (apply == stranger) || (apply == controller) || (apply == late) || (apply == speak) || (apply == restart);
+    return (apply == rogue_node) || (apply == controller) || (apply == late) || (apply == speak) || (apply == restart);
 }
 
 void alphabet_apply(unsigned symbol) {

@@ -4,7 +4,7 @@
  *
  *   time        on, until the abstract state changes or all its times are over; so it also stops a millisecond before
  *   frames      the vehicle's own with another value (mode, button, gear, wheels); what is ill falls silent, freezes,
- *               sends faults, values out of range, short frames; it speaks again for one frame; strangers' frames, and
+ *               sends faults, values out of range, short frames; it speaks again for one frame; rogue nodes' frames, and
  *               malformed ones
  *   controller  error-passive, bus-off (it recovers when asked to, or not), overrun, queue full, frames do not leave
  *   supervisor  a late tick, a sleep, restarts by each kind of cause, with the latch as stored or damaged
