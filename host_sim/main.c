@@ -20,14 +20,14 @@ typedef struct {
 } command_t;
 
 static const command_t commands[] = {
-    {"campaign", "cause faults at random on the simulated bus, thousands of times, and judge", cmd_campaign},
+    {"campaign", "inject random faults on the simulated bus, thousands of times, and check each run", cmd_campaign},
     {"config", "print every setting as a configuration file, or a configuration as Kconfig", cmd_config},
-    {"demo", "see the supervisor at work: a vehicle drives off, loses its AI computer, is parked", cmd_demo},
-    {"hunt", "attack the supervisor at random, and search for runs that end in a hazard", cmd_hunt},
-    {"replay", "feed a recorded candump log to the supervisor in virtual time", cmd_replay},
+    {"demo", "watch the supervisor park a vehicle that loses its AI computer", cmd_demo},
+    {"hunt", "attack the supervisor at random, and search for runs with a hazard", cmd_hunt},
+    {"replay", "replay a recorded candump log to the supervisor in virtual time", cmd_replay},
     {"run", "run the supervisor as a node on SocketCAN, in real time", cmd_run},
-    {"scenario", "play scenario files with a simulated vehicle and judge them", cmd_scenario},
-    {"soak", "let supervisor and vehicle run for months of virtual time, with survivable disturbances", cmd_soak},
+    {"scenario", "run scenario files with a simulated vehicle, and check their expectations", cmd_scenario},
+    {"soak", "run supervisor and vehicle for months of virtual time, with tolerable disturbances", cmd_soak},
     {"vehicle", "simulate VCU, EPS and AI computer as nodes on SocketCAN", cmd_vehicle},
 };
 
@@ -47,8 +47,8 @@ static void print_help(void) {
         "  --help     print this help; after a command: its options\n"
         "  --version  print the version\n"
         "\n"
-        "Exit status: 0 it ran; 1 it ran, and an expectation did not hold; 2 it could not run, and one line on\n"
-        "standard error says why.\n");
+        "Exit status: 0 success; 1 it ran, and an expectation failed; 2 it could not run, and one line on standard\n"
+        "error says why.\n");
 }
 
 static status_t run_command(int argc, char **argv) {
@@ -57,7 +57,7 @@ static status_t run_command(int argc, char **argv) {
             return commands[i].run(argc - 1, &argv[1]);
         }
     }
-    (void)report("'%s' is no command; see host_sim --help", argv[0]);
+    (void)report("unknown command '%s'; see host_sim --help", argv[0]);
     return STATUS_UNUSABLE;
 }
 

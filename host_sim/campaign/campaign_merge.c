@@ -42,7 +42,7 @@ static json_t *read_object(shard_t *shard) {
         if (errno != 0) {
             (void)report("%s: %s", shard->path, strerror(errno));
         } else {
-            (void)report("%s: it ends after line %zu, runs are missing", shard->path, shard->number);
+            (void)report("%s: it ends after line %zu: runs are missing", shard->path, shard->number);
         }
         return NULL;
     }
@@ -51,8 +51,8 @@ static json_t *read_object(shard_t *shard) {
     const bool torn = shard->line[length - 1] != '\n';
     json_t *object = json_loadb(shard->line, (size_t)length, JSON_REJECT_DUPLICATES, &error);
     if (torn || !json_is_object(object) || !is_as_written(shard, (size_t)length, object)) {
-        (void)report_at(shard->path, shard->number, "no result of a campaign%s",
-                        torn ? ": it is torn, its line break is missing" : ", as this program writes it");
+        (void)report_at(shard->path, shard->number, "not a result of a campaign%s",
+                        torn ? ": the line is incomplete" : " of this program version");
         json_decref(object);
         return NULL;
     }
@@ -84,7 +84,7 @@ static bool read_run(shard_t *shard, const campaign_part_t *whole, uint64_t run,
         return report_at(shard->path, shard->number, "a fault that an engagement does not delay");
     }
     return (only == NULL) || (only == &CAMPAIGN_ROWS[sample->row]) ||
-           report_at(shard->path, shard->number, "another fault than that of the campaign");
+           report_at(shard->path, shard->number, "a fault that is not the one of the campaign");
 }
 
 static bool is_same(const campaign_part_t *a, const campaign_part_t *b) {
@@ -103,14 +103,14 @@ static bool sort_shards(shard_t *shards, size_t count, campaign_part_t *whole) {
         }
         *whole = (i == 0u) ? part : *whole;
         if (!is_same(&part, whole)) {
-            return report_at(shards[i].path, shards[i].number, "another campaign than that of %s", shards[0].path);
+            return report_at(shards[i].path, shards[i].number, "not the same campaign as %s", shards[0].path);
         }
         if (part.shards != count) {
-            return report_at(shards[i].path, shards[i].number, "one of %" PRIu32 " shards, %zu were given", part.shards,
-                             count);
+            return report_at(shards[i].path, shards[i].number, "it is one of %" PRIu32 " shards, but %zu were given",
+                             part.shards, count);
         }
         if (sorted[part.shard - 1u].path != NULL) {
-            return report_at(shards[i].path, shards[i].number, "shard %" PRIu32 " once more", part.shard);
+            return report_at(shards[i].path, shards[i].number, "shard %" PRIu32 " is given twice", part.shard);
         }
         sorted[part.shard - 1u] = shards[i];
     }
@@ -122,7 +122,7 @@ static bool sort_shards(shard_t *shards, size_t count, campaign_part_t *whole) {
 
 static bool is_at_end(shard_t *shard) {
     const bool at_end = getline(&shard->line, &shard->room, shard->stream) < 0;
-    return at_end || report_at(shard->path, shard->number + 1u, "more runs than there are");
+    return at_end || report_at(shard->path, shard->number + 1u, "more runs than the campaign has");
 }
 
 static bool merge(shard_t *shards, size_t count, campaign_samples_t *samples, output_t *merged) {

@@ -64,7 +64,7 @@ static bool run_one(campaign_t *campaign, uint64_t run) {
         return false;
     }
     if (!scenario_world_init(&campaign->world, &campaign->scenario)) {
-        return report("run %" PRIu64 ": its world could not be built", run);
+        return report("run %" PRIu64 ": its testbed could not be built", run);
     }
     campaign_judge_init(&campaign->judge, &campaign->plan, &campaign->world);
     const scenario_watch_t watch = campaign_judge_watch(&campaign->judge);

@@ -15,7 +15,7 @@ bool interface_options_check(const char *command, const char *const interfaces[H
         return report("the gateway topology needs --ai-can: the interface of the AI side");
     }
     if (!is_gateway && (ai != NULL)) {
-        return report("--ai-can is for --topology gateway: on the shared bus there is no AI side");
+        return report("--ai-can needs --topology gateway: a shared bus has no AI side");
     }
     if ((ai != NULL) && (strcmp(vehicle, ai) == 0)) {
         return report("--can and --ai-can are the same interface, '%s'", ai);

@@ -78,7 +78,7 @@ static bool take_value(const option_t *option, const char *value) {
     if (option->number != NULL) {
         uint64_t number = 0u;
         if (!options_number(value, option->lowest, option->highest, &number)) {
-            return report("%s: '%s' is no number from %" PRIu64 " to %" PRIu64, option->name, value, option->lowest,
+            return report("%s: '%s' is not a number from %" PRIu64 " to %" PRIu64, option->name, value, option->lowest,
                           option->highest);
         }
         *option->number = number;
@@ -87,7 +87,7 @@ static bool take_value(const option_t *option, const char *value) {
     if (option->word != NULL) {
         int index = options_word(option->words, value);
         if (index < 0) {
-            return report("%s: '%s' is none of %s", option->name, value, option->words);
+            return report("%s: '%s' is not one of %s", option->name, value, option->words);
         }
         *option->word = index;
         return true;
@@ -130,7 +130,7 @@ static bool check_operands(const option_syntax_t *syntax, size_t operands, char 
                       syntax->usage);
     }
     if (operands > syntax->operands_max) {
-        return report("'%s' is one too many; see host_sim %.*s --help", argv[syntax->operands_max],
+        return report("unexpected argument '%s'; see host_sim %.*s --help", argv[syntax->operands_max],
                       command_length(syntax), syntax->usage);
     }
     return true;

@@ -12,12 +12,12 @@ bool shard_option_take(const char *text, uint32_t *shard, uint32_t *shards) {
     const size_t length = strcspn(text, "/");
 
     if ((length >= sizeof first) || (text[length] != '/')) {
-        return report("--shard: '%s' is no I/N such as 2/8", text);
+        return report("--shard: '%s' is not I/N, such as 2/8", text);
     }
     memcpy(first, text, length);
     first[length] = '\0';
     if (!options_number(&text[length + 1u], 1u, SHARDS_MAX, &parts) || !options_number(first, 1u, parts, &part)) {
-        return report("--shard: '%s' is no I/N with I from 1 to N, and N up to %u", text, SHARDS_MAX);
+        return report("--shard: '%s' is not I/N with I from 1 to N and N at most %u", text, SHARDS_MAX);
     }
     *shard = (uint32_t)part;
     *shards = (uint32_t)parts;

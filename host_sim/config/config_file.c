@@ -70,8 +70,8 @@ static bool take_number(const reading_t *reading, uint16_t setting, const agv_se
     uint64_t number = 0u;
     const char *blank = (info->unit[0] != '\0') ? " " : "";
     if ((text == NULL) || !read_number(text, &number)) {
-        return report_at(reading->lines->path, reading->line, "%s: '%s' is no whole number; %u to %u%s%s", reading->key,
-                         yaml_node_text(reading->value), info->lowest, info->highest, blank, info->unit);
+        return report_at(reading->lines->path, reading->line, "%s: '%s' is not a whole number; %u to %u%s%s",
+                         reading->key, yaml_node_text(reading->value), info->lowest, info->highest, blank, info->unit);
     }
     if ((number < info->lowest) || (number > info->highest)) {
         return report_at(reading->lines->path, reading->line, "%s: %" PRIu64 " is not within %u to %u%s%s",
@@ -88,19 +88,19 @@ static int take_word(const reading_t *reading, const char *words) {
         index = options_word(SWITCH_BOOLEANS, text); /* how YAML writers put off and on */
     }
     if (index < 0) {
-        (void)report_at(reading->lines->path, reading->line, "%s: '%s' is none of %s", reading->key, text, words);
+        (void)report_at(reading->lines->path, reading->line, "%s: '%s' is not one of %s", reading->key, text, words);
     }
     return index;
 }
 
 static bool note_line(const reading_t *reading, size_t *line) {
     if (*line != 0u) {
-        return report_at(reading->lines->path, reading->line, "%s: stands on line %zu already", reading->key, *line);
+        return report_at(reading->lines->path, reading->line, "%s: already set on line %zu", reading->key, *line);
     }
     *line = reading->line;
     const char *text = yaml_node_text(reading->value);
     if (text == NULL) {
-        return wrong(reading, (reading->value->type == YAML_SCALAR_NODE) ? "has a NUL character in it"
+        return wrong(reading, (reading->value->type == YAML_SCALAR_NODE) ? "contains a NUL character"
                                                                          : "needs one value, not a list or a mapping");
     }
     return (text[0] != '\0') ? true : wrong(reading, "has no value");
@@ -144,13 +144,13 @@ static bool take_pair(const reading_t *reading) {
             return take_class(reading, (agv_fault_t)fault);
         }
     }
-    return wrong(reading, "no such setting");
+    return wrong(reading, "unknown setting");
 }
 
 bool config_read_mapping(yaml_document_t *document, const yaml_node_t *mapping, agv_config_t *config,
                          config_lines_t *lines) {
     if (mapping->type != YAML_MAPPING_NODE) {
-        return report_at(lines->path, yaml_node_line(mapping), "no settings: a line is 'setting: value'");
+        return report_at(lines->path, yaml_node_line(mapping), "not a list of settings: a line is 'setting: value'");
     }
     bool good = true;
     for (const yaml_node_pair_t *pair = mapping->data.mapping.pairs.start;
@@ -239,6 +239,6 @@ bool config_check(const agv_config_t *config, const config_lines_t *lines) {
         return blame(lines, lines->classes[verdict.fault], key, "this fault must stay a trip");
     case AGV_CONFIG_NO_SUCH_FAULT:
     default:
-        return report("the configuration makes no sense");
+        return report("the configuration is invalid");
     }
 }

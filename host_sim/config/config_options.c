@@ -24,7 +24,7 @@ void config_options_init(config_options_t *options, option_t rows[CONFIG_OPTIONS
          .help = "43Fh and 363h, or 201h and 203h",
          .word = &options->id_set,
          .words = "heading|table"},
-        {.name = "--shadow", .help = "decide everything, send nothing", .flag = &options->shadow},
+        {.name = "--shadow", .help = "supervise, but send nothing", .flag = &options->shadow},
     };
     (void)memcpy(rows, all, sizeof all);
 }

@@ -48,10 +48,10 @@ static const char *weakens_text(const agv_setting_info_t *info) {
     static const struct {
         const char *weakens;
         const char *text;
-    } texts[] = {{"ABOVE", "; more weakens"},
-                 {"BELOW", "; less weakens"},
-                 {"ZERO", "; 0 weakens"},
-                 {"CHOSEN", "; the second weakens"}};
+    } texts[] = {{"ABOVE", "; a higher value weakens the supervision"},
+                 {"BELOW", "; a lower value weakens the supervision"},
+                 {"ZERO", "; 0 weakens the supervision"},
+                 {"CHOSEN", "; the second word weakens the supervision"}};
     for (size_t i = 0u; i < sizeof texts / sizeof texts[0]; i++) {
         if (strcmp(info->weakens, texts[i].weakens) == 0) {
             return texts[i].text;
@@ -80,14 +80,14 @@ void config_print_yaml(const agv_config_t *config) {
         (void)printf("%s%s\n", weakens_text(info), info->gateway_only ? "; gateway only" : "");
         (void)printf("%s: %s\n", info->name, value);
     }
-    (void)printf(
-        "\n# What each fault does: trip|warn. A warning may be made a trip; a trip that must stay one says so.\n");
+    (void)printf("\n# Class of each fault: trip|warn. A warning may be made a trip; a mandatory trip cannot be made a "
+                 "warning.\n");
     for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
         const agv_fault_t fault = (agv_fault_t)i;
         char key[CONFIG_CLASS_KEY_SIZE];
         config_class_key(fault, key);
         (void)printf("%s: %s  # default %s%s\n", key, class_word(config, fault), default_word(fault),
-                     may_be_chosen(fault) ? "" : ", must stay");
+                     may_be_chosen(fault) ? "" : ", mandatory");
     }
 }
 

@@ -111,7 +111,7 @@ static void write_scenario(hunt_play_t *play, const hunt_program_t *program, con
     text->used = 0u;
     text->full = false;
     (void)snprintf(name, sizeof name, "hunt of seed %" PRIu64 ", run %" PRIu64, place->seed, place->run);
-    campaign_text_add(text, "# %s, at %" PRIu64 " ms: %s.\n# %s.\n# Safe would be: %s.\n", info->name, hazard->at_ms,
+    campaign_text_add(text, "# %s, at %" PRIu64 " ms: %s.\n# %s.\n# Safe reaction: %s.\n", info->name, hazard->at_ms,
                       hazard->cause, info->meaning, info->safe);
     hunt_program_write(program, name, text);
     campaign_text_add(text, "expect:\n  states: any\n  hazards: never\n");

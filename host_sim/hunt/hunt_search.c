@@ -93,7 +93,7 @@ static bool run_one(hunt_t *hunt, uint64_t run, uint64_t *random) {
 
     draw_program(hunt, &program, random);
     if (!hunt_play(&hunt->play, &program)) {
-        return report("run %" PRIu64 ": its scenario makes no sense", run);
+        return report("run %" PRIu64 ": its scenario is invalid", run);
     }
     hunt->done++;
     hunt->virtual_ms += hunt->play.played_ms;
@@ -171,7 +171,7 @@ static status_t conclude(const hunt_t *hunt, uint64_t took_ms) {
     const hunt_found_t *found = &hunt->state.found;
 
     (void)printf("%" PRIu64 " runs, %" PRIu64 " simulated seconds, took %" PRIu64 " s; %" PRIu64
-                 " runs with a hazard, %" PRIu32 " different ones\n",
+                 " runs with a hazard, %" PRIu32 " distinct\n",
                  hunt->done, hunt->virtual_ms / MS_PER_S, took_ms / MS_PER_S, found->runs, found->count);
     (void)fflush(stdout); /* also when a signal that came ends the program */
     return (found->count == 0u) ? STATUS_OK : STATUS_UNMET;
@@ -192,7 +192,7 @@ static status_t go(hunt_t *hunt) {
     }
     if (went == INTERRUPTED) {
         note("interrupted after %" PRIu64 " runs%s", hunt->done,
-             (hunt->request->checkpoint != NULL) ? "; the same command goes on" : "");
+             (hunt->request->checkpoint != NULL) ? "; the same command resumes" : "");
     }
     return conclude(hunt, real_ms() - start_ms);
 }

@@ -56,14 +56,14 @@ static bool read_all(const hunt_request_t *request, hunt_state_t *state, FILE *s
     head_t head;
 
     if (fread(&head, sizeof head, 1u, stream) != 1u) {
-        return report("%s: no checkpoint of a hunt", path);
+        return report("%s: not a hunt checkpoint", path);
     }
     if ((fread(state, sizeof *state, 1u, stream) != 1u) || (fgetc(stream) != EOF)) {
         memset(state, 0, sizeof *state);
     }
     const head_t expected = head_of(request, state);
     return (memcmp(&head, &expected, sizeof head) == 0) ||
-           report("%s: the checkpoint of another hunt, or a torn one; remove it to begin anew", path);
+           report("%s: the checkpoint of another hunt, or a damaged one; remove it to start over", path);
 }
 
 bool hunt_state_load(const hunt_request_t *request, hunt_state_t *state) {

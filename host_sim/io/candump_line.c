@@ -62,7 +62,7 @@ static const char *parse_stamp(const char **cursor, uint64_t *stamp_us) {
         seconds = (seconds * 10u) + (uint64_t)(*at - '0');
     }
     if ((at == seconds_at) || (*at != '.')) {
-        return "the time stamp is no number of seconds with decimals";
+        return "the time stamp is not a number of seconds with decimals";
     }
     at++;
     uint64_t us = 0u;
@@ -89,10 +89,10 @@ static const char *parse_interface(const char **cursor, candump_record_t *record
     }
     record->interface_length = (size_t)(at - record->interface);
     if ((record->interface_length == 0u) || (*at != ' ')) {
-        return "there is no name of an interface, or nothing after it";
+        return "the interface name is missing, or nothing follows it";
     }
     if (record->interface_length > CANDUMP_INTERFACE_MAX) {
-        return "the name of the interface is longer than 15 characters";
+        return "the interface name is longer than 15 characters";
     }
     *cursor = &at[1];
     return NULL;
@@ -108,7 +108,7 @@ static const char *parse_id(const char **cursor, hal_can_frame_t *frame) {
         at++;
     }
     if (*at != '#') {
-        return "there is no hexadecimal identifier with a # after it";
+        return "a hexadecimal identifier followed by # is missing";
     }
     *cursor = &at[1];
     if (count == 3u) {
@@ -216,7 +216,7 @@ const char *candump_parse(const char *line, size_t length, candump_record_t *rec
         at += 2;
     }
     at += (*at == '\r') ? 1 : 0;
-    return (at == &line[length]) ? NULL : "there is something after the frame that does not belong there";
+    return (at == &line[length]) ? NULL : "unexpected text after the frame";
 }
 
 static char *put_decimal(char *to, uint64_t value, uint32_t least_digits) {

@@ -47,7 +47,7 @@ static void make_names_up(sent_log_t *log) {
         const char *other = log->interfaces[HAL_CAN_SIDES - 1u - side];
         const char *name = (strcmp(other, made_up[0]) == 0) ? made_up[1] : made_up[0];
         if (log->interfaces[side][0] == '\0') {
-            note("nothing was heard on the %s side: what was sent there is logged as %s",
+            note("no frame was received on the %s side: frames sent there are logged as %s",
                  (side == (uint32_t)HAL_CAN_VEHICLE) ? "vehicle" : "AI", name);
             sent_log_heard(log, (hal_can_side_t)side, name, strlen(name));
         }

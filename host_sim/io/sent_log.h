@@ -1,6 +1,6 @@
 /**
  * @file sent_log.h
- * The log of what the supervisor sent: candump format, one line a frame, in the order of sending.
+ * The frames that the supervisor sent, as a candump log: one line a frame, in the order of sending.
  *
  * A side's lines name the interface on which the side was heard first. What is sent before that waits in memory, all
  * sides' lines behind it, so that the order stays; when that gets too much, or at the end, a name is made up.

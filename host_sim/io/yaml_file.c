@@ -45,7 +45,7 @@ static void report_problem(const char *path, const yaml_parser_t *parser, const 
     /* Characters are decoded before lines are counted. */
     size_t line = (parser->error == YAML_READER_ERROR) ? line_of_offset(bytes, size, parser->problem_offset)
                                                        : parser->problem_mark.line + 1u;
-    (void)report_at(path, line, "no YAML: %s", problem);
+    (void)report_at(path, line, "not YAML: %s", problem);
 }
 
 /** Follow an event. @return what is wrong with it, or NULL */
@@ -57,7 +57,7 @@ static const char *judge_event(const yaml_event_t *event, size_t *depth, size_t 
     case YAML_SEQUENCE_START_EVENT:
     case YAML_MAPPING_START_EVENT:
         (*depth)++;
-        return (*depth <= YAML_FILE_DEPTH_MAX) ? NULL : "this is nested too deep";
+        return (*depth <= YAML_FILE_DEPTH_MAX) ? NULL : "nested too deeply";
     case YAML_SEQUENCE_END_EVENT:
     case YAML_MAPPING_END_EVENT:
         (*depth)--;

@@ -51,7 +51,7 @@ static bool sort_pairs(const yaml_reader_t *reader, const yaml_node_t *node, con
             return false;
         }
         if (values[row] != NULL) {
-            return yaml_reader_fail(reader, key, "'%s' stands twice in %s", keys[row].name, what);
+            return yaml_reader_fail(reader, key, "'%s' is given twice in %s", keys[row].name, what);
         }
         values[row] = yaml_document_get_node(reader->document, pair->value);
     }
@@ -207,7 +207,7 @@ bool yaml_reader_number(const yaml_reader_t *reader, const yaml_node_t *node, co
     const char *digits = digits_of(text, &base);
     const long long value = (digits != NULL) ? strtoll(digits, &end, base) : 0;
     if ((digits == NULL) || (*end != '\0')) {
-        return yaml_reader_fail(reader, node, "%s: '%.*s' is no whole number", what, SHOWN_MAX, text);
+        return yaml_reader_fail(reader, node, "%s: '%.*s' is not a whole number", what, SHOWN_MAX, text);
     }
     if ((errno != 0) || (value < lowest) || (value > highest)) {
         return yaml_reader_fail(reader, node, "%s: %.*s is not within %lld to %lld", what, SHOWN_MAX, text,
@@ -229,7 +229,7 @@ bool yaml_reader_hex(const yaml_reader_t *reader, const yaml_node_t *node, const
     const bool prefixed = (text[0] == '0') && (text[1] == 'x');
     const unsigned long value = (isxdigit((unsigned char)text[0]) != 0) ? strtoul(text, &end, HEX) : 0u;
     if ((end == NULL) || (strcmp(end, prefixed ? "" : "h") != 0)) {
-        return yaml_reader_fail(reader, node, "%s: '%.*s' is no hexadecimal number such as 168h or 0x168", what,
+        return yaml_reader_fail(reader, node, "%s: '%.*s' is not a hexadecimal number such as 168h or 0x168", what,
                                 SHOWN_MAX, text);
     }
     if ((errno != 0) || (value > highest)) {
@@ -266,7 +266,7 @@ bool yaml_reader_word(const yaml_reader_t *reader, const yaml_node_t *node, cons
         const size_t used = strlen(list);
         (void)snprintf(&list[used], sizeof list - used, "%s%s", (used == 0u) ? "" : ", ", word->word);
     }
-    return yaml_reader_fail(reader, node, "%s: '%.*s' is none of %s", what, SHOWN_MAX, text, list);
+    return yaml_reader_fail(reader, node, "%s: '%.*s' is not one of %s", what, SHOWN_MAX, text, list);
 }
 
 bool yaml_reader_range(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, int64_t lowest,
@@ -331,8 +331,8 @@ bool yaml_reader_bytes(const yaml_reader_t *reader, const yaml_node_t *node, con
     for (const char *at = text; *at != '\0'; count++) {
         if ((count == (unsigned)BYTES_MAX) || !take_byte(at, &value[count], (mask != NULL) ? &mask[count] : NULL) ||
             ((at[2] != ' ') && (at[2] != '\0'))) {
-            return yaml_reader_fail(reader, node, "%s: '%.*s' is not up to 8 bytes such as \"08 00 FF\"%s", what,
-                                    SHOWN_MAX, text, (mask != NULL) ? ", '..' for any" : "");
+            return yaml_reader_fail(reader, node, "%s: '%.*s' is not a list of up to 8 bytes such as \"08 00 FF\"%s",
+                                    what, SHOWN_MAX, text, (mask != NULL) ? ", '..' for any" : "");
         }
         at += (at[2] == ' ') ? 3 : 2;
     }

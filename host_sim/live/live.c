@@ -104,7 +104,7 @@ static bool prepare(live_t *live) {
     live->opened_us = time_of_day_us() - node_now_us(live->node);
     live->loop_is_open = linux_loop_open(&live->loop);
     if (!live->loop_is_open || !linux_loop_align(&live->loop, node_now_us(live->node))) {
-        return report("the timer of the ticks cannot be had: %s", strerror(errno));
+        return report("cannot create the tick timer: %s", strerror(errno));
     }
     if (!live_files_follow(&live->files, &live->loop, live->node)) {
         return false;

@@ -30,7 +30,7 @@ bool live_files_follow(live_files_t *files, linux_loop_t *loop, const node_t *no
             continue;
         }
         if (!linux_loop_add(loop, fd)) {
-            return report("the interfaces cannot be waited for: %s", strerror(errno));
+            return report("cannot wait for the interfaces: %s", strerror(errno));
         }
         files->fds[side] = fd;
     }

@@ -82,7 +82,7 @@ bool live_output_end(live_output_t *output) {
         lines->error = ETIMEDOUT;
     }
     if (output->lost_lines > 0u) {
-        note("%s: %" PRIu64 " lines were lost, they were not read fast enough", lines->name, output->lost_lines);
+        note("%s: %" PRIu64 " lines were lost because they were not read fast enough", lines->name, output->lost_lines);
     }
     return output_commit(lines);
 }

@@ -195,7 +195,7 @@ static void stop(outsider_t *outsider) {
 bool outsider_start(outsider_t *outsider) {
     int ends[2];
     if (pipe(ends) != 0) {
-        return report("no pipe: %s", strerror(errno));
+        return report("cannot create a pipe: %s", strerror(errno));
     }
     (void)fcntl(ends[0], F_SETFD, FD_CLOEXEC);
     (void)fcntl(ends[1], F_SETFD, FD_CLOEXEC);
@@ -208,13 +208,13 @@ bool outsider_start(outsider_t *outsider) {
     if (outsider->pid < 0) {
         outsider->pid = 0;
         stop(outsider);
-        return report("no process: %s", strerror(errno));
+        return report("cannot start a process: %s", strerror(errno));
     }
     (void)setpgid(outsider->pid, outsider->pid);
     outsider->line_length = 0u;
     outsider->has_told = false;
     outsider->output_closed = false;
-    return (fcntl(outsider->output, F_SETFL, O_NONBLOCK) == 0) || report("its output: %s", strerror(errno));
+    return (fcntl(outsider->output, F_SETFL, O_NONBLOCK) == 0) || report("cannot read its output: %s", strerror(errno));
 }
 
 bool outsider_wait(outsider_t *outsider) {
@@ -227,7 +227,7 @@ bool outsider_wait(outsider_t *outsider) {
             return false;
         }
     }
-    return outsider->has_told || report("'%s' tells nothing", outsider->config.command);
+    return outsider->has_told || report("'%s' prints no events", outsider->config.command);
 }
 
 void outsider_vehicle_sent(outsider_t *outsider, hal_can_side_t side, const hal_can_frame_t *frame) {

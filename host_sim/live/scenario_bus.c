@@ -138,7 +138,7 @@ static bool open_vehicle(run_t *run) {
     for (unsigned file = 0u; file < VEHICLE_BUS_FILES; file++) {
         const int fd = vehicle_bus_fd(&run->vehicle, file);
         if ((fd >= 0) && !linux_loop_add(&run->loop, fd)) {
-            return report("the interfaces cannot be waited for: %s", strerror(errno));
+            return report("cannot wait for the interfaces: %s", strerror(errno));
         }
     }
     return true;
@@ -289,7 +289,7 @@ static bool advance(run_t *run) {
 static bool prepare(run_t *run) {
     run->loop_is_open = linux_loop_open(&run->loop);
     if (!run->loop_is_open) {
-        return report("the timer of the ticks cannot be had: %s", strerror(errno));
+        return report("cannot create the tick timer: %s", strerror(errno));
     }
     linux_clock_start(&run->clock);
     const bool is_outside = run->bus->command != NULL;

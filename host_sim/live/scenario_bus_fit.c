@@ -10,12 +10,12 @@ enum { PATH_SIZE = 64 };
 
 /** Why a step of the supervisor or the bus cannot be played; NULL: it can. */
 static const char *const left_out_steps[] = {
-    [SCENARIO_TX_STALL] = "stall_tx: nothing holds the frames of a real interface back",
-    [SCENARIO_TX_SWALLOW] = "swallow_tx: nothing swallows the frames of a real interface",
+    [SCENARIO_TX_STALL] = "stall_tx: the frames of a real interface cannot be held back",
+    [SCENARIO_TX_SWALLOW] = "swallow_tx: the frames of a real interface cannot be discarded",
     [SCENARIO_QUEUE_FULL] = "fill_queue: the queue of a real interface cannot be filled on demand",
-    [SCENARIO_DELIVER] = "deliver: on a real bus every frame passes the wire",
-    [SCENARIO_CORRUPT_LATCH] = "corrupt_latch: the memory of the node is not reached from outside",
-    [SCENARIO_FLIP_BIT] = "flip_bit: the memory of the node is not reached from outside",
+    [SCENARIO_DELIVER] = "deliver: on a real bus every frame is on the wire",
+    [SCENARIO_CORRUPT_LATCH] = "corrupt_latch: the memory of the node is not accessible",
+    [SCENARIO_FLIP_BIT] = "flip_bit: the memory of the node is not accessible",
     [SCENARIO_CORRUPT_FRAMES] = "destroy: frames on a real bus cannot be destroyed",
 };
 
@@ -39,7 +39,7 @@ static const char *why_not_bus_off(const scenario_bus_t *bus, const scenario_t *
                                    const scenario_action_t *action) {
     if ((action->side == HAL_CAN_AI) &&
         (scenario->config.bus_off_recovery_ms >= scenario->config.steering_command_timeout_ms)) {
-        return "bus_off: a virtual interface goes on hearing the AI computer";
+        return "bus_off: a virtual interface still receives from the AI computer";
     }
     return why_not_controller(bus, action);
 }
@@ -48,9 +48,9 @@ static const char *why_not_bus_off(const scenario_bus_t *bus, const scenario_t *
 static const char *why_not_of_outsider(const scenario_action_t *action) {
     switch (action->what) {
     case SCENARIO_RESTART:
-        return "restart: another program takes its time to start";
+        return "restart: the start-up time of another program is unknown";
     case SCENARIO_HANG:
-        return "hang: another program is not held up";
+        return "hang: another program cannot be stopped";
     case SCENARIO_BUS_OFF:
     case SCENARIO_OVERRUN:
     case SCENARIO_ERROR_PASSIVE:
@@ -72,7 +72,7 @@ static const char *why_not_step(const scenario_bus_t *bus, const scenario_t *sce
     case SCENARIO_HANG:
         return ((scenario->watchdog_ms == UINT32_MAX) || (action->ms < scenario->config.watchdog_period_ms))
                    ? NULL
-                   : "hang: a computer has no hardware watchdog that bites";
+                   : "hang: a computer has no hardware watchdog";
     case SCENARIO_BUS_OFF:
         return why_not_bus_off(bus, scenario, action);
     case SCENARIO_OVERRUN:
@@ -85,7 +85,7 @@ static const char *why_not_step(const scenario_bus_t *bus, const scenario_t *sce
 
 static const char *why_not_vehicle(const vehicle_action_t *action) {
     const bool is_fd = (action->what == VEHICLE_DO_SEND) && ((action->frame.flags & HAL_CAN_FD) != 0u);
-    return is_fd ? "send, kind: fd: the interfaces are taken for classic ones" : NULL;
+    return is_fd ? "send, kind: fd: the interfaces are used as classic CAN" : NULL;
 }
 
 static const char *why_not_start(const scenario_t *scenario) {
@@ -96,7 +96,7 @@ static const char *why_not_start(const scenario_t *scenario) {
         return "clock_start_ms: the clock of a node starts at 0";
     }
     if (scenario->tick_phase_us != 0u) {
-        return "tick_phase_us: a computer ticks when it can";
+        return "tick_phase_us: the tick phase of a computer cannot be set";
     }
     if (scenario->reset_cause != HAL_RESET_POWER_ON) {
         return "reset_cause: a program starts by power-on only";
@@ -108,7 +108,7 @@ static const char *why_not_start(const scenario_t *scenario) {
 static const char *why_not_faults(const scenario_expect_t *expect) {
     for (size_t i = 0u; i < expect->faults.count; i++) {
         if (expect->faults.items[i].fault == AGV_FAULT_TX_STALLED) {
-            return "TX_STALLED: a virtual interface takes every frame, acknowledged or not";
+            return "TX_STALLED: a virtual interface accepts every frame, acknowledged or not";
         }
     }
     return NULL;
@@ -124,7 +124,7 @@ static const char *why_not_ai_side(const scenario_t *scenario) {
         const scenario_step_t *step = &scenario->steps[i];
         expected = expected && (step->of_vehicle || (step->supervisor.what != SCENARIO_BUS_OFF));
     }
-    return expected ? "AI_BUS_OFF: a virtual interface takes every frame, acknowledged or not" : NULL;
+    return expected ? "AI_BUS_OFF: a virtual interface accepts every frame, acknowledged or not" : NULL;
 }
 
 /** Whether a frame is one that the kernel hands over to the supervisor (node.c). */
@@ -147,7 +147,7 @@ static const char *why_not_counters(const scenario_t *scenario) {
         const scenario_counter_t *counter = &scenario->expect.counters.items[i];
         for (size_t name = 0u; name < sizeof of_received / sizeof of_received[0]; name++) {
             if ((counter->value.from > 0u) && (strcmp(counter->name, of_received[name]) == 0)) {
-                return "counters_at_end: the kernel keeps frames that are none of the protocol to itself";
+                return "counters_at_end: the kernel filters out frames that are not in the protocol";
             }
         }
     }
@@ -163,7 +163,7 @@ const char *scenario_bus_leaves_out(const scenario_bus_t *bus, const scenario_t 
     why = (why != NULL) ? why : why_not_faults(&scenario->expect);
     why = (why != NULL) ? why : why_not_ai_side(scenario);
     if ((why == NULL) && (scenario->expect.no_hazards != 0u)) {
-        why = "hazards: they are judged by the inside of the simulated vehicle";
+        why = "hazards: they are checked inside the simulated vehicle";
     }
     return (why != NULL) ? why : why_not_counters(scenario);
 }

@@ -42,7 +42,7 @@ static void act(run_t *run, const vehicle_words_t *words) {
     }
     if (!done) {
         vehicle_show_clear(&run->show, false);
-        (void)report("%s %s: not done; %u strangers send already", words->step.actor, words->what,
+        (void)report("%s %s: not done; %u rogue nodes are already sending", words->step.actor, words->what,
                      VEHICLE_STRANGERS_MAX);
     }
 }
@@ -164,7 +164,7 @@ static void show_end(run_t *run) {
     const vehicle_bus_t *bus = &run->bus;
 
     vehicle_show_clear(&run->show, false);
-    (void)printf("%" PRIu64 ".%03" PRIu64 " s; frames: %" PRIu64 " sent, %" PRIu64 " not taken by the kernel\n",
+    (void)printf("%" PRIu64 ".%03" PRIu64 " s; frames: %" PRIu64 " sent, %" PRIu64 " refused by the kernel\n",
                  bus->now_ms / MS_PER_S, bus->now_ms % MS_PER_S, bus->sent, bus->unsent);
 }
 
@@ -225,7 +225,7 @@ status_t vehicle_run_nodes(const vehicle_run_request_t *request) {
 
     typed_lines_init(&run.typed, STDIN_FILENO);
     if (!linux_loop_open(&run.loop)) {
-        (void)report("the system refuses to wait for time and signals: %s", strerror(errno));
+        (void)report("cannot wait for timers and signals: %s", strerror(errno));
         return STATUS_UNUSABLE;
     }
     linux_clock_start(&run.clock);

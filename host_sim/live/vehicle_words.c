@@ -59,7 +59,7 @@ static bool cut(line_t *line, const char *separators) {
             return true;
         }
         if (line->count == (unsigned)PARTS_MAX) {
-            return wrong(line, "these are too many words");
+            return wrong(line, "too many words");
         }
         line->parts[line->count] = at;
         line->count++;
@@ -84,10 +84,10 @@ static bool check_actor(const line_t *line) {
     const yaml_word_t *actor = find_actor(line->parts[0]);
 
     if (actor == NULL) {
-        return report("%s: '%.40s' is none of " ACTORS, line->source, line->parts[0]);
+        return report("%s: '%.40s' is not one of " ACTORS, line->source, line->parts[0]);
     }
     if (line->count == 1u) {
-        return report("%s: what does %s do?", line->source, actor->word);
+        return report("%s: the action of %s is missing", line->source, actor->word);
     }
     const scenario_action_row_t *row = scenario_find_action((scenario_actor_t)actor->value, line->parts[1]);
     if ((row != NULL) && !row->of_vehicle) {
@@ -104,7 +104,7 @@ static bool add_pair(const line_t *line, yaml_document_t *document, int step, co
     const int v = yaml_document_add_scalar(document, NULL, (const yaml_char_t *)value, (int)strlen(value),
                                            YAML_PLAIN_SCALAR_STYLE);
     return ((k != 0) && (v != 0) && (yaml_document_append_mapping_pair(document, step, k, v) != 0)) ||
-           wrong(line, "this is no text (UTF-8)");
+           wrong(line, "not UTF-8 text");
 }
 
 /** The step as a scenario file would have it: {at_ms: 3000, eps: set, field: faults, value: 08h}. */
@@ -150,7 +150,7 @@ static bool read_line(line_t *line, const char *separators, const agv_config_t *
         return false;
     }
     if (line->count == 0u) {
-        return wrong(line, "who does what?");
+        return wrong(line, "actor and action are missing");
     }
     if (!check_actor(line) || !read_step(line, config, &words->step)) {
         return false;
@@ -163,7 +163,7 @@ static bool read_line(line_t *line, const char *separators, const agv_config_t *
 static bool take_text(line_t *line, const char *text, const char *before, const char *after) {
     (void)snprintf(line->source, sizeof line->source, "%s%.*s%s", before, SHOWN_MAX, text, after);
     return (snprintf(line->text, sizeof line->text, "%s", text) < (int)sizeof line->text) ||
-           report("%s: this is longer than %u characters", line->source, VEHICLE_WORDS_MAX - 1u);
+           report("%s: longer than %u characters", line->source, VEHICLE_WORDS_MAX - 1u);
 }
 
 bool vehicle_words_typed(const char *text, const agv_config_t *config, vehicle_words_t *words) {

@@ -126,7 +126,7 @@ static bool pass_record(replay_t *replay, candump_record_t *record) {
         replay->backward_stamps++;
         record->stamp_us = replay->last_us;
     } else if (record->stamp_us - replay->last_us > (uint64_t)REPLAY_GAP_MAX_MS * US_PER_MS) {
-        return candump_reject(&replay->log, "the time stamp is more than 100 days after the one before");
+        return candump_reject(&replay->log, "the time stamp is more than 100 days after the previous one");
     }
     replay->last_us = record->stamp_us;
     if (!run_ticks(replay, record->stamp_us)) {
@@ -176,7 +176,7 @@ static void start(replay_t *replay, uint64_t first_us) {
 static void print_summary(const replay_t *replay, const events_summary_t *summary) {
     summary_print_time(summary, replay->log.name, "");
     summary_print_frames(summary, replay->request->config.shadow == AGV_SHADOW_ON);
-    (void)printf("lines skipped: %" PRIu64 ", stamps that went backwards: %" PRIu64 ", warnings: %" PRIu32 "\n",
+    (void)printf("lines skipped: %" PRIu64 ", time stamps that went backwards: %" PRIu64 ", warnings: %" PRIu32 "\n",
                  summary->skipped_lines, summary->backward_stamps, summary->counters.warnings);
     summary_print_state(summary);
 }
@@ -200,7 +200,7 @@ static bool conclude(replay_t *replay) {
         print_summary(replay, &summary);
     }
     if (good && (request->ai_interface != NULL) && !replay->ai_was_heard) {
-        note("no frame in the log is from %s, the AI side", request->ai_interface);
+        note("the log has no frame from %s, the AI side", request->ai_interface);
     }
     return good;
 }
@@ -213,7 +213,7 @@ static bool prepare(replay_t *replay, candump_record_t *first) {
     }
     const candump_result_t result = candump_next(&replay->log, first);
     if (result != CANDUMP_RECORD) {
-        return (result == CANDUMP_END) ? report("%s: there is no frame in it", replay->log.name) : false;
+        return (result == CANDUMP_END) ? report("%s: contains no frame", replay->log.name) : false;
     }
     if ((request->store != NULL) && !store_file_load(request->store, &replay->store, &replay->session.recorder)) {
         return false;
@@ -244,10 +244,10 @@ static bool check_request(const replay_request_t *request) {
         return report("the gateway topology needs --ai-if: which interface of the log is the AI side");
     }
     if (!is_gateway && (request->ai_interface != NULL)) {
-        return report("--ai-if is for --topology gateway: on the shared bus there is no AI side");
+        return report("--ai-if needs --topology gateway: a shared bus has no AI side");
     }
     if ((request->ai_interface != NULL) && (strlen(request->ai_interface) > CANDUMP_INTERFACE_MAX)) {
-        return report("--ai-if: '%s' is longer than the name of any interface", request->ai_interface);
+        return report("--ai-if: '%s' is too long for an interface name", request->ai_interface);
     }
     return true;
 }

@@ -164,7 +164,7 @@ static void check_startup(scenario_check_t *check, uint32_t t_ms, const agv_even
     check->next_startup++;
     (void)missing_text(event->missing, seen_text);
     if (index >= check->scenario->expect.startups.count) {
-        scenario_check_fail(check, 0u, "no report of what is missing at start is expected, but at %u ms: [%s]",
+        scenario_check_fail(check, 0u, "no report of missing conditions at start is expected, but at %u ms: [%s]",
                             (unsigned)t_ms, seen_text);
         return;
     }

@@ -111,7 +111,7 @@ static void judge_frame(scenario_check_t *check, size_t index, uint32_t t_ms, co
     if (!good && !seen->broken) {
         seen->broken = true;
         scenario_check_fail(check, expected->line,
-                            "%s is expected every %u ms, seen: %u ms after the one before at %u ms",
+                            "%s is expected every %u ms, seen: %u ms after the previous one at %u ms",
                             expected_text(expected, check->ids[index], wanted), (unsigned)expected->every_ms,
                             (unsigned)gap_ms, (unsigned)seen->last_ms);
     }
@@ -130,7 +130,7 @@ static void judge_never(scenario_check_t *check, size_t index, uint32_t t_ms, co
     check->never_count[index]++;
     if (check->never_count[index] == 1u) {
         scenario_check_window_text(never->at_ms, window);
-        scenario_check_fail(check, never->line, "a frame that must not be %s, seen: %s at %u ms", window,
+        scenario_check_fail(check, never->line, "a frame is forbidden %s, seen: %s at %u ms", window,
                             frame_text(frame, got), (unsigned)t_ms);
     }
 }

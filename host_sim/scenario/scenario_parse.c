@@ -54,7 +54,7 @@ bool scenario_parse_message(const yaml_reader_t *reader, const yaml_node_t *node
             return true;
         }
     }
-    return yaml_reader_fail(reader, node, "message: '%.40s' is no message of the protocol", text);
+    return yaml_reader_fail(reader, node, "message: unknown message '%.40s'", text);
 }
 
 bool scenario_parse_fault(const yaml_reader_t *reader, const yaml_node_t *node, agv_fault_t *fault) {
@@ -64,7 +64,7 @@ bool scenario_parse_fault(const yaml_reader_t *reader, const yaml_node_t *node, 
         return false;
     }
     *fault = agv_fault_from_name(text);
-    return (*fault != AGV_FAULT_NONE) || yaml_reader_fail(reader, node, "'%.40s' is no fault", text);
+    return (*fault != AGV_FAULT_NONE) || yaml_reader_fail(reader, node, "unknown fault '%.40s'", text);
 }
 
 static bool read_name(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
@@ -197,7 +197,7 @@ static bool agrees(const scenario_t *scenario, const char *file, const scenario_
 
 /** What lies after the end would never be seen. */
 static bool is_before_end(const scenario_t *scenario, const char *file, size_t line, uint32_t at_ms) {
-    return (at_ms <= scenario->duration_ms) || report_at(file, line, "%u ms lies after the end (duration_ms: %u)",
+    return (at_ms <= scenario->duration_ms) || report_at(file, line, "%u ms is after the end (duration_ms: %u)",
                                                          (unsigned)at_ms, (unsigned)scenario->duration_ms);
 }
 
@@ -238,7 +238,7 @@ static bool read_document(scenario_t *scenario, yaml_document_t *document, const
     const yaml_node_t *root = yaml_document_get_root_node(document);
 
     if (root == NULL) {
-        return report("%s: there is no scenario in it", file);
+        return report("%s: contains no scenario", file);
     }
     if (!yaml_reader_map(&reader, root, "a scenario", TOP, COUNT(TOP), scenario) || !steps_fit(scenario, file) ||
         !expectations_fit(scenario, file)) {

@@ -118,10 +118,11 @@ static bool read_missing_word(const yaml_reader_t *reader, const yaml_node_t *no
             return true;
         }
     }
-    return yaml_reader_fail(reader, node,
-                            "'%.40s' is none of state, vcu_heartbeat, eps_heartbeat, trip_cause, standstill, manual, "
-                            "button, messages, throttle, released",
-                            text);
+    return yaml_reader_fail(
+        reader, node,
+        "'%.40s' is not one of state, vcu_heartbeat, eps_heartbeat, trip_cause, standstill, manual, "
+        "button, messages, throttle, released",
+        text);
 }
 
 static bool read_missing(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
@@ -142,7 +143,7 @@ static bool read_reset(const yaml_reader_t *reader, const yaml_node_t *node, voi
         return false;
     }
     return (reset->accepted == (reset->missing == 0u)) ||
-           yaml_reader_fail(reader, node, "a reset: 'why' belongs to one that is refused, and to each of those");
+           yaml_reader_fail(reader, node, "a reset: 'why' is needed for a refused reset, and only for that");
 }
 
 static bool read_startup(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {

@@ -80,7 +80,7 @@ bool scenario_parse_frame(const yaml_reader_t *reader, const yaml_node_t *node, 
         return false;
     }
     if (frame->is_first && (frame->first_since_ms > frame->at_ms.from)) {
-        return yaml_reader_fail(reader, node, "first_since_ms lies after at_ms");
+        return yaml_reader_fail(reader, node, "first_since_ms is after at_ms");
     }
     return ((frame->id != SCENARIO_NO_ID) || (frame->message != AGV_MSG_NONE)) ||
            yaml_reader_fail(reader, node, "an expected frame: 'id' or 'message' is missing");
@@ -95,6 +95,6 @@ bool scenario_parse_never(const yaml_reader_t *reader, const yaml_node_t *node, 
         return false;
     }
     preset_frame(frame, node);
-    return yaml_reader_map(reader, node, "a frame that must not be", keys, COUNT(keys), frame) &&
+    return yaml_reader_map(reader, node, "a forbidden frame", keys, COUNT(keys), frame) &&
            names_one_id(reader, node, frame);
 }

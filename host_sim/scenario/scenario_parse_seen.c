@@ -33,7 +33,7 @@ bool scenario_parse_vehicle(const yaml_reader_t *reader, const yaml_node_t *node
         return false;
     }
     vehicle->line = yaml_node_line(node);
-    return yaml_reader_map(reader, node, "the vehicle at a moment", keys, COUNT(keys), vehicle);
+    return yaml_reader_map(reader, node, "the vehicle at a time", keys, COUNT(keys), vehicle);
 }
 
 /* --- counters at the end --- */

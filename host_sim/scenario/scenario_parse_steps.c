@@ -45,7 +45,7 @@ static bool take_message(const yaml_reader_t *reader, const reading_t *reading, 
     }
     if (((row->what == (int)VEHICLE_DO_IGNORE) && row->of_vehicle)) {
         return ((int)vehicle_receiver_of(step->vehicle.message) == (int)reading->actor) ||
-               yaml_reader_fail(reader, message, "message: %.40s is no command that this node obeys",
+               yaml_reader_fail(reader, message, "message: %.40s is not a command that this node obeys",
                                 yaml_node_text(message));
     }
     if ((reading->actor <= ACTOR_AI) && ((int)vehicle_sender_of(step->vehicle.message) != (int)reading->actor)) {
@@ -214,7 +214,8 @@ static bool take_patch_bytes(const yaml_reader_t *reader, const reading_t *readi
     for (unsigned i = 0u; i < AGV_DLC; i++) {
         action->keep[i] = (uint8_t)~mask[i];
     }
-    return (length == AGV_DLC) || yaml_reader_fail(reader, node, "bytes: all 8 are needed, '..' for one that stays");
+    return (length == AGV_DLC) ||
+           yaml_reader_fail(reader, node, "bytes: all 8 are needed, '..' for one that does not change");
 }
 
 /** @param on_wire whether the simulated bus is to carry it */
@@ -231,7 +232,7 @@ static bool take_kind(const yaml_reader_t *reader, const reading_t *reading, boo
         return false;
     }
     if (on_wire && ((word & (int)HAL_CAN_ERROR) != 0)) {
-        return yaml_reader_fail(reader, node, "kind: nobody sends error; it is for deliver");
+        return yaml_reader_fail(reader, node, "kind: error is only for deliver");
     }
     if (on_wire && reader->is_line && ((word & (int)HAL_CAN_FD) != 0)) {
         return yaml_reader_fail(reader, node, "kind: fd is for the simulated bus only");
@@ -270,7 +271,7 @@ static bool take_side(const yaml_reader_t *reader, const reading_t *reading, con
         return false;
     }
     if ((word == (int)HAL_CAN_AI) && (config->topology != (uint16_t)AGV_TOPOLOGY_GATEWAY)) {
-        return yaml_reader_fail(reader, node, "side: there is an AI side only with topology: gateway");
+        return yaml_reader_fail(reader, node, "side: only topology: gateway has an AI side");
     }
     *side = (hal_can_side_t)word;
     return true;
@@ -385,7 +386,7 @@ static bool take_key(const yaml_reader_t *reader, const yaml_node_t *key, const 
     for (unsigned i = 0u; i < SCENARIO_PARAMETERS; i++) {
         if (strcmp(SCENARIO_PARAMETER_NAMES[i], name) == 0) {
             if (reading->value_of[i] != NULL) {
-                return yaml_reader_fail(reader, key, "'%s' stands twice in a step", name);
+                return yaml_reader_fail(reader, key, "'%s' is given twice in a step", name);
             }
             reading->value_of[i] = value;
             return true;
@@ -406,7 +407,7 @@ static bool take_keys(const yaml_reader_t *reader, reading_t *reading) {
         const char *name = yaml_node_text(key);
         const bool is_time = (name != NULL) && (strcmp(name, "at_ms") == 0);
         if (is_time && has_time) {
-            return yaml_reader_fail(reader, key, "'at_ms' stands twice in a step");
+            return yaml_reader_fail(reader, key, "'at_ms' is given twice in a step");
         }
         has_time = has_time || is_time;
         if (!take_key(reader, key, yaml_document_get_node(reader->document, pair->value), reading)) {
@@ -420,7 +421,7 @@ static bool take_keys(const yaml_reader_t *reader, reading_t *reading) {
         return yaml_reader_fail(reader, node, "a step: 'again_until_ms' needs 'again_every_ms'");
     }
     return (reading->actor != ACTOR_NONE) ||
-           yaml_reader_fail(reader, node, "a step: who acts? one of vcu, eps, ai, operator, bus, supervisor");
+           yaml_reader_fail(reader, node, "a step: the actor is missing (vcu, eps, ai, operator, bus or supervisor)");
 }
 
 bool scenario_parse_step(const yaml_reader_t *reader, const yaml_node_t *node, const agv_config_t *config,
@@ -436,8 +437,8 @@ bool scenario_parse_step(const yaml_reader_t *reader, const yaml_node_t *node, c
     }
     const scenario_action_row_t *row = scenario_find_action(reading.actor, word);
     if (row == NULL) {
-        return yaml_reader_fail(reader, reading.word, "%s: there is no '%.40s' to do",
-                                SCENARIO_ACTORS[reading.actor].word, word);
+        return yaml_reader_fail(reader, reading.word, "%s: unknown action '%.40s'", SCENARIO_ACTORS[reading.actor].word,
+                                word);
     }
     *step = (scenario_step_t){.at_ms = reading.at_ms,
                               .again_every_ms = reading.again_every_ms,

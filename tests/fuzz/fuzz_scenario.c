@@ -40,7 +40,7 @@ static void check_times(const scenario_t *scenario) {
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    static const char EMPTY[] = "there is no scenario in it\n";
+    static const char EMPTY[] = "contains no scenario\n";
     scenario_options_t options = {.topology = -1, .id_set = -1};
     const char *path = said_file(data, size);
     /* Anew each time: what reads beyond it, or what was not written, is noticed. */

@@ -168,7 +168,7 @@ class Faults(canbus.Case):
         vehicle.wait_line(r"^ +2\.\d+ s  eps +set field=faults value=08h  ")
         vehicle.wait_line(r"^ +[23]\.\d+ s  eps +freeze_counter  ")
         vehicle.wait_line(r"^ +3\.\d+ s  ai +start  ")
-        self.assertRegex(vehicle.text(), r"\n5\.\d{3} s; frames: \d{4} sent, 0 not taken by the kernel\n\Z")
+        self.assertRegex(vehicle.text(), r"\n5\.\d{3} s; frames: \d{4} sent, 0 refused by the kernel\n\Z")
         self.assertEqual(vehicle.text("stderr"), "")
 
     def test_typed(self):
@@ -186,7 +186,7 @@ class Faults(canbus.Case):
         bus.forget()
         self.assertEqual(canbus.of(bus.listen(0.3), 0x0A3), [])
         vehicle.say("ai explode")
-        self.assertEqual(vehicle.wait_line("", "stderr"), "host_sim: 'ai explode': ai: there is no 'explode' to do\n")
+        self.assertEqual(vehicle.wait_line("", "stderr"), "host_sim: 'ai explode': ai: unknown action 'explode'\n")
         vehicle.say("")
         vehicle.say("status")
         vehicle.wait_line(r"^gear P, manual, 0\.00 m/s, throttle 0 %, steering 0\.0 deg, alarms: EPS_HARDWARE")
@@ -195,7 +195,7 @@ class Faults(canbus.Case):
         vehicle.wait_line("^ai +drive gear= throttle_pct= ")
         for _ in range(9):
             vehicle.say("bus send message=gear_command bytes=\"08 00\" every_ms=100")
-        vehicle.wait_line("not done; 8 strangers send already", "stderr")
+        vehicle.wait_line("not done; 8 rogue nodes are already sending", "stderr")
         vehicle.say("quit")
         self.assertEqual(vehicle.end(None), 0)
         self.assertEqual(len(vehicle.lines["stderr"]), 2, vehicle.text("stderr"))
@@ -233,7 +233,7 @@ class Faults(canbus.Case):
         bus.forget()
         self.assertEqual(canbus.of(bus.listen(0.3), 0x067), [])
         self.assertEqual(vehicle.end(), 0)
-        self.assertEqual(vehicle.text("stderr"), "host_sim: '# no word': '#' is none of vcu, eps, ai, operator, bus\n"
+        self.assertEqual(vehicle.text("stderr"), "host_sim: '# no word': '#' is not one of vcu, eps, ai, operator, bus\n"
                          "host_sim: a line of standard input is longer than 1000 characters\n")
 
 
@@ -273,7 +273,7 @@ class Interfaces(canbus.Case):
             canbus.ip("link", "add", "dev", "vcan2", "type", "vcan")
             canbus.ip("link", "set", "dev", "vcan2", "up")
         self.assertEqual(vehicle.text("stderr"), "host_sim: vcan2: the interface is gone\n")
-        self.assertRegex(vehicle.text(), r" sent, [1-9]\d* not taken by the kernel\n\Z")
+        self.assertRegex(vehicle.text(), r" sent, [1-9]\d* refused by the kernel\n\Z")
 
 
 if __name__ == "__main__":

@@ -52,7 +52,7 @@ static bool read_rows(soak_t *soak) {
         soak->steps[i].after = number;
     }
     campaign_text_add(&soak->text, "expect: {states: []}\n");
-    return soak->text.full ? report("the scenario of the soak is too long")
+    return soak->text.full ? report("the soak scenario is too long")
                            : scenario_read_text(&soak->scenario, "the soak", soak->text.bytes, &options);
 }
 
@@ -248,7 +248,7 @@ static bool prepare(soak_t *soak, const soak_request_t *request) {
         return false;
     }
     if (!scenario_world_init(&soak->world, &soak->scenario)) {
-        return report("the world of the soak could not be built");
+        return report("the testbed of the soak could not be built");
     }
     const scenario_watch_t watch = soak_watch(soak);
     scenario_world_watch(&soak->world, &watch);
@@ -271,7 +271,7 @@ status_t soak_run(const soak_request_t *request) {
             status = conclude(soak);
         } else if (went == INTERRUPTED) {
             note("interrupted after %" PRIu64 " simulated hours%s", soak->state.t_ms / SOAK_MS_PER_HOUR,
-                 (request->checkpoint != NULL) ? "; the same command goes on" : "");
+                 (request->checkpoint != NULL) ? "; the same command resumes" : "");
         } else {
             /* reported */
         }

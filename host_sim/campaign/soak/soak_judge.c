@@ -169,7 +169,7 @@ void soak_judge_counters(soak_t *soak) {
     judge_count(soak, "frames sent", counters->sent, state->wire_own, WAITING_MAX);
     judge_count(soak, "warnings", counters->warnings, state->warnings, 0u);
     judge_count(soak, "refused by the gate", counters->gate_refused, 0u, 0u);
-    judge_count(soak, "bites of the watchdog", view.bites, 0u, 0u);
+    judge_count(soak, "watchdog resets", view.bites, 0u, 0u);
     judge_count(soak, "feeds of the watchdog", (uint64_t)view.feeds - state->feeds_before,
                 state->ticks - state->ticks_before, 0u);
     judge_count(soak, "the supervisor's clock", agv_supervisor_tick_ms(supervisor), soak->start_ms + view.t_ms, 0u);

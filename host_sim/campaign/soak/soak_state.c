@@ -91,18 +91,17 @@ static bool read_all(soak_t *soak, FILE *stream) {
     head_t head;
 
     if (fread(&head, sizeof head, 1u, stream) != 1u) {
-        return report("%s: no checkpoint of a soak", path);
+        return report("%s: not a soak checkpoint", path);
     }
     const uint32_t checksum = head.checksum;
     head.checksum = 0u;
     if (memcmp(&head, &expected, sizeof head) != 0) {
-        return report("%s: the checkpoint of another soak, or of another build of the program; remove it to begin anew",
-                      path);
+        return report("%s: the checkpoint of another soak or another build; remove it to start over", path);
     }
     if ((fread(&state, sizeof state, 1u, stream) != 1u) ||
         (fread(&soak->saved, sizeof soak->saved, 1u, stream) != 1u) || (fgetc(stream) != EOF) ||
         (checksum_of(&state, &soak->saved) != checksum)) {
-        return report("%s: a torn checkpoint; remove it to begin anew", path);
+        return report("%s: a damaged checkpoint; remove it to start over", path);
     }
     scenario_world_restore(&soak->world, &soak->saved);
     soak->state = state;

@@ -41,41 +41,41 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_t rows[] = {
         {.name = "--runs",
          .value = "N",
-         .help = "runs of all shards together",
+         .help = "number of runs, of all shards together",
          .number = &given->runs,
          .lowest = 1u,
          .highest = RUNS_MAX},
         {.name = "--seed",
          .value = "S",
-         .help = "what makes them; the same seed, the same runs",
+         .help = "random seed; the same seed gives the same runs",
          .number = &given->seed,
          .highest = INT64_MAX},
         {.name = "--shard", .value = "I/N", .help = "only part I of N of the runs (1/1)", .text = &given->shard},
-        {.name = "--fault", .value = "NAME", .help = "cause this one in every run", .text = &given->fault},
+        {.name = "--fault", .value = "NAME", .help = "cause this fault in every run", .text = &given->fault},
         {.name = "--newly-engaged",
-         .help = "the cause comes with an engagement, of faults which that delays",
+         .help = "cause the fault at an engagement; for faults that this delays",
          .flag = &given->newly_engaged},
         {.name = "--results", .value = "FILE", .help = "results as JSON Lines", .text = &given->results},
         {.name = "--broken",
          .value = "FOLDER",
-         .help = "where a run that breaks an invariant leaves its scenario (.)",
+         .help = "folder for the scenarios of runs that break an invariant (.)",
          .text = &given->folder},
         {.name = "--show",
          .value = "RUN",
-         .help = "only this run, as a scenario on standard output",
+         .help = "only print this run, as a scenario",
          .number = &given->show,
          .highest = RUNS_MAX - 1u},
         {.name = "--merge",
-         .help = "FILEs are results of all shards: one table, and --results of the whole",
+         .help = "merge the results of all shards into one table, and one --results",
          .flag = &given->merge},
-        {.name = "--tables", .help = "print what reaction times follow from, as JSON", .flag = &given->tables},
+        {.name = "--tables", .help = "print the data that reaction times follow from, as JSON", .flag = &given->tables},
     };
     const option_group_t groups[] = {{.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]}};
     const option_syntax_t syntax = {
         .usage = "campaign --runs N --seed S [OPTION]... | campaign --merge FILE...",
         .summary =
-            "Cause faults at random on the simulated bus in virtual time (which one, when, phases of all senders, bit\n"
-            "rate, topology, ID set, kind of vehicle), judge each run, and sum the reaction times up.\n",
+            "Inject random faults on the simulated bus in virtual time (fault, time, phases of all senders, bit rate,\n"
+            "topology, ID set, kind of vehicle), check each run, and summarise the reaction times.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
         .operands_max = SHARDS_MAX,
@@ -87,11 +87,11 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
 static bool take_fault(const char *name, campaign_causes_t *causes) {
     const agv_fault_t fault = agv_fault_from_name(name);
     if (fault == AGV_FAULT_NONE) {
-        return report("--fault: '%s' is no fault; docs/faults.md lists them", name);
+        return report("--fault: unknown fault '%s'; docs/faults.md lists them", name);
     }
     causes->only = campaign_row(fault);
     if (causes->only == NULL) {
-        return report("--fault: nothing that a campaign can do causes %s", name);
+        return report("--fault: a campaign cannot cause %s", name);
     }
     return !causes->newly_engaged || (campaign_engagement(fault) != NULL) ||
            report("--newly-engaged: an engagement does not delay %s", name);
@@ -99,7 +99,7 @@ static bool take_fault(const char *name, campaign_causes_t *causes) {
 
 static bool is_folder(const char *path) {
     struct stat about;
-    return ((stat(path, &about) == 0) && S_ISDIR(about.st_mode)) || report("--broken: '%s' is no folder", path);
+    return ((stat(path, &about) == 0) && S_ISDIR(about.st_mode)) || report("--broken: '%s' is not a folder", path);
 }
 
 /** Make the request of a campaign. */
@@ -107,7 +107,7 @@ static bool make_request(given_t *given, char **operands) {
     campaign_request_t *request = &given->request;
 
     if (given->file_count > 0u) {
-        return report("'%s' is one too many; files are for --merge", operands[0]);
+        return report("unexpected argument '%s'; only --merge takes files", operands[0]);
     }
     if (given->runs == NOT_GIVEN) {
         return report("--runs is missing; see host_sim campaign --help");
@@ -122,10 +122,10 @@ static bool make_request(given_t *given, char **operands) {
     request->shows_one = given->show != NOT_GIVEN;
     request->one = given->show;
     if (request->shows_one && ((given->results != NULL) || (given->shard != NULL))) {
-        return report("--show prints one run: neither --results nor --shard go with it");
+        return report("--show prints one run: --results and --shard cannot be combined with it");
     }
     if (request->shows_one && (given->show >= given->runs)) {
-        return report("--show: there is no run %" PRIu64 ", they are 0 to %" PRIu64, given->show, given->runs - 1u);
+        return report("--show: no run %" PRIu64 "; the runs are 0 to %" PRIu64, given->show, given->runs - 1u);
     }
     return ((given->shard == NULL) || shard_option_take(given->shard, &request->part.shard, &request->part.shards)) &&
            ((given->fault == NULL) || take_fault(given->fault, &request->part.causes)) && is_folder(request->folder);

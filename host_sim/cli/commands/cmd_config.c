@@ -21,8 +21,8 @@ status_t cmd_config(int argc, char **argv) {
     };
     const option_syntax_t syntax = {
         .usage = "config [OPTION]...",
-        .summary = "Print every setting with its default, unit, range and meaning, as a YAML file that --config takes\n"
-                   "back; with --config FILE, that configuration.\n",
+        .summary = "Print every setting with its default, unit, range and meaning, as a YAML file for --config; with\n"
+                   "--config FILE, print that configuration.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
         .operand = "",

@@ -44,25 +44,25 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_t rows[] = {
         {.name = "--scenario",
          .value = "NAME",
-         .help = "another one: its name, or the path of a file",
+         .help = "another scenario: its name, or the path of a file",
          .text = &given->scenario},
         {.name = "--events",
          .value = "FILE",
-         .help = "events as JSON Lines; -, standard output: in place of the timeline",
+         .help = "events as JSON Lines; - prints them in place of the timeline",
          .text = &given->events},
     };
     const option_group_t groups[] = {
         {.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]},
-        {.title = "Configuration of the supervisor, under what the scenario says",
+        {.title = "Configuration of the supervisor (settings of the scenario take precedence)",
          .options = config_rows,
          .count = CONFIG_OPTIONS},
     };
     const option_syntax_t syntax = {
         .usage = "demo [OPTION]...",
         .summary =
-            "See the supervisor at work, on the simulated bus in virtual time: a vehicle drives off on autopilot,\n"
-            "its AI computer falls silent, the supervisor parks it, the operator resets; then the EPS fails.\n"
-            "Scenarios by name lie in " HOST_SIM_SCENARIOS ".\n",
+            "Watch the supervisor on the simulated bus in virtual time: a vehicle drives off on autopilot, its AI\n"
+            "computer stops, the supervisor parks the vehicle, the operator resets; then the EPS fails.\n"
+            "The shipped scenarios are in " HOST_SIM_SCENARIOS ".\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
     };
@@ -98,7 +98,7 @@ static bool find_scenario(const char *name, char path[PATH_SIZE]) {
         return report("--scenario: the name is too long");
     }
     if (!is_path && (length == 0)) {
-        return report("--scenario: there is no '%s'; the shipped scenarios are the files in %s", name,
+        return report("--scenario: no scenario '%s'; the shipped scenarios are the files in %s", name,
                       HOST_SIM_SCENARIOS);
     }
     return true;
@@ -108,11 +108,10 @@ static status_t judge(const work_t *work, bool good) {
     const scenario_check_t *check = &work->run.check;
 
     if (good) {
-        (void)fprintf(work->said_to, "\nSeen as promised: all %zu expectations of the scenario held.\n",
-                      check->expectation_count);
+        (void)fprintf(work->said_to, "\nAll %zu expectations passed.\n", check->expectation_count);
         return STATUS_OK;
     }
-    (void)fprintf(work->said_to, "\nNOT as promised, %s:\n", work->path);
+    (void)fprintf(work->said_to, "\nExpectations FAILED, %s:\n", work->path);
     for (size_t i = 0u; (i < check->failure_count) && (i < SCENARIO_FAILURES_MAX); i++) {
         (void)fprintf(work->said_to, "  %s\n", check->failures[i]);
     }

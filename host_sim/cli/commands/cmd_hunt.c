@@ -29,7 +29,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_t rows[] = {
         {.name = "--runs",
          .value = "N",
-         .help = "runs of all shards together",
+         .help = "number of runs, of all shards together",
          .number = &request->runs,
          .lowest = 1u,
          .highest = RUNS_MAX},
@@ -41,17 +41,17 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .highest = MINUTES_MAX},
         {.name = "--seed",
          .value = "S",
-         .help = "what makes the runs; the same seed, the same runs",
+         .help = "random seed; the same seed gives the same runs",
          .number = &request->seed,
          .highest = INT64_MAX},
         {.name = "--shard", .value = "I/N", .help = "only part I of N of the runs (1/1)", .text = &given->shard},
         {.name = "--checkpoint",
          .value = "FILE",
-         .help = "written after each piece of runs; the same command goes on from it",
+         .help = "saved after each batch of runs; the same command resumes from it",
          .text = &request->checkpoint},
         {.name = "--found",
          .value = "FOLDER",
-         .help = "where a run with a hazard leaves its scenario (.)",
+         .help = "folder for the scenarios of runs with a hazard (.)",
          .text = &given->folder},
         {.name = "--list-hazards", .help = "print what counts as a hazard", .flag = &given->lists},
     };
@@ -60,7 +60,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         .usage = "hunt --seed S (--runs N | --for-minutes M) [OPTION]... | hunt --list-hazards",
         .summary =
             "Attack the supervisor with random attackers, broken nodes and configurations on the simulated bus, and\n"
-            "search for runs in which the vehicle gets into a hazard. Exit status 1 when one was found.\n",
+            "search for runs with a hazard. Exit status 1 if it finds one.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
     };
@@ -70,7 +70,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
 
 static bool is_folder(const char *path) {
     struct stat about;
-    return ((stat(path, &about) == 0) && S_ISDIR(about.st_mode)) || report("--found: '%s' is no folder", path);
+    return ((stat(path, &about) == 0) && S_ISDIR(about.st_mode)) || report("--found: '%s' is not a folder", path);
 }
 
 static bool make_request(given_t *given) {

@@ -23,19 +23,24 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     option_t config_rows[CONFIG_OPTIONS];
     config_options_init(&given->config, config_rows);
     const option_t rows[] = {
-        {.name = "--out", .value = "FILE", .help = "log of what the supervisor sent", .text = &given->request.out},
+        {.name = "--out",
+         .value = "FILE",
+         .help = "candump log of the frames that the supervisor sent",
+         .text = &given->request.out},
         {.name = "--events", .value = "FILE", .help = "events as JSON Lines", .text = &given->request.events},
         {.name = "--tail",
          .value = "MS",
-         .help = "go on for so long after the last line (0)",
+         .help = "continue for this time after the last line (0)",
          .number = &given->request.tail_ms,
          .highest = REPLAY_GAP_MAX_MS},
         {.name = "--start-ms",
          .value = "N",
-         .help = "what the supervisor's clock reads at the start (0)",
+         .help = "the supervisor's clock at the start (0)",
          .number = &given->start_ms,
          .highest = UINT32_MAX},
-        {.name = "--skip-bad-lines", .help = "count lines that are none", .flag = &given->request.skip_bad_lines},
+        {.name = "--skip-bad-lines",
+         .help = "skip and count lines that are not candump lines",
+         .flag = &given->request.skip_bad_lines},
         {.name = "--ai-if",
          .value = "NAME",
          .help = "the interface of the AI side: a gateway",
@@ -47,7 +52,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .words = RESET_CAUSES},
         {.name = "--store",
          .value = "FILE",
-         .help = "what outlives a reset: latch and flight recorder",
+         .help = "storage that survives a reset: latch and flight recorder",
          .text = &given->request.store},
     };
     const option_group_t groups[] = {
@@ -57,8 +62,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_syntax_t syntax = {
         .usage = "replay [OPTION]... LOG",
         .summary =
-            "Feed a recorded log (candump -l; - = standard input) to the supervisor in virtual time, and say what\n"
-            "it made of it.\n",
+            "Replay a recorded log (candump -l; - = standard input) to the supervisor in virtual time, and report how\n"
+            "it reacts.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
         .operands_min = 1u,

@@ -35,15 +35,15 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .text = &request->interfaces[HAL_CAN_AI]},
         {.name = "--for",
          .value = "MS",
-         .help = "end after so long, not only by a signal",
+         .help = "stop after this time, or earlier by a signal",
          .number = &request->for_ms,
          .lowest = 1u,
          .highest = FOR_MAX_MS},
-        {.name = "--fail-on-trip", .help = "exit status 1 when it tripped at any time", .flag = &request->fail_on_trip},
+        {.name = "--fail-on-trip", .help = "exit status 1 if it tripped at any time", .flag = &request->fail_on_trip},
         {.name = "--events", .value = "FILE", .help = "events as JSON Lines, as they come", .text = &request->events},
         {.name = "--out",
          .value = "FILE",
-         .help = "log of what the supervisor sent, as it leaves",
+         .help = "candump log of the frames that the supervisor sends",
          .text = &request->out},
         {.name = "--realtime",
          .help = "SCHED_FIFO, memory locked (CAP_SYS_NICE, CAP_IPC_LOCK)",
@@ -55,9 +55,10 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     };
     const option_syntax_t syntax = {
         .usage = "run --can IF [OPTION]...",
-        .summary = "Run the supervisor as a node on SocketCAN, in real time, until SIGINT, SIGTERM or SIGHUP: then it\n"
-                   "stops at once, and no more leaves than what it had begun to send. A terminal shows its state\n"
-                   "while it runs.\n",
+        .summary =
+            "Run the supervisor as a node on SocketCAN, in real time, until SIGINT, SIGTERM or SIGHUP. It stops at\n"
+            "once then: only frames that it has already handed to the kernel still leave. On a terminal it shows\n"
+            "its state while it runs.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
         .operand = "argument",

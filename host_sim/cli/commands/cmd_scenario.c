@@ -81,27 +81,27 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .text = &given->bus},
         {.name = "--tolerance",
          .value = "MS",
-         .help = "on CAN interfaces: how far times may be off (50)",
+         .help = "on CAN interfaces: tolerance of all times (50)",
          .number = &given->tolerance_ms,
          .highest = TOLERANCE_MAX_MS},
         {.name = "--supervisor",
          .value = "COMMAND",
-         .help = "on CAN interfaces: a supervisor that is another program, started by this and telling its events",
+         .help = "on CAN interfaces: start this external supervisor; it prints its events as JSON Lines",
          .text = &given->supervisor},
         {.name = "--sent",
          .value = "FILE",
-         .help = "on CAN interfaces: what the supervisor sent, as a candump log (of one scenario)",
+         .help = "on CAN interfaces: candump log of the frames that the supervisor sent (of one scenario)",
          .text = &given->sent},
     };
     const option_group_t groups[] = {
         {.title = "Options (FILE may be -, standard output)", .options = rows, .count = sizeof rows / sizeof rows[0]},
-        {.title = "Configuration of the supervisor, under what a scenario says",
+        {.title = "Configuration of the supervisor (settings of a scenario take precedence)",
          .options = config_rows,
          .count = CONFIG_OPTIONS},
     };
     const option_syntax_t syntax = {
         .usage = "scenario [OPTION]... FILE...",
-        .summary = "Play scenario files with a simulated vehicle, and say which expectations did not hold.\n",
+        .summary = "Run scenario files with a simulated vehicle, and report the expectations that failed.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
         .operands_min = 1u,
@@ -130,7 +130,7 @@ static bool check_files(const given_t *given, char **files) {
 /** Take the name of an interface out of --bus. */
 static bool take_interface(given_t *given, hal_can_side_t side, const char *name, size_t length) {
     if ((length == 0u) || (length > LINUX_CAN_NAME_MAX) || (memchr(name, ',', length) != NULL)) {
-        return report("--bus: '%s' is neither sim nor one interface, or two with a comma between them", given->bus);
+        return report("--bus: '%s' is not sim, IF or IF,IF", given->bus);
     }
     memcpy(given->interface_names[side], name, length);
     return true;
@@ -141,7 +141,7 @@ static bool check_bus(given_t *given) {
     if ((given->bus == NULL) || (strcmp(given->bus, "sim") == 0)) {
         const bool is_simulated =
             (given->tolerance_ms == NOT_GIVEN) && (given->supervisor == NULL) && (given->sent == NULL);
-        return is_simulated || report("--tolerance, --supervisor, --sent are for CAN interfaces: --bus IF[,IF]");
+        return is_simulated || report("--tolerance, --supervisor and --sent need CAN interfaces: --bus IF[,IF]");
     }
     const size_t length = strcspn(given->bus, ",");
     const char *second = (given->bus[length] == ',') ? &given->bus[length + 1u] : NULL;
@@ -176,7 +176,7 @@ static bool check_given(given_t *given, char **files) {
         return false;
     }
     if (((given->events != NULL) || (given->sent != NULL)) && (given->file_count > 1u)) {
-        return report("--events and --sent are for one scenario, %zu were given", given->file_count);
+        return report("--events and --sent need a single scenario, %zu were given", given->file_count);
     }
     if (!check_files(given, files) || !config_options_make(&given->config, &given->options.config)) {
         return false;
@@ -201,7 +201,7 @@ static bool check_place(const work_t *work, const char *file) {
 static bool check_readable_twice(const given_t *given, const char *file) {
     struct stat found;
     return (given->file_count == 1u) || (stat(file, &found) != 0) || S_ISREG(found.st_mode) ||
-           report("%s: is no regular file; several scenarios have to be", file);
+           report("%s: not a regular file, which is needed to run several scenarios", file);
 }
 
 /** Read every file once, so that nothing runs when one of them makes no sense. */

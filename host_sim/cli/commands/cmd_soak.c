@@ -25,31 +25,28 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_t rows[] = {
         {.name = "--hours",
          .value = "N",
-         .help = "of virtual time, of all shards together; a year has 8760",
+         .help = "hours of virtual time, of all shards together; a year has 8760",
          .number = &given->hours,
          .lowest = 1u,
          .highest = HOURS_MAX},
         {.name = "--seed",
          .value = "S",
-         .help = "what makes the disturbances; the same seed, the same soak",
+         .help = "random seed; the same seed gives the same disturbances",
          .number = &given->seed,
          .highest = INT64_MAX},
         {.name = "--shard", .value = "I/N", .help = "only stretch I of N of the time (1/1)", .text = &given->shard},
         {.name = "--checkpoint",
          .value = "FILE",
-         .help = "written every 6 simulated hours and when interrupted; gone on from when it is there",
+         .help = "saved every 6 simulated hours and when interrupted; resumed from if it exists",
          .text = &given->request.checkpoint},
-        {.name = "--results",
-         .value = "FILE",
-         .help = "the figures as a line of JSON",
-         .text = &given->request.results},
+        {.name = "--results", .value = "FILE", .help = "results as a line of JSON", .text = &given->request.results},
     };
     const option_group_t groups[] = {{.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]}};
     const option_syntax_t syntax = {
         .usage = "soak --hours N --seed S [OPTION]...",
-        .summary = "Let supervisor and vehicle run for hours and months of virtual time, with random disturbances "
-                   "below every\n"
-                   "limit: nothing may trip, drift, or be miscounted.\n",
+        .summary =
+            "Run supervisor and vehicle for hours to months of virtual time, with random disturbances below every\n"
+            "limit: nothing may trip, drift or be miscounted.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
     };

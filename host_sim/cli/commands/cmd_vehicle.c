@@ -25,7 +25,7 @@ static bool take_fault(void *ctx, const char *text) {
     given_t *given = ctx;
 
     if (given->fault_count == VEHICLE_RUN_FAULTS_MAX) {
-        return report("--fault: more than %u of them", VEHICLE_RUN_FAULTS_MAX);
+        return report("--fault: given more than %u times", VEHICLE_RUN_FAULTS_MAX);
     }
     given->faults[given->fault_count] = text;
     given->fault_count++;
@@ -59,13 +59,13 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .words = "heading|table"},
         {.name = "--fault",
          .value = "WHO-WHAT[,NAME=VALUE]...@MS",
-         .help = "do so at that time; may be given several times",
+         .help = "inject a fault at that time; may be given several times",
          .each = take_fault,
          .ctx = given},
         {.name = "--manual", .help = "do not engage the autopilot", .flag = &request->manual},
         {.name = "--for",
          .value = "MS",
-         .help = "end after so long, not only by a signal",
+         .help = "stop after this time, or earlier by a signal",
          .number = &request->for_ms,
          .lowest = 1u,
          .highest = FOR_MAX_MS},
@@ -80,9 +80,10 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
             "They obey the commands on the bus. After 1.5 s the operator engages the autopilot, and the AI computer\n"
             "drives: gear D, throttle 30 %.\n"
             "\n"
-            "Faults and whatever else can happen are the steps of scenarios: by option, --fault ai-stop@2000 or\n"
-            "--fault eps-set,field=faults,value=08h@3000, or typed while it runs: 'ai stop', 'eps set field=faults\n"
-            "value=08h'. 'help' lists them; 'status' and 'quit' can be typed, too.\n",
+            "Inject faults, and any other step of a scenario, by option: --fault ai-stop@2000 or\n"
+            "--fault eps-set,field=faults,value=08h@3000; or type them while it runs: 'ai stop', 'eps set "
+            "field=faults\n"
+            "value=08h'. 'help' lists them; 'status' and 'quit' are commands, too.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
         .operand = "argument",
@@ -99,7 +100,7 @@ static bool make_faults(const given_t *given, vehicle_run_request_t *request) {
             return false;
         }
         if ((request->for_ms != VEHICLE_RUN_FOREVER) && (words.step.at_ms >= request->for_ms)) {
-            return report("--fault %.80s: that lies after the end (--for)", given->faults[i]);
+            return report("--fault %.80s: the time is after the end (--for)", given->faults[i]);
         }
         size_t place = i;
         for (; (place > 0u) && (request->faults[place - 1u].step.at_ms > words.step.at_ms); place--) {

@@ -20,20 +20,19 @@ static const hazard_info_t INFOS[HAZARD_KINDS] = {
     [HAZARD_FALSE_COMMAND] = {"H3",
                               "a command to move on the vehicle side of a gateway that the AI computer did not "
                               "send, or not recently",
-                              "such a command is never sent; one of a foreign sender is followed by the safe "
+                              "such a command is never sent; one of a rogue node is followed by the safe "
                               "commands"},
     [HAZARD_UNCONFIRMED] = {"H4",
                             "the safety output stays closed though the safe state is not confirmed for longer "
-                            "than the time allowed in all",
+                            "than the total time allowed",
                             "the safety output opens"},
     [HAZARD_RESET] = {"H5", "a reset that no operator asked for by pressing and releasing button 1 after the trip",
                       "the safe commands go on"},
     [HAZARD_FALSE_NODE] = {"H6",
                            "the vehicle moves on with the safety output closed though a node reports a fault or "
-                           "what cannot be",
+                           "an impossible value",
                            "the safe commands, or an open safety output"},
-    [HAZARD_FLOOD] = {"H7", "more than twice the nominal rate of commands passes the gateway",
-                      "what is too much is dropped"},
+    [HAZARD_FLOOD] = {"H7", "more than twice the nominal rate of commands passes the gateway", "the excess is dropped"},
 };
 
 const hazard_info_t *hazard_info(hazard_kind_t kind) {

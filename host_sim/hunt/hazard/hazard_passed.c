@@ -72,10 +72,10 @@ void hazard_passed_tick(hazard_t *hazard) {
         return;
     }
     if (is_unanswered(hazard, &hazard->foreign_ms, ANSWER_MS)) {
-        hazard_found(hazard, HAZARD_FALSE_COMMAND, "a foreign sender's command is not answered");
+        hazard_found(hazard, HAZARD_FALSE_COMMAND, "a rogue node's command is not overridden");
     }
     if (is_unanswered(hazard, &hazard->false_ms, IN_FLIGHT_MS)) {
-        hazard_found(hazard, HAZARD_FALSE_COMMAND, "the supervisor sent what the AI computer did not");
+        hazard_found(hazard, HAZARD_FALSE_COMMAND, "the supervisor sent a command that the AI computer did not send");
     }
     if ((hazard->t_ms % SLOT_MS) != 0u) {
         return;

@@ -1,4 +1,4 @@
-/* A node that is dead, hangs or reports what cannot be, while the vehicle moves on (H1, H6). One row a condition. */
+/* A node that is dead, hangs or reports an impossible value, while the vehicle moves on (H1, H6). One row a condition. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -165,12 +165,12 @@ static const row_t ROWS[] = {
      NULL},
     {"the EPS is not in angle control", SCORE, true, AGV_MSG_EPS_STATUS, "eps_mode_frames", 5u, NULL,
      is_no_angle_control, EPS_ANGLE_MODE, NULL},
-    {"0A3h is no gear", SCORE, true, AGV_MSG_GEAR_STATUS, "status_invalid_frames", 3u, "GEAR_STATUS_INVALID",
+    {"0A3h has an invalid gear", SCORE, true, AGV_MSG_GEAR_STATUS, "status_invalid_frames", 3u, "GEAR_STATUS_INVALID",
      is_no_gear, 0u, NULL},
-    {"050h is no throttle", SCORE, true, AGV_MSG_THROTTLE_STATUS, "status_invalid_frames", 3u,
+    {"050h has an invalid throttle", SCORE, true, AGV_MSG_THROTTLE_STATUS, "status_invalid_frames", 3u,
      "THROTTLE_STATUS_INVALID", is_above, 250u, NULL},
-    {"067h is no angle", SCORE, true, AGV_MSG_STEERING_STATUS, "status_invalid_frames", 3u, NULL, is_no_angle, 0u,
-     NULL},
+    {"067h has an invalid angle", SCORE, true, AGV_MSG_STEERING_STATUS, "status_invalid_frames", 3u, NULL, is_no_angle,
+     0u, NULL},
     {"the steering is stuck", LEVEL, true, NONE, "steering_deviation_ms", 500u, NULL, NULL, 0u, is_steering_stuck},
     {"throttle with gear P", LEVEL, true, NONE, "throttle_in_park_ms", 200u, "THROTTLE_IN_PARK", NULL, 0u,
      is_throttle_in_park},
@@ -182,7 +182,7 @@ static const row_t ROWS[] = {
     {"neither mode is reported", LEVEL, false, NONE, "mode_none_ms", 500u, NULL, NULL, 0u, is_without_mode},
     {"both modes are reported", LEVEL, false, NONE, "mode_invalid_ms", 50u, NULL, NULL, 0u, is_in_both_modes},
     {"commands come too fast", LEVEL, true, NONE, NULL, 0u, "COMMAND_TOO_FAST", NULL, 0u, is_command_too_fast},
-    {"a command that is none", LEVEL, true, NONE, NULL, 0u, NULL, NULL, 0u, is_command_bad},
+    {"an invalid command", LEVEL, true, NONE, NULL, 0u, NULL, NULL, 0u, is_command_bad},
     {"the supervisor's transmitter is dead", LEVEL, false, NONE, "tx_stalled_ms", 100u, NULL, NULL, 0u,
      is_transmitter_dead},
     {"the AI side is stalled", LEVEL, true, NONE, "tx_stalled_ms", 100u, "AI_BUS_OFF", NULL, 0u, is_ai_side_dead},

@@ -69,7 +69,7 @@ static void judge_newest_throttle(hazard_t *hazard) {
 
     if (hazard->gateway && hazard->closed && !hazard->trip.tripped && hazard->throttle_is_newest &&
         (hazard->t_ms - hazard->throttle_ms > deadline_ms + REENGAGE_MS)) {
-        hazard_found(hazard, HAZARD_FALSE_COMMAND, "an old throttle is the newest at an engagement");
+        hazard_found(hazard, HAZARD_FALSE_COMMAND, "an old throttle command is the latest one at an engagement");
     }
 }
 

@@ -66,7 +66,7 @@ bool scenario_run(scenario_run_t *run, const scenario_watch_t watches[], size_t 
     run->was_interrupted = false;
     scenario_check_init(&run->check, &run->scenario);
     if (!scenario_world_init(&run->world, &run->scenario)) {
-        scenario_check_fail(&run->check, 0u, "the world could not be built");
+        scenario_check_fail(&run->check, 0u, "the testbed could not be built");
         return false;
     }
     scenario_world_watch(&run->world, &judge);

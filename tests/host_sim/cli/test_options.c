@@ -117,10 +117,10 @@ void test_numbers_are_checked_completely(void) {
         char line[64];
         char message[128];
         (void)snprintf(line, sizeof line, "--number %s f", bad[i]);
-        (void)snprintf(message, sizeof message, "--number: '%s' is no number from 5 to 1000", bad[i]);
+        (void)snprintf(message, sizeof message, "--number: '%s' is not a number from 5 to 1000", bad[i]);
         parse_bad(line, message);
     }
-    parse_bad("--number _ f", "--number: '' is no number from 5 to 1000");
+    parse_bad("--number _ f", "--number: '' is not a number from 5 to 1000");
     uint64_t number = 0;
     TEST_ASSERT_TRUE(options_number("18446744073709551615", 0, UINT64_MAX, &number));
     TEST_ASSERT_EQUAL_UINT64(UINT64_MAX, number);
@@ -138,11 +138,11 @@ void test_what_is_refused(void) {
     parse_bad("--text --flag f", "--text needs a value: TEXT");
     parse_bad("--text= f", "--text: the value is empty");
     parse_bad("--text _ f", "--text: the value is empty");
-    parse_bad("--word c f", "--word: 'c' is none of a|b|cc");
-    parse_bad("--word a|b f", "--word: 'a|b' is none of a|b|cc");
-    parse_bad("--word _ f", "--word: '' is none of a|b|cc");
+    parse_bad("--word c f", "--word: 'c' is not one of a|b|cc");
+    parse_bad("--word a|b f", "--word: 'a|b' is not one of a|b|cc");
+    parse_bad("--word _ f", "--word: '' is not one of a|b|cc");
     parse_bad("--flag", "FILE is missing; see host_sim try --help");
-    parse_bad("x y z", "'z' is one too many; see host_sim try --help");
+    parse_bad("x y z", "unexpected argument 'z'; see host_sim try --help");
 }
 
 void test_a_message_is_one_line_whatever_it_quotes(void) {

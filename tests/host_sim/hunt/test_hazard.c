@@ -235,26 +235,26 @@ void test_h2_who_is_bus_off_does_not_hear_of_manual(void) {
 
 void test_h3_a_command_that_nobody_sent(void) {
     const planted_t forges = {.gateway = true, .passes = 1u, .forges_ms = TRIP_MS, .only_engaged = true};
-    expect(HAZARD_FALSE_COMMAND, "the supervisor sent what the AI computer did not",
+    expect(HAZARD_FALSE_COMMAND, "the supervisor sent a command that the AI computer did not send",
            play(&forges, "  - {at_ms: 2000, ai: drive, gear: D, throttle_pct: 20}\n"));
 }
 
 void test_h3_a_foreign_sender(void) {
     const char *const steps = "  - {at_ms: 3000, bus: send, message: throttle_command, bytes: \"40\"}\n";
-    expect(HAZARD_FALSE_COMMAND, "a foreign sender's command is not answered", play(&PASSING, steps));
+    expect(HAZARD_FALSE_COMMAND, "a rogue node's command is not overridden", play(&PASSING, steps));
     expect(HAZARD_NONE, "", play(&GOOD_GATEWAY, steps));
 }
 
 void test_h3_a_frame_past_the_wire(void) {
     const char *const steps = "  - {at_ms: 3000, bus: deliver, kind: fd, message: gear_command, bytes: \"01 00\"}\n";
-    expect(HAZARD_FALSE_COMMAND, "a foreign sender's command is not answered", play(&PASSING, steps));
+    expect(HAZARD_FALSE_COMMAND, "a rogue node's command is not overridden", play(&PASSING, steps));
     expect(HAZARD_NONE, "", play(&GOOD_GATEWAY, steps));
 }
 
 void test_h3_an_old_throttle(void) {
     const char *const steps = "  - {at_ms: 3000, operator: disengage}\n  - {at_ms: 4000, operator: engage}\n";
     const planted_t forgets = {.gateway = true, .passes = 1u, .only_engaged = true};
-    expect(HAZARD_FALSE_COMMAND, "an old throttle is the newest at an engagement", play(&forgets, steps));
+    expect(HAZARD_FALSE_COMMAND, "an old throttle command is the latest one at an engagement", play(&forgets, steps));
     expect(HAZARD_NONE, "", play(&PASSING, steps)); /* passes the throttle 0 that the AI computer commands in manual */
 }
 
@@ -288,12 +288,12 @@ void test_h6_a_node_that_reports_what_cannot_be(void) {
     } rows[] = {
         {"the EPS is not in angle control", "eps: set, field: mode, value: FFh"},
         {"the EPS reports a fault", "eps: set, field: faults, value: 08h"},
-        {"067h is no angle", "eps: set, field: angle, value: 4651h"},
+        {"067h has an invalid angle", "eps: set, field: angle, value: 4651h"},
         {"more throttle than commanded", "vcu: set, field: throttle, value: FAh"},
         {"another gear than commanded", "vcu: set, field: gear, value: 02h"},
         {"both modes are reported", "vcu: set, field: mode_bits, value: 3h"},
         {"neither mode is reported", "vcu: set, field: mode_bits, value: 0h"},
-        {"a command that is none", "bus: send, message: throttle_command, bytes: \"FF\", every_ms: 100"},
+        {"an invalid command", "bus: send, message: throttle_command, bytes: \"FF\", every_ms: 100"},
         {"the supervisor's transmitter is dead", "supervisor: stall_tx"},
     };
     char steps[256];

@@ -197,11 +197,11 @@ void test_interfaces(void) {
     TEST_ASSERT_EQUAL_UINT(4, record.interface_length);
     TEST_ASSERT_EQUAL_MEMORY("can0", record.interface, 4);
     parse_bad("(1.000000) 1234567890123456 43F#", "longer than 15");
-    parse_bad("(1.000000) ", "no name");
-    parse_bad("(1.000000) can0", "no name");
-    parse_bad("(1.000000) can\xC3\xA4 43F#", "no name");
-    parse_bad("(1.000000) can\t0 43F#", "no name");
-    parse_bad("(1.000000) can0  43F#", "no hexadecimal identifier");
+    parse_bad("(1.000000) ", "the interface name is missing");
+    parse_bad("(1.000000) can0", "the interface name is missing");
+    parse_bad("(1.000000) can\xC3\xA4 43F#", "the interface name is missing");
+    parse_bad("(1.000000) can\t0 43F#", "the interface name is missing");
+    parse_bad("(1.000000) can0  43F#", "a hexadecimal identifier followed by # is missing");
 }
 
 void test_identifiers(void) {
@@ -215,10 +215,10 @@ void test_identifiers(void) {
     parse_bad("(1.000000) c 043F#00", "neither 3 nor 8");
     parse_bad("(1.000000) c 00123#81:00:12345678#11", "CAN XL");
     parse_bad("(1.000000) c 00000043F#00", "neither 3 nor 8");
-    parse_bad("(1.000000) c 000000000043F#00", "no hexadecimal identifier");
-    parse_bad("(1.000000) c 43G#00", "no hexadecimal identifier");
-    parse_bad("(1.000000) c 43F", "no hexadecimal identifier");
-    parse_bad("(1.000000) c ", "no hexadecimal identifier");
+    parse_bad("(1.000000) c 000000000043F#00", "a hexadecimal identifier followed by # is missing");
+    parse_bad("(1.000000) c 43G#00", "a hexadecimal identifier followed by # is missing");
+    parse_bad("(1.000000) c 43F", "a hexadecimal identifier followed by # is missing");
+    parse_bad("(1.000000) c ", "a hexadecimal identifier followed by # is missing");
 }
 
 void test_data(void) {

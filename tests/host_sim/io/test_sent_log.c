@@ -54,7 +54,7 @@ void test_lines_wait_for_the_name_of_their_interface(void) {
 void test_a_side_that_is_never_heard_gets_a_name_at_the_end(void) {
     add(HAL_CAN_VEHICLE, 0x43F, 1);
     TEST_ASSERT_EQUAL_STRING("(0000000000.000001) can0 43F#55\n", finish());
-    TEST_ASSERT_NOT_NULL(strstr(scratch_said(), "nothing was heard on the vehicle side"));
+    TEST_ASSERT_NOT_NULL(strstr(scratch_said(), "no frame was received on the vehicle side"));
 }
 
 void test_a_name_that_is_made_up_is_nobody_elses(void) {

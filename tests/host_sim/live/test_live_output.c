@@ -105,7 +105,7 @@ void test_a_reader_that_does_not_read_is_not_waited_for(void) {
     TEST_ASSERT_LESS_OR_EQUAL(OUTPUT_BUFFER_SIZE - 1000u, output->lines.used);
     TEST_ASSERT_FALSE(live_output_end(output));
     const char *said = scratch_said();
-    TEST_ASSERT_NOT_NULL(strstr(said, " lines were lost, they were not read fast enough\n"));
+    TEST_ASSERT_NOT_NULL(strstr(said, " lines were lost because they were not read fast enough\n"));
     TEST_ASSERT_NOT_NULL(strstr(said, "timed out\n"));
     (void)close(reader);
 }

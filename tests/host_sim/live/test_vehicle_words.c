@@ -66,9 +66,10 @@ void test_values_with_blanks_stand_in_quotes(void) {
 }
 
 void test_identifiers_and_topology_are_those_of_the_vehicle(void) {
-    refused_when_typed("bus send message=vehicle_status bytes='' side=ai",
-                       "host_sim: 'bus send message=vehicle_status bytes='' side=ai': side: there is an AI side only "
-                       "with topology: gateway\n");
+    refused_when_typed(
+        "bus send message=vehicle_status bytes='' side=ai",
+        "host_sim: 'bus send message=vehicle_status bytes='' side=ai': side: only topology: gateway has an AI "
+        "side\n");
     config.topology = AGV_TOPOLOGY_GATEWAY;
     config.id_set = AGV_ID_SET_TABLE;
     TEST_ASSERT_TRUE(vehicle_words_typed("bus send message=vehicle_status bytes='' side=ai", &config, &words));
@@ -80,20 +81,20 @@ void test_identifiers_and_topology_are_those_of_the_vehicle(void) {
 }
 
 void test_what_makes_no_sense_is_one_line(void) {
-    refused_when_typed("nobody stop", "host_sim: 'nobody stop': 'nobody' is none of vcu, eps, ai, operator, bus\n");
-    refused_when_typed("ai", "host_sim: 'ai': what does ai do?\n");
-    refused_when_typed(" ", "host_sim: ' ': who does what?\n");
-    refused_when_typed("ai explode", "host_sim: 'ai explode': ai: there is no 'explode' to do\n");
+    refused_when_typed("nobody stop", "host_sim: 'nobody stop': 'nobody' is not one of vcu, eps, ai, operator, bus\n");
+    refused_when_typed("ai", "host_sim: 'ai': the action of ai is missing\n");
+    refused_when_typed(" ", "host_sim: ' ': actor and action are missing\n");
+    refused_when_typed("ai explode", "host_sim: 'ai explode': ai: unknown action 'explode'\n");
     refused_when_typed("vcu mute", "host_sim: 'vcu mute': 'mute' needs 'message'\n");
     refused_when_typed("ai stop now", "host_sim: 'ai stop now': 'now': NAME=VALUE is needed here\n");
     refused_when_typed("ai stop vcu=stop", "host_sim: 'ai stop vcu=stop': a step has one actor; 'vcu' is the second\n");
     refused_when_typed("vcu 'mute", "host_sim: 'vcu 'mute': a quote is not closed\n");
     refused_when_typed("vcu mute message=", "host_sim: 'vcu mute message=': message: a word or a text is missing\n");
     refused_when_typed("ai lag by_ms=1 by_ms=2",
-                       "host_sim: 'ai lag by_ms=1 by_ms=2': 'by_ms' stands twice in a step\n");
+                       "host_sim: 'ai lag by_ms=1 by_ms=2': 'by_ms' is given twice in a step\n");
     refused_when_typed("ai a=1 b=2 c=3 d=4 e=5 f=6 g=7 h=8 i=9 j=10 k=11 l=12",
-                       "host_sim: 'ai a=1 b=2 c=3 d=4 e=5 f=6 g=7 h=8 i=9 j=10 k=11 l=12': these are too many words\n");
-    refused_when_typed("ai sto\xFFp", "host_sim: 'ai sto\xFFp': this is no text (UTF-8)\n");
+                       "host_sim: 'ai a=1 b=2 c=3 d=4 e=5 f=6 g=7 h=8 i=9 j=10 k=11 l=12': too many words\n");
+    refused_when_typed("ai sto\xFFp", "host_sim: 'ai sto\xFFp': not UTF-8 text\n");
 }
 
 void test_what_makes_no_sense_in_the_parameters_of_a_fault_is_one_line(void) {
@@ -104,10 +105,10 @@ void test_what_makes_no_sense_in_the_parameters_of_a_fault_is_one_line(void) {
          "every_frames: must be more than 'frames', which is 3"},
         {"vcu delay message=vehicle_status by_ms=1001", "by_ms: at most 1000 for 'delay'"},
         {"vcu delay message=eps_status by_ms=10", "message: another node sends eps_status"},
-        {"vcu ignore message=steering_command", "message: steering_command is no command that this node obeys"},
-        {"eps ignore message=gear_command", "message: gear_command is no command that this node obeys"},
-        {"vcu ignore message=gear_status", "message: gear_status is no command that this node obeys"},
-        {"ai ignore message=gear_command", "ai: there is no 'ignore' to do"},
+        {"vcu ignore message=steering_command", "message: steering_command is not a command that this node obeys"},
+        {"eps ignore message=gear_command", "message: gear_command is not a command that this node obeys"},
+        {"vcu ignore message=gear_status", "message: gear_status is not a command that this node obeys"},
+        {"ai ignore message=gear_command", "ai: unknown action 'ignore'"},
         {"vcu roll speed_mm_s=20001", "speed_mm_s: 20001 is not within -20000 to 20000"},
         {"vcu ramp_throttle pct_s=0", "pct_s: 0 is not within 1 to 10000"},
         {"vcu set field=speed value=10000h", "value: 10000h is above FFFFh"},
@@ -117,7 +118,7 @@ void test_what_makes_no_sense_in_the_parameters_of_a_fault_is_one_line(void) {
         {"eps hunt steer_deg=60", "'hunt' needs 'every_ms'"},
         {"ai weave steer_deg=60 every_ms=0", "every_ms: 0 is not within 1 to 60000"},
         {"bus send message=gear_command kind=fd bytes=08", "kind: fd is for the simulated bus only"},
-        {"bus send message=gear_command kind=error bytes=08", "kind: nobody sends error; it is for deliver"},
+        {"bus send message=gear_command kind=error bytes=08", "kind: error is only for deliver"},
     };
     for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
         char expected[2u * VEHICLE_WORDS_MAX];
@@ -153,7 +154,7 @@ void test_the_parameters_of_a_fault_reach_the_vehicle(void) {
 
 void test_what_needs_a_simulated_bus_is_refused(void) {
     refused_when_typed("supervisor bus_off",
-                       "host_sim: 'supervisor bus_off': 'supervisor' is none of vcu, eps, ai, operator, bus\n");
+                       "host_sim: 'supervisor bus_off': 'supervisor' is not one of vcu, eps, ai, operator, bus\n");
     refused_when_typed("bus destroy frames=1",
                        "host_sim: 'bus destroy frames=1': bus: 'destroy' is for the simulated bus only\n");
 }
@@ -164,7 +165,7 @@ void test_a_line_may_be_long_but_not_too_long(void) {
     memcpy(line, "ai stop", strlen("ai stop"));
     line[VEHICLE_WORDS_MAX] = '\0';
     TEST_ASSERT_FALSE(vehicle_words_typed(line, &config, &words));
-    TEST_ASSERT_NOT_NULL(strstr(scratch_said(), ": this is longer than 255 characters\n"));
+    TEST_ASSERT_NOT_NULL(strstr(scratch_said(), ": longer than 255 characters\n"));
     line[VEHICLE_WORDS_MAX - 1u] = '\0';
     TEST_ASSERT_TRUE(vehicle_words_typed(line, &config, &words));
 }

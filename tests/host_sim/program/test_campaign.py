@@ -137,7 +137,7 @@ class NewlyEngaged(Campaign):
         self.refuse(*good, "--fault", "BUS_OFF", says="--newly-engaged: an engagement does not delay BUS_OFF")
         self.campaign(*good, "--shard", "1/2", "--results", "1")
         self.campaign(*good[:4], "--shard", "2/2", "--results", "2")
-        self.refuse("--merge", "1", "2", says="2:1: another campaign than that of 1")
+        self.refuse("--merge", "1", "2", says="2:1: not the same campaign as 1")
         head, *runs = (self.folder / "2").read_text(encoding="ascii").splitlines(keepends=True)
         runs[0] = json.dumps({**json.loads(runs[0]), "fault": "BUS_OFF"}) + "\n"
         self.write("2", "".join([head.replace('"newly_engaged": false', '"newly_engaged": true'), *runs]))
@@ -187,20 +187,20 @@ class Refused(Campaign):
         self.refuse("--runs", "3", "--seed", "9223372036854775808", says="--seed")
         for shard in ("1", "0/2", "3/2", "1/0", "1/1001", "a/b", "1/2/3", "/2", "1/", "-1/2", "1 /2", "123456789/2"):
             self.refuse(*good, "--shard", shard, says="--shard: '" + shard + "'")
-        self.refuse(*good, "--fault", "NONSENSE", says="'NONSENSE' is no fault")
-        self.refuse(*good, "--fault", "TX_GATE_REFUSED", says="causes TX_GATE_REFUSED")
+        self.refuse(*good, "--fault", "NONSENSE", says="unknown fault 'NONSENSE'")
+        self.refuse(*good, "--fault", "TX_GATE_REFUSED", says="cannot cause TX_GATE_REFUSED")
         self.refuse(*good, "--show", "3", says="no run 3")
-        self.refuse(*good, "--broken", "nowhere", says="'nowhere' is no folder")
+        self.refuse(*good, "--broken", "nowhere", says="'nowhere' is not a folder")
         self.refuse(*good, "--results", "no/where", says="no/where")
-        self.refuse(*good, "file", says="'file' is one too many")
+        self.refuse(*good, "file", says="unexpected argument 'file'")
         self.refuse(*good, "--planted", "mute", says="--planted")
 
     def test_what_does_not_merge(self):
         one, two = self.shard(1, 2), self.shard(2, 2)
         out = ("--results", "out.jsonl")
         self.refuse("--merge", *out, says="FILE is missing")
-        self.refuse("--merge", one, *out, says="one of 2 shards, 1 were given")
-        self.refuse("--merge", one, one, *out, says="shard 1 once more")
+        self.refuse("--merge", one, *out, says="one of 2 shards, but 1 were given")
+        self.refuse("--merge", one, one, *out, says="shard 1 is given twice")
         self.refuse("--merge", one, "nowhere", *out, says="nowhere")
         self.refuse("--merge", one, two, "--runs", "3", says="--merge takes files")
         self.refuse("--merge", one, two, "--broken", ".", says="--merge takes files")
@@ -210,10 +210,10 @@ class Refused(Campaign):
         self.refuse("--merge", one, self.shard(2, 2, runs=RUNS - 2, name="runs"), *out, says="another campaign")
         lines = (self.folder / two).read_text(encoding="ascii").splitlines(keepends=True)
         for name, changed, says in (("cut", lines[:-1], "it ends after line"),
-                                    ("more", lines + lines[-1:], "more runs than there are"),
+                                    ("more", lines + lines[-1:], "more runs than the campaign has"),
                                     ("gap", lines[:5] + lines[6:], ":6: run 9 is expected here"),
-                                    ("torn", lines[:-1] + [lines[-1][:20]], "no result of a campaign"),
-                                    ("text", ["hello\n"], ":1: no result of a campaign"),
+                                    ("torn", lines[:-1] + [lines[-1][:20]], "not a result of a campaign"),
+                                    ("text", ["hello\n"], ":1: not a result of a campaign"),
                                     ("other", ["{}\n"], ":1: no results of a campaign"),
                                     ("empty", [], "it ends after line 0")):
             self.write(name, "".join(changed))
@@ -226,7 +226,7 @@ class Refused(Campaign):
             self.write("torn", whole[:-1])
             count = whole.count(b"\n")
             self.refuse("--merge", "torn", other, "--results", "out.jsonl",
-                        says=f"torn:{count}: no result of a campaign: it is torn, its line break is missing")
+                        says=f"torn:{count}: not a result of a campaign: the line is incomplete")
 
     def refuse_line(self, number, line, says):
         """Shard 2 of 2, of which a line is another."""
@@ -247,11 +247,11 @@ class Refused(Campaign):
         self.refuse_line(number, {**good, "more": 1}, self.KIND[number] + "its 'number of keys' is missing or wrong")
         written = json.dumps(good)
         for other in (written + "\r\n", " " + written + "\n", written.replace(" ", "") + "\n"):
-            self.refuse_line(number, other, "no result of a campaign")
+            self.refuse_line(number, other, "not a result of a campaign")
         key = next(iter(good))
-        self.refuse_line(number, "{" + f'"{key}": {good[key]}, ' + json.dumps(good)[1:] + "\n", "no result of a campaign")
+        self.refuse_line(number, "{" + f'"{key}": {good[key]}, ' + json.dumps(good)[1:] + "\n", "not a result of a campaign")
 
-    KIND = {1: f"no results of a campaign of host_sim {VERSION}: ", 3: "no result of a campaign: "}
+    KIND = {1: f"no results of a campaign of host_sim {VERSION}: ", 3: "not a result of a campaign: "}
 
     def test_a_damaged_head_does_not_merge(self):
         self.shard(1, 2, runs=6)
@@ -260,7 +260,7 @@ class Refused(Campaign):
             "campaign": (2, "1", None), "version": ("0.0.0", 1, None), "runs": (0, -6, "6", 6.0), "seed": (-7, "7", None),
             "shard": (0, 3, -2, 4294967298, "2"), "shards": (0, 1001, 4294967298, None),
             "fault": ("NONSENSE", "TX_GATE_REFUSED", 1), "newly_engaged": (0, "true", None), "planted": ("mute", "", 0, False)})
-        self.refuse_line(1, {**self.lines("2.jsonl")[0], "fault": "BUS_OFF"}, "another campaign than that of 1.jsonl")
+        self.refuse_line(1, {**self.lines("2.jsonl")[0], "fault": "BUS_OFF"}, "not the same campaign as 1.jsonl")
 
     def test_a_damaged_run_does_not_merge(self):
         self.shard(1, 2, runs=6)
@@ -278,7 +278,7 @@ class Refused(Campaign):
         for number in (1, 2):
             self.campaign("--runs", 6, "--seed", 7, "--fault", "BUS_OFF", "--shard", f"{number}/2", "--results",
                           f"{number}.jsonl")
-        self.refuse_line(3, {**self.lines("2.jsonl")[2], "fault": "TX_STALLED"}, "another fault than that of the campaign")
+        self.refuse_line(3, {**self.lines("2.jsonl")[2], "fault": "TX_STALLED"}, "a fault that is not the one of the campaign")
 
 
 

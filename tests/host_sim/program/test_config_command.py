@@ -57,11 +57,11 @@ class Listing(hostsim.Case):
         for key in found:
             if not key.startswith("class_"):
                 self.assertRegex(text, r"(?m)^# \S.*\n# (\d+ to \d+.*|[a-z_]+\|[a-z_]+), default \w+(; [^;\n]+)*\n%s: " % key)
-        self.assertIn("# 30 to 500 ms, default 50; more weakens\nvcu_heartbeat_timeout_ms: 50\n", text)
+        self.assertIn("# 30 to 500 ms, default 50; a higher value weakens the supervision\nvcu_heartbeat_timeout_ms: 50\n", text)
         self.assertIn("# 1 to 2047, default 0x168\nid_gear_command: 0x168\n", text)
-        self.assertIn("default 0x7F0; 0 weakens\nstatus_frame_id: 0x7F0\n", text)
+        self.assertIn("default 0x7F0; 0 weakens the supervision\nstatus_frame_id: 0x7F0\n", text)
         self.assertIn("# shared|gateway, default shared\n", text)
-        self.assertIn("# at_once|at_standstill, default at_once; the second weakens\n", text)
+        self.assertIn("# at_once|at_standstill, default at_once; the second word weakens the supervision\n", text)
         self.assertIn("default 100; gateway only\nthrottle_ceiling_pct: 100\n", text)
 
     def test_what_is_listed_is_taken_back(self):
@@ -117,7 +117,7 @@ class Kconfig(hostsim.Case):
             elif "%s_%s=y" % (name, value.upper()) in lines:
                 classes += 1
             else:  # only a class that cannot be chosen may be missing
-                self.assertRegex(yaml, r"(?m)^%s: .*must stay$" % key)
+                self.assertRegex(yaml, r"(?m)^%s: .*mandatory$" % key)
         self.assertIn("CONFIG_AGV_CLASS_REMOTE_SIGNAL_LOST_WARN=y", lines)
         self.assertIn("CONFIG_AGV_ID_GEAR_COMMAND=0x169", lines)
         self.assertIn("CONFIG_AGV_ID_THROTTLE_COMMAND=0x075", lines)
@@ -197,7 +197,7 @@ class Refusals(hostsim.Case):
 
     def test_every_fault_that_must_trip_is_refused_as_a_warning(self):
         text = self.run_good("config").stdout
-        fixed = re.findall(r"^(class_[a-z0-9_]+): trip  # .*must stay$", text, re.MULTILINE)
+        fixed = re.findall(r"^(class_[a-z0-9_]+): trip  # .*mandatory$", text, re.MULTILINE)
         self.assertGreater(len(fixed), 25)
         for key in fixed:
             self.write("c.yaml", "%s: warn\n" % key)

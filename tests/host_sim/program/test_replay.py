@@ -416,7 +416,7 @@ class Interfaces(hostsim.Case):
         result = self.gateway("--ai-if", "ai1")
         self.assertEqual(result.summary()["final_state"], "INIT")
         self.assertIn("FOREIGN_COMMAND_SENDER", [name for _, name, _ in result.faults()])
-        self.assertIn("no frame in the log is from ai1", result.stderr)
+        self.assertIn("the log has no frame from ai1", result.stderr)
 
     def test_an_interface_of_the_ai_side_makes_a_gateway(self):
         log = traffic.log(traffic.frames(2000, engage_ms=1000, interface="veh0", ai_interface="ai0"))
@@ -445,7 +445,7 @@ class Interfaces(hostsim.Case):
         self.assert_refused(self.refuse(log, "--ai-if", "can0", "--topology", "shared"), "--ai-if", "gateway")
         self.write("c.yaml", "topology: shared\n")
         self.assert_refused(self.refuse(log, "--ai-if", "can0", "--config", "c.yaml"), "--ai-if", "gateway")
-        self.assert_refused(self.refuse(log, "--topology=gateway", "--ai-if=0123456789abcdef"), "--ai-if", "longer")
+        self.assert_refused(self.refuse(log, "--topology=gateway", "--ai-if=0123456789abcdef"), "--ai-if", "too long")
         self.write("c.yaml", "topology: gateway\n")
         self.assert_refused(self.refuse(log, "--config", "c.yaml"), "--ai-if")
         self.replay(log, "--config", "c.yaml", "--ai-if", "can1")

@@ -76,10 +76,10 @@ class Lines(hostsim.Case):
 
     def test_a_log_without_a_frame_is_refused(self):
         for content in ("", "\n", "\r\n  \n"):
-            self.assert_refused(self.refuse(content), "log: there is no frame in it")
-            self.assert_refused(self.refuse(content, "--skip-bad-lines"), "log: there is no frame in it")
-        self.assert_refused(self.refuse("nonsense\n" * 5, "--skip-bad-lines"), "log: there is no frame in it")
-        self.assert_refused(self.refuse(os.urandom(100000).replace(b"(", b""), "--skip-bad-lines"), "no frame in it")
+            self.assert_refused(self.refuse(content), "log: contains no frame")
+            self.assert_refused(self.refuse(content, "--skip-bad-lines"), "log: contains no frame")
+        self.assert_refused(self.refuse("nonsense\n" * 5, "--skip-bad-lines"), "log: contains no frame")
+        self.assert_refused(self.refuse(os.urandom(100000).replace(b"(", b""), "--skip-bad-lines"), "contains no frame")
 
     def test_logs_that_cannot_be_read(self):
         self.assert_refused(self.run_program("replay", "none"), "none: No such file or directory")
@@ -99,7 +99,7 @@ class StandardInput(hostsim.Case):
         self.assert_refused(result, "standard input:2: ")
 
     def test_no_input(self):
-        self.assert_refused(self.run_program("replay", "-"), "standard input: there is no frame in it")
+        self.assert_refused(self.run_program("replay", "-"), "standard input: contains no frame")
 
 
 class Outputs(hostsim.Case):

@@ -176,11 +176,11 @@ class Command(hostsim.Case):
                                     text=True, check=False)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.write("s.yaml", GOOD)
-        self.assert_refused(self.run_program("scenario", "s.yaml", "/dev/null"), "/dev/null: is no regular file")
+        self.assert_refused(self.run_program("scenario", "s.yaml", "/dev/null"), "/dev/null: not a regular file")
 
     def test_an_error_frame_is_delivered_and_not_sent(self):
         step = 'steps:\n  - {at_ms: 100, bus: send, id: 124h, bytes: "01", kind: error}\n'
-        self.assert_refused(self.scenario(GOOD + step), "s.yaml:", "it is for deliver")
+        self.assert_refused(self.scenario(GOOD + step), "s.yaml:", "only for deliver")
         self.assertEqual(self.scenario(GOOD + step.replace("bus: send", "bus: deliver")).status, 0)
 
     def test_a_frame_in_fd_format_is_heard_by_supervisor_and_vehicle(self):
@@ -252,7 +252,7 @@ class Demo(hostsim.Case):
         result = self.run_good("demo")
         for text in ("ai          stop", "=> TRIPPED: STEERING_COMMAND_TIMEOUT", "sends 168 [08 00 00 00 00 00 00 00]",
                      "reports manual", "reports gear P", "=> SAFE", "press button 1", "reset accepted",
-                     "=> TRIPPED: EPS_OVER_CURRENT_SHUTDOWN", "first safe frame is out", "Seen as promised"):
+                     "=> TRIPPED: EPS_OVER_CURRENT_SHUTDOWN", "first safe frame is out", "expectations passed"):
             self.assertIn(text, result.stdout)
 
     def test_a_scenario_by_name_and_by_path(self):
@@ -264,17 +264,17 @@ class Demo(hostsim.Case):
         self.write("s.yaml", GOOD.replace("[510, 513]", "[500, 505]"))
         result = self.run_program("demo", "--scenario", "s.yaml")
         self.assertEqual(result.status, 1)
-        self.assertIn("NOT as promised, s.yaml:\n  line 5: STANDBY", result.stdout)
+        self.assertIn("Expectations FAILED, s.yaml:\n  line 5: STANDBY", result.stdout)
 
     def test_events_are_those_of_the_scenario_command(self):
         self.run_good("scenario", "--events", "of_scenario.jsonl", FOLDER / "overview" / "demo.yaml")
         result = self.run_good("demo", "--events", "of_demo.jsonl")
-        self.assertIn("Seen as promised", result.stdout)
+        self.assertIn("expectations passed", result.stdout)
         events = (self.folder / "of_demo.jsonl").read_text(encoding="ascii")
         self.assertEqual(events, (self.folder / "of_scenario.jsonl").read_text(encoding="ascii"))
         result = self.run_good("demo", "--events", "-")
         self.assertEqual(result.stdout, events)
-        self.assertIn("Seen as promised", result.stderr)
+        self.assertIn("expectations passed", result.stderr)
 
     def test_events_that_cannot_be_written(self):
         self.assert_refused(self.run_program("demo", "--events", "no/where"), "no/where")

@@ -14,21 +14,21 @@ FAULTS = {
     "ai_stop@2000": FORM,
     "ai@-2000": FORM,
     "": FORM,
-    "ai-stop@soon": "at_ms: 'soon' is no whole number",
+    "ai-stop@soon": "at_ms: 'soon' is not a whole number",
     "ai-stop@": "at_ms: a word or a text is missing",
-    "ai-stop@1.5": "at_ms: '1.5' is no whole number",
+    "ai-stop@1.5": "at_ms: '1.5' is not a whole number",
     "ai-stop@86400001": "at_ms: 86400001 is not within 0 to 86400000",
-    "me-stop@2000": "'me' is none of vcu, eps, ai, operator, bus",
-    "supervisor-hang,for_ms=1@2000": "'supervisor' is none of vcu, eps, ai, operator, bus",
-    "ai-@2000": "what does ai do?",
-    "ai-explode@2000": "ai: there is no 'explode' to do",
-    "operator-stop@2000": "operator: there is no 'stop' to do",
+    "me-stop@2000": "'me' is not one of vcu, eps, ai, operator, bus",
+    "supervisor-hang,for_ms=1@2000": "'supervisor' is not one of vcu, eps, ai, operator, bus",
+    "ai-@2000": "the action of ai is missing",
+    "ai-explode@2000": "ai: unknown action 'explode'",
+    "operator-stop@2000": "operator: unknown action 'stop'",
     "eps-set,value=08h@3000": "'set' needs 'field'",
     "eps-set,field=faults@3000": "'set' needs 'value'",
     "eps-set,field=fault,value=08h@3000": "field: this node has no field 'fault'",
-    "eps-set,field=faults,value=8@3000": "value: '8' is no hexadecimal number such as 168h or 0x168",
+    "eps-set,field=faults,value=8@3000": "value: '8' is not a hexadecimal number such as 168h or 0x168",
     "eps-set,field=faults,value=100h@3000": "value: 100h is above FFh",
-    "eps-freeze@3000": "eps: there is no 'freeze' to do",
+    "eps-freeze@3000": "eps: unknown action 'freeze'",
     "ai-stop,frames=3@2000": "'stop' takes no 'frames'",
     "ai-lag,by_ms=60001@2000": "by_ms: 60001 is not within 0 to 60000",
     "ai-lag,by=1@2000": "unknown key 'by' in a step",
@@ -36,7 +36,7 @@ FAULTS = {
     "operator-press,button=3@2000": "button: 3 is not within 1 to 2",
     "bus-send,bytes=01@2000": "either 'id' or 'message' is needed",
     "bus-send,id=800h,bytes=01@2000": "id: 800h is above 7FFh",
-    "bus-send,id=1h,bytes=01,side=ai@2000": "side: there is an AI side only with topology: gateway",
+    "bus-send,id=1h,bytes=01,side=ai@2000": "side: only topology: gateway has an AI side",
     "bus-destroy,frames=1@2000": "bus: 'destroy' is for the simulated bus only",
 }
 
@@ -65,13 +65,13 @@ class Vehicle(hostsim.Case):
 
     def test_a_fault_after_the_end(self):
         result = self.vehicle("--can", "nosuch", "--fault", "ai-stop@5000", "--for", "5000")
-        self.assertEqual(result.stderr, "host_sim: --fault ai-stop@5000: that lies after the end (--for)\n")
+        self.assertEqual(result.stderr, "host_sim: --fault ai-stop@5000: the time is after the end (--for)\n")
         self.assertEqual(result.status, 2)
 
     def test_too_many_faults(self):
         faults = ["--fault=ai-stop@%d" % i for i in range(64)]
         self.assert_no_interface(self.vehicle("--can", "nosuch", *faults))
-        self.assert_refused(self.vehicle("--can", "nosuch", *faults, "--fault=ai-stop@64"), "--fault: more than 64 of them")
+        self.assert_refused(self.vehicle("--can", "nosuch", *faults, "--fault=ai-stop@64"), "--fault: given more than 64 times")
 
     def assert_no_interface(self, result):
         """With all else in order it gets as far as the interface; one kernel has no CAN, another no such interface."""
@@ -95,7 +95,7 @@ class Vehicle(hostsim.Case):
         for option, bad in (("--for", "0"), ("--for", "1s"), ("--for", "8640000001"), ("--id-set", "both"),
                             ("--topology", "star")):
             self.assert_refused(self.vehicle("--can", "nosuch", option, bad), option, "'%s'" % bad)
-        self.assert_refused(self.vehicle("--can", "nosuch", "vcan0"), "'vcan0' is one too many")
+        self.assert_refused(self.vehicle("--can", "nosuch", "vcan0"), "unexpected argument 'vcan0'")
 
 
 if __name__ == "__main__":

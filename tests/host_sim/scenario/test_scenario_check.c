@@ -163,7 +163,7 @@ void test_a_period(void) {
     expect(NO_STATES "  frames: [{id: 168h, at_ms: [0, 1000], every_ms: 100, jitter_ms: 1}]\n");
     frame_at(50u, 0x168u, 0x08u, 8u);
     frame_at(148u, 0x168u, 0x08u, 8u);
-    judged("line 6: 168h is expected every 100 ms, seen: 98 ms after the one before at 50 ms");
+    judged("line 6: 168h is expected every 100 ms, seen: 98 ms after the previous one at 50 ms");
     expect(NO_STATES "  frames: [{id: 168h, at_ms: [0, 1000], every_ms: 100, jitter_ms: 1}]\n");
     frame_at(50u, 0x168u, 0x08u, 8u);
     judged("line 6: 168h is expected every 100 ms in 0..1000 ms, the last one was at 50 ms");
@@ -175,7 +175,7 @@ void test_a_frame_that_must_not_be(void) {
     frame_at(15u, 0x168u, 0x08u, 2u);
     frame_at(20u, 0x168u, 0x01u, 2u);
     frame_at(20u, 0x168u, 0x01u, 2u);
-    judged("line 6: a frame that must not be in 10..20 ms, seen: 168h [01 00] at 20 ms");
+    judged("line 6: a frame is forbidden in 10..20 ms, seen: 168h [01 00] at 20 ms");
 }
 
 void test_frames_of_others_do_not_count(void) {
@@ -188,7 +188,7 @@ void test_frames_of_others_do_not_count(void) {
     judged(NULL);
     expect(NO_STATES "  never: [{from: anybody, at_ms: 1}]\n");
     scenario_check_frame(&check, 1000u, HAL_CAN_AI, VEHICLE_EPS, &frame);
-    judged("line 6: a frame that must not be at 1 ms, seen: 168h [00 00 00 00 00 00 00 00] at 1 ms");
+    judged("line 6: a frame is forbidden at 1 ms, seen: 168h [00 00 00 00 00 00 00 00] at 1 ms");
 }
 
 void test_changes_of_the_safety_output(void) {
@@ -271,7 +271,7 @@ void test_resets_and_what_is_missing_at_start(void) {
     judged("line 6: missing at start [messages] is expected at 6 ms, not seen");
     expect(NO_STATES);
     event(7u, AGV_EVENT_STARTUP, 0u, 0u, 0u, AGV_MISSING_STATE);
-    judged("no report of what is missing at start is expected, but at 7 ms: [state]");
+    judged("no report of missing conditions at start is expected, but at 7 ms: [state]");
 }
 
 void test_the_vehicle_at_a_moment(void) {
