@@ -6,37 +6,13 @@
 #include <stdlib.h>
 
 #include "agv/protocol.h"
+#include "gate_oracle.h"
 #include "input.h"
-#include "oracle.h"
-#include "transmit/gate.h"
 
 static const uint16_t IDS[16] = {0x43F, 0x168, 0x075, 0x065, 0x363, 0x0A3, 0x050, 0x067,
                                  0x167, 0x267, 0x101, 0x201, 0x203, 0x700, 0x7FF, 0x000};
 static const uint8_t STATES[5] = {AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_STATE_ACTIVE, AGV_STATE_TRIPPED,
                                   AGV_STATE_SAFE};
-
-static oracle_t make_oracle(const agv_gate_t *gate) {
-    const bool unlatched =
-        (gate->state == AGV_STATE_INIT) || (gate->state == AGV_STATE_STANDBY) || (gate->state == AGV_STATE_ACTIVE);
-    oracle_t oracle = {.mode_bits = 0x80, /* the gate knows nothing of the last 363h, nor of an engagement that ended */
-                       .before = (agv_state_t)gate->state,
-                       .ending = gate->state == AGV_STATE_STANDBY,
-                       .latched = !unlatched,
-                       .held = !unlatched && ((unsigned)gate->hold_check + gate->hold_raw == 0xFFFFu) &&
-                               (gate->hold_raw <= 18000u),
-                       .held_raw = gate->hold_raw};
-    oracle_configure(&oracle, gate->config);
-    return oracle;
-}
-
-static bool expected(const agv_gate_t *gate, hal_can_side_t side, const hal_can_frame_t *frame) {
-    oracle_t oracle = make_oracle(gate);
-    const uint32_t most = gate->config->throttle_ceiling_pct * 250u / 100u;
-    oracle_sent(&oracle, side, frame, (agv_state_t)gate->state);
-    const bool too_much = (side == HAL_CAN_VEHICLE) && (frame->id == 0x075u) && (gate->state == AGV_STATE_ACTIVE) &&
-                          (frame->data[0] > most);
-    return (oracle.forbidden == 0u) && !too_much;
-}
 
 static void read_config(input_t *input, agv_config_t *config) {
     const uint8_t bits = input_byte(input);
@@ -80,7 +56,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         frame.data[1] = (uint8_t)(gate.hold_raw >> 8u);
     }
     const bool allows = agv_gate_allows(&gate, side, &frame);
-    if (allows != expected(&gate, side, &frame)) {
+    const oracle_t oracle = gate_oracle(&gate);
+    if (allows != gate_oracle_allows(&oracle, &gate, side, &frame)) {
         (void)fprintf(stderr, "the gate %s in state %02Xh to side %d: %03X, length %u, flags %X, %02X %02X .. %02X\n",
                       allows ? "allows" : "refuses", gate.state, (int)side, (unsigned)frame.id, frame.length,
                       frame.flags, frame.data[0], frame.data[1], frame.data[4]);
