@@ -1,7 +1,7 @@
 /**
  * @file score.h
- * How faults that need more than one frame, or more than one moment, are counted, so that gaps and single good frames do
- * not start the count again.
+ * Scores and budgets: they debounce faults that need several bad frames, or a condition that lasts. Gaps between frames
+ * and single good frames do not restart the count.
  */
 #ifndef AGV_SCORE_H
 #define AGV_SCORE_H
@@ -10,8 +10,8 @@
 #include <stdint.h>
 
 /**
- * Score of a fault that needs N frames: a bad frame adds 2, a good one takes 1 away, within 0 and 2 N. The fault is present
- * from the frame on that brings the score to 2 N until it is back at 0. With N of 1 the last frame decides.
+ * Score of a fault that needs N bad frames. A bad frame adds 2, a good frame subtracts 1, within 0..2 N. The fault becomes
+ * present when the score reaches 2 N, and ends when it is 0 again. With N = 1 the last frame decides.
  */
 typedef struct {
     uint8_t value;
@@ -22,16 +22,16 @@ typedef struct {
 void agv_score_add(agv_score_t *score, bool bad, uint32_t frames);
 
 /**
- * Budget of T ms: up by 1 with every ms in which its condition holds, down by 1 with every second ms in which it does not,
- * within 0 and T. The fault is present from T on until the budget is back at 0.
+ * Time budget of T ms. Every ms with the condition adds 1, every second ms without it subtracts 1, within 0..T. The fault
+ * becomes present when the budget reaches T, and ends when it is 0 again.
  */
 typedef struct {
     uint16_t value_ms;
-    bool half; /**< one ms without the condition has passed that has not counted yet */
+    bool half; /**< one ms without the condition has passed; the next one subtracts 1 */
     bool present;
 } agv_budget_t;
 
-/** Time has passed. @param limit_ms T */
+/** Add the time since the last call. @param limit_ms T */
 void agv_budget_add(agv_budget_t *budget, bool condition, uint32_t elapsed_ms, uint32_t limit_ms);
 
 #endif

@@ -12,7 +12,7 @@
 #include "agv/config.h"
 #include "agv/protocol.h"
 
-/** The timers. Those of messages stand in the order of agv_message_t. */
+/** The timers. Those of the messages are in the order of agv_message_t. */
 typedef enum {
 #define AGV_TIMER(name, setting, kind) AGV_TIMER_##name,
 #include "base/timer_table.def"
@@ -44,35 +44,34 @@ typedef struct {
 } agv_timers_t;
 
 /**
- * Milliseconds from @p then_ms to @p now_ms across the wrap. A time in the future has the age 0: frames may carry stamps
- * that are a little ahead of the tick.
+ * Milliseconds from @p then_ms to @p now_ms, also across the wrap. A time in the future has the age 0: the time stamps of
+ * frames may be slightly ahead of the tick.
  */
 uint32_t agv_age_ms(uint32_t now_ms, uint32_t then_ms);
 
 /** The limit of a timer, ms. */
 uint32_t agv_timer_limit_ms(const agv_config_t *config, uint32_t timer);
 
-/** Stop all timers. The time stays. */
+/** Stop all timers. The time does not change. */
 void agv_timers_start(agv_timers_t *timers);
 
-/** Set the time, also backwards. */
+/** Set the time; it may go backwards. */
 void agv_timers_set_time(agv_timers_t *timers, uint32_t time_ms);
 
 /**
- * Advance the time to a stamp, and note which timers have reached their limit by then (they are looked at only when the
- * first of them can have done so). An earlier stamp changes nothing:
- * time never goes backwards, whatever stamps frames carry. Called at least once in every 24 days, so that it holds across
- * the wrap.
+ * Advance the time to a time stamp, and note which timers have reached their limit. The timers are only checked when the
+ * first of them may have reached it. An earlier time stamp changes nothing: time never goes backwards. Call this at least
+ * once in 24 days, so that the comparison holds across the wrap.
  */
 void agv_timers_advance(agv_timers_t *timers, const agv_config_t *config, uint32_t time_ms, uint32_t time_us);
 
-/** The time for which a timer has run, ms; its limit when it has reached it. Ask of one that is not stopped. */
+/** The time for which a timer has run, ms; its limit if it has reached it. Must not be called for a stopped timer. */
 uint32_t agv_timer_spent_ms(const agv_timers_t *timers, const agv_config_t *config, uint32_t timer);
 
-/** Start a timer anew from now. */
+/** Start or restart a timer now. */
 void agv_timer_start(agv_timers_t *timers, uint32_t timer);
 
-/** Start a timer anew from a given time. */
+/** Start or restart a timer at a given time. */
 void agv_timer_start_at(agv_timers_t *timers, uint32_t timer, uint32_t since_ms);
 
 /** Stop a timer. */
@@ -81,13 +80,13 @@ void agv_timer_stop(agv_timers_t *timers, uint32_t timer);
 /** Whether a timer had reached its limit when the time last advanced. False when it is stopped. */
 bool agv_timer_reached(const agv_timers_t *timers, uint32_t timer);
 
-/** Let a timer run while a condition holds, and stop it when not. @return whether it has reached its limit */
+/** Run a timer while a condition holds, and stop it otherwise. @return whether it has reached its limit */
 bool agv_timer_while(agv_timers_t *timers, uint32_t timer, bool condition);
 
-/** Whether a timer runs and has not reached its limit. */
+/** Whether a timer is running and has not reached its limit. */
 bool agv_timer_is_within(const agv_timers_t *timers, uint32_t timer);
 
-/** Whether a timer runs or has reached its limit. */
+/** Whether a timer is running or has reached its limit. */
 bool agv_timer_runs(const agv_timers_t *timers, uint32_t timer);
 
 #endif

@@ -1,6 +1,6 @@
 /**
  * @file bus.h
- * The state of one CAN controller as the supervisor follows it (SUP-7).
+ * The state of one CAN controller (SUP-7).
  */
 #ifndef AGV_BUS_H
 #define AGV_BUS_H
@@ -11,28 +11,28 @@
 #include "base/timers.h"
 #include "hal/can.h"
 
-/** One controller. Whether it is in bus-off, and since when, is kept by its timer (AGV_TIMER_BUS_OFF, ..AI_BUS_OFF). */
+/** One controller. Its timer (AGV_TIMER_BUS_OFF, AGV_TIMER_AI_BUS_OFF) holds whether and since when it is in bus-off. */
 typedef struct {
     uint16_t bus_offs; /**< as last read */
     uint16_t overruns; /**< as last read */
 } agv_bus_t;
 
-/** What a look at the controller showed: bits. */
-#define AGV_BUS_OFF 0x01u          /**< bus-off now, or it was since the last look */
-#define AGV_BUS_RECOVERED 0x02u    /**< left bus-off since the last look */
-#define AGV_BUS_ASK_RECOVERY 0x04u /**< purge and ask for recovery now */
+/** Result of agv_bus_tick: bits. "Since the last tick" is since the last call. */
+#define AGV_BUS_OFF 0x01u          /**< in bus-off now, or at some time since the last tick */
+#define AGV_BUS_RECOVERED 0x02u    /**< left bus-off since the last tick */
+#define AGV_BUS_ASK_RECOVERY 0x04u /**< purge the controller and request its recovery now */
 #define AGV_BUS_PASSIVE 0x08u      /**< error-passive */
-#define AGV_BUS_OVERRUN 0x10u      /**< received frames were lost since the last look */
-#define AGV_BUS_STALLED 0x20u      /**< a frame taken does not leave for too long */
+#define AGV_BUS_OVERRUN 0x10u      /**< received frames were lost since the last tick */
+#define AGV_BUS_STALLED 0x20u      /**< an accepted frame has been waiting for too long */
 
-/** Take the controller's counters as the starting point. */
+/** Take the controller's counters as the reference for later ticks. */
 void agv_bus_start(agv_bus_t *bus, hal_t *hal, hal_can_side_t side);
 
-/** Look at the controller. Call at every tick. @return AGV_BUS_* bits */
+/** Read the state of the controller. Call at every tick. @return AGV_BUS_* bits */
 uint32_t agv_bus_tick(agv_bus_t *bus, agv_timers_t *timers, const agv_config_t *config, hal_t *hal,
                       hal_can_side_t side);
 
-/** Whether the controller was in bus-off at the last look. */
+/** Whether the controller was in bus-off at the last tick. */
 bool agv_bus_is_off(const agv_timers_t *timers, hal_can_side_t side);
 
 #endif

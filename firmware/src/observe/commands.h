@@ -1,7 +1,7 @@
 /**
  * @file commands.h
- * The last valid commands of the AI computer in this engagement, which the vehicle is compared with (SUP-10, SUP-11): as
- * received, in the gateway topology as sent on.
+ * The last valid commands of the AI computer in this engagement. The vehicle's reports are compared with them (SUP-10,
+ * SUP-11). On a shared bus they are the received commands, in a gateway the forwarded ones.
  */
 #ifndef AGV_COMMANDS_H
 #define AGV_COMMANDS_H
@@ -16,17 +16,17 @@ typedef struct {
     uint16_t angle_raw; /**< 065h, raw (P5) */
     uint8_t throttle;   /**< 075h, counts */
     uint8_t gear;       /**< 168h, agv_gear_t */
-    uint8_t known;      /**< bit n: there was a valid command n in this engagement */
-    bool autopilot_off; /**< 43Fh asks for autopilot off */
+    uint8_t known;      /**< bit n: a valid command n was received in this engagement */
+    bool autopilot_off; /**< 43Fh requests autopilot off */
 } agv_commands_t;
 
-/** A valid command. */
+/** Take over a valid command. */
 void agv_commands_take(agv_commands_t *commands, uint32_t command, const uint8_t data[AGV_DLC]);
 
-/** An engagement began: no command is known. */
+/** Forget all commands, because an engagement began. */
 void agv_commands_forget(agv_commands_t *commands);
 
-/** Whether there was a valid command in this engagement. */
+/** Whether a valid command of this kind was received in this engagement. */
 bool agv_commands_has(const agv_commands_t *commands, uint32_t command);
 
 #endif

@@ -1,7 +1,7 @@
 /**
  * @file deadlines.h
- * Which faults the silence of messages and heartbeats is (SUP-2, SUP-3, SUP-8), and traffic with the identifiers of the
- * other set (P1, WRONG_ID_SET).
+ * The faults of expired deadlines of messages and heartbeats (SUP-2, SUP-3, SUP-8), and of traffic with the identifiers
+ * of the other set (P1, WRONG_ID_SET).
  */
 #ifndef AGV_DEADLINES_H
 #define AGV_DEADLINES_H
@@ -16,17 +16,17 @@
 void agv_deadlines_tick(agv_fault_monitor_t *faults, const agv_timers_t *timers, const agv_config_t *config,
                         const agv_liveness_t *liveness, bool engaged);
 
-/** Evaluate the heartbeats alone. Call when an engagement begins: an AI computer that is lost then trips at once. */
+/** Evaluate only the heartbeats. Call when an engagement begins: an AI computer that is lost then trips at once. */
 void agv_deadlines_heartbeats(agv_fault_monitor_t *faults, const agv_timers_t *timers, const agv_liveness_t *liveness,
                               bool engaged);
 
-/** A frame of the right shape came with an identifier that this message has in the other set only. */
+/** Note a well-formed frame with the identifier that this message has in the other set only. */
 void agv_deadlines_other_id_set(agv_timers_t *timers, uint32_t message);
 
-/** A reset was accepted: the AI computer is forgotten, and with it that it is lost (SUP-8). */
+/** End the faults of the AI computer's heartbeat after a reset, which forgets the AI computer (SUP-8). */
 void agv_deadlines_forget_ai(agv_fault_monitor_t *faults);
 
-/** Whether every status message whose silence trips is fresh. */
+/** Whether all status messages whose silence trips are fresh. */
 bool agv_deadlines_messages_fresh(const agv_liveness_t *liveness, const agv_timers_t *timers,
                                   const agv_config_t *config);
 

@@ -1,6 +1,6 @@
 /**
  * @file intrusion.h
- * Commands that come too fast: a second sender of the AI computer's commands (SUP-6, COMMAND_TOO_FAST).
+ * Detection of a rogue node that sends the AI computer's commands: they then come too fast (SUP-6, COMMAND_TOO_FAST).
  */
 #ifndef AGV_INTRUSION_H
 #define AGV_INTRUSION_H
@@ -14,15 +14,18 @@
 #include "decide/fault_monitor.h"
 #include "observe/liveness.h"
 
-/** Scores of gaps shorter than half the cycle. */
+/** Scores of gaps between commands that are shorter than half the cycle. */
 typedef struct {
     agv_score_t fast_gaps[AGV_COMMAND_COUNT];
 } agv_intrusion_t;
 
-/** A well-formed command arrived. @param gap_ms since the one before; AGV_AGE_MAX: unknown, does not count */
+/** Score a well-formed command. @param gap_ms since the previous one; AGV_AGE_MAX: unknown, not scored */
 void agv_intrusion_command(agv_intrusion_t *intrusion, const agv_config_t *config, uint32_t command, uint32_t gap_ms);
 
-/** Set the fault; a silence longer than the deadline of a command sets its score to 0. Call at every tick and command. */
+/**
+ * Set or end the fault. The score of a command whose deadline has expired is set to 0. Call at every tick and after every
+ * command.
+ */
 void agv_intrusion_evaluate(agv_intrusion_t *intrusion, agv_fault_monitor_t *faults, const agv_timers_t *timers,
                             const agv_config_t *config, const agv_liveness_t *liveness);
 

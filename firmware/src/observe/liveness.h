@@ -1,7 +1,6 @@
 /**
  * @file liveness.h
- * Who is alive, and how old is what is known (SUP-1 to SUP-3): the age of every message and the three heartbeats. Which
- * fault follows is not decided here (deadlines.h).
+ * The age of every message, and the three heartbeats (SUP-1 to SUP-3). deadlines.h decides which faults follow.
  */
 #ifndef AGV_LIVENESS_H
 #define AGV_LIVENESS_H
@@ -19,70 +18,70 @@ typedef enum { AGV_NODE_VCU, AGV_NODE_EPS, AGV_NODE_AI, AGV_NODE_COUNT } agv_nod
 /** State of a heartbeat. */
 typedef enum {
     AGV_HEARTBEAT_UNSEEN = 0,    /**< no changed counter yet */
-    AGV_HEARTBEAT_BASELINE = 1,  /**< AI: one value seen, which proves nothing yet, but begins the deadline */
+    AGV_HEARTBEAT_BASELINE = 1,  /**< AI only: the first value was seen and started the deadline; not alive yet */
     AGV_HEARTBEAT_ALIVE = 2,     /**< the counter changed within the deadline */
-    AGV_HEARTBEAT_FORGOTTEN = 3, /**< AI: it was seen before the last reset; its deadline runs on (SUP-8) */
-    AGV_HEARTBEAT_LOST = 4,      /**< deadline expired; stays until the counter changes again */
-    AGV_HEARTBEAT_STUCK = 5      /**< as LOST, but frames with the old counter went on coming */
+    AGV_HEARTBEAT_FORGOTTEN = 3, /**< AI only: it was alive before the last reset; its deadline still runs (SUP-8) */
+    AGV_HEARTBEAT_LOST = 4,      /**< the deadline expired; remains until the counter changes again */
+    AGV_HEARTBEAT_STUCK = 5      /**< as LOST, but frames with an unchanged counter were still received */
 } agv_heartbeat_state_t;
 
-/** One heartbeat. Its deadline is the one of the message that carries it (AGV_TIMER_MESSAGE). */
+/** One heartbeat. Its deadline is that of the message that carries it (AGV_TIMER_MESSAGE). */
 typedef struct {
     uint8_t state;   /**< agv_heartbeat_state_t */
     uint8_t counter; /**< value last seen */
     bool counter_known;
     bool repeated;        /**< the last frame did not count as changed */
-    uint8_t steps_needed; /**< right steps until one counts again (`increments`, SUP-2) */
+    uint8_t steps_needed; /**< correct steps needed until one counts as changed again (`increments`, SUP-2) */
 } agv_heartbeat_t;
 
-/** Age returned for what is older than AGV_AGE_LIMIT_MS or was never heard: ages saturate (TIM-2). */
+/** Age of a message that is older than AGV_AGE_LIMIT_MS or was never received: ages saturate (TIM-2). */
 #define AGV_AGE_MAX UINT32_MAX
 #define AGV_AGE_LIMIT_MS 6000u
 
 /** Ages of all messages, and the heartbeats. */
 typedef struct {
-    uint32_t last_ms[AGV_MSG_COUNT]; /**< last frame of the right shape; before: the start */
+    uint32_t last_ms[AGV_MSG_COUNT]; /**< time of the last well-formed frame; before the first one, of the start */
     uint16_t heard;                  /**< bit n: message n was received at least once */
     uint16_t old;                    /**< bit n: its last_ms is older than AGV_AGE_LIMIT_MS */
-    uint8_t next_to_age;             /**< message whose age is looked at by the next tick */
+    uint8_t next_to_age;             /**< message whose age the next tick checks */
     agv_heartbeat_t heartbeats[AGV_NODE_COUNT];
 } agv_liveness_t;
 
-/** Nothing heard, from zeroed memory; all deadlines begin now, but the one of the AI's heartbeat (SUP-8). */
+/** Start, from zeroed memory: nothing received. All deadlines begin now, except that of the AI's heartbeat (SUP-8). */
 void agv_liveness_start(agv_liveness_t *liveness, agv_timers_t *timers);
 
 /**
- * A frame of the right shape arrived.
- * @return milliseconds since the one before, AGV_AGE_MAX when that is too long ago or there was none.
+ * Note a well-formed frame.
+ * @return milliseconds since the previous one; AGV_AGE_MAX if there was none, or it is too long ago.
  */
 uint32_t agv_liveness_arrived(agv_liveness_t *liveness, uint32_t message, uint32_t time_ms);
 
-/** A usable frame arrived: its deadline begins anew. One with an alive counter is usable when that has changed. */
+/** Restart the deadline of a valid frame. The deadline of a heartbeat only restarts if its alive counter has changed. */
 void agv_liveness_refresh(agv_liveness_t *liveness, agv_timers_t *timers, const agv_config_t *config, uint32_t message,
                           const hal_can_frame_t *frame);
 
-/** The autopilot was engaged at that time: the deadlines of the commands begin anew, but the AI's heartbeat (SUP-3). */
+/** Restart the deadlines of the commands, except the AI's heartbeat, when the autopilot is engaged (SUP-3). */
 void agv_liveness_restart_commands(agv_timers_t *timers, uint32_t time_ms);
 
-/** A reset was accepted: the AI computer is not alive before its counter changes (SUP-8). */
+/** Forget, after a reset, that the AI computer was alive: it is alive again when its counter changes (SUP-8). */
 void agv_liveness_forget_ai(agv_liveness_t *liveness);
 
 /**
- * Let ages saturate and heartbeats expire. Call at every tick, after the timers, and when an engagement begins.
- * @param engaged an AI computer that a reset made forget is expected again
+ * Saturate ages and expire heartbeats. Call at every tick, after the timers, and when an engagement begins.
+ * @param engaged if true, the heartbeat of a forgotten AI computer (AGV_HEARTBEAT_FORGOTTEN) expires too
  */
 void agv_liveness_tick(agv_liveness_t *liveness, const agv_timers_t *timers, bool engaged);
 
-/** What is known of a heartbeat. */
+/** The state of a heartbeat. */
 agv_heartbeat_state_t agv_liveness_heartbeat(const agv_liveness_t *liveness, agv_node_t node);
 
 /** Whether a heartbeat is alive. */
 bool agv_liveness_alive(const agv_liveness_t *liveness, agv_node_t node);
 
-/** Whether a message was heard, and its deadline has not expired. */
+/** Whether a message was received and its deadline has not expired. */
 bool agv_liveness_fresh(const agv_liveness_t *liveness, const agv_timers_t *timers, uint32_t message);
 
-/** Age of the last frame of the right shape; since the start when none was heard. Saturates to AGV_AGE_MAX. */
+/** Age of the last well-formed frame, ms; without one, the time since the start. Saturates to AGV_AGE_MAX. */
 uint32_t agv_liveness_age_ms(const agv_liveness_t *liveness, const agv_timers_t *timers, uint32_t message);
 
 #endif
