@@ -169,8 +169,14 @@ void hazard_step(hazard_t *hazard, uint64_t t_ms, const scenario_step_t *step) {
     const bool is_fd =
         step->of_vehicle && (step->vehicle.what == VEHICLE_DO_SEND) && ((step->vehicle.frame.flags & HAL_CAN_FD) != 0u);
 
+    const bool is_anew = !step->of_vehicle &&
+                         ((step->supervisor.what == SCENARIO_RESTART) || (step->supervisor.what == SCENARIO_FLIP_BIT));
+
     hazard->t_ms = t_ms;
     hazard->t_us = t_ms * US_PER_MS;
+    if (is_anew) {
+        hazard_hold_anew(hazard);
+    }
     if (is_delivered) {
         on_data(hazard, step->supervisor.side, VEHICLE_STRANGER, &step->supervisor.frame);
     } else if (is_fd) {

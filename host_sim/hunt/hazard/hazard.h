@@ -222,6 +222,7 @@ void hazard_hold_tick(hazard_t *hazard);
 void hazard_hold_measured(hazard_t *hazard, int32_t angle_ddeg);
 void hazard_hold_trip(hazard_t *hazard);
 void hazard_hold_manual(hazard_t *hazard);
+void hazard_hold_anew(hazard_t *hazard);
 /** @} */
 
 #endif

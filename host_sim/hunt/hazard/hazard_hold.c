@@ -25,6 +25,10 @@ void hazard_hold_measured(hazard_t *hazard, int32_t angle_ddeg) {
     hold->measured_ddeg[at] = angle_ddeg;
     hold->measured_ms[at] = hazard->t_ms;
     hold->measured_count++;
+    if (hazard->world->off) {
+        hold->has_first = false; /* one without power measures nothing */
+        return;
+    }
     if (!hold->has_first) {
         hold->has_first = true;
         hold->first = (hazard_range_t){angle_ddeg, angle_ddeg};
@@ -54,6 +58,14 @@ void hazard_hold_trip(hazard_t *hazard) {
     const uint32_t within_ms = (uint32_t)FRESH_MS + (hazard->closed ? 0u : hazard->limits.tx_stalled_ms);
 
     hazard->hold.at_trip = range_now(hazard, within_ms);
+    hazard->hold.has_trip = true;
+    hazard->hold.is_dropped = false;
+    hazard->hold.has_first = false;
+}
+
+/** A supervisor that starts again, or finds that a bit has flipped, trips again and holds what it measures then. */
+void hazard_hold_anew(hazard_t *hazard) {
+    hazard->hold.at_trip = range_now(hazard, FRESH_MS);
     hazard->hold.has_trip = true;
     hazard->hold.is_dropped = false;
     hazard->hold.has_first = false;

@@ -123,7 +123,8 @@ static bool is_command_bad(const hazard_t *hazard) {
 }
 
 static bool is_stalled(const hazard_t *hazard, hal_can_side_t side) {
-    return hazard->world->buses[side].nodes[hazard->world->hal.can[side].node].stalled;
+    const sim_hal_can_t *can = &hazard->world->hal.can[side];
+    return can->full || hazard->world->buses[side].nodes[can->node].stalled;
 }
 
 static bool is_transmitter_dead(const hazard_t *hazard) {
@@ -178,7 +179,8 @@ static const row_t ROWS[] = {
      is_throttle_too_high},
     {"another gear than commanded", LEVEL, true, NONE, "gear_deviation_ms", 1000u, "GEAR_DEVIATION", NULL, 0u,
      is_other_gear},
-    {"autopilot off is ignored", LEVEL, true, NONE, "autopilot_off_ms", 1000u, NULL, NULL, 0u, is_off_ignored},
+    {"autopilot off is ignored", LEVEL, true, NONE, "autopilot_off_ms", 1000u, "AUTOPILOT_OFF_IGNORED", NULL, 0u,
+     is_off_ignored},
     {"neither mode is reported", LEVEL, false, NONE, "mode_none_ms", 500u, NULL, NULL, 0u, is_without_mode},
     {"both modes are reported", LEVEL, false, NONE, "mode_invalid_ms", 50u, NULL, NULL, 0u, is_in_both_modes},
     {"commands come too fast", LEVEL, true, NONE, NULL, 0u, "COMMAND_TOO_FAST", NULL, 0u, is_command_too_fast},

@@ -233,6 +233,21 @@ void test_h2_who_is_bus_off_does_not_hear_of_manual(void) {
     expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&hears, steps));
 }
 
+void test_h2_a_flipped_bit_is_a_trip_of_its_own(void) {
+    const char *const head = "  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
+                             "  - {at_ms: 3200, ai: drive, gear: D, throttle_pct: 60, steer_deg: 80}\n";
+    const char *const tail = "  - {at_ms: 3520, ai: drive, gear: D, throttle_pct: 60, steer_deg: -20}\n"
+                             "  - {at_ms: 3880, ai: mute, message: steering_command}\n";
+    const planted_t holds = {
+        .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .hold_ddeg = 600, .hold_ms = TRIP_MS + 900};
+    char steps[512];
+
+    (void)snprintf(steps, sizeof steps, "%s%s", head, tail);
+    expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&holds, steps));
+    (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 3500, supervisor: flip_bit, bit: 1}\n%s", head, tail);
+    expect(HAZARD_NONE, "", play(&holds, steps));
+}
+
 void test_h3_a_command_that_nobody_sent(void) {
     const planted_t forges = {.gateway = true, .passes = 1u, .forges_ms = TRIP_MS, .only_engaged = true};
     expect(HAZARD_FALSE_COMMAND, "the supervisor sent a command that the AI computer did not send",
@@ -295,6 +310,7 @@ void test_h6_a_node_that_reports_what_cannot_be(void) {
         {"neither mode is reported", "vcu: set, field: mode_bits, value: 0h"},
         {"an invalid command", "bus: send, message: throttle_command, bytes: \"FF\", every_ms: 100"},
         {"the supervisor's transmitter is dead", "supervisor: stall_tx"},
+        {"the supervisor's transmitter is dead", "supervisor: fill_queue"},
     };
     char steps[256];
 
@@ -313,6 +329,14 @@ void test_h6_a_dead_transmitter_shows_with_the_next_status_frame(void) {
     expect(HAZARD_FALSE_NODE, "the supervisor's transmitter is dead", play(&never, steps));
     expect(HAZARD_FALSE_NODE, "the supervisor's transmitter is dead", play(&too_late, steps));
     expect(HAZARD_NONE, "", play(&late, steps));
+}
+
+void test_h6_what_only_warns_is_no_hazard(void) {
+    const char *const steps = "  - {at_ms: 3000, vcu: ignore, message: turn_signal_command}\n"
+                              "  - {at_ms: 3100, ai: ask_autopilot_off}\n";
+    const planted_t warns = {.setting = "class_autopilot_off_ignored: warn\n"};
+    expect(HAZARD_FALSE_NODE, "autopilot off is ignored", play(&MUTE, steps));
+    expect(HAZARD_NONE, "", play(&warns, steps));
 }
 
 void test_h6_an_ai_side_that_is_dead(void) {
