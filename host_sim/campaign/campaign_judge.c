@@ -5,11 +5,12 @@
 
 #include "agv/recorder.h"
 #include "agv/state.h"
+#include "io/units.h"
 
 /* What is safe is written out here by hand, from the requirements: nothing of the supervisor's gate is used. */
 enum {
     GEAR_P = 0x08,
-    US_PER_MS = 1000,
+
     IN_FLIGHT_US = 4000,      /* a frame that is in the controller when the output closes */
     BEAT_GAP_US = 250000,     /* 43Fh every 100 ms, half a cycle later after an answer */
     HELD_TOLERANCE_DDEG = 50, /* between a measured angle and what the EPS sent last */

@@ -7,9 +7,10 @@
 
 #include "agv/names.h"
 #include "campaign/chance.h"
+#include "io/units.h"
 
 enum {
-    US_PER_MS = 1000,
+
     ENGAGE_MS = 1500,
     SETTLED_MS = 700,
     SPAN_MS = 2500,

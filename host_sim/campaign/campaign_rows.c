@@ -3,8 +3,9 @@
 #include <string.h>
 
 #include "agv/supervisor.h"
+#include "io/units.h"
 
-enum { US_PER_S = 1000000, BITS_PER_BYTE = 8, CONFIRM_LEAD_MS = 2 };
+enum { BITS_PER_BYTE = 8, CONFIRM_LEAD_MS = 2 };
 
 /** The longest frames that the wire may take, all in all: all messages twice, two rows of collisions, and some. */
 enum { ALLOWED_BITS = 40 * 138 };

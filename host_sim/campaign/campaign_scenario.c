@@ -4,8 +4,9 @@
 
 #include "agv/names.h"
 #include "agv/state.h"
+#include "io/units.h"
 
-enum { US_PER_MS = 1000, READY_FROM_MS = 500, READY_TO_MS = 1499, ENGAGED_TO_MS = 1700, BEAT_MS = 250 };
+enum { READY_FROM_MS = 500, READY_TO_MS = 1499, ENGAGED_TO_MS = 1700, BEAT_MS = 250 };
 
 static bool is_like(const campaign_judge_t *judge, uint32_t flag) {
     return (judge->plan->row->flags & flag) != 0u;

@@ -6,8 +6,9 @@
 #include "agv/names.h"
 #include "campaign/campaign_result.h"
 #include "io/report.h"
+#include "io/units.h"
 
-enum { US_PER_MS = 1000, TIME_SIZE = 24 };
+enum { TIME_SIZE = 24 };
 
 /** A line in the making. */
 typedef struct {

@@ -8,6 +8,7 @@
 #include "agv/names.h"
 #include "cli/options.h"
 #include "io/report.h"
+#include "io/text.h"
 #include "io/yaml_file.h"
 
 enum { HEX = 16, CLASS_WORD_TRIP = 0, CLASS_WORD_WARN = 1 };
@@ -51,15 +52,14 @@ static bool read_number(const char *text, uint64_t *number) {
     if ((text[0] != '0') || (text[1] == '\0')) {
         return options_number(text, 0u, UINT64_MAX, number);
     }
-    static const char digits[] = "0123456789abcdef";
     uint64_t value = 0u;
     const char *at = &text[2];
     for (; (*at != '\0') && ((size_t)(at - text) < 10u); at++) {
-        const char *digit = strchr(digits, tolower((unsigned char)*at));
-        if (digit == NULL) {
+        const uint32_t digit = text_hex_digit(*at);
+        if (digit >= TEXT_NO_DIGIT) {
             return false;
         }
-        value = (value * HEX) + (uint64_t)(digit - digits);
+        value = (value * HEX) + digit;
     }
     *number = value;
     return (text[1] == 'x') && (text[2] != '\0') && (*at == '\0');

@@ -3,12 +3,12 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "io/text.h"
+
 /*
  * Every scan stops at the line feed after the line: it belongs to no class of characters below, so no scan needs a
  * bound of its own.
  */
-
-enum { NO_DIGIT = 16 };
 
 #define EXTENDED_ID_MAX 0x1FFFFFFFu
 #define STANDARD_ID_MAX 0x7FFu
@@ -17,18 +17,6 @@ enum { NO_DIGIT = 16 };
 #define DATA_MAX 8u
 #define FD_DATA_MAX 64u
 #define US_PER_S 1000000u
-
-/* One more than the value of a hexadecimal digit; 0 for what is none. */
-static const uint8_t digit_plus_1[256] = {
-    ['0'] = 1,  ['1'] = 2,  ['2'] = 3,  ['3'] = 4,  ['4'] = 5,  ['5'] = 6,  ['6'] = 7,  ['7'] = 8,
-    ['8'] = 9,  ['9'] = 10, ['A'] = 11, ['B'] = 12, ['C'] = 13, ['D'] = 14, ['E'] = 15, ['F'] = 16,
-    ['a'] = 11, ['b'] = 12, ['c'] = 13, ['d'] = 14, ['e'] = 15, ['f'] = 16,
-};
-
-/** Value of a hexadecimal digit; NO_DIGIT or more for what is none. */
-static inline uint32_t digit(char character) {
-    return (digit_plus_1[(unsigned char)character] + 255u) & 0xFFu;
-}
 
 static inline bool is_decimal(char character) {
     return (character >= '0') && (character <= '9');
@@ -102,7 +90,7 @@ static const char *parse_id(const char **cursor, hal_can_frame_t *frame) {
     const char *at = *cursor;
     uint32_t id = 0u;
     size_t count = 0u;
-    for (uint32_t value = digit(*at); (value < NO_DIGIT) && (count < 9u); value = digit(*at)) {
+    for (uint32_t value = text_hex_digit(*at); (value < TEXT_NO_DIGIT) && (count < 9u); value = text_hex_digit(*at)) {
         id = (id << 4u) | value;
         count++;
         at++;
@@ -128,14 +116,14 @@ static const char *parse_id(const char **cursor, hal_can_frame_t *frame) {
 static void skip_raw_dlc(const char **cursor) {
     const char *at = *cursor;
     if (at[0] == '_') {
-        uint32_t dlc = digit(at[1]);
-        *cursor = ((dlc > DATA_MAX) && (dlc < NO_DIGIT)) ? &at[2] : at;
+        uint32_t dlc = text_hex_digit(at[1]);
+        *cursor = ((dlc > DATA_MAX) && (dlc < TEXT_NO_DIGIT)) ? &at[2] : at;
     }
 }
 
 static void parse_remote(const char **cursor, hal_can_frame_t *frame) {
     frame->flags |= HAL_CAN_REMOTE;
-    uint32_t length = digit(**cursor);
+    uint32_t length = text_hex_digit(**cursor);
     if (length <= DATA_MAX) {
         frame->length = (uint8_t)length;
         (*cursor)++;
@@ -149,12 +137,12 @@ static const char *parse_data(const char **cursor, hal_can_frame_t *frame, uint3
     const char *at = *cursor;
     uint32_t length = 0u;
     for (;;) {
-        uint32_t high = digit(at[0]);
-        if (high >= NO_DIGIT) {
+        uint32_t high = text_hex_digit(at[0]);
+        if (high >= TEXT_NO_DIGIT) {
             break;
         }
-        uint32_t low = digit(at[1]);
-        if (low >= NO_DIGIT) {
+        uint32_t low = text_hex_digit(at[1]);
+        if (low >= TEXT_NO_DIGIT) {
             return "the data has an odd number of digits";
         }
         if (length >= most) {
@@ -188,7 +176,7 @@ static const char *parse_payload(const char **cursor, hal_can_frame_t *frame) {
     if ((frame->flags & HAL_CAN_ERROR) != 0u) {
         return "an error frame is not CAN FD";
     }
-    if (digit(at[1]) >= NO_DIGIT) {
+    if (text_hex_digit(at[1]) >= TEXT_NO_DIGIT) {
         return "the flags of a CAN FD frame are missing";
     }
     frame->flags |= HAL_CAN_FD;

@@ -6,8 +6,7 @@
 #include "agv/names.h"
 #include "agv/recorder.h"
 #include "agv/state.h"
-
-enum { MISSING_BITS = 10 };
+#include "io/missing.h"
 
 static const char *text_of(const json_t *object, const char *key) {
     const char *text = json_string_value(json_object_get(object, key));
@@ -29,11 +28,7 @@ static uint16_t missing_of(const json_t *words) {
     uint16_t missing = 0u;
     for (size_t i = 0u; i < json_array_size(words); i++) {
         const char *word = json_string_value(json_array_get(words, i));
-        for (uint8_t bit = 0u; (word != NULL) && (bit < MISSING_BITS); bit++) {
-            if (strcmp(word, agv_missing_name(bit)) == 0) {
-                missing = (uint16_t)(missing | (1u << bit));
-            }
-        }
+        missing = (uint16_t)(missing | ((word != NULL) ? missing_bit(word) : 0));
     }
     return missing;
 }

@@ -6,8 +6,7 @@
 
 #include "agv/names.h"
 #include "agv/recorder.h"
-
-enum { MISSING_BITS = 10 };
+#include "io/missing.h"
 
 /** Write an object as a line. Takes the reference. */
 static void write_line(output_t *output, json_t *object) {

@@ -1,5 +1,6 @@
 #include "io/store_file.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
@@ -10,6 +11,7 @@
 
 #include "agv/checksum.h"
 #include "io/report.h"
+#include "io/text.h"
 
 #define FILE_SIZE_MAX 1048576u
 #define FIRST_LINE "agv-store 1\n"
@@ -38,10 +40,9 @@ static ssize_t read_up_to_limit(int fd, const char *path, char *text) {
     return (ssize_t)size;
 }
 
-static int nibble(char digit) {
-    static const char digits[] = "0123456789ABCDEF";
-    const char *at = (digit != '\0') ? strchr(digits, digit) : NULL;
-    return (at != NULL) ? (int)(at - digits) : -1;
+/** The value of a digit as it is written here, in capital letters. */
+static uint32_t nibble(char digit) {
+    return (islower((unsigned char)digit) != 0) ? TEXT_NO_DIGIT : text_hex_digit(digit);
 }
 
 /** Read hexadecimal bytes. @return how many; 0: none, more than @p most, or no such bytes. */
@@ -50,12 +51,12 @@ static size_t read_hex(const char *text, size_t length, uint8_t *bytes, size_t m
         return 0u;
     }
     for (size_t i = 0u; i < length / 2u; i++) {
-        int high = nibble(text[2u * i]);
-        int low = nibble(text[(2u * i) + 1u]);
-        if ((high < 0) || (low < 0)) {
+        const uint32_t high = nibble(text[2u * i]);
+        const uint32_t low = nibble(text[(2u * i) + 1u]);
+        if ((high >= TEXT_NO_DIGIT) || (low >= TEXT_NO_DIGIT)) {
             return 0u;
         }
-        bytes[i] = (uint8_t)(((uint32_t)high << 4u) | (uint32_t)low);
+        bytes[i] = (uint8_t)((high << 4u) | low);
     }
     return length / 2u;
 }

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "io/report.h"
+#include "io/text.h"
 #include "io/yaml_file.h"
 
 enum { SHOWN_MAX = 40, LINE_SHOWN_MAX = 80, DECIMAL = 10, HEX = 16, BYTES_MAX = 8 };
@@ -293,12 +294,6 @@ bool yaml_reader_range(const yaml_reader_t *reader, const yaml_node_t *node, con
     return true;
 }
 
-static int hex_digit(char c) {
-    static const char digits[] = "0123456789abcdef";
-    const char *found = (c != '\0') ? strchr(digits, tolower((unsigned char)c)) : NULL;
-    return (found != NULL) ? (int)(found - digits) : -1;
-}
-
 /** Read one byte, or `..`. @return false: neither. */
 static bool take_byte(const char *text, uint8_t *value, uint8_t *mask) {
     if ((mask != NULL) && (text[0] == '.') && (text[1] == '.')) {
@@ -306,10 +301,10 @@ static bool take_byte(const char *text, uint8_t *value, uint8_t *mask) {
         *mask = 0u;
         return true;
     }
-    if ((hex_digit(text[0]) < 0) || (hex_digit(text[1]) < 0)) {
+    if ((text_hex_digit(text[0]) >= TEXT_NO_DIGIT) || (text_hex_digit(text[1]) >= TEXT_NO_DIGIT)) {
         return false;
     }
-    *value = (uint8_t)((hex_digit(text[0]) * HEX) + hex_digit(text[1]));
+    *value = (uint8_t)((text_hex_digit(text[0]) * HEX) + text_hex_digit(text[1]));
     if (mask != NULL) {
         *mask = UINT8_MAX;
     }

@@ -13,13 +13,12 @@
 #include "hal_linux/linux_loop.h"
 #include "io/events.h"
 #include "io/sent_log.h"
+#include "io/units.h"
 #include "live/live_files.h"
 #include "live/live_output.h"
 #include "live/live_status.h"
 #include "live/node.h"
 #include "ui/summary.h"
-
-enum { US_PER_MS = 1000, US_PER_S = 1000000, NS_PER_US = 1000 };
 
 /** The files that are written. */
 enum { OUT, EVENTS, OUTPUTS };

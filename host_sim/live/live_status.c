@@ -7,9 +7,10 @@
 #include <unistd.h>
 
 #include "agv/names.h"
+#include "io/units.h"
 #include "live/live_output.h"
 
-enum { EVERY_MS = 200, MS_PER_S = 1000, TENTH_MS = 100, LINE_SIZE = 200, WIDTH = 80 };
+enum { EVERY_MS = 200, TENTH_MS = 100, LINE_SIZE = 200, WIDTH = 80 };
 
 /** The last column stays free: a line that fills the terminal would begin a new one. */
 static int columns(void) {

@@ -6,8 +6,9 @@
 #include "agv/protocol.h"
 #include "hal_linux/linux_hal.h"
 #include "io/report.h"
+#include "io/units.h"
 
-enum { US_PER_MS = 1000, ID_SETS = 3, IDS_MAX = (int)AGV_MSG_COUNT * ID_SETS + 1 };
+enum { ID_SETS = 3, IDS_MAX = (int)AGV_MSG_COUNT * ID_SETS + 1 };
 
 /** Frames that are handed over before the next tick has its turn, whatever comes in: more than a bus carries in 20 ms. */
 enum { FRAMES_AT_ONCE = 256 };

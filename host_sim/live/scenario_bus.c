@@ -8,6 +8,7 @@
 #include "hal_linux/linux_loop.h"
 #include "io/candump_line.h"
 #include "io/report.h"
+#include "io/units.h"
 #include "live/live_files.h"
 #include "live/node.h"
 #include "live/outsider.h"
@@ -15,7 +16,7 @@
 #include "scenario/scenario_player.h"
 
 /* 128 times 11 recessive bits at 500 kbit/s: how long the recovery of a controller takes on an idle bus. */
-enum { US_PER_MS = 1000, RECOVERY_MS = 3, ERROR_DLC = 8 };
+enum { RECOVERY_MS = 3, ERROR_DLC = 8 };
 
 /** A scenario as it is played. */
 typedef struct {

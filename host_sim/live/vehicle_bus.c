@@ -3,8 +3,9 @@
 #include <string.h>
 
 #include "io/report.h"
+#include "io/units.h"
 
-enum { US_PER_MS = 1000, RECORDS_AT_ONCE = 1000 };
+enum { RECORDS_AT_ONCE = 1000 };
 
 static hal_can_side_t side_of_file(const vehicle_bus_t *bus, unsigned file) {
     return (file < (unsigned)VEHICLE_NODES) ? vehicle_side_of(&bus->vehicle, (vehicle_node_t)file)

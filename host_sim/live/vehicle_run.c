@@ -8,11 +8,12 @@
 
 #include "hal_linux/linux_clock.h"
 #include "hal_linux/linux_loop.h"
+#include "io/units.h"
 #include "live/typed_lines.h"
 #include "live/vehicle_bus.h"
 #include "ui/vehicle_show.h"
 
-enum { ENGAGE_MS = 1500, ENGAGE_AGAIN_MS = 500, THROTTLE_PERMILLE = 300, MS_PER_S = 1000, LINES_AT_ONCE = 16 };
+enum { ENGAGE_MS = 1500, ENGAGE_AGAIN_MS = 500, THROTTLE_PERMILLE = 300, LINES_AT_ONCE = 16 };
 
 /** A run. */
 typedef struct {

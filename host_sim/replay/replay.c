@@ -13,10 +13,11 @@
 #include "io/output.h"
 #include "io/sent_log.h"
 #include "io/store_file.h"
+#include "io/units.h"
 #include "session/session.h"
 #include "ui/summary.h"
 
-enum { US_PER_MS = 1000, LOOK_FOR_SIGNALS_EVERY = 65536 };
+enum { LOOK_FOR_SIGNALS_EVERY = 65536 };
 
 /** The files that are written. */
 enum { OUT, EVENTS, STORE, OUTPUTS };

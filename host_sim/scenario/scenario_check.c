@@ -6,8 +6,9 @@
 #include <string.h>
 
 #include "agv/names.h"
+#include "io/missing.h"
 
-enum { MISSING_BITS = 10, MISSING_TEXT_SIZE = 160, NOT_YET = -128 };
+enum { NOT_YET = -128 };
 
 void scenario_check_fail(scenario_check_t *check, size_t line, const char *format, ...) {
     if (check->failure_count < SCENARIO_FAILURES_MAX) {
@@ -119,18 +120,6 @@ static void end_fault(scenario_check_t *check, uint32_t t_ms, const agv_event_t 
         }
         return;
     }
-}
-
-static const char *missing_text(uint16_t missing, char text[MISSING_TEXT_SIZE]) {
-    text[0] = '\0';
-    for (uint8_t bit = 0u; bit < MISSING_BITS; bit++) {
-        if ((missing & (1u << bit)) != 0u) {
-            const size_t used = strlen(text);
-            (void)snprintf(&text[used], MISSING_TEXT_SIZE - used, "%s%s", (used > 0u) ? ", " : "",
-                           agv_missing_name(bit));
-        }
-    }
-    return text;
 }
 
 static void check_reset(scenario_check_t *check, uint32_t t_ms, const agv_event_t *event) {

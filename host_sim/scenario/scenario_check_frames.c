@@ -2,9 +2,10 @@
 #include <stdio.h>
 
 #include "agv/names.h"
+#include "io/units.h"
 #include "scenario/scenario_check.h"
 
-enum { US_PER_MS = 1000, FRAME_TEXT_SIZE = 80 };
+enum { FRAME_TEXT_SIZE = 80 };
 
 void scenario_check_frames_init(scenario_check_t *check) {
     const scenario_expect_t *expect = &check->scenario->expect;

@@ -3,11 +3,11 @@
 
 #include "agv/names.h"
 #include "agv/recorder.h"
+#include "io/missing.h"
 #include "io/yaml_file.h"
 #include "scenario/scenario_parse.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
-#define MISSING_KINDS 10u
 
 bool scenario_parse_window(const yaml_reader_t *reader, const yaml_node_t *node, const char *what,
                            scenario_window_t *window) {
@@ -112,11 +112,10 @@ static bool read_missing_word(const yaml_reader_t *reader, const yaml_node_t *no
     if (text == NULL) {
         return false;
     }
-    for (uint8_t i = 0u; i < MISSING_KINDS; i++) {
-        if (strcmp(agv_missing_name(i), text) == 0) {
-            ((scenario_reset_t *)target)->missing |= (uint16_t)(1u << i);
-            return true;
-        }
+    const uint16_t bit = missing_bit(text);
+    if (bit != 0) {
+        ((scenario_reset_t *)target)->missing |= bit;
+        return true;
     }
     return yaml_reader_fail(
         reader, node,

@@ -2,7 +2,9 @@
 
 #include <string.h>
 
-enum { US_PER_MS = 1000, MDDEG_PER_DDEG = 1000, PASSIVE_TEC = 200, BITS_PER_BYTE = 8 };
+#include "io/units.h"
+
+enum { MDDEG_PER_DDEG = 1000, PASSIVE_TEC = 200, BITS_PER_BYTE = 8 };
 
 static void tell_event(void *ctx, const session_event_t *event) {
     const scenario_world_t *world = ctx;

@@ -2,15 +2,14 @@
 
 #include <inttypes.h>
 #include <stdio.h>
-#include <time.h>
 #include <unistd.h>
 
-enum { EVERY_MS = 200, MS_PER_S = 1000, NS_PER_MS = 1000000, WIDTH = 30, PERCENT = 100 };
+#include "io/units.h"
+
+enum { EVERY_MS = 200, WIDTH = 30, PERCENT = 100 };
 
 static int64_t now_ms(void) {
-    struct timespec now;
-    (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    return ((int64_t)now.tv_sec * MS_PER_S) + (now.tv_nsec / NS_PER_MS);
+    return (int64_t)monotonic_ms();
 }
 
 void progress_begin(progress_t *progress, uint64_t total) {

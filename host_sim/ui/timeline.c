@@ -8,8 +8,10 @@
 
 #include "agv/codec.h"
 #include "agv/names.h"
+#include "io/missing.h"
+#include "io/units.h"
 
-enum { US_PER_MS = 1000, US_PER_S = 1000000, MM_PER_CM = 10, MISSING_BITS = 10, WHAT_SIZE = 160 };
+enum { MM_PER_CM = 10, WHAT_SIZE = 160 };
 
 #define MODE_BITS 0xC0
 #define MODE_MANUAL 0x40
@@ -102,16 +104,10 @@ static void show_state(timeline_t *timeline, uint64_t t_us, const agv_event_t *e
 }
 
 static void show_missing(timeline_t *timeline, uint64_t t_us, const char *what, uint16_t missing) {
-    char list[WHAT_SIZE] = "";
+    char list[MISSING_TEXT_SIZE];
 
-    for (uint8_t bit = 0u; bit < MISSING_BITS; bit++) {
-        if ((missing & (1u << bit)) != 0u) {
-            const size_t used = strlen(list);
-            (void)snprintf(&list[used], sizeof list - used, "%s%s",
-                           (used > 0u) ? ", " : "; missing: ", agv_missing_name(bit));
-        }
-    }
-    line(timeline, t_us, "supervisor", "%s%s", what, list);
+    line(timeline, t_us, "supervisor", "%s%s%s", what, (missing != 0) ? "; missing: " : "",
+         missing_text(missing, list));
 }
 
 static void show_event(void *ctx, const session_event_t *event) {

@@ -9,9 +9,10 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "io/units.h"
 #include "scenario/scenario_parse.h"
 
-enum { MS_PER_S = 1000, DRAW_EVERY_MS = 100, WHAT_SIZE = 320, STATUS_SIZE = 160, WIDTH = 80, ALARM_BITS = 8 };
+enum { DRAW_EVERY_MS = 100, WHAT_SIZE = 320, STATUS_SIZE = 160, WIDTH = 80, ALARM_BITS = 8 };
 
 /* The terminal: one line up, to its begin; clear to the line's end; clear all below; keep the cursor's place. */
 #define UP "\033[1A\r"

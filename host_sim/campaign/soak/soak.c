@@ -4,15 +4,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "campaign/chance.h"
 #include "campaign/soak/soak_internal.h"
 #include "io/interrupt.h"
+#include "io/units.h"
 #include "ui/progress.h"
 
 /* A disturbance comes when the one before is over and forgotten: counts in a row begin anew after a good frame. */
-enum { QUIET_MIN_MS = 500, QUIET_MAX_MS = 3000, READY_MS = 2000, NS_PER_MS = 1000000, MS_PER_S = 1000 };
+enum { QUIET_MIN_MS = 500, QUIET_MAX_MS = 3000, READY_MS = 2000 };
 enum { LOOK_EVERY_MS = 1000, SAVE_EVERY_MS = 6 * 3600000, HOURS_PER_DAY = 24 };
 
 /** Whether a row's steps make sense in this topology. */
@@ -108,12 +108,6 @@ static void disturb(soak_t *soak) {
     act(soak, soak->steps[state->row].begin, soak->steps[state->row].end);
 }
 
-static uint64_t real_ms(void) {
-    struct timespec now;
-    (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    return ((uint64_t)now.tv_sec * MS_PER_S) + ((uint64_t)now.tv_nsec / NS_PER_MS);
-}
-
 /** A millisecond. */
 static void step(soak_t *soak) {
     disturb(soak);
@@ -131,7 +125,7 @@ typedef enum { OVER, INTERRUPTED, UNSAVED } went_t;
 /** Until the end, or something is broken. @return UNSAVED: a checkpoint could not be written; reported */
 static went_t go(soak_t *soak) {
     soak_state_t *state = &soak->state;
-    uint64_t began_ms = real_ms();
+    uint64_t began_ms = monotonic_ms();
     progress_t progress;
     bool saved = true;
     bool interrupted = false;
@@ -146,13 +140,13 @@ static went_t go(soak_t *soak) {
         progress_show(&progress, state->t_ms / LOOK_EVERY_MS, "simulated seconds");
         interrupted = interrupt_pending();
         if (interrupted || ((state->t_ms % SAVE_EVERY_MS) == 0u)) {
-            state->real_ms += real_ms() - began_ms;
-            began_ms = real_ms();
+            state->real_ms += monotonic_ms() - began_ms;
+            began_ms = monotonic_ms();
             saved = soak_save(soak);
         }
     }
     progress_end(&progress);
-    state->real_ms += real_ms() - began_ms;
+    state->real_ms += monotonic_ms() - began_ms;
     if (!saved) {
         return UNSAVED;
     }

@@ -7,9 +7,10 @@
 #include "agv/recorder.h"
 #include "agv/state.h"
 #include "campaign/soak/soak_internal.h"
+#include "io/units.h"
 
 /* A status frame waits for others; a late step of 20 ms is one of the disturbances. */
-enum { STATUS_LATE_MS = 30, STATUS_AGAIN_MS = 4, US_PER_MS = 1000, WAITING_MAX = 8 };
+enum { STATUS_LATE_MS = 30, STATUS_AGAIN_MS = 4, WAITING_MAX = 8 };
 
 /* Safe commands of INIT that the controller has already when STANDBY comes; they wait for a few frames of others. */
 enum { HANDED_OVER_MS = 4 };

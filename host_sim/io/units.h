@@ -1,0 +1,15 @@
+/**
+ * @file units.h
+ * Units of time, and the clock that measures how long something takes.
+ */
+#ifndef HOST_SIM_UNITS_H
+#define HOST_SIM_UNITS_H
+
+#include <stdint.h>
+
+enum { NS_PER_US = 1000, NS_PER_MS = 1000000, US_PER_MS = 1000, US_PER_S = 1000000, MS_PER_S = 1000 };
+
+/** Milliseconds of a clock that never goes back. */
+uint64_t monotonic_ms(void);
+
+#endif
