@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "agv/names.h"
+#include "capture.h"
 #include "config/config_file.h"
 #include "config/config_text.h"
 #include "input.h"
-#include "said.h"
 
 static bool read_once(const char *path, agv_config_t *config) {
     config_lines_t lines;
@@ -22,7 +22,7 @@ static void check_ranges(const agv_config_t *config) {
         const agv_setting_info_t *info = agv_setting_info(i);
         const uint16_t value = agv_config_get(config, i);
         if ((value < info->lowest) || (value > info->highest)) {
-            said_fail("a setting out of range was taken", info->name);
+            capture_fail("a setting out of range was taken", info->name);
         }
     }
 }
@@ -30,35 +30,35 @@ static void check_ranges(const agv_config_t *config) {
 static void print_and_read(const agv_config_t *config) {
     agv_config_t again;
     size_t size = 0;
-    said_begin();
+    capture_begin();
     config_print_yaml(config);
-    (void)said_end();
-    const char *text = said_out(&size);
-    const char *path = said_file((const uint8_t *)text, size);
-    said_begin();
+    (void)capture_end();
+    const char *text = capture_out(&size);
+    const char *path = capture_file((const uint8_t *)text, size);
+    capture_begin();
     const bool good = read_once(path, &again);
-    const char *said = said_end();
+    const char *printed = capture_end();
     if (!good || (agv_config_checksum(&again) != agv_config_checksum(config))) {
-        said_fail("printed and read it is another configuration", said);
+        capture_fail("printed and read it is another configuration", printed);
     }
-    said_begin();
+    capture_begin();
     config_print_kconfig(config);
     config_note_deviations(config);
-    (void)said_end();
+    (void)capture_end();
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    const char *path = said_file(data, size);
+    const char *path = capture_file(data, size);
     agv_config_t config;
-    said_begin();
+    capture_begin();
     const bool good = read_once(path, &config);
-    const char *said = said_end();
+    const char *printed = capture_end();
     if (!good) {
-        (void)said_line(said, path, said_yaml_lines(data, size));
+        (void)capture_line(printed, path, capture_yaml_lines(data, size));
         return 0;
     }
-    if (said[0] != '\0') {
-        said_fail("taken, and something was said", said);
+    if (printed[0] != '\0') {
+        capture_fail("accepted, and something was printed", printed);
     }
     check_ranges(&config);
     print_and_read(&config);

@@ -1,5 +1,5 @@
 /*
- * The reader of candump logs. Which lines are frames is said once more by two regular expressions, from the page of the
+ * The reader of candump logs. Which lines are frames is stated once more by two regular expressions, from the page of the
  * format; every other line that is not blank is refused (byte 1 even) with its number, or skipped and counted (odd).
  * A classic frame is written and read again.
  */
@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "capture.h"
 #include "input.h"
 #include "io/candump_log.h"
-#include "said.h"
 
 #define HEX "[0-9A-Fa-f]"
 #define BYTES8 "(" HEX HEX "){8}"
@@ -31,7 +31,7 @@ static void prepare(void) {
     if (log_file == NULL) {
         log_file = malloc(sizeof *log_file);
         if ((log_file == NULL) || (regcomp(&grammar, LINE, REG_EXTENDED | REG_NOSUB) != 0)) {
-            said_fail("regcomp", LINE);
+            capture_fail("regcomp", LINE);
         }
     }
 }
@@ -67,11 +67,11 @@ static void check_record(const candump_record_t *record) {
     const bool is_long = (frame->flags & HAL_CAN_FD) != 0u;
     const bool is_standard = (frame->flags & (HAL_CAN_EXTENDED | HAL_CAN_ERROR)) == 0u;
     if ((frame->id > (is_standard ? 0x7FFu : 0x1FFFFFFFu)) || (frame->length > (is_long ? 64u : 8u))) {
-        said_fail("a frame that no bus has", log_file->name);
+        capture_fail("a frame that no bus has", log_file->name);
     }
     for (unsigned i = ((frame->flags & HAL_CAN_REMOTE) != 0u) ? 0u : frame->length; i < 8u; i++) {
         if (frame->data[i] != 0u) {
-            said_fail("bytes beyond the length of a frame", log_file->name);
+            capture_fail("bytes beyond the length of a frame", log_file->name);
         }
     }
 }
@@ -85,12 +85,12 @@ static void write_and_read(const candump_record_t *record) {
         memcpy(interface, record->interface, record->interface_length);
         const size_t length = candump_write(line, record->stamp_us, interface, &record->frame);
         if ((length > CANDUMP_WRITE_MAX) || (line[length - 1u] != '\n')) {
-            said_fail("written without an end", interface);
+            capture_fail("written without an end", interface);
         }
         if ((candump_parse(line, length - 1u, &again) != NULL) || (again.stamp_us != record->stamp_us) ||
             (memcmp(&again.frame, &record->frame, sizeof again.frame) != 0) ||
             (again.interface_length != record->interface_length)) {
-            said_fail("written and read it is another frame", interface);
+            capture_fail("written and read it is another frame", interface);
         }
     }
     free(line);
@@ -105,7 +105,7 @@ static bool check_line(char kind, size_t number, bool skip) {
     }
     const candump_result_t result = candump_next(log_file, &record);
     if ((result != CANDUMP_RECORD) || (log_file->line != number) || (log_file->skipped < skipped)) {
-        said_fail("a frame was not read", log_file->name);
+        capture_fail("a frame was not read", log_file->name);
     }
     check_record(&record);
     write_and_read(&record);
@@ -132,25 +132,25 @@ static size_t walk(const char *text, size_t size, bool skip, uint64_t *bad) {
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     input_t input = {.at = data, .left = size};
     const bool skip = (input_byte(&input) & 1u) != 0u;
-    const char *path = said_file(input.at, input.left);
+    const char *path = capture_file(input.at, input.left);
     uint64_t bad = 0;
     candump_record_t record;
     prepare();
-    said_begin();
+    capture_begin();
     const bool opened = candump_open(log_file, path, skip);
     const size_t wrong = opened ? walk((const char *)input.at, input.left, skip, &bad) : 0u;
     const candump_result_t last = candump_next(log_file, &record);
     candump_close(log_file);
-    const char *said = said_end();
+    const char *printed = capture_end();
     if (!opened || (last != ((wrong != 0u) ? CANDUMP_FAILED : CANDUMP_END))) {
-        said_fail("the log does not end where it ends", said);
+        capture_fail("the log does not end where it ends", printed);
     }
     if (wrong != 0u) {
-        if (said_line(said, path, wrong) != wrong) {
-            said_fail("the wrong line is named", said);
+        if (capture_line(printed, path, wrong) != wrong) {
+            capture_fail("the wrong line is named", printed);
         }
-    } else if ((said[0] != '\0') || (log_file->skipped != bad)) {
-        said_fail("nothing was wrong, or it was counted wrongly", said);
+    } else if ((printed[0] != '\0') || (log_file->skipped != bad)) {
+        capture_fail("nothing was wrong, or it was counted wrongly", printed);
     } else {
         return 0;
     }

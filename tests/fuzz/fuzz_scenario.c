@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "capture.h"
 #include "input.h"
-#include "said.h"
 #include "scenario/scenario.h"
 
 static void check_rooms(const scenario_t *scenario) {
@@ -16,12 +16,12 @@ static void check_rooms(const scenario_t *scenario) {
                              expect->vehicle.count, expect->counters.count};
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
         if (counts[i] > SCENARIO_EXPECT_MAX) {
-            said_fail("more expectations than there is room for", scenario->name);
+            capture_fail("more expectations than there is room for", scenario->name);
         }
     }
     if ((scenario->step_count > SCENARIO_STEPS_MAX) || (scenario->shows_count > SCENARIO_SHOWS_MAX) ||
         (memchr(scenario->name, '\0', sizeof scenario->name) == NULL)) {
-        said_fail("more than there is room for", "steps, shows or name");
+        capture_fail("more than there is room for", "steps, shows or name");
     }
 }
 
@@ -30,35 +30,35 @@ static void check_times(const scenario_t *scenario) {
     for (size_t i = 0; i < scenario->step_count; i++) {
         const uint32_t at_ms = scenario->steps[i].at_ms;
         if ((at_ms < before_ms) || (at_ms > scenario->duration_ms)) {
-            said_fail("a step out of its time", scenario->name);
+            capture_fail("a step out of its time", scenario->name);
         }
         before_ms = at_ms;
     }
     if (scenario->duration_ms > SCENARIO_DURATION_MAX_MS) {
-        said_fail("it lasts too long", scenario->name);
+        capture_fail("it lasts too long", scenario->name);
     }
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     static const char EMPTY[] = "contains no scenario\n";
     scenario_options_t options = {.topology = -1, .id_set = -1};
-    const char *path = said_file(data, size);
+    const char *path = capture_file(data, size);
     /* Anew each time: what reads beyond it, or what was not written, is noticed. */
     scenario_t *scenario = malloc(sizeof *scenario);
     if (scenario == NULL) {
         return 0;
     }
     agv_config_defaults(&options.config);
-    said_begin();
+    capture_begin();
     const bool good = scenario_read(scenario, path, &options);
-    const char *said = said_end();
+    const char *printed = capture_end();
     if (!good) {
-        said_one_line(said);
-        if (strstr(said, EMPTY) == NULL) {
-            (void)said_line(said, path, said_yaml_lines(data, size));
+        capture_one_line(printed);
+        if (strstr(printed, EMPTY) == NULL) {
+            (void)capture_line(printed, path, capture_yaml_lines(data, size));
         }
-    } else if (said[0] != '\0') {
-        said_fail("taken, and something was said", said);
+    } else if (printed[0] != '\0') {
+        capture_fail("accepted, and something was printed", printed);
     } else {
         check_rooms(scenario);
         check_times(scenario);

@@ -9,10 +9,10 @@
 #include <string.h>
 
 #include "agv/supervisor.h"
+#include "capture.h"
 #include "hal_sim/sim_hal.h"
 #include "input.h"
 #include "io/store_file.h"
-#include "said.h"
 
 enum { ROOM = 32, SIZE_LIMIT = 1 << 16 };
 
@@ -50,10 +50,10 @@ static void check_start(hal_reset_cause_t cause, sim_store_t *store, agv_recorde
     agv_supervisor_start(&supervisor, &ports, &defaults, true, 0);
     const bool invalid = agv_supervisor_has_fault(&supervisor, AGV_FAULT_STORE_INVALID);
     if (agv_supervisor_state(&supervisor) != ((cause == HAL_RESET_POWER_ON) ? AGV_STATE_INIT : AGV_STATE_TRIPPED)) {
-        said_fail("it starts in the wrong state", "FSM-7");
+        capture_fail("it starts in the wrong state", "FSM-7");
     }
     if (damaged && !invalid) {
-        said_fail("a damaged store was believed", "FSM-7");
+        capture_fail("a damaged store was believed", "FSM-7");
     }
     for (uint32_t i = 1; i <= 20u; i++) {
         agv_supervisor_tick(&supervisor, &ports, i);
@@ -74,12 +74,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if ((how & 0x80u) != 0u) {
         length += (size_t)snprintf(&text[length], ROOM, "check %08X\n", (unsigned)crc_by_hand((uint8_t *)text, length));
     }
-    const char *path = said_file((const uint8_t *)text, length);
-    said_begin();
+    const char *path = capture_file((const uint8_t *)text, length);
+    capture_begin();
     const bool loaded = store_file_load(path, &store, &recorder);
-    const char *said = said_end();
-    if (!loaded || (said[0] != '\0')) {
-        said_fail("a file that can be read is a store, or a damaged one", said);
+    const char *printed = capture_end();
+    if (!loaded || (printed[0] != '\0')) {
+        capture_fail("a file that can be read is a store, or a damaged one", printed);
     }
     check_start((hal_reset_cause_t)((how & 0x7Fu) % 6u), &store, &recorder, !ends_in_its_checksum(text, length));
     free(text);

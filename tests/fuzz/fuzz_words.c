@@ -1,13 +1,13 @@
 /*
  * Steps of a scenario as a line: what is typed while `host_sim vehicle` runs, and what follows --fault. What is refused is
- * told in one line. Byte 1: which of the two, topology, identifier set; then the line.
+ * reported in one line. Byte 1: which of the two, topology, identifier set; then the line.
  */
 #include <stdlib.h>
 #include <string.h>
 
+#include "capture.h"
 #include "input.h"
 #include "live/vehicle_words.h"
-#include "said.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     input_t input = {.at = data, .left = size};
@@ -25,15 +25,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     }
     input_bytes(&input, (uint8_t *)line, input.left);
     line[size > 0u ? size - 1u : 0u] = '\0';
-    said_begin();
+    capture_begin();
     const bool good =
         ((how & 1u) != 0u) ? vehicle_words_typed(line, &config, words) : vehicle_words_fault(line, &config, words);
-    const char *said = said_end();
+    const char *printed = capture_end();
     if (!good) {
-        said_one_line(said);
-    } else if ((said[0] != '\0') || (memchr(words->what, '\0', sizeof words->what) == NULL) ||
+        capture_one_line(printed);
+    } else if ((printed[0] != '\0') || (memchr(words->what, '\0', sizeof words->what) == NULL) ||
                !words->step.of_vehicle) {
-        said_fail("taken, and something was said, or it is no step of the vehicle", said);
+        capture_fail("taken, and something was printed, or it is no step of the vehicle", printed);
     } else {
         /* a step */
     }

@@ -1,4 +1,4 @@
-#include "said.h"
+#include "capture.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@ static char err_text[KEPT_MAX];
 static char out_text[KEPT_MAX];
 static size_t out_size;
 
-const char *said_file(const uint8_t *data, size_t size) {
+const char *capture_file(const uint8_t *data, size_t size) {
     static int fd = -1;
     static char path[40];
     if (fd < 0) {
@@ -30,7 +30,7 @@ const char *said_file(const uint8_t *data, size_t size) {
     return path;
 }
 
-void said_begin(void) {
+void capture_begin(void) {
     memset(err_text, 0, 1);
     memset(out_text, 0, 1);
     true_stderr = stderr;
@@ -45,7 +45,7 @@ void said_begin(void) {
     stdout = kept_stdout;
 }
 
-const char *said_end(void) {
+const char *capture_end(void) {
     (void)fflush(kept_stdout);
     out_size = (size_t)ftell(kept_stdout);
     (void)fclose(kept_stderr);
@@ -55,43 +55,43 @@ const char *said_end(void) {
     return err_text;
 }
 
-const char *said_out(size_t *size) {
+const char *capture_out(size_t *size) {
     *size = out_size;
     return out_text;
 }
 
-void said_fail(const char *what, const char *detail) {
+void capture_fail(const char *what, const char *detail) {
     (void)fprintf(stderr, "%s: %s\n", what, detail);
     abort();
 }
 
-void said_one_line(const char *text) {
+void capture_one_line(const char *text) {
     const size_t length = strlen(text);
     if ((length < 2u) || (text[length - 1u] != '\n')) {
-        said_fail("no line says what is wrong", text);
+        capture_fail("no line says what is wrong", text);
     }
     for (size_t i = 0; i < length - 1u; i++) {
         if (((unsigned char)text[i] < 0x20u) || (text[i] == 0x7F)) {
-            said_fail("more than a line, or a control character", text);
+            capture_fail("more than a line, or a control character", text);
         }
     }
 }
 
-size_t said_line(const char *text, const char *path, size_t highest) {
+size_t capture_line(const char *text, const char *path, size_t highest) {
     const size_t length = strlen(path);
     char *end = NULL;
-    said_one_line(text);
+    capture_one_line(text);
     if ((strncmp(text, path, length) != 0) || (text[length] != ':')) {
-        said_fail("the file is not named", text);
+        capture_fail("the file is not named", text);
     }
     const unsigned long line = strtoul(&text[length + 1u], &end, 10);
     if ((line == 0u) || (line > highest) || (end[0] != ':') || (end[1] != ' ') || (end[2] == '\n')) {
-        said_fail("no line of the file is named, or not what is wrong", text);
+        capture_fail("no line of the file is named, or not what is wrong", text);
     }
     return line;
 }
 
-size_t said_yaml_lines(const uint8_t *data, size_t size) {
+size_t capture_yaml_lines(const uint8_t *data, size_t size) {
     static const char BREAKS[] = "\n\r\x85\xA8\xA9\x28\x29"; /* each byte that may be part of a break */
     size_t lines = 2;
     for (size_t i = 0; i < size; i++) {
