@@ -6,13 +6,14 @@ usage: seed.py check                    the old text of each line stands in its 
        seed.py rows CHECKER             name, what it is run with, and what must be said, between tabs
        seed.py apply CHECKER/NAME FOLDER [--paths]
                                         copies of the changed files, with their paths or without
-       seed.py run CHECKER... [--bin FOLDER]
+       seed.py run CHECKER[/NAME]... [--bin FOLDER]
                                         its programs, which CMake has built (seeded.cmake): each fails and says why
-       seed.py tree CHECKER...          the command of each line in a copy of this tree with the change: it fails and says why
+       seed.py tree CHECKER[/NAME]...   the command of each line in a copy of this tree with the change: it fails and says why
        seed.py fails CHECKER/NAME COMMAND...
                                         this command fails and says why
 
-Several lines of one name are one fault. A line with no old text appends the new one; one with no file changes nothing.
+Several lines of one name are one fault. A line with no old text appends the new one; in the new
+text \\n is the end of a line. A line with no file changes nothing, and its command is run in this tree.
 """
 import concurrent.futures
 import os
@@ -71,23 +72,17 @@ def read():
         checker, name, arguments, path, old, new, says = columns
         fault = faults.setdefault((checker, name), Fault(checker, name, arguments, says))
         if path:
-            fault.changes.append((path, old, new))
+            fault.changes.append((path, old, new.replace("\\n", "\n")))
     return list(faults.values())
 
 
-def of(*checkers):
-    faults = [fault for fault in read() if fault.checker in checkers]
-    missing = set(checkers) - {fault.checker for fault in faults}
-    if missing:
-        sys.exit(f"seed: no seeded fault is for {', '.join(sorted(missing))}")
-    return faults
-
-
-def one(word):
-    found = [fault for fault in read() if f"{fault.checker}/{fault.name}" == word]
-    if not found:
-        sys.exit(f"seed: there is no seeded fault {word}")
-    return found[0]
+def of(*words):
+    """Those of checkers, or CHECKER/NAME."""
+    faults = read()
+    for word in words:
+        if not any(word in (fault.checker, f"{fault.checker}/{fault.name}") for fault in faults):
+            sys.exit(f"seed: there is no seeded fault {word}")
+    return [fault for fault in faults if fault.checker in words or f"{fault.checker}/{fault.name}" in words]
 
 
 def apply(fault, folder, paths):
@@ -113,6 +108,8 @@ def run_program(fault, folder):
 
 
 def run_in_tree(fault, _):
+    if not fault.changes:
+        return fault.judge(*execute(fault.arguments, ROOT))
     with tempfile.TemporaryDirectory(prefix="seed") as folder:
         copy = pathlib.Path(folder)
         files = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT, check=True,
@@ -150,7 +147,7 @@ def main(words):
         for fault in of(*rest):
             print("\t".join([fault.name, fault.arguments, fault.says]))
     elif what == "apply":
-        apply(one(rest[0]), pathlib.Path(rest[1]), "--paths" in rest)
+        apply(of(rest[0])[0], pathlib.Path(rest[1]), "--paths" in rest)
     elif what == "run":
         folder = pathlib.Path(rest[rest.index("--bin") + 1] if "--bin" in rest else ROOT / "build/host/bin")
         checkers = rest[:rest.index("--bin")] if "--bin" in rest else rest
@@ -158,7 +155,7 @@ def main(words):
     elif what == "tree":
         return run_all(of(*rest), run_in_tree, None)
     elif what == "fails":
-        good, line = one(rest[0]).judge(*execute(rest[1:], None))
+        good, line = of(rest[0])[0].judge(*execute(rest[1:], None))
         print(line)
         return not good
     else:

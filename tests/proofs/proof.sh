@@ -1,0 +1,64 @@
+# shellcheck shell=bash
+# The frame of tests/proofs/*/run. Source it, define `prove` and `seeded`, and end with: proof "$@"
+# prove: ends with 0 when it holds, its last line is its figures. seeded: ends with 0 when each seeded fault was found.
+# shellcheck source=../../scripts/tools/lib.sh
+. "$(dirname "${BASH_SOURCE[0]}")/../../scripts/tools/lib.sh"
+here=$(dirname "$(readlink -f "$0")")
+here=${here#"$ROOT"/}
+cd "$ROOT" || exit
+seed=tests/proofs/seed.py
+work=$ROOT/build/proof/$(basename "$here")
+mkdir -p "$work" build/log
+
+proof() {
+    if [[ ${1:-} == --seeded ]]; then
+        seeded
+    else
+        prove "$@"
+    fi
+}
+
+# build PRESET TARGET...: says something when it fails
+build() {
+    { cmake --preset "$1" && cmake --build --preset "$1" --target "${@:2}"; } >"$work/build-$1.log" 2>&1 ||
+        { tail -n 25 "$work/build-$1.log" && die "the preset $1 does not build: $work/build-$1.log"; }
+}
+
+# build_host CHECKER...: what the host build makes, with the seeded faults of these checkers
+build_host() {
+    local checker programs=()
+    for checker in "$@"; do
+        mapfile -t -O "${#programs[@]}" programs < <("$seed" list "$checker" | sed "s/|.*//; s/^/seeded_${checker}_/")
+    done
+    build host "${programs[@]}"
+}
+
+# Shards of a program, as many as there are processors, into $work/shard*.log. run_shards PROGRAM OPTION...
+run_shards() {
+    local i jobs pids=() status=0
+    jobs=$(nproc)
+    for ((i = 0; i < jobs; i++)); do
+        "$1" --shard "$i/$jobs" "${@:2}" >"$work/shard$i.log" 2>&1 &
+        pids+=($!)
+    done
+    for i in "${!pids[@]}"; do
+        wait "${pids[i]}" || status=1
+    done
+    for ((i = 0; i < jobs; i++)); do
+        cat "$work/shard$i.log"
+    done
+    return "$status"
+}
+
+# The last lines of all shards as one: each number the sum, but for the first, which all have in common.
+add_up() {
+    local i logs=()
+    for ((i = 0; i < $(nproc); i++)); do
+        logs+=("$work/shard$i.log")
+    done
+    tail -q -n 1 "${logs[@]}" | awk '
+        { for (i = 1; i <= NF; i++) {
+              word[i] = $i
+              if ($i ~ /^[0-9]+$/) { sum[i] = (i == 1) ? $i : sum[i] + $i } } }
+        END { for (i = 1; i <= NF; i++) { printf "%s%s", (i in sum) ? sum[i] : word[i], (i < NF) ? " " : "\n" } }'
+}
