@@ -151,13 +151,19 @@ static void sound_observations(agv_core_t *core) {
     }
 }
 
+static void sound_budget(agv_budget_t *budget) {
+    budget->half = any_bool();
+    budget->present = any_bool();
+}
+
 static void sound_counts(agv_core_t *core) {
+    sound_budget(&core->mode.both_spent);
+    sound_budget(&core->mode.none_spent);
     for (unsigned i = 0u; i < AGV_COMMAND_COUNT; i++) {
         core->intrusion.fast_gaps[i].present = any_bool();
     }
     for (unsigned i = 0u; i < (unsigned)AGV_BUDGET_COUNT; i++) {
-        core->motion_checks.budgets[i].half = any_bool();
-        core->motion_checks.budgets[i].present = any_bool();
+        sound_budget(&core->motion_checks.budgets[i]);
     }
     for (unsigned i = 0u; i < AGV_SCORED_EPS_BITS; i++) {
         core->status_checks.eps_bits[i].present = any_bool();
@@ -231,13 +237,24 @@ void eva_tick(void) {
     check_invariants(agv_core_read(&supervisor));
 }
 
-/* Any memory before, any configuration. That the start takes none with a setting out of its range is for the tests to show. */
+/* The check of any configuration. That it passes none with a setting out of its range is for the tests to show. */
+void eva_config(void) {
+    agv_config_t config;
+    any_bytes(&config, sizeof config);
+    (void)agv_config_check(&config);
+    (void)agv_config_weakens(&config, any(0u, UINT32_MAX));
+    (void)agv_config_checksum(&config);
+}
+
+/* Any memory before, and a configuration whose settings are within their ranges; what a start does with another, the defaults
+   instead, is what the other entry points do with one that has changed. */
 void eva_start(void) {
     const agv_ports_t ports = any_ports();
     agv_config_t config;
     any_bytes(&supervisor, sizeof supervisor);
     any_bytes(&recorder, sizeof recorder);
     any_bytes(&config, sizeof config);
+    sound_config(&config);
     agv_supervisor_start(&supervisor, &ports, &config, any_bool(), any(0u, UINT32_MAX));
     check_memory(agv_core_read(&supervisor));
 }
