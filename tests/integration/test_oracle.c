@@ -158,6 +158,27 @@ void test_one_throttle_0_ends_an_engagement(void) {
     TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 0, 0), AGV_STATE_STANDBY));
 }
 
+/* Where the HAL does not take it, it may come as late as in the next engagement, unless there was a newer 075h; not after a trip. */
+/* Shows: FSM-6, TOP-2 */
+void test_the_throttle_0_of_the_last_engagement_may_be_late(void) {
+    oracle.gateway = true;
+    reported(0x40); /* the next one is about to end: nothing else may move */
+    for (unsigned i = 0; i < 2; i++) {
+        oracle_returned(&oracle, AGV_STATE_ACTIVE);
+        oracle_returned(&oracle, AGV_STATE_STANDBY);
+        oracle_returned(&oracle, (i == 0u) ? AGV_STATE_ACTIVE : AGV_STATE_TRIPPED);
+        oracle_returned(&oracle, AGV_STATE_ACTIVE);
+        TEST_ASSERT_EQUAL(i, forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 0, 0), AGV_STATE_ACTIVE));
+        TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 0, 0), AGV_STATE_ACTIVE));
+    }
+    oracle_returned(&oracle, AGV_STATE_STANDBY);
+    oracle_returned(&oracle, AGV_STATE_ACTIVE);
+    reported(0x80);
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 1, 0), AGV_STATE_ACTIVE));
+    reported(0x40);
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 0, 0), AGV_STATE_ACTIVE));
+}
+
 /* Shows: FSM-6 */
 void test_on_the_shared_bus_nothing_leaves_in_standby_and_active(void) {
     TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x168, 8, 0), AGV_STATE_STANDBY));

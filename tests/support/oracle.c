@@ -63,7 +63,8 @@ static void follow(oracle_t *oracle, agv_state_t state) {
         oracle->held = false;
     }
     if (state != oracle->before) {
-        oracle->ending = (oracle->before == AGV_STATE_ACTIVE) && (state == AGV_STATE_STANDBY);
+        const bool waits = oracle->ending && (state == AGV_STATE_ACTIVE); /* the HAL has not taken it yet */
+        oracle->ending = waits || ((oracle->before == AGV_STATE_ACTIVE) && (state == AGV_STATE_STANDBY));
     }
     oracle->before = state;
     oracle->latched = latched;
@@ -139,7 +140,7 @@ static bool safe_to_vehicle(const oracle_t *oracle, const hal_can_frame_t *frame
     }
 }
 
-/* Motion: while engaged only when the last 363h says so; the end of an engagement is reported once. */
+/* Motion: while engaged only when the last 363h reports autopilot; the end of an engagement is reported once. */
 static bool may_move(const oracle_t *oracle, agv_state_t state) {
     return (state == AGV_STATE_ACTIVE) ? (oracle->mode_bits == 0x80u) : oracle->pass_all_in_manual;
 }
@@ -159,6 +160,7 @@ static bool passed_to_vehicle(oracle_t *oracle, const hal_can_frame_t *frame, ag
     case 0x168u:
         return all && is_gear(gear) && zeros_from(frame, 1);
     case 0x075u:
+        oracle->ending = oracle->ending && !all; /* a newer one passes */
         return all && (frame->data[0] <= ((state == AGV_STATE_ACTIVE) ? 250u : 0u)) && zeros_from(frame, 1);
     case 0x065u:
         return all && (word_at(frame->data) <= 18000u) && zeros_from(frame, 2);
