@@ -1,6 +1,6 @@
 /**
  * @file confirmation.h
- * Whether the vehicle confirms the safe state in time (FSM-4): two sums of time, and SAFE_STATE_UNCONFIRMED.
+ * Checks whether the vehicle confirms the safe state in time (FSM-4, SAFE_STATE_UNCONFIRMED).
  */
 #ifndef AGV_CONFIRMATION_H
 #define AGV_CONFIRMATION_H
@@ -10,25 +10,25 @@
 
 #include "base/timers.h"
 
-/** The sums. They only grow until both were confirmed for confirmed_ms without a break. */
+/** The total times without a confirmation. They are cleared only when both have been confirmed for confirmed_ms. */
 typedef struct {
-    uint16_t off_missing_ms;  /**< autopilot off not confirmed, since the trip */
-    uint16_t park_missing_ms; /**< P not confirmed, since the first P was sent */
+    uint16_t off_missing_ms;  /**< total time since the trip without confirmed autopilot off */
+    uint16_t park_missing_ms; /**< total time since the first P was sent without confirmed P */
     bool park_sent;           /**< P was sent since the trip */
-    bool unconfirmed;         /**< SAFE_STATE_UNCONFIRMED has a cause */
+    bool unconfirmed;         /**< the cause of SAFE_STATE_UNCONFIRMED is present */
 } agv_confirmation_t;
 
-/** A trip, or a start in TRIPPED: everything begins anew. */
+/** Start again, after a trip or at a start in TRIPPED. */
 void agv_confirmation_start(agv_confirmation_t *confirmation, agv_timers_t *timers);
 
-/** 168h P was sent: from the first time on P is awaited. */
+/** Note that a 168h P was sent: from now on P must be confirmed. */
 void agv_confirmation_park_sent(agv_confirmation_t *confirmation);
 
 /**
- * Evaluate, in TRIPPED and SAFE.
+ * Evaluate the confirmations, in TRIPPED and SAFE.
  * @param elapsed_ms    since the last tick; 0 for a frame
- * @param autopilot_off confirmed by the VCU
- * @param in_park       confirmed by the VCU
+ * @param autopilot_off the VCU confirms autopilot off
+ * @param in_park       the VCU confirms P
  */
 void agv_confirmation_step(agv_confirmation_t *confirmation, agv_timers_t *timers, const agv_config_t *config,
                            uint32_t elapsed_ms, bool autopilot_off, bool in_park);

@@ -1,7 +1,7 @@
 /**
  * @file reset_button.h
- * The reset by remote button 1 (FSM-3): a press that begins after the trip, is held for reset_hold_ms to reset_hold_max_ms
- * and released, while everything that a reset needs holds in the last reset_hold_ms before the release.
+ * The reset by remote button 1 (FSM-3). The press must begin after the trip and last reset_hold_ms to reset_hold_max_ms;
+ * all conditions of a reset must hold in the last reset_hold_ms before the release.
  */
 #ifndef AGV_RESET_BUTTON_H
 #define AGV_RESET_BUTTON_H
@@ -12,46 +12,47 @@
 #include "agv/recorder.h"
 #include "base/timers.h"
 
-/** Remote button 1. */
+/** State of remote button 1. */
 typedef enum {
     AGV_BUTTON_UNKNOWN,
     AGV_BUTTON_DOWN,
     AGV_BUTTON_UP,
-    AGV_BUTTON_UNHEARD /**< reported as not pressed while the remote receiver has lost signal or power */
+    AGV_BUTTON_UNHEARD /**< reported as not pressed, but the remote receiver has lost signal or power */
 } agv_button_t;
 
-/** How many conditions a reset has. */
+/** Number of conditions of a reset. */
 #define AGV_RESET_CONDITIONS 8u
 
 /** The button and the press. */
 typedef struct {
     uint16_t held_ms[AGV_RESET_CONDITIONS]; /**< how long each condition has held, up to reset_hold_ms */
-    uint8_t button;                         /**< agv_button_t, as the last 363h of a VCU that is alive reports it */
-    uint8_t before;                         /**< the same at the last step */
+    uint8_t button;                         /**< agv_button_t, from the last 363h while the VCU is alive */
+    uint8_t before;                         /**< `button` at the last step */
     bool began_after;                       /**< this press began with a rising edge after the trip */
     bool answered;                          /**< this press was reported */
 } agv_reset_button_t;
 
-/** What became of a press. */
+/** Result of a press. */
 typedef enum { AGV_PRESS_NOTHING, AGV_PRESS_RESETS, AGV_PRESS_IN_VAIN } agv_press_result_t;
 
 /**
- * A 363h reports the button. Of a VCU that is not alive it says nothing. Without the remote receiver "not pressed" is no
- * release, and what is pressed when the receiver comes back is no rising edge: nobody's finger did that.
+ * Handle the button state in a 363h. It is ignored if the VCU is not alive. While the remote receiver is lost, "not
+ * pressed" is not a release, and a button that is pressed when the receiver returns is not a rising edge: in both cases
+ * the operator did nothing.
  */
 void agv_reset_button_report(agv_reset_button_t *reset, bool vcu_alive, bool remote_lost, bool down);
 
-/** The VCU is lost: the button is unknown until it reports again. */
+/** Set the button to unknown, because the VCU is lost. */
 void agv_reset_button_lose(agv_reset_button_t *reset);
 
-/** A trip: a press that began before does not count. */
+/** Ignore, at a trip, a press that began before it. */
 void agv_reset_button_trip(agv_reset_button_t *reset, agv_timers_t *timers);
 
 /**
- * Evaluate, in TRIPPED and SAFE.
+ * Evaluate the button, in TRIPPED and SAFE.
  * @param elapsed_ms since the last tick; 0 for a frame
  * @param lacking    AGV_MISSING_* bits of the conditions that do not hold now
- * @param missing    out, when a press was in vain: what was missing at any time in its last reset_hold_ms
+ * @param missing    out, for AGV_PRESS_IN_VAIN: the conditions that did not hold at some time in its last reset_hold_ms
  */
 agv_press_result_t agv_reset_button_step(agv_reset_button_t *reset, agv_timers_t *timers, const agv_config_t *config,
                                          uint32_t elapsed_ms, uint32_t lacking, uint32_t *missing);

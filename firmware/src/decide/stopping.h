@@ -1,6 +1,6 @@
 /**
  * @file stopping.h
- * The safe state is a vehicle that stands (FSM-12): VEHICLE_NOT_STOPPING and MOVING_WHILE_SAFE.
+ * Checks that the vehicle stops after a trip and then stands (FSM-12): VEHICLE_NOT_STOPPING and MOVING_WHILE_SAFE.
  */
 #ifndef AGV_STOPPING_H
 #define AGV_STOPPING_H
@@ -11,22 +11,22 @@
 #include "base/timers.h"
 #include "observe/vehicle.h"
 
-/** What is known since the trip. */
+/** State of the check since the trip. */
 typedef struct {
-    uint16_t moving_ms; /**< a wheel has turned for so long, up to the limit */
+    uint16_t moving_ms; /**< how long a wheel has been turning, up to the limit */
     bool stood;         /**< the wheels have stood since the trip */
-    bool not_stopping;  /**< VEHICLE_NOT_STOPPING has a cause */
-    bool moving;        /**< MOVING_WHILE_SAFE has a cause */
+    bool not_stopping;  /**< the cause of VEHICLE_NOT_STOPPING is present */
+    bool moving;        /**< the cause of MOVING_WHILE_SAFE is present */
 } agv_stopping_t;
 
-/** A trip, or a start in TRIPPED. */
+/** Start again, after a trip or at a start in TRIPPED. */
 void agv_stopping_start(agv_stopping_t *stopping, agv_timers_t *timers);
 
-/** Evaluate, in TRIPPED and SAFE. @param elapsed_ms since the last tick; 0 for a frame */
+/** Evaluate the motion, in TRIPPED and SAFE. @param elapsed_ms since the last tick; 0 for a frame */
 void agv_stopping_step(agv_stopping_t *stopping, const agv_timers_t *timers, const agv_vehicle_t *vehicle,
                        uint32_t elapsed_ms);
 
-/** A reset: nothing is awaited. */
+/** End the check at a reset. */
 void agv_stopping_end(agv_stopping_t *stopping);
 
 #endif

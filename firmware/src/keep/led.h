@@ -22,12 +22,12 @@ typedef struct {
     uint16_t phase_ms; /**< within the pattern */
 } agv_led_t;
 
-/** The code that shows a fault; AGV_LED_HEALTHY for AGV_FAULT_NONE. */
+/** The code of a fault: 1..17 or AGV_LED_BLINK; AGV_LED_HEALTHY for AGV_FAULT_NONE. */
 int32_t agv_led_code(uint32_t fault);
 
 /**
- * Advance the pattern; another code starts its pattern at once.
- * @return whether the LED has to be switched: `on` is new.
+ * Advance the pattern. A new code starts its pattern at once.
+ * @return whether the LED must be switched, to `on`.
  */
 bool agv_led_tick(agv_led_t *led, int8_t code, bool shadow, uint32_t elapsed_ms);
 

@@ -20,7 +20,7 @@ typedef enum {
     AGV_HEARTBEAT_UNSEEN = 0,    /**< no changed counter yet */
     AGV_HEARTBEAT_BASELINE = 1,  /**< AI only: the first value was seen and started the deadline; not alive yet */
     AGV_HEARTBEAT_ALIVE = 2,     /**< the counter changed within the deadline */
-    AGV_HEARTBEAT_FORGOTTEN = 3, /**< AI only: it was alive before the last reset; its deadline still runs (SUP-8) */
+    AGV_HEARTBEAT_FORGOTTEN = 3, /**< AI only: it was seen before the last reset; its deadline still runs (SUP-8) */
     AGV_HEARTBEAT_LOST = 4,      /**< the deadline expired; remains until the counter changes again */
     AGV_HEARTBEAT_STUCK = 5      /**< as LOST, but frames with an unchanged counter were still received */
 } agv_heartbeat_state_t;
@@ -63,7 +63,7 @@ void agv_liveness_refresh(agv_liveness_t *liveness, agv_timers_t *timers, const 
 /** Restart the deadlines of the commands, except the AI's heartbeat, when the autopilot is engaged (SUP-3). */
 void agv_liveness_restart_commands(agv_timers_t *timers, uint32_t time_ms);
 
-/** Forget, after a reset, that the AI computer was alive: it is alive again when its counter changes (SUP-8). */
+/** Forget the AI computer after a reset: it is alive again when its counter changes (SUP-8). */
 void agv_liveness_forget_ai(agv_liveness_t *liveness);
 
 /**

@@ -29,16 +29,16 @@
 #include "transmit/gateway.h"
 #include "transmit/transmitter.h"
 
-/** All of it. No pointers: a flipped bit would lead anywhere, and the size is the same on every platform. */
+/** The memory. It holds no pointers: a flipped bit in one could point anywhere, and their size depends on the platform. */
 typedef struct {
     agv_timers_t timers;
     agv_config_t config;
     agv_counters_t counters;
-    /* From here on everything begins anew with every start. */
+    /* The members below are reset at every start, also after a corruption. */
     uint32_t config_checksum; /**< agv_config_checksum at the start */
-    agv_ids_t ids;            /**< made of config; and a second copy, for when the configuration is corrupted */
-    uint16_t topology;        /**< second copy, likewise */
-    uint16_t id_set;          /**< second copy, likewise */
+    agv_ids_t ids;            /**< derived from config; also a second copy in case the configuration is corrupted */
+    uint16_t topology;        /**< second copy, as above */
+    uint16_t id_set;          /**< second copy, as above */
     agv_state_machine_t machine;
     agv_fault_monitor_t faults;
     agv_liveness_t liveness;
@@ -57,10 +57,10 @@ typedef struct {
     agv_transmitter_t transmitter;
     agv_led_t led;
     uint32_t last_tick_ms;
-    uint16_t store_credit_ms; /**< time until flash may be written once more (INT-3) */
-    uint8_t store_credits;    /**< how often flash may be written now */
-    uint8_t checked_in;       /**< activities since the watchdog was fed (TIM-3) */
-    int8_t led_code;          /**< of the highest-ranking fault, as last evaluated */
+    uint16_t store_credit_ms; /**< time until one more write to flash is allowed (INT-3) */
+    uint8_t store_credits;    /**< number of writes to flash allowed now */
+    uint8_t checked_in;       /**< activities that have checked in since the watchdog was fed (TIM-3) */
+    int8_t led_code;          /**< LED code of the highest-ranking fault */
 } agv_core_t;
 
 _Static_assert(sizeof(agv_core_t) == AGV_SUPERVISOR_MEMORY, "agv_supervisor_t holds just the core");
@@ -72,13 +72,13 @@ static inline agv_core_t *agv_core_of(agv_supervisor_t *supervisor) {
     return (agv_core_t *)(void *)supervisor->memory;
 }
 
-/** The same to read. */
+/** The core of a supervisor, to read. */
 static inline const agv_core_t *agv_core_read(const agv_supervisor_t *supervisor) {
     /* NOLINTNEXTLINE(bugprone-casting-through-void): the memory is aligned and as large as the core, asserted above */
     return (const agv_core_t *)(const void *)supervisor->memory;
 }
 
-/** Whether there are two sides. */
+/** Whether the topology is a gateway. */
 static inline bool agv_core_is_gateway(const agv_core_t *core) {
     return core->config.topology != (uint16_t)AGV_TOPOLOGY_SHARED;
 }

@@ -1,8 +1,8 @@
 /**
  * @file gateway.h
- * Which AI command the gateway passes on to the vehicle, and how it is limited (TOP-2): packed anew with reserved bits as
- * 0, within the envelope of throttle ceiling, throttle rise, steering slew and steering limit above a speed. When it goes
- * is up to the transmitter.
+ * Which AI commands the gateway forwards to the vehicle, and how it limits them (TOP-2): throttle ceiling, throttle rise,
+ * steering slew, and steering limit above a speed. Forwarded commands have their reserved bits set to 0. The transmitter
+ * decides when they are sent.
  */
 #ifndef AGV_GATEWAY_H
 #define AGV_GATEWAY_H
@@ -13,17 +13,17 @@
 #include "agv/state.h"
 #include "observe/vehicle.h"
 
-/** What the rate limits start from. All zero: no command was limited since the engagement. */
+/** The last values of the rate limits. All zero: no command was checked since the engagement. */
 typedef struct {
-    uint32_t steering_ms;  /**< when the last 065h was limited */
-    uint32_t throttle_ms;  /**< when the last 075h was limited */
-    uint16_t steering_raw; /**< and to what */
-    uint8_t throttle;      /**< and to what, counts */
-    bool steering_known;
-    bool throttle_known;
+    uint32_t steering_ms;  /**< time of the last 065h */
+    uint32_t throttle_ms;  /**< time of the last 075h */
+    uint16_t steering_raw; /**< angle of that 065h after the limit, raw (P5) */
+    uint8_t throttle;      /**< throttle of that 075h after the limit, counts */
+    bool steering_known;   /**< steering_ms and steering_raw are valid */
+    bool throttle_known;   /**< throttle_ms and throttle are valid */
 } agv_gateway_t;
 
-/** What the gateway goes by. */
+/** Inputs of the gateway. */
 typedef struct {
     const agv_config_t *config;
     const agv_vehicle_t *vehicle;
@@ -33,19 +33,19 @@ typedef struct {
     bool standstill;
 } agv_gateway_facts_t;
 
-/** Whether a command passes: by state, mode and, for D and R, standstill. */
+/** Whether a command is forwarded; depends on state, mode and, for gear D and R, standstill. */
 bool agv_gateway_passes(const agv_gateway_facts_t *facts, uint32_t command, const uint8_t data[AGV_DLC]);
 
-/** Whether a command that waits may still leave. */
+/** Whether a waiting command may still be sent. */
 bool agv_gateway_may_wait(const agv_gateway_facts_t *facts, uint32_t command);
 
-/** The state changed: the rate limits begin anew. */
+/** Restart the rate limits, because the state changed. */
 void agv_gateway_restart(agv_gateway_t *gateway);
 
 /**
- * Make the payload that is passed on.
- * @param data in: as received, values in range; out: what to send
- * @return whether the envelope changed it
+ * Limit a command and clear its reserved bits.
+ * @param data in: the received payload, with values in range; out: the payload to send
+ * @return whether a limit changed the command
  */
 bool agv_gateway_limit(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t command,
                        uint8_t data[AGV_DLC]);
