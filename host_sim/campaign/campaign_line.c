@@ -147,7 +147,7 @@ bool campaign_line_run(const char *path, size_t line, const json_t *object, uint
         {"reason", is_reason},  {"broken", is_break}};
     const char *wrong = misfit(object, keys, sizeof keys / sizeof keys[0]);
     if (wrong != NULL) {
-        return report_at(path, line, "no result of a campaign: its '%s' is missing or wrong", wrong);
+        return report_at(path, line, "not a result of a campaign: its '%s' is missing or wrong", wrong);
     }
     *run = (uint64_t)number(object, "run");
     *sample = (campaign_sample_t){.row = (uint8_t)(row_of(json_object_get(object, "fault")) - CAMPAIGN_ROWS),

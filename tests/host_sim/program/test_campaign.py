@@ -206,8 +206,8 @@ class Refused(Campaign):
         self.refuse("--merge", one, two, "--broken", ".", says="--merge takes files")
         self.refuse("--merge", one, two, "--newly-engaged", says="--merge takes files")
         self.refuse("--merge", one, two, "--results", one, says="are the same file")
-        self.refuse("--merge", one, self.shard(2, 2, seed=8, name="seed"), *out, says="another campaign")
-        self.refuse("--merge", one, self.shard(2, 2, runs=RUNS - 2, name="runs"), *out, says="another campaign")
+        self.refuse("--merge", one, self.shard(2, 2, seed=8, name="seed"), *out, says="not the same campaign")
+        self.refuse("--merge", one, self.shard(2, 2, runs=RUNS - 2, name="runs"), *out, says="not the same campaign")
         lines = (self.folder / two).read_text(encoding="ascii").splitlines(keepends=True)
         for name, changed, says in (("cut", lines[:-1], "it ends after line"),
                                     ("more", lines + lines[-1:], "more runs than the campaign has"),

@@ -146,7 +146,7 @@ class Soak(hostsim.Case):
         good = (self.folder / "good").read_bytes()
         torn = good[:5000] + bytes([good[5000] ^ 1]) + good[5001:]
         for name, content, says in (("text", b"hello\n", "not a soak checkpoint"), ("torn", torn, "a damaged checkpoint"),
-                                    ("cut", good[:-1], "a damaged checkpoint"), ("more", good + b"x", "a torn checkpoint")):
+                                    ("cut", good[:-1], "a damaged checkpoint"), ("more", good + b"x", "a damaged checkpoint")):
             self.write(name, content)
             self.assert_refused(self.run_program("soak", "--hours", 100, "--seed", 1, "--checkpoint", name), name, says)
         for other in (("--hours", 100, "--seed", 2), ("--hours", 101, "--seed", 1),
