@@ -12,7 +12,7 @@ unreasoned=$(grep -rnE '(GCOVR|LCOV)_EXCL' firmware/src firmware/include |
     grep -vE '_EXCL(_BR)?_STOP|GCOVR_EXCL_(BR_)?(LINE|START): *[^ ]+ +[^ ]{2,}') || true
 if [[ -n $unreasoned ]]; then
     echo "$unreasoned" >&2
-    die "an exclusion says why on its own line: /* GCOVR_EXCL_LINE: the reason */"
+    die "an exclusion needs its reason on the same line: /* GCOVR_EXCL_LINE: the reason */"
 fi
 
 # Of a table the core makes data, and no code; what a test program makes of it is not the core's.
@@ -28,6 +28,6 @@ fi
 # A file that the report does not know was never compiled with coverage, and is not 100 %.
 while read -r file; do
     if ! grep -q "\"$file\"" "$build/coverage.json"; then
-        die "$file is not in the report"
+        die "$file is missing in the report"
     fi
 done < <(find firmware/src -name '*.c' | sort)

@@ -73,9 +73,9 @@ def check_links(root, page, prose, problems):
         place, _, heading = urllib.parse.unquote(target).partition("#")
         path = (page.parent / place).resolve() if place else page
         if not path.exists() or not path.is_relative_to(root.resolve()):
-            problems.add(f"{page.relative_to(root)}: the link {target} leads nowhere")
+            problems.add(f"{page.relative_to(root)}: the link {target} is broken")
         elif heading and path.suffix == ".md" and heading not in anchors(path):
-            problems.add(f"{page.relative_to(root)}: {target} names a heading that is not there")
+            problems.add(f"{page.relative_to(root)}: {target} names a heading that does not exist")
     return count
 
 
@@ -112,7 +112,7 @@ def check_commands(root, page, blocks, problems):
     path = f"{root}/build/host/bin{os.pathsep}{os.environ['PATH']}"
     for first, info, lines in blocks:
         if info.split(" ")[0] in ("bash", "shell", "zsh"):
-            problems.add(f"{page.relative_to(root)}:{first - 1}: a block of commands is marked sh or console")
+            problems.add(f"{page.relative_to(root)}:{first - 1}: a block of commands must be marked sh or console")
         if info == "console":
             lines = [line.removeprefix("$ ") if line.startswith("$ ") else "" for line in lines]
         elif info != "sh":
@@ -125,7 +125,7 @@ def check_commands(root, page, blocks, problems):
         for offset, word in commands:
             count += 1
             if shutil.which(root / word if "/" in word else word, path=path) is None:
-                problems.add(f"{page.relative_to(root)}:{first + offset}: there is no command {word}")
+                problems.add(f"{page.relative_to(root)}:{first + offset}: unknown command {word}")
     return count
 
 
@@ -168,7 +168,7 @@ def main():
     if pages:
         check_modules(root, problems)
     else:
-        problems.add(f"there is no page in {root}")
+        problems.add(f"no pages in {root}")
     print(f"{len(pages)} pages, {links} links, {commands} commands, {defaults} defaults, {problems.count} problems")
     return 1 if problems.count else 0
 

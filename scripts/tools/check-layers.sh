@@ -19,7 +19,7 @@ report() {
 
 core=(firmware/include firmware/src)
 if [[ -z $(find "${core[@]}" hal/include -name '*.[ch]') ]]; then
-    die "there is nothing to check in $PWD"
+    die "nothing to check in $PWD"
 fi
 
 # Headers that a freestanding C11 implementation has, and string.h.
@@ -34,9 +34,9 @@ report 'firmware/ includes something other than C headers, "agv/...", "hal/..." 
         grep -vE "include ($standard|\"(agv|hal)/[a-z0-9_]+\.(h|def)\")"
 )
 
-report 'a source of firmware/src lies in no room' < <(find firmware/src -maxdepth 1 -name '*.[ch]')
+report 'a source of firmware/src is not in a folder of a module group' < <(find firmware/src -maxdepth 1 -name '*.[ch]')
 
-report 'only firmware/src/supervisor/supervisor*.[ch] knows the memory of a supervisor' < <(
+report 'only firmware/src/supervisor/supervisor*.[ch] may access the memory of a supervisor' < <(
     grep -rnE '^\s*#\s*include\s+"([^"]*/)?(core|supervisor_internal)\.h"' firmware hal --include='*.[ch]' |
         grep -v '^firmware/src/supervisor/supervisor'
 )
@@ -50,7 +50,7 @@ for folder in hal host_sim firmware/zephyr bench tests; do
         outside+=("$folder")
     fi
 done
-report 'a header of firmware/src in a program, a port or a test that is none of its own' < <(
+report 'a program, a port or a test of something else includes a header of firmware/src' < <(
     grep -rnE "^\s*#\s*include\s+\"([^\"]*/)?(${rooms#|})/[a-z0-9_]+\.(h|def)\"" "${outside[@]}" \
         --include='*.[ch]' | grep -vE "$insiders"
 )
@@ -70,12 +70,12 @@ report 'hal/include includes something other than C headers and "hal/..."' < <(
         grep -vE "include ($standard|\"hal/[a-z0-9_]+\.h\")"
 )
 
-report 'a frame leaves past the gate (INT-4): only gate.c calls hal_can_send' < <(
+report 'a frame bypasses the gate (INT-4): only gate.c may call hal_can_send' < <(
     grep -rnE '\bhal_can_send\s*\(' firmware --include='*.c' | grep -v '^firmware/src/transmit/gate\.c:'
 )
 
 # firmware/zephyr is a program: it knows core, port and Zephyr; the drivers are the port's.
-report 'firmware/zephyr goes past the port to a driver' < <(
+report 'firmware/zephyr bypasses the port and uses a driver' < <(
     if [[ -d firmware/zephyr ]]; then
         grep -rnE '^\s*#\s*include\s+<zephyr/(drivers|task_wdt|fs|storage)/' firmware/zephyr --include='*.[ch]'
     fi

@@ -24,7 +24,7 @@ else
     mapfile -t files < <(built | grep -E "^$ROOT/(firmware|hal|host_sim)/")
 fi
 if ((${#files[@]} == 0)); then
-    die "there is nothing to check"
+    die "nothing to check"
 fi
 
 # What the answer depends on.
@@ -38,7 +38,7 @@ if ((changed)); then
     sum=$(state | sha256sum)
     passed=$build/clang-tidy/${sum%% *}
     if [[ -f $passed ]]; then
-        echo "it found nothing in these very files before"
+        echo "no findings: the files are unchanged since the last check"
         exit
     fi
 fi

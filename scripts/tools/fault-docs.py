@@ -36,10 +36,10 @@ def read_faults(path):
             continue
         match = ROW.match(line)
         if not match:
-            raise Problem(f"{path}:{number}: not like AGV_FAULT(NAME, TRIP, 14, FLAG | FLAG)")
+            raise Problem(f"{path}:{number}: expected AGV_FAULT(NAME, TRIP, 14, FLAG | FLAG)")
         flags = set(match[5].split(" | "))
         if not flags <= FLAGS:
-            raise Problem(f"{path}:{number}: unknown flags {sorted(flags - FLAGS)}: teach them to scripts/tools/fault-docs.py")
+            raise Problem(f"{path}:{number}: unknown flags {sorted(flags - FLAGS)}: add them to scripts/tools/fault-docs.py")
         faults.append((match[2], match[3], int(match[4]), flags, match[1] is not None))
     if not faults:
         raise Problem(f"{path} holds no faults")
@@ -75,7 +75,7 @@ def read_texts(table):
 def make_table(faults, texts):
     gone = sorted(set(texts) - {name for name, *_ in faults})
     if gone:
-        raise Problem(f"docs/faults.md has a text for {', '.join(gone)}, which is no fault: rename or remove the row")
+        raise Problem(f"docs/faults.md has a text for {', '.join(gone)}, which is not a fault: rename or remove the row")
     lines = [HEADING, "|" + "---|" * (HEADING.count("|") - 1)]
     for rank, fault in enumerate(faults):
         lines.append("| " + " | ".join(made_cells(rank, *fault) + texts.get(fault[0], ["", ""])) + " |")
@@ -89,13 +89,13 @@ def check_names(root, faults):
         for name, star in NAMED.findall((root / document).read_text(encoding="utf-8")):
             known = name in names if not star else any(other.startswith(name + "_") for other in names)
             if not known and not name.startswith(OTHERS):
-                raise Problem(f"{document} names {name}{star}, which is no fault")
+                raise Problem(f"{document} names {name}{star}, which is not a fault")
 
 
 def main():
     parser = argparse.ArgumentParser(description="the table of faults in docs/faults.md")
     parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[2])
-    parser.add_argument("--check", action="store_true", help="change nothing, fail when something is not right")
+    parser.add_argument("--check", action="store_true", help="change nothing, fail when the table is out of date or wrong")
     arguments = parser.parse_args()
     document = arguments.root / "docs/faults.md"
     faults = read_faults(arguments.root / "firmware/include/agv/fault_table.def")
@@ -106,7 +106,7 @@ def main():
     if not arguments.check:
         document.write_text(wanted, encoding="utf-8")
     elif wanted != text:
-        raise Problem("docs/faults.md is out of date: run scripts/tools/fault-docs.py, then fill in what is empty")
+        raise Problem("docs/faults.md is out of date: run scripts/tools/fault-docs.py, then fill in the empty columns")
     empty = [name for name, *_ in faults if "" in texts.get(name, ["", ""])]
     if empty:
         raise Problem(f"docs/faults.md has no text for {', '.join(empty)}")

@@ -34,7 +34,7 @@ def rows(path, begin, patterns):
         if line.startswith(begin):
             match = next((match for match in (pattern.match(line) for pattern in patterns) if match), None)
             if match is None:
-                raise Problem(f"{path}:{number}: a row that is not understood")
+                raise Problem(f"{path}:{number}: invalid row")
             found.append(match.groups())
     if not found:
         raise Problem(f"{path} holds no rows")

@@ -190,7 +190,7 @@ def under_way_decision_us(world, row):
     if kind == "unconfirmed":
         timeout_us = world.tables["settings"]["steering_command_timeout_ms"] * 1000
         return arrival_us + timeout_us + TICK_US + setting_us(world, row) + TICK_US
-    raise Problem(f"{row['fault']}: nobody has said how '{kind}' is derived")
+    raise Problem(f"{row['fault']}: no derivation for the kind '{kind}'")
 
 
 def reaction_us(world, row, collisions=True):
@@ -481,7 +481,7 @@ def check(text, derived, page):
     unmeasured = [fault for fault in rows if not any(key[0] == fault and seen is not None
                                                      for key, (_, seen) in figures.items())]
     if unmeasured:
-        raise Problem(f"{page}: nothing was measured of {', '.join(unmeasured)}")
+        raise Problem(f"{page}: no measurements of {', '.join(unmeasured)}")
 
 
 def report_compare(derived, measured):
@@ -501,7 +501,7 @@ def main():
     parser.add_argument("--measured", action="append")
     parser.add_argument("--compare", action="append")
     parser.add_argument("--host-sim", default=str(ROOT / "build/host/bin/host_sim"))
-    parser.add_argument("--tables", help="a file of what host_sim campaign --tables prints, instead of asking it")
+    parser.add_argument("--tables", help="file with the output of host_sim campaign --tables, instead of running it")
     parser.add_argument("--page", default=str(ROOT / "docs/reaction-time.md"))
     arguments = parser.parse_args()
     try:

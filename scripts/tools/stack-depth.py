@@ -75,7 +75,7 @@ def main():
     parser = argparse.ArgumentParser(description="deepest stack from gcc's call graphs")
     parser.add_argument("files", nargs="+")
     parser.add_argument("--objects", help="object or archive in which to look for addresses of functions")
-    parser.add_argument("--pointers-lead-outside", action="store_true", help="calls through pointers count as nothing")
+    parser.add_argument("--pointers-lead-outside", action="store_true", help="ignore calls through pointers")
     parser.add_argument("--entry", nargs="+", required=True)
     parser.add_argument("--max", type=int, help="fail above this many bytes")
     arguments = parser.parse_args()
@@ -100,7 +100,7 @@ def main():
     print(f"stack  {depth:6} bytes{limit}  " + " > ".join(short))
     print("       without the frames of: " + ", ".join(outside))
     if arguments.max is not None and depth > arguments.max:
-        print(f"stack-depth: {depth} bytes, allowed are {arguments.max}", file=sys.stderr)
+        print(f"stack-depth: {depth} bytes, the limit is {arguments.max}", file=sys.stderr)
         return 1
     return 0
 

@@ -40,13 +40,13 @@ def numbered(path, family, problems):
     """Rows `| FAMILY-n |` or `| Pn |` of a table, which count from 1 without a gap."""
     separator = "" if family == "P" else "-"
     if not path.exists():
-        problems.append(f"{path} is not there")
+        problems.append(f"{path} is missing")
         return []
     text = path.read_text(encoding="utf-8").split(BEGIN)[0]  # not the section that is made here
     found = re.findall(rf"^\|\s*\**{family}{separator}(\d+)\**\s*\|", text, re.MULTILINE)
     numbers = [int(number) for number in found]
     if (not numbers and family != "HW") or numbers != list(range(1, len(numbers) + 1)):
-        problems.append(f"{path}: the rows {family}{separator}1 and on are not all there, once each: {numbers}")
+        problems.append(f"{path}: the rows {family}{separator}1 and on must each occur once, in order: {numbers}")
     return [f"{family}{separator}{number}" for number in numbers]
 
 
@@ -99,10 +99,10 @@ def trace(root, problems):
     for names, test, path in read_tags(root, problems):
         place = path.relative_to(root)
         if test is None:
-            problems.append(f"{place}: a tag stands above no test: {names.strip()}")
+            problems.append(f"{place}: a tag is not directly above a test: {names.strip()}")
         for name in filter(None, (name.strip() for name in names.replace("\n", " ").split(","))):
             if name not in shown:
-                problems.append(f"{place}: {test} shows {name}, which is no row")
+                problems.append(f"{place}: {test} shows {name}, which is not a row")
             else:
                 shown[name].append((test, place))
     waiting = not_built(root) if (root / "docs/requirements.md").exists() else set()
@@ -122,7 +122,7 @@ def trace_proofs(root, rows, problems):
             continue
         for name in filter(lambda name: name not in ("", "-"), map(str.strip, tag["rows"].split(","))):
             if name not in proven:
-                problems.append(f"{path.relative_to(root)} shows {name}, which is no row")
+                problems.append(f"{path.relative_to(root)} shows {name}, which is not a row")
             else:
                 proven[name].append(path.parent.name)
     return proven
@@ -232,7 +232,7 @@ def main():
         if (docs / "safety-manual.md").exists():
             bring_up_to_date(docs / "safety-manual.md", LEVELS, section, arguments.markdown, problems)
         else:
-            problems.append("docs/safety-manual.md is not there")
+            problems.append("docs/safety-manual.md is missing")
     sys.stdout.flush()
     for problem in problems:
         print(f"traceability: {problem}", file=sys.stderr)

@@ -134,7 +134,7 @@ surroundings() {
     rmdir ../gone
     run "$BATS_TEST_TMPDIR/link" --vm true
     echo "$output"
-    [[ $status -eq 125 && ${lines[-1]} == "with-vcan: the working directory is not there any more" ]]
+    [[ $status -eq 125 && ${lines[-1]} == "with-vcan: the working directory no longer exists" ]]
     [[ $(grep -vc '^shell-init: ' <<<"$output") -eq 1 ]] # bash says that before it looks at the script
 
     folder=$(mktemp -d -p /dev/shm)

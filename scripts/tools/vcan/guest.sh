@@ -39,7 +39,7 @@ set_clock() {
 raise_interfaces() {
     ip link set dev lo up
     for name in "$@"; do
-        { ip link add dev "$name" type vcan && ip link set dev "$name" up; } || fail "there is no $name"
+        { ip link add dev "$name" type vcan && ip link set dev "$name" up; } || fail "no interface $name"
     done
 }
 
@@ -118,7 +118,7 @@ clock=$!
 hostname "${host_name:?}"
 # shellcheck disable=SC2154,SC2086 # a list of words
 raise_interfaces $interfaces
-exec 3<>"$(port control)" || fail "there is no port control"
+exec 3<>"$(port control)" || fail "the control port is missing"
 mkdir $streams
 listen <&3 &
 wait $clock

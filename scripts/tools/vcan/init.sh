@@ -26,11 +26,11 @@ done </modules/order
 # the host changes there afterwards is not seen.
 mount_host root /root mmap
 mount_host usr /root/usr loose
-mount -t tmpfs -o mode=755 tmpfs /root/run || fail "there is no folder /run"
+mount -t tmpfs -o mode=755 tmpfs /root/run || fail "the folder /run is missing"
 mkdir -p /root/run/with-vcan/session
 mount_host session /root/run/with-vcan/session none
 for folder in proc sys dev; do
-    mount -o move "/$folder" "/root/$folder" || fail "there is no folder /$folder"
+    mount -o move "/$folder" "/root/$folder" || fail "the folder /$folder is missing"
 done
 
 # busybox goes along: from memory it starts much faster than the host's programs.

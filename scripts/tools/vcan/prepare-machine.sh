@@ -155,7 +155,7 @@ pack_initramfs() {
 
 kernel=$(fetched_kernel)
 if [[ -z $kernel ]] || ! is_packed "$kernel"; then
-    mkdir -p "$cache" 2>/dev/null || fail "the folder $cache cannot be made"
+    mkdir -p "$cache" 2>/dev/null || fail "cannot make the folder $cache"
     [[ -w $cache ]] || fail "cannot write to $cache"
     exec 9>"$cache/.lock"
     flock 9 # one prepares it, the others wait
