@@ -302,5 +302,5 @@ virtual machine: 'qemu-system-"*"' is missing: run 'scripts/install-deps vcan'" 
         [[ $status -eq 2 && ${#lines[@]} -eq 1 && $output == "with-vcan: "* ]]
     done
     run env AGV_VCAN_ACCEL=xen "$vcan" true
-    [[ $status -eq 2 && $output == *"neither tcg nor kvm"* ]]
+    [[ $status -eq 2 && $output == *"not tcg or kvm"* ]]
 }
