@@ -1,6 +1,6 @@
 /**
  * @file status_lines.c
- * What a real supervisor says in its status frame (TOP-3), as lines for a test in another language:
+ * What a real supervisor sends in its status frame (TOP-3), as lines for a test in another language:
  *
  *   id ID, period MS                        defaults of the settings
  *   state NAME CODE, reason NAME CODE       what the program's own names are

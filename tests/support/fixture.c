@@ -7,7 +7,7 @@
 #include "agv/names.h"
 #include "unity.h"
 
-enum { STANDBY_WITHIN_MS = 1000, ENGAGED_MS = 1000, NOBODYS_ID = 0x7FE };
+enum { STANDBY_WITHIN_MS = 1000, ENGAGED_MS = 1000, UNKNOWN_ID = 0x7FE };
 
 /* ---- Building ---- */
 
@@ -15,11 +15,11 @@ static uint16_t id_on_the_wire(const fixture_t *f, unsigned message) {
     return f->other_ids ? agv_config_get(&f->config, AGV_SETTING_ID + message) : traffic_id(&f->config, message);
 }
 
-/* A frame with the identifier of its set. One that is no more on this vehicle becomes one of nobody. */
+/* A frame with the identifier of its set. An identifier that this vehicle does not use any more becomes an unknown one. */
 static hal_can_frame_t with_id_of_set(const fixture_t *f, const hal_can_frame_t *frame) {
     hal_can_frame_t renamed = *frame;
     for (unsigned i = 0; f->other_ids && i < AGV_MSG_COUNT; i++) {
-        renamed.id = frame->id == traffic_id(&f->config, i) ? NOBODYS_ID : renamed.id;
+        renamed.id = frame->id == traffic_id(&f->config, i) ? UNKNOWN_ID : renamed.id;
     }
     for (unsigned i = 0; f->other_ids && i < AGV_MSG_COUNT; i++) {
         renamed.id = frame->id == id_on_the_wire(f, i) ? traffic_id(&f->config, i) : renamed.id;

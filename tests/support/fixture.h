@@ -71,7 +71,7 @@ typedef struct fixture {
 
 /**
  * Default configuration, shared bus, power-on, healthy traffic in manual mode. Not started yet. The clock stands at 0, or
- * so many milliseconds before its wrap as the environment variable AGV_TEST_WRAP_IN_MS says.
+ * so many milliseconds before its wrap as in the environment variable AGV_TEST_WRAP_IN_MS.
  */
 void fixture_init(fixture_t *f);
 

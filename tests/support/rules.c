@@ -510,7 +510,7 @@ void rules_returned(rules_t *rules, const rules_seen_t *seen, bool tick, uint64_
         broken(rules, "INT-4: the gate had to refuse a frame in state %02Xh", (unsigned)seen->state);
     }
     if (agv_fault_is_in(&seen->active, AGV_FAULT_MEMORY_CORRUPTED)) {
-        broken(rules, "INT-5: memory was found corrupt, and nobody touched it");
+        broken(rules, "INT-5: memory was found corrupt, and no test changed it");
     }
     if (seen->watchdog_feeds != rules->last.watchdog_feeds) {
         rules->fed_ms = rules->now_ms;

@@ -6,7 +6,7 @@
  *   silence trips (SUP-2, SUP-3), so do alarm bits, in the very call (SUP-4, FSM-2), and all safe commands go with it;
  *   the latch is left by a reset only, under its conditions (FSM-3); the first reason is kept (FSM-5);
  *   the safety output closes on entering STANDBY only, and opens when it has to, also for a confirmation that comes and goes
- *   (FSM-4); a start is as FSM-7 says;
+ *   (FSM-4); a start follows FSM-7;
  *   while the safe commands are sent, they are sent often enough, and commands of others are answered (TOP-1, TIM-1);
  *   a gateway passes on what was heard, and nothing else (TOP-2); in shadow mode nothing leaves (TOP-4);
  *   the gate never has to refuse, and no memory is found corrupt.
@@ -32,7 +32,7 @@ typedef struct {
     uint64_t changed_ms; /* stamp of the last frame with another counter; at first the start */
 } rules_beat_t;
 
-/* What a supervisor says of itself, its safety output, and its hardware watchdog. */
+/* What a supervisor reports, its safety output, and its hardware watchdog. */
 typedef struct {
     agv_state_t state;
     agv_fault_t first_reason;

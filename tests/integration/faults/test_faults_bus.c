@@ -79,7 +79,7 @@ void test_after_the_recovery(void) {
     expect_led(&f, 14);
 }
 
-/* Came and went between two ticks: the controller's count tells. The trip and the recovery are one reason to send. */
+/* Came and went between two ticks: the controller's count shows it. The trip and the recovery are one reason to send. */
 /* Shows: SUP-7, FSM-2, BUS_OFF */
 void test_bus_off_between_two_ticks(void) {
     fixture_active(&f);

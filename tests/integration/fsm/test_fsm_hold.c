@@ -144,8 +144,8 @@ static const struct {
     {"over current", over_current},
     {"position encoder", position_encoder},
     {"under voltage", under_voltage},
-    {"hardware fault, says the VCU", vcu_says_hardware},
-    {"CAN fault, says the VCU", vcu_says_can},
+    {"hardware fault reported by the VCU", vcu_says_hardware},
+    {"CAN fault reported by the VCU", vcu_says_can},
     {"steering assist", mode_assist},
     {"speed control", mode_speed},
     {"torque control", mode_torque},
@@ -171,7 +171,7 @@ void test_it_is_held_only_while_the_eps_is_fit(void) {
 }
 
 /* Shows: FSM-10 */
-void test_it_ends_in_the_frame_that_says_so(void) {
+void test_it_ends_in_the_frame_that_reports_it(void) {
     static const uint8_t other[8] = {0x10, 0x27};
     trip_at(9123);
     fixture_run(&f, 30);

@@ -69,7 +69,7 @@ static hal_can_frame_t any_frame(void) {
     return frame;
 }
 
-/* What the vehicle says in a frame that the supervisor believes. */
+/* What the vehicle reports in a frame that the supervisor accepts. */
 static void note_button(hal_can_side_t side, const hal_can_frame_t *frame) {
     const bool is_status = side == HAL_CAN_VEHICLE && frame->id == 0x363 && frame->flags == 0 && frame->length == 8;
     if (!is_status) {
@@ -245,8 +245,8 @@ static void judge_step(agv_state_t before, uint32_t before_ms) {
         TEST_ASSERT_NOT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_reason(&f.supervisor));
     }
     TEST_ASSERT_FALSE(before != AGV_STATE_INIT && after == AGV_STATE_INIT);
-    TEST_ASSERT_EQUAL_UINT32(0,
-                             agv_supervisor_counters(&f.supervisor)->gate_refused); /* nobody asks for such a frame */
+    TEST_ASSERT_EQUAL_UINT32(
+        0, agv_supervisor_counters(&f.supervisor)->gate_refused); /* no module hands such a frame to the gate */
 }
 
 static void restart(void) {

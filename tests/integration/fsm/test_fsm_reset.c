@@ -1,4 +1,4 @@
-/* The reset: what it needs, what breaks it, what a press in vain is told. */
+/* The reset: what it needs, what breaks it, what a refused press reports. */
 #include "one_fixture.h"
 #include "walk.h"
 
@@ -158,7 +158,7 @@ static const condition_t CONDITIONS[] = {
     {"no 050h", no_throttle_status, AGV_STATE_SAFE, AGV_MISSING_TRIP_CAUSE | AGV_MISSING_MESSAGES},
     {"not in P", not_in_p, AGV_STATE_TRIPPED, AGV_MISSING_STATE | AGV_MISSING_TRIP_CAUSE},
     {"throttle", throttle, AGV_STATE_SAFE, AGV_MISSING_THROTTLE},
-    {"moving, says the VCU", vcu_says_moving, AGV_STATE_SAFE, AGV_MISSING_STANDSTILL},
+    {"moving, by the VCU's speed", vcu_says_moving, AGV_STATE_SAFE, AGV_MISSING_STANDSTILL},
     {"engaged", engaged, AGV_STATE_TRIPPED, AGV_MISSING_STATE | AGV_MISSING_TRIP_CAUSE | AGV_MISSING_MANUAL},
 };
 
@@ -413,7 +413,7 @@ void test_a_short_press_that_the_loss_of_the_vcu_ends_is_not_reported(void) {
 }
 
 /* Shows: FSM-3, VCU_HEARTBEAT_STUCK */
-void test_a_vcu_that_is_not_alive_says_nothing_of_the_button(void) {
+void test_the_button_of_a_vcu_that_is_not_alive_does_not_count(void) {
     walk_to_safe(&f);
     f.traffic[AGV_MSG_VEHICLE_STATUS].frozen = true;
     fixture_run(&f, 100);

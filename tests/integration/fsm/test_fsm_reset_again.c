@@ -58,7 +58,7 @@ void test_a_second_reset_needs_its_own_second(void) {
     expect_reset_by(1000);
 }
 
-/* The first frame after the start, before any tick, says pressed: that is no press that came after the trip. */
+/* The first frame after the start, before any tick, reports the button pressed: that press did not begin after the trip. */
 /* Shows: FSM-3, FSM-7 */
 void test_a_button_that_is_held_over_a_restart_resets_nothing(void) {
     walk_to_safe(&f);

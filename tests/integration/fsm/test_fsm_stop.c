@@ -112,7 +112,7 @@ void test_wheels_that_stand_at_the_trip_are_seen_to_stand(void) {
     expect_output(&f, true);
 }
 
-/* It stood until then, but when it tripped nobody saw that any more. */
+/* It stood until then, but at the trip its wheel speeds were too old. */
 /* Shows: FSM-12, VEHICLE_NOT_STOPPING, WHEEL_SPEED_TIMEOUT */
 void test_a_trip_because_the_wheels_are_not_seen(void) {
     fixture_active(&f);

@@ -78,7 +78,7 @@ static void fail_at(unsigned bit, const char *why) {
     TEST_FAIL_MESSAGE(text);
 }
 
-/* Found: it is latched for good, whatever the button says. Some of them are followed for longer. */
+/* Found: it is latched for good, whatever the button does. Some of them are followed for longer. */
 static void follow_a_found_one(unsigned bit) {
     const uint32_t ms = bit % 499 == 0 ? 1200 : 3;
     for (uint32_t i = 0; i < ms; i++) {

@@ -113,7 +113,7 @@ void test_every_setting_is_checked_at_both_ends(void) {
     TEST_ASSERT_NULL(agv_setting_info(AGV_SETTING_COUNT));
 }
 
-/* On a shared bus they protect nobody: only the default is accepted. */
+/* On a shared bus they have no effect: only the default is accepted. */
 /* Shows: INT-2, FSM-8, TOP-2 */
 void test_a_setting_without_effect_is_refused(void) {
     static const struct {

@@ -118,7 +118,7 @@ void test_each_kind_is_counted(void) {
     TEST_ASSERT_EQUAL_UINT32(before.received + 23, after->received);
 }
 
-/* A frame of nobody in particular is none of our business, whatever its length. */
+/* A frame with an unknown identifier is ignored, whatever its length. */
 /* Shows: INT-2 */
 void test_other_identifiers_are_received_and_nothing_else(void) {
     fixture_standby(&f);

@@ -54,7 +54,7 @@ void test_the_last_256_events_are_kept(void) {
 }
 
 /* Shows: INT-3, FSM-5 */
-void test_an_event_says_when_in_which_state_and_for_which_reason(void) {
+void test_an_event_has_time_state_and_reason(void) {
     fixture_active(&f);
     const uint32_t first = next_sequence();
     walk_trip(&f);
@@ -85,7 +85,7 @@ void test_the_safety_output_is_recorded_when_it_closes_and_opens(void) {
     fixture_run(&f, 500);
     TEST_ASSERT_EQUAL_UINT32(2, fixture_events(&f, AGV_EVENT_OUTPUT, 0, ANY, &event));
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_BUS_OFF, event.first_reason);
-    TEST_ASSERT_EQUAL_UINT8(0, event.b); /* nothing more is said of it */
+    TEST_ASSERT_EQUAL_UINT8(0, event.b); /* no further parameter */
     TEST_ASSERT_EQUAL_UINT8(0, event.c);
 }
 

@@ -204,7 +204,7 @@ void test_malformed_frames_are_not_scored(void) {
     expect_trip(&f, AGV_FAULT_EPS_UNDER_VOLTAGE, f.traffic[AGV_MSG_EPS_STATUS].call, NO_HOLD);
 }
 
-/* Identifiers of nobody may have any length; they are received and no more. */
+/* Frames with unknown identifiers may have any length; they are counted as received and ignored. */
 /* Shows: P15 */
 void test_frames_of_others(void) {
     fixture_active(&f);

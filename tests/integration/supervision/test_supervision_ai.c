@@ -1,4 +1,4 @@
-/* The AI computer (SUP-8): required while engaged, a warning in manual, forgotten by a reset; and what the VCU says of it.
+/* The AI computer (SUP-8): required while engaged, a warning in manual, forgotten by a reset; and what the VCU reports of it.
  * Hand-worked: the deadline is 350 ms, 43Fh comes each 100 ms, two cycles are 200 ms. */
 #include "expect.h"
 #include "one_fixture.h"
@@ -223,7 +223,7 @@ void test_never_seen(void) {
     expect_led(&f, 14);
 }
 
-/* The 500 ms are those since the frame that told of the engagement, not since the tick after it. */
+/* The 500 ms are those since the frame that reported the engagement, not since the tick after it. */
 /* Shows: SUP-8, FSM-2, AI_HEARTBEAT_LOST */
 void test_never_seen_when_engaged_between_two_ticks(void) {
     f.traffic[AI].muted = true;
@@ -336,7 +336,7 @@ static void trip_and_reset(agv_fault_t fault, bool *how) {
     fixture_active(&f);
     *how = true;
     fixture_run(&f, 1000);
-    reset(); /* a dead AI computer keeps nobody from driving the vehicle away */
+    reset(); /* the vehicle can be driven away manually with a dead AI computer */
     expect_no_fault(AGV_STATE_STANDBY);
     expect_led(&f, 0);
     fixture_run(&f, 5000);
@@ -645,7 +645,7 @@ void test_the_vcus_ai_alarm_beside_another_alarm(void) {
     expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
 }
 
-/* A reset forgets only that the AI computer was alive: the alarm stays armed, also when the very next 363h says engaged. */
+/* A reset forgets only that the AI computer was alive: the alarm stays armed, also when the very next 363h reports autopilot. */
 /* Shows: SUP-8, FSM-11, VCU_AI_CAN_LOST */
 void test_the_vcus_ai_alarm_stays_armed_after_a_reset(void) {
     fixture_active(&f);

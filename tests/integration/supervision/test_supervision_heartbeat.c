@@ -253,7 +253,7 @@ void test_the_deadlines_are_settings(void) {
     expect_trip(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, f.call, NO_HOLD);
 }
 
-/* Engagement begins the deadlines of three commands, and no other: 363h itself says engaged, with a counter that stands. */
+/* Engagement begins the deadlines of three commands, and no other: 363h itself reports autopilot, with a frozen counter. */
 /* Shows: SUP-2, SUP-3, VCU_HEARTBEAT_STUCK */
 void test_an_engagement_is_no_beat_of_the_vcu(void) {
     fixture_standby(&f);

@@ -92,7 +92,7 @@ void test_a_foreign_command_of_any_length(void) {
     }
 }
 
-/* A remote request or a frame with a 29-bit identifier is none, nor is the other set's identifier, nor one of nobody. */
+/* A remote request or a frame with a 29-bit identifier is none, nor is the other set's identifier, nor an unknown one. */
 /* Shows: SUP-6, P1, P15, FOREIGN_COMMAND_SENDER */
 void test_what_is_no_foreign_command(void) {
     static const uint8_t FLAGS[] = {HAL_CAN_EXTENDED, HAL_CAN_REMOTE, HAL_CAN_ERROR};

@@ -1,4 +1,4 @@
-/* The vehicle does what it was told (SUP-11), and two witnesses of its speed agree (SUP-12): budgets. Hand-worked: the tick of a
+/* The vehicle obeys its commands (SUP-11), and both measurements of its speed agree (SUP-12): budgets. Hand-worked: the tick of a
  * frame's own millisecond is the first of a budget, so T ms are over T - 1 ms later; it goes down at half the rate. */
 #include "expect.h"
 #include "one_fixture.h"
@@ -329,7 +329,7 @@ static void expect_warning_at(uint32_t moment_ms) {
 /* 1000 mm/s of the VCU (3600 counts): a quarter of it and 500 are 750, so wheels at 250 agree, at 249 they do not. And the
  * other way round: wheels at 2000 allow 1000. */
 /* Shows: SUP-12, SPEED_IMPLAUSIBLE */
-void test_two_witnesses_of_speed(void) {
+void test_two_measurements_of_speed(void) {
     fixture_standby(&f);
     set_speeds(3600, 250, 250);
     fixture_run(&f, 3000);
@@ -348,7 +348,7 @@ void test_two_witnesses_of_speed(void) {
 }
 
 /* Shows: SUP-12, SPEED_IMPLAUSIBLE */
-void test_wheels_faster_than_the_vcu_says(void) {
+void test_wheels_faster_than_the_vcu_reports(void) {
     fixture_standby(&f);
     set_speeds(3600, 2004, 2004);
     expect_warning_at(f.now_ms + 999u);

@@ -388,7 +388,7 @@ void test_gateway_compares_with_what_was_sent_on(void) {
     check_gateway(4000, 624);
 }
 
-/* Tripped, the gateway sends nothing on: what the AI computer goes on commanding is not what the steering was told. */
+/* Tripped, the gateway sends nothing on: what the AI computer goes on commanding is not what the steering was commanded. */
 /* Shows: SUP-10, TOP-2, STEERING_DEVIATION */
 void test_a_command_that_was_not_sent_on_is_not_compared(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;

@@ -18,7 +18,7 @@ void test_it_is_fed_in_every_state_while_all_activities_check_in(void) {
     }
 }
 
-/* Frames still come in, steps are made: but nobody looks whether there are more. */
+/* Frames still come in and ticks are made, but the receive path does not check in. */
 /* Shows: TIM-3 */
 void test_it_is_not_fed_without_the_receive_path(void) {
     fixture_standby(&f);
@@ -166,7 +166,7 @@ void test_init_is_not_left_while_steps_stay_away(void) {
     expect_fault(&f, AGV_FAULT_STEP_OVERRUN, true);
 }
 
-/* Only ticks judge deadlines: nobody notices that the VCU is silent; and a press that is released meanwhile resets nothing. */
+/* Only ticks judge deadlines: the silence of the VCU is not noticed; and a press that is released meanwhile resets nothing. */
 /* Shows: TIM-4, FSM-3, FSM-4 */
 void test_no_reset_is_accepted_while_steps_stay_away(void) {
     fixture_standby(&f);

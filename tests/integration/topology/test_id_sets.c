@@ -1,5 +1,5 @@
 /* The two identifier sets (P1): 43Fh and 363h, or 201h and 203h. Each is supervised alike; traffic on the other set's
- * identifiers is never accepted, and is told as WRONG_ID_SET. And identifiers that are changed one by one. */
+ * identifiers is never accepted, and is reported as WRONG_ID_SET. And identifiers that are changed one by one. */
 #include "expect.h"
 #include "one_fixture.h"
 
@@ -185,7 +185,7 @@ void test_the_time_is_a_setting(void) {
     expect_fault(&f, WRONG, true);
 }
 
-/* Nobody is heard on the own identifiers, but nobody on the others either. */
+/* No frame comes on the own identifiers, and none on the others. */
 /* Shows: P1, WRONG_ID_SET */
 void test_silence_alone_is_no_wrong_set(void) {
     for (unsigned i = 0; i < SET_COUNT; i++) {
@@ -198,7 +198,7 @@ void test_silence_alone_is_no_wrong_set(void) {
     }
 }
 
-/* A VCU that is silent, and frames of nobody, or of an identifier of the other set that comes from the wrong side. */
+/* A VCU that is silent, and frames with unknown identifiers, or with an identifier of the other set that comes from the wrong side. */
 /* Shows: P1, WRONG_ID_SET */
 void test_what_is_not_of_the_other_set(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
@@ -246,7 +246,7 @@ void test_every_identifier_may_be_another_one(void) {
     TEST_ASSERT_EQUAL_UINT32(11, fixture_count_sent(&f, 0x168));
 }
 
-/* D on the identifier of the gear command is answered; 43Fh, 065h are nobody's now. */
+/* D on the identifier of the gear command is answered; 43Fh and 065h are unknown identifiers now. */
 /* Shows: P1, TOP-1 */
 void test_a_foreign_command_is_one_on_the_changed_identifier(void) {
     change_ids();

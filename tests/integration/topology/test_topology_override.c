@@ -103,7 +103,7 @@ void test_a_command_that_does_not_differ_is_not_answered(void) {
 }
 
 /* Shows: TOP-1, INT-2, P15 */
-void test_a_command_of_another_length_is_answered_whatever_it_says(void) {
+void test_a_command_of_another_length_is_answered_whatever_its_bytes(void) {
     for (uint8_t length = 0; length < 8; length++) {
         for (unsigned i = 0; i < sizeof THE_SAME / sizeof THE_SAME[0]; i++) {
             uint8_t data[8] = {0};

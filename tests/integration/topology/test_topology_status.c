@@ -72,7 +72,7 @@ void test_the_status_frame_may_be_switched_off(void) {
 }
 
 /* Shows: TOP-3 */
-void test_the_status_frame_says_state_first_reason_output_and_configuration(void) {
+void test_the_status_frame_has_state_first_reason_output_and_configuration(void) {
     f.config.status_frame_id = STATUS_ID;
     fixture_start(&f);
     expect_status(AGV_STATE_INIT, AGV_FAULT_NONE, 0);
@@ -90,7 +90,7 @@ void test_the_status_frame_says_state_first_reason_output_and_configuration(void
 }
 
 /* Shows: TOP-3 */
-void test_the_status_frame_says_it_in_the_gateway_too(void) {
+void test_the_status_frame_of_a_gateway_has_them_too(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
     f.config.status_frame_id = STATUS_ID;
     f.long_run = true;

@@ -629,7 +629,7 @@ void test_wheel_speed_takes_the_whole_range(void) {
 }
 
 /* What agv_unpack_X returns, for every value of the bytes that it judges. */
-void test_value_is_valid_says_what_unpack_says(void) {
+void test_value_is_valid_agrees_with_unpack(void) {
     agv_gear_command_t gear;
     agv_throttle_command_t throttle;
     agv_steering_command_t steering;

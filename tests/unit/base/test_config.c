@@ -227,7 +227,7 @@ void test_the_status_frame_may_not_have_an_identifier_that_was_changed(void) {
     expect_good();
 }
 
-/* By hand: what protects nobody on a shared bus is refused there, and the others are not. */
+/* By hand: what has no effect on a shared bus is refused there, and the others are not. */
 /* Shows: FSM-8, TOP-2, INT-2 */
 void test_what_has_no_effect_on_a_shared_bus_is_refused(void) {
     static const uint16_t gateway_only[] = {AGV_SETTING_own_heartbeat,
@@ -263,7 +263,7 @@ void test_the_first_setting_without_effect_is_named(void) {
     config.fast_mm_s = 1;
     config.throttle_ceiling_pct = 50;
     expect_problem(AGV_CONFIG_NEEDS_GATEWAY, AGV_SETTING_throttle_ceiling_pct);
-    config.throttle_ceiling_pct = 101; /* out of range says more */
+    config.throttle_ceiling_pct = 101; /* out of range is the more specific problem */
     expect_problem(AGV_CONFIG_OUT_OF_RANGE, AGV_SETTING_throttle_ceiling_pct);
 }
 
@@ -382,7 +382,7 @@ void test_the_highest_ranking_weak_fault_is_named(void) {
 }
 
 /* Of several things the setting is what is wrong; the fault is named as well. */
-void test_a_setting_is_told_before_a_weak_fault(void) {
+void test_a_setting_is_reported_before_a_weak_fault(void) {
     config.trips = (agv_fault_set_t){0};
     config.mode_frames = 0;
     expect_problem(AGV_CONFIG_OUT_OF_RANGE, AGV_SETTING_mode_frames);

@@ -145,7 +145,7 @@ void test_a_sum_at_its_limit_raises_it_again_at_once(void) {
     expect(false);
 }
 
-/* Each sum by its own ms: one that is full says nothing of the other. */
+/* Each sum by its own ms: one that is full does not change the other. */
 /* Shows: FSM-4 */
 void test_a_full_sum_of_the_one_raises_nothing_for_the_other(void) {
     agv_confirmation_park_sent(&confirmation);

@@ -31,7 +31,7 @@ static void tick(uint32_t now_ms) {
     agv_fault_monitor_tick(&monitor, &timers);
 }
 
-/* Where nothing has changed nothing is said of what. */
+/* Where nothing has changed no fault is reported. */
 static void evaluate_with(bool ai_loss_warns) {
     agv_fault_monitor_evaluate(&monitor, &config.trips, ai_loss_warns, &changes);
     if (!changes.any) {
@@ -174,7 +174,7 @@ void test_a_trip_is_raised_once_and_its_cause_stands(void) {
     expect_set(NONE, &monitor.tripping);
 }
 
-/* It has not ended, and so nothing has changed to be told; but it trips once more. */
+/* It has not ended, and so no change is reported; but it trips once more. */
 /* Shows: FSM-11 */
 void test_every_occurrence_of_an_event_is_raised(void) {
     for (uint32_t ms = 0; ms < 3; ms++) {
@@ -222,7 +222,7 @@ void test_a_warning_changes_but_is_no_trip(void) {
     expect_summary(AGV_FAULT_EPS_TEMP_ABOVE_110, AGV_FAULT_EPS_TEMP_ABOVE_110, NONE, NONE);
 }
 
-/* What came and went between two evaluations is not told. */
+/* What came and went between two evaluations is not reported. */
 void test_what_is_over_again_has_not_changed(void) {
     set(AGV_FAULT_BUS_OFF, true);
     set(AGV_FAULT_BUS_OFF, false);
@@ -252,7 +252,7 @@ void test_the_highest_ranking_one_of_each_kind(void) {
 }
 
 /* Shows: FSM-10 */
-void test_a_fault_of_the_eps_is_told_whatever_its_class(void) {
+void test_a_fault_of_the_eps_is_reported_whatever_its_class(void) {
     set(AGV_FAULT_EPS_UNDER_VOLTAGE, true);
     evaluate();
     TEST_ASSERT_TRUE(monitor.summary.eps_fault);

@@ -126,7 +126,7 @@ void test_every_angle_may_be_held(void) {
 }
 
 /* Shows: FSM-10 */
-void test_a_drop_says_whether_there_was_an_angle(void) {
+void test_a_drop_reports_whether_an_angle_was_held(void) {
     TEST_ASSERT_FALSE(agv_hold_drop(&hold));
     measured(9123, 10);
     trip(20);

@@ -161,7 +161,7 @@ void test_a_press_from_before_the_trip_does_not_count(void) {
     expect_reset();
 }
 
-/* The same when nobody looked at the button since the last reset: in STANDBY it was pressed, then came the trip. */
+/* The same when the button was not evaluated since the last reset: in STANDBY it was pressed, then came the trip. */
 /* Shows: FSM-3 */
 void test_a_press_in_standby_is_one_from_before_the_trip(void) {
     agv_reset_button_report(&reset, true, false, true);
@@ -187,7 +187,7 @@ void test_a_press_after_a_trip_from_standby_counts(void) {
     expect_reset();
 }
 
-/* The first frame of all says "down": nobody has seen the edge. */
+/* The first frame of all reports the button down: the edge was not seen. */
 /* Shows: FSM-3, FSM-7 */
 void test_a_button_that_is_stuck_resets_nothing(void) {
     reset = (agv_reset_button_t){0};
@@ -283,7 +283,7 @@ void test_what_the_releasing_frame_lacks(void) {
 
 /* All that was missing in the second, at different moments; not what was missing before. */
 /* Shows: FSM-3 */
-void test_everything_that_was_missing_is_told(void) {
+void test_all_missing_conditions_are_reported(void) {
     lacking = AGV_MISSING_EPS_HEARTBEAT;
     frame(true);
     run(1000);
@@ -337,7 +337,7 @@ void test_a_press_in_vain_that_the_loss_of_the_vcu_ends(void) {
 }
 
 /* Shows: FSM-3 */
-void test_a_short_press_that_the_loss_of_the_vcu_ends_is_not_told(void) {
+void test_a_short_press_ended_by_the_loss_of_the_vcu_is_not_reported(void) {
     frame(true);
     run(900);
     lose_vcu();
@@ -370,7 +370,7 @@ static void frame_without_receiver(bool down) {
     step(0);
 }
 
-/* "Not pressed" is then nobody's release. */
+/* "Not pressed" is then no release. */
 /* Shows: FSM-3 */
 void test_a_press_that_the_loss_of_the_remote_ends(void) {
     frame(true);
@@ -400,9 +400,9 @@ void test_a_press_from_before_the_remote_came_back_resets_nothing(void) {
     expect_reset();
 }
 
-/* A short press that it ends is told no more than any other. */
+/* A short press that it ends is reported no more than any other. */
 /* Shows: FSM-3 */
-void test_a_short_press_that_the_loss_of_the_remote_ends_is_not_told(void) {
+void test_a_short_press_ended_by_the_loss_of_the_remote_is_not_reported(void) {
     frame(true);
     run(999);
     frame_without_receiver(false);

@@ -92,7 +92,7 @@ static void step(uint32_t after_ms) {
     TEST_ASSERT_EQUAL_UINT8(first_reason, did.first_reason);
     TEST_ASSERT_EQUAL(machine.state != from, has_done(AGV_ACTION_STATE));
     TEST_ASSERT_TRUE(agv_state_machine_is_sound(&machine));
-    facts.raised = AGV_FAULT_NONE; /* told once */
+    facts.raised = AGV_FAULT_NONE; /* reported once */
 }
 
 static uint32_t lacks(void) {
@@ -188,7 +188,7 @@ void test_what_keeps_init(void) {
 }
 
 /* Shows: STARTUP_TIMEOUT */
-void test_after_10_s_the_start_says_once_what_is_missing(void) {
+void test_after_10_s_the_start_reports_once_what_is_missing(void) {
     facts.missing = AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_THROTTLE;
     facts.moving = true;
     facts.cause = AGV_FAULT_BUS_OFF;
@@ -325,7 +325,7 @@ void test_what_is_unsafe_for_the_output_opens_it_at_once(void) {
     TEST_ASSERT_FALSE(machine.output_closed);
 }
 
-/* What presses reset, reset_button.c says. */
+/* Which presses reset: see reset_button.c. */
 /* Shows: FSM-3 */
 void test_a_press_that_resets(void) {
     to_safe();

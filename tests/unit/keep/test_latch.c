@@ -12,7 +12,7 @@ struct hal {
 };
 static hal_t hal;
 
-/* What the store holds, and what it says that it holds. */
+/* What the store holds, and the size that it reports. */
 static uint8_t stored[HAL_STORE_LATCH_SIZE_MAX];
 static size_t stored_size;
 static bool write_works;

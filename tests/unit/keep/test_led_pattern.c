@@ -33,7 +33,7 @@ static void expect_pattern(int8_t code, bool shadow, const bool *pattern, uint32
         const bool switched = agv_led_tick(&led, code, shadow, (ms == 0) ? 5 : 1);
         shown = switched ? led.on : shown;
         TEST_ASSERT_EQUAL(pattern[ms % length], led.on);
-        TEST_ASSERT_EQUAL(led.on, shown); /* whoever switches when told to shows the same */
+        TEST_ASSERT_EQUAL(led.on, shown); /* a LED that is switched on each change shows the same */
     }
 }
 

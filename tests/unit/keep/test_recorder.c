@@ -59,7 +59,7 @@ void test_what_has_no_kind_is_no_event(void) {
     expect_gone(0);
 }
 
-void test_an_event_holds_what_was_said_of_it(void) {
+void test_an_event_holds_its_parameters(void) {
     const uint8_t gear[8] = {8, 0, 0, 0, 0, 0, 0, 1};
     const uint8_t wheels[8] = {1, 2, 3, 4, 5, 6, 7, 8};
     agv_event_t event;
@@ -265,7 +265,7 @@ void test_every_event_is_stored_once_and_in_order(void) {
     add(3);
     const agv_event_t *event = agv_recorder_next_to_store(&recorder);
     TEST_ASSERT_EQUAL_UINT32(0, event->sequence);
-    TEST_ASSERT_EQUAL_PTR(event, agv_recorder_next_to_store(&recorder)); /* until it is said to be stored */
+    TEST_ASSERT_EQUAL_PTR(event, agv_recorder_next_to_store(&recorder)); /* until it is reported as stored */
     TEST_ASSERT_EQUAL_UINT32(3, store_all(0));
     add(1);
     TEST_ASSERT_EQUAL_UINT32(1, store_all(3));
@@ -310,7 +310,7 @@ void test_a_ring_of_holes_stores_nothing_but_the_last(void) {
 
 /* ---- The last 8 trips ---- */
 
-/* A change to TRIPPED for this reason, at a time that says which it was. */
+/* A change to TRIPPED for this reason, at a time that identifies it. */
 static void trip(uint32_t number) {
     const agv_entry_t entry = {.kind = AGV_EVENT_STATE,
                                .a = AGV_STATE_ACTIVE,

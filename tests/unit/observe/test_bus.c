@@ -99,7 +99,7 @@ void test_error_passive(void) {
 }
 
 /* Shows: SUP-7 */
-void test_an_overrun_is_told_once(void) {
+void test_an_overrun_is_reported_once(void) {
     controller.overrun_count = 3; /* four more, across the wrap */
     TEST_ASSERT_EQUAL_HEX(OVERRUN, look(0));
     TEST_ASSERT_EQUAL_HEX(0, look(1));
@@ -111,7 +111,7 @@ void test_a_frame_that_waits_for_too_long(void) {
     TEST_ASSERT_EQUAL_HEX(0, look(0));
     controller.tx_pending_ms = 51;
     TEST_ASSERT_EQUAL_HEX(STALLED, look(1));
-    enter_bus_off(); /* says more than "stalled" */
+    enter_bus_off(); /* more specific than "stalled" */
     TEST_ASSERT_EQUAL_HEX(OFF, look(2));
 }
 

@@ -243,7 +243,7 @@ static void repeat_until(uint32_t last_frame_ms) {
 void test_a_counter_that_stands_still_is_stuck(void) {
     repeat_until(140);
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_STUCK);
-    beat(AGV_NODE_VCU, 2, 155); /* the old counter revives nobody */
+    beat(AGV_NODE_VCU, 2, 155); /* the old counter is no sign of life */
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_STUCK);
     beat(AGV_NODE_VCU, 3, 160);
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
@@ -276,7 +276,7 @@ void test_silence_is_lost(void) {
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
 }
 
-/* In manual a forgotten AI computer is nobody's concern; the value from before the reset is the baseline. */
+/* In manual a forgotten AI computer is not supervised; the value from before the reset is the baseline. */
 /* Shows: SUP-8 */
 void test_a_forgotten_ai_is_seen_again_when_its_counter_changes(void) {
     beat(AGV_NODE_AI, 1, 0);

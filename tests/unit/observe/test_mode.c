@@ -77,7 +77,7 @@ void test_the_two_bits_of_the_mode(void) {
     }
 }
 
-/* Manual is what the last frame says; the engagement ends with the third in a row. */
+/* Manual is what the last frame reports; the engagement ends with the third in a row. */
 /* Shows: FSM-10 */
 void test_the_third_frame_without_the_bit_ends_the_engagement(void) {
     TEST_ASSERT_EQUAL(AGV_MODE_SAME, report(MANUAL, 0));

@@ -1,4 +1,4 @@
-/* Whether the vehicle does what it was told: steering, throttle, gear, autopilot off, P; and its two speeds. */
+/* Whether the vehicle obeys its commands: steering, throttle, gear, autopilot off, P; and its two speeds. */
 #include "observe/motion_checks.h"
 
 #include "agv/codec.h"
@@ -540,7 +540,7 @@ void test_speeds_are_compared_always(void) {
 }
 
 /* Shows: SUP-12 */
-void test_both_witnesses_have_to_be_there(void) {
+void test_both_measurements_are_needed(void) {
     speeds(5000, 5000, 0);
     vehicle.vcu_speed_seen = false;
     expect_never(SPEED);

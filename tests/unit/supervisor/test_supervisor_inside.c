@@ -24,13 +24,13 @@ static void seal(void) {
     f.supervisor.seal = agv_seal(core, sizeof *core);
 }
 
-/* Start from a configuration as it stands in memory, checked by nobody. */
+/* Start from a configuration as it stands in memory, unchecked. */
 static void begin(void) {
     agv_core_begin(core, &f.ports, 0);
     seal();
 }
 
-/* 20000 is no angle. The fault is there at once, and is told in the next call. */
+/* 20000 is no angle. The fault is there at once, and is reported in the next call. */
 /* Shows: INT-4, FSM-10, TX_GATE_REFUSED */
 void test_an_answer_that_the_gate_refuses_is_a_fault(void) {
     static const uint8_t other_angle[8] = {1};
@@ -52,7 +52,7 @@ void test_a_frame_of_its_own_that_the_gate_refuses_trips(void) {
     fixture_standby(&f);
     const agv_tx_orders_t orders = agv_core_orders(core, &f.ports);
     agv_transmitter_pass(&core->transmitter, &orders, AGV_MSG_GEAR_COMMAND,
-                         drive); /* shared bus: nobody may send this */
+                         drive); /* shared bus: this may not be sent */
     agv_core_take_tx_report(core);
     TEST_ASSERT_TRUE((agv_core_decide(core, &f.ports, 0).actions.what & AGV_ACTION_TRIP) != 0u);
     expect_state(&f, AGV_STATE_TRIPPED);
@@ -210,9 +210,9 @@ void test_a_flipped_bit_in_the_identifiers_is_mended(void) {
     TEST_ASSERT_EQUAL_HEX16(0x168, core->ids.of[AGV_MSG_GEAR_COMMAND]);
 }
 
-/* A frame that decides nothing tells nothing again of what the call before it has told. */
+/* A frame that decides nothing does not report again what the call before it has reported. */
 /* Shows: INT-3 */
-void test_a_frame_of_nobody_after_a_fault_records_nothing(void) {
+void test_a_frame_of_no_message_after_a_fault_records_nothing(void) {
     fixture_standby(&f);
     f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x10; /* EPS_TEMP_ABOVE_110 warns */
     fixture_send_now(&f, AGV_MSG_EPS_STATUS);

@@ -295,7 +295,7 @@ void test_in_shadow_mode_nothing_reaches_the_hal(void) {
     TEST_ASSERT_EQUAL(AGV_GATE_REFUSED, agv_gate_send(&gate, &hal, HAL_CAN_VEHICLE, &frame));
 }
 
-/* Whatever the protocol says: the gate goes by the identifiers that it is handed. */
+/* The gate goes by the identifiers that it is handed, not by those of the protocol. */
 /* Shows: INT-4, P1 */
 void test_the_gate_goes_by_the_identifiers_of_this_vehicle(void) {
     static const uint8_t park[8] = {8};

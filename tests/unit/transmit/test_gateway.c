@@ -138,7 +138,7 @@ void test_only_168h_changes_the_gear(void) {
 
 /* ---- How they pass ---- */
 
-/* P14: the document says nothing of the other bits. */
+/* P14: the document does not define the other bits. */
 /* Shows: TOP-2, P14 */
 void test_reserved_bits_are_passed_as_0(void) {
     static const struct {

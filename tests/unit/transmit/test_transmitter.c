@@ -481,7 +481,7 @@ void test_a_dropped_command_does_not_stall(void) {
     TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
 }
 
-/* What the vehicle was told is what left, when it left. */
+/* What the vehicle was commanded is what left, when it left. */
 /* Shows: SUP-5, SUP-11 */
 void test_what_was_passed_on_is_reported_when_it_has_left(void) {
     be_gateway();
@@ -508,7 +508,7 @@ static void end_engagement(void) {
     agv_transmitter_end_engagement(&transmitter, &orders);
 }
 
-/* One, and at once, however lately a 075h passed; it is no pass and nobody is told that it was commanded. */
+/* One, and at once, however lately a 075h passed; it is no pass and is not reported as a command. */
 /* Shows: TOP-2 */
 void test_an_engagement_ends_with_throttle_0(void) {
     static const uint8_t half[8] = {125};
