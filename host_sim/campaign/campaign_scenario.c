@@ -87,8 +87,6 @@ static void add_output(campaign_text_t *text, const campaign_judge_t *judge) {
                           bound_ms(plan));
     } else if ((judge->opened_us != CAMPAIGN_NEVER) && (judge->broken != CAMPAIGN_FALSE_TRIP)) {
         campaign_text_add(text, "    - {closed: false, at_ms: %" PRIu64 "}\n", judge->opened_us / US_PER_MS);
-    } else {
-        /* it stays closed */
     }
 }
 

@@ -34,6 +34,16 @@ typedef struct {
     const char *words; /**< "a|b|c" */
 } option_t;
 
+/** @name Rows of a table of options @{ */
+#define OPTION_FLAG(name_, help_, target) {.name = (name_), .help = (help_), .flag = (target)}
+#define OPTION_TEXT(name_, value_, help_, target)                                                                      \
+    {.name = (name_), .value = (value_), .help = (help_), .text = (target)}
+#define OPTION_NUMBER(name_, value_, help_, target, low, high)                                                         \
+    {.name = (name_), .value = (value_), .help = (help_), .number = (target), .lowest = (low), .highest = (high)}
+#define OPTION_WORD(name_, help_, target, list)                                                                        \
+    {.name = (name_), .value = (list), .help = (help_), .word = (target), .words = (list)}
+/** @} */
+
 /** Options that belong together in `--help`. */
 typedef struct {
     const char *title; /**< "Options" */

@@ -13,18 +13,11 @@ void config_options_init(config_options_t *options, option_t rows[CONFIG_OPTIONS
     options->shadow = false;
     options->has_ai_side = false;
     const option_t all[CONFIG_OPTIONS] = {
-        {.name = "--config", .value = "FILE", .help = "settings (YAML); see host_sim config", .text = &options->path},
-        {.name = "--topology",
-         .value = "shared|gateway",
-         .help = "one bus for all, or an AI side and a vehicle side",
-         .word = &options->topology,
-         .words = "shared|gateway"},
-        {.name = "--id-set",
-         .value = "heading|table",
-         .help = "43Fh and 363h, or 201h and 203h",
-         .word = &options->id_set,
-         .words = "heading|table"},
-        {.name = "--shadow", .help = "supervise, but send nothing", .flag = &options->shadow},
+        OPTION_TEXT("--config", "FILE", "settings (YAML); see host_sim config", &options->path),
+        OPTION_WORD("--topology", "one bus for all, or an AI side and a vehicle side", &options->topology,
+                    "shared|gateway"),
+        OPTION_WORD("--id-set", "43Fh and 363h, or 201h and 203h", &options->id_set, "heading|table"),
+        OPTION_FLAG("--shadow", "supervise, but send nothing", &options->shadow),
     };
     (void)memcpy(rows, all, sizeof all);
 }

@@ -192,8 +192,6 @@ static void tolerate_frames(scenario_t *scenario, uint32_t by_ms) {
             frame->jitter_ms += by_ms;
         } else if (frame->count.to == UINT32_MAX) {
             widen(&frame->at_ms, by_ms);
-        } else {
-            /* as many as that fall into just this time */
         }
     }
     for (size_t i = 0u; i < expect->never.count; i++) {

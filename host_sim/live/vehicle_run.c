@@ -80,8 +80,6 @@ static void operate(run_t *run, uint64_t now_ms) {
     } else if (!run->was_refused) {
         vehicle_show_event(&run->show, run->bus.now_ms, "operator", "engage: refused, autopilot off is commanded");
         run->was_refused = true;
-    } else {
-        /* said already */
     }
 }
 
@@ -121,8 +119,6 @@ static void obey(run_t *run, const char *line) {
         vehicle_show_status(&run->show);
     } else if (vehicle_words_typed(line, &run->request->config, &words)) {
         act(run, &words);
-    } else {
-        /* was reported */
     }
 }
 

@@ -204,8 +204,6 @@ static void print_item(int *column, const char *item) {
     } else if (*column > HELP_INDENT) {
         (void)printf(", ");
         *column += 2;
-    } else {
-        /* the first one */
     }
     (void)printf("%s", item);
     *column += length;

@@ -91,8 +91,6 @@ static void send_of_vehicle(void *ctx, vehicle_node_t from, hal_can_side_t side,
     } else if (!world->stranger_powered[side]) {
         world->stranger_powered[side] = true; /* before that nobody is there who would acknowledge */
         sim_bus_set_power(&world->buses[side], number, true);
-    } else {
-        /* it goes on sending */
     }
     if (!sim_bus_send(&world->buses[side], number, frame)) {
         world->lost_frames++;

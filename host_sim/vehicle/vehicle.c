@@ -100,8 +100,6 @@ int32_t vehicle_swing_ddeg(const vehicle_swing_t *swing, uint64_t now_ms) {
         quarters -= 4 * period_ms;
     } else if (quarters > period_ms) {
         quarters = (2 * period_ms) - quarters;
-    } else {
-        /* the first quarter goes up */
     }
     return (int32_t)(swing->amplitude_ddeg * quarters / period_ms);
 }

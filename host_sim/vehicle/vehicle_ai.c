@@ -65,8 +65,6 @@ void vehicle_ai_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_frame
         hear_gear(vehicle, frame->data[0]);
     } else if (frame->id == vehicle->id[AGV_MSG_WHEEL_SPEED]) {
         hear_wheels(ai, frame->data);
-    } else {
-        /* of no interest */
     }
 }
 

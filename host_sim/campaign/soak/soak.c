@@ -216,8 +216,6 @@ static status_t conclude(soak_t *soak) {
         (void)fflush(stdout); /* seen whatever becomes of the files; a failure is reported at the end of the program */
     } else if (soak->state.broken[0] != '\0') {
         note("BROKEN: %s", soak->state.broken);
-    } else {
-        /* the results say it */
     }
     const bool saved = soak_save(soak);
     if (!write_results(soak) || !saved) {
@@ -266,8 +264,6 @@ status_t soak_run(const soak_request_t *request) {
         } else if (went == INTERRUPTED) {
             note("interrupted after %" PRIu64 " simulated hours%s", soak->state.t_ms / SOAK_MS_PER_HOUR,
                  (request->checkpoint != NULL) ? "; the same command resumes" : "");
-        } else {
-            /* reported */
         }
     }
     output_discard(&soak->file);

@@ -63,11 +63,7 @@ static void on_event(void *ctx, const session_event_t *event) {
         } else if (soak->state.ready) {
             soak_break(soak, "%s at %" PRIu64 " ms, in: %s", agv_fault_name((agv_fault_t)recorded->a), event->t_ms,
                        present_row(soak));
-        } else {
-            /* at the start everybody is late */
         }
-    } else {
-        /* outputs are looked at, not told of */
     }
 }
 
@@ -88,8 +84,6 @@ static void judge_slot(soak_t *soak, uint64_t t_ms) {
                    state->status_frames, t_ms, slot_ms, present_row(soak));
     } else if ((t_ms > slot_ms) && (t_ms - slot_ms > state->status_late_ms)) {
         state->status_late_ms = (uint32_t)(t_ms - slot_ms);
-    } else {
-        /* in time */
     }
 }
 
@@ -127,8 +121,6 @@ static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, co
         judge_status(soak, t_us, frame);
     } else if (!soak->gateway && soak->state.ready && (t_us > (soak->state.ready_ms + HANDED_OVER_MS) * US_PER_MS)) {
         soak_break(soak, "%03" PRIX32 "h sent at %" PRIu64 " us", frame->id, t_us);
-    } else {
-        /* passed on */
     }
 }
 

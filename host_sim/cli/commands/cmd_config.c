@@ -13,7 +13,7 @@ status_t cmd_config(int argc, char **argv) {
     config_options_init(&given, config_rows);
     bool to_kconfig = false;
     const option_t rows[] = {
-        {.name = "--to-kconfig", .help = "print a Kconfig fragment for the firmware instead", .flag = &to_kconfig},
+        OPTION_FLAG("--to-kconfig", "print a Kconfig fragment for the firmware instead", &to_kconfig),
     };
     const option_group_t groups[] = {
         {.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]},

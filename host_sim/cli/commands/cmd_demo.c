@@ -42,14 +42,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     option_t config_rows[CONFIG_OPTIONS];
     config_options_init(&given->config, config_rows);
     const option_t rows[] = {
-        {.name = "--scenario",
-         .value = "NAME",
-         .help = "another scenario: its name, or the path of a file",
-         .text = &given->scenario},
-        {.name = "--events",
-         .value = "FILE",
-         .help = "events as JSON Lines; - prints them in place of the timeline",
-         .text = &given->events},
+        OPTION_TEXT("--scenario", "NAME", "another scenario: its name, or the path of a file", &given->scenario),
+        OPTION_TEXT("--events", "FILE", "events as JSON Lines; - prints them in place of the timeline", &given->events),
     };
     const option_group_t groups[] = {
         {.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]},

@@ -72,26 +72,20 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     option_t config_rows[CONFIG_OPTIONS];
     config_options_init(&given->config, config_rows);
     const option_t rows[] = {
-        {.name = "--junit", .value = "FILE", .help = "results as JUnit XML", .text = &given->junit},
-        {.name = "--events", .value = "FILE", .help = "events as JSON Lines (of one scenario)", .text = &given->events},
-        {.name = "--bus",
-         .value = "sim|IF[,IF]",
-         .help =
-             "the simulated bus in virtual time (sim), or CAN interfaces (of the vehicle, of the AI side) in real time",
-         .text = &given->bus},
-        {.name = "--tolerance",
-         .value = "MS",
-         .help = "on CAN interfaces: tolerance of all times (50)",
-         .number = &given->tolerance_ms,
-         .highest = TOLERANCE_MAX_MS},
-        {.name = "--supervisor",
-         .value = "COMMAND",
-         .help = "on CAN interfaces: start this external supervisor; it prints its events as JSON Lines",
-         .text = &given->supervisor},
-        {.name = "--sent",
-         .value = "FILE",
-         .help = "on CAN interfaces: candump log of the frames that the supervisor sent (of one scenario)",
-         .text = &given->sent},
+        OPTION_TEXT("--junit", "FILE", "results as JUnit XML", &given->junit),
+        OPTION_TEXT("--events", "FILE", "events as JSON Lines (of one scenario)", &given->events),
+        OPTION_TEXT(
+            "--bus", "sim|IF[,IF]",
+            "the simulated bus in virtual time (sim), or CAN interfaces (of the vehicle, of the AI side) in real time",
+            &given->bus),
+        OPTION_NUMBER("--tolerance", "MS", "on CAN interfaces: tolerance of all times (50)", &given->tolerance_ms, 0,
+                      TOLERANCE_MAX_MS),
+        OPTION_TEXT("--supervisor", "COMMAND",
+                    "on CAN interfaces: start this external supervisor; it prints its events as JSON Lines",
+                    &given->supervisor),
+        OPTION_TEXT("--sent", "FILE",
+                    "on CAN interfaces: candump log of the frames that the supervisor sent (of one scenario)",
+                    &given->sent),
     };
     const option_group_t groups[] = {
         {.title = "Options (FILE may be -, standard output)", .options = rows, .count = sizeof rows / sizeof rows[0]},
@@ -279,8 +273,6 @@ static bool play(work_t *work, const char *file, result_t *result) {
         return false;
     } else if (result->left_out != NULL) {
         return true;
-    } else {
-        /* played */
     }
     if ((work->given.events != NULL) && (work->given.supervisor == NULL)) {
         events_write_summary(&work->outputs[EVENTS], &summary);

@@ -23,23 +23,15 @@ typedef struct {
 
 static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_t rows[] = {
-        {.name = "--hours",
-         .value = "N",
-         .help = "hours of virtual time, of all shards together; a year has 8760",
-         .number = &given->hours,
-         .lowest = 1u,
-         .highest = HOURS_MAX},
-        {.name = "--seed",
-         .value = "S",
-         .help = "random seed; the same seed gives the same disturbances",
-         .number = &given->seed,
-         .highest = INT64_MAX},
-        {.name = "--shard", .value = "I/N", .help = "only stretch I of N of the time (1/1)", .text = &given->shard},
-        {.name = "--checkpoint",
-         .value = "FILE",
-         .help = "saved every 6 simulated hours and when interrupted; resumed from if it exists",
-         .text = &given->request.checkpoint},
-        {.name = "--results", .value = "FILE", .help = "results as a line of JSON", .text = &given->request.results},
+        OPTION_NUMBER("--hours", "N", "hours of virtual time, of all shards together; a year has 8760", &given->hours,
+                      1, HOURS_MAX),
+        OPTION_NUMBER("--seed", "S", "random seed; the same seed gives the same disturbances", &given->seed, 0,
+                      INT64_MAX),
+        OPTION_TEXT("--shard", "I/N", "only stretch I of N of the time (1/1)", &given->shard),
+        OPTION_TEXT("--checkpoint", "FILE",
+                    "saved every 6 simulated hours and when interrupted; resumed from if it exists",
+                    &given->request.checkpoint),
+        OPTION_TEXT("--results", "FILE", "results as a line of JSON", &given->request.results),
     };
     const option_group_t groups[] = {{.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]}};
     const option_syntax_t syntax = {
