@@ -23,7 +23,7 @@ static uint64_t pair_at(const unsigned char *bytes) {
     return pair;
 }
 
-/* What is folded in one turn: a loop costs more than what it does, at every call of the supervisor. */
+/* Bytes per turn of the loop, which is unrolled: the checksum is calculated at every call of the supervisor. */
 enum { PAIR_SIZE = 8, TURN_SIZE = 4 * PAIR_SIZE };
 
 uint32_t agv_seal(const void *words, size_t size) {

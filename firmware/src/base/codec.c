@@ -2,14 +2,14 @@
  * @file codec.c
  * The payload of each of the 11 messages (docs/protocol.md, P2 to P14 and P18).
  *
- * How it is kept quick and small without depending on byte order or alignment:
+ * It is fast and small, and does not depend on byte order or alignment:
  * - Words are built from bytes and taken apart into bytes with shifts. Compilers recognise these helpers as one load or
  *   one store where the processor allows it, and keep the bytes where it does not.
  * - A short message is built as one 64-bit value, so that its reserved bytes are cleared by the same store.
- * - Bits that lie side by side are built highest bit first (twice what is there, plus the next bit).
+ * - Adjacent bits are built highest bit first (twice the value so far, plus the next bit).
  * - A range check is one unsigned comparison: what is below the range wraps to a large number.
- * - An unpack stores every field first and judges then: no path of its own for bad values.
- * The figures are printed and held by bench/codec/run.
+ * - An unpack function stores every field before it checks them: bad values have no code path of their own.
+ * bench/codec/run measures the figures and checks their limits.
  */
 #include "agv/codec.h"
 
@@ -61,7 +61,7 @@ static inline uint32_t get_le32(const uint8_t *from) {
     return (uint32_t)from[0] | ((uint32_t)from[1] << 8) | ((uint32_t)from[2] << 16) | ((uint32_t)from[3] << 24);
 }
 
-/** Two's complement to int32_t; written so that no conversion depends on the compiler, who makes nothing of it. */
+/** Two's complement to int32_t, without an implementation-defined conversion. Compilers generate no code for it. */
 static inline int32_t to_int32(uint32_t value) {
     return (value <= (uint32_t)INT32_MAX) ? (int32_t)value : (int32_t)(value - (uint32_t)INT32_MIN) + INT32_MIN;
 }
@@ -71,12 +71,12 @@ static inline bool gear_is_valid(uint32_t gear) {
     return ((gear - 1u) < 8u) && ((gear & (gear - 1u)) == 0u);
 }
 
-/** FFh, 0, 1, 2 or 3 (P18): five values in a row when counted in a byte. */
+/** FFh, 0, 1, 2 or 3 (P18): five consecutive values in 8-bit arithmetic. */
 static inline bool eps_mode_is_valid(uint8_t mode) {
     return (uint8_t)(mode + 1u) <= (uint8_t)(AGV_EPS_MODE_TORQUE + 1);
 }
 
-/** The raw angle; above AGV_ANGLE_RAW_MAX when @p angle_ddeg is out of range (P5). */
+/** The raw angle; above AGV_ANGLE_RAW_MAX if @p angle_ddeg is out of range (P5). */
 static inline uint32_t angle_to_raw(int32_t angle_ddeg) {
     return (uint32_t)angle_ddeg + (uint32_t)AGV_ANGLE_RAW_CENTRE;
 }

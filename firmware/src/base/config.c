@@ -8,7 +8,7 @@
 /* Every choice has two words: its values are 0, the default, and 1. */
 enum { CHOICE_MAX = 1 };
 
-/* Which values weaken, and where a setting has an effect. */
+/* Which values weaken the supervision, and in which topology a setting has an effect. */
 enum { NEVER, ABOVE, BELOW, ZERO, CHOSEN = ABOVE, ANY = 0, GATEWAY = 1 };
 
 static const struct {
@@ -34,7 +34,7 @@ static const struct {
 #undef AGV_STATUS
 };
 
-/* The settings stand without gaps at the start of the struct: a setting's place is its index. */
+/* The settings are at the start of the struct without gaps: the position of a setting is its index. */
 _Static_assert(offsetof(agv_config_t, id_wheel_speed) == ((size_t)AGV_SETTING_COUNT - 1u) * sizeof(uint16_t),
                "settings are contiguous");
 
@@ -74,7 +74,7 @@ static bool is_in_range(uint32_t setting, uint32_t value) {
     return (value >= rows[setting].lowest) && (value <= rows[setting].highest);
 }
 
-/* The setting that is out of range; AGV_SETTING_COUNT when none is. */
+/* The first setting that is out of range; AGV_SETTING_COUNT if there is none. */
 static uint32_t out_of_range(const agv_config_t *config) {
     uint32_t setting = 0u;
     while ((setting < (uint32_t)AGV_SETTING_COUNT) && is_in_range(setting, agv_config_get(config, setting))) {
@@ -83,7 +83,7 @@ static uint32_t out_of_range(const agv_config_t *config) {
     return setting;
 }
 
-/* The highest-ranking fault that is made weaker than it may be; AGV_FAULT_NONE when none is. */
+/* The highest-ranking mandatory trip that is configured as a warning; AGV_FAULT_NONE if there is none. */
 static uint32_t too_weak(const agv_config_t *config) {
     uint32_t fault = 0u;
     while ((fault < (uint32_t)AGV_FAULT_COUNT) &&
@@ -101,7 +101,7 @@ void agv_config_ids(const agv_config_t *config, agv_ids_t *ids) {
     }
 }
 
-/* The setting of an identifier that another message has, too; AGV_SETTING_COUNT when there is none. */
+/* The setting of an identifier that is used twice; AGV_SETTING_COUNT if there is none. */
 static uint32_t id_twice(const agv_config_t *config) {
     agv_ids_t ids;
     agv_config_ids(config, &ids);
@@ -117,14 +117,14 @@ static uint32_t id_twice(const agv_config_t *config) {
     return taken ? (uint32_t)AGV_SETTING_status_frame_id : (uint32_t)AGV_SETTING_COUNT;
 }
 
-/* Whether `trips` has a bit beyond the last fault: in the last word, which may have some to spare. */
+/* Whether `trips` has a bit beyond the last fault: the last word may have unused bits. */
 static bool has_unknown_fault(const agv_config_t *config) {
     const uint32_t spare = ((32u * AGV_FAULT_WORDS) - (uint32_t)AGV_FAULT_COUNT) % 32u;
     const uint32_t known = UINT32_MAX >> spare;
     return (config->trips.words[AGV_FAULT_WORDS - 1u] & ~known) != 0u;
 }
 
-/* On a shared bus: the first setting that is not at its default and has no effect; AGV_SETTING_COUNT when there is none. */
+/* On a shared bus: the first setting that is not at its default and has no effect; AGV_SETTING_COUNT if there is none. */
 static uint32_t without_effect(const agv_config_t *config) {
     uint32_t setting = (config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? (uint32_t)AGV_SETTING_COUNT : 0u;
     while ((setting < (uint32_t)AGV_SETTING_COUNT) &&
@@ -134,7 +134,7 @@ static uint32_t without_effect(const agv_config_t *config) {
     return setting;
 }
 
-/* What is wrong with a setting, if anything is. */
+/* Check the settings one by one. */
 static agv_config_problem_t check_settings(const agv_config_t *config, uint16_t *setting) {
     *setting = (uint16_t)out_of_range(config);
     if (*setting < (uint16_t)AGV_SETTING_COUNT) {

@@ -1,6 +1,6 @@
 /**
  * @file fault_table.c
- * The policy of each fault as fault_table.def says it, and sets of faults (faults.h).
+ * The properties of each fault, from fault_table.def, and sets of faults (faults.h).
  */
 #include "agv/faults.h"
 
@@ -16,7 +16,7 @@ enum {
     TRIP = AGV_CLASS_TRIP
 };
 
-/* What is FIXED trips by default: nothing could be weaker than a warning. */
+/* Mandatory faults (FIXED) must trip by default: a warning could not be made weaker. */
 #define AGV_FAULT(name, class, led, flags)                                                                             \
     _Static_assert(((int)(class) == (int)TRIP) || (((flags) & (int)FIXED) == 0), #name);
 #include "agv/fault_table.def"

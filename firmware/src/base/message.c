@@ -35,7 +35,7 @@ static bool is_message(uint32_t message) {
     return message < (uint32_t)AGV_MSG_COUNT;
 }
 
-/* The place of an identifier among those of all messages. */
+/* The index of an identifier among those of all messages. */
 static uint32_t find(const uint16_t ids[AGV_MSG_COUNT], uint32_t id) {
     uint32_t message = 0u;
     /* for tests/proofs/gate/run */

@@ -3,10 +3,10 @@
 #include <stddef.h>
 #include <string.h>
 
-/* By how much more than its limit a timer has to run, ms: durations are reached at their limit, deadlines above it. */
+/* Time in ms that a timer must run beyond its limit: durations expire at >= the limit, deadlines at > it. */
 enum { DURATION = 0, DEADLINE = 1 };
 
-/* Which setting is the limit, and the kind. */
+/* The setting that is the limit, and the kind of each timer. */
 static const struct {
     uint8_t setting;
     uint8_t more_ms;
@@ -33,7 +33,7 @@ uint32_t agv_age_ms(uint32_t now_ms, uint32_t then_ms) {
     return (difference > (UINT32_MAX / 2u)) ? 0u : difference;
 }
 
-/* Settings stand in the order of their indices (config.c). */
+/* Settings are in the order of their indices (config.c). */
 static uint32_t limit_of(const agv_config_t *config, uint32_t timer) {
     uint16_t limit_ms;
     (void)memcpy(&limit_ms, &((const unsigned char *)config)[rows[timer].setting * sizeof limit_ms], sizeof limit_ms);
@@ -58,7 +58,7 @@ void agv_timers_set_time(agv_timers_t *timers, uint32_t time_ms) {
 /* The longest time until the timers are evaluated again. */
 enum { HORIZON_MS = 65536 };
 
-/* From since_ms to the time at which a timer has reached its limit. */
+/* Time from since_ms until the timer has reached its limit. */
 static uint32_t span_of(const agv_config_t *config, uint32_t timer) {
     return limit_of(config, timer) + rows[timer].more_ms;
 }
@@ -101,7 +101,7 @@ void agv_timers_advance(agv_timers_t *timers, const agv_config_t *config, uint32
     }
 }
 
-/* A timer that is started later than it was can only reach its limit later. */
+/* due_ms stays valid: a timer that is restarted can only reach its limit later. */
 void agv_timer_start_at(agv_timers_t *timers, uint32_t timer, uint32_t since_ms) {
     if (!is_running(timers, timer) || (agv_age_ms(timers->since_ms[timer], since_ms) > 0u)) {
         timers->due_ms = timers->now_ms;

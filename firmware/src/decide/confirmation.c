@@ -9,7 +9,7 @@ void agv_confirmation_park_sent(agv_confirmation_t *confirmation) {
     confirmation->park_sent = true;
 }
 
-/* Adds time in which a confirmation is missing. Returns whether its sum has reached the limit. */
+/* Add time without a confirmation. Returns whether the total has reached the limit. */
 static bool add(uint16_t *sum_ms, bool missing, uint32_t elapsed_ms, uint32_t limit_ms) {
     if (missing) {
         const uint32_t room_ms = (*sum_ms < limit_ms) ? (limit_ms - *sum_ms) : 0u;

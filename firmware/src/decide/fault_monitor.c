@@ -3,7 +3,7 @@
 #include <stddef.h>
 #include <string.h>
 
-/* The faults that are events, each with its timer. */
+/* The transient faults, each with its timer. */
 static const struct {
     uint8_t fault;
     uint8_t timer;

@@ -28,11 +28,11 @@ static void forget_press(agv_reset_button_t *reset, agv_timers_t *timers) {
 
 void agv_reset_button_trip(agv_reset_button_t *reset, agv_timers_t *timers) {
     forget_press(reset, timers);
-    reset->before = reset->button; /* what is down at the trip is no rising edge after it */
+    reset->before = reset->button; /* a button that is down at the trip has no rising edge after it */
     (void)memset(reset->held_ms, 0, sizeof reset->held_ms);
 }
 
-/* What was missing at any time in the last reset_hold_ms. */
+/* The conditions that did not hold at some time in the last reset_hold_ms. */
 static uint32_t missing_lately(const agv_reset_button_t *reset, const agv_config_t *config) {
     uint32_t missing = 0u;
     for (uint32_t i = 0u; i < AGV_RESET_CONDITIONS; i++) {
@@ -58,7 +58,7 @@ static void follow_press(agv_reset_button_t *reset, agv_timers_t *timers) {
     }
 }
 
-/* The press has just ended, or has come to its longest time. */
+/* The press has just ended, or has reached reset_hold_max_ms. */
 static agv_press_result_t answer(const agv_reset_button_t *reset, const agv_timers_t *timers, uint32_t *missing) {
     const bool too_long = agv_timer_reached(timers, AGV_TIMER_PRESS_LONG);
     const bool unheard = reset->button == (uint8_t)AGV_BUTTON_UNHEARD;
@@ -73,7 +73,7 @@ agv_press_result_t agv_reset_button_step(agv_reset_button_t *reset, agv_timers_t
     agv_press_result_t result = AGV_PRESS_NOTHING;
     const uint32_t before = missing_lately(reset, config);
     follow_conditions(reset, config, elapsed_ms, lacking);
-    /* The loss of the VCU ends the press: what follows from it was not missing before. */
+    /* The loss of the VCU ends the press: conditions that fail because of it are not reported. */
     *missing = (reset->button == (uint8_t)AGV_BUTTON_UNKNOWN) ? before : missing_lately(reset, config);
     follow_press(reset, timers);
     const bool is_down = reset->button == (uint8_t)AGV_BUTTON_DOWN;

@@ -73,7 +73,7 @@ static uint32_t follow_engagement(agv_state_machine_t *machine, uint32_t facts) 
     if ((facts & AGV_FACT_AI_ALIVE) != 0u) {
         machine->state = (uint8_t)AGV_STATE_ACTIVE;
     }
-    return 0u; /* engaged without the AI alive: AI_HEARTBEAT_* trips in its time */
+    return 0u; /* engaged while the AI is not alive: AI_HEARTBEAT_* will trip */
 }
 
 static bool is_confirmed(uint32_t facts) {
@@ -117,7 +117,7 @@ bool agv_state_machine_is_startup_late(const agv_state_machine_t *machine, const
 }
 
 /*
- * The reason of a trip; AGV_FAULT_NONE: none. In INIT only the unresettable ones latch. A cause from the AI computer that
+ * The reason of a trip, or AGV_FAULT_NONE. In INIT only unresettable faults latch. A cause from the AI computer that
  * outlived a reset trips when the autopilot is engaged (FSM-11).
  */
 static uint32_t reason_to_trip(const agv_state_machine_t *machine, const agv_fault_summary_t *faults, uint32_t facts) {
@@ -146,7 +146,7 @@ static uint32_t step_state(agv_state_machine_t *machine, agv_timers_t *timers, c
                                                        : follow_engagement(machine, facts);
 }
 
-/* What follows from the machine being another one than before. */
+/* The actions that follow from a change of the state machine. */
 static uint32_t changes(const agv_state_machine_t *machine, const agv_state_machine_t *before) {
     uint32_t what = (machine->state != before->state) ? AGV_ACTION_STATE : 0u;
     if ((machine->latched != before->latched) || (machine->unresettable != before->unresettable)) {

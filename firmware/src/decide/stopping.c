@@ -1,6 +1,6 @@
 #include "decide/stopping.h"
 
-/* A wheel that turns as fast as this for as long moves the vehicle. */
+/* The vehicle moves if a wheel turns at this speed for this time. */
 enum { MOVING_MM_S = 100, MOVING_MS = 200 };
 
 void agv_stopping_start(agv_stopping_t *stopping, agv_timers_t *timers) {

@@ -1,6 +1,6 @@
 #include "keep/led.h"
 
-/* Flashes are dark for their second half; the pause comes on top. */
+/* The second half of a flash is dark; the pause follows after the last one. */
 enum { FLASH_MS = 400, PAUSE_MS = 1400, BLINK_MS = 200, HEALTHY_MS = 2000, SHADOW_ON_MS = 100 };
 
 int32_t agv_led_code(uint32_t fault) {

@@ -27,7 +27,7 @@ static bool is_newer(uint32_t sequence, uint32_t other) {
     return ((sequence - other) - 1u) < (UINT32_MAX / 2u);
 }
 
-/* Drops what is not valid, and finds the place of the next trip: that of the oldest, or the first free one. */
+/* Drop invalid trips, and find the place of the next one: a free one, otherwise that of the oldest. */
 static void start_trips(agv_recorder_t *recorder) {
     uint32_t oldest = 0u;
     for (uint32_t i = 0u; i < AGV_RECORDER_TRIPS; i++) {
@@ -35,7 +35,7 @@ static void start_trips(agv_recorder_t *recorder) {
         if (!is_valid(trip)) {
             (void)memset(trip, 0, sizeof *trip);
         } else if (is_newer(trip->sequence + 1u, recorder->next_sequence)) {
-            recorder->next_sequence = trip->sequence + 1u; /* its event in the ring was torn */
+            recorder->next_sequence = trip->sequence + 1u; /* its event in the ring is incomplete */
             recorder->run = (uint8_t)(trip->run + 1u);
         } else {
             /* its event is in the ring, or was replaced */
@@ -74,7 +74,7 @@ void agv_recorder_start(agv_recorder_t *recorder) {
     }
     recorder->next_sequence = next;
     start_trips(recorder);
-    /* The mark of what is in flash counts if it lies among what is here. */
+    /* stored_sequence is valid only if it lies within the events that are kept. */
     if ((recorder->stored_sequence - first) > (recorder->next_sequence - first)) {
         recorder->stored_sequence = first;
     }
@@ -90,7 +90,7 @@ void agv_recorder_frame(agv_recorder_t *recorder, uint32_t message, const uint8_
     }
 }
 
-/* Whether a fault may be recorded once more: the fourth event before this one is a second ago. */
+/* Whether a fault may be recorded: its fourth last recorded event is at least a second ago. */
 static bool is_within_rate(agv_fault_rate_t *rate, uint32_t time_ms) {
     uint32_t *const oldest_ms = &rate->recorded_ms[rate->oldest];
     if ((rate->count == (uint8_t)AGV_RECORDER_FAULTS_PER_S) && ((time_ms - *oldest_ms) < RATE_TIME_MS)) {
@@ -125,7 +125,7 @@ static bool is_trip(const agv_event_t *event) {
            (event->c < (uint8_t)AGV_FAULT_COUNT);
 }
 
-/* A trip takes the place of the oldest one. */
+/* A trip replaces the oldest one. */
 static void keep_trip(agv_recorder_t *recorder, const agv_event_t *event) {
     recorder->trips[recorder->next_trip % AGV_RECORDER_TRIPS] = *event;
     recorder->next_trip = (uint8_t)((recorder->next_trip + 1u) % AGV_RECORDER_TRIPS);
@@ -152,7 +152,7 @@ void agv_recorder_add(agv_recorder_t *recorder, const agv_entry_t *entry, uint32
     }
 }
 
-/* How many trips came after this one. */
+/* The number of trips after this one. */
 static uint32_t newer_trips(const agv_recorder_t *recorder, const agv_event_t *trip) {
     uint32_t newer = 0u;
     for (uint32_t i = 0u; i < AGV_RECORDER_TRIPS; i++) {
@@ -177,7 +177,7 @@ uint32_t agv_recorder_next_sequence(const agv_recorder_t *recorder) {
     return recorder->next_sequence;
 }
 
-/* The event in the ring, NULL when it is not there any more or not valid. */
+/* The event in the ring; NULL if it was replaced or is not valid. */
 static const agv_event_t *find(const agv_recorder_t *recorder, uint32_t sequence) {
     const agv_event_t *event = &recorder->events[slot_of(sequence)];
     return ((event->sequence == sequence) && is_valid(event)) ? event : NULL;

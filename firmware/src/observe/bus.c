@@ -4,7 +4,7 @@ static uint32_t timer_of(hal_can_side_t side) {
     return (side == HAL_CAN_VEHICLE) ? (uint32_t)AGV_TIMER_BUS_OFF : (uint32_t)AGV_TIMER_AI_BUS_OFF;
 }
 
-/* Keeps what the controller has counted. */
+/* Store the controller's counters. */
 static void follow(agv_bus_t *bus, const hal_can_status_t *status) {
     bus->bus_offs = status->bus_off_count;
     bus->overruns = status->overrun_count;
@@ -33,7 +33,7 @@ uint32_t agv_bus_tick(agv_bus_t *bus, agv_timers_t *timers, const agv_config_t *
         report |= AGV_BUS_STALLED;
     }
     if (is_off) {
-        report = AGV_BUS_OFF; /* not recovered, and what waits is gone */
+        report = AGV_BUS_OFF; /* not recovered, and no frame is waiting */
     }
     if (status.state == HAL_CAN_ERROR_PASSIVE) {
         report |= AGV_BUS_PASSIVE;

@@ -1,6 +1,6 @@
 #include "observe/deadlines.h"
 
-/* The fault of each deadline. The silence of a message with an alive counter is that of a heartbeat. */
+/* The fault of each deadline. Messages with an alive counter have none: their heartbeat has its own faults. */
 static const uint8_t silences[AGV_MSG_COUNT] = {
 #define AGV_COMMAND AGV_STATUS
 #define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter) [AGV_MSG_##NAME] = AGV_FAULT_##fault,
@@ -28,7 +28,7 @@ static void check_silences(agv_fault_monitor_t *faults, const agv_timers_t *time
 void agv_deadlines_heartbeats(agv_fault_monitor_t *faults, const agv_timers_t *timers, const agv_liveness_t *liveness,
                               bool engaged) {
     const bool unseen = agv_liveness_heartbeat(liveness, AGV_NODE_AI) == AGV_HEARTBEAT_UNSEEN;
-    /* It was started with the engagement; one that is continued goes on with it. */
+    /* The timer was started with the engagement, and runs on when the engagement is continued. */
     const bool never_seen = unseen && engaged && agv_timer_reached(timers, AGV_TIMER_AI_NEVER_SEEN);
     for (uint32_t node = 0u; node < (uint32_t)AGV_NODE_COUNT; node++) {
         const agv_heartbeat_state_t state = agv_liveness_heartbeat(liveness, (agv_node_t)node);
@@ -38,7 +38,7 @@ void agv_deadlines_heartbeats(agv_fault_monitor_t *faults, const agv_timers_t *t
     }
 }
 
-/* The other set's identifier came while the own one is silent (P1). */
+/* Whether the other set's identifier was received while the own one is silent (P1). */
 static bool is_wrong_set(const agv_timers_t *timers, const agv_config_t *config, const agv_liveness_t *liveness,
                          uint32_t heard, uint32_t message) {
     return agv_timer_is_within(timers, heard) &&

@@ -7,7 +7,7 @@ static const uint8_t carriers[AGV_NODE_COUNT] = {[AGV_NODE_VCU] = AGV_MSG_VEHICL
                                                  [AGV_NODE_EPS] = AGV_MSG_STEERING_STATUS,
                                                  [AGV_NODE_AI] = AGV_MSG_TURN_SIGNAL_COMMAND};
 
-/* Where the alive counter stands in each message. */
+/* The index of the alive counter in data[] of each message. */
 enum { NO_COUNTER = 0xFF };
 static const uint8_t counters_at[AGV_MSG_COUNT] = {
 #define AGV_COMMAND AGV_STATUS
@@ -46,7 +46,7 @@ uint32_t agv_liveness_arrived(agv_liveness_t *liveness, uint32_t message, uint32
     return known ? agv_age_ms(time_ms, last_ms) : AGV_AGE_MAX;
 }
 
-/* Steps of an alive counter that counts up: up to two frames may be lost in between (SUP-2). */
+/* Valid steps of an incrementing alive counter: up to two frames may be lost in between (SUP-2). */
 enum { STEP_MAX = 3, STEPS_AFTER_WRONG = 2 };
 
 /* Whether a counter counts as changed. */
@@ -65,16 +65,16 @@ static bool is_changed(agv_heartbeat_t *heartbeat, uint8_t counter, bool increme
     return heartbeat->steps_needed == 0u;
 }
 
-/* Returns whether the deadline begins anew. */
+/* Handle an alive counter. Returns whether the deadline is restarted. */
 static bool beat(agv_liveness_t *liveness, uint32_t node, uint8_t counter, bool increments) {
     agv_heartbeat_t *const heartbeat = &liveness->heartbeats[node];
     if (!heartbeat->counter_known) {
         heartbeat->counter_known = true;
         heartbeat->counter = counter;
         if (node != (uint32_t)AGV_NODE_AI) {
-            return false; /* proves nothing */
+            return false; /* one value alone does not show life */
         }
-        /* The AI's deadline begins when it is first seen, the others' began at the start. */
+        /* The AI's deadline begins with its first frame; the others began at the start. */
         heartbeat->state = AGV_HEARTBEAT_BASELINE;
         return true;
     }
@@ -135,7 +135,7 @@ static void expire(agv_liveness_t *liveness, const agv_timers_t *timers, uint32_
     }
 }
 
-/* Ages saturate one message a tick: what counts is that each is looked at before the time wraps. */
+/* Saturate the age of one message per tick. Each is checked long before the time wraps. */
 static void age_one(agv_liveness_t *liveness, const agv_timers_t *timers) {
     const uint32_t next = liveness->next_to_age;
     if (agv_age_ms(timers->now_ms, liveness->last_ms[next]) > AGV_AGE_LIMIT_MS) {

@@ -37,7 +37,7 @@ static agv_mode_change_t end(agv_mode_t *mode, agv_timers_t *timers) {
     return AGV_MODE_ENDED;
 }
 
-/* An engagement ends with the last of mode_frames 363h in a row without the autopilot bit. */
+/* An engagement ends with the last of mode_frames consecutive 363h without the autopilot bit. */
 static agv_mode_change_t count_off_frame(agv_mode_t *mode, agv_timers_t *timers, const agv_config_t *config) {
     if (!mode->engaged) {
         return AGV_MODE_SAME;
@@ -46,7 +46,7 @@ static agv_mode_change_t count_off_frame(agv_mode_t *mode, agv_timers_t *timers,
     return (mode->off_frames >= config->mode_frames) ? end(mode, timers) : AGV_MODE_SAME;
 }
 
-/* A condition that is interrupted goes on with the time that is left of it. Returns whether it has lasted for long enough. */
+/* Time an interrupted condition: it resumes with the time that is left. Returns whether it has lasted long enough. */
 static bool resume_while(agv_timers_t *timers, const agv_config_t *config, uint32_t timer, agv_budget_t *spent,
                          bool condition) {
     if (condition && !agv_timer_runs(timers, timer)) {
@@ -73,7 +73,7 @@ agv_mode_change_t agv_mode_report(agv_mode_t *mode, agv_timers_t *timers, const 
     (void)resume_while(timers, config, AGV_TIMER_BOTH_MODES, &mode->both_spent, mode->bits == (uint8_t)BOTH);
     if (mode->bits == (uint8_t)BOTH) {
         mode->off_frames = 0u;
-        return AGV_MODE_SAME; /* the mode before stands */
+        return AGV_MODE_SAME; /* the previous mode remains */
     }
     mode->manual = has(mode, MANUAL);
     if (!has(mode, AUTOPILOT)) {

@@ -3,10 +3,10 @@
 #include <stddef.h>
 #include <string.h>
 
-/* SUP-11: by so much 050h has to come down to be on its way. */
+/* SUP-11: a decrease of 050h that clears the budget, counts. */
 enum { THROTTLE_DROP_COUNTS = 25 };
 
-/* SUP-12: metres per hour to mm/s is 1000 / 3600; the speeds may differ by so much, and by a quarter of the larger one. */
+/* SUP-12: m/h to mm/s is 1000 / 3600. The speeds may differ by the constant plus a quarter of the larger one. */
 enum { MM_S_PER_18_COUNTS = 5, SPEED_SLACK_MM_S = 500, SPEED_SHARE = 4, WHEEL_MAX_MM_S = 1000000 };
 
 static const uint8_t faults_of[AGV_BUDGET_COUNT] = {[AGV_BUDGET_STEERING] = AGV_FAULT_STEERING_DEVIATION,
@@ -31,7 +31,7 @@ static int32_t off_by_ddeg(const agv_motion_facts_t *facts, uint32_t angle_raw) 
     return amount((int32_t)angle_raw - (int32_t)facts->commands->angle_raw);
 }
 
-/* Empties a budget whose cause is on its way to end. What was counted for that begins anew with the budget. */
+/* Clear a budget because the deviation is decreasing. The progress counter restarts with the budget. */
 static void follow_progress(agv_budget_t *budget, int16_t *progress, int32_t enough) {
     if ((budget->value_ms != 0u) && (*progress >= enough)) {
         *budget = (agv_budget_t){0};
@@ -95,7 +95,7 @@ void agv_motion_checks_tick(agv_motion_checks_t *checks, const agv_motion_facts_
     agv_budget_t *const budgets = checks->budgets;
     agv_budget_add(&budgets[AGV_BUDGET_SPEED], speeds_differ(facts->vehicle), elapsed_ms, config->speed_implausible_ms);
     if (!facts->judged) {
-        return; /* the others stand still */
+        return; /* the other budgets do not change */
     }
     agv_budget_add(&budgets[AGV_BUDGET_STEERING], steering_is_off(facts), elapsed_ms, config->steering_deviation_ms);
     agv_budget_add(&budgets[AGV_BUDGET_THROTTLE], throttle_is_above(facts), elapsed_ms, config->throttle_deviation_ms);

@@ -2,18 +2,18 @@
 
 #include "agv/codec.h"
 
-/* By bit of 363h byte 5; NONE: reserved, or depends on the engagement. */
+/* The fault of each bit of 363h byte 5; NONE: reserved, or depends on the engagement. */
 static const uint8_t alarm_faults[8] = {
     AGV_FAULT_REMOTE_SIGNAL_LOST,     AGV_FAULT_REMOTE_POWER_LOST,     AGV_FAULT_NONE, AGV_FAULT_NONE,
     AGV_FAULT_VCU_EPS_HARDWARE_FAULT, AGV_FAULT_VCU_EPS_CAN_BUS_FAULT, AGV_FAULT_NONE, AGV_FAULT_S_DRIVER_ALARM};
 
-/* By bit of 167h byte 8; the first ones are scored. */
+/* The fault of each bit of 167h byte 8; the first ones are scored. */
 static const uint8_t eps_faults[8] = {AGV_FAULT_EPS_UNDER_VOLTAGE,     AGV_FAULT_EPS_OVER_VOLTAGE,
                                       AGV_FAULT_EPS_EXCESSIVE_CURRENT, AGV_FAULT_EPS_OVER_CURRENT_SHUTDOWN,
                                       AGV_FAULT_EPS_TEMP_ABOVE_110,    AGV_FAULT_EPS_TEMP_ABOVE_120,
                                       AGV_FAULT_EPS_MOTOR_ENCODER,     AGV_FAULT_EPS_POSITION_ENCODER};
 
-/* By scored value. */
+/* The fault of each scored value. */
 static const uint8_t value_faults[AGV_SCORED_VALUES] = {
     AGV_FAULT_GEAR_STATUS_INVALID, AGV_FAULT_THROTTLE_STATUS_INVALID, AGV_FAULT_STEERING_ANGLE_INVALID};
 
@@ -30,7 +30,7 @@ void agv_status_checks_vehicle(agv_status_checks_t *checks, agv_fault_monitor_t 
     agv_fault_monitor_set(faults, AGV_FAULT_VCU_LEVEL2_ALARM, data[5] != 0u);
 }
 
-/* Named after the last of the modes that count. */
+/* The last bad mode decides which fault it is. */
 static void check_eps_mode(agv_status_checks_t *checks, const agv_config_t *config, uint8_t mode, bool valid) {
     const bool bad = mode != (uint8_t)AGV_EPS_MODE_ANGLE;
     agv_score_add(&checks->eps_mode, bad, config->eps_mode_frames);
@@ -68,7 +68,7 @@ void agv_status_checks_value(agv_status_checks_t *checks, const agv_config_t *co
     }
 }
 
-/* Whether one of the faults that depend on the engagement may have to be set. */
+/* Whether a fault that depends on the engagement may be present. */
 static bool has_news(const agv_status_checks_t *checks) {
     bool present = checks->reported || checks->eps_mode.present || checks->ai_alarm;
     for (uint32_t i = 0u; i < AGV_SCORED_VALUES; i++) {

@@ -3,21 +3,21 @@
 #include "observe/deadlines.h"
 #include "supervisor/supervisor_internal.h"
 
-/* What a frame is, and what becomes of it. */
+/* Classification of a frame, and what to do with it. */
 typedef struct {
     hal_can_side_t side;
     const hal_can_frame_t *frame;
     uint32_t message;  /* agv_message_t */
-    uint32_t rejected; /* agv_rejected_t; AGV_REJECTED_KINDS: it is not */
+    uint32_t rejected; /* agv_rejected_t; AGV_REJECTED_KINDS: not rejected */
     bool decides;      /* faults and state are evaluated */
-    bool passes;       /* gateway: it may go to the other side */
+    bool passes;       /* gateway: it may be forwarded */
 } intake_t;
 
 static bool is_command(uint32_t message) {
     return message < AGV_COMMAND_COUNT;
 }
 
-/* P15: why a frame is rejected, of several reasons the last. Identifiers that are not ours may have any length. */
+/* P15: why a frame is rejected; the last of several reasons. Other identifiers may have any length. */
 static uint32_t reason_to_reject(const hal_can_frame_t *frame, uint32_t message) {
     uint32_t why = AGV_REJECTED_KINDS;
     if ((frame->length != AGV_DLC) && (message != (uint32_t)AGV_MSG_NONE)) {
@@ -42,7 +42,7 @@ static bool vcu_is_alive(const agv_core_t *core) {
     return agv_liveness_alive(&core->liveness, AGV_NODE_VCU);
 }
 
-/* Whether the vehicle stands goes by 101h, 363h and the time. */
+/* Standstill depends on 101h, 363h and the time. */
 void agv_core_evaluate_standstill(agv_core_t *core) {
     agv_vehicle_evaluate(&core->vehicle, &core->timers, &core->config,
                          agv_liveness_fresh(&core->liveness, &core->timers, AGV_MSG_WHEEL_SPEED), vcu_is_alive(core));
@@ -52,7 +52,7 @@ static bool is_judged(const agv_core_t *core) {
     return agv_mode_is_judged(&core->mode, &core->timers);
 }
 
-/* A new engagement: deadlines, grace and counts begin afresh. One that is continued goes on with those it had. */
+/* A new engagement restarts deadlines, grace time and counts. A continued one keeps them. */
 static void begin_engagement(agv_core_t *core, uint32_t time_ms) {
     agv_liveness_restart_commands(&core->timers, time_ms);
     agv_commands_forget(&core->commands);
@@ -121,7 +121,7 @@ static void observe_value(agv_core_t *core, uint32_t message, bool valid) {
     agv_status_checks_value(&core->status_checks, &core->config, message, valid, is_judged(core));
 }
 
-/* One handler a message. Of 267h nothing more counts than that it comes. */
+/* One handler for each message. The content of 267h is not used, only its arrival. */
 static void observe_content(agv_core_t *core, uint32_t message, const hal_can_frame_t *frame, bool valid) {
     switch (message) {
     case AGV_MSG_VEHICLE_STATUS:
@@ -155,14 +155,14 @@ static void observe_content(agv_core_t *core, uint32_t message, const hal_can_fr
     }
 }
 
-/* While engaged, a command that is none trips at once (SUP-5). */
+/* While engaged, an invalid command trips at once (SUP-5). */
 static void observe_bad_command(agv_core_t *core) {
     if (agv_mode_is_engaged(&core->mode)) {
         agv_fault_monitor_event(&core->faults, &core->timers, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE);
     }
 }
 
-/* A frame of the right shape from the right side. */
+/* Handle a well-formed frame from the expected side. */
 static void observe_message(agv_core_t *core, const agv_ports_t *ports, intake_t *intake) {
     const hal_can_frame_t *const frame = intake->frame;
     const uint32_t message = intake->message;
@@ -184,12 +184,12 @@ static void observe_message(agv_core_t *core, const agv_ports_t *ports, intake_t
     intake->decides = true;
 }
 
-/* The side that a message is taken from: commands come from the AI side where there is one. */
+/* The side from which a message is accepted: in a gateway, commands come from the AI side. */
 static hal_can_side_t side_of(const agv_core_t *core, uint32_t message) {
     return (is_command(message) && agv_core_is_gateway(core)) ? HAL_CAN_AI : HAL_CAN_VEHICLE;
 }
 
-/* Gateway: a command on the vehicle side comes from nobody who may send one (SUP-6). */
+/* Gateway: a command on the vehicle side comes from a rogue node (SUP-6). */
 static void observe_wrong_side(agv_core_t *core, intake_t *intake) {
     core->counters.dropped++;
     if (intake->side == HAL_CAN_VEHICLE) {
@@ -198,12 +198,12 @@ static void observe_wrong_side(agv_core_t *core, intake_t *intake) {
     }
 }
 
-/* A data frame with an 11-bit identifier, of whatever length and format: a VCU may obey it. */
+/* A data frame with an 11-bit identifier, of any length and format: a VCU may obey it. */
 static bool is_data_frame(const intake_t *intake) {
     return (intake->rejected <= (uint32_t)AGV_REJECTED_FD) || (intake->rejected == (uint32_t)AGV_REJECTED_KINDS);
 }
 
-/* Of malformed frames only commands mean more than a count (SUP-5, SUP-6). */
+/* Malformed frames are only counted, except commands (SUP-5, SUP-6). */
 static void observe_malformed(agv_core_t *core, intake_t *intake) {
     core->counters.rejected[intake->rejected]++;
     if (!is_command(intake->message) || !is_data_frame(intake)) {
@@ -226,7 +226,7 @@ static void observe_status_id(agv_core_t *core, intake_t *intake) {
     }
 }
 
-/* Not one of ours: it may be the identifier that a message has in the other set (P1). */
+/* Unknown identifier: a message may have it in the other set (P1). */
 static void observe_unknown(agv_core_t *core, const intake_t *intake) {
     const uint32_t other_set = (uint32_t)AGV_ID_SET_TABLE - core->config.id_set;
     const uint32_t message = agv_message_from_id(intake->frame->id, other_set);
@@ -253,7 +253,7 @@ static void observe(agv_core_t *core, const agv_ports_t *ports, intake_t *intake
     observe_status_id(core, intake);
 }
 
-/* Gateway: to the other side, a command as the envelope leaves it. */
+/* Gateway: forward the frame to the other side, commands within their limits. */
 static void pass_on(agv_core_t *core, const agv_tx_orders_t *orders, const intake_t *intake) {
     hal_can_frame_t frame = *intake->frame;
     if (is_command(intake->message)) {
@@ -267,7 +267,7 @@ static void pass_on(agv_core_t *core, const agv_tx_orders_t *orders, const intak
     agv_transmitter_pass(&core->transmitter, orders, intake->message, frame.data);
 }
 
-/* What may have been heard and obeyed is answered (TOP-1). */
+/* Override a command that the vehicle may have received and obeyed (TOP-1). */
 static bool may_be_obeyed(const intake_t *intake) {
     return is_command(intake->message) && (intake->side == HAL_CAN_VEHICLE) && is_data_frame(intake);
 }

@@ -81,7 +81,7 @@ agv_tx_orders_t agv_core_orders(agv_core_t *core, const agv_ports_t *ports) {
                              .config_checksum = core->config_checksum};
 }
 
-/* FSM-4: what opens the output at once. */
+/* FSM-4: the faults that open the output at once. */
 static const uint8_t output_faults[] = {AGV_FAULT_BUS_OFF,
                                         AGV_FAULT_TX_STALLED,
                                         AGV_FAULT_EMERGENCY_STOP,
@@ -106,11 +106,11 @@ static uint32_t vcu_facts(const agv_core_t *core) {
         return 0u;
     }
     const bool off = !agv_mode_is_engaged(&core->mode) && !agv_mode_is_ambiguous(&core->mode);
-    /* After a late step deadlines have not been looked at. */
+    /* After a late step the deadlines have not been evaluated. */
     return bit_if(off, AGV_FACT_AUTOPILOT_OFF) | bit_if(!agv_core_step_is_late(core), AGV_FACT_VCU_ALIVE);
 }
 
-/* What INIT, TRIPPED and SAFE go by. */
+/* The facts for INIT, TRIPPED and SAFE. */
 static uint32_t safe_state_facts(const agv_core_t *core) {
     const agv_timers_t *const timers = &core->timers;
     return vcu_facts(core) | bit_if(agv_liveness_alive(&core->liveness, AGV_NODE_EPS), AGV_FACT_EPS_ALIVE) |
@@ -129,7 +129,7 @@ static uint32_t facts_of(const agv_core_t *core) {
     return agv_core_is_supervising(core) ? facts : (facts | safe_state_facts(core));
 }
 
-/* The checks whose result depends on the mode or the time of now. */
+/* The checks whose result depends on the current mode or time. */
 static void evaluate_checks(agv_core_t *core) {
     const bool judged = agv_mode_is_judged(&core->mode, &core->timers);
     agv_status_checks_evaluate(&core->status_checks, &core->faults, agv_mode_is_engaged(&core->mode), judged);
@@ -172,7 +172,7 @@ void agv_core_await_safe_state(agv_core_t *core) {
     agv_reset_button_trip(&core->reset_button, &core->timers);
 }
 
-/* FSM-10: manual drops what is held. What waits of it in a transmitter that has stalled would leave at some later time. */
+/* FSM-10: manual drops the held angle, and 065h frames in a stalled transmitter, which would otherwise leave later. */
 static void follow_hold(agv_core_t *core, hal_t *hal) {
     const bool dropped = (!is_latched(core) || agv_mode_is_manual(&core->mode)) && agv_hold_drop(&core->hold);
     if (dropped && agv_fault_monitor_is_active(&core->faults, AGV_FAULT_TX_STALLED)) {
@@ -181,7 +181,7 @@ static void follow_hold(agv_core_t *core, hal_t *hal) {
     }
 }
 
-/* What is held, awaited and limited goes by the state. */
+/* Update the modules that depend on the state: hold, confirmation, limits. */
 static void follow_state(agv_core_t *core, hal_t *hal, uint32_t what) {
     if ((what & AGV_ACTION_TRIP) != 0u) {
         agv_core_await_safe_state(core);
@@ -249,7 +249,7 @@ agv_pass_t agv_core_decide(agv_core_t *core, const agv_ports_t *ports, uint32_t 
     return pass;
 }
 
-/* What was passed on counts from now on as what the vehicle was told (SUP-5). */
+/* From now on the vehicle is compared with the forwarded commands (SUP-5). */
 static void take_passed_commands(agv_core_t *core, uint32_t passed) {
     for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
         if (((passed >> i) & 1u) != 0u) {
@@ -292,7 +292,7 @@ static void record_fault(agv_core_t *core, const agv_ports_t *ports, const agv_f
     record(core, ports, entry);
 }
 
-/* Which faults were raised or ended, in the state of then. */
+/* Record the faults that were raised or ended, with the state before the step. */
 static void record_faults(agv_core_t *core, const agv_ports_t *ports, const agv_pass_t *pass) {
     agv_entry_t entry = {
         .kind = AGV_EVENT_FAULT, .state = pass->actions.from, .first_reason = pass->actions.first_reason};
@@ -307,7 +307,7 @@ static void record_faults(agv_core_t *core, const agv_ports_t *ports, const agv_
     }
 }
 
-/* A press of the reset button was answered, or INIT has lasted too long. */
+/* Record the answer to a press of the reset button, or that INIT takes too long. */
 static void record_answer(const agv_core_t *core, const agv_ports_t *ports, agv_actions_t actions) {
     agv_entry_t entry = {.kind = AGV_EVENT_RESET,
                          .missing = actions.missing,

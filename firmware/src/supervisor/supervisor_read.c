@@ -1,4 +1,4 @@
-/* What programs may read of a supervisor; see supervisor.h. */
+/* The functions with which programs read a supervisor; see supervisor.h. */
 #include "supervisor/core.h"
 
 agv_state_t agv_supervisor_state(const agv_supervisor_t *supervisor) {

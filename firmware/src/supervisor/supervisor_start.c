@@ -9,8 +9,8 @@
 #include "transmit/gate.h"
 
 /*
- * Codec and gate against each other: the P that the codec knows is what the gate, in raw bytes, lets out; D is not.
- * Returns what was found wrong.
+ * Test codec and gate against each other: the gate must allow gear P as packed by the codec, and refuse D.
+ * Returns AGV_FOUND_* bits.
  */
 static uint32_t self_test(const agv_core_t *core) {
     const agv_gate_t tripped = {.config = &core->config, .ids = &core->ids, .state = AGV_STATE_TRIPPED};
@@ -24,7 +24,7 @@ static uint32_t self_test(const agv_core_t *core) {
                                                               : 0u; /* GCOVR_EXCL_BR_LINE: D never passes here */
 }
 
-/* Everything begins anew but the time, the configuration and the counters. */
+/* Reset everything except the time, the configuration and the counters. */
 static void begin_modules(agv_core_t *core, hal_t *hal) {
     const size_t anew = offsetof(agv_core_t, config_checksum);
     (void)memset(&((unsigned char *)core)[anew], 0, sizeof *core - anew);
@@ -40,7 +40,7 @@ static void begin_modules(agv_core_t *core, hal_t *hal) {
     agv_bus_start(&core->buses[HAL_CAN_AI], hal, HAL_CAN_AI);
 }
 
-/* The latch outlives a reset (FSM-7). Returns the reason that an earlier run was tripped for; AGV_FAULT_NONE. */
+/* Read the latch of the run before the reset (FSM-7). Returns the reason of its trip, or AGV_FAULT_NONE. */
 static uint32_t begin_from_latch(agv_core_t *core, hal_t *hal, bool restarted) {
     agv_latch_t latch;
     const agv_latch_found_t found = agv_latch_read(hal, &latch);
@@ -54,7 +54,7 @@ static uint32_t begin_from_latch(agv_core_t *core, hal_t *hal, bool restarted) {
     return (latch.first_reason < (uint8_t)AGV_FAULT_COUNT) ? latch.first_reason : (uint32_t)AGV_FAULT_NONE;
 }
 
-/* The highest-ranking active fault down to SUPERVISOR_RESET; AGV_FAULT_NONE when there is none. */
+/* The highest-ranking active fault down to SUPERVISOR_RESET; AGV_FAULT_NONE if there is none. */
 static uint32_t first_found(const agv_core_t *core) {
     for (uint32_t fault = 0u; fault <= (uint32_t)AGV_FAULT_SUPERVISOR_RESET; fault++) {
         if (agv_fault_monitor_is_active(&core->faults, fault)) {
@@ -64,7 +64,7 @@ static uint32_t first_found(const agv_core_t *core) {
     return AGV_FAULT_NONE;
 }
 
-/* INIT, or TRIPPED when an earlier run was or when something found now is reason enough. */
+/* Start in INIT; in TRIPPED if an earlier run was tripped, or if a fault found now requires it. */
 static void begin_state(agv_core_t *core, const agv_ports_t *ports, uint32_t kept_reason, agv_pass_t *pass) {
     const uint32_t found = first_found(core);
     agv_state_machine_start(&core->machine, &core->timers, &core->config,
@@ -113,7 +113,7 @@ void agv_core_keep_wiring(agv_core_t *core) {
     core->id_set = core->config.id_set;
 }
 
-/* The defaults, with the wiring and the identifiers of this vehicle, unless those make no sense. */
+/* Use the defaults, with topology and identifiers of this vehicle if these are valid. */
 static void fall_back(agv_core_t *core) {
     agv_config_t *const config = &core->config;
     agv_config_defaults(config);

@@ -18,7 +18,7 @@ static uint32_t step_time(agv_core_t *core) {
     return elapsed_ms;
 }
 
-/* SUP-7, one side: recovery is asked for after a purge; what waited is never sent. */
+/* SUP-7, one side: request the recovery after a purge; waiting frames are never sent. */
 static uint32_t follow_bus(agv_core_t *core, hal_t *hal, hal_can_side_t side) {
     const uint32_t report = agv_bus_tick(&core->buses[side], &core->timers, &core->config, hal, side);
     if ((report & (AGV_BUS_OFF | AGV_BUS_RECOVERED)) != 0u) {
@@ -31,7 +31,7 @@ static uint32_t follow_bus(agv_core_t *core, hal_t *hal, hal_can_side_t side) {
     return report;
 }
 
-/* Returns whether the vehicle side has come back from bus-off. */
+/* Returns whether the vehicle side has recovered from bus-off. */
 static bool observe_buses(agv_core_t *core, hal_t *hal) {
     agv_fault_monitor_t *const faults = &core->faults;
     const uint32_t vehicle = follow_bus(core, hal, HAL_CAN_VEHICLE);
@@ -72,7 +72,7 @@ void agv_core_show_led(agv_core_t *core, const agv_ports_t *ports, uint32_t elap
     }
 }
 
-/* INT-3: once a second on average over a minute. */
+/* INT-3: at most one write per second, averaged over a minute. */
 enum { STORE_CREDIT_MS = 1000, STORE_CREDITS_MAX = 60 };
 
 static void earn_store_credits(agv_core_t *core, uint32_t elapsed_ms) {
@@ -87,7 +87,7 @@ static void earn_store_credits(agv_core_t *core, uint32_t elapsed_ms) {
     }
 }
 
-/* INT-3: flash may stall the processor, so only where no reaction can be due. One event a tick. */
+/* INT-3: writing flash may stall the processor: only while no reaction can be due, and one event per tick. */
 static void store_events(agv_core_t *core, const agv_ports_t *ports) {
     const bool idle =
         (core->machine.state == (uint8_t)AGV_STATE_SAFE) ||

@@ -2,7 +2,7 @@
 
 #include "agv/state.h"
 
-/* Written out in raw bytes, not through the codec: the gate must not share a mistake with who asks. */
+/* In raw bytes, without the codec: the gate must not share a defect with its callers. */
 enum {
     GEAR_D = 1,
     GEAR_R = 2,
@@ -50,7 +50,7 @@ static uint32_t throttle_max_counts(const agv_gate_t *gate) {
     return (gate->state == (uint8_t)AGV_STATE_ACTIVE) ? (((uint32_t)gate->config->throttle_ceiling_pct * 5u) / 2u) : 0u;
 }
 
-/* safe: only the safe commands; else what the gateway may pass on. */
+/* safe: only the safe commands; otherwise the commands that the gateway may forward. */
 static bool value_allowed(const agv_gate_t *gate, uint32_t message, const uint8_t data[AGV_DLC], bool safe) {
     switch (message) {
     case AGV_MSG_TURN_SIGNAL_COMMAND:
@@ -66,7 +66,7 @@ static bool value_allowed(const agv_gate_t *gate, uint32_t message, const uint8_
     }
 }
 
-/* Whether the gateway may pass a command on in this state at all. */
+/* Whether the gateway may forward a command in this state. */
 static bool may_pass(const agv_gate_t *gate, uint32_t message) {
     return (gate->config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) &&
            ((gate->state == (uint8_t)AGV_STATE_ACTIVE) || (message == (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND) ||

@@ -2,7 +2,7 @@
 
 #include "agv/codec.h"
 
-/* Longer pauses give no more than this to a rate limit. */
+/* The rate limits count at most this time since the last command. */
 #define RATE_TIME_MAX_MS 1000u
 
 bool agv_gateway_may_wait(const agv_gateway_facts_t *facts, uint32_t command) {
@@ -15,7 +15,7 @@ bool agv_gateway_may_wait(const agv_gateway_facts_t *facts, uint32_t command) {
     return (facts->state == AGV_STATE_STANDBY) && (facts->config->gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL);
 }
 
-/* D or R other than what the vehicle reports, while it does not stand. */
+/* Whether a command changes to D or R while the vehicle does not stand. */
 static bool changes_gear_in_motion(const agv_gateway_facts_t *facts, uint8_t gear) {
     const bool drives = (gear == (uint8_t)AGV_GEAR_D) || (gear == (uint8_t)AGV_GEAR_R);
     return drives && (gear != facts->vehicle->gear) && !facts->standstill &&
@@ -38,14 +38,14 @@ static int32_t clamp(int32_t value, int32_t lowest, int32_t highest) {
     return (value > highest) ? highest : value;
 }
 
-/* How far a rate lets go in the time since then: steps of 1 / @p per_s of the rate. */
+/* The change that a rate limit allows in the elapsed time, in steps of 1 / @p per_s of the rate. */
 static uint32_t steps_since(uint32_t rate_per_s, uint32_t scale, uint32_t now_ms, uint32_t then_ms) {
     const uint32_t since_ms = now_ms - then_ms;
     const uint32_t time_ms = (since_ms < RATE_TIME_MAX_MS) ? since_ms : RATE_TIME_MAX_MS;
     return (rate_per_s * time_ms) / scale;
 }
 
-/* In counts of the wire; 5 counts are 2 %. The rise begins at 0, with the time of one cycle. */
+/* In counts; 5 counts are 2 %. The first command may rise from 0 by the change of one cycle. */
 static uint32_t limit_throttle(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t wanted) {
     const uint32_t rate_pct_s = facts->config->throttle_rise_pct_s;
     const uint32_t ceiling = ((uint32_t)facts->config->throttle_ceiling_pct * AGV_THROTTLE_MAX_COUNTS) / 100u;
@@ -80,7 +80,7 @@ static uint32_t limit_to_speed(const agv_gateway_facts_t *facts, uint32_t wanted
     return (uint32_t)clamp((int32_t)wanted_raw, AGV_ANGLE_RAW_CENTRE - max_ddeg, AGV_ANGLE_RAW_CENTRE + max_ddeg);
 }
 
-/* What the first command may start from: the angle that the steering has, a cycle ago. */
+/* The limit of the first command starts at the measured angle, one cycle ago. */
 static void begin_slew(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t wanted_raw) {
     if (!gateway->steering_known) {
         gateway->steering_raw = facts->vehicle->angle_known ? facts->vehicle->angle_raw : (uint16_t)wanted_raw;

@@ -1,6 +1,6 @@
 #include "transmit/scheduler.h"
 
-/* First periodic frame after all were sent at once: spread, so that they do not meet again (FSM-2). */
+/* Delay of the first periodic frame after a burst: staggered, so that the four do not coincide again (FSM-2). */
 static const uint8_t first_ms[AGV_COMMAND_COUNT] = {[AGV_MSG_TURN_SIGNAL_COMMAND] = 100u,
                                                     [AGV_MSG_GEAR_COMMAND] = 66u,
                                                     [AGV_MSG_THROTTLE_COMMAND] = 33u,
@@ -34,7 +34,7 @@ uint32_t agv_scheduler_due(agv_scheduler_t *scheduler, uint32_t now_ms, uint32_t
     return slots;
 }
 
-/* Once the gap is over it stays over: differences of wrapping microseconds are only taken while it is not. */
+/* The bit is cleared when the gap is over, because the microseconds wrap: later differences would be wrong. */
 bool agv_scheduler_override_due(agv_scheduler_t *scheduler, uint32_t now_us, uint32_t gap_ms, uint32_t command) {
     if ((now_us - scheduler->slots[command].overridden_us) >= (gap_ms * 1000u)) {
         scheduler->override_recent &= ~bit_of(command);

@@ -7,13 +7,13 @@
 #include "observe/bus.h"
 #include "transmit/gate.h"
 
-/* Since when the HAL does not take a command. */
+/* The timer of a command that the HAL does not accept. */
 static const uint8_t waits[AGV_COMMAND_COUNT] = {[AGV_MSG_TURN_SIGNAL_COMMAND] = AGV_TIMER_TX_TURN_SIGNAL,
                                                  [AGV_MSG_GEAR_COMMAND] = AGV_TIMER_TX_GEAR,
                                                  [AGV_MSG_THROTTLE_COMMAND] = AGV_TIMER_TX_THROTTLE,
                                                  [AGV_MSG_STEERING_COMMAND] = AGV_TIMER_TX_STEERING};
 
-/* A status frame that was handed over so short a time ago may not have left yet. */
+/* A status frame that the HAL accepted less than this ago may still be waiting. */
 enum { STATUS_ON_WIRE_MS = 2 };
 
 static uint32_t bit_of(uint32_t message) {
@@ -58,7 +58,7 @@ static uint32_t wanted_commands(const agv_tx_orders_t *orders) {
     return wanted;
 }
 
-/* The safe command: built-in constants, but for the alive counter and the held angle. */
+/* Build a safe command from constants, the alive counter and the held angle. */
 static void build(const agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command,
                   uint8_t data[AGV_DLC]) {
     (void)memset(data, 0, AGV_DLC); /* throttle 0 */
@@ -74,7 +74,7 @@ static void build(const agv_transmitter_t *transmitter, const agv_tx_orders_t *o
     }
 }
 
-/* Through the gate. Returns whether the HAL did not take the frame. */
+/* Send a frame through the gate. Returns whether the HAL did not accept it. */
 static bool emit(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, hal_can_side_t side, uint32_t id,
                  const uint8_t data[AGV_DLC]) {
     const agv_gate_t gate = {.config = orders->config,
@@ -100,7 +100,7 @@ static bool emit(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, 
     return false;
 }
 
-/* To the side that a message goes to. Returns whether it has to wait; how long a command does is timed. */
+/* Send a message to its side. Returns whether it must wait; the waiting time of a command is measured. */
 static bool send_message(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t message,
                          const uint8_t data[AGV_DLC]) {
     const bool command = message < AGV_COMMAND_COUNT;
@@ -112,7 +112,7 @@ static bool send_message(agv_transmitter_t *transmitter, const agv_tx_orders_t *
     return has_to_wait;
 }
 
-/* Send an own command. It answers whatever was heard before. In bus-off nothing is handed to the HAL. */
+/* Send an own command. This also does a waiting override. In bus-off no frame is passed to the HAL. */
 static void send_own(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command) {
     uint8_t data[AGV_DLC];
     if (agv_bus_is_off(orders->timers, HAL_CAN_VEHICLE)) {
@@ -143,7 +143,7 @@ void agv_transmitter_burst(agv_transmitter_t *transmitter, const agv_tx_orders_t
     transmitter->wanted_before = (uint8_t)wanted;
 }
 
-/* Whether a payload commands what the own command does. Reserved bits and the alive counter command nothing. */
+/* Whether a payload has the same effect as the own command: reserved bits and the alive counter do not count. */
 static bool is_same_command(const agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command,
                             const uint8_t data[AGV_DLC]) {
     uint8_t own[AGV_DLC];
@@ -170,7 +170,7 @@ void agv_transmitter_answer(agv_transmitter_t *transmitter, const agv_tx_orders_
     }
 }
 
-/* Whether a command was passed on less than half its cycle ago. Once that is over it stays over. */
+/* Whether a command was forwarded less than half its cycle ago. The bit is cleared when that time is over. */
 static bool is_too_soon(agv_transmitter_t *transmitter, uint32_t message, uint32_t now_ms) {
     if (message >= AGV_COMMAND_COUNT) {
         return false;
@@ -190,7 +190,7 @@ static void note_passed(agv_transmitter_t *transmitter, uint32_t message, uint32
     }
 }
 
-/* Send a frame that is passed on, or keep it until its time has come and the HAL takes it. */
+/* Forward a frame, or keep it until it is due and the HAL accepts it. */
 static void send_passed(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t message) {
     const uint32_t now_ms = orders->timers->now_ms;
     if (is_too_soon(transmitter, message, now_ms) ||
@@ -222,7 +222,7 @@ const uint8_t *agv_transmitter_passed(const agv_transmitter_t *transmitter, uint
 void agv_transmitter_pass(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t message,
                           const uint8_t data[AGV_DLC]) {
     if ((transmitter->kept & bit_of(message)) != 0u) {
-        transmitter->report.dropped++; /* the older one that waited */
+        transmitter->report.dropped++; /* the older waiting one */
     }
     if (message == (uint32_t)AGV_MSG_THROTTLE_COMMAND) {
         transmitter->throttle_0_waits = false;
@@ -257,7 +257,7 @@ static void tick_own(agv_transmitter_t *transmitter, const agv_tx_orders_t *orde
     }
 }
 
-/* TOP-3: state, first reason, safety output, alive counter, configuration checksum. Returns whether it has to wait. */
+/* Send the status frame (TOP-3). Returns whether it must wait. */
 static bool emit_status_frame(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
     const bool tripped = orders->first_reason < (uint8_t)AGV_FAULT_COUNT;
     uint8_t data[AGV_DLC] = {orders->state, tripped ? orders->first_reason : (uint8_t)AGV_STATUS_FRAME_NO_REASON,
@@ -274,7 +274,7 @@ static bool emit_status_frame(agv_transmitter_t *transmitter, const agv_tx_order
     return false;
 }
 
-/* What the HAL does not take is tried again at every tick: the standing test of the transmit path. */
+/* Frames that the HAL did not accept are retried at every tick, which also tests the transmit path. */
 void agv_transmitter_status(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
     const agv_config_t *const config = orders->config;
     const uint32_t late_ms = orders->timers->now_ms - transmitter->status_due_ms;
