@@ -135,7 +135,7 @@ class Page(hostsim.Case):
         row = self.row("VCU_HEARTBEAT_LOST")
         cells = [cell.split(" / ")[0] + " / -" if " / " in cell else cell for cell in row.split(" | ")]
         cells[-1] = "- |"
-        self.assert_noticed(self.script("--check", "--page", self.planted(row, " | ".join(cells))), "nothing was measured")
+        self.assert_noticed(self.script("--check", "--page", self.planted(row, " | ".join(cells))), "no measurements")
 
     def changed_tables(self, name, by):
         tables = json.loads(self.run_good("campaign", "--tables").stdout)
