@@ -6,7 +6,7 @@
 #include "agv/checksum.h"
 #include "supervisor/supervisor_internal.h"
 
-/* Every call first checks the whole memory (INT-5). */
+/* Every call begins with a check of the whole memory (INT-5). */
 static agv_core_t *open_core(agv_supervisor_t *supervisor, const agv_ports_t *ports, uint32_t time_ms,
                              uint32_t time_us) {
     agv_core_t *const core = agv_core_of(supervisor);
