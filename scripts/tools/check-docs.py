@@ -17,10 +17,11 @@ import shutil
 import sys
 import urllib.parse
 
+import tables
+
 FENCE = re.compile(r"^ *(```+|~~~+) *(.*)$")
 LINK = re.compile(r"!?\[(?:[^\[\]]|\[[^\]]*\])*\]\(<?([^)\s>]+)>?(?: \"[^\"]*\")?\)", re.DOTALL)
 HEADING = re.compile(r"^#{1,6} +(.*?) *#*$")
-SETTING = re.compile(r"^AGV_SETTING\((\w+), (\d+), \d+, \d+, \"([^\"]*)\"", re.MULTILINE)
 STATED = re.compile(r"(\d+(?:\.\d+)?)( s| ms| mm/s| %|°)\s\(`(\w+)`")
 IN_UNIT = {" s": ("ms", 1000), " ms": ("ms", 1), " mm/s": ("mm/s", 1), " %": ("%", 1), "°": ("0.1 deg", 10)}
 KEYWORDS = {"if", "then", "else", "elif", "fi", "for", "do", "done", "while", "until", "case", "esac", "{", "}", "!", "cd",
@@ -130,8 +131,7 @@ def check_commands(root, page, blocks, problems):
 
 
 def check_defaults(root, page, prose, problems):
-    settings = {name: (int(value), unit) for name, value, unit in SETTING.findall(
-        (root / "firmware/include/agv/config_settings.def").read_text(encoding="utf-8"))}
+    settings = {row.name: (int(row.default, 0), row.unit) for row in tables.settings(root) if isinstance(row, tables.Setting)}
     count = 0
     for value, stated_unit, name in STATED.findall(prose):
         unit, factor = IN_UNIT[stated_unit]

@@ -13,37 +13,16 @@ import pathlib
 import re
 import sys
 
+import tables
+from tables import Problem
+
 BEGIN = "<!-- fault table: made by scripts/tools/fault-docs.py, but for the two columns on the right -->"
 END = "<!-- end of fault table -->"
 HEADING = "| rank | fault | class | may be | kind | LED | also | raised when | counts in |"
-ROW = re.compile(r"^AGV_FAULT(_EVENT)?\((\w+), (TRIP|WARN), (\d+), ([A-Z_]+(?: \| [A-Z_]+)*)\)$")
-FLAGS = {"NONE", "UNRESETTABLE", "FIXED", "FROM_AI", "OF_EPS"}
 NAMING = ("docs/faults.md", "docs/requirements.md")
 # `LIKE_THIS`, `LIKE_THIS_*`: faults; what begins with one of these is a name of the C code
 NAMED = re.compile(r"`([A-Z][A-Z0-9]*(?:_[A-Z0-9]+)+)(_\*)?`")
 OTHERS = ("AGV_", "HAL_", "CONFIG_")
-
-
-class Problem(Exception):
-    pass
-
-
-def read_faults(path):
-    """(name, class, LED code, flags, whether it is an event) of each fault, highest rank first."""
-    faults = []
-    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
-        if not line.startswith(("AGV_FAULT(", "AGV_FAULT_EVENT(")):
-            continue
-        match = ROW.match(line)
-        if not match:
-            raise Problem(f"{path}:{number}: expected AGV_FAULT(NAME, TRIP, 14, FLAG | FLAG)")
-        flags = set(match[5].split(" | "))
-        if not flags <= FLAGS:
-            raise Problem(f"{path}:{number}: unknown flags {sorted(flags - FLAGS)}: add them to scripts/tools/fault-docs.py")
-        faults.append((match[2], match[3], int(match[4]), flags, match[1] is not None))
-    if not faults:
-        raise Problem(f"{path} holds no faults")
-    return faults
 
 
 def made_cells(rank, name, fault_class, led, flags, event):
@@ -98,7 +77,7 @@ def main():
     parser.add_argument("--check", action="store_true", help="change nothing, fail when the table is out of date or wrong")
     arguments = parser.parse_args()
     document = arguments.root / "docs/faults.md"
-    faults = read_faults(arguments.root / "firmware/include/agv/fault_table.def")
+    faults = tables.faults(arguments.root)
     text = document.read_text(encoding="utf-8")
     before, table, after = split("docs/faults.md", text)
     texts = read_texts(table)

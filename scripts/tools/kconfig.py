@@ -9,36 +9,15 @@ docs/safety-manual.md the list of settings that weaken the supervision, between 
 """
 import argparse
 import pathlib
-import re
 import sys
 
-NUMBER = r"(\d+|0x[0-9A-F]+)"
-SETTING = re.compile(rf'^AGV_SETTING\((\w+), {NUMBER}, {NUMBER}, {NUMBER}, "([^"]*)", (ABOVE|BELOW|ZERO|NEVER), (GATEWAY|ANY), '
-                     r'"([^"]*)"\)$')
-CHOICE = re.compile(r'^AGV_CHOICE\((\w+), "(\w+\|\w+)", (CHOSEN|NEVER), (GATEWAY|ANY), "([^"]*)"\)$')
-MESSAGE = re.compile(r"^AGV_(?:COMMAND|STATUS)\(\w+, (\w+), (0x[0-9A-F]{3}), (0x[0-9A-F]{3}), .*\)$")
-FAULT = re.compile(r"^AGV_FAULT(?:_EVENT)?\((\w+), (TRIP|WARN), \d+, ([A-Z_ |]+)\)$")
+import tables
+from tables import Problem
+
 MADE = "made by scripts/tools/kconfig.py from config_settings.def, message_table.def and fault_table.def"
 GATEWAY = "AGV_TOPOLOGY_GATEWAY"
 BEGIN, END = "<!-- settings that weaken: made by scripts/tools/kconfig.py -->", "<!-- end of settings that weaken -->"
 WEAK_WHEN = {"ABOVE": "above {}", "BELOW": "below {}", "ZERO": "0", "CHOSEN": "{}"}
-
-
-class Problem(Exception):
-    pass
-
-
-def rows(path, begin, patterns):
-    found = []
-    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
-        if line.startswith(begin):
-            match = next((match for match in (pattern.match(line) for pattern in patterns) if match), None)
-            if match is None:
-                raise Problem(f"{path}:{number}: invalid row")
-            found.append(match.groups())
-    if not found:
-        raise Problem(f"{path} holds no rows")
-    return found
 
 
 def choice_lines(symbol, prompt, words, default, scope):
@@ -74,22 +53,22 @@ def id_lines(name, heading, table):
 def make(settings, messages, faults):
     kconfig, rows_made = [f"# Every setting of the supervisor; {MADE}.", ""], [f"/* {MADE[0].upper()}{MADE[1:]}. */"]
     for row in settings:
-        symbol = row[0].upper()
-        if len(row) == 5:
-            words = row[1].split("|")
-            kconfig += choice_lines(symbol, sentence(row[4]), words, 0, row[3])
-            rows_made.append(f"AGV_KCONFIG({row[0]}, IS_ENABLED(CONFIG_AGV_{symbol}_{words[1].upper()}) ? 1 : 0)")
+        symbol = row.name.upper()
+        if isinstance(row, tables.Choice):
+            words = row.words.split("|")
+            kconfig += choice_lines(symbol, sentence(row.meaning), words, 0, row.scope)
+            rows_made.append(f"AGV_KCONFIG({row.name}, IS_ENABLED(CONFIG_AGV_{symbol}_{words[1].upper()}) ? 1 : 0)")
         else:
             kconfig += setting_lines(*row)
-            rows_made.append(f"AGV_KCONFIG({row[0]}, CONFIG_AGV_{symbol})")
+            rows_made.append(f"AGV_KCONFIG({row.name}, CONFIG_AGV_{symbol})")
     kconfig += ['menu "Identifiers of the messages"', ""]
     for name, heading, table in messages:
         kconfig += id_lines(name, heading, table)
         rows_made.append(f"AGV_KCONFIG(id_{name}, CONFIG_AGV_ID_{name.upper()})")
     kconfig += ["endmenu", ""]
     kconfig += ['menu "What each fault does"', ""]
-    for name, fault_class, flags in faults:
-        if "FIXED" not in flags.split(" | "):
+    for name, fault_class, _, flags, _ in faults:
+        if "FIXED" not in flags:
             kconfig += choice_lines(f"CLASS_{name}", name, ["warn", "trip"], int(fault_class == "TRIP"), "ANY")
             rows_made.append(f"AGV_KCONFIG_CLASS({name}, IS_ENABLED(CONFIG_AGV_CLASS_{name}_TRIP))")
     return "\n".join(kconfig + ["endmenu", ""]), "\n".join(rows_made + [""])
@@ -99,16 +78,16 @@ def weakening_table(settings, faults):
     """The settings that weaken the supervision when they leave their default in one direction (INT-2)."""
     lines = ["| setting | weakens when | default | what it is |", "|---|---|---|---|"]
     for row in settings:
-        if len(row) == 5:
-            default, weak = row[1].split("|")
-            weakens, unit = row[2], ""
+        if isinstance(row, tables.Choice):
+            default, weak = row.words.split("|")
+            unit = ""
         else:
-            default = weak = row[1]
-            weakens, unit = row[5], (f" {row[4]}" if row[4] else "")
-        if weakens != "NEVER":
-            when = WEAK_WHEN[weakens].format(weak)
-            lines.append(f"| `{row[0]}` | {when} | {default}{unit} | {row[-1].replace('|', '/')} |")
-    weaker = [name for name, fault_class, flags in faults if fault_class == "TRIP" and "FIXED" not in flags.split(" | ")]
+            default = weak = row.default
+            unit = f" {row.unit}" if row.unit else ""
+        if row.weakens != "NEVER":
+            when = WEAK_WHEN[row.weakens].format(weak)
+            lines.append(f"| `{row.name}` | {when} | {default}{unit} | {row.meaning.replace('|', '/')} |")
+    weaker = [row.name for row in faults if row.fault_class == "TRIP" and "FIXED" not in row.flags]
     lines += [f"| `class_{name.lower()}` | warn | trip | the vehicle drives on with `{name}` |" for name in weaker]
     return "\n".join(lines)
 
@@ -126,10 +105,7 @@ def main():
     parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[2])
     parser.add_argument("--check", action="store_true", help="change nothing, fail when something is out of date")
     arguments = parser.parse_args()
-    headers = arguments.root / "firmware/include/agv"
-    settings = rows(headers / "config_settings.def", ("AGV_SETTING(", "AGV_CHOICE("), (SETTING, CHOICE))
-    messages = rows(headers / "message_table.def", ("AGV_COMMAND(", "AGV_STATUS("), (MESSAGE,))
-    faults = rows(headers / "fault_table.def", ("AGV_FAULT(", "AGV_FAULT_EVENT("), (FAULT,))
+    settings, messages, faults = (read(arguments.root) for read in (tables.settings, tables.messages, tables.faults))
     made = dict(zip(("firmware/zephyr/Kconfig.settings", "firmware/zephyr/src/kconfig_settings.def"),
                     make(settings, messages, faults)))
     manual = "docs/safety-manual.md"

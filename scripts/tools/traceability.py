@@ -19,6 +19,8 @@ import pathlib
 import re
 import sys
 
+import tables
+
 FAMILIES = ("SUP", "FSM", "TOP", "TIM", "INT", "LED", "HW")
 NOT_BUILT = "not built yet"
 BEGIN, END = "<!-- traceability: made by scripts/tools/traceability.py --markdown -->", "<!-- end of traceability -->"
@@ -55,11 +57,7 @@ def read_rows(root, problems):
     for family in FAMILIES:
         rows += numbered(root / "docs/requirements.md", family, problems)
     rows += numbered(root / "docs/protocol.md", "P", problems)
-    table = root / "firmware/include/agv/fault_table.def"
-    faults = re.findall(r"^AGV_FAULT(?:_EVENT)?\((\w+),", table.read_text(encoding="utf-8"), re.MULTILINE)
-    if not faults:
-        problems.append(f"{table} holds no faults")
-    return rows + faults
+    return rows + [fault.name for fault in tables.faults(root)]
 
 
 def not_built(root):

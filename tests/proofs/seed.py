@@ -23,6 +23,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
@@ -107,20 +108,32 @@ def run_program(fault, folder):
     return fault.judge(*execute([str(program), *fault.arguments.split()], ROOT))
 
 
-def run_in_tree(fault, _):
+def copy_tree(copy):
+    listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT, check=True,
+                            stdout=subprocess.PIPE, text=True).stdout
+    for name in filter(None, listed.split("\0")):
+        if (ROOT / name).exists():
+            (copy / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(ROOT / name, copy / name, follow_symlinks=False)
+    (copy / "build").symlink_to(ROOT / "build")
+
+
+def run_in_tree(fault, folder):
+    """The command writes nothing into the tree: the next one has the same copy, a copy for each thread."""
     if not fault.changes:
         return fault.judge(*execute(fault.arguments, ROOT))
-    with tempfile.TemporaryDirectory(prefix="seed") as folder:
-        copy = pathlib.Path(folder)
-        files = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT, check=True,
-                               stdout=subprocess.PIPE, text=True).stdout.split("\0")
-        for name in filter(None, files):
-            if (ROOT / name).exists():
-                (copy / name).parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy2(ROOT / name, copy / name, follow_symlinks=False)
-        (copy / "build").symlink_to(ROOT / "build")
-        apply(fault, copy, True)
-        return fault.judge(*execute(fault.arguments, copy))
+    copy = pathlib.Path(folder) / str(threading.get_ident())
+    if not copy.exists():
+        copy_tree(copy)
+    before = {path: (copy / path).read_bytes() if (copy / path).exists() else None for path in fault.files()}
+    apply(fault, copy, True)
+    result = fault.judge(*execute(fault.arguments, copy))
+    for path, text in before.items():
+        if text is None:
+            (copy / path).unlink()
+        else:
+            (copy / path).write_bytes(text)
+    return result
 
 
 def run_all(faults, how, folder):
@@ -153,7 +166,8 @@ def main(words):
         checkers = rest[:rest.index("--bin")] if "--bin" in rest else rest
         return run_all(of(*checkers), run_program, folder)
     elif what == "tree":
-        return run_all(of(*rest), run_in_tree, None)
+        with tempfile.TemporaryDirectory(prefix="seed") as folder:
+            return run_all(of(*rest), run_in_tree, folder)
     elif what == "fails":
         good, line = of(rest[0])[0].judge(*execute(rest[1:], None))
         print(line)

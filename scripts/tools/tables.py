@@ -1,0 +1,58 @@
+"""The tables of the core (firmware/include/agv/*.def), read once for all scripts. A row that is not understood is a Problem."""
+import collections
+import re
+
+HEADERS = "firmware/include/agv"
+NUMBER = r"(\d+|0x[0-9A-F]+)"
+FLAGS = {"NONE", "UNRESETTABLE", "FIXED", "FROM_AI", "OF_EPS"}
+
+Fault = collections.namedtuple("Fault", "name fault_class led flags event")
+Setting = collections.namedtuple("Setting", "name default lowest highest unit weakens scope meaning")
+Choice = collections.namedtuple("Choice", "name words weakens scope meaning")
+Message = collections.namedtuple("Message", "name heading table")
+
+FAULT = re.compile(r"^AGV_FAULT(_EVENT)?\((\w+), (TRIP|WARN), (\d+), ([A-Z_]+(?: \| [A-Z_]+)*)\)$")
+SETTING = re.compile(rf'^AGV_SETTING\((\w+), {NUMBER}, {NUMBER}, {NUMBER}, "([^"]*)", (ABOVE|BELOW|ZERO|NEVER), (GATEWAY|ANY), '
+                     r'"([^"]*)"\)$')
+CHOICE = re.compile(r'^AGV_CHOICE\((\w+), "(\w+\|\w+)", (CHOSEN|NEVER), (GATEWAY|ANY), "([^"]*)"\)$')
+MESSAGE = re.compile(r"^AGV_(?:COMMAND|STATUS)\(\w+, (\w+), (0x[0-9A-F]{3}), (0x[0-9A-F]{3}), .*\)$")
+
+
+class Problem(SystemExit):
+    """Something that a script has to say; it then fails, whether it catches this or not."""
+
+
+def read(path, kinds):
+    """The rows of a table. kinds: how a row begins, its pattern, what is made of its groups."""
+    found = []
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        for begin, pattern, make in kinds:
+            if line.startswith(begin):
+                match = pattern.match(line)
+                if match is None:
+                    raise Problem(f"{path}:{number}: invalid row, expected {begin}...) like the others")
+                found.append(make(*match.groups()))
+    if not found:
+        raise Problem(f"{path} holds no rows")
+    return found
+
+
+def fault(event, name, fault_class, led, flags):
+    flags = set(flags.split(" | "))
+    if not flags <= FLAGS:
+        raise Problem(f"{name}: unknown flags {sorted(flags - FLAGS)}: add them to scripts/tools/tables.py")
+    return Fault(name, fault_class, int(led), flags, event is not None)
+
+
+def faults(root):
+    """Highest rank first."""
+    return read(root / HEADERS / "fault_table.def", [(begin, FAULT, fault) for begin in ("AGV_FAULT(", "AGV_FAULT_EVENT(")])
+
+
+def settings(root):
+    """Numbers (Setting) and choices (Choice), in their order."""
+    return read(root / HEADERS / "config_settings.def", [("AGV_SETTING(", SETTING, Setting), ("AGV_CHOICE(", CHOICE, Choice)])
+
+
+def messages(root):
+    return read(root / HEADERS / "message_table.def", [(begin, MESSAGE, Message) for begin in ("AGV_COMMAND(", "AGV_STATUS(")])
