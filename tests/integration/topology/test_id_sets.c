@@ -198,16 +198,19 @@ void test_silence_alone_is_no_wrong_set(void) {
     }
 }
 
-/* A VCU that is silent, and frames with unknown identifiers, or with an identifier of the other set that comes from the wrong side. */
+/* A VCU that is silent, and frames with unknown identifiers, or with an identifier of the other set that comes from the wrong
+ * side, or with one that both sets have and that was changed: 267h. */
 /* Shows: P1, WRONG_ID_SET */
 void test_what_is_not_of_the_other_set(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    f.config.id_steering_position = 0x268;
     fixture_standby(&f);
     fixture_mute_vcu(&f, true);
     fixture_mute_ai(&f, true);
     for (unsigned i = 0; i < 400; i++) {
         fixture_run(&f, 10);
         fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x700, .length = 8});
+        fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x267, .length = 8});
         fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x201, .length = 8});
         fixture_raw(&f, HAL_CAN_AI, (hal_can_frame_t){.id = 0x203, .length = 8});
     }

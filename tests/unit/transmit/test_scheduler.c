@@ -183,6 +183,24 @@ void test_a_restart_forgets_overrides(void) {
     }
 }
 
+/* What waits to be answered is answered by an override or an own frame, or discarded: it is not due once more. */
+/* Shows: TOP-1 */
+void test_what_was_answered_or_discarded_does_not_wait(void) {
+    for (unsigned i = 0; i < 4; i++) {
+        TEST_ASSERT_TRUE(agv_scheduler_override(&scheduler, 7000, GAP_MS, SLOTS[i].command));
+        overridden(SLOTS[i].command, 7, 7000);
+        TEST_ASSERT_FALSE(agv_scheduler_override_due(&scheduler, 12000, GAP_MS, SLOTS[i].command));
+        TEST_ASSERT_TRUE(agv_scheduler_override(&scheduler, 12000, GAP_MS, SLOTS[i].command));
+        agv_scheduler_answered(&scheduler, SLOTS[i].command);
+        TEST_ASSERT_FALSE(agv_scheduler_override_due(&scheduler, 12000, GAP_MS, SLOTS[i].command));
+        TEST_ASSERT_TRUE(agv_scheduler_override(&scheduler, 12000, GAP_MS, SLOTS[i].command));
+    }
+    agv_scheduler_discard(&scheduler);
+    for (unsigned i = 0; i < 4; i++) {
+        TEST_ASSERT_FALSE(agv_scheduler_override_due(&scheduler, 17000, GAP_MS, SLOTS[i].command));
+    }
+}
+
 /* 18 days without a step: 60000000h ms are 16106127 cycles of 100 ms and 36 ms. */
 /* Shows: TIM-1 */
 void test_a_slot_that_is_very_late_is_due(void) {

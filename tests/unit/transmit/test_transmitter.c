@@ -744,6 +744,16 @@ void test_there_is_no_status_frame_in_bus_off(void) {
     TEST_ASSERT_EQUAL_UINT(1, sent_count);
 }
 
+/* At a start none was handed over that could be among what is discarded. */
+/* Shows: TOP-3 */
+void test_before_the_first_status_frame_none_is_sent_again(void) {
+    with_status_frame();
+    transmitter.status_due_ms = timers.now_ms + 50;
+    agv_transmitter_discard(&transmitter, &timers, HAL_CAN_VEHICLE);
+    tick(49);
+    TEST_ASSERT_EQUAL_UINT(0, sent_count);
+}
+
 /* Handed over up to 2 ms before what waits was discarded, it may be among that: once more. */
 /* Shows: TOP-3, FSM-2 */
 TEST_CASE(0, 1)
