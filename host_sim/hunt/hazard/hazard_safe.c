@@ -167,7 +167,8 @@ void hazard_safe_tick(hazard_t *hazard) {
     follow_button(hazard);
     judge_reset(hazard, was_closed);
     follow_output(hazard, was_closed);
-    if (trip->tripped && hazard->closed) {
+    const bool hangs = hazard->t_ms < hazard->world->deaf_until_ms; /* the watchdog ends that, after its period */
+    if (trip->tripped && hazard->closed && !hangs) {
         judge_confirmation(hazard);
     }
     if ((hazard->t_ms % SPEED_SLOT_MS) == 0u) {
