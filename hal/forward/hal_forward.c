@@ -1,19 +1,19 @@
 /* The functions of hal/include: each calls the port that opened this hal_t. */
 #include "hal_forward/hal_ops.h"
 
+#include <string.h>
+
 #include "hal/clock.h"
 #include "hal/led.h"
 #include "hal/safety_output.h"
 #include "hal/store.h"
 #include "hal/watchdog.h"
 
-/* How every struct hal begins here. */
-typedef struct {
-    const hal_ops_t *ops;
-} head_t;
-
+/* Every struct hal begins with this pointer. */
 static const hal_ops_t *ops_of(const hal_t *hal) {
-    return ((const head_t *)(const void *)hal)->ops;
+    const hal_ops_t *ops = NULL;
+    memcpy(&ops, hal, sizeof ops);
+    return ops;
 }
 
 bool hal_can_send(hal_t *hal, hal_can_side_t side, const hal_can_frame_t *frame) {
