@@ -67,7 +67,7 @@ static void read_control(struct msghdr *message, linux_can_record_t *record) {
 /* Reading and writing meet the same errors, and the kernel tells one that is pending to whichever comes first. */
 static void note_error(linux_can_t *can, int error) {
     if (error == ENETDOWN) {
-        can->tells_down = can->tells_down || !can->is_down;
+        can->report_down = can->report_down || !can->is_down;
         can->is_down = true;
     } else if (error == ENODEV || error == ENXIO || error == EBADF) {
         can->is_gone = true;
@@ -82,9 +82,9 @@ static linux_can_read_t why_nothing(linux_can_t *can, int error) {
     if (can->is_gone) {
         return LINUX_CAN_IS_GONE;
     }
-    const bool tells_down = can->tells_down;
-    can->tells_down = false;
-    return tells_down ? LINUX_CAN_IS_DOWN : LINUX_CAN_NOTHING;
+    const bool report_down = can->report_down;
+    can->report_down = false;
+    return report_down ? LINUX_CAN_IS_DOWN : LINUX_CAN_NOTHING;
 }
 
 static linux_can_write_t why_not_taken(linux_can_t *can, int error) {
@@ -96,7 +96,7 @@ static linux_can_write_t why_not_taken(linux_can_t *can, int error) {
 }
 
 linux_can_read_t linux_can_read(linux_can_t *can, linux_can_record_t *record) {
-    if (can->is_gone || can->tells_down) {
+    if (can->is_gone || can->report_down) {
         return why_nothing(can, 0);
     }
     struct canfd_frame raw = {0};

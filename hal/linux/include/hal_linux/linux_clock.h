@@ -1,26 +1,26 @@
 /**
  * @file linux_clock.h
- * Time since a start, monotonic; and the kernel's time stamps in it.
+ * Monotonic time since a start, and conversion of the kernel's time stamps to it.
  */
 #ifndef HAL_LINUX_LINUX_CLOCK_H
 #define HAL_LINUX_LINUX_CLOCK_H
 
 #include <stdint.h>
 
-/** A moment that time is counted from. */
+/** The start from which time is counted. */
 typedef struct {
     uint64_t start_ns; /**< CLOCK_MONOTONIC */
 } linux_clock_t;
 
-/** Count from now on. */
+/** Start the clock now. */
 void linux_clock_start(linux_clock_t *clock);
 
 /** Microseconds since the start. */
 uint64_t linux_clock_now_us(const linux_clock_t *clock);
 
 /**
- * When a frame arrived: its stamp's age by CLOCK_REALTIME, taken off now. A stamp that is 0, lies in the future, before
- * the start, or more than 60 s back (the system's time was set) counts as now; the result never lies after now.
+ * The receive time of a frame: now minus the age of its time stamp by CLOCK_REALTIME. A stamp that is 0, in the future,
+ * before the start, or more than 60 s old (the system time was changed) counts as now. The result is never after now.
  * @param stamp_us as in linux_can_record_t
  * @return microseconds since the start
  */

@@ -2,13 +2,13 @@
  * @file linux_hal.h
  * The SocketCAN port: `struct hal` for a supervisor that is a node on one or two CAN interfaces.
  *
- * What is sent waits here, lowest identifier first; the kernel is given one frame at a time, the next one when that has
- * left (its echo came back). So a purge, or bus-off, leaves at most one frame that may still go out (hal/can.h), which
- * SocketCAN alone could not promise: nobody takes a frame back from the kernel's queue.
+ * Frames wait here, lowest identifier first. The kernel gets one frame at a time, the next one when the echo shows that
+ * the last one was sent. So after a purge or bus-off at most one frame may still be sent (hal/can.h). SocketCAN alone does
+ * not ensure that: frames cannot be removed from the kernel's queue.
  *
  * Controller states come from error frames: bus-off, restarted, error passive, error active, overrun. An interface that
- * is down or gone reports bus-off until it is back. A virtual interface has no controller; error frames that somebody
- * sends there act the same. There is no hardware watchdog, and the latch is kept in memory: both end with the program.
+ * is down or gone reports bus-off until it is back. A virtual interface has no controller; error frames that a program
+ * sends there have the same effect. There is no hardware watchdog, and the latch is kept in memory only.
  */
 #ifndef HAL_LINUX_LINUX_HAL_H
 #define HAL_LINUX_LINUX_HAL_H
@@ -32,7 +32,7 @@
 /** Frames of one side that wait here; hal_can_send() refuses more. */
 #define LINUX_HAL_QUEUE_SIZE 16u
 
-/** Told of every frame of this supervisor that has left, with the kernel's stamp in time since the start. */
+/** Called for every frame of this supervisor that was sent. @param at_us the kernel's time stamp, since the start */
 typedef void linux_hal_left_fn(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t at_us);
 
 /** How a port is opened. */
@@ -54,32 +54,32 @@ typedef struct {
 typedef struct {
     const char *interface; /**< NULL: it does not exist */
     linux_can_t can;
-    bool is_open; /**< the interface was there when last looked for */
+    bool is_open; /**< the interface existed at the last check */
     bool is_up;
-    bool fd_changed; /**< linux_hal_tick() has still to tell */
+    bool fd_changed; /**< linux_hal_tick() must still report it */
     uint64_t look_again_us;
-    hal_can_state_t state; /**< of the controller, as error frames tell */
+    hal_can_state_t state; /**< of the controller, from error frames */
     uint16_t bus_offs;
     uint16_t overruns;
     uint32_t lost;            /**< as in the last record */
     bool in_flight;           /**< the kernel has a frame */
     linux_hal_waiting_t sent; /**< that one */
-    bool sent_is_purged;      /**< it may still leave, and is not waited for any more (tx_pending_ms) */
-    uint64_t given_us;        /**< when the kernel took it */
+    bool sent_is_purged;      /**< it may still be sent, but no longer counts as pending (tx_pending_ms) */
+    uint64_t given_us;        /**< when the kernel accepted it */
     linux_hal_waiting_t waiting[LINUX_HAL_QUEUE_SIZE];
     size_t waiting_count;
-    bool has_next; /**< the record that linux_hal_receive() hands out next */
+    bool has_next; /**< `next` is the record that linux_hal_receive() returns next */
     linux_can_record_t next;
-    uint64_t next_us; /**< its arrival */
+    uint64_t next_us; /**< its receive time */
 } linux_hal_side_t;
 
-/** Read the members freely; change nothing but through the functions. */
+/** The port. The members may be read; change them through the functions only. */
 struct hal {
     const hal_ops_t *ops; /**< first: hal_ops.h */
     linux_hal_side_t sides[HAL_CAN_SIDES];
     linux_hal_config_t config;
     linux_clock_t clock;
-    uint64_t handed_us; /**< arrival of the frame that was handed out last */
+    uint64_t handed_us; /**< receive time of the frame that was returned last */
     bool led_on;
     bool output_closed;
     uint32_t feeds;
@@ -88,44 +88,44 @@ struct hal {
 };
 
 /**
- * Open the port; its clock reads 0 now.
+ * Open the port. Its clock starts at 0.
  * @param config is copied; the strings and identifiers must outlive the port
- * @param error LINUX_CAN_ERROR_SIZE bytes for one line that says what is wrong (no such interface, two sides on one, ...)
+ * @param error LINUX_CAN_ERROR_SIZE bytes for a one-line error message (no such interface, both sides on one, ...)
  * @return false: not opened
  */
 bool linux_hal_open(hal_t *hal, const linux_hal_config_t *config, char *error);
 
-/** How long linux_hal_finish() takes at most: what waits at 125 kbit/s, some 1 ms a frame, and a frame that is on its way. */
+/** Longest time of linux_hal_finish(): the waiting frames at 125 kbit/s, about 1 ms each, and one in transmission. */
 #define LINUX_HAL_FINISH_MS 20
 
 /**
- * Let what waits leave, and tell of it (on_left), so that no half of a set of commands is what the bus saw last. Returns when
- * nothing waits, or after LINUX_HAL_FINISH_MS; a side that is down or gone is not waited for. What is received is
- * forgotten: only linux_hal_close() may follow.
+ * Send the waiting frames and report them (on_left), so that the bus does not end with an incomplete set of commands.
+ * Returns when no frame waits, or after LINUX_HAL_FINISH_MS; does not wait for a side that is down or gone. Received
+ * frames are discarded: only linux_hal_close() may follow.
  */
 void linux_hal_finish(hal_t *hal);
 
-/** Close, the AI side first. What still waits is discarded; what has left is told of (on_left). */
+/** Close the port, the AI side first. Waiting frames are discarded; sent ones are reported (on_left). */
 void linux_hal_close(hal_t *hal);
 
-/** The file of a side, to wait for (linux_loop.h); it changes when an interface comes back. -1: none at the moment. */
+/** The file descriptor of a side, for linux_loop.h; it changes when an interface comes back. -1: none now. */
 int linux_hal_fd(const hal_t *hal, hal_can_side_t side);
 
-/** Microseconds since the port was opened: the clock, finer. */
+/** Microseconds since the port was opened: the clock with a finer resolution. */
 uint64_t linux_hal_now_us(const hal_t *hal);
 
 /**
- * Take the next received frame, of both sides the one that arrived first. Own frames are not among them, error frames
- * are, after they have acted on the state.
- * @param frame time_ms and time_us: the clock at its arrival, by the kernel's stamp
- * @param at_us the same moment since the port was opened; never before that of the frame handed out last
- * @return false: nothing there
+ * Take the next received frame, the earliest of both sides. Own frames are not returned; error frames are, after they have
+ * changed the state.
+ * @param frame time_ms and time_us: the clock at its reception, from the kernel's time stamp
+ * @param at_us its receive time since the port was opened; never before that of the previous frame
+ * @return false: no frame
  */
 bool linux_hal_receive(hal_t *hal, hal_can_side_t *side, hal_can_frame_t *frame, uint64_t *at_us);
 
 /**
- * A millisecond passed; before the supervisor's tick. Gives what waits to the kernel, looks for interfaces that are down
- * or gone. @return true: a side's file (linux_hal_fd()) has changed.
+ * Call every millisecond, before the supervisor's tick. Passes waiting frames to the kernel, and checks for interfaces that
+ * are down or gone. @return true: the file descriptor of a side (linux_hal_fd()) has changed.
  */
 bool linux_hal_tick(hal_t *hal);
 

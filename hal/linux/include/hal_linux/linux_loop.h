@@ -1,7 +1,7 @@
 /**
  * @file linux_loop.h
- * Waiting: one epoll for sockets and other files, a timer that ticks every millisecond, and the signals that end a
- * program. Nothing else of a program blocks.
+ * The event loop: one epoll for sockets and other files, a timer that ticks every millisecond, and the signals that end a
+ * program. A program blocks only here.
  */
 #ifndef HAL_LINUX_LINUX_LOOP_H
 #define HAL_LINUX_LINUX_LOOP_H
@@ -9,10 +9,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/** What linux_loop_wait() returns: a word of bits. */
-#define LINUX_LOOP_TICK 0x01u   /**< a millisecond passed, or several: a late program gets one tick, not a burst */
-#define LINUX_LOOP_SIGNAL 0x02u /**< SIGINT, SIGTERM or SIGHUP came */
-#define LINUX_LOOP_FILE 0x04u   /**< a file that was added is ready, which one the program tries out */
+/** Result of linux_loop_wait(): bits. */
+#define LINUX_LOOP_TICK 0x01u   /**< one or more milliseconds have passed: a late program gets only one tick */
+#define LINUX_LOOP_SIGNAL 0x02u /**< SIGINT, SIGTERM or SIGHUP was received */
+#define LINUX_LOOP_FILE 0x04u   /**< one of the added files is ready; the program must try them */
 
 /** A loop; change it through the functions. */
 typedef struct {
@@ -22,29 +22,29 @@ typedef struct {
 } linux_loop_t;
 
 /**
- * Open the loop. From here on SIGINT, SIGTERM and SIGHUP do not end the program: they are told by the loop.
- * @return false: the system refused; errno says why.
+ * Open the loop. From now on SIGINT, SIGTERM and SIGHUP do not end the program: the loop reports them.
+ * @return false: failed; errno is set.
  */
 bool linux_loop_open(linux_loop_t *loop);
 
 /**
- * Let the ticks fall on the whole milliseconds of a clock, and just after them: what is counted in these is judged when it
- * changes, not up to a millisecond later.
- * @param now_us what the clock reads now
- * @return false: errno says why; the ticks go on as before
+ * Align the ticks with the whole milliseconds of a clock, so that times counted in milliseconds are evaluated when they
+ * change, not up to a millisecond later.
+ * @param now_us the clock now
+ * @return false: failed, and the ticks continue as before; errno is set.
  */
 bool linux_loop_align(linux_loop_t *loop, uint64_t now_us);
 
-/** Watch a file for reading as well. @return false: errno says why (a regular file cannot be waited for). */
+/** Add a file to wait for, for reading. @return false: failed, for example for a regular file; errno is set. */
 bool linux_loop_add(linux_loop_t *loop, int fd);
 
-/** No longer watch it. */
+/** Remove a file. */
 void linux_loop_remove(linux_loop_t *loop, int fd);
 
-/** Wait until something happens. @return LINUX_LOOP_*, at least one */
+/** Wait for an event. @return LINUX_LOOP_* bits, at least one */
 uint32_t linux_loop_wait(linux_loop_t *loop);
 
-/** Close; the signals stay held back. */
+/** Close the loop. The signals remain blocked. */
 void linux_loop_close(linux_loop_t *loop);
 
 /** Room for a message of linux_loop_realtime(). */
@@ -52,8 +52,8 @@ void linux_loop_close(linux_loop_t *loop);
 
 /**
  * Run in real time: SCHED_FIFO at a middle priority, memory locked.
- * @param error LINUX_LOOP_ERROR_SIZE bytes for one line that says what was refused and what right it needs
- * @return false: refused, nothing has changed
+ * @param error LINUX_LOOP_ERROR_SIZE bytes for a one-line error message that names the missing capability
+ * @return false: refused, and nothing has changed
  */
 bool linux_loop_realtime(char *error);
 

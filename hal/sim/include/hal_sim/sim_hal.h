@@ -1,16 +1,16 @@
 /**
  * @file sim_hal.h
- * The simulated port: `struct hal` for one supervisor, with everything of hal/include behind it.
+ * The simulated port: `struct hal` for one supervisor, which implements hal/include.
  *
- * Two modes, chosen once:
- * - on a bus: sim_hal_init(), then sim_hal_attach() for each side. Time is the bus's; received frames are taken with
- *   sim_hal_receive().
- * - direct: sim_hal_init_direct(). What is sent goes to a callback in the very call; clock and controller state are
- * what the program sets. For replay, exploration and fuzzing; the program hands received frames to the supervisor
- * itself.
+ * It has two modes:
+ * - On a bus: sim_hal_init(), then sim_hal_attach() for each side. The time is that of the bus; the program takes received
+ *   frames with sim_hal_receive().
+ * - Direct: sim_hal_init_direct(). Sent frames are passed to a callback within the call; the program sets the clock and
+ *   the state of the controllers, and passes received frames to the supervisor itself. For replay, exploration and
+ *   fuzzing.
  *
- * The program owns the struct; it may be copied by assignment to take a snapshot (it points to bus and store). Members
- * marked "read" may be read at any time; all is changed through functions.
+ * The program owns the struct. Copy it by assignment to take a snapshot (it points to bus and store). Members marked
+ * "read" may be read at any time; change them through functions only.
  */
 #ifndef HAL_SIM_SIM_HAL_H
 #define HAL_SIM_SIM_HAL_H
@@ -54,13 +54,13 @@ typedef enum {
 
 #define SIM_HAL_OP_ALL ((1u << SIM_HAL_OP_COUNT) - 1u)
 
-/** Direct mode: a frame was sent. Not called for a frame that is refused. */
+/** Direct mode: called for every sent frame, not for refused ones. */
 typedef void sim_hal_sink_fn(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame);
 
 /** All zero: clock from 0, watchdog after 100 ms, power-on, no store. */
 typedef struct {
-    uint32_t clock_start_ms; /**< what the clock reads at bus time 0 (direct: until it is set); any value */
-    uint16_t clock_phase_us; /**< 0..999: how much of the first millisecond is over at bus time 0 */
+    uint32_t clock_start_ms; /**< the clock at bus time 0 (direct mode: until it is set); any value */
+    uint16_t clock_phase_us; /**< 0..999: microseconds of the first millisecond that have passed at bus time 0 */
     uint32_t watchdog_ms;    /**< period; 0 = SIM_HAL_WATCHDOG_DEFAULT_MS; or SIM_HAL_WATCHDOG_OFF */
     hal_reset_cause_t reset_cause;
     sim_store_t *store; /**< NULL: nothing is ever stored, writes fail */
@@ -76,12 +76,12 @@ typedef struct {
 /** One CAN controller. */
 typedef struct {
     bool exists;               /**< read */
-    uint32_t sent;             /**< read: frames taken */
-    uint32_t refused;          /**< read: hal_can_send() returned false */
-    uint32_t received;         /**< read: frames handed out by sim_hal_receive() */
+    uint32_t sent;             /**< read: accepted frames */
+    uint32_t refused;          /**< read: hal_can_send() calls that returned false */
+    uint32_t received;         /**< read: frames returned by sim_hal_receive() */
     uint32_t purges;           /**< read: hal_can_purge() calls */
-    uint32_t recover_requests; /**< read: hal_can_recover() calls that came in bus-off */
-    hal_can_status_t status;   /**< direct mode: what is reported; bus mode: the last one that was */
+    uint32_t recover_requests; /**< read: hal_can_recover() calls in bus-off */
+    hal_can_status_t status;   /**< direct mode: the status to report; bus mode: the last reported one */
     bool full;                 /**< direct mode: sim_hal_set_full() */
     bool swallows;             /**< sim_hal_set_swallowing() */
     sim_bus_t *bus;
@@ -95,10 +95,10 @@ struct hal {
     sim_hal_pin_t safety_output;      /**< read */
     bool held;         /**< read: in reset (watchdog or sim_hal_hold()); nothing works until sim_hal_reset() */
     uint32_t feeds;    /**< read: hal_watchdog_feed() calls */
-    uint32_t bites;    /**< read: of the watchdog, since sim_hal_init() */
+    uint32_t bites;    /**< read: resets by the watchdog since sim_hal_init() */
     uint32_t resets;   /**< read: sim_hal_reset() calls */
     uint32_t calls;    /**< read: operations of hal/include called so far */
-    uint32_t failures; /**< read: of those, how many were made to fail */
+    uint32_t failures; /**< read: how many of them were made to fail */
     uint32_t op_calls[SIM_HAL_OP_COUNT]; /**< read: calls of each */
     sim_hal_op_t last_failed;            /**< read: operation made to fail last (when failures > 0) */
     uint32_t fail_first;
@@ -134,44 +134,44 @@ bool sim_hal_attach(hal_t *hal, hal_can_side_t side, sim_bus_t *bus, const sim_b
 void sim_hal_init_direct(hal_t *hal, const sim_hal_config_t *config, unsigned sides, sim_hal_sink_fn *sink, void *ctx);
 /** @} */
 
-/** @name Pumping @{ */
+/** @name Running @{ */
 
 /**
- * Take the next received frame of a side; the program hands it to the supervisor.
- * @param frame time_ms = this supervisor's clock at the moment of its arrival, rounded down
- * @return false: nothing there, no such side, direct mode, or held in reset.
+ * Take the next received frame of a side; the program passes it to the supervisor.
+ * @param frame time_ms = this supervisor's clock at its reception, rounded down
+ * @return false: no frame, no such side, direct mode, or held in reset.
  */
 bool sim_hal_receive(hal_t *hal, hal_can_side_t side, hal_can_frame_t *frame);
 
 /**
- * Let the watchdog look at the clock; call it every tick, after the supervisor's step. It bites when the last feed is
- * more than its period ago: the safety output opens (at the moment when the period was over), the LED goes dark, the
- * controllers lose power, and every operation is without effect until sim_hal_reset().
+ * Run the watchdog; call this every tick, after the supervisor's step. If the last feed is more than its period ago, it
+ * resets the MCU: the safety output opens (at the time when the period was over), the LED goes dark, the controllers lose
+ * power, and no operation has an effect until sim_hal_reset().
  * @return true while the port is held in reset.
  */
 bool sim_hal_poll(hal_t *hal);
 
 /**
- * Hold the MCU in reset from now on, as without supply: safety output open, LED dark, controllers without power, every
- * operation without effect, until sim_hal_reset().
+ * Hold the MCU in reset, as without supply, until sim_hal_reset(): the safety output is open, the LED dark, the controllers
+ * without power, and no operation has an effect.
  */
 void sim_hal_hold(hal_t *hal);
 
 /**
- * Reset the MCU: outputs as at boot (open, dark), controllers fresh with empty queues and zero counters, watchdog just
- * fed. The log and (but for HAL_RESET_POWER_ON, see sim_store_t) the latch stay. The program then starts a new
+ * Reset the MCU: outputs as at boot (open, dark), controllers with empty queues and zero counters, watchdog just fed. The
+ * log is kept, and so is the latch (except for HAL_RESET_POWER_ON, see sim_store_t). The program then starts a new
  * supervisor.
  */
 void sim_hal_reset(hal_t *hal, hal_reset_cause_t cause);
 
-/** The clock, uncounted and never failing: for the program's own use. */
+/** The clock, for the program's own use: the call is not counted and never fails. */
 uint32_t sim_hal_now_ms(const hal_t *hal);
 
-/** The clock at a moment of the bus; direct mode: as sim_hal_now_ms(). */
+/** The clock at a bus time; direct mode: as sim_hal_now_ms(). */
 uint32_t sim_hal_clock_at(const hal_t *hal, uint64_t bus_us);
 /** @} */
 
-/** @name Failing on demand @{ */
+/** @name Fault injection @{ */
 
 /**
  * Make calls of hal/include fail: those with the numbers @p first .. @p first + @p count - 1 (the first call after
@@ -186,9 +186,9 @@ uint32_t sim_hal_clock_at(const hal_t *hal, uint64_t bus_us);
 void sim_hal_fail_at(hal_t *hal, uint32_t first, uint32_t count, uint32_t ops);
 /** @} */
 
-/** @name Direct mode: what is set from outside @{ */
+/** @name Direct mode: state set by the program @{ */
 
-/** Set the clock. Never call it with an earlier time (the wrap is none). */
+/** Set the clock. Never call it with an earlier time; the wrap from UINT32_MAX to 0 is not earlier. */
 void sim_hal_set_now_ms(hal_t *hal, uint32_t now_ms);
 
 /**
@@ -200,15 +200,15 @@ void sim_hal_set_can_state(hal_t *hal, hal_can_side_t side, hal_can_state_t stat
 /** Count one overrun. Works on a bus, too. */
 void sim_hal_add_overrun(hal_t *hal, hal_can_side_t side);
 
-/** Report frames as waiting for so long (0 = none); hal_can_purge() sets it to 0. */
+/** Set the reported waiting time of frames (0 = none); hal_can_purge() sets it to 0. */
 void sim_hal_set_tx_pending_ms(hal_t *hal, hal_can_side_t side, uint32_t tx_pending_ms);
 
 /** While set, hal_can_send() returns false (queue full). Works on a bus, too. */
 void sim_hal_set_full(hal_t *hal, hal_can_side_t side, bool full);
 
 /**
- * While set, frames that are taken never leave, and nothing shows it: a transmitter that died behind the controller. Works
- * on a bus, too.
+ * While set, accepted frames are never sent, and the status does not show it: a dead transmitter behind the controller.
+ * Works on a bus, too.
  */
 void sim_hal_set_swallowing(hal_t *hal, hal_can_side_t side, bool swallows);
 /** @} */
