@@ -57,7 +57,7 @@ static void tell_fault(const agv_event_t *event) {
     }
 }
 
-static void tell(const agv_event_t *event) {
+static void print_event(const agv_event_t *event) {
     switch (event->kind) {
     case AGV_EVENT_STATE:
         LOG_INF("%u ms: => %s%s%s", event->time_ms, text(agv_state_name((agv_state_t)event->b)),
@@ -115,22 +115,22 @@ uint32_t events_begin(const agv_config_t *config, const agv_recorder_t *recorder
     return first_of_run(recorder);
 }
 
-void events_tell(const agv_recorder_t *recorder, uint32_t *told) {
+void events_print(const agv_recorder_t *recorder, uint32_t *printed) {
     const uint32_t next = agv_recorder_next_sequence(recorder);
     agv_event_t event;
-    if ((next - *told) > AGV_RECORDER_EVENTS) {
-        *told = next - AGV_RECORDER_EVENTS;
+    if ((next - *printed) > AGV_RECORDER_EVENTS) {
+        *printed = next - AGV_RECORDER_EVENTS;
     }
-    for (; *told != next; (*told)++) {
-        if (agv_recorder_get(recorder, *told, &event)) {
-            tell(&event);
+    for (; *printed != next; (*printed)++) {
+        if (agv_recorder_get(recorder, *printed, &event)) {
+            print_event(&event);
         }
     }
 }
 
-void events_tell_led(uint32_t now_ms, int8_t code, int8_t *told) {
-    if (code != *told) {
-        *told = code;
+void events_print_led(uint32_t now_ms, int8_t code, int8_t *printed) {
+    if (code != *printed) {
+        *printed = code;
         LOG_INF("%u ms: LED code %d", now_ms, code);
     }
 }
@@ -142,13 +142,13 @@ uint32_t events_begin(const agv_config_t *config, const agv_recorder_t *recorder
     return agv_recorder_next_sequence(recorder);
 }
 
-void events_tell(const agv_recorder_t *recorder, uint32_t *told) {
-    *told = agv_recorder_next_sequence(recorder);
+void events_print(const agv_recorder_t *recorder, uint32_t *printed) {
+    *printed = agv_recorder_next_sequence(recorder);
 }
 
-void events_tell_led(uint32_t now_ms, int8_t code, int8_t *told) {
+void events_print_led(uint32_t now_ms, int8_t code, int8_t *printed) {
     ARG_UNUSED(now_ms);
-    *told = code;
+    *printed = code;
 }
 
 #endif

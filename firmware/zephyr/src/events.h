@@ -10,17 +10,17 @@
 #include "agv/config.h"
 #include "agv/recorder.h"
 
-/** Print version and configuration. @return from which event on this run is to be told */
+/** Print version and configuration. @return the sequence number of the first event of this run */
 uint32_t events_begin(const agv_config_t *config, const agv_recorder_t *recorder);
 
-/** Print what is new since *told, at most what the recorder still has. */
-void events_tell(const agv_recorder_t *recorder, uint32_t *told);
+/** Print the events from sequence number *printed on that the recorder still has, and advance *printed. */
+void events_print(const agv_recorder_t *recorder, uint32_t *printed);
 
-/** What *told stands for before anything was told. */
+/** Initial value of *printed of events_print_led(): no code was printed yet. */
 #define EVENTS_NO_LED INT8_MIN
 
-/** Print the LED's code, as agv_supervisor_led_code(), when it is not the one that was told. */
-void events_tell_led(uint32_t now_ms, int8_t code, int8_t *told);
+/** Print the LED code (agv_supervisor_led_code()) if it differs from *printed, and update *printed. */
+void events_print_led(uint32_t now_ms, int8_t code, int8_t *printed);
 
 /** The version, with what makes this build differ from one that acts. */
 const char *events_version(void);

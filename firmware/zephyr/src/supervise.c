@@ -10,9 +10,9 @@ __weak bool supervise_self_test(void) {
     return true;
 }
 
-static void tell(supervise_t *self) {
-    events_tell(self->ports.recorder, &self->told);
-    events_tell_led(self->ticked_ms, agv_supervisor_led_code(&self->supervisor), &self->told_led);
+static void print_new(supervise_t *self) {
+    events_print(self->ports.recorder, &self->printed);
+    events_print_led(self->ticked_ms, agv_supervisor_led_code(&self->supervisor), &self->printed_led);
 }
 
 void supervise_start(supervise_t *self, agv_recorder_t *recorder, zephyr_hal_retained_t *retained) {
@@ -31,9 +31,9 @@ void supervise_start(supervise_t *self, agv_recorder_t *recorder, zephyr_hal_ret
 #if defined(CONFIG_AGV_SHELL)
     agv_config_ids(agv_supervisor_config(&self->supervisor), &self->ids);
 #endif
-    self->told = events_begin(&config, recorder);
-    self->told_led = EVENTS_NO_LED;
-    tell(self);
+    self->printed = events_begin(&config, recorder);
+    self->printed_led = EVENTS_NO_LED;
+    print_new(self);
 }
 
 static void count(supervise_t *self, const hal_can_frame_t *frame) {
@@ -73,5 +73,5 @@ void supervise_once(supervise_t *self) {
         agv_supervisor_tick(&self->supervisor, &self->ports, now_ms);
     }
     zephyr_hal_transmit(&self->hal);
-    tell(self);
+    print_new(self);
 }

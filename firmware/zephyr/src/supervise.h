@@ -18,8 +18,8 @@ typedef struct {
     agv_supervisor_t supervisor;
     agv_ports_t ports;
     uint32_t ticked_ms;
-    uint32_t told; /**< the recorder's next sequence number when events were last printed */
-    int8_t told_led;
+    uint32_t printed; /**< the recorder's next sequence number when events were last printed */
+    int8_t printed_led;
 #if defined(CONFIG_AGV_SHELL)
     agv_ids_t ids;                  /**< of the messages on this vehicle */
     uint32_t frames[AGV_MSG_COUNT]; /**< received of each message, for the shell's rates */
