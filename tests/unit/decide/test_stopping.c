@@ -95,6 +95,30 @@ void test_standing_at_the_moment_of_the_trip_counts_as_seen(void) {
     expect(false, false);
 }
 
+/* The 200 ms begin with the trip at the earliest. */
+/* Shows: FSM-12, MOVING_WHILE_SAFE */
+void test_wheels_that_turn_from_the_trip_on(void) {
+    wheels(0, 0);
+    run(100);
+    trip();
+    wheels(2000, 2000);
+    run(199);
+    expect(false, false);
+    run(1);
+    expect(false, true);
+}
+
+/* What stands by its setting does not move the vehicle. */
+/* Shows: FSM-12 */
+void test_wheels_that_are_slow_by_a_setting_stand(void) {
+    config.standstill_speed_mm_s = 250;
+    wheels(150, 150);
+    run(100);
+    trip();
+    run(1000);
+    expect(false, false);
+}
+
 /* How long it takes is a setting. */
 /* Shows: FSM-12 */
 void test_the_time_to_stop_is_a_setting(void) {
