@@ -7,7 +7,7 @@
 # to ctest. A test includes a mock as "mock_can.h" (for hal/can.h). Every program is linked to agv_core.
 # Mocks stand in for the HAL contract, hal/include, and for nothing else: the rest of the core is tested as it is.
 # NO_TEST: the program is built, and run by a test of somebody else.
-# PLANTED: a test that has to fail; it is built by its name only and run by `ctest -C planted` only (tests/gates).
+# PLANTED: a test that has to fail; it is built by its name only and run by `ctest -C planted` only (tests/proofs/seeded.tsv).
 
 find_program(AGV_RUBY ruby)
 set(AGV_GEMS ${PROJECT_SOURCE_DIR}/build/gems)
