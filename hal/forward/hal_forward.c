@@ -9,11 +9,15 @@
 #include "hal/store.h"
 #include "hal/watchdog.h"
 
-/* Every struct hal begins with this pointer. */
+/* How every struct hal begins here. */
+typedef struct {
+    const hal_ops_t *ops;
+} head_t;
+
 static const hal_ops_t *ops_of(const hal_t *hal) {
-    const hal_ops_t *ops = NULL;
-    memcpy(&ops, hal, sizeof ops);
-    return ops;
+    head_t head;
+    memcpy(&head, hal, sizeof head);
+    return head.ops;
 }
 
 bool hal_can_send(hal_t *hal, hal_can_side_t side, const hal_can_frame_t *frame) {

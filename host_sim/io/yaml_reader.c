@@ -76,7 +76,7 @@ static void store(const yaml_key_t *key, int64_t value, void *target) {
 }
 
 static bool read_range(const yaml_reader_t *reader, const yaml_node_t *node, const yaml_key_t *key, void *target) {
-    int64_t range[2];
+    int64_t range[2] = {0, 0};
 
     if (!yaml_reader_range(reader, node, key->name, key->lowest, key->highest, range)) {
         return false;
