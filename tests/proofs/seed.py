@@ -27,7 +27,7 @@ import threading
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-SECONDS = 600
+SECONDS = 1800  # a flip of each bit takes minutes
 
 
 class Fault:
