@@ -1,5 +1,7 @@
 /* The two identifier sets (P1): 43Fh and 363h, or 201h and 203h. Each is supervised alike; traffic on the other set's
  * identifiers is never accepted, and is reported as WRONG_ID_SET. And identifiers that are changed one by one. */
+#include <string.h>
+
 #include "expect.h"
 #include "one_fixture.h"
 
@@ -280,6 +282,31 @@ void test_a_gateway_passes_on_the_changed_identifiers(void) {
     TEST_ASSERT_EQUAL_UINT32(4, fixture_count_sent(&f, 0x065));
     TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x363));
     TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x101));
+}
+
+static void corrupt_the_configuration(void) {
+    size_t at = 0;
+    while (memcmp(&f.supervisor.memory[at], &f.config, sizeof f.config) != 0) {
+        at++;
+        TEST_ASSERT_LESS_THAN_size_t(sizeof f.supervisor.memory - sizeof f.config, at);
+    }
+    f.supervisor.memory[at + AGV_SETTING_own_heartbeat * sizeof(uint16_t)] ^= 0x80u;
+}
+
+/* The configuration falls back to the defaults, but not these: the oracle judges what leaves. */
+/* Shows: P1, INT-5, MEMORY_CORRUPTED */
+void test_a_corrupted_supervisor_keeps_the_changed_identifiers(void) {
+    change_ids();
+    fixture_active(&f);
+    corrupt_the_configuration();
+    fixture_run(&f, 1);
+    expect_reason(&f, AGV_FAULT_MEMORY_CORRUPTED);
+    fixture_mute_ai(&f, true);
+    fixture_forget_sent(&f);
+    fixture_run(&f, 1000);
+    TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x43F));
+    TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x168));
+    TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x075));
 }
 
 /* One that is changed, and the set for the others. */
