@@ -13,7 +13,7 @@ typedef struct {
     uint64_t world_size;
     uint64_t state_size;
     uint64_t seed;
-    uint32_t hours;
+    uint64_t hours;
     uint32_t shard;
     uint32_t shards;
     uint32_t checksum; /**< of state and world */
