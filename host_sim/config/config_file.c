@@ -7,8 +7,8 @@
 
 #include "agv/names.h"
 #include "cli/options.h"
+#include "io/hex.h"
 #include "io/report.h"
-#include "io/text.h"
 #include "io/yaml_file.h"
 
 enum { HEX = 16, CLASS_WORD_TRIP = 0, CLASS_WORD_WARN = 1 };
@@ -55,8 +55,8 @@ static bool read_number(const char *text, uint64_t *number) {
     uint64_t value = 0u;
     const char *at = &text[2];
     for (; (*at != '\0') && ((size_t)(at - text) < 10u); at++) {
-        const uint32_t digit = text_hex_digit(*at);
-        if (digit >= TEXT_NO_DIGIT) {
+        const uint32_t digit = hex_digit(*at);
+        if (digit >= HEX_NO_DIGIT) {
             return false;
         }
         value = (value * HEX) + digit;

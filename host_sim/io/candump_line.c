@@ -3,7 +3,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "io/text.h"
+#include "io/hex.h"
 
 /*
  * Every scan stops at the line feed after the line: it belongs to no class of characters below, so no scan needs a
@@ -90,7 +90,7 @@ static const char *parse_id(const char **cursor, hal_can_frame_t *frame) {
     const char *at = *cursor;
     uint32_t id = 0u;
     size_t count = 0u;
-    for (uint32_t value = text_hex_digit(*at); (value < TEXT_NO_DIGIT) && (count < 9u); value = text_hex_digit(*at)) {
+    for (uint32_t value = hex_digit(*at); (value < HEX_NO_DIGIT) && (count < 9u); value = hex_digit(*at)) {
         id = (id << 4u) | value;
         count++;
         at++;
@@ -116,14 +116,14 @@ static const char *parse_id(const char **cursor, hal_can_frame_t *frame) {
 static void skip_raw_dlc(const char **cursor) {
     const char *at = *cursor;
     if (at[0] == '_') {
-        uint32_t dlc = text_hex_digit(at[1]);
-        *cursor = ((dlc > DATA_MAX) && (dlc < TEXT_NO_DIGIT)) ? &at[2] : at;
+        uint32_t dlc = hex_digit(at[1]);
+        *cursor = ((dlc > DATA_MAX) && (dlc < HEX_NO_DIGIT)) ? &at[2] : at;
     }
 }
 
 static void parse_remote(const char **cursor, hal_can_frame_t *frame) {
     frame->flags |= HAL_CAN_REMOTE;
-    uint32_t length = text_hex_digit(**cursor);
+    uint32_t length = hex_digit(**cursor);
     if (length <= DATA_MAX) {
         frame->length = (uint8_t)length;
         (*cursor)++;
@@ -137,12 +137,12 @@ static const char *parse_data(const char **cursor, hal_can_frame_t *frame, uint3
     const char *at = *cursor;
     uint32_t length = 0u;
     for (;;) {
-        uint32_t high = text_hex_digit(at[0]);
-        if (high >= TEXT_NO_DIGIT) {
+        uint32_t high = hex_digit(at[0]);
+        if (high >= HEX_NO_DIGIT) {
             break;
         }
-        uint32_t low = text_hex_digit(at[1]);
-        if (low >= TEXT_NO_DIGIT) {
+        uint32_t low = hex_digit(at[1]);
+        if (low >= HEX_NO_DIGIT) {
             return "the data has an odd number of digits";
         }
         if (length >= most) {
@@ -176,7 +176,7 @@ static const char *parse_payload(const char **cursor, hal_can_frame_t *frame) {
     if ((frame->flags & HAL_CAN_ERROR) != 0u) {
         return "an error frame is not CAN FD";
     }
-    if (text_hex_digit(at[1]) >= TEXT_NO_DIGIT) {
+    if (hex_digit(at[1]) >= HEX_NO_DIGIT) {
         return "the flags of a CAN FD frame are missing";
     }
     frame->flags |= HAL_CAN_FD;

@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "agv/checksum.h"
+#include "io/hex.h"
 #include "io/report.h"
-#include "io/text.h"
 
 #define FILE_SIZE_MAX 1048576u
 #define FIRST_LINE "agv-store 1\n"
@@ -42,7 +42,7 @@ static ssize_t read_up_to_limit(int fd, const char *path, char *text) {
 
 /** The value of a digit as it is written here, in capital letters. */
 static uint32_t nibble(char digit) {
-    return (islower((unsigned char)digit) != 0) ? TEXT_NO_DIGIT : text_hex_digit(digit);
+    return (islower((unsigned char)digit) != 0) ? HEX_NO_DIGIT : hex_digit(digit);
 }
 
 /** Read hexadecimal bytes. @return how many; 0: none, more than @p most, or no such bytes. */
@@ -53,7 +53,7 @@ static size_t read_hex(const char *text, size_t length, uint8_t *bytes, size_t m
     for (size_t i = 0u; i < length / 2u; i++) {
         const uint32_t high = nibble(text[2u * i]);
         const uint32_t low = nibble(text[(2u * i) + 1u]);
-        if ((high >= TEXT_NO_DIGIT) || (low >= TEXT_NO_DIGIT)) {
+        if ((high >= HEX_NO_DIGIT) || (low >= HEX_NO_DIGIT)) {
             return 0u;
         }
         bytes[i] = (uint8_t)((high << 4u) | low);

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/hex.h"
 #include "io/report.h"
-#include "io/text.h"
 #include "io/yaml_file.h"
 
 enum { SHOWN_MAX = 40, LINE_SHOWN_MAX = 80, DECIMAL = 10, HEX = 16, BYTES_MAX = 8 };
@@ -301,10 +301,10 @@ static bool take_byte(const char *text, uint8_t *value, uint8_t *mask) {
         *mask = 0u;
         return true;
     }
-    if ((text_hex_digit(text[0]) >= TEXT_NO_DIGIT) || (text_hex_digit(text[1]) >= TEXT_NO_DIGIT)) {
+    if ((hex_digit(text[0]) >= HEX_NO_DIGIT) || (hex_digit(text[1]) >= HEX_NO_DIGIT)) {
         return false;
     }
-    *value = (uint8_t)((text_hex_digit(text[0]) * HEX) + text_hex_digit(text[1]));
+    *value = (uint8_t)((hex_digit(text[0]) * HEX) + hex_digit(text[1]));
     if (mask != NULL) {
         *mask = UINT8_MAX;
     }

@@ -47,7 +47,7 @@ typedef struct {
 typedef struct {
     uint32_t begin;
     uint32_t end;
-    uint32_t after; /**< the first step that is none of it */
+    uint32_t after; /**< the first step after it */
 } soak_steps_t;
 
 /** All of it; some 400 KiB. */
@@ -84,7 +84,7 @@ void soak_judge_counters(soak_t *soak);
 bool soak_save(soak_t *soak);
 /** Whether the checkpoint could be written; one that is there stays as it is. @return false: reported */
 bool soak_may_save(soak_t *soak);
-/** Go on from the checkpoint, if there is one. @return false: it is none of this soak; reported */
+/** Go on from the checkpoint, if there is one. @return false: it belongs to another soak; reported */
 bool soak_load(soak_t *soak);
 /** @} */
 

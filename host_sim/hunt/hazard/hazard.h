@@ -163,7 +163,7 @@ typedef struct {
     hazard_mode_t mode;
     hazard_trip_t trip;
     hazard_hold_t hold;
-    uint64_t bad_command_ms; /**< the last AI command that is none */
+    uint64_t bad_command_ms; /**< the last malformed AI command */
     bool has_bad_command;
     uint64_t foreign_ms;  /**< first foreign command on the vehicle side that was not answered; 0: none */
     uint64_t false_ms;    /**< first 065h on the vehicle side that nobody sent; 0: none */

@@ -1,0 +1,20 @@
+/**
+ * @file hex.h
+ * Hexadecimal digits.
+ */
+#ifndef HOST_SIM_HEX_H
+#define HOST_SIM_HEX_H
+
+#include <stdint.h>
+
+enum { HEX_NO_DIGIT = 16 };
+
+/** One more than the value of a hexadecimal digit; 0 for other characters. */
+extern const uint8_t HEX_DIGIT_PLUS_1[256];
+
+/** Value of a hexadecimal digit in either case; HEX_NO_DIGIT or more for other characters. */
+static inline uint32_t hex_digit(char character) {
+    return (HEX_DIGIT_PLUS_1[(unsigned char)character] + 255u) & 0xFFu;
+}
+
+#endif
