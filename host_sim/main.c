@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "cli/commands/commands.h"
-#include "io/report.h"
+#include "common/report.h"
 
 /** One sub-command, as `--help` lists it. */
 typedef struct {

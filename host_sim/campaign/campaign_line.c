@@ -5,7 +5,7 @@
 
 #include "agv/names.h"
 #include "cli/shard_option.h"
-#include "io/report.h"
+#include "common/report.h"
 
 typedef bool fits_fn(const json_t *value);
 

@@ -11,8 +11,8 @@
 
 #include "campaign/campaign_line.h"
 #include "cli/shard_option.h"
-#include "io/interrupt.h"
-#include "io/report.h"
+#include "common/interrupt.h"
+#include "common/report.h"
 
 enum { LOOK_FOR_SIGNALS_EVERY = 1024 };
 

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "campaign/chance.h"
-#include "io/units.h"
+#include "common/chance.h"
+#include "common/units.h"
 
 enum {
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "io/report.h"
+#include "common/report.h"
 
 enum { FIRST_ROOM = 1024 };
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "agv/supervisor.h"
-#include "io/units.h"
+#include "common/units.h"
 
 enum { BITS_PER_BYTE = 8, CONFIRM_LEAD_MS = 2 };
 

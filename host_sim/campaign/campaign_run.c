@@ -8,7 +8,7 @@
 
 #include "agv/names.h"
 #include "campaign/campaign_scenario.h"
-#include "io/interrupt.h"
+#include "common/interrupt.h"
 #include "ui/progress.h"
 
 enum { PATH_SIZE = 4096, FILES_MAX = 20, LOOK_FOR_SIGNALS_EVERY = 16 };

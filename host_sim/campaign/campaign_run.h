@@ -6,7 +6,7 @@
 #define HOST_SIM_CAMPAIGN_RUN_H
 
 #include "campaign/campaign_result.h"
-#include "io/report.h"
+#include "common/report.h"
 
 /** What is asked for. */
 typedef struct {

@@ -5,8 +5,8 @@
 
 #include "agv/names.h"
 #include "campaign/campaign_result.h"
-#include "io/report.h"
-#include "io/units.h"
+#include "common/report.h"
+#include "common/units.h"
 
 enum { TIME_SIZE = 24 };
 

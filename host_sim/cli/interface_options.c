@@ -3,7 +3,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "io/report.h"
+#include "common/report.h"
 
 bool interface_options_check(const char *command, const char *const interfaces[HAL_CAN_SIDES], bool is_gateway) {
     const char *vehicle = interfaces[HAL_CAN_VEHICLE];

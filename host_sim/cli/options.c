@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "io/report.h"
+#include "common/report.h"
 
 enum { HELP_COLUMN = 24 };
 

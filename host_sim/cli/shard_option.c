@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "cli/options.h"
-#include "io/report.h"
+#include "common/report.h"
 
 bool shard_option_take(const char *text, uint32_t *shard, uint32_t *shards) {
     char first[8];

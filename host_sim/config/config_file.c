@@ -7,8 +7,8 @@
 
 #include "agv/names.h"
 #include "cli/options.h"
-#include "io/hex.h"
-#include "io/report.h"
+#include "common/hex.h"
+#include "common/report.h"
 #include "io/yaml_file.h"
 
 enum { HEX = 16, CLASS_WORD_TRIP = 0, CLASS_WORD_WARN = 1 };

@@ -11,7 +11,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "io/report.h"
+#include "common/report.h"
 
 #define HUNT_PIECE_RUNS 500u
 

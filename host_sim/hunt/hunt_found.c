@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "io/report.h"
+#include "common/report.h"
 
 enum { PATH_SIZE = 4096, BITS = 64, AFTER_MS = 500, MS_PER_S = 1000 };
 _Static_assert((unsigned)AGV_SETTING_COUNT <= 64u * (unsigned)HUNT_SETTING_WORDS, "a setting has no bit");

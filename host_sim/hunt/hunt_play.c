@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "io/report.h"
+#include "common/report.h"
 #include "scenario/scenario_player.h"
 
 enum { OPEN_MS = 700, STANDS_MS = 1000, HASH_START = 5381, HASH_FACTOR = 33 };

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "agv/faults.h"
-#include "campaign/chance.h"
+#include "common/chance.h"
 #include "hunt/hunt_draw.h"
 
 enum { SHORT_MIN_MS = 5000, SHORT_MAX_MS = 8000, LONG_MAX_MS = 13000, RATE_DDEG_S = 3000, SLOW_DDEG_S = 300 };

@@ -5,10 +5,10 @@
 #include <string.h>
 #include <time.h>
 
-#include "campaign/chance.h"
+#include "common/chance.h"
+#include "common/interrupt.h"
 #include "hunt/hunt.h"
 #include "hunt/hunt_state.h"
-#include "io/interrupt.h"
 #include "ui/progress.h"
 
 enum { CORPUS_MAX = 256, RANDOM_PERCENT = 35, PERCENT = 100, MS_PER_S = 1000, MS_PER_MIN = 60000, NS_PER_MS = 1000000 };

@@ -3,7 +3,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "io/hex.h"
+#include "common/hex.h"
 
 /*
  * Every scan stops at the line feed after the line: it belongs to no class of characters below, so no scan needs a

@@ -5,8 +5,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "io/interrupt.h"
-#include "io/report.h"
+#include "common/interrupt.h"
+#include "common/report.h"
 
 bool candump_open(candump_log_t *log, const char *path, bool skip_bad) {
     bool is_stdin = strcmp(path, "-") == 0;

@@ -6,7 +6,7 @@
 #include "agv/names.h"
 #include "agv/recorder.h"
 #include "agv/state.h"
-#include "io/missing.h"
+#include "common/missing.h"
 
 static const char *text_of(const json_t *object, const char *key) {
     const char *text = json_string_value(json_object_get(object, key));

@@ -6,7 +6,7 @@
 
 #include "agv/names.h"
 #include "agv/recorder.h"
-#include "io/missing.h"
+#include "common/missing.h"
 
 /** Write an object as a line. Takes the reference. */
 static void write_line(output_t *output, json_t *object) {

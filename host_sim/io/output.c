@@ -8,8 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "io/interrupt.h"
-#include "io/report.h"
+#include "common/interrupt.h"
+#include "common/report.h"
 
 /* What a pipe takes without blocking once poll() says that it takes something. */
 enum { SLOW_CHUNK = 4096 };

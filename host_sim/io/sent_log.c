@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "io/report.h"
+#include "common/report.h"
 
 static void write_line(sent_log_t *log, const sent_log_frame_t *sent) {
     char line[CANDUMP_WRITE_MAX];

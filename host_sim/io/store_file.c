@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "agv/checksum.h"
-#include "io/hex.h"
-#include "io/report.h"
+#include "common/hex.h"
+#include "common/report.h"
 
 #define FILE_SIZE_MAX 1048576u
 #define FIRST_LINE "agv-store 1\n"

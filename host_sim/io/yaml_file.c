@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/report.h"
+#include "common/report.h"
 
 /** Read a whole file. @return NULL: reported. The caller frees it. */
 static unsigned char *read_file(const char *path, size_t *size) {

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/hex.h"
-#include "io/report.h"
+#include "common/hex.h"
+#include "common/report.h"
 #include "io/yaml_file.h"
 
 enum { SHOWN_MAX = 40, LINE_SHOWN_MAX = 80, DECIMAL = 10, HEX = 16, BYTES_MAX = 8 };

@@ -8,12 +8,12 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "common/units.h"
 #include "config/config_text.h"
 #include "hal_linux/linux_can.h"
 #include "hal_linux/linux_loop.h"
 #include "io/events.h"
 #include "io/sent_log.h"
-#include "io/units.h"
 #include "live/live_files.h"
 #include "live/live_output.h"
 #include "live/live_status.h"

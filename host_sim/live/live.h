@@ -9,8 +9,8 @@
 #include <stdint.h>
 
 #include "agv/config.h"
+#include "common/report.h"
 #include "hal/can.h"
-#include "io/report.h"
 
 /** As a time to run for: until a signal comes. */
 #define LIVE_FOREVER 0u

@@ -3,7 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
-#include "io/report.h"
+#include "common/report.h"
 
 enum { NO_FILE = -1 };
 

@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "io/report.h"
+#include "common/report.h"
 
 /* A line is shorter; a pipe that takes something takes as much without waiting; how long the last lines may take. */
 enum { LINE_MAX_SIZE = 4096, CHUNK = 4096, LAST_WAIT_MS = 1000 };

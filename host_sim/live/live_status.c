@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "agv/names.h"
-#include "io/units.h"
+#include "common/units.h"
 #include "live/live_output.h"
 
 enum { EVERY_MS = 200, TENTH_MS = 100, LINE_SIZE = 200, WIDTH = 80 };

@@ -9,10 +9,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "common/interrupt.h"
+#include "common/report.h"
 #include "hal_linux/linux_can.h"
 #include "io/event_line.h"
-#include "io/interrupt.h"
-#include "io/report.h"
 
 enum {
     LINE_SIZE = 1024,

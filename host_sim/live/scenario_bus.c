@@ -3,12 +3,12 @@
 #include <errno.h>
 #include <string.h>
 
+#include "common/report.h"
+#include "common/units.h"
 #include "hal_linux/linux_can.h"
 #include "hal_linux/linux_clock.h"
 #include "hal_linux/linux_loop.h"
 #include "io/candump_line.h"
-#include "io/report.h"
-#include "io/units.h"
 #include "live/live_files.h"
 #include "live/node.h"
 #include "live/outsider.h"

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "io/report.h"
+#include "common/report.h"
 
 void typed_lines_init(typed_lines_t *typed, int fd) {
     *typed = (typed_lines_t){.fd = fd};

@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-#include "io/report.h"
-#include "io/units.h"
+#include "common/report.h"
+#include "common/units.h"
 
 enum { RECORDS_AT_ONCE = 1000 };
 

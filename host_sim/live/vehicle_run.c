@@ -6,9 +6,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "common/units.h"
 #include "hal_linux/linux_clock.h"
 #include "hal_linux/linux_loop.h"
-#include "io/units.h"
 #include "live/typed_lines.h"
 #include "live/vehicle_bus.h"
 #include "ui/vehicle_show.h"

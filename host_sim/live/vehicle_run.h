@@ -11,8 +11,8 @@
 #include <stdint.h>
 
 #include "agv/config.h"
+#include "common/report.h"
 #include "hal/can.h"
-#include "io/report.h"
 #include "live/vehicle_words.h"
 
 #define VEHICLE_RUN_FAULTS_MAX 64u

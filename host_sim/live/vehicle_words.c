@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "io/report.h"
+#include "common/report.h"
 #include "scenario/scenario_actions.h"
 #include "scenario/scenario_parse.h"
 

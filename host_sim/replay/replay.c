@@ -5,15 +5,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/interrupt.h"
+#include "common/units.h"
 #include "config/config_text.h"
 #include "hal_sim/sim_hal.h"
 #include "io/candump_log.h"
 #include "io/events.h"
-#include "io/interrupt.h"
 #include "io/output.h"
 #include "io/sent_log.h"
 #include "io/store_file.h"
-#include "io/units.h"
 #include "session/session.h"
 #include "ui/summary.h"
 

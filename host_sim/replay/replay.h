@@ -13,8 +13,8 @@
 #include <stdint.h>
 
 #include "agv/config.h"
+#include "common/report.h"
 #include "hal/reset.h"
-#include "io/report.h"
 
 /** The longest tail, and the longest that a log may be silent: a stamp that is later is a bad line. 100 days. */
 #define REPLAY_GAP_MAX_MS 8640000000u

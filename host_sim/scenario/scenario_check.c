@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "io/missing.h"
+#include "common/missing.h"
 
 enum { NOT_YET = -128 };
 

@@ -2,7 +2,7 @@
 #include <stdio.h>
 
 #include "agv/names.h"
-#include "io/units.h"
+#include "common/units.h"
 #include "scenario/scenario_check.h"
 
 enum { FRAME_TEXT_SIZE = 80 };

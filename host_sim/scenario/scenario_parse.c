@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "agv/names.h"
+#include "common/report.h"
 #include "config/config_file.h"
-#include "io/report.h"
 #include "io/yaml_file.h"
 #include "scenario/scenario_parse.h"
 

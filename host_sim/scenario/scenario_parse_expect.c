@@ -3,7 +3,7 @@
 
 #include "agv/names.h"
 #include "agv/recorder.h"
-#include "io/missing.h"
+#include "common/missing.h"
 #include "io/yaml_file.h"
 #include "scenario/scenario_parse.h"
 

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "io/units.h"
+#include "common/units.h"
 
 enum { MDDEG_PER_DDEG = 1000, PASSIVE_TEC = 200, BITS_PER_BYTE = 8 };
 

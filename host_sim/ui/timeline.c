@@ -8,8 +8,8 @@
 
 #include "agv/codec.h"
 #include "agv/names.h"
-#include "io/missing.h"
-#include "io/units.h"
+#include "common/missing.h"
+#include "common/units.h"
 
 enum { MM_PER_CM = 10, WHAT_SIZE = 160 };
 

@@ -9,7 +9,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "io/units.h"
+#include "common/units.h"
 #include "scenario/scenario_parse.h"
 
 enum { DRAW_EVERY_MS = 100, WHAT_SIZE = 320, STATUS_SIZE = 160, WIDTH = 80, ALARM_BITS = 8 };

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "campaign/chance.h"
 #include "campaign/soak/soak_internal.h"
-#include "io/interrupt.h"
-#include "io/units.h"
+#include "common/chance.h"
+#include "common/interrupt.h"
+#include "common/units.h"
 #include "ui/progress.h"
 
 /* A disturbance comes when the one before is over and forgotten: counts in a row begin anew after a good frame. */

@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "io/report.h"
+#include "common/report.h"
 
 /** What is asked for. */
 typedef struct {

@@ -12,7 +12,7 @@
 #include "cli/commands/commands.h"
 #include "cli/options.h"
 #include "cli/shard_option.h"
-#include "io/interrupt.h"
+#include "common/interrupt.h"
 #include "io/output.h"
 
 /** As a number that was not given. */

@@ -10,9 +10,9 @@
 
 #include "cli/commands/commands.h"
 #include "cli/options.h"
+#include "common/interrupt.h"
 #include "config/config_options.h"
 #include "io/events.h"
-#include "io/interrupt.h"
 #include "io/output.h"
 #include "scenario/run/scenario_run.h"
 #include "ui/timeline.h"

@@ -9,11 +9,11 @@
 
 #include "cli/commands/commands.h"
 #include "cli/options.h"
+#include "common/interrupt.h"
 #include "config/config_options.h"
 #include "hal_linux/linux_can.h"
 #include "io/candump_line.h"
 #include "io/events.h"
-#include "io/interrupt.h"
 #include "io/junit.h"
 #include "io/output.h"
 #include "live/scenario_bus.h"

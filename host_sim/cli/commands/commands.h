@@ -5,7 +5,7 @@
 #ifndef HOST_SIM_COMMANDS_H
 #define HOST_SIM_COMMANDS_H
 
-#include "io/report.h"
+#include "common/report.h"
 
 /**
  * Run a sub-command.

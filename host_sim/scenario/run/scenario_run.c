@@ -1,6 +1,6 @@
 #include "scenario/run/scenario_run.h"
 
-#include "io/interrupt.h"
+#include "common/interrupt.h"
 #include "scenario/scenario_player.h"
 
 enum { LOOK_FOR_SIGNALS_EVERY_MS = 1000 };

@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "io/interrupt.h"
+#include "common/interrupt.h"
 #include "scratch.h"
 #include "unity.h"
 

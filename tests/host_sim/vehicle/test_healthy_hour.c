@@ -9,7 +9,7 @@
 #include "agv/codec.h"
 #include "agv/names.h"
 #include "agv/state.h"
-#include "campaign/chance.h"
+#include "common/chance.h"
 #include "scenario/scenario_world.h"
 #include "unity.h"
 

@@ -1,4 +1,4 @@
-#include "io/hex.h"
+#include "common/hex.h"
 
 const uint8_t HEX_DIGIT_PLUS_1[256] = {
     ['0'] = 1,  ['1'] = 2,  ['2'] = 3,  ['3'] = 4,  ['4'] = 5,  ['5'] = 6,  ['6'] = 7,  ['7'] = 8,

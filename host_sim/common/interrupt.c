@@ -1,4 +1,4 @@
-#include "io/interrupt.h"
+#include "common/interrupt.h"
 
 #include <poll.h>
 #include <signal.h>

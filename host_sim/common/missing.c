@@ -1,4 +1,4 @@
-#include "io/missing.h"
+#include "common/missing.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "io/units.h"
+#include "common/units.h"
 
 #include <time.h>
 

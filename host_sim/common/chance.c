@@ -1,4 +1,4 @@
-#include "campaign/chance.h"
+#include "common/chance.h"
 
 uint64_t chance_next(uint64_t *state) {
     *state += 0x9E3779B97F4A7C15u;

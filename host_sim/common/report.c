@@ -1,4 +1,4 @@
-#include "io/report.h"
+#include "common/report.h"
 
 #include <errno.h>
 #include <stdarg.h>
