@@ -9,7 +9,7 @@
 #include "hal/store.h"
 #include "hal/watchdog.h"
 
-/* How every struct hal begins here. */
+/* The first member of every port's `struct hal` (hal_ops.h). */
 typedef struct {
     const hal_ops_t *ops;
 } head_t;

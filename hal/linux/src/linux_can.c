@@ -1,4 +1,4 @@
-/* Opening and closing, and what is asked of the interface. */
+/* Opening and closing a socket, and its options. */
 #include "hal_linux/linux_can.h"
 
 #include <errno.h>
@@ -13,7 +13,7 @@
 
 #include "linux_can_internal.h"
 
-/* How much of a name that is too long is repeated. */
+/* Characters of a name in an error message; a longer name is cut off. */
 #define NAME_SHOWN 40
 
 static bool refuse(char *error, const char *interface, const char *what) {
@@ -71,7 +71,7 @@ static bool set_options(const linux_can_t *can, const linux_can_options_t *optio
            (options->ids == NULL || set_filters(can, options));
 }
 
-/* Bound last: a socket that is not bound receives nothing, so nothing gets past the options. */
+/* The socket is bound last: until then it receives nothing, so no frame arrives before all options are set. */
 static bool prepare(linux_can_t *can, const char *interface, const linux_can_options_t *options, char *error) {
     if (!find_interface(can, interface, error)) {
         return false;
@@ -107,7 +107,7 @@ bool linux_can_open(linux_can_t *can, const char *interface, const linux_can_opt
 
 void linux_can_close(linux_can_t *can) {
     if (can->fd >= 0) {
-        (void)close(can->fd); /* there is nothing to write back, and the file is gone either way */
+        (void)close(can->fd); /* closed even after an error; no data is left to write */
     }
     if (can->has_link) {
         (void)close(can->link_fd);

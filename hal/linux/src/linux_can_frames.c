@@ -1,4 +1,4 @@
-/* Frames in and out. */
+/* Reading and writing frames. */
 #include <errno.h>
 #include <linux/can.h>
 #include <string.h>
@@ -9,13 +9,14 @@
 
 enum { US_PER_S = 1000000, NS_PER_US = 1000 };
 
-/* What the kernel says beside a frame. */
+/* The control messages that the kernel passes with a frame. */
 typedef union {
     struct cmsghdr aligned;
     char bytes[CMSG_SPACE(sizeof(struct timespec)) + CMSG_SPACE(sizeof(uint32_t))];
 } control_t;
 
-/* Bytes beyond the length are whatever the sender left there: the frame is zeroed before. */
+/* Only the bytes within the length are copied, because the sender may leave any value in the others. The caller has
+ * zeroed the frame. */
 static void from_kernel(const struct canfd_frame *raw, bool is_fd, hal_can_frame_t *frame) {
     *frame = (hal_can_frame_t){.length = raw->len};
     if ((raw->can_id & CAN_ERR_FLAG) != 0) {
@@ -64,7 +65,7 @@ static void read_control(struct msghdr *message, linux_can_record_t *record) {
     }
 }
 
-/* Reading and writing meet the same errors, and the kernel tells one that is pending to whichever comes first. */
+/* Reading and writing return the same errors. The kernel reports a pending error once, to the next call of either. */
 static void note_error(linux_can_t *can, int error) {
     if (error == ENETDOWN) {
         can->report_down = can->report_down || !can->is_down;
@@ -76,7 +77,7 @@ static void note_error(linux_can_t *can, int error) {
 
 static linux_can_read_t why_nothing(linux_can_t *can, int error) {
     if (error == ENETDOWN) {
-        can->is_down = false; /* told by the kernel each time that it goes down: once more, then */
+        can->is_down = false; /* the kernel reports it once each time that the interface goes down: report it again */
     }
     note_error(can, error);
     if (can->is_gone) {

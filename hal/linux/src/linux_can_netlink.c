@@ -1,4 +1,4 @@
-/* What needs rtnetlink: finding an interface, whether it is up, and what `ip link set IF type can restart` does. */
+/* Operations by rtnetlink: find an interface, read whether it is up, and restart a controller in bus-off. */
 #include <errno.h>
 #include <linux/can/netlink.h>
 #include <linux/if_link.h>
@@ -12,7 +12,7 @@
 #include "hal_linux/linux_can.h"
 #include "linux_can_internal.h"
 
-/* More than the kernel keeps for a socket. */
+/* More messages than the kernel keeps for a socket. */
 #define NEWS_AT_ONCE_MAX 1024u
 
 typedef struct {
@@ -27,7 +27,7 @@ typedef struct {
     char name_text[IFNAMSIZ];
 } find_t;
 
-/* Attributes within attributes; every part is a multiple of four bytes, so there is no padding between them. */
+/* Nested attributes. The size of every part is a multiple of four bytes, so there is no padding between them. */
 typedef struct {
     struct nlmsghdr header;
     struct ifinfomsg interface;
@@ -42,7 +42,7 @@ typedef struct {
 _Static_assert(sizeof(find_t) == NLMSG_HDRLEN + sizeof(struct ifinfomsg) + 20, "attributes follow each other");
 _Static_assert(sizeof(restart_t) == NLMSG_HDRLEN + sizeof(struct ifinfomsg) + 24, "attributes follow each other");
 
-/* The beginning of it: what follows about an interface is cut off. */
+/* The beginning of the answer; further attributes of the interface are cut off. */
 typedef struct {
     struct nlmsghdr header;
     union {
@@ -51,7 +51,7 @@ typedef struct {
     } is;
 } answer_t;
 
-/* The kernel carries a request out while it takes it: the answer is there when send() returns. */
+/* The kernel executes a request within send(), so the answer can be read as soon as send() returns. */
 static int exchange(int fd, const void *request, size_t size, answer_t *answer) {
     if (send(fd, request, size, MSG_DONTWAIT) < 0) {
         return errno;
@@ -116,7 +116,7 @@ static bool ask_whether_up(const linux_can_t *can) {
     return ask(&request, sizeof request, &answer) == 0 && (answer.is.interface.ifi_flags & (unsigned)IFF_UP) != 0;
 }
 
-/* To listen comes first, so that no change is between the question and the news. */
+/* The socket is bound before the state is queried, so that no change between the two is missed. */
 static bool open_link(linux_can_t *can) {
     const struct sockaddr_nl changes = {.nl_family = AF_NETLINK, .nl_groups = RTMGRP_LINK};
     const int fd = socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, NETLINK_ROUTE);
@@ -141,7 +141,7 @@ static void take_news(linux_can_t *can, const answer_t *news, size_t size) {
     }
 }
 
-/* When news were lost, the question comes after those that were kept, which are older. */
+/* When reports were lost, the state is queried after all kept reports were read, because they are older. */
 static void read_news(linux_can_t *can) {
     bool has_lost = false;
     for (unsigned i = 0; i < NEWS_AT_ONCE_MAX; i++) {
@@ -160,7 +160,7 @@ static void read_news(linux_can_t *can) {
     }
 }
 
-/* By index, not by an ioctl that wants the name: asked while somebody renames the interface, that starts modprobe. */
+/* By index, because an ioctl needs the name, and starts modprobe if the interface is being renamed at that time. */
 bool linux_can_is_up(linux_can_t *can) {
     if (can->fd < 0) {
         return false;

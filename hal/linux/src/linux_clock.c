@@ -21,7 +21,7 @@ uint64_t linux_clock_now_us(const linux_clock_t *clock) {
     return (read_ns(CLOCK_MONOTONIC) - clock->start_ns) / NS_PER_US;
 }
 
-/* Both clocks at one moment: what interrupts the program between the two readings would pass for the age of a frame. */
+/* Both clocks at the same time: an interruption between the two readings would be added to the age of a frame. */
 static uint64_t read_both(uint64_t *real_ns) {
     uint64_t before_ns = 0;
     for (unsigned i = 0; i < READINGS_MAX; i++) {

@@ -1,4 +1,4 @@
-/* The port as a whole: opening, closing, receiving, and what happens every millisecond. */
+/* The port: opening, closing, receiving, and the work of every millisecond. */
 #include "hal_linux/linux_hal.h"
 
 #include <poll.h>
@@ -8,10 +8,10 @@
 
 enum { US_PER_MS = 1000, LOOK_EVERY_US = 100000 };
 
-/* More records than own frames can come back in a row: what waits, and what the kernel has. */
+/* Records read in one call: more than all echoes that can come in a row (the waiting frames and the one in flight). */
 #define RECORDS_AT_ONCE_MAX (2u * LINUX_HAL_QUEUE_SIZE)
 
-/* More than a socket's queue usually holds. */
+/* Records read at the end: more than a socket's queue usually holds. */
 #define RECORDS_AT_END_MAX 4096u
 
 linux_hal_side_t *linux_hal_side(hal_t *hal, hal_can_side_t side) {
@@ -45,7 +45,7 @@ static bool open_side(hal_t *hal, linux_hal_side_t *side, char *error) {
     return true;
 }
 
-/* An adapter was pulled out: the socket is of no use any more, even if one of the same name appears. */
+/* An adapter was unplugged: the socket cannot be used any more, even if an interface with the same name appears. */
 static void lose_side(linux_hal_side_t *side, uint64_t now_us) {
     linux_hal_controller_down(side);
     linux_can_close(&side->can);
@@ -54,7 +54,7 @@ static void lose_side(linux_hal_side_t *side, uint64_t now_us) {
     side->look_again_us = now_us + LOOK_EVERY_US;
 }
 
-/* By index, since an interface may have several names. */
+/* The indexes are compared, because an interface may have several names. */
 static bool check_sides(const hal_t *hal, char *error) {
     const linux_hal_side_t *vehicle = &hal->sides[HAL_CAN_VEHICLE];
     const linux_hal_side_t *ai = &hal->sides[HAL_CAN_AI];
@@ -102,7 +102,8 @@ int linux_hal_fd(const hal_t *hal, hal_can_side_t side) {
     return ((unsigned)side < (unsigned)HAL_CAN_SIDES) ? hal->sides[side].can.fd : -1;
 }
 
-/* What the socket lost may have been the echo of the frame in flight, which would then be waited for forever. */
+/* A lost frame may have been the echo of the frame in flight. That frame then counts as sent, because its echo would
+ * never come. */
 static void count_lost(linux_hal_side_t *side, const linux_can_record_t *record, uint64_t at_us) {
     const uint32_t lost = record->lost - side->lost;
     side->lost = record->lost;
@@ -124,8 +125,8 @@ static void frame_left(hal_t *hal, hal_can_side_t which, const linux_can_record_
     }
 }
 
-/* Frames that have left and whose echo waits to be read, also behind the word that the interface went down. What others
- * sent is of no use any more. */
+/* Read the echoes of frames that were sent, also those behind a report that the interface went down. Frames of other
+ * senders are discarded. */
 static void read_echoes(hal_t *hal, hal_can_side_t which) {
     linux_hal_side_t *side = &hal->sides[which];
     linux_can_record_t record;
@@ -151,7 +152,7 @@ void linux_hal_finish(hal_t *hal) {
     while ((is_sending(vehicle) || is_sending(ai)) && linux_hal_now_us(hal) < end_us) {
         struct pollfd files[HAL_CAN_SIDES] = {{.fd = vehicle->can.fd, .events = POLLIN},
                                               {.fd = ai->can.fd, .events = POLLIN}};
-        (void)poll(files, HAL_CAN_SIDES, 1); /* nobody tells when a full kernel has room again */
+        (void)poll(files, HAL_CAN_SIDES, 1); /* 1 ms: no event reports room in a full kernel queue */
         for (size_t i = 0; i < (size_t)HAL_CAN_SIDES; i++) {
             read_echoes(hal, (hal_can_side_t)i);
             linux_hal_queue_give(&hal->sides[i], linux_hal_now_us(hal));
@@ -169,7 +170,7 @@ static void close_side(hal_t *hal, hal_can_side_t which) {
     side->has_next = false;
 }
 
-/* The vehicle side last: whoever watches a gateway end sees the commands cease before the vehicle's status does. */
+/* The vehicle side is closed last: when a gateway ends, the commands stop before the vehicle's status does. */
 void linux_hal_close(hal_t *hal) {
     close_side(hal, HAL_CAN_AI);
     close_side(hal, HAL_CAN_VEHICLE);
@@ -193,7 +194,7 @@ static void take_record(hal_t *hal, hal_can_side_t which, const linux_can_record
     side->has_next = true;
 }
 
-/* Read until there is a frame to hand out. */
+/* Read until a received frame is found, or nothing is left. */
 static void read_ahead(hal_t *hal, hal_can_side_t which) {
     linux_hal_side_t *side = &hal->sides[which];
     for (unsigned i = 0; i < RECORDS_AT_ONCE_MAX && side->is_open && !side->has_next; i++) {
@@ -214,7 +215,8 @@ static void read_ahead(hal_t *hal, hal_can_side_t which) {
     }
 }
 
-/* Which side's frame arrived first: by the stamps themselves, since what was made of them has the jitter of clocks. */
+/* The side whose frame arrived first. The kernel's stamps are compared, because the times computed from them have
+ * jitter. */
 static bool find_first(const hal_t *hal, hal_can_side_t *first) {
     const linux_hal_side_t *vehicle = &hal->sides[HAL_CAN_VEHICLE];
     const linux_hal_side_t *ai = &hal->sides[HAL_CAN_AI];
@@ -226,7 +228,7 @@ static bool find_first(const hal_t *hal, hal_can_side_t *first) {
 bool linux_hal_receive(hal_t *hal, hal_can_side_t *side, hal_can_frame_t *frame, uint64_t *at_us) {
     read_ahead(hal, HAL_CAN_VEHICLE);
     read_ahead(hal, HAL_CAN_AI);
-    read_ahead(hal, HAL_CAN_VEHICLE); /* what came between these two calls may be older than the other side's */
+    read_ahead(hal, HAL_CAN_VEHICLE); /* a frame that arrived between the two calls may be older than the AI side's */
     if (!find_first(hal, side)) {
         return false;
     }
@@ -240,7 +242,7 @@ bool linux_hal_receive(hal_t *hal, hal_can_side_t *side, hal_can_frame_t *frame,
     return true;
 }
 
-/* An interface that is down is looked at every time: it is back when the vehicle's is. */
+/* An interface that is down is checked at every tick, so that it is used again as soon as it is up. */
 static void look_after(hal_t *hal, linux_hal_side_t *side, uint64_t now_us) {
     const bool is_due = now_us >= side->look_again_us;
     if (is_due) {

@@ -3,7 +3,7 @@
 
 #include "linux_hal_internal.h"
 
-enum { CONTROLLER_DETAILS = 1 }; /* the byte of an error frame that CAN_ERR_CRTL speaks of */
+enum { CONTROLLER_DETAILS = 1 }; /* byte of an error frame with the bits CAN_ERR_CRTL_* */
 
 static void enter_bus_off(linux_hal_side_t *side) {
     if (side->state != HAL_CAN_BUS_OFF) {

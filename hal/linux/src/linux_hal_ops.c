@@ -21,7 +21,7 @@ static void can_purge(hal_t *hal, hal_can_side_t side) {
 static void can_recover(hal_t *hal, hal_can_side_t side) {
     const linux_hal_side_t *off = linux_hal_side(hal, side);
     if (off != NULL && off->is_up && off->state == HAL_CAN_BUS_OFF) {
-        (void)linux_can_restart(&off->can); /* the supervisor asks again while nothing follows */
+        (void)linux_can_restart(&off->can); /* after a failure the supervisor requests it again */
     }
 }
 
@@ -48,7 +48,7 @@ static void safety_output_set(hal_t *hal, bool closed) {
     hal->output_closed = closed;
 }
 
-/* A program that starts has no memory of the one before: that is a power-on. */
+/* Always a power-on: a program keeps nothing from its previous run. */
 static hal_reset_cause_t reset_cause(hal_t *hal) {
     (void)hal;
     return HAL_RESET_POWER_ON;

@@ -1,11 +1,11 @@
-/* What waits to be sent, in the order of arbitration; the kernel has one frame at a time. */
+/* Queue of frames to send, in the order of arbitration. At most one frame is in the kernel. */
 #include <string.h>
 
 #include "linux_hal_internal.h"
 
 enum { US_PER_MS = 1000, STANDARD_SHIFT = 18 };
 
-/* What wins on the bus is less: an 11-bit identifier is compared with the first 11 bits of one with 29. */
+/* Rank in the arbitration: the lower one wins. An 11-bit ID is compared with the first 11 bits of a 29-bit one. */
 static uint64_t rank_of(const hal_can_frame_t *frame) {
     const bool is_extended = (frame->flags & HAL_CAN_EXTENDED) != 0;
     const uint64_t value = is_extended ? frame->id : (uint64_t)frame->id << STANDARD_SHIFT;
@@ -34,7 +34,8 @@ static linux_can_write_t write_now(linux_hal_side_t *side, const linux_hal_waiti
     return result;
 }
 
-/* Behind all that win against it, and behind its equals: so of two with one identifier the older leaves first. */
+/* Insert behind all frames of higher or equal priority, so that of two with the same identifier the older one is sent
+ * first. */
 static void insert(linux_hal_side_t *side, const linux_hal_waiting_t *frame) {
     size_t place = side->waiting_count;
     while (place > 0 && rank_of(&frame->frame) < rank_of(&side->waiting[place - 1u].frame)) {
@@ -71,7 +72,8 @@ void linux_hal_queue_give(linux_hal_side_t *side, uint64_t now_us) {
     }
 }
 
-/* Compared, because a frame that was in the kernel at bus-off, and is forgotten, may leave when another one is there. */
+/* The frames are compared, because a frame that was discarded at bus-off may still be sent while another one is in
+ * flight. */
 void linux_hal_queue_left(linux_hal_side_t *side, const hal_can_frame_t *frame) {
     if (side->in_flight && is_same(frame, &side->sent.frame)) {
         side->in_flight = false;

@@ -13,7 +13,8 @@
 
 enum { TICK_NS = 1000000, TICK_US = 1000, NS_PER_US = 1000, EVENTS_AT_ONCE = 8 };
 
-/* How long after the whole millisecond a tick falls: reading the clock and setting the timer must not make it early. */
+/* Delay of a tick after the whole millisecond, so that the time to read the clock and set the timer never makes it
+ * early. */
 enum { ALIGNED_AFTER_US = 20 };
 
 static void close_file(int *fd) {
@@ -66,10 +67,10 @@ bool linux_loop_add(linux_loop_t *loop, int fd) {
 }
 
 void linux_loop_remove(linux_loop_t *loop, int fd) {
-    (void)epoll_ctl(loop->epoll, EPOLL_CTL_DEL, fd, NULL); /* a closed file has been forgotten already */
+    (void)epoll_ctl(loop->epoll, EPOLL_CTL_DEL, fd, NULL); /* fails for a closed file, which epoll has removed */
 }
 
-/* However many milliseconds passed, the timer is read as one tick. */
+/* One tick, however many milliseconds have passed. */
 static uint32_t take_tick(const linux_loop_t *loop) {
     uint64_t passed = 0;
     return (read(loop->timer, &passed, sizeof passed) == (ssize_t)sizeof passed) ? LINUX_LOOP_TICK : 0u;
@@ -93,7 +94,7 @@ uint32_t linux_loop_wait(linux_loop_t *loop) {
         struct epoll_event events[EVENTS_AT_ONCE];
         const int count = epoll_wait(loop->epoll, events, EVENTS_AT_ONCE, -1);
         if (count < 0 && errno != EINTR) {
-            return LINUX_LOOP_SIGNAL; /* a program that cannot wait any more has to end */
+            return LINUX_LOOP_SIGNAL; /* a program that cannot wait has to end */
         }
         for (int i = 0; i < count; i++) {
             what |= take_event(loop, &events[i]);

@@ -1,4 +1,4 @@
-/* Building a bus, and what a node's driver does. */
+/* Building a bus, and the driver of a node. */
 #include <string.h>
 
 #include "sim_internal.h"
@@ -72,7 +72,7 @@ void sim_bus_purge(sim_bus_t *bus, sim_bus_node_t number) {
     }
     sim_bus_node_state_t *node = &bus->nodes[number];
     if ((bus->sending & sim_bit(number)) != 0) {
-        node->tx_current = 0; /* stands for the frame on the wire, whatever it holds: it is not started again */
+        node->tx_current = 0; /* keep one slot for the frame that is being sent; it is not sent again */
         node->tx_count = 1;
         node->current_aborted = true;
     } else {

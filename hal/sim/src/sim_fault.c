@@ -1,11 +1,11 @@
-/* Fault confinement: the sets of nodes, error counters, bus-off and the way back, nodes that are alone. */
+/* Fault confinement: sets of nodes, error counters, bus-off and recovery, unplugged nodes. */
 #include "sim_internal.h"
 
 static void put(uint32_t *set, uint32_t bit, bool member) {
     *set = member ? *set | bit : *set & ~bit;
 }
 
-/* It is no longer on the wire: what it was sending breaks off, what it was hearing is lost. */
+/* The node is off the bus: its own frame is aborted, and the frame that it was receiving is lost. */
 static void leave(sim_bus_t *bus, unsigned number) {
     sim_bus_node_state_t *node = &bus->nodes[number];
     bus->sending &= ~sim_bit(number);
@@ -18,7 +18,7 @@ static void leave(sim_bus_t *bus, unsigned number) {
     }
 }
 
-/* How long a lone attempt takes until the node tries again. */
+/* Time from one attempt of an unplugged node to send to its next attempt. */
 static uint64_t alone_attempt_us(const sim_bus_t *bus, const sim_bus_node_state_t *node) {
     const hal_can_frame_t *frame = &node->tx[sim_bus_choose(node)].frame;
     const uint32_t bits =
@@ -64,16 +64,17 @@ void sim_bus_penalise(sim_bus_t *bus, unsigned number) {
     }
 }
 
-/* ---- Recovery: 128 sequences of 11 recessive bits; recovery_from_us = NEVER while the count stands still ---- */
+/* ---- Recovery: 128 sequences of 11 recessive bits; recovery_from_us = NEVER while the count is paused ---- */
 
-/* Count what has passed since recovery_from_us. It is never more than is left: that was due. */
+/* Count the sequences since recovery_from_us. There are never more than recovery_left: the end of the recovery is an
+ * event. */
 static void settle(const sim_bus_t *bus, sim_bus_node_state_t *node) {
     if (node->recovery_from_us < bus->now_us) {
         node->recovery_left -= (uint32_t)((bus->now_us - node->recovery_from_us) / sim_bus_sequence_us(bus));
     }
 }
 
-/* Where the count goes on: on a wire of its own at once, on the bus when it is idle. */
+/* Time at which the count continues: at once for an unplugged node, otherwise when the bus is idle. */
 static uint64_t recovery_goes_on_us(const sim_bus_t *bus, const sim_bus_node_state_t *node) {
     if (!node->plugged) {
         return bus->now_us;
@@ -105,7 +106,7 @@ void sim_bus_pause_recovery(sim_bus_t *bus) {
     }
 }
 
-/* Its delimiter, end of frame and interframe bits are 11 recessive ones. */
+/* Delimiter, end of frame and interframe bits of a frame are 11 recessive bits: one sequence. */
 void sim_bus_resume_recovery(sim_bus_t *bus) {
     for (uint32_t set = bus->recovering; set != 0; set &= set - 1u) {
         sim_bus_node_state_t *node = &bus->nodes[sim_lowest(set)];
@@ -125,7 +126,7 @@ static void end_recovery(sim_bus_t *bus, unsigned number) {
     sim_bus_refresh(bus, number);
 }
 
-/* ---- Nodes that are unplugged: nobody acknowledges, so they try again and again; once passive it changes nothing ---- */
+/* ---- Unplugged nodes: their frames are not acknowledged and are sent again, until the node is error passive ---- */
 
 static void fail_alone(sim_bus_t *bus, unsigned number) {
     sim_bus_node_state_t *node = &bus->nodes[number];

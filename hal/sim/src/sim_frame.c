@@ -1,4 +1,4 @@
-/* What a classic CAN frame is as a row of bits. */
+/* A classic CAN frame as a sequence of bits. */
 #include "sim_internal.h"
 
 #define DLC_BITS 4u

@@ -1,4 +1,4 @@
-/* Building and pumping the simulated port. */
+/* Building and running the simulated port. */
 #include <string.h>
 
 #include "sim_hal_internal.h"

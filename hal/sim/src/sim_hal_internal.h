@@ -1,6 +1,6 @@
 /**
  * @file sim_hal_internal.h
- * What the source files of the simulated port share.
+ * Declarations that the source files of the simulated port share.
  */
 #ifndef SIM_HAL_INTERNAL_H
 #define SIM_HAL_INTERNAL_H
@@ -10,7 +10,7 @@
 
 extern const hal_ops_t sim_hal_ops;
 
-/** The controller of a side; NULL = there is none. */
+/** The controller of a side; NULL = it does not exist. */
 static inline sim_hal_can_t *sim_hal_controller(hal_t *hal, hal_can_side_t side) {
     return (unsigned)side < HAL_CAN_SIDES && hal->can[side].exists ? &hal->can[side] : NULL;
 }
@@ -23,7 +23,7 @@ static inline void sim_hal_set_pin(sim_hal_pin_t *pin, bool on, uint32_t time_ms
     }
 }
 
-/** The watchdog looks at the clock. @return it holds the MCU in reset. */
+/** Check the watchdog's period. @return true: the watchdog holds the MCU in reset. */
 bool sim_hal_watch(hal_t *hal, uint32_t now_ms);
 
 #endif

@@ -6,7 +6,7 @@ static bool is_to_fail(const hal_t *hal, sim_hal_op_t op) {
            (hal->fail_ops >> op & 1u) != 0;
 }
 
-/* Count the call. @return false: it is made to fail, or the MCU is held in reset. */
+/* Count the call. @return false: the call has to fail, or the MCU is held in reset. */
 static bool enter(hal_t *hal, sim_hal_op_t op) {
     hal->calls++;
     hal->op_calls[op]++;

@@ -1,4 +1,4 @@
-/* What can go wrong, on demand. */
+/* Fault injection. */
 #include "sim_internal.h"
 
 void sim_bus_set_power(sim_bus_t *bus, sim_bus_node_t number, bool on) {

@@ -1,16 +1,18 @@
 /**
  * @file sim_internal.h
- * What the source files of the simulated bus share.
+ * Declarations that the source files of the simulated bus share.
  *
  * The bus keeps sets of nodes as bit masks, so that a quiet bus costs one comparison a call:
- * listening  on the wire, not bus-off: hears and acknowledges          ready      of those, has a frame that may start
- * alone      unplugged and not passive, with a frame to send           recovering on the way back from bus-off
- * suspended  error passive and perhaps still in its suspend time       corrupting, misreading: errors are ordered
- * and about the frame on the wire: senders (whose it is), sending and hearing (of senders and receivers, those that
- * have not left since it began), dropped (lost a collision without a word), misread (could not read it).
+ * - listening: on the bus, not bus-off; receives and acknowledges
+ * - ready: a listening node with a frame that may start
+ * - alone: unplugged and not error passive, with a frame to send
+ * - recovering: recovering from bus-off
+ * - suspended: error passive, and perhaps still in its suspend time
+ * - corrupting, misreading: nodes with injected errors
+ * - of the current frame: senders; sending and hearing (senders and receivers that have not left the bus since it began);
+ *   dropped (stopped sending after a bit error); misread (could not read the frame)
  *
- * due_us is the one number that says when something happens next; whoever changes anything else calls
- * sim_bus_schedule() at the end.
+ * due_us is the time of the next event. Every function that changes another member calls sim_bus_schedule() at its end.
  */
 #ifndef SIM_INTERNAL_H
 #define SIM_INTERNAL_H
@@ -22,7 +24,9 @@
 #define SIM_REC_MAX 255u
 #define SIM_PASSIVE_ABOVE 127u
 
-/** A frame that nobody acknowledges breaks off after the acknowledge slot: its delimiter and 7 end bits are not sent. */
+/**
+ * A frame without acknowledge ends after the acknowledge slot: the slot's delimiter and the 7 end bits are not sent.
+ */
 #define SIM_BITS_AFTER_ACKNOWLEDGE 8u
 
 /** The bit of a node in a set. */
@@ -61,72 +65,72 @@ static inline unsigned sim_bus_choose(const sim_bus_node_state_t *node) {
 }
 
 /*
- * The files from below to above; each calls only those before it:
- * sim_frame.c, sim_node.c, sim_spoil.c, sim_schedule.c, sim_fault.c, sim_wire.c; sim_bus.c and sim_inject.c beside it.
+ * The layers of the source files, lowest first. Each file calls only earlier ones:
+ * sim_frame.c, sim_node.c, sim_spoil.c, sim_schedule.c, sim_fault.c, sim_wire.c, then sim_bus.c and sim_inject.c.
  */
 
 /** @name sim_frame.c @{ */
 /** Order of arbitration: the lower number wins. Only equal numbers collide. */
 uint32_t sim_frame_key(const hal_can_frame_t *frame);
 
-/** Whether this bus can carry it. */
+/** Whether the frame is a classic one, the only kind that this bus carries. */
 bool sim_frame_is_classic(const hal_can_frame_t *frame);
 
 /** Number of bits from the start bit to the DLC, without stuff bits and DLC. */
 uint32_t sim_frame_header_bits(const hal_can_frame_t *frame);
 
-/** Bit @p index (0 = first of the DLC) of what follows the header. */
+/** A bit of the body, which is DLC and data. @param index 0 = first bit of the DLC */
 bool sim_frame_bit(const hal_can_frame_t *frame, uint32_t index);
 
-/** Number of these bits: DLC and data. */
+/** Number of bits of the body. */
 uint32_t sim_frame_body_bits(const hal_can_frame_t *frame);
 /** @} */
 
 /** @name sim_node.c @{ */
-/** Empty a mailbox; those behind it move up, so that they stay in the order of their requests. */
+/** Empty a mailbox. The later ones move up, so that the mailboxes stay in the order of the requests. */
 void sim_bus_remove(sim_bus_node_state_t *node, unsigned slot);
 
-/** A frame arrives at a node that can hear it. */
+/** Pass a frame to a node that receives it: queue and callback. */
 void sim_bus_arrive(sim_bus_node_state_t *node, const hal_can_frame_t *frame, uint64_t time_us);
 
-/** REC + amount. */
+/** Add to the receive error counter (REC). */
 void sim_bus_misread(sim_bus_node_state_t *node, unsigned amount);
 /** @} */
 
 /** @name sim_spoil.c @{ */
-/** Errors that were ordered and hit the frame that begins. @return true: it is destroyed. */
+/** Apply the injected errors to the frame that begins. @return true: the frame is destroyed. */
 bool sim_bus_spoil(sim_bus_t *bus);
 /** @} */
 
 /** @name sim_schedule.c @{ */
-/** Work out due_us anew. */
+/** Compute due_us. */
 void sim_bus_schedule(sim_bus_t *bus);
 
-/** How long one sequence of recessive bits takes that counts for the recovery. */
+/** Duration of one of the sequences of recessive bits that the recovery counts. */
 static inline uint64_t sim_bus_sequence_us(const sim_bus_t *bus) {
     return (uint64_t)SIM_BUS_RECOVERY_BITS * bus->bit_us;
 }
 
-/** When a node that is recovering is back; SIM_BUS_NEVER while the count stands still. */
+/** End of a node's recovery; SIM_BUS_NEVER while its count is paused. */
 uint64_t sim_bus_recovered_us(const sim_bus_t *bus, const sim_bus_node_state_t *node);
 /** @} */
 
 /** @name sim_fault.c @{ */
-/** Bring the sets in line with what the node is now; one that has left the wire breaks off what it was sending. */
+/** Update the sets of nodes for a node whose state changed. If it has left the bus, its current frame is aborted. */
 void sim_bus_refresh(sim_bus_t *bus, unsigned number);
 
-/** A frame of this node failed: TEC + 8, and what follows from it. */
+/** Count a failed frame of a node: TEC + 8, which may cause bus-off. */
 void sim_bus_penalise(sim_bus_t *bus, unsigned number);
 
 void sim_bus_enter_bus_off(sim_bus_t *bus, unsigned number);
 
-/** A frame begins: the recessive bits of the idle wire until now count for the recovery, then the count stands still. */
+/** Called when a frame begins: counts the recessive bits of the idle bus until now, then pauses the recovery. */
 void sim_bus_pause_recovery(sim_bus_t *bus);
 
-/** The end of a frame or error frame: 11 recessive bits for all that are recovering on this wire. */
+/** Called at the end of a frame or error frame: counts its 11 recessive bits, and continues the recovery. */
 void sim_bus_resume_recovery(sim_bus_t *bus);
 
-/** Do what is due now for the nodes that are alone or recovering. */
+/** Process the events that are due now for nodes that are alone or recovering. */
 void sim_bus_run_aside(sim_bus_t *bus);
 /** @} */
 

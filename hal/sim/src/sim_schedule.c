@@ -1,4 +1,4 @@
-/* What is due next on a bus. */
+/* The time of a bus's next event. */
 #include "sim_internal.h"
 
 uint64_t sim_bus_recovered_us(const sim_bus_t *bus, const sim_bus_node_state_t *node) {
@@ -8,7 +8,7 @@ uint64_t sim_bus_recovered_us(const sim_bus_t *bus, const sim_bus_node_state_t *
     return node->recovery_from_us + node->recovery_left * sim_bus_sequence_us(bus);
 }
 
-/* The moment at which the wire is idle and a node that is ready may start. There is one. */
+/* Earliest time at which the bus is idle and a ready node may start. At least one node is ready. */
 static uint64_t next_start_us(const sim_bus_t *bus) {
     const uint64_t idle_us = bus->free_us > bus->now_us ? bus->free_us : bus->now_us;
     if ((bus->ready & ~bus->suspended) != 0) {
@@ -22,7 +22,7 @@ static uint64_t next_start_us(const sim_bus_t *bus) {
     return start_us > idle_us ? start_us : idle_us;
 }
 
-/* When a node that is alone or recovering has something to do. */
+/* Time of the next event of the nodes that are alone or recovering. */
 static uint64_t aside_due_us(const sim_bus_t *bus) {
     uint64_t due_us = SIM_BUS_NEVER;
     for (uint32_t set = bus->alone; set != 0; set &= set - 1u) {
@@ -42,7 +42,7 @@ void sim_bus_schedule(sim_bus_t *bus) {
         due_us = bus->end_us;
     } else if (bus->ready != 0) {
         bus->start_us = next_start_us(bus);
-        due_us = bus->start_us + 1u; /* only when time moves on: all that is sent at this moment takes part */
+        due_us = bus->start_us + 1u; /* 1 us later, so that all frames sent at start_us take part in the arbitration */
     }
     if ((bus->alone | bus->recovering) != 0) {
         const uint64_t aside_us = aside_due_us(bus);

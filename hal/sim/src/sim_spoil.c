@@ -1,4 +1,4 @@
-/* Errors that were ordered, and hit the frames to come. */
+/* Injected errors that destroy frames. */
 #include "sim_internal.h"
 
 void sim_bus_corrupt_all(sim_bus_t *bus, uint32_t count) {
@@ -19,7 +19,7 @@ void sim_bus_corrupt_received(sim_bus_t *bus, sim_bus_node_t number, uint32_t co
     }
 }
 
-/* One of the errors that were ordered, if there is any left. */
+/* Use up one of the injected errors. @return false: none is left */
 static bool take(uint32_t *count) {
     if (*count == 0) {
         return false;
@@ -43,7 +43,7 @@ static bool spoiled_by_sender(sim_bus_t *bus) {
     return spoiled;
 }
 
-/* An active receiver destroys for all what it cannot read; a passive one misses it. */
+/* An error-active receiver that misreads a frame destroys it for all nodes; an error-passive one only loses it. */
 static bool spoiled_by_receiver(sim_bus_t *bus) {
     bool spoiled = false;
     for (uint32_t set = bus->misreading & bus->hearing; set != 0; set &= set - 1u) {

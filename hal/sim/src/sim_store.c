@@ -50,7 +50,7 @@ static bool refuses(sim_store_t *store) {
     return true;
 }
 
-/* How many bytes of this write arrive; what does not is marked by a result below @p size. */
+/* Number of bytes that this write stores. Below @p size: the power is cut during the write. */
 static size_t arriving(sim_store_t *store, size_t size) {
     if (!store->tear) {
         return size;

@@ -1,4 +1,4 @@
-/* The wire: arbitration, collisions, the end of a frame, and what happens when. */
+/* The bus line: arbitration, collisions, the end of a frame, and the order of events. */
 #include "sim_internal.h"
 
 /* The nodes that may start now: those whose suspend time is over. */
@@ -12,7 +12,7 @@ static uint32_t contenders(sim_bus_t *bus) {
     return bus->ready & ~bus->suspended;
 }
 
-/* Who is left at the end of the arbitration field: all with the lowest key. */
+/* The winners of the arbitration: all nodes with the lowest key. */
 static uint32_t arbitrate(sim_bus_t *bus) {
     uint32_t lowest_key = UINT32_MAX;
     uint32_t winners = 0;
@@ -37,7 +37,7 @@ static const hal_can_frame_t *current_frame(const sim_bus_t *bus, unsigned numbe
     return &node->tx[node->tx_current].frame;
 }
 
-/* Those of the set that send bit @p index of the body recessive. */
+/* The nodes of a set whose bit @p index of the body is recessive. */
 static uint32_t recessive_at(const sim_bus_t *bus, uint32_t set, uint32_t index) {
     uint32_t recessive = 0;
     for (; set != 0; set &= set - 1u) {
@@ -59,16 +59,16 @@ static bool any_active(const sim_bus_t *bus, uint32_t set) {
 }
 
 /*
- * Several nodes send the same arbitration field. Equal frames merge. At the first bit that differs those that send it
- * recessive see a bit error. The error flag of an active one destroys the frame for all; a passive one falls silent
- * (dropped) and the others go on.
- * @return bits until the error, both included; 0 = the frame of those that are left goes through
+ * Several nodes send the same arbitration field. Equal frames merge. At the first bit that differs, the nodes that send
+ * it recessive detect a bit error. If one of them is error active, its error flag destroys the frame for all nodes. If
+ * all are error passive, they stop sending (dropped) and the others continue.
+ * @return bits up to and including the error; 0 = the frame of the remaining senders is sent
  */
 static uint32_t collide(sim_bus_t *bus) {
     for (uint32_t index = 0; (bus->senders & (bus->senders - 1u)) != 0; index++) {
         const hal_can_frame_t *frame = current_frame(bus, sim_lowest(bus->senders));
         if (index == sim_frame_body_bits(frame)) {
-            break; /* to the last bit the same: CRC and all */
+            break; /* all bits are equal, so the CRC is, too */
         }
         const uint32_t recessive = recessive_at(bus, bus->senders, index);
         if (recessive == 0 || recessive == bus->senders) {
@@ -84,7 +84,7 @@ static uint32_t collide(sim_bus_t *bus) {
     return 0;
 }
 
-/* How the frame of the winners will end, and after how many bits. */
+/* Determine the outcome of the winners' frame, and its length in bits. */
 static uint32_t foresee(sim_bus_t *bus) {
     const uint32_t collision_bits = collide(bus);
     bus->frame = *current_frame(bus, sim_lowest(bus->senders));
@@ -132,7 +132,7 @@ static void tell_taps(const sim_bus_t *bus) {
     }
 }
 
-/* An error-passive node that has sent leaves the wire to the others for a while. */
+/* An error-passive node that has sent must wait SIM_BUS_SUSPEND_BITS longer than the others. */
 static void suspend(sim_bus_t *bus, unsigned number) {
     sim_bus_node_state_t *node = &bus->nodes[number];
     if (sim_is_passive(node)) {
@@ -165,7 +165,7 @@ static void succeed(sim_bus_t *bus, uint32_t senders, uint32_t hearing) {
         } else if (node->rec > 0) {
             node->rec--;
         }
-        /* A callback before this one may have switched it off. */
+        /* An earlier callback may have switched the node off. */
         if ((bus->listening & set & (0u - set)) != 0) {
             sim_bus_arrive(node, &bus->frame, bus->now_us);
         }
@@ -181,7 +181,7 @@ static void fail(sim_bus_t *bus, uint32_t senders, uint32_t hearing) {
             node->current_aborted = false;
             sim_bus_refresh(bus, number);
         }
-        /* ISO 11898-1: a passive node that misses the acknowledge, and nothing else, does not count. */
+        /* ISO 11898-1: an error-passive node does not count a missing acknowledge. */
         if (bus->outcome == SIM_BUS_DESTROYED || !sim_is_passive(node)) {
             sim_bus_penalise(bus, number);
         }
@@ -192,7 +192,7 @@ static void fail(sim_bus_t *bus, uint32_t senders, uint32_t hearing) {
     }
 }
 
-/* The error counters of nodes whose part was not that of a sender or receiver like the others. */
+/* Count the errors of nodes that misread the frame or dropped out of a collision. */
 static void blame(sim_bus_t *bus, uint32_t hearing) {
     for (uint32_t set = bus->misread; set != 0; set &= set - 1u) {
         const unsigned number = sim_lowest(set);
@@ -211,9 +211,9 @@ static void finish(sim_bus_t *bus) {
     bus->free_us = bus->end_us + (uint64_t)SIM_BUS_INTERFRAME_BITS * bus->bit_us;
     bus->frame.time_ms = (uint32_t)(bus->now_us / 1000u);
     if (senders == 0) {
-        bus->outcome = SIM_BUS_DESTROYED; /* its sender has gone */
+        bus->outcome = SIM_BUS_DESTROYED; /* its sender was switched off or unplugged */
     } else if (hearing == 0 && bus->outcome == SIM_BUS_ARRIVES) {
-        bus->outcome = SIM_BUS_NOT_ACKNOWLEDGED; /* the last receiver has gone */
+        bus->outcome = SIM_BUS_NOT_ACKNOWLEDGED; /* the last receiver was switched off or unplugged */
     }
     bus->busy = false;
     bus->sending = 0;
@@ -235,7 +235,7 @@ static void finish(sim_bus_t *bus) {
     }
 }
 
-/* What is due next: a frame begins or ends, or a node apart from the wire has something to do. */
+/* Process the next event: a frame begins or ends, or an event of a node that is alone or recovering. */
 static void step(sim_bus_t *bus) {
     const uint64_t due_us = bus->due_us;
     if (bus->busy) {
@@ -269,7 +269,8 @@ static uint64_t earliest_due_us(sim_bus_t *const buses[], size_t count) {
     return due_us;
 }
 
-/* Start first what starts (which calls nobody), so that no callback can send into the past of another bus. */
+/* Idle buses advance first: the start of a frame calls no callback, so no callback can send on a bus whose time is
+ * behind. */
 static void run_all_to(sim_bus_t *const buses[], size_t count, uint64_t time_us) {
     for (size_t i = 0; i < count; i++) {
         if (!buses[i]->busy) {

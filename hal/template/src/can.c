@@ -9,10 +9,10 @@ bool hal_template_receive(hal_t *hal, hal_can_side_t side, hal_can_frame_t *fram
     (void)frame;
     /*
      * TODO: take a frame from the queue that the receive interrupt fills.
-     * - time_ms is stamped in the interrupt (or by the hardware), not here: a backlog must not look fresh.
-     * - Extended, remote and FD frames are handed over too, with their flag: they are counted.
-     * - data beyond length is 0.
-     * - When the queue was full, or the controller reports a lost frame, count overrun_count.
+     * - Stamp time_ms in the interrupt (or by the hardware), not here, so that a backlog does not look fresh.
+     * - Pass on extended, remote and FD frames too, with their flag: the supervisor counts them.
+     * - Set the data bytes beyond length to 0.
+     * - When the queue was full or the controller reports a lost frame, increment overrun_count.
      */
     return false;
 }
@@ -22,9 +22,9 @@ bool hal_can_send(hal_t *hal, hal_can_side_t side, const hal_can_frame_t *frame)
     (void)side;
     (void)frame;
     /*
-     * TODO: put it in a free mailbox (mailboxes: lowest identifier first; of two with one identifier the older first) or
-     * in a queue that the transmit interrupt empties. Never wait. Remember when it was taken: tx_pending_ms.
-     * false: no room, bus-off, no such side.
+     * TODO: put the frame in a free mailbox, or in a queue that the transmit interrupt empties. The lowest identifier
+     * is sent first; of two frames with the same identifier the older one. Never wait. Store the time of the request,
+     * for tx_pending_ms. Return false: no room, bus-off, or the side does not exist.
      */
     return false;
 }
@@ -33,23 +33,24 @@ void hal_can_purge(hal_t *hal, hal_can_side_t side) {
     (void)hal;
     (void)side;
     /*
-     * TODO: empty the queue and ask the controller to abort every mailbox. Do not wait for the abort; a frame that is
-     * being shifted out may still leave, but must not be tried again.
+     * TODO: empty the queue and request the abort of every mailbox. Do not wait for the abort. A frame that is being
+     * transmitted may still be sent, but must not be retransmitted.
      */
 }
 
 void hal_can_recover(hal_t *hal, hal_can_side_t side) {
     (void)hal;
     (void)side;
-    /* TODO: only in bus-off: start the recovery (128 times 11 recessive bits); the state shows when it is over. */
+    /* TODO: only in bus-off: start the recovery (128 times 11 recessive bits); hal_can_status() shows when it has
+     * ended. */
 }
 
 void hal_can_status(hal_t *hal, hal_can_side_t side, hal_can_status_t *status) {
     *status = (hal_can_status_t){.state = HAL_CAN_ERROR_ACTIVE};
     if ((unsigned)side < HAL_CAN_SIDES) {
         /*
-         * TODO: read the error state from the controller, and the age of the oldest frame that was taken and has not left.
-         * Count bus_off_count in the interrupt: a bus-off that is over when somebody looks is still one.
+         * TODO: read the error state from the controller, and the age of the oldest accepted frame that is not sent
+         * yet. Increment bus_off_count in the interrupt, so that a bus-off that ends before this call is counted, too.
          */
         *status = hal->can_status[side];
     }

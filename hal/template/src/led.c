@@ -4,5 +4,5 @@
 void hal_led_set(hal_t *hal, bool on) {
     (void)hal;
     (void)on;
-    /* TODO: the pin; mind whether the LED is lit by a high or by a low level. */
+    /* TODO: set the pin. The LED may be lit by a high or by a low level. */
 }

@@ -1,4 +1,4 @@
-/* hal/reset.h: why the MCU started. */
+/* hal/reset.h: the cause of the last reset. */
 #include "hal/reset.h"
 
 #include "hal_template/hal_template.h"

@@ -4,5 +4,6 @@
 void hal_safety_output_set(hal_t *hal, bool closed) {
     (void)hal;
     (void)closed;
-    /* TODO: the pin, directly: no queue, no driver that may be asleep. Without supply, and in reset, it has to be open. */
+    /* TODO: set the pin directly, without a queue or a driver that may be suspended. It must be open without supply and
+     * in reset. */
 }

@@ -1,4 +1,4 @@
-/* hal/store.h: what outlives a reset. */
+/* hal/store.h: storage over a reset. */
 #include "hal/store.h"
 
 size_t hal_store_read_latch(hal_t *hal, void *record, size_t size) {
@@ -6,8 +6,8 @@ size_t hal_store_read_latch(hal_t *hal, void *record, size_t size) {
     (void)record;
     (void)size;
     /*
-     * TODO: a few bytes of RAM that the startup code does not clear (a section of its own, backup registers). What is
-     * found there after a power-on is random: hand it over, the caller has a checksum in it.
+     * TODO: copy it from RAM that the start-up code does not clear (a section of its own, or backup registers). After a
+     * power-on its content is random. Return it all the same: the caller's checksum detects that.
      */
     return 0;
 }
@@ -16,7 +16,7 @@ bool hal_store_write_latch(hal_t *hal, const void *record, size_t size) {
     (void)hal;
     (void)record;
     (void)size;
-    /* TODO: copy it there. Never to flash: this is called in the handling of a trip. */
+    /* TODO: copy it to that RAM. Never write to flash here, because this is called while a trip is handled. */
     return false;
 }
 
@@ -33,6 +33,6 @@ size_t hal_store_read_record(hal_t *hal, uint32_t index, void *record, size_t si
     (void)index;
     (void)record;
     (void)size;
-    /* TODO: 0 is the oldest. */
+    /* TODO: copy the record; index 0 is the oldest. */
     return 0;
 }

@@ -3,5 +3,5 @@
 
 void hal_watchdog_feed(hal_t *hal) {
     (void)hal;
-    /* TODO: reload the counter. The only place that does: no interrupt, no idle task (TIM-3). */
+    /* TODO: reload the counter. Do not reload it anywhere else, such as in an interrupt or an idle task (TIM-3). */
 }

@@ -1,11 +1,13 @@
-/* hal/can.h: the controllers. The driver has one frame at a time; what waits stays here, where it can be purged. */
+/* hal/can.h: the controllers. The driver gets one frame at a time; other frames wait in the port's queue, which can be
+ * purged. */
 #include "zephyr_hal_internal.h"
 
 #include <string.h>
 
 enum { US_PER_MS = 1000 };
 
-BUILD_ASSERT(sizeof(((hal_can_frame_t *)0)->data) <= CAN_MAX_DLEN, "a frame's first bytes fit");
+BUILD_ASSERT(sizeof(((hal_can_frame_t *)0)->data) <= CAN_MAX_DLEN,
+             "the data of a hal_can_frame_t must fit in a Zephyr frame");
 
 static void stamp(hal_can_frame_t *frame) {
     const uint64_t now_us = k_ticks_to_us_floor64((uint64_t)k_uptime_ticks());
@@ -23,7 +25,7 @@ static void convert(hal_can_frame_t *to, const struct can_frame *from) {
     }
 }
 
-/* In the receive interrupt: stamped here, so that a backlog does not look fresh. */
+/* Runs in the receive interrupt. The frame is stamped here, so that a backlog does not look fresh. */
 static void on_frame(const struct device *device, struct can_frame *frame, void *user_data) {
     zephyr_hal_side_t *const side = user_data;
     hal_can_frame_t received;
@@ -38,7 +40,7 @@ static void on_frame(const struct device *device, struct can_frame *frame, void 
     k_sem_give(side->wake);
 }
 
-/* In the transmit interrupt, or in bus-off: sent or discarded, the driver has it no more. */
+/* Runs in the transmit interrupt, when the driver has sent the frame, or discarded it in bus-off. */
 static void on_sent(const struct device *device, int error, void *user_data) {
     zephyr_hal_side_t *const side = user_data;
     ARG_UNUSED(device);
@@ -57,11 +59,11 @@ static hal_can_state_t state_of(enum can_state state) {
     case CAN_STATE_ERROR_PASSIVE:
         return HAL_CAN_ERROR_PASSIVE;
     default:
-        return HAL_CAN_BUS_OFF; /* a controller that is stopped takes no part either */
+        return HAL_CAN_BUS_OFF; /* a stopped controller takes no part in the bus either */
     }
 }
 
-/* With the lock held. */
+/* The caller holds the lock. */
 static void enter(zephyr_hal_side_t *side, hal_can_state_t state) {
     if ((state == HAL_CAN_BUS_OFF) && (side->state != HAL_CAN_BUS_OFF)) {
         side->bus_offs++;
@@ -69,7 +71,7 @@ static void enter(zephyr_hal_side_t *side, hal_can_state_t state) {
     side->state = state;
 }
 
-/* In the controller's interrupt: a bus-off that is over when somebody looks is still one. */
+/* Runs in the controller's interrupt, so that a bus-off that ends before the next hal_can_status() is counted, too. */
 static void on_state(const struct device *device, enum can_state state, struct can_bus_err_cnt errors,
                      void *user_data) {
     zephyr_hal_side_t *const side = user_data;
@@ -82,7 +84,7 @@ static void on_state(const struct device *device, enum can_state state, struct c
     k_sem_give(side->wake);
 }
 
-/* What the controller says now; what an interrupt said in the meantime is newer. */
+/* Read the controller's state. A state that on_state() reported in the meantime is newer and is kept. */
 static void look(zephyr_hal_side_t *side) {
     enum can_state state = CAN_STATE_STOPPED;
     k_spinlock_key_t key = k_spin_lock(&side->lock);
@@ -96,7 +98,8 @@ static void look(zephyr_hal_side_t *side) {
     k_spin_unlock(&side->lock, key);
 }
 
-/* Every frame, with an 11-bit and with a 29-bit identifier: the supervisor counts what it rejects. */
+/* Filters for all frames with 11-bit and 29-bit identifiers, because the supervisor counts the frames that it
+ * rejects. */
 static bool listen(zephyr_hal_side_t *side) {
     static const struct can_filter all[] = {{.flags = 0u}, {.flags = CAN_FILTER_IDE}};
     bool works = true;
@@ -154,7 +157,7 @@ bool zephyr_hal_receive(hal_t *hal, hal_can_side_t *side, hal_can_frame_t *frame
     return (vehicle || ai) && (k_msgq_get(&hal->sides[*side].received, frame, K_NO_WAIT) == 0);
 }
 
-/* Set before the driver is asked: its interrupt may come before it returns. */
+/* Set before can_send(), because the driver's interrupt may come before can_send() returns. */
 static void set_in_flight(zephyr_hal_side_t *side, bool in_flight) {
     const k_spinlock_key_t key = k_spin_lock(&side->lock);
     side->in_flight = in_flight;
@@ -204,7 +207,7 @@ static void transmit(zephyr_hal_side_t *side) {
                give(side, &side->waiting[0].frame, side->waiting[0].taken_ms)) {
         zephyr_queue_drop_first(side);
     } else {
-        /* it waits for its turn, or nothing waits */
+        /* the driver is busy or refused the frame, or no frame waits */
     }
 }
 
@@ -228,7 +231,7 @@ void hal_can_recover(hal_t *hal, hal_can_side_t side) {
     const zephyr_hal_side_t *const off = zephyr_hal_side(hal, side);
 #if defined(CONFIG_CAN_MANUAL_RECOVERY_MODE)
     if ((off != NULL) && (off->state == HAL_CAN_BUS_OFF)) {
-        (void)can_recover(off->device, K_NO_WAIT); /* the supervisor asks again while nothing follows */
+        (void)can_recover(off->device, K_NO_WAIT); /* after a failure the supervisor requests it again */
     }
 #else
     ARG_UNUSED(off);

@@ -1,4 +1,4 @@
-/* Begin, the clock, waiting, and the end. */
+/* Start, clock, waiting, and the end of a run. */
 #include <zephyr/sys/reboot.h>
 
 #include "zephyr_hal_internal.h"
@@ -10,7 +10,7 @@ uint32_t hal_clock_now_ms(hal_t *hal) {
     return (uint32_t)k_ticks_to_ms_floor64((uint64_t)k_uptime_ticks());
 }
 
-/* In the timer's interrupt. The semaphore counts to one: who comes late finds one tick, not all that he missed. */
+/* Runs in the timer's interrupt. The semaphore counts to one: a late thread gets one tick, not all that it missed. */
 static void on_tick(struct k_timer *timer) {
     k_sem_give(k_timer_user_data_get(timer));
 }
@@ -68,7 +68,7 @@ FUNC_NORETURN void zephyr_hal_die(hal_reset_cause_t cause) {
     CODE_UNREACHABLE;
 }
 
-/* What Zephyr calls after every fault of the processor, a failed assertion, a stack that overflowed. */
+/* Zephyr calls this after a processor fault, a failed assertion or a stack overflow. */
 void k_sys_fatal_error_handler(unsigned int reason, const struct arch_esf *esf) {
     ARG_UNUSED(reason);
     ARG_UNUSED(esf);

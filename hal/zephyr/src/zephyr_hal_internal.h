@@ -1,6 +1,6 @@
 /**
  * @file zephyr_hal_internal.h
- * What the files of the port share.
+ * Declarations that the source files of the port share.
  */
 #ifndef HAL_ZEPHYR_ZEPHYR_HAL_INTERNAL_H
 #define HAL_ZEPHYR_ZEPHYR_HAL_INTERNAL_H
@@ -13,34 +13,34 @@
 /** The side, or NULL when it does not exist. */
 zephyr_hal_side_t *zephyr_hal_side(hal_t *hal, hal_can_side_t side);
 
-/** Bring a controller to the bus. @return whether it is as the contract wants it */
+/** Start a controller on the bus. @return true: it works as the contract requires */
 bool zephyr_can_start(zephyr_hal_side_t *side, const zephyr_hal_config_t *config);
 
-/** Insert into what waits, behind all that win against it. @return false: no room */
+/** Insert a frame into the queue, behind all frames of higher or equal priority. @return false: no room */
 bool zephyr_queue_insert(zephyr_hal_side_t *side, const hal_can_frame_t *frame, uint32_t now_ms);
 
-/** Remove the first of what waits; there is one. */
+/** Remove the first frame of the queue, which must not be empty. */
 void zephyr_queue_drop_first(zephyr_hal_side_t *side);
 
 /** As hal_can_status_t.tx_pending_ms. @param in_flight the driver has a frame */
 uint32_t zephyr_queue_pending_ms(const zephyr_hal_side_t *side, bool in_flight, uint32_t now_ms);
 
-/** Start task watchdog and hardware watchdog. @return false: there is none, or it does not start */
+/** Start task watchdog and hardware watchdog. @return false: one does not exist or does not start */
 bool zephyr_watchdog_start(hal_t *hal, uint32_t period_ms);
 
-/** The LED, dark. */
+/** Set up the LED, dark. */
 bool zephyr_led_start(void);
 
-/** Open the output without a lock, for the end of a run. */
+/** Open the output from any context, at the end of a run. */
 void zephyr_output_open_now(void);
 
 /** Read the cause of the reset, and clear it. */
 hal_reset_cause_t zephyr_reset_read(zephyr_hal_retained_t *retained);
 
-/** Keep the cause of the reset that follows. */
+/** Store the cause of the reset that follows. */
 void zephyr_reset_note(hal_reset_cause_t cause);
 
-/** Open the log in flash. @return whether it can be written, also when there is none */
+/** Open the log in flash. @return false: the flash cannot be used (true without a log partition) */
 bool zephyr_log_start(hal_t *hal);
 
 #endif

@@ -10,13 +10,13 @@
 
 enum { LOG_AREA = DT_FIXED_PARTITION_ID(DT_PHANDLE(ZEPHYR_HAL_NODE, log_partition)), LOG_VERSION = 1 };
 
-/* FCB writes a head of 8 bytes: flash that is written in larger blocks does not fit. */
+/* FCB writes a header of 8 bytes, so flash with larger write blocks cannot be used. */
 enum { LOG_MAGIC = 0x4C564741, BLOCK_MAX = 8, ERASED = 0xFF, CHUNK_WORDS = 16 };
 
 static struct flash_sector sectors[CONFIG_AGV_LOG_SECTORS];
 static struct fcb log_buffer;
 
-/* What FCB writes at the begin of a sector: 8 bytes. */
+/* The header that FCB writes at the start of a sector: 8 bytes. */
 typedef struct {
     uint32_t magic;
     uint8_t version;
@@ -39,7 +39,7 @@ static bool is_erased(const struct flash_area *area, const struct flash_sector *
     return true;
 }
 
-/* Neither erased to its end nor begun with a head that is whole. */
+/* Broken: neither completely erased nor with a valid header. */
 static bool is_broken(const struct flash_area *area, const struct flash_sector *sector) {
     head_t head;
     if (flash_area_read(area, sector->fs_off, &head, sizeof head) != 0) {
@@ -50,9 +50,10 @@ static bool is_broken(const struct flash_area *area, const struct flash_sector *
 }
 
 /*
- * A power cut while a sector was begun or erased leaves a head that is none, and FCB would refuse the whole for it; or one
- * that looks erased in front of what is not, into which FCB would write. Such a sector is left out, or erased when `repair`
- * says that the processor may stall. Returns how many are left in `sectors`.
+ * A power cut while a sector is started or erased can leave an invalid header, for which FCB would refuse the whole
+ * log. It can also leave an erased header in a sector that is not erased, in which FCB would then write. Such a sector
+ * is left out, or, with `repair`, erased: then the processor may stall. Returns the number of usable sectors in
+ * `sectors`.
  */
 static uint32_t find_sectors(const struct flash_area *area, bool repair, bool *all) {
     uint32_t count = ARRAY_SIZE(sectors);
@@ -87,7 +88,7 @@ static void open_log(hal_t *hal, bool repair) {
     }
 }
 
-/* Never erases: what is broken is repaired when something is to be stored, where the processor may stall. */
+/* Never erases: broken sectors are repaired by hal_store_append(), which may stall the processor. */
 bool zephyr_log_start(hal_t *hal) {
     const struct flash_area *area = NULL;
     if (flash_area_open(LOG_AREA, &area) != 0) {
@@ -108,7 +109,7 @@ static bool ready(hal_t *hal) {
     return hal->log_ready;
 }
 
-/* Whole blocks of the flash; the padding is what an erased one holds. */
+/* Write whole blocks of the flash. The padding has the value of erased flash. */
 static bool write_padded(struct fcb_entry place, const void *record, size_t size) {
     uint8_t padded[HAL_STORE_RECORD_SIZE_MAX];
     const struct flash_area *const area = log_buffer.fap;

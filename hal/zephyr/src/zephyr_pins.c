@@ -6,12 +6,13 @@
 static const struct gpio_dt_spec output = GPIO_DT_SPEC_GET(ZEPHYR_HAL_NODE, safety_output_gpios);
 static const struct gpio_dt_spec led = GPIO_DT_SPEC_GET(DT_PHANDLE(ZEPHYR_HAL_NODE, alarm_led), gpios);
 
-/* As soon as there are pins: before any other driver, and long before main(). */
+/* Runs as soon as the pins work: before any other driver, and long before main(). */
 static int open_output_at_boot(void) {
     return gpio_is_ready_dt(&output) ? gpio_pin_configure_dt(&output, GPIO_OUTPUT_INACTIVE | GPIO_INPUT) : -ENODEV;
 }
 
-BUILD_ASSERT(CONFIG_GPIO_INIT_PRIORITY < CONFIG_AGV_OUTPUT_INIT_PRIORITY, "pins come first, then the output");
+BUILD_ASSERT(CONFIG_GPIO_INIT_PRIORITY < CONFIG_AGV_OUTPUT_INIT_PRIORITY,
+             "the GPIO driver must be initialised before the output");
 SYS_INIT(open_output_at_boot, POST_KERNEL, CONFIG_AGV_OUTPUT_INIT_PRIORITY);
 
 bool zephyr_hal_output_is_open(void) {

@@ -1,4 +1,5 @@
-/* What waits to be sent, in the order of arbitration; of two with one identifier the older leaves first. */
+/* Queue of frames to send, in the order of arbitration. Of two frames with the same identifier the older one is sent
+ * first. */
 #include "zephyr_hal_internal.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-/* hal/reset.h, and the latch of hal/store.h: what is kept in memory that a reset does not clear. */
+/* hal/reset.h, and the latch of hal/store.h: memory that a reset does not clear. */
 #include <string.h>
 
 #include <zephyr/drivers/hwinfo.h>
@@ -6,7 +6,7 @@
 
 #include "zephyr_hal_internal.h"
 
-/* Where zephyr_hal_die() leaves its note, from any context; set once, at the start. */
+/* Retained memory for zephyr_hal_die(), which may run in any context. Set once, at the start. */
 static zephyr_hal_retained_t *notes;
 
 static uint32_t latch_checksum(const zephyr_hal_retained_t *retained) {
@@ -24,7 +24,7 @@ void zephyr_reset_note(hal_reset_cause_t cause) {
     }
 }
 
-/* The port's own note of the last run, which is then gone: a software reset that it made itself has a better reason. */
+/* Read and clear the note of the last run: the cause of a software reset that the port itself requested. */
 static hal_reset_cause_t take_note(zephyr_hal_retained_t *retained) {
     const uint32_t note = retained->note;
     const bool valid = retained->note_checksum == note_checksum(note);
@@ -35,8 +35,8 @@ static hal_reset_cause_t take_note(zephyr_hal_retained_t *retained) {
 }
 
 /*
- * Flags add up until they are cleared: whatever came after a power-on hides it, and only a sure power-on is one. A power-on
- * also shows as a brown-out and as a low reset pin.
+ * The flags accumulate until they are cleared. A power-on is reported only if no later reset set another flag. A
+ * power-on itself may also set the flags of brown-out and reset pin.
  */
 static hal_reset_cause_t cause_of(uint32_t flags, hal_reset_cause_t noted) {
     const uint32_t with_power_on = RESET_POR | RESET_BROWNOUT | RESET_PIN;
@@ -73,7 +73,8 @@ hal_reset_cause_t hal_reset_cause(hal_t *hal) {
     return hal->reset_cause;
 }
 
-/* After a power-on the memory holds anything: nothing is stored. After a reset what does not fit is handed on as it is. */
+/* With a wrong checksum: after a power-on the content is random, so nothing is stored. After any other reset the
+ * content is returned as it is, and the supervisor detects that it is corrupt. */
 size_t hal_store_read_latch(hal_t *hal, void *record, size_t size) {
     const zephyr_hal_retained_t *const retained = hal->retained;
     const bool fits =

@@ -16,7 +16,7 @@
 #include "hal/hal.h"
 #include "hal/reset.h"
 
-/** Each does what the function of hal/include with its name does. */
+/** Each pointer implements the function of hal/include with the same name. */
 typedef struct {
     bool (*can_send)(hal_t *hal, hal_can_side_t side, const hal_can_frame_t *frame);
     void (*can_purge)(hal_t *hal, hal_can_side_t side);

@@ -1,11 +1,12 @@
 /**
  * @file zephyr_hal.h
- * The Zephyr port: `struct hal` on Zephyr's drivers. One supervisor a chip. All objects are static memory of the program.
+ * The Zephyr port: `struct hal` on Zephyr's drivers. There is one supervisor on a chip. All objects are in static
+ * memory of the program.
  *
- * Who touches what: one thread, the supervisor's, calls every function of this header and of hal/include. Interrupts (or
- * a driver's own thread) call the callbacks in zephyr_can.c, which put frames into a message queue, note that a frame has
- * left or that the controller's state has changed, and wake the thread. The kernel's timer wakes it every millisecond.
- * zephyr_hal_die() may be called from anywhere, also in a fault.
+ * Contexts: only the supervisor's thread calls the functions of this header and of hal/include. Interrupts (or a
+ * driver's thread) call the callbacks in zephyr_can.c. These put frames into a message queue, record that a frame was
+ * sent or that the controller's state changed, and wake the thread. The kernel's timer wakes it every millisecond.
+ * zephyr_hal_die() may be called from any context, also from a fault handler.
  */
 #ifndef HAL_ZEPHYR_ZEPHYR_HAL_H
 #define HAL_ZEPHYR_ZEPHYR_HAL_H
@@ -27,23 +28,28 @@
 #include "hal/store.h"
 #include "hal/watchdog.h"
 
-/** Memory that a reset does not clear. Uncached where there is a data cache, which a reset would empty unwritten. */
+/**
+ * Memory that a reset does not clear. It must be uncached, because a reset discards data that is still in a data cache.
+ */
 #if DT_NODE_HAS_STATUS(DT_CHOSEN(zephyr_dtcm), okay)
 #define ZEPHYR_HAL_RETAINED __dtcm_noinit_section
 #else
 #define ZEPHYR_HAL_RETAINED __noinit
-BUILD_ASSERT(!IS_ENABLED(CONFIG_DCACHE), "retained memory would lie behind the data cache: choose zephyr,dtcm");
+BUILD_ASSERT(!IS_ENABLED(CONFIG_DCACHE), "retained memory must not be cached: choose zephyr,dtcm");
 #endif
 
-/** Frames that wait to be sent: four commands, seven status frames that pass, the status frame, and room. */
+/**
+ * Frames of one side that wait to be sent: four commands, seven forwarded status frames, the supervisor's status frame,
+ * and some reserve.
+ */
 #define ZEPHYR_HAL_QUEUE_SIZE 16u
 
-/** What is kept through a reset, each part with its checksum. Contents are the port's. */
+/** Data that a reset does not clear; each part has its checksum. Only the port uses the members. */
 typedef struct {
     uint32_t latch_size;
     uint8_t latch[HAL_STORE_LATCH_SIZE_MAX];
     uint32_t latch_checksum;
-    uint32_t note; /**< why the port itself made the reset: a hal_reset_cause_t */
+    uint32_t note; /**< why the port itself reset the chip: a hal_reset_cause_t */
     uint32_t note_checksum;
 } zephyr_hal_retained_t;
 
@@ -53,18 +59,18 @@ typedef struct {
     uint32_t taken_ms;
 } zephyr_hal_waiting_t;
 
-/** One controller. Contents are the port's. */
+/** One controller. Only the port uses the members. */
 typedef struct {
-    const struct device *device; /**< NULL: there is no such side */
+    const struct device *device; /**< NULL: the side does not exist */
     struct k_sem *wake;
     struct k_msgq received;
     char received_buffer[CONFIG_AGV_CAN_RX_QUEUE * sizeof(hal_can_frame_t)];
-    struct k_spinlock lock; /**< for what follows up to `lost`, which callbacks write */
+    struct k_spinlock lock; /**< protects the next members up to `lost`, which callbacks write */
     bool in_flight;         /**< the driver has a frame */
     bool callback_gave_state;
     hal_can_state_t state;
     uint16_t bus_offs;
-    uint16_t lost; /**< frames that found the queue full */
+    uint16_t lost; /**< frames lost because the queue was full */
     bool running;  /**< started without an error */
     bool sent_is_purged;
     uint32_t sent_taken_ms;
@@ -79,44 +85,45 @@ struct hal {
     hal_reset_cause_t reset_cause;
     zephyr_hal_retained_t *retained;
     int watchdog_channel;
-    bool log_ready;    /**< it can be read */
-    bool log_is_whole; /**< and written: no sector has to be repaired first */
+    bool log_ready;    /**< the log can be read */
+    bool log_is_whole; /**< and written without the repair of a sector */
 };
 
-/** What the program says of its wiring. */
+/** Settings of the port. */
 typedef struct {
     uint32_t bitrate;
     uint16_t sample_point_permille;
     uint32_t watchdog_ms;
-    bool listen_only;                /**< the controllers acknowledge nothing, and can send nothing */
+    bool listen_only;                /**< the controllers do not acknowledge and cannot send */
     zephyr_hal_retained_t *retained; /**< in ZEPHYR_HAL_RETAINED */
 } zephyr_hal_config_t;
 
 /**
- * Begin: output open (it is since boot), watchdog, reset cause, LED dark, store, controllers on the bus, 1 ms tick.
- * What fails does not keep the rest from beginning: a supervisor that sees less is still one that can trip.
- * @return whether all of it works; hand it on as the program's self test
+ * Start the port: output open (as it is since boot), watchdog, reset cause, LED dark, store, controllers on the bus, 1
+ * ms tick. After the failure of a part the other parts are started all the same, because the supervisor can then still
+ * trip.
+ * @return true: all parts work; pass it to the supervisor as the result of the self-test
  */
 bool zephyr_hal_init(hal_t *hal, const zephyr_hal_config_t *config);
 
-/** Wait until a millisecond has passed, or a frame came or left. */
+/** Wait until a millisecond has passed, or a frame was received or sent. */
 void zephyr_hal_wait(hal_t *hal);
 
 /**
  * Take the next received frame of both sides, oldest first.
- * @return false: nothing there
+ * @return false: no frame
  */
 bool zephyr_hal_receive(hal_t *hal, hal_can_side_t *side, hal_can_frame_t *frame);
 
-/** Give the drivers what waits to be sent. Call it after each wait. */
+/** Pass waiting frames to the drivers. Call it after each wait. */
 void zephyr_hal_transmit(hal_t *hal);
 
-/** Whether the safety output reads as open: for the self test, before anything closed it. */
+/** Whether the safety output reads as open. For the self-test, before the output is first closed. */
 bool zephyr_hal_output_is_open(void);
 
 /**
- * The end of this run: opens the safety output, keeps the cause over the reset, resets the chip. From any context, with
- * whatever works no more.
+ * End the run: opens the safety output, stores the cause over the reset, and resets the chip. May be called from any
+ * context, and does not need a working kernel.
  */
 FUNC_NORETURN void zephyr_hal_die(hal_reset_cause_t cause);
 
