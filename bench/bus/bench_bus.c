@@ -1,5 +1,5 @@
 /*
- * What the simulated bus costs: an idle millisecond, and a frame.
+ * Benchmark of the simulated bus: time of an idle millisecond, and of a frame.
  *
  * bench_bus [SIMULATED_SECONDS]   (default 600)
  *
@@ -9,7 +9,7 @@
  *   vehicle           the same, two nodes that send, four that receive, one of them a simulated port that takes its
  *                     frames from its queue each tick and reads its controller's state
  *   direct            hal_can_send() of a port without a bus, a frame
- *   all of it         a simulated second of the row "vehicle", in microseconds, and how often faster than real time
+ *   all of it         a simulated second of the row "vehicle", in microseconds, and its speed in multiples of real time
  */
 #define _POSIX_C_SOURCE 200809L
 
@@ -36,7 +36,7 @@ typedef struct {
 
 static double cpu_ns(void) {
     struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now); /* of this program alone, also on a busy machine */
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now); /* so that other load on the machine does not count */
     return (double)now.tv_sec * 1e9 + (double)now.tv_nsec;
 }
 

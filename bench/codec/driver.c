@@ -3,7 +3,7 @@
  * Calls each codec function CALLS times with valid values that change from call to call; callgrind counts.
  *
  * The codec is a translation unit of its own and no link-time optimisation is used: every call is a real call, as it is
- * in the firmware. The driver checks what it gets back, so that a codec that does nothing cannot be fast.
+ * in the firmware. The driver checks all results, so that a codec that does nothing does not pass.
  */
 #include "agv/codec.h"
 #include <stdio.h>

@@ -1,4 +1,4 @@
-"""What bench/replay/run calls; see there. Linux: the peak memory comes from /proc."""
+"""The measurement of bench/replay/run. Linux only: the peak memory is read from /proc."""
 import argparse
 import os
 import pathlib
@@ -11,7 +11,7 @@ REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(REPOSITORY / "tests" / "host_sim" / "program"))
 import traffic  # noqa: E402
 
-BLOCK_MS = 25600  # after so long every counter is where it began
+BLOCK_MS = 25600  # a multiple of all alive counters' periods, so that the blocks can be joined
 RUNS = 5
 MEMORY_MARGIN_KIB = 1024
 CHUNK = 1 << 20
@@ -45,7 +45,7 @@ def replay(program, log):
 
 
 def peak_memory(program, log):
-    """Peak resident set in KiB, read when all but the end of the log has gone in."""
+    """Peak resident set in KiB, read when all but the end of the log is written."""
     with subprocess.Popen([program, "replay", "--tail", "0", "-"], stdin=subprocess.PIPE,
                           stdout=subprocess.PIPE) as process, open(log, "rb") as source:
         while chunk := source.read(CHUNK):
@@ -64,7 +64,7 @@ def main():
     parser.add_argument("--seconds", type=int, default=3600, metavar="N", help="length of the log (3600)")
     arguments = parser.parse_args()
     if not os.access(arguments.host_sim, os.X_OK):
-        print("bench/replay: %s is not there: cmake --build --preset fast" % arguments.host_sim, file=sys.stderr)
+        print("bench/replay: %s does not exist: cmake --build --preset fast" % arguments.host_sim, file=sys.stderr)
         return 2
     with tempfile.TemporaryDirectory(prefix="bench_replay.") as folder:
         log = os.path.join(folder, "hour.log")

@@ -1,9 +1,10 @@
 /*
- * What it costs to run supervisor and vehicle on the simulated bus: an hour of healthy driving, every tick of it run.
+ * Benchmark of supervisor and vehicle on the simulated bus: an hour of healthy driving, in which every tick is run.
  *
- *     bench_sim [SECONDS] [LEAST]     simulated seconds (3600); exit status 1 below so many times real time (0)
+ *     bench_sim [SECONDS] [LEAST]     simulated seconds (3600); minimum speed in multiples of real time (0)
  *
- * Prints one line a part and topology. "vehicle alone" is what the vehicle costs of it, with nobody who listens.
+ * Prints one line for each part and topology. "vehicle alone" is the vehicle on a bus without a supervisor.
+ * The exit status is 1 below the minimum speed.
  */
 #include <inttypes.h>
 #include <stdio.h>
@@ -18,7 +19,7 @@ enum { SETTLED_MS = 3000, DEFAULT_S = 3600 };
 
 static double seconds_now(void) {
     struct timespec now;
-    (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now); /* of this program alone, also on a busy machine */
+    (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now); /* so that other load on the machine does not count */
     return (double)now.tv_sec + ((double)now.tv_nsec * 1e-9);
 }
 
@@ -27,7 +28,7 @@ static void act(scenario_world_t *world, uint32_t at_ms, vehicle_action_t action
     scenario_world_do(world, &step);
 }
 
-/** Healthy driving on autopilot. @return how many times faster than real time; 0: it was not healthy */
+/** Healthy driving on autopilot. @return speed in multiples of real time; 0: a fault occurred */
 static double drive(scenario_world_t *world, uint16_t topology, uint32_t duration_ms) {
     static scenario_t scenario;
     scenario = (scenario_t){.bitrate = SCENARIO_DEFAULT_BITRATE, .self_test_passed = true};
@@ -85,7 +86,7 @@ static void vehicle_alone(uint32_t duration_ms) {
                  ((double)duration_ms / MS_PER_S) / took, took * 1e9 / duration_ms, frames);
 }
 
-/** An argument that is a whole number, digits alone. @return -1: it is none */
+/** A whole number of decimal digits. @return -1: not a number */
 static long number_of(int argc, char **argv, int index, long otherwise) {
     if (index >= argc) {
         return otherwise;
@@ -113,7 +114,7 @@ int main(int argc, char **argv) {
     vehicle_alone(duration_ms);
     free(world);
     if ((shared <= (double)least) || (gateway <= 0.0)) {
-        (void)fprintf(stderr, "bench_sim: the shared bus is asked to be healthy and above %ld times real time\n",
+        (void)fprintf(stderr, "bench_sim: the shared bus must run without faults and faster than %ld times real time\n",
                       least);
         return 1;
     }

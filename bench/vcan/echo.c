@@ -1,10 +1,10 @@
 /*
- * The floor of the bus: what a program that does nothing else needs to answer.
+ * Minimal program for comparison: it only answers two faults, and shows the least time that kernel and bus need.
  *
  *     bench_vcan_echo INTERFACE [LATE_MS]
  *
- * Sends throttle 0, gear P and autopilot off when a 167h carries the EPS fault 08h, and when there was no 065h for more
- * than 125 ms. No counters, no states, no cycles. LATE_MS is for the self-test: it answers so much later.
+ * Sends throttle 0, gear P and autopilot off when a 167h carries the EPS fault 08h, and when no 065h was received for
+ * more than 125 ms. It has no counters, states or cycles. LATE_MS delays every answer, for the self-test.
  */
 #include <linux/can.h>
 #include <net/if.h>
@@ -53,7 +53,7 @@ static void answer(int fd, long late_ms) {
     }
 }
 
-/** Wait for a frame, until `due_ns` at the longest when that is not 0. @return false: that moment has passed */
+/** Wait for a frame, but not after `due_ns` (0: without limit). @return false: `due_ns` has passed */
 static bool wait_until(int fd, int64_t due_ns) {
     struct pollfd file = {.fd = fd, .events = POLLIN};
     const int64_t left = due_ns - now_ns();

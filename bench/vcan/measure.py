@@ -1,4 +1,4 @@
-"""What bench/vcan/run runs where the interfaces are; see there."""
+"""The part of bench/vcan/run that runs where the interfaces are."""
 import argparse
 import math
 import os
@@ -10,7 +10,7 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 PYTHON = "/usr/bin/python3"
-BLOCK = 10  # trials of a subject before it is another one's turn
+BLOCK = 10  # trials of a subject before the next subject's turn
 P999_FROM = 1000  # samples
 
 # 1 Mbit/s: 8 bytes of data are 108 bits, 3 between frames, and at worst (34 + 64 - 1) / 4 = 24 bits of stuffing: 135 bits.
@@ -18,7 +18,7 @@ FULL_LOAD = 1000000 // 135
 REGULAR = 710
 RATES = (800, 1000, 1250, 1600, 2000, 2500, 3200, 4000, 5000, 6400, 8000, 10000, 12500, 16000, 20000)
 LATE_MS = 5  # the self-test
-SENDER_SHARE = 0.98  # of the rate asked for that has to be reached
+SENDER_SHARE = 0.98  # of the requested rate that must be reached
 
 KINDS = {"frame": "from the fault's frame (167h, EPS fault)", "silence": "from an expired deadline (065h, 125 ms)"}
 
@@ -28,7 +28,7 @@ class Failure(Exception):
 
 
 class Subject:
-    """A program with the one that plays the vehicle to it."""
+    """A measured program, with the program that simulates the vehicle for it."""
 
     def __init__(self, name, programs, options, interface, command):
         self.name = name
@@ -57,7 +57,7 @@ class Subject:
 
 
 def subjects_of(args, programs):
-    """Those of the shared bus, each on an interface of its own."""
+    """The programs for the shared bus, each on an interface of its own."""
     echo = [programs / "bench_vcan_echo", "vcan2"]
     host_sim = [programs / "host_sim", "run", "--can", "vcan0", "--events", "-", "--config", programs / "fast.yaml"]
     if args.realtime:
@@ -71,7 +71,7 @@ def subjects_of(args, programs):
 # ---- figures ----
 
 def percentile(values, share):
-    """Of those measured, the lowest that is not exceeded by this share of them."""
+    """The lowest measured value that this share of the values does not exceed."""
     return sorted(values)[math.ceil(share * len(values)) - 1]
 
 
@@ -118,7 +118,7 @@ def measure_reactions(subjects, trials):
     """In blocks, one subject after the other, so that noise hits all alike."""
     results = {(subject.name, kind): Reactions() for subject in subjects for kind in KINDS}
     for subject in subjects:
-        subject.ask("frame 1")  # the first one finds nothing in any cache: not counted
+        subject.ask("frame 1")  # not counted, because all caches are cold
     for done in range(0, trials, BLOCK):
         note("%d of %d trials" % (done, trials))
         for subject in subjects:
@@ -153,13 +153,13 @@ def cangw_rules(action):
 
 
 def kernel_gateway(programs, duration_ms):
-    """(figures, why there are none)"""
+    """(figures, reason without figures)"""
     if shutil.which("cangw") is None:
         return None, "'cangw' is missing (can-utils)"
     try:
         cangw_rules("-A")
     except subprocess.CalledProcessError as error:
-        return None, "cangw: " + (error.stderr.strip() or "no rule was taken: is the module can-gw there?")
+        return None, "cangw: " + (error.stderr.strip() or "no rule was accepted: is the module can-gw loaded?")
     try:
         subject = Subject("cangw", programs, ["--stateless", "--ai", "vcan0"], "vcan1", [])
         return gateway_figures(subject, duration_ms), None
@@ -196,12 +196,12 @@ class Flood:
 
 
 def highest_rate(subject, rates, duration_ms):
-    """(highest rate that was held, why not the next one)"""
-    low, high, why = -1, len(rates), "the list ends there"
+    """(highest rate that was held, reason why the next one was not)"""
+    low, high, why = -1, len(rates), "end of the list"
     while high - low > 1:
         middle = (low + high) // 2
         flood = Flood(subject, rates[middle], duration_ms)
-        said = "of %d frames/s asked %.0f sent, %d lost%s" % (rates[middle], flood.rate, flood.lost,
+        said = "at %d frames/s %.0f sent, %d lost%s" % (rates[middle], flood.rate, flood.lost,
                                                               ", tripped" if flood.tripped else "")
         note(subject.name + ": " + said)
         if flood.held and flood.rate >= SENDER_SHARE * rates[middle]:
@@ -220,7 +220,7 @@ def measure_rates(subjects, rates, duration_ms):
 
 def measure_load(subjects, duration_ms):
     heading("Share of one core, user and system, in %g s" % (duration_ms / 1000))
-    row("", "asked", "sent/s", "CPU", "lost", "tripped")
+    row("", "wanted", "sent/s", "CPU", "lost", "tripped")
     for rate in (REGULAR, FULL_LOAD):
         for subject in subjects:
             flood = Flood(subject, rate, duration_ms)
@@ -242,11 +242,11 @@ def print_header(args):
     print("processor   %s; cores: %d" % (processor(), os.cpu_count()))
     print("vcan        in a %s" % args.provided)
     if "machine" in args.provided:
-        print("            figures on vcan in an emulator say how the subjects compare, not what a controller does")
+        print("            figures on vcan in an emulator only compare the programs; they are not those of a controller")
 
 
 def self_test(programs):
-    """A subject that answers 5 ms late has to look it, and one that never answers is missed."""
+    """The figures must show a subject that answers 5 ms late, and one that never answers."""
     options = ["--keep", "--stateless"]
     echo = Subject("C echo", programs, options, "vcan0", [programs / "bench_vcan_echo", "vcan0"])
     late = Subject("C echo, late", programs, options, "vcan1", [programs / "bench_vcan_echo", "vcan1", str(LATE_MS)])
@@ -270,7 +270,7 @@ def measure(args, programs):
     subjects = subjects_of(args, programs)
     results = measure_reactions(subjects, args.trials)
     print_reactions(subjects, results)
-    subjects.pop().close()  # the echo supervises nothing
+    subjects.pop().close()  # the echo does not count received frames
     measure_gateway(programs, args.gateway_ms)
     measure_rates(subjects, RATES[::3] if args.quick else RATES, args.rate_ms)
     measure_load(subjects, args.load_ms)
@@ -289,13 +289,13 @@ def main():
     parser.add_argument("--self-test", action="store_true")
     args = parser.parse_args()
     args.gateway_ms, args.rate_ms, args.load_ms = (1000, 500, 1000) if args.quick else (10000, 3000, 10000)
-    # In memory: a program starts far faster from there than from the folders that a virtual machine is lent.
+    # In memory, because a program starts far faster from there than from the shared folders of a virtual machine.
     with tempfile.TemporaryDirectory(prefix="bench_vcan.", dir="/dev/shm") as folder:
         programs = pathlib.Path(folder)
         for name in ("host_sim", "bench_vcan_traffic", "bench_vcan_echo"):
             if (args.programs / name).exists():
                 shutil.copy(args.programs / name, programs)
-        (programs / "fast.yaml").write_text("init_hold_ms: 100\n")  # it is started for every trial
+        (programs / "fast.yaml").write_text("init_hold_ms: 100\n")  # short, because host_sim is started for every trial
         try:
             return 0 if (self_test(programs) if args.self_test else measure(args, programs)) else 1
         except Failure as failure:

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""A supervisor with the rules that the bench compares, as one writes it with python-can. Not for a vehicle.
+"""A supervisor with only the compared rules, written with python-can as usual. Not for a vehicle.
 
-It knows the deadlines and alive counters, the EPS faults, the latched safe commands on their cycles, the override of
-foreign commands, and the reset. It blocks in recv until the next frame or the next deadline, and never sleeps. It says its
-state on standard output as `host_sim run --events -` does, and on SIGUSR1 and SIGTERM how many frames it has received.
+It implements the deadlines and alive counters, the EPS faults, the latched safe commands on their cycles, the override of
+other senders' commands, and the reset. It blocks in recv until the next frame or the next deadline, and never sleeps. It
+prints its state to standard output as `host_sim run --events -` does, and the number of received frames on SIGUSR1 and
+SIGTERM.
 """
 import argparse
 import json
@@ -33,7 +34,7 @@ READY = "ready"
 
 
 class Supervisor:
-    """`due` holds every moment that is waited for: a message's deadline, a safe command's cycle, the end of INIT."""
+    """`due` contains the times of all next events: deadlines of messages, cycles of safe commands, the end of INIT."""
 
     def __init__(self, bus, init_hold, reset_hold):
         self.bus = bus

@@ -26,13 +26,13 @@ enum {
 #define GEAR_P 8u
 #define EPS_FAULT 0x08u
 #define AUTOPILOT_OFF 0x40u
-#define COMMANDED_LOW 0x28u /* 9000 + 0..63: 0.0 to 6.3 degrees, the lowest bits count */
+#define COMMANDED_LOW 0x28u /* 9000 + 0..63: 0.0 to 6.3 degrees; the running number is in the lowest bits */
 #define COMMANDED_HIGH 0x23u
-#define MEASURED_LOW 0x14u /* 8980, -2.0 degrees: a held angle is no command of the AI computer */
+#define MEASURED_LOW 0x14u /* 8980: -2.0 degrees, which differs from every commanded angle */
 #define MEASURED_HIGH 0x23u
 #define STEP_MS 10
 
-/* As docs/protocol.md has them, spread by phase. */
+/* Messages and cycles of docs/protocol.md, with different phases. */
 static const struct {
     uint16_t id;
     player_side_t side;
@@ -75,7 +75,7 @@ static int open_socket(const char *interface) {
     return fd;
 }
 
-/* What is listened to. In a flood the safe commands alone: the first three. */
+/* Receive filters. In a flood only the first three, the safe commands. */
 static const uint16_t HEARD[] = {0x075, 0x168, 0x43F, 0x065, 0x101, 0x167};
 #define HEARD_COUNT (sizeof HEARD / sizeof HEARD[0])
 #define HEARD_SAFE_COUNT 3u
@@ -103,7 +103,7 @@ bool player_open(player_t *player, const char *vehicle, const char *ai) {
 
 /* ---- sending ---- */
 
-/** Fill in a payload: what docs/protocol.md says of the message, healthy but for the one fault. */
+/** Fill in a payload of docs/protocol.md, without a fault except the requested one. */
 static void fill(player_t *player, unsigned message, uint32_t count, uint8_t *data) {
     const bool on = player->engaged;
     const uint8_t number = (uint8_t)(count % PLAYER_PENDING);
@@ -129,7 +129,7 @@ static void fill(player_t *player, unsigned message, uint32_t count, uint8_t *da
     case THROTTLE_STATUS:
         data[0] = on ? 10u : 0u;
         break;
-    case WHEEL_SPEED: /* up to 63 mm/s apart, which says which one it is; 0 at standstill */
+    case WHEEL_SPEED: /* up to 63 mm/s difference, which is the running number; 0 at standstill */
         data[0] = on ? 200u : 0u;
         data[4] = on ? (uint8_t)(140u + number) : 0u;
         break;
@@ -200,7 +200,10 @@ bool player_flood(player_t *player, uint32_t frames_a_second) {
                      (frames_a_second != 0u) ? HEARD_SAFE_COUNT : HEARD_COUNT);
 }
 
-/** Send what is due. A frame that is late goes out late; of one that is late by more than its cycle some are left out. */
+/**
+ * Send all frames that are due. A late frame is still sent; when a message is late by more than its cycle, frames are
+ * skipped.
+ */
 static void send_due(player_t *player) {
     const uint64_t now = player_now_ns();
     for (unsigned i = 0u; i < PLAYER_MESSAGES; i++) {
@@ -218,7 +221,7 @@ static void send_due(player_t *player) {
     set_timer(player);
 }
 
-/* ---- hearing ---- */
+/* ---- receiving ---- */
 
 void player_forget(player_t *player) {
     (void)memset(player->safe_ns, 0, sizeof player->safe_ns);

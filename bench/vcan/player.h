@@ -1,10 +1,10 @@
 /**
  * @file player.h
- * VCU, EPS and AI computer as the bench needs them: eleven messages on their cycles, at the moment they are due, with one
- * fault or one silence; and what the kernel's time stamps say of the frames that come back.
+ * Simulates VCU, EPS and AI computer for the benchmark: it sends eleven messages on their cycles, with one fault or one
+ * missing message, and records the kernel's time stamps of the frames that the measured program sends.
  *
- * All times are nanoseconds. A stamp is the kernel's (SO_TIMESTAMPNS), taken on a socket that only listens, in the moment
- * in which the frame is sent on a virtual bus: so it matters neither when this program sends nor when it looks.
+ * All times are nanoseconds. A stamp is the kernel's (SO_TIMESTAMPNS), on a socket that only listens. On a virtual bus
+ * the kernel stamps a frame when it is sent, so delays of this program do not change the figures.
  */
 #ifndef BENCH_VCAN_PLAYER_H
 #define BENCH_VCAN_PLAYER_H
@@ -33,16 +33,16 @@ typedef enum {
     PLAYER_SAFE_COUNT
 } player_safe_t;
 
-/** A message that is followed from one side to the other. */
+/** A message whose frames are matched on both sides of a gateway. */
 typedef struct {
-    uint64_t in_ns[PLAYER_PENDING];  /**< stamps by running number; 0: came through, or was never sent */
-    uint64_t out_ns[PLAYER_PENDING]; /**< as heard before in_ns was: the two sides are read one after the other */
+    uint64_t in_ns[PLAYER_PENDING];  /**< stamps by running number; 0: passed, or never sent */
+    uint64_t out_ns[PLAYER_PENDING]; /**< stamps that were read before the in_ns of the same frame */
     uint64_t took_ns[PLAYER_SAMPLES];
-    uint32_t passed; /**< of them, took_ns holds the first PLAYER_SAMPLES */
-    uint32_t lost;   /**< did not come through before its number was used again */
+    uint32_t passed; /**< frames; took_ns has the times of the first PLAYER_SAMPLES */
+    uint32_t lost;   /**< frames that had not passed when their number was used again */
 } player_passing_t;
 
-/** Set the members of the first group freely; read all. */
+/** The program may set the members of the first group, and read all. */
 typedef struct {
     bool engaged;         /**< autopilot, gear D, some speed; else manual, P, standstill */
     bool button;          /**< remote button 1 is pressed */
@@ -70,24 +70,24 @@ typedef struct {
 /** CLOCK_MONOTONIC. */
 uint64_t player_now_ns(void);
 
-/** Open the sockets; nothing is sent yet. @param ai NULL: a shared bus. @return false: said on standard error */
+/** Open the sockets; nothing is sent yet. @param ai NULL: a shared bus. @return false: printed to standard error */
 bool player_open(player_t *player, const char *vehicle, const char *ai);
 
 /** Send all messages on their cycles from now on, the first of each at its phase. */
 void player_start(player_t *player);
 
-/** Send nothing any more. */
+/** Stop sending. */
 void player_stop(player_t *player);
 
-/** Send status frames beside the others, so many a second; 0: none. Only safe commands are listened to meanwhile. */
+/** Send additional status frames; 0 frames a second: stop. In the meantime only safe commands are received. */
 bool player_flood(player_t *player, uint32_t frames_a_second);
 
-/** Forget the safe commands that were heard. */
+/** Clear the stamps of the safe commands. */
 void player_forget(player_t *player);
 
 /**
- * Wait until something is due or heard, or `other_fd` (-1: none) can be read, 10 ms at the longest; do what is due.
- * @return other_fd can be read
+ * Wait at most 10 ms until a frame is due or received, or `other_fd` (-1: none) can be read; then send and receive.
+ * @return true: other_fd can be read
  */
 bool player_step(player_t *player, int other_fd);
 

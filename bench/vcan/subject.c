@@ -102,7 +102,7 @@ uint64_t subject_cpu_ns(const subject_t *subject) {
     (void)snprintf(path, sizeof path, "/proc/%d/stat", (int)subject->pid);
     FILE *file = fopen(path, "r");
     if (file != NULL) {
-        /* the name in parentheses may hold anything, but none of the subjects' does */
+        /* the name in parentheses could contain spaces; those of the measured programs do not */
         if (fscanf(file, "%*d %*s %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %lu %lu", &user, &system) != 2) {
             user = 0u;
             system = 0u;

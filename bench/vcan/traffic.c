@@ -1,24 +1,25 @@
 /*
- * Plays the vehicle to one subject and measures it; told what to do on standard input.
+ * Simulates the vehicle for one measured program, the subject. Reads its commands from standard input.
  *
  *     bench_vcan_traffic [--ai INTERFACE] [--keep] [--stateless] VEHICLE-INTERFACE [COMMAND...]
  *
  *     --ai         a gateway: the AI computer is on this interface
- *     --keep       the subject runs on from trial to trial, and the operator resets it; else it is started anew each time
- *     --stateless  it says no states: it is ready as soon as it runs
- *     COMMAND      starts the subject; without: there is none, the kernel does it
+ *     --keep       the subject runs on between trials and the operator resets it; default: it is started for each trial
+ *     --stateless  the subject prints no states: it counts as ready as soon as it runs
+ *     COMMAND      starts the subject; without: the kernel's gateway is measured
  *
- * Lines of input, and what each prints:
+ * Commands, one a line, and their output:
  *
- *     frame N        N times a 167h with a fault: for each "first NS gear NS", from that frame to the first frame of the
- *                    safe state, and to gear P
- *     silence N      N times no 065h any more: the same from the last 065h + 125 ms
- *                    Both also "repeated N": tripped before there was a reason; and "missed N": no gear P within 2 s
- *     pass MS        "status NS", "command NS" for each 101h and 065h that came through a gateway; "lost N"
- *     flood RATE MS  RATE frames a second: "sent N ns N cpu_ns N lost N tripped N", lost being what the subject did not say
- *                    it received
+ *     frame N        N trials with a fault in 167h. Each prints "first NS gear NS": times from that frame to the first
+ *                    frame of the safe state, and to gear P
+ *     silence N      N trials in which 065h stops: the same from the last 065h + 125 ms
+ *                    Both also print "repeated N" (trials with a trip before the fault) and "missed N" (no gear P within
+ *                    2 s)
+ *     pass MS        "status NS", "command NS" for each 101h and 065h that passed a gateway; "lost N"
+ *     flood RATE MS  RATE frames a second: "sent N ns N cpu_ns N lost N tripped N"; "lost" are the sent frames that are
+ *                    missing in the subject's own count of received frames
  *
- * "done" ends the answer to a line. Between two lines a subject that is kept is halted.
+ * "done" ends the output of a command. With --keep the subject is stopped (SIGSTOP) between two commands.
  */
 #include <signal.h>
 #include <stdio.h>
@@ -40,7 +41,7 @@
 #define REPEATED_MORE 10u
 #define WAKE_MS 200u
 #define WAKE_TRIES 15u
-#define DRAIN_TRIES 50u /* so much of a full queue, and then it counts as lost */
+#define DRAIN_TRIES 50u /* frames that are still queued after that count as lost */
 #define REGULAR_FRAMES_A_SECOND 710u
 
 typedef enum { FAULT_FRAME, FAULT_SILENCE } fault_t;
@@ -50,7 +51,7 @@ typedef struct {
     subject_t subject;
     bool keep;
     bool stateless;
-    uint64_t sent_then; /* when the subject was started */
+    uint64_t sent_then; /* value of player.sent when the subject was started */
 } bench_t;
 
 typedef bool condition_fn(const bench_t *bench);
@@ -89,13 +90,13 @@ static bool has_told(const bench_t *bench) {
     return bench->subject.told_received;
 }
 
-/** Play on until the condition holds. @return false: it did not within this time */
+/** Simulate the vehicle until the condition holds. @return false: timeout */
 static bool play_until(bench_t *bench, condition_fn *condition, uint32_t timeout_ms) {
     const uint64_t end = player_now_ns() + ((uint64_t)timeout_ms * NS_PER_MS);
     while (!condition(bench) && (player_now_ns() < end)) {
         const int said = (bench->subject.pid != 0) ? bench->subject.output_fd : -1;
         if (player_step(&bench->player, said) && !subject_listen(&bench->subject)) {
-            fail("the subject has ended by itself");
+            fail("the subject ended unexpectedly");
         }
     }
     return condition(bench);
@@ -107,17 +108,17 @@ static void play(bench_t *bench, uint32_t ms) {
 
 /* ---- the subject ---- */
 
-/** One without states listens when it answers a fault; or it never does, which the trials will show. */
+/** Wait until a subject without states answers a fault. If it never does, the trials count it as missed. */
 static void wake(bench_t *bench) {
     player_start(&bench->player);
     for (unsigned i = 0u; (i < WAKE_TRIES) && !is_safe(bench); i++) {
         bench->player.eps_fault = true;
         (void)play_until(bench, is_safe, WAKE_MS);
     }
-    play(bench, WAKE_MS); /* for another answer, to the fault before */
+    play(bench, WAKE_MS); /* time for the answer to an earlier fault */
 }
 
-/** Start it on a silent bus. One with states sends the safe commands from the start: then it has opened its socket. */
+/** Start the subject on a silent bus. A subject with states sends the safe commands as soon as its socket is open. */
 static void start_subject(bench_t *bench) {
     player_stop(&bench->player);
     player_forget(&bench->player);
@@ -132,7 +133,7 @@ static void start_subject(bench_t *bench) {
     }
 }
 
-/** The operator: a moment without the button, then pressed until the subject is reset. */
+/** The operator releases the button, then presses it until the subject is reset. */
 static bool reset_subject(bench_t *bench) {
     play(bench, RELEASED_MS);
     bench->player.button = true;
@@ -141,7 +142,7 @@ static bool reset_subject(bench_t *bench) {
     return ready;
 }
 
-/** The subject runs, on healthy traffic, in manual. */
+/** Start the subject if necessary, and wait until it is in STANDBY on healthy traffic, in manual. */
 static void get_ready(bench_t *bench) {
     const bool has_one = bench->subject.command[0] != NULL;
     bench->player.engaged = false;
@@ -156,11 +157,13 @@ static void get_ready(bench_t *bench) {
         player_start(&bench->player);
     }
     if (!play_until(bench, is_standby, bench->keep ? RELEASED_MS : READY_TIMEOUT_MS) && !reset_subject(bench)) {
-        fail("the subject does not get to STANDBY");
+        fail("the subject does not reach STANDBY");
     }
 }
 
-/** The autopilot is engaged and the subject has noticed; a while later, which differs. @return false: it has tripped */
+/**
+ * Engage the autopilot, and wait until the subject is ACTIVE and a random time longer. @return false: it has tripped
+ */
 static bool engage(bench_t *bench) {
     player_forget(&bench->player);
     bench->player.engaged = true;
@@ -183,7 +186,7 @@ static void halt(bench_t *bench) {
     }
 }
 
-/* ---- the lines of input ---- */
+/* ---- commands ---- */
 
 typedef enum { TRIAL_MEASURED, TRIAL_TOO_EARLY, TRIAL_MISSED } trial_t;
 
@@ -220,7 +223,7 @@ static void run_trials(bench_t *bench, fault_t fault, uint32_t count) {
         get_ready(bench);
         results[trial(bench, fault)]++;
         if (results[TRIAL_TOO_EARLY] > count + REPEATED_MORE) {
-            fail("the subject trips again and again without a reason");
+            fail("the subject trips repeatedly without a fault");
         }
     }
     (void)printf("repeated %u\nmissed %u\n", results[TRIAL_TOO_EARLY], results[TRIAL_MISSED]);
@@ -236,7 +239,7 @@ static void run_pass(bench_t *bench, uint32_t ms) {
     player_t *player = &bench->player;
     get_ready(bench);
     if (!engage(bench)) {
-        fail("the gateway trips without a reason");
+        fail("the gateway trips without a fault");
     }
     (void)memset(&player->status, 0, sizeof player->status);
     (void)memset(&player->command, 0, sizeof player->command);
@@ -246,7 +249,7 @@ static void run_pass(bench_t *bench, uint32_t ms) {
     (void)printf("lost %u\n", player->status.lost + player->command.lost);
 }
 
-/** Have the subject say how many frames it has received. */
+/** Make the subject print how many frames it has received. */
 static uint64_t ask_received(bench_t *bench) {
     bench->subject.told_received = false;
     if (bench->keep) {
@@ -256,12 +259,14 @@ static uint64_t ask_received(bench_t *bench) {
         subject_end(&bench->subject);
     }
     if (!bench->subject.told_received) {
-        fail("the subject does not say what it has received");
+        fail("the subject does not print how many frames it has received");
     }
     return bench->subject.received;
 }
 
-/** What the subject has not received of all that was sent since it started. One that is kept may still be reading. */
+/**
+ * Frames that were sent since the subject started and that it has not received. With --keep it may still be reading.
+ */
 static uint64_t lost_until_now(bench_t *bench) {
     uint64_t received = ask_received(bench);
     for (unsigned i = 0u; bench->keep && (i < DRAIN_TRIES); i++) {
@@ -276,8 +281,8 @@ static uint64_t lost_until_now(bench_t *bench) {
 }
 
 /**
- * The same before a flood. A subject that is kept may have lost some before; or received frames that others sent on its
- * interface while it was halted (the number is then below zero, and wraps).
+ * The same before a flood: with --keep the subject may have lost frames before, or received frames of other senders
+ * while it was stopped (the number is then below zero, and wraps).
  */
 static uint64_t lost_before(bench_t *bench) {
     const bool kept = bench->keep && (bench->subject.pid != 0);
@@ -321,7 +326,7 @@ static void obey(bench_t *bench, const char *line) {
     } else if (sscanf(line, "flood %u %u", &count, &ms) == 2) {
         run_flood(bench, count, ms);
     } else {
-        fail("a line that says nothing");
+        fail("unknown command");
     }
     halt(bench);
     (void)printf("done\n");
@@ -338,7 +343,7 @@ static char **take_options(bench_t *bench, const char **ai, char **argument) {
         } else if (strcmp(*argument, "--stateless") == 0) {
             bench->stateless = true;
         } else {
-            fail("an option that it does not know");
+            fail("unknown option");
         }
     }
     return argument;
@@ -351,7 +356,7 @@ int main(int argc, char **argv) {
     (void)argc;
     char **rest = take_options(&bench, &ai, argv + 1);
     if (*rest == NULL) {
-        fail("which interface?");
+        fail("the interface is missing");
     }
     if (!player_open(&bench.player, *rest, ai)) {
         return 2;
