@@ -9,6 +9,7 @@
 #include "agv/names.h"
 #include "campaign/campaign_scenario.h"
 #include "common/interrupt.h"
+#include "scenario/scenario_play.h"
 #include "ui/progress.h"
 
 enum { PATH_SIZE = 4096, FILES_MAX = 20, LOOK_FOR_SIGNALS_EVERY = 16 };
@@ -40,18 +41,19 @@ static bool read_plan(campaign_t *campaign) {
     return scenario_read_text(&campaign->scenario, "a run of the campaign", text->bytes, &campaign->options);
 }
 
+static bool after_tick(void *ctx, uint64_t t_ms) {
+    campaign_judge_tick(ctx, t_ms);
+    return true;
+}
+
 static void play(campaign_t *campaign) {
-    const scenario_t *scenario = &campaign->scenario;
-    size_t next = 0u;
+    const scenario_play_t play = {.scenario = &campaign->scenario,
+                                  .until_ms = campaign->scenario.duration_ms,
+                                  .after_tick = after_tick,
+                                  .ctx = &campaign->judge};
 
     scenario_world_start(&campaign->world);
-    for (uint32_t t_ms = 0u; t_ms <= scenario->duration_ms; t_ms++) {
-        for (; (next < scenario->step_count) && (scenario->steps[next].at_ms == t_ms); next++) {
-            scenario_world_do(&campaign->world, &scenario->steps[next]);
-        }
-        scenario_world_tick(&campaign->world, t_ms);
-        campaign_judge_tick(&campaign->judge, t_ms);
-    }
+    scenario_play(&campaign->world, &play);
     campaign_judge_finish(&campaign->judge);
 }
 

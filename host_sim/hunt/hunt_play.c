@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "common/report.h"
-#include "scenario/scenario_player.h"
+#include "scenario/scenario_play.h"
 
 enum { OPEN_MS = 700, STANDS_MS = 1000, HASH_START = 5381, HASH_FACTOR = 33 };
 
@@ -66,37 +66,40 @@ static uint32_t last_step_ms(const scenario_t *scenario) {
 }
 
 /** Nothing can come any more: nobody does anything new, and the output is open or the vehicle stands in the safe state. */
-static bool is_over(const hunt_play_t *play, uint32_t t_ms, uint32_t last_ms, uint32_t *quiet_ms) {
+static bool is_over(hunt_play_t *play, uint32_t t_ms) {
     const bool stands = play->hazard.trip.tripped && (hazard_speed_mm_s(&play->hazard) == 0);
     const bool open = !play->world.hal.safety_output.on;
 
-    if ((!open && !stands) || (t_ms <= last_ms)) {
-        *quiet_ms = t_ms;
+    if ((!open && !stands) || (t_ms <= play->last_step_ms)) {
+        play->quiet_ms = t_ms;
     }
-    return t_ms - *quiet_ms > (uint32_t)(open ? OPEN_MS : STANDS_MS);
+    return t_ms - play->quiet_ms > (uint32_t)(open ? OPEN_MS : STANDS_MS);
+}
+
+static void before_step(void *ctx, uint64_t t_ms, const scenario_step_t *step) {
+    hunt_play_t *play = ctx;
+    hazard_step(&play->hazard, t_ms, step);
+}
+
+static bool after_tick(void *ctx, uint64_t t_ms) {
+    hunt_play_t *play = ctx;
+
+    hazard_tick(&play->hazard, t_ms);
+    play->played_ms = (uint32_t)t_ms;
+    return (play->hazard.kind == HAZARD_NONE) && !is_over(play, (uint32_t)t_ms);
 }
 
 static void run(hunt_play_t *play) {
-    const scenario_t *scenario = &play->scenario;
-    const uint32_t last_ms = last_step_ms(scenario);
-    const scenario_step_t *step = NULL;
-    uint32_t quiet_ms = 0u;
-    scenario_player_t player;
+    const scenario_play_t run = {.scenario = &play->scenario,
+                                 .until_ms = play->scenario.duration_ms,
+                                 .before_step = before_step,
+                                 .after_tick = after_tick,
+                                 .ctx = play};
 
-    scenario_player_init(&player, scenario);
+    play->last_step_ms = last_step_ms(&play->scenario);
+    play->quiet_ms = 0u;
     scenario_world_start(&play->world);
-    for (uint32_t t_ms = 0u; t_ms <= scenario->duration_ms; t_ms++) {
-        for (step = scenario_player_next(&player, t_ms); step != NULL; step = scenario_player_next(&player, t_ms)) {
-            scenario_world_act(&play->world, t_ms, step);
-            hazard_step(&play->hazard, t_ms, step);
-        }
-        scenario_world_tick(&play->world, t_ms);
-        hazard_tick(&play->hazard, t_ms);
-        play->played_ms = t_ms;
-        if ((play->hazard.kind != HAZARD_NONE) || is_over(play, t_ms, last_ms, &quiet_ms)) {
-            return;
-        }
-    }
+    scenario_play(&play->world, &run);
 }
 
 bool hunt_play(hunt_play_t *play, const hunt_program_t *program) {

@@ -19,6 +19,8 @@ typedef struct {
     hazard_t hazard;
     uint8_t features[HUNT_FEATURE_BYTES]; /**< one bit for each thing that was seen */
     uint32_t played_ms;
+    uint32_t last_step_ms; /**< after this time nobody does anything new */
+    uint32_t quiet_ms;     /**< until then something could still come */
 } hunt_play_t;
 
 void hunt_play_init(hunt_play_t *play);

@@ -9,7 +9,7 @@
 #include "common/chance.h"
 #include "common/interrupt.h"
 #include "common/units.h"
-#include "ui/progress.h"
+#include "scenario/scenario_play.h"
 
 /* A disturbance comes when the one before is over and forgotten: counts in a row begin anew after a good frame. */
 enum { QUIET_MIN_MS = 500, QUIET_MAX_MS = 3000, READY_MS = 2000 };
@@ -89,68 +89,70 @@ static uint32_t choose(soak_t *soak) {
 }
 
 /** Begin a disturbance, or end it. */
-static void disturb(soak_t *soak) {
+static void disturb(void *ctx, uint64_t t_ms) {
+    soak_t *soak = ctx;
     soak_state_t *state = &soak->state;
 
-    if (state->t_ms < state->next_ms) {
+    if (t_ms < state->next_ms) {
         return;
     }
     if (state->row < SOAK_ROW_COUNT) {
         act(soak, soak->steps[state->row].end, soak->steps[state->row].after);
         state->row = (uint32_t)SOAK_ROW_COUNT;
-        state->next_ms = state->t_ms + chance_draw(&state->random, QUIET_MIN_MS, QUIET_MAX_MS);
+        state->next_ms = t_ms + chance_draw(&state->random, QUIET_MIN_MS, QUIET_MAX_MS);
         return;
     }
     state->row = choose(soak);
     state->counts[state->row]++;
     const soak_row_t *row = &SOAK_ROWS[state->row];
-    state->next_ms = state->t_ms + chance_draw(&state->random, row->lowest_ms, row->highest_ms);
+    state->next_ms = t_ms + chance_draw(&state->random, row->lowest_ms, row->highest_ms);
     act(soak, soak->steps[state->row].begin, soak->steps[state->row].end);
 }
 
-/** A millisecond. */
-static void step(soak_t *soak) {
-    disturb(soak);
-    scenario_world_tick(&soak->world, soak->state.t_ms);
-    soak_judge_tick(soak);
-    if ((soak->state.t_ms % SOAK_MS_PER_HOUR) == SOAK_MS_PER_HOUR - 1u) {
-        soak_judge_counters(soak);
-    }
-    soak->state.t_ms++;
+static void count_real_time(soak_t *soak) {
+    const uint64_t now_ms = monotonic_ms();
+    soak->state.real_ms += now_ms - soak->began_ms;
+    soak->began_ms = now_ms;
 }
 
-/** How it went. */
-typedef enum { OVER, INTERRUPTED, UNSAVED } went_t;
+/** Once in a simulated second: show the progress, notice a signal, save. @return false: that is the end */
+static bool look(soak_t *soak) {
+    progress_show(&soak->progress, soak->state.t_ms / LOOK_EVERY_MS, "simulated seconds");
+    soak->went = interrupt_pending() ? INTERRUPTED : OVER;
+    if ((soak->went == INTERRUPTED) || ((soak->state.t_ms % SAVE_EVERY_MS) == 0u)) {
+        count_real_time(soak);
+        soak->went = soak_save(soak) ? soak->went : UNSAVED;
+    }
+    return soak->went == OVER;
+}
 
-/** Until the end, or something is broken. @return UNSAVED: a checkpoint could not be written; reported */
-static went_t go(soak_t *soak) {
-    soak_state_t *state = &soak->state;
-    uint64_t began_ms = monotonic_ms();
-    progress_t progress;
-    bool saved = true;
-    bool interrupted = false;
+static bool after_tick(void *ctx, uint64_t t_ms) {
+    soak_t *soak = ctx;
 
-    progress_begin(&progress, soak->duration_ms / LOOK_EVERY_MS);
+    soak_judge_tick(soak);
+    if ((t_ms % SOAK_MS_PER_HOUR) == SOAK_MS_PER_HOUR - 1u) {
+        soak_judge_counters(soak);
+    }
+    soak->state.t_ms = t_ms + 1u;
+    return (((soak->state.t_ms % LOOK_EVERY_MS) != 0u) || look(soak)) && (soak->state.broken[0] == '\0');
+}
+
+/** Until the end, or something is broken. */
+static void go(soak_t *soak) {
+    const scenario_play_t play = {.from_ms = soak->state.t_ms,
+                                  .until_ms = soak->duration_ms - 1u,
+                                  .before_tick = disturb,
+                                  .after_tick = after_tick,
+                                  .ctx = soak};
+
+    soak->began_ms = monotonic_ms();
+    progress_begin(&soak->progress, soak->duration_ms / LOOK_EVERY_MS);
     interrupt_hold();
-    while (saved && !interrupted && (state->t_ms < soak->duration_ms) && (state->broken[0] == '\0')) {
-        step(soak);
-        if ((state->t_ms % LOOK_EVERY_MS) != 0u) {
-            continue;
-        }
-        progress_show(&progress, state->t_ms / LOOK_EVERY_MS, "simulated seconds");
-        interrupted = interrupt_pending();
-        if (interrupted || ((state->t_ms % SAVE_EVERY_MS) == 0u)) {
-            state->real_ms += monotonic_ms() - began_ms;
-            began_ms = monotonic_ms();
-            saved = soak_save(soak);
-        }
+    if (soak->state.broken[0] == '\0') {
+        scenario_play(&soak->world, &play);
     }
-    progress_end(&progress);
-    state->real_ms += monotonic_ms() - began_ms;
-    if (!saved) {
-        return UNSAVED;
-    }
-    return interrupted ? INTERRUPTED : OVER;
+    progress_end(&soak->progress);
+    count_real_time(soak);
 }
 
 static uint64_t disturbances(const soak_state_t *state) {
@@ -258,10 +260,10 @@ status_t soak_run(const soak_request_t *request) {
         return STATUS_UNUSABLE;
     }
     if (prepare(soak, request)) {
-        const went_t went = go(soak);
-        if (went == OVER) {
+        go(soak);
+        if (soak->went == OVER) {
             status = conclude(soak);
-        } else if (went == INTERRUPTED) {
+        } else if (soak->went == INTERRUPTED) {
             note("interrupted after %" PRIu64 " simulated hours%s", soak->state.t_ms / SOAK_MS_PER_HOUR,
                  (request->checkpoint != NULL) ? "; the same command resumes" : "");
         }

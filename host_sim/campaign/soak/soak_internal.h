@@ -10,6 +10,7 @@
 #include "campaign/soak/soak_rows.h"
 #include "io/output.h"
 #include "scenario/scenario_world.h"
+#include "ui/progress.h"
 
 #define SOAK_BROKEN_SIZE 160u
 #define SOAK_STATUS_ID 0x7F0u /**< of the supervisor's status frame, every SOAK_STATUS_MS */
@@ -50,6 +51,9 @@ typedef struct {
     uint32_t after; /**< the first step after it */
 } soak_steps_t;
 
+/** How it went: to its end or to a break; a signal came; a checkpoint could not be written, which was reported. */
+typedef enum { OVER, INTERRUPTED, UNSAVED } soak_went_t;
+
 /** All of it; some 400 KiB. */
 typedef struct {
     const soak_request_t *request;
@@ -65,7 +69,10 @@ typedef struct {
     scenario_world_t world;
     scenario_world_t saved; /**< what a checkpoint is read into */
     output_t file;          /**< of the checkpoint */
-    output_t results;       /**< open from the start on, so that it is known that it can be written */
+    soak_went_t went;
+    uint64_t began_ms; /**< real time up to which `real_ms` counts */
+    progress_t progress;
+    output_t results; /**< open from the start on, so that it is known that it can be written */
 } soak_t;
 
 /** Something is not as it must be; the first one counts. */

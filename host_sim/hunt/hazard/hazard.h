@@ -194,7 +194,7 @@ void hazard_init(hazard_t *hazard, const scenario_t *scenario, scenario_world_t 
 /** Who has to see the frames. */
 scenario_watch_t hazard_watch(hazard_t *hazard);
 
-/** A step was done: frames that pass the wire by are seen here. */
+/** A step is about to be done: it shows the frames that are not on the wire. */
 void hazard_step(hazard_t *hazard, uint64_t t_ms, const scenario_step_t *step);
 
 /** At the end of every millisecond. */

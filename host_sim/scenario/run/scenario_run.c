@@ -1,7 +1,7 @@
 #include "scenario/run/scenario_run.h"
 
 #include "common/interrupt.h"
-#include "scenario/scenario_player.h"
+#include "scenario/scenario_play.h"
 
 enum { LOOK_FOR_SIGNALS_EVERY_MS = 1000 };
 
@@ -32,32 +32,37 @@ static void check_hazards(scenario_run_t *run) {
     }
 }
 
-static void play(scenario_run_t *run, void *ctx, scenario_step_fn *on_step) {
-    const scenario_t *scenario = &run->scenario;
-    const scenario_step_t *step = NULL;
-    scenario_player_t player;
+/** A run and who is told of its steps. */
+typedef struct {
+    scenario_run_t *run;
+    void *ctx;
+    scenario_step_fn *on_step;
+} playing_t;
 
-    scenario_player_init(&player, scenario);
-    for (uint32_t t_ms = 0u; (t_ms <= scenario->duration_ms) && !run->was_interrupted; t_ms++) {
-        for (step = scenario_player_next(&player, t_ms); step != NULL; step = scenario_player_next(&player, t_ms)) {
-            if ((on_step != NULL) && (step->at_ms == t_ms)) {
-                on_step(ctx, step);
-            }
-            scenario_world_act(&run->world, t_ms, step);
-            hazard_step(&run->hazard, t_ms, step);
-        }
-        scenario_world_tick(&run->world, t_ms);
-        hazard_tick(&run->hazard, t_ms);
-        scenario_world_view_t seen;
-        scenario_world_view(&run->world, &seen);
-        scenario_check_output(&run->check, t_ms, seen.output_closed);
-        if (scenario_check_wants_vehicle(&run->check, t_ms)) {
-            vehicle_view_t view;
-            scenario_world_vehicle(&run->world, &view);
-            scenario_check_vehicle(&run->check, t_ms, &view);
-        }
-        run->was_interrupted = ((t_ms % LOOK_FOR_SIGNALS_EVERY_MS) == 0u) && interrupt_pending();
+static void before_step(void *ctx, uint64_t t_ms, const scenario_step_t *step) {
+    const playing_t *playing = ctx;
+
+    if ((playing->on_step != NULL) && (step->at_ms == t_ms)) {
+        playing->on_step(playing->ctx, step);
     }
+    hazard_step(&playing->run->hazard, t_ms, step);
+}
+
+static bool after_tick(void *ctx, uint64_t t_ms) {
+    const playing_t *playing = ctx;
+    scenario_run_t *run = playing->run;
+    scenario_world_view_t seen;
+
+    hazard_tick(&run->hazard, t_ms);
+    scenario_world_view(&run->world, &seen);
+    scenario_check_output(&run->check, (uint32_t)t_ms, seen.output_closed);
+    if (scenario_check_wants_vehicle(&run->check, (uint32_t)t_ms)) {
+        vehicle_view_t view;
+        scenario_world_vehicle(&run->world, &view);
+        scenario_check_vehicle(&run->check, (uint32_t)t_ms, &view);
+    }
+    run->was_interrupted = ((t_ms % LOOK_FOR_SIGNALS_EVERY_MS) == 0u) && interrupt_pending();
+    return !run->was_interrupted;
 }
 
 bool scenario_run(scenario_run_t *run, const scenario_watch_t watches[], size_t count, scenario_step_fn *on_step) {
@@ -75,7 +80,13 @@ bool scenario_run(scenario_run_t *run, const scenario_watch_t watches[], size_t 
         scenario_world_watch(&run->world, &watches[i]);
     }
     scenario_world_start(&run->world);
-    play(run, (count > 0u) ? watches[0].ctx : NULL, on_step);
+    playing_t playing = {run, (count > 0u) ? watches[0].ctx : NULL, on_step};
+    const scenario_play_t play = {.scenario = &run->scenario,
+                                  .until_ms = run->scenario.duration_ms,
+                                  .before_step = before_step,
+                                  .after_tick = after_tick,
+                                  .ctx = &playing};
+    scenario_play(&run->world, &play);
     check_hazards(run);
     scenario_check_finish(&run->check, agv_supervisor_counters(&scenario_world_session(&run->world)->supervisor));
     return !run->was_interrupted && (run->check.failure_count == 0u);

@@ -6,7 +6,7 @@
 
 #include "agv/codec.h"
 #include "hal/can.h"
-#include "scenario/scenario_player.h"
+#include "scenario/scenario_play.h"
 #include "unity.h"
 
 enum { TEXT_SIZE = 4096, NEVER = 0, READY_MS = 600, TRIP_MS = 3000, QUEUE = 16, CYCLE_MS = 50, HOLD_CYCLE_MS = 25 };
@@ -97,11 +97,13 @@ static void send_safe(uint32_t t_ms) {
 }
 
 /** A millisecond of the planted supervisor. */
-static void act(uint32_t t_ms) {
+static void act(void *ctx, uint64_t now_ms) {
+    const uint32_t t_ms = (uint32_t)now_ms;
     const uint8_t throttle[AGV_DLC] = {125};
     const bool is_safe = (planted->safe_ms != NEVER) && (t_ms >= planted->safe_ms) &&
                          ((planted->safe_end_ms == NEVER) || (t_ms < planted->safe_end_ms));
 
+    (void)ctx;
     world.hal.safety_output.on = (t_ms >= READY_MS) && ((planted->open_ms == NEVER) || (t_ms < planted->open_ms));
     for (unsigned i = 0u; i < queued; i++) {
         if (!is_safe || (towards[i] == HAL_CAN_AI)) {
@@ -120,13 +122,22 @@ static void act(uint32_t t_ms) {
     }
 }
 
+static void before_step(void *ctx, uint64_t t_ms, const scenario_step_t *step) {
+    (void)ctx;
+    hazard_step(&hazard, t_ms, step);
+}
+
+static bool after_tick(void *ctx, uint64_t t_ms) {
+    (void)ctx;
+    hazard_tick(&hazard, t_ms);
+    return true;
+}
+
 /** Play steps with a planted supervisor. @return which hazard it was */
 static hazard_kind_t play(const planted_t *supervisor, const char *steps) {
     static const scenario_watch_t passing = {.on_frame = on_frame};
     const scenario_options_t options = {.topology = -1, .id_set = -1};
-    const scenario_step_t *step = NULL;
     scenario_options_t defaults = options;
-    scenario_player_t player;
     char text[TEXT_SIZE];
 
     planted = supervisor;
@@ -146,16 +157,12 @@ static hazard_kind_t play(const planted_t *supervisor, const char *steps) {
     scenario_world_watch(&world, &watch);
     scenario_world_watch(&world, &passing);
     scenario_world_start(&world);
-    scenario_player_init(&player, &scenario);
-    for (uint32_t t_ms = 0u; t_ms <= scenario.duration_ms; t_ms++) {
-        for (step = scenario_player_next(&player, t_ms); step != NULL; step = scenario_player_next(&player, t_ms)) {
-            scenario_world_act(&world, t_ms, step);
-            hazard_step(&hazard, t_ms, step);
-        }
-        act(t_ms);
-        scenario_world_tick(&world, t_ms);
-        hazard_tick(&hazard, t_ms);
-    }
+    const scenario_play_t run = {.scenario = &scenario,
+                                 .until_ms = scenario.duration_ms,
+                                 .before_step = before_step,
+                                 .before_tick = act,
+                                 .after_tick = after_tick};
+    scenario_play(&world, &run);
     return hazard.kind;
 }
 

@@ -1,0 +1,31 @@
+/**
+ * @file scenario_play.h
+ * The loop over the milliseconds of a run on the simulated bus: steps, tick, and what the caller does in between.
+ */
+#ifndef HOST_SIM_SCENARIO_PLAY_H
+#define HOST_SIM_SCENARIO_PLAY_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "scenario/scenario.h"
+#include "scenario/scenario_world.h"
+
+/** A run. The functions may be NULL. */
+typedef struct {
+    const scenario_t *scenario; /**< whose steps are done; NULL: no steps */
+    uint64_t from_ms;
+    uint64_t until_ms; /**< the last millisecond */
+    /** A step is about to be done. */
+    void (*before_step)(void *ctx, uint64_t t_ms, const scenario_step_t *step);
+    /** The steps of this millisecond are done. */
+    void (*before_tick)(void *ctx, uint64_t t_ms);
+    /** The millisecond is over. @return false: the run ends here */
+    bool (*after_tick)(void *ctx, uint64_t t_ms);
+    void *ctx; /**< of the functions */
+} scenario_play_t;
+
+/** Run a world that was started. */
+void scenario_play(scenario_world_t *world, const scenario_play_t *play);
+
+#endif
