@@ -6,12 +6,12 @@
 #include "observe/deadlines.h"
 #include "supervisor/supervisor_internal.h"
 
-/* Which of the timers of a supervisor (timers.h) count in a state; bit n of a set is the timer n. */
+/* The timers (timers.h) that are part of the key in a state. Bit n of a set is timer n. */
 #define TIMER(name) (UINT64_C(1) << (unsigned)AGV_TIMER_##name)
 #define EVENT(fault) TIMER(EVENT_##fault)
 #define MESSAGE(name) TIMER(MESSAGE_##name)
 
-_Static_assert(AGV_TIMER_COUNT <= 64, "a set of timers is a word");
+_Static_assert(AGV_TIMER_COUNT <= 64, "a set of timers must fit in 64 bits");
 
 static const uint64_t ALWAYS = TIMER(BUS_OFF) | TIMER(BOTH_MODES) | TIMER(WATCHDOG_FED) | TIMER(TX_TURN_SIGNAL) |
                                TIMER(TX_GEAR) | TIMER(TX_THROTTLE) | TIMER(TX_STEERING) | TIMER(TX_STATUS) |
@@ -31,11 +31,12 @@ static const agv_core_t *core(void) {
     return agv_core_read(&testbed.supervisor);
 }
 
-/* A transient fault is over event_hold_ms after it; those that trip keep a reset from being accepted, but the AI's. */
+/* A transient fault ends after event_hold_ms. Until then the ones that trip prevent a reset, except those of the AI
+ * computer. */
 static const uint64_t EVENTS = EVENT(SUPERVISOR_RESET) | EVENT(TX_GATE_REFUSED) | EVENT(STEP_OVERRUN) |
                                EVENT(FOREIGN_COMMAND_SENDER) | EVENT(MODE_FLAPPING);
 
-/* Times that are of no account any more are left out. */
+/* Without the times that no longer have an effect. */
 static uint64_t latched_timers(void) {
     const agv_reset_button_t *reset = &core()->reset_button;
     const agv_confirmation_t *sums = &core()->confirmation;
@@ -66,7 +67,7 @@ static bool runs(unsigned timer) {
     return core()->timers.phase[timer] == (uint8_t)AGV_TIMER_RUNNING;
 }
 
-/* The timers of a set that have reached their limit so much later, and not yet. */
+/* The running timers of a set that will reach their limit within the given time. */
 static uint64_t over_in(uint64_t set, uint32_t ms) {
     agv_timers_t copy = core()->timers;
     uint64_t over = 0;
@@ -79,7 +80,7 @@ static uint64_t over_in(uint64_t set, uint32_t ms) {
     return over;
 }
 
-/* For how long all conditions of a reset have held. */
+/* Time for which all conditions of a reset have held. */
 static uint16_t all_held_ms(void) {
     uint16_t least_ms = UINT16_MAX;
     for (unsigned i = 0; i < AGV_RESET_CONDITIONS; i++) {
@@ -89,7 +90,7 @@ static uint16_t all_held_ms(void) {
     return least_ms;
 }
 
-/* The sums and budgets that are full with the next ms, and whether the conditions of a reset have held for long enough. */
+/* The sums and budgets that reach their limit in the next millisecond, and whether the conditions of a reset do. */
 static unsigned full_next(void) {
     const agv_core_t *c = core();
     const agv_config_t *config = &c->config;
@@ -106,12 +107,12 @@ static unsigned full_next(void) {
             full |= (c->motion_checks.budgets[i].value_ms + 1u == limits_ms[i]) ? (8u << i) : 0u;
         }
     } else {
-        /* nothing is counted */
+        /* no sums or budgets in this state */
     }
     return full;
 }
 
-/* The first of the times that will be over with the next tick, and not before; 0: none. */
+/* The first time that expires with the next tick; 0: none. */
 static uint8_t eve(void) {
     const uint64_t set = over_in(timers(), 1);
     for (unsigned i = 0; i < (unsigned)AGV_TIMER_COUNT; i++) {
@@ -135,13 +136,13 @@ static uint64_t running(void) {
     }
     for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
         if (model_flows(m) && !testbed.traffic[m].frozen) {
-            some &= ~(UINT64_C(1) << ((unsigned)AGV_TIMER_MESSAGE + m)); /* comes on */
+            some &= ~(UINT64_C(1) << ((unsigned)AGV_TIMER_MESSAGE + m)); /* restarted by its own frames */
         }
     }
     return some;
 }
 
-/* Sums, budgets, and conditions that have to hold, are none of the timers. */
+/* Whether sums, budgets or reset conditions count, which are not timers. */
 static bool counts(void) {
     return agv_state_is_latched((agv_state_t)core()->machine.state) || agv_mode_is_engaged(&core()->mode);
 }
@@ -177,7 +178,7 @@ static uint8_t phases(unsigned a, unsigned b, unsigned c) {
     return (uint8_t)(phase(a) | (phase(b) << 2u) | (phase(c) << 4u));
 }
 
-/* Nothing, on the way, full: what is between does not count. */
+/* A value reduced to three: zero, in between, full. */
 static uint8_t third(uint32_t value, bool full) {
     if (full) {
         return 2;
@@ -193,7 +194,7 @@ static uint8_t score(const agv_score_t *s) {
     return third(s->value, s->present);
 }
 
-/* Of those that are judged. */
+/* The highest score of the status checks. */
 static uint8_t worst_score(void) {
     const agv_status_checks_t *checks = &core()->status_checks;
     uint8_t most = score(&checks->eps_mode);
@@ -225,8 +226,7 @@ static uint8_t engagements(void) {
 }
 
 /*
- * The press: none, one that began before the trip, or after it; of that in SAFE, too, whether it is long enough, or
- * answered in vain.
+ * 0: no press; 1: began before the trip; 2: began after it; in SAFE also 3: long enough; 4: answered without a reset.
  */
 static uint8_t press(void) {
     const agv_reset_button_t *reset = &core()->reset_button;
@@ -242,7 +242,7 @@ static uint8_t press(void) {
     return agv_timer_reached(&core()->timers, AGV_TIMER_PRESS) ? 3 : 2;
 }
 
-/* Whether the vehicle stands since the trip: not yet, it does, too late or not any more. */
+/* 0: the vehicle has not stood since the trip; 1: it has; 2: too late, or it moves again. */
 static uint8_t stands(void) {
     const agv_stopping_t *stopping = &core()->stopping;
     if (stopping->not_stopping || stopping->moving) {
@@ -251,7 +251,7 @@ static uint8_t stands(void) {
     return stopping->stood ? 1 : 0;
 }
 
-/* The worse of the two sums of FSM-4. */
+/* The higher of the two sums of FSM-4. */
 static uint8_t unconfirmed(void) {
     const agv_confirmation_t *sums = &core()->confirmation;
     const agv_config_t *config = &core()->config;
@@ -263,7 +263,7 @@ static bool messages_fresh(void) {
     return agv_deadlines_messages_fresh(&core()->liveness, &core()->timers, &core()->config);
 }
 
-/* Whether 065h may be sent, as the supervisor tells its transmitter. */
+/* Whether 065h may be sent, as the supervisor decides it for its transmitter. */
 static bool is_holdable(void) {
     const agv_ports_t none = {0};
     agv_core_t copy = *core();

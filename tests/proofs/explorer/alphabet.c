@@ -8,7 +8,7 @@
 
 enum { LATE_MS = 101, BIT_LATE_MS = 40, SLEEP_MS = 1000000000 };
 
-/* A symbol: what is done, and with what. */
+/* A symbol: a function and its argument. */
 typedef struct {
     const char *name;
     void (*apply)(unsigned how);
@@ -89,7 +89,7 @@ static bool other_wheels(unsigned turn) {
 
 bool alphabet_pairs;
 
-/* One controller or the stored latch is not as it should be. */
+/* Whether a controller or the stored latch has a trouble. */
 static bool is_troubled(void) {
     const sim_hal_can_t *can = testbed.hal.can;
     return (model.bus != (uint8_t)BUS_FINE) || model.ai_off || model.stalled || model.bad_latch ||
@@ -100,7 +100,7 @@ static bool is_ill(void) {
     return model.illness != (uint8_t)ILL_NOTHING;
 }
 
-/* Of two illnesses one has to end before the other begins, of two troubles too; with pairs there may be one of each. */
+/* Only one illness or trouble exists at a time. With `alphabet_pairs` one of each may exist. */
 static bool may_be_ill(void) {
     return !is_ill() && (alphabet_pairs || !is_troubled());
 }
@@ -121,13 +121,13 @@ static bool other_illness(unsigned illness) {
     return (illness == (unsigned)ILL_NOTHING) ? is_ill() : may_be_ill();
 }
 
-/* A frame of what is mute or frozen, just before the tick; tried where a time is nearly over. */
+/* A silent or frozen node sends one frame just before the tick. */
 static void speak(unsigned how) {
     (void)how;
     model_speak();
 }
 
-/* Where the clock wraps, it has to be met in the midst of what happens, and not in a sleep. */
+/* Not in variants whose clock wraps: there the wrap must come during normal operation. */
 static bool may_sleep(unsigned how) {
     (void)how;
     return !model_variant->wraps;
@@ -138,7 +138,7 @@ static bool can_speak(unsigned how) {
     return model_can_speak();
 }
 
-/* ---- Strangers' frames ---- */
+/* ---- Frames of rogue nodes ---- */
 
 enum { S_GEAR, S_SHORT, S_SIGNALS, S_FAULT, S_MALFORMED, S_OTHER_SET, S_AI_SIDE };
 
@@ -287,12 +287,12 @@ static bool latch_is_good(unsigned how) {
     return may_be_troubled();
 }
 
-/* ---- The table. Those of the short run come first. ---- */
+/* ---- The table. The short alphabet comes first. ---- */
 
 #define ILL(kind) {NULL, apply_illness, other_illness, ILL_##kind}
 
 static const symbol_t SYMBOLS[] = {
-    {"time goes on", go_on, always, 0},
+    {"time passes", go_on, always, 0},
     {"363h: manual", apply_mode, other_mode, MODEL_MANUAL},
     {"363h: autopilot", apply_mode, other_mode, MODEL_ENGAGED},
     {"button 1 down", apply_button, other_button, 1},
@@ -300,7 +300,7 @@ static const symbol_t SYMBOLS[] = {
     {"0A3h: P", apply_gear, other_gear, MODEL_P},
     {"0A3h: D", apply_gear, other_gear, MODEL_D},
     {"wheels turn", apply_wheels, other_wheels, 1},
-    {"wheels stand", apply_wheels, other_wheels, 0},
+    {"wheels stop", apply_wheels, other_wheels, 0},
     ILL(NOTHING),
     ILL(VCU_SILENT),
     ILL(AI_SILENT),
@@ -310,10 +310,10 @@ static const symbol_t SYMBOLS[] = {
     {"restart: power-on", restart, always, HAL_RESET_POWER_ON},
     {"restart: watchdog", restart, always, HAL_RESET_WATCHDOG},
     {"tick late by 101 ms", late, always, LATE_MS},
-    /* the others */
+    /* end of the short alphabet */
     {"363h: both modes", apply_mode, other_mode, MODEL_BOTH},
     {"363h: neither mode", apply_mode, other_mode, MODEL_NEITHER},
-    {"what is mute speaks once", speak, can_speak, 0},
+    {"silent node sends one frame", speak, can_speak, 0},
     ILL(VCU_FROZEN),
     ILL(VCU_SHORT),
     ILL(EPS_SILENT),
@@ -345,20 +345,20 @@ static const symbol_t SYMBOLS[] = {
     ILL(RECEIVE_DEAD),
     {"rogue node: 168h of one byte", rogue_node, vehicle_hears, S_SHORT},
     {"rogue node: 43Fh", rogue_node, vehicle_hears, S_SIGNALS},
-    {"one 167h with a fault bit", rogue_node, vehicle_hears, S_FAULT},
+    {"rogue node: 167h with a fault bit", rogue_node, vehicle_hears, S_FAULT},
     {"malformed frames", rogue_node, vehicle_hears, S_MALFORMED},
-    {"43Fh of the other set", rogue_node, vehicle_hears, S_OTHER_SET},
-    {"167h on the AI side", rogue_node, ai_side_hears, S_AI_SIDE},
+    {"rogue node: 43Fh of the other ID set", rogue_node, vehicle_hears, S_OTHER_SET},
+    {"rogue node: 167h on the AI side", rogue_node, ai_side_hears, S_AI_SIDE},
     {"error-active", apply_bus, other_bus, BUS_FINE},
     {"error-passive", apply_bus, other_bus, BUS_PASSIVE},
-    {"bus-off for good", apply_bus, other_bus, BUS_DEAD},
+    {"bus-off without recovery", apply_bus, other_bus, BUS_DEAD},
     {"overrun", controller, other_controller, C_OVERRUN},
     {"queue full", controller, other_controller, C_FULL},
     {"queue free", controller, other_controller, C_FREE},
-    {"frames do not leave", controller, other_controller, C_STALL},
-    {"frames leave", controller, other_controller, C_FLOW},
+    {"frames are not sent", controller, other_controller, C_STALL},
+    {"frames are sent again", controller, other_controller, C_FLOW},
     {"AI side: bus-off", controller, other_controller, C_AI_OFF},
-    {"AI side: back", controller, other_controller, C_AI_BACK},
+    {"AI side: recovered", controller, other_controller, C_AI_BACK},
     {"AI side: queue full", controller, other_controller, C_AI_FULL},
     {"AI side: queue free", controller, other_controller, C_AI_FREE},
     {"tick late by 40 ms", late, always, BIT_LATE_MS},
@@ -381,7 +381,7 @@ const char *alphabet_name(unsigned symbol) {
 bool alphabet_tellable;
 bool alphabet_hangs;
 
-/* What trace.c cannot say, or not exactly: in a pause of host_sim frames wait until its end. */
+/* Inputs that trace.c cannot express, or not exactly: in a pause of host_sim frames wait until its end. */
 static bool cannot_be_told(const symbol_t *s) {
     const bool waits = !alphabet_hangs || agv_state_commands_safe(agv_supervisor_state(&testbed.supervisor));
     return (s->apply == doze) || ((s->apply == late) && waits) ||

@@ -1,42 +1,43 @@
 /*
- * The abstract inputs that the explorer tries in each state (alphabet.c has the table). Each is a change of the model and
- * the least time in which the supervisor hears of it:
+ * The abstract inputs that the explorer tries in each state (alphabet.c has the table). Each changes the model, and lasts
+ * until the supervisor has received the change:
  *
- *   time        on, until the abstract state changes or all its times are over; so it also stops a millisecond before
- *   frames      the vehicle's own with another value (mode, button, gear, wheels); what is ill falls silent, freezes,
- *               sends faults, values out of range, short frames; it speaks again for one frame; rogue nodes' frames, and
- *               malformed ones
- *   controller  error-passive, bus-off (it recovers when asked to, or not), overrun, queue full, frames do not leave
- *   supervisor  a late tick, a sleep, restarts by each kind of cause, with the latch as stored or damaged
+ *   time        passes until the abstract state changes or all times of the key have expired; so there is also a stop one
+ *               millisecond before each
+ *   frames      the vehicle's own frames with another value (mode, button, gear, wheels); an ill node falls silent,
+ *               freezes, or sends faults, values out of range or short frames; a silent node sends one frame; frames of
+ *               rogue nodes, and malformed ones
+ *   controller  error-passive, bus-off (with or without recovery), overrun, queue full, frames that are not sent
+ *   supervisor  a late tick, days without a tick, restarts with each kind of cause, the stored latch damaged
  */
 #ifndef ALPHABET_H
 #define ALPHABET_H
 
 #include <stdbool.h>
 
-/* Whether an illness of the vehicle and a trouble of a controller or of the stored latch may be there together. */
+/* Whether an illness of the vehicle and a trouble of a controller or of the stored latch may exist at the same time. */
 extern bool alphabet_pairs;
 
-/* Whether only what a scenario can say is tried: a counterexample that is found so can be played. */
+/* Whether only inputs are tried that a scenario can express, so that a counterexample can be run. */
 extern bool alphabet_tellable;
 
 /*
- * Whether late ticks are tried with these, in STANDBY and ACTIVE. In a pause of host_sim frames wait until its end, with
- * their own stamps: what their handling leads to is seen later, and INIT or a reset would end at another time.
+ * Whether --tellable includes late ticks, in STANDBY and ACTIVE. In host_sim the frames of such a pause wait until its end,
+ * with their own stamps. So their effects come later than in the model, and the end of INIT or a reset would differ.
  */
 extern bool alphabet_hangs;
 
-/* How many symbols there are; the short run has those below the second. */
+/* Number of symbols of the full or the short alphabet, which is the beginning of the full one. */
 unsigned alphabet_size(bool quick);
 
 const char *alphabet_name(unsigned symbol);
 
-/* Whether it does anything here. */
+/* Whether the symbol has an effect in the current state. */
 bool alphabet_enabled(unsigned symbol);
 
 void alphabet_apply(unsigned symbol);
 
-/* Whether it may begin something that no key shows: an answer that is owed, say. */
+/* Whether the symbol may have a consequence that is not in the key, such as an answer that is still due. */
 bool alphabet_leaves_no_trace(unsigned symbol);
 
 #endif

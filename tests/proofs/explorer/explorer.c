@@ -1,31 +1,30 @@
 /*
- * Every reachable abstract state of the shipped supervisor.
+ * Finds every reachable abstract state of the shipped supervisor.
  *
- * A breadth-first search: from the first moment of a variant of the configuration (model.h), each symbol of the alphabet
- * (alphabet.h) is tried in each state, and where it leads is a state not seen before (abstract.h, visited.h), that is
- * explored in its turn, until there is none left. In every call of the supervisor on the way all rules are judged:
- * rules.h and oracle.h (FSM-6, TOP-1, latch, safety output, first reason, starts, silence, sending), and that nothing
- * leaves but through the gate.
+ * Breadth-first search: it starts from the first state of a variant of the configuration (model.h) and tries each symbol
+ * of the alphabet (alphabet.h) in each state. A result that was not seen before (abstract.h, visited.h) is explored in
+ * turn, until no new state is found. In every call of the supervisor all rules are checked: rules.h and oracle.h (FSM-6,
+ * TOP-1, latch, safety output, first reason, starts, silence, sending), and that every sent frame passed the gate.
  *
- * A broken rule ends the search. As it is breadth first, the way there has as few symbols as any; it is written as a
- * scenario file (trace.h).
+ * A broken rule ends the search. Because the search is breadth first, no shorter sequence of symbols leads there. It is
+ * written as a scenario file (trace.h).
  *
- * A frame, a late tick or a restart that leads to a known state is followed for some milliseconds all the same, so that
- * what it began is judged.
+ * A frame, a late tick or a restart that leads to a known state is followed for some more milliseconds, so that its
+ * consequences are checked, too.
  *
- * What is shown: no abstract state is left out, and from one model (or more: --representatives) of each every symbol was
- * tried. What is not: two models of one abstract state may differ in what the abstraction leaves out, as the phases of
- * cycles, and only those that were reached first were explored.
+ * Result: no abstract state is left out, and every symbol was tried from one model of each state (from more with
+ * --representatives). Limit: two models of one abstract state may differ in values outside the key, such as the phases of
+ * cycles, and only the first ones were explored.
  *
  * usage: explorer [--quick] [--pairs] [--tellable [--hangs]] [--variant N] [--shard I/N] [--representatives N]
  *                 [--most STATES] [--scenario FILE]
  *   --quick     the short alphabet, a coarser abstraction (abstract.h)
- *   --pairs     something may be wrong with the vehicle and with a controller at the same time
- *   --tellable  only what a scenario file can say, so that a counterexample can be played
- *   --hangs     with it: late ticks in STANDBY and ACTIVE
+ *   --pairs     a fault of the vehicle and a trouble of a controller may exist at the same time
+ *   --tellable  only inputs that a scenario file can express, so that a counterexample can be run
+ *   --hangs     with --tellable: also late ticks in STANDBY and ACTIVE
  *   --shard     every N-th variant from I on
- *   --most      give up, and fail, beyond so many states of a variant
- *   --scenario  where a counterexample goes; without it to standard output
+ *   --most      fail when a variant has more states
+ *   --scenario  file for a counterexample; default: standard output
  */
 #include <stdbool.h>
 #include <stdint.h>
@@ -61,7 +60,7 @@ static struct {
 
 enum { FOLLOW_MS = 8 };
 
-/* Where a symbol leads to nothing new, what it began is still seen to its end: an answer that is owed, say. */
+/* After a symbol without a new state, run on to check its consequences, such as an answer that is still due. */
 static void follow(void) {
     for (unsigned ms = 0; (ms < (unsigned)FOLLOW_MS) && (model_broken()[0] == '\0'); ms++) {
         model_run(1);
@@ -93,7 +92,7 @@ static void log_again(const uint8_t *path, unsigned length) {
         trace_says(alphabet_name(path[i]));
         alphabet_apply(path[i]);
     }
-    follow(); /* nothing, when it is broken by now */
+    follow(); /* does nothing if the rule is broken already */
     trace_write(file);
     if (file != stdout) {
         (void)fclose(file);
@@ -114,7 +113,7 @@ static void report_broken(uint32_t state, unsigned symbol) {
     log_again(path, length);
 }
 
-/* Try every symbol in a state. Returns false: broken, or no room. */
+/* Try every symbol in a state. @return false: a rule was broken, or out of memory */
 static bool explore(uint32_t index) {
     static model_saved_t here;
     here = *visited_at(index)->model;

@@ -1,7 +1,7 @@
-/* What may be wrong with the vehicle, and what its traffic looks like then. */
+/* The illnesses of the vehicle, and their effect on its traffic. */
 #include "model.h"
 
-/* Steering and throttle depend on more than the illness: no rules for them stand here. */
+/* TRIPS_NEVER for steering and throttle, because a trip depends on more than the illness. */
 const illness_row_t ILLNESS[ILLNESSES] = {
     [ILL_NOTHING] = {"healthy", NULL, NULL, ILL_NOTHING, TRIPS_NEVER},
     [ILL_VCU_SILENT] = {"VCU silent", "VCU_HEARTBEAT_LOST", NULL, ILL_VCU_SILENT, TRIPS_ALWAYS},
@@ -39,7 +39,7 @@ const illness_row_t ILLNESS[ILLNESSES] = {
     [ILL_RECEIVE_DEAD] = {"receive path does not check in", NULL, NULL, ILL_RECEIVE_DEAD, TRIPS_NEVER},
 };
 
-/* Modes change so often: an engagement that begins after so long is a new one. */
+/* FLAP_MS: period of the mode changes, long enough to count as a new engagement each time. */
 enum { FLAP_MS = 200, R = 2, SIGNALS = 4, AUTOPILOT_OFF = 0x40 };
 enum { SHORT = 5, EPS_FAULTS = 7, ALARMS = 4, EPS_MODE = 3, ANGLE_LOW = 2, ANGLE_HIGH = 3 };
 
@@ -55,7 +55,7 @@ static void shorten(unsigned first, unsigned last) {
     }
 }
 
-/* Nodes and messages that do not come, or not as they should. */
+/* Silent nodes and messages, and short frames. */
 static void dress_silent(illness_t illness) {
     switch (illness) {
     case ILL_VCU_SILENT:
@@ -101,7 +101,7 @@ static void dress_silent(illness_t illness) {
     }
 }
 
-/* Values. */
+/* Wrong values. */
 static void dress_values(illness_t illness) {
     traffic_message_t *t = testbed.traffic;
     switch (illness) {
@@ -147,7 +147,7 @@ static void dress_values(illness_t illness) {
         t[M_THROTTLE_STATUS].data[0] = 100;
         break;
     case ILL_THROTTLE_ABOVE:
-        t[M_THROTTLE_STATUS].data[0] = 150; /* of 100 */
+        t[M_THROTTLE_STATUS].data[0] = 150; /* the command is 100 */
         break;
     case ILL_GEAR_AGAINST:
         t[M_GEAR_STATUS].data[0] = R;

@@ -4,7 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Two of 10 ms share no millisecond with each other, nor with those of 25 ms: little delays anything on a real bus. */
+/* Messages of 10 ms share no millisecond with each other, nor with those of 25 ms, because little is delayed on a real
+ * bus. */
 const uint8_t MODEL_PHASE_MS[TRAFFIC_MESSAGES] = {
     [M_SIGNALS] = 21,   [M_GEAR] = 45,       [M_THROTTLE] = 76,       [M_STEERING] = 8,
     [M_VEHICLE] = 1,    [M_GEAR_STATUS] = 2, [M_THROTTLE_STATUS] = 4, [M_STEERING_STATUS] = 5,
@@ -13,7 +14,7 @@ const uint8_t MODEL_PHASE_MS[TRAFFIC_MESSAGES] = {
 
 enum { WRAP = 0, MIDDLE = 0x7FFFFFFF };
 enum { RECOVERY_MS = 2, BABBLE_MS = 5, FOREIGN_MS = 20, WHEEL_MM_S = 200 };
-/* Until it has tripped: at any time; after four engagements; while engaged; a budget of 1 s after the grace time. */
+/* Latest trip: at any time; after four engagements; while engaged; after the grace time and a budget of 1 s. */
 enum { ALWAYS_MS = 250, FLAPPING_MS = 2500, ENGAGED_MS = 1200, FOLLOWED_MS = 1800 };
 enum { BOTH_MS = 150, NEITHER_MS = 700, STOP_MS = 5200, SEEN_MS = 300 };
 
@@ -50,10 +51,10 @@ static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame
 }
 
 static void go_on(void) {
-    /* what is broken is asked for after each symbol */
+    /* model_broken() is checked after each symbol */
 }
 
-/* ---- Beginning, saving ---- */
+/* ---- Start, save, restore ---- */
 
 void model_root(const model_variant_t *variant) {
     model_variant = variant;
@@ -97,7 +98,7 @@ bool model_wrapped(void) {
     return model_variant->wraps && (model_now_ms() >= middle - model_variant->clock_ms);
 }
 
-/* ---- What is judged beside the rules ---- */
+/* ---- Checks besides rules.h ---- */
 
 __attribute__((format(printf, 1, 2))) static void broken(const char *format, ...) {
     va_list arguments;
@@ -108,7 +109,7 @@ __attribute__((format(printf, 1, 2))) static void broken(const char *format, ...
     }
 }
 
-/* How long the vehicle has been ill in a way that has to trip, by the protocol and not by the supervisor's own times. */
+/* Whether the illness has lasted long enough for a trip. The limits are from the protocol, not the supervisor's own. */
 static bool must_trip(void) {
     const uint64_t ill_ms = testbed.now_ms - model.ill_ms;
     const uint64_t engaged_ms = (model.mode == (uint8_t)MODEL_ENGAGED) ? (testbed.now_ms - model.mode_ms) : 0u;
@@ -127,7 +128,7 @@ static bool must_trip(void) {
     }
 }
 
-/* Whatever the counts and deadlines are, in the end it trips, and no reset is accepted (but for an AI computer). */
+/* A lasting illness must trip and prevent a reset (except one of the AI computer). */
 static void judge_illness(bool was_latched) {
     const agv_state_t state = agv_supervisor_state(&testbed.supervisor);
     if (agv_state_commands_safe(state) || !must_trip()) {
@@ -136,7 +137,7 @@ static void judge_illness(bool was_latched) {
     if (was_latched) {
         broken("FSM-3: the latch was left with a trip cause: %s", ILLNESS[model.illness].name);
     } else {
-        broken("SUP-4: %s for %u ms, and it has not tripped", ILLNESS[model.illness].name,
+        broken("SUP-4: %s for %u ms without a trip", ILLNESS[model.illness].name,
                (unsigned)(testbed.now_ms - model.ill_ms));
     }
 }
@@ -150,15 +151,15 @@ static void judge_mode(void) {
         return;
     }
     if ((model.mode == (uint8_t)MODEL_BOTH) && (mode_ms > (uint64_t)BOTH_MS)) {
-        broken("SUP-9: both modes for %u ms, and it has not tripped", (unsigned)mode_ms);
+        broken("SUP-9: both modes for %u ms without a trip", (unsigned)mode_ms);
     }
     if ((model.mode == (uint8_t)MODEL_NEITHER) && model.wheels_turn && (mode_ms > (uint64_t)NEITHER_MS) &&
         (wheels_ms > (uint64_t)NEITHER_MS)) {
-        broken("SUP-9: neither mode for %u ms on the move, and it has not tripped", (unsigned)mode_ms);
+        broken("SUP-9: neither mode for %u ms while moving, without a trip", (unsigned)mode_ms);
     }
 }
 
-/* FSM-12: a vehicle that does not stop, and one that moves again. */
+/* FSM-12: the output must open when the vehicle does not stop, or moves again. */
 static void judge_stop(void) {
     const uint64_t wheels_ms = testbed.now_ms - model.wheels_ms;
     const uint64_t latched_ms = testbed.now_ms - model.latched_ms;
@@ -184,7 +185,7 @@ static void judge_stop(void) {
 static void judge(bool was_latched) {
     const uint32_t counted = agv_supervisor_counters(&testbed.supervisor)->sent;
     if (counted != model.frames) {
-        broken("INT-4: %u frames have left, the gate let out %u", (unsigned)model.frames, (unsigned)counted);
+        broken("INT-4: %u frames were sent, the gate allowed %u", (unsigned)model.frames, (unsigned)counted);
     }
     judge_illness(was_latched);
     judge_mode();
@@ -216,7 +217,7 @@ bool model_flows(unsigned message) {
     return !m->muted && (m->length == 8u) && !is_off(testbed.traffic[message].side);
 }
 
-/* A controller in bus-off hears nothing. */
+/* A controller in bus-off receives nothing. */
 static void send(unsigned message) {
     if (!is_off(testbed.traffic[message].side)) {
         testbed_send(message);
@@ -259,7 +260,7 @@ static void follow_controller(void) {
     model.recover_requests = can->recover_requests;
 }
 
-/* What does not leave has waited for full milliseconds, at least 1 (hal/can.h). */
+/* The age of the oldest frame that is not sent, in full milliseconds, at least 1 (hal/can.h). */
 static void age_pending(void) {
     sim_hal_can_t *can = &testbed.hal.can[HAL_CAN_VEHICLE];
     if (model.stalled && (can->status.tx_pending_ms != 0u) && (testbed.now_ms > model.taken_ms)) {
@@ -280,7 +281,7 @@ static void after(bool was_latched) {
     }
 }
 
-/* The rest of a millisecond whose actions are done. */
+/* The rest of a millisecond after the changes of the model: tick, frames, checks. */
 static void finish_ms(void) {
     const bool was_latched = agv_state_is_latched(agv_supervisor_state(&testbed.supervisor));
     age_pending();
@@ -354,14 +355,14 @@ void model_speak(void) {
     finish_ms();
 }
 
-/* What was recorded decides nothing, and a start looks through all of it: it finds nothing there. */
+/* A start reads the whole recorder, which has no effect on decisions. It is emptied to save time. */
 static void empty_recorder(void) {
     for (unsigned i = 0; i < (unsigned)AGV_RECORDER_EVENTS; i++) {
         testbed.recorder.events[i].kind = 0;
     }
 }
 
-/* rules.h knows of no damaged latch: the reason that stood in it is lost, and only that (FSM-7). */
+/* rules.h does not handle a damaged latch: then the first reason may be lost, but nothing else (FSM-7). */
 static void judge_damaged(bool power_on) {
     static const char LOST[] = "FSM-7: after a reset the first reason is SUPERVISOR_RESET";
     if (!power_on && (strcmp(testbed.rules.broken, LOST) == 0)) {
@@ -416,7 +417,7 @@ void model_sleep(uint32_t ms) {
     before();
     log_pause(ms, false);
     testbed.now_ms += ms;
-    model.wheels_ms = testbed.now_ms; /* before nothing was heard of them */
+    model.wheels_ms = testbed.now_ms; /* no frames of them were received before */
     finish_ms();
 }
 

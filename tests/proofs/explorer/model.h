@@ -1,9 +1,9 @@
 /*
- * What the explorer plays on: one supervisor and its vehicle (testbed.h), a millisecond at a time, with the vehicle put
- * together from few values: mode, button, gear, wheels, and at most one thing that is wrong with it at a time (an
- * illness). From these the traffic follows, so that a model is saved and compared by few bytes.
+ * The model that the explorer runs: one supervisor and its vehicle (testbed.h), in steps of a millisecond. The vehicle
+ * consists of few values: mode, button, gear, wheels, and at most one fault at a time (an illness). The traffic is derived
+ * from them, so a model can be saved and compared as a few bytes.
  *
- * A millisecond is as in host_sim: what is done to the model, the tick, then the frames that are due.
+ * The order within a millisecond is that of host_sim: changes of the model, the tick, then the frames that are due.
  */
 #ifndef MODEL_H
 #define MODEL_H
@@ -13,7 +13,7 @@
 
 #include "testbed_state.h"
 
-/* What is wrong with the vehicle. Names, and the fault that has to come of each, stand in illness.c. */
+/* Illnesses of the vehicle. Their names, and the fault that each must cause, are in illness.c. */
 typedef enum {
     ILL_NOTHING,
     ILL_VCU_SILENT,
@@ -51,7 +51,7 @@ typedef enum {
     ILLNESSES
 } illness_t;
 
-/* The controller on the vehicle side. One that is off recovers when asked to, one that is dead does not. */
+/* The controller on the vehicle side. After BUS_OFF it recovers on request, after BUS_DEAD it never does. */
 typedef enum { BUS_FINE, BUS_PASSIVE, BUS_OFF, BUS_DEAD } model_bus_t;
 
 enum { MODEL_MANUAL = 0x40, MODEL_ENGAGED = 0x80, MODEL_BOTH = 0xC0, MODEL_NEITHER = 0 };
@@ -60,9 +60,9 @@ enum { MODEL_D = 1, MODEL_P = 8 };
 /* One variant of the configuration. */
 typedef struct {
     const char *name;
-    unsigned testbed;  /* of testbed_load() */
-    uint32_t clock_ms; /* what the clock reads at the start */
-    bool wraps;        /* it wraps, or passes the middle of its range, while states are found */
+    unsigned testbed;  /* number for testbed_load() */
+    uint32_t clock_ms; /* clock at the start */
+    bool wraps;        /* the clock wraps, or passes the middle of its range, during the search */
 } model_variant_t;
 
 enum { MODEL_VARIANTS = 7 };
@@ -70,13 +70,13 @@ extern const model_variant_t MODEL_VARIANT[MODEL_VARIANTS];
 
 typedef struct {
     uint64_t root_ms;
-    uint64_t foreign_ms; /* since when a foreign sender sends */
-    uint64_t ill_ms;     /* since when the vehicle is ill, and while that reaches the supervisor at all */
-    uint64_t mode_ms;    /* since when it reports its mode */
-    uint64_t wheels_ms;  /* since when its wheels turn, or stand */
-    uint64_t latched_ms; /* since when it is TRIPPED or SAFE */
-    uint64_t taken_ms;   /* when the oldest frame that does not leave was taken */
-    uint32_t frames;     /* that left since the last start */
+    uint64_t foreign_ms; /* start of a foreign sender's frames */
+    uint64_t ill_ms;     /* start of the illness, or of the time in which its frames reach the supervisor */
+    uint64_t mode_ms;    /* start of the reported mode */
+    uint64_t wheels_ms;  /* last time that the wheels began to turn or to stand */
+    uint64_t latched_ms; /* start of TRIPPED or SAFE */
+    uint64_t taken_ms;   /* when the oldest unsent frame was accepted */
+    uint32_t frames;     /* sent since the last start */
     uint32_t recover_requests;
     uint8_t recover_in_ms;
     uint8_t bus;     /* model_bus_t */
@@ -85,8 +85,8 @@ typedef struct {
     uint8_t gear;
     bool button;
     bool wheels_turn;
-    bool stood;   /* the wheels have stood since the trip, and that was seen */
-    bool stalled; /* what was handed over does not leave */
+    bool stood;   /* the wheels have stood since the trip, and the supervisor could see it */
+    bool stalled; /* accepted frames are not sent */
     bool ai_off;  /* bus-off of the AI side */
     bool bad_latch;
 } model_t;
@@ -94,7 +94,7 @@ typedef struct {
 extern model_t model;
 extern const model_variant_t *model_variant;
 
-/* A model to come back to. */
+/* A saved model. */
 typedef struct {
     testbed_state_t testbed;
     model_t model;
@@ -110,35 +110,35 @@ void model_restore(const model_saved_t *saved);
 uint32_t model_now_ms(void);
 bool model_wrapped(void);
 
-/* The traffic, as the values of the model have it; then milliseconds, with all checks. */
+/* Derive the traffic from the values of the model; run milliseconds, with all checks. */
 void model_dress(void);
 void model_run(uint32_t ms);
 void model_run_past(unsigned message);
 
-/* What takes a millisecond: frames, or a restart, before its tick. */
+/* Inputs that take a millisecond: frames, or a restart, before its tick. */
 void model_deliver(hal_can_side_t side, const hal_can_frame_t *frames, unsigned count);
 void model_speak(void);
 void model_restart(hal_reset_cause_t cause);
 
-/* Frames come, the tick does not, for so long; or nothing at all comes. */
+/* A late tick: frames come in the meantime. Sleep: nothing comes. */
 void model_late(uint32_t ms);
 void model_sleep(uint32_t ms);
 
 void model_set_bus(model_bus_t bus);
 void model_set_ai_off(bool off);
 
-/* Whether the message's own frames reach the supervisor as they should; whether something is mute that could speak. */
+/* Whether frames of a message reach the supervisor complete; whether a silent node could send. */
 bool model_flows(unsigned message);
 bool model_can_speak(void);
 
 /* The first rule that was broken; "" = none. */
 const char *model_broken(void);
 
-/* The last frame that left. */
+/* The last sent frame. */
 extern hal_can_frame_t model_last_frame;
 extern hal_can_side_t model_last_side;
 
-/* Called for what happens, to write it down. A millisecond begins with `before`, then comes what is done in it. */
+/* Callbacks that record the run. A millisecond begins with `before`, then come its events. */
 typedef struct {
     void (*before)(uint32_t at_ms);
     void (*after)(void);
@@ -149,7 +149,7 @@ typedef struct {
 } model_listener_t;
 extern const model_listener_t *model_listener; /* NULL: none */
 
-/* When each message is sent within its cycle. */
+/* Phase of each message in its cycle. */
 extern const uint8_t MODEL_PHASE_MS[TRAFFIC_MESSAGES];
 
 /* illness.c */
@@ -157,9 +157,9 @@ typedef enum { TRIPS_NEVER, TRIPS_ALWAYS, TRIPS_FLAPPING, TRIPS_ENGAGED, TRIPS_F
 
 typedef struct {
     const char *name;
-    const char *fault;        /* that is the reason of a trip, when it trips */
-    const char *frozen_fault; /* NULL, or the other one it may be */
-    uint8_t like;             /* illness that has the same effect where no autopilot is supervised (abstract.h) */
+    const char *fault;        /* reason of the trip */
+    const char *frozen_fault; /* NULL, or another possible reason */
+    uint8_t like;             /* illness with the same effect while not engaged (abstract.h) */
     uint8_t trips;            /* when it trips: illness_trips_t */
 } illness_row_t;
 extern const illness_row_t ILLNESS[ILLNESSES];

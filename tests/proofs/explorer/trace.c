@@ -12,11 +12,11 @@ enum { TEXT_MAX = 1 << 17, STEPS_MAX = 256 };
 static char text[TEXT_MAX]; /* the steps so far */
 static size_t used;
 static unsigned steps;
-static uint32_t at_ms; /* the millisecond that is being written */
+static uint32_t at_ms; /* the current millisecond */
 static const char *symbol;
-static bool complete; /* nothing in it can only be expressed as a comment */
+static bool complete; /* false: the file has inputs that are only comments */
 
-/* What the vehicle of the file does, as far as it is written. */
+/* State of the vehicle in the file so far. */
 static traffic_message_t logged[TRAFFIC_MESSAGES];
 static model_t logged_model;
 static bool logged_full[HAL_CAN_SIDES];
@@ -37,7 +37,7 @@ __attribute__((format(printf, 1, 2))) static void add(const char *format, ...) {
     used += (size_t)length;
 }
 
-/* A step of the file; what it needs follows. */
+/* Begin a step of the file; its parameters follow. */
 static void step(const char *actor, const char *what) {
     if (symbol != NULL) {
         add("  # %s\n", symbol);
@@ -110,7 +110,7 @@ static void log_message(unsigned m) {
     }
 }
 
-/* Short frames; their end in a file is the end of all bytes that were set, too. */
+/* Short frames. In a file their end also ends all bytes that were set. */
 static void log_length(unsigned m) {
     const unsigned node = node_of(m);
     if (logged[m].length == testbed.traffic[m].length) {
@@ -130,7 +130,7 @@ static void log_length(unsigned m) {
     }
 }
 
-/* What is no property of a message. */
+/* Illnesses that are not a property of a message. */
 static void log_illness(void) {
     const uint8_t was = logged_model.illness;
     const uint8_t is = model.illness;
@@ -149,7 +149,7 @@ static void log_illness(void) {
         plain_step("bus", "stop_sending");
     }
     if (is == (uint8_t)ILL_RECEIVE_DEAD) {
-        cannot_express("the receive path does not check in any more");
+        cannot_express("the receive path no longer checks in");
     }
 }
 
@@ -178,7 +178,7 @@ static void log_bus(void) {
         break;
     case BUS_DEAD:
         plain_step("supervisor", "bus_off");
-        cannot_express("it does not recover, though it is asked to");
+        cannot_express("the controller does not recover on request");
         break;
     default:
         if (was == (uint8_t)BUS_PASSIVE) {
@@ -208,7 +208,7 @@ static void log_controllers(void) {
     if (!logged_model.ai_off && model.ai_off) {
         step("supervisor", "bus_off");
         add(", side: ai}\n");
-        cannot_express("it does not recover before the scenario says so");
+        cannot_express("the controller recovers only later in the trace");
     }
     if (logged_overruns != overruns) {
         plain_step("supervisor", "overrun");
@@ -227,7 +227,7 @@ static void before(uint32_t ms) {
 }
 
 static void after(void) {
-    logged_model = model; /* what a controller did by itself is no step */
+    logged_model = model; /* a change that a controller made by itself is not a step */
     trace_expect_ms(model_now_ms());
 }
 
@@ -355,8 +355,8 @@ void trace_write(FILE *file) {
     model_listener = NULL;
     (void)fprintf(file, "# Found by the explorer, at %u ms: %s\n", (unsigned)model_now_ms(), broken);
     if (!complete || (steps > (unsigned)STEPS_MAX)) {
-        (void)fprintf(file, "# This file alone does not show it: %s.\n",
-                      complete ? "it has more steps than a scenario may have" : "see NOT IN THIS FILE below");
+        (void)fprintf(file, "# This file alone does not show the broken rule: %s.\n",
+                      complete ? "there are more steps than a scenario may have" : "see NOT IN THIS FILE below");
     }
     (void)fprintf(file, "name: \"%.*s: found by the explorer\"\nshows: [%.*s]\n", (int)strcspn(broken, ":"), broken,
                   (int)strcspn(broken, ":"), broken);

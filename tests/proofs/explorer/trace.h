@@ -1,11 +1,11 @@
 /*
- * A counterexample as a scenario file of host_sim: its steps say what the model did, its expectations what was seen
- * before the rule was broken, and what the rule asked for. So it fails with the supervisor that broke the rule, and holds
- * with one that does not.
+ * A counterexample as a scenario file of host_sim. Its steps repeat what the model did. Its expectations are what was
+ * observed before the rule was broken, and what the rule demands. So it fails with the supervisor that broke the rule, and
+ * passes with a correct one.
  *
- * The vehicle of host_sim sends all messages at the times of the model, with bytes that the file sets. What a scenario
- * cannot say stands in it as a comment: a receive path that does not check in, a controller that never recovers, days
- * without a tick. In such a case the file describes the trace, and proves nothing.
+ * The vehicle of host_sim sends all messages at the times of the model, with bytes that the file sets. A scenario cannot
+ * express some inputs: a receive path that does not check in, a controller that never recovers, days without a tick. They
+ * are comments in the file, which then only describes the trace and shows nothing.
  */
 #ifndef TRACE_H
 #define TRACE_H
@@ -14,29 +14,29 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* From now on all that happens is noted, from the root of the model on. */
+/* Start recording, at the root of the model. */
 void trace_begin(void);
 
-/* The name of the symbol that comes now. */
+/* Name of the next symbol. */
 void trace_says(const char *comment);
 
-/* It is complete. Writes the file; the rule that was broken is model_broken(). */
+/* Write the file. model_broken() is the broken rule. */
 void trace_write(FILE *file);
 
-/* ---- trace_expect.c: what is expected, by what was seen ---- */
+/* ---- trace_expect.c: expectations, from the observed behaviour ---- */
 
-/* The supervisor starts, or has just started again. */
+/* The supervisor starts, or has just restarted. */
 void trace_expect_begin(void);
 void trace_expect_restarted(void);
 
-/* A millisecond is over. */
+/* Called at the end of each millisecond. */
 void trace_expect_ms(uint32_t t_ms);
 
-/* Whether the file needs a status frame that the configuration has not; this one. */
+/* Whether the file needs a status frame that the configuration does not have; its identifier and period. */
 enum { TRACE_STATUS_ID = 0x7FF, TRACE_STATUS_MS = 10 };
 bool trace_expect_needs_status(void);
 
-/* How long the file runs; and its expectations. */
+/* Duration of the scenario; its expectations. */
 uint32_t trace_expect_duration_ms(void);
 void trace_expect_write(FILE *file);
 

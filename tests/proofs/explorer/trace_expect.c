@@ -1,4 +1,4 @@
-/* What the scenario file of a counterexample expects: what was seen before, and what the broken rule asks for. */
+/* Expectations of a counterexample's scenario file: what was observed before, and what the broken rule demands. */
 #include <string.h>
 
 #include "agv/names.h"
@@ -26,21 +26,21 @@ static uint32_t next_sequence;
 static uint32_t broken_ms;
 static bool is_broken;
 
-/* What the rule that was broken says of what was seen with it. */
-static bool drops_events; /* it should not have come to that */
+/* Observations of the last millisecond that the broken rule forbids. */
+static bool drops_events; /* events */
 static bool drops_output;
 
 static bool says(const char *beginning) {
     return strncmp(model_broken(), beginning, strlen(beginning)) == 0;
 }
 
-/* ---- What is seen ---- */
+/* ---- Observations ---- */
 
 static bool was_closed(void) {
     return (output_count > 0u) && outputs[output_count - 1u].closed;
 }
 
-/* Something should have tripped; but it was tripped, until a reset in that very call. */
+/* A missing trip, although the supervisor was tripped until a reset in this call. */
 static bool undoes_latch(void) {
     uint8_t state = 0;
     for (unsigned i = 0; i < seen_count; i++) {
@@ -105,7 +105,7 @@ void trace_expect_restarted(void) {
     next_sequence = 0; /* the recorder was empty when it started */
 }
 
-/* ---- What is expected ---- */
+/* ---- Expectations ---- */
 
 static const char *trip_reason(void) {
     const illness_row_t *row = &ILLNESS[model.illness];
@@ -119,7 +119,7 @@ static const char *trip_reason(void) {
     return (row->fault != NULL) ? row->fault : "VCU_HEARTBEAT_LOST";
 }
 
-/* FSM-5: what the first reason is, the status frame tells (TOP-3). */
+/* FSM-5: the status frame reports the first reason (TOP-3). */
 static bool first_reason_was(char name[64]) {
     return sscanf(model_broken(), "FSM-5: the first reason was %63s and is", name) == 1;
 }
@@ -161,7 +161,7 @@ static void write_start(FILE *file) {
     if (says("FSM-7: after reset cause 0")) {
         write_state(file, AGV_STATE_INIT, NULL, broken_ms);
     } else if (says(BEFORE) || says("FSM-7")) {
-        /* what it was before it started; the supervisor itself does not know it any more */
+        /* the first reason before the restart */
         const char *was = "SUPERVISOR_RESET";
         for (unsigned i = 0; i < seen_count; i++) {
             const agv_event_t *event = &seen[i].event;
@@ -191,7 +191,7 @@ static void write_states(FILE *file) {
     }
 }
 
-/* A frame of the supervisor that has to come, by its number among the safe commands. */
+/* A frame that the supervisor must send, by its number among the safe commands. */
 static void write_frame(FILE *file, unsigned command, uint32_t from_ms) {
     static const char *const BYTES[] = {"00 00 00 00 70 00 00 ..", "08 00 00 00 00 00 00 00", "00 00 00 00 00 00 00 00",
                                         ".. .. 00 00 00 00 00 00"};
@@ -208,7 +208,7 @@ static void write_first_reason(FILE *file, const char *name) {
         (unsigned)(broken_ms + status_period_ms() + 1u));
 }
 
-/* The later of two moments of the rules, in the time of the file. */
+/* The later of two times of the rules, in the time of the file. */
 static uint32_t since(uint64_t a_ms, uint64_t b_ms) {
     const uint64_t later_ms = (a_ms > b_ms) ? a_ms : b_ms;
     return (later_ms > model.root_ms) ? (uint32_t)(later_ms - model.root_ms) : 0u;
@@ -233,7 +233,7 @@ static void write_frames(FILE *file) {
         (void)fprintf(file, "  frames:\n");
         write_frame(file, command, since(testbed.rules.answer_owed_ms[command], 0));
     } else {
-        /* of frames the rule says what must not come, or nothing */
+        /* a rule on frames forbids a frame, or has no expectation */
     }
 }
 
@@ -271,7 +271,7 @@ static void write_output(FILE *file) {
 
 static void write_missing(FILE *file, const seen_t *s) {
     const char *between = "";
-    /* the press that counted though it must not: it was the button, too, that was missing */
+    /* a press that must not count: the button is missing, too */
     const bool wrong_press =
         says("FSM-3: the latch was left without the button") && (s->event.kind == (uint8_t)AGV_EVENT_RESET);
     const uint32_t missing = s->event.missing | (wrong_press ? AGV_MISSING_BUTTON : 0u);
