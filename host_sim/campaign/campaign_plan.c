@@ -1,7 +1,6 @@
 #include "campaign/campaign_plan.h"
 
 #include <inttypes.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -28,42 +27,25 @@ enum { AFTERWARDS_MS = 1500, AFTER_STANDSTILL_MS = 4500, AFTER_STALL_MS = 3000 }
 /** The driver. */
 enum { THROTTLE_MIN_PCT = 5, STEER_MAX_DEG = 30, DRIVE_MS = 1000 };
 
-void campaign_text_add(campaign_text_t *text, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    const int length = vsnprintf(&text->bytes[text->used], sizeof text->bytes - text->used, format, arguments);
-    va_end(arguments);
-    if ((length < 0) || ((size_t)length >= sizeof text->bytes - text->used)) {
-        text->full = true;
-        text->bytes[text->used] = '\0';
-        return;
-    }
-    text->used += (size_t)length;
-}
-
-static bool toss(uint64_t *state, uint32_t in) {
-    return chance_draw(state, 1u, in) == 1u;
-}
-
 /** What kind of vehicle and supervisor. */
 static void choose_kind(campaign_plan_t *plan, uint64_t *state) {
     static const uint32_t bitrates[] = {125000u, 250000u, 500000u};
     const uint32_t flags = plan->row->flags;
-    const bool gateway = toss(state, 2u);
-    const bool manual = toss(state, 4u);
+    const bool gateway = chance_toss(state, 2u);
+    const bool manual = chance_toss(state, 4u);
 
     plan->bitrate = bitrates[chance_draw(state, 0u, 2u)];
     plan->gateway = ((flags & CAMPAIGN_GATEWAY) != 0u) || (((flags & CAMPAIGN_SHARED) == 0u) && gateway);
-    plan->table_ids = toss(state, 4u);
-    plan->park_guard = !toss(state, 4u);
-    plan->at_standstill = toss(state, 4u) && ((flags & CAMPAIGN_AT_ONCE_P) == 0u);
+    plan->table_ids = chance_toss(state, 4u);
+    plan->park_guard = !chance_toss(state, 4u);
+    plan->at_standstill = chance_toss(state, 4u) && ((flags & CAMPAIGN_AT_ONCE_P) == 0u);
     plan->engaged = ((flags & CAMPAIGN_ENGAGED) != 0u) || (((flags & CAMPAIGN_MANUAL) == 0u) && !manual);
-    plan->bunched = toss(state, 2u);
-    plan->tick_phase_us = toss(state, 2u) ? 0u : (uint16_t)chance_draw(state, 0u, TICK_SPAN_US - 1u);
+    plan->bunched = chance_toss(state, 2u);
+    plan->tick_phase_us = chance_toss(state, 2u) ? 0u : (uint16_t)chance_draw(state, 0u, TICK_SPAN_US - 1u);
     plan->clock_start_ms = (uint32_t)chance_next(state);
     plan->number = chance_draw(state, plan->row->lowest, plan->row->highest);
     /* One that knows no configuration goes by its built-in identifiers. */
-    plan->renumbered = toss(state, 8u) && (plan->row->fault > AGV_FAULT_CONFIG_INVALID);
+    plan->renumbered = chance_toss(state, 8u) && (plan->row->fault > AGV_FAULT_CONFIG_INVALID);
 }
 
 /** The cause comes under way, or is there from the start on. @return from the cause to the decision at the latest */
@@ -100,61 +82,59 @@ static void choose_times(campaign_plan_t *plan, uint64_t *state, const agv_confi
 /** All identifiers are settings. Their order, which decides who waits on the wire, stays as it is. */
 static void add_identifiers(campaign_plan_t *plan) {
     for (uint32_t m = 0u; m < (uint32_t)AGV_MSG_COUNT; m++) {
-        campaign_text_add(&plan->head, "  id_%s: 0x%03X\n", agv_message_name((agv_message_t)m),
-                          agv_message_id(m, plan->table_ids ? AGV_ID_SET_TABLE : AGV_ID_SET_HEADING) + 1u);
+        text_add(&plan->head, "  id_%s: 0x%03X\n", agv_message_name((agv_message_t)m),
+                 agv_message_id(m, plan->table_ids ? AGV_ID_SET_TABLE : AGV_ID_SET_HEADING) + 1u);
     }
 }
 
 static void add_kind(campaign_plan_t *plan) {
-    campaign_text_t *text = &plan->head;
+    text_t *text = &plan->head;
     const campaign_row_t *row = plan->row;
     const char *name = agv_fault_name(row->fault);
 
-    campaign_text_add(text, "name: campaign of seed %" PRIu64 ", run %" PRIu64 "\nshows: [%s]\n", plan->seed, plan->run,
-                      name);
-    campaign_text_add(text, "topology: %s\nid_set: %s\n", plan->gateway ? "gateway" : "shared",
-                      plan->table_ids ? "table" : "heading");
-    campaign_text_add(text, "bitrate: %" PRIu32 "\nclock_start_ms: %" PRIu32 "\ntick_phase_us: %u\n%s", plan->bitrate,
-                      plan->clock_start_ms, plan->tick_phase_us, row->top);
-    campaign_text_add(text, "config:\n  park: %s\n", plan->at_standstill ? "at_standstill" : "at_once");
+    text_add(text, "name: campaign of seed %" PRIu64 ", run %" PRIu64 "\nshows: [%s]\n", plan->seed, plan->run, name);
+    text_add(text, "topology: %s\nid_set: %s\n", plan->gateway ? "gateway" : "shared",
+             plan->table_ids ? "table" : "heading");
+    text_add(text, "bitrate: %" PRIu32 "\nclock_start_ms: %" PRIu32 "\ntick_phase_us: %u\n%s", plan->bitrate,
+             plan->clock_start_ms, plan->tick_phase_us, row->top);
+    text_add(text, "config:\n  park: %s\n", plan->at_standstill ? "at_standstill" : "at_once");
     if (row->fault == AGV_FAULT_CONFIG_INVALID) {
-        campaign_text_add(text, "  own_heartbeat: frozen\n");
+        text_add(text, "  own_heartbeat: frozen\n");
     }
     if (plan->renumbered) {
         add_identifiers(plan);
     }
     if ((row->flags & CAMPAIGN_AS_TRIP) != 0u) {
-        campaign_text_add(text, "  class_");
+        text_add(text, "  class_");
         for (; *name != '\0'; name++) {
             const char letter = *name;
-            campaign_text_add(text, "%c", ((letter >= 'A') && (letter <= 'Z')) ? letter - 'A' + 'a' : letter);
+            text_add(text, "%c", ((letter >= 'A') && (letter <= 'Z')) ? letter - 'A' + 'a' : letter);
         }
-        campaign_text_add(text, ": trip\n");
+        text_add(text, ": trip\n");
     }
 }
 
 /** When nodes and messages begin. In a bunch they fall together again and again; else each has its own phase. */
 static void add_phases(campaign_plan_t *plan, uint64_t *state) {
-    campaign_text_t *text = &plan->head;
+    text_t *text = &plan->head;
     const bool at_start = (plan->row->flags & CAMPAIGN_START) != 0u;
     const uint32_t together_ms = chance_draw(state, 0u, 9u);
     const uint32_t span_ms = (plan->bunched || at_start) ? 0u : (uint32_t)START_SPAN_MS - 1u;
 
-    campaign_text_add(text, "vehicle:\n  park_guard: %s\n", plan->park_guard ? "true" : "false");
-    campaign_text_add(text, "  vcu_starts_ms: %" PRIu32 "\n", chance_draw(state, 0u, span_ms));
-    campaign_text_add(text, "  eps_starts_ms: %" PRIu32 "\n", chance_draw(state, 0u, span_ms));
-    campaign_text_add(text, "  ai_starts_ms: %" PRIu32 "\n",
-                      chance_draw(state, 0u, span_ms) +
-                          (((plan->row->flags & CAMPAIGN_LATE_AI) != 0u) ? LATE_AI_MS : 0u));
-    campaign_text_add(text, "  phases_ms: {");
+    text_add(text, "vehicle:\n  park_guard: %s\n", plan->park_guard ? "true" : "false");
+    text_add(text, "  vcu_starts_ms: %" PRIu32 "\n", chance_draw(state, 0u, span_ms));
+    text_add(text, "  eps_starts_ms: %" PRIu32 "\n", chance_draw(state, 0u, span_ms));
+    text_add(text, "  ai_starts_ms: %" PRIu32 "\n",
+             chance_draw(state, 0u, span_ms) + (((plan->row->flags & CAMPAIGN_LATE_AI) != 0u) ? LATE_AI_MS : 0u));
+    text_add(text, "  phases_ms: {");
     for (int m = 0; m < AGV_MSG_COUNT; m++) {
         const uint32_t cycle_ms = agv_message_cycle_ms((agv_message_t)m);
         const uint32_t own_ms = chance_draw(state, 0u, cycle_ms - 1u);
-        const uint32_t near_ms = together_ms + (toss(state, 4u) ? 1u : 0u);
-        campaign_text_add(text, "%s%s: %" PRIu32, (m > 0) ? ", " : "", agv_message_name((agv_message_t)m),
-                          plan->bunched ? near_ms : own_ms);
+        const uint32_t near_ms = together_ms + (chance_toss(state, 4u) ? 1u : 0u);
+        text_add(text, "%s%s: %" PRIu32, (m > 0) ? ", " : "", agv_message_name((agv_message_t)m),
+                 plan->bunched ? near_ms : own_ms);
     }
-    campaign_text_add(text, "}\n");
+    text_add(text, "}\n");
 }
 
 /** The driver who brings the vehicle to where the cause comes. @return throttle */
@@ -162,42 +142,42 @@ static uint32_t add_driver(campaign_plan_t *plan, uint64_t *state) {
     const uint32_t throttle_pct = chance_draw(state, THROTTLE_MIN_PCT, CAMPAIGN_THROTTLE_MAX_PCT);
     const int steer_deg = (int)chance_draw(state, 0u, 2u * STEER_MAX_DEG) - STEER_MAX_DEG;
 
-    campaign_text_add(&plan->head, "  - {at_ms: %d, ai: drive, gear: D, throttle_pct: %" PRIu32 ", steer_deg: %d}\n",
-                      DRIVE_MS, throttle_pct, steer_deg);
+    text_add(&plan->head, "  - {at_ms: %d, ai: drive, gear: D, throttle_pct: %" PRIu32 ", steer_deg: %d}\n", DRIVE_MS,
+             throttle_pct, steer_deg);
     return throttle_pct;
 }
 
 static void add_drive(campaign_plan_t *plan, uint64_t *state) {
-    campaign_text_t *text = &plan->head;
+    text_t *text = &plan->head;
     const uint32_t throttle_pct = add_driver(plan, state);
     const uint32_t engage_ms = ENGAGE_MS + chance_draw(state, 0u, START_SPAN_MS - 1u);
 
     if (plan->engaged) {
-        campaign_text_add(text, "  - {at_ms: %" PRIu32 ", operator: engage}\n", engage_ms);
+        text_add(text, "  - {at_ms: %" PRIu32 ", operator: engage}\n", engage_ms);
     } else {
-        campaign_text_add(text, "  - {at_ms: %" PRIu32 ", operator: drive, gear: D, throttle_pct: %" PRIu32 "}\n",
-                          engage_ms, throttle_pct);
+        text_add(text, "  - {at_ms: %" PRIu32 ", operator: drive, gear: D, throttle_pct: %" PRIu32 "}\n", engage_ms,
+                 throttle_pct);
     }
 }
 
 /** Add what a row says, up to the next divider, with its placeholders filled in. */
 static const char *add_words(campaign_plan_t *plan, const char *at, const char *end) {
-    campaign_text_t *text = &plan->head;
+    text_t *text = &plan->head;
 
     for (; (at < end) && (*at != '|'); at++) {
         if (*at != '$') {
-            campaign_text_add(text, "%c", *at);
+            text_add(text, "%c", *at);
             continue;
         }
         at++;
         if (*at == 'n') {
-            campaign_text_add(text, "%" PRIu32, plan->number);
+            text_add(text, "%" PRIu32, plan->number);
         } else if (*at == 's') {
-            campaign_text_add(text, "%s", plan->gateway ? "ai" : "vehicle");
+            text_add(text, "%s", plan->gateway ? "ai" : "vehicle");
         } else { /* $o: 43Fh as the other set has it */
-            campaign_text_add(text, "%03Xh",
-                              (unsigned)agv_message_id(AGV_MSG_TURN_SIGNAL_COMMAND,
-                                                       plan->table_ids ? AGV_ID_SET_HEADING : AGV_ID_SET_TABLE));
+            text_add(text, "%03Xh",
+                     (unsigned)agv_message_id(AGV_MSG_TURN_SIGNAL_COMMAND,
+                                              plan->table_ids ? AGV_ID_SET_HEADING : AGV_ID_SET_TABLE));
         }
     }
     return (at < end) ? at + 1 : at;
@@ -229,9 +209,9 @@ static void add_cause(campaign_plan_t *plan, uint64_t *state) {
             }
             at++;
         }
-        campaign_text_add(&plan->head, "  - {at_ms: %" PRIu32 ", ", at_ms);
+        text_add(&plan->head, "  - {at_ms: %" PRIu32 ", ", at_ms);
         at = add_words(plan, at, end);
-        campaign_text_add(&plan->head, "}\n");
+        text_add(&plan->head, "}\n");
     }
 }
 
@@ -244,19 +224,19 @@ static void add_engaged_steps(campaign_plan_t *plan, uint64_t *state) {
         add_cause(plan, state);
     }
     const uint32_t throttle_pct = add_driver(plan, state);
-    campaign_text_add(&plan->head, "  - {at_ms: %d, operator: drive, gear: D, throttle_pct: %" PRIu32 "}\n", DRIVE_MS,
-                      throttle_pct);
+    text_add(&plan->head, "  - {at_ms: %d, operator: drive, gear: D, throttle_pct: %" PRIu32 "}\n", DRIVE_MS,
+             throttle_pct);
     if (!first && !last) {
         add_cause(plan, state);
     }
-    campaign_text_add(&plan->head, "  - {at_ms: %" PRIu32 ", operator: engage}\n", plan->engage_ms);
+    text_add(&plan->head, "  - {at_ms: %" PRIu32 ", operator: engage}\n", plan->engage_ms);
     if (last) {
         add_cause(plan, state);
     }
 }
 
 static void add_steps(campaign_plan_t *plan, uint64_t *state) {
-    campaign_text_add(&plan->head, "steps:\n");
+    text_add(&plan->head, "steps:\n");
     if (plan->engagement != NULL) {
         add_engaged_steps(plan, state);
         return;
@@ -289,7 +269,7 @@ void campaign_plan_make(campaign_plan_t *plan, uint64_t seed, uint64_t run, cons
     choose_times(plan, &state, &config);
     add_kind(plan);
     add_phases(plan, &state);
-    campaign_text_add(&plan->head, "duration_ms: %" PRIu32 "\n", plan->duration_ms);
+    text_add(&plan->head, "duration_ms: %" PRIu32 "\n", plan->duration_ms);
     if ((plan->row->flags & CAMPAIGN_START) == 0u) {
         add_steps(plan, &state);
     }

@@ -12,17 +12,7 @@
 #include <stdint.h>
 
 #include "campaign/campaign_rows.h"
-
-#define CAMPAIGN_TEXT_SIZE 8192u
-
-/** A text in the making; what has no more room is cut, which `full` says. */
-typedef struct {
-    char bytes[CAMPAIGN_TEXT_SIZE];
-    size_t used;
-    bool full;
-} campaign_text_t;
-
-void campaign_text_add(campaign_text_t *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+#include "common/text.h"
 
 /** What is to be. */
 typedef struct {
@@ -46,7 +36,7 @@ typedef struct {
     uint32_t cause_ms;  /**< from here on times count: the steps, what is later than they are, or the switch */
     uint32_t bound_us;  /**< after the cause: the reaction has come */
     uint32_t duration_ms;
-    campaign_text_t head; /**< the scenario up to its steps; without what is expected */
+    text_t head; /**< the scenario up to its steps; without what is expected */
 } campaign_plan_t;
 
 /** Which causes a campaign has. */

@@ -19,7 +19,7 @@ typedef struct {
     const campaign_request_t *request;
     campaign_plan_t plan;
     campaign_judge_t judge;
-    campaign_text_t text;
+    text_t text;
     scenario_options_t options;
     scenario_t scenario;
     scenario_world_t world;
@@ -31,10 +31,10 @@ typedef struct {
 
 /** Make the scenario of the planned run. What it expects is judged here. */
 static bool read_plan(campaign_t *campaign) {
-    campaign_text_t *text = &campaign->text;
+    text_t *text = &campaign->text;
 
-    text->used = 0u;
-    campaign_text_add(text, "%sexpect: {states: []}\n", campaign->plan.head.bytes);
+    text_clear(text);
+    text_add(text, "%sexpect: {states: []}\n", campaign->plan.head.bytes);
     if (campaign->plan.head.full || text->full) {
         return report("run %" PRIu64 ": its scenario is too long", campaign->plan.run);
     }
@@ -85,7 +85,7 @@ static bool write_file(campaign_t *campaign) {
     if ((length < 0) || (length >= PATH_SIZE)) {
         return report("--broken: the name of the folder is too long");
     }
-    campaign->text.used = 0u;
+    text_clear(&campaign->text);
     campaign_scenario_write(&campaign->text, &campaign->judge);
     if (!output_open(&campaign->file, path)) {
         return false;
@@ -173,7 +173,7 @@ static status_t show_one(campaign_t *campaign) {
     if (!run_one(campaign, campaign->request->one)) {
         return STATUS_UNUSABLE;
     }
-    campaign->text.used = 0u;
+    text_clear(&campaign->text);
     campaign_scenario_write(&campaign->text, &campaign->judge);
     (void)fputs(campaign->text.bytes, stdout);
     return (campaign->judge.broken == CAMPAIGN_SOUND) ? STATUS_OK : STATUS_UNMET;

@@ -16,16 +16,16 @@ static uint32_t bound_ms(const campaign_plan_t *plan) {
     return plan->cause_ms + (plan->bound_us / (uint32_t)US_PER_MS) + 1u;
 }
 
-static void add_state(campaign_text_t *text, agv_state_t to, int reason, uint32_t from_ms, uint32_t to_ms) {
-    campaign_text_add(text, "    - {to: %s, ", agv_state_name(to));
+static void add_state(text_t *text, agv_state_t to, int reason, uint32_t from_ms, uint32_t to_ms) {
+    text_add(text, "    - {to: %s, ", agv_state_name(to));
     if ((reason >= 0) && (reason < (int)AGV_FAULT_COUNT)) {
-        campaign_text_add(text, "reason: %s, ", agv_fault_name((agv_fault_t)reason));
+        text_add(text, "reason: %s, ", agv_fault_name((agv_fault_t)reason));
     }
-    campaign_text_add(text, "at_ms: [%" PRIu32 ", %" PRIu32 "]}\n", from_ms, to_ms);
+    text_add(text, "at_ms: [%" PRIu32 ", %" PRIu32 "]}\n", from_ms, to_ms);
 }
 
 /** After the trip: as seen, as far as it may be. */
-static void add_later_states(campaign_text_t *text, const campaign_judge_t *judge) {
+static void add_later_states(text_t *text, const campaign_judge_t *judge) {
     bool tripped = false;
 
     for (size_t i = 0u; i < judge->state_count; i++) {
@@ -43,7 +43,7 @@ static void add_later_states(campaign_text_t *text, const campaign_judge_t *judg
 }
 
 /** Between the first engagement and the trip: as seen. */
-static void add_changes(campaign_text_t *text, const campaign_judge_t *judge) {
+static void add_changes(text_t *text, const campaign_judge_t *judge) {
     static const size_t first_changes = 3u; /* INIT, STANDBY, ACTIVE */
 
     for (size_t i = first_changes; i < judge->state_count; i++) {
@@ -55,11 +55,11 @@ static void add_changes(campaign_text_t *text, const campaign_judge_t *judge) {
     }
 }
 
-static void add_states(campaign_text_t *text, const campaign_judge_t *judge) {
+static void add_states(text_t *text, const campaign_judge_t *judge) {
     const campaign_plan_t *plan = judge->plan;
     uint32_t latest_ms = bound_ms(plan);
 
-    campaign_text_add(text, "  states:\n");
+    text_add(text, "  states:\n");
     if (!is_like(judge, CAMPAIGN_START)) {
         add_state(text, AGV_STATE_INIT, -1, 0u, 0u);
         add_state(text, AGV_STATE_STANDBY, -1, READY_FROM_MS, READY_TO_MS);
@@ -74,58 +74,56 @@ static void add_states(campaign_text_t *text, const campaign_judge_t *judge) {
     add_later_states(text, judge);
 }
 
-static void add_output(campaign_text_t *text, const campaign_judge_t *judge) {
+static void add_output(text_t *text, const campaign_judge_t *judge) {
     const campaign_plan_t *plan = judge->plan;
 
-    campaign_text_add(text, "  safety_output:%s\n", is_like(judge, CAMPAIGN_NO_OUTPUT) ? " []" : "");
+    text_add(text, "  safety_output:%s\n", is_like(judge, CAMPAIGN_NO_OUTPUT) ? " []" : "");
     if (is_like(judge, CAMPAIGN_NO_OUTPUT)) {
         return;
     }
-    campaign_text_add(text, "    - {closed: true, at_ms: [%d, %d]}\n", READY_FROM_MS, READY_TO_MS);
+    text_add(text, "    - {closed: true, at_ms: [%d, %d]}\n", READY_FROM_MS, READY_TO_MS);
     if (is_like(judge, CAMPAIGN_BY_OUTPUT)) {
-        campaign_text_add(text, "    - {closed: false, at_ms: [%" PRIu32 ", %" PRIu32 "]}\n", plan->cause_ms,
-                          bound_ms(plan));
+        text_add(text, "    - {closed: false, at_ms: [%" PRIu32 ", %" PRIu32 "]}\n", plan->cause_ms, bound_ms(plan));
     } else if ((judge->opened_us != CAMPAIGN_NEVER) && (judge->broken != CAMPAIGN_FALSE_TRIP)) {
-        campaign_text_add(text, "    - {closed: false, at_ms: %" PRIu64 "}\n", judge->opened_us / US_PER_MS);
+        text_add(text, "    - {closed: false, at_ms: %" PRIu64 "}\n", judge->opened_us / US_PER_MS);
     }
 }
 
-static void add_frames(campaign_text_t *text, const campaign_judge_t *judge) {
+static void add_frames(text_t *text, const campaign_judge_t *judge) {
     static const char *const safe =
         "    - {message: throttle_command, side: vehicle, bytes: \"00 00 00 00 00 00 00 00\", at_ms: ";
     const campaign_plan_t *plan = judge->plan;
 
-    campaign_text_add(text, "  frames:\n");
+    text_add(text, "  frames:\n");
     if (!is_like(judge, CAMPAIGN_BY_OUTPUT)) {
-        campaign_text_add(text, "%s[%" PRIu32 ", %" PRIu32 "]}\n", safe, plan->cause_ms, bound_ms(plan));
+        text_add(text, "%s[%" PRIu32 ", %" PRIu32 "]}\n", safe, plan->cause_ms, bound_ms(plan));
     }
-    campaign_text_add(text, "%s[%" PRIu32 ", %" PRIu32 "]}\n", safe, plan->duration_ms - (uint32_t)BEAT_MS,
-                      plan->duration_ms);
+    text_add(text, "%s[%" PRIu32 ", %" PRIu32 "]}\n", safe, plan->duration_ms - (uint32_t)BEAT_MS, plan->duration_ms);
     if (judge->broken == CAMPAIGN_UNSAFE_FRAME) {
         const hal_can_frame_t *frame = &judge->broken_frame;
         const uint64_t at_ms = judge->broken_us / US_PER_MS;
-        campaign_text_add(text, "  never:\n    - {id: %03" PRIX32 "h, side: vehicle, bytes: \"", frame->id);
+        text_add(text, "  never:\n    - {id: %03" PRIX32 "h, side: vehicle, bytes: \"", frame->id);
         for (uint8_t i = 0u; i < frame->length; i++) {
-            campaign_text_add(text, "%s%02X", (i > 0u) ? " " : "", frame->data[i]);
+            text_add(text, "%s%02X", (i > 0u) ? " " : "", frame->data[i]);
         }
-        campaign_text_add(text, "\", at_ms: [%" PRIu64 ", %" PRIu64 "]}\n", at_ms, at_ms);
+        text_add(text, "\", at_ms: [%" PRIu64 ", %" PRIu64 "]}\n", at_ms, at_ms);
     }
 }
 
-void campaign_scenario_write(campaign_text_t *text, const campaign_judge_t *judge) {
+void campaign_scenario_write(text_t *text, const campaign_judge_t *judge) {
     const campaign_plan_t *plan = judge->plan;
 
     if (judge->broken != CAMPAIGN_SOUND) {
-        campaign_text_add(text, "# %s at %" PRIu64 ".%03" PRIu64 " ms\n", campaign_break_name(judge->broken),
-                          judge->broken_us / US_PER_MS, judge->broken_us % US_PER_MS);
+        text_add(text, "# %s at %" PRIu64 ".%03" PRIu64 " ms\n", campaign_break_name(judge->broken),
+                 judge->broken_us / US_PER_MS, judge->broken_us % US_PER_MS);
     }
-    campaign_text_add(text, "%sexpect:\n", plan->head.bytes);
+    text_add(text, "%sexpect:\n", plan->head.bytes);
     add_states(text, judge);
     add_frames(text, judge);
     add_output(text, judge);
     if (!is_like(judge, CAMPAIGN_START) && (plan->engagement == NULL)) {
         const uint32_t later_ms = is_like(judge, CAMPAIGN_LATER) ? plan->number : 0u;
-        campaign_text_add(text, "  vehicle:\n    - {at_ms: %" PRIu32 ", mode: %s}\n", plan->cause_ms - later_ms - 1u,
-                          plan->engaged ? "autopilot" : "manual");
+        text_add(text, "  vehicle:\n    - {at_ms: %" PRIu32 ", mode: %s}\n", plan->cause_ms - later_ms - 1u,
+                 plan->engaged ? "autopilot" : "manual");
     }
 }

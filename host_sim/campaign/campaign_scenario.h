@@ -12,6 +12,6 @@
  * Write a run that was judged. What is expected are the invariants, so that a run that breaks one fails as a scenario; what
  * they leave open (when the safe state is confirmed) is expected as it was seen.
  */
-void campaign_scenario_write(campaign_text_t *text, const campaign_judge_t *judge);
+void campaign_scenario_write(text_t *text, const campaign_judge_t *judge);
 
 #endif

@@ -10,12 +10,11 @@
 #include "vehicle/vehicle.h"
 
 static json_t *messages(void) {
-    static const char *const nodes[] = {"vcu", "eps", "ai"};
     json_t *list = json_array();
     for (int m = 0; m < AGV_MSG_COUNT; m++) {
         const agv_message_t message = (agv_message_t)m;
         (void)json_array_append_new(list, json_pack("{s:s, s:s, s:i, s:i, s:i, s:i}", "name", agv_message_name(message),
-                                                    "node", nodes[vehicle_sender_of(message)], "heading_id",
+                                                    "node", vehicle_node_name(vehicle_sender_of(message)), "heading_id",
                                                     (int)agv_message_id(message, AGV_ID_SET_HEADING), "table_id",
                                                     (int)agv_message_id(message, AGV_ID_SET_TABLE), "cycle_ms",
                                                     (int)agv_message_cycle_ms(message), "bytes", (int)AGV_DLC));

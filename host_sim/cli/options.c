@@ -5,36 +5,9 @@
 #include <string.h>
 
 #include "common/report.h"
+#include "common/words.h"
 
 enum { HELP_COLUMN = 24 };
-
-bool options_number(const char *text, uint64_t lowest, uint64_t highest, uint64_t *number) {
-    uint64_t value = 0u;
-    const char *at = text;
-    for (; (*at >= '0') && (*at <= '9'); at++) {
-        uint64_t digit = (uint64_t)(*at - '0');
-        if (value > (UINT64_MAX - digit) / 10u) {
-            return false;
-        }
-        value = (value * 10u) + digit;
-    }
-    *number = value;
-    return (at != text) && (*at == '\0') && (value >= lowest) && (value <= highest);
-}
-
-int options_word(const char *words, const char *word) {
-    size_t size = strlen(word);
-    int index = 0;
-    for (const char *at = words; *at != '\0'; index++) {
-        size_t length = strcspn(at, "|");
-        if ((length == size) && (memcmp(at, word, size) == 0)) {
-            return index;
-        }
-        at += length;
-        at += (*at == '|') ? 1 : 0;
-    }
-    return -1;
-}
 
 static int command_length(const option_syntax_t *syntax) {
     return (int)strcspn(syntax->usage, " ");
@@ -77,7 +50,7 @@ static bool take_value(const option_t *option, const char *value) {
     }
     if (option->number != NULL) {
         uint64_t number = 0u;
-        if (!options_number(value, option->lowest, option->highest, &number)) {
+        if (!words_decimal(value, option->lowest, option->highest, &number)) {
             return report("%s: '%s' is not a number from %" PRIu64 " to %" PRIu64, option->name, value, option->lowest,
                           option->highest);
         }
@@ -85,7 +58,7 @@ static bool take_value(const option_t *option, const char *value) {
         return true;
     }
     if (option->word != NULL) {
-        int index = options_word(option->words, value);
+        int index = words_find(option->words, value);
         if (index < 0) {
             return report("%s: '%s' is not one of %s", option->name, value, option->words);
         }

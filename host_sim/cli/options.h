@@ -78,16 +78,4 @@ typedef enum {
  */
 options_result_t options_parse(const option_syntax_t *syntax, int argc, char **argv, size_t *operands);
 
-/**
- * Read a whole decimal number: digits only, no sign, no blanks.
- * @return false: it is none, or not within @p lowest .. @p highest; not reported.
- */
-bool options_number(const char *text, uint64_t lowest, uint64_t highest, uint64_t *number);
-
-/**
- * The index of a word in a list "a|b|c".
- * @return -1 when it is not in it.
- */
-int options_word(const char *words, const char *word);
-
 #endif

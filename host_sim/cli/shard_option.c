@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-#include "cli/options.h"
 #include "common/report.h"
+#include "common/words.h"
 
 bool shard_option_take(const char *text, uint32_t *shard, uint32_t *shards) {
     char first[8];
@@ -16,7 +16,7 @@ bool shard_option_take(const char *text, uint32_t *shard, uint32_t *shards) {
     }
     memcpy(first, text, length);
     first[length] = '\0';
-    if (!options_number(&text[length + 1u], 1u, SHARDS_MAX, &parts) || !options_number(first, 1u, parts, &part)) {
+    if (!words_decimal(&text[length + 1u], 1u, SHARDS_MAX, &parts) || !words_decimal(first, 1u, parts, &part)) {
         return report("--shard: '%s' is not I/N with I from 1 to N and N at most %u", text, SHARDS_MAX);
     }
     *shard = (uint32_t)part;

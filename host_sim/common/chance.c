@@ -12,3 +12,7 @@ uint32_t chance_draw(uint64_t *state, uint32_t lowest, uint32_t highest) {
     const uint64_t span = (highest > lowest) ? ((uint64_t)highest - lowest) + 1u : 1u;
     return lowest + (uint32_t)(chance_next(state) % span);
 }
+
+bool chance_toss(uint64_t *state, uint32_t in) {
+    return chance_draw(state, 1u, in) == 1u;
+}

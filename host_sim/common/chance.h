@@ -5,6 +5,7 @@
 #ifndef HOST_SIM_CHANCE_H
 #define HOST_SIM_CHANCE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /** The next 64 bits (splitmix64); @p state may begin with any value. */
@@ -12,5 +13,8 @@ uint64_t chance_next(uint64_t *state);
 
 /** A number from @p lowest up to and with @p highest; @p lowest when that is the larger one. */
 uint32_t chance_draw(uint64_t *state, uint32_t lowest, uint32_t highest);
+
+/** True one time in @p in. */
+bool chance_toss(uint64_t *state, uint32_t in);
 
 #endif

@@ -9,6 +9,9 @@
 
 enum { HEX_NO_DIGIT = 16 };
 
+/** The digits as they are written. */
+extern const char HEX_DIGITS[];
+
 /** One more than the value of a hexadecimal digit; 0 for other characters. */
 extern const uint8_t HEX_DIGIT_PLUS_1[256];
 

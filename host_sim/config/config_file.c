@@ -6,12 +6,11 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "cli/options.h"
-#include "common/hex.h"
 #include "common/report.h"
+#include "common/words.h"
 #include "io/yaml_file.h"
 
-enum { HEX = 16, CLASS_WORD_TRIP = 0, CLASS_WORD_WARN = 1 };
+enum { HEX_DIGITS_MAX = 8, CLASS_WORD_TRIP = 0, CLASS_WORD_WARN = 1 };
 
 #define CLASS_WORDS "trip|warn"
 #define SWITCH_WORDS "off|on"
@@ -37,32 +36,13 @@ void config_class_key(agv_fault_t fault, char key[CONFIG_CLASS_KEY_SIZE]) {
     }
 }
 
-size_t config_word(const char *words, uint16_t index, const char **word) {
-    const char *at = words;
-    for (uint16_t i = 0u; i < index; i++) {
-        at += strcspn(at, "|");
-        at += (*at == '|') ? 1 : 0;
-    }
-    *word = at;
-    return strcspn(at, "|");
-}
-
-/** Read a number as YAML writes it: decimal, or hexadecimal with 0x. */
+/** Read a number as YAML writes it: decimal, or hexadecimal with 0x and up to 8 digits. */
 static bool read_number(const char *text, uint64_t *number) {
     if ((text[0] != '0') || (text[1] == '\0')) {
-        return options_number(text, 0u, UINT64_MAX, number);
+        return words_decimal(text, 0u, UINT64_MAX, number);
     }
-    uint64_t value = 0u;
-    const char *at = &text[2];
-    for (; (*at != '\0') && ((size_t)(at - text) < 10u); at++) {
-        const uint32_t digit = hex_digit(*at);
-        if (digit >= HEX_NO_DIGIT) {
-            return false;
-        }
-        value = (value * HEX) + digit;
-    }
-    *number = value;
-    return (text[1] == 'x') && (text[2] != '\0') && (*at == '\0');
+    const size_t length = strlen(&text[2]);
+    return (text[1] == 'x') && (length <= (size_t)HEX_DIGITS_MAX) && words_hex(&text[2], length, number);
 }
 
 static bool take_number(const reading_t *reading, uint16_t setting, const agv_setting_info_t *info) {
@@ -83,9 +63,9 @@ static bool take_number(const reading_t *reading, uint16_t setting, const agv_se
 /** Read one of the words. @return its index; -1: reported. */
 static int take_word(const reading_t *reading, const char *words) {
     const char *text = yaml_node_text(reading->value);
-    int index = options_word(words, text);
+    int index = words_find(words, text);
     if ((index < 0) && (strcmp(words, SWITCH_WORDS) == 0)) {
-        index = options_word(SWITCH_BOOLEANS, text); /* how YAML writers put off and on */
+        index = words_find(SWITCH_BOOLEANS, text); /* how YAML writers put off and on */
     }
     if (index < 0) {
         (void)report_at(reading->lines->path, reading->line, "%s: '%s' is not one of %s", reading->key, text, words);

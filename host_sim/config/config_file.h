@@ -44,7 +44,4 @@ bool config_check(const agv_config_t *config, const config_lines_t *lines);
 /** "class_bus_off": the key of a fault's class. */
 void config_class_key(agv_fault_t fault, char key[CONFIG_CLASS_KEY_SIZE]);
 
-/** The word with an index in a list "a|b|c", not terminated. @return its length; 0: there is none. */
-size_t config_word(const char *words, uint16_t index, const char **word);
-
 #endif

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "agv/names.h"
+#include "common/words.h"
 #include "config/config_file.h"
 
 enum { TEXT_SIZE = 96 };
@@ -25,7 +26,7 @@ static void value_text(const agv_setting_info_t *info, uint16_t value, char text
         (void)snprintf(text, TEXT_SIZE, "%u", value);
     } else {
         const char *word = NULL;
-        size_t length = config_word(info->words, value, &word);
+        size_t length = words_at(info->words, value, &word);
         (void)snprintf(text, TEXT_SIZE, "%.*s", (int)length, word);
     }
 }

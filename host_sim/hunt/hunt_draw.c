@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "agv/faults.h"
-#include "cli/options.h"
 #include "common/chance.h"
+#include "common/words.h"
 
 enum { BEGIN_FIRST_MS = 530, BEGIN_MIN_MS = 900, BEGIN_MAX_MS = 4000, BEGIN_SOON_MS = 2200 };
 enum { RESET_MIN_MS = 500, RESET_MAX_MS = 3000 };
@@ -45,10 +45,6 @@ static size_t attack_of_fault(agv_fault_t fault) {
     }
 }
 
-bool hunt_toss(uint64_t *state, uint32_t in) {
-    return chance_draw(state, 1u, in) == 1u;
-}
-
 static uint32_t count_words(const char *words) {
     uint32_t count = 1u;
     for (; *words != '\0'; words++) {
@@ -59,15 +55,15 @@ static uint32_t count_words(const char *words) {
 
 /** A number of frames: most patterns that matter are short. */
 static uint32_t draw_pattern(const hunt_attack_t *attack, unsigned i, uint64_t *state) {
-    if ((i == HUNT_PATTERN_BAD) && hunt_toss(state, 3u)) {
+    if ((i == HUNT_PATTERN_BAD) && chance_toss(state, 3u)) {
         return 0u;
     }
-    return hunt_toss(state, 2u) ? chance_draw(state, 1u, SHORT_PATTERN) : chance_draw(state, 1u, attack->highest[i]);
+    return chance_toss(state, 2u) ? chance_draw(state, 1u, SHORT_PATTERN) : chance_draw(state, 1u, attack->highest[i]);
 }
 
 uint32_t hunt_draw_parameter(const hunt_attack_t *attack, unsigned i, uint64_t *state) {
     if ((i == 0u) && ((attack->flags & HUNT_PATTERN) != 0u) && ((attack->flags & HUNT_MESSAGE) == 0u) &&
-        hunt_toss(state, 3u)) {
+        chance_toss(state, 3u)) {
         return 0u; /* the first word is the worst */
     }
     if (attack->words[i] != NULL) {
@@ -76,8 +72,8 @@ uint32_t hunt_draw_parameter(const hunt_attack_t *attack, unsigned i, uint64_t *
     if (((attack->flags & HUNT_PATTERN) != 0u) && (i >= HUNT_PATTERN_BAD)) {
         return draw_pattern(attack, i, state);
     }
-    if (hunt_toss(state, 4u)) {
-        return hunt_toss(state, 2u) ? attack->lowest[i] : attack->highest[i];
+    if (chance_toss(state, 4u)) {
+        return chance_toss(state, 2u) ? attack->lowest[i] : attack->highest[i];
     }
     return chance_draw(state, attack->lowest[i], attack->highest[i]);
 }
@@ -96,12 +92,12 @@ static uint32_t draw_reset_ms(const hunt_program_t *program, uint64_t *state) {
 void hunt_draw_times(const hunt_program_t *program, hunt_action_t *action, uint64_t *state) {
     const bool is_reset = action->attack == attack_of_reset();
 
-    const uint32_t first_ms = hunt_toss(state, 5u) ? BEGIN_FIRST_MS : BEGIN_MIN_MS;
+    const uint32_t first_ms = chance_toss(state, 5u) ? BEGIN_FIRST_MS : BEGIN_MIN_MS;
     const uint32_t last_ms = (program->action_count == 0u) ? BEGIN_SOON_MS : BEGIN_MAX_MS;
 
     action->begin_ms = is_reset ? draw_reset_ms(program, state) : chance_draw(state, first_ms, last_ms);
-    action->end_ms =
-        hunt_toss(state, 2u) ? program->duration_ms : action->begin_ms + chance_draw(state, LASTS_MIN_MS, LASTS_MAX_MS);
+    action->end_ms = chance_toss(state, 2u) ? program->duration_ms
+                                            : action->begin_ms + chance_draw(state, LASTS_MIN_MS, LASTS_MAX_MS);
     action->end_ms = (action->end_ms < program->duration_ms) ? action->end_ms : program->duration_ms;
 }
 
@@ -118,7 +114,7 @@ static void draw_action(const hunt_program_t *program, hunt_action_t *action, ui
     for (unsigned i = 0u; i < HUNT_PARAMETERS; i++) {
         action->parameters[i] = hunt_draw_parameter(attack, i, state);
     }
-    if (((attack->flags & HUNT_MESSAGE) != 0u) && (program->action_count > 0u) && hunt_toss(state, 2u)) {
+    if (((attack->flags & HUNT_MESSAGE) != 0u) && (program->action_count > 0u) && chance_toss(state, 2u)) {
         const agv_message_t other = message_of(&program->actions[chance_draw(state, 0u, program->action_count - 1u)]);
         if ((uint32_t)other < count_words(attack->words[0])) {
             action->parameters[0] = (uint32_t)other;
@@ -151,7 +147,7 @@ static void add_attack(hunt_program_t *program, size_t attack, uint64_t *state) 
         action->attack = (uint16_t)attack;
         draw_action(program, action, state);
         program->action_count++;
-        if (needs_long(action) && hunt_toss(state, 2u)) {
+        if (needs_long(action) && chance_toss(state, 2u)) {
             lengthen(program, action->begin_ms + PATTERN_MS);
             action->end_ms = program->duration_ms;
         }
@@ -179,7 +175,7 @@ void hunt_add_reset(hunt_program_t *program, uint64_t *state) {
 
 /** Settings that say what stands where, or that switch the protection off, are not an attacker's. */
 static bool is_fixed(const char *name) {
-    return (options_word("topology|id_set|shadow|status_frame_id", name) >= 0) || (strncmp(name, "id_", 3u) == 0);
+    return (words_find("topology|id_set|shadow|status_frame_id", name) >= 0) || (strncmp(name, "id_", 3u) == 0);
 }
 
 /** How long something is remembered or waited for decides most: such a setting, or any. */
@@ -201,7 +197,7 @@ static uint16_t draw_setting(uint64_t *state) {
 
 void hunt_add_setting(hunt_program_t *program, uint64_t *state) {
     const uint16_t setting =
-        hunt_toss(state, 3u) ? draw_setting(state) : (uint16_t)chance_draw(state, 0u, AGV_SETTING_COUNT - 1u);
+        chance_toss(state, 3u) ? draw_setting(state) : (uint16_t)chance_draw(state, 0u, AGV_SETTING_COUNT - 1u);
     const agv_setting_info_t *info = agv_setting_info(setting);
 
     if (is_fixed(info->name) || (program->setting_count == (uint32_t)HUNT_SETTINGS_MAX)) {
@@ -212,8 +208,8 @@ void hunt_add_setting(hunt_program_t *program, uint64_t *state) {
             return;
         }
     }
-    const uint32_t edge = hunt_toss(state, 2u) ? info->lowest : info->highest;
-    const uint16_t value = (uint16_t)(hunt_toss(state, 2u) ? edge : chance_draw(state, info->lowest, info->highest));
+    const uint32_t edge = chance_toss(state, 2u) ? info->lowest : info->highest;
+    const uint16_t value = (uint16_t)(chance_toss(state, 2u) ? edge : chance_draw(state, info->lowest, info->highest));
     program->settings[program->setting_count] = (hunt_setting_t){setting, value};
     program->setting_count++;
 }
@@ -228,7 +224,7 @@ static void add_attack_of_class(hunt_program_t *program, uint64_t *state) {
 }
 
 void hunt_add_class(hunt_program_t *program, uint64_t *state) {
-    const bool is_warning = !hunt_toss(state, 4u);
+    const bool is_warning = !chance_toss(state, 4u);
     uint32_t fault = 0u;
 
     if (program->class_count > 0u) {

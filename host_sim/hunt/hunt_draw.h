@@ -12,9 +12,6 @@
 
 #include "hunt/hunt_program.h"
 
-/** One time in @p in. @param state of chance.h */
-bool hunt_toss(uint64_t *state, uint32_t in);
-
 uint32_t hunt_draw_parameter(const hunt_attack_t *attack, unsigned i, uint64_t *state);
 void hunt_draw_times(const hunt_program_t *program, hunt_action_t *action, uint64_t *state);
 

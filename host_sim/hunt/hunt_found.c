@@ -5,8 +5,9 @@
 #include <string.h>
 
 #include "common/report.h"
+#include "common/units.h"
 
-enum { PATH_SIZE = 4096, BITS = 64, AFTER_MS = 500, MS_PER_S = 1000 };
+enum { PATH_SIZE = 4096, BITS = 64, AFTER_MS = 500 };
 _Static_assert((unsigned)AGV_SETTING_COUNT <= 64u * (unsigned)HUNT_SETTING_WORDS, "a setting has no bit");
 _Static_assert((unsigned)AGV_FAULT_COUNT <= 64u * (unsigned)HUNT_CLASS_WORDS, "a fault has no bit");
 
@@ -105,16 +106,15 @@ static void shrink(hunt_play_t *play, hunt_program_t *program, hazard_kind_t kin
 static void write_scenario(hunt_play_t *play, const hunt_program_t *program, const hunt_place_t *place) {
     const hazard_t *hazard = &play->hazard;
     const hazard_info_t *info = hazard_info(hazard->kind);
-    campaign_text_t *text = &play->text;
+    text_t *text = &play->text;
     char name[SCENARIO_TEXT_MAX];
 
-    text->used = 0u;
-    text->full = false;
+    text_clear(text);
     (void)snprintf(name, sizeof name, "hunt of seed %" PRIu64 ", run %" PRIu64, place->seed, place->run);
-    campaign_text_add(text, "# %s, at %" PRIu64 " ms: %s.\n# %s.\n# Safe reaction: %s.\n", info->name, hazard->at_ms,
-                      hazard->cause, info->meaning, info->safe);
+    text_add(text, "# %s, at %" PRIu64 " ms: %s.\n# %s.\n# Safe reaction: %s.\n", info->name, hazard->at_ms,
+             hazard->cause, info->meaning, info->safe);
     hunt_program_write(program, name, text);
-    campaign_text_add(text, "expect:\n  states: any\n  hazards: never\n");
+    text_add(text, "expect:\n  states: any\n  hazards: never\n");
 }
 
 /** The time after the hazard is not needed. */
@@ -136,7 +136,7 @@ static void cut_end(hunt_play_t *play, hunt_program_t *program, hazard_kind_t ki
 
 static bool write_file(hunt_play_t *play, const hunt_program_t *program, const hunt_place_t *place) {
     char path[PATH_SIZE];
-    campaign_text_t line = {.used = 0u};
+    text_t line = {.used = 0u};
     const int length =
         snprintf(path, sizeof path, "%s/hunt-%" PRIu64 "-%" PRIu64 ".yaml", place->folder, place->seed, place->run);
 

@@ -105,10 +105,9 @@ static void run(hunt_play_t *play) {
 bool hunt_play(hunt_play_t *play, const hunt_program_t *program) {
     const scenario_watch_t guide = {.on_event = on_event, .ctx = play};
 
-    play->text.used = 0u;
-    play->text.full = false;
+    text_clear(&play->text);
     hunt_program_write(program, "a run of the hunt", &play->text);
-    campaign_text_add(&play->text, "expect: {states: any}\n");
+    text_add(&play->text, "expect: {states: any}\n");
     memset(play->features, 0, sizeof play->features);
     if (play->text.full) {
         return report("the scenario of a run is too long");

@@ -12,7 +12,7 @@ enum { HUNT_FEATURES = 16384, HUNT_FEATURE_BYTES = HUNT_FEATURES / 8 };
 
 /** All that one run needs; some 500 KiB: allocate it. */
 typedef struct {
-    campaign_text_t text; /**< the scenario as it was played */
+    text_t text; /**< the scenario as it was played */
     scenario_options_t options;
     scenario_t scenario;
     scenario_world_t world;

@@ -39,31 +39,31 @@ static void make_legal(hunt_program_t *program) {
 }
 
 static void draw_vehicle(hunt_program_t *program, uint64_t *state) {
-    program->gateway = hunt_toss(state, 2u);
-    program->park_guard = !hunt_toss(state, 3u);
-    program->rolls = hunt_toss(state, 6u);
-    program->obeys_short = hunt_toss(state, 4u);
-    program->tick_phase_us = hunt_toss(state, 8u) ? (uint16_t)chance_draw(state, 1u, TICK_SPAN_US) : 0u;
-    program->steering_rate_ddeg_s = hunt_toss(state, 6u) ? SLOW_DDEG_S : RATE_DDEG_S;
+    program->gateway = chance_toss(state, 2u);
+    program->park_guard = !chance_toss(state, 3u);
+    program->rolls = chance_toss(state, 6u);
+    program->obeys_short = chance_toss(state, 4u);
+    program->tick_phase_us = chance_toss(state, 8u) ? (uint16_t)chance_draw(state, 1u, TICK_SPAN_US) : 0u;
+    program->steering_rate_ddeg_s = chance_toss(state, 6u) ? SLOW_DDEG_S : RATE_DDEG_S;
     program->throttle_pct = chance_draw(state, THROTTLE_MIN_PCT, THROTTLE_MAX_PCT);
     program->steer_deg = (int32_t)chance_draw(state, 0u, 2u * STEER_MAX_DEG) - STEER_MAX_DEG;
-    program->duration_ms = hunt_toss(state, 3u) ? chance_draw(state, SHORT_MAX_MS, LONG_MAX_MS)
-                                                : chance_draw(state, SHORT_MIN_MS, SHORT_MAX_MS);
+    program->duration_ms = chance_toss(state, 3u) ? chance_draw(state, SHORT_MAX_MS, LONG_MAX_MS)
+                                                  : chance_draw(state, SHORT_MIN_MS, SHORT_MAX_MS);
 }
 
 void hunt_program_make(hunt_program_t *program, uint64_t *state) {
     memset(program, 0, sizeof *program);
     draw_vehicle(program, state);
-    for (uint32_t left = hunt_toss(state, 2u) ? chance_draw(state, 1u, 3u) : 0u; left > 0u; left--) {
+    for (uint32_t left = chance_toss(state, 2u) ? chance_draw(state, 1u, 3u) : 0u; left > 0u; left--) {
         hunt_add_setting(program, state);
     }
-    if (hunt_toss(state, 4u)) {
+    if (chance_toss(state, 4u)) {
         hunt_add_class(program, state);
     }
     for (uint32_t left = chance_draw(state, 1u, 4u); left > 0u; left--) {
         hunt_add_action(program, state);
     }
-    if (hunt_toss(state, 3u)) {
+    if (chance_toss(state, 3u)) {
         hunt_add_reset(program, state);
     }
     make_legal(program);
@@ -117,7 +117,7 @@ static void change_once(hunt_program_t *program, const hunt_program_t *other, ui
         hunt_add_setting(program, state);
         break;
     case 5u:
-        if (hunt_toss(state, 2u)) {
+        if (chance_toss(state, 2u)) {
             hunt_add_class(program, state);
         } else {
             hunt_add_reset(program, state);

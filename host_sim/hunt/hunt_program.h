@@ -57,12 +57,12 @@ void hunt_program_mutate(hunt_program_t *program, const hunt_program_t *other, u
 void hunt_program_config(const hunt_program_t *program, agv_config_t *config);
 
 /** Write it as the head of a scenario: all but what is expected. */
-void hunt_program_write(const hunt_program_t *program, const char *name, campaign_text_t *text);
+void hunt_program_write(const hunt_program_t *program, const char *name, text_t *text);
 
 /** Write its attacks, as steps. */
-void hunt_steps_write(const hunt_program_t *program, campaign_text_t *text);
+void hunt_steps_write(const hunt_program_t *program, text_t *text);
 
 /** What it consists of, in one line: attacks and settings. */
-void hunt_program_describe(const hunt_program_t *program, campaign_text_t *text);
+void hunt_program_describe(const hunt_program_t *program, text_t *text);
 
 #endif

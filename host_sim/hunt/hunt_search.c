@@ -3,15 +3,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "common/chance.h"
 #include "common/interrupt.h"
+#include "common/units.h"
 #include "hunt/hunt.h"
 #include "hunt/hunt_state.h"
 #include "ui/progress.h"
 
-enum { CORPUS_MAX = 256, RANDOM_PERCENT = 35, PERCENT = 100, MS_PER_S = 1000, MS_PER_MIN = 60000, NS_PER_MS = 1000000 };
+enum { CORPUS_MAX = 256, RANDOM_PERCENT = 35, PERCENT = 100, MS_PER_MIN = 60000 };
 enum { LOOK_EVERY = 16 };
 
 /** All of it. */
@@ -39,14 +39,8 @@ void hunt_list_hazards(void) {
     }
 }
 
-static uint64_t real_ms(void) {
-    struct timespec now;
-    (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    return ((uint64_t)now.tv_sec * MS_PER_S) + ((uint64_t)now.tv_nsec / NS_PER_MS);
-}
-
 static uint64_t spent_ms(const hunt_t *hunt) {
-    return hunt->state.spent_ms + (real_ms() - hunt->began_ms);
+    return hunt->state.spent_ms + (monotonic_ms() - hunt->began_ms);
 }
 
 /** Whether a run showed what no run of the piece did before. */
@@ -154,7 +148,7 @@ static went_t run_all(hunt_t *hunt) {
         if (went == GOES_ON) {
             hunt->state.pieces++;
             hunt->state.spent_ms = spent_ms(hunt);
-            hunt->began_ms = real_ms();
+            hunt->began_ms = monotonic_ms();
             went = hunt_state_save(request, &hunt->state, &hunt->file) ? GOES_ON : FAILED;
         }
     }
@@ -182,7 +176,7 @@ static status_t go(hunt_t *hunt) {
         return STATUS_UNUSABLE;
     }
     interrupt_hold();
-    hunt->began_ms = real_ms();
+    hunt->began_ms = monotonic_ms();
     const uint64_t start_ms = hunt->began_ms;
     progress_begin(&hunt->progress, total_of(hunt->request));
     const went_t went = run_all(hunt);
@@ -194,7 +188,7 @@ static status_t go(hunt_t *hunt) {
         note("interrupted after %" PRIu64 " runs%s", hunt->done,
              (hunt->request->checkpoint != NULL) ? "; the same command resumes" : "");
     }
-    return conclude(hunt, real_ms() - start_ms);
+    return conclude(hunt, monotonic_ms() - start_ms);
 }
 
 status_t hunt_run(const hunt_request_t *request) {

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/words.h"
 #include "hunt/hunt_program.h"
 #include "vehicle/vehicle.h"
 
@@ -50,11 +51,9 @@ static void add_parameter(const steps_t *steps, line_t *line, unsigned i) {
         append(line, "%" PRIu32, steps->action->parameters[i]);
         return;
     }
-    for (uint32_t skip = steps->action->parameters[i]; skip > 0u; skip--) {
-        words += strcspn(words, "|");
-        words += (*words == '|') ? 1 : 0;
-    }
-    append(line, "%.*s", (int)strcspn(words, "|"), words);
+    const char *word = NULL;
+    const size_t length = words_at(words, steps->action->parameters[i], &word);
+    append(line, "%.*s", (int)length, word);
 }
 
 static void add_again(const steps_t *steps, line_t *line, uint32_t every_ms) {
@@ -90,21 +89,16 @@ static uint32_t free_id(uint32_t id) {
     return id;
 }
 
-static const char *node_name(vehicle_node_t node) {
-    static const char *const names[VEHICLE_NODES] = {"vcu", "eps", "ai"};
-    return names[node];
-}
-
 /** What stands for a word or a number. @return false: it stands for something else */
 static bool add_word(const steps_t *steps, line_t *line, char letter) {
     const uint32_t *parameters = steps->action->parameters;
 
     switch (letter) {
     case 'n':
-        append(line, "%s", node_name(vehicle_sender_of(message_of(steps))));
+        append(line, "%s", vehicle_node_name(vehicle_sender_of(message_of(steps))));
         return true;
     case 'v':
-        append(line, "%s", node_name(vehicle_receiver_of(message_of(steps))));
+        append(line, "%s", vehicle_node_name(vehicle_receiver_of(message_of(steps))));
         return true;
     case 't':
         append(line, "%" PRIu32, cycle_of(steps));
@@ -214,7 +208,7 @@ static int compare(const void *a, const void *b) {
     return (l > r) - (l < r);
 }
 
-void hunt_steps_write(const hunt_program_t *program, campaign_text_t *text) {
+void hunt_steps_write(const hunt_program_t *program, text_t *text) {
     steps_t steps = {.program = program, .count = 2u};
 
     steps.lines[0] = (line_t){.at_ms = DRIVE_MS, .order = 0u};
@@ -230,8 +224,8 @@ void hunt_steps_write(const hunt_program_t *program, campaign_text_t *text) {
         }
     }
     qsort(steps.lines, steps.count, sizeof steps.lines[0], compare);
-    campaign_text_add(text, "steps:\n");
+    text_add(text, "steps:\n");
     for (uint32_t i = 0u; i < steps.count; i++) {
-        campaign_text_add(text, "  - {at_ms: %" PRIu32 ", %s}\n", steps.lines[i].at_ms, steps.lines[i].text);
+        text_add(text, "  - {at_ms: %" PRIu32 ", %s}\n", steps.lines[i].at_ms, steps.lines[i].text);
     }
 }

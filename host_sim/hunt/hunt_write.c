@@ -2,79 +2,80 @@
 #include <inttypes.h>
 
 #include "agv/config.h"
+#include "common/words.h"
 #include "config/config_file.h"
 #include "hunt/hunt_program.h"
 
 enum { ROLLS_MM_S2 = 1 };
 
 /** A setting as its file has it: a word, or a number. */
-static void write_setting(const hunt_setting_t *setting, campaign_text_t *text) {
+static void write_setting(const hunt_setting_t *setting, text_t *text) {
     const agv_setting_info_t *info = agv_setting_info(setting->setting);
     const char *word = NULL;
 
     if (info->words == NULL) {
-        campaign_text_add(text, "%s: %u", info->name, setting->value);
+        text_add(text, "%s: %u", info->name, setting->value);
         return;
     }
-    const size_t length = config_word(info->words, setting->value, &word);
-    campaign_text_add(text, "%s: %.*s", info->name, (int)length, word);
+    const size_t length = words_at(info->words, setting->value, &word);
+    text_add(text, "%s: %.*s", info->name, (int)length, word);
 }
 
-static void write_class(const hunt_program_t *program, uint8_t fault, campaign_text_t *text) {
+static void write_class(const hunt_program_t *program, uint8_t fault, text_t *text) {
     char key[CONFIG_CLASS_KEY_SIZE];
     agv_config_t config;
 
     hunt_program_config(program, &config);
     config_class_key((agv_fault_t)fault, key);
-    campaign_text_add(text, "%s: %s", key, agv_config_is_trip(&config, fault) ? "trip" : "warn");
+    text_add(text, "%s: %s", key, agv_config_is_trip(&config, fault) ? "trip" : "warn");
 }
 
-static void write_config(const hunt_program_t *program, campaign_text_t *text) {
+static void write_config(const hunt_program_t *program, text_t *text) {
     if (program->setting_count + program->class_count > 0u) {
-        campaign_text_add(text, "config:\n");
+        text_add(text, "config:\n");
     }
     for (uint32_t i = 0u; i < program->setting_count; i++) {
-        campaign_text_add(text, "  ");
+        text_add(text, "  ");
         write_setting(&program->settings[i], text);
-        campaign_text_add(text, "\n");
+        text_add(text, "\n");
     }
     for (uint32_t i = 0u; i < program->class_count; i++) {
-        campaign_text_add(text, "  ");
+        text_add(text, "  ");
         write_class(program, program->classes[i], text);
-        campaign_text_add(text, "\n");
+        text_add(text, "\n");
     }
 }
 
-static void write_vehicle(const hunt_program_t *program, campaign_text_t *text) {
-    campaign_text_add(text, "vehicle:\n  park_guard: %s\n  obeys_short_frames: %s\n  steering_rate_ddeg_s: %u\n",
-                      program->park_guard ? "true" : "false", program->obeys_short ? "true" : "false",
-                      program->steering_rate_ddeg_s);
+static void write_vehicle(const hunt_program_t *program, text_t *text) {
+    text_add(text, "vehicle:\n  park_guard: %s\n  obeys_short_frames: %s\n  steering_rate_ddeg_s: %u\n",
+             program->park_guard ? "true" : "false", program->obeys_short ? "true" : "false",
+             program->steering_rate_ddeg_s);
     if (program->rolls) {
-        campaign_text_add(text, "  coasting_mm_s2: %d\n  braking_mm_s2: %d\n  locked_mm_s2: %d\n", ROLLS_MM_S2,
-                          ROLLS_MM_S2, ROLLS_MM_S2);
+        text_add(text, "  coasting_mm_s2: %d\n  braking_mm_s2: %d\n  locked_mm_s2: %d\n", ROLLS_MM_S2, ROLLS_MM_S2,
+                 ROLLS_MM_S2);
     }
 }
 
-void hunt_program_write(const hunt_program_t *program, const char *name, campaign_text_t *text) {
-    campaign_text_add(text, "name: %s\nshows: [H1]\ntopology: %s\nid_set: heading\ntick_phase_us: %u\n", name,
-                      program->gateway ? "gateway" : "shared", program->tick_phase_us);
+void hunt_program_write(const hunt_program_t *program, const char *name, text_t *text) {
+    text_add(text, "name: %s\nshows: [H1]\ntopology: %s\nid_set: heading\ntick_phase_us: %u\n", name,
+             program->gateway ? "gateway" : "shared", program->tick_phase_us);
     write_config(program, text);
     write_vehicle(program, text);
-    campaign_text_add(text, "duration_ms: %" PRIu32 "\n", program->duration_ms);
+    text_add(text, "duration_ms: %" PRIu32 "\n", program->duration_ms);
     hunt_steps_write(program, text);
 }
 
-void hunt_program_describe(const hunt_program_t *program, campaign_text_t *text) {
-    campaign_text_add(text, "%s", program->gateway ? "gateway" : "shared");
+void hunt_program_describe(const hunt_program_t *program, text_t *text) {
+    text_add(text, "%s", program->gateway ? "gateway" : "shared");
     for (uint32_t i = 0u; i < program->action_count; i++) {
-        campaign_text_add(text, " %s", HUNT_ATTACKS[program->actions[i].attack].name);
+        text_add(text, " %s", HUNT_ATTACKS[program->actions[i].attack].name);
     }
     for (uint32_t i = 0u; i < program->setting_count; i++) {
-        campaign_text_add(text, ", ");
+        text_add(text, ", ");
         write_setting(&program->settings[i], text);
     }
     for (uint32_t i = 0u; i < program->class_count; i++) {
-        campaign_text_add(text, ", ");
+        text_add(text, ", ");
         write_class(program, program->classes[i], text);
     }
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "common/hex.h"
+#include "common/units.h"
 
 /*
  * Every scan stops at the line feed after the line: it belongs to no class of characters below, so no scan needs a
@@ -16,7 +17,6 @@
 #define SECONDS_DIGITS_MAX 12u
 #define DATA_MAX 8u
 #define FD_DATA_MAX 64u
-#define US_PER_S 1000000u
 
 static inline bool is_decimal(char character) {
     return (character >= '0') && (character <= '9');
@@ -61,7 +61,7 @@ static const char *parse_stamp(const char **cursor, uint64_t *stamp_us) {
     if ((at[0] != ')') || (at[1] != ' ')) {
         return "the time stamp is not closed by a parenthesis and a blank";
     }
-    *stamp_us = (seconds * US_PER_S) + us;
+    *stamp_us = (seconds * (uint64_t)US_PER_S) + us;
     *cursor = &at[2];
     return NULL;
 }
@@ -229,7 +229,7 @@ static char *put_decimal(char *to, uint64_t value, uint32_t least_digits) {
 
 static char *put_hex(char *to, uint32_t value, uint32_t digits) {
     for (uint32_t left = digits; left > 0u; left--) {
-        *to = "0123456789ABCDEF"[(value >> (4u * (left - 1u))) & 0xFu];
+        *to = HEX_DIGITS[(value >> (4u * (left - 1u))) & 0xFu];
         to++;
     }
     return to;
@@ -238,9 +238,9 @@ static char *put_hex(char *to, uint32_t value, uint32_t digits) {
 size_t candump_write(char *line, uint64_t stamp_us, const char *interface, const hal_can_frame_t *frame) {
     char *to = line;
     *to++ = '(';
-    to = put_decimal(to, stamp_us / US_PER_S, 10u);
+    to = put_decimal(to, stamp_us / (uint64_t)US_PER_S, 10u);
     *to++ = '.';
-    to = put_decimal(to, stamp_us % US_PER_S, 6u);
+    to = put_decimal(to, stamp_us % (uint64_t)US_PER_S, 6u);
     *to++ = ')';
     *to++ = ' ';
     size_t length = strlen(interface);

@@ -149,10 +149,9 @@ static void put(output_t *output, uint32_t *checksum, const char *text, size_t l
 }
 
 static void put_item(output_t *output, uint32_t *checksum, const char *word, const uint8_t *bytes, size_t size) {
-    static const char digits[] = "0123456789ABCDEF";
     put(output, checksum, word, strlen(word));
     for (size_t i = 0u; i < size; i++) {
-        const char pair[2] = {digits[bytes[i] >> 4u], digits[bytes[i] & 0xFu]};
+        const char pair[2] = {HEX_DIGITS[bytes[i] >> 4u], HEX_DIGITS[bytes[i] & 0xFu]};
         put(output, checksum, pair, sizeof pair);
     }
     put(output, checksum, "\n", 1u);

@@ -1,17 +1,18 @@
 #include "io/yaml_reader.h"
 
-#include <ctype.h>
-#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "common/hex.h"
 #include "common/report.h"
+#include "common/words.h"
 #include "io/yaml_file.h"
 
-enum { SHOWN_MAX = 40, LINE_SHOWN_MAX = 80, DECIMAL = 10, HEX = 16, BYTES_MAX = 8 };
+#define DECIMAL_SET "0123456789"
+#define HEX_SET DECIMAL_SET "abcdefABCDEF"
+
+enum { SHOWN_MAX = 40, LINE_SHOWN_MAX = 80, HEX = 16, BYTES_MAX = 8 };
 
 bool yaml_reader_fail(const yaml_reader_t *reader, const yaml_node_t *node, const char *format, ...) {
     char message[320];
@@ -181,59 +182,62 @@ const char *yaml_reader_text(const yaml_reader_t *reader, const yaml_node_t *nod
     return text;
 }
 
-/** The digits of a number and their base. @return NULL: there is none. */
-static const char *digits_of(const char *text, int *base) {
-    const char *at = text;
+/** Whether a text is digits and nothing else. */
+static bool is_digits(const char *text, const char *digits) {
+    return (text[0] != '\0') && (text[strspn(text, digits)] == '\0');
+}
 
-    if ((at[0] == '0') && (at[1] == 'x')) {
-        *base = HEX;
-        at = &at[2];
-        return (isxdigit((unsigned char)*at) != 0) ? at : NULL;
+/** Read a decimal number, or a hexadecimal one with 0x. @return false: it is none. What is too large is INT64_MAX */
+static bool read_whole(const char *text, int64_t *number) {
+    const bool is_hex = (text[0] == '0') && (text[1] == 'x');
+    const bool is_negative = text[0] == '-';
+    const char *digits = &text[(is_hex ? 2 : 0) + (is_negative ? 1 : 0)];
+    uint64_t value = 0u;
+
+    if (!is_digits(digits, is_hex ? HEX_SET : DECIMAL_SET)) {
+        return false;
     }
-    *base = DECIMAL;
-    at += (at[0] == '-') ? 1 : 0;
-    return (isdigit((unsigned char)*at) != 0) ? text : NULL;
+    if (is_hex ? !words_hex(digits, strlen(digits), &value) : !words_decimal(digits, 0u, INT64_MAX, &value)) {
+        value = INT64_MAX;
+    }
+    value = (value > (uint64_t)INT64_MAX) ? (uint64_t)INT64_MAX : value;
+    *number = is_negative ? -(int64_t)value : (int64_t)value;
+    return true;
 }
 
 bool yaml_reader_number(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, int64_t lowest,
                         int64_t highest, int64_t *number) {
     const char *text = yaml_reader_text(reader, node, what);
-    int base = DECIMAL;
-    char *end = NULL;
 
     if (text == NULL) {
         return false;
     }
-    errno = 0;
-    const char *digits = digits_of(text, &base);
-    const long long value = (digits != NULL) ? strtoll(digits, &end, base) : 0;
-    if ((digits == NULL) || (*end != '\0')) {
+    if (!read_whole(text, number)) {
         return yaml_reader_fail(reader, node, "%s: '%.*s' is not a whole number", what, SHOWN_MAX, text);
     }
-    if ((errno != 0) || (value < lowest) || (value > highest)) {
+    if ((*number < lowest) || (*number > highest)) {
         return yaml_reader_fail(reader, node, "%s: %.*s is not within %lld to %lld", what, SHOWN_MAX, text,
                                 (long long)lowest, (long long)highest);
     }
-    *number = value;
     return true;
 }
 
 bool yaml_reader_hex(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t highest,
                      uint32_t *number) {
     const char *text = yaml_reader_text(reader, node, what);
-    char *end = NULL;
+    uint64_t value = 0u;
 
     if (text == NULL) {
         return false;
     }
-    errno = 0;
     const bool prefixed = (text[0] == '0') && (text[1] == 'x');
-    const unsigned long value = (isxdigit((unsigned char)text[0]) != 0) ? strtoul(text, &end, HEX) : 0u;
-    if ((end == NULL) || (strcmp(end, prefixed ? "" : "h") != 0)) {
+    const char *digits = prefixed ? &text[2] : text;
+    const size_t length = strspn(digits, HEX_SET);
+    if ((length == 0u) || (strcmp(&digits[length], prefixed ? "" : "h") != 0)) {
         return yaml_reader_fail(reader, node, "%s: '%.*s' is not a hexadecimal number such as 168h or 0x168", what,
                                 SHOWN_MAX, text);
     }
-    if ((errno != 0) || (value > highest)) {
+    if (!words_hex(digits, length, &value) || (value > highest)) {
         return yaml_reader_fail(reader, node, "%s: %.*s is above %Xh", what, SHOWN_MAX, text, (unsigned)highest);
     }
     *number = (uint32_t)value;

@@ -68,7 +68,7 @@ static bool open_outputs(live_t *live) {
         if ((paths[i] != NULL) && !live_output_open(&live->outputs[i], paths[i])) {
             return false;
         }
-        stdout_is_free = stdout_is_free && ((paths[i] == NULL) || !output_is_stdout(paths[i]));
+        stdout_is_free = stdout_is_free && !output_is_stdout(paths[i]);
     }
     live->is_terminal = stdout_is_free && (isatty(STDOUT_FILENO) == 1);
     live->sent.output = &live->outputs[OUT].lines;
@@ -156,10 +156,6 @@ static void print_summary(const live_t *live, const events_summary_t *summary) {
     summary_print_state(summary);
 }
 
-static bool uses_stdout(const char *path) {
-    return (path != NULL) && output_is_stdout(path);
-}
-
 /** The supervisor has ended: write what comes last. @return false: reported. */
 static bool conclude(live_t *live, const events_summary_t *summary) {
     const live_request_t *request = live->request;
@@ -171,7 +167,7 @@ static bool conclude(live_t *live, const events_summary_t *summary) {
     for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
         good = live_output_end(&live->outputs[i]) && good;
     }
-    if (good && !uses_stdout(request->events) && !uses_stdout(request->out)) {
+    if (good && !output_is_stdout(request->events) && !output_is_stdout(request->out)) {
         print_summary(live, summary);
     }
     return good;

@@ -21,8 +21,6 @@ enum { DRAW_EVERY_MS = 100, WHAT_SIZE = 320, STATUS_SIZE = 160, WIDTH = 80, ALAR
 #define KEEP_CURSOR "\0337"
 #define RETURN_CURSOR "\0338"
 
-static const char *const NODES[VEHICLE_NODES] = {"vcu", "eps", "ai"};
-
 /* Bits of 363h byte 5. */
 static const char *const ALARMS[ALARM_BITS] = {"REMOTE_SIGNAL_LOST", "REMOTE_POWER_LOST", "bit 2", "AI_CAN_LOST",
                                                "EPS_HARDWARE",       "EPS_CAN_BUS",       "bit 6", "S_DRIVER"};
@@ -73,7 +71,7 @@ static void write_status(const vehicle_view_t *view, char status[STATUS_SIZE]) {
     rest[0] = '\0';
     for (int n = 0; n < VEHICLE_NODES; n++) {
         if (!view->running[n]) {
-            add(rest, sizeof rest, ", ", NODES[n]);
+            add(rest, sizeof rest, ", ", vehicle_node_name((vehicle_node_t)n));
         }
     }
     if (rest[0] != '\0') {
@@ -126,7 +124,8 @@ static void show_changes(vehicle_show_t *show, uint64_t t_ms, const vehicle_view
 
     for (int n = 0; n < VEHICLE_NODES; n++) {
         if (now->running[n] != before->running[n]) {
-            vehicle_show_event(show, t_ms, NODES[n], "is %s", now->running[n] ? "on" : "off");
+            vehicle_show_event(show, t_ms, vehicle_node_name((vehicle_node_t)n), "is %s",
+                               now->running[n] ? "on" : "off");
         }
     }
     if (now->autopilot != before->autopilot) {

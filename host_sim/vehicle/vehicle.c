@@ -67,6 +67,11 @@ void vehicle_init(vehicle_t *vehicle, const vehicle_config_t *config, vehicle_se
     }
 }
 
+const char *vehicle_node_name(vehicle_node_t node) {
+    static const char *const names[] = {"vcu", "eps", "ai", "stranger"};
+    return names[node];
+}
+
 vehicle_node_t vehicle_sender_of(agv_message_t message) {
     return VEHICLE_ROWS[message].node;
 }

@@ -358,6 +358,9 @@ void vehicle_view(vehicle_t *vehicle, uint64_t now_ms, vehicle_view_t *view);
 /** The controller side that a node is on; a stranger is on the vehicle side. */
 hal_can_side_t vehicle_side_of(const vehicle_t *vehicle, vehicle_node_t node);
 
+/** "vcu", "eps", "ai"; "stranger" for others. */
+const char *vehicle_node_name(vehicle_node_t node);
+
 /** The node that sends a message. */
 vehicle_node_t vehicle_sender_of(agv_message_t message);
 

@@ -24,7 +24,7 @@ static bool fits(const soak_t *soak, const soak_row_t *row) {
 static uint32_t add_steps(soak_t *soak, const char *words, uint32_t number) {
     while (*words != '\0') {
         const size_t length = strcspn(words, "|");
-        campaign_text_add(&soak->text, "  - {at_ms: %" PRIu32 ", %.*s}\n", number, (int)length, words);
+        text_add(&soak->text, "  - {at_ms: %" PRIu32 ", %.*s}\n", number, (int)length, words);
         number++;
         words += length;
         words += (*words == '|') ? 1 : 0;
@@ -38,12 +38,11 @@ static bool read_rows(soak_t *soak) {
     uint32_t number = 0u;
 
     agv_config_defaults(&options.config);
-    campaign_text_add(
-        &soak->text, "name: soak\nshows: [TIM-1]\ntopology: %s\nid_set: %s\nclock_start_ms: %" PRIu32 "\n",
-        soak->gateway ? "gateway" : "shared", soak->table_ids ? "table" : "heading", (uint32_t)soak->start_ms);
-    campaign_text_add(&soak->text, "config: {status_frame_id: %u, status_frame_period_ms: %u}\n", SOAK_STATUS_ID,
-                      SOAK_STATUS_MS);
-    campaign_text_add(&soak->text, "duration_ms: 1000\nsteps:\n");
+    text_add(&soak->text, "name: soak\nshows: [TIM-1]\ntopology: %s\nid_set: %s\nclock_start_ms: %" PRIu32 "\n",
+             soak->gateway ? "gateway" : "shared", soak->table_ids ? "table" : "heading", (uint32_t)soak->start_ms);
+    text_add(&soak->text, "config: {status_frame_id: %u, status_frame_period_ms: %u}\n", SOAK_STATUS_ID,
+             SOAK_STATUS_MS);
+    text_add(&soak->text, "duration_ms: 1000\nsteps:\n");
     for (size_t i = 0u; i < SOAK_ROW_COUNT; i++) {
         soak->steps[i].begin = number;
         number = fits(soak, &SOAK_ROWS[i]) ? add_steps(soak, SOAK_ROWS[i].begin, number) : number;
@@ -51,7 +50,7 @@ static bool read_rows(soak_t *soak) {
         number = fits(soak, &SOAK_ROWS[i]) ? add_steps(soak, SOAK_ROWS[i].end, number) : number;
         soak->steps[i].after = number;
     }
-    campaign_text_add(&soak->text, "expect: {states: []}\n");
+    text_add(&soak->text, "expect: {states: []}\n");
     return soak->text.full ? report("the soak scenario is too long")
                            : scenario_read_text(&soak->scenario, "the soak", soak->text.bytes, &options);
 }
@@ -192,19 +191,19 @@ static bool write_results(soak_t *soak) {
     if (!soak->results.is_open) {
         return true;
     }
-    soak->text.used = 0u;
-    campaign_text_add(&soak->text,
-                      "{\"soak\": 1, \"seed\": %" PRIu64 ", \"hours\": %" PRIu32 ", \"shard\": %" PRIu32
-                      ", \"shards\": %" PRIu32 ", \"topology\": \"%s\", \"ms\": %" PRIu64 ", \"wraps\": %" PRIu32
-                      ", \"ticks\": %" PRIu64 ", \"received\": %" PRIu64 ", \"sent\": %" PRIu64,
-                      soak->request->seed, soak->request->hours, soak->request->shard, soak->request->shards,
-                      soak->gateway ? "gateway" : "shared", state->t_ms, wraps(soak), state->ticks,
-                      state->wire_others + state->delivered, state->wire_own);
-    campaign_text_add(&soak->text,
-                      ", \"warnings\": %" PRIu64 ", \"disturbances\": %" PRIu64 ", \"status_late_ms\": %" PRIu32
-                      ", \"real_ms\": %" PRIu64 ", \"broken\": %s}\n",
-                      state->warnings, disturbances(state), state->status_late_ms, state->real_ms,
-                      (state->broken[0] != '\0') ? "true" : "false");
+    text_clear(&soak->text);
+    text_add(&soak->text,
+             "{\"soak\": 1, \"seed\": %" PRIu64 ", \"hours\": %" PRIu32 ", \"shard\": %" PRIu32 ", \"shards\": %" PRIu32
+             ", \"topology\": \"%s\", \"ms\": %" PRIu64 ", \"wraps\": %" PRIu32 ", \"ticks\": %" PRIu64
+             ", \"received\": %" PRIu64 ", \"sent\": %" PRIu64,
+             soak->request->seed, soak->request->hours, soak->request->shard, soak->request->shards,
+             soak->gateway ? "gateway" : "shared", state->t_ms, wraps(soak), state->ticks,
+             state->wire_others + state->delivered, state->wire_own);
+    text_add(&soak->text,
+             ", \"warnings\": %" PRIu64 ", \"disturbances\": %" PRIu64 ", \"status_late_ms\": %" PRIu32
+             ", \"real_ms\": %" PRIu64 ", \"broken\": %s}\n",
+             state->warnings, disturbances(state), state->status_late_ms, state->real_ms,
+             (state->broken[0] != '\0') ? "true" : "false");
     (void)output_write(&soak->results, soak->text.bytes, soak->text.used);
     return output_commit(&soak->results);
 }

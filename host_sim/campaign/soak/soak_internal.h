@@ -64,7 +64,7 @@ typedef struct {
     uint64_t duration_ms; /**< of this shard */
     bool gateway;
     bool table_ids;
-    campaign_text_t text;
+    text_t text;
     scenario_t scenario;
     scenario_world_t world;
     scenario_world_t saved; /**< what a checkpoint is read into */

@@ -4,8 +4,9 @@
 #include <string.h>
 
 #include "agv/names.h"
+#include "common/units.h"
 
-enum { US_PER_MS = 1000, CENTRE_DDEG = 9000, MDDEG_PER_DDEG = 1000 };
+enum { CENTRE_DDEG = 9000, MDDEG_PER_DDEG = 1000 };
 
 static const hazard_info_t INFOS[HAZARD_KINDS] = {
     [HAZARD_NONE] = {"none", "no hazard", ""},

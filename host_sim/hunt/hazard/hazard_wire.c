@@ -2,10 +2,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/units.h"
 #include "hunt/hazard/hazard.h"
 
 enum { THROTTLE_MAX = 250, ANGLE_MAX = 18000, FALL_COUNTS = 25, FAST_CAP = 3 };
-enum { MODE_BYTE = 6, MANUAL_BIT = 0x40, AUTOPILOT_BIT = 0x80, US_PER_MS = 1000, REENGAGE_MS = 100 };
+enum { MODE_BYTE = 6, MANUAL_BIT = 0x40, AUTOPILOT_BIT = 0x80, REENGAGE_MS = 100 };
 
 static uint16_t word_at(const uint8_t *data, unsigned at) {
     return (uint16_t)(data[at] | ((uint32_t)data[at + 1u] << 8u));

@@ -15,7 +15,7 @@ static campaign_plan_t plan;
 static campaign_plan_t other;
 static scenario_t scenario;
 static scenario_options_t options;
-static campaign_text_t text;
+static text_t text;
 
 void setUp(void) {
     scratch_open();
@@ -29,7 +29,7 @@ void tearDown(void) {
 
 static bool is_read(void) {
     text.used = 0u;
-    campaign_text_add(&text, "%sexpect: {states: []}\n", plan.head.bytes);
+    text_add(&text, "%sexpect: {states: []}\n", plan.head.bytes);
     return !plan.head.full && !text.full && scenario_read_text(&scenario, "run", text.bytes, &options);
 }
 
@@ -173,9 +173,9 @@ void test_a_text_that_is_full_says_so(void) {
     text.used = 0u;
     text.full = false;
     while (!text.full) {
-        campaign_text_add(&text, "%s", "0123456789");
+        text_add(&text, "%s", "0123456789");
     }
-    TEST_ASSERT_EQUAL(CAMPAIGN_TEXT_SIZE / 10u * 10u, text.used);
+    TEST_ASSERT_EQUAL(TEXT_MAX / 10u * 10u, text.used);
     TEST_ASSERT_EQUAL(text.used, strlen(text.bytes));
     text.full = false;
 }

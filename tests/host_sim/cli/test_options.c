@@ -121,11 +121,6 @@ void test_numbers_are_checked_completely(void) {
         parse_bad(line, message);
     }
     parse_bad("--number _ f", "--number: '' is not a number from 5 to 1000");
-    uint64_t number = 0;
-    TEST_ASSERT_TRUE(options_number("18446744073709551615", 0, UINT64_MAX, &number));
-    TEST_ASSERT_EQUAL_UINT64(UINT64_MAX, number);
-    TEST_ASSERT_FALSE(options_number("18446744073709551616", 0, UINT64_MAX, &number));
-    TEST_ASSERT_FALSE(options_number("184467440737095516150", 0, UINT64_MAX, &number));
 }
 
 void test_what_is_refused(void) {

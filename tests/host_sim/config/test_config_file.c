@@ -1,4 +1,5 @@
 /* The configuration as a YAML file: what it may say, and what is refused with its line. */
+#include "common/words.h"
 #include "config/config_file.h"
 
 #include <stdio.h>
@@ -120,7 +121,7 @@ void test_every_word_of_every_choice(void) {
         for (uint16_t value = 0; value < 2; value++) {
             char text[128];
             const char *word = NULL;
-            const size_t length = config_word(info->words, value, &word);
+            const size_t length = words_at(info->words, value, &word);
             (void)snprintf(text, sizeof text, "%s: %.*s\n%s", info->name, (int)length, word,
                            i == 0 ? "" : "topology: gateway\n");
             agv_config_defaults(&config);

@@ -1,0 +1,26 @@
+/**
+ * @file text.h
+ * A text that is put together piece by piece.
+ */
+#ifndef HOST_SIM_TEXT_H
+#define HOST_SIM_TEXT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#define TEXT_MAX 8192u
+
+/** All zero: empty. A piece that finds no room is left out. */
+typedef struct {
+    char bytes[TEXT_MAX];
+    size_t used;
+    bool full; /**< a piece was left out */
+} text_t;
+
+/** Add a piece. */
+void text_add(text_t *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/** Make it empty. */
+void text_clear(text_t *text);
+
+#endif

@@ -1,0 +1,56 @@
+#include "common/words.h"
+
+#include <string.h>
+
+#include "common/hex.h"
+
+enum { DECIMAL = 10, HEX_DIGIT_BITS = 4, HEX_DIGITS_MAX = 16 };
+
+size_t words_at(const char *words, size_t index, const char **word) {
+    const char *at = words;
+    for (size_t i = 0u; i < index; i++) {
+        at += strcspn(at, "|");
+        at += (*at == '|') ? 1 : 0;
+    }
+    *word = at;
+    return strcspn(at, "|");
+}
+
+int words_find(const char *words, const char *word) {
+    const size_t size = strlen(word);
+    int index = 0;
+    for (const char *at = words; *at != '\0'; index++) {
+        const size_t length = strcspn(at, "|");
+        if ((length == size) && (memcmp(at, word, size) == 0)) {
+            return index;
+        }
+        at += length;
+        at += (*at == '|') ? 1 : 0;
+    }
+    return -1;
+}
+
+bool words_decimal(const char *text, uint64_t lowest, uint64_t highest, uint64_t *number) {
+    uint64_t value = 0u;
+    const char *at = text;
+    for (; (*at >= '0') && (*at <= '9'); at++) {
+        const uint64_t digit = (uint64_t)(*at - '0');
+        if (value > (UINT64_MAX - digit) / DECIMAL) {
+            return false;
+        }
+        value = (value * DECIMAL) + digit;
+    }
+    *number = value;
+    return (at != text) && (*at == '\0') && (value >= lowest) && (value <= highest);
+}
+
+bool words_hex(const char *text, size_t length, uint64_t *number) {
+    bool good = (length > 0u) && (length <= (size_t)HEX_DIGITS_MAX);
+    *number = 0u;
+    for (size_t i = 0u; good && (i < length); i++) {
+        const uint32_t digit = hex_digit(text[i]);
+        good = digit < HEX_NO_DIGIT;
+        *number = (*number << HEX_DIGIT_BITS) | digit;
+    }
+    return good;
+}

@@ -1,0 +1,54 @@
+#include "common/words.h"
+
+#include "unity.h"
+
+void setUp(void) {
+}
+
+void tearDown(void) {
+}
+
+void test_a_word_is_found_as_a_whole(void) {
+    TEST_ASSERT_EQUAL_INT(0, words_find("shared|gateway", "shared"));
+    TEST_ASSERT_EQUAL_INT(1, words_find("shared|gateway", "gateway"));
+    TEST_ASSERT_EQUAL_INT(-1, words_find("shared|gateway", "gate"));
+    TEST_ASSERT_EQUAL_INT(-1, words_find("shared|gateway", "gateways"));
+    TEST_ASSERT_EQUAL_INT(-1, words_find("shared|gateway", "shared|gateway"));
+    TEST_ASSERT_EQUAL_INT(-1, words_find("shared|gateway", ""));
+}
+
+void test_the_word_with_an_index(void) {
+    const char *word = NULL;
+    TEST_ASSERT_EQUAL_UINT(1, words_at("a|bb|ccc", 0u, &word));
+    TEST_ASSERT_EQUAL_STRING("a|bb|ccc", word);
+    TEST_ASSERT_EQUAL_UINT(3, words_at("a|bb|ccc", 2u, &word));
+    TEST_ASSERT_EQUAL_STRING("ccc", word);
+    TEST_ASSERT_EQUAL_UINT(0, words_at("a|bb|ccc", 3u, &word));
+}
+
+void test_a_decimal_number_of_64_bits(void) {
+    uint64_t number = 0;
+    TEST_ASSERT_TRUE(words_decimal("18446744073709551615", 0, UINT64_MAX, &number));
+    TEST_ASSERT_EQUAL_UINT64(UINT64_MAX, number);
+    TEST_ASSERT_FALSE(words_decimal("18446744073709551616", 0, UINT64_MAX, &number));
+    TEST_ASSERT_FALSE(words_decimal("184467440737095516150", 0, UINT64_MAX, &number));
+    TEST_ASSERT_FALSE(words_decimal("", 0, UINT64_MAX, &number));
+    TEST_ASSERT_FALSE(words_decimal("1 ", 0, UINT64_MAX, &number));
+    TEST_ASSERT_TRUE(words_decimal("007", 7, 7, &number));
+    TEST_ASSERT_EQUAL_UINT64(7, number);
+    TEST_ASSERT_FALSE(words_decimal("6", 7, 9, &number));
+    TEST_ASSERT_FALSE(words_decimal("10", 7, 9, &number));
+}
+
+void test_hexadecimal_digits_in_either_case(void) {
+    uint64_t number = 0;
+    TEST_ASSERT_TRUE(words_hex("3fA", 3u, &number));
+    TEST_ASSERT_EQUAL_HEX64(0x3FA, number);
+    TEST_ASSERT_TRUE(words_hex("12345678", 4u, &number));
+    TEST_ASSERT_EQUAL_HEX64(0x1234, number);
+    TEST_ASSERT_TRUE(words_hex("FFFFFFFFFFFFFFFF", 16u, &number));
+    TEST_ASSERT_EQUAL_HEX64(UINT64_MAX, number);
+    TEST_ASSERT_FALSE(words_hex("10000000000000000", 17u, &number));
+    TEST_ASSERT_FALSE(words_hex("1G", 2u, &number));
+    TEST_ASSERT_FALSE(words_hex("1", 0u, &number));
+}
