@@ -40,7 +40,7 @@ void oracle_restart(oracle_t *oracle) {
     oracle->before = AGV_STATE_INIT;
 }
 
-/* While both bits are set the mode before stands, for a while. */
+/* While both bits are set the previous mode stays valid for a limited time. */
 static bool manual_is_reported(const oracle_t *oracle) {
     const bool invalid =
         (oracle->mode_bits == 0xC0u) && ((oracle->now_ms - oracle->both_since_ms) > oracle->mode_invalid_ms);
@@ -52,7 +52,7 @@ static void hold(oracle_t *oracle) {
     oracle->held_raw = oracle->angle_raw;
 }
 
-/* FSM-10: the last valid angle of the moment of the trip, unless it is old. Manual drops what is held. */
+/* FSM-10: the last valid angle before the trip is held, unless it is too old. Manual mode drops the held angle. */
 static void follow(oracle_t *oracle, agv_state_t state) {
     const bool latched = is_latched(state);
     if (latched && !oracle->latched && oracle->angle_known &&
@@ -63,14 +63,14 @@ static void follow(oracle_t *oracle, agv_state_t state) {
         oracle->held = false;
     }
     if (state != oracle->before) {
-        const bool waits = oracle->ending && (state == AGV_STATE_ACTIVE); /* the HAL has not taken it yet */
+        const bool waits = oracle->ending && (state == AGV_STATE_ACTIVE); /* the HAL has not accepted the frame yet */
         oracle->ending = waits || ((oracle->before == AGV_STATE_ACTIVE) && (state == AGV_STATE_STANDBY));
     }
     oracle->before = state;
     oracle->latched = latched;
 }
 
-/* The first valid angle after it is held when none is. */
+/* If no angle is held, the first valid angle after the trip is. */
 static void heard_angle(oracle_t *oracle, const hal_can_frame_t *frame) {
     const uint16_t raw = word_at(&frame->data[2]);
     if (raw > 18000u) {
@@ -84,7 +84,7 @@ static void heard_angle(oracle_t *oracle, const hal_can_frame_t *frame) {
     }
 }
 
-/* MODE_INVALID: a millisecond without both bits takes half a one off. */
+/* MODE_INVALID: a millisecond without both bits takes half a millisecond off. */
 static void heard_both(oracle_t *oracle, bool both, uint32_t time_ms) {
     const uint32_t past_ms = time_ms - oracle->both_since_ms;
     const uint32_t left = (past_ms < oracle->both_halves) ? (oracle->both_halves - past_ms) : 0u;
@@ -119,7 +119,7 @@ void oracle_heard(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *
     } else if (frame->id == oracle->vehicle_id) {
         heard_mode(oracle, frame);
     } else {
-        /* nothing that matters here */
+        /* other messages do not matter */
     }
 }
 
@@ -140,7 +140,8 @@ static bool safe_to_vehicle(const oracle_t *oracle, const hal_can_frame_t *frame
     }
 }
 
-/* Motion: while engaged only when the last 363h reports autopilot; the end of an engagement is reported once. */
+/* Commands that move the vehicle pass only while the last 363h reports autopilot. The end of an engagement is reported
+ * once. */
 static bool may_move(const oracle_t *oracle, agv_state_t state) {
     return (state == AGV_STATE_ACTIVE) ? (oracle->mode_bits == 0x80u) : oracle->pass_all_in_manual;
 }
@@ -160,7 +161,7 @@ static bool passed_to_vehicle(oracle_t *oracle, const hal_can_frame_t *frame, ag
     case 0x168u:
         return all && is_gear(gear) && zeros_from(frame, 1);
     case 0x075u:
-        oracle->ending = oracle->ending && !all; /* a newer one passes */
+        oracle->ending = oracle->ending && !all; /* a newer engagement has begun */
         return all && (frame->data[0] <= ((state == AGV_STATE_ACTIVE) ? 250u : 0u)) && zeros_from(frame, 1);
     case 0x065u:
         return all && (word_at(frame->data) <= 18000u) && zeros_from(frame, 2);

@@ -1,6 +1,7 @@
 /*
- * What may leave in which state (FSM-6, and nothing of its own in STANDBY and ACTIVE on the shared bus), stated once more
- * in raw identifiers and bytes. It shares nothing with the gate: tests hand it every frame in and every frame out.
+ * Independent rules on which frame may be sent in which state (FSM-6; and in STANDBY and ACTIVE on the shared bus no frame
+ * of the supervisor's own), written in raw identifiers and bytes. They share no code with the gate. Tests pass every
+ * received and every sent frame to the oracle.
  */
 #ifndef ORACLE_H
 #define ORACLE_H
@@ -13,7 +14,7 @@
 #include "hal/can.h"
 
 typedef struct {
-    /* what the vehicle is */
+    /* configuration */
     bool gateway;
     bool pass_all_in_manual;
     uint32_t signal_id;     /* 43Fh or 201h */
@@ -21,19 +22,19 @@ typedef struct {
     uint32_t own_status_id; /* 0 = none */
     uint32_t hold_age_ms;
     uint32_t mode_invalid_ms;
-    uint32_t now_ms; /* to be kept up with the clock */
+    uint32_t now_ms; /* clock of the supervisor, set by the test */
 
-    /* what is known of the mode: the bits of the last 363h, and the mode that stands */
+    /* mode: the bits of the last 363h, and the mode that counts */
     uint8_t mode_bits;
     bool manual;
     uint32_t both_since_ms;
-    uint32_t both_halves; /* half milliseconds of both bits that are left, while they are not both set */
+    uint32_t both_halves; /* remaining half milliseconds of the budget for both bits, while not both are set */
 
-    /* an engagement has ended: one throttle 0 may go to the vehicle */
+    /* end of an engagement: one throttle 0 may be sent to the vehicle */
     agv_state_t before;
     bool ending;
 
-    /* what is known of the steering */
+    /* steering */
     bool angle_known;
     uint16_t angle_raw;
     uint32_t angle_ms;
@@ -41,28 +42,28 @@ typedef struct {
     bool held;
     uint16_t held_raw;
 
-    /* what was seen */
+    /* result */
     uint32_t judged;    /* frames sent in INIT, TRIPPED, SAFE */
     uint32_t others;    /* frames sent in STANDBY, ACTIVE */
-    uint32_t forbidden; /* of all of them */
+    uint32_t forbidden; /* forbidden frames in all states */
     hal_can_frame_t first_forbidden;
     hal_can_side_t first_side;
     agv_state_t first_state;
 } oracle_t;
 
-/* What the vehicle is, by the configuration. */
+/* Set the oracle up for a configuration. */
 void oracle_configure(oracle_t *oracle, const agv_config_t *config);
 
-/* A supervisor starts: nothing is known. The counts go on. */
+/* A supervisor starts: clears what was received, keeps the counts. */
 void oracle_restart(oracle_t *oracle);
 
-/* A frame is about to be handed in. */
+/* Call before a frame is passed to the supervisor. */
 void oracle_heard(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *frame);
 
-/* A frame leaves in this state. */
+/* Call for each frame that is sent in this state. */
 void oracle_sent(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *frame, agv_state_t state);
 
-/* An entry point has returned in this state. */
+/* Call after each call of the supervisor, with its state. */
 void oracle_returned(oracle_t *oracle, agv_state_t state);
 
 /* The safe commands, byte for byte: hazard lights and headlight (byte 8 is the alive counter), gear P, no throttle. */
@@ -71,7 +72,7 @@ extern const uint8_t SAFE_SIGNALS[SAFE_SIGNALS_BYTES];
 extern const uint8_t SAFE_PARK[8];
 extern const uint8_t SAFE_THROTTLE[8];
 
-/* "" when nothing forbidden was seen, else one line about the first such frame. */
+/* One line about the first forbidden frame; "" if there was none. */
 const char *oracle_verdict(const oracle_t *oracle);
 
 #endif

@@ -9,9 +9,9 @@
 #include "frame_bytes.h"
 
 enum { VEHICLE = 0, GEAR_STATUS, THROTTLE_STATUS, STEERING_STATUS, EPS_STATUS, POSITION, WHEELS };
-/* STEP_MS: so late a tick may be, and only ticks look at deadlines; a later one is a trip cause itself (TIM-4). */
+/* STEP_MS: the longest permitted time between ticks, because only ticks check deadlines. A longer one trips (TIM-4). */
 enum { HEARTBEAT_MS = 50, STEP_MS = 101, STATUS_MS = 60, GEAR_STATUS_MS = 125, CONFIRM_MS = 500, CONFIRMED_MS = 5000 };
-/* LATELY_MS: conditions of the last second are looked at by ticks. */
+/* LATELY_MS: tolerance for the conditions of a reset, which ticks check. */
 enum { PRESS_MS = 1000, PRESS_MAX_MS = 5000, LATELY_MS = PRESS_MS - STEP_MS };
 enum { IDLE_COUNTS = 2, SLOW_COUNTS = 180, THROTTLE_COUNTS = 250, ENGAGED_ALONE = 0x80, MODE_BITS = 0xC0 };
 enum { P = 8, CYCLE_MS = 100, OVERRIDE_GAP_MS = 5 };
@@ -62,7 +62,7 @@ void rules_init(rules_t *rules, const agv_config_t *config) {
     rules->bus = (rules_bus_t){.takes_frames = true};
 }
 
-/* Both sums of FSM-4 begin anew. */
+/* Clear both sums of FSM-4. */
 static void forget_confirmation(rules_t *rules) {
     rules->was_engaged = false;
     rules->was_out_of_park = false;
@@ -72,7 +72,7 @@ static void forget_confirmation(rules_t *rules) {
     rules->park_sent = false;
 }
 
-/* Nothing of before counts, but for what was judged. */
+/* Clear everything but the statistics. */
 static void forget(rules_t *rules, uint64_t now_ms) {
     rules->vcu = (rules_beat_t){.changed_ms = now_ms};
     rules->eps = (rules_beat_t){.changed_ms = now_ms};
@@ -107,7 +107,8 @@ static void judge_start(rules_t *rules, hal_reset_cause_t cause, const rules_see
     const bool power_on = cause == HAL_RESET_POWER_ON;
     const bool was_tripped = (before != NULL) && is_latched(before->state);
     if (seen->state != (power_on ? AGV_STATE_INIT : AGV_STATE_TRIPPED)) {
-        broken(rules, "FSM-7: after reset cause %d it starts in state %02Xh", (int)cause, (unsigned)seen->state);
+        broken(rules, "FSM-7: after reset cause %d the supervisor starts in state %02Xh", (int)cause,
+               (unsigned)seen->state);
     }
     if (!power_on && (seen->first_reason != (was_tripped ? before->first_reason : AGV_FAULT_SUPERVISOR_RESET))) {
         broken(rules, "FSM-7: after a reset the first reason is %s", agv_fault_name(seen->first_reason));
@@ -126,7 +127,7 @@ void rules_started(rules_t *rules, hal_reset_cause_t cause, const rules_seen_t *
     oracle_returned(&rules->oracle, seen->state);
 }
 
-/* ---- What is heard ---- */
+/* ---- Received frames ---- */
 
 static void hear_beat(rules_beat_t *beat, uint8_t counter, uint64_t stamp_ms) {
     if (beat->heard && (beat->counter != counter)) {
@@ -187,7 +188,7 @@ static void hear_status(rules_t *rules, int status, const hal_can_frame_t *frame
         hear_beat(&rules->eps, data[0], stamp_ms);
         break;
     case EPS_STATUS:
-        rules->alarm = (data[7] & 0xE8u) != 0u; /* bits 4, 6, 7, 8 of the document */
+        rules->alarm = (data[7] & 0xE8u) != 0u; /* bits 4, 6, 7, 8 in the protocol document */
         break;
     case WHEELS:
         rules->fast_ms = (is_fast(&data[0]) || is_fast(&data[4])) ? stamp_ms : rules->fast_ms;
@@ -246,15 +247,17 @@ void rules_ticks(rules_t *rules, uint64_t now_ms, rules_bus_t bus) {
     rules->released = false;
 }
 
-/* ---- What is sent ---- */
+/* ---- Sent frames ---- */
 
-/* TOP-2: what is passed on is what was heard last, byte for byte; a command without its reserved bits, and limited. */
+/* TOP-2: a forwarded frame has the bytes of the last received one; a command has reserved bits cleared, and may be
+ * limited. */
 static void judge_passed(rules_t *rules, hal_can_side_t side, const hal_can_frame_t *frame, agv_state_t state) {
     const int status = status_of(rules, frame->id);
     const int command = command_of(rules, frame->id);
     if (side == HAL_CAN_AI) {
         if ((status < 0) || !rules->status_heard[status] || (memcmp(rules->status_data[status], frame->data, 8) != 0)) {
-            broken(rules, "TOP-2: %03X was passed to the AI side and not heard so", (unsigned)frame->id);
+            broken(rules, "TOP-2: %03X was sent to the AI side, but not received with these bytes",
+                   (unsigned)frame->id);
         }
         return;
     }
@@ -262,12 +265,12 @@ static void judge_passed(rules_t *rules, hal_can_side_t side, const hal_can_fram
         return;
     }
     if ((command == THROTTLE) && (frame->data[0] == 0u)) {
-        return; /* the end of an engagement, or one of STANDBY that had to wait */
+        return; /* throttle 0 at the end of an engagement, or of STANDBY, sent late */
     }
     uint8_t expected[8];
     memcpy(expected, rules->command_data[command], 8);
     if ((command == GEAR) && ((rules->gears_heard & frame->data[0]) != 0u)) {
-        expected[0] = frame->data[0]; /* a later one may have been dropped, because the vehicle was on the move */
+        expected[0] = frame->data[0]; /* a later gear command may have been dropped because the vehicle was moving */
     }
     if (command == THROTTLE) {
         const uint8_t most = (state == AGV_STATE_ACTIVE) ? rules->throttle_max : 0u;
@@ -275,7 +278,8 @@ static void judge_passed(rules_t *rules, hal_can_side_t side, const hal_can_fram
     }
     const bool same = memcmp(expected, frame->data, 8) == 0;
     if (!rules->command_heard[command] || (!same && ((command != STEERING) || !rules->limits_commands))) {
-        broken(rules, "TOP-2: %03X was passed to the vehicle side and not heard so", (unsigned)frame->id);
+        broken(rules, "TOP-2: %03X was sent to the vehicle side, but not received with these bytes",
+               (unsigned)frame->id);
     }
 }
 
@@ -297,7 +301,7 @@ void rules_sent(rules_t *rules, hal_can_side_t side, const hal_can_frame_t *fram
         broken(rules, "FSM-6: %s", oracle_verdict(&rules->oracle));
     }
     if (rules->shadow) {
-        broken(rules, "TOP-4: %03X left in shadow mode", (unsigned)frame->id);
+        broken(rules, "TOP-4: %03X was sent in shadow mode", (unsigned)frame->id);
     }
     if (rules->oracle.gateway) {
         judge_passed(rules, side, frame, state);
@@ -313,40 +317,41 @@ void rules_sent(rules_t *rules, hal_can_side_t side, const hal_can_frame_t *fram
     }
 }
 
-/* ---- What follows from it ---- */
+/* ---- Required reactions ---- */
 
 static uint64_t age_ms(const rules_t *rules, uint64_t then_ms) {
     return (rules->now_ms > then_ms) ? (rules->now_ms - then_ms) : 0u;
 }
 
-/* SUP-2, SUP-3: who supervises, hears. Only a tick looks at the clock. */
+/* SUP-2, SUP-3: while supervising, silence must trip. Only a tick checks the clock. */
 static void judge_silence(rules_t *rules) {
     static const uint64_t LIMITS[RULES_STATUS] = {HEARTBEAT_MS, GEAR_STATUS_MS, STATUS_MS, HEARTBEAT_MS,
                                                   STATUS_MS,    UINT64_MAX,     STATUS_MS}; /* 267h only warns */
     if ((age_ms(rules, rules->vcu.changed_ms) > HEARTBEAT_MS) ||
         (age_ms(rules, rules->eps.changed_ms) > HEARTBEAT_MS)) {
-        broken(rules, "SUP-2: the heartbeat of the VCU is %u ms old, of the EPS %u ms, and it has not tripped",
+        broken(rules,
+               "SUP-2: the heartbeat of the VCU is %u ms old, of the EPS %u ms, and the supervisor has not tripped",
                (unsigned)age_ms(rules, rules->vcu.changed_ms), (unsigned)age_ms(rules, rules->eps.changed_ms));
     }
     for (int i = 0; i < RULES_STATUS; i++) {
         if (age_ms(rules, rules->status_ms[i]) > LIMITS[i]) {
-            broken(rules, "SUP-3: status %d is %u ms old, and it has not tripped", i,
+            broken(rules, "SUP-3: status %d is %u ms old, and the supervisor has not tripped", i,
                    (unsigned)age_ms(rules, rules->status_ms[i]));
         }
     }
 }
 
-/* FSM-2: all safe commands go out in the call that trips. */
+/* FSM-2: all safe commands are sent in the call that trips. */
 static void judge_trip(rules_t *rules) {
     const uint8_t needed = (uint8_t)((1u << SIGNALS) | (1u << THROTTLE) | (rules->park_at_once ? (1u << GEAR) : 0u));
     rules->trips++;
-    rules->button_was_up = rules->status_heard[VEHICLE] && !rules->button_down; /* its next press is a new one */
+    rules->button_was_up = rules->status_heard[VEHICLE] && !rules->button_down; /* the next press is a new one */
     forget_confirmation(rules);
     rules->park_sent = (rules->sent_now & (1u << GEAR)) != 0u;
     rules->own_counter_known = false;
     rules->commanding_ms = rules->now_ms;
     if (rules->bus.takes_frames && !rules->shadow && ((rules->sent_now & needed) != needed)) {
-        broken(rules, "FSM-2: of the safe commands only %X left in the call that tripped", rules->sent_now);
+        broken(rules, "FSM-2: only the safe commands %X were sent in the call that tripped", rules->sent_now);
     }
 }
 
@@ -366,7 +371,7 @@ static void judge_reset(rules_t *rules) {
         missing = "throttle at idle for a second";
     } else if ((age_ms(rules, rules->vcu.changed_ms) > HEARTBEAT_MS + STEP_MS) ||
                (age_ms(rules, rules->eps.changed_ms) > HEARTBEAT_MS + STEP_MS)) {
-        missing = "a VCU and an EPS that are alive";
+        missing = "an alive VCU and EPS";
     } else {
         return;
     }
@@ -399,20 +404,22 @@ static void judge_state(rules_t *rules, const rules_seen_t *seen) {
         rules->safe_ms = rules->now_ms;
     }
     if (rules->alarm && is_supervising(seen->state)) {
-        broken(rules, "SUP-4: a fault bit was heard in state %02Xh, and it has not tripped", (unsigned)last->state);
+        broken(rules, "SUP-4: a fault bit was received in state %02Xh, and the supervisor has not tripped",
+               (unsigned)last->state);
     }
 }
 
 /*
- * FSM-4: what keeps it open in every state (SUP-7, TIM-3); only a tick looks at the controller and at the clock. What it
- * found there counts: a trip takes back what waited, and the tick feeds the watchdog after all else.
+ * FSM-4: conditions that keep the output open in every state (SUP-7, TIM-3). Only a tick checks the controller and the
+ * clock. The values before the tick count, because a trip discards waiting frames, and the tick feeds the watchdog
+ * last.
  */
 static void judge_closed(rules_t *rules) {
     if (rules->bus.is_bus_off) {
         broken(rules, "FSM-4: the safety output is closed in bus-off");
     }
     if (rules->bus.tx_pending_ms > rules->tx_stalled_ms) {
-        broken(rules, "FSM-4: the safety output is closed, and a frame has not left for %u ms",
+        broken(rules, "FSM-4: the safety output is closed, and a frame has not been sent for %u ms",
                (unsigned)rules->bus.tx_pending_ms);
     }
     if (age_ms(rules, rules->fed_ms) > rules->watchdog_period_ms) {
@@ -422,8 +429,9 @@ static void judge_closed(rules_t *rules) {
 }
 
 /*
- * FSM-4: two sums of time, in which autopilot was reported, or P that was commanded was not reported by a 0A3h that is not too
- * old; only what both of two ticks found is counted. Five seconds without either may have cleared them.
+ * FSM-4: two sums of time. In the first autopilot was reported, in the second P was commanded and not reported by a
+ * fresh 0A3h. Only time in which two successive ticks found it is counted. Five seconds without either may have cleared
+ * the sums.
  */
 static void add_up_confirmation(rules_t *rules) {
     const uint64_t gap_ms = age_ms(rules, rules->ticked_ms);
@@ -472,7 +480,7 @@ static void judge_output(rules_t *rules, const rules_seen_t *seen, bool tick) {
     }
 }
 
-/* TIM-1, TOP-1: while it sends the safe commands, they come often enough, and others are answered. */
+/* TIM-1, TOP-1: safe commands are sent on their cycles, and other senders' commands are overridden. */
 static void judge_sending(rules_t *rules, const rules_seen_t *seen, uint64_t tick_gap_ms) {
     const bool able = rules->bus.takes_frames && !rules->shadow && commands_safe(seen->state);
     if (!able || !commands_safe(rules->last.state)) {
@@ -487,7 +495,7 @@ static void judge_sending(rules_t *rules, const rules_seen_t *seen, uint64_t tic
             broken(rules, "TIM-1: safe command %d has not been sent for %u ms", i, (unsigned)age_ms(rules, since_ms));
         }
         if (rules->answer_owed[i] && (age_ms(rules, rules->answer_owed_ms[i]) > OVERRIDE_GAP_MS + tick_gap_ms)) {
-            broken(rules, "TOP-1: a command of another was not answered (command %d)", i);
+            broken(rules, "TOP-1: another sender's command was not overridden (command %d)", i);
         }
     }
 }
@@ -507,10 +515,10 @@ void rules_returned(rules_t *rules, const rules_seen_t *seen, bool tick, uint64_
         judge_sending(rules, seen, tick_gap_ms);
     }
     if (seen->gate_refused != rules->last.gate_refused) {
-        broken(rules, "INT-4: the gate had to refuse a frame in state %02Xh", (unsigned)seen->state);
+        broken(rules, "INT-4: the gate refused a frame in state %02Xh", (unsigned)seen->state);
     }
     if (agv_fault_is_in(&seen->active, AGV_FAULT_MEMORY_CORRUPTED)) {
-        broken(rules, "INT-5: memory was found corrupt, and no test changed it");
+        broken(rules, "INT-5: memory corruption was detected, but no test changed the memory");
     }
     if (seen->watchdog_feeds != rules->last.watchdog_feeds) {
         rules->fed_ms = rules->now_ms;

@@ -1,9 +1,9 @@
 /*
- * Each single bit of a supervisor's memory flipped, one at a time, at moments of each state (INT-5), between two calls of
- * it: never a frame that FSM-6 forbids, never a latch undone but by a reset under its conditions, and what is found is
- * latched for good with the output open. rules.h judges, which shares nothing with the gate.
+ * Flips each bit of a supervisor's memory, one at a time, in every state (INT-5), between two calls of the supervisor. It
+ * must never send a frame that FSM-6 forbids, and only a reset under its conditions may end the latch. A detected flip must
+ * latch until a power-on, with the safety output open. rules.h checks this; it shares no code with the gate.
  *
- * usage: bit_flips [--shard I/N] [--every N]     the moments of one shard, the N-th bits only
+ * usage: bit_flips [--shard I/N] [--every N]     only the situations of one shard, only every N-th bit
  */
 #include <stddef.h>
 #include <stdio.h>
@@ -16,27 +16,27 @@
 enum { BITS = 8 * sizeof(agv_supervisor_t), SEALED_BITS = 8 * offsetof(agv_supervisor_t, receive_alive) };
 enum { SHORT_MS = 40, LONG_MS = 1300, LONG_EVERY = 61 };
 
-/* ---- What is judged ---- */
+/* ---- Checks ---- */
 
 static struct {
     uint64_t moments;
     uint64_t flips;
     uint64_t detected;
     uint64_t harmless;
-    uint64_t late; /* of the detected ones: not in the first millisecond */
+    uint64_t late; /* detected, but after the first millisecond */
     uint64_t frames;
-    uint64_t resets; /* by a button, under all conditions */
+    uint64_t resets; /* by the button, under all conditions */
     uint64_t moments_of[TESTBED_STATES];
     uint64_t latched_flips;
 } sum;
 
-/* What may come of a supervisor that found itself corrupt and began anew with built-in constants (FSM-9). */
+/* Rules that may break after a detected flip, because the supervisor restarts with built-in constants (FSM-9). */
 static struct {
     const char *text;
     uint64_t seen;
 } borne[] = {
-    {"INT-5: memory was found corrupt", 0},
-    {"INT-4: the gate had to refuse", 0}, /* the counter of it is flipped */
+    {"INT-5: memory corruption was detected", 0},
+    {"INT-4: the gate refused", 0}, /* the flipped bit is in that counter */
     {"FSM-8: the own alive counter", 0},
     {"TOP-4: ", 0}, /* shadow is off in the built-in constants */
 };
@@ -62,7 +62,7 @@ static bool is_found(void) {
 enum { BUILT_IN_STATUS_ID = 0x7F0 };
 static sim_hal_sink_fn *judge_sent;
 
-/* What began anew with built-in constants sends its status frame with the identifier that stands there (FSM-9, TOP-3). */
+/* After such a restart the status frame has the identifier of the built-in constants (FSM-9, TOP-3). */
 static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
     const uint32_t configured = testbed.rules.oracle.own_status_id;
     if (is_found() && (frame->id == (uint32_t)BUILT_IN_STATUS_ID)) {
@@ -72,17 +72,17 @@ static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame
     testbed.rules.oracle.own_status_id = configured;
 }
 
-/* FSM-9: only a power-on ends it. */
+/* FSM-9: memory corruption is unresettable. */
 static void judge_found(void) {
     if (!testbed_is_latched()) {
-        harm_note("found corrupt, and not latched");
+        harm_note("memory corruption detected, but not latched");
     }
     if (testbed.hal.safety_output.on) {
-        harm_note("found corrupt, and the safety output is closed");
+        harm_note("memory corruption detected, but the safety output is closed");
     }
 }
 
-/* The vehicle obeys and the operator presses the button: all that a reset needs, if there is one to be had. */
+/* Fulfil all conditions of a reset: the vehicle obeys, and the operator presses the button. */
 static void ask_for_reset(void) {
     testbed_mode(MODE_MANUAL);
     testbed_gear(GEAR_P);
@@ -134,7 +134,7 @@ static void flip(unsigned bit) {
                 (unsigned)sizeof(agv_supervisor_t), (unsigned)(testbed.now_ms - saved.now_ms));
 }
 
-/* ---- Moments ---- */
+/* ---- Situations ---- */
 
 static part_t part;
 static unsigned moment_number;
@@ -166,13 +166,13 @@ static void load(unsigned variant, unsigned state) {
     testbed_run(30);
 }
 
-/* Between the same two frames of their cycles, some before a frame, some before a tick only. */
+/* Several times within a cycle: some before a frame, some before a tick only. */
 static void quiet_moments(unsigned variant, unsigned state) {
     static const unsigned STEPS_MS[] = {0, 1, 2, 5, 19, 41};
     load(variant, state);
     for (unsigned i = 0; i < sizeof STEPS_MS / sizeof STEPS_MS[0]; i++) {
         testbed_run(STEPS_MS[i]);
-        flip_each_bit("in its traffic", variant, state);
+        flip_each_bit("healthy traffic", variant, state);
     }
 }
 
@@ -189,7 +189,7 @@ static void waiting_moments(unsigned variant, unsigned state) {
     testbed_run(5);
     foreign_gear();
     foreign_gear();
-    flip_each_bit("an answer waits", variant, state);
+    flip_each_bit("an override waits", variant, state);
 }
 
 static void bus_off_moment(unsigned variant, unsigned state) {
@@ -210,10 +210,10 @@ static void restarted_moment(unsigned variant, unsigned state) {
     load(variant, state);
     testbed_restart(HAL_RESET_WATCHDOG);
     testbed_run(30);
-    flip_each_bit("after the watchdog has bitten", variant, 3);
+    flip_each_bit("after a watchdog reset", variant, 3);
 }
 
-/* Pressed since before the trip: only a flipped bit could make a press of it. */
+/* The button is held since before the trip. Only a flipped bit could turn this into a valid press. */
 static void old_press_moment(unsigned variant) {
     load(variant, 2);
     testbed_button(true);
@@ -247,18 +247,20 @@ int main(int argc, char **argv) {
     part = part_read("bit_flips", argc, argv);
     testbed_on_broken = on_broken;
     all_moments();
-    (void)printf("moments: %llu INIT, %llu STANDBY, %llu ACTIVE, %llu TRIPPED, %llu SAFE; %u of %u bits are sealed\n",
-                 (unsigned long long)sum.moments_of[0], (unsigned long long)sum.moments_of[1],
-                 (unsigned long long)sum.moments_of[2], (unsigned long long)sum.moments_of[3],
-                 (unsigned long long)sum.moments_of[4], (unsigned)SEALED_BITS, (unsigned)BITS);
+    (void)printf(
+        "situations: %llu INIT, %llu STANDBY, %llu ACTIVE, %llu TRIPPED, %llu SAFE; %u of %u bits are sealed\n",
+        (unsigned long long)sum.moments_of[0], (unsigned long long)sum.moments_of[1],
+        (unsigned long long)sum.moments_of[2], (unsigned long long)sum.moments_of[3],
+        (unsigned long long)sum.moments_of[4], (unsigned)SEALED_BITS, (unsigned)BITS);
     for (unsigned i = 0; i < sizeof borne / sizeof borne[0]; i++) {
-        (void)printf("afterwards, as it may be: %s... %llu times\n", borne[i].text, (unsigned long long)borne[i].seen);
+        (void)printf("permitted after a detected flip: %s... %llu times\n", borne[i].text,
+                     (unsigned long long)borne[i].seen);
     }
-    (void)printf("%llu frames judged, %llu flips in a latched state, %llu resets by the button, %llu detected late\n",
+    (void)printf("%llu frames checked, %llu flips in a latched state, %llu resets by the button, %llu detected late\n",
                  (unsigned long long)sum.frames, (unsigned long long)sum.latched_flips, (unsigned long long)sum.resets,
                  (unsigned long long)sum.late);
-    (void)printf("%u bits at %llu moments: %llu flips, %llu detected, %llu harmless, forbidden: %llu\n", (unsigned)BITS,
-                 (unsigned long long)sum.moments, (unsigned long long)sum.flips, (unsigned long long)sum.detected,
-                 (unsigned long long)sum.harmless, (unsigned long long)harm_count);
+    (void)printf("%u bits in %llu situations: %llu flips, %llu detected, %llu harmless, forbidden: %llu\n",
+                 (unsigned)BITS, (unsigned long long)sum.moments, (unsigned long long)sum.flips,
+                 (unsigned long long)sum.detected, (unsigned long long)sum.harmless, (unsigned long long)harm_count);
     return ((harm_count == 0u) && (sum.moments > 0u)) ? 0 : 1;
 }

@@ -229,7 +229,8 @@ static void write_frames(FILE *file) {
     } else if (sscanf(model_broken(), "TIM-1: safe command %u", &command) == 1) {
         (void)fprintf(file, "  frames:\n");
         write_frame(file, command, since(testbed.rules.sent_ms[command], testbed.rules.commanding_ms) + 1u);
-    } else if (sscanf(model_broken(), "TOP-1: a command of another was not answered (command %u", &command) == 1) {
+    } else if (sscanf(model_broken(), "TOP-1: another sender's command was not overridden (command %u", &command) ==
+               1) {
         (void)fprintf(file, "  frames:\n");
         write_frame(file, command, since(testbed.rules.answer_owed_ms[command], 0));
     } else {

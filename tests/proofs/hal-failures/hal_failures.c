@@ -1,10 +1,11 @@
 /*
- * Failure at every operation: a round through all states, a bus-off and two restarts, in which each single call of the HAL
- * is made to fail once; where it is one of the rarer ones also with the 24 calls after it, with these while the vehicle
- * trips it, and for good. Never a frame that FSM-6 forbids, never a latch undone but by a reset under its conditions; what
- * was sent is what is counted, and a controller that takes nothing is noticed. rules.h judges.
+ * Makes the calls of the HAL fail. A round leads through all states, a bus-off and two restarts. Each call of the round is
+ * made to fail once. All calls of the rarer operations, and some of the common ones, are also made to fail together with
+ * the 24 calls after them, the same during a trip, and permanently. The supervisor must never send a frame that FSM-6
+ * forbids, and only a reset under its conditions may end the latch. The counter of sent frames must be right, and a
+ * controller that accepts nothing must be detected. rules.h checks this.
  *
- * usage: hal_failures [--shard I/N] [--every N]     the calls of one shard, the N-th calls only
+ * usage: hal_failures [--shard I/N] [--every N]     only the calls of one shard, only every N-th call
  */
 #define _POSIX_C_SOURCE 200809L
 #include <signal.h>
@@ -30,12 +31,12 @@ static const char *const NAMES[SIM_HAL_OP_COUNT] = {
     "led_set",      "reset_cause",       "safety_output_set", "store_read_latch", "store_write_latch",
     "store_append", "store_read_record", "watchdog_feed"};
 
-/* ---- What is judged ---- */
+/* ---- Checks ---- */
 
-/* What a failing operation may come to: no frame leaves that should, a pin does not move, a record is not there. */
+/* Rules that a failing operation may break: a frame is not sent, a pin does not change, a record is missing. */
 typedef struct {
     sim_hal_op_t op;
-    bool one_is_enough; /* else not when a single call fails */
+    bool one_is_enough; /* false: a single failing call must not break the rule */
     const char *text;
 } borne_t;
 
@@ -48,7 +49,7 @@ static const borne_t BORNE[] = {
     {SIM_HAL_OP_CAN_STATUS, true, "TOP-1: "},
     {SIM_HAL_OP_CAN_STATUS, true, "FSM-2: "},
     {SIM_HAL_OP_SAFETY_OUTPUT_SET, true, "FSM-4: the safety output is closed"},
-    /* The supervisor cannot notice it; a watchdog would bite, but it is off here. */
+    /* The supervisor cannot detect it. A hardware watchdog would expire, but it is off here. */
     {SIM_HAL_OP_WATCHDOG_FEED, false, "FSM-4: the safety output is closed, and the watchdog has not been fed"},
     {SIM_HAL_OP_RESET_CAUSE, true, "FSM-7: "},
     {SIM_HAL_OP_STORE_READ_LATCH, true, "FSM-7: after a reset the first reason is"},
@@ -56,20 +57,20 @@ static const borne_t BORNE[] = {
 };
 
 static struct {
-    uint64_t calls; /* that were made to fail */
+    uint64_t calls; /* calls that were made to fail */
     uint64_t runs;
-    uint64_t failures; /* calls that failed, all of them */
+    uint64_t failures; /* all failed calls, also those of a series */
     uint64_t borne;
-    uint64_t noticed; /* runs in which nothing was taken any more, and TX_STALLED was raised */
+    uint64_t noticed; /* runs in which no frame was accepted any more, and TX_STALLED was raised */
     uint64_t frames;
     uint64_t resets;
     uint64_t of_op[SIM_HAL_OP_COUNT];
 } sum;
 
-static testbed_state_t saved; /* before the call that fails */
+static testbed_state_t saved; /* before the failing call */
 static uint32_t failing_ops;
 static uint32_t failing_count;
-static bool is_failing; /* false: in the round itself, where nothing may break */
+static bool is_failing; /* false: in the round without failures, in which no rule may break */
 
 static void on_broken(void) {
     bool is_borne = false;
@@ -81,7 +82,7 @@ static void on_broken(void) {
     harm_take_rule(is_borne);
 }
 
-/* ---- One step of the round, and what fails in it ---- */
+/* ---- One step of the round, and its failures ---- */
 
 typedef enum { RUN, RESTART_WATCHDOG, RESTART_POWER_ON } act_t;
 
@@ -99,23 +100,23 @@ static void act(act_t what) {
     }
 }
 
-/* Frames that left are counted as sent, and nothing else is. */
+/* The counter of sent frames must be the number of frames that were sent. */
 static void judge_counters(act_t what) {
     const uint32_t before = (what == RUN) ? agv_supervisor_counters(&saved.supervisor)->sent : 0u;
     const uint32_t counted = agv_supervisor_counters(&testbed.supervisor)->sent - before;
     if (counted != (uint32_t)(testbed.rules.sent - saved.rules.sent)) {
-        harm_note("what was sent is not what is counted");
+        harm_note("the counter of sent frames is wrong");
     }
 }
 
-/* SUP-7: frames that wait and are not taken. */
+/* SUP-7: frames wait and are not accepted. */
 static void judge_stalled(uint32_t count, uint32_t ops) {
     const bool dead = (count == UINT32_MAX) && (((ops >> SIM_HAL_OP_CAN_SEND) & 1u) != 0u);
     if (!dead || !testbed_is_latched() || testbed.rules.shadow || testbed_has(AGV_FAULT_BUS_OFF)) {
         return;
     }
     if (!testbed_has(AGV_FAULT_TX_STALLED) || testbed.hal.safety_output.on) {
-        harm_note("no frame is taken any more, and TX_STALLED is not raised");
+        harm_note("no frame is accepted any more, and TX_STALLED is not raised");
     }
     sum.noticed++;
 }
@@ -140,13 +141,13 @@ static void fail(const char *where, act_t what, uint32_t call, uint32_t count, u
     sum.frames += testbed.rules.sent - saved.rules.sent;
     sum.resets += testbed.rules.resets - saved.rules.resets;
     if (testbed.hal.failures == before) {
-        harm_note("nothing has failed");
+        harm_note("no call has failed");
     }
     harm_report("%s, call %u (%s), %u in a row, operations %X", where, (unsigned)call, NAMES[testbed.hal.last_failed],
                 (unsigned)count, (unsigned)ops);
 }
 
-/* No step of the round takes that long, even on a busy computer. */
+/* A step of the round never takes as long as HANG_S, even on a busy computer. */
 static void on_alarm(int number) {
     static const char TEXT[] = "HARM: a call does not return: it hangs\n";
     (void)number;
@@ -156,7 +157,7 @@ static void on_alarm(int number) {
 static part_t part;
 static unsigned call_number;
 
-/* Which operation the call of this number is. */
+/* The operation of a call, by its number. */
 static sim_hal_op_t find_op(act_t what, uint32_t call) {
     testbed_restore(&saved);
     is_failing = true;
@@ -241,7 +242,7 @@ static void round_of(unsigned variant) {
     testbed_button(false);
     steps("STANDBY again", 30);
     if (agv_supervisor_state(&testbed.supervisor) != AGV_STATE_STANDBY) {
-        harm_note("it does not end in STANDBY");
+        harm_note("the round does not end in STANDBY");
         harm_report("variant %u: the round itself", variant);
     }
 }
@@ -256,9 +257,10 @@ int main(int argc, char **argv) {
     for (unsigned op = 0; op < (unsigned)SIM_HAL_OP_COUNT; op++) {
         (void)printf("%-18s %8llu calls\n", NAMES[op], (unsigned long long)sum.of_op[op]);
     }
-    (void)printf("%llu rules borne, %llu dead controllers noticed, %llu frames judged, %llu resets by the button\n",
-                 (unsigned long long)sum.borne, (unsigned long long)sum.noticed, (unsigned long long)sum.frames,
-                 (unsigned long long)sum.resets);
+    (void)printf(
+        "%llu permitted broken rules, %llu dead controllers detected, %llu frames checked, %llu resets by the button\n",
+        (unsigned long long)sum.borne, (unsigned long long)sum.noticed, (unsigned long long)sum.frames,
+        (unsigned long long)sum.resets);
     (void)printf("%d rounds: %llu calls made to fail in %llu runs, %llu failures, harm: %llu\n", (int)TESTBED_VARIANTS,
                  (unsigned long long)sum.calls, (unsigned long long)sum.runs, (unsigned long long)sum.failures,
                  (unsigned long long)harm_count);

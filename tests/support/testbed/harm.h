@@ -1,5 +1,5 @@
 /*
- * What bit_flips and hal_failures share: the harm of one run on the testbed, and its report.
+ * Broken rules of one run on the testbed ("harm"), and their report, for bit_flips and hal_failures.
  */
 #ifndef HARM_H
 #define HARM_H
@@ -7,21 +7,21 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Runs that did harm so far. */
+/* Number of runs with a broken rule so far. */
 extern uint64_t harm_count;
 
-/* A run begins: no harm yet. */
+/* Begin a run. */
 void harm_begin(void);
 
-/* Harm in this run; only the first is kept. */
+/* Note a broken rule of this run; only the first is kept. */
 void harm_note(const char *what);
 bool harm_is_noted(void);
 
-/* Whether the rule that was just broken begins with this text; then take it, as harm unless it is to be expected. */
+/* Whether the text of the last broken rule begins like this. Clear that rule, and note it unless it is expected. */
 bool harm_rule_is(const char *text);
 void harm_take_rule(bool expected);
 
-/* The run is over: count its harm, if any, and print the first 20, with where it came from. */
+/* End a run: if a rule was broken, count the run. The first 20 are printed, with their situation. */
 __attribute__((format(printf, 1, 2))) void harm_report(const char *format, ...);
 
 #endif

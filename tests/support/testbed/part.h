@@ -1,14 +1,14 @@
-/* Which part of its work a program of tests/proofs does: --shard I/N and --every N. */
+/* Options of the programs of tests/proofs that select a part of the work: --shard I/N and --every N. */
 #ifndef PART_H
 #define PART_H
 
 typedef struct {
     unsigned shard;  /* from 0 */
     unsigned shards; /* not 0 */
-    unsigned every;  /* of what belongs to the shard, each so-manieth; not 0 */
+    unsigned every;  /* only every N-th item of the shard; not 0 */
 } part_t;
 
-/* From the command line; without options all of it. What is wrong ends the program with the usage and status 2. */
+/* Read the options; the default is all work. A wrong option ends the program with its usage and exit status 2. */
 part_t part_read(const char *program, int argc, char **argv);
 
 #endif

@@ -1,8 +1,8 @@
 /*
- * One supervisor on the simulated port, the traffic of a vehicle around it, and the rules that judge it (rules.h). For
+ * One supervisor on the simulated port, with the traffic of a vehicle and the rules that check every call (rules.h). For
  * programs that start from the same state very often: a state is reached once and then copied.
  *
- * There is one live testbed; it is judged in every call, and the first broken rule ends the program.
+ * There is one global testbed. The first broken rule ends the program.
  */
 #ifndef TESTBED_H
 #define TESTBED_H
@@ -26,10 +26,10 @@ typedef struct {
     agv_config_t config;
     agv_ports_t ports;
     rules_t rules;
-    uint64_t now_ms;    /* since the testbed began; never wraps */
-    uint32_t offset_ms; /* the supervisor's clock reads now_ms + offset_ms */
-    uint64_t ticked_ms; /* when the last tick came */
-    uint32_t unsettled; /* ticks until what the controller went through counts as over */
+    uint64_t now_ms;    /* time since the start of the testbed; never wraps */
+    uint32_t offset_ms; /* the supervisor's clock is now_ms + offset_ms */
+    uint64_t ticked_ms; /* time of the last tick */
+    uint32_t unsettled; /* ticks until a disturbance of the controller counts as over */
     bool receive_path_dead;
     traffic_message_t traffic[TRAFFIC_MESSAGES];
 } testbed_t;
@@ -37,32 +37,32 @@ typedef struct {
 extern testbed_t testbed;
 
 /*
- * Put the testbed into a state, as it is just after it was entered and has settled.
- * @param variant of the configuration, below TESTBED_VARIANTS: topologies, identifier sets, choices, and where the clock
- *                stands; in some it wraps soon after
+ * Put the testbed into a state that was just entered and has settled.
+ * @param variant of the configuration, below TESTBED_VARIANTS: topology, ID set, choices, and the clock at the start; in
+ *                some variants it wraps soon after
  * @param state   0 INIT, 1 STANDBY, 2 ACTIVE, 3 TRIPPED, 4 SAFE
  */
 void testbed_load(unsigned variant, unsigned state);
 
-/* Hand over any frame, `ahead_ms` later than now; less than 0: its stamp is so much older. */
+/* Pass any frame to the supervisor, `ahead_ms` later than now. Below 0: now, with an older stamp. */
 void testbed_frame(hal_can_side_t side, hal_can_frame_t frame, int32_t ahead_ms);
 
-/* The message's own next frame, now. */
+/* Send the next healthy frame of a message now. */
 void testbed_send(unsigned message);
 
-/* One tick, so much later, without traffic in between. */
+/* One tick after `ms`, without traffic in between. */
 void testbed_jump(uint32_t ms);
 
-/* So many steps of a millisecond, with traffic and a tick each. */
+/* Run steps of a millisecond, each with traffic and a tick. */
 void testbed_run(uint32_t ms);
 
 /* Restart the supervisor after a reset with this cause. */
 void testbed_restart(hal_reset_cause_t cause);
 
-/* The controller of a side goes through something. */
+/* Disturb the controller of a side. */
 void testbed_disturb(hal_can_side_t side, unsigned kind, uint8_t amount);
 
-/* Values of the traffic. */
+/* Set values of the traffic. */
 void testbed_mode(uint8_t mode);
 void testbed_button(bool down);
 void testbed_gear(uint8_t gear);
@@ -70,11 +70,11 @@ void testbed_wheels(uint8_t mm_s);
 void testbed_heal(void);
 void testbed_ai_drives(void);
 
-/* Whether the supervisor is latched, also by a state code that is none of the five; whether a fault's cause is there. */
+/* Whether the supervisor is latched, also by a corrupted state code; whether the cause of a fault is present. */
 bool testbed_is_latched(void);
 bool testbed_has(agv_fault_t fault);
 
-/* End the program when a rule was broken, or do this instead, once it is set. */
+/* End the program if a rule was broken, or call this function instead, if it is set. */
 void testbed_judge(void);
 extern void (*testbed_on_broken)(void);
 

@@ -1,6 +1,6 @@
 /*
- * A state of the testbed (testbed.h), to come back to very often. What is in the log and in the recorder decides nothing
- * and is left as it is.
+ * A saved state of the testbed (testbed.h). It does not contain the stored log and the recorder's events, which have no
+ * effect on decisions.
  */
 #ifndef TESTBED_STATE_H
 #define TESTBED_STATE_H
