@@ -2,9 +2,11 @@
 # change is linked instead of the one in the library.
 #
 #   agv_add_seeded(CHECKER SOURCES a.c ... [LIBS library ...] [OPTIONS link-option ...] [ONLY word])
+#   agv_add_seeded(CHECKER COMPILE_ONLY)
 #
 # One program seeded_CHECKER_NAME for each fault of the checker; ONLY: those that are run with this word. seed.py runs
-# them. Built in an ordinary build, and in that of the fuzz targets (target fuzz_seeded).
+# them. COMPILE_ONLY: the changed sources are compiled; another tool reads them. Built in an ordinary build, and in that
+# of the fuzz targets (target fuzz_seeded).
 set(AGV_SEED_FOLDER ${CMAKE_CURRENT_LIST_DIR})
 set_property(DIRECTORY ${PROJECT_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${AGV_SEED_FOLDER}/seeded.tsv)
 add_custom_target(fuzz_seeded)
@@ -16,7 +18,7 @@ if(NOT AGV_SEED_PYTHON)
 endif()
 
 function(agv_add_seeded CHECKER)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "ONLY" "SOURCES;LIBS;OPTIONS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "COMPILE_ONLY" "ONLY" "SOURCES;LIBS;OPTIONS")
   if(NOT AGV_SEED_PYTHON OR (AGV_INSTRUMENT AND NOT AGV_INSTRUMENT STREQUAL "fuzz"))
     return()
   endif()
@@ -51,14 +53,15 @@ macro(agv_add_seeded_program CHECKER NAME)
     COMMAND ${AGV_SEED_FOLDER}/seed.py apply ${CHECKER}/${NAME} ${folder}
     DEPENDS ${originals} ${AGV_SEED_FOLDER}/seed.py ${AGV_SEED_FOLDER}/seeded.tsv
     COMMENT "Seeding ${CHECKER}/${NAME}" VERBATIM)
-  add_executable(${program} ${arg_SOURCES} ${copies})
   set_source_files_properties(${copies} PROPERTIES COMPILE_OPTIONS -w)
-  target_include_directories(${program} PRIVATE ${PROJECT_SOURCE_DIR}/firmware/src)
-  target_link_libraries(${program} PRIVATE agv_options ${arg_LIBS})
-  if(NOT AGV_INSTRUMENT)
-    target_link_options(${program} PRIVATE -fno-lto)
+  if(arg_COMPILE_ONLY)
+    add_library(${program} OBJECT ${copies})
+  else()
+    add_executable(${program} ${arg_SOURCES} ${copies})
+    target_link_options(${program} PRIVATE $<$<NOT:$<BOOL:${AGV_INSTRUMENT}>>:-fno-lto> ${arg_OPTIONS})
   endif()
-  target_link_options(${program} PRIVATE ${arg_OPTIONS})
+  target_include_directories(${program} PRIVATE ${PROJECT_SOURCE_DIR}/firmware/src)
+  target_link_libraries(${program} PRIVATE agv_options agv_core ${arg_LIBS})
   if(AGV_INSTRUMENT)
     set_target_properties(${program} PROPERTIES EXCLUDE_FROM_ALL ON)
     add_dependencies(fuzz_seeded ${program})

@@ -1,8 +1,7 @@
 /*
- * What tests/proofs/call-path/call-path.py runs: a supervisor on a shared bus is brought to ACTIVE by a healthy vehicle, then three calls of it
- * are traced: a 363h that changes nothing, a tick on which nothing is due, and a
- * 167h with a fault bit, which trips. The core is compiled with -finstrument-functions; each function entered and left
- * becomes a line. Public headers only, so that older cores can be measured by the same program.
+ * What call-path.py runs: a healthy vehicle brings a supervisor on a shared bus to ACTIVE, then three calls of it are
+ * traced: a 363h that changes nothing, a tick on which nothing is due, and a 167h with a fault bit, which trips. The core
+ * is compiled with -finstrument-functions; each function entered and left becomes a line.
  */
 #include <inttypes.h>
 #include <stdio.h>

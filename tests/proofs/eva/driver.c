@@ -189,8 +189,8 @@ static void any_sound_state(void) {
     sound_config(&core->config);
     sound_truths(core);
     core->transmitter.kept = any(0u, (1u << AGV_MSG_COUNT) - 1u);
-    core->mode.oldest = any(0u, 2u);
-    core->liveness.next_to_age = any(0u, AGV_MSG_COUNT - 1u);
+    core->mode.oldest = (uint8_t)any(0u, 2u);
+    core->liveness.next_to_age = (uint8_t)any(0u, AGV_MSG_COUNT - 1u);
     supervisor.receive_alive = any_bool();
 }
 
@@ -203,6 +203,7 @@ static void within(uint32_t value, uint32_t lowest, uint32_t highest) {
 static void check_memory(const agv_core_t *core) {
     /*@ assert core->transmitter.kept < (1 << AGV_MSG_COUNT); */
     /*@ assert core->mode.oldest < 3; */
+    /*@ assert core->liveness.next_to_age < AGV_MSG_COUNT; */
 }
 
 static void check_invariants(const agv_core_t *core) {
@@ -216,6 +217,11 @@ static void check_invariants(const agv_core_t *core) {
 }
 
 /* ---- The entry points ---- */
+
+void eva_frame(void);
+void eva_tick(void);
+void eva_config(void);
+void eva_start(void);
 
 static agv_ports_t any_ports(void) {
     return (agv_ports_t){.hal = &port, .recorder = &recorder};
