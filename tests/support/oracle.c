@@ -31,6 +31,8 @@ void oracle_configure(oracle_t *oracle, const agv_config_t *config) {
 
 void oracle_restart(oracle_t *oracle) {
     oracle->angle_known = false;
+    oracle->angles = 0u;
+    oracle->held_sent_ms = oracle->now_ms;
     oracle->latched = false;
     oracle->held = false;
     oracle->manual = false;
@@ -52,9 +54,35 @@ static void hold(oracle_t *oracle) {
     oracle->held_raw = oracle->angle_raw;
 }
 
+/* After 2 s without 065h an angle is held anew; from then on within the time in which the supervisor can notice it. */
+enum { ANEW_MS = 2000, SURELY_ANEW_MS = 2700, RECENT_MS = 40 };
+
+static bool is_recent(const oracle_t *oracle, uint16_t raw) {
+    bool recent = false;
+    for (uint32_t i = 0u; (i < ORACLE_ANGLES) && (i < oracle->angles); i++) {
+        recent = recent || ((oracle->recent_raw[i] == raw) && (oracle->now_ms - oracle->recent_ms[i] <= RECENT_MS));
+    }
+    return recent;
+}
+
+/* Whether 065h may carry this angle. One that is taken anew is held from then on. */
+static bool may_hold(oracle_t *oracle, uint16_t raw) {
+    const uint32_t unsent_ms = oracle->now_ms - oracle->held_sent_ms;
+    const bool kept = oracle->held && (raw == oracle->held_raw) && (unsent_ms <= SURELY_ANEW_MS);
+    const bool anew = oracle->held && (unsent_ms >= ANEW_MS) && is_recent(oracle, raw);
+    if (kept || anew) {
+        oracle->held_raw = raw;
+        oracle->held_sent_ms = oracle->now_ms;
+    }
+    return kept || anew;
+}
+
 /* FSM-10: the last valid angle before the trip is held, unless it is too old. Manual mode drops the held angle. */
 static void follow(oracle_t *oracle, agv_state_t state) {
     const bool latched = is_latched(state);
+    if (latched && !oracle->latched) {
+        oracle->held_sent_ms = oracle->now_ms;
+    }
     if (latched && !oracle->latched && oracle->angle_known &&
         ((oracle->now_ms - oracle->angle_ms) <= oracle->hold_age_ms)) {
         hold(oracle);
@@ -79,6 +107,9 @@ static void heard_angle(oracle_t *oracle, const hal_can_frame_t *frame) {
     oracle->angle_known = true;
     oracle->angle_raw = raw;
     oracle->angle_ms = frame->time_ms;
+    oracle->recent_raw[oracle->angles % ORACLE_ANGLES] = raw;
+    oracle->recent_ms[oracle->angles % ORACLE_ANGLES] = frame->time_ms;
+    oracle->angles++;
     if (oracle->latched && !oracle->held && !manual_is_reported(oracle)) {
         hold(oracle);
     }
@@ -123,7 +154,7 @@ void oracle_heard(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *
     }
 }
 
-static bool safe_to_vehicle(const oracle_t *oracle, const hal_can_frame_t *frame, agv_state_t state) {
+static bool safe_to_vehicle(oracle_t *oracle, const hal_can_frame_t *frame, agv_state_t state) {
     if (frame->id == oracle->signal_id) {
         return bytes_are(frame, SAFE_SIGNALS, SAFE_SIGNALS_BYTES); /* any counter */
     }
@@ -133,8 +164,7 @@ static bool safe_to_vehicle(const oracle_t *oracle, const hal_can_frame_t *frame
     case 0x075u:
         return bytes_are(frame, SAFE_THROTTLE, 8);
     case 0x065u:
-        return (state != AGV_STATE_INIT) && oracle->held && (word_at(frame->data) == oracle->held_raw) &&
-               zeros_from(frame, 2);
+        return (state != AGV_STATE_INIT) && zeros_from(frame, 2) && may_hold(oracle, word_at(frame->data));
     default:
         return false;
     }

@@ -13,6 +13,8 @@
 #include "agv/state.h"
 #include "hal/can.h"
 
+enum { ORACLE_ANGLES = 4 };
+
 typedef struct {
     /* configuration */
     bool gateway;
@@ -41,6 +43,10 @@ typedef struct {
     bool latched;
     bool held;
     uint16_t held_raw;
+    uint32_t held_sent_ms; /* last own 065h; the trip before the first one */
+    uint16_t recent_raw[ORACLE_ANGLES];
+    uint32_t recent_ms[ORACLE_ANGLES];
+    uint32_t angles; /* valid ones received */
 
     /* result */
     uint32_t judged;    /* frames sent in INIT, TRIPPED, SAFE */

@@ -28,7 +28,7 @@ typedef struct {
 } agv_ports_t;
 
 /** Memory of a supervisor in bytes, the same on every platform. */
-#define AGV_SUPERVISOR_MEMORY 1016u
+#define AGV_SUPERVISOR_MEMORY 920u
 
 /**
  * One supervisor, in memory of the caller. Read it through the functions below. `seal` is a checksum over `memory`,

@@ -56,7 +56,7 @@ void agv_timers_set_time(agv_timers_t *timers, uint32_t time_ms) {
 }
 
 /* The longest time until the timers are evaluated again. */
-enum { HORIZON_MS = 65536 };
+enum { HORIZON_MS = UINT16_MAX };
 
 /* Time from since_ms until the timer has reached its limit. */
 static uint32_t span_of(const agv_config_t *config, uint32_t timer) {
@@ -67,12 +67,17 @@ static bool is_running(const agv_timers_t *timers, uint32_t timer) {
     return timers->phase[timer] == (uint8_t)AGV_TIMER_RUNNING;
 }
 
-/* Returns the time until the next timer reaches its limit, or less. */
-static uint32_t evaluate(agv_timers_t *timers, const agv_config_t *config) {
+/* The age of a running timer at the latest time seen. */
+static uint32_t age_of(const agv_timers_t *timers, uint32_t timer) {
+    return (timers->now_ms - timers->since_ms[timer]) & UINT16_MAX;
+}
+
+/* Note which timers reach their limit within @p step_ms. Returns the time from then until the next one, or less. */
+static uint32_t evaluate(agv_timers_t *timers, const agv_config_t *config, uint32_t step_ms) {
     uint32_t next_ms = HORIZON_MS;
     for (uint32_t i = 0u; i < (uint32_t)AGV_TIMER_COUNT; i++) {
         if (is_running(timers, i)) {
-            const uint32_t age_ms = agv_age_ms(timers->now_ms, timers->since_ms[i]);
+            const uint32_t age_ms = age_of(timers, i) + step_ms;
             const uint32_t span_ms = span_of(config, i);
             if (age_ms >= span_ms) {
                 timers->phase[i] = AGV_TIMER_REACHED;
@@ -91,11 +96,11 @@ void agv_timers_advance(agv_timers_t *timers, const agv_config_t *config, uint32
     if (time_ms == timers->now_ms) {
         timers->now_us = ((now_us - timers->now_us) < 1000u) ? now_us : timers->now_us;
     } else if (agv_age_ms(time_ms, timers->now_ms) > 0u) {
+        if ((time_ms - timers->due_ms) <= (UINT32_MAX / 2u)) {
+            timers->due_ms = time_ms + evaluate(timers, config, time_ms - timers->now_ms);
+        }
         timers->now_ms = time_ms;
         timers->now_us = now_us;
-        if ((time_ms - timers->due_ms) <= (UINT32_MAX / 2u)) {
-            timers->due_ms = time_ms + evaluate(timers, config);
-        }
     } else {
         /* from before */
     }
@@ -103,10 +108,12 @@ void agv_timers_advance(agv_timers_t *timers, const agv_config_t *config, uint32
 
 /* due_ms stays valid: a timer that is restarted can only reach its limit later. */
 void agv_timer_start_at(agv_timers_t *timers, uint32_t timer, uint32_t since_ms) {
-    if (!is_running(timers, timer) || (agv_age_ms(timers->since_ms[timer], since_ms) > 0u)) {
+    const uint32_t past_ms = agv_age_ms(timers->now_ms, since_ms);
+    const uint32_t age_ms = (past_ms < (uint32_t)UINT16_MAX) ? past_ms : (uint32_t)UINT16_MAX;
+    if (!is_running(timers, timer) || (age_ms > age_of(timers, timer))) {
         timers->due_ms = timers->now_ms;
     }
-    timers->since_ms[timer] = since_ms;
+    timers->since_ms[timer] = (uint16_t)(timers->now_ms - age_ms);
     timers->phase[timer] = AGV_TIMER_RUNNING;
 }
 
@@ -120,7 +127,7 @@ void agv_timer_stop(agv_timers_t *timers, uint32_t timer) {
 
 uint32_t agv_timer_spent_ms(const agv_timers_t *timers, const agv_config_t *config, uint32_t timer) {
     const uint32_t limit_ms = limit_of(config, timer);
-    const uint32_t age_ms = agv_age_ms(timers->now_ms, timers->since_ms[timer]);
+    const uint32_t age_ms = age_of(timers, timer);
     return (is_running(timers, timer) && (age_ms < limit_ms)) ? age_ms : limit_ms;
 }
 

@@ -36,11 +36,11 @@ enum { AGV_TIMER_STOPPED = 0, AGV_TIMER_RUNNING = 1, AGV_TIMER_REACHED = 2 };
 
 /** Time and timers of one supervisor. */
 typedef struct {
-    uint32_t now_ms; /**< latest time seen */
-    uint32_t now_us; /**< the same in microseconds, wraps */
-    uint32_t due_ms; /**< no running timer reaches its limit before this time */
-    uint32_t since_ms[AGV_TIMER_COUNT];
-    uint8_t phase[AGV_TIMER_COUNT]; /**< AGV_TIMER_STOPPED ... */
+    uint32_t now_ms;                    /**< latest time seen */
+    uint32_t now_us;                    /**< the same in microseconds, wraps */
+    uint32_t due_ms;                    /**< no running timer reaches its limit before this time */
+    uint16_t since_ms[AGV_TIMER_COUNT]; /**< start, low half: a running timer is younger than its limit, at most 60 s */
+    uint8_t phase[AGV_TIMER_COUNT];     /**< AGV_TIMER_STOPPED ... */
 } agv_timers_t;
 
 /**
@@ -71,7 +71,7 @@ uint32_t agv_timer_spent_ms(const agv_timers_t *timers, const agv_config_t *conf
 /** Start or restart a timer now. */
 void agv_timer_start(agv_timers_t *timers, uint32_t timer);
 
-/** Start or restart a timer at a given time. */
+/** Start or restart a timer at a given time; now if that lies in the future. */
 void agv_timer_start_at(agv_timers_t *timers, uint32_t timer, uint32_t since_ms);
 
 /** Stop a timer. */

@@ -10,23 +10,37 @@
 
 #include "observe/vehicle.h"
 
-/** The held angle. All zero: no angle is held. */
+/** The held angle. No angle is held while `check` is not the complement, as when all is zero. */
 typedef struct {
-    uint16_t raw;   /**< 0..18000 (P5) */
-    uint16_t check; /**< complement of raw */
+    uint16_t raw;       /**< 0..18000 (P5) */
+    uint16_t check;     /**< complement of raw */
+    uint16_t unsent_ms; /**< time for which 065h could not be sent, at most AGV_HOLD_UNSENT_MAX_MS */
 } agv_hold_t;
+
+/** After this time without 065h, ms, the wheels may have turned: the angle is out of date (FSM-10). */
+enum { AGV_HOLD_UNSENT_MAX_MS = 2000 };
 
 /** Hold, at a trip, the angle of the last valid 067h if it is not older than hold_age_ms. */
 void agv_hold_trip(agv_hold_t *hold, const agv_vehicle_t *vehicle, const agv_timers_t *timers);
 
 /**
- * Drop the held angle: at a reset, or when manual is reported and the operator steers.
+ * Drop the held angle: at a reset, when manual is reported and the operator steers.
  * @return whether an angle was held
  */
 bool agv_hold_drop(agv_hold_t *hold);
 
-/** Hold the angle of a valid 067h, if none is held. Call in TRIPPED and SAFE while manual is not reported. */
+/**
+ * Hold the angle of a valid 067h if none is held, or if the held one is out of date. Call in TRIPPED and SAFE while manual is
+ * not reported.
+ */
 void agv_hold_take(agv_hold_t *hold, const agv_vehicle_t *vehicle);
+
+/**
+ * Measure for how long 065h could not be sent. Call in TRIPPED and SAFE, in every pass.
+ * @param elapsed_ms since the last tick; 0 for a frame
+ * @param sendable   065h may be sent and leaves the controller
+ */
+void agv_hold_follow(agv_hold_t *hold, uint32_t elapsed_ms, bool sendable);
 
 /** Whether an angle is held. */
 bool agv_hold_is_held(const agv_hold_t *hold);

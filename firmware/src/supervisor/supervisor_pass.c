@@ -173,21 +173,25 @@ void agv_core_await_safe_state(agv_core_t *core) {
 }
 
 /* FSM-10: manual drops the held angle, and 065h frames in a stalled transmitter, which would otherwise leave later. */
-static void follow_hold(agv_core_t *core, hal_t *hal) {
+static void follow_hold(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) {
+    const bool stalled = agv_fault_monitor_is_active(&core->faults, AGV_FAULT_TX_STALLED);
     const bool dropped = (!is_latched(core) || agv_mode_is_manual(&core->mode)) && agv_hold_drop(&core->hold);
-    if (dropped && agv_fault_monitor_is_active(&core->faults, AGV_FAULT_TX_STALLED)) {
+    if (is_latched(core)) {
+        agv_hold_follow(&core->hold, elapsed_ms, is_holdable(core) && !stalled);
+    }
+    if (dropped && stalled) {
         agv_transmitter_discard(&core->transmitter, &core->timers, HAL_CAN_VEHICLE);
         hal_can_purge(hal, HAL_CAN_VEHICLE);
     }
 }
 
 /* Update the modules that depend on the state: hold, confirmation, limits. */
-static void follow_state(agv_core_t *core, hal_t *hal, uint32_t what) {
+static void follow_state(agv_core_t *core, hal_t *hal, uint32_t what, uint32_t elapsed_ms) {
     if ((what & AGV_ACTION_TRIP) != 0u) {
         agv_core_await_safe_state(core);
         agv_hold_trip(&core->hold, &core->vehicle, &core->timers);
     }
-    follow_hold(core, hal);
+    follow_hold(core, hal, elapsed_ms);
     if ((what & AGV_ACTION_RESET_ACCEPTED) != 0u) {
         agv_confirmation_start(&core->confirmation, &core->timers);
         agv_stopping_end(&core->stopping);
@@ -208,11 +212,11 @@ static void drop_what_may_not_wait(agv_core_t *core) {
     }
 }
 
-static void carry_out_at_once(agv_core_t *core, const agv_ports_t *ports, uint32_t what) {
+static void carry_out_at_once(agv_core_t *core, const agv_ports_t *ports, uint32_t what, uint32_t elapsed_ms) {
     if ((what & AGV_ACTION_OPEN_OUTPUT) != 0u) {
         hal_safety_output_set(ports->hal, false);
     }
-    follow_state(core, ports->hal, what);
+    follow_state(core, ports->hal, what, elapsed_ms);
     if ((what & AGV_ACTION_DISCARD) != 0u) {
         agv_transmitter_discard(&core->transmitter, &core->timers, HAL_CAN_VEHICLE);
     }
@@ -245,7 +249,7 @@ agv_pass_t agv_core_decide(agv_core_t *core, const agv_ports_t *ports, uint32_t 
         pass.actions.what |= AGV_ACTION_RESET_REFUSED;
         pass.actions.missing = (uint16_t)missing;
     }
-    carry_out_at_once(core, ports, pass.actions.what);
+    carry_out_at_once(core, ports, pass.actions.what, elapsed_ms);
     return pass;
 }
 

@@ -61,20 +61,39 @@ void test_a_duration_is_reached_at_its_limit_and_a_deadline_a_millisecond_later(
     }
 }
 
-/* Since when is given, and may lie ahead: then nothing has passed yet. What lies behind counts when the time advances. */
+/* A start in the future is a start now. A start in the past counts when the time advances, however old it is. */
 /* Shows: TIM-2 */
 TEST_CASE(0)
 TEST_CASE(0xFFFFFFB0)
-void test_a_timer_may_begin_at_another_moment(uint32_t start_ms) {
+void test_a_timer_starts_at_a_given_time(uint32_t start_ms) {
     agv_timers_set_time(&timers, start_ms);
     agv_timer_start_at(&timers, DURATION, start_ms + 5);
     TEST_ASSERT_TRUE(agv_timer_is_within(&timers, DURATION));
-    TEST_ASSERT_FALSE(reached(DURATION, start_ms + 1));
-    TEST_ASSERT_FALSE(reached(DURATION, start_ms + 104));
-    TEST_ASSERT_TRUE(reached(DURATION, start_ms + 105));
-    agv_timer_start_at(&timers, DURATION, start_ms);
-    TEST_ASSERT_FALSE(reached(DURATION, start_ms + 105));
-    TEST_ASSERT_TRUE(reached(DURATION, start_ms + 106));
+    TEST_ASSERT_FALSE(reached(DURATION, start_ms + 99));
+    TEST_ASSERT_TRUE(reached(DURATION, start_ms + 100));
+    for (uint32_t past_ms = 100; past_ms < 0x80000000u; past_ms *= 2) {
+        agv_timer_start_at(&timers, DURATION, timers.now_ms - past_ms);
+        TEST_ASSERT_FALSE(agv_timer_reached(&timers, DURATION));
+        TEST_ASSERT_TRUE(reached(DURATION, timers.now_ms + 1));
+    }
+}
+
+/* A limit of 60 s is the longest one. A step may be longer than the 65,536 ms that 16 bits hold. */
+/* Shows: TIM-2 */
+TEST_CASE(0)
+TEST_CASE(0xFFFFFFB0)
+void test_the_longest_limit_and_steps_of_any_length(uint32_t start_ms) {
+    start(60000);
+    begin(DEADLINE, start_ms);
+    TEST_ASSERT_FALSE(reached(DEADLINE, start_ms + 60000));
+    TEST_ASSERT_TRUE(reached(DEADLINE, start_ms + 60001));
+    for (uint32_t step_ms = 60001; step_ms < 0x80000000u - 60001u; step_ms += 65531) {
+        begin(DEADLINE, start_ms);
+        TEST_ASSERT_TRUE(reached(DEADLINE, start_ms + step_ms));
+    }
+    begin(DEADLINE, start_ms);
+    TEST_ASSERT_FALSE(reached(DEADLINE, start_ms + 59999));
+    TEST_ASSERT_TRUE(reached(DEADLINE, start_ms + 59999 + 65536));
 }
 
 void test_a_duration_of_a_millisecond_is_reached_in_the_next_one(void) {

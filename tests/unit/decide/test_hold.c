@@ -101,6 +101,48 @@ void test_it_is_dropped_and_taken_anew(void) {
     expect_held(4000);
 }
 
+/* The angle that a 067h measures later is held only after 2 s without 065h, and until 065h is sent again. */
+static void measured_later(uint16_t raw, uint32_t ms) {
+    measured(raw, ms);
+    agv_hold_take(&hold, &vehicle);
+}
+
+/* Shows: FSM-10 */
+void test_after_2_s_without_065h_the_angle_is_taken_anew(void) {
+    measured(9123, 0);
+    trip(0);
+    agv_hold_follow(&hold, 1999, false);
+    measured_later(4000, 2000);
+    expect_held(9123);
+    agv_hold_follow(&hold, 1, false);
+    measured_later(5000, 2010);
+    expect_held(5000);
+    agv_hold_follow(&hold, 70000, false);
+    measured_later(6000, 2020);
+    expect_held(6000);
+    agv_hold_follow(&hold, 1, true);
+    measured_later(7000, 2030);
+    expect_held(6000);
+}
+
+/* Each 065h that can be sent begins the 2 s again, and so does a trip. A frame takes no time. */
+/* Shows: FSM-10 */
+void test_the_2_s_without_065h_are_uninterrupted(void) {
+    measured(9123, 0);
+    trip(0);
+    agv_hold_follow(&hold, 1999, false);
+    agv_hold_follow(&hold, 1, true);
+    agv_hold_follow(&hold, 1999, false);
+    agv_hold_follow(&hold, 0, false);
+    measured_later(4000, 40);
+    expect_held(9123);
+    trip(41);
+    expect_held(4000);
+    agv_hold_follow(&hold, 1, false);
+    measured_later(5000, 50);
+    expect_held(4000);
+}
+
 /* Shows: INT-5 */
 void test_a_flipped_bit_in_it_or_in_its_complement_drops_it(void) {
     measured(9123, 0);

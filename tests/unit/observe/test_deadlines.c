@@ -39,6 +39,7 @@ static void arrives(unsigned message, uint8_t counter, uint32_t ms) {
         frame.data[i] = counter;
     }
     (void)agv_liveness_arrived(&liveness, message, frame.time_ms);
+    agv_timers_advance(&timers, &config, frame.time_ms, 0);
     agv_liveness_refresh(&liveness, &timers, &config, message, &frame);
 }
 
@@ -144,8 +145,9 @@ void test_a_heartbeat_is_stuck(unsigned message, unsigned fault, uint32_t timeou
 void test_an_ai_computer_that_was_never_seen(void) {
     tick(10000);
     TEST_ASSERT_FALSE(is_active(AGV_FAULT_AI_HEARTBEAT_LOST));
+    tick(10001);
     engaged = true;
-    agv_timer_start_at(&timers, AGV_TIMER_AI_NEVER_SEEN, at(10001));
+    agv_timer_start(&timers, AGV_TIMER_AI_NEVER_SEEN);
     tick(10400);
     engaged = false; /* a glitch, and the engagement is continued */
     tick(10401);

@@ -43,6 +43,7 @@ static bool judge(agv_message_t message, uint32_t now_ms) {
 
 static void refresh(agv_message_t message, uint32_t now_ms) {
     const hal_can_frame_t frame = {.time_ms = now_ms, .length = 8};
+    agv_timers_advance(&timers, &config, frame.time_ms, 0);
     agv_liveness_refresh(&liveness, &timers, &config, message, &frame);
 }
 
@@ -71,6 +72,7 @@ static void beat(agv_node_t node, uint8_t counter, uint32_t time_ms) {
     hal_can_frame_t frame = {.time_ms = time_ms, .length = 8};
     frame.data[(node == AGV_NODE_EPS) ? 0 : 7] = counter;
     (void)agv_liveness_arrived(&liveness, carrier[node], time_ms);
+    agv_timers_advance(&timers, &config, frame.time_ms, 0);
     agv_liveness_refresh(&liveness, &timers, &config, carrier[node], &frame);
 }
 
