@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "cli/shard_option.h"
+#include "cli/random_options.h"
 #include "common/report.h"
 
 typedef bool fits_fn(const json_t *value);

@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "campaign/campaign_line.h"
-#include "cli/shard_option.h"
+#include "cli/random_options.h"
 #include "common/interrupt.h"
 #include "common/report.h"
 

@@ -87,11 +87,7 @@ static bool write_file(campaign_t *campaign) {
     }
     text_clear(&campaign->text);
     campaign_scenario_write(&campaign->text, &campaign->judge);
-    if (!output_open(&campaign->file, path)) {
-        return false;
-    }
-    (void)output_write(&campaign->file, campaign->text.bytes, campaign->text.used);
-    if (!output_commit(&campaign->file)) {
+    if (!output_put(&campaign->file, path, campaign->text.bytes, campaign->text.used)) {
         return false;
     }
     (void)fprintf(output_is_stdout(campaign->request->results) ? stderr : stdout,

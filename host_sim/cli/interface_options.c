@@ -5,9 +5,22 @@
 
 #include "common/report.h"
 
-bool interface_options_check(const char *command, const char *const interfaces[HAL_CAN_SIDES], bool is_gateway) {
-    const char *vehicle = interfaces[HAL_CAN_VEHICLE];
-    const char *ai = interfaces[HAL_CAN_AI];
+/** The longest time that can be asked for: 100 days. */
+#define FOR_MAX_MS 8640000000u
+
+void interface_options_init(interface_options_t *options, option_t rows[INTERFACE_OPTIONS]) {
+    *options = (interface_options_t){.for_ms = INTERFACE_UNTIL_SIGNAL};
+    rows[0] = (option_t)OPTION_TEXT("--can", "IF", "the interface of the vehicle side, or of the shared bus",
+                                    &options->interfaces[HAL_CAN_VEHICLE]);
+    rows[1] = (option_t)OPTION_TEXT("--ai-can", "IF", "the interface of the AI side: a gateway",
+                                    &options->interfaces[HAL_CAN_AI]);
+    rows[2] = (option_t)OPTION_NUMBER("--for", "MS", "stop after this time, or earlier by a signal", &options->for_ms,
+                                      1, FOR_MAX_MS);
+}
+
+bool interface_options_check(const interface_options_t *options, const char *command, bool is_gateway) {
+    const char *vehicle = options->interfaces[HAL_CAN_VEHICLE];
+    const char *ai = options->interfaces[HAL_CAN_AI];
     if (vehicle == NULL) {
         return report("--can is missing: the interface of the vehicle side; see host_sim %s --help", command);
     }

@@ -17,7 +17,9 @@ static void print_help(const option_syntax_t *syntax) {
     (void)printf("usage: host_sim %s\n\n%s", syntax->usage, syntax->summary);
     for (size_t g = 0u; g < syntax->group_count; g++) {
         const option_group_t *group = &syntax->groups[g];
-        (void)printf("\n%s:\n", group->title);
+        if (group->title != NULL) {
+            (void)printf("\n%s:\n", group->title);
+        }
         for (size_t i = 0u; i < group->count; i++) {
             const option_t *option = &group->options[i];
             int width = printf("  %s%s%s", option->name, (option->value != NULL) ? " " : "",

@@ -18,6 +18,9 @@
  */
 typedef bool option_each_fn(void *ctx, const char *value);
 
+/** As a number that was not given. */
+#define OPTION_NOT_GIVEN UINT64_MAX
+
 /** One option. Exactly one of flag, text, number, word and each is set; it is where the value goes. */
 typedef struct {
     const char *name;  /**< "--tail" */
@@ -46,7 +49,7 @@ typedef struct {
 
 /** Options that belong together in `--help`. */
 typedef struct {
-    const char *title; /**< "Options" */
+    const char *title; /**< "Options"; NULL: they go on with the group before */
     const option_t *options;
     size_t count;
 } option_group_t;

@@ -11,6 +11,7 @@
 #include "cli/options.h"
 
 #define CONFIG_OPTIONS 4u
+#define CONFIG_OPTIONS_OF_BUS 3u /**< the first ones, which also matter to other nodes */
 
 /** What was given. Start from config_options_init(). */
 typedef struct {

@@ -145,11 +145,7 @@ static bool write_file(hunt_play_t *play, const hunt_program_t *program, const h
     }
     hunt_program_describe(program, &line);
     write_scenario(play, program, place);
-    if (!output_open(place->file, path)) {
-        return false;
-    }
-    (void)output_write(place->file, play->text.bytes, play->text.used);
-    if (!output_commit(place->file)) {
+    if (!output_put(place->file, path, play->text.bytes, play->text.used)) {
         return false;
     }
     (void)printf("HAZARD  %s run %" PRIu64 " after %" PRIu64 " s: %s; %s; %s\n", hazard_info(play->hazard.kind)->name,

@@ -274,3 +274,16 @@ bool output_check_distinct(const output_role_t *roles, size_t count) {
     }
     return true;
 }
+
+bool output_check_folder(const char *role, const char *path) {
+    struct stat about;
+    return ((stat(path, &about) == 0) && S_ISDIR(about.st_mode)) || report("%s: '%s' is not a folder", role, path);
+}
+
+bool output_put(output_t *output, const char *path, const void *bytes, size_t size) {
+    if (!output_open(output, path)) {
+        return false;
+    }
+    (void)output_write(output, bytes, size);
+    return output_commit(output);
+}

@@ -88,4 +88,10 @@ typedef struct {
  */
 bool output_check_distinct(const output_role_t *roles, size_t count);
 
+/** Check that a path is a folder. @param role "--found" @return false: it is none; was reported */
+bool output_check_folder(const char *role, const char *path);
+
+/** Write a file of these bytes. @return false: was reported */
+bool output_put(output_t *output, const char *path, const void *bytes, size_t size);
+
 #endif

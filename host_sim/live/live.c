@@ -73,7 +73,7 @@ static bool open_outputs(live_t *live) {
     live->is_terminal = stdout_is_free && (isatty(STDOUT_FILENO) == 1);
     live->sent.output = &live->outputs[OUT].lines;
     for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
-        const char *interface = request->interfaces[side];
+        const char *interface = request->bus.interfaces[side];
         if (interface != NULL) {
             sent_log_heard(&live->sent, (hal_can_side_t)side, interface, strlen(interface));
         }
@@ -86,8 +86,8 @@ static bool prepare(live_t *live) {
     const live_request_t *request = live->request;
     const node_config_t node = {
         .config = &request->config,
-        .interfaces =
-            {[HAL_CAN_VEHICLE] = request->interfaces[HAL_CAN_VEHICLE], [HAL_CAN_AI] = request->interfaces[HAL_CAN_AI]},
+        .interfaces = {[HAL_CAN_VEHICLE] = request->bus.interfaces[HAL_CAN_VEHICLE],
+                       [HAL_CAN_AI] = request->bus.interfaces[HAL_CAN_AI]},
         .on_event = on_event,
         .on_sent = on_sent,
         .ctx = live,
@@ -124,7 +124,8 @@ static void tell(live_t *live, uint64_t now_ms) {
 
 /** Run until a signal comes, or the time is over. A signal ends it before another call of the core. */
 static bool run(live_t *live) {
-    const uint64_t end_ms = (live->request->for_ms == LIVE_FOREVER) ? UINT64_MAX : live->request->for_ms;
+    const uint64_t end_ms =
+        (live->request->bus.for_ms == INTERFACE_UNTIL_SIGNAL) ? UINT64_MAX : live->request->bus.for_ms;
     uint64_t now_ms = 0u;
     bool good = true;
     node_start(live->node);
@@ -145,12 +146,12 @@ static bool run(live_t *live) {
 }
 
 static void print_summary(const live_t *live, const events_summary_t *summary) {
-    const char *ai = live->request->interfaces[HAL_CAN_AI];
+    const char *ai = live->request->bus.interfaces[HAL_CAN_AI];
     char more[LINUX_CAN_NAME_MAX + sizeof ", "] = "";
     if (ai != NULL) {
         (void)snprintf(more, sizeof more, ", %s", ai);
     }
-    summary_print_time(summary, live->request->interfaces[HAL_CAN_VEHICLE], more);
+    summary_print_time(summary, live->request->bus.interfaces[HAL_CAN_VEHICLE], more);
     summary_print_frames(summary, live->request->config.shadow == AGV_SHADOW_ON);
     (void)printf("warnings: %" PRIu32 "\n", summary->counters.warnings);
     summary_print_state(summary);

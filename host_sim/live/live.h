@@ -9,18 +9,14 @@
 #include <stdint.h>
 
 #include "agv/config.h"
+#include "cli/interface_options.h"
 #include "common/report.h"
-#include "hal/can.h"
-
-/** As a time to run for: until a signal comes. */
-#define LIVE_FOREVER 0u
 
 /** What to run. */
 typedef struct {
-    const char *interfaces[HAL_CAN_SIDES]; /**< the AI side: NULL on the shared bus */
-    const char *out;                       /**< log of what was sent; NULL: none */
-    const char *events;                    /**< NULL: none */
-    uint64_t for_ms;                       /**< or LIVE_FOREVER */
+    interface_options_t bus; /**< the AI side: NULL on the shared bus */
+    const char *out;         /**< log of what was sent; NULL: none */
+    const char *events;      /**< NULL: none */
     bool fail_on_trip;
     bool realtime; /**< SCHED_FIFO, memory locked */
     agv_config_t config;

@@ -87,7 +87,7 @@ static void show_links(run_t *run) {
     for (unsigned side = 0u; side < (unsigned)HAL_CAN_SIDES; side++) {
         if (run->bus.is_down[side] != run->was_down[side]) {
             run->was_down[side] = run->bus.is_down[side];
-            vehicle_show_event(&run->show, run->bus.now_ms, run->request->interfaces[side], "the interface is %s",
+            vehicle_show_event(&run->show, run->bus.now_ms, run->request->bus.interfaces[side], "the interface is %s",
                                run->was_down[side] ? "down" : "up again");
         }
     }
@@ -167,10 +167,10 @@ static void show_end(run_t *run) {
 
 /** Nobody has asked for the end, nobody has gone who reads what is printed. */
 static bool goes_on(const run_t *run, uint32_t events) {
-    const uint64_t for_ms = run->request->for_ms;
+    const uint64_t for_ms = run->request->bus.for_ms;
 
     return ((events & LINUX_LOOP_SIGNAL) == 0u) && !run->quits && (ferror(stdout) == 0) &&
-           ((for_ms == VEHICLE_RUN_FOREVER) || (run->bus.now_ms < for_ms));
+           ((for_ms == INTERFACE_UNTIL_SIGNAL) || (run->bus.now_ms < for_ms));
 }
 
 /** Go on until the end. @return false: an interface is gone; was reported */
@@ -193,14 +193,14 @@ static bool go(run_t *run) {
 static bool open_bus(run_t *run) {
     const vehicle_run_request_t *request = run->request;
     vehicle_bus_config_t config = {
-        .interfaces =
-            {[HAL_CAN_VEHICLE] = request->interfaces[HAL_CAN_VEHICLE], [HAL_CAN_AI] = request->interfaces[HAL_CAN_AI]},
+        .interfaces = {[HAL_CAN_VEHICLE] = request->bus.interfaces[HAL_CAN_VEHICLE],
+                       [HAL_CAN_AI] = request->bus.interfaces[HAL_CAN_AI]},
         .clock = &run->clock,
     };
 
     vehicle_defaults(&config.vehicle);
     agv_config_ids(&request->config, &config.vehicle.ids);
-    config.vehicle.gateway = request->interfaces[HAL_CAN_AI] != NULL;
+    config.vehicle.gateway = request->bus.interfaces[HAL_CAN_AI] != NULL;
     return vehicle_bus_open(&run->bus, &config);
 }
 

@@ -11,20 +11,17 @@
 #include <stdint.h>
 
 #include "agv/config.h"
+#include "cli/interface_options.h"
 #include "common/report.h"
-#include "hal/can.h"
 #include "live/vehicle_words.h"
 
 #define VEHICLE_RUN_FAULTS_MAX 64u
-/** As a time to run for: until a signal comes. */
-#define VEHICLE_RUN_FOREVER 0u
 
 /** What to run. */
 typedef struct {
-    const char *interfaces[HAL_CAN_SIDES];          /**< the AI side: NULL on the shared bus */
+    interface_options_t bus;                        /**< the AI side: NULL on the shared bus */
     agv_config_t config;                            /**< its ID set and its topology count */
     bool manual;                                    /**< the operator does not engage the autopilot */
-    uint64_t for_ms;                                /**< or VEHICLE_RUN_FOREVER */
     vehicle_words_t faults[VEHICLE_RUN_FAULTS_MAX]; /**< in the order of their time */
     size_t fault_count;
 } vehicle_run_request_t;

@@ -5,18 +5,14 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "agv/names.h"
 #include "campaign/campaign_run.h"
 #include "cli/commands/commands.h"
 #include "cli/options.h"
-#include "cli/shard_option.h"
+#include "cli/random_options.h"
 #include "common/interrupt.h"
 #include "io/output.h"
-
-/** As a number that was not given. */
-#define NOT_GIVEN UINT64_MAX
 
 /** Runs of a campaign: as many as a table in memory may hold. */
 #define RUNS_MAX 100000000u
@@ -24,10 +20,9 @@
 /** What was given. */
 typedef struct {
     campaign_request_t request;
+    random_options_t random;
     uint64_t runs;
-    uint64_t seed;
     uint64_t show;
-    const char *shard;
     const char *fault;
     const char *results;
     const char *folder;
@@ -38,10 +33,10 @@ typedef struct {
 } given_t;
 
 static options_result_t parse(int argc, char **argv, given_t *given) {
+    option_t random_rows[RANDOM_OPTIONS];
+    random_options_init(&given->random, random_rows, "only part I of N of the runs (1/1)");
     const option_t rows[] = {
         OPTION_NUMBER("--runs", "N", "number of runs, of all shards together", &given->runs, 1, RUNS_MAX),
-        OPTION_NUMBER("--seed", "S", "random seed; the same seed gives the same runs", &given->seed, 0, INT64_MAX),
-        OPTION_TEXT("--shard", "I/N", "only part I of N of the runs (1/1)", &given->shard),
         OPTION_TEXT("--fault", "NAME", "cause this fault in every run", &given->fault),
         OPTION_FLAG("--newly-engaged", "cause the fault at an engagement; for faults that this delays",
                     &given->newly_engaged),
@@ -52,7 +47,10 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         OPTION_FLAG("--merge", "merge the results of all shards into one table, and one --results", &given->merge),
         OPTION_FLAG("--tables", "print the data that reaction times follow from, as JSON", &given->tables),
     };
-    const option_group_t groups[] = {{.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]}};
+    const option_group_t groups[] = {
+        {.title = "Options", .options = random_rows, .count = RANDOM_OPTIONS},
+        {.options = rows, .count = sizeof rows / sizeof rows[0]},
+    };
     const option_syntax_t syntax = {
         .usage = "campaign --runs N --seed S [OPTION]... | campaign --merge FILE...",
         .summary =
@@ -79,11 +77,6 @@ static bool take_fault(const char *name, campaign_causes_t *causes) {
            report("--newly-engaged: an engagement does not delay %s", name);
 }
 
-static bool is_folder(const char *path) {
-    struct stat about;
-    return ((stat(path, &about) == 0) && S_ISDIR(about.st_mode)) || report("--broken: '%s' is not a folder", path);
-}
-
 /** Make the request of a campaign. */
 static bool make_request(given_t *given, char **operands) {
     campaign_request_t *request = &given->request;
@@ -91,34 +84,35 @@ static bool make_request(given_t *given, char **operands) {
     if (given->file_count > 0u) {
         return report("unexpected argument '%s'; only --merge takes files", operands[0]);
     }
-    if (given->runs == NOT_GIVEN) {
+    if (given->runs == OPTION_NOT_GIVEN) {
         return report("--runs is missing; see host_sim campaign --help");
     }
-    if (given->seed == NOT_GIVEN) {
-        return report("--seed is missing; see host_sim campaign --help");
+    request->part = (campaign_part_t){.runs = given->runs, .seed = given->random.seed};
+    if (!random_options_check(&given->random, "campaign", &request->part.shard, &request->part.shards)) {
+        return false;
     }
-    request->part = (campaign_part_t){.runs = given->runs, .seed = given->seed, .shard = 1u, .shards = 1u};
     request->part.causes.newly_engaged = given->newly_engaged;
     request->results = given->results;
     request->folder = (given->folder != NULL) ? given->folder : ".";
-    request->shows_one = given->show != NOT_GIVEN;
+    request->shows_one = given->show != OPTION_NOT_GIVEN;
     request->one = given->show;
-    if (request->shows_one && ((given->results != NULL) || (given->shard != NULL))) {
+    if (request->shows_one && ((given->results != NULL) || (given->random.shard != NULL))) {
         return report("--show prints one run: --results and --shard cannot be combined with it");
     }
     if (request->shows_one && (given->show >= given->runs)) {
         return report("--show: no run %" PRIu64 "; the runs are 0 to %" PRIu64, given->show, given->runs - 1u);
     }
-    return ((given->shard == NULL) || shard_option_take(given->shard, &request->part.shard, &request->part.shards)) &&
-           ((given->fault == NULL) || take_fault(given->fault, &request->part.causes)) && is_folder(request->folder);
+    return ((given->fault == NULL) || take_fault(given->fault, &request->part.causes)) &&
+           output_check_folder("--broken", request->folder);
 }
 
 static bool check_merge(const given_t *given, char **files) {
     if (given->file_count == 0u) {
         return report("--merge: FILE is missing; see host_sim campaign --help");
     }
-    if ((given->runs != NOT_GIVEN) || (given->seed != NOT_GIVEN) || (given->shard != NULL) || (given->fault != NULL) ||
-        (given->show != NOT_GIVEN) || (given->folder != NULL) || given->newly_engaged) {
+    if ((given->runs != OPTION_NOT_GIVEN) || (given->random.seed != OPTION_NOT_GIVEN) ||
+        (given->random.shard != NULL) || (given->fault != NULL) || (given->show != OPTION_NOT_GIVEN) ||
+        (given->folder != NULL) || given->newly_engaged) {
         return report("--merge takes files, and of the other options only --results");
     }
     for (size_t i = 0u; i < given->file_count; i++) {
@@ -164,7 +158,7 @@ static status_t print_tables(void) {
 }
 
 status_t cmd_campaign(int argc, char **argv) {
-    given_t given = {.runs = NOT_GIVEN, .seed = NOT_GIVEN, .show = NOT_GIVEN};
+    given_t given = {.runs = OPTION_NOT_GIVEN, .show = OPTION_NOT_GIVEN};
     const options_result_t parsed = parse(argc, argv, &given);
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;

@@ -2,15 +2,11 @@
  * @file cmd_hunt.c
  * `host_sim hunt`: an adversary that searches for hazards.
  */
-#include <sys/stat.h>
-
 #include "cli/commands/commands.h"
 #include "cli/options.h"
-#include "cli/shard_option.h"
+#include "cli/random_options.h"
 #include "hunt/hunt.h"
-
-/** As a number that was not given. */
-#define NOT_GIVEN UINT64_MAX
+#include "io/output.h"
 
 #define RUNS_MAX 1000000000u
 
@@ -19,24 +15,27 @@ enum { MINUTES_MAX = 100000 };
 /** What was given. */
 typedef struct {
     hunt_request_t request;
-    const char *shard;
+    random_options_t random;
     const char *folder;
     bool lists;
 } given_t;
 
 static options_result_t parse(int argc, char **argv, given_t *given) {
     hunt_request_t *request = &given->request;
+    option_t random_rows[RANDOM_OPTIONS];
+    random_options_init(&given->random, random_rows, "only part I of N of the runs (1/1)");
     const option_t rows[] = {
         OPTION_NUMBER("--runs", "N", "number of runs, of all shards together", &request->runs, 1, RUNS_MAX),
         OPTION_NUMBER("--for-minutes", "M", "stop after this time", &request->minutes, 1, MINUTES_MAX),
-        OPTION_NUMBER("--seed", "S", "random seed; the same seed gives the same runs", &request->seed, 0, INT64_MAX),
-        OPTION_TEXT("--shard", "I/N", "only part I of N of the runs (1/1)", &given->shard),
         OPTION_TEXT("--checkpoint", "FILE", "saved after each batch of runs; the same command resumes from it",
                     &request->checkpoint),
         OPTION_TEXT("--found", "FOLDER", "folder for the scenarios of runs with a hazard (.)", &given->folder),
         OPTION_FLAG("--list-hazards", "print what counts as a hazard", &given->lists),
     };
-    const option_group_t groups[] = {{.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]}};
+    const option_group_t groups[] = {
+        {.title = "Options", .options = random_rows, .count = RANDOM_OPTIONS},
+        {.options = rows, .count = sizeof rows / sizeof rows[0]},
+    };
     const option_syntax_t syntax = {
         .usage = "hunt --seed S (--runs N | --for-minutes M) [OPTION]... | hunt --list-hazards",
         .summary =
@@ -49,29 +48,22 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     return options_parse(&syntax, argc, argv, &operands);
 }
 
-static bool is_folder(const char *path) {
-    struct stat about;
-    return ((stat(path, &about) == 0) && S_ISDIR(about.st_mode)) || report("--found: '%s' is not a folder", path);
-}
-
 static bool make_request(given_t *given) {
     hunt_request_t *request = &given->request;
 
-    if (request->seed == NOT_GIVEN) {
-        return report("--seed is missing; see host_sim hunt --help");
+    if (!random_options_check(&given->random, "hunt", &request->shard, &request->shards)) {
+        return false;
     }
-    if ((request->runs == NOT_GIVEN) && (request->minutes == NOT_GIVEN)) {
+    if ((request->runs == OPTION_NOT_GIVEN) && (request->minutes == OPTION_NOT_GIVEN)) {
         return report("--runs or --for-minutes is missing; see host_sim hunt --help");
     }
-    request->shard = 1u;
-    request->shards = 1u;
+    request->seed = given->random.seed;
     request->folder = (given->folder != NULL) ? given->folder : ".";
-    return ((given->shard == NULL) || shard_option_take(given->shard, &request->shard, &request->shards)) &&
-           is_folder(request->folder);
+    return output_check_folder("--found", request->folder);
 }
 
 status_t cmd_hunt(int argc, char **argv) {
-    given_t given = {.request = {.runs = NOT_GIVEN, .minutes = NOT_GIVEN, .seed = NOT_GIVEN}};
+    given_t given = {.request = {.runs = OPTION_NOT_GIVEN, .minutes = OPTION_NOT_GIVEN}};
     const options_result_t parsed = parse(argc, argv, &given);
 
     if (parsed != OPTIONS_GO) {

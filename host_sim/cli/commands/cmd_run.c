@@ -11,9 +11,6 @@
 #include "io/output.h"
 #include "live/live.h"
 
-/** The longest time that can be asked for: 100 days. */
-#define FOR_MAX_MS 8640000000u
-
 /** What was given. */
 typedef struct {
     live_request_t request;
@@ -24,18 +21,17 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     option_t config_rows[CONFIG_OPTIONS];
     config_options_init(&given->config, config_rows);
     live_request_t *request = &given->request;
+    option_t interface_rows[INTERFACE_OPTIONS];
+    interface_options_init(&request->bus, interface_rows);
     const option_t rows[] = {
-        OPTION_TEXT("--can", "IF", "the interface of the vehicle side, or of the shared bus",
-                    &request->interfaces[HAL_CAN_VEHICLE]),
-        OPTION_TEXT("--ai-can", "IF", "the interface of the AI side: a gateway", &request->interfaces[HAL_CAN_AI]),
-        OPTION_NUMBER("--for", "MS", "stop after this time, or earlier by a signal", &request->for_ms, 1, FOR_MAX_MS),
         OPTION_FLAG("--fail-on-trip", "exit status 1 if it tripped at any time", &request->fail_on_trip),
         OPTION_TEXT("--events", "FILE", "events as JSON Lines, as they come", &request->events),
         OPTION_TEXT("--out", "FILE", "candump log of the frames that the supervisor sends", &request->out),
         OPTION_FLAG("--realtime", "SCHED_FIFO, memory locked (CAP_SYS_NICE, CAP_IPC_LOCK)", &request->realtime),
     };
     const option_group_t groups[] = {
-        {.title = "Options (FILE may be -, standard output)", .options = rows, .count = sizeof rows / sizeof rows[0]},
+        {.title = "Options (FILE may be -, standard output)", .options = interface_rows, .count = INTERFACE_OPTIONS},
+        {.options = rows, .count = sizeof rows / sizeof rows[0]},
         {.title = "Configuration of the supervisor", .options = config_rows, .count = CONFIG_OPTIONS},
     };
     const option_syntax_t syntax = {
@@ -62,15 +58,14 @@ static bool check_files(const given_t *given) {
 }
 
 status_t cmd_run(int argc, char **argv) {
-    given_t given = {.request = {.for_ms = LIVE_FOREVER}};
+    given_t given = {0};
     const options_result_t parsed = parse(argc, argv, &given);
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
-    given.config.has_ai_side = given.request.interfaces[HAL_CAN_AI] != NULL;
+    given.config.has_ai_side = given.request.bus.interfaces[HAL_CAN_AI] != NULL;
     if (!check_files(&given) || !config_options_make(&given.config, &given.request.config) ||
-        !interface_options_check("run", given.request.interfaces,
-                                 given.request.config.topology == AGV_TOPOLOGY_GATEWAY)) {
+        !interface_options_check(&given.request.bus, "run", given.request.config.topology == AGV_TOPOLOGY_GATEWAY)) {
         return STATUS_UNUSABLE;
     }
     return live_run(&given.request);

@@ -8,11 +8,6 @@
 #include "config/config_options.h"
 #include "live/vehicle_run.h"
 
-/** The longest time that can be asked for: 100 days. */
-#define FOR_MAX_MS 8640000000u
-
-enum { NOT_GIVEN = -1 };
-
 /** What was given. */
 typedef struct {
     vehicle_run_request_t request;
@@ -34,25 +29,24 @@ static bool take_fault(void *ctx, const char *text) {
 
 static options_result_t parse(int argc, char **argv, given_t *given) {
     vehicle_run_request_t *request = &given->request;
+    option_t interface_rows[INTERFACE_OPTIONS];
+    option_t config_rows[CONFIG_OPTIONS];
+    interface_options_init(&request->bus, interface_rows);
+    config_options_init(&given->config, config_rows);
     const option_t rows[] = {
-        OPTION_TEXT("--can", "IF", "the interface of VCU and EPS, on the shared bus also of the AI computer",
-                    &request->interfaces[HAL_CAN_VEHICLE]),
-        OPTION_TEXT("--ai-can", "IF", "the interface of the AI computer: a gateway", &request->interfaces[HAL_CAN_AI]),
-        OPTION_TEXT("--config", "FILE", "settings of the supervisor (YAML): its topology and identifiers",
-                    &given->config.path),
-        OPTION_WORD("--topology", "one bus for all, or one for the AI computer (default with --ai-can)",
-                    &given->config.topology, "shared|gateway"),
-        OPTION_WORD("--id-set", "43Fh and 363h, or 201h and 203h", &given->config.id_set, "heading|table"),
         {.name = "--fault",
          .value = "WHO-WHAT[,NAME=VALUE]...@MS",
          .help = "inject a fault at that time; may be given several times",
          .each = take_fault,
          .ctx = given},
         OPTION_FLAG("--manual", "do not engage the autopilot", &request->manual),
-        OPTION_NUMBER("--for", "MS", "stop after this time, or earlier by a signal", &request->for_ms, 1, FOR_MAX_MS),
     };
     const option_group_t groups[] = {
-        {.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]},
+        {.title = "Options", .options = interface_rows, .count = INTERFACE_OPTIONS},
+        {.options = rows, .count = sizeof rows / sizeof rows[0]},
+        {.title = "Configuration of the supervisor (its topology and identifiers)",
+         .options = config_rows,
+         .count = CONFIG_OPTIONS_OF_BUS},
     };
     const option_syntax_t syntax = {
         .usage = "vehicle --can IF [OPTION]...",
@@ -80,7 +74,7 @@ static bool make_faults(const given_t *given, vehicle_run_request_t *request) {
         if (!vehicle_words_fault(given->faults[i], &request->config, &words)) {
             return false;
         }
-        if ((request->for_ms != VEHICLE_RUN_FOREVER) && (words.step.at_ms >= request->for_ms)) {
+        if ((request->bus.for_ms != INTERFACE_UNTIL_SIGNAL) && (words.step.at_ms >= request->bus.for_ms)) {
             return report("--fault %.80s: the time is after the end (--for)", given->faults[i]);
         }
         size_t place = i;
@@ -94,16 +88,15 @@ static bool make_faults(const given_t *given, vehicle_run_request_t *request) {
 }
 
 status_t cmd_vehicle(int argc, char **argv) {
-    given_t given = {.request = {.for_ms = VEHICLE_RUN_FOREVER},
-                     .config = {.topology = NOT_GIVEN, .id_set = NOT_GIVEN}};
+    given_t given = {0};
     const options_result_t parsed = parse(argc, argv, &given);
 
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
-    given.config.has_ai_side = given.request.interfaces[HAL_CAN_AI] != NULL;
+    given.config.has_ai_side = given.request.bus.interfaces[HAL_CAN_AI] != NULL;
     if (!config_options_make(&given.config, &given.request.config) ||
-        !interface_options_check("vehicle", given.request.interfaces,
+        !interface_options_check(&given.request.bus, "vehicle",
                                  given.request.config.topology == AGV_TOPOLOGY_GATEWAY)) {
         return STATUS_UNUSABLE;
     }
