@@ -3,15 +3,16 @@
 
 Reported are `|`, `&` and `^` (also as assignments) with a Boolean operand, an `if` that holds nothing but another `if`
 (both could be one `&&`), and a Boolean `?:` with a constant arm (which is a `&&` or `||`). What is meant so stands in
-tests/proofs/mcdc/exceptions with its reason. usage: check-conditions [--exceptions FILE] [--root ROOT]
+tests/proofs/mcdc/exceptions with its reason.
 """
-import argparse
 import concurrent.futures
 import json
 import pathlib
 import re
 import subprocess
 import sys
+
+import reasons
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FOLDERS = ("firmware/include", "firmware/src", "hal/include")
@@ -24,26 +25,6 @@ EXCEPTION = re.compile(r"([^ :]+): (\S.*)")
 def fail(message):
     print(f"check-conditions: {message}", file=sys.stderr)
     sys.exit(1)
-
-
-def read_exceptions(path):
-    """The places that are meant so. Below each stands its reason, indented."""
-    places = []
-    reasoned = True
-    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
-        match = EXCEPTION.fullmatch(line)
-        if not line or line.startswith("#"):
-            continue
-        if line.startswith(" ") and len(line.split()) >= 3:
-            reasoned = True
-        elif match and reasoned:
-            places.append(match.groups())
-            reasoned = False
-        else:
-            fail(f"{path}:{number}: neither 'FILE: SOURCE LINE' nor, below it and indented, the reason in three words or more")
-    if not reasoned:
-        fail(f"{path}: the last exception has no reason")
-    return places
 
 
 def children(node):
@@ -127,9 +108,9 @@ def walk(node, place, found):
         walk(child, place, found)
 
 
-def look_at(root, source):
+def look_at(source):
     """All that is hidden in one source, and how many decisions of several conditions it has."""
-    command = ["clang-19", "-std=c11", "-fsyntax-only", *(f"-I{root}/{folder}" for folder in FOLDERS),
+    command = ["clang-19", "-std=c11", "-fsyntax-only", *(f"-I{ROOT}/{folder}" for folder in FOLDERS),
                "-Xclang", "-ast-dump=json", str(source)]
     done = subprocess.run(command, check=False, capture_output=True, text=True)
     if done.returncode != 0:
@@ -138,28 +119,23 @@ def look_at(root, source):
     found = set()
     tree = json.loads(done.stdout)
     walk(tree, {}, found)
-    return {(str(pathlib.Path(file).resolve().relative_to(root)), line, what) for file, line, what in found
-            if file and str(pathlib.Path(file).resolve()).startswith(f"{root}/")}, decisions_below(tree)
+    return {(str(pathlib.Path(file).resolve().relative_to(ROOT)), line, what) for file, line, what in found
+            if file and str(pathlib.Path(file).resolve()).startswith(f"{ROOT}/")}, decisions_below(tree)
 
 
 def main():
-    parser = argparse.ArgumentParser(description="conditions that MC/DC does not see")
-    parser.add_argument("--root", type=pathlib.Path, default=ROOT)
-    parser.add_argument("--exceptions", type=pathlib.Path)
-    arguments = parser.parse_args()
-    root = arguments.root.resolve()
-    exceptions = read_exceptions(arguments.exceptions or root / "tests/proofs/mcdc/exceptions")
-    sources = sorted(root.glob("firmware/src/**/*.c"))
+    exceptions = reasons.read(ROOT / "tests/proofs/mcdc/exceptions", EXCEPTION, "FILE: SOURCE LINE")
+    sources = sorted(ROOT.glob("firmware/src/**/*.c"))
     with concurrent.futures.ProcessPoolExecutor(max_workers=2) as pool:
-        results = list(pool.map(look_at, [root] * len(sources), sources))
+        results = list(pool.map(look_at, sources))
     found = sorted(set().union(*(hidden for hidden, _ in results)))
     decisions = sum(count for _, count in results)
     if not sources:
-        fail(f"there is nothing to check in {root}")
+        fail(f"there is nothing to check in {ROOT}")
     bad = []
     used = set()
     for file, line, what in found:
-        text = (root / file).read_text(encoding="utf-8").splitlines()[line - 1].strip()
+        text = (ROOT / file).read_text(encoding="utf-8").splitlines()[line - 1].strip()
         used.add((file, text))
         if (file, text) not in exceptions:
             bad.append(f"{file}:{line}: {what}: {text}")

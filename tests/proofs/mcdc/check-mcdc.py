@@ -12,6 +12,10 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
+BUILD = ROOT / "build/mcdc"
+sys.path.insert(0, str(ROOT / "scripts/tools"))
+import reasons  # noqa: E402  (its folder is known only now)
+
 MAX_EXCLUDED = 0.01
 KINDS = ("line", "branch", "condition")
 PLURAL = {"line": "lines", "branch": "branches", "condition": "conditions"}
@@ -30,38 +34,18 @@ def run(*command):
     return done.stdout
 
 
-def read_exclusions(path):
-    """The excluded places. Below each stands its reason, indented."""
-    places = []
-    reasoned = True
-    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
-        match = EXCLUSION.fullmatch(line)
-        if not line or line.startswith("#"):
-            continue
-        if line.startswith(" ") and len(line.split()) >= 3:
-            reasoned = True
-        elif match and reasoned:
-            places.append(match.groups())
-            reasoned = False
-        else:
-            fail(f"{path}:{number}: neither 'KIND FILE: TEXT' nor, below it and indented, the reason in three words or more")
-    if not reasoned:
-        fail(f"{path}: the last exclusion has no reason")
-    return places
-
-
-def export(build, root, without):
+def export(without):
     """What llvm-cov says, as JSON and in lcov's format, of the sources of the core."""
-    profiles = [path for path in sorted(build.glob("profile/*.profraw")) if path.stem not in without]
-    programs = [build / "bin" / path.stem for path in profiles]
+    profiles = [path for path in sorted(BUILD.glob("profile/*.profraw")) if path.stem not in without]
+    programs = [BUILD / "bin" / path.stem for path in profiles]
     if not profiles:
-        fail(f"no profiles in {build}/profile: ctest --preset mcdc")
-    run("llvm-profdata-19", "merge", "-o", build / "all.profdata", *profiles)
+        fail(f"no profiles in {BUILD}/profile: ctest --preset mcdc")
+    run("llvm-profdata-19", "merge", "-o", BUILD / "all.profdata", *profiles)
     objects = [programs[0]] + [f"--object={program}" for program in programs[1:]]
-    sources = [root / "firmware/src", root / "firmware/include"]
+    sources = [ROOT / "firmware/src", ROOT / "firmware/include"]
 
     def of(form):
-        return run("llvm-cov-19", "export", f"--format={form}", f"--instr-profile={build}/all.profdata", *objects, *sources)
+        return run("llvm-cov-19", "export", f"--format={form}", f"--instr-profile={BUILD}/all.profdata", *objects, *sources)
     return json.loads(of("text"))["data"][0], of("lcov")
 
 
@@ -106,13 +90,13 @@ def judge_lines(lcov, name, lines):
             yield int(count) > 0, int(number), "line", text
 
 
-def judge(report, lcov, root):
+def judge(report, lcov):
     """Counts by kind, the number of decisions, and (line, kind, file, text) of all that is not covered."""
     counts = dict.fromkeys(KINDS, 0)
     decisions = {"one": 0, "several": 0}
     missing = []
     for file in report["files"]:
-        name = str(pathlib.Path(file["filename"]).relative_to(root))
+        name = str(pathlib.Path(file["filename"]).relative_to(ROOT))
         lines = pathlib.Path(file["filename"]).read_text(encoding="utf-8").splitlines()
         several = {tuple(record[:4]): len(record[-1]) for record in file.get("mcdc_records", [])}
         places = {tuple(branch[:4]) for branch in file["branches"]}
@@ -128,18 +112,14 @@ def judge(report, lcov, root):
 
 def main():
     parser = argparse.ArgumentParser(description="line, branch and MC/DC coverage of the core")
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/mcdc")
-    parser.add_argument("--root", type=pathlib.Path, default=ROOT)
-    parser.add_argument("--exclusions", type=pathlib.Path)
     parser.add_argument("--without", nargs="*", default=[], help="test programs that do not count")
     arguments = parser.parse_args()
-    root = arguments.root.resolve()
-    exclusions = read_exclusions(arguments.exclusions or root / "tests/proofs/mcdc/exclusions")
-    report, lcov = export(arguments.build, root, arguments.without)
-    counts, decisions, missing = judge(report, lcov, root)
+    exclusions = reasons.read(ROOT / "tests/proofs/mcdc/exclusions", EXCLUSION, "KIND FILE: TEXT")
+    report, lcov = export(arguments.without)
+    counts, decisions, missing = judge(report, lcov)
 
     known = {file["filename"] for file in report["files"]}
-    bad = [f"{path.relative_to(root)} is not in the report" for path in sorted(root.glob("firmware/src/**/*.c"))
+    bad = [f"{path.relative_to(ROOT)} is not in the report" for path in sorted(ROOT.glob("firmware/src/**/*.c"))
            if str(path) not in known]
     bad += [f"{name}:{number}: {kind} is not covered: {text}" for number, kind, name, text in missing
             if (kind, name, text) not in exclusions]

@@ -3,7 +3,7 @@
 
 A deviation stands in tests/proofs/static/deviations with its reason: a rule and a place, or for an advisory rule `everywhere`. One
 that is not needed any more fails as well. The addon prints numbers of rules; their text is MISRA's.
-usage: check-misra [--root ROOT] [--deviations FILE] [--list]      --list: everything that is found, for the file
+usage: check-misra.py [--list]      --list: everything that is found, for the file
 """
 import argparse
 import pathlib
@@ -13,6 +13,9 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "scripts/tools"))
+import reasons  # noqa: E402  (its folder is known only now)
+
 FINDING = re.compile(r"([^:]*):(\d+): ([^:]+): (.*)")
 DEVIATION = re.compile(r"(\S+) (?:(everywhere)|([^ :]+): (\S.*))")
 # Rules that MISRA C:2012 calls advisory, of those that the addon knows.
@@ -25,38 +28,23 @@ def fail(message):
     sys.exit(1)
 
 
-def read_deviations(path):
-    """(rule, file, text) of every deviation, file and text empty for `everywhere`. Below a group stands its reason."""
-    places = []
-    group = 0
-    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
-        match = DEVIATION.fullmatch(line)
-        if line.startswith("#") or not line:
-            if group:
-                fail(f"{path}:{number}: what stands above has no reason")
-        elif line.startswith(" ") and len(line.split()) >= 3:
-            group = 0
-        elif match:
-            rule, everywhere, file, text = match.groups()
-            if everywhere and rule not in ADVISORY:
-                fail(f"{path}:{number}: {rule} is not advisory: each place needs its reason")
-            places.append((rule, file or "", text or ""))
-            group += 1
-        else:
-            fail(f"{path}:{number}: neither 'RULE FILE: SOURCE LINE' nor 'RULE everywhere' nor an indented reason")
-    if group:
-        fail(f"{path}: the last deviation has no reason")
-    return places
+def read_deviations():
+    """(rule, file, text) of every deviation, file and text empty for `everywhere`."""
+    path = ROOT / "tests/proofs/static/deviations"
+    for rule, everywhere, file, text in reasons.read(path, DEVIATION, "RULE FILE: SOURCE LINE"):
+        if everywhere and rule not in ADVISORY:
+            fail(f"{path}: {rule} is not advisory: each place needs its reason")
+        yield rule, file or "", text or ""
 
 
-def findings(root):
+def findings():
     """(rule or check, file, line number, text of the line) of everything that cppcheck says."""
     with tempfile.TemporaryDirectory() as scratch:
         command = ["cppcheck", "--std=c11", "--platform=arm32-wchar_t4", "--addon=misra", "--enable=all", "--inconclusive",
                    "--suppress=missingIncludeSystem", "--suppress=unusedFunction", "--quiet", "--error-exitcode=0",
                    f"--cppcheck-build-dir={scratch}", "--template={file}:{line}: {id}: {message}", "-Ifirmware/include",
                    "-Ihal/include", "-Ifirmware/src", "firmware/src"]
-        done = subprocess.run(command, check=False, capture_output=True, text=True, cwd=root)
+        done = subprocess.run(command, check=False, capture_output=True, text=True, cwd=ROOT)
     if done.returncode != 0:
         fail(done.stdout + done.stderr)
     for line in sorted(set(done.stderr.splitlines())):
@@ -64,26 +52,21 @@ def findings(root):
         if not match:
             fail(f"cppcheck says: {line}")
         file, number, check, message = match.groups()
-        source = root / file
+        source = ROOT / file
         text = source.read_text(encoding="utf-8").splitlines()[int(number) - 1].strip() if source.is_file() else message
         yield check.removeprefix("misra-c2012-"), file, int(number), text
 
 
 def main():
     parser = argparse.ArgumentParser(description="MISRA C:2012 and cppcheck over the core")
-    parser.add_argument("--root", type=pathlib.Path, default=ROOT)
-    parser.add_argument("--deviations", type=pathlib.Path)
     parser.add_argument("--list", action="store_true")
     arguments = parser.parse_args()
-    root = arguments.root.resolve()
-    if not list(root.glob("firmware/src/**/*.c")):
-        fail(f"there is nothing to check in {root}")
-    found = list(findings(root))
+    found = list(findings())
     if arguments.list:
         for rule, file, _, text in found:
             print(f"{rule} {file}: {text}")
         return
-    deviations = read_deviations(arguments.deviations or root / "tests/proofs/static/deviations")
+    deviations = list(read_deviations())
     bad = [f"{file}:{number}: {rule}: {text}" for rule, file, number, text in found
            if (rule, "", "") not in deviations and (rule, file, text) not in deviations]
     needed = {(rule, file, text) for rule, file, _, text in found} | {(rule, "", "") for rule, *_ in found}
