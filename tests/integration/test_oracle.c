@@ -119,7 +119,7 @@ void test_an_angle_of_more_than_50_ms_before_the_trip_is_not_held(void) {
 
 /* Both bits: the mode before stands for 50 ms. */
 /* Shows: FSM-6, FSM-10 */
-void test_manual_drops_what_is_held(void) {
+void test_manual_drops_the_held_angle(void) {
     measured(9200);
     oracle_returned(&oracle, AGV_STATE_TRIPPED);
     reported(0x40);
@@ -137,7 +137,7 @@ void test_manual_drops_what_is_held(void) {
 }
 
 /* Shows: FSM-6, TOP-2 */
-void test_of_motion_a_gateway_passes_only_what_the_mode_allows(void) {
+void test_a_gateway_passes_only_motion_that_the_mode_allows(void) {
     oracle.gateway = true;
     oracle_returned(&oracle, AGV_STATE_ACTIVE);
     reported(0x40); /* one 363h does not end the engagement */
@@ -180,7 +180,7 @@ void test_the_throttle_0_of_the_last_engagement_may_be_late(void) {
 }
 
 /* Shows: FSM-6 */
-void test_on_the_shared_bus_nothing_leaves_in_standby_and_active(void) {
+void test_on_the_shared_bus_nothing_is_sent_in_standby_and_active(void) {
     TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x168, 8, 0), AGV_STATE_STANDBY));
     TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, signals(0x70, 0), AGV_STATE_ACTIVE));
     oracle.own_status_id = 0x123;
@@ -189,7 +189,7 @@ void test_on_the_shared_bus_nothing_leaves_in_standby_and_active(void) {
 }
 
 /* Shows: FSM-6, TOP-2 */
-void test_what_a_gateway_passes(void) {
+void test_frames_that_a_gateway_passes(void) {
     oracle.gateway = true;
     reported(0x80);
     TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, signals(0x80, 1), AGV_STATE_STANDBY));

@@ -281,7 +281,7 @@ static void expect_raised(agv_fault_t fault, const fault_row_t *row) {
    THROTTLE_IN_PARK, FOREIGN_COMMAND_SENDER, SAFE_STATE_UNCONFIRMED, VEHICLE_NOT_STOPPING, MOVING_WHILE_SAFE,
    COMMAND_TOO_FAST, SPEED_IMPLAUSIBLE, STATUS_ID_IN_USE, STARTUP_TIMEOUT, RX_OVERRUN, ERROR_PASSIVE,
    AI_BUS_OFF, WRONG_ID_SET, STORE_INVALID */
-void test_each_is_raised_as_what_it_is(void) {
+void test_each_is_raised_with_its_class(void) {
     unsigned raised = 0;
     for (unsigned i = 0; i < FAULT_ROWS; i++) {
         if (RAISE[i] != NULL) {

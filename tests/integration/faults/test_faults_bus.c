@@ -43,7 +43,7 @@ void test_bus_off_trips_and_opens_the_output(void) {
 
 /* 100 ms after it, and again and again. What was queued is purged with it. */
 /* Shows: SUP-7, BUS_OFF */
-void test_recovery_is_asked_for(void) {
+void test_recovery_is_requested(void) {
     fixture_active(&f);
     set_state(HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
     fixture_run(&f, 1);
@@ -113,7 +113,7 @@ void test_bus_off_in_init(void) {
 
 /* A frame that waited to be passed on when the bus went off is never sent. */
 /* Shows: SUP-7, TOP-2, BUS_OFF */
-void test_what_was_queued_is_never_sent(void) {
+void test_queued_frames_are_never_sent(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
     fixture_active(&f);
     fixture_run_before(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
@@ -135,7 +135,7 @@ void test_what_was_queued_is_never_sent(void) {
 
 /* The trip purges the controller, so that the safe commands go out. */
 /* Shows: SUP-7, FSM-2, FSM-4, TX_STALLED */
-void test_a_frame_that_does_not_leave(void) {
+void test_a_frame_that_is_not_sent(void) {
     fixture_active(&f);
     sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 100);
     fixture_run(&f, 10);
@@ -155,7 +155,7 @@ void test_a_frame_that_does_not_leave(void) {
 
 /* The queue takes nothing: INIT's first 075h is due 33 ms after the start, so 101 ms after that it is stalled. */
 /* Shows: SUP-7, TX_STALLED */
-void test_a_queue_that_takes_nothing_in_init(void) {
+void test_a_queue_that_accepts_nothing_in_init(void) {
     fixture_start(&f);
     fixture_run(&f, 10);
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
@@ -177,7 +177,7 @@ void test_a_queue_that_takes_nothing_in_init(void) {
 /* The gateway cannot pass on: 101 ms after the first command that was not taken. When the queue takes frames again these
  * are the safe commands, not what waited. */
 /* Shows: SUP-7, TOP-2, FSM-2, TX_STALLED */
-void test_a_queue_that_takes_nothing_in_a_gateway(void) {
+void test_a_queue_that_accepts_nothing_in_a_gateway(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
     fixture_active(&f);
     fixture_run_before(&f, AGV_MSG_STEERING_COMMAND);
@@ -279,7 +279,7 @@ void test_bus_off_of_the_ai_side(void) {
 
 /* What waited for it when it went off is dropped in that tick, one a status message, and never sent. */
 /* Shows: SUP-7, TOP-2, AI_BUS_OFF */
-void test_what_waits_for_the_ai_side_is_gone_in_its_bus_off(void) {
+void test_waiting_frames_for_the_ai_side_are_discarded_in_its_bus_off(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
     fixture_standby(&f);
     fixture_run_before(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
@@ -303,7 +303,7 @@ void test_what_waits_for_the_ai_side_is_gone_in_its_bus_off(void) {
 
 /* So is what came while it was off and waits, though it is back before the next tick. */
 /* Shows: SUP-7, TOP-2, AI_BUS_OFF */
-void test_what_waits_for_the_ai_side_is_gone_when_it_comes_back_before_a_tick(void) {
+void test_waiting_frames_for_the_ai_side_are_discarded_in_a_bus_off_between_two_ticks(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
     fixture_mute_ai(&f, true);
     fixture_standby(&f);
@@ -426,7 +426,7 @@ void test_a_late_step_in_init(void) {
 
 /* 065h waits for a queue that is full, and is not wanted any more (manual): it cannot stall. */
 /* Shows: SUP-7, FSM-10, TX_STALLED */
-void test_what_is_not_wanted_any_more_is_not_stalled(void) {
+void test_a_frame_that_is_no_longer_wanted_is_not_stalled(void) {
     walk_to_tripped(&f);
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
     fixture_run(&f, 30);

@@ -201,7 +201,7 @@ static void corrupt_and_pass_on(void *ctx, hal_can_side_t side, const hal_can_fr
 
 /* The gateway has 43Fh and 065h waiting; while the first of them leaves, the second is corrupted. */
 /* Shows: INT-4, FSM-2, TX_GATE_REFUSED */
-void test_the_gate_refuses_what_may_not_leave(void) {
+void test_the_gate_refuses_a_forbidden_frame(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
     fixture_active(&f);
     fixture_run_before(&f, AGV_MSG_TURN_SIGNAL_COMMAND);

@@ -129,7 +129,7 @@ void test_a_frame_comes_before_the_tick(void) {
 
 /* What comes later is never the first reason, though it ranks higher, and though the first has ended. */
 /* Shows: FSM-5 */
-void test_later_is_not_first(void) {
+void test_a_later_fault_is_not_the_first_reason(void) {
     fixture_active(&f);
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x02;
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);

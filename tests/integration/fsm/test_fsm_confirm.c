@@ -85,7 +85,7 @@ static void eps_silent(void) {
 }
 
 /* Shows: FSM-4 */
-void test_what_the_confirmation_does_not_need(void) {
+void test_conditions_that_the_confirmation_does_not_need(void) {
     static const struct {
         const char *what;
         void (*spoil)(void);
@@ -111,7 +111,7 @@ void test_the_confirmation_does_not_need_standstill(void) {
 }
 
 /* Shows: FSM-2, FSM-4 */
-void test_the_confirmation_counts_in_the_handling_of_its_last_frame(void) {
+void test_the_confirmation_counts_with_its_last_frame(void) {
     walk_to_tripped(&f);
     fixture_vehicle_confirms(&f);
     for (unsigned i = 0; i < 3; i++) {
@@ -154,7 +154,7 @@ void test_safe_sends_as_tripped_does(void) {
 /* ---- Taken back ---- */
 
 /* Shows: FSM-3, FSM-4 */
-void test_leaving_p_or_engaging_takes_the_confirmation_back_in_that_frame(void) {
+void test_leaving_p_or_engaging_withdraws_the_confirmation_in_that_frame(void) {
     static const uint8_t GEARS[] = {GEAR_D, GEAR_N, GEAR_R, 0, 0xFF};
     walk_to_safe(&f);
     for (unsigned i = 0; i < sizeof GEARS; i++) {
@@ -239,7 +239,7 @@ void test_both_modes_at_once_after_engaged_confirm_nothing(void) {
 
 /* Both modes at once are no report of "not engaged", whatever was before. */
 /* Shows: FSM-4, MODE_INVALID */
-void test_both_modes_at_once_after_manual_take_the_confirmation_back(void) {
+void test_both_modes_at_once_after_manual_withdraw_the_confirmation(void) {
     walk_to_safe(&f);
     fixture_mode(&f, MODE_BOTH);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);

@@ -154,7 +154,7 @@ static const struct {
 };
 
 /* Shows: FSM-10 */
-void test_it_is_held_only_while_the_eps_is_fit(void) {
+void test_the_angle_is_held_only_while_the_eps_is_healthy(void) {
     for (unsigned i = 0; i < sizeof UNFIT / sizeof UNFIT[0]; i++) {
         fixture_init(&f);
         f.what = UNFIT[i].what;
@@ -203,7 +203,7 @@ void test_a_trip_in_manual_driving_holds_nothing(void) {
 
 /* The operator has steered: what was held is dropped, and taken anew from the first valid 067h after manual. */
 /* Shows: FSM-10 */
-void test_manual_after_the_trip_drops_what_is_held(void) {
+void test_manual_after_the_trip_drops_the_held_angle(void) {
     trip_at(9123);
     fixture_run(&f, 100);
     fixture_mode(&f, MODE_MANUAL);

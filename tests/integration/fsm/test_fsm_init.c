@@ -232,7 +232,7 @@ void test_init_is_left_once_the_obstacle_is_gone_and_nothing_has_latched(void) {
 }
 
 /* Shows: SUP-3, SUP-8 */
-void test_what_does_not_keep_init(void) {
+void test_conditions_that_do_not_keep_init(void) {
     f.traffic[AGV_MSG_STEERING_POSITION].muted = true; /* 267h only warns */
     fixture_mute_ai(&f, true);
     fixture_gear(&f, GEAR_D);
@@ -288,7 +288,7 @@ void test_a_lost_ai_computer_keeps_init_where_it_is_a_trip_in_manual(void) {
 }
 
 /* Shows: FOREIGN_COMMAND_SENDER, FSM-7 */
-void test_an_event_keeps_init_until_it_has_ended(void) {
+void test_a_transient_keeps_init_until_it_has_ended(void) {
     static const uint8_t park[8] = {GEAR_P};
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
     fixture_start(&f);
@@ -324,7 +324,7 @@ void test_a_vehicle_that_is_engaged_at_power_on_is_not_resumed(void) {
 }
 
 /* Shows: FSM-9, SELF_TEST_FAILED, CONFIG_INVALID */
-void test_only_what_cannot_be_reset_latches_at_a_power_on(void) {
+void test_only_unresettable_faults_latch_at_a_power_on(void) {
     f.self_test_passed = false;
     fixture_start(&f);
     expect_state(&f, AGV_STATE_TRIPPED);

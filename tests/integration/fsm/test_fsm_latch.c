@@ -267,7 +267,7 @@ static void expect_outlives_every_other_reset(agv_fault_t fault) {
 }
 
 /* Shows: FSM-9, FSM-7, SELF_TEST_FAILED, CONFIG_INVALID, MEMORY_CORRUPTED */
-void test_what_a_power_on_ends_outlives_every_other_reset(void) {
+void test_an_unresettable_fault_outlives_every_reset_but_a_power_on(void) {
     start_with_failed_self_test();
     expect_outlives_every_other_reset(AGV_FAULT_SELF_TEST_FAILED);
     fixture_init(&f);

@@ -8,7 +8,7 @@ static void reset_by_button(void) {
 }
 
 /* Shows: FSM-4 */
-void test_it_is_closed_by_entering_standby_and_by_nothing_before(void) {
+void test_the_output_closes_on_entry_to_standby_and_not_before(void) {
     fixture_start(&f);
     (void)walk_until(&f, AGV_STATE_STANDBY, 1000);
     expect_output(&f, true);

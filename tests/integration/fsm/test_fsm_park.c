@@ -136,7 +136,7 @@ void test_at_standstill_a_wheel_that_turns_again_starts_the_100_ms_anew(void) {
 
 /* What is not sent answers nothing. */
 /* Shows: FSM-1, TOP-1 */
-void test_at_standstill_a_gear_command_of_another_sender_is_not_answered_before(void) {
+void test_at_standstill_a_gear_command_of_another_sender_is_not_overridden_before(void) {
     static const uint8_t drive[8] = {GEAR_D};
     const uint32_t trip_ms = trip_while_driving();
     fixture_run(&f, 500);

@@ -10,7 +10,7 @@ static uint32_t send_now(agv_message_t message) {
 }
 
 /* Shows: FSM-2, S_DRIVER_ALARM */
-void test_a_fault_in_a_frame_is_answered_in_the_handling_of_that_frame(void) {
+void test_a_fault_in_a_frame_trips_in_the_same_call(void) {
     fixture_angle(&f, 9123);
     fixture_command_angle(&f, 9123);
     fixture_active(&f);
@@ -22,7 +22,7 @@ void test_a_fault_in_a_frame_is_answered_in_the_handling_of_that_frame(void) {
 }
 
 /* Shows: FSM-2, EPS_UNDER_VOLTAGE */
-void test_a_fault_that_counts_3_frames_is_answered_in_the_handling_of_the_third(void) {
+void test_a_fault_that_needs_3_frames_trips_in_the_call_of_the_third(void) {
     fixture_active(&f);
     f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x01;
     (void)send_now(AGV_MSG_EPS_STATUS);
@@ -43,7 +43,7 @@ void test_a_command_out_of_range_is_answered_once_and_in_its_own_handling(void) 
 
 /* The last counter came at t; at t + 50 its age is 50 ms, not greater. */
 /* Shows: FSM-2, SUP-2, EPS_HEARTBEAT_LOST */
-void test_an_expired_deadline_is_answered_within_the_tick(void) {
+void test_an_expired_deadline_trips_within_the_tick(void) {
     fixture_active(&f);
     fixture_run_past(&f, AGV_MSG_STEERING_STATUS);
     f.traffic[AGV_MSG_STEERING_STATUS].muted = true;
@@ -127,7 +127,7 @@ static void expect_each_command_sent(uint32_t times) {
 }
 
 /* Shows: FSM-2 */
-void test_what_waits_in_the_supervisor_at_a_trip_is_discarded(void) {
+void test_frames_that_wait_in_the_supervisor_at_a_trip_are_discarded(void) {
     let_commands_wait();
     const uint32_t dropped = agv_supervisor_counters(&f.supervisor)->dropped;
     const uint32_t purges = f.hal.can[HAL_CAN_VEHICLE].purges;
@@ -143,7 +143,7 @@ void test_what_waits_in_the_supervisor_at_a_trip_is_discarded(void) {
 }
 
 /* Shows: FSM-2, TOP-1 */
-void test_safe_commands_that_are_not_taken_wait_one_a_message(void) {
+void test_refused_safe_commands_wait_one_per_message(void) {
     let_commands_wait();
     walk_trip(&f);
     fixture_mute_ai(&f, true);

@@ -266,7 +266,7 @@ void test_a_break_of_one_frame(void) {
 }
 
 /* Shows: FSM-3 */
-void test_the_conditions_hold_in_the_releasing_frame_too(void) {
+void test_the_conditions_must_hold_in_the_releasing_frame_too(void) {
     walk_to_safe(&f);
     press(true);
     fixture_run(&f, 1500);

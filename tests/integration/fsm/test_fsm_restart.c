@@ -242,7 +242,7 @@ void test_a_torn_write_of_the_latch_counts_as_tripped(void) {
 }
 
 /* Shows: FSM-7 */
-void test_a_store_that_takes_nothing_changes_nothing_but_the_reason(void) {
+void test_a_store_that_accepts_nothing_changes_only_the_reason(void) {
     sim_store_fail_writes(&f.store, UINT32_MAX);
     walk_to_safe(&f);
     expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
@@ -253,7 +253,7 @@ void test_a_store_that_takes_nothing_changes_nothing_but_the_reason(void) {
 
 /* A trip is on record before anything else can happen. */
 /* Shows: FSM-7 */
-void test_the_latch_is_stored_in_the_handling_of_the_trip(void) {
+void test_the_latch_is_stored_in_the_call_that_trips(void) {
     fixture_active(&f);
     const uint32_t writes = f.hal.op_calls[SIM_HAL_OP_STORE_WRITE_LATCH];
     walk_trip(&f);

@@ -90,7 +90,7 @@ void test_a_vehicle_that_stops_within_5_s(void) {
 }
 
 /* Shows: FSM-12, VEHICLE_NOT_STOPPING, WHEEL_SPEED_TIMEOUT */
-void test_wheels_that_are_not_seen_do_not_stand(void) {
+void test_wheels_without_fresh_speeds_do_not_stand(void) {
     walk_to_tripped_driving(&f, 1000);
     confirm();
     f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
@@ -102,7 +102,7 @@ void test_wheels_that_are_not_seen_do_not_stand(void) {
 
 /* Standing at the moment of the trip counts: that 101h is silent from then on is a fault of its own. */
 /* Shows: FSM-12 */
-void test_wheels_that_stand_at_the_trip_are_seen_to_stand(void) {
+void test_wheels_that_stand_at_the_trip_count_as_stopped(void) {
     walk_to_tripped(&f);
     confirm();
     f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
@@ -114,7 +114,7 @@ void test_wheels_that_stand_at_the_trip_are_seen_to_stand(void) {
 
 /* It stood until then, but at the trip its wheel speeds were too old. */
 /* Shows: FSM-12, VEHICLE_NOT_STOPPING, WHEEL_SPEED_TIMEOUT */
-void test_a_trip_because_the_wheels_are_not_seen(void) {
+void test_a_trip_by_missing_wheel_speeds(void) {
     fixture_active(&f);
     f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
     (void)walk_until(&f, AGV_STATE_TRIPPED, 100);
@@ -240,7 +240,7 @@ void test_a_vehicle_that_moves_again_in_tripped(void) {
 
 /* Before it has stood the vehicle is expected to roll; outside of the latch it may drive. */
 /* Shows: FSM-12 */
-void test_what_is_not_moving_while_safe(void) {
+void test_cases_that_are_not_moving_while_safe(void) {
     walk_to_tripped_driving(&f, 1000);
     confirm();
     fixture_run(&f, 3000);

@@ -120,7 +120,7 @@ void test_in_manual_it_trips_when_it_has_ended_and_comes_again(void) {
 
 /* An event that is held for longer than the reset takes. */
 /* Shows: FSM-11, AI_COMMAND_OUT_OF_RANGE */
-void test_an_event_that_has_not_ended_trips_at_the_next_engagement(void) {
+void test_a_transient_that_has_not_ended_trips_at_the_next_engagement(void) {
     static const uint8_t no_gear[8] = {3};
     f.config.event_hold_ms = 10000;
     fixture_active(&f);
@@ -147,7 +147,7 @@ void test_the_alarm_of_the_vcu_stays_armed(void) {
 
 /* Nothing is active in ACTIVE: with the engagement the warnings of manual driving become trips. */
 /* Shows: FSM-11, SUP-8, AI_HEARTBEAT_LOST */
-void test_what_warns_in_manual_trips_at_the_engagement(void) {
+void test_a_warning_in_manual_trips_at_the_engagement(void) {
     fixture_standby(&f);
     fixture_run(&f, 300);
     fixture_mute_ai(&f, true);

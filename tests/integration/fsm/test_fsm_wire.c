@@ -88,7 +88,7 @@ static void expect_safe_commands_from(uint32_t n) {
 }
 
 /* Shows: FSM-2, TOP-2 */
-void test_without_a_trip_the_commands_leave(void) {
+void test_without_a_trip_the_commands_are_sent(void) {
     ai_commands();
     run(2);
     TEST_ASSERT_EQUAL_UINT32(3, wire_count);
@@ -98,7 +98,7 @@ void test_without_a_trip_the_commands_leave(void) {
 }
 
 /* Shows: FSM-2 */
-void test_commands_that_wait_in_the_controller_never_leave_after_a_trip(void) {
+void test_commands_that_wait_in_the_controller_are_never_sent_after_a_trip(void) {
     ai_commands();
     walk_trip(&f);
     run(5);
@@ -134,7 +134,7 @@ void test_behind_a_blocked_bus_the_safe_commands_are_the_first(void) {
 }
 
 /* Shows: FSM-2, INT-5, MEMORY_CORRUPTED */
-void test_when_memory_is_found_corrupted_what_waits_in_the_controller_never_leaves(void) {
+void test_after_memory_corruption_frames_that_wait_in_the_controller_are_never_sent(void) {
     ai_commands();
     ((uint8_t *)&f.supervisor)[sizeof f.supervisor / 3u] ^= 0x20u;
     fixture_send_now(&f, AGV_MSG_THROTTLE_STATUS);
@@ -150,7 +150,7 @@ void test_when_memory_is_found_corrupted_what_waits_in_the_controller_never_leav
 
 /* Recovery is asked for 100 ms after bus-off; nothing of before is sent afterwards; all safe commands go out at once. */
 /* Shows: SUP-7, BUS_OFF, FSM-2 */
-void test_after_bus_off_only_safe_commands_leave(void) {
+void test_after_bus_off_only_safe_commands_are_sent(void) {
     ai_commands();
     sim_bus_force_bus_off(&vehicle_bus, f.hal.can[HAL_CAN_VEHICLE].node);
     run(99);

@@ -210,7 +210,7 @@ void test_the_led_is_switched_when_it_changes_only(void) {
 }
 
 /* Shows: TOP-4, LED-1 */
-void test_shadow_is_seen_on_the_led(void) {
+void test_the_led_shows_shadow_mode(void) {
     unsigned lit_ms = 0;
     f.config.shadow = AGV_SHADOW_ON;
     fixture_standby(&f);

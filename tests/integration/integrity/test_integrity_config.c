@@ -53,7 +53,7 @@ static void expect_bounds(uint16_t setting, uint16_t lowest, uint16_t highest) {
 }
 
 /* Shows: INT-2 */
-void test_the_defaults_make_sense(void) {
+void test_the_defaults_are_valid(void) {
     expect_good("shared bus");
     config.topology = AGV_TOPOLOGY_GATEWAY;
     expect_good("gateway");
@@ -294,7 +294,7 @@ static void expect_refused_at_start(const char *what) {
 }
 
 /* Shows: INT-2, CONFIG_INVALID, FSM-9 */
-void test_a_supervisor_that_is_given_one_is_tripped_and_runs_on_the_defaults(void) {
+void test_a_supervisor_with_an_invalid_configuration_trips_and_uses_the_defaults(void) {
     config.tx_stalled_ms = 0;
     expect_refused_at_start("out of range");
     config.topology = 7;

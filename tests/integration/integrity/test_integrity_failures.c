@@ -159,7 +159,7 @@ static const sim_hal_op_t OPS[] = {SIM_HAL_OP_CAN_SEND,     SIM_HAL_OP_CAN_PURGE
                                    SIM_HAL_OP_STORE_APPEND, SIM_HAL_OP_WATCHDOG_FEED};
 
 /* Shows: FSM-6, FSM-3 */
-void test_each_operation_fails_for_good(void) {
+void test_each_operation_fails_permanently(void) {
     for (uint16_t topology = AGV_TOPOLOGY_SHARED; topology <= AGV_TOPOLOGY_GATEWAY; topology++) {
         for (unsigned i = 0; i < sizeof OPS / sizeof OPS[0]; i++) {
             expect_no_harm(topology, 1, UINT32_MAX, 1u << OPS[i]);
@@ -171,7 +171,7 @@ void test_each_operation_fails_for_good(void) {
 /* ---- What the single failures come to ---- */
 
 /* Shows: TX_STALLED, SUP-7 */
-void test_a_controller_that_takes_nothing_is_noticed_after_a_trip(void) {
+void test_a_controller_that_accepts_nothing_is_detected_after_a_trip(void) {
     walk_to_tripped(&f);
     sim_hal_fail_at(&f.hal, 1, UINT32_MAX, 1u << SIM_HAL_OP_CAN_SEND);
     fixture_run(&f, 300);

@@ -139,7 +139,7 @@ void test_events_outlive_a_restart(void) {
 }
 
 /* Shows: INT-3 */
-void test_after_a_power_on_whatever_is_in_the_memory_is_no_event(void) {
+void test_after_a_power_on_random_memory_has_no_events(void) {
     static const uint8_t FILL[] = {0x00, 0xFF, 0xA5, 0x01};
     for (unsigned i = 0; i < sizeof FILL; i++) {
         fixture_init(&f);
@@ -312,7 +312,7 @@ void test_a_torn_write_loses_that_event_only(void) {
 }
 
 /* Shows: INT-3 */
-void test_a_flash_that_takes_nothing_changes_nothing_else(void) {
+void test_a_flash_that_accepts_nothing_changes_nothing_else(void) {
     walk_to_safe(&f);
     sim_store_fail_writes(&f.store, UINT32_MAX);
     for (unsigned i = 0; i < 30; i++) {
@@ -326,7 +326,7 @@ void test_a_flash_that_takes_nothing_changes_nothing_else(void) {
 
 /* More events than the recorder holds come before they can be copied: the newest 256 are. */
 /* Shows: INT-3 */
-void test_what_was_replaced_before_it_could_be_copied_is_lost(void) {
+void test_events_replaced_before_they_were_copied_are_lost(void) {
     fixture_standby(&f);
     drive_on();
     const uint32_t before = appended();

@@ -67,7 +67,7 @@ static void slow_down(agv_message_t message, uint32_t cycle_ms) {
 
 /* Frames are handled before the tick of their millisecond: one each deadline + 1 ms is just in time, for ever. */
 /* Shows: SUP-2, SUP-3 */
-void test_a_frame_in_the_very_last_moment(void) {
+void test_a_frame_in_the_last_millisecond(void) {
     for (unsigned i = 0; i < DEADLINE_COUNT; i++) {
         fixture_init(&f);
         f.what = agv_fault_name(DEADLINES[i].fault);
@@ -183,7 +183,7 @@ void test_times_of_the_bus(void) {
 }
 
 /* Shows: SUP-5, AI_COMMAND_OUT_OF_RANGE */
-void test_how_long_an_event_lasts(void) {
+void test_the_duration_of_a_transient(void) {
     f.config.event_hold_ms = 250;
     fixture_active(&f);
     fixture_frame(&f, AGV_MSG_GEAR_COMMAND, (const uint8_t[8]){0});
@@ -259,7 +259,7 @@ void test_every_engagement_has_its_grace(void) {
 
 /* What counts while engaged ends with the engagement. */
 /* Shows: SUP-5, STEERING_DEVIATION, THROTTLE_IN_PARK */
-void test_what_ends_with_the_engagement(void) {
+void test_faults_that_end_with_the_engagement(void) {
     fixture_active(&f);
     fixture_gear(&f, GEAR_P);
     f.traffic[AGV_MSG_THROTTLE_STATUS].data[0] = 10;

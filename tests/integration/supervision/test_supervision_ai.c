@@ -105,7 +105,7 @@ void test_stuck_needs_a_repeat_within_the_last_two_cycles(void) {
 
 /* 43Fh byte 8 and no other byte. */
 /* Shows: SUP-1, P3, AI_HEARTBEAT_STUCK */
-void test_only_the_counter_beats(void) {
+void test_only_a_changed_counter_is_a_heartbeat(void) {
     fixture_standby(&f);
     fixture_run_past(&f, AI);
     f.traffic[AI].frozen = true;
@@ -592,7 +592,7 @@ void test_the_vcus_ai_alarm_at_the_engagement(void) {
 
 /* It was clear while the AI computer was silent only, then it is engaged: what does not count cannot trip. */
 /* Shows: SUP-8, VCU_AI_CAN_LOST */
-void test_the_vcus_ai_alarm_of_an_ai_that_was_never_there(void) {
+void test_the_vcus_ai_alarm_of_an_ai_that_was_never_received(void) {
     fixture_mute_ai(&f, true);
     fixture_standby(&f);
     fixture_run(&f, 500);

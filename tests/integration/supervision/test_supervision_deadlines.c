@@ -47,7 +47,7 @@ static void check_death(void (*mute)(fixture_t *, bool), agv_message_t last, uin
 }
 
 /* Shows: SUP-3, STEERING_COMMAND_TIMEOUT, VCU_HEARTBEAT_LOST, EPS_HEARTBEAT_LOST */
-void test_what_notices_a_dead_node_first(void) {
+void test_the_first_fault_of_a_dead_node(void) {
     check_death(fixture_mute_ai, AGV_MSG_STEERING_COMMAND, 125, AGV_FAULT_STEERING_COMMAND_TIMEOUT, ANGLE_CENTRE);
     check_death(fixture_mute_vcu, AGV_MSG_VEHICLE_STATUS, 50, AGV_FAULT_VCU_HEARTBEAT_LOST, ANGLE_CENTRE);
     check_death(fixture_mute_eps, AGV_MSG_STEERING_STATUS, 50, AGV_FAULT_EPS_HEARTBEAT_LOST, NO_HOLD);

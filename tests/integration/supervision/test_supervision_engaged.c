@@ -392,7 +392,7 @@ void test_throttle_in_park_for_a_third_of_the_time(void) {
 
 /* While the last 363h has bit 8 clear nothing is judged: the budget stands still, and so does a score. */
 /* Shows: SUP-5, THROTTLE_IN_PARK, EPS_MODE_OFF */
-void test_what_is_not_judged_stands_still(void) {
+void test_budgets_are_paused_while_not_judged(void) {
     active_in_park();
     set_throttle(10);
     fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS); /* 1 ms of the budget */

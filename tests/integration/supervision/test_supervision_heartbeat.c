@@ -90,7 +90,7 @@ static void send_counter(const node_t *node, uint8_t counter) {
 
 /* Alive is a value that changed, whatever it changed to. One each 50 ms is enough. */
 /* Shows: SUP-1, SUP-2, P13 */
-void test_any_change_is_a_beat(void) {
+void test_any_change_is_a_heartbeat(void) {
     static const uint8_t VALUES[] = {1, 0, 255, 0, 128, 127, 129, 255, 254, 0};
     static const node_t *const NODES[] = {&VCU, &EPS};
     for (unsigned n = 0; n < 2; n++) {
@@ -131,7 +131,7 @@ void test_repeats_between_changes(void) {
 
 /* 363h byte 8 and 067h byte 1, and no other byte. */
 /* Shows: SUP-1, P3 */
-void test_only_the_counter_beats(void) {
+void test_only_a_changed_counter_is_a_heartbeat(void) {
     static const node_t *const NODES[] = {&VCU, &EPS};
     for (unsigned n = 0; n < 2; n++) {
         fixture_init(&f);
@@ -255,7 +255,7 @@ void test_the_deadlines_are_settings(void) {
 
 /* Engagement begins the deadlines of three commands, and no other: 363h itself reports autopilot, with a frozen counter. */
 /* Shows: SUP-2, SUP-3, VCU_HEARTBEAT_STUCK */
-void test_an_engagement_is_no_beat_of_the_vcu(void) {
+void test_an_engagement_is_no_heartbeat_of_the_vcu(void) {
     fixture_standby(&f);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     f.traffic[AGV_MSG_VEHICLE_STATUS].frozen = true;
@@ -286,7 +286,7 @@ static void step_counter(const node_t *node, unsigned step) {
 
 /* 1 to 3 more, also across 255, each just in time. */
 /* Shows: SUP-2, P13 */
-void test_steps_of_1_to_3_are_beats(void) {
+void test_steps_of_1_to_3_are_heartbeats(void) {
     static const node_t *const NODES[] = {&VCU, &EPS};
     for (unsigned n = 0; n < 2; n++) {
         begin_counting(NODES[n]);
@@ -314,7 +314,7 @@ static void check_wrong_steps(const node_t *node, unsigned step) {
 }
 
 /* Shows: SUP-2, P13, VCU_HEARTBEAT_STUCK, EPS_HEARTBEAT_STUCK */
-void test_other_steps_are_no_beats(void) {
+void test_other_steps_are_no_heartbeats(void) {
     static const uint8_t STEPS[] = {0, 4, 5, 127, 128, 254, 255};
     for (unsigned i = 0; i < sizeof STEPS; i++) {
         check_wrong_steps(&VCU, STEPS[i]);

@@ -94,7 +94,7 @@ void test_a_foreign_command_of_any_length(void) {
 
 /* A remote request or a frame with a 29-bit identifier is none, nor is the other set's identifier, nor an unknown one. */
 /* Shows: SUP-6, P1, P15, FOREIGN_COMMAND_SENDER */
-void test_what_is_no_foreign_command(void) {
+void test_frames_that_are_no_foreign_command(void) {
     static const uint8_t FLAGS[] = {HAL_CAN_EXTENDED, HAL_CAN_REMOTE, HAL_CAN_ERROR};
     gateway(AGV_ID_SET_HEADING);
     fixture_active(&f);
@@ -204,7 +204,7 @@ void test_gaps_of_half_the_cycle_are_not_too_fast(void) {
 
 /* A second sender right behind each frame of the first: up 2, down 1. Its 19th frame makes it 20. */
 /* Shows: SUP-6, P16, COMMAND_TOO_FAST */
-void test_a_second_sender_that_hides_behind_the_first(void) {
+void test_a_second_sender_right_behind_the_first(void) {
     for (unsigned i = 0; i < 4; i++) {
         const uint32_t cycle_ms = f.traffic[GAPS[i].message].cycle_ms;
         fixture_init(&f);

@@ -45,7 +45,7 @@ void test_both_bits_in_between_count_anew(void) {
 }
 
 /* Shows: SUP-9 */
-void test_how_many_frames_is_a_setting(void) {
+void test_the_number_of_frames_is_a_setting(void) {
     f.config.mode_frames = 1;
     fixture_active(&f);
     report(MODE_MANUAL, 1);
@@ -99,7 +99,7 @@ void test_the_fourth_engagement_within_5_s(void) {
 
 /* It is an event: it ends after a second. */
 /* Shows: SUP-9, MODE_FLAPPING */
-void test_mode_flapping_is_an_event(void) {
+void test_mode_flapping_is_a_transient(void) {
     engage_first();
     for (unsigned i = 0; i < 3; i++) {
         flap(500);

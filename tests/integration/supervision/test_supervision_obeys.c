@@ -175,7 +175,7 @@ void test_throttle_deviation_counts_after_the_grace(void) {
 
 /* Gateway: compared with what was sent on. 40 % of 250 are 100 counts. */
 /* Shows: SUP-11, TOP-2, THROTTLE_DEVIATION */
-void test_the_throttle_is_compared_with_what_was_sent_on(void) {
+void test_the_throttle_is_compared_with_the_forwarded_command(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
     f.config.throttle_ceiling_pct = 40;
     f.long_run = true;

@@ -383,14 +383,14 @@ static void check_gateway(uint16_t slew_ddeg_s, uint32_t trips_after_ms) {
 /* Not limited, 12000 is sent on at once. Limited to 400.0 degrees a second, which is 100 counts each 25 ms, it is 9500 with
  * the fifth command and 9600 with the sixth: 125 ms later. */
 /* Shows: SUP-10, TOP-2, STEERING_DEVIATION */
-void test_gateway_compares_with_what_was_sent_on(void) {
+void test_a_gateway_compares_with_the_forwarded_command(void) {
     check_gateway(0, 499);
     check_gateway(4000, 624);
 }
 
 /* Tripped, the gateway sends nothing on: what the AI computer goes on commanding is not what the steering was commanded. */
 /* Shows: SUP-10, TOP-2, STEERING_DEVIATION */
-void test_a_command_that_was_not_sent_on_is_not_compared(void) {
+void test_a_command_that_was_not_forwarded_is_not_compared(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
     fixture_active(&f);
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x80; /* S-driver alarm */

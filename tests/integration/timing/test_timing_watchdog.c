@@ -3,7 +3,7 @@
 #include "walk.h"
 
 /* Shows: TIM-3 */
-void test_it_is_fed_in_every_state_while_all_activities_check_in(void) {
+void test_the_watchdog_is_fed_in_every_state_while_all_activities_check_in(void) {
     walk_to_safe(&f);
     fixture_button(&f, true);
     fixture_run(&f, 1100);
@@ -20,7 +20,7 @@ void test_it_is_fed_in_every_state_while_all_activities_check_in(void) {
 
 /* Frames still come in and ticks are made, but the receive path does not check in. */
 /* Shows: TIM-3 */
-void test_it_is_not_fed_without_the_receive_path(void) {
+void test_the_watchdog_is_not_fed_without_the_receive_path(void) {
     fixture_standby(&f);
     f.receive_path_dead = true;
     const uint32_t feeds = f.hal.feeds;
@@ -33,7 +33,7 @@ void test_it_is_not_fed_without_the_receive_path(void) {
 }
 
 /* Shows: TIM-3 */
-void test_it_is_not_fed_without_the_step(void) {
+void test_the_watchdog_is_not_fed_without_the_step(void) {
     fixture_standby(&f);
     const uint32_t feeds = f.hal.feeds;
     for (unsigned i = 0; i < 101; i++) {
@@ -109,7 +109,7 @@ void test_the_limit_is_the_watchdogs_period(void) {
 }
 
 /* Shows: TIM-4, STEP_OVERRUN */
-void test_in_init_a_late_step_is_an_event_that_keeps_init_for_a_second(void) {
+void test_in_init_a_late_step_is_a_transient_that_keeps_init_for_a_second(void) {
     fixture_start(&f);
     fixture_run(&f, 100);
     step_late_by(300);

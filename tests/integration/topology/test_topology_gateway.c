@@ -452,7 +452,7 @@ static void disengage(void) {
 /* What waited in ACTIVE may not leave any more with the first 363h without autopilot, and is no reason to trip. The throttle 0
  * of the end of the engagement waits instead. */
 /* Shows: TOP-2 */
-void test_what_waits_when_the_autopilot_is_disengaged_is_dropped(void) {
+void test_waiting_commands_are_dropped_when_the_autopilot_is_disengaged(void) {
     fixture_active(&f);
     pause_ai();
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
@@ -477,7 +477,7 @@ void test_what_waits_when_the_autopilot_is_disengaged_is_dropped(void) {
 
 /* In STANDBY a 43Fh without "autopilot off" waits for a queue that is full; then comes a trip. */
 /* Shows: TOP-2, FSM-2, FSM-6 */
-void test_what_waits_at_a_trip_in_manual_is_dropped(void) {
+void test_waiting_commands_are_dropped_at_a_trip_in_manual(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
     fixture_standby(&f);
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
@@ -617,7 +617,7 @@ void test_a_flood_from_the_ai_side_does_not_fill_the_vehicles_bus(void) {
 
 /* What waits is dropped at a trip; nothing of it leaves later. */
 /* Shows: TOP-2, FSM-2, FSM-6 */
-void test_what_came_too_soon_is_dropped_at_a_trip(void) {
+void test_commands_that_came_too_soon_are_dropped_at_a_trip(void) {
     for (unsigned i = 0; i < 4; i++) {
         setUp();
         fixture_active(&f);
@@ -840,7 +840,7 @@ void test_steering_is_limited_above_a_speed(void) {
 
 /* One wheel is enough, and a stale 101h (here a warning) counts as fast. */
 /* Shows: TOP-2, WHEEL_SPEED_TIMEOUT */
-void test_what_counts_as_fast(void) {
+void test_speeds_that_count_as_fast(void) {
     active_and_fast(0);
     fixture_wheels(&f, 0, 1001);
     fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);

@@ -84,7 +84,7 @@ static void expect_answered_in_this_call(uint32_t id, const char *what) {
 }
 
 /* Shows: TOP-1 */
-void test_a_command_that_differs_is_answered_in_its_handling(void) {
+void test_a_command_that_differs_is_overridden_in_the_same_call(void) {
     for (unsigned i = 0; i < sizeof DIFFERENT / sizeof DIFFERENT[0]; i++) {
         fixture_init(&f);
         tripped();
@@ -94,7 +94,7 @@ void test_a_command_that_differs_is_answered_in_its_handling(void) {
 }
 
 /* Shows: TOP-1, P14 */
-void test_a_command_that_does_not_differ_is_not_answered(void) {
+void test_a_command_that_does_not_differ_is_not_overridden(void) {
     tripped();
     for (unsigned i = 0; i < sizeof THE_SAME / sizeof THE_SAME[0]; i++) {
         foreign(THE_SAME[i].id, 8, THE_SAME[i].data);
@@ -103,7 +103,7 @@ void test_a_command_that_does_not_differ_is_not_answered(void) {
 }
 
 /* Shows: TOP-1, INT-2, P15 */
-void test_a_command_of_another_length_is_answered_whatever_its_bytes(void) {
+void test_a_command_of_another_length_is_overridden_whatever_its_bytes(void) {
     for (uint8_t length = 0; length < 8; length++) {
         for (unsigned i = 0; i < sizeof THE_SAME / sizeof THE_SAME[0]; i++) {
             uint8_t data[8] = {0};
@@ -118,7 +118,7 @@ void test_a_command_of_another_length_is_answered_whatever_its_bytes(void) {
 }
 
 /* Shows: TOP-1, P15 */
-void test_what_is_no_data_frame_with_that_identifier_is_not_answered(void) {
+void test_other_kinds_of_frames_are_not_overridden(void) {
     static const uint8_t FLAGS[] = {HAL_CAN_EXTENDED, HAL_CAN_REMOTE, HAL_CAN_ERROR};
     tripped();
     for (unsigned i = 0; i < sizeof FLAGS; i++) {
@@ -178,7 +178,7 @@ void test_the_vehicle_side_of_a_gateway_is_overridden_too(void) {
 }
 
 /* Shows: TOP-1, TOP-2 */
-void test_the_ai_side_of_a_gateway_is_not_answered(void) {
+void test_the_ai_side_of_a_gateway_is_not_overridden(void) {
     static const uint8_t drive[8] = {GEAR_D};
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
     tripped();
@@ -187,7 +187,7 @@ void test_the_ai_side_of_a_gateway_is_not_answered(void) {
 }
 
 /* Shows: TOP-1, FSM-10 */
-void test_a_steering_command_is_not_answered_while_none_is_sent(void) {
+void test_a_steering_command_is_not_overridden_while_none_is_sent(void) {
     static const uint8_t angle[8] = {0x00, 0x10};
     walk_to_safe(&f); /* manual: nothing is held */
     settle();
@@ -230,7 +230,7 @@ void test_after_an_override_the_next_periodic_frame_is_due_half_a_cycle_later(vo
 
 /* An AI computer that sends D every 100 ms is answered each time, and the own slots lie in the middle between. */
 /* Shows: TOP-1 */
-void test_a_periodic_foreign_sender_is_answered_each_time(void) {
+void test_a_periodic_foreign_sender_is_overridden_each_time(void) {
     tripped();
     for (unsigned i = 0; i < 20; i++) {
         fixture_forget_sent(&f);
@@ -246,7 +246,7 @@ void test_a_periodic_foreign_sender_is_answered_each_time(void) {
 /* ---- Not more often than every 5 ms ---- */
 
 /* Shows: TOP-1 */
-void test_after_5_ms_it_is_answered_at_once_again(void) {
+void test_after_5_ms_it_is_overridden_at_once_again(void) {
     tripped();
     for (unsigned i = 0; i < 10; i++) {
         fixture_forget_sent(&f);
@@ -268,7 +268,7 @@ void test_identifiers_are_overridden_independently(void) {
 
 /* A sender of one frame a millisecond: an answer every 5 ms, and the last word. */
 /* Shows: TOP-1, COMMAND_TOO_FAST */
-void test_a_babbling_sender_is_answered_every_5_ms_and_last(void) {
+void test_a_babbling_sender_is_overridden_every_5_ms_and_last(void) {
     tripped();
     for (unsigned i = 0; i < 1000; i++) {
         foreign_gear(GEAR_D);
@@ -286,7 +286,7 @@ void test_a_babbling_sender_is_answered_every_5_ms_and_last(void) {
 }
 
 /* Shows: TOP-1 */
-void test_the_gap_is_what_is_configured(void) {
+void test_the_gap_is_a_setting(void) {
     f.config.override_gap_ms = 10;
     tripped();
     foreign_gear(GEAR_D);
@@ -390,7 +390,7 @@ void test_two_supervisors_on_one_bus_do_not_drown_it(void) {
 }
 
 /* Shows: TOP-1 */
-void test_what_comes_within_5_ms_is_answered_when_they_are_over(void) {
+void test_commands_within_5_ms_are_overridden_when_they_are_over(void) {
     tripped();
     foreign_gear(GEAR_D);
     const uint32_t first_ms = f.now_ms;
@@ -410,7 +410,7 @@ void test_what_comes_within_5_ms_is_answered_when_they_are_over(void) {
 
 /* 43Fh waits for its 5 ms to be over; an override of another identifier in between is not its answer. */
 /* Shows: TOP-1 */
-void test_an_answer_that_waits_is_not_forgotten_for_another_one(void) {
+void test_an_override_that_waits_is_not_lost_by_another_one(void) {
     tripped();
     foreign_signals(0x30);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x43F));
@@ -425,7 +425,7 @@ void test_an_answer_that_waits_is_not_forgotten_for_another_one(void) {
 
 /* A VCU that knows CAN FD may obey it. */
 /* Shows: TOP-1, P15 */
-void test_a_command_in_an_fd_frame_is_answered(void) {
+void test_a_command_in_an_fd_frame_is_overridden(void) {
     tripped();
     fixture_raw(&f, HAL_CAN_VEHICLE,
                 (hal_can_frame_t){.id = 0x168, .flags = HAL_CAN_FD, .length = 8, .data = {GEAR_D}});
@@ -434,7 +434,7 @@ void test_a_command_in_an_fd_frame_is_answered(void) {
 
 /* A step comes so late that an answer is due and the periodic slot too: one frame is enough. */
 /* Shows: TOP-1, TIM-1 */
-void test_an_answer_that_is_late_stands_for_the_slot_too(void) {
+void test_a_late_override_replaces_the_periodic_frame_too(void) {
     tripped();
     foreign_gear(GEAR_D);
     fixture_run(&f, 1);

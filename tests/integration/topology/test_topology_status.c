@@ -221,7 +221,7 @@ void test_another_sender_of_the_status_frames_identifier_warns(void) {
 }
 
 /* Shows: TOP-3, P15, STATUS_ID_IN_USE */
-void test_what_is_no_other_sender_of_it(void) {
+void test_frames_that_are_no_other_sender_of_the_status_frame(void) {
     static const uint8_t FLAGS[] = {HAL_CAN_REMOTE, HAL_CAN_EXTENDED, HAL_CAN_ERROR};
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
     f.long_run = true;
@@ -255,7 +255,7 @@ static void go_round(fixture_t *fixture) {
 }
 
 /* Shows: TOP-4 */
-void test_in_shadow_no_frame_leaves_in_any_state(void) {
+void test_in_shadow_no_frame_is_sent_in_any_state(void) {
     f.config.shadow = AGV_SHADOW_ON;
     f.config.status_frame_id = STATUS_ID;
     fixture_start(&f);
@@ -298,7 +298,7 @@ void test_in_shadow_it_decides_as_always_and_counts_what_it_would_have_sent(void
 
 /* Without a shadow what leaves is counted as sent, and as nothing else. */
 /* Shows: TOP-4 */
-void test_what_is_sent_is_counted_once(void) {
+void test_a_sent_frame_is_counted_once(void) {
     fixture_start(&f); /* INIT sends */
     fixture_run(&f, 100);
     TEST_ASSERT_EQUAL_UINT32(f.sent_count, agv_supervisor_counters(&f.supervisor)->sent);

@@ -72,7 +72,7 @@ static void expect_refusal(const char *interface, const char *line) {
     TEST_ASSERT_EQUAL_INT(-1, can.fd);
 }
 
-void test_what_cannot_be_opened_is_named(void) {
+void test_an_interface_that_cannot_be_opened_is_named(void) {
     expect_refusal("vcan9", "vcan9: there is no such interface");
     expect_refusal("lo", "lo: not a CAN interface");
     expect_refusal("", ": there is no such interface");
@@ -129,7 +129,7 @@ void test_received_frames(void) {
     receive_nothing();
 }
 
-void test_error_frames_are_received_by_those_who_ask(void) {
+void test_error_frames_are_received_only_if_requested(void) {
     const uint8_t passive[8] = {0, 0x30};
     const linux_can_options_t options = {.error_frames = true};
     open_with(&options);
@@ -213,7 +213,7 @@ void test_no_identifiers_let_nothing_through(void) {
     receive_nothing();
 }
 
-void test_own_frames_come_back_only_when_they_are_asked_for(void) {
+void test_own_frames_are_received_only_if_requested(void) {
     const hal_can_frame_t frame = vcan_frame(0x065);
     linux_can_record_t record;
     open_plain();
@@ -243,7 +243,7 @@ void test_the_stamp_is_the_time_of_arrival(void) {
     TEST_ASSERT_TRUE(record.stamp_us <= after_us);
 }
 
-void test_what_a_full_queue_lost_is_counted(void) {
+void test_frames_lost_by_a_full_queue_are_counted(void) {
     const linux_can_options_t options = {.receive_size = 1};
     linux_can_record_t record;
     open_with(&options);
@@ -262,7 +262,7 @@ void test_what_a_full_queue_lost_is_counted(void) {
     TEST_ASSERT_EQUAL_UINT32(200u - received, record.lost);
 }
 
-void test_an_interface_that_is_down_is_told_once_and_works_again(void) {
+void test_an_interface_that_is_down_is_reported_once_and_works_again(void) {
     const hal_can_frame_t frame = vcan_frame(0x065);
     linux_can_record_t record;
     open_plain();
@@ -282,7 +282,7 @@ void test_an_interface_that_is_down_is_told_once_and_works_again(void) {
     expect_frame(0x066, 0, 8, EIGHT);
 }
 
-void test_a_write_does_not_take_the_news_away(void) {
+void test_a_write_does_not_hide_the_report(void) {
     const hal_can_frame_t frame = vcan_frame(0x065);
     linux_can_record_t record;
     open_plain();
@@ -359,7 +359,7 @@ void test_a_removed_interface_is_found_by_a_write_too(void) {
     TEST_ASSERT_EQUAL(LINUX_CAN_IS_GONE, linux_can_read(&can, &record));
 }
 
-void test_a_full_kernel_queue_is_told(void) {
+void test_a_full_kernel_queue_is_reported(void) {
     const hal_can_frame_t frame = vcan_frame(0x065);
     open_plain();
     vcan_stick();

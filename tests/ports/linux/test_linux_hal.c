@@ -33,7 +33,7 @@ static void expect_refusal(const char *vehicle, const char *ai, const char *line
     TEST_ASSERT_EQUAL_INT(-1, linux_hal_fd(&hal, HAL_CAN_AI));
 }
 
-void test_what_cannot_be_opened_is_named(void) {
+void test_an_interface_that_cannot_be_opened_is_named(void) {
     expect_refusal("vcan9", NULL, "vcan9: there is no such interface");
     expect_refusal("lo", "vcan1", "lo: not a CAN interface");
     expect_refusal("vcan0", "vcan9", "vcan9: there is no such interface");
@@ -120,7 +120,7 @@ void test_the_clock_is_the_one_of_the_stamps(void) {
 }
 
 /* Shows: P15 */
-void test_frames_of_all_kinds_are_handed_over(void) {
+void test_frames_of_all_kinds_are_passed_on(void) {
     const uint8_t data[8] = {1, 2, 3, 4, 5, 6, 7, 8};
     port_open(&hal, "vcan0", NULL, NULL);
     const int tester = vcan_open("vcan0");
@@ -148,7 +148,7 @@ void test_frames_of_all_kinds_are_handed_over(void) {
     port_receive_nothing(&hal);
 }
 
-void test_each_side_hears_its_own_interface(void) {
+void test_each_side_receives_from_its_own_interface(void) {
     port_open(&hal, "vcan0", "vcan1", NULL);
     const int vehicle = vcan_open("vcan0");
     const int ai = vcan_open("vcan1");
@@ -184,7 +184,7 @@ void test_frames_of_two_interfaces_come_in_the_order_of_their_arrival(void) {
     port_receive_nothing(&hal);
 }
 
-void test_own_frames_are_told_and_never_received(void) {
+void test_own_frames_are_reported_and_never_received(void) {
     port_open(&hal, "vcan0", NULL, &left);
     const int tester = vcan_open("vcan0");
     const hal_can_frame_t frame = vcan_frame(0x065);
@@ -208,7 +208,7 @@ void test_own_frames_are_told_and_never_received(void) {
 }
 
 /* Shows: TOP-1 */
-void test_two_supervisors_hear_each_other_and_not_themselves(void) {
+void test_two_supervisors_receive_each_other_and_not_themselves(void) {
     port_open(&hal, "vcan0", NULL, &left);
     port_open(&other, "vcan0", NULL, NULL);
     TEST_ASSERT_TRUE(port_send(&hal, 0x065));
@@ -221,7 +221,7 @@ void test_two_supervisors_hear_each_other_and_not_themselves(void) {
 }
 
 /* Of three frames that wait the first is with the kernel, and has left; the other two never do. */
-void test_what_has_left_is_told_of_at_the_close_and_nothing_follows(void) {
+void test_sent_frames_are_reported_at_the_close_and_nothing_follows(void) {
     port_open(&hal, "vcan0", NULL, &left);
     const int tester = vcan_open("vcan0");
     const hal_can_frame_t frame = vcan_frame(0x065);

@@ -107,7 +107,7 @@ void test_a_restart_that_comes_with_passive(void) {
 }
 
 /* Shows: SUP-7 */
-void test_what_waits_at_bus_off_is_never_sent(void) {
+void test_frames_that_wait_at_bus_off_are_never_sent(void) {
     vcan_send_error(tester, CAN_ERR_BUSOFF, 0); /* not read yet, when the supervisor sends */
     TEST_ASSERT_TRUE(port_send(&hal, 0x10F));
     TEST_ASSERT_TRUE(port_send(&hal, 0x100));
@@ -188,7 +188,7 @@ void test_an_interface_that_goes_down_and_comes_back(void) {
     TEST_ASSERT_EQUAL_HEX32(0x105, port_receive(&hal).frame.id);
 }
 
-void test_an_interface_that_is_down_is_noticed_by_sending(void) {
+void test_an_interface_that_is_down_is_detected_by_sending(void) {
     vcan_down("vcan0");
     TEST_ASSERT_FALSE(port_send(&hal, 0x100));
     TEST_ASSERT_EQUAL_UINT(0, port_drain(&hal));
@@ -218,7 +218,7 @@ void test_error_frames_from_before_it_went_down_do_not_bring_it_up(void) {
     expect_status(HAL_CAN_ERROR_ACTIVE, 1, 0);
 }
 
-void test_an_adapter_that_is_pulled_out_and_plugged_in_again(void) {
+void test_an_adapter_that_is_unplugged_and_plugged_in_again(void) {
     const hal_can_frame_t frame = vcan_frame(0x105);
     TEST_ASSERT_TRUE(port_send(&hal, 0x10F));
     TEST_ASSERT_TRUE(port_send(&hal, 0x100));
@@ -265,7 +265,7 @@ void test_looking_for_an_adapter_takes_no_time(void) {
     TEST_ASSERT_TRUE(quickest_us < 5000u);
 }
 
-void test_one_side_lives_on_without_the_other(void) {
+void test_one_side_works_without_the_other(void) {
     linux_hal_close(&hal);
     port_open(&hal, "vcan0", "vcan1", NULL);
     const int ai = vcan_open("vcan1");

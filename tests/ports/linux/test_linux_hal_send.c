@@ -31,7 +31,7 @@ static void fill_kernel_queue(void) {
     }
 }
 
-void test_a_frame_leaves_at_once_when_none_is_on_its_way(void) {
+void test_a_frame_is_sent_at_once_when_none_is_in_flight(void) {
     TEST_ASSERT_TRUE(port_send(&hal, 0x105));
     vcan_expect_id(tester, 0x105);
     TEST_ASSERT_TRUE(pending_ms() >= 1); /* until its echo was read */
@@ -40,7 +40,7 @@ void test_a_frame_leaves_at_once_when_none_is_on_its_way(void) {
     TEST_ASSERT_EQUAL_UINT(1, left.count);
 }
 
-void test_what_waits_leaves_by_identifier_and_equals_by_age(void) {
+void test_waiting_frames_are_sent_by_identifier_and_equal_ones_by_age(void) {
     const uint32_t ids[] = {0x108, 0x105, 0x107, 0x105, 0x10F, 0x100, 0x105};
     const uint32_t order[] = {0x108, 0x100, 0x105, 0x105, 0x105, 0x107, 0x10F};
     const uint8_t numbers[] = {0, 5, 1, 3, 6, 2, 4};
@@ -80,7 +80,7 @@ void test_extended_identifiers_are_ranked_as_on_the_bus(void) {
     vcan_expect_id(tester, CAN_EFF_FLAG | (0x101u << 18));
 }
 
-void test_room_for_sixteen_behind_the_one_on_its_way(void) {
+void test_sixteen_frames_may_wait_behind_the_one_in_flight(void) {
     for (unsigned i = 0; i < 17; i++) {
         TEST_ASSERT_TRUE(port_send(&hal, 0x100));
     }
@@ -90,7 +90,7 @@ void test_room_for_sixteen_behind_the_one_on_its_way(void) {
     TEST_ASSERT_TRUE(port_send(&hal, 0x065));
 }
 
-void test_frames_that_cannot_be_sent_are_not_taken(void) {
+void test_frames_that_cannot_be_sent_are_refused(void) {
     for (unsigned waiting = 0; waiting < 2; waiting++) {
         hal_can_frame_t frame = vcan_frame(0x800);
         TEST_ASSERT_FALSE(hal_can_send(&hal, HAL_CAN_VEHICLE, &frame));
@@ -107,7 +107,7 @@ void test_frames_that_cannot_be_sent_are_not_taken(void) {
 }
 
 /* Shows: SUP-7 */
-void test_a_kernel_without_room_is_not_sent(void) {
+void test_a_full_kernel_queue_refuses_a_frame(void) {
     vcan_stick();
     for (unsigned i = 0; i < VCAN_STUCK_MAX; i++) {
         TEST_ASSERT_TRUE(port_send(&hal, 0x100));
@@ -155,7 +155,7 @@ void test_a_waiting_frame_is_tried_again_in_ticks_only(void) {
     vcan_expect_nothing(tester);
 }
 
-void test_the_age_of_what_waits_grows(void) {
+void test_the_age_of_waiting_frames_grows(void) {
     TEST_ASSERT_TRUE(port_send(&hal, 0x100));
     vcan_pause_ms(20);
     const uint32_t first_ms = pending_ms();
@@ -172,7 +172,7 @@ void test_the_age_of_what_waits_grows(void) {
 }
 
 /* Shows: SUP-7 */
-void test_a_purge_leaves_only_what_the_kernel_has(void) {
+void test_after_a_purge_only_the_frame_in_the_kernel_is_sent(void) {
     TEST_ASSERT_TRUE(port_send(&hal, 0x10F));
     TEST_ASSERT_TRUE(port_send(&hal, 0x100));
     TEST_ASSERT_TRUE(port_send(&hal, 0x101));
@@ -201,7 +201,7 @@ void test_purges_do_not_pile_up_frames_in_the_kernel(void) {
     TEST_ASSERT_EQUAL_UINT(1, left.count);
 }
 
-void test_an_echo_that_was_lost_does_not_hold_up_the_rest(void) {
+void test_a_lost_echo_does_not_block_the_queue(void) {
     const hal_can_frame_t foreign = vcan_frame(0x105);
     for (unsigned i = 0; i < 2000; i++) {
         vcan_send(tester, 0x105, 8, foreign.data);
@@ -223,7 +223,7 @@ void test_an_echo_that_was_lost_does_not_hold_up_the_rest(void) {
     TEST_ASSERT_EQUAL_UINT16(2000u - received + 1u, port_status(&hal, HAL_CAN_VEHICLE).overrun_count);
 }
 
-void test_a_loss_before_a_frame_was_given_says_nothing_of_it(void) {
+void test_a_loss_before_a_frame_was_sent_does_not_affect_it(void) {
     const hal_can_frame_t foreign = vcan_frame(0x105);
     for (unsigned i = 0; i < 2000; i++) {
         vcan_send(tester, 0x105, 8, foreign.data);
@@ -242,7 +242,7 @@ void test_a_loss_before_a_frame_was_given_says_nothing_of_it(void) {
     vcan_expect_id(tester, 0x101);
 }
 
-void test_a_port_that_finishes_sends_what_waits(void) {
+void test_a_port_that_finishes_sends_waiting_frames(void) {
     const hal_can_frame_t foreign = vcan_frame(0x105);
     TEST_ASSERT_TRUE(port_send(&hal, 0x065));
     TEST_ASSERT_TRUE(port_send(&hal, 0x101));

@@ -82,7 +82,7 @@ void test_a_late_program_gets_one_tick_and_not_a_burst(void) {
     TEST_ASSERT_TRUE(most < 1000000);
 }
 
-void test_a_file_is_told_as_long_as_it_is_ready(void) {
+void test_a_file_is_reported_as_long_as_it_is_ready(void) {
     TEST_ASSERT_TRUE(linux_loop_add(&loop, ends[0]));
     TEST_ASSERT_EQUAL_HEX32(LINUX_LOOP_TICK, linux_loop_wait(&loop));
     TEST_ASSERT_EQUAL_INT(1, write(ends[1], "x", 1));
@@ -129,7 +129,7 @@ void test_ticks_fall_just_after_whole_milliseconds_of_a_clock(void) {
     }
 }
 
-void test_what_is_closed_cannot_be_aligned(void) {
+void test_a_closed_loop_cannot_be_aligned(void) {
     linux_loop_t closed = {.epoll = -1, .timer = -1, .signals = -1};
     TEST_ASSERT_FALSE(linux_loop_align(&closed, 0));
     TEST_ASSERT_EQUAL_INT(EBADF, errno);
@@ -144,7 +144,7 @@ static void expect_signal(void) {
     TEST_ASSERT_BITS_HIGH(LINUX_LOOP_SIGNAL, what);
 }
 
-void test_signals_are_told_and_end_nothing(void) {
+void test_signals_are_reported_and_do_not_end_the_program(void) {
     const int signals[] = {SIGINT, SIGTERM, SIGHUP};
     for (unsigned i = 0; i < 3; i++) {
         TEST_ASSERT_EQUAL_INT(0, kill(getpid(), signals[i]));

@@ -79,7 +79,7 @@ void test_a_frame_on_the_wire_is_not_interrupted(void) {
 }
 
 /* All that is sent at one moment takes part, also when time was run up to this very moment before. */
-void test_what_is_sent_at_one_moment_competes(void) {
+void test_frames_sent_at_the_same_time_compete(void) {
     sim_bus_run_until(bus, 1000);
     send(&fixture, A, 0x363, 8, 0);
     sim_bus_run_until(bus, 1000);
@@ -277,7 +277,7 @@ void test_nodes_and_taps_are_limited_and_configurations_checked(void) {
     TEST_ASSERT_EQUAL_HEX32(0x8000, fixture.events[0].senders);
 }
 
-void test_a_node_that_is_not_there_does_nothing(void) {
+void test_an_invalid_node_number_does_nothing(void) {
     hal_can_frame_t frame = frame_of(1, 0, 0);
     hal_can_status_t status = {HAL_CAN_BUS_OFF, 1, 2, 3};
     TEST_ASSERT_FALSE(sim_bus_send(bus, 4, &frame));
@@ -308,7 +308,7 @@ void test_a_node_that_is_not_there_does_nothing(void) {
 
 /* ---- Time and callbacks ---- */
 
-void test_time_that_is_over_changes_nothing(void) {
+void test_a_time_in_the_past_changes_nothing(void) {
     sim_bus_run_until(bus, 500);
     sim_bus_run_until(bus, 100);
     TEST_ASSERT_EQUAL_UINT64(500, sim_bus_now_us(bus));
@@ -454,7 +454,7 @@ void test_a_copy_is_a_snapshot(void) {
 }
 
 /* However the same time is cut, the same happens. */
-void test_how_time_is_cut_makes_no_difference(void) {
+void test_the_size_of_the_time_steps_makes_no_difference(void) {
     static fixture_t other;
     fixture_init(&other, 500000);
     for (uint64_t ms = 0; ms < 20; ms++) {

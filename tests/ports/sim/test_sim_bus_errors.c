@@ -211,7 +211,7 @@ void test_a_frame_misread_once_counts_once(void) {
 }
 
 /* A passive one that cannot read does not acknowledge either. */
-void test_a_frame_that_nobody_could_read_is_not_acknowledged(void) {
+void test_a_frame_that_no_node_could_read_is_not_acknowledged(void) {
     only_a_and(B);
     sim_bus_set_error_counters(bus, B, 0, 200);
     sim_bus_corrupt_received(bus, B, 1);
@@ -234,7 +234,7 @@ void test_a_full_node_refuses(void) {
     TEST_ASSERT_TRUE(send(&fixture, A, 0x168, 8, 0));
 }
 
-void test_a_stalled_node_hears_but_does_not_send(void) {
+void test_a_stalled_node_receives_but_does_not_send(void) {
     sim_bus_set_stalled(bus, A, true);
     send(&fixture, A, 0x001, 8, 0);
     send(&fixture, B, 0x168, 8, 0);
@@ -247,7 +247,7 @@ void test_a_stalled_node_hears_but_does_not_send(void) {
     TEST_ASSERT_EQUAL_UINT64(5000, fixture.events[1].start_us);
 }
 
-void test_frames_that_the_wire_cannot_carry_may_be_delivered(void) {
+void test_frames_that_the_bus_cannot_carry_may_be_delivered(void) {
     hal_can_frame_t frame = {.id = 0x168, .flags = HAL_CAN_FD, .length = 64, .data = {9}};
     sim_bus_run_until(bus, 3999);
     sim_bus_deliver(bus, A, &frame);
@@ -288,7 +288,7 @@ void test_a_passive_sender_lets_the_others_go_first(void) {
 /* ---- Purge ---- */
 
 /* Shows: SUP-7, FSM-2 */
-void test_after_a_purge_at_most_the_frame_on_the_wire_leaves(void) {
+void test_after_a_purge_at_most_the_frame_on_the_bus_is_sent(void) {
     send(&fixture, A, 0x200, 8, 1);
     sim_bus_run_until(bus, 100);
     send(&fixture, A, 0x100, 8, 2);

@@ -77,7 +77,7 @@ void test_recovery_on_a_full_bus_takes_128_frames(void) {
 }
 
 /* Asked for between two frames: it counts from the end of the pause on. */
-void test_recovery_asked_for_between_frames(void) {
+void test_recovery_requested_between_frames(void) {
     send(&fixture, B, 0x100, 8, 0);
     sim_bus_run_until(bus, 264);
     sim_bus_force_bus_off(bus, A);
@@ -120,7 +120,7 @@ void test_a_node_that_is_plugged_in_while_it_recovers_waits_for_the_bus(void) {
     assert_state(HAL_CAN_ERROR_ACTIVE, A);
 }
 
-void test_what_waits_is_lost_in_bus_off_or_kept_if_so_built(void) {
+void test_waiting_frames_are_lost_in_bus_off_or_kept_if_configured(void) {
     const sim_bus_node_config_t keeps = {.keep_on_bus_off = true};
     const sim_bus_node_t keeper = sim_bus_attach(bus, &keeps);
     for (unsigned i = 0; i < 2; i++) {
@@ -253,7 +253,7 @@ void test_the_last_receiver_goes_in_the_middle_of_a_frame(void) {
     TEST_ASSERT_EQUAL_size_t(1, sim_bus_waiting(bus, A));
 }
 
-void test_a_node_without_power_is_not_there(void) {
+void test_a_node_without_power_takes_no_part(void) {
     send(&fixture, B, 0x100, 8, 0);
     sim_bus_run_until(bus, 1000);
     sim_bus_set_error_counters(bus, A, 100, 100);

@@ -121,7 +121,7 @@ void test_a_purge_reaches_the_controller(void) {
     TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(&bus, hal.can[HAL_CAN_VEHICLE].node));
 }
 
-void test_a_recovery_counts_as_asked_for_without_a_look_at_the_state(void) {
+void test_a_recovery_request_counts_without_a_status_call(void) {
     sim_bus_force_bus_off(&bus, hal.can[HAL_CAN_VEHICLE].node);
     hal_can_recover(&hal, HAL_CAN_VEHICLE);
     TEST_ASSERT_EQUAL_UINT32(1, hal.can[HAL_CAN_VEHICLE].recover_requests);
@@ -152,7 +152,7 @@ void test_bus_off_purge_and_recovery_through_the_port(void) {
     TEST_ASSERT_FALSE(hal_can_send(&hal, HAL_CAN_VEHICLE, &FRAME));
 }
 
-void test_a_swallowed_frame_counts_as_sent_and_never_leaves(void) {
+void test_a_swallowed_frame_counts_as_sent_and_is_never_sent(void) {
     sim_hal_set_swallowing(&hal, HAL_CAN_VEHICLE, true);
     sim_hal_set_swallowing(&hal, HAL_CAN_SIDES, true); /* no such side: nothing */
     TEST_ASSERT_TRUE(hal_can_send(&hal, HAL_CAN_VEHICLE, &FRAME));

@@ -77,7 +77,7 @@ void test_the_log_holds_what_it_says(void) {
     TEST_ASSERT_FALSE(sim_store_append(&store, record, 0));
 }
 
-void test_writes_fail_when_ordered(void) {
+void test_writes_fail_if_configured(void) {
     append(1);
     TEST_ASSERT_TRUE(sim_store_write_latch(&store, "a", 1));
     sim_store_fail_writes(&store, 2);

@@ -20,7 +20,7 @@ void test_crc32_gives_the_known_answers(void) {
     TEST_ASSERT_EQUAL_HEX32(0x00000000u, crc32_of("", 0));
 }
 
-void test_pieces_give_what_the_whole_gives(void) {
+void test_a_checksum_of_pieces_equals_that_of_the_whole(void) {
     const char text[] = "123456789";
     for (size_t cut = 0; cut <= 9; cut++) {
         const uint32_t head32 = agv_crc32(AGV_CRC32_START, text, cut);

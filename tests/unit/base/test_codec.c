@@ -478,7 +478,7 @@ void test_steering_status_angle_beyond_900_degrees_is_refused(void) {
 }
 
 /* Shows: P5, P13 */
-void test_steering_status_with_an_unusable_angle_still_carries_the_rest(void) {
+void test_steering_status_with_an_invalid_angle_still_has_its_other_fields(void) {
     agv_steering_status_t out = {.alive_counter = 0};
 
     RECEIVE(0x34, 0x5F, 0x51, 0x46, 0x01, 0x02, 0x03, 0x04);

@@ -229,7 +229,7 @@ void test_the_status_frame_may_not_have_an_identifier_that_was_changed(void) {
 
 /* By hand: what has no effect on a shared bus is refused there, and the others are not. */
 /* Shows: FSM-8, TOP-2, INT-2 */
-void test_what_has_no_effect_on_a_shared_bus_is_refused(void) {
+void test_settings_without_effect_on_a_shared_bus_are_refused(void) {
     static const uint16_t gateway_only[] = {AGV_SETTING_own_heartbeat,
                                             AGV_SETTING_gateway_in_manual,
                                             AGV_SETTING_gear_change,
@@ -353,7 +353,7 @@ void test_no_default_weakens_and_nothing_beyond_the_last_setting(void) {
 }
 
 /* Shows: INT-2 */
-void test_what_must_trip_cannot_be_made_a_warning(void) {
+void test_mandatory_trips_cannot_be_made_warnings(void) {
     static const agv_fault_t must[] = {
         AGV_FAULT_VCU_HEARTBEAT_LOST,        AGV_FAULT_VCU_HEARTBEAT_STUCK,   AGV_FAULT_EPS_HEARTBEAT_LOST,
         AGV_FAULT_EPS_HEARTBEAT_STUCK,       AGV_FAULT_AI_HEARTBEAT_LOST,     AGV_FAULT_AI_HEARTBEAT_STUCK,
@@ -390,7 +390,7 @@ void test_a_setting_is_reported_before_a_weak_fault(void) {
 }
 
 /* Shows: INT-2 */
-void test_other_classes_are_free(void) {
+void test_other_faults_may_have_any_class(void) {
     agv_fault_set_put(&config.trips, AGV_FAULT_REMOTE_SIGNAL_LOST, false);
     expect_good();
     agv_fault_set_put(&config.trips, AGV_FAULT_EPS_TEMP_ABOVE_110, true);

@@ -60,7 +60,7 @@ void test_the_first_of_a_set_is_the_highest_ranking_one(void) {
 }
 
 /* Bits beyond the last fault. */
-void test_what_is_no_fault_is_in_no_set(void) {
+void test_an_invalid_fault_is_in_no_set(void) {
     memset(&set, 0xFF, sizeof set);
     TEST_ASSERT_TRUE(agv_fault_is_in(&set, AGV_FAULT_COUNT - 1u));
     TEST_ASSERT_FALSE(agv_fault_is_in(&set, AGV_FAULT_NONE));
@@ -70,7 +70,7 @@ void test_what_is_no_fault_is_in_no_set(void) {
     TEST_ASSERT_EQUAL_UINT32(AGV_FAULT_NONE, agv_fault_first(&set));
 }
 
-void test_what_is_no_fault_changes_nothing(void) {
+void test_an_invalid_fault_changes_nothing(void) {
     static const unsigned none[] = {AGV_FAULT_NONE, 32u * AGV_FAULT_WORDS - 1u, 32u * AGV_FAULT_WORDS, 255, UINT32_MAX};
     for (unsigned i = 0; i < sizeof none / sizeof none[0]; i++) {
         agv_fault_set_put(&set, none[i], true);
@@ -92,7 +92,7 @@ void test_four_faults_are_unresettable(void) {
 }
 
 /* What must not be made weaker is a trip to begin with. */
-void test_fixed_faults_are_trips(void) {
+void test_mandatory_faults_are_trips(void) {
     for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
         if ((agv_fault_flags(i) & AGV_FAULT_FLAG_FIXED) != 0) {
             TEST_ASSERT_EQUAL(AGV_CLASS_TRIP, agv_fault_default_class(i));

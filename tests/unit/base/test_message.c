@@ -94,7 +94,7 @@ static void assert_no_message(int message) {
 }
 
 /* Shows: P1, P16 */
-void test_what_is_no_message_has_no_identifier_and_no_cycle(void) {
+void test_an_invalid_message_has_no_identifier_and_no_cycle(void) {
     assert_no_message(AGV_MSG_NONE);
 }
 

@@ -16,7 +16,7 @@ void test_every_fault_is_found_by_its_name(void) {
     TEST_ASSERT_EQUAL_STRING("SELF_TEST_FAILED", agv_fault_name((agv_fault_t)0));
 }
 
-void test_what_is_no_fault_has_no_name(void) {
+void test_an_invalid_fault_has_no_name(void) {
     TEST_ASSERT_NULL(agv_fault_name(AGV_FAULT_NONE));
     TEST_ASSERT_NULL(agv_fault_name((agv_fault_t)255));
     TEST_ASSERT_EQUAL_UINT(AGV_FAULT_NONE, agv_fault_from_name(""));

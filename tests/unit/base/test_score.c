@@ -40,7 +40,7 @@ void test_a_bad_frame_adds_two_and_a_good_one_takes_one_away(void) {
 
 /* N bad ones in a row, for every N that may be configured. */
 /* Shows: SUP-4, SUP-5, SUP-6 */
-void test_n_bad_frames_in_a_row_count(void) {
+void test_n_bad_frames_in_a_row_raise_the_fault(void) {
     for (uint32_t n = 2; n <= 100; n++) {
         setUp();
         for (uint32_t i = 1; i < n; i++) {
@@ -54,7 +54,7 @@ void test_n_bad_frames_in_a_row_count(void) {
 
 /* It stays within 2 N: six good frames end N of 3, however many bad ones there were. */
 /* Shows: SUP-4 */
-void test_it_is_there_until_the_score_is_back_at_0(void) {
+void test_the_fault_lasts_until_the_score_is_0(void) {
     frames("xxxxxxxxxxxxxxxxxxxx", 3);
     expect_score(6, true);
     frames(".....", 3);
@@ -71,7 +71,7 @@ void test_it_is_there_until_the_score_is_back_at_0(void) {
 
 /* With N of 2 as well: only with N of 1 the last frame decides. */
 /* Shows: SUP-4 */
-void test_two_frames_are_scored_too(void) {
+void test_a_count_of_two_is_scored_too(void) {
     frames("x.", 2);
     expect_score(1, false);
     frames("x.", 2);
@@ -103,7 +103,7 @@ TEST_CASE(3)
 TEST_CASE(5)
 TEST_CASE(10)
 TEST_CASE(100)
-void test_every_second_frame_bad_counts_after_some_4_n_frames(uint32_t n) {
+void test_every_second_frame_bad_raises_the_fault_after_some_4_n_frames(uint32_t n) {
     unsigned counted = 0;
     while (!score.present) {
         agv_score_add(&score, counted % 2 == 0, n);
@@ -114,7 +114,7 @@ void test_every_second_frame_bad_counts_after_some_4_n_frames(uint32_t n) {
 }
 
 /* Two good ones for each bad one: never. */
-void test_every_third_frame_bad_never_counts(void) {
+void test_every_third_frame_bad_raises_no_fault(void) {
     for (unsigned i = 0; i < 3000; i++) {
         agv_score_add(&score, i % 3 == 0, 2);
         TEST_ASSERT_FALSE(score.present);
@@ -146,7 +146,7 @@ static void expect_budget(unsigned value_ms, bool present) {
 }
 
 /* Shows: SUP-10, SUP-11, SUP-12 */
-void test_it_is_there_from_its_limit_on(void) {
+void test_the_fault_is_raised_at_the_limit_of_the_budget(void) {
     run(true, 499, 500);
     expect_budget(499, false);
     run(true, 1, 500);
@@ -174,7 +174,7 @@ void test_every_second_ms_without_the_condition_takes_one_away(void) {
 
 /* 19 up, half a one down: the second good ms of two counts, wherever it stands. */
 /* Shows: SUP-10, SUP-11 */
-void test_one_good_ms_in_twenty_does_not_restart_it(void) {
+void test_one_good_ms_in_twenty_does_not_restart_the_budget(void) {
     unsigned ms = 0;
     while (!budget.present) {
         agv_budget_add(&budget, ms % 20 != 19, 1, 500);
@@ -185,7 +185,7 @@ void test_one_good_ms_in_twenty_does_not_restart_it(void) {
 }
 
 /* One up, two down never fills it; one up, one down does, at half the pace. */
-void test_how_much_good_time_is_enough(void) {
+void test_the_good_time_that_empties_a_budget(void) {
     for (unsigned i = 0; i < 3000; i++) {
         agv_budget_add(&budget, i % 3 == 0, 1, 100);
         TEST_ASSERT_FALSE(budget.present);

@@ -28,7 +28,7 @@ void test_states_and_latch_are_codes_far_apart(void) {
 /* Of all 256 values only STANDBY (33h) and ACTIVE (3Ch) do not command the safe state; of the rest only INIT (0Fh) is not
  * latched. */
 /* Shows: INT-5, FSM-6 */
-void test_whatever_is_no_state_is_safe_and_latched(void) {
+void test_an_invalid_state_is_safe_and_latched(void) {
     for (unsigned value = 0; value < 256; value++) {
         const bool drives = value == 0x33 || value == 0x3C;
         TEST_ASSERT_EQUAL(!drives, agv_state_commands_safe((agv_state_t)value));

@@ -194,7 +194,7 @@ void test_every_timer_runs_alone(void) {
 }
 
 /* Shows: TIM-2 */
-void test_what_was_reached_stays_so_over_the_whole_turn_of_the_clock(void) {
+void test_a_reached_timer_stays_reached_over_a_full_wrap_of_the_clock(void) {
     begin(DURATION, 7);
     /* 2^32 ms are 49.7 days: in steps of one day, and once more around */
     for (uint32_t day = 0; day < 100; day++) {
@@ -203,13 +203,13 @@ void test_what_was_reached_stays_so_over_the_whole_turn_of_the_clock(void) {
 }
 
 /* An old stamp, as frames carry them, ends nothing. */
-void test_what_was_reached_stays_so_when_an_old_stamp_comes(void) {
+void test_a_reached_timer_stays_reached_after_an_old_stamp(void) {
     begin(DURATION, 0);
     TEST_ASSERT_TRUE(reached(DURATION, 100));
     TEST_ASSERT_TRUE(reached(DURATION, 50));
 }
 
-void test_a_timer_that_is_started_anew_begins_anew(void) {
+void test_a_restarted_timer_begins_at_zero(void) {
     begin(DURATION, 0);
     TEST_ASSERT_TRUE(reached(DURATION, 100));
     agv_timer_start(&timers, DURATION);
@@ -295,7 +295,7 @@ static void expect_spent(uint32_t spent_ms, uint32_t now_ms) {
     TEST_ASSERT_EQUAL_UINT32(spent_ms, agv_timer_spent_ms(&timers, &config, DURATION));
 }
 
-void test_what_a_timer_has_run_for(void) {
+void test_the_elapsed_time_of_a_timer(void) {
     begin(DURATION, 0xFFFFFFFFu);
     expect_spent(0, 0xFFFFFFFFu);
     expect_spent(99, 98);
@@ -316,7 +316,7 @@ void test_a_start_stops_all_timers(void) {
 }
 
 /* Shows: TIM-2 */
-void test_an_age_counts_across_the_wrap_and_what_lies_ahead_has_none(void) {
+void test_an_age_counts_across_the_wrap_and_is_0_for_a_later_stamp(void) {
     TEST_ASSERT_EQUAL_UINT32(0, agv_age_ms(5, 5));
     TEST_ASSERT_EQUAL_UINT32(5, agv_age_ms(10, 5));
     TEST_ASSERT_EQUAL_UINT32(6, agv_age_ms(5, 0xFFFFFFFFu));

@@ -171,7 +171,7 @@ void test_late_steps(void) {
 }
 
 /* Shows: FSM-4 */
-void test_a_trip_begins_everything_anew(void) {
+void test_a_trip_clears_the_sums(void) {
     agv_confirmation_park_sent(&confirmation);
     run(600, false, false);
     expect(true);

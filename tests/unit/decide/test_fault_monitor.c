@@ -83,7 +83,7 @@ void test_a_fault_is_active_while_its_cause_is(void) {
 /* Shows: TIM-2 */
 TEST_CASE(0)
 TEST_CASE(0xFFFFFE0C)
-void test_an_event_ends_when_its_time_after_the_last_one_is_over(uint32_t start_ms) {
+void test_a_transient_ends_its_hold_time_after_the_last_occurrence(uint32_t start_ms) {
     event(AGV_FAULT_STEP_OVERRUN, start_ms);
     tick(start_ms + 600);
     event(AGV_FAULT_STEP_OVERRUN, start_ms + 600);
@@ -98,7 +98,7 @@ void test_an_event_ends_when_its_time_after_the_last_one_is_over(uint32_t start_
 }
 
 /* The nine rows that the table calls events, by hand. */
-void test_nine_faults_are_events_and_the_others_are_not(void) {
+void test_nine_faults_are_transients_and_the_others_are_not(void) {
     static const unsigned events[] = {AGV_FAULT_SUPERVISOR_RESET,
                                       AGV_FAULT_TX_GATE_REFUSED,
                                       AGV_FAULT_STEP_OVERRUN,
@@ -130,7 +130,7 @@ void test_a_tick_ends_no_condition(void) {
     TEST_ASSERT_TRUE(is_active(AGV_FAULT_BUS_OFF));
 }
 
-void test_what_is_no_fault_changes_nothing(void) {
+void test_an_invalid_fault_changes_nothing(void) {
     static const unsigned none[] = {AGV_FAULT_NONE, 32u * AGV_FAULT_WORDS - 1u, 32u * AGV_FAULT_WORDS, 255};
     for (unsigned i = 0; i < 4; i++) {
         set(none[i], true);
@@ -144,7 +144,7 @@ void test_what_is_no_fault_changes_nothing(void) {
 }
 
 /* Whatever stands behind the last one. */
-void test_what_is_no_fault_is_never_active(void) {
+void test_an_invalid_fault_is_never_active(void) {
     memset(&monitor, 0xFF, sizeof monitor);
     TEST_ASSERT_TRUE(is_active(AGV_FAULT_COUNT - 1));
     TEST_ASSERT_FALSE(is_active(AGV_FAULT_NONE));
@@ -176,7 +176,7 @@ void test_a_trip_is_raised_once_and_its_cause_stands(void) {
 
 /* It has not ended, and so no change is reported; but it trips once more. */
 /* Shows: FSM-11 */
-void test_every_occurrence_of_an_event_is_raised(void) {
+void test_every_occurrence_of_a_transient_is_raised(void) {
     for (uint32_t ms = 0; ms < 3; ms++) {
         event(AGV_FAULT_FOREIGN_COMMAND_SENDER, ms);
         evaluate();
@@ -223,7 +223,7 @@ void test_a_warning_changes_but_is_no_trip(void) {
 }
 
 /* What came and went between two evaluations is not reported. */
-void test_what_is_over_again_has_not_changed(void) {
+void test_a_fault_that_has_ended_before_the_evaluation_is_no_change(void) {
     set(AGV_FAULT_BUS_OFF, true);
     set(AGV_FAULT_BUS_OFF, false);
     evaluate();

@@ -91,7 +91,7 @@ void test_another_trip_forgets_an_old_angle(void) {
 
 /* Manual: the operator steers; and a reset. */
 /* Shows: FSM-10 */
-void test_it_is_dropped_and_taken_anew(void) {
+void test_a_held_angle_is_dropped_and_another_one_held(void) {
     measured(9123, 0);
     trip(0);
     (void)agv_hold_drop(&hold);

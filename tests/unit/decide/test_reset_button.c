@@ -224,7 +224,7 @@ void test_a_receiver_that_is_lost_releases_nothing(void) {
 
 /* What a VCU that is not alive reports is nothing: neither an edge nor a release. */
 /* Shows: FSM-3 */
-void test_frames_of_a_vcu_that_is_not_alive_say_nothing(void) {
+void test_frames_of_a_vcu_that_is_not_alive_are_ignored(void) {
     agv_reset_button_report(&reset, false, false, true);
     run(2000);
     agv_reset_button_report(&reset, false, false, false);
@@ -251,7 +251,7 @@ TEST_CASE(AGV_MISSING_STANDSTILL)
 TEST_CASE(AGV_MISSING_MANUAL)
 TEST_CASE(AGV_MISSING_MESSAGES)
 TEST_CASE(AGV_MISSING_THROTTLE)
-void test_what_was_missing_at_any_time_in_the_last_second(uint32_t condition) {
+void test_conditions_missing_at_any_time_in_the_last_second(uint32_t condition) {
     frame(true);
     run(2000);
     lacking = condition;
@@ -273,7 +273,7 @@ void test_what_was_missing_at_any_time_in_the_last_second(uint32_t condition) {
 
 /* The releasing frame holds them, too. */
 /* Shows: FSM-3 */
-void test_what_the_releasing_frame_lacks(void) {
+void test_a_condition_missing_in_the_releasing_frame(void) {
     frame(true);
     run(3000);
     lacking = AGV_MISSING_MANUAL;
@@ -424,7 +424,7 @@ void test_pressed_is_pressed_whatever_the_receiver_reports(void) {
 /* ---- Late steps ---- */
 
 /* No more than 1 s is kept. */
-void test_for_how_long_all_was_well_saturates(void) {
+void test_the_time_for_which_all_conditions_hold_saturates(void) {
     run(3000);
     for (unsigned i = 0; i < AGV_RESET_CONDITIONS; i++) {
         TEST_ASSERT_EQUAL_UINT16(1000, reset.held_ms[i]);

@@ -158,7 +158,7 @@ void test_init_is_left_after_500_ms_without_a_break(void) {
 }
 
 /* Everything that may be missing keeps it; the speeds of a standstill are enough, 050h need not be at idle. */
-void test_what_keeps_init(void) {
+void test_conditions_that_keep_init(void) {
     static const uint16_t needed[] = {AGV_MISSING_VCU_HEARTBEAT, AGV_MISSING_EPS_HEARTBEAT, AGV_MISSING_MANUAL,
                                       AGV_MISSING_MESSAGES};
     for (unsigned i = 0; i < sizeof needed / sizeof needed[0]; i++) {
@@ -315,7 +315,7 @@ void test_safe_is_a_confirmed_state(void) {
 }
 
 /* Shows: FSM-4 */
-void test_what_is_unsafe_for_the_output_opens_it_at_once(void) {
+void test_an_unsafe_condition_opens_the_output_at_once(void) {
     to_standby();
     facts.output_unsafe = true;
     step(1);
@@ -353,7 +353,7 @@ void test_a_reset_closes_the_output(void) {
 
 /* Each by itself. */
 /* Shows: FSM-3 */
-void test_what_a_reset_needs(void) {
+void test_the_conditions_of_a_reset(void) {
     static const uint16_t bits[] = {AGV_MISSING_VCU_HEARTBEAT, AGV_MISSING_EPS_HEARTBEAT, AGV_MISSING_STANDSTILL,
                                     AGV_MISSING_MANUAL,        AGV_MISSING_MESSAGES,      AGV_MISSING_THROTTLE};
     to_safe();
@@ -392,7 +392,7 @@ void test_a_cause_of_the_ai_keeps_no_reset(void) {
 
 /* The wheels, not the VCU's speed. */
 /* Shows: FSM-1 */
-void test_p_waits_for_wheels_that_stand_or_3_s(void) {
+void test_p_waits_for_standing_wheels_or_3_s(void) {
     config.park = AGV_PARK_AT_STANDSTILL;
     to_standby();
     facts.wheels_turn = true;
@@ -453,7 +453,7 @@ void test_a_start_in_tripped(void) {
 static const uint32_t SENDING = AGV_ACTION_DISCARD | AGV_ACTION_PURGE;
 
 /* Shows: FSM-2, FSM-7 */
-void test_what_a_trip_wants_done(void) {
+void test_the_actions_of_a_trip(void) {
     to_standby();
     trip(AGV_FAULT_BUS_OFF);
     TEST_ASSERT_EQUAL_HEX32(AGV_ACTION_TRIP | AGV_ACTION_STATE | SENDING | AGV_ACTION_STORE_LATCH, did.what);
@@ -466,7 +466,7 @@ void test_what_a_trip_wants_done(void) {
 }
 
 /* Shows: FSM-4, FSM-7 */
-void test_what_the_end_of_init_wants_done(void) {
+void test_the_actions_of_the_end_of_init(void) {
     step(0);
     TEST_ASSERT_EQUAL_HEX32(0, did.what);
     run(500);
@@ -475,7 +475,7 @@ void test_what_the_end_of_init_wants_done(void) {
 
 /* The output is closed still: it opens only when the confirmation is late. */
 /* Shows: FSM-3, FSM-7 */
-void test_what_a_reset_wants_done(void) {
+void test_the_actions_of_a_reset(void) {
     to_safe();
     facts.reset = true;
     step(1);
@@ -485,7 +485,7 @@ void test_what_a_reset_wants_done(void) {
 }
 
 /* Motion commands that wait for a stalled side. */
-void test_from_active_to_standby_what_waits_is_discarded(void) {
+void test_from_active_to_standby_waiting_commands_are_discarded(void) {
     to_standby();
     facts.engaged = true;
     step(1);
@@ -506,7 +506,7 @@ void test_an_unresettable_fault_that_comes_while_tripped_is_stored(void) {
 }
 
 /* Shows: FSM-9 */
-void test_what_forbids_a_reset(void) {
+void test_conditions_that_prevent_a_reset(void) {
     agv_state_machine_forbid_reset(&machine, AGV_FAULT_NONE);
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_NONE, machine.unresettable);
     agv_state_machine_forbid_reset(&machine, AGV_FAULT_CONFIG_INVALID);

@@ -75,7 +75,7 @@ void test_wheels_that_stand_within_5_s(void) {
 }
 
 /* Shows: FSM-12, VEHICLE_NOT_STOPPING */
-void test_stale_wheel_speeds_are_not_seen_to_stand(void) {
+void test_stale_wheel_speeds_are_no_standstill(void) {
     wheels_fresh = false;
     wheels(0, 0);
     trip();
@@ -86,7 +86,7 @@ void test_stale_wheel_speeds_are_not_seen_to_stand(void) {
 }
 
 /* Shows: FSM-12 */
-void test_standing_at_the_moment_of_the_trip_counts_as_seen(void) {
+void test_wheels_that_stand_at_the_trip_count_as_stopped(void) {
     wheels(0, 0);
     run(100);
     trip();
@@ -192,7 +192,7 @@ void test_stale_wheel_speeds_are_not_moving(void) {
 
 /* Before they have stood the wheels may turn: it is on its way to stop. */
 /* Shows: FSM-12 */
-void test_what_has_not_stood_yet_is_not_moving_while_safe(void) {
+void test_wheels_that_have_not_stood_yet_are_not_moving_while_safe(void) {
     trip();
     run(4000);
     expect(false, false);

@@ -51,7 +51,7 @@ static void write_tripped(void) {
 }
 
 /* Shows: FSM-7 */
-void test_what_was_written_is_read_again(void) {
+void test_a_written_record_is_read_again(void) {
     agv_latch_t latch;
     write_tripped();
     TEST_ASSERT_EQUAL(AGV_LATCH_VALID, agv_latch_read(&hal, &latch));

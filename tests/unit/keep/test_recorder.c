@@ -53,7 +53,7 @@ void test_the_checksum_of_an_event_is_known(void) {
 }
 
 /* Kinds count from 1. */
-void test_what_has_no_kind_is_no_event(void) {
+void test_bytes_without_a_kind_are_no_event(void) {
     const agv_entry_t entry = {.kind = 0, .a = 1};
     agv_recorder_add(&recorder, &entry, 0);
     expect_gone(0);
@@ -83,7 +83,7 @@ void test_an_event_holds_its_parameters(void) {
     TEST_ASSERT_EACH_EQUAL_UINT8(0, event.frames[AGV_MSG_VEHICLE_STATUS], 8);
 }
 
-void test_after_a_power_on_nothing_is_there(void) {
+void test_after_a_power_on_the_recorder_is_empty(void) {
     TEST_ASSERT_EQUAL_UINT32(0, agv_recorder_next_sequence(&recorder));
     for (uint32_t i = 0; i < 600; i++) {
         expect_gone(i);
@@ -158,7 +158,7 @@ void test_every_changed_byte_of_an_event_is_found(void) {
 }
 
 /* Shows: INT-3 */
-void test_holes_do_not_end_what_is_kept(void) {
+void test_holes_do_not_end_the_kept_events(void) {
     add(20);
     recorder.events[3].a ^= 1;
     recorder.events[7].checksum ^= 1;
@@ -275,7 +275,7 @@ void test_every_event_is_stored_once_and_in_order(void) {
     TEST_ASSERT_EQUAL_UINT32(1, store_all(4));
 }
 
-void test_what_was_replaced_before_it_was_stored_is_lost(void) {
+void test_events_replaced_before_they_were_stored_are_lost(void) {
     add(2);
     TEST_ASSERT_EQUAL_UINT32(2, store_all(0));
     add(300);
@@ -284,7 +284,7 @@ void test_what_was_replaced_before_it_was_stored_is_lost(void) {
     TEST_ASSERT_EQUAL_UINT32(256, store_all(1046));
 }
 
-void test_a_mark_that_makes_no_sense_stores_all(void) {
+void test_an_invalid_mark_stores_all(void) {
     add(5);
     recorder.stored_sequence = 6;
     agv_recorder_start(&recorder);
@@ -364,7 +364,7 @@ void test_a_trip_is_kept_with_its_snapshot(void) {
 
 /* A confirmation that was withdrawn, another state, another kind of event. */
 /* Shows: INT-3 */
-void test_what_is_no_trip_replaces_none(void) {
+void test_other_events_replace_no_trip(void) {
     const agv_entry_t others[] = {
         {.kind = AGV_EVENT_STATE, .a = AGV_STATE_SAFE, .b = AGV_STATE_TRIPPED, .c = AGV_FAULT_NONE},
         {.kind = AGV_EVENT_STATE, .a = AGV_STATE_TRIPPED, .b = AGV_STATE_SAFE, .c = AGV_FAULT_BUS_OFF},

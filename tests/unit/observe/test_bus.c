@@ -51,7 +51,7 @@ static void enter_bus_off(void) {
     controller.bus_off_count++; /* 65535 to 0 */
 }
 
-void test_a_healthy_controller_has_nothing_to_say(void) {
+void test_a_healthy_controller_reports_nothing(void) {
     TEST_ASSERT_EQUAL_HEX(0, look(0));
     TEST_ASSERT_EQUAL_HEX(0, look(1000000));
     TEST_ASSERT_FALSE(is_off());
@@ -60,7 +60,7 @@ void test_a_healthy_controller_has_nothing_to_say(void) {
 /* Shows: SUP-7, TIM-2 */
 TEST_CASE(0)
 TEST_CASE(0xFFFFFF80)
-void test_recovery_is_asked_for_every_100_ms_of_bus_off(uint32_t start_ms) {
+void test_recovery_is_requested_every_100_ms_of_bus_off(uint32_t start_ms) {
     agv_timers_set_time(&timers, start_ms);
     enter_bus_off();
     for (uint32_t ms = 0; ms < 350; ms++) {
@@ -75,7 +75,7 @@ void test_recovery_is_asked_for_every_100_ms_of_bus_off(uint32_t start_ms) {
 }
 
 /* Shows: SUP-7 */
-void test_a_bus_off_between_two_looks_is_seen(void) {
+void test_a_bus_off_between_two_ticks_is_detected(void) {
     controller.bus_off_count++;
     TEST_ASSERT_EQUAL_HEX(OFF | RECOVERED, look(0));
     TEST_ASSERT_FALSE(is_off());
@@ -83,7 +83,7 @@ void test_a_bus_off_between_two_looks_is_seen(void) {
 }
 
 /* Off, back, and off again between two looks: still off. */
-void test_a_second_bus_off_between_two_looks_is_bus_off(void) {
+void test_a_second_bus_off_between_two_ticks_is_bus_off(void) {
     enter_bus_off();
     (void)look(0);
     enter_bus_off();
@@ -116,7 +116,7 @@ void test_a_frame_that_waits_for_too_long(void) {
 }
 
 /* Each side has its own. */
-void test_the_two_sides_do_not_know_of_each_other(void) {
+void test_the_two_sides_are_independent(void) {
     agv_bus_t ai = {0};
     agv_bus_start(&ai, NULL, HAL_CAN_AI);
     enter_bus_off();

@@ -47,7 +47,7 @@ void test_autopilot_off_is_one_bit_of_43f(void) {
 }
 
 /* Shows: SUP-11 */
-void test_an_engagement_begins_without_any(void) {
+void test_an_engagement_begins_without_known_commands(void) {
     for (unsigned i = 0; i < 4; i++) {
         agv_commands_take(&commands, i, (const uint8_t[8]){1});
     }

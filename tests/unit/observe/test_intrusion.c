@@ -59,7 +59,7 @@ void test_ten_gaps_under_half_a_cycle_in_a_row(unsigned command, uint32_t gap_ms
 
 /* One right behind each frame of the other: every second gap is short, some 40 of them. */
 /* Shows: SUP-6, COMMAND_TOO_FAST */
-void test_a_second_sender_that_hides_behind_the_first_is_found(void) {
+void test_a_second_sender_right_behind_the_first_is_detected(void) {
     unsigned frames = 0;
     for (uint32_t ms = 0; !is_too_fast(ms); ms += 100) {
         (void)comes(AGV_MSG_GEAR_COMMAND, ms);
@@ -112,7 +112,7 @@ void test_a_silence_longer_than_the_deadline_ends_it(void) {
 
 /* However little of the score is left. 065h: 125 ms. */
 /* Shows: SUP-6, COMMAND_TOO_FAST */
-void test_a_silence_ends_what_is_nearly_over(void) {
+void test_a_silence_ends_a_small_score(void) {
     uint32_t ms = make_it_too_fast(AGV_MSG_STEERING_COMMAND);
     for (unsigned i = 0; i < 19; i++) {
         ms += 25;
@@ -124,7 +124,7 @@ void test_a_silence_ends_what_is_nearly_over(void) {
 
 /* 065h: 125 ms. The other commands go on counting. */
 /* Shows: SUP-6 */
-void test_the_silence_of_one_command_is_its_own(void) {
+void test_a_silent_command_does_not_affect_the_others(void) {
     for (uint32_t ms = 0; ms <= 10; ms++) {
         (void)comes(AGV_MSG_STEERING_COMMAND, ms);
         (void)comes(AGV_MSG_GEAR_COMMAND, ms);
@@ -136,7 +136,7 @@ void test_the_silence_of_one_command_is_its_own(void) {
 }
 
 /* Shows: SUP-6 */
-void test_how_many_gaps_is_a_setting(void) {
+void test_the_number_of_gaps_is_a_setting(void) {
     config.command_too_fast_gaps = 2;
     (void)comes(AGV_MSG_GEAR_COMMAND, 0);
     TEST_ASSERT_FALSE(comes(AGV_MSG_GEAR_COMMAND, 1));

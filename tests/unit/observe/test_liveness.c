@@ -93,7 +93,7 @@ void test_a_deadline_expires_when_the_age_is_greater(uint32_t start_ms) {
 }
 
 /* Shows: TIM-2 */
-void test_what_is_lost_stays_lost_over_the_whole_turn_of_the_clock(void) {
+void test_a_lost_heartbeat_stays_lost_over_a_full_wrap_of_the_clock(void) {
     beat(AGV_NODE_VCU, 1, 1);
     beat(AGV_NODE_VCU, 2, 2);
     for (uint32_t day = 0; day < 60; day++) {
@@ -110,7 +110,7 @@ void test_what_is_lost_stays_lost_over_the_whole_turn_of_the_clock(void) {
 TEST_CASE(0)
 TEST_CASE(0xFFFFFFE0)
 TEST_CASE(1000)
-void test_nothing_is_fresh_before_it_was_heard(uint32_t start_ms) {
+void test_no_message_is_fresh_before_it_was_received(uint32_t start_ms) {
     start(start_ms);
     for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
         TEST_ASSERT_FALSE(is_heard((agv_message_t)i));
@@ -126,7 +126,7 @@ void test_nothing_is_fresh_before_it_was_heard(uint32_t start_ms) {
     }
 }
 
-void test_a_message_concerns_no_other(void) {
+void test_a_message_refreshes_no_other(void) {
     (void)agv_liveness_arrived(&liveness, AGV_MSG_GEAR_STATUS, 5);
     refresh(AGV_MSG_GEAR_STATUS, 5);
     for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
@@ -219,7 +219,7 @@ void test_the_first_frame_is_only_the_baseline(unsigned node) {
 }
 
 /* Every change counts, backwards and from 255 to 0 as well. */
-void test_any_change_of_the_counter_is_a_beat(void) {
+void test_any_change_of_the_counter_is_a_heartbeat(void) {
     static const uint8_t counters[] = {255, 0, 7, 6, 134, 0};
     beat(AGV_NODE_VCU, 254, 0);
     for (uint32_t i = 0; i < sizeof counters; i++) {
@@ -323,7 +323,7 @@ void test_a_forgotten_ai_whose_counter_stands_is_stuck_when_engaged(void) {
 }
 
 /* Shows: SUP-8 */
-void test_an_ai_that_never_was_there_is_not_forgotten(void) {
+void test_an_ai_that_was_never_received_is_not_forgotten(void) {
     agv_liveness_forget_ai(&liveness);
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_UNSEEN);
     tick_while(true, 1000);

@@ -110,7 +110,7 @@ void test_a_frame_with_the_bit_begins_the_count_anew(unsigned flags) {
 /* What was counted before an engagement does not count in it. */
 TEST_CASE(1)
 TEST_CASE(5)
-void test_how_many_frames_is_a_setting(unsigned frames) {
+void test_the_number_of_frames_is_a_setting(unsigned frames) {
     config.mode_frames = (uint16_t)frames;
     for (uint32_t round = 0; round < 3; round++) {
         (void)report(NONE, 0);
@@ -220,7 +220,7 @@ static bool is_invalid(void) {
 }
 
 /* Shows: MODE_INVALID */
-void test_both_bits_leave_the_mode_before_until_they_last(void) {
+void test_both_bits_keep_the_previous_mode_for_a_limited_time(void) {
     (void)report(ENGAGED, 0);
     TEST_ASSERT_EQUAL(AGV_MODE_SAME, report(BOTH, 10));
     expect_mode(false, true);
@@ -307,7 +307,7 @@ void test_the_fourth_engagement_within_5_s_is_flapping(uint32_t fourth_ms, int f
 
 /* Any three of them, a pause of more than 5 s between: never. */
 /* Shows: SUP-9 */
-void test_three_engagements_within_5_s_are_none(void) {
+void test_three_engagements_within_5_s_are_not_flapping(void) {
     for (uint32_t ms = 0; ms < 60000; ms += 5001) {
         TEST_ASSERT_FALSE(flaps_at(ms));
         TEST_ASSERT_FALSE(flaps_at(ms + 1));
@@ -369,7 +369,7 @@ void test_no_mode_counts_in_standby_and_active(void) {
 
 /* Each bit is a mode, also both; and without any 363h there is nothing to look at. */
 /* Shows: SUP-9 */
-void test_what_is_no_lack_of_a_mode(void) {
+void test_cases_that_are_no_missing_mode(void) {
     static const uint32_t flags[] = {MANUAL, ENGAGED, BOTH};
     for (uint32_t ms = 0; ms < 1000; ms += 10) {
         TEST_ASSERT_FALSE(none_at(ms, true, false));

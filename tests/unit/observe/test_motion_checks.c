@@ -267,7 +267,7 @@ void test_without_command_there_is_no_gain(void) {
 
 /* The budget stands still, the way too; the fault ends. */
 /* Shows: SUP-10 */
-void test_while_not_judged_everything_stands_still(void) {
+void test_while_not_judged_all_budgets_are_paused(void) {
     steer(10000);
     run(300);
     facts.judged = false;
@@ -310,7 +310,7 @@ void test_more_than_25_counts_above_the_command(unsigned commanded, unsigned mos
 
 /* 225 and 25 are all that there is; below the command is no harm. */
 /* Shows: SUP-11 */
-void test_what_is_no_throttle_above_the_command(void) {
+void test_cases_that_are_no_throttle_above_the_command(void) {
     throttle(250);
     expect_never(THROTTLE); /* none was commanded */
     command_throttle(225);

@@ -103,7 +103,7 @@ void test_two_bits_are_not_added_up(void) {
 }
 
 /* Shows: SUP-4 */
-void test_how_many_frames_of_the_supply_is_a_setting(void) {
+void test_the_number_of_supply_frames_is_a_setting(void) {
     config.eps_supply_fault_frames = 1;
     eps(1, 2);
     expect_only(AGV_FAULT_EPS_OVER_VOLTAGE);

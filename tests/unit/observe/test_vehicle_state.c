@@ -140,7 +140,7 @@ static bool wheels_stand_after(uint32_t ms) {
 }
 
 /* Shows: TIM-2, FSM-3 */
-void test_it_stands_when_all_was_slow_for_100_ms(void) {
+void test_standstill_begins_after_100_ms_of_slow_speeds(void) {
     wheels(49, -49);
     vcu_speed(180);
     TEST_ASSERT_FALSE(stands_after(99));
@@ -158,7 +158,7 @@ void test_it_stands_when_all_was_slow_for_100_ms(void) {
 }
 
 /* The extremes of 32 bits among them. */
-void test_each_wheel_that_is_fast_either_way_ends_it(void) {
+void test_a_fast_wheel_in_either_direction_ends_standstill(void) {
     static const int fast[] = {50, -50, 51, 1000, -1000, INT32_MAX, -INT32_MAX - 1};
     for (unsigned i = 0; i < sizeof fast / sizeof fast[0]; i++) {
         for (unsigned wheel = 0; wheel < 2; wheel++) {
@@ -173,7 +173,7 @@ void test_each_wheel_that_is_fast_either_way_ends_it(void) {
 }
 
 /* The VCU's speed is the second witness of standstill, not of wheels that stand. */
-void test_the_speed_of_the_vcu_is_looked_at(void) {
+void test_the_speed_of_the_vcu_is_checked(void) {
     wheels(0, 0);
     vcu_speed(181);
     TEST_ASSERT_FALSE(stands_after(200));
@@ -202,7 +202,7 @@ void test_standstill_needs_a_vcu_that_is_alive(void) {
     TEST_ASSERT_TRUE(stands_after(1));
 }
 
-void test_without_fresh_wheel_speeds_nothing_is_known_to_stand(void) {
+void test_without_fresh_wheel_speeds_there_is_no_standstill(void) {
     wheels(0, 0);
     TEST_ASSERT_TRUE(stands_after(100));
     wheels_fresh = false;

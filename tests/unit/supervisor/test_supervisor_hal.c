@@ -290,7 +290,7 @@ void test_a_start_with_a_failed_self_test(void) {
 /* --- ticks --- */
 
 /* Shows: TIM-3 */
-void test_a_quiet_tick_looks_at_the_controller_and_feeds_the_watchdog(void) {
+void test_a_quiet_tick_reads_the_controller_and_feeds_the_watchdog(void) {
     walk_to_standby();
     be_strict();
     now_ms++;
@@ -460,7 +460,7 @@ void test_corrupted_memory_starts_anew_in_tripped(void) {
 /* The supervisor's own memory is changed behind its back, under a seal that fits: only the gate can notice. A passed gear
  * that waits for the controller becomes 03h, which is none. */
 /* Shows: INT-4, TX_GATE_REFUSED */
-void test_a_refused_frame_does_not_leave_and_trips(void) {
+void test_a_refused_frame_is_not_sent_and_trips(void) {
     config.topology = AGV_TOPOLOGY_GATEWAY;
     config.gear_change = AGV_GEAR_CHANGE_ANY;
     walk_to_active();

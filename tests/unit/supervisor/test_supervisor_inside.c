@@ -32,7 +32,7 @@ static void begin(void) {
 
 /* 20000 is no angle. The fault is there at once, and is reported in the next call. */
 /* Shows: INT-4, FSM-10, TX_GATE_REFUSED */
-void test_an_answer_that_the_gate_refuses_is_a_fault(void) {
+void test_an_override_that_the_gate_refuses_is_a_fault(void) {
     static const uint8_t other_angle[8] = {1};
     walk_to_tripped(&f);
     fixture_forget_sent(&f);
@@ -63,7 +63,7 @@ void test_a_frame_of_its_own_that_the_gate_refuses_trips(void) {
 
 /* 168h has the identifier of 43Fh, which the gate takes it for: P does not leave. */
 /* Shows: INT-4, FSM-9, SELF_TEST_FAILED */
-void test_a_gate_that_lets_p_not_out_fails_the_self_test(void) {
+void test_a_gate_that_refuses_p_fails_the_self_test(void) {
     fixture_start(&f);
     fixture_forget_sent(&f);
     core->config.id_gear_command = 0x43F;
@@ -118,7 +118,7 @@ void test_an_unresettable_fault_that_comes_while_tripped_is_stored(void) {
 
 /* Nothing is handed to a controller in bus-off, the status frame neither. */
 /* Shows: SUP-7, TOP-3 */
-void test_in_bus_off_nothing_is_handed_to_the_controller(void) {
+void test_in_bus_off_no_frame_is_passed_to_the_controller(void) {
     f.config.status_frame_id = STATUS_ID;
     f.config.status_frame_period_ms = 10;
     f.log_status = true;
@@ -186,7 +186,7 @@ void test_a_stamp_of_a_turn_of_the_microseconds_ago_is_old(void) {
 }
 
 /* From the start, and from a restart on: 1234567 ms are 1234567000 us. */
-void test_both_clocks_say_the_same(void) {
+void test_both_clocks_agree(void) {
     f.now_ms = 1234567;
     fixture_start(&f);
     TEST_ASSERT_EQUAL_UINT32(1234567000, core->timers.now_us);
@@ -202,7 +202,7 @@ void test_both_clocks_say_the_same(void) {
 
 /* The identifiers in use are made of the configuration; a flipped bit in them is found, and they are made anew. */
 /* Shows: INT-5, P1, MEMORY_CORRUPTED */
-void test_a_flipped_bit_in_the_identifiers_is_mended(void) {
+void test_a_flipped_bit_in_the_identifiers_is_repaired(void) {
     fixture_standby(&f);
     core->ids.of[AGV_MSG_GEAR_COMMAND] ^= 1u;
     fixture_run(&f, 1);
@@ -229,7 +229,7 @@ void test_a_frame_of_no_message_after_a_fault_records_nothing(void) {
 
 /* No pointer is kept: two supervisors that have seen the same are the same, wherever they and their ports lie. */
 /* Shows: INT-5 */
-void test_two_supervisors_that_have_seen_the_same_are_the_same(void) {
+void test_two_supervisors_with_the_same_input_are_equal(void) {
     static fixture_t other;
     fixture_init(&other);
     other.now_ms = f.now_ms;

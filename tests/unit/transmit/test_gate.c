@@ -188,7 +188,7 @@ void test_an_angle_that_does_not_fit_its_complement_is_not_held(void) {
 }
 
 /* Shows: INT-4 */
-void test_only_classic_data_frames_of_8_bytes_leave(void) {
+void test_only_classic_data_frames_of_8_bytes_are_sent(void) {
     hal_can_frame_t frame = {.id = 0x168, .length = 8, .data = {8}};
     TEST_ASSERT_TRUE(agv_gate_allows(&gate, HAL_CAN_VEHICLE, &frame));
     for (unsigned flags = 1; flags < 256; flags++) {
@@ -267,7 +267,7 @@ void test_an_identifier_of_the_protocol_is_no_status_frame(void) {
 }
 
 /* Shows: INT-4 */
-void test_what_may_leave_is_handed_to_the_hal_as_it_is(void) {
+void test_an_allowed_frame_is_passed_to_the_hal_unchanged(void) {
     const hal_can_frame_t frame = {.id = 0x168, .time_ms = 77, .length = 8, .data = {8}};
     hal_can_send_ExpectAndReturn(&hal, HAL_CAN_VEHICLE, &frame, true);
     TEST_ASSERT_EQUAL(AGV_GATE_SENT, agv_gate_send(&gate, &hal, HAL_CAN_VEHICLE, &frame));
@@ -277,7 +277,7 @@ void test_what_may_leave_is_handed_to_the_hal_as_it_is(void) {
 
 /* The mock fails the test when the HAL is called. */
 /* Shows: INT-4, FSM-6 */
-void test_what_may_not_leave_never_reaches_the_hal(void) {
+void test_a_refused_frame_never_reaches_the_hal(void) {
     const hal_can_frame_t drive = {.id = 0x168, .length = 8, .data = {1}};
     for (size_t i = 0; i < sizeof STATES; i++) {
         gate.state = STATES[i];
@@ -297,7 +297,7 @@ void test_in_shadow_mode_nothing_reaches_the_hal(void) {
 
 /* The gate goes by the identifiers that it is handed, not by those of the protocol. */
 /* Shows: INT-4, P1 */
-void test_the_gate_goes_by_the_identifiers_of_this_vehicle(void) {
+void test_the_gate_uses_the_identifiers_of_this_vehicle(void) {
     static const uint8_t park[8] = {8};
     static const uint8_t any[8] = {0};
     config.id_gear_command = 0x169;

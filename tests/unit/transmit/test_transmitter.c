@@ -219,7 +219,7 @@ void test_in_shadow_mode_all_is_reported_and_nothing_sent(void) {
 }
 
 /* Shows: INT-4, TX_GATE_REFUSED */
-void test_what_the_gate_refuses_is_reported(void) {
+void test_a_frame_refused_by_the_gate_is_reported(void) {
     orders.state = AGV_STATE_STANDBY;
     agv_transmitter_pass(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, DRIVE); /* shared bus */
     const agv_tx_report_t did = report();
@@ -287,7 +287,7 @@ void test_commands_pass_to_the_vehicle_and_status_to_the_ai(void) {
 
 /* One a message, the newest. */
 /* Shows: TOP-2 */
-void test_what_waits_is_replaced_by_what_is_newer(void) {
+void test_a_waiting_frame_is_replaced_by_a_newer_one(void) {
     static const uint8_t older[8] = {2};
     be_gateway();
     hal_takes = false;
@@ -307,7 +307,7 @@ void test_what_waits_is_replaced_by_what_is_newer(void) {
 
 /* Each side alone. */
 /* Shows: FSM-2, TOP-2 */
-void test_what_is_discarded_is_never_sent(void) {
+void test_a_discarded_frame_is_never_sent(void) {
     be_gateway();
     hal_takes = false;
     agv_transmitter_pass(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, DRIVE);
@@ -341,7 +341,7 @@ void test_only_the_vehicle_side_is_stalled(void) {
 }
 
 /* Shows: SUP-7, TOP-3 */
-void test_in_bus_off_the_hal_is_handed_nothing_of_its_own(void) {
+void test_in_bus_off_no_own_frame_is_passed_to_the_hal(void) {
     config.status_frame_id = 0x123;
     agv_timer_start(&timers, AGV_TIMER_BUS_OFF);
     burst();
@@ -447,7 +447,7 @@ void test_a_flood_leaves_at_the_pace(void) {
 
 /* The last command was 49.7 days ago but for some ms: it is not too soon. */
 /* Shows: TOP-2, TIM-2 */
-void test_what_passed_a_turn_of_the_clock_ago_is_not_lately(void) {
+void test_a_command_passed_a_full_wrap_ago_is_not_recent(void) {
     be_gateway();
     pass(AGV_MSG_GEAR_COMMAND, DRIVE);
     tick(50);
@@ -457,7 +457,7 @@ void test_what_passed_a_turn_of_the_clock_ago_is_not_lately(void) {
 }
 
 /* Shows: TOP-2 */
-void test_what_may_not_wait_any_more_is_dropped(void) {
+void test_a_waiting_command_that_is_no_longer_allowed_is_dropped(void) {
     be_gateway();
     pass(AGV_MSG_GEAR_COMMAND, DRIVE);
     pass(AGV_MSG_GEAR_COMMAND, REVERSE);
@@ -483,7 +483,7 @@ void test_a_dropped_command_does_not_stall(void) {
 
 /* What the vehicle was commanded is what left, when it left. */
 /* Shows: SUP-5, SUP-11 */
-void test_what_was_passed_on_is_reported_when_it_has_left(void) {
+void test_a_forwarded_frame_is_reported_when_it_is_sent(void) {
     be_gateway();
     pass(AGV_MSG_GEAR_COMMAND, DRIVE);
     pass(AGV_MSG_STEERING_COMMAND, HELD);
@@ -571,7 +571,7 @@ void test_throttle_0_that_waits_is_discarded_and_replaced(void) {
 }
 
 /* Shows: TOP-2, SUP-7 */
-void test_in_bus_off_no_throttle_0_is_handed_over(void) {
+void test_in_bus_off_no_throttle_0_is_passed_to_the_hal(void) {
     be_gateway();
     agv_timer_start(&timers, AGV_TIMER_BUS_OFF);
     end_engagement();
@@ -584,7 +584,7 @@ void test_in_bus_off_no_throttle_0_is_handed_over(void) {
 /* ---- Answers ---- */
 
 /* Shows: TOP-1 */
-void test_a_command_that_differs_is_answered(void) {
+void test_a_command_that_differs_is_overridden(void) {
     static const uint8_t reserved[8] = {8, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF};
     agv_transmitter_answer(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, PARK);
     agv_transmitter_answer(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, reserved); /* reserved bits command nothing */
@@ -608,7 +608,7 @@ void test_the_alive_counter_of_a_foreign_43f_commands_nothing(void) {
 }
 
 /* Shows: TOP-1 */
-void test_what_is_not_sent_is_not_answered(void) {
+void test_a_command_that_is_not_sent_is_not_overridden(void) {
     orders.park_released = false;
     agv_transmitter_answer(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, DRIVE);
     orders.state = AGV_STATE_STANDBY;
@@ -617,7 +617,7 @@ void test_what_is_not_sent_is_not_answered(void) {
 }
 
 /* Shows: TOP-1 */
-void test_within_5_ms_the_answer_waits_and_comes_with_a_tick(void) {
+void test_within_5_ms_the_override_waits_and_is_sent_by_a_tick(void) {
     burst();
     sent_count = 0;
     tick(1);

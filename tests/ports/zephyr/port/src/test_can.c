@@ -17,7 +17,7 @@ static void arrive(hal_can_side_t side, uint32_t id, uint8_t flags) {
     fake_bus_frame(side, &frame);
 }
 
-ZTEST(port_can, test_it_starts_as_the_contract_wants_it) {
+ZTEST(port_can, test_the_port_starts_as_the_contract_requires) {
     zassert_true(vehicle->started && fake_buses[HAL_CAN_AI].started);
     zassert_equal(vehicle->mode, CAN_MODE_NORMAL | CAN_MODE_MANUAL_RECOVERY);
     zassert_equal(vehicle->filters, 2u, "one for 11 bits, one for 29");
@@ -28,7 +28,7 @@ ZTEST(port_can, test_it_starts_as_the_contract_wants_it) {
 }
 
 /* Shows: SUP-7 */
-ZTEST(port_can, test_without_a_free_filter_it_does_not_begin) {
+ZTEST(port_can, test_without_a_free_filter_the_port_does_not_start) {
     fixture_after(NULL);
     fake_parts_reset();
     vehicle->filter_limit = 1u;
@@ -65,7 +65,7 @@ ZTEST(port_can, test_a_frame_carries_the_time_of_its_arrival) {
 }
 
 /* Shows: INT-2 */
-ZTEST(port_can, test_frames_that_are_rejected_are_handed_over_too) {
+ZTEST(port_can, test_frames_that_are_rejected_are_passed_on_too) {
     static const struct can_frame sent[] = {
         {.id = 0x12345u, .dlc = 8u, .flags = CAN_FRAME_IDE},
         {.id = 0x363u, .dlc = 8u, .flags = CAN_FRAME_RTR, .data = {1u}},
@@ -134,7 +134,7 @@ ZTEST(port_can, test_the_driver_has_one_frame_and_the_lowest_identifier_goes_nex
     zassert_equal(fixture_status().tx_pending_ms, 0u);
 }
 
-ZTEST(port_can, test_what_the_driver_refuses_the_caller_keeps) {
+ZTEST(port_can, test_a_frame_refused_by_the_driver_stays_with_the_caller) {
     vehicle->send_error = -EAGAIN;
     zassert_false(send(0x168u, 1u));
     zassert_equal(fixture_status().tx_pending_ms, 0u);
@@ -150,14 +150,14 @@ ZTEST(port_can, test_what_the_driver_refuses_the_caller_keeps) {
     zassert_equal(vehicle->sent[1].data[0], 3u);
 }
 
-ZTEST(port_can, test_a_queue_that_is_full_takes_nothing) {
+ZTEST(port_can, test_a_full_queue_accepts_nothing) {
     for (uint32_t i = 0u; i <= ZEPHYR_HAL_QUEUE_SIZE; i++) {
         zassert_true(send(0x100u + i, 0u));
     }
     zassert_false(send(0x050u, 0u));
 }
 
-ZTEST(port_can, test_only_what_can_be_sent_is_taken) {
+ZTEST(port_can, test_only_frames_that_can_be_sent_are_accepted) {
     const hal_can_frame_t extended = {.id = 0x168u, .length = 8u, .flags = HAL_CAN_EXTENDED};
     const hal_can_frame_t long_id = {.id = 0x800u, .length = 8u};
     const hal_can_frame_t long_frame = {.id = 0x168u, .length = 9u};
@@ -168,7 +168,7 @@ ZTEST(port_can, test_only_what_can_be_sent_is_taken) {
 }
 
 /* Shows: FSM-2 */
-ZTEST(port_can, test_after_a_purge_at_most_the_frame_in_the_controller_leaves) {
+ZTEST(port_can, test_after_a_purge_at_most_the_frame_in_the_controller_is_sent) {
     (void)send(0x168u, 1u);
     (void)send(0x43Fu, 2u);
     hal_can_purge(&hal, HAL_CAN_VEHICLE);
@@ -181,7 +181,7 @@ ZTEST(port_can, test_after_a_purge_at_most_the_frame_in_the_controller_leaves) {
 }
 
 /* Shows: SUP-7 */
-ZTEST(port_can, test_a_frame_that_does_not_leave_grows_old) {
+ZTEST(port_can, test_the_age_of_an_unsent_frame_grows) {
     (void)send(0x168u, 1u);
     zassert_equal(fixture_status().tx_pending_ms, 1u);
     k_msleep(30);
@@ -200,7 +200,7 @@ static void go_bus_off(void) {
 }
 
 /* Shows: SUP-7 */
-ZTEST(port_can, test_in_bus_off_what_waits_is_never_sent) {
+ZTEST(port_can, test_in_bus_off_waiting_frames_are_never_sent) {
     (void)send(0x168u, 1u);
     (void)send(0x43Fu, 2u);
     go_bus_off();
@@ -229,7 +229,7 @@ ZTEST(port_can, test_recovery_is_on_request_and_in_bus_off_only) {
 }
 
 /* Shows: SUP-7 */
-ZTEST(port_can, test_a_bus_off_that_is_over_when_somebody_looks_is_counted) {
+ZTEST(port_can, test_a_bus_off_that_ends_before_the_status_is_read_is_counted) {
     fake_bus_state(HAL_CAN_VEHICLE, CAN_STATE_BUS_OFF, true);
     fake_bus_state(HAL_CAN_VEHICLE, CAN_STATE_ERROR_ACTIVE, true);
     const hal_can_status_t status = fixture_status();

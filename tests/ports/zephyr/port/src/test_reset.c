@@ -18,7 +18,7 @@ static hal_reset_cause_t cause_after(uint32_t flags) {
 }
 
 /* Shows: FSM-7 */
-ZTEST(port_reset, test_only_a_sure_power_on_is_one) {
+ZTEST(port_reset, test_only_a_certain_power_on_is_reported) {
     static const struct {
         uint32_t flags;
         hal_reset_cause_t cause;
@@ -57,7 +57,7 @@ ZTEST(port_reset, test_without_flags_the_cause_is_unknown) {
 }
 
 /* Shows: FSM-7 */
-ZTEST(port_reset, test_a_reset_of_the_port_itself_says_why_and_once) {
+ZTEST(port_reset, test_a_reset_by_the_port_itself_reports_its_cause_once) {
     zephyr_reset_note(HAL_RESET_WATCHDOG);
     zassert_equal(cause_after(RESET_SOFTWARE), HAL_RESET_WATCHDOG);
     zassert_equal(cause_after(RESET_SOFTWARE), HAL_RESET_SOFTWARE);
@@ -81,7 +81,7 @@ ZTEST(port_reset, test_the_latch_outlives_a_reset) {
 }
 
 /* Shows: FSM-7 */
-ZTEST(port_reset, test_each_flipped_bit_of_the_latch_is_seen) {
+ZTEST(port_reset, test_each_flipped_bit_of_the_latch_is_detected) {
     static const uint8_t record[8] = {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u};
     uint8_t read[HAL_STORE_LATCH_SIZE_MAX];
     for (size_t bit = 0u; bit < (offsetof(zephyr_hal_retained_t, note) * 8u); bit++) {
@@ -135,7 +135,7 @@ ZTEST(port_reset, test_an_output_that_reads_closed_at_the_start_fails_the_self_t
 }
 
 /* Shows: INT-2 */
-ZTEST(port_reset, test_the_settings_of_the_build_make_sense) {
+ZTEST(port_reset, test_the_settings_of_the_build_are_valid) {
     agv_config_t config;
     kconfig_read(&config);
     zassert_equal(agv_config_check(&config).problem, AGV_CONFIG_OK);
