@@ -51,12 +51,15 @@ static double drive(scenario_world_t *world, uint16_t topology, uint32_t duratio
     }
     const double took = seconds_now() - begin;
     vehicle_view_t view;
-    vehicle_view(&world->vehicle, duration_ms, &view);
+    scenario_world_vehicle(world, &view);
     sim_bus_stats_t stats;
-    sim_bus_stats(&world->buses[HAL_CAN_VEHICLE], &stats);
-    const bool healthy = (agv_supervisor_state(&world->session.supervisor) == AGV_STATE_ACTIVE) &&
-                         (agv_supervisor_counters(&world->session.supervisor)->warnings == 0u) &&
-                         (view.speed_mm_s > 0) && (world->lost_frames == 0u);
+    scenario_world_bus_stats(world, HAL_CAN_VEHICLE, &stats);
+    scenario_world_view_t seen;
+    scenario_world_view(world, &seen);
+    const agv_supervisor_t *supervisor = &scenario_world_session(world)->supervisor;
+    const bool healthy = (agv_supervisor_state(supervisor) == AGV_STATE_ACTIVE) &&
+                         (agv_supervisor_counters(supervisor)->warnings == 0u) && (view.speed_mm_s > 0) &&
+                         (seen.lost_frames == 0u);
     const double factor = ((double)duration_ms / MS_PER_S) / took;
     (void)printf("%-14s %8.0f times real time, %6.1f ns a tick, %" PRIu64 " frames, %s\n",
                  (topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? "gateway" : "shared bus", factor,

@@ -126,7 +126,7 @@ static void judge_beat(campaign_judge_t *judge, uint64_t t_us) {
 
 /** The angle of the steering, as 067h counts it. */
 static int32_t measured_ddeg(const campaign_judge_t *judge) {
-    return look(judge).angle_ddeg + CENTRE_DDEG;
+    return look(judge).vehicle.angle_ddeg + CENTRE_DDEG;
 }
 
 /** With an engagement, throttle 0 of an AI computer that has not seen it yet is passed on: only after a trip it counts. */
@@ -190,7 +190,7 @@ static void on_state(campaign_judge_t *judge, uint64_t t_ms, const agv_event_t *
     }
     judge->confirmed_us = (judge->confirmed_us == CAMPAIGN_NEVER) ? now_us(judge) : judge->confirmed_us;
     const scenario_world_view_t view = look(judge);
-    const bool parked = (view.gear == (uint8_t)AGV_GEAR_P) && !view.autopilot;
+    const bool parked = (view.vehicle.gear == (uint8_t)AGV_GEAR_P) && !view.vehicle.autopilot;
     if (!parked && !is_like(judge, CAMPAIGN_LIES)) {
         is_broken(judge, CAMPAIGN_FALSE_CONFIRM, now_us(judge));
     }
@@ -217,7 +217,7 @@ scenario_watch_t campaign_judge_watch(campaign_judge_t *judge) {
 /** Everything has to be as planned when the cause comes. */
 static void judge_readiness(campaign_judge_t *judge) {
     const campaign_plan_t *plan = judge->plan;
-    judge->engaged = look(judge).autopilot;
+    judge->engaged = look(judge).vehicle.autopilot;
     const bool as_planned = (judge->engaged == plan->engaged) || (plan->engagement != NULL);
     if ((plan->cause_ms != 0u) && (!judge->was_closed || !as_planned)) {
         is_broken(judge, CAMPAIGN_NOT_READY, judge->cause_us);

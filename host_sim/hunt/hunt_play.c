@@ -1,5 +1,6 @@
 #include "hunt/hunt_play.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "common/report.h"
@@ -31,16 +32,18 @@ static void note_feature(hunt_play_t *play, uint32_t kind, uint32_t a, uint32_t 
 static void on_event(void *ctx, const session_event_t *event) {
     hunt_play_t *play = ctx;
     const agv_event_t *recorded = &event->recorded;
-    const uint32_t closed = play->world.hal.safety_output.on ? 1u : 0u;
+    scenario_world_view_t view;
 
     if (event->is_led) {
         return;
     }
+    scenario_world_view(&play->world, &view);
+    const uint32_t closed = view.output_closed ? 1u : 0u;
     if (recorded->kind == (uint8_t)AGV_EVENT_STATE) {
         note_feature(play, OF_STATE, recorded->a, recorded->b, recorded->c);
-        note_feature(play, OF_SPEED, recorded->b, (uint32_t)hazard_speed_mm_s(&play->hazard) / 500u, closed);
+        note_feature(play, OF_SPEED, recorded->b, (uint32_t)abs(view.vehicle.speed_mm_s) / 500u, closed);
     } else if (recorded->kind == (uint8_t)AGV_EVENT_FAULT) {
-        note_feature(play, OF_FAULT, recorded->a, recorded->c, closed + (play->world.vehicle.vcu.autopilot ? 2u : 0u));
+        note_feature(play, OF_FAULT, recorded->a, recorded->c, closed + (view.vehicle.autopilot ? 2u : 0u));
     }
 }
 
@@ -67,8 +70,11 @@ static uint32_t last_step_ms(const scenario_t *scenario) {
 
 /** Nothing can come any more: nobody does anything new, and the output is open or the vehicle stands in the safe state. */
 static bool is_over(hunt_play_t *play, uint32_t t_ms) {
-    const bool stands = play->hazard.trip.tripped && (hazard_speed_mm_s(&play->hazard) == 0);
-    const bool open = !play->world.hal.safety_output.on;
+    scenario_world_view_t view;
+
+    scenario_world_view(&play->world, &view);
+    const bool stands = hazard_is_tripped(&play->hazard) && (view.vehicle.speed_mm_s == 0);
+    const bool open = !view.output_closed;
 
     if ((!open && !stands) || (t_ms <= play->last_step_ms)) {
         play->quiet_ms = t_ms;

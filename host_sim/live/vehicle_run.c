@@ -64,17 +64,18 @@ static void be_told(run_t *run, vehicle_do_t what) {
 
 /** The operator engages the autopilot; while the bus commands autopilot off he tries again. */
 static void operate(run_t *run, uint64_t now_ms) {
-    const vehicle_t *vehicle = &run->bus.vehicle;
+    vehicle_state_t state;
 
     if (now_ms < run->engage_ms) {
         return;
     }
     run->engage_ms = now_ms + ENGAGE_AGAIN_MS;
-    if (!vehicle->nodes[VEHICLE_VCU].running) {
+    if (!vehicle_is_running(&run->bus.vehicle, VEHICLE_VCU)) {
         return;
     }
     be_told(run, VEHICLE_DO_ENGAGE);
-    if (vehicle->vcu.autopilot) {
+    vehicle_state(&run->bus.vehicle, &state);
+    if (state.autopilot) {
         vehicle_show_event(&run->show, run->bus.now_ms, "operator", "engage");
         run->engage_ms = UINT64_MAX;
     } else if (!run->was_refused) {

@@ -4,7 +4,7 @@
 
 #include "common/units.h"
 
-enum { MDDEG_PER_DDEG = 1000, PASSIVE_TEC = 200, BITS_PER_BYTE = 8 };
+enum { PASSIVE_TEC = 200, BITS_PER_BYTE = 8 };
 
 static void tell_event(void *ctx, const session_event_t *event) {
     const scenario_world_t *world = ctx;
@@ -45,7 +45,7 @@ static void tell_frame(void *ctx, const sim_bus_event_t *event) {
 /** A node of the vehicle is on the bus when it has power. */
 static void follow_power(scenario_world_t *world, vehicle_node_t node) {
     scenario_station_t *station = &world->stations[node];
-    const bool runs = world->vehicle.nodes[node].running;
+    const bool runs = vehicle_is_running(&world->vehicle, node);
 
     if (station->powered != runs) {
         station->powered = runs;
@@ -249,6 +249,7 @@ static void do_to_supervisor(scenario_world_t *world, const scenario_action_t *a
         break;
     case SCENARIO_TX_STALL:
         sim_bus_set_stalled(bus, node, action->on);
+        world->stalled[action->side] = action->on;
         break;
     case SCENARIO_TX_SWALLOW:
         sim_hal_set_swallowing(&world->hal, action->side, action->on);
@@ -313,8 +314,7 @@ void scenario_world_restore(scenario_world_t *world, scenario_world_t *saved) {
     saved->hal.sink_ctx = world->hal.sink_ctx;
     saved->session.ports = world->session.ports;
     memcpy(saved->session.observers, world->session.observers, sizeof saved->session.observers);
-    saved->vehicle.send = world->vehicle.send;
-    saved->vehicle.send_ctx = world->vehicle.send_ctx;
+    vehicle_set_send(&saved->vehicle, send_of_vehicle, world);
     memcpy(saved->watches, world->watches, sizeof saved->watches);
     *world = *saved;
 }
@@ -348,8 +348,8 @@ void scenario_world_tick(scenario_world_t *world, uint64_t t_ms) {
 
     world->t_ms = t_ms;
     vehicle_tick(&world->vehicle, t_ms);
-    if (world->power_changes != world->vehicle.power_changes) {
-        world->power_changes = world->vehicle.power_changes;
+    if (world->power_changes != vehicle_power_changes(&world->vehicle)) {
+        world->power_changes = vehicle_power_changes(&world->vehicle);
         for (int n = 0; n < VEHICLE_NODES; n++) {
             follow_power(world, (vehicle_node_t)n);
         }
@@ -375,10 +375,27 @@ void scenario_world_view(const scenario_world_t *world, scenario_world_view_t *v
         .received = hal->can[HAL_CAN_VEHICLE].received + hal->can[HAL_CAN_AI].received,
         .feeds = hal->feeds,
         .bites = hal->bites,
-        .gear = world->vehicle.body.gear,
-        .autopilot = world->vehicle.vcu.autopilot,
-        .angle_ddeg = world->vehicle.eps.angle_mddeg / MDDEG_PER_DDEG,
+        .lost_frames = world->lost_frames,
+        .is_off = world->off,
     };
+    vehicle_state(&world->vehicle, &view->vehicle);
+}
+
+void scenario_world_controller(const scenario_world_t *world, hal_can_side_t side, scenario_controller_t *controller) {
+    const sim_hal_can_t *can = &world->hal.can[side];
+    *controller = (scenario_controller_t){
+        .is_stalled = can->full || world->stalled[side],
+        .swallows = can->swallows,
+    };
+    sim_bus_status(&world->buses[side], can->node, &controller->status);
+}
+
+void scenario_world_bus_stats(const scenario_world_t *world, hal_can_side_t side, sim_bus_stats_t *stats) {
+    sim_bus_stats(&world->buses[side], stats);
+}
+
+hal_t *scenario_world_port(scenario_world_t *world) {
+    return &world->hal;
 }
 
 void scenario_world_vehicle(scenario_world_t *world, vehicle_view_t *view) {

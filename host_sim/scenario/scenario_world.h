@@ -74,6 +74,7 @@ struct scenario_world {
     uint64_t deaf_until_ms;                                /**< the supervisor hangs, or is without power, until then */
     bool was_deaf;                                         /**< it hung: frames may wait for it */
     bool off;                                              /**< it is without power */
+    bool stalled[HAL_CAN_SIDES];                           /**< frames of the supervisor do not leave */
     uint32_t power_changes;                                /**< of the vehicle, that the buses know of */
     uint32_t lost_frames;                                  /**< of the vehicle, that found no room in a mailbox */
     scenario_past_wire_t past_wire[VEHICLE_STRANGERS_MAX]; /**< FD frames of this millisecond */
@@ -86,14 +87,21 @@ typedef struct {
     uint64_t now_us;          /**< of the vehicle side's bus */
     uint16_t status_frame_id; /**< as configured; 0: none */
     bool output_closed;
-    bool is_deaf;       /**< the supervisor hangs or is without power: frames may wait for it */
-    uint32_t received;  /**< frames handed to it, of both sides */
-    uint32_t feeds;     /**< of its watchdog */
-    uint32_t bites;     /**< likewise */
-    uint8_t gear;       /**< agv_gear_t, engaged */
-    bool autopilot;     /**< mode of the VCU */
-    int32_t angle_ddeg; /**< of the steering, when it last moved */
+    bool is_deaf;         /**< the supervisor hangs or is without power: frames may wait for it */
+    uint32_t received;    /**< frames handed to it, of both sides */
+    uint32_t feeds;       /**< of its watchdog */
+    uint32_t bites;       /**< likewise */
+    uint32_t lost_frames; /**< of the vehicle, that found no room in a mailbox */
+    bool is_off;          /**< the supervisor is without power */
+    vehicle_state_t vehicle;
 } scenario_world_view_t;
+
+/** A controller of the supervisor. */
+typedef struct {
+    hal_can_status_t status;
+    bool is_stalled; /**< its frames do not leave, or it takes none */
+    bool swallows;   /**< its frames are lost, and it says that they were sent */
+} scenario_controller_t;
 
 /** Build a world as a scenario begins. @return false: a bit rate that there is not */
 bool scenario_world_init(scenario_world_t *world, const scenario_t *scenario);
@@ -119,6 +127,15 @@ void scenario_world_restore(scenario_world_t *world, scenario_world_t *saved);
 
 /** Look at it. */
 void scenario_world_view(const scenario_world_t *world, scenario_world_view_t *view);
+
+/** Look at a controller of the supervisor. */
+void scenario_world_controller(const scenario_world_t *world, hal_can_side_t side, scenario_controller_t *controller);
+
+/** Counters of a bus. */
+void scenario_world_bus_stats(const scenario_world_t *world, hal_can_side_t side, sim_bus_stats_t *stats);
+
+/** The supervisor's port, for a stub that stands in its place. */
+hal_t *scenario_world_port(scenario_world_t *world);
 
 /** What the vehicle does, now. */
 void scenario_world_vehicle(scenario_world_t *world, vehicle_view_t *view);

@@ -233,3 +233,22 @@ void vehicle_view(vehicle_t *vehicle, uint64_t now_ms, vehicle_view_t *view) {
         view->running[n] = vehicle->nodes[n].running;
     }
 }
+
+void vehicle_state(const vehicle_t *vehicle, vehicle_state_t *state) {
+    *state = (vehicle_state_t){
+        .gear = vehicle->body.gear,
+        .autopilot = vehicle->vcu.autopilot,
+        .button_1 = vehicle->people.button_1,
+        .speed_mm_s = vehicle->body.speed_um_s / 1000,
+        .angle_ddeg = vehicle->eps.angle_mddeg / 1000,
+    };
+}
+
+bool vehicle_is_running(const vehicle_t *vehicle, vehicle_node_t node) {
+    return vehicle->nodes[node].running;
+}
+
+void vehicle_set_send(vehicle_t *vehicle, vehicle_send_fn *send, void *ctx) {
+    vehicle->send = send;
+    vehicle->send_ctx = ctx;
+}

@@ -174,6 +174,15 @@ typedef struct {
     int32_t fastest_park_mm_s; /**< highest speed in amount at which P was taken so far */
 } vehicle_view_t;
 
+/** What the vehicle did when it last moved. Looking at it changes nothing, also not how a run goes on. */
+typedef struct {
+    uint8_t gear;   /**< agv_gear_t, engaged */
+    bool autopilot; /**< mode of the VCU */
+    bool button_1;  /**< the operator presses it */
+    int32_t speed_mm_s;
+    int32_t angle_ddeg; /**< of the wheels; vehicle_view_t has it as the EPS measures it */
+} vehicle_state_t;
+
 /** @name Private: layout only, so that a program can own a vehicle. @{ */
 #define VEHICLE_PAST_MAX ((VEHICLE_DELAY_MAX_MS / 10u) + 1u) /* frames of the shortest cycle */
 
@@ -354,6 +363,20 @@ bool vehicle_do(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *act
 
 /** Look at the vehicle. @p now_ms not before the last call. */
 void vehicle_view(vehicle_t *vehicle, uint64_t now_ms, vehicle_view_t *view);
+
+/** Look at the vehicle as it was when it last moved. */
+void vehicle_state(const vehicle_t *vehicle, vehicle_state_t *state);
+
+/** Whether a node has power. */
+bool vehicle_is_running(const vehicle_t *vehicle, vehicle_node_t node);
+
+/** How often a node was switched on or off so far. */
+static inline uint32_t vehicle_power_changes(const vehicle_t *vehicle) {
+    return vehicle->power_changes;
+}
+
+/** Pass what is sent to another callback from now on; for a vehicle that was copied. */
+void vehicle_set_send(vehicle_t *vehicle, vehicle_send_fn *send, void *ctx);
 
 /** The controller side that a node is on; a stranger is on the vehicle side. */
 hal_can_side_t vehicle_side_of(const vehicle_t *vehicle, vehicle_node_t node);

@@ -68,7 +68,7 @@ static void act(soak_t *soak, uint32_t from, uint32_t to) {
 static bool may_come(const soak_t *soak, const soak_row_t *row) {
     scenario_world_view_t view;
     scenario_world_view(&soak->world, &view);
-    const uint32_t other = view.autopilot ? SOAK_MANUAL : SOAK_ENGAGED;
+    const uint32_t other = view.vehicle.autopilot ? SOAK_MANUAL : SOAK_ENGAGED;
     return fits(soak, row) && ((row->flags & other) == 0u);
 }
 

@@ -6,7 +6,7 @@
 #include "agv/names.h"
 #include "common/units.h"
 
-enum { CENTRE_DDEG = 9000, MDDEG_PER_DDEG = 1000 };
+enum { CENTRE_DDEG = 9000 };
 
 static const hazard_info_t INFOS[HAZARD_KINDS] = {
     [HAZARD_NONE] = {"none", "no hazard", ""},
@@ -62,11 +62,11 @@ bool hazard_is_safe_now(const hazard_t *hazard, uint32_t within_ms) {
 }
 
 int32_t hazard_speed_mm_s(const hazard_t *hazard) {
-    return abs(hazard->world->vehicle.body.speed_um_s) / US_PER_MS;
+    return abs(hazard->view.vehicle.speed_mm_s);
 }
 
 int32_t hazard_angle_ddeg(const hazard_t *hazard) {
-    return hazard->world->vehicle.eps.angle_mddeg / MDDEG_PER_DDEG;
+    return hazard->view.vehicle.angle_ddeg;
 }
 
 int32_t hazard_measured_ddeg(const hazard_t *hazard) {
@@ -96,7 +96,7 @@ static void read_limits(hazard_t *hazard) {
                               (hazard_setting(hazard, "steering_fast_max_ddeg", 0u) != 0u);
 }
 
-void hazard_init(hazard_t *hazard, const scenario_t *scenario, scenario_world_t *world) {
+void hazard_init(hazard_t *hazard, const scenario_t *scenario, const scenario_world_t *world) {
     memset(hazard, 0, sizeof *hazard);
     hazard->scenario = scenario;
     hazard->world = world;
@@ -121,10 +121,10 @@ static void on_foreign_command(hazard_t *hazard, agv_message_t message, const ha
     const uint8_t value = (frame->length > 0u) ? frame->data[0] : 0u;
     const bool moves = ((message == AGV_MSG_GEAR_COMMAND) && (value != (uint8_t)AGV_GEAR_P)) ||
                        ((message == AGV_MSG_THROTTLE_COMMAND) && (value > 0u)) || (message == AGV_MSG_STEERING_COMMAND);
-    hal_can_status_t status;
+    scenario_controller_t controller;
 
-    hal_can_status(&hazard->world->hal, HAL_CAN_VEHICLE, &status);
-    const bool heard = status.state == HAL_CAN_ERROR_ACTIVE; /* after a collision it may miss one */
+    scenario_world_controller(hazard->world, HAL_CAN_VEHICLE, &controller);
+    const bool heard = controller.status.state == HAL_CAN_ERROR_ACTIVE; /* after a collision it may miss one */
     if (moves && heard && hazard->closed && !hazard->trip.tripped && (hazard->foreign_ms == 0u)) {
         hazard->foreign_ms = hazard->t_ms;
     }
@@ -153,12 +153,21 @@ static void on_data(hazard_t *hazard, hal_can_side_t side, int from, const hal_c
     }
 }
 
+static void look(hazard_t *hazard) {
+    scenario_world_view(hazard->world, &hazard->view);
+}
+
 static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
     hazard_t *hazard = ctx;
 
+    look(hazard);
     hazard->t_us = t_us;
-    hazard->t_ms = hazard->world->t_ms; /* a frame that ends with the millisecond belongs to it */
+    hazard->t_ms = hazard->view.t_ms; /* a frame that ends with the millisecond belongs to it */
     on_data(hazard, side, from, frame);
+}
+
+bool hazard_is_tripped(const hazard_t *hazard) {
+    return hazard->trip.tripped;
 }
 
 scenario_watch_t hazard_watch(hazard_t *hazard) {
@@ -173,6 +182,7 @@ void hazard_step(hazard_t *hazard, uint64_t t_ms, const scenario_step_t *step) {
     const bool is_anew = !step->of_vehicle &&
                          ((step->supervisor.what == SCENARIO_RESTART) || (step->supervisor.what == SCENARIO_FLIP_BIT));
 
+    look(hazard);
     hazard->t_ms = t_ms;
     hazard->t_us = t_ms * US_PER_MS;
     if (is_anew) {
@@ -188,8 +198,9 @@ void hazard_step(hazard_t *hazard, uint64_t t_ms, const scenario_step_t *step) {
 }
 
 void hazard_tick(hazard_t *hazard, uint64_t t_ms) {
+    look(hazard);
     hazard->t_ms = t_ms;
-    hazard->closed = hazard->world->hal.safety_output.on;
+    hazard->closed = hazard->view.output_closed;
     hazard_safe_tick(hazard);
     hazard_hold_tick(hazard);
     hazard_passed_tick(hazard);

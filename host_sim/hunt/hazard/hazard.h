@@ -148,7 +148,8 @@ typedef struct {
     uint8_t closeness[HAZARD_ROWS_MAX]; /**< the most that each condition came to: sixteenths of its limit */
 
     const scenario_t *scenario;
-    scenario_world_t *world; /**< only read */
+    const scenario_world_t *world;
+    scenario_world_view_t view; /**< when the judgement last looked at it */
     hazard_limits_t limits;
     bool gateway;
     uint64_t t_us;
@@ -189,7 +190,7 @@ typedef struct {
 } hazard_t;
 
 /** Begin. @param world must be built of @p scenario; both must outlive the judgement */
-void hazard_init(hazard_t *hazard, const scenario_t *scenario, scenario_world_t *world);
+void hazard_init(hazard_t *hazard, const scenario_t *scenario, const scenario_world_t *world);
 
 /** Who has to see the frames. */
 scenario_watch_t hazard_watch(hazard_t *hazard);
@@ -200,11 +201,16 @@ void hazard_step(hazard_t *hazard, uint64_t t_ms, const scenario_step_t *step);
 /** At the end of every millisecond. */
 void hazard_tick(hazard_t *hazard, uint64_t t_ms);
 
+/** Speed of the vehicle, in whatever direction. */
+int32_t hazard_speed_mm_s(const hazard_t *hazard);
+
+/** Whether the supervisor has tripped and was not reset since, as the wire shows it. */
+bool hazard_is_tripped(const hazard_t *hazard);
+
 /** @name Private: the parts. @{ */
 void hazard_found(hazard_t *hazard, hazard_kind_t kind, const char *cause);
 uint32_t hazard_setting(const hazard_t *hazard, const char *name, uint32_t preset);
 bool hazard_is_safe_now(const hazard_t *hazard, uint32_t within_ms);
-int32_t hazard_speed_mm_s(const hazard_t *hazard);
 int32_t hazard_angle_ddeg(const hazard_t *hazard);
 int32_t hazard_measured_ddeg(const hazard_t *hazard);
 void hazard_rows_init(hazard_t *hazard);

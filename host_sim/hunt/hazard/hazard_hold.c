@@ -25,7 +25,7 @@ void hazard_hold_measured(hazard_t *hazard, int32_t angle_ddeg) {
     hold->measured_ddeg[at] = angle_ddeg;
     hold->measured_ms[at] = hazard->t_ms;
     hold->measured_count++;
-    if (hazard->world->off) {
+    if (hazard->view.is_off) {
         hold->has_first = false; /* one without power measures nothing */
         return;
     }

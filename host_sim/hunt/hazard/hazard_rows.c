@@ -123,8 +123,9 @@ static bool is_command_bad(const hazard_t *hazard) {
 }
 
 static bool is_stalled(const hazard_t *hazard, hal_can_side_t side) {
-    const sim_hal_can_t *can = &hazard->world->hal.can[side];
-    return can->full || hazard->world->buses[side].nodes[can->node].stalled;
+    scenario_controller_t controller;
+    scenario_world_controller(hazard->world, side, &controller);
+    return controller.is_stalled;
 }
 
 static bool is_transmitter_dead(const hazard_t *hazard) {

@@ -76,7 +76,7 @@ static void judge_confirmation(hazard_t *hazard) {
 /** Button 1 as the operator really holds it. */
 static void follow_button(hazard_t *hazard) {
     hazard_trip_t *trip = &hazard->trip;
-    const bool button = hazard->world->vehicle.people.button_1;
+    const bool button = hazard->view.vehicle.button_1;
 
     if (button && !trip->button) {
         trip->pressed = true;
@@ -88,14 +88,14 @@ static void follow_button(hazard_t *hazard) {
 
 /** No safe command for a while, though the controller could send: they have ended. */
 static bool has_ended(hazard_t *hazard) {
-    hal_can_status_t status;
+    scenario_controller_t controller;
 
     if (!hazard->closed || hazard_is_safe_now(hazard, GONE_MS)) {
         return false;
     }
-    hal_can_status(&hazard->world->hal, HAL_CAN_VEHICLE, &status);
-    return (status.state != HAL_CAN_BUS_OFF) && (status.tx_pending_ms < PENDING_MS) &&
-           !hazard->world->hal.can[HAL_CAN_VEHICLE].swallows;
+    scenario_world_controller(hazard->world, HAL_CAN_VEHICLE, &controller);
+    return (controller.status.state != HAL_CAN_BUS_OFF) && (controller.status.tx_pending_ms < PENDING_MS) &&
+           !controller.swallows;
 }
 
 static void judge_reset(hazard_t *hazard, bool was_closed) {
@@ -167,7 +167,7 @@ void hazard_safe_tick(hazard_t *hazard) {
     follow_button(hazard);
     judge_reset(hazard, was_closed);
     follow_output(hazard, was_closed);
-    const bool hangs = hazard->t_ms < hazard->world->deaf_until_ms; /* the watchdog ends that, after its period */
+    const bool hangs = hazard->view.is_deaf; /* the watchdog ends that, after its period */
     if (trip->tripped && hazard->closed && !hangs) {
         judge_confirmation(hazard);
     }

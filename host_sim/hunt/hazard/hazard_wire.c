@@ -76,10 +76,10 @@ static void judge_newest_throttle(hazard_t *hazard) {
 
 /** A supervisor in bus-off does not hear that a human drives. */
 static bool is_heard(const hazard_t *hazard) {
-    hal_can_status_t status;
+    scenario_controller_t controller;
 
-    hal_can_status(&hazard->world->hal, HAL_CAN_VEHICLE, &status);
-    return status.state != HAL_CAN_BUS_OFF;
+    scenario_world_controller(hazard->world, HAL_CAN_VEHICLE, &controller);
+    return controller.status.state != HAL_CAN_BUS_OFF;
 }
 
 /** What manual drops. */

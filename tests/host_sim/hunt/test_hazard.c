@@ -6,6 +6,7 @@
 
 #include "agv/codec.h"
 #include "hal/can.h"
+#include "hal/safety_output.h"
 #include "scenario/scenario_play.h"
 #include "unity.h"
 
@@ -44,11 +45,17 @@ void setUp(void) {
 void tearDown(void) {
 }
 
+static vehicle_state_t vehicle_now(void) {
+    scenario_world_view_t view;
+    scenario_world_view(&world, &view);
+    return view.vehicle;
+}
+
 static void send(agv_message_t message, const uint8_t data[AGV_DLC]) {
     hal_can_frame_t frame = {.id = agv_message_id(message, AGV_ID_SET_HEADING), .length = AGV_DLC};
 
     memcpy(frame.data, data, AGV_DLC);
-    (void)hal_can_send(&world.hal, HAL_CAN_VEHICLE, &frame);
+    (void)hal_can_send(scenario_world_port(&world), HAL_CAN_VEHICLE, &frame);
 }
 
 static void enqueue(hal_can_side_t side, const hal_can_frame_t *frame) {
@@ -61,7 +68,7 @@ static void enqueue(hal_can_side_t side, const hal_can_frame_t *frame) {
 
 /** What the planted gateway passes on: commands of the AI computer, and the mode. */
 static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
-    const bool engaged = world.vehicle.vcu.autopilot || !planted->only_engaged;
+    const bool engaged = vehicle_now().autopilot || !planted->only_engaged;
 
     (void)ctx;
     (void)t_us;
@@ -82,7 +89,7 @@ static void send_safe(uint32_t t_ms) {
     uint8_t steering[AGV_DLC] = {0};
 
     if (t_ms == planted->safe_ms) {
-        held_ddeg = (world.vehicle.eps.angle_mddeg / 1000) + planted->hold_ddeg + 9000;
+        held_ddeg = vehicle_now().angle_ddeg + planted->hold_ddeg + 9000;
     }
     steering[0] = (uint8_t)held_ddeg;
     steering[1] = (uint8_t)(held_ddeg >> 8);
@@ -104,10 +111,11 @@ static void act(void *ctx, uint64_t now_ms) {
                          ((planted->safe_end_ms == NEVER) || (t_ms < planted->safe_end_ms));
 
     (void)ctx;
-    world.hal.safety_output.on = (t_ms >= READY_MS) && ((planted->open_ms == NEVER) || (t_ms < planted->open_ms));
+    hal_safety_output_set(scenario_world_port(&world),
+                          (t_ms >= READY_MS) && ((planted->open_ms == NEVER) || (t_ms < planted->open_ms)));
     for (unsigned i = 0u; i < queued; i++) {
         if (!is_safe || (towards[i] == HAL_CAN_AI)) {
-            (void)hal_can_send(&world.hal, towards[i], &queue[i]);
+            (void)hal_can_send(scenario_world_port(&world), towards[i], &queue[i]);
         }
     }
     queued = 0u;
@@ -115,7 +123,7 @@ static void act(void *ctx, uint64_t now_ms) {
         send_safe(t_ms);
     }
     if ((planted->recovers_ms != NEVER) && (t_ms == planted->recovers_ms)) {
-        hal_can_recover(&world.hal, HAL_CAN_VEHICLE);
+        hal_can_recover(scenario_world_port(&world), HAL_CAN_VEHICLE);
     }
     if ((planted->forges_ms != NEVER) && (t_ms == planted->forges_ms)) {
         send(AGV_MSG_THROTTLE_COMMAND, throttle);

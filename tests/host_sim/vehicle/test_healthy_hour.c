@@ -370,6 +370,12 @@ static void begin(bool gateway, bool shadow) {
     scenario_world_start(world);
 }
 
+static scenario_world_view_t look(void) {
+    scenario_world_view_t view;
+    scenario_world_view(world, &view);
+    return view;
+}
+
 static void drive(bool gateway) {
     begin(gateway, false);
     for (uint32_t t_ms = 0u; t_ms < HEALTHY_MS; t_ms++) {
@@ -384,7 +390,7 @@ static void drive(bool gateway) {
         }
         scenario_world_tick(world, t_ms);
         witness_tick(t_ms);
-        if (((t_ms > READY_MS) && !world->hal.safety_output.on) || (faults_raised > 0u)) {
+        if (((t_ms > READY_MS) && !look().output_closed) || (faults_raised > 0u)) {
             TEST_FAIL_MESSAGE((first_fault[0] != '\0') ? first_fault : "the safety output is open");
         }
     }
@@ -392,18 +398,18 @@ static void drive(bool gateway) {
 
 static uint32_t load_permille(hal_can_side_t side) {
     sim_bus_stats_t stats;
-    sim_bus_stats(&world->buses[side], &stats);
+    scenario_world_bus_stats(world, side, &stats);
     return (uint32_t)(stats.busy_us / HEALTHY_MS);
 }
 
 static void judge(bool gateway) {
-    const agv_counters_t *counters = agv_supervisor_counters(&world->session.supervisor);
+    const agv_counters_t *counters = agv_supervisor_counters(&scenario_world_session(world)->supervisor);
 
     TEST_ASSERT_EQUAL_UINT32(0u, trips);
     TEST_ASSERT_EQUAL_UINT32(0u, counters->warnings);
     TEST_ASSERT_EQUAL_UINT32(0u, counters->gate_refused);
-    TEST_ASSERT_EQUAL_UINT32(0u, world->lost_frames);
-    TEST_ASSERT_EQUAL_UINT32(0u, world->hal.bites);
+    TEST_ASSERT_EQUAL_UINT32(0u, look().lost_frames);
+    TEST_ASSERT_EQUAL_UINT32(0u, look().bites);
     TEST_ASSERT_GREATER_OR_EQUAL_UINT32(HEALTHY_MS / (2u * HAND_OVER_MS) - 1u, witness.engagement_count);
     TEST_ASSERT_GREATER_OR_EQUAL_INT32(3500, fastest_mm_s);
     TEST_ASSERT_UINT32_WITHIN(20u, 800u, load_permille(HAL_CAN_VEHICLE));

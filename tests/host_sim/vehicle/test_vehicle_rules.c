@@ -118,14 +118,17 @@ void test_a_field_that_is_held_stays_at_what_it_was(void) {
     TEST_ASSERT_EQUAL_INT32(0, speed_m_per_h());
     hold_speed(2u, 0u);
     run_until(5031u);
-    TEST_ASSERT_FALSE(vehicle.messages[AGV_MSG_VEHICLE_STATUS].patched);
+    (void)act((vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 300u});
+    run_until(8000u);
+    TEST_ASSERT_EQUAL_INT32(4320, speed_m_per_h()); /* the two frames are over */
 }
 
 void test_the_wheels_turn_on_in_park(void) {
+    config.park_guard = false;
+    begin();
+    run_until(1u);
     drive(AGV_GEAR_D);
     do_it(VEHICLE_DO_VCU_ROLL_ON, true);
-    config.park_guard = false;
-    vehicle.config.park_guard = false;
     park();
     run_until(9000u);
     TEST_ASSERT_EQUAL_HEX8(AGV_GEAR_P, look().gear);
