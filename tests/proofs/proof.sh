@@ -1,6 +1,7 @@
 # shellcheck shell=bash
-# The frame of tests/proofs/*/run. Source it, define `prove` and `seeded`, and end with: proof "$@"
-# prove: ends with 0 when it holds, its last line is its figures. seeded: ends with 0 when each seeded fault was found.
+# Common part of tests/proofs/*/run. Source it, define `prove` and `seeded`, and end with: proof "$@"
+# prove: exit status 0 if the proof holds; its last line has the figures. seeded: exit status 0 if each seeded fault was
+# found.
 # shellcheck source=../../scripts/tools/lib.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../../scripts/tools/lib.sh"
 here=$(dirname "$(readlink -f "$0")")
@@ -18,13 +19,13 @@ proof() {
     fi
 }
 
-# build PRESET TARGET...: says something when it fails
+# build PRESET TARGET...: prints the end of the log after a failure
 build() {
     { cmake --preset "$1" && cmake --build --preset "$1" --target "${@:2}"; } >"$work/build-$1.log" 2>&1 ||
         { tail -n 25 "$work/build-$1.log" && die "the preset $1 does not build: $work/build-$1.log"; }
 }
 
-# build_host CHECKER...: what the host build makes, with the seeded faults of these checkers
+# build_host CHECKER...: builds the programs with the seeded faults of these checkers
 build_host() {
     local checker programs=()
     for checker in "$@"; do
@@ -50,7 +51,7 @@ run_shards() {
     return "$status"
 }
 
-# The last lines of all shards as one: each number the sum, but for the first, which all have in common.
+# The last lines of all shards as one line: each number is the sum, except the first one, which is the same in all.
 add_up() {
     local i logs=()
     for ((i = 0; i < $(nproc); i++)); do

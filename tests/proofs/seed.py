@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
-"""Seeded faults: one line each in seeded.tsv, and whoever checks must find it, for the reason that the line names.
+"""Seeded faults: each is one or more lines of seeded.tsv. Its checker must find it and print the expected message.
 
-usage: seed.py check                    the old text of each line stands in its file exactly once
-       seed.py list CHECKER             name, what it is run with, and files of each seeded fault, between |
-       seed.py rows CHECKER             name, what it is run with, and what must be said, between tabs
+usage: seed.py check                    the old text of each line must occur exactly once in its file
+       seed.py list CHECKER             name, arguments and files of each seeded fault, separated by |
+       seed.py rows CHECKER             name, arguments and expected message, separated by tabs
        seed.py apply CHECKER/NAME FOLDER [--paths]
                                         copies of the changed files, with their paths or without
        seed.py run CHECKER[/NAME]... [--bin FOLDER]
-                                        its programs, which CMake has built (seeded.cmake): each fails and says why
-       seed.py tree CHECKER[/NAME]...   the command of each line in a copy of this tree with the change: it fails and says why
+                                        run its programs, built by CMake (seeded.cmake): each must fail with the message
+       seed.py tree CHECKER[/NAME]...   run the command of each line in a copy of this tree with the change: same
        seed.py fails CHECKER/NAME COMMAND...
-                                        this command fails and says why
+                                        run this command: same
 
 Several lines of one name are one fault. A line with no old text appends the new one; in the new
 text \\n is the end of a line. A line with no file changes nothing, and its command is run in this tree.
@@ -31,7 +31,7 @@ SECONDS = 1800  # a flip of each bit takes minutes
 
 
 class Fault:
-    """One seeded fault: what is changed, how it is run, what must be said."""
+    """One seeded fault: its changes, its arguments, the expected message."""
 
     def __init__(self, checker, name, arguments, says):
         self.checker, self.name, self.arguments, self.says = checker, name, arguments, says
