@@ -40,16 +40,20 @@ void agv_fault_monitor_event(agv_fault_monitor_t *monitor, agv_timers_t *timers,
             agv_fault_monitor_set(monitor, fault, true);
             agv_fault_set_put(&monitor->occurred, fault, true);
             monitor->outdated = true;
+            monitor->transient = true;
         }
     }
 }
 
 void agv_fault_monitor_tick(agv_fault_monitor_t *monitor, const agv_timers_t *timers) {
-    for (uint32_t i = 0u; i < (uint32_t)EVENTS; i++) {
+    bool transient = false;
+    for (uint32_t i = 0u; monitor->transient && (i < (uint32_t)EVENTS); i++) {
         if (agv_timer_reached(timers, events[i].timer)) {
             agv_fault_monitor_set(monitor, events[i].fault, false);
         }
+        transient = transient || agv_timer_is_within(timers, events[i].timer);
     }
+    monitor->transient = transient;
 }
 
 static void keep_highest(uint8_t *rank, uint32_t fault) {

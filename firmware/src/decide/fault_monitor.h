@@ -30,6 +30,7 @@ typedef struct {
     agv_fault_set_t occurred; /**< transients since the last evaluation: each occurrence counts (FSM-11) */
     agv_fault_summary_t summary;
     bool outdated;      /**< `active` has changed since the last evaluation */
+    bool transient;     /**< a transient fault is active: its timer runs */
     bool ai_loss_warns; /**< at the last evaluation a lost AI heartbeat only warned (SUP-8) */
 } agv_fault_monitor_t;
 
