@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "common/chance.h"
+#include "common/prng.h"
 #include "common/units.h"
 
 enum {
@@ -31,27 +31,27 @@ enum { THROTTLE_MIN_PCT = 5, STEER_MAX_DEG = 30, DRIVE_MS = 1000 };
 static void choose_kind(campaign_plan_t *plan, uint64_t *state) {
     static const uint32_t bitrates[] = {125000u, 250000u, 500000u};
     const uint32_t flags = plan->row->flags;
-    const bool gateway = chance_toss(state, 2u);
-    const bool manual = chance_toss(state, 4u);
+    const bool gateway = prng_toss(state, 2u);
+    const bool manual = prng_toss(state, 4u);
 
-    plan->bitrate = bitrates[chance_draw(state, 0u, 2u)];
+    plan->bitrate = bitrates[prng_draw(state, 0u, 2u)];
     plan->gateway = ((flags & CAMPAIGN_GATEWAY) != 0u) || (((flags & CAMPAIGN_SHARED) == 0u) && gateway);
-    plan->table_ids = chance_toss(state, 4u);
-    plan->park_guard = !chance_toss(state, 4u);
-    plan->at_standstill = chance_toss(state, 4u) && ((flags & CAMPAIGN_AT_ONCE_P) == 0u);
+    plan->table_ids = prng_toss(state, 4u);
+    plan->park_guard = !prng_toss(state, 4u);
+    plan->at_standstill = prng_toss(state, 4u) && ((flags & CAMPAIGN_AT_ONCE_P) == 0u);
     plan->engaged = ((flags & CAMPAIGN_ENGAGED) != 0u) || (((flags & CAMPAIGN_MANUAL) == 0u) && !manual);
-    plan->bunched = chance_toss(state, 2u);
-    plan->tick_phase_us = chance_toss(state, 2u) ? 0u : (uint16_t)chance_draw(state, 0u, TICK_SPAN_US - 1u);
-    plan->clock_start_ms = (uint32_t)chance_next(state);
-    plan->number = chance_draw(state, plan->row->lowest, plan->row->highest);
+    plan->bunched = prng_toss(state, 2u);
+    plan->tick_phase_us = prng_toss(state, 2u) ? 0u : (uint16_t)prng_draw(state, 0u, TICK_SPAN_US - 1u);
+    plan->clock_start_ms = (uint32_t)prng_next(state);
+    plan->number = prng_draw(state, plan->row->lowest, plan->row->highest);
     /* One that knows no configuration goes by its built-in identifiers. */
-    plan->renumbered = chance_toss(state, 8u) && (plan->row->fault > AGV_FAULT_CONFIG_INVALID);
+    plan->renumbered = prng_toss(state, 8u) && (plan->row->fault > AGV_FAULT_CONFIG_INVALID);
 }
 
 /** The cause comes under way, or is there from the start on. @return from the cause to the decision at the latest */
 static uint32_t choose_moment(campaign_plan_t *plan, uint64_t *state, const agv_config_t *config) {
     const uint32_t flags = plan->row->flags;
-    const uint32_t under_way_ms = ENGAGE_MS + SETTLED_MS + chance_draw(state, 0u, SPAN_MS);
+    const uint32_t under_way_ms = ENGAGE_MS + SETTLED_MS + prng_draw(state, 0u, SPAN_MS);
 
     plan->steps_ms = ((flags & CAMPAIGN_START) != 0u) ? 0u : under_way_ms;
     plan->cause_ms = plan->steps_ms + (((flags & CAMPAIGN_LATER) != 0u) ? plan->number : 0u);
@@ -60,9 +60,9 @@ static uint32_t choose_moment(campaign_plan_t *plan, uint64_t *state, const agv_
 
 /** The cause comes shortly before or after an engagement, which it waits for. */
 static uint32_t choose_engagement(campaign_plan_t *plan, uint64_t *state, const agv_config_t *config) {
-    const uint32_t shift_ms = chance_draw(state, 0u, BEFORE_MS + AFTER_MS);
+    const uint32_t shift_ms = prng_draw(state, 0u, BEFORE_MS + AFTER_MS);
 
-    plan->engage_ms = ENGAGE_MS + chance_draw(state, 0u, START_SPAN_MS - 1u);
+    plan->engage_ms = ENGAGE_MS + prng_draw(state, 0u, START_SPAN_MS - 1u);
     plan->steps_ms = plan->engagement->never_seen ? 0u : plan->engage_ms - BEFORE_MS + shift_ms;
     plan->cause_ms = (plan->steps_ms > plan->engage_ms) ? plan->steps_ms : plan->engage_ms;
     return campaign_engaged_decision_ms(plan->row, plan->engagement, config);
@@ -118,19 +118,19 @@ static void add_kind(campaign_plan_t *plan) {
 static void add_phases(campaign_plan_t *plan, uint64_t *state) {
     text_t *text = &plan->head;
     const bool at_start = (plan->row->flags & CAMPAIGN_START) != 0u;
-    const uint32_t together_ms = chance_draw(state, 0u, 9u);
+    const uint32_t together_ms = prng_draw(state, 0u, 9u);
     const uint32_t span_ms = (plan->bunched || at_start) ? 0u : (uint32_t)START_SPAN_MS - 1u;
 
     text_add(text, "vehicle:\n  park_guard: %s\n", plan->park_guard ? "true" : "false");
-    text_add(text, "  vcu_starts_ms: %" PRIu32 "\n", chance_draw(state, 0u, span_ms));
-    text_add(text, "  eps_starts_ms: %" PRIu32 "\n", chance_draw(state, 0u, span_ms));
+    text_add(text, "  vcu_starts_ms: %" PRIu32 "\n", prng_draw(state, 0u, span_ms));
+    text_add(text, "  eps_starts_ms: %" PRIu32 "\n", prng_draw(state, 0u, span_ms));
     text_add(text, "  ai_starts_ms: %" PRIu32 "\n",
-             chance_draw(state, 0u, span_ms) + (((plan->row->flags & CAMPAIGN_LATE_AI) != 0u) ? LATE_AI_MS : 0u));
+             prng_draw(state, 0u, span_ms) + (((plan->row->flags & CAMPAIGN_LATE_AI) != 0u) ? LATE_AI_MS : 0u));
     text_add(text, "  phases_ms: {");
     for (int m = 0; m < AGV_MSG_COUNT; m++) {
         const uint32_t cycle_ms = agv_message_cycle_ms((agv_message_t)m);
-        const uint32_t own_ms = chance_draw(state, 0u, cycle_ms - 1u);
-        const uint32_t near_ms = together_ms + (chance_toss(state, 4u) ? 1u : 0u);
+        const uint32_t own_ms = prng_draw(state, 0u, cycle_ms - 1u);
+        const uint32_t near_ms = together_ms + (prng_toss(state, 4u) ? 1u : 0u);
         text_add(text, "%s%s: %" PRIu32, (m > 0) ? ", " : "", agv_message_name((agv_message_t)m),
                  plan->bunched ? near_ms : own_ms);
     }
@@ -139,8 +139,8 @@ static void add_phases(campaign_plan_t *plan, uint64_t *state) {
 
 /** The driver who brings the vehicle to where the cause comes. @return throttle */
 static uint32_t add_driver(campaign_plan_t *plan, uint64_t *state) {
-    const uint32_t throttle_pct = chance_draw(state, THROTTLE_MIN_PCT, CAMPAIGN_THROTTLE_MAX_PCT);
-    const int steer_deg = (int)chance_draw(state, 0u, 2u * STEER_MAX_DEG) - STEER_MAX_DEG;
+    const uint32_t throttle_pct = prng_draw(state, THROTTLE_MIN_PCT, CAMPAIGN_THROTTLE_MAX_PCT);
+    const int steer_deg = (int)prng_draw(state, 0u, 2u * STEER_MAX_DEG) - STEER_MAX_DEG;
 
     text_add(&plan->head, "  - {at_ms: %d, ai: drive, gear: D, throttle_pct: %" PRIu32 ", steer_deg: %d}\n", DRIVE_MS,
              throttle_pct, steer_deg);
@@ -150,7 +150,7 @@ static uint32_t add_driver(campaign_plan_t *plan, uint64_t *state) {
 static void add_drive(campaign_plan_t *plan, uint64_t *state) {
     text_t *text = &plan->head;
     const uint32_t throttle_pct = add_driver(plan, state);
-    const uint32_t engage_ms = ENGAGE_MS + chance_draw(state, 0u, START_SPAN_MS - 1u);
+    const uint32_t engage_ms = ENGAGE_MS + prng_draw(state, 0u, START_SPAN_MS - 1u);
 
     if (plan->engaged) {
         text_add(text, "  - {at_ms: %" PRIu32 ", operator: engage}\n", engage_ms);
@@ -189,7 +189,7 @@ static const char *choose_steps(const char *steps, uint64_t *state, const char *
     for (const char *at = steps; *at != '\0'; at++) {
         count += (*at == '/') ? 1u : 0u;
     }
-    for (uint32_t skip = chance_draw(state, 0u, count - 1u); skip > 0u; skip--) {
+    for (uint32_t skip = prng_draw(state, 0u, count - 1u); skip > 0u; skip--) {
         steps = strchr(steps, '/') + 1;
     }
     *end = steps + strcspn(steps, "/");
@@ -248,7 +248,7 @@ static void add_steps(campaign_plan_t *plan, uint64_t *state) {
 /** What is caused. */
 static void choose_row(campaign_plan_t *plan, uint64_t *state, const campaign_causes_t *causes) {
     const size_t count = causes->newly_engaged ? CAMPAIGN_ENGAGEMENT_COUNT : CAMPAIGN_ROW_COUNT;
-    const uint32_t any = chance_draw(state, 0u, (uint32_t)count - 1u);
+    const uint32_t any = prng_draw(state, 0u, (uint32_t)count - 1u);
 
     plan->row = causes->newly_engaged ? campaign_row(CAMPAIGN_ENGAGEMENTS[any].fault) : &CAMPAIGN_ROWS[any];
     plan->row = (causes->only != NULL) ? causes->only : plan->row;
@@ -259,7 +259,7 @@ void campaign_plan_make(campaign_plan_t *plan, uint64_t seed, uint64_t run, cons
     uint64_t state = seed;
     agv_config_t config;
 
-    state = chance_next(&state) ^ run;
+    state = prng_next(&state) ^ run;
     agv_config_defaults(&config);
     memset(plan, 0, sizeof *plan);
     plan->seed = seed;

@@ -31,18 +31,18 @@ void campaign_samples_free(campaign_samples_t *samples) {
     samples->samples = NULL;
 }
 
-static int32_t since_cause(const campaign_judge_t *judge, uint64_t t_us) {
-    const bool none = (t_us == CAMPAIGN_NEVER) || (t_us < judge->cause_us); /* it had opened by itself before */
-    return none ? CAMPAIGN_NO_TIME : (int32_t)((int64_t)t_us - (int64_t)judge->cause_us);
+static int32_t since_cause(const campaign_check_t *check, uint64_t t_us) {
+    const bool none = (t_us == CAMPAIGN_NEVER) || (t_us < check->cause_us); /* it had opened by itself before */
+    return none ? CAMPAIGN_NO_TIME : (int32_t)((int64_t)t_us - (int64_t)check->cause_us);
 }
 
-campaign_sample_t campaign_sample_of(const campaign_judge_t *judge) {
+campaign_sample_t campaign_sample_of(const campaign_check_t *check) {
     return (campaign_sample_t){
-        .row = (uint8_t)(judge->plan->row - CAMPAIGN_ROWS),
-        .broken = judge->broken != CAMPAIGN_SOUND,
-        .safe_us = since_cause(judge, judge->first_safe_us),
-        .confirmed_us = since_cause(judge, judge->confirmed_us),
-        .opened_us = since_cause(judge, judge->opened_us),
+        .row = (uint8_t)(check->plan->row - CAMPAIGN_ROWS),
+        .broken = check->broken != CAMPAIGN_SOUND,
+        .safe_us = since_cause(check, check->first_safe_us),
+        .confirmed_us = since_cause(check, check->confirmed_us),
+        .opened_us = since_cause(check, check->opened_us),
     };
 }
 
@@ -79,9 +79,9 @@ void campaign_write_part(output_t *output, const campaign_part_t *part) {
                          json_null() /* kept for results of older versions */));
 }
 
-void campaign_write_run(output_t *output, const campaign_judge_t *judge) {
-    const campaign_plan_t *plan = judge->plan;
-    const campaign_sample_t sample = campaign_sample_of(judge);
+void campaign_write_run(output_t *output, const campaign_check_t *check) {
+    const campaign_plan_t *plan = check->plan;
+    const campaign_sample_t sample = campaign_sample_of(check);
     json_t *object =
         json_pack("{s:I, s:o, s:s, s:s, s:I, s:b, s:s, s:s, s:b, s:i, s:i}", "run", (json_int_t)plan->run, "fault",
                   fault_or_null((int)plan->row->fault), "topology", plan->gateway ? "gateway" : "shared", "id_set",
@@ -93,9 +93,9 @@ void campaign_write_run(output_t *output, const campaign_judge_t *judge) {
     (void)json_object_set_new(object, "safe_us", time_or_null(sample.safe_us));
     (void)json_object_set_new(object, "confirmed_us", time_or_null(sample.confirmed_us));
     (void)json_object_set_new(object, "opened_us", time_or_null(sample.opened_us));
-    (void)json_object_set_new(object, "bus_off", json_boolean(judge->bus_off));
-    (void)json_object_set_new(object, "reason", fault_or_null(judge->reason));
+    (void)json_object_set_new(object, "bus_off", json_boolean(check->bus_off));
+    (void)json_object_set_new(object, "reason", fault_or_null(check->reason));
     (void)json_object_set_new(object, "broken",
-                              sample.broken ? json_string(campaign_break_name(judge->broken)) : json_null());
+                              sample.broken ? json_string(campaign_break_name(check->broken)) : json_null());
     write_line(output, object);
 }

@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "campaign/campaign_judge.h"
+#include "campaign/campaign_check.h"
 #include "io/output.h"
 
 /** Which runs: those whose number leaves the rest `shard` - 1 when divided by `shards`. */
@@ -44,12 +44,12 @@ typedef struct {
 bool campaign_samples_add(campaign_samples_t *samples, const campaign_sample_t *sample);
 void campaign_samples_free(campaign_samples_t *samples);
 
-/** What a judged run is in the table. */
-campaign_sample_t campaign_sample_of(const campaign_judge_t *judge);
+/** What a evaluated run is in the table. */
+campaign_sample_t campaign_sample_of(const campaign_check_t *check);
 
 /** The first line of a file of results, and that of a run. Failures are remembered by the output. */
 void campaign_write_part(output_t *output, const campaign_part_t *part);
-void campaign_write_run(output_t *output, const campaign_judge_t *judge);
+void campaign_write_run(output_t *output, const campaign_check_t *check);
 
 /** Print the table on standard output. @return false: no memory; was reported */
 bool campaign_print_table(const campaign_samples_t *samples);

@@ -3,7 +3,7 @@
  * What a campaign does to the vehicle and the supervisor to cause each fault, and how long the reaction may take: one row a
  * fault.
  *
- * The time that is judged here is coarse: the settings, and an allowance for the wire. The exact worst cases are derived by
+ * The time that is evaluated here is coarse: the settings, and an allowance for the wire. The exact worst cases are derived by
  * scripts/tools/reaction-time.py, from what `host_sim campaign --tables` prints of this table.
  */
 #ifndef HOST_SIM_CAMPAIGN_ROWS_H

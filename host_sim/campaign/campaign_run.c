@@ -18,18 +18,18 @@ enum { PATH_SIZE = 4096, FILES_MAX = 20, LOOK_FOR_SIGNALS_EVERY = 16 };
 typedef struct {
     const campaign_request_t *request;
     campaign_plan_t plan;
-    campaign_judge_t judge;
+    campaign_check_t check;
     text_t text;
     scenario_options_t options;
     scenario_t scenario;
-    scenario_world_t world;
+    scenario_testbed_t testbed;
     campaign_samples_t samples;
     output_t results;
     output_t file; /**< of a broken run */
     size_t broken;
 } campaign_t;
 
-/** Make the scenario of the planned run. What it expects is judged here. */
+/** Make the scenario of the planned run. What it expects is evaluated here. */
 static bool read_plan(campaign_t *campaign) {
     text_t *text = &campaign->text;
 
@@ -42,7 +42,7 @@ static bool read_plan(campaign_t *campaign) {
 }
 
 static bool after_tick(void *ctx, uint64_t t_ms) {
-    campaign_judge_tick(ctx, t_ms);
+    campaign_check_tick(ctx, t_ms);
     return true;
 }
 
@@ -50,14 +50,14 @@ static void play(campaign_t *campaign) {
     const scenario_play_t play = {.scenario = &campaign->scenario,
                                   .until_ms = campaign->scenario.duration_ms,
                                   .after_tick = after_tick,
-                                  .ctx = &campaign->judge};
+                                  .ctx = &campaign->check};
 
-    scenario_world_start(&campaign->world);
-    scenario_play(&campaign->world, &play);
-    campaign_judge_finish(&campaign->judge);
+    scenario_testbed_start(&campaign->testbed);
+    scenario_play(&campaign->testbed, &play);
+    campaign_check_finish(&campaign->check);
 }
 
-/** Play a run and judge it. @return false: reported */
+/** Play a run and evaluate it. @return false: reported */
 static bool run_one(campaign_t *campaign, uint64_t run) {
     const campaign_request_t *request = campaign->request;
 
@@ -65,12 +65,12 @@ static bool run_one(campaign_t *campaign, uint64_t run) {
     if (!read_plan(campaign)) {
         return false;
     }
-    if (!scenario_world_init(&campaign->world, &campaign->scenario)) {
+    if (!scenario_testbed_init(&campaign->testbed, &campaign->scenario)) {
         return report("run %" PRIu64 ": its testbed could not be built", run);
     }
-    campaign_judge_init(&campaign->judge, &campaign->plan, &campaign->world);
-    const scenario_watch_t watch = campaign_judge_watch(&campaign->judge);
-    scenario_world_watch(&campaign->world, &watch);
+    campaign_check_init(&campaign->check, &campaign->plan, &campaign->testbed);
+    const scenario_watch_t watch = campaign_check_watch(&campaign->check);
+    scenario_testbed_watch(&campaign->testbed, &watch);
     play(campaign);
     return true;
 }
@@ -86,21 +86,21 @@ static bool write_file(campaign_t *campaign) {
         return report("--broken: the name of the folder is too long");
     }
     text_clear(&campaign->text);
-    campaign_scenario_write(&campaign->text, &campaign->judge);
+    campaign_scenario_write(&campaign->text, &campaign->check);
     if (!output_put(&campaign->file, path, campaign->text.bytes, campaign->text.used)) {
         return false;
     }
     (void)fprintf(output_is_stdout(campaign->request->results) ? stderr : stdout,
                   "BROKEN  run %" PRIu64 ", %s: %s; %s\n", plan->run, agv_fault_name(plan->row->fault),
-                  campaign_break_name(campaign->judge.broken), path);
+                  campaign_break_name(campaign->check.broken), path);
     return true;
 }
 
 static bool keep(campaign_t *campaign) {
-    const campaign_sample_t sample = campaign_sample_of(&campaign->judge);
+    const campaign_sample_t sample = campaign_sample_of(&campaign->check);
 
     if (campaign->results.is_open) {
-        campaign_write_run(&campaign->results, &campaign->judge);
+        campaign_write_run(&campaign->results, &campaign->check);
     }
     if (sample.broken) {
         campaign->broken++;
@@ -170,9 +170,9 @@ static status_t show_one(campaign_t *campaign) {
         return STATUS_UNUSABLE;
     }
     text_clear(&campaign->text);
-    campaign_scenario_write(&campaign->text, &campaign->judge);
+    campaign_scenario_write(&campaign->text, &campaign->check);
     (void)fputs(campaign->text.bytes, stdout);
-    return (campaign->judge.broken == CAMPAIGN_SOUND) ? STATUS_OK : STATUS_UNMET;
+    return (campaign->check.broken == CAMPAIGN_SOUND) ? STATUS_OK : STATUS_UNMET;
 }
 
 status_t campaign_run(const campaign_request_t *request) {

@@ -1,6 +1,6 @@
 /**
  * @file campaign_run.h
- * A campaign: its runs, one after the other, each on a bus and with a vehicle of its own, judged.
+ * A campaign: its runs, one after the other, each on a bus and with a vehicle of its own, evaluated.
  */
 #ifndef HOST_SIM_CAMPAIGN_RUN_H
 #define HOST_SIM_CAMPAIGN_RUN_H

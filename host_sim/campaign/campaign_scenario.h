@@ -5,13 +5,13 @@
 #ifndef HOST_SIM_CAMPAIGN_SCENARIO_H
 #define HOST_SIM_CAMPAIGN_SCENARIO_H
 
-#include "campaign/campaign_judge.h"
+#include "campaign/campaign_check.h"
 #include "campaign/campaign_plan.h"
 
 /**
- * Write a run that was judged. What is expected are the invariants, so that a run that breaks one fails as a scenario; what
+ * Write a run that was evaluated. What is expected are the invariants, so that a run that breaks one fails as a scenario; what
  * they leave open (when the safe state is confirmed) is expected as it was seen.
  */
-void campaign_scenario_write(text_t *text, const campaign_judge_t *judge);
+void campaign_scenario_write(text_t *text, const campaign_check_t *check);
 
 #endif

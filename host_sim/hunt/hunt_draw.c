@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "agv/faults.h"
-#include "common/chance.h"
+#include "common/prng.h"
 #include "common/words.h"
 
 enum { BEGIN_FIRST_MS = 530, BEGIN_MIN_MS = 900, BEGIN_MAX_MS = 4000, BEGIN_SOON_MS = 2200 };
@@ -55,27 +55,27 @@ static uint32_t count_words(const char *words) {
 
 /** A number of frames: most patterns that matter are short. */
 static uint32_t draw_pattern(const hunt_attack_t *attack, unsigned i, uint64_t *state) {
-    if ((i == HUNT_PATTERN_BAD) && chance_toss(state, 3u)) {
+    if ((i == HUNT_PATTERN_BAD) && prng_toss(state, 3u)) {
         return 0u;
     }
-    return chance_toss(state, 2u) ? chance_draw(state, 1u, SHORT_PATTERN) : chance_draw(state, 1u, attack->highest[i]);
+    return prng_toss(state, 2u) ? prng_draw(state, 1u, SHORT_PATTERN) : prng_draw(state, 1u, attack->highest[i]);
 }
 
 uint32_t hunt_draw_parameter(const hunt_attack_t *attack, unsigned i, uint64_t *state) {
     if ((i == 0u) && ((attack->flags & HUNT_PATTERN) != 0u) && ((attack->flags & HUNT_MESSAGE) == 0u) &&
-        chance_toss(state, 3u)) {
+        prng_toss(state, 3u)) {
         return 0u; /* the first word is the worst */
     }
     if (attack->words[i] != NULL) {
-        return chance_draw(state, 0u, count_words(attack->words[i]) - 1u);
+        return prng_draw(state, 0u, count_words(attack->words[i]) - 1u);
     }
     if (((attack->flags & HUNT_PATTERN) != 0u) && (i >= HUNT_PATTERN_BAD)) {
         return draw_pattern(attack, i, state);
     }
-    if (chance_toss(state, 4u)) {
-        return chance_toss(state, 2u) ? attack->lowest[i] : attack->highest[i];
+    if (prng_toss(state, 4u)) {
+        return prng_toss(state, 2u) ? attack->lowest[i] : attack->highest[i];
     }
-    return chance_draw(state, attack->lowest[i], attack->highest[i]);
+    return prng_draw(state, attack->lowest[i], attack->highest[i]);
 }
 
 /** A reset comes some time after the other attacks have begun. */
@@ -86,18 +86,18 @@ static uint32_t draw_reset_ms(const hunt_program_t *program, uint64_t *state) {
         const uint32_t begin_ms = program->actions[i].begin_ms;
         latest_ms = (begin_ms > latest_ms) ? begin_ms : latest_ms;
     }
-    return latest_ms + chance_draw(state, RESET_MIN_MS, RESET_MAX_MS);
+    return latest_ms + prng_draw(state, RESET_MIN_MS, RESET_MAX_MS);
 }
 
 void hunt_draw_times(const hunt_program_t *program, hunt_action_t *action, uint64_t *state) {
     const bool is_reset = action->attack == attack_of_reset();
 
-    const uint32_t first_ms = chance_toss(state, 5u) ? BEGIN_FIRST_MS : BEGIN_MIN_MS;
+    const uint32_t first_ms = prng_toss(state, 5u) ? BEGIN_FIRST_MS : BEGIN_MIN_MS;
     const uint32_t last_ms = (program->action_count == 0u) ? BEGIN_SOON_MS : BEGIN_MAX_MS;
 
-    action->begin_ms = is_reset ? draw_reset_ms(program, state) : chance_draw(state, first_ms, last_ms);
-    action->end_ms = chance_toss(state, 2u) ? program->duration_ms
-                                            : action->begin_ms + chance_draw(state, LASTS_MIN_MS, LASTS_MAX_MS);
+    action->begin_ms = is_reset ? draw_reset_ms(program, state) : prng_draw(state, first_ms, last_ms);
+    action->end_ms =
+        prng_toss(state, 2u) ? program->duration_ms : action->begin_ms + prng_draw(state, LASTS_MIN_MS, LASTS_MAX_MS);
     action->end_ms = (action->end_ms < program->duration_ms) ? action->end_ms : program->duration_ms;
 }
 
@@ -114,8 +114,8 @@ static void draw_action(const hunt_program_t *program, hunt_action_t *action, ui
     for (unsigned i = 0u; i < HUNT_PARAMETERS; i++) {
         action->parameters[i] = hunt_draw_parameter(attack, i, state);
     }
-    if (((attack->flags & HUNT_MESSAGE) != 0u) && (program->action_count > 0u) && chance_toss(state, 2u)) {
-        const agv_message_t other = message_of(&program->actions[chance_draw(state, 0u, program->action_count - 1u)]);
+    if (((attack->flags & HUNT_MESSAGE) != 0u) && (program->action_count > 0u) && prng_toss(state, 2u)) {
+        const agv_message_t other = message_of(&program->actions[prng_draw(state, 0u, program->action_count - 1u)]);
         if ((uint32_t)other < count_words(attack->words[0])) {
             action->parameters[0] = (uint32_t)other;
         }
@@ -147,7 +147,7 @@ static void add_attack(hunt_program_t *program, size_t attack, uint64_t *state) 
         action->attack = (uint16_t)attack;
         draw_action(program, action, state);
         program->action_count++;
-        if (needs_long(action) && chance_toss(state, 2u)) {
+        if (needs_long(action) && prng_toss(state, 2u)) {
             lengthen(program, action->begin_ms + PATTERN_MS);
             action->end_ms = program->duration_ms;
         }
@@ -158,7 +158,7 @@ void hunt_add_action(hunt_program_t *program, uint64_t *state) {
     size_t attack = 0u;
 
     do {
-        attack = chance_draw(state, 0u, (uint32_t)HUNT_ATTACK_COUNT - 1u);
+        attack = prng_draw(state, 0u, (uint32_t)HUNT_ATTACK_COUNT - 1u);
     } while (((HUNT_ATTACKS[attack].flags & HUNT_GATEWAY) != 0u) && !program->gateway);
     add_attack(program, attack, state);
 }
@@ -184,8 +184,8 @@ static uint16_t draw_setting(uint64_t *state) {
                                         "confirm_timeout_ms",   "eps_mode_frames", "reengage_ms",
                                         "standstill_speed_mm_s"};
     const uint32_t count = sizeof names / sizeof names[0];
-    const uint16_t any = (uint16_t)chance_draw(state, 0u, AGV_SETTING_COUNT - 1u);
-    const char *name = names[chance_draw(state, 0u, count - 1u)];
+    const uint16_t any = (uint16_t)prng_draw(state, 0u, AGV_SETTING_COUNT - 1u);
+    const char *name = names[prng_draw(state, 0u, count - 1u)];
 
     for (uint16_t i = 0u; i < AGV_SETTING_COUNT; i++) {
         if (strcmp(agv_setting_info(i)->name, name) == 0) {
@@ -197,7 +197,7 @@ static uint16_t draw_setting(uint64_t *state) {
 
 void hunt_add_setting(hunt_program_t *program, uint64_t *state) {
     const uint16_t setting =
-        chance_toss(state, 3u) ? draw_setting(state) : (uint16_t)chance_draw(state, 0u, AGV_SETTING_COUNT - 1u);
+        prng_toss(state, 3u) ? draw_setting(state) : (uint16_t)prng_draw(state, 0u, AGV_SETTING_COUNT - 1u);
     const agv_setting_info_t *info = agv_setting_info(setting);
 
     if (is_fixed(info->name) || (program->setting_count == (uint32_t)HUNT_SETTINGS_MAX)) {
@@ -208,8 +208,8 @@ void hunt_add_setting(hunt_program_t *program, uint64_t *state) {
             return;
         }
     }
-    const uint32_t edge = chance_toss(state, 2u) ? info->lowest : info->highest;
-    const uint16_t value = (uint16_t)(chance_toss(state, 2u) ? edge : chance_draw(state, info->lowest, info->highest));
+    const uint32_t edge = prng_toss(state, 2u) ? info->lowest : info->highest;
+    const uint16_t value = (uint16_t)(prng_toss(state, 2u) ? edge : prng_draw(state, info->lowest, info->highest));
     program->settings[program->setting_count] = (hunt_setting_t){setting, value};
     program->setting_count++;
 }
@@ -224,14 +224,14 @@ static void add_attack_of_class(hunt_program_t *program, uint64_t *state) {
 }
 
 void hunt_add_class(hunt_program_t *program, uint64_t *state) {
-    const bool is_warning = !chance_toss(state, 4u);
+    const bool is_warning = !prng_toss(state, 4u);
     uint32_t fault = 0u;
 
     if (program->class_count > 0u) {
         return;
     }
     for (unsigned i = 0u; i < (unsigned)TRIES; i++) {
-        fault = chance_draw(state, 0u, AGV_FAULT_COUNT - 1u);
+        fault = prng_draw(state, 0u, AGV_FAULT_COUNT - 1u);
         const bool warns = agv_fault_default_class(fault) == AGV_CLASS_WARN;
         if (((agv_fault_flags(fault) & AGV_FAULT_FLAG_FIXED) == 0u) && (warns == is_warning)) {
             program->classes[0] = (uint8_t)fault;

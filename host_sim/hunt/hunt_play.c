@@ -32,12 +32,12 @@ static void note_feature(hunt_play_t *play, uint32_t kind, uint32_t a, uint32_t 
 static void on_event(void *ctx, const session_event_t *event) {
     hunt_play_t *play = ctx;
     const agv_event_t *recorded = &event->recorded;
-    scenario_world_view_t view;
+    scenario_testbed_view_t view;
 
     if (event->is_led) {
         return;
     }
-    scenario_world_view(&play->world, &view);
+    scenario_testbed_view(&play->testbed, &view);
     const uint32_t closed = view.output_closed ? 1u : 0u;
     if (recorded->kind == (uint8_t)AGV_EVENT_STATE) {
         note_feature(play, OF_STATE, recorded->a, recorded->b, recorded->c);
@@ -70,9 +70,9 @@ static uint32_t last_step_ms(const scenario_t *scenario) {
 
 /** Nothing can come any more: nobody does anything new, and the output is open or the vehicle stands in the safe state. */
 static bool is_over(hunt_play_t *play, uint32_t t_ms) {
-    scenario_world_view_t view;
+    scenario_testbed_view_t view;
 
-    scenario_world_view(&play->world, &view);
+    scenario_testbed_view(&play->testbed, &view);
     const bool stands = hazard_is_tripped(&play->hazard) && (view.vehicle.speed_mm_s == 0);
     const bool open = !view.output_closed;
 
@@ -104,8 +104,8 @@ static void run(hunt_play_t *play) {
 
     play->last_step_ms = last_step_ms(&play->scenario);
     play->quiet_ms = 0u;
-    scenario_world_start(&play->world);
-    scenario_play(&play->world, &run);
+    scenario_testbed_start(&play->testbed);
+    scenario_play(&play->testbed, &run);
 }
 
 bool hunt_play(hunt_play_t *play, const hunt_program_t *program) {
@@ -121,13 +121,13 @@ bool hunt_play(hunt_play_t *play, const hunt_program_t *program) {
     if (!scenario_read_text(&play->scenario, "a run of the hunt", play->text.bytes, &play->options)) {
         return false;
     }
-    if (!scenario_world_init(&play->world, &play->scenario)) {
+    if (!scenario_testbed_init(&play->testbed, &play->scenario)) {
         return report("a run of the hunt could not be built");
     }
-    hazard_init(&play->hazard, &play->scenario, &play->world);
+    hazard_init(&play->hazard, &play->scenario, &play->testbed);
     const scenario_watch_t watch = hazard_watch(&play->hazard);
-    scenario_world_watch(&play->world, &watch);
-    scenario_world_watch(&play->world, &guide);
+    scenario_testbed_watch(&play->testbed, &watch);
+    scenario_testbed_watch(&play->testbed, &guide);
     run(play);
     note_closeness(play);
     return true;

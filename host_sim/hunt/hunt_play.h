@@ -1,6 +1,6 @@
 /**
  * @file hunt_play.h
- * Plays a program of a hunt on the simulated bus, has it judged, and notes what was seen.
+ * Plays a program of a hunt on the simulated bus, has it evaluated, and notes what was seen.
  */
 #ifndef HOST_SIM_HUNT_PLAY_H
 #define HOST_SIM_HUNT_PLAY_H
@@ -15,7 +15,7 @@ typedef struct {
     text_t text; /**< the scenario as it was played */
     scenario_options_t options;
     scenario_t scenario;
-    scenario_world_t world;
+    scenario_testbed_t testbed;
     hazard_t hazard;
     uint8_t features[HUNT_FEATURE_BYTES]; /**< one bit for each thing that was seen */
     uint32_t played_ms;

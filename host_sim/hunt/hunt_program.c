@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "agv/faults.h"
-#include "common/chance.h"
+#include "common/prng.h"
 #include "hunt/hunt_draw.h"
 
 enum { SHORT_MIN_MS = 5000, SHORT_MAX_MS = 8000, LONG_MAX_MS = 13000, RATE_DDEG_S = 3000, SLOW_DDEG_S = 300 };
@@ -39,31 +39,31 @@ static void make_legal(hunt_program_t *program) {
 }
 
 static void draw_vehicle(hunt_program_t *program, uint64_t *state) {
-    program->gateway = chance_toss(state, 2u);
-    program->park_guard = !chance_toss(state, 3u);
-    program->rolls = chance_toss(state, 6u);
-    program->obeys_short = chance_toss(state, 4u);
-    program->tick_phase_us = chance_toss(state, 8u) ? (uint16_t)chance_draw(state, 1u, TICK_SPAN_US) : 0u;
-    program->steering_rate_ddeg_s = chance_toss(state, 6u) ? SLOW_DDEG_S : RATE_DDEG_S;
-    program->throttle_pct = chance_draw(state, THROTTLE_MIN_PCT, THROTTLE_MAX_PCT);
-    program->steer_deg = (int32_t)chance_draw(state, 0u, 2u * STEER_MAX_DEG) - STEER_MAX_DEG;
-    program->duration_ms = chance_toss(state, 3u) ? chance_draw(state, SHORT_MAX_MS, LONG_MAX_MS)
-                                                  : chance_draw(state, SHORT_MIN_MS, SHORT_MAX_MS);
+    program->gateway = prng_toss(state, 2u);
+    program->park_guard = !prng_toss(state, 3u);
+    program->rolls = prng_toss(state, 6u);
+    program->obeys_short = prng_toss(state, 4u);
+    program->tick_phase_us = prng_toss(state, 8u) ? (uint16_t)prng_draw(state, 1u, TICK_SPAN_US) : 0u;
+    program->steering_rate_ddeg_s = prng_toss(state, 6u) ? SLOW_DDEG_S : RATE_DDEG_S;
+    program->throttle_pct = prng_draw(state, THROTTLE_MIN_PCT, THROTTLE_MAX_PCT);
+    program->steer_deg = (int32_t)prng_draw(state, 0u, 2u * STEER_MAX_DEG) - STEER_MAX_DEG;
+    program->duration_ms = prng_toss(state, 3u) ? prng_draw(state, SHORT_MAX_MS, LONG_MAX_MS)
+                                                : prng_draw(state, SHORT_MIN_MS, SHORT_MAX_MS);
 }
 
 void hunt_program_make(hunt_program_t *program, uint64_t *state) {
     memset(program, 0, sizeof *program);
     draw_vehicle(program, state);
-    for (uint32_t left = chance_toss(state, 2u) ? chance_draw(state, 1u, 3u) : 0u; left > 0u; left--) {
+    for (uint32_t left = prng_toss(state, 2u) ? prng_draw(state, 1u, 3u) : 0u; left > 0u; left--) {
         hunt_add_setting(program, state);
     }
-    if (chance_toss(state, 4u)) {
+    if (prng_toss(state, 4u)) {
         hunt_add_class(program, state);
     }
-    for (uint32_t left = chance_draw(state, 1u, 4u); left > 0u; left--) {
+    for (uint32_t left = prng_draw(state, 1u, 4u); left > 0u; left--) {
         hunt_add_action(program, state);
     }
-    if (chance_toss(state, 3u)) {
+    if (prng_toss(state, 3u)) {
         hunt_add_reset(program, state);
     }
     make_legal(program);
@@ -71,7 +71,7 @@ void hunt_program_make(hunt_program_t *program, uint64_t *state) {
 
 static void remove_action(hunt_program_t *program, uint64_t *state) {
     if (program->action_count > 1u) {
-        const uint32_t i = chance_draw(state, 0u, program->action_count - 1u);
+        const uint32_t i = prng_draw(state, 0u, program->action_count - 1u);
         program->action_count--;
         program->actions[i] = program->actions[program->action_count];
     }
@@ -79,8 +79,8 @@ static void remove_action(hunt_program_t *program, uint64_t *state) {
 
 /** Another parameter, or other times. */
 static void change_action(hunt_program_t *program, uint64_t *state) {
-    hunt_action_t *action = &program->actions[chance_draw(state, 0u, program->action_count - 1u)];
-    const uint32_t i = chance_draw(state, 0u, HUNT_PARAMETERS);
+    hunt_action_t *action = &program->actions[prng_draw(state, 0u, program->action_count - 1u)];
+    const uint32_t i = prng_draw(state, 0u, HUNT_PARAMETERS);
 
     if (i < HUNT_PARAMETERS) {
         action->parameters[i] = hunt_draw_parameter(&HUNT_ATTACKS[action->attack], i, state);
@@ -100,9 +100,9 @@ static void take_action(hunt_program_t *program, const hunt_action_t *given) {
 }
 
 static void change_once(hunt_program_t *program, const hunt_program_t *other, uint64_t *state) {
-    const hunt_action_t *given = &other->actions[chance_draw(state, 0u, other->action_count - 1u)];
+    const hunt_action_t *given = &other->actions[prng_draw(state, 0u, other->action_count - 1u)];
 
-    switch (chance_draw(state, 0u, 8u)) {
+    switch (prng_draw(state, 0u, 8u)) {
     case 0u:
     case 1u:
         hunt_add_action(program, state);
@@ -117,7 +117,7 @@ static void change_once(hunt_program_t *program, const hunt_program_t *other, ui
         hunt_add_setting(program, state);
         break;
     case 5u:
-        if (chance_toss(state, 2u)) {
+        if (prng_toss(state, 2u)) {
             hunt_add_class(program, state);
         } else {
             hunt_add_reset(program, state);
@@ -130,7 +130,7 @@ static void change_once(hunt_program_t *program, const hunt_program_t *other, ui
 }
 
 void hunt_program_mutate(hunt_program_t *program, const hunt_program_t *other, uint64_t *state) {
-    for (uint32_t left = chance_draw(state, 1u, 3u); left > 0u; left--) {
+    for (uint32_t left = prng_draw(state, 1u, 3u); left > 0u; left--) {
         change_once(program, other, state);
     }
     for (uint32_t i = 0u; i < program->action_count; i++) {

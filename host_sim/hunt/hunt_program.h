@@ -47,7 +47,7 @@ typedef struct {
     hunt_action_t actions[HUNT_ACTIONS_MAX];
 } hunt_program_t;
 
-/** Draw one. @param state of chance.h */
+/** Draw one. @param state of prng.h */
 void hunt_program_make(hunt_program_t *program, uint64_t *state);
 
 /** Change one a little. @param other gives an action now and then */

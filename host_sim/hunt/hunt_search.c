@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/chance.h"
 #include "common/interrupt.h"
+#include "common/prng.h"
 #include "common/units.h"
 #include "hunt/hunt.h"
 #include "hunt/hunt_state.h"
@@ -56,12 +56,12 @@ static bool is_new(hunt_t *hunt) {
 }
 
 static void draw_program(hunt_t *hunt, hunt_program_t *program, uint64_t *random) {
-    if ((hunt->corpus_count == 0u) || (chance_draw(random, 1u, PERCENT) <= (uint32_t)RANDOM_PERCENT)) {
+    if ((hunt->corpus_count == 0u) || (prng_draw(random, 1u, PERCENT) <= (uint32_t)RANDOM_PERCENT)) {
         hunt_program_make(program, random);
         return;
     }
-    *program = hunt->corpus[chance_draw(random, 0u, hunt->corpus_count - 1u)];
-    hunt_program_mutate(program, &hunt->corpus[chance_draw(random, 0u, hunt->corpus_count - 1u)], random);
+    *program = hunt->corpus[prng_draw(random, 0u, hunt->corpus_count - 1u)];
+    hunt_program_mutate(program, &hunt->corpus[prng_draw(random, 0u, hunt->corpus_count - 1u)], random);
 }
 
 static void learn(hunt_t *hunt, const hunt_program_t *program, uint64_t *random) {
@@ -72,7 +72,7 @@ static void learn(hunt_t *hunt, const hunt_program_t *program, uint64_t *random)
         hunt->corpus[hunt->corpus_count] = *program;
         hunt->corpus_count++;
     } else {
-        hunt->corpus[chance_draw(random, 0u, CORPUS_MAX - 1u)] = *program;
+        hunt->corpus[prng_draw(random, 0u, CORPUS_MAX - 1u)] = *program;
     }
 }
 
@@ -115,7 +115,7 @@ static went_t run_piece(hunt_t *hunt, uint64_t piece) {
     uint64_t random = hunt->request->seed;
     const uint64_t first = piece * HUNT_PIECE_RUNS;
 
-    random = chance_next(&random) ^ piece;
+    random = prng_next(&random) ^ piece;
     memset(hunt->seen, 0, sizeof hunt->seen);
     hunt->corpus_count = 0u;
     for (uint64_t i = 0u; (i < HUNT_PIECE_RUNS) && (first + i < hunt->request->runs); i++) {

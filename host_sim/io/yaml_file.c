@@ -49,7 +49,7 @@ static void report_problem(const char *path, const yaml_parser_t *parser, const 
 }
 
 /** Follow an event. @return what is wrong with it, or NULL */
-static const char *judge_event(const yaml_event_t *event, size_t *depth, size_t *documents) {
+static const char *check_event(const yaml_event_t *event, size_t *depth, size_t *documents) {
     switch (event->type) {
     case YAML_DOCUMENT_START_EVENT:
         (*documents)++;
@@ -87,7 +87,7 @@ static bool check(const char *path, const unsigned char *bytes, size_t size) {
             report_problem(path, &parser, bytes, size);
             break;
         }
-        const char *wrong = judge_event(&event, &depth, &documents);
+        const char *wrong = check_event(&event, &depth, &documents);
         if (wrong != NULL) {
             good = report_at(path, event.start_mark.line + 1u, "%s", wrong);
         }

@@ -9,9 +9,9 @@
 #include "hal_linux/linux_clock.h"
 #include "hal_linux/linux_loop.h"
 #include "io/candump_line.h"
+#include "live/external.h"
 #include "live/live_files.h"
 #include "live/node.h"
-#include "live/outsider.h"
 #include "live/vehicle_bus.h"
 #include "scenario/scenario_player.h"
 
@@ -29,10 +29,10 @@ typedef struct {
     linux_loop_t loop;
     bool loop_is_open;
     node_t *node;         /* NULL: without power, or another program */
-    outsider_t *outsider; /* NULL: it is none */
+    external_t *external; /* NULL: it is none */
     live_files_t files;
-    int64_t node_began_us;  /* when its own time began, in that of the run */
-    uint64_t deaf_until_ms; /* it hangs, or has no power, until then */
+    int64_t node_began_us;    /* when its own time began, in that of the run */
+    uint64_t halted_until_ms; /* it hangs, or has no power, until then */
     bool hangs;
     scenario_player_t player;
     uint64_t next_view_ms;                  /* the first one that nobody has looked at */
@@ -71,8 +71,8 @@ static void on_vehicle_sent(void *ctx, vehicle_node_t from, hal_can_side_t side,
                             uint64_t at_us) {
     const run_t *run = ctx;
     scenario_check_frame(run->check, at_us, side, (int)from, frame);
-    if (run->outsider != NULL) {
-        outsider_vehicle_sent(run->outsider, side, frame);
+    if (run->external != NULL) {
+        external_vehicle_sent(run->external, side, frame);
     }
 }
 
@@ -81,8 +81,8 @@ static const char *interface_of(const run_t *run, hal_can_side_t side) {
     return ((side == HAL_CAN_VEHICLE) || run->scenario->vehicle.gateway) ? run->bus->interfaces[side] : NULL;
 }
 
-static bool open_outsider(run_t *run) {
-    const outsider_config_t config = {
+static bool open_external(run_t *run) {
+    const external_config_t config = {
         .command = run->bus->command,
         .interfaces =
             {[HAL_CAN_VEHICLE] = interface_of(run, HAL_CAN_VEHICLE), [HAL_CAN_AI] = interface_of(run, HAL_CAN_AI)},
@@ -91,8 +91,8 @@ static bool open_outsider(run_t *run) {
         .on_sent = on_sent,
         .ctx = run,
     };
-    run->outsider = outsider_open(&config);
-    return (run->outsider != NULL) && outsider_start(run->outsider) && outsider_wait(run->outsider);
+    run->external = external_open(&config);
+    return (run->external != NULL) && external_start(run->external) && external_wait(run->external);
 }
 
 static bool open_node(run_t *run) {
@@ -146,7 +146,7 @@ static bool open_vehicle(run_t *run) {
 }
 
 /** Open a socket that only sends. */
-static bool open_mouth(linux_can_t *can, const char *interface) {
+static bool open_tx_socket(linux_can_t *can, const char *interface) {
     static const uint16_t nothing[1] = {0u};
     const linux_can_options_t options = {.ids = nothing};
     char error[LINUX_CAN_ERROR_SIZE];
@@ -156,7 +156,7 @@ static bool open_mouth(linux_can_t *can, const char *interface) {
 static bool open_controllers(run_t *run) {
     for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
         const char *interface = interface_of(run, (hal_can_side_t)side);
-        if ((interface != NULL) && !open_mouth(&run->controllers[side], interface)) {
+        if ((interface != NULL) && !open_tx_socket(&run->controllers[side], interface)) {
             return false;
         }
     }
@@ -180,7 +180,7 @@ static bool switch_on(run_t *run) {
 /** Switch the supervisor off, and at once or later on again. */
 static bool restart(run_t *run, uint64_t t_ms, uint32_t off_ms) {
     close_node(run);
-    run->deaf_until_ms = t_ms + off_ms;
+    run->halted_until_ms = t_ms + off_ms;
     return (off_ms > 0u) || switch_on(run);
 }
 
@@ -189,7 +189,7 @@ static bool do_to_supervisor(run_t *run, uint64_t t_ms, const scenario_action_t 
     case SCENARIO_RESTART:
         return restart(run, t_ms, action->ms);
     case SCENARIO_HANG:
-        run->deaf_until_ms = t_ms + action->ms;
+        run->halted_until_ms = t_ms + action->ms;
         run->hangs = true;
         live_files_leave(&run->files, &run->loop);
         return true;
@@ -234,10 +234,10 @@ static bool wake(run_t *run) {
 }
 
 static bool serve_supervisor(run_t *run, uint64_t t_ms, bool is_tick) {
-    if (run->outsider != NULL) {
-        return !is_tick || outsider_listen(run->outsider);
+    if (run->external != NULL) {
+        return !is_tick || external_listen(run->external);
     }
-    if (t_ms < run->deaf_until_ms) {
+    if (t_ms < run->halted_until_ms) {
         return true;
     }
     if ((run->hangs || (run->node == NULL)) && !wake(run)) {
@@ -251,13 +251,13 @@ static bool serve_supervisor(run_t *run, uint64_t t_ms, bool is_tick) {
 }
 
 static bool is_output_closed(const run_t *run) {
-    if (run->outsider != NULL) {
-        return outsider_output_closed(run->outsider);
+    if (run->external != NULL) {
+        return external_output_closed(run->external);
     }
     return (run->node != NULL) && agv_supervisor_output_closed(&node_session(run->node)->supervisor);
 }
 
-static void judge(run_t *run, uint64_t t_ms) {
+static void check(run_t *run, uint64_t t_ms) {
     scenario_check_output(run->check, (uint32_t)t_ms, is_output_closed(run));
     for (; run->next_view_ms <= t_ms; run->next_view_ms++) {
         if (scenario_check_wants_vehicle(run->check, (uint32_t)run->next_view_ms)) {
@@ -283,7 +283,7 @@ static bool advance(run_t *run) {
     if (!good || !serve_supervisor(run, t_ms, is_tick)) {
         return false;
     }
-    judge(run, t_ms);
+    check(run, t_ms);
     return true;
 }
 
@@ -294,7 +294,7 @@ static bool prepare(run_t *run) {
     }
     linux_clock_start(&run->clock);
     const bool is_outside = run->bus->command != NULL;
-    if (!open_controllers(run) || !open_vehicle(run) || !(is_outside ? open_outsider(run) : open_node(run))) {
+    if (!open_controllers(run) || !open_vehicle(run) || !(is_outside ? open_external(run) : open_node(run))) {
         return false;
     }
     linux_clock_start(&run->clock); /* opening took its time: now it begins */
@@ -309,7 +309,7 @@ static bool prepare(run_t *run) {
 static void close_run(run_t *run) {
     node_finish(run->node);
     close_node(run);
-    outsider_close(run->outsider);
+    external_close(run->external);
     if (run->vehicle_is_open) {
         vehicle_bus_close(&run->vehicle);
     }
@@ -324,7 +324,7 @@ static void close_run(run_t *run) {
 bool scenario_bus_check(const scenario_bus_t *bus) {
     for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
         linux_can_t can = {.fd = -1};
-        if ((bus->interfaces[side] != NULL) && !open_mouth(&can, bus->interfaces[side])) {
+        if ((bus->interfaces[side] != NULL) && !open_tx_socket(&can, bus->interfaces[side])) {
             return false;
         }
         linux_can_close(&can);

@@ -1,7 +1,7 @@
 /**
  * @file scenario_bus.h
  * A scenario file played on real CAN interfaces, in real time: the supervisor as a node (node.h), the vehicle as others
- * (vehicle_bus.h), judged as on the simulated bus.
+ * (vehicle_bus.h), evaluated as on the simulated bus.
  *
  * A computer is no clock: every time that the scenario expects is widened by a tolerance, and every time in which
  * something must hold throughout, or must not be, is narrowed by it. Counts stay as they are.
@@ -24,10 +24,10 @@ typedef struct {
     const char *interfaces[HAL_CAN_SIDES]; /**< the AI side: NULL, there is one interface only */
     uint32_t tolerance_ms;
     const char
-        *command; /**< starts a supervisor that is another program (outsider.h); NULL: it is one of this program */
+        *command; /**< starts a supervisor that is another program (external.h); NULL: it is one of this program */
 } scenario_bus_t;
 
-/** Told of the supervisor's events and frames, beside the judgement. */
+/** Told of the supervisor's events and frames, beside the evaluation. */
 typedef struct {
     session_observer_fn *on_event; /**< NULL: nobody */
     void *event_ctx;

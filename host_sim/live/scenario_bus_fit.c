@@ -174,7 +174,7 @@ static void widen(scenario_window_t *window, uint32_t by_ms) {
     window->to = (window->to < UINT32_MAX - by_ms) ? window->to + by_ms : UINT32_MAX;
 }
 
-/** Something holds all the time in it, from a change to a change; one that is shorter than both edges is not judged. */
+/** Something holds all the time in it, from a change to a change; one that is shorter than both edges is not evaluated. */
 static void narrow(scenario_window_t *window, uint32_t by_ms, uint32_t end_ms) {
     window->from += (window->from > 0u) ? by_ms : 0u;
     window->to -= ((window->to < end_ms) && (window->to > by_ms)) ? by_ms : 0u;

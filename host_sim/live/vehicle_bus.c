@@ -13,7 +13,7 @@ static hal_can_side_t side_of_file(const vehicle_bus_t *bus, unsigned file) {
 }
 
 static linux_can_t *can_of_file(vehicle_bus_t *bus, unsigned file) {
-    return (file < (unsigned)VEHICLE_NODES) ? &bus->nodes[file] : &bus->strangers[file - (unsigned)VEHICLE_NODES];
+    return (file < (unsigned)VEHICLE_NODES) ? &bus->nodes[file] : &bus->rogues[file - (unsigned)VEHICLE_NODES];
 }
 
 /** The time by the clock; not before what the vehicle has seen. */
@@ -30,7 +30,7 @@ uint64_t vehicle_bus_now_ms(vehicle_bus_t *bus) {
 
 static void send_frame(void *ctx, vehicle_node_t from, hal_can_side_t side, const hal_can_frame_t *frame) {
     vehicle_bus_t *bus = ctx;
-    linux_can_t *can = (from == VEHICLE_STRANGER) ? &bus->strangers[side] : &bus->nodes[from];
+    linux_can_t *can = (from == VEHICLE_ROGUE) ? &bus->rogues[side] : &bus->nodes[from];
 
     if (linux_can_write(can, frame) == LINUX_CAN_TAKEN) {
         bus->sent++;
@@ -46,10 +46,10 @@ static bool open_file(vehicle_bus_t *bus, unsigned file) {
     char error[LINUX_CAN_ERROR_SIZE];
 
     if ((file >= (unsigned)VEHICLE_NODES) && !options.own_frames) {
-        options.ids = nothing; /* a stranger does not listen */
+        options.ids = nothing; /* a rogue node does not listen */
     }
     if ((file >= (unsigned)VEHICLE_NODES) && (interface == NULL)) {
-        return true; /* no AI side, no stranger there */
+        return true; /* no AI side, no rogue node there */
     }
     return linux_can_open(can_of_file(bus, file), interface, &options, error) || report("%s", error);
 }
@@ -71,7 +71,7 @@ bool vehicle_bus_open(vehicle_bus_t *bus, const vehicle_bus_config_t *config) {
 }
 
 int vehicle_bus_fd(const vehicle_bus_t *bus, unsigned file) {
-    return (file < (unsigned)VEHICLE_NODES) ? bus->nodes[file].fd : bus->strangers[file - (unsigned)VEHICLE_NODES].fd;
+    return (file < (unsigned)VEHICLE_NODES) ? bus->nodes[file].fd : bus->rogues[file - (unsigned)VEHICLE_NODES].fd;
 }
 
 /** A frame for a node; or one that has left it. */
@@ -82,7 +82,7 @@ static void take(vehicle_bus_t *bus, unsigned file, const linux_can_record_t *re
     if (!record->own) {
         vehicle_receive(&bus->vehicle, (vehicle_node_t)file, come_to(bus, at_us), &record->frame);
     } else if (config->on_sent != NULL) {
-        config->on_sent(config->ctx, (vehicle_node_t)((file < (unsigned)VEHICLE_NODES) ? file : VEHICLE_STRANGER),
+        config->on_sent(config->ctx, (vehicle_node_t)((file < (unsigned)VEHICLE_NODES) ? file : VEHICLE_ROGUE),
                         side_of_file(bus, file), &record->frame, at_us);
     }
 }
@@ -115,7 +115,7 @@ static bool receive_file(vehicle_bus_t *bus, unsigned file) {
 
 bool vehicle_bus_receive(vehicle_bus_t *bus) {
     for (unsigned side = 0u; side < (unsigned)HAL_CAN_SIDES; side++) {
-        bus->is_down[side] = bus->is_down[side] && !linux_can_is_up(&bus->strangers[side]);
+        bus->is_down[side] = bus->is_down[side] && !linux_can_is_up(&bus->rogues[side]);
     }
     for (unsigned file = 0u; file < VEHICLE_BUS_FILES; file++) {
         if (!receive_file(bus, file)) {

@@ -1,7 +1,7 @@
 /**
  * @file vehicle_bus.h
  * A simulated vehicle (vehicle.h) on SocketCAN: each of its nodes has a socket of its own, so it hears the others and not
- * itself. Frames of a stranger go out through a fourth and fifth socket, one a side.
+ * itself. Frames of a rogue node go out through a fourth and fifth socket, one a side.
  */
 #ifndef HOST_SIM_VEHICLE_BUS_H
 #define HOST_SIM_VEHICLE_BUS_H
@@ -13,7 +13,7 @@
 #include "hal_linux/linux_clock.h"
 #include "vehicle/vehicle.h"
 
-/** A frame of the vehicle has left. @param from the node, or VEHICLE_STRANGER @param at_us by the kernel's stamp */
+/** A frame of the vehicle has left. @param from the node, or VEHICLE_ROGUE @param at_us by the kernel's stamp */
 typedef void vehicle_bus_sent_fn(void *ctx, vehicle_node_t from, hal_can_side_t side, const hal_can_frame_t *frame,
                                  uint64_t at_us);
 
@@ -31,7 +31,7 @@ typedef struct {
     vehicle_t vehicle;
     vehicle_bus_config_t config;
     linux_can_t nodes[VEHICLE_NODES];
-    linux_can_t strangers[HAL_CAN_SIDES];
+    linux_can_t rogues[HAL_CAN_SIDES];
     uint64_t now_ms;             /**< how far the vehicle has come: its time never goes back */
     uint64_t sent;               /**< frames that the kernel took */
     uint64_t unsent;             /**< frames that it did not: they are lost, as on a bus without acknowledge */

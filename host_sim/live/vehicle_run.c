@@ -44,7 +44,7 @@ static void act(run_t *run, const vehicle_words_t *words) {
     if (!done) {
         vehicle_show_clear(&run->show, false);
         (void)report("%s %s: not done; %u rogue nodes are already sending", words->step.actor, words->what,
-                     VEHICLE_STRANGERS_MAX);
+                     VEHICLE_ROGUES_MAX);
     }
 }
 

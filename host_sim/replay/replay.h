@@ -23,7 +23,7 @@
 typedef struct {
     const char *log;          /**< "-" = standard input */
     const char *out;          /**< log of what was sent; NULL: none */
-    const char *events;       /**< NULL: none, a summary for people goes to standard output */
+    const char *events;       /**< NULL: none, a summary for the reader goes to standard output */
     const char *store;        /**< what outlives a reset; NULL: nothing does */
     const char *ai_interface; /**< gateway: the AI side; NULL on the shared bus */
     uint32_t start_ms;        /**< what the supervisor's clock reads at the start */

@@ -3,7 +3,7 @@
  * A scenario: how a run begins, what happens in it, and what is expected of the supervisor. docs/scenarios.md is the
  * manual of the file format.
  *
- * This is what was read; it knows no bus and no time. scenario_check.h judges a run by it, scenario_world.h runs it on
+ * This is what was read; it knows no bus and no time. scenario_check.h evaluates a run by it, scenario_testbed.h runs it on
  * the simulated bus.
  */
 #ifndef HOST_SIM_SCENARIO_H
@@ -101,7 +101,7 @@ typedef struct {
     bool is_first; /**< the first frame with this identifier at or after first_since_ms is the one that must match */
     uint32_t first_since_ms;
     scenario_window_t count;
-    uint32_t every_ms; /**< 0: not judged */
+    uint32_t every_ms; /**< 0: not evaluated */
     uint32_t jitter_ms;
 } scenario_frame_t;
 
@@ -136,7 +136,7 @@ typedef struct {
     scenario_window_t at_ms;
 } scenario_reset_t;
 
-/** What the vehicle does at a moment; members are judged when their has_ is set. */
+/** What the vehicle does at a moment; members are evaluated when their has_ is set. */
 typedef struct {
     size_t line;
     uint32_t at_ms;
@@ -178,8 +178,8 @@ typedef struct {
     SCENARIO_LIST(scenario_vehicle_t) vehicle;
     SCENARIO_LIST(scenario_counter_t) counters;
     bool no_other_faults;
-    bool any_states;   /**< changes of state and of the safety output and resets are not listed, and not judged */
-    size_t no_hazards; /**< line on which `hazards: never` stands; 0: hazards are not judged */
+    bool any_states;   /**< changes of state and of the safety output and resets are not listed, and not evaluated */
+    size_t no_hazards; /**< line on which `hazards: never` stands; 0: hazards are not evaluated */
 } scenario_expect_t;
 
 typedef struct {

@@ -220,7 +220,7 @@ void scenario_check_event(scenario_check_t *check, const session_event_t *event)
     case AGV_EVENT_STARTUP:
         check_startup(check, t_ms, recorded);
         break;
-    case AGV_EVENT_OUTPUT: /* judged at the pin itself */
+    case AGV_EVENT_OUTPUT: /* evaluated at the pin itself */
     default:
         break;
     }

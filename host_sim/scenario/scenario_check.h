@@ -36,7 +36,7 @@ typedef struct {
     uint32_t seen_ms;
 } scenario_fault_seen_t;
 
-/** A judgement in the making. Read `failures`; all else is for the functions. */
+/** A evaluation in the making. Read `failures`; all else is for the functions. */
 typedef struct {
     char failures[SCENARIO_FAILURES_MAX][SCENARIO_FAILURE_SIZE]; /**< "LINE: what was expected, what was seen" */
     size_t failure_count;                                        /**< may be larger than SCENARIO_FAILURES_MAX */

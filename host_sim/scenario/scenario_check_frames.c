@@ -64,7 +64,7 @@ static const char *expected_text(const scenario_frame_t *expected, uint32_t id, 
 }
 
 /** The first frame with this identifier since first_since_ms is the one that has to match. */
-static void judge_first(scenario_check_t *check, size_t index, uint32_t t_ms, const hal_can_frame_t *frame) {
+static void check_first(scenario_check_t *check, size_t index, uint32_t t_ms, const hal_can_frame_t *frame) {
     const scenario_frame_t *expected = &check->scenario->expect.frames.items[index];
     scenario_frame_seen_t *seen = &check->frames[index];
     char window[40];
@@ -89,12 +89,12 @@ static bool gap_is_good(const scenario_frame_t *expected, uint32_t gap_ms) {
                                           (gap_ms <= expected->every_ms + expected->jitter_ms));
 }
 
-static void judge_frame(scenario_check_t *check, size_t index, uint32_t t_ms, const hal_can_frame_t *frame) {
+static void check_frame(scenario_check_t *check, size_t index, uint32_t t_ms, const hal_can_frame_t *frame) {
     const scenario_frame_t *expected = &check->scenario->expect.frames.items[index];
     scenario_frame_seen_t *seen = &check->frames[index];
     char wanted[FRAME_TEXT_SIZE];
 
-    judge_first(check, index, t_ms, frame);
+    check_first(check, index, t_ms, frame);
     if (!bytes_match(expected, frame)) {
         return;
     }
@@ -120,7 +120,7 @@ static void judge_frame(scenario_check_t *check, size_t index, uint32_t t_ms, co
     seen->last_ms = t_ms;
 }
 
-static void judge_never(scenario_check_t *check, size_t index, uint32_t t_ms, const hal_can_frame_t *frame) {
+static void check_never(scenario_check_t *check, size_t index, uint32_t t_ms, const hal_can_frame_t *frame) {
     const scenario_frame_t *never = &check->scenario->expect.never.items[index];
     char window[40];
     char got[FRAME_TEXT_SIZE];
@@ -146,12 +146,12 @@ void scenario_check_frame(scenario_check_t *check, uint64_t t_us, hal_can_side_t
     }
     for (size_t i = 0u; i < expect->frames.count; i++) {
         if (is_about(&expect->frames.items[i], check->ids[i], side, from, frame)) {
-            judge_frame(check, i, t_ms, frame);
+            check_frame(check, i, t_ms, frame);
         }
     }
     for (size_t i = 0u; i < expect->never.count; i++) {
         if (is_about(&expect->never.items[i], check->never_ids[i], side, from, frame)) {
-            judge_never(check, i, t_ms, frame);
+            check_never(check, i, t_ms, frame);
         }
     }
 }

@@ -10,7 +10,7 @@ static const yaml_word_t SENDERS[] = {{"supervisor", SCENARIO_FROM_SUPERVISOR},
                                       {"vcu", VEHICLE_VCU},
                                       {"eps", VEHICLE_EPS},
                                       {"ai", VEHICLE_AI},
-                                      {"stranger", VEHICLE_STRANGER},
+                                      {"stranger", VEHICLE_ROGUE},
                                       {"anybody", SCENARIO_FROM_ANY},
                                       {NULL, 0}};
 

@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 #include "scenario/scenario.h"
-#include "scenario/scenario_world.h"
+#include "scenario/scenario_testbed.h"
 
 /** A run. The functions may be NULL. */
 typedef struct {
@@ -25,7 +25,7 @@ typedef struct {
     void *ctx; /**< of the functions */
 } scenario_play_t;
 
-/** Run a world that was started. */
-void scenario_play(scenario_world_t *world, const scenario_play_t *play);
+/** Run a testbed that was started. */
+void scenario_play(scenario_testbed_t *testbed, const scenario_play_t *play);
 
 #endif

@@ -17,8 +17,8 @@ enum { MM_PER_CM = 10, WHAT_SIZE = 160 };
 #define MODE_MANUAL 0x40
 #define MODE_AUTOPILOT 0x80
 
-void timeline_init(timeline_t *timeline, const scenario_world_t *world) {
-    *timeline = (timeline_t){.world = world, .mode = -1};
+void timeline_init(timeline_t *timeline, const scenario_testbed_t *testbed) {
+    *timeline = (timeline_t){.testbed = testbed, .mode = -1};
 }
 
 static char gear_letter(uint8_t gear) {
@@ -94,8 +94,8 @@ static void show_state(timeline_t *timeline, uint64_t t_us, const agv_event_t *e
 
     timeline->shown = 0u;
     if (event->b == (uint8_t)AGV_STATE_TRIPPED) {
-        scenario_world_view_t view;
-        scenario_world_view(timeline->world, &view);
+        scenario_testbed_view_t view;
+        scenario_testbed_view(timeline->testbed, &view);
         timeline->trip_us = view.now_us;
         timeline->wants_reaction = reason != NULL;
     }
@@ -157,7 +157,7 @@ static void show_reaction(timeline_t *timeline, uint64_t t_us) {
 
 /** The first frame of each message that the supervisor sends in a state. */
 static void show_sent(timeline_t *timeline, uint64_t t_us, const hal_can_frame_t *frame) {
-    const agv_message_t message = scenario_world_message(timeline->world, frame->id);
+    const agv_message_t message = scenario_testbed_message(timeline->testbed, frame->id);
     const uint8_t *d = frame->data;
 
     if ((message == AGV_MSG_NONE) || ((timeline->shown & (1u << message)) != 0u)) {
@@ -172,7 +172,7 @@ static void show_sent(timeline_t *timeline, uint64_t t_us, const hal_can_frame_t
 }
 
 static void show_reported(timeline_t *timeline, uint64_t t_us, const hal_can_frame_t *frame) {
-    const agv_message_t message = scenario_world_message(timeline->world, frame->id);
+    const agv_message_t message = scenario_testbed_message(timeline->testbed, frame->id);
     agv_wheel_speed_t wheels;
 
     if ((message == AGV_MSG_GEAR_STATUS) && (frame->data[0] != timeline->gear)) {

@@ -1,6 +1,6 @@
 /**
  * @file timeline.h
- * A run of a scenario as people read it: one line for everything that somebody does, with the vehicle beside it.
+ * A run of a scenario for the reader: one line for everything that somebody does, with the vehicle beside it.
  */
 #ifndef HOST_SIM_TIMELINE_H
 #define HOST_SIM_TIMELINE_H
@@ -9,11 +9,11 @@
 #include <stdint.h>
 
 #include "scenario/scenario.h"
-#include "scenario/scenario_world.h"
+#include "scenario/scenario_testbed.h"
 
 /** A timeline. Members are for the functions. */
 typedef struct {
-    const scenario_world_t *world;
+    const scenario_testbed_t *testbed;
     uint64_t trip_us; /* moment of the last trip */
     uint64_t step_us; /* moment of the last step */
     const char *step_actor;
@@ -26,8 +26,8 @@ typedef struct {
     int32_t speed_mm_s;
 } timeline_t;
 
-/** Begin. @param world that the scenario is played in */
-void timeline_init(timeline_t *timeline, const scenario_world_t *world);
+/** Begin. @param testbed that the scenario is played in */
+void timeline_init(timeline_t *timeline, const scenario_testbed_t *testbed);
 
 /** The watch to hand to scenario_run(). */
 scenario_watch_t timeline_watch(timeline_t *timeline);

@@ -51,12 +51,12 @@ void vehicle_init(vehicle_t *vehicle, const vehicle_config_t *config, vehicle_se
     vehicle->send = send;
     vehicle->send_ctx = ctx;
     vehicle->random = (config->seed != 0u) ? config->seed : 1u;
-    vehicle->body.gear = AGV_GEAR_P;
-    vehicle->body.target = AGV_GEAR_P;
+    vehicle->dynamics.gear = AGV_GEAR_P;
+    vehicle->dynamics.target = AGV_GEAR_P;
     vehicle->eps.mode = AGV_EPS_MODE_ASSIST;
     vehicle->eps.wanted = AGV_EPS_MODE_ASSIST;
-    vehicle->people.remote_gear = AGV_GEAR_P;
-    vehicle->people.ai_gear = AGV_GEAR_N;
+    vehicle->operator.remote_gear = AGV_GEAR_P;
+    vehicle->operator.ai_gear = AGV_GEAR_N;
     for (int m = 0; m < AGV_MSG_COUNT; m++) {
         vehicle->message_ms[m] = UINT64_MAX;
         vehicle->id[m] = config->ids.of[m];
@@ -139,7 +139,7 @@ void vehicle_power(vehicle_t *vehicle, vehicle_node_t node, bool on, uint64_t no
         return;
     }
     if (node == VEHICLE_VCU) {
-        vehicle_body_move(vehicle, now_ms);
+        vehicle_dynamics_move(vehicle, now_ms);
     }
     state->running = on;
     vehicle->power_changes++;
@@ -168,9 +168,9 @@ static inline uint64_t earlier(uint64_t a, uint64_t b) {
     return (a < b) ? a : b;
 }
 
-/** What happens seldom: nodes that start, strangers that send. */
+/** What happens seldom: nodes that start, rogue nodes that send. */
 static void run_seldom(vehicle_t *vehicle, uint64_t now_ms) {
-    uint64_t next = vehicle_send_strangers(vehicle, now_ms);
+    uint64_t next = vehicle_send_rogues(vehicle, now_ms);
 
     for (int n = 0; n < VEHICLE_NODES; n++) {
         if (now_ms >= vehicle->nodes[n].start_ms) {
@@ -217,17 +217,17 @@ void vehicle_receive(vehicle_t *vehicle, vehicle_node_t node, uint64_t now_ms, c
 }
 
 void vehicle_view(vehicle_t *vehicle, uint64_t now_ms, vehicle_view_t *view) {
-    vehicle_body_move(vehicle, now_ms);
+    vehicle_dynamics_move(vehicle, now_ms);
     vehicle_eps_move(vehicle, now_ms);
     *view = (vehicle_view_t){
-        .gear = vehicle->body.gear,
+        .gear = vehicle->dynamics.gear,
         .autopilot = vehicle->vcu.autopilot,
-        .speed_mm_s = vehicle->body.speed_um_s / 1000,
-        .throttle_permille = vehicle_body_throttle_permille(vehicle),
+        .speed_mm_s = vehicle->dynamics.speed_um_s / 1000,
+        .throttle_permille = vehicle_dynamics_throttle_permille(vehicle),
         .eps_mode = vehicle->eps.mode,
         .angle_ddeg = vehicle_eps_angle_ddeg(vehicle, now_ms),
         .alarms = vehicle_vcu_alarms(vehicle, now_ms),
-        .fastest_park_mm_s = vehicle->body.fastest_park_mm_s,
+        .fastest_park_mm_s = vehicle->dynamics.fastest_park_mm_s,
     };
     for (int n = 0; n < VEHICLE_NODES; n++) {
         view->running[n] = vehicle->nodes[n].running;
@@ -236,10 +236,10 @@ void vehicle_view(vehicle_t *vehicle, uint64_t now_ms, vehicle_view_t *view) {
 
 void vehicle_state(const vehicle_t *vehicle, vehicle_state_t *state) {
     *state = (vehicle_state_t){
-        .gear = vehicle->body.gear,
+        .gear = vehicle->dynamics.gear,
         .autopilot = vehicle->vcu.autopilot,
-        .button_1 = vehicle->people.button_1,
-        .speed_mm_s = vehicle->body.speed_um_s / 1000,
+        .button_1 = vehicle->operator.button_1,
+        .speed_mm_s = vehicle->dynamics.speed_um_s / 1000,
         .angle_ddeg = vehicle->eps.angle_mddeg / 1000,
     };
 }

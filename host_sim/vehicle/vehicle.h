@@ -1,6 +1,6 @@
 /**
  * @file vehicle.h
- * A vehicle to supervise: VCU, EPS and AI computer, each sending its messages on their cycles (P16), and the body that
+ * A vehicle to supervise: VCU, EPS and AI computer, each sending its messages on their cycles (P16), and the dynamics that
  * they move. It obeys the commands on the bus, and every node can misbehave on demand.
  *
  * It knows no bus: time and received frames are passed in, what a node sends goes to a callback. So the same vehicle runs
@@ -36,8 +36,8 @@
 #include "agv/protocol.h"
 #include "hal/can.h"
 
-/** A node of the vehicle; VEHICLE_STRANGER stands for whoever sends frames that no node of the vehicle would. */
-typedef enum { VEHICLE_VCU, VEHICLE_EPS, VEHICLE_AI, VEHICLE_NODES, VEHICLE_STRANGER = VEHICLE_NODES } vehicle_node_t;
+/** A node of the vehicle; VEHICLE_ROGUE stands for whoever sends frames that no node of the vehicle would. */
+typedef enum { VEHICLE_VCU, VEHICLE_EPS, VEHICLE_AI, VEHICLE_NODES, VEHICLE_ROGUE = VEHICLE_NODES } vehicle_node_t;
 
 /** As a start time: the node stays off. */
 #define VEHICLE_NEVER UINT32_MAX
@@ -48,7 +48,7 @@ typedef enum { VEHICLE_VCU, VEHICLE_EPS, VEHICLE_AI, VEHICLE_NODES, VEHICLE_STRA
 /** The highest speed of VEHICLE_DO_VCU_ROLL, either way. */
 #define VEHICLE_ROLL_MAX_MM_S 20000
 /** Periodic senders of raw frames at one time. */
-#define VEHICLE_STRANGERS_MAX 8u
+#define VEHICLE_ROGUES_MAX 8u
 
 /** Called for every frame that is sent, at the moment of sending. Must not call the vehicle. */
 typedef void vehicle_send_fn(void *ctx, vehicle_node_t from, hal_can_side_t side, const hal_can_frame_t *frame);
@@ -135,9 +135,9 @@ typedef enum {
     VEHICLE_DO_HAND_STEER,    /**< `angle_ddeg`: in steering assist */
     VEHICLE_DO_REMOTE_SIGNAL, /**< `on`: the VCU hears the remote controller */
     VEHICLE_DO_REMOTE_POWER,  /**< `on`: the receiver has power */
-    /* a stranger: raw frames */
+    /* a rogue node: raw frames */
     VEHICLE_DO_SEND, /**< `frame` on `side`, `count` times (0 = 1, VEHICLE_FOREVER) every `ms`, the first at once */
-    VEHICLE_DO_STOP_SENDING, /**< whatever strangers send */
+    VEHICLE_DO_STOP_SENDING, /**< whatever rogue nodes send */
     VEHICLE_DO_COUNT
 } vehicle_do_t;
 
@@ -231,7 +231,7 @@ typedef struct {
     int32_t throttle_mpermille; /* 1/1000 permille */
     uint8_t gear;
     uint8_t target;
-} vehicle_body_t;
+} vehicle_dynamics_t;
 
 /* How VCU and brakes misbehave; outlives every restart of the VCU. */
 typedef struct {
@@ -286,7 +286,7 @@ typedef struct {
     int32_t amplitude_ddeg;
 } vehicle_swing_t;
 
-/* What people and the world outside do; outlives every restart of a node. */
+/* What is asked of the vehicle from outside; outlives every restart of a node. */
 typedef struct {
     int32_t hand_ddeg;
     int32_t ai_angle_ddeg;
@@ -304,7 +304,7 @@ typedef struct {
     bool eps_stuck;
     vehicle_swing_t ai_weave;
     vehicle_swing_t eps_hunt;
-} vehicle_people_t;
+} vehicle_operator_t;
 
 typedef struct {
     uint64_t due_ms;
@@ -312,11 +312,11 @@ typedef struct {
     uint16_t left;
     hal_can_side_t side;
     hal_can_frame_t frame;
-} vehicle_stranger_t;
+} vehicle_rogue_t;
 
 typedef struct {
     uint64_t due_ms;                    /* the earliest of all that follows */
-    uint64_t seldom_ms;                 /* a node starts or a stranger sends */
+    uint64_t seldom_ms;                 /* a node starts or a rogue node sends */
     uint64_t message_ms[AGV_MSG_COUNT]; /* each message; UINT64_MAX while its node is off */
     uint32_t power_changes;             /* nodes switched on or off so far */
     vehicle_send_fn *send;
@@ -325,13 +325,13 @@ typedef struct {
     uint32_t random;
     vehicle_message_t messages[AGV_MSG_COUNT];
     vehicle_node_state_t nodes[VEHICLE_NODES];
-    vehicle_body_t body;
+    vehicle_dynamics_t dynamics;
     vehicle_vcu_t vcu;
     vehicle_vcu_faults_t vcu_faults;
     vehicle_eps_t eps;
     vehicle_ai_t ai;
-    vehicle_people_t people;
-    vehicle_stranger_t strangers[VEHICLE_STRANGERS_MAX];
+    vehicle_operator_t operator;
+    vehicle_rogue_t rogues[VEHICLE_ROGUES_MAX];
     vehicle_config_t config;
 } vehicle_t;
 
@@ -357,7 +357,7 @@ void vehicle_receive(vehicle_t *vehicle, vehicle_node_t node, uint64_t now_ms, c
 
 /**
  * Do something now; frames of it are sent by the next vehicle_tick(), the one of this millisecond included.
- * @return false: the action names a node, message or value that there is not, or there is no room for another stranger.
+ * @return false: the action names a node, message or value that there is not, or there is no room for another rogue node.
  */
 bool vehicle_do(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action);
 
@@ -378,7 +378,7 @@ static inline uint32_t vehicle_power_changes(const vehicle_t *vehicle) {
 /** Pass what is sent to another callback from now on; for a vehicle that was copied. */
 void vehicle_set_send(vehicle_t *vehicle, vehicle_send_fn *send, void *ctx);
 
-/** The controller side that a node is on; a stranger is on the vehicle side. */
+/** The controller side that a node is on; a rogue node is on the vehicle side. */
 hal_can_side_t vehicle_side_of(const vehicle_t *vehicle, vehicle_node_t node);
 
 /** "vcu", "eps", "ai"; "stranger" for others. */

@@ -19,9 +19,9 @@ static bool is_direction(uint8_t gear) {
 
 void vehicle_ai_reconsider(vehicle_t *vehicle) {
     vehicle_ai_t *ai = &vehicle->ai;
-    const uint8_t wish = vehicle->people.ai_gear;
+    const uint8_t wish = vehicle->operator.ai_gear;
 
-    ai->waits = !vehicle->people.ai_stubborn && ai->moving && is_direction(wish) && (ai->gear != wish) &&
+    ai->waits = !vehicle->operator.ai_stubborn && ai->moving && is_direction(wish) && (ai->gear != wish) &&
                 (is_direction(ai->gear) || (ai->gear == AGV_GEAR_N));
     ai->shifts = ai->waits;
 }
@@ -37,7 +37,7 @@ static void hear_mode(vehicle_t *vehicle, bool engaged) {
 
 static void hear_gear(vehicle_t *vehicle, uint8_t gear) {
     vehicle_ai_t *ai = &vehicle->ai;
-    const bool is_other = (gear != vehicle->people.ai_gear) && (is_direction(gear) || (gear == AGV_GEAR_N));
+    const bool is_other = (gear != vehicle->operator.ai_gear) && (is_direction(gear) || (gear == AGV_GEAR_N));
 
     ai->waits = ai->waits && is_other;
     ai->shifts = ai->shifts && is_other;
@@ -69,12 +69,12 @@ void vehicle_ai_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_frame
 }
 
 static bool drives(const vehicle_t *vehicle) {
-    return vehicle->ai.engaged || vehicle->people.ai_stubborn;
+    return vehicle->ai.engaged || vehicle->operator.ai_stubborn;
 }
 
 void vehicle_ai_turn_signal_command(vehicle_t *vehicle, uint64_t now_ms, uint8_t data[AGV_DLC]) {
     const agv_turn_signal_command_t command = {
-        .autopilot_off = vehicle->people.ai_autopilot_off,
+        .autopilot_off = vehicle->operator.ai_autopilot_off,
         .headlight_on = true,
         .alive_counter = vehicle_count(vehicle, VEHICLE_AI),
     };
@@ -84,7 +84,7 @@ void vehicle_ai_turn_signal_command(vehicle_t *vehicle, uint64_t now_ms, uint8_t
 }
 
 void vehicle_ai_gear_command(vehicle_t *vehicle, uint64_t now_ms, uint8_t data[AGV_DLC]) {
-    agv_gear_command_t command = {drives(vehicle) ? vehicle->people.ai_gear : AGV_GEAR_N};
+    agv_gear_command_t command = {drives(vehicle) ? vehicle->operator.ai_gear : AGV_GEAR_N };
 
     (void)now_ms;
     if (drives(vehicle) && vehicle->ai.waits) {
@@ -95,14 +95,15 @@ void vehicle_ai_gear_command(vehicle_t *vehicle, uint64_t now_ms, uint8_t data[A
 
 void vehicle_ai_throttle_command(vehicle_t *vehicle, uint64_t now_ms, uint8_t data[AGV_DLC]) {
     const bool pulls = drives(vehicle) && !vehicle->ai.shifts;
-    const agv_throttle_command_t command = {pulls ? vehicle->people.ai_throttle_permille : (uint16_t)0};
+    const agv_throttle_command_t command = {pulls ? vehicle->operator.ai_throttle_permille : (uint16_t) 0 };
 
     (void)now_ms;
     (void)agv_pack_throttle_command(data, &command);
 }
 
 void vehicle_ai_steering_command(vehicle_t *vehicle, uint64_t now_ms, uint8_t data[AGV_DLC]) {
-    const int32_t angle_ddeg = vehicle->people.ai_angle_ddeg + vehicle_swing_ddeg(&vehicle->people.ai_weave, now_ms);
+    const int32_t angle_ddeg =
+        vehicle->operator.ai_angle_ddeg + vehicle_swing_ddeg(&vehicle->operator.ai_weave, now_ms);
     const agv_steering_command_t command = {drives(vehicle) ? vehicle_limit_angle(angle_ddeg) : 0};
 
     (void)agv_pack_steering_command(data, &command);

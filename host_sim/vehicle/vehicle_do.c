@@ -19,7 +19,7 @@ static bool angle_is_valid(const vehicle_action_t *action) {
 
 /** Wheels and steering have run until now as they were. */
 static void recover(vehicle_t *vehicle, uint64_t now_ms, vehicle_node_t node) {
-    vehicle_body_move(vehicle, now_ms);
+    vehicle_dynamics_move(vehicle, now_ms);
     vehicle_eps_move(vehicle, now_ms);
     vehicle_recover(vehicle, node);
 }
@@ -99,7 +99,7 @@ static bool do_to_message(vehicle_t *vehicle, uint64_t now_ms, const vehicle_act
 static bool do_to_vcu(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action) {
     vehicle_vcu_faults_t *faults = &vehicle->vcu_faults;
 
-    vehicle_body_move(vehicle, now_ms); /* until now it was as it was */
+    vehicle_dynamics_move(vehicle, now_ms); /* until now it was as it was */
     switch (action->what) {
     case VEHICLE_DO_VCU_RAMP:
         faults->ramps = true;
@@ -111,7 +111,7 @@ static bool do_to_vcu(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_
         break;
     case VEHICLE_DO_VCU_ROLL_ON:
         faults->rolls = true;
-        faults->roll_um_s = vehicle->body.speed_um_s;
+        faults->roll_um_s = vehicle->dynamics.speed_um_s;
         break;
     case VEHICLE_DO_VCU_REFUSE_PARK:
         faults->refuses_park = action->on;
@@ -130,64 +130,64 @@ static vehicle_swing_t swing_of(uint64_t now_ms, const vehicle_action_t *action)
 static bool do_to_eps(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action) {
     vehicle_eps_move(vehicle, now_ms);
     if (action->what == VEHICLE_DO_EPS_STUCK) {
-        vehicle->people.eps_stuck = action->on;
+        vehicle->operator.eps_stuck = action->on;
     } else {
-        vehicle->people.eps_hunt = swing_of(now_ms, action);
+        vehicle->operator.eps_hunt = swing_of(now_ms, action);
     }
     return true;
 }
 
 static bool do_to_ai(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action) {
-    vehicle_people_t *people = &vehicle->people;
+    vehicle_operator_t *operator= & vehicle->operator;
 
     switch (action->what) {
     case VEHICLE_DO_AI_DRIVE:
-        people->ai_gear = action->gear;
-        people->ai_throttle_permille = action->throttle_permille;
-        people->ai_angle_ddeg = action->angle_ddeg;
+        operator->ai_gear = action->gear;
+        operator->ai_throttle_permille = action->throttle_permille;
+        operator->ai_angle_ddeg = action->angle_ddeg;
         vehicle_ai_reconsider(vehicle);
         return true;
     case VEHICLE_DO_AI_IDLE:
-        people->ai_gear = AGV_GEAR_N;
-        people->ai_throttle_permille = 0u;
-        people->ai_angle_ddeg = 0;
+        operator->ai_gear = AGV_GEAR_N;
+        operator->ai_throttle_permille = 0u;
+        operator->ai_angle_ddeg = 0;
         vehicle_ai_reconsider(vehicle);
         return true;
     case VEHICLE_DO_AI_STUBBORN:
-        people->ai_stubborn = action->on;
+        operator->ai_stubborn = action->on;
         vehicle_ai_reconsider(vehicle);
         return true;
     case VEHICLE_DO_AI_WEAVE:
-        people->ai_weave = swing_of(now_ms, action);
+        operator->ai_weave = swing_of(now_ms, action);
         return true;
     default:
-        people->ai_autopilot_off = action->on;
+        operator->ai_autopilot_off = action->on;
         return true;
     }
 }
 
-static bool press(vehicle_people_t *people, const vehicle_action_t *action) {
+static bool press(vehicle_operator_t *operator, const vehicle_action_t * action) {
     if (action->count == 1u) {
-        people->button_1 = action->on;
+        operator->button_1 = action->on;
     } else {
-        people->button_2 = action->on;
+        operator->button_2 = action->on;
     }
     return (action->count == 1u) || (action->count == 2u);
 }
 
 /** Signal or power of the remote controller came or went: wheels and gear box have run until now as it was before. */
 static bool switch_remote(vehicle_t *vehicle, uint64_t now_ms, bool *lost, bool is_lost) {
-    vehicle_body_move(vehicle, now_ms);
+    vehicle_dynamics_move(vehicle, now_ms);
     *lost = is_lost;
     if (is_lost) {
-        vehicle->people.remote_throttle_permille = 0u;
+        vehicle->operator.remote_throttle_permille = 0u;
         vehicle->vcu.throttle_permille = vehicle->vcu.autopilot ? vehicle->vcu.throttle_permille : (uint16_t)0;
     }
     return true;
 }
 
 static bool do_as_operator(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action) {
-    vehicle_people_t *people = &vehicle->people;
+    vehicle_operator_t *operator= & vehicle->operator;
 
     switch (action->what) {
     case VEHICLE_DO_ENGAGE:
@@ -197,21 +197,21 @@ static bool do_as_operator(vehicle_t *vehicle, uint64_t now_ms, const vehicle_ac
         vehicle_vcu_disengage(vehicle, now_ms);
         return true;
     case VEHICLE_DO_BUTTON:
-        return press(people, action);
+        return press(operator, action);
     case VEHICLE_DO_REMOTE_DRIVE:
-        people->remote_gear = action->gear;
-        people->remote_throttle_permille = action->throttle_permille;
+        operator->remote_gear = action->gear;
+        operator->remote_throttle_permille = action->throttle_permille;
         vehicle_vcu_remote(vehicle, now_ms);
         return true;
     case VEHICLE_DO_HAND_STEER:
         vehicle_eps_move(vehicle, now_ms);
-        people->hand_steers = true;
-        people->hand_ddeg = action->angle_ddeg;
+        operator->hand_steers = true;
+        operator->hand_ddeg = action->angle_ddeg;
         return true;
     case VEHICLE_DO_REMOTE_SIGNAL:
-        return switch_remote(vehicle, now_ms, &people->remote_signal_lost, !action->on);
+        return switch_remote(vehicle, now_ms, &operator->remote_signal_lost, !action->on);
     default:
-        return switch_remote(vehicle, now_ms, &people->remote_power_lost, !action->on);
+        return switch_remote(vehicle, now_ms, &operator->remote_power_lost, !action->on);
     }
 }
 
@@ -237,8 +237,8 @@ static bool is_sane(const vehicle_action_t *action) {
 }
 
 static void stop_strangers(vehicle_t *vehicle) {
-    for (unsigned i = 0; i < VEHICLE_STRANGERS_MAX; i++) {
-        vehicle->strangers[i].left = 0u;
+    for (unsigned i = 0; i < VEHICLE_ROGUES_MAX; i++) {
+        vehicle->rogues[i].left = 0u;
     }
 }
 
@@ -266,7 +266,7 @@ bool vehicle_do(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *act
         return do_as_operator(vehicle, now_ms, action);
     }
     if (action->what == VEHICLE_DO_SEND) {
-        return vehicle_add_stranger(vehicle, now_ms, action);
+        return vehicle_add_rogue(vehicle, now_ms, action);
     }
     stop_strangers(vehicle);
     return action->what == VEHICLE_DO_STOP_SENDING;

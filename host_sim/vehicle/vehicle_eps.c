@@ -48,13 +48,13 @@ void vehicle_eps_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_fram
 static int32_t drawn_to_mddeg(const vehicle_t *vehicle) {
     const vehicle_eps_t *eps = &vehicle->eps;
 
-    if (vehicle->people.eps_stuck) {
+    if (vehicle->operator.eps_stuck) {
         return eps->angle_mddeg;
     }
     if (vehicle->nodes[VEHICLE_EPS].running && (eps->mode == AGV_EPS_MODE_ANGLE)) {
         return eps->commanded ? eps->command_ddeg * 1000 : eps->angle_mddeg;
     }
-    return vehicle->people.hand_steers ? vehicle->people.hand_ddeg * 1000 : eps->angle_mddeg;
+    return vehicle->operator.hand_steers ? vehicle->operator.hand_ddeg * 1000 : eps->angle_mddeg;
 }
 
 void vehicle_eps_move(vehicle_t *vehicle, uint64_t now_ms) {
@@ -74,7 +74,7 @@ void vehicle_eps_move(vehicle_t *vehicle, uint64_t now_ms) {
 
 int32_t vehicle_eps_angle_ddeg(const vehicle_t *vehicle, uint64_t now_ms) {
     const bool hunts = vehicle->eps.mode == AGV_EPS_MODE_ANGLE;
-    const int32_t swing_ddeg = hunts ? vehicle_swing_ddeg(&vehicle->people.eps_hunt, now_ms) : 0;
+    const int32_t swing_ddeg = hunts ? vehicle_swing_ddeg(&vehicle->operator.eps_hunt, now_ms) : 0;
     return vehicle_limit_angle((vehicle->eps.angle_mddeg / 1000) + swing_ddeg);
 }
 

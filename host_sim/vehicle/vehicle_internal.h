@@ -54,13 +54,13 @@ vehicle_compose_fn vehicle_vcu_throttle_status;
 vehicle_compose_fn vehicle_vcu_wheel_speed;
 /** @} */
 
-/** @name vehicle_body.c @{ */
+/** @name vehicle_dynamics.c @{ */
 /** Let gear box and wheels come to @p now_ms, as the VCU has them do since the last call. */
-void vehicle_body_move(vehicle_t *vehicle, uint64_t now_ms);
+void vehicle_dynamics_move(vehicle_t *vehicle, uint64_t now_ms);
 /** What 050h reports. */
-uint16_t vehicle_body_throttle_permille(const vehicle_t *vehicle);
+uint16_t vehicle_dynamics_throttle_permille(const vehicle_t *vehicle);
 /** Walking pace or faster: no speed at which to take P. */
-bool vehicle_body_is_fast(const vehicle_t *vehicle);
+bool vehicle_dynamics_is_fast(const vehicle_t *vehicle);
 /** @} */
 
 /** @name vehicle_eps.c @{ */
@@ -95,9 +95,9 @@ vehicle_stretch_t vehicle_stretch(uint16_t count, uint16_t every);
 void vehicle_patch(vehicle_message_t *message, const vehicle_action_t *action);
 /** End of that for all bits. */
 void vehicle_unpatch(vehicle_message_t *message);
-/** Send what strangers have due. @return when the next one is due. */
-uint64_t vehicle_send_strangers(vehicle_t *vehicle, uint64_t now_ms);
-bool vehicle_add_stranger(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action);
+/** Send what rogue nodes have due. @return when the next one is due. */
+uint64_t vehicle_send_rogues(vehicle_t *vehicle, uint64_t now_ms);
+bool vehicle_add_rogue(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action);
 void vehicle_recover(vehicle_t *vehicle, vehicle_node_t node);
 /** @} */
 

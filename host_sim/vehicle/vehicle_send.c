@@ -189,45 +189,45 @@ void vehicle_recover(vehicle_t *vehicle, vehicle_node_t node) {
         message->ignored = message->ignored && (vehicle_receiver_of((agv_message_t)m) != node);
     }
     if (node == VEHICLE_EPS) {
-        vehicle->people.eps_stuck = false;
-        vehicle->people.eps_hunt = (vehicle_swing_t){.period_ms = 0u};
+        vehicle->operator.eps_stuck = false;
+        vehicle->operator.eps_hunt =(vehicle_swing_t){.period_ms = 0u};
     }
     if (node == VEHICLE_VCU) {
         vehicle->vcu_faults = (vehicle_vcu_faults_t){.rolls = false};
     }
 }
 
-bool vehicle_add_stranger(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action) {
-    for (unsigned i = 0; i < VEHICLE_STRANGERS_MAX; i++) {
-        vehicle_stranger_t *stranger = &vehicle->strangers[i];
-        if (stranger->left == 0u) {
-            stranger->left = (action->count != 0u) ? action->count : 1u;
-            stranger->period_ms = (action->ms != 0u) ? action->ms : 1u;
-            stranger->due_ms = now_ms;
-            stranger->side = action->side;
-            stranger->frame = action->frame;
+bool vehicle_add_rogue(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action) {
+    for (unsigned i = 0; i < VEHICLE_ROGUES_MAX; i++) {
+        vehicle_rogue_t *rogue = &vehicle->rogues[i];
+        if (rogue->left == 0u) {
+            rogue->left = (action->count != 0u) ? action->count : 1u;
+            rogue->period_ms = (action->ms != 0u) ? action->ms : 1u;
+            rogue->due_ms = now_ms;
+            rogue->side = action->side;
+            rogue->frame = action->frame;
             return true;
         }
     }
     return false;
 }
 
-uint64_t vehicle_send_strangers(vehicle_t *vehicle, uint64_t now_ms) {
+uint64_t vehicle_send_rogues(vehicle_t *vehicle, uint64_t now_ms) {
     uint64_t next = UINT64_MAX;
 
-    for (unsigned i = 0; i < VEHICLE_STRANGERS_MAX; i++) {
-        vehicle_stranger_t *stranger = &vehicle->strangers[i];
-        if (stranger->left == 0u) {
+    for (unsigned i = 0; i < VEHICLE_ROGUES_MAX; i++) {
+        vehicle_rogue_t *rogue = &vehicle->rogues[i];
+        if (rogue->left == 0u) {
             continue;
         }
-        if (now_ms >= stranger->due_ms) {
-            stranger->due_ms = now_ms + stranger->period_ms;
-            stranger->frame.time_ms = (uint32_t)now_ms;
-            use_up(&stranger->left);
-            vehicle->send(vehicle->send_ctx, VEHICLE_STRANGER, stranger->side, &stranger->frame);
+        if (now_ms >= rogue->due_ms) {
+            rogue->due_ms = now_ms + rogue->period_ms;
+            rogue->frame.time_ms = (uint32_t)now_ms;
+            use_up(&rogue->left);
+            vehicle->send(vehicle->send_ctx, VEHICLE_ROGUE, rogue->side, &rogue->frame);
         }
-        if ((stranger->left != 0u) && (stranger->due_ms < next)) {
-            next = stranger->due_ms;
+        if ((rogue->left != 0u) && (rogue->due_ms < next)) {
+            next = rogue->due_ms;
         }
     }
     return next;

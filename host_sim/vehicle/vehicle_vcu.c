@@ -14,28 +14,29 @@ void vehicle_vcu_start(vehicle_t *vehicle, uint64_t now_ms) {
     vehicle_vcu_t *vcu = &vehicle->vcu;
 
     memset(vcu, 0, sizeof *vcu);
-    vcu->gear = (vehicle->body.speed_um_s == 0) ? AGV_GEAR_P : AGV_GEAR_N;
+    vcu->gear = (vehicle->dynamics.speed_um_s == 0) ? AGV_GEAR_P : AGV_GEAR_N;
     vcu->ai_until_ms = now_ms + vehicle->config.ai_lost_ms;
     vcu->eps_until_ms = now_ms + vehicle->config.eps_lost_ms;
 }
 
 void vehicle_vcu_stop(vehicle_t *vehicle, uint64_t now_ms) {
     vehicle->vcu.autopilot = false;
-    vehicle_body_move(vehicle, now_ms);
+    vehicle_dynamics_move(vehicle, now_ms);
 }
 
 /** The remote controller moves the vehicle again after whatever the bus commanded. */
 void vehicle_vcu_remote(vehicle_t *vehicle, uint64_t now_ms) {
     vehicle_vcu_t *vcu = &vehicle->vcu;
-    const vehicle_people_t *people = &vehicle->people;
+    const vehicle_operator_t *operator= & vehicle->operator;
 
-    if (vcu->autopilot || (now_ms < vcu->park_until_ms) || people->remote_signal_lost || people->remote_power_lost) {
+    if (vcu->autopilot ||
+        (now_ms < vcu->park_until_ms) || operator->remote_signal_lost || operator->remote_power_lost) {
         return;
     }
-    vehicle_body_move(vehicle, now_ms);
-    vcu->gear = people->remote_gear;
-    vcu->throttle_permille = people->remote_throttle_permille;
-    vehicle_body_move(vehicle, now_ms);
+    vehicle_dynamics_move(vehicle, now_ms);
+    vcu->gear = operator->remote_gear;
+    vcu->throttle_permille = operator->remote_throttle_permille;
+    vehicle_dynamics_move(vehicle, now_ms);
 }
 
 void vehicle_vcu_engage(vehicle_t *vehicle, uint64_t now_ms) {
@@ -44,7 +45,7 @@ void vehicle_vcu_engage(vehicle_t *vehicle, uint64_t now_ms) {
     if (vcu->autopilot || (now_ms < vcu->off_until_ms)) {
         return;
     }
-    vehicle_body_move(vehicle, now_ms);
+    vehicle_dynamics_move(vehicle, now_ms);
     vcu->autopilot = true;
     vcu->throttle_permille = 0u;
     vcu->throttle_until_ms = 0u;
@@ -54,10 +55,10 @@ void vehicle_vcu_disengage(vehicle_t *vehicle, uint64_t now_ms) {
     vehicle_vcu_t *vcu = &vehicle->vcu;
 
     if (vcu->autopilot) {
-        vehicle_body_move(vehicle, now_ms);
+        vehicle_dynamics_move(vehicle, now_ms);
         vcu->autopilot = false;
         vcu->throttle_permille = 0u;
-        vehicle_body_move(vehicle, now_ms);
+        vehicle_dynamics_move(vehicle, now_ms);
     }
 }
 
@@ -68,8 +69,8 @@ static void obey_gear(vehicle_t *vehicle, uint64_t now_ms, const uint8_t data[AG
     if (!agv_unpack_gear_command(&command, data)) {
         return;
     }
-    vehicle_body_move(vehicle, now_ms);
-    if ((command.gear == AGV_GEAR_P) && vehicle->vcu_faults.refuses_park && vehicle_body_is_fast(vehicle)) {
+    vehicle_dynamics_move(vehicle, now_ms);
+    if ((command.gear == AGV_GEAR_P) && vehicle->vcu_faults.refuses_park && vehicle_dynamics_is_fast(vehicle)) {
         return;
     }
     if (command.gear == AGV_GEAR_P) {
@@ -80,7 +81,7 @@ static void obey_gear(vehicle_t *vehicle, uint64_t now_ms, const uint8_t data[AG
         vcu->park_until_ms = 0u;
         vcu->gear = command.gear;
     }
-    vehicle_body_move(vehicle, now_ms);
+    vehicle_dynamics_move(vehicle, now_ms);
 }
 
 static void obey_throttle(vehicle_t *vehicle, uint64_t now_ms, const uint8_t data[AGV_DLC]) {
@@ -89,10 +90,10 @@ static void obey_throttle(vehicle_t *vehicle, uint64_t now_ms, const uint8_t dat
     agv_throttle_command_t command;
 
     if (vcu->autopilot && agv_unpack_throttle_command(&command, data)) {
-        vehicle_body_move(vehicle, now_ms);
+        vehicle_dynamics_move(vehicle, now_ms);
         vcu->throttle_permille = ignored ? vcu->throttle_permille : command.throttle_permille;
         vcu->throttle_until_ms = now_ms + THROTTLE_HOLD_MS;
-        vehicle_body_move(vehicle, now_ms);
+        vehicle_dynamics_move(vehicle, now_ms);
     }
 }
 
@@ -164,11 +165,11 @@ void vehicle_vcu_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_fram
 
 uint8_t vehicle_vcu_alarms(const vehicle_t *vehicle, uint64_t now_ms) {
     const vehicle_vcu_t *vcu = &vehicle->vcu;
-    const vehicle_people_t *people = &vehicle->people;
+    const vehicle_operator_t *operator= & vehicle->operator;
     uint32_t alarms = 0u;
 
-    alarms |= people->remote_signal_lost ? AGV_VCU_ALARM_REMOTE_SIGNAL_LOST : 0u;
-    alarms |= people->remote_power_lost ? AGV_VCU_ALARM_REMOTE_POWER_LOST : 0u;
+    alarms |= operator->remote_signal_lost ? AGV_VCU_ALARM_REMOTE_SIGNAL_LOST : 0u;
+    alarms |= operator->remote_power_lost ? AGV_VCU_ALARM_REMOTE_POWER_LOST : 0u;
     alarms |= (now_ms >= vcu->ai_until_ms) ? AGV_VCU_ALARM_AI_CAN_LOST : 0u;
     alarms |= (now_ms >= vcu->eps_until_ms) ? AGV_VCU_ALARM_EPS_CAN_BUS : 0u;
     alarms |= vcu->eps_fault ? AGV_VCU_ALARM_EPS_HARDWARE : 0u;
@@ -177,23 +178,23 @@ uint8_t vehicle_vcu_alarms(const vehicle_t *vehicle, uint64_t now_ms) {
 
 /** The speed of the wheels in metres per hour (P7), as far as 16 bits go. */
 static uint16_t reported_speed_m_per_h(const vehicle_t *vehicle) {
-    const int64_t m_per_h = (int64_t)abs(vehicle->body.speed_um_s) * M_PER_H_NUMERATOR / M_PER_H_DENOMINATOR;
+    const int64_t m_per_h = (int64_t)abs(vehicle->dynamics.speed_um_s) * M_PER_H_NUMERATOR / M_PER_H_DENOMINATOR;
     const int64_t reported = m_per_h * vehicle->config.reported_speed_pct / 100;
     return (reported > UINT16_MAX) ? UINT16_MAX : (uint16_t)reported;
 }
 
 void vehicle_vcu_vehicle_status(vehicle_t *vehicle, uint64_t now_ms, uint8_t data[AGV_DLC]) {
     const vehicle_vcu_t *vcu = &vehicle->vcu;
-    const vehicle_people_t *people = &vehicle->people;
-    const bool remote = !people->remote_signal_lost && !people->remote_power_lost;
+    const vehicle_operator_t *operator= & vehicle->operator;
+    const bool remote = !operator->remote_signal_lost && !operator->remote_power_lost;
     agv_vehicle_status_t status;
 
-    vehicle_body_move(vehicle, now_ms);
+    vehicle_dynamics_move(vehicle, now_ms);
     status = (agv_vehicle_status_t){
         .speed_m_per_h = reported_speed_m_per_h(vehicle),
         .level1_alarms = vehicle_vcu_alarms(vehicle, now_ms),
-        .button_1 = remote && people->button_1,
-        .button_2 = remote && people->button_2,
+        .button_1 = remote && operator->button_1,
+        .button_2 = remote && operator->button_2,
         .turn_left_on = vcu->turn_left_on,
         .turn_right_on = vcu->turn_right_on,
         .manual_mode = !vcu->autopilot,
@@ -206,24 +207,24 @@ void vehicle_vcu_vehicle_status(vehicle_t *vehicle, uint64_t now_ms, uint8_t dat
 void vehicle_vcu_gear_status(vehicle_t *vehicle, uint64_t now_ms, uint8_t data[AGV_DLC]) {
     agv_gear_status_t status;
 
-    vehicle_body_move(vehicle, now_ms);
-    status.gear = vehicle->body.gear;
+    vehicle_dynamics_move(vehicle, now_ms);
+    status.gear = vehicle->dynamics.gear;
     (void)agv_pack_gear_status(data, &status);
 }
 
 void vehicle_vcu_throttle_status(vehicle_t *vehicle, uint64_t now_ms, uint8_t data[AGV_DLC]) {
     agv_throttle_status_t status;
 
-    vehicle_body_move(vehicle, now_ms);
-    status.throttle_permille = vehicle_body_throttle_permille(vehicle);
+    vehicle_dynamics_move(vehicle, now_ms);
+    status.throttle_permille = vehicle_dynamics_throttle_permille(vehicle);
     (void)agv_pack_throttle_status(data, &status);
 }
 
 void vehicle_vcu_wheel_speed(vehicle_t *vehicle, uint64_t now_ms, uint8_t data[AGV_DLC]) {
     agv_wheel_speed_t speed;
 
-    vehicle_body_move(vehicle, now_ms);
-    speed.left_mm_s = vehicle->body.speed_um_s / 1000;
+    vehicle_dynamics_move(vehicle, now_ms);
+    speed.left_mm_s = vehicle->dynamics.speed_um_s / 1000;
     speed.right_mm_s = speed.left_mm_s;
     (void)agv_pack_wheel_speed(data, &speed);
 }

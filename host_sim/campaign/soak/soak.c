@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "campaign/soak/soak_internal.h"
-#include "common/chance.h"
 #include "common/interrupt.h"
+#include "common/prng.h"
 #include "common/units.h"
 #include "scenario/scenario_play.h"
 
@@ -61,13 +61,13 @@ static void act(soak_t *soak, uint32_t from, uint32_t to) {
         if (!step->of_vehicle && (step->supervisor.what == SCENARIO_DELIVER)) {
             soak->state.delivered++;
         }
-        scenario_world_act(&soak->world, soak->state.t_ms, step);
+        scenario_testbed_act(&soak->testbed, soak->state.t_ms, step);
     }
 }
 
 static bool may_come(const soak_t *soak, const soak_row_t *row) {
-    scenario_world_view_t view;
-    scenario_world_view(&soak->world, &view);
+    scenario_testbed_view_t view;
+    scenario_testbed_view(&soak->testbed, &view);
     const uint32_t other = view.vehicle.autopilot ? SOAK_MANUAL : SOAK_ENGAGED;
     return fits(soak, row) && ((row->flags & other) == 0u);
 }
@@ -77,7 +77,7 @@ static uint32_t choose(soak_t *soak) {
     for (size_t i = 0u; i < SOAK_ROW_COUNT; i++) {
         weight += may_come(soak, &SOAK_ROWS[i]) ? SOAK_ROWS[i].weight : 0u;
     }
-    uint32_t left = chance_draw(&soak->state.random, 1u, weight);
+    uint32_t left = prng_draw(&soak->state.random, 1u, weight);
     for (uint32_t i = 0u;; i++) {
         const uint32_t own = may_come(soak, &SOAK_ROWS[i]) ? SOAK_ROWS[i].weight : 0u;
         if (left <= own) {
@@ -98,13 +98,13 @@ static void disturb(void *ctx, uint64_t t_ms) {
     if (state->row < SOAK_ROW_COUNT) {
         act(soak, soak->steps[state->row].end, soak->steps[state->row].after);
         state->row = (uint32_t)SOAK_ROW_COUNT;
-        state->next_ms = t_ms + chance_draw(&state->random, QUIET_MIN_MS, QUIET_MAX_MS);
+        state->next_ms = t_ms + prng_draw(&state->random, QUIET_MIN_MS, QUIET_MAX_MS);
         return;
     }
     state->row = choose(soak);
     state->counts[state->row]++;
     const soak_row_t *row = &SOAK_ROWS[state->row];
-    state->next_ms = t_ms + chance_draw(&state->random, row->lowest_ms, row->highest_ms);
+    state->next_ms = t_ms + prng_draw(&state->random, row->lowest_ms, row->highest_ms);
     act(soak, soak->steps[state->row].begin, soak->steps[state->row].end);
 }
 
@@ -128,9 +128,9 @@ static bool look(soak_t *soak) {
 static bool after_tick(void *ctx, uint64_t t_ms) {
     soak_t *soak = ctx;
 
-    soak_judge_tick(soak);
+    soak_check_tick(soak);
     if ((t_ms % SOAK_MS_PER_HOUR) == SOAK_MS_PER_HOUR - 1u) {
-        soak_judge_counters(soak);
+        soak_check_counters(soak);
     }
     soak->state.t_ms = t_ms + 1u;
     return (((soak->state.t_ms % LOOK_EVERY_MS) != 0u) || look(soak)) && (soak->state.broken[0] == '\0');
@@ -148,7 +148,7 @@ static void go(soak_t *soak) {
     progress_begin(&soak->progress, soak->duration_ms / LOOK_EVERY_MS);
     interrupt_hold();
     if (soak->state.broken[0] == '\0') {
-        scenario_play(&soak->world, &play);
+        scenario_play(&soak->testbed, &play);
     }
     progress_end(&soak->progress);
     count_real_time(soak);
@@ -210,7 +210,7 @@ static bool write_results(soak_t *soak) {
 
 static status_t conclude(soak_t *soak) {
     if (soak->state.broken[0] == '\0') {
-        soak_judge_counters(soak);
+        soak_check_counters(soak);
     }
     if (!output_is_stdout(soak->request->results)) {
         print_result(soak);
@@ -233,19 +233,19 @@ static bool prepare(soak_t *soak, const soak_request_t *request) {
     soak->start_ms = all_ms * (request->shard - 1u) / request->shards;
     soak->duration_ms = (all_ms * request->shard / request->shards) - soak->start_ms;
     soak->gateway = (request->shard % 2u) == 0u;
-    soak->table_ids = (chance_next(&random) % 2u) == 0u;
-    soak->state.random = chance_next(&random);
+    soak->table_ids = (prng_next(&random) % 2u) == 0u;
+    soak->state.random = prng_next(&random);
     soak->state.row = (uint32_t)SOAK_ROW_COUNT;
     soak->state.next_ms = READY_MS;
     if (!read_rows(soak)) {
         return false;
     }
-    if (!scenario_world_init(&soak->world, &soak->scenario)) {
+    if (!scenario_testbed_init(&soak->testbed, &soak->scenario)) {
         return report("the testbed of the soak could not be built");
     }
     const scenario_watch_t watch = soak_watch(soak);
-    scenario_world_watch(&soak->world, &watch);
-    scenario_world_start(&soak->world);
+    scenario_testbed_watch(&soak->testbed, &watch);
+    scenario_testbed_start(&soak->testbed);
     return soak_load(soak) && soak_may_save(soak) &&
            ((request->results == NULL) || output_open(&soak->results, request->results));
 }

@@ -9,7 +9,7 @@
 #include "campaign/soak/soak.h"
 #include "campaign/soak/soak_rows.h"
 #include "io/output.h"
-#include "scenario/scenario_world.h"
+#include "scenario/scenario_testbed.h"
 #include "ui/progress.h"
 
 #define SOAK_BROKEN_SIZE 160u
@@ -17,7 +17,7 @@
 #define SOAK_STATUS_MS 100u
 #define SOAK_MS_PER_HOUR 3600000u
 
-/** What a checkpoint keeps beside the world. No pointers. */
+/** What a checkpoint keeps beside the testbed. No pointers. */
 typedef struct {
     uint64_t t_ms;
     uint64_t random;
@@ -66,9 +66,9 @@ typedef struct {
     bool table_ids;
     text_t text;
     scenario_t scenario;
-    scenario_world_t world;
-    scenario_world_t saved; /**< what a checkpoint is read into */
-    output_t file;          /**< of the checkpoint */
+    scenario_testbed_t testbed;
+    scenario_testbed_t saved; /**< what a checkpoint is read into */
+    output_t file;            /**< of the checkpoint */
     soak_went_t went;
     uint64_t began_ms; /**< real time up to which `real_ms` counts */
     progress_t progress;
@@ -78,12 +78,12 @@ typedef struct {
 /** Something is not as it must be; the first one counts. */
 void soak_break(soak_t *soak, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/** @name soak_judge.c @{ */
+/** @name soak_check.c @{ */
 scenario_watch_t soak_watch(soak_t *soak);
 /** After each millisecond. */
-void soak_judge_tick(soak_t *soak);
+void soak_check_tick(soak_t *soak);
 /** Every hour, and at the end: all counters. */
-void soak_judge_counters(soak_t *soak);
+void soak_check_counters(soak_t *soak);
 /** @} */
 
 /** @name soak_state.c @{ */

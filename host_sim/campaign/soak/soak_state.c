@@ -9,7 +9,7 @@
 
 enum { CHUNK_SIZE = 65536 };
 
-/** What a checkpoint says of the program: another build may have another layout of the world. */
+/** What a checkpoint says of the program: another build may have another layout of the testbed. */
 static bool identify_program(soak_t *soak) {
     static const char path[] = "/proc/self/exe";
     uint8_t chunk[CHUNK_SIZE];
@@ -39,7 +39,7 @@ static checkpoint_t checkpoint_of(const soak_t *soak) {
 
 bool soak_save(soak_t *soak) {
     const checkpoint_t checkpoint = checkpoint_of(soak);
-    const checkpoint_part_t parts[] = {{&soak->state, sizeof soak->state}, {&soak->world, sizeof soak->world}};
+    const checkpoint_part_t parts[] = {{&soak->state, sizeof soak->state}, {&soak->testbed, sizeof soak->testbed}};
 
     return checkpoint_save(&checkpoint, &soak->file, parts, sizeof parts / sizeof parts[0]);
 }
@@ -61,7 +61,7 @@ bool soak_load(soak_t *soak) {
 
     const bool good = checkpoint_load(&checkpoint, parts, sizeof parts / sizeof parts[0], &loaded);
     if (loaded) {
-        scenario_world_restore(&soak->world, &soak->saved);
+        scenario_testbed_restore(&soak->testbed, &soak->saved);
     }
     return good;
 }

@@ -98,7 +98,7 @@ static bool find_scenario(const char *name, char path[PATH_SIZE]) {
     return true;
 }
 
-static status_t judge(const work_t *work, bool good) {
+static status_t print_result(const work_t *work, bool good) {
     const scenario_check_t *check = &work->run.check;
 
     if (good) {
@@ -122,7 +122,7 @@ static status_t play(work_t *work, const char *events) {
     const bool is_told = !output_is_stdout(events);
     work->said_to = is_told ? stdout : stderr;
     if (is_told) {
-        timeline_init(&work->timeline, &work->run.world);
+        timeline_init(&work->timeline, &work->run.testbed);
         watches[count] = timeline_watch(&work->timeline);
         count++;
         (void)printf("%s\n\n", work->run.scenario.name);
@@ -137,13 +137,13 @@ static status_t play(work_t *work, const char *events) {
     }
     if (work->events.is_open) {
         events_summary_t summary = {0};
-        events_summarise(scenario_world_session(&work->run.world), &summary);
+        events_summarise(scenario_testbed_session(&work->run.testbed), &summary);
         events_write_summary(&work->events, &summary);
     }
     if (!output_commit(&work->events)) {
         return STATUS_UNUSABLE;
     }
-    return judge(work, good);
+    return print_result(work, good);
 }
 
 static bool check_files(const given_t *given, const char *path) {

@@ -1,6 +1,6 @@
 /**
  * @file cmd_scenario.c
- * `host_sim scenario`: scenario files, played and judged.
+ * `host_sim scenario`: scenario files, played and evaluated.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -62,7 +62,7 @@ typedef struct {
 /** What the command works with. */
 typedef struct {
     given_t given;
-    FILE *said_to; /* results, for people: standard error where an output goes to standard output */
+    FILE *said_to; /* results, for the reader: standard error where an output goes to standard output */
     output_t outputs[OUTPUTS];
     scenario_run_t run;
     result_t results[];
@@ -228,7 +228,7 @@ static void play_simulated(work_t *work, events_summary_t *summary) {
     const given_t *given = &work->given;
 
     (void)scenario_run(&work->run, &watch, (given->events != NULL) ? 1u : 0u, NULL);
-    events_summarise(scenario_world_session(&work->run.world), summary);
+    events_summarise(scenario_testbed_session(&work->run.testbed), summary);
 }
 
 /** A frame of the supervisor, as a line of a log. */

@@ -24,7 +24,7 @@ command_fn cmd_run;
 /** `host_sim demo`: the main job on the simulated bus, as a timeline. */
 command_fn cmd_demo;
 
-/** `host_sim scenario`: scenario files, played and judged. */
+/** `host_sim scenario`: scenario files, played and evaluated. */
 command_fn cmd_scenario;
 
 /** `host_sim vehicle`: VCU, EPS and AI computer as nodes on SocketCAN. */

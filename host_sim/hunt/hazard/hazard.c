@@ -96,10 +96,10 @@ static void read_limits(hazard_t *hazard) {
                               (hazard_setting(hazard, "steering_fast_max_ddeg", 0u) != 0u);
 }
 
-void hazard_init(hazard_t *hazard, const scenario_t *scenario, const scenario_world_t *world) {
+void hazard_init(hazard_t *hazard, const scenario_t *scenario, const scenario_testbed_t *testbed) {
     memset(hazard, 0, sizeof *hazard);
     hazard->scenario = scenario;
-    hazard->world = world;
+    hazard->testbed = testbed;
     hazard->gateway = scenario->vehicle.gateway;
     read_limits(hazard);
     hazard_rows_init(hazard);
@@ -123,7 +123,7 @@ static void on_foreign_command(hazard_t *hazard, agv_message_t message, const ha
                        ((message == AGV_MSG_THROTTLE_COMMAND) && (value > 0u)) || (message == AGV_MSG_STEERING_COMMAND);
     scenario_controller_t controller;
 
-    scenario_world_controller(hazard->world, HAL_CAN_VEHICLE, &controller);
+    scenario_testbed_controller(hazard->testbed, HAL_CAN_VEHICLE, &controller);
     const bool heard = controller.status.state == HAL_CAN_ERROR_ACTIVE; /* after a collision it may miss one */
     if (moves && heard && hazard->closed && !hazard->trip.tripped && (hazard->foreign_ms == 0u)) {
         hazard->foreign_ms = hazard->t_ms;
@@ -154,7 +154,7 @@ static void on_data(hazard_t *hazard, hal_can_side_t side, int from, const hal_c
 }
 
 static void look(hazard_t *hazard) {
-    scenario_world_view(hazard->world, &hazard->view);
+    scenario_testbed_view(hazard->testbed, &hazard->view);
 }
 
 static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
@@ -189,9 +189,9 @@ void hazard_step(hazard_t *hazard, uint64_t t_ms, const scenario_step_t *step) {
         hazard_hold_anew(hazard);
     }
     if (is_delivered) {
-        on_data(hazard, step->supervisor.side, VEHICLE_STRANGER, &step->supervisor.frame);
+        on_data(hazard, step->supervisor.side, VEHICLE_ROGUE, &step->supervisor.frame);
     } else if (is_fd) {
-        on_data(hazard, step->vehicle.side, VEHICLE_STRANGER, &step->vehicle.frame);
+        on_data(hazard, step->vehicle.side, VEHICLE_ROGUE, &step->vehicle.frame);
     } else {
         /* the wire shows it */
     }

@@ -14,7 +14,7 @@
 #include <stdint.h>
 
 #include "scenario/scenario.h"
-#include "scenario/scenario_world.h"
+#include "scenario/scenario_testbed.h"
 
 /** What kind of hazard. */
 typedef enum {
@@ -29,7 +29,7 @@ typedef enum {
     HAZARD_KINDS
 } hazard_kind_t;
 
-/** A kind, for people. */
+/** A kind, for the reader. */
 typedef struct {
     const char *name;    /**< "H1" */
     const char *meaning; /**< one line */
@@ -140,7 +140,7 @@ typedef struct {
     uint32_t measured_count;
 } hazard_hold_t;
 
-/** A judgement in the making. Read `kind`, `cause`, `at_ms` and `closeness`. */
+/** A evaluation in the making. Read `kind`, `cause`, `at_ms` and `closeness`. */
 typedef struct {
     hazard_kind_t kind; /**< the first hazard; HAZARD_NONE */
     const char *cause;  /**< which of its conditions */
@@ -148,8 +148,8 @@ typedef struct {
     uint8_t closeness[HAZARD_ROWS_MAX]; /**< the most that each condition came to: sixteenths of its limit */
 
     const scenario_t *scenario;
-    const scenario_world_t *world;
-    scenario_world_view_t view; /**< when the judgement last looked at it */
+    const scenario_testbed_t *testbed;
+    scenario_testbed_view_t view; /**< when the evaluation last looked at it */
     hazard_limits_t limits;
     bool gateway;
     uint64_t t_us;
@@ -189,8 +189,8 @@ typedef struct {
     bool off[HAZARD_ROWS_MAX]; /**< its fault only warns */
 } hazard_t;
 
-/** Begin. @param world must be built of @p scenario; both must outlive the judgement */
-void hazard_init(hazard_t *hazard, const scenario_t *scenario, const scenario_world_t *world);
+/** Begin. @param testbed must be built of @p scenario; both must outlive the evaluation */
+void hazard_init(hazard_t *hazard, const scenario_t *scenario, const scenario_testbed_t *testbed);
 
 /** Who has to see the frames. */
 scenario_watch_t hazard_watch(hazard_t *hazard);

@@ -9,7 +9,7 @@ enum { STEP_MS = 10, MARGIN_MS = 1500, MOVING_MM_S = 300, REACTED_MS = 350, REEN
 enum { SCORE_CAP = 4, EVENT_MS = 400, STILL_MARGIN_MS = 200, DEVIATION_DDEG = 50, CLOSE = 16 };
 enum { THROTTLE_SPARE = 10, IDLE_COUNTS = 2, FALL_MS = 700, EPS_ANGLE_MODE = 0x01, MODE_BYTE = 6, MODE_BITS = 0xC0 };
 
-/** How a row is judged. */
+/** How a row is evaluated. */
 typedef enum {
     SILENT, /**< no frame of the message (a command: no usable one) within `setting` */
     STUCK,  /**< its alive counter did not change within `setting` */
@@ -124,7 +124,7 @@ static bool is_command_bad(const hazard_t *hazard) {
 
 static bool is_stalled(const hazard_t *hazard, hal_can_side_t side) {
     scenario_controller_t controller;
-    scenario_world_controller(hazard->world, side, &controller);
+    scenario_testbed_controller(hazard->testbed, side, &controller);
     return controller.is_stalled;
 }
 

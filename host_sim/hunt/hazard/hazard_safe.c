@@ -50,7 +50,7 @@ static bool is_fresh(const hazard_t *hazard, agv_message_t message, uint32_t dea
 }
 
 /** What must be confirmed adds up while it is not (H4). */
-static void judge_confirmation(hazard_t *hazard) {
+static void check_confirmation(hazard_t *hazard) {
     hazard_trip_t *trip = &hazard->trip;
     const hazard_message_t *gear = &hazard->messages[AGV_MSG_GEAR_STATUS];
     const bool alive = is_fresh(hazard, AGV_MSG_VEHICLE_STATUS, hazard->limits.vcu_ms);
@@ -93,12 +93,12 @@ static bool has_ended(hazard_t *hazard) {
     if (!hazard->closed || hazard_is_safe_now(hazard, GONE_MS)) {
         return false;
     }
-    scenario_world_controller(hazard->world, HAL_CAN_VEHICLE, &controller);
+    scenario_testbed_controller(hazard->testbed, HAL_CAN_VEHICLE, &controller);
     return (controller.status.state != HAL_CAN_BUS_OFF) && (controller.status.tx_pending_ms < PENDING_MS) &&
            !controller.swallows;
 }
 
-static void judge_reset(hazard_t *hazard, bool was_closed) {
+static void check_reset(hazard_t *hazard, bool was_closed) {
     hazard_trip_t *trip = &hazard->trip;
 
     if (trip->tripped && ((hazard->closed && !was_closed) || has_ended(hazard))) {
@@ -127,7 +127,7 @@ static bool is_said_to_stand(const hazard_t *hazard) {
 }
 
 /** The safe commands are sent, and the vehicle does not become slower (H1). */
-static void judge_stopping(hazard_t *hazard) {
+static void check_stopping(hazard_t *hazard) {
     const int32_t now_mm_s = hazard_speed_mm_s(hazard);
     const int32_t before_mm_s = hazard->speeds_mm_s[hazard->speed_at];
 
@@ -165,13 +165,13 @@ void hazard_safe_tick(hazard_t *hazard) {
     const bool was_closed = trip->was_closed;
 
     follow_button(hazard);
-    judge_reset(hazard, was_closed);
+    check_reset(hazard, was_closed);
     follow_output(hazard, was_closed);
-    const bool hangs = hazard->view.is_deaf; /* the watchdog ends that, after its period */
+    const bool hangs = hazard->view.is_halted; /* the watchdog ends that, after its period */
     if (trip->tripped && hazard->closed && !hangs) {
-        judge_confirmation(hazard);
+        check_confirmation(hazard);
     }
     if ((hazard->t_ms % SPEED_SLOT_MS) == 0u) {
-        judge_stopping(hazard);
+        check_stopping(hazard);
     }
 }

@@ -65,7 +65,7 @@ static void note(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV
 }
 
 /** The vehicle takes up an engagement with the newest throttle that it was told. */
-static void judge_newest_throttle(hazard_t *hazard) {
+static void check_newest_throttle(hazard_t *hazard) {
     const uint32_t deadline_ms = hazard->limits.command_ms[AGV_MSG_THROTTLE_COMMAND];
 
     if (hazard->gateway && hazard->closed && !hazard->trip.tripped && hazard->throttle_is_newest &&
@@ -78,7 +78,7 @@ static void judge_newest_throttle(hazard_t *hazard) {
 static bool is_heard(const hazard_t *hazard) {
     scenario_controller_t controller;
 
-    scenario_world_controller(hazard->world, HAL_CAN_VEHICLE, &controller);
+    scenario_testbed_controller(hazard->testbed, HAL_CAN_VEHICLE, &controller);
     return controller.status.state != HAL_CAN_BUS_OFF;
 }
 
@@ -105,7 +105,7 @@ static void note_mode(hazard_t *hazard, uint8_t bits) {
     const bool manual = !autopilot && ((bits & MANUAL_BIT) != 0);
 
     if (autopilot && !mode->autopilot && (hazard->t_ms - mode->clear_ms >= REENGAGE_MS)) {
-        judge_newest_throttle(hazard);
+        check_newest_throttle(hazard);
         memset(hazard->is_told, 0, sizeof hazard->is_told);
     }
     if (!autopilot && mode->autopilot) {

@@ -5,20 +5,20 @@
 
 enum { LOOK_FOR_SIGNALS_EVERY_MS = 1000 };
 
-static void judge_event(void *ctx, const session_event_t *event) {
+static void check_event(void *ctx, const session_event_t *event) {
     scenario_check_event(ctx, event);
 }
 
-static void judge_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
+static void check_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
     scenario_check_frame(ctx, t_us, side, from, frame);
 }
 
-/** Hazards are judged where the file asks for it. */
+/** Hazards are evaluated where the file asks for it. */
 static void watch_hazards(scenario_run_t *run) {
-    hazard_init(&run->hazard, &run->scenario, &run->world);
+    hazard_init(&run->hazard, &run->scenario, &run->testbed);
     if (run->scenario.expect.no_hazards != 0u) {
         const scenario_watch_t watch = hazard_watch(&run->hazard);
-        scenario_world_watch(&run->world, &watch);
+        scenario_testbed_watch(&run->testbed, &watch);
     }
 }
 
@@ -51,14 +51,14 @@ static void before_step(void *ctx, uint64_t t_ms, const scenario_step_t *step) {
 static bool after_tick(void *ctx, uint64_t t_ms) {
     const playing_t *playing = ctx;
     scenario_run_t *run = playing->run;
-    scenario_world_view_t seen;
+    scenario_testbed_view_t seen;
 
     hazard_tick(&run->hazard, t_ms);
-    scenario_world_view(&run->world, &seen);
+    scenario_testbed_view(&run->testbed, &seen);
     scenario_check_output(&run->check, (uint32_t)t_ms, seen.output_closed);
     if (scenario_check_wants_vehicle(&run->check, (uint32_t)t_ms)) {
         vehicle_view_t view;
-        scenario_world_vehicle(&run->world, &view);
+        scenario_testbed_vehicle(&run->testbed, &view);
         scenario_check_vehicle(&run->check, (uint32_t)t_ms, &view);
     }
     run->was_interrupted = ((t_ms % LOOK_FOR_SIGNALS_EVERY_MS) == 0u) && interrupt_pending();
@@ -66,28 +66,28 @@ static bool after_tick(void *ctx, uint64_t t_ms) {
 }
 
 bool scenario_run(scenario_run_t *run, const scenario_watch_t watches[], size_t count, scenario_step_fn *on_step) {
-    const scenario_watch_t judge = {judge_event, judge_frame, &run->check};
+    const scenario_watch_t checked = {check_event, check_frame, &run->check};
 
     run->was_interrupted = false;
     scenario_check_init(&run->check, &run->scenario);
-    if (!scenario_world_init(&run->world, &run->scenario)) {
+    if (!scenario_testbed_init(&run->testbed, &run->scenario)) {
         scenario_check_fail(&run->check, 0u, "the testbed could not be built");
         return false;
     }
-    scenario_world_watch(&run->world, &judge);
+    scenario_testbed_watch(&run->testbed, &checked);
     watch_hazards(run);
     for (size_t i = 0u; i < count; i++) {
-        scenario_world_watch(&run->world, &watches[i]);
+        scenario_testbed_watch(&run->testbed, &watches[i]);
     }
-    scenario_world_start(&run->world);
+    scenario_testbed_start(&run->testbed);
     playing_t playing = {run, (count > 0u) ? watches[0].ctx : NULL, on_step};
     const scenario_play_t play = {.scenario = &run->scenario,
                                   .until_ms = run->scenario.duration_ms,
                                   .before_step = before_step,
                                   .after_tick = after_tick,
                                   .ctx = &playing};
-    scenario_play(&run->world, &play);
+    scenario_play(&run->testbed, &play);
     check_hazards(run);
-    scenario_check_finish(&run->check, agv_supervisor_counters(&scenario_world_session(&run->world)->supervisor));
+    scenario_check_finish(&run->check, agv_supervisor_counters(&scenario_testbed_session(&run->testbed)->supervisor));
     return !run->was_interrupted && (run->check.failure_count == 0u);
 }

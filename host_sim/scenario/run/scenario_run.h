@@ -1,6 +1,6 @@
 /**
  * @file scenario_run.h
- * A scenario file played on the simulated bus and judged.
+ * A scenario file played on the simulated bus and evaluated.
  */
 #ifndef HOST_SIM_SCENARIO_RUN_H
 #define HOST_SIM_SCENARIO_RUN_H
@@ -10,7 +10,7 @@
 #include "hunt/hazard/hazard.h"
 #include "scenario/scenario.h"
 #include "scenario/scenario_check.h"
-#include "scenario/scenario_world.h"
+#include "scenario/scenario_testbed.h"
 
 /** Told of every step before it is done. */
 typedef void scenario_step_fn(void *ctx, const scenario_step_t *step);
@@ -18,7 +18,7 @@ typedef void scenario_step_fn(void *ctx, const scenario_step_t *step);
 /** All that one run needs; some 300 KiB: allocate it. */
 typedef struct {
     scenario_t scenario;
-    scenario_world_t world;
+    scenario_testbed_t testbed;
     scenario_check_t check;
     hazard_t hazard;
     bool was_interrupted; /**< by a signal that is held back (interrupt.h): not played to its end */
@@ -26,7 +26,7 @@ typedef struct {
 
 /**
  * Play run->scenario, which was read.
- * @param watches told of what happens, beside the judgement: @p count of them
+ * @param watches told of what happens, beside the evaluation: @p count of them
  * @param on_step likewise, with the ctx of the first; NULL: nobody is told
  * @return whether every expectation held; run->check says which did not. false too when it was interrupted
  */

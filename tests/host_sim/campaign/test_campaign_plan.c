@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "campaign/campaign_judge.h"
+#include "campaign/campaign_check.h"
 #include "scenario/scenario.h"
 #include "scratch.h"
 #include "unity.h"

@@ -30,7 +30,7 @@ typedef struct {
 } planted_t;
 
 static scenario_t scenario;
-static scenario_world_t world;
+static scenario_testbed_t testbed;
 static hazard_t hazard;
 static const planted_t *planted;
 static hal_can_frame_t queue[QUEUE];
@@ -46,8 +46,8 @@ void tearDown(void) {
 }
 
 static vehicle_state_t vehicle_now(void) {
-    scenario_world_view_t view;
-    scenario_world_view(&world, &view);
+    scenario_testbed_view_t view;
+    scenario_testbed_view(&testbed, &view);
     return view.vehicle;
 }
 
@@ -55,7 +55,7 @@ static void send(agv_message_t message, const uint8_t data[AGV_DLC]) {
     hal_can_frame_t frame = {.id = agv_message_id(message, AGV_ID_SET_HEADING), .length = AGV_DLC};
 
     memcpy(frame.data, data, AGV_DLC);
-    (void)hal_can_send(scenario_world_port(&world), HAL_CAN_VEHICLE, &frame);
+    (void)hal_can_send(scenario_testbed_port(&testbed), HAL_CAN_VEHICLE, &frame);
 }
 
 static void enqueue(hal_can_side_t side, const hal_can_frame_t *frame) {
@@ -111,11 +111,11 @@ static void act(void *ctx, uint64_t now_ms) {
                          ((planted->safe_end_ms == NEVER) || (t_ms < planted->safe_end_ms));
 
     (void)ctx;
-    hal_safety_output_set(scenario_world_port(&world),
+    hal_safety_output_set(scenario_testbed_port(&testbed),
                           (t_ms >= READY_MS) && ((planted->open_ms == NEVER) || (t_ms < planted->open_ms)));
     for (unsigned i = 0u; i < queued; i++) {
         if (!is_safe || (towards[i] == HAL_CAN_AI)) {
-            (void)hal_can_send(scenario_world_port(&world), towards[i], &queue[i]);
+            (void)hal_can_send(scenario_testbed_port(&testbed), towards[i], &queue[i]);
         }
     }
     queued = 0u;
@@ -123,7 +123,7 @@ static void act(void *ctx, uint64_t now_ms) {
         send_safe(t_ms);
     }
     if ((planted->recovers_ms != NEVER) && (t_ms == planted->recovers_ms)) {
-        hal_can_recover(scenario_world_port(&world), HAL_CAN_VEHICLE);
+        hal_can_recover(scenario_testbed_port(&testbed), HAL_CAN_VEHICLE);
     }
     if ((planted->forges_ms != NEVER) && (t_ms == planted->forges_ms)) {
         send(AGV_MSG_THROTTLE_COMMAND, throttle);
@@ -159,18 +159,18 @@ static hazard_kind_t play(const planted_t *supervisor, const char *steps) {
         (supervisor->setting != NULL) ? supervisor->setting : "", supervisor->rolls ? "false" : "true",
         supervisor->rolls ? "  coasting_mm_s2: 1\n  braking_mm_s2: 1\n  locked_mm_s2: 1\n" : "", steps);
     TEST_ASSERT_TRUE(scenario_read_text(&scenario, "test", text, &defaults));
-    TEST_ASSERT_TRUE(scenario_world_init(&world, &scenario));
-    hazard_init(&hazard, &scenario, &world);
+    TEST_ASSERT_TRUE(scenario_testbed_init(&testbed, &scenario));
+    hazard_init(&hazard, &scenario, &testbed);
     const scenario_watch_t watch = hazard_watch(&hazard);
-    scenario_world_watch(&world, &watch);
-    scenario_world_watch(&world, &passing);
-    scenario_world_start(&world);
+    scenario_testbed_watch(&testbed, &watch);
+    scenario_testbed_watch(&testbed, &passing);
+    scenario_testbed_start(&testbed);
     const scenario_play_t run = {.scenario = &scenario,
                                  .until_ms = scenario.duration_ms,
                                  .before_step = before_step,
                                  .before_tick = act,
                                  .after_tick = after_tick};
-    scenario_play(&world, &run);
+    scenario_play(&testbed, &run);
     return hazard.kind;
 }
 
@@ -242,9 +242,10 @@ void test_h2_who_is_bus_off_does_not_hear_of_manual(void) {
                               "  - {at_ms: 3150, operator: disengage}\n"
                               "  - {at_ms: 3150, operator: steer, steer_deg: -60}\n"
                               "  - {at_ms: 3650, operator: engage}\n";
-    const planted_t deaf = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .recovers_ms = TRIP_MS + 800};
+    const planted_t halted = {
+        .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .recovers_ms = TRIP_MS + 800};
     const planted_t hears = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .recovers_ms = TRIP_MS + 300};
-    expect(HAZARD_NONE, "", play(&deaf, steps));
+    expect(HAZARD_NONE, "", play(&halted, steps));
     expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&hears, steps));
 }
 

@@ -53,7 +53,7 @@ static void frame_at(uint64_t t_ms, uint32_t id, uint8_t byte0, uint8_t length) 
 }
 
 /* The run is over; this is the one failure (NULL: there is none). */
-static void judged(const char *failure) {
+static void expect_failure(const char *failure) {
     scenario_check_finish(&check, &counters);
     if (failure == NULL) {
         TEST_ASSERT_EQUAL_STRING("", check.failures[0]);
@@ -71,54 +71,54 @@ void test_states_come_in_order_in_their_time(void) {
     expect(TWO_STATES);
     state(0u, AGV_STATE_INIT, AGV_FAULT_NONE);
     state(9u, AGV_STATE_TRIPPED, AGV_FAULT_BUS_OFF);
-    judged(NULL);
+    expect_failure(NULL);
 }
 
 void test_a_state_too_late(void) {
     expect(TWO_STATES);
     state(0u, AGV_STATE_INIT, AGV_FAULT_NONE);
     state(10u, AGV_STATE_TRIPPED, AGV_FAULT_BUS_OFF);
-    judged("line 5: TRIPPED (BUS_OFF) is expected in 5..9 ms, seen: TRIPPED (BUS_OFF) at 10 ms");
+    expect_failure("line 5: TRIPPED (BUS_OFF) is expected in 5..9 ms, seen: TRIPPED (BUS_OFF) at 10 ms");
 }
 
 void test_a_state_too_early(void) {
     expect(TWO_STATES);
     state(0u, AGV_STATE_INIT, AGV_FAULT_NONE);
     state(4u, AGV_STATE_TRIPPED, AGV_FAULT_BUS_OFF);
-    judged("line 5: TRIPPED (BUS_OFF) is expected in 5..9 ms, seen: TRIPPED (BUS_OFF) at 4 ms");
+    expect_failure("line 5: TRIPPED (BUS_OFF) is expected in 5..9 ms, seen: TRIPPED (BUS_OFF) at 4 ms");
 }
 
 void test_a_state_with_another_reason(void) {
     expect(TWO_STATES);
     state(0u, AGV_STATE_INIT, AGV_FAULT_NONE);
     state(5u, AGV_STATE_TRIPPED, AGV_FAULT_TX_STALLED);
-    judged("line 5: TRIPPED (BUS_OFF) is expected in 5..9 ms, seen: TRIPPED (TX_STALLED) at 5 ms");
+    expect_failure("line 5: TRIPPED (BUS_OFF) is expected in 5..9 ms, seen: TRIPPED (TX_STALLED) at 5 ms");
 }
 
 void test_another_state(void) {
     expect(TWO_STATES);
     state(0u, AGV_STATE_INIT, AGV_FAULT_NONE);
     state(5u, AGV_STATE_STANDBY, AGV_FAULT_NONE);
-    judged("line 5: TRIPPED (BUS_OFF) is expected in 5..9 ms, seen: STANDBY (no reason) at 5 ms");
+    expect_failure("line 5: TRIPPED (BUS_OFF) is expected in 5..9 ms, seen: STANDBY (no reason) at 5 ms");
 }
 
 void test_a_state_that_is_missing(void) {
     expect(TWO_STATES);
     state(0u, AGV_STATE_INIT, AGV_FAULT_NONE);
-    judged("line 5: TRIPPED (BUS_OFF) is expected in 5..9 ms, not seen");
+    expect_failure("line 5: TRIPPED (BUS_OFF) is expected in 5..9 ms, not seen");
 }
 
 void test_a_state_that_nobody_expects(void) {
     expect(NO_STATES);
     state(0u, AGV_STATE_INIT, AGV_FAULT_NONE);
-    judged("no further change of state is expected, but at 0 ms: INIT (no reason)");
+    expect_failure("no further change of state is expected, but at 0 ms: INIT (no reason)");
 }
 
 void test_a_frame_in_its_time(void) {
     expect(NO_STATES "  frames: [{id: 168h, bytes: \"08\", at_ms: [10, 20]}]\n");
     frame_at(9u, 0x168u, 0x08u, 1u);
     frame_at(20u, 0x168u, 0x08u, 1u);
-    judged(NULL);
+    expect_failure(NULL);
 }
 
 void test_a_frame_too_late_with_other_bytes_or_of_another_length(void) {
@@ -127,7 +127,7 @@ void test_a_frame_too_late_with_other_bytes_or_of_another_length(void) {
     frame_at(15u, 0x168u, 0x08u, 2u);
     frame_at(15u, 0x169u, 0x08u, 1u);
     frame_at(21u, 0x168u, 0x08u, 1u);
-    judged("line 6: 168h [08] is expected at least 1 times in 10..20 ms, seen: 0 (one at 21 ms)");
+    expect_failure("line 6: 168h [08] is expected at least 1 times in 10..20 ms, seen: 0 (one at 21 ms)");
 }
 
 void test_the_first_frame_since_a_moment(void) {
@@ -135,15 +135,15 @@ void test_the_first_frame_since_a_moment(void) {
     frame_at(4u, 0x168u, 0x01u, 1u);
     frame_at(10u, 0x168u, 0x08u, 1u);
     frame_at(11u, 0x168u, 0x01u, 1u);
-    judged(NULL);
+    expect_failure(NULL);
     expect(NO_STATES "  frames: [{id: 168h, bytes: \"08\", at_ms: [10, 20], first_since_ms: 5}]\n");
     frame_at(9u, 0x168u, 0x08u, 1u);
     frame_at(10u, 0x168u, 0x08u, 1u);
-    judged("line 6: 168h [08] is expected as the first in 10..20 ms, seen: 168h [08] at 9 ms");
+    expect_failure("line 6: 168h [08] is expected as the first in 10..20 ms, seen: 168h [08] at 9 ms");
     expect(NO_STATES "  frames: [{id: 168h, bytes: \"08\", at_ms: [10, 20], first_since_ms: 5}]\n");
     frame_at(10u, 0x168u, 0x01u, 1u);
     frame_at(11u, 0x168u, 0x08u, 1u);
-    judged("line 6: 168h [08] is expected as the first in 10..20 ms, seen: 168h [01] at 10 ms");
+    expect_failure("line 6: 168h [08] is expected as the first in 10..20 ms, seen: 168h [01] at 10 ms");
 }
 
 void test_a_number_of_frames(void) {
@@ -151,7 +151,7 @@ void test_a_number_of_frames(void) {
     for (unsigned i = 0u; i < 4u; i++) {
         frame_at(15u, 0x168u, 0x08u, 8u);
     }
-    judged("line 6: 168h is expected 2..3 times in 10..20 ms, seen: 4");
+    expect_failure("line 6: 168h is expected 2..3 times in 10..20 ms, seen: 4");
 }
 
 void test_a_period(void) {
@@ -159,14 +159,14 @@ void test_a_period(void) {
     for (unsigned t = 50u; t <= 1000u; t += 101u) {
         frame_at(t, 0x168u, 0x08u, 8u);
     }
-    judged(NULL);
+    expect_failure(NULL);
     expect(NO_STATES "  frames: [{id: 168h, at_ms: [0, 1000], every_ms: 100, jitter_ms: 1}]\n");
     frame_at(50u, 0x168u, 0x08u, 8u);
     frame_at(148u, 0x168u, 0x08u, 8u);
-    judged("line 6: 168h is expected every 100 ms, seen: 98 ms after the previous one at 50 ms");
+    expect_failure("line 6: 168h is expected every 100 ms, seen: 98 ms after the previous one at 50 ms");
     expect(NO_STATES "  frames: [{id: 168h, at_ms: [0, 1000], every_ms: 100, jitter_ms: 1}]\n");
     frame_at(50u, 0x168u, 0x08u, 8u);
-    judged("line 6: 168h is expected every 100 ms in 0..1000 ms, the last one was at 50 ms");
+    expect_failure("line 6: 168h is expected every 100 ms in 0..1000 ms, the last one was at 50 ms");
 }
 
 void test_a_frame_that_must_not_be(void) {
@@ -175,48 +175,48 @@ void test_a_frame_that_must_not_be(void) {
     frame_at(15u, 0x168u, 0x08u, 2u);
     frame_at(20u, 0x168u, 0x01u, 2u);
     frame_at(20u, 0x168u, 0x01u, 2u);
-    judged("line 6: a frame is forbidden in 10..20 ms, seen: 168h [01 00] at 20 ms");
+    expect_failure("line 6: a frame is forbidden in 10..20 ms, seen: 168h [01 00] at 20 ms");
 }
 
 void test_frames_of_others_do_not_count(void) {
     const hal_can_frame_t frame = {.id = 0x168u, .length = 8u};
     expect(NO_STATES "  never: [{id: 168h}]\n");
     scenario_check_frame(&check, 1000u, HAL_CAN_VEHICLE, VEHICLE_AI, &frame);
-    judged(NULL);
+    expect_failure(NULL);
     expect(NO_STATES "  never: [{id: 168h, from: ai, side: ai}]\n");
     scenario_check_frame(&check, 1000u, HAL_CAN_VEHICLE, VEHICLE_AI, &frame);
-    judged(NULL);
+    expect_failure(NULL);
     expect(NO_STATES "  never: [{from: anybody, at_ms: 1}]\n");
     scenario_check_frame(&check, 1000u, HAL_CAN_AI, VEHICLE_EPS, &frame);
-    judged("line 6: a frame is forbidden at 1 ms, seen: 168h [00 00 00 00 00 00 00 00] at 1 ms");
+    expect_failure("line 6: a frame is forbidden at 1 ms, seen: 168h [00 00 00 00 00 00 00 00] at 1 ms");
 }
 
 void test_changes_of_the_safety_output(void) {
     expect(NO_STATES "  safety_output: [{closed: true, at_ms: 5}]\n");
     scenario_check_output(&check, 4u, false);
     scenario_check_output(&check, 5u, true);
-    judged(NULL);
+    expect_failure(NULL);
     expect(NO_STATES "  safety_output: [{closed: true, at_ms: 5}]\n");
     scenario_check_output(&check, 6u, true);
-    judged("line 6: safety output closed is expected at 5 ms, seen: closed at 6 ms");
+    expect_failure("line 6: safety output closed is expected at 5 ms, seen: closed at 6 ms");
     expect(NO_STATES "  safety_output: [{closed: true, at_ms: 5}]\n");
-    judged("line 6: safety output closed is expected at 5 ms, not seen");
+    expect_failure("line 6: safety output closed is expected at 5 ms, not seen");
     expect(NO_STATES);
     scenario_check_output(&check, 6u, true);
-    judged("no further change of the safety output is expected, but at 6 ms: closed");
+    expect_failure("no further change of the safety output is expected, but at 6 ms: closed");
 }
 
 void test_the_led_all_the_while(void) {
     expect(NO_STATES "  led: [{code: 0, at_ms: [0, 9]}, {code: 13, at_ms: [10, 1000]}]\n");
     led(0u, 0);
     led(10u, 13);
-    judged(NULL);
+    expect_failure(NULL);
     expect(NO_STATES "  led: [{code: 13, at_ms: [10, 1000]}]\n");
     led(0u, 0);
     led(10u, 13);
     led(500u, 14);
     led(501u, 13);
-    judged("line 6: LED code 13 is expected in 10..1000 ms, seen: 14 in 500..500 ms");
+    expect_failure("line 6: LED code 13 is expected in 10..1000 ms, seen: 14 in 500..500 ms");
 }
 
 void test_faults_begin_and_end(void) {
@@ -224,30 +224,30 @@ void test_faults_begin_and_end(void) {
     event(5u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1u, 0u);
     event(8u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 0u, 0u);
     event(9u, AGV_EVENT_FAULT, AGV_FAULT_RX_OVERRUN, AGV_CLASS_WARN, 1u, 0u);
-    judged(NULL);
+    expect_failure(NULL);
     expect(NO_STATES "  faults: [{name: BUS_OFF, class: trip, raised_ms: 5}]\n");
     event(5u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_WARN, 1u, 0u);
-    judged("line 6: BUS_OFF is expected to be raised at 5 ms as a trip, seen at 5 ms");
+    expect_failure("line 6: BUS_OFF is expected to be raised at 5 ms as a trip, seen at 5 ms");
     expect(NO_STATES "  faults: [{name: BUS_OFF, raised_ms: 5}]\n");
-    judged("line 6: BUS_OFF is expected to be raised at 5 ms, not seen");
+    expect_failure("line 6: BUS_OFF is expected to be raised at 5 ms, not seen");
     expect(NO_STATES "  faults: [{name: BUS_OFF, raised_ms: 5, ended_ms: never}]\n");
     event(5u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1u, 0u);
     event(8u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 0u, 0u);
-    judged("line 6: BUS_OFF is expected to end never, it ended at 8 ms");
+    expect_failure("line 6: BUS_OFF is expected to end never, it ended at 8 ms");
     expect(NO_STATES "  faults: [{name: BUS_OFF, raised_ms: 5, ended_ms: 8}]\n");
     event(5u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1u, 0u);
-    judged("line 6: BUS_OFF is expected to end at 8 ms, it did not");
+    expect_failure("line 6: BUS_OFF is expected to end at 8 ms, it did not");
 }
 
 void test_no_other_faults(void) {
     expect(NO_STATES "  faults: [{name: BUS_OFF, raised_ms: 5}]\n  other_faults: never\n");
     event(5u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1u, 0u);
     event(6u, AGV_EVENT_FAULT, AGV_FAULT_RX_OVERRUN, AGV_CLASS_WARN, 1u, 0u);
-    judged("no other fault is expected, but at 6 ms: RX_OVERRUN (warn)");
+    expect_failure("no other fault is expected, but at 6 ms: RX_OVERRUN (warn)");
     expect(NO_STATES "  faults: [{name: BUS_OFF, raised_ms: 5}]\n  other_faults: never\n");
     event(5u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1u, 0u);
     event(6u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1u, 0u); /* a second time */
-    judged("no other fault is expected, but at 6 ms: BUS_OFF (trip)");
+    expect_failure("no other fault is expected, but at 6 ms: BUS_OFF (trip)");
 }
 
 void test_resets_and_what_is_missing_at_start(void) {
@@ -255,23 +255,23 @@ void test_resets_and_what_is_missing_at_start(void) {
                      "[messages], at_ms: 6}]\n");
     event(5u, AGV_EVENT_RESET, 0u, 0u, 0u, AGV_MISSING_BUTTON | AGV_MISSING_MANUAL);
     event(6u, AGV_EVENT_STARTUP, 0u, 0u, 0u, AGV_MISSING_MESSAGES);
-    judged(NULL);
+    expect_failure(NULL);
     expect(NO_STATES "  resets: [{accepted: false, why: [button, manual], at_ms: 5}]\n");
     event(5u, AGV_EVENT_RESET, 0u, 0u, 0u, AGV_MISSING_BUTTON);
-    judged("line 6: reset refused [manual, button] is expected at 5 ms, seen: refused [button] at 5 ms");
+    expect_failure("line 6: reset refused [manual, button] is expected at 5 ms, seen: refused [button] at 5 ms");
     expect(NO_STATES "  resets: [{accepted: true, at_ms: 5}]\n");
-    judged("line 6: reset accepted [] is expected at 5 ms, not seen");
+    expect_failure("line 6: reset accepted [] is expected at 5 ms, not seen");
     expect(NO_STATES);
     event(5u, AGV_EVENT_RESET, 1u, 0u, 0u, 0u);
-    judged("no further reset is expected, but at 5 ms: accepted []");
+    expect_failure("no further reset is expected, but at 5 ms: accepted []");
     expect(NO_STATES "  startup: [{missing: [messages], at_ms: 6}]\n");
     event(7u, AGV_EVENT_STARTUP, 0u, 0u, 0u, AGV_MISSING_MESSAGES);
-    judged("line 6: missing at start [messages] is expected at 6 ms, seen: [messages] at 7 ms");
+    expect_failure("line 6: missing at start [messages] is expected at 6 ms, seen: [messages] at 7 ms");
     expect(NO_STATES "  startup: [{missing: [messages], at_ms: 6}]\n");
-    judged("line 6: missing at start [messages] is expected at 6 ms, not seen");
+    expect_failure("line 6: missing at start [messages] is expected at 6 ms, not seen");
     expect(NO_STATES);
     event(7u, AGV_EVENT_STARTUP, 0u, 0u, 0u, AGV_MISSING_STATE);
-    judged("no report of missing conditions at start is expected, but at 7 ms: [state]");
+    expect_failure("no report of missing conditions at start is expected, but at 7 ms: [state]");
 }
 
 void test_the_vehicle_at_a_moment(void) {
@@ -280,23 +280,23 @@ void test_the_vehicle_at_a_moment(void) {
     TEST_ASSERT_FALSE(scenario_check_wants_vehicle(&check, 6u));
     TEST_ASSERT_TRUE(scenario_check_wants_vehicle(&check, 7u));
     scenario_check_vehicle(&check, 7u, &view);
-    judged(NULL);
+    expect_failure(NULL);
     expect(NO_STATES "  vehicle: [{at_ms: 7, gear: P}]\n");
     scenario_check_vehicle(&check, 7u, &view);
-    judged("line 6: vehicle at 7 ms: gear (P 8, R 2, N 4, D 1) 8h is expected, seen: 1h");
+    expect_failure("line 6: vehicle at 7 ms: gear (P 8, R 2, N 4, D 1) 8h is expected, seen: 1h");
     expect(NO_STATES "  vehicle: [{at_ms: 7, speed_mm_s: 0}]\n");
     scenario_check_vehicle(&check, 7u, &view);
-    judged("line 6: vehicle at 7 ms: speed in mm/s 0..0 is expected, seen: 1200");
+    expect_failure("line 6: vehicle at 7 ms: speed in mm/s 0..0 is expected, seen: 1200");
 }
 
 void test_counters_at_the_end(void) {
     expect(NO_STATES "  counters_at_end: {sent: 3, rejected_remote: [1, 2]}\n");
     counters.sent = 3u;
     counters.rejected[AGV_REJECTED_REMOTE] = 2u;
-    judged(NULL);
+    expect_failure(NULL);
     counters.rejected[AGV_REJECTED_REMOTE] = 3u;
     expect(NO_STATES "  counters_at_end: {sent: 3, rejected_remote: [1, 2]}\n");
-    judged("line 6: counter rejected_remote: 1..2 is expected at the end, seen: 3");
+    expect_failure("line 6: counter rejected_remote: 1..2 is expected at the end, seen: 3");
 }
 
 void test_more_failures_than_are_kept_are_counted(void) {

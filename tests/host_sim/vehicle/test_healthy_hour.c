@@ -9,8 +9,8 @@
 #include "agv/codec.h"
 #include "agv/names.h"
 #include "agv/state.h"
-#include "common/chance.h"
-#include "scenario/scenario_world.h"
+#include "common/prng.h"
+#include "scenario/scenario_testbed.h"
 #include "unity.h"
 
 #ifndef HEALTHY_MS
@@ -59,7 +59,7 @@ typedef struct {
     uint32_t gear_changes_moving;
 } witness_t;
 
-static scenario_world_t *world;
+static scenario_testbed_t *testbed;
 static scenario_t scenario;
 static witness_t witness;
 static uint64_t random_state;
@@ -70,8 +70,8 @@ static bool drives_back; /* the direction of the round */
 static int32_t fastest_mm_s;
 
 void setUp(void) {
-    world = malloc(sizeof *world);
-    TEST_ASSERT_NOT_NULL(world);
+    testbed = malloc(sizeof *testbed);
+    TEST_ASSERT_NOT_NULL(testbed);
     witness = (witness_t){.throttle_command = -1, .gear_command = -1, .angle_command_ddeg = INT32_MAX};
     witness.quickest_four_ms = UINT32_MAX;
     random_state = 1u;
@@ -82,7 +82,7 @@ void setUp(void) {
 }
 
 void tearDown(void) {
-    free(world);
+    free(testbed);
 }
 
 static void on_event(void *ctx, const session_event_t *event) {
@@ -239,7 +239,7 @@ static void witness_speed(void) {
 }
 
 static void witness_tick(uint64_t t_ms) {
-    const bool judged = witness.engaged && (t_ms - witness.engaged_ms >= JUDGED_MS);
+    const bool evaluated = witness.engaged && (t_ms - witness.engaged_ms >= JUDGED_MS);
     const bool is_direction = (witness.gear == AGV_GEAR_D) || (witness.gear == AGV_GEAR_R);
     const bool other_gear = is_direction && (witness.gear_command >= 0) && (witness.gear_command != witness.gear);
 
@@ -247,7 +247,7 @@ static void witness_tick(uint64_t t_ms) {
     witness.nearer_ddeg = (witness.budget[W_STEERING] == 0u) ? 0 : witness.nearer_ddeg;
     spend(W_MODE_NONE, !witness.engaged && !witness.manual && witness.moving);
     witness_speed();
-    if (!judged) {
+    if (!evaluated) {
         return;
     }
     spend(W_THROTTLE,
@@ -261,11 +261,11 @@ static void witness_tick(uint64_t t_ms) {
 
 static void act(uint32_t t_ms, vehicle_action_t action) {
     const scenario_step_t step = {.at_ms = t_ms, .of_vehicle = true, .vehicle = action};
-    scenario_world_do(world, &step);
+    scenario_testbed_do(testbed, &step);
 }
 
 static int32_t draw_angle_ddeg(int32_t most) {
-    return (int32_t)chance_draw(&random_state, 0u, 2u * (uint32_t)most) - most;
+    return (int32_t)prng_draw(&random_state, 0u, 2u * (uint32_t)most) - most;
 }
 
 static void ai_drives(uint32_t t_ms, uint8_t gear, uint16_t throttle_permille) {
@@ -277,17 +277,17 @@ static void ai_drives(uint32_t t_ms, uint8_t gear, uint16_t throttle_permille) {
 
 /* From manual to autopilot, at standstill or under way, in whatever direction. */
 static void engage(uint32_t t_ms) {
-    drives_back = chance_draw(&random_state, 0u, 3u) == 0u;
-    ai_drives(t_ms, drives_back ? AGV_GEAR_R : AGV_GEAR_D, (uint16_t)chance_draw(&random_state, 200u, 1000u));
+    drives_back = prng_draw(&random_state, 0u, 3u) == 0u;
+    ai_drives(t_ms, drives_back ? AGV_GEAR_R : AGV_GEAR_D, (uint16_t)prng_draw(&random_state, 200u, 1000u));
     act(t_ms, (vehicle_action_t){.what = VEHICLE_DO_AI_WEAVE,
                                  .angle_ddeg = draw_angle_ddeg(1500),
-                                 .ms = chance_draw(&random_state, 2000u, 8000u)});
+                                 .ms = prng_draw(&random_state, 2000u, 8000u)});
     act(t_ms, (vehicle_action_t){.what = VEHICLE_DO_ENGAGE});
 }
 
 /* It brakes hard: by throttle 0, by gear P, or to go the other way. */
 static void brake(uint32_t t_ms) {
-    switch (chance_draw(&random_state, 0u, 3u)) {
+    switch (prng_draw(&random_state, 0u, 3u)) {
     case 0:
         ai_drives(t_ms, drives_back ? AGV_GEAR_R : AGV_GEAR_D, 0u);
         break;
@@ -306,13 +306,13 @@ static void brake(uint32_t t_ms) {
 /* From autopilot to manual; the operator drives on, or stops, or lets it roll. */
 static void disengage(uint32_t t_ms) {
     static const uint8_t gears[] = {AGV_GEAR_D, AGV_GEAR_R, AGV_GEAR_N, AGV_GEAR_P};
-    const uint8_t gear = gears[chance_draw(&random_state, 0u, 3u)];
+    const uint8_t gear = gears[prng_draw(&random_state, 0u, 3u)];
 
     act(t_ms, (vehicle_action_t){.what = VEHICLE_DO_DISENGAGE});
     act(t_ms, (vehicle_action_t){.what = VEHICLE_DO_HAND_STEER, .angle_ddeg = draw_angle_ddeg(1800)});
     act(t_ms, (vehicle_action_t){.what = VEHICLE_DO_REMOTE_DRIVE,
                                  .gear = gear,
-                                 .throttle_permille = (uint16_t)chance_draw(&random_state, 0u, 800u)});
+                                 .throttle_permille = (uint16_t)prng_draw(&random_state, 0u, 800u)});
 }
 
 /* Somebody honks: a press that is none of a reset. */
@@ -320,13 +320,13 @@ static void press(uint32_t t_ms, bool on) {
     act(t_ms, (vehicle_action_t){.what = VEHICLE_DO_BUTTON, .count = 1u, .on = on});
 }
 
-static void people(uint32_t t_ms) {
+static void operator(uint32_t t_ms) {
     const uint32_t round_ms = t_ms % (2u * HAND_OVER_MS);
     static uint32_t brake_ms;
 
     if (round_ms == 0u) {
         engage(t_ms);
-        brake_ms = chance_draw(&random_state, 2000u, 9000u);
+        brake_ms = prng_draw(&random_state, 2000u, 9000u);
     } else if (round_ms == brake_ms) {
         brake(t_ms);
     } else if (round_ms == HAND_OVER_MS) {
@@ -365,14 +365,14 @@ static void begin(bool gateway, bool shadow) {
     scenario.config.topology = gateway ? AGV_TOPOLOGY_GATEWAY : AGV_TOPOLOGY_SHARED;
     scenario.config.shadow = shadow ? AGV_SHADOW_ON : AGV_SHADOW_OFF;
     agv_config_ids(&scenario.config, &scenario.ids);
-    TEST_ASSERT_TRUE(scenario_world_init(world, &scenario));
-    scenario_world_watch(world, &watch);
-    scenario_world_start(world);
+    TEST_ASSERT_TRUE(scenario_testbed_init(testbed, &scenario));
+    scenario_testbed_watch(testbed, &watch);
+    scenario_testbed_start(testbed);
 }
 
-static scenario_world_view_t look(void) {
-    scenario_world_view_t view;
-    scenario_world_view(world, &view);
+static scenario_testbed_view_t look(void) {
+    scenario_testbed_view_t view;
+    scenario_testbed_view(testbed, &view);
     return view;
 }
 
@@ -386,9 +386,9 @@ static void drive(bool gateway) {
             }
         }
         if (t_ms > READY_MS) {
-            people(t_ms);
+            operator(t_ms);
         }
-        scenario_world_tick(world, t_ms);
+        scenario_testbed_tick(testbed, t_ms);
         witness_tick(t_ms);
         if (((t_ms > READY_MS) && !look().output_closed) || (faults_raised > 0u)) {
             TEST_FAIL_MESSAGE((first_fault[0] != '\0') ? first_fault : "the safety output is open");
@@ -398,12 +398,12 @@ static void drive(bool gateway) {
 
 static uint32_t load_permille(hal_can_side_t side) {
     sim_bus_stats_t stats;
-    scenario_world_bus_stats(world, side, &stats);
+    scenario_testbed_bus_stats(testbed, side, &stats);
     return (uint32_t)(stats.busy_us / HEALTHY_MS);
 }
 
 static void judge(bool gateway) {
-    const agv_counters_t *counters = agv_supervisor_counters(&scenario_world_session(world)->supervisor);
+    const agv_counters_t *counters = agv_supervisor_counters(&scenario_testbed_session(testbed)->supervisor);
 
     TEST_ASSERT_EQUAL_UINT32(0u, trips);
     TEST_ASSERT_EQUAL_UINT32(0u, counters->warnings);
@@ -458,7 +458,7 @@ void test_the_witness_sees_what_is_wrong(void) {
         } else {
             /* it drives */
         }
-        scenario_world_tick(world, t_ms);
+        scenario_testbed_tick(testbed, t_ms);
         witness_tick(t_ms);
     }
     TEST_ASSERT_GREATER_THAN_UINT32(LIMITS[W_THROTTLE].limit_ms, witness.worst[W_THROTTLE]);

@@ -79,7 +79,7 @@ void test_only_the_ai_computer_of_a_gateway_is_on_the_ai_side(void) {
     for (size_t i = 0u; i < sent_count; i++) {
         TEST_ASSERT_EQUAL((sent[i].from == VEHICLE_AI) ? HAL_CAN_AI : HAL_CAN_VEHICLE, sent[i].side);
     }
-    TEST_ASSERT_EQUAL(HAL_CAN_VEHICLE, vehicle_side_of(&vehicle, VEHICLE_STRANGER));
+    TEST_ASSERT_EQUAL(HAL_CAN_VEHICLE, vehicle_side_of(&vehicle, VEHICLE_ROGUE));
 }
 
 /* Shows: P13 */

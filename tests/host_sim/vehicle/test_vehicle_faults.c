@@ -1,4 +1,4 @@
-/* The vehicle that misbehaves: nodes that stop, start late, restart, freeze, lag, repeat, send garbage; strangers. */
+/* The vehicle that misbehaves: nodes that stop, start late, restart, freeze, lag, repeat, send garbage; rogue nodes. */
 #include "vehicle_fixture.h"
 
 void setUp(void) {
@@ -212,30 +212,30 @@ void test_recovery_ends_every_misbehaviour_of_a_node(void) {
 }
 
 void test_a_stranger_sends_once_or_again_and_again(void) {
-    vehicle_action_t stranger = {.what = VEHICLE_DO_SEND, .side = HAL_CAN_AI, .frame = {.id = 0x7FFu, .length = 2u}};
+    vehicle_action_t rogue = {.what = VEHICLE_DO_SEND, .side = HAL_CAN_AI, .frame = {.id = 0x7FFu, .length = 2u}};
 
-    TEST_ASSERT_TRUE(act(stranger));
+    TEST_ASSERT_TRUE(act(rogue));
     run_until(100u);
-    TEST_ASSERT_EQUAL_size_t(1u, count_from(VEHICLE_STRANGER, 0u));
+    TEST_ASSERT_EQUAL_size_t(1u, count_from(VEHICLE_ROGUE, 0u));
     for (size_t i = 0u; i < sent_count; i++) {
-        TEST_ASSERT_EQUAL((sent[i].from == VEHICLE_STRANGER) ? HAL_CAN_AI : HAL_CAN_VEHICLE, sent[i].side);
+        TEST_ASSERT_EQUAL((sent[i].from == VEHICLE_ROGUE) ? HAL_CAN_AI : HAL_CAN_VEHICLE, sent[i].side);
     }
-    stranger.ms = 10u;
-    stranger.count = 5u;
-    TEST_ASSERT_TRUE(act(stranger));
+    rogue.ms = 10u;
+    rogue.count = 5u;
+    TEST_ASSERT_TRUE(act(rogue));
     run_until(200u);
-    TEST_ASSERT_EQUAL_size_t(6u, count_from(VEHICLE_STRANGER, 0u));
-    stranger.count = VEHICLE_FOREVER;
-    for (unsigned i = 0u; i < VEHICLE_STRANGERS_MAX; i++) {
-        TEST_ASSERT_TRUE(act(stranger));
+    TEST_ASSERT_EQUAL_size_t(6u, count_from(VEHICLE_ROGUE, 0u));
+    rogue.count = VEHICLE_FOREVER;
+    for (unsigned i = 0u; i < VEHICLE_ROGUES_MAX; i++) {
+        TEST_ASSERT_TRUE(act(rogue));
     }
-    TEST_ASSERT_FALSE(act(stranger));
+    TEST_ASSERT_FALSE(act(rogue));
     run_until(300u);
-    TEST_ASSERT_EQUAL_size_t(6u + (10u * VEHICLE_STRANGERS_MAX), count_from(VEHICLE_STRANGER, 0u));
+    TEST_ASSERT_EQUAL_size_t(6u + (10u * VEHICLE_ROGUES_MAX), count_from(VEHICLE_ROGUE, 0u));
     TEST_ASSERT_TRUE(act((vehicle_action_t){.what = VEHICLE_DO_STOP_SENDING}));
     const size_t first = sent_count;
     run_until(400u);
-    TEST_ASSERT_EQUAL_size_t(0u, count_from(VEHICLE_STRANGER, first));
+    TEST_ASSERT_EQUAL_size_t(0u, count_from(VEHICLE_ROGUE, first));
 }
 
 void test_actions_that_make_no_sense_are_refused(void) {

@@ -7,7 +7,7 @@
 #define MPERMILLE_PER_PERMILLE 1000
 #define MPERMILLE_PER_MS_PER_PCT_S 10u /* 1 % a second is 10 permille in 1000 ms */
 
-/** What the VCU has the body do over a stretch of time. */
+/** What the VCU does to the vehicle over a stretch of time. */
 typedef struct {
     int32_t target_um_s;
     uint32_t rate_mm_s2;
@@ -18,23 +18,23 @@ static bool vcu_runs(const vehicle_t *vehicle) {
     return vehicle->nodes[VEHICLE_VCU].running;
 }
 
-bool vehicle_body_is_fast(const vehicle_t *vehicle) {
-    return abs(vehicle->body.speed_um_s) >= (int32_t)vehicle->config.walking_pace_mm_s * 1000;
+bool vehicle_dynamics_is_fast(const vehicle_t *vehicle) {
+    return abs(vehicle->dynamics.speed_um_s) >= (int32_t)vehicle->config.walking_pace_mm_s * 1000;
 }
 
 static bool too_fast_for_park(const vehicle_t *vehicle) {
-    return vehicle->config.park_guard && vehicle_body_is_fast(vehicle);
+    return vehicle->config.park_guard && vehicle_dynamics_is_fast(vehicle);
 }
 
 /** The VCU wants D or R, and the wheels turn the other way. */
 static bool is_against_motion(const vehicle_t *vehicle) {
-    const int32_t speed_um_s = vehicle->body.speed_um_s;
+    const int32_t speed_um_s = vehicle->dynamics.speed_um_s;
     return ((vehicle->vcu.gear == AGV_GEAR_D) && (speed_um_s < -STANDING_UM_S)) ||
            ((vehicle->vcu.gear == AGV_GEAR_R) && (speed_um_s > STANDING_UM_S));
 }
 
 static bool remote_is_lost(const vehicle_t *vehicle) {
-    return vehicle->people.remote_signal_lost || vehicle->people.remote_power_lost;
+    return vehicle->operator.remote_signal_lost || vehicle->operator.remote_power_lost;
 }
 
 /** On the way to P it brakes if it guards it, and on the way to the other direction. */
@@ -47,44 +47,44 @@ static bool brakes(const vehicle_t *vehicle) {
 
 static pull_t pull_of(const vehicle_t *vehicle) {
     const vehicle_config_t *config = &vehicle->config;
-    const vehicle_body_t *body = &vehicle->body;
+    const vehicle_dynamics_t *dynamics = &vehicle->dynamics;
     int32_t target = 0;
 
     if (vehicle->vcu_faults.rolls) {
         return (pull_t){vehicle->vcu_faults.roll_um_s, config->acceleration_mm_s2};
     }
-    if (body->gear == AGV_GEAR_P) {
+    if (dynamics->gear == AGV_GEAR_P) {
         return (pull_t){0, config->locked_mm_s2};
     }
     if (brakes(vehicle)) {
         return (pull_t){0, config->braking_mm_s2};
     }
-    if ((body->gear != AGV_GEAR_N) && vcu_runs(vehicle)) {
-        target = (int32_t)vehicle_body_throttle_permille(vehicle) * (int32_t)config->top_speed_mm_s;
-        target = (body->gear == AGV_GEAR_R) ? -target : target;
+    if ((dynamics->gear != AGV_GEAR_N) && vcu_runs(vehicle)) {
+        target = (int32_t)vehicle_dynamics_throttle_permille(vehicle) * (int32_t)config->top_speed_mm_s;
+        target = (dynamics->gear == AGV_GEAR_R) ? -target : target;
     }
     return (pull_t){target,
-                    (abs(target) > abs(body->speed_um_s)) ? config->acceleration_mm_s2 : config->coasting_mm_s2};
+                    (abs(target) > abs(dynamics->speed_um_s)) ? config->acceleration_mm_s2 : config->coasting_mm_s2};
 }
 
 /** Let the gear box come to @p now_ms. */
 static void shift(vehicle_t *vehicle, uint64_t now_ms) {
-    vehicle_body_t *body = &vehicle->body;
+    vehicle_dynamics_t *dynamics = &vehicle->dynamics;
     const uint8_t wish = vehicle->vcu.gear;
 
-    const bool guards_park = (wish == AGV_GEAR_P) && (body->gear != AGV_GEAR_P) && too_fast_for_park(vehicle);
+    const bool guards_park = (wish == AGV_GEAR_P) && (dynamics->gear != AGV_GEAR_P) && too_fast_for_park(vehicle);
     if (guards_park || is_against_motion(vehicle)) {
-        body->target = body->gear; /* brake first */
+        dynamics->target = dynamics->gear; /* brake first */
         return;
     }
-    if (wish != body->target) {
-        body->target = wish;
-        body->changed_ms = now_ms;
+    if (wish != dynamics->target) {
+        dynamics->target = wish;
+        dynamics->changed_ms = now_ms;
     }
-    if ((body->target != body->gear) && (now_ms - body->changed_ms >= vehicle->config.gear_change_ms)) {
-        body->gear = body->target;
-        if ((body->gear == AGV_GEAR_P) && (abs(body->speed_um_s) / 1000 > body->fastest_park_mm_s)) {
-            body->fastest_park_mm_s = abs(body->speed_um_s) / 1000;
+    if ((dynamics->target != dynamics->gear) && (now_ms - dynamics->changed_ms >= vehicle->config.gear_change_ms)) {
+        dynamics->gear = dynamics->target;
+        if ((dynamics->gear == AGV_GEAR_P) && (abs(dynamics->speed_um_s) / 1000 > dynamics->fastest_park_mm_s)) {
+            dynamics->fastest_park_mm_s = abs(dynamics->speed_um_s) / 1000;
         }
     }
 }
@@ -94,7 +94,7 @@ static uint16_t throttle_of(const vehicle_t *vehicle, uint64_t now_ms) {
     const vehicle_vcu_t *vcu = &vehicle->vcu;
 
     /* No power while a gear engages: it would be the one of the gear before. */
-    if (!vcu_runs(vehicle) || brakes(vehicle) || (vcu->gear == AGV_GEAR_P) || (vehicle->body.gear != vcu->gear)) {
+    if (!vcu_runs(vehicle) || brakes(vehicle) || (vcu->gear == AGV_GEAR_P) || (vehicle->dynamics.gear != vcu->gear)) {
         return 0u;
     }
     if (vcu->autopilot && ((now_ms >= vcu->throttle_until_ms) || (now_ms >= vcu->ai_until_ms))) {
@@ -103,36 +103,36 @@ static uint16_t throttle_of(const vehicle_t *vehicle, uint64_t now_ms) {
     return vcu->throttle_permille;
 }
 
-uint16_t vehicle_body_throttle_permille(const vehicle_t *vehicle) {
-    return (uint16_t)(vehicle->body.throttle_mpermille / MPERMILLE_PER_PERMILLE);
+uint16_t vehicle_dynamics_throttle_permille(const vehicle_t *vehicle) {
+    return (uint16_t)(vehicle->dynamics.throttle_mpermille / MPERMILLE_PER_PERMILLE);
 }
 
 /** Let the throttle follow, at its rate. */
 static void move_throttle(vehicle_t *vehicle, uint64_t now_ms, uint64_t elapsed_ms) {
-    vehicle_body_t *body = &vehicle->body;
+    vehicle_dynamics_t *dynamics = &vehicle->dynamics;
     const vehicle_vcu_faults_t *faults = &vehicle->vcu_faults;
     const int32_t target = (int32_t)throttle_of(vehicle, now_ms) * MPERMILLE_PER_PERMILLE;
     const uint16_t fall_pct_s = faults->ramps ? faults->throttle_fall_pct_s : vehicle->config.throttle_fall_pct_s;
-    const uint16_t pct_s = (target > body->throttle_mpermille) ? vehicle->config.throttle_rise_pct_s : fall_pct_s;
+    const uint16_t pct_s = (target > dynamics->throttle_mpermille) ? vehicle->config.throttle_rise_pct_s : fall_pct_s;
     const uint64_t step = elapsed_ms * pct_s * MPERMILLE_PER_MS_PER_PCT_S;
 
     if ((pct_s == 0u) || !vcu_runs(vehicle) || (step > INT32_MAX)) {
-        body->throttle_mpermille = target;
+        dynamics->throttle_mpermille = target;
     } else {
-        body->throttle_mpermille = vehicle_approach(body->throttle_mpermille, target, (int32_t)step);
+        dynamics->throttle_mpermille = vehicle_approach(dynamics->throttle_mpermille, target, (int32_t)step);
     }
 }
 
-void vehicle_body_move(vehicle_t *vehicle, uint64_t now_ms) {
-    vehicle_body_t *body = &vehicle->body;
-    const uint64_t elapsed = now_ms - body->at_ms;
+void vehicle_dynamics_move(vehicle_t *vehicle, uint64_t now_ms) {
+    vehicle_dynamics_t *dynamics = &vehicle->dynamics;
+    const uint64_t elapsed = now_ms - dynamics->at_ms;
 
     if (elapsed != 0u) {
         const pull_t pull = pull_of(vehicle);
         const uint64_t step = elapsed * pull.rate_mm_s2;
-        body->at_ms = now_ms;
-        body->speed_um_s =
-            vehicle_approach(body->speed_um_s, pull.target_um_s, (step > INT32_MAX) ? INT32_MAX : (int32_t)step);
+        dynamics->at_ms = now_ms;
+        dynamics->speed_um_s =
+            vehicle_approach(dynamics->speed_um_s, pull.target_um_s, (step > INT32_MAX) ? INT32_MAX : (int32_t)step);
     }
     if (vcu_runs(vehicle)) {
         shift(vehicle, now_ms);

@@ -43,8 +43,8 @@ static void on_state(soak_t *soak, uint64_t t_ms, const agv_event_t *event) {
         state->ready = true;
         state->ready_ms = t_ms;
         state->ticks_before = state->ticks + 1u; /* told of after the tick that it happened in */
-        scenario_world_view_t view;
-        scenario_world_view(&soak->world, &view);
+        scenario_testbed_view_t view;
+        scenario_testbed_view(&soak->testbed, &view);
         state->feeds_before = view.feeds;
     }
 }
@@ -73,7 +73,7 @@ static bool is_again(const soak_state_t *state, uint64_t t_ms) {
 }
 
 /** The status frame keeps its slots: no drift, none lost. */
-static void judge_slot(soak_t *soak, uint64_t t_ms) {
+static void check_slot(soak_t *soak, uint64_t t_ms) {
     soak_state_t *state = &soak->state;
 
     state->status_frames++;
@@ -88,7 +88,7 @@ static void judge_slot(soak_t *soak, uint64_t t_ms) {
 }
 
 /** The status frame keeps its slots and counts; one that was discarded is missing in the count, once. */
-static void judge_status(soak_t *soak, uint64_t t_us, const hal_can_frame_t *frame) {
+static void check_status(soak_t *soak, uint64_t t_us, const hal_can_frame_t *frame) {
     soak_state_t *state = &soak->state;
     const uint64_t t_ms = t_us / US_PER_MS;
     const uint8_t steps = (uint8_t)(frame->data[3] - state->status_counter);
@@ -99,7 +99,7 @@ static void judge_status(soak_t *soak, uint64_t t_us, const hal_can_frame_t *fra
     } else if (is_again(state, t_ms)) {
         state->status_again++;
     } else {
-        judge_slot(soak, t_ms);
+        check_slot(soak, t_ms);
     }
     if ((state->status_last_ms != 0u) && (steps != 1u) && (steps != 2u)) {
         soak_break(soak, "the status frame at %" PRIu64 " ms carries the counter %u, the last one %u", t_ms,
@@ -118,7 +118,7 @@ static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, co
     }
     soak->state.wire_own++;
     if ((side == HAL_CAN_VEHICLE) && (frame->id == SOAK_STATUS_ID)) {
-        judge_status(soak, t_us, frame);
+        check_status(soak, t_us, frame);
     } else if (!soak->gateway && soak->state.ready && (t_us > (soak->state.ready_ms + HANDED_OVER_MS) * US_PER_MS)) {
         soak_break(soak, "%03" PRIX32 "h sent at %" PRIu64 " us", frame->id, t_us);
     }
@@ -128,10 +128,10 @@ scenario_watch_t soak_watch(soak_t *soak) {
     return (scenario_watch_t){.on_event = on_event, .on_frame = on_frame, .ctx = soak};
 }
 
-void soak_judge_tick(soak_t *soak) {
-    scenario_world_view_t view;
-    scenario_world_view(&soak->world, &view);
-    if (!view.is_deaf) {
+void soak_check_tick(soak_t *soak) {
+    scenario_testbed_view_t view;
+    scenario_testbed_view(&soak->testbed, &view);
+    if (!view.is_halted) {
         soak->state.ticks++;
     }
     if (soak->state.ready && !view.output_closed) {
@@ -139,7 +139,7 @@ void soak_judge_tick(soak_t *soak) {
     }
 }
 
-static void judge_count(soak_t *soak, const char *what, uint64_t counted, uint64_t seen, uint32_t may_wait) {
+static void check_count(soak_t *soak, const char *what, uint64_t counted, uint64_t seen, uint32_t may_wait) {
     const uint32_t ahead = (uint32_t)counted - (uint32_t)seen; /* counters of the supervisor have 32 bits, and wrap */
     if (ahead > may_wait) {
         soak_break(soak, "%s: counted %" PRIu32 ", seen %" PRIu32 " (both modulo 2^32), at %" PRIu64 " ms", what,
@@ -147,25 +147,25 @@ static void judge_count(soak_t *soak, const char *what, uint64_t counted, uint64
     }
 }
 
-void soak_judge_counters(soak_t *soak) {
+void soak_check_counters(soak_t *soak) {
     const soak_state_t *state = &soak->state;
-    const agv_supervisor_t *supervisor = &scenario_world_session(&soak->world)->supervisor;
+    const agv_supervisor_t *supervisor = &scenario_testbed_session(&soak->testbed)->supervisor;
     const agv_counters_t *counters = agv_supervisor_counters(supervisor);
-    scenario_world_view_t view;
+    scenario_testbed_view_t view;
 
-    scenario_world_view(&soak->world, &view);
-    if (view.is_deaf) {
+    scenario_testbed_view(&soak->testbed, &view);
+    if (view.is_halted) {
         return; /* frames wait: the next time */
     }
-    judge_count(soak, "frames received", counters->received, state->wire_others + state->delivered, 0u);
-    judge_count(soak, "frames received, by the port", view.received, state->wire_others + state->delivered, 0u);
-    judge_count(soak, "frames sent", counters->sent, state->wire_own, WAITING_MAX);
-    judge_count(soak, "warnings", counters->warnings, state->warnings, 0u);
-    judge_count(soak, "refused by the gate", counters->gate_refused, 0u, 0u);
-    judge_count(soak, "watchdog resets", view.bites, 0u, 0u);
-    judge_count(soak, "feeds of the watchdog", (uint64_t)view.feeds - state->feeds_before,
+    check_count(soak, "frames received", counters->received, state->wire_others + state->delivered, 0u);
+    check_count(soak, "frames received, by the port", view.received, state->wire_others + state->delivered, 0u);
+    check_count(soak, "frames sent", counters->sent, state->wire_own, WAITING_MAX);
+    check_count(soak, "warnings", counters->warnings, state->warnings, 0u);
+    check_count(soak, "refused by the gate", counters->gate_refused, 0u, 0u);
+    check_count(soak, "watchdog resets", view.bites, 0u, 0u);
+    check_count(soak, "feeds of the watchdog", (uint64_t)view.feeds - state->feeds_before,
                 state->ticks - state->ticks_before, 0u);
-    judge_count(soak, "the supervisor's clock", agv_supervisor_tick_ms(supervisor), soak->start_ms + view.t_ms, 0u);
+    check_count(soak, "the supervisor's clock", agv_supervisor_tick_ms(supervisor), soak->start_ms + view.t_ms, 0u);
     const uint64_t slots = (state->t_ms - state->status_ms) / SOAK_STATUS_MS;
-    judge_count(soak, "status frames", slots + 1u, state->status_frames, 2u);
+    check_count(soak, "status frames", slots + 1u, state->status_frames, 2u);
 }

@@ -1,12 +1,12 @@
 /**
- * @file outsider.h
+ * @file external.h
  * A supervisor that is another program, on the same CAN interfaces: the firmware as a program of a computer, for one.
  *
  * A command starts it. It tells its events on standard output, as JSON Lines (events.h); other lines are no matter. What
  * it sends is what is heard on the interfaces and was not sent by the vehicle, which has to be told here.
  */
-#ifndef HOST_SIM_OUTSIDER_H
-#define HOST_SIM_OUTSIDER_H
+#ifndef HOST_SIM_EXTERNAL_H
+#define HOST_SIM_EXTERNAL_H
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -16,7 +16,7 @@
 #include "live/node.h"
 #include "session/session.h"
 
-typedef struct outsider outsider_t;
+typedef struct external external_t;
 
 /** How one is made. */
 typedef struct {
@@ -26,33 +26,33 @@ typedef struct {
     session_observer_fn *on_event;
     node_sent_fn *on_sent; /**< at_us by the clock */
     void *ctx;             /**< of both */
-} outsider_config_t;
+} external_config_t;
 
 /**
  * Listen on the interfaces. The program does not run yet.
  * @return NULL: that was reported
  */
-outsider_t *outsider_open(const outsider_config_t *config);
+external_t *external_open(const external_config_t *config);
 
 /** Start the program. @return false: reported */
-bool outsider_start(outsider_t *outsider);
+bool external_start(external_t *external);
 
 /** Wait until it has told something; it is there then. @return false: it did not for long, or ended; reported */
-bool outsider_wait(outsider_t *outsider);
+bool external_wait(external_t *external);
 
 /** The vehicle has sent a frame. */
-void outsider_vehicle_sent(outsider_t *outsider, hal_can_side_t side, const hal_can_frame_t *frame);
+void external_vehicle_sent(external_t *external, hal_can_side_t side, const hal_can_frame_t *frame);
 
 /**
- * Tell what was heard; every millisecond, after all of outsider_vehicle_sent().
+ * Tell what was heard; every millisecond, after all of external_vehicle_sent().
  * @return false: it has ended, or more was heard than there is room for; reported
  */
-bool outsider_listen(outsider_t *outsider);
+bool external_listen(external_t *external);
 
 /** Whether it said last that its safety output is closed. */
-bool outsider_output_closed(const outsider_t *outsider);
+bool external_output_closed(const external_t *external);
 
 /** Stop it, and listen no more; NULL: nothing. */
-void outsider_close(outsider_t *outsider);
+void external_close(external_t *external);
 
 #endif

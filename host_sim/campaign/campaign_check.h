@@ -1,16 +1,16 @@
 /**
- * @file campaign_judge.h
+ * @file campaign_check.h
  * The judge of a campaign's runs. It goes by what is on the wire, by the safety output and by what the vehicle does; of
  * the supervisor's own word it takes the reason of the first trip, and that it takes the safe state for confirmed.
  */
-#ifndef HOST_SIM_CAMPAIGN_JUDGE_H
-#define HOST_SIM_CAMPAIGN_JUDGE_H
+#ifndef HOST_SIM_CAMPAIGN_CHECK_H
+#define HOST_SIM_CAMPAIGN_CHECK_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
 #include "campaign/campaign_plan.h"
-#include "scenario/scenario_world.h"
+#include "scenario/scenario_testbed.h"
 
 #define CAMPAIGN_NEVER UINT64_MAX
 #define CAMPAIGN_STATES_MAX 16u
@@ -41,7 +41,7 @@ typedef struct {
 
 typedef struct {
     const campaign_plan_t *plan;
-    const scenario_world_t *world;
+    const scenario_testbed_t *testbed;
     uint64_t cause_us;
     uint64_t first_safe_us; /**< last bit of the first safe frame after the cause; CAMPAIGN_NEVER */
     uint64_t confirmed_us;  /**< SAFE for the first time */
@@ -62,17 +62,17 @@ typedef struct {
     int32_t angle_ddeg; /**< the angle to be held: that of the moment of the trip, or the told one */
     campaign_state_t states[CAMPAIGN_STATES_MAX];
     size_t state_count;
-} campaign_judge_t;
+} campaign_check_t;
 
-void campaign_judge_init(campaign_judge_t *judge, const campaign_plan_t *plan, const scenario_world_t *world);
+void campaign_check_init(campaign_check_t *check, const campaign_plan_t *plan, const scenario_testbed_t *testbed);
 
 /** Who is to be told of events and frames. */
-scenario_watch_t campaign_judge_watch(campaign_judge_t *judge);
+scenario_watch_t campaign_check_watch(campaign_check_t *check);
 
 /** At the end of every millisecond. */
-void campaign_judge_tick(campaign_judge_t *judge, uint64_t t_ms);
+void campaign_check_tick(campaign_check_t *check, uint64_t t_ms);
 
 /** The run is over. */
-void campaign_judge_finish(campaign_judge_t *judge);
+void campaign_check_finish(campaign_check_t *check);
 
 #endif
