@@ -7,7 +7,7 @@ static uint32_t crc32_of(const void *bytes, size_t size) {
     return ~agv_crc32(AGV_CRC32_START, bytes, size);
 }
 
-/* The check value of the catalogue, and 32 bytes of 0 and of FFh as iSCSI's and Ethernet's test vectors have them. */
+/* The standard check value, and the test vectors of iSCSI and Ethernet: 32 bytes of 0 and of FFh. */
 void test_crc32_gives_the_known_answers(void) {
     uint8_t ones[32];
     const uint8_t zeros[32] = {0};
@@ -34,7 +34,7 @@ void test_the_seal_is_the_inverted_exclusive_or_of_the_words(void) {
                                 0x00004000u, 0x00050000u, 0x00600000u, 0x07000000u, 0x80000000u};
     TEST_ASSERT_EQUAL_HEX32(0xE2C4A688u, agv_seal(words, 8));
     TEST_ASSERT_EQUAL_HEX32(0xE2C4A6A9u, agv_seal(words, 16));
-    TEST_ASSERT_EQUAL_HEX32(0xE2A1E5A9u, agv_seal(words, 32)); /* a turn of the loop */
+    TEST_ASSERT_EQUAL_HEX32(0xE2A1E5A9u, agv_seal(words, 32)); /* one iteration of the loop */
     TEST_ASSERT_EQUAL_HEX32(0x65A1E5A9u, agv_seal(words, 40));
 }
 

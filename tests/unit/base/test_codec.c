@@ -1,8 +1,8 @@
 /*
  * Pack and unpack of every message. All payloads are written by hand from the protocol document.
  *
- * The payload under test lies at an odd address between two guard bytes: no function may need alignment or touch what
- * is not its own.
+ * The payload under test is at an odd address between two guard bytes: no function may need alignment or write beyond
+ * its payload.
  */
 #include "agv/codec.h"
 
@@ -292,7 +292,7 @@ void test_steering_command_counts_from_the_centre_low_byte_first(void) {
 void test_steering_command_beyond_900_degrees_is_refused(void) {
     assert_steering_command_is_refused(9001);
     assert_steering_command_is_refused(-9001);
-    assert_steering_command_is_refused(0x10000); /* would pass if only 16 bits were looked at */
+    assert_steering_command_is_refused(0x10000); /* would pass if only 16 bits were checked */
     assert_steering_command_is_refused(INT32_MAX);
     assert_steering_command_is_refused(INT32_MIN);
 }
@@ -533,7 +533,7 @@ void test_eps_status_of_all_byte_values_five_are_modes(void) {
         RECEIVE(0, 0, 0, (uint8_t)code, 0, 0, 0, 0x81);
         TEST_ASSERT_EQUAL(valid, agv_unpack_eps_status(&out, data));
         TEST_ASSERT_EQUAL_HEX8(code, out.mode);
-        TEST_ASSERT_EQUAL_HEX8(0x81, out.faults); /* good, whatever the mode is */
+        TEST_ASSERT_EQUAL_HEX8(0x81, out.faults); /* valid in every mode */
     }
 }
 
@@ -628,7 +628,7 @@ void test_wheel_speed_takes_the_whole_range(void) {
     ASSERT_WHEEL_SPEED(INT32_MIN + 1, INT32_MAX - 1, 0x01, 0x00, 0x00, 0x80, 0xFE, 0xFF, 0xFF, 0x7F);
 }
 
-/* What agv_unpack_X returns, for every value of the bytes that it judges. */
+/* Return value of agv_unpack_X for every value of the bytes that it checks. */
 void test_value_is_valid_agrees_with_unpack(void) {
     agv_gear_command_t gear;
     agv_throttle_command_t throttle;

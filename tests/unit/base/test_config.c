@@ -1,4 +1,4 @@
-/* The configuration: defaults, what is refused and why, checksum. */
+/* The configuration: defaults, refused values and their reasons, checksum. */
 #include "agv/config.h"
 
 #include <string.h>
@@ -114,8 +114,8 @@ void test_a_deadline_under_three_cycles_is_refused(void) {
     }
 }
 
-/* The documented ends are good, one beyond is not. Some need the gateway, so that all is tried in it; a press has a shortest
- * and a longest time, so that the other one makes room. */
+/* The documented limits are accepted, values beyond them are refused. All are tried in the gateway, because some need
+ * it. For the limits of a press the other limit is moved out of the way. */
 /* Shows: INT-2 */
 void test_every_setting_is_held_to_its_range(void) {
     for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {
@@ -165,7 +165,7 @@ void test_the_status_frame_may_not_have_an_identifier_of_the_protocol(void) {
     expect_problem(AGV_CONFIG_ID_TWICE, AGV_SETTING_status_frame_id);
 }
 
-/* By hand: an identifier stands for its message in both sets as long as it has not been changed. */
+/* By hand: an identifier follows the ID set unless it was changed. */
 /* Shows: P1 */
 void test_the_set_is_the_preset_of_the_identifiers(void) {
     static const uint16_t heading[] = {0x43F, 0x168, 0x075, 0x065, 0x363, 0x0A3, 0x050, 0x067, 0x167, 0x267, 0x101};
@@ -189,7 +189,7 @@ void test_the_set_is_the_preset_of_the_identifiers(void) {
     }
 }
 
-/* Two messages never have one identifier: the second of them is named. */
+/* Two messages must not have the same identifier; the error names the second one. */
 /* Shows: INT-2, P1 */
 void test_an_identifier_twice_is_refused(void) {
     for (uint16_t first = 0; first < AGV_MSG_COUNT; first++) {
@@ -202,7 +202,7 @@ void test_an_identifier_twice_is_refused(void) {
     }
 }
 
-/* 201h is free while the headings are used, and taken by the table; a swap is no conflict. */
+/* 201h is free in the set `heading` and used in `table`. Two swapped identifiers are no conflict. */
 /* Shows: INT-2, P1 */
 void test_which_identifiers_are_taken_depends_on_the_set(void) {
     config.id_gear_command = 0x201;
@@ -221,13 +221,13 @@ void test_the_status_frame_may_not_have_an_identifier_that_was_changed(void) {
     config.id_eps_status = 0x300;
     config.status_frame_id = 0x300;
     expect_problem(AGV_CONFIG_ID_TWICE, AGV_SETTING_status_frame_id);
-    config.status_frame_id = 0x167; /* free on this vehicle, and still one of the protocol */
+    config.status_frame_id = 0x167; /* free on this vehicle, but part of the protocol */
     expect_problem(AGV_CONFIG_ID_TWICE, AGV_SETTING_status_frame_id);
     config.status_frame_id = 0x301;
     expect_good();
 }
 
-/* By hand: what has no effect on a shared bus is refused there, and the others are not. */
+/* By hand: settings without effect on a shared bus are refused there, all others are accepted. */
 /* Shows: FSM-8, TOP-2, INT-2 */
 void test_settings_without_effect_on_a_shared_bus_are_refused(void) {
     static const uint16_t gateway_only[] = {AGV_SETTING_own_heartbeat,
@@ -257,7 +257,7 @@ void test_settings_without_effect_on_a_shared_bus_are_refused(void) {
     }
 }
 
-/* The first of several is named. */
+/* The error names the first of several settings. */
 /* Shows: INT-2 */
 void test_the_first_setting_without_effect_is_named(void) {
     config.fast_mm_s = 1;
@@ -267,7 +267,7 @@ void test_the_first_setting_without_effect_is_named(void) {
     expect_problem(AGV_CONFIG_OUT_OF_RANGE, AGV_SETTING_throttle_ceiling_pct);
 }
 
-/* No press would be long enough and not too long. */
+/* No press could be long enough without being too long. */
 /* Shows: FSM-3, INT-2 */
 TEST_CASE(1000, 1000, 0)
 TEST_CASE(5001, 5000, 0)
@@ -293,7 +293,7 @@ void test_a_message_may_not_have_the_identifier_of_the_status_frame(void) {
     expect_good();
 }
 
-/* ---- What weakens ---- */
+/* ---- Values that weaken the supervision ---- */
 
 /* By hand, one or more of each kind: a value below, the default, a value above. */
 static const struct {
@@ -381,7 +381,7 @@ void test_the_highest_ranking_weak_fault_is_named(void) {
     TEST_ASSERT_EQUAL(AGV_FAULT_SELF_TEST_FAILED, agv_config_check(&config).fault);
 }
 
-/* Of several things the setting is what is wrong; the fault is named as well. */
+/* A wrong setting is reported before a weak fault; the fault is named as well. */
 void test_a_setting_is_reported_before_a_weak_fault(void) {
     config.trips = (agv_fault_set_t){0};
     config.mode_frames = 0;
@@ -424,7 +424,7 @@ void test_there_is_no_setting_beyond_the_last(void) {
     TEST_ASSERT_EQUAL_UINT16(0, agv_config_get(&config, AGV_SETTING_COUNT));
     TEST_ASSERT_EQUAL_MEMORY(&before, &config, sizeof config);
     TEST_ASSERT_EQUAL_UINT16(50, agv_config_get(&config, AGV_SETTING_vcu_heartbeat_timeout_ms));
-    memset(&config, 0xFF, sizeof config); /* and what lies behind the last one */
+    memset(&config, 0xFF, sizeof config); /* and bits beyond the last fault */
     TEST_ASSERT_EQUAL_UINT16(0, agv_config_get(&config, AGV_SETTING_COUNT));
 }
 

@@ -1,4 +1,4 @@
-/* The table of faults and sets of them; and that what is no fault is in no set and has no properties. */
+/* The table of faults, and sets of faults. An invalid fault is in no set and has no properties. */
 #include "agv/faults.h"
 
 #include <string.h>
@@ -91,7 +91,7 @@ void test_four_faults_are_unresettable(void) {
     }
 }
 
-/* What must not be made weaker is a trip to begin with. */
+/* Mandatory faults are trips by default. */
 void test_mandatory_faults_are_trips(void) {
     for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
         if ((agv_fault_flags(i) & AGV_FAULT_FLAG_FIXED) != 0) {

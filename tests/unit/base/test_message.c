@@ -1,4 +1,4 @@
-/* The message table: identifiers in both sets, cycle times, and what is no message. */
+/* The message table: identifiers in both sets, cycle times, and unknown messages. */
 #include "agv/protocol.h"
 
 #include <stdbool.h>
@@ -84,7 +84,7 @@ void test_commands_come_first(void) {
     TEST_ASSERT_EQUAL_UINT(AGV_COMMAND_COUNT - 1u, AGV_MSG_STEERING_COMMAND);
 }
 
-/* What is no message gets no identifier that a frame could carry, and no cycle. */
+/* An unknown message has no identifier that a frame could carry, and no cycle. */
 static void assert_no_message(int message) {
     const agv_message_t value = (agv_message_t)message;
 

@@ -1,4 +1,4 @@
-/* The public names, and that what is none has none. */
+/* The public names. Invalid values have none. */
 #include "agv/names.h"
 
 #include <stddef.h>

@@ -1,4 +1,4 @@
-/* Scores of frames and budgets of time: how what comes and goes is counted. */
+/* Scores of frames and budgets of time. */
 #include "base/score.h"
 
 #include "unity.h"
@@ -97,7 +97,7 @@ void test_the_limit_holds_from_an_odd_score_as_well(void) {
     expect_score(6, true);
 }
 
-/* +2 -1 is +1 in two frames: 2 N - 2 pairs and one bad frame more, some 4 N frames. */
+/* A bad and a good frame add 1: 2 N - 2 such pairs and one more bad frame are some 4 N frames. */
 /* Shows: SUP-4, SUP-5, SUP-6 */
 TEST_CASE(3)
 TEST_CASE(5)
@@ -113,7 +113,7 @@ void test_every_second_frame_bad_raises_the_fault_after_some_4_n_frames(uint32_t
     TEST_ASSERT_EQUAL_UINT(2 * (2 * n - 2) + 1, counted);
 }
 
-/* Two good ones for each bad one: never. */
+/* Two good frames for each bad one never raise the fault. */
 void test_every_third_frame_bad_raises_no_fault(void) {
     for (unsigned i = 0; i < 3000; i++) {
         agv_score_add(&score, i % 3 == 0, 2);
@@ -172,7 +172,7 @@ void test_every_second_ms_without_the_condition_takes_one_away(void) {
     expect_budget(499, false);
 }
 
-/* 19 up, half a one down: the second good ms of two counts, wherever it stands. */
+/* 19 ms with the condition, 1 ms without: only every second good ms takes one away. */
 /* Shows: SUP-10, SUP-11 */
 void test_one_good_ms_in_twenty_does_not_restart_the_budget(void) {
     unsigned ms = 0;
@@ -184,7 +184,7 @@ void test_one_good_ms_in_twenty_does_not_restart_the_budget(void) {
     TEST_ASSERT_EQUAL_UINT(539, ms); /* 500 = 26 rows of 19 less 13, and 19 more: 26 * 20 + 19 ms */
 }
 
-/* One up, two down never fills it; one up, one down does, at half the pace. */
+/* 1 ms with and 2 ms without never fill the budget; 1 ms with and 1 ms without do, at half the rate. */
 void test_the_good_time_that_empties_a_budget(void) {
     for (unsigned i = 0; i < 3000; i++) {
         agv_budget_add(&budget, i % 3 == 0, 1, 100);
@@ -197,7 +197,7 @@ void test_the_good_time_that_empties_a_budget(void) {
     expect_budget(100, true);
 }
 
-/* What is left of a pair is forgotten with the rest. */
+/* An empty budget also forgets an odd good ms. */
 void test_an_empty_budget_begins_anew(void) {
     run(false, 1, 100);
     run(true, 2, 100);

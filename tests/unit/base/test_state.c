@@ -1,4 +1,4 @@
-/* The states: far apart, and on the safe side for whatever is no state. */
+/* The states: codes far apart, and safe behaviour for invalid codes. */
 #include "agv/state.h"
 
 #include "keep/latch.h"

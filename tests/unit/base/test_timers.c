@@ -1,4 +1,4 @@
-/* Timers on the wrapping clock: from several moments, of which some are just before the wrap. */
+/* Timers on the wrapping clock, with several start times, some just before the wrap. */
 #include "base/timers.h"
 
 #include <string.h>
@@ -174,7 +174,7 @@ void test_every_timer_has_the_limit_of_its_setting(void) {
     TEST_ASSERT_EQUAL_UINT32(5000, agv_timer_limit_ms(&config, AGV_TIMER_PRESS_LONG));
 }
 
-/* Every timer has a limit, and moves no other one. */
+/* Every timer has its own limit and does not affect the others. */
 void test_every_timer_runs_alone(void) {
     for (uint32_t timer = 0; timer < AGV_TIMER_COUNT; timer++) {
         setUp();
@@ -202,7 +202,7 @@ void test_a_reached_timer_stays_reached_over_a_full_wrap_of_the_clock(void) {
     }
 }
 
-/* An old stamp, as frames carry them, ends nothing. */
+/* An old stamp of a frame does not reset a reached timer. */
 void test_a_reached_timer_stays_reached_after_an_old_stamp(void) {
     begin(DURATION, 0);
     TEST_ASSERT_TRUE(reached(DURATION, 100));
@@ -229,9 +229,10 @@ void test_a_condition_that_breaks_starts_the_time_again(void) {
     TEST_ASSERT_FALSE(go_on_while(false, 501));
 }
 
-/* ---- Which of them are looked at ---- */
+/* ---- Which timers are checked ---- */
 
-/* The timers are looked at only when one of them can be over. So a thousand changes at random, against a plain account. */
+/* The timers are checked only when one of them can have reached its limit. A thousand random changes are compared with
+ * a simple model. */
 typedef struct {
     uint32_t since_ms;
     bool runs;
@@ -304,7 +305,7 @@ void test_the_elapsed_time_of_a_timer(void) {
     expect_spent(100, 99 + 0xF0000000u);
 }
 
-/* The time stays; what ran before is over. */
+/* The time is kept; running timers are stopped. */
 void test_a_start_stops_all_timers(void) {
     begin(DURATION, 1000);
     begin(DEADLINE, 1000);
@@ -335,7 +336,7 @@ static void stamp(uint32_t ms, uint32_t us) {
     agv_timers_advance(&timers, &config, ms, us);
 }
 
-/* Both clocks say the same; 1234567 ms are 1234567000 us. */
+/* Both clocks agree: 1234567 ms are 1234567000 us. */
 /* Shows: TIM-2 */
 void test_the_time_only_goes_forwards(void) {
     agv_timers_set_time(&timers, 1234567);
@@ -348,7 +349,7 @@ void test_the_time_only_goes_forwards(void) {
     expect_time(1234567, 1234567900);
     stamp(1234568, 0);
     expect_time(1234568, 1234568000);
-    stamp(1234568u - 4294967u, 296); /* a turn of the microseconds ago */
+    stamp(1234568u - 4294967u, 296); /* a full wrap of the microseconds ago */
     expect_time(1234568, 1234568000);
     agv_timers_set_time(&timers, 1000);
     expect_time(1000, 1000000);

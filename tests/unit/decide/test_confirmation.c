@@ -56,7 +56,7 @@ void test_p_may_be_missing_for_500_ms_since_the_first_p_was_sent(void) {
     expect(true);
 }
 
-/* A VCU that guards P against speed wants more of it. */
+/* A VCU that refuses P above a speed needs a longer time for P. */
 /* Shows: FSM-4 */
 void test_the_two_limits_are_two_settings(void) {
     config.confirm_timeout_ms = 100;
@@ -76,7 +76,7 @@ void test_the_two_limits_are_two_settings(void) {
     expect(true);
 }
 
-/* Each by its own unconfirmed ms: 300 of both at once are 300 each. */
+/* Each sum counts its own time: 300 ms without both are 300 ms in each. */
 /* Shows: FSM-4 */
 void test_the_two_sums_are_not_added_up(void) {
     agv_confirmation_park_sent(&confirmation);
@@ -88,7 +88,7 @@ void test_the_two_sums_are_not_added_up(void) {
     expect(true);
 }
 
-/* In all: what comes and goes is not forgotten. */
+/* The sums keep interrupted times. */
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
 void test_a_confirmation_that_comes_and_goes(void) {
     for (unsigned i = 0; i < 4; i++) {
@@ -114,7 +114,7 @@ void test_5_s_of_both_without_a_break_clear_the_sums(void) {
     expect(true);
 }
 
-/* A moment without P begins the 5 s anew, though autopilot off stands all the time. */
+/* A frame without P restarts the 5 s, even while autopilot off stays confirmed. */
 /* Shows: FSM-4 */
 void test_a_break_of_either_begins_the_5_s_anew(void) {
     run(499, false, true);
@@ -125,13 +125,14 @@ void test_a_break_of_either_begins_the_5_s_anew(void) {
     expect(true);
 }
 
-/* It ends when both are confirmed, and comes again with the next ms that is not, until 5 s have cleared it. */
+/* The fault ends when both are confirmed, and is raised again by the next unconfirmed ms, until 5 s have cleared the
+ * sums. */
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
 void test_a_sum_at_its_limit_raises_it_again_at_once(void) {
     agv_confirmation_park_sent(&confirmation);
     run(500, false, true);
     expect(true);
-    run(10, true, false); /* not both */
+    run(10, true, false); /* only one of them is confirmed */
     expect(true);
     run(4000, true, true);
     expect(false);
@@ -145,7 +146,7 @@ void test_a_sum_at_its_limit_raises_it_again_at_once(void) {
     expect(false);
 }
 
-/* Each sum by its own ms: one that is full does not change the other. */
+/* A full sum does not change the other one. */
 /* Shows: FSM-4 */
 void test_a_full_sum_of_the_one_raises_nothing_for_the_other(void) {
     agv_confirmation_park_sent(&confirmation);
@@ -159,7 +160,7 @@ void test_a_full_sum_of_the_one_raises_nothing_for_the_other(void) {
     expect(true);
 }
 
-/* Late steps count with all their time, and the sums saturate. */
+/* Late steps count with their whole time, and the sums saturate. */
 void test_late_steps(void) {
     step(499, false, true);
     expect(false);

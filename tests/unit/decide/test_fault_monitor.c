@@ -1,4 +1,4 @@
-/* The faults of one supervisor: causes, events, and what an evaluation makes of them. */
+/* The faults of one supervisor: conditions, transients, and their evaluation. */
 #include "decide/fault_monitor.h"
 
 #include <string.h>
@@ -31,7 +31,7 @@ static void tick(uint32_t now_ms) {
     agv_fault_monitor_tick(&monitor, &timers);
 }
 
-/* Where nothing has changed no fault is reported. */
+/* Without a change no fault is reported. */
 static void evaluate_with(bool ai_loss_warns) {
     agv_fault_monitor_evaluate(&monitor, &config.trips, ai_loss_warns, &changes);
     if (!changes.any) {
@@ -67,7 +67,7 @@ static void expect_summary(unsigned raised, unsigned cause, unsigned ai_cause, u
 
 enum { NONE = AGV_FAULT_NONE };
 
-/* ---- Causes and events ---- */
+/* ---- Conditions and transients ---- */
 
 void test_a_fault_is_active_while_its_cause_is(void) {
     set(AGV_FAULT_MODE_INVALID, true);
@@ -97,7 +97,7 @@ void test_a_transient_ends_its_hold_time_after_the_last_occurrence(uint32_t star
     expect_set(NONE, &monitor.active);
 }
 
-/* The nine rows that the table calls events, by hand. */
+/* The nine transients of the table, by hand. */
 void test_nine_faults_are_transients_and_the_others_are_not(void) {
     static const unsigned events[] = {AGV_FAULT_SUPERVISOR_RESET,
                                       AGV_FAULT_TX_GATE_REFUSED,
@@ -121,7 +121,7 @@ void test_nine_faults_are_transients_and_the_others_are_not(void) {
     }
 }
 
-/* A condition is ended by its rule alone. */
+/* Only its own rule ends a condition. */
 void test_a_tick_ends_no_condition(void) {
     set(AGV_FAULT_BUS_OFF, true);
     for (uint32_t day = 0; day < 60; day++) {
@@ -143,7 +143,7 @@ void test_an_invalid_fault_changes_nothing(void) {
     TEST_ASSERT_FALSE(monitor.outdated);
 }
 
-/* Whatever stands behind the last one. */
+/* Values beyond the last fault. */
 void test_an_invalid_fault_is_never_active(void) {
     memset(&monitor, 0xFF, sizeof monitor);
     TEST_ASSERT_TRUE(is_active(AGV_FAULT_COUNT - 1));
@@ -174,7 +174,7 @@ void test_a_trip_is_raised_once_and_its_cause_stands(void) {
     expect_set(NONE, &monitor.tripping);
 }
 
-/* It has not ended, and so no change is reported; but it trips once more. */
+/* The fault has not ended, so no change is reported, but it trips again. */
 /* Shows: FSM-11 */
 void test_every_occurrence_of_a_transient_is_raised(void) {
     for (uint32_t ms = 0; ms < 3; ms++) {
@@ -188,14 +188,14 @@ void test_every_occurrence_of_a_transient_is_raised(void) {
     event(AGV_FAULT_RX_OVERRUN, 3); /* only warns */
     evaluate();
     expect_summary(NONE, AGV_FAULT_FOREIGN_COMMAND_SENDER, NONE, NONE);
-    set(AGV_FAULT_BUS_OFF, true); /* a condition that goes on is raised once, whatever else occurs */
+    set(AGV_FAULT_BUS_OFF, true); /* a lasting condition is raised once, whatever else occurs */
     evaluate();
     event(AGV_FAULT_RX_OVERRUN, 4);
     evaluate();
     expect_summary(NONE, AGV_FAULT_BUS_OFF, NONE, NONE);
 }
 
-/* Whatever else changes. */
+/* Other faults may change in the meantime. */
 /* Shows: FSM-5 */
 void test_no_trip_is_raised_again_by_another_fault(void) {
     for (unsigned fault = 0; fault < AGV_FAULT_COUNT; fault++) {
@@ -222,7 +222,7 @@ void test_a_warning_changes_but_is_no_trip(void) {
     expect_summary(AGV_FAULT_EPS_TEMP_ABOVE_110, AGV_FAULT_EPS_TEMP_ABOVE_110, NONE, NONE);
 }
 
-/* What came and went between two evaluations is not reported. */
+/* A fault that begins and ends between two evaluations is not reported. */
 void test_a_fault_that_has_ended_before_the_evaluation_is_no_change(void) {
     set(AGV_FAULT_BUS_OFF, true);
     set(AGV_FAULT_BUS_OFF, false);
@@ -231,7 +231,7 @@ void test_a_fault_that_has_ended_before_the_evaluation_is_no_change(void) {
     expect_set(NONE, &changes.changed);
 }
 
-/* Of several at once the highest-ranking one of each kind. */
+/* Of several faults at once the highest-ranking one of each kind is reported. */
 /* Shows: FSM-5 */
 void test_the_highest_ranking_one_of_each_kind(void) {
     set(AGV_FAULT_FOREIGN_COMMAND_SENDER, true);
@@ -245,7 +245,7 @@ void test_the_highest_ranking_one_of_each_kind(void) {
     evaluate();
     expect_summary(AGV_FAULT_MEMORY_CORRUPTED, AGV_FAULT_MEMORY_CORRUPTED, AGV_FAULT_VCU_AI_CAN_LOST,
                    AGV_FAULT_MEMORY_CORRUPTED);
-    set(AGV_FAULT_THROTTLE_IN_PARK, true); /* lower than what stands: raised all the same */
+    set(AGV_FAULT_THROTTLE_IN_PARK, true); /* lower than the active fault, but raised all the same */
     evaluate();
     expect_summary(AGV_FAULT_THROTTLE_IN_PARK, AGV_FAULT_MEMORY_CORRUPTED, AGV_FAULT_VCU_AI_CAN_LOST,
                    AGV_FAULT_MEMORY_CORRUPTED);
@@ -267,7 +267,7 @@ void test_a_fault_of_the_eps_is_reported_whatever_its_class(void) {
     TEST_ASSERT_TRUE(monitor.summary.eps_fault);
 }
 
-/* Of the AI's heartbeat only; the class changes while the fault is there, so it is raised again. */
+/* Only for the AI's heartbeat. The class changes while the fault is active, so the fault is raised again. */
 /* Shows: SUP-8, AI_HEARTBEAT_LOST, AI_HEARTBEAT_STUCK */
 TEST_CASE(AGV_FAULT_AI_HEARTBEAT_LOST)
 TEST_CASE(AGV_FAULT_AI_HEARTBEAT_STUCK)
@@ -295,7 +295,7 @@ void test_other_faults_of_the_ai_computer_trip_in_manual_too(void) {
     expect_summary(AGV_FAULT_GEAR_COMMAND_TIMEOUT, NONE, AGV_FAULT_GEAR_COMMAND_TIMEOUT, NONE);
 }
 
-/* ---- The latch, and what is shown ---- */
+/* ---- The latch, and the fault on the LED ---- */
 
 /* Shows: LED-1 */
 void test_latched_trips_are_shown_before_warnings(void) {

@@ -1,4 +1,5 @@
-/* The held steering angle: that of the moment of the trip when it is young enough, or the first valid one after it. */
+/* The held steering angle: the last one before the trip if it is recent enough, otherwise the first valid one after
+ * it. */
 #include "decide/hold.h"
 
 #include "unity.h"
@@ -8,7 +9,7 @@ static agv_vehicle_t vehicle;
 static agv_timers_t timers;
 static agv_config_t config;
 
-/* Every test wraps. */
+/* The clock wraps in every test. */
 static uint32_t at(uint32_t ms) {
     return 0xFFFFFFE0u + ms;
 }
@@ -53,7 +54,7 @@ void test_without_any_067h_none_is_held(void) {
     expect_held(9123);
 }
 
-/* 50 ms are young enough. */
+/* An angle of up to 50 ms before the trip is recent enough. */
 /* Shows: FSM-10 */
 void test_an_angle_of_up_to_50_ms_before_the_trip_is_held(void) {
     measured(9123, 10);
@@ -75,11 +76,11 @@ void test_after_the_trip_the_first_one_is_held(void) {
     measured(6000, 211);
     agv_hold_take(&hold, &vehicle);
     expect_held(5000);
-    trip(212); /* another trip: the angle of its moment */
+    trip(212); /* another trip holds its own angle */
     expect_held(6000);
 }
 
-/* The one of a trip before is not kept when there is no young one. */
+/* The angle of an earlier trip is not kept, even without a recent one. */
 /* Shows: FSM-10 */
 void test_another_trip_forgets_an_old_angle(void) {
     measured(9123, 0);
@@ -89,7 +90,7 @@ void test_another_trip_forgets_an_old_angle(void) {
     expect_none();
 }
 
-/* Manual: the operator steers; and a reset. */
+/* Manual mode drops it, because the operator steers; so does a reset. */
 /* Shows: FSM-10 */
 void test_a_held_angle_is_dropped_and_another_one_held(void) {
     measured(9123, 0);

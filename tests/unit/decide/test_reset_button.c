@@ -1,4 +1,4 @@
-/* The reset by remote button 1: at its release, after 1 s to 5 s, when all held in the last second. */
+/* The reset by remote button 1: at its release, after 1 s to 5 s, if all conditions held in the last second. */
 #include "decide/reset_button.h"
 
 #include "unity.h"
@@ -8,7 +8,7 @@ static agv_timers_t timers;
 static agv_config_t config;
 static uint32_t lacking;
 static uint32_t missing;
-static uint32_t in_vain; /* how many presses, and what was missing then */
+static uint32_t in_vain; /* number of refused presses, and the conditions missing at the last one */
 static uint32_t resets;
 
 static void step(uint32_t elapsed_ms) {
@@ -21,7 +21,7 @@ static void step(uint32_t elapsed_ms) {
     resets += (result == AGV_PRESS_RESETS) ? 1u : 0u;
 }
 
-/* Each millisecond first the frames, then the tick. */
+/* In each millisecond the frames come before the tick. */
 static void run(uint32_t ms) {
     for (uint32_t i = 0; i < ms; i++) {
         step(1);
@@ -63,7 +63,7 @@ static void expect_nothing(void) {
     TEST_ASSERT_EQUAL_UINT32(0, in_vain);
 }
 
-/* Tripped for 2 s, all well, button up; the clock wraps in every test. */
+/* Tripped for 2 s, all conditions hold, button up. The clock wraps in every test. */
 void setUp(void) {
     agv_config_defaults(&config);
     agv_timers_set_time(&timers, 0xFFFFF000u);
@@ -97,7 +97,7 @@ void test_a_press_of_1_s_to_5_s_resets_at_its_release(uint32_t ms, uint32_t expe
     TEST_ASSERT_EQUAL_UINT32(expected, resets);
 }
 
-/* Told once, at 5 s, not again at its release. */
+/* Reported once, at 5 s, not again at its release. */
 /* Shows: FSM-3 */
 void test_a_press_of_more_than_5_s_is_in_vain(void) {
     frame(true);
@@ -176,7 +176,7 @@ void test_a_press_in_standby_is_one_from_before_the_trip(void) {
     expect_reset();
 }
 
-/* A button that was up in STANDBY and is pressed after the trip has an edge, whatever it was at the last reset. */
+/* A button that was up in STANDBY and is pressed after the trip has an edge, whatever its state at the last reset. */
 /* Shows: FSM-3 */
 void test_a_press_after_a_trip_from_standby_counts(void) {
     frame(true);
@@ -187,7 +187,7 @@ void test_a_press_after_a_trip_from_standby_counts(void) {
     expect_reset();
 }
 
-/* The first frame of all reports the button down: the edge was not seen. */
+/* The very first frame reports the button down, so there was no edge. */
 /* Shows: FSM-3, FSM-7 */
 void test_a_button_that_is_stuck_resets_nothing(void) {
     reset = (agv_reset_button_t){0};
@@ -197,7 +197,8 @@ void test_a_button_that_is_stuck_resets_nothing(void) {
     expect_in_vain(AGV_MISSING_BUTTON | AGV_MISSING_RELEASED);
 }
 
-/* A press that began before the trip is cut by the loss of the remote receiver, and seen again when that comes back. */
+/* A press that began before the trip is interrupted by the loss of the remote receiver, and reported again
+ * afterwards. */
 /* Shows: FSM-3, REMOTE_SIGNAL_LOST */
 void test_a_receiver_that_comes_back_makes_no_press(void) {
     frame(true);
@@ -211,7 +212,7 @@ void test_a_receiver_that_comes_back_makes_no_press(void) {
     expect_in_vain(AGV_MISSING_BUTTON);
 }
 
-/* The loss of the remote receiver is no release. */
+/* The loss of the remote receiver does not count as a release. */
 /* Shows: FSM-3, REMOTE_POWER_LOST */
 void test_a_receiver_that_is_lost_releases_nothing(void) {
     run(2000);
@@ -222,7 +223,7 @@ void test_a_receiver_that_is_lost_releases_nothing(void) {
     expect_in_vain(AGV_MISSING_BUTTON);
 }
 
-/* What a VCU that is not alive reports is nothing: neither an edge nor a release. */
+/* Frames of a VCU that is not alive cause neither an edge nor a release. */
 /* Shows: FSM-3 */
 void test_frames_of_a_vcu_that_is_not_alive_are_ignored(void) {
     agv_reset_button_report(&reset, false, false, true);
@@ -241,7 +242,7 @@ void test_frames_of_a_vcu_that_is_not_alive_are_ignored(void) {
 
 /* ---- The conditions ---- */
 
-/* Each is named by itself, when it was missing for a moment at the start of the last second. */
+/* Each condition is named when it was missing at the start of the last second. */
 /* Shows: FSM-3 */
 TEST_CASE(AGV_MISSING_STATE)
 TEST_CASE(AGV_MISSING_VCU_HEARTBEAT)
@@ -271,7 +272,7 @@ void test_conditions_missing_at_any_time_in_the_last_second(uint32_t condition) 
     expect_reset();
 }
 
-/* The releasing frame holds them, too. */
+/* The conditions must also hold in the releasing frame. */
 /* Shows: FSM-3 */
 void test_a_condition_missing_in_the_releasing_frame(void) {
     frame(true);
@@ -281,7 +282,7 @@ void test_a_condition_missing_in_the_releasing_frame(void) {
     expect_in_vain(AGV_MISSING_MANUAL);
 }
 
-/* All that was missing in the second, at different moments; not what was missing before. */
+/* All conditions that were missing at any time in the last second are named, but none that was missing before. */
 /* Shows: FSM-3 */
 void test_all_missing_conditions_are_reported(void) {
     lacking = AGV_MISSING_EPS_HEARTBEAT;
@@ -297,7 +298,7 @@ void test_all_missing_conditions_are_reported(void) {
     expect_in_vain(AGV_MISSING_STANDSTILL | AGV_MISSING_THROTTLE | AGV_MISSING_STATE);
 }
 
-/* Straight after the trip: nothing has held for a second before it. */
+/* Directly after the trip: no condition has held for a second. */
 /* Shows: FSM-3 */
 void test_time_before_the_trip_does_not_count(void) {
     agv_reset_button_trip(&reset, &timers);
@@ -314,7 +315,7 @@ void test_time_before_the_trip_does_not_count(void) {
 
 /* ---- The VCU is lost ---- */
 
-/* What follows from its loss was not missing before: just the one word. */
+/* Only the VCU is named, not the conditions that its loss affects. */
 /* Shows: FSM-3 */
 void test_a_press_that_the_loss_of_the_vcu_ends(void) {
     frame(true);
@@ -325,7 +326,7 @@ void test_a_press_that_the_loss_of_the_vcu_ends(void) {
     expect_in_vain(AGV_MISSING_VCU_HEARTBEAT);
 }
 
-/* With what was missing before it. */
+/* Conditions that were missing before its loss are named, too. */
 /* Shows: FSM-3 */
 void test_a_press_in_vain_that_the_loss_of_the_vcu_ends(void) {
     frame(true);
@@ -345,7 +346,7 @@ void test_a_short_press_ended_by_the_loss_of_the_vcu_is_not_reported(void) {
     expect_nothing();
 }
 
-/* The button is forgotten: pressed all the time, it has to be released first. */
+/* The state of the button is cleared. A button pressed all the time must be released first. */
 /* Shows: FSM-3 */
 void test_a_press_from_before_the_vcu_came_back_resets_nothing(void) {
     frame(true);
@@ -370,7 +371,7 @@ static void frame_without_receiver(bool down) {
     step(0);
 }
 
-/* "Not pressed" is then no release. */
+/* Without the receiver "not pressed" does not count as a release. */
 /* Shows: FSM-3 */
 void test_a_press_that_the_loss_of_the_remote_ends(void) {
     frame(true);
@@ -385,7 +386,7 @@ void test_a_press_that_the_loss_of_the_remote_ends(void) {
     expect_reset();
 }
 
-/* Nor is what is pressed when it comes back an edge: it may have been held all the time. */
+/* A button that is pressed when the receiver comes back is no edge: it may have been held all the time. */
 /* Shows: FSM-3 */
 void test_a_press_from_before_the_remote_came_back_resets_nothing(void) {
     frame_without_receiver(false);
@@ -400,7 +401,7 @@ void test_a_press_from_before_the_remote_came_back_resets_nothing(void) {
     expect_reset();
 }
 
-/* A short press that it ends is reported no more than any other. */
+/* A short press that ends with the receiver's loss is not reported, as any other short press. */
 /* Shows: FSM-3 */
 void test_a_short_press_ended_by_the_loss_of_the_remote_is_not_reported(void) {
     frame(true);
@@ -410,7 +411,8 @@ void test_a_short_press_ended_by_the_loss_of_the_remote_is_not_reported(void) {
     expect_nothing();
 }
 
-/* A receiver with a fault may still say "pressed": that goes on, and its release counts when the receiver is well. */
+/* A receiver with a fault may still report "pressed". The press continues, and its release counts when the receiver
+ * works again. */
 /* Shows: FSM-3 */
 void test_pressed_is_pressed_whatever_the_receiver_reports(void) {
     frame(true);

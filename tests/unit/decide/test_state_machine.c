@@ -56,7 +56,7 @@ static void start(agv_fault_t reason) {
     agv_state_machine_start(&machine, &timers, &config, reason);
 }
 
-/* A vehicle in manual that stands in P, all well. */
+/* A healthy vehicle in manual, at standstill in P. */
 static void all_well(void) {
     facts = (situation_t){.raised = AGV_FAULT_NONE,
                           .cause = AGV_FAULT_NONE,
@@ -70,11 +70,11 @@ static void all_well(void) {
 void setUp(void) {
     agv_config_defaults(&config);
     all_well();
-    agv_timers_set_time(&timers, 0xFFFFFF00u); /* every test wraps */
+    agv_timers_set_time(&timers, 0xFFFFFF00u); /* the clock wraps in every test */
     start(AGV_FAULT_NONE);
 }
 
-/* The adaptor to the module: everything below goes through these. */
+/* Adapter to the module: all tests use these functions. */
 static agv_fault_summary_t summary(void) {
     return (agv_fault_summary_t){.raised = (uint8_t)facts.raised,
                                  .cause = (uint8_t)facts.cause,
@@ -157,7 +157,7 @@ void test_init_is_left_after_500_ms_without_a_break(void) {
     TEST_ASSERT_EQUAL_HEX8(AGV_LATCH_OPEN, machine.latched);
 }
 
-/* Everything that may be missing keeps it; the speeds of a standstill are enough, 050h need not be at idle. */
+/* Every missing condition keeps INIT. Speeds of a standstill are enough; 050h need not be at idle. */
 void test_conditions_that_keep_init(void) {
     static const uint16_t needed[] = {AGV_MISSING_VCU_HEARTBEAT, AGV_MISSING_EPS_HEARTBEAT, AGV_MISSING_MANUAL,
                                       AGV_MISSING_MESSAGES};
@@ -226,7 +226,7 @@ void test_active_while_engaged_with_the_ai_alive(void) {
     facts.ai_alive = true;
     step(1);
     expect_state(AGV_STATE_ACTIVE);
-    facts.ai_alive = false; /* its loss trips by its own fault */
+    facts.ai_alive = false; /* a lost VCU trips by its own fault */
     step(1);
     expect_state(AGV_STATE_ACTIVE);
     facts.engaged = false;
@@ -245,7 +245,7 @@ void test_the_first_reason_stays(void) {
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_THROTTLE_IN_PARK, machine.first_reason);
 }
 
-/* A cause that was there before the state could trip for it. */
+/* A cause from before the state in which it can trip. */
 void test_a_cause_that_stands_trips_as_well(void) {
     to_standby();
     facts.cause = AGV_FAULT_MODE_INVALID;
@@ -254,7 +254,8 @@ void test_a_cause_that_stands_trips_as_well(void) {
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_MODE_INVALID, machine.first_reason);
 }
 
-/* A cause of the AI computer that outlived a reset: in manual it waits for the engagement, or to come again. */
+/* A cause of the AI computer that outlived a reset trips in manual only when it is raised again, otherwise at the
+ * engagement. */
 /* Shows: FSM-11 */
 void test_a_cause_of_the_ai_trips_at_the_engagement(void) {
     to_standby();
@@ -273,7 +274,7 @@ void test_a_cause_of_the_ai_trips_at_the_engagement(void) {
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, machine.first_reason);
 }
 
-/* What was raised, then what stands, then what the AI has left. */
+/* Order: raised faults, then lasting ones, then those of the AI that outlived a reset. */
 /* Shows: FSM-5, FSM-11 */
 void test_which_of_several_reasons_is_the_first(void) {
     to_standby();
@@ -291,7 +292,7 @@ void test_which_of_several_reasons_is_the_first(void) {
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_MODE_INVALID, machine.first_reason);
 }
 
-/* Both, and for as long as both. */
+/* SAFE needs both confirmations, and lasts as long as both. */
 /* Shows: FSM-4 */
 void test_safe_is_a_confirmed_state(void) {
     to_standby();
@@ -337,7 +338,7 @@ void test_a_press_that_resets(void) {
     TEST_ASSERT_TRUE(machine.output_closed);
 }
 
-/* The output that had opened in the safe state closes with it. */
+/* A reset closes the output that had opened in the safe state. */
 /* Shows: FSM-3, FSM-4 */
 void test_a_reset_closes_the_output(void) {
     to_safe();
@@ -351,7 +352,7 @@ void test_a_reset_closes_the_output(void) {
     TEST_ASSERT_TRUE(has_done(AGV_ACTION_CLOSE_OUTPUT));
 }
 
-/* Each by itself. */
+/* Each condition by itself. */
 /* Shows: FSM-3 */
 void test_the_conditions_of_a_reset(void) {
     static const uint16_t bits[] = {AGV_MISSING_VCU_HEARTBEAT, AGV_MISSING_EPS_HEARTBEAT, AGV_MISSING_STANDSTILL,
@@ -366,7 +367,7 @@ void test_the_conditions_of_a_reset(void) {
     facts.cause = AGV_FAULT_S_DRIVER_ALARM;
     TEST_ASSERT_EQUAL_HEX32(AGV_MISSING_TRIP_CAUSE, lacks());
     facts.cause = AGV_FAULT_NONE;
-    facts.in_park = false; /* in SAFE still, but withdrawn with this very frame */
+    facts.in_park = false; /* still in SAFE, but the confirmation is withdrawn by this frame */
     TEST_ASSERT_EQUAL_HEX32(AGV_MISSING_STATE, lacks());
     facts.in_park = true;
     facts.autopilot_off = false;
@@ -386,11 +387,11 @@ void test_a_cause_of_the_ai_keeps_no_reset(void) {
     step(1);
     expect_state(AGV_STATE_STANDBY);
     facts.reset = false;
-    run(100); /* and does not trip at once again */
+    run(100); /* and does not trip again at once */
     expect_state(AGV_STATE_STANDBY);
 }
 
-/* The wheels, not the VCU's speed. */
+/* The wheels count, not the VCU's speed. */
 /* Shows: FSM-1 */
 void test_p_waits_for_standing_wheels_or_3_s(void) {
     config.park = AGV_PARK_AT_STANDSTILL;
@@ -413,7 +414,7 @@ void test_p_waits_for_standing_wheels_or_3_s(void) {
     facts.missing = AGV_MISSING_STANDSTILL;
     step(1);
     TEST_ASSERT_TRUE(machine.park_released);
-    facts.wheels_turn = true; /* what was released stays so */
+    facts.wheels_turn = true; /* a released P stays released */
     step(1);
     TEST_ASSERT_TRUE(machine.park_released);
     setUp();
@@ -448,7 +449,7 @@ void test_a_start_in_tripped(void) {
     TEST_ASSERT_FALSE(machine.output_closed);
 }
 
-/* ---- What is to be done, as a list ---- */
+/* ---- The list of actions ---- */
 
 static const uint32_t SENDING = AGV_ACTION_DISCARD | AGV_ACTION_PURGE;
 
@@ -473,7 +474,7 @@ void test_the_actions_of_the_end_of_init(void) {
     TEST_ASSERT_EQUAL_HEX32(AGV_ACTION_STATE | SENDING | AGV_ACTION_UNLATCH | AGV_ACTION_CLOSE_OUTPUT, did.what);
 }
 
-/* The output is closed still: it opens only when the confirmation is late. */
+/* The output is still closed; it opens only when the confirmation is late. */
 /* Shows: FSM-3, FSM-7 */
 void test_the_actions_of_a_reset(void) {
     to_safe();

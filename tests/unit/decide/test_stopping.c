@@ -1,4 +1,4 @@
-/* The safe state is a vehicle that stands: VEHICLE_NOT_STOPPING, MOVING_WHILE_SAFE. */
+/* The vehicle must stop in the safe state: VEHICLE_NOT_STOPPING, MOVING_WHILE_SAFE. */
 #include "decide/stopping.h"
 
 #include "unity.h"
@@ -50,17 +50,17 @@ void test_5_s_without_standing_wheels(void) {
     expect(false, false);
     run(1);
     expect(true, false);
-    wheels(0, 0); /* it lasts until they stand, for 100 ms */
+    wheels(0, 0); /* the fault lasts until the wheels have stood for 100 ms */
     run(99);
     expect(true, false);
     run(1);
     expect(false, false);
-    wheels(2000, 2000); /* they have stood since the trip: this is another fault */
+    wheels(2000, 2000); /* they have stood since the trip, so this is the other fault */
     run(10000);
     expect(false, true);
 }
 
-/* Slow ones do not stand yet; to be seen for a moment is enough. */
+/* Slow wheels do not stand yet. A single standstill is enough. */
 /* Shows: FSM-12 */
 void test_wheels_that_stand_within_5_s(void) {
     trip();
@@ -69,7 +69,7 @@ void test_wheels_that_stand_within_5_s(void) {
     wheels(0, 0);
     run(100);
     expect(false, false);
-    wheels(60, 0); /* neither do they stand nor do they move the vehicle */
+    wheels(60, 0); /* too fast for standstill, too slow for a moving vehicle */
     run(10000);
     expect(false, false);
 }
@@ -108,7 +108,7 @@ void test_wheels_that_turn_from_the_trip_on(void) {
     expect(false, true);
 }
 
-/* What stands by its setting does not move the vehicle. */
+/* A speed that counts as standstill by its setting does not count as moving. */
 /* Shows: FSM-12 */
 void test_wheels_that_are_slow_by_a_setting_stand(void) {
     config.standstill_speed_mm_s = 250;
@@ -119,7 +119,7 @@ void test_wheels_that_are_slow_by_a_setting_stand(void) {
     expect(false, false);
 }
 
-/* How long it takes is a setting. */
+/* The time is a setting. */
 /* Shows: FSM-12 */
 void test_the_time_to_stop_is_a_setting(void) {
     config.stop_timeout_ms = 30000;
@@ -137,7 +137,7 @@ static void trip_and_stop(void) {
     expect(false, false);
 }
 
-/* One of them, either way. */
+/* One wheel is enough, in either direction. */
 /* Shows: FSM-12, MOVING_WHILE_SAFE */
 TEST_CASE(100, 0)
 TEST_CASE(0, -100)
@@ -190,7 +190,7 @@ void test_stale_wheel_speeds_are_not_moving(void) {
     expect(false, true);
 }
 
-/* Before they have stood the wheels may turn: it is on its way to stop. */
+/* Before the first standstill the wheels may turn, because the vehicle is stopping. */
 /* Shows: FSM-12 */
 void test_wheels_that_have_not_stood_yet_are_not_moving_while_safe(void) {
     trip();

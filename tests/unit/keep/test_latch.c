@@ -1,4 +1,4 @@
-/* The latch record: what is handed to the store and what comes back from it. */
+/* The latch record: writing to the store and reading from it. */
 #include "keep/latch.h"
 
 #include <string.h>
@@ -6,13 +6,13 @@
 #include "mock_store.h"
 #include "unity.h"
 
-/* A port's context: the core never looks inside. */
+/* The context of a port; the core never accesses its members. */
 struct hal {
     int unused;
 };
 static hal_t hal;
 
-/* What the store holds, and the size that it reports. */
+/* Content of the store, and the size that it reports. */
 static uint8_t stored[HAL_STORE_LATCH_SIZE_MAX];
 static size_t stored_size;
 static bool write_works;
@@ -100,7 +100,7 @@ void test_every_changed_byte_is_found(void) {
         }
         stored[at] = good;
     }
-    TEST_ASSERT_EQUAL_MEMORY(&before, &latch, sizeof latch); /* is not filled with what is corrupt */
+    TEST_ASSERT_EQUAL_MEMORY(&before, &latch, sizeof latch); /* is not filled from a corrupt record */
 }
 
 /* Shows: FSM-7 */

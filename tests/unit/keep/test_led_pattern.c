@@ -9,7 +9,7 @@ void setUp(void) {
     led = (agv_led_t){0};
 }
 
-/* One pattern of a code as it stands in LED-1: what the LED is in each of its milliseconds; returns its length. */
+/* The pattern of a code by LED-1: the LED in each millisecond. @return its length */
 static uint32_t pattern_of(int code, bool pattern[10000]) {
     uint32_t length = 0;
     for (int flash = 0; flash < code; flash++) {
@@ -33,7 +33,7 @@ static void expect_pattern(int8_t code, bool shadow, const bool *pattern, uint32
         const bool switched = agv_led_tick(&led, code, shadow, (ms == 0) ? 5 : 1);
         shown = switched ? led.on : shown;
         TEST_ASSERT_EQUAL(pattern[ms % length], led.on);
-        TEST_ASSERT_EQUAL(led.on, shown); /* a LED that is switched on each change shows the same */
+        TEST_ASSERT_EQUAL(led.on, shown); /* switching the LED only at changes gives the same pattern */
     }
 }
 
@@ -79,7 +79,7 @@ void test_a_code_is_the_same_in_shadow_mode(void) {
     expect_pattern(13, true, pattern, length);
 }
 
-/* Steps of any length stay on the pattern: code 2 is 2200 ms long. */
+/* Steps of any length keep the pattern in time: code 2 is 2200 ms long. */
 void test_a_late_tick_keeps_the_pattern(void) {
     (void)agv_led_tick(&led, 2, false, 0);
     TEST_ASSERT_TRUE(led.on);
@@ -90,7 +90,7 @@ void test_a_late_tick_keeps_the_pattern(void) {
     TEST_ASSERT_TRUE(led.on);
 }
 
-/* Codes of the protocol document's list, and two faults that it does not know. */
+/* Codes of the protocol document's list, and two faults that are not in it. */
 /* Shows: P19, LED-1 */
 void test_a_fault_has_the_code_of_the_list(void) {
     TEST_ASSERT_EQUAL_INT(0, agv_led_code(AGV_FAULT_NONE));

@@ -1,4 +1,4 @@
-/* The flight recorder: ring, snapshots, torn events, restarts, what is still to be stored. */
+/* The flight recorder: ring, snapshots, torn events, restarts, events still to be stored. */
 #include "agv/recorder.h"
 
 #include <string.h>
@@ -9,7 +9,7 @@
 static agv_recorder_t recorder;
 
 void setUp(void) {
-    memset(&recorder, 0xA5, sizeof recorder); /* what is in RAM after a power-on */
+    memset(&recorder, 0xA5, sizeof recorder); /* content of RAM after a power-on */
     agv_recorder_start(&recorder);
 }
 
@@ -34,7 +34,7 @@ static void expect_gone(uint32_t sequence) {
     TEST_ASSERT_EQUAL_UINT32(77, event.sequence); /* not touched */
 }
 
-/* Store all that is waiting; returns how many. The first one has to have this number. */
+/* Store all waiting events, the first of which must have this number. @return number of stored events */
 static uint32_t store_all(uint32_t first) {
     uint32_t count = 0;
     for (const agv_event_t *e; (e = agv_recorder_next_to_store(&recorder)) != NULL; count++) {
@@ -173,7 +173,7 @@ void test_holes_do_not_end_the_kept_events(void) {
     TEST_ASSERT_EQUAL_UINT32(17, store_all(1));
 }
 
-/* A good event that lies where it does not belong (memory that was shifted) is dropped. */
+/* A valid event in the wrong place (shifted memory) is dropped. */
 void test_an_event_in_a_wrong_place_is_dropped(void) {
     add(5);
     recorder.events[100] = recorder.events[4];
@@ -269,7 +269,7 @@ void test_every_event_is_stored_once_and_in_order(void) {
     TEST_ASSERT_EQUAL_UINT32(3, store_all(0));
     add(1);
     TEST_ASSERT_EQUAL_UINT32(1, store_all(3));
-    agv_recorder_start(&recorder); /* what is in flash stays known */
+    agv_recorder_start(&recorder); /* the mark of stored events is kept */
     TEST_ASSERT_NULL(agv_recorder_next_to_store(&recorder));
     add(1);
     TEST_ASSERT_EQUAL_UINT32(1, store_all(4));
@@ -321,7 +321,7 @@ static void trip(uint32_t number) {
     agv_recorder_add(&recorder, &entry, number);
 }
 
-/* Of these trips the last ones are there, the latest first, and no other. */
+/* Exactly the last of these trips are kept, the latest first. */
 static void expect_trips(uint32_t latest, uint32_t count) {
     agv_event_t event = {.time_ms = 77};
     for (uint32_t i = 0; i < count; i++) {
@@ -341,13 +341,13 @@ void test_the_last_8_trips_are_kept_apart(void) {
     for (uint32_t number = 1; number <= 30; number++) {
         trip(number);
         expect_trips(number, (number < 8) ? number : 8);
-        add(40); /* whatever comes after it */
+        add(40); /* later events do not replace it */
     }
     add(1000);
     expect_trips(30, 8);
 }
 
-/* With the snapshot of then. */
+/* With the snapshot of the trip. */
 /* Shows: INT-3 */
 void test_a_trip_is_kept_with_its_snapshot(void) {
     const uint8_t gear[8] = {1, 0, 0, 0, 0, 0, 0, 7};
@@ -362,7 +362,7 @@ void test_a_trip_is_kept_with_its_snapshot(void) {
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_BUS_OFF, event.first_reason);
 }
 
-/* A confirmation that was withdrawn, another state, another kind of event. */
+/* No trip: a withdrawn confirmation, another state, another kind of event. */
 /* Shows: INT-3 */
 void test_other_events_replace_no_trip(void) {
     const agv_entry_t others[] = {
@@ -387,7 +387,7 @@ void test_trips_outlive_a_restart_and_the_wrap_of_the_numbers(void) {
     expect_trips(10, 8);
 }
 
-/* A torn one is dropped, and its place is the next to be used. */
+/* A torn trip is dropped, and its place is used next. */
 /* Shows: INT-3, INT-5 */
 void test_a_torn_trip_loses_that_one_only(void) {
     for (uint32_t number = 1; number <= 8; number++) {
@@ -400,12 +400,12 @@ void test_a_torn_trip_loses_that_one_only(void) {
     TEST_ASSERT_EQUAL_UINT8(0, recorder.trips[7].kind);
     trip(8);
     expect_trips(8, 8);
-    recorder.trips[0].checksum ^= 1; /* found at its use as well */
+    recorder.trips[0].checksum ^= 1; /* also detected when it is used */
     trip(9);
     expect_trips(9, 8);
 }
 
-/* The event is torn, the trip that was kept of it is not: its number is not given again. */
+/* The event is torn, but the kept trip is not. Its number is not used again. */
 /* Shows: INT-3 */
 void test_a_torn_event_whose_trip_is_kept(void) {
     trip(1);
@@ -456,7 +456,7 @@ void test_one_fault_is_recorded_four_times_a_second(uint32_t start_ms) {
     TEST_ASSERT_EQUAL_INT(0, recorded(AGV_FAULT_RX_OVERRUN, start_ms + 5000));
 }
 
-/* Each fault by itself, and nothing but faults. */
+/* The limit is for each fault by itself, and only for faults. */
 /* Shows: INT-3 */
 void test_a_fault_that_flickers_leaves_room_for_the_others(void) {
     for (uint32_t i = 0; i < 1000; i++) {
@@ -488,7 +488,7 @@ void test_the_number_left_out_saturates(void) {
     TEST_ASSERT_EQUAL_INT(65535, recorded(AGV_FAULT_BUS_OFF, 1000));
 }
 
-/* Another run knows nothing of it. */
+/* A restart clears the rates. */
 /* Shows: INT-3 */
 void test_a_restart_begins_the_rates_anew(void) {
     for (uint32_t i = 0; i < 10; i++) {

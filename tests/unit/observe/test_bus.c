@@ -1,4 +1,4 @@
-/* One CAN controller as the supervisor follows it. */
+/* The supervisor's view of a CAN controller. */
 #include "observe/bus.h"
 
 #include <stddef.h>
@@ -35,7 +35,7 @@ static bool is_off(void) {
     return agv_bus_is_off(&timers, HAL_CAN_VEHICLE);
 }
 
-/* The controller has counted before: what it counted then is no news. */
+/* The counts of the controller before the start are not reported. */
 void setUp(void) {
     controller = (hal_can_status_t){.state = HAL_CAN_ERROR_ACTIVE, .bus_off_count = 65535, .overrun_count = 65535};
     agv_config_defaults(&config);
@@ -82,7 +82,7 @@ void test_a_bus_off_between_two_ticks_is_detected(void) {
     TEST_ASSERT_EQUAL_HEX(0, look(1));
 }
 
-/* Off, back, and off again between two looks: still off. */
+/* Off, recovered, and off again between two ticks: still off. */
 void test_a_second_bus_off_between_two_ticks_is_bus_off(void) {
     enter_bus_off();
     (void)look(0);
@@ -115,7 +115,7 @@ void test_a_frame_that_waits_for_too_long(void) {
     TEST_ASSERT_EQUAL_HEX(OFF, look(2));
 }
 
-/* Each side has its own. */
+/* Each side is independent. */
 void test_the_two_sides_are_independent(void) {
     agv_bus_t ai = {0};
     agv_bus_start(&ai, NULL, HAL_CAN_AI);

@@ -15,7 +15,7 @@ static void expect_known(unsigned set) {
     }
 }
 
-/* Each is taken from its own bytes and known by itself. */
+/* Each command is read from its own bytes, and known independently of the others. */
 /* Shows: SUP-5, SUP-11 */
 void test_each_command_is_taken_by_itself(void) {
     static const uint8_t ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};

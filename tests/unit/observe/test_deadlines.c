@@ -1,4 +1,4 @@
-/* Which fault a silence is: of messages, of heartbeats, of the own identifiers. */
+/* The fault of each silence: of messages, of heartbeats, of the own identifiers. */
 #include "observe/deadlines.h"
 
 #include "unity.h"
@@ -11,7 +11,7 @@ static agv_liveness_t liveness;
 static agv_config_t config;
 static bool engaged;
 
-/* Every test wraps. */
+/* The clock wraps in every test. */
 static uint32_t at(uint32_t ms) {
     return 0xFFFFFFE0u + ms;
 }
@@ -32,7 +32,7 @@ static void tick(uint32_t ms) {
     agv_deadlines_tick(&faults, &timers, &config, &liveness, engaged);
 }
 
-/* A frame whose alive counter is at every place. */
+/* A frame with the alive counter in every byte. */
 static void arrives(unsigned message, uint8_t counter, uint32_t ms) {
     hal_can_frame_t frame = {.time_ms = at(ms), .length = 8};
     for (unsigned i = 0; i < 8; i++) {
@@ -43,7 +43,7 @@ static void arrives(unsigned message, uint8_t counter, uint32_t ms) {
     agv_liveness_refresh(&liveness, &timers, &config, message, &frame);
 }
 
-/* All but one, at that time. */
+/* All messages but one, at that time. */
 static void others_arrive(unsigned silent, uint8_t counter, uint32_t ms) {
     for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
         if (i != silent) {
@@ -80,7 +80,7 @@ static const struct {
 };
 enum { SILENCE_COUNT = sizeof SILENCES / sizeof SILENCES[0] };
 
-/* Two frames first: the heartbeats are alive. Then all but one come until its deadline has expired. */
+/* Two frames make the heartbeats alive. Then all messages but one come until its deadline has expired. */
 static void be_silent(unsigned message, uint32_t timeout_ms) {
     others_arrive(NONE, 1, 0);
     others_arrive(NONE, 2, 0);
@@ -140,7 +140,8 @@ void test_a_heartbeat_is_stuck(unsigned message, unsigned fault, uint32_t timeou
     expect_only(NONE);
 }
 
-/* Engaged without ever a 43Fh. The time begins with the engagement, which mode.c starts; a break of it does not end it. */
+/* Engaged, and no 43Fh was ever received. The time begins with the engagement, which mode.c starts; an interruption
+ * does not end it. */
 /* Shows: SUP-8, AI_HEARTBEAT_LOST */
 void test_an_ai_computer_that_was_never_seen(void) {
     tick(10000);
@@ -149,7 +150,7 @@ void test_an_ai_computer_that_was_never_seen(void) {
     engaged = true;
     agv_timer_start(&timers, AGV_TIMER_AI_NEVER_SEEN);
     tick(10400);
-    engaged = false; /* a glitch, and the engagement is continued */
+    engaged = false; /* a short interruption; the engagement continues */
     tick(10401);
     engaged = true;
     tick(10501);
@@ -161,7 +162,7 @@ void test_an_ai_computer_that_was_never_seen(void) {
     TEST_ASSERT_FALSE(is_active(AGV_FAULT_AI_HEARTBEAT_LOST));
 }
 
-/* A reset: at once, not in the next tick only. */
+/* A reset takes effect at once, not only in the next tick. */
 /* Shows: SUP-8 */
 TEST_CASE(AGV_FAULT_AI_HEARTBEAT_LOST)
 TEST_CASE(AGV_FAULT_AI_HEARTBEAT_STUCK)
@@ -172,7 +173,7 @@ void test_a_forgotten_ai_computer_is_not_lost(unsigned fault) {
     expect_only(AGV_FAULT_VCU_HEARTBEAT_LOST);
 }
 
-/* Lost in manual: at the moment of the engagement it is a fault of an engaged vehicle, without waiting for a tick. */
+/* Lost in manual: with the engagement it becomes a fault of an engaged vehicle, without waiting for a tick. */
 /* Shows: SUP-8, FSM-11 */
 void test_a_forgotten_ai_computer_is_lost_at_the_next_engagement(void) {
     arrives(AGV_MSG_TURN_SIGNAL_COMMAND, 1, 0);
@@ -239,7 +240,7 @@ void test_the_own_identifier_ends_it_and_that_of_another_message_does_not(void) 
 
 /* ---- Fresh messages ---- */
 
-/* 363h and 067h are heartbeats, commands are the AI's, and a silent 267h warns: they are not asked for. */
+/* Not checked: 363h and 067h (heartbeats), the AI's commands, and 267h, which only warns. */
 void test_the_messages_whose_silence_trips_have_to_be_fresh(void) {
     static const bool needed[AGV_MSG_COUNT] = {[AGV_MSG_GEAR_STATUS] = true,
                                                [AGV_MSG_THROTTLE_STATUS] = true,

@@ -9,7 +9,7 @@ static agv_timers_t timers;
 static agv_liveness_t liveness;
 static agv_fault_monitor_t faults;
 
-/* Every test wraps. */
+/* The clock wraps in every test. */
 static uint32_t at(uint32_t ms) {
     return 0xFFFFFFC0u + ms;
 }
@@ -31,7 +31,7 @@ static bool is_too_fast(uint32_t ms) {
     return agv_fault_monitor_is_active(&faults, AGV_FAULT_COMMAND_TOO_FAST);
 }
 
-/* A well-formed frame of the command at that time; whether it is too fast then. */
+/* A well-formed frame of the command at that time. @return whether COMMAND_TOO_FAST is active */
 static bool comes(unsigned command, uint32_t ms) {
     const uint32_t gap_ms = agv_liveness_arrived(&liveness, command, at(ms));
     agv_intrusion_command(&intrusion, &config, command, gap_ms);
@@ -57,7 +57,7 @@ void test_ten_gaps_under_half_a_cycle_in_a_row(unsigned command, uint32_t gap_ms
     }
 }
 
-/* One right behind each frame of the other: every second gap is short, some 40 of them. */
+/* A second sender right behind each frame of the first: every second gap is short, some 40 of them. */
 /* Shows: SUP-6, COMMAND_TOO_FAST */
 void test_a_second_sender_right_behind_the_first_is_detected(void) {
     unsigned frames = 0;
@@ -87,7 +87,7 @@ static uint32_t make_it_too_fast(unsigned command) {
     return 10;
 }
 
-/* It ends when the score is back at 0: after 20 gaps of the cycle. */
+/* The fault ends when the score is 0: after 20 gaps of a full cycle. */
 /* Shows: SUP-6, COMMAND_TOO_FAST */
 void test_it_ends_after_twenty_good_gaps(void) {
     uint32_t ms = make_it_too_fast(AGV_MSG_STEERING_COMMAND);
@@ -98,7 +98,7 @@ void test_it_ends_after_twenty_good_gaps(void) {
     TEST_ASSERT_FALSE(comes(AGV_MSG_STEERING_COMMAND, ms + 25));
 }
 
-/* Longer than the deadline of the command: 350 ms. It ends by itself, and the gap that it makes does not count. */
+/* A silence longer than the command's deadline of 350 ms ends the fault, and its gap does not count. */
 /* Shows: SUP-6, COMMAND_TOO_FAST */
 void test_a_silence_longer_than_the_deadline_ends_it(void) {
     const uint32_t last_ms = make_it_too_fast(AGV_MSG_GEAR_COMMAND);
@@ -110,7 +110,7 @@ void test_a_silence_longer_than_the_deadline_ends_it(void) {
     TEST_ASSERT_EQUAL_UINT8(0, intrusion.fast_gaps[AGV_MSG_GEAR_COMMAND].value);
 }
 
-/* However little of the score is left. 065h: 125 ms. */
+/* Also with a small score. 065h: 125 ms. */
 /* Shows: SUP-6, COMMAND_TOO_FAST */
 void test_a_silence_ends_a_small_score(void) {
     uint32_t ms = make_it_too_fast(AGV_MSG_STEERING_COMMAND);

@@ -1,4 +1,4 @@
-/* Who is alive, and how old is what is known: deadlines, heartbeats, ages that saturate. */
+/* Alive senders and ages of messages: deadlines, heartbeats, saturation. */
 #include "observe/liveness.h"
 
 #include "unity.h"
@@ -28,7 +28,7 @@ static void tick(uint32_t now_ms) {
     tick_while(false, now_ms);
 }
 
-/* Ages saturate within 16 ticks, here all of one moment: each looks at some of the messages only. */
+/* Ages saturate within 16 ticks, because each tick checks some of the messages only. */
 static void look_at_all(uint32_t now_ms) {
     for (uint32_t i = 0; i < 16; i++) {
         tick(now_ms);
@@ -65,7 +65,7 @@ static void expect_heartbeat(agv_node_t node, agv_heartbeat_state_t expected) {
     TEST_ASSERT_EQUAL(expected == AGV_HEARTBEAT_ALIVE, agv_liveness_alive(&liveness, node));
 }
 
-/* A frame with an alive counter, as the monitor hands it on: 363h byte 8, 067h byte 1, 43Fh byte 8. */
+/* A frame with an alive counter: 363h byte 8, 067h byte 1, 43Fh byte 8. */
 static void beat(agv_node_t node, uint8_t counter, uint32_t time_ms) {
     static const agv_message_t carrier[] = {AGV_MSG_VEHICLE_STATUS, AGV_MSG_STEERING_STATUS,
                                             AGV_MSG_TURN_SIGNAL_COMMAND};
@@ -151,7 +151,7 @@ void test_ages_and_gaps_saturate(uint32_t start_ms) {
     TEST_ASSERT_EQUAL_UINT32(0, age_ms(AGV_MSG_WHEEL_SPEED, start_ms + 11));
 }
 
-/* Steps that come late again and again, at whatever distance. */
+/* Late steps, at any distance. */
 /* Shows: TIM-2 */
 TEST_CASE(2)
 TEST_CASE(11)
@@ -167,7 +167,7 @@ void test_ages_saturate_at_any_stride_of_ticks(uint32_t stride_ms) {
     }
 }
 
-/* A stamp that lies before the one before it (frames of two queues) makes no gap of 49 days. */
+/* A stamp earlier than the previous one (frames of two queues) is not a gap of 49 days. */
 void test_a_stamp_that_goes_backwards_is_no_gap(void) {
     (void)agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, 20);
     TEST_ASSERT_EQUAL_UINT32(0, agv_liveness_arrived(&liveness, AGV_MSG_WHEEL_SPEED, 19));
@@ -183,7 +183,7 @@ void test_vcu_and_eps_are_awaited_from_the_start(unsigned node) {
     expect_heartbeat((agv_node_t)node, AGV_HEARTBEAT_LOST);
 }
 
-/* No counter was before the first one: what comes late is lost, not stuck. */
+/* The first frame has no previous counter, so a late sender is lost, not stuck. */
 /* Shows: SUP-2 */
 TEST_CASE(0)
 TEST_CASE(1)
@@ -245,7 +245,7 @@ static void repeat_until(uint32_t last_frame_ms) {
 void test_a_counter_that_stands_still_is_stuck(void) {
     repeat_until(140);
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_STUCK);
-    beat(AGV_NODE_VCU, 2, 155); /* the old counter is no sign of life */
+    beat(AGV_NODE_VCU, 2, 155); /* an old counter does not make the sender alive */
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_STUCK);
     beat(AGV_NODE_VCU, 3, 160);
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
@@ -278,7 +278,7 @@ void test_silence_is_lost(void) {
     expect_heartbeat(AGV_NODE_VCU, AGV_HEARTBEAT_ALIVE);
 }
 
-/* In manual a forgotten AI computer is not supervised; the value from before the reset is the baseline. */
+/* In manual a forgotten AI computer is not supervised. Its counter from before the reset is the baseline. */
 /* Shows: SUP-8 */
 void test_a_forgotten_ai_is_seen_again_when_its_counter_changes(void) {
     beat(AGV_NODE_AI, 1, 0);
@@ -292,7 +292,7 @@ void test_a_forgotten_ai_is_seen_again_when_its_counter_changes(void) {
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_ALIVE);
 }
 
-/* Its deadline of 350 ms runs on: engaged, it is lost when that has expired, at once if it had before. */
+/* Its deadline of 350 ms runs on: when engaged it is lost at the expiry, or at once after it. */
 /* Shows: SUP-8, FSM-11 */
 TEST_CASE(450, 451)
 TEST_CASE(5000, 5000)
@@ -309,7 +309,7 @@ void test_a_forgotten_ai_is_lost_when_engaged(uint32_t engaged_ms, uint32_t lost
     expect_heartbeat(AGV_NODE_AI, AGV_HEARTBEAT_LOST);
 }
 
-/* A reset forgets that it was lost, too; frames with the old counter leave it stuck at the next engagement. */
+/* A reset also forgets that it was lost. With frames of an old counter it is stuck at the next engagement. */
 /* Shows: SUP-8, FSM-11 */
 void test_a_forgotten_ai_whose_counter_stands_is_stuck_when_engaged(void) {
     beat(AGV_NODE_AI, 1, 0);
@@ -350,7 +350,7 @@ void test_steps_of_one_to_three_count(void) {
     }
 }
 
-/* The choice is one of each sender alone. */
+/* Each sender has its own setting. */
 /* Shows: SUP-2 */
 TEST_CASE(0)
 TEST_CASE(1)

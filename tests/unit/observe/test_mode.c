@@ -1,4 +1,4 @@
-/* The mode that 363h reports: manual, engaged, both at once; engagements that go on, judged, SUP-9. */
+/* The mode that 363h reports: manual, engaged, both at once; continued engagements, judged, SUP-9. */
 #include "observe/mode.h"
 
 #include "unity.h"
@@ -11,7 +11,7 @@ static agv_timers_t timers;
 static agv_config_t config;
 static agv_fault_monitor_t faults;
 
-/* Every test wraps. */
+/* The clock wraps in every test. */
 static uint32_t at(uint32_t ms) {
     return 0xFFFFFF80u + ms;
 }
@@ -124,7 +124,7 @@ void test_the_number_of_frames_is_a_setting(unsigned frames) {
 
 /* ---- The VCU ---- */
 
-/* Neither a frame of a VCU that is not alive nor its loss leaves anybody engaged. */
+/* Without an alive VCU there is no engagement. */
 void test_an_engagement_needs_a_vcu_that_is_alive(void) {
     advance(10);
     TEST_ASSERT_EQUAL(AGV_MODE_SAME, agv_mode_report(&mode, &timers, &config, ENGAGED, false, at(10)));
@@ -138,7 +138,8 @@ void test_an_engagement_needs_a_vcu_that_is_alive(void) {
 
 /* ---- One engagement ---- */
 
-/* From the end, with its third frame, up to 100 ms: no human. The grace does not begin afresh. */
+/* An engagement within 100 ms of the end of the last one, which is its third frame, continues it. The grace time does
+ * not restart. */
 /* Shows: SUP-5 */
 TEST_CASE(100, 1)
 TEST_CASE(101, 0)
@@ -154,7 +155,7 @@ void test_an_engagement_within_100_ms_of_the_last_one_continues_it(uint32_t gap_
     TEST_ASSERT_TRUE(is_judged());
 }
 
-/* A continued one that ends is continued again: the time counts from each end. */
+/* A continued engagement can be continued again. The time counts from each end. */
 void test_a_continued_engagement_is_continued_again(void) {
     (void)report(ENGAGED, 0);
     for (uint32_t ms = 100; ms < 1000; ms += 100) {
@@ -199,7 +200,7 @@ void test_judged_from_500_ms_on_and_while_the_last_frame_has_the_bit(void) {
     TEST_ASSERT_FALSE(is_judged());
 }
 
-/* The AI computer has its time from the stamp of the frame on; a continued engagement goes on with it. */
+/* The time of the AI computer starts with the stamp of the frame. A continued engagement does not restart it. */
 /* Shows: SUP-8 */
 void test_at_the_engagement_the_ai_computer_is_awaited(void) {
     advance(12);
@@ -232,7 +233,7 @@ void test_both_bits_keep_the_previous_mode_for_a_limited_time(void) {
     expect_mode(false, false);
     TEST_ASSERT_FALSE(is_judged());
     TEST_ASSERT_EQUAL(AGV_MODE_SAME, tick(62));
-    TEST_ASSERT_EQUAL(AGV_MODE_SAME, report(BOTH, 70)); /* goes on */
+    TEST_ASSERT_EQUAL(AGV_MODE_SAME, report(BOTH, 70)); /* continues */
     TEST_ASSERT_TRUE(is_invalid());
     TEST_ASSERT_EQUAL(AGV_MODE_BEGAN, report(ENGAGED, 200));
     TEST_ASSERT_FALSE(is_invalid());
@@ -253,20 +254,20 @@ void test_a_good_frame_takes_half_its_time_off_that_of_both_bits(void) {
     TEST_ASSERT_EQUAL(AGV_MODE_SAME, tick(75));
     TEST_ASSERT_FALSE(is_invalid());
     expect_mode(true, false);
-    TEST_ASSERT_EQUAL(AGV_MODE_SAME, tick(76)); /* from manual to none: nothing was engaged */
+    TEST_ASSERT_EQUAL(AGV_MODE_SAME, tick(76)); /* from manual to no mode, without an engagement */
     TEST_ASSERT_TRUE(is_invalid());
     expect_mode(false, false);
     (void)report(MANUAL, 77);
     TEST_ASSERT_FALSE(is_invalid());
     (void)tick(176);
-    (void)report(BOTH, 177); /* nothing is left after 100 ms */
+    (void)report(BOTH, 177); /* the budget is empty after 100 ms */
     (void)tick(227);
     TEST_ASSERT_FALSE(is_invalid());
     (void)tick(228);
     TEST_ASSERT_TRUE(is_invalid());
 }
 
-/* The time without any mode, too: 40 ms, then 40 ms with neither bit on the move: 20 ms are left of them. */
+/* Time without any mode counts, too: 40 ms of both bits, then 40 ms of neither while moving leave 20 ms. */
 /* Shows: MODE_INVALID, MODE_NONE */
 void test_neither_bit_takes_half_its_time_off_that_of_both_bits(void) {
     (void)tick(9);
@@ -332,7 +333,7 @@ void test_no_mode_for_500_ms_while_not_at_standstill(void) {
     TEST_ASSERT_TRUE(none_at(520, true, false));
     TEST_ASSERT_FALSE(none_at(530, true, true)); /* standstill ends it */
     TEST_ASSERT_FALSE(none_at(1529, true, true));
-    TEST_ASSERT_FALSE(none_at(1530, true, false)); /* a second later it begins anew */
+    TEST_ASSERT_FALSE(none_at(1530, true, false)); /* a second later it begins again */
     TEST_ASSERT_FALSE(none_at(2029, true, false));
     TEST_ASSERT_TRUE(none_at(2030, true, false));
     (void)report(MANUAL, 2031); /* so does a mode */
@@ -353,7 +354,7 @@ void test_a_mode_takes_half_its_time_off_that_without_one(void) {
     TEST_ASSERT_TRUE(none_at(660, true, false));
 }
 
-/* It is looked for in STANDBY and ACTIVE; what trips there lasts as long as its cause. */
+/* It is checked in STANDBY and ACTIVE. The fault lasts as long as its cause. */
 /* Shows: SUP-9, MODE_NONE */
 void test_no_mode_counts_in_standby_and_active(void) {
     (void)report(NONE, 0);
@@ -367,7 +368,7 @@ void test_no_mode_counts_in_standby_and_active(void) {
     TEST_ASSERT_FALSE(none_at(2530, false, false));
 }
 
-/* Each bit is a mode, also both; and without any 363h there is nothing to look at. */
+/* One bit or both count as a mode. Without any 363h nothing is checked. */
 /* Shows: SUP-9 */
 void test_cases_that_are_no_missing_mode(void) {
     static const uint32_t flags[] = {MANUAL, ENGAGED, BOTH};

@@ -34,7 +34,7 @@ static bool is_active(unsigned fault) {
     return agv_fault_monitor_is_active(&faults, fault);
 }
 
-/* It becomes active with just this millisecond from now on. */
+/* The fault must become active exactly in this millisecond from now. */
 static void expect_after(uint32_t ms, unsigned fault) {
     run(ms - 1);
     TEST_ASSERT_FALSE(is_active(fault));
@@ -87,11 +87,11 @@ void test_25_degrees_nearer_empty_the_budget(void) {
     run(499);
     measured(9250);
     expect_after(500, STEERING);
-    measured(9500); /* 25.0 more: it is over, though 50.0 are left */
+    measured(9500); /* 25.0 nearer: the budget is empty, although 50.0 degrees are left */
     TEST_ASSERT_FALSE(is_active(STEERING));
 }
 
-/* However little of it there is. */
+/* Also a budget of 1 ms. */
 /* Shows: SUP-10 */
 void test_25_degrees_nearer_empty_a_budget_of_1_ms(void) {
     steer(10000);
@@ -131,7 +131,7 @@ void test_small_steps_add_up(void) {
     expect_after(500, STEERING);
 }
 
-/* There and back again is no way. */
+/* Motion there and back is no gain. */
 /* Shows: SUP-10, STEERING_DEVIATION */
 void test_steps_away_count_against_it(void) {
     steer(18000);
@@ -141,11 +141,11 @@ void test_steps_away_count_against_it(void) {
         measured(9000);
     }
     measured(8900);
-    measured(9149); /* 25.0 less a tenth nearer than the start but for what it went away */
+    measured(9149); /* 24.9 degrees nearer, after the steps away */
     expect_after(100, STEERING);
 }
 
-/* However far: 1800.0 degrees, the whole range, count against it, and more does not. */
+/* At most 1800.0 degrees, the whole range of an angle, count against it. */
 /* Shows: SUP-10 */
 void test_steps_away_count_up_to_the_range_of_an_angle(void) {
     steer(0);
@@ -164,7 +164,7 @@ void test_steps_away_count_up_to_the_range_of_an_angle(void) {
     expect_after(500, STEERING);
 }
 
-/* A command that comes nearer, goes away and comes again is no motion of the steering. */
+/* Motion of the command is no motion of the steering. */
 /* Shows: SUP-10, STEERING_DEVIATION */
 void test_the_motion_of_the_command_does_not_count(void) {
     steer(18000);
@@ -176,7 +176,7 @@ void test_the_motion_of_the_command_does_not_count(void) {
     expect_after(400, STEERING);
 }
 
-/* A command that sweeps past: near for a moment in each 20 ms. */
+/* A command that is near for 1 ms in each 20 ms. */
 /* Shows: SUP-10, STEERING_DEVIATION */
 void test_a_command_that_is_near_for_1_ms_in_20_restarts_nothing(void) {
     for (unsigned ms = 0; ms < 539; ms++) {
@@ -187,7 +187,7 @@ void test_a_command_that_is_near_for_1_ms_in_20_restarts_nothing(void) {
     TEST_ASSERT_TRUE(is_active(STEERING)); /* 26 times 19 less 13, and 19 */
 }
 
-/* Against the command of that moment: past it is away from it. */
+/* Motion is measured against the current command: past it is away from it. */
 /* Shows: SUP-10 */
 void test_motion_past_the_command_is_no_gain(void) {
     steer(9600);
@@ -203,7 +203,7 @@ void test_motion_past_the_command_is_no_gain(void) {
     expect_after(100, STEERING);
 }
 
-/* What was too much for one emptying does not count for the next. */
+/* A remainder does not count for the next time. */
 /* Shows: SUP-10, STEERING_DEVIATION */
 void test_no_remainder_is_kept(void) {
     steer(18000);
@@ -229,7 +229,7 @@ void test_motion_while_the_budget_is_empty_does_not_count(void) {
     TEST_ASSERT_FALSE(is_active(STEERING));
 }
 
-/* A budget that time has emptied forgets the way too. */
+/* A budget that was emptied by time clears the gain, too. */
 /* Shows: SUP-10 */
 void test_the_way_is_forgotten_when_time_has_emptied_the_budget(void) {
     steer(10000);
@@ -254,7 +254,7 @@ void test_without_command_or_angle_nothing_is_compared(void) {
     expect_after(500, STEERING);
 }
 
-/* Nor is there a way to anything. */
+/* Without a command there is no gain either. */
 /* Shows: SUP-10 */
 void test_without_command_there_is_no_gain(void) {
     steer(10000);
@@ -265,7 +265,7 @@ void test_without_command_there_is_no_gain(void) {
     expect_after(100, STEERING);
 }
 
-/* The budget stands still, the way too; the fault ends. */
+/* Budget and gain are paused; the fault ends. */
 /* Shows: SUP-10 */
 void test_while_not_judged_all_budgets_are_paused(void) {
     steer(10000);
@@ -308,7 +308,7 @@ void test_more_than_25_counts_above_the_command(unsigned commanded, unsigned mos
     expect_after(500, THROTTLE);
 }
 
-/* 225 and 25 are all that there is; below the command is no harm. */
+/* 225 and 25 are the extreme values. A throttle below the command is no fault. */
 /* Shows: SUP-11 */
 void test_cases_that_are_no_throttle_above_the_command(void) {
     throttle(250);
@@ -320,7 +320,7 @@ void test_cases_that_are_no_throttle_above_the_command(void) {
     expect_never(THROTTLE);
 }
 
-/* A ramp down is no fault. */
+/* A falling throttle is no fault. */
 /* Shows: SUP-11, THROTTLE_DEVIATION */
 void test_a_drop_of_25_counts_empties_the_budget(void) {
     command_throttle(0);
@@ -341,7 +341,7 @@ void test_a_drop_of_25_counts_empties_the_budget(void) {
     TEST_ASSERT_FALSE(is_active(THROTTLE)); /* 25 counts in 475 ms */
 }
 
-/* They are fixed, and a rise counts against them. */
+/* The 25 counts are no setting, and a rise counts against them. */
 /* Shows: SUP-11, THROTTLE_DEVIATION */
 void test_a_rise_counts_against_the_drop(void) {
     config.throttle_deviation_counts = 50;
@@ -360,7 +360,7 @@ void test_a_rise_counts_against_the_drop(void) {
     expect_after(500, THROTTLE);
 }
 
-/* No remainder, and nothing of before. */
+/* Neither a remainder nor an earlier drop counts. */
 /* Shows: SUP-11 */
 void test_the_drop_begins_with_the_budget(void) {
     command_throttle(0);
@@ -376,7 +376,7 @@ void test_the_drop_begins_with_the_budget(void) {
     expect_after(50, THROTTLE);
 }
 
-/* A budget that time has emptied forgets the drop too. */
+/* A budget that was emptied by time clears the drop, too. */
 /* Shows: SUP-11 */
 void test_the_drop_is_forgotten_when_time_has_emptied_the_budget(void) {
     command_throttle(0);
@@ -407,7 +407,7 @@ void test_a_drop_while_not_judged_does_not_count(void) {
 
 enum { GEAR = AGV_FAULT_GEAR_DEVIATION };
 
-/* Commanded, reported: any other than D or R is no motion. */
+/* Commanded, reported: only D and R move the vehicle. */
 /* Shows: SUP-11, GEAR_DEVIATION */
 void test_d_or_r_other_than_commanded_for_1_s(void) {
     static const unsigned gears[] = {1, 2, 4, 8, 0};
@@ -450,7 +450,7 @@ void test_autopilot_off_is_ignored_for_1_s(void) {
     static const uint8_t off[8] = {0, 0, 0, 0, 0x40};
     static const uint8_t on[8] = {0, 0, 0, 0, 0xBF};
     commands.autopilot_off = true;
-    expect_never(AGV_FAULT_AUTOPILOT_OFF_IGNORED); /* of the engagement before */
+    expect_never(AGV_FAULT_AUTOPILOT_OFF_IGNORED); /* of the previous engagement */
     agv_commands_take(&commands, AGV_MSG_TURN_SIGNAL_COMMAND, on);
     expect_never(AGV_FAULT_AUTOPILOT_OFF_IGNORED);
     agv_commands_take(&commands, AGV_MSG_TURN_SIGNAL_COMMAND, off);
@@ -486,7 +486,7 @@ void test_each_condition_of_throttle_in_park_counts(void) {
     run(1000);
     facts.judged = true;
     run(50);
-    facts.gear_fresh = false; /* a break takes half of its time away */
+    facts.gear_fresh = false; /* an interruption takes half of its time off */
     run(10);
     facts.gear_fresh = true;
     expect_after(55, IN_PARK);
@@ -527,7 +527,7 @@ void test_how_much_two_speeds_may_differ(int left_mm_s, int right_mm_s, unsigned
     TEST_ASSERT_EQUAL(differ, is_active(SPEED));
 }
 
-/* Always, also while nothing is judged; an engagement begins nothing anew. */
+/* Always, also while not judged. An engagement does not clear the budget. */
 /* Shows: SUP-12 */
 void test_speeds_are_compared_always(void) {
     facts.judged = false;
@@ -576,14 +576,14 @@ void test_an_engagement_begins_all_budgets_anew(void) {
         TEST_ASSERT_FALSE(is_active(judged[i]));
     }
     run(400);
-    measured(9250); /* a tenth, and one count: the way before does not count */
+    measured(9250); /* a tenth, and one count: earlier motion does not count */
     throttle(225);
     run(100);
     TEST_ASSERT_TRUE(is_active(STEERING));
     TEST_ASSERT_TRUE(is_active(THROTTLE));
 }
 
-/* What was counted of a way, too: 24.9 degrees and 24 counts are not enough. */
+/* Gain and drop are cleared, too: 24.9 degrees and 24 counts are not enough. */
 /* Shows: SUP-10, SUP-11 */
 void test_an_engagement_begins_a_way_at_0(void) {
     agv_motion_checks_engage(&checks);

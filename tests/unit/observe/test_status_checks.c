@@ -1,4 +1,4 @@
-/* Faults that the content of status frames is: bits, alarms, modes, values; how they are scored. */
+/* Faults in the content of status frames: bits, alarms, modes, values; their scores. */
 #include "observe/status_checks.h"
 
 #include "unity.h"
@@ -25,7 +25,7 @@ static void evaluate(void) {
     agv_status_checks_evaluate(&checks, &faults, engaged, judged);
 }
 
-/* This fault is active, and no other. */
+/* Exactly this fault is active. */
 static void expect_only(unsigned fault) {
     evaluate();
     for (unsigned i = 0; i < AGV_FAULT_COUNT; i++) {
@@ -90,7 +90,7 @@ void test_every_second_frame_bad_is_a_fault(void) {
     expect_only(AGV_FAULT_EPS_OVER_VOLTAGE);
 }
 
-/* The bits of one frame are scored apart. */
+/* The bits of a frame have separate scores. */
 /* Shows: SUP-4 */
 void test_two_bits_are_not_added_up(void) {
     for (unsigned i = 0; i < 100; i++) {
@@ -123,7 +123,7 @@ void test_fault_bits_count_always(void) {
     TEST_ASSERT_FALSE(agv_fault_monitor_is_active(&faults, AGV_FAULT_EPS_MODE_OFF));
 }
 
-/* FFh is off; 0, 2 and 3 are other modes; the rest is none. N = 5. */
+/* FFh is off; 0, 2 and 3 are other modes; all other values are invalid. N = 5. */
 /* Shows: SUP-5 */
 TEST_CASE(0xFF, AGV_FAULT_EPS_MODE_OFF)
 TEST_CASE(4, AGV_FAULT_EPS_MODE_INVALID)
@@ -142,7 +142,7 @@ void test_a_mode_that_is_not_angle_control_counts_five_frames(unsigned mode, uns
     expect_only(NONE);
 }
 
-/* Any of these add up, whatever they are called. */
+/* All wrong modes add to one score. */
 /* Shows: SUP-5 */
 void test_the_mode_is_named_after_the_last_bad_frame(void) {
     eps(0, 0);
@@ -159,7 +159,7 @@ void test_the_mode_is_named_after_the_last_bad_frame(void) {
     expect_only(AGV_FAULT_EPS_MODE_INVALID);
 }
 
-/* The score stands still, and the fault ends with what it is judged by. */
+/* The score is paused, and the fault ends when it is not judged any more. */
 /* Shows: SUP-5 */
 void test_while_not_judged_no_mode_counts(void) {
     eps_frames(4, 0xFF, 0);
@@ -204,7 +204,7 @@ void test_any_level_2_alarm(void) {
     expect_only(NONE);
 }
 
-/* Once armed it stays so: a reset forgets only that the AI was alive. */
+/* Once armed the alarm stays armed: a reset forgets only that the AI was alive. */
 /* Shows: SUP-8, FSM-11, VCU_AI_CAN_LOST */
 void test_the_alarm_of_the_ai_computer_counts_once_it_was_clear_with_the_ai_alive(void) {
     vcu(0x08, 0);
@@ -245,7 +245,7 @@ void test_a_value_that_is_invalid_counts_three_frames(unsigned message, unsigned
     expect_only(NONE);
     value(message, false);
     expect_only(fault);
-    judged = false; /* not while it does not count, and the score stands still */
+    judged = false; /* not counted now, and the score is paused */
     expect_only(NONE);
     for (unsigned i = 0; i < 10; i++) {
         value(message, true);
@@ -269,7 +269,7 @@ void test_the_values_are_scored_apart(void) {
     expect_only(NONE);
 }
 
-/* For the hold the score of the angle counts always, and no engagement begins it anew. */
+/* For the hold the score of the angle always counts, and no engagement clears it. */
 /* Shows: FSM-10, STEERING_ANGLE_INVALID */
 void test_the_angle_is_usable_until_three_invalid_ones(void) {
     judged = false;
@@ -292,7 +292,7 @@ void test_the_angle_is_usable_until_three_invalid_ones(void) {
 
 /* ---- One engagement ---- */
 
-/* What is judged begins at 0; the bits of 167h are no matter of it. */
+/* An engagement clears the scores that are judged, but not those of the bits of 167h. */
 /* Shows: SUP-5 */
 void test_an_engagement_begins_what_is_judged_anew(void) {
     eps_frames(5, 0, 0);
@@ -310,7 +310,7 @@ void test_an_engagement_begins_what_is_judged_anew(void) {
     expect_only(AGV_FAULT_EPS_UNDER_VOLTAGE);
 }
 
-/* At 0, and not above: a good frame among the bad ones still makes it take longer. */
+/* The score starts at exactly 0: a good frame among the bad ones delays the fault. */
 /* Shows: SUP-5 */
 void test_an_engagement_begins_each_score_at_0(void) {
     config.eps_mode_frames = 3;

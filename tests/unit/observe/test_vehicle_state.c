@@ -1,4 +1,4 @@
-/* What the vehicle last reported of itself: nothing invalid is used, and standstill takes its time. */
+/* The last reported state of the vehicle: invalid values are not used, and standstill needs its time. */
 #include "observe/vehicle.h"
 
 #include "unity.h"
@@ -172,24 +172,24 @@ void test_a_fast_wheel_in_either_direction_ends_standstill(void) {
     }
 }
 
-/* The VCU's speed is the second witness of standstill, not of wheels that stand. */
+/* The VCU's speed counts for standstill, but not for standing wheels. */
 void test_the_speed_of_the_vcu_is_checked(void) {
     wheels(0, 0);
     vcu_speed(181);
     TEST_ASSERT_FALSE(stands_after(200));
     TEST_ASSERT_TRUE(wheels_stand_after(0));
     vcu_speed(180);
-    TEST_ASSERT_FALSE(stands_after(99)); /* all of it together for 100 ms */
+    TEST_ASSERT_FALSE(stands_after(99)); /* all conditions together for 100 ms */
     TEST_ASSERT_TRUE(stands_after(1));
     vcu_speed(65535);
     TEST_ASSERT_FALSE(stands_after(0));
     config.standstill_vcu_counts = 65534;
     TEST_ASSERT_FALSE(stands_after(200));
-    config.standstill_vcu_counts = 65535; /* not looked at */
+    config.standstill_vcu_counts = 65535; /* not checked */
     TEST_ASSERT_TRUE(stands_after(100));
 }
 
-/* It has to be alive, even when its speed is not looked at. */
+/* The VCU must be alive, even when its speed is not checked. */
 void test_standstill_needs_a_vcu_that_is_alive(void) {
     config.standstill_vcu_counts = 65535;
     wheels(0, 0);
@@ -210,7 +210,7 @@ void test_without_fresh_wheel_speeds_there_is_no_standstill(void) {
     TEST_ASSERT_FALSE(wheels_stand_after(0));
 }
 
-/* 5 s after they have begun to stand, without a break. */
+/* 5 s after they began to stand, without interruption. */
 /* Shows: FSM-10 */
 void test_wheels_that_have_stood_for_5_s(void) {
     wheels(0, 0);
@@ -223,7 +223,7 @@ void test_wheels_that_have_stood_for_5_s(void) {
     TEST_ASSERT_FALSE(agv_timer_reached(&timers, AGV_TIMER_WHEELS_STOOD));
 }
 
-/* One is enough, at that speed or faster, on fresh 101h. */
+/* One wheel is enough, at that speed or faster, with a fresh 101h. */
 /* Shows: FSM-12 */
 void test_a_wheel_that_turns(void) {
     static const int speeds[] = {100, -100, 5000, INT32_MAX, -INT32_MAX - 1};

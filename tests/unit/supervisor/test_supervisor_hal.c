@@ -1,6 +1,6 @@
 /*
- * What the supervisor asks of the hardware, call by call: at the start, at a trip, in a tick, at the end of INIT. The mocks
- * are strict: another call, a missing one or another order fails. On the way to where a test begins stubs stand in.
+ * The supervisor's calls of the HAL: at the start, at a trip, in a tick, at the end of INIT. The mocks are strict:
+ * another call, a missing call or another order fails. Before the tested part of a test stubs replace them.
  */
 #include <string.h>
 
@@ -15,7 +15,7 @@
 #include "supervisor/core.h"
 #include "unity.h"
 
-/* A port's context: the core never looks inside. */
+/* The context of a port; the core never accesses its members. */
 struct hal {
     int unused;
 };
@@ -30,7 +30,7 @@ static uint8_t counter;     /* of all that have one */
 static uint8_t mode;        /* 363h byte 7: 40h manual, 80h autopilot */
 static uint8_t wheel_speed; /* 101h, both wheels, low byte */
 static bool hal_takes;      /* what the stub of hal_can_send returns */
-static bool closed;         /* the output, as the stub saw it */
+static bool closed;         /* the output, as last set through the stub */
 static unsigned written;    /* events that were written to flash */
 
 static bool send_stub(hal_t *port, hal_can_side_t side, const hal_can_frame_t *frame, int calls) {
@@ -67,7 +67,7 @@ static void use_stubs(void) {
     hal_watchdog_feed_Ignore();
 }
 
-/* From here on every call is expected, in its order. */
+/* From here on the test expects every call, in order. */
 static void be_strict(void) {
     hal_can_send_Stub(NULL);
     hal_can_status_Stub(NULL);
@@ -152,7 +152,7 @@ static void expect_latch(uint8_t latched, agv_fault_t reason, agv_fault_t unrese
     hal_store_write_latch_ExpectWithArrayAndReturn(&hal, 1, &latch, sizeof latch, true);
 }
 
-/* Output first; what was queued before is discarded before anything is sent. */
+/* The output is set first. Queued frames are discarded before anything is sent. */
 static void expect_start(hal_reset_cause_t cause, uint8_t latched, agv_fault_t reason, agv_fault_t unresettable) {
     hal_reset_cause_ExpectAndReturn(&hal, cause);
     hal_safety_output_set_Expect(&hal, false);
@@ -314,7 +314,7 @@ static void expect_quiet_tick(void) {
     hal_watchdog_feed_Expect(&hal);
 }
 
-/* Events wait: the flash is written last, when all else of the tick is done, and once in the first second: at 2000. */
+/* Events wait. The flash is written at the end of the tick, and once in the first second: at 2000. */
 /* Shows: INT-3 */
 void test_the_flash_is_written_at_the_end_of_a_tick_at_standstill(void) {
     walk_to_standby();
@@ -329,7 +329,7 @@ void test_the_flash_is_written_at_the_end_of_a_tick_at_standstill(void) {
     hal_can_send_ExpectAndReturn(&hal, HAL_CAN_VEHICLE, &status, true);
     hal_can_send_IgnoreArg_frame();
     hal_watchdog_feed_Expect(&hal);
-    hal_led_set_Expect(&hal, false); /* a second of healthy light is over, too */
+    hal_led_set_Expect(&hal, false); /* a second of the healthy pattern is over, too */
     hal_store_append_ExpectAndReturn(&hal, NULL, sizeof(agv_event_t), true);
     hal_store_append_IgnoreArg_record();
     tick();
@@ -345,7 +345,7 @@ static void add_events(unsigned count) {
     }
 }
 
-/* What was not used in up to a minute may be used at once; then it is once a second. */
+/* Up to 60 unused writes of a minute may follow at once, then one a second. */
 /* Shows: INT-3 */
 void test_the_flash_is_written_at_most_once_a_second_on_average_over_a_minute(void) {
     walk_to_standby();
@@ -361,7 +361,7 @@ void test_the_flash_is_written_at_most_once_a_second_on_average_over_a_minute(vo
     TEST_ASSERT_EQUAL_UINT(10, written - before);
 }
 
-/* A step that is 5 s late earns no more than a second does; this one trips, so that its flash has to wait. */
+/* A step that is 5 s late counts as one second. It trips, so its write to flash must wait. */
 /* Shows: INT-3 */
 void test_a_late_step_earns_a_second_of_flash_at_most(void) {
     walk_to_standby();
@@ -372,8 +372,8 @@ void test_a_late_step_earns_a_second_of_flash_at_most(void) {
     TEST_ASSERT_EQUAL_UINT(0, written);
 }
 
-/* What INIT had queued must not follow into STANDBY; only then the output closes. All is well since the second frame of
- * the EPS at 1020, so that INIT ends 500 ms later, in the handling of the first frame of that moment. */
+/* Frames that INIT queued must not be sent in STANDBY: they are discarded before the output closes. All conditions hold
+ * since the second frame of the EPS at 1020, so INIT ends 500 ms later, with the first frame of that millisecond. */
 /* Shows: FSM-4 */
 void test_the_end_of_init(void) {
     use_stubs();
@@ -406,7 +406,7 @@ void test_a_trip_discards_what_waits_then_sends_then_stores(void) {
     TEST_ASSERT_TRUE(agv_supervisor_output_closed(&supervisor)); /* until the confirmation is late */
 }
 
-/* In manual the steering is the driver's. */
+/* In manual the operator steers, so no angle is held. */
 /* Shows: FSM-2, FSM-10 */
 void test_a_trip_in_manual_holds_no_angle(void) {
     walk_to_standby();
@@ -417,7 +417,7 @@ void test_a_trip_in_manual_holds_no_angle(void) {
     vcu_frame(0x80);
 }
 
-/* A controller in bus-off is handed nothing, and the output opens in the same tick. */
+/* A controller in bus-off gets no frame, and the output opens in the same tick. */
 /* Shows: FSM-4, SUP-7, BUS_OFF */
 void test_a_trip_by_bus_off_opens_the_output(void) {
     walk_to_standby();
@@ -457,8 +457,8 @@ void test_corrupted_memory_starts_anew_in_tripped(void) {
 
 /* --- the gate refuses --- */
 
-/* The supervisor's own memory is changed behind its back, under a seal that fits: only the gate can notice. A passed gear
- * that waits for the controller becomes 03h, which is none. */
+/* The test changes the supervisor's memory and corrects its seal, so only the gate can detect it. A forwarded gear that
+ * waits for the controller becomes 03h, an invalid gear. */
 /* Shows: INT-4, TX_GATE_REFUSED */
 void test_a_refused_frame_is_not_sent_and_trips(void) {
     config.topology = AGV_TOPOLOGY_GATEWAY;

@@ -1,6 +1,6 @@
 /*
- * What no frame and no tick leads to: memory that was changed behind the supervisor's back, under a seal that fits. The
- * last line of defence has to hold all the same.
+ * States that no frame and no tick can cause: the test changes the supervisor's memory and corrects its seal. The last
+ * checks must still detect it.
  */
 #include "supervisor/supervisor_internal.h"
 
@@ -24,13 +24,13 @@ static void seal(void) {
     f.supervisor.seal = agv_seal(core, sizeof *core);
 }
 
-/* Start from a configuration as it stands in memory, unchecked. */
+/* Start with an unchecked configuration in memory. */
 static void begin(void) {
     agv_core_begin(core, &f.ports, 0);
     seal();
 }
 
-/* 20000 is no angle. The fault is there at once, and is reported in the next call. */
+/* 20000 is not a valid angle. The fault is active at once, and reported in the next call. */
 /* Shows: INT-4, FSM-10, TX_GATE_REFUSED */
 void test_an_override_that_the_gate_refuses_is_a_fault(void) {
     static const uint8_t other_angle[8] = {1};
@@ -61,7 +61,7 @@ void test_a_frame_of_its_own_that_the_gate_refuses_trips(void) {
     TEST_ASSERT_EQUAL_HEX8(GEAR_P, fixture_nth_sent(&f, 0x168, 0)->data[0]);
 }
 
-/* 168h has the identifier of 43Fh, which the gate takes it for: P does not leave. */
+/* 168h has the identifier of 43Fh, so the gate checks it as 43Fh: P is not sent. */
 /* Shows: INT-4, FSM-9, SELF_TEST_FAILED */
 void test_a_gate_that_refuses_p_fails_the_self_test(void) {
     fixture_start(&f);
@@ -71,12 +71,12 @@ void test_a_gate_that_refuses_p_fails_the_self_test(void) {
     expect_state(&f, AGV_STATE_TRIPPED);
     expect_reason(&f, AGV_FAULT_SELF_TEST_FAILED);
     expect_output(&f, false);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x43F)); /* its own, not P */
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x43F)); /* the status frame, not P */
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
     TEST_ASSERT_EQUAL_UINT32(1, agv_supervisor_counters(&f.supervisor)->gate_refused);
 }
 
-/* The checksum is that of what stands there, and yet it makes no sense: the defaults instead. */
+/* The checksum fits, but the configuration is invalid: the defaults are used. */
 /* Shows: INT-2, INT-5, MEMORY_CORRUPTED */
 void test_a_corrupted_configuration_whose_checksum_fits_is_not_used(void) {
     f.config.tx_stalled_ms = 200;
@@ -89,7 +89,7 @@ void test_a_corrupted_configuration_whose_checksum_fits_is_not_used(void) {
     TEST_ASSERT_EQUAL_UINT16(100, agv_supervisor_config(&f.supervisor)->tx_stalled_ms);
 }
 
-/* Something else is corrupted: what the integrator chose goes on. */
+/* Other memory is corrupted: the integrator's configuration stays in use. */
 /* Shows: INT-5, MEMORY_CORRUPTED */
 void test_an_intact_configuration_is_kept(void) {
     f.config.tx_stalled_ms = 200;
@@ -100,7 +100,7 @@ void test_an_intact_configuration_is_kept(void) {
     TEST_ASSERT_EQUAL_UINT16(200, agv_supervisor_config(&f.supervisor)->tx_stalled_ms);
 }
 
-/* What only a power-on ends has to outlive the next reset, though the state does not change any more. */
+/* An unresettable fault must outlive the next reset, although the state does not change any more. */
 /* Shows: FSM-9, FSM-7 */
 void test_an_unresettable_fault_that_comes_while_tripped_is_stored(void) {
     agv_latch_t latch;
@@ -116,7 +116,7 @@ void test_an_unresettable_fault_that_comes_while_tripped_is_stored(void) {
     expect_output(&f, false);
 }
 
-/* Nothing is handed to a controller in bus-off, the status frame neither. */
+/* A controller in bus-off gets no frame, not even the status frame. */
 /* Shows: SUP-7, TOP-3 */
 void test_in_bus_off_no_frame_is_passed_to_the_controller(void) {
     f.config.status_frame_id = STATUS_ID;
@@ -134,7 +134,7 @@ void test_in_bus_off_no_frame_is_passed_to_the_controller(void) {
     TEST_ASSERT_EQUAL_UINT32(refused, f.hal.can[HAL_CAN_VEHICLE].refused);
 }
 
-/* Another state, or a latch undone, under a seal that fits: the two do not fit together. */
+/* Another state, or a cleared latch, with a correct seal: state and latch are inconsistent. */
 /* Shows: INT-5, MEMORY_CORRUPTED */
 void test_state_and_latch_that_do_not_fit_are_corrupted_memory(void) {
     static const struct {
@@ -195,12 +195,13 @@ void test_both_clocks_agree(void) {
     foreign_drive_at(1234568, 999);
     TEST_ASSERT_EQUAL_UINT32(1234568999, core->timers.now_us);
     core->timers.now_us = 5;
-    fixture_jump(&f, 1); /* found corrupted */
+    fixture_jump(&f, 1); /* detected as corrupted */
     expect_fault(&f, AGV_FAULT_MEMORY_CORRUPTED, true);
     TEST_ASSERT_EQUAL_UINT32(1234569000, core->timers.now_us);
 }
 
-/* The identifiers in use are made of the configuration; a flipped bit in them is found, and they are made anew. */
+/* The identifiers in use are copied from the configuration. A flipped bit in them is detected, and they are copied
+ * again. */
 /* Shows: INT-5, P1, MEMORY_CORRUPTED */
 void test_a_flipped_bit_in_the_identifiers_is_repaired(void) {
     fixture_standby(&f);
@@ -210,7 +211,7 @@ void test_a_flipped_bit_in_the_identifiers_is_repaired(void) {
     TEST_ASSERT_EQUAL_HEX16(0x168, core->ids.of[AGV_MSG_GEAR_COMMAND]);
 }
 
-/* A frame that decides nothing does not report again what the call before it has reported. */
+/* A frame without effect does not repeat the reports of the previous call. */
 /* Shows: INT-3 */
 void test_a_frame_of_no_message_after_a_fault_records_nothing(void) {
     fixture_standby(&f);
@@ -227,7 +228,7 @@ void test_a_frame_of_no_message_after_a_fault_records_nothing(void) {
     TEST_ASSERT_EQUAL_UINT32(1, agv_supervisor_counters(&f.supervisor)->warnings);
 }
 
-/* No pointer is kept: two supervisors that have seen the same are the same, wherever they and their ports lie. */
+/* No pointer is kept: two supervisors with the same input have the same memory, wherever they and their ports are. */
 /* Shows: INT-5 */
 void test_two_supervisors_with_the_same_input_are_equal(void) {
     static fixture_t other;

@@ -1,6 +1,6 @@
 /*
- * The gate: what may leave in which state, on which side, with which identifier and which bytes. The oracle
- * (oracle.h) is written by hand from the rows FSM-6, TOP-1 and TOP-2; what is counted below is independent of it.
+ * The gate: permitted frames by state, side, identifier and bytes. The oracle (oracle.h) is written by hand from FSM-6,
+ * TOP-1 and TOP-2. The counts below are independent of it.
  */
 #include "gate_oracle.h"
 
@@ -11,7 +11,7 @@
 #include "mock_can.h"
 #include "unity.h"
 
-/* A port's context: the core never looks inside. */
+/* The context of a port; the core never accesses its members. */
 struct hal {
     int unused;
 };
@@ -88,7 +88,8 @@ static bool allows(hal_can_side_t side, uint32_t id, const uint8_t data[8]) {
     return agv_gate_allows(&gate, side, &frame);
 }
 
-/* In the state that the gate is in: every side and none, every identifier and some beyond, every payload. */
+/* In the current state of the gate: all valid and invalid sides, all identifiers and some beyond 11 bits, all
+ * payloads. */
 static void expect_as_the_oracle(void) {
     const oracle_t oracle = gate_oracle(&gate);
     for (int side = 0; side <= HAL_CAN_SIDES; side++) {
@@ -143,7 +144,7 @@ void test_the_gateway_that_passes_all_in_manual(void) {
     expect_as_the_oracle_in_every_state();
 }
 
-/* How many of the 65536 values of the first two bytes (or of 43Fh byte 5 and 8) may leave. */
+/* Number of permitted values among the 65536 of the first two bytes (of 43Fh: bytes 5 and 8). */
 static unsigned count_allowed(uint32_t id, unsigned first, unsigned second) {
     unsigned count = 0;
     for (unsigned value = 0; value < 65536; value++) {
@@ -256,7 +257,7 @@ void test_every_reserved_bit_of_a_passed_command_counts(void) {
     }
 }
 
-/* A configuration with such a status frame is refused; the gate would hold it back all the same. */
+/* A configuration with such a status frame is refused. The gate refuses the frame, too. */
 /* Shows: INT-4, TOP-3 */
 void test_an_identifier_of_the_protocol_is_no_status_frame(void) {
     static const uint8_t any[8] = {0};
@@ -295,7 +296,7 @@ void test_in_shadow_mode_nothing_reaches_the_hal(void) {
     TEST_ASSERT_EQUAL(AGV_GATE_REFUSED, agv_gate_send(&gate, &hal, HAL_CAN_VEHICLE, &frame));
 }
 
-/* The gate goes by the identifiers that it is handed, not by those of the protocol. */
+/* The gate uses the configured identifiers, not those of the protocol. */
 /* Shows: INT-4, P1 */
 void test_the_gate_uses_the_identifiers_of_this_vehicle(void) {
     static const uint8_t park[8] = {8};
@@ -311,7 +312,7 @@ void test_the_gate_uses_the_identifiers_of_this_vehicle(void) {
     TEST_ASSERT_FALSE(allows(HAL_CAN_AI, 0x101, any));
 }
 
-/* Such a configuration is refused; the gate would still hold back the command that another message has the place of. */
+/* Such a configuration is refused. The gate also refuses the command whose identifier belongs to an earlier message. */
 /* Shows: INT-4, P1 */
 void test_an_identifier_twice_is_that_of_the_first_message(void) {
     static const uint8_t zeros[8] = {0};

@@ -1,4 +1,4 @@
-/* What the gateway passes on: which commands in which state and mode, reserved bits, the envelope. */
+/* Commands that the gateway passes on, by state and mode; reserved bits; the envelope. */
 #include "transmit/gateway.h"
 
 #include <string.h>
@@ -28,7 +28,7 @@ void setUp(void) {
     vehicle.gear = 1;
 }
 
-/* The adaptor to the module: everything below goes through these. */
+/* Adapter to the module: all tests use these functions. */
 static agv_gateway_facts_t facts(void) {
     return (agv_gateway_facts_t){.config = &config,
                                  .vehicle = &vehicle,
@@ -54,7 +54,7 @@ static void limit(agv_message_t command) {
     limited = agv_gateway_limit(&gateway, &now, command, data);
 }
 
-/* Hand in 8 bytes, look at those that come out. */
+/* Pass 8 bytes to the module and compare the result. */
 static void expect_passed(agv_message_t command, const uint8_t in[8], const uint8_t out[8]) {
     memcpy(data, in, 8);
     limit(command);
@@ -79,7 +79,7 @@ static int steer(uint32_t after_ms, int wanted_ddeg) {
     return (data[0] | data[1] << 8) - 9000;
 }
 
-/* ---- Which pass ---- */
+/* ---- Permitted commands ---- */
 
 /* Motion commands in ACTIVE with autopilot reported; 43Fh in STANDBY, too. All eight bits of the state. */
 /* Shows: TOP-2 */
@@ -120,7 +120,7 @@ void test_a_change_of_gear_waits_for_standstill(void) {
     }
 }
 
-/* The first byte of the others is no gear; and standstill alone passes nothing. */
+/* The first byte of other commands is not a gear. Standstill alone does not permit a command. */
 /* Shows: TOP-2 */
 void test_only_168h_changes_the_gear(void) {
     vehicle.gear = 8;
@@ -136,7 +136,7 @@ void test_only_168h_changes_the_gear(void) {
     TEST_ASSERT_FALSE(passes(AGV_MSG_GEAR_COMMAND, 1));
 }
 
-/* ---- How they pass ---- */
+/* ---- Changes to a command ---- */
 
 /* P14: the document does not define the other bits. */
 /* Shows: TOP-2, P14 */
@@ -155,7 +155,7 @@ void test_reserved_bits_are_passed_as_0(void) {
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         expect_passed(cases[i].command, cases[i].in, cases[i].out);
-        TEST_ASSERT_FALSE(limited); /* the envelope has not changed it */
+        TEST_ASSERT_FALSE(limited); /* unchanged by the envelope */
     }
 }
 
@@ -204,7 +204,7 @@ void test_the_throttle_rises_at_its_rate(void) {
     TEST_ASSERT_FALSE(limited);
 }
 
-/* Down at once, and up again from there. */
+/* The throttle falls at once, and rises again from there. */
 /* Shows: TOP-2 */
 void test_the_throttle_falls_at_once(void) {
     config.throttle_rise_pct_s = 100;
@@ -218,7 +218,7 @@ void test_the_throttle_falls_at_once(void) {
     TEST_ASSERT_EQUAL_UINT(28, throttle(250));
 }
 
-/* 1 % a second: a count takes 400 ms, and cycles of 100 ms must not round it away. */
+/* 1 % a second: a count takes 400 ms, and must not be lost by rounding in cycles of 100 ms. */
 /* Shows: TOP-2 */
 void test_a_slow_rise_adds_up(void) {
     config.throttle_rise_pct_s = 1;
@@ -228,7 +228,7 @@ void test_a_slow_rise_adds_up(void) {
     }
 }
 
-/* A pause gives no more than a second does: 125 counts, with the ceiling over all. */
+/* A pause counts as at most one second: 125 counts, limited by the ceiling. */
 /* Shows: TOP-2, TIM-2 */
 void test_a_pause_gives_at_most_a_second_of_rise(void) {
     config.throttle_rise_pct_s = 50;
@@ -270,7 +270,7 @@ static void wheels(int32_t left_mm_s, int32_t right_mm_s) {
     vehicle.wheels = (agv_wheel_speed_t){.left_mm_s = left_mm_s, .right_mm_s = right_mm_s};
 }
 
-/* To both sides; one wheel is enough, either way; at the speed itself it is not fast. */
+/* In both directions. One fast wheel is enough, forwards or backwards. The speed limit itself is not fast. */
 /* Shows: TOP-2 */
 void test_steering_is_limited_above_a_speed(void) {
     static const int32_t fast[] = {1001, -1001, 20000, INT32_MAX};
@@ -302,7 +302,7 @@ void test_stale_wheel_speeds_count_as_fast(void) {
     TEST_ASSERT_EQUAL_INT(500, steer(25, 500));
 }
 
-/* The way to the limit is one of the slew, too: 10.0 degrees a cycle. */
+/* The limit is reached at the slew rate: 10.0 degrees a cycle. */
 /* Shows: TOP-2 */
 void test_slew_applies_to_the_limit_above_a_speed(void) {
     config.steering_slew_ddeg_s = 4000;
@@ -348,7 +348,7 @@ void test_without_a_measured_angle_the_first_command_is_the_start(void) {
     TEST_ASSERT_EQUAL_INT(400, steer(25, 0));
 }
 
-/* Longer pauses than a second give no more than a second does: 50.0 degrees. */
+/* A longer pause counts as at most one second: 50.0 degrees. */
 /* Shows: TOP-2, TIM-2 */
 void test_a_pause_gives_at_most_a_second_of_slew(void) {
     config.steering_slew_ddeg_s = 500;
@@ -368,7 +368,7 @@ void test_a_second_of_slew_is_exact(void) {
     TEST_ASSERT_EQUAL_INT(-9, steer(1001, -9000));
 }
 
-/* 1.0 degree a second: a tenth takes 100 ms, and 25 ms frames must not round it away. */
+/* 1.0 degree a second: a tenth takes 100 ms, and must not be lost by rounding in cycles of 25 ms. */
 /* Shows: TOP-2 */
 void test_a_slow_slew_adds_up(void) {
     config.steering_slew_ddeg_s = 10;
@@ -378,7 +378,7 @@ void test_a_slow_slew_adds_up(void) {
     }
 }
 
-/* The last command was reached while time added up: from there on time counts anew. */
+/* When the last command is reached, the collected time is cleared. */
 void test_time_does_not_add_up_while_the_command_is_followed(void) {
     config.steering_slew_ddeg_s = 10;
     for (int i = 0; i < 100; i++) {
@@ -387,7 +387,7 @@ void test_time_does_not_add_up_while_the_command_is_followed(void) {
     TEST_ASSERT_EQUAL_INT(0, steer(25, 1000));
 }
 
-/* The slew limit begins anew: from the measured angle of now, with the time of one cycle. */
+/* The slew limit restarts from the current measured angle, with the time of one cycle. */
 /* Shows: TOP-2 */
 void test_after_a_restart_the_slew_limit_starts_from_the_measured_angle(void) {
     config.steering_slew_ddeg_s = 4000;

@@ -1,4 +1,4 @@
-/* When to send: slots on their grid, overruns, overrides. */
+/* Times of sending: slots on their grid, overruns, overrides. */
 #include "transmit/scheduler.h"
 
 #include "unity.h"
@@ -40,12 +40,12 @@ static const struct {
              {AGV_MSG_THROTTLE_COMMAND, 33, 100},
              {AGV_MSG_STEERING_COMMAND, 25, 25}};
 
-/* Slots lie at 0, 8 (33) and 16 (66) of each 25 ms: a day of ticks is long, so those well in between are left out. */
+/* Slots lie at 0, 8 (33) and 16 (66) of each 25 ms: ticks far from all slots are left out, to save time. */
 static bool is_near_a_slot(uint32_t ms) {
     return ((ms + 1) % 25) % 8 <= 2;
 }
 
-/* Each slot has to be due exactly on its grid. */
+/* Each slot must be due exactly on its grid. */
 static void expect_grid(uint32_t start_ms, uint32_t duration_ms) {
     uint32_t skipped = 0;
     uint32_t wrong = 0;
@@ -155,7 +155,7 @@ void test_after_an_override_the_periodic_frame_is_due_half_a_cycle_later(void) {
 void test_a_recent_override_is_not_recent_again_after_a_turn_of_the_clock(void) {
     restart(0);
     TEST_ASSERT_TRUE(answered(10));
-    TEST_ASSERT_FALSE(answer_due(16)); /* the tick that notices that the 5 ms are over */
+    TEST_ASSERT_FALSE(answer_due(16)); /* the first tick after the 5 ms */
     TEST_ASSERT_TRUE(answered(12));    /* 49.7 days later */
 }
 
@@ -167,8 +167,8 @@ void test_when_all_are_sent_what_waited_is_forgotten(void) {
     TEST_ASSERT_FALSE(answer_due(100));
 }
 
-/* After a restart nothing waits to be answered, and nothing was overridden just now: not even a turn of the microseconds
- * ago. */
+/* A restart clears waiting overrides and the times of the last ones, also with respect to a full wrap of the
+ * microseconds. */
 /* Shows: TOP-1, TIM-2 */
 void test_a_restart_forgets_overrides(void) {
     for (unsigned i = 0; i < 4; i++) {
@@ -183,7 +183,7 @@ void test_a_restart_forgets_overrides(void) {
     }
 }
 
-/* What waits to be answered is answered by an override or an own frame, or discarded: it is not due once more. */
+/* A waiting override ends with an override, with an own frame, or by being discarded. It is not due again. */
 /* Shows: TOP-1 */
 void test_what_was_answered_or_discarded_does_not_wait(void) {
     for (unsigned i = 0; i < 4; i++) {

@@ -1,4 +1,4 @@
-/* What is sent: own commands, passed frames and their pace, the status frame; what waits, and what is reported of it. */
+/* Sending: own commands, forwarded frames and their pace, the status frame; waiting frames; reports. */
 #include "transmit/transmitter.h"
 
 #include <string.h>
@@ -6,7 +6,7 @@
 #include "mock_can.h"
 #include "unity.h"
 
-/* A port's context: the core never looks inside. */
+/* The context of a port; the core never accesses its members. */
 struct hal {
     int unused;
 };
@@ -18,7 +18,7 @@ static agv_config_t config;
 static agv_ids_t ids;
 static agv_tx_orders_t orders;
 
-/* What the HAL was handed and took. */
+/* The frames that the HAL accepted. */
 typedef struct {
     hal_can_side_t side;
     hal_can_frame_t frame;
@@ -43,7 +43,7 @@ void setUp(void) {
     hal_takes = true;
     sent_count = 0;
     agv_config_defaults(&config);
-    config.status_frame_id = 0; /* has tests of its own */
+    config.status_frame_id = 0; /* tested separately */
     agv_config_ids(&config, &ids);
     agv_timers_set_time(&timers, 1000);
     agv_timers_start(&timers);
@@ -175,7 +175,7 @@ void test_the_own_alive_counter_runs_or_is_frozen(int heartbeat, int counter) {
     expect_sent(4, HAL_CAN_VEHICLE, 0x43F, second);
 }
 
-/* The first P after it was released goes at once; then on its cycle from there. */
+/* The first P is sent as soon as it is released, then on its cycle from that time. */
 /* Shows: FSM-1 */
 void test_p_that_was_held_back_is_sent_as_soon_as_it_may_be(void) {
     orders.park_released = false;
@@ -239,9 +239,9 @@ void test_missed_slots_are_reported(void) {
     TEST_ASSERT_EQUAL_UINT(8, sent_count);
 }
 
-/* ---- What the HAL does not take ---- */
+/* ---- Frames that the HAL refuses ---- */
 
-/* Built anew at every tick until it leaves; it is stalled after more than 100 ms. */
+/* The frame is built again at every tick until it is sent. After more than 100 ms the transmitter is stalled. */
 /* Shows: SUP-7, TX_STALLED */
 void test_an_own_command_waits_and_is_stalled(void) {
     hal_takes = false;
@@ -254,12 +254,12 @@ void test_an_own_command_waits_and_is_stalled(void) {
     hal_takes = true;
     tick(1);
     TEST_ASSERT_EQUAL_UINT(4, sent_count);
-    expect_sent(0, HAL_CAN_VEHICLE, 0x43F, SIGNALS); /* the counter has not run on */
+    expect_sent(0, HAL_CAN_VEHICLE, 0x43F, SIGNALS); /* the counter has not increased */
     TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
     TEST_ASSERT_TRUE(report().park_sent);
 }
 
-/* What is no more wanted waits no more. */
+/* A frame that is no longer wanted does not wait any more. */
 void test_a_command_that_is_not_wanted_any_more_is_not_stalled(void) {
     hal_takes = false;
     burst();
@@ -285,7 +285,7 @@ void test_commands_pass_to_the_vehicle_and_status_to_the_ai(void) {
     TEST_ASSERT_EQUAL_UINT16(2, report().sent);
 }
 
-/* One a message, the newest. */
+/* Only the newest frame of each message waits. */
 /* Shows: TOP-2 */
 void test_a_waiting_frame_is_replaced_by_a_newer_one(void) {
     static const uint8_t older[8] = {2};
@@ -331,7 +331,7 @@ void test_a_discarded_frame_is_never_sent(void) {
     TEST_ASSERT_EQUAL_UINT(1, sent_count);
 }
 
-/* A stalled AI side is no reason to open the output. */
+/* A stalled AI side does not open the output. */
 void test_only_the_vehicle_side_is_stalled(void) {
     be_gateway();
     hal_takes = false;
@@ -359,7 +359,7 @@ static void pass(unsigned message, const uint8_t data[8]) {
     agv_transmitter_pass(&transmitter, &orders, message, data);
 }
 
-/* Of those that come within half a cycle the newest goes when it is over; the others are dropped and counted. */
+/* Of the frames within half a cycle the newest is sent at its end; the others are dropped and counted. */
 /* Shows: TOP-2 */
 void test_a_command_passes_at_most_once_in_half_its_cycle(void) {
     be_gateway();
@@ -374,7 +374,7 @@ void test_a_command_passes_at_most_once_in_half_its_cycle(void) {
     tick(1);
     TEST_ASSERT_EQUAL_UINT(2, sent_count);
     expect_sent(1, HAL_CAN_VEHICLE, 0x168, NEUTRAL);
-    tick(49); /* from when it went */
+    tick(49); /* from the time at which it was sent */
     pass(AGV_MSG_GEAR_COMMAND, DRIVE);
     TEST_ASSERT_EQUAL_UINT(2, sent_count);
     tick(1);
@@ -383,7 +383,8 @@ void test_a_command_passes_at_most_once_in_half_its_cycle(void) {
     TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
 }
 
-/* Half of 100 ms is 50; half of 25 is 12.5, so that the first whole ms after it is 13. What comes then goes at once. */
+/* Half of 100 ms is 50; half of 25 is 12.5, so the first whole ms after it is 13. A frame at that time is sent at
+ * once. */
 /* Shows: TOP-2 */
 TEST_CASE(AGV_MSG_TURN_SIGNAL_COMMAND, 50)
 TEST_CASE(AGV_MSG_GEAR_COMMAND, 50)
@@ -416,7 +417,7 @@ void test_a_frame_at_the_end_of_the_half_cycle_goes_at_once(void) {
     expect_sent(1, HAL_CAN_VEHICLE, 0x168, NEUTRAL);
 }
 
-/* Each command by itself, and no status message at all. */
+/* Each command has its own pace; status messages have none. */
 /* Shows: TOP-2 */
 void test_the_pace_is_one_of_each_command(void) {
     be_gateway();
@@ -431,7 +432,7 @@ void test_the_pace_is_one_of_each_command(void) {
     TEST_ASSERT_EQUAL_UINT(20, sent_count);
 }
 
-/* A flood from the AI side leaves as 20 frames a second. */
+/* Of a flood from the AI side 20 frames a second are sent. */
 /* Shows: TOP-2, SUP-6 */
 void test_a_flood_leaves_at_the_pace(void) {
     be_gateway();
@@ -445,7 +446,7 @@ void test_a_flood_leaves_at_the_pace(void) {
     TEST_ASSERT_EQUAL_UINT16(1000 - 11, did.dropped);
 }
 
-/* The last command was 49.7 days ago but for some ms: it is not too soon. */
+/* The last command was almost 49.7 days ago, so this one is not too soon. */
 /* Shows: TOP-2, TIM-2 */
 void test_a_command_passed_a_full_wrap_ago_is_not_recent(void) {
     be_gateway();
@@ -469,7 +470,7 @@ void test_a_waiting_command_that_is_no_longer_allowed_is_dropped(void) {
     TEST_ASSERT_EQUAL_UINT(1, sent_count);
 }
 
-/* One that the HAL did not take is not stalled any more when it is dropped. */
+/* A dropped command that the HAL refused no longer counts as stalled. */
 /* Shows: TOP-2, SUP-7 */
 void test_a_dropped_command_does_not_stall(void) {
     be_gateway();
@@ -481,7 +482,7 @@ void test_a_dropped_command_does_not_stall(void) {
     TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
 }
 
-/* What the vehicle was commanded is what left, when it left. */
+/* A command counts as given to the vehicle when it is sent. */
 /* Shows: SUP-5, SUP-11 */
 void test_a_forwarded_frame_is_reported_when_it_is_sent(void) {
     be_gateway();
@@ -508,7 +509,7 @@ static void end_engagement(void) {
     agv_transmitter_end_engagement(&transmitter, &orders);
 }
 
-/* One, and at once, however lately a 075h passed; it is no pass and is not reported as a command. */
+/* One frame, at once, even directly after a 075h. It does not count as forwarded and is not reported as a command. */
 /* Shows: TOP-2 */
 void test_an_engagement_ends_with_throttle_0(void) {
     static const uint8_t half[8] = {125};
@@ -528,7 +529,7 @@ void test_an_engagement_ends_with_throttle_0(void) {
     TEST_ASSERT_EQUAL_UINT(3, sent_count);
 }
 
-/* Tried again until it leaves. */
+/* It is tried again until it is sent. */
 /* Shows: TOP-2, SUP-7 */
 void test_throttle_0_waits_for_the_hal(void) {
     be_gateway();
@@ -547,7 +548,7 @@ void test_throttle_0_waits_for_the_hal(void) {
     TEST_ASSERT_EQUAL_UINT(1, sent_count);
 }
 
-/* Of a trip, and of the next engagement: then it would come after what is newer. */
+/* Discarded by a trip, and by the next engagement, because it would follow newer frames. */
 /* Shows: TOP-2, FSM-2 */
 void test_throttle_0_that_waits_is_discarded_and_replaced(void) {
     static const uint8_t half[8] = {125};
@@ -581,7 +582,7 @@ void test_in_bus_off_no_throttle_0_is_passed_to_the_hal(void) {
     TEST_ASSERT_EQUAL_UINT(0, sent_count);
 }
 
-/* ---- Answers ---- */
+/* ---- Overrides ---- */
 
 /* Shows: TOP-1 */
 void test_a_command_that_differs_is_overridden(void) {
@@ -596,7 +597,7 @@ void test_a_command_that_differs_is_overridden(void) {
     expect_sent(1, HAL_CAN_VEHICLE, 0x075, ZEROS);
 }
 
-/* Another counter is no other command. */
+/* Another alive counter does not make another command. */
 /* Shows: TOP-1 */
 void test_the_alive_counter_of_a_foreign_43f_commands_nothing(void) {
     static const uint8_t same[8] = {0, 0, 0, 0, 0x70, 0, 0, 77};
@@ -679,7 +680,7 @@ void test_the_period_of_the_status_frame(void) {
     TEST_ASSERT_EQUAL_UINT(10, sent_count);
 }
 
-/* Of several that were missed one is sent, and the grid stays. */
+/* Of several missed frames one is sent, and the grid stays. */
 /* Shows: TOP-3, TIM-1 */
 void test_a_late_step_sends_one_status_frame(void) {
     with_status_frame();
@@ -693,7 +694,8 @@ void test_a_late_step_sends_one_status_frame(void) {
     TEST_ASSERT_EQUAL_UINT(3, sent_count);
 }
 
-/* The standing test of the transmit path: tried again at every tick, and stalled after more than 100 ms. */
+/* The status frame tests the transmit path: it is tried again at every tick, and counts as stalled after more than 100
+ * ms. */
 /* Shows: TOP-3, SUP-7, TX_STALLED */
 void test_a_status_frame_that_is_not_taken_waits_and_stalls(void) {
     with_status_frame();
@@ -727,7 +729,7 @@ void test_there_is_no_status_frame_in_shadow_or_when_it_is_off(void) {
     TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
 }
 
-/* None during bus-off: not one that waits either. After it on the grid again. */
+/* No status frame during bus-off, not even one that waits. Afterwards it is on its grid again. */
 /* Shows: TOP-3, SUP-7 */
 void test_there_is_no_status_frame_in_bus_off(void) {
     with_status_frame();
@@ -744,7 +746,7 @@ void test_there_is_no_status_frame_in_bus_off(void) {
     TEST_ASSERT_EQUAL_UINT(1, sent_count);
 }
 
-/* At a start none was handed over that could be among what is discarded. */
+/* At a start no status frame was passed to the HAL that could be discarded. */
 /* Shows: TOP-3 */
 void test_before_the_first_status_frame_none_is_sent_again(void) {
     with_status_frame();
@@ -754,7 +756,7 @@ void test_before_the_first_status_frame_none_is_sent_again(void) {
     TEST_ASSERT_EQUAL_UINT(0, sent_count);
 }
 
-/* Handed over up to 2 ms before what waits was discarded, it may be among that: once more. */
+/* A status frame passed to the HAL up to 2 ms before waiting frames are discarded may be lost, so it is sent again. */
 /* Shows: TOP-3, FSM-2 */
 TEST_CASE(0, 1)
 TEST_CASE(2, 1)
@@ -770,7 +772,7 @@ void test_a_status_frame_that_may_have_been_discarded_is_sent_again(uint32_t bef
     TEST_ASSERT_EQUAL_UINT(1 + again, sent_count);
 }
 
-/* The AI side is another one. */
+/* Frames discarded on the AI side do not matter. */
 void test_what_is_discarded_for_the_ai_side_is_no_status_frame(void) {
     with_status_frame();
     agv_transmitter_status(&transmitter, &orders);
