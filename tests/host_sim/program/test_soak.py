@@ -71,7 +71,7 @@ class Soak(hostsim.Case):
         return process.returncode != 0
 
     def test_a_soak_that_was_stopped_ends_as_one_that_was_not(self):
-        arguments = ("--hours", "4", "--seed", "3", "--shard", f"2/{2 * hostsim.PART}")
+        arguments = ("--hours", "2", "--seed", "3", "--shard", f"2/{2 * hostsim.PART}")
         self.soak(*arguments, "--results", "whole")
         parts = (*arguments, "--results", "parts", "--checkpoint", "checkpoint")
         self.assertTrue(self.stopped(*parts))
@@ -106,6 +106,9 @@ class Soak(hostsim.Case):
         self.assertEqual((self.folder / "old").read_text(encoding="ascii"), "hello\n")
         self.assertEqual(self.files(), ["folder", "old", "text"])
 
+    # at least some seconds of work, of which half of one passes before the folder vanishes
+    SOME_SECONDS = ("--hours", 1, "--seed", 1, "--shard", f"1/{max(1, hostsim.PART // 4)}")
+
     def in_a_folder_that_vanishes(self, *arguments, stops=False):
         """Its results or checkpoint are in the folder `gone`, which is removed while it runs. Status, output, errors."""
         folder = self.folder / "gone"
@@ -120,16 +123,13 @@ class Soak(hostsim.Case):
         return process.returncode, printed, said
 
     def test_the_table_is_printed_though_the_results_are_lost(self):
-        status, printed, said = self.in_a_folder_that_vanishes("--hours", 4, "--seed", 1, "--shard",
-                                                               f"1/{hostsim.PART}", "--results", "gone/a")
+        status, printed, said = self.in_a_folder_that_vanishes(*self.SOME_SECONDS, "--results", "gone/a")
         self.assertEqual((status, said.count("\n")), (2, 1), said)
         self.assertIn("gone/a: ", said)
         self.assertIn(" disturbances, status frames at most ", printed)
 
     def test_the_results_are_written_though_the_checkpoint_is_lost(self):
-        status, printed, said = self.in_a_folder_that_vanishes("--hours", 4, "--seed", 1, "--shard",
-                                                               f"1/{hostsim.PART}", "--results", "a",
-                                                               "--checkpoint", "gone/c")
+        status, printed, said = self.in_a_folder_that_vanishes(*self.SOME_SECONDS, "--results", "a", "--checkpoint", "gone/c")
         self.assertEqual((status, said.count("\n")), (2, 1), said)
         self.assertIn("gone/c: ", said)
         self.assertIn(" disturbances, status frames at most ", printed)
