@@ -129,7 +129,9 @@ static int32_t measured_ddeg(const campaign_check_t *check) {
     return look(check).vehicle.angle_ddeg + CENTRE_DDEG;
 }
 
-/** With an engagement, throttle 0 of an AI computer that has not seen it yet is passed on: only after a trip it counts. */
+/**
+ * With an engagement, throttle 0 of an AI computer that has not seen it yet is passed on: only after a trip it counts.
+ */
 static bool is_reaction(const campaign_check_t *check, agv_message_t message, const hal_can_frame_t *frame) {
     return is_safe_command(message, frame) && ((check->plan->engagement == NULL) || (check->reason >= 0));
 }

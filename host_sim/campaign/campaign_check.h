@@ -1,7 +1,7 @@
 /**
  * @file campaign_check.h
- * The judge of a campaign's runs. It goes by what is on the wire, by the safety output and by what the vehicle does; of
- * the supervisor's own word it takes the reason of the first trip, and that it takes the safe state for confirmed.
+ * Checks the runs of a campaign by the frames on the wire, the safety output and the vehicle. Of what the supervisor
+ * reports it uses the reason of the first trip, and that the safe state is confirmed.
  */
 #ifndef HOST_SIM_CAMPAIGN_CHECK_H
 #define HOST_SIM_CAMPAIGN_CHECK_H
@@ -15,7 +15,7 @@
 #define CAMPAIGN_NEVER UINT64_MAX
 #define CAMPAIGN_STATES_MAX 16u
 
-/** What must hold; the first one that did not. */
+/** The first condition that a run broke. */
 typedef enum {
     CAMPAIGN_SOUND,
     CAMPAIGN_NOT_READY,     /**< before the cause the output was not closed, or (under way) the autopilot not engaged */
@@ -32,7 +32,7 @@ typedef enum {
 /** "LATE"; "" for CAMPAIGN_SOUND. */
 const char *campaign_break_name(campaign_break_t broken);
 
-/** A change of state, as the supervisor told of it. */
+/** A change of state, as the supervisor reported it. */
 typedef struct {
     uint64_t t_ms;
     uint8_t to;
@@ -58,15 +58,15 @@ typedef struct {
     int reason; /**< of the first trip; -1: none */
     bool holds;
     uint16_t held;      /**< angle in the first 065h of its own */
-    int32_t told_ddeg;  /**< the angle when the steps came: the last one that 067h tells, when they make it invalid */
-    int32_t angle_ddeg; /**< the angle to be held: that of the moment of the trip, or the told one */
+    int32_t told_ddeg;  /**< the angle when the steps came; the last one that 067h reported, if they make it invalid */
+    int32_t angle_ddeg; /**< the angle to hold: that at the trip, or the reported one */
     campaign_state_t states[CAMPAIGN_STATES_MAX];
     size_t state_count;
 } campaign_check_t;
 
 void campaign_check_init(campaign_check_t *check, const campaign_plan_t *plan, const scenario_testbed_t *testbed);
 
-/** Who is to be told of events and frames. */
+/** The callbacks for events and frames. */
 scenario_watch_t campaign_check_watch(campaign_check_t *check);
 
 /** At the end of every millisecond. */

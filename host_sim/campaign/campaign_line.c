@@ -1,4 +1,4 @@
-/* The lines of a campaign's results, read: every key is there, none beside them, and each holds what it may. */
+/* Reads the lines of a campaign's results. Every key must be there, no other key, and each value in its range. */
 #include "campaign/campaign_line.h"
 
 #include <string.h>
@@ -100,7 +100,7 @@ static bool is_break(const json_t *value) {
     return known;
 }
 
-/** @return NULL: all is well; else what is not, for a message */
+/** @return NULL: no error; else what is wrong, for a message */
 static const char *misfit(const json_t *object, const key_line_t *keys, size_t count) {
     for (size_t i = 0u; i < count; i++) {
         if (!keys[i].fits(json_object_get(object, keys[i].name))) {

@@ -44,7 +44,7 @@ static void choose_kind(campaign_plan_t *plan, uint64_t *state) {
     plan->tick_phase_us = prng_toss(state, 2u) ? 0u : (uint16_t)prng_draw(state, 0u, TICK_SPAN_US - 1u);
     plan->clock_start_ms = (uint32_t)prng_next(state);
     plan->number = prng_draw(state, plan->row->lowest, plan->row->highest);
-    /* One that knows no configuration goes by its built-in identifiers. */
+    /* Without a valid configuration the built-in identifiers apply. */
     plan->renumbered = prng_toss(state, 8u) && (plan->row->fault > AGV_FAULT_CONFIG_INVALID);
 }
 
@@ -79,7 +79,7 @@ static void choose_times(campaign_plan_t *plan, uint64_t *state, const agv_confi
     plan->duration_ms = plan->cause_ms + (plan->bound_us / (uint32_t)US_PER_MS) + afterwards_ms;
 }
 
-/** All identifiers are settings. Their order, which decides who waits on the wire, stays as it is. */
+/** Every identifier is a setting. Their order, which is the priority on the wire, stays the same. */
 static void add_identifiers(campaign_plan_t *plan) {
     for (uint32_t m = 0u; m < (uint32_t)AGV_MSG_COUNT; m++) {
         text_add(&plan->head, "  id_%s: 0x%03X\n", agv_message_name((agv_message_t)m),
@@ -137,7 +137,7 @@ static void add_phases(campaign_plan_t *plan, uint64_t *state) {
     text_add(text, "}\n");
 }
 
-/** The driver who brings the vehicle to where the cause comes. @return throttle */
+/** The steps that make the vehicle drive before the cause. @return throttle */
 static uint32_t add_driver(campaign_plan_t *plan, uint64_t *state) {
     const uint32_t throttle_pct = prng_draw(state, THROTTLE_MIN_PCT, CAMPAIGN_THROTTLE_MAX_PCT);
     const int steer_deg = (int)prng_draw(state, 0u, 2u * STEER_MAX_DEG) - STEER_MAX_DEG;
@@ -160,7 +160,7 @@ static void add_drive(campaign_plan_t *plan, uint64_t *state) {
     }
 }
 
-/** Add what a row says, up to the next divider, with its placeholders filled in. */
+/** Add one step of a row, with its placeholders filled in. */
 static const char *add_words(campaign_plan_t *plan, const char *at, const char *end) {
     text_t *text = &plan->head;
 
@@ -245,7 +245,7 @@ static void add_steps(campaign_plan_t *plan, uint64_t *state) {
     add_cause(plan, state);
 }
 
-/** What is caused. */
+/** Choose the fault to cause. */
 static void choose_row(campaign_plan_t *plan, uint64_t *state, const campaign_causes_t *causes) {
     const size_t count = causes->newly_engaged ? CAMPAIGN_ENGAGEMENT_COUNT : CAMPAIGN_ROW_COUNT;
     const uint32_t any = prng_draw(state, 0u, (uint32_t)count - 1u);

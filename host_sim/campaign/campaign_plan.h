@@ -1,8 +1,8 @@
 /**
  * @file campaign_plan.h
- * One run of a campaign: what its random numbers make of it, as the text of a scenario.
+ * One run of a campaign, drawn from random numbers and written as the text of a scenario.
  *
- * Everything follows from the seed and the number of the run, and from nothing else: the same run in whatever shard.
+ * A run depends on the seed and its number only, so it is the same in every shard.
  */
 #ifndef HOST_SIM_CAMPAIGN_PLAN_H
 #define HOST_SIM_CAMPAIGN_PLAN_H
@@ -14,7 +14,7 @@
 #include "campaign/campaign_rows.h"
 #include "common/text.h"
 
-/** What is to be. */
+/** A run. */
 typedef struct {
     uint64_t seed;
     uint64_t run;
@@ -33,10 +33,10 @@ typedef struct {
     uint32_t number;    /**< $n */
     uint32_t engage_ms; /**< with an engagement: when the operator switches */
     uint32_t steps_ms;  /**< when the steps of the row come */
-    uint32_t cause_ms;  /**< from here on times count: the steps, what is later than they are, or the switch */
+    uint32_t cause_ms;  /**< times are counted from here: the steps, $n ms after them, or the engagement */
     uint32_t bound_us;  /**< after the cause: the reaction has come */
     uint32_t duration_ms;
-    text_t head; /**< the scenario up to its steps; without what is expected */
+    text_t head; /**< the scenario with its steps, without its expectations */
 } campaign_plan_t;
 
 /** Which causes a campaign has. */

@@ -1,6 +1,6 @@
 /**
  * @file campaign_result.h
- * What came of the runs of a campaign: one JSON object a line, and one table of all.
+ * The results of a campaign: one JSON object for each run, and one table of all runs.
  */
 #ifndef HOST_SIM_CAMPAIGN_RESULT_H
 #define HOST_SIM_CAMPAIGN_RESULT_H
@@ -44,7 +44,7 @@ typedef struct {
 bool campaign_samples_add(campaign_samples_t *samples, const campaign_sample_t *sample);
 void campaign_samples_free(campaign_samples_t *samples);
 
-/** What a evaluated run is in the table. */
+/** A run as a row of the table. */
 campaign_sample_t campaign_sample_of(const campaign_check_t *check);
 
 /** The first line of a file of results, and that of a run. Failures are remembered by the output. */

@@ -196,7 +196,7 @@ const campaign_row_t *campaign_row(agv_fault_t fault) {
     return NULL;
 }
 
-/** A setting by its name; 0: there is none. */
+/** The value of a setting; 0: no such setting. */
 static uint32_t setting(const agv_config_t *config, const char *name) {
     for (uint16_t i = 0u; (name != NULL) && (i < AGV_SETTING_COUNT); i++) {
         if (strcmp(agv_setting_info(i)->name, name) == 0) {

@@ -1,10 +1,10 @@
 /**
  * @file campaign_rows.h
- * What a campaign does to the vehicle and the supervisor to cause each fault, and how long the reaction may take: one row a
- * fault.
+ * What a campaign does to the vehicle and the supervisor to cause each fault, and how long the reaction may take: one
+ * row a fault.
  *
- * The time that is evaluated here is coarse: the settings, and an allowance for the wire. The exact worst cases are derived by
- * scripts/tools/reaction-time.py, from what `host_sim campaign --tables` prints of this table.
+ * The time that is evaluated here is coarse: the settings, and an allowance for the wire. The exact worst cases are
+ * derived by scripts/tools/reaction-time.py, from what `host_sim campaign --tables` prints of this table.
  */
 #ifndef HOST_SIM_CAMPAIGN_ROWS_H
 #define HOST_SIM_CAMPAIGN_ROWS_H
@@ -21,7 +21,7 @@
 /** As fast as the vehicle is driven. 30 %: 1.2 m/s, from which a VCU with a guard has P within confirm_timeout_ms. */
 #define CAMPAIGN_THROTTLE_MAX_PCT 30u
 
-/** How a cause comes to be known. */
+/** When the supervisor detects a cause. */
 typedef enum {
     CAMPAIGN_AT_ONCE,     /**< in the call that finds it, which is the cause */
     CAMPAIGN_TICK,        /**< by the next tick */
@@ -43,7 +43,7 @@ typedef enum {
 #define CAMPAIGN_LATER (1u << 5)      /**< the cause is $n ms after its steps: until then the supervisor does nothing */
 #define CAMPAIGN_BY_OUTPUT (1u << 6)  /**< no frame can leave, or they leave already: what counts is the output */
 #define CAMPAIGN_AS_TRIP (1u << 7)    /**< warns by default, is made a trip */
-#define CAMPAIGN_LIES (1u << 8)       /**< the VCU reports what is not, or nothing: its word on P and mode is no use */
+#define CAMPAIGN_LIES (1u << 8)       /**< the VCU's reports of gear and mode are wrong or missing */
 #define CAMPAIGN_NO_OUTPUT (1u << 9)  /**< the safety output is never closed */
 #define CAMPAIGN_NO_WIRE (1u << 10)   /**< no frame leaves for a while */
 #define CAMPAIGN_AT_ONCE_P (1u << 11) /**< with park: at_once only */
@@ -88,7 +88,9 @@ const campaign_engagement_t *campaign_engagement(agv_fault_t fault);
 /** From the cause to the decision at the latest, in ms, on an idle wire. */
 uint32_t campaign_decision_ms(const campaign_row_t *row, const agv_config_t *config);
 
-/** The same with a cause that comes with an engagement: from the operator's switch, or from the cause if that is later. */
+/**
+ * The same with a cause that comes with an engagement: from the operator's switch, or from the cause if that is later.
+ */
 uint32_t campaign_engaged_decision_ms(const campaign_row_t *row, const campaign_engagement_t *engagement,
                                       const agv_config_t *config);
 

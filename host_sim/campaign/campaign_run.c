@@ -29,7 +29,7 @@ typedef struct {
     size_t broken;
 } campaign_t;
 
-/** Make the scenario of the planned run. What it expects is evaluated here. */
+/** Read the planned run as a scenario, without expectations: campaign_check.h evaluates it. */
 static bool read_plan(campaign_t *campaign) {
     text_t *text = &campaign->text;
 
@@ -134,7 +134,7 @@ static bool run_all(campaign_t *campaign) {
 
 static status_t conclude(campaign_t *campaign) {
     if (output_is_stdout(campaign->request->results)) {
-        return (campaign->broken == 0u) ? STATUS_OK : STATUS_UNMET; /* a table is made of results */
+        return (campaign->broken == 0u) ? STATUS_OK : STATUS_UNMET; /* no table: standard output has the results */
     }
     if (campaign->broken > FILES_MAX) {
         (void)printf("%zu broken runs, scenarios of the first %d\n", campaign->broken, FILES_MAX);

@@ -8,7 +8,7 @@
 #include "campaign/campaign_result.h"
 #include "common/report.h"
 
-/** What is asked for. */
+/** The options. */
 typedef struct {
     campaign_part_t part;
     const char *results; /**< file; NULL: none */
@@ -17,7 +17,7 @@ typedef struct {
     uint64_t one;
 } campaign_request_t;
 
-/** Do it. @return STATUS_UNMET: an invariant did not hold */
+/** Run. @return STATUS_UNMET: an invariant did not hold */
 status_t campaign_run(const campaign_request_t *request);
 
 #endif

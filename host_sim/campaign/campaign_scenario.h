@@ -9,8 +9,8 @@
 #include "campaign/campaign_plan.h"
 
 /**
- * Write a run that was evaluated. What is expected are the invariants, so that a run that breaks one fails as a scenario; what
- * they leave open (when the safe state is confirmed) is expected as it was seen.
+ * Write a run that was evaluated. What is expected are the invariants, so that a run that breaks one fails as a
+ * scenario; what they leave open (when the safe state is confirmed) is expected as it was seen.
  */
 void campaign_scenario_write(text_t *text, const campaign_check_t *check);
 

@@ -10,7 +10,7 @@
 
 enum { TIME_SIZE = 24 };
 
-/** A line in the making. */
+/** A line that is being written. */
 typedef struct {
     size_t runs;
     size_t broken;

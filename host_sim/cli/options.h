@@ -2,8 +2,9 @@
  * @file options.h
  * Options of a command, described as tables of rows; one table says how they are parsed and what `--help` prints.
  *
- * `--name VALUE` and `--name=VALUE` (only the latter for a value that begins with `--`); an option that is given twice counts as given last (but for `each`); `--` ends the
- * options; everything else that does not begin with `-`, and `-` itself, is an operand.
+ * `--name VALUE` and `--name=VALUE` (only the latter for a value that begins with `--`). Of an option that is given
+ * twice the last one counts (except `each`). `--` ends the options. Everything else that does not begin with `-`, and
+ * `-` itself, is an operand.
  */
 #ifndef HOST_SIM_OPTIONS_H
 #define HOST_SIM_OPTIONS_H
@@ -65,7 +66,7 @@ typedef struct {
     const char *operand; /**< what an operand is called in a message: "LOG" */
 } option_syntax_t;
 
-/** What came of it. */
+/** The result. */
 typedef enum {
     OPTIONS_GO,   /**< run the command */
     OPTIONS_DONE, /**< `--help` was asked for and printed: the command ends, successfully */

@@ -12,7 +12,7 @@ void random_options_init(random_options_t *options, option_t rows[RANDOM_OPTIONS
     rows[1] = (option_t)OPTION_TEXT("--shard", "I/N", parts, &options->shard);
 }
 
-/** Read "2/8". @return false: it is no such thing; reported */
+/** Read "2/8". @return false: it is not I/N; reported */
 static bool take_shard(const char *text, uint32_t *shard, uint32_t *shards) {
     char first[8];
     uint64_t part = 0u;

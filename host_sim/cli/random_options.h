@@ -30,7 +30,7 @@ void random_options_init(random_options_t *options, option_t rows[RANDOM_OPTIONS
  * Check the options.
  * @param command "soak": whose `--help` is named
  * @param shard   part of @p shards; 1 of 1 if it is not given
- * @return false: the seed is missing, or the shard is none; was reported
+ * @return false: the seed is missing, or the shard is not I/N; was reported
  */
 bool random_options_check(const random_options_t *options, const char *command, uint32_t *shard, uint32_t *shards);
 

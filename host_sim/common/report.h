@@ -25,7 +25,7 @@ bool report(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /** The same for a place in a file: "FILE:LINE: " and the message. */
 bool report_at(const char *file, size_t line, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
-/** Like report(), for what is worth knowing but wrong with nothing. */
+/** Like report(), for information that is not an error. */
 void note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /**

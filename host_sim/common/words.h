@@ -12,16 +12,16 @@
 /** The index of a word in a list. @return -1: it is not in it */
 int words_find(const char *words, const char *word);
 
-/** The word with an index, not terminated. @return its length; 0: there is none */
+/** The word with an index, not terminated. @return its length; 0: no such index */
 size_t words_at(const char *words, size_t index, const char **word);
 
 /**
  * Read a whole decimal number: digits only, no sign, no blanks.
- * @return false: it is none, or not within @p lowest .. @p highest; not reported
+ * @return false: not a number, or not within @p lowest .. @p highest; not reported
  */
 bool words_decimal(const char *text, uint64_t lowest, uint64_t highest, uint64_t *number);
 
-/** Read @p length hexadecimal digits, 1 to 16 of them. @return false: they are none; not reported */
+/** Read @p length hexadecimal digits, 1 to 16 of them. @return false: other characters, or too many; not reported */
 bool words_hex(const char *text, size_t length, uint64_t *number);
 
 #endif

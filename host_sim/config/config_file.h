@@ -1,7 +1,7 @@
 /**
  * @file config_file.h
  * A configuration as a YAML file: settings at the top level, by the names of config_settings.def, and
- * `class_<fault in lower case>: trip|warn`. What is not named keeps its default.
+ * `class_<fault in lower case>: trip|warn`. Settings that are not in the file keep their defaults.
  */
 #ifndef HOST_SIM_CONFIG_FILE_H
 #define HOST_SIM_CONFIG_FILE_H
@@ -20,7 +20,7 @@ typedef struct {
 } config_lines_t;
 
 /**
- * Change a configuration as a file says.
+ * Read a file into a configuration.
  * @param config starts as what the caller filled in, commonly the defaults
  * @param lines  is filled in
  * @return false: the file cannot be read, or a key or value makes no sense by itself; was reported.
@@ -28,7 +28,7 @@ typedef struct {
 bool config_file_load(const char *path, agv_config_t *config, config_lines_t *lines);
 
 /**
- * Change a configuration as a mapping of a document says (a scenario has one).
+ * Read a mapping of a document into a configuration (a scenario has one).
  * @param lines its path is set; the rest is added to
  * @return false: a key or value makes no sense by itself; was reported.
  */

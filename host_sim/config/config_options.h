@@ -1,6 +1,6 @@
 /**
  * @file config_options.h
- * The options that say how the supervisor is configured, the same for every command that runs one.
+ * The options of the supervisor's configuration, the same for every command.
  */
 #ifndef HOST_SIM_CONFIG_OPTIONS_H
 #define HOST_SIM_CONFIG_OPTIONS_H
@@ -19,7 +19,7 @@ typedef struct {
     int topology;     /**< --topology; -1: not given */
     int id_set;       /**< --id-set; -1: not given */
     bool shadow;      /**< --shadow */
-    bool has_ai_side; /**< an interface of the AI side was named: a gateway, unless option or file says otherwise */
+    bool has_ai_side; /**< --ai-can or --ai-if was given: a gateway, unless --topology or the file sets the topology */
 } config_options_t;
 
 /**

@@ -17,7 +17,7 @@ void config_print_yaml(const agv_config_t *config);
  */
 void config_print_kconfig(const agv_config_t *config);
 
-/** List what is not the default, in one line on standard error: "setting: value (default)"; nothing when all is. */
+/** Print the settings that are not the default as one line on standard error: "setting: value (default)". */
 void config_note_deviations(const agv_config_t *config);
 
 #endif

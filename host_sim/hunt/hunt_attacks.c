@@ -6,7 +6,7 @@
     COMMANDS "|vehicle_status|gear_status|throttle_status|steering_status|eps_status|steering_position|wheel_speed"
 #define NODES "vcu|eps|ai"
 #define VALUES "FA|01|02|08|00|FF|64|46"
-/* The VCU keeps what it knows of the EPS to itself. */
+/* The VCU does not report alarms of the EPS. */
 #define QUIET_VCU "vcu: set, field: alarms, value: 00h|"
 
 /* A field has a wrong value, in a pattern. */

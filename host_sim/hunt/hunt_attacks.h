@@ -16,7 +16,7 @@
 #define HUNT_PATTERN_GOOD 3u /**< and good ones */
 #define HUNT_ENGAGE_AFTER 2u /**< of a reset: so many ms after its begin the autopilot is engaged */
 
-/** @name Where an attack makes sense, and what it is. @{ */
+/** @name Conditions and parameters of an attack. @{ */
 #define HUNT_GATEWAY 0x01u /**< only in the gateway topology */
 #define HUNT_MESSAGE 0x02u /**< its first parameter is a message */
 #define HUNT_PATTERN 0x04u /**< its third and fourth are: so many frames bad (0: all), so many good, again and again */
@@ -25,10 +25,11 @@
 
 /**
  * An attack. In the steps `|` divides; `+N ` or `+$b ` before a step: so many ms after the begin; and these stand for
- * something: `$a` .. `$d` a parameter (its word where it has words), `$n` the node that sends the message, `$v` the one that receives it, `$t` its cycle,
- * `$e` a cycle lengthened by the second parameter (in steps of a twentieth), `$f` the pattern, `$r` again every $b ms,
- * `$w` again every two times $c ms, `$g` every $d ms, `$s` the AI computer's side, `$y` bytes ($c and its length), `$z` $c less 90,
- * `$i` an identifier that no status message has, `$k` the time to the message's next slot.
+ * something: `$a` .. `$d` a parameter (its word where it has words), `$n` the node that sends the message, `$v` the one
+ * that receives it, `$t` its cycle, `$e` a cycle lengthened by the second parameter (in steps of a twentieth), `$f` the
+ * pattern, `$r` again every $b ms, `$w` again every two times $c ms, `$g` every $d ms, `$s` the AI computer's side,
+ * `$y` bytes ($c and its length), `$z` $c less 90, `$i` an identifier that no status message has, `$k` the time to the
+ * message's next slot.
  */
 typedef struct {
     const char *name;

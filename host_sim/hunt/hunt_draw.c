@@ -173,7 +173,7 @@ void hunt_add_reset(hunt_program_t *program, uint64_t *state) {
     }
 }
 
-/** Settings that say what stands where, or that switch the protection off, are not an attacker's. */
+/** Topology, identifiers and shadow mode are not changed. */
 static bool is_fixed(const char *name) {
     return (words_find("topology|id_set|shadow|status_frame_id", name) >= 0) || (strncmp(name, "id_", 3u) == 0);
 }

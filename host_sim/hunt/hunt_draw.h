@@ -1,8 +1,9 @@
 /**
  * @file hunt_draw.h
- * The parts of a program of a hunt, drawn from random numbers: attacks with their times and parameters, settings, classes.
+ * The parts of a program of a hunt, drawn from random numbers: attacks with their times and parameters, settings,
+ * classes.
  *
- * What would be one too many is not added.
+ * Nothing is added to a full list.
  */
 #ifndef HOST_SIM_HUNT_DRAW_H
 #define HOST_SIM_HUNT_DRAW_H
@@ -23,7 +24,7 @@ void hunt_add_reset(hunt_program_t *program, uint64_t *state);
 
 void hunt_add_setting(hunt_program_t *program, uint64_t *state);
 
-/** Give a fault the other class, and add the attack that raises it, where there is only one. */
+/** Give a fault the other class, and add the attack that raises it if there is exactly one. */
 void hunt_add_class(hunt_program_t *program, uint64_t *state);
 
 #endif

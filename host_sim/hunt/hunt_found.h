@@ -10,7 +10,7 @@
 
 enum { HUNT_FOUND_MAX = 1000, HUNT_CAUSE_SIZE = 64, HUNT_SETTING_WORDS = 4, HUNT_CLASS_WORDS = 2 };
 
-/** What a hazard is made of: two that are made of the same are one. */
+/** What distinguishes one hazard from another. */
 typedef struct {
     uint32_t kind;
     uint32_t gateway;
@@ -40,7 +40,8 @@ typedef struct {
 } hunt_place_t;
 
 /**
- * A run of @p program ended in a hazard (of @p play). If it is a new one: drop what is not needed, write it, print a line.
+ * A run of @p program ended in a hazard (of @p play). If it is a new one: drop what is not needed, write it, print a
+ * line.
  * @return false: it could not be written; reported
  */
 bool hunt_found_take(hunt_found_t *found, hunt_play_t *play, const hunt_program_t *program, const hunt_place_t *place);

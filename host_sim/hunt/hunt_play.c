@@ -55,7 +55,7 @@ static void note_closeness(hunt_play_t *play) {
     }
 }
 
-/** The last moment in which a step is done for the first time, or a button is pressed. */
+/** The time of the last step; repeated steps count once, except presses of a button. */
 static uint32_t last_step_ms(const scenario_t *scenario) {
     uint32_t last_ms = 0u;
 
@@ -68,7 +68,7 @@ static uint32_t last_step_ms(const scenario_t *scenario) {
     return last_ms;
 }
 
-/** Nothing can come any more: nobody does anything new, and the output is open or the vehicle stands in the safe state. */
+/** No hazard can come any more: all steps are done, and the output is open or the vehicle stands in the safe state. */
 static bool is_over(hunt_play_t *play, uint32_t t_ms) {
     scenario_testbed_view_t view;
 

@@ -19,13 +19,13 @@ typedef struct {
     hazard_t hazard;
     uint8_t features[HUNT_FEATURE_BYTES]; /**< one bit for each thing that was seen */
     uint32_t played_ms;
-    uint32_t last_step_ms; /**< after this time nobody does anything new */
-    uint32_t quiet_ms;     /**< until then something could still come */
+    uint32_t last_step_ms; /**< the last step, repeated ones not counted */
+    uint32_t quiet_ms;     /**< until then a hazard was possible */
 } hunt_play_t;
 
 void hunt_play_init(hunt_play_t *play);
 
-/** Play it up to its end or the first hazard. @return false: it is no scenario; reported */
+/** Play it to its end or to the first hazard. @return false: not a valid scenario; reported */
 bool hunt_play(hunt_play_t *play, const hunt_program_t *program);
 
 #endif

@@ -1,7 +1,7 @@
 /**
  * @file hunt_program.h
- * One run of a hunt: a vehicle, a configuration and a short list of attacks. It is drawn from random numbers or made of others,
- * and written as the text of a scenario.
+ * One run of a hunt: a vehicle, a configuration and a short list of attacks. It is drawn from random numbers or is a
+ * mutation of others, and is written as the text of a scenario.
  */
 #ifndef HOST_SIM_HUNT_PROGRAM_H
 #define HOST_SIM_HUNT_PROGRAM_H
@@ -62,7 +62,7 @@ void hunt_program_write(const hunt_program_t *program, const char *name, text_t 
 /** Write its attacks, as steps. */
 void hunt_steps_write(const hunt_program_t *program, text_t *text);
 
-/** What it consists of, in one line: attacks and settings. */
+/** List its attacks and settings in one line. */
 void hunt_program_describe(const hunt_program_t *program, text_t *text);
 
 #endif

@@ -18,7 +18,7 @@ typedef struct {
 /** Write it. Nothing without a checkpoint. @return false: reported */
 bool hunt_state_save(const hunt_request_t *request, hunt_state_t *state, output_t *file);
 
-/** Go on from the checkpoint, if there is one. @return false: it belongs to another hunt; reported */
+/** Resume from the checkpoint, if it exists. @return false: it belongs to another hunt; reported */
 bool hunt_state_load(const hunt_request_t *request, hunt_state_t *state);
 
 #endif

@@ -11,7 +11,7 @@
 
 enum { STEPS_MAX = 64, STEP_SIZE = 200, DRIVE_MS = 520, ENGAGE_MS = 840, DECIMAL = 10, STRETCH = 20, ZERO_DEG = 90 };
 
-/** A step in the making. */
+/** A step that is being written. */
 typedef struct {
     uint32_t at_ms;
     uint32_t order;
@@ -80,7 +80,7 @@ static void add_bytes(const steps_t *steps, line_t *line) {
     }
 }
 
-/** Status frames of others are not forged: nobody could tell them from true ones. */
+/** Status frames are not forged: no receiver could distinguish them from true ones. */
 static uint32_t free_id(uint32_t id) {
     while ((agv_message_from_id(id, AGV_ID_SET_HEADING) >= AGV_COMMAND_COUNT) &&
            (agv_message_from_id(id, AGV_ID_SET_HEADING) != (uint32_t)AGV_MSG_NONE)) {

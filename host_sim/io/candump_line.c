@@ -8,7 +8,7 @@
 
 /*
  * Every scan stops at the line feed after the line: it belongs to no class of characters below, so no scan needs a
- * bound of its own.
+ * bound.
  */
 
 #define EXTENDED_ID_MAX 0x1FFFFFFFu
@@ -112,7 +112,7 @@ static const char *parse_id(const char **cursor, hal_can_frame_t *frame) {
     return (frame->id <= EXTENDED_ID_MAX) ? NULL : "the identifier is above 1FFFFFFF";
 }
 
-/** Skip a raw DLC, "_9" to "_F", if there is one. */
+/** Skip a raw DLC, "_9" to "_F". */
 static void skip_raw_dlc(const char **cursor) {
     const char *at = *cursor;
     if (at[0] == '_') {

@@ -7,7 +7,7 @@
  * - one or more blanks, the interface's name (1 to 15 visible ASCII characters), one blank;
  * - 3 hexadecimal digits (up to 7FF) or 8 (29 bits: extended; 20000000 set: an error frame), `#`, then
  *   - 0 to 8 bytes in hexadecimal; 8 bytes may be followed by the raw DLC, `_9` to `_F`;
- *   - or `R`, and perhaps the length asked for, 0 to 8 (8 perhaps with its raw DLC): a remote frame;
+ *   - or `R`, and perhaps the requested length, 0 to 8 (8 perhaps with its raw DLC): a remote frame;
  *   - or `#`, a digit of flags, and 0 to 64 bytes: a CAN FD frame;
  * - perhaps ` R` or ` T` (received, sent: `candump -x`); perhaps a carriage return.
  */
@@ -33,7 +33,7 @@
 #define CANDUMP_CONTROLLER_ACTIVE 0x40u  /**< error active again */
 /** @} */
 
-/** What a line says. */
+/** A parsed line. */
 typedef struct {
     uint64_t stamp_us;       /**< time stamp in microseconds */
     const char *interface;   /**< not terminated; points into the line */

@@ -64,7 +64,7 @@ static bool fill(candump_log_t *log) {
 /**
  * Cut the next line out of the buffer. The beginning of one that is too long for the buffer is dropped until its end is
  * found.
- * @return NULL: there is none, because of the end of the log or a failure.
+ * @return NULL: end of the log, or a failure.
  */
 static char *cut_line(candump_log_t *log, size_t *length, bool *failed) {
     bool too_long = false;

@@ -29,7 +29,7 @@ typedef struct {
 
 /** What reading a line came to. */
 typedef enum {
-    CANDUMP_RECORD, /**< there is one */
+    CANDUMP_RECORD, /**< a frame was read */
     CANDUMP_END,    /**< there are no more */
     CANDUMP_FAILED  /**< a bad line, or a read error: was reported. Or `interrupted`, which was not. */
 } candump_result_t;

@@ -7,7 +7,7 @@
 #include "agv/checksum.h"
 #include "common/report.h"
 
-/** What stands before the parts. */
+/** The header. */
 typedef struct {
     char magic[24];
     char version[16];

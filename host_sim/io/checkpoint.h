@@ -15,9 +15,11 @@
 
 /** What a checkpoint belongs to. */
 typedef struct {
-    const char *path; /**< NULL: there is none; it is neither saved nor loaded */
+    const char *path; /**< NULL: nothing is saved or loaded */
     const char *kind; /**< "soak" */
-    /** Seed, shard and the like: a run in which one of them is different does not go on from it. Those left out are 0. */
+    /**
+     * Seed, shard and the like: a run in which one of them is different does not go on from it. Those left out are 0.
+     */
     uint64_t numbers[CHECKPOINT_NUMBERS];
 } checkpoint_t;
 

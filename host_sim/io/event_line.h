@@ -10,7 +10,7 @@
 
 #include "session/session.h"
 
-/** Read a line; t_ms stays 0. @return false: it is no event, or the summary */
+/** Read a line; t_ms stays 0. @return false: not an event, or the summary */
 bool event_line_read(const char *line, size_t length, session_event_t *event);
 
 #endif

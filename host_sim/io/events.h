@@ -13,7 +13,7 @@
 #include "io/output.h"
 #include "session/session.h"
 
-/** What the last line says. */
+/** The values of the last line. */
 typedef struct {
     uint64_t t_ms;
     agv_counters_t counters;
@@ -24,7 +24,7 @@ typedef struct {
     agv_fault_t first_reason; /**< AGV_FAULT_NONE: not tripped */
 } events_summary_t;
 
-/** Fill in what the session knows; skipped_lines and backward_stamps are 0. */
+/** Fill in the values of a session; skipped_lines and backward_stamps are 0. */
 void events_summarise(const session_t *session, events_summary_t *summary);
 
 /** Write an event. A session_observer_fn: @p ctx is the output_t; a write that fails is remembered there. */

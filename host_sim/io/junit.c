@@ -10,7 +10,7 @@ static void put(output_t *output, const char *text) {
     (void)output_write(output, text, strlen(text));
 }
 
-/** Length of the well-formed UTF-8 sequence that begins here and that XML may hold; 0: there is none. */
+/** Length of the UTF-8 sequence at this place; 0: malformed, or a character that XML forbids. */
 static size_t sequence_length(const uint8_t *at) {
     size_t length = 0u;
     uint32_t lowest = 0u;

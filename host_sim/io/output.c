@@ -11,7 +11,7 @@
 #include "common/interrupt.h"
 #include "common/report.h"
 
-/* What a pipe takes without blocking once poll() says that it takes something. */
+/* A pipe takes that many bytes without blocking after poll() reports that it is writable. */
 enum { SLOW_CHUNK = 4096 };
 
 bool output_is_stdout(const char *path) {
@@ -108,7 +108,7 @@ bool output_empty(output_t *output) {
 bool output_open_pipe(output_t *output, const char *path) {
     begin(output, path);
     output->is_slow = true;
-    output->fd = open(path, O_RDWR | O_NONBLOCK | O_CLOEXEC); /* for reading, too: so nobody is waited for */
+    output->fd = open(path, O_RDWR | O_NONBLOCK | O_CLOEXEC); /* for reading, too: open() does not wait for a reader */
     output->is_open = output->fd >= 0;
     return output->is_open || report("%s: %s", path, strerror(errno));
 }

@@ -1,7 +1,7 @@
 /**
  * @file output.h
  * A file that is written whole or not at all: under a temporary name beside it, renamed by output_commit. Standard
- * output, pipes and devices are written directly, as it comes.
+ * output, pipes and devices are written directly.
  */
 #ifndef HOST_SIM_OUTPUT_H
 #define HOST_SIM_OUTPUT_H
@@ -32,8 +32,8 @@ typedef struct {
 bool output_open(output_t *output, const char *path);
 
 /**
- * Open a regular file that is written as it comes, for what is read while it grows: no temporary file. One that is there
- * stays as it is until output_empty().
+ * Open a regular file without a temporary file, for readers that follow it while it grows. An existing file is
+ * unchanged until output_empty().
  * @return false: it cannot be written; was reported.
  */
 bool output_open_in_place(output_t *output, const char *path);
@@ -42,7 +42,7 @@ bool output_open_in_place(output_t *output, const char *path);
 bool output_empty(output_t *output);
 
 /**
- * Open a named pipe without waiting for who reads it: what it holds is kept for a reader that comes later.
+ * Open a named pipe without waiting for its reader. The pipe keeps its content for a later reader.
  * @return false: it cannot be written; was reported.
  */
 bool output_open_pipe(output_t *output, const char *path);
@@ -83,12 +83,12 @@ typedef struct {
 
 /**
  * Check that no file has two roles of which one is written. "-" is the file that standard input or output is; as two
- * outputs it counts whatever it is.
+ * outputs it always counts.
  * @return false: two have; was reported.
  */
 bool output_check_distinct(const output_role_t *roles, size_t count);
 
-/** Check that a path is a folder. @param role "--found" @return false: it is none; was reported */
+/** Check that a path is a folder. @param role "--found" @return false: it is not; was reported */
 bool output_check_folder(const char *role, const char *path);
 
 /** Write a file of these bytes. @return false: was reported */

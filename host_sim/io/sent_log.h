@@ -2,8 +2,9 @@
  * @file sent_log.h
  * The frames that the supervisor sent, as a candump log: one line a frame, in the order of sending.
  *
- * A side's lines name the interface on which the side was heard first. What is sent before that waits in memory, all
- * sides' lines behind it, so that the order stays; when that gets too much, or at the end, a name is made up.
+ * A side's lines name the interface on which its first frame was received. Frames that are sent before that wait in
+ * memory, and so do all later ones, in their order. If there are too many of them, and at the end, the side gets a
+ * made-up name.
  */
 #ifndef HOST_SIM_SENT_LOG_H
 #define HOST_SIM_SENT_LOG_H
@@ -29,7 +30,7 @@ typedef struct {
 
 _Static_assert(sizeof(sent_log_frame_t) <= 32u, "waiting frames take 1 MiB at most");
 
-/** The log. All zero but for `output`: nothing heard yet. Some 1 MiB: not for the stack. */
+/** The log. All zero but for `output`: nothing received yet. Some 1 MiB: not for the stack. */
 typedef struct {
     output_t *output;                                           /**< NULL: nothing is written */
     char interfaces[HAL_CAN_SIDES][CANDUMP_INTERFACE_MAX + 1u]; /**< "" = not known yet */
@@ -37,7 +38,7 @@ typedef struct {
     sent_log_frame_t waiting[SENT_LOG_WAITING_MAX];
 } sent_log_t;
 
-/** A side is heard on this interface; only the first call for a side counts. */
+/** Name the interface of a side; only the first call for a side counts. */
 void sent_log_heard(sent_log_t *log, hal_can_side_t side, const char *interface, size_t length);
 
 /** A frame was sent. */

@@ -121,7 +121,7 @@ static bool take_text(const char *text, size_t size, sim_store_t *store, agv_rec
 
 bool store_file_load(const char *path, sim_store_t *store, agv_recorder_t *recorder) {
     sim_store_init(store);
-    store->keep_latch = true; /* the supervisor sees what is there, whatever the reset; it knows what to make of it */
+    store->keep_latch = true; /* the supervisor reads it after any reset, and decides itself what it means */
     (void)memset(recorder, 0, sizeof *recorder);
     int fd = open(path, O_RDONLY | O_CLOEXEC);
     if (fd < 0) {

@@ -20,12 +20,12 @@
 
 /**
  * Read a store. A file that is not there is an empty store. A file that is damaged anywhere (cut off, changed, no store
- * at all) is read as far as it goes, and its latch as bytes that fail their checksum: what a supervisor makes of that is
- * its own affair.
+ * at all) is read as far as it goes, and its latch as bytes that fail their checksum: what a supervisor makes of that
+ * is its own affair.
  *
  * @param store is filled in
  * @param recorder is filled in; all zero where the file has none
- * @return false: there is something, but it cannot be read (a folder, no permission); was reported.
+ * @return false: it exists and cannot be read (a folder, no permission); was reported.
  */
 bool store_file_load(const char *path, sim_store_t *store, agv_recorder_t *recorder);
 

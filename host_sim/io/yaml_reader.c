@@ -187,7 +187,7 @@ static bool is_digits(const char *text, const char *digits) {
     return (text[0] != '\0') && (text[strspn(text, digits)] == '\0');
 }
 
-/** Read a decimal number, or a hexadecimal one with 0x. @return false: it is none. What is too large is INT64_MAX */
+/** Read a decimal number, or a hexadecimal one with 0x. @return false: not a number. A larger one is INT64_MAX */
 static bool read_whole(const char *text, int64_t *number) {
     const bool is_hex = (text[0] == '0') && (text[1] == 'x');
     const bool is_negative = text[0] == '-';

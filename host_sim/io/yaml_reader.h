@@ -21,13 +21,13 @@ typedef struct {
     bool is_line; /**< no file but a single line, which `file` is: messages name no line number */
 } yaml_reader_t;
 
-/** A word and what it stands for; a list of them ends with the word NULL. */
+/** A word and its value; a list ends with the word NULL. */
 typedef struct {
     const char *word;
     int value;
 } yaml_word_t;
 
-/** Reads the value of a key into whatever @p target is. @return false: it makes no sense; was reported. */
+/** Reads the value of a key into @p target. @return false: invalid; was reported. */
 typedef bool yaml_read_fn(const yaml_reader_t *reader, const yaml_node_t *value, void *target);
 
 /** How the value of a key is read. */
@@ -90,7 +90,7 @@ bool yaml_reader_map(const yaml_reader_t *reader, const yaml_node_t *node, const
 bool yaml_reader_list(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, yaml_read_fn *read,
                       void *target);
 
-/** The text of a scalar; NULL when it is none or empty. Lives as long as the document. */
+/** The text of a scalar; NULL: not a scalar, or empty. Valid as long as the document. */
 const char *yaml_reader_text(const yaml_reader_t *reader, const yaml_node_t *node, const char *what);
 
 /** A whole decimal number, or a hexadecimal one (0x1F) that is not negative. */

@@ -46,8 +46,8 @@ struct external {
     bool has_told;
     bool output_closed;
     linux_can_t rx_sockets[HAL_CAN_SIDES];
-    frames_t heard;   /**< up to the last external_listen(): who sent it is known by the next one */
-    frames_t vehicle; /**< of these the vehicle's that are not found in `heard` yet */
+    frames_t heard;   /**< up to the last external_listen(); the next one knows the sender */
+    frames_t vehicle; /**< frames of the vehicle that are not found in `heard` yet */
 };
 
 static bool add(frames_t *frames, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t at_us) {
@@ -128,7 +128,7 @@ static void tell_lines(external_t *external) {
     }
 }
 
-/** Read what it has printed; of much only some, as other things wait, too. @return false: it has ended; reported */
+/** Read some of its output. @return false: it has ended; reported */
 static bool read_output(external_t *external) {
     ssize_t got = 1;
     for (unsigned i = 0u; (i < READS_AT_ONCE) && (got > 0); i++) {
@@ -233,7 +233,7 @@ bool external_wait(external_t *external) {
 
 void external_vehicle_sent(external_t *external, hal_can_side_t side, const hal_can_frame_t *frame) {
     if (!add(&external->vehicle, side, frame, 0u)) {
-        drop(&external->vehicle, 0u); /* of something that was not heard */
+        drop(&external->vehicle, 0u); /* the oldest one was not received */
         (void)add(&external->vehicle, side, frame, 0u);
     }
 }

@@ -1,9 +1,9 @@
 /**
  * @file external.h
- * A supervisor that is another program, on the same CAN interfaces: the firmware as a program of a computer, for one.
+ * An external supervisor: another program on the same CAN interfaces, for example the firmware built for Linux.
  *
- * A command starts it. It tells its events on standard output, as JSON Lines (events.h); other lines are no matter. What
- * it sends is what is heard on the interfaces and was not sent by the vehicle, which has to be told here.
+ * A command starts it. It prints its events on standard output as JSON Lines (events.h); other lines are ignored. Its
+ * frames are those that are received and that the vehicle did not send (external_vehicle_sent()).
  */
 #ifndef HOST_SIM_EXTERNAL_H
 #define HOST_SIM_EXTERNAL_H
@@ -37,19 +37,19 @@ external_t *external_open(const external_config_t *config);
 /** Start the program. @return false: reported */
 bool external_start(external_t *external);
 
-/** Wait until it has told something; it is there then. @return false: it did not for long, or ended; reported */
+/** Wait for its first event. @return false: timeout, or it has ended; reported */
 bool external_wait(external_t *external);
 
 /** The vehicle has sent a frame. */
 void external_vehicle_sent(external_t *external, hal_can_side_t side, const hal_can_frame_t *frame);
 
 /**
- * Tell what was heard; every millisecond, after all of external_vehicle_sent().
- * @return false: it has ended, or more was heard than there is room for; reported
+ * Report received frames and events; call it every millisecond, after external_vehicle_sent().
+ * @return false: it has ended, or there were too many frames; reported
  */
 bool external_listen(external_t *external);
 
-/** Whether it said last that its safety output is closed. */
+/** Whether the last event of its safety output was "closed". */
 bool external_output_closed(const external_t *external);
 
 /** Stop it, and listen no more; NULL: nothing. */

@@ -112,7 +112,7 @@ static bool prepare(live_t *live) {
     return live_output_begin(&live->outputs[OUT]) && live_output_begin(&live->outputs[EVENTS]);
 }
 
-/** What is for the reader and files comes when the supervisor has done its part. */
+/** Files and status line are written after the supervisor's step. */
 static void tell(live_t *live, uint64_t now_ms) {
     for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
         live_output_pass(&live->outputs[i]);

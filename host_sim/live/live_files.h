@@ -11,7 +11,7 @@
 #include "hal_linux/linux_loop.h"
 #include "live/node.h"
 
-/** What is waited for. Start from live_files_none(). */
+/** The files to wait for. Start from live_files_none(). */
 typedef struct {
     int fds[HAL_CAN_SIDES]; /**< -1: nothing */
 } live_files_t;

@@ -46,7 +46,7 @@ bool live_output_has_room(live_output_t *output) {
     return fits;
 }
 
-/** Write what is in the buffer, as long as the file takes it within @p wait_ms. @return false: not all of it */
+/** Write the buffer as far as the file takes it within @p wait_ms. @return false: not all of it */
 static bool pass(output_t *lines, int wait_ms) {
     size_t done = 0u;
     while ((done < lines->used) && (lines->error == 0) && live_output_takes(lines->fd, wait_ms)) {

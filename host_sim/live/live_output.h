@@ -1,8 +1,8 @@
 /**
  * @file live_output.h
  * A file that is written while a supervisor runs on a real bus: line by line and in place, so that it can be followed
- * (`tail -f`), and so that what ended the program hard took no more than the last line with it. Nothing here waits: what
- * a slow reader does not take stays in the buffer, and what finds no room there is lost and counted.
+ * (`tail -f`), and so that what ended the program hard took no more than the last line with it. Nothing here waits:
+ * what a slow reader does not take stays in the buffer, and what finds no room there is lost and counted.
  */
 #ifndef HOST_SIM_LIVE_OUTPUT_H
 #define HOST_SIM_LIVE_OUTPUT_H
@@ -33,7 +33,7 @@ bool live_output_begin(live_output_t *output);
 /** Whether a line can be put into `lines`: it is open and has room. A line that has none is counted. */
 bool live_output_has_room(live_output_t *output);
 
-/** Hand over what the reader takes at this moment. */
+/** Write what the reader takes now. */
 void live_output_pass(live_output_t *output);
 
 /**

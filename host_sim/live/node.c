@@ -10,7 +10,7 @@
 
 enum { ID_SETS = 3, IDS_MAX = (int)AGV_MSG_COUNT * ID_SETS + 1 };
 
-/** Frames that are handed over before the next tick has its turn, whatever comes in: more than a bus carries in 20 ms. */
+/** Most frames that are handed over before the next tick: more than a bus carries in 20 ms. */
 enum { FRAMES_AT_ONCE = 256 };
 
 struct node {

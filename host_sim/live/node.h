@@ -37,7 +37,7 @@ node_t *node_open(const node_config_t *config);
 /** Start the supervisor, or start it again. */
 void node_start(node_t *node);
 
-/** The file of a side, for linux_loop_add(); -1: none at the moment. */
+/** The file of a side, for linux_loop_add(); -1: not open now. */
 int node_fd(const node_t *node, hal_can_side_t side);
 
 /** Hand over what has arrived. */
@@ -52,7 +52,7 @@ uint64_t node_now_us(const node_t *node);
 /** Its session, to read. */
 const session_t *node_session(const node_t *node);
 
-/** The supervisor has had its last call: let what it handed over leave, for LINUX_HAL_FINISH_MS at most. Nothing for NULL. */
+/** After the supervisor's last call: wait until its frames have left, LINUX_HAL_FINISH_MS at most. Nothing for NULL. */
 void node_finish(node_t *node);
 
 /** End: nothing more is sent, what waits is discarded, as when the power fails. Nothing for NULL. */

@@ -29,15 +29,15 @@ typedef struct {
     linux_loop_t loop;
     bool loop_is_open;
     node_t *node;         /* NULL: without power, or another program */
-    external_t *external; /* NULL: it is none */
+    external_t *external; /* NULL: this program's own supervisor */
     live_files_t files;
     int64_t node_began_us;    /* when its own time began, in that of the run */
     uint64_t halted_until_ms; /* it hangs, or has no power, until then */
     bool hangs;
     scenario_player_t player;
-    uint64_t next_view_ms;                  /* the first one that nobody has looked at */
+    uint64_t next_view_ms;                  /* the first millisecond that is not evaluated yet */
     linux_can_t controllers[HAL_CAN_SIDES]; /* what sends the error frames of the supervisor's controllers */
-    uint64_t recovered_ms[HAL_CAN_SIDES];   /* when bus-off ends; UINT64_MAX: there is none */
+    uint64_t recovered_ms[HAL_CAN_SIDES];   /* end of bus-off; UINT64_MAX: no bus-off */
     events_summary_t *summary;
     bool vehicle_is_open;
     vehicle_bus_t vehicle;
@@ -163,7 +163,7 @@ static bool open_controllers(run_t *run) {
     return true;
 }
 
-/** A controller of the supervisor says something. */
+/** Send an error frame of a controller of the supervisor. */
 static void play_controller(run_t *run, hal_can_side_t side, uint32_t classes, uint8_t details) {
     const hal_can_frame_t frame = {.id = classes, .flags = HAL_CAN_ERROR, .length = ERROR_DLC, .data = {[1] = details}};
     (void)linux_can_write(&run->controllers[side], &frame);
@@ -194,7 +194,7 @@ static bool do_to_supervisor(run_t *run, uint64_t t_ms, const scenario_action_t 
         live_files_leave(&run->files, &run->loop);
         return true;
     case SCENARIO_BUS_OFF:
-        /* It is asked to recover after a time that is configured: a virtual interface hears nobody ask. */
+        /* A virtual interface does not see the request to recover; it comes after a configured time. */
         play_controller(run, action->side, CANDUMP_ERROR_BUS_OFF, 0u);
         run->recovered_ms[action->side] = t_ms + run->scenario->config.bus_off_recovery_ms + RECOVERY_MS;
         return true;

@@ -27,11 +27,11 @@ typedef struct {
         *command; /**< starts a supervisor that is another program (external.h); NULL: it is one of this program */
 } scenario_bus_t;
 
-/** Told of the supervisor's events and frames, beside the evaluation. */
+/** More callbacks for the supervisor's events and frames. */
 typedef struct {
-    session_observer_fn *on_event; /**< NULL: nobody */
+    session_observer_fn *on_event; /**< or NULL */
     void *event_ctx;
-    node_sent_fn *on_sent; /**< NULL: nobody; the time is that of the run */
+    node_sent_fn *on_sent; /**< or NULL; at_us is the time of the run */
     void *sent_ctx;
 } scenario_bus_watch_t;
 
@@ -45,15 +45,15 @@ bool scenario_bus_check(const scenario_bus_t *bus);
 const char *scenario_bus_leaves_out(const scenario_bus_t *bus, const scenario_t *scenario);
 
 /**
- * Widen and narrow the times of a scenario's expectations, and drop what cannot be seen from outside of another program:
- * its counters. Once, before it is played.
+ * Widen and narrow the times of a scenario's expectations, and drop what cannot be seen from outside of another
+ * program: its counters. Once, before it is played.
  */
 void scenario_bus_tolerate(const scenario_bus_t *bus, scenario_t *scenario);
 
 /**
  * Play a scenario; takes its duration_ms. check->scenario must be it, and tolerated. What another program is the
  * supervisor of, its configuration included, is not looked into.
- * @param summary what its last line says
+ * @param summary is filled in
  * @return false: not to its end (a signal, an interface that is gone); was reported
  */
 bool scenario_bus_play(const scenario_bus_t *bus, scenario_check_t *check, const scenario_bus_watch_t *watch,

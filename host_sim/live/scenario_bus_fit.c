@@ -19,7 +19,7 @@ static const char *const left_out_steps[] = {
     [SCENARIO_CORRUPT_FRAMES] = "destroy: frames on a real bus cannot be destroyed",
 };
 
-/** A virtual interface has no controller of its own: whoever sends its error frames plays it. */
+/** A virtual interface has no controller. Error frames are sent on it instead. */
 static bool is_virtual(const char *interface) {
     char path[PATH_SIZE];
     struct stat found;
@@ -34,7 +34,7 @@ static const char *why_not_controller(const scenario_bus_t *bus, const scenario_
                : "bus_off, overrun, error_passive: played on a virtual interface only";
 }
 
-/** In bus-off a virtual interface goes on hearing: no matter but for an AI side of which nothing is heard for too long. */
+/** In bus-off a virtual interface still receives. It matters only for an AI side that is silent for too long. */
 static const char *why_not_bus_off(const scenario_bus_t *bus, const scenario_t *scenario,
                                    const scenario_action_t *action) {
     if ((action->side == HAL_CAN_AI) &&
@@ -44,7 +44,7 @@ static const char *why_not_bus_off(const scenario_bus_t *bus, const scenario_t *
     return why_not_controller(bus, action);
 }
 
-/** Nobody reaches into another program, nor plays its controller. */
+/** Actions that are not possible with an external supervisor. */
 static const char *why_not_of_outsider(const scenario_action_t *action) {
     switch (action->what) {
     case SCENARIO_RESTART:
@@ -104,7 +104,7 @@ static const char *why_not_start(const scenario_t *scenario) {
     return scenario->self_test_passed ? NULL : "self_test: the self-test of a node cannot be made to fail";
 }
 
-/** Faults that need a wire on which somebody has to acknowledge. */
+/** Faults that need acknowledges on the wire. */
 static const char *why_not_faults(const scenario_expect_t *expect) {
     for (size_t i = 0u; i < expect->faults.count; i++) {
         if (expect->faults.items[i].fault == AGV_FAULT_TX_STALLED) {
@@ -168,13 +168,13 @@ const char *scenario_bus_leaves_out(const scenario_bus_t *bus, const scenario_t 
     return (why != NULL) ? why : why_not_counters(scenario);
 }
 
-/** Something is expected at some moment in it. */
+/** An event is expected within it. */
 static void widen(scenario_window_t *window, uint32_t by_ms) {
     window->from = (window->from > by_ms) ? window->from - by_ms : 0u;
     window->to = (window->to < UINT32_MAX - by_ms) ? window->to + by_ms : UINT32_MAX;
 }
 
-/** Something holds all the time in it, from a change to a change; one that is shorter than both edges is not evaluated. */
+/** A condition holds throughout it. One that is shorter than twice the tolerance is not evaluated. */
 static void narrow(scenario_window_t *window, uint32_t by_ms, uint32_t end_ms) {
     window->from += (window->from > 0u) ? by_ms : 0u;
     window->to -= ((window->to < end_ms) && (window->to > by_ms)) ? by_ms : 0u;

@@ -1,7 +1,6 @@
 /**
  * @file typed_lines.h
- * Lines from standard input while a program runs: what is there is taken, nothing is waited for. For a terminal, a pipe,
- * or a file, which is read on until its end.
+ * Reads lines from standard input without waiting, while a program runs: from a terminal, a pipe or a file.
  */
 #ifndef HOST_SIM_TYPED_LINES_H
 #define HOST_SIM_TYPED_LINES_H
@@ -9,7 +8,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/** Longer lines are told as too long. */
+/** Longer lines are reported as too long. */
 #define TYPED_LINE_MAX 1000u
 
 /** What is being read. */
@@ -27,7 +26,7 @@ void typed_lines_init(typed_lines_t *typed, int fd);
 
 /**
  * The next line, if a whole one is there; reads at most once. A last line without an end counts.
- * @return NULL: none at the moment. Else the line without its end; "" also for one that was too long, which was reported.
+ * @return NULL: none now. Else the line without its end; "" also for one that was too long, which was reported.
  *         It lives until the next call.
  */
 const char *typed_lines_next(typed_lines_t *typed);

@@ -1,7 +1,7 @@
 /**
  * @file vehicle_bus.h
- * A simulated vehicle (vehicle.h) on SocketCAN: each of its nodes has a socket of its own, so it hears the others and not
- * itself. Frames of a rogue node go out through a fourth and fifth socket, one a side.
+ * A simulated vehicle (vehicle.h) on SocketCAN: each of its nodes has a socket of its own, so it hears the others and
+ * not itself. Frames of a rogue node go out through a fourth and fifth socket, one a side.
  */
 #ifndef HOST_SIM_VEHICLE_BUS_H
 #define HOST_SIM_VEHICLE_BUS_H
@@ -35,7 +35,7 @@ typedef struct {
     uint64_t now_ms;             /**< how far the vehicle has come: its time never goes back */
     uint64_t sent;               /**< frames that the kernel took */
     uint64_t unsent;             /**< frames that it did not: they are lost, as on a bus without acknowledge */
-    bool is_down[HAL_CAN_SIDES]; /**< the interface is down: nothing is sent or heard until it is up again */
+    bool is_down[HAL_CAN_SIDES]; /**< the interface is down: nothing is sent or received */
 } vehicle_bus_t;
 
 /** How many files vehicle_bus_fd() knows. */
@@ -48,7 +48,7 @@ bool vehicle_bus_open(vehicle_bus_t *bus, const vehicle_bus_config_t *config);
 int vehicle_bus_fd(const vehicle_bus_t *bus, unsigned file);
 
 /**
- * Let every node hear what has arrived for it, and tell of what has left.
+ * Pass received frames to the nodes, and report the frames that have left.
  * @return false: an interface is gone; was reported. The vehicle cannot go on.
  */
 bool vehicle_bus_receive(vehicle_bus_t *bus);

@@ -27,19 +27,19 @@ typedef struct {
     uint64_t engage_ms; /**< when the operator engages the autopilot; UINT64_MAX: no more */
     bool was_refused;
     bool has_more_typed;  /**< lines may be left that were not taken yet */
-    bool waits_for_typed; /**< the loop tells of typed lines; else they are looked for with every tick */
+    bool waits_for_typed; /**< the loop reports typed lines; else they are polled with every tick */
     bool was_down[HAL_CAN_SIDES];
     bool quits;
 } run_t;
 
-/** Do what a fault or a typed line says. */
+/** Do the action of a --fault or of a typed line. */
 static void act(run_t *run, const vehicle_words_t *words) {
     const vehicle_action_t *action = &words->step.vehicle;
 
     const bool done = vehicle_bus_do(&run->bus, action);
     vehicle_show_event(&run->show, run->bus.now_ms, words->step.actor, "%s", words->what);
     if ((action->what == VEHICLE_DO_ENGAGE) || (action->what == VEHICLE_DO_DISENGAGE)) {
-        run->engage_ms = UINT64_MAX; /* somebody else operates now */
+        run->engage_ms = UINT64_MAX; /* the user operates now */
     }
     if (!done) {
         vehicle_show_clear(&run->show, false);
@@ -57,7 +57,7 @@ static void act_on_faults(run_t *run, uint64_t now_ms) {
     }
 }
 
-static void be_told(run_t *run, vehicle_do_t what) {
+static void vehicle_action(run_t *run, vehicle_do_t what) {
     const vehicle_action_t action = {.what = what, .gear = AGV_GEAR_D, .throttle_permille = THROTTLE_PERMILLE};
     (void)vehicle_bus_do(&run->bus, &action);
 }
@@ -73,7 +73,7 @@ static void operate(run_t *run, uint64_t now_ms) {
     if (!vehicle_is_running(&run->bus.vehicle, VEHICLE_VCU)) {
         return;
     }
-    be_told(run, VEHICLE_DO_ENGAGE);
+    vehicle_action(run, VEHICLE_DO_ENGAGE);
     vehicle_state(&run->bus.vehicle, &state);
     if (state.autopilot) {
         vehicle_show_event(&run->show, run->bus.now_ms, "operator", "engage");
@@ -145,8 +145,8 @@ static void take_typed(run_t *run) {
 }
 
 /**
- * A millisecond has passed. What has arrived in it is looked at now: the sockets are not waited for, which saves half of
- * the work, and frames carry the stamps of their arrival. @return false: an interface is gone; was reported
+ * A millisecond has passed. What has arrived in it is looked at now: the sockets are not waited for, which saves half
+ * of the work, and frames carry the stamps of their arrival. @return false: an interface is gone; was reported
  */
 static bool tick(run_t *run) {
     const uint64_t now_ms = vehicle_bus_now_ms(&run->bus);
@@ -166,7 +166,7 @@ static void show_end(run_t *run) {
                  bus->now_ms / MS_PER_S, bus->now_ms % MS_PER_S, bus->sent, bus->unsent);
 }
 
-/** Nobody has asked for the end, nobody has gone who reads what is printed. */
+/** No signal, no `quit`, the time is not over, and standard output works. */
 static bool goes_on(const run_t *run, uint32_t events) {
     const uint64_t for_ms = run->request->bus.for_ms;
 
@@ -211,7 +211,7 @@ static bool run_on_bus(run_t *run) {
     vehicle_bus_view(&run->bus, &view);
     vehicle_show_init(&run->show, &view);
     run->waits_for_typed = linux_loop_add(&run->loop, run->typed.fd); /* refused for a file */
-    be_told(run, VEHICLE_DO_AI_DRIVE);
+    vehicle_action(run, VEHICLE_DO_AI_DRIVE);
     const bool good = go(run);
     show_end(run);
     return good;

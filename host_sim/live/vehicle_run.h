@@ -1,7 +1,7 @@
 /**
  * @file vehicle_run.h
- * A simulated vehicle in real time: the nodes on SocketCAN (vehicle_bus.h), the operator, faults at their times, and what
- * is typed.
+ * A simulated vehicle in real time: the nodes on SocketCAN (vehicle_bus.h), the operator, faults at their times, and
+ * what is typed.
  */
 #ifndef HOST_SIM_VEHICLE_RUN_H
 #define HOST_SIM_VEHICLE_RUN_H
@@ -27,8 +27,8 @@ typedef struct {
 } vehicle_run_request_t;
 
 /**
- * Run until SIGINT, SIGTERM or SIGHUP, `quit` is typed, or for so long. Events go to standard output, lines are typed into
- * standard input.
+ * Run until SIGINT, SIGTERM or SIGHUP, `quit` is typed, or for so long. Events go to standard output, lines are typed
+ * into standard input.
  * @return STATUS_OK, or STATUS_UNUSABLE: was reported
  */
 status_t vehicle_run_nodes(const vehicle_run_request_t *request);

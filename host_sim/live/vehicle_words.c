@@ -79,7 +79,7 @@ static const yaml_word_t *find_actor(const char *name) {
     return NULL;
 }
 
-/** Somebody who is there, and something that can be done on a real bus. */
+/** Check that actor and action exist on a real bus. */
 static bool check_actor(const line_t *line) {
     const yaml_word_t *actor = find_actor(line->parts[0]);
 

@@ -1,7 +1,7 @@
 /**
  * @file vehicle_words.h
- * Steps of a scenario (docs/scenarios.md) written as a line: what is typed while the vehicle runs, and `--fault`. Words,
- * parameters and their ranges are those of scenario files, read by the same code.
+ * Steps of a scenario (docs/scenarios.md) written as a line: what is typed while the vehicle runs, and `--fault`.
+ * Words, parameters and their ranges are those of scenario files, read by the same code.
  */
 #ifndef HOST_SIM_VEHICLE_WORDS_H
 #define HOST_SIM_VEHICLE_WORDS_H
@@ -30,7 +30,7 @@ bool vehicle_words_typed(const char *line, const agv_config_t *config, vehicle_w
 /** Read what follows `--fault`: `eps-set,field=faults,value=08h@3000`. @return as vehicle_words_typed() */
 bool vehicle_words_fault(const char *text, const agv_config_t *config, vehicle_words_t *words);
 
-/** Print who can do what, and what that needs. */
+/** Print the actors, their actions and parameters. */
 void vehicle_words_help(void);
 
 #endif

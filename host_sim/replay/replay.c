@@ -54,7 +54,7 @@ static bool outputs_work(const replay_t *replay) {
     return (replay->outputs[OUT].error == 0) && (replay->outputs[EVENTS].error == 0);
 }
 
-/** Run the ticks before a moment, or up to it. @return false: interrupted. */
+/** Run the ticks before @p end_us. @return false: interrupted. */
 static bool run_ticks(replay_t *replay, uint64_t end_us) {
     while (replay->next_tick_us < end_us) {
         const uint64_t t_ms = replay->next_tick_ms;
@@ -96,7 +96,7 @@ static void act_on_controller(replay_t *replay, hal_can_side_t side, const hal_c
     }
 }
 
-/** Which side an interface is; the side's first frame also says how its interface is called. */
+/** The side of a frame's interface. The first frame of the vehicle side also gives its name. */
 static hal_can_side_t side_of(replay_t *replay, const candump_record_t *record) {
     const char *ai = replay->request->ai_interface;
     if ((ai != NULL) && (record->interface_length == replay->ai_interface_length) &&

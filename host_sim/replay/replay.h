@@ -23,7 +23,7 @@
 typedef struct {
     const char *log;          /**< "-" = standard input */
     const char *out;          /**< log of what was sent; NULL: none */
-    const char *events;       /**< NULL: none, a summary for the reader goes to standard output */
+    const char *events;       /**< NULL: none, a summary goes to standard output */
     const char *store;        /**< what outlives a reset; NULL: nothing does */
     const char *ai_interface; /**< gateway: the AI side; NULL on the shared bus */
     uint32_t start_ms;        /**< what the supervisor's clock reads at the start */
@@ -35,7 +35,7 @@ typedef struct {
 
 /**
  * Replay. Files are written as a whole at the end, or not at all.
- * @return STATUS_OK when it ran, whatever the supervisor made of it; else STATUS_UNUSABLE, which was reported.
+ * @return STATUS_OK: it ran, also if the supervisor tripped; else STATUS_UNUSABLE, which was reported.
  */
 status_t replay_run(const replay_request_t *request);
 

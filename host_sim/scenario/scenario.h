@@ -3,8 +3,8 @@
  * A scenario: how a run begins, what happens in it, and what is expected of the supervisor. docs/scenarios.md is the
  * manual of the file format.
  *
- * This is what was read; it knows no bus and no time. scenario_check.h evaluates a run by it, scenario_testbed.h runs it on
- * the simulated bus.
+ * This is what was read; it knows no bus and no time. scenario_check.h evaluates a run by it, scenario_testbed.h runs
+ * it on the simulated bus.
  */
 #ifndef HOST_SIM_SCENARIO_H
 #define HOST_SIM_SCENARIO_H
@@ -37,17 +37,17 @@ typedef struct {
 /** What can be done to the supervisor and its controllers. */
 typedef enum {
     SCENARIO_RESTART,       /**< `cause`, after `ms` without power */
-    SCENARIO_HANG,          /**< for `ms` it neither hears nor steps */
+    SCENARIO_HANG,          /**< for `ms` it neither receives nor steps */
     SCENARIO_BUS_OFF,       /**< `side` */
     SCENARIO_TX_STALL,      /**< `side`, `on`: its frames do not leave */
-    SCENARIO_TX_SWALLOW,    /**< `side`, `on`: its frames are lost, and its controller says that they were sent */
+    SCENARIO_TX_SWALLOW,    /**< `side`, `on`: its frames are lost, and its controller reports that they were sent */
     SCENARIO_QUEUE_FULL,    /**< `side`, `on`: it takes no frame to send */
     SCENARIO_OVERRUN,       /**< `side` */
     SCENARIO_ERROR_PASSIVE, /**< `side`, `on` */
     SCENARIO_DELIVER,       /**< `side`, `frame`: handed to the supervisor alone */
     SCENARIO_CORRUPT_LATCH, /**< a bit of the stored latch flips */
     SCENARIO_FLIP_BIT,      /**< bit `ms` of the supervisor's memory flips */
-    SCENARIO_CORRUPT_FRAMES /**< the next `ms` frames of anybody on `side` are destroyed */
+    SCENARIO_CORRUPT_FRAMES /**< the next `ms` frames of any node on `side` are destroyed */
 } scenario_do_t;
 
 typedef struct {
@@ -59,11 +59,11 @@ typedef struct {
     hal_can_frame_t frame;
 } scenario_action_t;
 
-/** What happens at a moment: to the vehicle, or to the supervisor. */
+/** A step: what is done to the vehicle or the supervisor, and when. */
 typedef struct {
     uint32_t at_ms;
     uint32_t again_every_ms; /**< 0: once */
-    uint32_t again_until_ms; /**< the last moment in which it may be done again */
+    uint32_t again_until_ms; /**< after this time it is not done again */
     size_t line;
     const char *actor; /**< "ai" */
     const char *word;  /**< "stop" */
@@ -95,7 +95,7 @@ typedef struct {
     agv_message_t message; /**< stands for its identifier in the ID set in use */
     uint8_t mask[AGV_DLC]; /**< payload matches when (payload & mask) == value */
     uint8_t value[AGV_DLC];
-    bool exact_length; /**< `length` bytes are asked for; else any payload matches */
+    bool exact_length; /**< the frame must have `length` bytes; else any payload matches */
     uint8_t length;
     scenario_window_t at_ms;
     bool is_first; /**< the first frame with this identifier at or after first_since_ms is the one that must match */
@@ -136,7 +136,7 @@ typedef struct {
     scenario_window_t at_ms;
 } scenario_reset_t;
 
-/** What the vehicle does at a moment; members are evaluated when their has_ is set. */
+/** Expected state of the vehicle at a time; members are evaluated if their has_ is set. */
 typedef struct {
     size_t line;
     uint32_t at_ms;
@@ -189,7 +189,7 @@ typedef struct {
     bool fixes_topology; /**< the file names it; else the command line may choose */
     bool fixes_id_set;
     agv_config_t config;
-    agv_ids_t ids;         /**< that `config` asks for; the vehicle may have others */
+    agv_ids_t ids;         /**< of `config`; the vehicle may have others */
     config_lines_t lines;  /**< where the settings stand, while the file is read */
     bool config_unchecked; /**< handed to the supervisor though it makes no sense */
     bool self_test_passed;
@@ -197,7 +197,7 @@ typedef struct {
     uint32_t bitrate;
     uint32_t clock_start_ms;
     uint16_t tick_phase_us; /**< by which the supervisor's ticks lie behind the milliseconds of the vehicle */
-    uint32_t watchdog_ms;   /**< UINT32_MAX: there is none */
+    uint32_t watchdog_ms;   /**< UINT32_MAX: not fitted */
     hal_reset_cause_t reset_cause;
     uint32_t duration_ms;
     scenario_step_t steps[SCENARIO_STEPS_MAX];

@@ -1,4 +1,4 @@
-/* The words that steps are made of. A new action is a row here; a new parameter a bit in the header and a name here. */
+/* The words of steps. To add an action: a row here. To add a parameter: a bit in the header and a name here. */
 #include "scenario/scenario_actions.h"
 
 #include <string.h>

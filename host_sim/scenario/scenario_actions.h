@@ -1,6 +1,7 @@
 /**
  * @file scenario_actions.h
- * The words that steps are made of: who acts, what he can do, what that needs. For scenario_parse*.c and vehicle_words.c only.
+ * The words of steps: actors, their actions and the parameters of these. For scenario_parse*.c and vehicle_words.c
+ * only.
  */
 #ifndef HOST_SIM_SCENARIO_ACTIONS_H
 #define HOST_SIM_SCENARIO_ACTIONS_H
@@ -8,7 +9,7 @@
 #include "io/yaml_reader.h"
 #include "scenario/scenario.h"
 
-/** Who acts. */
+/** Actors. */
 typedef enum {
     ACTOR_VCU,
     ACTOR_EPS,

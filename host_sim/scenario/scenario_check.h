@@ -1,7 +1,7 @@
 /**
  * @file scenario_check.h
- * Judges a run by what a scenario expects: told of everything as it happens, it says at the end which expectations did
- * not hold. It knows no bus and no supervisor: who runs the scenario tells it.
+ * Checks a run against the expectations of a scenario. The caller passes events, frames and states as they happen; at
+ * the end the failed expectations are listed. It knows no bus and no supervisor.
  */
 #ifndef HOST_SIM_SCENARIO_CHECK_H
 #define HOST_SIM_SCENARIO_CHECK_H
@@ -36,7 +36,7 @@ typedef struct {
     uint32_t seen_ms;
 } scenario_fault_seen_t;
 
-/** A evaluation in the making. Read `failures`; all else is for the functions. */
+/** An evaluation. Read `failures`; all else is for the functions. */
 typedef struct {
     char failures[SCENARIO_FAILURES_MAX][SCENARIO_FAILURE_SIZE]; /**< "LINE: what was expected, what was seen" */
     size_t failure_count;                                        /**< may be larger than SCENARIO_FAILURES_MAX */
@@ -55,13 +55,13 @@ typedef struct {
     uint32_t led_since_ms;
     int8_t led_code;
     bool closed;
-    bool only_supervisor; /* no expectation is about a frame of anybody else */
+    bool only_supervisor; /* no expectation is about frames of other nodes */
 } scenario_check_t;
 
 /** Begin. @param scenario must outlive the check */
 void scenario_check_init(scenario_check_t *check, const scenario_t *scenario);
 
-/** The supervisor told of an event. */
+/** The supervisor reported an event. */
 void scenario_check_event(scenario_check_t *check, const session_event_t *event);
 
 /** A frame was on a bus, complete at @p t_us. @param from SCENARIO_FROM_SUPERVISOR or a vehicle_node_t */
@@ -71,7 +71,7 @@ void scenario_check_frame(scenario_check_t *check, uint64_t t_us, hal_can_side_t
 /** The safety output is closed or open; at every millisecond. */
 void scenario_check_output(scenario_check_t *check, uint32_t t_ms, bool closed);
 
-/** What the vehicle does now; at every millisecond for which scenario_check_wants_vehicle() says so. */
+/** The state of the vehicle; for every millisecond for which scenario_check_wants_vehicle() returns true. */
 void scenario_check_vehicle(scenario_check_t *check, uint32_t t_ms, const vehicle_view_t *view);
 bool scenario_check_wants_vehicle(const scenario_check_t *check, uint32_t t_ms);
 

@@ -1,6 +1,6 @@
 /**
  * @file scenario_parse.h
- * What the parts of the scenario reader share. For scenario_parse*.c, and for those who read single steps elsewhere.
+ * Shared by the parts of the scenario reader; also for reading single steps.
  */
 #ifndef HOST_SIM_SCENARIO_PARSE_H
 #define HOST_SIM_SCENARIO_PARSE_H
@@ -19,7 +19,7 @@ extern const yaml_word_t SCENARIO_ID_SETS[];
          ? &(list).items[(list).count++]                                                                               \
          : (yaml_reader_fail((reader), (node), "more than %u of them", SCENARIO_EXPECT_MAX), NULL))
 
-/** "at_ms": one moment, or [earliest, latest]. */
+/** "at_ms": one time, or [earliest, latest]. */
 bool scenario_parse_window(const yaml_reader_t *reader, const yaml_node_t *node, const char *what,
                            scenario_window_t *window);
 
@@ -44,7 +44,7 @@ yaml_read_fn scenario_parse_expect;
 bool scenario_parse_step(const yaml_reader_t *reader, const yaml_node_t *node, const agv_config_t *config,
                          scenario_step_t *step);
 
-/** A moment: 0 .. SCENARIO_DURATION_MAX_MS. */
+/** A time: 0 .. SCENARIO_DURATION_MAX_MS. */
 bool scenario_parse_time(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t *ms);
 
 /** A number that is 0 or more. */

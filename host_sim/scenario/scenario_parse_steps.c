@@ -1,6 +1,7 @@
 /*
- * Scenario files: the steps. A step is a moment, an actor with a word for what it does, and what that needs:
- * `- {at_ms: 5000, ai: mute, message: gear_command}`. scenario_actions.c says which words an actor has and what each needs.
+ * Scenario files: the steps. A step is a time, an actor with its action, and parameters:
+ * `- {at_ms: 5000, ai: mute, message: gear_command}`. scenario_actions.c lists the actions of each actor and their
+ * parameters.
  */
 #include <string.h>
 
@@ -347,7 +348,7 @@ static bool has_what_it_needs(const yaml_reader_t *reader, const reading_t *read
     return true;
 }
 
-/** A key that says when. @return whether it is one */
+/** Take a key of the time. @return false: another key */
 static bool is_time_key(const char *name, reading_t *reading, uint32_t **time) {
     static const char *const names[] = {"at_ms", "again_every_ms", "again_until_ms"};
     uint32_t *const times[] = {&reading->at_ms, &reading->again_every_ms, &reading->again_until_ms};
@@ -455,7 +456,7 @@ bool scenario_parse_step(const yaml_reader_t *reader, const yaml_node_t *node, c
                            : take_for_supervisor(reader, &reading, row, config, step);
 }
 
-/** There is room for all steps that are done again and again. */
+/** Check that there is room for all repeated steps. */
 static bool again_fits(const yaml_reader_t *reader, const yaml_node_t *node, const scenario_t *scenario) {
     size_t count = 0u;
 

@@ -54,7 +54,7 @@ static void follow_power(scenario_testbed_t *testbed, vehicle_node_t node) {
     }
 }
 
-/** The bus is a classic one: a frame in FD format takes no time on it, and is heard by everybody with power. */
+/** The bus is a classic one. A frame in FD format takes no time on it, and all nodes with power receive it. */
 static void deliver_past_wire(scenario_testbed_t *testbed) {
     for (size_t i = 0u; i < testbed->past_wire_count; i++) {
         const scenario_past_wire_t *waiting = &testbed->past_wire[i];
@@ -90,7 +90,7 @@ static void send_of_vehicle(void *ctx, vehicle_node_t from, hal_can_side_t side,
         follow_power(testbed, from);
         number = testbed->stations[from].number;
     } else if (!testbed->rogue_powered[side]) {
-        testbed->rogue_powered[side] = true; /* before that nobody is there who would acknowledge */
+        testbed->rogue_powered[side] = true; /* before, there is no node that would acknowledge */
         sim_bus_set_power(&testbed->buses[side], number, true);
     }
     if (!sim_bus_send(&testbed->buses[side], number, frame)) {
@@ -326,7 +326,7 @@ static void step_supervisor(scenario_testbed_t *testbed) {
     }
     if (testbed->t_ms >= testbed->halted_until_ms) {
         for (size_t side = 0u; testbed->was_halted && (side < testbed->bus_count); side++) {
-            supervisor_hears(&testbed->sides[side], NULL); /* what waits since then */
+            supervisor_hears(&testbed->sides[side], NULL); /* frames that arrived meanwhile */
         }
         testbed->was_halted = false;
         session_tick(&testbed->session, testbed->t_ms, sim_hal_now_ms(&testbed->hal));

@@ -2,8 +2,8 @@
  * @file scenario_testbed.h
  * The simulated bus with everything on it: a supervisor, a vehicle, and what goes wrong, in virtual time.
  *
- * One call of scenario_testbed_tick() is a millisecond: the vehicle sends what is due, the supervisor steps, and the bus
- * runs up to the next millisecond. A received frame reaches the supervisor at the very moment of its arrival.
+ * One call of scenario_testbed_tick() is a millisecond: the vehicle sends what is due, the supervisor steps, and the
+ * bus runs up to the next millisecond. A received frame is handed to the supervisor when it arrives.
  */
 #ifndef HOST_SIM_SCENARIO_TESTBED_H
 #define HOST_SIM_SCENARIO_TESTBED_H
@@ -21,7 +21,7 @@
 /** A frame was on the wire. @param from SCENARIO_FROM_SUPERVISOR or a vehicle_node_t */
 typedef void scenario_frame_fn(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame);
 
-/** Who is told what; members may be NULL. */
+/** Callbacks; each may be NULL. */
 typedef struct {
     session_observer_fn *on_event;
     scenario_frame_fn *on_frame;
@@ -100,28 +100,28 @@ typedef struct {
 typedef struct {
     hal_can_status_t status;
     bool is_stalled; /**< its frames do not leave, or it takes none */
-    bool swallows;   /**< its frames are lost, and it says that they were sent */
+    bool swallows;   /**< its frames are lost, and it reports that they were sent */
 } scenario_controller_t;
 
-/** Build a testbed as a scenario begins. @return false: a bit rate that there is not */
+/** Build a testbed as a scenario begins. @return false: unsupported bit rate */
 bool scenario_testbed_init(scenario_testbed_t *testbed, const scenario_t *scenario);
 
-/** Tell one more of what happens; before scenario_testbed_start(). */
+/** Add callbacks; before scenario_testbed_start(). */
 void scenario_testbed_watch(scenario_testbed_t *testbed, const scenario_watch_t *watch);
 
 /** Switch the supervisor on, at 0 ms. */
 void scenario_testbed_start(scenario_testbed_t *testbed);
 
-/** Do what a step says, now: before the tick of its millisecond. */
+/** Do a step at its time, before the tick of that millisecond. */
 void scenario_testbed_do(scenario_testbed_t *testbed, const scenario_step_t *step);
 
-/** The same at another time: steps carry 32 bits of it, a testbed lasts longer. */
+/** Do a step at another time: the time of a step has 32 bits, that of a testbed 64. */
 void scenario_testbed_act(scenario_testbed_t *testbed, uint64_t t_ms, const scenario_step_t *step);
 
 /**
- * Go on from a copy of another testbed, of another run of this program perhaps: @p testbed was made of the same scenario, has
- * the same watches, and was started.
- * @param saved its pointers are put right
+ * Resume from a copy of another testbed, perhaps of another run of this program: @p testbed was made of the same
+ * scenario, has the same watches, and was started.
+ * @param saved its pointers are replaced
  */
 void scenario_testbed_restore(scenario_testbed_t *testbed, scenario_testbed_t *saved);
 

@@ -100,6 +100,6 @@ void session_tick(session_t *session, uint64_t t_ms, uint32_t clock_ms) {
         tell_recorded(session, true);
     }
     if (agv_supervisor_led_code(&session->supervisor) != session->led_code) {
-        tell_led(session); /* it follows a fault that a frame carried in the next tick */
+        tell_led(session); /* a fault in a frame changes it in the next tick */
     }
 }

@@ -1,7 +1,7 @@
 /**
  * @file session.h
- * A supervisor with all it needs around it: flight recorder, port, a time that does not wrap, and observers that are
- * told what happens. Replay, scenarios and nodes on a real bus drive the supervisor through this.
+ * A supervisor with flight recorder, port, a time that does not wrap, and observers of its events. Replay, scenarios
+ * and nodes on a real bus drive the supervisor through this.
  *
  * The program calls session_init, session_observe as often as it likes, session_start, and then session_frame and
  * session_tick in the order of time.
@@ -21,7 +21,7 @@
 
 #define SESSION_OBSERVERS_MAX 4u
 
-/** What an observer is told: an event of the flight recorder, or a change of the LED code. */
+/** An event of the flight recorder, or a change of the LED code. */
 typedef struct {
     uint64_t t_ms;        /**< since the start of the run */
     bool is_led;          /**< `led_code` is the news; else `recorded` */
@@ -29,7 +29,7 @@ typedef struct {
     agv_event_t recorded; /**< kind, a, b, c, missing as recorder.h says */
 } session_event_t;
 
-/** Told of every event, in order. */
+/** Called for every event, in order. */
 typedef void session_observer_fn(void *ctx, const session_event_t *event);
 
 /** Read the members freely; change nothing but through the functions. */
@@ -40,8 +40,8 @@ typedef struct {
     uint64_t t_ms;          /**< time of the last call, since the start of the run */
     uint64_t ticked_ms;     /**< time of the last tick, or of the start */
     uint64_t supervised_ms; /**< time outside INIT */
-    uint32_t next;          /**< sequence number of the next event to tell of */
-    int8_t led_code;        /**< as last told */
+    uint32_t next;          /**< sequence number of the next event to report */
+    int8_t led_code;        /**< as last reported */
     bool self_test_failed;  /**< session_fail_self_test() */
     size_t observer_count;
     struct {
@@ -53,14 +53,14 @@ typedef struct {
 /** Make a session: an empty recorder, no observers. @param hal stays the caller's and must outlive the session */
 void session_init(session_t *session, hal_t *hal);
 
-/** Tell one more observer. @return false: there are SESSION_OBSERVERS_MAX already */
+/** Add an observer. @return false: there are SESSION_OBSERVERS_MAX already */
 bool session_observe(session_t *session, session_observer_fn *fn, void *ctx);
 
 /** From the next start on, the program's own test of RAM, flash and processor reports a failure. */
 void session_fail_self_test(session_t *session);
 
 /**
- * Start the supervisor, or start it again after a reset of its processor: the recorder is kept. Observers are told the
+ * Start the supervisor, or start it again after a reset of its processor: the recorder is kept. Observers get the
  * first state first, then (once each) whether the safety output is closed, and the LED code.
  *
  * @param t_ms     time since the start of the run

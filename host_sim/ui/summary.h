@@ -1,6 +1,6 @@
 /**
  * @file summary.h
- * What a run of a supervisor came to, in lines for the reader on standard output.
+ * The summary of a run, as text on standard output.
  */
 #ifndef HOST_SIM_SUMMARY_H
 #define HOST_SIM_SUMMARY_H

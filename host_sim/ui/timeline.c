@@ -47,7 +47,7 @@ static const char *mode_word(int mode) {
     }
 }
 
-/** Print a line: when, who, what, and what the vehicle reports. */
+/** Print a line: time, actor, action, and what the vehicle reports. */
 static void line(timeline_t *timeline, uint64_t t_us, const char *who, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 

@@ -1,6 +1,6 @@
 /**
  * @file timeline.h
- * A run of a scenario for the reader: one line for everything that somebody does, with the vehicle beside it.
+ * A run of a scenario as text: a line for each action and event, with the state of the vehicle.
  */
 #ifndef HOST_SIM_TIMELINE_H
 #define HOST_SIM_TIMELINE_H
@@ -14,8 +14,8 @@
 /** A timeline. Members are for the functions. */
 typedef struct {
     const scenario_testbed_t *testbed;
-    uint64_t trip_us; /* moment of the last trip */
-    uint64_t step_us; /* moment of the last step */
+    uint64_t trip_us; /* time of the last trip */
+    uint64_t step_us; /* time of the last step */
     const char *step_actor;
     const char *step_word;
     uint32_t shown; /* bit m: a frame of message m was shown since the last change of state */

@@ -82,7 +82,7 @@ static void write_status(const vehicle_view_t *view, char status[STATUS_SIZE]) {
 void vehicle_show_init(vehicle_show_t *show, const vehicle_view_t *view) {
     *show =
         (vehicle_show_t){.is_live = isatty(STDOUT_FILENO) != 0, .is_typed = isatty(STDIN_FILENO) != 0, .view = *view};
-    (void)setvbuf(stdout, NULL, _IOLBF, BUFSIZ); /* whoever reads it through a pipe sees it at once */
+    (void)setvbuf(stdout, NULL, _IOLBF, BUFSIZ); /* through a pipe, too, each line appears at once */
 }
 
 void vehicle_show_clear(vehicle_show_t *show, bool line_typed) {

@@ -24,14 +24,14 @@ typedef struct {
 /** Nothing shown yet. @param view the vehicle as it is now */
 void vehicle_show_init(vehicle_show_t *show, const vehicle_view_t *view);
 
-/** Print an event: who, and what. */
+/** Print an event: actor and action. */
 void vehicle_show_event(vehicle_show_t *show, uint64_t t_ms, const char *who, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
 /** The vehicle is in this state now: print what has changed, draw the status line if it is time. */
 void vehicle_show_view(vehicle_show_t *show, uint64_t t_ms, const vehicle_view_t *view);
 
-/** Print what the status line says, as a line. */
+/** Print the status as a line. */
 void vehicle_show_status(vehicle_show_t *show);
 
 /** Make room for what is printed otherwise. @param line_typed whether Enter was pressed on a terminal just now */

@@ -1,17 +1,20 @@
 /**
  * @file vehicle.h
- * A vehicle to supervise: VCU, EPS and AI computer, each sending its messages on their cycles (P16), and the dynamics that
- * they move. It obeys the commands on the bus, and every node can misbehave on demand.
+ * A vehicle to supervise: VCU, EPS and AI computer, each sending its messages on their cycles (P16), and the dynamics
+ * that they move. It obeys the commands on the bus, and every node can misbehave on demand.
  *
- * It knows no bus: time and received frames are passed in, what a node sends goes to a callback. So the same vehicle runs
- * on the simulated bus and on a real one. Nothing is random but by a seed: the same calls give the same frames.
+ * It knows no bus: time and received frames are passed in, what a node sends goes to a callback. So the same vehicle
+ * runs on the simulated bus and on a real one. Nothing is random but by a seed: the same calls give the same frames.
  *
  * How it behaves (the figures are members of vehicle_config_t):
  * - *VCU*. In autopilot it obeys 168h, 075h and 43Fh. In manual it obeys the remote controller, and of the bus only gear P
- *   and autopilot off. Autopilot off ends autopilot mode at once: the gear stays, the throttle goes to 0. It engages when
- *   the operator asks for it, unless autopilot off was commanded in the last 300 ms. While gear P is commanded (last one
+ *   and autopilot off. Autopilot off ends autopilot mode at once: the gear stays, the throttle goes to 0. It engages
+ * when
+ *   the operator asks for it, unless autopilot off was commanded in the last 300 ms. While gear P is commanded (last
+ * one
  *   within 300 ms) and until the operator drives anew, the remote controller moves nothing.
- *   A gear takes time to engage. With the guard, P is taken only below walking pace: it brakes until then; without it, P
+ *   A gear takes time to engage. With the guard, P is taken only below walking pace: it brakes until then; without it,
+ * P
  *   is taken at speed, and the wheels lock. 075h that stays away for 500 ms is throttle 0.
  *   The throttle (050h) follows what is commanded at a limited rate. D and R engage against the motion only when the
  *   vehicle stands: it brakes until then, with throttle 0. 363h carries the speed of the wheels in metres per hour.
@@ -22,7 +25,7 @@
  *   angle control it follows 065h, in assist the driver's hand, both with a limited rate.
  * - *AI computer*. It drives as told while 363h reports autopilot; otherwise it sends gear N, throttle 0, angle 0.
  *   To change between D and R, or out of N, it waits with throttle 0 until the wheels stand.
- *   Stubborn, it commands what it was told at once and in every mode.
+ *   Stubborn, it sends its commands at once and in every mode.
  *
  * Single-threaded, no allocation, no globals. All times are milliseconds since the start of the run.
  */
@@ -36,7 +39,7 @@
 #include "agv/protocol.h"
 #include "hal/can.h"
 
-/** A node of the vehicle; VEHICLE_ROGUE stands for whoever sends frames that no node of the vehicle would. */
+/** A node of the vehicle; VEHICLE_ROGUE is any other sender. */
 typedef enum { VEHICLE_VCU, VEHICLE_EPS, VEHICLE_AI, VEHICLE_NODES, VEHICLE_ROGUE = VEHICLE_NODES } vehicle_node_t;
 
 /** As a start time: the node stays off. */
@@ -50,7 +53,7 @@ typedef enum { VEHICLE_VCU, VEHICLE_EPS, VEHICLE_AI, VEHICLE_NODES, VEHICLE_ROGU
 /** Periodic senders of raw frames at one time. */
 #define VEHICLE_ROGUES_MAX 8u
 
-/** Called for every frame that is sent, at the moment of sending. Must not call the vehicle. */
+/** Called for every frame when it is sent. Must not call the vehicle. */
 typedef void vehicle_send_fn(void *ctx, vehicle_node_t from, hal_can_side_t side, const hal_can_frame_t *frame);
 
 /** How a vehicle is built. Start from vehicle_defaults(). */
@@ -90,11 +93,11 @@ typedef enum {
     VEHICLE_GARBAGE_REMOTE    /**< remote request */
 } vehicle_garbage_t;
 
-/** What can be asked of the vehicle at any moment. */
+/** Actions. */
 typedef enum {
     /* a node: `node` */
     VEHICLE_DO_START,   /**< if it is off */
-    VEHICLE_DO_STOP,    /**< it loses power: neither sends nor hears */
+    VEHICLE_DO_STOP,    /**< it loses power: neither sends nor receives */
     VEHICLE_DO_RESTART, /**< off for `ms`, then as freshly started */
     VEHICLE_DO_FREEZE,  /**< its alive counter stands still */
     VEHICLE_DO_UNFREEZE,
@@ -110,7 +113,7 @@ typedef enum {
                              again in the first `count` of every `every` frames; `every` 0 = once */
     VEHICLE_DO_HOLD,  /**< the same, the value being that of the next frame */
     VEHICLE_DO_DELAY, /**< what it carries is `ms` old (at most VEHICLE_DELAY_MAX_MS), but for its counter; 0 = no more */
-    VEHICLE_DO_IGNORE,  /**< `on`: a command whose receiver hears it and does not do what it says */
+    VEHICLE_DO_IGNORE,  /**< `on`: a command that its receiver does not obey */
     VEHICLE_DO_UNPATCH, /**< no bit is patched any more */
     /* the VCU */
     VEHICLE_DO_VCU_RAMP,        /**< `count`: percent a second at which the throttle comes down */
@@ -121,7 +124,7 @@ typedef enum {
     /* the AI computer */
     VEHICLE_DO_AI_DRIVE,         /**< `gear`, `throttle_permille`, `angle_ddeg` while engaged */
     VEHICLE_DO_AI_IDLE,          /**< gear N, throttle 0, angle 0 */
-    VEHICLE_DO_AI_STUBBORN,      /**< `on`: commands what it was told in every mode */
+    VEHICLE_DO_AI_STUBBORN,      /**< `on`: sends its commands in every mode */
     VEHICLE_DO_AI_AUTOPILOT_OFF, /**< `on`: asks for autopilot off in 43Fh */
     VEHICLE_DO_AI_WEAVE,         /**< its angle swings by `angle_ddeg` to both sides, once in `ms`; 0 = no more */
     /* the EPS */
@@ -133,7 +136,7 @@ typedef enum {
     VEHICLE_DO_BUTTON,        /**< `count` = 1 or 2, `on` = pressed */
     VEHICLE_DO_REMOTE_DRIVE,  /**< `gear`, `throttle_permille`: in manual */
     VEHICLE_DO_HAND_STEER,    /**< `angle_ddeg`: in steering assist */
-    VEHICLE_DO_REMOTE_SIGNAL, /**< `on`: the VCU hears the remote controller */
+    VEHICLE_DO_REMOTE_SIGNAL, /**< `on`: the VCU receives the remote controller's signal */
     VEHICLE_DO_REMOTE_POWER,  /**< `on`: the receiver has power */
     /* a rogue node: raw frames */
     VEHICLE_DO_SEND, /**< `frame` on `side`, `count` times (0 = 1, VEHICLE_FOREVER) every `ms`, the first at once */
@@ -274,9 +277,9 @@ typedef struct {
 typedef struct {
     bool engaged;
     bool moving;
-    bool waits;   /* for the wheels to stand, before it commands the gear that it was told */
+    bool waits;   /* for the wheels to stand, before it commands the wanted gear */
     bool shifts;  /* and then for 0A3h to report it, before it commands a throttle */
-    uint8_t gear; /* that 0A3h reports; 0: not heard yet */
+    uint8_t gear; /* that 0A3h reports; 0: not received yet */
 } vehicle_ai_t;
 
 /* A value that swings to both sides. */
@@ -286,7 +289,7 @@ typedef struct {
     int32_t amplitude_ddeg;
 } vehicle_swing_t;
 
-/* What is asked of the vehicle from outside; outlives every restart of a node. */
+/* Actions that last: operator, AI computer's orders, EPS. They outlive every restart of a node. */
 typedef struct {
     int32_t hand_ddeg;
     int32_t ai_angle_ddeg;
@@ -345,19 +348,19 @@ void vehicle_run(vehicle_t *vehicle, uint64_t now_ms);
  */
 void vehicle_init(vehicle_t *vehicle, const vehicle_config_t *config, vehicle_send_fn *send, void *ctx);
 
-/** Time has come to @p now_ms: send what is due. Call it every millisecond; never with an earlier time. */
+/** Advance the time to @p now_ms: send what is due. Call it every millisecond; never with an earlier time. */
 static inline void vehicle_tick(vehicle_t *vehicle, uint64_t now_ms) {
     if (now_ms >= vehicle->due_ms) {
         vehicle_run(vehicle, now_ms);
     }
 }
 
-/** A node hears a frame. Not for its own ones; a node that is off hears nothing. */
+/** A node receives a frame. Not for its own ones; a node that is off receives nothing. */
 void vehicle_receive(vehicle_t *vehicle, vehicle_node_t node, uint64_t now_ms, const hal_can_frame_t *frame);
 
 /**
  * Do something now; frames of it are sent by the next vehicle_tick(), the one of this millisecond included.
- * @return false: the action names a node, message or value that there is not, or there is no room for another rogue node.
+ * @return false: unknown node, message or value, or no room for another rogue node.
  */
 bool vehicle_do(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action);
 
@@ -387,7 +390,7 @@ const char *vehicle_node_name(vehicle_node_t node);
 /** The node that sends a message. */
 vehicle_node_t vehicle_sender_of(agv_message_t message);
 
-/** The node that obeys a command; VEHICLE_NODES: it is no command. */
+/** The node that obeys a command; VEHICLE_NODES: not a command. */
 vehicle_node_t vehicle_receiver_of(agv_message_t message);
 
 #endif

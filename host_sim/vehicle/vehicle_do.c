@@ -1,4 +1,4 @@
-/* What can be asked of the vehicle at any moment. */
+/* The actions. */
 #include <stdlib.h>
 
 #include "vehicle/vehicle_internal.h"

@@ -67,7 +67,7 @@ static pull_t pull_of(const vehicle_t *vehicle) {
                     (abs(target) > abs(dynamics->speed_um_s)) ? config->acceleration_mm_s2 : config->coasting_mm_s2};
 }
 
-/** Let the gear box come to @p now_ms. */
+/** Advance the gear box to @p now_ms. */
 static void shift(vehicle_t *vehicle, uint64_t now_ms) {
     vehicle_dynamics_t *dynamics = &vehicle->dynamics;
     const uint8_t wish = vehicle->vcu.gear;

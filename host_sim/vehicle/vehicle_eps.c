@@ -44,7 +44,7 @@ void vehicle_eps_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_fram
     }
 }
 
-/** Where the steering is drawn to now; where it is, when nobody draws. */
+/** The angle that the steering moves to; its present angle if none is commanded. */
 static int32_t drawn_to_mddeg(const vehicle_t *vehicle) {
     const vehicle_eps_t *eps = &vehicle->eps;
 

@@ -55,7 +55,7 @@ vehicle_compose_fn vehicle_vcu_wheel_speed;
 /** @} */
 
 /** @name vehicle_dynamics.c @{ */
-/** Let gear box and wheels come to @p now_ms, as the VCU has them do since the last call. */
+/** Advance gear box and wheels to @p now_ms. */
 void vehicle_dynamics_move(vehicle_t *vehicle, uint64_t now_ms);
 /** What 050h reports. */
 uint16_t vehicle_dynamics_throttle_permille(const vehicle_t *vehicle);
@@ -66,7 +66,7 @@ bool vehicle_dynamics_is_fast(const vehicle_t *vehicle);
 /** @name vehicle_eps.c @{ */
 void vehicle_eps_start(vehicle_t *vehicle, uint64_t now_ms);
 void vehicle_eps_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_frame_t *frame);
-/** Let the steering come to @p now_ms. */
+/** Advance the steering to @p now_ms. */
 void vehicle_eps_move(vehicle_t *vehicle, uint64_t now_ms);
 /** The angle as it is measured. */
 int32_t vehicle_eps_angle_ddeg(const vehicle_t *vehicle, uint64_t now_ms);
@@ -77,7 +77,7 @@ vehicle_compose_fn vehicle_eps_steering_position;
 
 /** @name vehicle_ai.c @{ */
 void vehicle_ai_start(vehicle_t *vehicle, uint64_t now_ms);
-/** It was told something else, or is engaged: does it have to stop first? */
+/** After new orders or an engagement: decide whether it must stop first. */
 void vehicle_ai_reconsider(vehicle_t *vehicle);
 void vehicle_ai_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_frame_t *frame);
 vehicle_compose_fn vehicle_ai_turn_signal_command;

@@ -24,7 +24,7 @@ void vehicle_vcu_stop(vehicle_t *vehicle, uint64_t now_ms) {
     vehicle_dynamics_move(vehicle, now_ms);
 }
 
-/** The remote controller moves the vehicle again after whatever the bus commanded. */
+/** The remote controller's commands take effect again. */
 void vehicle_vcu_remote(vehicle_t *vehicle, uint64_t now_ms) {
     vehicle_vcu_t *vcu = &vehicle->vcu;
     const vehicle_operator_t *operator= & vehicle->operator;

@@ -214,7 +214,7 @@ static status_t conclude(soak_t *soak) {
     }
     if (!output_is_stdout(soak->request->results)) {
         print_result(soak);
-        (void)fflush(stdout); /* seen whatever becomes of the files; a failure is reported at the end of the program */
+        (void)fflush(stdout); /* before the files are written; a failure is reported at the end of the program */
     } else if (soak->state.broken[0] != '\0') {
         note("BROKEN: %s", soak->state.broken);
     }

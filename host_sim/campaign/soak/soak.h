@@ -11,17 +11,17 @@
 
 #include "common/report.h"
 
-/** What is asked for. */
+/** The options. */
 typedef struct {
     uint32_t hours; /**< of all shards together */
     uint64_t seed;
     uint32_t shard; /**< 1 .. shards; each is a stretch of the time, one after the other */
     uint32_t shards;
-    const char *checkpoint; /**< file; NULL: none. What is there is gone on from */
+    const char *checkpoint; /**< file; NULL: none. The run resumes from it if it exists */
     const char *results;    /**< file; NULL: none */
 } soak_request_t;
 
-/** Do it. @return STATUS_UNMET: something tripped, drifted or was miscounted */
+/** Run. @return STATUS_UNMET: something tripped, drifted or was miscounted */
 status_t soak_run(const soak_request_t *request);
 
 #endif

@@ -42,7 +42,7 @@ static void on_state(soak_t *soak, uint64_t t_ms, const agv_event_t *event) {
     if (!state->ready && (event->b == (uint8_t)AGV_STATE_STANDBY)) {
         state->ready = true;
         state->ready_ms = t_ms;
-        state->ticks_before = state->ticks + 1u; /* told of after the tick that it happened in */
+        state->ticks_before = state->ticks + 1u; /* the event is reported after its tick */
         scenario_testbed_view_t view;
         scenario_testbed_view(&soak->testbed, &view);
         state->feeds_before = view.feeds;

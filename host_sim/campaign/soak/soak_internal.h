@@ -17,7 +17,7 @@
 #define SOAK_STATUS_MS 100u
 #define SOAK_MS_PER_HOUR 3600000u
 
-/** What a checkpoint keeps beside the testbed. No pointers. */
+/** The part of a checkpoint beside the testbed. No pointers. */
 typedef struct {
     uint64_t t_ms;
     uint64_t random;
@@ -32,7 +32,7 @@ typedef struct {
     uint64_t wire_others;    /**< frames of others, on both sides */
     uint64_t delivered;      /**< past the wire */
     uint64_t wire_own;       /**< frames of the supervisor */
-    uint64_t warnings;       /**< that it told of */
+    uint64_t warnings;       /**< that it reported */
     uint64_t status_frames;  /**< of its status frame, after the first */
     uint64_t status_ms;      /**< when the first came */
     uint32_t status_late_ms; /**< the most that one was late */
@@ -51,7 +51,7 @@ typedef struct {
     uint32_t after; /**< the first step after it */
 } soak_steps_t;
 
-/** How it went: to its end or to a break; a signal came; a checkpoint could not be written, which was reported. */
+/** How it ended: at the end or with a break; by a signal; a checkpoint could not be written, which was reported. */
 typedef enum { OVER, INTERRUPTED, UNSAVED } soak_went_t;
 
 /** All of it; some 400 KiB. */
@@ -91,7 +91,7 @@ void soak_check_counters(soak_t *soak);
 bool soak_save(soak_t *soak);
 /** Whether the checkpoint could be written; one that is there stays as it is. @return false: reported */
 bool soak_may_save(soak_t *soak);
-/** Go on from the checkpoint, if there is one. @return false: it belongs to another soak; reported */
+/** Resume from the checkpoint, if it exists. @return false: it belongs to another soak; reported */
 bool soak_load(soak_t *soak);
 /** @} */
 

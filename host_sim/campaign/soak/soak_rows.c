@@ -1,9 +1,9 @@
 #include "campaign/soak/soak_rows.h"
 
 /*
- * The limits that these stay below, with the defaults: heartbeats of VCU and EPS 50 ms, other status messages 60 ms, 0A3h
- * 125 ms, 065h 125 ms, the other commands 350 ms; supply faults 3 frames, EPS mode 5, invalid values 3, both modes 50 ms,
- * neither 500 ms, throttle 500 ms, gear 1 s, speeds 1 s, a fourth engagement within 5 s.
+ * The limits that these stay below, with the defaults: heartbeats of VCU and EPS 50 ms, other status messages 60 ms,
+ * 0A3h 125 ms, 065h 125 ms, the other commands 350 ms; supply faults 3 frames, EPS mode 5, invalid values 3, both modes
+ * 50 ms, neither 500 ms, throttle 500 ms, gear 1 s, speeds 1 s, a fourth engagement within 5 s.
  */
 const soak_row_t SOAK_ROWS[] = {
     {"lost 363h", 0u, 4u, 60u, 60u, "vcu: mute, message: vehicle_status, frames: 3", ""},

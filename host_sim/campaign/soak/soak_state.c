@@ -9,7 +9,7 @@
 
 enum { CHUNK_SIZE = 65536 };
 
-/** What a checkpoint says of the program: another build may have another layout of the testbed. */
+/** The checksum of the program's file: another build may have another layout of the testbed. */
 static bool identify_program(soak_t *soak) {
     static const char path[] = "/proc/self/exe";
     uint8_t chunk[CHUNK_SIZE];

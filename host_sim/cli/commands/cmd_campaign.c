@@ -17,7 +17,7 @@
 /** Runs of a campaign: as many as a table in memory may hold. */
 #define RUNS_MAX 100000000u
 
-/** What was given. */
+/** The given options. */
 typedef struct {
     campaign_request_t request;
     random_options_t random;

@@ -21,20 +21,20 @@
 
 enum { PATH_SIZE = 4096 };
 
-/** What was given. */
+/** The given options. */
 typedef struct {
     config_options_t config;
     const char *scenario;
     const char *events;
 } given_t;
 
-/** What the command works with. */
+/** The memory of the command. */
 typedef struct {
     char path[PATH_SIZE];
     scenario_options_t options;
     timeline_t timeline;
     output_t events;
-    FILE *said_to;
+    FILE *text_out;
     scenario_run_t run;
 } work_t;
 
@@ -102,12 +102,12 @@ static status_t print_result(const work_t *work, bool good) {
     const scenario_check_t *check = &work->run.check;
 
     if (good) {
-        (void)fprintf(work->said_to, "\nAll %zu expectations passed.\n", check->expectation_count);
+        (void)fprintf(work->text_out, "\nAll %zu expectations passed.\n", check->expectation_count);
         return STATUS_OK;
     }
-    (void)fprintf(work->said_to, "\nExpectations FAILED, %s:\n", work->path);
+    (void)fprintf(work->text_out, "\nExpectations FAILED, %s:\n", work->path);
     for (size_t i = 0u; (i < check->failure_count) && (i < SCENARIO_FAILURES_MAX); i++) {
-        (void)fprintf(work->said_to, "  %s\n", check->failures[i]);
+        (void)fprintf(work->text_out, "  %s\n", check->failures[i]);
     }
     return STATUS_UNMET;
 }
@@ -120,7 +120,7 @@ static status_t play(work_t *work, const char *events) {
     scenario_watch_t watches[2];
     size_t count = 0u;
     const bool is_told = !output_is_stdout(events);
-    work->said_to = is_told ? stdout : stderr;
+    work->text_out = is_told ? stdout : stderr;
     if (is_told) {
         timeline_init(&work->timeline, &work->run.testbed);
         watches[count] = timeline_watch(&work->timeline);

@@ -12,7 +12,7 @@
 
 enum { MINUTES_MAX = 100000 };
 
-/** What was given. */
+/** The given options. */
 typedef struct {
     hunt_request_t request;
     random_options_t random;

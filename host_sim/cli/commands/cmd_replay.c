@@ -11,7 +11,7 @@
 /** The words of --reset-cause, in the order of hal_reset_cause_t. */
 #define RESET_CAUSES "power-on|watchdog|brown-out|lock-up|software|unknown"
 
-/** What was given. */
+/** The given options. */
 typedef struct {
     replay_request_t request;
     config_options_t config;

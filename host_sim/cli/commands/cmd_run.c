@@ -11,7 +11,7 @@
 #include "io/output.h"
 #include "live/live.h"
 
-/** What was given. */
+/** The given options. */
 typedef struct {
     live_request_t request;
     config_options_t config;

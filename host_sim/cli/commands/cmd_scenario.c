@@ -30,7 +30,7 @@ enum { EVENTS, JUNIT, SENT, OUTPUTS };
 /** Room for the name of an interface. */
 #define INTERFACE_SIZE (LINUX_CAN_NAME_MAX + 1u)
 
-/** What was given. */
+/** The given options. */
 typedef struct {
     config_options_t config;
     scenario_options_t options;
@@ -44,7 +44,7 @@ typedef struct {
     size_t file_count;
 } given_t;
 
-/** What came of one file. */
+/** The result of one file. */
 typedef struct {
     char name[SCENARIO_TEXT_MAX];
     char failures[SCENARIO_FAILURES_MAX][SCENARIO_FAILURE_SIZE];
@@ -52,17 +52,17 @@ typedef struct {
     const char *left_out; /**< why it was not played; NULL: it was */
 } result_t;
 
-/** What came of all. */
+/** The result of all files. */
 typedef struct {
     size_t passed;
     size_t failed;
     size_t left_out;
 } totals_t;
 
-/** What the command works with. */
+/** The memory of the command. */
 typedef struct {
     given_t given;
-    FILE *said_to; /* results, for the reader: standard error where an output goes to standard output */
+    FILE *text_out; /* results as text: standard error if an output goes to standard output */
     output_t outputs[OUTPUTS];
     scenario_run_t run;
     result_t results[];
@@ -212,13 +212,13 @@ static bool check_scenarios(work_t *work, char **files) {
 
 static void print_result(const work_t *work, const char *file, const result_t *result) {
     if (result->failure_count == 0u) {
-        (void)fprintf(work->said_to, "ok      %s: %zu expectations\n", file, work->run.check.expectation_count);
+        (void)fprintf(work->text_out, "ok      %s: %zu expectations\n", file, work->run.check.expectation_count);
         return;
     }
-    (void)fprintf(work->said_to, "FAILED  %s: %zu of %zu expectations\n", file, result->failure_count,
+    (void)fprintf(work->text_out, "FAILED  %s: %zu of %zu expectations\n", file, result->failure_count,
                   work->run.check.expectation_count);
     for (size_t i = 0u; (i < result->failure_count) && (i < SCENARIO_FAILURES_MAX); i++) {
-        (void)fprintf(work->said_to, "        %s\n", result->failures[i]);
+        (void)fprintf(work->text_out, "        %s\n", result->failures[i]);
     }
 }
 
@@ -312,15 +312,15 @@ static void count(totals_t *totals, const result_t *result) {
 static void print_totals(const work_t *work, char **files, const totals_t *totals) {
     for (size_t i = 0u; i < work->given.file_count; i++) {
         if (work->results[i].left_out != NULL) {
-            (void)fprintf(work->said_to, "left out %s: %s\n", files[i], work->results[i].left_out);
+            (void)fprintf(work->text_out, "left out %s: %s\n", files[i], work->results[i].left_out);
         }
     }
-    (void)fprintf(work->said_to, "%zu scenarios: %zu passed, %zu failed", work->given.file_count, totals->passed,
+    (void)fprintf(work->text_out, "%zu scenarios: %zu passed, %zu failed", work->given.file_count, totals->passed,
                   totals->failed);
     if (is_real(&work->given)) {
-        (void)fprintf(work->said_to, ", %zu left out", totals->left_out);
+        (void)fprintf(work->text_out, ", %zu left out", totals->left_out);
     }
-    (void)fprintf(work->said_to, "\n");
+    (void)fprintf(work->text_out, "\n");
 }
 
 static status_t play_all(work_t *work, char **files) {
@@ -332,7 +332,7 @@ static status_t play_all(work_t *work, char **files) {
         }
         count(&totals, &work->results[i]);
         if (is_real(&work->given)) {
-            (void)fflush(work->said_to); /* it takes its time until the next line */
+            (void)fflush(work->text_out); /* it takes its time until the next line */
         }
     }
     print_totals(work, files, &totals);
@@ -374,7 +374,7 @@ status_t cmd_scenario(int argc, char **argv) {
     work->given = given;
     const bool is_taken =
         output_is_stdout(given.junit) || output_is_stdout(given.events) || output_is_stdout(given.sent);
-    work->said_to = is_taken ? stderr : stdout;
+    work->text_out = is_taken ? stderr : stdout;
     const status_t status = run_all(work, argv);
     for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
         output_discard(&work->outputs[i]);

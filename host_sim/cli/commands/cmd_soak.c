@@ -10,7 +10,7 @@
 
 enum { HOURS_MAX = 876000 };
 
-/** What was given. */
+/** The given options. */
 typedef struct {
     soak_request_t request;
     random_options_t random;

@@ -8,7 +8,7 @@
 #include "config/config_options.h"
 #include "live/vehicle_run.h"
 
-/** What was given. */
+/** The given options. */
 typedef struct {
     vehicle_run_request_t request;
     config_options_t config;

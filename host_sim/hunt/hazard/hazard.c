@@ -105,7 +105,7 @@ void hazard_init(hazard_t *hazard, const scenario_t *scenario, const scenario_te
     hazard_rows_init(hazard);
 }
 
-/** A command of the supervisor on the vehicle side: one of its own, or one that it passes on. */
+/** A command of the supervisor on the vehicle side: its own, or passed on. */
 static void on_own_command(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
     hazard_safe_frame(hazard, message, frame);
     if (hazard->gateway) {

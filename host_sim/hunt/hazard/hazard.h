@@ -1,10 +1,10 @@
 /**
  * @file hazard.h
- * Judges whether a run put the vehicle into a hazard. It goes by what the simulated vehicle does, by the frames on the wire, by
- * the safety output and by the buttons of the simulated operator. It asks the supervisor nothing.
+ * Checks whether a run put the vehicle into a hazard. Its facts are the simulated vehicle, the frames on the wire, the
+ * safety output and the buttons of the simulated operator. It uses nothing that the supervisor reports.
  *
- * Every limit is that of the supervisor's row (from the settings of the run) and a second and a half more: what is reported is
- * a hazard, not a late reaction. docs/hunt.md says what each hazard is.
+ * Every limit is that of the supervisor, from the settings of the run, plus 1.5 s: a late reaction is not a hazard.
+ * docs/hunt.md describes each hazard.
  */
 #ifndef HOST_SIM_HAZARD_H
 #define HOST_SIM_HAZARD_H
@@ -29,7 +29,7 @@ typedef enum {
     HAZARD_KINDS
 } hazard_kind_t;
 
-/** A kind, for the reader. */
+/** The texts of a kind. */
 typedef struct {
     const char *name;    /**< "H1" */
     const char *meaning; /**< one line */
@@ -67,7 +67,7 @@ typedef struct {
     uint32_t next;
 } hazard_recent_t;
 
-/** Settings of the run that limits are made of. */
+/** The settings of the run that limits follow from. */
 typedef struct {
     uint32_t confirm_ms;
     uint32_t park_confirm_ms;
@@ -90,7 +90,7 @@ typedef struct {
     bool autopilot; /**< bit 8 in the last one */
     bool manual;    /**< bit 7 and not bit 8 */
     bool both;
-    bool heard;           /**< manual, by the supervisor */
+    bool heard;           /**< the supervisor received the report of manual */
     uint64_t clear_ms;    /**< since when bit 8 is clear */
     uint64_t handback_ms; /**< when manual ended last */
     uint64_t manual_ms;   /**< last 363h that reported manual */
@@ -133,14 +133,14 @@ typedef struct {
     hazard_range_t first; /**< the first measured angles after the trip, or after manual ended */
     uint64_t first_ms;    /**< when the first of them came */
     bool has_first;
-    int32_t wrong_ddeg; /**< commanded, and none of these */
+    int32_t wrong_ddeg; /**< the commanded angle that is none of these */
     bool is_wrong;
     int32_t measured_ddeg[HAZARD_ANGLES]; /**< the last ones */
     uint64_t measured_ms[HAZARD_ANGLES];
     uint32_t measured_count;
 } hazard_hold_t;
 
-/** A evaluation in the making. Read `kind`, `cause`, `at_ms` and `closeness`. */
+/** An evaluation. Read `kind`, `cause`, `at_ms` and `closeness`. */
 typedef struct {
     hazard_kind_t kind; /**< the first hazard; HAZARD_NONE */
     const char *cause;  /**< which of its conditions */
@@ -157,7 +157,7 @@ typedef struct {
     bool closed;
     hazard_message_t messages[AGV_MSG_COUNT];
     hazard_recent_t recent[AGV_COMMAND_COUNT];
-    uint16_t told[AGV_COMMAND_COUNT]; /**< what the vehicle was told last: value */
+    uint16_t told[AGV_COMMAND_COUNT]; /**< the last value commanded to the vehicle */
     bool is_told[AGV_COMMAND_COUNT];  /**< in this engagement */
     uint16_t throttle_high;           /**< 050h: the value from which it has to come down */
     uint64_t throttle_high_ms;
@@ -167,11 +167,11 @@ typedef struct {
     uint64_t bad_command_ms; /**< the last malformed AI command */
     bool has_bad_command;
     uint64_t foreign_ms;  /**< first foreign command on the vehicle side that was not answered; 0: none */
-    uint64_t false_ms;    /**< first 065h on the vehicle side that nobody sent; 0: none */
+    uint64_t false_ms;    /**< first 065h on the vehicle side that no node sent; 0: none */
     uint64_t throttle_ms; /**< last 075h above 0 on the vehicle side; newest one there */
     bool throttle_is_newest;
-    uint64_t asked_off_ms; /**< since when the AI computer asks for autopilot off; 0: it does not */
-    uint64_t asked_all_ms; /**< when it asked for all that the safe 43Fh asks for */
+    uint64_t asked_off_ms; /**< the AI computer has been asking for autopilot off since then; 0: it does not */
+    uint64_t asked_all_ms; /**< when its 43Fh asked for the same as the safe one */
     int32_t speeds_mm_s[HAZARD_SPEEDS];
     uint32_t speed_at;
     uint32_t passed[HAZARD_FLOOD_SLOTS];
@@ -192,7 +192,7 @@ typedef struct {
 /** Begin. @param testbed must be built of @p scenario; both must outlive the evaluation */
 void hazard_init(hazard_t *hazard, const scenario_t *scenario, const scenario_testbed_t *testbed);
 
-/** Who has to see the frames. */
+/** The callback for frames. */
 scenario_watch_t hazard_watch(hazard_t *hazard);
 
 /** A step is about to be done: it shows the frames that are not on the wire. */
@@ -201,7 +201,7 @@ void hazard_step(hazard_t *hazard, uint64_t t_ms, const scenario_step_t *step);
 /** At the end of every millisecond. */
 void hazard_tick(hazard_t *hazard, uint64_t t_ms);
 
-/** Speed of the vehicle, in whatever direction. */
+/** Amount of the vehicle's speed. */
 int32_t hazard_speed_mm_s(const hazard_t *hazard);
 
 /** Whether the supervisor has tripped and was not reset since, as the wire shows it. */

@@ -63,7 +63,7 @@ void hazard_hold_trip(hazard_t *hazard) {
     hazard->hold.has_first = false;
 }
 
-/** A supervisor that starts again, or finds that a bit has flipped, trips again and holds what it measures then. */
+/** A supervisor that restarts or detects a flipped bit trips again, and holds the angle that it then measures. */
 void hazard_hold_anew(hazard_t *hazard) {
     hazard->hold.at_trip = range_now(hazard, FRESH_MS);
     hazard->hold.has_trip = true;

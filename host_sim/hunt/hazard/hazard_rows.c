@@ -132,7 +132,7 @@ static bool is_transmitter_dead(const hazard_t *hazard) {
     return is_stalled(hazard, HAL_CAN_VEHICLE);
 }
 
-/** The AI computer hears nothing of the vehicle; what it says still comes. */
+/** The AI computer receives nothing, but its commands still arrive. */
 static bool is_ai_side_dead(const hazard_t *hazard) {
     return hazard->gateway && is_stalled(hazard, HAL_CAN_AI);
 }

@@ -15,7 +15,7 @@ static void begin_trip(hazard_t *hazard) {
     trip->tripped = true;
     trip->parks = false;
     trip->first_ms = hazard->t_ms;
-    trip->pressed = trip->button && (hazard->t_ms - trip->press_ms <= PRESS_SEEN_MS); /* 363h says so later */
+    trip->pressed = trip->button && (hazard->t_ms - trip->press_ms <= PRESS_SEEN_MS); /* 363h reports it later */
     trip->released = false;
     trip->unparked_ms = 0u;
     trip->engaged_ms = 0u;
@@ -23,7 +23,7 @@ static void begin_trip(hazard_t *hazard) {
     hazard_hold_trip(hazard);
 }
 
-/** Gateway: the AI computer asked for all of the same, which is passed on. */
+/** Gateway: the AI computer asked for the same as the safe 43Fh, which is passed on. */
 static bool is_of_ai(const hazard_t *hazard) {
     return hazard->gateway && (hazard->asked_all_ms != 0u) && (hazard->t_ms - hazard->asked_all_ms <= SPEED_SLOT_MS);
 }
@@ -113,7 +113,7 @@ static void check_reset(hazard_t *hazard, bool was_closed) {
     }
 }
 
-/** 101h says that the wheels stand: who believes it cannot know better. */
+/** 101h reports standstill, so the supervisor cannot detect that the vehicle moves. */
 static bool is_said_to_stand(const hazard_t *hazard) {
     const hazard_message_t *wheels = &hazard->messages[AGV_MSG_WHEEL_SPEED];
     agv_wheel_speed_t speed;
@@ -143,7 +143,10 @@ static void check_stopping(hazard_t *hazard) {
     }
 }
 
-/** The supervision begins when the output is closed and no safe command follows, and ends with one, or with an open output. */
+/**
+ * The supervision begins when the output is closed and no safe command follows, and ends with one, or with an open
+ * output.
+ */
 static void follow_output(hazard_t *hazard, bool was_closed) {
     hazard_trip_t *trip = &hazard->trip;
 

@@ -64,7 +64,7 @@ static void note(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV
     }
 }
 
-/** The vehicle takes up an engagement with the newest throttle that it was told. */
+/** At an engagement the vehicle uses the last throttle command. */
 static void check_newest_throttle(hazard_t *hazard) {
     const uint32_t deadline_ms = hazard->limits.command_ms[AGV_MSG_THROTTLE_COMMAND];
 
@@ -74,7 +74,7 @@ static void check_newest_throttle(hazard_t *hazard) {
     }
 }
 
-/** A supervisor in bus-off does not hear that a human drives. */
+/** A supervisor in bus-off does not receive the report of manual. */
 static bool is_heard(const hazard_t *hazard) {
     scenario_controller_t controller;
 
@@ -126,7 +126,7 @@ static void note_throttle(hazard_t *hazard, uint8_t value) {
     hazard->throttle_high = (value > hazard->throttle_high) ? value : hazard->throttle_high;
 }
 
-/** The steering moves when its way, to and fro, comes to four fifths of what the supervisor asks for. */
+/** The steering moves if the sum of its movements is four fifths of the supervisor's limit. */
 static void note_angle(hazard_t *hazard) {
     const int32_t angle_ddeg = hazard_measured_ddeg(hazard);
 

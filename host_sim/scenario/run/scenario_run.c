@@ -13,7 +13,7 @@ static void check_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from,
     scenario_check_frame(ctx, t_us, side, from, frame);
 }
 
-/** Hazards are evaluated where the file asks for it. */
+/** Hazards are evaluated if the file asks for it. */
 static void watch_hazards(scenario_run_t *run) {
     hazard_init(&run->hazard, &run->scenario, &run->testbed);
     if (run->scenario.expect.no_hazards != 0u) {
@@ -32,7 +32,7 @@ static void check_hazards(scenario_run_t *run) {
     }
 }
 
-/** A run and who is told of its steps. */
+/** A run and the callback for its steps. */
 typedef struct {
     scenario_run_t *run;
     void *ctx;

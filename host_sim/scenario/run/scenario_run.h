@@ -12,7 +12,7 @@
 #include "scenario/scenario_check.h"
 #include "scenario/scenario_testbed.h"
 
-/** Told of every step before it is done. */
+/** Called for every step before it is done. */
 typedef void scenario_step_fn(void *ctx, const scenario_step_t *step);
 
 /** All that one run needs; some 300 KiB: allocate it. */
@@ -26,9 +26,9 @@ typedef struct {
 
 /**
  * Play run->scenario, which was read.
- * @param watches told of what happens, beside the evaluation: @p count of them
- * @param on_step likewise, with the ctx of the first; NULL: nobody is told
- * @return whether every expectation held; run->check says which did not. false too when it was interrupted
+ * @param watches more callbacks for events and frames: @p count of them
+ * @param on_step called with the ctx of the first of them; or NULL
+ * @return whether every expectation passed; run->check lists the failures. false also if it was interrupted
  */
 bool scenario_run(scenario_run_t *run, const scenario_watch_t watches[], size_t count, scenario_step_fn *on_step);
 
