@@ -1,4 +1,4 @@
-/* The fixture itself: healthy traffic is healthy, and what a test relies on is there. */
+/* The fixture itself: its traffic is healthy, and its helpers work. */
 #include "one_fixture.h"
 
 /* 700 frames a second but for the AI's 70: 7 messages each 10 ms or 25 ms, 4 commands. */
@@ -55,7 +55,7 @@ void test_a_press(void) {
     fixture_standby(&f);
     fixture_press(&f, 1230);
     TEST_ASSERT_EQUAL_UINT32(1230, down_for_ms);
-    TEST_ASSERT_FALSE(last_down); /* the releasing frame has just come */
+    TEST_ASSERT_FALSE(last_down); /* the releasing frame was just sent */
 }
 
 /* Shows: TOP-3 */

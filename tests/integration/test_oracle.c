@@ -1,4 +1,4 @@
-/* The oracle itself: it lets the safe commands through and catches each kind of frame that it is there to catch. */
+/* The oracle itself: it allows the safe commands and reports each kind of forbidden frame. */
 #include "oracle.h"
 #include "unity.h"
 
@@ -51,7 +51,7 @@ static void judge_commands_in(agv_state_t state) {
     TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x168, 4, 0), state));
     TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x168, 8, 1), state));
     TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 1, 0), state));
-    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x28, 0x23), state)); /* nothing is held */
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x28, 0x23), state)); /* no angle is held */
     TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x363, 0, 0), state));
     TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x123, 0, 0), state));
     TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_AI, frame_of(0x363, 0, 0), state)); /* there is no AI side */
@@ -62,7 +62,7 @@ void test_only_safe_commands(void) {
     judge_commands_in(AGV_STATE_INIT);
     judge_commands_in(AGV_STATE_TRIPPED);
     judge_commands_in(AGV_STATE_SAFE);
-    judge_commands_in((agv_state_t)0x00); /* no state is latched, too */
+    judge_commands_in((agv_state_t)0x00); /* an invalid state code is latched, too */
     judge_commands_in((agv_state_t)0x54);
     TEST_ASSERT_EQUAL(5 * 16, oracle.judged);
     TEST_ASSERT_EQUAL(5 * 12, oracle.forbidden);
@@ -117,7 +117,7 @@ void test_an_angle_of_more_than_50_ms_before_the_trip_is_not_held(void) {
     TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x8C, 0x23), AGV_STATE_TRIPPED));
 }
 
-/* Both bits: the mode before stands for 50 ms. */
+/* Both bits: the previous mode stays valid for 50 ms. */
 /* Shows: FSM-6, FSM-10 */
 void test_manual_drops_the_held_angle(void) {
     measured(9200);
@@ -158,11 +158,12 @@ void test_one_throttle_0_ends_an_engagement(void) {
     TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x075, 0, 0), AGV_STATE_STANDBY));
 }
 
-/* Where the HAL does not take it, it may come as late as in the next engagement, unless there was a newer 075h; not after a trip. */
+/* If the HAL refuses throttle 0, it may be sent as late as in the next engagement, but not after a newer 075h or a
+ * trip. */
 /* Shows: FSM-6, TOP-2 */
 void test_the_throttle_0_of_the_last_engagement_may_be_late(void) {
     oracle.gateway = true;
-    reported(0x40); /* the next one is about to end: nothing else may move */
+    reported(0x40); /* the next engagement is about to end: no other motion command may be sent */
     for (unsigned i = 0; i < 2; i++) {
         oracle_returned(&oracle, AGV_STATE_ACTIVE);
         oracle_returned(&oracle, AGV_STATE_STANDBY);

@@ -1,5 +1,5 @@
-/* Each cause that a single message can be for a fault (causes.c): it is raised at the very frame or millisecond, as what
- * it is, with its LED code, and it ends with the frame that ends it. In manual, engaged, and in INIT. */
+/* Faults that a single message causes (causes.c): each is raised at the exact frame or millisecond, with its class and
+ * LED code, and ends with the right frame. In manual, engaged, and in INIT. */
 #include <stdio.h>
 
 #include "causes.h"
@@ -45,7 +45,7 @@ static void check_all(cause_how_t how, void (*check)(const cause_t *)) {
 
 /* ---- From healthy to raised to ended ---- */
 
-/* The frame, or the millisecond, before the last one raises nothing, the last one raises the fault and no other one. */
+/* Nothing is raised before the last frame or millisecond. The last one raises exactly this fault. */
 static void raise(const cause_t *cause, agv_state_t state) {
     fixture_run_past(&f, cause->message);
     cause_set(f.traffic, cause, true);
@@ -123,7 +123,7 @@ static void check_engaged(const cause_t *cause) {
 
 /* ---- Bits of 167h and 363h ---- */
 
-/* A cause in INIT latches nothing, a trip's keeps INIT from being left for as long as it is there. */
+/* A cause in INIT latches nothing. A cause of a trip keeps INIT while it lasts. */
 static void check_bits(const cause_t *cause) {
     check_manual(cause);
     check_engaged(cause);
@@ -151,7 +151,7 @@ void test_each_fault_bit(void) {
     check_all(BY_BITS_ENGAGED, check_engaged);
 }
 
-/* Nothing comes of any of these frames before the last one is there. */
+/* None of the frames before the last one has an effect. */
 static void send_frames(const cause_t *cause, unsigned count, uint32_t gap_ms) {
     for (unsigned i = 0; i < count; i++) {
         fixture_run(&f, gap_ms);
@@ -177,7 +177,7 @@ static void check_every_second(const cause_t *cause) {
     expect_trip(&f, cause->fault, f.call, NO_HOLD);
 }
 
-/* Gaps between frames change nothing; a third of the frames bad never counts: 2, 1, 0. */
+/* Gaps between frames change nothing. One bad frame in three never raises the fault: 2, 1, 0. */
 static void check_gaps_and_thirds(const cause_t *cause) {
     begin_score(cause, "every third frame, then gaps");
     for (unsigned i = 0; i < 30; i++) {
@@ -201,7 +201,7 @@ void test_each_scored_bit(void) {
     check_all(BY_BITS, check_score);
 }
 
-/* The three scores are kept apart: each bit in every third frame is none of them. */
+/* The three scores are separate: each bit in every third frame raises none of the faults. */
 /* Shows: SUP-4 */
 void test_scores_of_different_bits_do_not_add_up(void) {
     static const agv_fault_t SCORED[] = {AGV_FAULT_EPS_UNDER_VOLTAGE, AGV_FAULT_EPS_OVER_VOLTAGE,
@@ -218,7 +218,7 @@ void test_scores_of_different_bits_do_not_add_up(void) {
     }
 }
 
-/* A frame whose mode is unusable still carries good fault bits. */
+/* The fault bits of a frame with an invalid mode still count. */
 /* Shows: SUP-4, SUP-5, P18 */
 void test_fault_bits_count_in_a_frame_with_an_invalid_mode(void) {
     fixture_standby(&f);
@@ -239,7 +239,7 @@ void test_reserved_alarm_bits_are_ignored(void) {
     TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
 }
 
-/* The number of frames is a setting: 1 is at once. */
+/* The number of frames is a setting: with 1 the first bad frame raises the fault. */
 /* Shows: SUP-4, EPS_OVER_VOLTAGE */
 void test_the_count_is_a_setting(void) {
     cause_t cause = *cause_of(AGV_FAULT_EPS_OVER_VOLTAGE);
@@ -251,7 +251,7 @@ void test_the_count_is_a_setting(void) {
 
 /* ---- Heartbeats and deadlines of status messages: always ---- */
 
-/* A message that was never heard is not fresh either: its deadline runs from the start. */
+/* The deadline of a message that was never received runs from the start. */
 static void check_silence(const cause_t *cause) {
     check_manual(cause);
     check_engaged(cause);
@@ -284,7 +284,7 @@ void test_each_frozen_counter(void) {
     check_all(BY_FREEZE, check_freeze);
 }
 
-/* ---- Commands: while engaged, afresh from the moment of engagement ---- */
+/* ---- Commands: while engaged; the deadlines start with the engagement ---- */
 
 static void check_never_in_manual(const cause_t *cause) {
     begin_case(cause, "manual, then afresh at the engagement");
@@ -295,7 +295,7 @@ static void check_never_in_manual(const cause_t *cause) {
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, cause->fault));
 }
 
-/* Silent for 5 s already when it is engaged (the state before continues: no command has come since). */
+/* Silent for 5 s at the engagement (continued from the previous part: no command has come since). */
 static void check_afresh(const cause_t *cause) {
     fixture_wheels(&f, 800, 800);
     fixture_mode(&f, MODE_ENGAGED);

@@ -1,5 +1,5 @@
-/* Every fault of the table: name, rank, default class, LED code, by hand; and those that no single message is the cause
- * of (test_causes) are raised, each as what it is. */
+/* Every fault of the table: name, rank, default class and LED code, by hand. Faults that test_causes does not raise are
+ * raised here, each with its class. */
 #include <stddef.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 #include "one_fixture.h"
 #include "walk.h"
 
-/* ---- How each is raised that no single message is the cause of ---- */
+/* ---- Causes of the faults that test_causes does not raise ---- */
 
 static void self_test_failed(void) {
     f.self_test_passed = false;
@@ -33,7 +33,7 @@ static void supervisor_reset(void) {
 
 static sim_hal_sink_fn *fixtures_sink;
 
-/* While 43Fh leaves, a bit flips in the 065h that waits (5B 2A). */
+/* While 43Fh is sent, a bit flips in the waiting 065h (5B 2A). */
 static void flip_what_waits(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
     static const uint8_t WAITING[8] = {0x5B, 0x2A};
     uint8_t *memory = (uint8_t *)&f.supervisor;

@@ -1,5 +1,5 @@
-/* The faults as a whole: what configuration may change of their classes; what the LED shows of several. The rows, one by
- * one: test_fault_rows. */
+/* Classes that the configuration may change, and the fault on the LED when several are active. Single rows:
+ * test_fault_rows. */
 #include "agv/names.h"
 #include "expect.h"
 #include "one_fixture.h"
@@ -23,7 +23,7 @@ void test_a_warning_may_be_made_a_trip(void) {
     f.traffic[AGV_MSG_STEERING_POSITION].muted = true;
     fixture_start(&f);
     fixture_run(&f, 2000);
-    expect_state(&f, AGV_STATE_INIT); /* now it is one of the messages that INIT waits for */
+    expect_state(&f, AGV_STATE_INIT); /* now INIT waits for this message, too */
     fixture_init(&f);
     set_class(AGV_FAULT_STEERING_POSITION_TIMEOUT, true);
     fixture_standby(&f);
@@ -55,10 +55,10 @@ void test_some_trips_may_be_made_warnings(void) {
     f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
     fixture_start(&f);
     fixture_run(&f, 2000);
-    expect_state(&f, AGV_STATE_INIT); /* but for standstill */
+    expect_state(&f, AGV_STATE_INIT); /* for standstill */
 }
 
-/* Those of VCU heartbeat, EPS heartbeat, AI while engaged and EPS may not. */
+/* Mandatory: faults of the VCU and EPS heartbeats, of the AI while engaged, and of the EPS. */
 /* Shows: INT-2, CONFIG_INVALID */
 void test_the_others_may_not(void) {
     static const agv_fault_t FIXED[] = {AGV_FAULT_VCU_HEARTBEAT_LOST,     AGV_FAULT_VCU_HEARTBEAT_STUCK,
@@ -115,7 +115,7 @@ void test_the_led_shows_the_highest(void) {
     expect_led(&f, 8);
 }
 
-/* A warning counts when it is raised; its end does not, nor does a trip, raised or ended. */
+/* A warning is counted when it is raised, not when it ends. Trips are not counted. */
 /* Shows: VCU_LEVEL2_ALARM, S_DRIVER_ALARM */
 void test_warnings_are_counted(void) {
     fixture_standby(&f);

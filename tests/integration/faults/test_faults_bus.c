@@ -1,5 +1,5 @@
-/* Faults of the controllers (SUP-7) and of the supervisor's own time (TIM-4). The controller's state is set from outside
- * between two ticks; the next tick sees it. */
+/* Faults of the controllers (SUP-7) and of the supervisor's own time (TIM-4). The test sets the controller's state
+ * between two ticks; the next tick reads it. */
 #include "expect.h"
 #include "one_fixture.h"
 #include "walk.h"
@@ -22,7 +22,7 @@ static void expect_bus_off_trip(void) {
     expect_fault(&f, AGV_FAULT_BUS_OFF, true);
     expect_reason(&f, AGV_FAULT_BUS_OFF);
     expect_state(&f, AGV_STATE_TRIPPED);
-    expect_output(&f, false); /* at once: nothing can be commanded */
+    expect_output(&f, false); /* at once, because no command can be sent */
     expect_led(&f, 14);
     expect_silence(&f);
 }
@@ -41,7 +41,7 @@ void test_bus_off_trips_and_opens_the_output(void) {
     expect_fault(&f, AGV_FAULT_AI_BUS_OFF, false);
 }
 
-/* 100 ms after it, and again and again. What was queued is purged with it. */
+/* Every 100 ms. Queued frames are purged with each request. */
 /* Shows: SUP-7, BUS_OFF */
 void test_recovery_is_requested(void) {
     fixture_active(&f);
@@ -79,7 +79,8 @@ void test_after_the_recovery(void) {
     expect_led(&f, 14);
 }
 
-/* Came and went between two ticks: the controller's count shows it. The trip and the recovery are one reason to send. */
+/* A bus-off that ends between two ticks: the controller's count shows it. Trip and recovery together send the safe
+ * commands once. */
 /* Shows: SUP-7, FSM-2, BUS_OFF */
 void test_bus_off_between_two_ticks(void) {
     fixture_active(&f);
@@ -111,7 +112,7 @@ void test_bus_off_in_init(void) {
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
-/* A frame that waited to be passed on when the bus went off is never sent. */
+/* A frame that waited to be forwarded at bus-off is never sent. */
 /* Shows: SUP-7, TOP-2, BUS_OFF */
 void test_queued_frames_are_never_sent(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
@@ -148,12 +149,13 @@ void test_a_frame_that_is_not_sent(void) {
     expect_led(&f, 14);
     TEST_ASSERT_EQUAL_UINT32(purged + 1, purges(HAL_CAN_VEHICLE));
     fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_TX_STALLED, false); /* nothing pends any more */
+    expect_fault(&f, AGV_FAULT_TX_STALLED, false); /* no frame is pending any more */
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_TX_STALLED));
     expect_reason(&f, AGV_FAULT_TX_STALLED);
 }
 
-/* The queue takes nothing: INIT's first 075h is due 33 ms after the start, so 101 ms after that it is stalled. */
+/* The queue accepts nothing: INIT's first 075h is due 33 ms after the start, so the transmitter is stalled 101 ms
+ * later. */
 /* Shows: SUP-7, TX_STALLED */
 void test_a_queue_that_accepts_nothing_in_init(void) {
     fixture_start(&f);
@@ -174,8 +176,8 @@ void test_a_queue_that_accepts_nothing_in_init(void) {
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
-/* The gateway cannot pass on: 101 ms after the first command that was not taken. When the queue takes frames again these
- * are the safe commands, not what waited. */
+/* The gateway cannot forward: it trips 101 ms after the first refused command. When the queue accepts frames again, the
+ * safe commands are sent, not the waiting ones. */
 /* Shows: SUP-7, TOP-2, FSM-2, TX_STALLED */
 void test_a_queue_that_accepts_nothing_in_a_gateway(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
@@ -200,7 +202,7 @@ void test_a_queue_that_accepts_nothing_in_a_gateway(void) {
 
 /* ---- Warnings ---- */
 
-/* An event: ends a second after the last one. */
+/* A transient: ends a second after the last overrun. */
 /* Shows: SUP-7, RX_OVERRUN */
 void test_receive_overrun(void) {
     fixture_active(&f);
@@ -253,7 +255,7 @@ void test_warnings_of_the_bus_in_init(void) {
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
-/* The AI side only warns; recovery is asked for there, and only there. */
+/* The AI side only warns. Recovery is requested there, and only there. */
 /* Shows: SUP-7, AI_BUS_OFF */
 void test_bus_off_of_the_ai_side(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
@@ -277,13 +279,14 @@ void test_bus_off_of_the_ai_side(void) {
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
-/* What waited for it when it went off is dropped in that tick, one a status message, and never sent. */
+/* Frames that wait for the AI side at its bus-off are dropped in that tick, one for each status message, and never
+ * sent. */
 /* Shows: SUP-7, TOP-2, AI_BUS_OFF */
 void test_waiting_frames_for_the_ai_side_are_discarded_in_its_bus_off(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
     fixture_standby(&f);
     fixture_run_before(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
-    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true); /* 43Fh waits for the other side: that is not touched */
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true); /* 43Fh waits for the other side and is kept */
     sim_hal_set_full(&f.hal, HAL_CAN_AI, true);
     fixture_run(&f, 30); /* every status message has come */
     fixture_mute_vcu(&f, true);
@@ -301,7 +304,7 @@ void test_waiting_frames_for_the_ai_side_are_discarded_in_its_bus_off(void) {
     TEST_ASSERT_EQUAL_HEX16(0x43F, f.sent[0].id);
 }
 
-/* So is what came while it was off and waits, though it is back before the next tick. */
+/* Frames that came during the bus-off are dropped, too, even if it ends before the next tick. */
 /* Shows: SUP-7, TOP-2, AI_BUS_OFF */
 void test_waiting_frames_for_the_ai_side_are_discarded_in_a_bus_off_between_two_ticks(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
@@ -320,7 +323,7 @@ void test_waiting_frames_for_the_ai_side_are_discarded_in_a_bus_off_between_two_
     TEST_ASSERT_EQUAL_UINT32(dropped + 1, agv_supervisor_counters(&f.supervisor)->dropped);
 }
 
-/* The safe commands wait for a queue that is full when it goes off: that is a bus-off, and no stalled request. */
+/* Bus-off while the safe commands wait for a full queue: BUS_OFF, not TX_STALLED. */
 /* Shows: SUP-7, BUS_OFF, TX_STALLED */
 void test_in_bus_off_nothing_is_stalled(void) {
     fixture_active(&f);
@@ -334,7 +337,7 @@ void test_in_bus_off_nothing_is_stalled(void) {
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_TX_STALLED));
 }
 
-/* While engaged the AI side's bus-off does not trip by itself: the AI's silence does. */
+/* While engaged the AI side's bus-off does not trip by itself; the AI's silence does. */
 /* Shows: SUP-7, AI_BUS_OFF, STEERING_COMMAND_TIMEOUT */
 void test_bus_off_of_the_ai_side_while_engaged(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
@@ -349,7 +352,7 @@ void test_bus_off_of_the_ai_side_while_engaged(void) {
     expect_reason(&f, AGV_FAULT_STEERING_COMMAND_TIMEOUT);
 }
 
-/* An AI side that takes no frames, or whose frames do not leave, only warns. */
+/* An AI side that accepts no frames, or does not send them, only warns. */
 /* Shows: SUP-7 */
 void test_an_overfull_ai_side_only_warns(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
@@ -362,7 +365,7 @@ void test_an_overfull_ai_side_only_warns(void) {
     expect_fault(&f, AGV_FAULT_TX_STALLED, false);
 }
 
-/* Its errors and lost frames trip nothing; error-passive is judged on the vehicle side only. */
+/* Errors and lost frames of the AI side do not trip. Error-passive is checked on the vehicle side only. */
 /* Shows: SUP-7, ERROR_PASSIVE, RX_OVERRUN */
 void test_errors_of_the_ai_side(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
@@ -376,7 +379,7 @@ void test_errors_of_the_ai_side(void) {
 
 /* ---- STEP_OVERRUN ---- */
 
-/* The frames keep their time stamps, only the tick is late; the simulated watchdog does not bite. */
+/* The frames keep their time stamps, only the tick is late; the simulated watchdog does not expire. */
 static void be_late(uint32_t ms) {
     f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF;
     fixture_run_without_ticks(&f, ms + 1u);
@@ -410,7 +413,7 @@ void test_the_watchdog_period_is_a_setting(void) {
     expect_trip(&f, AGV_FAULT_STEP_OVERRUN, f.call, NO_HOLD);
 }
 
-/* In INIT it latches nothing, and keeps INIT for its second. */
+/* In INIT it latches nothing, and keeps INIT for a second. */
 /* Shows: TIM-4, STEP_OVERRUN */
 void test_a_late_step_in_init(void) {
     fixture_start(&f);
@@ -424,7 +427,7 @@ void test_a_late_step_in_init(void) {
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
-/* 065h waits for a queue that is full, and is not wanted any more (manual): it cannot stall. */
+/* 065h waits for a full queue and is no longer wanted (manual), so it cannot stall. */
 /* Shows: SUP-7, FSM-10, TX_STALLED */
 void test_a_frame_that_is_no_longer_wanted_is_not_stalled(void) {
     walk_to_tripped(&f);

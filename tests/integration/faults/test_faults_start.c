@@ -1,5 +1,5 @@
-/* Faults of the supervisor itself and of its start: class, reason, LED, the safe commands in that very call, and when they
- * end. What survives which restart is shown by test_fsm_restart and test_fsm_latch. */
+/* Faults of the supervisor itself and of its start: class, reason, LED, safe commands in the same call, and end.
+ * Restarts: test_fsm_restart and test_fsm_latch. */
 #include <stddef.h>
 #include <string.h>
 
@@ -20,7 +20,7 @@ static void expect_tripped_at_the_start(agv_fault_t fault) {
     expect_safe_commands(&f, f.call, NO_HOLD); /* no angle is known yet */
 }
 
-/* The vehicle confirms, the operator presses: nothing but a power-on ends it. */
+/* The vehicle confirms and the operator presses the button, but only a power-on ends the fault. */
 static void expect_no_reset(agv_fault_t fault) {
     fixture_run(&f, 500);
     expect_state(&f, AGV_STATE_SAFE);
@@ -40,7 +40,7 @@ void test_self_test_failed(void) {
     expect_no_reset(AGV_FAULT_SELF_TEST_FAILED);
 }
 
-/* 29 ms are less than three cycles. The built-in constants hold instead. */
+/* 29 ms are less than three cycles. The built-in constants are used instead. */
 /* Shows: FSM-9, INT-2, CONFIG_INVALID */
 void test_config_invalid(void) {
     f.config.vcu_heartbeat_timeout_ms = 29;
@@ -50,7 +50,7 @@ void test_config_invalid(void) {
     expect_no_reset(AGV_FAULT_CONFIG_INVALID);
 }
 
-/* Every cause that is not a power-on. An event: its cause ends after a second, the trip stays. */
+/* Every reset cause but a power-on. A transient: it ends after a second, the trip stays. */
 /* Shows: FSM-7, SUPERVISOR_RESET */
 void test_supervisor_reset(void) {
     static const hal_reset_cause_t CAUSES[] = {HAL_RESET_WATCHDOG, HAL_RESET_BROWN_OUT, HAL_RESET_LOCK_UP,
@@ -97,7 +97,7 @@ static void flip(size_t bit) {
 /* Shows: INT-5, FSM-2, FSM-9, MEMORY_CORRUPTED */
 void test_memory_corrupted(void) {
     fixture_active(&f);
-    f.receive_path_dead = true; /* the call that finds it is the tick */
+    f.receive_path_dead = true; /* the tick detects it */
     fixture_mute_vcu(&f, true);
     fixture_mute_eps(&f, true);
     fixture_mute_ai(&f, true);
@@ -116,7 +116,7 @@ void test_memory_corrupted(void) {
     expect_no_reset(AGV_FAULT_MEMORY_CORRUPTED);
 }
 
-/* The receive path checks in between the flip and the tick that finds it. */
+/* The receive path checks in between the flip and the tick that detects it. */
 /* Shows: INT-5, MEMORY_CORRUPTED */
 void test_memory_corrupted_before_the_receive_path_checks_in(void) {
     fixture_active(&f);
@@ -129,7 +129,7 @@ void test_memory_corrupted_before_the_receive_path_checks_in(void) {
     expect_state(&f, AGV_STATE_TRIPPED);
 }
 
-/* In the handling of a frame it is found just as well. */
+/* A frame detects it as well. */
 /* Shows: INT-5, FSM-2, MEMORY_CORRUPTED */
 void test_memory_corrupted_is_found_by_a_frame(void) {
     fixture_active(&f);
@@ -140,7 +140,7 @@ void test_memory_corrupted_is_found_by_a_frame(void) {
     expect_safe_commands(&f, f.call, NO_HOLD);
 }
 
-/* Every single bit of it, in STANDBY and in ACTIVE, one after the other, each in a supervisor that was healthy before. */
+/* Every bit of the memory, in STANDBY and in ACTIVE, each in a healthy supervisor. */
 static void flip_every_bit(void) {
     const agv_supervisor_t healthy = f.supervisor;
     const size_t bits = 8u * (offsetof(agv_supervisor_t, seal) + sizeof healthy.seal); /* padding may follow */
@@ -171,8 +171,8 @@ void test_every_flipped_bit_is_found(void) {
 enum { WAITING_RAW = 10843 }; /* 2A5Bh */
 static const uint8_t WAITING[8] = {0x5B, 0x2A};
 
-/* A bit flips while frames are being sent, after the memory was checked: the steering command that waits is out of range
- * before it leaves. */
+/* A bit flips while frames are sent, after the memory was checked: the waiting steering command is then out of
+ * range. */
 static bool corrupt_what_waits(void) {
     uint8_t *memory = (uint8_t *)&f.supervisor;
     bool found = false;
@@ -186,7 +186,7 @@ static bool corrupt_what_waits(void) {
 }
 
 typedef struct {
-    sim_hal_sink_fn *sink; /* the fixture's own */
+    sim_hal_sink_fn *sink; /* sent by the fixture */
     bool corrupted;
 } tamper_t;
 
@@ -199,7 +199,7 @@ static void corrupt_and_pass_on(void *ctx, hal_can_side_t side, const hal_can_fr
     tamper.sink(ctx, side, frame);
 }
 
-/* The gateway has 43Fh and 065h waiting; while the first of them leaves, the second is corrupted. */
+/* 43Fh and 065h wait in the gateway. While the first is sent, the second is corrupted. */
 /* Shows: INT-4, FSM-2, TX_GATE_REFUSED */
 void test_the_gate_refuses_a_forbidden_frame(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
@@ -220,7 +220,7 @@ void test_the_gate_refuses_a_forbidden_frame(void) {
     fixture_run(&f, 1); /* faults are evaluated once a call, before anything is sent */
     expect_reason(&f, AGV_FAULT_TX_GATE_REFUSED);
     expect_state(&f, AGV_STATE_TRIPPED);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x065)); /* the held angle, and not what waited */
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x065)); /* the held angle, not the waiting command */
     const uint8_t hold[8] = {0x28, 0x23};
     TEST_ASSERT_EQUAL_HEX8_ARRAY(hold, fixture_nth_sent(&f, 0x065, 0)->data, 8);
     TEST_ASSERT_EQUAL_HEX8(0x70, fixture_nth_sent(&f, 0x43F, 1)->data[4]);
@@ -229,7 +229,7 @@ void test_the_gate_refuses_a_forbidden_frame(void) {
     fixture_run(&f, 998);
     expect_fault(&f, AGV_FAULT_TX_GATE_REFUSED, true);
     fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_TX_GATE_REFUSED, false); /* an event */
+    expect_fault(&f, AGV_FAULT_TX_GATE_REFUSED, false); /* a transient */
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_TX_GATE_REFUSED));
 }
 
@@ -258,7 +258,7 @@ void test_startup_timeout(void) {
     expect_led(&f, 0);
 }
 
-/* 500 ms, that of the trip among them, the vehicle still reports the autopilot as engaged; ends with the confirmation. */
+/* The vehicle reports autopilot for 500 ms, including the one of the trip. The fault ends with the confirmation. */
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
 void test_safe_state_unconfirmed(void) {
     agv_event_t event;

@@ -1,5 +1,5 @@
-/* The first reason (FSM-5): of two faults in the same instant the upper row of the table, within a row the left name. The
- * causes stand in that order (causes.c). */
+/* The first reason (FSM-5): of two simultaneous faults the upper row of the table, within a row the left name. causes.c
+ * has this order. */
 #include "causes.h"
 #include "expect.h"
 #include "one_fixture.h"
@@ -46,7 +46,8 @@ void test_two_bits_of_one_frame(void) {
     TEST_ASSERT_EQUAL_UINT32(6 + 3 + 15, pairs);
 }
 
-/* A warning is no reason, wherever it stands: EPS_TEMP_ABOVE_110 is above what the VCU reports of the EPS. */
+/* A warning is never the reason, even with a higher rank: EPS_TEMP_ABOVE_110 ranks above the VCU's alarms of the
+ * EPS. */
 /* Shows: FSM-5, EPS_TEMP_ABOVE_110 */
 void test_a_warning_is_never_the_reason(void) {
     fixture_active(&f);
@@ -70,7 +71,7 @@ static bool is_awaited_while_engaged(const cause_t *cause) {
     return cause->how == BY_SILENCE_ENGAGED && cause->message != M_SIGNALS;
 }
 
-/* The last frame comes just so that its deadline has expired at that moment, and not a millisecond earlier. */
+/* The last frame comes at a time for which its deadline expires exactly in that millisecond. */
 static void send_last(const cause_t *row, uint32_t expires_ms) {
     if (f.now_ms == expires_ms - row->count - 1u) {
         fixture_send_now(&f, row->message);
@@ -110,7 +111,7 @@ void test_two_deadlines_in_one_tick(void) {
 
 /* ---- One after the other ---- */
 
-/* Frames are handled before the tick of their millisecond: a frame's fault is first, whatever its rank. */
+/* Frames are processed before the tick of their millisecond, so a frame's fault is first, whatever its rank. */
 /* Shows: FSM-5, SUP-2 */
 void test_a_frame_comes_before_the_tick(void) {
     fixture_active(&f);
@@ -127,7 +128,7 @@ void test_a_frame_comes_before_the_tick(void) {
     expect_led(&f, 12); /* the LED shows the highest-ranking one */
 }
 
-/* What comes later is never the first reason, though it ranks higher, and though the first has ended. */
+/* A later fault is never the first reason, even if it ranks higher or the first one has ended. */
 /* Shows: FSM-5 */
 void test_a_later_fault_is_not_the_first_reason(void) {
     fixture_active(&f);

@@ -1,4 +1,4 @@
-/* TRIPPED and SAFE: what confirms the safe state, and what takes the confirmation back. */
+/* TRIPPED and SAFE: confirmation of the safe state, and its withdrawal. */
 #include "one_fixture.h"
 #include "walk.h"
 
@@ -16,7 +16,7 @@ static void trip_and_confirm_all_but(void (*spoil)(void), const char *what) {
     walk_trip(&f);
     fixture_vehicle_confirms(&f);
     spoil();
-    fixture_run(&f, 4900); /* then a vehicle that moves is a fault */
+    fixture_run(&f, 4900); /* after that a moving vehicle is a fault */
 }
 
 static void gear_d(void) {
@@ -98,7 +98,7 @@ void test_conditions_that_the_confirmation_does_not_need(void) {
     }
 }
 
-/* A vehicle that still rolls: it confirms, and has 5 s to stop (FSM-12). */
+/* A vehicle that still rolls confirms, and has 5 s to stop (FSM-12). */
 /* Shows: FSM-4 */
 void test_the_confirmation_does_not_need_standstill(void) {
     f.long_run = true;
@@ -151,7 +151,7 @@ void test_safe_sends_as_tripped_does(void) {
     TEST_ASSERT_EQUAL_UINT32(100, fixture_nth_sent(&f, 0x065, 0)->time_ms - trip_ms);
 }
 
-/* ---- Taken back ---- */
+/* ---- Withdrawal ---- */
 
 /* Shows: FSM-3, FSM-4 */
 void test_leaving_p_or_engaging_withdraws_the_confirmation_in_that_frame(void) {
@@ -237,7 +237,7 @@ void test_both_modes_at_once_after_engaged_confirm_nothing(void) {
     expect_state(&f, AGV_STATE_TRIPPED);
 }
 
-/* Both modes at once are no report of "not engaged", whatever was before. */
+/* Both modes at once do not count as "not engaged", whatever the mode was before. */
 /* Shows: FSM-4, MODE_INVALID */
 void test_both_modes_at_once_after_manual_withdraw_the_confirmation(void) {
     walk_to_safe(&f);

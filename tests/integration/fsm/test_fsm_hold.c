@@ -1,4 +1,4 @@
-/* Steering hold: which angle 065h carries in TRIPPED and SAFE, and when it is not sent. */
+/* Steering hold: the angle of 065h in TRIPPED and SAFE, and when 065h is not sent. */
 #include "one_fixture.h"
 #include "walk.h"
 
@@ -58,7 +58,7 @@ void test_an_invalid_angle_is_no_hold_angle(void) {
     fixture_run(&f, 30); /* three of them */
     expect_state(&f, AGV_STATE_TRIPPED);
     expect_reason(&f, AGV_FAULT_STEERING_ANGLE_INVALID);
-    expect_not_held_for_a_second(); /* an EPS that reports no angle is not commanded */
+    expect_not_held_for_a_second(); /* no command to an EPS that reports no angle */
     fixture_angle(&f, 9400);
     fixture_run(&f, 100); /* six good ones take the score from 6 to 0 */
     expect_held_for_a_second(9050);
@@ -80,7 +80,7 @@ void test_without_any_valid_angle_the_first_valid_one_after_the_trip_is_held(voi
     expect_held_for_a_second(8000);
 }
 
-/* ---- While the EPS is fit to be commanded ---- */
+/* ---- Only with a healthy EPS ---- */
 
 static void eps_frozen(bool spoilt) {
     f.traffic[AGV_MSG_STEERING_STATUS].frozen = spoilt;
@@ -175,7 +175,7 @@ void test_it_ends_in_the_frame_that_reports_it(void) {
     static const uint8_t other[8] = {0x10, 0x27};
     trip_at(9123);
     fixture_run(&f, 30);
-    fixture_frame(&f, AGV_MSG_STEERING_COMMAND, other); /* answered, as it is being sent */
+    fixture_frame(&f, AGV_MSG_STEERING_COMMAND, other); /* overridden, because 065h is sent */
     TEST_ASSERT_EQUAL_UINT32(f.call, f.sent[f.sent_count - 1].call);
     fixture_run(&f, 20);
     mode_off(true);
@@ -198,10 +198,10 @@ void test_a_trip_in_manual_driving_holds_nothing(void) {
     fixture_mode(&f, MODE_NEITHER);
     fixture_run(&f, 50);
     fixture_angle(&f, 9100);
-    expect_held_for_a_second(9700); /* of the moment when manual ended */
+    expect_held_for_a_second(9700); /* the angle at the end of manual mode */
 }
 
-/* The operator has steered: what was held is dropped, and taken anew from the first valid 067h after manual. */
+/* The operator has steered: the held angle is dropped, and the first valid 067h after manual is held. */
 /* Shows: FSM-10 */
 void test_manual_after_the_trip_drops_the_held_angle(void) {
     trip_at(9123);
@@ -224,7 +224,7 @@ static uint32_t purges(void) {
     return f.hal.can[HAL_CAN_VEHICLE].purges;
 }
 
-/* What waits of it in a transmitter that has stalled is withdrawn when manual drops it; what waits in one that sends is not. */
+/* When manual drops the angle, a waiting 065h is withdrawn from a stalled transmitter, but not from one that sends. */
 /* Shows: FSM-10, SUP-7, TX_STALLED */
 void test_manual_withdraws_an_angle_that_waits_in_a_stalled_transmitter(void) {
     static const uint32_t PENDING_MS[] = {100, 101};
@@ -244,7 +244,7 @@ void test_manual_withdraws_an_angle_that_waits_in_a_stalled_transmitter(void) {
 
 /* ---- The age of the angle ---- */
 
-/* The last valid angle is so old at the trip; since then only invalid ones came, not enough of them to be a fault. */
+/* The last valid angle has this age at the trip. Since then only invalid ones came, too few for a fault. */
 static void trip_with_an_angle_of_age(uint32_t age_ms) {
     fixture_init(&f);
     f.config.status_invalid_frames = 10;
@@ -275,7 +275,7 @@ void test_an_angle_of_50_ms_before_the_trip_is_held_and_an_older_one_is_not(void
 
 /* ---- The wheels stand ---- */
 
-/* Standing begins 100 ms after the first slow 101h. The last 065h leaves before its 5 s are over. */
+/* Standing begins 100 ms after the first slow 101h. The last 065h is sent before its 5 s are over. */
 /* Shows: FSM-10 */
 void test_it_ends_when_the_wheels_have_stood_for_5_s(void) {
     f.long_run = true;
@@ -335,7 +335,7 @@ void test_after_a_restart_the_first_valid_angle_is_held(void) {
     expect_held_for_a_second(9210);
 }
 
-/* The first counter after a start proves nothing; LOST comes 50 ms later only. */
+/* The first counter after a start is only the baseline; LOST comes 50 ms later. */
 /* Shows: FSM-10, FSM-7 */
 void test_after_a_restart_nothing_is_held_before_the_eps_is_alive(void) {
     fixture_angle(&f, 9100);

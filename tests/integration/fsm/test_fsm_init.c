@@ -1,4 +1,4 @@
-/* INIT: what it sends, how it is left, what keeps it, and that nothing latches in it. */
+/* INIT: its frames, its end, the conditions that keep it. Nothing latches in INIT. */
 #include "fixture.h"
 #include "unity.h"
 #include "walk.h"
@@ -11,7 +11,7 @@ void setUp(void) {
     start_ms = f.now_ms;
 }
 
-/* The n-th frame with this identifier left so many milliseconds after the start. */
+/* The n-th frame with this identifier was sent this many milliseconds after the start. */
 static void expect_sent_at(uint32_t id, uint32_t n, uint32_t after_start_ms) {
     TEST_ASSERT_EQUAL_UINT32(after_start_ms, fixture_nth_sent(&f, id, n)->time_ms - start_ms);
 }
@@ -42,7 +42,7 @@ void test_init_sends_no_steering_command_though_the_angle_is_known(void) {
 
 /*
  * 363h comes at 1 and 11 ms (the second one shows a changed counter), 067h at 4 and 14 ms, 0A3h at 7 ms: from 14 ms on
- * all is well.
+ * all conditions hold.
  */
 /* Shows: FSM-7, FSM-4, TIM-2 */
 void test_init_is_left_after_500_ms_of_all_well(void) {
@@ -88,7 +88,7 @@ void test_one_frame_that_is_not_well_starts_the_500_ms_anew(void) {
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
-/* What is wrong with the vehicle, and how the supervisor calls it. */
+/* A fault of the vehicle, and the condition that STARTUP_TIMEOUT reports for it. */
 typedef struct {
     const char *what;
     void (*spoil)(bool spoilt);
@@ -237,7 +237,7 @@ void test_conditions_that_do_not_keep_init(void) {
     fixture_mute_ai(&f, true);
     fixture_gear(&f, GEAR_D);
     fixture_throttle(&f, 100);
-    fixture_wheels(&f, 49, -49); /* these are values of standstill */
+    fixture_wheels(&f, 49, -49); /* these values count as standstill */
     fixture_speed(&f, 180);
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 0x01; /* level 2 alarm */
     fixture_start(&f);
@@ -268,8 +268,8 @@ void test_a_vehicle_that_moves_for_a_moment_starts_the_500_ms_anew(void) {
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
-/* An event counts as a cause for 1 s after the last one. */
-/* An AI computer that was seen and is lost keeps INIT where that is a trip, until it is back. */
+/* A transient lasts for 1 s after the last occurrence. */
+/* An AI computer that was received and is lost keeps INIT if its loss is a trip, until it is back. */
 /* Shows: SUP-8, FSM-7, AI_HEARTBEAT_LOST */
 void test_a_lost_ai_computer_keeps_init_where_it_is_a_trip_in_manual(void) {
     f.config.ai_lost_in_manual = AGV_AI_LOST_TRIP;

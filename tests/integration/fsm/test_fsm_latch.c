@@ -1,4 +1,4 @@
-/* The first reason, faults that cannot be reset, and the alive counter of the own 43Fh. */
+/* The first reason, unresettable faults, and the alive counter of the supervisor's 43Fh. */
 #include <stddef.h>
 
 #include "one_fixture.h"
@@ -65,7 +65,7 @@ void test_of_two_of_a_row_in_the_same_instant_the_left_one_is_the_first(void) {
     expect_fault(&f, AGV_FAULT_EPS_TEMP_ABOVE_120, true);
 }
 
-/* ---- What only a power-on ends ---- */
+/* ---- Unresettable faults ---- */
 
 static void start_with_failed_self_test(void) {
     f.self_test_passed = false;
@@ -131,7 +131,7 @@ void test_corrupted_memory_is_ended_by_a_power_on(void) {
     expect_a_power_on_ends(AGV_FAULT_MEMORY_CORRUPTED);
 }
 
-/* Found in TRIPPED: the first reason stays, and now only a power-on helps. */
+/* Detected in TRIPPED: the first reason stays, and now only a power-on ends the safe state. */
 /* Shows: FSM-5, FSM-9, MEMORY_CORRUPTED */
 void test_corrupted_memory_keeps_the_reason_of_an_earlier_trip(void) {
     walk_to_safe(&f);
@@ -141,7 +141,7 @@ void test_corrupted_memory_keeps_the_reason_of_an_earlier_trip(void) {
     expect_cannot_be_reset(AGV_FAULT_S_DRIVER_ALARM);
 }
 
-/* A bit of the configuration in use is flipped: the defaults take over, on this vehicle's identifiers and wiring. */
+/* A flipped bit in the configuration: the defaults are used, with this vehicle's identifiers and topology. */
 /* Shows: FSM-9, INT-5, MEMORY_CORRUPTED, P1 */
 void test_a_corrupted_configuration_is_replaced_by_one_that_fits_the_vehicle(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
@@ -162,7 +162,7 @@ void test_a_corrupted_configuration_is_replaced_by_one_that_fits_the_vehicle(voi
     }
 }
 
-/* Identifiers that were changed one by one are those of this vehicle, too. */
+/* Identifiers that were changed one by one are kept, too. */
 /* Shows: FSM-9, INT-5, MEMORY_CORRUPTED, P1 */
 void test_a_corrupted_configuration_keeps_identifiers_that_were_changed(void) {
     f.config.id_gear_command = 0x169;
@@ -183,7 +183,7 @@ void test_a_corrupted_configuration_keeps_identifiers_that_were_changed(void) {
     }
 }
 
-/* An identifier that makes no sense is not one of this vehicle: all of them are those of its set then. */
+/* With an invalid identifier all identifiers fall back to those of the ID set. */
 /* Shows: FSM-9, CONFIG_INVALID, P1 */
 void test_an_identifier_twice_falls_back_to_those_of_the_set(void) {
     f.config.id_set = AGV_ID_SET_TABLE;
@@ -204,7 +204,7 @@ void test_both_at_the_start_the_left_one_is_the_first(void) {
     expect_fault(&f, AGV_FAULT_CONFIG_INVALID, true);
 }
 
-/* Sent from constants: on the identifiers of this vehicle, as far as they make sense. */
+/* Sent from constants, with the identifiers of this vehicle as far as they are valid. */
 /* Shows: FSM-9, P1 */
 void test_an_invalid_configuration_still_sends_on_the_vehicles_identifiers(void) {
     f.config.id_set = AGV_ID_SET_TABLE;
@@ -219,9 +219,9 @@ void test_an_invalid_configuration_still_sends_on_the_vehicles_identifiers(void)
     expect_reason(&f, AGV_FAULT_CONFIG_INVALID);
 }
 
-/* ---- The alive counter of the own 43Fh ---- */
+/* ---- The alive counter of the supervisor's 43Fh ---- */
 
-/* Answers to another sender count, too: no two frames in a row repeat a value. */
+/* Overrides count, too: no two successive frames have the same value. */
 /* Shows: FSM-8 */
 void test_the_own_heartbeat_runs(void) {
     fixture_active(&f);
@@ -249,7 +249,7 @@ void test_the_own_heartbeat_is_frozen_if_so_chosen(void) {
     }
 }
 
-/* Frozen, the bus being shared, would only mean that two heartbeats fight: refused. */
+/* A frozen counter is refused on a shared bus, where two heartbeats would alternate. */
 /* Shows: FSM-8, INT-2 */
 void test_a_frozen_heartbeat_needs_a_gateway(void) {
     f.config.own_heartbeat = AGV_OWN_HEARTBEAT_FROZEN;

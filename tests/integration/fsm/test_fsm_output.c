@@ -1,4 +1,4 @@
-/* The hardware safety output: what closes it, what opens it, and that it then stays open. */
+/* The hardware safety output: when it closes, when it opens, and that it then stays open. */
 #include "one_fixture.h"
 #include "walk.h"
 
@@ -73,7 +73,7 @@ void test_p_counts_from_the_first_p_that_was_sent(void) {
     expect_opens_at(trip_ms + 3000);
 }
 
-/* The autopilot is known to be off, and P comes 499 ms after it was commanded. */
+/* Autopilot off is confirmed, and P comes 499 ms after its command. */
 /* Shows: FSM-4 */
 void test_a_confirmation_in_time_keeps_it_closed(void) {
     walk_to_tripped(&f);
@@ -87,7 +87,7 @@ void test_a_confirmation_in_time_keeps_it_closed(void) {
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
 }
 
-/* P is not reported for so long, then it is again. */
+/* P is not reported for this time, then it is again. */
 static void lose_p_for(uint32_t ms) {
     fixture_gear(&f, GEAR_D);
     fixture_send_now(&f, AGV_MSG_GEAR_STATUS);
@@ -104,7 +104,7 @@ static void stay_in_safe(void) {
     expect_state(&f, AGV_STATE_SAFE);
 }
 
-/* In all: 500 ms since the trip, in pieces. */
+/* 500 ms in all since the trip, with interruptions. */
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
 void test_a_confirmation_that_comes_and_goes_opens_it(void) {
     stay_in_safe();
@@ -122,7 +122,8 @@ void test_a_confirmation_that_comes_and_goes_opens_it(void) {
     expect_open_until_the_reset();
 }
 
-/* Full, it is raised again by the next millisecond, until both were confirmed for 5 s without a break. */
+/* At its limit the fault is raised again by the next millisecond, until both were confirmed for 5 s without
+ * interruption. */
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
 void test_only_5_s_of_both_confirmations_empty_the_sums(void) {
     stay_in_safe();
@@ -138,7 +139,7 @@ void test_only_5_s_of_both_confirmations_empty_the_sums(void) {
     TEST_ASSERT_EQUAL_UINT32(3, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
 }
 
-/* Engaged for so long, then manual: the third 363h of it ends the engagement. */
+/* Engaged for this time, then manual: the third such 363h ends the engagement. */
 static void engage_for(uint32_t ms) {
     fixture_mode(&f, MODE_ENGAGED);
     fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
@@ -177,7 +178,7 @@ void test_each_sum_has_its_own_limit(void) {
     expect_output(&f, false);
 }
 
-/* Raised because the autopilot is not off; that P is not confirmed either is still in time, but keeps it. */
+/* Raised because the autopilot is not off. The missing P is still in time, but keeps the fault active. */
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
 void test_it_is_unconfirmed_until_both_are_confirmed(void) {
     f.config.park_confirm_timeout_ms = 5000;
@@ -255,7 +256,7 @@ void test_a_crash_opens_it_and_it_stays_open_until_the_reset(void) {
     expect_open_until_the_reset();
 }
 
-/* The port's own watchdog is out of the way, so that it is the supervisor that opens the output. */
+/* The port's watchdog is off, so only the supervisor can open the output. */
 /* Shows: FSM-4, TIM-3 */
 void test_it_opens_while_the_hardware_watchdog_is_not_fed(void) {
     walk_to_safe(&f);
@@ -278,14 +279,14 @@ void test_a_start_opens_it(void) {
     expect_output(&f, false);
 }
 
-/* What the first trip has counted does not shorten the second one's 500 ms. */
+/* The time of the first trip does not shorten the 500 ms of the second one. */
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
 void test_a_second_trip_has_its_own_500_ms(void) {
     walk_to_safe(&f);
     reset_by_button();
     fixture_gear(&f, GEAR_D);
     fixture_run(&f, 50);
-    walk_trip(&f); /* in manual: what is missing is P */
+    walk_trip(&f); /* in manual only P is missing */
     fixture_run(&f, 495);
     expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
     expect_output(&f, true);
@@ -294,7 +295,8 @@ void test_a_second_trip_has_its_own_500_ms(void) {
     expect_output(&f, false);
 }
 
-/* After a restart while driving engaged, when P has to wait for standstill: the 500 ms count from the start. */
+/* After a restart while engaged and moving, P waits for standstill; the 500 ms for autopilot off count from the
+ * start. */
 /* Shows: FSM-4, FSM-7, SAFE_STATE_UNCONFIRMED */
 void test_after_a_restart_autopilot_off_is_awaited_from_the_start(void) {
     f.config.park = AGV_PARK_AT_STANDSTILL;

@@ -1,4 +1,4 @@
-/* When a trip commands P: at once, or at standstill (`park`). */
+/* The time of P after a trip: at once, or at standstill (`park`). */
 #include "one_fixture.h"
 #include "walk.h"
 
@@ -6,7 +6,7 @@ static void start_moving(int32_t left_mm_s, int32_t right_mm_s) {
     fixture_wheels(&f, left_mm_s, right_mm_s);
 }
 
-/* A vehicle that drives at 1 m/s trips; the AI computer is silent from then on. Returns the moment. */
+/* A vehicle at 1 m/s trips; the AI computer is silent from then on. @return time of the trip */
 static uint32_t trip_while_driving(void) {
     f.config.park = AGV_PARK_AT_STANDSTILL;
     walk_to_tripped_driving(&f, 1000);
@@ -134,7 +134,7 @@ void test_at_standstill_a_wheel_that_turns_again_starts_the_100_ms_anew(void) {
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
 }
 
-/* What is not sent answers nothing. */
+/* A command that is not sent is not an override either. */
 /* Shows: FSM-1, TOP-1 */
 void test_at_standstill_a_gear_command_of_another_sender_is_not_overridden_before(void) {
     static const uint8_t drive[8] = {GEAR_D};

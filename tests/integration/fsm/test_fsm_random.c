@@ -1,6 +1,6 @@
 /*
- * FSM-6 by brute force: 200,000 random steps in each topology, with healthy stretches so that every state is reached.
- * The oracle judges every frame that leaves; a second one, here, judges every step out of the latch.
+ * FSM-6 by brute force: 200,000 random steps in each topology, with healthy periods so that every state is reached. The
+ * oracle checks every sent frame. This test checks every step out of the latch.
  */
 #include <stdio.h>
 
@@ -14,13 +14,13 @@ enum { STEPS = 200000 };
 static fixture_t f;
 static uint32_t random_state;
 
-/* What was seen. */
+/* Statistics. */
 static uint32_t steps_in[5]; /* INIT, STANDBY, ACTIVE, TRIPPED, SAFE */
 static uint32_t resets;
 static uint32_t restarts;
 static uint32_t malformed;
 
-/* What the vehicle reported of button 1 and of its mode. */
+/* Reported button 1 and mode. */
 static bool down;
 static uint32_t pressed_ms;  /* last rising edge */
 static uint32_t released_ms; /* last falling edge */
@@ -69,7 +69,7 @@ static hal_can_frame_t any_frame(void) {
     return frame;
 }
 
-/* What the vehicle reports in a frame that the supervisor accepts. */
+/* Record the button and the mode of a frame that the supervisor accepts. */
 static void note_button(hal_can_side_t side, const hal_can_frame_t *frame) {
     const bool is_status = side == HAL_CAN_VEHICLE && frame->id == 0x363 && frame->flags == 0 && frame->length == 8;
     if (!is_status) {
@@ -218,7 +218,7 @@ static bool may_be_closed(agv_state_t state) {
     return closable;
 }
 
-/* No cause of a trip is there in ACTIVE; the output is not closed while there is a reason to have it open. */
+/* No trip cause is active in ACTIVE. The output is not closed while it must be open. */
 static void judge_moment(agv_state_t state) {
     const agv_fault_set_t trips = agv_supervisor_active_trips(&f.supervisor);
     if (state == AGV_STATE_ACTIVE) {
@@ -228,8 +228,8 @@ static void judge_moment(agv_state_t state) {
     TEST_ASSERT_TRUE(may_be_closed(state) || !f.hal.safety_output.on);
 }
 
-/* The latch is left for STANDBY only, and only when in this step the button was released that had been held for 1 s to
- * 5 s, in manual for the whole second before. */
+/* The latch may only end in STANDBY, and only in a step that releases the button after 1 s to 5 s, with manual reported
+ * for the whole last second. */
 static void judge_step(agv_state_t before, uint32_t before_ms) {
     const agv_state_t after = agv_supervisor_state(&f.supervisor);
     steps_in[index_of(after)]++;
@@ -246,7 +246,7 @@ static void judge_step(agv_state_t before, uint32_t before_ms) {
     }
     TEST_ASSERT_FALSE(before != AGV_STATE_INIT && after == AGV_STATE_INIT);
     TEST_ASSERT_EQUAL_UINT32(
-        0, agv_supervisor_counters(&f.supervisor)->gate_refused); /* no module hands such a frame to the gate */
+        0, agv_supervisor_counters(&f.supervisor)->gate_refused); /* no module passes such a frame to the gate */
 }
 
 static void restart(void) {
@@ -258,7 +258,7 @@ static void restart(void) {
     unwell_ms = f.now_ms;
 }
 
-/* Stretches: the vehicle is healthy, driven, hurt, or everything is random. */
+/* Periods: a healthy vehicle, an engaged one, a faulty one, or random input. */
 static void step(uint32_t stretch) {
     const agv_state_t before = agv_supervisor_state(&f.supervisor);
     const uint32_t before_ms = f.now_ms;
@@ -276,7 +276,7 @@ static void step(uint32_t stretch) {
     judge_step(before, before_ms);
 }
 
-/* The last second and a half of the stretch: pressed, and released 30 ms before its end. */
+/* In the last 1.5 s of the period the button is pressed, and released 30 ms before its end. */
 static bool presses_at_last(uint32_t stretch) {
     return stretch == 1 || stretch == 2;
 }
@@ -315,7 +315,7 @@ static void run_randomly(uint16_t topology, uint32_t seed) {
     uint32_t left = 0;
     for (uint32_t i = 0; i < STEPS; i++) {
         if (left == 0) {
-            stretch = stretch == 2 ? 3 : draw(8); /* a reset, and the vehicle is driven */
+            stretch = stretch == 2 ? 3 : draw(8); /* a reset, then the vehicle is engaged */
             left = 400 + draw(2500) + (presses_at_last(stretch) ? 1500 : 0);
             begin_stretch(stretch);
         }

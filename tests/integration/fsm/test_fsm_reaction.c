@@ -1,9 +1,9 @@
-/* How fast it reacts, what goes out first, and what comes after. */
+/* Reaction: its time, the first frames, and the schedule after it. */
 #include "expect.h"
 #include "one_fixture.h"
 #include "walk.h"
 
-/* Hand over one frame, now; nothing else happens in between. */
+/* Pass one frame now, without a tick. */
 static uint32_t send_now(agv_message_t message) {
     fixture_send_now(&f, message);
     return f.traffic[message].call;
@@ -38,7 +38,7 @@ void test_a_command_out_of_range_is_answered_once_and_in_its_own_handling(void) 
     fixture_active(&f);
     fixture_frame(&f, AGV_MSG_GEAR_COMMAND, no_gear);
     expect_trip(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, f.call, 9000);
-    TEST_ASSERT_EQUAL_UINT32(4, f.sent_count); /* not answered by an override on top */
+    TEST_ASSERT_EQUAL_UINT32(4, f.sent_count); /* no additional override */
 }
 
 /* The last counter came at t; at t + 50 its age is 50 ms, not greater. */
@@ -101,9 +101,10 @@ void test_a_second_trip_cause_sends_nothing_at_once(void) {
     expect_fault(&f, AGV_FAULT_EPS_POSITION_ENCODER, true);
 }
 
-/* ---- What waits at a trip ---- */
+/* ---- Frames that wait at a trip ---- */
 
-/* The AI side commands D, 20 % and some angle, while the vehicle side takes nothing: all of it waits in the supervisor. */
+/* The AI side commands D, 20 % and an angle while the vehicle side accepts nothing: all frames wait in the
+ * supervisor. */
 static void let_commands_wait(void) {
     static const uint8_t drive[8] = {GEAR_D};
     static const uint8_t throttle[8] = {50};
@@ -139,7 +140,7 @@ void test_frames_that_wait_in_the_supervisor_at_a_trip_are_discarded(void) {
     fixture_mute_ai(&f, true);
     fixture_run(&f, 24);
     expect_each_command_sent(1);
-    fixture_run(&f, 500); /* the oracle judges every frame */
+    fixture_run(&f, 500); /* the oracle checks every frame */
 }
 
 /* Shows: FSM-2, TOP-1 */

@@ -1,4 +1,4 @@
-/* The reset: what it needs, what breaks it, what a refused press reports. */
+/* The reset: its conditions, interruptions, and the report of a refused press. */
 #include "one_fixture.h"
 #include "walk.h"
 
@@ -8,14 +8,14 @@ static void press(bool pressed) {
     fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
 }
 
-/* Pressed now, released so many milliseconds later. */
+/* Press now, release after this many milliseconds. */
 static void hold_for(uint32_t ms) {
     press(true);
     fixture_run(&f, ms);
     press(false);
 }
 
-/* The reset comes with the release, and not a moment earlier. */
+/* The reset comes with the release, not earlier. */
 static void expect_reset_by(uint32_t ms) {
     press(true);
     fixture_run(&f, ms);
@@ -63,7 +63,7 @@ void test_a_press_of_5_s_resets(void) {
     expect_refusals(0, 0);
 }
 
-/* A button that is stuck: reported once, when it has been held for longer than 5 s, and not again at its release. */
+/* A stuck button: reported once, after more than 5 s, and not again at its release. */
 /* Shows: FSM-3 */
 void test_a_press_of_more_than_5_s_resets_nothing_and_is_reported_once(void) {
     f.long_run = true;
@@ -221,7 +221,7 @@ void test_a_refusal_names_what_was_missing_at_any_time_in_the_last_1_s(void) {
     expect_refusals(0, 0);
 }
 
-/* What was missing before the last second does not matter, though the button was pressed then. */
+/* A condition that was missing before the last second does not matter, even during the press. */
 /* Shows: FSM-3 */
 void test_from_the_end_of_a_break_on_it_takes_1_s(void) {
     for (unsigned i = 0; i < sizeof CONDITIONS / sizeof CONDITIONS[0]; i++) {
@@ -285,13 +285,13 @@ void test_the_conditions_must_hold_in_the_releasing_frame_too(void) {
     walk_to_safe(&f);
     press(true);
     fixture_run(&f, 1500);
-    fixture_mode(&f, MODE_BOTH); /* manual stands, but both bits confirm nothing */
+    fixture_mode(&f, MODE_BOTH); /* manual stays valid, but both bits confirm nothing */
     press(false);
     expect_refusals(1, AGV_MISSING_STATE);
     expect_state(&f, AGV_STATE_TRIPPED);
 }
 
-/* 067h comes for the last time so many milliseconds after the press, which is released 1000 ms after it. */
+/* 067h comes for the last time this many milliseconds after the press. The button is released after 1000 ms. */
 static void release_with_old_067h(uint32_t last_ms) {
     fixture_init(&f);
     f.traffic[AGV_MSG_EPS_STATUS].phase_ms = 8;
@@ -357,7 +357,7 @@ void test_a_press_in_the_very_frame_of_the_trip_does_not_count(void) {
     expect_no_reset_before_a_new_press();
 }
 
-/* The press begins in TRIPPED; so many milliseconds after SAFE it ends. */
+/* The press begins in TRIPPED and ends this many milliseconds after the entry to SAFE. */
 static void release_after_safe(uint32_t ms) {
     fixture_init(&f);
     walk_to_tripped(&f);
@@ -431,10 +431,10 @@ void test_the_button_of_a_vcu_that_is_not_alive_does_not_count(void) {
 
 /* ---- The remote receiver is lost ---- */
 
-/* The operator holds the button; the VCU reports the receiver as lost, and with it no button. */
+/* The operator holds the button. The VCU reports the receiver as lost and the button as not pressed. */
 static void lose_the_receiver(uint8_t alarm_bits) {
     fixture_init(&f);
-    agv_fault_set_put(&f.config.trips, AGV_FAULT_REMOTE_SIGNAL_LOST, false); /* else that alone would keep SAFE */
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_REMOTE_SIGNAL_LOST, false); /* else it prevents the reset */
     agv_fault_set_put(&f.config.trips, AGV_FAULT_REMOTE_POWER_LOST, false);
     walk_to_safe(&f);
     press(true);
@@ -443,7 +443,7 @@ static void lose_the_receiver(uint8_t alarm_bits) {
     press(false);
 }
 
-/* That is no release; and when it comes back with the button pressed, that is no rising edge. */
+/* The loss does not count as a release, and a pressed button after it is no rising edge. */
 /* Shows: FSM-3, REMOTE_SIGNAL_LOST, REMOTE_POWER_LOST */
 void test_a_receiver_that_is_lost_and_comes_back_is_neither_release_nor_press(void) {
     static const uint8_t ALARMS[] = {ALARM_REMOTE_SIGNAL, ALARM_REMOTE_POWER};
@@ -485,7 +485,7 @@ void test_a_press_outside_the_latch_is_no_event(void) {
     expect_refusals(0, 0);
 }
 
-/* ---- The AI computer does not hinder ---- */
+/* ---- The AI computer does not prevent a reset ---- */
 
 static void trip_by_silent_ai(void) {
     fixture_active(&f);
@@ -513,7 +513,7 @@ void test_a_dead_ai_computer_does_not_hinder_though_it_trips_in_manual(void) {
     trip_by_silent_ai();
     expect_fault(&f, AGV_FAULT_AI_HEARTBEAT_LOST, true);
     expect_reset_by(1000);
-    fixture_run(&f, 3000); /* the reset forgot that the AI was seen */
+    fixture_run(&f, 3000); /* the reset forgot that the AI was received */
     expect_state(&f, AGV_STATE_STANDBY);
 }
 

@@ -1,4 +1,4 @@
-/* What an earlier reset, trip or start leaves behind for the next reset, and what a reset forgets. */
+/* Effects of an earlier reset, trip or start on the next reset, and the state that a reset clears. */
 #include "one_fixture.h"
 #include "walk.h"
 
@@ -7,7 +7,7 @@ static void press(bool pressed) {
     fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
 }
 
-/* Pressed now, released so many milliseconds later: that resets. */
+/* Press now, release after this many milliseconds: this resets. */
 static void expect_reset_by(uint32_t ms) {
     press(true);
     fixture_run(&f, ms);
@@ -16,7 +16,7 @@ static void expect_reset_by(uint32_t ms) {
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
-/* In the frame that releases the button, not only in the tick after it. */
+/* The AI computer is forgotten in the frame that releases the button, not only in the next tick. */
 static void expect_reset_in_a_frame(agv_fault_t forgotten) {
     fixture_vehicle_confirms(&f);
     fixture_run(&f, 300);
@@ -43,7 +43,7 @@ void test_a_reset_forgets_the_ai_computer_at_once(void) {
     expect_reset_in_a_frame(AGV_FAULT_AI_HEARTBEAT_STUCK);
 }
 
-/* A trip just after a reset; the button is pressed in the very next frame, with which all conditions hold again. */
+/* A trip directly after a reset. The button is pressed in the next frame, with which all conditions hold again. */
 /* Shows: FSM-3 */
 void test_a_second_reset_needs_its_own_second(void) {
     walk_to_safe(&f);
@@ -82,8 +82,8 @@ void test_the_event_of_the_reset_names_no_fault(void) {
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_NONE, event.c);
 }
 
-/* The driver engages the autopilot before the next tick: the reset has forgotten that the AI was alive, not that it is
- * silent. */
+/* The operator engages the autopilot before the next tick. The reset has forgotten that the AI was alive, but not its
+ * silence. */
 /* Shows: FSM-3, FSM-11, SUP-8, AI_HEARTBEAT_LOST */
 void test_an_engagement_in_the_frame_after_a_reset_finds_the_ai_computer_lost(void) {
     fixture_active(&f);

@@ -1,4 +1,4 @@
-/* The latch outlives the MCU: every reset cause, tripped or not, with every state of the store. */
+/* The latch outlives a reset of the MCU: every reset cause, tripped or not, with every state of the store. */
 #include "one_fixture.h"
 #include "walk.h"
 
@@ -32,7 +32,7 @@ static void expect_restart(const restart_t *row) {
         fixture_active(&f);
     }
     fixture_forget_sent(&f);
-    f.store.keep_latch = true; /* also through a power-on: what it finds there must not matter */
+    f.store.keep_latch = true; /* kept through a power-on, too: its content must not matter then */
     spoil_store(row->store);
     fixture_restart(&f, row->cause);
     expect_state(&f, row->state);
@@ -122,10 +122,10 @@ void test_after_a_restart_a_reset_is_possible_and_forgets_the_latch(void) {
     fixture_press(&f, 1050);
     expect_state(&f, AGV_STATE_STANDBY);
     fixture_restart(&f, HAL_RESET_WATCHDOG);
-    expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET); /* not the alarm of before */
+    expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET); /* not the earlier alarm */
 }
 
-/* The restart itself is an event: it ends after 1 s, and keeps a reset from being accepted for that long. */
+/* The restart itself is a transient: it ends after 1 s, and prevents a reset until then. */
 /* Shows: FSM-7, SUPERVISOR_RESET */
 void test_the_restart_is_an_event(void) {
     fixture_standby(&f);
@@ -149,7 +149,7 @@ void test_a_power_on_waits_for_manual(void) {
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
-/* By choice a power-on asks for an operator, too. What was stored is not taken up. */
+/* With this setting a power-on needs the operator, too. The stored reason is not used. */
 /* Shows: FSM-7, FSM-3, SUPERVISOR_RESET */
 void test_a_power_on_that_starts_tripped(void) {
     f.config.after_power_on = AGV_AFTER_POWER_ON_TRIPPED;
@@ -173,7 +173,7 @@ void test_a_power_on_that_starts_tripped(void) {
     expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
 }
 
-/* A stored latch that was tripped, one that cannot be read, and none: no difference but the warning. */
+/* A tripped stored latch, an unreadable one, and none: only the warning differs. */
 /* Shows: FSM-7, STORE_INVALID, SUPERVISOR_RESET */
 void test_a_power_on_that_starts_tripped_with_each_state_of_the_store(void) {
     static const store_t STORES[] = {STORE_OK, STORE_CORRUPT, STORE_EMPTY};
@@ -191,7 +191,7 @@ void test_a_power_on_that_starts_tripped_with_each_state_of_the_store(void) {
     }
 }
 
-/* Any other reset is as it always is: the stored reason is taken up. */
+/* All other resets are unchanged: the stored reason is used. */
 /* Shows: FSM-7 */
 void test_after_power_on_changes_no_other_reset(void) {
     f.config.after_power_on = AGV_AFTER_POWER_ON_TRIPPED;
@@ -251,7 +251,7 @@ void test_a_store_that_accepts_nothing_changes_only_the_reason(void) {
     expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
 }
 
-/* A trip is on record before anything else can happen. */
+/* The trip is stored in the same call. */
 /* Shows: FSM-7 */
 void test_the_latch_is_stored_in_the_call_that_trips(void) {
     fixture_active(&f);

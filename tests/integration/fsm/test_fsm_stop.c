@@ -1,4 +1,4 @@
-/* The safe state is a vehicle that stands (FSM-12): one that does not stop in time, and one that moves again. */
+/* The vehicle must stop in the safe state (FSM-12): a vehicle that does not stop in time, and one that moves again. */
 #include "fixture.h"
 #include "unity.h"
 #include "walk.h"
@@ -10,7 +10,7 @@ void setUp(void) {
     f.long_run = true;
 }
 
-/* Autopilot off and P are confirmed, so that nothing but the motion is at fault. The wheels turn on. */
+/* Autopilot off and P are confirmed, so only the motion is a fault. The wheels keep turning. */
 static void confirm(void) {
     fixture_mode(&f, MODE_MANUAL);
     fixture_gear(&f, GEAR_P);
@@ -22,7 +22,7 @@ static void expect_moving_fault(agv_fault_t fault, bool active) {
     expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
 }
 
-/* The wheels come to stand 100 ms after the first slow 101h; the fault ends, the output waits for the reset. */
+/* Standstill is 100 ms after the first slow 101h. The fault ends; the output stays open until the reset. */
 static void expect_ends_when_the_wheels_stand(agv_fault_t fault) {
     fixture_drive(&f, 0);
     fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
@@ -76,7 +76,7 @@ void test_the_time_to_stop_is_a_setting(void) {
     expect_not_stopping_after(1000);
 }
 
-/* Whether 363h reports a speed does not matter: the wheels are the witness. */
+/* The speed of 363h does not matter; the wheel speeds count. */
 /* Shows: FSM-12 */
 void test_a_vehicle_that_stops_within_5_s(void) {
     walk_to_tripped_driving(&f, 1000);
@@ -100,7 +100,7 @@ void test_wheels_without_fresh_speeds_do_not_stand(void) {
     expect_ends_when_the_wheels_stand(AGV_FAULT_VEHICLE_NOT_STOPPING);
 }
 
-/* Standing at the moment of the trip counts: that 101h is silent from then on is a fault of its own. */
+/* Standstill at the trip counts, even if 101h is silent from then on, which is a separate fault. */
 /* Shows: FSM-12 */
 void test_wheels_that_stand_at_the_trip_count_as_stopped(void) {
     walk_to_tripped(&f);
@@ -112,7 +112,7 @@ void test_wheels_that_stand_at_the_trip_count_as_stopped(void) {
     expect_output(&f, true);
 }
 
-/* It stood until then, but at the trip its wheel speeds were too old. */
+/* The vehicle stood before, but at the trip its wheel speeds are too old. */
 /* Shows: FSM-12, VEHICLE_NOT_STOPPING, WHEEL_SPEED_TIMEOUT */
 void test_a_trip_by_missing_wheel_speeds(void) {
     fixture_active(&f);
@@ -138,7 +138,7 @@ void test_after_a_restart_the_5_s_run_from_the_start(void) {
     expect_fault(&f, AGV_FAULT_VEHICLE_NOT_STOPPING, true);
 }
 
-/* What the first trip has seen is not what the second one needs. */
+/* The standstill after the first trip does not count for the second one. */
 /* Shows: FSM-12, VEHICLE_NOT_STOPPING */
 void test_a_second_trip_has_its_own_5_s(void) {
     walk_to_safe(&f);
@@ -152,7 +152,7 @@ void test_a_second_trip_has_its_own_5_s(void) {
 
 /* ---- MOVING_WHILE_SAFE ---- */
 
-/* These wheel speeds for so long, from the next 101h on, then it stands again. The 101h come every 10 ms. */
+/* These wheel speeds for this time, from the next 101h on, then standstill. 101h comes every 10 ms. */
 static void move_for(int32_t left_mm_s, int32_t right_mm_s, uint32_t ms) {
     fixture_run_before(&f, AGV_MSG_WHEEL_SPEED);
     fixture_wheels(&f, left_mm_s, right_mm_s);
@@ -174,7 +174,7 @@ void test_a_vehicle_that_moves_again_for_200_ms(void) {
     expect_ends_when_the_wheels_stand(AGV_FAULT_MOVING_WHILE_SAFE);
 }
 
-/* To the millisecond: 101h comes in each. */
+/* Exact to the millisecond: 101h comes every millisecond. */
 /* Shows: FSM-12, MOVING_WHILE_SAFE */
 void test_199_ms_are_not_200_ms(void) {
     walk_to_safe(&f);
@@ -216,7 +216,7 @@ void test_one_slow_101h_starts_the_200_ms_anew(void) {
     expect_output(&f, true);
 }
 
-/* The last 101h reported motion, then none comes. */
+/* The last 101h reports motion, then 101h is silent. */
 /* Shows: FSM-12, WHEEL_SPEED_TIMEOUT */
 void test_a_stale_101h_is_not_moving(void) {
     walk_to_safe(&f);
@@ -228,7 +228,7 @@ void test_a_stale_101h_is_not_moving(void) {
     expect_fault(&f, AGV_FAULT_MOVING_WHILE_SAFE, false);
 }
 
-/* In TRIPPED, too: nothing is confirmed, but it has stood. */
+/* Also in TRIPPED: nothing is confirmed, but the vehicle has stood. */
 /* Shows: FSM-12, MOVING_WHILE_SAFE */
 void test_a_vehicle_that_moves_again_in_tripped(void) {
     walk_to_tripped(&f);
@@ -238,7 +238,7 @@ void test_a_vehicle_that_moves_again_in_tripped(void) {
     expect_output(&f, false);
 }
 
-/* Before it has stood the vehicle is expected to roll; outside of the latch it may drive. */
+/* Before the first standstill the vehicle may roll. Outside the latch it may drive. */
 /* Shows: FSM-12 */
 void test_cases_that_are_not_moving_while_safe(void) {
     walk_to_tripped_driving(&f, 1000);

@@ -1,4 +1,4 @@
-/* What trips again after a reset (FSM-11): causes from the AI computer, which never hinder a reset. */
+/* Trips after a reset (FSM-11): causes of the AI computer, which never prevent a reset. */
 #include "expect.h"
 #include "fixture.h"
 #include "unity.h"
@@ -30,7 +30,7 @@ static void expect_tripped_at_once(agv_fault_t reason) {
     expect_reason(&f, reason);
 }
 
-/* Dead since before the reset: manual driving goes on without it, an engagement does not begin. */
+/* Dead since before the reset: manual driving is possible, but an engagement trips. */
 /* Shows: FSM-11, SUP-8, AI_HEARTBEAT_LOST */
 void test_a_dead_ai_computer_trips_at_the_next_engagement(void) {
     fixture_active(&f);
@@ -57,7 +57,7 @@ void test_a_frozen_ai_computer_trips_at_the_next_engagement(void) {
     expect_tripped_at_once(AGV_FAULT_AI_HEARTBEAT_STUCK);
 }
 
-/* Alive all the time: the value of before the reset is the baseline, so it waits for the next 43Fh. */
+/* Alive all the time: the counter from before the reset is the baseline, so ACTIVE waits for the next 43Fh. */
 /* Shows: FSM-11, SUP-8 */
 void test_a_living_ai_computer_that_the_reset_has_forgotten(void) {
     fixture_active(&f);
@@ -78,7 +78,7 @@ void test_a_living_ai_computer_that_the_reset_has_forgotten(void) {
     expect_state(&f, AGV_STATE_ACTIVE);
 }
 
-/* 168h comes every 10 ms: gaps under half its cycle. As a trip it does not hinder the reset, nor trip in manual. */
+/* 168h comes every 10 ms: gaps under half its cycle. As a trip it neither prevents the reset nor trips in manual. */
 static void babble(bool on) {
     f.traffic[AGV_MSG_GEAR_COMMAND].cycle_ms = on ? 10 : 100;
     f.traffic[AGV_MSG_GEAR_COMMAND].phase_ms = 8;
@@ -118,7 +118,7 @@ void test_in_manual_it_trips_when_it_has_ended_and_comes_again(void) {
     expect_state(&f, AGV_STATE_SAFE); /* the vehicle stands in P */
 }
 
-/* An event that is held for longer than the reset takes. */
+/* A transient that lasts longer than the reset takes. */
 /* Shows: FSM-11, AI_COMMAND_OUT_OF_RANGE */
 void test_a_transient_that_has_not_ended_trips_at_the_next_engagement(void) {
     static const uint8_t no_gear[8] = {3};
@@ -145,7 +145,7 @@ void test_the_alarm_of_the_vcu_stays_armed(void) {
     expect_tripped_at_once(AGV_FAULT_VCU_AI_CAN_LOST);
 }
 
-/* Nothing is active in ACTIVE: with the engagement the warnings of manual driving become trips. */
+/* ACTIVE has no active faults of the AI: with the engagement the warnings of manual driving become trips. */
 /* Shows: FSM-11, SUP-8, AI_HEARTBEAT_LOST */
 void test_a_warning_in_manual_trips_at_the_engagement(void) {
     fixture_standby(&f);

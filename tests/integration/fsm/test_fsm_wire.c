@@ -1,4 +1,4 @@
-/* What leaves on the wire at a trip: the simulated bus with its frame times and arbitration, 500 kbit/s. */
+/* Frames on the bus at a trip: the simulated bus with frame times and arbitration, 500 kbit/s. */
 #include <string.h>
 
 #include "fixture.h"
@@ -12,12 +12,12 @@ static fixture_t f;
 static sim_bus_t vehicle_bus;
 static sim_bus_t ai_bus;
 static uint32_t start_ms;
-static hal_can_frame_t wire[WIRE_MAX]; /* of the vehicle side, by the supervisor */
+static hal_can_frame_t wire[WIRE_MAX]; /* sent by the supervisor on the vehicle side */
 static uint32_t wire_count;
 
 static void on_wire(void *ctx, const sim_bus_event_t *event) {
     (void)ctx;
-    if (!event->error && event->frame->id != 0x7F0 && /* the status frame is not the matter here */
+    if (!event->error && event->frame->id != 0x7F0 && /* without status frames */
         event->sender == f.hal.can[HAL_CAN_VEHICLE].node && wire_count < WIRE_MAX) {
         wire[wire_count++] = *event->frame;
     }
@@ -35,7 +35,8 @@ static void run(uint32_t ms) {
     }
 }
 
-/* The fixture's supervisor on two buses, each with somebody else who acknowledges. Its traffic is handed in directly. */
+/* The fixture's supervisor on two buses, each with another node that acknowledges. The traffic is passed to it
+ * directly. */
 void setUp(void) {
     fixture_init(&f);
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
@@ -62,7 +63,7 @@ void setUp(void) {
     wire_count = 0;
 }
 
-/* D, 20 %, 5.0 degrees: taken by the controller. */
+/* D, 20 %, 5.0 degrees: accepted by the controller. */
 static void ai_commands(void) {
     static const uint8_t drive[8] = {GEAR_D};
     static const uint8_t throttle[8] = {50};
@@ -106,7 +107,7 @@ void test_commands_that_wait_in_the_controller_are_never_sent_after_a_trip(void)
     TEST_ASSERT_EQUAL_UINT32(4, wire_count);
 }
 
-/* 100 us later the first of them is on the wire: it, and none of the others, precedes the safe ones. */
+/* 100 us later the first of them is on the bus. Only this one precedes the safe commands. */
 /* Shows: FSM-2 */
 void test_at_most_the_frame_on_the_wire_precedes_the_first_safe_one(void) {
     ai_commands();
@@ -119,7 +120,8 @@ void test_at_most_the_frame_on_the_wire_precedes_the_first_safe_one(void) {
     TEST_ASSERT_EQUAL_UINT32(5, wire_count);
 }
 
-/* The bus has been taken by others for 5 ms: what waited is gone, and the safe commands leave as soon as it is free. */
+/* Other nodes occupy the bus for 5 ms. The waiting commands are purged, and the safe commands are sent as soon as the
+ * bus is free. */
 /* Shows: FSM-2, TOP-1 */
 void test_behind_a_blocked_bus_the_safe_commands_are_the_first(void) {
     sim_bus_set_stalled(&vehicle_bus, f.hal.can[HAL_CAN_VEHICLE].node, true);
@@ -148,7 +150,8 @@ void test_after_memory_corruption_frames_that_wait_in_the_controller_are_never_s
     TEST_ASSERT_EQUAL_HEX32(0x43F, wire[2].id);
 }
 
-/* Recovery is asked for 100 ms after bus-off; nothing of before is sent afterwards; all safe commands go out at once. */
+/* Recovery is requested 100 ms after bus-off. No earlier frame is sent afterwards; all safe commands are sent at
+ * once. */
 /* Shows: SUP-7, BUS_OFF, FSM-2 */
 void test_after_bus_off_only_safe_commands_are_sent(void) {
     ai_commands();

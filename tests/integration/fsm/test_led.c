@@ -45,7 +45,7 @@ static void trip_by_alarm(uint8_t alarms) {
 /* Shows: LED-1 */
 void test_healthy_is_1_s_on_and_1_s_off(void) {
     fixture_start(&f);
-    TEST_ASSERT_TRUE(f.hal.led.on); /* the start itself is its first moment */
+    TEST_ASSERT_TRUE(f.hal.led.on); /* the pattern begins with the start */
     for (unsigned ms = 1; ms < 7000; ms++) {
         fixture_run(&f, 1);
         TEST_ASSERT_EQUAL_INT(ms % 2000 < 1000, f.hal.led.on);
@@ -105,7 +105,7 @@ void test_a_warning_without_a_code_blinks_too_and_ends(void) {
     expect_led(&f, 0);
 }
 
-/* ---- Which one is shown ---- */
+/* ---- Priority of faults ---- */
 
 /* Shows: LED-1, FSM-5 */
 void test_a_latched_trip_is_shown_until_the_reset(void) {
@@ -130,7 +130,7 @@ void test_a_latch_that_was_kept_through_a_restart_is_shown(void) {
     expect_led(&f, 8);
 }
 
-/* Of trips the upper row, also when it came later; latched counts as active. */
+/* Of several trips the upper row is shown, even if it came later. A latched trip counts as active. */
 /* Shows: LED-1 */
 void test_of_two_trips_the_upper_row_is_shown(void) {
     trip_by_alarm(ALARM_REMOTE_POWER);
@@ -147,7 +147,7 @@ void test_of_two_trips_the_upper_row_is_shown(void) {
     expect_led(&f, 13);
 }
 
-/* The warning 167h bit 5 stands above the S-driver alarm, but a trip goes before it. */
+/* The warning of 167h bit 5 ranks above the S-driver alarm, but trips are shown before warnings. */
 /* Shows: LED-1, EPS_TEMP_ABOVE_110 */
 void test_trips_go_before_warnings(void) {
     fixture_standby(&f);
@@ -173,7 +173,7 @@ void test_of_two_warnings_the_upper_row_is_shown(void) {
     expect_led(&f, 12);
 }
 
-/* ---- How ---- */
+/* ---- Timing of the pattern ---- */
 
 /* A new code begins at once, with its first flash. */
 /* Shows: LED-1 */
@@ -191,7 +191,7 @@ void test_a_new_code_begins_anew(void) {
 /* Shows: LED-1 */
 void test_the_pattern_keeps_time_when_steps_come_late(void) {
     trip_by_alarm(ALARM_S_DRIVER);
-    fixture_run(&f, 1); /* first moment of the pattern */
+    fixture_run(&f, 1); /* first millisecond of the pattern */
     fixture_mute_vcu(&f, false);
     for (unsigned ms = 10; ms < 10000; ms += 10) {
         fixture_run_without_ticks(&f, 10);

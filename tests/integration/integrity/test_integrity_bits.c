@@ -1,6 +1,6 @@
 /*
- * Each single bit of the supervisor's memory is flipped, one at a time, at some moments of each state (INT-5). The oracle
- * judges every frame; nothing may undo the latch. Flips are made between two steps: the next call may be that of the
+ * Each bit of the supervisor's memory is flipped, one at a time, in some situations of each state (INT-5). The oracle
+ * checks every frame; nothing may end the latch. Flips are made between two steps: the next call may be that of the
  * receive path, of a frame or of a tick.
  */
 #include <stddef.h>
@@ -15,7 +15,7 @@ enum { BITS = 8 * sizeof(agv_supervisor_t) };
 
 static fixture_t f;
 
-/* What a state consists of; recorder and flash do not matter here. */
+/* A saved state, without recorder and flash, which do not matter here. */
 typedef struct {
     agv_supervisor_t supervisor;
     struct hal hal;
@@ -78,7 +78,7 @@ static void fail_at(unsigned bit, const char *why) {
     TEST_FAIL_MESSAGE(text);
 }
 
-/* Found: it is latched for good, whatever the button does. Some of them are followed for longer. */
+/* Detected: latched until a power-on, whatever the button does. Some flips are followed for longer. */
 static void follow_a_found_one(unsigned bit) {
     const uint32_t ms = bit % 499 == 0 ? 1200 : 3;
     for (uint32_t i = 0; i < ms; i++) {
@@ -90,7 +90,7 @@ static void follow_a_found_one(unsigned bit) {
     detected++;
 }
 
-/* Not found within 1.2 s: then nothing may have come of it. */
+/* Not detected within 1.2 s: the flip must have no effect. */
 static void follow_a_harmless_one(unsigned bit, bool was_latched) {
     for (unsigned i = 0; i < 1200 && !is_found(); i++) {
         fixture_run(&f, 1);
@@ -129,7 +129,7 @@ static void flip_each_bit(const char *what) {
     restore();
 }
 
-/* Before a step in which frames arrive, and before one in which only the receive path and the tick are there. */
+/* Before a step with frames, and before a step with only the receive path and the tick. */
 static void flip_at_two_moments(const char *what) {
     fixture_run_before(&f, AGV_MSG_VEHICLE_STATUS);
     flip_each_bit(what);
@@ -157,7 +157,7 @@ static void active(void) {
     flip_at_two_moments("ACTIVE");
 }
 
-/* The button is pressed since before the trip: only a flipped bit could make a press of it. */
+/* The button is held since before the trip. Only a flipped bit could turn this into a valid press. */
 static void tripped(void) {
     fixture_active(&f);
     fixture_button(&f, true);
@@ -178,11 +178,11 @@ static void safe(void) {
     fixture_run(&f, 1700);
     flip_at_two_moments("SAFE");
     fixture_run_before(&f, AGV_MSG_VEHICLE_STATUS);
-    fixture_button(&f, false); /* all a reset needs is there, but that the press began after the trip */
+    fixture_button(&f, false); /* all conditions of a reset hold, except that the press began before the trip */
     flip_each_bit("SAFE, the button is released");
 }
 
-/* Safe commands and answers to another sender wait for a queue that is full. */
+/* Safe commands and overrides wait for a full queue. */
 static void waiting(void) {
     static const uint8_t drive[8] = {GEAR_D};
     walk_to_tripped(&f);
@@ -225,7 +225,7 @@ void test_each_flipped_bit_on_the_shared_bus(void) {
     flip_in_every_state(AGV_TOPOLOGY_SHARED, AGV_ID_SET_HEADING, "shared bus");
 }
 
-/* Whatever becomes of the configuration: the safe commands go on with 201h, and to the vehicle side. */
+/* Also with a corrupted configuration the safe commands use 201h and go to the vehicle side. */
 /* Shows: INT-5, FSM-6, FSM-9, MEMORY_CORRUPTED, P1 */
 void test_each_flipped_bit_in_the_gateway_with_the_table_set(void) {
     flip_in_every_state(AGV_TOPOLOGY_GATEWAY, AGV_ID_SET_TABLE, "gateway, table set");
@@ -233,7 +233,8 @@ void test_each_flipped_bit_in_the_gateway_with_the_table_set(void) {
 
 /* ---- The recorder ---- */
 
-/* Its head: sequence numbers, what was seen, the last payloads. The supervisor does not depend on any of it. */
+/* The head of the recorder: sequence numbers, received messages, last payloads. The supervisor does not depend on
+ * it. */
 /* Shows: INT-5, INT-3 */
 void test_a_flipped_bit_in_the_head_of_the_recorder_changes_no_decision(void) {
     const size_t head = offsetof(agv_recorder_t, events);

@@ -1,4 +1,4 @@
-/* A configuration that makes no sense is refused, each with its reason, and a supervisor that is given one is tripped. */
+/* An invalid configuration is refused with its reason, and a supervisor that gets one trips. */
 #include <string.h>
 
 #include "fixture.h"
@@ -113,7 +113,7 @@ void test_every_setting_is_checked_at_both_ends(void) {
     TEST_ASSERT_NULL(agv_setting_info(AGV_SETTING_COUNT));
 }
 
-/* On a shared bus they have no effect: only the default is accepted. */
+/* Settings without effect on a shared bus: only the default is accepted there. */
 /* Shows: INT-2, FSM-8, TOP-2 */
 void test_a_setting_without_effect_is_refused(void) {
     static const struct {
@@ -157,7 +157,7 @@ static void expect_weakens(uint16_t setting, uint16_t value, bool weakens) {
     TEST_ASSERT_EQUAL_INT_MESSAGE(weakens, agv_config_weakens(&config, setting), agv_setting_info(setting)->name);
 }
 
-/* Which direction weakens: longer deadlines, shorter waits, more that is let through. */
+/* The direction that weakens: longer deadlines, shorter waits, wider limits. */
 /* Shows: INT-2, TOP-3 */
 void test_which_direction_weakens(void) {
     expect_weakens(AGV_SETTING_vcu_heartbeat_timeout_ms, 51, true);
@@ -201,7 +201,8 @@ void test_an_identifier_twice_is_refused(void) {
 
 /* ---- Classes ---- */
 
-/* Of the heartbeats of VCU and EPS, of the AI while engaged, and of the EPS; and what the supervisor itself found. */
+/* Mandatory: faults of the heartbeats of VCU and EPS, of the AI while engaged, of the EPS, and of the supervisor
+ * itself. */
 static const agv_fault_t FIXED[] = {
     AGV_FAULT_SELF_TEST_FAILED,
     AGV_FAULT_MEMORY_CORRUPTED,

@@ -1,6 +1,6 @@
 /*
- * Failure at every operation, the quick version: a round through all states, in which calls of the HAL are made to fail.
- * Never a forbidden frame (the oracle), never a latch undone, never a hang; counters say that something failed.
+ * Failing calls of the HAL, quick version: a round through all states in which calls fail. There must be no forbidden
+ * frame (oracle), no lost latch and no hang. Counters show that calls failed.
  */
 #include <stdio.h>
 #include <string.h>
@@ -11,9 +11,8 @@
 enum { ROUND_MS = 3400, CALLS_MAX = 200000 };
 enum { START_MS = 700, ENGAGED_MS = 600, TRIPPED_MS = 300, SAFE_MS = 500, PRESSED_MS = 1200, RELEASED_MS = 20 };
 
-static bool
-    rare_call[CALLS_MAX];   /* numbers of the calls in whose step something rarer than status and feed was called */
-static uint32_t first_call; /* of the start */
+static bool rare_call[CALLS_MAX]; /* numbers of the calls in steps with rarer operations than status and feed */
+static uint32_t first_call;       /* of the start */
 static uint32_t rounds;
 
 static bool is_latched(void) {
@@ -31,7 +30,7 @@ static uint32_t rare_calls(void) {
     return sum;
 }
 
-/* Calls since then, if there were rare ones among them. */
+/* The calls since then, if rare operations were among them. */
 static void note_rare_calls(uint32_t calls_before, uint32_t rare_before) {
     TEST_ASSERT_TRUE(f.hal.calls < CALLS_MAX);
     for (uint32_t call = calls_before + 1; rare_calls() > rare_before && call <= f.hal.calls; call++) {
@@ -46,7 +45,7 @@ static void step(void) {
     note_rare_calls(calls, rare);
 }
 
-/* The latch is not undone in this stretch, which does not hold a press of 1 s. */
+/* The latch must be kept in this period, which has no press of 1 s. */
 static void run_and_watch(uint32_t ms) {
     for (uint32_t i = 0; i < ms; i++) {
         const bool before = is_latched();
@@ -93,7 +92,7 @@ static void go_round(uint16_t topology, uint32_t first, uint32_t count, uint32_t
     rounds++;
 }
 
-/* With the port's watchdog, too, the round ends in STANDBY, or latched, or held in reset with the output open. */
+/* Also with the port's watchdog the round ends in STANDBY, latched, or held in reset with the output open. */
 static void judge_the_end(void) {
     const agv_state_t state = agv_supervisor_state(&f.supervisor);
     TEST_ASSERT_TRUE(state == AGV_STATE_STANDBY || is_latched() || f.hal.held || state == AGV_STATE_INIT);
@@ -168,7 +167,7 @@ void test_each_operation_fails_permanently(void) {
     }
 }
 
-/* ---- What the single failures come to ---- */
+/* ---- Effects of single failures ---- */
 
 /* Shows: TX_STALLED, SUP-7 */
 void test_a_controller_that_accepts_nothing_is_detected_after_a_trip(void) {

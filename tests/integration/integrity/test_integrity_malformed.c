@@ -1,9 +1,10 @@
-/* Malformed frames change nothing but counters (but those two that SUP-5 and SUP-6 name): two supervisors in the same traffic, one of them is pestered. */
+/* Malformed frames change only counters (except the two cases of SUP-5 and SUP-6). Two supervisors get the same
+ * traffic, one of them also malformed frames. */
 #include "fixture.h"
 #include "unity.h"
 #include "walk.h"
 
-static fixture_t f; /* pestered */
+static fixture_t f; /* also gets malformed frames */
 static fixture_t calm;
 
 static const uint32_t COMMAND_IDS[] = {0x43F, 0x168, 0x075, 0x065};
@@ -77,14 +78,14 @@ static void go_through_the_states(uint16_t topology) {
     calm.config.topology = topology;
     fixture_start(&f);
     fixture_start(&calm);
-    run_both(700, topology == AGV_TOPOLOGY_GATEWAY); /* INIT, on the shared bus, answers commands of any length */
+    run_both(700, topology == AGV_TOPOLOGY_GATEWAY); /* INIT on the shared bus overrides commands of any length */
     expect_state(&f, AGV_STATE_STANDBY);
     run_both(200, true);
     fixture_mode(&f, MODE_ENGAGED);
     fixture_mode(&calm, MODE_ENGAGED);
     run_both(700, false); /* engaged, commands of any length trip */
     expect_state(&f, AGV_STATE_ACTIVE);
-    fixture_mute_vcu(&f, true); /* malformed frames do not stand in for the true ones */
+    fixture_mute_vcu(&f, true); /* malformed frames do not replace the valid ones */
     fixture_mute_vcu(&calm, true);
     run_both(100, false);
     expect_state(&f, AGV_STATE_TRIPPED);
@@ -133,7 +134,7 @@ void test_other_identifiers_are_received_and_nothing_else(void) {
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
-/* ---- Any bytes in frames of the right shape: no crash, nothing forbidden, and the latch stands ---- */
+/* ---- Any bytes in well-formed frames: no crash, no forbidden frame, and the latch is kept ---- */
 
 /* Shows: INT-2, FSM-3 */
 void test_any_bytes_in_each_position_keep_the_latch(void) {

@@ -1,4 +1,4 @@
-/* The flight recorder: what it keeps, through what, and when it is copied to flash. */
+/* The flight recorder: its content, the resets that it outlives, and its copy in flash. */
 #include <string.h>
 
 #include "one_fixture.h"
@@ -29,7 +29,7 @@ static void two_events(void) {
     fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
 }
 
-/* So many of them, all recorded. */
+/* This many of them, all recorded. */
 static void events(unsigned pairs) {
     for (unsigned i = 0; i < pairs; i++) {
         fixture_run(&f, 500);
@@ -37,7 +37,7 @@ static void events(unsigned pairs) {
     }
 }
 
-/* ---- What is kept ---- */
+/* ---- Content ---- */
 
 /* Shows: INT-3 */
 void test_the_last_256_events_are_kept(void) {
@@ -91,7 +91,7 @@ void test_the_safety_output_is_recorded_when_it_closes_and_opens(void) {
 
 /* Shows: INT-3 */
 void test_an_event_holds_the_last_payload_of_each_message(void) {
-    /* a byte of each message in which any value is as good as another (101h: 0.01 m/s) */
+    /* a byte of each message that may have any value (101h: 0.01 m/s) */
     static const uint8_t FREE[AGV_MSG_COUNT] = {1, 3, 4, 5, 2, 6, 7, 5, 1, 7, 0};
     fixture_active(&f);
     for (unsigned i = 0; i < AGV_MSG_COUNT; i++) {
@@ -118,7 +118,7 @@ void test_a_message_that_was_not_received_is_not_in_the_snapshot(void) {
     TEST_ASSERT_EQUAL_HEX16(0x7FF & ~0x20F, event.seen); /* bits 0..3: the commands; bit 9: 267h */
 }
 
-/* ---- What it outlives ---- */
+/* ---- Resets ---- */
 
 /* Shows: INT-3, FSM-7 */
 void test_events_outlive_a_restart(void) {
@@ -153,7 +153,7 @@ void test_after_a_power_on_random_memory_has_no_events(void) {
     }
 }
 
-/* Flip a bit in the n-th byte of what is kept of this event. */
+/* Flip a bit in the n-th byte of the stored event. */
 static void tear(uint32_t sequence, unsigned byte) {
     ((uint8_t *)&f.recorder.events[sequence % AGV_RECORDER_EVENTS])[byte] ^= 0x04u;
 }
@@ -188,7 +188,7 @@ void test_when_the_newest_event_is_torn_counting_goes_on_behind_the_one_before(v
     for (uint32_t i = 0; i + 1 < count; i++) {
         TEST_ASSERT_TRUE(is_there(i));
     }
-    TEST_ASSERT_EQUAL_HEX8(0, event_at(count - 1).a); /* the new run has taken its place */
+    TEST_ASSERT_EQUAL_HEX8(0, event_at(count - 1).a); /* the new run has used its place */
 }
 
 /* ---- Flash ---- */
@@ -197,7 +197,7 @@ static uint32_t appended(void) {
     return f.hal.op_calls[SIM_HAL_OP_STORE_APPEND];
 }
 
-/* Longer than the one write a second would take. */
+/* Longer than one write a second needs. */
 static void expect_not_written(agv_state_t state) {
     const uint32_t before = appended();
     for (unsigned i = 0; i < 50; i++) {
@@ -237,13 +237,13 @@ void test_flash_is_written_in_standby_at_standstill_only(void) {
     fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
     fixture_run(&f, 99);
     TEST_ASSERT_EQUAL_UINT32(before, appended());
-    fixture_run(&f, 1); /* what was saved up: one a second */
+    fixture_run(&f, 1); /* the unused writes: one a second */
     TEST_ASSERT_EQUAL_UINT32(before + 1, appended());
     fixture_run(&f, 25000);
     TEST_ASSERT_EQUAL_UINT32(next_sequence(), appended());
 }
 
-/* The first minute of moving on earns 60 writes, one a tick; then it is one a second. */
+/* The first minute of motion leaves 60 unused writes, used one a tick; then one a second. */
 /* Shows: INT-3 */
 void test_flash_is_written_at_most_once_a_second_on_average_over_a_minute(void) {
     fixture_standby(&f);
@@ -274,13 +274,13 @@ void test_in_safe_each_event_is_copied_once_and_in_order(void) {
     walk_to_safe(&f);
     fixture_run(&f, 20000);
     expect_log_holds(next_sequence());
-    fixture_restart(&f, HAL_RESET_WATCHDOG); /* in RAM it is known what is in flash */
+    fixture_restart(&f, HAL_RESET_WATCHDOG); /* RAM has the number of the last event in flash */
     fixture_run(&f, 20000);
     expect_state(&f, AGV_STATE_SAFE);
     expect_log_holds(next_sequence());
 }
 
-/* It is copied with time to react in between. */
+/* It is copied with time for reactions in between. */
 /* Shows: INT-3 */
 void test_at_most_one_event_a_tick_is_copied(void) {
     fixture_standby(&f);
@@ -324,7 +324,7 @@ void test_a_flash_that_accepts_nothing_changes_nothing_else(void) {
     TEST_ASSERT_TRUE(is_there(next_sequence() - 1));
 }
 
-/* More events than the recorder holds come before they can be copied: the newest 256 are. */
+/* More events than the recorder holds come before they can be copied: the newest 256 are copied. */
 /* Shows: INT-3 */
 void test_events_replaced_before_they_were_copied_are_lost(void) {
     fixture_standby(&f);
@@ -355,7 +355,7 @@ void test_a_fault_that_flutters_is_recorded_4_times_a_second(void) {
     }
     TEST_ASSERT_EQUAL_UINT32(4, level2_events(&event));
     TEST_ASSERT_EQUAL_UINT16(0, event.left_out);
-    TEST_ASSERT_EQUAL_UINT32(20, agv_supervisor_counters(&f.supervisor)->warnings); /* it is counted all the same */
+    TEST_ASSERT_EQUAL_UINT32(20, agv_supervisor_counters(&f.supervisor)->warnings); /* the warning is still counted */
     fixture_run(&f, 999 - (f.now_ms - first_ms));
     two_events();
     TEST_ASSERT_EQUAL_UINT32(4, level2_events(&event));
@@ -380,7 +380,7 @@ void test_a_fault_that_flutters_hides_no_other(void) {
     TEST_ASSERT_EQUAL_UINT16(0, event.left_out);
 }
 
-/* However long it goes on: in no second more than four. */
+/* Never more than four in a second, however long it lasts. */
 /* Shows: INT-3 */
 void test_a_minute_of_fluttering(void) {
     agv_event_t event = {0};
@@ -441,7 +441,7 @@ void test_the_last_8_trips_are_kept_apart(void) {
     TEST_ASSERT_FALSE(agv_recorder_get_trip(&f.recorder, 8, &event));
 }
 
-/* TRIPPED again because the confirmation went away is the same trip. */
+/* A change back to TRIPPED after a withdrawn confirmation is the same trip. */
 /* Shows: INT-3, FSM-5 */
 void test_a_confirmation_that_comes_and_goes_is_no_trip(void) {
     agv_event_t event = {0};

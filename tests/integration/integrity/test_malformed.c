@@ -1,6 +1,6 @@
-/* Malformed frames (P15): each kind on each message is counted and refreshes nothing, so that the silence which they
- * leave is what trips. A data frame with the identifier of a command trips by itself while engaged (SUP-5). Reserved bits
- * (P14) are ignored. */
+/* Malformed frames (P15): each kind on each message is counted and refreshes nothing, so the missing valid frames trip.
+ * A malformed data frame with the identifier of a command trips by itself while engaged (SUP-5). Reserved bits (P14)
+ * are ignored. */
 #include <string.h>
 
 #include "causes.h"
@@ -44,7 +44,7 @@ static uint32_t rejected_in_all(void) {
     return sum;
 }
 
-/* From a good frame on only malformed ones, in their rhythm and with running counters: as if they were not there. */
+/* After a good frame only malformed ones, on their cycles and with running counters. They must have no effect. */
 static void check(const kind_t *kind, agv_message_t message, uint32_t deadline_ms, agv_fault_t fault) {
     fixture_init(&f);
     f.what = kind->name;
@@ -69,7 +69,7 @@ static bool is_data_frame(const kind_t *kind) {
     return (kind->flags & (HAL_CAN_REMOTE | HAL_CAN_EXTENDED | HAL_CAN_ERROR)) == 0;
 }
 
-/* In manual it is counted, and nothing else; engaged it trips at once, and the deadline of its own message runs on. */
+/* In manual it is only counted. While engaged it trips at once, and the deadline of its message runs on. */
 static void check_no_command(const kind_t *kind, agv_message_t message, uint32_t deadline_ms, agv_fault_t fault) {
     fixture_init(&f);
     f.what = kind->name;
@@ -144,7 +144,7 @@ void test_malformed_commands_from_the_ai_side(void) {
     }
 }
 
-/* ---- Whatever else they carry, they raise nothing ---- */
+/* ---- The content of malformed frames raises nothing ---- */
 
 /* Every kind on every message in every millisecond, with all bits set: alarms, faults, modes, values out of range. */
 static void storm(unsigned round, bool with_commands) {
@@ -168,7 +168,7 @@ static void run_storm(agv_state_t state) {
     TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->warnings);
 }
 
-/* Commands among them while a human drives. */
+/* Also commands, in manual. */
 static void check_storm(unsigned topology) {
     fixture_init(&f);
     f.config.topology = (uint16_t)topology;
@@ -187,7 +187,8 @@ void test_a_storm_of_malformed_frames(void) {
     check_storm(AGV_TOPOLOGY_GATEWAY);
 }
 
-/* Nor do they count among the frames of a score, bad or good: two bad ones, two malformed ones, and the third. */
+/* They do not count in a score either, neither as bad nor as good: two bad frames, two malformed ones, and the third
+ * bad one. */
 /* Shows: P15, SUP-4, EPS_UNDER_VOLTAGE */
 void test_malformed_frames_are_not_scored(void) {
     fixture_standby(&f);

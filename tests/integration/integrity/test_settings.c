@@ -1,5 +1,5 @@
-/* Times and counts are settings, each of its own fault: all set to values of their own, every one is kept to the
- * millisecond. And frames that come at the last possible moment. */
+/* Times and counts are settings. Each is set to a different value and checked to the millisecond. Also frames that come
+ * in the last possible millisecond. */
 #include "agv/names.h"
 #include "expect.h"
 #include "one_fixture.h"
@@ -58,14 +58,14 @@ void test_each_deadline_is_a_setting(void) {
     }
 }
 
-/* From its next frame on the message comes at this rhythm. */
+/* From its next frame on the message has this cycle. */
 static void slow_down(agv_message_t message, uint32_t cycle_ms) {
     fixture_run_past(&f, message);
     f.traffic[message].cycle_ms = (uint16_t)cycle_ms;
     f.traffic[message].phase_ms = (uint16_t)(f.elapsed_ms % cycle_ms);
 }
 
-/* Frames are handled before the tick of their millisecond: one each deadline + 1 ms is just in time, for ever. */
+/* Frames are handled before the tick of their millisecond: one frame each deadline + 1 ms is always just in time. */
 /* Shows: SUP-2, SUP-3 */
 void test_a_frame_in_the_last_millisecond(void) {
     for (unsigned i = 0; i < DEADLINE_COUNT; i++) {
@@ -223,7 +223,7 @@ static void engage(void) {
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
 }
 
-/* With the third 363h without the autopilot bit. */
+/* The engagement ends with the third 363h without the autopilot bit. */
 static void disengage(void) {
     fixture_mode(&f, MODE_MANUAL);
     for (unsigned i = 0; i < 3; i++) {
@@ -257,7 +257,7 @@ void test_every_engagement_has_its_grace(void) {
     expect_reason(&f, AGV_FAULT_EPS_MODE_OFF);
 }
 
-/* What counts while engaged ends with the engagement. */
+/* Faults that count only while engaged end with the engagement. */
 /* Shows: SUP-5, STEERING_DEVIATION, THROTTLE_IN_PARK */
 void test_faults_that_end_with_the_engagement(void) {
     fixture_active(&f);

@@ -1,5 +1,6 @@
-/* Silence that lasts longer than the clock's 49.7 days stays silence (TIM-2): nothing that has expired un-expires when
- * its age wraps. (With the VCU the engagement ends, and with it what counts only while engaged.) The clock jumps in steps of the longest watchdog period, but goes by milliseconds where ages wrap. */
+/* Silence for longer than the clock's 49.7 days (TIM-2): an expired deadline stays expired when its age wraps. (The
+ * silence of the VCU ends the engagement and the faults that count only while engaged.) The clock jumps in steps of the
+ * longest watchdog period, but runs in milliseconds where ages wrap. */
 #include "expect.h"
 #include "unity.h"
 
@@ -7,7 +8,7 @@ static fixture_t f;
 
 void setUp(void) {
     fixture_init(&f);
-    f.long_run = true; /* more is sent than the log holds */
+    f.long_run = true; /* more frames are sent than the log holds */
     f.config.watchdog_period_ms = 1000;
 }
 
@@ -31,7 +32,7 @@ static void fall_silent(void) {
     fixture_mute_ai(&f, true);
 }
 
-/* Run by milliseconds until this long after that moment, a whole turn of the clock not counted. */
+/* Run in milliseconds until this time after the given one, modulo a full wrap of the clock. */
 static void run_until_after(uint32_t since_ms, uint32_t after_ms) {
     while (f.now_ms - since_ms != after_ms) {
         fixture_run(&f, 1);
@@ -39,7 +40,7 @@ static void run_until_after(uint32_t since_ms, uint32_t after_ms) {
     }
 }
 
-/* Nothing is recorded in all that time. */
+/* No event is recorded in that time. */
 static void wait_for_49_7_days(uint32_t since_ms) {
     const uint32_t recorded = agv_recorder_next_sequence(&f.recorder);
     while (UINT32_MAX - (f.now_ms - since_ms) > 2000) {
@@ -49,7 +50,8 @@ static void wait_for_49_7_days(uint32_t since_ms) {
     TEST_ASSERT_EQUAL_UINT32(recorded, agv_recorder_next_sequence(&f.recorder));
 }
 
-/* 100 ms after the wrap of all ages the other set's 43Fh is heard: the own one is silent for 49.7 days, not for 100 ms. */
+/* 100 ms after all ages wrapped, the other set's 43Fh is received. The own 43Fh is silent for 49.7 days, not for 100
+ * ms. */
 /* Shows: TIM-2, SUP-2, SUP-3, WRONG_ID_SET */
 void test_silence_of_more_than_49_7_days(void) {
     fixture_active(&f);

@@ -1,5 +1,5 @@
-/* The AI computer (SUP-8): required while engaged, a warning in manual, forgotten by a reset; and what the VCU reports of it.
- * Hand-worked: the deadline is 350 ms, 43Fh comes each 100 ms, two cycles are 200 ms. */
+/* The AI computer (SUP-8): required while engaged, a warning in manual, forgotten by a reset; and the VCU's alarm about
+ * it. Calculated by hand: the deadline is 350 ms, 43Fh comes each 100 ms, two cycles are 200 ms. */
 #include "expect.h"
 #include "one_fixture.h"
 #include "walk.h"
@@ -14,7 +14,7 @@ static void expect_no_fault(agv_state_t state) {
     expect_nothing(&f, STUCK, state);
 }
 
-/* The 363h with the autopilot bit has just been handed over. */
+/* The 363h with the autopilot bit has just been processed. */
 static void engage(void) {
     fixture_mode(&f, MODE_ENGAGED);
     fixture_run_past(&f, VCU);
@@ -30,7 +30,7 @@ static void disengage(void) {
 
 /* ---- Lost and stuck ---- */
 
-/* Muted: silent from now on. Frozen: goes on with the counter that it has. */
+/* Muted: silent from now on. Frozen: sends on with an unchanged counter. */
 static void check_manual(agv_fault_t fault, bool *how) {
     fixture_standby(&f);
     fixture_run_past(&f, AI);
@@ -81,7 +81,7 @@ void test_stuck(void) {
     check_engaged(STUCK, &f.traffic[AI].frozen);
 }
 
-/* One repeat so long after the last change, then silence. */
+/* One repeat this long after the last change, then silence. */
 static void check_last_repeat(uint32_t repeat_ms, agv_fault_t expected) {
     fixture_init(&f);
     fixture_standby(&f);
@@ -120,7 +120,7 @@ void test_only_a_changed_counter_is_a_heartbeat(void) {
     expect_warning(&f, STUCK, AGV_STATE_STANDBY);
 }
 
-/* One valid 43Fh is seen, though not alive: its deadline runs from there. */
+/* One valid 43Fh is received, which does not make it alive: its deadline runs from there. */
 /* Shows: SUP-8, AI_HEARTBEAT_LOST */
 void test_seen_once(void) {
     f.traffic[AI].muted = true;
@@ -149,9 +149,9 @@ void test_lost_in_manual_may_be_made_a_trip(void) {
     }
 }
 
-/* ---- At the moment of engagement ---- */
+/* ---- At the engagement ---- */
 
-/* Lost or stuck already: the fault changes its class, is raised again, and trips in the handling of that 363h. */
+/* Lost or stuck already: the fault changes its class, is raised again, and trips in the call of that 363h. */
 static void check_at_engagement(agv_fault_t fault, bool *how) {
     fixture_standby(&f);
     *how = true;
@@ -174,7 +174,7 @@ void test_lost_or_stuck_at_the_engagement_trips_at_once(void) {
     check_at_engagement(STUCK, &f.traffic[AI].frozen);
 }
 
-/* The fault that counts as a trip, and no other. */
+/* Exactly this fault is active as a trip. */
 static void expect_active_trips(agv_fault_t only) {
     const agv_fault_set_t trips = agv_supervisor_active_trips(&f.supervisor);
     agv_fault_set_t expected = {0};
@@ -182,7 +182,7 @@ static void expect_active_trips(agv_fault_t only) {
     TEST_ASSERT_EQUAL_MEMORY(&expected, &trips, sizeof trips);
 }
 
-/* And back: the class changes while the fault is there, so it is raised again, as a warning. */
+/* Back to manual: the class changes while the fault is active, so it is raised again, as a warning. */
 /* Shows: SUP-8, AI_HEARTBEAT_LOST */
 void test_the_class_follows_the_mode(void) {
     agv_event_t event;
@@ -206,7 +206,7 @@ void test_the_class_follows_the_mode(void) {
     expect_led(&f, 14);
 }
 
-/* Never seen: no fault in manual, however long. Engaged: a trip 500 ms later; ACTIVE is not reached without the AI. */
+/* Never received: no fault in manual, however long. Engaged: a trip 500 ms later; ACTIVE needs the AI. */
 /* Shows: SUP-8, AI_HEARTBEAT_LOST */
 void test_never_seen(void) {
     f.traffic[AI].muted = true;
@@ -223,7 +223,7 @@ void test_never_seen(void) {
     expect_led(&f, 14);
 }
 
-/* The 500 ms are those since the frame that reported the engagement, not since the tick after it. */
+/* The 500 ms count from the frame that reported the engagement, not from the tick after it. */
 /* Shows: SUP-8, FSM-2, AI_HEARTBEAT_LOST */
 void test_never_seen_when_engaged_between_two_ticks(void) {
     f.traffic[AI].muted = true;
@@ -236,7 +236,7 @@ void test_never_seen_when_engaged_between_two_ticks(void) {
     expect_trip(&f, LOST, f.call, ANGLE_CENTRE);
 }
 
-/* The 500 ms belong to one engagement. */
+/* The 500 ms restart with each engagement. */
 /* Shows: SUP-8, AI_HEARTBEAT_LOST */
 void test_never_seen_and_not_engaged_for_long_enough(void) {
     f.traffic[AI].muted = true;
@@ -250,7 +250,7 @@ void test_never_seen_and_not_engaged_for_long_enough(void) {
     expect_no_fault(AGV_STATE_STANDBY);
 }
 
-/* One that is continued within 100 ms goes on with them: 300 ms, 30 ms and 90 ms, 80 ms more. */
+/* An engagement that is continued within 100 ms does not restart them: 300 ms, 30 ms and 90 ms, 80 ms more. */
 /* Shows: SUP-8, AI_HEARTBEAT_LOST */
 void test_never_seen_in_an_engagement_that_is_continued(void) {
     f.traffic[AI].muted = true;
@@ -268,7 +268,7 @@ void test_never_seen_in_an_engagement_that_is_continued(void) {
     TEST_ASSERT_EQUAL_UINT32(501, f.now_ms - began_ms);
 }
 
-/* It comes up while engaged: the first 43Fh is the baseline, with the second it is alive. */
+/* It starts while engaged: the first 43Fh is the baseline, the second makes it alive. */
 /* Shows: SUP-8, P13 */
 void test_seen_in_time(void) {
     f.traffic[AI].muted = true;
@@ -285,7 +285,7 @@ void test_seen_in_time(void) {
     expect_no_fault(AGV_STATE_ACTIVE);
 }
 
-/* Seen but never alive. */
+/* Received but never alive. */
 /* Shows: SUP-8, AI_HEARTBEAT_STUCK */
 void test_seen_while_engaged_but_frozen(void) {
     f.traffic[AI].muted = true;
@@ -317,7 +317,7 @@ void test_lost_in_init(void) {
     expect_reason(&f, AGV_FAULT_NONE);
 }
 
-/* ---- A reset forgets it ---- */
+/* ---- A reset forgets the AI computer ---- */
 
 static void reset(void) {
     fixture_vehicle_confirms(&f);
@@ -345,7 +345,7 @@ static void trip_and_reset(agv_fault_t fault, bool *how) {
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, fault));
 }
 
-/* Engaged again it is one that was there and is lost: at once, not 500 ms later. */
+/* At the next engagement it counts as lost at once, not 500 ms later. */
 static void check_engaged_after_a_reset(agv_fault_t fault, bool *how) {
     fixture_init(&f);
     trip_and_reset(fault, how);
@@ -364,8 +364,8 @@ void test_a_reset_forgets_a_dead_ai_until_the_next_engagement(void) {
     check_engaged_after_a_reset(STUCK, &f.traffic[AI].frozen);
 }
 
-/* Alive at the reset and engaged within its cycle: ACTIVE with its next changed counter, the value before being the baseline;
- * its deadline has run on. */
+/* Alive at the reset and engaged within its cycle: ACTIVE with its next changed counter. The counter from before the
+ * reset is the baseline, and its deadline has run on. */
 static void check_reset_with_ai_alive(bool goes_on) {
     fixture_init(&f);
     fixture_active(&f);
@@ -402,7 +402,7 @@ void test_an_ai_that_was_alive_at_the_reset(void) {
     check_reset_with_ai_alive(false);
 }
 
-/* ai_lost_in_manual: trip. What was forgotten does not trip in manual: somebody has to be able to drive away. */
+/* ai_lost_in_manual: trip. A forgotten AI computer does not trip in manual, so that the operator can drive away. */
 /* Shows: SUP-8, FSM-3, AI_HEARTBEAT_LOST */
 void test_a_reset_forgets_it_also_if_its_loss_trips_in_manual(void) {
     f.config.ai_lost_in_manual = AGV_AI_LOST_TRIP;
@@ -421,8 +421,8 @@ void test_a_reset_forgets_it_also_if_its_loss_trips_in_manual(void) {
     expect_reason(&f, LOST);
 }
 
-/* A cause from the AI computer that outlived the reset (here it babbles, and that trips) does not trip in manual; it does with
- * the next engagement, and in manual when it has ended and comes again. */
+/* A cause of the AI computer that outlived the reset (here COMMAND_TOO_FAST as a trip) does not trip in manual. It
+ * trips with the next engagement, or in manual when it has ended and is raised again. */
 static void babble(uint32_t ms) {
     for (uint32_t i = 0; i < ms; i += 10) {
         fixture_send_now(&f, AGV_MSG_GEAR_COMMAND);
@@ -462,7 +462,7 @@ void test_a_cause_from_the_ai_that_outlived_the_reset(void) {
     expect_reason(&f, AGV_FAULT_COMMAND_TOO_FAST);
 }
 
-/* It is seen again when its counter changes, not by frames with the old one. */
+/* A changed counter ends the forgetting, frames with the old counter do not. */
 /* Shows: SUP-8, FSM-3, AI_HEARTBEAT_STUCK */
 void test_a_reset_forgets_a_frozen_ai_until_its_counter_changes(void) {
     trip_and_reset(STUCK, &f.traffic[AI].frozen);
@@ -499,7 +499,7 @@ void test_the_vcus_ai_alarm_while_engaged(void) {
     expect_reason(&f, AGV_FAULT_VCU_AI_CAN_LOST);
 }
 
-/* No longer engaged: it does not count any more, though the bit is set. */
+/* No longer engaged: the alarm does not count, although the bit is set. */
 /* Shows: SUP-8, VCU_AI_CAN_LOST */
 void test_the_vcus_ai_alarm_ends_with_the_engagement(void) {
     fixture_active(&f);
@@ -538,8 +538,8 @@ void test_the_vcus_ai_alarm_in_manual_is_normal(void) {
     expect_led(&f, 0);
 }
 
-/* The AI computer comes up while the alarm is still set: it counts only after it was once clear with the AI alive. That
- * it was clear before, while the AI was silent, does not help. */
+/* The AI computer starts while the alarm is still set. The alarm counts only after it was clear once with an alive AI;
+ * a clear alarm while the AI was silent does not arm it. */
 /* Shows: SUP-8, VCU_AI_CAN_LOST */
 void test_the_vcus_ai_alarm_has_to_be_clear_once(void) {
     fixture_mute_ai(&f, true);
@@ -558,7 +558,7 @@ void test_the_vcus_ai_alarm_has_to_be_clear_once(void) {
     expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
 }
 
-/* The AI computer dies while engaged: the VCU's alarm that follows counts, and stays until the engagement ends. */
+/* The AI computer fails while engaged: the VCU's alarm counts, and stays until the engagement ends. */
 /* Shows: SUP-8, VCU_AI_CAN_LOST */
 void test_the_vcus_ai_alarm_outlives_the_ai(void) {
     fixture_active(&f);
@@ -578,7 +578,7 @@ void test_the_vcus_ai_alarm_outlives_the_ai(void) {
     expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, false);
 }
 
-/* Was clear, is set, and then it is engaged: in that very frame. */
+/* Clear, then set, then engaged: it trips in the frame of the engagement. */
 /* Shows: SUP-8, FSM-2, VCU_AI_CAN_LOST */
 void test_the_vcus_ai_alarm_at_the_engagement(void) {
     fixture_standby(&f);
@@ -590,7 +590,7 @@ void test_the_vcus_ai_alarm_at_the_engagement(void) {
     expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
 }
 
-/* It was clear while the AI computer was silent only, then it is engaged: what does not count cannot trip. */
+/* Clear only while the AI computer was silent, then engaged: an alarm that is not armed does not trip. */
 /* Shows: SUP-8, VCU_AI_CAN_LOST */
 void test_the_vcus_ai_alarm_of_an_ai_that_was_never_received(void) {
     fixture_mute_ai(&f, true);
@@ -598,7 +598,7 @@ void test_the_vcus_ai_alarm_of_an_ai_that_was_never_received(void) {
     fixture_run(&f, 500);
     engage();
     set_alarm(true);
-    fixture_run(&f, 100); /* the commands are missed after 125 ms */
+    fixture_run(&f, 100); /* the missing commands trip after 125 ms */
     expect_nothing(&f, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_STANDBY);
 }
 
@@ -612,7 +612,7 @@ static void pause_ai_in_manual(void) {
     fixture_mute_ai(&f, false);
 }
 
-/* Once is enough: an alarm that stands since the AI computer was off in manual driving counts at the engagement. */
+/* Armed once is enough: an alarm that is set since the AI computer was off in manual counts at the engagement. */
 /* Shows: SUP-8, VCU_AI_CAN_LOST */
 void test_the_vcus_ai_alarm_that_stands_since_a_pause_counts_when_engaged(void) {
     pause_ai_in_manual();
@@ -622,7 +622,7 @@ void test_the_vcus_ai_alarm_that_stands_since_a_pause_counts_when_engaged(void) 
     expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
 }
 
-/* The AI computer goes off and on in manual driving, and the alarm with it: nothing comes of it when engaged. */
+/* The AI computer is switched off and on in manual, and so is the alarm: no effect at the engagement. */
 /* Shows: SUP-8, VCU_AI_CAN_LOST */
 void test_the_vcus_ai_alarm_of_a_pause_in_manual_that_is_over(void) {
     pause_ai_in_manual();
@@ -634,7 +634,7 @@ void test_the_vcus_ai_alarm_of_a_pause_in_manual_that_is_over(void) {
     expect_nothing(&f, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_ACTIVE);
 }
 
-/* Another alarm of the same byte (the remote's signal, here a warning) does not keep it from having been clear. */
+/* Another alarm of the same byte (the remote's signal, here a warning) does not prevent the arming. */
 /* Shows: SUP-8, VCU_AI_CAN_LOST */
 void test_the_vcus_ai_alarm_beside_another_alarm(void) {
     agv_fault_set_put(&f.config.trips, AGV_FAULT_REMOTE_SIGNAL_LOST, false);
@@ -657,7 +657,8 @@ void test_the_vcus_ai_alarm_stays_armed_after_a_reset(void) {
     expect_reason(&f, AGV_FAULT_VCU_AI_CAN_LOST);
 }
 
-/* ai_counter: increments. Steps of 1 to 3 are beats; others are none, and after one it takes two right ones. */
+/* ai_counter: increments. Steps of 1 to 3 are heartbeats. Other steps are not, and after one of them two right steps
+ * are needed. */
 /* Shows: SUP-2, AI_HEARTBEAT_STUCK */
 void test_a_counter_that_has_to_count_up(void) {
     f.config.ai_counter = AGV_COUNTER_INCREMENTS;

@@ -1,8 +1,8 @@
-/* Deadlines of messages (SUP-3) beside what test_causes checks of each of them, and MODE_INVALID. */
+/* Deadlines of messages (SUP-3) beyond the checks of test_causes, and MODE_INVALID. */
 #include "expect.h"
 #include "one_fixture.h"
 
-/* Engaged while the supervisor is still in INIT: the cause is there and latches nothing. */
+/* Engaged while the supervisor is still in INIT: the cause is active and latches nothing. */
 /* Shows: SUP-3, STEERING_COMMAND_TIMEOUT */
 void test_command_timeout_in_init(void) {
     f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
@@ -19,7 +19,7 @@ void test_command_timeout_in_init(void) {
     expect_reason(&f, AGV_FAULT_NONE);
 }
 
-/* A command out of range refreshes no deadline: 351 ms after the last good 168h its timeout is there as well. */
+/* A command out of range refreshes no deadline: 351 ms after the last good 168h its timeout is raised as well. */
 /* Shows: SUP-5, GEAR_COMMAND_TIMEOUT */
 void test_a_command_out_of_range_refreshes_nothing(void) {
     fixture_active(&f);
@@ -32,7 +32,7 @@ void test_a_command_out_of_range_refreshes_nothing(void) {
     expect_fault(&f, AGV_FAULT_GEAR_COMMAND_TIMEOUT, true);
 }
 
-/* ---- A node that dies as a whole ---- */
+/* ---- A node that fails completely ---- */
 
 static void check_death(void (*mute)(fixture_t *, bool), agv_message_t last, uint32_t after_ms, agv_fault_t fault,
                         int32_t hold_raw) {
@@ -55,7 +55,7 @@ void test_the_first_fault_of_a_dead_node(void) {
 
 /* ---- MODE_INVALID: both mode bits for more than 50 ms ---- */
 
-/* While both are set the mode before stands, then it is neither, so the steering may be held. */
+/* While both bits are set the previous mode stays valid. After that there is no mode, so the steering may be held. */
 static void check_both_modes(agv_state_t state, uint8_t mode_after) {
     fixture_run_before(&f, AGV_MSG_VEHICLE_STATUS);
     fixture_mode(&f, MODE_BOTH);
@@ -103,7 +103,7 @@ void test_mode_invalid_in_init(void) {
     expect_reason(&f, AGV_FAULT_NONE);
 }
 
-/* A frame with one bit only, or none, takes 5 ms off the 50 ms: the other 45 ms count on. */
+/* A frame with only one bit, or none, takes 5 ms off: 45 of 50 ms are left. */
 /* Shows: MODE_INVALID */
 void test_both_modes_with_interruptions(void) {
     static const uint8_t BETWEEN[] = {MODE_MANUAL, MODE_NEITHER};
@@ -123,7 +123,8 @@ void test_both_modes_with_interruptions(void) {
     }
 }
 
-/* Every other frame with both bits: 20 ms in four frames are left, so it comes with the tenth. One in four is lived with. */
+/* Every other frame with both bits: 20 ms in four frames are left, so the fault comes with the tenth. One such frame in
+ * four is tolerated. */
 /* Shows: MODE_INVALID */
 void test_both_modes_every_other_frame(void) {
     fixture_standby(&f);
@@ -139,7 +140,7 @@ void test_both_modes_every_other_frame(void) {
     expect_reason(&f, AGV_FAULT_MODE_INVALID);
 }
 
-/* Neither bit is no fault, and not engaged. */
+/* Neither bit set is no fault, and means not engaged. */
 /* Shows: MODE_INVALID */
 void test_neither_mode_is_not_engaged(void) {
     fixture_active(&f);

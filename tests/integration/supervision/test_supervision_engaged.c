@@ -1,7 +1,7 @@
-/* What trips only while judged (SUP-5), from 500 ms after the engagement on and while 363h reports autopilot: EPS mode and
- * invalid status values, by their score, and throttle in park, by its budget; and commands out of range, which have no
- * grace. Hand-worked: a fault that needs N frames is there when bad frames (+2) and good ones (-1) have come to 2 N, and
- * until they are back at 0. */
+/* Faults that are judged only while engaged (SUP-5), from 500 ms after the engagement on and while 363h reports
+ * autopilot: EPS mode and invalid status values (scores), throttle in park (budget); and commands out of range, which
+ * have no grace time. Calculated by hand: a fault that needs N frames is raised when bad frames (+2) and good ones (-1)
+ * add up to 2 N, and ends at 0. */
 #include "expect.h"
 #include "one_fixture.h"
 
@@ -53,8 +53,9 @@ static void check_trips(const row_t *row) {
     expect_reason(&f, row->fault);
 }
 
-/* Bad all the time, also before the engagement. Only frames from 500 ms after it on count: the message comes in the
- * same millisecond as 363h (phase 1) or one before it, so that one frame is exactly 500 ms, or 499 ms, after it. */
+/* Bad all the time, also before the engagement. Only frames from 500 ms after it on count. The message comes in the
+ * same millisecond as 363h (phase 1) or one before it, so one frame is exactly 500 ms, or 499 ms, after the
+ * engagement. */
 static void check_grace(const row_t *row, uint16_t phase_ms, unsigned not_counted) {
     fixture_init(&f);
     f.what = phase_ms == 1 ? "a frame 500 ms after the engagement" : "a frame 499 ms after the engagement";
@@ -76,7 +77,7 @@ static void check_grace(const row_t *row, uint16_t phase_ms, unsigned not_counte
     expect_fault(&f, row->fault, false); /* no longer engaged */
 }
 
-/* The next frame is bad or good. */
+/* Send a bad or a good frame. */
 static void send_one(const row_t *row, const uint8_t good[8], bool is_bad) {
     set_payload(row->message, is_bad ? row->bad : good);
     fixture_run_past(&f, row->message);
@@ -92,7 +93,7 @@ static void begin_scoring(const row_t *row, uint8_t good[8], const char *what) {
     }
 }
 
-/* One good frame before the last bad one: 2 (N - 1) - 1 + 2 is one too few, so it takes one bad frame more. */
+/* One good frame before the last bad one: 2 (N - 1) - 1 + 2 is 1 below 2 N, so one more bad frame is needed. */
 static void check_one_good(const row_t *row) {
     uint8_t good[8];
     begin_scoring(row, good, "one good frame");
@@ -105,7 +106,7 @@ static void check_one_good(const row_t *row) {
     expect_trip(&f, row->fault, f.traffic[row->message].call, row->hold_raw);
 }
 
-/* Every second frame bad is 1 for each two: with the bad one after 2 N - 2 such pairs it is 2 N. */
+/* Every second frame bad adds 1 in two frames: the bad frame after 2 N - 2 such pairs reaches 2 N. */
 static void check_every_second(const row_t *row) {
     uint8_t good[8];
     begin_scoring(row, good, "every second frame");
@@ -118,7 +119,7 @@ static void check_every_second(const row_t *row) {
     expect_trip(&f, row->fault, f.traffic[row->message].call, row->hold_raw);
 }
 
-/* Every third frame bad comes to nothing. */
+/* One bad frame in three never raises the fault. */
 static void check_every_third(const row_t *row) {
     uint8_t good[8];
     begin_scoring(row, good, "every third frame");
@@ -192,7 +193,7 @@ static void check_named_after_the_last(const uint8_t modes[5], agv_fault_t expec
     }
 }
 
-/* Any five of them count, and the name is the last one's. */
+/* Any five of them count; the last one names the fault. */
 /* Shows: SUP-5, EPS_MODE_OFF, EPS_MODE_INVALID, EPS_MODE_NOT_ANGLE */
 void test_eps_modes_mixed(void) {
     check_named_after_the_last((const uint8_t[5]){0x00, 0x04, 0x02, 0x77, 0xFF}, AGV_FAULT_EPS_MODE_OFF);
@@ -200,7 +201,7 @@ void test_eps_modes_mixed(void) {
     check_named_after_the_last((const uint8_t[5]){0xFF, 0x04, 0x00, 0x02, 0x03}, AGV_FAULT_EPS_MODE_NOT_ANGLE);
 }
 
-/* While the cause goes on the fault does, also after a gap. */
+/* The fault lasts as long as its cause, also after a gap. */
 /* Shows: SUP-5, EPS_MODE_OFF, EPS_MODE_INVALID, EPS_MODE_NOT_ANGLE */
 void test_a_gap_does_not_end_an_eps_mode_fault(void) {
     static const uint8_t MODES[] = {0xFF, 0x04, 0x00};
@@ -220,7 +221,7 @@ void test_a_gap_does_not_end_an_eps_mode_fault(void) {
     }
 }
 
-/* ---- Status values that are none: N = 3 ---- */
+/* ---- Invalid status values: N = 3 ---- */
 
 /* Shows: SUP-5, P2, GEAR_STATUS_INVALID */
 void test_gear_status_invalid(void) {
@@ -238,7 +239,7 @@ void test_throttle_status_invalid(void) {
     check(&(row_t){AGV_FAULT_THROTTLE_STATUS_INVALID, 7, AGV_MSG_THROTTLE_STATUS, 3, {255}, ANGLE_CENTRE});
 }
 
-/* 18001 = 4651h. With it the EPS is not without a fault: the steering is not held. */
+/* 18001 = 4651h. With this fault of the EPS the steering is not held. */
 /* Shows: SUP-5, P5, FSM-10, STEERING_ANGLE_INVALID */
 void test_steering_angle_invalid(void) {
     check(&(row_t){AGV_FAULT_STEERING_ANGLE_INVALID, 13, AGV_MSG_STEERING_STATUS, 3, {0, 100, 0x51, 0x46}, NO_HOLD});
@@ -282,11 +283,12 @@ static void set_throttle(uint8_t counts) {
 static void active_in_park(void) {
     fixture_active(&f);
     fixture_gear(&f, GEAR_P);
-    fixture_run(&f, 1000); /* P alone is nothing */
+    fixture_run(&f, 1000); /* P alone is no fault */
     expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
 }
 
-/* Above idle is more than 2 counts. Budget of 200 ms: from the frame on that is 200 ticks; then 1 ms down in each 2. */
+/* Above idle is more than 2 counts. The budget of 200 ms is 200 ticks from the frame on; then it decreases by 1 ms in
+ * each 2. */
 /* Shows: SUP-5, FSM-2, THROTTLE_IN_PARK */
 void test_throttle_in_park(void) {
     active_in_park();
@@ -309,7 +311,7 @@ void test_throttle_in_park(void) {
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_THROTTLE_IN_PARK));
 }
 
-/* What is idle is a setting. */
+/* The limit of idle is a setting. */
 /* Shows: SUP-5, THROTTLE_IN_PARK */
 void test_idle_is_a_setting(void) {
     f.config.throttle_idle_counts = 10;
@@ -322,7 +324,7 @@ void test_idle_is_a_setting(void) {
     expect_reason(&f, AGV_FAULT_THROTTLE_IN_PARK);
 }
 
-/* An invalid throttle is not used: the one before stands. */
+/* An invalid throttle is not used; the previous one stays valid. */
 /* Shows: SUP-5, THROTTLE_IN_PARK */
 void test_an_invalid_throttle_between_does_not_end_throttle_in_park(void) {
     active_in_park();
@@ -338,7 +340,7 @@ void test_an_invalid_throttle_between_does_not_end_throttle_in_park(void) {
     expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
 }
 
-/* The gear may also come second; out of P the budget goes down. */
+/* The gear may also change second. Out of P the budget decreases. */
 /* Shows: SUP-5, THROTTLE_IN_PARK */
 void test_park_with_throttle(void) {
     fixture_active(&f);
@@ -375,7 +377,7 @@ void test_one_good_frame_does_not_restart_throttle_in_park(void) {
     expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
 }
 
-/* A third of the time is as much down as up. */
+/* With a third of the time, increase and decrease are equal. */
 /* Shows: SUP-5, THROTTLE_IN_PARK */
 void test_throttle_in_park_for_a_third_of_the_time(void) {
     active_in_park();
@@ -390,7 +392,7 @@ void test_throttle_in_park_for_a_third_of_the_time(void) {
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_THROTTLE_IN_PARK));
 }
 
-/* While the last 363h has bit 8 clear nothing is judged: the budget stands still, and so does a score. */
+/* While bit 8 is clear in the last 363h nothing is judged: budgets and scores are paused. */
 /* Shows: SUP-5, THROTTLE_IN_PARK, EPS_MODE_OFF */
 void test_budgets_are_paused_while_not_judged(void) {
     active_in_park();
@@ -427,7 +429,7 @@ void test_throttle_in_park_counts_after_the_grace(void) {
     expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
 }
 
-/* However long: here an invalid throttle only warns. */
+/* Without limit of time; here an invalid throttle only warns. */
 /* Shows: SUP-5, THROTTLE_IN_PARK */
 void test_an_invalid_throttle_that_lasts_is_no_throttle_in_park(void) {
     agv_fault_set_put(&f.config.trips, AGV_FAULT_THROTTLE_STATUS_INVALID, false);
@@ -494,7 +496,7 @@ static void check_out_of_range(const command_t *command) {
     fixture_run(&f, 999);
     expect_led(&f, 14);
     expect_fault(&f, fault, true);
-    fixture_run(&f, 1); /* an event: ends after a second without another */
+    fixture_run(&f, 1); /* a transient: ends a second after the last occurrence */
     expect_fault(&f, fault, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, fault));
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, fault));
@@ -508,7 +510,7 @@ void test_commands_out_of_range(void) {
     }
 }
 
-/* Each one starts the second anew; it is one fault. */
+/* Each one restarts the second; it stays one fault. */
 /* Shows: SUP-5, AI_COMMAND_OUT_OF_RANGE */
 void test_commands_out_of_range_again_and_again(void) {
     fixture_active(&f);
@@ -522,7 +524,7 @@ void test_commands_out_of_range_again_and_again(void) {
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE));
 }
 
-/* Every value at the edge of the range is in it; reserved bytes are ignored. */
+/* The limits of the ranges are valid; reserved bytes are ignored. */
 /* Shows: SUP-5, P14, AI_COMMAND_OUT_OF_RANGE */
 void test_commands_in_range(void) {
     static const command_t IN_RANGE[] = {
@@ -547,7 +549,7 @@ void test_commands_in_range(void) {
 
 /* ---- Scores and the engagement ---- */
 
-/* The engagement ends with the third 363h without bit 8, and begins so long after it. */
+/* The engagement ends with the third 363h without bit 8, and begins again this long after it. */
 static void engage_again_after(uint32_t ms) {
     fixture_mode(&f, MODE_MANUAL);
     for (unsigned i = 0; i < 3; i++) {
@@ -565,8 +567,8 @@ static void engage_again_after(uint32_t ms) {
     fixture_run(&f, 10);
 }
 
-/* The fault is there; it ends with the engagement. The next one begins more than 100 ms later and settles before the next bad
- * frame comes: the score begins at 0. */
+/* The fault ends with the engagement. The next engagement begins more than 100 ms later, and its grace time ends before
+ * the next bad frame: the score starts at 0. */
 static void check_scores_anew(agv_fault_t fault, agv_message_t message, unsigned frames) {
     fixture_run(&f, 300);
     fixture_run_past(&f, message);
@@ -607,7 +609,7 @@ void test_every_engagement_scores_invalid_angles_anew(void) {
     check_scores_anew(AGV_FAULT_STEERING_ANGLE_INVALID, AGV_MSG_STEERING_STATUS, 3);
 }
 
-/* One that begins within 100 ms continues the last one: no grace and no score begins afresh. */
+/* An engagement that begins within 100 ms continues the last one: neither grace time nor scores restart. */
 /* Shows: SUP-5, EPS_MODE_OFF */
 void test_a_continued_engagement_goes_on_with_its_scores(void) {
     fixture_active(&f);
@@ -623,7 +625,7 @@ void test_a_continued_engagement_goes_on_with_its_scores(void) {
     expect_trip(&f, AGV_FAULT_EPS_MODE_OFF, f.traffic[AGV_MSG_EPS_STATUS].call, NO_HOLD);
 }
 
-/* The bits of 167h are counted in every mode: the end of an engagement starts nothing anew. */
+/* The bits of 167h count in every mode: the end of an engagement does not clear their scores. */
 /* Shows: SUP-4, EPS_UNDER_VOLTAGE */
 void test_the_end_of_an_engagement_does_not_end_the_count_of_a_bit(void) {
     fixture_active(&f);

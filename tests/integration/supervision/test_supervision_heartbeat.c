@@ -1,5 +1,5 @@
-/* The heartbeats of VCU and EPS (SUP-1, SUP-2): when they are lost, when stuck, what counts as a beat. Hand-worked: the
- * deadline is 50 ms, so 50 ms after the last change nothing, 51 ms after it the trip, in that tick. */
+/* The heartbeats of VCU and EPS (SUP-1, SUP-2): lost, stuck, and frames that count as a heartbeat. Calculated by hand:
+ * the deadline is 50 ms, so there is no fault 50 ms after the last change, and a trip in the tick 51 ms after it. */
 #include "expect.h"
 #include "one_fixture.h"
 
@@ -22,14 +22,14 @@ static void expect_no_trip(const node_t *node, agv_state_t state) {
     expect_nothing(&f, node->stuck, state);
 }
 
-/* The last change has just been; from now on the message comes only when the test sends it. */
+/* The counter has just changed. From now on only the test sends the message. */
 static void take_over(const node_t *node) {
     f.what = node->name;
     fixture_run_past(&f, node->message);
     f.traffic[node->message].muted = true;
 }
 
-/* One repeat so long after the last change, then silence: is it stuck or lost 51 ms after the change? */
+/* One repeat this long after the last change, then silence: stuck or lost, 51 ms after the change. */
 static void check_last_repeat(const node_t *node, uint32_t repeat_ms, agv_fault_t expected) {
     fixture_init(&f);
     fixture_standby(&f);
@@ -52,7 +52,7 @@ void test_stuck_needs_a_repeat_within_the_last_two_cycles(void) {
     check_last_repeat(&EPS, 31, AGV_FAULT_EPS_HEARTBEAT_STUCK);
 }
 
-/* However long it was silent before: when it is alive again it can get stuck again. */
+/* After a long silence an alive sender can become stuck again. */
 /* Shows: SUP-2, VCU_HEARTBEAT_STUCK */
 void test_stuck_after_a_long_silence(void) {
     fixture_start(&f);
@@ -88,7 +88,7 @@ static void send_counter(const node_t *node, uint8_t counter) {
     fixture_send_now(&f, node->message);
 }
 
-/* Alive is a value that changed, whatever it changed to. One each 50 ms is enough. */
+/* Any changed value counts. One change each 50 ms is enough. */
 /* Shows: SUP-1, SUP-2, P13 */
 void test_any_change_is_a_heartbeat(void) {
     static const uint8_t VALUES[] = {1, 0, 255, 0, 128, 127, 129, 255, 254, 0};
@@ -108,7 +108,8 @@ void test_any_change_is_a_heartbeat(void) {
     }
 }
 
-/* Repeats in between change nothing: a counter that moves every 50 ms is alive, one that moves every 60 ms is stuck. */
+/* Repeats in between do not matter: a counter that changes every 50 ms is alive, one that changes every 60 ms is
+ * stuck. */
 /* Shows: SUP-1, SUP-2, P13, VCU_HEARTBEAT_STUCK */
 void test_repeats_between_changes(void) {
     fixture_standby(&f);
@@ -150,7 +151,8 @@ void test_only_a_changed_counter_is_a_heartbeat(void) {
     }
 }
 
-/* The first frame ever proves nothing: the deadline runs from the start, and a counter that never changes is stuck. */
+/* The very first frame is only the baseline: the deadline runs from the start, and a counter that never changes is
+ * stuck. */
 static void check_start(const node_t *node, bool muted, agv_fault_t expected) {
     fixture_init(&f);
     f.what = node->name;
@@ -177,7 +179,7 @@ void test_the_first_frame_is_only_the_baseline(void) {
     check_start(&EPS, false, AGV_FAULT_EPS_HEARTBEAT_STUCK);
 }
 
-/* One frame and silence: it refreshed nothing. */
+/* One frame, then silence: it refreshed nothing. */
 /* Shows: SUP-2, VCU_HEARTBEAT_LOST */
 void test_one_single_frame_after_the_start(void) {
     fixture_start(&f);
@@ -188,7 +190,7 @@ void test_one_single_frame_after_the_start(void) {
     expect_fault(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, true);
 }
 
-/* An angle that is no angle still comes with a heartbeat (and is never used). */
+/* A frame with an invalid angle still counts as a heartbeat (the angle is never used). */
 /* Shows: SUP-5, EPS_HEARTBEAT_LOST */
 void test_a_frame_with_an_invalid_angle_is_a_heartbeat(void) {
     fixture_standby(&f);
@@ -201,7 +203,7 @@ void test_a_frame_with_an_invalid_angle_is_a_heartbeat(void) {
     expect_trip(&f, AGV_FAULT_EPS_HEARTBEAT_LOST, f.call, NO_HOLD);
 }
 
-/* Frames that waited and are handed over late do not look fresh: what counts is when they were received. */
+/* Frames that waited in a queue do not look fresh: their receive time counts. */
 /* Shows: SUP-2, TIM-4, VCU_HEARTBEAT_LOST */
 void test_a_backlog_does_not_look_fresh(void) {
     fixture_standby(&f);
@@ -253,7 +255,7 @@ void test_the_deadlines_are_settings(void) {
     expect_trip(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, f.call, NO_HOLD);
 }
 
-/* Engagement begins the deadlines of three commands, and no other: 363h itself reports autopilot, with a frozen counter. */
+/* An engagement starts only the deadlines of the three commands: 363h with a frozen counter reports autopilot. */
 /* Shows: SUP-2, SUP-3, VCU_HEARTBEAT_STUCK */
 void test_an_engagement_is_no_heartbeat_of_the_vcu(void) {
     fixture_standby(&f);
@@ -270,7 +272,7 @@ void test_an_engagement_is_no_heartbeat_of_the_vcu(void) {
 
 /* ---- increments: the counter has to count up ---- */
 
-/* A right step has just come. */
+/* A frame with a right step has just come. */
 static void begin_counting(const node_t *node) {
     fixture_init(&f);
     f.config.vcu_counter = AGV_COUNTER_INCREMENTS;
@@ -299,7 +301,7 @@ void test_steps_of_1_to_3_are_heartbeats(void) {
     }
 }
 
-/* Every other step is a frame that does not refresh: at the deadline its sender is stuck, though all counters changed. */
+/* Every other step does not refresh: at the deadline its sender is stuck, although all counters changed. */
 static void check_wrong_steps(const node_t *node, unsigned step) {
     begin_counting(node);
     f.what = node->name;
@@ -322,7 +324,7 @@ void test_other_steps_are_no_heartbeats(void) {
     }
 }
 
-/* After a wrong one the first right step does not refresh the age, the second does. */
+/* After a wrong step the first right one does not refresh, the second does. */
 /* Shows: SUP-2, VCU_HEARTBEAT_STUCK */
 void test_after_a_wrong_step_it_takes_two_right_ones(void) {
     begin_counting(&VCU);
@@ -350,7 +352,7 @@ void test_after_a_wrong_step_it_takes_two_right_ones(void) {
     expect_trip(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, f.call, NO_HOLD);
 }
 
-/* Right and wrong in turn never are two right ones in a row. */
+/* Alternating right and wrong steps never have two right ones in a row. */
 /* Shows: SUP-2, VCU_HEARTBEAT_STUCK */
 void test_every_second_step_wrong(void) {
     begin_counting(&VCU);
@@ -363,7 +365,7 @@ void test_every_second_step_wrong(void) {
     expect_trip(&f, AGV_FAULT_VCU_HEARTBEAT_STUCK, f.call, NO_HOLD);
 }
 
-/* The step is from the frame before, whether that one counted or not. */
+/* A step counts from the previous frame, whether that one counted or not. */
 /* Shows: SUP-2 */
 void test_a_step_is_from_the_frame_before(void) {
     begin_counting(&VCU);
@@ -378,7 +380,7 @@ void test_a_step_is_from_the_frame_before(void) {
     }
 }
 
-/* A choice of each sender: by default any change is a beat of the other one. */
+/* Each sender has its own setting: by default any change of the other one is a heartbeat. */
 /* Shows: SUP-2 */
 void test_each_sender_has_its_own_choice(void) {
     f.config.vcu_counter = AGV_COUNTER_INCREMENTS;

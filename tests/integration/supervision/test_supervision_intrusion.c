@@ -22,7 +22,7 @@ static void check_foreign(agv_id_set_t id_set, uint32_t id) {
     fixture_standby(&f);
     send_foreign(id, 8);
     expect_trip(&f, FOREIGN, f.call, NO_HOLD);
-    TEST_ASSERT_EQUAL_UINT32(3, f.sent_count); /* nothing of it went on to the AI side */
+    TEST_ASSERT_EQUAL_UINT32(3, f.sent_count); /* it was not forwarded to the AI side */
     fixture_run(&f, 1);
     expect_led(&f, 14);
     gateway(id_set);
@@ -48,7 +48,7 @@ void test_each_command_on_the_vehicle_side(void) {
     }
 }
 
-/* Each one starts the second anew; it is one fault. */
+/* Each one restarts the second; it stays one fault. */
 /* Shows: SUP-6, FOREIGN_COMMAND_SENDER */
 void test_a_foreign_sender_goes_on(void) {
     gateway(AGV_ID_SET_HEADING);
@@ -92,7 +92,7 @@ void test_a_foreign_command_of_any_length(void) {
     }
 }
 
-/* A remote request or a frame with a 29-bit identifier is none, nor is the other set's identifier, nor an unknown one. */
+/* No foreign commands: remote requests, 29-bit identifiers, the other set's identifiers, unknown identifiers. */
 /* Shows: SUP-6, P1, P15, FOREIGN_COMMAND_SENDER */
 void test_frames_that_are_no_foreign_command(void) {
     static const uint8_t FLAGS[] = {HAL_CAN_EXTENDED, HAL_CAN_REMOTE, HAL_CAN_ERROR};
@@ -125,7 +125,7 @@ void test_no_foreign_sender_on_the_shared_bus(void) {
 
 static const agv_fault_t FAST = AGV_FAULT_COMMAND_TOO_FAST;
 
-/* The first frame comes a whole cycle after the one before; then so many gaps. */
+/* The first frame comes a whole cycle after the previous one; then this many gaps follow. */
 static void send_first(agv_message_t message) {
     fixture_run_past(&f, message);
     f.traffic[message].muted = true;
@@ -220,7 +220,7 @@ void test_a_second_sender_right_behind_the_first(void) {
     }
 }
 
-/* Gaps as they should be take 1 each from the 20. */
+/* Each gap of a full cycle takes 1 from the 20. */
 /* Shows: SUP-6, COMMAND_TOO_FAST */
 void test_twenty_good_gaps_end_it(void) {
     fixture_standby(&f);
@@ -251,7 +251,7 @@ void test_a_silence_longer_than_the_deadline_sets_the_score_to_0(void) {
     }
 }
 
-/* It trips by choice: in that frame. */
+/* As a trip by setting, it trips in that frame. */
 /* Shows: SUP-6, COMMAND_TOO_FAST */
 void test_too_fast_may_be_made_a_trip(void) {
     agv_fault_set_put(&f.config.trips, FAST, true);
@@ -261,7 +261,7 @@ void test_too_fast_may_be_made_a_trip(void) {
     expect_trip(&f, FAST, f.call, ANGLE_CENTRE);
 }
 
-/* A value out of range does not keep a frame from being one of too many (in manual it is dropped). */
+/* Frames with a value out of range count, too (in manual they are dropped). */
 /* Shows: SUP-5, SUP-6, COMMAND_TOO_FAST */
 void test_frames_out_of_range_count_too(void) {
     fixture_standby(&f);
@@ -273,7 +273,7 @@ void test_frames_out_of_range_count_too(void) {
     expect_warning(&f, FAST, AGV_STATE_STANDBY);
 }
 
-/* Each command is counted for itself. */
+/* Each command is counted separately. */
 /* Shows: SUP-6, COMMAND_TOO_FAST */
 void test_fast_gaps_of_different_commands_do_not_add_up(void) {
     fixture_standby(&f);
@@ -284,7 +284,7 @@ void test_fast_gaps_of_different_commands_do_not_add_up(void) {
     expect_nothing(&f, FAST, AGV_STATE_STANDBY);
 }
 
-/* While engaged it is the same warning, in INIT too; and the number of gaps is a setting. */
+/* The same warning while engaged and in INIT. The number of gaps is a setting. */
 /* Shows: SUP-6, COMMAND_TOO_FAST */
 void test_too_fast_in_other_states(void) {
     f.config.command_too_fast_gaps = 2;
@@ -314,7 +314,7 @@ void test_malformed_frames_are_not_too_fast(void) {
     expect_nothing(&f, FAST, AGV_STATE_STANDBY);
 }
 
-/* The rate is watched in every mode: the end of an engagement starts nothing anew. */
+/* The rate is checked in every mode: the end of an engagement does not clear the score. */
 /* Shows: SUP-6, COMMAND_TOO_FAST */
 void test_gaps_are_counted_across_the_end_of_an_engagement(void) {
     fixture_active(&f);

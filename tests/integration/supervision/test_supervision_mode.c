@@ -1,12 +1,12 @@
-/* The mode itself (SUP-9): too many engagements, and a mode that is none. And what an engagement is: it ends with the third
- * 363h in a row without bit 8, and one that begins within 100 ms continues it. */
+/* The mode (SUP-9): too many engagements, and a missing mode. An engagement ends with the third 363h in a row without
+ * bit 8; one that begins within 100 ms continues it. */
 #include "expect.h"
 #include "one_fixture.h"
 #include "walk.h"
 
 static const agv_message_t VCU = AGV_MSG_VEHICLE_STATUS;
 
-/* The next 363h report this, so many of them. */
+/* The next 363h frames, this many, report this mode. */
 static void report(uint8_t mode, unsigned frames) {
     fixture_mode(&f, mode);
     for (unsigned i = 0; i < frames; i++) {
@@ -32,7 +32,7 @@ void test_an_engagement_ends_with_the_third_frame(void) {
     }
 }
 
-/* Both bits are not without bit 8. */
+/* A frame with both bits has bit 8. */
 /* Shows: SUP-9, MODE_INVALID */
 void test_both_bits_in_between_count_anew(void) {
     fixture_active(&f);
@@ -56,7 +56,7 @@ void test_the_number_of_frames_is_a_setting(void) {
 
 static const agv_fault_t FLAPPING = AGV_FAULT_MODE_FLAPPING;
 
-/* The engagement ends, and begins again with the 363h that comes so long after the one that began it. */
+/* The engagement ends, and begins again with the 363h this long after the one that began it. */
 static void flap(uint32_t period_ms) {
     const uint32_t began_ms = f.now_ms;
     report(MODE_MANUAL, 3);
@@ -66,7 +66,7 @@ static void flap(uint32_t period_ms) {
     fixture_run(&f, 1);
 }
 
-/* Standing it is engaged; the wheels turn, so that the steering is held at the trip. */
+/* Engaged at standstill; then the wheels turn, so that the steering is held at the trip. */
 static void engage_first(void) {
     fixture_standby(&f);
     fixture_wheels(&f, 500, 500);
@@ -75,7 +75,7 @@ static void engage_first(void) {
     expect_state(&f, AGV_STATE_ACTIVE);
 }
 
-/* The fourth one 5000 ms after the first trips, in that frame; 5010 ms after it is nothing. */
+/* The fourth engagement 5000 ms after the first trips in its frame; at 5010 ms there is no fault. */
 /* Shows: SUP-9, FSM-2, MODE_FLAPPING */
 void test_the_fourth_engagement_within_5_s(void) {
     for (unsigned i = 0; i < 2; i++) {
@@ -97,7 +97,7 @@ void test_the_fourth_engagement_within_5_s(void) {
     }
 }
 
-/* It is an event: it ends after a second. */
+/* A transient: it ends after a second. */
 /* Shows: SUP-9, MODE_FLAPPING */
 void test_mode_flapping_is_a_transient(void) {
     engage_first();
@@ -111,7 +111,7 @@ void test_mode_flapping_is_a_transient(void) {
     expect_fault(&f, FLAPPING, false);
 }
 
-/* Any four that follow each other: the first ones may be long ago. */
+/* Any four successive engagements count; earlier ones do not matter. */
 /* Shows: SUP-9, MODE_FLAPPING */
 void test_the_last_four_count(void) {
     engage_first();
@@ -137,7 +137,7 @@ void test_glitches_count(void) {
     expect_reason(&f, FLAPPING);
 }
 
-/* One or two frames without the bit end nothing, so they count nothing. */
+/* One or two frames without the bit do not end the engagement, so they do not count. */
 /* Shows: SUP-9, MODE_FLAPPING */
 void test_frames_that_end_no_engagement_do_not_count(void) {
     fixture_active(&f);
@@ -148,7 +148,8 @@ void test_frames_that_end_no_engagement_do_not_count(void) {
     expect_nothing(&f, FLAPPING, AGV_STATE_ACTIVE);
 }
 
-/* What began while it was TRIPPED does not count; what began before a reset does: three of them, a trip and a reset. */
+/* Engagements that begin in TRIPPED do not count, but those before a reset do: three engagements, a trip and a
+ * reset. */
 /* Shows: SUP-9, MODE_FLAPPING */
 void test_engagements_while_tripped_do_not_count(void) {
     f.config.mode_flapping_ms = 60000;
@@ -222,7 +223,7 @@ void test_no_mode_after_an_engagement(void) {
     expect_trip(&f, NONE, f.call, ANGLE_CENTRE);
 }
 
-/* At standstill it is nothing, and standstill ends it. */
+/* At standstill there is no fault, and standstill ends it. */
 /* Shows: SUP-9, MODE_NONE */
 void test_no_mode_at_standstill(void) {
     fixture_standby(&f);
@@ -256,7 +257,8 @@ void test_a_mode_in_between_takes_half_its_time_off(void) {
     }
 }
 
-/* Engaged, with neither bit in two frames of three: 15 ms in three frames, so within 35 times three. One in four is lived with. */
+/* Engaged, with neither bit in two frames of three: 15 ms in three frames, so within 35 times three. One in four is
+ * tolerated. */
 /* Shows: SUP-9, MODE_NONE */
 void test_no_mode_in_two_frames_of_three(void) {
     walk_driving(&f, 500);
@@ -272,7 +274,7 @@ void test_no_mode_in_two_frames_of_three(void) {
     expect_reason(&f, NONE);
 }
 
-/* In INIT and while TRIPPED it is none. */
+/* Not checked in INIT and TRIPPED. */
 /* Shows: SUP-9, MODE_NONE */
 void test_no_mode_in_other_states(void) {
     fixture_mode(&f, MODE_NEITHER);

@@ -1,5 +1,6 @@
-/* The vehicle obeys its commands (SUP-11), and both measurements of its speed agree (SUP-12): budgets. Hand-worked: the tick of a
- * frame's own millisecond is the first of a budget, so T ms are over T - 1 ms later; it goes down at half the rate. */
+/* The vehicle obeys its commands (SUP-11), and both measurements of its speed agree (SUP-12): budgets. Calculated by
+ * hand: the tick in the millisecond of a frame is the first of a budget, so T ms are reached T - 1 ms later. A budget
+ * decreases at half the rate. */
 #include "expect.h"
 #include "one_fixture.h"
 #include "walk.h"
@@ -9,7 +10,7 @@ static const agv_fault_t GEAR = AGV_FAULT_GEAR_DEVIATION;
 static const agv_fault_t IGNORED = AGV_FAULT_AUTOPILOT_OFF_IGNORED;
 static const agv_fault_t SPEED = AGV_FAULT_SPEED_IMPLAUSIBLE;
 
-/* A new first byte, from the message's next frame on: that frame has just come. */
+/* Set the first byte of a message, and run until its next frame has come. */
 static void send_first_byte(agv_message_t message, uint8_t value) {
     fixture_run_before(&f, message);
     f.traffic[message].data[0] = value;
@@ -41,7 +42,7 @@ static void expect_trip_at(agv_fault_t fault, uint32_t moment_ms, int led) {
     expect_led(&f, led);
 }
 
-/* Engaged in D, commanded too. The wheels turn, so that the steering is held at a trip. */
+/* Engaged in D, as commanded. The wheels turn, so that the steering is held at a trip. */
 static void active_in_d(void) {
     fixture_active(&f);
     fixture_wheels(&f, 500, 500);
@@ -65,7 +66,7 @@ void test_throttle_above_its_command(void) {
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, THROTTLE));
 }
 
-/* 25 counts are none, and below the command is none. */
+/* No fault with 25 counts above the command, or with less than the command. */
 /* Shows: SUP-11, THROTTLE_DEVIATION */
 void test_throttle_that_is_as_commanded(void) {
     active_in_d();
@@ -112,7 +113,7 @@ void test_a_rise_counts_against_the_ramp(void) {
     }
 }
 
-/* What it came down while nothing was wrong does not count. */
+/* A decrease before the deviation does not count. */
 /* Shows: SUP-11, THROTTLE_DEVIATION */
 void test_a_ramp_from_before_does_not_count(void) {
     active_in_d();
@@ -126,7 +127,7 @@ void test_a_ramp_from_before_does_not_count(void) {
     expect_trip_at(THROTTLE, began_ms + 499u, 7);
 }
 
-/* One good frame in twenty does not restart it: 190 - 5, and 315 more. */
+/* One good frame in twenty does not restart the budget: 190 - 5, and 315 more. */
 /* Shows: SUP-11, THROTTLE_DEVIATION */
 void test_one_good_throttle_does_not_restart_it(void) {
     active_in_d();
@@ -138,7 +139,8 @@ void test_one_good_throttle_does_not_restart_it(void) {
     expect_trip_at(THROTTLE, f.now_ms + 314u, 7);
 }
 
-/* No command yet: not judged; the deadline does that. An old one, of before the engagement, is none. */
+/* Without a command nothing is compared; the deadline covers that. A command from before the engagement does not
+ * count. */
 /* Shows: SUP-11, SUP-3, THROTTLE_COMMAND_TIMEOUT */
 void test_without_a_command_there_is_no_deviation(void) {
     f.config.engaged_grace_ms = 50;
@@ -158,7 +160,7 @@ void test_without_a_command_there_is_no_deviation(void) {
     expect_reason(&f, THROTTLE);
 }
 
-/* Not in manual; and after the engagement when the grace is over. */
+/* Not in manual, and only after the grace time of the engagement. */
 /* Shows: SUP-11, THROTTLE_DEVIATION */
 void test_throttle_deviation_counts_after_the_grace(void) {
     fixture_standby(&f);
@@ -173,7 +175,7 @@ void test_throttle_deviation_counts_after_the_grace(void) {
     expect_trip_at(THROTTLE, f.now_ms + 999u, 7);
 }
 
-/* Gateway: compared with what was sent on. 40 % of 250 are 100 counts. */
+/* Gateway: compared with the forwarded command. 40 % of 250 are 100 counts. */
 /* Shows: SUP-11, TOP-2, THROTTLE_DEVIATION */
 void test_the_throttle_is_compared_with_the_forwarded_command(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
@@ -214,11 +216,11 @@ void test_d_or_r_against_the_command(void) {
     check_gear(GEAR_D, GEAR_P, true);
     check_gear(GEAR_R, GEAR_N, true);
     check_gear(GEAR_R, GEAR_D, true);
-    check_gear(GEAR_N, GEAR_D, false); /* N goes nowhere */
+    check_gear(GEAR_N, GEAR_D, false); /* N does not move the vehicle */
     check_gear(GEAR_D, GEAR_D, false);
 }
 
-/* At idle it is none; 3 counts are above it. It goes down at half the rate. */
+/* No fault at idle; 3 counts are above it. The budget decreases at half the rate. */
 /* Shows: SUP-11, GEAR_DEVIATION */
 void test_a_gear_deviation_needs_throttle(void) {
     fixture_active(&f); /* D, commanded P */
@@ -257,7 +259,7 @@ void test_autopilot_off_is_ignored(void) {
     expect_fault(&f, IGNORED, false);
 }
 
-/* The VCU obeys within the second: nothing, and the next engagement begins with a command of its own. */
+/* The VCU obeys within the second: no fault, and the next engagement starts without the old command. */
 /* Shows: SUP-11, AUTOPILOT_OFF_IGNORED */
 void test_autopilot_off_is_obeyed(void) {
     active_in_d();
@@ -272,7 +274,7 @@ void test_autopilot_off_is_obeyed(void) {
     expect_nothing(&f, IGNORED, AGV_STATE_ACTIVE);
 }
 
-/* Every second 43Fh asks for it: as much up as down is 1 ms in each 4, so some 4 s. */
+/* Every second 43Fh requests it: the budget increases by 1 ms in each 4, so it takes some 4 s. */
 /* Shows: SUP-11, AUTOPILOT_OFF_IGNORED */
 void test_autopilot_off_asked_for_now_and_then(void) {
     active_in_d();
@@ -309,7 +311,7 @@ void test_the_budgets_are_settings(void) {
 
 /* ---- SPEED_IMPLAUSIBLE: 36 counts of 363h are 10 mm/s ---- */
 
-/* 363h and 101h with these speeds, from now on: both have just come, in the same millisecond. */
+/* Set the speeds of 363h and 101h, and run until both have come, in the same millisecond. */
 static void set_speeds(uint16_t counts, int32_t left_mm_s, int32_t right_mm_s) {
     f.traffic[AGV_MSG_WHEEL_SPEED].phase_ms = f.traffic[AGV_MSG_VEHICLE_STATUS].phase_ms;
     fixture_run_before(&f, AGV_MSG_VEHICLE_STATUS);
@@ -326,8 +328,8 @@ static void expect_warning_at(uint32_t moment_ms) {
     expect_led(&f, 8);
 }
 
-/* 1000 mm/s of the VCU (3600 counts): a quarter of it and 500 are 750, so wheels at 250 agree, at 249 they do not. And the
- * other way round: wheels at 2000 allow 1000. */
+/* 1000 mm/s of the VCU (3600 counts): a quarter of it and 500 are 750, so wheels at 250 agree, at 249 they do not. In
+ * the other direction wheels at 2000 allow 1000. */
 /* Shows: SUP-12, SPEED_IMPLAUSIBLE */
 void test_two_measurements_of_speed(void) {
     fixture_standby(&f);
@@ -354,7 +356,7 @@ void test_wheels_faster_than_the_vcu_reports(void) {
     expect_warning_at(f.now_ms + 999u);
 }
 
-/* The amount of the mean: backwards is as fast as forwards, on the spot is no speed. */
+/* The absolute value of the mean counts: backwards is as fast as forwards, turning on the spot is no speed. */
 /* Shows: SUP-12, SPEED_IMPLAUSIBLE */
 void test_the_mean_of_both_wheels_in_amount(void) {
     fixture_standby(&f);
@@ -367,7 +369,7 @@ void test_the_mean_of_both_wheels_in_amount(void) {
     expect_warning_at(f.now_ms + 999u);
 }
 
-/* As long as the VCU never reported a speed there is nothing to compare. */
+/* Nothing is compared until the VCU has reported a speed. */
 /* Shows: SUP-12, SPEED_IMPLAUSIBLE */
 void test_a_vcu_that_reports_no_speed(void) {
     fixture_standby(&f);
@@ -383,7 +385,7 @@ void test_a_vcu_that_reports_no_speed(void) {
     expect_warning(&f, SPEED, AGV_STATE_STANDBY);
 }
 
-/* Without fresh 101h (here a warning) the budget goes down. */
+/* Without a fresh 101h (here a warning) the budget decreases. */
 /* Shows: SUP-12, SPEED_IMPLAUSIBLE */
 void test_without_fresh_wheel_speeds_there_is_nothing_to_compare(void) {
     agv_fault_set_put(&f.config.trips, AGV_FAULT_WHEEL_SPEED_TIMEOUT, false);
@@ -394,7 +396,7 @@ void test_without_fresh_wheel_speeds_there_is_nothing_to_compare(void) {
     expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
 }
 
-/* A trip by choice; the largest values on the wire are no problem. */
+/* As a trip by setting, and with the largest values of the messages. */
 /* Shows: SUP-12, SPEED_IMPLAUSIBLE */
 void test_it_may_be_made_a_trip(void) {
     agv_fault_set_put(&f.config.trips, SPEED, true);

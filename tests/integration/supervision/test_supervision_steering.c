@@ -1,19 +1,20 @@
 /* STEERING_DEVIATION (SUP-10): a budget of 500 ms with the measured steering more than 50.0 degrees from its command; each
  * 25.0 degrees by which the measured angle has come nearer by its own motion empty it. Raw counts are 0.1 degree: 500 is 50.0
- * degrees. Hand-worked: the tick of a frame's own millisecond is the first of the budget, so 500 ms are over 499 ms later. */
+ * degrees. Calculated by hand: the tick in the millisecond of a frame is the first of the budget, so 500 ms are reached
+ * 499 ms later. */
 #include "expect.h"
 #include "one_fixture.h"
 
 static const agv_fault_t FAULT = AGV_FAULT_STEERING_DEVIATION;
 
-/* A new command, from its next frame on: that frame has just come. */
+/* Set the commanded angle, and run until its next frame has come. */
 static void command(uint16_t raw) {
     fixture_run_before(&f, AGV_MSG_STEERING_COMMAND);
     fixture_command_angle(&f, raw);
     fixture_run(&f, 1);
 }
 
-/* A new measured angle, from its next frame on: that frame has just come. */
+/* Set the measured angle, and run until its next frame has come. */
 static void measure(uint16_t raw) {
     fixture_run_before(&f, AGV_MSG_STEERING_STATUS);
     fixture_angle(&f, raw);
@@ -43,7 +44,7 @@ void test_more_than_50_degrees_for_500_ms(void) {
     }
 }
 
-/* 50.0 degrees are none any more: 500 ms of budget take 1000 ms to go. */
+/* 50.0 degrees are no deviation: the budget of 500 ms takes 1000 ms to decrease to 0. */
 /* Shows: SUP-10, STEERING_DEVIATION */
 void test_a_deviation_ends_when_its_budget_is_empty(void) {
     fixture_active(&f);
@@ -80,7 +81,7 @@ void test_50_degrees_are_no_deviation(void) {
     TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
 }
 
-/* Up for 475 ms, down for 25 ms (one command), which takes 12: it takes 37 ms more. */
+/* 475 ms with the deviation, 25 ms (one command) without, which take 12 off: 37 ms more are needed. */
 /* Shows: SUP-10, STEERING_DEVIATION */
 void test_one_good_command_does_not_restart_it(void) {
     fixture_active(&f);
@@ -93,7 +94,7 @@ void test_one_good_command_does_not_restart_it(void) {
     expect_trip_at(began_ms + 536u, ANGLE_CENTRE);
 }
 
-/* A third of the time is as much down as up. */
+/* With a third of the time, increase and decrease are equal. */
 /* Shows: SUP-10, STEERING_DEVIATION */
 void test_off_for_a_third_of_the_time(void) {
     fixture_active(&f);
@@ -117,7 +118,7 @@ void test_a_gain_of_24_9_degrees_is_not_enough(void) {
     expect_trip_at(began_ms + 499u, 9249);
 }
 
-/* 25.0 degrees are: the budget is empty with that frame. And only once: the next 25.0 degrees have to be gained too. */
+/* 25.0 degrees are enough: the budget is empty with that frame, once. The next time needs another 25.0 degrees. */
 /* Shows: SUP-10, STEERING_DEVIATION */
 void test_a_gain_of_25_0_degrees_starts_anew(void) {
     fixture_active(&f);
@@ -145,7 +146,7 @@ void test_a_gain_in_small_steps(void) {
     expect_trip_at(gained_ms + 499u, 9250);
 }
 
-/* The command comes back by 30.0 degrees: that is not the steering's own motion. */
+/* The command comes nearer by 30.0 degrees: that is not motion of the steering. */
 /* Shows: SUP-10, STEERING_DEVIATION */
 void test_the_commands_own_motion_is_no_gain(void) {
     fixture_active(&f);
@@ -156,7 +157,7 @@ void test_the_commands_own_motion_is_no_gain(void) {
     expect_trip_at(began_ms + 499u, ANGLE_CENTRE);
 }
 
-/* Nearer is nearer to the command of that moment: 20.0 degrees to the left, and then, for a command on the left, 5.0. */
+/* The gain is measured against the current command: 20.0 degrees to the left, then 5.0 for a command on the left. */
 /* Shows: SUP-10, STEERING_DEVIATION */
 void test_a_gain_is_against_the_command_of_its_moment(void) {
     fixture_active(&f);
@@ -192,7 +193,7 @@ void test_steps_away_count_against_the_gain(void) {
     }
 }
 
-/* To and fro is none, however long. */
+/* Motion to and fro is no gain, however long. */
 /* Shows: SUP-10, STEERING_DEVIATION */
 void test_to_and_fro_is_no_gain(void) {
     fixture_active(&f);
@@ -207,7 +208,7 @@ void test_to_and_fro_is_no_gain(void) {
     expect_reason(&f, FAULT);
 }
 
-/* 40.0 degrees at once empty it; the 15.0 above do not count for the next 25.0. */
+/* 40.0 degrees at once empty the budget; the surplus of 15.0 does not count for the next 25.0. */
 /* Shows: SUP-10, STEERING_DEVIATION */
 void test_nothing_of_a_gain_is_left_over(void) {
     fixture_active(&f);
@@ -220,7 +221,7 @@ void test_nothing_of_a_gain_is_left_over(void) {
     expect_trip_at(gained_ms + 499u, 9649);
 }
 
-/* What the steering gained before, when the budget was 0, does not count either. */
+/* A gain while the budget was 0 does not count either. */
 /* Shows: SUP-10, STEERING_DEVIATION */
 void test_a_gain_from_before_does_not_count(void) {
     fixture_active(&f);
@@ -244,7 +245,7 @@ void test_a_gain_across_an_invalid_angle(void) {
     expect_trip_at(f.now_ms + 499u, 9250);
 }
 
-/* Without any valid measured angle there is nothing to compare. */
+/* Without any valid measured angle nothing is compared. */
 /* Shows: SUP-10, STEERING_DEVIATION */
 void test_without_a_measured_angle_there_is_no_deviation(void) {
     fixture_angle(&f, 18001);
@@ -272,7 +273,7 @@ void test_a_slow_eps_is_no_deviation(void) {
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, FAULT));
 }
 
-/* A command that moves on and on does not excuse: the difference grows, it does not shrink. */
+/* A command that keeps moving away does not prevent the fault, because the difference grows. */
 /* Shows: SUP-10, STEERING_DEVIATION */
 void test_a_growing_difference(void) {
     fixture_active(&f);
@@ -285,20 +286,20 @@ void test_a_growing_difference(void) {
     expect_trip_at(began_ms + 499u, ANGLE_CENTRE);
 }
 
-/* Off from the start: the 500 ms begin when the grace of 500 ms is over. */
+/* With a deviation from the start the 500 ms begin after the grace time of 500 ms. */
 /* Shows: SUP-10, STEERING_DEVIATION */
 void test_deviation_counts_after_the_grace(void) {
     fixture_standby(&f);
     fixture_command_angle(&f, 12000);
     fixture_run(&f, 3000);
-    expect_nothing(&f, FAULT, AGV_STATE_STANDBY); /* not while a human drives */
+    expect_nothing(&f, FAULT, AGV_STATE_STANDBY); /* not in manual */
     fixture_mode(&f, MODE_ENGAGED);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     expect_trip_at(f.now_ms + 999u, ANGLE_CENTRE);
 }
 
-/* A command from before the engagement is not what the steering is compared with: neither one from manual driving, nor one
- * from an engagement before. */
+/* The steering is not compared with a command from before the engagement, neither from manual nor from an earlier
+ * engagement. */
 static void check_forgotten(uint8_t mode_before) {
     fixture_init(&f);
     f.config.engaged_grace_ms = 50;
@@ -325,7 +326,7 @@ void test_a_command_from_before_the_engagement_is_forgotten(void) {
     check_forgotten(MODE_ENGAGED);
 }
 
-/* A command out of range is none: the steering is compared with the last valid one. */
+/* A command out of range is not used: the steering is compared with the last valid one. */
 /* Shows: SUP-5, SUP-10, AI_COMMAND_OUT_OF_RANGE, STEERING_DEVIATION */
 void test_a_command_out_of_range_is_no_command(void) {
     fixture_active(&f);
@@ -336,7 +337,7 @@ void test_a_command_out_of_range_is_no_command(void) {
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, FAULT));
 }
 
-/* An invalid measured angle is not used: the last valid one stands. */
+/* An invalid measured angle is not used; the last valid one stays. */
 /* Shows: SUP-10, P5, STEERING_DEVIATION */
 void test_an_invalid_angle_is_no_measured_angle(void) {
     f.config.status_invalid_frames = 10;
@@ -364,7 +365,7 @@ void test_the_limits_are_settings(void) {
     expect_trip_at(f.now_ms + 99u, 9010);
 }
 
-/* ---- Gateway: compared with what was sent on ---- */
+/* ---- Gateway: compared with the forwarded command ---- */
 
 static void check_gateway(uint16_t slew_ddeg_s, uint32_t trips_after_ms) {
     fixture_init(&f);
@@ -380,15 +381,15 @@ static void check_gateway(uint16_t slew_ddeg_s, uint32_t trips_after_ms) {
     expect_trip(&f, FAULT, f.call, ANGLE_CENTRE);
 }
 
-/* Not limited, 12000 is sent on at once. Limited to 400.0 degrees a second, which is 100 counts each 25 ms, it is 9500 with
- * the fifth command and 9600 with the sixth: 125 ms later. */
+/* Without a limit, 12000 is forwarded at once. With 400.0 degrees a second (100 counts each 25 ms) the forwarded
+ * command is 9500 with the fifth frame and 9600 with the sixth: 125 ms later. */
 /* Shows: SUP-10, TOP-2, STEERING_DEVIATION */
 void test_a_gateway_compares_with_the_forwarded_command(void) {
     check_gateway(0, 499);
     check_gateway(4000, 624);
 }
 
-/* Tripped, the gateway sends nothing on: what the AI computer goes on commanding is not what the steering was commanded. */
+/* A tripped gateway forwards nothing, so the steering is not compared with later commands of the AI computer. */
 /* Shows: SUP-10, TOP-2, STEERING_DEVIATION */
 void test_a_command_that_was_not_forwarded_is_not_compared(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;

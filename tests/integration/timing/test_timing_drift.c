@@ -12,7 +12,7 @@ typedef struct {
 
 static const slot_t SLOTS[] = {{0x43F, 100, 100}, {0x168, 66, 100}, {0x075, 33, 100}, {0x065, 25, 25}};
 
-/* Nobody is there any more; what is sent is 43Fh, 168h and 075h, on and on. */
+/* All nodes are silent; the supervisor sends only 43Fh, 168h and 075h. */
 static uint32_t tripped_alone(void) {
     walk_to_tripped(&f);
     fixture_mute_vcu(&f, true);
@@ -24,7 +24,7 @@ static uint32_t tripped_alone(void) {
     return f.now_ms;
 }
 
-/* Each frame in the log left in its slot, at most late_ms after it. Empties the log. */
+/* Each frame in the log was sent at most late_ms after its slot. Empties the log. */
 static void check_slots(uint32_t trip_ms, uint32_t late_ms) {
     for (uint32_t i = 0; i < f.sent_count; i++) {
         for (unsigned s = 0; s < 4; s++) {
@@ -52,7 +52,7 @@ void test_20_minutes_of_slots_without_drift(void) {
     TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->skipped_slots);
 }
 
-/* The EPS is there and holds, because the wheels turn: 065h every 25 ms. */
+/* The EPS is alive and the wheels turn, so the steering is held: 065h every 25 ms. */
 /* Shows: TIM-1, FSM-10 */
 void test_2_minutes_of_steering_hold_without_drift(void) {
     walk_to_tripped(&f);
@@ -69,7 +69,7 @@ void test_2_minutes_of_steering_hold_without_drift(void) {
     TEST_ASSERT_EQUAL_UINT32(4800, counts[3]);
 }
 
-/* The step comes after 1 to 89 ms, never the same: slots neither drift nor get lost. */
+/* Steps come after changing times of 1 to 89 ms: slots neither drift nor get lost. */
 /* Shows: TIM-1 */
 void test_a_day_of_late_steps_without_drift(void) {
     static const uint32_t DAY_MS = 86400000;

@@ -1,4 +1,4 @@
-/* Periodic sending after an overrun, and silence that lasts longer than the clock. */
+/* Periodic sending after an overrun, and silence for longer than the clock's range. */
 #include "one_fixture.h"
 #include "walk.h"
 
@@ -12,7 +12,7 @@ static void expect_next(uint32_t id, uint32_t trip_ms, uint32_t after_ms) {
 
 /*
  * No tick for 350 ms after the trip. Missed by then: 43Fh at 100, 200, 300; 168h at 66, 166, 266; 075h at 33, 133, 233,
- * 333; 065h at 25, 50 ... 350 (14). One each is made up for, the others are skipped: 2 + 2 + 3 + 13.
+ * 333; 065h at 25, 50 ... 350 (14). One frame of each is sent late, the others are skipped: 2 + 2 + 3 + 13.
  */
 /* Shows: TIM-1 */
 void test_after_an_overrun_one_frame_each_and_the_others_are_skipped_and_counted(void) {
@@ -52,7 +52,7 @@ void test_a_late_step_moves_no_slot(void) {
     expect_next(0x075, trip_ms, 233);
 }
 
-/* Slots pass unused while nothing is sent: they are no skipped ones. */
+/* Slots in states that send nothing do not count as skipped. */
 /* Shows: TIM-1 */
 void test_nothing_is_skipped_in_normal_operation(void) {
     fixture_active(&f);
@@ -77,7 +77,7 @@ static void expect_silent_faults(void) {
     }
 }
 
-/* Ticks only, in steps of 1000 s, to 300 ms before the clock has gone round once; then every millisecond. */
+/* Ticks only, in steps of 1000 s, to 300 ms before a full wrap of the clock; then every millisecond. */
 static void go_round_the_clock(uint32_t since_ms, void (*look)(void)) {
     const uint32_t before_ms = since_ms - 300u;
     f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF;
@@ -130,7 +130,7 @@ void test_init_without_a_vehicle_for_longer_than_the_clock(void) {
     go_round_the_clock(start_ms, expect_still_in_init);
 }
 
-/* All messages once, then a tick: fresh at every look, with 1000 s between two. */
+/* All messages once, then a tick, every 1000 s: fresh at every tick. */
 static void look_in(uint32_t ms) {
     f.now_ms += ms;
     f.elapsed_ms += ms;

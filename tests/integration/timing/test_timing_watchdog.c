@@ -1,4 +1,4 @@
-/* The hardware watchdog, steps that come late, and frames that were waiting. */
+/* The hardware watchdog, late steps, and a backlog of frames. */
 #include "one_fixture.h"
 #include "walk.h"
 
@@ -18,7 +18,7 @@ void test_the_watchdog_is_fed_in_every_state_while_all_activities_check_in(void)
     }
 }
 
-/* Frames still come in and ticks are made, but the receive path does not check in. */
+/* Frames and ticks still come, but the receive path does not check in. */
 /* Shows: TIM-3 */
 void test_the_watchdog_is_not_fed_without_the_receive_path(void) {
     fixture_standby(&f);
@@ -72,9 +72,9 @@ void test_a_receive_path_that_comes_back_in_time_is_in_time(void) {
 
 /* ---- Late steps ---- */
 
-/* Frames are handed over in their time, but the step that is due 1 ms after the last one comes so much later. */
+/* Frames are processed in time, but the next step comes this much later than 1 ms after the last one. */
 static void step_late_by(uint32_t ms) {
-    f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF; /* "though the watchdog did not bite" */
+    f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF; /* "although the watchdog did not expire" */
     fixture_run_without_ticks(&f, ms);
     fixture_run(&f, 1);
 }
@@ -130,7 +130,7 @@ void test_a_second_after_it_has_ended_it_can_be_reset(void) {
         step_late_by(500);
         fixture_run(&f, 100);
         fixture_button(&f, true);
-        fixture_run(&f, i == 0 ? 1850 : 1950); /* it ends 900 ms after the press, and then a second has to pass */
+        fixture_run(&f, i == 0 ? 1850 : 1950); /* it ends 900 ms after the press, and then a second must pass */
         expect_state(&f, AGV_STATE_SAFE);
         fixture_button(&f, false);
         fixture_run(&f, 10);
@@ -138,7 +138,7 @@ void test_a_second_after_it_has_ended_it_can_be_reset(void) {
     }
 }
 
-/* In SAFE it is not reset meanwhile: the event trips again each time. */
+/* In SAFE no reset is possible meanwhile: each transient trips again. */
 /* Shows: TIM-4, FSM-11, STEP_OVERRUN */
 void test_each_late_step_trips(void) {
     fixture_standby(&f);
@@ -152,7 +152,7 @@ void test_each_late_step_trips(void) {
     expect_fault(&f, AGV_FAULT_STEP_OVERRUN, false);
 }
 
-/* Only ticks judge deadlines: what is alive and fresh is not known without them. */
+/* Only ticks check deadlines, so without them alive and fresh are unknown. */
 /* Shows: TIM-4, FSM-4 */
 void test_init_is_not_left_while_steps_stay_away(void) {
     fixture_start(&f);
@@ -166,7 +166,8 @@ void test_init_is_not_left_while_steps_stay_away(void) {
     expect_fault(&f, AGV_FAULT_STEP_OVERRUN, true);
 }
 
-/* Only ticks judge deadlines: the silence of the VCU is not noticed; and a press that is released meanwhile resets nothing. */
+/* Only ticks check deadlines, so the silence of the VCU is not detected. A press that is released meanwhile does not
+ * reset. */
 /* Shows: TIM-4, FSM-3, FSM-4 */
 void test_no_reset_is_accepted_while_steps_stay_away(void) {
     fixture_standby(&f);
@@ -195,7 +196,7 @@ static bool hold_back(fixture_t *fixture, agv_message_t message, hal_can_frame_t
     return message != AGV_MSG_VEHICLE_STATUS;
 }
 
-/* 363h of t + 10 and t + 20 is handed over 60 ms after t + 10, in one go, with its stamps. Returns t + 20. */
+/* Pass the 363h frames of t + 10 and t + 20 together, 60 ms after t + 10, with their stamps. @return t + 20 */
 static uint32_t deliver_backlog(void) {
     fixture_standby(&f);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
@@ -223,7 +224,7 @@ void test_a_backlog_is_as_old_as_its_time_stamps(void) {
     expect_reason(&f, AGV_FAULT_VCU_HEARTBEAT_LOST);
 }
 
-/* Frames of before the last step change nothing about the time. */
+/* Frames from before the last step do not change the time. */
 /* Shows: TIM-4 */
 void test_an_old_time_stamp_does_not_turn_the_clock_back(void) {
     walk_to_tripped(&f);

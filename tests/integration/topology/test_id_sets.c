@@ -1,5 +1,6 @@
-/* The two identifier sets (P1): 43Fh and 363h, or 201h and 203h. Each is supervised alike; traffic on the other set's
- * identifiers is never accepted, and is reported as WRONG_ID_SET. And identifiers that are changed one by one. */
+/* The two identifier sets (P1): 43Fh and 363h, or 201h and 203h. Both sets are supervised alike. Traffic on the other
+ * set's identifiers is never accepted, and is reported as WRONG_ID_SET. Also identifiers that are changed one by
+ * one. */
 #include <string.h>
 
 #include "expect.h"
@@ -36,14 +37,14 @@ void test_both_sets_work(void) {
         f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x01;
         fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
         expect_trip(&f, AGV_FAULT_REMOTE_SIGNAL_LOST, f.traffic[AGV_MSG_VEHICLE_STATUS].call, ANGLE_CENTRE);
-        fixture_mute_ai(&f, true); /* or its commands would be answered, too */
+        fixture_mute_ai(&f, true); /* otherwise its commands would be overridden, too */
         fixture_run(&f, 1000);
         TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, SETS[i].other_command_id));
         TEST_ASSERT_EQUAL_UINT32(11, fixture_count_sent(&f, SETS[i].command_id)); /* at once, then each 100 ms */
     }
 }
 
-/* The AI computer is set to the other identifiers from the start: nothing else is wrong. */
+/* The AI computer uses the other identifiers from the start; there is no other fault. */
 /* Shows: P1, WRONG_ID_SET */
 void test_a_command_on_the_other_identifier(void) {
     for (unsigned i = 0; i < SET_COUNT; i++) {
@@ -58,7 +59,7 @@ void test_a_command_on_the_other_identifier(void) {
         fixture_run(&f, 10000);
         expect_state(&f, AGV_STATE_STANDBY);
         TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, WRONG));
-        f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].id = SETS[i].command_id; /* set right */
+        f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].id = SETS[i].command_id; /* corrected */
         fixture_run_before(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
         expect_fault(&f, WRONG, true);
         fixture_run(&f, 1);
@@ -68,7 +69,7 @@ void test_a_command_on_the_other_identifier(void) {
     }
 }
 
-/* The VCU is: it counts as silent. */
+/* The VCU uses the other identifiers: it counts as silent. */
 /* Shows: P1, WRONG_ID_SET, VCU_HEARTBEAT_LOST */
 void test_a_status_on_the_other_identifier_is_never_accepted(void) {
     for (unsigned i = 0; i < SET_COUNT; i++) {
@@ -88,7 +89,7 @@ void test_a_status_on_the_other_identifier_is_never_accepted(void) {
     }
 }
 
-/* It ends when the other identifier falls silent, too: 500 ms after its last frame it is still there. */
+/* The fault ends when the other identifier is silent, too: 500 ms after its last frame it is still active. */
 /* Shows: P1, WRONG_ID_SET */
 void test_the_end_when_the_other_identifier_is_silent(void) {
     init(&SETS[0]);
@@ -224,7 +225,7 @@ void test_what_is_not_of_the_other_set(void) {
 
 /* ---- Identifiers changed one by one: id_... ---- */
 
-/* None of them is one of the protocol; gear and throttle command change places. */
+/* New identifiers outside the protocol; gear and throttle command are swapped. */
 static const uint16_t OTHER[AGV_MSG_COUNT] = {0x301, 0x075, 0x168, 0x304, 0x305, 0x306,
                                               0x307, 0x308, 0x309, 0x30A, 0x30B};
 
@@ -235,7 +236,7 @@ static void change_ids(void) {
     f.other_ids = true;
 }
 
-/* The oracle judges what leaves: on the changed identifiers, and on no other one. */
+/* The oracle checks the sent frames: only the changed identifiers are used. */
 /* Shows: P1 */
 void test_every_identifier_may_be_another_one(void) {
     change_ids();
@@ -251,7 +252,7 @@ void test_every_identifier_may_be_another_one(void) {
     TEST_ASSERT_EQUAL_UINT32(11, fixture_count_sent(&f, 0x168));
 }
 
-/* D on the identifier of the gear command is answered; 43Fh and 065h are unknown identifiers now. */
+/* D on the identifier of the gear command is overridden; 43Fh and 065h are unknown identifiers now. */
 /* Shows: P1, TOP-1 */
 void test_a_foreign_command_is_one_on_the_changed_identifier(void) {
     change_ids();
@@ -266,7 +267,7 @@ void test_a_foreign_command_is_one_on_the_changed_identifier(void) {
     TEST_ASSERT_EQUAL_UINT32(0, f.sent_count);
     fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x075, .length = 8, .data = {GEAR_D}});
     TEST_ASSERT_EQUAL_UINT32(1, f.sent_count);
-    TEST_ASSERT_EQUAL_HEX32(0x168, f.sent[0].id); /* in words of the protocol: its own gear command */
+    TEST_ASSERT_EQUAL_HEX32(0x168, f.sent[0].id); /* logged with the identifier of the protocol */
     TEST_ASSERT_EQUAL_HEX8(GEAR_P, f.sent[0].data[0]);
 }
 
@@ -293,7 +294,7 @@ static void corrupt_the_configuration(void) {
     f.supervisor.memory[at + AGV_SETTING_own_heartbeat * sizeof(uint16_t)] ^= 0x80u;
 }
 
-/* The configuration falls back to the defaults, but not these: the oracle judges what leaves. */
+/* The configuration falls back to the defaults, except the identifiers. The oracle checks the sent frames. */
 /* Shows: P1, INT-5, MEMORY_CORRUPTED */
 void test_a_corrupted_supervisor_keeps_the_changed_identifiers(void) {
     change_ids();
@@ -309,7 +310,7 @@ void test_a_corrupted_supervisor_keeps_the_changed_identifiers(void) {
     TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x075));
 }
 
-/* One that is changed, and the set for the others. */
+/* One changed identifier; the others follow the set. */
 /* Shows: P1 */
 void test_an_identifier_that_is_not_changed_is_that_of_the_set(void) {
     agv_ids_t ids;

@@ -1,4 +1,4 @@
-/* The gateway: what passes in which state, how it is packed and limited, and that nothing else passes. */
+/* The gateway: frames that pass in each state, their packing and limits, and frames that do not pass. */
 #include <string.h>
 
 #include "fixture.h"
@@ -19,7 +19,7 @@ static void from_ai(uint32_t id, const uint8_t data[8]) {
     fixture_raw(&f, HAL_CAN_AI, frame);
 }
 
-/* That frame, and no other, left in this call, to that side. */
+/* Exactly this frame was sent in this call, to that side. */
 static void expect_passed(hal_can_side_t side, uint32_t id, const uint8_t expected[8]) {
     TEST_ASSERT_EQUAL_UINT32(1, f.sent_count);
     TEST_ASSERT_EQUAL_UINT32(f.call, f.sent[0].call);
@@ -40,7 +40,7 @@ static void expect_dropped(uint32_t id, const uint8_t data[8]) {
     TEST_ASSERT_EQUAL_UINT32(before + 1, dropped());
 }
 
-/* Commands with every reserved bit set, and as they have to leave. */
+/* Commands with every reserved bit set, and as they must be sent. */
 static const uint8_t SIGNALS[8] = {0xFF, 0xFF, 0xFF, 0xFF, 0xAF, 0xFF, 0xFF, 0x5A};
 static const uint8_t SIGNALS_PACKED[8] = {0, 0, 0, 0, 0xA0, 0, 0, 0x5A};
 static const uint8_t DRIVE[8] = {1, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF};
@@ -153,7 +153,7 @@ void test_a_command_out_of_range_does_not_pass_in_active(void) {
     for (unsigned i = 0; i < 3; i++) {
         setUp();
         fixture_active(&f);
-        from_ai(ROWS[i].id, ROWS[i].data); /* the oracle lets none of them out of TRIPPED */
+        from_ai(ROWS[i].id, ROWS[i].data); /* the oracle allows none of them in TRIPPED */
         expect_reason(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE);
         TEST_ASSERT_EQUAL_UINT32(4, f.sent_count);
     }
@@ -237,7 +237,7 @@ void test_the_slew_rate_starts_from_the_measured_angle(void) {
     expect_steering(9000, 9275);
 }
 
-/* And so does the first one of the next engagement, wherever the last one of this one was. */
+/* So does the first command of the next engagement, independent of the last one of this engagement. */
 /* Shows: TOP-2 */
 void test_the_slew_rate_starts_anew_with_every_engagement(void) {
     f.config.steering_slew_ddeg_s = 1000;
@@ -268,7 +268,7 @@ void test_a_slow_slew_rate_adds_up(void) {
     expect_steering(8000, 9001);
 }
 
-/* Nothing is known of the wheels: the first command is where the rate starts from. */
+/* Without a measured angle the rate starts from the first command. */
 /* Shows: TOP-2 */
 void test_without_a_measured_angle_the_slew_rate_starts_from_the_first_command(void) {
     f.config.steering_slew_ddeg_s = 1000;
@@ -281,7 +281,7 @@ void test_without_a_measured_angle_the_slew_rate_starts_from_the_first_command(v
     expect_steering(9000, 9375);
 }
 
-/* ---- A side that takes nothing ---- */
+/* ---- A side that accepts nothing ---- */
 
 /* Shows: TOP-2 */
 void test_towards_a_stalled_vehicle_side_the_newest_of_each_is_kept(void) {
@@ -360,7 +360,7 @@ void test_status_frames_pass_to_the_ai_side_in_every_state(void) {
     expect_status_passes(AGV_STATE_SAFE);
 }
 
-/* Also what the supervisor itself cannot use. */
+/* Also values that the supervisor cannot use. */
 /* Shows: TOP-2 */
 void test_a_status_frame_passes_as_it_is(void) {
     static const uint8_t odd[8] = {0xFF, 1, 2, 3, 4, 5, 6, 7};
@@ -404,7 +404,7 @@ void test_no_other_identifier_passes(void) {
 /* Shows: TOP-2, INT-2, P15 */
 void test_no_malformed_frame_passes(void) {
     static const uint32_t IDS[] = {0x43F, 0x168, 0x075, 0x065, 0x363, 0x0A3, 0x050, 0x067, 0x167, 0x267, 0x101};
-    fixture_standby(&f); /* engaged, commands that are none trip */
+    fixture_standby(&f); /* engaged, malformed commands trip */
     for (unsigned i = 0; i < sizeof IDS / sizeof IDS[0]; i++) {
         const hal_can_side_t side = i < 4 ? HAL_CAN_AI : HAL_CAN_VEHICLE;
         for (uint8_t length = 0; length < 8; length++) {
@@ -449,8 +449,8 @@ static void disengage(void) {
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
-/* What waited in ACTIVE may not leave any more with the first 363h without autopilot, and is no reason to trip. The throttle 0
- * of the end of the engagement waits instead. */
+/* Commands that waited in ACTIVE are dropped with the first 363h without autopilot, without a trip. The throttle 0 of
+ * the end of the engagement waits instead. */
 /* Shows: TOP-2 */
 void test_waiting_commands_are_dropped_when_the_autopilot_is_disengaged(void) {
     fixture_active(&f);
@@ -475,7 +475,7 @@ void test_waiting_commands_are_dropped_when_the_autopilot_is_disengaged(void) {
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
-/* In STANDBY a 43Fh without "autopilot off" waits for a queue that is full; then comes a trip. */
+/* In STANDBY a 43Fh without "autopilot off" waits for a full queue; then comes a trip. */
 /* Shows: TOP-2, FSM-2, FSM-6 */
 void test_waiting_commands_are_dropped_at_a_trip_in_manual(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
@@ -507,7 +507,7 @@ static void expect_no_motion_passes(void) {
     expect_passed(HAL_CAN_VEHICLE, 0x43F, SIGNALS_PACKED);
 }
 
-/* Engaged still, because that ends with the third 363h only; what passes in manual changes nothing about it. */
+/* Still engaged, because the engagement ends with the third 363h. Settings for manual do not matter. */
 /* Shows: TOP-2 */
 void test_no_motion_passes_when_the_last_363h_does_not_report_autopilot(void) {
     static const uint8_t MODES[] = {MODE_MANUAL, MODE_NEITHER, MODE_BOTH};
@@ -524,7 +524,7 @@ void test_no_motion_passes_when_the_last_363h_does_not_report_autopilot(void) {
     }
 }
 
-/* ---- At most one in half a cycle ---- */
+/* ---- At most one frame in half a cycle ---- */
 
 typedef struct {
     agv_message_t message;
@@ -545,7 +545,7 @@ static const too_soon_t TOO_SOON[] = {{AGV_MSG_TURN_SIGNAL_COMMAND,
                                       {AGV_MSG_THROTTLE_COMMAND, 0x075, 50, {10}, {20}, {30}},
                                       {AGV_MSG_STEERING_COMMAND, 0x065, 13, {0x28, 0x23}, {0x29, 0x23}, {0x2A, 0x23}}};
 
-/* This one command comes only from the test, and has not for longer than half its cycle. */
+/* Only the test sends this command, and the last one is more than half a cycle ago. */
 static void active_without(const too_soon_t *row) {
     setUp();
     fixture_active(&f);
@@ -553,7 +553,7 @@ static void active_without(const too_soon_t *row) {
     fixture_run(&f, 60);
 }
 
-/* The first passes; the second and the third come too soon: the newest goes when the half cycle is over, once. */
+/* The first passes. The second and the third come too soon: the newest is sent once, at the end of the half cycle. */
 static void check_newest(const too_soon_t *row) {
     active_without(row);
     const uint32_t before = dropped();
@@ -592,7 +592,7 @@ void test_of_commands_that_come_too_soon_the_newest_goes(void) {
     }
 }
 
-/* 5 frames a millisecond for 950 ms: one each 50 ms goes on. */
+/* 5 frames a millisecond for 950 ms: one each 50 ms is forwarded. */
 /* Shows: TOP-2, SUP-6 */
 void test_a_flood_from_the_ai_side_does_not_fill_the_vehicles_bus(void) {
     fixture_active(&f);
@@ -615,7 +615,7 @@ void test_a_flood_from_the_ai_side_does_not_fill_the_vehicles_bus(void) {
     expect_state(&f, AGV_STATE_ACTIVE);
 }
 
-/* What waits is dropped at a trip; nothing of it leaves later. */
+/* Waiting commands are dropped at a trip and never sent. */
 /* Shows: TOP-2, FSM-2, FSM-6 */
 void test_commands_that_came_too_soon_are_dropped_at_a_trip(void) {
     for (unsigned i = 0; i < 4; i++) {
@@ -625,12 +625,12 @@ void test_commands_that_came_too_soon_are_dropped_at_a_trip(void) {
         from_ai(TOO_SOON[i].id, TOO_SOON[i].first);
         from_ai(TOO_SOON[i].id, TOO_SOON[i].second);
         walk_trip(&f);
-        fixture_run(&f, 200); /* the oracle judges each frame */
+        fixture_run(&f, 200); /* the oracle checks each frame */
         TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->gate_refused);
     }
 }
 
-/* P passes, N waits, what is no gear does not take its place. */
+/* P passes, N waits, an invalid gear does not replace it. */
 /* Shows: TOP-2, SUP-5 */
 void test_an_invalid_frame_does_not_replace_one_that_waits(void) {
     static const uint8_t park[8] = {8};
@@ -649,7 +649,7 @@ void test_an_invalid_frame_does_not_replace_one_that_waits(void) {
 
 /* ---- The end of an engagement ---- */
 
-/* One 075h with throttle 0, in the handling of the 363h that ends it, and nothing else of motion. */
+/* One 075h with throttle 0, in the call of the 363h that ends the engagement, and no other motion command. */
 /* Shows: TOP-2 */
 void test_the_end_of_an_engagement_sends_throttle_0(void) {
     fixture_active(&f);
@@ -671,7 +671,7 @@ void test_the_end_of_an_engagement_sends_throttle_0(void) {
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
 }
 
-/* It counts as no pass: the next 075h of the AI computer (in manual, as 0) does not wait for it. */
+/* It does not count as forwarded: the next 075h of the AI computer (in manual, as 0) does not wait for it. */
 /* Shows: TOP-2 */
 void test_the_supervisors_throttle_0_is_no_pass(void) {
     f.config.gateway_in_manual = AGV_IN_MANUAL_ALL;
@@ -746,7 +746,7 @@ void test_the_gear_changes_in_motion_if_so_chosen(void) {
     expect_passed(HAL_CAN_VEHICLE, 0x168, REVERSE);
 }
 
-/* A 168h that is dropped for that refreshes its deadline: the frame came. */
+/* A 168h that is dropped for this reason still refreshes its deadline. */
 /* Shows: TOP-2, SUP-3, GEAR_COMMAND_TIMEOUT */
 void test_a_gear_command_that_is_dropped_came_all_the_same(void) {
     f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = GEAR_R;
@@ -856,7 +856,8 @@ void test_speeds_that_count_as_fast(void) {
     expect_steering(9400, 9300);
 }
 
-/* The slew applies to the limit too: the vehicle becomes fast with 40.0 degrees, the limit is reached in steps of 2.5. */
+/* The slew rate applies to the limit, too: the vehicle becomes fast at 40.0 degrees; the limit is reached in steps of
+ * 2.5. */
 /* Shows: TOP-2 */
 void test_the_slew_rate_applies_to_the_limit_above_a_speed(void) {
     f.config.steering_fast_max_ddeg = 300;
@@ -873,7 +874,7 @@ void test_the_slew_rate_applies_to_the_limit_above_a_speed(void) {
     expect_steering(9340, 9300);
 }
 
-/* What passes as it came is not counted. */
+/* An unchanged command is not counted as limited. */
 /* Shows: TOP-2 */
 void test_nothing_is_limited_by_default(void) {
     fixture_active(&f);

@@ -1,4 +1,4 @@
-/* Overriding another sender: at once, for frames of any length, and not so often that it drowns the bus. */
+/* Overriding another sender: at once, for frames of any length, and at a limited rate. */
 #include <string.h>
 
 #include "expect.h"
@@ -24,14 +24,15 @@ static void foreign_signals(uint8_t fifth) {
     foreign(0x43F, 8, data);
 }
 
-/* Tripped, engaged, holding 9000, with the AI computer silent; the first frames are out, no periodic one is near. */
+/* Tripped, engaged, holding 9000, with the AI computer silent; the first frames are sent, and no periodic one is due
+ * soon. */
 static void tripped(void) {
     walk_to_tripped(&f);
     fixture_run(&f, 10);
     fixture_forget_sent(&f);
 }
 
-/* Long enough that no override is recent; then nothing is in the log. */
+/* Wait until no override is recent, then empty the log. */
 static void settle(void) {
     fixture_run(&f, 7);
     fixture_forget_sent(&f);
@@ -65,7 +66,7 @@ static const command_t DIFFERENT[] = {
 
 static const command_t THE_SAME[] = {
     {0x43F, {0, 0, 0, 0, 0x70, 0, 0, 0}},
-    {0x43F, {0, 0, 0, 0, 0x70, 0, 0, 0xFF}}, /* the alive counter is no difference, nor are reserved bits: */
+    {0x43F, {0, 0, 0, 0, 0x70, 0, 0, 0xFF}}, /* differences in the alive counter and in reserved bits do not count: */
     {0x43F, {0xFF, 0xFF, 0xFF, 0xFF, 0x7F, 0xFF, 0xFF, 0}},
     {0x168, {8}},
     {0x168, {8, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF}},
@@ -228,7 +229,8 @@ void test_after_an_override_the_next_periodic_frame_is_due_half_a_cycle_later(vo
     expect_next_after(0x065, f.now_ms, 12, 25);
 }
 
-/* An AI computer that sends D every 100 ms is answered each time, and the own slots lie in the middle between. */
+/* An AI computer that sends D every 100 ms is overridden each time, and the periodic frames are in the middle
+ * between. */
 /* Shows: TOP-1 */
 void test_a_periodic_foreign_sender_is_overridden_each_time(void) {
     tripped();
@@ -266,7 +268,7 @@ void test_identifiers_are_overridden_independently(void) {
     expect_answered_in_this_call(0x43F, "another identifier");
 }
 
-/* A sender of one frame a millisecond: an answer every 5 ms, and the last word. */
+/* A sender of one frame a millisecond: an override every 5 ms, and after its last frame. */
 /* Shows: TOP-1, COMMAND_TOO_FAST */
 void test_a_babbling_sender_is_overridden_every_5_ms_and_last(void) {
     tripped();
@@ -331,7 +333,7 @@ void test_the_5_ms_are_exact_where_the_port_knows_microseconds(void) {
 void test_a_frame_with_fewer_microseconds_does_not_turn_the_time_back(void) {
     tripped();
     fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x123, .time_us = 900, .length = 8});
-    foreign_drive_at_us(100); /* answered at 900, at the earliest */
+    foreign_drive_at_us(100); /* overridden at 900 at the earliest */
     fixture_run_without_ticks(&f, 5);
     foreign_drive_at_us(500);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
@@ -368,7 +370,7 @@ static void hear_each_other(fixture_t *from, fixture_t *to) {
     fixture_forget_sent(from);
 }
 
-/* They hold different angles: each one overrides the other, at most every 5 ms. Of the rest they send the same. */
+/* They hold different angles: each one overrides the other, at most every 5 ms. All other commands are equal. */
 /* Shows: TOP-1 */
 void test_two_supervisors_on_one_bus_do_not_drown_it(void) {
     tripped();
@@ -405,10 +407,10 @@ void test_commands_within_5_ms_are_overridden_when_they_are_over(void) {
     TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168));
     TEST_ASSERT_EQUAL_UINT32(5, fixture_nth_sent(&f, 0x168, 1)->time_ms - first_ms);
     fixture_run(&f, 40);
-    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168)); /* one answer for both */
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168)); /* one override for both */
 }
 
-/* 43Fh waits for its 5 ms to be over; an override of another identifier in between is not its answer. */
+/* 43Fh waits for the end of its 5 ms; an override of another identifier in between does not replace it. */
 /* Shows: TOP-1 */
 void test_an_override_that_waits_is_not_lost_by_another_one(void) {
     tripped();
@@ -423,7 +425,7 @@ void test_an_override_that_waits_is_not_lost_by_another_one(void) {
     TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x43F));
 }
 
-/* A VCU that knows CAN FD may obey it. */
+/* A VCU with CAN FD may obey it. */
 /* Shows: TOP-1, P15 */
 void test_a_command_in_an_fd_frame_is_overridden(void) {
     tripped();
@@ -432,7 +434,7 @@ void test_a_command_in_an_fd_frame_is_overridden(void) {
     expect_answered_in_this_call(0x168, "FD");
 }
 
-/* A step comes so late that an answer is due and the periodic slot too: one frame is enough. */
+/* After a late step an override and the periodic frame are due: one frame is enough. */
 /* Shows: TOP-1, TIM-1 */
 void test_a_late_override_replaces_the_periodic_frame_too(void) {
     tripped();

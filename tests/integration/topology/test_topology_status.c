@@ -4,7 +4,7 @@
 #include "walk.h"
 
 static fixture_t f;
-static fixture_t real; /* the same in earnest */
+static fixture_t real; /* the same without shadow mode */
 
 enum { STATUS_ID = 0x6F0 };
 
@@ -128,7 +128,7 @@ void test_the_status_frame_does_not_burst_after_an_overrun(void) {
     fixture_standby(&f);
     fixture_run(&f, 100);
     fixture_forget_sent(&f);
-    f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF; /* it would have bitten */
+    f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF; /* a hardware watchdog would have expired */
     fixture_run(&f, 10);
     fixture_forget_sent(&f);
     fixture_jump(&f, 750);
@@ -137,7 +137,7 @@ void test_the_status_frame_does_not_burst_after_an_overrun(void) {
     TEST_ASSERT_EQUAL_UINT32(6, fixture_count_sent(&f, STATUS_ID));
 }
 
-/* The HAL takes nothing: tried again at each tick, and 100 ms later the transmitter counts as dead. */
+/* The HAL accepts nothing: the frame is tried again at each tick, and 100 ms later TX_STALLED is raised. */
 /* Shows: TOP-3, SUP-7, TX_STALLED */
 void test_a_dead_transmitter_shows_within_a_status_frame(void) {
     f.config.status_frame_id = STATUS_ID;
@@ -162,7 +162,7 @@ void test_a_dead_transmitter_shows_within_a_status_frame(void) {
     TEST_ASSERT_EQUAL_HEX8((uint8_t)(before + 1), fixture_nth_sent(&f, STATUS_ID, 0)->data[3]);
 }
 
-/* A full queue for less than 100 ms is none: the frame leaves with the first tick in which there is room. */
+/* A full queue for less than 100 ms is no fault: the frame is sent with the first tick that finds room. */
 /* Shows: TOP-3, TX_STALLED */
 void test_a_status_frame_that_has_to_wait(void) {
     f.config.status_frame_id = STATUS_ID;
@@ -233,7 +233,7 @@ void test_frames_that_are_no_other_sender_of_the_status_frame(void) {
     fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x7F1, .length = 8});
     expect_fault(&f, IN_USE, false);
     setUp();
-    f.config.status_frame_id = 0; /* off: it may be anybody's, and 0 is no identifier of ours */
+    f.config.status_frame_id = 0; /* off: another node may use it, and 0 is not an identifier of the supervisor */
     fixture_active(&f);
     fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x7F0, .length = 8});
     fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0, .length = 8});
@@ -276,7 +276,7 @@ static void expect_the_same_decisions(void) {
     TEST_ASSERT_EQUAL_UINT32(real.hal.safety_output.changes, f.hal.safety_output.changes);
 }
 
-/* The status frame is not among it: there is none in shadow. */
+/* Without the status frame, which is not sent in shadow mode. */
 /* Shows: TOP-3, TOP-4 */
 void test_in_shadow_it_decides_as_always_and_counts_what_it_would_have_sent(void) {
     for (uint16_t topology = AGV_TOPOLOGY_SHARED; topology <= AGV_TOPOLOGY_GATEWAY; topology++) {
@@ -296,7 +296,7 @@ void test_in_shadow_it_decides_as_always_and_counts_what_it_would_have_sent(void
     }
 }
 
-/* Without a shadow what leaves is counted as sent, and as nothing else. */
+/* Without shadow mode a sent frame is counted only as sent. */
 /* Shows: TOP-4 */
 void test_a_sent_frame_is_counted_once(void) {
     fixture_start(&f); /* INIT sends */
@@ -306,7 +306,7 @@ void test_a_sent_frame_is_counted_once(void) {
     TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->gate_refused);
 }
 
-/* After an overrun the frames stand on their old grid again: every 50 ms from the start. */
+/* After an overrun the frames are on their old grid again: every 50 ms from the start. */
 /* Shows: TOP-3, TIM-1 */
 void test_the_status_frame_keeps_its_grid(void) {
     f.config.status_frame_id = 0x123;
