@@ -439,3 +439,12 @@ void test_a_frame_that_is_no_longer_wanted_is_not_stalled(void) {
     fixture_run(&f, 300);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_TX_STALLED));
 }
+
+/* Shows: TX_STALLED, SUP-7 */
+void test_a_controller_that_accepts_nothing_is_detected_after_a_trip(void) {
+    walk_to_tripped(&f);
+    sim_hal_fail_at(&f.hal, 1, UINT32_MAX, 1u << SIM_HAL_OP_CAN_SEND);
+    fixture_run(&f, 300);
+    expect_fault(&f, AGV_FAULT_TX_STALLED, true);
+    expect_output(&f, false);
+}

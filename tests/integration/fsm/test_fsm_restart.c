@@ -261,3 +261,24 @@ void test_the_latch_is_stored_in_the_call_that_trips(void) {
     fixture_restart(&f, HAL_RESET_LOCK_UP);
     expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
 }
+
+/* ---- What cannot be read ---- */
+
+/* Shows: FSM-7 */
+void test_a_reset_cause_that_cannot_be_read_is_no_power_on(void) {
+    fixture_start(&f);
+    sim_hal_fail_at(&f.hal, 1, UINT32_MAX, 1u << SIM_HAL_OP_RESET_CAUSE);
+    f.hal.config.reset_cause = HAL_RESET_POWER_ON;
+    agv_supervisor_start(&f.supervisor, &f.ports, &f.config, true, f.now_ms);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
+}
+
+/* Shows: FSM-7 */
+void test_a_latch_that_cannot_be_read_is_tripped_after_a_restart(void) {
+    walk_to_safe(&f);
+    sim_hal_fail_at(&f.hal, 1, UINT32_MAX, 1u << SIM_HAL_OP_STORE_READ_LATCH);
+    fixture_restart(&f, HAL_RESET_WATCHDOG);
+    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
+}

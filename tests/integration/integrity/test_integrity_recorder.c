@@ -1,4 +1,5 @@
 /* The flight recorder: its content, the resets that it outlives, and its copy in flash. */
+#include <stddef.h>
 #include <string.h>
 
 #include "one_fixture.h"
@@ -470,4 +471,19 @@ void test_a_torn_trip_is_lost_alone(void) {
     TEST_ASSERT_TRUE(agv_recorder_get_trip(&f.recorder, 0, &event));
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_S_DRIVER_ALARM, event.c);
     TEST_ASSERT_FALSE(agv_recorder_get_trip(&f.recorder, 1, &event));
+}
+
+/* The head of the recorder: sequence numbers, received messages, last payloads. The supervisor does not depend on it. */
+/* Shows: INT-5, INT-3 */
+void test_a_flipped_bit_in_the_head_of_the_recorder_changes_no_decision(void) {
+    const size_t head = offsetof(agv_recorder_t, events);
+    for (unsigned bit = 0; bit < 8 * head; bit += 101) {
+        setUp();
+        walk_to_safe(&f);
+        ((uint8_t *)&f.recorder)[bit / 8] ^= (uint8_t)(1u << (bit % 8));
+        fixture_run(&f, 20);
+        expect_state(&f, AGV_STATE_SAFE);
+        fixture_press(&f, 1050);
+        expect_state(&f, AGV_STATE_STANDBY);
+    }
 }
