@@ -1,10 +1,10 @@
 /*
- * All 2,048 identifiers by every length, on each side, with several payloads, in each state of each variant of the
- * configuration (testbed.h): exhaustively, not by chance, against the rules of rules.h. And what is no whole message of the
- * protocol from the side where it belongs has to leave no trace but in the counters (INT-2): after it, and after the
- * ticks that follow, everything is as without it, but for the answer to a command of another (TOP-1).
+ * Exhaustive test of all 2,048 identifiers with every length, on each side, with several payloads, in each state of
+ * each variant of the configuration (testbed.h), against the rules of rules.h. A frame that is not a complete message
+ * of the protocol on its own side must change only the counters (INT-2): after it, and after the next ticks, the state
+ * is the same as without it, except for the override of another sender's command (TOP-1).
  *
- * usage: every_frame [PAYLOADS]     only the first so many payloads, for slow builds
+ * usage: every_frame [PAYLOADS]     only the first PAYLOADS payloads, for slow builds
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@ enum { ID_COUNT = 0x800, PATTERNS = 6, TICKS = 8, LENGTHS = 11, KINDS = 4 };
 
 static const uint8_t LENGTH_OF[LENGTHS] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 64};
 
-/* Each byte of them in each place; alarms and faults, modes, gears, values out of range, the own safe commands. */
+/* Alarms and faults, modes, gears, values out of range and safe commands, in every byte. */
 static const uint8_t PATTERN[PATTERNS][8] = {
     {0, 0, 0, 0, 0, 0, 0, 0},
     {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF},
@@ -28,7 +28,7 @@ static const uint8_t PATTERN[PATTERNS][8] = {
 static const uint8_t KIND[KINDS] = {0, HAL_CAN_EXTENDED, HAL_CAN_REMOTE, HAL_CAN_ERROR};
 static const char *const STATE_NAMES[TESTBED_STATES] = {"INIT", "STANDBY", "ACTIVE", "TRIPPED", "SAFE"};
 
-/* What a frame must not change. */
+/* The state that a malformed frame must not change. */
 typedef struct {
     agv_state_t state;
     agv_fault_t first_reason;
@@ -82,13 +82,13 @@ static bool is_status(uint32_t id) {
     return is_one_of(id, ids, 7);
 }
 
-/* Whether a VCU may obey it, or another take it for what it is not: of any length, FD too. */
+/* Whether a VCU may obey the frame: data frames of any length, FD too. */
 static bool is_data_frame(const hal_can_frame_t *frame) {
     return (frame->flags & (HAL_CAN_EXTENDED | HAL_CAN_REMOTE | HAL_CAN_ERROR)) == 0u;
 }
 
-/* What says something though it is no whole message: commands of any length, from where none may come (SUP-6) and while
- * engaged (SUP-5), and the identifier of the status frame (TOP-3). */
+/* Incomplete messages that have an effect: commands of any length, on the wrong side (SUP-6) or while engaged (SUP-5),
+ * and the identifier of the status frame (TOP-3). */
 static bool is_reported(hal_can_side_t side, const hal_can_frame_t *frame, agv_state_t state) {
     const bool gateway = testbed.rules.oracle.gateway;
     const bool engaged = (state == AGV_STATE_ACTIVE) || (state == AGV_STATE_TRIPPED);
@@ -101,7 +101,8 @@ static bool is_reported(hal_can_side_t side, const hal_can_frame_t *frame, agv_s
     return (side == HAL_CAN_VEHICLE) && (frame->id == testbed.rules.oracle.own_status_id) && (frame->id != 0u);
 }
 
-/* Whether it is a message, whole, on a side where it says something; a command on the wrong side is an intrusion. */
+/* Whether the frame is a complete message on a side where it has an effect. A command on the wrong side is an
+ * intrusion. */
 static bool says_something(hal_can_side_t side, const hal_can_frame_t *frame) {
     const bool gateway = testbed.rules.oracle.gateway;
     if ((frame->flags != 0u) || (frame->length != 8u) || (!gateway && (side == HAL_CAN_AI))) {

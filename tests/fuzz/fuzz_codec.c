@@ -1,9 +1,8 @@
 /*
  * The codec, both ways, for each of the 11 messages: bytes -> values -> bytes, and values -> bytes -> values, against a
- * second reading of docs/protocol.md by hand: where each field lies, in which order of bytes, what is reserved, what is out
- * of range.
+ * second implementation of docs/protocol.md: places of the fields, byte order, reserved bits, ranges.
  *
- * Byte 1: which message; then 8 bytes of payload, or (bit 7 of byte 1) values.
+ * Byte 1: the message; then 8 bytes of payload, or values if bit 7 of byte 1 is set.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +10,7 @@
 #include "agv/codec.h"
 #include "input.h"
 
-/* A message in the way of a table: its fields as plain numbers, in the order of codec.h. */
+/* The fields of a message as numbers, in the order of codec.h. */
 enum { FIELDS_MAX = 10, MESSAGES = 11 };
 
 typedef int64_t values_t[FIELDS_MAX];
@@ -82,7 +81,8 @@ enum {
 
 /* ---- The codec, by number ---- */
 
-/* One function a message: values to bytes when `pack`, else bytes to values. Returns what the codec returns. */
+/* One function for each message: values to bytes if `pack`, otherwise bytes to values. @return the result of the
+ * codec */
 #define BOTH_WAYS(name, type, to_struct, to_values)                                                                    \
     static bool name(bool pack, uint8_t data[8], values_t v) {                                                         \
         agv_##type##_t s;                                                                                              \
@@ -129,7 +129,7 @@ typedef bool both_ways_fn(bool pack, uint8_t data[8], values_t v);
 static both_ways_fn *const CODEC[MESSAGES] = {signals,    gear,       throttle, steering, vehicle, gear_s,
                                               throttle_s, steering_s, eps,      position, wheels};
 
-/* ---- The same by hand ---- */
+/* ---- The second implementation ---- */
 
 static int64_t read_by_hand(const field_t *field, const uint8_t data[8]) {
     const unsigned bytes = (field->bits + 7u) / 8u;
@@ -169,7 +169,7 @@ static void fail(unsigned message, const char *what) {
     abort();
 }
 
-/* Values as they are after packing: steps of the wire, reserved alarm bits. */
+/* The values after packing: rounded to the steps of the message, without reserved alarm bits. */
 static void round_down(unsigned message, values_t v) {
     if ((message == M_THROTTLE) || (message == M_THROTTLE_S)) {
         v[0] -= v[0] % 4;

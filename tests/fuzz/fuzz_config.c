@@ -1,6 +1,6 @@
 /*
- * The reader of configurations. What it refuses it tells in one line, with the line of the file; what it takes is in range,
- * and is the same configuration when it is printed and read again.
+ * The reader of configurations. A refusal is reported in one line, with the line of the file. An accepted configuration
+ * is in range, and is the same after it is printed and read again.
  */
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /*
- * The gate alone: any state code, configuration, held angle and frame. It has to say exactly what oracle.h says, which is
- * written by hand from FSM-6, TOP-1 and TOP-2; a gate that lets one frame more through, or one less, is found.
+ * The gate alone: any state code, configuration, held angle and frame. Its decision must be that of oracle.h, which is
+ * written by hand from FSM-6, TOP-1 and TOP-2, for every frame.
  */
 #include <stdio.h>
 #include <stdlib.h>

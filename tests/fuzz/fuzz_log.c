@@ -1,7 +1,7 @@
 /*
- * The reader of candump logs. Which lines are frames is stated once more by two regular expressions, from the page of the
- * format; every other line that is not blank is refused (byte 1 even) with its number, or skipped and counted (odd).
- * A classic frame is written and read again.
+ * The reader of candump logs. Two regular expressions, written from the page of the format, decide which lines are
+ * frames. Every other line that is not blank is refused with its number (byte 1 even), or skipped and counted (odd). A
+ * classic frame is written and read again.
  */
 #include <regex.h>
 #include <stdio.h>
@@ -14,7 +14,8 @@
 
 #define HEX "[0-9A-Fa-f]"
 #define BYTES8 "(" HEX HEX "){8}"
-/* Classic and remote, or FD; but for the error frames, which have bit 29 of the identifier set, neither remote nor FD. */
+/* Classic and remote frames, or FD frames. Error frames have bit 29 of the identifier set, and are neither remote nor
+ * FD. */
 #define DATA "((" HEX HEX "){0,7}|" BYTES8 "(_[9A-Fa-f])?)"
 #define REMOTE "R([0-7]|8(_[9A-Fa-f])?)?"
 #define FD "#" HEX "(" HEX HEX "){0,64}"
@@ -45,7 +46,7 @@ static bool is_blank(const char *line, size_t length) {
     return true;
 }
 
-/* 'f' a frame, 'b' blank, 'x' neither. */
+/* 'f': a frame, 'b': blank, 'x': any other line. */
 static char kind_of(const char *line, size_t length) {
     char text[LINE_MAX_CHARACTERS + 1];
     if (length > LINE_MAX_CHARACTERS) {
@@ -76,7 +77,7 @@ static void check_record(const candump_record_t *record) {
     }
 }
 
-/* Only what candump_write() is for: classic data frames. */
+/* Only classic data frames, because candump_write() writes no others. */
 static void write_and_read(const candump_record_t *record) {
     char interface[CANDUMP_INTERFACE_MAX + 1u] = {0};
     char *line = malloc(CANDUMP_WRITE_MAX);
@@ -96,7 +97,7 @@ static void write_and_read(const candump_record_t *record) {
     free(line);
 }
 
-/* What the reader has to do with a line that is not blank. Returns whether it goes on. */
+/* Check the reader's result for a line that is not blank. @return whether the reader continues */
 static bool check_line(char kind, size_t number, bool skip) {
     candump_record_t record;
     const uint64_t skipped = log_file->skipped;
@@ -112,7 +113,7 @@ static bool check_line(char kind, size_t number, bool skip) {
     return true;
 }
 
-/* Walk through the text and the reader side by side. Returns the number of the line that ends it, 0: none does. */
+/* Compare text and reader line by line. @return number of the line that ends the reading; 0: none */
 static size_t walk(const char *text, size_t size, bool skip, uint64_t *bad) {
     size_t number = 0;
     for (size_t at = 0; at < size;) {

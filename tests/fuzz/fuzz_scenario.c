@@ -1,6 +1,6 @@
 /*
- * The reader of scenarios. What it refuses it tells in one line, with the line of the file; of what it takes every list is
- * within its room, and every step in its time.
+ * The reader of scenarios. A refusal is reported in one line, with the line of the file. In an accepted scenario every
+ * list is within its limit, and every step within the duration.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -43,7 +43,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     static const char EMPTY[] = "contains no scenario\n";
     scenario_options_t options = {.topology = -1, .id_set = -1};
     const char *path = capture_file(data, size);
-    /* Anew each time: what reads beyond it, or what was not written, is noticed. */
+    /* Allocated for each input, so that the sanitizers detect reads beyond it and uses of unset memory. */
     scenario_t *scenario = malloc(sizeof *scenario);
     if (scenario == NULL) {
         return 0;

@@ -1,8 +1,8 @@
 /*
- * The reader of stores (latch and recorder, --store), and a supervisor that starts from what was read. A store that is
- * damaged anywhere is never believed (FSM-7): STORE_INVALID, and TRIPPED after every reset but a power-on.
+ * The reader of stores (latch and recorder, --store), and a supervisor that starts from the result. A damaged store is
+ * never accepted (FSM-7): STORE_INVALID, and TRIPPED after every reset but a power-on.
  *
- * Byte 1: the reset cause, and in bit 7 whether the checksum at the end is made right; then the file.
+ * Byte 1: the reset cause; bit 7: correct the checksum at the end; then the file.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,7 +28,7 @@ static uint32_t crc_by_hand(const uint8_t *bytes, size_t size) {
     return ~crc;
 }
 
-/* Whether the last line is the right checksum over what stands before it. */
+/* Whether the last line is the correct checksum of all lines before it. */
 static bool ends_in_its_checksum(const char *text, size_t size) {
     char expected[ROOM];
     if ((size < 15u) || (text[size - 1u] != '\n')) {

@@ -1,8 +1,8 @@
 /*
  * Frames and ticks in any order, from any state, against the rules of rules.h.
  *
- * Byte 1: the state to begin in; byte 2: the variant of the configuration. Then steps, one byte what is done (lower half)
- * and how (upper half), and what that needs.
+ * Byte 1: the first state; byte 2: the variant of the configuration. Then steps: a byte with the action (lower half)
+ * and its variant (upper half), and its parameters.
  */
 #include "input.h"
 #include "testbed.h"
@@ -12,7 +12,7 @@ enum { STEPS_MAX = 64, RUN_MAX_MS = 3000 };
 static const uint16_t IDS[16] = {0x43F, 0x168, 0x075, 0x065, 0x363, 0x0A3, 0x050, 0x067,
                                  0x167, 0x267, 0x101, 0x201, 0x203, 0x700, 0x001, 0x000};
 
-static uint32_t ran_ms; /* an input does not run for longer than RUN_MAX_MS in all */
+static uint32_t ran_ms; /* an input runs for at most RUN_MAX_MS in all */
 
 static void run(uint32_t ms) {
     const uint32_t left = RUN_MAX_MS - ran_ms;
@@ -68,7 +68,7 @@ static void change_vehicle(unsigned how) {
     case 0:
         testbed_heal();
         break;
-    case 1: /* drives on autopilot */
+    case 1: /* on autopilot */
         testbed_mode(0x80);
         testbed_gear(1);
         testbed_wheels(200);
@@ -97,7 +97,7 @@ static void change_vehicle(unsigned how) {
 }
 
 static void long_silence(input_t *input, unsigned how) {
-    const uint32_t days[4] = {1, 1000, 86400000, 1000000000}; /* in ms; in one step less than half of the clock */
+    const uint32_t days[4] = {1, 1000, 86400000, 1000000000}; /* ms; a step is less than half of the clock's range */
     testbed_jump(days[how & 3u] * (1u + (input_byte(input) & 1u)));
 }
 

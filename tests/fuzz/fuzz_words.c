@@ -1,6 +1,6 @@
 /*
- * Steps of a scenario as a line: what is typed while `host_sim vehicle` runs, and what follows --fault. What is refused is
- * reported in one line. Byte 1: which of the two, topology, identifier set; then the line.
+ * Steps of a scenario as a line: typed to `host_sim vehicle`, or after --fault. A refusal is reported in one line. Byte
+ * 1: which of the two, topology, ID set; then the line.
  */
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /*
- * The bytes of a fuzzer, taken from the front. When they are used up, all is 0.
+ * The bytes of a fuzzer, read from the front. After their end all values are 0.
  */
 #ifndef INPUT_H
 #define INPUT_H
@@ -32,7 +32,7 @@ static inline void input_bytes(input_t *input, uint8_t *to, size_t count) {
     }
 }
 
-/* What a fuzzer calls (libFuzzer), and replay.c where there is none. */
+/* Called by libFuzzer, or by replay.c without it. */
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 #endif

@@ -1,6 +1,6 @@
 /*
- * Runs a fuzz target on files, for compilers that have no libFuzzer: every file named, and every file in every folder
- * named. Ends badly when there is none.
+ * Runs a fuzz target on files, for compilers without libFuzzer: on every named file, and every file in every named
+ * folder. Fails if there is no file.
  */
 #include <dirent.h>
 #include <stdbool.h>
@@ -21,7 +21,7 @@ static bool run_file(const char *path) {
     uint8_t *bytes = malloc(SIZE_MAX_BYTES);
     const size_t size = (bytes != NULL) ? fread(bytes, 1, SIZE_MAX_BYTES, file) : 0u;
     (void)fclose(file);
-    /* Exactly as large as it is: what reads beyond it is noticed by the sanitizers. */
+    /* Allocated with its exact size, so that the sanitizers detect reads beyond it. */
     uint8_t *exact = malloc((size > 0u) ? size : 1u);
     if ((bytes == NULL) || (exact == NULL)) {
         exit(2);

@@ -1,4 +1,4 @@
-/* What states and single frames mean, for oracle.c and rules.c: nothing of it needs a memory. */
+/* Meaning of states and single frames, for oracle.c and rules.c. */
 #ifndef FRAME_BYTES_H
 #define FRAME_BYTES_H
 
@@ -54,7 +54,7 @@ static inline void clear_reserved(int command, uint8_t data[8]) {
     }
 }
 
-/* TOP-1: whether a VCU may have taken it for a command other than the safe one. */
+/* TOP-1: whether a VCU may obey the frame as a command other than the safe one. */
 static inline bool differs_from_safe(int command, const hal_can_frame_t *frame) {
     if (frame->length != 8u) {
         return true;

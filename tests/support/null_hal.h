@@ -1,5 +1,5 @@
 /*
- * A port that takes everything, and keeps the last frame of one identifier that was sent.
+ * A port that accepts everything, and keeps the last sent frame of one identifier.
  */
 #ifndef NULL_HAL_H
 #define NULL_HAL_H

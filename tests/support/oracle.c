@@ -54,7 +54,7 @@ static void hold(oracle_t *oracle) {
     oracle->held_raw = oracle->angle_raw;
 }
 
-/* After 2 s without 065h an angle is held anew; from then on within the time in which the supervisor can notice it. */
+/* After 2 s without 065h a new angle may be held, within the time that the supervisor needs to detect this. */
 enum { ANEW_MS = 2000, SURELY_ANEW_MS = 2700, RECENT_MS = 40 };
 
 static bool is_recent(const oracle_t *oracle, uint16_t raw) {
@@ -65,7 +65,7 @@ static bool is_recent(const oracle_t *oracle, uint16_t raw) {
     return recent;
 }
 
-/* Whether 065h may carry this angle. One that is taken anew is held from then on. */
+/* Whether 065h may carry this angle. A new angle is held from then on. */
 static bool may_hold(oracle_t *oracle, uint16_t raw) {
     const uint32_t unsent_ms = oracle->now_ms - oracle->held_sent_ms;
     const bool kept = oracle->held && (raw == oracle->held_raw) && (unsent_ms <= SURELY_ANEW_MS);

@@ -283,7 +283,7 @@ static void judge_passed(rules_t *rules, hal_can_side_t side, const hal_can_fram
     }
 }
 
-/* FSM-8: the own counter runs. */
+/* FSM-8: the supervisor's alive counter increases by one. */
 static void judge_own_counter(rules_t *rules, uint8_t counter) {
     if (rules->own_counter_known && ((counter != rules->own_counter) != rules->running_heartbeat)) {
         broken(rules, "FSM-8: the own alive counter was %u and is %u", rules->own_counter, counter);

@@ -28,7 +28,7 @@ enum {
     TRAFFIC_COMMANDS = M_VEHICLE
 };
 
-/* Values of 363h byte 7, of gears, and the raw angle of wheels that point straight ahead. */
+/* Values of 363h byte 7, of gears, and the raw angle of the centre. */
 enum { MODE_NEITHER = 0x00, MODE_MANUAL = 0x40, MODE_ENGAGED = 0x80, MODE_BOTH = 0xC0, BUTTON_1 = 0x01 };
 enum { GEAR_D = 1, GEAR_R = 2, GEAR_N = 4, GEAR_P = 8 };
 enum { ANGLE_CENTRE = 9000 };
@@ -44,10 +44,10 @@ typedef struct {
 } traffic_row_t;
 extern const traffic_row_t TRAFFIC[TRAFFIC_MESSAGES];
 
-/* What one message does. Healthy at first; every member is for the test to change. */
+/* State of one message. Initially healthy; a test may change all members. */
 typedef struct {
     bool muted;        /* is not sent */
-    bool frozen;       /* its alive counter stands still */
+    bool frozen;       /* its alive counter is frozen */
     uint8_t flags;     /* HAL_CAN_* bits it is sent with */
     uint8_t length;    /* DLC; 8 */
     uint8_t data[8];   /* payload; byte `counter_at` is filled in */
@@ -56,20 +56,20 @@ typedef struct {
     uint16_t cycle_ms; /* sent when (elapsed time % cycle_ms) == phase_ms */
     uint16_t phase_ms;
     uint32_t id;         /* identifier */
-    hal_can_side_t side; /* where it arrives */
+    hal_can_side_t side; /* side on which it arrives */
     uint32_t sent;       /* frames so far */
     uint32_t last_ms;    /* clock at the last one */
-    uint32_t call;       /* number of the call in which the last one was handed over */
+    uint32_t call;       /* number of the call that passed on the last one */
 } traffic_message_t;
 
-/* All messages healthy; alive counters, identifiers and sides stay. */
+/* Make all messages healthy; alive counters, identifiers and sides stay. */
 void traffic_heal(traffic_message_t traffic[TRAFFIC_MESSAGES]);
 
 /* The identifier of a message in the set of the configuration; then all identifiers and sides as the configuration has them. */
 uint16_t traffic_id(const agv_config_t *config, unsigned message);
 void traffic_address(traffic_message_t traffic[TRAFFIC_MESSAGES], const agv_config_t *config);
 
-/* Whether a message is due so long after the start; its next frame, without a time stamp. */
+/* Whether a message is due at this time after the start; its next frame, without a time stamp. */
 bool traffic_is_due(const traffic_message_t *m, uint64_t elapsed_ms);
 hal_can_frame_t traffic_next(traffic_message_t *m);
 
@@ -79,7 +79,7 @@ void traffic_button(traffic_message_t traffic[TRAFFIC_MESSAGES], bool down);
 void traffic_gear(traffic_message_t traffic[TRAFFIC_MESSAGES], uint8_t gear);
 void traffic_wheels(traffic_message_t traffic[TRAFFIC_MESSAGES], int32_t left_mm_s, int32_t right_mm_s);
 
-/* An AI computer that drives, whatever the state: what a supervisor has to hold back. */
+/* Make the AI computer send driving commands in every state, which the supervisor must override or block. */
 void traffic_ai_drives(traffic_message_t traffic[TRAFFIC_MESSAGES]);
 
 /* A little-endian word of a payload. */

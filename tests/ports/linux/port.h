@@ -1,6 +1,7 @@
 /**
  * @file port.h
- * A supervisor's port as the tests use it: opened with all identifiers, frames taken one by one, what left noted.
+ * The port of a supervisor for the tests: opened with all identifiers; frames are received one by one, sent frames are
+ * recorded.
  */
 #ifndef TESTS_LINUX_PORT_H
 #define TESTS_LINUX_PORT_H
@@ -9,7 +10,7 @@
 
 #define PORT_LEFT_MAX 64u
 
-/** What on_left told. */
+/** The frames that on_left reported. */
 typedef struct {
     unsigned count;
     hal_can_side_t sides[PORT_LEFT_MAX];
@@ -24,19 +25,19 @@ typedef struct {
     uint64_t at_us;
 } port_received_t;
 
-/** Open on these, the AI side may be NULL. Identifiers 100h .. 10Fh and 065h pass. */
+/** Open the port on these interfaces; the AI side may be NULL. Identifiers 100h .. 10Fh and 065h pass. */
 void port_open(hal_t *hal, const char *vehicle, const char *ai, port_left_t *left);
 
-/** The next frame, which has to come soon. */
+/** The next frame, which must come soon. */
 port_received_t port_receive(hal_t *hal);
 
 /** Receive; there must be nothing. */
 void port_receive_nothing(hal_t *hal);
 
-/** Receive until nothing has come for a while. @return how many frames */
+/** Receive until nothing comes any more. @return number of frames */
 unsigned port_drain(hal_t *hal);
 
-/** So many milliseconds of a program: receive, tick. */
+/** Run a program for this many milliseconds: receive, tick. */
 void port_run_ms(hal_t *hal, unsigned ms);
 
 /** Send a frame of 8 bytes, vehicle side. */

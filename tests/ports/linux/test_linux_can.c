@@ -1,4 +1,4 @@
-/* One socket on a real interface of the kernel: opening, both directions, what it tells beside frames. */
+/* A socket on an interface of the kernel: opening, both directions, reports besides frames. */
 #include <string.h>
 
 #include "hal_linux/linux_can.h"
@@ -32,7 +32,7 @@ static void open_plain(void) {
     open_with(&plain);
 }
 
-/* The next thing that is not "nothing". */
+/* The next result that is not LINUX_CAN_NOTHING. */
 static linux_can_read_t read_soon(linux_can_record_t *record) {
     linux_can_read_t result = linux_can_read(&can, record);
     for (unsigned ms = 0; result == LINUX_CAN_NOTHING && ms < VCAN_SOON_MS; ms++) {
@@ -110,7 +110,7 @@ void test_received_frames(void) {
     receive_nothing();
     vcan_send(tester, 0x065, 8, EIGHT);
     expect_frame(0x065, 0, 8, EIGHT);
-    vcan_send(tester, 0x7FF, 3, EIGHT); /* what stands behind the third byte is the sender's, and no payload */
+    vcan_send(tester, 0x7FF, 3, EIGHT); /* bytes beyond the third one are not part of the payload */
     expect_frame(0x7FF, 0, 3, three);
     vcan_send(tester, 0x000, 0, EIGHT);
     expect_frame(0x000, 0, 0, zeros);
@@ -227,7 +227,7 @@ void test_own_frames_are_received_only_if_requested(void) {
     TEST_ASSERT_TRUE(record.own);
     TEST_ASSERT_EQUAL_HEX32(0x065, record.frame.id);
     TEST_ASSERT_EQUAL_HEX8_ARRAY(EIGHT, record.frame.data, 8);
-    vcan_send(tester, 0x065, 8, EIGHT); /* the same bytes by another socket of this computer are not ours */
+    vcan_send(tester, 0x065, 8, EIGHT); /* the same bytes from another socket of this computer are not an own frame */
     expect_frame(0x065, 0, 8, EIGHT);
 }
 
@@ -256,7 +256,7 @@ void test_frames_lost_by_a_full_queue_are_counted(void) {
         received++;
     }
     TEST_ASSERT_TRUE(received >= 1 && received < 100);
-    vcan_send(tester, 0x066, 8, EIGHT); /* the kernel tells with the next frame that it keeps */
+    vcan_send(tester, 0x066, 8, EIGHT); /* the kernel reports the loss with the next frame that it keeps */
     TEST_ASSERT_EQUAL(LINUX_CAN_RECORD, read_soon(&record));
     TEST_ASSERT_EQUAL_HEX32(0x066, record.frame.id);
     TEST_ASSERT_EQUAL_UINT32(200u - received, record.lost);

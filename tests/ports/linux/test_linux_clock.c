@@ -1,4 +1,5 @@
-/* The kernel's stamps in time since the start. The clocks are the real ones: a start lies as far back as a test wants. */
+/* Conversion of the kernel's stamps to time since the start, with the real clocks. A test sets the start as far back as
+ * it needs. */
 #include "hal_linux/linux_clock.h"
 
 #include <time.h>
@@ -6,7 +7,7 @@
 #include "unity.h"
 
 #define S_US UINT64_C(1000000)
-#define NEAR_US 50000u /* what an interrupted program may lose between two calls */
+#define NEAR_US 50000u /* time that an interruption may take between two calls */
 
 void setUp(void) {
 }
@@ -20,7 +21,7 @@ static uint64_t read_us(clockid_t id) {
     return (uint64_t)now.tv_sec * S_US + (uint64_t)now.tv_nsec / 1000u;
 }
 
-/* A clock that was started so long ago; unsigned, so it may be longer than the computer runs. */
+/* A clock that was started this long ago, which may be longer than the computer runs (unsigned). */
 static linux_clock_t started(uint64_t ago_us) {
     return (linux_clock_t){.start_ns = (read_us(CLOCK_MONOTONIC) - ago_us) * 1000u};
 }

@@ -1,4 +1,4 @@
-/* The port: opening, receiving from one and two interfaces, and the functions that have no hardware behind them. */
+/* The port: opening, receiving from one and two interfaces, and the functions without hardware. */
 #include <string.h>
 
 #include "hal_linux/linux_hal.h"
@@ -110,7 +110,7 @@ void test_the_clock_is_the_one_of_the_stamps(void) {
     const uint64_t before_us = linux_hal_now_us(&hal);
     vcan_send(tester, 0x100, 8, vcan_frame(0).data);
     const uint64_t after_us = linux_hal_now_us(&hal);
-    vcan_pause_ms(100); /* it waits in the socket, and is not taken for fresh */
+    vcan_pause_ms(100); /* it waits in the socket and must not look fresh */
     const port_received_t received = port_receive(&hal);
     TEST_ASSERT_TRUE(received.at_us + 100u >= before_us); /* reading two clocks takes its time */
     TEST_ASSERT_TRUE(received.at_us <= after_us + 2u);
@@ -200,7 +200,7 @@ void test_own_frames_are_reported_and_never_received(void) {
     TEST_ASSERT_EQUAL_UINT32(left.at_us[0] / 1000u, left.frames[0].time_ms);
     TEST_ASSERT_TRUE(left.at_us[0] + 100u >= before_us);
     TEST_ASSERT_TRUE(left.at_us[0] <= after_us + 2u);
-    vcan_send(tester, 0x065, 8, frame.data); /* the very same by somebody else on this computer: a foreign sender */
+    vcan_send(tester, 0x065, 8, frame.data); /* the same frame from another program of this computer */
     const port_received_t foreign = port_receive(&hal);
     TEST_ASSERT_EQUAL_HEX32(0x065, foreign.frame.id);
     TEST_ASSERT_EQUAL_HEX8_ARRAY(frame.data, foreign.frame.data, 8);
@@ -220,7 +220,7 @@ void test_two_supervisors_receive_each_other_and_not_themselves(void) {
     TEST_ASSERT_EQUAL_UINT(1, left.count);
 }
 
-/* Of three frames that wait the first is with the kernel, and has left; the other two never do. */
+/* Of three frames the first is in the kernel and was sent; the other two are never sent. */
 void test_sent_frames_are_reported_at_the_close_and_nothing_follows(void) {
     port_open(&hal, "vcan0", NULL, &left);
     const int tester = vcan_open("vcan0");
@@ -241,7 +241,7 @@ void test_the_ai_side_is_closed_first(void) {
     const hal_can_frame_t frame = vcan_frame(0x100);
     TEST_ASSERT_TRUE(hal_can_send(&hal, HAL_CAN_VEHICLE, &frame));
     TEST_ASSERT_TRUE(hal_can_send(&hal, HAL_CAN_AI, &frame));
-    linux_hal_close(&hal); /* a side tells of its last frame when it is closed */
+    linux_hal_close(&hal); /* a side reports its last frame when it is closed */
     TEST_ASSERT_EQUAL_UINT(2, left.count);
     TEST_ASSERT_EQUAL(HAL_CAN_AI, left.sides[0]);
     TEST_ASSERT_EQUAL(HAL_CAN_VEHICLE, left.sides[1]);

@@ -1,4 +1,4 @@
-/* What goes wrong: error frames, lost frames, interfaces that go down or away. Error frames are a tester's. */
+/* Errors: error frames, lost frames, interfaces that go down or are removed. A tester sends the error frames. */
 #include <string.h>
 
 #include "hal_linux/linux_hal.h"
@@ -28,7 +28,7 @@ static void expect_status(hal_can_state_t state, unsigned bus_offs, unsigned ove
     TEST_ASSERT_EQUAL_UINT16(overruns, status.overrun_count);
 }
 
-/* An error frame arrives; it is handed over as well. */
+/* Send an error frame; the port also passes it on. */
 static void error_frame(uint32_t classes, uint8_t controller) {
     vcan_send_error(tester, classes, controller);
     const port_received_t received = port_receive(&hal);
@@ -65,7 +65,7 @@ void test_error_passive_and_back(void) {
 void test_other_errors_change_nothing(void) {
     error_frame(CAN_ERR_PROT | CAN_ERR_ACK | CAN_ERR_BUSERROR, 0);
     expect_status(HAL_CAN_ERROR_ACTIVE, 0, 0);
-    error_frame(CAN_ERR_PROT, CAN_ERR_CRTL_TX_PASSIVE); /* without the class the byte says nothing of the controller */
+    error_frame(CAN_ERR_PROT, CAN_ERR_CRTL_TX_PASSIVE); /* without the class the byte does not concern the controller */
     expect_status(HAL_CAN_ERROR_ACTIVE, 0, 0);
     error_frame(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_OVERFLOW);
     expect_status(HAL_CAN_ERROR_ACTIVE, 0, 0);
@@ -87,7 +87,7 @@ void test_bus_off_lasts_until_the_restart(void) {
     error_frame(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_PASSIVE);
     error_frame(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_WARNING);
     port_run_ms(&hal, 5);
-    hal_can_recover(&hal, HAL_CAN_VEHICLE); /* there is no controller that could be restarted */
+    hal_can_recover(&hal, HAL_CAN_VEHICLE); /* there is no controller to restart */
     port_run_ms(&hal, 5);
     expect_status(HAL_CAN_BUS_OFF, 1, 0);
     TEST_ASSERT_FALSE(port_send(&hal, 0x100));
@@ -118,7 +118,7 @@ void test_frames_that_wait_at_bus_off_are_never_sent(void) {
     port_run_ms(&hal, 10);
     error_frame(CAN_ERR_RESTARTED, 0);
     port_run_ms(&hal, 10);
-    vcan_expect_id(tester, 0x10F); /* the kernel had it; on a wire the controller would have given it up */
+    vcan_expect_id(tester, 0x10F); /* the kernel had it; a real controller would have discarded it */
     vcan_expect_nothing(tester);
     TEST_ASSERT_EQUAL_UINT(1, left.count);
     TEST_ASSERT_TRUE(port_send(&hal, 0x102));
@@ -226,7 +226,7 @@ void test_an_adapter_that_is_unplugged_and_plugged_in_again(void) {
     TEST_ASSERT_TRUE(run_until(HAL_CAN_BUS_OFF) || linux_hal_tick(&hal));
     expect_status(HAL_CAN_BUS_OFF, 1, 0);
     TEST_ASSERT_EQUAL_INT(-1, linux_hal_fd(&hal, HAL_CAN_VEHICLE));
-    TEST_ASSERT_FALSE(linux_hal_tick(&hal)); /* told once */
+    TEST_ASSERT_FALSE(linux_hal_tick(&hal)); /* reported once */
     TEST_ASSERT_FALSE(port_send(&hal, 0x101));
     hal_can_recover(&hal, HAL_CAN_VEHICLE);
     port_run_ms(&hal, 150);
@@ -250,7 +250,8 @@ void test_an_adapter_that_is_unplugged_and_plugged_in_again(void) {
     expect_status(HAL_CAN_ERROR_PASSIVE, 1, 0);
 }
 
-/* The quickest of some looks counts, since the computer may be busy: none of them may start a program (modprobe). */
+/* The fastest of several searches counts, because the computer may be busy. A search must not start a program
+ * (modprobe). */
 void test_looking_for_an_adapter_takes_no_time(void) {
     uint64_t quickest_us = UINT64_MAX;
     vcan_remove("vcan0");

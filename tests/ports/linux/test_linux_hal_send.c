@@ -1,4 +1,4 @@
-/* What is sent: order, waiting, a kernel that has no room, purging, an echo that is lost. */
+/* Sending: order, waiting, a full kernel queue, purging, a lost echo. */
 #include <string.h>
 
 #include "hal_linux/linux_hal.h"
@@ -25,7 +25,7 @@ static uint32_t pending_ms(void) {
     return port_status(&hal, HAL_CAN_VEHICLE).tx_pending_ms;
 }
 
-/* Frames that nobody listens to, until the kernel takes no more. */
+/* Frames without a receiver, until the kernel's queue is full. */
 static void fill_kernel_queue(void) {
     while (vcan_try(tester, 0x7FF)) {
     }
@@ -102,7 +102,7 @@ void test_frames_that_cannot_be_sent_are_refused(void) {
         TEST_ASSERT_FALSE(hal_can_send(&hal, HAL_CAN_VEHICLE, &frame));
         frame.flags = HAL_CAN_ERROR;
         TEST_ASSERT_FALSE(hal_can_send(&hal, HAL_CAN_VEHICLE, &frame));
-        TEST_ASSERT_TRUE(port_send(&hal, 0x100)); /* from here on one is on its way */
+        TEST_ASSERT_TRUE(port_send(&hal, 0x100)); /* from here on one frame is in flight */
     }
 }
 
@@ -120,7 +120,7 @@ void test_a_full_kernel_queue_refuses_a_frame(void) {
     }
     vcan_unstick();
     port_run_ms(&hal, 3);
-    vcan_expect_nothing(tester); /* not taken, so not sent later either */
+    vcan_expect_nothing(tester); /* refused, so not sent later either */
     TEST_ASSERT_TRUE(port_send(&hal, 0x101));
     vcan_expect_id(tester, 0x101);
 }
@@ -131,7 +131,7 @@ void test_a_waiting_frame_is_tried_again_in_ticks_only(void) {
     TEST_ASSERT_TRUE(port_send(&hal, 0x101));
     TEST_ASSERT_TRUE(port_send(&hal, 0x100));
     fill_kernel_queue();
-    (void)port_drain(&hal); /* 10Fh has left, 100h is tried and finds no room */
+    (void)port_drain(&hal); /* 10Fh was sent, 100h is tried and finds no room */
     TEST_ASSERT_EQUAL_UINT(1, left.count);
     const unsigned before = vcan_dropped();
     for (unsigned i = 0; i < 1000; i++) {
@@ -143,7 +143,7 @@ void test_a_waiting_frame_is_tried_again_in_ticks_only(void) {
         (void)linux_hal_tick(&hal);
     }
     TEST_ASSERT_EQUAL_UINT(before + 10, vcan_dropped());
-    TEST_ASSERT_TRUE(port_send(&hal, 0x105)); /* it queues up behind, and does not try either */
+    TEST_ASSERT_TRUE(port_send(&hal, 0x105)); /* it waits behind 100h and is not tried */
     TEST_ASSERT_EQUAL_UINT(before + 10, vcan_dropped());
     vcan_unstick();
     vcan_drain(tester);
@@ -164,7 +164,7 @@ void test_the_age_of_waiting_frames_grows(void) {
     TEST_ASSERT_TRUE(port_send(&hal, 0x10F));
     vcan_stick();
     fill_kernel_queue();
-    (void)port_drain(&hal); /* 100h has left: the age is that of 10Fh from now on, which finds no room */
+    (void)port_drain(&hal); /* 100h was sent: the age is now that of 10Fh, which finds no room */
     vcan_pause_ms(30);
     const uint32_t second_ms = pending_ms();
     TEST_ASSERT_TRUE(second_ms >= 30);
@@ -178,7 +178,7 @@ void test_after_a_purge_only_the_frame_in_the_kernel_is_sent(void) {
     TEST_ASSERT_TRUE(port_send(&hal, 0x101));
     hal_can_purge(&hal, HAL_CAN_VEHICLE);
     TEST_ASSERT_EQUAL_UINT32(0, pending_ms());
-    TEST_ASSERT_TRUE(port_send(&hal, 0x102)); /* waits until 10Fh has left: never two in the kernel */
+    TEST_ASSERT_TRUE(port_send(&hal, 0x102)); /* waits until 10Fh was sent: never two frames in the kernel */
     TEST_ASSERT_TRUE(pending_ms() >= 1);
     vcan_expect_id(tester, 0x10F);
     vcan_expect_nothing(tester);
@@ -214,7 +214,7 @@ void test_a_lost_echo_does_not_block_the_queue(void) {
     port_run_ms(&hal, 3);
     TEST_ASSERT_EQUAL_UINT(0, left.count);
     vcan_drain(tester);
-    vcan_send(tester, 0x105, 8, foreign.data); /* with it the kernel tells what was lost */
+    vcan_send(tester, 0x105, 8, foreign.data); /* with it the kernel reports the loss */
     port_run_ms(&hal, 3);
     vcan_expect_id(tester, 0x101);
     vcan_expect_nothing(tester);
@@ -234,7 +234,7 @@ void test_a_loss_before_a_frame_was_sent_does_not_affect_it(void) {
     TEST_ASSERT_TRUE(port_send(&hal, 0x100));
     TEST_ASSERT_TRUE(port_send(&hal, 0x101));
     vcan_drain(tester);
-    TEST_ASSERT_EQUAL_HEX32(0x105, port_receive(&hal).frame.id); /* tells of the loss, and came before 100h */
+    TEST_ASSERT_EQUAL_HEX32(0x105, port_receive(&hal).frame.id); /* reports the loss, and came before 100h */
     TEST_ASSERT_TRUE(port_status(&hal, HAL_CAN_VEHICLE).overrun_count > 0);
     TEST_ASSERT_TRUE(hal.sides[HAL_CAN_VEHICLE].in_flight);
     vcan_expect_nothing(tester);
@@ -247,7 +247,7 @@ void test_a_port_that_finishes_sends_waiting_frames(void) {
     TEST_ASSERT_TRUE(port_send(&hal, 0x065));
     TEST_ASSERT_TRUE(port_send(&hal, 0x101));
     TEST_ASSERT_TRUE(port_send(&hal, 0x100));
-    vcan_send(tester, 0x105, 8, foreign.data); /* what is received does not hold it up */
+    vcan_send(tester, 0x105, 8, foreign.data); /* received frames do not delay it */
     linux_hal_finish(&hal);
     TEST_ASSERT_EQUAL_UINT32(0, pending_ms());
     vcan_expect_id(tester, 0x065);
@@ -267,9 +267,9 @@ void test_a_port_that_finishes_tries_a_full_kernel_again(void) {
     linux_hal_finish(&hal);
     const uint64_t took_us = linux_hal_now_us(&hal) - began_us;
     TEST_ASSERT_EQUAL_UINT(1, left.count);
-    TEST_ASSERT_TRUE(took_us >= LINUX_HAL_FINISH_MS * 1000u); /* it does give up, and not before */
+    TEST_ASSERT_TRUE(took_us >= LINUX_HAL_FINISH_MS * 1000u); /* it ends after its limit, not earlier */
     const unsigned tries = vcan_dropped() - before;
-    TEST_ASSERT_TRUE(tries > 1 && tries <= LINUX_HAL_FINISH_MS + 2u); /* once a millisecond: no busy loop */
+    TEST_ASSERT_TRUE(tries > 1 && tries <= LINUX_HAL_FINISH_MS + 2u); /* one try a millisecond: no busy loop */
 }
 
 void test_a_port_that_finishes_does_not_send_on_a_side_that_is_down(void) {

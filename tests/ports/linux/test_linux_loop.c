@@ -1,4 +1,4 @@
-/* Waiting: ticks, files, signals; and real-time priority, which needs rights. */
+/* Waiting for ticks, files and signals; real-time priority, which needs rights. */
 #include "hal_linux/linux_clock.h"
 #include "hal_linux/linux_loop.h"
 
@@ -42,7 +42,7 @@ static void pause_ms(long ms) {
 
 enum { ROW = 10, ROWS_MAX = 2000 };
 
-/* How long a row of ticks takes. */
+/* Duration of a series of ticks. */
 static uint64_t row_us(void) {
     TEST_ASSERT_EQUAL_HEX32(LINUX_LOOP_TICK, linux_loop_wait(&loop));
     const uint64_t begin_us = now_us();
@@ -52,7 +52,7 @@ static uint64_t row_us(void) {
     return now_us() - begin_us;
 }
 
-/* A busy computer makes rows longer, and the first tick of one late, which makes it shorter by less than a tick. */
+/* A busy computer makes a series longer. A late first tick makes it shorter, by less than a tick. */
 void test_a_tick_every_millisecond(void) {
     uint64_t shortest_us = UINT64_MAX;
     uint64_t sum_us = 0;
@@ -107,7 +107,8 @@ void test_files_that_cannot_be_watched(void) {
     TEST_ASSERT_EQUAL_INT(EBADF, errno);
 }
 
-/* The earliest moment within a millisecond of the clock at which a tick was told; later ones are the computer's. */
+/* The earliest time within a millisecond of the clock at which a tick was reported; later ones are delays of the
+ * computer. */
 static uint64_t earliest_phase_us(const linux_clock_t *clock) {
     uint64_t earliest_us = UINT64_MAX;
     for (unsigned i = 0; i < 100; i++) {
@@ -135,7 +136,7 @@ void test_a_closed_loop_cannot_be_aligned(void) {
     TEST_ASSERT_EQUAL_INT(EBADF, errno);
 }
 
-/* The signal has to be told within some ticks. */
+/* The signal must be reported within some ticks. */
 static void expect_signal(void) {
     uint32_t what = 0;
     for (unsigned i = 0; (what & LINUX_LOOP_SIGNAL) == 0 && i < 100; i++) {
@@ -152,7 +153,7 @@ void test_signals_are_reported_and_do_not_end_the_program(void) {
         TEST_ASSERT_EQUAL_HEX32(LINUX_LOOP_TICK, linux_loop_wait(&loop));
     }
     linux_loop_close(&loop);
-    TEST_ASSERT_EQUAL_INT(0, kill(getpid(), SIGTERM)); /* still held back, and told by the next loop */
+    TEST_ASSERT_EQUAL_INT(0, kill(getpid(), SIGTERM)); /* still blocked, and reported by the next loop */
     TEST_ASSERT_TRUE(linux_loop_open(&loop));
     expect_signal();
 }
@@ -177,7 +178,7 @@ void test_a_loop_needs_files(void) {
     TEST_ASSERT_EQUAL_INT(-1, other.epoll);
 }
 
-/* In another process, so that this one stays as it is. @return what `child` did */
+/* Run `child` in another process, so that this one is unchanged. @return its result */
 static int in_child(int (*child)(void)) {
     const pid_t pid = fork();
     if (pid == 0) {
@@ -213,7 +214,7 @@ void test_real_time_is_refused_in_one_line_without_the_rights(void) {
     TEST_ASSERT_EQUAL_INT(0, in_child(ask_without_rights));
 }
 
-/* With the rights it is granted, else refused as a whole: which of the two depends on who runs this. */
+/* With the rights it is granted, otherwise it is refused and nothing changes. This depends on the user. */
 static int ask_with_what_rights_there_are(void) {
     char error[LINUX_LOOP_ERROR_SIZE] = "";
     if (!linux_loop_realtime(error)) {

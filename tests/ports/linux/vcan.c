@@ -24,14 +24,14 @@ static unsigned tester_count;
 static bool links_changed;
 static bool is_stuck;
 
-/* What vcan_restore() calls must not assert: after a failed test each assertion ends tearDown, whatever it says. */
+/* vcan_restore() must not use assertions: after a failed test an assertion would end tearDown. */
 static void require(bool works, const char *what) {
     if (!works) {
         TEST_FAIL_MESSAGE(what);
     }
 }
 
-/* A request about an interface that is to be made, or is there. */
+/* A request for an existing or a new interface. */
 typedef struct {
     struct nlmsghdr header;
     struct ifinfomsg interface;
@@ -119,7 +119,7 @@ unsigned vcan_dropped(void) {
 }
 
 void vcan_restore(void) {
-    vcan_pause_ms(VCAN_SETTLED_MS); /* what is still on its way belongs to this test */
+    vcan_pause_ms(VCAN_SETTLED_MS); /* frames still in flight belong to this test */
     while (tester_count > 0) {
         (void)close(testers[--tester_count]);
     }
@@ -136,7 +136,7 @@ void vcan_restore(void) {
     }
 }
 
-/* What a frame of that moment is stamped with; it is read a little later. */
+/* The stamp of a frame sent now; it is read a little later. */
 static uint64_t stamp_of_a_frame(int stamped, int sender) {
     const struct can_frame frame = {.can_id = 1};
     struct can_frame received;
@@ -161,7 +161,7 @@ static int bind_raw(int can_socket, const char *interface) {
     return can_socket;
 }
 
-/* All on one processor: then whatever the kernel has put off is done as soon as this program sleeps. */
+/* All on one processor, so that the kernel does its deferred work as soon as this program sleeps. */
 static void stay_on_one_processor(void) {
     cpu_set_t first;
     CPU_ZERO(&first);
@@ -170,7 +170,7 @@ static void stay_on_one_processor(void) {
 }
 
 void vcan_begin(void) {
-    static int stamped = -1; /* stays open, so that the kernel goes on stamping */
+    static int stamped = -1; /* stays open, so that the kernel keeps stamping */
     const int on = 1;
     if (stamped >= 0) {
         return;

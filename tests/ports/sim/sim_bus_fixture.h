@@ -1,4 +1,4 @@
-/* A bus with four nodes that have queues, and a log of what was on its wire: what the tests of the bus have in common. */
+/* Common parts of the bus tests: a bus with four nodes that have queues, and a log of its frames. */
 #ifndef SIM_BUS_FIXTURE_H
 #define SIM_BUS_FIXTURE_H
 
@@ -7,7 +7,7 @@
 #define FIXTURE_NODES 4u
 #define FIXTURE_EVENTS 256u
 
-/* What the tests call them. */
+/* Names of the nodes. */
 #define A ((sim_bus_node_t)0)
 #define B ((sim_bus_node_t)1)
 #define C ((sim_bus_node_t)2)

@@ -1,4 +1,4 @@
-/* The simulated bus when all is well: frame times, arbitration, mailboxes, queues, time. */
+/* The simulated bus without errors: frame times, arbitration, mailboxes, queues, time. */
 #include <string.h>
 
 #include "sim_bus_fixture.h"
@@ -78,7 +78,7 @@ void test_a_frame_on_the_wire_is_not_interrupted(void) {
     TEST_ASSERT_EQUAL_UINT64(270, fixture.events[1].start_us);
 }
 
-/* All that is sent at one moment takes part, also when time was run up to this very moment before. */
+/* All frames sent at the same time take part in the arbitration, even if the bus was run up to that time before. */
 void test_frames_sent_at_the_same_time_compete(void) {
     sim_bus_run_until(bus, 1000);
     send(&fixture, A, 0x363, 8, 0);
@@ -271,7 +271,7 @@ void test_nodes_and_taps_are_limited_and_configurations_checked(void) {
         TEST_ASSERT_TRUE(sim_bus_add_tap(bus, fixture_record, &fixture));
     }
     TEST_ASSERT_FALSE(sim_bus_add_tap(bus, fixture_record, &fixture));
-    send(&fixture, 15, 0x100, 8, 0); /* the last node works, and every tap is told */
+    send(&fixture, 15, 0x100, 8, 0); /* the last node works, and every tap is called */
     sim_bus_run_until(bus, 1000);
     TEST_ASSERT_EQUAL_UINT(SIM_BUS_TAPS_MAX, fixture.event_count);
     TEST_ASSERT_EQUAL_HEX32(0x8000, fixture.events[0].senders);
@@ -331,7 +331,7 @@ typedef struct {
     uint32_t time_ms;
 } answerer_t;
 
-/* Answers one frame with another at once, on whatever bus. */
+/* Answers one frame with another at once, on any bus. */
 static void answer(void *ctx, const hal_can_frame_t *frame) {
     answerer_t *answerer = ctx;
     if (answerer->calls++ == 0) {
@@ -342,7 +342,7 @@ static void answer(void *ctx, const hal_can_frame_t *frame) {
     }
 }
 
-/* What a callback sends takes part in the very next arbitration, 3 bits later. */
+/* A frame sent by a callback takes part in the next arbitration, 3 bits later. */
 void test_a_callback_may_answer_at_once(void) {
     answerer_t answerer = {.bus = bus, .answer_id = 0x050};
     const sim_bus_node_config_t config = {.on_receive = answer, .ctx = &answerer};
@@ -379,7 +379,7 @@ void test_a_callback_may_switch_a_later_receiver_off(void) {
     TEST_ASSERT_EQUAL_UINT(1, received_by(&fixture, D));
 }
 
-/* A gateway: what arrives on one bus is sent on the other in the same moment, also when the other is busy. */
+/* A gateway: a frame received on one bus is sent on the other at the same time, even if the other is busy. */
 void test_two_buses_run_in_the_order_of_time(void) {
     static fixture_t other;
     fixture_init(&other, 250000);
@@ -405,7 +405,7 @@ void test_two_buses_run_in_the_order_of_time(void) {
     TEST_ASSERT_EQUAL_UINT64(5000, sim_bus_now_us(&other.bus));
 }
 
-/* A frame that starts on the other bus in the moment before: the callback's frame is no part of that arbitration. */
+/* A frame starts on the other bus just before: the callback's frame does not take part in that arbitration. */
 void test_a_callback_cannot_send_into_the_past_of_another_bus(void) {
     static fixture_t other;
     fixture_init(&other, 500000);
@@ -422,7 +422,7 @@ void test_a_callback_cannot_send_into_the_past_of_another_bus(void) {
     TEST_ASSERT_EQUAL_HEX32(0x050, other.events[1].id);
 }
 
-/* A bus that is ahead is not taken back. */
+/* A bus that is ahead does not go back. */
 void test_buses_that_are_not_at_one_time_catch_up(void) {
     static fixture_t other;
     fixture_init(&other, 500000);
@@ -453,7 +453,7 @@ void test_a_copy_is_a_snapshot(void) {
     TEST_ASSERT_EQUAL_UINT64(fixture.events[1].end_us, fixture.events[2].end_us);
 }
 
-/* However the same time is cut, the same happens. */
+/* The size of the time steps does not change the result. */
 void test_the_size_of_the_time_steps_makes_no_difference(void) {
     static fixture_t other;
     fixture_init(&other, 500000);

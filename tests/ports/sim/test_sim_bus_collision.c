@@ -1,4 +1,4 @@
-/* The simulated bus when several nodes send one identifier in one moment: as on a wire. */
+/* The simulated bus when several nodes send the same identifier at the same time. */
 #include <string.h>
 
 #include "sim_bus_fixture.h"
@@ -38,7 +38,7 @@ void test_identical_frames_merge(void) {
     TEST_ASSERT_EQUAL_UINT(1, received_by(&fixture, C));
 }
 
-/* Two senders and nobody else: no one is left to acknowledge. */
+/* Two senders and no other node: the frame is not acknowledged. */
 void test_identical_frames_of_all_are_not_acknowledged(void) {
     only_a_and(B);
     send(&fixture, A, 0x168, 8, 7);
@@ -75,8 +75,9 @@ void test_different_frames_destroy_each_other(void) {
 
 /*
  * 16 collisions of 94 us make both passive (16 x 8 = 128); the 16th ends at 15 x 94 + 88 = 1498. Passive senders wait
- * 3 + 8 bits: 1498 + 22 = 1520. Then the recessive one sees its error, but its passive error flag disturbs nobody: the
- * other gets through (1 byte: 62 bits = 124 us), and then, 8 bits later than others might, the loser.
+ * 3 + 8 bits: 1498 + 22 = 1520. Then the recessive one detects its error, but its passive error flag does not destroy
+ * the frame. The other frame is sent (1 byte: 62 bits = 124 us), and after it, with 8 bits of suspend time, that of the
+ * loser.
  */
 void test_a_collision_ends_when_the_loser_is_passive(void) {
     send(&fixture, A, 0x168, 1, 0x00);
@@ -100,8 +101,8 @@ void test_a_collision_ends_when_the_loser_is_passive(void) {
 }
 
 /*
- * Round after round: from the second on B, passive, loses 8 and gets 1 back, 7 a round from 135: in round 19 its counter
- * is 135 + 17 x 7 = 254, + 8 = 262 > 255. A, dominant, recovers meanwhile.
+ * Repeated collisions: from the second on the counter of B, which is passive, rises by 8 and falls by 1, from 135 on:
+ * in round 19 its counter is 135 + 17 x 7 = 254, + 8 = 262 > 255. A, dominant, recovers meanwhile.
  */
 /* Shows: SUP-7 */
 void test_endless_collisions_end_in_bus_off(void) {
@@ -128,7 +129,7 @@ void test_an_active_loser_destroys_the_frame(void) {
     TEST_ASSERT_TRUE(fixture.events[0].error);
     TEST_ASSERT_EQUAL_UINT(136, tec_of(&fixture, A));
     TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, B));
-    sim_bus_run_until(bus, 94 + 62 * 2); /* and A has to wait: B alone gets through */
+    sim_bus_run_until(bus, 94 + 62 * 2); /* and A must wait, so only the frame of B is sent */
     TEST_ASSERT_EQUAL_HEX32(0x2, fixture.events[1].senders);
     TEST_ASSERT_FALSE(fixture.events[1].error);
 }
@@ -147,7 +148,7 @@ void test_the_longer_frame_loses(void) {
     send(&fixture, B, 0x168, 0, 0);
     sim_bus_run_until(bus, 82);
     TEST_ASSERT_EQUAL_UINT64(82, fixture.events[0].end_us);
-    sim_bus_set_error_counters(bus, A, 128, 0); /* passive, it is A that falls silent */
+    sim_bus_set_error_counters(bus, A, 128, 0); /* A is passive and stops sending */
     sim_bus_set_error_counters(bus, B, 128, 0);
     sim_bus_run_until(bus, 1000);
     TEST_ASSERT_EQUAL_HEX32(0x2, fixture.events[1].senders);
@@ -187,7 +188,7 @@ void test_extended_frames_collide_later(void) {
     TEST_ASSERT_EQUAL_UINT64(138, fixture.events[0].end_us);
 }
 
-/* Switched off and on in the middle, the loser is a fresh node that has nothing to do with that frame. */
+/* Switched off and on during the frame, the loser is a new node without a part in that frame. */
 void test_a_loser_that_loses_its_power_is_not_counted(void) {
     sim_bus_set_error_counters(bus, B, 128, 0);
     send(&fixture, A, 0x168, 1, 0x00);
@@ -200,7 +201,7 @@ void test_a_loser_that_loses_its_power_is_not_counted(void) {
     TEST_ASSERT_EQUAL_UINT(0, tec_of(&fixture, B));
 }
 
-/* Three of them: the passive one falls silent at its bit, the other two are equal and get through together. */
+/* Three senders: the passive one stops at its bit; the other two frames are equal and are sent together. */
 void test_a_passive_loser_leaves_the_others_to_merge(void) {
     sim_bus_set_error_counters(bus, C, 128, 0);
     send(&fixture, A, 0x168, 1, 0x01);
@@ -210,6 +211,6 @@ void test_a_passive_loser_leaves_the_others_to_merge(void) {
     TEST_ASSERT_EQUAL_HEX32(0x3, fixture.events[0].senders);
     TEST_ASSERT_FALSE(fixture.events[0].error);
     TEST_ASSERT_EQUAL_UINT(136, tec_of(&fixture, C));
-    TEST_ASSERT_EQUAL_UINT(0, received_by(&fixture, C)); /* nor could it read the frame that it had disputed */
+    TEST_ASSERT_EQUAL_UINT(0, received_by(&fixture, C)); /* and it could not read the frame of the collision */
     TEST_ASSERT_EQUAL_UINT(1, received_by(&fixture, D));
 }

@@ -1,4 +1,4 @@
-/* The simulated bus when something is wrong: no acknowledge, errors on demand, purge. Collisions have a file of their own. */
+/* The simulated bus with errors: no acknowledge, injected errors, purge. Collisions: test_sim_bus_collision.c. */
 #include <string.h>
 
 #include "sim_bus_fixture.h"
@@ -25,11 +25,12 @@ static void only_a_and(sim_bus_node_t other) {
     }
 }
 
-/* ---- Nobody acknowledges ---- */
+/* ---- No acknowledge ---- */
 
 /*
  * 8 bytes: 132 bits, of which the last 8 are not sent, error frame 20: 144 bits = 288 us, next try after 3 bits. The
- * 16th failure makes the node passive, at 15 x 294 + 288 = 4698; from then on it waits 8 bits more, and does not count.
+ * 16th failure makes the node passive, at 15 x 294 + 288 = 4698; from then on it waits 8 bits more, and its counter
+ * stays.
  */
 /* Shows: SUP-7 */
 void test_a_lone_node_tries_for_ever_and_becomes_passive(void) {
@@ -53,7 +54,7 @@ void test_a_lone_node_tries_for_ever_and_becomes_passive(void) {
     TEST_ASSERT_EQUAL_UINT(1, received_by(&fixture, B));
 }
 
-/* An unplugged node fares the same on its own, and the bus goes on without it. */
+/* An unplugged node behaves the same, and the bus works without it. */
 void test_an_unplugged_node_is_alone(void) {
     sim_bus_set_plugged(bus, A, false);
     sim_bus_set_plugged(bus, A, false);
@@ -88,7 +89,7 @@ void test_several_nodes_may_be_unplugged(void) {
     TEST_ASSERT_EQUAL_UINT(16, tec_of(&fixture, A));
     TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, B));
     sim_bus_run_until(bus, 100000);
-    TEST_ASSERT_EQUAL_UINT64(SIM_BUS_NEVER, sim_bus_due_us(bus)); /* passive: nothing more changes */
+    TEST_ASSERT_EQUAL_UINT64(SIM_BUS_NEVER, sim_bus_due_us(bus)); /* passive: no further change */
     sim_bus_set_error_counters(bus, A, 0, 0);
     sim_bus_run_until(bus, 100134);
     TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, A));
@@ -113,7 +114,7 @@ void test_an_unplugged_node_keeps_its_own_time(void) {
     TEST_ASSERT_EQUAL_UINT64(1074, fixture.events[3].end_us);
 }
 
-/* ---- Errors on demand ---- */
+/* ---- Injected errors ---- */
 
 /* Whole frame 132 bits, error frame 20: 152 bits = 304 us; then again from 310 on. */
 void test_corrupted_frames_are_sent_again(void) {
@@ -147,7 +148,7 @@ void test_only_the_frames_of_one_sender_are_corrupted(void) {
     TEST_ASSERT_EQUAL_UINT(6, tec_of(&fixture, A));
 }
 
-/* 32 failures: the counter reaches 256 only with the last. Shows that it takes that many, and what is lost with it. */
+/* 32 failures: the counter reaches 256 only with the last one. The waiting frames are lost then. */
 /* Shows: SUP-7 */
 void test_a_node_whose_frames_always_fail_goes_bus_off(void) {
     sim_bus_corrupt_sent(bus, A, SIM_BUS_FOREVER);
@@ -161,11 +162,12 @@ void test_a_node_whose_frames_always_fail_goes_bus_off(void) {
     TEST_ASSERT_FALSE(send(&fixture, A, 0x168, 8, 0));
     send(&fixture, B, 0x100, 8, 0);
     sim_bus_run_until(bus, 101000);
-    TEST_ASSERT_EQUAL_UINT(0, received_by(&fixture, A)); /* deaf, too */
-    assert_state(HAL_CAN_BUS_OFF, A);                    /* and it stays so by itself */
+    TEST_ASSERT_EQUAL_UINT(0, received_by(&fixture, A)); /* it does not receive either */
+    assert_state(HAL_CAN_BUS_OFF, A);                    /* and it does not recover by itself */
 }
 
-/* 9 a time (1 for the error, 8 for being the first to see it): after 15 of them 135, passive; then it only misses. */
+/* 9 for each error (1 for the error, 8 for being the first to detect it): 135 after 15 errors, passive; then it only
+ * loses frames. */
 void test_a_receiver_that_cannot_read_becomes_passive(void) {
     sim_bus_corrupt_received(bus, B, 17);
     send(&fixture, A, 0x168, 8, 0);
@@ -183,7 +185,7 @@ void test_a_receiver_that_cannot_read_becomes_passive(void) {
     sim_bus_run_until(bus, 7000); /* the 17th */
     TEST_ASSERT_EQUAL_UINT(137, rec_of(&fixture, B));
     send(&fixture, A, 0x168, 8, 0);
-    sim_bus_run_until(bus, 8000); /* read again: back to 127, active */
+    sim_bus_run_until(bus, 8000); /* a good frame: back to 127, active */
     TEST_ASSERT_EQUAL_UINT(127, rec_of(&fixture, B));
     assert_state(HAL_CAN_ERROR_ACTIVE, B);
     TEST_ASSERT_EQUAL_UINT(1, received_by(&fixture, B));
@@ -203,14 +205,14 @@ void test_a_frame_misread_once_counts_once(void) {
     sim_bus_corrupt_received(bus, B, 1);
     send(&fixture, A, 0x168, 8, 0);
     sim_bus_run_until(bus, 1100);
-    sim_bus_set_power(bus, B, false); /* in the middle: as for the sender, that frame is past */
+    sim_bus_set_power(bus, B, false); /* during a frame: this frame is not affected */
     sim_bus_set_power(bus, B, true);
     sim_bus_run_until(bus, 1304);
     TEST_ASSERT_TRUE(fixture.events[2].error);
     TEST_ASSERT_EQUAL_UINT(0, rec_of(&fixture, B));
 }
 
-/* A passive one that cannot read does not acknowledge either. */
+/* A passive receiver that misreads a frame does not acknowledge it either. */
 void test_a_frame_that_no_node_could_read_is_not_acknowledged(void) {
     only_a_and(B);
     sim_bus_set_error_counters(bus, B, 0, 200);
@@ -278,7 +280,7 @@ void test_a_passive_sender_lets_the_others_go_first(void) {
     TEST_ASSERT_EQUAL_UINT64(830, fixture.events[3].start_us);
     send(&fixture, A, 0x103, 8, 0);
     sim_bus_run_until(bus, 2264);
-    sim_bus_set_power(bus, A, false); /* a fresh node does not remember */
+    sim_bus_set_power(bus, A, false); /* a new node has no suspend time */
     sim_bus_set_power(bus, A, true);
     send(&fixture, A, 0x104, 8, 0);
     sim_bus_run_until(bus, 3000);
@@ -317,7 +319,7 @@ void test_a_purged_frame_that_fails_is_not_sent_again(void) {
     TEST_ASSERT_EQUAL_UINT64(SIM_BUS_NEVER, sim_bus_due_us(bus));
 }
 
-/* The one on the wire need not be the oldest. What comes after the purge is an ordinary frame again: it is repeated. */
+/* The current frame need not be the oldest one. A frame sent after the purge is retransmitted as usual. */
 void test_a_purge_keeps_the_frame_that_is_on_the_wire(void) {
     send(&fixture, A, 0x200, 8, 1);
     send(&fixture, A, 0x100, 8, 2);
@@ -337,7 +339,7 @@ void test_a_purge_keeps_the_frame_that_is_on_the_wire(void) {
     TEST_ASSERT_FALSE(fixture.events[3].error);
 }
 
-/* Between an error frame and the next try nothing is on the wire. */
+/* Between an error frame and the next attempt the bus is idle. */
 void test_a_purge_between_two_tries_leaves_nothing(void) {
     sim_bus_corrupt_all(bus, 1);
     send(&fixture, A, 0x100, 8, 1);

@@ -1,4 +1,4 @@
-/* The simulated bus: the way back from bus-off, and nodes that lose their power. */
+/* The simulated bus: recovery from bus-off, and nodes that lose their power. */
 #include <string.h>
 
 #include "sim_bus_fixture.h"
@@ -24,7 +24,7 @@ static void assert_state(hal_can_state_t expected, sim_bus_node_t node) {
 /* Idle bus: 128 x 11 = 1408 bits = 2816 us. */
 /* Shows: SUP-7 */
 void test_recovery_takes_1408_bits_of_an_idle_bus(void) {
-    sim_bus_recover(bus, A); /* not in bus-off: nothing */
+    sim_bus_recover(bus, A); /* not in bus-off: no effect */
     sim_bus_run_until(bus, 1000);
     sim_bus_force_bus_off(bus, A);
     sim_bus_force_bus_off(bus, A);
@@ -32,7 +32,7 @@ void test_recovery_takes_1408_bits_of_an_idle_bus(void) {
     assert_state(HAL_CAN_BUS_OFF, A);
     sim_bus_recover(bus, A);
     sim_bus_run_until(bus, 11000);
-    sim_bus_recover(bus, A); /* asking twice does not start it anew */
+    sim_bus_recover(bus, A); /* a second request does not restart it */
     sim_bus_run_until(bus, 12815);
     assert_state(HAL_CAN_BUS_OFF, A);
     sim_bus_run_until(bus, 12816);
@@ -60,12 +60,12 @@ void test_a_frame_in_between_counts_as_one_sequence(void) {
     assert_state(HAL_CAN_ERROR_ACTIVE, A);
 }
 
-/* A bus without a pause: frame after frame, 270 us and one sequence each: 128 x 270 = 34560. */
+/* A bus without pauses: each frame takes 270 us and counts as one sequence: 128 x 270 = 34560. */
 void test_recovery_on_a_full_bus_takes_128_frames(void) {
     sim_bus_force_bus_off(bus, A);
     send(&fixture, B, 0x100, 8, 0);
     sim_bus_run_until(bus, 1);
-    sim_bus_recover(bus, A); /* asked for in the middle of the first one */
+    sim_bus_recover(bus, A); /* requested during the first one */
     for (uint64_t us = 100; us < 34560; us += 100) {
         (void)send(&fixture, B, 0x100, 8, 0);
         sim_bus_run_until(bus, us);
@@ -76,7 +76,7 @@ void test_recovery_on_a_full_bus_takes_128_frames(void) {
     assert_state(HAL_CAN_ERROR_ACTIVE, A);
 }
 
-/* Asked for between two frames: it counts from the end of the pause on. */
+/* Requested between two frames: the count starts at the end of the interframe bits. */
 void test_recovery_requested_between_frames(void) {
     send(&fixture, B, 0x100, 8, 0);
     sim_bus_run_until(bus, 264);
@@ -88,7 +88,7 @@ void test_recovery_requested_between_frames(void) {
     assert_state(HAL_CAN_ERROR_ACTIVE, A);
 }
 
-/* Unplugged, its own wire is idle: frames of the others do not hold it up any more. */
+/* An unplugged node counts as on an idle bus: frames of others no longer delay it. */
 void test_an_unplugged_node_recovers_on_its_own(void) {
     sim_bus_force_bus_off(bus, A);
     sim_bus_recover(bus, A);
@@ -144,7 +144,7 @@ void test_a_frame_purged_in_bus_off_never_leaves(void) {
     const sim_bus_node_t keeper = sim_bus_attach(bus, &keeps);
     send(&fixture, keeper, 0x168, 8, 0);
     sim_bus_run_until(bus, 100);
-    sim_bus_force_bus_off(bus, keeper); /* in the middle of it: it breaks off */
+    sim_bus_force_bus_off(bus, keeper); /* during the frame: it is aborted */
     TEST_ASSERT_EQUAL_size_t(1, sim_bus_waiting(bus, keeper));
     sim_bus_purge(bus, keeper);
     sim_bus_recover(bus, keeper);
@@ -154,7 +154,8 @@ void test_a_frame_purged_in_bus_off_never_leaves(void) {
     TEST_ASSERT_TRUE(fixture.events[0].error);
 }
 
-/* Purged on the wire, then bus-off in the middle of the same frame: it is gone, although the node keeps its frames. */
+/* A frame is purged while it is sent, then its node goes bus-off: the frame is discarded, although the node keeps its
+ * frames. */
 void test_a_frame_purged_on_the_wire_is_gone_when_it_breaks_off(void) {
     const sim_bus_node_config_t keeps = {.keep_on_bus_off = true};
     const sim_bus_node_t keeper = sim_bus_attach(bus, &keeps);
@@ -168,7 +169,7 @@ void test_a_frame_purged_on_the_wire_is_gone_when_it_breaks_off(void) {
     sim_bus_run_until(bus, 10000);
     TEST_ASSERT_EQUAL_HEX32(0x169, fixture.events[1].id);
     TEST_ASSERT_EQUAL_UINT(2, fixture.event_count);
-    sim_bus_corrupt_all(bus, 1); /* and the purge is forgotten: what fails now is repeated */
+    sim_bus_corrupt_all(bus, 1); /* and the purge is over: a frame that fails now is retransmitted */
     send(&fixture, keeper, 0x170, 8, 0);
     sim_bus_run_until(bus, 20000);
     TEST_ASSERT_EQUAL_UINT(4, fixture.event_count);
@@ -220,7 +221,7 @@ void test_a_sender_that_loses_its_power_breaks_off(void) {
     send(&fixture, A, 0x169, 8, 0);
     sim_bus_run_until(bus, 100);
     sim_bus_set_power(bus, A, false);
-    sim_bus_set_power(bus, A, true); /* at once on again: it is a fresh node, and that frame stays broken */
+    sim_bus_set_power(bus, A, true); /* switched on again at once: a new node, and that frame stays destroyed */
     sim_bus_run_until(bus, 5000);
     TEST_ASSERT_EQUAL_UINT(1, fixture.event_count);
     TEST_ASSERT_TRUE(fixture.events[0].error);
@@ -278,14 +279,14 @@ void test_power_off_after_a_purge_leaves_nothing(void) {
     sim_bus_set_power(bus, A, true);
     TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(bus, A));
     sim_bus_set_error_counters(bus, A, 9, 9);
-    sim_bus_set_power(bus, A, true); /* it is on already: nothing */
+    sim_bus_set_power(bus, A, true); /* it is on already: no effect */
     TEST_ASSERT_EQUAL_UINT(9, tec_of(&fixture, A));
 }
 
 void test_power_off_and_on_ends_bus_off(void) {
     send(&fixture, A, 0x168, 8, 0);
     sim_bus_force_bus_off(bus, A);
-    TEST_ASSERT_EQUAL_UINT64(SIM_BUS_NEVER, sim_bus_due_us(bus)); /* what waited is gone */
+    TEST_ASSERT_EQUAL_UINT64(SIM_BUS_NEVER, sim_bus_due_us(bus)); /* waiting frames are lost */
     sim_bus_recover(bus, A);
     sim_bus_set_power(bus, A, false);
     sim_bus_set_power(bus, A, true);
@@ -300,12 +301,12 @@ void test_unplugged_in_the_middle_of_a_frame_it_tries_again_alone(void) {
     sim_bus_set_plugged(bus, A, false);
     sim_bus_run_until(bus, 390);
     TEST_ASSERT_EQUAL_UINT64(394, sim_bus_due_us(bus)); /* the end of its first attempt */
-    sim_bus_set_stalled(bus, A, false);                 /* which nothing starts anew */
+    sim_bus_set_stalled(bus, A, false);                 /* which is not repeated */
     sim_bus_run_until(bus, 394);
     TEST_ASSERT_TRUE(fixture.events[0].error);
     TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, A));
     TEST_ASSERT_EQUAL_size_t(1, sim_bus_waiting(bus, A));
-    sim_bus_set_stalled(bus, A, true); /* stalled it does not even try */
+    sim_bus_set_stalled(bus, A, true); /* a stalled node does not try */
     sim_bus_run_until(bus, 5000);
     TEST_ASSERT_EQUAL_UINT(8, tec_of(&fixture, A));
 }

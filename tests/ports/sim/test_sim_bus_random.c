@@ -1,4 +1,4 @@
-/* The simulated bus under random load with random errors: what must hold whatever happens. */
+/* The simulated bus under random load with random errors: rules that always hold. */
 #include <string.h>
 
 #include "sim_bus_fixture.h"
@@ -7,7 +7,7 @@
 #define ROUNDS 20000u
 #define WAITING_MAX (FIXTURE_NODES * 8u)
 
-/* A frame that a node's bus has taken and that has not arrived yet. */
+/* A frame that was accepted and has not arrived yet. */
 typedef struct {
     uint32_t id;
     uint64_t taken_us;
@@ -34,7 +34,7 @@ static uint32_t random_below(uint32_t limit) {
     return (seed >> 8) % limit;
 }
 
-/* Nothing that was ready when this frame began could have beaten it. */
+/* No frame that was ready when this frame began has a higher priority. */
 static void assert_won(const sim_bus_event_t *event) {
     for (unsigned i = 0; i < load.count; i++) {
         if (load.waiting[i].taken_us <= event->start_us) {
@@ -43,7 +43,7 @@ static void assert_won(const sim_bus_event_t *event) {
     }
 }
 
-/* The frame was waiting, and no older one of this node with this identifier was. */
+/* The frame was waiting, and it is the oldest one of its node with this identifier. */
 static void take_out(const sim_bus_event_t *event, sim_bus_node_t node) {
     uint32_t number;
     memcpy(&number, event->frame->data, sizeof number);
@@ -88,7 +88,8 @@ static void send_as(sim_bus_node_t node, uint32_t id, uint32_t number) {
     }
 }
 
-/* Identifiers of the node's own, so that nobody collides; now and then the same frame from two nodes: they merge. */
+/* Each node has its own identifiers, so there are no collisions. Sometimes two nodes send the same frame, which
+ * merges. */
 static void send_random(uint32_t number) {
     if (random_below(10) == 0) {
         send_as(A, 20, 7);
@@ -99,7 +100,7 @@ static void send_random(uint32_t number) {
     }
 }
 
-/* All stay error active, so that nobody has to wait for longer than the others. */
+/* All nodes stay error active, so none has a suspend time. */
 static void forgive(void) {
     for (sim_bus_node_t node = 0; node < FIXTURE_NODES; node++) {
         sim_bus_set_error_counters(bus, node, 0, 0);
@@ -187,7 +188,7 @@ static void assert_sane(void) {
     }
 }
 
-/* Whatever is done to the nodes, in whatever order: when it is over and all are set right, everything works again. */
+/* After any disturbances in any order all nodes work again when they are set right. */
 void test_any_disturbance_passes(void) {
     fixture_init(&load.fixture, 500000);
     seed = 2;

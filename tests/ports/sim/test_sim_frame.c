@@ -1,4 +1,5 @@
-/* How long a frame is on the simulated bus: against numbers worked out by hand, and against frames really stuffed. */
+/* Length of a frame on the simulated bus, compared with numbers calculated by hand and with frames that are really
+ * stuffed. */
 #include "hal_sim/sim_bus.h"
 
 #include "unity.h"
@@ -29,7 +30,7 @@ void test_longest_standard_frames_as_worked_out_by_hand(void) {
     TEST_ASSERT_EQUAL_UINT32(82 + 20 + 10, bits(0, 6));    /* 81 / 4 = 20 */
     TEST_ASSERT_EQUAL_UINT32(90 + 22 + 10, bits(0, 7));    /* 89 / 4 = 22 */
     TEST_ASSERT_EQUAL_UINT32(132, bits(0, 8));             /* 97 / 4 = 24 */
-    TEST_ASSERT_EQUAL_UINT32(52, bits(HAL_CAN_REMOTE, 8)); /* asks for 8, carries none */
+    TEST_ASSERT_EQUAL_UINT32(52, bits(HAL_CAN_REMOTE, 8)); /* requests 8 bytes, carries none */
 }
 
 /* 29 bits: 20 more that can be stuffed (SRR 1 + identifier 18 + r1 1): 54 + 8n. */
@@ -41,7 +42,7 @@ void test_longest_extended_frames_as_worked_out_by_hand(void) {
     TEST_ASSERT_EQUAL_UINT32(77, bits(HAL_CAN_EXTENDED | HAL_CAN_REMOTE, 3));
 }
 
-/* The bits of a real frame, as they leave, stuffed. */
+/* The bits of a real frame, with stuff bits. */
 typedef struct {
     uint32_t sent;
     uint32_t run;
@@ -96,7 +97,7 @@ static uint32_t next_random(uint32_t *state) {
 }
 
 static hal_can_frame_t random_frame(uint32_t *state) {
-    static const uint8_t STUFFY[4] = {0x00, 0xFF, 0x87, 0xC3}; /* bytes that keep runs of equal bits going */
+    static const uint8_t STUFFY[4] = {0x00, 0xFF, 0x87, 0xC3}; /* bytes with long runs of equal bits */
     hal_can_frame_t frame = {.length = (uint8_t)(next_random(state) % 9u)};
     frame.flags = next_random(state) % 2u != 0 ? (uint8_t)HAL_CAN_EXTENDED : 0u;
     frame.id = next_random(state) & (frame.flags != 0 ? 0x1FFFFFu : 0x7Fu);

@@ -81,7 +81,7 @@ void test_a_side_that_does_not_exist_refuses_and_reports_nothing(void) {
     hal_can_frame_t frame;
     sim_bus_init(&bus, 500000);
     sim_hal_init(&hal, NULL);
-    TEST_ASSERT_EQUAL_UINT32(0, hal_clock_now_ms(&hal)); /* no bus yet: time stands */
+    TEST_ASSERT_EQUAL_UINT32(0, hal_clock_now_ms(&hal)); /* no bus yet: the time does not advance */
     sim_hal_attach(&hal, HAL_CAN_VEHICLE, &bus, NULL);
     TEST_ASSERT_FALSE(hal_can_send(&hal, HAL_CAN_AI, &FRAME));
     TEST_ASSERT_FALSE(hal_can_send(&hal, HAL_CAN_SIDES, &FRAME));
@@ -101,7 +101,7 @@ void test_a_side_that_does_not_exist_refuses_and_reports_nothing(void) {
     TEST_ASSERT_EQUAL_UINT16(0, status.bus_off_count + status.overrun_count);
 }
 
-/* A port that joins a bus late: its watchdog starts then, and its clock reads what it would always have. */
+/* A port that joins a bus late: its watchdog starts then, and its clock is that of the bus time. */
 void test_a_port_may_join_a_bus_that_has_run_for_long(void) {
     sim_bus_init(&bus, 500000);
     sim_bus_run_until(&bus, 500000);
@@ -154,7 +154,7 @@ void test_bus_off_purge_and_recovery_through_the_port(void) {
 
 void test_a_swallowed_frame_counts_as_sent_and_is_never_sent(void) {
     sim_hal_set_swallowing(&hal, HAL_CAN_VEHICLE, true);
-    sim_hal_set_swallowing(&hal, HAL_CAN_SIDES, true); /* no such side: nothing */
+    sim_hal_set_swallowing(&hal, HAL_CAN_SIDES, true); /* the side does not exist: no effect */
     TEST_ASSERT_TRUE(hal_can_send(&hal, HAL_CAN_VEHICLE, &FRAME));
     TEST_ASSERT_EQUAL_UINT32(1, hal.can[HAL_CAN_VEHICLE].sent);
     TEST_ASSERT_EQUAL_UINT32(0, status_of(HAL_CAN_VEHICLE).tx_pending_ms);
@@ -164,7 +164,7 @@ void test_a_swallowed_frame_counts_as_sent_and_is_never_sent(void) {
     TEST_ASSERT_EQUAL_size_t(1, sim_bus_waiting(&bus, hal.can[HAL_CAN_VEHICLE].node));
 }
 
-/* What is set from outside without a bus is the bus's business with one. */
+/* With a bus the controller's state comes from the bus and cannot be set. */
 void test_on_a_bus_the_state_is_the_controllers(void) {
     sim_hal_set_can_state(&hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
     sim_hal_set_tx_pending_ms(&hal, HAL_CAN_VEHICLE, 50);
@@ -184,14 +184,14 @@ void test_the_clock_starts_anywhere_and_wraps(void) {
     run_until(300);
     TEST_ASSERT_EQUAL_HEX32(0xFFFFFFFF, hal_clock_now_ms(&hal));
     run_until(1300 - 264);
-    sim_bus_send(&bus, other, &FRAME); /* arrives 264 us later, in the moment of the wrap */
+    sim_bus_send(&bus, other, &FRAME); /* arrives 264 us later, at the wrap */
     run_until(1299);
     TEST_ASSERT_EQUAL_HEX32(0xFFFFFFFF, hal_clock_now_ms(&hal));
     run_until(1300);
     TEST_ASSERT_EQUAL_HEX32(0, hal_clock_now_ms(&hal));
     run_until(9000);
     TEST_ASSERT_TRUE(sim_hal_receive(&hal, HAL_CAN_VEHICLE, &frame));
-    TEST_ASSERT_EQUAL_HEX32(0, frame.time_ms); /* when it came, not when it was taken */
+    TEST_ASSERT_EQUAL_HEX32(0, frame.time_ms); /* the time of arrival, not of the call */
     TEST_ASSERT_EQUAL_UINT32(7, sim_hal_now_ms(&hal));
     TEST_ASSERT_EQUAL_UINT32(0xFFFFFFFF, sim_hal_clock_at(&hal, 1299));
 }
@@ -237,7 +237,7 @@ void test_the_watchdog_opens_the_output_and_holds_the_processor(void) {
     TEST_ASSERT_EQUAL_UINT32(1, hal.bites);
     TEST_ASSERT_FALSE(hal.safety_output.on || hal.led.on);
     TEST_ASSERT_EQUAL_UINT32(150, hal.safety_output.changed_ms);
-    hal_watchdog_feed(&hal); /* too late: nothing works any more */
+    hal_watchdog_feed(&hal); /* too late: the port is held in reset */
     hal_safety_output_set(&hal, true);
     TEST_ASSERT_FALSE(hal_can_send(&hal, HAL_CAN_VEHICLE, &FRAME));
     TEST_ASSERT_FALSE(sim_hal_receive(&hal, HAL_CAN_VEHICLE, &frame));
@@ -292,7 +292,7 @@ void test_a_reset_keeps_the_latch_and_opens_the_output(void) {
     TEST_ASSERT_EQUAL_UINT16(0, status_of(HAL_CAN_VEHICLE).overrun_count);
     TEST_ASSERT_FALSE(sim_hal_receive(&hal, HAL_CAN_VEHICLE, &frame)); /* the queue was in RAM */
     run_until(220000);
-    TEST_ASSERT_FALSE(sim_hal_poll(&hal)); /* the reset has fed it */
+    TEST_ASSERT_FALSE(sim_hal_poll(&hal)); /* the reset feeds it */
     TEST_ASSERT_TRUE(hal_can_send(&hal, HAL_CAN_VEHICLE, &FRAME));
     TEST_ASSERT_EQUAL_UINT32(1, hal.resets);
 }
@@ -313,7 +313,7 @@ void test_a_reset_in_the_middle_of_everything(void) {
     TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(&bus, hal.can[HAL_CAN_VEHICLE].node));
     TEST_ASSERT_EQUAL_size_t(0, sim_bus_waiting(&ai_bus, hal.can[HAL_CAN_AI].node));
     sim_hal_fail_at(&hal, hal.calls + 1u, 2, SIM_HAL_OP_ALL);
-    TEST_ASSERT_EQUAL_UINT32(9, hal_clock_now_ms(&hal)); /* what could be read last: at the reset */
+    TEST_ASSERT_EQUAL_UINT32(9, hal_clock_now_ms(&hal)); /* the last value that could be read: at the reset */
     TEST_ASSERT_EQUAL_UINT32(0, status_of(HAL_CAN_AI).tx_pending_ms);
 }
 

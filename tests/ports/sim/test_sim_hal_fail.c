@@ -27,7 +27,8 @@ static void assert_failed(sim_hal_op_t op, uint32_t failures) {
     TEST_ASSERT_EQUAL_INT(op, hal.last_failed);
 }
 
-/* Every operation once, in the order of sim_hal_op_t. @return how many of those that can say so have worked */
+/* Call every operation once, in the order of sim_hal_op_t. @return number of successful ones among those that report
+ * success */
 static unsigned call_all(void) {
     uint8_t bytes[4] = {1, 2, 3, 4};
     hal_can_status_t status;
@@ -119,7 +120,7 @@ void test_a_failing_status_repeats_the_last_report(void) {
     TEST_ASSERT_EQUAL_UINT16(2, status.overrun_count);
 }
 
-/* What it could read last: nothing yet, so what the clock started with. */
+/* The last value that could be read; before the first reading the start value. */
 void test_a_clock_that_fails_from_the_first_call_on_stands_at_the_start(void) {
     sim_hal_init_direct(&hal, &(sim_hal_config_t){.clock_start_ms = 77}, 1, NULL, NULL);
     sim_hal_set_now_ms(&hal, 90);
@@ -162,7 +163,7 @@ void test_what_a_failing_store_does(void) {
     TEST_ASSERT_EQUAL_size_t(0, hal_store_read_record(&hal, 1, bytes, 4));
 }
 
-/* The store's own failures come through. */
+/* Failures of the store are reported by the port. */
 void test_a_store_that_fails_is_reported(void) {
     sim_store_fail_writes(&store, 2);
     TEST_ASSERT_FALSE(hal_store_write_latch(&hal, "abcd", 4));

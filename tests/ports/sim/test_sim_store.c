@@ -1,4 +1,4 @@
-/* The memory behind the simulated port: latch and log, and what can happen to them. */
+/* The memory behind the simulated port: latch and log, and their faults. */
 #include <string.h>
 
 #include "hal_sim/sim_store.h"

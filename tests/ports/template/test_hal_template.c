@@ -1,4 +1,4 @@
-/* The port to start from: it has every function of the contract, and nothing comes of any of them. */
+/* The template port: it has every function of the contract, and none has an effect. */
 #include "hal/clock.h"
 #include "hal/led.h"
 #include "hal/safety_output.h"
@@ -31,7 +31,7 @@ void test_no_frame_comes_or_goes(void) {
     TEST_ASSERT_EQUAL_INT(HAL_CAN_ERROR_ACTIVE, status.state);
 }
 
-/* What a port cannot tell is never reported as a power-on. */
+/* An unknown reset cause is never reported as a power-on. */
 /* Shows: FSM-7 */
 void test_an_unwritten_port_does_not_claim_a_power_on(void) {
     TEST_ASSERT_EQUAL_INT(HAL_RESET_UNKNOWN, hal_reset_cause(&hal));

@@ -13,7 +13,7 @@ testbed_t testbed;
 static const agv_state_t STATES[TESTBED_STATES] = {AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_STATE_ACTIVE,
                                                    AGV_STATE_TRIPPED, AGV_STATE_SAFE};
 
-/* ---- Judging ---- */
+/* ---- Checks ---- */
 
 void (*testbed_on_broken)(void);
 
@@ -53,7 +53,7 @@ static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame
     testbed_judge();
 }
 
-/* A controller that was in trouble is not judged before the supervisor has had ticks to see that it is over. */
+/* After a disturbance of a controller its rules are paused until the supervisor had ticks to detect its end. */
 static rules_bus_t bus(void) {
     const sim_hal_can_t *can = &testbed.hal.can[HAL_CAN_VEHICLE];
     const bool off = can->status.state == HAL_CAN_BUS_OFF;
@@ -113,7 +113,7 @@ static void start(hal_reset_cause_t cause, const rules_seen_t *before) {
 void testbed_restart(hal_reset_cause_t cause) {
     const rules_seen_t before = look();
     sim_hal_reset(&testbed.hal, cause);
-    /* Between two lives the oracle knows of no state: what leaves in the start is the safe commands without 065h. */
+    /* During a start the supervisor has no state for the oracle: only the safe commands without 065h may be sent. */
     oracle_restart(&testbed.rules.oracle);
     testbed.rules.own_counter_known = false;
     start(cause, &before);
@@ -180,7 +180,7 @@ void testbed_disturb(hal_can_side_t side, unsigned kind, uint8_t amount) {
     testbed.unsettled = SETTLE_TICKS;
 }
 
-/* ---- States that are kept ---- */
+/* ---- Saved states ---- */
 
 static void configure(unsigned variant) {
     agv_config_t *config = &testbed.config;
@@ -219,7 +219,7 @@ static void configure(unsigned variant) {
 
 static void begin(unsigned variant, uint32_t offset_ms) {
     memset(&testbed, 0, sizeof testbed);
-    testbed.now_ms = EPOCH_MS; /* so that stamps may lie before the start */
+    testbed.now_ms = EPOCH_MS; /* so that stamps may be earlier than the start */
     testbed.offset_ms = offset_ms - (uint32_t)EPOCH_MS;
     testbed.ports = (agv_ports_t){.hal = &testbed.hal, .recorder = &testbed.recorder};
     configure(variant);
@@ -242,7 +242,7 @@ static void expect_state(unsigned state) {
     }
 }
 
-/* From the start to a state; the vehicle drives in ACTIVE, and obeys on the way to SAFE. */
+/* Run from the start to a state. The vehicle moves in ACTIVE, and obeys on the way to SAFE. */
 static void go_to(unsigned state) {
     testbed_run(state == 0u ? 50 : 700);
     if (state >= 2u) {
@@ -267,7 +267,7 @@ static void go_to(unsigned state) {
     expect_state(state);
 }
 
-/* In some variants the supervisor's clock wraps a moment later, in one it passes the middle of its range. */
+/* In some variants the supervisor's clock soon wraps, in one it passes the middle of its range. */
 static uint32_t offset_for(unsigned variant, uint64_t took_ms) {
     const uint32_t before = (uint32_t)took_ms + (uint32_t)BEFORE_WRAP_MS;
     switch (variant) {

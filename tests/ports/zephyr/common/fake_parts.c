@@ -68,7 +68,7 @@ static int send(const struct device *device, const struct can_frame *frame, k_ti
                 can_tx_callback_t callback, void *data) {
     fake_bus_t *const bus = bus_of(device);
     if (!K_TIMEOUT_EQ(timeout, K_NO_WAIT) || (bus->send_error != 0)) {
-        return (bus->send_error != 0) ? bus->send_error : -EINVAL; /* nobody may wait here */
+        return (bus->send_error != 0) ? bus->send_error : -EINVAL; /* the caller must not wait */
     }
     bus->sent[bus->sent_count % FAKE_SENT_MAX] = *frame;
     bus->sent_ms[bus->sent_count % FAKE_SENT_MAX] = k_uptime_get_32();

@@ -1,6 +1,6 @@
 /**
  * @file fake_parts.h
- * The chip as the tests want it: controllers on can_fake, watchdog, reset flags, pins.
+ * A simulated chip for the tests: controllers on can_fake, watchdog, reset flags, pins.
  */
 #ifndef FAKE_PARTS_H
 #define FAKE_PARTS_H
@@ -14,11 +14,11 @@
 
 enum { FAKE_FILTERS_MAX = 4, FAKE_SENT_MAX = 256 };
 
-/** One controller: what the port asked of it, and what it is to answer. */
+/** One controller: the calls of the port, and the results of the next calls. */
 typedef struct {
     const struct device *device;
     bool started;
-    can_mode_t able; /**< what it says that it can */
+    can_mode_t able; /**< its reported capabilities */
     can_mode_t mode;
     struct can_timing timing;
     uint32_t filter_limit;
@@ -26,12 +26,12 @@ typedef struct {
     struct can_filter filter[FAKE_FILTERS_MAX];
     can_rx_callback_t receive[FAKE_FILTERS_MAX];
     void *receive_data[FAKE_FILTERS_MAX];
-    int send_error;      /**< what the next sends return; 0: taken */
-    bool sends_at_once;  /**< a frame taken is on the bus at once */
-    uint32_t in_mailbox; /**< frames taken that are not sent yet */
+    int send_error;      /**< result of the next sends; 0: accepted */
+    bool sends_at_once;  /**< an accepted frame is on the bus at once */
+    uint32_t in_mailbox; /**< accepted frames that are not sent yet */
     can_tx_callback_t sent_callback;
     void *sent_data;
-    struct can_frame sent[FAKE_SENT_MAX]; /**< taken, in this order */
+    struct can_frame sent[FAKE_SENT_MAX]; /**< accepted frames, in order */
     uint32_t sent_ms[FAKE_SENT_MAX];
     uint32_t sent_count;
     enum can_state state;
@@ -42,19 +42,19 @@ typedef struct {
 
 extern fake_bus_t fake_buses[HAL_CAN_SIDES];
 
-/** All as after a power-on, in every test's "before". */
+/** Set everything as after a power-on; call it in every test's "before". */
 void fake_parts_reset(void);
 
-/** can_fake forgets who stands behind it before each test; a suite that runs through several says it again. */
+/** can_fake loses its callbacks before each test; a suite that keeps a port over several tests sets them again. */
 void fake_parts_connect(void);
 
 /** A frame arrives, in an interrupt. */
 void fake_bus_frame(hal_can_side_t side, const struct can_frame *frame);
 
-/** The frame in the mailbox has left, or was discarded. */
+/** The frame in the mailbox was sent or discarded. */
 void fake_bus_complete(hal_can_side_t side, int error);
 
-/** The controller changes its state. @param with_interrupt and says so */
+/** The controller changes its state. @param with_interrupt true: it reports this by an interrupt */
 void fake_bus_state(hal_can_side_t side, enum can_state state, bool with_interrupt);
 
 /** Feeds so far, its longest period (ms), and whether it was started. */
@@ -62,13 +62,13 @@ extern uint32_t fake_watchdog_feeds;
 extern uint32_t fake_watchdog_ms;
 extern bool fake_watchdog_started;
 
-/** What hwinfo says of the reset, until it is cleared; how often it was asked and cleared. */
+/** Reset flags of hwinfo, until they are cleared; number of reads and of clears. */
 extern uint32_t fake_reset_flags;
 extern int fake_reset_error;
 extern uint32_t fake_reset_reads;
 extern uint32_t fake_reset_clears;
 
-/** What the pins show. */
+/** State of the pins. */
 bool fake_output_is_closed(void);
 bool fake_led_is_on(void);
 

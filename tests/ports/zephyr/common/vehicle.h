@@ -1,6 +1,6 @@
 /**
  * @file vehicle.h
- * A vehicle and an AI computer that send what they should.
+ * A healthy vehicle and AI computer.
  */
 #ifndef VEHICLE_H
 #define VEHICLE_H
@@ -10,7 +10,7 @@
 
 #include <zephyr/drivers/can.h>
 
-/** What it reports. */
+/** The reported values. */
 typedef struct {
     bool autopilot;
     bool park;
@@ -22,13 +22,13 @@ typedef struct {
 
 extern vehicle_t vehicle;
 
-/** A frame of theirs; what stands for the bus defines it. */
+/** Called for each of their frames; defined by the part that simulates the bus. */
 void vehicle_sends(const struct can_frame *frame);
 
-/** A millisecond of it: the frames that are due. */
+/** Run one millisecond: send the frames that are due. */
 void vehicle_millisecond(uint32_t now_ms);
 
-/** Let it run on for so long, in real time of the kernel. */
+/** Run for this time, in real time of the kernel. */
 void vehicle_run(uint32_t ms);
 
 #endif

@@ -1,7 +1,8 @@
 /*
- * A controller does not hear itself, and the loopback driver has one set of filters for all. So this node passes everything
- * on to that driver but what came from itself: it tells them apart as the driver's thread calls back for a frame that was
- * sent just before it hands this frame out. What the loopback driver has not, bus-off, is added here.
+ * A controller does not receive its own frames, but the loopback driver has one set of filters for all nodes. So this
+ * node passes on all received frames except its own. It recognises them because the driver's thread calls the callback
+ * of a sent frame just before it delivers that frame. This node also adds bus-off, which the loopback driver does not
+ * have.
  */
 #define DT_DRV_COMPAT agv_test_node
 
@@ -130,7 +131,7 @@ static int get_state(const struct device *device, enum can_state *state, struct 
     return status;
 }
 
-/* In an interrupt, as a controller does. */
+/* Runs in an interrupt, as for a real controller. */
 static void tell_state(struct k_timer *unused) {
     ARG_UNUSED(unused);
     self.state_changed(node, self.is_off ? CAN_STATE_BUS_OFF : CAN_STATE_ERROR_ACTIVE, (struct can_bus_err_cnt){0},
@@ -183,5 +184,5 @@ static const struct can_driver_api api = {
 static const struct node_config config = {.common = CAN_DT_DRIVER_CONFIG_INST_GET(0, 0, BITRATE_MAX)};
 static struct node_data data;
 
-/* After the wire, which has the priority of all controllers. */
+/* After the loopback driver, which has the priority of all controllers. */
 CAN_DEVICE_DT_INST_DEFINE(0, init, NULL, &data, &config, POST_KERNEL, 85, &api);

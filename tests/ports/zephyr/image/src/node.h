@@ -1,6 +1,6 @@
 /**
  * @file node.h
- * The supervisor's controller: a node on a wire that is Zephyr's loopback driver.
+ * The supervisor's controller: a node on a bus made of Zephyr's loopback driver.
  */
 #ifndef TEST_NODE_H
 #define TEST_NODE_H
@@ -10,19 +10,19 @@
 
 #include <zephyr/device.h>
 
-/** The wire. Its thread calls whoever listens, also from within the functions below. */
+/** The bus. Its thread calls all listeners, also from within the functions below. */
 extern const struct device *const test_wire;
 
-/** Within a callback of the wire: whether the frame is one of the supervisor's. */
+/** Within a callback of the bus: whether the supervisor sent the frame. */
 bool test_node_sent_it(void);
 
-/** Said by who sends another frame, in the callback of its can_send(). */
+/** Other senders call this in the callback of their can_send(). */
 void test_node_others_send(void);
 
-/** Bus-off: it says so in an interrupt, hears nothing and takes nothing until it is asked to recover. */
+/** Bus-off: reported by an interrupt. The node receives and accepts nothing until a recovery is requested. */
 void test_node_goes_bus_off(void);
 
-/** How often it was asked to recover. */
+/** Number of recovery requests. */
 uint32_t test_node_recoveries(void);
 
 #endif

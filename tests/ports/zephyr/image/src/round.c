@@ -1,6 +1,7 @@
 /*
- * A vehicle beside the firmware's image, on the wire: start, drive off, the AI computer falls silent, the vehicle confirms,
- * the operator resets; then bus-off. What the image sends is heard on the wire, its output read at the pin.
+ * A simulated vehicle on the bus of the firmware's image: start, engagement, the AI computer falls silent, the vehicle
+ * confirms, the operator resets; then bus-off. The test receives the image's frames on the bus and reads its output at
+ * the pin.
  */
 #include <string.h>
 
@@ -27,7 +28,7 @@ static uint32_t heard_count;
 static uint32_t first_ticks;
 static bool failed;
 
-/* This machine has no flags of its own; each start of it is one by power-on. */
+/* This machine has no reset flags; each start is a power-on. */
 int z_impl_hwinfo_get_reset_cause(uint32_t *cause) {
     *cause = RESET_POR;
     return 0;
@@ -37,7 +38,7 @@ int z_impl_hwinfo_clear_reset_cause(void) {
     return 0;
 }
 
-/* In the wire's thread. */
+/* Runs in the thread of the bus. */
 static void on_frame(const struct device *wire, struct can_frame *frame, void *unused) {
     ARG_UNUSED(wire);
     ARG_UNUSED(unused);

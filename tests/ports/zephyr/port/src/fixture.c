@@ -9,7 +9,7 @@ bool fixture_begin(void) {
     static const zephyr_hal_config_t config = {
         .bitrate = 500000u, .sample_point_permille = 875u, .watchdog_ms = 100u, .retained = &retained};
     const bool works = zephyr_hal_init(&hal, &config);
-    (void)task_wdt_delete(hal.watchdog_channel); /* nobody feeds it in most tests */
+    (void)task_wdt_delete(hal.watchdog_channel); /* most tests do not feed it */
     return works;
 }
 

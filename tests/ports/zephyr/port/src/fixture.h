@@ -1,6 +1,6 @@
 /**
  * @file fixture.h
- * A port on parts that the tests hold in their hands, new for every test.
+ * A port on simulated parts, new for every test.
  */
 #ifndef FIXTURE_H
 #define FIXTURE_H
@@ -16,10 +16,10 @@ extern zephyr_hal_retained_t retained;
 /** Reset parts and port; every suite's "before". */
 void fixture_before(void *unused);
 
-/** Stop what runs; every suite's "after". */
+/** Stop the port; every suite's "after". */
 void fixture_after(void *unused);
 
-/** Begin the port once more, as after a reset. @return what zephyr_hal_init() says */
+/** Start the port again, as after a reset. @return result of zephyr_hal_init() */
 bool fixture_begin(void);
 
 /** Read the vehicle side's status. */

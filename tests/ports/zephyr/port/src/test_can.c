@@ -1,4 +1,4 @@
-/* The controllers, on can_fake: bus-off, a send that is refused, filters exhausted, and what waits. */
+/* The controllers, on can_fake: bus-off, refused sends, missing filters, and the queue. */
 #include <string.h>
 
 #include "fixture.h"

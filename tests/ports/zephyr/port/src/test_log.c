@@ -1,4 +1,4 @@
-/* The log in flash, on the flash simulator: what is kept, what is dropped, and a power cut at every write. */
+/* The log in flash, on the flash simulator: kept and dropped records, and a power cut at every write. */
 #include <string.h>
 
 #include <zephyr/device.h>
@@ -71,12 +71,11 @@ static bool append(uint32_t number) {
 }
 
 /*
- * FCB's checksum has 8 bits: one of 256 records that are torn passes it. The content has to say so by itself, as the
- * checksum of an event does.
+ * FCB's checksum has 8 bits, so one of 256 torn records passes it. The content needs its own checksum, as events have.
  */
 #define TORN (UINT32_MAX - 1u)
 
-/* The number in a record; UINT32_MAX where there is none, TORN where it is. */
+/* The number in a record; UINT32_MAX: no record, TORN: a torn one. */
 static uint32_t number_at(uint32_t index) {
     uint8_t record[RECORD] = {0};
     uint32_t number = UINT32_MAX;
@@ -139,7 +138,7 @@ ZTEST(port_log, test_when_it_is_full_the_oldest_are_dropped) {
     }
 }
 
-/* Whether what is stored are numbers that follow each other, up to the last that was stored for sure. */
+/* Whether the stored numbers are consecutive, up to the last one that was certainly stored. */
 static void assert_all_but_the_torn_one(uint32_t appended, const char *where, uint32_t writes, uint32_t bytes) {
     const uint32_t kept = count();
     uint32_t last = (kept > 0u) ? number_at(kept - 1u) : UINT32_MAX;
@@ -151,7 +150,8 @@ static void assert_all_but_the_torn_one(uint32_t appended, const char *where, ui
     }
 }
 
-/* Cut the power in the nth write from now, after some of its bytes, while one record is appended to `before` others. */
+/* Cut the power during the nth write from now, after some of its bytes, while a record is appended to `before`
+ * others. */
 static void cut(uint32_t others, uint32_t nth, uint32_t bytes, const char *where) {
     erase_all();
     power_is_back();
@@ -178,7 +178,7 @@ ZTEST(port_log, test_a_power_cut_at_every_byte_of_an_append_loses_at_most_this_r
     }
 }
 
-/* How many records fit before a sector is begun, or the oldest one erased: both have writes of their own. */
+/* Number of records before a sector is started or the oldest one erased, both of which write to flash, too. */
 static uint32_t records_until(uint32_t writes_of_an_append, uint32_t erases) {
     const uint32_t erased = *erases_so_far;
     for (uint32_t i = 0u; i < 1000u; i++) {
@@ -212,7 +212,7 @@ ZTEST(port_log, test_a_power_cut_while_the_oldest_sector_is_dropped) {
     }
 }
 
-/* The flash as it was, to try the next record in more than one way. */
+/* A copy of the flash, to try the next record in several ways. */
 enum { FLASH_MAX = 64 * 1024 };
 
 static uint8_t before_it[FLASH_MAX];
@@ -253,7 +253,7 @@ static void cut_this_append(uint32_t number, uint32_t nth, uint32_t bytes) {
     zassert_true(append(number + 1u), "record %u, write %u, %u bytes: it goes on", number, nth, bytes);
 }
 
-/* For every record from an empty log until each sector has been used anew: in every one of its writes. */
+/* For every record, from an empty log until each sector was reused, in each of its writes. */
 /* Shows: INT-3 */
 ZTEST(port_log, test_a_power_cut_in_every_write) {
     size_t size = 0u;
@@ -277,11 +277,11 @@ ZTEST(port_log, test_a_power_cut_in_every_write) {
         }
         (void)memcpy(before_it, after_it, size);
         put_back(flash, size);
-        cuts += *erases_so_far - erases; /* erased on the way, by what was put back */
+        cuts += *erases_so_far - erases; /* erased when the copy was restored */
     }
 }
 
-/* What an erase that was cut may leave of a sector. */
+/* Possible content of a sector after an interrupted erase. */
 static void tear(uint8_t *sector, size_t size, uint32_t way) {
     const size_t half = size / 2u;
     if (way == 0u) {

@@ -1,4 +1,4 @@
-/* Reset causes, latch, watchdog, pins, and the settings that were chosen. */
+/* Reset causes, latch, watchdog, pins, and the settings of the build. */
 #include <string.h>
 
 #include <zephyr/drivers/hwinfo.h>

@@ -1,7 +1,7 @@
 /*
- * One supervisor over six starts of an emulated Cortex-M3. Each run but the last ends in a reset of its own kind, and the
- * next one looks at what outlived it: latch, first reason, recorder, cause. hwinfo's flags are set by hand, as this
- * machine has none; the task watchdog, the faults, the MPU's stack guard and the hardware watchdog are the real ones.
+ * One supervisor over six starts of an emulated Cortex-M3. Each run but the last ends with another kind of reset, and
+ * the next one checks what outlived it: latch, first reason, recorder, cause. The test sets hwinfo's flags, because
+ * this machine has none. The task watchdog, the faults, the MPU's stack guard and the hardware watchdog are real.
  */
 #include <zephyr/drivers/hwinfo.h>
 #include <zephyr/ztest.h>
@@ -46,7 +46,7 @@ static void begin(uint32_t flags) {
     vehicle_run(5u);
 }
 
-/* In place of the kernel's own, its last step: is the output open by then? */
+/* Replaces the kernel's function, which is the last step: the output must be open by then. */
 void sys_arch_reboot(int type) {
     ARG_UNUSED(type);
     story.output_was_open = fake_output_is_closed() ? 0u : 1u;
@@ -128,7 +128,7 @@ static const struct {
 
 static void look_at_what_outlived(uint32_t run) {
     zassert_equal(hal_reset_cause(&self.hal), runs[run].cause, "after %s", runs[run].what);
-    if (runs[run].flags == (uint32_t)RESET_SOFTWARE) { /* a reset by hardware lets go of the pins by itself */
+    if (runs[run].flags == (uint32_t)RESET_SOFTWARE) { /* a hardware reset releases the pins by itself */
         zassert_equal(story.output_was_open, 1u, "%s: the output was not open before the reset", runs[run].what);
     }
     zassert_false(fake_output_is_closed(), "and is open after it");

@@ -1,4 +1,4 @@
-/* What the two entry points cost on an emulated processor: instructions, as QEMU counts them. Nothing is judged here. */
+/* Instructions of the two entry points on an emulated processor, counted by QEMU. Only printed, not checked. */
 #include <zephyr/ztest.h>
 
 #include "agv/codec.h"
@@ -19,7 +19,7 @@ static uint32_t instructions(uint32_t begin) {
 
 ZTEST_SUITE(cost, NULL, NULL, NULL, NULL, NULL);
 
-/* Alone on the processor: interrupts are off, and no thread runs. */
+/* Interrupts are off, and no other thread runs. */
 ZTEST(cost, test_instructions_of_a_frame_and_of_a_tick) {
     agv_config_t config;
     hal_can_frame_t frame = {.id = 0x363u, .length = AGV_DLC};

@@ -1,6 +1,6 @@
 /*
- * The supervisor of the firmware, in its own thread, on a vehicle of frames that are injected in interrupts: power-on, drive
- * off, the AI computer falls silent, the vehicle confirms, the operator resets; then a fault that a frame carries.
+ * The firmware's supervisor in its own thread, with frames of a vehicle injected in interrupts: power-on, engagement,
+ * the AI computer falls silent, the vehicle confirms, the operator resets; then a fault bit in a frame.
  */
 #include <zephyr/ztest.h>
 
