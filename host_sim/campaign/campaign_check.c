@@ -185,7 +185,7 @@ static void on_state(campaign_check_t *check, uint64_t t_ms, const agv_event_t *
     if ((event->b == (uint8_t)AGV_STATE_TRIPPED) && (check->reason < 0)) {
         check->reason = event->c;
         check->angle_ddeg =
-            (check->plan->row->fault == AGV_FAULT_STEERING_ANGLE_INVALID) ? check->told_ddeg : measured_ddeg(check);
+            (check->plan->row->fault == AGV_FAULT_STEERING_ANGLE_INVALID) ? check->reported_ddeg : measured_ddeg(check);
     }
     if (event->b != (uint8_t)AGV_STATE_SAFE) {
         return;
@@ -253,7 +253,7 @@ void campaign_check_tick(campaign_check_t *check, uint64_t t_ms) {
         check_readiness(check);
     }
     if (t_ms == plan->steps_ms) {
-        check->told_ddeg = measured_ddeg(check);
+        check->reported_ddeg = measured_ddeg(check);
     }
 }
 

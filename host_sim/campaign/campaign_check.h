@@ -57,8 +57,9 @@ typedef struct {
     bool was_closed;
     int reason; /**< of the first trip; -1: none */
     bool holds;
-    uint16_t held;      /**< angle in the first 065h of its own */
-    int32_t told_ddeg;  /**< the angle when the steps came; the last one that 067h reported, if they make it invalid */
+    uint16_t held; /**< angle in the first 065h of its own */
+    int32_t
+        reported_ddeg;  /**< the angle when the steps came; the last one that 067h reported, if they make it invalid */
     int32_t angle_ddeg; /**< the angle to hold: that at the trip, or the reported one */
     campaign_state_t states[CAMPAIGN_STATES_MAX];
     size_t state_count;

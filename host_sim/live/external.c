@@ -43,7 +43,7 @@ struct external {
     int output; /**< what it prints; -1: none */
     char line[LINE_SIZE];
     size_t line_length;
-    bool has_told;
+    bool has_reported;
     bool output_closed;
     linux_can_t rx_sockets[HAL_CAN_SIDES];
     frames_t heard;   /**< up to the last external_listen(); the next one knows the sender */
@@ -80,7 +80,7 @@ static bool is_of_vehicle(external_t *external, const heard_t *heard) {
     return false;
 }
 
-static void tell_frames(external_t *external) {
+static void report_frames(external_t *external) {
     for (size_t i = 0u; i < external->heard.count; i++) {
         const heard_t *heard = &external->heard.items[i];
         if (!is_of_vehicle(external, heard)) {
@@ -103,23 +103,23 @@ static bool hear(external_t *external, hal_can_side_t side) {
     return true;
 }
 
-static void tell_line(external_t *external, size_t length) {
+static void report_line(external_t *external, size_t length) {
     session_event_t event;
     if (!event_line_read(external->line, length, &event)) {
         return;
     }
-    external->has_told = true;
+    external->has_reported = true;
     if (!event.is_led && (event.recorded.kind == (uint8_t)AGV_EVENT_OUTPUT)) {
         external->output_closed = event.recorded.a != 0u;
     }
     external->config.on_event(external->config.ctx, &event);
 }
 
-static void tell_lines(external_t *external) {
+static void report_lines(external_t *external) {
     for (char *end = memchr(external->line, '\n', external->line_length); end != NULL;
          end = memchr(external->line, '\n', external->line_length)) {
         const size_t length = (size_t)(end - external->line);
-        tell_line(external, length);
+        report_line(external, length);
         external->line_length -= length + 1u;
         memmove(external->line, end + 1, external->line_length);
     }
@@ -136,7 +136,7 @@ static bool read_output(external_t *external) {
                    sizeof external->line - external->line_length);
         if (got > 0) {
             external->line_length += (size_t)got;
-            tell_lines(external);
+            report_lines(external);
         }
     }
     return (got > 0) || ((got < 0) && (errno == EAGAIN)) || report("'%s' has ended", external->config.command);
@@ -213,14 +213,14 @@ bool external_start(external_t *external) {
     }
     (void)setpgid(external->pid, external->pid);
     external->line_length = 0u;
-    external->has_told = false;
+    external->has_reported = false;
     external->output_closed = false;
     return (fcntl(external->output, F_SETFL, O_NONBLOCK) == 0) || report("cannot read its output: %s", strerror(errno));
 }
 
 bool external_wait(external_t *external) {
     struct pollfd file = {.fd = external->output, .events = POLLIN};
-    for (unsigned look = 0u; (look < LOOKS_MAX) && !external->has_told; look++) {
+    for (unsigned look = 0u; (look < LOOKS_MAX) && !external->has_reported; look++) {
         if (interrupt_pending()) {
             return report("interrupted");
         }
@@ -228,7 +228,7 @@ bool external_wait(external_t *external) {
             return false;
         }
     }
-    return external->has_told || report("'%s' prints no events", external->config.command);
+    return external->has_reported || report("'%s' prints no events", external->config.command);
 }
 
 void external_vehicle_sent(external_t *external, hal_can_side_t side, const hal_can_frame_t *frame) {
@@ -239,7 +239,7 @@ void external_vehicle_sent(external_t *external, hal_can_side_t side, const hal_
 }
 
 bool external_listen(external_t *external) {
-    tell_frames(external);
+    report_frames(external);
     return hear(external, HAL_CAN_VEHICLE) && hear(external, HAL_CAN_AI) && read_output(external);
 }
 

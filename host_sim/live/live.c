@@ -113,7 +113,7 @@ static bool prepare(live_t *live) {
 }
 
 /** Files and status line are written after the supervisor's step. */
-static void tell(live_t *live, uint64_t now_ms) {
+static void write_out(live_t *live, uint64_t now_ms) {
     for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
         live_output_pass(&live->outputs[i]);
     }
@@ -130,7 +130,7 @@ static bool run(live_t *live) {
     bool good = true;
     node_start(live->node);
     while (good && (now_ms < end_ms)) {
-        tell(live, now_ms);
+        write_out(live, now_ms);
         const uint32_t what = linux_loop_wait(&live->loop);
         now_ms = node_now_us(live->node) / US_PER_MS;
         if (((what & LINUX_LOOP_SIGNAL) != 0u) || (now_ms >= end_ms)) {

@@ -47,9 +47,9 @@ static uint64_t now_ms(const run_t *run) {
     return linux_clock_now_us(&run->clock) / US_PER_MS;
 }
 
-static void on_event(void *ctx, const session_event_t *told) {
+static void on_event(void *ctx, const session_event_t *reported) {
     const run_t *run = ctx;
-    session_event_t event = *told;
+    session_event_t event = *reported;
     event.t_ms = run->has_begun ? now_ms(run) : 0u;
     scenario_check_event(run->check, &event);
     if (run->watch->on_event != NULL) {

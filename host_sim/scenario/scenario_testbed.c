@@ -6,7 +6,7 @@
 
 enum { PASSIVE_TEC = 200, BITS_PER_BYTE = 8 };
 
-static void tell_event(void *ctx, const session_event_t *event) {
+static void pass_event(void *ctx, const session_event_t *event) {
     const scenario_testbed_t *testbed = ctx;
     for (size_t i = 0u; i < testbed->watch_count; i++) {
         if (testbed->watches[i].on_event != NULL) {
@@ -28,7 +28,7 @@ static int sender_of(const scenario_testbed_t *testbed, hal_can_side_t side, sim
     return VEHICLE_ROGUE;
 }
 
-static void tell_frame(void *ctx, const sim_bus_event_t *event) {
+static void pass_frame(void *ctx, const sim_bus_event_t *event) {
     const scenario_side_t *side = ctx;
     const scenario_testbed_t *testbed = side->testbed;
 
@@ -174,7 +174,7 @@ bool scenario_testbed_init(scenario_testbed_t *testbed, const scenario_t *scenar
     if (!scenario->self_test_passed) {
         session_fail_self_test(&testbed->session);
     }
-    return session_observe(&testbed->session, tell_event, testbed);
+    return session_observe(&testbed->session, pass_event, testbed);
 }
 
 void scenario_testbed_watch(scenario_testbed_t *testbed, const scenario_watch_t *watch) {
@@ -192,7 +192,7 @@ void scenario_testbed_watch(scenario_testbed_t *testbed, const scenario_watch_t 
         }
     }
     for (size_t side = 0u; side < testbed->bus_count; side++) {
-        (void)sim_bus_add_tap(&testbed->buses[side], tell_frame, &testbed->sides[side]);
+        (void)sim_bus_add_tap(&testbed->buses[side], pass_frame, &testbed->sides[side]);
     }
 }
 

@@ -18,31 +18,31 @@ bool session_observe(session_t *session, session_observer_fn *fn, void *ctx) {
     return fits;
 }
 
-static void tell(const session_t *session, const session_event_t *event) {
+static void notify(const session_t *session, const session_event_t *event) {
     for (size_t i = 0u; i < session->observer_count; i++) {
         session->observers[i].fn(session->observers[i].ctx, event);
     }
 }
 
-static void tell_output(const session_t *session, bool closed) {
+static void notify_output(const session_t *session, bool closed) {
     const session_event_t event = {.t_ms = session->t_ms,
                                    .recorded = {.kind = AGV_EVENT_OUTPUT, .a = closed ? 1u : 0u}};
-    tell(session, &event);
+    notify(session, &event);
 }
 
-static void tell_led(session_t *session) {
+static void notify_led(session_t *session) {
     session->led_code = agv_supervisor_led_code(&session->supervisor);
     const session_event_t event = {.t_ms = session->t_ms, .is_led = true, .led_code = session->led_code};
-    tell(session, &event);
+    notify(session, &event);
 }
 
-static void tell_recorded(session_t *session, bool with_output) {
+static void notify_recorded(session_t *session, bool with_output) {
     uint32_t end = agv_recorder_next_sequence(&session->recorder);
     for (; session->next != end; session->next++) {
         session_event_t event = {.t_ms = session->t_ms, .is_led = false};
         if (agv_recorder_get(&session->recorder, session->next, &event.recorded) &&
             (with_output || (event.recorded.kind != (uint8_t)AGV_EVENT_OUTPUT))) {
-            tell(session, &event);
+            notify(session, &event);
         }
     }
 }
@@ -75,16 +75,16 @@ void session_start(session_t *session, const agv_config_t *config, uint64_t t_ms
     session->ticked_ms = t_ms;
     agv_supervisor_start(&session->supervisor, &session->ports, config, !session->self_test_failed, clock_ms);
     session->next = first_of_run(&session->recorder);
-    tell_recorded(session, false);
-    tell_output(session, agv_supervisor_output_closed(&session->supervisor));
-    tell_led(session);
+    notify_recorded(session, false);
+    notify_output(session, agv_supervisor_output_closed(&session->supervisor));
+    notify_led(session);
 }
 
 void session_frame(session_t *session, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_ms) {
     session->t_ms = t_ms;
     agv_supervisor_frame(&session->supervisor, &session->ports, side, frame);
     if (has_news(session)) {
-        tell_recorded(session, true);
+        notify_recorded(session, true);
     }
 }
 
@@ -97,9 +97,9 @@ void session_tick(session_t *session, uint64_t t_ms, uint32_t clock_ms) {
     agv_supervisor_receive_alive(&session->supervisor);
     agv_supervisor_tick(&session->supervisor, &session->ports, clock_ms);
     if (has_news(session)) {
-        tell_recorded(session, true);
+        notify_recorded(session, true);
     }
     if (agv_supervisor_led_code(&session->supervisor) != session->led_code) {
-        tell_led(session); /* a fault in a frame changes it in the next tick */
+        notify_led(session); /* a fault in a frame changes it in the next tick */
     }
 }

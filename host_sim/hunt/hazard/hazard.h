@@ -157,9 +157,9 @@ typedef struct {
     bool closed;
     hazard_message_t messages[AGV_MSG_COUNT];
     hazard_recent_t recent[AGV_COMMAND_COUNT];
-    uint16_t told[AGV_COMMAND_COUNT]; /**< the last value commanded to the vehicle */
-    bool is_told[AGV_COMMAND_COUNT];  /**< in this engagement */
-    uint16_t throttle_high;           /**< 050h: the value from which it has to come down */
+    uint16_t commanded[AGV_COMMAND_COUNT]; /**< the last value commanded to the vehicle */
+    bool is_commanded[AGV_COMMAND_COUNT];  /**< in this engagement */
+    uint16_t throttle_high;                /**< 050h: the value from which it has to come down */
     uint64_t throttle_high_ms;
     hazard_mode_t mode;
     hazard_trip_t trip;

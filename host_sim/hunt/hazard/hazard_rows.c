@@ -69,10 +69,10 @@ static uint8_t gear_of(const hazard_t *hazard) {
 }
 
 static bool is_steering_stuck(const hazard_t *hazard) {
-    const int32_t told_ddeg = (int32_t)hazard->told[AGV_MSG_STEERING_COMMAND] - 9000;
+    const int32_t told_ddeg = (int32_t)hazard->commanded[AGV_MSG_STEERING_COMMAND] - 9000;
     const int32_t limit_ddeg = (int32_t)hazard->limits.steering_deviation_ddeg + DEVIATION_DDEG;
 
-    return hazard->is_told[AGV_MSG_STEERING_COMMAND] &&
+    return hazard->is_commanded[AGV_MSG_STEERING_COMMAND] &&
            (hazard->t_ms - hazard->still_since_ms > hazard->limits.steering_deviation_ms + STILL_MARGIN_MS) &&
            (abs(hazard_measured_ddeg(hazard) - told_ddeg) > limit_ddeg);
 }
@@ -82,18 +82,18 @@ static bool is_throttle_in_park(const hazard_t *hazard) {
 }
 
 static bool is_throttle_too_high(const hazard_t *hazard) {
-    const uint32_t highest = hazard->told[AGV_MSG_THROTTLE_COMMAND] + hazard->limits.throttle_deviation_counts;
+    const uint32_t highest = hazard->commanded[AGV_MSG_THROTTLE_COMMAND] + hazard->limits.throttle_deviation_counts;
 
-    return hazard->is_told[AGV_MSG_THROTTLE_COMMAND] && (throttle_of(hazard) > highest + THROTTLE_SPARE) &&
+    return hazard->is_commanded[AGV_MSG_THROTTLE_COMMAND] && (throttle_of(hazard) > highest + THROTTLE_SPARE) &&
            (hazard->t_ms - hazard->throttle_high_ms > FALL_MS);
 }
 
 static bool is_other_gear(const hazard_t *hazard) {
     const uint8_t gear = gear_of(hazard);
 
-    return hazard->is_told[AGV_MSG_GEAR_COMMAND] && (throttle_of(hazard) > IDLE_COUNTS) &&
+    return hazard->is_commanded[AGV_MSG_GEAR_COMMAND] && (throttle_of(hazard) > IDLE_COUNTS) &&
            ((gear == (uint8_t)AGV_GEAR_D) || (gear == (uint8_t)AGV_GEAR_R)) &&
-           ((uint16_t)gear != hazard->told[AGV_MSG_GEAR_COMMAND]);
+           ((uint16_t)gear != hazard->commanded[AGV_MSG_GEAR_COMMAND]);
 }
 
 static bool is_off_ignored(const hazard_t *hazard) {

@@ -106,7 +106,7 @@ static void note_mode(hazard_t *hazard, uint8_t bits) {
 
     if (autopilot && !mode->autopilot && (hazard->t_ms - mode->clear_ms >= REENGAGE_MS)) {
         check_newest_throttle(hazard);
-        memset(hazard->is_told, 0, sizeof hazard->is_told);
+        memset(hazard->is_commanded, 0, sizeof hazard->is_commanded);
     }
     if (!autopilot && mode->autopilot) {
         mode->clear_ms = hazard->t_ms;
@@ -193,8 +193,8 @@ void hazard_wire_command(hazard_t *hazard, agv_message_t message, const hal_can_
     if (is_usable(message, frame->data)) {
         note_recent(hazard, message, value);
         if (!hazard->gateway) {
-            hazard->told[message] = value;
-            hazard->is_told[message] = true;
+            hazard->commanded[message] = value;
+            hazard->is_commanded[message] = true;
         }
     }
     if (message == AGV_MSG_TURN_SIGNAL_COMMAND) {
