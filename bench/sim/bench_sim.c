@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "scenario/scenario_world.h"
+#include "scenario/scenario_testbed.h"
 
 enum { SETTLED_MS = 3000, DEFAULT_S = 3600 };
 
@@ -23,40 +23,40 @@ static double seconds_now(void) {
     return (double)now.tv_sec + ((double)now.tv_nsec * 1e-9);
 }
 
-static void act(scenario_world_t *world, uint32_t at_ms, vehicle_action_t action) {
+static void act(scenario_testbed_t *testbed, uint32_t at_ms, vehicle_action_t action) {
     const scenario_step_t step = {.at_ms = at_ms, .of_vehicle = true, .vehicle = action};
-    scenario_world_do(world, &step);
+    scenario_testbed_do(testbed, &step);
 }
 
 /** Healthy driving on autopilot. @return speed in multiples of real time; 0: a fault occurred */
-static double drive(scenario_world_t *world, uint16_t topology, uint32_t duration_ms) {
+static double drive(scenario_testbed_t *testbed, uint16_t topology, uint32_t duration_ms) {
     static scenario_t scenario;
     scenario = (scenario_t){.bitrate = SCENARIO_DEFAULT_BITRATE, .self_test_passed = true};
     agv_config_defaults(&scenario.config);
     vehicle_defaults(&scenario.vehicle);
     scenario.config.topology = topology;
     scenario.vehicle.gateway = topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
-    if (!scenario_world_init(world, &scenario)) {
+    if (!scenario_testbed_init(testbed, &scenario)) {
         return 0.0;
     }
-    scenario_world_start(world);
+    scenario_testbed_start(testbed);
     const double begin = seconds_now();
     for (uint32_t t_ms = 0u; t_ms < duration_ms; t_ms++) {
         if (t_ms == SETTLED_MS) {
-            act(world, t_ms,
+            act(testbed, t_ms,
                 (vehicle_action_t){.what = VEHICLE_DO_AI_DRIVE, .gear = AGV_GEAR_D, .throttle_permille = 300u});
-            act(world, t_ms, (vehicle_action_t){.what = VEHICLE_DO_ENGAGE});
+            act(testbed, t_ms, (vehicle_action_t){.what = VEHICLE_DO_ENGAGE});
         }
-        scenario_world_tick(world, t_ms);
+        scenario_testbed_tick(testbed, t_ms);
     }
     const double took = seconds_now() - begin;
     vehicle_view_t view;
-    scenario_world_vehicle(world, &view);
+    scenario_testbed_vehicle(testbed, &view);
     sim_bus_stats_t stats;
-    scenario_world_bus_stats(world, HAL_CAN_VEHICLE, &stats);
-    scenario_world_view_t seen;
-    scenario_world_view(world, &seen);
-    const agv_supervisor_t *supervisor = &scenario_world_session(world)->supervisor;
+    scenario_testbed_bus_stats(testbed, HAL_CAN_VEHICLE, &stats);
+    scenario_testbed_view_t seen;
+    scenario_testbed_view(testbed, &seen);
+    const agv_supervisor_t *supervisor = &scenario_testbed_session(testbed)->supervisor;
     const bool healthy = (agv_supervisor_state(supervisor) == AGV_STATE_ACTIVE) &&
                          (agv_supervisor_counters(supervisor)->warnings == 0u) && (view.speed_mm_s > 0) &&
                          (seen.lost_frames == 0u);
@@ -106,16 +106,16 @@ int main(int argc, char **argv) {
         (void)fprintf(stderr, "usage: bench_sim [SECONDS (4 .. 4000000)] [LEAST]\n");
         return 2;
     }
-    scenario_world_t *world = malloc(sizeof *world);
-    if (world == NULL) {
+    scenario_testbed_t *testbed = malloc(sizeof *testbed);
+    if (testbed == NULL) {
         (void)fprintf(stderr, "bench_sim: out of memory\n");
         return 2;
     }
     const uint32_t duration_ms = (uint32_t)seconds * MS_PER_S;
-    const double shared = drive(world, AGV_TOPOLOGY_SHARED, duration_ms);
-    const double gateway = drive(world, AGV_TOPOLOGY_GATEWAY, duration_ms);
+    const double shared = drive(testbed, AGV_TOPOLOGY_SHARED, duration_ms);
+    const double gateway = drive(testbed, AGV_TOPOLOGY_GATEWAY, duration_ms);
     vehicle_alone(duration_ms);
-    free(world);
+    free(testbed);
     if ((shared <= (double)least) || (gateway <= 0.0)) {
         (void)fprintf(stderr, "bench_sim: the shared bus must run without faults and faster than %ld times real time\n",
                       least);
