@@ -37,11 +37,11 @@ elseif(AGV_INSTRUMENT STREQUAL "fuzz")
     -fstrict-flex-arrays=3)
   add_link_options(-fsanitize=address,undefined)
 elseif(AGV_INSTRUMENT STREQUAL "mcdc")
-  # clang only, and of the core only: what is judged is the core, and a test's own decisions would only slow it down.
+  # clang only, and only for the core: the tests' own decisions do not count and would make the run slower.
   set(AGV_CORE_INSTRUMENT_OPTIONS -fprofile-instr-generate -fcoverage-mapping -fcoverage-mcdc)
   add_link_options(-fprofile-instr-generate)
 elseif(AGV_INSTRUMENT STREQUAL "mutation")
-  # The core is one shared object, which tests/proofs/mutation replaces; a test need not have all of the port that it asks for.
+  # The core is one shared object, which tests/proofs/mutation replaces. A test may lack functions of the port.
   set(AGV_CORE_KIND SHARED)
   set(CMAKE_SKIP_RPATH ON)
   add_link_options(-Wl,--allow-shlib-undefined)

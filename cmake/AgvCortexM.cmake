@@ -2,7 +2,7 @@
 
 set(AGV_CPUS cortex-m0plus cortex-m4 cortex-m7)
 
-# What makes the core smaller than -Os alone does (gcc 12). A firmware may take these over, or leave them.
+# Options that make the core smaller than -Os alone (gcc 12). A firmware may use them, too.
 set(AGV_SMALL_OPTIONS
   -fno-thread-jumps                 # no second copy of code for a path on which a later condition is already known
   -fno-tree-dominator-opts          # the same, found by another pass
@@ -52,7 +52,7 @@ foreach(cpu IN LISTS AGV_CPUS)
   agv_build_for_cpu(hal_template ${cpu})
 endforeach()
 
-# Every function that a firmware image has to call; the linker keeps these and what they reach, and nothing else.
+# Every function that a firmware image calls; the linker keeps only these and the functions that they call.
 set(AGV_ENTRY_POINTS
   agv_config_defaults
   agv_supervisor_start

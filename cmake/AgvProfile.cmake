@@ -2,9 +2,9 @@
 #
 #   agv_use_profile(target ...)
 #
-# The sources of the targets are compiled with what an instrumented copy of them counted on the simulated bus. The copy
-# is made and run once, in profile/ of the build tree: sources that change afterwards keep the old counts, which cost
-# speed and nothing else. A new build tree counts anew.
+# The sources of the targets are compiled with a profile that an instrumented copy recorded on the simulated bus. The
+# copy is made and run once, in profile/ of the build tree: sources that change afterwards keep the old counts, which
+# cost speed and nothing else. A new build tree counts anew.
 option(AGV_PROFILE "Optimise the host program by a profile of itself (gcc)" OFF)
 
 set(AGV_PROFILE_DIR ${PROJECT_BINARY_DIR}/profile)
@@ -33,7 +33,7 @@ function(agv_use_profile)
     return()
   endif()
   foreach(target IN LISTS ARGN)
-    # -fprofile-partial-training: what was not run, a reaction to a fault for one, is not made slow.
+    # -fprofile-partial-training: code that was not run, such as a reaction to a fault, is not optimised for size.
     # -fprofile-correction: a function that is new or changed since, and so has no counts, is no warning.
     # --param: what is counted as hot may grow together; short loops over tables of fixed size are unrolled whole, that
     # over the words under the seal (agv_seal) in four chains side by side. Invariants are not moved out of loops: the

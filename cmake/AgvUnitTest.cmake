@@ -5,9 +5,9 @@
 #
 # Builds one program from the sources, a runner generated from the first of them, and the generated mocks, and adds it
 # to ctest. A test includes a mock as "mock_can.h" (for hal/can.h). Every program is linked to agv_core.
-# Mocks stand in for the HAL contract, hal/include, and for nothing else: the rest of the core is tested as it is.
-# NO_TEST: the program is built, and run by a test of somebody else.
-# PLANTED: a test that has to fail; it is built by its name only and run by `ctest -C planted` only (tests/proofs/seeded.tsv).
+# Mocks replace only the HAL contract, hal/include; the core is tested unchanged. NO_TEST: the program is built, and run
+# by a test of somebody else. PLANTED: a test that has to fail; it is built by its name only and run by `ctest -C
+# planted` only (tests/proofs/seeded.tsv).
 
 find_program(AGV_RUBY ruby)
 set(AGV_GEMS ${PROJECT_SOURCE_DIR}/build/gems)
@@ -17,12 +17,12 @@ set(AGV_CMOCK_CONFIG ${PROJECT_SOURCE_DIR}/tests/cmock.yml)
 set(AGV_TEST_TIMEOUT 120 CACHE STRING "Seconds after which a test program is stuck")
 set(AGV_MOCK_DIR ${PROJECT_BINARY_DIR}/mocks)
 
-# Without Ruby the programs still build (target host_sim and others): only the tests ask for it, when they are built.
+# Without Ruby the programs still build (target host_sim and others); only the tests need it, when they are built.
 if(NOT AGV_RUBY)
   set(AGV_RUBY ruby)
 endif()
 
-# The gems are shared by all build trees, what is compiled of them is copied: so `clean` leaves the gems alone.
+# All build trees share the gems. Compiled files are copied, so that `clean` keeps the gems.
 set(AGV_GEMS_STAMP ${PROJECT_BINARY_DIR}/gems.stamp)
 add_custom_command(
   OUTPUT ${AGV_GEMS_STAMP}
@@ -50,10 +50,10 @@ if(AGV_INSTRUMENT STREQUAL "mutation")
     "UNITY_OUTPUT_FLUSH_HEADER_DECLARATION=agv_stop_at_failure(void)")
 endif()
 
-# The library target of the mock of one header of the HAL contract, made when it is first asked for.
+# The library target of the mock of a header of the HAL contract, created at its first use.
 function(agv_mock_of HEADER TARGET_VARIABLE)
   if(NOT HEADER MATCHES "^hal/([a-z_]+)\\.h$" OR NOT EXISTS ${PROJECT_SOURCE_DIR}/hal/include/${HEADER})
-    message(FATAL_ERROR "'${HEADER}' cannot be mocked: mocks replace headers of hal/include and nothing else")
+    message(FATAL_ERROR "'${HEADER}' cannot be mocked: mocks replace only headers of hal/include")
   endif()
   set(mock mock_${CMAKE_MATCH_1})
   set(${TARGET_VARIABLE} ${mock} PARENT_SCOPE)
@@ -73,7 +73,8 @@ function(agv_mock_of HEADER TARGET_VARIABLE)
   target_link_libraries(${mock} PUBLIC unity)
 endfunction()
 
-# The runner of a test: a header in front of it, so that both are compiled at once. The runners of a folder are made together.
+# The runner of a test is a header that is included before the test, so that both are compiled at once. The runners of a
+# folder are made together.
 function(agv_runner_of SOURCE RUNNER_VARIABLE)
   get_filename_component(name ${SOURCE} NAME_WE)
   get_filename_component(path ${SOURCE} ABSOLUTE)

@@ -1,11 +1,11 @@
-# Puts what a program counted where gcc looks for it when it compiles the same sources in another build tree.
+# Copies a program's profile to the place where gcc looks for it when it compiles the same sources in another build
+# tree.
 #
 #   cmake -DFROM=<tree that counted> -DFOR=<tree to compile in> -DTO=<folder of counts> -P collect-profile.cmake
-#
-# gcc names the file after the object: its whole path, with # for each /.
+# gcc names the file after the object: its full path, with # for each /.
 file(GLOB_RECURSE counts RELATIVE ${FROM} ${FROM}/*.gcda)
 if(NOT counts)
-  message(FATAL_ERROR "${FROM}: nothing was counted")
+  message(FATAL_ERROR "${FROM}: no profile was recorded")
 endif()
 file(MAKE_DIRECTORY ${TO})
 foreach(count IN LISTS counts)

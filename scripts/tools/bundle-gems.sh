@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Install the gems of Gemfile.lock (Unity and CMock) into the build tree: build/gems/vendor is where the build finds them.
-# Called by the build and by scripts/test; does nothing when they are there.
+# Called by the build and by scripts/test; does nothing if they are installed.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 gems=$root/build/gems
@@ -8,7 +8,7 @@ gems=$root/build/gems
 export BUNDLE_GEMFILE=$root/Gemfile
 export BUNDLE_PATH=$gems
 export BUNDLE_APP_CONFIG=$gems/config # nothing is written outside the build tree
-export BUNDLE_FROZEN=true             # exactly what the lock file says
+export BUNDLE_FROZEN=true             # exactly the versions of the lock file
 export BUNDLE_SILENCE_ROOT_WARNING=true
 
 if ! command -v bundle >/dev/null; then

@@ -2,8 +2,8 @@
 """No condition of the core is hidden from MC/DC: found in clang's AST.
 
 Reported are `|`, `&` and `^` (also as assignments) with a Boolean operand, an `if` that holds nothing but another `if`
-(both could be one `&&`), and a Boolean `?:` with a constant arm (which is a `&&` or `||`). What is meant so stands in
-tests/proofs/mcdc/exceptions with its reason.
+(both could be one `&&`), and a Boolean `?:` with a constant arm (which is a `&&` or `||`). Intended cases are listed in
+tests/proofs/mcdc/exceptions with their reasons.
 """
 import concurrent.futures
 import json
@@ -43,7 +43,7 @@ def is_constant(node):
 
 
 def is_boolean(node):
-    """Whether a value is a truth: of the type bool, a comparison, or one of two constants 0 and 1 by a condition."""
+    """Whether a value is Boolean: of the type bool, a comparison, or a condition that selects 0 or 1."""
     node = stripped(node)
     kind = node.get("kind")
     if kind == "ConditionalOperator":
@@ -55,7 +55,7 @@ def is_boolean(node):
 
 
 def only_an_if(node):
-    """Whether a branch is nothing but an `if` without `else`."""
+    """Whether a branch consists of a single `if` without `else`."""
     if node.get("kind") == "CompoundStmt":
         inner = children(node)
         return len(inner) == 1 and only_an_if(inner[0])
@@ -63,7 +63,7 @@ def only_an_if(node):
 
 
 def what_is_hidden(node):
-    """What is wrong with a node, None when nothing is."""
+    """The problem of a node, or None."""
     kind = node.get("kind")
     if kind in ("BinaryOperator", "CompoundAssignOperator") and node["opcode"] in BITWISE:
         if any(is_boolean(child) for child in children(node)):
@@ -79,7 +79,7 @@ def what_is_hidden(node):
 
 
 def decisions_below(node, inside=False):
-    """How many decisions of several conditions there are: `&&` and `||` that belong to no other."""
+    """Number of decisions with several conditions: outermost `&&` and `||`."""
     if node.get("kind") == "StaticAssertDecl":
         return 0
     logical = node.get("kind") == "BinaryOperator" and node["opcode"] in ("&&", "||")
@@ -88,14 +88,14 @@ def decisions_below(node, inside=False):
 
 
 def follow_place(location, place):
-    """clang tells file and line only when they change: place is what was told last."""
+    """clang prints file and line only when they change: place has the last ones."""
     for part in (location.get("spellingLoc"), location.get("expansionLoc"), location):
         if part:
             place.update({key: part[key] for key in ("file", "line") if key in part})
 
 
 def walk(node, place, found):
-    """Adds (file, line, what) of all that is hidden below a node, in the order in which clang tells of it."""
+    """Adds (file, line, problem) of all hidden conditions below a node, in clang's order."""
     follow_place(node.get("loc", {}), place)
     node_range = node.get("range", {})
     follow_place(node_range.get("begin", {}), place)
@@ -109,7 +109,7 @@ def walk(node, place, found):
 
 
 def look_at(source):
-    """All that is hidden in one source, and how many decisions of several conditions it has."""
+    """The hidden conditions of a source, and its number of decisions with several conditions."""
     command = ["clang-19", "-std=c11", "-fsyntax-only", *(f"-I{ROOT}/{folder}" for folder in FOLDERS),
                "-Xclang", "-ast-dump=json", str(source)]
     done = subprocess.run(command, check=False, capture_output=True, text=True)

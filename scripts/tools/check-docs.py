@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """Every page (*.md): its links and its commands.
 
-- A relative link leads to a file that is there, and to a heading of it when it names one.
-- Each command in a ```sh block, and behind `$ ` in a ```console block, is one that is there: a file of this project, a
+- The target of a relative link must exist, and its heading, if it names one.
+- Each command in a ```sh block, and behind `$ ` in a ```console block, must exist: a file of this project, a
   program that it builds for the host, or one on the PATH. A block that begins with ```sh not-run-here is for another
-  machine and is not looked at. Commands stand in such blocks only, so that none goes by.
-- A default that a page states as 50 ms (`vcu_heartbeat_timeout_ms`) is the one of config_settings.def.
+  machine and is not checked. Commands must be in such blocks only.
+- A default that a page states as 50 ms (`vcu_heartbeat_timeout_ms`) must be that of config_settings.def.
 - docs/architecture.md links every source and header of firmware/ and hal/include.
 """
 import argparse
@@ -39,7 +39,7 @@ class Problems:
 
 
 def read_page(path):
-    """The text outside of code blocks, and the blocks as (line number, what stands behind the fence, lines)."""
+    """The text outside of code blocks, and the blocks as (line number, text behind the fence, lines)."""
     prose, blocks, fence, info, block = [], [], None, "", []
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         match = FENCE.match(line)
@@ -55,7 +55,7 @@ def read_page(path):
 
 
 def anchors(path):
-    """The anchors of a page's headings, as the hosting sites make them."""
+    """The anchors of a page's headings, as hosting sites generate them."""
     found = set()
     for line in read_page(path)[0].splitlines():
         match = HEADING.match(line)

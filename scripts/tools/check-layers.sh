@@ -7,7 +7,7 @@
 cd "${1:-$ROOT}" || exit
 
 found=0
-# $1: what is wrong; standard input: the offending lines, none when all is well
+# $1: the message; standard input: the offending lines, empty if there are none
 report() {
     local lines
     lines=$(cat)
@@ -22,7 +22,7 @@ if [[ -z $(find "${core[@]}" hal/include -name '*.[ch]') ]]; then
     die "nothing to check in $PWD"
 fi
 
-# Headers that a freestanding C11 implementation has, and string.h.
+# Headers of a freestanding C11 implementation, and string.h.
 standard='<(limits|stdalign|stdbool|stddef|stdint|string)\.h>'
 
 # Private headers and tables, as they are included: |"<room>/<file>.h"|... of those that exist, each dot escaped.
@@ -55,7 +55,7 @@ report 'a program, a port or a test of something else includes a header of firmw
         --include='*.[ch]' | grep -vE "$insiders"
 )
 
-# Include guards, X-macros and __cplusplus are all that the preprocessor may ask about.
+# Preprocessor conditions may only use include guards, X-macros and __cplusplus.
 report 'a platform #if in the portable part' < <(
     grep -rnE '^\s*#\s*(if|ifdef|ifndef|elif)\b' "${core[@]}" hal/include --include='*.[ch]' |
         grep -vE '#\s*(if|ifdef|ifndef|elif)\s+(!?defined\(?)?\s*(AGV_|HAL_|__cplusplus)[A-Z0-9_]*\)?\s*(/\*.*)?$'
@@ -74,7 +74,7 @@ report 'a frame bypasses the gate (INT-4): only gate.c may call hal_can_send' < 
     grep -rnE '\bhal_can_send\s*\(' firmware --include='*.c' | grep -v '^firmware/src/transmit/gate\.c:'
 )
 
-# firmware/zephyr is a program: it knows core, port and Zephyr; the drivers are the port's.
+# firmware/zephyr is a program: it may use core, port and Zephyr, but not drivers, which belong to the port.
 report 'firmware/zephyr bypasses the port and uses a driver' < <(
     if [[ -d firmware/zephyr ]]; then
         grep -rnE '^\s*#\s*include\s+<zephyr/(drivers|task_wdt|fs|storage)/' firmware/zephyr --include='*.[ch]'

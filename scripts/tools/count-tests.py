@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Count what a run of ctest showed. usage: ctest -V ... >LOG; count-tests LOG
+"""Count the tests of a ctest run. usage: ctest -V ... >LOG; count-tests LOG
 
-Every Unity test function counts as one, every other ctest test as one. Prints `passed failed`. Failed are also an
-ignored function, a test that ctest did not run, and a program that ends badly without saying which function failed.
+Every Unity test function counts as one, every other ctest test as one. Prints `passed failed`. An
+ignored function, a test that ctest did not run, and a program that fails without naming a function count as failed.
 """
 import re
 import sys

@@ -42,7 +42,7 @@ def split(document, text):
 
 
 def read_texts(table):
-    """Fault -> the two cells on the right, as they stand."""
+    """Fault -> its two text cells in the page."""
     texts = {}
     for line in table.splitlines():
         cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
@@ -62,7 +62,7 @@ def make_table(faults, texts):
 
 
 def check_names(root, faults):
-    """A fault that a page names is one of the table."""
+    """Every fault that a page names must be in the table."""
     names = [name for name, *_ in faults]
     for document in NAMING:
         for name, star in NAMED.findall((root / document).read_text(encoding="utf-8")):

@@ -64,7 +64,7 @@ def supervisor_bytes(build):
 
 
 def check_symbols(image, core):
-    """Every entry point is in the image; nothing of the heap and no floating point is asked for, or got in."""
+    """Every entry point must be in the image, and neither heap nor floating point may be used."""
     defined = run("arm-none-eabi-nm", "--defined-only", "--format=just-symbols", str(image)).split()
     missing = [name for name in ENTRIES if name not in defined]
     if missing:
@@ -89,7 +89,7 @@ def flash_of(build):
 
 
 def stack_fails(build, limit):
-    """Prints the deepest stack; whether it is above the limit, or there is no limit to it."""
+    """Prints the deepest stack. Returns true if it is above the limit, or unlimited."""
     graphs = sorted(build.glob("CMakeFiles/agv_core_cortex-m4.dir/**/*.ci"))
     if not graphs:
         fail("no call graph of the core")

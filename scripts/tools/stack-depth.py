@@ -27,7 +27,7 @@ class Unbounded(Exception):
 
 
 def read_graph(paths):
-    """Frames in bytes of the functions defined in these files, and who calls whom."""
+    """Stack frames in bytes of the functions in these files, and the calls between them."""
     frames, calls = {}, {}
     for path in paths:
         with open(path, encoding="utf-8") as file:

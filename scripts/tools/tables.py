@@ -19,11 +19,11 @@ MESSAGE = re.compile(r"^AGV_(?:COMMAND|STATUS)\(\w+, (\w+), (0x[0-9A-F]{3}), (0x
 
 
 class Problem(SystemExit):
-    """Something that a script has to say; it then fails, whether it catches this or not."""
+    """An error that ends a script with a message."""
 
 
 def read(path, kinds):
-    """The rows of a table. kinds: how a row begins, its pattern, what is made of its groups."""
+    """The rows of a table. kinds: beginning of a row, its pattern, and the function for its groups."""
     found = []
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         for begin, pattern, make in kinds:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Which test shows which requirement and which fault.
+"""The tests that show each requirement and each fault.
 
 Rows: requirements of docs/requirements.md, protocol decisions of docs/protocol.md (tables, `| SUP-1 | ...`), and faults
 of firmware/include/agv/fault_table.def. Tests say what they show:
@@ -70,7 +70,7 @@ def not_built(root):
 
 
 def read_tags(root, problems):
-    """(rows as text, name of the test, its file) of every tag."""
+    """(rows as text, name of the test, file) of every tag."""
     for path in sorted((root / "tests").rglob("*.c")):
         text = path.read_text(encoding="utf-8")
         tags = list(C_TAG.finditer(text))
@@ -198,7 +198,7 @@ def replace_section(text, begin, section):
 
 
 def bring_up_to_date(document, begin, section, write, problems):
-    """A section that is made here: written, or compared."""
+    """Write a generated section, or compare it."""
     text = document.read_text(encoding="utf-8")
     if text.count(begin) != 1 or END not in text.split(begin)[1]:
         problems.append(f"{document.name} needs the lines '{begin}' and '{END}'")

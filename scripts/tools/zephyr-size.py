@@ -2,7 +2,7 @@
 """Flash and RAM of builds of the firmware, as a table. usage: zephyr-size [--write] BUILD...
 
 Each BUILD is the build folder of firmware/zephyr. --write puts the table between its markers in docs/firmware.md.
-Flash: code, constants and initial values. RAM: all that is static, with stacks and what outlives a reset; there is no heap.
+Flash: code, constants and initial values. RAM: all static memory, with stacks and retained memory; there is no heap.
 Stack: the deepest path through core, port and application by gcc's call graph (scripts/tools/stack-depth.py), without the frames of
 Zephyr's functions below them.
 """
