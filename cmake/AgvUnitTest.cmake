@@ -5,9 +5,9 @@
 #
 # Builds one program from the sources, a runner generated from the first of them, and the generated mocks, and adds it
 # to ctest. A test includes a mock as "mock_can.h" (for hal/can.h). Every program is linked to agv_core.
-# Mocks replace only the HAL contract, hal/include; the core is tested unchanged. NO_TEST: the program is built, and run
-# by a test of somebody else. PLANTED: a test that has to fail; it is built by its name only and run by `ctest -C
-# planted` only (tests/proofs/seeded.tsv).
+# Mocks replace only the HAL contract, hal/include; the core is tested unchanged.
+# NO_TEST: the program is built, and another test runs it.
+# PLANTED: a test that must fail; it is built only by its name and run only by `ctest -C planted` (tests/proofs/seeded.tsv).
 
 find_program(AGV_RUBY ruby)
 set(AGV_GEMS ${PROJECT_SOURCE_DIR}/build/gems)

@@ -1,4 +1,4 @@
-"""A CAN bus seen from a test: frames with the kernel's stamps, and the program under test as a process on it.
+"""A CAN bus for a test: frames with the kernel's stamps, and the program under test as a process on it.
 
 Run by scripts/with-vcan, where vcan0, vcan1 and vcan2 exist. HOST_SIM in the environment is the program's path.
 """
@@ -37,7 +37,7 @@ Frame = collections.namedtuple("Frame", "at id data flags")  # at: seconds, the 
 
 
 class Bus:
-    """A socket on an interface. It hears everybody but itself. It looks seldom, so as not to hold up who is tested."""
+    """A socket on an interface. It receives all frames but its own. It reads seldom, to save processor time."""
 
     def __init__(self, interface):
         self.socket = socket.socket(socket.AF_CAN, socket.SOCK_RAW | socket.SOCK_NONBLOCK, socket.CAN_RAW)
@@ -58,7 +58,7 @@ class Bus:
         self.socket.send(FRAME.pack(can_id | flags, len(data), bytes(data).ljust(8, b"\0")))
 
     def look(self):
-        """Take what is there now."""
+        """Read all frames that have arrived."""
         end = time.time()
         while True:
             try:
@@ -73,7 +73,7 @@ class Bus:
                 return
 
     def listen(self, seconds):
-        """All frames until then, beginning with those that nobody has looked at so far."""
+        """All frames until then, beginning with those that were not returned yet."""
         end = time.time() + seconds
         looked = 0
         while looked < end:
@@ -85,7 +85,7 @@ class Bus:
         return frames
 
     def forget(self):
-        """Drop what came until now."""
+        """Drop all frames until now."""
         self.look()
         self.waiting.clear()
 
@@ -189,5 +189,5 @@ def ip(*arguments):
 
 
 def of(frames, can_id):
-    """Those with this identifier."""
+    """The frames with this identifier."""
     return [frame for frame in frames if frame.id == can_id]

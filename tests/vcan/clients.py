@@ -1,7 +1,7 @@
-"""Foreign CAN tools on a bus of their own beside host_sim: can-utils as processes, a vehicle as a log for canplayer.
+"""Other CAN tools on the same bus as host_sim: can-utils as processes, a vehicle as a log for canplayer.
 
-Run by scripts/with-vcan. HOST_SIM in the environment is the program's path. What the tools send is known (the log that
-canplayer reads, the frame that cansend is given), so what candump saw and nobody of them sent is the supervisor's.
+Run by scripts/with-vcan. HOST_SIM in the environment is the program's path. The frames of the tools are known (the log
+of canplayer, the frame of cansend). All other frames of candump's log are the supervisor's.
 """
 import collections
 import json
@@ -76,11 +76,11 @@ def of(frames, *ids):
 
 
 class HeldUp(Exception):
-    """The machine did something else for so long that the test says nothing."""
+    """The machine was delayed for so long that the test has no result."""
 
 
 class Vehicle:
-    """What VCU, EPS and AI computer say, as lines of a log: healthy, in manual and at standstill, until it is changed."""
+    """The frames of VCU, EPS and AI computer as lines of a log: healthy, in manual and at standstill, until changed."""
 
     def __init__(self, *nodes):
         self.nodes = set(nodes or ("vcu", "eps", "ai"))
@@ -96,7 +96,7 @@ class Vehicle:
         return self.log(2560 * self.pace)
 
     def slow(self):
-        """Four times as slow as the protocol says, for tests that are about something else: patient deadlines are kept."""
+        """Four times slower than the protocol, with longer deadlines, for tests of other things."""
         self.pace = 4
         return self
 
@@ -157,7 +157,7 @@ class Player:
                                   *("%s=%s" % (interface, side) for side, interface in interfaces.items()))
 
     def wait(self):
-        """Until the log is at its end."""
+        """Wait for the end of the log."""
         status = self.process.wait(TIMEOUT_S)
         self.case.assertEqual(status, 0, "canplayer")
 
@@ -228,7 +228,7 @@ class Supervisor:
         return [(event["to"], event["reason"]) for event in self.events("state")]
 
     def faults(self):
-        """Those that were raised since INIT was left."""
+        """The faults raised since the end of INIT."""
         events = self.events()
         left = [place for place, event in enumerate(events) if event["event"] == "state" and event["from"] == "INIT"]
         return [event["name"] for event in events[left[0]:] if event["event"] == "fault" and event["active"]]
@@ -254,7 +254,7 @@ class Supervisor:
         return self.events()[-1]
 
     def sent(self):
-        """Interface and frame of what it says it sent."""
+        """Interface and frame of everything in its log of sent frames."""
         if self.log is None:
             self.stop()
             self.log = [parse(line) for line in self.paths["out"].read_text().splitlines()]
@@ -262,7 +262,7 @@ class Supervisor:
 
 
 class Scene:
-    """One try of a test: its buses, and who is on them."""
+    """One try of a test: its buses, and the programs on them."""
 
     numbers = iter(range(1000))
 
@@ -284,7 +284,7 @@ class Scene:
 
 
     def end(self):
-        """Everybody ends, and candump gets the time to read what is left."""
+        """End all programs; candump gets time to read the remaining frames."""
         if not self.ended_at:
             self.ended_at = time.time()
             for supervisor in self.supervisors:
@@ -378,7 +378,7 @@ class Case(unittest.TestCase):
         self.record(interface, record or text.replace(".", ""))
 
     def record(self, interface, text):
-        """A client sent this."""
+        """Record that a client sent this."""
         self.scene.records[interface].append(text)
 
     # What is true of every run.
@@ -416,7 +416,7 @@ class Case(unittest.TestCase):
         return found
 
     def check_all_accounted_for(self, interface):
-        """candump saw what the clients and the supervisor sent, and nothing else."""
+        """candump must have recorded exactly the frames of the clients and of the supervisor."""
         seen = collections.Counter(map(key, self.frames(interface)))
         for frame in self.supervisors_frames(interface):
             seen[key(frame)] -= 1
@@ -442,7 +442,7 @@ class Case(unittest.TestCase):
                 self.assertEqual(len(frames), dump.sent_by_kernel, "frames of candump, and of the kernel, on " + interface)
 
     def held_up(self):
-        """How late somebody was who should not have been: (what, seconds), the worst."""
+        """The greatest delay of a program: (program, seconds)."""
         worst = [("nobody", 0.0)]
         for player in self.scene.players:
             for side, interface in player.interfaces.items():
@@ -460,18 +460,18 @@ class Case(unittest.TestCase):
         self.check_candump_was_there()
 
     def check_oracle(self, vehicle, supervisor=None, **options):
-        """FSM-6 and what else is said of what may leave in which state (oracle.py)."""
+        """FSM-6 and the other rules on frames in each state (oracle.py)."""
         mine = self.supervisors_frames(vehicle, supervisor)
         wrong = oracle.check(mine, self.frames(vehicle), STATUS_ID, **options)
         self.assertEqual(wrong, [], "must not leave")
 
     def at_most(self, limit, measured, what):
-        """An upper bound of a time. A machine that was held up exceeds it once, a supervisor that is wrong every time."""
+        """An upper limit of a time. A delayed machine exceeds it once, a wrong supervisor every time."""
         if measured > limit:
             raise HeldUp("%s took %.1f ms, more than %.1f" % (what, 1000 * measured, 1000 * limit))
 
     def at_once(self, cause, answer, within=0.010):
-        """The answer follows the cause."""
+        """The reaction must follow the cause in time."""
         self.assertGreaterEqual(answer.at, cause.at)
         self.at_most(within, answer.at - cause.at, "from %s to %s" % (key(cause), key(answer)))
 
@@ -491,7 +491,7 @@ def gaps(frames):
 
 
 def lateness(player, side, frames, away):
-    """How late canplayer was at worst, by the kernel's stamps."""
+    """The greatest delay of canplayer, by the kernel's stamps."""
     if player.endless:
         mine = {text for _, where, text in player.lines if where == side and text[:3] == "363"}
         stamps = gaps([frame for frame in frames if key(frame) in mine])

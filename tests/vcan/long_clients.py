@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""The long ones of the foreign CAN tools: noise for minutes, with many seeds. Not a test of every run; by hand:
+"""Long tests with other CAN tools: noise for minutes, with many seeds. Started by hand:
 
   HOST_SIM=build/host/bin/host_sim scripts/with-vcan tests/vcan/long_clients.py [--seeds N] [--seconds N] [--first SEED]
 
-Each seed is three runs (beside healthy traffic, on all identifiers, on both sides of a gateway), each of so many seconds.
+Each seed is three runs (beside healthy traffic, on all identifiers, on both sides of a gateway), each of --seconds.
 The seed is that of the order; the frames are cangen's, which are others every time. So, to look into a failure, set
 CLIENTS_KEEP to a folder: it gets the logs that were played and recorded.
 """
@@ -38,7 +38,7 @@ def main():
     parser.add_argument("--seconds", type=int, default=60)
     args = parser.parse_args()
     if not os.access(os.environ.get("HOST_SIM", ""), os.X_OK):
-        sys.exit("long_clients: HOST_SIM in the environment is no program")
+        sys.exit("long_clients: HOST_SIM in the environment must be a program")
     import run_clients
     run_clients.bring_programs()
     ran = failed = 0

@@ -1,5 +1,4 @@
-"""For tests that need a machine that is on time: one that has other things to do holds everybody up, and then the test is
-run again, but only then."""
+"""For tests of times: when a busy machine delayed the programs, and only then, a failed test is run again."""
 import functools
 import os
 import subprocess
@@ -12,7 +11,7 @@ NAP_S = 0.005
 
 
 class Stalls:
-    """Measures on every processor how late it is."""
+    """Measures the delay on every processor."""
 
     def __init__(self):
         self.worst_s = 0
@@ -38,7 +37,7 @@ class Stalls:
 
 
 def on_time(test):
-    """A test method that is run again when it failed while the machine was held up."""
+    """A test method that is run again when it failed while the machine was delayed."""
     @functools.wraps(test)
     def run(self):
         for left in reversed(range(TRIES)):

@@ -1,8 +1,8 @@
-"""What may leave a supervisor in which state, written from docs/requirements.md and docs/protocol.md (FSM-6, FSM-8,
-FSM-10, TOP-1, TOP-2) and not from the code.
+"""The permitted frames of a supervisor in each state, written from docs/requirements.md and docs/protocol.md (FSM-6,
+FSM-8, FSM-10, TOP-1, TOP-2) and not from the code.
 
-The state is read from the supervisor's own status frame on the bus (TOP-3), which it sends every 10 ms here: what left
-between two of them left in the state of the one, or of the other.
+The state is read from the supervisor's own status frame on the bus (TOP-3), which it sends every 10 ms here: a frame
+between two of them was sent in the state of the one or of the other.
 """
 INIT, STANDBY, ACTIVE, TRIPPED, SAFE = 0x0F, 0x33, 0x3C, 0x55, 0x5A
 SENDS_SAFE_COMMANDS = {INIT, TRIPPED, SAFE}
@@ -12,13 +12,13 @@ LIGHTS = "00000000700000"  # both turn signals, autopilot off, headlight on (0);
 
 
 def is_safe(frame):
-    """A safe command, byte for byte; 065h is looked at elsewhere."""
+    """A safe command, byte for byte; 065h is checked elsewhere."""
     return ((frame.id == "168" and frame.data == GEAR_P) or (frame.id == "075" and frame.data == THROTTLE_0) or
             (frame.id == "43F" and len(frame.data) == 16 and frame.data[:14] == LIGHTS))
 
 
 def states_around(frames, status_id):
-    """For each frame the states in which it may have left. Before the first status frame it is INIT, as after a power-on."""
+    """For each frame the states in which it may have been sent. Before the first status frame: INIT, as after a power-on."""
     name = "%03X" % status_id
     before, result = INIT, []
     states = [int(frame.data[:2], 16) if frame.id == name else None for frame in frames]
@@ -71,7 +71,7 @@ class Oracle:
         return measured and self.held in (None, angle)
 
     def passes(self, frame, states):
-        """A gateway: whatever is no safe command."""
+        """A gateway: all frames that are not safe commands."""
         if not self.gateway or len(frame.data) != 16:
             return False
         return bool(ACTIVE in states or (STANDBY in states and frame.id == "43F"))

@@ -1,6 +1,6 @@
-"""A healthy VCU, EPS and AI computer on a bus, played by the test: payloads are written out from docs/protocol.md.
+"""A healthy VCU, EPS and AI computer on a bus, simulated by the test. Payloads are written by hand from docs/protocol.md.
 
-They obey nothing. What they send is changed by the members, at any time.
+They do not obey commands. The members change their frames at any time.
 """
 import threading
 import time

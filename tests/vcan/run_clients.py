@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Foreign CAN tools against host_sim run. usage: with-vcan run_clients.py [--lanes N] [--quick] [NAME...]
+"""Other CAN tools with host_sim run. usage: with-vcan run_clients.py [--lanes N] [--quick] [NAME...]
 
 Runs the tests of test_clients.py and test_python_can.py, several at a time, each on buses of its own: all of them, or
 those that are not marked as long. HOST_SIM in the environment is the program. Prints what it ran on and what candump saw.
@@ -34,7 +34,7 @@ def missing_tools():
 
 
 def bring_programs():
-    """All that the tests start, into memory."""
+    """Copy all programs that the tests start into memory."""
     import clients
     import in_memory
     into = in_memory.folder()
@@ -53,7 +53,7 @@ def names_of(file, quick):
 
 
 def run_one(name):
-    """(name, seconds, {bus: frames that candump saw}, what is wrong)"""
+    """(name, seconds, {bus: frames recorded by candump}, problem)"""
     begin = time.monotonic()
     try:
         case = unittest.defaultTestLoader.loadTestsFromName(name)
@@ -69,7 +69,7 @@ def run_one(name):
 
 
 def lane(names, results):
-    """A process of its own: what it runs is told by a pipe, a line each."""
+    """A process of its own, which gets its tests through a pipe, one a line."""
     for name in names:
         results.write(json.dumps(run_one(name)) + "\n")
         results.flush()
@@ -155,7 +155,7 @@ def main():
     parser.add_argument("names", nargs="*")
     args = parser.parse_args()
     if not os.access(os.environ.get("HOST_SIM", ""), os.X_OK):
-        sys.exit("run_clients: HOST_SIM in the environment is no program")
+        sys.exit("run_clients: HOST_SIM in the environment must be a program")
     missing = missing_tools()
     if missing:
         sys.exit("run_clients: missing: %s; 'scripts/install-deps vcan' installs them" % ", ".join(missing))

@@ -1,4 +1,4 @@
-"""can-utils play VCU, EPS and AI computer against host_sim run, and watch it. run_clients.py runs this.
+"""can-utils simulate VCU, EPS and AI computer for host_sim run, and record it. run_clients.py runs this.
 
 Bytes are written out from docs/protocol.md. A moment is a stamp of the kernel's: how long a program took to start, or a
 machine stood still, is not the supervisor's. In every run candump saw what the clients sent and what the supervisor says
@@ -36,7 +36,7 @@ def ai_falls_silent(vehicle):
 
 
 class Watched(clients.Case):
-    """The tools watch."""
+    """The tools record."""
 
     # Shows: FSM-2, FSM-6, FSM-8, TIM-1
     def test_init_on_a_silent_bus_sends_the_safe_commands_on_their_cycles(self):
@@ -155,7 +155,7 @@ class Watched(clients.Case):
 
 
 class Played(clients.Case):
-    """canplayer plays a vehicle of which something stops; with the deadlines that are the default."""
+    """canplayer simulates a vehicle with a part that falls silent; with the default deadlines."""
 
     def trip(self, log, reason):
         """Run a log, to its end. Gives candump's frames, those of the supervisor, and the first safe command."""
@@ -250,7 +250,7 @@ class Replayed(Played):
 
 
 class Disturbed(clients.Case):
-    """Interfaces that go away, programs that stand still, queues that are full, controllers that report errors."""
+    """Removed interfaces, stopped programs, full queues, controllers that report errors."""
 
     def healthy(self, bus):
         return self.play(Vehicle("vcu", "eps").slow().endless(), bus, endless=True)
@@ -259,7 +259,7 @@ class Disturbed(clients.Case):
         return [event["closed"] for event in supervisor.events("safety_output")]
 
     def no_burst(self, frames):
-        """What was missed is not made up for: one at once, and then the next at its place in the cycle (TIM-1)."""
+        """Missed frames are not sent later: one is sent at once, the next at its place in the cycle (TIM-1)."""
         for can_id in (0x43F, 0x168, 0x075):
             stamps = [frame.at for frame in of(frames, can_id)]
             self.assertGreaterEqual(len(stamps), 5, "%03X" % can_id)
@@ -399,7 +399,7 @@ class Disturbed(clients.Case):
 
 
 class Noise(clients.Case):
-    """cangen talks at random."""
+    """cangen sends random frames."""
 
     def noise(self, count, ids=None):
         """(text) of frames as cangen makes them: 11-bit, all lengths; some of 29 bits, and remote ones."""

@@ -1,4 +1,4 @@
-"""python-can plays AI computer and VCU against host_sim run: what closes a loop. run_clients.py runs this."""
+"""python-can simulates an AI computer and a VCU that react to host_sim run. run_clients.py runs this."""
 import threading
 import time
 
@@ -91,13 +91,13 @@ class Override(clients.Case):
         self.assertGreaterEqual(len(during), 4)
         for gap, _ in gaps(during):
             self.assertGreater(gap, 0.005 - 0.0015)  # whole milliseconds
-        self.assertGreater(during[-1].at, babble[-1].at, "the last word is the supervisor's")
+        self.assertGreater(during[-1].at, babble[-1].at, "the last frame must be the supervisor's")
         self.assertEqual(during[-1].data, GEAR_P)
         self.at_most(0.008, during[-1].at - babble[-1].at, "the last word")
 
 
 class Vcu(threading.Thread):
-    """Reports, and obeys: P when it is told, and manual when the autopilot is to be off."""
+    """Reports and obeys: P on command, and manual when autopilot off is commanded."""
 
     def __init__(self, case, interface):
         super().__init__()

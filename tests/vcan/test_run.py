@@ -1,6 +1,6 @@
-"""host_sim run and scenario --bus on virtual interfaces: states, what is on the bus and when, files, signals.
+"""host_sim run and scenario --bus on virtual interfaces: states, frames and their times, files, signals.
 
-Bytes are written out from docs/protocol.md. Deadlines that are not looked at are as long as they can be.
+Bytes are written out from docs/protocol.md. Deadlines that are not tested have their greatest value.
 """
 import fcntl
 import json
@@ -73,7 +73,7 @@ class Case(canbus.Case):
         return json.loads(process.text().splitlines()[-1])
 
     def engage(self, player, *arguments):
-        """A supervisor that has come to ACTIVE."""
+        """A supervisor in ACTIVE."""
         process = self.run_node("--events", "-", *arguments)
         self.assertEqual(self.wait_state(process, "INIT")["from"], None)
         self.wait_state(process, "STANDBY")
