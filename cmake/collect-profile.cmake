@@ -1,5 +1,4 @@
-# Copies a program's profile to the place where gcc looks for it when it compiles the same sources in another build
-# tree.
+# Copies a program's profile to where gcc looks for it when it compiles the same sources in another build tree.
 #
 #   cmake -DFROM=<tree that counted> -DFOR=<tree to compile in> -DTO=<folder of counts> -P collect-profile.cmake
 # gcc names the file after the object: its full path, with # for each /.
