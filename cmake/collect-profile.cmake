@@ -1,6 +1,7 @@
 # Copies a program's profile to where gcc looks for it when it compiles the same sources in another build tree.
 #
 #   cmake -DFROM=<tree that counted> -DFOR=<tree to compile in> -DTO=<folder of counts> -P collect-profile.cmake
+#
 # gcc names the file after the object: its full path, with # for each /.
 file(GLOB_RECURSE counts RELATIVE ${FROM} ${FROM}/*.gcda)
 if(NOT counts)
