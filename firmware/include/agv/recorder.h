@@ -16,8 +16,10 @@
 #include "agv/faults.h"
 #include "agv/protocol.h"
 
-/** Number of events kept. A power of two. */
+/** Number of events kept: a power of two. A build for a part with little RAM defines a smaller one. */
+#ifndef AGV_RECORDER_EVENTS
 #define AGV_RECORDER_EVENTS 256u
+#endif
 
 /** Number of trips kept. */
 #define AGV_RECORDER_TRIPS 8u
@@ -27,11 +29,13 @@
 
 /** Kind of an event, and the meaning of its fields. */
 typedef enum {
-    AGV_EVENT_STATE = 1,  /**< a = state before (0: the run starts), b = state, c = fault or AGV_FAULT_NONE */
-    AGV_EVENT_FAULT = 2,  /**< a = fault, b = class, c = 1: raised, 0: ended */
-    AGV_EVENT_OUTPUT = 3, /**< a = 1: safety output closed, 0: opened */
-    AGV_EVENT_RESET = 4,  /**< a = 1: accepted, 0: refused; missing = AGV_MISSING_* */
-    AGV_EVENT_STARTUP = 5 /**< missing = AGV_MISSING_*: the conditions for leaving INIT that do not hold */
+    AGV_EVENT_STATE = 1,   /**< a = state before (0: the run starts), b = state, c = fault or AGV_FAULT_NONE */
+    AGV_EVENT_FAULT = 2,   /**< a = fault, b = class, c = 1: raised, 0: ended */
+    AGV_EVENT_OUTPUT = 3,  /**< a = 1: safety output closed, 0: opened */
+    AGV_EVENT_RESET = 4,   /**< a = 1: accepted, 0: refused; missing = AGV_MISSING_* */
+    AGV_EVENT_STARTUP = 5, /**< missing = AGV_MISSING_*: the conditions for leaving INIT that do not hold */
+    AGV_EVENT_CRASH = 6    /**< how the port ended the run before: a = hal_reset_cause_t, b = what of the port it was;
+                              frames[0] = program counter and link register, 4 bytes each, lowest byte first */
 } agv_event_kind_t;
 
 /** Missing conditions of a reset, or of leaving INIT, in the events `reset` and `startup`. Their names: names.h. */
@@ -112,6 +116,13 @@ void agv_recorder_frame(agv_recorder_t *recorder, uint32_t message, const uint8_
  * fault that was recorded four times within the last second is only counted.
  */
 void agv_recorder_add(agv_recorder_t *recorder, const agv_entry_t *entry, uint32_t time_ms);
+
+/** Record an AGV_EVENT_CRASH. Its frames[0] is @p addresses; its other frames are 0, and none was seen. */
+void agv_recorder_add_crash(agv_recorder_t *recorder, const agv_entry_t *entry, const uint8_t addresses[AGV_DLC],
+                            uint32_t time_ms);
+
+/** Whether an event, read from flash for example, is one that a recorder made: its checksum is right. */
+bool agv_event_is_valid(const agv_event_t *event);
 
 /** The sequence number of the next event. It changes when an event is recorded. */
 uint32_t agv_recorder_next_sequence(const agv_recorder_t *recorder);

@@ -6,7 +6,8 @@
 #include "agv/checksum.h"
 #include "agv/state.h"
 
-_Static_assert((AGV_RECORDER_EVENTS & (AGV_RECORDER_EVENTS - 1u)) == 0u, "a power of two");
+_Static_assert((AGV_RECORDER_EVENTS & (AGV_RECORDER_EVENTS - 1u)) == 0u, "AGV_RECORDER_EVENTS must be a power of two");
+_Static_assert(AGV_RECORDER_EVENTS >= 16u, "AGV_RECORDER_EVENTS must be at least 16: what one trip records");
 _Static_assert(sizeof(agv_event_t) == 112u, "no padding: the checksum runs over all bytes");
 
 #define RATE_TIME_MS 1000u
@@ -19,7 +20,7 @@ static uint32_t checksum(const agv_event_t *event) {
     return agv_crc32(AGV_CRC32_START, event, offsetof(agv_event_t, checksum)) >> 16u;
 }
 
-static bool is_valid(const agv_event_t *event) {
+bool agv_event_is_valid(const agv_event_t *event) {
     return (event->kind != 0u) && (event->checksum == checksum(event));
 }
 
@@ -32,7 +33,7 @@ static void start_trips(agv_recorder_t *recorder) {
     uint32_t oldest = 0u;
     for (uint32_t i = 0u; i < AGV_RECORDER_TRIPS; i++) {
         agv_event_t *const trip = &recorder->trips[i];
-        if (!is_valid(trip)) {
+        if (!agv_event_is_valid(trip)) {
             (void)memset(trip, 0, sizeof *trip);
         } else if (is_newer(trip->sequence + 1u, recorder->next_sequence)) {
             recorder->next_sequence = trip->sequence + 1u; /* its event in the ring is incomplete */
@@ -55,7 +56,7 @@ void agv_recorder_start(agv_recorder_t *recorder) {
     recorder->run = 0u;
     for (uint32_t i = 0u; i < AGV_RECORDER_EVENTS; i++) {
         agv_event_t *const event = &recorder->events[i];
-        if (!is_valid(event) || (slot_of(event->sequence) != i)) {
+        if (!agv_event_is_valid(event) || (slot_of(event->sequence) != i)) {
             (void)memset(event, 0, sizeof *event);
             continue;
         }
@@ -152,12 +153,22 @@ void agv_recorder_add(agv_recorder_t *recorder, const agv_entry_t *entry, uint32
     }
 }
 
+void agv_recorder_add_crash(agv_recorder_t *recorder, const agv_entry_t *entry, const uint8_t addresses[AGV_DLC],
+                            uint32_t time_ms) {
+    agv_event_t *const event = &recorder->events[slot_of(recorder->next_sequence)];
+    agv_recorder_add(recorder, entry, time_ms);
+    event->seen = 0u;
+    (void)memset(event->frames, 0, sizeof event->frames);
+    (void)memcpy(event->frames[0], addresses, AGV_DLC);
+    event->checksum = (uint16_t)checksum(event);
+}
+
 /* The number of trips after this one. */
 static uint32_t newer_trips(const agv_recorder_t *recorder, const agv_event_t *trip) {
     uint32_t newer = 0u;
     for (uint32_t i = 0u; i < AGV_RECORDER_TRIPS; i++) {
         const agv_event_t *const other = &recorder->trips[i];
-        newer += (is_valid(other) && is_newer(other->sequence, trip->sequence)) ? 1u : 0u;
+        newer += (agv_event_is_valid(other) && is_newer(other->sequence, trip->sequence)) ? 1u : 0u;
     }
     return newer;
 }
@@ -165,7 +176,7 @@ static uint32_t newer_trips(const agv_recorder_t *recorder, const agv_event_t *t
 bool agv_recorder_get_trip(const agv_recorder_t *recorder, uint32_t index, agv_event_t *event) {
     for (uint32_t i = 0u; i < AGV_RECORDER_TRIPS; i++) {
         const agv_event_t *const trip = &recorder->trips[i];
-        if (is_valid(trip) && (newer_trips(recorder, trip) == index)) {
+        if (agv_event_is_valid(trip) && (newer_trips(recorder, trip) == index)) {
             *event = *trip;
             return true;
         }
@@ -180,7 +191,7 @@ uint32_t agv_recorder_next_sequence(const agv_recorder_t *recorder) {
 /* The event in the ring; NULL if it was replaced or is not valid. */
 static const agv_event_t *find(const agv_recorder_t *recorder, uint32_t sequence) {
     const agv_event_t *event = &recorder->events[slot_of(sequence)];
-    return ((event->sequence == sequence) && is_valid(event)) ? event : NULL;
+    return ((event->sequence == sequence) && agv_event_is_valid(event)) ? event : NULL;
 }
 
 bool agv_recorder_get(const agv_recorder_t *recorder, uint32_t sequence, agv_event_t *event) {

@@ -500,3 +500,31 @@ void test_a_restart_begins_the_rates_anew(void) {
     }
     TEST_ASSERT_EQUAL_INT(-1, recorded(AGV_FAULT_BUS_OFF, 5));
 }
+
+/* An event of a crash holds two addresses in place of a snapshot, and its checksum is right. */
+/* Shows: INT-3 */
+void test_a_crash_is_recorded_with_its_addresses(void) {
+    static const uint8_t addresses[AGV_DLC] = {0x34, 0x12, 0, 8, 0x79, 0x56, 0, 8};
+    static const uint8_t seen[AGV_DLC] = {1, 2, 3, 4, 5, 6, 7, 8};
+    static const uint8_t none[AGV_DLC] = {0};
+    const agv_entry_t entry = {.kind = AGV_EVENT_CRASH, .a = 3, .b = 2};
+    agv_event_t event;
+    add(3);
+    agv_recorder_frame(&recorder, 0, seen);
+    agv_recorder_frame(&recorder, 1, seen);
+    agv_recorder_add_crash(&recorder, &entry, addresses, 7);
+    TEST_ASSERT_TRUE(agv_recorder_get(&recorder, 3, &event));
+    TEST_ASSERT_TRUE(agv_event_is_valid(&event));
+    TEST_ASSERT_EQUAL_UINT8(6, event.kind);
+    TEST_ASSERT_EQUAL_UINT8(3, event.a);
+    TEST_ASSERT_EQUAL_UINT8(2, event.b);
+    TEST_ASSERT_EQUAL_UINT32(7, event.time_ms);
+    TEST_ASSERT_EQUAL_UINT16(0, event.seen);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(addresses, event.frames[0], AGV_DLC);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(none, event.frames[1], AGV_DLC);
+    event.frames[0][0] ^= 1;
+    TEST_ASSERT_FALSE(agv_event_is_valid(&event));
+    add(1);
+    TEST_ASSERT_TRUE(agv_recorder_get(&recorder, 4, &event));
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(seen, event.frames[0], AGV_DLC); /* later events have the snapshot again */
+}
