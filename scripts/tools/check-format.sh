@@ -12,4 +12,5 @@ files=("$@")
 if ((${#files[@]} == 0)); then
     mapfile -t files < <(c_files)
 fi
-clang-format-19 --style="file:$ROOT/.clang-format" "${mode[@]}" "${files[@]}"
+printf '%s\0' "${files[@]}" |
+    xargs -0 -n 50 -P "$(nproc)" clang-format-19 --style="file:$ROOT/.clang-format" "${mode[@]}"
