@@ -22,6 +22,7 @@ set(AGV_CORE_SOURCES
   ${AGV_CORE_DIR}/src/observe/bus.c
   ${AGV_CORE_DIR}/src/observe/commands.c
   ${AGV_CORE_DIR}/src/observe/deadlines.c
+  ${AGV_CORE_DIR}/src/observe/hardware.c
   ${AGV_CORE_DIR}/src/observe/intrusion.c
   ${AGV_CORE_DIR}/src/observe/liveness.c
   ${AGV_CORE_DIR}/src/observe/mode.c

@@ -6,6 +6,7 @@
 #include "hal/clock.h"
 #include "hal/led.h"
 #include "hal/safety_output.h"
+#include "hal/self_test.h"
 #include "hal/store.h"
 #include "hal/watchdog.h"
 
@@ -70,4 +71,16 @@ bool hal_store_append(hal_t *hal, const void *record, size_t size) {
 
 size_t hal_store_read_record(hal_t *hal, uint32_t index, void *record, size_t size) {
     return ops_of(hal)->store_read_record(hal, index, record, size);
+}
+
+void hal_inputs_read(hal_t *hal, hal_inputs_t *inputs) {
+    ops_of(hal)->inputs_read(hal, inputs);
+}
+
+bool hal_clock_second_ms(hal_t *hal, uint32_t *time_ms) {
+    return ops_of(hal)->clock_second_ms(hal, time_ms);
+}
+
+uint32_t hal_self_test(hal_t *hal) {
+    return ops_of(hal)->self_test(hal);
 }

@@ -171,9 +171,7 @@ bool scenario_testbed_init(scenario_testbed_t *testbed, const scenario_t *scenar
         }
     }
     session_init(&testbed->session, &testbed->hal);
-    if (!scenario->self_test_passed) {
-        session_fail_self_test(&testbed->session);
-    }
+    testbed->hal.board.failed = scenario->self_test_passed ? 0u : HAL_SELF_TEST_PROCESSOR;
     return session_observe(&testbed->session, pass_event, testbed);
 }
 

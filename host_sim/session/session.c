@@ -66,14 +66,10 @@ static uint32_t first_of_run(const agv_recorder_t *recorder) {
     return first;
 }
 
-void session_fail_self_test(session_t *session) {
-    session->self_test_failed = true;
-}
-
 void session_start(session_t *session, const agv_config_t *config, uint64_t t_ms, uint32_t clock_ms) {
     session->t_ms = t_ms;
     session->ticked_ms = t_ms;
-    agv_supervisor_start(&session->supervisor, &session->ports, config, !session->self_test_failed, clock_ms);
+    agv_supervisor_start(&session->supervisor, &session->ports, config, clock_ms);
     session->next = first_of_run(&session->recorder);
     notify_recorded(session, false);
     notify_output(session, agv_supervisor_output_closed(&session->supervisor));

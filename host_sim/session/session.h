@@ -42,7 +42,6 @@ typedef struct {
     uint64_t supervised_ms; /**< time outside INIT */
     uint32_t next;          /**< sequence number of the next event to report */
     int8_t led_code;        /**< as last reported */
-    bool self_test_failed;  /**< session_fail_self_test() */
     size_t observer_count;
     struct {
         session_observer_fn *fn;
@@ -55,9 +54,6 @@ void session_init(session_t *session, hal_t *hal);
 
 /** Add an observer. @return false: there are SESSION_OBSERVERS_MAX already */
 bool session_observe(session_t *session, session_observer_fn *fn, void *ctx);
-
-/** From the next start on, the program's own test of RAM, flash and processor reports a failure. */
-void session_fail_self_test(session_t *session);
 
 /**
  * Start the supervisor, or start it again after a reset of its processor: the recorder is kept. Observers get the

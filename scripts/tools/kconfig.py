@@ -57,7 +57,8 @@ def make(settings, messages, faults):
         if isinstance(row, tables.Choice):
             words = row.words.split("|")
             kconfig += choice_lines(symbol, sentence(row.meaning), words, 0, row.scope)
-            rows_made.append(f"AGV_KCONFIG({row.name}, IS_ENABLED(CONFIG_AGV_{symbol}_{words[1].upper()}) ? 1 : 0)")
+            enabled = [f"IS_ENABLED(CONFIG_AGV_{symbol}_{word.upper()}) ? {index} : " for index, word in enumerate(words) if index > 0]
+            rows_made.append(f"AGV_KCONFIG({row.name}, {''.join(enabled)}0)")
         else:
             kconfig += setting_lines(*row)
             rows_made.append(f"AGV_KCONFIG({row.name}, CONFIG_AGV_{symbol})")
@@ -79,7 +80,7 @@ def weakening_table(settings, faults):
     lines = ["| setting | weakens when | default | what it is |", "|---|---|---|---|"]
     for row in settings:
         if isinstance(row, tables.Choice):
-            default, weak = row.words.split("|")
+            default, weak = row.words.split("|")[:2]
             unit = ""
         else:
             default = weak = row.default

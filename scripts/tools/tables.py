@@ -14,7 +14,7 @@ Message = collections.namedtuple("Message", "name heading table")
 FAULT = re.compile(r"^AGV_FAULT(_EVENT)?\((\w+), (TRIP|WARN), (\d+), ([A-Z_]+(?: \| [A-Z_]+)*)\)$")
 SETTING = re.compile(rf'^AGV_SETTING\((\w+), {NUMBER}, {NUMBER}, {NUMBER}, "([^"]*)", (ABOVE|BELOW|ZERO|NEVER), (GATEWAY|ANY), '
                      r'"([^"]*)"\)$')
-CHOICE = re.compile(r'^AGV_CHOICE\((\w+), "(\w+\|\w+)", (CHOSEN|NEVER), (GATEWAY|ANY), "([^"]*)"\)$')
+CHOICE = re.compile(r'^AGV_CHOICE\((\w+), "(\w+(?:\|\w+)+)", \d+, (CHOSEN|NEVER), (GATEWAY|ANY), "([^"]*)"\)$')
 MESSAGE = re.compile(r"^AGV_(?:COMMAND|STATUS)\(\w+, (\w+), (0x[0-9A-F]{3}), (0x[0-9A-F]{3}), .*\)$")
 
 

@@ -75,7 +75,7 @@ static void start(run_t *run) {
     agv_config_defaults(&config);
     traffic_address(run->traffic, &config);
     traffic_heal(run->traffic);
-    agv_supervisor_start(&run->supervisor, &run->ports, &config, true, 0);
+    agv_supervisor_start(&run->supervisor, &run->ports, &config, 0);
 }
 
 static void drive(bool is_confirmed) {

@@ -47,7 +47,7 @@ static void check_start(hal_reset_cause_t cause, sim_store_t *store, agv_recorde
     agv_config_t defaults;
     agv_config_defaults(&defaults);
     sim_hal_init_direct(&hal, &config, 1, NULL, NULL);
-    agv_supervisor_start(&supervisor, &ports, &defaults, true, 0);
+    agv_supervisor_start(&supervisor, &ports, &defaults, 0);
     const bool invalid = agv_supervisor_has_fault(&supervisor, AGV_FAULT_STORE_INVALID);
     if (agv_supervisor_state(&supervisor) != ((cause == HAL_RESET_POWER_ON) ? AGV_STATE_INIT : AGV_STATE_TRIPPED)) {
         capture_fail("it starts in the wrong state", "FSM-7");

@@ -31,10 +31,6 @@ bool session_observe(session_t *session, session_observer_fn *fn, void *ctx) {
     return true;
 }
 
-void session_fail_self_test(session_t *session) {
-    session->self_test_failed = true;
-}
-
 void session_start(session_t *session, const agv_config_t *config, uint64_t t_ms, uint32_t clock_ms) {
     const session_event_t event = {.t_ms = t_ms,
                                    .recorded = {.kind = AGV_EVENT_STATE,

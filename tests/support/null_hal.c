@@ -1,8 +1,11 @@
 #include "null_hal.h"
 
+#include "hal/clock.h"
+#include "hal/inputs.h"
 #include "hal/led.h"
 #include "hal/reset.h"
 #include "hal/safety_output.h"
+#include "hal/self_test.h"
 #include "hal/store.h"
 #include "hal/watchdog.h"
 
@@ -70,4 +73,20 @@ size_t hal_store_read_record(hal_t *hal, uint32_t index, void *record, size_t si
 
 void hal_watchdog_feed(hal_t *hal) {
     (void)hal;
+}
+
+void hal_inputs_read(hal_t *hal, hal_inputs_t *inputs) {
+    (void)hal;
+    *inputs = (hal_inputs_t){.output_feedback = HAL_CONTACT_NONE};
+}
+
+bool hal_clock_second_ms(hal_t *hal, uint32_t *time_ms) {
+    (void)hal;
+    (void)time_ms;
+    return false;
+}
+
+uint32_t hal_self_test(hal_t *hal) {
+    (void)hal;
+    return 0;
 }

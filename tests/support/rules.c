@@ -460,10 +460,10 @@ static void judge_confirmation(rules_t *rules) {
     }
 }
 
-/* FSM-4 */
+/* FSM-4. In STANDBY and ACTIVE the output is closed again at the next tick if the port did not close it before (HW-1). */
 static void judge_output(rules_t *rules, const rules_seen_t *seen, bool tick) {
-    const bool entered = (seen->state == AGV_STATE_STANDBY) && commands_safe(rules->last.state);
-    if (seen->output_closed && !rules->last.output_closed && !entered) {
+    const bool closes = (seen->state == AGV_STATE_STANDBY) || (seen->state == AGV_STATE_ACTIVE);
+    if (seen->output_closed && !rules->last.output_closed && !closes) {
         broken(rules, "FSM-4: the safety output has closed in state %02Xh", (unsigned)seen->state);
     }
     if (!seen->output_closed) {

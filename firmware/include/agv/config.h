@@ -12,7 +12,7 @@
 #include "agv/faults.h"
 #include "agv/protocol.h"
 
-/** Values of the settings that are a choice of two words. */
+/** Values of the settings that are a choice of words. */
 enum { AGV_TOPOLOGY_SHARED = 0, AGV_TOPOLOGY_GATEWAY = 1 };
 enum { AGV_SHADOW_OFF = 0, AGV_SHADOW_ON = 1 };
 enum { AGV_PARK_AT_ONCE = 0, AGV_PARK_AT_STANDSTILL = 1 };
@@ -21,6 +21,7 @@ enum { AGV_OWN_HEARTBEAT_RUNNING = 0, AGV_OWN_HEARTBEAT_FROZEN = 1 };
 enum { AGV_IN_MANUAL_HEARTBEAT = 0, AGV_IN_MANUAL_ALL = 1 };
 enum { AGV_COUNTER_ANY = 0, AGV_COUNTER_INCREMENTS = 1 };
 enum { AGV_AFTER_POWER_ON_INIT = 0, AGV_AFTER_POWER_ON_TRIPPED = 1 };
+enum { AGV_RESET_INPUT_CAN = 0, AGV_RESET_INPUT_PIN = 1, AGV_RESET_INPUT_BOTH = 2 };
 enum { AGV_GEAR_CHANGE_AT_STANDSTILL = 0, AGV_GEAR_CHANGE_ANY = 1 };
 
 /** Value of standstill_vcu_counts with which the speed of 363h is not checked. */
@@ -29,7 +30,7 @@ enum { AGV_GEAR_CHANGE_AT_STANDSTILL = 0, AGV_GEAR_CHANGE_ANY = 1 };
 /** All settings in the order of config_settings.def, then the identifiers, then the classes of the faults. */
 typedef struct {
 #define AGV_SETTING(name, preset, lowest, highest, unit, weakens, scope, meaning) uint16_t name;
-#define AGV_CHOICE(name, words, weakens, scope, meaning) uint16_t name;
+#define AGV_CHOICE(name, words, last, weakens, scope, meaning) uint16_t name;
 #include "agv/config_settings.def"
 #undef AGV_SETTING
 #undef AGV_CHOICE
@@ -44,7 +45,7 @@ typedef struct {
 /** Index of each setting (`trips` has none), and the number of settings. */
 enum {
 #define AGV_SETTING(name, preset, lowest, highest, unit, weakens, scope, meaning) AGV_SETTING_##name,
-#define AGV_CHOICE(name, words, weakens, scope, meaning) AGV_SETTING_##name,
+#define AGV_CHOICE(name, words, last, weakens, scope, meaning) AGV_SETTING_##name,
 #include "agv/config_settings.def"
 #undef AGV_SETTING
 #undef AGV_CHOICE

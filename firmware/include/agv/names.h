@@ -28,8 +28,8 @@ const char *agv_message_name(agv_message_t message);
 
 /**
  * Name of an AGV_MISSING_* bit: "state", "vcu_heartbeat", "eps_heartbeat", "trip_cause", "standstill", "manual",
- * "button", "messages", "throttle", "released".
- * @param index number of the bit, 0..9
+ * "button", "messages", "throttle", "released", "output_feedback".
+ * @param index number of the bit, 0..10
  * @return NULL for any other index.
  */
 const char *agv_missing_name(uint8_t index);

@@ -30,7 +30,7 @@
 /** Kind of an event, and the meaning of its fields. */
 typedef enum {
     AGV_EVENT_STATE = 1,   /**< a = state before (0: the run starts), b = state, c = fault or AGV_FAULT_NONE */
-    AGV_EVENT_FAULT = 2,   /**< a = fault, b = class, c = 1: raised, 0: ended */
+    AGV_EVENT_FAULT = 2,   /**< a = fault, b = class, c = 1: raised, 0: ended; missing: parts (SELF_TEST_FAILED) */
     AGV_EVENT_OUTPUT = 3,  /**< a = 1: safety output closed, 0: opened */
     AGV_EVENT_RESET = 4,   /**< a = 1: accepted, 0: refused; missing = AGV_MISSING_* */
     AGV_EVENT_STARTUP = 5, /**< missing = AGV_MISSING_*: the conditions for leaving INIT that do not hold */
@@ -49,7 +49,8 @@ typedef enum {
 #define AGV_MISSING_MESSAGES 0x80u      /**< a status message whose silence trips is not fresh */
 #define AGV_MISSING_THROTTLE 0x100u     /**< 050h is above idle */
 #define AGV_MISSING_RELEASED 0x200u     /**< the button was held for longer than reset_hold_max_ms */
-#define AGV_MISSING_ALL 0x3FFu          /**< all of these bits */
+#define AGV_MISSING_OUTPUT 0x400u       /**< the contact of the safety output does not read open (HW-1) */
+#define AGV_MISSING_ALL 0x7FFu          /**< all of these bits */
 
 /** An event as the supervisor hands it to the recorder. */
 typedef struct {
@@ -57,7 +58,7 @@ typedef struct {
     uint8_t a;
     uint8_t b;
     uint8_t c;
-    uint16_t missing;     /**< AGV_MISSING_* bits */
+    uint16_t missing;     /**< AGV_MISSING_* bits, or HAL_SELF_TEST_* */
     uint8_t state;        /**< agv_state_t at that time */
     uint8_t first_reason; /**< agv_fault_t; AGV_FAULT_NONE when not tripped */
 } agv_entry_t;

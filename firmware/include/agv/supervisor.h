@@ -28,7 +28,7 @@ typedef struct {
 } agv_ports_t;
 
 /** Memory of a supervisor in bytes, the same on every platform. */
-#define AGV_SUPERVISOR_MEMORY 920u
+#define AGV_SUPERVISOR_MEMORY 976u
 
 /**
  * One supervisor, in memory of the caller. Read it through the functions below. `seal` is a checksum over `memory`,
@@ -43,15 +43,14 @@ typedef struct {
 
 /**
  * Start the supervisor (FSM-7): in INIT after a power-on, in TRIPPED after any other reset. Reads the reset cause and the
- * latch through the HAL, opens the safety output, and sends the first safe commands.
+ * latch through the HAL, opens the safety output, tests codec and gate, asks the HAL for the result of its self-test
+ * (HW-4), and sends the first safe commands.
  *
- * @param config           copied. If agv_config_check refuses it, the supervisor starts in TRIPPED with CONFIG_INVALID.
- * @param self_test_passed result of the program's test of RAM, flash and processor; false raises SELF_TEST_FAILED. The
- *                         supervisor itself tests its codec and its gate.
- * @param now_ms           current time, any value
+ * @param config copied. If agv_config_check refuses it, the supervisor starts in TRIPPED with CONFIG_INVALID.
+ * @param now_ms current time, any value
  */
 void agv_supervisor_start(agv_supervisor_t *supervisor, const agv_ports_t *ports, const agv_config_t *config,
-                          bool self_test_passed, uint32_t now_ms);
+                          uint32_t now_ms);
 
 /**
  * Handle a received frame. Malformed frames (P15) are counted and refresh no deadline.

@@ -5,9 +5,6 @@
 
 #include "agv/checksum.h"
 
-/* Every choice has two words: its values are 0, the default, and 1. */
-enum { CHOICE_MAX = 1 };
-
 /* Which values weaken the supervision, and in which topology a setting has an effect. */
 enum { NEVER, ABOVE, BELOW, ZERO, CHOSEN = ABOVE, ANY = 0, GATEWAY = 1 };
 
@@ -21,8 +18,8 @@ static const struct {
 #define AGV_SETTING(name, by_default, low, high, unit, weak, where, meaning)                                           \
     [AGV_SETTING_##                                                                                                    \
         name] = {.preset = (by_default), .lowest = (low), .highest = (high), .weakens = (weak), .scope = (where)},
-#define AGV_CHOICE(name, words, weak, where, meaning)                                                                  \
-    [AGV_SETTING_##name] = {.highest = CHOICE_MAX, .weakens = (weak), .scope = (where)},
+#define AGV_CHOICE(name, words, last, weak, where, meaning)                                                            \
+    [AGV_SETTING_##name] = {.highest = (last), .weakens = (weak), .scope = (where)},
 #include "agv/config_settings.def"
 #undef AGV_SETTING
 #undef AGV_CHOICE

@@ -18,16 +18,17 @@ static const char *const message_names[AGV_MSG_COUNT] = {
 #undef AGV_STATUS
 };
 
-static const char *const missing_names[] = {"state",  "vcu_heartbeat", "eps_heartbeat", "trip_cause", "standstill",
-                                            "manual", "button",        "messages",      "throttle",   "released"};
+static const char *const missing_names[] = {"state",      "vcu_heartbeat", "eps_heartbeat",  "trip_cause",
+                                            "standstill", "manual",        "button",         "messages",
+                                            "throttle",   "released",      "output_feedback"};
 
 static const agv_setting_info_t settings[AGV_SETTING_COUNT] = {
 #define ANY false
 #define GATEWAY true
 #define AGV_SETTING(name, preset, lowest, highest, unit, weakens, scope, meaning)                                      \
     [AGV_SETTING_##name] = {#name, (preset), (lowest), (highest), unit, NULL, meaning, #weakens, scope},
-#define AGV_CHOICE(name, words, weakens, scope, meaning)                                                               \
-    [AGV_SETTING_##name] = {#name, 0, 0, 1, "", words, meaning, #weakens, scope},
+#define AGV_CHOICE(name, words, last, weakens, scope, meaning)                                                         \
+    [AGV_SETTING_##name] = {#name, 0, 0, (last), "", words, meaning, #weakens, scope},
 #include "agv/config_settings.def"
 #undef AGV_SETTING
 #undef AGV_CHOICE

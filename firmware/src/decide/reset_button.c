@@ -5,8 +5,9 @@
 
 /* The conditions. */
 static const uint16_t conditions[AGV_RESET_CONDITIONS] = {
-    AGV_MISSING_STATE,      AGV_MISSING_VCU_HEARTBEAT, AGV_MISSING_EPS_HEARTBEAT, AGV_MISSING_TRIP_CAUSE,
-    AGV_MISSING_STANDSTILL, AGV_MISSING_MANUAL,        AGV_MISSING_MESSAGES,      AGV_MISSING_THROTTLE};
+    AGV_MISSING_STATE,      AGV_MISSING_VCU_HEARTBEAT, AGV_MISSING_EPS_HEARTBEAT,
+    AGV_MISSING_TRIP_CAUSE, AGV_MISSING_STANDSTILL,    AGV_MISSING_MANUAL,
+    AGV_MISSING_MESSAGES,   AGV_MISSING_THROTTLE,      AGV_MISSING_OUTPUT};
 
 void agv_reset_button_report(agv_reset_button_t *reset, bool vcu_alive, bool remote_lost, bool down) {
     const agv_button_t up = remote_lost ? AGV_BUTTON_UNHEARD : AGV_BUTTON_UP;
@@ -15,15 +16,28 @@ void agv_reset_button_report(agv_reset_button_t *reset, bool vcu_alive, bool rem
     }
 }
 
+void agv_reset_button_read(agv_reset_button_t *reset, uint8_t button) {
+    reset->button = button;
+}
+
 void agv_reset_button_lose(agv_reset_button_t *reset) {
     reset->button = AGV_BUTTON_UNKNOWN;
+}
+
+/* Each button has two timers. */
+static uint32_t press_timer(const agv_reset_button_t *reset) {
+    return reset->is_pin ? AGV_TIMER_PIN_PRESS : AGV_TIMER_PRESS;
+}
+
+static uint32_t long_press_timer(const agv_reset_button_t *reset) {
+    return reset->is_pin ? AGV_TIMER_PIN_PRESS_LONG : AGV_TIMER_PRESS_LONG;
 }
 
 static void forget_press(agv_reset_button_t *reset, agv_timers_t *timers) {
     reset->began_after = false;
     reset->answered = false;
-    agv_timer_stop(timers, AGV_TIMER_PRESS);
-    agv_timer_stop(timers, AGV_TIMER_PRESS_LONG);
+    agv_timer_stop(timers, press_timer(reset));
+    agv_timer_stop(timers, long_press_timer(reset));
 }
 
 void agv_reset_button_trip(agv_reset_button_t *reset, agv_timers_t *timers) {
@@ -53,14 +67,14 @@ static void follow_conditions(agv_reset_button_t *reset, const agv_config_t *con
 static void follow_press(agv_reset_button_t *reset, agv_timers_t *timers) {
     if (reset->button == (uint8_t)AGV_BUTTON_DOWN) {
         reset->began_after = reset->began_after || (reset->before == (uint8_t)AGV_BUTTON_UP);
-        (void)agv_timer_while(timers, AGV_TIMER_PRESS, true);
-        (void)agv_timer_while(timers, AGV_TIMER_PRESS_LONG, true);
+        (void)agv_timer_while(timers, press_timer(reset), true);
+        (void)agv_timer_while(timers, long_press_timer(reset), true);
     }
 }
 
 /* The press has just ended, or has reached reset_hold_max_ms. */
 static agv_press_result_t answer(const agv_reset_button_t *reset, const agv_timers_t *timers, uint32_t *missing) {
-    const bool too_long = agv_timer_reached(timers, AGV_TIMER_PRESS_LONG);
+    const bool too_long = agv_timer_reached(timers, long_press_timer(reset));
     const bool unheard = reset->button == (uint8_t)AGV_BUTTON_UNHEARD;
     *missing |= (reset->began_after && !unheard) ? 0u : AGV_MISSING_BUTTON;
     *missing |= too_long ? AGV_MISSING_RELEASED : 0u;
@@ -77,8 +91,8 @@ agv_press_result_t agv_reset_button_step(agv_reset_button_t *reset, agv_timers_t
     *missing = (reset->button == (uint8_t)AGV_BUTTON_UNKNOWN) ? before : missing_lately(reset, config);
     follow_press(reset, timers);
     const bool is_down = reset->button == (uint8_t)AGV_BUTTON_DOWN;
-    const bool ends = !is_down || agv_timer_reached(timers, AGV_TIMER_PRESS_LONG);
-    if (ends && !reset->answered && agv_timer_reached(timers, AGV_TIMER_PRESS)) {
+    const bool ends = !is_down || agv_timer_reached(timers, long_press_timer(reset));
+    if (ends && !reset->answered && agv_timer_reached(timers, press_timer(reset))) {
         result = answer(reset, timers, missing);
         reset->answered = true;
     }

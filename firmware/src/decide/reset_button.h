@@ -1,6 +1,6 @@
 /**
  * @file reset_button.h
- * The reset by remote button 1 (FSM-3). The press must begin after the trip and last reset_hold_ms to reset_hold_max_ms;
+ * The reset by a button: remote button 1 (FSM-3), or the push button on the reset input (HW-3). The press must begin after the trip and last reset_hold_ms to reset_hold_max_ms;
  * all conditions of a reset must hold in the last reset_hold_ms before the release.
  */
 #ifndef AGV_RESET_BUTTON_H
@@ -12,7 +12,7 @@
 #include "agv/recorder.h"
 #include "base/timers.h"
 
-/** State of remote button 1. */
+/** State of a button. */
 typedef enum {
     AGV_BUTTON_UNKNOWN,
     AGV_BUTTON_DOWN,
@@ -21,15 +21,16 @@ typedef enum {
 } agv_button_t;
 
 /** Number of conditions of a reset. */
-#define AGV_RESET_CONDITIONS 8u
+#define AGV_RESET_CONDITIONS 9u
 
-/** The button and the press. */
+/** A button and its press. */
 typedef struct {
     uint16_t held_ms[AGV_RESET_CONDITIONS]; /**< how long each condition has held, up to reset_hold_ms */
-    uint8_t button;                         /**< agv_button_t, from the last 363h while the VCU is alive */
-    uint8_t before;                         /**< `button` at the last step */
-    bool began_after;                       /**< this press began with a rising edge after the trip */
-    bool answered;                          /**< this press was reported */
+    uint8_t button;   /**< agv_button_t; of the remote from the last 363h while the VCU is alive */
+    uint8_t before;   /**< `button` at the last step */
+    bool began_after; /**< this press began with a rising edge after the trip */
+    bool answered;    /**< this press was reported */
+    bool is_pin;      /**< the push button on the reset input; false: remote button 1 */
 } agv_reset_button_t;
 
 /** Result of a press. */
@@ -41,6 +42,9 @@ typedef enum { AGV_PRESS_NOTHING, AGV_PRESS_RESETS, AGV_PRESS_IN_VAIN } agv_pres
  * the operator did nothing.
  */
 void agv_reset_button_report(agv_reset_button_t *reset, bool vcu_alive, bool remote_lost, bool down);
+
+/** Take the debounced state of the push button. @param button agv_button_t */
+void agv_reset_button_read(agv_reset_button_t *reset, uint8_t button);
 
 /** Set the button to unknown, because the VCU is lost. */
 void agv_reset_button_lose(agv_reset_button_t *reset);

@@ -44,7 +44,8 @@ static bool has_cause(uint8_t fault) {
 }
 
 static uint32_t missing_in_init(const agv_fault_summary_t *faults, uint32_t facts) {
-    const uint32_t needed = AGV_FACT_VCU_ALIVE | AGV_FACT_EPS_ALIVE | AGV_FACT_MANUAL | AGV_FACT_MESSAGES;
+    const uint32_t needed =
+        AGV_FACT_VCU_ALIVE | AGV_FACT_EPS_ALIVE | AGV_FACT_MANUAL | AGV_FACT_MESSAGES | AGV_FACT_OUTPUT_OPEN;
     uint32_t missing = needed & ~facts;
     missing |= ((facts & AGV_FACT_SLOW) == 0u) ? AGV_MISSING_STANDSTILL : 0u;
     missing |= (has_cause(faults->cause) || has_cause(faults->ai_cause)) ? AGV_MISSING_TRIP_CAUSE : 0u;
@@ -84,7 +85,7 @@ static bool is_confirmed(uint32_t facts) {
 uint32_t agv_state_machine_lacks_for_reset(const agv_state_machine_t *machine, const agv_fault_summary_t *faults,
                                            uint32_t facts) {
     const uint32_t needed = AGV_FACT_VCU_ALIVE | AGV_FACT_EPS_ALIVE | AGV_FACT_STANDSTILL | AGV_FACT_MANUAL |
-                            AGV_FACT_MESSAGES | AGV_FACT_IDLE;
+                            AGV_FACT_MESSAGES | AGV_FACT_IDLE | AGV_FACT_OUTPUT_OPEN;
     uint32_t missing = needed & ~facts;
     if (has_cause(faults->cause) || has_cause(machine->unresettable)) {
         missing |= AGV_MISSING_TRIP_CAUSE;

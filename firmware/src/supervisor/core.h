@@ -20,6 +20,7 @@
 #include "keep/led.h"
 #include "observe/bus.h"
 #include "observe/commands.h"
+#include "observe/hardware.h"
 #include "observe/intrusion.h"
 #include "observe/liveness.h"
 #include "observe/mode.h"
@@ -51,7 +52,9 @@ typedef struct {
     agv_confirmation_t confirmation;
     agv_stopping_t stopping;
     agv_reset_button_t reset_button;
+    agv_reset_button_t reset_pin;
     agv_hold_t hold;
+    agv_hardware_t hardware;
     agv_bus_t buses[HAL_CAN_SIDES];
     agv_gateway_t gateway;
     agv_transmitter_t transmitter;

@@ -26,9 +26,9 @@ static void close_core(agv_supervisor_t *supervisor) {
 }
 
 void agv_supervisor_start(agv_supervisor_t *supervisor, const agv_ports_t *ports, const agv_config_t *config,
-                          bool self_test_passed, uint32_t now_ms) {
+                          uint32_t now_ms) {
     agv_core_t *const core = agv_core_of(supervisor);
-    uint32_t found = self_test_passed ? 0u : AGV_FOUND_SELF_TEST_FAILED;
+    uint32_t found = 0u;
     (void)memset(core, 0, sizeof *core);
     agv_timers_set_time(&core->timers, now_ms);
     core->config = *config;

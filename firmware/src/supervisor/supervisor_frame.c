@@ -83,7 +83,9 @@ static void observe_vehicle_status(agv_core_t *core, const hal_can_frame_t *fram
     agv_core_follow_mode(core, change, frame->time_ms);
     agv_vehicle_status(&core->vehicle, frame->data);
     agv_core_evaluate_standstill(core);
-    agv_reset_button_report(&core->reset_button, vcu_is_alive(core), remote_lost, down);
+    if (core->config.reset_input != (uint16_t)AGV_RESET_INPUT_PIN) {
+        agv_reset_button_report(&core->reset_button, vcu_is_alive(core), remote_lost, down);
+    }
     agv_status_checks_vehicle(&core->status_checks, &core->faults, frame->data,
                               agv_liveness_alive(&core->liveness, AGV_NODE_AI));
 }

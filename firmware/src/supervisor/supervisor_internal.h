@@ -64,7 +64,6 @@ void agv_core_record(const agv_core_t *core, const agv_ports_t *ports, uint32_t 
 void agv_core_store_latch(const agv_core_t *core, const agv_ports_t *ports);
 
 /** Faults found before the start: bit n is the fault of rank n. */
-#define AGV_FOUND_SELF_TEST_FAILED (1u << (uint32_t)AGV_FAULT_SELF_TEST_FAILED)
 #define AGV_FOUND_CORRUPTED (1u << (uint32_t)AGV_FAULT_MEMORY_CORRUPTED)
 #define AGV_FOUND_CONFIG_INVALID (1u << (uint32_t)AGV_FAULT_CONFIG_INVALID)
 

@@ -119,6 +119,8 @@ static uint32_t safe_state_facts(const agv_core_t *core) {
            bit_if(agv_vehicle_is_slow(&core->vehicle, &core->config), AGV_FACT_SLOW) |
            bit_if(agv_vehicle_throttle_is_idle(&core->vehicle, &core->config), AGV_FACT_IDLE) |
            bit_if(agv_core_is_in_park(core), AGV_FACT_IN_PARK) |
+           bit_if(core->machine.output_closed || agv_hardware_output_reads_open(&core->hardware),
+                  AGV_FACT_OUTPUT_OPEN) |
            bit_if(agv_deadlines_messages_fresh(&core->liveness, timers, &core->config), AGV_FACT_MESSAGES);
 }
 
@@ -157,19 +159,32 @@ static void evaluate_faults(agv_core_t *core, uint32_t facts, uint32_t elapsed_m
     agv_fault_monitor_evaluate(&core->faults, &core->config.trips, ai_loss_warns, changes);
 }
 
-/* A press of the reset button, in TRIPPED and SAFE (FSM-3). */
+/* A press of a button, in TRIPPED and SAFE (FSM-3, HW-3). */
 static agv_press_result_t evaluate_press(agv_core_t *core, uint32_t facts, uint32_t elapsed_ms, uint32_t *missing) {
     if (!is_latched(core)) {
         return AGV_PRESS_NOTHING;
     }
     const uint32_t lacking = agv_state_machine_lacks_for_reset(&core->machine, &core->faults.summary, facts);
-    return agv_reset_button_step(&core->reset_button, &core->timers, &core->config, elapsed_ms, lacking, missing);
+    const agv_press_result_t remote =
+        agv_reset_button_step(&core->reset_button, &core->timers, &core->config, elapsed_ms, lacking, missing);
+    if (core->config.reset_input == (uint16_t)AGV_RESET_INPUT_CAN) {
+        return remote;
+    }
+    uint32_t missing_pin = 0u;
+    const agv_press_result_t pin =
+        agv_reset_button_step(&core->reset_pin, &core->timers, &core->config, elapsed_ms, lacking, &missing_pin);
+    if ((remote == AGV_PRESS_RESETS) || (pin == AGV_PRESS_NOTHING)) {
+        return remote;
+    }
+    *missing = missing_pin;
+    return pin;
 }
 
 void agv_core_await_safe_state(agv_core_t *core) {
     agv_confirmation_start(&core->confirmation, &core->timers);
     agv_stopping_start(&core->stopping, &core->timers);
     agv_reset_button_trip(&core->reset_button, &core->timers);
+    agv_reset_button_trip(&core->reset_pin, &core->timers);
 }
 
 /* FSM-10: manual drops the held angle, and 065h frames in a stalled transmitter, which would otherwise leave later. */
@@ -293,6 +308,7 @@ static void record_fault(agv_core_t *core, const agv_ports_t *ports, const agv_f
     entry->a = (uint8_t)fault;
     entry->b = (uint8_t)(trip ? AGV_CLASS_TRIP : AGV_CLASS_WARN);
     entry->c = active ? 1u : 0u;
+    entry->missing = (fault == (uint32_t)AGV_FAULT_SELF_TEST_FAILED) ? core->hardware.failed : 0u;
     record(core, ports, entry);
 }
 

@@ -4,23 +4,24 @@
 #include "agv/codec.h"
 #include "hal/reset.h"
 #include "hal/safety_output.h"
+#include "hal/self_test.h"
 #include "keep/latch.h"
 #include "supervisor/supervisor_internal.h"
 #include "transmit/gate.h"
 
 /*
  * Test codec and gate against each other: the gate must allow gear P as packed by the codec, and refuse D.
- * Returns AGV_FOUND_* bits.
+ * Returns HAL_SELF_TEST_* bits.
  */
 static uint32_t self_test(const agv_core_t *core) {
     const agv_gate_t tripped = {.config = &core->config, .ids = &core->ids, .state = AGV_STATE_TRIPPED};
     hal_can_frame_t frame = {.id = core->ids.of[AGV_MSG_GEAR_COMMAND], .length = AGV_DLC, .data = {AGV_GEAR_P}};
     if (!agv_value_is_valid(AGV_MSG_GEAR_COMMAND, frame.data) || /* GCOVR_EXCL_BR_LINE: P is known */
         !agv_gate_allows(&tripped, HAL_CAN_VEHICLE, &frame)) {   /* GCOVR_EXCL_BR_LINE: and passes */
-        return AGV_FOUND_SELF_TEST_FAILED;                       /* GCOVR_EXCL_LINE: never here */
+        return HAL_SELF_TEST_CORE;                               /* GCOVR_EXCL_LINE: never here */
     }
     frame.data[0] = AGV_GEAR_D;
-    return agv_gate_allows(&tripped, HAL_CAN_VEHICLE, &frame) ? AGV_FOUND_SELF_TEST_FAILED
+    return agv_gate_allows(&tripped, HAL_CAN_VEHICLE, &frame) ? HAL_SELF_TEST_CORE
                                                               : 0u; /* GCOVR_EXCL_BR_LINE: D never passes here */
 }
 
@@ -34,6 +35,7 @@ static void begin_modules(agv_core_t *core, hal_t *hal) {
     agv_timers_start(&core->timers);
     agv_timer_start(&core->timers, AGV_TIMER_WATCHDOG_FED);
     agv_fault_monitor_start(&core->faults);
+    core->reset_pin.is_pin = true;
     agv_liveness_start(&core->liveness, &core->timers);
     agv_transmitter_start(&core->transmitter, core->timers.now_ms);
     agv_bus_start(&core->buses[HAL_CAN_VEHICLE], hal, HAL_CAN_VEHICLE);
@@ -91,7 +93,8 @@ void agv_core_begin(agv_core_t *core, const agv_ports_t *ports, uint32_t found) 
     const bool trips = core->config.after_power_on == (uint16_t)AGV_AFTER_POWER_ON_TRIPPED;
     hal_safety_output_set(ports->hal, false);
     begin_modules(core, ports->hal);
-    raise_found(core, found | self_test(core));
+    raise_found(core, found);
+    agv_hardware_self_test(&core->hardware, &core->faults, ports->hal, self_test(core));
     const uint32_t kept_reason = begin_from_latch(core, ports->hal, !powered_on);
     if ((!powered_on || trips) && !corrupted && (kept_reason == (uint32_t)AGV_FAULT_NONE)) {
         agv_fault_monitor_event(&core->faults, &core->timers, AGV_FAULT_SUPERVISOR_RESET);

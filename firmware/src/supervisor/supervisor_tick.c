@@ -1,6 +1,7 @@
 #include <stddef.h>
 
 #include "hal/led.h"
+#include "hal/safety_output.h"
 #include "hal/store.h"
 #include "hal/watchdog.h"
 #include "observe/deadlines.h"
@@ -45,6 +46,13 @@ static bool observe_buses(agv_core_t *core, hal_t *hal) {
     agv_fault_monitor_set(faults, AGV_FAULT_ERROR_PASSIVE, (vehicle & AGV_BUS_PASSIVE) != 0u);
     agv_fault_monitor_set(faults, AGV_FAULT_AI_BUS_OFF, (ai & (AGV_BUS_OFF | AGV_BUS_STALLED)) != 0u);
     return (vehicle & AGV_BUS_RECOVERED) != 0u;
+}
+
+/* HW-1 to HW-4. The output is compared with what it was set to at the last tick, or since. */
+static void observe_hardware(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) {
+    agv_hardware_tick(&core->hardware, &core->faults, &core->timers, &core->config, hal, elapsed_ms,
+                      core->machine.output_closed);
+    agv_reset_button_read(&core->reset_pin, core->hardware.button);
 }
 
 static void observe_time(agv_core_t *core, uint32_t elapsed_ms) {
@@ -114,6 +122,7 @@ static void feed_watchdog(agv_core_t *core, const agv_ports_t *ports) {
 void agv_core_tick(agv_core_t *core, const agv_ports_t *ports, bool receive_alive) {
     const uint32_t elapsed_ms = step_time(core);
     core->checked_in |= (uint8_t)(CHECKED_STEP | (receive_alive ? CHECKED_RECEIVE : 0));
+    observe_hardware(core, ports->hal, elapsed_ms);
     const bool recovered = observe_buses(core, ports->hal);
     observe_time(core, elapsed_ms);
     const agv_pass_t pass = agv_core_decide(core, ports, elapsed_ms);
@@ -124,6 +133,7 @@ void agv_core_tick(agv_core_t *core, const agv_ports_t *ports, bool receive_aliv
     agv_transmitter_tick(&core->transmitter, &orders);
     core->checked_in |= CHECKED_SEND;
     agv_core_conclude(core, ports, &pass);
+    hal_safety_output_set(ports->hal, core->machine.output_closed);
     feed_watchdog(core, ports);
     agv_core_show_led(core, ports, elapsed_ms);
     earn_store_credits(core, elapsed_ms);

@@ -23,11 +23,11 @@ void supervise_start(supervise_t *self, agv_recorder_t *recorder, zephyr_hal_ret
                                         .watchdog_ms = CONFIG_AGV_WATCHDOG_PERIOD_MS,
                                         .listen_only = IS_ENABLED(CONFIG_AGV_CAN_LISTEN_ONLY),
                                         .retained = retained};
-    const bool port_works = zephyr_hal_init(&self->hal, &wiring);
-    const bool passed = supervise_self_test() && port_works;
+    (void)zephyr_hal_init(&self->hal, &wiring);
+    self->hal.failed |= supervise_self_test() ? 0u : HAL_SELF_TEST_PROCESSOR;
     self->ports = (agv_ports_t){.hal = &self->hal, .recorder = recorder};
     self->ticked_ms = hal_clock_now_ms(&self->hal);
-    agv_supervisor_start(&self->supervisor, &self->ports, &config, passed, self->ticked_ms);
+    agv_supervisor_start(&self->supervisor, &self->ports, &config, self->ticked_ms);
 #if defined(CONFIG_AGV_SHELL)
     agv_config_ids(agv_supervisor_config(&self->supervisor), &self->ids);
 #endif

@@ -1,16 +1,23 @@
 /**
  * @file clock.h
- * The clock. Only programs read it: the core gets the time as an argument. There is no function yet for a second,
- * independent clock to compare it with (HW-4, CLOCK_DEVIATION).
+ * The clocks. Only programs read the first one: the core gets the time as an argument.
  */
 #ifndef HAL_CLOCK_H
 #define HAL_CLOCK_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "hal/hal.h"
 
 /** Milliseconds since an arbitrary time. Wraps from UINT32_MAX to 0 every 49.7 days and never goes backwards. */
 uint32_t hal_clock_now_ms(hal_t *hal);
+
+/**
+ * Read a second clock, from another oscillator than the first one (HW-4). The core compares both once a second.
+ * @param time_ms out: milliseconds since an arbitrary time; wraps as the first clock does. It must be accurate to 1 %.
+ * @return false if the board has no second clock: always or never
+ */
+bool hal_clock_second_ms(hal_t *hal, uint32_t *time_ms);
 
 #endif

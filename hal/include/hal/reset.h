@@ -1,8 +1,6 @@
 /**
  * @file reset.h
- * The cause of the last MCU reset.
- *
- * There is no function yet for a reset button on a pin, in place of remote button 1 (HW-3).
+ * The cause of the last MCU reset. (The button that resets the supervisor is in inputs.h.)
  */
 #ifndef HAL_RESET_H
 #define HAL_RESET_H

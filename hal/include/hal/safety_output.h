@@ -2,9 +2,7 @@
  * @file safety_output.h
  * The hardware safety output: a contact that the integrator wires into the vehicle's drive enable. Open is safe. It must
  * not cut the supply of VCU, EPS or remote receiver.
- *
- * There are no functions yet for a feedback of the contact (HW-1) and an emergency stop input (HW-2). They belong in this
- * header, as optional functions with a stub for boards without such an input.
+ * A feedback of the contact is one of the inputs (inputs.h).
  */
 #ifndef HAL_SAFETY_OUTPUT_H
 #define HAL_SAFETY_OUTPUT_H
@@ -15,8 +13,8 @@
 
 /**
  * Close (true) or open (false) the output. The port keeps it open from reset until the first call with true, and opens
- * it in its fault handlers (FSM-4). Failure of the output is not reported to the core: wire the contact so that it opens
- * when it fails.
+ * it in its fault handlers (FSM-4). Called when the output changes, and at every tick (HW-1). Failure of the output is not
+ * reported here: wire the contact so that it opens when it fails, and read it back (inputs.h).
  */
 void hal_safety_output_set(hal_t *hal, bool closed);
 

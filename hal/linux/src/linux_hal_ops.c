@@ -87,6 +87,23 @@ static size_t store_read_record(hal_t *hal, uint32_t index, void *record, size_t
     return 0;
 }
 
+/* A computer has no such inputs, no second oscillator that a program could read, and no program in flash. */
+static void inputs_read(hal_t *hal, hal_inputs_t *inputs) {
+    (void)hal;
+    *inputs = (hal_inputs_t){.output_feedback = HAL_CONTACT_NONE};
+}
+
+static bool clock_second_ms(hal_t *hal, uint32_t *time_ms) {
+    (void)hal;
+    (void)time_ms;
+    return false;
+}
+
+static uint32_t self_test(hal_t *hal) {
+    (void)hal;
+    return 0u;
+}
+
 const hal_ops_t linux_hal_ops = {
     .can_send = can_send,
     .can_purge = can_purge,
@@ -101,4 +118,7 @@ const hal_ops_t linux_hal_ops = {
     .store_write_latch = store_write_latch,
     .store_append = store_append,
     .store_read_record = store_read_record,
+    .inputs_read = inputs_read,
+    .clock_second_ms = clock_second_ms,
+    .self_test = self_test,
 };

@@ -23,6 +23,12 @@ static inline void sim_hal_set_pin(sim_hal_pin_t *pin, bool on, uint32_t time_ms
     }
 }
 
+/** The inputs at a time of the clock. */
+hal_inputs_t sim_board_inputs(hal_t *hal, uint32_t now_ms);
+
+/** The second clock at a time of the first one. */
+uint32_t sim_board_second_ms(hal_t *hal, uint32_t now_ms);
+
 /** Check the watchdog's period. @return true: the watchdog holds the MCU in reset. */
 bool sim_hal_watch(hal_t *hal, uint32_t now_ms);
 

@@ -137,6 +137,25 @@ static size_t store_read_record(hal_t *hal, uint32_t index, void *record, size_t
     return works ? sim_store_read_record(hal->config.store, index, record, size) : 0u;
 }
 
+static void inputs_read(hal_t *hal, hal_inputs_t *inputs) {
+    if (enter(hal, SIM_HAL_OP_INPUTS_READ)) {
+        hal->last_inputs = sim_board_inputs(hal, sim_hal_now_ms(hal));
+    }
+    *inputs = hal->last_inputs;
+}
+
+static bool clock_second_ms(hal_t *hal, uint32_t *time_ms) {
+    if (enter(hal, SIM_HAL_OP_CLOCK_SECOND)) {
+        hal->last_second_ms = sim_board_second_ms(hal, sim_hal_now_ms(hal));
+    }
+    *time_ms = hal->last_second_ms;
+    return hal->board.has_second_clock;
+}
+
+static uint32_t self_test(hal_t *hal) {
+    return enter(hal, SIM_HAL_OP_SELF_TEST) ? hal->board.failed : 0u;
+}
+
 const hal_ops_t sim_hal_ops = {
     .can_send = can_send,
     .can_purge = can_purge,
@@ -151,4 +170,7 @@ const hal_ops_t sim_hal_ops = {
     .store_write_latch = store_write_latch,
     .store_append = store_append,
     .store_read_record = store_read_record,
+    .inputs_read = inputs_read,
+    .clock_second_ms = clock_second_ms,
+    .self_test = self_test,
 };

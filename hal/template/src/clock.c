@@ -9,3 +9,10 @@ uint32_t hal_clock_now_ms(hal_t *hal) {
      */
     return 0;
 }
+
+bool hal_clock_second_ms(hal_t *hal, uint32_t *time_ms) {
+    (void)hal;
+    (void)time_ms;
+    /* TODO: read a counter that another oscillator drives, in milliseconds, and return true. */
+    return false;
+}

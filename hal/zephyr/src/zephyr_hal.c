@@ -50,7 +50,19 @@ bool zephyr_hal_init(hal_t *hal, const zephyr_hal_config_t *config) {
     k_timer_init(&hal->timer, on_tick, NULL);
     k_timer_user_data_set(&hal->timer, &hal->wake);
     k_timer_start(&hal->timer, K_MSEC(MS_PER_TICK), K_MSEC(MS_PER_TICK));
-    return output_works && watchdog_works && led_works && log_works && sides_work;
+    const bool devices_work = output_works && led_works && log_works && sides_work;
+    hal->failed = (watchdog_works ? 0u : HAL_SELF_TEST_WATCHDOG) | (devices_work ? 0u : HAL_SELF_TEST_DEVICES);
+    return hal->failed == 0u;
+}
+
+uint32_t hal_self_test(hal_t *hal) {
+    return hal->failed;
+}
+
+bool hal_clock_second_ms(hal_t *hal, uint32_t *time_ms) {
+    ARG_UNUSED(hal);
+    ARG_UNUSED(time_ms);
+    return false;
 }
 
 void zephyr_hal_wait(hal_t *hal) {

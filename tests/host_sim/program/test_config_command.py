@@ -56,7 +56,7 @@ class Listing(hostsim.Case):
             self.assertEqual(found.get(key), value, key)
         for key in found:
             if not key.startswith("class_"):
-                self.assertRegex(text, r"(?m)^# \S.*\n# (\d+ to \d+.*|[a-z_]+\|[a-z_]+), default \w+(; [^;\n]+)*\n%s: " % key)
+                self.assertRegex(text, r"(?m)^# \S.*\n# (\d+ to \d+.*|[a-z_]+(?:\|[a-z_]+)+), default \w+(; [^;\n]+)*\n%s: " % key)
         self.assertIn("# 30 to 500 ms, default 50; a higher value weakens the supervision\nvcu_heartbeat_timeout_ms: 50\n", text)
         self.assertIn("# 1 to 2047, default 0x168\nid_gear_command: 0x168\n", text)
         self.assertIn("default 0x7F0; 0 weakens the supervision\nstatus_frame_id: 0x7F0\n", text)

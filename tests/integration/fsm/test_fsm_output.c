@@ -275,7 +275,7 @@ void test_a_start_opens_it(void) {
     fixture_standby(&f);
     expect_output(&f, true);
     f.hal.config.reset_cause = HAL_RESET_POWER_ON;
-    agv_supervisor_start(&f.supervisor, &f.ports, &f.config, true, f.now_ms); /* the port still has it closed */
+    agv_supervisor_start(&f.supervisor, &f.ports, &f.config, f.now_ms); /* the port still has it closed */
     expect_output(&f, false);
 }
 

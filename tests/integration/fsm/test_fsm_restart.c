@@ -269,7 +269,7 @@ void test_a_reset_cause_that_cannot_be_read_is_no_power_on(void) {
     fixture_start(&f);
     sim_hal_fail_at(&f.hal, 1, UINT32_MAX, 1u << SIM_HAL_OP_RESET_CAUSE);
     f.hal.config.reset_cause = HAL_RESET_POWER_ON;
-    agv_supervisor_start(&f.supervisor, &f.ports, &f.config, true, f.now_ms);
+    agv_supervisor_start(&f.supervisor, &f.ports, &f.config, f.now_ms);
     expect_state(&f, AGV_STATE_TRIPPED);
     expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
 }

@@ -51,7 +51,7 @@ void setUp(void) {
     (void)sim_bus_attach(&vehicle_bus, NULL);
     (void)sim_bus_attach(&ai_bus, NULL);
     (void)sim_bus_add_tap(&vehicle_bus, on_wire, NULL);
-    agv_supervisor_start(&f.supervisor, &f.ports, &f.config, true, f.now_ms);
+    agv_supervisor_start(&f.supervisor, &f.ports, &f.config, f.now_ms);
     run(600);
     expect_state(&f, AGV_STATE_STANDBY);
     fixture_mode(&f, MODE_ENGAGED);

@@ -9,10 +9,16 @@ static struct hal hal;
 
 static const hal_can_frame_t FRAME = {.id = 0x168, .length = 8};
 
+/* A board with a second clock, whose RAM fails its test. */
+static void start(void) {
+    sim_hal_init_direct(&hal, &(sim_hal_config_t){.store = &store}, 1, NULL, NULL);
+    hal.board = (sim_board_t){.has_second_clock = true, .failed = HAL_SELF_TEST_RAM};
+}
+
 void setUp(void) {
     memset(&hal, 0xA5, sizeof hal);
     sim_store_init(&store);
-    sim_hal_init_direct(&hal, &(sim_hal_config_t){.store = &store}, 1, NULL, NULL);
+    start();
 }
 
 void tearDown(void) {
@@ -46,11 +52,16 @@ static unsigned call_all(void) {
     worked += hal_store_append(&hal, bytes, sizeof bytes);
     worked += hal_store_read_record(&hal, 0, bytes, sizeof bytes) == 4;
     hal_watchdog_feed(&hal);
+    hal_inputs_t inputs;
+    uint32_t second_ms = 0;
+    hal_inputs_read(&hal, &inputs);
+    worked += hal_clock_second_ms(&hal, &second_ms);
+    worked += hal_self_test(&hal) == HAL_SELF_TEST_RAM;
     return worked;
 }
 
 void test_no_call_fails_by_default_and_every_call_is_counted(void) {
-    TEST_ASSERT_EQUAL_UINT(5, call_all());
+    TEST_ASSERT_EQUAL_UINT(7, call_all());
     TEST_ASSERT_EQUAL_UINT32(SIM_HAL_OP_COUNT, hal.calls);
     TEST_ASSERT_EQUAL_UINT32(0, hal.failures);
     for (unsigned op = 0; op < SIM_HAL_OP_COUNT; op++) {
@@ -61,7 +72,7 @@ void test_no_call_fails_by_default_and_every_call_is_counted(void) {
 void test_each_index_hits_its_operation_and_no_other(void) {
     for (unsigned index = 1; index <= SIM_HAL_OP_COUNT; index++) {
         sim_store_init(&store);
-        sim_hal_init_direct(&hal, &(sim_hal_config_t){.store = &store}, 1, NULL, NULL);
+        start();
         sim_hal_fail_at(&hal, index, 1, SIM_HAL_OP_ALL);
         (void)call_all();
         assert_failed((sim_hal_op_t)(index - 1u), 1);
@@ -74,15 +85,15 @@ void test_a_range_of_calls_or_all_from_one_on_can_fail(void) {
     assert_failed(SIM_HAL_OP_RESET_CAUSE, 3);
     sim_hal_fail_at(&hal, 5 + hal.calls, UINT32_MAX, SIM_HAL_OP_ALL);
     (void)call_all();
-    assert_failed(SIM_HAL_OP_WATCHDOG_FEED, 3 + 9);
+    assert_failed(SIM_HAL_OP_SELF_TEST, 3 + 12);
     sim_hal_fail_at(&hal, 0, UINT32_MAX, SIM_HAL_OP_ALL);
     (void)call_all();
-    TEST_ASSERT_EQUAL_UINT32(12, hal.failures);
+    TEST_ASSERT_EQUAL_UINT32(15, hal.failures);
 }
 
 void test_failing_can_be_limited_to_operations(void) {
     sim_hal_fail_at(&hal, 1, UINT32_MAX, 1u << SIM_HAL_OP_LED_SET | 1u << SIM_HAL_OP_STORE_APPEND);
-    TEST_ASSERT_EQUAL_UINT(3, call_all()); /* no append, and no record to read */
+    TEST_ASSERT_EQUAL_UINT(5, call_all()); /* no append, and no record to read */
     assert_failed(SIM_HAL_OP_STORE_APPEND, 2);
     TEST_ASSERT_FALSE(hal.led.on);
 }

@@ -86,7 +86,7 @@ int main(void) {
     traffic_address(traffic, &config);
     traffic_heal(traffic);
     traffic[M_GEAR].data[0] = GEAR_D;
-    agv_supervisor_start(&supervisor, &ports, &config, true, now_ms);
+    agv_supervisor_start(&supervisor, &ports, &config, now_ms);
     if (!run_to(STANDBY_MS, AGV_STATE_STANDBY)) {
         return 1;
     }

@@ -4,9 +4,12 @@
  */
 #include <stddef.h>
 
+#include "hal/clock.h"
+#include "hal/inputs.h"
 #include "hal/led.h"
 #include "hal/reset.h"
 #include "hal/safety_output.h"
+#include "hal/self_test.h"
 #include "hal/store.h"
 #include "hal/watchdog.h"
 #include "supervisor/core.h"
@@ -94,6 +97,22 @@ void hal_watchdog_feed(hal_t *hal) {
     /*@ assert \valid(hal); */
 }
 
+void hal_inputs_read(hal_t *hal, hal_inputs_t *inputs) {
+    /*@ assert \valid(hal); */
+    any_bytes(inputs, sizeof *inputs);
+}
+
+bool hal_clock_second_ms(hal_t *hal, uint32_t *time_ms) {
+    /*@ assert \valid(hal); */
+    any_bytes(time_ms, sizeof *time_ms);
+    return any_bool();
+}
+
+uint32_t hal_self_test(hal_t *hal) {
+    /*@ assert \valid(hal); */
+    return any(0u, UINT32_MAX);
+}
+
 /* ---- The invariants: all that is assumed of the memory between two calls ---- */
 
 /* Every setting within its range: agv_config_check refuses others at the start, and the seal finds what changes later. Of the
@@ -101,7 +120,7 @@ void hal_watchdog_feed(hal_t *hal) {
 static void sound_config(agv_config_t *config) {
 #define AGV_SETTING(name, preset, lowest, highest, unit, weakens, scope, meaning)                                      \
     config->name = (uint16_t)any(lowest, highest);
-#define AGV_CHOICE(name, words, weakens, scope, meaning) config->name = (uint16_t)any(0u, 1u);
+#define AGV_CHOICE(name, words, last, weakens, scope, meaning) config->name = (uint16_t)any(0u, last);
 #include "agv/config_settings.def"
 #undef AGV_SETTING
 #undef AGV_CHOICE
@@ -210,7 +229,7 @@ static void check_invariants(const agv_core_t *core) {
     check_memory(core);
 #define AGV_SETTING(name, preset, lowest, highest, unit, weakens, scope, meaning)                                      \
     within(core->config.name, lowest, highest);
-#define AGV_CHOICE(name, words, weakens, scope, meaning) within(core->config.name, 0u, 1u);
+#define AGV_CHOICE(name, words, last, weakens, scope, meaning) within(core->config.name, 0u, last);
 #include "agv/config_settings.def"
 #undef AGV_SETTING
 #undef AGV_CHOICE
@@ -261,6 +280,6 @@ void eva_start(void) {
     any_bytes(&recorder, sizeof recorder);
     any_bytes(&config, sizeof config);
     sound_config(&config);
-    agv_supervisor_start(&supervisor, &ports, &config, any_bool(), any(0u, UINT32_MAX));
+    agv_supervisor_start(&supervisor, &ports, &config, any(0u, UINT32_MAX));
     check_memory(agv_core_read(&supervisor));
 }

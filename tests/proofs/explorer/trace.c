@@ -318,7 +318,7 @@ static void write_config(FILE *file) {
     (void)fprintf(file, "topology: %s\nid_set: %s\n",
                   (config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? "gateway" : "shared",
                   (config->id_set == (uint16_t)AGV_ID_SET_TABLE) ? "table" : "heading");
-#define AGV_CHOICE(name, words, weakens, scope, meaning)                                                               \
+#define AGV_CHOICE(name, words, last, weakens, scope, meaning)                                                         \
     if ((AGV_SETTING_##name > AGV_SETTING_id_set) && (config->name != 0u)) {                                           \
         (void)fprintf(file, "%s" #name ": ", between);                                                                 \
         write_word(file, words, config->name);                                                                         \

@@ -27,9 +27,9 @@ enum {
 };
 
 static const char *const NAMES[SIM_HAL_OP_COUNT] = {
-    "can_send",     "can_purge",         "can_recover",       "can_status",       "clock_now",
-    "led_set",      "reset_cause",       "safety_output_set", "store_read_latch", "store_write_latch",
-    "store_append", "store_read_record", "watchdog_feed"};
+    "can_send",      "can_purge",         "can_recover",      "can_status",        "clock_now",    "led_set",
+    "reset_cause",   "safety_output_set", "store_read_latch", "store_write_latch", "store_append", "store_read_record",
+    "watchdog_feed", "inputs_read",       "clock_second",     "self_test"};
 
 /* ---- Checks ---- */
 

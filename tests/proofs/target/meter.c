@@ -9,9 +9,12 @@
 
 #include "agv/names.h"
 #include "agv/supervisor.h"
+#include "hal/clock.h"
+#include "hal/inputs.h"
 #include "hal/led.h"
 #include "hal/reset.h"
 #include "hal/safety_output.h"
+#include "hal/self_test.h"
 #include "hal/store.h"
 #include "hal/watchdog.h"
 
@@ -98,9 +101,9 @@ static void prepare(void) {
 /* ---- The entry points ---- */
 
 void __real_agv_supervisor_start(agv_supervisor_t *supervisor, const agv_ports_t *ports, const agv_config_t *config,
-                                 bool self_test_passed, uint32_t now_ms);
+                                 uint32_t now_ms);
 void __wrap_agv_supervisor_start(agv_supervisor_t *supervisor, const agv_ports_t *ports, const agv_config_t *config,
-                                 bool self_test_passed, uint32_t now_ms);
+                                 uint32_t now_ms);
 void __real_agv_supervisor_frame(agv_supervisor_t *supervisor, const agv_ports_t *ports, hal_can_side_t side,
                                  const hal_can_frame_t *frame);
 void __wrap_agv_supervisor_frame(agv_supervisor_t *supervisor, const agv_ports_t *ports, hal_can_side_t side,
@@ -109,10 +112,10 @@ void __real_agv_supervisor_tick(agv_supervisor_t *supervisor, const agv_ports_t 
 void __wrap_agv_supervisor_tick(agv_supervisor_t *supervisor, const agv_ports_t *ports, uint32_t now_ms);
 
 void __wrap_agv_supervisor_start(agv_supervisor_t *supervisor, const agv_ports_t *ports, const agv_config_t *config,
-                                 bool self_test_passed, uint32_t now_ms) {
+                                 uint32_t now_ms) {
     prepare();
     begin();
-    __real_agv_supervisor_start(supervisor, ports, config, self_test_passed, now_ms);
+    __real_agv_supervisor_start(supervisor, ports, config, now_ms);
     note(&starts, end());
 }
 
@@ -180,6 +183,9 @@ NOT_COUNTED_VOID(hal_can_status, (hal_t * hal, hal_can_side_t side, hal_can_stat
 NOT_COUNTED_VOID(hal_led_set, (hal_t * hal, bool on), (hal, on))
 NOT_COUNTED_VOID(hal_safety_output_set, (hal_t * hal, bool closed), (hal, closed))
 NOT_COUNTED_VOID(hal_watchdog_feed, (hal_t * hal), (hal))
+NOT_COUNTED_VOID(hal_inputs_read, (hal_t * hal, hal_inputs_t *inputs), (hal, inputs))
+NOT_COUNTED(bool, hal_clock_second_ms, (hal_t * hal, uint32_t *time_ms), (hal, time_ms))
+NOT_COUNTED(uint32_t, hal_self_test, (hal_t * hal), (hal))
 
 /* ---- The table ---- */
 

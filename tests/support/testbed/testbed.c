@@ -103,7 +103,7 @@ void testbed_jump(uint32_t ms) {
 static void start(hal_reset_cause_t cause, const rules_seen_t *before) {
     testbed.rules.oracle.now_ms = clock_at(testbed.now_ms);
     rules_ticks(&testbed.rules, testbed.now_ms, bus());
-    agv_supervisor_start(&testbed.supervisor, &testbed.ports, &testbed.config, true, clock_at(testbed.now_ms));
+    agv_supervisor_start(&testbed.supervisor, &testbed.ports, &testbed.config, clock_at(testbed.now_ms));
     const rules_seen_t seen = look();
     rules_started(&testbed.rules, cause, before, &seen, testbed.now_ms);
     testbed.ticked_ms = testbed.now_ms;

@@ -37,7 +37,7 @@ static unsigned missing(void) {
 
 static uint32_t words_of_facts(void) {
     const uint32_t with_missing = AGV_FACT_VCU_ALIVE | AGV_FACT_EPS_ALIVE | AGV_FACT_STANDSTILL | AGV_FACT_MANUAL |
-                                  AGV_FACT_MESSAGES | AGV_FACT_IDLE;
+                                  AGV_FACT_MESSAGES | AGV_FACT_IDLE | AGV_FACT_OUTPUT_OPEN;
     uint32_t words = with_missing & ~facts.missing;
     words |= facts.engaged ? AGV_FACT_ENGAGED : 0;
     words |= facts.ai_alive ? AGV_FACT_AI_ALIVE : 0;

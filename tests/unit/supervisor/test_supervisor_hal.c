@@ -7,9 +7,12 @@
 #include "agv/checksum.h"
 #include "keep/latch.h"
 #include "mock_can.h"
+#include "mock_clock.h"
+#include "mock_inputs.h"
 #include "mock_led.h"
 #include "mock_reset.h"
 #include "mock_safety_output.h"
+#include "mock_self_test.h"
 #include "mock_store.h"
 #include "mock_watchdog.h"
 #include "supervisor/core.h"
@@ -32,6 +35,9 @@ static uint8_t wheel_speed; /* 101h, both wheels, low byte */
 static bool hal_takes;      /* what the stub of hal_can_send returns */
 static bool closed;         /* the output, as last set through the stub */
 static unsigned written;    /* events that were written to flash */
+static hal_inputs_t inputs; /* what the board reports at every tick */
+static uint32_t failed;     /* parts that fail their test */
+static uint32_t second_ms;  /* the second clock; 0: the board has none */
 
 static bool send_stub(hal_t *port, hal_can_side_t side, const hal_can_frame_t *frame, int calls) {
     (void)port, (void)side, (void)frame, (void)calls;
@@ -52,6 +58,32 @@ static bool append_stub(hal_t *port, const void *record, size_t size, int calls)
     (void)port, (void)record, (void)size, (void)calls;
     written++;
     return true;
+}
+
+static void inputs_stub(hal_t *port, hal_inputs_t *read, int calls) {
+    (void)port, (void)calls;
+    *read = inputs;
+}
+
+static bool second_stub(hal_t *port, uint32_t *time_ms, int calls) {
+    (void)port, (void)calls;
+    *time_ms = second_ms;
+    return second_ms != 0;
+}
+
+static uint32_t self_test_stub(hal_t *port, int calls) {
+    (void)port, (void)calls;
+    return failed;
+}
+
+/* What is only read may be read in any order. */
+static void always_use_stubs(void) {
+    inputs = (hal_inputs_t){0};
+    failed = 0;
+    second_ms = 0;
+    hal_inputs_read_Stub(inputs_stub);
+    hal_clock_second_ms_Stub(second_stub);
+    hal_self_test_Stub(self_test_stub);
 }
 
 static void use_stubs(void) {
@@ -92,6 +124,7 @@ void setUp(void) {
     hal_takes = true;
     closed = false;
     written = 0;
+    always_use_stubs();
 }
 
 /* --- expectations --- */
@@ -168,6 +201,12 @@ static void expect_start(hal_reset_cause_t cause, uint8_t latched, agv_fault_t r
     hal_led_set_Expect(&hal, true);
 }
 
+/* At the end of a tick the output is set again, and the watchdog is fed (HW-1, TIM-3). */
+static void expect_fed(bool output_closed) {
+    hal_safety_output_set_Expect(&hal, output_closed);
+    hal_watchdog_feed_Expect(&hal);
+}
+
 /* Every pattern begins lit; the LED is only switched when it is dark before. */
 static void expect_led_on(void) {
     if (!core->led.on) {
@@ -175,8 +214,8 @@ static void expect_led_on(void) {
     }
 }
 
-static void start(bool self_test_passed) {
-    agv_supervisor_start(&supervisor, &ports, &config, self_test_passed, now_ms);
+static void start(void) {
+    agv_supervisor_start(&supervisor, &ports, &config, now_ms);
 }
 
 /* --- traffic --- */
@@ -234,7 +273,7 @@ static void run(uint32_t ms) {
 
 static void walk_to_standby(void) {
     use_stubs();
-    start(true);
+    start();
     for (uint32_t ms = 0; ms < 1000 && agv_supervisor_state(&supervisor) != AGV_STATE_STANDBY; ms++) {
         run(1);
     }
@@ -262,7 +301,7 @@ static uint8_t own_counter(void) {
 void test_a_start_after_power_on(void) {
     be_strict();
     expect_start(HAL_RESET_POWER_ON, 0x69, AGV_FAULT_NONE, AGV_FAULT_NONE);
-    start(true);
+    start();
     TEST_ASSERT_EQUAL(AGV_STATE_INIT, agv_supervisor_state(&supervisor));
 }
 
@@ -275,7 +314,7 @@ TEST_CASE(5)
 void test_a_start_after_any_other_reset(int cause) {
     be_strict();
     expect_start((hal_reset_cause_t)cause, 0x96, AGV_FAULT_SUPERVISOR_RESET, AGV_FAULT_NONE);
-    start(true);
+    start();
     TEST_ASSERT_EQUAL(AGV_STATE_TRIPPED, agv_supervisor_state(&supervisor));
 }
 
@@ -283,7 +322,8 @@ void test_a_start_after_any_other_reset(int cause) {
 void test_a_start_with_a_failed_self_test(void) {
     be_strict();
     expect_start(HAL_RESET_POWER_ON, 0x96, AGV_FAULT_SELF_TEST_FAILED, AGV_FAULT_SELF_TEST_FAILED);
-    start(false);
+    failed = HAL_SELF_TEST_FLASH;
+    start();
     TEST_ASSERT_EQUAL(AGV_STATE_TRIPPED, agv_supervisor_state(&supervisor));
 }
 
@@ -295,7 +335,7 @@ void test_a_quiet_tick_reads_the_controller_and_feeds_the_watchdog(void) {
     be_strict();
     now_ms++;
     expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
-    hal_watchdog_feed_Expect(&hal);
+    expect_fed(true);
     tick();
 }
 
@@ -305,13 +345,14 @@ void test_a_tick_without_the_receive_path_does_not_feed_the_watchdog(void) {
     be_strict();
     now_ms++;
     expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    hal_safety_output_set_Expect(&hal, true);
     agv_supervisor_tick(&supervisor, &ports, now_ms);
 }
 
 static void expect_quiet_tick(void) {
     now_ms++;
     expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
-    hal_watchdog_feed_Expect(&hal);
+    expect_fed(true);
 }
 
 /* Events wait. The flash is written at the end of the tick, and once in the first second: at 2000. */
@@ -328,7 +369,7 @@ void test_the_flash_is_written_at_the_end_of_a_tick_at_standstill(void) {
     const hal_can_frame_t status = {.id = 0x7F0};
     hal_can_send_ExpectAndReturn(&hal, HAL_CAN_VEHICLE, &status, true);
     hal_can_send_IgnoreArg_frame();
-    hal_watchdog_feed_Expect(&hal);
+    expect_fed(true);
     hal_led_set_Expect(&hal, false); /* a second of the healthy pattern is over, too */
     hal_store_append_ExpectAndReturn(&hal, NULL, sizeof(agv_event_t), true);
     hal_store_append_IgnoreArg_record();
@@ -377,7 +418,7 @@ void test_a_late_step_earns_a_second_of_flash_at_most(void) {
 /* Shows: FSM-4 */
 void test_the_end_of_init(void) {
     use_stubs();
-    start(true);
+    start();
     run(519);
     TEST_ASSERT_EQUAL(AGV_STATE_INIT, agv_supervisor_state(&supervisor));
     TEST_ASSERT_FALSE(closed);
@@ -427,7 +468,7 @@ void test_a_trip_by_bus_off_opens_the_output(void) {
     hal_safety_output_set_Expect(&hal, false);
     hal_can_purge_Expect(&hal, HAL_CAN_VEHICLE);
     expect_latch(0x96, AGV_FAULT_BUS_OFF, AGV_FAULT_NONE);
-    hal_watchdog_feed_Expect(&hal);
+    expect_fed(false);
     expect_led_on();
     tick();
     TEST_ASSERT_EQUAL(AGV_FAULT_BUS_OFF, agv_supervisor_first_reason(&supervisor));
@@ -450,7 +491,7 @@ void test_corrupted_memory_starts_anew_in_tripped(void) {
     expect_first_status_frame(AGV_STATE_TRIPPED, AGV_FAULT_MEMORY_CORRUPTED);
     hal_led_set_Expect(&hal, true);
     expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
-    hal_watchdog_feed_Expect(&hal);
+    expect_fed(false);
     tick();
     TEST_ASSERT_EQUAL(AGV_STATE_TRIPPED, agv_supervisor_state(&supervisor));
 }
@@ -473,7 +514,7 @@ void test_a_refused_frame_is_not_sent_and_trips(void) {
     now_ms++;
     expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
     expect_status(HAL_CAN_AI, HAL_CAN_ERROR_ACTIVE);
-    hal_watchdog_feed_Expect(&hal);
+    expect_fed(true);
     tick();
     TEST_ASSERT_EQUAL_UINT32(1, agv_supervisor_counters(&supervisor)->gate_refused);
     now_ms++; /* faults are evaluated once a call, before anything is sent */
@@ -483,7 +524,7 @@ void test_a_refused_frame_is_not_sent_and_trips(void) {
     expect_safe_commands(own_counter());
     expect_held_angle();
     expect_latch(0x96, AGV_FAULT_TX_GATE_REFUSED, AGV_FAULT_NONE);
-    hal_watchdog_feed_Expect(&hal);
+    expect_fed(true);
     expect_led_on();
     tick();
     TEST_ASSERT_EQUAL(AGV_STATE_TRIPPED, agv_supervisor_state(&supervisor));

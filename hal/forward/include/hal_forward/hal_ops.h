@@ -14,6 +14,7 @@
 
 #include "hal/can.h"
 #include "hal/hal.h"
+#include "hal/inputs.h"
 #include "hal/reset.h"
 
 /** Each pointer implements the function of hal/include with the same name. */
@@ -31,6 +32,9 @@ typedef struct {
     bool (*store_write_latch)(hal_t *hal, const void *record, size_t size);
     bool (*store_append)(hal_t *hal, const void *record, size_t size);
     size_t (*store_read_record)(hal_t *hal, uint32_t index, void *record, size_t size);
+    void (*inputs_read)(hal_t *hal, hal_inputs_t *inputs);
+    bool (*clock_second_ms)(hal_t *hal, uint32_t *time_ms);
+    uint32_t (*self_test)(hal_t *hal);
 } hal_ops_t;
 
 #endif

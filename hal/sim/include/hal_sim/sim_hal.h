@@ -22,12 +22,15 @@
 #include "hal/can.h"
 #include "hal/clock.h"
 #include "hal/hal.h"
+#include "hal/inputs.h"
 #include "hal/led.h"
 #include "hal/reset.h"
 #include "hal/safety_output.h"
+#include "hal/self_test.h"
 #include "hal/store.h"
 #include "hal/watchdog.h"
 #include "hal_forward/hal_ops.h"
+#include "hal_sim/sim_board.h"
 #include "hal_sim/sim_bus.h"
 #include "hal_sim/sim_store.h"
 
@@ -49,6 +52,9 @@ typedef enum {
     SIM_HAL_OP_STORE_APPEND,
     SIM_HAL_OP_STORE_READ_RECORD,
     SIM_HAL_OP_WATCHDOG_FEED,
+    SIM_HAL_OP_INPUTS_READ,
+    SIM_HAL_OP_CLOCK_SECOND,
+    SIM_HAL_OP_SELF_TEST,
     SIM_HAL_OP_COUNT
 } sim_hal_op_t;
 
@@ -93,6 +99,8 @@ struct hal {
     sim_hal_can_t can[HAL_CAN_SIDES]; /**< read */
     sim_hal_pin_t led;                /**< read */
     sim_hal_pin_t safety_output;      /**< read */
+    sim_board_t board;                /**< set by the program at any time; kept over a reset */
+    bool contact_closed;              /**< read: the contact of the safety output, as it is */
     bool held;         /**< read: in reset (watchdog or sim_hal_hold()); nothing works until sim_hal_reset() */
     uint32_t feeds;    /**< read: hal_watchdog_feed() calls */
     uint32_t bites;    /**< read: resets by the watchdog since sim_hal_init() */
@@ -107,6 +115,11 @@ struct hal {
     uint32_t fed_ms;
     uint32_t direct_now_ms;
     uint32_t last_now_ms;
+    uint32_t last_second_ms;
+    hal_inputs_t last_inputs;
+    uint32_t second_base_ms; /* of the first clock, when its deviation changed */
+    uint32_t second_offset_ms;
+    int16_t second_permille;
     bool direct;
     sim_hal_config_t config;
     sim_hal_sink_fn *sink;
@@ -178,7 +191,7 @@ uint32_t sim_hal_clock_at(const hal_t *hal, uint64_t bus_us);
  * sim_hal_init() is number 1; hal->calls is the number of the last one), as far as their operation is in @p ops.
  * A failing operation has no effect and reports the worst that its contract allows:
  * send, write_latch, append: false; read_latch, read_record: 0; reset_cause: HAL_RESET_UNKNOWN; status: what it
- * reported last; clock: what it read last; purge, recover, led, safety output, feed: nothing happens.
+ * reported last; both clocks and the inputs: what they read last; self_test: 0; purge, recover, led, safety output, feed: nothing happens.
  * @param first 0 = nothing fails (default)
  * @param count UINT32_MAX = all from first on
  * @param ops bits 1 << sim_hal_op_t; SIM_HAL_OP_ALL

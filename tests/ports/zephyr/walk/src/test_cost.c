@@ -27,7 +27,7 @@ ZTEST(cost, test_instructions_of_a_frame_and_of_a_tick) {
     self.hal.retained = &retained;
     self.ports = (agv_ports_t){.hal = &self.hal, .recorder = &recorder};
     const unsigned int key = irq_lock();
-    agv_supervisor_start(&self.supervisor, &self.ports, &config, true, 0u);
+    agv_supervisor_start(&self.supervisor, &self.ports, &config, 0u);
     uint32_t begin = k_cycle_get_32();
     for (uint32_t i = 0u; i < (uint32_t)TIMES; i++) {
         frame.data[7] ^= 1u;

@@ -1,0 +1,26 @@
+/**
+ * @file inputs.h
+ * The hard-wired inputs of the supervisor (HW-1, HW-2, HW-3). All are optional: a port reports HAL_CONTACT_NONE for an
+ * input that the board does not have, always or never.
+ */
+#ifndef HAL_INPUTS_H
+#define HAL_INPUTS_H
+
+#include <stdint.h>
+
+#include "hal/hal.h"
+
+/** A contact, as read now: not debounced, not inverted by the core. */
+typedef enum { HAL_CONTACT_NONE = 0, HAL_CONTACT_OPEN = 1, HAL_CONTACT_CLOSED = 2 } hal_contact_t;
+
+/** The inputs, hal_contact_t each. Other values count as HAL_CONTACT_OPEN. */
+typedef struct {
+    uint8_t output_feedback; /**< contact of the safety output, read back: OPEN is the safe position (HW-1) */
+    uint8_t emergency_stop;  /**< normally closed circuit: OPEN stops, a broken wire too (HW-2) */
+    uint8_t reset_button;    /**< push button, CLOSED = pressed (HW-3) */
+} hal_inputs_t;
+
+/** Read the inputs. Called at every tick. */
+void hal_inputs_read(hal_t *hal, hal_inputs_t *inputs);
+
+#endif

@@ -1,0 +1,45 @@
+/* The hard-wired parts of a simulated board (sim_board.h), behind hal_ops.h. */
+#include "hal/inputs.h"
+
+#include "sim_hal_internal.h"
+
+/* The contact follows its command after SIM_BOARD_RELAY_MS, unless it is welded or stuck. */
+static void follow_contact(hal_t *hal, uint32_t now_ms) {
+    const sim_hal_pin_t *output = &hal->safety_output;
+    const bool settled = (output->changes == 0u) || (now_ms - output->changed_ms >= (uint32_t)SIM_BOARD_RELAY_MS);
+    if (hal->board.contact == (uint8_t)SIM_CONTACT_STUCK_OPEN) {
+        hal->contact_closed = false;
+    } else if (settled && (output->on || (hal->board.contact != (uint8_t)SIM_CONTACT_WELDED))) {
+        hal->contact_closed = output->on;
+    } else {
+        /* moves, or is welded */
+    }
+}
+
+static uint8_t contact_if(bool exists, bool closed) {
+    if (!exists) {
+        return HAL_CONTACT_NONE;
+    }
+    return (uint8_t)(closed ? HAL_CONTACT_CLOSED : HAL_CONTACT_OPEN);
+}
+
+hal_inputs_t sim_board_inputs(hal_t *hal, uint32_t now_ms) {
+    const sim_board_t *board = &hal->board;
+    follow_contact(hal, now_ms);
+    return (hal_inputs_t){.output_feedback =
+                              contact_if(board->has_feedback, hal->contact_closed != board->feedback_is_inverted),
+                          .emergency_stop = contact_if(board->has_emergency_stop, !board->stop_is_open),
+                          .reset_button = contact_if(board->has_reset_button, board->button_is_down)};
+}
+
+/* The second clock runs on from where it was when the deviation changed. */
+uint32_t sim_board_second_ms(hal_t *hal, uint32_t now_ms) {
+    const int64_t passed_ms = now_ms - hal->second_base_ms;
+    if (hal->board.clock_permille != hal->second_permille) {
+        hal->second_offset_ms += (uint32_t)(passed_ms + ((passed_ms * hal->second_permille) / 1000));
+        hal->second_base_ms = now_ms;
+        hal->second_permille = hal->board.clock_permille;
+        return hal->second_offset_ms;
+    }
+    return hal->second_offset_ms + (uint32_t)(passed_ms + ((passed_ms * hal->second_permille) / 1000));
+}
