@@ -11,3 +11,7 @@ set(AGV_APP_SOURCES
 # Where Zephyr compiles freestanding, copying a word would be a call of memcpy(), and a tick would take four times as long.
 set_source_files_properties(${AGV_CORE_SOURCES} ${AGV_ZEPHYR_PORT_SOURCES} ${AGV_APP_SOURCES}
   TARGET_DIRECTORY app PROPERTIES COMPILE_OPTIONS -fbuiltin)
+
+# Version and board, which events.c prints.
+include(${AGV_APP_DIR}/board.cmake)
+agv_add_build_info(app)

@@ -6,6 +6,8 @@
 #include <zephyr/sys/printk.h>
 #include <zephyr/sys/util.h>
 
+#include "agv_board.h"
+#include "agv_revision.h"
 #include "app_version.h"
 
 #if defined(CONFIG_AGV_SHADOW_ON)
@@ -20,7 +22,7 @@
 #endif
 
 const char *events_version(void) {
-    return APP_VERSION_STRING HOW BUS;
+    return APP_VERSION_STRING "+" AGV_REVISION HOW BUS;
 }
 
 #if defined(CONFIG_AGV_EVENTS)
@@ -109,8 +111,11 @@ static void tell_deviations(const agv_config_t *config) {
     }
 }
 
+#define PRINT_FACT(name, text) LOG_INF("board: %s: %s", name, text);
+
 uint32_t events_begin(const agv_config_t *config, const agv_recorder_t *recorder) {
     LOG_INF("AGV supervisor %s, configuration %08x", events_version(), agv_config_checksum(config));
+    AGV_BOARD_FACTS(PRINT_FACT)
     tell_deviations(config);
     return first_of_run(recorder);
 }

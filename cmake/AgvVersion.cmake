@@ -1,0 +1,12 @@
+# The version of everything here: firmware/zephyr/VERSION, the file that Zephyr reads too. Sets AGV_VERSION.
+set(file ${CMAKE_CURRENT_LIST_DIR}/../firmware/zephyr/VERSION)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+file(READ ${file} text)
+foreach(part VERSION_MAJOR VERSION_MINOR PATCHLEVEL)
+  if(NOT text MATCHES "${part} = ([0-9]+)")
+    message(FATAL_ERROR " firmware/zephyr/VERSION has no ${part}")
+  endif()
+  list(APPEND parts ${CMAKE_MATCH_1})
+endforeach()
+list(JOIN parts . AGV_VERSION)
+unset(parts)

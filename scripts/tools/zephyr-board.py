@@ -1,0 +1,296 @@
+#!/usr/bin/python3
+"""What a board can do for the supervisor, from the devicetree and the configuration of a build.
+
+usage: zephyr-board.py check BUILD      refuse mistakes, one line each (the build of the firmware does this)
+       zephyr-board.py header BUILD     the facts as a C header (the build of the firmware does this)
+       zephyr-board.py table [--write] BUILD...     the facts as a table; --write puts it into docs/firmware.md
+
+BUILD is the build folder of firmware/zephyr. Exit code 2: the build is refused.
+"""
+import argparse
+import os
+import pathlib
+import pickle
+import re
+import sys
+
+BEGIN = "<!-- board table: made by scripts/tools/zephyr-board.py -->"
+END = "<!-- end of board table -->"
+NODE = "agv,supervisor"
+PINS = ("safety-output-gpios", "feedback-gpios", "estop-gpios", "reset-gpios")
+NOT_A_BUS = ("zephyr,can-loopback", "zephyr,fake-can", "zephyr,native-linux-can")
+
+# What Zephyr's driver of a watchdog can do: whether it takes a lower limit of the window.
+WATCHDOGS = {
+    "st,stm32-watchdog": ("IWDG", False),
+    "st,stm32-window-watchdog": ("WWDG", True),
+    "nxp,wdog32": ("WDOG", True),
+    "nxp,kinetis-wdog32": ("WDOG", True),
+}
+
+# What the chip's reference manual says: brown-out reset, error correction. No driver of Zephyr sets or reports them.
+CHIPS = {
+    "stm32g0x": ("BOR level in the option bytes", "flash: corrects 1 bit, 2 bits are an NMI; RAM: parity by option byte"),
+    "stm32g4x": ("BOR level in the option bytes", "flash: corrects 1 bit, 2 bits are an NMI; SRAM1: parity by option byte"),
+    "stm32h7x": ("BOR level in the option bytes", "flash and RAM: corrects 1 bit, detects 2"),
+    "s32k1": ("low-voltage reset, always on", "flash and RAM: corrects 1 bit, detects 2"),
+    "s32k3": ("low-voltage reset, always on", "flash and RAM: corrects 1 bit, detects 2"),
+}
+
+
+class Refused(Exception):
+    """A mistake of the user, in one line."""
+
+
+class Build:
+    """Devicetree and configuration of a build folder."""
+
+    def __init__(self, folder, base=None):
+        self.zephyr = folder / "zephyr"
+        pickled = self.zephyr / "edt.pickle"
+        if not pickled.exists() or not (self.zephyr / ".config").exists():
+            raise Refused(f"{folder} is no build folder of Zephyr: zephyr/edt.pickle or zephyr/.config is missing")
+        sys.path.insert(0, str((base or zephyr_base(folder)) / "scripts/dts/python-devicetree/src"))
+        with pickled.open("rb") as file:
+            self.devicetree = pickle.load(file)
+        text = (self.zephyr / ".config").read_text(encoding="utf-8")
+        self.config = dict(re.findall(r"^CONFIG_(\w+)=(.*)$", text, re.MULTILINE))
+
+    def has(self, *symbols):
+        return any(self.config.get(symbol) == "y" for symbol in symbols)
+
+    def node(self):
+        nodes = self.devicetree.compat2okay.get(NODE, [])
+        return nodes[0] if nodes else None
+
+    def watchdog(self):
+        nodes = [node for node in self.devicetree.nodes if "watchdog0" in node.aliases]
+        return nodes[0] if nodes else None
+
+
+def zephyr_base(folder):
+    """Where the build found Zephyr."""
+    cache = folder / "CMakeCache.txt"
+    text = cache.read_text(encoding="utf-8") if cache.exists() else ""
+    found = re.search(r"^(?:CACHED_)?ZEPHYR_BASE:\w+=(.+)$", text, re.MULTILINE)
+    base = found[1] if found else os.environ.get("ZEPHYR_BASE", "")
+    if not base:
+        raise Refused("ZEPHYR_BASE is not set")
+    return pathlib.Path(base)
+
+
+def label(node):
+    return "&" + node.labels[0] if node.labels else node.path
+
+
+def pin_text(entry):
+    return f"{label(entry.controller)} {entry.data.get('pin', '?')}"
+
+
+def is_disabled(node):
+    return node.status not in ("okay", "ok")
+
+
+def check_node(build):
+    nodes = build.devicetree.compat2okay.get(NODE, [])
+    if not nodes:
+        raise Refused(f'devicetree: no node has compatible = "{NODE}": write one into boards/<board>.overlay, as '
+                      "hal/zephyr/dts/bindings/agv,supervisor.yaml shows")
+    if len(nodes) > 1:
+        raise Refused(f'devicetree: {len(nodes)} nodes have compatible = "{NODE}": a chip has one supervisor, delete the others')
+    if "agv_supervisor" not in nodes[0].labels:
+        raise Refused(f"devicetree: {nodes[0].path} needs the label agv_supervisor: write agv_supervisor: {nodes[0].name} {{")
+
+
+def check_controller(build, name):
+    """A CAN controller that is enabled and has a driver that reaches a bus."""
+    controller = build.node().props[name].val
+    if "sample-point" not in controller._binding.prop2specs:  # of can-controller.yaml; edtlib has no public question for it
+        raise Refused(f"devicetree: {name} = <{label(controller)}> is no CAN controller")
+    if is_disabled(controller):
+        raise Refused(f"devicetree: {name} = <{label(controller)}> is disabled: write {label(controller)} {{ status = \"okay\"; }}; "
+                      "with its pins")
+    if build.has("AGV_RELEASE") and controller.matching_compat in NOT_A_BUS:
+        raise Refused(f"release: {name} = <{label(controller)}> is {controller.matching_compat}, which reaches no bus: name a controller "
+                      "of the chip")
+
+
+def check_controllers(build):
+    props = build.node().props
+    check_controller(build, "vehicle-can")
+    if not build.has("AGV_TOPOLOGY_GATEWAY"):
+        return
+    if "ai-can" not in props:
+        raise Refused("devicetree: a gateway (CONFIG_AGV_TOPOLOGY_GATEWAY) needs ai-can: write ai-can = <&your_second_controller>; "
+                      "into the node agv_supervisor")
+    check_controller(build, "ai-can")
+    if props["ai-can"].val is props["vehicle-can"].val:
+        raise Refused(f"devicetree: ai-can and vehicle-can are both <{label(props['ai-can'].val)}>: a gateway needs two controllers")
+
+
+def pins_of(build):
+    """(property, controller and pin) of each pin that the supervisor uses."""
+    props = build.node().props
+    pins = [(name, entry) for name in PINS if name in props for entry in props[name].val]
+    led = props["alarm-led"].val
+    if "gpios" not in led.props:
+        raise Refused(f"devicetree: alarm-led = <{label(led)}> has no pin: name a child of a node with compatible = \"gpio-leds\"")
+    return pins + [("alarm-led", entry) for entry in led.props["gpios"].val]
+
+
+def check_pins(build):
+    led = build.node().props["alarm-led"].val
+    for node in (led, led.parent):
+        if is_disabled(node):
+            raise Refused(f"devicetree: alarm-led = <{label(led)}>: {label(node)} is disabled: write {label(node)} {{ status = \"okay\"; }};")
+    seen = {}
+    for name, entry in pins_of(build):
+        if is_disabled(entry.controller):
+            raise Refused(f"devicetree: {name}: {label(entry.controller)} is disabled: write {label(entry.controller)} "
+                          "{ status = \"okay\"; };")
+        pin = (entry.controller.path, entry.data.get("pin"))
+        if pin in seen:
+            raise Refused(f"devicetree: {seen[pin]} and {name} are the same pin, {pin_text(entry)}")
+        seen[pin] = name
+
+
+def check_watchdog(build):
+    watchdog = build.watchdog()
+    if build.has("AGV_WITHOUT_HARDWARE_WATCHDOG", "AGV_ACCEPT_NO_WATCHDOG") and not build.has("AGV_RELEASE"):
+        return
+    if watchdog is None:
+        raise Refused("devicetree: no hardware watchdog: write aliases { watchdog0 = &your_watchdog; }; or set "
+                      "CONFIG_AGV_ACCEPT_NO_WATCHDOG=y (not for a release): then the supervisor starts with SELF_TEST_FAILED")
+    if is_disabled(watchdog):
+        raise Refused(f"devicetree: watchdog0 = <{label(watchdog)}> is disabled: write {label(watchdog)} {{ status = \"okay\"; }};")
+
+
+def check_release(build):
+    if not build.has("AGV_RELEASE"):
+        return
+    if not build.has("MPU_STACK_GUARD", "BUILTIN_STACK_GUARD", "STACK_SENTINEL"):
+        raise Refused("release: no stack is guarded: set CONFIG_HW_STACK_PROTECTION=y, or CONFIG_STACK_SENTINEL=y on a processor "
+                      "without MPU")
+    if build.has("AGV_SHADOW_ON", "AGV_CAN_LISTEN_ONLY"):
+        raise Refused("release: a supervisor in shadow mode does not act: leave out shadow.conf (CONFIG_AGV_SHADOW_ON, "
+                      "CONFIG_AGV_CAN_LISTEN_ONLY)")
+
+
+def check(build):
+    check_node(build)
+    check_controllers(build)
+    check_pins(build)
+    check_watchdog(build)
+    check_release(build)
+
+
+def chip(build):
+    family = build.config.get("SOC_SERIES", build.config.get("SOC", "")).strip('"')
+    for name, facts in CHIPS.items():
+        if family.startswith(name):
+            return facts
+    return ("unknown", "unknown")
+
+
+def watchdog_text(build):
+    node = build.watchdog()
+    if node is None or is_disabled(node):
+        return "none"
+    name, window = WATCHDOGS.get(node.matching_compat, (node.matching_compat, None))
+    words = {True: "window possible", False: "no window", None: "window unknown"}
+    return f"{name}, {words[window]}"
+
+
+def guard_text(build):
+    for symbol, text in (("MPU_STACK_GUARD", "MPU"), ("BUILTIN_STACK_GUARD", "stack limit register"), ("STACK_SENTINEL", "sentinel")):
+        if build.has(symbol):
+            return text
+    return "none"
+
+
+def input_text(build, name):
+    props = build.node().props
+    return pin_text(props[name].val[0]) if name in props else "none"
+
+
+def second_clock_text(build):
+    props = build.node().props
+    return label(props["second-clock"].val) if "second-clock" in props else "none"
+
+
+def log_text(build):
+    props = build.node().props
+    if "log-partition" not in props:
+        return "none"
+    return f"{props['log-partition'].val.regs[0].size // 1024} KB"
+
+
+def controllers_text(build):
+    props = build.node().props
+    names = [name for name in ("vehicle-can", "ai-can") if name in props]
+    return ", ".join(label(props[name].val) for name in names)
+
+
+FACTS = (
+    ("CAN", controllers_text),
+    ("watchdog", watchdog_text),
+    ("stack guard", guard_text),
+    ("brown-out", lambda build: chip(build)[0]),
+    ("error correction", lambda build: chip(build)[1]),
+    ("second clock", second_clock_text),
+    ("output feedback", lambda build: input_text(build, "feedback-gpios")),
+    ("emergency stop", lambda build: input_text(build, "estop-gpios")),
+    ("reset button", lambda build: input_text(build, "reset-gpios")),
+    ("log in flash", log_text),
+    ("bootloader", lambda build: "MCUboot" if build.has("BOOTLOADER_MCUBOOT") else "none"),
+)
+
+
+def header(build):
+    check_node(build)
+    lines = ["/* Made by scripts/tools/zephyr-board.py from devicetree and configuration: what this board can do. */",
+             "#define AGV_BOARD_FACTS(X) \\"]
+    lines += [f'    X("{name}", "{text(build)}") \\' for name, text in FACTS]
+    return "\n".join(lines) + "\n\n"
+
+
+def table(builds):
+    columns = sorted(builds, key=lambda build: build.config["BOARD"])
+    names = ["`" + build.config["BOARD"].strip('"') + "`" for build in columns]
+    rows = ["| | " + " | ".join(names) + " |", "|---|" + "---|" * len(names)]
+    rows += [f"| {name} | " + " | ".join(text(build) for build in columns) + " |" for name, text in FACTS]
+    return "\n".join(rows)
+
+
+def write_table(text):
+    page = pathlib.Path(__file__).resolve().parents[2] / "docs/firmware.md"
+    old = page.read_text(encoding="utf-8")
+    if old.count(BEGIN) != 1 or old.count(END) != 1:
+        raise Refused(f"{page} needs the lines '{BEGIN}' and '{END}'")
+    page.write_text(f"{old.split(BEGIN)[0]}{BEGIN}\n\n{text}\n\n{END}{old.split(END)[1]}", encoding="utf-8")
+
+
+def main():
+    parser = argparse.ArgumentParser(description="what a board can do for the supervisor")
+    parser.add_argument("what", choices=("check", "header", "table"))
+    parser.add_argument("--write", action="store_true", help="with table: into docs/firmware.md")
+    parser.add_argument("--zephyr-base", type=pathlib.Path, help="folder of Zephyr; without it that of the build")
+    parser.add_argument("builds", nargs="+", type=pathlib.Path)
+    arguments = parser.parse_args()
+    try:
+        builds = [Build(folder, arguments.zephyr_base) for folder in arguments.builds]
+        if arguments.what == "check":
+            for build in builds:
+                check(build)
+        elif arguments.what == "header":
+            sys.stdout.write("".join(header(build) for build in builds))
+        elif arguments.write:
+            write_table(table(builds))
+        else:
+            print(table(builds))
+    except Refused as mistake:
+        print(mistake, file=sys.stderr)
+        sys.exit(2)
+
+
+main()
