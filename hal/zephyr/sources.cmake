@@ -10,3 +10,6 @@ set(AGV_ZEPHYR_PORT_SOURCES
   ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_watchdog.c
 )
 set(AGV_ZEPHYR_PORT_INCLUDES ${AGV_ZEPHYR_PORT_DIR}/include)
+
+# Checks that only the linker can make.
+zephyr_linker_sources(SECTIONS ${AGV_ZEPHYR_PORT_DIR}/linker/log-partition.ld)

@@ -1,14 +1,13 @@
 /* hal/store.h: the log of events in flash, a flash circular buffer (FCB) of the partition log-partition. */
 #include <string.h>
 
-#include <zephyr/fs/fcb.h>
 #include <zephyr/storage/flash_map.h>
 
 #include "zephyr_hal_internal.h"
 
 #if DT_NODE_HAS_PROP(ZEPHYR_HAL_NODE, log_partition)
 
-enum { LOG_AREA = DT_FIXED_PARTITION_ID(DT_PHANDLE(ZEPHYR_HAL_NODE, log_partition)), LOG_VERSION = 1 };
+enum { LOG_AREA = DT_FIXED_PARTITION_ID(DT_PHANDLE(ZEPHYR_HAL_NODE, log_partition)) };
 
 /* FCB writes a header of 8 bytes, so flash with larger write blocks cannot be used. */
 enum { LOG_MAGIC = 0x4C564741, BLOCK_MAX = 8, ERASED = 0xFF, CHUNK_WORDS = 16 };
@@ -16,7 +15,8 @@ enum { LOG_MAGIC = 0x4C564741, BLOCK_MAX = 8, ERASED = 0xFF, CHUNK_WORDS = 16 };
 static struct flash_sector sectors[CONFIG_AGV_LOG_SECTORS];
 static struct fcb log_buffer;
 
-/* The header that FCB writes at the start of a sector: 8 bytes. */
+/* The header that FCB writes at the start of a sector: 8 bytes. Its version is the number of sectors of the log: a log
+ * with another number does not count as this log. */
 typedef struct {
     uint32_t magic;
     uint8_t version;
@@ -24,13 +24,28 @@ typedef struct {
     uint16_t id;
 } head_t;
 
-static bool is_erased(const struct flash_area *area, const struct flash_sector *sector) {
+typedef enum {
+    SECTOR_ERASED,
+    SECTOR_OF_LOG,
+    SECTOR_BEGUN, /* erased behind a header of which only some bits were written: a power cut at the sector's start */
+    SECTOR_OTHER  /* any other content: foreign, or the result of a power cut during an erase */
+} sector_kind_t;
+
+typedef struct {
+    sector_kind_t kind;
+    uint16_t id;
+} sector_state_t;
+
+static bool is_erased(const struct flash_area *area, const struct flash_sector *sector, size_t from) {
     uint32_t words[CHUNK_WORDS];
-    for (size_t done = 0u; done < sector->fs_size; done += sizeof words) {
-        if (flash_area_read(area, sector->fs_off + (off_t)done, words, sizeof words) != 0) {
+    size_t size = 0u;
+    for (size_t done = from; done < sector->fs_size; done += size) {
+        size = MIN(sizeof words, sector->fs_size - done);
+        (void)memset(words, 0, sizeof words);
+        if (flash_area_read(area, sector->fs_off + (off_t)done, words, size) != 0) {
             return false;
         }
-        for (size_t i = 0u; i < ARRAY_SIZE(words); i++) {
+        for (size_t i = 0u; i < (size / sizeof words[0]); i++) {
             if (words[i] != UINT32_MAX) {
                 return false;
             }
@@ -39,29 +54,66 @@ static bool is_erased(const struct flash_area *area, const struct flash_sector *
     return true;
 }
 
-/* Broken: neither completely erased nor with a valid header. */
-static bool is_broken(const struct flash_area *area, const struct flash_sector *sector) {
+/* Writing only clears bits. So a header that was cut short still has every bit that the complete header has. */
+static bool is_begun(const head_t *head, uint32_t count) {
+    return ((head->magic & (uint32_t)LOG_MAGIC) == (uint32_t)LOG_MAGIC) && ((head->version & count) == count) &&
+           (head->padding == ERASED);
+}
+
+static sector_state_t examine(const struct flash_area *area, const struct flash_sector *sector, uint32_t count) {
+    sector_state_t state = {.kind = SECTOR_OTHER, .id = 0u};
     head_t head;
     if (flash_area_read(area, sector->fs_off, &head, sizeof head) != 0) {
-        return true;
+        return state;
     }
-    const bool whole = (head.magic == (uint32_t)LOG_MAGIC) && (head.version == LOG_VERSION) && (head.id != UINT16_MAX);
-    return !whole && !is_erased(area, sector);
+    state.id = head.id;
+    if ((head.magic == (uint32_t)LOG_MAGIC) && (head.version == count) && (head.id != UINT16_MAX)) {
+        state.kind = SECTOR_OF_LOG;
+    } else if (is_erased(area, sector, 0u)) {
+        state.kind = SECTOR_ERASED;
+    } else if (is_begun(&head, count) && is_erased(area, sector, sizeof head)) {
+        state.kind = SECTOR_BEGUN;
+    } else {
+        /* other content */
+    }
+    return state;
+}
+
+/* The sector of the log with the latest identifier; `count` when no sector is of the log. */
+static uint32_t find_newest(const sector_state_t *states, uint32_t count) {
+    uint32_t newest = count;
+    for (uint32_t i = 0u; i < count; i++) {
+        const bool later = (newest == count) || ((int16_t)(states[i].id - states[newest].id) > 0);
+        if ((states[i].kind == SECTOR_OF_LOG) && later) {
+            newest = i;
+        }
+    }
+    return newest;
+}
+
+/* FCB erases one sector at a time, the one behind the newest. Content that is not of the log anywhere else is foreign. */
+static bool is_foreign(const sector_state_t *states, uint32_t count) {
+    const uint32_t newest = find_newest(states, count);
+    for (uint32_t i = 0u; i < count; i++) {
+        const bool may_be_torn = (newest != count) && (i == ((newest + 1u) % count));
+        if ((states[i].kind == SECTOR_OTHER) && !may_be_torn) {
+            return true;
+        }
+    }
+    return false;
 }
 
 /*
- * A power cut while a sector is started or erased can leave an invalid header, for which FCB would refuse the whole
- * log. It can also leave an erased header in a sector that is not erased, in which FCB would then write. Such a sector
- * is left out, or, with `repair`, erased: then the processor may stall. Returns the number of usable sectors in
- * `sectors`.
+ * A power cut while a sector is started or erased leaves a sector for which FCB would refuse the whole log, or in which
+ * it would write although it is not erased. Such a sector is left out, or, with `repair`, erased: then the processor may
+ * stall. Returns the number of usable sectors in `sectors`.
  */
-static uint32_t find_sectors(const struct flash_area *area, bool repair, bool *all) {
-    uint32_t count = ARRAY_SIZE(sectors);
+static uint32_t keep_sound(const struct flash_area *area, const sector_state_t *states, uint32_t count, bool repair,
+                           bool *all) {
     uint32_t sound = 0u;
-    const int status = flash_area_get_sectors(LOG_AREA, &count, sectors);
     *all = true;
-    for (uint32_t i = 0u; ((status == 0) || (status == -ENOMEM)) && (i < count); i++) {
-        bool broken = is_broken(area, &sectors[i]);
+    for (uint32_t i = 0u; i < count; i++) {
+        bool broken = (states[i].kind == SECTOR_OTHER) || (states[i].kind == SECTOR_BEGUN);
         if (broken && repair) {
             broken = flash_area_flatten(area, sectors[i].fs_off, sectors[i].fs_size) != 0;
         }
@@ -75,38 +127,85 @@ static uint32_t find_sectors(const struct flash_area *area, bool repair, bool *a
     return sound;
 }
 
+/* Find the sectors of the partition. Returns their number, 0 without any. */
+static uint32_t find_sectors(void) {
+    uint32_t count = ARRAY_SIZE(sectors);
+    const int status = flash_area_get_sectors(LOG_AREA, &count, sectors);
+    return ((status == 0) || (status == -ENOMEM)) ? count : 0u;
+}
+
+static zephyr_hal_log_t begin_fcb(const struct flash_area *area, uint32_t count, bool repair, bool *all) {
+    static sector_state_t states[CONFIG_AGV_LOG_SECTORS];
+    for (uint32_t i = 0u; i < count; i++) {
+        states[i] = examine(area, &sectors[i], count);
+    }
+    if (is_foreign(states, count)) {
+        return ZEPHYR_HAL_LOG_FOREIGN;
+    }
+    const uint32_t sound = keep_sound(area, states, count, repair, all);
+    log_buffer = (struct fcb){
+        .f_magic = LOG_MAGIC, .f_version = (uint8_t)count, .f_sectors = sectors, .f_sector_cnt = (uint8_t)sound};
+    return ((sound > 0u) && (fcb_init(LOG_AREA, &log_buffer) == 0)) ? ZEPHYR_HAL_LOG_READY : ZEPHYR_HAL_LOG_FAILED;
+}
+
 static void open_log(hal_t *hal, bool repair) {
     const struct flash_area *area = NULL;
-    hal->log_ready = false;
+    hal->log = ZEPHYR_HAL_LOG_FAILED;
     hal->log_is_whole = false;
     if (flash_area_open(LOG_AREA, &area) == 0) {
-        const uint32_t count = find_sectors(area, repair, &hal->log_is_whole);
+        hal->log = begin_fcb(area, find_sectors(), repair, &hal->log_is_whole);
         flash_area_close(area);
-        log_buffer = (struct fcb){
-            .f_magic = LOG_MAGIC, .f_version = LOG_VERSION, .f_sectors = sectors, .f_sector_cnt = (uint8_t)count};
-        hal->log_ready = (count > 0u) && (fcb_init(LOG_AREA, &log_buffer) == 0);
     }
 }
 
-/* Never erases: broken sectors are repaired by hal_store_append(), which may stall the processor. */
-bool zephyr_log_start(hal_t *hal) {
+static bool flash_is_suitable(void) {
     const struct flash_area *area = NULL;
     if (flash_area_open(LOG_AREA, &area) != 0) {
         return false;
     }
     const bool fits = (flash_area_align(area) <= BLOCK_MAX) && (flash_area_erased_val(area) == ERASED);
     flash_area_close(area);
+    return fits;
+}
+
+/* Never erases: broken sectors are repaired by hal_store_append(), which may stall the processor. */
+bool zephyr_log_start(hal_t *hal) {
+    const bool fits = flash_is_suitable();
+    hal->log = ZEPHYR_HAL_LOG_FAILED;
     if (fits) {
         open_log(hal, false);
     }
     return fits;
 }
 
+/* Foreign content is never erased here. Only zephyr_hal_log_format() erases it. */
 static bool ready(hal_t *hal) {
-    if (!hal->log_ready || !hal->log_is_whole) {
+    if ((hal->log == ZEPHYR_HAL_LOG_FAILED) || ((hal->log == ZEPHYR_HAL_LOG_READY) && !hal->log_is_whole)) {
         open_log(hal, true);
     }
-    return hal->log_ready;
+    return hal->log == ZEPHYR_HAL_LOG_READY;
+}
+
+static bool erase_sector(uint32_t index) {
+    const struct flash_area *area = NULL;
+    struct flash_sector all[CONFIG_AGV_LOG_SECTORS];
+    uint32_t count = ARRAY_SIZE(all);
+    const int status = flash_area_get_sectors(LOG_AREA, &count, all);
+    bool erased = ((status == 0) || (status == -ENOMEM)) && (index < count) && (flash_area_open(LOG_AREA, &area) == 0);
+    if (erased) {
+        erased = flash_area_flatten(area, all[index].fs_off, all[index].fs_size) == 0;
+        flash_area_close(area);
+    }
+    return erased;
+}
+
+bool zephyr_hal_log_format(hal_t *hal, uint32_t step) {
+    hal->log = ZEPHYR_HAL_LOG_FORMATTING;
+    const bool more = erase_sector(step);
+    if (!more) {
+        open_log(hal, false);
+    }
+    return more;
 }
 
 /* Write whole blocks of the flash. The padding has the value of erased flash. */
@@ -131,22 +230,42 @@ bool hal_store_append(hal_t *hal, const void *record, size_t size) {
     return (status == 0) && write_padded(place, record, size) && (fcb_append_finish(&log_buffer, &place) == 0);
 }
 
+size_t zephyr_hal_log_next(hal_t *hal, zephyr_hal_log_cursor_t *cursor, void *record, size_t size) {
+    struct fcb_entry *const place = &cursor->place;
+    bool found = (hal->log == ZEPHYR_HAL_LOG_READY) && (fcb_getnext(&log_buffer, place) == 0);
+    const size_t copied = found ? MIN(size, place->fe_data_len) : 0u;
+    found = found && (flash_area_read(log_buffer.fap, FCB_ENTRY_FA_DATA_OFF((*place)), record, copied) == 0);
+    return found ? place->fe_data_len : 0u;
+}
+
 size_t hal_store_read_record(hal_t *hal, uint32_t index, void *record, size_t size) {
-    struct fcb_entry place = {0};
-    bool found = hal->log_ready && (fcb_getnext(&log_buffer, &place) == 0);
-    for (uint32_t i = 0u; found && (i < index); i++) {
-        found = fcb_getnext(&log_buffer, &place) == 0;
+    zephyr_hal_log_cursor_t cursor = {0};
+    size_t stored = zephyr_hal_log_next(hal, &cursor, record, size);
+    for (uint32_t i = 0u; (stored != 0u) && (i < index); i++) {
+        stored = zephyr_hal_log_next(hal, &cursor, record, size);
     }
-    const size_t copied = found ? MIN(size, place.fe_data_len) : 0u;
-    found = found && (flash_area_read(log_buffer.fap, FCB_ENTRY_FA_DATA_OFF(place), record, copied) == 0);
-    return found ? place.fe_data_len : 0u;
+    return stored;
 }
 
 #else
 
 bool zephyr_log_start(hal_t *hal) {
-    ARG_UNUSED(hal);
+    hal->log = ZEPHYR_HAL_LOG_NONE;
     return true;
+}
+
+bool zephyr_hal_log_format(hal_t *hal, uint32_t step) {
+    ARG_UNUSED(hal);
+    ARG_UNUSED(step);
+    return false;
+}
+
+size_t zephyr_hal_log_next(hal_t *hal, zephyr_hal_log_cursor_t *cursor, void *record, size_t size) {
+    ARG_UNUSED(hal);
+    ARG_UNUSED(cursor);
+    ARG_UNUSED(record);
+    ARG_UNUSED(size);
+    return 0u;
 }
 
 bool hal_store_append(hal_t *hal, const void *record, size_t size) {

@@ -17,14 +17,17 @@
 #include <zephyr/device.h>
 #include <zephyr/drivers/can.h>
 #include <zephyr/drivers/gpio.h>
+#include <zephyr/fs/fcb.h>
 #include <zephyr/kernel.h>
 
 #include "hal/can.h"
 #include "hal/clock.h"
 #include "hal/hal.h"
+#include "hal/inputs.h"
 #include "hal/led.h"
 #include "hal/reset.h"
 #include "hal/safety_output.h"
+#include "hal/self_test.h"
 #include "hal/store.h"
 #include "hal/watchdog.h"
 
@@ -78,15 +81,30 @@ typedef struct {
     uint32_t waiting_count;
 } zephyr_hal_side_t;
 
+/** The log in flash. */
+typedef enum {
+    ZEPHYR_HAL_LOG_NONE,    /**< the board has no log partition */
+    ZEPHYR_HAL_LOG_READY,   /**< can be read and written */
+    ZEPHYR_HAL_LOG_FAILED,  /**< the flash cannot be used; the next write tries again */
+    ZEPHYR_HAL_LOG_FOREIGN, /**< the partition has content that is not of this log: nothing is read, written or erased */
+    ZEPHYR_HAL_LOG_FORMATTING
+} zephyr_hal_log_t;
+
+/** A place in the log; {0} before the oldest record. Only the port uses the member. */
+typedef struct {
+    struct fcb_entry place;
+} zephyr_hal_log_cursor_t;
+
 struct hal {
+    uint32_t failed; /**< HAL_SELF_TEST_* bits of the parts that have failed */
     zephyr_hal_side_t sides[HAL_CAN_SIDES];
     struct k_sem wake;
     struct k_timer timer;
     hal_reset_cause_t reset_cause;
     zephyr_hal_retained_t *retained;
     int watchdog_channel;
-    bool log_ready;    /**< the log can be read */
-    bool log_is_whole; /**< and written without the repair of a sector */
+    zephyr_hal_log_t log;
+    bool log_is_whole; /**< the log can be written without the repair of a sector */
 };
 
 /** Settings of the port. */
@@ -120,6 +138,18 @@ void zephyr_hal_transmit(hal_t *hal);
 
 /** Whether the safety output reads as open. For the self-test, before the output is first closed. */
 bool zephyr_hal_output_is_open(void);
+
+/**
+ * Read the next record of the log, oldest first. Another thread than the supervisor's calls it with the scheduler locked.
+ * @return size of the record, of which at most @p size bytes were copied; 0 = there is none
+ */
+size_t zephyr_hal_log_next(hal_t *hal, zephyr_hal_log_cursor_t *cursor, void *record, size_t size);
+
+/**
+ * Make an empty log of the partition, whatever its content is. Call it with step 0, 1, ... until it returns false. Each
+ * call but the last erases one sector, which may stall the processor.
+ */
+bool zephyr_hal_log_format(hal_t *hal, uint32_t step);
 
 /**
  * End the run: opens the safety output, stores the cause over the reset, and resets the chip. May be called from any

@@ -340,3 +340,115 @@ ZTEST(port_log, test_a_power_cut_during_an_erase) {
         put_back(flash, size);
     }
 }
+
+static void assert_foreign_and_unchanged(const uint8_t *flash, size_t size, const char *what) {
+    const uint32_t erased = *erases_so_far;
+    const uint32_t written = *writes_so_far;
+    (void)memcpy(before_it, flash, size);
+    power_is_back();
+    zassert_equal(hal.log, ZEPHYR_HAL_LOG_FOREIGN, "%s: %d", what, hal.log);
+    for (uint32_t i = 0u; i < 5u; i++) {
+        zassert_false(append(i), "%s", what);
+    }
+    zassert_equal(count(), 0u, "%s", what);
+    zassert_mem_equal(flash, before_it, size, "%s", what);
+    zassert_equal(*erases_so_far, erased, "%s", what);
+    zassert_equal(*writes_so_far, written, "%s", what);
+}
+
+/* A program, a word at the start of a sector, a sector that is nearly erased. */
+/* Shows: INT-3 */
+ZTEST(port_log, test_foreign_content_is_never_erased) {
+    static const uint8_t flag[] = {0xEF, 0xBE, 0xAD, 0xDE};
+    size_t size = 0u;
+    size_t sector = 0u;
+    uint8_t *const flash = memory(&size, &sector);
+    for (size_t i = 0u; i < size; i++) {
+        flash[i] = (uint8_t)(i * 7u);
+    }
+    assert_foreign_and_unchanged(flash, size, "a program");
+    for (size_t at = 0u; at < size; at += sector) {
+        (void)memset(flash, 0xFF, size);
+        (void)memcpy(&flash[at], flag, sizeof flag);
+        assert_foreign_and_unchanged(flash, size, "a word");
+        (void)memset(flash, 0xFF, size);
+        flash[at + sector - 1u] = 0xFEu;
+        assert_foreign_and_unchanged(flash, size, "a last byte");
+    }
+}
+
+/* The log is in its second sector: only the third one may be the result of a power cut. */
+/* Shows: INT-3 */
+ZTEST(port_log, test_foreign_content_beside_a_log_is_never_erased) {
+    size_t size = 0u;
+    size_t sector = 0u;
+    uint8_t *const flash = memory(&size, &sector);
+    for (uint32_t i = 0u; flash[sector] == 0xFFu; i++) {
+        zassert_true(append(i));
+    }
+    (void)memset(flash, 0x5A, sector);
+    assert_foreign_and_unchanged(flash, size, "the sector before the newest");
+}
+
+/* The version in the header of a sector is the number of the log's sectors. */
+/* Shows: INT-3 */
+ZTEST(port_log, test_a_log_with_another_number_of_sectors_is_foreign) {
+    size_t size = 0u;
+    size_t sector = 0u;
+    uint8_t *const flash = memory(&size, &sector);
+    zassert_true(append(1u));
+    zassert_equal(flash[4], CONFIG_AGV_LOG_SECTORS);
+    flash[4] = CONFIG_AGV_LOG_SECTORS - 1;
+    assert_foreign_and_unchanged(flash, size, "one sector less");
+}
+
+/* Shows: INT-3 */
+ZTEST(port_log, test_an_operator_can_format_foreign_content) {
+    size_t size = 0u;
+    size_t sector = 0u;
+    uint8_t *const flash = memory(&size, &sector);
+    (void)memset(flash, 0x5A, size);
+    power_is_back();
+    uint32_t erased = 0u;
+    while (zephyr_hal_log_format(&hal, erased)) {
+        zassert_false(append(0u), "nothing is written meanwhile");
+        erased++;
+    }
+    zassert_equal(erased, CONFIG_AGV_LOG_SECTORS);
+    zassert_equal(hal.log, ZEPHYR_HAL_LOG_READY);
+    zassert_equal(count(), 0u);
+    zassert_true(append(7u));
+    power_is_back();
+    zassert_equal(number_at(0u), 7u);
+}
+
+/* Shows: INT-3 */
+ZTEST(port_log, test_the_log_is_read_record_by_record) {
+    zephyr_hal_log_cursor_t cursor = {0};
+    uint8_t record[RECORD];
+    for (uint32_t i = 0u; i < 30u; i++) {
+        zassert_true(append(i));
+    }
+    for (uint32_t i = 0u; i < 30u; i++) {
+        zassert_equal(zephyr_hal_log_next(&hal, &cursor, record, sizeof record), RECORD);
+        zassert_equal(record[0], i);
+    }
+    zassert_equal(zephyr_hal_log_next(&hal, &cursor, record, sizeof record), 0u);
+}
+
+/* The header of the first sector of an empty log is written at the start. */
+/* Shows: INT-3 */
+ZTEST(port_log, test_a_power_cut_while_the_first_sector_is_begun) {
+    for (uint32_t bytes = 0u; bytes <= 8u; bytes++) {
+        erase_all();
+        fixture_after(NULL);
+        *writes_until_the_cut = *writes_so_far + 1u;
+        *bytes_of_the_last = bytes;
+        (void)fixture_begin();
+        power_is_back();
+        zassert_equal(hal.log == ZEPHYR_HAL_LOG_FOREIGN, false, "%u bytes", bytes);
+        zassert_true(append(1u), "%u bytes", bytes);
+        power_is_back();
+        zassert_equal(number_at(0u), 1u, "%u bytes", bytes);
+    }
+}
