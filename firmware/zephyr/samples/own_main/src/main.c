@@ -1,0 +1,46 @@
+/* An application with a main() of its own: it runs the supervisor, and prints each new state. */
+#include <zephyr/sys/printk.h>
+
+#include "agv/names.h"
+#include "agv/recorder.h"
+#include "agv/supervisor.h"
+#include "hal_zephyr/zephyr_hal.h"
+#include "kconfig.h"
+
+static ZEPHYR_HAL_RETAINED agv_recorder_t recorder;
+static ZEPHYR_HAL_RETAINED zephyr_hal_retained_t retained;
+static hal_t hal;
+static agv_supervisor_t supervisor;
+static agv_ports_t ports = {.hal = &hal, .recorder = &recorder};
+
+int main(void) {
+    const zephyr_hal_config_t wiring = {.bitrate = CONFIG_AGV_CAN_BITRATE,
+                                        .sample_point_permille = CONFIG_AGV_CAN_SAMPLE_POINT,
+                                        .watchdog_ms = CONFIG_AGV_WATCHDOG_PERIOD_MS,
+                                        .retained = &retained};
+    agv_config_t config;
+    kconfig_read(&config);
+    (void)zephyr_hal_init(&hal, &wiring); /* what does not work is reported by the self-test */
+    uint32_t ticked_ms = hal_clock_now_ms(&hal);
+    agv_supervisor_start(&supervisor, &ports, &config, ticked_ms);
+    for (int printed = -1;;) {
+        zephyr_hal_wait(&hal);
+        const uint32_t now_ms = hal_clock_now_ms(&hal); /* before the frames: all stamped up to it are handed over */
+        hal_can_side_t side;
+        hal_can_frame_t frame;
+        while (zephyr_hal_receive(&hal, &side, &frame)) {
+            agv_supervisor_frame(&supervisor, &ports, side, &frame);
+        }
+        agv_supervisor_receive_alive(&supervisor);
+        if (now_ms != ticked_ms) {
+            ticked_ms = now_ms;
+            agv_supervisor_tick(&supervisor, &ports, now_ms);
+        }
+        zephyr_hal_transmit(&hal);
+        if ((int)agv_supervisor_state(&supervisor) != printed) {
+            printed = (int)agv_supervisor_state(&supervisor);
+            printk("supervisor: %s\n", agv_state_name((agv_state_t)printed));
+        }
+    }
+    return 0;
+}
