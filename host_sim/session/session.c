@@ -2,10 +2,14 @@
 
 #include <string.h>
 
+static const agv_version_t version = {
+    .major = HOST_SIM_VERSION_MAJOR, .minor = HOST_SIM_VERSION_MINOR, .patch = HOST_SIM_VERSION_PATCH};
+
 void session_init(session_t *session, hal_t *hal) {
     (void)memset(session, 0, sizeof *session);
     session->ports.hal = hal;
     session->ports.recorder = &session->recorder;
+    session->ports.version = &version;
 }
 
 bool session_observe(session_t *session, session_observer_fn *fn, void *ctx) {

@@ -248,6 +248,8 @@ def documented_signal(cell):
 def documented_bits(byte, bit):
     """The bits of cells such as `5`, `7 (Bit6)` or `1..2`, `LE`: a mask over the payload, low byte first."""
     first, last = (int(number) for number in (byte.split("..") * 2)[:2])
+    if bit in ("1..4", "5..8"):
+        return (0x0F if bit == "1..4" else 0xF0) << 8 * (first - 1)
     if bit.strip("*") in ("LE", "BE", "1..8"):
         return sum(0xFF << 8 * (n - 1) for n in range(first, last + 1))
     return 1 << (8 * (first - 1) + int(bit.split()[0]) - 1)
@@ -328,6 +330,15 @@ class DbcAgainstCodec(unittest.TestCase):
         fault = "EPS_OVER_CURRENT_SHUTDOWN"
         self.assertEqual(seen, {("INIT", "none", "open"), ("STANDBY", "none", "closed"), ("ACTIVE", "none", "closed"),
                                 ("TRIPPED", fault, "closed"), ("SAFE", fault, "closed"), ("TRIPPED", fault, "open")})
+
+    # Shows: TOP-3, HW-6
+    def test_status_pages(self):
+        frame = self.dbc.frame_by_name(STATUS_FRAME)
+        for payload, expected in (("33FF110001020300", {"page": 1, "version_major": 1, "version_minor": 2, "version_patch": 3}),
+                                  ("33FF2000EFCDAB89", {"page": 2, "revision": 0x89ABCDEF, "safety_output": 0})):
+            signals = {name: signal.raw_value for name, signal in frame.decode(bytes.fromhex(payload)).items()}
+            self.assertEqual(signals, signals | expected)
+            self.assertNotIn("config_checksum", signals)
 
     # Shows: TOP-3
     def test_status_document(self):

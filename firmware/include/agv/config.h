@@ -22,6 +22,7 @@ enum { AGV_IN_MANUAL_HEARTBEAT = 0, AGV_IN_MANUAL_ALL = 1 };
 enum { AGV_COUNTER_ANY = 0, AGV_COUNTER_INCREMENTS = 1 };
 enum { AGV_AFTER_POWER_ON_INIT = 0, AGV_AFTER_POWER_ON_TRIPPED = 1 };
 enum { AGV_RESET_INPUT_CAN = 0, AGV_RESET_INPUT_PIN = 1, AGV_RESET_INPUT_BOTH = 2 };
+enum { AGV_STATUS_VERSION_OFF = 0, AGV_STATUS_VERSION_ON = 1 };
 enum { AGV_GEAR_CHANGE_AT_STANDSTILL = 0, AGV_GEAR_CHANGE_ANY = 1 };
 
 /** Value of standstill_vcu_counts with which the speed of 363h is not checked. */

@@ -18,17 +18,19 @@
 #include "agv/faults.h"
 #include "agv/recorder.h"
 #include "agv/state.h"
+#include "agv/version.h"
 #include "hal/can.h"
 #include "hal/hal.h"
 
-/** The HAL and the flight recorder of a supervisor. Passed to every call; the supervisor never keeps the pointers. */
+/** The HAL, the flight recorder and the version of a supervisor. Passed to every call; the supervisor never keeps the pointers. */
 typedef struct {
     hal_t *hal;
     agv_recorder_t *recorder;
+    const agv_version_t *version; /**< NULL: none is reported (status_version) */
 } agv_ports_t;
 
 /** Memory of a supervisor in bytes, the same on every platform. */
-#define AGV_SUPERVISOR_MEMORY 976u
+#define AGV_SUPERVISOR_MEMORY 984u
 
 /**
  * One supervisor, in memory of the caller. Read it through the functions below. `seal` is a checksum over `memory`,

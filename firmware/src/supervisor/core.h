@@ -64,6 +64,7 @@ typedef struct {
     uint8_t store_credits;    /**< number of writes to flash allowed now */
     uint8_t checked_in;       /**< activities that have checked in since the watchdog was fed (TIM-3) */
     int8_t led_code;          /**< LED code of the highest-ranking fault */
+    uint32_t reserved;        /**< 0: fills the last pair of words under the seal */
 } agv_core_t;
 
 _Static_assert(sizeof(agv_core_t) == AGV_SUPERVISOR_MEMORY, "agv_supervisor_t holds just the core");

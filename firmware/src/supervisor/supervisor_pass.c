@@ -78,7 +78,8 @@ agv_tx_orders_t agv_core_orders(agv_core_t *core, const agv_ports_t *ports) {
                              .output_closed = core->machine.output_closed,
                              .park_released = core->machine.park_released,
                              .holdable = is_holdable(core),
-                             .config_checksum = core->config_checksum};
+                             .config_checksum = core->config_checksum,
+                             .version = ports->version};
 }
 
 /* FSM-4: the faults that open the output at once. */

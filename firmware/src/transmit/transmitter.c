@@ -257,17 +257,36 @@ static void tick_own(agv_transmitter_t *transmitter, const agv_tx_orders_t *orde
     }
 }
 
+/* Send a page of the status frame. Returns whether it must wait. */
+static bool emit_status_page(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t page,
+                             uint32_t content) {
+    const bool tripped = orders->first_reason < (uint8_t)AGV_FAULT_COUNT;
+    const uint32_t output = orders->output_closed ? 1u : 0u;
+    uint8_t data[AGV_DLC] = {orders->state, tripped ? orders->first_reason : (uint8_t)AGV_STATUS_FRAME_NO_REASON,
+                             (uint8_t)(output | (page << 4u)), transmitter->status_counter};
+    for (uint32_t i = 0u; i < 4u; i++) {
+        data[4u + i] = (uint8_t)(content >> (8u * i));
+    }
+    return emit(transmitter, orders, HAL_CAN_VEHICLE, orders->config->status_frame_id, data);
+}
+
+/* By choice, once in 256 frames two more follow at once, with version and revision. They are left out if they would have to wait. */
+static void emit_version(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
+    const agv_version_t *const version = orders->version;
+    if ((version != NULL) && (orders->config->status_version == (uint16_t)AGV_STATUS_VERSION_ON) &&
+        (transmitter->status_counter == UINT8_MAX)) {
+        const uint32_t number = version->major | ((uint32_t)version->minor << 8u) | ((uint32_t)version->patch << 16u);
+        (void)emit_status_page(transmitter, orders, AGV_STATUS_PAGE_VERSION, number);
+        (void)emit_status_page(transmitter, orders, AGV_STATUS_PAGE_REVISION, version->revision);
+    }
+}
+
 /* Send the status frame (TOP-3). Returns whether it must wait. */
 static bool emit_status_frame(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
-    const bool tripped = orders->first_reason < (uint8_t)AGV_FAULT_COUNT;
-    uint8_t data[AGV_DLC] = {orders->state, tripped ? orders->first_reason : (uint8_t)AGV_STATUS_FRAME_NO_REASON,
-                             (uint8_t)(orders->output_closed ? 1u : 0u), transmitter->status_counter};
-    for (uint32_t i = 0u; i < 4u; i++) {
-        data[4u + i] = (uint8_t)(orders->config_checksum >> (8u * i));
-    }
-    if (emit(transmitter, orders, HAL_CAN_VEHICLE, orders->config->status_frame_id, data)) {
+    if (emit_status_page(transmitter, orders, AGV_STATUS_PAGE_STATE, orders->config_checksum)) {
         return true;
     }
+    emit_version(transmitter, orders);
     transmitter->status_counter++;
     transmitter->status_ms = orders->timers->now_ms;
     transmitter->status_again = false;

@@ -12,6 +12,7 @@
 
 #include "agv/protocol.h"
 #include "agv/state.h"
+#include "agv/version.h"
 #include "base/timers.h"
 #include "decide/hold.h"
 #include "hal/can.h"
@@ -23,6 +24,11 @@
 
 /** Status frame (TOP-3), byte 2: no first reason. */
 #define AGV_STATUS_FRAME_NO_REASON 0xFFu
+
+/** Page of a status frame: bits 5..8 of byte 3. It tells what bytes 5..8 are. */
+#define AGV_STATUS_PAGE_STATE 0u    /**< checksum of the configuration */
+#define AGV_STATUS_PAGE_VERSION 1u  /**< version: major, minor, patch */
+#define AGV_STATUS_PAGE_REVISION 2u /**< revision of the sources */
 
 /** What the transmitter has done since the last report. The counts have the meaning of agv_counters_t. */
 typedef struct {
@@ -65,6 +71,7 @@ typedef struct {
     bool park_released; /**< own 168h may be sent (FSM-1) */
     bool holdable;      /**< own 065h may be sent (FSM-10) */
     uint32_t config_checksum;
+    const agv_version_t *version; /**< NULL: none */
 } agv_tx_orders_t;
 
 /** Start, from zeroed memory. The slots begin with the first burst; the first status frame is due now. */

@@ -27,7 +27,7 @@ static agv_recorder_t recorder;
 static agv_supervisor_t supervisor;
 static agv_core_t *core;
 static agv_config_t config;
-static const agv_ports_t ports = {&hal, &recorder};
+static const agv_ports_t ports = {&hal, &recorder, NULL};
 static uint32_t now_ms;
 static uint8_t counter;     /* of all that have one */
 static uint8_t mode;        /* 363h byte 7: 40h manual, 80h autopilot */

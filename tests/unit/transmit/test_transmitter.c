@@ -680,6 +680,29 @@ void test_the_period_of_the_status_frame(void) {
     TEST_ASSERT_EQUAL_UINT(10, sent_count);
 }
 
+/* Version 1.2.3 of the revision 89ABCDEFh, after the 256th frame. The bits 5 to 8 of byte 3 are the page. */
+/* Shows: TOP-3, HW-6 */
+void test_the_status_frame_reports_the_version_once_in_256_frames(void) {
+    static const agv_version_t version = {.major = 1, .minor = 2, .patch = 3, .revision = 0x89ABCDEF};
+    const uint8_t regular[8] = {0x33, 0xFF, 1, 255, 0x78, 0x56, 0x34, 0x12};
+    const uint8_t first[8] = {0x33, 0xFF, 0x11, 255, 1, 2, 3, 0};
+    const uint8_t second[8] = {0x33, 0xFF, 0x21, 255, 0xEF, 0xCD, 0xAB, 0x89};
+    with_status_frame();
+    orders.output_closed = true;
+    orders.version = &version;
+    config.status_version = AGV_STATUS_VERSION_ON;
+    agv_transmitter_status(&transmitter, &orders);
+    for (unsigned i = 1; i < 512; i++) {
+        sent_count = 0;
+        tick(100);
+        TEST_ASSERT_EQUAL_UINT((i % 256 == 255) ? 3 : 1, sent_count);
+    }
+    expect_sent(0, HAL_CAN_VEHICLE, 0x123, regular);
+    expect_sent(1, HAL_CAN_VEHICLE, 0x123, first);
+    expect_sent(2, HAL_CAN_VEHICLE, 0x123, second);
+    TEST_ASSERT_EQUAL_UINT16(512 + 4, report().sent);
+}
+
 /* Of several missed frames one is sent, and the grid stays. */
 /* Shows: TOP-3, TIM-1 */
 void test_a_late_step_sends_one_status_frame(void) {
