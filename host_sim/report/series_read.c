@@ -1,0 +1,143 @@
+#include "report/series_read.h"
+
+#include <string.h>
+
+#include "agv/codec.h"
+
+enum { NO_COUNTER = -1, MM_S_PER_1000_M_PER_H = 278 };
+
+int series_counter_at(agv_message_t message) {
+    static const int8_t at[AGV_MSG_COUNT] = {
+#define AGV_COMMAND(NAME, name, heading, table, cycle, deadline, fault, counter) [AGV_MSG_##NAME] = (counter),
+#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter) [AGV_MSG_##NAME] = (counter),
+#include "agv/message_table.def"
+#undef AGV_COMMAND
+#undef AGV_STATUS
+    };
+    return at[message];
+}
+
+uint16_t series_deadline_ms(const agv_config_t *config, agv_message_t message) {
+    static const uint16_t settings[AGV_MSG_COUNT] = {
+#define AGV_COMMAND(NAME, name, heading, table, cycle, deadline, fault, counter)                                       \
+    [AGV_MSG_##NAME] = AGV_SETTING_##deadline,
+#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter)                                        \
+    [AGV_MSG_##NAME] = AGV_SETTING_##deadline,
+#include "agv/message_table.def"
+#undef AGV_COMMAND
+#undef AGV_STATUS
+    };
+    return agv_config_get(config, settings[message]);
+}
+
+void series_reader_init(series_reader_t *reader, const agv_config_t *config) {
+    reader->config = *config;
+    agv_config_ids(config, &reader->ids);
+    memset(reader->message_of, (int)AGV_MSG_NONE, sizeof reader->message_of);
+    for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
+        reader->message_of[reader->ids.of[message] & AGV_ID_MAX] = (uint8_t)message;
+    }
+}
+
+agv_message_t series_message(const series_reader_t *reader, const series_frame_t *frame) {
+    if ((frame->flags != 0u) || (frame->length != AGV_DLC) || (frame->id > AGV_ID_MAX)) {
+        return AGV_MSG_NONE;
+    }
+    const agv_message_t message = (agv_message_t)reader->message_of[frame->id];
+    const bool is_command = (uint32_t)message < AGV_COMMAND_COUNT;
+    const bool is_gateway = reader->config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    const hal_can_side_t from = (is_command && is_gateway && !frame->sent) ? HAL_CAN_AI : HAL_CAN_VEHICLE;
+    if ((frame->side != (uint8_t)from) || (frame->sent && !is_command)) {
+        return AGV_MSG_NONE;
+    }
+    return message;
+}
+
+static void add(series_values_t *values, series_signal_t signal, int32_t value) {
+    values->signal[values->count] = (uint8_t)signal;
+    values->value[values->count] = value;
+    values->count++;
+}
+
+static void add_wheels(series_values_t *values, const series_frame_t *frame) {
+    agv_wheel_speed_t wheels;
+    if (agv_unpack_wheel_speed(&wheels, frame->data)) {
+        add(values, SERIES_WHEEL_LEFT, wheels.left_mm_s);
+        add(values, SERIES_WHEEL_RIGHT, wheels.right_mm_s);
+    }
+}
+
+static void add_angle(series_values_t *values, series_signal_t signal, const uint8_t *bytes) {
+    const uint32_t raw = agv_angle_read(bytes);
+    if (raw <= (uint32_t)AGV_ANGLE_RAW_MAX) {
+        add(values, signal, (int32_t)raw - AGV_ANGLE_RAW_CENTRE);
+    }
+}
+
+static void add_throttle(series_values_t *values, series_signal_t signal, uint8_t counts) {
+    if (counts <= AGV_THROTTLE_MAX_COUNTS) {
+        add(values, signal, (int32_t)(counts * AGV_THROTTLE_PERMILLE_PER_COUNT));
+    }
+}
+
+series_values_t series_values(agv_message_t message, const series_frame_t *frame) {
+    series_values_t values = {.count = 0u};
+    agv_vehicle_status_t status;
+    switch (message) {
+    case AGV_MSG_THROTTLE_COMMAND:
+        add_throttle(&values, frame->sent ? SERIES_THROTTLE_SENT : SERIES_THROTTLE_COMMAND, frame->data[0]);
+        break;
+    case AGV_MSG_THROTTLE_STATUS:
+        add_throttle(&values, SERIES_THROTTLE_STATUS, frame->data[0]);
+        break;
+    case AGV_MSG_STEERING_COMMAND:
+        add_angle(&values, frame->sent ? SERIES_STEERING_SENT : SERIES_STEERING_COMMAND, frame->data);
+        break;
+    case AGV_MSG_STEERING_STATUS:
+        add_angle(&values, SERIES_STEERING_STATUS, &frame->data[2]);
+        break;
+    case AGV_MSG_VEHICLE_STATUS:
+        if (agv_unpack_vehicle_status(&status, frame->data)) {
+            add(&values, SERIES_VCU_SPEED, (int32_t)(status.speed_m_per_h * MM_S_PER_1000_M_PER_H / 1000u));
+        }
+        break;
+    case AGV_MSG_WHEEL_SPEED:
+        add_wheels(&values, frame);
+        break;
+    default:
+        break;
+    }
+    return values;
+}
+
+static bool counts_up(const agv_config_t *config, agv_message_t message) {
+    const uint16_t choice = (message == AGV_MSG_VEHICLE_STATUS)    ? config->vcu_counter
+                            : (message == AGV_MSG_STEERING_STATUS) ? config->eps_counter
+                                                                   : config->ai_counter;
+    return choice == (uint16_t)AGV_COUNTER_INCREMENTS;
+}
+
+/** Whether a frame renews its message. */
+static bool renews(const series_reader_t *reader, series_ages_t *ages, agv_message_t message,
+                   const series_frame_t *frame) {
+    const int at = series_counter_at(message);
+    if (at < 0) {
+        return ((uint32_t)message >= AGV_COMMAND_COUNT) || agv_value_is_valid((uint32_t)message, frame->data);
+    }
+    const uint8_t before = ages->counter[message];
+    const uint8_t now = frame->data[at];
+    ages->counter[message] = now;
+    const bool counted = counts_up(&reader->config, message) ? (now == (uint8_t)(before + 1u)) : (now != before);
+    return counted || !ages->heard[message];
+}
+
+bool series_ages_frame(const series_reader_t *reader, series_ages_t *ages, agv_message_t message,
+                       const series_frame_t *frame, uint64_t *gap_us) {
+    const bool is_new = renews(reader, ages, message, frame);
+    *gap_us = ages->heard[message] ? frame->t_us - ages->last_us[message] : 0u;
+    if (is_new) {
+        ages->last_us[message] = frame->t_us;
+        ages->heard[message] = true;
+    }
+    return is_new;
+}
