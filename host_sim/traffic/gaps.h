@@ -1,0 +1,38 @@
+/**
+ * @file gaps.h
+ * Gaps between frames, counted as they come in a histogram of fixed size.
+ *
+ * Number, shortest and longest gap are exact. Every power of two of microseconds has 64 equal cells, so a gap found by
+ * its rank (median, 99.9 %) is never less than the true one and at most 1.6 % (1/64) more; up to 128 us it is exact.
+ */
+#ifndef HOST_SIM_GAPS_H
+#define HOST_SIM_GAPS_H
+
+#include <stdint.h>
+
+#define GAPS_CELLS_PER_OCTAVE 64u
+/** Up to 2^37 us (38 hours); longer gaps are in the last cell. */
+#define GAPS_CELLS (GAPS_CELLS_PER_OCTAVE * 32u)
+
+/** All zero: no gap yet. Some 8 KiB. Up to 4 thousand million gaps in each cell. */
+typedef struct {
+    uint64_t count;
+    uint64_t shortest_us;
+    uint64_t longest_us;
+    uint64_t longest_at_us; /**< when the longest one began */
+    uint32_t cells[GAPS_CELLS];
+} gaps_t;
+
+/** Add a gap. @param begin_us when it began */
+void gaps_add(gaps_t *gaps, uint64_t begin_us, uint64_t gap_us);
+
+/** The gap of which @p permille of 1000 gaps are no longer; 0: there are no gaps. */
+uint64_t gaps_quantile_us(const gaps_t *gaps, uint32_t permille);
+
+/** The shortest gap that at most @p longer gaps exceed; 0: there are not more gaps than that. */
+uint64_t gaps_without_longest_us(const gaps_t *gaps, uint64_t longer);
+
+/** Number of gaps that are longer than @p limit_us, within 1.6 %. */
+uint64_t gaps_longer_than(const gaps_t *gaps, uint64_t limit_us);
+
+#endif

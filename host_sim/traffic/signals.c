@@ -1,0 +1,217 @@
+#include "traffic/signals.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "agv/codec.h"
+#include "agv/names.h"
+#include "agv/state.h"
+
+enum { BITS_PER_BYTE = 8, NO_REASON = 0xFF, DECIMAL = 10 };
+
+/** A raw value with its word. */
+typedef struct {
+    uint32_t raw;
+    const char *word;
+} word_row_t;
+
+static const word_row_t on_words[] = {{0u, "off"}, {1u, "on"}, {0u, NULL}};
+static const word_row_t off_words[] = {{0u, "on"}, {1u, "off"}, {0u, NULL}};
+static const word_row_t yes_words[] = {{0u, "no"}, {1u, "yes"}, {0u, NULL}};
+static const word_row_t gear_words[] = {
+    {AGV_GEAR_P, "P"}, {AGV_GEAR_R, "R"}, {AGV_GEAR_N, "N"}, {AGV_GEAR_D, "D"}, {0u, NULL}};
+static const word_row_t mode_words[] = {{0u, "none"}, {1u, "manual"}, {2u, "autopilot"}, {3u, "both"}, {0u, NULL}};
+static const word_row_t eps_mode_words[] = {{AGV_EPS_MODE_ASSIST, "assist"}, {AGV_EPS_MODE_ANGLE, "angle"},
+                                            {AGV_EPS_MODE_SPEED, "speed"},   {AGV_EPS_MODE_TORQUE, "torque"},
+                                            {AGV_EPS_MODE_OFF, "off"},       {0u, NULL}};
+static const word_row_t output_words[] = {{0u, "open"}, {1u, "closed"}, {0u, NULL}};
+static const word_row_t no_words[] = {{0u, NULL}};
+static const word_row_t state_words[] = {{0u, NULL}};  /* agv_state_name() knows them */
+static const word_row_t reason_words[] = {{0u, NULL}}; /* agv_fault_name() knows them */
+
+/** How the raw value lies in the payload. */
+typedef enum {
+    LAYOUT_NUMBER,
+    LAYOUT_SIGNED,
+    LAYOUT_BIG,
+    LAYOUT_CHOICE,
+    LAYOUT_FLAG,
+    LAYOUT_ALARM,
+    LAYOUT_COUNTER
+} layout_t;
+
+static const signal_kind_t kinds[] = {
+    [LAYOUT_NUMBER] = SIGNAL_NUMBER,   [LAYOUT_SIGNED] = SIGNAL_NUMBER, [LAYOUT_BIG] = SIGNAL_NUMBER,
+    [LAYOUT_CHOICE] = SIGNAL_CHOICE,   [LAYOUT_FLAG] = SIGNAL_FLAG,     [LAYOUT_ALARM] = SIGNAL_ALARM,
+    [LAYOUT_COUNTER] = SIGNAL_COUNTER,
+};
+
+/** A row of signals.def. */
+typedef struct {
+    uint32_t message;
+    const char *name;
+    layout_t layout;
+    uint8_t at;
+    uint8_t bits;
+    int32_t factor;
+    int32_t offset;
+    uint8_t decimals;
+    const char *unit;
+    uint32_t highest;
+    const word_row_t *words;
+} row_t;
+
+static const row_t rows[] = {
+#define SIGNAL(message, name, kind, at, bits, factor, offset, decimals, unit, highest, words)                          \
+    {(uint32_t)(message), #name, LAYOUT_##kind, at, bits, factor, offset, decimals, unit, highest, words},
+#include "traffic/signals.def"
+#undef SIGNAL
+};
+
+enum { ROWS = sizeof rows / sizeof rows[0] };
+
+/** Where the rows of each message begin, and what is made from them; filled in once. */
+static struct {
+    bool made;
+    size_t first[SIGNALS_MESSAGES];
+    size_t count[SIGNALS_MESSAGES];
+    signal_info_t infos[ROWS];
+} table;
+
+static void make_table(void) {
+    if (table.made) {
+        return;
+    }
+    for (size_t i = 0u; i < (size_t)ROWS; i++) {
+        const row_t *row = &rows[i];
+        const bool is_alarm = row->layout == LAYOUT_ALARM;
+        table.first[row->message] = (table.count[row->message] == 0u) ? i : table.first[row->message];
+        table.count[row->message]++;
+        table.infos[i] = (signal_info_t){.name = row->name,
+                                         .unit = row->unit,
+                                         .kind = kinds[row->layout],
+                                         .decimals = row->decimals,
+                                         .fault = is_alarm ? agv_fault_from_name(row->name) : AGV_FAULT_NONE};
+    }
+    table.made = true;
+}
+
+/** The index of a row; ROWS: there is no such signal. */
+static size_t row_of(uint32_t message, size_t index) {
+    make_table();
+    const bool exists = (message < (uint32_t)SIGNALS_MESSAGES) && (index < table.count[message]);
+    return exists ? table.first[message] + index : (size_t)ROWS;
+}
+
+const char *signals_message_name(uint32_t message) {
+    return (message == SIGNALS_STATUS_FRAME) ? "supervisor_status" : agv_message_name((agv_message_t)message);
+}
+
+size_t signals_count(uint32_t message) {
+    make_table();
+    return (message < (uint32_t)SIGNALS_MESSAGES) ? table.count[message] : 0u;
+}
+
+const signal_info_t *signals_info(uint32_t message, size_t index) {
+    const size_t row = row_of(message, index);
+    return (row < (size_t)ROWS) ? &table.infos[row] : NULL;
+}
+
+static uint32_t raw_of(const row_t *row, const uint8_t data[AGV_DLC]) {
+    const uint32_t first = (uint32_t)row->at / BITS_PER_BYTE;
+    const uint32_t bytes = ((uint32_t)row->bits + BITS_PER_BYTE - 1u) / BITS_PER_BYTE;
+    uint32_t raw = 0u;
+    for (uint32_t i = 0u; i < bytes; i++) {
+        const uint32_t from = (row->layout == LAYOUT_BIG) ? i : bytes - 1u - i;
+        raw = (raw << BITS_PER_BYTE) | data[first + from];
+    }
+    raw >>= (uint32_t)row->at % BITS_PER_BYTE;
+    return (row->bits == 32u) ? raw : (raw & ((1u << row->bits) - 1u));
+}
+
+static const char *word_of(const row_t *row, uint32_t raw) {
+    if (row->words == state_words) {
+        return agv_state_name((agv_state_t)raw);
+    }
+    if (row->words == reason_words) {
+        return (raw == (uint32_t)NO_REASON) ? "none" : agv_fault_name((agv_fault_t)raw);
+    }
+    for (const word_row_t *word = row->words; word->word != NULL; word++) {
+        if (word->raw == raw) {
+            return word->word;
+        }
+    }
+    return NULL;
+}
+
+bool signals_read(uint32_t message, size_t index, const uint8_t data[AGV_DLC], signal_value_t *value) {
+    const size_t at = row_of(message, index);
+    if (at == (size_t)ROWS) {
+        return false;
+    }
+    const row_t *row = &rows[at];
+    const uint32_t raw = raw_of(row, data);
+    const bool is_signed = row->layout == LAYOUT_SIGNED;
+    const int64_t number = is_signed ? (int64_t)(int32_t)raw : (int64_t)raw;
+    value->raw = raw;
+    value->scaled = (number * row->factor) + row->offset;
+    value->word = word_of(row, raw);
+    value->valid = (is_signed || (raw <= row->highest)) && ((row->layout != LAYOUT_CHOICE) || (value->word != NULL));
+    return true;
+}
+
+static int64_t power_of_ten(uint8_t decimals) {
+    int64_t power = 1;
+    for (uint8_t i = 0u; i < decimals; i++) {
+        power *= DECIMAL;
+    }
+    return power;
+}
+
+double signals_number(const signal_info_t *info, const signal_value_t *value) {
+    return (double)value->scaled / (double)power_of_ten(info->decimals);
+}
+
+void signals_value_text(char text[SIGNALS_VALUE_SIZE], const signal_info_t *info, const signal_value_t *value) {
+    const char *invalid = value->valid ? "" : " (invalid)";
+    if (value->word != NULL) {
+        (void)snprintf(text, SIGNALS_VALUE_SIZE, "%s%s", value->word, invalid);
+        return;
+    }
+    (void)snprintf(text, SIGNALS_VALUE_SIZE, "%.*f%s%s%s", (int)info->decimals, signals_number(info, value),
+                   (info->unit[0] != '\0') ? " " : "", info->unit, invalid);
+}
+
+/** Whether a text about the payload names this signal. */
+static bool is_shown(const signal_info_t *info, const signal_value_t *value) {
+    if (info->kind == SIGNAL_FLAG) {
+        return (strcmp(value->word, "no") != 0) && (strcmp(value->word, "off") != 0);
+    }
+    return (info->kind != SIGNAL_ALARM) || (value->raw != 0u);
+}
+
+char *signals_print(char *text, size_t size, uint32_t message, const uint8_t data[AGV_DLC]) {
+    size_t used = 0u;
+    signal_value_t value;
+    text[0] = '\0';
+    for (size_t i = 0u; signals_read(message, i, data, &value); i++) {
+        const signal_info_t *info = signals_info(message, i);
+        if (!is_shown(info, &value)) {
+            continue;
+        }
+        char part[SIGNALS_VALUE_SIZE + SIGNALS_VALUE_SIZE] = "";
+        char number[SIGNALS_VALUE_SIZE] = "";
+        const bool is_set = (info->kind == SIGNAL_FLAG) || ((info->kind == SIGNAL_ALARM) && (value.word != NULL));
+        if (!is_set) {
+            signals_value_text(number, info, &value);
+        }
+        const int length =
+            snprintf(part, sizeof part, "%s%.40s%s%s", (used > 0u) ? ", " : "", info->name, is_set ? "" : " ", number);
+        if (used + (size_t)length < size) {
+            (void)memcpy(&text[used], part, (size_t)length + 1u);
+            used += (size_t)length;
+        }
+    }
+    return text;
+}

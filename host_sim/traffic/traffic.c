@@ -1,0 +1,339 @@
+#include "traffic/traffic.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "agv/codec.h"
+#include "traffic/watch.h"
+
+enum {
+    IDS_11_BITS = 2048,
+    IDS_29_BITS = 512,
+    SLOTS_29_BITS = 1024,
+    IDS_MAX = HAL_CAN_SIDES * (IDS_11_BITS + IDS_29_BITS)
+};
+enum { NO_COUNTER = 0xFF, MESSAGE_UNKNOWN = 0xFF, FIRST_COUNTER_AT = 0, LAST_COUNTER_AT = 7, CANDIDATES = 2 };
+enum { BITS_PER_WORD = 32, WORD_CHOICES = 256 };
+
+/** The index of the alive counter in data[] of each message. */
+static const uint8_t counters_at[SIGNALS_MESSAGES] = {
+#define AGV_COMMAND AGV_STATUS
+#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter) [AGV_MSG_##NAME] = (counter),
+#include "agv/message_table.def"
+#undef AGV_COMMAND
+#undef AGV_STATUS
+    [AGV_MSG_COUNT] = 3 /* of the status frame */
+};
+
+struct traffic {
+    agv_config_t config;
+    uint8_t messages[IDS_11_BITS]; /**< the message of each identifier */
+    traffic_id_t *standard[HAL_CAN_SIDES][IDS_11_BITS];
+    traffic_id_t *extended[HAL_CAN_SIDES][SLOTS_29_BITS];
+    size_t extended_count[HAL_CAN_SIDES];
+    traffic_id_t *all[IDS_MAX];
+    size_t all_count;
+    traffic_totals_t totals;
+    bool is_engaged;
+    uint32_t frames_not_engaged; /**< 363h in a row without autopilot mode */
+    uint64_t engaged_since_us;
+};
+
+traffic_t *traffic_new(const agv_config_t *config) {
+    traffic_t *traffic = calloc(1u, sizeof *traffic);
+    if (traffic == NULL) {
+        return NULL;
+    }
+    agv_ids_t ids;
+    agv_config_ids(config, &ids);
+    traffic->config = *config;
+    (void)memset(traffic->messages, MESSAGE_UNKNOWN, sizeof traffic->messages);
+    if (config->status_frame_id != 0u) {
+        traffic->messages[config->status_frame_id] = (uint8_t)SIGNALS_STATUS_FRAME;
+    }
+    for (size_t i = 0u; i < (size_t)AGV_MSG_COUNT; i++) {
+        traffic->messages[ids.of[i]] = (uint8_t)i;
+    }
+    return traffic;
+}
+
+static void free_id(traffic_id_t *entry) {
+    free(entry->watch);
+    free(entry->counter);
+    free(entry->ranges);
+    free(entry->candidates);
+    free(entry);
+}
+
+void traffic_free(traffic_t *traffic) {
+    if (traffic != NULL) {
+        for (size_t i = 0u; i < traffic->all_count; i++) {
+            free_id(traffic->all[i]);
+        }
+        free(traffic);
+    }
+}
+
+/** The side on which the supervisor listens for a message. */
+static hal_can_side_t side_of(const traffic_t *traffic, uint32_t message) {
+    const bool is_command = message < AGV_COMMAND_COUNT;
+    return (is_command && (traffic->config.topology == AGV_TOPOLOGY_GATEWAY)) ? HAL_CAN_AI : HAL_CAN_VEHICLE;
+}
+
+/** Give a new identifier what its message needs. @return false: out of memory */
+static bool furnish(const traffic_t *traffic, traffic_id_t *entry) {
+    if (entry->message == TRAFFIC_UNKNOWN) {
+        entry->candidates = calloc(CANDIDATES, sizeof *entry->candidates);
+        return entry->candidates != NULL;
+    }
+    entry->ranges = calloc(SIGNALS_MAX, sizeof *entry->ranges);
+    bool good = entry->ranges != NULL;
+    if (counters_at[entry->message] != (uint8_t)NO_COUNTER) {
+        entry->counter = calloc(1u, sizeof *entry->counter);
+        good = good && (entry->counter != NULL);
+    }
+    if ((entry->message != SIGNALS_STATUS_FRAME) && (entry->side == side_of(traffic, entry->message))) {
+        entry->watch = calloc(1u, sizeof *entry->watch);
+        good = good && (entry->watch != NULL) && watch_init(entry->watch, &traffic->config, entry->message);
+    }
+    return good;
+}
+
+/** Make the entry of an identifier that is heard for the first time. @return NULL: out of memory */
+static traffic_id_t *add_id(traffic_t *traffic, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
+    traffic_id_t *entry = calloc(1u, sizeof *entry);
+    if (entry == NULL) {
+        return NULL;
+    }
+    const bool is_extended = (frame->flags & HAL_CAN_EXTENDED) != 0u;
+    const uint8_t message = is_extended ? (uint8_t)MESSAGE_UNKNOWN : traffic->messages[frame->id];
+    entry->side = side;
+    entry->id = frame->id;
+    entry->is_extended = is_extended;
+    entry->message = (message == (uint8_t)MESSAGE_UNKNOWN) ? TRAFFIC_UNKNOWN : message;
+    entry->first_us = t_us;
+    entry->length_min = UINT8_MAX;
+    (void)memset(entry->bits_always, UINT8_MAX, sizeof entry->bits_always);
+    if (!furnish(traffic, entry)) {
+        free_id(entry);
+        return NULL;
+    }
+    traffic->all[traffic->all_count] = entry;
+    traffic->all_count++;
+    if ((entry->watch != NULL) && (entry->watch->when == TRAFFIC_ENGAGED) && traffic->is_engaged) {
+        watch_start(entry->watch, traffic->engaged_since_us);
+    }
+    return entry;
+}
+
+/** The slot of a 29-bit identifier: its own, or a free one. */
+static traffic_id_t **find_slot(traffic_t *traffic, hal_can_side_t side, uint32_t id) {
+    uint32_t slot = (id ^ (id >> 10u) ^ (id >> 20u)) % (uint32_t)SLOTS_29_BITS;
+    while ((traffic->extended[side][slot] != NULL) && (traffic->extended[side][slot]->id != id)) {
+        slot = (slot + 1u) % (uint32_t)SLOTS_29_BITS;
+    }
+    return &traffic->extended[side][slot];
+}
+
+/** The entry of a frame's identifier. @return NULL: there is no room for it */
+static traffic_id_t *entry_of(traffic_t *traffic, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
+    const bool is_extended = (frame->flags & HAL_CAN_EXTENDED) != 0u;
+    if (!is_extended && (frame->id >= (uint32_t)IDS_11_BITS)) {
+        return NULL;
+    }
+    traffic_id_t **slot = is_extended ? find_slot(traffic, side, frame->id) : &traffic->standard[side][frame->id];
+    if (*slot == NULL) {
+        if (is_extended && (traffic->extended_count[side] == (size_t)IDS_29_BITS)) {
+            return NULL;
+        }
+        *slot = add_id(traffic, side, frame, t_us);
+        traffic->extended_count[side] += (is_extended && (*slot != NULL)) ? 1u : 0u;
+    }
+    return *slot;
+}
+
+static void take_range(traffic_range_t *range, const signal_value_t *value, uint64_t t_us) {
+    if (value->raw != 0u) {
+        range->set_at_us = (range->set == 0u) ? t_us : range->set_at_us;
+        range->set++;
+    }
+    if (value->raw < (uint32_t)WORD_CHOICES) {
+        range->words[value->raw / BITS_PER_WORD] |= 1u << (value->raw % BITS_PER_WORD);
+    }
+    if (!value->valid) {
+        range->invalid++;
+        return;
+    }
+    range->lowest = ((range->valid == 0u) || (value->scaled < range->lowest)) ? value->scaled : range->lowest;
+    range->highest = ((range->valid == 0u) || (value->scaled > range->highest)) ? value->scaled : range->highest;
+    range->valid++;
+}
+
+static void for_engaged(traffic_t *traffic, uint64_t t_us, void (*apply)(traffic_watch_t *, uint64_t)) {
+    for (uint32_t message = 0u; message < AGV_COMMAND_COUNT; message++) {
+        const traffic_id_t *entry = traffic_message(traffic, message);
+        if ((entry != NULL) && (entry->watch->when == TRAFFIC_ENGAGED)) {
+            apply(entry->watch, t_us);
+        }
+    }
+}
+
+static void end_engagement(traffic_t *traffic, uint64_t t_us) {
+    for_engaged(traffic, t_us, watch_stop);
+    traffic->totals.engaged_us += t_us - traffic->engaged_since_us;
+    traffic->is_engaged = false;
+}
+
+/** Follow the mode that the VCU reports. */
+static void take_mode(traffic_t *traffic, uint8_t flags, uint64_t t_us) {
+    const bool is_autopilot = (flags & AGV_VCU_FLAG_AUTOPILOT) != 0u;
+    traffic->frames_not_engaged = is_autopilot ? 0u : traffic->frames_not_engaged + 1u;
+    if (is_autopilot && !traffic->is_engaged) {
+        traffic->is_engaged = true;
+        traffic->engaged_since_us = t_us;
+        traffic->totals.engagements++;
+        for_engaged(traffic, t_us, watch_start);
+    } else if (traffic->is_engaged && (traffic->frames_not_engaged >= traffic->config.mode_frames)) {
+        end_engagement(traffic, t_us);
+    }
+}
+
+/** Whether the setting of a heartbeat's sender accepts a step of its counter. */
+static bool is_heartbeat(const traffic_t *traffic, uint32_t message, counter_step_t step) {
+    const uint16_t choice = (message == (uint32_t)AGV_MSG_VEHICLE_STATUS)    ? traffic->config.vcu_counter
+                            : (message == (uint32_t)AGV_MSG_STEERING_STATUS) ? traffic->config.eps_counter
+                                                                             : traffic->config.ai_counter;
+    return (step == COUNTER_STEP) || ((step == COUNTER_JUMP) && (choice == AGV_COUNTER_ANY));
+}
+
+/** Take a well-formed frame of a known message. */
+static void take_known(traffic_t *traffic, traffic_id_t *entry, const hal_can_frame_t *frame, uint64_t t_us) {
+    const uint32_t message = entry->message;
+    signal_value_t value;
+    for (size_t i = 0u; signals_read(message, i, frame->data, &value); i++) {
+        take_range(&entry->ranges[i], &value, t_us);
+    }
+    bool restarts = (message >= AGV_COMMAND_COUNT) || agv_value_is_valid(message, frame->data);
+    if (entry->counter != NULL) {
+        const counter_step_t step = counter_use_add(entry->counter, frame->data[counters_at[message]], t_us);
+        restarts = is_heartbeat(traffic, message, step);
+    }
+    if ((entry->watch != NULL) && restarts) {
+        watch_restart(entry->watch, t_us);
+    }
+    if ((message == (uint32_t)AGV_MSG_VEHICLE_STATUS) && (entry->side == HAL_CAN_VEHICLE)) {
+        take_mode(traffic, frame->data[6], t_us);
+    }
+}
+
+static void take_bits(traffic_id_t *entry, const hal_can_frame_t *frame) {
+    for (size_t i = 0u; i < AGV_DLC; i++) {
+        entry->bits_ever[i] |= frame->data[i];
+        entry->bits_always[i] &= frame->data[i];
+    }
+    entry->length_min = (frame->length < entry->length_min) ? frame->length : entry->length_min;
+    entry->length_max = (frame->length > entry->length_max) ? frame->length : entry->length_max;
+}
+
+static void take_data(traffic_t *traffic, traffic_id_t *entry, const hal_can_frame_t *frame, uint64_t t_us) {
+    const bool is_well_formed = (frame->length == AGV_DLC) && ((frame->flags & HAL_CAN_FD) == 0u);
+    if ((entry->message != TRAFFIC_UNKNOWN) && !is_well_formed) {
+        entry->malformed++;
+        return;
+    }
+    if (entry->count > 0u) {
+        gaps_add(&entry->gaps, entry->last_us, t_us - entry->last_us);
+    } else {
+        entry->first_us = t_us;
+    }
+    entry->count++;
+    entry->last_us = t_us;
+    take_bits(entry, frame);
+    if (entry->message != TRAFFIC_UNKNOWN) {
+        take_known(traffic, entry, frame, t_us);
+    } else if (frame->length == AGV_DLC) {
+        (void)counter_use_add(&entry->candidates[0], frame->data[FIRST_COUNTER_AT], t_us);
+        (void)counter_use_add(&entry->candidates[1], frame->data[LAST_COUNTER_AT], t_us);
+    }
+}
+
+void traffic_frame(traffic_t *traffic, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
+    if ((frame->flags & HAL_CAN_ERROR) != 0u) {
+        traffic->totals.error++;
+        return;
+    }
+    traffic_id_t *entry = entry_of(traffic, side, frame, t_us);
+    if ((frame->flags & HAL_CAN_REMOTE) != 0u) {
+        if (entry != NULL) {
+            entry->malformed++;
+        }
+        return;
+    }
+    traffic->totals.data++;
+    if (entry == NULL) {
+        traffic->totals.uncounted++;
+        return;
+    }
+    take_data(traffic, entry, frame, t_us);
+}
+
+static int compare(const void *left, const void *right) {
+    const traffic_id_t *a = *(const traffic_id_t *const *)left;
+    const traffic_id_t *b = *(const traffic_id_t *const *)right;
+    if (a->is_extended != b->is_extended) {
+        return a->is_extended ? 1 : -1;
+    }
+    if (a->id != b->id) {
+        return (a->id > b->id) ? 1 : -1;
+    }
+    return (int)a->side - (int)b->side;
+}
+
+void traffic_end(traffic_t *traffic, uint64_t t_us) {
+    if (traffic->is_engaged) {
+        end_engagement(traffic, t_us);
+    }
+    for (size_t i = 0u; i < traffic->all_count; i++) {
+        if (traffic->all[i]->watch != NULL) {
+            watch_stop(traffic->all[i]->watch, t_us);
+        }
+    }
+    qsort(traffic->all, traffic->all_count, sizeof traffic->all[0], compare);
+    traffic->totals.end_us = t_us;
+}
+
+bool traffic_times(const traffic_t *traffic, uint32_t id, uint64_t *first_us, uint64_t *last_us) {
+    bool heard = false;
+    for (size_t side = 0u; (id < (uint32_t)IDS_11_BITS) && (side < (size_t)HAL_CAN_SIDES); side++) {
+        const traffic_id_t *entry = traffic->standard[side][id];
+        if ((entry != NULL) && (entry->count > 0u)) {
+            *first_us = (!heard || (entry->first_us < *first_us)) ? entry->first_us : *first_us;
+            *last_us = (!heard || (entry->last_us > *last_us)) ? entry->last_us : *last_us;
+            heard = true;
+        }
+    }
+    return heard;
+}
+
+bool traffic_heard(const traffic_t *traffic, uint32_t id) {
+    uint64_t first_us = 0u;
+    uint64_t last_us = 0u;
+    return traffic_times(traffic, id, &first_us, &last_us);
+}
+
+const traffic_id_t *traffic_message(const traffic_t *traffic, uint32_t message) {
+    if (message >= (uint32_t)AGV_MSG_COUNT) {
+        return NULL;
+    }
+    agv_ids_t ids;
+    agv_config_ids(&traffic->config, &ids);
+    return traffic->standard[side_of(traffic, message)][ids.of[message]];
+}
+
+const traffic_id_t *traffic_at(const traffic_t *traffic, size_t index) {
+    return (index < traffic->all_count) ? traffic->all[index] : NULL;
+}
+
+traffic_totals_t traffic_totals(const traffic_t *traffic) {
+    return traffic->totals;
+}

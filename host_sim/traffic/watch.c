@@ -1,0 +1,58 @@
+#include "traffic/watch.h"
+
+#include "common/units.h"
+
+/** The setting of each message's deadline, and when it counts. */
+static const struct {
+    uint16_t setting;
+    traffic_when_t when;
+} deadlines[AGV_MSG_COUNT] = {
+#define AGV_COMMAND(NAME, name, heading, table, cycle, deadline, fault, counter)                                       \
+    [AGV_MSG_##NAME] = {AGV_SETTING_##deadline,                                                                        \
+                        (AGV_MSG_##NAME == AGV_MSG_TURN_SIGNAL_COMMAND) ? TRAFFIC_ALWAYS : TRAFFIC_ENGAGED},
+#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter)                                        \
+    [AGV_MSG_##NAME] = {AGV_SETTING_##deadline, TRAFFIC_ALWAYS},
+#include "agv/message_table.def"
+#undef AGV_COMMAND
+#undef AGV_STATUS
+};
+
+bool watch_init(traffic_watch_t *watch, const agv_config_t *config, uint32_t message) {
+    if (message >= (uint32_t)AGV_MSG_COUNT) {
+        return false;
+    }
+    watch->when = deadlines[message].when;
+    watch->setting = deadlines[message].setting;
+    watch->deadline_ms = agv_config_get(config, watch->setting);
+    return true;
+}
+
+static void add_gap(traffic_watch_t *watch, uint64_t gap_us) {
+    const uint64_t deadline_us = (uint64_t)watch->deadline_ms * US_PER_MS;
+    gaps_add(&watch->gaps, watch->since_us, gap_us);
+    if (gap_us > deadline_us) {
+        watch->late_at_us = (watch->late == 0u) ? watch->since_us + deadline_us : watch->late_at_us;
+        watch->late++;
+    }
+}
+
+void watch_restart(traffic_watch_t *watch, uint64_t t_us) {
+    if (watch->is_running) {
+        add_gap(watch, t_us - watch->since_us);
+        watch->since_us = t_us;
+    } else if (watch->when == TRAFFIC_ALWAYS) {
+        watch_start(watch, t_us);
+    }
+}
+
+void watch_start(traffic_watch_t *watch, uint64_t t_us) {
+    watch->is_running = true;
+    watch->since_us = t_us;
+}
+
+void watch_stop(traffic_watch_t *watch, uint64_t t_us) {
+    if (watch->is_running && (t_us - watch->since_us > (uint64_t)watch->deadline_ms * US_PER_MS)) {
+        add_gap(watch, t_us - watch->since_us);
+    }
+    watch->is_running = false;
+}
