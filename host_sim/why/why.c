@@ -1,0 +1,354 @@
+#include "why/why.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "agv/codec.h"
+#include "agv/recorder.h"
+#include "agv/state.h"
+#include "common/units.h"
+#include "why/why_internal.h"
+
+/** The states, in the order of their index. */
+static const uint8_t states[WHY_STATES] = {AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_STATE_ACTIVE, AGV_STATE_TRIPPED,
+                                           AGV_STATE_SAFE};
+
+why_evidence_t why_evidence(hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
+    return (why_evidence_t){.t_us = t_us, .side = side, .frame = *frame};
+}
+
+why_evidence_t why_no_evidence(void) {
+    return (why_evidence_t){.t_us = WHY_NEVER};
+}
+
+why_t *why_new(const agv_config_t *config) {
+    why_t *why = calloc(1u, sizeof *why);
+    if (why == NULL) {
+        return NULL;
+    }
+    why->config = *config;
+    agv_config_ids(config, &why->ids);
+    why->is_gateway = config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    why_life_start(why);
+    why_intruder_start(why);
+    why_track_start(why);
+    why_engage_start(why);
+    why->error = why_no_evidence();
+    why->safe_frame = why_no_evidence();
+    why->moving = why_no_evidence();
+    why->open_trip = SIZE_MAX;
+    return why;
+}
+
+void why_is_recording(why_t *why) {
+    why->is_recording = true;
+}
+
+void why_free(why_t *why) {
+    if (why != NULL) {
+        free(why->trips);
+        free(why);
+    }
+}
+
+static bool is_command(agv_message_t message) {
+    return (uint32_t)message < AGV_COMMAND_COUNT;
+}
+
+agv_message_t why_accepted(const why_t *why, hal_can_side_t side, const hal_can_frame_t *frame) {
+    if ((frame->flags != 0u) || (frame->length != AGV_DLC)) {
+        return AGV_MSG_NONE;
+    }
+    const agv_message_t message = (agv_message_t)agv_ids_find(&why->ids, frame->id);
+    const hal_can_side_t from = (is_command(message) && why->is_gateway) ? HAL_CAN_AI : HAL_CAN_VEHICLE;
+    return (side == from) ? message : AGV_MSG_NONE;
+}
+
+const why_evidence_t *why_history(const why_message_t *message, uint32_t back) {
+    if ((back >= message->count) || (back >= (uint32_t)WHY_HISTORY)) {
+        return NULL;
+    }
+    return &message->history[(message->count - 1u - back) % (uint32_t)WHY_HISTORY];
+}
+
+/** The trip that is not over; NULL: none. */
+static why_trip_t *open_trip(why_t *why) {
+    return (why->open_trip < why->trip_count) ? &why->trips[why->open_trip] : NULL;
+}
+
+static bool wheels_stand(const why_t *why) {
+    const int32_t limit = why->config.standstill_speed_mm_s;
+    return (abs(why->facts.left_mm_s) < limit) && (abs(why->facts.right_mm_s) < limit);
+}
+
+/** What a frame adds to the trip before it: the end of a silence, standstill. */
+static void follow_trip(why_t *why, agv_message_t message, uint64_t t_us) {
+    why_trip_t *trip = open_trip(why);
+    if (trip == NULL) {
+        return;
+    }
+    if ((trip->kind == WHY_SILENCE) && (trip->message == message) && (trip->next_us == WHY_NEVER)) {
+        trip->next_us = t_us;
+    }
+    if ((message == AGV_MSG_WHEEL_SPEED) && (trip->stopped_us == WHY_NEVER) && wheels_stand(why)) {
+        trip->stopped_us = t_us;
+    }
+}
+
+void why_frame(why_t *why, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
+    const why_evidence_t evidence = why_evidence(side, frame, t_us);
+    const agv_message_t message = why_accepted(why, side, frame);
+    why->now_us = t_us;
+    if ((frame->flags & HAL_CAN_ERROR) != 0u) {
+        why->error = evidence;
+        return;
+    }
+    if (message == AGV_MSG_NONE) {
+        why_intruder_frame(why, &evidence);
+        return;
+    }
+    if (message == AGV_MSG_VEHICLE_STATUS) {
+        why_engage_frame(why, &evidence);
+    }
+    why_life_frame(why, message, &evidence);
+    why_track_frame(why, message, &evidence);
+    if (is_command(message) && !why->is_gateway) {
+        why_budget_command(why, message, &evidence);
+    }
+    why_budget_frame(why, message, &evidence);
+    follow_trip(why, message, t_us);
+}
+
+/** Whether a frame takes the drive away. */
+static bool is_safe(const why_t *why, const hal_can_frame_t *frame) {
+    switch (agv_ids_find(&why->ids, frame->id)) {
+    case AGV_MSG_GEAR_COMMAND:
+        return frame->data[0] == (uint8_t)AGV_GEAR_P;
+    case AGV_MSG_THROTTLE_COMMAND:
+        return frame->data[0] == 0u;
+    case AGV_MSG_TURN_SIGNAL_COMMAND:
+        return (frame->data[4] & AGV_SIGNAL_AUTOPILOT_OFF) != 0u;
+    default:
+        return false;
+    }
+}
+
+void why_sent(why_t *why, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
+    const why_evidence_t evidence = why_evidence(side, frame, t_us);
+    const agv_message_t message = (agv_message_t)agv_ids_find(&why->ids, frame->id);
+    if (side != HAL_CAN_VEHICLE) {
+        return;
+    }
+    if (is_command(message) && why->is_gateway && !agv_state_is_latched((agv_state_t)why->state)) {
+        why_budget_command(why, message, &evidence);
+    }
+    if (!is_safe(why, frame)) {
+        return;
+    }
+    why_trip_t *trip = open_trip(why);
+    if ((trip != NULL) && (trip->first_safe_us == WHY_NEVER)) {
+        trip->first_safe_us = t_us;
+    }
+    if ((why->safe_frame.t_us == WHY_NEVER) || (why->safe_frame.t_us / US_PER_MS != t_us / US_PER_MS)) {
+        why->safe_frame = evidence;
+    }
+}
+
+/** A trip more; NULL: no room. */
+static why_trip_t *add_trip(why_t *why) {
+    if (why->trip_count == (size_t)WHY_TRIPS_MAX) {
+        return NULL;
+    }
+    if (why->trip_count == why->trip_room) {
+        const size_t room = (why->trip_room == 0u) ? 4u : 2u * why->trip_room;
+        why_trip_t *trips = realloc(why->trips, room * sizeof *trips);
+        if (trips == NULL) {
+            return NULL;
+        }
+        why->trips = trips;
+        why->trip_room = room;
+    }
+    why->trip_count++;
+    return &why->trips[why->trip_count - 1u];
+}
+
+/** Note a trip, and find its cause. */
+static why_trip_t *note_trip(why_t *why, agv_fault_t reason, uint64_t t_us) {
+    why_trip_t *trip = add_trip(why);
+    if (trip == NULL) {
+        return NULL;
+    }
+    why_budget_advance(why, t_us);
+    *trip = (why_trip_t){
+        .t_us = t_us, .reason = reason, .first_safe_us = WHY_NEVER, .confirmed_us = WHY_NEVER, .stopped_us = WHY_NEVER};
+    why_cause(why, trip);
+    return trip;
+}
+
+static void on_trip(why_t *why, agv_fault_t reason, uint64_t t_us) {
+    why_trip_t *trip = note_trip(why, reason, t_us);
+    why->was_tripped = true;
+    if (trip == NULL) {
+        return;
+    }
+    why->open_trip = why->trip_count - 1u;
+    /* What the supervisor sends in the pass that trips is reported before the trip. */
+    if ((why->safe_frame.t_us != WHY_NEVER) && (why->safe_frame.t_us / US_PER_MS == t_us / US_PER_MS)) {
+        trip->first_safe_us = why->safe_frame.t_us;
+    }
+    if ((why->messages[AGV_MSG_WHEEL_SPEED].count > 0u) && wheels_stand(why)) {
+        trip->stopped_us = t_us;
+    }
+}
+
+static size_t index_of(uint8_t state) {
+    for (size_t i = 0u; i < (size_t)WHY_STATES; i++) {
+        if (states[i] == state) {
+            return i;
+        }
+    }
+    return (size_t)WHY_STATES;
+}
+
+static void leave_state(why_t *why, uint64_t t_us) {
+    const size_t index = index_of(why->state);
+    if ((index < (size_t)WHY_STATES) && (t_us > why->state_since_us)) {
+        why->state_us[index] += t_us - why->state_since_us;
+    }
+    why->state_since_us = t_us;
+}
+
+static void on_state(why_t *why, const agv_event_t *event, uint64_t t_us) {
+    leave_state(why, t_us);
+    if (event->a == 0u) {
+        why->start_us = t_us;
+        why->was_tripped = false;
+    }
+    why->state = event->b;
+    if (event->b != (uint8_t)AGV_STATE_INIT) {
+        why->missing = 0u;
+    }
+    if ((event->b == (uint8_t)AGV_STATE_TRIPPED) && (event->c < (uint8_t)AGV_FAULT_COUNT)) {
+        on_trip(why, (agv_fault_t)event->c, t_us);
+    } else if (!agv_state_is_latched((agv_state_t)event->b)) {
+        why->open_trip = SIZE_MAX;
+    } else {
+        why_trip_t *trip = open_trip(why);
+        if ((event->b == (uint8_t)AGV_STATE_SAFE) && (trip != NULL) && (trip->confirmed_us == WHY_NEVER)) {
+            trip->confirmed_us = t_us;
+        }
+    }
+}
+
+/** What follows from a trip that the vehicle does not obey. */
+static bool is_consequence(const why_t *why, agv_fault_t fault) {
+    return why->was_tripped && (why_row(fault)->kind == WHY_VEHICLE);
+}
+
+static void raise(why_t *why, agv_fault_t fault, agv_fault_class_t fault_class, uint64_t t_us) {
+    why_fault_t *entry = &why->faults[fault];
+    const bool recorded = why->is_recording && is_consequence(why, fault);
+    if (entry->times == 0u) {
+        entry->fault = fault;
+        entry->first_us = t_us;
+        why->fault_order[why->fault_count] = (size_t)fault;
+        why->fault_count++;
+    }
+    entry->from_recording = recorded && (entry->from_recording || (entry->times == 0u));
+    entry->fault_class = fault_class;
+    if (!entry->active) {
+        entry->times++;
+        why->fault_since_us[fault] = t_us;
+    }
+    entry->active = true;
+    if (is_consequence(why, fault) && (fault_class == AGV_CLASS_TRIP)) {
+        why_trip_t *trip = note_trip(why, fault, t_us);
+        if (trip != NULL) {
+            trip->from_recording = recorded;
+        }
+    }
+}
+
+static void end_fault(why_t *why, agv_fault_t fault, uint64_t t_us) {
+    why_fault_t *entry = &why->faults[fault];
+    if (entry->active) {
+        entry->active = false;
+        entry->active_us += t_us - why->fault_since_us[fault];
+    }
+}
+
+static void on_fault(why_t *why, const agv_event_t *event, uint64_t t_us) {
+    if (event->a >= (uint8_t)AGV_FAULT_COUNT) {
+        return;
+    }
+    if (event->c != 0u) {
+        raise(why, (agv_fault_t)event->a, (agv_fault_class_t)event->b, t_us);
+    } else {
+        end_fault(why, (agv_fault_t)event->a, t_us);
+    }
+}
+
+void why_event(void *ctx, const session_event_t *event) {
+    why_t *why = ctx;
+    const uint64_t t_us = event->t_ms * US_PER_MS;
+    if (event->is_led) {
+        return;
+    }
+    switch ((agv_event_kind_t)event->recorded.kind) {
+    case AGV_EVENT_STATE:
+        on_state(why, &event->recorded, t_us);
+        break;
+    case AGV_EVENT_FAULT:
+        on_fault(why, &event->recorded, t_us);
+        break;
+    case AGV_EVENT_STARTUP:
+        why->missing = event->recorded.missing;
+        break;
+    default:
+        break;
+    }
+}
+
+void why_end(why_t *why, uint64_t t_us) {
+    leave_state(why, t_us);
+    why->now_us = t_us;
+    for (size_t i = 0u; i < why->fault_count; i++) {
+        why_fault_t *entry = &why->faults[why->fault_order[i]];
+        if (entry->active) {
+            entry->active_us += t_us - why->fault_since_us[entry->fault];
+            why->fault_since_us[entry->fault] = t_us;
+        }
+    }
+}
+
+size_t why_trip_count(const why_t *why) {
+    return why->trip_count;
+}
+
+const why_trip_t *why_trip(const why_t *why, size_t index) {
+    return &why->trips[index];
+}
+
+size_t why_fault_count(const why_t *why) {
+    return why->fault_count;
+}
+
+const why_fault_t *why_fault(const why_t *why, size_t index) {
+    return &why->faults[why->fault_order[index]];
+}
+
+uint64_t why_state_us(const why_t *why, size_t index) {
+    return why->state_us[index];
+}
+
+uint64_t why_supervised_us(const why_t *why) {
+    uint64_t sum = 0u;
+    for (size_t i = 1u; i < (size_t)WHY_STATES; i++) {
+        sum += why->state_us[i];
+    }
+    return sum;
+}
+
+uint16_t why_missing(const why_t *why) {
+    return why->missing;
+}

@@ -1,0 +1,276 @@
+/* What may not last too long: the deviations and the modes (SUP-9 to SUP-12). */
+#include <stdlib.h>
+
+#include "agv/codec.h"
+#include "common/units.h"
+#include "why/why_internal.h"
+
+enum { THROTTLE_DROP = 25, MM_S_PER_18_COUNTS = 5, SPEED_SLACK_MM_S = 500, SPEED_SHARE = 4, WHEEL_MAX_MM_S = 1000000 };
+enum { MOVING_MM_S = 100, ANY_SPEED = 65535 };
+
+#define BIT_OF(message) (1u << (uint32_t)(message))
+
+static uint32_t mode_bits(const why_t *why) {
+    return why->facts.mode_bits & (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT);
+}
+
+static int32_t off_by(const why_t *why, uint32_t angle_raw) {
+    return abs((int32_t)angle_raw - (int32_t)why->facts.angle_command_raw);
+}
+
+static bool steering_is_off(const why_t *why) {
+    return why->facts.angle_known && why->facts.command_known[AGV_MSG_STEERING_COMMAND] &&
+           (off_by(why, why->facts.angle_raw) > (int32_t)why->config.steering_deviation_ddeg);
+}
+
+static bool throttle_is_above(const why_t *why) {
+    return why->facts.command_known[AGV_MSG_THROTTLE_COMMAND] &&
+           (why->facts.throttle > why->facts.throttle_command + why->config.throttle_deviation_counts);
+}
+
+static bool is_above_idle(const why_t *why) {
+    return why->facts.throttle > why->config.throttle_idle_counts;
+}
+
+static bool gear_is_another(const why_t *why) {
+    const uint32_t gear = why->facts.gear;
+    return why->facts.command_known[AGV_MSG_GEAR_COMMAND] &&
+           ((gear == (uint32_t)AGV_GEAR_D) || (gear == (uint32_t)AGV_GEAR_R)) && (gear != why->facts.gear_command) &&
+           is_above_idle(why);
+}
+
+static bool off_is_ignored(const why_t *why) {
+    return why->facts.command_known[AGV_MSG_TURN_SIGNAL_COMMAND] && why->facts.autopilot_off;
+}
+
+static bool is_throttle_in_park(const why_t *why) {
+    return (why->facts.gear == (uint32_t)AGV_GEAR_P) && is_above_idle(why);
+}
+
+static int32_t clamp(int32_t value, int32_t limit) {
+    return (value > limit) ? limit : ((value < -limit) ? -limit : value);
+}
+
+static bool speeds_differ(const why_t *why) {
+    const int32_t left = clamp(why->facts.left_mm_s, WHEEL_MAX_MM_S);
+    const int32_t right = clamp(why->facts.right_mm_s, WHEEL_MAX_MM_S);
+    const int32_t wheels = abs(left + right) / 2;
+    const int32_t vcu = ((int32_t)why->facts.vcu_speed * MM_S_PER_18_COUNTS) / 18;
+    const int32_t larger = (wheels > vcu) ? wheels : vcu;
+    return why->facts.speed_known && why->facts.mode_known &&
+           (abs(wheels - vcu) > SPEED_SLACK_MM_S + (larger / SPEED_SHARE));
+}
+
+static bool has_both_modes(const why_t *why) {
+    return mode_bits(why) == (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT);
+}
+
+static bool has_no_mode(const why_t *why) {
+    const int32_t slow = why->config.standstill_speed_mm_s;
+    const bool wheels_turn = (abs(why->facts.left_mm_s) >= slow) || (abs(why->facts.right_mm_s) >= slow);
+    const uint32_t limit = why->config.standstill_vcu_counts;
+    const bool vcu_moves = (limit != (uint32_t)ANY_SPEED) && (why->facts.vcu_speed > limit);
+    return why->facts.mode_known && (mode_bits(why) == 0u) && (wheels_turn || vcu_moves);
+}
+
+/** A budget: its condition depends on these messages. */
+typedef struct {
+    agv_fault_t fault;
+    bool judged;
+    uint32_t messages;
+    uint16_t setting; /**< of its time */
+    bool (*is_bad)(const why_t *why);
+} row_t;
+
+static const row_t rows[] = {
+    {AGV_FAULT_STEERING_DEVIATION, true, BIT_OF(AGV_MSG_STEERING_STATUS) | BIT_OF(AGV_MSG_STEERING_COMMAND),
+     AGV_SETTING_steering_deviation_ms, steering_is_off},
+    {AGV_FAULT_THROTTLE_DEVIATION, true, BIT_OF(AGV_MSG_THROTTLE_STATUS) | BIT_OF(AGV_MSG_THROTTLE_COMMAND),
+     AGV_SETTING_throttle_deviation_ms, throttle_is_above},
+    {AGV_FAULT_GEAR_DEVIATION, true,
+     BIT_OF(AGV_MSG_GEAR_STATUS) | BIT_OF(AGV_MSG_THROTTLE_STATUS) | BIT_OF(AGV_MSG_GEAR_COMMAND),
+     AGV_SETTING_gear_deviation_ms, gear_is_another},
+    {AGV_FAULT_AUTOPILOT_OFF_IGNORED, true, BIT_OF(AGV_MSG_TURN_SIGNAL_COMMAND), AGV_SETTING_autopilot_off_ms,
+     off_is_ignored},
+    {AGV_FAULT_THROTTLE_IN_PARK, true, BIT_OF(AGV_MSG_THROTTLE_STATUS) | BIT_OF(AGV_MSG_GEAR_STATUS),
+     AGV_SETTING_throttle_in_park_ms, is_throttle_in_park},
+    {AGV_FAULT_SPEED_IMPLAUSIBLE, false, BIT_OF(AGV_MSG_WHEEL_SPEED) | BIT_OF(AGV_MSG_VEHICLE_STATUS),
+     AGV_SETTING_speed_implausible_ms, speeds_differ},
+    {AGV_FAULT_MODE_INVALID, false, BIT_OF(AGV_MSG_VEHICLE_STATUS), AGV_SETTING_mode_invalid_ms, has_both_modes},
+    {AGV_FAULT_MODE_NONE, false, BIT_OF(AGV_MSG_VEHICLE_STATUS) | BIT_OF(AGV_MSG_WHEEL_SPEED), AGV_SETTING_mode_none_ms,
+     has_no_mode},
+};
+
+enum { ROWS = sizeof rows / sizeof rows[0] };
+
+/** Count the time since the last call: a bad microsecond adds 2, a good one takes 1. */
+static void count(const why_t *why, const row_t *row, why_tracker_t *tracker, uint64_t t_us) {
+    const uint64_t judged_us = row->judged ? why->engagement.judged_us : 0u;
+    const uint64_t from_us = (tracker->since_us > judged_us) ? tracker->since_us : judged_us;
+    const uint64_t full = 2u * (uint64_t)US_PER_MS * agv_config_get(&why->config, row->setting);
+    if (from_us < t_us) {
+        const uint64_t elapsed_us = t_us - from_us;
+        if (tracker->bad) {
+            tracker->began_us = (tracker->value == 0u) ? from_us : tracker->began_us;
+            tracker->value += 2u * elapsed_us;
+            tracker->value = (tracker->value < full) ? tracker->value : full;
+        } else {
+            tracker->value -= (tracker->value > elapsed_us) ? elapsed_us : tracker->value;
+        }
+    }
+    tracker->since_us = t_us;
+}
+
+void why_budget_advance(why_t *why, uint64_t t_us) {
+    for (size_t i = 0u; i < (size_t)ROWS; i++) {
+        why_tracker_t *tracker = &why->trackers[rows[i].fault];
+        if (tracker->bad || (tracker->value != 0u)) {
+            count(why, &rows[i], tracker, t_us);
+        }
+    }
+}
+
+void why_budget_engage(why_t *why) {
+    for (size_t i = 0u; i < (size_t)ROWS; i++) {
+        if (rows[i].judged) {
+            why->trackers[rows[i].fault] = (why_tracker_t){.good = why_no_evidence(), .first = why_no_evidence()};
+        }
+    }
+    why->facts.steering_gain = 0;
+    why->facts.throttle_drop = 0;
+    for (size_t i = 0u; i < (size_t)AGV_COMMAND_COUNT; i++) {
+        why->facts.command_known[i] = false;
+    }
+}
+
+/** Progress towards what is commanded clears a budget. */
+static void follow_progress(why_t *why, agv_fault_t fault, int32_t *progress, int32_t enough, uint64_t t_us) {
+    why_tracker_t *tracker = &why->trackers[fault];
+    if ((tracker->value != 0u) && (*progress >= enough)) {
+        tracker->value = 0u;
+        tracker->since_us = t_us;
+    }
+    if (tracker->value == 0u) {
+        *progress = 0;
+    }
+}
+
+static void take_angle(why_t *why, const why_evidence_t *frame) {
+    const uint32_t before = why->facts.angle_raw;
+    const bool known = why->facts.angle_known;
+    why->facts.angle_raw = agv_angle_read(&frame->frame.data[2]);
+    why->facts.angle_known = true;
+    if (known && why->facts.command_known[AGV_MSG_STEERING_COMMAND] && (frame->t_us >= why->engagement.judged_us)) {
+        why->facts.steering_gain += off_by(why, before) - off_by(why, why->facts.angle_raw);
+        follow_progress(why, AGV_FAULT_STEERING_DEVIATION, &why->facts.steering_gain,
+                        (int32_t)why->config.steering_gain_ddeg, frame->t_us);
+    }
+}
+
+static void take_throttle(why_t *why, const why_evidence_t *frame) {
+    const uint32_t before = why->facts.throttle;
+    why->facts.throttle = frame->frame.data[0];
+    if (frame->t_us >= why->engagement.judged_us) {
+        why->facts.throttle_drop += (int32_t)before - (int32_t)why->facts.throttle;
+        follow_progress(why, AGV_FAULT_THROTTLE_DEVIATION, &why->facts.throttle_drop, THROTTLE_DROP, frame->t_us);
+    }
+}
+
+/** The first frame of a movement, for MOVING_WHILE_SAFE. */
+static void follow_movement(why_t *why, const why_evidence_t *frame) {
+    const bool moves = (abs(why->facts.left_mm_s) >= MOVING_MM_S) || (abs(why->facts.right_mm_s) >= MOVING_MM_S);
+    if (moves && !why->is_moving) {
+        why->moving = *frame;
+    }
+    why->is_moving = moves;
+}
+
+static void take_wheels(why_t *why, const why_evidence_t *frame) {
+    agv_wheel_speed_t wheels;
+    (void)agv_unpack_wheel_speed(&wheels, frame->frame.data);
+    why->facts.left_mm_s = clamp(wheels.left_mm_s, WHEEL_MAX_MM_S);
+    why->facts.right_mm_s = clamp(wheels.right_mm_s, WHEEL_MAX_MM_S);
+    why->facts.speed_known = true;
+    follow_movement(why, frame);
+}
+
+static void take_vehicle(why_t *why, const uint8_t *data) {
+    agv_vehicle_status_t status;
+    (void)agv_unpack_vehicle_status(&status, data);
+    why->facts.vcu_speed = status.speed_m_per_h;
+    why->facts.mode_bits = data[6];
+    why->facts.mode_known = true;
+}
+
+/** Read what a status message says, if it is valid. */
+static void take_status(why_t *why, agv_message_t message, const why_evidence_t *frame) {
+    if (!agv_value_is_valid(message, frame->frame.data)) {
+        return;
+    }
+    switch (message) {
+    case AGV_MSG_STEERING_STATUS:
+        take_angle(why, frame);
+        break;
+    case AGV_MSG_THROTTLE_STATUS:
+        take_throttle(why, frame);
+        break;
+    case AGV_MSG_GEAR_STATUS:
+        why->facts.gear = frame->frame.data[0];
+        why->facts.gear_known = true;
+        break;
+    case AGV_MSG_WHEEL_SPEED:
+        take_wheels(why, frame);
+        break;
+    case AGV_MSG_VEHICLE_STATUS:
+        take_vehicle(why, frame->frame.data);
+        break;
+    default:
+        break;
+    }
+}
+
+/** Evaluate what depends on a message, after it was read. */
+static void evaluate(why_t *why, agv_message_t message, const why_evidence_t *frame) {
+    for (size_t i = 0u; i < (size_t)ROWS; i++) {
+        why_tracker_t *tracker = &why->trackers[rows[i].fault];
+        if ((rows[i].messages & BIT_OF(message)) == 0u) {
+            continue;
+        }
+        const bool bad = rows[i].is_bad(why);
+        if (bad && !tracker->bad && (tracker->value == 0u)) {
+            const agv_message_t shown = why_row(rows[i].fault)->message;
+            const why_evidence_t *before = why_history(&why->messages[shown], (message == shown) ? 1u : 0u);
+            tracker->good = (before != NULL) ? *before : why_no_evidence();
+            tracker->first = *frame;
+            tracker->since_us = frame->t_us;
+        }
+        tracker->bad = bad;
+    }
+}
+
+void why_budget_frame(why_t *why, agv_message_t message, const why_evidence_t *frame) {
+    if ((uint32_t)message >= AGV_COMMAND_COUNT) {
+        why_budget_advance(why, frame->t_us);
+        take_status(why, message, frame);
+        evaluate(why, message, frame);
+    }
+}
+
+void why_budget_command(why_t *why, agv_message_t command, const why_evidence_t *frame) {
+    const uint8_t *data = frame->frame.data;
+    if (!agv_value_is_valid(command, data)) {
+        return;
+    }
+    why_budget_advance(why, frame->t_us);
+    why->facts.command_known[command] = true;
+    if (command == AGV_MSG_STEERING_COMMAND) {
+        why->facts.angle_command_raw = agv_angle_read(data);
+    } else if (command == AGV_MSG_THROTTLE_COMMAND) {
+        why->facts.throttle_command = data[0];
+    } else if (command == AGV_MSG_GEAR_COMMAND) {
+        why->facts.gear_command = data[0];
+    } else {
+        why->facts.autopilot_off = (data[4] & AGV_SIGNAL_AUTOPILOT_OFF) != 0u;
+    }
+    evaluate(why, command, frame);
+}

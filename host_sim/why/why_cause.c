@@ -1,0 +1,288 @@
+/* The cause of a trip: what told, since when, and the frames that show it. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "agv/codec.h"
+#include "common/units.h"
+#include "why/why_internal.h"
+
+enum { RECENT_FRAMES = 6, ERROR_FRAME_US = 20000 };
+
+static const uint16_t silence_settings[AGV_MSG_COUNT] = {
+#define AGV_COMMAND AGV_STATUS
+#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter)                                        \
+    [AGV_MSG_##NAME] = AGV_SETTING_##deadline,
+#include "agv/message_table.def"
+#undef AGV_COMMAND
+#undef AGV_STATUS
+};
+
+uint16_t why_silence_setting(agv_message_t message) {
+    return silence_settings[message];
+}
+
+/** Add a frame, if there is room and it is not there yet. */
+static void show(why_trip_t *trip, const why_evidence_t *evidence) {
+    if ((evidence == NULL) || (evidence->t_us == WHY_NEVER) || (trip->evidence_count == (size_t)WHY_EVIDENCE_MAX)) {
+        return;
+    }
+    for (size_t i = 0u; i < trip->evidence_count; i++) {
+        if ((trip->evidence[i].t_us == evidence->t_us) && (trip->evidence[i].frame.id == evidence->frame.id)) {
+            return;
+        }
+    }
+    trip->evidence[trip->evidence_count] = *evidence;
+    trip->evidence_count++;
+}
+
+static void show_recent(const why_t *why, why_trip_t *trip, agv_message_t message, uint32_t count) {
+    for (uint32_t back = 0u; back < count; back++) {
+        show(trip, why_history(&why->messages[message], back));
+    }
+}
+
+static int by_time(const void *one, const void *other) {
+    const why_evidence_t *a = one;
+    const why_evidence_t *b = other;
+    return (a->t_us > b->t_us) - (a->t_us < b->t_us);
+}
+
+static void set_limit(const why_t *why, why_trip_t *trip, uint16_t setting, const char *unit) {
+    trip->limit = (setting != WHY_NO_SETTING) ? (int64_t)agv_config_get(&why->config, setting) : WHY_NO_LIMIT;
+    trip->unit = (setting != WHY_NO_SETTING) ? unit : NULL;
+}
+
+/** The message that tells, and its identifier. */
+static void set_message(const why_t *why, why_trip_t *trip, agv_message_t message) {
+    trip->message = message;
+    trip->id = (message != AGV_MSG_NONE) ? why->ids.of[message] : WHY_NO_ID;
+}
+
+static void set_frame(why_trip_t *trip, const why_evidence_t *frame) {
+    if (frame->t_us != WHY_NEVER) {
+        trip->cause_us = frame->t_us;
+        show(trip, frame);
+    }
+}
+
+static uint64_t limit_us(const why_trip_t *trip) {
+    return (uint64_t)trip->limit * US_PER_MS;
+}
+
+/** What lasted for its limit until now began so long ago. */
+static void began_before(why_trip_t *trip) {
+    trip->cause_us = (trip->t_us > limit_us(trip)) ? trip->t_us - limit_us(trip) : 0u;
+}
+
+static bool is_command(agv_message_t message) {
+    return (uint32_t)message < AGV_COMMAND_COUNT;
+}
+
+/** The first frame that should have come and did not. Commands need not come before the engagement. */
+static void explain_silence(const why_t *why, why_trip_t *trip) {
+    const why_message_t *message = &why->messages[trip->message];
+    const uint64_t cycle_us = (uint64_t)agv_message_cycle_ms(trip->message) * US_PER_MS;
+    const uint64_t engaged_us = why->engagement.began_us;
+    if (message->beat_us == WHY_NEVER) {
+        trip->cause_us = why->start_us;
+    } else {
+        trip->last_good_us = message->beat_us;
+        trip->cause_us = message->beat_us + cycle_us;
+    }
+    if (is_command(trip->message) && (engaged_us != WHY_NEVER) && (trip->cause_us < engaged_us)) {
+        trip->cause_us = engaged_us;
+        if ((trip->message == AGV_MSG_TURN_SIGNAL_COMMAND) && (message->count == 0u)) {
+            set_limit(why, trip, AGV_SETTING_ai_never_seen_timeout_ms, "ms");
+        }
+    }
+    show_recent(why, trip, trip->message, RECENT_FRAMES);
+}
+
+static void explain_stuck(const why_t *why, why_trip_t *trip) {
+    const why_message_t *message = &why->messages[trip->message];
+    trip->last_good_us = message->beat_us;
+    set_frame(trip, &message->first_repeat);
+    show(trip, &message->beat);
+    show_recent(why, trip, trip->message, RECENT_FRAMES);
+}
+
+/** What tells of a budget besides its own message: what it is compared with. */
+static agv_message_t compared_with(agv_fault_t fault) {
+    switch (fault) {
+    case AGV_FAULT_STEERING_DEVIATION:
+        return AGV_MSG_STEERING_COMMAND;
+    case AGV_FAULT_THROTTLE_DEVIATION:
+        return AGV_MSG_THROTTLE_COMMAND;
+    case AGV_FAULT_GEAR_DEVIATION:
+        return AGV_MSG_GEAR_COMMAND;
+    case AGV_FAULT_AUTOPILOT_OFF_IGNORED:
+        return AGV_MSG_TURN_SIGNAL_COMMAND;
+    case AGV_FAULT_THROTTLE_IN_PARK:
+        return AGV_MSG_GEAR_STATUS;
+    case AGV_FAULT_SPEED_IMPLAUSIBLE:
+        return AGV_MSG_VEHICLE_STATUS;
+    case AGV_FAULT_MODE_NONE:
+        return AGV_MSG_WHEEL_SPEED;
+    default:
+        return AGV_MSG_NONE;
+    }
+}
+
+static void explain_tracked(const why_t *why, why_trip_t *trip) {
+    const why_tracker_t *tracker = why_tracker(why, trip->reason);
+    const agv_message_t other = compared_with(trip->reason);
+    if (tracker != NULL) {
+        trip->cause_us = tracker->began_us;
+        trip->last_good_us = tracker->good.t_us;
+        show(trip, &tracker->good);
+        show(trip, &tracker->first);
+    }
+    show_recent(why, trip, trip->message, RECENT_FRAMES);
+    if (other != AGV_MSG_NONE) {
+        show_recent(why, trip, other, 2u);
+    }
+}
+
+/** The first of the engagements that were too many. */
+static void explain_flapping(const why_t *why, why_trip_t *trip) {
+    const why_engagement_t *engagement = &why->engagement;
+    const uint32_t kept =
+        (engagement->count < (uint32_t)WHY_ENGAGEMENTS) ? engagement->count : (uint32_t)WHY_ENGAGEMENTS;
+    for (uint32_t i = 0u; i < kept; i++) {
+        const why_evidence_t *frame = &engagement->frames[(engagement->count - kept + i) % (uint32_t)WHY_ENGAGEMENTS];
+        if (i == 0u) {
+            trip->cause_us = frame->t_us;
+        }
+        show(trip, frame);
+    }
+}
+
+static void explain_mode(const why_t *why, why_trip_t *trip) {
+    if (trip->reason == AGV_FAULT_MODE_FLAPPING) {
+        explain_flapping(why, trip);
+    } else {
+        explain_tracked(why, trip);
+    }
+}
+
+static void explain_value(const why_t *why, why_trip_t *trip) {
+    const hal_can_frame_t *frame = &why->bad_command.frame;
+    if (why->bad_command.t_us == WHY_NEVER) {
+        return;
+    }
+    set_message(why, trip, (agv_message_t)agv_ids_find(&why->ids, frame->id));
+    if ((frame->length != AGV_DLC) || (frame->flags != 0u)) {
+        trip->limit = WHY_NO_LIMIT;
+    } else if (trip->message == AGV_MSG_THROTTLE_COMMAND) {
+        trip->limit = (int64_t)AGV_THROTTLE_MAX_COUNTS;
+        trip->unit = "counts";
+    } else if (trip->message == AGV_MSG_STEERING_COMMAND) {
+        trip->limit = AGV_ANGLE_RAW_MAX;
+        trip->unit = "ddeg";
+    } else {
+        trip->limit = WHY_NO_LIMIT;
+    }
+    show_recent(why, trip, trip->message, RECENT_FRAMES);
+    set_frame(trip, &why->bad_command);
+    for (uint32_t back = 0u; back < (uint32_t)WHY_HISTORY; back++) {
+        const why_evidence_t *before = why_history(&why->messages[trip->message], back);
+        if ((before != NULL) && (before->t_us < why->bad_command.t_us)) {
+            trip->last_good_us = before->t_us;
+            break;
+        }
+    }
+}
+
+/** The command that came too fast: that with the highest score. */
+static void explain_too_fast(const why_t *why, why_trip_t *trip) {
+    agv_message_t command = AGV_MSG_TURN_SIGNAL_COMMAND;
+    for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
+        if (why->too_fast[i].value > why->too_fast[command].value) {
+            command = (agv_message_t)i;
+        }
+    }
+    const why_tracker_t *score = &why->too_fast[command];
+    set_message(why, trip, command);
+    if (score->value != 0u) {
+        trip->cause_us = score->began_us;
+        trip->last_good_us = score->good.t_us;
+        show(trip, &score->good);
+        show(trip, &score->first);
+    }
+    show_recent(why, trip, command, RECENT_FRAMES);
+}
+
+static void explain_intrusion(const why_t *why, why_trip_t *trip) {
+    if (trip->reason == AGV_FAULT_FOREIGN_COMMAND_SENDER) {
+        set_message(why, trip, (agv_message_t)agv_ids_find(&why->ids, why->foreign.frame.id));
+        set_frame(trip, &why->foreign);
+    } else if (trip->reason == AGV_FAULT_STATUS_ID_IN_USE) {
+        trip->id = why->config.status_frame_id;
+        set_frame(trip, &why->status_id);
+    } else {
+        explain_too_fast(why, trip);
+    }
+}
+
+static void explain_bus(const why_t *why, why_trip_t *trip) {
+    if (trip->limit != WHY_NO_LIMIT) {
+        began_before(trip);
+    } else if ((why->error.t_us != WHY_NEVER) && (why->error.t_us + (uint64_t)ERROR_FRAME_US >= trip->t_us)) {
+        set_frame(trip, &why->error);
+    } else {
+        /* the controller said so at that time */
+    }
+}
+
+/** What the vehicle did not do, counted from the trip. */
+static void explain_vehicle(const why_t *why, why_trip_t *trip) {
+    if ((trip->reason == AGV_FAULT_SAFE_STATE_UNCONFIRMED) && ((why->facts.mode_bits & AGV_VCU_FLAG_AUTOPILOT) == 0u)) {
+        set_message(why, trip, AGV_MSG_GEAR_STATUS);
+        set_limit(why, trip, AGV_SETTING_park_confirm_timeout_ms, "ms");
+    }
+    if (trip->reason == AGV_FAULT_MOVING_WHILE_SAFE) {
+        set_frame(trip, &why->moving);
+    } else {
+        began_before(trip);
+    }
+    show_recent(why, trip, trip->message, RECENT_FRAMES);
+}
+
+static void explain_own(const why_t *why, why_trip_t *trip) {
+    if (trip->reason == AGV_FAULT_WRONG_ID_SET) {
+        if (why->other_set.t_us != WHY_NEVER) {
+            trip->message = why->other_message;
+            trip->id = why->other_set.frame.id;
+            trip->last_good_us = why->messages[why->other_message].last_us;
+            set_frame(trip, &why->other_set);
+        }
+    } else if (trip->limit != WHY_NO_LIMIT) {
+        began_before(trip);
+    } else {
+        /* it began when it was found */
+    }
+}
+
+/** A fault bit of which a single frame is enough is no score. */
+static why_kind_t kind_of(const why_t *why, const why_row_t *row) {
+    const bool one =
+        (row->kind == WHY_SCORE) && (row->mask != 0u) && (agv_config_get(&why->config, row->setting) == 1u);
+    return one ? WHY_BIT : row->kind;
+}
+
+void why_cause(const why_t *why, why_trip_t *trip) {
+    static void (*const explain[WHY_KINDS])(const why_t *, why_trip_t *) = {
+        [WHY_SILENCE] = explain_silence, [WHY_STUCK] = explain_stuck,         [WHY_BIT] = explain_tracked,
+        [WHY_SCORE] = explain_tracked,   [WHY_VALUE] = explain_value,         [WHY_BUDGET] = explain_tracked,
+        [WHY_MODE] = explain_mode,       [WHY_INTRUSION] = explain_intrusion, [WHY_BUS] = explain_bus,
+        [WHY_VEHICLE] = explain_vehicle, [WHY_HARDWARE] = explain_own,        [WHY_OWN] = explain_own};
+    const why_row_t *row = why_row(trip->reason);
+    trip->kind = kind_of(why, row);
+    trip->cause_us = trip->t_us;
+    trip->last_good_us = WHY_NEVER;
+    trip->next_us = WHY_NEVER;
+    set_message(why, trip, row->message);
+    set_limit(why, trip, row->setting, row->unit);
+    explain[row->kind](why, trip);
+    qsort(trip->evidence, trip->evidence_count, sizeof trip->evidence[0], by_time);
+}

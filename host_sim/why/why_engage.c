@@ -1,0 +1,53 @@
+/* The engagement of the autopilot, as 363h reports it (SUP-9). */
+#include "agv/codec.h"
+#include "common/units.h"
+#include "why/why_internal.h"
+
+void why_engage_start(why_t *why) {
+    why->engagement.began_us = WHY_NEVER;
+    why->engagement.ended_us = WHY_NEVER;
+    why->engagement.judged_us = WHY_NEVER;
+}
+
+static void begin(why_t *why, const why_evidence_t *frame) {
+    why_engagement_t *engagement = &why->engagement;
+    const uint64_t reengage_us = (uint64_t)why->config.reengage_ms * US_PER_MS;
+    const bool continues = (engagement->ended_us != WHY_NEVER) && (frame->t_us <= engagement->ended_us + reengage_us);
+    engagement->engaged = true;
+    engagement->off_frames = 0u;
+    engagement->frames[engagement->count % (uint32_t)WHY_ENGAGEMENTS] = *frame;
+    engagement->count++;
+    if (!continues) {
+        engagement->began_us = frame->t_us;
+        why_track_engage(why);
+        why_budget_engage(why);
+    }
+    engagement->judged_us = engagement->began_us + ((uint64_t)why->config.engaged_grace_ms * US_PER_MS);
+}
+
+static void end(why_t *why, uint64_t t_us) {
+    why->engagement.engaged = false;
+    why->engagement.ended_us = t_us;
+    why->engagement.judged_us = WHY_NEVER;
+}
+
+void why_engage_frame(why_t *why, const why_evidence_t *frame) {
+    why_engagement_t *engagement = &why->engagement;
+    const uint32_t bits = frame->frame.data[6] & (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT);
+    why_budget_advance(why, frame->t_us);
+    if (bits == (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT)) {
+        engagement->off_frames = 0u; /* the mode before remains */
+    } else if ((bits & AGV_VCU_FLAG_AUTOPILOT) != 0u) {
+        engagement->off_frames = 0u;
+        if (!engagement->engaged) {
+            begin(why, frame);
+        }
+    } else if (engagement->engaged) {
+        engagement->off_frames++;
+        if (engagement->off_frames >= why->config.mode_frames) {
+            end(why, frame->t_us);
+        }
+    } else {
+        /* manual, as before */
+    }
+}

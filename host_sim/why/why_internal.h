@@ -1,0 +1,149 @@
+/**
+ * @file why_internal.h
+ * The parts of a why_t, for the sources of this folder. Each part follows one thing over the run, as the requirements
+ * describe it, so that the beginning of a cause is known when a fault is raised.
+ */
+#ifndef HOST_SIM_WHY_INTERNAL_H
+#define HOST_SIM_WHY_INTERNAL_H
+
+#include "why/why.h"
+
+enum { WHY_HISTORY = 8, WHY_ENGAGEMENTS = 4, WHY_TRIPS_MAX = 1000 };
+
+/** The frames of a message. */
+typedef struct {
+    why_evidence_t history[WHY_HISTORY]; /**< the last ones, a ring */
+    uint32_t count;                      /**< of all frames */
+    uint64_t last_us;                    /**< of the last one; WHY_NEVER */
+    uint64_t beat_us;                    /**< of the last one that restarted the deadline; WHY_NEVER */
+    uint8_t counter;                     /**< alive counter of the last one */
+    uint8_t steps_needed;                /**< right steps until an incrementing counter counts as changed again */
+    bool repeats;                        /**< since `first_repeat` its counter did not change */
+    why_evidence_t beat;                 /**< the frame of beat_us */
+    why_evidence_t first_repeat;
+} why_message_t;
+
+/** What counts bad frames, or the time with a bad condition. */
+typedef struct {
+    bool bad;             /**< the condition, as of the last frame */
+    uint64_t value;       /**< score: 2 a bad frame; budget: 2 a microsecond */
+    uint64_t since_us;    /**< budget: counted up to here */
+    uint64_t began_us;    /**< of what is counted; valid while value is not 0 */
+    why_evidence_t good;  /**< last frame before the first bad one; t_us WHY_NEVER: none */
+    why_evidence_t first; /**< first bad frame; t_us WHY_NEVER: none */
+} why_tracker_t;
+
+/** What vehicle and AI computer say, as far as budgets need it. */
+typedef struct {
+    bool angle_known, command_known[AGV_COMMAND_COUNT], mode_known, speed_known, gear_known;
+    uint32_t angle_raw, angle_command_raw;
+    uint32_t throttle, throttle_command;
+    uint32_t gear, gear_command;
+    bool autopilot_off;
+    uint32_t mode_bits;
+    uint32_t vcu_speed;
+    int32_t left_mm_s, right_mm_s;
+    int32_t steering_gain, throttle_drop; /**< progress that clears a budget */
+} why_facts_t;
+
+/** The engagement of the autopilot. */
+typedef struct {
+    bool engaged;
+    uint32_t off_frames;
+    uint64_t began_us;                      /**< of the last one; WHY_NEVER */
+    uint64_t ended_us;                      /**< of the last one; WHY_NEVER */
+    uint64_t judged_us;                     /**< from here on it is judged; WHY_NEVER: not engaged */
+    why_evidence_t frames[WHY_ENGAGEMENTS]; /**< of the last ones, a ring */
+    uint32_t count;
+} why_engagement_t;
+
+/** All that is known. */
+struct why {
+    agv_config_t config;
+    agv_ids_t ids;
+    bool is_gateway;
+    bool is_recording;
+
+    why_message_t messages[AGV_MSG_COUNT];
+    why_tracker_t trackers[AGV_FAULT_COUNT];
+    why_tracker_t too_fast[AGV_COMMAND_COUNT];
+    why_facts_t facts;
+    why_engagement_t engagement;
+    why_evidence_t bad_command; /**< the last one; t_us WHY_NEVER: none */
+    why_evidence_t foreign;     /**< the first command of another sender, of those that follow each other */
+    uint64_t foreign_last_us;
+    why_evidence_t status_id; /**< a frame with the identifier of the status frame */
+    why_evidence_t other_set; /**< the first frame with an identifier of the other set */
+    agv_message_t other_message;
+    why_evidence_t error;  /**< the last error frame */
+    why_evidence_t moving; /**< the first 101h of a movement */
+    bool is_moving;
+    why_evidence_t safe_frame; /**< the last frame sent that could be the first safe one */
+
+    uint8_t state;
+    uint64_t state_since_us;
+    uint64_t state_us[WHY_STATES];
+    uint64_t now_us;
+    uint64_t start_us; /**< of the supervisor */
+    uint16_t missing;
+    bool was_tripped; /**< in this run of the supervisor */
+
+    why_trip_t *trips;
+    size_t trip_count;
+    size_t trip_room;
+    size_t open_trip; /**< index of the last trip that is a change of state; trip_count: none */
+    why_fault_t faults[AGV_FAULT_COUNT];
+    uint64_t fault_since_us[AGV_FAULT_COUNT];
+    size_t fault_order[AGV_FAULT_COUNT]; /**< in the order in which they were first raised */
+    size_t fault_count;
+};
+
+/** The message of a frame that the supervisor accepts; AGV_MSG_NONE: it accepts none, or another sender sent it. */
+agv_message_t why_accepted(const why_t *why, hal_can_side_t side, const hal_can_frame_t *frame);
+
+/** The last frames of a message. @param back 0 = the last one @return NULL: there are not so many */
+const why_evidence_t *why_history(const why_message_t *message, uint32_t back);
+
+/** Make an evidence. */
+why_evidence_t why_evidence(hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us);
+
+/** No evidence. */
+why_evidence_t why_no_evidence(void);
+
+/** @name Arrival and alive counters (why_life.c). @{ */
+void why_life_start(why_t *why);
+void why_life_frame(why_t *why, agv_message_t message, const why_evidence_t *frame);
+/** @} */
+
+/** @name Frames that nobody but another sender sends (why_intruder.c). @{ */
+void why_intruder_start(why_t *why);
+void why_intruder_frame(why_t *why, const why_evidence_t *frame);
+void why_intruder_command(why_t *why, agv_message_t command, const why_evidence_t *frame);
+/** @} */
+
+/** @name Bad frames, scores and budgets (why_track.c, why_budget.c). @{ */
+void why_track_start(why_t *why);
+void why_track_frame(why_t *why, agv_message_t message, const why_evidence_t *frame);
+void why_track_engage(why_t *why);
+void why_score(why_tracker_t *tracker, bool bad, uint32_t frames, const why_evidence_t *frame,
+               const why_evidence_t *before);
+void why_budget_frame(why_t *why, agv_message_t message, const why_evidence_t *frame);
+void why_budget_command(why_t *why, agv_message_t command, const why_evidence_t *frame);
+void why_budget_engage(why_t *why);
+/** Count the time up to now. */
+void why_budget_advance(why_t *why, uint64_t t_us);
+/** The tracker that follows a fault; NULL: none. */
+const why_tracker_t *why_tracker(const why_t *why, agv_fault_t fault);
+/** @} */
+
+/** The engagement (why_engage.c). */
+void why_engage_start(why_t *why);
+void why_engage_frame(why_t *why, const why_evidence_t *frame);
+
+/** The setting that limits the silence of a message. */
+uint16_t why_silence_setting(agv_message_t message);
+
+/** Fill in what is known of a cause (why_cause.c); t_us and reason are set. */
+void why_cause(const why_t *why, why_trip_t *trip);
+
+#endif

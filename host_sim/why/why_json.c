@@ -1,0 +1,95 @@
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "agv/names.h"
+#include "agv/recorder.h"
+#include "common/missing.h"
+#include "common/units.h"
+#include "why/why.h"
+
+enum { ID_SIZE = 12, DATA_SIZE = 17 };
+
+static void set(json_t *object, const char *key, json_t *value) {
+    (void)json_object_set_new(object, key, value);
+}
+
+static json_t *text_or_null(const char *text) {
+    return (text != NULL) ? json_string(text) : json_null();
+}
+
+static json_t *time_or_null(uint64_t t_us) {
+    return (t_us != WHY_NEVER) ? json_integer((json_int_t)(t_us / US_PER_MS)) : json_null();
+}
+
+static json_t *id_or_null(uint32_t id) {
+    char text[ID_SIZE];
+    (void)snprintf(text, sizeof text, "%03" PRIX32, id);
+    return (id != WHY_NO_ID) ? json_string(text) : json_null();
+}
+
+static json_t *data_of(const hal_can_frame_t *frame) {
+    char text[DATA_SIZE] = "";
+    for (size_t i = 0u; (i < frame->length) && (i < sizeof frame->data); i++) {
+        (void)snprintf(&text[2u * i], 3u, "%02X", frame->data[i]);
+    }
+    return json_string(text);
+}
+
+static json_t *evidence_of(const why_trip_t *trip, const why_names_t *names) {
+    json_t *list = json_array();
+    for (size_t i = 0u; i < trip->evidence_count; i++) {
+        const why_evidence_t *evidence = &trip->evidence[i];
+        json_t *object = json_object();
+        set(object, "t_ms", json_real((double)evidence->t_us / US_PER_MS));
+        set(object, "if", text_or_null(names->interfaces[evidence->side]));
+        set(object, "id", id_or_null(evidence->frame.id));
+        set(object, "data", data_of(&evidence->frame));
+        (void)json_array_append_new(list, object);
+    }
+    return list;
+}
+
+static json_t *trip_of(const why_trip_t *trip, const why_names_t *names) {
+    json_t *object = json_object();
+    set(object, "t_ms", time_or_null(trip->t_us));
+    set(object, "reason", text_or_null(agv_fault_name(trip->reason)));
+    set(object, "kind", json_string(why_kind_name(trip->kind)));
+    set(object, "message", text_or_null(agv_message_name(trip->message)));
+    set(object, "id", id_or_null(trip->id));
+    set(object, "cause_ms", time_or_null(trip->cause_us));
+    set(object, "last_good_ms", time_or_null(trip->last_good_us));
+    set(object, "limit", (trip->limit != WHY_NO_LIMIT) ? json_integer((json_int_t)trip->limit) : json_null());
+    set(object, "unit", (trip->limit != WHY_NO_LIMIT) ? text_or_null(trip->unit) : json_null());
+    set(object, "evidence", evidence_of(trip, names));
+    set(object, "first_safe_ms", time_or_null(trip->first_safe_us));
+    set(object, "confirmed_ms", time_or_null(trip->confirmed_us));
+    set(object, "stopped_ms", time_or_null(trip->stopped_us));
+    set(object, "from_recording", json_boolean(trip->from_recording));
+    return object;
+}
+
+/** The words of what kept it in INIT, if it never left it. */
+static json_t *not_supervised(const why_t *why) {
+    json_t *words = json_array();
+    const uint16_t missing = (why_supervised_us(why) == 0u) ? why_missing(why) : 0u;
+    for (uint8_t bit = 0u; agv_missing_name(bit) != NULL; bit++) {
+        if (((missing >> bit) & 1u) != 0u) {
+            (void)json_array_append_new(words, json_string(agv_missing_name(bit)));
+        }
+    }
+    return words;
+}
+
+json_t *why_json(const why_t *why, const why_names_t *names) {
+    json_t *object = json_object();
+    json_t *trips = json_array();
+    for (size_t i = 0u; i < why_trip_count(why); i++) {
+        (void)json_array_append_new(trips, trip_of(why_trip(why, i), names));
+    }
+    set(object, "log", text_or_null(names->log));
+    set(object, "supervised_ms", time_or_null(why_supervised_us(why)));
+    set(object, "not_supervised", not_supervised(why));
+    set(object, "trips", trips);
+    set(object, "messages", (names->messages != NULL) ? names->messages : json_array());
+    return object;
+}

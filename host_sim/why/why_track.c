@@ -1,0 +1,119 @@
+/* Fault bits, bad values and their scores (SUP-4, SUP-5). */
+#include <string.h>
+
+#include "agv/codec.h"
+#include "why/why_internal.h"
+
+/** What makes a frame a bad one. */
+typedef enum { BIT, EPS_MODE, VALUE } condition_t;
+
+/** A fault that frames of a message show. EPS_MODE_OFF stands for all three faults of the mode. */
+typedef struct {
+    agv_fault_t fault;
+    condition_t condition;
+    bool judged; /**< counts in autopilot only */
+} row_t;
+
+#define ALWAYS(fault) {AGV_FAULT_##fault, BIT, false}
+
+static const row_t rows[] = {
+    ALWAYS(VCU_EPS_HARDWARE_FAULT),
+    ALWAYS(VCU_EPS_CAN_BUS_FAULT),
+    ALWAYS(S_DRIVER_ALARM),
+    ALWAYS(REMOTE_SIGNAL_LOST),
+    ALWAYS(REMOTE_POWER_LOST),
+    ALWAYS(VCU_AI_CAN_LOST),
+    ALWAYS(VCU_LEVEL2_ALARM),
+    ALWAYS(EPS_OVER_CURRENT_SHUTDOWN),
+    ALWAYS(EPS_TEMP_ABOVE_120),
+    ALWAYS(EPS_MOTOR_ENCODER),
+    ALWAYS(EPS_POSITION_ENCODER),
+    ALWAYS(EPS_UNDER_VOLTAGE),
+    ALWAYS(EPS_OVER_VOLTAGE),
+    ALWAYS(EPS_EXCESSIVE_CURRENT),
+    ALWAYS(EPS_TEMP_ABOVE_110),
+    {AGV_FAULT_EPS_MODE_OFF, EPS_MODE, true},
+    {AGV_FAULT_GEAR_STATUS_INVALID, VALUE, true},
+    {AGV_FAULT_THROTTLE_STATUS_INVALID, VALUE, true},
+    {AGV_FAULT_STEERING_ANGLE_INVALID, VALUE, true},
+};
+
+enum { ROWS = sizeof rows / sizeof rows[0] };
+
+void why_track_start(why_t *why) {
+    for (size_t i = 0u; i < (size_t)AGV_FAULT_COUNT; i++) {
+        why->trackers[i].good = why_no_evidence();
+        why->trackers[i].first = why_no_evidence();
+    }
+}
+
+void why_track_engage(why_t *why) {
+    for (size_t i = 0u; i < (size_t)ROWS; i++) {
+        if (rows[i].judged) {
+            why->trackers[rows[i].fault].value = 0u;
+        }
+    }
+}
+
+void why_score(why_tracker_t *tracker, bool bad, uint32_t frames, const why_evidence_t *frame,
+               const why_evidence_t *before) {
+    const uint64_t full = 2u * (uint64_t)frames;
+    if (bad && (tracker->value == 0u)) {
+        tracker->first = *frame;
+        tracker->good = (before != NULL) ? *before : why_no_evidence();
+        tracker->began_us = frame->t_us;
+    }
+    if (bad) {
+        tracker->value = (tracker->value + 2u < full) ? tracker->value + 2u : full;
+    } else {
+        tracker->value = ((tracker->value > 1u) && (frames > 1u)) ? tracker->value - 1u : 0u;
+    }
+}
+
+static bool is_bad(const row_t *row, const why_row_t *what, const uint8_t *data) {
+    switch (row->condition) {
+    case BIT:
+        return (data[what->byte] & what->mask) != 0u;
+    case EPS_MODE:
+        return data[3] != (uint8_t)AGV_EPS_MODE_ANGLE;
+    default:
+        return !agv_value_is_valid(what->message, data);
+    }
+}
+
+static void follow(why_t *why, const row_t *row, agv_message_t message, const why_evidence_t *frame) {
+    const why_row_t *what = why_row(row->fault);
+    why_tracker_t *tracker = &why->trackers[row->fault];
+    if (what->message != message) {
+        return;
+    }
+    const bool bad = is_bad(row, what, frame->frame.data);
+    if (row->judged && (frame->t_us < why->engagement.judged_us)) {
+        return;
+    }
+    if (bad || (tracker->value != 0u)) {
+        const uint32_t frames = (what->setting != WHY_NO_SETTING) ? agv_config_get(&why->config, what->setting) : 1u;
+        why_score(tracker, bad, frames, frame, why_history(&why->messages[message], 1u));
+    }
+}
+
+void why_track_frame(why_t *why, agv_message_t message, const why_evidence_t *frame) {
+    if ((uint32_t)message < AGV_COMMAND_COUNT) {
+        why_intruder_command(why, message, frame);
+        return;
+    }
+    for (size_t i = 0u; i < (size_t)ROWS; i++) {
+        follow(why, &rows[i], message, frame);
+    }
+}
+
+/** Those whose faults are not named after themselves. */
+static agv_fault_t shared(agv_fault_t fault) {
+    const bool is_mode = (fault == AGV_FAULT_EPS_MODE_INVALID) || (fault == AGV_FAULT_EPS_MODE_NOT_ANGLE);
+    return is_mode ? AGV_FAULT_EPS_MODE_OFF : fault;
+}
+
+const why_tracker_t *why_tracker(const why_t *why, agv_fault_t fault) {
+    const why_tracker_t *tracker = &why->trackers[shared(fault)];
+    return (tracker->value != 0u) ? tracker : NULL;
+}
