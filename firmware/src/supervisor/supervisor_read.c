@@ -43,6 +43,10 @@ bool agv_supervisor_output_closed(const agv_supervisor_t *supervisor) {
     return agv_core_read(supervisor)->machine.output_closed;
 }
 
+bool agv_supervisor_is_at_standstill(const agv_supervisor_t *supervisor) {
+    return agv_vehicle_is_at_standstill(&agv_core_read(supervisor)->timers);
+}
+
 int8_t agv_supervisor_led_code(const agv_supervisor_t *supervisor) {
     return agv_core_read(supervisor)->led_code;
 }

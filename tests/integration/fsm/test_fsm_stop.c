@@ -254,3 +254,20 @@ void test_cases_that_are_not_moving_while_safe(void) {
     expect_state(&f, AGV_STATE_STANDBY);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_MOVING_WHILE_SAFE));
 }
+
+/* ---- what programs read ---- */
+
+void test_standstill_can_be_read(void) {
+    walk_to_safe(&f);
+    fixture_run(&f, 200);
+    TEST_ASSERT_TRUE(agv_supervisor_is_at_standstill(&f.supervisor));
+    fixture_drive(&f, 60); /* standstill is below 50 mm/s */
+    fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
+    TEST_ASSERT_FALSE(agv_supervisor_is_at_standstill(&f.supervisor));
+    fixture_drive(&f, 0);
+    fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
+    fixture_run(&f, 99);
+    TEST_ASSERT_FALSE(agv_supervisor_is_at_standstill(&f.supervisor));
+    fixture_run(&f, 1);
+    TEST_ASSERT_TRUE(agv_supervisor_is_at_standstill(&f.supervisor));
+}
