@@ -4,6 +4,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/../../hal/zephyr/sources.cmake)
 set(AGV_APP_DIR ${CMAKE_CURRENT_LIST_DIR})
 set(AGV_APP_SOURCES
   ${AGV_APP_DIR}/src/checks.c
+  ${AGV_APP_DIR}/src/event_text.c
   ${AGV_APP_DIR}/src/events.c
   ${AGV_APP_DIR}/src/kconfig.c
   ${AGV_APP_DIR}/src/supervise.c
@@ -15,3 +16,6 @@ set_source_files_properties(${AGV_CORE_SOURCES} ${AGV_ZEPHYR_PORT_SOURCES} ${AGV
 # Version and board, which events.c prints.
 include(${AGV_APP_DIR}/board.cmake)
 agv_add_build_info(app)
+
+# The commands of the shell.
+zephyr_linker_sources(SECTIONS ${AGV_APP_DIR}/shell-commands.ld)

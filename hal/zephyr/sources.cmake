@@ -2,6 +2,7 @@
 set(AGV_ZEPHYR_PORT_DIR ${CMAKE_CURRENT_LIST_DIR})
 set(AGV_ZEPHYR_PORT_SOURCES
   ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_can.c
+  ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_end.c
   ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_hal.c
   ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_log.c
   ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_pins.c
@@ -10,6 +11,8 @@ set(AGV_ZEPHYR_PORT_SOURCES
   ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_watchdog.c
 )
 set(AGV_ZEPHYR_PORT_INCLUDES ${AGV_ZEPHYR_PORT_DIR}/include)
+
+zephyr_compile_definitions(AGV_RECORDER_EVENTS=${CONFIG_AGV_RECORDER_EVENTS}u)
 
 # Checks that only the linker can make.
 zephyr_linker_sources(SECTIONS ${AGV_ZEPHYR_PORT_DIR}/linker/log-partition.ld)

@@ -3,12 +3,12 @@
 #include <string.h>
 
 #include <zephyr/logging/log.h>
-#include <zephyr/sys/printk.h>
 #include <zephyr/sys/util.h>
 
 #include "agv_board.h"
 #include "agv_revision.h"
 #include "app_version.h"
+#include "event_text.h"
 
 #if defined(CONFIG_AGV_SHADOW_ON)
 #define HOW " shadow"
@@ -27,58 +27,17 @@ const char *events_version(void) {
 
 #if defined(CONFIG_AGV_EVENTS)
 
-#include "agv/names.h"
-
 LOG_MODULE_REGISTER(agv, LOG_LEVEL_INF);
 
-enum { WORDS_SIZE = 100 };
-
-static const char *text(const char *name) {
-    return (name != NULL) ? name : "-";
-}
-
-/* For the line that follows. */
-static const char *words_of(uint16_t missing) {
-    static char words[WORDS_SIZE];
-    size_t used = 0u;
-    words[0] = '\0';
-    for (uint8_t bit = 0u; agv_missing_name(bit) != NULL; bit++) {
-        if (((missing & (1u << bit)) != 0u) && (used < sizeof words)) {
-            used += (size_t)snprintk(&words[used], sizeof words - used, " %s", agv_missing_name(bit));
-        }
-    }
-    return words;
-}
-
-static void tell_fault(const agv_event_t *event) {
-    const char *const name = text(agv_fault_name((agv_fault_t)event->a));
-    if (event->c == 0u) {
-        LOG_INF("%u ms: %s ended", event->time_ms, name);
-    } else {
-        LOG_WRN("%u ms: %s raised (%s)", event->time_ms, name, agv_class_name((agv_fault_class_t)event->b));
-    }
-}
-
+/* The logger copies the line. */
 static void print_event(const agv_event_t *event) {
-    switch (event->kind) {
-    case AGV_EVENT_STATE:
-        LOG_INF("%u ms: => %s%s%s", event->time_ms, text(agv_state_name((agv_state_t)event->b)),
-                (event->c < (uint8_t)AGV_FAULT_COUNT) ? ": " : "",
-                (event->c < (uint8_t)AGV_FAULT_COUNT) ? agv_fault_name((agv_fault_t)event->c) : "");
-        break;
-    case AGV_EVENT_FAULT:
-        tell_fault(event);
-        break;
-    case AGV_EVENT_OUTPUT:
-        LOG_INF("%u ms: safety output %s", event->time_ms, (event->a != 0u) ? "closed" : "open");
-        break;
-    case AGV_EVENT_RESET:
-        LOG_INF("%u ms: reset %s%s", event->time_ms,
-                (event->a != 0u) ? "accepted" : "refused:", words_of(event->missing));
-        break;
-    default:
-        LOG_INF("%u ms: startup waits for%s", event->time_ms, words_of(event->missing));
-        break;
+    static char line[EVENT_TEXT_SIZE];
+    const bool is_raised = (event->kind == (uint8_t)AGV_EVENT_FAULT) && (event->c != 0u);
+    event_text(event, line, sizeof line);
+    if (is_raised || (event->kind == (uint8_t)AGV_EVENT_CRASH)) {
+        LOG_WRN("%s", line);
+    } else {
+        LOG_INF("%s", line);
     }
 }
 
@@ -88,8 +47,8 @@ static uint32_t first_of_run(const agv_recorder_t *recorder) {
     agv_event_t newest;
     agv_event_t event;
     if (agv_recorder_get(recorder, first - 1u, &newest)) {
-        for (uint32_t i = 0u;
-             (i < AGV_RECORDER_EVENTS) && agv_recorder_get(recorder, first - 1u, &event) && (event.run == newest.run);
+        for (uint32_t i = 0u; (i < (uint32_t)AGV_RECORDER_EVENTS) && agv_recorder_get(recorder, first - 1u, &event) &&
+                              (event.run == newest.run);
              i++) {
             first--;
         }

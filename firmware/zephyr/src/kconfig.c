@@ -8,7 +8,7 @@ enum { SCOPE_ANY, SCOPE_GATEWAY };
 enum {
 #define AGV_SETTING(name, preset, lowest, highest, unit, weakens, scope, meaning)                                      \
     PRESET_##name = (preset), LOWEST_##name = (lowest), HIGHEST_##name = (highest), SCOPE_OF_##name = SCOPE_##scope,
-#define AGV_CHOICE(name, words, last, weakens, scope, meaning)                                                               \
+#define AGV_CHOICE(name, words, last, weakens, scope, meaning)                                                         \
     PRESET_##name = 0, LOWEST_##name = 0, HIGHEST_##name = (last), SCOPE_OF_##name = SCOPE_##scope,
 #include "agv/config_settings.def"
 #undef AGV_SETTING

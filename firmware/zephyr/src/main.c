@@ -1,4 +1,5 @@
 /* The firmware: one supervisor, whose thread this is. */
+#include "image.h"
 #include "supervise.h"
 
 static ZEPHYR_HAL_RETAINED agv_recorder_t recorder;
@@ -10,6 +11,7 @@ int main(void) {
     supervise_start(&agv_supervise, &recorder, &retained);
     for (;;) {
         supervise_once(&agv_supervise);
+        image_follow(&agv_supervise.supervisor);
     }
     return 0;
 }

@@ -1,5 +1,7 @@
 #include "supervise.h"
 
+#include <zephyr/sys/byteorder.h>
+
 #include "events.h"
 #include "kconfig.h"
 
@@ -15,6 +17,23 @@ static void print_new(supervise_t *self) {
     events_print_led(self->ticked_ms, agv_supervisor_led_code(&self->supervisor), &self->printed_led);
 }
 
+/* After a reset that was no power-on: how the run before ended. */
+static void record_end(supervise_t *self, agv_recorder_t *recorder) {
+    const hal_reset_cause_t cause = hal_reset_cause(&self->hal);
+    const zephyr_hal_end_t *const end = &self->hal.end_before;
+    const agv_entry_t entry = {.kind = (uint8_t)AGV_EVENT_CRASH,
+                               .a = (uint8_t)cause,
+                               .b = (uint8_t)end->reason,
+                               .state = (uint8_t)agv_supervisor_state(&self->supervisor),
+                               .first_reason = (uint8_t)agv_supervisor_first_reason(&self->supervisor)};
+    uint8_t addresses[AGV_DLC];
+    if (cause != HAL_RESET_POWER_ON) {
+        sys_put_le32(end->pc, &addresses[0]);
+        sys_put_le32(end->lr, &addresses[sizeof end->pc]);
+        agv_recorder_add_crash(recorder, &entry, addresses, self->ticked_ms);
+    }
+}
+
 void supervise_start(supervise_t *self, agv_recorder_t *recorder, zephyr_hal_retained_t *retained) {
     agv_config_t config;
     kconfig_read(&config);
@@ -28,6 +47,7 @@ void supervise_start(supervise_t *self, agv_recorder_t *recorder, zephyr_hal_ret
     self->ports = (agv_ports_t){.hal = &self->hal, .recorder = recorder};
     self->ticked_ms = hal_clock_now_ms(&self->hal);
     agv_supervisor_start(&self->supervisor, &self->ports, &config, self->ticked_ms);
+    record_end(self, recorder);
 #if defined(CONFIG_AGV_SHELL)
     agv_config_ids(agv_supervisor_config(&self->supervisor), &self->ids);
 #endif

@@ -1,6 +1,4 @@
-/* Start, clock, waiting, and the end of a run. */
-#include <zephyr/sys/reboot.h>
-
+/* Start, clock and waiting. */
 #include "zephyr_hal_internal.h"
 
 enum { MS_PER_TICK = 1 };
@@ -43,7 +41,7 @@ bool zephyr_hal_init(hal_t *hal, const zephyr_hal_config_t *config) {
     const bool output_works = zephyr_hal_output_is_open();
     const bool watchdog_works = zephyr_watchdog_start(hal, config->watchdog_ms);
     hal->retained = config->retained;
-    hal->reset_cause = zephyr_reset_read(hal->retained);
+    hal->reset_cause = zephyr_reset_read(hal->retained, &hal->end_before);
     const bool led_works = zephyr_led_start();
     const bool log_works = zephyr_log_start(hal);
     const bool sides_work = start_sides(hal, config);
@@ -71,18 +69,4 @@ void zephyr_hal_wait(hal_t *hal) {
 
 zephyr_hal_side_t *zephyr_hal_side(hal_t *hal, hal_can_side_t side) {
     return (((unsigned)side < HAL_CAN_SIDES) && (hal->sides[side].device != NULL)) ? &hal->sides[side] : NULL;
-}
-
-FUNC_NORETURN void zephyr_hal_die(hal_reset_cause_t cause) {
-    zephyr_output_open_now();
-    zephyr_reset_note(cause);
-    sys_reboot(SYS_REBOOT_COLD);
-    CODE_UNREACHABLE;
-}
-
-/* Zephyr calls this after a processor fault, a failed assertion or a stack overflow. */
-void k_sys_fatal_error_handler(unsigned int reason, const struct arch_esf *esf) {
-    ARG_UNUSED(reason);
-    ARG_UNUSED(esf);
-    zephyr_hal_die(HAL_RESET_LOCK_UP);
 }

@@ -34,11 +34,14 @@ bool zephyr_led_start(void);
 /** Open the output from any context, at the end of a run. */
 void zephyr_output_open_now(void);
 
-/** Read the cause of the reset, and clear it. */
-hal_reset_cause_t zephyr_reset_read(zephyr_hal_retained_t *retained);
+/** Read the cause of the reset and how the run before ended, and clear both. */
+hal_reset_cause_t zephyr_reset_read(zephyr_hal_retained_t *retained, zephyr_hal_end_t *end);
 
-/** Store the cause of the reset that follows. */
-void zephyr_reset_note(hal_reset_cause_t cause);
+/** Store how this run ends, before the reset that follows. */
+void zephyr_reset_note(const zephyr_hal_end_t *end);
+
+/** Whether the log in flash is being read: then an ECC error of the flash is a torn record. */
+extern volatile bool zephyr_log_is_read;
 
 /** Open the log in flash. @return false: the flash cannot be used (true without a log partition) */
 bool zephyr_log_start(hal_t *hal);

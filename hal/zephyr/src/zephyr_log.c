@@ -134,6 +134,8 @@ static uint32_t find_sectors(void) {
     return ((status == 0) || (status == -ENOMEM)) ? count : 0u;
 }
 
+volatile bool zephyr_log_is_read;
+
 static zephyr_hal_log_t begin_fcb(const struct flash_area *area, uint32_t count, bool repair, bool *all) {
     static sector_state_t states[CONFIG_AGV_LOG_SECTORS];
     for (uint32_t i = 0u; i < count; i++) {
@@ -153,7 +155,9 @@ static void open_log(hal_t *hal, bool repair) {
     hal->log = ZEPHYR_HAL_LOG_FAILED;
     hal->log_is_whole = false;
     if (flash_area_open(LOG_AREA, &area) == 0) {
+        zephyr_log_is_read = true;
         hal->log = begin_fcb(area, find_sectors(), repair, &hal->log_is_whole);
+        zephyr_log_is_read = false;
         flash_area_close(area);
     }
 }
@@ -232,9 +236,11 @@ bool hal_store_append(hal_t *hal, const void *record, size_t size) {
 
 size_t zephyr_hal_log_next(hal_t *hal, zephyr_hal_log_cursor_t *cursor, void *record, size_t size) {
     struct fcb_entry *const place = &cursor->place;
+    zephyr_log_is_read = true;
     bool found = (hal->log == ZEPHYR_HAL_LOG_READY) && (fcb_getnext(&log_buffer, place) == 0);
     const size_t copied = found ? MIN(size, place->fe_data_len) : 0u;
     found = found && (flash_area_read(log_buffer.fap, FCB_ENTRY_FA_DATA_OFF((*place)), record, copied) == 0);
+    zephyr_log_is_read = false;
     return found ? place->fe_data_len : 0u;
 }
 
@@ -248,6 +254,8 @@ size_t hal_store_read_record(hal_t *hal, uint32_t index, void *record, size_t si
 }
 
 #else
+
+volatile bool zephyr_log_is_read;
 
 bool zephyr_log_start(hal_t *hal) {
     hal->log = ZEPHYR_HAL_LOG_NONE;

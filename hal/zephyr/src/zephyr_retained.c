@@ -1,4 +1,4 @@
-/* hal/reset.h, and the latch of hal/store.h: memory that a reset does not clear. */
+/* hal/reset.h, the end of the run before, and the latch of hal/store.h: memory that a reset does not clear. */
 #include <string.h>
 
 #include <zephyr/drivers/hwinfo.h>
@@ -13,25 +13,31 @@ static uint32_t latch_checksum(const zephyr_hal_retained_t *retained) {
     return crc32_ieee((const uint8_t *)retained, offsetof(zephyr_hal_retained_t, latch_checksum));
 }
 
-static uint32_t note_checksum(uint32_t note) {
-    return ~crc32_ieee((const uint8_t *)&note, sizeof note);
+static uint32_t end_checksum(const zephyr_hal_end_t *end) {
+    return ~crc32_ieee((const uint8_t *)end, sizeof *end);
 }
 
-void zephyr_reset_note(hal_reset_cause_t cause) {
+void zephyr_reset_note(const zephyr_hal_end_t *end) {
     if (notes != NULL) {
-        notes->note = (uint32_t)cause;
-        notes->note_checksum = note_checksum(notes->note);
+        notes->end = *end;
+        notes->end_checksum = end_checksum(end);
     }
 }
 
-/* Read and clear the note of the last run: the cause of a software reset that the port itself requested. */
-static hal_reset_cause_t take_note(zephyr_hal_retained_t *retained) {
-    const uint32_t note = retained->note;
-    const bool valid = retained->note_checksum == note_checksum(note);
-    retained->note_checksum = ~note_checksum(note);
-    return (valid && ((note == (uint32_t)HAL_RESET_WATCHDOG) || (note == (uint32_t)HAL_RESET_LOCK_UP)))
-               ? (hal_reset_cause_t)note
-               : HAL_RESET_SOFTWARE;
+/* Read and clear how the port itself ended the last run. */
+static zephyr_hal_end_t take_end(zephyr_hal_retained_t *retained) {
+    const zephyr_hal_end_t end = retained->end;
+    const bool valid = (retained->end_checksum == end_checksum(&end)) && (end.reason < (uint32_t)ZEPHYR_HAL_REASONS);
+    retained->end_checksum = ~end_checksum(&end);
+    return valid ? end : (zephyr_hal_end_t){.reason = ZEPHYR_HAL_NO_REASON};
+}
+
+/* The cause of a software reset: the port itself requested it, or another part of the program. */
+static hal_reset_cause_t cause_of_end(const zephyr_hal_end_t *end) {
+    if (end->reason == (uint32_t)ZEPHYR_HAL_NO_REASON) {
+        return HAL_RESET_SOFTWARE;
+    }
+    return (end->reason == (uint32_t)ZEPHYR_HAL_TASK_WATCHDOG) ? HAL_RESET_WATCHDOG : HAL_RESET_LOCK_UP;
 }
 
 /*
@@ -55,10 +61,10 @@ static hal_reset_cause_t cause_of(uint32_t flags, hal_reset_cause_t noted) {
     return ((flags & RESET_BROWNOUT) != 0u) ? HAL_RESET_BROWN_OUT : HAL_RESET_UNKNOWN;
 }
 
-hal_reset_cause_t zephyr_reset_read(zephyr_hal_retained_t *retained) {
+hal_reset_cause_t zephyr_reset_read(zephyr_hal_retained_t *retained, zephyr_hal_end_t *end) {
     uint32_t flags = 0u;
     notes = retained;
-    const hal_reset_cause_t noted = take_note(retained);
+    *end = take_end(retained);
     const bool known = hwinfo_get_reset_cause(&flags) == 0;
     if (known) {
         (void)hwinfo_clear_reset_cause();
@@ -66,7 +72,7 @@ hal_reset_cause_t zephyr_reset_read(zephyr_hal_retained_t *retained) {
     if (IS_ENABLED(CONFIG_AGV_EVERY_START_IS_POWER_ON)) {
         return HAL_RESET_POWER_ON;
     }
-    return known ? cause_of(flags, noted) : HAL_RESET_UNKNOWN;
+    return known ? cause_of(flags, cause_of_end(end)) : HAL_RESET_UNKNOWN;
 }
 
 hal_reset_cause_t hal_reset_cause(hal_t *hal) {

@@ -19,7 +19,7 @@ BUILD_ASSERT((CONFIG_TASK_WDT_MIN_TIMEOUT + CONFIG_TASK_WDT_HW_FALLBACK_DELAY) <
 static void on_expired(int channel, void *user_data) {
     ARG_UNUSED(channel);
     ARG_UNUSED(user_data);
-    zephyr_hal_die(HAL_RESET_WATCHDOG);
+    zephyr_hal_die(ZEPHYR_HAL_TASK_WATCHDOG, 0u, 0u);
 }
 
 bool zephyr_watchdog_start(hal_t *hal, uint32_t period_ms) {

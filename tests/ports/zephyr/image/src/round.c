@@ -16,7 +16,7 @@
 #include "agv/protocol.h"
 #include "node.h"
 #include "supervise.h"
-#include "vehicle/vehicle.h"
+#include "vehicle.h"
 
 enum { HEARD_MAX = 256, PIN_OUTPUT = 1, STACK_SIZE = 2048, PRIORITY = 5, FIRST_FRAME_LATEST_MS = 10 };
 

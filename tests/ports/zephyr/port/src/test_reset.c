@@ -58,13 +58,20 @@ ZTEST(port_reset, test_without_flags_the_cause_is_unknown) {
 
 /* Shows: FSM-7 */
 ZTEST(port_reset, test_a_reset_by_the_port_itself_reports_its_cause_once) {
-    zephyr_reset_note(HAL_RESET_WATCHDOG);
+    zephyr_reset_note(&(zephyr_hal_end_t){.reason = ZEPHYR_HAL_TASK_WATCHDOG});
     zassert_equal(cause_after(RESET_SOFTWARE), HAL_RESET_WATCHDOG);
+    zassert_equal(hal.end_before.reason, ZEPHYR_HAL_TASK_WATCHDOG);
     zassert_equal(cause_after(RESET_SOFTWARE), HAL_RESET_SOFTWARE);
-    zephyr_reset_note(HAL_RESET_LOCK_UP);
-    zassert_equal(cause_after(RESET_SOFTWARE), HAL_RESET_LOCK_UP);
-    zephyr_reset_note(HAL_RESET_POWER_ON);
-    zassert_equal(cause_after(RESET_SOFTWARE), HAL_RESET_SOFTWARE, "a note never makes a power-on");
+    zassert_equal(hal.end_before.reason, ZEPHYR_HAL_NO_REASON);
+    for (uint32_t reason = ZEPHYR_HAL_PROCESSOR; reason < ZEPHYR_HAL_REASONS; reason++) {
+        zephyr_reset_note(&(zephyr_hal_end_t){.reason = reason, .pc = 0x08001234u, .lr = 0x08005679u});
+        zassert_equal(cause_after(RESET_SOFTWARE), HAL_RESET_LOCK_UP);
+        zassert_equal(hal.end_before.reason, reason);
+        zassert_equal(hal.end_before.pc, 0x08001234u);
+        zassert_equal(hal.end_before.lr, 0x08005679u);
+    }
+    zephyr_reset_note(&(zephyr_hal_end_t){.reason = ZEPHYR_HAL_REASONS});
+    zassert_equal(cause_after(RESET_SOFTWARE), HAL_RESET_SOFTWARE, "a reason that does not exist is none");
 }
 
 /* Shows: FSM-7 */
@@ -84,7 +91,7 @@ ZTEST(port_reset, test_the_latch_outlives_a_reset) {
 ZTEST(port_reset, test_each_flipped_bit_of_the_latch_is_detected) {
     static const uint8_t record[8] = {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u};
     uint8_t read[HAL_STORE_LATCH_SIZE_MAX];
-    for (size_t bit = 0u; bit < (offsetof(zephyr_hal_retained_t, note) * 8u); bit++) {
+    for (size_t bit = 0u; bit < (offsetof(zephyr_hal_retained_t, end) * 8u); bit++) {
         zassert_true(hal_store_write_latch(&hal, record, sizeof record));
         ((uint8_t *)&retained)[bit / 8u] ^= (uint8_t)(1u << (bit % 8u));
         hal.reset_cause = HAL_RESET_POWER_ON;

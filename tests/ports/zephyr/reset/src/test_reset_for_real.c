@@ -1,16 +1,18 @@
 /*
- * One supervisor over six starts of an emulated Cortex-M3. Each run but the last ends with another kind of reset, and
+ * One supervisor over seven starts of an emulated Cortex-M3. Each run but the last ends with another kind of reset, and
  * the next one checks what outlived it: latch, first reason, recorder, cause. The test sets hwinfo's flags, because
  * this machine has none. The task watchdog, the faults, the MPU's stack guard and the hardware watchdog are real.
  */
+#include <zephyr/arch/arm/nmi.h>
 #include <zephyr/drivers/hwinfo.h>
+#include <zephyr/sys/byteorder.h>
 #include <zephyr/ztest.h>
 
 #include "fake_parts.h"
 #include "supervise.h"
-#include "vehicle/vehicle.h"
+#include "vehicle.h"
 
-enum { STORY = 0x53544F52, RUNS = 6, ENDS_MS = 400 };
+enum { STORY = 0x53544F52, RUNS = 7, ENDS_MS = 400 };
 
 static ZEPHYR_HAL_RETAINED agv_recorder_t recorder;
 static ZEPHYR_HAL_RETAINED zephyr_hal_retained_t retained;
@@ -106,25 +108,58 @@ static void end_by_a_stack_that_overflows(void) {
     k_msleep(ENDS_MS);
 }
 
-static void end_by_a_kernel_that_hangs(void) {
-    (void)irq_lock();
+static void hang_for_good(void) {
     for (;;) {
     }
+}
+
+/* The first timeout of this machine's watchdog is an NMI, the second one a reset. Here the NMI hangs, too. */
+static void end_by_a_kernel_that_hangs(void) {
+    z_arm_nmi_set_handler(hang_for_good);
+    (void)irq_lock();
+    hang_for_good();
+}
+
+static void end_by_an_nmi(void) {
+    SCB->ICSR = SCB_ICSR_NMIPENDSET_Msk;
+    k_msleep(ENDS_MS);
 }
 
 static const struct {
     const char *what;
     uint32_t flags; /* of the reset before */
     hal_reset_cause_t cause;
+    zephyr_hal_reason_t reason;
+    void (*place)(void); /* the function whose address must be the program counter; NULL: not looked at */
     void (*end)(void);
 } runs[RUNS] = {
-    {"power-on", RESET_POR, HAL_RESET_POWER_ON, end_by_a_supervisor_that_hangs},
-    {"the task watchdog", RESET_SOFTWARE, HAL_RESET_WATCHDOG, end_by_a_fault},
-    {"a fault", RESET_SOFTWARE, HAL_RESET_LOCK_UP, end_by_a_failed_assertion},
-    {"a failed assertion", RESET_SOFTWARE, HAL_RESET_LOCK_UP, end_by_a_stack_that_overflows},
-    {"a stack that overflowed", RESET_SOFTWARE, HAL_RESET_LOCK_UP, end_by_a_kernel_that_hangs},
-    {"the hardware watchdog", RESET_WATCHDOG, HAL_RESET_WATCHDOG, NULL},
+    {"power-on", RESET_POR, HAL_RESET_POWER_ON, ZEPHYR_HAL_NO_REASON, NULL, end_by_a_supervisor_that_hangs},
+    {"the task watchdog", RESET_SOFTWARE, HAL_RESET_WATCHDOG, ZEPHYR_HAL_TASK_WATCHDOG, NULL, end_by_a_fault},
+    {"a fault", RESET_SOFTWARE, HAL_RESET_LOCK_UP, ZEPHYR_HAL_PROCESSOR, end_by_a_fault, end_by_a_failed_assertion},
+    {"a failed assertion", RESET_SOFTWARE, HAL_RESET_LOCK_UP, ZEPHYR_HAL_ASSERTION, end_by_a_failed_assertion,
+     end_by_a_stack_that_overflows},
+    {"a stack that overflowed", RESET_SOFTWARE, HAL_RESET_LOCK_UP, ZEPHYR_HAL_STACK, NULL, end_by_an_nmi},
+    {"an NMI", RESET_SOFTWARE, HAL_RESET_LOCK_UP, ZEPHYR_HAL_NMI, end_by_an_nmi, end_by_a_kernel_that_hangs},
+    {"the hardware watchdog", RESET_WATCHDOG, HAL_RESET_WATCHDOG, ZEPHYR_HAL_NO_REASON, NULL, NULL},
 };
+
+/* The newest event of a crash: cause, reason, and a program counter in the function that ended the run before. */
+static void look_at_the_recorded_end(uint32_t run) {
+    enum { FUNCTION_SIZE = 64 };
+    const uint32_t next = agv_recorder_next_sequence(&recorder);
+    agv_event_t event = {0};
+    for (uint32_t i = 1u; (i < 16u) && (event.kind != (uint8_t)AGV_EVENT_CRASH); i++) {
+        (void)agv_recorder_get(&recorder, next - i, &event);
+    }
+    zassert_equal(event.kind, AGV_EVENT_CRASH, "after %s: no event", runs[run].what);
+    zassert_equal(event.a, runs[run].cause);
+    zassert_equal(event.b, runs[run].reason, "after %s: %u", runs[run].what, event.b);
+    if (runs[run].place != NULL) {
+        const uint32_t pc = sys_get_le32(event.frames[0]);
+        const uint32_t place = (uint32_t)(uintptr_t)runs[run].place & ~1u;
+        zassert_true((pc - place) < (uint32_t)FUNCTION_SIZE, "after %s: PC %08x", runs[run].what, pc);
+    }
+}
 
 static void look_at_what_outlived(uint32_t run) {
     zassert_equal(hal_reset_cause(&self.hal), runs[run].cause, "after %s", runs[run].what);
@@ -134,6 +169,7 @@ static void look_at_what_outlived(uint32_t run) {
     zassert_false(fake_output_is_closed(), "and is open after it");
     zassert_equal(agv_supervisor_state(&self.supervisor), AGV_STATE_TRIPPED, "nothing resumes by itself");
     zassert_equal(agv_supervisor_first_reason(&self.supervisor), AGV_FAULT_STEERING_COMMAND_TIMEOUT);
+    look_at_the_recorded_end(run);
     zassert_true(agv_recorder_next_sequence(&recorder) > (5u + run), "events of earlier runs are there");
 }
 

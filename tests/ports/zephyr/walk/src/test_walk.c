@@ -7,7 +7,7 @@
 #include "agv/codec.h"
 #include "fake_parts.h"
 #include "supervise.h"
-#include "vehicle/vehicle.h"
+#include "vehicle.h"
 
 static ZEPHYR_HAL_RETAINED agv_recorder_t recorder;
 static ZEPHYR_HAL_RETAINED zephyr_hal_retained_t retained;
