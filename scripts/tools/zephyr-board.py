@@ -174,6 +174,8 @@ def check_release(build):
     if build.has("AGV_SHADOW_ON", "AGV_CAN_LISTEN_ONLY"):
         raise Refused("release: a supervisor in shadow mode does not act: leave out shadow.conf (CONFIG_AGV_SHADOW_ON, "
                       "CONFIG_AGV_CAN_LISTEN_ONLY)")
+    if build.has("MCUMGR") and not build.has("AGV_UPDATE"):
+        raise Refused("release: CONFIG_MCUMGR without CONFIG_AGV_UPDATE takes an update in every state: add update.conf, or leave it out")
 
 
 def check(build):
