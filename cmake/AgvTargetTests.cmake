@@ -14,6 +14,7 @@ set(AGV_TEST_START $<TARGET_OBJECTS:agv_target_start>)
 
 add_subdirectory(firmware)
 target_compile_options(agv_core PRIVATE ${AGV_SMALL_OPTIONS})
+add_subdirectory(hal/forward)
 add_subdirectory(hal/sim)
 add_subdirectory(hal/template)
 add_subdirectory(tests)
