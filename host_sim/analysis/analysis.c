@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "common/report.h"
+#include "report/report_page.h"
+#include "report/series.h"
 
 enum { NAME_SIZE = 32 };
 
@@ -14,6 +16,7 @@ struct analysis {
     char names[HAL_CAN_SIDES][NAME_SIZE];
     uint64_t first_us; /**< time of day; 0: none */
     why_t *why;
+    series_t *series; /**< NULL: no report was asked for */
     output_t files[ANALYSIS_FILES];
 };
 
@@ -22,8 +25,10 @@ analysis_t *analysis_new(const analysis_request_t *request) {
     if (analysis != NULL) {
         analysis->request = *request;
         analysis->why = why_new(request->config);
+        analysis->series = (request->paths[ANALYSIS_REPORT] != NULL) ? series_new(request->config) : NULL;
     }
-    if ((analysis == NULL) || (analysis->why == NULL)) {
+    if ((analysis == NULL) || (analysis->why == NULL) ||
+        ((request->paths[ANALYSIS_REPORT] != NULL) && (analysis->series == NULL))) {
         analysis_free(analysis);
         (void)report("out of memory");
         return NULL;
@@ -57,15 +62,24 @@ void analysis_set_clock(analysis_t *analysis, uint64_t first_us) {
 
 void analysis_frame(analysis_t *analysis, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
     why_frame(analysis->why, side, frame, t_us);
+    if (analysis->series != NULL) {
+        series_frame(analysis->series, side, frame, t_us);
+    }
 }
 
 void analysis_sent(analysis_t *analysis, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
     why_sent(analysis->why, side, frame, t_us);
+    if (analysis->series != NULL) {
+        series_sent(analysis->series, side, frame, t_us);
+    }
 }
 
 void analysis_event(void *ctx, const session_event_t *event) {
     analysis_t *analysis = ctx;
     why_event(analysis->why, event);
+    if (analysis->series != NULL) {
+        series_event(analysis->series, event);
+    }
 }
 
 /** The object of --why. */
@@ -88,12 +102,28 @@ static void write_json(output_t *output, json_t *object) {
     free(text);
 }
 
+/** The page of --report. */
+static void write_report(analysis_t *analysis) {
+    report_page_t page = {.name = analysis->request.log,
+                          .clock_us = analysis->first_us,
+                          .is_recording = analysis->request.is_recording,
+                          .config = analysis->request.config};
+    for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
+        page.interfaces[side] = (analysis->names[side][0] != '\0') ? analysis->names[side] : NULL;
+    }
+    report_page_write(&analysis->files[ANALYSIS_REPORT], &page, analysis->why, analysis->series);
+}
+
 void analysis_end(analysis_t *analysis, uint64_t t_us) {
     why_end(analysis->why, t_us);
     if (analysis->files[ANALYSIS_WHY].is_open) {
         json_t *why = make_why(analysis);
         write_json(&analysis->files[ANALYSIS_WHY], why);
         json_decref(why);
+    }
+    if (analysis->series != NULL) {
+        series_end(analysis->series, t_us);
+        write_report(analysis);
     }
 }
 
@@ -126,5 +156,6 @@ void analysis_free(analysis_t *analysis) {
         output_discard(&analysis->files[i]);
     }
     why_free(analysis->why);
+    series_free(analysis->series);
     free(analysis);
 }

@@ -10,24 +10,21 @@
 #include "common/words.h"
 #include "config/config_file.h"
 
-enum { TEXT_SIZE = 96 };
-
 /** Identifiers are written in hexadecimal. */
 static bool is_identifier(const agv_setting_info_t *info) {
     return (strncmp(info->name, "id_", 3u) == 0 && (info->words == NULL)) ||
            (strcmp(info->name, "status_frame_id") == 0);
 }
 
-/** The value of a setting as it stands in a file. */
-static void value_text(const agv_setting_info_t *info, uint16_t value, char text[TEXT_SIZE]) {
+void config_value_text(const agv_setting_info_t *info, uint16_t value, char text[CONFIG_VALUE_SIZE]) {
     if (is_identifier(info)) {
-        (void)snprintf(text, TEXT_SIZE, "0x%03X", value);
+        (void)snprintf(text, CONFIG_VALUE_SIZE, "0x%03X", value);
     } else if (info->words == NULL) {
-        (void)snprintf(text, TEXT_SIZE, "%u", value);
+        (void)snprintf(text, CONFIG_VALUE_SIZE, "%u", value);
     } else {
         const char *word = NULL;
         size_t length = words_at(info->words, value, &word);
-        (void)snprintf(text, TEXT_SIZE, "%.*s", (int)length, word);
+        (void)snprintf(text, CONFIG_VALUE_SIZE, "%.*s", (int)length, word);
     }
 }
 
@@ -67,10 +64,10 @@ void config_print_yaml(const agv_config_t *config) {
                  agv_config_checksum(config));
     for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
         const agv_setting_info_t *info = agv_setting_info(i);
-        char preset[TEXT_SIZE];
-        char value[TEXT_SIZE];
-        value_text(info, info->preset, preset);
-        value_text(info, agv_config_get(config, i), value);
+        char preset[CONFIG_VALUE_SIZE];
+        char value[CONFIG_VALUE_SIZE];
+        config_value_text(info, info->preset, preset);
+        config_value_text(info, agv_config_get(config, i), value);
         (void)printf("\n# %s\n", info->meaning);
         if (info->words == NULL) {
             (void)printf("# %u to %u%s%s, default %s", info->lowest, info->highest, (info->unit[0] != '\0') ? " " : "",
@@ -104,8 +101,8 @@ void config_print_kconfig(const agv_config_t *config) {
                  agv_config_checksum(config));
     for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
         const agv_setting_info_t *info = agv_setting_info(i);
-        char value[TEXT_SIZE];
-        value_text(info, agv_config_get(config, i), value);
+        char value[CONFIG_VALUE_SIZE];
+        config_value_text(info, agv_config_get(config, i), value);
         (void)printf("CONFIG_AGV_");
         print_upper(info->name);
         if (info->words == NULL) {
@@ -138,10 +135,10 @@ void config_note_deviations(const agv_config_t *config) {
     for (uint16_t i = 0u; i < (uint16_t)AGV_SETTING_COUNT; i++) {
         const agv_setting_info_t *info = agv_setting_info(i);
         if (agv_config_get(config, i) != info->preset) {
-            char preset[TEXT_SIZE];
-            char value[TEXT_SIZE];
-            value_text(info, info->preset, preset);
-            value_text(info, agv_config_get(config, i), value);
+            char preset[CONFIG_VALUE_SIZE];
+            char value[CONFIG_VALUE_SIZE];
+            config_value_text(info, info->preset, preset);
+            config_value_text(info, agv_config_get(config, i), value);
             print_deviation(&any, info->name, value, preset, agv_config_weakens(config, i));
         }
     }

@@ -8,6 +8,11 @@
 
 #include "agv/config.h"
 
+#define CONFIG_VALUE_SIZE 96u
+
+/** The value of a setting as it stands in a file: "350", "0x7F0", "shared". */
+void config_value_text(const agv_setting_info_t *info, uint16_t value, char text[CONFIG_VALUE_SIZE]);
+
 /** Print every setting on standard output, with meaning, range and default as comments. */
 void config_print_yaml(const agv_config_t *config);
 

@@ -191,14 +191,18 @@ void series_end(series_t *series, uint64_t t_us) {
     }
 }
 
-const series_frame_t *series_frames(const series_t *series, uint64_t trip_us, size_t *count) {
+uint64_t series_end_us(const series_t *series) {
+    return series->end_us;
+}
+
+const series_frame_t *series_frames(const series_t *series, uint64_t t_us, size_t *count) {
+    const series_detail_t *found = NULL;
     for (size_t i = 0u; i < series->detail_count; i++) {
         const series_detail_t *detail = &series->details[i];
-        if ((detail->trip_us == trip_us) && (detail->frames != NULL)) {
-            *count = detail->count;
-            return detail->frames;
+        if ((detail->trip_us <= t_us) && (t_us <= detail->to_us)) {
+            found = detail;
         }
     }
-    *count = 0u;
-    return NULL;
+    *count = (found != NULL) ? found->count : 0u;
+    return (found != NULL) ? found->frames : NULL;
 }

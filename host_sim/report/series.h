@@ -53,8 +53,11 @@ void series_event(void *ctx, const session_event_t *event);
 /** The run is over. */
 void series_end(series_t *series, uint64_t t_us);
 
-/** The frames around a trip, in the order of time. @return NULL: they were not kept */
-const series_frame_t *series_frames(const series_t *series, uint64_t trip_us, size_t *count);
+/** When the run ended. */
+uint64_t series_end_us(const series_t *series);
+
+/** The frames around a trip, or around what came soon after one, in the order of time. @return NULL: not kept */
+const series_frame_t *series_frames(const series_t *series, uint64_t t_us, size_t *count);
 
 /**
  * All of it as an object:

@@ -1,0 +1,251 @@
+#include "report/report_page.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "agv/names.h"
+#include "report/page_parts.h"
+#include "report/report_frames.h"
+#include "report/report_settings.h"
+#include "report/sentence.h"
+
+enum { TIME_TEXT_SIZE = 48, US_A_MS = 1000, US_A_S = 1000000 };
+
+static void set(json_t *object, const char *key, json_t *value) {
+    (void)json_object_set_new(object, key, value);
+}
+
+static json_t *text_or_null(const char *text) {
+    return (text != NULL) ? json_string(text) : json_null();
+}
+
+static json_t *number(uint64_t value) {
+    return json_integer((json_int_t)value);
+}
+
+static json_t *time_or_null(uint64_t t_us) {
+    return (t_us != WHY_NEVER) ? number(t_us) : json_null();
+}
+
+/** The time of day as a clock on the wall shows it: "2026-11-20 10:32:04.100". */
+static json_t *clock_json(uint64_t clock_us) {
+    const time_t seconds = (time_t)(clock_us / US_A_S);
+    struct tm local;
+    char date[TIME_TEXT_SIZE];
+    char text[TIME_TEXT_SIZE + 8];
+    if ((clock_us == 0u) || (localtime_r(&seconds, &local) == NULL)) {
+        return json_null();
+    }
+    (void)strftime(date, sizeof date, "%Y-%m-%d %H:%M:%S", &local);
+    (void)snprintf(text, sizeof text, "%s.%03u", date, (unsigned)(clock_us % US_A_S / US_A_MS));
+    return json_string(text);
+}
+
+static json_t *trip_json(const report_page_t *page, const why_t *why, const series_t *series, size_t index) {
+    const why_trip_t *trip = why_trip(why, index);
+    sentence_t sentence;
+    sentence_trip(&sentence, page, trip);
+    json_t *object = json_object();
+    set(object, "t_us", number(trip->t_us));
+    set(object, "reason", text_or_null(agv_fault_name(trip->reason)));
+    set(object, "kind", json_string(why_kind_name(trip->kind)));
+    set(object, "message", text_or_null(agv_message_name(trip->message)));
+    set(object, "cause_us", time_or_null(trip->cause_us));
+    set(object, "last_good_us", time_or_null(trip->last_good_us));
+    set(object, "first_safe_us", time_or_null(trip->first_safe_us));
+    set(object, "confirmed_us", time_or_null(trip->confirmed_us));
+    set(object, "stopped_us", time_or_null(trip->stopped_us));
+    set(object, "limit", (trip->limit != WHY_NO_LIMIT) ? json_integer((json_int_t)trip->limit) : json_null());
+    set(object, "unit", text_or_null(trip->unit));
+    set(object, "from_recording", json_boolean(trip->from_recording));
+    set(object, "headline", json_string(sentence.headline));
+    set(object, "cause", json_string(sentence.cause));
+    set(object, "action", json_string(sentence.action));
+    set(object, "outcome", json_string(sentence.outcome));
+    report_frames_add(object, page->config, trip, series);
+    return object;
+}
+
+static json_t *trips_json(const report_page_t *page, const why_t *why, const series_t *series) {
+    json_t *trips = json_array();
+    for (size_t i = 0u; i < why_trip_count(why); i++) {
+        (void)json_array_append_new(trips, trip_json(page, why, series, i));
+    }
+    return trips;
+}
+
+static json_t *faults_json(const why_t *why) {
+    json_t *faults = json_array();
+    for (size_t i = 0u; i < why_fault_count(why); i++) {
+        const why_fault_t *fault = why_fault(why, i);
+        json_t *object = json_object();
+        set(object, "name", text_or_null(agv_fault_name(fault->fault)));
+        set(object, "phrase", json_string(sentence_phrase(fault->fault)));
+        set(object, "class", text_or_null(agv_class_name(fault->fault_class)));
+        set(object, "first_us", number(fault->first_us));
+        set(object, "active_us", number(fault->active_us));
+        set(object, "times", number(fault->times));
+        set(object, "active", json_boolean(fault->active));
+        set(object, "from_recording", json_boolean(fault->from_recording));
+        (void)json_array_append_new(faults, object);
+    }
+    return faults;
+}
+
+static json_t *states_json(const why_t *why) {
+    json_t *states = json_array();
+    for (size_t i = 0u; i < (size_t)WHY_STATES; i++) {
+        (void)json_array_append_new(states, number(why_state_us(why, i)));
+    }
+    return states;
+}
+
+static json_t *about_json(const report_page_t *page) {
+    json_t *about = json_object();
+    json_t *interfaces = json_array();
+    char checksum[16];
+    (void)snprintf(checksum, sizeof checksum, "%08" PRIX32, agv_config_checksum(page->config));
+    for (size_t side = 0u; side < (size_t)HAL_CAN_SIDES; side++) {
+        (void)json_array_append_new(interfaces, text_or_null(page->interfaces[side]));
+    }
+    set(about, "name", text_or_null(page->name));
+    set(about, "interfaces", interfaces);
+    set(about, "clock", clock_json(page->clock_us));
+    set(about, "recording", json_boolean(page->is_recording));
+    set(about, "gateway", json_boolean(page->config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY));
+    set(about, "shadow", json_boolean(page->config->shadow == (uint16_t)AGV_SHADOW_ON));
+    set(about, "checksum", json_string(checksum));
+    set(about, "version", json_string(HOST_SIM_VERSION));
+    return about;
+}
+
+static json_t *sentence_json(const sentence_t *sentence) {
+    json_t *object = json_object();
+    set(object, "headline", json_string(sentence->headline));
+    set(object, "cause", json_string(sentence->cause));
+    set(object, "action", json_string(sentence->action));
+    set(object, "outcome", json_string(sentence->outcome));
+    return object;
+}
+
+static json_t *page_json(const report_page_t *page, const why_t *why, const series_t *series,
+                         const sentence_t *sentence) {
+    json_t *object = json_object();
+    set(object, "about", about_json(page));
+    set(object, "sentence", sentence_json(sentence));
+    set(object, "supervised_us", number(why_supervised_us(why)));
+    set(object, "states", states_json(why));
+    set(object, "trips", trips_json(page, why, series));
+    set(object, "faults", faults_json(why));
+    set(object, "settings", report_settings_json(page->config));
+    set(object, "messages", (page->messages != NULL) ? json_deep_copy(page->messages) : json_null());
+    set(object, "series", series_json(series));
+    return object;
+}
+
+static void put(output_t *output, const char *text) {
+    (void)output_write(output, text, strlen(text));
+}
+
+/** Text between tags. */
+static void put_text(output_t *output, const char *text) {
+    for (; *text != '\0'; text++) {
+        switch (*text) {
+        case '&':
+            put(output, "&amp;");
+            break;
+        case '<':
+            put(output, "&lt;");
+            break;
+        case '>':
+            put(output, "&gt;");
+            break;
+        default:
+            (void)output_write(output, text, 1u);
+            break;
+        }
+    }
+}
+
+static void put_paragraph(output_t *output, const char *id, const char *text) {
+    put(output, "<p id=\"");
+    put(output, id);
+    put(output, "\">");
+    put_text(output, text);
+    put(output, "</p>\n");
+}
+
+/** The sentence, which a browser without scripts shows as well. */
+static void put_sentence(output_t *output, const sentence_t *sentence) {
+    put(output, "<h1 id=\"headline\">");
+    put_text(output, sentence->headline);
+    put(output, "</h1>\n");
+    put_paragraph(output, "cause", sentence->cause);
+    put_paragraph(output, "action", sentence->action);
+    put_paragraph(output, "outcome", sentence->outcome);
+}
+
+/** A piece of JSON inside a script element: a `<` could end the element. It stands in strings alone. */
+static int put_json(const char *bytes, size_t size, void *ctx) {
+    output_t *output = ctx;
+    size_t begin = 0u;
+    for (size_t i = 0u; i < size; i++) {
+        if (bytes[i] == '<') {
+            (void)output_write(output, &bytes[begin], i - begin);
+            put(output, "\\u003c");
+            begin = i + 1u;
+        }
+    }
+    return output_write(output, &bytes[begin], size - begin) ? 0 : -1;
+}
+
+static void put_data(output_t *output, const json_t *data) {
+    if ((json_dump_callback(data, put_json, output, JSON_COMPACT) != 0) && (output->error == 0)) {
+        output->error = ENOMEM;
+    }
+}
+
+/** What stands in the place of "@NAME@" in the frame of the page. */
+static void put_part(output_t *output, char part, const sentence_t *sentence, const json_t *data) {
+    switch (part) {
+    case 'T':
+        put_text(output, sentence->headline);
+        break;
+    case 'C':
+        put(output, page_timeline_css);
+        put(output, page_report_css);
+        break;
+    case 'S':
+        put_sentence(output, sentence);
+        break;
+    case 'D':
+        put_data(output, data);
+        break;
+    default:
+        put(output, page_timeline_js);
+        put(output, page_report_js);
+        break;
+    }
+}
+
+void report_page_write(output_t *output, const report_page_t *page, const why_t *why, const series_t *series) {
+    sentence_t sentence;
+    if (why_trip_count(why) > 0u) {
+        sentence_trip(&sentence, page, why_trip(why, 0u));
+    } else {
+        sentence_no_trip(&sentence, why, series_end_us(series));
+    }
+    json_t *data = page_json(page, why, series, &sentence);
+    const char *at = page_report_html;
+    for (const char *mark = strchr(at, '@'); mark != NULL; mark = strchr(at, '@')) {
+        (void)output_write(output, at, (size_t)(mark - at));
+        put_part(output, mark[1], &sentence, data);
+        at = strchr(&mark[1], '@') + 1;
+    }
+    put(output, at);
+    json_decref(data);
+}

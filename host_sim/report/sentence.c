@@ -1,0 +1,218 @@
+#include "report/sentence.h"
+
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "agv/names.h"
+#include "agv/recorder.h"
+
+enum { TIME_SIZE = 32, LIMIT_SIZE = 48, US_A_MS = 1000, US_A_S = 1000000, STATE_ACTIVE = 2 };
+
+const char *sentence_phrase(agv_fault_t fault) {
+    static const char *const phrases[AGV_FAULT_COUNT] = {
+#define FAULT_PHRASE(fault_, phrase) [AGV_FAULT_##fault_] = (phrase),
+#include "report/fault_phrases.def"
+#undef FAULT_PHRASE
+    };
+    return ((uint32_t)fault < (uint32_t)AGV_FAULT_COUNT) ? phrases[fault] : "";
+}
+
+const char *sentence_missing(unsigned index) {
+    static const char *const texts[] = {
+        "the supervisor is not in the state for it",
+        "the VCU is not alive",
+        "the EPS is not alive",
+        "the cause of a trip is present",
+        "the vehicle does not stand",
+        "the VCU does not report manual",
+        "remote button 1 is pressed, or was pressed too early",
+        "a status message is missing or late",
+        "the throttle is not idle",
+        "the button was held for too long",
+        "the contact of the safety output does not read open",
+    };
+    return (index < sizeof texts / sizeof texts[0]) ? texts[index] : "";
+}
+
+/** Append to a text of SENTENCE_SIZE; what does not fit is cut. */
+static void say(char text[SENTENCE_SIZE], const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void say(char text[SENTENCE_SIZE], const char *format, ...) {
+    const size_t used = strlen(text);
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(&text[used], SENTENCE_SIZE - used, format, arguments);
+    va_end(arguments);
+}
+
+/** A time since the start: "62.109 s". */
+static const char *at(uint64_t t_us, char text[TIME_SIZE]) {
+    const uint64_t t_ms = t_us / US_A_MS;
+    (void)snprintf(text, TIME_SIZE, "%" PRIu64 ".%03" PRIu64 " s", t_ms / US_A_MS, t_ms % US_A_MS);
+    return text;
+}
+
+/** A duration: "0.3 ms", "272 ms", "1.25 s". */
+static const char *lasting(uint64_t us, char text[TIME_SIZE]) {
+    if (us < 10u * (uint64_t)US_A_MS) {
+        (void)snprintf(text, TIME_SIZE, "%" PRIu64 ".%" PRIu64 " ms", us / US_A_MS, us % US_A_MS / 100u);
+    } else if (us < US_A_S) {
+        (void)snprintf(text, TIME_SIZE, "%" PRIu64 " ms", us / US_A_MS);
+    } else {
+        (void)snprintf(text, TIME_SIZE, "%" PRIu64 ".%02" PRIu64 " s", us / US_A_S, us % US_A_S / 10000u);
+    }
+    return text;
+}
+
+/** The limit with its unit as people write it. */
+static const char *limit_text(const why_trip_t *trip, char text[LIMIT_SIZE]) {
+    const long long limit = (long long)trip->limit;
+    if (strcmp(trip->unit, "ddeg") == 0) {
+        (void)snprintf(text, LIMIT_SIZE, "%lld.%lld°", limit / 10, limit % 10);
+    } else if (strcmp(trip->unit, "counts") == 0) {
+        (void)snprintf(text, LIMIT_SIZE, "%lld counts (%lld.%lld %%)", limit, limit * 4 / 10, limit * 4 % 10);
+    } else {
+        (void)snprintf(text, LIMIT_SIZE, "%lld %s", limit, trip->unit);
+    }
+    return text;
+}
+
+static bool has_limit(const why_trip_t *trip) {
+    return (trip->limit != WHY_NO_LIMIT) && (trip->unit != NULL);
+}
+
+/** "steering_command (065h)" */
+static void say_message(char text[SENTENCE_SIZE], const why_trip_t *trip) {
+    const char *name = agv_message_name(trip->message);
+    if (name != NULL) {
+        say(text, "%s (%03" PRIX32 "h)", name, trip->id);
+    } else if (trip->id != WHY_NO_ID) {
+        say(text, "%03" PRIX32 "h", trip->id);
+    } else {
+        say(text, "The message");
+    }
+}
+
+static void say_silence(char text[SENTENCE_SIZE], const why_trip_t *trip) {
+    const bool is_stuck = trip->kind == WHY_STUCK;
+    char time[TIME_SIZE];
+    char limit[LIMIT_SIZE];
+    if (trip->last_good_us == WHY_NEVER) {
+        say_message(text, trip);
+        say(text, " never came.");
+    } else {
+        say(text, is_stuck ? "The alive counter of " : "");
+        say_message(text, trip);
+        say(text, " %s at %s.", is_stuck ? "changed for the last time" : "came for the last time",
+            at(trip->last_good_us, time));
+    }
+    if (has_limit(trip)) {
+        say(text, " Its deadline is %s.", limit_text(trip, limit));
+    }
+    if (trip->next_us != WHY_NEVER) {
+        say(text, " The next one came at %s.", at(trip->next_us, time));
+    }
+}
+
+static void say_cause(char text[SENTENCE_SIZE], const why_trip_t *trip) {
+    char time[TIME_SIZE];
+    char limit[LIMIT_SIZE];
+    if ((trip->kind == WHY_SILENCE) || (trip->kind == WHY_STUCK)) {
+        say_silence(text, trip);
+        return;
+    }
+    if (trip->cause_us != WHY_NEVER) {
+        say(text, "It began at %s", at(trip->cause_us, time));
+        if ((trip->message != AGV_MSG_NONE) || (trip->id != WHY_NO_ID)) {
+            say(text, " and is seen in ");
+            say_message(text, trip);
+        }
+        say(text, ".");
+    }
+    if (has_limit(trip)) {
+        say(text, "%sThe limit is %s.", (text[0] != '\0') ? " " : "", limit_text(trip, limit));
+    }
+}
+
+static void say_action(char text[SENTENCE_SIZE], const report_page_t *page, const why_trip_t *trip) {
+    char time[TIME_SIZE];
+    const bool is_shadow = page->config->shadow == (uint16_t)AGV_SHADOW_ON;
+    say(text, "The supervisor tripped at %s (%s) and opened the safety output.", at(trip->t_us, time),
+        agv_fault_name(trip->reason));
+    if (is_shadow) {
+        say(text, " It sent nothing, because it runs in shadow mode.");
+    } else if (trip->first_safe_us == WHY_NEVER) {
+        say(text, " It sent no frame until the end.");
+    } else {
+        say(text, " %s later it sent the first of the safe commands: gear P, throttle 0, autopilot off.",
+            lasting(trip->first_safe_us - trip->t_us, time));
+    }
+}
+
+static void say_outcome(char text[SENTENCE_SIZE], const report_page_t *page, const why_trip_t *trip) {
+    char time[TIME_SIZE];
+    if (page->is_recording) {
+        say(text,
+            "This is a recording, and a recording cannot obey: what the vehicle does after the trip is what it did "
+            "then.");
+    }
+    if (trip->confirmed_us != WHY_NEVER) {
+        say(text, "%sThe VCU reported gear P and autopilot off %s after the trip.", (text[0] != '\0') ? " " : "",
+            lasting(trip->confirmed_us - trip->t_us, time));
+    }
+    if (trip->stopped_us != WHY_NEVER) {
+        say(text, "%sThe wheels stood %s after it.", (text[0] != '\0') ? " " : "",
+            lasting(trip->stopped_us - trip->t_us, time));
+    } else if (!page->is_recording) {
+        say(text, "%sThe wheels were not seen to stand until the end.", (text[0] != '\0') ? " " : "");
+    }
+    say(text, " Only the operator ends this, by a reset at standstill and in manual.");
+}
+
+void sentence_trip(sentence_t *sentence, const report_page_t *page, const why_trip_t *trip) {
+    memset(sentence, 0, sizeof *sentence);
+    const char *begin = "The supervisor stopped the vehicle";
+    if (page->is_recording) {
+        begin = "The supervisor would have stopped this vehicle";
+    } else if (trip->stopped_us != WHY_NEVER) {
+        begin = "The vehicle stands";
+    }
+    say(sentence->headline, "%s because %s.", begin, sentence_phrase(trip->reason));
+    say_cause(sentence->cause, trip);
+    say_action(sentence->action, page, trip);
+    say_outcome(sentence->outcome, page, trip);
+}
+
+static void say_missing(char text[SENTENCE_SIZE], uint16_t missing) {
+    const char *between = " What kept it there: ";
+    for (unsigned bit = 0u; bit < 16u; bit++) {
+        if ((missing & (1u << bit)) != 0u) {
+            say(text, "%s%s", between, sentence_missing(bit));
+            between = "; ";
+        }
+    }
+    say(text, (missing != 0u) ? "." : "");
+}
+
+void sentence_no_trip(sentence_t *sentence, const why_t *why, uint64_t end_us) {
+    const uint64_t supervised_us = why_supervised_us(why);
+    char supervised[TIME_SIZE];
+    char whole[TIME_SIZE];
+    memset(sentence, 0, sizeof *sentence);
+    if (supervised_us == 0u) {
+        say(sentence->headline, "Nothing was supervised: the supervisor never left INIT.");
+        say(sentence->cause, "The run took %s.", at(end_us, whole));
+        say_missing(sentence->cause, why_missing(why));
+        say(sentence->outcome, "This says nothing about the vehicle: it is no pass.");
+        return;
+    }
+    say(sentence->headline, "No trip: the supervisor found no reason to stop the vehicle.");
+    say(sentence->cause, "It supervised %s of %s.", at(supervised_us, supervised), at(end_us, whole));
+    if (supervised_us < end_us) {
+        say(sentence->cause, " The other %s it was in INIT.", at(end_us - supervised_us, whole));
+    }
+    if (why_state_us(why, STATE_ACTIVE) == 0u) {
+        say(sentence->outcome, "The autopilot was never engaged: the commands of the AI computer were not judged.");
+    }
+}
