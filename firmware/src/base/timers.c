@@ -55,8 +55,8 @@ void agv_timers_set_time(agv_timers_t *timers, uint32_t time_ms) {
     timers->due_ms = time_ms;
 }
 
-/* The longest time until the timers are evaluated again. */
-enum { HORIZON_MS = UINT16_MAX };
+/* The start of a timer is stored in 16 bits: the longest age, and the longest time until the timers are evaluated again. */
+#define AGE_MAX_MS 0xFFFFu
 
 /* Time from since_ms until the timer has reached its limit. */
 static uint32_t span_of(const agv_config_t *config, uint32_t timer) {
@@ -69,12 +69,12 @@ static bool is_running(const agv_timers_t *timers, uint32_t timer) {
 
 /* The age of a running timer at the latest time seen. */
 static uint32_t age_of(const agv_timers_t *timers, uint32_t timer) {
-    return (timers->now_ms - timers->since_ms[timer]) & UINT16_MAX;
+    return (timers->now_ms - timers->since_ms[timer]) & AGE_MAX_MS;
 }
 
 /* Note which timers reach their limit within @p step_ms. Returns the time from then until the next one, or less. */
 static uint32_t evaluate(agv_timers_t *timers, const agv_config_t *config, uint32_t step_ms) {
-    uint32_t next_ms = HORIZON_MS;
+    uint32_t next_ms = AGE_MAX_MS;
     for (uint32_t i = 0u; i < (uint32_t)AGV_TIMER_COUNT; i++) {
         if (is_running(timers, i)) {
             const uint32_t age_ms = age_of(timers, i) + step_ms;
@@ -108,8 +108,10 @@ void agv_timers_advance(agv_timers_t *timers, const agv_config_t *config, uint32
 
 /* due_ms stays valid: a timer that is restarted can only reach its limit later. */
 void agv_timer_start_at(agv_timers_t *timers, uint32_t timer, uint32_t since_ms) {
-    const uint32_t past_ms = agv_age_ms(timers->now_ms, since_ms);
-    const uint32_t age_ms = (past_ms < (uint32_t)UINT16_MAX) ? past_ms : (uint32_t)UINT16_MAX;
+    uint32_t age_ms = agv_age_ms(timers->now_ms, since_ms);
+    if (age_ms > AGE_MAX_MS) {
+        age_ms = AGE_MAX_MS;
+    }
     if (!is_running(timers, timer) || (age_ms > age_of(timers, timer))) {
         timers->due_ms = timers->now_ms;
     }
