@@ -24,13 +24,14 @@ static uint8_t state_of(const char *name) {
     return 0u;
 }
 
-static uint16_t missing_of(const json_t *words) {
-    uint16_t missing = 0u;
+/** The bits of a list of words. */
+static uint16_t bits_of(uint16_t (*bit)(const char *word), const json_t *words) {
+    uint16_t bits = 0u;
     for (size_t i = 0u; i < json_array_size(words); i++) {
         const char *word = json_string_value(json_array_get(words, i));
-        missing = (uint16_t)(missing | ((word != NULL) ? missing_bit(word) : 0));
+        bits = (uint16_t)(bits | ((word != NULL) ? bit(word) : 0u));
     }
-    return missing;
+    return bits;
 }
 
 static bool read_state(const json_t *object, agv_event_t *event) {
@@ -46,7 +47,8 @@ static bool read_fault(const json_t *object, agv_event_t *event) {
     *event = (agv_event_t){.kind = AGV_EVENT_FAULT,
                            .a = (uint8_t)agv_fault_from_name(text_of(object, "name")),
                            .b = (uint8_t)(is_trip ? AGV_CLASS_TRIP : AGV_CLASS_WARN),
-                           .c = json_is_true(json_object_get(object, "active")) ? 1u : 0u};
+                           .c = json_is_true(json_object_get(object, "active")) ? 1u : 0u,
+                           .missing = bits_of(part_bit, json_object_get(object, "parts"))};
     return event->a != (uint8_t)AGV_FAULT_NONE;
 }
 
@@ -65,9 +67,10 @@ static bool read_object(const json_t *object, session_event_t *event) {
     } else if (strcmp(kind, "reset") == 0) {
         *recorded = (agv_event_t){.kind = AGV_EVENT_RESET,
                                   .a = json_is_true(json_object_get(object, "accepted")) ? 1u : 0u,
-                                  .missing = missing_of(json_object_get(object, "why"))};
+                                  .missing = bits_of(missing_bit, json_object_get(object, "why"))};
     } else if (strcmp(kind, "startup") == 0) {
-        *recorded = (agv_event_t){.kind = AGV_EVENT_STARTUP, .missing = missing_of(json_object_get(object, "missing"))};
+        *recorded = (agv_event_t){.kind = AGV_EVENT_STARTUP,
+                                  .missing = bits_of(missing_bit, json_object_get(object, "missing"))};
     } else if (strcmp(kind, "led") == 0) {
         event->is_led = true;
         event->led_code = (int8_t)json_integer_value(json_object_get(object, "code"));

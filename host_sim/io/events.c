@@ -6,7 +6,6 @@
 
 #include "agv/names.h"
 #include "agv/recorder.h"
-#include "common/missing.h"
 
 /** Write an object as a line. Takes the reference. */
 static void write_line(output_t *output, json_t *object) {
@@ -26,11 +25,12 @@ static json_t *text_or_null(const char *text) {
     return (text != NULL) ? json_string(text) : json_null();
 }
 
-static json_t *missing_words(uint16_t missing) {
+/** The words of all bits that are set. @param name word of a bit; NULL: there are no further bits */
+static json_t *words_of(const char *(*name)(uint8_t bit), uint16_t bits) {
     json_t *words = json_array();
-    for (uint8_t bit = 0u; bit < MISSING_BITS; bit++) {
-        if ((missing & (1u << bit)) != 0u) {
-            (void)json_array_append_new(words, text_or_null(agv_missing_name(bit)));
+    for (uint8_t bit = 0u; name(bit) != NULL; bit++) {
+        if ((bits & (1u << bit)) != 0u) {
+            (void)json_array_append_new(words, text_or_null(name(bit)));
         }
     }
     return words;
@@ -58,6 +58,9 @@ static void add_fault(json_t *object, const agv_event_t *event) {
     set(object, "name", text_or_null(agv_fault_name((agv_fault_t)event->a)));
     set(object, "class", text_or_null(agv_class_name((agv_fault_class_t)event->b)));
     set(object, "active", json_boolean(event->c != 0u));
+    if (event->a == (uint8_t)AGV_FAULT_SELF_TEST_FAILED) {
+        set(object, "parts", words_of(agv_self_test_part_name, event->missing));
+    }
 }
 
 static void write_recorded(output_t *output, uint64_t t_ms, const agv_event_t *event) {
@@ -78,11 +81,11 @@ static void write_recorded(output_t *output, uint64_t t_ms, const agv_event_t *e
     case AGV_EVENT_RESET:
         object = start(t_ms, "reset");
         set(object, "accepted", json_boolean(event->a != 0u));
-        set(object, "why", missing_words(event->missing));
+        set(object, "why", words_of(agv_missing_name, event->missing));
         break;
     case AGV_EVENT_STARTUP:
         object = start(t_ms, "startup");
-        set(object, "missing", missing_words(event->missing));
+        set(object, "missing", words_of(agv_missing_name, event->missing));
         break;
     default:
         return;

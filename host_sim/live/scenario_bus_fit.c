@@ -8,6 +8,8 @@
 
 enum { PATH_SIZE = 64 };
 
+#define NO_BOARD "board: a computer has no feedback, emergency stop, reset button or second clock"
+
 /** Why a step of the supervisor or the bus cannot be played; NULL: it can. */
 static const char *const left_out_steps[] = {
     [SCENARIO_TX_STALL] = "stall_tx: the frames of a real interface cannot be held back",
@@ -16,6 +18,15 @@ static const char *const left_out_steps[] = {
     [SCENARIO_DELIVER] = "deliver: on a real bus every frame is on the wire",
     [SCENARIO_CORRUPT_LATCH] = "corrupt_latch: the memory of the node is not accessible",
     [SCENARIO_FLIP_BIT] = "flip_bit: the memory of the node is not accessible",
+    [SCENARIO_CONTACT_WORKS] = NO_BOARD,
+    [SCENARIO_CONTACT_WELDED] = NO_BOARD,
+    [SCENARIO_CONTACT_STUCK] = NO_BOARD,
+    [SCENARIO_FEEDBACK_INVERTED] = NO_BOARD,
+    [SCENARIO_STOP_OPEN] = NO_BOARD,
+    [SCENARIO_BUTTON] = NO_BOARD,
+    [SCENARIO_BUTTON_BOUNCES] = NO_BOARD,
+    [SCENARIO_CLOCK] = NO_BOARD,
+    [SCENARIO_TEST_FAILS] = NO_BOARD,
     [SCENARIO_CORRUPT_FRAMES] = "destroy: frames on a real bus cannot be destroyed",
 };
 
@@ -88,6 +99,10 @@ static const char *why_not_vehicle(const vehicle_action_t *action) {
     return is_fd ? "send, kind: fd: the interfaces are used as classic CAN" : NULL;
 }
 
+static bool has_board(const sim_board_t *board) {
+    return board->has_feedback || board->has_emergency_stop || board->has_reset_button || board->has_second_clock;
+}
+
 static const char *why_not_start(const scenario_t *scenario) {
     if (scenario->bitrate != SCENARIO_DEFAULT_BITRATE) {
         return "bitrate: a real interface has its own";
@@ -101,7 +116,10 @@ static const char *why_not_start(const scenario_t *scenario) {
     if (scenario->reset_cause != HAL_RESET_POWER_ON) {
         return "reset_cause: a program starts by power-on only";
     }
-    return scenario->self_test_passed ? NULL : "self_test: the self-test of a node cannot be made to fail";
+    if (has_board(&scenario->board)) {
+        return NO_BOARD;
+    }
+    return (scenario->board.failed == 0u) ? NULL : "self_test: the self-test of a node cannot be made to fail";
 }
 
 /** Faults that need acknowledges on the wire. */

@@ -72,7 +72,7 @@ static bool cut(line_t *line, const char *separators) {
 
 static const yaml_word_t *find_actor(const char *name) {
     for (const yaml_word_t *actor = SCENARIO_ACTORS; actor->word != NULL; actor++) {
-        if ((actor->value != (int)ACTOR_SUPERVISOR) && (strcmp(actor->word, name) == 0)) {
+        if ((actor->value < (int)ACTOR_SUPERVISOR) && (strcmp(actor->word, name) == 0)) {
             return actor;
         }
     }

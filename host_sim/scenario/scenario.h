@@ -18,6 +18,7 @@
 #include "config/config_file.h"
 #include "hal/can.h"
 #include "hal/reset.h"
+#include "hal_sim/sim_board.h"
 #include "vehicle/vehicle.h"
 
 #define SCENARIO_TEXT_MAX 96u
@@ -25,6 +26,7 @@
 #define SCENARIO_STEPS_MAX 256u
 #define SCENARIO_AGAIN_MAX 32u  /* steps with again_every_ms */
 #define SCENARIO_EXPECT_MAX 64u /* of each kind */
+#define SCENARIO_BOUNCE_MAX 16u /* times of a bouncing button */
 #define SCENARIO_DURATION_MAX_MS 86400000u
 #define SCENARIO_DEFAULT_BITRATE 500000u
 
@@ -36,18 +38,27 @@ typedef struct {
 
 /** What can be done to the supervisor and its controllers. */
 typedef enum {
-    SCENARIO_RESTART,       /**< `cause`, after `ms` without power */
-    SCENARIO_HANG,          /**< for `ms` it neither receives nor steps */
-    SCENARIO_BUS_OFF,       /**< `side` */
-    SCENARIO_TX_STALL,      /**< `side`, `on`: its frames do not leave */
-    SCENARIO_TX_SWALLOW,    /**< `side`, `on`: its frames are lost, and its controller reports that they were sent */
-    SCENARIO_QUEUE_FULL,    /**< `side`, `on`: it takes no frame to send */
-    SCENARIO_OVERRUN,       /**< `side` */
-    SCENARIO_ERROR_PASSIVE, /**< `side`, `on` */
-    SCENARIO_DELIVER,       /**< `side`, `frame`: handed to the supervisor alone */
-    SCENARIO_CORRUPT_LATCH, /**< a bit of the stored latch flips */
-    SCENARIO_FLIP_BIT,      /**< bit `ms` of the supervisor's memory flips */
-    SCENARIO_CORRUPT_FRAMES /**< the next `ms` frames of any node on `side` are destroyed */
+    SCENARIO_RESTART,        /**< `cause`, after `ms` without power */
+    SCENARIO_HANG,           /**< for `ms` it neither receives nor steps */
+    SCENARIO_BUS_OFF,        /**< `side` */
+    SCENARIO_TX_STALL,       /**< `side`, `on`: its frames do not leave */
+    SCENARIO_TX_SWALLOW,     /**< `side`, `on`: its frames are lost, and its controller reports that they were sent */
+    SCENARIO_QUEUE_FULL,     /**< `side`, `on`: it takes no frame to send */
+    SCENARIO_OVERRUN,        /**< `side` */
+    SCENARIO_ERROR_PASSIVE,  /**< `side`, `on` */
+    SCENARIO_DELIVER,        /**< `side`, `frame`: handed to the supervisor alone */
+    SCENARIO_CORRUPT_LATCH,  /**< a bit of the stored latch flips */
+    SCENARIO_FLIP_BIT,       /**< bit `ms` of the supervisor's memory flips */
+    SCENARIO_CORRUPT_FRAMES, /**< the next `ms` frames of any node on `side` are destroyed */
+    SCENARIO_CONTACT_WORKS,  /**< of the safety output */
+    SCENARIO_CONTACT_WELDED,
+    SCENARIO_CONTACT_STUCK,
+    SCENARIO_FEEDBACK_INVERTED, /**< `on` */
+    SCENARIO_STOP_OPEN,         /**< the circuit of the emergency stop; `on` */
+    SCENARIO_BUTTON,            /**< `on`: pressed */
+    SCENARIO_BUTTON_BOUNCES,    /**< it changes now, and after each of the times of `bounce_ms` */
+    SCENARIO_CLOCK,             /**< the first clock runs slow by `permille`; below 0: fast */
+    SCENARIO_TEST_FAILS         /**< `parts` */
 } scenario_do_t;
 
 typedef struct {
@@ -56,6 +67,10 @@ typedef struct {
     hal_reset_cause_t cause;
     uint32_t ms;
     bool on;
+    int16_t permille;
+    uint32_t parts; /**< HAL_SELF_TEST_* */
+    uint16_t bounce_ms[SCENARIO_BOUNCE_MAX];
+    uint8_t bounce_count;
     hal_can_frame_t frame;
 } scenario_action_t;
 
@@ -122,6 +137,7 @@ typedef struct {
     agv_fault_t fault;
     agv_fault_class_t fault_class;
     bool has_class;
+    uint16_t parts; /**< HAL_SELF_TEST_*; 0: any */
     scenario_window_t raised_ms;
     bool has_end;
     bool never_ends;
@@ -192,7 +208,7 @@ typedef struct {
     agv_ids_t ids;         /**< of `config`; the vehicle may have others */
     config_lines_t lines;  /**< where the settings stand, while the file is read */
     bool config_unchecked; /**< handed to the supervisor though it makes no sense */
-    bool self_test_passed;
+    sim_board_t board;     /**< as it is at the start */
     vehicle_config_t vehicle;
     uint32_t bitrate;
     uint32_t clock_start_ms;

@@ -5,10 +5,10 @@
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
-const yaml_word_t SCENARIO_ACTORS[] = {{"vcu", ACTOR_VCU}, {"eps", ACTOR_EPS},
-                                       {"ai", ACTOR_AI},   {"operator", ACTOR_OPERATOR},
-                                       {"bus", ACTOR_BUS}, {"supervisor", ACTOR_SUPERVISOR},
-                                       {NULL, ACTOR_NONE}};
+const yaml_word_t SCENARIO_ACTORS[] = {{"vcu", ACTOR_VCU},     {"eps", ACTOR_EPS},
+                                       {"ai", ACTOR_AI},       {"operator", ACTOR_OPERATOR},
+                                       {"bus", ACTOR_BUS},     {"supervisor", ACTOR_SUPERVISOR},
+                                       {"board", ACTOR_BOARD}, {NULL, ACTOR_NONE}};
 
 static const scenario_action_row_t ACTIONS[] = {
     {ACTOR_NONE, "start", true, true, VEHICLE_DO_START, 0u, 0u},
@@ -80,6 +80,20 @@ static const scenario_action_row_t ACTIONS[] = {
     {ACTOR_SUPERVISOR, "error_active", false, false, SCENARIO_ERROR_PASSIVE, 0u, P_SIDE},
     {ACTOR_SUPERVISOR, "corrupt_latch", false, true, SCENARIO_CORRUPT_LATCH, 0u, 0u},
     {ACTOR_SUPERVISOR, "flip_bit", false, true, SCENARIO_FLIP_BIT, P_BIT, 0u},
+    {ACTOR_BOARD, "weld_contact", false, true, SCENARIO_CONTACT_WELDED, 0u, 0u},
+    {ACTOR_BOARD, "stick_contact", false, true, SCENARIO_CONTACT_STUCK, 0u, 0u},
+    {ACTOR_BOARD, "repair_contact", false, true, SCENARIO_CONTACT_WORKS, 0u, 0u},
+    {ACTOR_BOARD, "invert_feedback", false, true, SCENARIO_FEEDBACK_INVERTED, 0u, 0u},
+    {ACTOR_BOARD, "restore_feedback", false, false, SCENARIO_FEEDBACK_INVERTED, 0u, 0u},
+    {ACTOR_BOARD, "open_emergency_stop", false, true, SCENARIO_STOP_OPEN, 0u, 0u},
+    {ACTOR_BOARD, "close_emergency_stop", false, false, SCENARIO_STOP_OPEN, 0u, 0u},
+    {ACTOR_BOARD, "press", false, true, SCENARIO_BUTTON, 0u, 0u},
+    {ACTOR_BOARD, "release", false, false, SCENARIO_BUTTON, 0u, 0u},
+    {ACTOR_BOARD, "bounce", false, true, SCENARIO_BUTTON_BOUNCES, P_PATTERN, 0u},
+    {ACTOR_BOARD, "slow_clock", false, true, SCENARIO_CLOCK, P_PERMILLE, 0u},
+    {ACTOR_BOARD, "fast_clock", false, false, SCENARIO_CLOCK, P_PERMILLE, 0u},
+    {ACTOR_BOARD, "right_clock", false, true, SCENARIO_CLOCK, 0u, 0u},
+    {ACTOR_BOARD, "fail_test", false, true, SCENARIO_TEST_FAILS, P_PART, 0u},
 };
 
 static const scenario_field_row_t FIELDS[] = {
@@ -103,9 +117,9 @@ static const scenario_field_row_t FIELDS[] = {
 };
 
 const char *const SCENARIO_PARAMETER_NAMES[SCENARIO_PARAMETERS] = {
-    "message", "frames", "by_ms",        "times",        "kind",   "every_ms",  "bytes", "field",
-    "value",   "gear",   "throttle_pct", "steer_deg",    "button", "side",      "id",    "cause",
-    "off_ms",  "for_ms", "bit",          "every_frames", "pct_s",  "speed_mm_s"};
+    "message", "frames",       "by_ms",     "times",      "kind",       "every_ms", "bytes", "field",  "value",
+    "gear",    "throttle_pct", "steer_deg", "button",     "side",       "id",       "cause", "off_ms", "for_ms",
+    "bit",     "every_frames", "pct_s",     "speed_mm_s", "pattern_ms", "permille", "part"};
 
 const scenario_action_row_t *scenario_action(size_t number) {
     return (number < COUNT(ACTIONS)) ? &ACTIONS[number] : NULL;

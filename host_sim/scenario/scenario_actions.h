@@ -17,6 +17,7 @@ typedef enum {
     ACTOR_OPERATOR,
     ACTOR_BUS,
     ACTOR_SUPERVISOR,
+    ACTOR_BOARD,
     ACTOR_NONE
 } scenario_actor_t;
 
@@ -43,6 +44,9 @@ typedef enum {
 #define P_EVERY_FRAMES (1u << 19)
 #define P_PCT_S (1u << 20)
 #define P_SPEED (1u << 21)
+#define P_PATTERN (1u << 22)
+#define P_PERMILLE (1u << 23)
+#define P_PART (1u << 24)
 
 /** What an actor can do. */
 typedef struct {
@@ -66,7 +70,7 @@ typedef struct {
     uint8_t shift;
 } scenario_field_row_t;
 
-#define SCENARIO_PARAMETERS 22u
+#define SCENARIO_PARAMETERS 25u
 
 extern const yaml_word_t SCENARIO_ACTORS[];
 /** Names of the parameters, in the order of their bits. */

@@ -76,6 +76,11 @@ static void check_state(scenario_check_t *check, uint32_t t_ms, const agv_event_
     }
 }
 
+static bool is_as_expected(const scenario_fault_t *fault, uint32_t t_ms, const agv_event_t *event) {
+    return is_in(t_ms, fault->raised_ms) && (!fault->has_class || ((uint8_t)fault->fault_class == event->b)) &&
+           ((fault->parts == 0u) || (fault->parts == event->missing));
+}
+
 static void raise_fault(scenario_check_t *check, uint32_t t_ms, const agv_event_t *event) {
     const scenario_expect_t *expect = &check->scenario->expect;
     bool named = false;
@@ -87,12 +92,13 @@ static void raise_fault(scenario_check_t *check, uint32_t t_ms, const agv_event_
             continue;
         }
         named = true;
-        if (is_in(t_ms, fault->raised_ms) && (!fault->has_class || ((uint8_t)fault->fault_class == event->b))) {
+        if (is_as_expected(fault, t_ms, event)) {
             seen->raised = true;
             return;
         }
         seen->early_or_late = true;
         seen->seen_ms = t_ms;
+        seen->parts = event->missing;
     }
     if (expect->no_other_faults && !named) {
         scenario_check_fail(check, 0u, "no other fault is expected, but at %u ms: %s (%s)", (unsigned)t_ms,
@@ -330,6 +336,23 @@ static void finish_lists(scenario_check_t *check) {
     }
 }
 
+/** A fault came at another time, with another class or with other parts. */
+static void fail_otherwise(scenario_check_t *check, const scenario_fault_t *fault, const scenario_fault_seen_t *seen,
+                           const char *window) {
+    char expected[MISSING_TEXT_SIZE];
+    char parts[MISSING_TEXT_SIZE];
+    const char *as_class = (fault->fault_class == AGV_CLASS_TRIP) ? " as a trip" : " as a warning";
+
+    if (fault->parts != 0u) {
+        scenario_check_fail(check, fault->line, "%s [%s] is expected to be raised %s, seen: [%s] at %u ms",
+                            name_of(fault->fault), parts_text(fault->parts, expected), window,
+                            parts_text(seen->parts, parts), (unsigned)seen->seen_ms);
+    } else {
+        scenario_check_fail(check, fault->line, "%s is expected to be raised %s%s, seen at %u ms",
+                            name_of(fault->fault), window, fault->has_class ? as_class : "", (unsigned)seen->seen_ms);
+    }
+}
+
 static void finish_faults(scenario_check_t *check) {
     const scenario_expect_t *expect = &check->scenario->expect;
     char window[40];
@@ -340,12 +363,7 @@ static void finish_faults(scenario_check_t *check) {
         if (!seen->raised) {
             scenario_check_window_text(fault->raised_ms, window);
             if (seen->early_or_late) {
-                scenario_check_fail(check, fault->line, "%s is expected to be raised %s%s, seen at %u ms",
-                                    name_of(fault->fault), window,
-                                    !fault->has_class                      ? ""
-                                    : fault->fault_class == AGV_CLASS_TRIP ? " as a trip"
-                                                                           : " as a warning",
-                                    (unsigned)seen->seen_ms);
+                fail_otherwise(check, fault, seen, window);
             } else {
                 scenario_check_fail(check, fault->line, "%s is expected to be raised %s, not seen",
                                     name_of(fault->fault), window);

@@ -34,6 +34,7 @@ typedef struct {
     bool ended;
     bool early_or_late;
     uint32_t seen_ms;
+    uint16_t parts; /**< at that time */
 } scenario_fault_seen_t;
 
 /** An evaluation. Read `failures`; all else is for the functions. */

@@ -145,7 +145,6 @@ static bool read_vehicle(const yaml_reader_t *reader, const yaml_node_t *node, v
 }
 
 static const yaml_word_t TOPOLOGIES[] = {{"shared", AGV_TOPOLOGY_SHARED}, {"gateway", AGV_TOPOLOGY_GATEWAY}, {NULL, 0}};
-static const yaml_word_t RESULTS[] = {{"passed", 1}, {"failed", 0}, {NULL, 0}};
 static const yaml_word_t BITRATES[] = {
     {"125000", 125000}, {"250000", 250000}, {"500000", 500000}, {"1000000", 1000000}, {NULL, 0}};
 static const yaml_word_t WATCHDOGS[] = {{"fitted", 0}, {"none", -1}, {NULL, 0}}; /* -1: UINT32_MAX ms */
@@ -160,7 +159,8 @@ static const yaml_key_t TOP[] = {
     YAML_OPTIONAL(MEMBER(WORD, "id_set", config.id_set, SCENARIO_ID_SETS), YAML_GIVEN(scenario_t, fixes_id_set)),
     YAML_OPTIONAL(YAML_CALL("config", read_config)),
     YAML_OPTIONAL(MEMBER(FLAG, "config_unchecked", config_unchecked)),
-    YAML_OPTIONAL(MEMBER(WORD, "self_test", self_test_passed, RESULTS)),
+    YAML_OPTIONAL(YAML_CALL("self_test", scenario_parse_self_test)),
+    YAML_OPTIONAL(YAML_CALL("board", scenario_parse_board)),
     YAML_OPTIONAL(MEMBER(WORD, "bitrate", bitrate, BITRATES)),
     YAML_OPTIONAL(MEMBER(NUMBER, "clock_start_ms", clock_start_ms, 0, UINT32_MAX)),
     YAML_OPTIONAL(MEMBER(NUMBER, "tick_phase_us", tick_phase_us, 0, TICK_PHASE_MAX_US)),
@@ -177,7 +177,6 @@ static void preset(scenario_t *scenario, const scenario_options_t *options) {
     scenario->config = options->config;
     scenario->config.topology = (options->topology >= 0) ? (uint16_t)options->topology : options->config.topology;
     scenario->config.id_set = (options->id_set >= 0) ? (uint16_t)options->id_set : options->config.id_set;
-    scenario->self_test_passed = true;
     scenario->bitrate = SCENARIO_DEFAULT_BITRATE;
     scenario->reset_cause = HAL_RESET_POWER_ON;
     vehicle_defaults(&scenario->vehicle);

@@ -37,6 +37,22 @@ yaml_read_fn scenario_parse_vehicle_config;
 yaml_read_fn scenario_parse_steps;
 yaml_read_fn scenario_parse_expect;
 
+/** @name The hard-wired parts; their target is the scenario_t @{ */
+yaml_read_fn scenario_parse_board;
+yaml_read_fn scenario_parse_self_test;
+/** @} */
+
+/** @name Parameters of the board's actions @{ */
+yaml_read_fn scenario_parse_tested_part; /**< the target: a uint32_t of HAL_SELF_TEST_* */
+bool scenario_parse_bounce(const yaml_reader_t *reader, const yaml_node_t *node, scenario_action_t *action);
+/** @param node NULL: the clock is right again */
+bool scenario_parse_permille(const yaml_reader_t *reader, const yaml_node_t *node, scenario_action_t *action);
+/** @} */
+
+/** Whether the board has what a step needs. */
+bool scenario_parse_board_fits(const yaml_reader_t *reader, const yaml_node_t *node, scenario_t *scenario,
+                               const scenario_step_t *step);
+
 /**
  * One step.
  * @param config of its supervisor: the ID set and the topology decide what a step may name

@@ -80,6 +80,18 @@ static bool read_fault_name(const yaml_reader_t *reader, const yaml_node_t *node
     return scenario_parse_fault(reader, node, &((scenario_fault_t *)target)->fault);
 }
 
+static bool read_failed_part(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    const char *text = yaml_reader_text(reader, node, "parts");
+
+    if (text == NULL) {
+        return false;
+    }
+    const uint16_t bit = part_bit(text);
+    ((scenario_fault_t *)target)->parts |= bit;
+    return (bit != 0u) ||
+           yaml_reader_fail(reader, node, "'%.40s' is not one of flash, ram, processor, watchdog, devices, core", text);
+}
+
 static bool read_fault_ended(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     scenario_fault_t *fault = target;
     const char *text = yaml_node_text(node);
@@ -93,6 +105,7 @@ static bool read_fault(const yaml_reader_t *reader, const yaml_node_t *node, voi
     static const yaml_key_t keys[] = {YAML_REQUIRED(YAML_CALL("name", read_fault_name)),
                                       YAML_OPTIONAL(YAML_WORD("class", scenario_fault_t, fault_class, CLASSES),
                                                     YAML_GIVEN(scenario_fault_t, has_class)),
+                                      YAML_OPTIONAL(YAML_LIST("parts", read_failed_part)),
                                       YAML_REQUIRED(WINDOW(scenario_fault_t, "raised_ms", raised_ms)),
                                       YAML_OPTIONAL(YAML_CALL("ended_ms", read_fault_ended))};
     scenario_fault_t *fault = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.faults);
@@ -101,7 +114,11 @@ static bool read_fault(const yaml_reader_t *reader, const yaml_node_t *node, voi
         return false;
     }
     fault->line = yaml_node_line(node);
-    return yaml_reader_map(reader, node, "a fault", keys, COUNT(keys), fault);
+    if (!yaml_reader_map(reader, node, "a fault", keys, COUNT(keys), fault)) {
+        return false;
+    }
+    return (fault->parts == 0u) || (fault->fault == AGV_FAULT_SELF_TEST_FAILED) ||
+           yaml_reader_fail(reader, node, "a fault: only SELF_TEST_FAILED has 'parts'");
 }
 
 /* --- resets and reports at start --- */
@@ -120,7 +137,7 @@ static bool read_missing_word(const yaml_reader_t *reader, const yaml_node_t *no
     return yaml_reader_fail(
         reader, node,
         "'%.40s' is not one of state, vcu_heartbeat, eps_heartbeat, trip_cause, standstill, manual, "
-        "button, messages, throttle, released",
+        "button, messages, throttle, released, output_feedback",
         text);
 }
 

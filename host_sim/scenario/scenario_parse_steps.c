@@ -331,7 +331,18 @@ static bool take_for_supervisor(const yaml_reader_t *reader, const reading_t *re
         }
         action->cause = (hal_reset_cause_t)cause;
     }
-    return (action->what != SCENARIO_DELIVER) || take_frame(reader, reading, config, step, &action->frame);
+    switch (action->what) {
+    case SCENARIO_DELIVER:
+        return take_frame(reader, reading, config, step, &action->frame);
+    case SCENARIO_BUTTON_BOUNCES:
+        return scenario_parse_bounce(reader, given(reading, P_PATTERN), action);
+    case SCENARIO_CLOCK:
+        return scenario_parse_permille(reader, given(reading, P_PERMILLE), action);
+    case SCENARIO_TEST_FAILS:
+        return scenario_parse_tested_part(reader, given(reading, P_PART), &action->parts);
+    default:
+        return true;
+    }
 }
 
 /** What the action needs is there, and nothing else. */
@@ -422,7 +433,8 @@ static bool take_keys(const yaml_reader_t *reader, reading_t *reading) {
         return yaml_reader_fail(reader, node, "a step: 'again_until_ms' needs 'again_every_ms'");
     }
     return (reading->actor != ACTOR_NONE) ||
-           yaml_reader_fail(reader, node, "a step: the actor is missing (vcu, eps, ai, operator, bus or supervisor)");
+           yaml_reader_fail(reader, node,
+                            "a step: the actor is missing (vcu, eps, ai, operator, bus, supervisor or board)");
 }
 
 bool scenario_parse_step(const yaml_reader_t *reader, const yaml_node_t *node, const agv_config_t *config,
@@ -473,9 +485,10 @@ static bool read_step(const yaml_reader_t *reader, const yaml_node_t *node, void
     if (scenario->step_count == SCENARIO_STEPS_MAX) {
         return yaml_reader_fail(reader, node, "more than %u steps", SCENARIO_STEPS_MAX);
     }
+    scenario_step_t *step = &scenario->steps[scenario->step_count];
     scenario->step_count++;
-    return scenario_parse_step(reader, node, &scenario->config, &scenario->steps[scenario->step_count - 1u]) &&
-           again_fits(reader, node, scenario);
+    return scenario_parse_step(reader, node, &scenario->config, step) &&
+           scenario_parse_board_fits(reader, node, scenario, step) && again_fits(reader, node, scenario);
 }
 
 bool scenario_parse_steps(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {

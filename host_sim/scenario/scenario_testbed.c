@@ -171,7 +171,7 @@ bool scenario_testbed_init(scenario_testbed_t *testbed, const scenario_t *scenar
         }
     }
     session_init(&testbed->session, &testbed->hal);
-    testbed->hal.board.failed = scenario->self_test_passed ? 0u : HAL_SELF_TEST_PROCESSOR;
+    testbed->hal.board = scenario->board;
     return session_observe(&testbed->session, pass_event, testbed);
 }
 
@@ -231,6 +231,60 @@ static void flip_bit(scenario_testbed_t *testbed, uint32_t bit) {
     bytes[(bit / BITS_PER_BYTE) % sizeof testbed->session.supervisor] ^= (uint8_t)(1u << (bit % BITS_PER_BYTE));
 }
 
+static void start_bounce(scenario_testbed_t *testbed, const scenario_action_t *action) {
+    scenario_bounce_t *bounce = &testbed->bounce;
+    memcpy(bounce->after_ms, action->bounce_ms, sizeof bounce->after_ms);
+    bounce->count = action->bounce_count;
+    bounce->next = 0u;
+    bounce->due_ms = testbed->t_ms + bounce->after_ms[0];
+    testbed->hal.board.button_is_down = !testbed->hal.board.button_is_down;
+}
+
+/** The changes of a bouncing button that are due. */
+static void follow_bounce(scenario_testbed_t *testbed) {
+    scenario_bounce_t *bounce = &testbed->bounce;
+    if ((bounce->next < bounce->count) && (testbed->t_ms >= bounce->due_ms)) {
+        testbed->hal.board.button_is_down = !testbed->hal.board.button_is_down;
+        bounce->next++;
+        bounce->due_ms += (bounce->next < bounce->count) ? bounce->after_ms[bounce->next] : 0u;
+    }
+}
+
+static void do_to_board(scenario_testbed_t *testbed, const scenario_action_t *action) {
+    sim_board_t *board = &testbed->hal.board;
+
+    switch (action->what) {
+    case SCENARIO_CONTACT_WORKS:
+        board->contact = SIM_CONTACT_WORKS;
+        break;
+    case SCENARIO_CONTACT_WELDED:
+        board->contact = SIM_CONTACT_WELDED;
+        break;
+    case SCENARIO_CONTACT_STUCK:
+        board->contact = SIM_CONTACT_STUCK_OPEN;
+        break;
+    case SCENARIO_FEEDBACK_INVERTED:
+        board->feedback_is_inverted = action->on;
+        break;
+    case SCENARIO_STOP_OPEN:
+        board->stop_is_open = action->on;
+        break;
+    case SCENARIO_BUTTON:
+        board->button_is_down = action->on;
+        testbed->bounce.count = 0u;
+        break;
+    case SCENARIO_BUTTON_BOUNCES:
+        start_bounce(testbed, action);
+        break;
+    case SCENARIO_CLOCK:
+        board->clock_permille = action->permille;
+        break;
+    default:
+        board->failed |= action->parts;
+        break;
+    }
+}
+
 static void do_to_supervisor(scenario_testbed_t *testbed, const scenario_action_t *action) {
     sim_bus_t *bus = &testbed->buses[action->side];
     const sim_bus_node_t node = testbed->hal.can[action->side].node;
@@ -271,8 +325,11 @@ static void do_to_supervisor(scenario_testbed_t *testbed, const scenario_action_
     case SCENARIO_FLIP_BIT:
         flip_bit(testbed, action->ms);
         break;
-    default:
+    case SCENARIO_CORRUPT_FRAMES:
         sim_bus_corrupt_all(bus, action->ms);
+        break;
+    default:
+        do_to_board(testbed, action);
         break;
     }
 }
@@ -346,6 +403,7 @@ void scenario_testbed_tick(scenario_testbed_t *testbed, uint64_t t_ms) {
     const uint64_t until_us = (t_ms + 1u) * US_PER_MS;
 
     testbed->t_ms = t_ms;
+    follow_bounce(testbed);
     vehicle_tick(&testbed->vehicle, t_ms);
     if (testbed->power_changes != vehicle_power_changes(&testbed->vehicle)) {
         testbed->power_changes = vehicle_power_changes(&testbed->vehicle);

@@ -52,6 +52,14 @@ typedef struct {
     hal_can_frame_t frame;
 } scenario_past_wire_t;
 
+/** A reset button that bounces. */
+typedef struct {
+    uint16_t after_ms[SCENARIO_BOUNCE_MAX]; /**< time from one change to the next */
+    uint8_t count;
+    uint8_t next;
+    uint64_t due_ms; /**< of the next change */
+} scenario_bounce_t;
+
 /** Some 200 KiB: not for the stack. Change it through the functions, look at it by scenario_testbed_view(). */
 struct scenario_testbed {
     sim_bus_t buses[HAL_CAN_SIDES];
@@ -70,11 +78,12 @@ struct scenario_testbed {
     scenario_watch_t watches[SCENARIO_WATCHES_MAX];
     size_t watch_count;
     uint64_t t_ms;
-    uint16_t tick_phase_us;                             /**< of scenario_t */
-    uint64_t halted_until_ms;                           /**< the supervisor hangs, or is without power, until then */
-    bool was_halted;                                    /**< it hung: frames may wait for it */
-    bool off;                                           /**< it is without power */
-    bool stalled[HAL_CAN_SIDES];                        /**< frames of the supervisor do not leave */
+    uint16_t tick_phase_us;      /**< of scenario_t */
+    uint64_t halted_until_ms;    /**< the supervisor hangs, or is without power, until then */
+    bool was_halted;             /**< it hung: frames may wait for it */
+    bool off;                    /**< it is without power */
+    bool stalled[HAL_CAN_SIDES]; /**< frames of the supervisor do not leave */
+    scenario_bounce_t bounce;
     uint32_t power_changes;                             /**< of the vehicle, that the buses know of */
     uint32_t lost_frames;                               /**< of the vehicle, that found no room in a mailbox */
     scenario_past_wire_t past_wire[VEHICLE_ROGUES_MAX]; /**< FD frames of this millisecond */

@@ -110,6 +110,16 @@ static void show_missing(timeline_t *timeline, uint64_t t_us, const char *what, 
          missing_text(missing, list));
 }
 
+static void show_fault(timeline_t *timeline, uint64_t t_us, const agv_event_t *event) {
+    const bool is_raised = event->c != 0u;
+    const bool has_parts = is_raised && (event->missing != 0u);
+    char parts[MISSING_TEXT_SIZE];
+
+    line(timeline, t_us, "supervisor", "%s %s%s%s%s", agv_fault_name((agv_fault_t)event->a),
+         is_raised ? "raised" : "ended", (is_raised && (event->b == (uint8_t)AGV_CLASS_WARN)) ? " (warning)" : "",
+         has_parts ? ": " : "", has_parts ? parts_text(event->missing, parts) : "");
+}
+
 static void show_event(void *ctx, const session_event_t *event) {
     timeline_t *timeline = ctx;
     const uint64_t t_us = event->t_ms * US_PER_MS;
@@ -126,9 +136,7 @@ static void show_event(void *ctx, const session_event_t *event) {
         show_state(timeline, t_us, recorded);
         break;
     case AGV_EVENT_FAULT:
-        line(timeline, t_us, "supervisor", "%s %s%s", agv_fault_name((agv_fault_t)recorded->a),
-             (recorded->c != 0u) ? "raised" : "ended",
-             ((recorded->c != 0u) && (recorded->b == (uint8_t)AGV_CLASS_WARN)) ? " (warning)" : "");
+        show_fault(timeline, t_us, recorded);
         break;
     case AGV_EVENT_OUTPUT:
         line(timeline, t_us, "supervisor", "safety output %s", (recorded->a != 0u) ? "closed" : "open");

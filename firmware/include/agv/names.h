@@ -34,4 +34,11 @@ const char *agv_message_name(agv_message_t message);
  */
 const char *agv_missing_name(uint8_t index);
 
+/**
+ * Name of a part of the self-test, a HAL_SELF_TEST_* bit: "flash", "ram", "processor", "watchdog", "devices", "core".
+ * @param index number of the bit, 0..5
+ * @return NULL for any other index.
+ */
+const char *agv_self_test_part_name(uint8_t index);
+
 #endif

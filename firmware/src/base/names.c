@@ -22,6 +22,8 @@ static const char *const missing_names[] = {"state",      "vcu_heartbeat", "eps_
                                             "standstill", "manual",        "button",         "messages",
                                             "throttle",   "released",      "output_feedback"};
 
+static const char *const part_names[] = {"flash", "ram", "processor", "watchdog", "devices", "core"};
+
 static const agv_setting_info_t settings[AGV_SETTING_COUNT] = {
 #define ANY false
 #define GATEWAY true
@@ -78,6 +80,10 @@ const char *agv_message_name(agv_message_t message) {
 
 const char *agv_missing_name(uint8_t index) {
     return (index < (sizeof(missing_names) / sizeof(missing_names[0]))) ? missing_names[index] : NULL;
+}
+
+const char *agv_self_test_part_name(uint8_t index) {
+    return (index < (sizeof(part_names) / sizeof(part_names[0]))) ? part_names[index] : NULL;
 }
 
 const agv_setting_info_t *agv_setting_info(uint16_t setting) {

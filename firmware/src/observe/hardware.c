@@ -4,23 +4,35 @@
 #include "hal/inputs.h"
 #include "hal/self_test.h"
 
-/* The clocks are compared once a second, and may differ by a 20th (5 %). */
+/* The clocks are compared when one of them has come a second further, and may differ by a 20th (5 %). */
 enum { COMPARISON_MS = 1000, DEVIATION_PART = 20 };
+
+/* Optional parts that the board was seen to have, and what one of them reads when it is silent. */
+enum { HAS_FEEDBACK = 0x01, HAS_STOP = 0x02, HAS_CLOCK = 0x04, SILENT = UINT8_MAX };
 
 void agv_hardware_self_test(agv_hardware_t *hardware, agv_fault_monitor_t *faults, hal_t *hal, uint32_t failed) {
     hardware->failed |= (uint8_t)(hal_self_test(hal) | failed);
     agv_fault_monitor_set(faults, AGV_FAULT_SELF_TEST_FAILED, hardware->failed != 0u);
 }
 
+/* A board has an input always or never. One that is gone is broken: it counts as an invalid value. */
+static uint8_t contact_of(agv_hardware_t *hardware, uint8_t part, uint8_t contact) {
+    if (contact != (uint8_t)HAL_CONTACT_NONE) {
+        hardware->parts |= part;
+        return contact;
+    }
+    return ((hardware->parts & part) != 0u) ? (uint8_t)SILENT : contact;
+}
+
 /* HW-1: a contact that comes and goes is found too. */
 static void check_feedback(agv_hardware_t *hardware, agv_fault_monitor_t *faults, const agv_config_t *config,
                            uint32_t elapsed_ms, bool output_closed) {
     const uint32_t full = 2u * (uint32_t)config->output_feedback_ms;
-    const bool closed = hardware->feedback == (uint8_t)HAL_CONTACT_CLOSED;
+    const uint8_t right = (uint8_t)(output_closed ? HAL_CONTACT_CLOSED : HAL_CONTACT_OPEN);
     const uint32_t spent = hardware->mismatch_halves;
     const uint32_t ms = (elapsed_ms < full) ? elapsed_ms : full;
     uint32_t halves;
-    if ((hardware->feedback != (uint8_t)HAL_CONTACT_NONE) && (closed != output_closed)) {
+    if ((hardware->feedback != (uint8_t)HAL_CONTACT_NONE) && (hardware->feedback != right)) {
         halves = ((2u * ms) < (full - spent)) ? (spent + (2u * ms)) : full;
     } else {
         halves = (ms < spent) ? (spent - ms) : 0u;
@@ -47,31 +59,40 @@ static void debounce(agv_hardware_t *hardware, uint8_t contact, uint32_t elapsed
     }
 }
 
-/* HW-4: a clock that runs too fast or too slow makes all times wrong. */
+/* HW-4: a clock that runs too fast or too slow makes all times wrong. A second clock that falls silent stands still. */
 static void compare_clocks(agv_hardware_t *hardware, agv_fault_monitor_t *faults, hal_t *hal, uint32_t now_ms) {
-    const uint32_t first_ms = now_ms - hardware->compared_ms;
+    const bool known = (hardware->parts & (uint8_t)HAS_CLOCK) != 0u;
     uint32_t second_ms;
-    if ((hardware->compared && (first_ms < (uint32_t)COMPARISON_MS)) || !hal_clock_second_ms(hal, &second_ms)) {
+    if (!hal_clock_second_ms(hal, &second_ms)) {
+        if (!known) {
+            return;
+        }
+        second_ms = hardware->second_ms;
+    }
+    const uint32_t first_passed_ms = now_ms - hardware->compared_ms;
+    const uint32_t second_passed_ms = second_ms - hardware->second_ms;
+    const bool is_slow = second_passed_ms > first_passed_ms;
+    const uint32_t longer_ms = is_slow ? second_passed_ms : first_passed_ms;
+    if (known && (longer_ms < (uint32_t)COMPARISON_MS)) {
         return;
     }
-    if (hardware->compared) {
-        const uint32_t passed_ms = second_ms - hardware->second_ms;
-        const uint32_t off_ms = (passed_ms > first_ms) ? (passed_ms - first_ms) : (first_ms - passed_ms);
-        agv_fault_monitor_set(faults, AGV_FAULT_CLOCK_DEVIATION, off_ms > (first_ms / (uint32_t)DEVIATION_PART));
+    if (known) {
+        const uint32_t off_ms = longer_ms - (is_slow ? first_passed_ms : second_passed_ms);
+        agv_fault_monitor_set(faults, AGV_FAULT_CLOCK_DEVIATION, off_ms > (longer_ms / (uint32_t)DEVIATION_PART));
     }
-    hardware->compared = true;
+    hardware->parts |= (uint8_t)HAS_CLOCK;
     hardware->compared_ms = now_ms;
     hardware->second_ms = second_ms;
 }
 
 void agv_hardware_tick(agv_hardware_t *hardware, agv_fault_monitor_t *faults, const agv_timers_t *timers,
                        const agv_config_t *config, hal_t *hal, uint32_t elapsed_ms, bool output_closed) {
-    hal_inputs_t inputs;
+    hal_inputs_t inputs = {0};
     hal_inputs_read(hal, &inputs);
-    const bool stop_reads = inputs.emergency_stop != (uint8_t)HAL_CONTACT_NONE;
+    const uint8_t stop = contact_of(hardware, HAS_STOP, inputs.emergency_stop);
     agv_fault_monitor_set(faults, AGV_FAULT_EMERGENCY_STOP,
-                          stop_reads && (inputs.emergency_stop != (uint8_t)HAL_CONTACT_CLOSED));
-    hardware->feedback = inputs.output_feedback;
+                          (stop != (uint8_t)HAL_CONTACT_NONE) && (stop != (uint8_t)HAL_CONTACT_CLOSED));
+    hardware->feedback = contact_of(hardware, HAS_FEEDBACK, inputs.output_feedback);
     check_feedback(hardware, faults, config, elapsed_ms, output_closed);
     debounce(hardware, inputs.reset_button, elapsed_ms);
     compare_clocks(hardware, faults, hal, timers->now_ms);

@@ -1,7 +1,7 @@
 /**
  * @file hardware.h
  * The hardware that answers, evaluated at every tick: contact of the safety output, emergency stop, reset button, second
- * clock, self-test (HW-1 to HW-4). A board without one of them raises nothing.
+ * clock, self-test (HW-1 to HW-4). A board without one of them raises nothing; one that it had and that falls silent is broken.
  */
 #ifndef AGV_HARDWARE_H
 #define AGV_HARDWARE_H
@@ -23,12 +23,12 @@ typedef struct {
     uint32_t second_ms;   /**< the second clock at that time */
     uint16_t
         mismatch_halves; /**< half milliseconds of a wrong contact: 2 for each ms with it, 1 less for each without */
-    uint8_t feedback;    /**< hal_contact_t of the safety output at the last tick */
+    uint8_t feedback;    /**< hal_contact_t of the safety output at the last tick, or an invalid value */
     uint8_t button;      /**< agv_button_t, debounced */
     uint8_t button_raw;  /**< agv_button_t at the last tick */
     uint8_t button_ms;   /**< for so long it was read like that */
     uint8_t failed;      /**< HAL_SELF_TEST_* bits of the parts that have failed */
-    bool compared;       /**< the clocks were compared: compared_ms and second_ms are known */
+    uint8_t parts;       /**< optional parts that the board was seen to have */
 } agv_hardware_t;
 
 /** Run the self-test of the port, and raise SELF_TEST_FAILED if a part has failed. @param failed parts found elsewhere */

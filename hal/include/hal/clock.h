@@ -14,7 +14,9 @@
 uint32_t hal_clock_now_ms(hal_t *hal);
 
 /**
- * Read a second clock, from another oscillator than the first one (HW-4). The core compares both once a second.
+ * Read a second clock, from another oscillator than the first one (HW-4). Called at every tick; the core compares
+ * both when one of them has come a second further, so that a slow first clock is found in time. One that returned true and
+ * returns false later counts as standing still.
  * @param time_ms out: milliseconds since an arbitrary time; wraps as the first clock does. It must be accurate to 1 %.
  * @return false if the board has no second clock: always or never
  */

@@ -13,7 +13,10 @@
 /** A contact, as read now: not debounced, not inverted by the core. */
 typedef enum { HAL_CONTACT_NONE = 0, HAL_CONTACT_OPEN = 1, HAL_CONTACT_CLOSED = 2 } hal_contact_t;
 
-/** The inputs, hal_contact_t each. Other values count as HAL_CONTACT_OPEN. */
+/**
+ * The inputs, hal_contact_t each. Another value, and HAL_CONTACT_NONE after another one, is a broken input: a feedback that
+ * contradicts the output in both positions, an open circuit of the emergency stop, a button that is not pressed.
+ */
 typedef struct {
     uint8_t output_feedback; /**< contact of the safety output, read back: OPEN is the safe position (HW-1) */
     uint8_t emergency_stop;  /**< normally closed circuit: OPEN stops, a broken wire too (HW-2) */

@@ -32,14 +32,10 @@ hal_inputs_t sim_board_inputs(hal_t *hal, uint32_t now_ms) {
                           .reset_button = contact_if(board->has_reset_button, board->button_is_down)};
 }
 
-/* The second clock runs on from where it was when the deviation changed. */
+/* Thousandths are added up, so that a deviation may change at any time. */
 uint32_t sim_board_second_ms(hal_t *hal, uint32_t now_ms) {
-    const int64_t passed_ms = now_ms - hal->second_base_ms;
-    if (hal->board.clock_permille != hal->second_permille) {
-        hal->second_offset_ms += (uint32_t)(passed_ms + ((passed_ms * hal->second_permille) / 1000));
-        hal->second_base_ms = now_ms;
-        hal->second_permille = hal->board.clock_permille;
-        return hal->second_offset_ms;
-    }
-    return hal->second_offset_ms + (uint32_t)(passed_ms + ((passed_ms * hal->second_permille) / 1000));
+    const uint32_t passed_ms = now_ms - hal->second_read_ms;
+    hal->second_us += (uint64_t)passed_ms * (uint64_t)(1000 + hal->board.clock_permille);
+    hal->second_read_ms = now_ms;
+    return (uint32_t)(hal->second_us / 1000u);
 }

@@ -53,9 +53,13 @@ void test_what_is_written_comes_back(void) {
     recorded_comes_back((agv_event_t){.kind = AGV_EVENT_OUTPUT, .a = 1u});
     recorded_comes_back((agv_event_t){.kind = AGV_EVENT_OUTPUT, .a = 0u});
     recorded_comes_back((agv_event_t){.kind = AGV_EVENT_RESET, .a = 1u});
-    for (unsigned missing = 0u; missing <= 0xFFu; missing++) {
-        recorded_comes_back((agv_event_t){.kind = AGV_EVENT_RESET, .missing = (uint8_t)missing});
-        recorded_comes_back((agv_event_t){.kind = AGV_EVENT_STARTUP, .missing = (uint8_t)missing});
+    for (unsigned missing = 0u; missing <= 0x7FFu; missing++) {
+        recorded_comes_back((agv_event_t){.kind = AGV_EVENT_RESET, .missing = (uint16_t)missing});
+        recorded_comes_back((agv_event_t){.kind = AGV_EVENT_STARTUP, .missing = (uint16_t)missing});
+    }
+    for (unsigned parts = 0u; parts <= 0x3Fu; parts++) {
+        recorded_comes_back((agv_event_t){
+            .kind = AGV_EVENT_FAULT, .a = AGV_FAULT_SELF_TEST_FAILED, .c = 1u, .missing = (uint16_t)parts});
     }
     const session_event_t led = {.is_led = true, .led_code = -1};
     comes_back(&led);

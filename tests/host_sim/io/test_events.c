@@ -60,6 +60,18 @@ void test_faults(void) {
         lines());
 }
 
+/* Shows: HW-4, SELF_TEST_FAILED */
+void test_a_failed_self_test_names_the_parts(void) {
+    write_event((agv_event_t){.kind = AGV_EVENT_FAULT,
+                              .a = AGV_FAULT_SELF_TEST_FAILED,
+                              .b = AGV_CLASS_TRIP,
+                              .c = 1,
+                              .missing = HAL_SELF_TEST_FLASH | HAL_SELF_TEST_CORE});
+    TEST_ASSERT_EQUAL_STRING("{\"t_ms\": 12345678901, \"event\": \"fault\", \"name\": \"SELF_TEST_FAILED\", \"class\": "
+                             "\"trip\", \"active\": true, \"parts\": [\"flash\", \"core\"]}\n",
+                             lines());
+}
+
 void test_output_and_led(void) {
     write_event((agv_event_t){.kind = AGV_EVENT_OUTPUT, .a = 1});
     const session_event_t led = {.t_ms = 5, .is_led = true, .led_code = -1};
@@ -72,12 +84,12 @@ void test_output_and_led(void) {
 void test_reset_and_startup_name_what_was_missing(void) {
     write_event((agv_event_t){.kind = AGV_EVENT_RESET, .a = 1});
     write_event((agv_event_t){.kind = AGV_EVENT_RESET, .a = 0, .missing = 0xFF});
-    write_event((agv_event_t){.kind = AGV_EVENT_STARTUP, .missing = AGV_MISSING_MANUAL | AGV_MISSING_MESSAGES});
+    write_event((agv_event_t){.kind = AGV_EVENT_STARTUP, .missing = AGV_MISSING_MANUAL | AGV_MISSING_OUTPUT});
     TEST_ASSERT_EQUAL_STRING(
         "{\"t_ms\": 12345678901, \"event\": \"reset\", \"accepted\": true, \"why\": []}\n"
         "{\"t_ms\": 12345678901, \"event\": \"reset\", \"accepted\": false, \"why\": [\"state\", \"vcu_heartbeat\", "
         "\"eps_heartbeat\", \"trip_cause\", \"standstill\", \"manual\", \"button\", \"messages\"]}\n"
-        "{\"t_ms\": 12345678901, \"event\": \"startup\", \"missing\": [\"manual\", \"messages\"]}\n",
+        "{\"t_ms\": 12345678901, \"event\": \"startup\", \"missing\": [\"manual\", \"output_feedback\"]}\n",
         lines());
 }
 

@@ -46,6 +46,10 @@ void test_what_a_real_bus_cannot_show_is_left_out(void) {
     is_left_out(BEGIN "clock_start_ms: 1\n" NO_STATES, "clock_start_ms: ");
     is_left_out(BEGIN "reset_cause: watchdog\n" NO_STATES, "reset_cause: ");
     is_left_out(BEGIN "self_test: failed\n" NO_STATES, "self_test: ");
+    is_left_out(BEGIN "board: [output_feedback]\n" NO_STATES, "board: ");
+    is_left_out(BEGIN "board: [emergency_stop]\n" NO_STATES, "board: ");
+    is_left_out(BEGIN "board: [reset_button]\n" NO_STATES, "board: ");
+    is_left_out(BEGIN "board: [second_clock]\n" NO_STATES, "board: ");
 }
 
 void test_steps(void) {
@@ -59,6 +63,8 @@ void test_steps(void) {
     is_left_out(STEP("supervisor: fill_queue"), "fill_queue: ");
     is_left_out(STEP("supervisor: corrupt_latch"), "corrupt_latch: ");
     is_left_out(STEP("supervisor: flip_bit, bit: 1"), "flip_bit: ");
+    is_left_out(STEP("board: weld_contact"), "board: ");
+    is_left_out(STEP("board: fail_test, part: flash"), "board: ");
     is_left_out(STEP("bus: destroy, frames: 1"), "destroy: ");
     is_left_out(STEP("bus: send, kind: fd, id: 363h, bytes: \"00\""), "send, kind: fd: ");
     is_left_out(STEP("supervisor: swallow_tx"), "swallow_tx: ");

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/self_test.h"
 #include "scenario/scenario_check.h"
 #include "scratch.h"
 #include "unity.h"
@@ -237,6 +238,18 @@ void test_faults_begin_and_end(void) {
     expect(NO_STATES "  faults: [{name: BUS_OFF, raised_ms: 5, ended_ms: 8}]\n");
     event(5u, AGV_EVENT_FAULT, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, 1u, 0u);
     expect_failure("line 6: BUS_OFF is expected to end at 8 ms, it did not");
+}
+
+void test_the_parts_that_failed_their_test(void) {
+    static const char *const line = "  faults: [{name: SELF_TEST_FAILED, parts: [ram, core], raised_ms: 5}]\n";
+    char text[400];
+    (void)snprintf(text, sizeof text, "%s%s", NO_STATES, line);
+    expect(text);
+    event(5u, AGV_EVENT_FAULT, AGV_FAULT_SELF_TEST_FAILED, AGV_CLASS_TRIP, 1u, HAL_SELF_TEST_RAM | HAL_SELF_TEST_CORE);
+    expect_failure(NULL);
+    expect(text);
+    event(5u, AGV_EVENT_FAULT, AGV_FAULT_SELF_TEST_FAILED, AGV_CLASS_TRIP, 1u, HAL_SELF_TEST_RAM);
+    expect_failure("line 6: SELF_TEST_FAILED [ram, core] is expected to be raised at 5 ms, seen: [ram] at 5 ms");
 }
 
 void test_no_other_faults(void) {

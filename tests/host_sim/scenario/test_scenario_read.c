@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/self_test.h"
 #include "scenario/scenario.h"
 #include "scratch.h"
 #include "unity.h"
@@ -54,7 +55,7 @@ void test_the_least_that_a_file_needs(void) {
     TEST_ASSERT_EQUAL_UINT32(1000u, scenario.duration_ms);
     TEST_ASSERT_EQUAL_UINT32(500000u, scenario.bitrate);
     TEST_ASSERT_EQUAL(HAL_RESET_POWER_ON, scenario.reset_cause);
-    TEST_ASSERT_TRUE(scenario.self_test_passed);
+    TEST_ASSERT_EQUAL_HEX32(0, scenario.board.failed);
     TEST_ASSERT_TRUE(scenario.vehicle.park_guard);
     TEST_ASSERT_FALSE(scenario.fixes_topology);
     TEST_ASSERT_EQUAL_size_t(1u, scenario.shows_count);
@@ -70,7 +71,7 @@ void test_everything_about_the_beginning(void) {
     TEST_ASSERT_EQUAL_UINT16(AGV_ID_SET_TABLE, scenario.config.id_set);
     TEST_ASSERT_EQUAL_UINT16(AGV_PARK_AT_STANDSTILL, scenario.config.park);
     TEST_ASSERT_EQUAL_UINT16(60u, scenario.config.vcu_heartbeat_timeout_ms);
-    TEST_ASSERT_FALSE(scenario.self_test_passed);
+    TEST_ASSERT_EQUAL_HEX32(HAL_SELF_TEST_PROCESSOR, scenario.board.failed);
     TEST_ASSERT_EQUAL_UINT32(250000u, scenario.bitrate);
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, scenario.clock_start_ms);
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, scenario.watchdog_ms);
@@ -83,6 +84,48 @@ void test_everything_about_the_beginning(void) {
     TEST_ASSERT_EQUAL_UINT32(VEHICLE_NEVER, scenario.vehicle.start_ms[VEHICLE_EPS]);
     TEST_ASSERT_EQUAL_UINT32(7u, scenario.vehicle.seed);
     TEST_ASSERT_EQUAL_UINT16(3000u, scenario.vehicle.top_speed_mm_s);
+}
+
+/* Shows: HW-1, HW-2, HW-3, HW-4 */
+void test_the_board_and_what_happens_to_it(void) {
+    read_good(HEAD "self_test: [flash, devices]\nboard: [second_clock, output_feedback, reset_button, emergency_stop]\n"
+                   "steps:\n"
+                   "  - {at_ms: 1, board: weld_contact}\n"
+                   "  - {at_ms: 2, board: stick_contact}\n"
+                   "  - {at_ms: 3, board: repair_contact}\n"
+                   "  - {at_ms: 4, board: invert_feedback}\n"
+                   "  - {at_ms: 5, board: open_emergency_stop}\n"
+                   "  - {at_ms: 6, board: close_emergency_stop}\n"
+                   "  - {at_ms: 7, board: press}\n"
+                   "  - {at_ms: 8, board: release}\n"
+                   "  - {at_ms: 9, board: bounce, pattern_ms: [1, 10000]}\n"
+                   "  - {at_ms: 10, board: slow_clock, permille: 900}\n"
+                   "  - {at_ms: 11, board: fast_clock, permille: 60}\n"
+                   "  - {at_ms: 12, board: right_clock}\n"
+                   "  - {at_ms: 13, board: fail_test, part: ram}\n" STATES);
+    TEST_ASSERT_TRUE(scenario.board.has_feedback && scenario.board.has_emergency_stop);
+    TEST_ASSERT_TRUE(scenario.board.has_reset_button && scenario.board.has_second_clock);
+    TEST_ASSERT_EQUAL_HEX32(HAL_SELF_TEST_FLASH | HAL_SELF_TEST_DEVICES, scenario.board.failed);
+    static const scenario_do_t expected[] = {
+        SCENARIO_CONTACT_WELDED, SCENARIO_CONTACT_STUCK, SCENARIO_CONTACT_WORKS, SCENARIO_FEEDBACK_INVERTED,
+        SCENARIO_STOP_OPEN,      SCENARIO_STOP_OPEN,     SCENARIO_BUTTON,        SCENARIO_BUTTON,
+        SCENARIO_BUTTON_BOUNCES, SCENARIO_CLOCK,         SCENARIO_CLOCK,         SCENARIO_CLOCK,
+        SCENARIO_TEST_FAILS};
+    TEST_ASSERT_EQUAL_size_t(13u, scenario.step_count);
+    for (size_t i = 0u; i < 13u; i++) {
+        TEST_ASSERT_FALSE(scenario.steps[i].of_vehicle);
+        TEST_ASSERT_EQUAL(expected[i], scenario.steps[i].supervisor.what);
+    }
+    TEST_ASSERT_TRUE(scenario.steps[4].supervisor.on);
+    TEST_ASSERT_FALSE(scenario.steps[5].supervisor.on);
+    TEST_ASSERT_TRUE(scenario.steps[6].supervisor.on);
+    TEST_ASSERT_FALSE(scenario.steps[7].supervisor.on);
+    TEST_ASSERT_EQUAL_UINT8(2u, scenario.steps[8].supervisor.bounce_count);
+    TEST_ASSERT_EQUAL_UINT16(10000u, scenario.steps[8].supervisor.bounce_ms[1]);
+    TEST_ASSERT_EQUAL_INT16(900, scenario.steps[9].supervisor.permille);
+    TEST_ASSERT_EQUAL_INT16(-60, scenario.steps[10].supervisor.permille);
+    TEST_ASSERT_EQUAL_INT16(0, scenario.steps[11].supervisor.permille);
+    TEST_ASSERT_EQUAL_HEX32(HAL_SELF_TEST_RAM, scenario.steps[12].supervisor.parts);
 }
 
 void test_steps_become_actions(void) {
@@ -215,7 +258,13 @@ void test_what_is_wrong_at_the_top_is_refused_with_its_line(void) {
         {HEAD STATES "clock_start_ms: 4294967296\n", "s.yaml:5: clock_start_ms: 4294967296 is not within"},
         {HEAD STATES "clock_start_ms: -1\n", "s.yaml:5: clock_start_ms: -1 is not within"},
         {HEAD STATES "hardware_watchdog: maybe\n", "s.yaml:5: hardware_watchdog: 'maybe' is not one of fitted, none"},
-        {HEAD STATES "self_test: perhaps\n", "s.yaml:5: self_test: 'perhaps' is not one of passed, failed"},
+        {HEAD STATES "self_test: perhaps\n",
+         "s.yaml:5: self_test (or a list of parts): 'perhaps' is not one of passed, failed"},
+        {HEAD STATES "self_test: [flash, core]\n",
+         "s.yaml:5: a part of the self-test: 'core' is not one of flash, ram"},
+        {HEAD STATES "board: output_feedback\n", "s.yaml:5: board must be a list"},
+        {HEAD STATES "board: [horn]\n", "s.yaml:5: board: 'horn' is not one of output_feedback, emergency_stop"},
+        {HEAD STATES "board: [reset_button, reset_button]\n", "s.yaml:5: board: 'reset_button' is given twice"},
         {HEAD STATES "config_unchecked: yes\n", "s.yaml:5: config_unchecked: 'yes' is not one of true, false"},
         {HEAD STATES "description:\n", "s.yaml:5: description: a word"},
         {HEAD STATES "config: 5\n", "s.yaml:5: not a list of settings"},
@@ -286,6 +335,22 @@ void test_what_is_wrong_in_a_step_is_refused_with_its_line(void) {
         {STEP("at_ms: 1, supervisor: restart, cause: x"), "s.yaml:5: cause: 'x' is not one of power-on"},
         {STEP("at_ms: 1, operator: press, button: 3"), "s.yaml:5: button: 3 is not within 1 to 2"},
         {STEP("at_ms: 1001, ai: stop"), "s.yaml:5: 1001 ms is after the end (duration_ms: 1000)"},
+        {STEP("at_ms: 1, board: explode"), "s.yaml:5: board: unknown action 'explode'"},
+        {STEP("at_ms: 1, board: invert_feedback"), "s.yaml:5: 'invert_feedback' needs a board with 'output_feedback'"},
+        {STEP("at_ms: 1, board: open_emergency_stop"), "s.yaml:5: 'open_emergency_stop' needs a board with 'emerg"},
+        {STEP("at_ms: 1, board: press"), "s.yaml:5: 'press' needs a board with 'reset_button'"},
+        {STEP("at_ms: 1, board: press, button: 1"), "s.yaml:5: 'press' takes no 'button'"},
+        {STEP("at_ms: 1, board: right_clock"), "s.yaml:5: 'right_clock' needs a board with 'second_clock'"},
+        {STEP("at_ms: 1, board: bounce"), "s.yaml:5: 'bounce' needs 'pattern_ms'"},
+        {STEP("at_ms: 1, board: bounce, pattern_ms: 3"), "s.yaml:5: pattern_ms must be a list"},
+        {STEP("at_ms: 1, board: bounce, pattern_ms: []"), "s.yaml:5: pattern_ms: is empty"},
+        {STEP("at_ms: 1, board: bounce, pattern_ms: [0]"), "s.yaml:5: pattern_ms: 0 is not within 1 to 10000"},
+        {STEP("at_ms: 1, board: bounce, pattern_ms: [1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17]"),
+         "s.yaml:5: pattern_ms: more than 16 times"},
+        {STEP("at_ms: 1, board: slow_clock"), "s.yaml:5: 'slow_clock' needs 'permille'"},
+        {STEP("at_ms: 1, board: slow_clock, permille: 0"), "s.yaml:5: permille: 0 is not within 1 to 900"},
+        {STEP("at_ms: 1, board: fast_clock, permille: 901"), "s.yaml:5: permille: 901 is not within 1 to 900"},
+        {STEP("at_ms: 1, board: fail_test, part: core"), "s.yaml:5: a part of the self-test: 'core' is not one of"},
         {STEP("at_ms: never, ai: stop"), "s.yaml:5: at_ms: 'never' is not a whole number"},
         {STEP("[1]: 1, ai: stop"), "s.yaml:5: a key of a step must be a word"},
         {HEAD "steps:\n  - {at_ms: 9, ai: stop}\n  - {at_ms: 8, ai: start}\n" STATES, "s.yaml:6: the step is earlier"},
@@ -321,6 +386,9 @@ void test_what_is_wrong_in_an_expectation_is_refused_with_its_line(void) {
         {EXPECT("faults: [{name: BUS_OFF, class: bad, raised_ms: 1}]"),
          "s.yaml:6: class: 'bad' is not one of trip, warn"},
         {EXPECT("faults: [{name: BUS_OFF, raised_ms: 1, ended_ms: x}]"), "s.yaml:6: ended_ms (a time, or never): 'x'"},
+        {EXPECT("faults: [{name: SELF_TEST_FAILED, parts: [wheels], raised_ms: 1}]"),
+         "s.yaml:6: 'wheels' is not one of flash, ram, processor, watchdog, devices, core"},
+        {EXPECT("faults: [{name: BUS_OFF, parts: [ram], raised_ms: 1}]"), "s.yaml:6: a fault: only SELF_TEST_FAILED"},
         {EXPECT("other_faults: some"), "s.yaml:6: other_faults: 'some' is not one of allowed, never"},
         {EXPECT("resets: [{accepted: true, why: [button], at_ms: 1}]"), "s.yaml:6: a reset: 'why' is needed"},
         {EXPECT("resets: [{accepted: false, at_ms: 1}]"), "s.yaml:6: a reset: 'why' is needed"},

@@ -357,7 +357,7 @@ static void load(hal_can_side_t side) {
 static void begin(bool gateway, bool shadow) {
     const scenario_watch_t watch = {.on_event = on_event, .on_frame = on_frame};
 
-    scenario = (scenario_t){.bitrate = SCENARIO_DEFAULT_BITRATE, .self_test_passed = true};
+    scenario = (scenario_t){.bitrate = SCENARIO_DEFAULT_BITRATE};
     agv_config_defaults(&scenario.config);
     vehicle_defaults(&scenario.vehicle);
     scenario.vehicle.coasting_mm_s2 = 3000u; /* its drive brakes hard when it gets no throttle */

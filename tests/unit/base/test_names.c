@@ -66,6 +66,17 @@ void test_what_is_missing(void) {
     TEST_ASSERT_NULL(agv_missing_name(255));
 }
 
+/* By bit of HAL_SELF_TEST_*. */
+/* Shows: HW-4 */
+void test_parts_of_the_self_test(void) {
+    static const char *const expected[] = {"flash", "ram", "processor", "watchdog", "devices", "core"};
+    for (uint8_t i = 0; i < 6; i++) {
+        TEST_ASSERT_EQUAL_STRING(expected[i], agv_self_test_part_name(i));
+    }
+    TEST_ASSERT_NULL(agv_self_test_part_name(6));
+    TEST_ASSERT_NULL(agv_self_test_part_name(255));
+}
+
 /* Shows: INT-2 */
 void test_every_setting_is_described(void) {
     for (uint16_t i = 0; i < AGV_SETTING_COUNT; i++) {

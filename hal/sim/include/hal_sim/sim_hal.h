@@ -117,9 +117,8 @@ struct hal {
     uint32_t last_now_ms;
     uint32_t last_second_ms;
     hal_inputs_t last_inputs;
-    uint32_t second_base_ms; /* of the first clock, when its deviation changed */
-    uint32_t second_offset_ms;
-    int16_t second_permille;
+    uint64_t second_us; /* the second clock when it was read last */
+    uint32_t second_read_ms;
     bool direct;
     sim_hal_config_t config;
     sim_hal_sink_fn *sink;
