@@ -14,8 +14,8 @@ void interface_options_init(interface_options_t *options, option_t rows[INTERFAC
                                     &options->interfaces[HAL_CAN_VEHICLE]);
     rows[1] = (option_t)OPTION_TEXT("--ai-can", "IF", "the interface of the AI side: a gateway",
                                     &options->interfaces[HAL_CAN_AI]);
-    rows[2] = (option_t)OPTION_NUMBER("--for", "MS", "stop after this time, or earlier by a signal", &options->for_ms,
-                                      1, FOR_MAX_MS);
+    rows[2] = (option_t)OPTION_DURATION("--for", "stop after this time (250ms, 10s, 1.5min), or earlier by a signal",
+                                        &options->for_ms, 1, FOR_MAX_MS);
 }
 
 bool interface_options_check(const interface_options_t *options, const char *command, bool is_gateway) {

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "common/duration.h"
 #include "common/report.h"
 #include "common/words.h"
 
@@ -46,6 +47,19 @@ static const option_t *find(const option_syntax_t *syntax, const char *argument)
     return NULL;
 }
 
+static bool take_duration(const option_t *option, const char *value) {
+    uint64_t ms = 0u;
+    if (!duration_ms(value, option->lowest, option->highest, &ms)) {
+        char lowest[DURATION_TEXT_SIZE];
+        char highest[DURATION_TEXT_SIZE];
+        return report("%s: '%s' is not a time from %s to %s: 250ms, 10s, 1.5min, 2h, or milliseconds alone",
+                      option->name, value, duration_text(option->lowest, lowest),
+                      duration_text(option->highest, highest));
+    }
+    *option->duration = ms;
+    return true;
+}
+
 static bool take_value(const option_t *option, const char *value) {
     if (option->each != NULL) {
         return option->each(option->ctx, value);
@@ -58,6 +72,9 @@ static bool take_value(const option_t *option, const char *value) {
         }
         *option->number = number;
         return true;
+    }
+    if (option->duration != NULL) {
+        return take_duration(option, value);
     }
     if (option->word != NULL) {
         int index = words_find(option->words, value);

@@ -22,15 +22,16 @@ typedef bool option_each_fn(void *ctx, const char *value);
 /** As a number that was not given. */
 #define OPTION_NOT_GIVEN UINT64_MAX
 
-/** One option. Exactly one of flag, text, number, word and each is set; it is where the value goes. */
+/** One option. Exactly one of flag, text, number, duration, word and each is set; it is where the value goes. */
 typedef struct {
-    const char *name;  /**< "--tail" */
-    const char *value; /**< what `--help` calls its value: "MS"; NULL for a flag */
-    const char *help;  /**< one line */
-    bool *flag;        /**< set to true */
-    const char **text; /**< any text but an empty one */
-    uint64_t *number;  /**< decimal, `lowest` .. `highest` */
-    int *word;         /**< index of one of `words` */
+    const char *name;   /**< "--tail" */
+    const char *value;  /**< what `--help` calls its value: "MS"; NULL for a flag */
+    const char *help;   /**< one line */
+    bool *flag;         /**< set to true */
+    const char **text;  /**< any text but an empty one */
+    uint64_t *number;   /**< decimal, `lowest` .. `highest` */
+    uint64_t *duration; /**< milliseconds, given as a time (common/duration.h), `lowest` .. `highest` */
+    int *word;          /**< index of one of `words` */
     option_each_fn *each;
     void *ctx; /**< for `each` */
     uint64_t lowest;
@@ -44,6 +45,8 @@ typedef struct {
     {.name = (name_), .value = (value_), .help = (help_), .text = (target)}
 #define OPTION_NUMBER(name_, value_, help_, target, low, high)                                                         \
     {.name = (name_), .value = (value_), .help = (help_), .number = (target), .lowest = (low), .highest = (high)}
+#define OPTION_DURATION(name_, help_, target, low, high)                                                               \
+    {.name = (name_), .value = "TIME", .help = (help_), .duration = (target), .lowest = (low), .highest = (high)}
 #define OPTION_WORD(name_, help_, target, list)                                                                        \
     {.name = (name_), .value = (list), .help = (help_), .word = (target), .words = (list)}
 /** @} */

@@ -13,10 +13,11 @@
 
 #define EXTENDED_ID_MAX 0x1FFFFFFFu
 #define STANDARD_ID_MAX 0x7FFu
-#define ERROR_FLAG 0x20000000u
 #define SECONDS_DIGITS_MAX 12u
 #define DATA_MAX 8u
 #define FD_DATA_MAX 64u
+
+const char LOG_NO_FRAME[] = "no frame";
 
 static inline bool is_decimal(char character) {
     return (character >= '0') && (character <= '9');
@@ -106,9 +107,9 @@ static const char *parse_id(const char **cursor, hal_can_frame_t *frame) {
     if (count != 8u) {
         return (count == 5u) ? "CAN XL frames are not supported" : "the identifier has neither 3 nor 8 digits";
     }
-    bool is_error = (id & ERROR_FLAG) != 0u;
+    bool is_error = (id & CANDUMP_ERROR_FLAG) != 0u;
     frame->flags = is_error ? HAL_CAN_ERROR : HAL_CAN_EXTENDED;
-    frame->id = is_error ? (id & ~ERROR_FLAG) : id;
+    frame->id = is_error ? (id & ~CANDUMP_ERROR_FLAG) : id;
     return (frame->id <= EXTENDED_ID_MAX) ? NULL : "the identifier is above 1FFFFFFF";
 }
 

@@ -23,7 +23,12 @@
 #define CANDUMP_LINE_MAX 255u     /**< characters of a line; the longest valid one has fewer */
 #define CANDUMP_WRITE_MAX 80u     /**< more than candump_write() ever writes */
 
+/** What a parser returns for a line that is in order but has no frame: a header, a comment, another event. */
+extern const char LOG_NO_FRAME[];
+
 /** @name Classes and details of error frames (linux/can/error.h). @{ */
+#define CANDUMP_ERROR_FLAG 0x20000000u /**< of the identifier in a line */
+#define CANDUMP_ERROR_PROTOCOL 0x008u
 #define CANDUMP_ERROR_CONTROLLER 0x004u /**< details in data[1] */
 #define CANDUMP_ERROR_BUS_OFF 0x040u
 #define CANDUMP_ERROR_RESTARTED 0x100u

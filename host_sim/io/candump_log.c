@@ -2,11 +2,13 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "common/interrupt.h"
 #include "common/report.h"
+#include "io/log_foreign.h"
 
 bool candump_open(candump_log_t *log, const char *path, bool skip_bad) {
     bool is_stdin = strcmp(path, "-") == 0;
@@ -16,6 +18,12 @@ bool candump_open(candump_log_t *log, const char *path, bool skip_bad) {
     log->skip_bad = skip_bad;
     log->interrupted = false;
     log->at_end = false;
+    log->is_checked = false;
+    log->format = CANDUMP_FORMAT_UNKNOWN;
+    log->frameless = 0u;
+    log->screen = (candump_screen_t){0};
+    log->asc = (vector_asc_t){0};
+    gunzip_init(&log->gunzip);
     log->begin = 0u;
     log->end = 0u;
     log->fd = is_stdin ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC);
@@ -27,6 +35,15 @@ void candump_close(candump_log_t *log) {
         (void)close(log->fd);
     }
     log->fd = -1;
+    gunzip_end(&log->gunzip);
+}
+
+const char *candump_format_name(candump_format_t format) {
+    static const char *const names[] = {[CANDUMP_FORMAT_UNKNOWN] = "unknown",
+                                        [CANDUMP_FORMAT_LOG] = "candump -l",
+                                        [CANDUMP_FORMAT_SCREEN] = "candump -t",
+                                        [CANDUMP_FORMAT_ASC] = "Vector ASC"};
+    return names[format];
 }
 
 bool candump_reject(candump_log_t *log, const char *wrong) {
@@ -37,6 +54,25 @@ bool candump_reject(candump_log_t *log, const char *wrong) {
     return report_at(log->name, (size_t)log->line, "%s", wrong);
 }
 
+/** Read from the file. @return number of bytes; 0: the end; -1: an error (reported) or an interruption. */
+static ssize_t read_file(void *ctx, void *bytes, size_t size) {
+    candump_log_t *log = ctx;
+    for (;;) {
+        if (!interrupt_wait(log->fd, INTERRUPT_READ)) {
+            log->interrupted = true;
+            return -1;
+        }
+        const ssize_t count = read(log->fd, bytes, size);
+        if (count >= 0) {
+            return count;
+        }
+        if ((errno != EINTR) && (errno != EAGAIN)) {
+            (void)report("%s: %s", log->name, strerror(errno));
+            return -1;
+        }
+    }
+}
+
 /** Read more behind what is there. @return false: an error (reported) or an interruption. */
 static bool fill(candump_log_t *log) {
     if (log->begin > 0u) {
@@ -44,21 +80,56 @@ static bool fill(candump_log_t *log) {
         log->end -= log->begin;
         log->begin = 0u;
     }
-    for (;;) {
-        if (!interrupt_wait(log->fd, INTERRUPT_READ)) {
-            log->interrupted = true;
+    const char *wrong = NULL;
+    const ssize_t count =
+        gunzip_read(&log->gunzip, read_file, log, &log->buffer[log->end], CANDUMP_BUFFER_SIZE - log->end, &wrong);
+    if (count < 0) {
+        return (wrong != NULL) && report("%s: %s", log->name, wrong);
+    }
+    log->at_end = count == 0;
+    log->end += (size_t)count;
+    log->frameless += (size_t)count;
+    const bool is_known = log->format != CANDUMP_FORMAT_UNKNOWN;
+    const uint64_t most = is_known ? CANDUMP_FRAMELESS_MAX : CANDUMP_UNKNOWN_MAX;
+    if (log->frameless > most) {
+        return report("%s: contains no frame in %" PRIu64 " MiB; given up", log->name, most >> 20u);
+    }
+    return true;
+}
+
+static bool report_foreign(const candump_log_t *log, const log_foreign_t *format) {
+    char advice[LOG_FOREIGN_TEXT_SIZE];
+    log_foreign_advice(advice, format, (log->fd == STDIN_FILENO) ? "FILE" : log->name);
+    return report("%s: %s", log->name, advice);
+}
+
+/** Whether there are bytes that no text has, before the end of the first line. */
+static bool looks_binary(const candump_log_t *log) {
+    const char *feed = memchr(log->buffer, '\n', log->end);
+    const size_t size = (feed != NULL) ? (size_t)(feed - log->buffer) : log->end;
+    return memchr(log->buffer, '\0', size) != NULL;
+}
+
+/** Look at the first bytes. @return false: they are not of a log; was reported. */
+static bool check_beginning(candump_log_t *log) {
+    while ((log->end < LOG_FOREIGN_BYTES) && !log->at_end) {
+        if (!fill(log)) {
             return false;
         }
-        ssize_t count = read(log->fd, &log->buffer[log->end], CANDUMP_BUFFER_SIZE - log->end);
-        if (count >= 0) {
-            log->end += (size_t)count;
-            log->at_end = count == 0;
-            return true;
-        }
-        if ((errno != EINTR) && (errno != EAGAIN)) {
-            return report("%s: %s", log->name, strerror(errno));
-        }
     }
+    log->is_checked = true;
+    const log_foreign_t *format = log_foreign_binary(log->buffer, log->end);
+    if (format != NULL) {
+        return report_foreign(log, format);
+    }
+    if (!log->skip_bad && looks_binary(log)) {
+        return report_at(log->name, 1u, "binary data: not a log that can be read (candump -l, Vector ASC)");
+    }
+    static const char utf8_mark[] = "\xEF\xBB\xBF";
+    const bool is_marked =
+        (log->end >= sizeof utf8_mark - 1u) && (memcmp(log->buffer, utf8_mark, sizeof utf8_mark - 1u) == 0);
+    log->begin = is_marked ? sizeof utf8_mark - 1u : 0u;
+    return true;
 }
 
 /**
@@ -78,13 +149,18 @@ static char *cut_line(candump_log_t *log, size_t *length, bool *failed) {
             log->end++;
         }
         if (feed != NULL) {
-            *length = too_long ? (CANDUMP_LINE_MAX + 1u) : (size_t)(feed - begin);
+            *length = too_long ? (CANDUMP_LONG_LINE_MAX + 1u) : (size_t)(feed - begin);
             log->begin += (size_t)(feed - begin) + 1u;
             log->line++;
             return begin;
         }
         if (log->at_end) {
             return NULL;
+        }
+        if ((size > CANDUMP_LONG_LINE_MAX) && !log->skip_bad) {
+            *length = size; /* its end does not matter: it may have none */
+            log->line++;
+            return begin;
         }
         if (size == CANDUMP_BUFFER_SIZE) {
             too_long = true;
@@ -105,21 +181,60 @@ static bool is_blank(const char *line, size_t length) {
     return i == length;
 }
 
+/** Tell the format by the first line that is not blank. @return false: one that is not read; was reported. */
+static bool tell_format(candump_log_t *log, const char *line, size_t length) {
+    const log_foreign_t *foreign = log_foreign_text(line, length);
+    if ((foreign != NULL) && !log->skip_bad) {
+        return report_foreign(log, foreign);
+    }
+    const bool has_stamp = memchr(line, '(', length) != NULL;
+    if (vector_asc_begins(line, length)) {
+        log->format = CANDUMP_FORMAT_ASC;
+    } else if (has_stamp && (memchr(line, '[', length) != NULL)) {
+        log->format = CANDUMP_FORMAT_SCREEN;
+    } else if (has_stamp && (memchr(line, '#', length) != NULL)) {
+        log->format = CANDUMP_FORMAT_LOG;
+    }
+    return true;
+}
+
+static const char *parse_line(candump_log_t *log, const char *line, size_t length, candump_record_t *record) {
+    const bool is_long = (log->format == CANDUMP_FORMAT_ASC) || (log->format == CANDUMP_FORMAT_SCREEN);
+    if (!is_long && (length > CANDUMP_LINE_MAX)) {
+        return "the line is longer than 255 characters";
+    }
+    if (length > CANDUMP_LONG_LINE_MAX) {
+        return "the line is longer than 16383 characters";
+    }
+    if ((log->format == CANDUMP_FORMAT_UNKNOWN) && (line[0] != '(')) {
+        return "not a log that can be read: candump -l, candump -t a or Vector ASC, each perhaps gzip'd";
+    }
+    switch (log->format) {
+    case CANDUMP_FORMAT_SCREEN:
+        return candump_screen_parse(&log->screen, line, length, record);
+    case CANDUMP_FORMAT_ASC:
+        return vector_asc_parse(&log->asc, line, length, record);
+    default:
+        return candump_parse(line, length, record);
+    }
+}
+
 candump_result_t candump_next(candump_log_t *log, candump_record_t *record) {
-    bool failed = false;
+    bool failed = !log->is_checked && !check_beginning(log);
     size_t length = 0u;
-    const char *line = cut_line(log, &length, &failed);
+    const char *line = failed ? NULL : cut_line(log, &length, &failed);
     for (; line != NULL; line = cut_line(log, &length, &failed)) {
-        const char *wrong = NULL;
-        if (length > CANDUMP_LINE_MAX) {
-            wrong = "the line is longer than 255 characters";
-        } else {
-            wrong = candump_parse(line, length, record);
+        const bool is_blank_line = (length <= CANDUMP_LINE_MAX) && is_blank(line, length);
+        const bool is_first = (log->format == CANDUMP_FORMAT_UNKNOWN) && (length <= CANDUMP_LONG_LINE_MAX);
+        if (is_first && !is_blank_line && !tell_format(log, line, length)) {
+            return CANDUMP_FAILED;
         }
+        const char *wrong = parse_line(log, line, length, record);
         if (wrong == NULL) {
+            log->frameless = 0u;
             return CANDUMP_RECORD;
         }
-        if (((length > CANDUMP_LINE_MAX) || !is_blank(line, length)) && !candump_reject(log, wrong)) {
+        if ((wrong != LOG_NO_FRAME) && !is_blank_line && !candump_reject(log, wrong)) {
             return CANDUMP_FAILED;
         }
     }

@@ -1,6 +1,10 @@
 /**
  * @file candump_log.h
- * A candump log, read from a file or a pipe as a stream: one buffer, no allocation, logs of any length.
+ * A log of frames, read from a file or a pipe as a stream: fixed buffers, logs of any length.
+ *
+ * Read are `candump -l`, what candump shows on the screen with time stamps (candump_screen.h), and Vector ASC
+ * (vector_asc.h), each also compressed with gzip. The content tells the format, not the name. Of other known formats the
+ * message says how to convert them (log_foreign.h).
  */
 #ifndef HOST_SIM_CANDUMP_LOG_H
 #define HOST_SIM_CANDUMP_LOG_H
@@ -10,10 +14,24 @@
 #include <stdint.h>
 
 #include "io/candump_line.h"
+#include "io/candump_screen.h"
+#include "io/gunzip.h"
+#include "io/vector_asc.h"
 
 #define CANDUMP_BUFFER_SIZE 262144u
+#define CANDUMP_LONG_LINE_MAX 16383u /**< characters of a line of another format than `candump -l` */
+/** @name A log in which so many bytes bring no frame is given up: before and after its format is known @{ */
+#define CANDUMP_UNKNOWN_MAX (16ull << 20u)
+#define CANDUMP_FRAMELESS_MAX (1024ull << 20u)
+/** @} */
 
-/** A log that is being read. Read the members freely. Some 256 KiB: not for the stack. */
+/** The format of a log. */
+typedef enum { CANDUMP_FORMAT_UNKNOWN, CANDUMP_FORMAT_LOG, CANDUMP_FORMAT_SCREEN, CANDUMP_FORMAT_ASC } candump_format_t;
+
+/** "candump -l", "candump -t", "Vector ASC"; "unknown" as long as no line said it. */
+const char *candump_format_name(candump_format_t format);
+
+/** A log that is being read. Read the members freely. Some 320 KiB: not for the stack. */
 typedef struct {
     const char *name; /**< for messages; stdin's is "standard input" */
     uint64_t line;    /**< number of the line that was read last, from 1 */
@@ -22,6 +40,12 @@ typedef struct {
     bool interrupted; /**< a signal asked the program to end */
     int fd;
     bool at_end;
+    bool is_checked; /**< its first bytes are not those of a binary format */
+    candump_format_t format;
+    uint64_t frameless; /**< bytes read since the last frame */
+    candump_screen_t screen;
+    vector_asc_t asc;
+    gunzip_t gunzip;
     size_t begin; /**< of what is not read yet, in `buffer` */
     size_t end;
     char buffer[CANDUMP_BUFFER_SIZE + 1u];
@@ -35,14 +59,14 @@ typedef enum {
 } candump_result_t;
 
 /**
- * Open a log.
+ * Open a log. What its format is shows when it is read.
  * @param path "-" = standard input; must outlive the log
  * @return false: it cannot be read; was reported.
  */
 bool candump_open(candump_log_t *log, const char *path, bool skip_bad);
 
 /**
- * Read the next frame. Blank lines are passed over.
+ * Read the next frame. Blank lines, and lines of the format that have no frame, are passed over.
  * @param record is valid until the next call
  */
 candump_result_t candump_next(candump_log_t *log, candump_record_t *record);

@@ -45,7 +45,7 @@ class Run(hostsim.Case):
         self.assert_refused(self.run_program("run", "--can", "a", "--config", "gateway.yaml"), "needs --ai-can")
 
     def test_bad_values(self):
-        for bad in ("0", "-1", "1s", "8640000001"):
+        for bad in ("0", "-1", "1sec", "0.5", "2401h", "8640000001"):
             self.assert_refused(self.run_program("run", "--can", "a", "--for=" + bad), "--for", "'%s'" % bad)
         self.write("c.yaml", "no_such_setting: 1\n")
         self.assert_refused(self.run_program("run", "--can", "a", "--config", "c.yaml"), "c.yaml:1: ")

@@ -92,7 +92,7 @@ class Vehicle(hostsim.Case):
             self.assert_no_interface(self.vehicle("--can", "nosuch", *more))
 
     def test_numbers_and_words(self):
-        for option, bad in (("--for", "0"), ("--for", "1s"), ("--for", "8640000001"), ("--id-set", "both"),
+        for option, bad in (("--for", "0"), ("--for", "1m"), ("--for", "8640000001"), ("--id-set", "both"),
                             ("--topology", "star")):
             self.assert_refused(self.vehicle("--can", "nosuch", option, bad), option, "'%s'" % bad)
         self.assert_refused(self.vehicle("--can", "nosuch", "vcan0"), "unexpected argument 'vcan0'")

@@ -1,0 +1,110 @@
+#include "io/log_foreign.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#include "io/log_token.h"
+
+#define CAN_LOGCONVERT "convert it: python3 -m can.logconvert @ @.log (python-can)"
+#define TSHARK                                                                                                         \
+    "convert it: tshark -r @ -T fields -E separator=/s -e frame.time_epoch -e can.id -e data.data"                     \
+    " | awk '{printf \"(%.6f) can0 %03X#%s\\n\", $1, $2, $3}' > @.log"
+
+/** What a file begins with. */
+typedef struct {
+    const char *bytes;
+    size_t size;
+    log_foreign_t format;
+} beginning_t;
+
+#define BEGINS(text, name, convert)                                                                                    \
+    {                                                                                                                  \
+        (text), sizeof(text) - 1u, {                                                                                   \
+            (name), (convert)                                                                                          \
+        }                                                                                                              \
+    }
+
+void log_foreign_advice(char text[LOG_FOREIGN_TEXT_SIZE], const log_foreign_t *format, const char *path) {
+    static const size_t path_max = 200u;
+    const char *name = (strlen(path) > path_max) ? "FILE" : path;
+    size_t used = (size_t)snprintf(text, LOG_FOREIGN_TEXT_SIZE, "%s; ", format->name);
+    for (const char *at = format->convert; *at != '\0'; at++) {
+        const char letter[2] = {*at, '\0'};
+        const int length = snprintf(&text[used], LOG_FOREIGN_TEXT_SIZE - used, "%s", (*at == '@') ? name : letter);
+        used += ((size_t)length < LOG_FOREIGN_TEXT_SIZE - used) ? (size_t)length : 0u;
+    }
+}
+
+const log_foreign_t *log_foreign_binary(const char *bytes, size_t size) {
+    static const beginning_t beginnings[] = {
+        BEGINS("LOGG", "a Vector BLF log", CAN_LOGCONVERT),
+        BEGINS("MDF     ", "an MDF log", "convert it: python3 -m can.logconvert @ @.log (python-can[mf4])"),
+        BEGINS("SQLite format 3", "an SQLite log", CAN_LOGCONVERT),
+        BEGINS("\xD4\xC3\xB2\xA1", "a pcap capture", TSHARK),
+        BEGINS("\xA1\xB2\xC3\xD4", "a pcap capture", TSHARK),
+        BEGINS("\x4D\x3C\xB2\xA1", "a pcap capture", TSHARK),
+        BEGINS("\xA1\xB2\x3C\x4D", "a pcap capture", TSHARK),
+        BEGINS("\x0A\x0D\x0D\x0A", "a pcapng capture", TSHARK),
+        BEGINS("\xFD"
+               "7zXZ",
+               "compressed with xz", "unpack it: xz -dc @ > @.log"),
+        BEGINS("\x28\xB5\x2F\xFD", "compressed with zstd", "unpack it: zstd -dc @ > @.log"),
+        BEGINS("BZh", "compressed with bzip2", "unpack it: bzip2 -dc @ > @.log"),
+        BEGINS("PK\x03\x04", "a zip archive", "unpack it: unzip -p @ > @.log"),
+        BEGINS("7z\xBC\xAF", "a 7z archive", "unpack it: 7z e -so @ > @.log"),
+        BEGINS("\xFF\xFE", "text in UTF-16", "convert it: iconv -f UTF-16 -t UTF-8 @ > @.log"),
+        BEGINS("\xFE\xFF", "text in UTF-16", "convert it: iconv -f UTF-16 -t UTF-8 @ > @.log"),
+    };
+    for (size_t i = 0u; i < sizeof beginnings / sizeof beginnings[0]; i++) {
+        if ((size >= beginnings[i].size) && (memcmp(bytes, beginnings[i].bytes, beginnings[i].size) == 0)) {
+            return &beginnings[i].format;
+        }
+    }
+    return NULL;
+}
+
+static size_t count_of(const char *line, size_t length, char character) {
+    size_t count = 0u;
+    for (size_t i = 0u; i < length; i++) {
+        count += (line[i] == character) ? 1u : 0u;
+    }
+    return count;
+}
+
+/** "  can0  43F   [8]  00 ...": candump's screen without time stamps. */
+static bool is_plain_screen(const char *line, size_t length) {
+    const char *at = line;
+    const char *end = &line[length];
+    (void)log_token_next(&at, end);
+    uint32_t id = 0u;
+    const bool has_id = log_token_number(log_token_next(&at, end), 16u, UINT32_MAX - 1u, &id);
+    const log_token_t size = log_token_next(&at, end);
+    return has_id && (size.length >= 3u) && (size.at[0] == '[') && (size.at[size.length - 1u] == ']');
+}
+
+const log_foreign_t *log_foreign_text(const char *line, size_t length) {
+    static const beginning_t beginnings[] = {
+        BEGINS(";$FILEVERSION", "a PEAK TRC log", CAN_LOGCONVERT),
+        BEGINS("timestamp,arbitration_id", "a CSV log of python-can", CAN_LOGCONVERT),
+        BEGINS("Time Stamp,ID,Extended", "a CSV log of SavvyCAN",
+               "open @ in SavvyCAN and save it as a candump log, @.log"),
+    };
+    static const log_foreign_t plain_screen = {"candump's screen form without time stamps",
+                                               "record it again: candump -l can0"};
+    static const log_foreign_t csv = {"a CSV file",
+                                      "make it one line a frame: (seconds.micros) can0 43F#0000000000000011"};
+    for (size_t i = 0u; i < sizeof beginnings / sizeof beginnings[0]; i++) {
+        if ((length >= beginnings[i].size) && (strncasecmp(line, beginnings[i].bytes, beginnings[i].size) == 0)) {
+            return &beginnings[i].format;
+        }
+    }
+    if (is_plain_screen(line, length)) {
+        return &plain_screen;
+    }
+    static const size_t columns = 3u;
+    const bool is_csv =
+        (line[0] != '(') && ((count_of(line, length, ',') >= columns) || (count_of(line, length, ';') >= columns));
+    return is_csv ? &csv : NULL;
+}
