@@ -1,5 +1,5 @@
 /*
- * The reader of candump logs. Two regular expressions, written from the page of the format, decide which lines are
+ * The reader of candump logs (of the other formats: fuzz_formats.c). A frame comes first, which tells the format. Two regular expressions, written from the page of the format, decide which lines are
  * frames. Every other line that is not blank is refused with its number (byte 1 even), or skipped and counted (odd). A
  * classic frame is written and read again.
  */
@@ -130,16 +130,29 @@ static size_t walk(const char *text, size_t size, bool skip, uint64_t *bad) {
     return 0;
 }
 
+/* What is left of the input, behind a line that tells the format; valid until the next call. */
+static const char *with_first_line(const input_t *input, size_t *length) {
+    static const char first[] = "(1700000000.000000) can0 43F#\n";
+    static char *text;
+    *length = sizeof first - 1u + input->left;
+    text = realloc(text, *length);
+    memcpy(text, first, sizeof first - 1u);
+    memcpy(&text[sizeof first - 1u], input->at, input->left);
+    return text;
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     input_t input = {.at = data, .left = size};
     const bool skip = (input_byte(&input) & 1u) != 0u;
-    const char *path = capture_file(input.at, input.left);
+    size_t length = 0;
+    const char *text = with_first_line(&input, &length);
+    const char *path = capture_file((const uint8_t *)text, length);
     uint64_t bad = 0;
     candump_record_t record;
     prepare();
     capture_begin();
     const bool opened = candump_open(log_file, path, skip);
-    const size_t wrong = opened ? walk((const char *)input.at, input.left, skip, &bad) : 0u;
+    const size_t wrong = opened ? walk(text, length, skip, &bad) : 0u;
     const candump_result_t last = candump_next(log_file, &record);
     candump_close(log_file);
     const char *printed = capture_end();

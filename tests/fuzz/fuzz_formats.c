@@ -1,0 +1,102 @@
+/*
+ * The reader of logs of any format. A log is refused in one line, or its frames are possible ones; the same log compressed
+ * with gzip gives the same frames. Byte 1, bit 0: bad lines are skipped; then the log.
+ */
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+#include "capture.h"
+#include "input.h"
+#include "io/candump_log.h"
+
+/* What reading a log came to. */
+typedef struct {
+    candump_result_t end;
+    uint64_t frames;
+    uint64_t skipped;
+    uint32_t sum; /* of times and frames */
+} outcome_t;
+
+static void check_record(const candump_record_t *record) {
+    const hal_can_frame_t *frame = &record->frame;
+    const bool is_standard = (frame->flags & (HAL_CAN_EXTENDED | HAL_CAN_ERROR)) == 0u;
+    const uint32_t longest = ((frame->flags & HAL_CAN_FD) != 0u) ? 64u : 8u;
+    if ((frame->id > (is_standard ? 0x7FFu : 0x1FFFFFFFu)) || (frame->length > longest)) {
+        capture_fail("a frame that no bus has", "");
+    }
+    if ((record->interface_length == 0u) || (record->interface_length > CANDUMP_INTERFACE_MAX)) {
+        capture_fail("an interface without a name", "");
+    }
+}
+
+static uint32_t add(uint32_t sum, const void *bytes, size_t size) {
+    return (uint32_t)crc32(sum, bytes, (uInt)size);
+}
+
+static outcome_t read_log(const uint8_t *bytes, size_t size, bool skip) {
+    candump_log_t *log = calloc(1, sizeof *log);
+    candump_record_t record;
+    outcome_t outcome = {.end = CANDUMP_FAILED};
+    capture_begin();
+    if (candump_open(log, capture_file(bytes, size), skip)) {
+        outcome.end = candump_next(log, &record);
+        for (; outcome.end == CANDUMP_RECORD; outcome.end = candump_next(log, &record)) {
+            check_record(&record);
+            outcome.frames++;
+            outcome.sum = add(outcome.sum, &record.stamp_us, sizeof record.stamp_us);
+            outcome.sum = add(outcome.sum, record.frame.data, sizeof record.frame.data);
+            outcome.sum = add(outcome.sum, record.interface, record.interface_length);
+        }
+    }
+    outcome.skipped = log->skipped;
+    candump_close(log);
+    free(log);
+    const char *printed = capture_end();
+    if (outcome.end == CANDUMP_FAILED) {
+        capture_one_line(printed);
+    } else if (printed[0] != '\0') {
+        capture_fail("read to its end, and something was printed", printed);
+    } else {
+        /* as it should be */
+    }
+    return outcome;
+}
+
+/* Compress. @return the bytes, to be freed */
+static uint8_t *pack(const uint8_t *bytes, size_t size, size_t *packed_size) {
+    z_stream stream = {0};
+    (void)deflateInit2(&stream, 1, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
+    const uLong most = deflateBound(&stream, (uLong)size);
+    uint8_t *packed = malloc(most);
+    uint8_t *copy = malloc(size + 1u);
+    memcpy(copy, bytes, size);
+    stream.next_in = copy;
+    stream.avail_in = (uInt)size;
+    stream.next_out = packed;
+    stream.avail_out = (uInt)most;
+    (void)deflate(&stream, Z_FINISH);
+    *packed_size = stream.total_out;
+    (void)deflateEnd(&stream);
+    free(copy);
+    return packed;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    input_t input = {.at = data, .left = size};
+    const bool skip = (input_byte(&input) & 1u) != 0u;
+    const outcome_t plain = read_log(input.at, input.left, skip);
+    const bool is_packed = (input.left >= 3u) && (memcmp(input.at, "\x1F\x8B\x08", 3) == 0);
+    if (is_packed) {
+        return 0; /* compressed twice is not read */
+    }
+    size_t packed_size = 0;
+    uint8_t *packed = pack(input.at, input.left, &packed_size);
+    const outcome_t unpacked = read_log(packed, packed_size, skip);
+    free(packed);
+    if ((unpacked.end != plain.end) || (unpacked.frames != plain.frames) || (unpacked.sum != plain.sum) ||
+        (unpacked.skipped != plain.skipped)) {
+        capture_fail("compressed it is another log", "");
+    }
+    return 0;
+}
