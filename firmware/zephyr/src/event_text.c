@@ -43,10 +43,9 @@ static void add_missing(line_t *line, uint16_t missing) {
 }
 
 static void add_parts(line_t *line, uint32_t failed) {
-    static const char *const names[HAL_SELF_TEST_PARTS] = {"flash", "RAM", "processor", "watchdog", "devices", "core"};
-    for (uint32_t part = 0u; part < ARRAY_SIZE(names); part++) {
+    for (uint8_t part = 0u; agv_self_test_part_name(part) != NULL; part++) {
         if ((failed & BIT(part)) != 0u) {
-            add(line, " %s", names[part]);
+            add(line, " %s", agv_self_test_part_name(part));
         }
     }
 }

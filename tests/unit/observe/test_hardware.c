@@ -109,10 +109,11 @@ void test_a_board_without_any_part_raises_nothing(void) {
 
 /* --- the contact of the safety output --- */
 
+/* Open but reads closed, closed but reads open, and values that the contract does not have, in both positions. */
 /* Shows: HW-1, OUTPUT_FEEDBACK */
-TEST_CASE(false, 2) /* open, but reads closed */
-TEST_CASE(true, 1)  /* closed, but reads open */
-TEST_CASE(false, 3) /* no value of the contract, in both positions */
+TEST_CASE(false, 2)
+TEST_CASE(true, 1)
+TEST_CASE(false, 3)
 TEST_CASE(true, 3)
 TEST_CASE(false, 255)
 void test_a_wrong_contact_is_a_fault_after_100_ms(bool closed, int contact) {
@@ -345,18 +346,21 @@ static void clocks(uint32_t first_passed_ms, uint32_t second_passed_ms) {
     tick_after(first_passed_ms);
 }
 
-/* 5 % of a second are 50 ms; above a second, a 20th of the longer time, rounded down. */
+/*
+ * 5 % of a second are 50 ms; above a second, a 20th of the longer time, rounded down. The last rows: a second clock that
+ * stands still, one that is not compared yet, ticks that come far too seldom, a clock that jumps, a late tick.
+ */
 /* Shows: HW-4, CLOCK_DEVIATION */
 TEST_CASE(1000, 1000, false)
 TEST_CASE(1000, 950, false)
 TEST_CASE(1000, 949, true)
 TEST_CASE(950, 1000, false)
 TEST_CASE(949, 1000, true)
-TEST_CASE(1000, 0, true)     /* it stands still */
-TEST_CASE(999, 0, false)     /* not yet compared */
-TEST_CASE(1, 1000, true)     /* the ticks come far too seldom */
-TEST_CASE(1000, 60000, true) /* it jumps */
-TEST_CASE(5000, 4750, false) /* a late tick */
+TEST_CASE(1000, 0, true)
+TEST_CASE(999, 0, false)
+TEST_CASE(1, 1000, true)
+TEST_CASE(1000, 60000, true)
+TEST_CASE(5000, 4750, false)
 TEST_CASE(5000, 4749, true)
 void test_5_percent_of_a_second_are_allowed(uint32_t first_ms, uint32_t passed_ms, bool is_fault) {
     start_clocks(12345, 777);

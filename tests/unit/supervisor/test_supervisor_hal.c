@@ -474,6 +474,72 @@ void test_a_trip_by_bus_off_opens_the_output(void) {
     TEST_ASSERT_EQUAL(AGV_FAULT_BUS_OFF, agv_supervisor_first_reason(&supervisor));
 }
 
+/* The output opens before anything is sent, and stays open at the end of the tick. */
+/* Shows: HW-2, FSM-4, EMERGENCY_STOP */
+void test_an_emergency_stop_opens_the_output_first(void) {
+    inputs.emergency_stop = HAL_CONTACT_CLOSED;
+    walk_to_standby();
+    const uint8_t next = own_counter();
+    be_strict();
+    now_ms++;
+    inputs.emergency_stop = HAL_CONTACT_OPEN;
+    expect_status(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    hal_safety_output_set_Expect(&hal, false);
+    hal_can_purge_Expect(&hal, HAL_CAN_VEHICLE);
+    expect_safe_commands(next);
+    expect_latch(0x96, AGV_FAULT_EMERGENCY_STOP, AGV_FAULT_NONE);
+    expect_fed(false);
+    expect_led_on();
+    tick();
+    TEST_ASSERT_EQUAL(AGV_FAULT_EMERGENCY_STOP, agv_supervisor_first_reason(&supervisor));
+}
+
+/* Shows: HW-1, FSM-4, OUTPUT_FEEDBACK */
+void test_a_contact_that_does_not_close_opens_the_output(void) {
+    inputs.output_feedback = HAL_CONTACT_OPEN;
+    use_stubs();
+    start();
+    while (!closed && now_ms < 2000) {
+        run(1);
+    }
+    TEST_ASSERT_TRUE(closed);
+    run(98); /* a frame closed it: the tick of that millisecond counts */
+    TEST_ASSERT_TRUE(closed);
+    run(1);
+    TEST_ASSERT_FALSE(closed);
+    TEST_ASSERT_EQUAL(AGV_FAULT_OUTPUT_FEEDBACK, agv_supervisor_first_reason(&supervisor));
+}
+
+/* Shows: HW-1, FSM-4 */
+void test_a_contact_that_reads_closed_keeps_the_output_open(void) {
+    config.output_feedback_ms = 1000;
+    inputs.output_feedback = HAL_CONTACT_CLOSED;
+    use_stubs();
+    start();
+    run(900);
+    TEST_ASSERT_EQUAL(AGV_STATE_INIT, agv_supervisor_state(&supervisor));
+    TEST_ASSERT_FALSE(closed);
+    inputs.output_feedback = HAL_CONTACT_OPEN;
+    run(499);
+    TEST_ASSERT_FALSE(closed);
+    run(2);
+    TEST_ASSERT_TRUE(closed);
+}
+
+/* Shows: HW-4, SELF_TEST_FAILED */
+void test_the_event_of_a_failed_self_test_names_the_parts(void) {
+    walk_to_standby();
+    failed = HAL_SELF_TEST_FLASH | HAL_SELF_TEST_RAM;
+    run(1);
+    TEST_ASSERT_FALSE(closed);
+    agv_event_t event = {0};
+    uint32_t index = agv_recorder_next_sequence(&recorder);
+    while (event.kind != AGV_EVENT_FAULT && agv_recorder_get(&recorder, --index, &event)) {
+    }
+    TEST_ASSERT_EQUAL(AGV_FAULT_SELF_TEST_FAILED, event.a);
+    TEST_ASSERT_EQUAL_HEX16(HAL_SELF_TEST_FLASH | HAL_SELF_TEST_RAM, event.missing);
+}
+
 /* Shows: INT-5, FSM-9, MEMORY_CORRUPTED */
 void test_corrupted_memory_starts_anew_in_tripped(void) {
     walk_to_standby();
