@@ -11,6 +11,7 @@
 #include "cli/commands/commands.h"
 #include "cli/options.h"
 #include "common/interrupt.h"
+#include "common/shipped.h"
 #include "config/config_options.h"
 #include "io/events.h"
 #include "io/output.h"
@@ -55,8 +56,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         .usage = "demo [OPTION]...",
         .summary =
             "Watch the supervisor on the simulated bus in virtual time: a vehicle drives off on autopilot, its AI\n"
-            "computer stops, the supervisor parks the vehicle, the operator resets; then the EPS fails.\n"
-            "The shipped scenarios are in " HOST_SIM_SCENARIOS ".\n",
+            "computer stops, the supervisor parks the vehicle, the operator resets; then the EPS fails.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
     };
@@ -66,14 +66,15 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
 
 /** The path of a shipped scenario: it lies in one of the folders. @return what snprintf returns; 0: there is none */
 static int find_shipped(const char *name, char path[PATH_SIZE]) {
-    DIR *topics = opendir(HOST_SIM_SCENARIOS);
+    const char *folder = shipped_scenarios();
+    DIR *topics = opendir(folder);
     int length = 0;
 
     if (topics == NULL) {
         return 0;
     }
     for (const struct dirent *topic = readdir(topics); topic != NULL; topic = readdir(topics)) {
-        length = snprintf(path, PATH_SIZE, "%s/%s/%s.yaml", HOST_SIM_SCENARIOS, topic->d_name, name);
+        length = snprintf(path, PATH_SIZE, "%s/%s/%s.yaml", folder, topic->d_name, name);
         if ((length < 0) || (length >= PATH_SIZE) || (access(path, R_OK) == 0)) {
             break;
         }
@@ -93,7 +94,7 @@ static bool find_scenario(const char *name, char path[PATH_SIZE]) {
     }
     if (!is_path && (length == 0)) {
         return report("--scenario: no scenario '%s'; the shipped scenarios are the files in %s", name,
-                      HOST_SIM_SCENARIOS);
+                      shipped_scenarios());
     }
     return true;
 }

@@ -1,0 +1,40 @@
+# `cmake --install`: host_sim with its scenarios and pages (component host), and the core for other programs with their own
+# port (component dev): headers, library, CMake package. `cpack` makes a Debian package of each.
+set(CMAKE_INSTALL_DOCDIR share/doc/agv-supervisor)
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+install(TARGETS host_sim RUNTIME COMPONENT host)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/host_sim/scenarios ${PROJECT_SOURCE_DIR}/host_sim/examples ${PROJECT_SOURCE_DIR}/protocol
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/agv-supervisor COMPONENT host PATTERN CMakeLists.txt EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT host)
+install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_SOURCE_DIR}/LICENSE
+  DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT host)
+
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/AgvSupervisor)
+install(TARGETS agv_core EXPORT AgvSupervisor ARCHIVE COMPONENT dev)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/firmware/include/agv ${PROJECT_SOURCE_DIR}/hal/include/hal
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/agv-supervisor COMPONENT dev)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/hal/template DESTINATION ${CMAKE_INSTALL_DATADIR}/agv-supervisor/hal COMPONENT dev
+  PATTERN CMakeLists.txt EXCLUDE)
+install(EXPORT AgvSupervisor NAMESPACE AgvSupervisor:: FILE AgvSupervisorConfig.cmake DESTINATION ${package} COMPONENT dev)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/AgvSupervisorConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/AgvSupervisorConfigVersion.cmake DESTINATION ${package} COMPONENT dev)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME agv-supervisor)
+set(CPACK_PACKAGE_CONTACT "The maintainers of the AGV safety supervisor <maintainers@agv-supervisor.invalid>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_ALL host dev)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_HOST_PACKAGE_NAME agv-supervisor)
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME agv-supervisor-dev)
+set(CPACK_DEBIAN_HOST_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_HOST_PACKAGE_SECTION utils)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_COMPONENT_HOST_DESCRIPTION "host_sim: the supervisor as a program for Linux, with a simulated vehicle and its scenarios")
+set(CPACK_COMPONENT_DEV_DESCRIPTION "Portable core of the supervisor: headers, static library, CMake package")
+include(CPack)

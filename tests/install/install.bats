@@ -1,0 +1,34 @@
+#!/usr/bin/env bats
+# `cmake --install`: the installed programs need nothing of the source tree, and another project can use the core.
+# AGV_BUILD: the build folder.
+# Shows: -
+
+setup_file() {
+    export PREFIX=$BATS_FILE_TMPDIR/moved
+    cmake --install "$AGV_BUILD" --prefix "$BATS_FILE_TMPDIR/first" >"$BATS_FILE_TMPDIR/log"
+    mv "$BATS_FILE_TMPDIR/first" "$PREFIX"
+    cd /
+}
+
+@test "the installed host_sim plays the demo and finds its scenarios, in a folder that was moved" {
+    run "$PREFIX/bin/host_sim" demo
+    [ "$status" -eq 0 ]
+    [[ ${lines[-1]} == "All 31 expectations passed." ]]
+    "$PREFIX/bin/host_sim" demo --scenario park_at_standstill
+}
+
+@test "a scenario that is not shipped is named with the installed folder" {
+    run "$PREFIX/bin/host_sim" demo --scenario none
+    [ "$status" -eq 2 ]
+    [[ $output == "host_sim: --scenario: no scenario 'none'; the shipped scenarios are the files in $PREFIX/"*"/scenarios" ]]
+}
+
+@test "another project finds the core, links it with a port of its own, and runs" {
+    local work=$BATS_TEST_TMPDIR
+    cp "$BATS_TEST_DIRNAME"/foreign/* "$work"
+    cmake -S "$work" -B "$work/build" -DCMAKE_PREFIX_PATH="$PREFIX" >"$work/log"
+    cmake --build "$work/build" >>"$work/log"
+    run "$work/build/foreign"
+    [ "$status" -eq 0 ]
+    [ "$output" = TRIPPED ]
+}
