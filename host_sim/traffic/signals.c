@@ -145,20 +145,35 @@ static const char *word_of(const row_t *row, uint32_t raw) {
     return NULL;
 }
 
+static signal_value_t value_of(const row_t *row, uint32_t raw) {
+    const bool is_signed = row->layout == LAYOUT_SIGNED;
+    const int64_t number = is_signed ? (int64_t)(int32_t)raw : (int64_t)raw;
+    const char *word = word_of(row, raw);
+    return (signal_value_t){.raw = raw,
+                            .scaled = (number * row->factor) + row->offset,
+                            .word = word,
+                            .valid = (is_signed || (raw <= row->highest)) &&
+                                     ((row->layout != LAYOUT_CHOICE) || (word != NULL))};
+}
+
 bool signals_read(uint32_t message, size_t index, const uint8_t data[AGV_DLC], signal_value_t *value) {
     const size_t at = row_of(message, index);
     if (at == (size_t)ROWS) {
         return false;
     }
     const row_t *row = &rows[at];
-    const uint32_t raw = raw_of(row, data);
-    const bool is_signed = row->layout == LAYOUT_SIGNED;
-    const int64_t number = is_signed ? (int64_t)(int32_t)raw : (int64_t)raw;
-    value->raw = raw;
-    value->scaled = (number * row->factor) + row->offset;
-    value->word = word_of(row, raw);
-    value->valid = (is_signed || (raw <= row->highest)) && ((row->layout != LAYOUT_CHOICE) || (value->word != NULL));
+    *value = value_of(row, raw_of(row, data));
     return true;
+}
+
+void signals_mask(uint32_t message, uint8_t mask[AGV_DLC]) {
+    (void)memset(mask, 0, AGV_DLC);
+    for (size_t i = 0u; i < signals_count(message); i++) {
+        const row_t *row = &rows[row_of(message, i)];
+        for (uint32_t bit = row->at; bit < (uint32_t)row->at + row->bits; bit++) {
+            mask[bit / BITS_PER_BYTE] |= (uint8_t)(1u << (bit % BITS_PER_BYTE));
+        }
+    }
 }
 
 static int64_t power_of_ten(uint8_t decimals) {
@@ -181,6 +196,15 @@ void signals_value_text(char text[SIGNALS_VALUE_SIZE], const signal_info_t *info
     }
     (void)snprintf(text, SIGNALS_VALUE_SIZE, "%.*f%s%s%s", (int)info->decimals, signals_number(info, value),
                    (info->unit[0] != '\0') ? " " : "", info->unit, invalid);
+}
+
+void signals_raw_text(char text[SIGNALS_VALUE_SIZE], uint32_t message, size_t index, uint32_t raw) {
+    const size_t row = row_of(message, index);
+    text[0] = '\0';
+    if (row < (size_t)ROWS) {
+        const signal_value_t value = value_of(&rows[row], raw);
+        signals_value_text(text, &table.infos[row], &value);
+    }
 }
 
 /** Whether a text about the payload names this signal. */

@@ -69,6 +69,9 @@ const signal_info_t *signals_info(uint32_t message, size_t index);
  */
 bool signals_read(uint32_t message, size_t index, const uint8_t data[AGV_DLC], signal_value_t *value);
 
+/** The bits of a payload that belong to signals; the others are reserved (P14). */
+void signals_mask(uint32_t message, uint8_t mask[AGV_DLC]);
+
 /** The value as a number in its unit: -12.5. */
 double signals_number(const signal_info_t *info, const signal_value_t *value);
 
@@ -77,6 +80,9 @@ double signals_number(const signal_info_t *info, const signal_value_t *value);
 
 /** Write a value with its word or unit: "P", "-12.5 deg", "5 (invalid)". */
 void signals_value_text(char text[SIGNALS_VALUE_SIZE], const signal_info_t *info, const signal_value_t *value);
+
+/** Write what a raw value of a signal means: "P", "autopilot", "5 (invalid)". */
+void signals_raw_text(char text[SIGNALS_VALUE_SIZE], uint32_t message, size_t index, uint32_t raw);
 
 /**
  * Write the signals of a payload as one text: "speed 1200 m/h, mode autopilot, alive_counter 17". Alarms and flags are

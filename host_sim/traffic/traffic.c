@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "agv/codec.h"
+#include "traffic/fits.h"
 #include "traffic/watch.h"
 
 enum {
@@ -113,6 +114,7 @@ static traffic_id_t *add_id(traffic_t *traffic, hal_can_side_t side, const hal_c
     entry->message = (message == (uint8_t)MESSAGE_UNKNOWN) ? TRAFFIC_UNKNOWN : message;
     entry->first_us = t_us;
     entry->length_min = UINT8_MAX;
+    entry->fits = FITS_ALL;
     (void)memset(entry->bits_always, UINT8_MAX, sizeof entry->bits_always);
     if (!furnish(traffic, entry)) {
         free_id(entry);
@@ -251,9 +253,12 @@ static void take_data(traffic_t *traffic, traffic_id_t *entry, const hal_can_fra
     take_bits(entry, frame);
     if (entry->message != TRAFFIC_UNKNOWN) {
         take_known(traffic, entry, frame, t_us);
-    } else if (frame->length == AGV_DLC) {
+    } else if (is_well_formed) {
+        entry->fits = fits_frame(entry->fits, frame->data);
         (void)counter_use_add(&entry->candidates[0], frame->data[FIRST_COUNTER_AT], t_us);
         (void)counter_use_add(&entry->candidates[1], frame->data[LAST_COUNTER_AT], t_us);
+    } else {
+        entry->fits = 0u;
     }
 }
 

@@ -74,6 +74,7 @@ typedef struct {
     traffic_range_t *ranges; /**< of each signal; NULL: unknown */
     /** @} */
     counter_use_t *candidates; /**< of an unknown one with 8 bytes: data[0] and data[7] as if they were counters */
+    uint32_t fits;             /**< of an unknown one: bit n: its frames could all be those of message n (fits.h) */
 } traffic_id_t;
 
 /** Statistics of a run. */
@@ -90,6 +91,9 @@ void traffic_end(traffic_t *traffic, uint64_t t_us);
 
 /** The known messages, as a JSON array; keys: docs/survey.md. The caller owns it. @return NULL: out of memory */
 json_t *traffic_messages_json(const traffic_t *traffic);
+
+/** One identifier as an object of that array; of an unknown one name, deadline and values are absent. */
+json_t *traffic_id_json(const traffic_id_t *entry);
 
 /** Free it; NULL is allowed. */
 void traffic_free(traffic_t *traffic);

@@ -1,6 +1,143 @@
+#include <stdio.h>
+
+#include "common/units.h"
 #include "traffic/traffic.h"
 
+enum { MEDIAN = 500, P999 = 999, BITS_PER_WORD = 32, WORD_CHOICES = 256 };
+
+/** A time in milliseconds with three decimals. */
+static json_t *ms_of(uint64_t us) {
+    return json_real((double)us / US_PER_MS);
+}
+
+static void set(json_t *object, const char *key, json_t *value) {
+    (void)json_object_set_new(object, key, value);
+}
+
+static json_t *gaps_json(const gaps_t *gaps) {
+    if (gaps->count == 0u) {
+        return json_null();
+    }
+    json_t *object = json_object();
+    set(object, "min", ms_of(gaps->shortest_us));
+    set(object, "median", ms_of(gaps_quantile_us(gaps, MEDIAN)));
+    set(object, "p99_9", ms_of(gaps_quantile_us(gaps, P999)));
+    set(object, "max", ms_of(gaps->longest_us));
+    set(object, "max_at_ms", ms_of(gaps->longest_at_us));
+    return object;
+}
+
+static json_t *counter_json(const counter_use_t *use) {
+    if (use == NULL) {
+        return json_null();
+    }
+    json_t *object = json_object();
+    set(object, "counts", json_string(counter_use_word(counter_use_kind(use))));
+    set(object, "steps", json_integer((json_int_t)use->steps));
+    set(object, "other_steps", json_integer((json_int_t)use->other_steps));
+    set(object, "repeats", json_integer((json_int_t)use->repeats));
+    set(object, "longest_without_change_ms", ms_of(use->longest_us));
+    return object;
+}
+
+/** The words and invalid values of a choice that were seen. */
+static json_t *words_json(uint32_t message, size_t index, const traffic_range_t *range) {
+    json_t *words = json_array();
+    for (uint32_t raw = 0u; raw < (uint32_t)WORD_CHOICES; raw++) {
+        if (((range->words[raw / BITS_PER_WORD] >> (raw % BITS_PER_WORD)) & 1u) != 0u) {
+            char text[SIGNALS_VALUE_SIZE];
+            signals_raw_text(text, message, index, raw);
+            (void)json_array_append_new(words, json_string(text));
+        }
+    }
+    return words;
+}
+
+static json_t *range_json(uint32_t message, size_t index, const traffic_range_t *range) {
+    const signal_info_t *info = signals_info(message, index);
+    json_t *object = json_object();
+    set(object, "name", json_string(info->name));
+    set(object, "unit", json_string(info->unit));
+    if ((info->kind == SIGNAL_CHOICE) || (info->kind == SIGNAL_FLAG)) {
+        set(object, "seen", words_json(message, index, range));
+    } else if (range->valid > 0u) {
+        const signal_value_t lowest = {.scaled = range->lowest};
+        const signal_value_t highest = {.scaled = range->highest};
+        set(object, "min", json_real(signals_number(info, &lowest)));
+        set(object, "max", json_real(signals_number(info, &highest)));
+    }
+    set(object, "invalid", json_integer((json_int_t)range->invalid));
+    return object;
+}
+
+static json_t *alarm_json(const signal_info_t *info, const traffic_range_t *range) {
+    json_t *object = json_object();
+    set(object, "name", json_string(info->name));
+    set(object, "first_ms", ms_of(range->set_at_us));
+    set(object, "frames", json_integer((json_int_t)range->set));
+    return object;
+}
+
+static void add_signals(json_t *object, const traffic_id_t *entry) {
+    json_t *values = json_array();
+    json_t *alarms = json_array();
+    for (size_t i = 0u; i < signals_count(entry->message); i++) {
+        const signal_info_t *info = signals_info(entry->message, i);
+        if (info->kind != SIGNAL_ALARM) {
+            (void)json_array_append_new(values, range_json(entry->message, i, &entry->ranges[i]));
+        } else if (entry->ranges[i].set > 0u) {
+            (void)json_array_append_new(alarms, alarm_json(info, &entry->ranges[i]));
+        }
+    }
+    set(object, "values", values);
+    set(object, "alarms", alarms);
+}
+
+static void add_deadline(json_t *object, const traffic_watch_t *watch) {
+    if (watch == NULL) {
+        set(object, "deadline_ms", json_null());
+        set(object, "margin_ms", json_null());
+        return;
+    }
+    const double deadline_ms = (double)watch->deadline_ms;
+    set(object, "deadline_ms", json_integer((json_int_t)watch->deadline_ms));
+    set(object, "deadline_setting", json_string(agv_setting_info(watch->setting)->name));
+    set(object, "deadline_counts", json_string((watch->when == TRAFFIC_ENGAGED) ? "engaged" : "always"));
+    set(object, "deadline_gap_ms", gaps_json(&watch->gaps));
+    set(object, "margin_ms",
+        (watch->gaps.count > 0u) ? json_real(deadline_ms - ((double)watch->gaps.longest_us / US_PER_MS)) : json_null());
+    set(object, "late", json_integer((json_int_t)watch->late));
+    set(object, "first_late_ms", (watch->late > 0u) ? ms_of(watch->late_at_us) : json_null());
+}
+
+json_t *traffic_id_json(const traffic_id_t *entry) {
+    char id[12];
+    json_t *object = json_object();
+    (void)snprintf(id, sizeof id, entry->is_extended ? "%08X" : "%03X", entry->id);
+    set(object, "id", json_string(id));
+    set(object, "side", json_string((entry->side == HAL_CAN_AI) ? "ai" : "vehicle"));
+    const bool is_known = entry->message != TRAFFIC_UNKNOWN;
+    set(object, "name", is_known ? json_string(signals_message_name(entry->message)) : json_null());
+    set(object, "count", json_integer((json_int_t)entry->count));
+    set(object, "malformed", json_integer((json_int_t)entry->malformed));
+    set(object, "first_ms", ms_of(entry->first_us));
+    set(object, "last_ms", ms_of(entry->last_us));
+    set(object, "gap_ms", gaps_json(&entry->gaps));
+    if (is_known) {
+        add_deadline(object, entry->watch);
+        set(object, "counter", counter_json(entry->counter));
+        add_signals(object, entry);
+    }
+    return object;
+}
+
 json_t *traffic_messages_json(const traffic_t *traffic) {
-    (void)traffic;
-    return json_array();
+    json_t *array = json_array();
+    for (size_t i = 0u; traffic_at(traffic, i) != NULL; i++) {
+        const traffic_id_t *entry = traffic_at(traffic, i);
+        if (entry->message != TRAFFIC_UNKNOWN) {
+            (void)json_array_append_new(array, traffic_id_json(entry));
+        }
+    }
+    return array;
 }

@@ -1,0 +1,72 @@
+#include "traffic/fits.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include "agv/codec.h"
+#include "traffic/signals.h"
+
+enum { WHEEL_MAX_MM_S = 30000, WHEEL_APART_MM_S = 3000, MODE_AT = 6 };
+
+/** The bits of each message that are not reserved; filled in once. */
+static struct {
+    bool made;
+    uint8_t of[AGV_MSG_COUNT][AGV_DLC];
+} masks;
+
+static bool has_reserved_bits(uint32_t message, const uint8_t data[AGV_DLC]) {
+    for (uint32_t i = 0u; !masks.made && (i < (uint32_t)AGV_MSG_COUNT); i++) {
+        signals_mask(i, masks.of[i]);
+    }
+    masks.made = true;
+    uint32_t reserved = 0u;
+    for (size_t i = 0u; i < AGV_DLC; i++) {
+        reserved |= (uint32_t)(data[i] & (uint8_t)~masks.of[message][i]);
+    }
+    return reserved != 0u;
+}
+
+/** Two rear wheels turn about as fast, and no faster than a vehicle of this kind drives. */
+static bool are_wheels(const uint8_t data[AGV_DLC]) {
+    agv_wheel_speed_t wheels;
+    (void)agv_unpack_wheel_speed(&wheels, data);
+    return (wheels.left_mm_s > -WHEEL_MAX_MM_S) && (wheels.left_mm_s < WHEEL_MAX_MM_S) &&
+           (wheels.right_mm_s > -WHEEL_MAX_MM_S) && (wheels.right_mm_s < WHEEL_MAX_MM_S) &&
+           (abs(wheels.left_mm_s - wheels.right_mm_s) < WHEEL_APART_MM_S);
+}
+
+/** The centre lies between left and right. */
+static bool are_positions(const uint8_t data[AGV_DLC]) {
+    agv_steering_position_t position;
+    (void)agv_unpack_steering_position(&position, data);
+    return ((position.left_raw < position.centre_raw) && (position.centre_raw < position.right_raw)) ||
+           ((position.left_raw > position.centre_raw) && (position.centre_raw > position.right_raw));
+}
+
+static bool can_be(uint32_t message, const uint8_t data[AGV_DLC]) {
+    if (has_reserved_bits(message, data) || !agv_value_is_valid(message, data)) {
+        return false;
+    }
+    switch (message) {
+    case AGV_MSG_VEHICLE_STATUS:
+        return (data[MODE_AT] & (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT)) != 0u;
+    case AGV_MSG_WHEEL_SPEED:
+        return are_wheels(data);
+    case AGV_MSG_STEERING_POSITION:
+        return are_positions(data);
+    default:
+        return true;
+    }
+}
+
+uint32_t fits_frame(uint32_t fits, const uint8_t data[AGV_DLC]) {
+    uint32_t left = fits;
+    for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
+        const uint32_t bit = 1u << message;
+        if (((left & bit) != 0u) && !can_be(message, data)) {
+            left &= ~bit;
+        }
+    }
+    return left;
+}

@@ -1,0 +1,22 @@
+/**
+ * @file fits.h
+ * Which messages of the protocol an unknown payload could be: for vehicles that use other identifiers.
+ */
+#ifndef HOST_SIM_FITS_H
+#define HOST_SIM_FITS_H
+
+#include <stdint.h>
+
+#include "agv/protocol.h"
+
+/** Every message. */
+#define FITS_ALL ((1u << (uint32_t)AGV_MSG_COUNT) - 1u)
+
+/**
+ * Take away the messages that a payload cannot be: a reserved bit is set, a value is invalid, no mode is reported, or
+ * (wheels and steering position) its values do not belong together.
+ * @param fits bits of the messages that are still possible @return what is left of them
+ */
+uint32_t fits_frame(uint32_t fits, const uint8_t data[AGV_DLC]);
+
+#endif
