@@ -154,6 +154,13 @@ def check_pins(build):
         seen[pin] = name
 
 
+def check_second_clock(build):
+    props = build.node().props
+    if "second-clock" in props and is_disabled(props["second-clock"].val):
+        clock = label(props["second-clock"].val)
+        raise Refused(f'devicetree: second-clock = <{clock}> is disabled: write {clock} {{ status = "okay"; }};')
+
+
 def check_watchdog(build):
     watchdog = build.watchdog()
     if build.has("AGV_WITHOUT_HARDWARE_WATCHDOG", "AGV_ACCEPT_NO_WATCHDOG") and not build.has("AGV_RELEASE"):
@@ -182,6 +189,7 @@ def check(build):
     check_node(build)
     check_controllers(build)
     check_pins(build)
+    check_second_clock(build)
     check_watchdog(build)
     check_release(build)
 
