@@ -21,6 +21,8 @@ if(AGV_WARNINGS_AS_ERRORS)
 endif()
 
 set(AGV_CORE_KIND STATIC)
+# No path of the machine that builds is in a program.
+add_compile_options(-fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
 # Instrumentation is for everything that is linked, generated code included: a mock must not hide an overflow.
 if(AGV_INSTRUMENT STREQUAL "sanitize")
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
