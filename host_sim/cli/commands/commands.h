@@ -39,6 +39,9 @@ command_fn cmd_soak;
 /** `host_sim hunt`: an adversary that searches for hazards. */
 command_fn cmd_hunt;
 
+/** `host_sim monitor`: a screen of what happens on a bus. */
+command_fn cmd_monitor;
+
 /** `host_sim config`: every setting, as YAML or as a Kconfig fragment. */
 command_fn cmd_config;
 

@@ -1,0 +1,148 @@
+/**
+ * @file cmd_monitor.c
+ * `host_sim monitor`: its options.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands/commands.h"
+#include "cli/interface_options.h"
+#include "cli/options.h"
+#include "config/config_options.h"
+#include "io/candump_line.h"
+#include "io/output.h"
+#include "monitor/monitor_run.h"
+
+#define SPEED_LOWEST 0.01
+#define SPEED_HIGHEST 1000.0
+
+/** The given options. */
+typedef struct {
+    monitor_request_t request;
+    interface_options_t bus;
+    config_options_t config;
+    bool has_speed;
+} given_t;
+
+/** "4", "0.5", "max". */
+static bool take_speed(void *ctx, const char *text) {
+    given_t *given = ctx;
+    char *end = NULL;
+    given->has_speed = true;
+    if (strcmp(text, "max") == 0) {
+        given->request.speed = MONITOR_SPEED_ANY;
+        return true;
+    }
+    const bool is_plain = (text[0] != '\0') && (text[strspn(text, "0123456789.")] == '\0');
+    given->request.speed = is_plain ? strtod(text, &end) : 0.0;
+    if (!is_plain || (*end != '\0') || (given->request.speed < SPEED_LOWEST) ||
+        (given->request.speed > SPEED_HIGHEST)) {
+        return report("--speed: '%s' is not a number from 0.01 to 1000, nor max", text);
+    }
+    return true;
+}
+
+static options_result_t parse(int argc, char **argv, given_t *given) {
+    monitor_request_t *request = &given->request;
+    option_t interface_rows[INTERFACE_OPTIONS];
+    option_t config_rows[CONFIG_OPTIONS];
+    interface_options_init(&given->bus, interface_rows);
+    config_options_init(&given->config, config_rows);
+    const option_t rows[] = {
+        OPTION_TEXT("--record", "FILE", "record the bus into this candump log, a new file", &request->record),
+        OPTION_FLAG("--shadow", "show a supervisor of this program, which only listens, at any rate", &request->shadow),
+    };
+    const option_t log_rows[] = {
+        OPTION_TEXT("--log", "FILE", "a recorded candump log instead; - is standard input", &request->log),
+        {.name = "--speed",
+         .value = "N",
+         .help = "of the log: 4 is four times as fast as recorded; max",
+         .each = take_speed,
+         .ctx = given},
+        OPTION_TEXT("--ai-if", "NAME", "of the log: the interface of the AI side", &request->ai_interface),
+    };
+    const option_group_t groups[] = {
+        {.title = "A bus", .options = interface_rows, .count = INTERFACE_OPTIONS},
+        {.options = rows, .count = sizeof rows / sizeof rows[0]},
+        {.title = "A log", .options = log_rows, .count = sizeof log_rows / sizeof log_rows[0]},
+        {.title = "Configuration of the supervisor (deadlines, identifiers, topology)",
+         .options = config_rows,
+         .count = CONFIG_OPTIONS_OF_BUS},
+    };
+    const option_syntax_t syntax = {
+        .usage = "monitor --can IF | --log FILE [OPTION]...",
+        .summary =
+            "Show what happens on a bus: each message with its signals, its age against its deadline, gaps and\n"
+            "counter, the alarms, the state of the supervisor, and what changes. It sends nothing.\n"
+            "\n"
+            "On a terminal it is a screen; press h there for the keys. Elsewhere, and with TERM=dumb, it prints a "
+            "line\n"
+            "for each change. NO_COLOR=1 turns colours off.\n"
+            "\n"
+            "The state of the supervisor is that of its status frame. Where none is heard for a second, it is that\n"
+            "of a supervisor in this program, which only listens.\n",
+        .groups = groups,
+        .group_count = sizeof groups / sizeof groups[0],
+        .operand = "argument",
+    };
+    size_t operands = 0u;
+    return options_parse(&syntax, argc, argv, &operands);
+}
+
+static bool check_log(const given_t *given) {
+    const monitor_request_t *request = &given->request;
+    const bool is_gateway = request->config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    if ((given->bus.interfaces[HAL_CAN_VEHICLE] != NULL) || (given->bus.interfaces[HAL_CAN_AI] != NULL)) {
+        return report("--log and --can exclude each other");
+    }
+    if (request->record != NULL) {
+        return report("--record needs --can: a log is recorded already");
+    }
+    if (is_gateway && (request->ai_interface == NULL)) {
+        return report("the gateway topology needs --ai-if: which interface of the log is the AI side");
+    }
+    if (!is_gateway && (request->ai_interface != NULL)) {
+        return report("--ai-if needs --topology gateway: a shared bus has no AI side");
+    }
+    if ((request->ai_interface != NULL) && (strlen(request->ai_interface) > CANDUMP_INTERFACE_MAX)) {
+        return report("--ai-if: '%s' is too long for an interface name", request->ai_interface);
+    }
+    return true;
+}
+
+static bool check_bus(const given_t *given) {
+    if (given->has_speed || (given->request.ai_interface != NULL)) {
+        return report("%s needs --log", given->has_speed ? "--speed" : "--ai-if");
+    }
+    if (given->bus.interfaces[HAL_CAN_VEHICLE] == NULL) {
+        return report("--can or --log is missing: what to watch; see host_sim monitor --help");
+    }
+    return interface_options_check(&given->bus, "monitor",
+                                   given->request.config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY);
+}
+
+static bool check_files(const given_t *given) {
+    const output_role_t roles[] = {
+        {.role = "--config", .path = given->config.path},
+        {.role = "--record", .path = given->request.record, .is_written = true},
+    };
+    return output_check_distinct(roles, sizeof roles / sizeof roles[0]);
+}
+
+status_t cmd_monitor(int argc, char **argv) {
+    given_t given = {.request = {.speed = 1.0}};
+    const options_result_t parsed = parse(argc, argv, &given);
+    monitor_request_t *request = &given.request;
+    if (parsed != OPTIONS_GO) {
+        return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
+    }
+    request->interfaces[HAL_CAN_VEHICLE] = given.bus.interfaces[HAL_CAN_VEHICLE];
+    request->interfaces[HAL_CAN_AI] = given.bus.interfaces[HAL_CAN_AI];
+    request->for_ms = given.bus.for_ms;
+    given.config.has_ai_side = (request->interfaces[HAL_CAN_AI] != NULL) || (request->ai_interface != NULL);
+    if (!check_files(&given) || !config_options_make(&given.config, &request->config) ||
+        !((request->log != NULL) ? check_log(&given) : check_bus(&given))) {
+        return STATUS_UNUSABLE;
+    }
+    return monitor_run(request);
+}

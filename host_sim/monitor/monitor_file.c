@@ -1,0 +1,61 @@
+#include "monitor/monitor_file.h"
+
+#include <string.h>
+
+#include "common/report.h"
+
+enum { FRAMES_AT_ONCE = 4000 };
+
+static void read_next(monitor_file_t *file) {
+    const uint64_t before_us = file->next_us;
+    const candump_result_t result = candump_next(&file->log, &file->next);
+    file->has_next = result == CANDUMP_RECORD;
+    file->failed = result == CANDUMP_FAILED;
+    if (file->has_next) {
+        const uint64_t stamp_us = file->next.stamp_us;
+        const uint64_t t_us = (stamp_us > file->first_us) ? stamp_us - file->first_us : 0u;
+        file->next_us = (t_us > before_us) ? t_us : before_us;
+    }
+}
+
+static bool is_ai(const monitor_file_t *file) {
+    const candump_record_t *next = &file->next;
+    return (file->ai_interface != NULL) && (strlen(file->ai_interface) == next->interface_length) &&
+           (memcmp(file->ai_interface, next->interface, next->interface_length) == 0);
+}
+
+bool monitor_file_open(monitor_file_t *file, const char *path, const char *ai_interface) {
+    file->ai_interface = ai_interface;
+    file->first_us = UINT64_MAX;
+    file->next_us = 0u;
+    if (!candump_open(&file->log, path, false)) {
+        return false;
+    }
+    read_next(file);
+    file->first_us = file->next.stamp_us;
+    if (!file->has_next) {
+        return file->failed ? false : report("%s: contains no frame", file->log.name);
+    }
+    if (!is_ai(file)) {
+        memcpy(file->interface, file->next.interface, file->next.interface_length);
+        file->interface[file->next.interface_length] = '\0';
+    }
+    return true;
+}
+
+bool monitor_file_pass(monitor_file_t *file, monitor_t *monitor, uint64_t until_us) {
+    int passed = 0;
+    while (file->has_next && (file->next_us <= until_us) && (passed < (int)FRAMES_AT_ONCE)) {
+        monitor_frame(monitor, is_ai(file) ? HAL_CAN_AI : HAL_CAN_VEHICLE, &file->next.frame, file->next_us);
+        read_next(file);
+        passed++;
+    }
+    if (file->has_next && (file->next_us > until_us)) {
+        monitor_time(monitor, until_us);
+    }
+    return file->has_next;
+}
+
+void monitor_file_close(monitor_file_t *file) {
+    candump_close(&file->log);
+}

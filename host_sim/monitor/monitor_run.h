@@ -1,0 +1,39 @@
+/**
+ * @file monitor_run.h
+ * `host_sim monitor`: the screen, or where there is no terminal a line for each transition.
+ */
+#ifndef HOST_SIM_MONITOR_RUN_H
+#define HOST_SIM_MONITOR_RUN_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "agv/config.h"
+#include "common/report.h"
+#include "hal/can.h"
+
+/** As a speed: as fast as possible. */
+#define MONITOR_SPEED_ANY 0.0
+
+/** As a time to run for: until a signal comes, or a key. */
+#define MONITOR_UNTIL_SIGNAL 0u
+
+/** What to watch. */
+typedef struct {
+    const char *interfaces[HAL_CAN_SIDES]; /**< NULL: none, or a log */
+    const char *log;                       /**< NULL: the interfaces */
+    const char *ai_interface;              /**< of the log; NULL: none */
+    const char *record;                    /**< file to record the bus into from the start on; NULL: none */
+    double speed;                          /**< of the log; MONITOR_SPEED_ANY */
+    uint64_t for_ms;
+    bool shadow;
+    agv_config_t config;
+} monitor_request_t;
+
+/**
+ * Watch until a signal comes, `q` is pressed, or for so long; a log without a screen: until its end.
+ * @return STATUS_OK, or STATUS_UNUSABLE: was reported
+ */
+status_t monitor_run(const monitor_request_t *request);
+
+#endif

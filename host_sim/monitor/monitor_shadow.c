@@ -1,0 +1,93 @@
+#include "monitor/monitor_shadow.h"
+
+#include <stdlib.h>
+
+#include "common/units.h"
+#include "hal_sim/sim_hal.h"
+#include "io/candump_line.h"
+
+/** A longer leap of time is no silence of the bus, but a program that stood still, or a log with a hole. */
+#define LEAP_MAX_US (10u * (uint64_t)US_PER_S)
+
+struct monitor_shadow {
+    agv_config_t config;
+    hal_t hal;
+    session_t session;
+    uint64_t next_ms; /* of the next tick */
+};
+
+static void discard(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
+    (void)ctx;
+    (void)side;
+    (void)frame;
+}
+
+monitor_shadow_t *monitor_shadow_new(const agv_config_t *config, session_observer_fn *fn, void *ctx, uint64_t t_us) {
+    monitor_shadow_t *shadow = calloc(1u, sizeof *shadow);
+    if (shadow == NULL) {
+        return NULL;
+    }
+    const uint64_t t_ms = t_us / US_PER_MS;
+    const sim_hal_config_t hal = {.clock_start_ms = (uint32_t)t_ms, .watchdog_ms = config->watchdog_period_ms};
+    shadow->config = *config;
+    shadow->config.shadow = (uint16_t)AGV_SHADOW_ON;
+    shadow->next_ms = t_ms + 1u;
+    sim_hal_init_direct(&shadow->hal, &hal, (config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? 2u : 1u, discard,
+                        NULL);
+    session_init(&shadow->session, &shadow->hal);
+    (void)session_observe(&shadow->session, fn, ctx);
+    session_start(&shadow->session, &shadow->config, t_ms, (uint32_t)t_ms);
+    return shadow;
+}
+
+/** Let an error frame act on the simulated controller. */
+static void act_on_controller(monitor_shadow_t *shadow, hal_can_side_t side, const hal_can_frame_t *frame) {
+    const uint8_t details = ((frame->id & CANDUMP_ERROR_CONTROLLER) != 0u) ? frame->data[1] : 0u;
+    hal_can_status_t status;
+    if ((frame->id & CANDUMP_ERROR_BUS_OFF) != 0u) {
+        sim_hal_set_can_state(&shadow->hal, side, HAL_CAN_BUS_OFF);
+    } else if (((frame->id & CANDUMP_ERROR_RESTARTED) != 0u) || ((details & CANDUMP_CONTROLLER_ACTIVE) != 0u)) {
+        sim_hal_set_can_state(&shadow->hal, side, HAL_CAN_ERROR_ACTIVE);
+    }
+    hal_can_status(&shadow->hal, side, &status);
+    if ((status.state != HAL_CAN_BUS_OFF) && ((details & CANDUMP_CONTROLLER_PASSIVE) != 0u)) {
+        sim_hal_set_can_state(&shadow->hal, side, HAL_CAN_ERROR_PASSIVE);
+    }
+}
+
+static void run_ticks(monitor_shadow_t *shadow, uint64_t end_us) {
+    while (shadow->next_ms * US_PER_MS < end_us) {
+        sim_hal_set_now_ms(&shadow->hal, (uint32_t)shadow->next_ms);
+        session_tick(&shadow->session, shadow->next_ms, (uint32_t)shadow->next_ms);
+        shadow->next_ms++;
+    }
+}
+
+bool monitor_shadow_time(monitor_shadow_t *shadow, uint64_t t_us) {
+    if (t_us > (shadow->next_ms * US_PER_MS) + LEAP_MAX_US) {
+        return false;
+    }
+    run_ticks(shadow, t_us);
+    return true;
+}
+
+void monitor_shadow_frame(monitor_shadow_t *shadow, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
+    const uint64_t t_ms = t_us / US_PER_MS;
+    hal_can_frame_t received = *frame;
+    run_ticks(shadow, t_us);
+    received.time_ms = (uint32_t)t_ms;
+    received.time_us = (uint16_t)(t_us % US_PER_MS);
+    sim_hal_set_now_ms(&shadow->hal, (uint32_t)t_ms);
+    if ((frame->flags & HAL_CAN_ERROR) != 0u) {
+        act_on_controller(shadow, side, frame);
+    }
+    session_frame(&shadow->session, side, &received, t_ms);
+}
+
+const session_t *monitor_shadow_session(const monitor_shadow_t *shadow) {
+    return &shadow->session;
+}
+
+void monitor_shadow_free(monitor_shadow_t *shadow) {
+    free(shadow);
+}
