@@ -48,9 +48,9 @@ static json_t *clock_json(uint64_t clock_us) {
 static json_t *trip_json(const report_page_t *page, const why_t *why, const series_t *series, size_t index) {
     const why_trip_t *trip = why_trip(why, index);
     sentence_t sentence;
-    sentence_trip(&sentence, page, trip);
+    sentence_trip(&sentence, page, trip, series_output_opened_us(series, trip->t_us));
     json_t *object = json_object();
-    set(object, "t_us", number(trip->t_us));
+    set(object, "t_us", number(sentence_trip_us(trip)));
     set(object, "reason", text_or_null(agv_fault_name(trip->reason)));
     set(object, "kind", json_string(why_kind_name(trip->kind)));
     set(object, "message", text_or_null(agv_message_name(trip->message)));
@@ -235,7 +235,8 @@ static void put_part(output_t *output, char part, const sentence_t *sentence, co
 void report_page_write(output_t *output, const report_page_t *page, const why_t *why, const series_t *series) {
     sentence_t sentence;
     if (why_trip_count(why) > 0u) {
-        sentence_trip(&sentence, page, why_trip(why, 0u));
+        const why_trip_t *first = why_trip(why, 0u);
+        sentence_trip(&sentence, page, first, series_output_opened_us(series, first->t_us));
     } else {
         sentence_no_trip(&sentence, why, series_end_us(series));
     }

@@ -8,7 +8,7 @@
 #include "agv/names.h"
 #include "agv/recorder.h"
 
-enum { TIME_SIZE = 32, LIMIT_SIZE = 48, US_A_MS = 1000, US_A_S = 1000000, STATE_ACTIVE = 2 };
+enum { TIME_SIZE = 32, LIMIT_SIZE = 48, US_A_MS = 1000, US_A_S = 1000000, STATE_ACTIVE = 2, STOOD_US = 20000 };
 
 const char *sentence_phrase(agv_fault_t fault) {
     static const char *const phrases[AGV_FAULT_COUNT] = {
@@ -34,6 +34,11 @@ const char *sentence_missing(unsigned index) {
         "the contact of the safety output does not read open",
     };
     return (index < sizeof texts / sizeof texts[0]) ? texts[index] : "";
+}
+
+uint64_t sentence_trip_us(const why_trip_t *trip) {
+    const bool is_within = (trip->cause_us != WHY_NEVER) && (trip->cause_us / US_A_MS == trip->t_us / US_A_MS);
+    return (is_within && (trip->cause_us > trip->t_us)) ? trip->cause_us : trip->t_us;
 }
 
 /** Append to a text of SENTENCE_SIZE; what does not fit is cut. */
@@ -72,6 +77,8 @@ static const char *limit_text(const why_trip_t *trip, char text[LIMIT_SIZE]) {
         (void)snprintf(text, LIMIT_SIZE, "%lld.%lld°", limit / 10, limit % 10);
     } else if (strcmp(trip->unit, "counts") == 0) {
         (void)snprintf(text, LIMIT_SIZE, "%lld counts (%lld.%lld %%)", limit, limit * 4 / 10, limit * 4 % 10);
+    } else if ((strcmp(trip->unit, "ms") == 0) && (limit >= 1000) && (limit % 100 == 0)) {
+        (void)snprintf(text, LIMIT_SIZE, "%lld.%lld s", limit / 1000, limit / 100 % 10);
     } else {
         (void)snprintf(text, LIMIT_SIZE, "%lld %s", limit, trip->unit);
     }
@@ -115,9 +122,31 @@ static void say_silence(char text[SENTENCE_SIZE], const why_trip_t *trip) {
     }
 }
 
-static void say_cause(char text[SENTENCE_SIZE], const why_trip_t *trip) {
-    char time[TIME_SIZE];
+/** The time budget of a fault whose limit is not that time; 0: none. */
+static uint16_t budget_ms(const agv_config_t *config, agv_fault_t reason) {
+    switch (reason) {
+    case AGV_FAULT_STEERING_DEVIATION:
+        return config->steering_deviation_ms;
+    case AGV_FAULT_THROTTLE_DEVIATION:
+        return config->throttle_deviation_ms;
+    default:
+        return 0u;
+    }
+}
+
+static void say_limit(char text[SENTENCE_SIZE], const agv_config_t *config, const why_trip_t *trip) {
     char limit[LIMIT_SIZE];
+    const uint16_t budget = budget_ms(config, trip->reason);
+    const char *space = (text[0] != '\0') ? " " : "";
+    if (budget > 0u) {
+        say(text, "%sThe limit is %s for %u ms in all.", space, limit_text(trip, limit), budget);
+    } else {
+        say(text, "%sThe limit is %s.", space, limit_text(trip, limit));
+    }
+}
+
+static void say_cause(char text[SENTENCE_SIZE], const agv_config_t *config, const why_trip_t *trip) {
+    char time[TIME_SIZE];
     if ((trip->kind == WHY_SILENCE) || (trip->kind == WHY_STUCK)) {
         say_silence(text, trip);
         return;
@@ -125,28 +154,39 @@ static void say_cause(char text[SENTENCE_SIZE], const why_trip_t *trip) {
     if (trip->cause_us != WHY_NEVER) {
         say(text, "It began at %s", at(trip->cause_us, time));
         if ((trip->message != AGV_MSG_NONE) || (trip->id != WHY_NO_ID)) {
-            say(text, " and is seen in ");
+            say(text, ", as ");
             say_message(text, trip);
+            say(text, " shows");
         }
         say(text, ".");
     }
     if (has_limit(trip)) {
-        say(text, "%sThe limit is %s.", (text[0] != '\0') ? " " : "", limit_text(trip, limit));
+        say_limit(text, config, trip);
+    }
+}
+
+static void say_output(char text[SENTENCE_SIZE], const why_trip_t *trip, uint64_t opened_us) {
+    char time[TIME_SIZE];
+    if (opened_us == WHY_NEVER) {
+        say(text, " The safety output stayed closed.");
+    } else if (opened_us <= trip->t_us + US_A_MS) {
+        say(text, " The safety output was opened at once.");
+    } else {
+        say(text, " The safety output was opened %s after the trip.", lasting(opened_us - trip->t_us, time));
     }
 }
 
 static void say_action(char text[SENTENCE_SIZE], const report_page_t *page, const why_trip_t *trip) {
     char time[TIME_SIZE];
     const bool is_shadow = page->config->shadow == (uint16_t)AGV_SHADOW_ON;
-    say(text, "The supervisor tripped at %s (%s) and opened the safety output.", at(trip->t_us, time),
-        agv_fault_name(trip->reason));
+    say(text, "The supervisor tripped at %s (%s).", at(trip->t_us, time), agv_fault_name(trip->reason));
     if (is_shadow) {
         say(text, " It sent nothing, because it runs in shadow mode.");
     } else if (trip->first_safe_us == WHY_NEVER) {
         say(text, " It sent no frame until the end.");
     } else {
         say(text, " %s later it sent the first of the safe commands: gear P, throttle 0, autopilot off.",
-            lasting(trip->first_safe_us - trip->t_us, time));
+            lasting(trip->first_safe_us - sentence_trip_us(trip), time));
     }
 }
 
@@ -159,28 +199,32 @@ static void say_outcome(char text[SENTENCE_SIZE], const report_page_t *page, con
     }
     if (trip->confirmed_us != WHY_NEVER) {
         say(text, "%sThe VCU reported gear P and autopilot off %s after the trip.", (text[0] != '\0') ? " " : "",
-            lasting(trip->confirmed_us - trip->t_us, time));
+            lasting(trip->confirmed_us - sentence_trip_us(trip), time));
     }
-    if (trip->stopped_us != WHY_NEVER) {
-        say(text, "%sThe wheels stood %s after it.", (text[0] != '\0') ? " " : "",
-            lasting(trip->stopped_us - trip->t_us, time));
+    const char *space = (text[0] != '\0') ? " " : "";
+    if ((trip->stopped_us != WHY_NEVER) && (trip->stopped_us < trip->t_us + STOOD_US)) {
+        say(text, "%sThe vehicle stood already.", space);
+    } else if (trip->stopped_us != WHY_NEVER) {
+        say(text, "%sThe wheels stood %s after the trip.", space,
+            lasting(trip->stopped_us - sentence_trip_us(trip), time));
     } else if (!page->is_recording) {
-        say(text, "%sThe wheels were not seen to stand until the end.", (text[0] != '\0') ? " " : "");
+        say(text, "%sThe wheels were not seen to stand until the end.", space);
     }
     say(text, " Only the operator ends this, by a reset at standstill and in manual.");
 }
 
-void sentence_trip(sentence_t *sentence, const report_page_t *page, const why_trip_t *trip) {
+void sentence_trip(sentence_t *sentence, const report_page_t *page, const why_trip_t *trip, uint64_t opened_us) {
     memset(sentence, 0, sizeof *sentence);
     const char *begin = "The supervisor stopped the vehicle";
-    if (page->is_recording) {
+    if (page->is_recording || (page->config->shadow == (uint16_t)AGV_SHADOW_ON)) {
         begin = "The supervisor would have stopped this vehicle";
     } else if (trip->stopped_us != WHY_NEVER) {
         begin = "The vehicle stands";
     }
     say(sentence->headline, "%s because %s.", begin, sentence_phrase(trip->reason));
-    say_cause(sentence->cause, trip);
+    say_cause(sentence->cause, page->config, trip);
     say_action(sentence->action, page, trip);
+    say_output(sentence->action, trip, opened_us);
     say_outcome(sentence->outcome, page, trip);
 }
 
@@ -211,6 +255,10 @@ void sentence_no_trip(sentence_t *sentence, const why_t *why, uint64_t end_us) {
     say(sentence->cause, "It supervised %s of %s.", at(supervised_us, supervised), at(end_us, whole));
     if (supervised_us < end_us) {
         say(sentence->cause, " The other %s it was in INIT.", at(end_us - supervised_us, whole));
+    }
+    if (why_fault_count(why) > 0u) {
+        say(sentence->action, "It warned of %zu fault%s.", why_fault_count(why),
+            (why_fault_count(why) > 1u) ? "s" : "");
     }
     if (why_state_us(why, STATE_ACTIVE) == 0u) {
         say(sentence->outcome, "The autopilot was never engaged: the commands of the AI computer were not judged.");

@@ -7,6 +7,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "report/report_page.h"
 #include "why/why.h"
@@ -24,8 +25,14 @@ typedef struct {
 /** What a fault means: completes "The vehicle stands because ...". "" for AGV_FAULT_NONE and values above. */
 const char *sentence_phrase(agv_fault_t fault);
 
-/** About a trip. */
-void sentence_trip(sentence_t *sentence, const report_page_t *page, const why_trip_t *trip);
+/**
+ * When a trip came, as exactly as it is known: events come in whole milliseconds, and a frame that trips at once is the
+ * cause in that millisecond.
+ */
+uint64_t sentence_trip_us(const why_trip_t *trip);
+
+/** About a trip. @param opened_us when the safety output opened; WHY_NEVER: it stayed closed */
+void sentence_trip(sentence_t *sentence, const report_page_t *page, const why_trip_t *trip, uint64_t opened_us);
 
 /** About a run without a trip. @param end_us its duration */
 void sentence_no_trip(sentence_t *sentence, const why_t *why, uint64_t end_us);

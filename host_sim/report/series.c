@@ -43,26 +43,44 @@ static void change(series_t *series, series_lane_t lane, const series_change_t *
 /** A lane's value; nothing when it is the old one. */
 static void set(series_t *series, series_lane_t lane, uint64_t t_us, uint8_t value) {
     const series_changes_t *changes = &series->lanes[lane];
-    if ((changes->count == 0u) || (changes->last.a != value)) {
+    if ((changes->count == 0u) || (changes->last.a != value) || (changes->last.c != 0u)) {
         const series_change_t to = {.t_us = t_us, .a = value};
         change(series, lane, &to);
     }
 }
 
+/** The lane was not heard for long: it has no value from some time on. */
+static void lose(series_t *series, series_lane_t lane, uint64_t t_us) {
+    const series_changes_t *changes = &series->lanes[lane];
+    if ((changes->count > 0u) && (changes->last.c == 0u) && (t_us - changes->seen_us > SERIES_LOST_US)) {
+        const series_change_t to = {.t_us = changes->seen_us + SERIES_LOST_US, .c = 1u};
+        change(series, lane, &to);
+    }
+}
+
+/** The value of a lane that a message repeats. */
+static void hear(series_t *series, series_lane_t lane, uint64_t t_us, uint8_t value) {
+    lose(series, lane, t_us);
+    set(series, lane, t_us, value);
+    series->lanes[lane].seen_us = t_us;
+}
+
 static uint8_t mode_of(uint8_t flags) {
     const bool manual = (flags & AGV_VCU_FLAG_MANUAL) != 0u;
     const bool autopilot = (flags & AGV_VCU_FLAG_AUTOPILOT) != 0u;
-    return (uint8_t)((manual ? SERIES_MODE_MANUAL : SERIES_MODE_NEITHER) |
-                     (autopilot ? SERIES_MODE_AUTOPILOT : SERIES_MODE_NEITHER));
+    if (manual) {
+        return autopilot ? SERIES_MODE_BOTH : SERIES_MODE_MANUAL;
+    }
+    return autopilot ? SERIES_MODE_AUTOPILOT : SERIES_MODE_NEITHER;
 }
 
 static void set_lanes(series_t *series, agv_message_t message, const series_frame_t *frame) {
     if (message == AGV_MSG_VEHICLE_STATUS) {
-        set(series, SERIES_LANE_MODE, frame->t_us, mode_of(frame->data[6]));
+        hear(series, SERIES_LANE_MODE, frame->t_us, mode_of(frame->data[6]));
     } else if (message == AGV_MSG_GEAR_STATUS) {
-        set(series, SERIES_LANE_GEAR, frame->t_us, frame->data[0]);
+        hear(series, SERIES_LANE_GEAR, frame->t_us, frame->data[0]);
     } else if (message == AGV_MSG_GEAR_COMMAND) {
-        set(series, frame->sent ? SERIES_LANE_GEAR_SENT : SERIES_LANE_GEAR_COMMAND, frame->t_us, frame->data[0]);
+        hear(series, frame->sent ? SERIES_LANE_GEAR_SENT : SERIES_LANE_GEAR_COMMAND, frame->t_us, frame->data[0]);
     }
 }
 
@@ -111,6 +129,7 @@ static void take(series_t *series, hal_can_side_t side, const hal_can_frame_t *f
                              .sent = sent};
     memcpy(kept->data, frame->data, sizeof kept->data);
     series->ring_next++;
+    series->end_us = t_us;
     const agv_message_t message = series_message(&series->reader, kept);
     if (message == AGV_MSG_NONE) {
         return;
@@ -176,13 +195,17 @@ void series_event(void *ctx, const session_event_t *event) {
     }
 }
 
-void series_end(series_t *series, uint64_t t_us) {
+void series_end(series_t *series, uint64_t end_us) {
+    const uint64_t t_us = (end_us > series->end_us) ? end_us : series->end_us;
     series->end_us = t_us;
     for (size_t i = 0u; i < series->detail_count; i++) {
         series_detail_t *detail = &series->details[i];
         detail->to_us = (detail->to_us < t_us) ? detail->to_us : t_us;
     }
     keep_until(series, UINT64_MAX);
+    for (int lane = SERIES_LANE_MODE; lane <= (int)SERIES_LANE_GEAR_SENT; lane++) {
+        lose(series, (series_lane_t)lane, t_us);
+    }
     series_step_t *step = series_overview_at(&series->overview, t_us);
     for (size_t i = 0u; i < (size_t)AGV_MSG_COUNT; i++) {
         if (series->ages.heard[i]) {
@@ -193,6 +216,31 @@ void series_end(series_t *series, uint64_t t_us) {
 
 uint64_t series_end_us(const series_t *series) {
     return series->end_us;
+}
+
+/** When the operator's reset ended a trip. @return UINT64_MAX: it did not end */
+static uint64_t trip_end_us(const series_t *series, uint64_t trip_us) {
+    const series_changes_t *states = &series->lanes[SERIES_LANE_STATE];
+    for (size_t i = 0u; i < states->count; i++) {
+        if ((states->changes[i].t_us > trip_us) && (states->changes[i].b == (uint8_t)AGV_STATE_STANDBY)) {
+            return states->changes[i].t_us;
+        }
+    }
+    return UINT64_MAX;
+}
+
+uint64_t series_output_opened_us(const series_t *series, uint64_t trip_us) {
+    const series_changes_t *output = &series->lanes[SERIES_LANE_OUTPUT];
+    const uint64_t end_us = trip_end_us(series, trip_us);
+    bool is_open = true;
+    for (size_t i = 0u; (i < output->count) && (output->changes[i].t_us < end_us); i++) {
+        const series_change_t *change = &output->changes[i];
+        if ((change->t_us / US_A_MS >= trip_us / US_A_MS) && (change->a == 0u)) {
+            return change->t_us;
+        }
+        is_open = change->a == 0u;
+    }
+    return is_open ? trip_us : UINT64_MAX;
 }
 
 const series_frame_t *series_frames(const series_t *series, uint64_t t_us, size_t *count) {

@@ -14,6 +14,7 @@
 #include "report/series_read.h"
 
 #define SERIES_RING_FRAMES 65536u /* a power of two */
+#define SERIES_LOST_US 300000u    /* a signal that was not heard for so long has no value; longer than any cycle */
 
 /** What changes by steps. Each change has its place in a lane. */
 typedef enum {
@@ -29,7 +30,8 @@ typedef enum {
     SERIES_LANES
 } series_lane_t;
 
-/** A change; a, b, c, missing: of state, output, fault and note as in agv_event_t; else `a` is the value. */
+/** A change; a, b, c, missing: of state, output, fault and note as in agv_event_t; else `a` is the value,
+ * and `c` is 1 when there is none. */
 typedef struct {
     uint64_t t_us;
     uint16_t missing;
@@ -43,6 +45,7 @@ typedef struct {
 typedef struct {
     size_t count;
     uint64_t left_out;
+    uint64_t seen_us; /* when its value was heard last */
     series_change_t last;
     series_change_t changes[SERIES_CHANGES_MAX];
 } series_changes_t;

@@ -10,7 +10,7 @@
 #include "report/series.h"
 #include "report/series_internal.h"
 
-enum { UNIT_US = 100, LOST_US = 300000, TEXT_SIZE = 256 };
+enum { UNIT_US = 100, TEXT_SIZE = 256 };
 
 /** A line of a signal as it is written: the points at which it changes. */
 typedef struct {
@@ -138,7 +138,7 @@ static json_t *span_json(uint64_t from_us, uint64_t to_us) {
 
 static json_t *overview_signals(const series_overview_t *overview) {
     line_t lines[SERIES_SIGNALS];
-    const uint64_t patience_us = (2u * overview->step_us > LOST_US) ? 2u * overview->step_us : LOST_US;
+    const uint64_t patience_us = (2u * overview->step_us > SERIES_LOST_US) ? 2u * overview->step_us : SERIES_LOST_US;
     for (size_t i = 0u; i < (size_t)SERIES_SIGNALS; i++) {
         line_begin(&lines[i]);
     }
@@ -194,11 +194,11 @@ static json_t *detail_signals(const series_t *series, const series_detail_t *det
         if (message != AGV_MSG_NONE) {
             const series_values_t values = series_values(message, frame);
             for (uint8_t i = 0u; i < values.count; i++) {
-                line_point(&lines[values.signal[i]], frame->t_us, values.value[i], values.value[i], LOST_US);
+                line_point(&lines[values.signal[i]], frame->t_us, values.value[i], values.value[i], SERIES_LOST_US);
             }
         }
     }
-    return lines_json(lines, detail->to_us, LOST_US);
+    return lines_json(lines, detail->to_us, SERIES_LOST_US);
 }
 
 /** A point of a gap line: negative for a frame that did not renew its message. */
@@ -298,18 +298,21 @@ static json_t *gear_json(uint8_t gear) {
 }
 
 static json_t *value_json(size_t lane, const series_change_t *change) {
-    static const char *const modes[] = {"neither", "manual", "autopilot", "both"};
+    static const char *const modes[] = {[SERIES_MODE_NEITHER] = "neither",
+                                        [SERIES_MODE_MANUAL] = "manual",
+                                        [SERIES_MODE_AUTOPILOT] = "autopilot",
+                                        [SERIES_MODE_BOTH] = "both"};
     switch ((series_lane_t)lane) {
     case SERIES_LANE_STATE:
         return text_or_null(agv_state_name((agv_state_t)change->b));
     case SERIES_LANE_MODE:
-        return json_string(modes[change->a & 3u]);
+        return (change->c == 0u) ? json_string(modes[change->a]) : json_null();
     case SERIES_LANE_OUTPUT:
         return json_string((change->a != 0u) ? "closed" : "open");
     case SERIES_LANE_LED:
         return json_integer((int8_t)change->a);
     default:
-        return gear_json(change->a);
+        return (change->c == 0u) ? gear_json(change->a) : json_null();
     }
 }
 

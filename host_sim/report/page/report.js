@@ -36,6 +36,7 @@ function times(differences) {
 }
 
 const end = series.end * unit;
+const senders = new Map(series.messages.map((message) => [message.name, message.sender]));
 const lanes = Object.fromEntries(Object.entries(series.lanes).map(([name, lane]) => [name, { t: times(lane.t), v: lane.v }]));
 
 /** The overview, or the surroundings of a trip, as sources of timeline.js. */
@@ -60,8 +61,8 @@ const modeTones = { manual: "calm", autopilot: "good", both: "bad", neither: "qu
 
 function spansOf(lane, tone, text = String) {
   return lane.t.map((from, i) => ({
-    from, to: i + 1 < lane.t.length ? lane.t[i + 1] : end, text: text(lane.v[i]), tone: tone(lane.v[i]),
-  }));
+    from, to: i + 1 < lane.t.length ? lane.t[i + 1] : end, text: text(lane.v[i]), tone: tone(lane.v[i]), is: lane.v[i],
+  })).filter((span) => span.is !== null);
 }
 
 const gearTone = (gear) => (gear === "P" ? "calm" : "DRN".includes(gear) ? "good" : "bad");
@@ -144,7 +145,7 @@ function pictureRows(detail) {
     ...plotRow("steering", "\u00b0", 1, detail, 0.1,
       [["steering_status", "measured", "first"], ["steering_command", "AI computer", "second", true], ["steering_sent", "supervisor", "third"]],
       { floor: -10, ceiling: 10 }),
-    { kind: "head", name: "Time since the last frame (of a heartbeat: since its counter changed), against the deadline" },
+    { kind: "head", name: "Age of each message, and its deadline" },
     ...ageRows(detail),
   ];
 }
@@ -162,6 +163,9 @@ function marksOf(trip) {
   add(trip.first_safe_us, "first safe frame");
   add(trip.confirmed_us, "P confirmed");
   add(trip.stopped_us, "stands");
+  data.trips.forEach((other, i) => {
+    if (other !== trip) marks.push({ t: inMs(other.t_us), text: `trip ${i + 1}` });
+  });
   return marks;
 }
 
@@ -192,7 +196,8 @@ function drawPicture(trip) {
     label: "The run over time. Left and right move the cursor, plus and minus zoom.",
   });
   const parts = [make("h2", trip ? "What happened" : "The run"), element,
-    make("p.soft.small", "Drag to move, +/\u2212 to zoom, \u2190/\u2192 move the cursor, Shift with them the view. A dotted line is a deadline; red is later than it.")];
+    make("p.soft.small", "The age of a message is the time since it came last; of a message with an alive counter, since the counter changed. "
+      + "A dotted line is its deadline; red is later. Drag the picture to move it; with the keyboard, + and \u2212 zoom, \u2190 and \u2192 move the cursor.")];
   if (trip && !detailAt(inMs(trip.t_us))) parts.push(make("p.soft.small", "The frames around this trip were not kept: the picture has the resolution of the whole run."));
   if (series.left_out > 0) parts.push(make("p.soft.small", `${series.left_out} later changes found no room in this report.`));
   return make("section.picture", ...parts);
@@ -291,9 +296,9 @@ function frameRows(trip, all) {
     }
   };
   for (const [us, side, sent, id, bytes, name, signals, tells] of trip.frames) {
-    if (!all && !sent && !tells) continue;
+    if (!all && !tells && (!sent || name === "supervisor_status")) continue;
     put(us - 1);
-    const from = sent ? "supervisor" : data.about.gateway ? ["vehicle side", "AI side"][side] : "";
+    const from = (sent ? "supervisor" : senders.get(name) ?? "") + (data.about.gateway ? [", vehicle side", ", AI side"][side] : "");
     const since = last === null ? "" : `+${((us - last) / MS).toFixed(1)}`;
     last = us;
     rows.push(make(`tr${sent ? ".sent" : ""}${tells ? ".tells" : ""}`, make("td.nowrap", seconds(us / MS, 4)), make("td.nowrap", make("code", `${id}h`), " ", name),
@@ -322,7 +327,7 @@ function drawFrames(trip) {
     choice.append(make("label", input, ` ${text}`));
   });
   show(!tells);
-  return make("section", make("h2", "Frames around the cause"), choice, place,
+  return make("section.framed", make("h2", "Frames around the cause"), choice, place,
     trip.frames_left_out > 0 ? make("p.soft.small", `${trip.frames_left_out} more frames are not shown.`) : null);
 }
 

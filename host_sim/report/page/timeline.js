@@ -33,12 +33,23 @@ const NARROW = 720; // px: below it the names stand above their rows
 const AXIS = 26;
 const FLAG = 17;
 const HEIGHTS = { head: 26, lane: 22, slim: 18, plot: 92, age: 20 };
+const PRINTED = { head: 20, lane: 17, slim: 14, plot: 66, age: 15 };
+const PRINT_WIDTH = 690;
 const LABEL_ABOVE = 15;
+const FONT = 'system-ui, "Segoe UI", Roboto, "Helvetica Neue", "DejaVu Sans", sans-serif'; // as in timeline.css
 const LIMIT_AT = 0.66; // the deadline's place in the height of an age row
 
 const escapes = { "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" };
 const escape = (text) => String(text).replace(/[&<>"]/g, (c) => escapes[c]);
 const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
+
+const ruler = document.createElement("canvas").getContext("2d");
+
+/** The width of a text in px. */
+function widthOf(text, size = 12, weight = 400) {
+  ruler.font = `${weight} ${size}px ${FONT}`;
+  return ruler.measureText(text).width;
+}
 
 /** A time as text, as fine as a step of it needs: 62.109 s, 1:02.1, 12:03:20. */
 export function timeText(ms, step = 1) {
@@ -106,7 +117,6 @@ function ages(source, from, to, width) {
   for (let i = Math.max(indexAt(source.t, from), 0); i < source.t.length; i++) {
     const gap = Math.abs(source.gap[i]);
     const begin = source.t[i] - Math.max(gap, source.step);
-    if (begin > to && gap <= source.t[i] - to) break;
     const a = clamp(Math.floor((begin - from) * scale), 0, width - 1);
     const b = clamp(Math.ceil((source.t[i] - from) * scale) - 1, 0, width - 1);
     if (source.t[i] < from || begin > to) continue;
@@ -170,7 +180,7 @@ function linePath(column, x0, y) {
     const bottom = y(lo).toFixed(1);
     const x = x0 + i;
     if (last === null) path += `M${x} ${bottom}`;
-    else if (last !== bottom) path += `H${x}V${bottom}`;
+    else if (last !== bottom || top !== bottom) path += `H${x}V${bottom}`;
     if (top !== bottom) path += `V${top}`;
     last = top;
     if (column.lo[i + 1] === null || i + 1 === column.lo.length) path += `H${x + 1}`;
@@ -197,6 +207,8 @@ class Timeline {
     [this.from, this.to] = data.view ?? [data.from, data.to];
     this.at = data.cursor ?? this.from;
     this.ranges = new Map(data.rows.filter((row) => row.kind === "plot").map((row) => [row, range(row)]));
+    this.nameWidth = Math.max(...data.rows.filter((row) => row.kind !== "head")
+      .map((row) => widthOf(row.name) + (row.hint ? widthOf(row.hint, 11) + 6 : 0) + (row.kind === "plot" ? 30 : 0)), 100) + 12;
     this.drawTools();
     this.draw();
   }
@@ -207,7 +219,7 @@ class Timeline {
       this.printWidth = width;
       this.draw();
     };
-    window.addEventListener("beforeprint", () => print(680));
+    window.addEventListener("beforeprint", () => print(PRINT_WIDTH));
     window.addEventListener("afterprint", () => print(0));
     this.svg.addEventListener("keydown", (event) => this.key(event));
     this.svg.addEventListener("pointerdown", (event) => this.press(event));
@@ -338,15 +350,15 @@ class Timeline {
   layout() {
     this.width = Math.floor(this.printWidth || this.element.clientWidth);
     this.narrow = this.width < NARROW && !this.printWidth;
-    const gutters = this.printWidth ? [140, 96] : this.narrow ? [0, 0] : [176, 128];
-    this.left = gutters[0];
-    this.plotWidth = Math.max(Math.floor(this.width - gutters[0] - gutters[1]), 40);
+    this.left = this.narrow ? 0 : Math.ceil(this.nameWidth);
+    this.plotWidth = Math.max(Math.floor(this.width - this.left - (this.narrow ? 0 : this.printWidth ? 92 : 124)), 40);
+    [this.legendAt, this.legendStep] = this.printWidth ? [25, 13] : [30, 15];
     this.flags = this.placeFlags();
     let y = AXIS + FLAG * this.flags.levels + 4;
     this.tops = this.data.rows.map((row) => {
-      const above = this.narrow && row.kind !== "head" ? LABEL_ABOVE : 0;
-      const height = HEIGHTS[row.slim ? "slim" : row.kind];
-      const top = { name: y, y: y + above, height: height - 4 };
+      const above = !this.narrow || row.kind === "head" ? 0 : row.kind === "plot" ? 2 * LABEL_ABOVE : LABEL_ABOVE;
+      const height = (this.printWidth ? PRINTED : HEIGHTS)[row.slim ? "slim" : row.kind];
+      const top = { name: y, y: y + above, height: height - (this.printWidth ? 3 : 4) };
       y += above + height;
       return top;
     });
@@ -358,7 +370,7 @@ class Timeline {
     const ends = [];
     const placed = (this.data.marks ?? []).filter((mark) => mark.t >= this.from && mark.t <= this.to)
       .sort((a, b) => a.t - b.t).map((mark) => {
-        const length = mark.text.length * 6.4 + 12;
+        const length = widthOf(mark.text, 12, mark.tone === "bad" ? 600 : 400) + 14;
         const x = this.x(mark.t);
         const turned = x + length > this.left + this.plotWidth;
         const begin = turned ? x - length : x;
@@ -374,9 +386,10 @@ class Timeline {
     if (this.element.clientWidth === 0 && !this.printWidth) return;
     this.layout();
     const rows = this.data.rows.map((row, i) => this.drawRow(row, this.tops[i])).join("");
+    const names = this.data.rows.map((row, i) => this.drawName(row, this.tops[i])).join("");
     this.svg.setAttribute("viewBox", `0 0 ${this.width} ${this.height}`);
     this.svg.style.height = this.printWidth ? "auto" : `${this.height}px`;
-    this.svg.innerHTML = this.drawAxis() + rows + this.drawMarks() + '<g class="tl-now"></g>';
+    this.svg.innerHTML = `${this.drawAxis()}${rows}${this.drawMarks()}${names}<g class="tl-now"></g>`;
     this.now = this.svg.lastChild;
     this.drawCursor();
   }
@@ -395,36 +408,36 @@ class Timeline {
   }
 
   drawMarks() {
-    return this.flags.placed.map(({ mark, x, level, turned }) => {
-      const y = FLAG * level;
-      return `<g class="tl-mark tl-${mark.tone ?? "quiet"}"><path d="M${x.toFixed(1)} ${y + 2}V${this.height}"/>` +
-        `<text x="${(turned ? x - 5 : x + 5).toFixed(1)}" y="${y + 12}" text-anchor="${turned ? "end" : "start"}">` +
-        `${escape(mark.text)}</text></g>`;
-    }).join("");
+    const lines = this.flags.placed.map(({ mark, x, level }) =>
+      `<path class="tl-mark tl-${mark.tone ?? "quiet"}" d="M${x.toFixed(1)} ${FLAG * level + 2}V${this.height}"/>`);
+    const texts = this.flags.placed.map(({ mark, x, level, turned }) =>
+      `<text class="tl-mark tl-${mark.tone ?? "quiet"}" x="${(turned ? x - 5 : x + 5).toFixed(1)}" y="${FLAG * level + 12}"` +
+      ` text-anchor="${turned ? "end" : "start"}">${escape(mark.text)}</text>`);
+    return lines.join("") + texts.join("");
   }
 
   drawName(row, top) {
-    if (row.kind === "head") return `<text class="tl-head" x="0" y="${top.y + 17}">${escape(row.name)}</text>`;
-    const y = this.narrow ? top.name + 11 : top.y + (row.kind === "plot" ? 12 : top.height / 2 + 4);
+    if (row.kind === "head") return `<text class="tl-head" x="0" y="${top.y + top.height - 5}">${escape(row.name)}</text>`;
+    const y = this.narrow ? top.name + 11 : top.y + (row.kind === "plot" ? 11 : top.height / 2 + 4);
     let text = `<text class="tl-name" x="0" y="${y}">${escape(row.name)}`;
     if (row.hint) text += `<tspan class="tl-hint" dx="6">${escape(row.hint)}</tspan>`;
     return `${text}</text>${row.kind === "plot" ? this.drawLegend(row, top) : ""}`;
   }
 
   drawLegend(row, top) {
-    let x = this.narrow ? row.name.length * 7 + 8 : 0;
+    let x = 0;
     return row.lines.map((line, i) => {
-      const y = this.narrow ? top.name + 11 : top.y + 30 + i * 15;
+      const y = this.narrow ? top.name + LABEL_ABOVE + 10 : top.y + this.legendAt + i * this.legendStep;
       const text = `<g class="tl-${line.tone}"><path class="tl-line${line.dashed ? " tl-dashed" : ""}" d="M${x} ${y - 4}h16"/>` +
         `<text class="tl-hint" x="${x + 21}" y="${y}">${escape(line.name)}</text></g>`;
-      if (this.narrow) x += 21 + line.name.length * 5.9 + 10;
+      if (this.narrow) x += 21 + widthOf(line.name, 11) + 12;
       return text;
     }).join("");
   }
 
   drawRow(row, top) {
     const draw = { lane: this.drawLane, plot: this.drawPlot, age: this.drawAge }[row.kind];
-    return this.drawName(row, top) + (draw ? draw.call(this, row, top) : "");
+    return draw ? draw.call(this, row, top) : "";
   }
 
   drawLane(row, top) {
@@ -434,12 +447,12 @@ class Timeline {
     for (const span of row.spans) {
       if (span.to < this.from || span.from > this.to) continue;
       const x = clamp(this.x(span.from), this.left, right);
-      const width = Math.max(clamp(this.x(span.to), this.left, right) - x, 1);
+      const width = Math.max(clamp(this.x(span.to), this.left, right) - x, span.tone === "bad" ? 4 : 1);
       if (x + width < end + 0.5) continue;
       end = x + width;
       text += `<g class="tl-span tl-${span.tone ?? "quiet"}"><rect x="${x.toFixed(1)}" y="${top.y}" width="${width.toFixed(1)}"` +
         ` height="${top.height}"/>`;
-      if (span.text && width > span.text.length * 7 + 8) {
+      if (span.text && width > widthOf(span.text) + 8) {
         text += `<text x="${(x + 5).toFixed(1)}" y="${top.y + top.height / 2 + 4}">${escape(span.text)}</text>`;
       }
       text += "</g>";
@@ -455,7 +468,7 @@ class Timeline {
     let text = `<rect class="tl-bed" x="${this.left}" y="${top.y}" width="${this.plotWidth}" height="${top.height - 2}"/>`;
     for (let value = Math.ceil(low / step) * step; value <= high + step / 100; value += step) {
       text += `<path class="tl-rule${Math.abs(value) < step / 100 ? " tl-zero" : ""}" d="M${this.left} ${y(value).toFixed(1)}H${right}"/>` +
-        `<text class="tl-scale" x="${this.narrow ? this.left + 3 : this.left - 5}" y="${(y(value) + (this.narrow ? -2 : 4)).toFixed(1)}"` +
+        `<text class="tl-scale" x="${this.narrow ? this.left + 3 : this.left - 5}" y="${(y(value) + (!this.narrow ? 4 : y(value) < top.y + 12 ? 10 : -2)).toFixed(1)}"` +
         ` text-anchor="${this.narrow ? "start" : "end"}">${numberText(value, step < 1 ? 1 : 0)}</text>`;
     }
     for (const line of row.lines) {
@@ -510,13 +523,12 @@ class Timeline {
     const visible = this.at >= this.from && this.at <= this.to;
     const right = this.left + this.plotWidth;
     const y = AXIS + FLAG * this.flags.levels;
-    const label = timeText(this.at, (this.to - this.from) / this.plotWidth);
-    const half = label.length * 3.6 + 5;
-    const centre = clamp(x, this.left + half, right - half);
-    let text = visible
-      ? `<path class="tl-cursor" d="M${x.toFixed(1)} ${y - 4}V${this.height}"/><rect class="tl-time" rx="3" x="${(centre - half).toFixed(1)}"` +
-        ` y="${y - 21}" width="${(half * 2).toFixed(1)}" height="17"/><text class="tl-timetext" x="${centre.toFixed(1)}" y="${y - 8}">${escape(label)}</text>`
-      : "";
+    const label = timeText(this.at, Math.min((this.to - this.from) / this.plotWidth, 1));
+    const first = this.tops[0] ?? { y: 0, height: 0 };
+    let text = visible ? `<path class="tl-cursor" d="M${x.toFixed(1)} ${y}V${this.height}m-4 ${y - this.height - 5}h8l-4 6z"/>` : "";
+    text += this.narrow
+      ? `<text class="tl-time" x="${this.width}" y="${first.y + first.height - 5}" text-anchor="end">${escape(label)}</text>`
+      : `<text class="tl-time" x="${right + 8}" y="${y - 8}">${escape(label)}</text>`;
     const spoken = [label];
     this.data.rows.forEach((row, i) => {
       const top = this.tops[i];
@@ -550,7 +562,7 @@ class Timeline {
       return last ? `<text class="tl-value" x="${end}" y="${top.name + 11}" text-anchor="end">${escape(last.text)}</text>` : "";
     }
     return texts.map((one, i) => (one === null ? "" :
-      `<text class="tl-value tl-ink tl-${one.tone}" x="${end}" y="${top.y + 30 + i * 15}" text-anchor="${anchor}">${escape(one.text)}</text>`)).join("");
+      `<text class="tl-value tl-ink tl-${one.tone}" x="${end}" y="${top.y + this.legendAt + i * this.legendStep}" text-anchor="${anchor}">${escape(one.text)}</text>`)).join("");
   }
 
   speak(text) {
