@@ -5,30 +5,54 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/trace.h"
 #include "common/report.h"
 #include "report/report_page.h"
 #include "report/series.h"
+#include "traffic/traffic.h"
 
-enum { NAME_SIZE = 32 };
+enum { NAME_SIZE = 32, DIGITS = 15 };
 
 struct analysis {
     analysis_request_t request;
+    agv_config_t config;
     char names[HAL_CAN_SIDES][NAME_SIZE];
     uint64_t first_us; /**< time of day; 0: none */
     why_t *why;
-    series_t *series; /**< NULL: no report was asked for */
+    traffic_t *traffic; /**< NULL: neither --why nor --report */
+    series_t *series;   /**< NULL: no --report */
+    trace_t trace;
     output_t files[ANALYSIS_FILES];
 };
 
+static bool is_asked_for(const analysis_t *analysis, analysis_file_t file) {
+    return analysis->request.paths[file] != NULL;
+}
+
+/** Make the parts that are needed. @return false: no memory */
+static bool make_parts(analysis_t *analysis) {
+    const agv_config_t *config = &analysis->config;
+    const bool page = is_asked_for(analysis, ANALYSIS_REPORT);
+    analysis->why = why_new(config);
+    if (is_asked_for(analysis, ANALYSIS_WHY) || page) {
+        analysis->traffic = traffic_new(config);
+    }
+    if (page) {
+        analysis->series = series_new(config);
+    }
+    const bool lacks_traffic = (is_asked_for(analysis, ANALYSIS_WHY) || page) && (analysis->traffic == NULL);
+    return (analysis->why != NULL) && !lacks_traffic && (!page || (analysis->series != NULL));
+}
+
 analysis_t *analysis_new(const analysis_request_t *request) {
     analysis_t *analysis = calloc(1u, sizeof *analysis);
-    if (analysis != NULL) {
+    bool good = analysis != NULL;
+    if (good) {
         analysis->request = *request;
-        analysis->why = why_new(request->config);
-        analysis->series = (request->paths[ANALYSIS_REPORT] != NULL) ? series_new(request->config) : NULL;
+        analysis->config = *request->config;
+        good = make_parts(analysis);
     }
-    if ((analysis == NULL) || (analysis->why == NULL) ||
-        ((request->paths[ANALYSIS_REPORT] != NULL) && (analysis->series == NULL))) {
+    if (!good) {
         analysis_free(analysis);
         (void)report("out of memory");
         return NULL;
@@ -46,6 +70,9 @@ bool analysis_open(analysis_t *analysis) {
             return false;
         }
     }
+    if (is_asked_for(analysis, ANALYSIS_TRACE)) {
+        trace_begin(&analysis->trace, &analysis->files[ANALYSIS_TRACE], &analysis->config);
+    }
     return true;
 }
 
@@ -62,8 +89,14 @@ void analysis_set_clock(analysis_t *analysis, uint64_t first_us) {
 
 void analysis_frame(analysis_t *analysis, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
     why_frame(analysis->why, side, frame, t_us);
+    if (analysis->traffic != NULL) {
+        traffic_frame(analysis->traffic, side, frame, t_us);
+    }
     if (analysis->series != NULL) {
         series_frame(analysis->series, side, frame, t_us);
+    }
+    if (analysis->files[ANALYSIS_TRACE].is_open) {
+        trace_frame(&analysis->trace, side, frame, false, t_us);
     }
 }
 
@@ -71,6 +104,9 @@ void analysis_sent(analysis_t *analysis, hal_can_side_t side, const hal_can_fram
     why_sent(analysis->why, side, frame, t_us);
     if (analysis->series != NULL) {
         series_sent(analysis->series, side, frame, t_us);
+    }
+    if (analysis->files[ANALYSIS_TRACE].is_open) {
+        trace_frame(&analysis->trace, side, frame, true, t_us);
     }
 }
 
@@ -80,19 +116,26 @@ void analysis_event(void *ctx, const session_event_t *event) {
     if (analysis->series != NULL) {
         series_event(analysis->series, event);
     }
+    if (analysis->files[ANALYSIS_TRACE].is_open) {
+        trace_event(&analysis->trace, event);
+    }
 }
 
-/** The object of --why. */
-static json_t *make_why(const analysis_t *analysis) {
-    why_names_t names = {.log = analysis->request.log};
+static const char *name_of(const analysis_t *analysis, int side) {
+    return (analysis->names[side][0] != '\0') ? analysis->names[side] : NULL;
+}
+
+/** The object of --why. @param messages the array of survey; the reference is taken */
+static json_t *make_why(const analysis_t *analysis, json_t *messages) {
+    why_names_t names = {.log = analysis->request.log, .messages = messages};
     for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
-        names.interfaces[side] = (analysis->names[side][0] != '\0') ? analysis->names[side] : NULL;
+        names.interfaces[side] = name_of(analysis, side);
     }
     return why_json(analysis->why, &names);
 }
 
 static void write_json(output_t *output, json_t *object) {
-    char *text = (object != NULL) ? json_dumps(object, JSON_INDENT(1)) : NULL;
+    char *text = (object != NULL) ? json_dumps(object, JSON_INDENT(1) | JSON_REAL_PRECISION(DIGITS)) : NULL;
     if (text == NULL) {
         output->error = (output->error == 0) ? ENOMEM : output->error;
         return;
@@ -103,28 +146,39 @@ static void write_json(output_t *output, json_t *object) {
 }
 
 /** The page of --report. */
-static void write_report(analysis_t *analysis) {
+static void write_report(analysis_t *analysis, const json_t *messages) {
     report_page_t page = {.name = analysis->request.log,
                           .clock_us = analysis->first_us,
                           .is_recording = analysis->request.is_recording,
-                          .config = analysis->request.config};
+                          .config = &analysis->config,
+                          .messages = messages};
     for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
-        page.interfaces[side] = (analysis->names[side][0] != '\0') ? analysis->names[side] : NULL;
+        page.interfaces[side] = name_of(analysis, side);
     }
     report_page_write(&analysis->files[ANALYSIS_REPORT], &page, analysis->why, analysis->series);
 }
 
 void analysis_end(analysis_t *analysis, uint64_t t_us) {
     why_end(analysis->why, t_us);
-    if (analysis->files[ANALYSIS_WHY].is_open) {
-        json_t *why = make_why(analysis);
-        write_json(&analysis->files[ANALYSIS_WHY], why);
-        json_decref(why);
+    if (analysis->traffic != NULL) {
+        traffic_end(analysis->traffic, t_us);
     }
     if (analysis->series != NULL) {
         series_end(analysis->series, t_us);
-        write_report(analysis);
     }
+    json_t *messages = (analysis->traffic != NULL) ? traffic_messages_json(analysis->traffic) : NULL;
+    if (analysis->files[ANALYSIS_REPORT].is_open) {
+        write_report(analysis, messages);
+    }
+    if (analysis->files[ANALYSIS_WHY].is_open) {
+        json_t *why = make_why(analysis, json_incref(messages));
+        write_json(&analysis->files[ANALYSIS_WHY], why);
+        json_decref(why);
+    }
+    if (analysis->files[ANALYSIS_TRACE].is_open) {
+        trace_end(&analysis->trace, t_us);
+    }
+    json_decref(messages);
 }
 
 bool analysis_flush(analysis_t *analysis) {
@@ -139,13 +193,12 @@ const why_t *analysis_why(const analysis_t *analysis) {
     return analysis->why;
 }
 
-bool analysis_uses_stdout(const analysis_t *analysis) {
+bool analysis_works(const analysis_t *analysis) {
+    bool good = true;
     for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
-        if (output_is_stdout(analysis->request.paths[i])) {
-            return true;
-        }
+        good = good && (analysis->files[i].error == 0);
     }
-    return false;
+    return good;
 }
 
 void analysis_free(analysis_t *analysis) {
@@ -156,6 +209,7 @@ void analysis_free(analysis_t *analysis) {
         output_discard(&analysis->files[i]);
     }
     why_free(analysis->why);
+    traffic_free(analysis->traffic);
     series_free(analysis->series);
     free(analysis);
 }

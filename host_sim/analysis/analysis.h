@@ -64,8 +64,8 @@ bool analysis_commit(analysis_t *analysis);
 /** Why it tripped. */
 const why_t *analysis_why(const analysis_t *analysis);
 
-/** Whether an output goes to standard output. */
-bool analysis_uses_stdout(const analysis_t *analysis);
+/** Whether nothing has failed to be written so far. */
+bool analysis_works(const analysis_t *analysis);
 
 /** Release it; files that are not committed are discarded. Nothing for NULL. */
 void analysis_free(analysis_t *analysis);

@@ -8,6 +8,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "analysis/analysis.h"
+#include "common/interrupt.h"
 #include "common/units.h"
 #include "config/config_text.h"
 #include "hal_linux/linux_can.h"
@@ -30,12 +32,15 @@ typedef struct {
     linux_loop_t loop;
     bool loop_is_open;
     live_files_t files;
-    uint64_t opened_us; /**< when the node was opened, by the time of day */
-    bool tripped;       /**< at any time */
-    bool is_terminal;   /**< standard output is one, and free for the status line */
+    uint64_t opened_us;  /**< when the node was opened, by the time of day */
+    bool tripped;        /**< at any time */
+    bool stdout_is_free; /**< no output goes there */
+    bool is_terminal;    /**< standard output is one, and free for the status line */
     live_status_t status;
     live_output_t outputs[OUTPUTS];
     sent_log_t sent;
+    analysis_t *analysis; /**< NULL: not asked for */
+    uint64_t analysed_us; /**< time of the last frame: both sides have clocks of their own */
 } live_t;
 
 static void on_event(void *ctx, const session_event_t *event) {
@@ -45,12 +50,31 @@ static void on_event(void *ctx, const session_event_t *event) {
     if (live_output_has_room(&live->outputs[EVENTS])) {
         events_write(&live->outputs[EVENTS].lines, event);
     }
+    if (live->analysis != NULL) {
+        analysis_event(live->analysis, event);
+    }
+}
+
+/** Times of frames never go back. */
+static uint64_t analysed_us(live_t *live, uint64_t at_us) {
+    live->analysed_us = (at_us > live->analysed_us) ? at_us : live->analysed_us;
+    return live->analysed_us;
+}
+
+static void on_received(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t at_us) {
+    live_t *live = ctx;
+    if (live->analysis != NULL) {
+        analysis_frame(live->analysis, side, frame, analysed_us(live, at_us));
+    }
 }
 
 static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t at_us) {
     live_t *live = ctx;
     if (live_output_has_room(&live->outputs[OUT])) {
         sent_log_add(&live->sent, side, frame, live->opened_us + at_us);
+    }
+    if (live->analysis != NULL) {
+        analysis_sent(live->analysis, side, frame, analysed_us(live, at_us));
     }
 }
 
@@ -70,12 +94,41 @@ static bool open_outputs(live_t *live) {
         }
         stdout_is_free = stdout_is_free && !output_is_stdout(paths[i]);
     }
+    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
+        stdout_is_free = stdout_is_free && !output_is_stdout(request->analysis[i]);
+    }
+    live->stdout_is_free = stdout_is_free;
     live->is_terminal = stdout_is_free && (isatty(STDOUT_FILENO) == 1);
     live->sent.output = &live->outputs[OUT].lines;
     for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
         const char *interface = request->bus.interfaces[side];
         if (interface != NULL) {
             sent_log_heard(&live->sent, (hal_can_side_t)side, interface, strlen(interface));
+        }
+    }
+    return true;
+}
+
+/** The files of the analysis, which are written at the end. @return false: reported */
+static bool open_analysis(live_t *live) {
+    const live_request_t *request = live->request;
+    analysis_request_t analysed = {.config = &request->config, .log = request->bus.interfaces[HAL_CAN_VEHICLE]};
+    bool any = false;
+    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
+        analysed.paths[i] = request->analysis[i];
+        any = any || (request->analysis[i] != NULL);
+    }
+    if (!any) {
+        return true;
+    }
+    live->analysis = analysis_new(&analysed);
+    if ((live->analysis == NULL) || !analysis_open(live->analysis)) {
+        return false;
+    }
+    for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
+        const char *name = request->bus.interfaces[side];
+        if (name != NULL) {
+            analysis_name_side(live->analysis, (hal_can_side_t)side, name, strlen(name));
         }
     }
     return true;
@@ -90,6 +143,7 @@ static bool prepare(live_t *live) {
                        [HAL_CAN_AI] = request->bus.interfaces[HAL_CAN_AI]},
         .on_event = on_event,
         .on_sent = on_sent,
+        .on_received = on_received,
         .ctx = live,
     };
     char error[LINUX_LOOP_ERROR_SIZE];
@@ -97,10 +151,13 @@ static bool prepare(live_t *live) {
         return report("%s", error);
     }
     live->node = node_open(&node);
-    if ((live->node == NULL) || !open_outputs(live)) {
+    if ((live->node == NULL) || !open_outputs(live) || !open_analysis(live)) {
         return false;
     }
     live->opened_us = time_of_day_us() - node_now_us(live->node);
+    if (live->analysis != NULL) {
+        analysis_set_clock(live->analysis, live->opened_us);
+    }
     live->loop_is_open = linux_loop_open(&live->loop);
     if (!live->loop_is_open || !linux_loop_align(&live->loop, node_now_us(live->node))) {
         return report("cannot create the tick timer: %s", strerror(errno));
@@ -168,7 +225,11 @@ static bool conclude(live_t *live, const events_summary_t *summary) {
     for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
         good = live_output_end(&live->outputs[i]) && good;
     }
-    if (good && !output_is_stdout(request->events) && !output_is_stdout(request->out)) {
+    if (live->analysis != NULL) {
+        analysis_end(live->analysis, summary->t_ms * US_PER_MS);
+        good = analysis_commit(live->analysis) && good;
+    }
+    if (good && live->stdout_is_free) {
         print_summary(live, summary);
     }
     return good;
@@ -204,6 +265,10 @@ status_t live_run(const live_request_t *request) {
     }
     for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
         output_discard(&live->outputs[i].lines);
+    }
+    if (live->analysis != NULL) {
+        analysis_free(live->analysis);
+        interrupt_release();
     }
     free(live);
     return status;

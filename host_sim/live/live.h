@@ -9,14 +9,16 @@
 #include <stdint.h>
 
 #include "agv/config.h"
+#include "analysis/analysis.h"
 #include "cli/interface_options.h"
 #include "common/report.h"
 
 /** What to run. */
 typedef struct {
-    interface_options_t bus; /**< the AI side: NULL on the shared bus */
-    const char *out;         /**< log of what was sent; NULL: none */
-    const char *events;      /**< NULL: none */
+    interface_options_t bus;              /**< the AI side: NULL on the shared bus */
+    const char *out;                      /**< log of what was sent; NULL: none */
+    const char *events;                   /**< NULL: none */
+    const char *analysis[ANALYSIS_FILES]; /**< written at the end; NULL: none */
     bool fail_on_trip;
     bool realtime; /**< SCHED_FIFO, memory locked */
     agv_config_t config;

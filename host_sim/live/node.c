@@ -105,6 +105,9 @@ void node_receive(node_t *node) {
     hal_can_frame_t frame;
     uint64_t at_us = 0u;
     for (int i = 0; (i < FRAMES_AT_ONCE) && linux_hal_receive(&node->hal, &side, &frame, &at_us); i++) {
+        if (node->given.on_received != NULL) {
+            node->given.on_received(node->given.ctx, side, &frame, at_us);
+        }
         session_frame(&node->session, side, &frame, now_ms(node));
     }
 }

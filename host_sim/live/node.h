@@ -19,13 +19,17 @@ typedef struct node node_t;
 /** A frame of the supervisor has left. @param at_us since the node was opened */
 typedef void node_sent_fn(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t at_us);
 
+/** A frame is handed to the supervisor. @param at_us when it was received, since the node was opened */
+typedef void node_received_fn(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t at_us);
+
 /** How a node is made. */
 typedef struct {
     const agv_config_t *config;            /**< is copied */
     const char *interfaces[HAL_CAN_SIDES]; /**< the AI side: NULL on the shared bus */
     session_observer_fn *on_event;         /**< or NULL; t_ms since the node was opened */
     node_sent_fn *on_sent;                 /**< or NULL */
-    void *ctx;                             /**< of both */
+    node_received_fn *on_received;         /**< or NULL */
+    void *ctx;                             /**< of all */
 } node_config_t;
 
 /**

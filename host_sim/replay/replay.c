@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/analysis.h"
 #include "common/interrupt.h"
 #include "common/units.h"
 #include "config/config_text.h"
@@ -14,8 +15,10 @@
 #include "io/output.h"
 #include "io/sent_log.h"
 #include "io/store_file.h"
+#include "replay/replay_heard.h"
+#include "replay/replay_text.h"
 #include "session/session.h"
-#include "ui/summary.h"
+#include "ui/timeline.h"
 
 enum { LOOK_FOR_SIGNALS_EVERY = 65536 };
 
@@ -33,6 +36,10 @@ typedef struct {
     uint64_t backward_stamps;
     size_t ai_interface_length;
     bool ai_was_heard;
+    bool unmet; /**< tripped or not supervised at all, and that is a failure */
+    analysis_t *analysis;
+    timeline_t timeline;
+    replay_heard_t heard;
     hal_t hal;
     sim_store_t store;
     session_t session;
@@ -44,6 +51,10 @@ typedef struct {
 static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
     replay_t *replay = ctx;
     sent_log_add(&replay->sent, side, frame, replay->now_us);
+    analysis_sent(replay->analysis, side, frame, replay->now_us - replay->first_us);
+    if (replay->request->timeline) {
+        timeline_sent(&replay->timeline, side, frame, replay->now_us - replay->first_us);
+    }
 }
 
 static uint32_t clock_at(const replay_t *replay, uint64_t t_ms) {
@@ -51,7 +62,8 @@ static uint32_t clock_at(const replay_t *replay, uint64_t t_ms) {
 }
 
 static bool outputs_work(const replay_t *replay) {
-    return (replay->outputs[OUT].error == 0) && (replay->outputs[EVENTS].error == 0);
+    return (replay->outputs[OUT].error == 0) && (replay->outputs[EVENTS].error == 0) &&
+           analysis_works(replay->analysis);
 }
 
 /** Run the ticks before @p end_us. @return false: interrupted. */
@@ -106,6 +118,7 @@ static hal_can_side_t side_of(replay_t *replay, const candump_record_t *record) 
     }
     if (replay->sent.interfaces[HAL_CAN_VEHICLE][0] == '\0') {
         sent_log_heard(&replay->sent, HAL_CAN_VEHICLE, record->interface, record->interface_length);
+        analysis_name_side(replay->analysis, HAL_CAN_VEHICLE, record->interface, record->interface_length);
     }
     return HAL_CAN_VEHICLE;
 }
@@ -115,6 +128,11 @@ static void hand_over(replay_t *replay, candump_record_t *record, uint64_t t_ms)
     record->frame.time_ms = clock_at(replay, t_ms);
     record->frame.time_us = (uint16_t)((record->stamp_us - replay->first_us) % US_PER_MS);
     sim_hal_set_now_ms(&replay->hal, record->frame.time_ms);
+    replay_heard_add(&replay->heard, record);
+    analysis_frame(replay->analysis, side, &record->frame, record->stamp_us - replay->first_us);
+    if (replay->request->timeline) {
+        timeline_received(&replay->timeline, side, &record->frame, record->stamp_us - replay->first_us);
+    }
     if ((record->frame.flags & HAL_CAN_ERROR) != 0u) {
         act_on_controller(replay, side, &record->frame);
     }
@@ -167,6 +185,13 @@ static void start(replay_t *replay, uint64_t first_us) {
     if (request->ai_interface != NULL) {
         replay->ai_interface_length = strlen(request->ai_interface);
         sent_log_heard(&replay->sent, HAL_CAN_AI, request->ai_interface, replay->ai_interface_length);
+        analysis_name_side(replay->analysis, HAL_CAN_AI, request->ai_interface, replay->ai_interface_length);
+    }
+    analysis_set_clock(replay->analysis, first_us);
+    (void)session_observe(&replay->session, analysis_event, replay->analysis);
+    if (request->timeline) {
+        timeline_init_run(&replay->timeline, &request->config);
+        (void)session_observe(&replay->session, timeline_event, &replay->timeline);
     }
     if (replay->outputs[EVENTS].is_open) {
         (void)session_observe(&replay->session, events_write, &replay->outputs[EVENTS]);
@@ -174,12 +199,33 @@ static void start(replay_t *replay, uint64_t first_us) {
     session_start(&replay->session, &request->config, 0u, request->start_ms);
 }
 
-static void print_summary(const replay_t *replay, const events_summary_t *summary) {
-    summary_print_time(summary, replay->log.name, "");
-    summary_print_frames(summary, replay->request->config.shadow == AGV_SHADOW_ON);
-    (void)printf("lines skipped: %" PRIu64 ", time stamps that went backwards: %" PRIu64 ", warnings: %" PRIu32 "\n",
-                 summary->skipped_lines, summary->backward_stamps, summary->counters.warnings);
-    summary_print_state(summary);
+/** Whether standard output is free for the text. */
+static bool has_text(const replay_request_t *request) {
+    bool taken = (request->events != NULL) || output_is_stdout(request->out);
+    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
+        taken = taken || output_is_stdout(request->analysis[i]);
+    }
+    return !taken;
+}
+
+static void print_text(const replay_t *replay, const events_summary_t *summary) {
+    const replay_text_t text = {.name = replay->log.name,
+                                .first_us = replay->first_us,
+                                .duration_us = replay->now_us - replay->first_us,
+                                .config = &replay->request->config,
+                                .heard = &replay->heard,
+                                .why = analysis_why(replay->analysis),
+                                .summary = summary};
+    if (replay->request->timeline) {
+        (void)printf("\n");
+    }
+    replay_text_print(&text);
+}
+
+/** Every file or none. @return false: reported */
+static bool commit(replay_t *replay) {
+    return output_flush_all(replay->outputs, OUTPUTS) && analysis_flush(replay->analysis) &&
+           analysis_commit(replay->analysis) && output_commit_all(replay->outputs, OUTPUTS);
 }
 
 /** The log is over: write what comes last, put every file in its place. @return false: reported. */
@@ -196,10 +242,13 @@ static bool conclude(replay_t *replay) {
     if (request->store != NULL) {
         store_file_save(&replay->outputs[STORE], &replay->store, &replay->session.recorder);
     }
-    const bool good = output_commit_all(replay->outputs, OUTPUTS);
-    if (good && (request->events == NULL) && !output_is_stdout(request->out)) {
-        print_summary(replay, &summary);
+    analysis_end(replay->analysis, replay->now_us - replay->first_us);
+    const bool good = commit(replay);
+    if (good && has_text(request)) {
+        print_text(replay, &summary);
     }
+    const why_t *why = analysis_why(replay->analysis);
+    replay->unmet = request->fail_on_trip && ((why_trip_count(why) > 0u) || (why_supervised_us(why) == 0u));
     if (good && (request->ai_interface != NULL) && !replay->ai_was_heard) {
         note("the log has no frame from %s, the AI side", request->ai_interface);
     }
@@ -224,6 +273,9 @@ static bool prepare(replay_t *replay, candump_record_t *first) {
         if ((paths[i] != NULL) && !output_open(&replay->outputs[i], paths[i])) {
             return false;
         }
+    }
+    if (!analysis_open(replay->analysis)) {
+        return false;
     }
     replay->sent.output = (request->out != NULL) ? &replay->outputs[OUT] : NULL;
     config_note_deviations(&request->config);
@@ -253,6 +305,14 @@ static bool check_request(const replay_request_t *request) {
     return true;
 }
 
+static bool make_analysis(replay_t *replay) {
+    analysis_request_t request = {.config = &replay->request->config, .is_recording = true};
+    request.log = (strcmp(replay->request->log, "-") == 0) ? "standard input" : replay->request->log;
+    memcpy(request.paths, replay->request->analysis, sizeof request.paths);
+    replay->analysis = analysis_new(&request);
+    return replay->analysis != NULL;
+}
+
 status_t replay_run(const replay_request_t *request) {
     if (!check_request(request)) {
         return STATUS_UNUSABLE;
@@ -266,12 +326,14 @@ status_t replay_run(const replay_request_t *request) {
     replay->log.fd = -1;
     sim_store_init(&replay->store);
     session_init(&replay->session, &replay->hal);
-    const bool good = run(replay);
+    const bool good = make_analysis(replay) && run(replay);
+    const status_t status = replay->unmet ? STATUS_UNMET : STATUS_OK;
     for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
         output_discard(&replay->outputs[i]);
     }
+    analysis_free(replay->analysis);
     candump_close(&replay->log);
     free(replay);
     interrupt_release();
-    return good ? STATUS_OK : STATUS_UNUSABLE;
+    return good ? status : STATUS_UNUSABLE;
 }

@@ -103,6 +103,15 @@ static void station_hears(void *ctx, const hal_can_frame_t *frame) {
     vehicle_receive(&station->testbed->vehicle, station->node, station->testbed->t_ms, frame);
 }
 
+static void pass_received(const scenario_testbed_t *testbed, hal_can_side_t side, const hal_can_frame_t *frame) {
+    for (size_t i = 0u; i < testbed->watch_count; i++) {
+        const scenario_watch_t *watch = &testbed->watches[i];
+        if (watch->on_received != NULL) {
+            watch->on_received(watch->ctx, sim_bus_now_us(&testbed->buses[side]), side, frame);
+        }
+    }
+}
+
 static void supervisor_hears(void *ctx, const hal_can_frame_t *arrived) {
     const scenario_side_t *side = ctx;
     scenario_testbed_t *testbed = side->testbed;
@@ -116,6 +125,7 @@ static void supervisor_hears(void *ctx, const hal_can_frame_t *arrived) {
     const uint64_t end_us = (testbed->t_ms + 1u) * US_PER_MS;
     const uint64_t t_ms = testbed->t_ms + ((sim_bus_now_us(&testbed->buses[side->side]) >= end_us) ? 1u : 0u);
     while (sim_hal_receive(&testbed->hal, side->side, &frame)) {
+        pass_received(testbed, side->side, &frame);
         session_frame(&testbed->session, side->side, &frame, t_ms);
     }
 }

@@ -21,14 +21,18 @@
 /** A frame was on the wire. @param from SCENARIO_FROM_SUPERVISOR or a vehicle_node_t */
 typedef void scenario_frame_fn(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame);
 
+/** A frame is handed to the supervisor. */
+typedef void scenario_received_fn(void *ctx, uint64_t t_us, hal_can_side_t side, const hal_can_frame_t *frame);
+
 /** Callbacks; each may be NULL. */
 typedef struct {
     session_observer_fn *on_event;
     scenario_frame_fn *on_frame;
     void *ctx;
+    scenario_received_fn *on_received;
 } scenario_watch_t;
 
-#define SCENARIO_WATCHES_MAX 3u
+#define SCENARIO_WATCHES_MAX 5u
 
 typedef struct scenario_testbed scenario_testbed_t;
 

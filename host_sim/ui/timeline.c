@@ -10,6 +10,7 @@
 #include "agv/names.h"
 #include "common/missing.h"
 #include "common/units.h"
+#include "traffic/signals.h"
 
 enum { MM_PER_CM = 10, WHAT_SIZE = 160 };
 
@@ -19,6 +20,26 @@ enum { MM_PER_CM = 10, WHAT_SIZE = 160 };
 
 void timeline_init(timeline_t *timeline, const scenario_testbed_t *testbed) {
     *timeline = (timeline_t){.testbed = testbed, .mode = -1};
+}
+
+void timeline_init_run(timeline_t *timeline, const agv_config_t *config) {
+    *timeline = (timeline_t){.mode = -1};
+    agv_config_ids(config, &timeline->ids);
+}
+
+static agv_message_t message_of(const timeline_t *timeline, uint32_t id) {
+    return (timeline->testbed != NULL) ? scenario_testbed_message(timeline->testbed, id)
+                                       : (agv_message_t)agv_ids_find(&timeline->ids, id);
+}
+
+/** The time of the wire. */
+static uint64_t now_us(const timeline_t *timeline) {
+    scenario_testbed_view_t view;
+    if (timeline->testbed == NULL) {
+        return timeline->now_us;
+    }
+    scenario_testbed_view(timeline->testbed, &view);
+    return view.now_us;
 }
 
 static char gear_letter(uint8_t gear) {
@@ -94,10 +115,8 @@ static void show_state(timeline_t *timeline, uint64_t t_us, const agv_event_t *e
 
     timeline->shown = 0u;
     if (event->b == (uint8_t)AGV_STATE_TRIPPED) {
-        scenario_testbed_view_t view;
-        scenario_testbed_view(timeline->testbed, &view);
-        timeline->trip_us = view.now_us;
-        timeline->wants_reaction = reason != NULL;
+        timeline->trip_us = now_us(timeline);
+        timeline->wants_reaction = (reason != NULL) && (timeline->testbed != NULL);
     }
     line(timeline, t_us, "supervisor", "=> %s%s%s", agv_state_name((agv_state_t)event->b), (reason != NULL) ? ": " : "",
          (reason != NULL) ? reason : "");
@@ -120,7 +139,7 @@ static void show_fault(timeline_t *timeline, uint64_t t_us, const agv_event_t *e
          has_parts ? ": " : "", has_parts ? parts_text(event->missing, parts) : "");
 }
 
-static void show_event(void *ctx, const session_event_t *event) {
+void timeline_event(void *ctx, const session_event_t *event) {
     timeline_t *timeline = ctx;
     const uint64_t t_us = event->t_ms * US_PER_MS;
     const agv_event_t *recorded = &event->recorded;
@@ -165,22 +184,24 @@ static void show_reaction(timeline_t *timeline, uint64_t t_us) {
 
 /** The first frame of each message that the supervisor sends in a state. */
 static void show_sent(timeline_t *timeline, uint64_t t_us, const hal_can_frame_t *frame) {
-    const agv_message_t message = scenario_testbed_message(timeline->testbed, frame->id);
+    const agv_message_t message = message_of(timeline, frame->id);
     const uint8_t *d = frame->data;
+    char signals[SIGNALS_TEXT_SIZE];
 
     if ((message == AGV_MSG_NONE) || ((timeline->shown & (1u << message)) != 0u)) {
         return;
     }
     timeline->shown |= 1u << message;
-    line(timeline, t_us, "supervisor", "sends %03X [%02X %02X %02X %02X %02X %02X %02X %02X] %s", (unsigned)frame->id,
-         d[0], d[1], d[2], d[3], d[4], d[5], d[6], d[7], agv_message_name(message));
+    line(timeline, t_us, "supervisor", "sends %03X [%02X %02X %02X %02X %02X %02X %02X %02X] %s: %s",
+         (unsigned)frame->id, d[0], d[1], d[2], d[3], d[4], d[5], d[6], d[7], agv_message_name(message),
+         signals_print(signals, sizeof signals, (uint32_t)message, d));
     if (timeline->wants_reaction) {
         show_reaction(timeline, t_us);
     }
 }
 
 static void show_reported(timeline_t *timeline, uint64_t t_us, const hal_can_frame_t *frame) {
-    const agv_message_t message = scenario_testbed_message(timeline->testbed, frame->id);
+    const agv_message_t message = message_of(timeline, frame->id);
     agv_wheel_speed_t wheels;
 
     if ((message == AGV_MSG_GEAR_STATUS) && (frame->data[0] != timeline->gear)) {
@@ -216,5 +237,19 @@ static void show_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, 
 }
 
 scenario_watch_t timeline_watch(timeline_t *timeline) {
-    return (scenario_watch_t){show_event, show_frame, timeline};
+    return (scenario_watch_t){.on_event = timeline_event, .on_frame = show_frame, .ctx = timeline};
+}
+
+void timeline_received(timeline_t *timeline, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
+    timeline->now_us = t_us;
+    if ((side == HAL_CAN_VEHICLE) && (frame->flags == 0u) && (frame->length == AGV_DLC)) {
+        show_reported(timeline, t_us, frame);
+    }
+}
+
+void timeline_sent(timeline_t *timeline, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
+    timeline->now_us = t_us;
+    if (side == HAL_CAN_VEHICLE) {
+        show_sent(timeline, t_us, frame);
+    }
 }

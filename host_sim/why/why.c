@@ -33,6 +33,7 @@ why_t *why_new(const agv_config_t *config) {
     why_intruder_start(why);
     why_track_start(why);
     why_engage_start(why);
+    why_init_start(why);
     why->error = why_no_evidence();
     why->safe_frame = why_no_evidence();
     why->moving = why_no_evidence();
@@ -99,6 +100,7 @@ void why_frame(why_t *why, hal_can_side_t side, const hal_can_frame_t *frame, ui
     const why_evidence_t evidence = why_evidence(side, frame, t_us);
     const agv_message_t message = why_accepted(why, side, frame);
     why->now_us = t_us;
+    why_init_check(why, t_us);
     if ((frame->flags & HAL_CAN_ERROR) != 0u) {
         why->error = evidence;
         return;
@@ -224,10 +226,10 @@ static void on_state(why_t *why, const agv_event_t *event, uint64_t t_us) {
         why->start_us = t_us;
         why->was_tripped = false;
     }
-    why->state = event->b;
-    if (event->b != (uint8_t)AGV_STATE_INIT) {
-        why->missing = 0u;
+    if (why->state == (uint8_t)AGV_STATE_INIT) {
+        why_init_end(why, t_us);
     }
+    why->state = event->b;
     if ((event->b == (uint8_t)AGV_STATE_TRIPPED) && (event->c < (uint8_t)AGV_FAULT_COUNT)) {
         on_trip(why, (agv_fault_t)event->c, t_us);
     } else if (!agv_state_is_latched((agv_state_t)event->b)) {
@@ -301,9 +303,6 @@ void why_event(void *ctx, const session_event_t *event) {
     case AGV_EVENT_FAULT:
         on_fault(why, &event->recorded, t_us);
         break;
-    case AGV_EVENT_STARTUP:
-        why->missing = event->recorded.missing;
-        break;
     default:
         break;
     }
@@ -312,6 +311,11 @@ void why_event(void *ctx, const session_event_t *event) {
 void why_end(why_t *why, uint64_t t_us) {
     leave_state(why, t_us);
     why->now_us = t_us;
+    if (why->state == (uint8_t)AGV_STATE_INIT) {
+        why->init_due_us = t_us;
+        why_init_check(why, t_us);
+        why_init_end(why, t_us);
+    }
     for (size_t i = 0u; i < why->fault_count; i++) {
         why_fault_t *entry = &why->faults[why->fault_order[i]];
         if (entry->active) {

@@ -99,7 +99,7 @@ uint64_t why_state_us(const why_t *why, size_t index);
 /** The time outside INIT. */
 uint64_t why_supervised_us(const why_t *why);
 
-/** AGV_MISSING_* bits that kept it in INIT when it was last reported; 0: it left INIT, or nothing was missing. */
+/** AGV_MISSING_* bits: what kept it in INIT, until it left it or until the end. */
 uint16_t why_missing(const why_t *why);
 /** @} */
 

@@ -200,6 +200,7 @@ static void take_vehicle(why_t *why, const uint8_t *data) {
     why->facts.vcu_speed = status.speed_m_per_h;
     why->facts.mode_bits = data[6];
     why->facts.mode_known = true;
+    why->manual_was_seen = why->manual_was_seen || status.manual_mode;
 }
 
 /** Read what a status message says, if it is valid. */

@@ -8,7 +8,7 @@
 
 #include "why/why.h"
 
-enum { WHY_HISTORY = 8, WHY_ENGAGEMENTS = 4, WHY_TRIPS_MAX = 1000 };
+enum { WHY_HISTORY = 8, WHY_ENGAGEMENTS = 4, WHY_TRIPS_MAX = 1000, WHY_MISSING_BITS = 11 };
 
 /** The frames of a message. */
 typedef struct {
@@ -84,8 +84,11 @@ struct why {
     uint64_t state_since_us;
     uint64_t state_us[WHY_STATES];
     uint64_t now_us;
-    uint64_t start_us; /**< of the supervisor */
-    uint16_t missing;
+    uint64_t start_us;                     /**< of the supervisor */
+    uint16_t missing;                      /* what kept it in INIT */
+    uint64_t missing_us[WHY_MISSING_BITS]; /* when each condition was missing last; WHY_NEVER */
+    uint64_t init_due_us;                  /* when they are evaluated next */
+    bool manual_was_seen;
     bool was_tripped; /**< in this run of the supervisor */
 
     why_trip_t *trips;
@@ -139,6 +142,12 @@ const why_tracker_t *why_tracker(const why_t *why, agv_fault_t fault);
 /** The engagement (why_engage.c). */
 void why_engage_start(why_t *why);
 void why_engage_frame(why_t *why, const why_evidence_t *frame);
+
+/** @name The conditions for leaving INIT (why_init.c). @{ */
+void why_init_start(why_t *why);
+void why_init_check(why_t *why, uint64_t t_us);
+void why_init_end(why_t *why, uint64_t t_us);
+/** @} */
 
 /** The setting that limits the silence of a message. */
 uint16_t why_silence_setting(agv_message_t message);

@@ -58,6 +58,7 @@ void why_track_engage(why_t *why) {
 void why_score(why_tracker_t *tracker, bool bad, uint32_t frames, const why_evidence_t *frame,
                const why_evidence_t *before) {
     const uint64_t full = 2u * (uint64_t)frames;
+    tracker->bad = bad;
     if (bad && (tracker->value == 0u)) {
         tracker->first = *frame;
         tracker->good = (before != NULL) ? *before : why_no_evidence();

@@ -8,23 +8,28 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "analysis/analysis.h"
+#include "cli/analysis_options.h"
 #include "cli/commands/commands.h"
 #include "cli/options.h"
 #include "common/interrupt.h"
 #include "common/shipped.h"
+#include "common/units.h"
 #include "config/config_options.h"
 #include "io/events.h"
 #include "io/output.h"
+#include "scenario/run/scenario_analysis.h"
 #include "scenario/run/scenario_run.h"
 #include "ui/timeline.h"
 
 #define MAIN_JOB "demo"
 
-enum { PATH_SIZE = 4096 };
+enum { PATH_SIZE = 4096, FIXED_FILES = 3 };
 
 /** The given options. */
 typedef struct {
     config_options_t config;
+    analysis_options_t analysis;
     const char *scenario;
     const char *events;
 } given_t;
@@ -34,6 +39,7 @@ typedef struct {
     char path[PATH_SIZE];
     scenario_options_t options;
     timeline_t timeline;
+    analysis_t *analysis; /* NULL: not asked for */
     output_t events;
     FILE *text_out;
     scenario_run_t run;
@@ -41,13 +47,16 @@ typedef struct {
 
 static options_result_t parse(int argc, char **argv, given_t *given) {
     option_t config_rows[CONFIG_OPTIONS];
+    option_t analysis_rows[ANALYSIS_OPTIONS];
     config_options_init(&given->config, config_rows);
+    analysis_options_init(&given->analysis, analysis_rows);
     const option_t rows[] = {
         OPTION_TEXT("--scenario", "NAME", "another scenario: its name, or the path of a file", &given->scenario),
         OPTION_TEXT("--events", "FILE", "events as JSON Lines; - prints them in place of the timeline", &given->events),
     };
     const option_group_t groups[] = {
         {.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]},
+        {.options = analysis_rows, .count = ANALYSIS_OPTIONS},
         {.title = "Configuration of the supervisor (settings of the scenario take precedence)",
          .options = config_rows,
          .count = CONFIG_OPTIONS},
@@ -113,14 +122,43 @@ static status_t print_result(const work_t *work, bool good) {
     return STATUS_UNMET;
 }
 
-static status_t play(work_t *work, const char *events) {
+/** Read the scenario, and open what is written. @return false: reported */
+static bool prepare(work_t *work, const given_t *given) {
     if (!scenario_read(&work->run.scenario, work->path, &work->options) ||
-        ((events != NULL) && !output_open(&work->events, events))) {
+        ((given->events != NULL) && !output_open(&work->events, given->events))) {
+        return false;
+    }
+    if (!analysis_options_any(&given->analysis)) {
+        return true;
+    }
+    analysis_request_t request = {.config = &work->run.scenario.config, .log = work->run.scenario.name};
+    memcpy(request.paths, given->analysis.paths, sizeof request.paths);
+    work->analysis = analysis_new(&request);
+    return (work->analysis != NULL) && analysis_open(work->analysis);
+}
+
+/** Put the files in their place. @return false: reported */
+static bool finish(work_t *work) {
+    const session_t *session = scenario_testbed_session(&work->run.testbed);
+    if (work->events.is_open) {
+        events_summary_t summary = {0};
+        events_summarise(session, &summary);
+        events_write_summary(&work->events, &summary);
+    }
+    if (work->analysis != NULL) {
+        analysis_end(work->analysis, session->t_ms * US_PER_MS);
+        return output_flush_all(&work->events, 1u) && analysis_commit(work->analysis) && output_commit(&work->events);
+    }
+    return output_commit(&work->events);
+}
+
+static status_t play(work_t *work, const given_t *given) {
+    if (!prepare(work, given)) {
         return STATUS_UNUSABLE;
     }
-    scenario_watch_t watches[2];
+    scenario_watch_t watches[3];
     size_t count = 0u;
-    const bool is_told = !output_is_stdout(events);
+    const bool is_told = !output_is_stdout(given->events) && !analysis_options_use_stdout(&given->analysis);
     work->text_out = is_told ? stdout : stderr;
     if (is_told) {
         timeline_init(&work->timeline, &work->run.testbed);
@@ -128,31 +166,28 @@ static status_t play(work_t *work, const char *events) {
         count++;
         (void)printf("%s\n\n", work->run.scenario.name);
     }
-    if (events != NULL) {
+    if (given->events != NULL) {
         watches[count] = (scenario_watch_t){.on_event = events_write, .ctx = &work->events};
         count++;
     }
+    if (work->analysis != NULL) {
+        watches[count] = scenario_analysis_watch(work->analysis);
+        count++;
+    }
     const bool good = scenario_run(&work->run, watches, count, is_told ? timeline_step : NULL);
-    if (work->run.was_interrupted) {
-        return STATUS_UNUSABLE;
-    }
-    if (work->events.is_open) {
-        events_summary_t summary = {0};
-        events_summarise(scenario_testbed_session(&work->run.testbed), &summary);
-        events_write_summary(&work->events, &summary);
-    }
-    if (!output_commit(&work->events)) {
+    if (work->run.was_interrupted || !finish(work)) {
         return STATUS_UNUSABLE;
     }
     return print_result(work, good);
 }
 
 static bool check_files(const given_t *given, const char *path) {
-    const output_role_t roles[] = {
+    output_role_t roles[FIXED_FILES + (int)ANALYSIS_FILES] = {
         {.role = "--scenario", .path = path},
         {.role = "--config", .path = given->config.path},
         {.role = "--events", .path = given->events, .is_written = true},
     };
+    analysis_options_roles(&given->analysis, &roles[FIXED_FILES]);
     return output_check_distinct(roles, sizeof roles / sizeof roles[0]);
 }
 
@@ -172,9 +207,10 @@ status_t cmd_demo(int argc, char **argv) {
     work->options.id_set = given.config.id_set;
     if (find_scenario(given.scenario, work->path) && check_files(&given, work->path) &&
         config_options_make(&given.config, &work->options.config)) {
-        status = play(work, given.events);
+        status = play(work, &given);
     }
     output_discard(&work->events);
+    analysis_free(work->analysis);
     free(work);
     interrupt_release();
     return status;

@@ -2,6 +2,9 @@
  * @file cmd_replay.c
  * `host_sim replay`: its options.
  */
+#include <string.h>
+
+#include "cli/analysis_options.h"
 #include "cli/commands/commands.h"
 #include "cli/options.h"
 #include "config/config_options.h"
@@ -11,20 +14,29 @@
 /** The words of --reset-cause, in the order of hal_reset_cause_t. */
 #define RESET_CAUSES "power-on|watchdog|brown-out|lock-up|software|unknown"
 
+/** Files besides those of the analysis. */
+enum { FIXED_FILES = 5 };
+
 /** The given options. */
 typedef struct {
     replay_request_t request;
     config_options_t config;
+    analysis_options_t analysis;
     uint64_t start_ms;
     int reset_cause;
 } given_t;
 
 static options_result_t parse(int argc, char **argv, given_t *given) {
     option_t config_rows[CONFIG_OPTIONS];
+    option_t analysis_rows[ANALYSIS_OPTIONS];
     config_options_init(&given->config, config_rows);
+    analysis_options_init(&given->analysis, analysis_rows);
     const option_t rows[] = {
         OPTION_TEXT("--out", "FILE", "candump log of the frames that the supervisor sent", &given->request.out),
         OPTION_TEXT("--events", "FILE", "events as JSON Lines", &given->request.events),
+        OPTION_FLAG("--timeline", "print a line for each action and event, as demo does", &given->request.timeline),
+        OPTION_FLAG("--fail-on-trip", "exit status 1 if it tripped, or if nothing was supervised",
+                    &given->request.fail_on_trip),
         OPTION_NUMBER("--tail", "MS", "continue for this time after the last line (0)", &given->request.tail_ms, 0,
                       REPLAY_GAP_MAX_MS),
         OPTION_NUMBER("--start-ms", "N", "the supervisor's clock at the start (0)", &given->start_ms, 0, UINT32_MAX),
@@ -40,14 +52,15 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
                     &given->request.store),
     };
     const option_group_t groups[] = {
-        {.title = "Options (FILE may be -, standard output)", .options = rows, .count = sizeof rows / sizeof rows[0]},
+        {.title = "Options (FILE may be -, standard output)", .options = analysis_rows, .count = ANALYSIS_OPTIONS},
+        {.options = rows, .count = sizeof rows / sizeof rows[0]},
         {.title = "Configuration of the supervisor", .options = config_rows, .count = CONFIG_OPTIONS},
     };
     const option_syntax_t syntax = {
         .usage = "replay [OPTION]... LOG",
-        .summary =
-            "Replay a recorded log (candump -l; - = standard input) to the supervisor in virtual time, and report how\n"
-            "it reacts.\n",
+        .summary = "Replay a recorded log (candump -l; - = standard input) to the supervisor in virtual time, and say "
+                   "whether\n"
+                   "it would have stopped the vehicle, when, and why.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
         .operands_min = 1u,
@@ -59,13 +72,18 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
 }
 
 static bool check_files(const given_t *given) {
-    const output_role_t roles[] = {
+    output_role_t roles[FIXED_FILES + (int)ANALYSIS_FILES] = {
         {.role = "LOG", .path = given->request.log},
         {.role = "--config", .path = given->config.path},
         {.role = "--out", .path = given->request.out, .is_written = true},
         {.role = "--events", .path = given->request.events, .is_written = true},
         {.role = "--store", .path = given->request.store, .is_written = true},
     };
+    analysis_options_roles(&given->analysis, &roles[FIXED_FILES]);
+    if (given->request.timeline && (analysis_options_use_stdout(&given->analysis) ||
+                                    output_is_stdout(given->request.out) || output_is_stdout(given->request.events))) {
+        return report("--timeline: standard output is already used by another option");
+    }
     return output_check_distinct(roles, sizeof roles / sizeof roles[0]);
 }
 
@@ -76,6 +94,7 @@ status_t cmd_replay(int argc, char **argv) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
     given.request.log = argv[0];
+    memcpy(given.request.analysis, given.analysis.paths, sizeof given.request.analysis);
     given.request.start_ms = (uint32_t)given.start_ms;
     given.request.reset_cause = (hal_reset_cause_t)given.reset_cause;
     given.config.has_ai_side = given.request.ai_interface != NULL;

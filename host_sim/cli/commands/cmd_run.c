@@ -3,7 +3,9 @@
  * `host_sim run`: its options.
  */
 #include <stddef.h>
+#include <string.h>
 
+#include "cli/analysis_options.h"
 #include "cli/commands/commands.h"
 #include "cli/interface_options.h"
 #include "cli/options.h"
@@ -15,14 +17,20 @@
 typedef struct {
     live_request_t request;
     config_options_t config;
+    analysis_options_t analysis;
 } given_t;
+
+/** Files besides those of the analysis. */
+enum { FIXED_FILES = 3 };
 
 static options_result_t parse(int argc, char **argv, given_t *given) {
     option_t config_rows[CONFIG_OPTIONS];
     config_options_init(&given->config, config_rows);
     live_request_t *request = &given->request;
     option_t interface_rows[INTERFACE_OPTIONS];
+    option_t analysis_rows[ANALYSIS_OPTIONS];
     interface_options_init(&request->bus, interface_rows);
+    analysis_options_init(&given->analysis, analysis_rows);
     const option_t rows[] = {
         OPTION_FLAG("--fail-on-trip", "exit status 1 if it tripped at any time", &request->fail_on_trip),
         OPTION_TEXT("--events", "FILE", "events as JSON Lines, as they come", &request->events),
@@ -32,6 +40,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_group_t groups[] = {
         {.title = "Options (FILE may be -, standard output)", .options = interface_rows, .count = INTERFACE_OPTIONS},
         {.options = rows, .count = sizeof rows / sizeof rows[0]},
+        {.options = analysis_rows, .count = ANALYSIS_OPTIONS},
         {.title = "Configuration of the supervisor", .options = config_rows, .count = CONFIG_OPTIONS},
     };
     const option_syntax_t syntax = {
@@ -49,11 +58,12 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
 }
 
 static bool check_files(const given_t *given) {
-    const output_role_t roles[] = {
+    output_role_t roles[FIXED_FILES + (int)ANALYSIS_FILES] = {
         {.role = "--config", .path = given->config.path},
         {.role = "--out", .path = given->request.out, .is_written = true},
         {.role = "--events", .path = given->request.events, .is_written = true},
     };
+    analysis_options_roles(&given->analysis, &roles[FIXED_FILES]);
     return output_check_distinct(roles, sizeof roles / sizeof roles[0]);
 }
 
@@ -63,6 +73,7 @@ status_t cmd_run(int argc, char **argv) {
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
+    memcpy(given.request.analysis, given.analysis.paths, sizeof given.request.analysis);
     given.config.has_ai_side = given.request.bus.interfaces[HAL_CAN_AI] != NULL;
     if (!check_files(&given) || !config_options_make(&given.config, &given.request.config) ||
         !interface_options_check(&given.request.bus, "run", given.request.config.topology == AGV_TOPOLOGY_GATEWAY)) {

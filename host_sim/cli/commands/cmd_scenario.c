@@ -7,9 +7,12 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "analysis/analysis.h"
+#include "cli/analysis_options.h"
 #include "cli/commands/commands.h"
 #include "cli/options.h"
 #include "common/interrupt.h"
+#include "common/units.h"
 #include "config/config_options.h"
 #include "hal_linux/linux_can.h"
 #include "io/candump_line.h"
@@ -17,9 +20,10 @@
 #include "io/junit.h"
 #include "io/output.h"
 #include "live/scenario_bus.h"
+#include "scenario/run/scenario_analysis.h"
 #include "scenario/run/scenario_run.h"
 
-enum { FILES_MAX = 1000, DEFAULT_TOLERANCE_MS = 50, TOLERANCE_MAX_MS = 1000 };
+enum { FILES_MAX = 1000, FIXED_FILES = 5, DEFAULT_TOLERANCE_MS = 50, TOLERANCE_MAX_MS = 1000 };
 
 /** Its outputs. */
 enum { EVENTS, JUNIT, SENT, OUTPUTS };
@@ -33,6 +37,7 @@ enum { EVENTS, JUNIT, SENT, OUTPUTS };
 /** The given options. */
 typedef struct {
     config_options_t config;
+    analysis_options_t analysis;
     scenario_options_t options;
     const char *junit;
     const char *events;
@@ -64,13 +69,16 @@ typedef struct {
     given_t given;
     FILE *text_out; /* results as text: standard error if an output goes to standard output */
     output_t outputs[OUTPUTS];
+    analysis_t *analysis; /* NULL: not asked for */
     scenario_run_t run;
     result_t results[];
 } work_t;
 
 static options_result_t parse(int argc, char **argv, given_t *given) {
     option_t config_rows[CONFIG_OPTIONS];
+    option_t analysis_rows[ANALYSIS_OPTIONS];
     config_options_init(&given->config, config_rows);
+    analysis_options_init(&given->analysis, analysis_rows);
     const option_t rows[] = {
         OPTION_TEXT("--junit", "FILE", "results as JUnit XML", &given->junit),
         OPTION_TEXT("--events", "FILE", "events as JSON Lines (of one scenario)", &given->events),
@@ -89,6 +97,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     };
     const option_group_t groups[] = {
         {.title = "Options (FILE may be -, standard output)", .options = rows, .count = sizeof rows / sizeof rows[0]},
+        {.options = analysis_rows, .count = ANALYSIS_OPTIONS},
         {.title = "Configuration of the supervisor (settings of a scenario take precedence)",
          .options = config_rows,
          .count = CONFIG_OPTIONS},
@@ -107,13 +116,14 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
 
 static bool check_files(const given_t *given, char **files) {
     for (size_t i = 0u; i < given->file_count; i++) {
-        const output_role_t roles[] = {
+        output_role_t roles[FIXED_FILES + (int)ANALYSIS_FILES] = {
             {.role = "FILE", .path = files[i]},
             {.role = "--config", .path = given->config.path},
             {.role = "--junit", .path = given->junit, .is_written = true},
             {.role = "--events", .path = given->events, .is_written = true},
             {.role = "--sent", .path = given->sent, .is_written = true},
         };
+        analysis_options_roles(&given->analysis, &roles[FIXED_FILES]);
         if (!output_check_distinct(roles, sizeof roles / sizeof roles[0])) {
             return false;
         }
@@ -169,8 +179,13 @@ static bool check_given(given_t *given, char **files) {
     if (!check_bus(given)) {
         return false;
     }
-    if (((given->events != NULL) || (given->sent != NULL)) && (given->file_count > 1u)) {
-        return report("--events and --sent need a single scenario, %zu were given", given->file_count);
+    const bool is_of_one = (given->events != NULL) || (given->sent != NULL) || analysis_options_any(&given->analysis);
+    if (is_of_one && (given->file_count > 1u)) {
+        return report("--events, --sent, --why, --report and --trace need a single scenario, %zu were given",
+                      given->file_count);
+    }
+    if (is_real(given) && analysis_options_any(&given->analysis)) {
+        return report("--why, --report and --trace need the simulated bus; on CAN interfaces host_sim run has them");
     }
     if (!check_files(given, files) || !config_options_make(&given->config, &given->options.config)) {
         return false;
@@ -222,13 +237,36 @@ static void print_result(const work_t *work, const char *file, const result_t *r
     }
 }
 
+/** What the simulated run is analysed with. @return false: reported */
+static bool open_analysis(work_t *work) {
+    analysis_request_t request = {.config = &work->run.scenario.config, .log = work->run.scenario.name};
+    if (!analysis_options_any(&work->given.analysis)) {
+        return true;
+    }
+    memcpy(request.paths, work->given.analysis.paths, sizeof request.paths);
+    work->analysis = analysis_new(&request);
+    return (work->analysis != NULL) && analysis_open(work->analysis);
+}
+
 /** Play it on the simulated bus. */
 static void play_simulated(work_t *work, events_summary_t *summary) {
-    const scenario_watch_t watch = {.on_event = events_write, .ctx = &work->outputs[EVENTS]};
-    const given_t *given = &work->given;
+    const session_t *session = scenario_testbed_session(&work->run.testbed);
+    scenario_watch_t watches[2];
+    size_t count = 0u;
 
-    (void)scenario_run(&work->run, &watch, (given->events != NULL) ? 1u : 0u, NULL);
-    events_summarise(scenario_testbed_session(&work->run.testbed), summary);
+    if (work->given.events != NULL) {
+        watches[count] = (scenario_watch_t){.on_event = events_write, .ctx = &work->outputs[EVENTS]};
+        count++;
+    }
+    if (work->analysis != NULL) {
+        watches[count] = scenario_analysis_watch(work->analysis);
+        count++;
+    }
+    (void)scenario_run(&work->run, watches, count, NULL);
+    events_summarise(session, summary);
+    if (work->analysis != NULL) {
+        analysis_end(work->analysis, session->t_ms * US_PER_MS);
+    }
 }
 
 /** A frame of the supervisor, as a line of a log. */
@@ -339,7 +377,8 @@ static status_t play_all(work_t *work, char **files) {
     if (work->given.junit != NULL) {
         write_junit(work, files, &totals);
     }
-    if (!output_commit_all(work->outputs, OUTPUTS)) {
+    if (((work->analysis != NULL) && (!output_flush_all(work->outputs, OUTPUTS) || !analysis_commit(work->analysis))) ||
+        !output_commit_all(work->outputs, OUTPUTS)) {
         return STATUS_UNUSABLE;
     }
     return (totals.failed == 0u) ? STATUS_OK : STATUS_UNMET;
@@ -351,7 +390,7 @@ static status_t run_all(work_t *work, char **files) {
     if (!check_scenarios(work, files) ||
         ((given->junit != NULL) && !output_open(&work->outputs[JUNIT], given->junit)) ||
         ((given->events != NULL) && !output_open(&work->outputs[EVENTS], given->events)) ||
-        ((given->sent != NULL) && !output_open(&work->outputs[SENT], given->sent))) {
+        ((given->sent != NULL) && !output_open(&work->outputs[SENT], given->sent)) || !open_analysis(work)) {
         return STATUS_UNUSABLE;
     }
     return play_all(work, files);
@@ -372,13 +411,14 @@ status_t cmd_scenario(int argc, char **argv) {
         return STATUS_UNUSABLE;
     }
     work->given = given;
-    const bool is_taken =
-        output_is_stdout(given.junit) || output_is_stdout(given.events) || output_is_stdout(given.sent);
+    const bool is_taken = output_is_stdout(given.junit) || output_is_stdout(given.events) ||
+                          output_is_stdout(given.sent) || analysis_options_use_stdout(&given.analysis);
     work->text_out = is_taken ? stderr : stdout;
     const status_t status = run_all(work, argv);
     for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
         output_discard(&work->outputs[i]);
     }
+    analysis_free(work->analysis);
     const bool was_interrupted = work->run.was_interrupted;
     free(work);
     if (was_interrupted) {

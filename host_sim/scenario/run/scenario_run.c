@@ -66,7 +66,7 @@ static bool after_tick(void *ctx, uint64_t t_ms) {
 }
 
 bool scenario_run(scenario_run_t *run, const scenario_watch_t watches[], size_t count, scenario_step_fn *on_step) {
-    const scenario_watch_t checked = {check_event, check_frame, &run->check};
+    const scenario_watch_t checked = {.on_event = check_event, .on_frame = check_frame, .ctx = &run->check};
 
     run->was_interrupted = false;
     scenario_check_init(&run->check, &run->scenario);

@@ -43,7 +43,7 @@ def pattern(lines):
 
 class Manual(unittest.TestCase):
     def test_every_command_prints_what_the_manual_says(self):
-        environment = dict(os.environ, PATH=os.path.dirname(hostsim.PROGRAM) + os.pathsep + os.environ["PATH"])
+        environment = dict(os.environ, TZ="UTC", PATH=os.path.dirname(hostsim.PROGRAM) + os.pathsep + os.environ["PATH"])
         bash = shutil.which("bash")
         count = 0
         for page in PAGES:

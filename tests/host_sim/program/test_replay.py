@@ -273,7 +273,7 @@ class Events(hostsim.Case):
     def test_without_events_a_summary_for_people(self):
         self.write("log", traffic.log(traffic.frames(100)))
         result = self.run_good("replay", "log")
-        self.assertIn("final state: ", result.stdout)
+        self.assertIn("tripped     never", result.stdout)
         self.assertNotIn("{", result.stdout)
         self.assertEqual(self.run_good("replay", "--events", "e", "log").stdout, "")
 

@@ -1,0 +1,36 @@
+#include "cli/analysis_options.h"
+
+void analysis_options_init(analysis_options_t *options, option_t rows[ANALYSIS_OPTIONS]) {
+    *options = (analysis_options_t){{NULL}};
+    rows[0] = (option_t)OPTION_TEXT("--why", "FILE", "why it tripped, as JSON", &options->paths[ANALYSIS_WHY]);
+    rows[1] = (option_t)OPTION_TEXT("--report", "FILE", "the same as a page with pictures (HTML)",
+                                    &options->paths[ANALYSIS_REPORT]);
+    rows[2] = (option_t)OPTION_TEXT("--trace", "FILE", "the run as Chrome trace events, which ui.perfetto.dev shows",
+                                    &options->paths[ANALYSIS_TRACE]);
+}
+
+bool analysis_options_any(const analysis_options_t *options) {
+    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
+        if (options->paths[i] != NULL) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool analysis_options_use_stdout(const analysis_options_t *options) {
+    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
+        if (output_is_stdout(options->paths[i])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void analysis_options_roles(const analysis_options_t *options, output_role_t roles[ANALYSIS_FILES]) {
+    static const char *const names[ANALYSIS_FILES] = {
+        [ANALYSIS_WHY] = "--why", [ANALYSIS_REPORT] = "--report", [ANALYSIS_TRACE] = "--trace"};
+    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
+        roles[i] = (output_role_t){.role = names[i], .path = options->paths[i], .is_written = true};
+    }
+}

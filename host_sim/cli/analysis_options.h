@@ -1,0 +1,33 @@
+/**
+ * @file analysis_options.h
+ * The options of every command that can say why the supervisor tripped.
+ */
+#ifndef HOST_SIM_ANALYSIS_OPTIONS_H
+#define HOST_SIM_ANALYSIS_OPTIONS_H
+
+#include <stdbool.h>
+
+#include "analysis/analysis.h"
+#include "cli/options.h"
+#include "io/output.h"
+
+#define ANALYSIS_OPTIONS 3u
+
+/** What was given. Start from analysis_options_init(). */
+typedef struct {
+    const char *paths[ANALYSIS_FILES]; /**< NULL: not given */
+} analysis_options_t;
+
+/** Nothing given. @param rows are filled in with the options */
+void analysis_options_init(analysis_options_t *options, option_t rows[ANALYSIS_OPTIONS]);
+
+/** Whether one of the files was asked for. */
+bool analysis_options_any(const analysis_options_t *options);
+
+/** Whether one of the files is standard output. */
+bool analysis_options_use_stdout(const analysis_options_t *options);
+
+/** The roles of the files, for output_check_distinct(). */
+void analysis_options_roles(const analysis_options_t *options, output_role_t roles[ANALYSIS_FILES]);
+
+#endif

@@ -1,0 +1,29 @@
+/**
+ * @file replay_text.h
+ * What a replay found, for people: within 100 columns, and what was not supervised first.
+ */
+#ifndef HOST_SIM_REPLAY_TEXT_H
+#define HOST_SIM_REPLAY_TEXT_H
+
+#include <stdint.h>
+
+#include "agv/config.h"
+#include "io/events.h"
+#include "replay/replay_heard.h"
+#include "why/why.h"
+
+/** What is printed. */
+typedef struct {
+    const char *name;     /**< of the log */
+    uint64_t first_us;    /**< stamp of the first frame */
+    uint64_t duration_us; /**< until the end of the run */
+    const agv_config_t *config;
+    const replay_heard_t *heard;
+    const why_t *why;
+    const events_summary_t *summary;
+} replay_text_t;
+
+/** Print it on standard output. */
+void replay_text_print(const replay_text_t *replay);
+
+#endif

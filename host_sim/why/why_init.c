@@ -1,0 +1,100 @@
+/* What keeps the supervisor in INIT: nothing is supervised there but the way out of it. */
+#include <stdlib.h>
+
+#include "agv/codec.h"
+#include "agv/recorder.h"
+#include "agv/state.h"
+#include "common/units.h"
+#include "why/why_internal.h"
+
+/* The first frames of a healthy bus come within some cycles. */
+enum { CHECK_EVERY_US = 10000, FIRST_FRAMES_US = 200000 };
+
+static uint64_t deadline_us(const why_t *why, agv_message_t number) {
+    return ((uint64_t)agv_config_get(&why->config, why_silence_setting(number)) + 1u) * US_PER_MS;
+}
+
+/** Whether a heartbeat that INIT waits for beats. */
+static bool beats(const why_t *why, agv_message_t number, uint64_t t_us) {
+    const why_message_t *message = &why->messages[number];
+    return (message->count > 1u) && (t_us <= message->beat_us + deadline_us(why, number));
+}
+
+static bool is_fresh(const why_t *why, agv_message_t number, uint64_t t_us) {
+    const why_message_t *message = &why->messages[number];
+    return (message->count > 0u) && (t_us <= message->last_us + deadline_us(why, number));
+}
+
+/** The messages whose silence trips must be fresh. */
+static bool are_fresh(const why_t *why, uint64_t t_us) {
+    for (int i = 0; i < (int)AGV_FAULT_COUNT; i++) {
+        const why_row_t *row = why_row((agv_fault_t)i);
+        const bool counts = (row->kind == WHY_SILENCE) && ((uint32_t)row->message >= AGV_COMMAND_COUNT) &&
+                            agv_config_is_trip(&why->config, (uint32_t)i);
+        if (counts && !is_fresh(why, row->message, t_us)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool has_trip_cause(const why_t *why) {
+    for (size_t i = 0u; i < why->fault_count; i++) {
+        const why_fault_t *fault = &why->faults[why->fault_order[i]];
+        if (fault->active && (fault->fault_class == AGV_CLASS_TRIP)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool is_slow(const why_t *why) {
+    const int32_t limit = why->config.standstill_speed_mm_s;
+    const uint32_t vcu = why->config.standstill_vcu_counts;
+    return (abs(why->facts.left_mm_s) < limit) && (abs(why->facts.right_mm_s) < limit) &&
+           ((vcu == (uint32_t)UINT16_MAX) || (why->facts.vcu_speed <= vcu));
+}
+
+static uint32_t missing_now(const why_t *why, uint64_t t_us) {
+    const bool manual = why->facts.mode_known && ((why->facts.mode_bits & AGV_VCU_FLAG_MANUAL) != 0u) &&
+                        ((why->facts.mode_bits & AGV_VCU_FLAG_AUTOPILOT) == 0u);
+    uint32_t missing = 0u;
+    missing |= beats(why, AGV_MSG_VEHICLE_STATUS, t_us) ? 0u : AGV_MISSING_VCU_HEARTBEAT;
+    missing |= beats(why, AGV_MSG_STEERING_STATUS, t_us) ? 0u : AGV_MISSING_EPS_HEARTBEAT;
+    missing |= manual ? 0u : AGV_MISSING_MANUAL;
+    missing |= are_fresh(why, t_us) ? 0u : AGV_MISSING_MESSAGES;
+    missing |= is_slow(why) ? 0u : AGV_MISSING_STANDSTILL;
+    missing |= has_trip_cause(why) ? AGV_MISSING_TRIP_CAUSE : 0u;
+    return missing;
+}
+
+void why_init_start(why_t *why) {
+    for (size_t bit = 0u; bit < (size_t)WHY_MISSING_BITS; bit++) {
+        why->missing_us[bit] = WHY_NEVER;
+    }
+}
+
+void why_init_check(why_t *why, uint64_t t_us) {
+    if ((why->state != (uint8_t)AGV_STATE_INIT) || (t_us < why->init_due_us)) {
+        return;
+    }
+    const uint32_t missing = missing_now(why, t_us);
+    why->init_due_us = t_us + (uint64_t)CHECK_EVERY_US;
+    for (size_t bit = 0u; bit < (size_t)WHY_MISSING_BITS; bit++) {
+        if (((missing >> bit) & 1u) != 0u) {
+            why->missing_us[bit] = t_us;
+        }
+    }
+}
+
+/** What is missing now, and what was missing within the time for which everything has to be there; a start apart. */
+void why_init_end(why_t *why, uint64_t t_us) {
+    const uint64_t hold_us = ((uint64_t)why->config.init_hold_ms * US_PER_MS) + (2u * (uint64_t)CHECK_EVERY_US);
+    uint32_t missing = missing_now(why, t_us);
+    for (size_t bit = 0u; bit < (size_t)WHY_MISSING_BITS; bit++) {
+        const uint64_t last_us = why->missing_us[bit];
+        const bool counts = (last_us != WHY_NEVER) && (last_us > why->start_us + (uint64_t)FIRST_FRAMES_US);
+        missing |= (counts && (last_us + hold_us >= t_us)) ? (1u << bit) : 0u;
+    }
+    why->missing = (uint16_t)missing;
+}

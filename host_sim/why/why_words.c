@@ -1,0 +1,322 @@
+#include "why/why_words.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+
+#include "agv/codec.h"
+#include "agv/names.h"
+#include "agv/recorder.h"
+#include "common/units.h"
+#include "traffic/signals.h"
+#include "why/why_internal.h"
+
+enum { DDEG_PER_DEG = 10 };
+
+/** What a fault means, after the name of its message. %L stands for the limit, %T for the setting of its time. */
+typedef struct {
+    const char *words;
+    uint16_t time; /**< setting of %T */
+} meaning_t;
+
+#define SAYS(fault, words_) [AGV_FAULT_##fault] = {(words_), 0u}
+#define LASTS(fault, words_, setting) [AGV_FAULT_##fault] = {(words_), AGV_SETTING_##setting}
+
+static const meaning_t meanings[AGV_FAULT_COUNT] = {
+    SAYS(SELF_TEST_FAILED, "the self-test at the start failed"),
+    SAYS(MEMORY_CORRUPTED, "the memory of the supervisor was changed by something else"),
+    SAYS(CONFIG_INVALID, "the configuration is not valid"),
+    SAYS(OUTPUT_FEEDBACK, "the contact of the safety output differed from its command for %L"),
+    SAYS(SUPERVISOR_RESET, "the processor was reset while it ran"),
+    SAYS(EMERGENCY_STOP, "the emergency stop input opened"),
+    SAYS(TX_GATE_REFUSED, "the gate refused a frame of its own"),
+    SAYS(STEP_OVERRUN, "a step came later than %L"),
+    SAYS(CLOCK_DEVIATION, "its two clocks differed"),
+    SAYS(BUS_OFF, "the vehicle-side controller was bus-off"),
+    SAYS(TX_STALLED, "a frame waited for longer than %L to be sent"),
+    SAYS(MODE_INVALID, "reported manual and autopilot together for %L"),
+    SAYS(MODE_FLAPPING, "reported a fourth engagement within %L"),
+    SAYS(MODE_NONE, "reported neither manual nor autopilot for %L while the vehicle moved"),
+    SAYS(EPS_MODE_OFF, "reported that the EPS is off"),
+    SAYS(EPS_MODE_INVALID, "reported an EPS mode that does not exist"),
+    SAYS(EPS_MODE_NOT_ANGLE, "reported an EPS mode other than angle control"),
+    SAYS(GEAR_STATUS_INVALID, "reported a gear that does not exist"),
+    SAYS(THROTTLE_STATUS_INVALID, "reported a throttle above 100 %"),
+    SAYS(STEERING_ANGLE_INVALID, "reported an angle above 900 deg"),
+    LASTS(STEERING_DEVIATION, "was more than %L off 065h steering_command for %T", steering_deviation_ms),
+    LASTS(THROTTLE_DEVIATION, "was more than %L above 075h throttle_command for %T", throttle_deviation_ms),
+    SAYS(GEAR_DEVIATION, "reported a gear that was not commanded, with throttle, for %L"),
+    SAYS(AUTOPILOT_OFF_IGNORED, "still reported autopilot after 43Fh had requested autopilot off for %L"),
+    SAYS(THROTTLE_IN_PARK, "was above idle in gear P for %L"),
+    SAYS(SPEED_IMPLAUSIBLE, "differed from the speed in 363h for %L"),
+    SAYS(VEHICLE_NOT_STOPPING, "reported turning wheels %L after the trip"),
+    SAYS(MOVING_WHILE_SAFE, "reported turning wheels after the vehicle had stood"),
+    SAYS(STARTUP_TIMEOUT, "the conditions to leave INIT did not hold within %L"),
+    SAYS(RX_OVERRUN, "the controller lost received frames"),
+    SAYS(ERROR_PASSIVE, "the vehicle-side controller was error passive"),
+    SAYS(AI_BUS_OFF, "the AI-side controller was bus-off"),
+    SAYS(WRONG_ID_SET, "came in place of the configured identifier for %L"),
+    SAYS(STORE_INVALID, "the stored latch was damaged"),
+};
+
+void why_words_time(text_t *text, uint64_t t_us) {
+    text_add(text, "%" PRIu64 ".%03" PRIu64 " s", t_us / US_PER_S, (t_us % US_PER_S) / US_PER_MS);
+}
+
+static void add_name(text_t *text, const why_trip_t *trip) {
+    if (trip->id != WHY_NO_ID) {
+        const char *name = agv_message_name(trip->message);
+        text_add(text, "%03" PRIX32 "h%s%s ", trip->id, (name != NULL) ? " " : "", (name != NULL) ? name : "");
+    }
+}
+
+static void add_limit(text_t *text, const why_trip_t *trip) {
+    if (trip->unit == NULL) {
+        return;
+    }
+    if (trip->unit[0] == 'd') {
+        text_add(text, "%" PRId64 ".%" PRId64 " deg", trip->limit / DDEG_PER_DEG, trip->limit % DDEG_PER_DEG);
+    } else {
+        text_add(text, "%" PRId64 " %s", trip->limit, trip->unit);
+    }
+}
+
+static void add_meaning(text_t *text, const why_t *why, const why_trip_t *trip) {
+    const meaning_t *meaning = &meanings[trip->reason];
+    for (const char *at = (meaning->words != NULL) ? meaning->words : ""; *at != '\0'; at++) {
+        if ((at[0] == '%') && (at[1] == 'L')) {
+            add_limit(text, trip);
+            at++;
+        } else if ((at[0] == '%') && (at[1] == 'T')) {
+            text_add(text, "%u ms", (unsigned)agv_config_get(&why->config, meaning->time));
+            at++;
+        } else {
+            text_add(text, "%c", *at);
+        }
+    }
+}
+
+static void add_from(text_t *text, const char *words, uint64_t t_us) {
+    if (t_us != WHY_NEVER) {
+        text_add(text, "%s", words);
+        why_words_time(text, t_us);
+    }
+}
+
+static void say_silence(text_t *text, const why_trip_t *trip) {
+    if (trip->last_good_us == WHY_NEVER) {
+        text_add(text, "was never heard, deadline %" PRId64 " ms", trip->limit);
+    } else {
+        add_from(text, "was silent: last at ", trip->last_good_us);
+        text_add(text, ", deadline %" PRId64 " ms", trip->limit);
+    }
+    if (trip->next_us != WHY_NEVER) {
+        add_from(text, ", next at ", trip->next_us);
+    } else if (trip->last_good_us != WHY_NEVER) {
+        text_add(text, ", none since");
+    } else {
+        /* that it was never heard says it */
+    }
+}
+
+/** The first bad frame: the evidence at the time of the cause. */
+static const why_evidence_t *first_bad(const why_trip_t *trip) {
+    for (size_t i = 0u; i < trip->evidence_count; i++) {
+        const why_evidence_t *evidence = &trip->evidence[i];
+        if ((evidence->t_us == trip->cause_us) && (evidence->frame.id == trip->id)) {
+            return evidence;
+        }
+    }
+    return NULL;
+}
+
+/** Add the payload of the first bad frame. */
+static void add_payload(text_t *text, const why_trip_t *trip) {
+    const why_evidence_t *evidence = first_bad(trip);
+    if (evidence == NULL) {
+        return;
+    }
+    const hal_can_frame_t *frame = &evidence->frame;
+    text_add(text, " [");
+    for (size_t i = 0u; (i < frame->length) && (i < sizeof frame->data); i++) {
+        text_add(text, "%s%02X", (i > 0u) ? " " : "", frame->data[i]);
+    }
+    text_add(text, "]");
+}
+
+static void say_stuck(text_t *text, const why_t *why, const why_trip_t *trip) {
+    text_add(text, "kept its alive counter at %u", why->messages[trip->message].counter);
+    add_from(text, " from ", trip->cause_us);
+    add_from(text, " on: last change at ", trip->last_good_us);
+    text_add(text, ", deadline %" PRId64 " ms", trip->limit);
+}
+
+static void say_bit(text_t *text, const why_trip_t *trip) {
+    text_add(text, "reported %s", agv_fault_name(trip->reason));
+    add_from(text, " from ", trip->cause_us);
+    text_add(text, " on");
+    add_payload(text, trip);
+}
+
+static void say_score(text_t *text, const why_t *why, const why_trip_t *trip) {
+    if (meanings[trip->reason].words != NULL) {
+        add_meaning(text, why, trip);
+    } else {
+        text_add(text, "reported %s", agv_fault_name(trip->reason));
+    }
+    text_add(text, " in %" PRId64 " frames", trip->limit);
+    add_from(text, ", the first at ", trip->cause_us);
+    add_payload(text, trip);
+}
+
+static void say_value(text_t *text, const why_trip_t *trip) {
+    const why_evidence_t *bad = first_bad(trip);
+    const bool malformed = (bad != NULL) && ((bad->frame.length != AGV_DLC) || (bad->frame.flags != 0u));
+    text_add(text, malformed ? "had another length or format" : "commanded a value that does not exist");
+    add_from(text, " at ", trip->cause_us);
+    add_payload(text, trip);
+}
+
+static void say_intrusion(text_t *text, const why_trip_t *trip) {
+    if (trip->reason == AGV_FAULT_COMMAND_TOO_FAST) {
+        text_add(text, "came in less than half its cycle %" PRId64 " times", trip->limit);
+        add_from(text, ", the first time at ", trip->cause_us);
+    } else {
+        text_add(text, (trip->reason == AGV_FAULT_STATUS_ID_IN_USE) ? "is sent by another node"
+                                                                    : "came from the vehicle side");
+        add_from(text, ": at ", trip->cause_us);
+        add_payload(text, trip);
+    }
+}
+
+static void say_vehicle(text_t *text, const why_t *why, const why_trip_t *trip) {
+    if (trip->reason == AGV_FAULT_SAFE_STATE_UNCONFIRMED) {
+        text_add(text, "did not confirm %s for %" PRId64 " ms",
+                 (trip->message == AGV_MSG_GEAR_STATUS) ? "gear P" : "that the autopilot is off", trip->limit);
+    } else {
+        add_meaning(text, why, trip);
+    }
+    add_from(text, ", from ", trip->cause_us);
+    text_add(text, " on");
+}
+
+static void say_lasting(text_t *text, const why_t *why, const why_trip_t *trip) {
+    add_meaning(text, why, trip);
+    if (trip->cause_us != trip->t_us) {
+        add_from(text, ", from ", trip->cause_us);
+        text_add(text, " on");
+    }
+}
+
+void why_words_cause(text_t *text, const why_t *why, const why_trip_t *trip) {
+    add_name(text, trip);
+    switch (trip->kind) {
+    case WHY_SILENCE:
+        say_silence(text, trip);
+        break;
+    case WHY_STUCK:
+        say_stuck(text, why, trip);
+        break;
+    case WHY_BIT:
+        say_bit(text, trip);
+        break;
+    case WHY_SCORE:
+        say_score(text, why, trip);
+        break;
+    case WHY_VALUE:
+        say_value(text, trip);
+        break;
+    case WHY_INTRUSION:
+        say_intrusion(text, trip);
+        break;
+    case WHY_VEHICLE:
+        say_vehicle(text, why, trip);
+        break;
+    default:
+        say_lasting(text, why, trip);
+        break;
+    }
+}
+
+/** Add how a message that carries a heartbeat fails. */
+static void say_no_beat(text_t *text, const why_t *why, agv_message_t number) {
+    const why_message_t *message = &why->messages[number];
+    const unsigned id = why->ids.of[number];
+    if (message->count == 0u) {
+        text_add(text, "%03Xh never heard", id);
+    } else if (message->repeats) {
+        text_add(text, "alive counter of %03Xh stuck at %u", id, message->counter);
+    } else {
+        text_add(text, "%03Xh last heard at ", id);
+        why_words_time(text, message->last_us);
+    }
+}
+
+static void say_no_manual(text_t *text, const why_t *why) {
+    const unsigned id = why->ids.of[AGV_MSG_VEHICLE_STATUS];
+    const uint32_t bits = why->facts.mode_bits & (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT);
+    if (!why->facts.mode_known) {
+        text_add(text, "%03Xh never heard", id);
+        return;
+    }
+    const char *mode = (bits == 0u)                       ? "neither mode"
+                       : (bits == AGV_VCU_FLAG_MANUAL)    ? "manual, but not all the time"
+                       : (bits == AGV_VCU_FLAG_AUTOPILOT) ? "autopilot"
+                                                          : "both modes";
+    text_add(text, "%03Xh reports %s%s", id, mode, why->manual_was_seen ? "" : " from its first frame");
+}
+
+/** Name the messages that INIT waits for. */
+static void say_no_messages(text_t *text, const why_t *why, bool heard) {
+    const char *between = "";
+    for (int i = (int)AGV_COMMAND_COUNT; i < (int)AGV_MSG_COUNT; i++) {
+        const why_message_t *message = &why->messages[i];
+        const uint64_t age_us = why->now_us - ((message->count > 0u) ? message->last_us : 0u);
+        const bool late =
+            age_us > (uint64_t)agv_config_get(&why->config, why_silence_setting((agv_message_t)i)) * US_PER_MS;
+        if ((heard == (message->count > 0u)) && (!heard || late)) {
+            text_add(text, "%s%03Xh", between, why->ids.of[i]);
+            between = ", ";
+        }
+    }
+    if (between[0] != '\0') {
+        text_add(text, heard ? " silent" : " never heard");
+    }
+}
+
+static void say_trip_causes(text_t *text, const why_t *why) {
+    const char *between = "";
+    for (size_t i = 0u; i < why->fault_count; i++) {
+        const why_fault_t *fault = &why->faults[why->fault_order[i]];
+        if (fault->active && (fault->fault_class == AGV_CLASS_TRIP)) {
+            text_add(text, "%s%s", between, agv_fault_name(fault->fault));
+            between = ", ";
+        }
+    }
+}
+
+void why_words_missing(text_t *text, const why_t *why, uint8_t bit) {
+    switch (1u << bit) {
+    case AGV_MISSING_VCU_HEARTBEAT:
+        say_no_beat(text, why, AGV_MSG_VEHICLE_STATUS);
+        break;
+    case AGV_MISSING_EPS_HEARTBEAT:
+        say_no_beat(text, why, AGV_MSG_STEERING_STATUS);
+        break;
+    case AGV_MISSING_MANUAL:
+        say_no_manual(text, why);
+        break;
+    case AGV_MISSING_MESSAGES:
+        say_no_messages(text, why, false);
+        say_no_messages(text, why, true);
+        break;
+    case AGV_MISSING_STANDSTILL:
+        text_add(text, "%03Xh reports %d and %d mm/s", why->ids.of[AGV_MSG_WHEEL_SPEED], (int)why->facts.left_mm_s,
+                 (int)why->facts.right_mm_s);
+        break;
+    case AGV_MISSING_TRIP_CAUSE:
+        say_trip_causes(text, why);
+        break;
+    default:
+        break;
+    }
+}
