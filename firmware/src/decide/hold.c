@@ -1,10 +1,8 @@
 #include "decide/hold.h"
 
-bool agv_hold_drop(agv_hold_t *hold) {
-    const bool dropped = agv_hold_is_held(hold);
+void agv_hold_drop(agv_hold_t *hold) {
     hold->raw = 0u;
     hold->check = 0u;
-    return dropped;
 }
 
 void agv_hold_take(agv_hold_t *hold, const agv_vehicle_t *vehicle) {
@@ -15,17 +13,38 @@ void agv_hold_take(agv_hold_t *hold, const agv_vehicle_t *vehicle) {
 }
 
 void agv_hold_trip(agv_hold_t *hold, const agv_vehicle_t *vehicle, const agv_timers_t *timers) {
-    (void)agv_hold_drop(hold);
+    agv_hold_drop(hold);
     hold->unsent_ms = 0u;
+    hold->handed_over = false;
     if (agv_timer_runs(timers, AGV_TIMER_ANGLE) && !agv_timer_reached(timers, AGV_TIMER_ANGLE)) {
         agv_hold_take(hold, vehicle);
     }
 }
 
-void agv_hold_follow(agv_hold_t *hold, uint32_t elapsed_ms, bool sendable) {
+bool agv_hold_follow(agv_hold_t *hold, uint32_t elapsed_ms) {
     const uint32_t left_ms = (uint32_t)AGV_HOLD_UNSENT_MAX_MS - hold->unsent_ms;
     const uint32_t step_ms = (elapsed_ms < left_ms) ? elapsed_ms : left_ms;
-    hold->unsent_ms = (uint16_t)(sendable ? 0u : (hold->unsent_ms + step_ms));
+    hold->unsent_ms = (uint16_t)(hold->unsent_ms + step_ms);
+    return (step_ms != 0u) && (step_ms == left_ms);
+}
+
+void agv_hold_handed_over(agv_hold_t *hold) {
+    hold->handed_over = true;
+}
+
+void agv_hold_left(agv_hold_t *hold) {
+    if (hold->handed_over) {
+        hold->unsent_ms = 0u;
+    }
+    hold->handed_over = false;
+}
+
+void agv_hold_withdrawn(agv_hold_t *hold) {
+    hold->handed_over = false;
+}
+
+bool agv_hold_is_stuck(const agv_hold_t *hold, bool stalled, bool sendable) {
+    return stalled && hold->handed_over && !(sendable && agv_hold_is_held(hold));
 }
 
 bool agv_hold_is_held(const agv_hold_t *hold) {

@@ -14,7 +14,8 @@
 typedef struct {
     uint16_t raw;       /**< 0..18000 (P5) */
     uint16_t check;     /**< complement of raw */
-    uint16_t unsent_ms; /**< time for which 065h could not be sent, at most AGV_HOLD_UNSENT_MAX_MS */
+    uint16_t unsent_ms; /**< time for which no 065h has left the controller, at most AGV_HOLD_UNSENT_MAX_MS */
+    bool handed_over;   /**< the controller accepted a 065h, and may still have it */
 } agv_hold_t;
 
 /** After this time without 065h, ms, the wheels may have turned: the angle is out of date (FSM-10). */
@@ -23,11 +24,8 @@ enum { AGV_HOLD_UNSENT_MAX_MS = 2000 };
 /** Hold, at a trip, the angle of the last valid 067h if it is not older than hold_age_ms. */
 void agv_hold_trip(agv_hold_t *hold, const agv_vehicle_t *vehicle, const agv_timers_t *timers);
 
-/**
- * Drop the held angle: at a reset, when manual is reported and the operator steers.
- * @return whether an angle was held
- */
-bool agv_hold_drop(agv_hold_t *hold);
+/** Drop the held angle: at a reset, when manual is reported and the operator steers. */
+void agv_hold_drop(agv_hold_t *hold);
 
 /**
  * Hold the angle of a valid 067h if none is held, or if the held one is out of date. Call in TRIPPED and SAFE while manual is
@@ -36,11 +34,26 @@ bool agv_hold_drop(agv_hold_t *hold);
 void agv_hold_take(agv_hold_t *hold, const agv_vehicle_t *vehicle);
 
 /**
- * Measure for how long 065h could not be sent. Call in TRIPPED and SAFE, in every pass.
+ * Measure for how long no 065h has left the controller. Call in TRIPPED and SAFE, in every pass.
  * @param elapsed_ms since the last tick; 0 for a frame
- * @param sendable   065h may be sent and leaves the controller
+ * @return whether the angle has just gone out of date
  */
-void agv_hold_follow(agv_hold_t *hold, uint32_t elapsed_ms, bool sendable);
+bool agv_hold_follow(agv_hold_t *hold, uint32_t elapsed_ms);
+
+/** The controller accepted a 065h. */
+void agv_hold_handed_over(agv_hold_t *hold);
+
+/** All frames that the controller accepted have left it. */
+void agv_hold_left(agv_hold_t *hold);
+
+/** The frames that the controller accepted are discarded. */
+void agv_hold_withdrawn(agv_hold_t *hold);
+
+/**
+ * Whether a 065h that may no longer be sent waits in a stalled transmitter, from which it would leave later.
+ * @param sendable 065h may be sent, and its angle has not just gone out of date
+ */
+bool agv_hold_is_stuck(const agv_hold_t *hold, bool stalled, bool sendable);
 
 /** Whether an angle is held. */
 bool agv_hold_is_held(const agv_hold_t *hold);

@@ -29,6 +29,9 @@ uint32_t agv_bus_tick(agv_bus_t *bus, agv_timers_t *timers, const agv_config_t *
     if (status.bus_off_count != bus->bus_offs) {
         report = AGV_BUS_OFF | AGV_BUS_RECOVERED;
     }
+    if (status.tx_pending_ms != 0u) {
+        report |= AGV_BUS_WAITING;
+    }
     if (status.tx_pending_ms > config->tx_stalled_ms) {
         report |= AGV_BUS_STALLED;
     }

@@ -24,6 +24,7 @@ typedef struct {
 #define AGV_BUS_PASSIVE 0x08u      /**< error-passive */
 #define AGV_BUS_OVERRUN 0x10u      /**< received frames were lost since the last tick */
 #define AGV_BUS_STALLED 0x20u      /**< an accepted frame has been waiting for too long */
+#define AGV_BUS_WAITING 0x40u      /**< an accepted frame is waiting */
 
 /** Take the controller's counters as the reference for later ticks. */
 void agv_bus_start(agv_bus_t *bus, hal_t *hal, hal_can_side_t side);

@@ -188,14 +188,18 @@ void agv_core_await_safe_state(agv_core_t *core) {
     agv_reset_button_trip(&core->reset_pin, &core->timers);
 }
 
-/* FSM-10: manual drops the held angle, and 065h frames in a stalled transmitter, which would otherwise leave later. */
+/* FSM-10: manual drops the held angle. A 065h that may no longer be sent must not leave a stalled transmitter later. */
 static void follow_hold(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) {
     const bool stalled = agv_fault_monitor_is_active(&core->faults, AGV_FAULT_TX_STALLED);
-    const bool dropped = (!is_latched(core) || agv_mode_is_manual(&core->mode)) && agv_hold_drop(&core->hold);
-    if (is_latched(core)) {
-        agv_hold_follow(&core->hold, elapsed_ms, is_holdable(core) && !stalled);
+    if (!is_latched(core) || agv_mode_is_manual(&core->mode)) {
+        agv_hold_drop(&core->hold);
     }
-    if (dropped && stalled) {
+    if (!is_latched(core)) {
+        return;
+    }
+    const bool outdated = agv_hold_follow(&core->hold, elapsed_ms);
+    if (agv_hold_is_stuck(&core->hold, stalled, is_holdable(core) && !outdated)) {
+        agv_hold_withdrawn(&core->hold);
         agv_transmitter_discard(&core->transmitter, &core->timers, HAL_CAN_VEHICLE);
         hal_can_purge(hal, HAL_CAN_VEHICLE);
     }
@@ -295,6 +299,9 @@ void agv_core_take_tx_report(agv_core_t *core) {
     }
     if (report.park_sent && is_latched(core)) {
         agv_confirmation_park_sent(&core->confirmation);
+    }
+    if (report.hold_sent) {
+        agv_hold_handed_over(&core->hold);
     }
 }
 

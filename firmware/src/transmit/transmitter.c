@@ -126,6 +126,9 @@ static void send_own(agv_transmitter_t *transmitter, const agv_tx_orders_t *orde
     if (command == (uint32_t)AGV_MSG_GEAR_COMMAND) {
         transmitter->report.park_sent = true;
     }
+    if (command == (uint32_t)AGV_MSG_STEERING_COMMAND) {
+        transmitter->report.hold_sent = true;
+    }
     if ((command == (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND) &&
         (orders->config->own_heartbeat == (uint16_t)AGV_OWN_HEARTBEAT_RUNNING)) {
         transmitter->alive_counter++;

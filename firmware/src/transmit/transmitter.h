@@ -39,6 +39,7 @@ typedef struct {
     uint32_t skipped_slots; /**< TIM-1 */
     uint8_t passed;         /**< forwarded commands of the AI computer, bit n = command n */
     bool park_sent;         /**< an own 168h was sent */
+    bool hold_sent;         /**< an own 065h was sent */
 } agv_tx_report_t;
 
 /** The transmitter. */

@@ -83,6 +83,10 @@ static void read_limits(hazard_t *hazard) {
     limits->vcu_ms = hazard_setting(hazard, "vcu_heartbeat_timeout_ms", 50u);
     limits->tx_stalled_ms = hazard_setting(hazard, "tx_stalled_ms", 100u);
     limits->mode_invalid_ms = hazard_setting(hazard, "mode_invalid_ms", 50u);
+    limits->mode_flapping_ms = hazard_setting(hazard, "mode_flapping_ms", 5000u);
+    limits->engaged_grace_ms = hazard_setting(hazard, "engaged_grace_ms", 500u);
+    limits->reengage_ms = hazard_setting(hazard, "reengage_ms", 100u);
+    limits->reset_hold_ms = hazard_setting(hazard, "reset_hold_ms", 1000u);
     limits->gear_status_ms = hazard_setting(hazard, "gear_status_timeout_ms", 125u);
     limits->command_ms[AGV_MSG_GEAR_COMMAND] = hazard_setting(hazard, "gear_command_timeout_ms", 350u);
     limits->command_ms[AGV_MSG_THROTTLE_COMMAND] = hazard_setting(hazard, "throttle_command_timeout_ms", 350u);
@@ -155,6 +159,10 @@ static void on_data(hazard_t *hazard, hal_can_side_t side, int from, const hal_c
 
 static void look(hazard_t *hazard) {
     scenario_testbed_view(hazard->testbed, &hazard->view);
+    if (hazard->view.bites != hazard->bites) {
+        hazard->bites = hazard->view.bites;
+        hazard_hold_anew(hazard); /* it hung, and its watchdog restarted it */
+    }
 }
 
 static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {

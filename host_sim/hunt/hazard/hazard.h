@@ -44,6 +44,7 @@ enum {
     HAZARD_RECENT = 256,
     HAZARD_SPEEDS = 11,
     HAZARD_ANGLES = 64,
+    HAZARD_ENGAGEMENTS = 3,
     HAZARD_FLOOD_SLOTS = 10
 };
 
@@ -75,6 +76,10 @@ typedef struct {
     uint32_t vcu_ms;
     uint32_t tx_stalled_ms;
     uint32_t mode_invalid_ms;
+    uint32_t mode_flapping_ms;
+    uint32_t engaged_grace_ms;
+    uint32_t reengage_ms;
+    uint32_t reset_hold_ms;
     uint32_t gear_status_ms;
     uint32_t command_ms[AGV_COMMAND_COUNT];
     uint32_t command_too_fast_gaps;
@@ -90,24 +95,34 @@ typedef struct {
     bool autopilot; /**< bit 8 in the last one */
     bool manual;    /**< bit 7 and not bit 8 */
     bool both;
-    bool heard;           /**< the supervisor received the report of manual */
-    uint64_t clear_ms;    /**< since when bit 8 is clear */
-    uint64_t handback_ms; /**< when manual ended last */
-    uint64_t manual_ms;   /**< last 363h that reported manual */
+    bool heard;                            /**< the supervisor received the report of manual */
+    uint64_t clear_ms;                     /**< since when bit 8 is clear */
+    uint64_t handback_ms;                  /**< when manual ended last */
+    uint64_t manual_ms;                    /**< last 363h that reported manual */
+    bool graced;                           /**< this engagement has its grace time: it is not one too many */
+    uint64_t engaged_ms;                   /**< its beginning */
+    uint64_t begun_ms[HAZARD_ENGAGEMENTS]; /**< beginnings of the last ones */
+    uint32_t begun_count;
 } hazard_mode_t;
+
+/** Button 1, and what became of it since the first safe command. */
+typedef struct {
+    bool down;
+    bool pressed;
+    bool released; /**< after that */
+    uint64_t press_ms;
+} hazard_button_t;
 
 /** The supervisor's own safe commands, as the wire shows them. */
 typedef struct {
-    bool ready;        /**< the safety output was closed, with no safe commands */
-    bool tripped;      /**< they came since */
-    bool parks;        /**< the first 168h P */
-    uint64_t first_ms; /**< of the first since then */
-    uint64_t last_ms;  /**< of the last 43Fh with the whole safe payload */
-    bool pressed;      /**< the operator pressed button 1 since the first */
-    bool released;     /**< and released it */
-    bool button;
+    bool ready;               /**< the safety output was closed, with no safe commands */
+    bool tripped;             /**< they came since */
+    bool parks;               /**< the first 168h P */
+    uint64_t first_ms;        /**< of the first since then */
+    uint64_t last_ms;         /**< of the last 43Fh with the whole safe payload */
+    hazard_button_t button;   /**< as the operator really holds it */
+    hazard_button_t reported; /**< as 363h reports it */
     bool was_closed;
-    uint64_t press_ms;
     uint64_t closed_ms;    /**< the safety output was closed */
     uint32_t unparked_ms;  /**< sum of the time in which P was not confirmed */
     uint32_t engaged_ms;   /**< the same of the autopilot that is off */
@@ -128,12 +143,15 @@ typedef struct {
     hazard_range_t now;     /**< real and lately measured angles then */
     hazard_range_t at_trip; /**< the same at the trip */
     bool has_trip;
+    uint64_t trip_ms;
     bool is_dropped; /**< manual was reported since */
     uint64_t dropped_ms;
     hazard_range_t first; /**< the first measured angles after the trip, or after manual ended */
     uint64_t first_ms;    /**< when the first of them came */
     bool has_first;
-    int32_t wrong_ddeg; /**< the commanded angle that is none of these */
+    uint16_t kept;          /**< the last right value */
+    uint64_t kept_until_ms; /**< it may be sent again until then */
+    int32_t wrong_ddeg;     /**< the commanded angle that is none of these */
     bool is_wrong;
     int32_t measured_ddeg[HAZARD_ANGLES]; /**< the last ones */
     uint64_t measured_ms[HAZARD_ANGLES];
@@ -155,6 +173,7 @@ typedef struct {
     uint64_t t_us;
     uint64_t t_ms;
     bool closed;
+    uint32_t bites; /**< of the supervisor's watchdog */
     hazard_message_t messages[AGV_MSG_COUNT];
     hazard_recent_t recent[AGV_COMMAND_COUNT];
     uint16_t commanded[AGV_COMMAND_COUNT]; /**< the last value commanded to the vehicle */
@@ -223,6 +242,7 @@ void hazard_passed(hazard_t *hazard, agv_message_t message, const hal_can_frame_
 void hazard_passed_tick(hazard_t *hazard);
 void hazard_safe_frame(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame);
 void hazard_safe_tick(hazard_t *hazard);
+void hazard_safe_reported(hazard_t *hazard, const uint8_t data[AGV_DLC]);
 void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame);
 void hazard_hold_tick(hazard_t *hazard);
 void hazard_hold_measured(hazard_t *hazard, int32_t angle_ddeg);

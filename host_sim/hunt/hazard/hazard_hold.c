@@ -4,6 +4,7 @@
 #include "hunt/hazard/hazard.h"
 
 enum { NEW_HOLD_MS = 300, FRESH_MS = 150, IN_FLIGHT_MS = 20, TOLERANCE_DDEG = 50, CENTRE_DDEG = 9000 };
+enum { OUT_OF_DATE_MS = 2000 };
 
 static bool is_near(int32_t a_ddeg, int32_t b_ddeg) {
     return abs(a_ddeg - b_ddeg) <= TOLERANCE_DDEG;
@@ -53,22 +54,25 @@ static hazard_range_t range_now(const hazard_t *hazard, uint32_t within_ms) {
     return range;
 }
 
+static void trip_now(hazard_t *hazard, uint32_t within_ms) {
+    hazard_hold_t *hold = &hazard->hold;
+
+    hold->at_trip = range_now(hazard, within_ms);
+    hold->has_trip = true;
+    hold->trip_ms = hazard->t_ms;
+    hold->is_dropped = false;
+    hold->has_first = false;
+    hold->kept_until_ms = 0u;
+}
+
 void hazard_hold_trip(hazard_t *hazard) {
     /* An open output without a safe command: the trip came when the first frame did not leave. */
-    const uint32_t within_ms = (uint32_t)FRESH_MS + (hazard->closed ? 0u : hazard->limits.tx_stalled_ms);
-
-    hazard->hold.at_trip = range_now(hazard, within_ms);
-    hazard->hold.has_trip = true;
-    hazard->hold.is_dropped = false;
-    hazard->hold.has_first = false;
+    trip_now(hazard, (uint32_t)FRESH_MS + (hazard->closed ? 0u : hazard->limits.tx_stalled_ms));
 }
 
 /** A supervisor that restarts or detects a flipped bit trips again, and holds the angle that it then measures. */
 void hazard_hold_anew(hazard_t *hazard) {
-    hazard->hold.at_trip = range_now(hazard, FRESH_MS);
-    hazard->hold.has_trip = true;
-    hazard->hold.is_dropped = false;
-    hazard->hold.has_first = false;
+    trip_now(hazard, FRESH_MS);
 }
 
 void hazard_hold_manual(hazard_t *hazard) {
@@ -78,27 +82,54 @@ void hazard_hold_manual(hazard_t *hazard) {
         hold->is_dropped = true;
         hold->dropped_ms = hazard->t_ms;
     }
+    if (hold->kept_until_ms > hazard->t_ms + IN_FLIGHT_MS) {
+        hold->kept_until_ms = hazard->t_ms + IN_FLIGHT_MS;
+    }
+}
+
+/** An angle that was not sent for so long is out of date: it is not held again. */
+static uint64_t in_date_ms(const hazard_t *hazard) {
+    return (uint64_t)OUT_OF_DATE_MS + hazard->limits.tx_stalled_ms + FRESH_MS;
 }
 
 /** Manual drops the angle of the trip; a frame that was in the controller then may still leave. */
 static bool is_of_trip(const hazard_t *hazard, int32_t held_ddeg) {
     const hazard_hold_t *hold = &hazard->hold;
 
-    return hold->has_trip && (!hold->is_dropped || (hazard->t_ms - hold->dropped_ms <= IN_FLIGHT_MS)) &&
+    return hold->has_trip && (hazard->t_ms - hold->trip_ms <= in_date_ms(hazard)) &&
+           (!hold->is_dropped || (hazard->t_ms - hold->dropped_ms <= IN_FLIGHT_MS)) &&
            is_within(&hold->at_trip, held_ddeg);
+}
+
+/** The first angles after the trip, or after manual ended. */
+static bool is_of_first(const hazard_t *hazard, int32_t held_ddeg) {
+    const hazard_hold_t *hold = &hazard->hold;
+
+    return hold->has_first && (hazard->t_ms - hold->first_ms <= in_date_ms(hazard)) &&
+           is_within(&hold->first, held_ddeg);
 }
 
 /** Whether the angle is one that may be held. */
 static bool may_be_held(const hazard_t *hazard, int32_t held_ddeg) {
     const hazard_hold_t *hold = &hazard->hold;
+    const bool is_kept = (held_ddeg + CENTRE_DDEG == (int32_t)hold->kept) && (hazard->t_ms <= hold->kept_until_ms);
 
-    return is_within(&hold->now, held_ddeg) || is_of_trip(hazard, held_ddeg) ||
-           (hold->has_first && is_within(&hold->first, held_ddeg));
+    return is_kept || is_within(&hold->now, held_ddeg) || is_of_trip(hazard, held_ddeg) ||
+           is_of_first(hazard, held_ddeg);
+}
+
+/** A right angle may be sent again, until it is out of date or manual is reported. */
+static void keep(hazard_t *hazard) {
+    if (!hazard->mode.manual) {
+        hazard->hold.kept = hazard->hold.value;
+        hazard->hold.kept_until_ms = hazard->t_ms + in_date_ms(hazard);
+    }
 }
 
 /** Passed on for the AI computer: after a reset the safe commands may have ended already. */
 static bool is_passed_on(const hazard_t *hazard, uint16_t value) {
-    const bool is_limited = hazard->limits.limits_steering && hazard->trip.released && hazard->mode.autopilot;
+    const bool is_limited = hazard->limits.limits_steering &&
+                            (hazard->trip.button.released || hazard->trip.reported.released) && hazard->mode.autopilot;
 
     return hazard->gateway && (is_limited || hazard_was_sent(hazard, AGV_MSG_STEERING_COMMAND, value));
 }
@@ -118,7 +149,9 @@ void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame) {
     }
     hold->last_ms = hazard->t_ms;
     hold->value = value;
-    if (!may_be_held(hazard, held_ddeg)) {
+    if (may_be_held(hazard, held_ddeg)) {
+        keep(hazard);
+    } else {
         if (!hold->is_wrong) {
             hold->start_ddeg = hazard_angle_ddeg(hazard); /* what a right angle moved before does not count */
         }

@@ -1,7 +1,7 @@
 /* Gateway: commands that the supervisor lets through, and those of foreign senders (H3, H7). */
 #include "hunt/hazard/hazard.h"
 
-enum { MARGIN_MS = 100, IN_FLIGHT_MS = 60, ANSWER_MS = 200, SLOT_MS = 100, SAFE_MS = 300, DROP_RATE = 2 };
+enum { MARGIN_MS = 100, IN_FLIGHT_MS = 60, ANSWER_MS = 100, SLOT_MS = 100, SAFE_MS = 300, DROP_RATE = 2 };
 enum { NOMINAL_PER_S = 10 + 10 + 10 + 40, SPARE_PER_S = 8 };
 
 /** Whether the AI side carried this value (of a throttle: this or a higher one) lately. */
@@ -67,11 +67,19 @@ static bool is_unanswered(const hazard_t *hazard, uint64_t *since_ms, uint32_t w
     return hazard->t_ms - *since_ms > within_ms;
 }
 
+/** A command on the vehicle side is followed by the safe ones at once, if they leave the controller. */
+static uint32_t answer_ms(const hazard_t *hazard) {
+    scenario_controller_t controller;
+
+    scenario_testbed_controller(hazard->testbed, HAL_CAN_VEHICLE, &controller);
+    return (uint32_t)ANSWER_MS + (controller.is_stalled ? hazard->limits.tx_stalled_ms : (uint32_t)MARGIN_MS);
+}
+
 void hazard_passed_tick(hazard_t *hazard) {
     if (!hazard->gateway) {
         return;
     }
-    if (is_unanswered(hazard, &hazard->foreign_ms, ANSWER_MS)) {
+    if (is_unanswered(hazard, &hazard->foreign_ms, answer_ms(hazard))) {
         hazard_found(hazard, HAZARD_FALSE_COMMAND, "a rogue node's command is not overridden");
     }
     if (is_unanswered(hazard, &hazard->false_ms, IN_FLIGHT_MS)) {

@@ -214,7 +214,7 @@ static bool gave_up_status_frame(const hazard_t *hazard) {
 static uint32_t limit_ms(const hazard_t *hazard, const row_t *row, uint32_t value) {
     uint32_t limit = MARGIN_MS + ((row->form == LEVEL) ? value : 0u);
 
-    limit += row->engaged ? hazard_setting(hazard, "engaged_grace_ms", 500u) : 0u;
+    limit += (row->engaged && (row->form <= STUCK)) ? hazard->limits.engaged_grace_ms : 0u;
     if (row->message == AGV_MSG_TURN_SIGNAL_COMMAND) {
         limit += hazard_setting(hazard, "ai_never_seen_timeout_ms", 500u);
     }
@@ -270,6 +270,14 @@ static bool holds(const hazard_t *hazard, unsigned r) {
     }
 }
 
+/** In the grace time of an engagement, what a node reports is not judged yet. */
+static bool is_in_grace(const hazard_t *hazard, const row_t *row) {
+    const hazard_mode_t *mode = &hazard->mode;
+
+    return row->engaged && (row->form > STUCK) && mode->autopilot && mode->graced &&
+           (hazard->t_ms - mode->engaged_ms < hazard->limits.engaged_grace_ms);
+}
+
 /** Time in which a condition holds adds up; time in which it does not takes away. */
 static void add_up(hazard_t *hazard, unsigned r) {
     const row_t *row = &ROWS[r];
@@ -301,7 +309,7 @@ void hazard_rows_tick(hazard_t *hazard) {
         return;
     }
     for (unsigned r = 0u; r < (unsigned)ROW_COUNT; r++) {
-        if (!hazard->off[r]) {
+        if (!hazard->off[r] && !is_in_grace(hazard, &ROWS[r])) {
             add_up(hazard, r);
         }
     }

@@ -6,8 +6,15 @@
 enum { SIGNALS_BYTES = 7, IN_FLIGHT_MS = 12, GONE_MS = 700, PENDING_MS = 50, PRESS_SEEN_MS = 100 };
 enum { CONFIRM_MARGIN_MS = 300, CLEARED_MS = 5000, STALE_MARGIN_MS = 100 };
 enum { SPEED_SLOT_MS = 100, SLOWER_MM_S = 50, MOVING_MM_S = 300, STANDS_MM_S = 100, FRESH_MS = 100, MARGIN_MS = 1500 };
+enum { ALARMS_BYTE = 4, FLAGS_BYTE = 6, PRESS_MARGIN_MS = 20 };
 
 static const uint8_t SAFE_SIGNALS[SIGNALS_BYTES] = {0x00, 0x00, 0x00, 0x00, 0x70, 0x00, 0x00};
+
+/** A press that came a moment before the trip is reported after it. */
+static void forget_press(const hazard_t *hazard, hazard_button_t *button) {
+    button->pressed = button->down && (hazard->t_ms - button->press_ms <= PRESS_SEEN_MS);
+    button->released = false;
+}
 
 static void begin_trip(hazard_t *hazard) {
     hazard_trip_t *trip = &hazard->trip;
@@ -15,8 +22,8 @@ static void begin_trip(hazard_t *hazard) {
     trip->tripped = true;
     trip->parks = false;
     trip->first_ms = hazard->t_ms;
-    trip->pressed = trip->button && (hazard->t_ms - trip->press_ms <= PRESS_SEEN_MS); /* 363h reports it later */
-    trip->released = false;
+    forget_press(hazard, &trip->button);
+    forget_press(hazard, &trip->reported);
     trip->unparked_ms = 0u;
     trip->engaged_ms = 0u;
     trip->confirmed_ms = 0u;
@@ -73,17 +80,31 @@ static void check_confirmation(hazard_t *hazard) {
     }
 }
 
-/** Button 1 as the operator really holds it. */
-static void follow_button(hazard_t *hazard) {
-    hazard_trip_t *trip = &hazard->trip;
-    const bool button = hazard->view.vehicle.button_1;
-
-    if (button && !trip->button) {
-        trip->pressed = true;
-        trip->press_ms = hazard->t_ms;
+static void follow_button(hazard_t *hazard, hazard_button_t *button, bool down, uint32_t least_ms) {
+    if (down && !button->down) {
+        button->pressed = true;
+        button->press_ms = hazard->t_ms;
     }
-    trip->released = trip->released || (trip->pressed && !button && trip->button);
-    trip->button = button;
+    button->released =
+        button->released || (button->pressed && !down && button->down && (hazard->t_ms - button->press_ms >= least_ms));
+    button->down = down;
+}
+
+/**
+ * Button 1 as 363h reports it: late, or as not pressed though the remote signal is lost. Where the alarms report that loss, nobody
+ * knows.
+ */
+void hazard_safe_reported(hazard_t *hazard, const uint8_t data[AGV_DLC]) {
+    hazard_button_t *button = &hazard->trip.reported;
+    const bool down = (data[FLAGS_BYTE] & AGV_VCU_FLAG_BUTTON_1) != 0u;
+    const bool lost = (data[ALARMS_BYTE] & (AGV_VCU_ALARM_REMOTE_SIGNAL_LOST | AGV_VCU_ALARM_REMOTE_POWER_LOST)) != 0u;
+
+    if (down || !lost) {
+        follow_button(hazard, button, down, hazard->limits.reset_hold_ms - (uint32_t)PRESS_MARGIN_MS);
+    } else {
+        button->pressed = button->pressed && button->released;
+        button->down = true;
+    }
 }
 
 /** No safe command for a while, though the controller could send: they have ended. */
@@ -103,13 +124,11 @@ static void check_reset(hazard_t *hazard, bool was_closed) {
 
     if (trip->tripped && ((hazard->closed && !was_closed) || has_ended(hazard))) {
         trip->tripped = false;
-        if (!trip->pressed) {
-            hazard_found(hazard, HAZARD_RESET, "nobody pressed the button after the trip");
-        } else if (!trip->released) {
-            hazard_found(hazard, HAZARD_RESET, "the button was not released");
-        } else {
-            /* a reset as it should be */
+        if (trip->button.released || trip->reported.released) {
+            return; /* a reset as it should be */
         }
+        hazard_found(hazard, HAZARD_RESET,
+                     trip->button.pressed ? "the button was not released" : "nobody pressed the button after the trip");
     }
 }
 
@@ -167,7 +186,7 @@ void hazard_safe_tick(hazard_t *hazard) {
     hazard_trip_t *trip = &hazard->trip;
     const bool was_closed = trip->was_closed;
 
-    follow_button(hazard);
+    follow_button(hazard, &trip->button, hazard->view.vehicle.button_1, 0u);
     check_reset(hazard, was_closed);
     follow_output(hazard, was_closed);
     const bool hangs = hazard->view.is_halted; /* the watchdog ends that, after its period */

@@ -99,6 +99,20 @@ static void note_manual(hazard_t *hazard, bool manual) {
     }
 }
 
+/** Its grace time is for every engagement but the one that is too many in mode_flapping_ms. */
+static void begin_engagement(hazard_t *hazard) {
+    hazard_mode_t *mode = &hazard->mode;
+    uint64_t *oldest_ms = &mode->begun_ms[mode->begun_count % HAZARD_ENGAGEMENTS];
+
+    mode->engaged_ms = hazard->t_ms;
+    mode->graced = (mode->begun_count < (uint32_t)HAZARD_ENGAGEMENTS) ||
+                   (hazard->t_ms - *oldest_ms > hazard->limits.mode_flapping_ms);
+    if (!hazard->trip.tripped) {
+        *oldest_ms = hazard->t_ms;
+        mode->begun_count++;
+    }
+}
+
 static void note_mode(hazard_t *hazard, uint8_t bits) {
     hazard_mode_t *mode = &hazard->mode;
     const bool autopilot = (bits & AUTOPILOT_BIT) != 0;
@@ -107,6 +121,9 @@ static void note_mode(hazard_t *hazard, uint8_t bits) {
     if (autopilot && !mode->autopilot && (hazard->t_ms - mode->clear_ms >= REENGAGE_MS)) {
         check_newest_throttle(hazard);
         memset(hazard->is_commanded, 0, sizeof hazard->is_commanded);
+    }
+    if (autopilot && !mode->autopilot && (hazard->t_ms - mode->clear_ms >= hazard->limits.reengage_ms)) {
+        begin_engagement(hazard);
     }
     if (!autopilot && mode->autopilot) {
         mode->clear_ms = hazard->t_ms;
@@ -146,6 +163,7 @@ void hazard_wire_status(hazard_t *hazard, agv_message_t message, const hal_can_f
     note(hazard, message, frame->data);
     if (message == AGV_MSG_VEHICLE_STATUS) {
         note_mode(hazard, frame->data[MODE_BYTE]);
+        hazard_safe_reported(hazard, frame->data);
     } else if (message == AGV_MSG_THROTTLE_STATUS) {
         note_throttle(hazard, frame->data[0]);
     } else if ((message == AGV_MSG_STEERING_STATUS) && is_usable(message, frame->data)) {

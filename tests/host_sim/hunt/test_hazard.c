@@ -264,6 +264,47 @@ void test_h2_a_flipped_bit_is_a_trip_of_its_own(void) {
     expect(HAZARD_NONE, "", play(&holds, steps));
 }
 
+void test_h2_a_supervisor_that_hung_is_restarted_and_trips_anew(void) {
+    const char *const head = "  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
+                             "  - {at_ms: 3200, ai: drive, gear: D, throttle_pct: 60, steer_deg: 80}\n";
+    const char *const tail = "  - {at_ms: 3680, ai: drive, gear: D, throttle_pct: 60, steer_deg: -20}\n"
+                             "  - {at_ms: 3880, ai: mute, message: steering_command}\n";
+    const planted_t holds = {
+        .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .hold_ddeg = 600, .hold_ms = TRIP_MS + 900};
+    char steps[512];
+
+    (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 3500, supervisor: hang, for_ms: 50}\n%s", head, tail);
+    expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&holds, steps));
+    (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 3500, supervisor: hang, for_ms: 150}\n%s", head, tail);
+    expect(HAZARD_NONE, "", play(&holds, steps));
+}
+
+/** 065h begins late, with the angle of the trip, from which the AI computer has steered away. */
+void test_h2_the_angle_of_the_trip_is_out_of_date_after_2_s(void) {
+    const char *const steps = "  - {at_ms: 2990, vcu: set, field: mode_bits, value: 2h}\n"
+                              "  - {at_ms: 3300, ai: drive, gear: D, throttle_pct: 60, steer_deg: -60}\n"
+                              "  - {at_ms: 3900, ai: mute, message: steering_command}\n";
+    const planted_t soon = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .hold_ms = TRIP_MS + 1900};
+    const planted_t late = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .hold_ms = TRIP_MS + 2500};
+    expect(HAZARD_NONE, "", play(&soon, steps));
+    expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&late, steps));
+}
+
+/** An angle that was right goes on after a gap of less than 2 s. */
+void test_h2_a_right_angle_may_be_sent_again_within_2_s(void) {
+    const char *const head = "  - {at_ms: 2990, vcu: set, field: mode_bits, value: 2h}\n"
+                             "  - {at_ms: 6500, ai: drive, gear: D, throttle_pct: 60, steer_deg: -60}\n"
+                             "  - {at_ms: 6500, supervisor: fill_queue}\n"
+                             "  - {at_ms: 7000, ai: mute, message: steering_command}\n";
+    const planted_t holds = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true};
+    char steps[512];
+
+    (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 8400, supervisor: free_queue}\n", head);
+    expect(HAZARD_NONE, "", play(&holds, steps));
+    (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 9000, supervisor: free_queue}\n", head);
+    expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&holds, steps));
+}
+
 void test_h3_a_command_that_nobody_sent(void) {
     const planted_t forges = {.gateway = true, .passes = 1u, .forges_ms = TRIP_MS, .only_engaged = true};
     expect(HAZARD_FALSE_COMMAND, "the supervisor sent a command that the AI computer did not send",
@@ -274,6 +315,19 @@ void test_h3_a_foreign_sender(void) {
     const char *const steps = "  - {at_ms: 3000, bus: send, message: throttle_command, bytes: \"40\"}\n";
     expect(HAZARD_FALSE_COMMAND, "a rogue node's command is not overridden", play(&PASSING, steps));
     expect(HAZARD_NONE, "", play(&GOOD_GATEWAY, steps));
+}
+
+/** A stalled transmitter opens the output after tx_stalled_ms, so that nobody has to override before. */
+void test_h3_a_foreign_sender_and_a_stalled_transmitter(void) {
+    const char *const stalled = "  - {at_ms: 2990, supervisor: stall_tx}\n"
+                                "  - {at_ms: 3000, bus: send, message: throttle_command, bytes: \"40\"}\n";
+    const char *const sends = "  - {at_ms: 3000, bus: send, message: throttle_command, bytes: \"40\"}\n";
+    const planted_t opens = {
+        .gateway = true, .passes = 1u, .open_ms = TRIP_MS + 450, .setting = "tx_stalled_ms: 500\n"};
+    const planted_t stays = {.gateway = true, .passes = 1u, .setting = "tx_stalled_ms: 500\n"};
+    expect(HAZARD_NONE, "", play(&opens, stalled));
+    expect(HAZARD_FALSE_COMMAND, "a rogue node's command is not overridden", play(&stays, stalled));
+    expect(HAZARD_FALSE_COMMAND, "a rogue node's command is not overridden", play(&opens, sends));
 }
 
 void test_h3_a_frame_past_the_wire(void) {
@@ -310,6 +364,43 @@ void test_h5_a_reset(void) {
     expect(HAZARD_RESET, "nobody pressed the button after the trip", play(&resets, before));
     expect(HAZARD_RESET, "the button was not released", play(&resets, stuck));
     expect(HAZARD_NONE, "", play(&resets, pressed));
+}
+
+/** What 363h reports of the button counts too: nobody can know better. */
+void test_h5_a_press_that_is_reported_late_or_wrongly(void) {
+    const planted_t resets = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .setting = "confirm_timeout_ms: 1000\n"};
+    const char *const lost = "  - {at_ms: 2000, operator: press, button: 1}\n"
+                             "  - {at_ms: 2900, operator: lose_remote_signal}\n"
+                             "%s"
+                             "  - {at_ms: 4500, operator: regain_remote_signal}\n"
+                             "  - {at_ms: 5900, operator: release, button: 1}\n";
+    const char *const late = "  - {at_ms: 2500, vcu: delay, message: vehicle_status, by_ms: 700}\n"
+                             "  - {at_ms: 2700, operator: press, button: 1}\n"
+                             "  - {at_ms: %s, operator: release, button: 1}\n";
+    char steps[512];
+
+    (void)snprintf(steps, sizeof steps, lost, "");
+    expect(HAZARD_RESET, "nobody pressed the button after the trip", play(&resets, steps));
+    (void)snprintf(steps, sizeof steps, lost, "  - {at_ms: 2900, vcu: set, field: alarms, value: 00h}\n");
+    expect(HAZARD_NONE, "", play(&resets, steps));
+    (void)snprintf(steps, sizeof steps, late, "4000");
+    expect(HAZARD_NONE, "", play(&resets, steps));
+    (void)snprintf(steps, sizeof steps, late, "3200"); /* shorter than reset_hold_ms */
+    expect(HAZARD_RESET, "nobody pressed the button after the trip", play(&resets, steps));
+}
+
+/** Each engagement has its grace time, but not the fourth one within mode_flapping_ms. */
+void test_h6_the_grace_time_is_that_of_each_engagement(void) {
+    const char *const slow = "  - {at_ms: 2000, vcu: set, field: throttle, value: FAh}\n"
+                             "  - {at_ms: 3400, operator: disengage, again_every_ms: 2000}\n"
+                             "  - {at_ms: 3620, operator: engage, again_every_ms: 2000}\n";
+    const char *const fast = "  - {at_ms: 2000, vcu: set, field: throttle, value: FAh}\n"
+                             "  - {at_ms: 2400, operator: disengage, again_every_ms: 650}\n"
+                             "  - {at_ms: 2560, operator: engage, again_every_ms: 650}\n";
+    const planted_t graceful = {.setting = "engaged_grace_ms: 1600\n"};
+    expect(HAZARD_NONE, "", play(&graceful, slow));
+    expect(HAZARD_FALSE_NODE, "more throttle than commanded", play(&MUTE, slow));
+    expect(HAZARD_FALSE_NODE, "more throttle than commanded", play(&MUTE, fast));
 }
 
 void test_h6_a_node_that_reports_what_cannot_be(void) {

@@ -95,7 +95,7 @@ void test_another_trip_forgets_an_old_angle(void) {
 void test_a_held_angle_is_dropped_and_another_one_held(void) {
     measured(9123, 0);
     trip(0);
-    (void)agv_hold_drop(&hold);
+    agv_hold_drop(&hold);
     expect_none();
     measured(4000, 500);
     agv_hold_take(&hold, &vehicle);
@@ -108,38 +108,44 @@ static void measured_later(uint16_t raw, uint32_t ms) {
     agv_hold_take(&hold, &vehicle);
 }
 
+/* 065h is sent. */
+static void left(void) {
+    agv_hold_handed_over(&hold);
+    agv_hold_left(&hold);
+}
+
 /* Shows: FSM-10 */
 void test_after_2_s_without_065h_the_angle_is_taken_anew(void) {
     measured(9123, 0);
     trip(0);
-    agv_hold_follow(&hold, 1999, false);
+    TEST_ASSERT_FALSE(agv_hold_follow(&hold, 1999));
     measured_later(4000, 2000);
     expect_held(9123);
-    agv_hold_follow(&hold, 1, false);
+    TEST_ASSERT_TRUE(agv_hold_follow(&hold, 1)); /* reported once */
     measured_later(5000, 2010);
     expect_held(5000);
-    agv_hold_follow(&hold, 70000, false);
+    TEST_ASSERT_FALSE(agv_hold_follow(&hold, 70000));
     measured_later(6000, 2020);
     expect_held(6000);
-    agv_hold_follow(&hold, 1, true);
+    left();
     measured_later(7000, 2030);
     expect_held(6000);
 }
 
-/* Each 065h that can be sent begins the 2 s again, and so does a trip. A frame takes no time. */
+/* Each 065h that is sent begins the 2 s again, and so does a trip. A frame takes no time. */
 /* Shows: FSM-10 */
 void test_the_2_s_without_065h_are_uninterrupted(void) {
     measured(9123, 0);
     trip(0);
-    agv_hold_follow(&hold, 1999, false);
-    agv_hold_follow(&hold, 1, true);
-    agv_hold_follow(&hold, 1999, false);
-    agv_hold_follow(&hold, 0, false);
+    (void)agv_hold_follow(&hold, 1999);
+    left();
+    (void)agv_hold_follow(&hold, 1999);
+    (void)agv_hold_follow(&hold, 0);
     measured_later(4000, 40);
     expect_held(9123);
     trip(41);
     expect_held(4000);
-    agv_hold_follow(&hold, 1, false);
+    (void)agv_hold_follow(&hold, 1);
     measured_later(5000, 50);
     expect_held(4000);
 }
@@ -168,11 +174,39 @@ void test_every_angle_may_be_held(void) {
     }
 }
 
-/* Shows: FSM-10 */
-void test_a_drop_reports_whether_an_angle_was_held(void) {
-    TEST_ASSERT_FALSE(agv_hold_drop(&hold));
-    measured(9123, 10);
-    trip(20);
-    TEST_ASSERT_TRUE(agv_hold_drop(&hold));
-    TEST_ASSERT_FALSE(agv_hold_drop(&hold));
+/* A 065h that has not left the controller, or is discarded there, does not begin the 2 s again. */
+/* Shows: FSM-10, SUP-7 */
+void test_a_065h_that_does_not_leave_does_not_begin_the_2_s_again(void) {
+    measured(9123, 0);
+    trip(0);
+    (void)agv_hold_follow(&hold, 1999);
+    agv_hold_handed_over(&hold);
+    agv_hold_withdrawn(&hold);
+    agv_hold_left(&hold); /* there is none */
+    agv_hold_handed_over(&hold);
+    (void)agv_hold_follow(&hold, 1);
+    measured_later(4000, 2000);
+    expect_held(4000);
+    agv_hold_left(&hold);
+    measured_later(5000, 2010);
+    expect_held(4000);
+}
+
+/* Only in a stalled transmitter, and only when it may not be sent. */
+/* Shows: FSM-10, SUP-7 */
+void test_a_065h_that_may_not_be_sent_is_stuck_in_a_stalled_transmitter(void) {
+    measured(9123, 0);
+    trip(0);
+    TEST_ASSERT_FALSE(agv_hold_is_stuck(&hold, true, false)); /* there is none */
+    agv_hold_handed_over(&hold);
+    TEST_ASSERT_FALSE(agv_hold_is_stuck(&hold, false, false));
+    TEST_ASSERT_FALSE(agv_hold_is_stuck(&hold, true, true));
+    TEST_ASSERT_TRUE(agv_hold_is_stuck(&hold, true, false));
+    agv_hold_drop(&hold);
+    TEST_ASSERT_TRUE(agv_hold_is_stuck(&hold, true, true)); /* no angle is held */
+    agv_hold_withdrawn(&hold);
+    TEST_ASSERT_FALSE(agv_hold_is_stuck(&hold, true, true));
+    agv_hold_handed_over(&hold);
+    trip(10); /* discards what waits */
+    TEST_ASSERT_FALSE(agv_hold_is_stuck(&hold, true, false));
 }

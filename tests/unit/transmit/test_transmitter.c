@@ -199,6 +199,7 @@ void test_a_report_is_taken_once(void) {
     agv_tx_report_t first = report();
     TEST_ASSERT_EQUAL_UINT16(4, first.sent);
     TEST_ASSERT_TRUE(first.park_sent);
+    TEST_ASSERT_TRUE(first.hold_sent);
     TEST_ASSERT_EQUAL_UINT16(0, first.shadowed);
     TEST_ASSERT_EQUAL_UINT16(0, first.refused);
     TEST_ASSERT_EQUAL_UINT16(0, first.dropped);
@@ -206,6 +207,7 @@ void test_a_report_is_taken_once(void) {
     first = report();
     TEST_ASSERT_EQUAL_UINT16(0, first.sent);
     TEST_ASSERT_FALSE(first.park_sent);
+    TEST_ASSERT_FALSE(first.hold_sent);
 }
 
 /* Shows: TOP-4 */
@@ -246,7 +248,9 @@ void test_missed_slots_are_reported(void) {
 void test_an_own_command_waits_and_is_stalled(void) {
     hal_takes = false;
     burst();
-    TEST_ASSERT_FALSE(report().park_sent);
+    agv_tx_report_t did = report();
+    TEST_ASSERT_FALSE(did.park_sent);
+    TEST_ASSERT_FALSE(did.hold_sent);
     tick(100);
     TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
     tick(1);
@@ -256,7 +260,9 @@ void test_an_own_command_waits_and_is_stalled(void) {
     TEST_ASSERT_EQUAL_UINT(4, sent_count);
     expect_sent(0, HAL_CAN_VEHICLE, 0x43F, SIGNALS); /* the counter has not increased */
     TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
-    TEST_ASSERT_TRUE(report().park_sent);
+    did = report();
+    TEST_ASSERT_TRUE(did.park_sent);
+    TEST_ASSERT_TRUE(did.hold_sent);
 }
 
 /* A frame that is no longer wanted does not wait any more. */
