@@ -24,7 +24,8 @@ def symbols(build):
 
 def kind(config):
     words = ["gateway" if "AGV_TOPOLOGY_GATEWAY" in config else "shared bus"]
-    words += [word for name, word in (("AGV_RELEASE", "release"), ("AGV_SHELL", "shell"), ("AGV_SHADOW_ON", "shadow"))
+    words += [word for name, word in (("AGV_RELEASE", "release"), ("AGV_SHELL", "shell"), ("AGV_SHADOW_ON", "shadow"),
+                                    ("BOOTLOADER_MCUBOOT", "behind MCUboot"), ("AGV_UPDATE", "update"))
               if name in config]
     return ", ".join(words)
 
