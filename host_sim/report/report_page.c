@@ -23,6 +23,20 @@ static json_t *text_or_null(const char *text) {
     return (text != NULL) ? json_string(text) : json_null();
 }
 
+/** A name as it was given; what is no UTF-8 in it becomes `?`. */
+static json_t *name_json(const char *name) {
+    json_t *value = text_or_null(name);
+    char *ascii = (value == NULL) ? strdup(name) : NULL;
+    for (char *at = ascii; (at != NULL) && (*at != '\0'); at++) {
+        *at = ((unsigned char)*at < 0x80u) ? *at : '?';
+    }
+    if (ascii != NULL) {
+        value = json_string(ascii);
+        free(ascii);
+    }
+    return value;
+}
+
 static json_t *number(uint64_t value) {
     return json_integer((json_int_t)value);
 }
@@ -110,9 +124,9 @@ static json_t *about_json(const report_page_t *page) {
     char checksum[16];
     (void)snprintf(checksum, sizeof checksum, "%08" PRIX32, agv_config_checksum(page->config));
     for (size_t side = 0u; side < (size_t)HAL_CAN_SIDES; side++) {
-        (void)json_array_append_new(interfaces, text_or_null(page->interfaces[side]));
+        (void)json_array_append_new(interfaces, name_json(page->interfaces[side]));
     }
-    set(about, "name", text_or_null(page->name));
+    set(about, "name", name_json(page->name));
     set(about, "interfaces", interfaces);
     set(about, "clock", clock_json(page->clock_us));
     set(about, "recording", json_boolean(page->is_recording));

@@ -35,6 +35,7 @@ const FLAG = 17;
 const HEIGHTS = { head: 26, lane: 22, slim: 18, plot: 92, age: 20 };
 const PRINTED = { head: 20, lane: 17, slim: 14, plot: 66, age: 15 };
 const PRINT_WIDTH = 690;
+const CROWDED = 30000; // ms: in a longer view a mark beside a bad one gives way
 const LABEL_ABOVE = 15;
 const FONT = 'system-ui, "Segoe UI", Roboto, "Helvetica Neue", "DejaVu Sans", sans-serif'; // as in timeline.css
 const LIMIT_AT = 0.66; // the deadline's place in the height of an age row
@@ -368,7 +369,9 @@ class Timeline {
   /** Flags that would touch each other get a level each. */
   placeFlags() {
     const ends = [];
-    const placed = (this.data.marks ?? []).filter((mark) => mark.t >= this.from && mark.t <= this.to)
+    const strong = this.to - this.from > CROWDED ? (this.data.marks ?? []).filter((mark) => mark.tone === "bad") : [];
+    const hidden = (mark) => strong.some((one) => one !== mark && Math.abs(this.x(one.t) - this.x(mark.t)) < 4);
+    const placed = (this.data.marks ?? []).filter((mark) => mark.t >= this.from && mark.t <= this.to && !hidden(mark))
       .sort((a, b) => a.t - b.t).map((mark) => {
         const length = widthOf(mark.text, 12, mark.tone === "bad" ? 600 : 400) + 14;
         const x = this.x(mark.t);

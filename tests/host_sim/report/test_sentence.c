@@ -1,0 +1,204 @@
+/* The first words of a report. */
+#include "report/sentence.h"
+
+#include <string.h>
+
+#include "agv/recorder.h"
+#include "unity.h"
+
+enum { MS = 1000 };
+
+static agv_config_t config;
+static report_page_t page;
+static why_trip_t trip;
+static sentence_t sentence;
+
+void setUp(void) {
+    agv_config_defaults(&config);
+    page = (report_page_t){.name = "my.log", .config = &config};
+    trip = (why_trip_t){.t_us = 62109000u,
+                        .reason = AGV_FAULT_STEERING_COMMAND_TIMEOUT,
+                        .kind = WHY_SILENCE,
+                        .message = AGV_MSG_STEERING_COMMAND,
+                        .id = 0x065,
+                        .cause_us = 62009000u,
+                        .last_good_us = 61984000u,
+                        .next_us = 63002000u,
+                        .limit = 125,
+                        .unit = "ms",
+                        .first_safe_us = 62109300u,
+                        .confirmed_us = 62420000u,
+                        .stopped_us = 62900000u};
+}
+
+void tearDown(void) {
+}
+
+static void say(void) {
+    sentence_trip(&sentence, &page, &trip, WHY_NEVER);
+}
+
+void test_silence(void) {
+    say();
+    TEST_ASSERT_EQUAL_STRING("The vehicle stands because the AI computer no longer sent steering commands.",
+                             sentence.headline);
+    TEST_ASSERT_EQUAL_STRING("steering_command (065h) came for the last time at 61.984 s. Its deadline is 125 ms. The "
+                             "next one came at 63.002 s.",
+                             sentence.cause);
+    TEST_ASSERT_EQUAL_STRING("The supervisor tripped at 62.109 s (STEERING_COMMAND_TIMEOUT). 0.3 ms later it sent the "
+                             "first of the safe commands: gear P, throttle 0, autopilot off. The safety output stayed "
+                             "closed.",
+                             sentence.action);
+    TEST_ASSERT_EQUAL_STRING("The VCU reported gear P and autopilot off 311 ms after the trip. The wheels stood 791 ms "
+                             "after the trip. Only the operator ends this, by a reset at standstill and in manual.",
+                             sentence.outcome);
+}
+
+void test_a_message_that_never_came(void) {
+    trip.last_good_us = WHY_NEVER;
+    trip.next_us = WHY_NEVER;
+    say();
+    TEST_ASSERT_EQUAL_STRING("steering_command (065h) never came. Its deadline is 125 ms.", sentence.cause);
+}
+
+void test_a_counter_that_stands_still(void) {
+    trip.kind = WHY_STUCK;
+    trip.reason = AGV_FAULT_VCU_HEARTBEAT_STUCK;
+    trip.message = AGV_MSG_VEHICLE_STATUS;
+    trip.id = 0x363;
+    trip.limit = 50;
+    trip.next_us = WHY_NEVER;
+    say();
+    TEST_ASSERT_EQUAL_STRING("The vehicle stands because the VCU hung: its alive counter stood still.",
+                             sentence.headline);
+    TEST_ASSERT_EQUAL_STRING("The alive counter of vehicle_status (363h) changed for the last time at 61.984 s. Its "
+                             "deadline is 50 ms.",
+                             sentence.cause);
+}
+
+void test_a_budget_names_the_limit_and_the_time(void) {
+    trip.kind = WHY_BUDGET;
+    trip.reason = AGV_FAULT_STEERING_DEVIATION;
+    trip.message = AGV_MSG_STEERING_STATUS;
+    trip.id = 0x067;
+    trip.limit = 500;
+    trip.unit = "ddeg";
+    config.steering_deviation_ms = 700;
+    say();
+    TEST_ASSERT_EQUAL_STRING("It began at 62.009 s, as steering_status (067h) shows. The limit is 50.0° for 700 ms in "
+                             "all.",
+                             sentence.cause);
+}
+
+void test_a_bit_that_trips_at_once_trips_with_its_frame(void) {
+    trip.kind = WHY_BIT;
+    trip.reason = AGV_FAULT_EPS_MOTOR_ENCODER;
+    trip.message = AGV_MSG_EPS_STATUS;
+    trip.id = 0x167;
+    trip.cause_us = trip.t_us + 200u; /* the event says the millisecond, the frame the microsecond */
+    trip.limit = WHY_NO_LIMIT;
+    trip.unit = NULL;
+    say();
+    TEST_ASSERT_EQUAL_UINT64(62109200u, sentence_trip_us(&trip));
+    TEST_ASSERT_EQUAL_STRING("It began at 62.109 s, as eps_status (167h) shows.", sentence.cause);
+    TEST_ASSERT_NOT_NULL(strstr(sentence.action, " 0.1 ms later it sent"));
+}
+
+void test_a_recording_cannot_obey(void) {
+    page.is_recording = true;
+    trip.confirmed_us = WHY_NEVER;
+    trip.stopped_us = WHY_NEVER;
+    say();
+    TEST_ASSERT_EQUAL_STRING(
+        "The supervisor would have stopped this vehicle because the AI computer no longer sent steering commands.",
+        sentence.headline);
+    TEST_ASSERT_EQUAL_STRING(
+        "This is a recording, and a recording cannot obey: what the vehicle does after the trip is "
+        "what it did then. Only the operator ends this, by a reset at standstill and in manual.",
+        sentence.outcome);
+}
+
+void test_shadow_sends_nothing(void) {
+    config.shadow = AGV_SHADOW_ON;
+    trip.first_safe_us = WHY_NEVER;
+    say();
+    TEST_ASSERT_EQUAL_STRING_LEN("The supervisor would have stopped", sentence.headline, 33);
+    TEST_ASSERT_NOT_NULL(strstr(sentence.action, "It sent nothing, because it runs in shadow mode."));
+}
+
+void test_a_vehicle_that_does_not_stop_is_not_said_to_stand(void) {
+    trip.stopped_us = WHY_NEVER;
+    say();
+    TEST_ASSERT_EQUAL_STRING_LEN("The supervisor stopped the vehicle because", sentence.headline, 42);
+    TEST_ASSERT_NOT_NULL(strstr(sentence.outcome, "The wheels were not seen to stand until the end."));
+}
+
+void test_the_safety_output(void) {
+    sentence_trip(&sentence, &page, &trip, trip.t_us);
+    TEST_ASSERT_NOT_NULL(strstr(sentence.action, "The safety output was opened at once."));
+    sentence_trip(&sentence, &page, &trip, trip.t_us + (500u * MS));
+    TEST_ASSERT_NOT_NULL(strstr(sentence.action, "The safety output was opened 500 ms after the trip."));
+}
+
+void test_every_fault_has_words_of_its_own(void) {
+    for (uint32_t fault = 0; fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
+        const char *phrase = sentence_phrase((agv_fault_t)fault);
+        TEST_ASSERT_NOT_NULL(phrase);
+        TEST_ASSERT_GREATER_THAN(10, strlen(phrase));
+        TEST_ASSERT_NOT_EQUAL('.', phrase[strlen(phrase) - 1u]);
+        for (uint32_t other = 0; other < fault; other++) {
+            TEST_ASSERT_TRUE(strcmp(phrase, sentence_phrase((agv_fault_t)other)) != 0);
+        }
+    }
+    TEST_ASSERT_EQUAL_STRING("", sentence_phrase(AGV_FAULT_NONE));
+}
+
+void test_every_missing_condition_has_words(void) {
+    for (unsigned bit = 0; (AGV_MISSING_ALL & (1u << bit)) != 0u; bit++) {
+        TEST_ASSERT_GREATER_THAN(5, strlen(sentence_missing(bit)));
+    }
+    TEST_ASSERT_EQUAL_STRING("", sentence_missing(31u));
+}
+
+/** A run in one state after the other. */
+static why_t *run(agv_state_t second, uint64_t from_ms, uint16_t missing) {
+    why_t *why = why_new(&config);
+    session_event_t event = {
+        .t_ms = 0, .recorded = {.kind = AGV_EVENT_STATE, .b = (uint8_t)AGV_STATE_INIT, .c = (uint8_t)AGV_FAULT_NONE}};
+    why_event(why, &event);
+    if (missing != 0u) {
+        event = (session_event_t){.t_ms = 10000, .recorded = {.kind = AGV_EVENT_STARTUP, .missing = missing}};
+        why_event(why, &event);
+    }
+    if (second != AGV_STATE_INIT) {
+        event = (session_event_t){.t_ms = from_ms,
+                                  .recorded = {.kind = AGV_EVENT_STATE,
+                                               .a = (uint8_t)AGV_STATE_INIT,
+                                               .b = (uint8_t)second,
+                                               .c = (uint8_t)AGV_FAULT_NONE}};
+        why_event(why, &event);
+    }
+    why_end(why, 86000u * MS);
+    return why;
+}
+
+void test_what_was_not_supervised_is_no_pass(void) {
+    why_t *why = run(AGV_STATE_INIT, 0, AGV_MISSING_MANUAL | AGV_MISSING_EPS_HEARTBEAT);
+    sentence_no_trip(&sentence, why, 86000u * MS);
+    why_free(why);
+    TEST_ASSERT_EQUAL_STRING("Nothing was supervised: the supervisor never left INIT.", sentence.headline);
+    TEST_ASSERT_EQUAL_STRING("The run took 86.000 s. What kept it there: the EPS is not alive; the VCU does not report "
+                             "manual.",
+                             sentence.cause);
+    TEST_ASSERT_EQUAL_STRING("This says nothing about the vehicle: it is no pass.", sentence.outcome);
+}
+
+void test_no_trip_and_never_engaged(void) {
+    why_t *why = run(AGV_STATE_STANDBY, 500, 0);
+    sentence_no_trip(&sentence, why, 86000u * MS);
+    why_free(why);
+    TEST_ASSERT_EQUAL_STRING("No trip: the supervisor found no reason to stop the vehicle.", sentence.headline);
+    TEST_ASSERT_EQUAL_STRING("It supervised 85.500 s of 86.000 s. The other 0.500 s it was in INIT.", sentence.cause);
+    TEST_ASSERT_EQUAL_STRING("The autopilot was never engaged: the commands of the AI computer were not judged.",
+                             sentence.outcome);
+}
