@@ -29,6 +29,7 @@ static const command_t commands[] = {
     {"run", "run the supervisor as a node on SocketCAN, in real time", cmd_run},
     {"scenario", "run scenario files with a simulated vehicle, and check their expectations", cmd_scenario},
     {"soak", "run supervisor and vehicle for months of virtual time, with tolerable disturbances", cmd_soak},
+    {"survey", "show what is in a log or on a bus, and propose a configuration", cmd_survey},
     {"vehicle", "simulate VCU, EPS and AI computer as nodes on SocketCAN", cmd_vehicle},
 };
 

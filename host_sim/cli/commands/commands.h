@@ -27,6 +27,9 @@ command_fn cmd_demo;
 /** `host_sim scenario`: scenario files, played and evaluated. */
 command_fn cmd_scenario;
 
+/** `host_sim survey`: what is on a bus, and the configuration that would fit. */
+command_fn cmd_survey;
+
 /** `host_sim vehicle`: VCU, EPS and AI computer as nodes on SocketCAN. */
 command_fn cmd_vehicle;
 

@@ -1,0 +1,97 @@
+#include "survey/observation.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "common/report.h"
+
+bool observation_begin(observation_t *observation, const agv_config_t *config) {
+    (void)memset(observation, 0, sizeof *observation);
+    observation->configs[OBSERVATION_GIVEN] = *config;
+    observation->configs[OBSERVATION_OTHER] = *config;
+    observation->configs[OBSERVATION_OTHER].id_set =
+        (config->id_set == (uint16_t)AGV_ID_SET_HEADING) ? AGV_ID_SET_TABLE : AGV_ID_SET_HEADING;
+    for (unsigned set = 0u; set < OBSERVATION_SETS; set++) {
+        observation->sets[set] = traffic_new(&observation->configs[set]);
+        if (observation->sets[set] == NULL) {
+            return report("out of memory");
+        }
+    }
+    return true;
+}
+
+void observation_frame(observation_t *observation, hal_can_side_t side, const hal_can_frame_t *frame,
+                       uint64_t stamp_us) {
+    if (observation->frames == 0u) {
+        observation->first_us = stamp_us;
+        observation->last_us = stamp_us;
+    }
+    if (stamp_us < observation->last_us) {
+        observation->backward_stamps++;
+    } else {
+        observation->last_us = stamp_us;
+    }
+    const uint64_t t_us = observation->last_us - observation->first_us;
+    observation->frames++;
+    bus_load_frame(&observation->loads[side], frame, t_us);
+    for (unsigned set = 0u; set < OBSERVATION_SETS; set++) {
+        traffic_frame(observation->sets[set], side, frame, t_us);
+    }
+}
+
+void observation_interface(observation_t *observation, const char *name, size_t length) {
+    for (uint32_t i = 0u; i < observation->interface_count; i++) {
+        if ((strncmp(observation->interfaces[i], name, length) == 0) && (observation->interfaces[i][length] == '\0')) {
+            return;
+        }
+    }
+    if (observation->interface_count < OBSERVATION_INTERFACES_MAX) {
+        (void)snprintf(observation->interfaces[observation->interface_count], CANDUMP_INTERFACE_MAX + 1u, "%.*s",
+                       (int)length, name);
+        observation->interface_count++;
+    }
+}
+
+uint64_t observation_us(const observation_t *observation) {
+    return observation->last_us - observation->first_us;
+}
+
+void observation_end(observation_t *observation, uint64_t last_us) {
+    observation->last_us = (last_us > observation->last_us) ? last_us : observation->last_us;
+    for (unsigned set = 0u; set < OBSERVATION_SETS; set++) {
+        traffic_end(observation->sets[set], observation_us(observation));
+    }
+}
+
+static uint64_t count_of(const traffic_t *traffic, uint32_t message) {
+    const traffic_id_t *entry = traffic_message(traffic, message);
+    return (entry != NULL) ? entry->count : 0u;
+}
+
+unsigned observation_heard_set(const observation_t *observation) {
+    uint64_t counts[OBSERVATION_SETS];
+    for (unsigned set = 0u; set < OBSERVATION_SETS; set++) {
+        counts[set] = count_of(observation->sets[set], AGV_MSG_VEHICLE_STATUS) +
+                      count_of(observation->sets[set], AGV_MSG_TURN_SIGNAL_COMMAND);
+    }
+    return (counts[OBSERVATION_OTHER] > counts[OBSERVATION_GIVEN]) ? OBSERVATION_OTHER : OBSERVATION_GIVEN;
+}
+
+void observation_set_counts(const observation_t *observation, uint32_t id_set, uint64_t counts[2]) {
+    const uint32_t messages[2] = {AGV_MSG_TURN_SIGNAL_COMMAND, AGV_MSG_VEHICLE_STATUS};
+    for (size_t i = 0u; i < 2u; i++) {
+        const uint16_t id = agv_message_id(messages[i], id_set);
+        counts[i] = 0u;
+        for (size_t at = 0u; traffic_at(observation->sets[0], at) != NULL; at++) {
+            const traffic_id_t *entry = traffic_at(observation->sets[0], at);
+            counts[i] += (!entry->is_extended && (entry->id == id)) ? entry->count : 0u;
+        }
+    }
+}
+
+void observation_free(observation_t *observation) {
+    for (unsigned set = 0u; set < OBSERVATION_SETS; set++) {
+        traffic_free(observation->sets[set]);
+        observation->sets[set] = NULL;
+    }
+}

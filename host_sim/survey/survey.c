@@ -1,0 +1,135 @@
+#include "survey/survey.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "common/interrupt.h"
+#include "io/output.h"
+#include "survey/survey_result.h"
+
+enum { REASON_SIZE = 160 };
+
+/** Gather frames under a configuration. @return false: was reported */
+static bool gather(survey_result_t *result, const agv_config_t *config) {
+    observation_free(&result->observation);
+    (void)memset(&result->source, 0, sizeof result->source);
+    if (!observation_begin(&result->observation, config)) {
+        return false;
+    }
+    return (result->request->log != NULL) ? source_log(result->request, &result->observation, &result->source)
+                                          : source_live(result->request, &result->observation, &result->source);
+}
+
+/** Choose the ID set, and look which messages other identifiers carry. */
+static void choose(survey_result_t *result) {
+    const unsigned set =
+        result->request->id_set_is_given ? OBSERVATION_GIVEN : observation_heard_set(&result->observation);
+    result->traffic = result->observation.sets[set];
+    result->config = result->observation.configs[set];
+    identify(result->traffic, &result->found);
+}
+
+/** Whether the log can be read once more. */
+static bool is_readable_again(const survey_request_t *request) {
+    struct stat status;
+    return (request->log != NULL) && (strcmp(request->log, "-") != 0) && (stat(request->log, &status) == 0) &&
+           S_ISREG(status.st_mode);
+}
+
+/** Take the identifiers that were assigned into a configuration. @return false: two messages would share one */
+static bool renumber(const survey_result_t *result, agv_config_t *config) {
+    for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
+        const identify_message_t *found = &result->found.of[message];
+        if (found->is_assigned) {
+            (void)agv_config_set(config, (uint32_t)AGV_SETTING_ID + message, (uint16_t)found->candidates[0]);
+        }
+    }
+    return agv_config_check(config).problem == AGV_CONFIG_OK;
+}
+
+/** Survey once more with the identifiers that were found, so that the messages that they carry are known. */
+static bool survey_renumbered(survey_result_t *result) {
+    const identify_t found = result->found;
+    agv_config_t config = result->config;
+    if ((identify_assigned(&found) == 0u) || !renumber(result, &config)) {
+        return true;
+    }
+    if (!is_readable_again(result->request)) {
+        result->is_unread = true;
+        return true;
+    }
+    if (!gather(result, &config)) {
+        return false;
+    }
+    result->traffic = result->observation.sets[OBSERVATION_GIVEN];
+    result->config = config;
+    result->found = found;
+    return true;
+}
+
+static void propose(survey_result_t *result) {
+    const bool is_other = result->config.id_set != result->request->config.id_set;
+    const bool is_table = result->config.id_set == (uint16_t)AGV_ID_SET_TABLE;
+    char reason[REASON_SIZE];
+    (void)snprintf(reason, sizeof reason, "%s were heard, %s were not, or less often",
+                   is_table ? "201h and 203h" : "43Fh and 363h", is_table ? "43Fh and 363h" : "201h and 203h");
+    proposal_make(&result->proposal, result->traffic, &result->config, &result->found, is_other ? reason : NULL);
+}
+
+static bool write_config(const survey_result_t *result, const char *yaml) {
+    const char *path = result->request->config_out;
+    if (path == NULL) {
+        return true;
+    }
+    output_t *output = calloc(1u, sizeof *output);
+    if (output == NULL) {
+        return report("out of memory");
+    }
+    const bool good = output_put(output, path, yaml, strlen(yaml));
+    free(output);
+    interrupt_release();
+    return good;
+}
+
+static bool print(const survey_result_t *result) {
+    char *yaml = proposal_yaml(&result->proposal, result->source.name);
+    if (yaml == NULL) {
+        return report("out of memory");
+    }
+    const bool is_quiet = output_is_stdout(result->request->config_out);
+    bool good = write_config(result, yaml);
+    if (good && result->request->is_json) {
+        good = survey_print_json(result);
+    } else if (good && !is_quiet) {
+        survey_print(result, yaml);
+    }
+    free(yaml);
+    return good;
+}
+
+static bool run(survey_result_t *result) {
+    if (!gather(result, &result->request->config)) {
+        return false;
+    }
+    choose(result);
+    if (!survey_renumbered(result)) {
+        return false;
+    }
+    propose(result);
+    return print(result);
+}
+
+status_t survey_run(const survey_request_t *request) {
+    survey_result_t *result = calloc(1u, sizeof *result);
+    if (result == NULL) {
+        (void)report("out of memory");
+        return STATUS_UNUSABLE;
+    }
+    result->request = request;
+    const bool good = run(result);
+    observation_free(&result->observation);
+    free(result);
+    return good ? STATUS_OK : STATUS_UNUSABLE;
+}

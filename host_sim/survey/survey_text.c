@@ -1,0 +1,242 @@
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "common/units.h"
+#include "survey/survey_result.h"
+
+enum { MEDIAN = 500, P999 = 999, BITS_PER_WORD = 32, WORD_CHOICES = 256, LINE_SIZE = 160, UNKNOWN_SHOWN_MAX = 40 };
+
+static double ms_of(uint64_t us) {
+    return (double)us / US_PER_MS;
+}
+
+static double s_of(uint64_t us) {
+    return (double)us / US_PER_S;
+}
+
+static void print_head(const survey_result_t *result) {
+    const observation_t *observation = &result->observation;
+    const double seconds = s_of(observation_us(observation));
+    (void)printf("%s: %.3f s on ", result->source.name, seconds);
+    for (uint32_t i = 0u; i < observation->interface_count; i++) {
+        (void)printf("%s%s", (i > 0u) ? ", " : "", observation->interfaces[i]);
+    }
+    (void)printf(", %" PRIu64 " frames", observation->frames);
+    if (seconds > 0.0) {
+        (void)printf(" (%.0f/s)", (double)observation->frames / seconds);
+    }
+    (void)printf("%s%s\n", (result->source.format[0] != '\0') ? ", " : "", result->source.format);
+    const traffic_totals_t totals = traffic_totals(result->traffic);
+    if (observation->backward_stamps + observation->lost + result->source.skipped_lines + totals.error > 0u) {
+        (void)printf("of them  error frames %" PRIu64 ", time stamps that went backwards %" PRIu64
+                     "; not in them: lost %" PRIu64 ", lines skipped %" PRIu64 "\n",
+                     totals.error, observation->backward_stamps, observation->lost, result->source.skipped_lines);
+    }
+    (void)printf("engaged  %.3f s in %" PRIu64 " engagement%s\n", s_of(totals.engaged_us), totals.engagements,
+                 (totals.engagements == 1u) ? "" : "s");
+}
+
+static void print_load(const survey_result_t *result) {
+    static const char *const sides[HAL_CAN_SIDES] = {"", " of the AI side"};
+    const uint64_t us = observation_us(&result->observation);
+    const uint32_t bit_rate = (uint32_t)result->request->bit_rate;
+    for (size_t side = 0u; side < (size_t)HAL_CAN_SIDES; side++) {
+        const bus_load_t *load = &result->observation.loads[side];
+        if (load->bits > 0u) {
+            (void)printf("load%s     %.1f to %.1f %% of %" PRIu32
+                         " bit/s (without and with the most stuff bits), busiest second %.1f %%\n",
+                         sides[side], bus_load_percent(load->bits, us, bit_rate),
+                         bus_load_percent(load->stuffed_bits, us, bit_rate), bit_rate,
+                         bus_load_percent(bus_load_busiest(load), US_PER_S, bit_rate));
+        }
+    }
+}
+
+static void print_id_sets(const survey_result_t *result) {
+    uint64_t heading[2];
+    uint64_t table[2];
+    observation_set_counts(&result->observation, AGV_ID_SET_HEADING, heading);
+    observation_set_counts(&result->observation, AGV_ID_SET_TABLE, table);
+    (void)printf("ID set   %s; heading: 43Fh %" PRIu64 ", 363h %" PRIu64 "; table: 201h %" PRIu64 ", 203h %" PRIu64
+                 "\n",
+                 (result->config.id_set == (uint16_t)AGV_ID_SET_TABLE) ? "table" : "heading", heading[0], heading[1],
+                 table[0], table[1]);
+}
+
+/** Deadline and margin of a message; nothing of one without. */
+static void print_deadline(const traffic_watch_t *watch) {
+    if (watch == NULL) {
+        return;
+    }
+    (void)printf(" %8" PRIu32 "%s", watch->deadline_ms, (watch->when == TRAFFIC_ENGAGED) ? "*" : " ");
+    if (watch->gaps.count > 0u) {
+        (void)printf(" %9.2f%s", (double)watch->deadline_ms - ms_of(watch->gaps.longest_us),
+                     (watch->late > 0u) ? "  LATE" : "");
+    } else {
+        (void)printf(" %9s", "-");
+    }
+}
+
+static void print_message(const traffic_id_t *entry) {
+    char id[16];
+    (void)snprintf(id, sizeof id, entry->is_extended ? "%08Xh" : "%03Xh", entry->id);
+    (void)printf("%-5s%s %-19s %9" PRIu64, id, (entry->side == HAL_CAN_AI) ? "a" : " ",
+                 signals_message_name(entry->message), entry->count);
+    const gaps_t *gaps = &entry->gaps;
+    if (gaps->count > 0u) {
+        (void)printf(" %8.2f %8.2f %8.2f %9.2f", ms_of(gaps->shortest_us), ms_of(gaps_quantile_us(gaps, MEDIAN)),
+                     ms_of(gaps_quantile_us(gaps, P999)), ms_of(gaps->longest_us));
+        print_deadline(entry->watch);
+    }
+    (void)putchar('\n');
+}
+
+static void print_messages(const survey_result_t *result) {
+    (void)printf("\n%-6s %-19s %9s %8s %8s %8s %9s %8s %10s\n", "gaps", "in ms", "count", "min", "median", "p99.9",
+                 "max", "deadline", "margin");
+    for (size_t i = 0u; traffic_at(result->traffic, i) != NULL; i++) {
+        const traffic_id_t *entry = traffic_at(result->traffic, i);
+        if (entry->message != TRAFFIC_UNKNOWN) {
+            print_message(entry);
+        }
+    }
+    for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
+        const traffic_id_t *entry = traffic_message(result->traffic, message);
+        if ((entry == NULL) || (entry->count == 0u)) {
+            agv_ids_t ids;
+            agv_config_ids(&result->config, &ids);
+            (void)printf("%03Xh   %-19s         -  not heard\n", ids.of[message], signals_message_name(message));
+        }
+    }
+    (void)printf(
+        "* only while engaged. The deadline of a heartbeat counts from one change of its counter to the next.\n");
+}
+
+static void print_counters(const survey_result_t *result) {
+    (void)printf("\nalive counters\n");
+    for (size_t i = 0u; traffic_at(result->traffic, i) != NULL; i++) {
+        const traffic_id_t *entry = traffic_at(result->traffic, i);
+        if ((entry->counter != NULL) && (entry->count > 0u)) {
+            const counter_use_t *use = entry->counter;
+            (void)printf("  %03Xh  %-10s  steps by 1 to 3: %" PRIu64 ", by more: %" PRIu64 ", repeated: %" PRIu64
+                         ", longest without a change %.1f ms\n",
+                         entry->id, counter_use_word(counter_use_kind(use)), use->steps, use->other_steps, use->repeats,
+                         ms_of(use->longest_us));
+        }
+    }
+}
+
+/** The words of a choice that were seen: "P, D". */
+static void words_seen(char *text, size_t size, uint32_t message, size_t index, const traffic_range_t *range) {
+    text[0] = '\0';
+    for (uint32_t raw = 0u; raw < (uint32_t)WORD_CHOICES; raw++) {
+        if (((range->words[raw / BITS_PER_WORD] >> (raw % BITS_PER_WORD)) & 1u) != 0u) {
+            char word[SIGNALS_VALUE_SIZE];
+            const size_t used = strlen(text);
+            signals_raw_text(word, message, index, raw);
+            (void)snprintf(&text[used], size - used, "%s%s", (used > 0u) ? ", " : "", word);
+        }
+    }
+}
+
+static void print_range(const traffic_id_t *entry, size_t index) {
+    const signal_info_t *info = signals_info(entry->message, index);
+    const traffic_range_t *range = &entry->ranges[index];
+    char text[LINE_SIZE] = "";
+    if ((info->kind == SIGNAL_CHOICE) || (info->kind == SIGNAL_FLAG)) {
+        words_seen(text, sizeof text, entry->message, index, range);
+    } else if (range->valid > 0u) {
+        const signal_value_t lowest = {.scaled = range->lowest};
+        const signal_value_t highest = {.scaled = range->highest};
+        (void)snprintf(text, sizeof text, "%.*f to %.*f%s%s", info->decimals, signals_number(info, &lowest),
+                       info->decimals, signals_number(info, &highest), (info->unit[0] != '\0') ? " " : "", info->unit);
+    }
+    (void)printf("  %03Xh  %-15s %s", entry->id, info->name, text);
+    if (range->invalid > 0u) {
+        (void)printf("  invalid: %" PRIu64, range->invalid);
+    }
+    (void)putchar('\n');
+}
+
+static void print_values(const survey_result_t *result) {
+    (void)printf("\nvalues\n");
+    for (size_t i = 0u; traffic_at(result->traffic, i) != NULL; i++) {
+        const traffic_id_t *entry = traffic_at(result->traffic, i);
+        for (size_t signal = 0u;
+             (entry->count > 0u) && (entry->ranges != NULL) && (signal < signals_count(entry->message)); signal++) {
+            const signal_kind_t kind = signals_info(entry->message, signal)->kind;
+            if ((kind != SIGNAL_ALARM) && (kind != SIGNAL_COUNTER)) {
+                print_range(entry, signal);
+            }
+        }
+    }
+}
+
+static void print_alarms(const survey_result_t *result) {
+    bool any = false;
+    (void)printf("\nalarm bits that were set\n");
+    for (size_t i = 0u; traffic_at(result->traffic, i) != NULL; i++) {
+        const traffic_id_t *entry = traffic_at(result->traffic, i);
+        for (size_t signal = 0u; (entry->ranges != NULL) && (signal < signals_count(entry->message)); signal++) {
+            const signal_info_t *info = signals_info(entry->message, signal);
+            const traffic_range_t *range = &entry->ranges[signal];
+            if ((info->kind == SIGNAL_ALARM) && (range->set > 0u)) {
+                (void)printf("  %03Xh  %-26s %" PRIu64 " frames, first at %.3f s\n", entry->id, info->name, range->set,
+                             s_of(range->set_at_us));
+                any = true;
+            }
+        }
+    }
+    if (!any) {
+        (void)printf("  none\n");
+    }
+}
+
+static void print_unknown(const survey_result_t *result) {
+    const double seconds = s_of(observation_us(&result->observation));
+    uint32_t count = 0u;
+    (void)printf("\nidentifiers that the protocol does not know\n");
+    for (size_t i = 0u; traffic_at(result->traffic, i) != NULL; i++) {
+        const traffic_id_t *entry = traffic_at(result->traffic, i);
+        if (entry->message != TRAFFIC_UNKNOWN) {
+            continue;
+        }
+        count++;
+        if (count <= (uint32_t)UNKNOWN_SHOWN_MAX) {
+            (void)printf(entry->is_extended ? "  %08Xh" : "  %03Xh", entry->id);
+            (void)printf("%s %9" PRIu64 " frames, %.1f/s, %u to %u bytes, median gap %.2f ms\n",
+                         (entry->side == HAL_CAN_AI) ? " AI side" : "", entry->count,
+                         (seconds > 0.0) ? (double)entry->count / seconds : 0.0,
+                         (entry->count > 0u) ? entry->length_min : 0u, entry->length_max,
+                         ms_of(gaps_quantile_us(&entry->gaps, MEDIAN)));
+        }
+    }
+    if (count == 0u) {
+        (void)printf("  none\n");
+    } else if (count > (uint32_t)UNKNOWN_SHOWN_MAX) {
+        (void)printf("  and %" PRIu32 " more: --json lists all of them\n", count - (uint32_t)UNKNOWN_SHOWN_MAX);
+    } else {
+        /* all are shown */
+    }
+    const traffic_totals_t totals = traffic_totals(result->traffic);
+    if (totals.uncounted > 0u) {
+        (void)printf("  %" PRIu64 " frames of further 29-bit identifiers\n", totals.uncounted);
+    }
+}
+
+void survey_print(const survey_result_t *result, const char *yaml) {
+    print_head(result);
+    print_load(result);
+    print_id_sets(result);
+    print_messages(result);
+    print_counters(result);
+    print_values(result);
+    print_alarms(result);
+    print_unknown(result);
+    if (result->is_unread) {
+        (void)printf("\nThe messages with other identifiers are not judged yet: survey again with --config and the "
+                     "file below.\n");
+    }
+    (void)printf("\n%s", yaml);
+}
