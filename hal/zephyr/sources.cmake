@@ -8,6 +8,8 @@ set(AGV_ZEPHYR_PORT_SOURCES
   ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_pins.c
   ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_queue.c
   ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_retained.c
+  ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_second_clock.c
+  ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_self_test.c
   ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_watchdog.c
 )
 set(AGV_ZEPHYR_PORT_INCLUDES ${AGV_ZEPHYR_PORT_DIR}/include)
@@ -16,3 +18,5 @@ zephyr_compile_definitions(AGV_RECORDER_EVENTS=${CONFIG_AGV_RECORDER_EVENTS}u)
 
 # Checks that only the linker can make.
 zephyr_linker_sources(SECTIONS ${AGV_ZEPHYR_PORT_DIR}/linker/log-partition.ld)
+
+agv_write_checksum_step()

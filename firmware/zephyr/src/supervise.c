@@ -37,7 +37,12 @@ static void record_end(supervise_t *self, agv_recorder_t *recorder) {
 void supervise_start(supervise_t *self, agv_recorder_t *recorder, zephyr_hal_retained_t *retained) {
     agv_config_t config;
     kconfig_read(&config);
-    const zephyr_hal_config_t wiring = {.bitrate = CONFIG_AGV_CAN_BITRATE,
+    const zephyr_hal_memory_t memory[] = {{.start = self, .size = sizeof *self, .is_kept = false},
+                                          {.start = recorder, .size = sizeof *recorder, .is_kept = true},
+                                          {.start = retained, .size = sizeof *retained, .is_kept = true}};
+    const zephyr_hal_config_t wiring = {.memory = memory,
+                                        .memory_count = ARRAY_SIZE(memory),
+                                        .bitrate = CONFIG_AGV_CAN_BITRATE,
                                         .sample_point_permille = CONFIG_AGV_CAN_SAMPLE_POINT,
                                         .watchdog_ms = CONFIG_AGV_WATCHDOG_PERIOD_MS,
                                         .listen_only = IS_ENABLED(CONFIG_AGV_CAN_LISTEN_ONLY),

@@ -35,32 +35,30 @@ static bool start_sides(hal_t *hal, const zephyr_hal_config_t *config) {
     return works;
 }
 
-bool zephyr_hal_init(hal_t *hal, const zephyr_hal_config_t *config) {
-    (void)memset(hal, 0, sizeof *hal);
-    (void)k_sem_init(&hal->wake, 0u, 1u);
-    const bool output_works = zephyr_hal_output_is_open();
-    const bool watchdog_works = zephyr_watchdog_start(hal, config->watchdog_ms);
-    hal->retained = config->retained;
-    hal->reset_cause = zephyr_reset_read(hal->retained, &hal->end_before);
+static uint32_t start_devices(hal_t *hal, const zephyr_hal_config_t *config) {
     const bool led_works = zephyr_led_start();
+    const bool inputs_work = zephyr_inputs_start();
+    const bool clock_works = zephyr_second_clock_start(hal);
     const bool log_works = zephyr_log_start(hal);
     const bool sides_work = start_sides(hal, config);
+    return (led_works && inputs_work && clock_works && log_works && sides_work) ? 0u : HAL_SELF_TEST_DEVICES;
+}
+
+bool zephyr_hal_init(hal_t *hal, const zephyr_hal_config_t *config) {
+    uint32_t failed = zephyr_self_test_start(config); /* before the memory is used */
+    (void)memset(hal, 0, sizeof *hal);
+    (void)k_sem_init(&hal->wake, 0u, 1u);
+    failed |= zephyr_hal_output_is_open() ? 0u : HAL_SELF_TEST_DEVICES;
+    failed |= zephyr_flash_test_start(hal); /* it can take longer than the watchdog's period */
+    failed |= zephyr_watchdog_start(hal, config->watchdog_ms) ? 0u : HAL_SELF_TEST_WATCHDOG;
+    hal->retained = config->retained;
+    hal->reset_cause = zephyr_reset_read(hal->retained, &hal->end_before);
+    failed |= start_devices(hal, config);
     k_timer_init(&hal->timer, on_tick, NULL);
     k_timer_user_data_set(&hal->timer, &hal->wake);
     k_timer_start(&hal->timer, K_MSEC(MS_PER_TICK), K_MSEC(MS_PER_TICK));
-    const bool devices_work = output_works && led_works && log_works && sides_work;
-    hal->failed = (watchdog_works ? 0u : HAL_SELF_TEST_WATCHDOG) | (devices_work ? 0u : HAL_SELF_TEST_DEVICES);
-    return hal->failed == 0u;
-}
-
-uint32_t hal_self_test(hal_t *hal) {
-    return hal->failed;
-}
-
-bool hal_clock_second_ms(hal_t *hal, uint32_t *time_ms) {
-    ARG_UNUSED(hal);
-    ARG_UNUSED(time_ms);
-    return false;
+    hal->failed = failed;
+    return failed == 0u;
 }
 
 void zephyr_hal_wait(hal_t *hal) {

@@ -28,6 +28,38 @@ uint32_t zephyr_queue_pending_ms(const zephyr_hal_side_t *side, bool in_flight, 
 /** Start task watchdog and hardware watchdog. @return false: one does not exist or does not start */
 bool zephyr_watchdog_start(hal_t *hal, uint32_t period_ms);
 
+/** Set up the inputs that the board has. @return false: one cannot be set up */
+bool zephyr_inputs_start(void);
+
+/** Start the second clock. @return false: the board has one that cannot be used */
+bool zephyr_second_clock_start(hal_t *hal);
+
+/** Most ranges of the program in flash, and the mark of a table that was filled. */
+enum { ZEPHYR_IMAGE_RANGES = 16, ZEPHYR_IMAGE_SUM_MAGIC = 0x53564741 };
+
+/** The program in flash, as scripts/tools/zephyr-checksum.py found it after linking. */
+typedef struct {
+    uint32_t magic;
+    uint32_t count;
+    uint32_t crc; /**< CRC-32 (IEEE) over all ranges in this order */
+    struct {
+        uint32_t start;
+        uint32_t size;
+    } ranges[ZEPHYR_IMAGE_RANGES];
+} zephyr_image_sum_t;
+
+/** Test registers, and the memory of the configuration. @return HAL_SELF_TEST_* bits of what failed */
+uint32_t zephyr_self_test_start(const zephyr_hal_config_t *config);
+
+/** Test the whole program in flash once, and begin the background test. @return HAL_SELF_TEST_FLASH, or 0 */
+uint32_t zephyr_flash_test_start(hal_t *hal);
+
+/** March test of memory that is not used yet; it is 0 afterwards. @return true: passed */
+bool zephyr_march(volatile uint32_t *words, size_t count);
+
+/** March test of memory that keeps its content. Interrupts are locked for 16 words at a time. */
+bool zephyr_march_kept(volatile uint32_t *words, size_t count);
+
 /** Set up the LED, dark. */
 bool zephyr_led_start(void);
 

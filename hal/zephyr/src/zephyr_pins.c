@@ -4,6 +4,9 @@
 #include "zephyr_hal_internal.h"
 
 static const struct gpio_dt_spec output = GPIO_DT_SPEC_GET(ZEPHYR_HAL_NODE, safety_output_gpios);
+static const struct gpio_dt_spec feedback = GPIO_DT_SPEC_GET_OR(ZEPHYR_HAL_NODE, feedback_gpios, {0});
+static const struct gpio_dt_spec stop = GPIO_DT_SPEC_GET_OR(ZEPHYR_HAL_NODE, estop_gpios, {0});
+static const struct gpio_dt_spec button = GPIO_DT_SPEC_GET_OR(ZEPHYR_HAL_NODE, reset_gpios, {0});
 static const struct gpio_dt_spec led = GPIO_DT_SPEC_GET(DT_PHANDLE(ZEPHYR_HAL_NODE, alarm_led), gpios);
 
 /* Runs as soon as the pins work: before any other driver, and long before main(). */
@@ -39,7 +42,26 @@ void hal_led_set(hal_t *hal, bool on) {
     (void)gpio_pin_set_dt(&led, on ? 1 : 0);
 }
 
+static bool start_input(const struct gpio_dt_spec *input) {
+    return (input->port == NULL) || (gpio_is_ready_dt(input) && (gpio_pin_configure_dt(input, GPIO_INPUT) == 0));
+}
+
+bool zephyr_inputs_start(void) {
+    const bool feedback_works = start_input(&feedback);
+    const bool stop_works = start_input(&stop);
+    return start_input(&button) && feedback_works && stop_works;
+}
+
+/* A pin that cannot be read is open. */
+static uint8_t contact(const struct gpio_dt_spec *input) {
+    if (input->port == NULL) {
+        return (uint8_t)HAL_CONTACT_NONE;
+    }
+    return (uint8_t)((gpio_pin_get_dt(input) == 1) ? HAL_CONTACT_CLOSED : HAL_CONTACT_OPEN);
+}
+
 void hal_inputs_read(hal_t *hal, hal_inputs_t *inputs) {
     ARG_UNUSED(hal);
-    *inputs = (hal_inputs_t){.output_feedback = HAL_CONTACT_NONE};
+    *inputs = (hal_inputs_t){
+        .output_feedback = contact(&feedback), .emergency_stop = contact(&stop), .reset_button = contact(&button)};
 }

@@ -117,6 +117,15 @@ typedef struct {
     struct fcb_entry place;
 } zephyr_hal_log_cursor_t;
 
+/** Where the test of the program in flash is. Only the port uses the members. */
+typedef struct {
+    uint32_t range;
+    uint32_t done; /**< bytes of this range */
+    uint32_t crc;
+    uint32_t slice; /**< bytes a millisecond */
+    uint32_t rounds;
+} zephyr_flash_test_t;
+
 struct hal {
     uint32_t failed; /**< HAL_SELF_TEST_* bits of the parts that have failed */
     zephyr_hal_side_t sides[HAL_CAN_SIDES];
@@ -126,24 +135,36 @@ struct hal {
     zephyr_hal_end_t end_before; /**< of the run before; no reason if the port did not end it */
     zephyr_hal_retained_t *retained;
     int watchdog_channel;
+    zephyr_flash_test_t flash_test;
+    uint64_t second_counts; /**< of the second clock, since the start */
+    uint32_t second_last;   /**< what it read last */
     zephyr_hal_log_t log;
     bool log_is_whole; /**< the log can be written without the repair of a sector */
 };
+
+/** Memory that is tested at the start. */
+typedef struct {
+    void *start;
+    size_t size;  /**< in bytes; a rest that is no whole word is not tested */
+    bool is_kept; /**< its content is needed; otherwise it is 0 afterwards */
+} zephyr_hal_memory_t;
 
 /** Settings of the port. */
 typedef struct {
     uint32_t bitrate;
     uint16_t sample_point_permille;
     uint32_t watchdog_ms;
-    bool listen_only;                /**< the controllers do not acknowledge and cannot send */
-    zephyr_hal_retained_t *retained; /**< in ZEPHYR_HAL_RETAINED */
+    bool listen_only;                  /**< the controllers do not acknowledge and cannot send */
+    zephyr_hal_retained_t *retained;   /**< in ZEPHYR_HAL_RETAINED */
+    const zephyr_hal_memory_t *memory; /**< the supervisor's RAM, for the march test */
+    size_t memory_count;
 } zephyr_hal_config_t;
 
 /**
- * Start the port: output open (as it is since boot), watchdog, reset cause, LED dark, store, controllers on the bus, 1
- * ms tick. After the failure of a part the other parts are started all the same, because the supervisor can then still
- * trip.
- * @return true: all parts work; pass it to the supervisor as the result of the self-test
+ * Start the port: self-test of registers and RAM, output open (as it is since boot), watchdog, reset cause, LED dark, store,
+ * controllers on the bus, self-test of the flash, 1 ms tick. After the failure of a part the other parts are started all the
+ * same, because the supervisor can then still trip.
+ * @return true: all parts work. hal_self_test() tells the supervisor which ones do not
  */
 bool zephyr_hal_init(hal_t *hal, const zephyr_hal_config_t *config);
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include <zephyr/drivers/can/can_fake.h>
+#include <zephyr/drivers/counter.h>
 #include <zephyr/drivers/gpio/gpio_emul.h>
 #include <zephyr/drivers/hwinfo.h>
 #include <zephyr/drivers/watchdog.h>
@@ -231,6 +232,51 @@ int z_impl_hwinfo_clear_reset_cause(void) {
     return 0;
 }
 
+/* The counter. */
+uint32_t fake_counter_value;
+uint32_t fake_counter_hz = 32768u;
+uint32_t fake_counter_top = UINT32_MAX;
+int fake_counter_error;
+
+#if DT_HAS_COMPAT_STATUS_OKAY(agv_test_counter) && defined(CONFIG_COUNTER)
+static int counter_ok(const struct device *device) {
+    ARG_UNUSED(device);
+    return 0;
+}
+
+static int counter_value(const struct device *device, uint32_t *value) {
+    ARG_UNUSED(device);
+    *value = fake_counter_value;
+    return fake_counter_error;
+}
+
+static uint32_t counter_top(const struct device *device) {
+    ARG_UNUSED(device);
+    return fake_counter_top;
+}
+
+static uint32_t counter_hz(const struct device *device) {
+    ARG_UNUSED(device);
+    return fake_counter_hz;
+}
+
+static const struct counter_driver_api counter_api = {.start = counter_ok,
+                                                      .stop = counter_ok,
+                                                      .get_value = counter_value,
+                                                      .get_top_value = counter_top,
+                                                      .get_freq = counter_hz};
+
+/* A device says in its configuration whether it counts up: so it lies in RAM here. */
+static struct counter_config_info counter_config = {.flags = COUNTER_CONFIG_INFO_COUNT_UP};
+
+DEVICE_DT_DEFINE(DT_NODELABEL(test_counter), NULL, NULL, NULL, &counter_config, POST_KERNEL,
+                 CONFIG_KERNEL_INIT_PRIORITY_DEVICE, &counter_api);
+
+void fake_counter_direction(bool up) {
+    counter_config.flags = up ? COUNTER_CONFIG_INFO_COUNT_UP : 0u;
+}
+#endif
+
 /* The pins. */
 enum { PIN_LED = 0, PIN_OUTPUT = 1 };
 
@@ -238,6 +284,10 @@ static const struct device *const pins = DEVICE_DT_GET(DT_NODELABEL(test_pins));
 
 bool fake_output_is_closed(void) {
     return gpio_emul_output_get(pins, PIN_OUTPUT) == 1;
+}
+
+void fake_input_set(fake_input_t input, bool high) {
+    (void)gpio_emul_input_set(pins, (gpio_pin_t)input, high ? 1 : 0);
 }
 
 bool fake_led_is_on(void) {

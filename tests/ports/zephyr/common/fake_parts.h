@@ -72,4 +72,15 @@ extern uint32_t fake_reset_clears;
 bool fake_output_is_closed(void);
 bool fake_led_is_on(void);
 
+/** The counter of the second clock: it counts fake_counter_hz in a second, up to fake_counter_top, then from 0. */
+extern uint32_t fake_counter_value;
+extern uint32_t fake_counter_hz;
+extern uint32_t fake_counter_top;
+extern int fake_counter_error;
+void fake_counter_direction(bool up);
+
+/** An input of the supervisor, and its level. */
+typedef enum { FAKE_FEEDBACK = 2, FAKE_STOP = 3, FAKE_BUTTON = 4 } fake_input_t;
+void fake_input_set(fake_input_t input, bool high);
+
 #endif

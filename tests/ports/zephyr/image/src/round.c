@@ -12,6 +12,7 @@
 #include <zephyr/kernel.h>
 #include <zephyr/sys/printk.h>
 
+#include "agv/codec.h"
 #include "agv/names.h"
 #include "agv/protocol.h"
 #include "node.h"

@@ -426,10 +426,10 @@ ZTEST(port_log, test_an_operator_can_format_foreign_content) {
 ZTEST(port_log, test_the_log_is_read_record_by_record) {
     zephyr_hal_log_cursor_t cursor = {0};
     uint8_t record[RECORD];
-    for (uint32_t i = 0u; i < 30u; i++) {
+    for (uint32_t i = 0u; i < 15u; i++) {
         zassert_true(append(i));
     }
-    for (uint32_t i = 0u; i < 30u; i++) {
+    for (uint32_t i = 0u; i < 15u; i++) {
         zassert_equal(zephyr_hal_log_next(&hal, &cursor, record, sizeof record), RECORD);
         zassert_equal(record[0], i);
     }
