@@ -195,6 +195,8 @@ def check(build):
 
 
 def chip(build):
+    if build.has("ARCH_POSIX"):
+        return ("none", "none")
     family = build.config.get("SOC_SERIES", build.config.get("SOC", "")).strip('"')
     for name, facts in CHIPS.items():
         if family.startswith(name):
@@ -254,6 +256,7 @@ FACTS = (
     ("log in flash", log_text),
     ("bootloader", lambda build: "MCUboot" if build.has("BOOTLOADER_MCUBOOT") else "none"),
 )
+OF_THE_BUILD = ("bootloader",)  # not of the board: left out of the table
 
 
 def header(build):
@@ -268,7 +271,7 @@ def table(builds):
     columns = sorted(builds, key=lambda build: build.config["BOARD"])
     names = ["`" + build.config["BOARD"].strip('"') + "`" for build in columns]
     rows = ["| | " + " | ".join(names) + " |", "|---|" + "---|" * len(names)]
-    rows += [f"| {name} | " + " | ".join(text(build) for build in columns) + " |" for name, text in FACTS]
+    rows += [f"| {name} | " + " | ".join(text(build) for build in columns) + " |" for name, text in FACTS if name not in OF_THE_BUILD]
     return "\n".join(rows)
 
 
