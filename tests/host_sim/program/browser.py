@@ -85,16 +85,20 @@ class Browser:
                 return message["result"]
             self.events.append(message)
 
-    def open(self, path, width=1440, height=900, dark=False):
-        """Open a file, with a screen of this size, and wait until it is shown."""
-        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 600)
-        self.call("Emulation.setEmulatedMedia",
-                  features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+    def go(self, path):
+        """Open a file and wait until it is loaded."""
         self.events = []
         self.call("Page.navigate", url=pathlib.Path(path).resolve().as_uri())
         until = time.monotonic() + PATIENCE_S
         while not any(event.get("method") == "Page.loadEventFired" for event in self.events):
             self.events.append(self._read(until))
+
+    def open(self, path, width=1440, height=900, dark=False):
+        """Open a file, with a screen of this size, and wait until it is shown."""
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 600)
+        self.call("Emulation.setEmulatedMedia",
+                  features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+        self.go(path)
         self.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
     def run(self, script):
