@@ -36,29 +36,45 @@ void gaps_add(gaps_t *gaps, uint64_t begin_us, uint64_t gap_us) {
     gaps->cells[cell_of(gap_us)]++;
 }
 
-/** The gap with this rank, the shortest one having rank 1. */
-static uint64_t ranked_us(const gaps_t *gaps, uint64_t rank) {
-    uint64_t seen = 0u;
-    for (size_t cell = 0u; cell < GAPS_CELLS - 1u; cell++) {
-        seen += gaps->cells[cell];
-        if (seen >= rank) {
-            const uint64_t top_us = top_of(cell);
-            return (top_us < gaps->longest_us) ? top_us : gaps->longest_us;
-        }
+/** The cell of the gap with this rank, the shortest one having rank 1. @param before the gaps in the cells before */
+static size_t ranked(const gaps_t *gaps, uint64_t rank, uint64_t *before) {
+    size_t cell = 0u;
+    *before = 0u;
+    while ((cell < GAPS_CELLS - 1u) && (*before + gaps->cells[cell] < rank)) {
+        *before += gaps->cells[cell];
+        cell++;
     }
-    return gaps->longest_us;
+    return cell;
+}
+
+static uint64_t clamp(const gaps_t *gaps, uint64_t gap_us) {
+    const uint64_t most_us = (gap_us < gaps->longest_us) ? gap_us : gaps->longest_us;
+    return (most_us > gaps->shortest_us) ? most_us : gaps->shortest_us;
 }
 
 uint64_t gaps_quantile_us(const gaps_t *gaps, uint32_t permille) {
     if (gaps->count == 0u) {
         return 0u;
     }
-    const uint64_t rank = ((gaps->count * permille) + (uint64_t)PERMILLE - 1u) / (uint64_t)PERMILLE;
-    return ranked_us(gaps, (rank > 0u) ? rank : 1u);
+    const uint64_t least = ((gaps->count * permille) + (uint64_t)PERMILLE - 1u) / (uint64_t)PERMILLE;
+    const uint64_t rank = (least > 0u) ? least : 1u;
+    uint64_t before = 0u;
+    const size_t cell = ranked(gaps, rank, &before);
+    if (cell == GAPS_CELLS - 1u) {
+        return gaps->longest_us;
+    }
+    const uint64_t width_us = top_of(cell) - ((cell > 0u) ? top_of(cell - 1u) : 0u);
+    const uint64_t above = gaps->cells[cell] - (rank - before); /* gaps of the cell that are longer */
+    return clamp(gaps, top_of(cell) - ((width_us * above) / gaps->cells[cell]));
 }
 
 uint64_t gaps_without_longest_us(const gaps_t *gaps, uint64_t longer) {
-    return (gaps->count > longer) ? ranked_us(gaps, gaps->count - longer) : 0u;
+    if (gaps->count <= longer) {
+        return 0u;
+    }
+    uint64_t before = 0u;
+    const size_t cell = ranked(gaps, gaps->count - longer, &before);
+    return clamp(gaps, (cell == GAPS_CELLS - 1u) ? gaps->longest_us : top_of(cell));
 }
 
 uint64_t gaps_longer_than(const gaps_t *gaps, uint64_t limit_us) {

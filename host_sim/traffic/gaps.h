@@ -3,7 +3,8 @@
  * Gaps between frames, counted as they come in a histogram of fixed size.
  *
  * Number, shortest and longest gap are exact. Every power of two of microseconds has 64 equal cells, so a gap found by
- * its rank (median, 99.9 %) is never less than the true one and at most 1.6 % (1/64) more; up to 128 us it is exact.
+ * its rank (median, 99.9 %) is within 1.6 % (1/64) of the true one, and within the shortest and the longest; up to
+ * 128 us it is exact.
  */
 #ifndef HOST_SIM_GAPS_H
 #define HOST_SIM_GAPS_H
@@ -26,10 +27,10 @@ typedef struct {
 /** Add a gap. @param begin_us when it began */
 void gaps_add(gaps_t *gaps, uint64_t begin_us, uint64_t gap_us);
 
-/** The gap of which @p permille of 1000 gaps are no longer; 0: there are no gaps. */
+/** The gap of which @p permille of 1000 gaps are no longer, within its cell by proportion; 0: there are no gaps. */
 uint64_t gaps_quantile_us(const gaps_t *gaps, uint32_t permille);
 
-/** The shortest gap that at most @p longer gaps exceed; 0: there are not more gaps than that. */
+/** The shortest gap that at most @p longer gaps exceed, or up to 1.6 % more; 0: there are not more gaps than that. */
 uint64_t gaps_without_longest_us(const gaps_t *gaps, uint64_t longer);
 
 /** Number of gaps that are longer than @p limit_us, within 1.6 %. */

@@ -1,0 +1,80 @@
+/* Gaps in a histogram: what is exact, and how close the rest is. */
+#include "traffic/gaps.h"
+
+#include <string.h>
+
+#include "unity.h"
+
+static gaps_t gaps;
+
+void setUp(void) {
+    memset(&gaps, 0, sizeof gaps);
+}
+
+void tearDown(void) {
+}
+
+static void assert_within(uint64_t expected_us, uint64_t us) {
+    TEST_ASSERT_UINT64_WITHIN((expected_us / 64u) + 1u, expected_us, us);
+}
+
+void test_no_gaps(void) {
+    TEST_ASSERT_EQUAL_UINT64(0, gaps_quantile_us(&gaps, 500));
+    TEST_ASSERT_EQUAL_UINT64(0, gaps_without_longest_us(&gaps, 0));
+    TEST_ASSERT_EQUAL_UINT64(0, gaps_longer_than(&gaps, 0));
+}
+
+void test_shortest_and_longest_are_exact(void) {
+    gaps_add(&gaps, 1000, 10017);
+    gaps_add(&gaps, 11017, 9983);
+    gaps_add(&gaps, 21000, 123457);
+    TEST_ASSERT_EQUAL_UINT64(3, gaps.count);
+    TEST_ASSERT_EQUAL_UINT64(9983, gaps.shortest_us);
+    TEST_ASSERT_EQUAL_UINT64(123457, gaps.longest_us);
+    TEST_ASSERT_EQUAL_UINT64(21000, gaps.longest_at_us);
+    TEST_ASSERT_EQUAL_UINT64(123457, gaps_quantile_us(&gaps, 1000));
+    assert_within(10017, gaps_quantile_us(&gaps, 500));
+}
+
+void test_equal_gaps_are_exact(void) {
+    for (unsigned i = 0; i < 1000; i++) {
+        gaps_add(&gaps, 0, 10000);
+    }
+    TEST_ASSERT_EQUAL_UINT64(10000, gaps_quantile_us(&gaps, 500));
+    TEST_ASSERT_EQUAL_UINT64(10000, gaps_quantile_us(&gaps, 999));
+    TEST_ASSERT_EQUAL_UINT64(10000, gaps_without_longest_us(&gaps, 10));
+}
+
+void test_ranks_within_the_promised_error(void) {
+    for (uint64_t us = 1; us <= 100000; us++) {
+        gaps_add(&gaps, 0, us);
+    }
+    assert_within(50000, gaps_quantile_us(&gaps, 500));
+    assert_within(99900, gaps_quantile_us(&gaps, 999));
+    assert_within(1000, gaps_quantile_us(&gaps, 10));
+    TEST_ASSERT_EQUAL_UINT64(100, gaps_quantile_us(&gaps, 1));
+    assert_within(90000, gaps_without_longest_us(&gaps, 10000));
+    TEST_ASSERT_GREATER_OR_EQUAL_UINT64(90000, gaps_without_longest_us(&gaps, 10000));
+    assert_within(60000, 100000u - gaps_longer_than(&gaps, 60000));
+}
+
+void test_outages_do_not_move_the_usual_longest_gap(void) {
+    for (unsigned i = 0; i < 990; i++) {
+        gaps_add(&gaps, 0, 10000);
+    }
+    for (unsigned i = 0; i < 10; i++) {
+        gaps_add(&gaps, 0, 500000);
+    }
+    TEST_ASSERT_UINT64_WITHIN(200, 10000, gaps_without_longest_us(&gaps, 10));
+    assert_within(500000, gaps_without_longest_us(&gaps, 9));
+}
+
+void test_gaps_of_hours_and_of_nothing(void) {
+    gaps_add(&gaps, 0, 0);
+    gaps_add(&gaps, 0, UINT64_MAX);
+    gaps_add(&gaps, 0, 86400000000u);
+    TEST_ASSERT_EQUAL_UINT64(0, gaps_quantile_us(&gaps, 1));
+    assert_within(86400000000u, gaps_quantile_us(&gaps, 500));
+    TEST_ASSERT_EQUAL_UINT64(UINT64_MAX, gaps_quantile_us(&gaps, 1000));
+    TEST_ASSERT_EQUAL_UINT64(2, gaps_longer_than(&gaps, 1000));
+}
