@@ -31,7 +31,7 @@ static void act(scenario_testbed_t *testbed, uint32_t at_ms, vehicle_action_t ac
 /** Healthy driving on autopilot. @return speed in multiples of real time; 0: a fault occurred */
 static double drive(scenario_testbed_t *testbed, uint16_t topology, uint32_t duration_ms) {
     static scenario_t scenario;
-    scenario = (scenario_t){.bitrate = SCENARIO_DEFAULT_BITRATE, .self_test_passed = true};
+    scenario = (scenario_t){.bitrate = SCENARIO_DEFAULT_BITRATE};
     agv_config_defaults(&scenario.config);
     vehicle_defaults(&scenario.vehicle);
     scenario.config.topology = topology;
