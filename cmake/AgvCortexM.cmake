@@ -36,7 +36,7 @@ function(agv_build_for_cpu target cpu)
   endforeach()
   set(library ${target}_${cpu})
   add_library(${library} STATIC ${paths})
-  target_include_directories(${library} PUBLIC ${includes})
+  target_include_directories(${library} PUBLIC "${includes}") # quoted: it has generator expressions with lists
   target_compile_options(${library} PRIVATE
     -mcpu=${cpu} -mthumb -ffunction-sections -fdata-sections -fstack-usage -fcallgraph-info=su
     ${AGV_SMALL_OPTIONS})

@@ -61,7 +61,8 @@ static uint32_t last_step_ms(const scenario_t *scenario) {
 
     for (size_t i = 0u; i < scenario->step_count; i++) {
         const scenario_step_t *step = &scenario->steps[i];
-        const bool presses = step->of_vehicle && (step->vehicle.what == VEHICLE_DO_BUTTON);
+        const bool presses =
+            step->of_vehicle ? (step->vehicle.what == VEHICLE_DO_BUTTON) : (step->supervisor.what == SCENARIO_BUTTON);
         const uint32_t until_ms = (presses && (step->again_every_ms != 0u)) ? step->again_until_ms : step->at_ms;
         last_ms = (until_ms > last_ms) ? until_ms : last_ms;
     }

@@ -444,6 +444,7 @@ void scenario_testbed_view(const scenario_testbed_t *testbed, scenario_testbed_v
         .bites = hal->bites,
         .lost_frames = testbed->lost_frames,
         .is_off = testbed->off,
+        .pin_is_down = hal->board.button_is_down,
     };
     vehicle_state(&testbed->vehicle, &view->vehicle);
 }

@@ -106,6 +106,7 @@ typedef struct {
     uint32_t bites;       /**< likewise */
     uint32_t lost_frames; /**< of the vehicle, that found no room in a mailbox */
     bool is_off;          /**< the supervisor is without power */
+    bool pin_is_down;     /**< its push button */
     vehicle_state_t vehicle;
 } scenario_testbed_view_t;
 

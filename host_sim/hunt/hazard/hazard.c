@@ -27,7 +27,8 @@ static const hazard_info_t INFOS[HAZARD_KINDS] = {
                             "the safety output stays closed though the safe state is not confirmed for longer "
                             "than the total time allowed",
                             "the safety output opens"},
-    [HAZARD_RESET] = {"H5", "a reset that no operator asked for by pressing and releasing button 1 after the trip",
+    [HAZARD_RESET] = {"H5",
+                      "a reset that no operator asked for by pressing and releasing the reset button after the trip",
                       "the safe commands go on"},
     [HAZARD_FALSE_NODE] = {"H6",
                            "the vehicle moves on with the safety output closed though a node reports a fault or "
@@ -87,6 +88,7 @@ static void read_limits(hazard_t *hazard) {
     limits->engaged_grace_ms = hazard_setting(hazard, "engaged_grace_ms", 500u);
     limits->reengage_ms = hazard_setting(hazard, "reengage_ms", 100u);
     limits->reset_hold_ms = hazard_setting(hazard, "reset_hold_ms", 1000u);
+    limits->reset_input = hazard_setting(hazard, "reset_input", AGV_RESET_INPUT_CAN);
     limits->gear_status_ms = hazard_setting(hazard, "gear_status_timeout_ms", 125u);
     limits->command_ms[AGV_MSG_GEAR_COMMAND] = hazard_setting(hazard, "gear_command_timeout_ms", 350u);
     limits->command_ms[AGV_MSG_THROTTLE_COMMAND] = hazard_setting(hazard, "throttle_command_timeout_ms", 350u);

@@ -87,6 +87,7 @@ typedef struct {
     uint32_t steering_deviation_ms;
     int32_t steering_gain_ddeg;
     uint32_t throttle_deviation_counts;
+    uint32_t reset_input; /**< AGV_RESET_INPUT_* */
     bool limits_steering;
 } hazard_limits_t;
 
@@ -105,7 +106,7 @@ typedef struct {
     uint32_t begun_count;
 } hazard_mode_t;
 
-/** Button 1, and what became of it since the first safe command. */
+/** A button that resets, and what became of it since the first safe command. */
 typedef struct {
     bool down;
     bool pressed;
@@ -120,8 +121,9 @@ typedef struct {
     bool parks;               /**< the first 168h P */
     uint64_t first_ms;        /**< of the first since then */
     uint64_t last_ms;         /**< of the last 43Fh with the whole safe payload */
-    hazard_button_t button;   /**< as the operator really holds it */
-    hazard_button_t reported; /**< as 363h reports it */
+    hazard_button_t button;   /**< remote button 1, as the operator really holds it */
+    hazard_button_t reported; /**< the same, as 363h reports it */
+    hazard_button_t pin;      /**< the push button, with its bouncing */
     bool was_closed;
     uint64_t closed_ms;    /**< the safety output was closed */
     uint32_t unparked_ms;  /**< sum of the time in which P was not confirmed */
@@ -225,6 +227,9 @@ int32_t hazard_speed_mm_s(const hazard_t *hazard);
 
 /** Whether the supervisor has tripped and was not reset since, as the wire shows it. */
 bool hazard_is_tripped(const hazard_t *hazard);
+
+/** Whether the operator asked for a reset since the trip, with a button that may reset. */
+bool hazard_reset_was_asked(const hazard_t *hazard);
 
 /** @name Private: the parts. @{ */
 void hazard_found(hazard_t *hazard, hazard_kind_t kind, const char *cause);

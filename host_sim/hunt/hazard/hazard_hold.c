@@ -128,8 +128,7 @@ static void keep(hazard_t *hazard) {
 
 /** Passed on for the AI computer: after a reset the safe commands may have ended already. */
 static bool is_passed_on(const hazard_t *hazard, uint16_t value) {
-    const bool is_limited = hazard->limits.limits_steering &&
-                            (hazard->trip.button.released || hazard->trip.reported.released) && hazard->mode.autopilot;
+    const bool is_limited = hazard->limits.limits_steering && hazard_reset_was_asked(hazard) && hazard->mode.autopilot;
 
     return hazard->gateway && (is_limited || hazard_was_sent(hazard, AGV_MSG_STEERING_COMMAND, value));
 }

@@ -24,6 +24,7 @@ static void begin_trip(hazard_t *hazard) {
     trip->first_ms = hazard->t_ms;
     forget_press(hazard, &trip->button);
     forget_press(hazard, &trip->reported);
+    forget_press(hazard, &trip->pin);
     trip->unparked_ms = 0u;
     trip->engaged_ms = 0u;
     trip->confirmed_ms = 0u;
@@ -119,16 +120,25 @@ static bool has_ended(hazard_t *hazard) {
            !controller.swallows;
 }
 
+bool hazard_reset_was_asked(const hazard_t *hazard) {
+    const hazard_trip_t *trip = &hazard->trip;
+    const bool by_remote = (hazard->limits.reset_input != (uint32_t)AGV_RESET_INPUT_PIN) &&
+                           (trip->button.released || trip->reported.released);
+    const bool by_pin = (hazard->limits.reset_input != (uint32_t)AGV_RESET_INPUT_CAN) && trip->pin.released;
+    return by_remote || by_pin;
+}
+
 static void check_reset(hazard_t *hazard, bool was_closed) {
     hazard_trip_t *trip = &hazard->trip;
 
     if (trip->tripped && ((hazard->closed && !was_closed) || has_ended(hazard))) {
         trip->tripped = false;
-        if (trip->button.released || trip->reported.released) {
+        if (hazard_reset_was_asked(hazard)) {
             return; /* a reset as it should be */
         }
         hazard_found(hazard, HAZARD_RESET,
-                     trip->button.pressed ? "the button was not released" : "nobody pressed the button after the trip");
+                     (trip->button.pressed || trip->pin.pressed) ? "no button that may reset was released"
+                                                                 : "nobody pressed the button after the trip");
     }
 }
 
@@ -187,6 +197,7 @@ void hazard_safe_tick(hazard_t *hazard) {
     const bool was_closed = trip->was_closed;
 
     follow_button(hazard, &trip->button, hazard->view.vehicle.button_1, 0u);
+    follow_button(hazard, &trip->pin, hazard->view.pin_is_down, 0u);
     check_reset(hazard, was_closed);
     follow_output(hazard, was_closed);
     const bool hangs = hazard->view.is_halted; /* the watchdog ends that, after its period */

@@ -150,14 +150,14 @@ static hazard_kind_t play(const planted_t *supervisor, const char *steps) {
 
     planted = supervisor;
     agv_config_defaults(&defaults.config);
-    (void)snprintf(
-        text, sizeof text,
-        "name: a hazard\nshows: [H1]\ntopology: %s\n%s%svehicle:\n  park_guard: %s\n%sduration_ms: 12000\nsteps:\n"
-        "  - {at_ms: 1000, ai: drive, gear: D, throttle_pct: 60, steer_deg: 20}\n"
-        "  - {at_ms: 1500, operator: engage}\n%sexpect: {states: any}\n",
-        supervisor->gateway ? "gateway" : "shared", (supervisor->setting != NULL) ? "config:\n  " : "",
-        (supervisor->setting != NULL) ? supervisor->setting : "", supervisor->rolls ? "false" : "true",
-        supervisor->rolls ? "  coasting_mm_s2: 1\n  braking_mm_s2: 1\n  locked_mm_s2: 1\n" : "", steps);
+    (void)snprintf(text, sizeof text,
+                   "name: a hazard\nshows: [H1]\nboard: [reset_button]\ntopology: %s\n%s%svehicle:\n  park_guard: "
+                   "%s\n%sduration_ms: 12000\nsteps:\n"
+                   "  - {at_ms: 1000, ai: drive, gear: D, throttle_pct: 60, steer_deg: 20}\n"
+                   "  - {at_ms: 1500, operator: engage}\n%sexpect: {states: any}\n",
+                   supervisor->gateway ? "gateway" : "shared", (supervisor->setting != NULL) ? "config:\n  " : "",
+                   (supervisor->setting != NULL) ? supervisor->setting : "", supervisor->rolls ? "false" : "true",
+                   supervisor->rolls ? "  coasting_mm_s2: 1\n  braking_mm_s2: 1\n  locked_mm_s2: 1\n" : "", steps);
     TEST_ASSERT_TRUE(scenario_read_text(&scenario, "test", text, &defaults));
     TEST_ASSERT_TRUE(scenario_testbed_init(&testbed, &scenario));
     hazard_init(&hazard, &scenario, &testbed);
@@ -362,8 +362,25 @@ void test_h5_a_reset(void) {
         "  - {at_ms: 4500, operator: press, button: 1}\n  - {at_ms: 5900, operator: release, button: 1}\n";
     expect(HAZARD_RESET, "nobody pressed the button after the trip", play(&resets, ""));
     expect(HAZARD_RESET, "nobody pressed the button after the trip", play(&resets, before));
-    expect(HAZARD_RESET, "the button was not released", play(&resets, stuck));
+    expect(HAZARD_RESET, "no button that may reset was released", play(&resets, stuck));
     expect(HAZARD_NONE, "", play(&resets, pressed));
+}
+
+/** Only a button that the configuration lets reset counts. */
+/* Shows: HW-3 */
+void test_h5_the_push_button(void) {
+    const planted_t by_can = {.safe_ms = TRIP_MS, .safe_end_ms = 6000};
+    const planted_t by_pin = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .setting = "reset_input: pin\n"};
+    const planted_t by_both = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .setting = "reset_input: both\n"};
+    const char *const remote =
+        "  - {at_ms: 4500, operator: press, button: 1}\n  - {at_ms: 5900, operator: release, button: 1}\n";
+    const char *const pin = "  - {at_ms: 4500, board: press}\n  - {at_ms: 5900, board: release}\n";
+    expect(HAZARD_RESET, "no button that may reset was released", play(&by_can, pin));
+    expect(HAZARD_RESET, "no button that may reset was released", play(&by_pin, remote));
+    expect(HAZARD_RESET, "no button that may reset was released", play(&by_pin, "  - {at_ms: 4500, board: press}\n"));
+    expect(HAZARD_NONE, "", play(&by_pin, pin));
+    expect(HAZARD_NONE, "", play(&by_both, pin));
+    expect(HAZARD_NONE, "", play(&by_both, remote));
 }
 
 /** What 363h reports of the button counts too: nobody can know better. */
