@@ -8,6 +8,7 @@
 
 #include "agv/names.h"
 #include "campaign/campaign_scenario.h"
+#include "campaign/campaign_why.h"
 #include "common/interrupt.h"
 #include "scenario/scenario_play.h"
 #include "ui/progress.h"
@@ -25,6 +26,8 @@ typedef struct {
     scenario_testbed_t testbed;
     campaign_samples_t samples;
     output_t results;
+    output_t why_lines; /**< of --why */
+    campaign_why_t why;
     output_t file; /**< of a broken run */
     size_t broken;
 } campaign_t;
@@ -71,6 +74,13 @@ static bool run_one(campaign_t *campaign, uint64_t run) {
     campaign_check_init(&campaign->check, &campaign->plan, &campaign->testbed);
     const scenario_watch_t watch = campaign_check_watch(&campaign->check);
     scenario_testbed_watch(&campaign->testbed, &watch);
+    if (campaign->why_lines.is_open) {
+        if (!campaign_why_init(&campaign->why, &campaign->scenario.config)) {
+            return false;
+        }
+        const scenario_watch_t why = campaign_why_watch(&campaign->why);
+        scenario_testbed_watch(&campaign->testbed, &why);
+    }
     play(campaign);
     return true;
 }
@@ -102,6 +112,9 @@ static bool keep(campaign_t *campaign) {
     if (campaign->results.is_open) {
         campaign_write_run(&campaign->results, &campaign->check);
     }
+    if (campaign->why_lines.is_open) {
+        campaign_why_write(&campaign->why, &campaign->why_lines, &campaign->plan);
+    }
     if (sample.broken) {
         campaign->broken++;
         if ((campaign->broken <= FILES_MAX) && !write_file(campaign)) {
@@ -109,6 +122,10 @@ static bool keep(campaign_t *campaign) {
         }
     }
     return campaign_samples_add(&campaign->samples, &sample);
+}
+
+static bool outputs_work(const campaign_t *campaign) {
+    return (campaign->results.error == 0) && (campaign->why_lines.error == 0);
 }
 
 /** All runs of this shard. @return false: reported, or interrupted */
@@ -124,7 +141,7 @@ static bool run_all(campaign_t *campaign) {
         good = run_one(campaign, run) && keep(campaign);
         done++;
         progress_show(&progress, done, "runs");
-        if (((done % LOOK_FOR_SIGNALS_EVERY) == 0u) && (interrupt_pending() || (campaign->results.error != 0))) {
+        if (((done % LOOK_FOR_SIGNALS_EVERY) == 0u) && (interrupt_pending() || !outputs_work(campaign))) {
             good = false;
         }
     }
@@ -133,7 +150,7 @@ static bool run_all(campaign_t *campaign) {
 }
 
 static status_t conclude(campaign_t *campaign) {
-    if (output_is_stdout(campaign->request->results)) {
+    if (output_is_stdout(campaign->request->results) || output_is_stdout(campaign->request->why)) {
         return (campaign->broken == 0u) ? STATUS_OK : STATUS_UNMET; /* no table: standard output has the results */
     }
     if (campaign->broken > FILES_MAX) {
@@ -148,17 +165,19 @@ static status_t conclude(campaign_t *campaign) {
 static status_t run_campaign(campaign_t *campaign) {
     const campaign_request_t *request = campaign->request;
 
-    if ((request->results != NULL) && !output_open(&campaign->results, request->results)) {
+    if (((request->results != NULL) && !output_open(&campaign->results, request->results)) ||
+        ((request->why != NULL) && !output_open(&campaign->why_lines, request->why))) {
         return STATUS_UNUSABLE;
     }
     if (campaign->results.is_open) {
         campaign_write_part(&campaign->results, &request->part);
     }
     const bool whole = run_all(campaign);
-    if (!whole && (campaign->results.error == 0)) {
+    if (!whole && outputs_work(campaign)) {
         return STATUS_UNUSABLE;
     }
-    if (!output_commit(&campaign->results)) {
+    if (!output_flush_all(&campaign->results, 1u) || !output_commit(&campaign->why_lines) ||
+        !output_commit(&campaign->results)) {
         return STATUS_UNUSABLE;
     }
     return conclude(campaign);
@@ -186,6 +205,8 @@ status_t campaign_run(const campaign_request_t *request) {
     agv_config_defaults(&campaign->options.config);
     const status_t status = request->shows_one ? show_one(campaign) : run_campaign(campaign);
     output_discard(&campaign->results);
+    output_discard(&campaign->why_lines);
+    campaign_why_free(&campaign->why);
     output_discard(&campaign->file);
     campaign_samples_free(&campaign->samples);
     free(campaign);

@@ -12,6 +12,7 @@
 typedef struct {
     campaign_part_t part;
     const char *results; /**< file; NULL: none */
+    const char *why;     /**< file; NULL: none */
     const char *folder;  /**< for the scenarios of broken runs */
     bool shows_one;      /**< print run `one` as a scenario, nothing else */
     uint64_t one;

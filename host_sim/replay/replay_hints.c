@@ -68,9 +68,14 @@ static void add_heard(text_t *text, const replay_heard_t *heard) {
             count++;
         }
     }
-    if (count > 0u) {
+    if (more) {
+        for (size_t i = 0u; i < count; i++) {
+            text_add(text, "%03Xh, ", (unsigned)shown[i]);
+        }
+        text_add(text, "and others heard");
+    } else if (count > 0u) {
         add_ids(text, shown, count);
-        text_add(text, "%s heard", more ? " and others" : "");
+        text_add(text, " heard");
     } else {
         text_add(text, heard->extended ? "only 29-bit identifiers heard" : "no data frame heard");
     }
@@ -92,11 +97,15 @@ static bool hint_node(text_t *text, const agv_config_t *config, const replay_hea
     static const agv_message_t eps[] = {AGV_MSG_STEERING_STATUS, AGV_MSG_EPS_STATUS, AGV_MSG_STEERING_POSITION};
     static const agv_message_t vcu[] = {AGV_MSG_VEHICLE_STATUS, AGV_MSG_GEAR_STATUS, AGV_MSG_THROTTLE_STATUS,
                                         AGV_MSG_WHEEL_SPEED};
+    static const agv_message_t ai[] = {AGV_MSG_TURN_SIGNAL_COMMAND, AGV_MSG_GEAR_COMMAND, AGV_MSG_THROTTLE_COMMAND,
+                                       AGV_MSG_STEERING_COMMAND};
     static const struct {
         const char *name;
         const agv_message_t *messages;
         size_t count;
-    } nodes[] = {{"EPS", eps, sizeof eps / sizeof eps[0]}, {"VCU", vcu, sizeof vcu / sizeof vcu[0]}};
+    } nodes[] = {{"EPS", eps, sizeof eps / sizeof eps[0]},
+                 {"VCU", vcu, sizeof vcu / sizeof vcu[0]},
+                 {"AI computer", ai, sizeof ai / sizeof ai[0]}};
     agv_ids_t ids;
     agv_config_ids(config, &ids);
     for (size_t n = 0u; n < sizeof nodes / sizeof nodes[0]; n++) {

@@ -12,6 +12,8 @@
 #include "why/why_words.h"
 
 enum { COLUMNS = 100, LABEL = 12, NOT_SUPERVISED_LABEL = 16, TRIPS_SHOWN = 8 };
+enum { MANUAL_BIT = 5 };
+_Static_assert((1u << MANUAL_BIT) == AGV_MISSING_MANUAL, "the bit of manual");
 enum { CLOCK_SIZE = 40, DATE = 10, US_PER_10_MS = 10000, START_MS = 1000 };
 
 /** A stamp before the year 2000 is no time of day. */
@@ -87,21 +89,30 @@ static void print_hints(const replay_text_t *replay) {
     }
 }
 
-/** Add the conditions for leaving INIT that did not hold. @param details say why: of the end of the run */
+/** Add a condition for leaving INIT that did not hold. @param details say why: of the end of the run */
+static void add_condition(text_t *text, const replay_text_t *replay, uint8_t bit, bool details) {
+    text_t detail = {.used = 0u};
+    text_add(text, "%s", agv_missing_name(bit));
+    why_words_missing(&detail, replay->why, bit);
+    if (details && (detail.used > 0u)) {
+        text_add(text, " (%s)", detail.bytes);
+    }
+}
+
+/** Add all that did not hold; the mode first, which is what most logs lack. */
 static void add_missing(text_t *text, const replay_text_t *replay, bool details) {
     const uint32_t missing = why_missing(replay->why);
     const char *between = "";
-    for (uint8_t bit = 0u; agv_missing_name(bit) != NULL; bit++) {
-        text_t detail = {.used = 0u};
-        if (((missing >> bit) & 1u) == 0u) {
-            continue;
-        }
-        why_words_missing(&detail, replay->why, bit);
-        text_add(text, "%s%s", between, agv_missing_name(bit));
-        if (details && (detail.used > 0u)) {
-            text_add(text, " (%s)", detail.bytes);
-        }
+    if ((missing & AGV_MISSING_MANUAL) != 0u) {
+        add_condition(text, replay, MANUAL_BIT, details);
         between = ", ";
+    }
+    for (uint8_t bit = 0u; agv_missing_name(bit) != NULL; bit++) {
+        if ((bit != (uint8_t)MANUAL_BIT) && (((missing >> bit) & 1u) != 0u)) {
+            text_add(text, "%s", between);
+            add_condition(text, replay, bit, details);
+            between = ", ";
+        }
     }
 }
 
@@ -175,7 +186,20 @@ static void print_trip(const replay_text_t *replay, const why_trip_t *trip, cons
     add_then(&text, "P confirmed", "P not confirmed", trip->confirmed_us);
     text_add(&text, "; ");
     add_then(&text, "stands", "does not stand", trip->stopped_us);
+    if ((trip->confirmed_us == WHY_NEVER) || (trip->stopped_us == WHY_NEVER)) {
+        text_add(&text, " (a recording cannot obey)");
+    }
     print_labelled("  then", LABEL, text.bytes);
+}
+
+/** Whether something had begun when the log ended. */
+static bool has_pending(const replay_text_t *replay) {
+    bool pending = false;
+    for (int fault = 0; fault < (int)AGV_FAULT_COUNT; fault++) {
+        text_t text = {.used = 0u};
+        pending = pending || why_words_pending(&text, replay->why, (agv_fault_t)fault);
+    }
+    return pending;
 }
 
 static bool is_consequence(const why_trip_t *trip) {
@@ -197,7 +221,7 @@ static void print_trips(const replay_text_t *replay) {
         }
     }
     if (count == 0u) {
-        print_labelled("tripped", LABEL, "never");
+        print_labelled("tripped", LABEL, has_pending(replay) ? "never, but see what the log ends in" : "never");
     } else if (count > shown) {
         (void)printf("%*sand %zu times more: --why FILE has them all\n", LABEL, "", count - shown);
     } else {
@@ -253,6 +277,8 @@ static void print_fault(const why_fault_t *fault, const widths_t *widths, bool i
              (int)widths->times, times_text(&times, fault), (int)widths->lasted, time_text(&lasted, fault->active_us));
     if (fault->from_recording) {
         text_add(&text, "  (a recording cannot obey)");
+    } else if (fault->in_init && (fault->fault_class == AGV_CLASS_TRIP)) {
+        text_add(&text, "  in INIT: no trip");
     } else if (fault->active) {
         text_add(&text, "  active at the end");
     } else {
@@ -277,7 +303,7 @@ static void print_pending(const replay_text_t *replay) {
     for (int fault = 0; fault < (int)AGV_FAULT_COUNT; fault++) {
         text_t text = {.used = 0u};
         if (why_words_pending(&text, replay->why, (agv_fault_t)fault)) {
-            text_add(&text, ": not decided");
+            text_add(&text, ": the log ends first");
             print_labelled(label, LABEL, text.bytes);
             label = "";
         }
@@ -301,9 +327,9 @@ static void print_lines(const events_summary_t *summary) {
 
 void replay_text_print(const replay_text_t *replay) {
     print_not_supervised(replay);
+    print_hints(replay);
     print_head(replay);
     print_supervised(replay);
-    print_hints(replay);
     print_trips(replay);
     print_faults(replay->why);
     print_pending(replay);

@@ -83,13 +83,15 @@ static bool wheels_stand(const why_t *why) {
 }
 
 /** What a frame adds to the trip before it: the end of a silence, standstill. */
-static void follow_trip(why_t *why, agv_message_t message, uint64_t t_us) {
+static void follow_trip(why_t *why, agv_message_t message, const why_evidence_t *frame) {
+    const uint64_t t_us = frame->t_us;
     why_trip_t *trip = open_trip(why);
     if (trip == NULL) {
         return;
     }
     if ((trip->kind == WHY_SILENCE) && (trip->message == message) && (trip->next_us == WHY_NEVER)) {
         trip->next_us = t_us;
+        why_show(trip, frame);
     }
     if ((message == AGV_MSG_WHEEL_SPEED) && (trip->stopped_us == WHY_NEVER) && wheels_stand(why)) {
         trip->stopped_us = t_us;
@@ -118,7 +120,7 @@ void why_frame(why_t *why, hal_can_side_t side, const hal_can_frame_t *frame, ui
         why_budget_command(why, message, &evidence);
     }
     why_budget_frame(why, message, &evidence);
-    follow_trip(why, message, t_us);
+    follow_trip(why, message, &evidence);
 }
 
 /** Whether a frame takes the drive away. */
@@ -257,6 +259,7 @@ static void raise(why_t *why, agv_fault_t fault, agv_fault_class_t fault_class, 
         why->fault_count++;
     }
     entry->from_recording = recorded && (entry->from_recording || (entry->times == 0u));
+    entry->in_init = (why->state == (uint8_t)AGV_STATE_INIT) && (entry->in_init || (entry->times == 0u));
     entry->fault_class = fault_class;
     if (!entry->active) {
         entry->times++;

@@ -61,6 +61,7 @@ typedef struct {
     uint64_t active_us; /**< in all */
     uint32_t times;
     bool active;         /**< at the end */
+    bool in_init;        /**< in INIT only, where nothing but an unresettable fault trips */
     bool from_recording; /**< as in why_trip_t, each time */
 } why_fault_t;
 

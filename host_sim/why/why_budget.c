@@ -111,7 +111,7 @@ static void count(const why_t *why, const row_t *row, why_tracker_t *tracker, ui
     if (from_us < t_us) {
         const uint64_t elapsed_us = t_us - from_us;
         if (tracker->bad) {
-            tracker->began_us = (tracker->value == 0u) ? from_us : tracker->began_us;
+            tracker->began_us = (tracker->value == 0u) ? tracker->bad_since_us : tracker->began_us;
             tracker->value += 2u * elapsed_us;
             tracker->value = (tracker->value < full) ? tracker->value : full;
         } else {
@@ -149,6 +149,7 @@ static void follow_progress(why_t *why, agv_fault_t fault, int32_t *progress, in
     if ((tracker->value != 0u) && (*progress >= enough)) {
         tracker->value = 0u;
         tracker->since_us = t_us;
+        tracker->bad_since_us = t_us;
     }
     if (tracker->value == 0u) {
         *progress = 0;
@@ -245,6 +246,7 @@ static void evaluate(why_t *why, agv_message_t message, const why_evidence_t *fr
             tracker->first = *frame;
             tracker->since_us = frame->t_us;
         }
+        tracker->bad_since_us = (bad && !tracker->bad) ? frame->t_us : tracker->bad_since_us;
         tracker->bad = bad;
     }
 }

@@ -21,8 +21,7 @@ uint16_t why_silence_setting(agv_message_t message) {
     return silence_settings[message];
 }
 
-/** Add a frame, if there is room and it is not there yet. */
-static void show(why_trip_t *trip, const why_evidence_t *evidence) {
+void why_show(why_trip_t *trip, const why_evidence_t *evidence) {
     if ((evidence == NULL) || (evidence->t_us == WHY_NEVER) || (trip->evidence_count == (size_t)WHY_EVIDENCE_MAX)) {
         return;
     }
@@ -37,7 +36,7 @@ static void show(why_trip_t *trip, const why_evidence_t *evidence) {
 
 static void show_recent(const why_t *why, why_trip_t *trip, agv_message_t message, uint32_t count) {
     for (uint32_t back = 0u; back < count; back++) {
-        show(trip, why_history(&why->messages[message], back));
+        why_show(trip, why_history(&why->messages[message], back));
     }
 }
 
@@ -61,7 +60,7 @@ static void set_message(const why_t *why, why_trip_t *trip, agv_message_t messag
 static void set_frame(why_trip_t *trip, const why_evidence_t *frame) {
     if (frame->t_us != WHY_NEVER) {
         trip->cause_us = frame->t_us;
-        show(trip, frame);
+        why_show(trip, frame);
     }
 }
 
@@ -102,7 +101,7 @@ static void explain_stuck(const why_t *why, why_trip_t *trip) {
     const why_message_t *message = &why->messages[trip->message];
     trip->last_good_us = message->beat_us;
     set_frame(trip, &message->first_repeat);
-    show(trip, &message->beat);
+    why_show(trip, &message->beat);
     show_recent(why, trip, trip->message, RECENT_FRAMES);
 }
 
@@ -134,8 +133,8 @@ static void explain_tracked(const why_t *why, why_trip_t *trip) {
     if (tracker != NULL) {
         trip->cause_us = tracker->began_us;
         trip->last_good_us = tracker->good.t_us;
-        show(trip, &tracker->good);
-        show(trip, &tracker->first);
+        why_show(trip, &tracker->good);
+        why_show(trip, &tracker->first);
     }
     show_recent(why, trip, trip->message, RECENT_FRAMES);
     if (other != AGV_MSG_NONE) {
@@ -153,7 +152,7 @@ static void explain_flapping(const why_t *why, why_trip_t *trip) {
         if (i == 0u) {
             trip->cause_us = frame->t_us;
         }
-        show(trip, frame);
+        why_show(trip, frame);
     }
 }
 
@@ -206,8 +205,8 @@ static void explain_too_fast(const why_t *why, why_trip_t *trip) {
     if (score->value != 0u) {
         trip->cause_us = score->began_us;
         trip->last_good_us = score->good.t_us;
-        show(trip, &score->good);
-        show(trip, &score->first);
+        why_show(trip, &score->good);
+        why_show(trip, &score->first);
     }
     show_recent(why, trip, command, RECENT_FRAMES);
 }

@@ -25,13 +25,20 @@ typedef struct {
 
 /** What counts bad frames, or the time with a bad condition. */
 typedef struct {
-    bool bad;             /**< the condition, as of the last frame */
-    uint64_t value;       /**< score: 2 a bad frame; budget: 2 a microsecond */
-    uint64_t since_us;    /**< budget: counted up to here */
+    bool bad;          /**< the condition, as of the last frame */
+    uint64_t value;    /**< score: 2 a bad frame; budget: 2 a microsecond */
+    uint64_t since_us; /**< budget: counted up to here */
+    uint64_t bad_since_us;
     uint64_t began_us;    /**< of what is counted; valid while value is not 0 */
     why_evidence_t good;  /**< last frame before the first bad one; t_us WHY_NEVER: none */
     why_evidence_t first; /**< first bad frame; t_us WHY_NEVER: none */
 } why_tracker_t;
+
+/** A frame, and the one of its message before it. */
+typedef struct {
+    const why_evidence_t *frame;
+    const why_evidence_t *before; /**< NULL: none */
+} why_score_frames_t;
 
 /** What vehicle and AI computer say, as far as budgets need it. */
 typedef struct {
@@ -128,8 +135,8 @@ void why_intruder_command(why_t *why, agv_message_t command, const why_evidence_
 void why_track_start(why_t *why);
 void why_track_frame(why_t *why, agv_message_t message, const why_evidence_t *frame);
 void why_track_engage(why_t *why);
-void why_score(why_tracker_t *tracker, bool bad, uint32_t frames, const why_evidence_t *frame,
-               const why_evidence_t *before);
+/** Count a frame in. @param from_us bad frames before this time do not count as the beginning */
+void why_score(why_tracker_t *tracker, bool bad, uint32_t frames, uint64_t from_us, const why_score_frames_t *seen);
 void why_budget_frame(why_t *why, agv_message_t message, const why_evidence_t *frame);
 void why_budget_command(why_t *why, agv_message_t command, const why_evidence_t *frame);
 void why_budget_engage(why_t *why);
@@ -151,6 +158,9 @@ void why_init_end(why_t *why, uint64_t t_us);
 
 /** The setting that limits the silence of a message. */
 uint16_t why_silence_setting(agv_message_t message);
+
+/** Add a frame to the evidence, if there is room and it is not there yet. */
+void why_show(why_trip_t *trip, const why_evidence_t *evidence);
 
 /** Fill in what is known of a cause (why_cause.c); t_us and reason are set. */
 void why_cause(const why_t *why, why_trip_t *trip);

@@ -86,7 +86,9 @@ void why_intruder_command(why_t *why, agv_message_t command, const why_evidence_
     const uint64_t silence_us = ((uint64_t)agv_config_get(&why->config, why_silence_setting(command)) + 1u) * US_PER_MS;
     if (gap_us >= silence_us) {
         score->value = 0u;
+        score->bad = false;
     } else {
-        why_score(score, gap_us < half_us, why->config.command_too_fast_gaps, frame, before);
+        const why_score_frames_t seen = {frame, before};
+        why_score(score, gap_us < half_us, why->config.command_too_fast_gaps, 0u, &seen);
     }
 }

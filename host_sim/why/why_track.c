@@ -55,20 +55,28 @@ void why_track_engage(why_t *why) {
     }
 }
 
-void why_score(why_tracker_t *tracker, bool bad, uint32_t frames, const why_evidence_t *frame,
-               const why_evidence_t *before) {
+/** The first of bad frames that follow each other. */
+static void note_first(why_tracker_t *tracker, const why_evidence_t *frame, const why_evidence_t *before) {
+    tracker->first = *frame;
+    tracker->good = (before != NULL) ? *before : why_no_evidence();
+}
+
+void why_score(why_tracker_t *tracker, bool bad, uint32_t frames, uint64_t from_us, const why_score_frames_t *seen) {
     const uint64_t full = 2u * (uint64_t)frames;
-    tracker->bad = bad;
     if (bad && (tracker->value == 0u)) {
-        tracker->first = *frame;
-        tracker->good = (before != NULL) ? *before : why_no_evidence();
-        tracker->began_us = frame->t_us;
+        const bool was_bad = tracker->bad;
+        const bool is_old = was_bad && (tracker->first.t_us < from_us);
+        if (!was_bad || is_old) {
+            note_first(tracker, seen->frame, seen->before);
+        }
+        tracker->began_us = is_old ? from_us : tracker->first.t_us;
     }
     if (bad) {
         tracker->value = (tracker->value + 2u < full) ? tracker->value + 2u : full;
     } else {
         tracker->value = ((tracker->value > 1u) && (frames > 1u)) ? tracker->value - 1u : 0u;
     }
+    tracker->bad = bad;
 }
 
 static bool is_bad(const row_t *row, const why_row_t *what, const uint8_t *data) {
@@ -89,13 +97,20 @@ static void follow(why_t *why, const row_t *row, agv_message_t message, const wh
         return;
     }
     const bool bad = is_bad(row, what, frame->frame.data);
-    if (row->judged && (frame->t_us < why->engagement.judged_us)) {
+    if (!bad && (tracker->value == 0u)) {
+        tracker->bad = false;
         return;
     }
-    if (bad || (tracker->value != 0u)) {
-        const uint32_t frames = (what->setting != WHY_NO_SETTING) ? agv_config_get(&why->config, what->setting) : 1u;
-        why_score(tracker, bad, frames, frame, why_history(&why->messages[message], 1u));
+    const why_score_frames_t seen = {frame, why_history(&why->messages[message], 1u)};
+    if (row->judged && (frame->t_us < why->engagement.judged_us)) {
+        if (bad && !tracker->bad) {
+            note_first(tracker, seen.frame, seen.before);
+        }
+        tracker->bad = bad;
+        return;
     }
+    const uint32_t frames = (what->setting != WHY_NO_SETTING) ? agv_config_get(&why->config, what->setting) : 1u;
+    why_score(tracker, bad, frames, row->judged ? why->engagement.began_us : 0u, &seen);
 }
 
 void why_track_frame(why_t *why, agv_message_t message, const why_evidence_t *frame) {

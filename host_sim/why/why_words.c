@@ -7,7 +7,6 @@
 #include "agv/names.h"
 #include "agv/recorder.h"
 #include "common/units.h"
-#include "traffic/signals.h"
 #include "why/why_internal.h"
 
 enum { DDEG_PER_DEG = 10 };
@@ -143,10 +142,11 @@ static void add_payload(text_t *text, const why_trip_t *trip) {
     text_add(text, "]");
 }
 
-static void say_stuck(text_t *text, const why_t *why, const why_trip_t *trip) {
-    text_add(text, "kept its alive counter at %u", why->messages[trip->message].counter);
-    add_from(text, " from ", trip->cause_us);
-    add_from(text, " on: last change at ", trip->last_good_us);
+static void say_stuck(text_t *text, const why_trip_t *trip) {
+    add_from(text, "kept its alive counter from ", trip->cause_us);
+    text_add(text, " on");
+    add_payload(text, trip);
+    add_from(text, ": last change at ", trip->last_good_us);
     text_add(text, ", deadline %" PRId64 " ms", trip->limit);
 }
 
@@ -214,7 +214,7 @@ void why_words_cause(text_t *text, const why_t *why, const why_trip_t *trip) {
         say_silence(text, trip);
         break;
     case WHY_STUCK:
-        say_stuck(text, why, trip);
+        say_stuck(text, trip);
         break;
     case WHY_BIT:
         say_bit(text, trip);

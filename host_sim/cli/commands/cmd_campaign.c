@@ -41,6 +41,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         OPTION_FLAG("--newly-engaged", "cause the fault at an engagement; for faults that this delays",
                     &given->newly_engaged),
         OPTION_TEXT("--results", "FILE", "results as JSON Lines", &given->results),
+        OPTION_TEXT("--why", "FILE", "what replay --why would say of each run, as JSON Lines", &given->request.why),
         OPTION_TEXT("--broken", "FOLDER", "folder for the scenarios of runs that break an invariant (.)",
                     &given->folder),
         OPTION_NUMBER("--show", "RUN", "only print this run, as a scenario", &given->show, 0, RUNS_MAX - 1u),
@@ -96,13 +97,16 @@ static bool make_request(given_t *given, char **operands) {
     request->folder = (given->folder != NULL) ? given->folder : ".";
     request->shows_one = given->show != OPTION_NOT_GIVEN;
     request->one = given->show;
-    if (request->shows_one && ((given->results != NULL) || (given->random.shard != NULL))) {
-        return report("--show prints one run: --results and --shard cannot be combined with it");
+    if (request->shows_one && ((given->results != NULL) || (given->random.shard != NULL) || (request->why != NULL))) {
+        return report("--show prints one run: --results, --why and --shard cannot be combined with it");
     }
     if (request->shows_one && (given->show >= given->runs)) {
         return report("--show: no run %" PRIu64 "; the runs are 0 to %" PRIu64, given->show, given->runs - 1u);
     }
-    return ((given->fault == NULL) || take_fault(given->fault, &request->part.causes)) &&
+    const output_role_t roles[] = {{.role = "--results", .path = request->results, .is_written = true},
+                                   {.role = "--why", .path = request->why, .is_written = true}};
+    return output_check_distinct(roles, sizeof roles / sizeof roles[0]) &&
+           ((given->fault == NULL) || take_fault(given->fault, &request->part.causes)) &&
            output_check_folder("--broken", request->folder);
 }
 
@@ -112,7 +116,7 @@ static bool check_merge(const given_t *given, char **files) {
     }
     if ((given->runs != OPTION_NOT_GIVEN) || (given->random.seed != OPTION_NOT_GIVEN) ||
         (given->random.shard != NULL) || (given->fault != NULL) || (given->show != OPTION_NOT_GIVEN) ||
-        (given->folder != NULL) || given->newly_engaged) {
+        (given->folder != NULL) || given->newly_engaged || (given->request.why != NULL)) {
         return report("--merge takes files, and of the other options only --results");
     }
     for (size_t i = 0u; i < given->file_count; i++) {

@@ -1,0 +1,321 @@
+"""What `replay` says to people, and `--why`, `--trace`: as they would be read. Times and words are written by hand."""
+import json
+import os
+import pathlib
+import unittest
+
+import hostsim
+import traffic
+from test_replay import AI, EPS, VCU, edit_payload, raise_remote_signal_lost, stop
+
+S = 1000000
+COLUMNS = 100
+SCENARIOS = pathlib.Path(__file__).resolve().parents[3] / "host_sim" / "scenarios"
+TRIP_KEYS = {"t_ms", "reason", "kind", "message", "id", "cause_ms", "last_good_ms", "limit", "unit", "evidence",
+             "first_safe_ms", "confirmed_ms", "stopped_ms", "from_recording"}
+
+
+class Case(hostsim.Case):
+    def text(self, log, *arguments, status=0):
+        """What replay prints: a list of lines, none longer than 100 columns."""
+        self.write("my.log", log)
+        result = self.run_program("replay", *arguments, "my.log", env=dict(os.environ, TZ="UTC"))
+        self.assertEqual(result.status, status, result.stderr)
+        lines = result.stdout.splitlines()
+        if "--timeline" not in arguments:
+            self.assertLessEqual(max(map(len, lines)), COLUMNS, result.stdout)
+        return lines
+
+    def why(self, log, *arguments):
+        self.write("my.log", log)
+        self.run_good("replay", "--why", "why.json", *arguments, "my.log")
+        return json.loads((self.folder / "why.json").read_text(encoding="utf-8"))
+
+
+class FiveLogs(Case):
+    """Logs of which nothing, or not all, was supervised: they must not look like a pass."""
+
+    def test_a_log_that_begins_in_autopilot(self):
+        log = traffic.log(traffic.frames(20000, engage_ms=0, edit=stop(("steering_command",), 10000, 11000)))
+        lines = self.text(log)
+        self.assertEqual(lines[:4], [
+            "NOT SUPERVISED: never left INIT, missing: manual (363h reports autopilot from its first frame),",
+            "                standstill (101h reports 400 and 400 mm/s)",
+            "my.log: 19.994 s on can0, 2023-11-14 22:13:20.000 to 22:13:39.994",
+            "supervised  0.00 s   INIT 19.99  STANDBY 0.00  ACTIVE 0.00  TRIPPED 0.00  SAFE 0.00"])
+        self.assertIn("            STEERING_COMMAND_TIMEOUT  trip  10.107 s   1 time   0.900 s  in INIT: no trip", lines)
+        self.assertEqual(self.text(log, "--fail-on-trip", status=1), lines)
+        self.assertEqual(self.why(log)["not_supervised"], ["standstill", "manual"])
+        self.assertEqual(self.why(log)["supervised_ms"], 0)
+
+    def test_the_other_id_set(self):
+        log = traffic.log(traffic.frames(5000, ids=traffic.TABLE_IDS))
+        lines = self.text(log, "--fail-on-trip", status=1)
+        self.assertTrue(lines[0].startswith("NOT SUPERVISED: never left INIT, missing: manual (363h never heard)"))
+        self.assertIn("  hint      201h and 203h heard, 43Fh and 363h not: --id-set table", lines)
+        fits = self.text(log, "--id-set", "table", "--fail-on-trip")
+        self.assertTrue(fits[0].startswith("my.log: "), fits[0])
+
+    def test_the_other_way_round(self):
+        lines = self.text(traffic.log(traffic.frames(3000)), "--id-set", "table")
+        self.assertIn("  hint      43Fh and 363h heard, 201h and 203h not: --id-set heading", lines)
+
+    def test_a_log_without_the_eps(self):
+        log = traffic.log(traffic.frames(3000, senders=("vcu", "ai")))
+        lines = self.text(log, "--fail-on-trip", status=1)
+        self.assertIn("NOT SUPERVISED: never left INIT, missing: eps_heartbeat (067h never heard)", lines[0])
+        self.assertIn("  hint      067h, 167h and 267h never heard: is the EPS on this bus?", lines)
+        self.assertIn("messages (067h, 167h, 267h never heard)", " ".join(line.strip() for line in lines[:4]))
+        self.assertEqual(set(self.why(log)["not_supervised"]), {"eps_heartbeat", "trip_cause", "messages"})
+
+    def test_a_log_of_another_vehicle(self):
+        frames = traffic.frames(2000)
+        for frame in frames:
+            frame.can_id = (frame.can_id + 0x111) & 0x7FF
+        lines = self.text(traffic.log(frames), "--fail-on-trip", status=1)
+        self.assertTrue(lines[0].startswith("NOT SUPERVISED: "), lines[0])
+        hint = next(i for i, line in enumerate(lines) if line.startswith("  hint"))
+        self.assertEqual(lines[hint:hint + 2], [
+            "  hint      161h, 176h, 178h, 186h, 1B4h, 212h, and others heard, 0 of the 11 messages of the",
+            "            protocol: another vehicle? Each identifier is a setting (id_...)"])
+
+    def test_a_log_that_ends_in_the_middle_of_a_fault(self):
+        frames = traffic.frames(3000, engage_ms=1000, edit=stop(("steering_command",), 2910))
+        lines = self.text(traffic.log(frames))
+        self.assertIn("tripped     never, but see what the log ends in", lines)
+        self.assertEqual(lines[-1], "at the end  065h steering_command was silent for 88 ms, deadline 125 ms: "
+                                    "the log ends first")
+        tripped = self.text(traffic.log(frames), "--tail", "40")
+        self.assertIn("tripped     at 3.032 s (22:13:23.032): STEERING_COMMAND_TIMEOUT", tripped)
+
+    def test_a_log_that_ends_before_its_bad_frames_are_enough(self):
+        edit = edit_payload("eps_status", 2980, lambda data: data.__setitem__(7, 0x01))
+        lines = self.text(traffic.log(traffic.frames(3000, edit=edit)))
+        self.assertEqual(lines[-1], "at the end  EPS_UNDER_VOLTAGE had begun at 2.983 s: the log ends first")
+
+    def test_a_log_that_ends_after_its_trip(self):
+        log = traffic.log(traffic.frames(2300, engage_ms=1000, edit=stop(("steering_command",), 2000)))
+        lines = self.text(log)
+        self.assertIn("tripped     at 2.107 s (22:13:22.107): STEERING_COMMAND_TIMEOUT", lines)
+        self.assertIn("faults      STEERING_COMMAND_TIMEOUT  trip  2.107 s   1 time   0.187 s  active at the end", lines)
+
+
+class Text(Case):
+    def test_a_healthy_log(self):
+        lines = self.text(traffic.log(traffic.frames(3000, engage_ms=1000)), "--fail-on-trip")
+        self.assertEqual(lines, [
+            "my.log: 2.994 s on can0, 2023-11-14 22:13:20.000 to 22:13:22.994",
+            "supervised  2.48 s   INIT 0.51  STANDBY 0.49  ACTIVE 1.99  TRIPPED 0.00  SAFE 0.00",
+            "tripped     never",
+            "faults      none"])
+
+    def test_a_trip_with_what_a_recording_cannot_obey(self):
+        log = traffic.log(traffic.frames(12000, engage_ms=1000, edit=stop(("steering_command",), 3000, 4000)))
+        lines = self.text(log)
+        self.assertEqual(lines, [
+            "my.log: 11.994 s on can0, 2023-11-14 22:13:20.000 to 22:13:31.994",
+            "supervised  11.48 s   INIT 0.51  STANDBY 0.49  ACTIVE 2.11  TRIPPED 8.89  SAFE 0.00",
+            "tripped     at 3.107 s (22:13:23.107): STEERING_COMMAND_TIMEOUT",
+            "  why       065h steering_command was silent: last at 2.981 s, deadline 125 ms, next at 4.006 s",
+            "  then      first safe frame 3.107 s; P not confirmed; does not stand (a recording cannot obey)",
+            "faults      STEERING_COMMAND_TIMEOUT  trip  3.107 s   1 time   0.900 s",
+            "            SAFE_STATE_UNCONFIRMED    trip  3.607 s   1 time   8.387 s  (a recording cannot obey)",
+            "            VEHICLE_NOT_STOPPING      trip  8.107 s   1 time   3.887 s  (a recording cannot obey)"])
+        self.assertEqual(self.text(log, "--fail-on-trip", status=1), lines)
+
+    def test_a_log_that_is_supervised_late(self):
+        lines = self.text(traffic.log(traffic.frames(8000, edit=stop(EPS, 0, 3000))))
+        self.assertEqual(lines[0], "NOT SUPERVISED: 3.513 s in INIT, until then missing: eps_heartbeat, trip_cause, "
+                                   "messages")
+
+    def test_a_log_that_is_too_short(self):
+        lines = self.text(traffic.log(traffic.frames(300)))
+        self.assertEqual(lines[0], "NOT SUPERVISED: never left INIT: the log is too short, a start takes 500 ms")
+
+    def test_stamps_that_are_no_time_of_day(self):
+        log = traffic.log(traffic.frames(2000, edit=edit_payload("vehicle_status", 1500, raise_remote_signal_lost)),
+                          base_us=5 * S)
+        lines = self.text(log)
+        self.assertEqual(lines[0], "my.log: 1.994 s on can0")
+        self.assertIn("tripped     at 1.500 s: REMOTE_SIGNAL_LOST", lines)
+
+    def test_a_night_has_two_dates_and_a_log_two_interfaces(self):
+        frames = traffic.frames(2000, ai_interface="can1")
+        lines = self.text(traffic.log(frames, base_us=1700006399 * S))
+        self.assertEqual(lines[0], "my.log: 1.994 s on can0, can1, 2023-11-14 23:59:59.000 to "
+                                   "2023-11-15 00:00:00.994")
+
+    def test_what_was_odd_about_the_log(self):
+        log = "oops\n" + traffic.log(traffic.frames(2000)) + "(1700000001.000000) can0 0A3#08\n"
+        lines = self.text(log, "--skip-bad-lines")
+        self.assertEqual(lines[-1],
+                         "log         lines skipped: 1, time stamps that went backwards: 1, malformed frames: 1")
+
+    def test_many_trips(self):
+        def edit(frame):
+            if frame.name == "vehicle_status":
+                data = bytearray(frame.data)
+                at = frame.t_ms % 4000
+                data[4] = 0x01 if 1000 <= at < 1100 else 0
+                data[6] |= traffic.BUTTON_1 if 2000 <= at < 3500 else 0
+                frame.data = bytes(data)
+            return frame
+        lines = self.text(traffic.log(traffic.frames(40000, edit=edit)))
+        self.assertEqual(len([line for line in lines if line.endswith(": REMOTE_SIGNAL_LOST")]), 8)
+        self.assertIn("            and 2 times more: --why FILE has them all", lines)
+        self.assertEqual(len(self.why(traffic.log(traffic.frames(40000, edit=edit)))["trips"]), 10)
+
+    def test_the_timeline(self):
+        log = traffic.log(traffic.frames(4000, engage_ms=1000, edit=stop(("steering_command",), 2000)))
+        lines = self.text(log, "--timeline")
+        shown = [line[:90].rstrip() for line in lines]
+        for expected in ("    1.000 s  vcu         reports autopilot",
+                         "    1.005 s  vcu         reports gear D",
+                         "    2.107 s  supervisor  sends 168 [08 00 00 00 00 00 00 00] gear_command: gear P",
+                         "    2.107 s  supervisor  => TRIPPED: STEERING_COMMAND_TIMEOUT"):
+            self.assertTrue(any(line.startswith(expected) for line in shown), expected)
+        self.assertIn("tripped     at 2.107 s (22:13:22.107): STEERING_COMMAND_TIMEOUT", lines)
+        self.assert_refused(self.run_program("replay", "--timeline", "--why", "-", "my.log"), "--timeline")
+
+
+class Causes(Case):
+    """The sentence behind `why`."""
+
+    def sentence(self, edit, duration_ms=4000, engage_ms=1000, **options):
+        lines = self.text(traffic.log(traffic.frames(duration_ms, engage_ms=engage_ms, edit=edit, **options)))
+        at = next(i for i, line in enumerate(lines) if line.startswith("  why"))
+        end = next(i for i, line in enumerate(lines) if line.startswith("  then"))
+        return " ".join(line[12:].strip() for line in lines[at:end])
+
+    def test_a_heartbeat_that_is_lost(self):
+        self.assertEqual(self.sentence(stop(VCU, 2001)), "363h vehicle_status was silent: last at 2.000 s, deadline 50 "
+                                                          "ms, none since")
+
+    def test_a_heartbeat_that_is_stuck(self):
+        self.assertEqual(
+            self.sentence(edit_payload("steering_status", 2010, lambda data: data.__setitem__(0, 7))),
+            "067h steering_status kept its alive counter from 2.022 s on [07 64 28 23 00 00 00 00]: last change at "
+            "2.012 s, deadline 50 ms")
+
+    def test_a_fault_bit(self):
+        self.assertEqual(self.sentence(edit_payload("eps_status", 2000, lambda data: data.__setitem__(7, 0x40))),
+                         "167h eps_status reported EPS_MOTOR_ENCODER from 2.003 s on [00 00 00 01 00 00 00 40]")
+
+    def test_a_score(self):
+        self.assertEqual(self.sentence(edit_payload("eps_status", 2000, lambda data: data.__setitem__(3, 7))),
+                         "167h eps_status reported an EPS mode that does not exist in 5 frames, the first at 2.003 s "
+                         "[00 00 00 07 00 00 00 00]")
+
+    def test_a_value(self):
+        self.assertEqual(self.sentence(edit_payload("throttle_command", 2000, lambda data: data.__setitem__(0, 251))),
+                         "075h throttle_command commanded a value that does not exist at 2.008 s "
+                         "[FB 00 00 00 00 00 00 00]")
+
+    def test_a_budget(self):
+        self.assertEqual(self.sentence(edit_payload("throttle_status", 2000, lambda data: data.__setitem__(0, 100))),
+                         "050h throttle_status was more than 25 counts above 075h throttle_command for 500 ms, from "
+                         "2.000 s on")
+        def turn(data):
+            data[2:4] = (9501).to_bytes(2, "little")
+        self.assertEqual(self.sentence(edit_payload("steering_status", 2000, turn)),
+                         "067h steering_status was more than 50.0 deg off 065h steering_command for 500 ms, from "
+                         "2.002 s on")
+
+    def test_a_mode(self):
+        self.assertEqual(self.sentence(edit_payload("vehicle_status", 2000, lambda data: data.__setitem__(6, 0xC0))),
+                         "363h vehicle_status reported manual and autopilot together for 50 ms, from 2.000 s on")
+
+
+class Why(Case):
+    def test_the_keys_and_values(self):
+        why = self.why(traffic.log(traffic.frames(12000, engage_ms=1000, edit=stop(("steering_command",), 3000, 4000))))
+        self.assertEqual(set(why), {"log", "supervised_ms", "not_supervised", "trips", "messages"})
+        self.assertEqual((why["log"], why["supervised_ms"], why["not_supervised"]), ("my.log", 11482, []))
+        first = why["trips"][0]
+        self.assertEqual(set(first), TRIP_KEYS)
+        evidence = first.pop("evidence")
+        self.assertEqual(first, {
+            "t_ms": 3107, "reason": "STEERING_COMMAND_TIMEOUT", "kind": "silence", "message": "steering_command",
+            "id": "065", "cause_ms": 3006, "last_good_ms": 2981, "limit": 125, "unit": "ms", "first_safe_ms": 3107,
+            "confirmed_ms": None, "stopped_ms": None, "from_recording": False})
+        self.assertEqual(evidence[-2:], [{"t_ms": 2981.1, "if": "can0", "id": "065", "data": "2823000000000000"},
+                                         {"t_ms": 4006.1, "if": "can0", "id": "065", "data": "2823000000000000"}])
+        self.assertEqual([(trip["reason"], trip["kind"], trip["from_recording"]) for trip in why["trips"][1:]],
+                         [("SAFE_STATE_UNCONFIRMED", "vehicle", True), ("VEHICLE_NOT_STOPPING", "vehicle", True)])
+        self.assertIn("steering_command", [message["name"] for message in why["messages"]])
+
+    def test_a_gateway_and_a_foreign_sender(self):
+        frames = traffic.frames(3000, engage_ms=1000, ai_interface="can1")
+        frames.append(traffic.Frame(2500000, "gear_command", 0x168, bytes([2, 0, 0, 0, 0, 0, 0, 0]), "can0"))
+        frames.sort(key=lambda frame: frame.t_us)
+        trip = self.why(traffic.log(frames), "--ai-if", "can1")["trips"][0]
+        self.assertEqual((trip["reason"], trip["kind"], trip["message"], trip["id"], trip["cause_ms"]),
+                         ("FOREIGN_COMMAND_SENDER", "intrusion", "gear_command", "168", 2500))
+        self.assertEqual(trip["evidence"], [{"t_ms": 2500, "if": "can0", "id": "168", "data": "0200000000000000"}])
+        self.assertEqual((trip["limit"], trip["unit"], trip["last_good_ms"]), (None, None, None))
+
+    def test_a_limit_of_the_configuration(self):
+        self.write("c.yaml", "steering_command_timeout_ms: 200\neps_supply_fault_frames: 1\n")
+        log = traffic.log(traffic.frames(4000, engage_ms=1000, edit=stop(("steering_command",), 3000)))
+        trip = self.why(log, "--config", "c.yaml")["trips"][0]
+        self.assertEqual((trip["limit"], trip["cause_ms"], trip["t_ms"]), (200, 3006, 3182))
+        edit = edit_payload("eps_status", 3000, lambda data: data.__setitem__(7, 0x01))
+        trip = self.why(traffic.log(traffic.frames(4000, edit=edit)), "--config", "c.yaml")["trips"][0]
+        self.assertEqual((trip["reason"], trip["kind"]), ("EPS_UNDER_VOLTAGE", "bit"))  # one frame is enough
+
+    def test_an_ai_computer_that_was_never_there(self):
+        trip = self.why(traffic.log(traffic.frames(3000, engage_ms=1000, edit=stop(AI, 0))))["trips"][0]
+        self.assertEqual((trip["reason"], trip["cause_ms"], trip["last_good_ms"], trip["limit"]),
+                         ("STEERING_COMMAND_TIMEOUT", 1000, None, 125))
+
+    def test_it_goes_to_standard_output_alone(self):
+        self.write("my.log", traffic.log(traffic.frames(1000)))
+        result = self.run_good("replay", "--why", "-", "my.log")
+        self.assertEqual(json.loads(result.stdout)["trips"], [])
+        self.assert_refused(self.run_program("replay", "--why", "-", "--events", "-", "my.log"), "--why")
+
+    def test_it_is_never_written_onto_its_log(self):
+        log = traffic.log(traffic.frames(1000))
+        for option in ("--why", "--report", "--trace"):
+            self.write("my.log", log)
+            self.assert_refused(self.run_program("replay", option, "my.log", "my.log"), "are the same file")
+            self.assertEqual((self.folder / "my.log").read_text(encoding="ascii"), log)
+
+    def test_nothing_good_is_replaced_when_the_log_is_bad(self):
+        self.write("why.json", "good")
+        self.write("bad.log", traffic.log(traffic.frames(1000)) + "oops\n")
+        self.assert_refused(self.run_program("replay", "--why", "why.json", "bad.log"), "bad.log:")
+        self.assertEqual((self.folder / "why.json").read_text(encoding="ascii"), "good")
+        self.assertEqual(self.files(), ["bad.log", "why.json"])
+
+    def test_demo_and_scenario_say_why(self):
+        self.run_good("demo", "--why", "why.json", "--trace", "trace.json")
+        demo = json.loads((self.folder / "why.json").read_text(encoding="utf-8"))
+        self.assertEqual([(trip["reason"], trip["kind"], trip["message"], trip["from_recording"])
+                          for trip in demo["trips"]],
+                         [("STEERING_COMMAND_TIMEOUT", "silence", "steering_command", False),
+                          ("EPS_OVER_CURRENT_SHUTDOWN", "bit", "eps_status", False)])
+        scenario = str(SCENARIOS / "vcu" / "vcu_heartbeat_stuck.yaml")
+        why = json.loads(self.run_good("scenario", "--why", "-", scenario).stdout)
+        self.assertEqual([(trip["reason"], trip["kind"], trip["id"]) for trip in why["trips"]][0],
+                         ("VCU_HEARTBEAT_STUCK", "stuck", "363"))
+        self.assert_refused(self.run_program("scenario", "--why", "w", scenario, scenario), "single scenario")
+        self.assert_refused(self.run_program("scenario", "--why", "w", "--bus", "can0", scenario), "simulated bus")
+
+    def test_the_trace(self):
+        self.write("my.log", traffic.log(traffic.frames(4000, engage_ms=1000, edit=stop(("steering_command",), 3000))))
+        self.run_good("replay", "--trace", "trace.json", "my.log")
+        events = json.loads((self.folder / "trace.json").read_text(encoding="utf-8"))["traceEvents"]
+        bars = [(event["name"], event["ts"], event["dur"]) for event in events if event["ph"] == "X"]
+        self.assertEqual(bars[:3], [("INIT", 0, 512000), ("STANDBY", 512000, 488000), ("ACTIVE", 1000000, 2107000)])
+        self.assertIn(("closed", 512000, 3095000), bars)
+        faults = [(event["ph"], event["name"], event["ts"]) for event in events if event.get("cat") == "fault"]
+        self.assertEqual(faults[0], ("b", "STEERING_COMMAND_TIMEOUT", 3107000))
+        self.assertEqual(sorted(name for ph, name, _ in faults if ph == "b"),
+                         sorted(name for ph, name, _ in faults if ph == "e"))
+        frame = next(event for event in events if event["ph"] == "i" and event["name"] == "0A3")
+        self.assertEqual(frame["args"], {"data": "0800000000000000", "signals": "gear P", "side": "vehicle"})
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,168 @@
+"""Does `--why` name the fault that was injected? Reads what `host_sim campaign --why FILE` writes.
+
+    /usr/bin/python3 tests/host_sim/program/why_campaign.py FILE...
+
+The table below is written by hand from the requirements; nothing of the program's own table is used.
+"""
+import collections
+import json
+import sys
+
+VCU, EPS, AI = "vehicle_status", "eps_status", "turn_signal_command"
+COMMANDS = ("gear_command", "throttle_command", "steering_command")
+
+# fault: kind, message that tells, cycle of that message in ms (0: none)
+EXPECTED = {
+    "SELF_TEST_FAILED": ("own", None, 0),
+    "MEMORY_CORRUPTED": ("own", None, 0),
+    "CONFIG_INVALID": ("own", None, 0),
+    "OUTPUT_FEEDBACK": ("hardware", None, 0),
+    "EMERGENCY_STOP": ("hardware", None, 0),
+    "CLOCK_DEVIATION": ("hardware", None, 0),
+    "SUPERVISOR_RESET": ("own", None, 0),
+    "STEP_OVERRUN": ("own", None, 0),
+    "BUS_OFF": ("bus", None, 0),
+    "TX_STALLED": ("bus", None, 0),
+    "VCU_HEARTBEAT_LOST": ("silence", VCU, 10),
+    "VCU_HEARTBEAT_STUCK": ("stuck", VCU, 10),
+    "EPS_HEARTBEAT_LOST": ("silence", "steering_status", 10),
+    "EPS_HEARTBEAT_STUCK": ("stuck", "steering_status", 10),
+    "AI_HEARTBEAT_LOST": ("silence", AI, 100),
+    "AI_HEARTBEAT_STUCK": ("stuck", AI, 100),
+    "EPS_OVER_CURRENT_SHUTDOWN": ("bit", EPS, 10),
+    "EPS_TEMP_ABOVE_120": ("bit", EPS, 10),
+    "EPS_MOTOR_ENCODER": ("bit", EPS, 10),
+    "EPS_POSITION_ENCODER": ("bit", EPS, 10),
+    "EPS_UNDER_VOLTAGE": ("score", EPS, 10),
+    "EPS_OVER_VOLTAGE": ("score", EPS, 10),
+    "EPS_EXCESSIVE_CURRENT": ("score", EPS, 10),
+    "EPS_TEMP_ABOVE_110": ("bit", EPS, 10),
+    "VCU_EPS_HARDWARE_FAULT": ("bit", VCU, 10),
+    "VCU_EPS_CAN_BUS_FAULT": ("bit", VCU, 10),
+    "S_DRIVER_ALARM": ("bit", VCU, 10),
+    "REMOTE_SIGNAL_LOST": ("bit", VCU, 10),
+    "REMOTE_POWER_LOST": ("bit", VCU, 10),
+    "VCU_AI_CAN_LOST": ("bit", VCU, 10),
+    "VCU_LEVEL2_ALARM": ("bit", VCU, 10),
+    "MODE_INVALID": ("mode", VCU, 10),
+    "MODE_FLAPPING": ("mode", VCU, 10),
+    "MODE_NONE": ("mode", VCU, 10),
+    "EPS_STATUS_TIMEOUT": ("silence", EPS, 10),
+    "GEAR_STATUS_TIMEOUT": ("silence", "gear_status", 25),
+    "THROTTLE_STATUS_TIMEOUT": ("silence", "throttle_status", 10),
+    "WHEEL_SPEED_TIMEOUT": ("silence", "wheel_speed", 10),
+    "STEERING_POSITION_TIMEOUT": ("silence", "steering_position", 10),
+    "GEAR_COMMAND_TIMEOUT": ("silence", "gear_command", 100),
+    "THROTTLE_COMMAND_TIMEOUT": ("silence", "throttle_command", 100),
+    "STEERING_COMMAND_TIMEOUT": ("silence", "steering_command", 25),
+    "AI_COMMAND_OUT_OF_RANGE": ("value", COMMANDS, 100),
+    "EPS_MODE_OFF": ("score", EPS, 10),
+    "EPS_MODE_INVALID": ("score", EPS, 10),
+    "EPS_MODE_NOT_ANGLE": ("score", EPS, 10),
+    "GEAR_STATUS_INVALID": ("score", "gear_status", 25),
+    "THROTTLE_STATUS_INVALID": ("score", "throttle_status", 10),
+    "STEERING_ANGLE_INVALID": ("score", "steering_status", 10),
+    "STEERING_DEVIATION": ("budget", "steering_status", 25),
+    "THROTTLE_DEVIATION": ("budget", "throttle_status", 10),
+    "GEAR_DEVIATION": ("budget", "gear_status", 25),
+    "AUTOPILOT_OFF_IGNORED": ("budget", VCU, 100),
+    "THROTTLE_IN_PARK": ("budget", "throttle_status", 25),
+    "FOREIGN_COMMAND_SENDER": ("intrusion", "gear_command", 0),
+    "SAFE_STATE_UNCONFIRMED": ("vehicle", (VCU, "gear_status"), None),
+    "VEHICLE_NOT_STOPPING": ("vehicle", "wheel_speed", None),
+    "COMMAND_TOO_FAST": ("intrusion", "gear_command", 100),
+    "SPEED_IMPLAUSIBLE": ("budget", "wheel_speed", 10),
+    "STATUS_ID_IN_USE": ("intrusion", None, 0),
+    "RX_OVERRUN": ("bus", None, 0),
+    "ERROR_PASSIVE": ("bus", None, 0),
+    "AI_BUS_OFF": ("bus", None, 0),
+    "WRONG_ID_SET": ("own", AI, 100),
+    "STORE_INVALID": ("own", None, 0),
+}
+
+# Faults that are not the reason of a trip here: what trips is another one.
+ANOTHER = {"STORE_INVALID": "SUPERVISOR_RESET"}
+
+# From the injection to its first frame: the cycle of the message, some frames that share the wire with it (125 kbit/s),
+# and the time that a newly sent frame needs.
+WIRE_MS = 25
+COMMAND_CYCLE_MS = 100
+
+# A cause that began before the injection, or much later, by its nature.
+BEFORE = {"MODE_FLAPPING"}  # the first of four engagements
+LATER = {
+    "STEERING_DEVIATION",   # when the angle that is commanded leaves the one that is held
+    "ERROR_PASSIVE", "RX_OVERRUN", "AI_BUS_OFF",
+}
+
+
+def problem_of(line):
+    """What is wrong about a run; None: nothing."""
+    fault = line["fault"]
+    reason = ANOTHER.get(fault, fault)
+    kind, messages, cycle = EXPECTED[reason]
+    if not isinstance(messages, tuple):
+        messages = (messages,)
+    trips = [trip for trip in line["trips"] if trip["reason"] == reason]
+    if not trips:
+        return "not among the trips: %s" % [trip["reason"] for trip in line["trips"]]
+    trip = trips[0]
+    if trip["kind"] != kind:
+        return "kind %s" % trip["kind"]
+    if trip["message"] not in messages:
+        return "message %s" % trip["message"]
+    if (trip["message"] is None) != (trip["id"] is None) and fault != "STATUS_ID_IN_USE":
+        return "id %s" % trip["id"]
+    return cause_problem(line, fault, trip, cycle)
+
+
+def cause_problem(line, fault, trip, cycle):
+    """What is wrong about the time of the cause."""
+    cause = trip["cause_ms"]
+    if cause is None or cause > trip["t_ms"]:
+        return "cause at %s, trip at %d" % (cause, trip["t_ms"])
+    if cycle is None or fault in BEFORE or fault in LATER or cycle == 0:
+        return None
+    first = min(line["steps_ms"], line["cause_ms"])
+    last = line["cause_ms"] + cycle
+    if line["engage_ms"] and fault.startswith("EPS_MODE_"):
+        first = min(first, line["engage_ms"])  # in manual the EPS assists: the injected mode only goes on with that
+    if line["engage_ms"]:  # what is compared with a command begins with the first command after the engagement
+        last = max(last, line["engage_ms"] + COMMAND_CYCLE_MS + cycle)
+    if not first - WIRE_MS <= cause <= last + WIRE_MS:
+        return "cause at %d ms, injected at %d" % (cause, line["cause_ms"])
+    return None
+
+
+def check(lines):
+    """(runs by fault, {fault: [(run, problem)]})"""
+    runs = collections.Counter()
+    problems = collections.defaultdict(list)
+    for line in lines:
+        runs[line["fault"]] += 1
+        problem = problem_of(line)
+        if problem is not None:
+            problems[line["fault"]].append((line["run"], problem))
+    return runs, problems
+
+
+def read(paths):
+    for path in paths:
+        with open(path, encoding="ascii") as lines:
+            for line in lines:
+                yield json.loads(line)
+
+
+def main(paths):
+    runs, problems = check(read(paths))
+    for fault in sorted(runs):
+        print("%-28s %6d runs, %d exceptions" % (fault, runs[fault], len(problems[fault])))
+        for run, problem in problems[fault][:3]:
+            print("    run %d: %s" % (run, problem))
+    wrong = sum(len(found) for found in problems.values())
+    print("%d runs, %d exceptions" % (sum(runs.values()), wrong))
+    return 1 if wrong or not runs else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
