@@ -29,11 +29,11 @@ __attribute__((format(printf, 2, 3))) static void note(proposal_t *proposal, con
 }
 
 static double ms_of(uint64_t us) {
-    return (double)us / US_PER_MS;
+    return (double)us / (double)US_PER_MS;
 }
 
 static double s_of(uint64_t us) {
-    return (double)us / US_PER_S;
+    return (double)us / (double)US_PER_S;
 }
 
 /** What a sender does as a rule. */

@@ -60,7 +60,7 @@ static json_t *interfaces_json(const observation_t *observation) {
 }
 
 static json_t *unknown_json(const survey_result_t *result) {
-    const double seconds = (double)observation_us(&result->observation) / US_PER_S;
+    const double seconds = (double)observation_us(&result->observation) / (double)US_PER_S;
     json_t *array = json_array();
     for (size_t i = 0u; traffic_at(result->traffic, i) != NULL; i++) {
         const traffic_id_t *entry = traffic_at(result->traffic, i);
@@ -94,13 +94,13 @@ bool survey_print_json(const survey_result_t *result) {
     set(root, "format", (result->source.format[0] != '\0') ? json_string(result->source.format) : json_null());
     set(root, "interfaces", interfaces_json(observation));
     set(root, "first_us", integer(observation->first_us));
-    set(root, "duration_ms", json_real((double)observation_us(observation) / US_PER_MS));
+    set(root, "duration_ms", json_real((double)observation_us(observation) / (double)US_PER_MS));
     set(root, "frames", integer(observation->frames));
     set(root, "error_frames", integer(totals.error));
     set(root, "lost_frames", integer(observation->lost));
     set(root, "skipped_lines", integer(result->source.skipped_lines));
     set(root, "backward_stamps", integer(observation->backward_stamps));
-    set(root, "engaged_ms", json_real((double)totals.engaged_us / US_PER_MS));
+    set(root, "engaged_ms", json_real((double)totals.engaged_us / (double)US_PER_MS));
     set(root, "engagements", integer(totals.engagements));
     set(root, "load", load_json(result));
     set(root, "id_sets", id_sets_json(result));

@@ -8,11 +8,11 @@
 enum { MEDIAN = 500, P999 = 999, BITS_PER_WORD = 32, WORD_CHOICES = 256, LINE_SIZE = 160, UNKNOWN_SHOWN_MAX = 40 };
 
 static double ms_of(uint64_t us) {
-    return (double)us / US_PER_MS;
+    return (double)us / (double)US_PER_MS;
 }
 
 static double s_of(uint64_t us) {
-    return (double)us / US_PER_S;
+    return (double)us / (double)US_PER_S;
 }
 
 static void print_head(const survey_result_t *result) {
@@ -45,7 +45,7 @@ static void print_load(const survey_result_t *result) {
         const bus_load_t *load = &result->observation.loads[side];
         if (load->bits > 0u) {
             (void)printf("load%s     %.1f to %.1f %% of %" PRIu32
-                         " bit/s (without and with the most stuff bits), busiest second %.1f %%\n",
+                         " bit/s (without and with the most stuff bits), busiest 1 s %.1f %%\n",
                          sides[side], bus_load_percent(load->bits, us, bit_rate),
                          bus_load_percent(load->stuffed_bits, us, bit_rate), bit_rate,
                          bus_load_percent(bus_load_busiest(load), US_PER_S, bit_rate));

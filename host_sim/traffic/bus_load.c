@@ -35,5 +35,5 @@ uint64_t bus_load_busiest(const bus_load_t *load) {
 }
 
 double bus_load_percent(uint64_t bits, uint64_t us, uint32_t bit_rate) {
-    return (us == 0u) ? 0.0 : ((double)bits * PERCENT * US_PER_S) / ((double)us * bit_rate);
+    return (us == 0u) ? 0.0 : ((double)bits * (double)PERCENT * (double)US_PER_S) / ((double)us * (double)bit_rate);
 }

@@ -7,7 +7,7 @@ enum { MEDIAN = 500, P999 = 999, BITS_PER_WORD = 32, WORD_CHOICES = 256 };
 
 /** A time in milliseconds with three decimals. */
 static json_t *ms_of(uint64_t us) {
-    return json_real((double)us / US_PER_MS);
+    return json_real((double)us / (double)US_PER_MS);
 }
 
 static void set(json_t *object, const char *key, json_t *value) {
@@ -105,7 +105,8 @@ static void add_deadline(json_t *object, const traffic_watch_t *watch) {
     set(object, "deadline_counts", json_string((watch->when == TRAFFIC_ENGAGED) ? "engaged" : "always"));
     set(object, "deadline_gap_ms", gaps_json(&watch->gaps));
     set(object, "margin_ms",
-        (watch->gaps.count > 0u) ? json_real(deadline_ms - ((double)watch->gaps.longest_us / US_PER_MS)) : json_null());
+        (watch->gaps.count > 0u) ? json_real(deadline_ms - ((double)watch->gaps.longest_us / (double)US_PER_MS))
+                                 : json_null());
     set(object, "late", json_integer((json_int_t)watch->late));
     set(object, "first_late_ms", (watch->late > 0u) ? ms_of(watch->late_at_us) : json_null());
 }

@@ -1,0 +1,382 @@
+"""`host_sim survey`: what it says of logs of a simulated vehicle, and the configuration that it proposes, replayed on the
+same log: it trips nothing that the log does not deserve, and what is really wrong still trips."""
+import gzip
+import json
+import random
+import re
+import time
+
+import hostsim
+import traffic
+
+MINUTE = 60000
+ENGAGED = 5000
+NO_TRIP = []
+
+
+def jittered(frames, most_us, seed=1):
+    """Every frame up to `most_us` later, in the order of the new times."""
+    draw = random.Random(seed)
+    for frame in frames:
+        frame.t_us += draw.randrange(most_us)
+    return sorted(frames, key=lambda frame: frame.t_us)
+
+
+def slower(name, times):
+    """Edit: only each n-th frame of a message, with a counter that counts as before."""
+    seen = {"count": 0}
+
+    def edit(frame):
+        if frame.name == name:
+            seen["count"] += 1
+            if seen["count"] % times:
+                return None
+            if name in COUNTERS:
+                frame.data = with_counter(frame, seen["count"] // times)
+        return frame
+    return edit
+
+
+COUNTERS = {"vehicle_status": 7, "steering_status": 0, "turn_signal_command": 7}
+
+
+def with_counter(frame, value):
+    data = bytearray(frame.data)
+    data[COUNTERS[frame.name]] = value & 0xFF
+    return bytes(data)
+
+
+def silent(name, begin_ms, end_ms):
+    """Edit: a message is not sent for some time."""
+    return lambda frame: None if frame.name == name and begin_ms <= frame.t_ms < end_ms else frame
+
+
+class Case(hostsim.Case):
+    def survey(self, frames, *arguments, name="log"):
+        """Survey frames. Returns the JSON; the proposal is in config.yaml."""
+        self.write(name, traffic.log(frames) if isinstance(frames, list) else frames)
+        result = self.run_good("survey", "--json", "--config-out", "config.yaml", *arguments, name)
+        self.assertEqual(result.stderr, "")
+        return json.loads(result.stdout)
+
+    def settings(self):
+        """The settings of config.yaml, as text."""
+        lines = self.text("config.yaml").splitlines()
+        return dict(re.match(r"(\w+): (\S+)", line).groups() for line in lines if line and line[0] != "#")
+
+    def text(self, name):
+        return (self.folder / name).read_text(encoding="utf-8")
+
+    def trips_with_proposal(self, *arguments, name="log"):
+        result = self.run_good("replay", "--config", "config.yaml", "--events", "events.jsonl", *arguments, name)
+        self.assertGreater(result.summary()["supervised_ms"], 50000)
+        return [reason for _, reason in result.trips()]
+
+    def message(self, survey, name):
+        return next(message for message in survey["messages"] if message["name"] == name)
+
+
+class Proposal(Case):
+    def test_a_healthy_vehicle_with_jitter(self):
+        survey = self.survey(jittered(traffic.frames(MINUTE, ENGAGED), 4000))
+        self.assertEqual(self.settings(), {"vcu_counter": "increments", "eps_counter": "increments"})
+        self.assertEqual(self.trips_with_proposal(), NO_TRIP)
+        speed = self.message(survey, "wheel_speed")
+        self.assertEqual(speed["count"], 6000)
+        self.assertEqual(speed["deadline_ms"], 60)
+        self.assertAlmostEqual(speed["gap_ms"]["median"], 10, delta=0.2)
+        self.assertAlmostEqual(speed["margin_ms"], 60 - speed["gap_ms"]["max"], places=3)
+        self.assertLess(speed["gap_ms"]["max"], 14)
+        self.assertGreater(speed["gap_ms"]["min"], 6)
+        self.assertEqual(speed["late"], 0)
+        self.assertEqual(survey["not_heard"], [])
+        self.assertEqual(survey["unknown"], [])
+        self.assertEqual(survey["engagements"], 1)
+
+    def test_a_slow_sender(self):
+        survey = self.survey(jittered(traffic.frames(MINUTE, ENGAGED, edit=slower("throttle_status", 8)), 3000))
+        self.assertAlmostEqual(self.message(survey, "throttle_status")["gap_ms"]["median"], 80, delta=1.5)
+        settings = self.settings()
+        self.assertEqual(sorted(settings), ["eps_counter", "throttle_status_timeout_ms", "vcu_counter"])
+        self.assertGreaterEqual(int(settings["throttle_status_timeout_ms"]), 240)
+        self.assertLessEqual(int(settings["throttle_status_timeout_ms"]), 250)
+        self.assertEqual(self.trips_with_proposal(), NO_TRIP)
+        self.assertIn("WEAKER", self.text("config.yaml"))
+        plain = self.run_good("replay", "--events", "events.jsonl", "log")
+        self.assertEqual(plain.summary()["supervised_ms"], 0)  # with the default it never leaves INIT
+
+    def test_a_slow_heartbeat(self):
+        survey = self.survey(traffic.frames(MINUTE, ENGAGED, edit=slower("vehicle_status", 4)))
+        self.assertEqual(self.message(survey, "vehicle_status")["margin_ms"], 10)
+        self.assertEqual(self.settings()["vcu_heartbeat_timeout_ms"], "120")
+        self.assertEqual(self.trips_with_proposal(), NO_TRIP)
+
+    def test_a_sender_that_no_deadline_allows(self):
+        survey = self.survey(traffic.frames(MINUTE, ENGAGED, edit=slower("throttle_status", 30)))
+        self.assertEqual(self.settings()["throttle_status_timeout_ms"], "500")
+        self.assertTrue(any("must be faster" in note for note in survey["proposal"]["notes"]))
+
+    def test_the_other_id_set(self):
+        survey = self.survey(traffic.frames(MINUTE, ENGAGED, ids=traffic.TABLE_IDS))
+        self.assertEqual(self.settings()["id_set"], "table")
+        self.assertEqual(survey["id_sets"], {"heading": {"43F": 0, "363": 0}, "table": {"201": 600, "203": 6000},
+                                             "used": "table"})
+        self.assertEqual(self.message(survey, "vehicle_status")["id"], "203")
+        self.assertEqual(self.trips_with_proposal(), NO_TRIP)
+
+    def test_the_id_set_that_was_asked_for_stays(self):
+        survey = self.survey(traffic.frames(MINUTE, ENGAGED, ids=traffic.TABLE_IDS), "--id-set", "heading")
+        self.assertEqual(survey["id_sets"]["used"], "heading")
+        settings = self.settings()
+        self.assertNotIn("id_set", settings)
+        self.assertEqual((settings["id_turn_signal_command"], settings["id_vehicle_status"]), ("0x201", "0x203"))
+        self.assertEqual(self.trips_with_proposal(), NO_TRIP)
+
+    def test_renumbered_identifiers(self):
+        ids = {name: 0x110 + 0x11 * number for number, name in enumerate(traffic.IDS)}
+        survey = self.survey(traffic.frames(MINUTE, ENGAGED, ids=ids))
+        settings = self.settings()
+        for name, number in ids.items():
+            self.assertEqual(settings["id_" + name], "0x%03X" % number)
+        self.assertEqual(self.message(survey, "wheel_speed")["count"], 6000)
+        self.assertEqual(survey["unknown"], [])
+        self.assertEqual(self.trips_with_proposal(), NO_TRIP)
+
+    def test_renumbered_identifiers_of_a_pipe(self):
+        ids = dict(traffic.IDS, gear_status=0x1A3)
+        log = traffic.log(traffic.frames(MINUTE, ENGAGED, ids=ids)).encode()
+        result = self.run_good("survey", "--config-out", "config.yaml", "-", stdin=log)
+        self.assertIn("survey again with --config", result.stdout)
+        self.assertEqual(self.settings()["id_gear_status"], "0x1A3")
+        self.write("first.yaml", self.text("config.yaml"))
+        survey = self.survey(log, "--config", "first.yaml")
+        self.assertEqual(self.message(survey, "gear_status")["id"], "1A3")
+        self.assertEqual(self.trips_with_proposal(), NO_TRIP)
+
+    def test_identifiers_that_cannot_be_told_apart_are_not_assigned(self):
+        """A vehicle that stands still, in manual: several messages are all zeros."""
+        ids = {name: 0x110 + 0x11 * number for number, name in enumerate(traffic.IDS)}
+        survey = self.survey(traffic.frames(MINUTE, ids=ids))
+        settings = self.settings()
+        for name in ("throttle_status", "wheel_speed", "throttle_command"):
+            self.assertNotIn("id_" + name, settings)
+            self.assertTrue(any(note.startswith(name + " was not heard") for note in survey["proposal"]["notes"]))
+
+    def test_two_identifiers_that_fit_one_message(self):
+        def twice(frame):
+            copy = traffic.Frame(frame.t_us + 1, frame.name, 0x1A4, frame.data, frame.interface)
+            return [frame, copy] if frame.name == "gear_status" else frame
+        survey = self.survey(traffic.frames(MINUTE, ENGAGED, ids=dict(traffic.IDS, gear_status=0x1A3), edit=twice))
+        self.assertNotIn("id_gear_status", self.settings())
+        self.assertIn("gear_status was not heard; it could be 1A3h 1A4h: set id_gear_status",
+                      survey["proposal"]["notes"])
+
+    def test_counters_that_count_otherwise(self):
+        steps = {"vehicle_status": 5, "steering_status": -1, "turn_signal_command": 3}
+        counts = {}
+
+        def edit(frame):
+            if frame.name in steps:
+                counts[frame.name] = counts.get(frame.name, 0) + steps[frame.name]
+                frame.data = with_counter(frame, counts[frame.name])
+            return frame
+        survey = self.survey(traffic.frames(2 * MINUTE, ENGAGED, edit=edit))
+        self.assertEqual(self.settings(), {"ai_counter": "increments"})
+        self.assertEqual([self.message(survey, name)["counter"]["counts"] for name in sorted(steps)],
+                         ["any", "increments", "any"])
+        self.assertEqual(self.trips_with_proposal(), NO_TRIP)
+
+    def test_a_status_identifier_that_is_in_use(self):
+        def edit(frame):
+            other = traffic.Frame(frame.t_us + 10, "other", 0x7F0, bytes(8), frame.interface)
+            return [frame, other] if frame.name == "gear_status" else frame
+        self.survey(traffic.frames(MINUTE, ENGAGED, edit=edit))
+        self.assertEqual(self.settings()["status_frame_id"], "0x7F1")
+        self.assertEqual(self.trips_with_proposal(), NO_TRIP)
+        result = self.run_good("replay", "--config", "config.yaml", "--events", "events.jsonl", "log")
+        self.assertNotIn("STATUS_ID_IN_USE", [name for _, name, _ in result.faults()])
+
+    def test_a_gateway(self):
+        frames = traffic.frames(MINUTE, ENGAGED, ai_interface="can1", edit=slower("steering_command", 3))
+        survey = self.survey(frames, "--ai-if", "can1")
+        self.assertEqual(self.message(survey, "steering_command")["side"], "ai")
+        settings = self.settings()
+        self.assertEqual(settings["topology"], "gateway")
+        self.assertEqual(settings["steering_command_timeout_ms"], "225")
+        self.assertEqual([load["side"] for load in survey["load"]], ["vehicle", "ai"])
+        self.assertEqual(self.trips_with_proposal("--ai-if", "can1"), NO_TRIP)
+
+
+class NotRelaxed(Case):
+    def test_an_outage_still_trips(self):
+        for name, reason in (("steering_status", "EPS_HEARTBEAT_LOST"), ("vehicle_status", "VCU_HEARTBEAT_LOST"),
+                             ("steering_command", "STEERING_COMMAND_TIMEOUT"), ("eps_status", "EPS_STATUS_TIMEOUT"),
+                             ("wheel_speed", "WHEEL_SPEED_TIMEOUT"), ("gear_command", "GEAR_COMMAND_TIMEOUT")):
+            with self.subTest(name):
+                survey = self.survey(jittered(traffic.frames(MINUTE, ENGAGED, edit=silent(name, 50000, 50600)), 4000))
+                self.assertEqual([key for key in self.settings() if key.endswith("_ms")], [])
+                self.assertEqual(self.trips_with_proposal()[0], reason)
+                self.assertEqual(self.message(survey, name)["late"], 1)
+                self.assertLess(self.message(survey, name)["margin_ms"], -200)
+                self.assertTrue(any(name in note and "an outage" in note for note in survey["proposal"]["notes"]))
+
+    def test_outages_that_come_again_and_again_still_trip(self):
+        def edit(frame):
+            return None if frame.name == "eps_status" and frame.t_ms > 6000 and frame.t_ms % 1000 < 300 else frame
+        self.survey(traffic.frames(MINUTE, ENGAGED, edit=edit))
+        self.assertNotIn("eps_status_timeout_ms", self.settings())
+        self.assertEqual(self.trips_with_proposal()[0], "EPS_STATUS_TIMEOUT")
+
+    def test_a_slow_sender_that_fails_still_trips(self):
+        slow = slower("throttle_status", 8)
+        frames = traffic.frames(MINUTE, ENGAGED, edit=lambda f: silent("throttle_status", 50000, 50600)(f) and slow(f))
+        self.survey(frames)
+        self.assertIn(self.settings()["throttle_status_timeout_ms"], ("240", "245"))
+        self.assertEqual(self.trips_with_proposal()[0], "THROTTLE_STATUS_TIMEOUT")
+
+    def test_a_counter_that_sticks_still_trips(self):
+        def edit(frame):
+            if frame.name == "steering_status" and frame.t_ms > 50000:
+                frame.data = with_counter(frame, 7)
+            return frame
+        survey = self.survey(traffic.frames(MINUTE, ENGAGED, edit=edit))
+        self.assertEqual(self.trips_with_proposal()[0], "EPS_HEARTBEAT_STUCK")
+        self.assertGreater(self.message(survey, "steering_status")["counter"]["longest_without_change_ms"], 9900)
+
+    def test_an_alarm_keeps_its_class(self):
+        def edit(frame):
+            if frame.name == "eps_status" and frame.t_ms > 50000:
+                frame.data = frame.data[:7] + b"\x40"
+            return frame
+        survey = self.survey(traffic.frames(MINUTE, ENGAGED, edit=edit))
+        self.assertEqual(self.trips_with_proposal()[0], "EPS_MOTOR_ENCODER")
+        self.assertEqual(self.message(survey, "eps_status")["alarms"],
+                         [{"name": "EPS_MOTOR_ENCODER", "first_ms": 50003.3, "frames": 1000}])
+        self.assertFalse([key for key in self.settings() if key.startswith("class_")])
+
+    def test_a_short_log_relaxes_nothing(self):
+        self.survey(traffic.frames(900, 300, edit=slower("throttle_status", 8)))
+        self.assertEqual(self.settings(), {})
+
+    def test_no_proposal_is_weaker_than_three_cycles_and_half(self):
+        """Random senders: a deadline is never above the larger of default, 3 cycles and 1.5 usual longest gaps."""
+        for seed in range(6):
+            draw = random.Random(seed)
+            times = draw.choice((2, 3, 5, 7))
+            jitter = draw.choice((1000, 5000, 20000))
+            survey = self.survey(jittered(traffic.frames(20000, 2000, edit=slower("eps_status", times)), jitter, seed))
+            cycle = 10 * times
+            most = max(60, 3.1 * cycle + 5, 1.5 * 1.02 * (cycle + jitter / 1000) + 5)
+            with self.subTest(seed=seed):
+                self.assertLessEqual(int(self.settings().get("eps_status_timeout_ms", 60)), most)
+                self.assertEqual(survey["proposal"]["settings"],
+                                 [row for row in survey["proposal"]["settings"] if row["reason"]])
+
+
+class Text(Case):
+    def test_what_people_read(self):
+        def edit(frame):
+            other = traffic.Frame(frame.t_us + 10, "other", 0x123, bytes(3), frame.interface)
+            return [frame, other] if frame.name == "gear_status" else frame
+        self.write("log", traffic.log(traffic.frames(MINUTE, ENGAGED, edit=edit)))
+        result = self.run_good("survey", "log")
+        for line in ("log: 59.994 s on can0, 45000 frames (750/s), candump -l",
+                     "engaged  54.994 s in 1 engagement",
+                     "ID set   heading; heading: 43Fh 600, 363h 6000; table: 201h 0, 203h 0",
+                     "065h   steering_command         2400    25.00    25.00    25.00     25.00      125*    100.00",
+                     "101h   wheel_speed              6000    10.00    10.00    10.00     10.00       60      50.00",
+                     "  050h  throttle        0.0 to 4.0 %",
+                     "  0A3h  gear            D, P",
+                     "  363h  mode            manual, autopilot",
+                     "  123h      2400 frames, 40.0/s, 3 to 3 bytes, median gap 25.00 ms",
+                     "vcu_counter: increments  # default any"):
+            self.assertIn(line + "\n", result.stdout)
+        self.assertRegex(result.stdout, r"load +1\d\.\d to \d\d\.\d % of 500000 bit/s")
+        for line in result.stdout.splitlines():
+            self.assertLessEqual(len(line), 100, line)
+
+    def test_the_load_of_a_bus(self):
+        """1000 frames of 8 bytes a second at 500 kbit/s: 111 bits each, and at most 24 stuff bits."""
+        lines = ["(%d.%06d) can0 123#0000000000000000\n" % (1 + i // 1000, i % 1000 * 1000) for i in range(10001)]
+        survey = self.survey("".join(lines))
+        load = survey["load"][0]
+        self.assertAlmostEqual(load["least_pct"], 22.2, delta=0.01)
+        self.assertAlmostEqual(load["most_pct"], 27.0, delta=0.01)
+        self.assertAlmostEqual(load["busiest_second_pct"], 27.0, delta=0.01)
+        half = self.survey("".join(lines), "--bitrate", "250000")["load"][0]
+        self.assertAlmostEqual(half["most_pct"], 54.0, delta=0.02)
+
+    def test_messages_that_were_not_heard(self):
+        self.write("log", traffic.log(traffic.frames(2000, senders=("vcu",))))
+        result = self.run_good("survey", "log")
+        self.assertIn("067h   steering_status             -  not heard\n", result.stdout)
+        self.assertIn("# - steering_status was not heard\n", result.stdout)
+        self.assertIn("# - autopilot was never engaged", result.stdout)
+
+    def test_the_proposal_alone(self):
+        self.write("log", traffic.log(traffic.frames(2000)))
+        result = self.run_good("survey", "--config-out", "-", "log")
+        self.assertTrue(result.stdout.startswith("# Proposed by host_sim survey from log\n"), result.stdout)
+        self.write("c.yaml", result.stdout)
+        self.run_good("config", "--config", "c.yaml")
+
+    def test_every_format(self):
+        frames = traffic.frames(3000, 1000)
+        plain = self.survey(frames)
+        screen = "".join(" (%03d.%06d)  can0  %03X   [8]  %s\n" % (f.t_us // 1000000, f.t_us % 1000000, f.can_id,
+                                                                   f.data.hex(" ")) for f in frames)
+        asc = "base hex  timestamps absolute\n" + "".join(
+            "   %d.%06d 1  %X             Rx   d 8 %s\n" % (f.t_us // 1000000, f.t_us % 1000000, f.can_id,
+                                                          f.data.hex(" ")) for f in frames)
+        for text, name in ((screen, "candump -t"), (asc, "Vector ASC"), (traffic.log(frames), "candump -l")):
+            for content in (text.encode(), gzip.compress(text.encode())):
+                with self.subTest(name):
+                    survey = self.survey(content)
+                    self.assertEqual(survey["format"], name)
+                    self.assertEqual(survey["messages"], plain["messages"])
+
+    def test_an_hour_in_under_five_seconds(self):
+        minute = traffic.frames(MINUTE, ENGAGED)
+        parts = [traffic.log(minute, traffic.BASE_US + n * MINUTE * 1000) for n in range(max(1, 60 // hostsim.PART))]
+        self.write("log", "".join(parts))
+        begin = time.monotonic()
+        self.run_good("survey", "log")
+        self.assertLess(time.monotonic() - begin, 5)
+
+
+class Refused(Case):
+    def test_bad_command_lines(self):
+        self.write("log", traffic.log(traffic.frames(500)))
+        for arguments, part in (((), "LOG or --can is missing"), (("log", "log"), "unexpected argument 'log'"),
+                                (("log", "--can", "can0"), "LOG and --can: one of them"),
+                                (("log", "--for", "1s"), "--for is for --can"),
+                                (("--can", "can0", "--for", "1m"), "--for: '1m' is not a time"),
+                                (("--can", "can0", "--ai-if", "x"), "--ai-if is for a log"),
+                                (("--ai-can", "can0"), "--can is missing"),
+                                (("log", "--topology", "gateway"), "needs --ai-if"),
+                                (("log", "--bitrate", "5"), "--bitrate: '5' is not a number"),
+                                (("none",), "none: No such file"), (("log", "--config-out", "log"), "same file"),
+                                (("log", "--config-out", "no/c.yaml"), "no/c.yaml"),
+                                (("--can", "nosuchcan"), "nosuchcan")):
+            with self.subTest(arguments):
+                self.assert_refused(self.run_program("survey", *arguments), part)
+
+    def test_logs_that_cannot_be_read_leave_the_proposal_as_it_was(self):
+        packed = gzip.compress(traffic.log(traffic.frames(500)).encode())
+        for content, part in ((b"", "contains no frame"), (b"\x00" * 100, "binary data"), (packed[:200], "cut off"),
+                              (b"LOGG" + bytes(100), "python3 -m can.logconvert log log.log"),
+                              (traffic.log(traffic.frames(500)).encode()[:-4], "log:")):
+            self.write("config.yaml", "park: at_once\n")
+            self.write("log", content)
+            with self.subTest(part):
+                self.assert_refused(self.run_program("survey", "--config-out", "config.yaml", "log"), part)
+                self.assertEqual(self.text("config.yaml"), "park: at_once\n")
+                self.assertEqual(self.files(), ["config.yaml", "log"])
+
+    def test_endless_input(self):
+        self.assert_refused(self.run_program("survey", "/dev/zero", timeout=20), "binary data")
+        self.assert_refused(self.run_program("survey", "--skip-bad-lines", "/dev/zero", timeout=20), "given up")
+
+
+if __name__ == "__main__":
+    hostsim.unittest.main()
