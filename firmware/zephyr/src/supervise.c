@@ -2,11 +2,14 @@
 
 #include <zephyr/sys/byteorder.h>
 
+#include "agv_revision.h"
 #include "events.h"
 #include "kconfig.h"
 
 /* More than fit into the queues at once come only while they are emptied: then the tick goes first. */
 enum { FRAMES_A_ROUND = 2 * HAL_CAN_SIDES * CONFIG_AGV_CAN_RX_QUEUE };
+
+static const agv_version_t version = {AGV_VERSION_MAJOR, AGV_VERSION_MINOR, AGV_VERSION_PATCH, AGV_REVISION_NUMBER};
 
 __weak bool supervise_self_test(void) {
     return true;
@@ -49,7 +52,7 @@ void supervise_start(supervise_t *self, agv_recorder_t *recorder, zephyr_hal_ret
                                         .retained = retained};
     (void)zephyr_hal_init(&self->hal, &wiring);
     self->hal.failed |= supervise_self_test() ? 0u : HAL_SELF_TEST_PROCESSOR;
-    self->ports = (agv_ports_t){.hal = &self->hal, .recorder = recorder};
+    self->ports = (agv_ports_t){.hal = &self->hal, .recorder = recorder, .version = &version};
     self->ticked_ms = hal_clock_now_ms(&self->hal);
     agv_supervisor_start(&self->supervisor, &self->ports, &config, self->ticked_ms);
     record_end(self, recorder);
