@@ -3,7 +3,7 @@
 
 usage: zephyr-checksum.py --objcopy OBJCOPY FOLDER
 
-FOLDER has zephyr.elf, and zephyr.bin and zephyr.hex where the build makes them. The table zephyr_image_sum of
+FOLDER has zephyr.elf; what the build made of it (zephyr.bin, zephyr.hex, zephyr.strip) is made anew. The table zephyr_image_sum of
 hal/zephyr/src/zephyr_self_test.c receives the ranges of the program in flash and their CRC-32. The table itself, and gaps
 between sections, which programmers fill as they like, belong to no range.
 """
@@ -22,7 +22,13 @@ MAGIC = 0x53564741
 RANGES_MAX = 16
 HEAD = struct.Struct("<III")
 RANGE = struct.Struct("<II")
-NOT_PROGRAM = ("--remove-section=.comment", "--remove-section=COMMON", "--remove-section=.eh_frame")
+PROGRAM = ("--gap-fill", "0xff", "--remove-section=.comment", "--remove-section=COMMON", "--remove-section=.eh_frame")
+# What Zephyr's build makes of zephyr.elf, and how.
+FORMS = {
+    "zephyr.bin": ("--output-target=binary", *PROGRAM),
+    "zephyr.hex": ("--output-target=ihex", *PROGRAM),
+    "zephyr.strip": ("--strip-all",),
+}
 
 
 class Refused(Exception):
@@ -122,11 +128,10 @@ def main():
         size, ranges = patch(elf)
     except (OSError, Refused) as error:
         sys.exit(f"zephyr-checksum: {error}")
-    for name, kind in (("zephyr.bin", "binary"), ("zephyr.hex", "ihex")):
+    for name, options in FORMS.items():
         made = arguments.folder / name
         if made.exists():
-            subprocess.run([arguments.objcopy, "--gap-fill", "0xff", f"--output-target={kind}", *NOT_PROGRAM, elf, made],
-                           check=True)
+            subprocess.run([arguments.objcopy, *options, elf, made], check=True)
     print(f"checksum of {size} bytes of program in {ranges} ranges")
 
 
