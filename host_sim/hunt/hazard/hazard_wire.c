@@ -122,7 +122,8 @@ static void note_mode(hazard_t *hazard, uint8_t bits) {
         check_newest_throttle(hazard);
         memset(hazard->is_commanded, 0, sizeof hazard->is_commanded);
     }
-    if (autopilot && !mode->autopilot && (hazard->t_ms - mode->clear_ms >= hazard->limits.reengage_ms)) {
+    if (autopilot && !mode->autopilot &&
+        ((mode->begun_count == 0u) || (hazard->t_ms - mode->clear_ms >= hazard->limits.reengage_ms))) {
         begin_engagement(hazard);
     }
     if (!autopilot && mode->autopilot) {
