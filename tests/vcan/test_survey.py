@@ -1,0 +1,64 @@
+"""host_sim survey --can on a virtual bus: it hears what is there, sends nothing, ends in time or by a signal."""
+import json
+import pathlib
+import signal
+import tempfile
+
+import canbus
+from player import CYCLES, Player
+
+
+class Survey(canbus.Case):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="host_sim.")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def player(self, *interfaces):
+        player = Player(*interfaces)
+        self.addCleanup(player.stop)
+        return player
+
+    def survey(self, *arguments):
+        """The result of a survey that ends by itself."""
+        status, stdout, stderr = self.run_to_end("survey", "--json", *arguments)
+        self.assertEqual((status, stderr), (0, ""))
+        return json.loads(stdout)
+
+    def test_every_message_is_heard_and_nothing_is_sent(self):
+        listener = self.bus()
+        player = self.player("vcan0")
+        player.engaged = True
+        survey = self.survey("--can", "vcan0", "--for", "2s")
+        player.stop()
+        self.assertEqual(survey["source"], "vcan0")
+        self.assertEqual(survey["interfaces"], ["vcan0"])
+        self.assertEqual({int(message["id"], 16) for message in survey["messages"]}, set(CYCLES))
+        self.assertEqual(survey["unknown"], [])
+        for message in survey["messages"]:
+            expected = survey["duration_ms"] / CYCLES[int(message["id"], 16)]
+            self.assertLess(abs(message["count"] - expected), 0.5 * expected, message)
+        self.assertGreater(survey["load"][0]["most_pct"], 5)
+        self.assertLess(survey["load"][0]["most_pct"], 30)
+        self.assertFalse([frame for frame in listener.listen(0) if frame.id not in CYCLES])
+
+    def test_a_signal_ends_it_with_the_result(self):
+        self.player("vcan0")
+        process = self.start("survey", "--can", "vcan0", "--config-out", self.folder / "config.yaml", "--json")
+        self.bus().listen(1.5)
+        self.assertEqual(process.end(signal.SIGINT), 0)
+        self.assertGreater(json.loads(process.text())["frames"], 100)
+        self.assertIn("# Proposed by host_sim survey from vcan0\n", (self.folder / "config.yaml").read_text())
+
+    def test_two_interfaces_are_a_gateway(self):
+        self.player("vcan0", "vcan1")
+        survey = self.survey("--can", "vcan0", "--ai-can", "vcan1", "--for", "1s")
+        sides = {message["name"]: message["side"] for message in survey["messages"]}
+        self.assertEqual(sides["steering_command"], "ai")
+        self.assertEqual(sides["wheel_speed"], "vehicle")
+        self.assertIn({"name": "topology", "value": "gateway", "default": "shared", "weakens": False,
+                       "reason": "as given to this survey"}, survey["proposal"]["settings"])
+
+    def test_a_silent_bus_is_no_result(self):
+        self.assertEqual(self.run_to_end("survey", "--can", "vcan2", "--for", "300ms"),
+                         (2, "", "host_sim: vcan2: no frame came\n"))
