@@ -1,7 +1,6 @@
 #!/usr/bin/env bats
 # `cmake --install`: the installed programs need nothing of the source tree, and another project can use the core.
 # AGV_BUILD: the build folder.
-# Shows: -
 
 setup_file() {
     export PREFIX=$BATS_FILE_TMPDIR/moved
