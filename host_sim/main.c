@@ -25,6 +25,7 @@ static const command_t commands[] = {
     {"demo", "watch the supervisor park a vehicle that loses its AI computer", cmd_demo},
     {"hunt", "attack the supervisor at random, and search for runs with a hazard", cmd_hunt},
     {"monitor", "watch a bus or a log: messages, deadlines, alarms, the supervisor's state", cmd_monitor},
+    {"recorder", "tell what the flight recorder of a device kept", cmd_recorder},
     {"replay", "replay a recorded candump log to the supervisor in virtual time", cmd_replay},
     {"run", "run the supervisor as a node on SocketCAN, in real time", cmd_run},
     {"scenario", "run scenario files with a simulated vehicle, and check their expectations", cmd_scenario},

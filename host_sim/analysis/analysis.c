@@ -60,6 +60,9 @@ analysis_t *analysis_new(const analysis_request_t *request) {
     if (request->is_recording) {
         why_is_recording(analysis->why);
     }
+    if (request->is_recorder) {
+        why_is_recorder(analysis->why);
+    }
     return analysis;
 }
 

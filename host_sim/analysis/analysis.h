@@ -27,6 +27,7 @@ typedef struct {
     const char *log;                   /**< name of the log, the interface or the scenario; is not copied */
     const char *paths[ANALYSIS_FILES]; /**< NULL: not asked for; are not copied */
     bool is_recording;                 /**< the frames do not obey the supervisor */
+    bool is_recorder;                  /**< the events come from a flight recorder, and no frames with them */
 } analysis_request_t;
 
 typedef struct analysis analysis_t;

@@ -253,3 +253,20 @@ void timeline_sent(timeline_t *timeline, hal_can_side_t side, const hal_can_fram
         show_sent(timeline, t_us, frame);
     }
 }
+
+static bool is_seen(const agv_event_t *event, agv_message_t message) {
+    return ((event->seen >> (uint32_t)message) & 1u) != 0u;
+}
+
+void timeline_snapshot(timeline_t *timeline, const agv_event_t *event) {
+    agv_wheel_speed_t wheels;
+    if (is_seen(event, AGV_MSG_GEAR_STATUS)) {
+        timeline->gear = event->frames[AGV_MSG_GEAR_STATUS][0];
+    }
+    if (is_seen(event, AGV_MSG_VEHICLE_STATUS)) {
+        timeline->mode = event->frames[AGV_MSG_VEHICLE_STATUS][6] & MODE_BITS;
+    }
+    if (is_seen(event, AGV_MSG_WHEEL_SPEED) && agv_unpack_wheel_speed(&wheels, event->frames[AGV_MSG_WHEEL_SPEED])) {
+        timeline->speed_mm_s = wheels.left_mm_s;
+    }
+}

@@ -40,6 +40,9 @@ void timeline_init_run(timeline_t *timeline, const agv_config_t *config);
 /** An event of the supervisor: a session_observer_fn with the timeline as context. */
 void timeline_event(void *ctx, const session_event_t *event);
 
+/** What the vehicle reported last, from an event of a flight recorder; prints nothing. */
+void timeline_snapshot(timeline_t *timeline, const agv_event_t *event);
+
 /** A frame was received. */
 void timeline_received(timeline_t *timeline, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us);
 

@@ -45,6 +45,10 @@ void why_is_recording(why_t *why) {
     why->is_recording = true;
 }
 
+void why_is_recorder(why_t *why) {
+    why->is_recorder = true;
+}
+
 void why_free(why_t *why) {
     if (why != NULL) {
         free(why->trips);
@@ -299,6 +303,7 @@ void why_event(void *ctx, const session_event_t *event) {
     if (event->is_led) {
         return;
     }
+    why->snapshot = why->is_recorder ? &event->recorded : NULL;
     switch ((agv_event_kind_t)event->recorded.kind) {
     case AGV_EVENT_STATE:
         on_state(why, &event->recorded, t_us);
@@ -309,6 +314,7 @@ void why_event(void *ctx, const session_event_t *event) {
     default:
         break;
     }
+    why->snapshot = NULL;
 }
 
 void why_end(why_t *why, uint64_t t_us) {
@@ -326,36 +332,4 @@ void why_end(why_t *why, uint64_t t_us) {
             why->fault_since_us[entry->fault] = t_us;
         }
     }
-}
-
-size_t why_trip_count(const why_t *why) {
-    return why->trip_count;
-}
-
-const why_trip_t *why_trip(const why_t *why, size_t index) {
-    return &why->trips[index];
-}
-
-size_t why_fault_count(const why_t *why) {
-    return why->fault_count;
-}
-
-const why_fault_t *why_fault(const why_t *why, size_t index) {
-    return &why->faults[why->fault_order[index]];
-}
-
-uint64_t why_state_us(const why_t *why, size_t index) {
-    return why->state_us[index];
-}
-
-uint64_t why_supervised_us(const why_t *why) {
-    uint64_t sum = 0u;
-    for (size_t i = 1u; i < (size_t)WHY_STATES; i++) {
-        sum += why->state_us[i];
-    }
-    return sum;
-}
-
-uint16_t why_missing(const why_t *why) {
-    return why->missing;
 }

@@ -76,6 +76,11 @@ why_t *why_new(const agv_config_t *config);
 /** The frames come from a recording, which does not obey the supervisor. Before the first frame. */
 void why_is_recording(why_t *why);
 
+/**
+ * The events come from a flight recorder, and no frames with them. Times of causes are derived from the limits.
+ */
+void why_is_recorder(why_t *why);
+
 /** A frame was received. */
 void why_frame(why_t *why, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us);
 

@@ -103,6 +103,15 @@ static const row_t rows[] = {
 
 enum { ROWS = sizeof rows / sizeof rows[0] };
 
+uint64_t why_budget_us(const why_t *why, agv_fault_t fault) {
+    for (size_t i = 0u; i < (size_t)ROWS; i++) {
+        if (rows[i].fault == fault) {
+            return (uint64_t)agv_config_get(&why->config, rows[i].setting) * US_PER_MS;
+        }
+    }
+    return 0u;
+}
+
 /** Count the time since the last call: a bad microsecond adds 2, a good one takes 1. */
 static void count(const why_t *why, const row_t *row, why_tracker_t *tracker, uint64_t t_us) {
     const uint64_t judged_us = row->judged ? why->engagement.judged_us : 0u;

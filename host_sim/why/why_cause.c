@@ -106,7 +106,7 @@ static void explain_stuck(const why_t *why, why_trip_t *trip) {
 }
 
 /** What tells of a budget besides its own message: what it is compared with. */
-static agv_message_t compared_with(agv_fault_t fault) {
+agv_message_t why_compared_with(agv_fault_t fault) {
     switch (fault) {
     case AGV_FAULT_STEERING_DEVIATION:
         return AGV_MSG_STEERING_COMMAND;
@@ -129,7 +129,7 @@ static agv_message_t compared_with(agv_fault_t fault) {
 
 static void explain_tracked(const why_t *why, why_trip_t *trip) {
     const why_tracker_t *tracker = why_tracker(why, trip->reason);
-    const agv_message_t other = compared_with(trip->reason);
+    const agv_message_t other = why_compared_with(trip->reason);
     if (tracker != NULL) {
         trip->cause_us = tracker->began_us;
         trip->last_good_us = tracker->good.t_us;
@@ -282,6 +282,10 @@ void why_cause(const why_t *why, why_trip_t *trip) {
     trip->next_us = WHY_NEVER;
     set_message(why, trip, row->message);
     set_limit(why, trip, row->setting, row->unit);
-    explain[row->kind](why, trip);
+    if (why->snapshot != NULL) {
+        why_cause_recorded(why, why->snapshot, trip);
+    } else {
+        explain[row->kind](why, trip);
+    }
     qsort(trip->evidence, trip->evidence_count, sizeof trip->evidence[0], by_time);
 }

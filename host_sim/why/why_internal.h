@@ -6,6 +6,7 @@
 #ifndef HOST_SIM_WHY_INTERNAL_H
 #define HOST_SIM_WHY_INTERNAL_H
 
+#include "agv/recorder.h"
 #include "why/why.h"
 
 enum { WHY_HISTORY = 8, WHY_ENGAGEMENTS = 4, WHY_TRIPS_MAX = 1000, WHY_MISSING_BITS = 11 };
@@ -70,6 +71,8 @@ struct why {
     agv_ids_t ids;
     bool is_gateway;
     bool is_recording;
+    bool is_recorder;
+    const agv_event_t *snapshot; /**< of a flight recorder: the event in hand; NULL: frames are received */
 
     why_message_t messages[AGV_MSG_COUNT];
     why_tracker_t trackers[AGV_FAULT_COUNT];
@@ -161,6 +164,15 @@ uint16_t why_silence_setting(agv_message_t message);
 
 /** Add a frame to the evidence, if there is room and it is not there yet. */
 void why_show(why_trip_t *trip, const why_evidence_t *evidence);
+
+/** What a fault's message is compared with; AGV_MSG_NONE: nothing. */
+agv_message_t why_compared_with(agv_fault_t fault);
+
+/** How long a condition has to last; 0: it is no budget. */
+uint64_t why_budget_us(const why_t *why, agv_fault_t fault);
+
+/** The same from an event of a flight recorder (why_recorded.c). */
+void why_cause_recorded(const why_t *why, const agv_event_t *event, why_trip_t *trip);
 
 /** Fill in what is known of a cause (why_cause.c); t_us and reason are set. */
 void why_cause(const why_t *why, why_trip_t *trip);

@@ -101,7 +101,7 @@ static void add_from(text_t *text, const char *words, uint64_t t_us) {
     }
 }
 
-static void say_silence(text_t *text, const why_trip_t *trip) {
+static void say_silence(text_t *text, const why_t *why, const why_trip_t *trip) {
     if (trip->last_good_us == WHY_NEVER) {
         text_add(text, "was never heard, deadline %" PRId64 " ms", trip->limit);
     } else {
@@ -110,10 +110,10 @@ static void say_silence(text_t *text, const why_trip_t *trip) {
     }
     if (trip->next_us != WHY_NEVER) {
         add_from(text, ", next at ", trip->next_us);
-    } else if (trip->last_good_us != WHY_NEVER) {
+    } else if ((trip->last_good_us != WHY_NEVER) && !why->is_recorder) {
         text_add(text, ", none since");
     } else {
-        /* that it was never heard says it */
+        /* that it was never heard says it; a flight recorder does not know */
     }
 }
 
@@ -211,7 +211,7 @@ void why_words_cause(text_t *text, const why_t *why, const why_trip_t *trip) {
     add_name(text, trip);
     switch (trip->kind) {
     case WHY_SILENCE:
-        say_silence(text, trip);
+        say_silence(text, why, trip);
         break;
     case WHY_STUCK:
         say_stuck(text, trip);

@@ -15,6 +15,9 @@
  */
 typedef status_t command_fn(int argc, char **argv);
 
+/** `host_sim recorder`: what a device's flight recorder kept. */
+command_fn cmd_recorder;
+
 /** `host_sim replay`: a recorded log, supervised in virtual time. */
 command_fn cmd_replay;
 

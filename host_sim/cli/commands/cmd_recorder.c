@@ -1,0 +1,75 @@
+/**
+ * @file cmd_recorder.c
+ * `host_sim recorder`: its options.
+ */
+#include <string.h>
+
+#include "cli/analysis_options.h"
+#include "cli/commands/commands.h"
+#include "cli/options.h"
+#include "config/config_options.h"
+#include "io/output.h"
+#include "recorder/recorder_run.h"
+
+enum { RUN_MAX = 255, FIXED_FILES = 3 };
+
+/** The given options. */
+typedef struct {
+    recorder_request_t request;
+    config_options_t config;
+    analysis_options_t analysis;
+} given_t;
+
+static options_result_t parse(int argc, char **argv, given_t *given) {
+    option_t config_rows[CONFIG_OPTIONS];
+    option_t analysis_rows[ANALYSIS_OPTIONS];
+    config_options_init(&given->config, config_rows);
+    analysis_options_init(&given->analysis, analysis_rows);
+    const option_t rows[] = {
+        OPTION_NUMBER("--run", "N", "the run of this number; else the newest one with a trip", &given->request.run, 0,
+                      RUN_MAX),
+        OPTION_TEXT("--events", "FILE", "events as JSON Lines", &given->request.events),
+    };
+    const option_group_t groups[] = {
+        {.title = "Options (FILE may be -, standard output)", .options = analysis_rows, .count = ANALYSIS_OPTIONS},
+        {.options = rows, .count = sizeof rows / sizeof rows[0]},
+        {.title = "Configuration of the device", .options = config_rows, .count = CONFIG_OPTIONS},
+    };
+    const option_syntax_t syntax = {
+        .usage = "recorder [OPTION]... FILE",
+        .summary = "Tell what the flight recorder of a device kept: what its shell's 'agv dump' printed, what a "
+                   "debugger dumped\n"
+                   "of its memory, or the --store file of replay (- = standard input).\n",
+        .groups = groups,
+        .group_count = sizeof groups / sizeof groups[0],
+        .operands_min = 1u,
+        .operands_max = 1u,
+        .operand = "FILE",
+    };
+    size_t operands = 0u;
+    return options_parse(&syntax, argc, argv, &operands);
+}
+
+static bool check_files(const given_t *given) {
+    output_role_t roles[FIXED_FILES + (int)ANALYSIS_FILES] = {
+        {.role = "FILE", .path = given->request.path},
+        {.role = "--config", .path = given->config.path},
+        {.role = "--events", .path = given->request.events, .is_written = true},
+    };
+    analysis_options_roles(&given->analysis, &roles[FIXED_FILES]);
+    return output_check_distinct(roles, sizeof roles / sizeof roles[0]);
+}
+
+status_t cmd_recorder(int argc, char **argv) {
+    given_t given = {.request = {.run = RECORDER_RUN_NEWEST}};
+    const options_result_t parsed = parse(argc, argv, &given);
+    if (parsed != OPTIONS_GO) {
+        return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
+    }
+    given.request.path = argv[0];
+    memcpy(given.request.analysis, given.analysis.paths, sizeof given.request.analysis);
+    if (!check_files(&given) || !config_options_make(&given.config, &given.request.config)) {
+        return STATUS_UNUSABLE;
+    }
+    return recorder_run(&given.request);
+}

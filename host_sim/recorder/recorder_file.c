@@ -1,0 +1,226 @@
+#include "recorder/recorder_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "agv/faults.h"
+#include "agv/state.h"
+#include "common/hex.h"
+#include "common/report.h"
+#include "hal_sim/sim_store.h"
+#include "io/store_file.h"
+
+/* A dump of flash has some 100 KB; a whole RAM fits, too. */
+#define FILE_MAX 16777216u
+#define EVENT_WORD "agv-event "
+#define STORE_WORD "agv-store "
+
+static bool add(recorder_events_t *events, const agv_event_t *event) {
+    if (events->count == events->room) {
+        const size_t room = (events->room == 0u) ? 256u : 2u * events->room;
+        agv_event_t *larger = realloc(events->events, room * sizeof *larger);
+        if (larger == NULL) {
+            return report("out of memory");
+        }
+        events->events = larger;
+        events->room = room;
+    }
+    events->events[events->count] = *event;
+    events->count++;
+    return true;
+}
+
+/** Whether bytes are an event: the checksum has 16 bits only, so its fields have to make sense, too. */
+static bool is_event(const agv_event_t *event) {
+    const bool kind = (event->kind >= (uint8_t)AGV_EVENT_STATE) && (event->kind <= (uint8_t)AGV_EVENT_CRASH);
+    const bool state = agv_state_is_latched((agv_state_t)event->state)
+                           ? (event->state == (uint8_t)AGV_STATE_TRIPPED) || (event->state == (uint8_t)AGV_STATE_SAFE)
+                           : true;
+    return kind && state && (event->reserved == 0u) && (event->first_reason <= (uint8_t)AGV_FAULT_COUNT) &&
+           (event->seen < (1u << (unsigned)AGV_MSG_COUNT)) && agv_event_is_valid(event);
+}
+
+/** Find the events in bytes, wherever they lie. @return false: no memory; was reported */
+static bool take_bytes(recorder_events_t *events, const uint8_t *bytes, size_t size) {
+    size_t at = 0u;
+    while (at + sizeof(agv_event_t) <= size) {
+        agv_event_t event;
+        memcpy(&event, &bytes[at], sizeof event);
+        if (is_event(&event)) {
+            if (!add(events, &event)) {
+                return false;
+            }
+            at += sizeof event;
+        } else {
+            at++;
+        }
+    }
+    return true;
+}
+
+/** Read hexadecimal digits as an event. @return false: they are none */
+static bool event_of_hex(const char *digits, size_t length, agv_event_t *event) {
+    uint8_t bytes[sizeof *event];
+    if (length != 2u * sizeof bytes) {
+        return false;
+    }
+    for (size_t i = 0u; i < sizeof bytes; i++) {
+        const uint32_t high = hex_digit(digits[2u * i]);
+        const uint32_t low = hex_digit(digits[(2u * i) + 1u]);
+        if ((high >= (uint32_t)HEX_NO_DIGIT) || (low >= (uint32_t)HEX_NO_DIGIT)) {
+            return false;
+        }
+        bytes[i] = (uint8_t)((high << 4u) | low);
+    }
+    memcpy(event, bytes, sizeof bytes);
+    return true;
+}
+
+static size_t hex_length(const char *text, size_t length) {
+    size_t count = 0u;
+    while ((count < length) && (hex_digit(text[count]) < (uint32_t)HEX_NO_DIGIT)) {
+        count++;
+    }
+    return count;
+}
+
+/** What follows EVENT_WORD in a line; NULL: it is not there. */
+static const char *after_word(const char *line, size_t length) {
+    const size_t size = strlen(EVENT_WORD);
+    for (size_t at = 0u; at + size <= length; at++) {
+        if (memcmp(&line[at], EVENT_WORD, size) == 0) {
+            return &line[at + size];
+        }
+    }
+    return NULL;
+}
+
+/** Take a line: an event behind EVENT_WORD, or nothing but an event. @return false: no memory; was reported */
+static bool take_line(recorder_events_t *events, const char *line, size_t length) {
+    agv_event_t event;
+    const char *word = after_word(line, length);
+    const char *digits = (word != NULL) ? word : line;
+    const size_t count = hex_length(digits, length - (size_t)(digits - line));
+    if (event_of_hex(digits, count, &event) && is_event(&event)) {
+        return add(events, &event);
+    }
+    events->damaged += ((word != NULL) || (count > sizeof event)) ? 1u : 0u;
+    return true;
+}
+
+static bool take_lines(recorder_events_t *events, const char *text, size_t size) {
+    const char *line = text;
+    while (line < &text[size]) {
+        const size_t left = (size_t)(&text[size] - line);
+        const char *end = memchr(line, '\n', left);
+        if (!take_line(events, line, (end != NULL) ? (size_t)(end - line) : left)) {
+            return false;
+        }
+        line = (end != NULL) ? &end[1] : &text[size];
+    }
+    return true;
+}
+
+/** The file of --store: its records, and the recorder in RAM. */
+static bool take_store(recorder_events_t *events, const char *path) {
+    sim_store_t *store = calloc(1u, sizeof *store);
+    agv_recorder_t *recorder = calloc(1u, sizeof *recorder);
+    bool good = (store != NULL) && (recorder != NULL);
+    if (!good) {
+        (void)report("out of memory");
+    }
+    good = good && store_file_load(path, store, recorder);
+    for (uint32_t i = 0u; good && (i < store->count); i++) {
+        uint8_t record[SIM_STORE_RECORD_SIZE_MAX];
+        const size_t size = sim_store_read_record(store, i, record, sizeof record);
+        good = take_bytes(events, record, size);
+    }
+    good = good && take_bytes(events, (const uint8_t *)recorder, sizeof *recorder);
+    free(store);
+    free(recorder);
+    return good;
+}
+
+/** Read a file whole. @return its size; -1: reported */
+static ssize_t read_all(const char *path, const char *name, char **text) {
+    const int fd = (strcmp(path, "-") == 0) ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC);
+    size_t size = 0u;
+    ssize_t count = -1;
+    *text = (fd >= 0) ? malloc(FILE_MAX + 1u) : NULL;
+    if (fd >= 0) {
+        count = (*text != NULL) ? 1 : -1;
+        while ((count > 0) && (size <= FILE_MAX)) {
+            count = read(fd, &(*text)[size], FILE_MAX + 1u - size);
+            size += (count > 0) ? (size_t)count : 0u;
+        }
+    }
+    if (count < 0) {
+        (void)report("%s: %s", name, strerror(errno));
+    } else if (size > FILE_MAX) {
+        (void)report("%s: larger than 16 MiB, which no flight recorder is", name);
+        count = -1;
+    } else {
+        /* read to its end */
+    }
+    if (fd > STDIN_FILENO) {
+        (void)close(fd);
+    }
+    return (count < 0) ? -1 : (ssize_t)size;
+}
+
+/** Sequence numbers wrap: they are compared by their distance. */
+static int by_sequence(const void *one, const void *other) {
+    const uint32_t a = ((const agv_event_t *)one)->sequence;
+    const uint32_t b = ((const agv_event_t *)other)->sequence;
+    if (a == b) {
+        return 0;
+    }
+    return ((a - b) < (UINT32_MAX / 2u)) ? 1 : -1;
+}
+
+static void sort(recorder_events_t *events) {
+    size_t kept = 0u;
+    qsort(events->events, events->count, sizeof events->events[0], by_sequence);
+    for (size_t i = 0u; i < events->count; i++) {
+        if ((kept == 0u) || (events->events[kept - 1u].sequence != events->events[i].sequence)) {
+            events->events[kept] = events->events[i];
+            kept++;
+        }
+    }
+    events->count = kept;
+}
+
+static bool take_file(recorder_events_t *events, const char *path, const char *text, size_t size) {
+    if ((size >= strlen(STORE_WORD)) && (memcmp(text, STORE_WORD, strlen(STORE_WORD)) == 0) &&
+        (strcmp(path, "-") != 0)) {
+        return take_store(events, path);
+    }
+    if (!take_lines(events, text, size)) {
+        return false;
+    }
+    return (events->count > 0u) || take_bytes(events, (const uint8_t *)text, size);
+}
+
+bool recorder_file_read(const char *path, recorder_events_t *events) {
+    const char *name = (strcmp(path, "-") == 0) ? "standard input" : path;
+    char *text = NULL;
+    const ssize_t size = read_all(path, name, &text);
+    bool good = (size >= 0) && take_file(events, path, text, (size_t)size);
+    free(text);
+    if (good && (events->count == 0u)) {
+        good = report("%s: contains no event of a flight recorder (of the shell's 'agv dump', or bytes)", name);
+    }
+    if (good) {
+        sort(events);
+    }
+    return good;
+}
+
+void recorder_events_free(recorder_events_t *events) {
+    free(events->events);
+    *events = (recorder_events_t){.count = 0u};
+}

@@ -1,0 +1,207 @@
+#include "ui/why_text.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "agv/names.h"
+#include "common/units.h"
+#include "why/why_words.h"
+
+enum { COLUMNS = 100, TRIPS_SHOWN = 8, US_PER_10_MS = 10000 };
+
+/** A stamp before the year 2000 is no time of day. */
+#define CLOCK_FROM_S 946684800u
+
+void why_text_line(const char *label, int width, const char *text) {
+    size_t room = (size_t)(COLUMNS - width);
+    (void)printf("%-*s", width, label);
+    while (strlen(text) > room) {
+        size_t length = room;
+        while ((length > 0u) && (text[length] != ' ')) {
+            length--;
+        }
+        length = (length > 0u) ? length : room;
+        (void)printf("%.*s\n%*s", (int)length, text, width, "");
+        text = &text[length + ((text[length] == ' ') ? 1u : 0u)];
+    }
+    (void)printf("%s\n", text);
+}
+
+bool why_text_has_clock(uint64_t first_us) {
+    return first_us / US_PER_S >= (uint64_t)CLOCK_FROM_S;
+}
+
+const char *why_text_clock(char text[WHY_TEXT_CLOCK_SIZE], uint64_t at_us) {
+    const time_t seconds = (time_t)(at_us / US_PER_S);
+    struct tm parts;
+    text[0] = '\0';
+    if (localtime_r(&seconds, &parts) != NULL) {
+        const size_t used = strftime(text, WHY_TEXT_CLOCK_SIZE, "%Y-%m-%d %H:%M:%S", &parts);
+        (void)snprintf(&text[used], WHY_TEXT_CLOCK_SIZE - used, ".%03" PRIu64, (at_us % US_PER_S) / US_PER_MS);
+    }
+    return text;
+}
+
+/** The time of day alone. */
+static void add_time_of_day(text_t *text, const why_text_t *shown, uint64_t t_us) {
+    char clock[WHY_TEXT_CLOCK_SIZE];
+    if (why_text_has_clock(shown->first_us)) {
+        const char *full = why_text_clock(clock, shown->first_us + t_us);
+        text_add(text, " (%s)", (strlen(full) > (size_t)WHY_TEXT_DATE) ? &full[WHY_TEXT_DATE + 1] : full);
+    }
+}
+
+/** "12.30": seconds with two decimals. */
+static void add_seconds(text_t *text, uint64_t t_us) {
+    const uint64_t rounded = (t_us + (US_PER_10_MS / 2)) / US_PER_10_MS;
+    text_add(text, "%" PRIu64 ".%02" PRIu64, rounded / 100u, rounded % 100u);
+}
+
+void why_text_supervised(const why_t *why) {
+    static const char *const names[WHY_STATES] = {"INIT", "STANDBY", "ACTIVE", "TRIPPED", "SAFE"};
+    text_t text = {.used = 0u};
+    add_seconds(&text, why_supervised_us(why));
+    text_add(&text, " s ");
+    for (size_t i = 0u; i < (size_t)WHY_STATES; i++) {
+        text_add(&text, "  %s ", names[i]);
+        add_seconds(&text, why_state_us(why, i));
+    }
+    why_text_line("supervised", WHY_TEXT_LABEL, text.bytes);
+}
+
+/** Add what came after a trip, or that it did not come. */
+static void add_then(text_t *text, const char *what, const char *never, uint64_t t_us) {
+    if (t_us == WHY_NEVER) {
+        text_add(text, "%s", never);
+    } else {
+        text_add(text, "%s ", what);
+        why_words_time(text, t_us);
+    }
+}
+
+static void print_then(const why_text_t *shown, const why_trip_t *trip) {
+    text_t text = {.used = 0u};
+    if (!shown->is_recorder) {
+        add_then(&text, "first safe frame", "no safe frame", trip->first_safe_us);
+        text_add(&text, "; ");
+    }
+    add_then(&text, "P confirmed", "P not confirmed", trip->confirmed_us);
+    if (!shown->is_recorder) {
+        text_add(&text, "; ");
+        add_then(&text, "stands", "does not stand", trip->stopped_us);
+        if ((trip->confirmed_us == WHY_NEVER) || (trip->stopped_us == WHY_NEVER)) {
+            text_add(&text, " (a recording cannot obey)");
+        }
+    }
+    why_text_line("  then", WHY_TEXT_LABEL, text.bytes);
+}
+
+static void print_trip(const why_text_t *shown, const why_trip_t *trip, const char *label) {
+    text_t text = {.used = 0u};
+    text_add(&text, "at ");
+    why_words_time(&text, trip->t_us);
+    add_time_of_day(&text, shown, trip->t_us);
+    text_add(&text, ": %s", agv_fault_name(trip->reason));
+    why_text_line(label, WHY_TEXT_LABEL, text.bytes);
+    text_clear(&text);
+    why_words_cause(&text, shown->why, trip);
+    why_text_line("  why", WHY_TEXT_LABEL, text.bytes);
+    print_then(shown, trip);
+}
+
+static bool is_consequence(const why_trip_t *trip) {
+    return trip->kind == WHY_VEHICLE;
+}
+
+void why_text_trips(const why_text_t *shown) {
+    size_t printed = 0u;
+    size_t count = 0u;
+    for (size_t i = 0u; i < why_trip_count(shown->why); i++) {
+        const why_trip_t *trip = why_trip(shown->why, i);
+        if (is_consequence(trip)) {
+            continue; /* among the faults */
+        }
+        count++;
+        if (printed < (size_t)TRIPS_SHOWN) {
+            print_trip(shown, trip, (printed == 0u) ? "tripped" : "");
+            printed++;
+        }
+    }
+    if (count == 0u) {
+        why_text_line("tripped", WHY_TEXT_LABEL, shown->never);
+    } else if (count > printed) {
+        (void)printf("%*sand %zu times more: --why FILE has them all\n", WHY_TEXT_LABEL, "", count - printed);
+    } else {
+        /* all of them were shown */
+    }
+}
+
+/** Widths of the columns. */
+typedef struct {
+    size_t name;
+    size_t time;
+    size_t times;
+    size_t lasted;
+} widths_t;
+
+static void widen(size_t *width, size_t length) {
+    *width = (length > *width) ? length : *width;
+}
+
+/** How often a fault was raised, in words. @return text */
+static const char *times_text(text_t *text, const why_fault_t *fault) {
+    text_clear(text);
+    text_add(text, "%u %s", (unsigned)fault->times, (fault->times == 1u) ? "time" : "times");
+    return text->bytes;
+}
+
+static const char *time_text(text_t *text, uint64_t t_us) {
+    text_clear(text);
+    why_words_time(text, t_us);
+    return text->bytes;
+}
+
+static widths_t measure(const why_t *why) {
+    widths_t widths = {0};
+    text_t text;
+    for (size_t i = 0u; i < why_fault_count(why); i++) {
+        const why_fault_t *fault = why_fault(why, i);
+        widen(&widths.name, strlen(agv_fault_name(fault->fault)));
+        widen(&widths.time, strlen(time_text(&text, fault->first_us)));
+        widen(&widths.times, strlen(times_text(&text, fault)));
+        widen(&widths.lasted, strlen(time_text(&text, fault->active_us)));
+    }
+    return widths;
+}
+
+static void print_fault(const why_fault_t *fault, const widths_t *widths, bool is_first) {
+    text_t time;
+    text_t times;
+    text_t lasted;
+    text_t text = {.used = 0u};
+    text_add(&text, "%-*s  %s  %*s   %-*s   %*s", (int)widths->name, agv_fault_name(fault->fault),
+             agv_class_name(fault->fault_class), (int)widths->time, time_text(&time, fault->first_us),
+             (int)widths->times, times_text(&times, fault), (int)widths->lasted, time_text(&lasted, fault->active_us));
+    if (fault->from_recording) {
+        text_add(&text, "  (a recording cannot obey)");
+    } else if (fault->in_init && (fault->fault_class == AGV_CLASS_TRIP)) {
+        text_add(&text, "  in INIT: no trip");
+    } else if (fault->active) {
+        text_add(&text, "  active at the end");
+    } else {
+        /* nothing more to say */
+    }
+    why_text_line(is_first ? "faults" : "", WHY_TEXT_LABEL, text.bytes);
+}
+
+void why_text_faults(const why_t *why) {
+    const widths_t widths = measure(why);
+    for (size_t i = 0u; i < why_fault_count(why); i++) {
+        print_fault(why_fault(why, i), &widths, i == 0u);
+    }
+    if (why_fault_count(why) == 0u) {
+        why_text_line("faults", WHY_TEXT_LABEL, "none");
+    }
+}

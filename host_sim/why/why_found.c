@@ -1,0 +1,34 @@
+/* What was found, for others to read. */
+#include "why/why_internal.h"
+
+size_t why_trip_count(const why_t *why) {
+    return why->trip_count;
+}
+
+const why_trip_t *why_trip(const why_t *why, size_t index) {
+    return &why->trips[index];
+}
+
+size_t why_fault_count(const why_t *why) {
+    return why->fault_count;
+}
+
+const why_fault_t *why_fault(const why_t *why, size_t index) {
+    return &why->faults[why->fault_order[index]];
+}
+
+uint64_t why_state_us(const why_t *why, size_t index) {
+    return why->state_us[index];
+}
+
+uint64_t why_supervised_us(const why_t *why) {
+    uint64_t sum = 0u;
+    for (size_t i = 1u; i < (size_t)WHY_STATES; i++) {
+        sum += why->state_us[i];
+    }
+    return sum;
+}
+
+uint16_t why_missing(const why_t *why) {
+    return why->missing;
+}

@@ -1,0 +1,98 @@
+/*
+ * The cause of a trip that a flight recorder kept: it has the last payload of each message, but not when it came. The
+ * times follow from the limits.
+ */
+#include "agv/codec.h"
+#include "common/units.h"
+#include "why/why_internal.h"
+
+static void before(why_trip_t *trip, uint64_t lasted_us) {
+    trip->cause_us = (trip->t_us > lasted_us) ? trip->t_us - lasted_us : 0u;
+}
+
+static uint64_t limit_us(const why_trip_t *trip) {
+    return (trip->limit != WHY_NO_LIMIT) ? (uint64_t)trip->limit * US_PER_MS : 0u;
+}
+
+static uint64_t cycle_us(const why_trip_t *trip) {
+    return (uint64_t)agv_message_cycle_ms(trip->message) * US_PER_MS;
+}
+
+/** A deadline expires when the last good frame is older than its limit. */
+static void explain_silence(why_trip_t *trip) {
+    before(trip, limit_us(trip) + US_PER_MS);
+    trip->last_good_us = trip->cause_us;
+    trip->cause_us += cycle_us(trip);
+}
+
+static void explain_value(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
+    for (uint32_t command = 0u; command < AGV_COMMAND_COUNT; command++) {
+        const bool seen = ((event->seen >> command) & 1u) != 0u;
+        if (seen && !agv_value_is_valid(command, event->frames[command])) {
+            trip->message = (agv_message_t)command;
+            trip->id = why->ids.of[command];
+        }
+    }
+}
+
+static void explain_vehicle(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
+    const uint32_t flags = event->frames[AGV_MSG_VEHICLE_STATUS][6];
+    if ((trip->reason == AGV_FAULT_SAFE_STATE_UNCONFIRMED) && ((flags & AGV_VCU_FLAG_AUTOPILOT) == 0u)) {
+        trip->message = AGV_MSG_GEAR_STATUS;
+        trip->id = why->ids.of[AGV_MSG_GEAR_STATUS];
+        trip->limit = why->config.park_confirm_timeout_ms;
+    }
+    before(trip, limit_us(trip));
+    trip->cause_us = (trip->limit != WHY_NO_LIMIT) ? trip->cause_us : WHY_NEVER;
+}
+
+static void explain(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
+    switch (trip->kind) {
+    case WHY_SILENCE:
+    case WHY_STUCK:
+        explain_silence(trip);
+        break;
+    case WHY_SCORE:
+        before(trip, ((uint64_t)trip->limit - 1u) * cycle_us(trip));
+        break;
+    case WHY_VALUE:
+        explain_value(why, event, trip);
+        break;
+    case WHY_BUDGET:
+    case WHY_MODE:
+        before(trip, why_budget_us(why, trip->reason));
+        trip->cause_us = (trip->reason != AGV_FAULT_MODE_FLAPPING) ? trip->cause_us : WHY_NEVER;
+        break;
+    case WHY_VEHICLE:
+        explain_vehicle(why, event, trip);
+        break;
+    case WHY_INTRUSION:
+        trip->id = (trip->reason == AGV_FAULT_STATUS_ID_IN_USE) ? why->config.status_frame_id : WHY_NO_ID;
+        trip->cause_us = (trip->reason == AGV_FAULT_COMMAND_TOO_FAST) ? WHY_NEVER : trip->t_us;
+        break;
+    default:
+        before(trip, limit_us(trip));
+        break;
+    }
+}
+
+/** The last payload of a message, if there was one. */
+static void show_payload(const why_t *why, const agv_event_t *event, why_trip_t *trip, agv_message_t message) {
+    if ((message == AGV_MSG_NONE) || (((event->seen >> (uint32_t)message) & 1u) == 0u)) {
+        return;
+    }
+    const bool from_ai = ((uint32_t)message < AGV_COMMAND_COUNT) && why->is_gateway;
+    why_evidence_t evidence = {.t_us = trip->t_us, .side = from_ai ? HAL_CAN_AI : HAL_CAN_VEHICLE};
+    evidence.frame.id = why->ids.of[message];
+    evidence.frame.length = (uint8_t)AGV_DLC;
+    for (size_t i = 0u; i < (size_t)AGV_DLC; i++) {
+        evidence.frame.data[i] = event->frames[message][i];
+    }
+    why_show(trip, &evidence);
+}
+
+void why_cause_recorded(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
+    explain(why, event, trip);
+    show_payload(why, event, trip, trip->message);
+    show_payload(why, event, trip, why_compared_with(trip->reason));
+}

@@ -1,0 +1,131 @@
+"""`host_sim recorder`: what a device's flight recorder kept, in each form in which it leaves the device."""
+import json
+import os
+import unittest
+
+import hostsim
+import traffic
+from test_replay import edit_payload, stop
+
+EVENT = 112    # bytes of agv_event_t (firmware/include/agv/recorder.h)
+EVENTS = 256   # of the ring at the end of agv_recorder_t
+
+
+def trip_log():
+    return traffic.log(traffic.frames(6000, engage_ms=1000, edit=stop(("steering_command",), 3000, 4000)))
+
+
+class Recorder(hostsim.Case):
+    def setUp(self):
+        super().setUp()
+        self.write("my.log", trip_log())
+        self.run_good("replay", "--store", "store", "--why", "replay.json", "my.log")
+        line = next(line for line in self.text_of("store").splitlines() if line.startswith("recorder "))
+        self.image = bytes.fromhex(line.split()[1])
+        ring = self.image[-EVENT * EVENTS:]
+        events = [ring[at:at + EVENT] for at in range(0, len(ring), EVENT)]
+        self.events = [event for event in events if event[8]]  # the kind
+        self.assertEqual(len(self.events), 10)
+
+    def text_of(self, name):
+        return (self.folder / name).read_text(encoding="utf-8")
+
+    def dump(self):
+        """What a terminal shows of `agv dump`."""
+        lines = ["uart:~$ agv dump"] + ["agv-event " + event.hex() for event in self.events]
+        return "\r\n".join(lines + ["0 events from flash, 10 from RAM; log in flash: ready", "uart:~$ "])
+
+    def recorder(self, content, *arguments):
+        self.write("dump", content)
+        result = self.run_good("recorder", *arguments, "dump", env=dict(os.environ, TZ="UTC"))
+        return result.stdout
+
+    def test_the_text_says_what_happened_and_why(self):
+        text = self.recorder(self.dump())
+        self.assertEqual(text.splitlines()[:2], ["dump: 10 events; runs 0",
+                                                 "run 0       10 events, 0.000 s to 4.007 s of its clock"])
+        for line in ("tripped     at 3.107 s: STEERING_COMMAND_TIMEOUT",
+                     "  why       065h steering_command was silent: last at 2.981 s, deadline 125 ms",
+                     "  then      P not confirmed",
+                     "faults      STEERING_COMMAND_TIMEOUT  trip  3.107 s   1 time   0.900 s",
+                     "            SAFE_STATE_UNCONFIRMED    trip  3.607 s   1 time   0.400 s  active at the end"):
+            self.assertIn(line + "\n", text)
+        self.assertRegex(text, r"3\.107 s +supervisor +=> TRIPPED: STEERING_COMMAND_TIMEOUT +D autopilot 0\.40 m/s\n")
+
+    def test_every_form_tells_the_same(self):
+        as_dump = self.recorder(self.dump())
+        noise = os.urandom(333)
+        for form in (b"".join(self.events), self.image, noise + b"".join(reversed(self.events)) + noise,
+                     "\n".join(event.hex().upper() for event in self.events),
+                     "\n".join("agv-event " + event.hex() for event in self.events + self.events[:3]),
+                     self.text_of("store")):
+            self.assertEqual(self.recorder(form), as_dump)
+        again = self.run_good("recorder", "-", stdin=self.dump().encode("ascii")).stdout
+        self.assertEqual(again.replace("-: ", "dump: ", 1), as_dump)
+
+    def test_why_is_that_of_the_replay(self):
+        found = json.loads(self.recorder(self.dump(), "--why", "-"))
+        replayed = json.loads(self.text_of("replay.json"))
+        self.assertEqual(set(found), set(replayed))
+        same = ("t_ms", "reason", "kind", "message", "id", "cause_ms", "last_good_ms", "limit", "unit")
+        self.assertEqual([[trip[key] for key in same] for trip in found["trips"]],
+                         [[trip[key] for key in same] for trip in replayed["trips"]])
+        self.assertEqual(found["trips"][0]["evidence"],
+                         [{"t_ms": 3107, "if": None, "id": "065", "data": "2823000000000000"}])
+
+    def test_faults_of_other_kinds(self):
+        cases = (("eps_status", 7, 0x40, ("EPS_MOTOR_ENCODER", "bit", "eps_status", 3003)),
+                 ("eps_status", 3, 0x07, ("EPS_MODE_INVALID", "score", "eps_status", 3003)),
+                 ("throttle_command", 0, 251, ("AI_COMMAND_OUT_OF_RANGE", "value", "throttle_command", 3008)),
+                 ("throttle_status", 0, 100, ("THROTTLE_DEVIATION", "budget", "throttle_status", 3000)),
+                 ("vehicle_status", 6, 0xC0, ("MODE_INVALID", "mode", "vehicle_status", 3001)))
+        for message, at, value, expected in cases:
+            def change(data, at=at, value=value):
+                data[at] = value
+            self.write("x.log", traffic.log(traffic.frames(4000, engage_ms=1000,
+                                                           edit=edit_payload(message, 3000, change))))
+            self.run_good("replay", "--store", expected[0], "x.log")
+            trip = json.loads(self.run_good("recorder", "--why", "-", expected[0]).stdout)["trips"][0]
+            self.assertEqual((trip["reason"], trip["kind"], trip["message"], trip["cause_ms"]), expected)
+
+    def test_runs(self):
+        self.write("short.log", traffic.log(traffic.frames(300)))
+        self.run_good("replay", "--store", "store", "--reset-cause", "watchdog", "short.log")
+        text = self.run_good("recorder", "store").stdout
+        self.assertIn("; runs 0, 1\n", text)
+        self.assertIn("run 1  ", text)
+        self.assertIn("tripped     at 0.000 s: STEERING_COMMAND_TIMEOUT", text)
+        self.assertIn("tripped     at 3.107 s", self.run_good("recorder", "--run", "0", "store").stdout)
+        self.assert_refused(self.run_program("recorder", "--run", "7", "store"), "no event of run 7")
+
+    def test_a_damaged_event_is_counted(self):
+        damaged = bytearray(self.events[3])
+        damaged[20] ^= 1
+        self.events[3] = bytes(damaged)
+        self.assertTrue(self.recorder(self.dump()).startswith("dump: 9 events (1 more are damaged); runs 0\n"))
+
+    def test_a_ring_that_was_overwritten(self):
+        self.events = self.events[4:]
+        self.assertIn("of its clock; its start was overwritten\n", self.recorder(self.dump()))
+
+    def test_the_report_the_trace_and_the_events(self):
+        self.recorder(self.dump(), "--report", "r.html", "--trace", "t.json", "--events", "e.jsonl")
+        self.assertIn("STEERING_COMMAND_TIMEOUT", self.text_of("r.html"))
+        self.assertIn({"t_ms": 3107, "event": "state", "from": "ACTIVE", "to": "TRIPPED",
+                       "reason": "STEERING_COMMAND_TIMEOUT"},
+                      [json.loads(line) for line in self.text_of("e.jsonl").splitlines()])
+        self.assertGreater(len(json.loads(self.text_of("t.json"))["traceEvents"]), 10)
+
+    def test_what_is_no_flight_recorder_is_refused(self):
+        for content in (b"", b"hello\n", os.urandom(5000), bytes(200000), trip_log().encode("ascii")):
+            self.write("dump", content)
+            self.assert_refused(self.run_program("recorder", "--why", "w", "dump"), "dump: contains no event")
+        self.assertNotIn("w", self.files())
+        self.assert_refused(self.run_program("recorder", "missing"), "missing: No such file")
+        self.assert_refused(self.run_program("recorder", "."), "Is a directory")
+        self.assert_refused(self.run_program("recorder", "--why", "store", "store"), "are the same file")
+        self.assert_refused(self.run_program("recorder", "/dev/zero", timeout=60), "16 MiB")
+
+
+if __name__ == "__main__":
+    unittest.main()
