@@ -1,0 +1,103 @@
+/* The commands of the shell: what they print, and that they take no arguments (HW-5). */
+#include <string.h>
+
+#include <zephyr/shell/shell.h>
+#include <zephyr/shell/shell_dummy.h>
+#include <zephyr/ztest.h>
+
+#include "fake_parts.h"
+#include "supervise.h"
+#include "vehicle.h"
+
+static ZEPHYR_HAL_RETAINED agv_recorder_t recorder;
+static ZEPHYR_HAL_RETAINED zephyr_hal_retained_t retained;
+supervise_t agv_supervise;
+
+static K_THREAD_STACK_DEFINE(stack, 2048);
+static struct k_thread thread;
+
+static void supervise(void *a, void *b, void *c) {
+    ARG_UNUSED(a);
+    ARG_UNUSED(b);
+    ARG_UNUSED(c);
+    supervise_start(&agv_supervise, &recorder, &retained);
+    for (;;) {
+        supervise_once(&agv_supervise);
+    }
+}
+
+static void *setup(void) {
+    fake_parts_reset();
+    fake_buses[HAL_CAN_VEHICLE].sends_at_once = true;
+    vehicle = (vehicle_t){.park = true, .ai_is_silent = true};
+    (void)k_thread_create(&thread, stack, K_THREAD_STACK_SIZEOF(stack), supervise, NULL, NULL, NULL, K_PRIO_COOP(2), 0,
+                          K_NO_WAIT);
+    vehicle_run(5000u); /* STANDBY at standstill: events are copied to flash */
+    return NULL;
+}
+
+static void before(void *unused) {
+    ARG_UNUSED(unused);
+    fake_parts_connect();
+    vehicle_run(2u);
+}
+
+ZTEST_SUITE(shell_commands, NULL, setup, before, NULL, NULL);
+
+/* @return what the command printed */
+static const char *type(const char *command, int expected) {
+    size_t size = 0u;
+    const struct shell *const shell = shell_backend_dummy_get_ptr();
+    shell_backend_dummy_clear_output(shell);
+    const int status = shell_execute_cmd(shell, command);
+    zassert_equal(status, expected, "%s: %d", command, status);
+    return shell_backend_dummy_get_output(shell, &size);
+}
+
+static void assert_has(const char *printed, const char *text) {
+    zassert_not_null(strstr(printed, text), "no \"%s\" in: %s", text, printed);
+}
+
+/* Shows: HW-5 */
+ZTEST(shell_commands, test_arguments_are_refused) {
+    static const char *const commands[] = {"agv status x",   "agv faults x",  "agv log x",  "agv dump x",
+                                           "agv messages x", "agv version x", "agv format", "agv nothing"};
+    for (size_t i = 0u; i < ARRAY_SIZE(commands); i++) {
+        const struct shell *const shell = shell_backend_dummy_get_ptr();
+        zassert_true(shell_execute_cmd(shell, commands[i]) != 0, "%s", commands[i]);
+    }
+}
+
+ZTEST(shell_commands, test_state_and_log) {
+    const char *const printed = type("agv status", 0);
+    assert_has(printed, "state STANDBY, first reason -, safety output closed");
+    assert_has(printed, "log in flash: on");
+}
+
+ZTEST(shell_commands, test_without_a_fault_it_says_none) {
+    assert_has(type("agv faults", 0), "none");
+}
+
+/* Shows: INT-3 */
+ZTEST(shell_commands, test_the_log_is_that_of_the_flash_in_the_words_of_the_console) {
+    const char *const printed = type("agv log", 0);
+    assert_has(printed, "run 0, ");
+    assert_has(printed, " ms: => STANDBY");
+    assert_has(printed, " ms: safety output closed");
+    zassert_is_null(strstr(printed, "0 events from flash"), "%s", printed);
+}
+
+/* Shows: INT-3 */
+ZTEST(shell_commands, test_the_dump_has_the_bytes_of_each_event) {
+    const char *line = strstr(type("agv dump", 0), "agv-event ");
+    zassert_not_null(line);
+    line += strlen("agv-event ");
+    zassert_equal(strspn(line, "0123456789abcdef"), 224u);
+    zassert_mem_equal(line, "00000000", 8u, "the first event has number 0");
+    zassert_mem_equal(&line[16], "01", 2u, "it is a change of the state");
+}
+
+/* The last test, because no frame comes during the second that the command takes: the supervisor trips. */
+ZTEST(shell_commands, test_without_frames_a_message_has_no_age) {
+    assert_has(type("agv messages", 0), "43f turn_signal_command: never received");
+}
