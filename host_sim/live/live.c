@@ -20,6 +20,7 @@
 #include "live/live_output.h"
 #include "live/live_status.h"
 #include "live/node.h"
+#include "monitor/monitor_companion.h"
 #include "ui/summary.h"
 
 /** The files that are written. */
@@ -37,6 +38,7 @@ typedef struct {
     bool stdout_is_free; /**< no output goes there */
     bool is_terminal;    /**< standard output is one, and free for the status line */
     live_status_t status;
+    monitor_companion_t screen;
     live_output_t outputs[OUTPUTS];
     sent_log_t sent;
     analysis_t *analysis; /**< NULL: not asked for */
@@ -47,6 +49,7 @@ static void on_event(void *ctx, const session_event_t *event) {
     live_t *live = ctx;
     const bool is_state = !event->is_led && (event->recorded.kind == (uint8_t)AGV_EVENT_STATE);
     live->tripped = live->tripped || (is_state && agv_state_is_latched((agv_state_t)event->recorded.b));
+    monitor_companion_event(&live->screen, event);
     if (live_output_has_room(&live->outputs[EVENTS])) {
         events_write(&live->outputs[EVENTS].lines, event);
     }
@@ -98,7 +101,7 @@ static bool open_outputs(live_t *live) {
         stdout_is_free = stdout_is_free && !output_is_stdout(request->analysis[i]);
     }
     live->stdout_is_free = stdout_is_free;
-    live->is_terminal = stdout_is_free && (isatty(STDOUT_FILENO) == 1);
+    live->is_terminal = stdout_is_free && (live->screen.child == 0) && (isatty(STDOUT_FILENO) == 1);
     live->sent.output = &live->outputs[OUT].lines;
     for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
         const char *interface = request->bus.interfaces[side];
@@ -107,6 +110,23 @@ static bool open_outputs(live_t *live) {
         }
     }
     return true;
+}
+
+/** Start the screen, which is a process of its own: before anything is opened. @return false: reported */
+static bool open_screen(live_t *live) {
+    const live_request_t *request = live->request;
+    const monitor_companion_config_t config = {
+        .title = "run",
+        .config = &request->config,
+        .interfaces = {[HAL_CAN_VEHICLE] = request->bus.interfaces[HAL_CAN_VEHICLE],
+                       [HAL_CAN_AI] = request->bus.interfaces[HAL_CAN_AI]},
+        .has_supervisor = true,
+    };
+    bool is_wanted = request->screen && !output_is_stdout(request->out) && !output_is_stdout(request->events);
+    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
+        is_wanted = is_wanted && !output_is_stdout(request->analysis[i]);
+    }
+    return !is_wanted || monitor_companion_fork(&live->screen, &config);
 }
 
 /** The files of the analysis, which are written at the end. @return false: reported */
@@ -174,6 +194,7 @@ static void write_out(live_t *live, uint64_t now_ms) {
     for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
         live_output_pass(&live->outputs[i]);
     }
+    monitor_companion_tell(&live->screen, node_session(live->node), now_ms);
     if (live->is_terminal) {
         live_status_show(&live->status, node_session(live->node), now_ms);
     }
@@ -185,6 +206,7 @@ static bool run(live_t *live) {
         (live->request->bus.for_ms == INTERFACE_UNTIL_SIGNAL) ? UINT64_MAX : live->request->bus.for_ms;
     uint64_t now_ms = 0u;
     bool good = true;
+    monitor_companion_show(&live->screen);
     node_start(live->node);
     while (good && (now_ms < end_ms)) {
         write_out(live, now_ms);
@@ -243,6 +265,7 @@ static status_t run_prepared(live_t *live) {
     events_summarise(node_session(live->node), &summary);
     node_close(live->node); /* nothing leaves from here on */
     live->node = NULL;
+    monitor_companion_end(&live->screen);
     good = conclude(live, &summary) && good;
     if (!good) {
         return STATUS_UNUSABLE;
@@ -258,7 +281,8 @@ status_t live_run(const live_request_t *request) {
     }
     live->request = request;
     live_files_none(&live->files);
-    const status_t status = prepare(live) ? run_prepared(live) : STATUS_UNUSABLE;
+    const status_t status = (open_screen(live) && prepare(live)) ? run_prepared(live) : STATUS_UNUSABLE;
+    monitor_companion_end(&live->screen);
     node_close(live->node);
     if (live->loop_is_open) {
         linux_loop_close(&live->loop);

@@ -21,6 +21,7 @@ typedef struct {
     const char *analysis[ANALYSIS_FILES]; /**< written at the end; NULL: none */
     bool fail_on_trip;
     bool realtime; /**< SCHED_FIFO, memory locked */
+    bool screen;   /**< the screen of the monitor, if there is a terminal */
     agv_config_t config;
 } live_request_t;
 

@@ -11,6 +11,7 @@
 #include "hal_linux/linux_loop.h"
 #include "live/typed_lines.h"
 #include "live/vehicle_bus.h"
+#include "monitor/monitor_companion.h"
 #include "ui/vehicle_show.h"
 
 enum { ENGAGE_MS = 1500, ENGAGE_AGAIN_MS = 500, THROTTLE_PERMILLE = 300, LINES_AT_ONCE = 16 };
@@ -22,6 +23,7 @@ typedef struct {
     linux_loop_t loop;
     vehicle_bus_t bus;
     vehicle_show_t show;
+    monitor_companion_t screen;
     typed_lines_t typed;
     size_t next_fault;
     uint64_t engage_ms; /**< when the operator engages the autopilot; UINT64_MAX: no more */
@@ -161,7 +163,6 @@ static bool tick(run_t *run) {
 static void show_end(run_t *run) {
     const vehicle_bus_t *bus = &run->bus;
 
-    vehicle_show_clear(&run->show, false);
     (void)printf("%" PRIu64 ".%03" PRIu64 " s; frames: %" PRIu64 " sent, %" PRIu64 " refused by the kernel\n",
                  bus->now_ms / MS_PER_S, bus->now_ms % MS_PER_S, bus->sent, bus->unsent);
 }
@@ -208,20 +209,39 @@ static bool open_bus(run_t *run) {
 static bool run_on_bus(run_t *run) {
     vehicle_view_t view;
 
+    monitor_companion_show(&run->screen);
     vehicle_bus_view(&run->bus, &view);
     vehicle_show_init(&run->show, &view);
     run->waits_for_typed = linux_loop_add(&run->loop, run->typed.fd); /* refused for a file */
     vehicle_action(run, VEHICLE_DO_AI_DRIVE);
     const bool good = go(run);
+    vehicle_show_clear(&run->show, false);
+    monitor_companion_end(&run->screen);
     show_end(run);
     return good;
+}
+
+/** Start the screen, which is a process of its own: before anything is opened. @return false: reported */
+static bool open_screen(run_t *run) {
+    const vehicle_run_request_t *request = run->request;
+    const monitor_companion_config_t config = {
+        .title = "vehicle",
+        .config = &request->config,
+        .interfaces = {[HAL_CAN_VEHICLE] = request->bus.interfaces[HAL_CAN_VEHICLE],
+                       [HAL_CAN_AI] = request->bus.interfaces[HAL_CAN_AI]},
+        .can_type = true,
+    };
+    return !request->screen || monitor_companion_fork(&run->screen, &config);
 }
 
 status_t vehicle_run_nodes(const vehicle_run_request_t *request) {
     run_t run = {.request = request, .engage_ms = request->manual ? UINT64_MAX : ENGAGE_MS};
     bool good = false;
 
-    typed_lines_init(&run.typed, STDIN_FILENO);
+    if (!open_screen(&run)) {
+        return STATUS_UNUSABLE;
+    }
+    typed_lines_init(&run.typed, (run.screen.child != 0) ? monitor_companion_typed(&run.screen) : STDIN_FILENO);
     if (!linux_loop_open(&run.loop)) {
         (void)report("cannot wait for timers and signals: %s", strerror(errno));
         return STATUS_UNUSABLE;
@@ -232,5 +252,6 @@ status_t vehicle_run_nodes(const vehicle_run_request_t *request) {
         vehicle_bus_close(&run.bus);
     }
     linux_loop_close(&run.loop);
+    monitor_companion_end(&run.screen);
     return good ? STATUS_OK : STATUS_UNUSABLE;
 }

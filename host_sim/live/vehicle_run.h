@@ -21,6 +21,7 @@
 typedef struct {
     interface_options_t bus;                        /**< the AI side: NULL on the shared bus */
     agv_config_t config;                            /**< its ID set and its topology count */
+    bool screen;                                    /**< the screen of the monitor, if there is a terminal */
     bool manual;                                    /**< the operator does not engage the autopilot */
     vehicle_words_t faults[VEHICLE_RUN_FAULTS_MAX]; /**< in the order of their time */
     size_t fault_count;

@@ -66,7 +66,12 @@ void monitor_time(monitor_t *monitor, uint64_t t_us) {
     if (t_us <= monitor->now_us) {
         return;
     }
+    /* In a flood not with every frame: once a millisecond is exact enough. */
+    const bool same_ms = t_us / US_PER_MS == monitor->now_us / US_PER_MS;
     monitor->now_us = t_us;
+    if (same_ms) {
+        return;
+    }
     /* After a long pause two half seconds are enough: nothing happened in those between. */
     const uint64_t half_us = t_us - (t_us % MONITOR_HALF_US);
     if (half_us > monitor->half_us) {
@@ -163,11 +168,15 @@ void monitor_link(monitor_t *monitor, hal_can_side_t side, bool is_down, uint64_
 }
 
 void monitor_lost(monitor_t *monitor, hal_can_side_t side, uint32_t frames, uint64_t t_us) {
+    if ((monitor->lost == 0u) || (t_us > monitor->lost_us + (uint64_t)US_PER_S)) {
+        monitor_say(monitor, t_us, MONITOR_WARN, interface_of(monitor, side),
+                    "frames lost: this program is too slow, gaps may be its own");
+    }
     monitor->lost += frames;
-    monitor_say(monitor, t_us, MONITOR_WARN, interface_of(monitor, side),
-                "%" PRIu32 " frames lost: this program did not read in time, gaps are not those of the bus", frames);
-    monitor_shadow_free(monitor->shadow); /* it would blame the bus */
-    monitor->shadow = NULL;
+    monitor->lost_us = t_us;
+    if (monitor->shadow != NULL) {
+        monitor_shadow_overrun(monitor->shadow, side);
+    }
 }
 
 void monitor_note(monitor_t *monitor, monitor_level_t level, const char *who, const char *text) {

@@ -109,6 +109,7 @@ typedef struct {
     uint64_t rejected;  /**< frames with the identifier of a message, but of another form */
     uint64_t errors;    /**< error frames */
     uint64_t lost;      /**< frames that this program was too slow for */
+    uint64_t lost_us;   /**< when it lost the last ones */
     bool is_down[HAL_CAN_SIDES];
     size_t row_count;
     monitor_row_t rows[MONITOR_ROWS_MAX];

@@ -46,13 +46,24 @@ static void try_again(monitor_can_side_t *side, uint64_t now_us) {
     }
 }
 
+/** The time of a stamp. The clocks are read once a pass: in a flood it would cost more than all the rest. */
+static uint64_t time_of(monitor_can_t *bus, uint64_t stamp_us) {
+    const bool is_near =
+        (bus->stamp_us != 0u) && (stamp_us >= bus->stamp_us) && (stamp_us - bus->stamp_us < (uint64_t)US_PER_S);
+    if (!is_near) {
+        bus->stamp_us = stamp_us;
+        bus->stamp_at_us = linux_clock_of_stamp(&bus->clock, stamp_us);
+    }
+    return bus->stamp_at_us + (stamp_us - bus->stamp_us);
+}
+
 /** Read the next frame of a side, unless one is waiting. */
 static void look(monitor_can_t *bus, monitor_can_side_t *side) {
     while (side->is_open && !side->has_next) {
         switch (linux_can_read(&side->can, &side->next)) {
         case LINUX_CAN_RECORD:
             side->has_next = true;
-            side->next_us = linux_clock_of_stamp(&bus->clock, side->next.stamp_us);
+            side->next_us = time_of(bus, side->next.stamp_us);
             return;
         case LINUX_CAN_IS_GONE:
             close_side(side);
@@ -96,6 +107,7 @@ static bool pass_one(monitor_can_t *bus, monitor_t *monitor, monitor_record_t *r
 
 void monitor_can_pass(monitor_can_t *bus, monitor_t *monitor, monitor_record_t *record) {
     const uint64_t now_us = linux_clock_now_us(&bus->clock);
+    bus->stamp_us = 0u;
     for (int i = 0; i < (int)HAL_CAN_SIDES; i++) {
         monitor_can_side_t *side = &bus->sides[i];
         if (side->interface != NULL) {

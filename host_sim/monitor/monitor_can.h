@@ -28,6 +28,8 @@ typedef struct {
 /** The interfaces. */
 typedef struct {
     linux_clock_t clock;
+    uint64_t stamp_us;    /**< a stamp of this pass; 0: none yet */
+    uint64_t stamp_at_us; /**< and its time */
     monitor_can_side_t sides[HAL_CAN_SIDES];
 } monitor_can_t;
 

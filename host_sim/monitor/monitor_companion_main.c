@@ -41,6 +41,10 @@ static void list_line(companion_t *this, char *line) {
         (void)snprintf(who, sizeof who, "%.*s", (int)((word < sizeof who) ? word : sizeof who - 1u), line);
         line += word;
         line += strspn(line, " ");
+        char *state = strstr(line, "  "); /* of the vehicle: it is on the screen */
+        if (state != NULL) {
+            *state = '\0';
+        }
     } else {
         (void)snprintf(who, sizeof who, "%s", this->config->title);
     }

@@ -114,6 +114,7 @@ static void take_counter(monitor_t *monitor, monitor_row_t *row, const uint8_t d
 
 void monitor_rows_take(monitor_t *monitor, monitor_row_t *row, const uint8_t data[AGV_DLC], uint64_t t_us) {
     const uint64_t gap_us = (t_us > row->last_us) ? t_us - row->last_us : 0u;
+    find_late(monitor, row);
     if (row->count > 0u) {
         take_gap(row, gap_us);
     }

@@ -81,7 +81,7 @@ static void give_stderr_back(void) {
         (void)dup2(here.stderr_was, STDERR_FILENO);
         (void)close(here.stderr_was);
         here.stderr_was = -1;
-        rewind(here.kept_back);
+        (void)fseek(here.kept_back, 0, SEEK_SET);
         for (size_t size = fread(text, 1u, sizeof text, here.kept_back); size > 0u;
              size = fread(text, 1u, sizeof text, here.kept_back)) {
             (void)fwrite(text, 1u, size, stderr);

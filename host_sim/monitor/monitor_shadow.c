@@ -84,6 +84,10 @@ void monitor_shadow_frame(monitor_shadow_t *shadow, hal_can_side_t side, const h
     session_frame(&shadow->session, side, &received, t_ms);
 }
 
+void monitor_shadow_overrun(monitor_shadow_t *shadow, hal_can_side_t side) {
+    sim_hal_add_overrun(&shadow->hal, side);
+}
+
 const session_t *monitor_shadow_session(const monitor_shadow_t *shadow) {
     return &shadow->session;
 }

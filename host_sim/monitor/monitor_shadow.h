@@ -24,6 +24,9 @@ monitor_shadow_t *monitor_shadow_new(const agv_config_t *config, session_observe
 /** A frame was received. */
 void monitor_shadow_frame(monitor_shadow_t *shadow, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us);
 
+/** Frames of a side were lost before it could see them. */
+void monitor_shadow_overrun(monitor_shadow_t *shadow, hal_can_side_t side);
+
 /** Run its ticks up to this time. @return false: too far, the program stood still in between; start it anew */
 bool monitor_shadow_time(monitor_shadow_t *shadow, uint64_t t_us);
 

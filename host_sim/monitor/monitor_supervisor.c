@@ -102,7 +102,11 @@ static void on_shadow_event(void *ctx, const session_event_t *event) {
     }
 }
 
+/** Before it is shown nothing of it is. */
 static void read_shadow(monitor_t *monitor) {
+    if (monitor->supervisor.source != MONITOR_SHADOW) {
+        return;
+    }
     const agv_supervisor_t *from = &monitor_shadow_session(monitor->shadow)->supervisor;
     monitor_supervisor_t *to = &monitor->supervisor;
     to->state = agv_supervisor_state(from);
@@ -202,7 +206,6 @@ void monitor_supervisor_frame(monitor_t *monitor, hal_can_side_t side, const hal
         }
     } else if (monitor->shadow != NULL) {
         monitor_shadow_frame(monitor->shadow, side, frame, t_us);
-        read_shadow(monitor);
     }
 }
 

@@ -7,7 +7,7 @@
 
 #include "monitor/monitor_screen.h"
 
-enum { DRAW_EVERY_MS = 100, LOOK_EVERY_MS = 20, FILES_MAX = 4 };
+enum { DRAW_EVERY_MS = 200, LOOK_EVERY_MS = 20, FILES_MAX = 4 };
 
 bool monitor_ui_open(monitor_ui_t *ui, monitor_t *monitor, const monitor_page_t *page) {
     memset(ui, 0, sizeof *ui);

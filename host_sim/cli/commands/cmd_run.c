@@ -35,6 +35,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         OPTION_FLAG("--fail-on-trip", "exit status 1 if it tripped at any time", &request->fail_on_trip),
         OPTION_TEXT("--events", "FILE", "events as JSON Lines, as they come", &request->events),
         OPTION_TEXT("--out", "FILE", "candump log of the frames that the supervisor sends", &request->out),
+        OPTION_FLAG("--screen", "on a terminal: the screen of host_sim monitor", &request->screen),
         OPTION_FLAG("--realtime", "SCHED_FIFO, memory locked (CAP_SYS_NICE, CAP_IPC_LOCK)", &request->realtime),
     };
     const option_group_t groups[] = {

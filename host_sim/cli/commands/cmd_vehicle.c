@@ -39,6 +39,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .help = "inject a fault at that time; may be given several times",
          .each = take_fault,
          .ctx = given},
+        OPTION_FLAG("--screen", "on a terminal: the screen of host_sim monitor", &request->screen),
         OPTION_FLAG("--manual", "do not engage the autopilot", &request->manual),
     };
     const option_group_t groups[] = {

@@ -1,0 +1,233 @@
+"""host_sim monitor from outside: the screen in tmux, lines where there is no terminal, refused options."""
+import os
+import pathlib
+import subprocess
+import time
+import unittest
+
+import hostsim
+
+EXAMPLE = pathlib.Path(__file__).parents[3] / "host_sim/examples/ai-stops.log"
+PATIENCE_S = 30
+
+
+def long_log(seconds=600):
+    """A healthy vehicle in manual mode; at 2 s the VCU reports the loss of the remote signal, for half a second."""
+    lines = []
+    for ms in range(0, seconds * 1000, 10):
+        counter = ms // 10 % 256
+        alarm = "01" if 2000 <= ms < 2500 else "00"
+        frames = [(0x363, "00000000%s0040%02X" % (alarm, counter)), (0x067, "%02X64282300000000" % counter),
+                  (0x0A3, "0800000000000000"), (0x050, "0" * 16), (0x167, "0000000100000000"), (0x267, "0" * 16),
+                  (0x101, "0" * 16)]
+        lines += ["(%.6f) can0 %03X#%s" % (1700000000 + ms / 1000, can_id, data) for can_id, data in frames]
+    return "\n".join(lines) + "\n"
+
+
+class Tmux:
+    """A program in a terminal of its own."""
+
+    def __init__(self, folder, width, height, *arguments, **environment):
+        self.socket = str(folder / "tmux")
+        self.status = folder / "status"
+        self.errors = folder / "errors"
+        variables = {"LANG": "C.UTF-8", "NO_COLOR": "", **environment}
+        words = " ".join("'%s=%s'" % item for item in variables.items())
+        command = "env %s '%s' %s; echo $? > '%s'; exec sleep 1000" % (
+            words, hostsim.PROGRAM, " ".join("'%s'" % word for word in arguments), self.status)
+        self.run("-f", "/dev/null", "new-session", "-d", "-x", str(width), "-y", str(height), command)
+
+    def run(self, *arguments):
+        return subprocess.run(["tmux", "-S", self.socket, *arguments], check=True, stdout=subprocess.PIPE, timeout=PATIENCE_S,
+                              env={**os.environ, "LC_ALL": "C.UTF-8"}).stdout.decode("utf-8")
+
+    def lines(self, *options):
+        return self.run("capture-pane", "-p", *options).split("\n")
+
+    def press(self, *keys):
+        self.run("send-keys", *keys)
+
+    def wait_for(self, text):
+        """Wait until a line contains it. Gives the lines."""
+        end = time.monotonic() + PATIENCE_S
+        lines = []
+        while time.monotonic() < end:
+            lines = self.lines()
+            if any(text in line for line in lines):
+                return lines
+            time.sleep(0.05)
+        raise AssertionError("no %r in\n%s" % (text, "\n".join(lines)))
+
+    def exit_status(self):
+        end = time.monotonic() + PATIENCE_S
+        while not self.status.exists() or not self.status.read_text():
+            if time.monotonic() > end:
+                raise AssertionError("it goes on:\n" + "\n".join(self.lines()))
+            time.sleep(0.05)
+        return int(self.status.read_text())
+
+    def close(self):
+        subprocess.run(["tmux", "-S", self.socket, "kill-server"], stderr=subprocess.DEVNULL, check=False)
+
+
+class Screen(hostsim.Case):
+    def open(self, width, height, *arguments, **environment):
+        tmux = Tmux(self.folder, width, height, "monitor", *arguments, **environment)
+        self.addCleanup(tmux.close)
+        return tmux
+
+    def test_80_by_24(self):
+        tmux = self.open(80, 24, "--log", EXAMPLE)
+        lines = tmux.wait_for("END")
+        self.assertRegex(lines[0], r"^ host_sim monitor  ai-stops.log  END +\d+ frames/s  0:00:01$")
+        self.assertEqual(lines[1], "shadow      SAFE: STEERING_COMMAND_TIMEOUT  LED code 14")
+        self.assertEqual(lines[2], "vehicle     manual  gear P  left wheel 0 mm/s  throttle 0.0 %  steering 0.0 deg")
+        self.assertEqual(lines[3], "alarms      AI_HEARTBEAT_LOST (LED 14)")
+        self.assertEqual(lines[5], "ID   message               age deadline gap min/max cnt signals")
+        self.assertRegex(lines[9], "^065h steering_command      [0-9]{3} ████████  25.0  25.0     LATE 0.0 deg$")
+        self.assertEqual(lines[11], "0A3h gear_status          25.0 █▌······  25.0  25.0     P")
+        self.assertEqual(lines[19], "      1.157  ai         43Fh turn_signal_command late: no frame for 350 ms")
+        self.assertRegex(lines[23], "^ space  pause .* q  quit$")
+        tmux.press("q")
+        self.assertEqual(tmux.exit_status(), 0)
+
+    def test_160_by_50_shows_more(self):
+        tmux = self.open(160, 50, "--log", EXAMPLE)
+        lines = tmux.wait_for("END")
+        self.assertRegex(lines[13], "^067h steering_status .* supply 12.00 V  angle 0.0 deg  torque_raw 0  speed_raw 0$")
+        self.assertIn("363h mode: manual -> autopilot", "\n".join(lines))
+        self.assertIn("shadow     ACTIVE -> TRIPPED: STEERING_COMMAND_TIMEOUT", "\n".join(lines))
+
+    def test_colours_and_none(self):
+        red, grey = "\033[1m\033[31m", "\033[90m"
+        with_colours = "\n".join(self.colours(NO_COLOR=""))
+        self.assertIn(red, with_colours)
+        self.assertIn(grey, with_colours)
+        without = "\n".join(self.colours(NO_COLOR="1"))
+        self.assertNotRegex(without, "\033\\[[0-9;]*[39][0-7]m")
+        self.assertIn("LATE", without)
+
+    def colours(self, **environment):
+        tmux = self.open(80, 24, "--log", EXAMPLE, **environment)
+        tmux.wait_for("END")
+        lines = tmux.lines("-e")
+        tmux.close()
+        return lines
+
+    def test_a_terminal_without_utf_8_gets_ascii(self):
+        tmux = self.open(80, 24, "--log", EXAMPLE, LANG="C", LC_ALL="C")
+        lines = tmux.wait_for("END")
+        self.assertRegex(lines[11], r"^0A3h gear_status          25.0 ##\.\.\.\.\.\.  25.0  25.0     P$")
+
+    def test_resized_while_it_runs(self):
+        log = self.write("long.log", long_log(60))
+        tmux = self.open(80, 24, "--log", log)
+        tmux.wait_for("STANDBY")
+        tmux.run("resize-window", "-x", "160", "-y", "50")
+        lines = tmux.wait_for("left_raw")
+        self.assertRegex(lines[49], "^ space  pause .* q  quit$")
+        tmux.run("resize-window", "-x", "60", "-y", "12")
+        end = time.monotonic() + PATIENCE_S
+        while not tmux.lines()[11].startswith(" space  pause"):
+            self.assertLess(time.monotonic(), end, tmux.lines())
+            time.sleep(0.05)
+        tmux.run("resize-window", "-x", "20", "-y", "4")
+        tmux.wait_for("too small")
+        tmux.run("resize-window", "-x", "80", "-y", "24")
+        tmux.wait_for("wheel_speed")
+        tmux.press("q")
+        self.assertEqual(tmux.exit_status(), 0)
+
+    def test_keys(self):
+        log = self.write("long.log", long_log(60))
+        tmux = self.open(80, 24, "--log", log)
+        tmux.wait_for("REMOTE_SIGNAL_LOST (LED 17)")
+        tmux.press("Space")
+        before = tmux.wait_for("PAUSED")
+        tmux.press("r")
+        time.sleep(0.5)
+        self.assertEqual(before[0], tmux.lines()[0])  # a log stands still
+        tmux.press("h")
+        tmux.wait_for("this help, and back")
+        tmux.press("h")
+        tmux.press("Space")
+        tmux.wait_for("alarm REMOTE_SIGNAL_LOST has ended")
+        tmux.press("+", "+")
+        tmux.wait_for(" x4 ")
+        tmux.press("Home")
+        tmux.wait_for("newer below")
+        tmux.press("End")
+        tmux.press("q")
+        self.assertEqual(tmux.exit_status(), 0)
+
+    def test_a_bad_line_is_told_after_the_screen_is_closed(self):
+        log = self.write("bad.log", "(1700000000.000000) can0 123#01\n(1700000000.300000) can0 123#01\nnonsense\n")
+        tmux = self.open(80, 24, "--log", log)
+        self.assertEqual(tmux.exit_status(), 2)
+        self.assertIn("bad.log:3: ", "".join(tmux.lines()))
+
+    def test_a_dumb_terminal_gets_lines(self):
+        tmux = self.open(80, 24, "--log", EXAMPLE, "--speed", "max", TERM="dumb")
+        self.assertEqual(tmux.exit_status(), 0)
+        self.assertIn("      1.007 s  shadow      ACTIVE -> TRIPPED: STEERING_COMMAND_TIMEOUT", tmux.lines())
+
+
+class Lines(hostsim.Case):
+    def monitor(self, *arguments, **options):
+        return subprocess.run([hostsim.PROGRAM, "monitor", *map(str, arguments)], stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False, text=True, timeout=60, **options)
+
+    def test_a_line_for_each_change(self):
+        done = self.monitor("--log", EXAMPLE, "--speed", "max")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(done.stdout.splitlines()[:3],
+                         ["      0.600 s  vcu         363h mode: manual -> autopilot",
+                          "      0.605 s  vcu         0A3h gear: P -> D", "      0.607 s  ai          168h gear: P -> D"])
+        self.assertNotIn("\033", done.stdout)
+
+    def test_the_shadow_that_is_asked_for_tells_all(self):
+        lines = self.monitor("--log", EXAMPLE, "--speed", "max", "--shadow").stdout.splitlines()
+        self.assertEqual(lines[0], "      0.000 s  shadow      INIT")
+        self.assertIn("      0.512 s  shadow      INIT -> STANDBY", lines)
+        self.assertIn("      1.007 s  shadow      ACTIVE -> TRIPPED: STEERING_COMMAND_TIMEOUT", lines)
+
+    def test_speed(self):
+        begin = time.monotonic()
+        self.monitor("--log", EXAMPLE, "--speed", "4")
+        self.assertGreater(time.monotonic() - begin, 1.394 / 4)
+
+    def test_a_log_on_standard_input(self):
+        done = subprocess.run([hostsim.PROGRAM, "monitor", "--log", "-", "--speed", "max"], input=EXAMPLE.read_bytes(),
+                              stdout=subprocess.PIPE, check=False, timeout=60)
+        self.assertEqual(done.returncode, 0)
+        self.assertIn(b"TRIPPED", done.stdout)
+
+    def test_a_reader_that_goes_away(self):
+        reader, writer = os.pipe()
+        os.close(reader)
+        done = subprocess.run([hostsim.PROGRAM, "monitor", "--log", str(EXAMPLE), "--speed", "max"], stdin=subprocess.DEVNULL,
+                              stdout=writer, stderr=subprocess.PIPE, check=False, timeout=60)
+        os.close(writer)
+        self.assertEqual((done.returncode, done.stderr), (2, b"host_sim: standard output: write error\n"))
+
+    def test_refused(self):
+        for arguments, message in (
+                ([], "--can or --log is missing: what to watch; see host_sim monitor --help"),
+                (["--log", EXAMPLE, "--can", "can0"], "--log and --can exclude each other"),
+                (["--log", EXAMPLE, "--record", "x"], "--record needs --can: a log is recorded already"),
+                (["--can", "can0", "--speed", "4"], "--speed needs --log"),
+                (["--log", EXAMPLE, "--speed", "-1"], "--speed: '-1' is not a number from 0.01 to 1000, nor max"),
+                (["--log", EXAMPLE, "--speed", "1e3"], "--speed: '1e3' is not a number from 0.01 to 1000, nor max"),
+                (["--log", EXAMPLE, "--speed", "nan"], "--speed: 'nan' is not a number from 0.01 to 1000, nor max"),
+                (["--log", EXAMPLE, "--topology", "gateway"],
+                 "the gateway topology needs --ai-if: which interface of the log is the AI side"),
+                (["--log", self.folder / "none.log"], "%s: No such file or directory" % (self.folder / "none.log")),
+                (["--log", "/dev/null"], "/dev/null: contains no frame"),
+                (["--log", EXAMPLE, "more"], "unexpected argument 'more'; see host_sim monitor --help")):
+            with self.subTest(arguments):
+                done = self.monitor(*arguments)
+                self.assertEqual((done.returncode, done.stdout, done.stderr), (2, "", "host_sim: %s\n" % message))
+
+
+if __name__ == "__main__":
+    unittest.main()
