@@ -196,7 +196,9 @@ static const char *take_fd(const vector_asc_t *asc, rest_t *rest, hal_can_frame_
     }
     uint32_t dlc = 0u;
     uint32_t length = 0u;
-    if (!is_bit(next(rest)) || !is_bit(next(rest)) || !log_token_number(next(rest), HEX, DLC_MAX, &dlc) ||
+    const log_token_t rate_switch = next(rest);
+    const log_token_t error_state = next(rest);
+    if (!is_bit(rate_switch) || !is_bit(error_state) || !log_token_number(next(rest), HEX, DLC_MAX, &dlc) ||
         !log_token_number(next(rest), DECIMAL, FD_DATA_MAX, &length)) {
         return "bit rate switch, error state, DLC and length of a CANFD line are missing";
     }

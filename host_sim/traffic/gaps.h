@@ -9,11 +9,12 @@
 #ifndef HOST_SIM_GAPS_H
 #define HOST_SIM_GAPS_H
 
+#include <stddef.h>
 #include <stdint.h>
 
-#define GAPS_CELLS_PER_OCTAVE 64u
+#define GAPS_CELLS_PER_OCTAVE ((size_t)64)
 /** Up to 2^37 us (38 hours); longer gaps are in the last cell. */
-#define GAPS_CELLS (GAPS_CELLS_PER_OCTAVE * 32u)
+#define GAPS_CELLS (GAPS_CELLS_PER_OCTAVE * (size_t)32)
 
 /** All zero: no gap yet. Some 8 KiB. Up to 4 thousand million gaps in each cell. */
 typedef struct {

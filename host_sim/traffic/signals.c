@@ -209,7 +209,7 @@ void signals_raw_text(char text[SIGNALS_VALUE_SIZE], uint32_t message, size_t in
 
 /** Whether a text about the payload names this signal. */
 static bool is_shown(const signal_info_t *info, const signal_value_t *value) {
-    if (info->kind == SIGNAL_FLAG) {
+    if ((info->kind == SIGNAL_FLAG) && (value->word != NULL)) {
         return (strcmp(value->word, "no") != 0) && (strcmp(value->word, "off") != 0);
     }
     return (info->kind != SIGNAL_ALARM) || (value->raw != 0u);

@@ -303,7 +303,7 @@ void traffic_end(traffic_t *traffic, uint64_t t_us) {
             watch_stop(traffic->all[i]->watch, t_us);
         }
     }
-    qsort(traffic->all, traffic->all_count, sizeof traffic->all[0], compare);
+    qsort((void *)traffic->all, traffic->all_count, sizeof traffic->all[0], compare);
     traffic->totals.end_us = t_us;
 }
 

@@ -40,7 +40,7 @@ static json_t *evidence_of(const why_trip_t *trip, const why_names_t *names) {
     for (size_t i = 0u; i < trip->evidence_count; i++) {
         const why_evidence_t *evidence = &trip->evidence[i];
         json_t *object = json_object();
-        set(object, "t_ms", json_real((double)evidence->t_us / US_PER_MS));
+        set(object, "t_ms", json_real((double)evidence->t_us / (double)US_PER_MS));
         set(object, "if", text_or_null(names->interfaces[evidence->side]));
         set(object, "id", id_or_null(evidence->frame.id));
         set(object, "data", data_of(&evidence->frame));

@@ -1,0 +1,115 @@
+"""Logs of other formats, as other programs write them: can-utils and python-can. Each gives the same replay as the log
+that it was made from."""
+import gzip
+import os
+import resource
+import subprocess
+
+import hostsim
+import traffic
+
+ENGAGED = 1000
+
+
+class Case(hostsim.Case):
+    def outcome(self, log, name="log"):
+        """Events and sent frames of a replay; the summary apart from what depends on the format."""
+        result = self.replay(log, name=name)
+        return result.events(), result.text("out.log")
+
+
+def silence(frame):
+    return None if frame.name == "eps_status" and frame.t_ms > 2000 else frame
+
+
+class OtherPrograms(Case):
+    def setUp(self):
+        super().setUp()
+        self.log = traffic.log(traffic.frames(3000, ENGAGED, edit=silence))
+        self.expected = self.outcome(self.log)
+        self.assertIn("EPS_STATUS_TIMEOUT", [event.get("reason") for event in self.expected[0]])
+        self.write("plain.log", self.log)
+
+    def convert(self, *command):
+        with open(self.folder / "plain.log", "rb") as plain:
+            return subprocess.run(command, cwd=self.folder, check=True, stdout=subprocess.PIPE, stdin=plain).stdout
+
+    def test_gzip(self):
+        packed = self.convert("gzip", "-c")
+        self.assertEqual(self.outcome(packed), self.expected)
+        self.assertEqual(self.outcome(packed, name="misnamed.log"), self.expected)
+
+    def test_the_screen_of_candump(self):
+        screen = self.convert("log2long")
+        self.assertIn(b"[8]  00", screen)
+        self.assertEqual(self.outcome(screen), self.expected)
+        self.assertEqual(self.outcome(gzip.compress(screen)), self.expected)
+
+    def test_asc_of_can_utils(self):
+        self.convert("log2asc", "-I", "plain.log", "-O", "log.asc", "can0")
+        asc = (self.folder / "log.asc").read_bytes()
+        self.assertIn(b"base hex", asc)
+        self.assertEqual(self.outcome(asc), self.expected)
+        self.assertEqual(self.outcome(gzip.compress(asc)), self.expected)
+
+    def test_asc_of_python_can(self):
+        self.convert("/usr/bin/python3", "-m", "can.logconvert", "plain.log", "log.asc")
+        asc = (self.folder / "log.asc").read_bytes()
+        self.assertIn(b"Begin Triggerblock", asc)
+        events, sent = self.outcome(asc)
+        self.assertEqual(events, self.expected[0])
+        self.assertEqual(len(sent.splitlines()), len(self.expected[1].splitlines()))
+
+    def test_blf_by_the_command_that_the_message_names(self):
+        self.convert("/usr/bin/python3", "-m", "can.logconvert", "plain.log", "my.blf")
+        result = self.run_program("replay", "my.blf")
+        self.assert_refused(result, "my.blf: a Vector BLF log; convert it: ")
+        command = result.stderr.split("convert it: ")[1].split(" (")[0]
+        self.assertEqual(command, "python3 -m can.logconvert my.blf my.blf.log")
+        self.convert("/usr/bin/python3", *command.split()[1:])
+        events, _ = self.outcome((self.folder / "my.blf.log").read_text())
+        self.assertEqual([event for event in events if event["event"] == "state"],
+                         [event for event in self.expected[0] if event["event"] == "state"])
+
+
+class Bounded(Case):
+    def limit(self):
+        resource.setrlimit(resource.RLIMIT_CPU, (20, 20))
+
+    def test_two_gigabytes_without_a_line(self):
+        """A file of holes: it takes no room on the disk."""
+        with open(self.folder / "log", "wb") as file:
+            file.write(b"(1700000000.000000) can0 43F#")
+            file.truncate(2 << 30)
+        before = self.files()
+        result = self.run_program("replay", "--out", "out.log", "log", preexec_fn=self.limit)
+        self.assert_refused(result, "log:1: ")
+        self.assertEqual(self.files(), before)
+
+    def test_a_pipe_that_never_ends_a_line(self):
+        read_end, write_end = os.pipe()
+        with subprocess.Popen(["sh", "-c", "yes | tr -d '\\n'"], stdout=write_end, stderr=subprocess.DEVNULL):
+            os.close(write_end)
+            done = subprocess.run([hostsim.PROGRAM, "replay", "-"], stdin=read_end, stderr=subprocess.PIPE, timeout=60,
+                                  stdout=subprocess.DEVNULL, check=False)
+            os.close(read_end)
+        self.assertEqual(done.returncode, 2)
+        self.assertEqual(done.stderr, b"standard input:1: the line is longer than 255 characters\n")
+
+    def test_outputs_of_an_earlier_run_stay(self):
+        packed = gzip.compress(traffic.log(traffic.frames(500)).encode())
+        self.write("log", packed[:len(packed) // 2])
+        self.write("out.log", "good\n")
+        self.assert_refused(self.run_program("replay", "--out", "out.log", "log"), "log: the gzip'd file is cut off")
+        self.assertEqual((self.folder / "out.log").read_text(), "good\n")
+
+    def test_memory_is_bounded(self):
+        """Compressed files one after the other, 20 MB of text, with 16 MiB of address space for data."""
+        minute = gzip.compress(traffic.log(traffic.frames(60000, ENGAGED)).encode(), 1)
+        limit = (lambda: resource.setrlimit(resource.RLIMIT_DATA, (16 << 20, 16 << 20))) if hostsim.PART == 1 else None
+        result = self.run_good("survey", "-", stdin=minute * 10, preexec_fn=limit)
+        self.assertIn("426000 frames", result.stdout)
+
+
+if __name__ == "__main__":
+    hostsim.unittest.main()
