@@ -18,16 +18,16 @@ typedef struct {
     uint32_t sum; /* of times and frames */
 } outcome_t;
 
-static void check_record(const candump_record_t *record) {
+/* @return what is wrong with a frame; NULL: nothing */
+static const char *wrong_with(const candump_record_t *record) {
     const hal_can_frame_t *frame = &record->frame;
     const bool is_standard = (frame->flags & (HAL_CAN_EXTENDED | HAL_CAN_ERROR)) == 0u;
     const uint32_t longest = ((frame->flags & HAL_CAN_FD) != 0u) ? 64u : 8u;
     if ((frame->id > (is_standard ? 0x7FFu : 0x1FFFFFFFu)) || (frame->length > longest)) {
-        capture_fail("a frame that no bus has", "");
+        return "a frame that no bus has";
     }
-    if ((record->interface_length == 0u) || (record->interface_length > CANDUMP_INTERFACE_MAX)) {
-        capture_fail("an interface without a name", "");
-    }
+    const bool has_name = (record->interface_length > 0u) && (record->interface_length <= CANDUMP_INTERFACE_MAX);
+    return has_name ? NULL : "an interface without a name";
 }
 
 static uint32_t add(uint32_t sum, const void *bytes, size_t size) {
@@ -38,11 +38,12 @@ static outcome_t read_log(const uint8_t *bytes, size_t size, bool skip) {
     candump_log_t *log = calloc(1, sizeof *log);
     candump_record_t record;
     outcome_t outcome = {.end = CANDUMP_FAILED};
+    const char *wrong = NULL;
     capture_begin();
     if (candump_open(log, capture_file(bytes, size), skip)) {
         outcome.end = candump_next(log, &record);
         for (; outcome.end == CANDUMP_RECORD; outcome.end = candump_next(log, &record)) {
-            check_record(&record);
+            wrong = (wrong == NULL) ? wrong_with(&record) : wrong;
             outcome.frames++;
             outcome.sum = add(outcome.sum, &record.stamp_us, sizeof record.stamp_us);
             outcome.sum = add(outcome.sum, record.frame.data, sizeof record.frame.data);
@@ -53,6 +54,9 @@ static outcome_t read_log(const uint8_t *bytes, size_t size, bool skip) {
     candump_close(log);
     free(log);
     const char *printed = capture_end();
+    if (wrong != NULL) {
+        capture_fail(wrong, printed);
+    }
     if (outcome.end == CANDUMP_FAILED) {
         capture_one_line(printed);
     } else if (printed[0] != '\0') {
