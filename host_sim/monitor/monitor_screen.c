@@ -59,7 +59,7 @@ static void choose_attributes(void) {
         if (color != 0) {
             (void)init_pair((short)(style + 1), color, (short)(has_default ? -1 : COLOR_BLACK));
             here.pairs[style] = (short)(style + 1);
-            here.attributes[style] = (style == (short)STYLE_BAD) ? A_BOLD : A_NORMAL;
+            here.attributes[style] = A_NORMAL;
         }
     }
 }

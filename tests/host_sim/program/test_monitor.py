@@ -7,7 +7,8 @@ import unittest
 
 import hostsim
 
-EXAMPLE = pathlib.Path(__file__).parents[3] / "host_sim/examples/ai-stops.log"
+ROOT = pathlib.Path(__file__).parents[3]
+EXAMPLE = ROOT / "host_sim/examples/ai-stops.log"
 PATIENCE_S = 30
 
 
@@ -99,7 +100,7 @@ class Screen(hostsim.Case):
         self.assertIn("shadow     ACTIVE -> TRIPPED: STEERING_COMMAND_TIMEOUT", "\n".join(lines))
 
     def test_colours_and_none(self):
-        red, grey = "\033[1m\033[31m", "\033[90m"
+        red, grey = "\033[31m", "\033[90m"
         with_colours = "\n".join(self.colours(NO_COLOR=""))
         self.assertIn(red, with_colours)
         self.assertIn(grey, with_colours)
@@ -170,6 +171,14 @@ class Screen(hostsim.Case):
         tmux = self.open(80, 24, "--log", EXAMPLE, "--speed", "max", TERM="dumb")
         self.assertEqual(tmux.exit_status(), 0)
         self.assertIn("      1.007 s  shadow      ACTIVE -> TRIPPED: STEERING_COMMAND_TIMEOUT", tmux.lines())
+
+
+class Picture(hostsim.Case):
+    def test_the_picture_of_the_page_is_what_the_program_shows(self):
+        made = self.folder / "made.svg"
+        subprocess.run([ROOT / "scripts/tools/terminal-picture.py", "100x32", "END", made, hostsim.PROGRAM, "monitor", "--log",
+                        EXAMPLE], check=True, timeout=60)
+        self.assertEqual(made.read_text(encoding="utf-8"), (ROOT / "docs/monitor.svg").read_text(encoding="utf-8"))
 
 
 class Lines(hostsim.Case):
