@@ -60,12 +60,15 @@ static const char *at(uint64_t t_us, char text[TIME_SIZE]) {
 
 /** A duration: "0.3 ms", "272 ms", "1.25 s". */
 static const char *lasting(uint64_t us, char text[TIME_SIZE]) {
-    if (us < 10u * (uint64_t)US_A_MS) {
-        (void)snprintf(text, TIME_SIZE, "%" PRIu64 ".%" PRIu64 " ms", us / US_A_MS, us % US_A_MS / 100u);
-    } else if (us < US_A_S) {
-        (void)snprintf(text, TIME_SIZE, "%" PRIu64 " ms", us / US_A_MS);
+    const uint64_t tenths = (us + 50u) / 100u;
+    const uint64_t ms = (us + 500u) / US_A_MS;
+    const uint64_t hundredths = (us + 5000u) / 10000u;
+    if (tenths < 100u) {
+        (void)snprintf(text, TIME_SIZE, "%" PRIu64 ".%" PRIu64 " ms", tenths / 10u, tenths % 10u);
+    } else if (ms < US_A_MS) {
+        (void)snprintf(text, TIME_SIZE, "%" PRIu64 " ms", ms);
     } else {
-        (void)snprintf(text, TIME_SIZE, "%" PRIu64 ".%02" PRIu64 " s", us / US_A_S, us % US_A_S / 10000u);
+        (void)snprintf(text, TIME_SIZE, "%" PRIu64 ".%02" PRIu64 " s", hundredths / 100u, hundredths % 100u);
     }
     return text;
 }
@@ -185,8 +188,10 @@ static void say_action(char text[SENTENCE_SIZE], const report_page_t *page, cons
     } else if (trip->first_safe_us == WHY_NEVER) {
         say(text, " It sent no frame until the end.");
     } else {
-        say(text, " %s later it sent the first of the safe commands: gear P, throttle 0, autopilot off.",
-            lasting(trip->first_safe_us - sentence_trip_us(trip), time));
+        const uint64_t after_us = trip->first_safe_us - sentence_trip_us(trip);
+        say(text, " %s%s it sent the first of the safe commands: gear P, throttle 0, autopilot off.",
+            (after_us < US_A_MS / 10u) ? "At once" : lasting(after_us, time),
+            (after_us < US_A_MS / 10u) ? "" : " later");
     }
 }
 

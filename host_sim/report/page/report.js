@@ -163,9 +163,9 @@ function marksOf(trip) {
   add(trip.first_safe_us, "first safe frame");
   add(trip.confirmed_us, "P confirmed");
   add(trip.stopped_us, "stands");
-  data.trips.forEach((other, i) => {
-    if (other !== trip) marks.push({ t: inMs(other.t_us), text: `trip ${i + 1}` });
-  });
+  for (const other of data.trips) {
+    if (other !== trip && !other.from_recording) marks.push({ t: inMs(other.t_us), text: "trip" });
+  }
   return marks;
 }
 
@@ -248,7 +248,10 @@ function drawSteps(trip) {
 
 function drawTrips(choose) {
   if (data.trips.length < 2) return;
-  const set = make("fieldset", make("legend", `${data.trips.length} trips`));
+  const consequences = data.trips.filter((trip) => trip.from_recording).length;
+  const trips = data.trips.length - consequences;
+  const more = consequences ? ", and what followed because a recording cannot obey" : "";
+  const set = make("fieldset", make("legend", `${trips} trip${trips === 1 ? "" : "s"}${more}`));
   set.id = "trips";
   data.trips.forEach((trip, i) => {
     const input = make("input");
@@ -256,8 +259,7 @@ function drawTrips(choose) {
     input.name = "trip";
     input.checked = i === 0;
     input.addEventListener("change", () => choose(i));
-    set.append(make("label", input, make("span", seconds(inMs(trip.t_us))),
-      make("span", make("code", trip.reason), trip.from_recording ? make("span.soft", " (a recording cannot obey)") : null)));
+    set.append(make(`label${trip.from_recording ? ".soft" : ""}`, input, make("span", seconds(inMs(trip.t_us))), make("span", make("code", trip.reason))));
   });
   byId("trips-place").replaceChildren(set);
 }
@@ -316,7 +318,13 @@ function drawFrames(trip) {
   place.tabIndex = 0;
   place.setAttribute("role", "region");
   place.setAttribute("aria-label", "Frames around the cause");
-  const show = (all) => place.replaceChildren(table(heads, frameRows(trip, all)));
+  const show = (all) => {
+    place.replaceChildren(table(heads, frameRows(trip, all)));
+    requestAnimationFrame(() => { // the first event, with some rows before it
+      const first = place.querySelector(".event");
+      place.scrollTop = first ? first.offsetTop - 150 : 0;
+    });
+  };
   const choice = make("div.choice");
   [["the message that tells, and what the supervisor sent", false], ["all frames near the cause and the trip", true]].forEach(([text, all], i) => {
     const input = make("input");

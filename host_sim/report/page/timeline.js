@@ -35,6 +35,7 @@ const FLAG = 17;
 const HEIGHTS = { head: 26, lane: 22, slim: 18, plot: 92, age: 20 };
 const PRINTED = { head: 20, lane: 17, slim: 14, plot: 66, age: 15 };
 const PRINT_WIDTH = 690;
+const LEVELS = 4; // of flags; a quiet mark that finds no room has a line alone
 const CROWDED = 30000; // ms: in a longer view a mark beside a bad one gives way
 const LABEL_ABOVE = 15;
 const FONT = 'system-ui, "Segoe UI", Roboto, "Helvetica Neue", "DejaVu Sans", sans-serif'; // as in timeline.css
@@ -379,8 +380,9 @@ class Timeline {
         const begin = turned ? x - length : x;
         let level = ends.findIndex((end) => end < begin);
         if (level < 0) level = ends.length;
-        ends[level] = begin + length;
-        return { mark, x, level, turned };
+        const mute = level >= LEVELS && !mark.tone;
+        if (!mute) ends[level] = begin + length;
+        return { mark, x, level: mute ? LEVELS : level, turned, mute };
       });
     return { placed, levels: ends.length };
   }
@@ -413,7 +415,7 @@ class Timeline {
   drawMarks() {
     const lines = this.flags.placed.map(({ mark, x, level }) =>
       `<path class="tl-mark tl-${mark.tone ?? "quiet"}" d="M${x.toFixed(1)} ${FLAG * level + 2}V${this.height}"/>`);
-    const texts = this.flags.placed.map(({ mark, x, level, turned }) =>
+    const texts = this.flags.placed.filter(({ mute }) => !mute).map(({ mark, x, level, turned }) =>
       `<text class="tl-mark tl-${mark.tone ?? "quiet"}" x="${(turned ? x - 5 : x + 5).toFixed(1)}" y="${FLAG * level + 12}"` +
       ` text-anchor="${turned ? "end" : "start"}">${escape(mark.text)}</text>`);
     return lines.join("") + texts.join("");
