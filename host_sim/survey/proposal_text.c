@@ -64,6 +64,11 @@ static void print_all(FILE *file, const proposal_t *proposal, const char *source
     for (size_t i = 0u; i < proposal->note_count; i++) {
         print_comment(file, " -", proposal->notes[i]);
     }
+    (void)fputc('\n', file);
+    print_comment(
+        file, "",
+        "Whatever this vehicle does: the heartbeats of VCU and EPS, the AI computer while engaged, and the faults "
+        "of the EPS stay trips (INT-2).");
 }
 
 char *proposal_yaml(const proposal_t *proposal, const char *source) {

@@ -27,6 +27,10 @@ static void print_head(const survey_result_t *result) {
         (void)printf(" (%.0f/s)", (double)observation->frames / seconds);
     }
     (void)printf("%s%s\n", (result->source.format[0] != '\0') ? ", " : "", result->source.format);
+    if ((observation->interface_count > 1u) && (result->config.topology == AGV_TOPOLOGY_SHARED)) {
+        (void)printf(
+            "         all interfaces count as one bus; --ai-if NAME makes one of them the AI side of a gateway\n");
+    }
     const traffic_totals_t totals = traffic_totals(result->traffic);
     if (observation->backward_stamps + observation->lost + result->source.skipped_lines + totals.error > 0u) {
         (void)printf("of them  error frames %" PRIu64 ", time stamps that went backwards %" PRIu64

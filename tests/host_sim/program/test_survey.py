@@ -313,6 +313,16 @@ class Text(Case):
         self.assertIn("# - steering_status was not heard\n", result.stdout)
         self.assertIn("# - autopilot was never engaged", result.stdout)
 
+    def test_two_interfaces_that_are_not_a_gateway(self):
+        self.write("log", traffic.log(traffic.frames(2000, ai_interface="can1")))
+        self.assertIn("all interfaces count as one bus", self.run_good("survey", "log").stdout)
+        self.assertNotIn("all interfaces", self.run_good("survey", "--ai-if", "can1", "log").stdout)
+
+    def test_the_proposal_says_what_nothing_relaxes(self):
+        self.write("log", traffic.log(traffic.frames(2000)))
+        result = self.run_good("survey", "--config-out", "-", "log")
+        self.assertTrue(result.stdout.endswith("stay trips (INT-2).\n"), result.stdout)
+
     def test_the_proposal_alone(self):
         self.write("log", traffic.log(traffic.frames(2000)))
         result = self.run_good("survey", "--config-out", "-", "log")
