@@ -1,0 +1,168 @@
+/* Trips, states and faults over a run, and the table of kinds. */
+#include <stdio.h>
+
+#include "agv/names.h"
+#include "unity.h"
+#include "why_feed.h"
+
+static why_t *why;
+static agv_config_t config;
+
+void setUp(void) {
+    agv_config_defaults(&config);
+    why = why_new(&config);
+    TEST_ASSERT_NOT_NULL(why);
+}
+
+void tearDown(void) {
+    why_free(why);
+}
+
+void test_how_long_each_state_lasted(void) {
+    feed_state(why, 0, AGV_STATE_INIT, AGV_FAULT_NONE, 0);
+    feed_state(why, AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_FAULT_NONE, 510);
+    feed_state(why, AGV_STATE_STANDBY, AGV_STATE_ACTIVE, AGV_FAULT_NONE, 1000);
+    feed_state(why, AGV_STATE_ACTIVE, AGV_STATE_TRIPPED, AGV_FAULT_EMERGENCY_STOP, 3000);
+    feed_state(why, AGV_STATE_TRIPPED, AGV_STATE_SAFE, AGV_FAULT_NONE, 3300);
+    feed_state(why, AGV_STATE_SAFE, AGV_STATE_TRIPPED, AGV_FAULT_NONE, 3400); /* withdrawn: no other trip */
+    feed_state(why, AGV_STATE_TRIPPED, AGV_STATE_SAFE, AGV_FAULT_NONE, 3600);
+    why_end(why, 5000000);
+    const uint64_t expected_us[WHY_STATES] = {510000, 490000, 2000000, 500000, 1500000};
+    for (size_t i = 0; i < WHY_STATES; i++) {
+        TEST_ASSERT_EQUAL_UINT64(expected_us[i], why_state_us(why, i));
+    }
+    TEST_ASSERT_EQUAL_UINT64(4490000, why_supervised_us(why));
+    TEST_ASSERT_EQUAL_UINT(1, why_trip_count(why));
+    TEST_ASSERT_EQUAL_UINT64(3300000, why_trip(why, 0)->confirmed_us); /* for the first time */
+}
+
+void test_the_first_safe_frame_may_be_reported_before_the_trip(void) {
+    const hal_can_frame_t park = {.id = 0x168, .length = 8, .data = {0x08}};
+    const hal_can_frame_t drive = {.id = 0x168, .length = 8, .data = {0x01}};
+    feed_state(why, AGV_STATE_STANDBY, AGV_STATE_ACTIVE, AGV_FAULT_NONE, 1000);
+    why_sent(why, HAL_CAN_VEHICLE, &drive, 2000200);
+    why_sent(why, HAL_CAN_VEHICLE, &park, 2000300);
+    feed_trip(why, AGV_FAULT_EMERGENCY_STOP, 2000);
+    TEST_ASSERT_EQUAL_UINT64(2000300, why_trip(why, 0)->first_safe_us);
+}
+
+void test_a_safe_frame_of_long_before_is_not_the_first(void) {
+    const hal_can_frame_t park = {.id = 0x168, .length = 8, .data = {0x08}};
+    why_sent(why, HAL_CAN_VEHICLE, &park, 1000000);
+    feed_trip(why, AGV_FAULT_EMERGENCY_STOP, 2000);
+    TEST_ASSERT_EQUAL_UINT64(WHY_NEVER, why_trip(why, 0)->first_safe_us);
+    why_sent(why, HAL_CAN_AI, &park, 2001000);
+    TEST_ASSERT_EQUAL_UINT64(WHY_NEVER, why_trip(why, 0)->first_safe_us);
+    why_sent(why, HAL_CAN_VEHICLE, &park, 2002000);
+    TEST_ASSERT_EQUAL_UINT64(2002000, why_trip(why, 0)->first_safe_us);
+}
+
+void test_when_it_stands(void) {
+    feed_frame(why, HAL_CAN_VEHICLE, 0x101, "\x2C\x01\0\0\x2C\x01\0", 1000); /* 300 mm/s */
+    feed_trip(why, AGV_FAULT_EMERGENCY_STOP, 2000);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x101, "\x32\0\0\0\0\0\0", 2100); /* 50 mm/s: not slower than the limit */
+    feed_frame(why, HAL_CAN_VEHICLE, 0x101, "\x31\0\0\0\x31\0\0", 2200);
+    TEST_ASSERT_EQUAL_UINT64(2200000, why_trip(why, 0)->stopped_us);
+}
+
+void test_what_a_recording_cannot_obey(void) {
+    why_is_recording(why);
+    feed_trip(why, AGV_FAULT_EMERGENCY_STOP, 2000);
+    feed_fault(why, AGV_FAULT_SAFE_STATE_UNCONFIRMED, AGV_CLASS_TRIP, true, 2500);
+    feed_fault(why, AGV_FAULT_EPS_TEMP_ABOVE_110, AGV_CLASS_WARN, true, 2600);
+    TEST_ASSERT_EQUAL_UINT(2, why_trip_count(why));
+    TEST_ASSERT_FALSE(why_trip(why, 0)->from_recording);
+    TEST_ASSERT_TRUE(why_trip(why, 1)->from_recording);
+    TEST_ASSERT_EQUAL(WHY_VEHICLE, why_trip(why, 1)->kind);
+    TEST_ASSERT_TRUE(why_fault(why, 1)->from_recording);
+    TEST_ASSERT_FALSE(why_fault(why, 2)->from_recording);
+}
+
+void test_a_vehicle_that_is_there_could_have_obeyed(void) {
+    feed_trip(why, AGV_FAULT_EMERGENCY_STOP, 2000);
+    feed_fault(why, AGV_FAULT_VEHICLE_NOT_STOPPING, AGV_CLASS_TRIP, true, 7000);
+    TEST_ASSERT_FALSE(why_trip(why, 1)->from_recording);
+    TEST_ASSERT_EQUAL_UINT64(2000000, why_trip(why, 1)->cause_us); /* the trip, 5000 ms before */
+}
+
+void test_faults_in_the_order_of_their_first_time(void) {
+    feed_state(why, 0, AGV_STATE_INIT, AGV_FAULT_NONE, 0);
+    feed_fault(why, AGV_FAULT_WRONG_ID_SET, AGV_CLASS_WARN, true, 100);
+    feed_state(why, AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_FAULT_NONE, 150);
+    feed_fault(why, AGV_FAULT_BUS_OFF, AGV_CLASS_TRIP, true, 200);
+    feed_fault(why, AGV_FAULT_WRONG_ID_SET, AGV_CLASS_WARN, false, 300);
+    feed_fault(why, AGV_FAULT_WRONG_ID_SET, AGV_CLASS_WARN, true, 400);
+    why_end(why, 1000000);
+    TEST_ASSERT_EQUAL_UINT(2, why_fault_count(why));
+    const why_fault_t *first = why_fault(why, 0);
+    TEST_ASSERT_EQUAL(AGV_FAULT_WRONG_ID_SET, first->fault);
+    TEST_ASSERT_EQUAL_UINT64(100000, first->first_us);
+    TEST_ASSERT_EQUAL_UINT32(2, first->times);
+    TEST_ASSERT_EQUAL_UINT64(800000, first->active_us);
+    TEST_ASSERT_TRUE(first->active);
+    TEST_ASSERT_FALSE(first->in_init); /* the second time it was not */
+    TEST_ASSERT_EQUAL_UINT64(800000, why_fault(why, 1)->active_us);
+}
+
+void test_a_fault_that_is_raised_again_with_another_class_is_one_time(void) {
+    feed_fault(why, AGV_FAULT_AI_HEARTBEAT_LOST, AGV_CLASS_WARN, true, 100);
+    feed_fault(why, AGV_FAULT_AI_HEARTBEAT_LOST, AGV_CLASS_TRIP, true, 300);
+    TEST_ASSERT_EQUAL_UINT32(1, why_fault(why, 0)->times);
+    TEST_ASSERT_EQUAL(AGV_CLASS_TRIP, why_fault(why, 0)->fault_class);
+}
+
+void test_what_init_lacked(void) {
+    feed_state(why, 0, AGV_STATE_INIT, AGV_FAULT_NONE, 0);
+    for (uint64_t t_ms = 0; t_ms <= 3000; t_ms += 10) {
+        const char vcu[9] = {0, 0, 0, 0, 0, 0, (char)0x80, (char)(t_ms / 10)};
+        feed_frame(why, HAL_CAN_VEHICLE, 0x363, vcu, t_ms);
+    }
+    why_end(why, 3000000);
+    TEST_ASSERT_EQUAL_HEX16(AGV_MISSING_MANUAL | AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_MESSAGES, why_missing(why));
+    TEST_ASSERT_EQUAL_UINT64(0, why_supervised_us(why));
+}
+
+void test_more_trips_than_fit_are_left_out(void) {
+    for (uint64_t i = 0; i < 1500; i++) {
+        feed_trip(why, AGV_FAULT_EMERGENCY_STOP, i * 10);
+        feed_state(why, AGV_STATE_SAFE, AGV_STATE_STANDBY, AGV_FAULT_NONE, (i * 10) + 5);
+    }
+    TEST_ASSERT_EQUAL_UINT(1000, why_trip_count(why));
+}
+
+/* Written by hand from the requirements. */
+void test_the_kinds(void) {
+    static const struct {
+        agv_fault_t fault;
+        const char *kind;
+    } expected[] = {
+        {AGV_FAULT_STEERING_COMMAND_TIMEOUT, "silence"},
+        {AGV_FAULT_AI_HEARTBEAT_LOST, "silence"},
+        {AGV_FAULT_VCU_HEARTBEAT_STUCK, "stuck"},
+        {AGV_FAULT_S_DRIVER_ALARM, "bit"},
+        {AGV_FAULT_EPS_MODE_OFF, "score"},
+        {AGV_FAULT_EPS_OVER_VOLTAGE, "score"},
+        {AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, "value"},
+        {AGV_FAULT_GEAR_DEVIATION, "budget"},
+        {AGV_FAULT_SPEED_IMPLAUSIBLE, "budget"},
+        {AGV_FAULT_THROTTLE_IN_PARK, "budget"},
+        {AGV_FAULT_MODE_NONE, "mode"},
+        {AGV_FAULT_MODE_FLAPPING, "mode"},
+        {AGV_FAULT_FOREIGN_COMMAND_SENDER, "intrusion"},
+        {AGV_FAULT_COMMAND_TOO_FAST, "intrusion"},
+        {AGV_FAULT_STATUS_ID_IN_USE, "intrusion"},
+        {AGV_FAULT_TX_STALLED, "bus"},
+        {AGV_FAULT_AI_BUS_OFF, "bus"},
+        {AGV_FAULT_MOVING_WHILE_SAFE, "vehicle"},
+        {AGV_FAULT_OUTPUT_FEEDBACK, "hardware"},
+        {AGV_FAULT_EMERGENCY_STOP, "hardware"},
+        {AGV_FAULT_CLOCK_DEVIATION, "hardware"},
+        {AGV_FAULT_STEP_OVERRUN, "own"},
+        {AGV_FAULT_STARTUP_TIMEOUT, "own"},
+        {AGV_FAULT_SUPERVISOR_RESET, "own"},
+    };
+    for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++) {
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(expected[i].kind, why_kind_name(why_row(expected[i].fault)->kind),
+                                         agv_fault_name(expected[i].fault));
+    }
+}
