@@ -355,7 +355,7 @@ function drawSupervision() {
   list.id = "states";
   const parts = [make("h2", "What was supervised"), list];
   const silent = series.messages.filter((message) => !message.heard);
-  const rest = end - inMs(data.supervised_us);
+  const rest = inMs(data.states[0]);
   if (rest > 0.5) parts.push(make("p", `Not supervised: ${seconds(rest)} in INIT.`));
   if (!data.states[2]) parts.push(make("p", "Not judged: the commands of the AI computer. The autopilot was never engaged."));
   if (silent.length) parts.push(make("p", `Never heard: ${silent.map((message) => `${message.id}h ${message.name}`).join(", ")}.`));

@@ -95,6 +95,7 @@ class Report(hostsim.Case):
 
     def view(self):
         """The times that the picture shows, as texts of its axis."""
+        self.browser.settle()
         return self.browser.run("[...document.querySelectorAll('.tl-tick')].map((one) => one.textContent)")
 
     def test_every_page_says_first_what_it_is_about(self):
@@ -209,6 +210,7 @@ class Report(hostsim.Case):
             self.show(name, dark=True)
             width = self.browser.run("document.querySelector('.tl-picture').getBoundingClientRect().width")
             pdf = self.browser.pdf()
+            self.browser.settle()
             self.assertEqual(pdf[:5], b"%PDF-")
             pages = len(re.findall(rb"/Type\s*/Page\b", pdf))
             self.assertTrue(2 <= pages <= 6, pages)
