@@ -82,7 +82,7 @@ static bool pass(run_t *run, uint64_t now_ms) {
     if (run->has_screen && monitor_ui_is_paused(&run->ui)) {
         return true;
     }
-    run->log_us += (double)since_ms * (double)US_PER_MS * run->speed;
+    run->log_us += (double)(since_ms * (uint64_t)US_PER_MS) * run->speed;
     const bool at_once = run->speed <= MONITOR_SPEED_ANY;
     return monitor_file_pass(&run->file, run->monitor, at_once ? MONITOR_FILE_ALL : (uint64_t)run->log_us);
 }

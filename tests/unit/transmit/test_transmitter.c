@@ -709,6 +709,29 @@ void test_the_status_frame_reports_the_version_once_in_256_frames(void) {
     TEST_ASSERT_EQUAL_UINT16(512 + 4, report().sent);
 }
 
+static void expect_one_frame_in_each_period(void) {
+    with_status_frame();
+    agv_transmitter_status(&transmitter, &orders);
+    for (unsigned i = 1; i < 300; i++) {
+        sent_count = 0;
+        tick(100);
+        TEST_ASSERT_EQUAL_UINT(1, sent_count);
+    }
+}
+
+/* Shows: TOP-3, HW-6 */
+void test_the_version_is_reported_by_choice(void) {
+    static const agv_version_t version = {.major = 1};
+    orders.version = &version;
+    expect_one_frame_in_each_period();
+}
+
+/* Shows: TOP-3, HW-6 */
+void test_a_program_without_a_version_reports_none(void) {
+    config.status_version = AGV_STATUS_VERSION_ON;
+    expect_one_frame_in_each_period();
+}
+
 /* Of several missed frames one is sent, and the grid stays. */
 /* Shows: TOP-3, TIM-1 */
 void test_a_late_step_sends_one_status_frame(void) {

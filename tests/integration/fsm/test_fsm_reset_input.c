@@ -1,0 +1,88 @@
+/* The reset input: which of the two buttons resets, and how a push button is debounced. */
+#include "one_fixture.h"
+#include "walk.h"
+
+static void choose(uint16_t input) {
+    fixture_init(&f);
+    f.config.reset_input = input;
+    f.board = (sim_board_t){.has_reset_button = true};
+    walk_to_safe(&f);
+    fixture_run(&f, 1100);
+}
+
+/* Remote button 1, in a 363h of its own. */
+static void remote(bool pressed) {
+    fixture_button(&f, pressed);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+}
+
+static void push(bool pressed) {
+    f.hal.board.button_is_down = pressed;
+}
+
+static void push_for(uint32_t ms) {
+    push(true);
+    fixture_run(&f, ms);
+    push(false);
+    fixture_run(&f, 21);
+}
+
+static void expect_refusals(uint32_t count, uint16_t expected) {
+    uint16_t missing = 0;
+    TEST_ASSERT_EQUAL_UINT32(count, walk_refusals(&f, &missing));
+    TEST_ASSERT_EQUAL_HEX16(expected, missing);
+}
+
+/* The debounced button follows 20 ms after press and release, so the press lasts as long as that of the finger. */
+/* Shows: HW-3 */
+void test_with_pin_the_push_button_resets_and_the_remote_button_does_not(void) {
+    choose(AGV_RESET_INPUT_PIN);
+    remote(true);
+    fixture_run(&f, 1500);
+    remote(false);
+    expect_state(&f, AGV_STATE_SAFE);
+    expect_refusals(0, 0);
+    push(true);
+    fixture_run(&f, 1000);
+    push(false);
+    fixture_run(&f, 20);
+    expect_state(&f, AGV_STATE_SAFE);
+    fixture_run(&f, 1);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* Shows: HW-3 */
+void test_with_can_the_push_button_resets_nothing(void) {
+    choose(AGV_RESET_INPUT_CAN);
+    push_for(1500);
+    expect_state(&f, AGV_STATE_SAFE);
+    expect_refusals(0, 0);
+    remote(true);
+    fixture_run(&f, 1000);
+    remote(false);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* Shows: HW-3 */
+void test_with_both_either_button_resets(void) {
+    choose(AGV_RESET_INPUT_BOTH);
+    push_for(1000);
+    expect_state(&f, AGV_STATE_STANDBY);
+    choose(AGV_RESET_INPUT_BOTH);
+    remote(true);
+    fixture_run(&f, 1000);
+    remote(false);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* A press in vain is reported with what was missing, also while the other button is not touched. */
+/* Shows: HW-3, FSM-3 */
+void test_a_press_of_the_push_button_in_vain_is_reported(void) {
+    choose(AGV_RESET_INPUT_BOTH);
+    push(true);
+    fixture_run(&f, 5100);
+    push(false);
+    fixture_run(&f, 100);
+    expect_state(&f, AGV_STATE_SAFE);
+    expect_refusals(1, AGV_MISSING_RELEASED);
+}
