@@ -87,11 +87,12 @@ void why_init_check(why_t *why, uint64_t t_us) {
     }
 }
 
-/** What is missing now, and what was missing within the time for which everything has to be there; a start apart. */
+/** What is missing now; if nothing is, what was within the time for which everything has to be there, a start apart. */
 void why_init_end(why_t *why, uint64_t t_us) {
     const uint64_t hold_us = ((uint64_t)why->config.init_hold_ms * US_PER_MS) + (2u * (uint64_t)CHECK_EVERY_US);
-    uint32_t missing = missing_now(why, t_us);
-    for (size_t bit = 0u; bit < (size_t)WHY_MISSING_BITS; bit++) {
+    const uint32_t now_missing = missing_now(why, t_us);
+    uint32_t missing = now_missing;
+    for (size_t bit = 0u; (bit < (size_t)WHY_MISSING_BITS) && (now_missing == 0u); bit++) {
         const uint64_t last_us = why->missing_us[bit];
         const bool counts = (last_us != WHY_NEVER) && (last_us > why->start_us + (uint64_t)FIRST_FRAMES_US);
         missing |= (counts && (last_us + hold_us >= t_us)) ? (1u << bit) : 0u;
