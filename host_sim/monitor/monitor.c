@@ -132,12 +132,20 @@ static void take_error(monitor_t *monitor, hal_can_side_t side, uint64_t t_us) {
     }
 }
 
+/** On the AI side a gateway repeats what the vehicle reports: known, and no row of its own. */
+static bool is_repeated(const monitor_t *monitor, hal_can_side_t side, uint32_t id) {
+    return (side == HAL_CAN_AI) &&
+           ((monitor->row_of[HAL_CAN_VEHICLE][id] != 0u) || (id == monitor->config.status_frame_id));
+}
+
 static void take(monitor_t *monitor, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
     const bool is_standard = ((frame->flags & HAL_CAN_EXTENDED) == 0u) && (frame->id <= AGV_ID_MAX);
     const uint8_t index = is_standard ? monitor->row_of[side][frame->id] : 0u;
     if ((frame->flags & HAL_CAN_ERROR) != 0u) {
         take_error(monitor, side, t_us);
     } else if (monitor_is_status(monitor, side, frame)) {
+        return;
+    } else if ((index == 0u) && is_standard && is_repeated(monitor, side, frame->id)) {
         return;
     } else if (index == 0u) {
         take_other(monitor, side, frame, t_us);

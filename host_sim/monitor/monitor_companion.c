@@ -103,6 +103,9 @@ void monitor_companion_show(monitor_companion_t *companion) {
     (void)fflush(stdout);
     companion->stdout_was = dup(STDOUT_FILENO);
     companion->stderr_was = dup(STDERR_FILENO);
+    if ((companion->stdout_was < 0) || (companion->stderr_was < 0)) {
+        return; /* too many files are open: it stays as without a screen */
+    }
     companion->is_shown = true;
     tell(companion, &message);
     (void)dup2(companion->text, STDOUT_FILENO);

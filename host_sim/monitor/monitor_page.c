@@ -9,8 +9,15 @@
 
 enum { LEAST_WIDTH = 40, LEAST_HEIGHT = 8, LABEL = 12, ALARMS_MAX = 14, CELL = 64, S_PER_MIN = 60, MIN_PER_H = 60 };
 
-/** Lines: header, supervisor, vehicle, alarms, blank; titles of the table; other identifiers, titles of the log, keys. */
-enum { LINES_ABOVE_TABLE = 5, LINES_BESIDES = LINES_ABOVE_TABLE + 4 };
+/** Lines: header, supervisor, vehicle, alarms; titles of the table; other identifiers, keys. */
+enum { LINES_ABOVE_TABLE = 4, LINES_BESIDES = LINES_ABOVE_TABLE + 3 };
+
+/** With fewer lines for the log there is no blank line above the table, and no title of the log. */
+enum { ROOMY = 4 };
+
+static bool is_roomy(const monitor_t *monitor, int height) {
+    return height - (int)LINES_BESIDES - (int)monitor->row_count - 2 >= (int)ROOMY;
+}
 
 static int label(monitor_view_t *view, int y, const char *text) {
     (void)monitor_view_put(view, y, 0, STYLE_BOLD, text);
@@ -218,21 +225,24 @@ static monitor_style_t style_of_level(monitor_level_t level) {
     return styles[level];
 }
 
-static void draw_log(monitor_view_t *view, int y, const monitor_t *monitor, const monitor_page_t *page) {
-    const int lines = view->height - 1 - y - 1;
-    (void)label(view, y, "transitions");
+static void draw_log_title(monitor_view_t *view, int y, const monitor_page_t *page) {
+    const int x = label(view, y, "transitions");
     if (page->scrolled > 0u) {
-        (void)monitor_view_print(view, y, LABEL, STYLE_WARN, "%zu newer below", page->scrolled);
+        (void)monitor_view_print(view, y, x, STYLE_WARN, "%zu newer below", page->scrolled);
     }
+}
+
+static void draw_log(monitor_view_t *view, int y, const monitor_t *monitor, const monitor_page_t *page) {
+    const int lines = view->height - 1 - y;
     const size_t length = monitor_log_length(&monitor->log);
     const size_t left = (length > page->scrolled) ? length - page->scrolled : 0u;
     const int shown = (left < (size_t)((lines > 0) ? lines : 0)) ? (int)left : lines;
     for (int i = 0; i < shown; i++) {
         const monitor_entry_t *entry = monitor_log_back(&monitor->log, page->scrolled + (size_t)(shown - 1 - i));
-        (void)monitor_view_print(view, y + 1 + i, 0, STYLE_DIM, "%7" PRIu64 ".%03" PRIu64, entry->t_us / US_PER_S,
+        (void)monitor_view_print(view, y + i, 0, STYLE_DIM, "%7" PRIu64 ".%03" PRIu64, entry->t_us / US_PER_S,
                                  (entry->t_us % US_PER_S) / US_PER_MS);
-        (void)monitor_view_put(view, y + 1 + i, LABEL + 1, STYLE_PLAIN, entry->who);
-        (void)monitor_view_put(view, y + 1 + i, LABEL + LABEL, style_of_level(entry->level), entry->text);
+        (void)monitor_view_put(view, y + i, LABEL + 1, STYLE_PLAIN, entry->who);
+        (void)monitor_view_put(view, y + i, LABEL + LABEL, style_of_level(entry->level), entry->text);
     }
 }
 
@@ -261,7 +271,7 @@ static void draw_keys(monitor_view_t *view, const monitor_page_t *page) {
 }
 
 int monitor_page_log_lines(const monitor_t *monitor, int height) {
-    const int lines = height - LINES_BESIDES - (int)monitor->row_count;
+    const int lines = height - (int)LINES_BESIDES - (int)monitor->row_count - (is_roomy(monitor, height) ? 2 : 0);
     return (lines > 0) ? lines : 0;
 }
 
@@ -278,8 +288,13 @@ void monitor_page_draw(monitor_view_t *view, const monitor_t *monitor, const mon
         draw_supervisor(view, y, monitor);
         draw_vehicle(view, y + 1, monitor);
         draw_alarms(view, y + 2, monitor);
-        y = monitor_table_draw(view, LINES_ABOVE_TABLE, monitor);
+        const bool roomy = is_roomy(monitor, view->height);
+        y = monitor_table_draw(view, (int)LINES_ABOVE_TABLE + (roomy ? 1 : 0), monitor);
         draw_others(view, y, monitor);
+        if (roomy) {
+            y++;
+            draw_log_title(view, y, page);
+        }
         draw_log(view, y + 1, monitor, page);
     }
     monitor_view_fill(view, view->height - 1, STYLE_PLAIN);

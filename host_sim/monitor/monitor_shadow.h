@@ -21,7 +21,7 @@ typedef struct monitor_shadow monitor_shadow_t;
  */
 monitor_shadow_t *monitor_shadow_new(const agv_config_t *config, session_observer_fn *fn, void *ctx, uint64_t t_us);
 
-/** A frame was received. */
+/** A frame was received; one with an identifier of no message is passed over. */
 void monitor_shadow_frame(monitor_shadow_t *shadow, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us);
 
 /** Frames of a side were lost before it could see them. */

@@ -197,7 +197,7 @@ static void draw_signals(monitor_view_t *view, int y, int x, const monitor_t *mo
 }
 
 static const column_t columns[] = {
-    {"side", SIDE_WIDTH, false, 0, true, draw_side},
+    {"bus", SIDE_WIDTH, false, 0, true, draw_side},
     {"ID", ID_WIDTH, false, 0, false, draw_id},
     {"message", NAME_WIDTH, false, 0, false, draw_name},
     {"age", AGE_WIDTH, true, 0, false, draw_age},

@@ -173,6 +173,16 @@ void test_the_sides_of_a_gateway_are_apart(void) {
     TEST_ASSERT_EQUAL_STRING("supervisor", monitor_sender(monitor, row_of(VEHICLE, 0x168)));
 }
 
+void test_what_a_gateway_repeats_on_the_ai_side_is_nothing_unknown(void) {
+    end();
+    begin(true, false);
+    frame(AI, 10, 0x363, MANUAL);
+    frame(AI, 11, 0x7F0, "0FFF000000000000");
+    TEST_ASSERT_EQUAL(0, monitor->other_count);
+    TEST_ASSERT_EQUAL(0, row_of(VEHICLE, 0x363)->count);
+    TEST_ASSERT_EQUAL(MONITOR_NO_SOURCE, monitor->supervisor.source);
+}
+
 void test_rate_over_the_last_second(void) {
     for (unsigned ms = 0u; ms <= 2400u; ms += 10u) {
         frame(VEHICLE, ms, 0x363, MANUAL);

@@ -116,9 +116,14 @@ void test_a_gateway_has_room_on_80_by_24(void) {
     begin(true, false);
     frame(AI, 10, 0x168, "0100000000000000");
     draw(80, 24);
-    TEST_ASSERT_EQUAL(0, strncmp(line(7), "ai  168h gear_command ", 22));
-    TEST_ASSERT_EQUAL(0, strncmp(line(10), "veh 43Fh turn_signal_command ", 29));
-    TEST_ASSERT_EQUAL(22, find("transitions"));
+    TEST_ASSERT_EQUAL(0, strncmp(line(4), "bus ID   message", 16));
+    TEST_ASSERT_EQUAL(0, strncmp(line(6), "ai  168h gear_command ", 22));
+    TEST_ASSERT_EQUAL(0, strncmp(line(9), "veh 43Fh turn_signal_command ", 29));
+    TEST_ASSERT_EQUAL(20, find("also heard"));
+    TEST_ASSERT_EQUAL(2, monitor_page_log_lines(monitor, 24));
+    frame(AI, 20, 0x168, "0800000000000000");
+    draw(80, 24);
+    TEST_ASSERT_EQUAL(21, find("168h gear: D -> P"));
     TEST_ASSERT_NOT_EQUAL(-1, find("quit"));
 }
 

@@ -13,7 +13,7 @@ import unittest
 import hostsim
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
-PAGES = ("docs/host-sim.md", "docs/report.md", "docs/survey.md", "docs/why.md", "README.md")
+PAGES = ("docs/host-sim.md", "docs/report.md", "docs/survey.md", "docs/why.md", "docs/monitor.md", "README.md")
 LEFT_OUT = ("cmake ", "export PATH=")
 
 
