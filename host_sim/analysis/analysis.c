@@ -25,6 +25,12 @@ struct analysis {
     output_t files[ANALYSIS_FILES];
 };
 
+void analysis_copy_paths(const char *to[ANALYSIS_FILES], const char *const from[ANALYSIS_FILES]) {
+    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
+        to[i] = from[i];
+    }
+}
+
 static bool is_asked_for(const analysis_t *analysis, analysis_file_t file) {
     return analysis->request.paths[file] != NULL;
 }

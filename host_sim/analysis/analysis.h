@@ -30,6 +30,9 @@ typedef struct {
     bool is_recorder;                  /**< the events come from a flight recorder, and no frames with them */
 } analysis_request_t;
 
+/** Copy the paths of the files. */
+void analysis_copy_paths(const char *to[ANALYSIS_FILES], const char *const from[ANALYSIS_FILES]);
+
 typedef struct analysis analysis_t;
 
 /** Begin. @return NULL: no memory; was reported */

@@ -3,7 +3,6 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "agv/state.h"
 #include "common/interrupt.h"
@@ -135,7 +134,7 @@ static void print_text(work_t *work) {
 static bool analyse(work_t *work) {
     const recorder_request_t *request = work->request;
     analysis_request_t analysed = {.config = &request->config, .log = request->path, .is_recorder = true};
-    memcpy(analysed.paths, request->analysis, sizeof analysed.paths);
+    analysis_copy_paths(analysed.paths, request->analysis);
     work->analysis = analysis_new(&analysed);
     if ((work->analysis == NULL) || !analysis_open(work->analysis) ||
         ((request->events != NULL) && !output_open(&work->lines, request->events))) {

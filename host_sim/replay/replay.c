@@ -308,7 +308,7 @@ static bool check_request(const replay_request_t *request) {
 static bool make_analysis(replay_t *replay) {
     analysis_request_t request = {.config = &replay->request->config, .is_recording = true};
     request.log = (strcmp(replay->request->log, "-") == 0) ? "standard input" : replay->request->log;
-    memcpy(request.paths, replay->request->analysis, sizeof request.paths);
+    analysis_copy_paths(request.paths, replay->request->analysis);
     replay->analysis = analysis_new(&request);
     return replay->analysis != NULL;
 }

@@ -170,16 +170,15 @@ static void explain_value(const why_t *why, why_trip_t *trip) {
         return;
     }
     set_message(why, trip, (agv_message_t)agv_ids_find(&why->ids, frame->id));
-    if ((frame->length != AGV_DLC) || (frame->flags != 0u)) {
-        trip->limit = WHY_NO_LIMIT;
-    } else if (trip->message == AGV_MSG_THROTTLE_COMMAND) {
+    const bool whole = (frame->length == AGV_DLC) && (frame->flags == 0u);
+    if (whole && (trip->message == AGV_MSG_THROTTLE_COMMAND)) {
         trip->limit = (int64_t)AGV_THROTTLE_MAX_COUNTS;
         trip->unit = "counts";
-    } else if (trip->message == AGV_MSG_STEERING_COMMAND) {
+    } else if (whole && (trip->message == AGV_MSG_STEERING_COMMAND)) {
         trip->limit = AGV_ANGLE_RAW_MAX;
         trip->unit = "ddeg";
     } else {
-        trip->limit = WHY_NO_LIMIT;
+        trip->limit = WHY_NO_LIMIT; /* a gear, or no whole frame */
     }
     show_recent(why, trip, trip->message, RECENT_FRAMES);
     set_frame(trip, &why->bad_command);

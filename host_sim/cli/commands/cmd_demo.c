@@ -132,7 +132,7 @@ static bool prepare(work_t *work, const given_t *given) {
         return true;
     }
     analysis_request_t request = {.config = &work->run.scenario.config, .log = work->run.scenario.name};
-    memcpy(request.paths, given->analysis.paths, sizeof request.paths);
+    analysis_copy_paths(request.paths, given->analysis.paths);
     work->analysis = analysis_new(&request);
     return (work->analysis != NULL) && analysis_open(work->analysis);
 }

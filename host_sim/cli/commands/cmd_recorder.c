@@ -2,8 +2,6 @@
  * @file cmd_recorder.c
  * `host_sim recorder`: its options.
  */
-#include <string.h>
-
 #include "cli/analysis_options.h"
 #include "cli/commands/commands.h"
 #include "cli/options.h"
@@ -67,7 +65,7 @@ status_t cmd_recorder(int argc, char **argv) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
     given.request.path = argv[0];
-    memcpy(given.request.analysis, given.analysis.paths, sizeof given.request.analysis);
+    analysis_copy_paths(given.request.analysis, given.analysis.paths);
     if (!check_files(&given) || !config_options_make(&given.config, &given.request.config)) {
         return STATUS_UNUSABLE;
     }

@@ -2,8 +2,6 @@
  * @file cmd_replay.c
  * `host_sim replay`: its options.
  */
-#include <string.h>
-
 #include "cli/analysis_options.h"
 #include "cli/commands/commands.h"
 #include "cli/options.h"
@@ -94,7 +92,7 @@ status_t cmd_replay(int argc, char **argv) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
     given.request.log = argv[0];
-    memcpy(given.request.analysis, given.analysis.paths, sizeof given.request.analysis);
+    analysis_copy_paths(given.request.analysis, given.analysis.paths);
     given.request.start_ms = (uint32_t)given.start_ms;
     given.request.reset_cause = (hal_reset_cause_t)given.reset_cause;
     given.config.has_ai_side = given.request.ai_interface != NULL;

@@ -3,7 +3,6 @@
  * `host_sim run`: its options.
  */
 #include <stddef.h>
-#include <string.h>
 
 #include "cli/analysis_options.h"
 #include "cli/commands/commands.h"
@@ -74,7 +73,7 @@ status_t cmd_run(int argc, char **argv) {
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
-    memcpy(given.request.analysis, given.analysis.paths, sizeof given.request.analysis);
+    analysis_copy_paths(given.request.analysis, given.analysis.paths);
     given.config.has_ai_side = given.request.bus.interfaces[HAL_CAN_AI] != NULL;
     if (!check_files(&given) || !config_options_make(&given.config, &given.request.config) ||
         !interface_options_check(&given.request.bus, "run", given.request.config.topology == AGV_TOPOLOGY_GATEWAY)) {

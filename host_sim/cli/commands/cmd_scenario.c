@@ -243,7 +243,7 @@ static bool open_analysis(work_t *work) {
     if (!analysis_options_any(&work->given.analysis)) {
         return true;
     }
-    memcpy(request.paths, work->given.analysis.paths, sizeof request.paths);
+    analysis_copy_paths(request.paths, work->given.analysis.paths);
     work->analysis = analysis_new(&request);
     return (work->analysis != NULL) && analysis_open(work->analysis);
 }
