@@ -143,9 +143,8 @@ static void take(monitor_t *monitor, hal_can_side_t side, const hal_can_frame_t 
     const uint8_t index = is_standard ? monitor->row_of[side][frame->id] : 0u;
     if ((frame->flags & HAL_CAN_ERROR) != 0u) {
         take_error(monitor, side, t_us);
-    } else if (monitor_is_status(monitor, side, frame)) {
-        return;
-    } else if ((index == 0u) && is_standard && is_repeated(monitor, side, frame->id)) {
+    } else if (monitor_is_status(monitor, side, frame) ||
+               ((index == 0u) && is_standard && is_repeated(monitor, side, frame->id))) {
         return;
     } else if (index == 0u) {
         take_other(monitor, side, frame, t_us);

@@ -8,7 +8,7 @@
 
 _Static_assert((AGV_RECORDER_EVENTS & (AGV_RECORDER_EVENTS - 1u)) == 0u, "AGV_RECORDER_EVENTS must be a power of two");
 _Static_assert(AGV_RECORDER_EVENTS >= 16u, "AGV_RECORDER_EVENTS must be at least 16: what one trip records");
-_Static_assert(sizeof(agv_event_t) == offsetof(agv_event_t, frames) + (AGV_MSG_COUNT * AGV_DLC) + 4u,
+_Static_assert(sizeof(agv_event_t) == offsetof(agv_event_t, frames) + ((size_t)AGV_MSG_COUNT * AGV_DLC) + 4u,
                "no padding: the checksum runs over all bytes");
 
 #define RATE_TIME_MS 1000u

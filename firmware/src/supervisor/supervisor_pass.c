@@ -188,7 +188,7 @@ void agv_core_await_safe_state(agv_core_t *core) {
     agv_reset_button_trip(&core->reset_pin, &core->timers);
 }
 
-/* FSM-10: manual drops the held angle. A 065h that may no longer be sent must not leave a stalled transmitter later. */
+/* FSM-10: manual drops the held angle, and so do 2 s in which no 065h left. A 065h that may no longer be sent must not leave a stalled transmitter later. */
 static void follow_hold(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) {
     const bool stalled = agv_fault_monitor_is_active(&core->faults, AGV_FAULT_TX_STALLED);
     if (!is_latched(core) || agv_mode_is_manual(&core->mode)) {
@@ -197,8 +197,10 @@ static void follow_hold(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) {
     if (!is_latched(core)) {
         return;
     }
-    const bool outdated = agv_hold_follow(&core->hold, elapsed_ms);
-    if (agv_hold_is_stuck(&core->hold, stalled, is_holdable(core) && !outdated)) {
+    if (agv_hold_follow(&core->hold, elapsed_ms)) {
+        agv_hold_drop(&core->hold);
+    }
+    if (agv_hold_is_stuck(&core->hold, stalled, is_holdable(core))) {
         agv_hold_withdrawn(&core->hold);
         agv_transmitter_discard(&core->transmitter, &core->timers, HAL_CAN_VEHICLE);
         hal_can_purge(hal, HAL_CAN_VEHICLE);

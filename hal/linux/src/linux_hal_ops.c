@@ -95,7 +95,7 @@ static void inputs_read(hal_t *hal, hal_inputs_t *inputs) {
 
 static bool clock_second_ms(hal_t *hal, uint32_t *time_ms) {
     (void)hal;
-    (void)time_ms;
+    *time_ms = 0u;
     return false;
 }
 

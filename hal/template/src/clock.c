@@ -12,7 +12,7 @@ uint32_t hal_clock_now_ms(hal_t *hal) {
 
 bool hal_clock_second_ms(hal_t *hal, uint32_t *time_ms) {
     (void)hal;
-    (void)time_ms;
+    *time_ms = 0u;
     /* TODO: read a counter that another oscillator drives, in milliseconds, and return true. */
     return false;
 }

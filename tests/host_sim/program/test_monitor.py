@@ -27,9 +27,11 @@ def long_log(seconds=600):
 
 class Tmux:
     """A program in a terminal of its own."""
+    count = 0
 
     def __init__(self, folder, width, height, *arguments, **environment):
-        self.socket = str(folder / "tmux")
+        Tmux.count += 1 # one server each: the one before may not have ended yet
+        self.socket = str(folder / f"tmux{Tmux.count}")
         self.status = folder / "status"
         self.errors = folder / "errors"
         variables = {"LANG": "C.UTF-8", "NO_COLOR": "", **environment}
