@@ -244,20 +244,17 @@ void test_manual_withdraws_an_angle_that_waits_in_a_stalled_transmitter(void) {
 
 /* When no 065h has left for 2 s, the wheels may have turned: the angle of the trip is dropped, and one is taken anew. */
 /* Shows: FSM-10, SUP-7, TX_STALLED */
-void test_an_angle_that_cannot_leave_for_2_s_is_taken_anew(void) {
+TEST_CASE(1900, 9123)
+TEST_CASE(2050, 8700)
+void test_an_angle_that_cannot_leave_for_2_s_is_taken_anew(uint32_t full_ms, uint16_t held) {
     trip_at(9123);
     fixture_run(&f, 100);
     fixture_angle(&f, 8700);
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
-    fixture_run(&f, 1900);
+    fixture_run(&f, full_ms);
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
     fixture_run(&f, 100);
-    expect_held_for_a_second(9123);
-    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
-    fixture_run(&f, 2050);
-    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
-    fixture_run(&f, 100);
-    expect_held_for_a_second(8700);
+    expect_held_for_a_second(held);
 }
 
 /* ---- The age of the angle ---- */
