@@ -25,7 +25,7 @@ FAMILIES = ("SUP", "FSM", "TOP", "TIM", "INT", "LED", "HW")
 NOT_BUILT = "not built yet"
 BEGIN, END = "<!-- traceability: made by scripts/tools/traceability.py --markdown -->", "<!-- end of traceability -->"
 LEVELS = "<!-- levels of evidence: made by scripts/tools/traceability.py --markdown -->"
-CODE = ("firmware/include/agv", "firmware/src", "hal/include/hal")
+CODE = ("firmware/include/agv", "firmware/src", "hal/include/hal", "firmware/zephyr/src")
 PROOF_TAG = re.compile(r"^# Shows: (?P<rows>.*)$", re.MULTILINE)
 C_TAG = re.compile(
     r"/\*\s*Shows:(?P<rows>[^*]*)\*/\s*(?:TEST_(?:CASE|RANGE|MATRIX)\(.*\)\s*)*(?:void\s+(?P<test>\w+)\s*\(void\)|"
