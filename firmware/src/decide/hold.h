@@ -24,7 +24,7 @@ enum { AGV_HOLD_UNSENT_MAX_MS = 2000 };
 /** Hold, at a trip, the angle of the last valid 067h if it is not older than hold_age_ms. */
 void agv_hold_trip(agv_hold_t *hold, const agv_vehicle_t *vehicle, const agv_timers_t *timers);
 
-/** Drop the held angle: at a reset, when manual is reported and the operator steers. */
+/** Drop the held angle: at a reset, when manual is reported and the operator steers, and when it is out of date. */
 void agv_hold_drop(agv_hold_t *hold);
 
 /**
@@ -51,7 +51,7 @@ void agv_hold_withdrawn(agv_hold_t *hold);
 
 /**
  * Whether a 065h that may no longer be sent waits in a stalled transmitter, from which it would leave later.
- * @param sendable 065h may be sent, and its angle has not just gone out of date
+ * @param sendable 065h may be sent now
  */
 bool agv_hold_is_stuck(const agv_hold_t *hold, bool stalled, bool sendable);
 

@@ -188,7 +188,10 @@ void agv_core_await_safe_state(agv_core_t *core) {
     agv_reset_button_trip(&core->reset_pin, &core->timers);
 }
 
-/* FSM-10: manual drops the held angle, and so do 2 s in which no 065h left. A 065h that may no longer be sent must not leave a stalled transmitter later. */
+/*
+ * FSM-10: manual drops the held angle, and so do 2 s in which no 065h left. A 065h that may no longer be sent must not leave
+ * a stalled transmitter later.
+ */
 static void follow_hold(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) {
     const bool stalled = agv_fault_monitor_is_active(&core->faults, AGV_FAULT_TX_STALLED);
     if (!is_latched(core) || agv_mode_is_manual(&core->mode)) {

@@ -273,7 +273,10 @@ static bool emit_status_page(agv_transmitter_t *transmitter, const agv_tx_orders
     return emit(transmitter, orders, HAL_CAN_VEHICLE, orders->config->status_frame_id, data);
 }
 
-/* By choice, once in 256 frames two more follow at once, with version and revision. They are left out if they would have to wait. */
+/*
+ * By choice, two more frames follow every 256th one at once, with version and revision. They are left out if they would have
+ * to wait.
+ */
 static void emit_version(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
     const agv_version_t *const version = orders->version;
     if ((version != NULL) && (orders->config->status_version == (uint16_t)AGV_STATUS_VERSION_ON) &&
