@@ -15,12 +15,12 @@
 #include "hal_linux/linux_can.h"
 #include "hal_linux/linux_loop.h"
 #include "io/events.h"
-#include "io/sent_log.h"
 #include "live/live_files.h"
 #include "live/live_output.h"
 #include "live/live_status.h"
 #include "live/node.h"
-#include "monitor/monitor_companion.h"
+#include "logs/sent_log.h"
+#include "monitor/companion/monitor_companion.h"
 #include "ui/summary.h"
 
 /** The files that are written. */

@@ -8,11 +8,11 @@
 #include "hal_linux/linux_can.h"
 #include "hal_linux/linux_clock.h"
 #include "hal_linux/linux_loop.h"
-#include "io/candump_line.h"
 #include "live/external.h"
 #include "live/live_files.h"
 #include "live/node.h"
 #include "live/vehicle_bus.h"
+#include "logs/candump_line.h"
 #include "scenario/scenario_player.h"
 
 /* 128 times 11 recessive bits at 500 kbit/s: how long the recovery of a controller takes on an idle bus. */

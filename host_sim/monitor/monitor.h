@@ -17,7 +17,7 @@
 #include "agv/config.h"
 #include "agv/state.h"
 #include "hal/can.h"
-#include "monitor/monitor_log.h"
+#include "monitor/inputs/monitor_log.h"
 #include "monitor/monitor_shadow.h"
 #include "session/session.h"
 #include "traffic/signals.h"

@@ -4,7 +4,7 @@
 
 #include "common/units.h"
 #include "hal_sim/sim_hal.h"
-#include "io/candump_line.h"
+#include "logs/candump_line.h"
 
 /** A longer leap of time is no silence of the bus, but a program that stood still, or a log with a hole. */
 #define LEAP_MAX_US (10u * (uint64_t)US_PER_S)

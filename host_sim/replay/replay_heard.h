@@ -10,7 +10,7 @@
 #include <stdint.h>
 
 #include "agv/protocol.h"
-#include "io/candump_line.h"
+#include "logs/candump_line.h"
 
 #define REPLAY_INTERFACES_MAX 8u
 

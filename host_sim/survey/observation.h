@@ -5,7 +5,7 @@
 #ifndef HOST_SIM_OBSERVATION_H
 #define HOST_SIM_OBSERVATION_H
 
-#include "io/candump_line.h"
+#include "logs/candump_line.h"
 #include "traffic/bus_load.h"
 #include "traffic/traffic.h"
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "common/interrupt.h"
-#include "io/candump_log.h"
+#include "logs/candump_log.h"
 #include "survey/sources.h"
 
 static hal_can_side_t side_of(const survey_request_t *request, const candump_record_t *record) {

@@ -8,7 +8,7 @@
 
 #include "capture.h"
 #include "input.h"
-#include "io/candump_log.h"
+#include "logs/candump_log.h"
 
 /* What reading a log came to. */
 typedef struct {

@@ -10,7 +10,7 @@
 
 #include "capture.h"
 #include "input.h"
-#include "io/candump_log.h"
+#include "logs/candump_log.h"
 
 #define HEX "[0-9A-Fa-f]"
 #define BYTES8 "(" HEX HEX "){8}"

@@ -9,9 +9,9 @@
 #include "cli/interface_options.h"
 #include "cli/options.h"
 #include "config/config_options.h"
-#include "io/candump_line.h"
 #include "io/output.h"
-#include "monitor/monitor_run.h"
+#include "logs/candump_line.h"
+#include "monitor/inputs/monitor_run.h"
 
 #define SPEED_LOWEST 0.01
 #define SPEED_HIGHEST 1000.0

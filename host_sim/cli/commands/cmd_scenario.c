@@ -15,11 +15,11 @@
 #include "common/units.h"
 #include "config/config_options.h"
 #include "hal_linux/linux_can.h"
-#include "io/candump_line.h"
 #include "io/events.h"
 #include "io/junit.h"
 #include "io/output.h"
 #include "live/scenario_bus.h"
+#include "logs/candump_line.h"
 #include "scenario/run/scenario_analysis.h"
 #include "scenario/run/scenario_run.h"
 

@@ -1,5 +1,5 @@
 /* A recording of the bus. */
-#include "monitor/monitor_record.h"
+#include "monitor/inputs/monitor_record.h"
 
 #include <errno.h>
 #include <string.h>

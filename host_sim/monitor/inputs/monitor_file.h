@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "io/candump_log.h"
+#include "logs/candump_log.h"
 #include "monitor/monitor.h"
 
 /** As a time to pass on frames until: all. */

@@ -11,7 +11,7 @@
 
 #include <stddef.h>
 
-#include "io/candump_line.h"
+#include "logs/candump_line.h"
 
 /** What has been read so far. All zero: nothing. */
 typedef struct {

@@ -1,4 +1,4 @@
-#include "monitor/monitor_companion.h"
+#include "monitor/companion/monitor_companion.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "common/report.h"
-#include "monitor/monitor_companion_internal.h"
+#include "monitor/companion/monitor_companion_internal.h"
 #include "monitor/monitor_screen.h"
 
 enum { NO_FILE = -1, TELL_EVERY_MS = 100, READING = 0, WRITING = 1 };

@@ -13,8 +13,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "io/candump_line.h"
-#include "io/log_token.h"
+#include "logs/candump_line.h"
+#include "logs/log_token.h"
 
 /** What has been read so far. All zero: nothing. */
 typedef struct {

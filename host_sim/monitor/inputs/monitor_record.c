@@ -1,4 +1,4 @@
-#include "monitor/monitor_record.h"
+#include "monitor/inputs/monitor_record.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "common/units.h"
-#include "io/candump_line.h"
+#include "logs/candump_line.h"
 
 enum { NO_FILE = -1, MODE = 0666 };
 

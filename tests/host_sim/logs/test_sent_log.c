@@ -1,5 +1,5 @@
 /* The log of what was sent: order kept, interfaces named as first heard. */
-#include "io/sent_log.h"
+#include "logs/sent_log.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "io/candump_log.h"
+#include "logs/candump_log.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -8,7 +8,7 @@
 
 #include "common/interrupt.h"
 #include "common/report.h"
-#include "io/log_foreign.h"
+#include "logs/log_foreign.h"
 
 bool candump_open(candump_log_t *log, const char *path, bool skip_bad) {
     bool is_stdin = strcmp(path, "-") == 0;

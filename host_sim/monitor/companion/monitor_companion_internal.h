@@ -5,8 +5,8 @@
 #ifndef HOST_SIM_MONITOR_COMPANION_INTERNAL_H
 #define HOST_SIM_MONITOR_COMPANION_INTERNAL_H
 
+#include "monitor/companion/monitor_companion.h"
 #include "monitor/monitor.h"
-#include "monitor/monitor_companion.h"
 
 /** Kinds of messages. */
 typedef enum { MONITOR_MESSAGE_SHOW, MONITOR_MESSAGE_EVENT, MONITOR_MESSAGE_STATE } monitor_message_kind_t;

@@ -6,7 +6,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-#include "io/candump_log.h"
+#include "logs/candump_log.h"
 #include "scratch.h"
 #include "unity.h"
 

@@ -1,4 +1,4 @@
-#include "io/candump_line.h"
+#include "logs/candump_line.h"
 
 #include <stdbool.h>
 #include <string.h>

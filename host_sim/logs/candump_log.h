@@ -13,10 +13,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "io/candump_line.h"
-#include "io/candump_screen.h"
-#include "io/gunzip.h"
-#include "io/vector_asc.h"
+#include "logs/candump_line.h"
+#include "logs/candump_screen.h"
+#include "logs/gunzip.h"
+#include "logs/vector_asc.h"
 
 #define CANDUMP_BUFFER_SIZE 262144u
 #define CANDUMP_LONG_LINE_MAX 16383u /**< characters of a line of another format than `candump -l` */

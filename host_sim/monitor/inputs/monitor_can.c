@@ -1,4 +1,4 @@
-#include "monitor/monitor_can.h"
+#include "monitor/inputs/monitor_can.h"
 
 #include <string.h>
 

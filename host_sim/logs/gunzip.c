@@ -1,4 +1,4 @@
-#include "io/gunzip.h"
+#include "logs/gunzip.h"
 
 #include <string.h>
 

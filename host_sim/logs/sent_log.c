@@ -1,4 +1,4 @@
-#include "io/sent_log.h"
+#include "logs/sent_log.h"
 
 #include <string.h>
 

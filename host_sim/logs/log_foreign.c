@@ -1,11 +1,11 @@
-#include "io/log_foreign.h"
+#include "logs/log_foreign.h"
 
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
-#include "io/log_token.h"
+#include "logs/log_token.h"
 
 #define CAN_LOGCONVERT "convert it: python3 -m can.logconvert @ @.log (python-can)"
 #define TSHARK                                                                                                         \

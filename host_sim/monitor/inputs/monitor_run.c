@@ -1,4 +1,4 @@
-#include "monitor/monitor_run.h"
+#include "monitor/inputs/monitor_run.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -9,10 +9,10 @@
 
 #include "common/interrupt.h"
 #include "common/units.h"
-#include "monitor/monitor_can.h"
-#include "monitor/monitor_file.h"
+#include "monitor/inputs/monitor_can.h"
+#include "monitor/inputs/monitor_file.h"
+#include "monitor/inputs/monitor_record.h"
 #include "monitor/monitor_lines.h"
-#include "monitor/monitor_record.h"
 #include "monitor/monitor_screen.h"
 #include "monitor/monitor_ui.h"
 

@@ -1,4 +1,4 @@
-#include "monitor/monitor_file.h"
+#include "monitor/inputs/monitor_file.h"
 
 #include <string.h>
 

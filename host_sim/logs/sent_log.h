@@ -14,8 +14,8 @@
 #include <stdint.h>
 
 #include "hal/can.h"
-#include "io/candump_line.h"
 #include "io/output.h"
+#include "logs/candump_line.h"
 
 #define SENT_LOG_WAITING_MAX 32768u /**< frames: 1 MiB */
 

@@ -1,4 +1,4 @@
-#include "io/log_token.h"
+#include "logs/log_token.h"
 
 #include <string.h>
 #include <strings.h>

@@ -1,4 +1,4 @@
-#include "io/vector_asc.h"
+#include "logs/vector_asc.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -10,8 +10,8 @@
 
 #include "hal_linux/linux_can.h"
 #include "hal_linux/linux_clock.h"
+#include "monitor/inputs/monitor_record.h"
 #include "monitor/monitor.h"
-#include "monitor/monitor_record.h"
 
 /** One side. */
 typedef struct {

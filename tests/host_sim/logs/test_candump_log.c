@@ -1,5 +1,5 @@
 /* A candump log as a stream: lines across the edges of the buffer, lines that are too long, ends of all kinds. */
-#include "io/candump_log.h"
+#include "logs/candump_log.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* One line of a candump log: every form that can-utils writes, and everything that is none of them. */
-#include "io/candump_line.h"
+#include "logs/candump_line.h"
 
 #include <stdio.h>
 #include <string.h>
