@@ -8,7 +8,7 @@
 #include "agv/names.h"
 #include "agv/recorder.h"
 
-enum { TIME_SIZE = 32, LIMIT_SIZE = 48, US_A_MS = 1000, US_A_S = 1000000, STATE_ACTIVE = 2, STOOD_US = 20000 };
+enum { TIME_SIZE = 32, LIMIT_SIZE = 64, US_A_MS = 1000, US_A_S = 1000000, STATE_ACTIVE = 2, STOOD_US = 20000 };
 
 const char *sentence_phrase(agv_fault_t fault) {
     static const char *const phrases[AGV_FAULT_COUNT] = {

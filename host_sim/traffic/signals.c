@@ -221,7 +221,7 @@ char *signals_print(char *text, size_t size, uint32_t message, const uint8_t dat
     text[0] = '\0';
     for (size_t i = 0u; signals_read(message, i, data, &value); i++) {
         const signal_info_t *info = signals_info(message, i);
-        if (!is_shown(info, &value)) {
+        if ((info == NULL) || !is_shown(info, &value)) {
             continue;
         }
         char part[SIGNALS_VALUE_SIZE + SIGNALS_VALUE_SIZE] = "";
