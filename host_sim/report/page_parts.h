@@ -5,10 +5,8 @@
 #ifndef HOST_SIM_PAGE_PARTS_H
 #define HOST_SIM_PAGE_PARTS_H
 
-extern const char page_report_html[]; /**< the frame: "@TITLE@", "@CSS@", "@SENTENCE@", "@DATA@", "@JS@" are replaced */
-extern const char page_report_css[];
-extern const char page_report_js[];
-extern const char page_timeline_css[];
-extern const char page_timeline_js[];
+extern const char page_frame[]; /**< report.html: "@TITLE@", "@CSS@", "@SENTENCE@", "@DATA@", "@JS@" are replaced */
+extern const char page_styles[];
+extern const char page_modules[]; /**< one script: each module stands after those that it imports */
 
 #endif

@@ -230,8 +230,7 @@ static void put_part(output_t *output, char part, const sentence_t *sentence, co
         put_text(output, sentence->headline);
         break;
     case 'C':
-        put(output, page_timeline_css);
-        put(output, page_report_css);
+        put(output, page_styles);
         break;
     case 'S':
         put_sentence(output, sentence);
@@ -240,8 +239,7 @@ static void put_part(output_t *output, char part, const sentence_t *sentence, co
         put_data(output, data);
         break;
     default:
-        put(output, page_timeline_js);
-        put(output, page_report_js);
+        put(output, page_modules);
         break;
     }
 }
@@ -255,7 +253,7 @@ void report_page_write(output_t *output, const report_page_t *page, const why_t 
         sentence_no_trip(&sentence, why, series_end_us(series));
     }
     json_t *data = page_json(page, why, series, &sentence);
-    const char *at = page_report_html;
+    const char *at = page_frame;
     for (const char *mark = strchr(at, '@'); mark != NULL; mark = strchr(at, '@')) {
         (void)output_write(output, at, (size_t)(mark - at));
         put_part(output, mark[1], &sentence, data);

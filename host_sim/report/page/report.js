@@ -1,4 +1,6 @@
-// report.js: the page of a report, from the data in the file. It follows timeline.js in the same script.
+// report.js: the page of a report, from the data in the file.
+
+import { timeline } from "./timeline/timeline.js";
 
 const data = JSON.parse(document.getElementById("data").textContent);
 const series = data.series;
