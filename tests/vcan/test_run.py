@@ -325,6 +325,30 @@ expect:
 """
 
 
+class SaysWhy(Case):
+    @on_time
+    def test_a_steering_that_falls_silent_is_the_reason_of_the_trip(self):
+        why, report = self.folder / "why.json", self.folder / "why.html"
+        vehicle = self.start("vehicle", "--can", "vcan0")
+        process = self.start("run", "--can", "vcan0", "--events", "-", "--why", why, "--report", report)
+        self.wait_state(process, "ACTIVE")
+        vehicle.say("eps stop")
+        tripped = self.wait_state(process, "TRIPPED")
+        self.wait_state(process, "SAFE")
+        self.assertEqual((process.end(), vehicle.end()), (0, 0))
+        told = json.loads(why.read_text())
+        self.assertEqual((told["log"], told["not_supervised"]), ("vcan0", []))
+        trip = told["trips"][0]
+        self.assertEqual((trip["reason"], trip["t_ms"]), (tripped["reason"], tripped["t_ms"]))
+        self.assertEqual([trip[key] for key in ("reason", "kind", "message", "id", "limit", "unit")],
+                         ["EPS_HEARTBEAT_LOST", "silence", "steering_status", "067", 50, "ms"])
+        self.assertIn(trip["t_ms"] - trip["last_good_ms"], (51, 52))
+        self.assertLess(trip["first_safe_ms"] - trip["t_ms"], 1000 * SLACK_S)
+        self.assertGreater(trip["confirmed_ms"], trip["t_ms"])
+        self.assertIs(trip["from_recording"], False)
+        self.assertIn("EPS_HEARTBEAT_LOST", report.read_text())
+
+
 class Scenarios(Case):
     def scenario(self, name, reason):
         path = self.folder / name
