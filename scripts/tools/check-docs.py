@@ -7,6 +7,7 @@
   machine and is not checked. Commands must be in such blocks only.
 - A default that a page states as 50 ms (`vcu_heartbeat_timeout_ms`) must be that of config_settings.def.
 - docs/architecture.md links every source and header of firmware/ and hal/include.
+- The version of firmware/zephyr/VERSION is that of the citation, of the newest section of the changelog, and of the pages.
 """
 import argparse
 import os
@@ -26,6 +27,11 @@ STATED = re.compile(r"(\d+(?:\.\d+)?)( s| ms| mm/s| %|°)\s\(`(\w+)`")
 IN_UNIT = {" s": ("ms", 1000), " ms": ("ms", 1), " mm/s": ("mm/s", 1), " %": ("%", 1), "°": ("0.1 deg", 10)}
 KEYWORDS = {"if", "then", "else", "elif", "fi", "for", "do", "done", "while", "until", "case", "esac", "{", "}", "!", "cd",
             "export", "set", "echo", "source", "."}
+# Where the version is written a second time: file, and what stands around it. Two numbers: without the patch level.
+VERSIONS = (("CITATION.cff", r"^version: (.+)$"), ("CHANGELOG.md", r"\A(?:(?!^## ).*\n)*## \[([^\]]*)\]"),
+            ("README.md", r"^Version (\d\S*)"), ("docs/firmware.md", r"^\| release \|.*\n\|.*\n\| ([^ ]+)"),
+            ("docs/firmware.md", r"revision of the sources \(`([^+]+)\+"), ("docs/host-sim.md", r"^host_sim (\d\S*)$"),
+            ("docs/host-sim.md", r"find_package\(AgvSupervisor (\S+) REQUIRED"))
 SEPARATORS = {"|", "||", "&&", ";", "&", "(", ")"}
 
 
@@ -151,6 +157,16 @@ def check_modules(root, problems):
             problems.add(f"docs/architecture.md does not link {path.relative_to(root)}")
 
 
+def check_version(root, problems):
+    text = (root / "firmware/zephyr/VERSION").read_text(encoding="utf-8")
+    version = ".".join(re.search(rf"^{part} = (\d+)", text, re.MULTILINE)[1]
+                       for part in ("VERSION_MAJOR", "VERSION_MINOR", "PATCHLEVEL"))
+    for name, pattern in VERSIONS:
+        found = re.search(pattern, (root / name).read_text(encoding="utf-8"), re.MULTILINE)
+        if not found or found[1] not in (version, version.rpartition(".")[0]):
+            problems.add(f"{name}: the version is {found[1] if found else 'missing'}, firmware/zephyr/VERSION says {version}")
+
+
 def main():
     parser = argparse.ArgumentParser(description="links, commands and defaults in all pages")
     parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[2])
@@ -167,6 +183,7 @@ def main():
         defaults += check_defaults(root, page, prose, problems)
     if pages:
         check_modules(root, problems)
+        check_version(root, problems)
     else:
         problems.add(f"no pages in {root}")
     print(f"{len(pages)} pages, {links} links, {commands} commands, {defaults} defaults, {problems.count} problems")
