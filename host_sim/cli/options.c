@@ -48,16 +48,12 @@ static const option_t *find(const option_syntax_t *syntax, const char *argument)
 }
 
 static bool take_duration(const option_t *option, const char *value) {
-    uint64_t ms = 0u;
-    if (!duration_ms(value, option->lowest, option->highest, &ms)) {
-        char lowest[DURATION_TEXT_SIZE];
-        char highest[DURATION_TEXT_SIZE];
-        return report("%s: '%s' is not a time from %s to %s: 250ms, 10s, 1.5min, 2h, or milliseconds alone",
-                      option->name, value, duration_text(option->lowest, lowest),
-                      duration_text(option->highest, highest));
-    }
-    *option->duration = ms;
-    return true;
+    char problem[DURATION_PROBLEM_SIZE];
+    const duration_result_t result =
+        duration_read(value, option->unit, option->lowest, option->highest, option->duration);
+    return (result == DURATION_OK) ||
+           report("%s: %s", option->name,
+                  duration_problem(result, value, option->unit, option->lowest, option->highest, problem));
 }
 
 static bool take_value(const option_t *option, const char *value) {

@@ -13,6 +13,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "common/duration.h"
+
 /**
  * Called for every occurrence of an option.
  * @return false: the value makes no sense, and that was reported.
@@ -30,8 +32,9 @@ typedef struct {
     bool *flag;         /**< set to true */
     const char **text;  /**< any text but an empty one */
     uint64_t *number;   /**< decimal, `lowest` .. `highest` */
-    uint64_t *duration; /**< milliseconds, given as a time (common/duration.h), `lowest` .. `highest` */
-    int *word;          /**< index of one of `words` */
+    uint64_t *duration; /**< a time (common/duration.h), in `unit`, `lowest` .. `highest` */
+    duration_unit_t unit;
+    int *word; /**< index of one of `words` */
     option_each_fn *each;
     void *ctx; /**< for `each` */
     uint64_t lowest;
@@ -45,8 +48,15 @@ typedef struct {
     {.name = (name_), .value = (value_), .help = (help_), .text = (target)}
 #define OPTION_NUMBER(name_, value_, help_, target, low, high)                                                         \
     {.name = (name_), .value = (value_), .help = (help_), .number = (target), .lowest = (low), .highest = (high)}
-#define OPTION_DURATION(name_, help_, target, low, high)                                                               \
-    {.name = (name_), .value = "TIME", .help = (help_), .duration = (target), .lowest = (low), .highest = (high)}
+#define OPTION_DURATION_IN(unit_, name_, help_, target, low, high)                                                     \
+    {.name = (name_),                                                                                                  \
+     .value = "TIME",                                                                                                  \
+     .help = (help_),                                                                                                  \
+     .duration = (target),                                                                                             \
+     .unit = (unit_),                                                                                                  \
+     .lowest = (low),                                                                                                  \
+     .highest = (high)}
+#define OPTION_DURATION(...) OPTION_DURATION_IN(DURATION_MS, __VA_ARGS__)
 #define OPTION_WORD(name_, help_, target, list)                                                                        \
     {.name = (name_), .value = (list), .help = (help_), .word = (target), .words = (list)}
 /** @} */

@@ -54,3 +54,29 @@ bool words_hex(const char *text, size_t length, uint64_t *number) {
     }
     return good;
 }
+
+bool words_bits(const char *text, uint64_t *number) {
+    const bool has_prefix = (text[0] == '0') && (text[1] == 'x');
+    const char *digits = &text[has_prefix ? 2 : 0];
+    const size_t length = strspn(digits, "0123456789abcdefABCDEF");
+    if ((length == 0u) || (strcmp(&digits[length], has_prefix ? "" : "h") != 0)) {
+        return false;
+    }
+    if (!words_hex(digits, length, number)) {
+        *number = UINT64_MAX;
+    }
+    return true;
+}
+
+bool words_id(const char *text, uint64_t *number) {
+    if ((text[0] == '\0') || (text[strspn(text, "0123456789")] != '\0')) {
+        return words_bits(text, number);
+    }
+    if ((text[0] == '0') && (text[1] != '\0')) {
+        return false; /* 065 is more likely 065h than 65 */
+    }
+    if (!words_decimal(text, 0u, UINT64_MAX, number)) {
+        *number = UINT64_MAX;
+    }
+    return true;
+}

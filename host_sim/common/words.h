@@ -21,6 +21,12 @@ size_t words_at(const char *words, size_t index, const char **word);
  */
 bool words_decimal(const char *text, uint64_t lowest, uint64_t highest, uint64_t *number);
 
+/** Read "168h" or "0x168". @return false: neither; not reported. One above 64 bits is UINT64_MAX */
+bool words_bits(const char *text, uint64_t *number);
+
+/** Read an identifier: like words_bits(), or decimal without a leading zero, "360". */
+bool words_id(const char *text, uint64_t *number);
+
 /** Read @p length hexadecimal digits, 1 to 16 of them. @return false: other characters, or too many; not reported */
 bool words_hex(const char *text, size_t length, uint64_t *number);
 

@@ -6,8 +6,10 @@
 #include <string.h>
 
 #include "agv/names.h"
+#include "common/duration.h"
 #include "common/report.h"
 #include "common/words.h"
+#include "config/config_text.h"
 #include "io/yaml_file.h"
 
 enum { HEX_DIGITS_MAX = 8, CLASS_WORD_TRIP = 0, CLASS_WORD_WARN = 1 };
@@ -45,17 +47,49 @@ static bool read_number(const char *text, uint64_t *number) {
     return (text[1] == 'x') && (length <= (size_t)HEX_DIGITS_MAX) && words_hex(&text[2], length, number);
 }
 
+/** Read a time that is more than a number of milliseconds. */
+static bool take_time(const reading_t *reading, const char *text, const agv_setting_info_t *info, uint64_t *number) {
+    char problem[DURATION_PROBLEM_SIZE];
+    const duration_result_t result = duration_read(text, DURATION_MS, info->lowest, info->highest, number);
+    return (result == DURATION_OK) ||
+           wrong(reading, duration_problem(result, text, DURATION_MS, info->lowest, info->highest, problem));
+}
+
+/** Read a number by the kind of its setting. @return false: reported */
+static bool read_value(const reading_t *reading, const char *text, const agv_setting_info_t *info, uint64_t *number) {
+    if (config_is_id(info)) {
+        return words_id(text, number) ||
+               report_at(reading->lines->path, reading->line,
+                         "%s: '%s' is not an identifier: 168h, 0x168, or decimal 360", reading->key, text);
+    }
+    if (read_number(text, number)) {
+        return true;
+    }
+    const bool is_octal = (text[0] == '0') && (text[strspn(text, "0123456789")] == '\0');
+    if ((strcmp(info->unit, "ms") == 0) && !is_octal) {
+        return take_time(reading, text, info, number);
+    }
+    return report_at(reading->lines->path, reading->line, "%s: '%s' is not a whole number; %u to %u%s%s", reading->key,
+                     text, info->lowest, info->highest, (info->unit[0] != '\0') ? " " : "", info->unit);
+}
+
 static bool take_number(const reading_t *reading, uint16_t setting, const agv_setting_info_t *info) {
     const char *text = yaml_node_plain(reading->value);
     uint64_t number = 0u;
-    const char *blank = (info->unit[0] != '\0') ? " " : "";
-    if ((text == NULL) || !read_number(text, &number)) {
-        return report_at(reading->lines->path, reading->line, "%s: '%s' is not a whole number; %u to %u%s%s",
-                         reading->key, yaml_node_text(reading->value), info->lowest, info->highest, blank, info->unit);
+    if (text == NULL) {
+        return wrong(reading, "a number is written without quotes");
+    }
+    if (!read_value(reading, text, info, &number)) {
+        return false;
     }
     if ((number < info->lowest) || (number > info->highest)) {
+        if (config_is_id(info)) {
+            return report_at(reading->lines->path, reading->line, "%s: %s is not within %03Xh to %03Xh", reading->key,
+                             text, info->lowest, info->highest);
+        }
         return report_at(reading->lines->path, reading->line, "%s: %" PRIu64 " is not within %u to %u%s%s",
-                         reading->key, number, info->lowest, info->highest, blank, info->unit);
+                         reading->key, number, info->lowest, info->highest, (info->unit[0] != '\0') ? " " : "",
+                         info->unit);
     }
     return agv_config_set(reading->config, setting, (uint16_t)number);
 }

@@ -10,14 +10,13 @@
 #include "common/words.h"
 #include "config/config_file.h"
 
-/** Identifiers are written in hexadecimal. */
-static bool is_identifier(const agv_setting_info_t *info) {
+bool config_is_id(const agv_setting_info_t *info) {
     return (strncmp(info->name, "id_", 3u) == 0 && (info->words == NULL)) ||
            (strcmp(info->name, "status_frame_id") == 0);
 }
 
 void config_value_text(const agv_setting_info_t *info, uint16_t value, char text[CONFIG_VALUE_SIZE]) {
-    if (is_identifier(info)) {
+    if (config_is_id(info)) {
         (void)snprintf(text, CONFIG_VALUE_SIZE, "0x%03X", value);
     } else if (info->words == NULL) {
         (void)snprintf(text, CONFIG_VALUE_SIZE, "%u", value);

@@ -6,9 +6,14 @@
 #ifndef HOST_SIM_CONFIG_TEXT_H
 #define HOST_SIM_CONFIG_TEXT_H
 
+#include <stdbool.h>
+
 #include "agv/config.h"
 
 #define CONFIG_VALUE_SIZE 96u
+
+/** Whether a setting is an identifier, which is written in hexadecimal. */
+bool config_is_id(const agv_setting_info_t *info);
 
 /** The value of a setting as it stands in a file: "350", "0x7F0", "shared". */
 void config_value_text(const agv_setting_info_t *info, uint16_t value, char text[CONFIG_VALUE_SIZE]);

@@ -12,6 +12,8 @@
 #include <stdint.h>
 #include <yaml.h>
 
+#include "common/duration.h"
+
 #define YAML_READER_KEYS_MAX 40u
 
 /** A document that is being read; made with yaml_file_load(). */
@@ -37,8 +39,11 @@ typedef enum {
     YAML_KIND_FLAG, /**< true, false */
     YAML_KIND_NUMBER,
     YAML_KIND_HEX,
+    YAML_KIND_ID,
+    YAML_KIND_TIME,
     YAML_KIND_WORD,
-    YAML_KIND_RANGE, /**< one number or two, into two members of 32 bits */
+    YAML_KIND_RANGE,      /**< one number or two, into two members of 32 bits */
+    YAML_KIND_TIME_RANGE, /**< the same, of times in milliseconds */
 } yaml_kind_t;
 
 /** A key of a mapping; made by the macros below. */
@@ -52,6 +57,7 @@ typedef struct {
     size_t given;  /**< offset of a bool that is set, too; 0: none */
     int64_t lowest;
     int64_t highest;
+    duration_unit_t unit; /**< of a time */
     const yaml_word_t *words;
 } yaml_key_t;
 
@@ -66,10 +72,19 @@ typedef struct {
     .name = (key), .kind = YAML_KIND_NUMBER, YAML_MEMBER(type, member), .lowest = (low), .highest = (high)
 #define YAML_HEX(key, type, member, high)                                                                              \
     .name = (key), .kind = YAML_KIND_HEX, YAML_MEMBER(type, member), .highest = (high)
+#define YAML_ID(key, type, member, high)                                                                               \
+    .name = (key), .kind = YAML_KIND_ID, YAML_MEMBER(type, member), .highest = (high)
+#define YAML_TIME_IN(unit_, key, type, member, low, high)                                                              \
+    .name = (key), .kind = YAML_KIND_TIME, .unit = (unit_), YAML_MEMBER(type, member), .lowest = (low),                \
+    .highest = (high)
+#define YAML_TIME(...) YAML_TIME_IN(DURATION_MS, __VA_ARGS__)
+#define YAML_TIME_US(...) YAML_TIME_IN(DURATION_US, __VA_ARGS__)
 #define YAML_WORD(key, type, member, list)                                                                             \
     .name = (key), .kind = YAML_KIND_WORD, YAML_MEMBER(type, member), .words = (list)
 #define YAML_RANGE(key, type, member, low, high)                                                                       \
     .name = (key), .kind = YAML_KIND_RANGE, YAML_MEMBER(type, member), .lowest = (low), .highest = (high)
+#define YAML_TIME_RANGE(key, type, member, low, high)                                                                  \
+    .name = (key), .kind = YAML_KIND_TIME_RANGE, YAML_MEMBER(type, member), .lowest = (low), .highest = (high)
 #define YAML_GIVEN(type, member) .given = offsetof(type, member)
 /** @} */
 
@@ -101,6 +116,14 @@ bool yaml_reader_number(const yaml_reader_t *reader, const yaml_node_t *node, co
 bool yaml_reader_hex(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t highest,
                      uint32_t *number);
 
+/** An identifier: also decimal, "360". */
+bool yaml_reader_id(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t highest,
+                    uint32_t *number);
+
+/** A time (common/duration.h), in @p unit; a number alone is that, too. */
+bool yaml_reader_time(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, duration_unit_t unit,
+                      int64_t lowest, int64_t highest, int64_t *number);
+
 /** true, false. */
 bool yaml_reader_bool(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, bool *value);
 
@@ -111,6 +134,10 @@ bool yaml_reader_word(const yaml_reader_t *reader, const yaml_node_t *node, cons
 /** A number, or a list of two: the lowest and the highest. */
 bool yaml_reader_range(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, int64_t lowest,
                        int64_t highest, int64_t range[2]);
+
+/** The same with times in milliseconds. */
+bool yaml_reader_time_range(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, int64_t lowest,
+                            int64_t highest, int64_t range[2]);
 
 /**
  * Payload bytes, two hexadecimal digits each, with blanks between them: "08 00 FF".

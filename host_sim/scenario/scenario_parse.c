@@ -38,8 +38,19 @@ bool scenario_parse_u32(const yaml_reader_t *reader, const yaml_node_t *node, co
     return true;
 }
 
+bool scenario_parse_ms(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t lowest,
+                       uint32_t highest, uint32_t *ms) {
+    int64_t value = 0;
+
+    if (!yaml_reader_time(reader, node, what, DURATION_MS, lowest, highest, &value)) {
+        return false;
+    }
+    *ms = (uint32_t)value;
+    return true;
+}
+
 bool scenario_parse_time(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t *ms) {
-    return scenario_parse_u32(reader, node, what, 0u, SCENARIO_DURATION_MAX_MS, ms);
+    return scenario_parse_ms(reader, node, what, 0u, SCENARIO_DURATION_MAX_MS, ms);
 }
 
 bool scenario_parse_message(const yaml_reader_t *reader, const yaml_node_t *node, agv_message_t *message) {
@@ -162,12 +173,12 @@ static const yaml_key_t TOP[] = {
     YAML_OPTIONAL(YAML_CALL("self_test", scenario_parse_self_test)),
     YAML_OPTIONAL(YAML_CALL("board", scenario_parse_board)),
     YAML_OPTIONAL(MEMBER(WORD, "bitrate", bitrate, BITRATES)),
-    YAML_OPTIONAL(MEMBER(NUMBER, "clock_start_ms", clock_start_ms, 0, UINT32_MAX)),
-    YAML_OPTIONAL(MEMBER(NUMBER, "tick_phase_us", tick_phase_us, 0, TICK_PHASE_MAX_US)),
+    YAML_OPTIONAL(MEMBER(TIME, "clock_start_ms", clock_start_ms, 0, UINT32_MAX)),
+    YAML_OPTIONAL(MEMBER(TIME_US, "tick_phase_us", tick_phase_us, 0, TICK_PHASE_MAX_US)),
     YAML_OPTIONAL(MEMBER(WORD, "hardware_watchdog", watchdog_ms, WATCHDOGS)),
     YAML_OPTIONAL(MEMBER(WORD, "reset_cause", reset_cause, SCENARIO_CAUSES)),
     YAML_OPTIONAL(YAML_CALL("vehicle", read_vehicle)),
-    YAML_REQUIRED(MEMBER(NUMBER, "duration_ms", duration_ms, 1, SCENARIO_DURATION_MAX_MS)),
+    YAML_REQUIRED(MEMBER(TIME, "duration_ms", duration_ms, 1, SCENARIO_DURATION_MAX_MS)),
     YAML_OPTIONAL(YAML_CALL("steps", scenario_parse_steps)),
     YAML_REQUIRED(YAML_CALL("expect", scenario_parse_expect)),
 };

@@ -60,6 +60,10 @@ bool scenario_parse_board_fits(const yaml_reader_t *reader, const yaml_node_t *n
 bool scenario_parse_step(const yaml_reader_t *reader, const yaml_node_t *node, const agv_config_t *config,
                          scenario_step_t *step);
 
+/** A time in milliseconds. */
+bool scenario_parse_ms(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t lowest,
+                       uint32_t highest, uint32_t *ms);
+
 /** A time: 0 .. SCENARIO_DURATION_MAX_MS. */
 bool scenario_parse_time(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t *ms);
 

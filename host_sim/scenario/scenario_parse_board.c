@@ -77,7 +77,7 @@ static bool read_bounce_time(const yaml_reader_t *reader, const yaml_node_t *nod
     if (action->bounce_count == SCENARIO_BOUNCE_MAX) {
         return yaml_reader_fail(reader, node, "pattern_ms: more than %u times", SCENARIO_BOUNCE_MAX);
     }
-    if (!scenario_parse_u32(reader, node, "pattern_ms", 1u, BOUNCE_LONGEST_MS, &ms)) {
+    if (!scenario_parse_ms(reader, node, "pattern_ms", 1u, BOUNCE_LONGEST_MS, &ms)) {
         return false;
     }
     action->bounce_ms[action->bounce_count] = (uint16_t)ms;

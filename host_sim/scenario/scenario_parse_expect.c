@@ -13,14 +13,14 @@ bool scenario_parse_window(const yaml_reader_t *reader, const yaml_node_t *node,
                            scenario_window_t *window) {
     int64_t range[2];
 
-    if (!yaml_reader_range(reader, node, what, 0, SCENARIO_DURATION_MAX_MS, range)) {
+    if (!yaml_reader_time_range(reader, node, what, 0, SCENARIO_DURATION_MAX_MS, range)) {
         return false;
     }
     *window = (scenario_window_t){(uint32_t)range[0], (uint32_t)range[1]};
     return true;
 }
 
-#define WINDOW(type, key, member) YAML_RANGE(key, type, member, 0, SCENARIO_DURATION_MAX_MS)
+#define WINDOW(type, key, member) YAML_TIME_RANGE(key, type, member, 0, SCENARIO_DURATION_MAX_MS)
 
 static const yaml_word_t STATES[] = {{"INIT", AGV_STATE_INIT},     {"STANDBY", AGV_STATE_STANDBY},
                                      {"ACTIVE", AGV_STATE_ACTIVE}, {"TRIPPED", AGV_STATE_TRIPPED},

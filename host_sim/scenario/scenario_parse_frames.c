@@ -40,7 +40,7 @@ static bool read_frame_bytes(const yaml_reader_t *reader, const yaml_node_t *nod
 /* What expected and forbidden frames have in common. */
 #define WHICH_FRAME                                                                                                    \
     YAML_OPTIONAL(MEMBER(WORD, "from", from, SENDERS)), YAML_OPTIONAL(YAML_CALL("side", read_frame_side)),             \
-        YAML_OPTIONAL(MEMBER(HEX, "id", id, 0x1FFFFFFF)), YAML_OPTIONAL(YAML_CALL("message", read_frame_message)),     \
+        YAML_OPTIONAL(MEMBER(ID, "id", id, 0x1FFFFFFF)), YAML_OPTIONAL(YAML_CALL("message", read_frame_message)),      \
         YAML_OPTIONAL(YAML_CALL("bytes", read_frame_bytes))
 
 static void preset_frame(scenario_frame_t *frame, const yaml_node_t *node) {
@@ -62,12 +62,12 @@ static bool names_one_id(const yaml_reader_t *reader, const yaml_node_t *node, c
 bool scenario_parse_frame(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     static const yaml_key_t keys[] = {
         WHICH_FRAME,
-        YAML_REQUIRED(MEMBER(RANGE, "at_ms", at_ms, 0, SCENARIO_DURATION_MAX_MS)),
-        YAML_OPTIONAL(MEMBER(NUMBER, "first_since_ms", first_since_ms, 0, SCENARIO_DURATION_MAX_MS),
+        YAML_REQUIRED(MEMBER(TIME_RANGE, "at_ms", at_ms, 0, SCENARIO_DURATION_MAX_MS)),
+        YAML_OPTIONAL(MEMBER(TIME, "first_since_ms", first_since_ms, 0, SCENARIO_DURATION_MAX_MS),
                       YAML_GIVEN(scenario_frame_t, is_first)),
         YAML_OPTIONAL(MEMBER(RANGE, "count", count, 0, SCENARIO_DURATION_MAX_MS)),
-        YAML_OPTIONAL(MEMBER(NUMBER, "every_ms", every_ms, 1, 60000)),
-        YAML_OPTIONAL(MEMBER(NUMBER, "jitter_ms", jitter_ms, 0, 60000)),
+        YAML_OPTIONAL(MEMBER(TIME, "every_ms", every_ms, 1, 60000)),
+        YAML_OPTIONAL(MEMBER(TIME, "jitter_ms", jitter_ms, 0, 60000)),
     };
     scenario_frame_t *frame = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.frames);
 
@@ -88,7 +88,7 @@ bool scenario_parse_frame(const yaml_reader_t *reader, const yaml_node_t *node, 
 
 bool scenario_parse_never(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     static const yaml_key_t keys[] = {WHICH_FRAME,
-                                      YAML_OPTIONAL(MEMBER(RANGE, "at_ms", at_ms, 0, SCENARIO_DURATION_MAX_MS))};
+                                      YAML_OPTIONAL(MEMBER(TIME_RANGE, "at_ms", at_ms, 0, SCENARIO_DURATION_MAX_MS))};
     scenario_frame_t *frame = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.never);
 
     if (frame == NULL) {

@@ -17,7 +17,7 @@ enum { RANGE_MAX = 100000 };
 
 bool scenario_parse_vehicle(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     static const yaml_key_t keys[] = {
-        YAML_REQUIRED(YAML_NUMBER("at_ms", scenario_vehicle_t, at_ms, 0, SCENARIO_DURATION_MAX_MS)),
+        YAML_REQUIRED(YAML_TIME("at_ms", scenario_vehicle_t, at_ms, 0, SCENARIO_DURATION_MAX_MS)),
         SEEN(YAML_WORD("gear", scenario_vehicle_t, gear, SCENARIO_GEARS), has_gear),
         SEEN(YAML_WORD("mode", scenario_vehicle_t, autopilot, MODES), has_mode),
         SEEN_RANGE("speed_mm_s", speed_mm_s, has_speed),

@@ -81,7 +81,9 @@ static bool take_numbers(const yaml_reader_t *reader, const reading_t *reading, 
         if (node == NULL) {
             continue;
         }
-        if (!scenario_parse_u32(reader, node, rows[i].name, rows[i].lowest, rows[i].highest, &number)) {
+        const bool is_time = (rows[i].parameter & (P_BY_MS | P_EVERY_MS | P_OFF_MS | P_FOR_MS)) != 0u;
+        if (!(is_time ? scenario_parse_ms : scenario_parse_u32)(reader, node, rows[i].name, rows[i].lowest,
+                                                                rows[i].highest, &number)) {
             return false;
         }
         if (rows[i].is_count) {
@@ -260,7 +262,7 @@ static bool take_frame(const yaml_reader_t *reader, const reading_t *reading, co
         frame->id = ids.of[step->vehicle.message];
         return true;
     }
-    return yaml_reader_hex(reader, id, "id", (frame->flags == HAL_CAN_EXTENDED) ? 0x1FFFFFFFu : AGV_ID_MAX, &frame->id);
+    return yaml_reader_id(reader, id, "id", (frame->flags == HAL_CAN_EXTENDED) ? 0x1FFFFFFFu : AGV_ID_MAX, &frame->id);
 }
 
 static bool take_side(const yaml_reader_t *reader, const reading_t *reading, const agv_config_t *config,
@@ -382,8 +384,8 @@ static bool take_key(const yaml_reader_t *reader, const yaml_node_t *key, const 
         return yaml_reader_fail(reader, key, "a key of a step must be a word");
     }
     if (is_time_key(name, reading, &time)) {
-        return scenario_parse_u32(reader, value, name, (time == &reading->again_every_ms) ? 1u : 0u,
-                                  SCENARIO_DURATION_MAX_MS, time);
+        return scenario_parse_ms(reader, value, name, (time == &reading->again_every_ms) ? 1u : 0u,
+                                 SCENARIO_DURATION_MAX_MS, time);
     }
     for (const yaml_word_t *actor = SCENARIO_ACTORS; actor->word != NULL; actor++) {
         if (strcmp(actor->word, name) == 0) {

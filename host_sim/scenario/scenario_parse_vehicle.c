@@ -29,7 +29,7 @@ static bool read_start_ai(const yaml_reader_t *reader, const yaml_node_t *node, 
 }
 
 /* The phase of each message, by its name. */
-#define PHASE(name, message) YAML_OPTIONAL(YAML_NUMBER(#name, vehicle_config_t, phase_ms[message], 0, UINT16_MAX))
+#define PHASE(name, message) YAML_OPTIONAL(YAML_TIME(#name, vehicle_config_t, phase_ms[message], 0, UINT16_MAX))
 
 static bool read_phases(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     static const yaml_key_t keys[] = {
@@ -60,8 +60,9 @@ static bool read_vehicle_id_set(const yaml_reader_t *reader, const yaml_node_t *
     return true;
 }
 
-/* A figure of the vehicle, a 16-bit number. */
+/* A figure of the vehicle, a 16-bit number; a time. */
 #define FIGURE(name, lowest) YAML_OPTIONAL(YAML_NUMBER(#name, vehicle_config_t, name, lowest, UINT16_MAX))
+#define FIGURE_MS(name, lowest) YAML_OPTIONAL(YAML_TIME(#name, vehicle_config_t, name, lowest, UINT16_MAX))
 
 bool scenario_parse_vehicle_config(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     static const yaml_key_t keys[] = {
@@ -72,7 +73,7 @@ bool scenario_parse_vehicle_config(const yaml_reader_t *reader, const yaml_node_
         YAML_OPTIONAL(YAML_CALL("eps_starts_ms", read_start_eps)),
         YAML_OPTIONAL(YAML_CALL("ai_starts_ms", read_start_ai)),
         YAML_OPTIONAL(YAML_NUMBER("seed", vehicle_config_t, seed, 1, UINT32_MAX)),
-        FIGURE(gear_change_ms, 0),
+        FIGURE_MS(gear_change_ms, 0),
         FIGURE(walking_pace_mm_s, 1),
         FIGURE(top_speed_mm_s, 1),
         FIGURE(acceleration_mm_s2, 1),
@@ -80,12 +81,12 @@ bool scenario_parse_vehicle_config(const yaml_reader_t *reader, const yaml_node_
         FIGURE(braking_mm_s2, 1),
         FIGURE(locked_mm_s2, 1),
         FIGURE(steering_rate_ddeg_s, 0),
-        FIGURE(eps_mode_change_ms, 0),
+        FIGURE_MS(eps_mode_change_ms, 0),
         FIGURE(throttle_rise_pct_s, 0),
         FIGURE(throttle_fall_pct_s, 0),
         FIGURE(reported_speed_pct, 0),
-        FIGURE(ai_lost_ms, 1),
-        FIGURE(eps_lost_ms, 1),
+        FIGURE_MS(ai_lost_ms, 1),
+        FIGURE_MS(eps_lost_ms, 1),
         YAML_OPTIONAL(YAML_CALL("phases_ms", read_phases)),
     };
     return yaml_reader_map(reader, node, "vehicle", keys, COUNT(keys), target);

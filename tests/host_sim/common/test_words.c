@@ -52,3 +52,23 @@ void test_hexadecimal_digits_in_either_case(void) {
     TEST_ASSERT_FALSE(words_hex("1G", 2u, &number));
     TEST_ASSERT_FALSE(words_hex("1", 0u, &number));
 }
+
+void test_an_identifier_in_any_notation(void) {
+    static const char *const same[] = {"0x168", "168h", "360"};
+    static const char *const bad[] = {"",      "h",    "0x", "x168",  "0168", "00",  "0x168h",
+                                      "168hh", "16Gh", "-1", "168 h", "1e2",  "168H"};
+    uint64_t number = 0;
+    for (size_t i = 0; i < sizeof same / sizeof same[0]; i++) {
+        TEST_ASSERT_TRUE_MESSAGE(words_id(same[i], &number), same[i]);
+        TEST_ASSERT_EQUAL_UINT64_MESSAGE(0x168, number, same[i]);
+    }
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        TEST_ASSERT_FALSE_MESSAGE(words_id(bad[i], &number), bad[i]);
+    }
+    TEST_ASSERT_TRUE(words_id("0", &number));
+    TEST_ASSERT_EQUAL_UINT64(0, number);
+    TEST_ASSERT_TRUE(words_id("10000000000000000h", &number));
+    TEST_ASSERT_EQUAL_UINT64(UINT64_MAX, number);
+    TEST_ASSERT_TRUE(words_id("18446744073709551616", &number));
+    TEST_ASSERT_EQUAL_UINT64(UINT64_MAX, number);
+}

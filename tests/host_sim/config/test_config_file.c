@@ -101,8 +101,11 @@ void test_every_setting_is_refused_beyond_its_limits(void) {
         char text[128];
         char expected[128];
         (void)snprintf(text, sizeof text, "\n%s: %u\n", info->name, info->highest + 1u);
-        (void)snprintf(expected, sizeof expected, "c.yaml:2: %s: %u is not within %u to %u", info->name,
-                       info->highest + 1u, info->lowest, info->highest);
+        const bool is_id = (strncmp(info->name, "id_", 3) == 0) || (strcmp(info->name, "status_frame_id") == 0);
+        (void)snprintf(expected, sizeof expected,
+                       is_id ? "c.yaml:2: %s: %u is not within %03Xh to %03Xh"
+                             : "c.yaml:2: %s: %u is not within %u to %u",
+                       info->name, info->highest + 1u, info->lowest, info->highest);
         load_bad(text, expected);
         if (info->lowest > 0) {
             (void)snprintf(text, sizeof text, "%s: %u\n", info->name, info->lowest - 1u);
@@ -171,20 +174,47 @@ void test_numbers(void) {
     load_good("status_frame_id: 0x7A0\n");
     TEST_ASSERT_EQUAL_HEX16(0x7A0, config.status_frame_id);
     load_good("status_frame_id: 0\n");
-    load_bad("init_hold_ms: five\n", "'five' is not a whole number; 100 to 10000 ms\n");
-    load_bad("init_hold_ms: 500.0\n", "is not a whole number");
-    load_bad("init_hold_ms: 5e2\n", "is not a whole number");
-    load_bad("init_hold_ms: 0500\n", "is not a whole number");
-    load_bad("init_hold_ms: 500ms\n", "is not a whole number");
-    load_bad("init_hold_ms: -500\n", "is not a whole number");
-    load_bad("init_hold_ms: +500\n", "is not a whole number");
-    load_bad("init_hold_ms: \"500\"\n", "is not a whole number");
-    load_bad("init_hold_ms: 0x\n", "is not a whole number");
-    load_bad("init_hold_ms: 0xG0\n", "is not a whole number");
-    load_bad("init_hold_ms: 0x123456789\n", "is not a whole number");
-    load_bad("init_hold_ms: 18446744073709551616\n", "is not a whole number");
+    load_good("init_hold_ms: 0x1F4\n");
+    TEST_ASSERT_EQUAL_UINT16(500, config.init_hold_ms);
+    load_bad("init_hold_ms: \"500\"\n", "c.yaml:1: init_hold_ms: a number is written without quotes\n");
+    load_bad("init_hold_ms: 0500\n", "'0500' is not a whole number; 100 to 10000 ms\n");
+    load_bad("init_hold_ms: 18446744073709551616\n", "' is not within 100ms to 10s\n");
+    load_bad("throttle_ceiling_pct: five\n", "'five' is not a whole number; 0 to 100 %\n");
+    load_bad("throttle_ceiling_pct: 5s\n", "'5s' is not a whole number; 0 to 100 %\n");
     load_bad("init_hold_ms: 18446744073709551615\n", "is not within");
     load_bad("init_hold_ms: 66036\n", "is not within"); /* 500 in 16 bits */
+}
+
+void test_times_with_units(void) {
+    load_good("init_hold_ms: 1.5s\n");
+    TEST_ASSERT_EQUAL_UINT16(1500, config.init_hold_ms);
+    load_good("init_hold_ms: 0.5 s # a blank may stand before the unit\n");
+    TEST_ASSERT_EQUAL_UINT16(500, config.init_hold_ms);
+    static const char *const bad[] = {"five", "500.0", "5e2",         "-500", "+500",
+                                      "0x",   "0xG0",  "0x123456789", "-1s",  "1e9999s"};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        char text[64];
+        char expected[160];
+        (void)snprintf(text, sizeof text, "init_hold_ms: %s\n", bad[i]);
+        (void)snprintf(expected, sizeof expected,
+                       "c.yaml:1: init_hold_ms: '%s' is not a time: 250ms, 10s, 1.5min, 2h, or milliseconds alone\n",
+                       bad[i]);
+        load_bad(text, expected);
+    }
+    load_bad("init_hold_ms: 10.001s\n", "c.yaml:1: init_hold_ms: '10.001s' is not within 100ms to 10s\n");
+    load_bad("init_hold_ms: 500100us\n", "c.yaml:1: init_hold_ms: '500100us' is not a whole number of milliseconds\n");
+}
+
+void test_identifiers_in_any_notation(void) {
+    static const char *const same[] = {"0x169", "169h", "361"};
+    for (size_t i = 0; i < sizeof same / sizeof same[0]; i++) {
+        char text[64];
+        (void)snprintf(text, sizeof text, "id_gear_command: %s\n", same[i]);
+        load_good(text);
+        TEST_ASSERT_EQUAL_HEX16(0x169, config.id_gear_command);
+    }
+    load_bad("id_gear_command: 0169\n", "'0169' is not an identifier: 168h, 0x168, or decimal 360\n");
+    load_bad("id_gear_command: 800h\n", "800h is not within 001h to 7FFh\n");
 }
 
 void test_what_is_no_list_of_settings(void) {

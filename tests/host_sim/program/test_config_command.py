@@ -178,7 +178,7 @@ class Refusals(hostsim.Case):
                 ("status_frame_id: 0x43F\n", "c.yaml:1: status_frame_id: "),
                 ("park: at_once\nid_gear_command: 0x101\n", "c.yaml:2: id_gear_command: another message has"),
                 ("id_gear_command: 0x169\nid_eps_status: 0x169\n", "c.yaml:2: id_eps_status: another message has"),
-                ("id_gear_command: 0x800\n", "c.yaml:1: id_gear_command: 2048 is not within 1 to 2047"),
+                ("id_gear_command: 0x800\n", "c.yaml:1: id_gear_command: 0x800 is not within 001h to 7FFh"),
                 ("throttle_ceiling_pct: 50\n", "c.yaml:1: throttle_ceiling_pct: ", "gateway"),
                 ("\nown_heartbeat: frozen\n", "c.yaml:2: own_heartbeat: ", "gateway"),
                 ("class_bus_off: warn\n", "c.yaml:1: class_bus_off: "),

@@ -86,6 +86,28 @@ void test_everything_about_the_beginning(void) {
     TEST_ASSERT_EQUAL_UINT16(3000u, scenario.vehicle.top_speed_mm_s);
 }
 
+void test_times_with_units_and_identifiers_in_any_notation(void) {
+    read_good("name: n\nshows: [SUP-2]\nduration_ms: 1.5min\ntick_phase_us: 0.5ms\n"
+              "vehicle: {vcu_starts_ms: 2 s, eps_lost_ms: 0.09s}\n"
+              "steps:\n"
+              "  - {at_ms: 2s, ai: lag, by_ms: 0.25s}\n"
+              "  - {at_ms: 2001, bus: send, id: 0x168, bytes: \"01\"}\n"
+              "  - {at_ms: 3s, bus: send, id: 360, bytes: \"01\"}\n"
+              "expect:\n  states: []\n  frames: [{id: 168h, at_ms: [1s, 1500], jitter_ms: 3000us}]\n");
+    TEST_ASSERT_EQUAL_UINT32(90000u, scenario.duration_ms);
+    TEST_ASSERT_EQUAL_UINT32(500u, scenario.tick_phase_us);
+    TEST_ASSERT_EQUAL_UINT32(2000u, scenario.vehicle.start_ms[VEHICLE_VCU]);
+    TEST_ASSERT_EQUAL_UINT16(90u, scenario.vehicle.eps_lost_ms);
+    TEST_ASSERT_EQUAL_UINT32(2000u, scenario.steps[0].at_ms);
+    TEST_ASSERT_EQUAL_UINT32(250u, scenario.steps[0].vehicle.ms);
+    TEST_ASSERT_EQUAL_HEX32(0x168, scenario.steps[1].vehicle.frame.id);
+    TEST_ASSERT_EQUAL_HEX32(0x168, scenario.steps[2].vehicle.frame.id);
+    TEST_ASSERT_EQUAL_HEX32(0x168, scenario.expect.frames.items[0].id);
+    TEST_ASSERT_EQUAL_UINT32(1000u, scenario.expect.frames.items[0].at_ms.from);
+    TEST_ASSERT_EQUAL_UINT32(1500u, scenario.expect.frames.items[0].at_ms.to);
+    TEST_ASSERT_EQUAL_UINT32(3u, scenario.expect.frames.items[0].jitter_ms);
+}
+
 /* Shows: HW-1, HW-2, HW-3, HW-4 */
 void test_the_board_and_what_happens_to_it(void) {
     read_good(HEAD "self_test: [flash, devices]\nboard: [second_clock, output_feedback, reset_button, emergency_stop]\n"
@@ -248,7 +270,7 @@ void test_what_is_wrong_at_the_top_is_refused_with_its_line(void) {
         {"name: n\nshows: [sup-2]\n", "s.yaml:2: shows: 'sup-2' is neither a requirement"},
         {"name: n\nshows: [BUS_ON]\n", "s.yaml:2: shows: 'BUS_ON' is neither"},
         {"name: n\nshows: [SUP-2]\nduration_ms: 0\n", "s.yaml:3: duration_ms: 0 is not within 1 to 86400000"},
-        {"name: n\nshows: [SUP-2]\nduration_ms: 1.5\n", "s.yaml:3: duration_ms: '1.5' is not a whole number"},
+        {"name: n\nshows: [SUP-2]\nduration_ms: 1.5\n", "s.yaml:3: duration_ms: '1.5' is not a time"},
         {"name: n\nshows: [SUP-2]\nduration_ms: 99999999999999999999\n",
          "s.yaml:3: duration_ms: 99999999999999999999 is not"},
         {HEAD STATES "topology: star\n", "s.yaml:5: topology: 'star' is not one of shared, gateway"},
@@ -351,7 +373,7 @@ void test_what_is_wrong_in_a_step_is_refused_with_its_line(void) {
         {STEP("at_ms: 1, board: slow_clock, permille: 0"), "s.yaml:5: permille: 0 is not within 1 to 900"},
         {STEP("at_ms: 1, board: fast_clock, permille: 901"), "s.yaml:5: permille: 901 is not within 1 to 900"},
         {STEP("at_ms: 1, board: fail_test, part: core"), "s.yaml:5: a part of the self-test: 'core' is not one of"},
-        {STEP("at_ms: never, ai: stop"), "s.yaml:5: at_ms: 'never' is not a whole number"},
+        {STEP("at_ms: never, ai: stop"), "s.yaml:5: at_ms: 'never' is not a time"},
         {STEP("[1]: 1, ai: stop"), "s.yaml:5: a key of a step must be a word"},
         {HEAD "steps:\n  - {at_ms: 9, ai: stop}\n  - {at_ms: 8, ai: start}\n" STATES, "s.yaml:6: the step is earlier"},
     };
@@ -366,7 +388,7 @@ void test_what_is_wrong_in_an_expectation_is_refused_with_its_line(void) {
         {HEAD "expect:\n  states: [{to: INIT, reason: BAD, at_ms: 0}]\n", "s.yaml:5: unknown fault 'BAD'"},
         {HEAD "expect:\n  states: [{to: INIT, at_ms: [2, 1]}]\n", "s.yaml:5: at_ms: the first is above the second"},
         {HEAD "expect:\n  states: [{to: INIT, at_ms: [1]}]\n", "s.yaml:5: at_ms: a number or [lowest, highest]"},
-        {HEAD "expect:\n  states: [{to: INIT, at_ms: [1, x]}]\n", "s.yaml:5: at_ms: 'x' is not a whole number"},
+        {HEAD "expect:\n  states: [{to: INIT, at_ms: [1, x]}]\n", "s.yaml:5: at_ms: 'x' is not a time: 250ms"},
         {EXPECT("frames: [{at_ms: 1}]"), "s.yaml:6: an expected frame: 'id' or 'message' is missing"},
         {EXPECT("frames: [{id: 168h}]"), "s.yaml:6: an expected frame: 'at_ms' is missing"},
         {EXPECT("frames: [{id: 168h, message: gear_command, at_ms: 1}]"),
