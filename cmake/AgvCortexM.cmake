@@ -45,7 +45,7 @@ endfunction()
 
 add_subdirectory(firmware EXCLUDE_FROM_ALL)
 add_subdirectory(hal/template EXCLUDE_FROM_ALL)
-add_subdirectory(tests/planted)
+add_subdirectory(tests/seeded)
 add_subdirectory(tests/proofs/target)
 foreach(cpu IN LISTS AGV_CPUS)
   agv_build_for_cpu(agv_core ${cpu})

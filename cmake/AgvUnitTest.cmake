@@ -1,13 +1,13 @@
 # Unit tests with Unity and CMock.
 #
-#   agv_add_unit_test(NAME test_gate SOURCES test_gate.c [more.c ...] [MOCKS hal/can.h ...] [LIBS hal_sim ...] [PLANTED]
+#   agv_add_unit_test(NAME test_gate SOURCES test_gate.c [more.c ...] [MOCKS hal/can.h ...] [LIBS hal_sim ...] [SEEDED]
 #     [NO_TEST])
 #
 # Builds one program from the sources, a runner generated from the first of them, and the generated mocks, and adds it
 # to ctest. A test includes a mock as "mock_can.h" (for hal/can.h). Every program is linked to agv_core.
 # Mocks replace only the HAL contract, hal/include; the core is tested unchanged.
 # NO_TEST: the program is built, and another test runs it.
-# PLANTED: a test that must fail; it is built only by its name and run only by `ctest -C planted` (tests/proofs/seeded.tsv).
+# SEEDED: a test that must fail; it is built only by its name and run only by `ctest -C seeded` (tests/proofs/seeded.tsv).
 
 find_program(AGV_RUBY ruby)
 set(AGV_GEMS ${PROJECT_SOURCE_DIR}/build/gems)
@@ -110,7 +110,7 @@ function(agv_make_runners)
 endfunction()
 
 function(agv_add_unit_test)
-  cmake_parse_arguments(PARSE_ARGV 0 TEST "PLANTED;NO_TEST" "NAME" "SOURCES;MOCKS;LIBS")
+  cmake_parse_arguments(PARSE_ARGV 0 TEST "SEEDED;NO_TEST" "NAME" "SOURCES;MOCKS;LIBS")
   if(NOT TEST_NAME OR NOT TEST_SOURCES OR TEST_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "usage: agv_add_unit_test(NAME name SOURCES file.c ... [MOCKS hal/x.h ...] [LIBS lib ...])")
   endif()
@@ -128,9 +128,9 @@ function(agv_add_unit_test)
   if(TEST_NO_TEST)
     return()
   endif()
-  if(TEST_PLANTED)
+  if(TEST_SEEDED)
     set_target_properties(${TEST_NAME} PROPERTIES EXCLUDE_FROM_ALL ON)
-    add_test(NAME ${TEST_NAME} CONFIGURATIONS planted COMMAND ${TEST_NAME})
+    add_test(NAME ${TEST_NAME} CONFIGURATIONS seeded COMMAND ${TEST_NAME})
   else()
     add_test(NAME ${TEST_NAME} COMMAND ${TEST_NAME})
   endif()

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# Coverage of a small core that is made here: everything is covered, until something is planted.
+# Coverage of a small core that is made here: everything is covered, until a fault is seeded.
 load ../support/helper
 
 setup() {

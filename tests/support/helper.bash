@@ -1,5 +1,5 @@
 # shellcheck shell=bash disable=SC2154 # `run` sets status and output
-# What the planted failures share. Each test runs a gate on something planted, and first on the same thing without it.
+# Common parts of tests of gates. Each test runs a gate on a seeded fault, and first on the same input without it.
 ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 : "${BATS_TEST_TMPDIR:=$(mktemp -d)}" # bats before 1.4 has none
 

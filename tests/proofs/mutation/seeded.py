@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The planted failures of mutate: what it must not take for a kill, or must not leave unsaid."""
+"""Seeded faults of mutate: what it must not count as killed, and what it must report."""
 import json
 import pathlib
 import shutil
@@ -30,7 +30,7 @@ def find(file, suffix, text):
     for key in mutate("list", file)[1].split():
         if key.endswith(suffix) and text in lines[int(key.split(":")[1]) - 1]:
             return key
-    raise SystemExit(f"planted: there is no mutant {suffix} at '{text}' in {file}")
+    raise SystemExit(f"seeded: there is no mutant {suffix} at '{text}' in {file}")
 
 
 def verdict(key, *options):
@@ -67,20 +67,20 @@ def harmless_row(folder):
     return status != 0 and "SUP-2: liveness.c" in said and "no test that names the row fails" in said
 
 
-PLANTED = (without_its_test, too_few, harmless_row)
+SEEDED = (without_its_test, too_few, harmless_row)
 
 
 def main():
     SCRATCH.mkdir(parents=True, exist_ok=True)
     caught = 0
-    for planted in PLANTED:
-        folder = pathlib.Path(tempfile.mkdtemp(prefix="planted-", dir=SCRATCH))
-        found = planted(folder)
+    for fault in SEEDED:
+        folder = pathlib.Path(tempfile.mkdtemp(prefix="seeded-", dir=SCRATCH))
+        found = fault(folder)
         shutil.rmtree(folder)
         caught += found
-        print(f"{planted.__name__.replace('_', ' '):24} {'caught' if found else 'NOT CAUGHT'}", flush=True)
-    print(f"{caught} of {len(PLANTED)} planted failures caught")
-    return 0 if caught == len(PLANTED) else 1
+        print(f"{fault.__name__.replace('_', ' '):24} {'caught' if found else 'NOT CAUGHT'}", flush=True)
+    print(f"{caught} of {len(SEEDED)} seeded faults caught")
+    return 0 if caught == len(SEEDED) else 1
 
 
 sys.exit(main())

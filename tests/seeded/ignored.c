@@ -1,4 +1,4 @@
-/* Planted: a test that somebody switched off. */
+/* Seeded fault: a test that somebody switched off. */
 #include "unity.h"
 
 void setUp(void) {

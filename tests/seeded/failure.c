@@ -1,4 +1,4 @@
-/* Planted: an expectation that does not hold. */
+/* Seeded fault: an expectation that does not hold. */
 #include "unity.h"
 
 void setUp(void) {

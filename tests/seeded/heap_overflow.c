@@ -1,4 +1,4 @@
-/* Planted: a read one byte behind a block. */
+/* Seeded fault: a read one byte behind a block. */
 #include <stdlib.h>
 #include <string.h>
 
