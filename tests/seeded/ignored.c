@@ -1,12 +1,6 @@
 /* Seeded fault: a test that somebody switched off. */
 #include "unity.h"
 
-void setUp(void) {
-}
-
-void tearDown(void) {
-}
-
 void test_that_passes(void) {
     TEST_ASSERT_EQUAL(1, 1);
 }

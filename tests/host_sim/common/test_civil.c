@@ -3,12 +3,6 @@
 
 #include "unity.h"
 
-void setUp(void) {
-}
-
-void tearDown(void) {
-}
-
 static void check(civil_t civil, uint64_t expected) {
     uint64_t seconds = 1;
     TEST_ASSERT_TRUE(civil_seconds(&civil, &seconds));

@@ -5,12 +5,6 @@
 
 #include "unity.h"
 
-void setUp(void) {
-}
-
-void tearDown(void) {
-}
-
 static void check_in(duration_unit_t unit, const char *text, uint64_t expected) {
     uint64_t number = 0;
     TEST_ASSERT_EQUAL_INT_MESSAGE(DURATION_OK, duration_read(text, unit, 0, UINT64_MAX, &number), text);

@@ -2,12 +2,6 @@
 
 #include "unity.h"
 
-void setUp(void) {
-}
-
-void tearDown(void) {
-}
-
 void test_a_word_is_found_as_a_whole(void) {
     TEST_ASSERT_EQUAL_INT(0, words_find("shared|gateway", "shared"));
     TEST_ASSERT_EQUAL_INT(1, words_find("shared|gateway", "gateway"));

@@ -42,9 +42,6 @@ void setUp(void) {
     queued = 0u;
 }
 
-void tearDown(void) {
-}
-
 static vehicle_state_t vehicle_now(void) {
     scenario_testbed_view_t view;
     scenario_testbed_view(&testbed, &view);

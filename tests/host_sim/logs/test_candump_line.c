@@ -12,9 +12,6 @@ void setUp(void) {
     memset(&record, 0xA5, sizeof record);
 }
 
-void tearDown(void) {
-}
-
 /* Parse a text in a buffer of its own that ends with the line feed: reading on behind it would be seen. */
 static const char *parse(const char *text) {
     static char line[512];

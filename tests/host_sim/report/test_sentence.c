@@ -31,9 +31,6 @@ void setUp(void) {
                         .stopped_us = 62900000u};
 }
 
-void tearDown(void) {
-}
-
 static void say(void) {
     sentence_trip(&sentence, &page, &trip, WHY_NEVER);
 }

@@ -11,9 +11,6 @@ void setUp(void) {
     memset(&gaps, 0, sizeof gaps);
 }
 
-void tearDown(void) {
-}
-
 static void assert_within(uint64_t expected_us, uint64_t us) {
     TEST_ASSERT_UINT64_WITHIN((expected_us / 64u) + 1u, expected_us, us);
 }

@@ -14,9 +14,6 @@ void setUp(void) {
     memset(data, 0, sizeof data);
 }
 
-void tearDown(void) {
-}
-
 static const char *print(uint32_t message) {
     return signals_print(text, sizeof text, message, data);
 }

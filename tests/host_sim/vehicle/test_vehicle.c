@@ -14,9 +14,6 @@ void setUp(void) {
     run_until(1u); /* the nodes have started */
 }
 
-void tearDown(void) {
-}
-
 static void command_signals(uint8_t flags, uint8_t counter) {
     hal_can_frame_t frame = {.id = config.ids.of[AGV_MSG_TURN_SIGNAL_COMMAND], .length = AGV_DLC};
     frame.data[4] = flags;

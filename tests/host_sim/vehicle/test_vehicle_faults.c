@@ -7,9 +7,6 @@ void setUp(void) {
     begin();
 }
 
-void tearDown(void) {
-}
-
 static size_t count_from(vehicle_node_t node, size_t first) {
     size_t count = 0u;
     for (size_t i = first; i < sent_count; i++) {

@@ -10,9 +10,6 @@ void setUp(void) {
     run_until(1u); /* the nodes have started */
 }
 
-void tearDown(void) {
-}
-
 static void do_it(vehicle_do_t what, bool on) {
     TEST_ASSERT_TRUE(act((vehicle_action_t){.what = what, .on = on}));
 }

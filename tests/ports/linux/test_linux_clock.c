@@ -9,12 +9,6 @@
 #define S_US UINT64_C(1000000)
 #define NEAR_US 50000u /* time that an interruption may take between two calls */
 
-void setUp(void) {
-}
-
-void tearDown(void) {
-}
-
 static uint64_t read_us(clockid_t id) {
     struct timespec now;
     TEST_ASSERT_EQUAL_INT(0, clock_gettime(id, &now));

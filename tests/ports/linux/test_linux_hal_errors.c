@@ -1,25 +1,7 @@
 /* Errors: error frames, lost frames, interfaces that go down or are removed. A tester sends the error frames. */
 #include <string.h>
 
-#include "hal_linux/linux_hal.h"
-#include "port.h"
-#include "unity.h"
-#include "vcan.h"
-
-static hal_t hal;
-static port_left_t left;
-static int tester;
-
-void setUp(void) {
-    vcan_begin();
-    port_open(&hal, "vcan0", NULL, &left);
-    tester = vcan_open("vcan0");
-}
-
-void tearDown(void) {
-    linux_hal_close(&hal);
-    vcan_restore();
-}
+#include "one_port.h"
 
 static void expect_status(hal_can_state_t state, unsigned bus_offs, unsigned overruns) {
     const hal_can_status_t status = port_status(&hal, HAL_CAN_VEHICLE);

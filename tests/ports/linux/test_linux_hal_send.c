@@ -1,25 +1,7 @@
 /* Sending: order, waiting, a full kernel queue, purging, a lost echo. */
 #include <string.h>
 
-#include "hal_linux/linux_hal.h"
-#include "port.h"
-#include "unity.h"
-#include "vcan.h"
-
-static hal_t hal;
-static port_left_t left;
-static int tester;
-
-void setUp(void) {
-    vcan_begin();
-    port_open(&hal, "vcan0", NULL, &left);
-    tester = vcan_open("vcan0");
-}
-
-void tearDown(void) {
-    linux_hal_close(&hal);
-    vcan_restore();
-}
+#include "one_port.h"
 
 static uint32_t pending_ms(void) {
     return port_status(&hal, HAL_CAN_VEHICLE).tx_pending_ms;

@@ -14,9 +14,6 @@ void setUp(void) {
     hal.board.has_feedback = true;
 }
 
-void tearDown(void) {
-}
-
 static hal_inputs_t read_at(uint32_t time_ms) {
     hal_inputs_t inputs;
     sim_hal_set_now_ms(&hal, time_ms);

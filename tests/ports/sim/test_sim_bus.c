@@ -1,19 +1,5 @@
 /* The simulated bus without errors: frame times, arbitration, mailboxes, queues, time. */
-#include <string.h>
-
-#include "sim_bus_fixture.h"
-#include "unity.h"
-
-static fixture_t fixture;
-static sim_bus_t *const bus = &fixture.bus;
-
-void setUp(void) {
-    memset(&fixture, 0xA5, sizeof fixture);
-    fixture_init(&fixture, 500000);
-}
-
-void tearDown(void) {
-}
+#include "one_sim_bus.h"
 
 /* ---- Frame times on the wire (in bits: test_sim_frame.c) ---- */
 

@@ -1,23 +1,5 @@
 /* The simulated bus: recovery from bus-off, and nodes that lose their power. */
-#include <string.h>
-
-#include "sim_bus_fixture.h"
-#include "unity.h"
-
-static fixture_t fixture;
-static sim_bus_t *const bus = &fixture.bus;
-
-void setUp(void) {
-    memset(&fixture, 0xA5, sizeof fixture);
-    fixture_init(&fixture, 500000); /* 2 us a bit */
-}
-
-void tearDown(void) {
-}
-
-static void assert_state(hal_can_state_t expected, sim_bus_node_t node) {
-    TEST_ASSERT_EQUAL_INT(expected, status_of(&fixture, node).state);
-}
+#include "one_sim_bus.h"
 
 /* ---- Recovery ---- */
 

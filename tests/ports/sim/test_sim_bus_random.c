@@ -118,9 +118,6 @@ void setUp(void) {
     init();
 }
 
-void tearDown(void) {
-}
-
 void test_every_frame_arrives_once_in_order_and_the_lowest_first(void) {
     for (uint32_t round = 0; round < ROUNDS; round++) {
         forgive();

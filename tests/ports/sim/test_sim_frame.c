@@ -4,12 +4,6 @@
 
 #include "unity.h"
 
-void setUp(void) {
-}
-
-void tearDown(void) {
-}
-
 static uint32_t bits(uint8_t flags, uint8_t length) {
     const hal_can_frame_t frame = {.flags = flags, .length = length};
     return sim_bus_frame_bits(&frame);

@@ -42,9 +42,6 @@ void setUp(void) {
     init_on_bus(&(sim_hal_config_t){.store = &store});
 }
 
-void tearDown(void) {
-}
-
 /* ---- On a bus ---- */
 
 void test_frames_come_and_go_on_the_side_that_they_belong_to(void) {

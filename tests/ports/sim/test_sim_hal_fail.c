@@ -21,9 +21,6 @@ void setUp(void) {
     start();
 }
 
-void tearDown(void) {
-}
-
 static void fail_next(void) {
     sim_hal_fail_at(&hal, hal.calls + 1u, 1, SIM_HAL_OP_ALL);
 }

@@ -11,9 +11,6 @@ void setUp(void) {
     sim_store_init(&store);
 }
 
-void tearDown(void) {
-}
-
 static void append(uint8_t value) {
     TEST_ASSERT_TRUE(sim_store_append(&store, &value, 1));
 }

@@ -13,9 +13,6 @@ void setUp(void) {
     hal_template_init(&hal);
 }
 
-void tearDown(void) {
-}
-
 void test_no_frame_comes_or_goes(void) {
     hal_can_frame_t frame = {.id = 0x168};
     hal_can_status_t status = {HAL_CAN_BUS_OFF, 1, 2, 3};

@@ -12,9 +12,6 @@ void setUp(void) {
     f.long_run = true;
 }
 
-void tearDown(void) {
-}
-
 static void through_all_states(uint16_t topology) {
     f.config.topology = topology;
     fixture_active(&f);
