@@ -163,6 +163,17 @@ bool yaml_reader_map(const yaml_reader_t *reader, const yaml_node_t *node, const
     return true;
 }
 
+const yaml_node_t *yaml_reader_value(const yaml_reader_t *reader, const yaml_node_t *mapping, const char *key) {
+    for (const yaml_node_pair_t *pair = mapping->data.mapping.pairs.start; pair < mapping->data.mapping.pairs.top;
+         pair++) {
+        const char *name = yaml_node_text(yaml_document_get_node(reader->document, pair->key));
+        if ((name != NULL) && (strcmp(name, key) == 0)) {
+            return yaml_document_get_node(reader->document, pair->value);
+        }
+    }
+    return NULL;
+}
+
 bool yaml_reader_list(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, yaml_read_fn *read,
                       void *target) {
     if (node->type != YAML_SEQUENCE_NODE) {

@@ -101,6 +101,9 @@ bool yaml_reader_fail(const yaml_reader_t *reader, const yaml_node_t *node, cons
 bool yaml_reader_map(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, const yaml_key_t *keys,
                      size_t count, void *target);
 
+/** The value of a key in a mapping that was read; NULL: it is not there. */
+const yaml_node_t *yaml_reader_value(const yaml_reader_t *reader, const yaml_node_t *mapping, const char *key);
+
 /** Read a sequence: each item with @p read. */
 bool yaml_reader_list(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, yaml_read_fn *read,
                       void *target);

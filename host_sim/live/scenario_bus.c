@@ -34,6 +34,7 @@ typedef struct {
     int64_t node_began_us;    /* when its own time began, in that of the run */
     uint64_t halted_until_ms; /* it hangs, or has no power, until then */
     bool hangs;
+    scenario_events_t events;
     scenario_player_t player;
     uint64_t next_view_ms;                  /* the first millisecond that is not evaluated yet */
     linux_can_t controllers[HAL_CAN_SIDES]; /* what sends the error frames of the supervisor's controllers */
@@ -48,9 +49,10 @@ static uint64_t now_ms(const run_t *run) {
 }
 
 static void on_event(void *ctx, const session_event_t *reported) {
-    const run_t *run = ctx;
+    run_t *run = ctx;
     session_event_t event = *reported;
     event.t_ms = run->has_begun ? now_ms(run) : 0u;
+    (void)scenario_events_note(&run->events, &event);
     scenario_check_event(run->check, &event);
     if (run->watch->on_event != NULL) {
         run->watch->on_event(run->watch->event_ctx, &event);
@@ -336,7 +338,7 @@ bool scenario_bus_play(const scenario_bus_t *bus, scenario_check_t *check, const
                        events_summary_t *summary) {
     run_t run = {.bus = bus, .scenario = check->scenario, .check = check, .watch = watch, .summary = summary};
     live_files_none(&run.files);
-    scenario_player_init(&run.player, check->scenario);
+    scenario_player_init(&run.player, check->scenario, &run.events);
     for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
         run.controllers[side].fd = -1;
         run.recovered_ms[side] = UINT64_MAX;

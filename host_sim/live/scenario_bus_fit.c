@@ -231,7 +231,12 @@ void scenario_bus_tolerate(const scenario_bus_t *bus, scenario_t *scenario) {
         widen(&expect->outputs.items[i].at_ms, tolerance_ms);
     }
     for (size_t i = 0u; i < expect->leds.count; i++) {
-        narrow(&expect->leds.items[i].at_ms, tolerance_ms, scenario->duration_ms);
+        scenario_led_t *led = &expect->leds.items[i];
+        if (led->at_some_time) {
+            widen(&led->at_ms, tolerance_ms);
+        } else {
+            narrow(&led->at_ms, tolerance_ms, scenario->duration_ms);
+        }
     }
     for (size_t i = 0u; i < expect->faults.count; i++) {
         widen(&expect->faults.items[i].raised_ms, tolerance_ms);
@@ -242,5 +247,11 @@ void scenario_bus_tolerate(const scenario_bus_t *bus, scenario_t *scenario) {
     }
     for (size_t i = 0u; i < expect->startups.count; i++) {
         widen(&expect->startups.items[i].at_ms, tolerance_ms);
+    }
+    for (size_t i = 0u; i < expect->vehicle.count; i++) {
+        scenario_window_t *window = &expect->vehicle.items[i].at_ms;
+        if (window->from != window->to) {
+            widen(window, tolerance_ms);
+        }
     }
 }

@@ -19,6 +19,7 @@
 #include "hal/can.h"
 #include "hal/reset.h"
 #include "hal_sim/sim_board.h"
+#include "scenario/scenario_anchor.h"
 #include "vehicle/vehicle.h"
 
 #define SCENARIO_TEXT_MAX 96u
@@ -27,13 +28,15 @@
 #define SCENARIO_AGAIN_MAX 32u  /* steps with again_every_ms */
 #define SCENARIO_EXPECT_MAX 64u /* of each kind */
 #define SCENARIO_BOUNCE_MAX 16u /* times of a bouncing button */
+#define SCENARIO_NAME_MAX 32u   /* of a step */
 #define SCENARIO_DURATION_MAX_MS 86400000u
 #define SCENARIO_DEFAULT_BITRATE 500000u
 
-/** From `from` up to and with `to`. */
+/** From `from` up to and with `to`; these count from the anchor. */
 typedef struct {
     uint32_t from;
     uint32_t to;
+    scenario_anchor_t after;
 } scenario_window_t;
 
 /** What can be done to the supervisor and its controllers. */
@@ -76,9 +79,11 @@ typedef struct {
 
 /** A step: what is done to the vehicle or the supervisor, and when. */
 typedef struct {
-    uint32_t at_ms;
-    uint32_t again_every_ms; /**< 0: once */
-    uint32_t again_until_ms; /**< after this time it is not done again */
+    uint32_t at_ms; /**< counts from the anchor */
+    scenario_anchor_t after;
+    char name[SCENARIO_NAME_MAX]; /**< "": none */
+    uint32_t again_every_ms;      /**< 0: once */
+    uint32_t again_until_ms;      /**< after this time it is not done again */
     size_t line;
     const char *actor; /**< "ai" */
     const char *word;  /**< "stop" */
@@ -129,6 +134,7 @@ typedef struct {
 typedef struct {
     size_t line;
     int8_t code;
+    bool at_some_time; /**< of the window, not during all of it */
     scenario_window_t at_ms;
 } scenario_led_t;
 
@@ -152,10 +158,10 @@ typedef struct {
     scenario_window_t at_ms;
 } scenario_reset_t;
 
-/** Expected state of the vehicle at a time; members are evaluated if their has_ is set. */
+/** Expected state of the vehicle at some time of a window; members are evaluated if their has_ is set. */
 typedef struct {
     size_t line;
-    uint32_t at_ms;
+    scenario_window_t at_ms;
     bool has_gear, has_mode, has_speed, has_throttle, has_eps_mode, has_angle, has_fastest_park, has_alarms;
     uint8_t gear;
     bool autopilot;
@@ -218,6 +224,7 @@ typedef struct {
     uint32_t duration_ms;
     scenario_step_t steps[SCENARIO_STEPS_MAX];
     size_t step_count;
+    size_t waiting_count; /**< of them, those that wait for an event */
     scenario_expect_t expect;
 } scenario_t;
 

@@ -22,18 +22,6 @@ void scenario_check_fail(scenario_check_t *check, size_t line, const char *forma
     check->failure_count++;
 }
 
-static bool is_in(uint32_t t_ms, scenario_window_t window) {
-    return (t_ms >= window.from) && (t_ms <= window.to);
-}
-
-void scenario_check_window_text(scenario_window_t window, char text[40]) {
-    if (window.from == window.to) {
-        (void)snprintf(text, 40, "at %u ms", (unsigned)window.from);
-    } else {
-        (void)snprintf(text, 40, "in %u..%u ms", (unsigned)window.from, (unsigned)window.to);
-    }
-}
-
 static const char *name_of(agv_fault_t fault) {
     const char *name = agv_fault_name(fault);
     return (name != NULL) ? name : "no reason";
@@ -49,6 +37,7 @@ void scenario_check_init(scenario_check_t *check, const scenario_t *scenario) {
 
     memset(check, 0, sizeof *check);
     check->scenario = scenario;
+    check->expect = scenario->expect;
     check->led_code = NOT_YET;
     check->expectation_count = expect->states.count + expect->frames.count + expect->never.count +
                                expect->outputs.count + expect->leds.count + expect->faults.count +
@@ -59,17 +48,18 @@ void scenario_check_init(scenario_check_t *check, const scenario_t *scenario) {
 
 static void check_state(scenario_check_t *check, uint32_t t_ms, const agv_event_t *event) {
     const size_t index = check->next_state;
-    char window[40];
+    char window[SCENARIO_WINDOW_TEXT_SIZE];
 
     check->next_state++;
-    if (index >= check->scenario->expect.states.count) {
+    if (index >= check->expect.states.count) {
         scenario_check_fail(check, 0u, "no further change of state is expected, but at %u ms: %s (%s)", (unsigned)t_ms,
                             state_of(event->b), name_of((agv_fault_t)event->c));
         return;
     }
-    const scenario_state_t *state = &check->scenario->expect.states.items[index];
+    const scenario_state_t *state = &check->expect.states.items[index];
     scenario_check_window_text(state->at_ms, window);
-    if ((event->b != (uint8_t)state->to) || (event->c != (uint8_t)state->reason) || !is_in(t_ms, state->at_ms)) {
+    if ((event->b != (uint8_t)state->to) || (event->c != (uint8_t)state->reason) ||
+        !scenario_check_is_in(t_ms, state->at_ms)) {
         scenario_check_fail(check, state->line, "%s (%s) is expected %s, seen: %s (%s) at %u ms",
                             state_of((uint8_t)state->to), name_of(state->reason), window, state_of(event->b),
                             name_of((agv_fault_t)event->c), (unsigned)t_ms);
@@ -77,12 +67,13 @@ static void check_state(scenario_check_t *check, uint32_t t_ms, const agv_event_
 }
 
 static bool is_as_expected(const scenario_fault_t *fault, uint32_t t_ms, const agv_event_t *event) {
-    return is_in(t_ms, fault->raised_ms) && (!fault->has_class || ((uint8_t)fault->fault_class == event->b)) &&
+    return scenario_check_is_in(t_ms, fault->raised_ms) &&
+           (!fault->has_class || ((uint8_t)fault->fault_class == event->b)) &&
            ((fault->parts == 0u) || (fault->parts == event->missing));
 }
 
 static void raise_fault(scenario_check_t *check, uint32_t t_ms, const agv_event_t *event) {
-    const scenario_expect_t *expect = &check->scenario->expect;
+    const scenario_expect_t *expect = &check->expect;
     bool named = false;
 
     for (size_t i = 0u; i < expect->faults.count; i++) {
@@ -107,7 +98,7 @@ static void raise_fault(scenario_check_t *check, uint32_t t_ms, const agv_event_
 }
 
 static void end_fault(scenario_check_t *check, uint32_t t_ms, const agv_event_t *event) {
-    const scenario_expect_t *expect = &check->scenario->expect;
+    const scenario_expect_t *expect = &check->expect;
 
     for (size_t i = 0u; i < expect->faults.count; i++) {
         const scenario_fault_t *fault = &expect->faults.items[i];
@@ -116,8 +107,8 @@ static void end_fault(scenario_check_t *check, uint32_t t_ms, const agv_event_t 
             continue;
         }
         seen->ended = true;
-        if (fault->has_end && (fault->never_ends || !is_in(t_ms, fault->ended_ms))) {
-            char window[40] = "never";
+        if (fault->has_end && (fault->never_ends || !scenario_check_is_in(t_ms, fault->ended_ms))) {
+            char window[SCENARIO_WINDOW_TEXT_SIZE] = "never";
             if (!fault->never_ends) {
                 scenario_check_window_text(fault->ended_ms, window);
             }
@@ -132,18 +123,19 @@ static void check_reset(scenario_check_t *check, uint32_t t_ms, const agv_event_
     const size_t index = check->next_reset;
     char seen_text[MISSING_TEXT_SIZE];
     char text[MISSING_TEXT_SIZE];
-    char window[40];
+    char window[SCENARIO_WINDOW_TEXT_SIZE];
 
     check->next_reset++;
     (void)missing_text(event->missing, seen_text);
-    if (index >= check->scenario->expect.resets.count) {
+    if (index >= check->expect.resets.count) {
         scenario_check_fail(check, 0u, "no further reset is expected, but at %u ms: %s [%s]", (unsigned)t_ms,
                             (event->a != 0u) ? "accepted" : "refused", seen_text);
         return;
     }
-    const scenario_reset_t *reset = &check->scenario->expect.resets.items[index];
+    const scenario_reset_t *reset = &check->expect.resets.items[index];
     scenario_check_window_text(reset->at_ms, window);
-    if ((reset->accepted != (event->a != 0u)) || (reset->missing != event->missing) || !is_in(t_ms, reset->at_ms)) {
+    if ((reset->accepted != (event->a != 0u)) || (reset->missing != event->missing) ||
+        !scenario_check_is_in(t_ms, reset->at_ms)) {
         scenario_check_fail(check, reset->line, "reset %s [%s] is expected %s, seen: %s [%s] at %u ms",
                             reset->accepted ? "accepted" : "refused", missing_text(reset->missing, text), window,
                             (event->a != 0u) ? "accepted" : "refused", seen_text, (unsigned)t_ms);
@@ -154,18 +146,18 @@ static void check_startup(scenario_check_t *check, uint32_t t_ms, const agv_even
     const size_t index = check->next_startup;
     char seen_text[MISSING_TEXT_SIZE];
     char text[MISSING_TEXT_SIZE];
-    char window[40];
+    char window[SCENARIO_WINDOW_TEXT_SIZE];
 
     check->next_startup++;
     (void)missing_text(event->missing, seen_text);
-    if (index >= check->scenario->expect.startups.count) {
+    if (index >= check->expect.startups.count) {
         scenario_check_fail(check, 0u, "no report of missing conditions at start is expected, but at %u ms: [%s]",
                             (unsigned)t_ms, seen_text);
         return;
     }
-    const scenario_reset_t *startup = &check->scenario->expect.startups.items[index];
+    const scenario_reset_t *startup = &check->expect.startups.items[index];
     scenario_check_window_text(startup->at_ms, window);
-    if ((startup->missing != event->missing) || !is_in(t_ms, startup->at_ms)) {
+    if ((startup->missing != event->missing) || !scenario_check_is_in(t_ms, startup->at_ms)) {
         scenario_check_fail(check, startup->line, "missing at start [%s] is expected %s, seen: [%s] at %u ms",
                             missing_text(startup->missing, text), window, seen_text, (unsigned)t_ms);
     }
@@ -173,13 +165,15 @@ static void check_startup(scenario_check_t *check, uint32_t t_ms, const agv_even
 
 /** The LED showed `led_code` from `led_since_ms` up to and with @p last_ms. */
 static void check_led(scenario_check_t *check, uint32_t last_ms) {
-    const scenario_expect_t *expect = &check->scenario->expect;
+    const scenario_expect_t *expect = &check->expect;
 
     for (size_t i = 0u; i < expect->leds.count; i++) {
         const scenario_led_t *led = &expect->leds.items[i];
-        const bool overlap = (led->at_ms.from <= last_ms) && (led->at_ms.to >= check->led_since_ms);
-        if (overlap && (led->code != check->led_code) && !check->led_broken[i]) {
-            char window[40];
+        const bool overlap =
+            !scenario_check_waits(led->at_ms) && (led->at_ms.from <= last_ms) && (led->at_ms.to >= check->led_since_ms);
+        check->led_seen[i] = check->led_seen[i] || (overlap && (led->code == check->led_code));
+        if (overlap && !led->at_some_time && (led->code != check->led_code) && !check->led_broken[i]) {
+            char window[SCENARIO_WINDOW_TEXT_SIZE];
             check->led_broken[i] = true;
             scenario_check_window_text(led->at_ms, window);
             scenario_check_fail(check, led->line, "LED code %d is expected %s, seen: %d in %u..%u ms", led->code,
@@ -204,7 +198,10 @@ void scenario_check_event(scenario_check_t *check, const session_event_t *event)
         change_led(check, t_ms, event->led_code);
         return;
     }
-    if (check->scenario->expect.any_states &&
+    if (scenario_events_note(&check->events, event)) {
+        scenario_check_resolve(check);
+    }
+    if (check->expect.any_states &&
         ((recorded->kind == (uint8_t)AGV_EVENT_STATE) || (recorded->kind == (uint8_t)AGV_EVENT_RESET) ||
          (recorded->kind == (uint8_t)AGV_EVENT_STARTUP))) {
         return;
@@ -233,9 +230,9 @@ void scenario_check_event(scenario_check_t *check, const session_event_t *event)
 }
 
 void scenario_check_output(scenario_check_t *check, uint32_t t_ms, bool closed) {
-    const scenario_expect_t *expect = &check->scenario->expect;
+    const scenario_expect_t *expect = &check->expect;
     const size_t index = check->next_output;
-    char window[40];
+    char window[SCENARIO_WINDOW_TEXT_SIZE];
 
     if ((closed == check->closed) || expect->any_states) {
         return;
@@ -249,65 +246,15 @@ void scenario_check_output(scenario_check_t *check, uint32_t t_ms, bool closed) 
     }
     const scenario_output_t *output = &expect->outputs.items[index];
     scenario_check_window_text(output->at_ms, window);
-    if ((closed != output->closed) || !is_in(t_ms, output->at_ms)) {
+    if ((closed != output->closed) || !scenario_check_is_in(t_ms, output->at_ms)) {
         scenario_check_fail(check, output->line, "safety output %s is expected %s, seen: %s at %u ms",
                             output->closed ? "closed" : "open", window, closed ? "closed" : "open", (unsigned)t_ms);
     }
 }
 
-bool scenario_check_wants_vehicle(const scenario_check_t *check, uint32_t t_ms) {
-    const scenario_expect_t *expect = &check->scenario->expect;
-
-    for (size_t i = 0u; i < expect->vehicle.count; i++) {
-        if (expect->vehicle.items[i].at_ms == t_ms) {
-            return true;
-        }
-    }
-    return false;
-}
-
-static void check_range(scenario_check_t *check, const scenario_vehicle_t *expected, bool has, const char *what,
-                        const int32_t range[2], int32_t seen) {
-    if (has && ((seen < range[0]) || (seen > range[1]))) {
-        scenario_check_fail(check, expected->line, "vehicle at %u ms: %s %d..%d is expected, seen: %d",
-                            (unsigned)expected->at_ms, what, (int)range[0], (int)range[1], (int)seen);
-    }
-}
-
-static void check_code(scenario_check_t *check, const scenario_vehicle_t *expected, bool has, const char *what,
-                       unsigned wanted, unsigned seen) {
-    if (has && (wanted != seen)) {
-        scenario_check_fail(check, expected->line, "vehicle at %u ms: %s %Xh is expected, seen: %Xh",
-                            (unsigned)expected->at_ms, what, wanted, seen);
-    }
-}
-
-void scenario_check_vehicle(scenario_check_t *check, uint32_t t_ms, const vehicle_view_t *view) {
-    const scenario_expect_t *expect = &check->scenario->expect;
-
-    for (size_t i = 0u; i < expect->vehicle.count; i++) {
-        const scenario_vehicle_t *vehicle = &expect->vehicle.items[i];
-        if (vehicle->at_ms != t_ms) {
-            continue;
-        }
-        check_code(check, vehicle, vehicle->has_gear, "gear (P 8, R 2, N 4, D 1)", vehicle->gear, view->gear);
-        check_code(check, vehicle, vehicle->has_mode, "mode (manual 0, autopilot 1)", vehicle->autopilot,
-                   view->autopilot);
-        check_code(check, vehicle, vehicle->has_eps_mode, "EPS mode", vehicle->eps_mode, view->eps_mode);
-        check_code(check, vehicle, vehicle->has_alarms, "VCU alarms", vehicle->alarms, view->alarms);
-        check_range(check, vehicle, vehicle->has_speed, "speed in mm/s", vehicle->speed_mm_s, view->speed_mm_s);
-        check_range(check, vehicle, vehicle->has_throttle, "throttle in %", vehicle->throttle_pct,
-                    view->throttle_permille / 10);
-        check_range(check, vehicle, vehicle->has_angle, "steering in degrees", vehicle->angle_deg,
-                    view->angle_ddeg / 10);
-        check_range(check, vehicle, vehicle->has_fastest_park, "highest speed in mm/s at which P was taken",
-                    vehicle->fastest_park_mm_s, view->fastest_park_mm_s);
-    }
-}
-
 static void finish_lists(scenario_check_t *check) {
-    const scenario_expect_t *expect = &check->scenario->expect;
-    char window[40];
+    const scenario_expect_t *expect = &check->expect;
+    char window[SCENARIO_WINDOW_TEXT_SIZE];
     char text[MISSING_TEXT_SIZE];
 
     for (size_t i = check->next_state; i < expect->states.count; i++) {
@@ -336,6 +283,17 @@ static void finish_lists(scenario_check_t *check) {
     }
 }
 
+static void finish_leds(scenario_check_t *check) {
+    for (size_t i = 0u; i < check->expect.leds.count; i++) {
+        const scenario_led_t *led = &check->expect.leds.items[i];
+        char window[SCENARIO_WINDOW_TEXT_SIZE];
+        if ((led->at_some_time || scenario_check_waits(led->at_ms)) && !check->led_seen[i]) {
+            scenario_check_window_text(led->at_ms, window);
+            scenario_check_fail(check, led->line, "LED code %d is expected %s, not seen", led->code, window);
+        }
+    }
+}
+
 /** A fault came at another time, with another class or with other parts. */
 static void fail_otherwise(scenario_check_t *check, const scenario_fault_t *fault, const scenario_fault_seen_t *seen,
                            const char *window) {
@@ -354,8 +312,8 @@ static void fail_otherwise(scenario_check_t *check, const scenario_fault_t *faul
 }
 
 static void finish_faults(scenario_check_t *check) {
-    const scenario_expect_t *expect = &check->scenario->expect;
-    char window[40];
+    const scenario_expect_t *expect = &check->expect;
+    char window[SCENARIO_WINDOW_TEXT_SIZE];
 
     for (size_t i = 0u; i < expect->faults.count; i++) {
         const scenario_fault_t *fault = &expect->faults.items[i];
@@ -379,7 +337,7 @@ static void finish_faults(scenario_check_t *check) {
 }
 
 static void finish_counters(scenario_check_t *check, const agv_counters_t *counters) {
-    const scenario_expect_t *expect = &check->scenario->expect;
+    const scenario_expect_t *expect = &check->expect;
 
     for (size_t i = 0u; i < expect->counters.count; i++) {
         const scenario_counter_t *counter = &expect->counters.items[i];
@@ -387,7 +345,7 @@ static void finish_counters(scenario_check_t *check, const agv_counters_t *count
         if (counters != NULL) {
             memcpy(&seen, (const uint8_t *)counters + counter->offset, sizeof seen);
         }
-        if ((counters == NULL) || !is_in(seen, counter->value)) {
+        if ((counters == NULL) || !scenario_check_is_in(seen, counter->value)) {
             scenario_check_fail(check, counter->line, "counter %s: %u..%u is expected at the end, seen: %u",
                                 counter->name, (unsigned)counter->value.from, (unsigned)counter->value.to,
                                 (unsigned)seen);
@@ -398,7 +356,9 @@ static void finish_counters(scenario_check_t *check, const agv_counters_t *count
 void scenario_check_finish(scenario_check_t *check, const agv_counters_t *counters) {
     check_led(check, check->scenario->duration_ms);
     finish_lists(check);
+    finish_leds(check);
     finish_faults(check);
+    scenario_check_vehicle_finish(check);
     scenario_check_frames_finish(check);
     finish_counters(check, counters);
 }

@@ -17,6 +17,7 @@
 
 #define SCENARIO_FAILURES_MAX 40u
 #define SCENARIO_FAILURE_SIZE 320u
+#define SCENARIO_WINDOW_TEXT_SIZE 48u
 
 /** What was seen of one expected frame so far. */
 typedef struct {
@@ -43,12 +44,16 @@ typedef struct {
     size_t failure_count;                                        /**< may be larger than SCENARIO_FAILURES_MAX */
     size_t expectation_count;                                    /**< how many there are */
     const scenario_t *scenario;
+    scenario_expect_t expect; /* that of the scenario; times that count from an event are replaced when it comes */
+    scenario_events_t events;
     uint32_t ids[SCENARIO_EXPECT_MAX];
     uint32_t never_ids[SCENARIO_EXPECT_MAX];
     scenario_frame_seen_t frames[SCENARIO_EXPECT_MAX];
     scenario_fault_seen_t faults[SCENARIO_EXPECT_MAX];
     uint32_t never_count[SCENARIO_EXPECT_MAX];
     bool led_broken[SCENARIO_EXPECT_MAX];
+    bool led_seen[SCENARIO_EXPECT_MAX];     /* of those at some time */
+    bool vehicle_seen[SCENARIO_EXPECT_MAX]; /* or reported */
     size_t next_state;
     size_t next_output;
     size_t next_reset;
@@ -72,7 +77,7 @@ void scenario_check_frame(scenario_check_t *check, uint64_t t_us, hal_can_side_t
 /** The safety output is closed or open; at every millisecond. */
 void scenario_check_output(scenario_check_t *check, uint32_t t_ms, bool closed);
 
-/** The state of the vehicle; for every millisecond for which scenario_check_wants_vehicle() returns true. */
+/** The state of the vehicle; at least for every millisecond for which scenario_check_wants_vehicle() returns true. */
 void scenario_check_vehicle(scenario_check_t *check, uint32_t t_ms, const vehicle_view_t *view);
 bool scenario_check_wants_vehicle(const scenario_check_t *check, uint32_t t_ms);
 
@@ -86,7 +91,11 @@ void scenario_check_fail(scenario_check_t *check, size_t line, const char *forma
 /** @name Private: the parts. @{ */
 void scenario_check_frames_init(scenario_check_t *check);
 void scenario_check_frames_finish(scenario_check_t *check);
-void scenario_check_window_text(scenario_window_t window, char text[40]);
+void scenario_check_window_text(scenario_window_t window, char text[SCENARIO_WINDOW_TEXT_SIZE]);
+bool scenario_check_is_in(uint32_t t_ms, scenario_window_t window);
+bool scenario_check_waits(scenario_window_t window);  /* for an event that has not come */
+void scenario_check_resolve(scenario_check_t *check); /* an event has come that times may count from */
+void scenario_check_vehicle_finish(scenario_check_t *check);
 /** @} */
 
 #endif

@@ -8,7 +8,7 @@
 enum { FRAME_TEXT_SIZE = 80 };
 
 void scenario_check_frames_init(scenario_check_t *check) {
-    const scenario_expect_t *expect = &check->scenario->expect;
+    const scenario_expect_t *expect = &check->expect;
 
     check->only_supervisor = true;
     for (size_t i = 0u; i < expect->frames.count; i++) {
@@ -65,9 +65,9 @@ static const char *expected_text(const scenario_frame_t *expected, uint32_t id, 
 
 /** The first frame with this identifier since first_since_ms is the one that has to match. */
 static void check_first(scenario_check_t *check, size_t index, uint32_t t_ms, const hal_can_frame_t *frame) {
-    const scenario_frame_t *expected = &check->scenario->expect.frames.items[index];
+    const scenario_frame_t *expected = &check->expect.frames.items[index];
     scenario_frame_seen_t *seen = &check->frames[index];
-    char window[40];
+    char window[SCENARIO_WINDOW_TEXT_SIZE];
     char wanted[FRAME_TEXT_SIZE];
     char got[FRAME_TEXT_SIZE];
 
@@ -75,7 +75,7 @@ static void check_first(scenario_check_t *check, size_t index, uint32_t t_ms, co
         return;
     }
     seen->first_done = true;
-    if (!bytes_match(expected, frame) || (t_ms < expected->at_ms.from) || (t_ms > expected->at_ms.to)) {
+    if (!bytes_match(expected, frame) || !scenario_check_is_in(t_ms, expected->at_ms)) {
         seen->broken = true;
         scenario_check_window_text(expected->at_ms, window);
         scenario_check_fail(check, expected->line, "%s is expected as the first %s, seen: %s at %u ms",
@@ -90,7 +90,7 @@ static bool gap_is_good(const scenario_frame_t *expected, uint32_t gap_ms) {
 }
 
 static void check_frame(scenario_check_t *check, size_t index, uint32_t t_ms, const hal_can_frame_t *frame) {
-    const scenario_frame_t *expected = &check->scenario->expect.frames.items[index];
+    const scenario_frame_t *expected = &check->expect.frames.items[index];
     scenario_frame_seen_t *seen = &check->frames[index];
     char wanted[FRAME_TEXT_SIZE];
 
@@ -98,7 +98,7 @@ static void check_frame(scenario_check_t *check, size_t index, uint32_t t_ms, co
     if (!bytes_match(expected, frame)) {
         return;
     }
-    if ((t_ms < expected->at_ms.from) || (t_ms > expected->at_ms.to)) {
+    if (!scenario_check_is_in(t_ms, expected->at_ms)) {
         if ((seen->count == 0u) && !seen->near) {
             seen->near = t_ms > expected->at_ms.to;
             seen->nearest_ms = t_ms;
@@ -121,11 +121,11 @@ static void check_frame(scenario_check_t *check, size_t index, uint32_t t_ms, co
 }
 
 static void check_never(scenario_check_t *check, size_t index, uint32_t t_ms, const hal_can_frame_t *frame) {
-    const scenario_frame_t *never = &check->scenario->expect.never.items[index];
-    char window[40];
+    const scenario_frame_t *never = &check->expect.never.items[index];
+    char window[SCENARIO_WINDOW_TEXT_SIZE];
     char got[FRAME_TEXT_SIZE];
 
-    if (!bytes_match(never, frame) || (t_ms < never->at_ms.from) || (t_ms > never->at_ms.to)) {
+    if (!bytes_match(never, frame) || !scenario_check_is_in(t_ms, never->at_ms)) {
         return;
     }
     check->never_count[index]++;
@@ -138,7 +138,7 @@ static void check_never(scenario_check_t *check, size_t index, uint32_t t_ms, co
 
 void scenario_check_frame(scenario_check_t *check, uint64_t t_us, hal_can_side_t side, int from,
                           const hal_can_frame_t *frame) {
-    const scenario_expect_t *expect = &check->scenario->expect;
+    const scenario_expect_t *expect = &check->expect;
     const uint32_t t_ms = (uint32_t)(t_us / US_PER_MS);
 
     if (check->only_supervisor && (from != SCENARIO_FROM_SUPERVISOR)) {
@@ -157,9 +157,9 @@ void scenario_check_frame(scenario_check_t *check, uint64_t t_us, hal_can_side_t
 }
 
 static void finish_frame(scenario_check_t *check, size_t index) {
-    const scenario_frame_t *expected = &check->scenario->expect.frames.items[index];
+    const scenario_frame_t *expected = &check->expect.frames.items[index];
     const scenario_frame_seen_t *seen = &check->frames[index];
-    char window[40];
+    char window[SCENARIO_WINDOW_TEXT_SIZE];
     char wanted[FRAME_TEXT_SIZE];
     char near[40] = "";
 
@@ -190,7 +190,15 @@ static void finish_frame(scenario_check_t *check, size_t index) {
 }
 
 void scenario_check_frames_finish(scenario_check_t *check) {
-    for (size_t i = 0u; i < check->scenario->expect.frames.count; i++) {
+    for (size_t i = 0u; i < check->expect.frames.count; i++) {
         finish_frame(check, i);
+    }
+    for (size_t i = 0u; i < check->expect.never.count; i++) {
+        const scenario_frame_t *never = &check->expect.never.items[i];
+        char anchor[SCENARIO_ANCHOR_TEXT_SIZE];
+        if (scenario_check_waits(never->at_ms)) {
+            scenario_check_fail(check, never->line, "a frame is forbidden after %s, which was not seen",
+                                scenario_anchor_text(never->at_ms.after, anchor));
+        }
     }
 }

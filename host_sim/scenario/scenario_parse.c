@@ -1,5 +1,4 @@
 /* Scenario files: the top level. */
-#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -8,6 +7,7 @@
 #include "config/config_file.h"
 #include "io/yaml_file.h"
 #include "scenario/scenario_parse.h"
+#include "scenario/scenario_requirements.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 /* The first identifier of a vehicle that has those of the configuration. */
@@ -38,6 +38,10 @@ bool scenario_parse_u32(const yaml_reader_t *reader, const yaml_node_t *node, co
     return true;
 }
 
+bool scenario_parse_time(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t *ms) {
+    return scenario_parse_ms(reader, node, what, 0u, SCENARIO_DURATION_MAX_MS, ms);
+}
+
 bool scenario_parse_ms(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t lowest,
                        uint32_t highest, uint32_t *ms) {
     int64_t value = 0;
@@ -47,10 +51,6 @@ bool scenario_parse_ms(const yaml_reader_t *reader, const yaml_node_t *node, con
     }
     *ms = (uint32_t)value;
     return true;
-}
-
-bool scenario_parse_time(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t *ms) {
-    return scenario_parse_ms(reader, node, what, 0u, SCENARIO_DURATION_MAX_MS, ms);
 }
 
 bool scenario_parse_message(const yaml_reader_t *reader, const yaml_node_t *node, agv_message_t *message) {
@@ -92,21 +92,6 @@ static bool read_name(const yaml_reader_t *reader, const yaml_node_t *node, void
     return true;
 }
 
-/** "SUP-2", "P15", "FSM-10": capital letters, a dash or none, digits. */
-static bool is_requirement(const char *text) {
-    size_t letters = 0u;
-    size_t digits = 0u;
-
-    while (isupper((unsigned char)text[letters]) != 0) {
-        letters++;
-    }
-    const size_t dash = (text[letters] == '-') ? 1u : 0u;
-    while (isdigit((unsigned char)text[letters + dash + digits]) != 0) {
-        digits++;
-    }
-    return (letters > 0u) && (digits > 0u) && (text[letters + dash + digits] == '\0');
-}
-
 static bool read_shown(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     scenario_t *scenario = target;
     const char *text = yaml_reader_text(reader, node, "shows");
@@ -117,8 +102,10 @@ static bool read_shown(const yaml_reader_t *reader, const yaml_node_t *node, voi
     if (scenario->shows_count == SCENARIO_SHOWS_MAX) {
         return yaml_reader_fail(reader, node, "shows: more than %u", SCENARIO_SHOWS_MAX);
     }
-    if (!is_requirement(text) && (agv_fault_from_name(text) == AGV_FAULT_NONE)) {
-        return yaml_reader_fail(reader, node, "shows: '%.40s' is neither a requirement such as SUP-2 nor a fault",
+    if (!scenario_is_requirement(text) && (agv_fault_from_name(text) == AGV_FAULT_NONE)) {
+        return yaml_reader_fail(reader, node,
+                                "shows: '%.40s' is neither a requirement of docs/requirements.md or docs/protocol.md "
+                                "nor a fault",
                                 text);
     }
     (void)snprintf(scenario->shows[scenario->shows_count], SCENARIO_TEXT_MAX, "%s", text);
@@ -212,14 +199,20 @@ static bool is_before_end(const scenario_t *scenario, const char *file, size_t l
 }
 
 static bool steps_fit(const scenario_t *scenario, const char *file) {
+    uint32_t last_ms = 0u; /* of those that wait for no event */
+
     for (size_t i = 0u; i < scenario->step_count; i++) {
         const scenario_step_t *step = &scenario->steps[i];
         if (!is_before_end(scenario, file, step->line, step->at_ms)) {
             return false;
         }
-        if ((i > 0u) && (step->at_ms < scenario->steps[i - 1u].at_ms)) {
+        if (step->after.kind != (uint8_t)SCENARIO_FROM_START) {
+            continue;
+        }
+        if (step->at_ms < last_ms) {
             return report_at(file, step->line, "the step is earlier than the one before it");
         }
+        last_ms = step->at_ms;
     }
     return true;
 }
@@ -229,7 +222,7 @@ static bool expectations_fit(const scenario_t *scenario, const char *file) {
     bool good = true;
 
     for (size_t i = 0u; good && (i < expect->vehicle.count); i++) {
-        good = is_before_end(scenario, file, expect->vehicle.items[i].line, expect->vehicle.items[i].at_ms);
+        good = is_before_end(scenario, file, expect->vehicle.items[i].line, expect->vehicle.items[i].at_ms.to);
     }
     for (size_t i = 0u; good && (i < expect->leds.count); i++) {
         good = is_before_end(scenario, file, expect->leds.items[i].line, expect->leds.items[i].at_ms.to);

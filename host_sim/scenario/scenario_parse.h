@@ -19,9 +19,29 @@ extern const yaml_word_t SCENARIO_ID_SETS[];
          ? &(list).items[(list).count++]                                                                               \
          : (yaml_reader_fail((reader), (node), "more than %u of them", SCENARIO_EXPECT_MAX), NULL))
 
-/** "at_ms": one time, or [earliest, latest]. */
-bool scenario_parse_window(const yaml_reader_t *reader, const yaml_node_t *node, const char *what,
-                           scenario_window_t *window);
+/** When something is expected. */
+typedef struct {
+    const scenario_t *scenario;
+    const char *what; /**< names the expectation in messages */
+    const char *key;  /**< of the time since the start: "at_ms" */
+    bool is_optional;
+} scenario_when_t;
+
+/** The rows of a table for the time of an expectation: since the start, or `after` and `within`. */
+#define SCENARIO_WHEN(type, key, member)                                                                               \
+    YAML_OPTIONAL(YAML_TIME_RANGE(key, type, member, 0, SCENARIO_DURATION_MAX_MS)), SCENARIO_AFTER(type, member)
+#define SCENARIO_AFTER(type, member)                                                                                   \
+    YAML_OPTIONAL(YAML_CALL("after", scenario_parse_any_text)),                                                        \
+        YAML_OPTIONAL(YAML_TIME_RANGE("within", type, member, 0, SCENARIO_DURATION_MAX_MS))
+yaml_read_fn scenario_parse_any_text;
+
+/** What these rows have read, taken together: an anchor that is a step is counted in. */
+bool scenario_parse_when(const yaml_reader_t *reader, const yaml_node_t *node, const scenario_when_t *when,
+                         scenario_window_t *window);
+
+/** `after`: an event, or a step by its name, which is as much as its own anchor and a time. */
+bool scenario_parse_after(const yaml_reader_t *reader, const yaml_node_t *node, const scenario_t *scenario,
+                          scenario_anchor_t *anchor, uint32_t *offset_ms);
 
 /** @name Single expectations @{ */
 yaml_read_fn scenario_parse_frame;

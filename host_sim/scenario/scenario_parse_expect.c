@@ -9,19 +9,6 @@
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
-bool scenario_parse_window(const yaml_reader_t *reader, const yaml_node_t *node, const char *what,
-                           scenario_window_t *window) {
-    int64_t range[2];
-
-    if (!yaml_reader_time_range(reader, node, what, 0, SCENARIO_DURATION_MAX_MS, range)) {
-        return false;
-    }
-    *window = (scenario_window_t){(uint32_t)range[0], (uint32_t)range[1]};
-    return true;
-}
-
-#define WINDOW(type, key, member) YAML_TIME_RANGE(key, type, member, 0, SCENARIO_DURATION_MAX_MS)
-
 static const yaml_word_t STATES[] = {{"INIT", AGV_STATE_INIT},     {"STANDBY", AGV_STATE_STANDBY},
                                      {"ACTIVE", AGV_STATE_ACTIVE}, {"TRIPPED", AGV_STATE_TRIPPED},
                                      {"SAFE", AGV_STATE_SAFE},     {NULL, 0}};
@@ -37,41 +24,50 @@ static bool read_state_reason(const yaml_reader_t *reader, const yaml_node_t *no
 static bool read_state(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     static const yaml_key_t keys[] = {YAML_REQUIRED(YAML_WORD("to", scenario_state_t, to, STATES)),
                                       YAML_OPTIONAL(YAML_CALL("reason", read_state_reason)),
-                                      YAML_REQUIRED(WINDOW(scenario_state_t, "at_ms", at_ms))};
+                                      SCENARIO_WHEN(scenario_state_t, "at_ms", at_ms)};
     scenario_state_t *state = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.states);
+    const scenario_when_t when = {.scenario = target, .what = "a state", .key = "at_ms"};
 
     if (state == NULL) {
         return false;
     }
     state->line = yaml_node_line(node);
     state->reason = AGV_FAULT_NONE;
-    return yaml_reader_map(reader, node, "a state", keys, COUNT(keys), state);
+    return yaml_reader_map(reader, node, when.what, keys, COUNT(keys), state) &&
+           scenario_parse_when(reader, node, &when, &state->at_ms);
 }
 
 /* --- safety output, LED --- */
 
 static bool read_output(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     static const yaml_key_t keys[] = {YAML_REQUIRED(YAML_FLAG("closed", scenario_output_t, closed)),
-                                      YAML_REQUIRED(WINDOW(scenario_output_t, "at_ms", at_ms))};
+                                      SCENARIO_WHEN(scenario_output_t, "at_ms", at_ms)};
     scenario_output_t *output = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.outputs);
+    const scenario_when_t when = {.scenario = target, .what = "a change of the safety output", .key = "at_ms"};
 
     if (output == NULL) {
         return false;
     }
     output->line = yaml_node_line(node);
-    return yaml_reader_map(reader, node, "a change of the safety output", keys, COUNT(keys), output);
+    return yaml_reader_map(reader, node, when.what, keys, COUNT(keys), output) &&
+           scenario_parse_when(reader, node, &when, &output->at_ms);
 }
 
 static bool read_led(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     static const yaml_key_t keys[] = {YAML_REQUIRED(YAML_NUMBER("code", scenario_led_t, code, -1, 17)),
-                                      YAML_REQUIRED(WINDOW(scenario_led_t, "at_ms", at_ms))};
+                                      SCENARIO_WHEN(scenario_led_t, "at_ms", at_ms)};
     scenario_led_t *led = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.leds);
+    const scenario_when_t when = {.scenario = target, .what = "a code of the LED", .key = "at_ms"};
 
     if (led == NULL) {
         return false;
     }
     led->line = yaml_node_line(node);
-    return yaml_reader_map(reader, node, "a code of the LED", keys, COUNT(keys), led);
+    if (!yaml_reader_map(reader, node, when.what, keys, COUNT(keys), led)) {
+        return false;
+    }
+    led->at_some_time = yaml_reader_value(reader, node, "within") != NULL;
+    return scenario_parse_when(reader, node, &when, &led->at_ms);
 }
 
 /* --- faults --- */
@@ -98,7 +94,15 @@ static bool read_fault_ended(const yaml_reader_t *reader, const yaml_node_t *nod
 
     fault->has_end = true;
     fault->never_ends = (text != NULL) && (strcmp(text, "never") == 0);
-    return fault->never_ends || scenario_parse_window(reader, node, "ended_ms (a time, or never)", &fault->ended_ms);
+    if (fault->never_ends) {
+        return true;
+    }
+    int64_t range[2];
+    if (!yaml_reader_time_range(reader, node, "ended_ms (a time, or never)", 0, SCENARIO_DURATION_MAX_MS, range)) {
+        return false;
+    }
+    fault->ended_ms = (scenario_window_t){.from = (uint32_t)range[0], .to = (uint32_t)range[1]};
+    return true;
 }
 
 static bool read_fault(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
@@ -106,15 +110,17 @@ static bool read_fault(const yaml_reader_t *reader, const yaml_node_t *node, voi
                                       YAML_OPTIONAL(YAML_WORD("class", scenario_fault_t, fault_class, CLASSES),
                                                     YAML_GIVEN(scenario_fault_t, has_class)),
                                       YAML_OPTIONAL(YAML_LIST("parts", read_failed_part)),
-                                      YAML_REQUIRED(WINDOW(scenario_fault_t, "raised_ms", raised_ms)),
+                                      SCENARIO_WHEN(scenario_fault_t, "raised_ms", raised_ms),
                                       YAML_OPTIONAL(YAML_CALL("ended_ms", read_fault_ended))};
     scenario_fault_t *fault = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.faults);
+    const scenario_when_t when = {.scenario = target, .what = "a fault", .key = "raised_ms"};
 
     if (fault == NULL) {
         return false;
     }
     fault->line = yaml_node_line(node);
-    if (!yaml_reader_map(reader, node, "a fault", keys, COUNT(keys), fault)) {
+    if (!yaml_reader_map(reader, node, when.what, keys, COUNT(keys), fault) ||
+        !scenario_parse_when(reader, node, &when, &fault->raised_ms)) {
         return false;
     }
     return (fault->parts == 0u) || (fault->fault == AGV_FAULT_SELF_TEST_FAILED) ||
@@ -148,14 +154,16 @@ static bool read_missing(const yaml_reader_t *reader, const yaml_node_t *node, v
 static bool read_reset(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     static const yaml_key_t keys[] = {YAML_REQUIRED(YAML_FLAG("accepted", scenario_reset_t, accepted)),
                                       YAML_OPTIONAL(YAML_CALL("why", read_missing)),
-                                      YAML_REQUIRED(WINDOW(scenario_reset_t, "at_ms", at_ms))};
+                                      SCENARIO_WHEN(scenario_reset_t, "at_ms", at_ms)};
     scenario_reset_t *reset = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.resets);
+    const scenario_when_t when = {.scenario = target, .what = "a reset", .key = "at_ms"};
 
     if (reset == NULL) {
         return false;
     }
     reset->line = yaml_node_line(node);
-    if (!yaml_reader_map(reader, node, "a reset", keys, COUNT(keys), reset)) {
+    if (!yaml_reader_map(reader, node, when.what, keys, COUNT(keys), reset) ||
+        !scenario_parse_when(reader, node, &when, &reset->at_ms)) {
         return false;
     }
     return (reset->accepted == (reset->missing == 0u)) ||
@@ -164,14 +172,16 @@ static bool read_reset(const yaml_reader_t *reader, const yaml_node_t *node, voi
 
 static bool read_startup(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     static const yaml_key_t keys[] = {YAML_REQUIRED(YAML_CALL("missing", read_missing)),
-                                      YAML_REQUIRED(WINDOW(scenario_reset_t, "at_ms", at_ms))};
+                                      SCENARIO_WHEN(scenario_reset_t, "at_ms", at_ms)};
     scenario_reset_t *startup = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.startups);
+    const scenario_when_t when = {.scenario = target, .what = "a report at start", .key = "at_ms"};
 
     if (startup == NULL) {
         return false;
     }
     startup->line = yaml_node_line(node);
-    return yaml_reader_map(reader, node, "a report at start", keys, COUNT(keys), startup);
+    return yaml_reader_map(reader, node, when.what, keys, COUNT(keys), startup) &&
+           scenario_parse_when(reader, node, &when, &startup->at_ms);
 }
 
 /* --- all of it --- */

@@ -49,8 +49,8 @@ static void preset_frame(scenario_frame_t *frame, const yaml_node_t *node) {
     frame->any_side = true;
     frame->id = SCENARIO_NO_ID;
     frame->message = AGV_MSG_NONE;
-    frame->at_ms = (scenario_window_t){0u, ENDLESS};
-    frame->count = (scenario_window_t){1u, ENDLESS};
+    frame->at_ms = (scenario_window_t){.from = 0u, .to = ENDLESS};
+    frame->count = (scenario_window_t){.from = 1u, .to = ENDLESS};
     frame->jitter_ms = JITTER_PRESET_MS;
 }
 
@@ -62,24 +62,26 @@ static bool names_one_id(const yaml_reader_t *reader, const yaml_node_t *node, c
 bool scenario_parse_frame(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     static const yaml_key_t keys[] = {
         WHICH_FRAME,
-        YAML_REQUIRED(MEMBER(TIME_RANGE, "at_ms", at_ms, 0, SCENARIO_DURATION_MAX_MS)),
+        SCENARIO_WHEN(scenario_frame_t, "at_ms", at_ms),
         YAML_OPTIONAL(MEMBER(TIME, "first_since_ms", first_since_ms, 0, SCENARIO_DURATION_MAX_MS),
                       YAML_GIVEN(scenario_frame_t, is_first)),
         YAML_OPTIONAL(MEMBER(RANGE, "count", count, 0, SCENARIO_DURATION_MAX_MS)),
         YAML_OPTIONAL(MEMBER(TIME, "every_ms", every_ms, 1, 60000)),
         YAML_OPTIONAL(MEMBER(TIME, "jitter_ms", jitter_ms, 0, 60000)),
     };
+    const scenario_when_t when = {.scenario = target, .what = "an expected frame", .key = "at_ms"};
     scenario_frame_t *frame = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.frames);
 
     if (frame == NULL) {
         return false;
     }
     preset_frame(frame, node);
-    if (!yaml_reader_map(reader, node, "an expected frame", keys, COUNT(keys), frame) ||
-        !names_one_id(reader, node, frame)) {
+    if (!yaml_reader_map(reader, node, when.what, keys, COUNT(keys), frame) || !names_one_id(reader, node, frame) ||
+        !scenario_parse_when(reader, node, &when, &frame->at_ms)) {
         return false;
     }
-    if (frame->is_first && (frame->first_since_ms > frame->at_ms.from)) {
+    if (frame->is_first && (frame->at_ms.after.kind == (uint8_t)SCENARIO_FROM_START) &&
+        (frame->first_since_ms > frame->at_ms.from)) {
         return yaml_reader_fail(reader, node, "first_since_ms is after at_ms");
     }
     return ((frame->id != SCENARIO_NO_ID) || (frame->message != AGV_MSG_NONE)) ||
@@ -87,14 +89,14 @@ bool scenario_parse_frame(const yaml_reader_t *reader, const yaml_node_t *node, 
 }
 
 bool scenario_parse_never(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {WHICH_FRAME,
-                                      YAML_OPTIONAL(MEMBER(TIME_RANGE, "at_ms", at_ms, 0, SCENARIO_DURATION_MAX_MS))};
+    static const yaml_key_t keys[] = {WHICH_FRAME, SCENARIO_WHEN(scenario_frame_t, "at_ms", at_ms)};
+    const scenario_when_t when = {.scenario = target, .what = "a forbidden frame", .key = "at_ms", .is_optional = true};
     scenario_frame_t *frame = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.never);
 
     if (frame == NULL) {
         return false;
     }
     preset_frame(frame, node);
-    return yaml_reader_map(reader, node, "a forbidden frame", keys, COUNT(keys), frame) &&
-           names_one_id(reader, node, frame);
+    return yaml_reader_map(reader, node, when.what, keys, COUNT(keys), frame) && names_one_id(reader, node, frame) &&
+           scenario_parse_when(reader, node, &when, &frame->at_ms);
 }

@@ -17,7 +17,8 @@ enum { RANGE_MAX = 100000 };
 
 bool scenario_parse_vehicle(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     static const yaml_key_t keys[] = {
-        YAML_REQUIRED(YAML_TIME("at_ms", scenario_vehicle_t, at_ms, 0, SCENARIO_DURATION_MAX_MS)),
+        YAML_OPTIONAL(YAML_TIME("at_ms", scenario_vehicle_t, at_ms.from, 0, SCENARIO_DURATION_MAX_MS)),
+        SCENARIO_AFTER(scenario_vehicle_t, at_ms),
         SEEN(YAML_WORD("gear", scenario_vehicle_t, gear, SCENARIO_GEARS), has_gear),
         SEEN(YAML_WORD("mode", scenario_vehicle_t, autopilot, MODES), has_mode),
         SEEN_RANGE("speed_mm_s", speed_mm_s, has_speed),
@@ -33,7 +34,12 @@ bool scenario_parse_vehicle(const yaml_reader_t *reader, const yaml_node_t *node
         return false;
     }
     vehicle->line = yaml_node_line(node);
-    return yaml_reader_map(reader, node, "the vehicle at a time", keys, COUNT(keys), vehicle);
+    const scenario_when_t when = {.scenario = target, .what = "the vehicle at a time", .key = "at_ms"};
+    if (!yaml_reader_map(reader, node, when.what, keys, COUNT(keys), vehicle)) {
+        return false;
+    }
+    vehicle->at_ms.to = (vehicle->at_ms.to < vehicle->at_ms.from) ? vehicle->at_ms.from : vehicle->at_ms.to;
+    return scenario_parse_when(reader, node, &when, &vehicle->at_ms);
 }
 
 /* --- counters at the end --- */
@@ -56,7 +62,10 @@ static bool read_counter(const yaml_reader_t *reader, const yaml_node_t *node, v
     if ((counter == NULL) || !yaml_reader_range(reader, node, name, 0, UINT32_MAX, range)) {
         return false;
     }
-    *counter = (scenario_counter_t){yaml_node_line(node), name, offset, {(uint32_t)range[0], (uint32_t)range[1]}};
+    *counter = (scenario_counter_t){.line = yaml_node_line(node),
+                                    .name = name,
+                                    .offset = offset,
+                                    .value = {.from = (uint32_t)range[0], .to = (uint32_t)range[1]}};
     return true;
 }
 

@@ -8,24 +8,13 @@
 #include "io/yaml_file.h"
 #include "scenario/scenario_actions.h"
 #include "scenario/scenario_parse.h"
+#include "scenario/scenario_parse_step_keys.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define BITS_OF_BYTE 8u
 #define BITS_OF_VALUE 32u
 
-/** A step that is being read. */
-typedef struct {
-    const yaml_node_t *node;
-    uint32_t at_ms;
-    uint32_t again_every_ms;
-    uint32_t again_until_ms;
-    scenario_actor_t actor;
-    const yaml_node_t *word; /* what the actor does */
-    uint32_t given;          /* P_* */
-    const yaml_node_t *value_of[SCENARIO_PARAMETERS];
-} reading_t;
-
-static const yaml_node_t *given(const reading_t *reading, uint32_t parameter) {
+static const yaml_node_t *given(const scenario_reading_t *reading, uint32_t parameter) {
     for (unsigned i = 0u; i < SCENARIO_PARAMETERS; i++) {
         if ((1u << i) == parameter) {
             return reading->value_of[i];
@@ -34,8 +23,8 @@ static const yaml_node_t *given(const reading_t *reading, uint32_t parameter) {
     return NULL;
 }
 
-static bool take_message(const yaml_reader_t *reader, const reading_t *reading, const scenario_action_row_t *row,
-                         scenario_step_t *step) {
+static bool take_message(const yaml_reader_t *reader, const scenario_reading_t *reading,
+                         const scenario_action_row_t *row, scenario_step_t *step) {
     const yaml_node_t *message = given(reading, P_MESSAGE);
 
     if (message == NULL) {
@@ -56,23 +45,24 @@ static bool take_message(const yaml_reader_t *reader, const reading_t *reading, 
 }
 
 /** The numbers of an action: how many frames, how often, how long. */
-static bool take_numbers(const yaml_reader_t *reader, const reading_t *reading, scenario_step_t *step) {
+static bool take_numbers(const yaml_reader_t *reader, const scenario_reading_t *reading, scenario_step_t *step) {
     static const struct {
         uint32_t parameter;
         const char *name;
         uint32_t lowest;
         uint32_t highest;
         bool is_count;
+        bool is_time;
     } rows[] = {
-        {P_FRAMES, "frames", 1u, UINT16_MAX - 1u, true},
-        {P_TIMES, "times", 0u, UINT16_MAX - 1u, true},
-        {P_BUTTON, "button", 1u, 2u, true},
-        {P_PCT_S, "pct_s", 1u, 10000u, true},
-        {P_BY_MS, "by_ms", 0u, 60000u, false},
-        {P_EVERY_MS, "every_ms", 1u, 60000u, false},
-        {P_OFF_MS, "off_ms", 0u, 3600000u, false},
-        {P_FOR_MS, "for_ms", 1u, 3600000u, false},
-        {P_BIT, "bit", 0u, 1000000u, false},
+        {P_FRAMES, "frames", 1u, UINT16_MAX - 1u, true, false},
+        {P_TIMES, "times", 0u, UINT16_MAX - 1u, true, false},
+        {P_BUTTON, "button", 1u, 2u, true, false},
+        {P_PCT_S, "pct_s", 1u, 10000u, true, false},
+        {P_BY_MS, "by_ms", 0u, 60000u, false, true},
+        {P_EVERY_MS, "every_ms", 1u, 60000u, false, true},
+        {P_OFF_MS, "off_ms", 0u, 3600000u, false, true},
+        {P_FOR_MS, "for_ms", 1u, 3600000u, false, true},
+        {P_BIT, "bit", 0u, 1000000u, false, false},
     };
 
     for (size_t i = 0u; i < COUNT(rows); i++) {
@@ -81,9 +71,10 @@ static bool take_numbers(const yaml_reader_t *reader, const reading_t *reading, 
         if (node == NULL) {
             continue;
         }
-        const bool is_time = (rows[i].parameter & (P_BY_MS | P_EVERY_MS | P_OFF_MS | P_FOR_MS)) != 0u;
-        if (!(is_time ? scenario_parse_ms : scenario_parse_u32)(reader, node, rows[i].name, rows[i].lowest,
-                                                                rows[i].highest, &number)) {
+        const bool good =
+            rows[i].is_time ? scenario_parse_ms(reader, node, rows[i].name, rows[i].lowest, rows[i].highest, &number)
+                            : scenario_parse_u32(reader, node, rows[i].name, rows[i].lowest, rows[i].highest, &number);
+        if (!good) {
             return false;
         }
         if (rows[i].is_count) {
@@ -96,7 +87,7 @@ static bool take_numbers(const yaml_reader_t *reader, const reading_t *reading, 
 }
 
 /** `every_frames`: again and again. */
-static bool take_every(const yaml_reader_t *reader, const reading_t *reading, vehicle_action_t *action) {
+static bool take_every(const yaml_reader_t *reader, const scenario_reading_t *reading, vehicle_action_t *action) {
     const yaml_node_t *node = given(reading, P_EVERY_FRAMES);
     uint32_t every = 0u;
 
@@ -115,7 +106,7 @@ static bool take_every(const yaml_reader_t *reader, const reading_t *reading, ve
 }
 
 /** `roll`: at this speed, or at the one that it has. */
-static bool take_speed(const yaml_reader_t *reader, const reading_t *reading, vehicle_action_t *action) {
+static bool take_speed(const yaml_reader_t *reader, const scenario_reading_t *reading, vehicle_action_t *action) {
     const yaml_node_t *node = given(reading, P_SPEED);
     int64_t number = 0;
 
@@ -130,7 +121,7 @@ static bool take_speed(const yaml_reader_t *reader, const reading_t *reading, ve
     return true;
 }
 
-static bool take_driving(const yaml_reader_t *reader, const reading_t *reading, vehicle_action_t *action) {
+static bool take_driving(const yaml_reader_t *reader, const scenario_reading_t *reading, vehicle_action_t *action) {
     const yaml_node_t *gear = given(reading, P_GEAR);
     const yaml_node_t *throttle = given(reading, P_THROTTLE);
     const yaml_node_t *steer = given(reading, P_STEER);
@@ -158,7 +149,7 @@ static bool take_driving(const yaml_reader_t *reader, const reading_t *reading, 
     return true;
 }
 
-static bool take_garbage(const yaml_reader_t *reader, const reading_t *reading, vehicle_action_t *action) {
+static bool take_garbage(const yaml_reader_t *reader, const scenario_reading_t *reading, vehicle_action_t *action) {
     static const yaml_word_t words[] = {{"random", VEHICLE_GARBAGE_RANDOM},
                                         {"wrong_length", VEHICLE_GARBAGE_LENGTH},
                                         {"extended", VEHICLE_GARBAGE_EXTENDED},
@@ -180,7 +171,7 @@ static uint32_t highest_of(const scenario_field_row_t *row) {
 }
 
 /** `set`: a field keeps a value; `freeze_field`: the one that it has. */
-static bool take_field(const yaml_reader_t *reader, const reading_t *reading, vehicle_action_t *action) {
+static bool take_field(const yaml_reader_t *reader, const scenario_reading_t *reading, vehicle_action_t *action) {
     const yaml_node_t *node = given(reading, P_FIELD);
     const char *name = yaml_reader_text(reader, node, "field");
     uint32_t value = 0u;
@@ -206,7 +197,7 @@ static bool take_field(const yaml_reader_t *reader, const reading_t *reading, ve
 }
 
 /** `set_bytes`: bytes keep their values, `..` stays as it is. */
-static bool take_patch_bytes(const yaml_reader_t *reader, const reading_t *reading, vehicle_action_t *action) {
+static bool take_patch_bytes(const yaml_reader_t *reader, const scenario_reading_t *reading, vehicle_action_t *action) {
     const yaml_node_t *node = given(reading, P_BYTES);
     uint8_t mask[AGV_DLC];
     uint8_t length = 0u;
@@ -222,7 +213,8 @@ static bool take_patch_bytes(const yaml_reader_t *reader, const reading_t *readi
 }
 
 /** @param on_wire whether the simulated bus is to carry it */
-static bool take_kind(const yaml_reader_t *reader, const reading_t *reading, bool on_wire, hal_can_frame_t *frame) {
+static bool take_kind(const yaml_reader_t *reader, const scenario_reading_t *reading, bool on_wire,
+                      hal_can_frame_t *frame) {
     static const yaml_word_t words[] = {{"data", 0},        {"extended", HAL_CAN_EXTENDED}, {"remote", HAL_CAN_REMOTE},
                                         {"fd", HAL_CAN_FD}, {"error", HAL_CAN_ERROR},       {NULL, 0}};
     const yaml_node_t *node = given(reading, P_KIND);
@@ -245,7 +237,7 @@ static bool take_kind(const yaml_reader_t *reader, const reading_t *reading, boo
 }
 
 /** A raw frame: `id` or `message`, `kind`, `bytes`. */
-static bool take_frame(const yaml_reader_t *reader, const reading_t *reading, const agv_config_t *config,
+static bool take_frame(const yaml_reader_t *reader, const scenario_reading_t *reading, const agv_config_t *config,
                        scenario_step_t *step, hal_can_frame_t *frame) {
     const yaml_node_t *id = given(reading, P_ID);
 
@@ -265,7 +257,7 @@ static bool take_frame(const yaml_reader_t *reader, const reading_t *reading, co
     return yaml_reader_id(reader, id, "id", (frame->flags == HAL_CAN_EXTENDED) ? 0x1FFFFFFFu : AGV_ID_MAX, &frame->id);
 }
 
-static bool take_side(const yaml_reader_t *reader, const reading_t *reading, const agv_config_t *config,
+static bool take_side(const yaml_reader_t *reader, const scenario_reading_t *reading, const agv_config_t *config,
                       hal_can_side_t *side) {
     const yaml_node_t *node = given(reading, P_SIDE);
     int word = HAL_CAN_VEHICLE;
@@ -280,8 +272,8 @@ static bool take_side(const yaml_reader_t *reader, const reading_t *reading, con
     return true;
 }
 
-static bool take_for_vehicle(const yaml_reader_t *reader, const reading_t *reading, const scenario_action_row_t *row,
-                             const agv_config_t *config, scenario_step_t *step) {
+static bool take_for_vehicle(const yaml_reader_t *reader, const scenario_reading_t *reading,
+                             const scenario_action_row_t *row, const agv_config_t *config, scenario_step_t *step) {
     vehicle_action_t *action = &step->vehicle;
 
     action->what = (vehicle_do_t)row->what;
@@ -316,8 +308,8 @@ static bool take_for_vehicle(const yaml_reader_t *reader, const reading_t *readi
     }
 }
 
-static bool take_for_supervisor(const yaml_reader_t *reader, const reading_t *reading, const scenario_action_row_t *row,
-                                const agv_config_t *config, scenario_step_t *step) {
+static bool take_for_supervisor(const yaml_reader_t *reader, const scenario_reading_t *reading,
+                                const scenario_action_row_t *row, const agv_config_t *config, scenario_step_t *step) {
     scenario_action_t *action = &step->supervisor;
     int cause = HAL_RESET_POWER_ON;
 
@@ -347,103 +339,11 @@ static bool take_for_supervisor(const yaml_reader_t *reader, const reading_t *re
     }
 }
 
-/** What the action needs is there, and nothing else. */
-static bool has_what_it_needs(const yaml_reader_t *reader, const reading_t *reading, const scenario_action_row_t *row) {
-    for (unsigned i = 0u; i < SCENARIO_PARAMETERS; i++) {
-        if (((row->needs & (1u << i)) != 0u) && (reading->value_of[i] == NULL)) {
-            return yaml_reader_fail(reader, reading->node, "'%s' needs '%s'", row->word, SCENARIO_PARAMETER_NAMES[i]);
-        }
-        if ((((row->needs | row->takes) & (1u << i)) == 0u) && (reading->value_of[i] != NULL)) {
-            return yaml_reader_fail(reader, reading->value_of[i], "'%s' takes no '%s'", row->word,
-                                    SCENARIO_PARAMETER_NAMES[i]);
-        }
-    }
-    return true;
-}
-
-/** Take a key of the time. @return false: another key */
-static bool is_time_key(const char *name, reading_t *reading, uint32_t **time) {
-    static const char *const names[] = {"at_ms", "again_every_ms", "again_until_ms"};
-    uint32_t *const times[] = {&reading->at_ms, &reading->again_every_ms, &reading->again_until_ms};
-
-    for (size_t i = 0u; i < COUNT(names); i++) {
-        if (strcmp(names[i], name) == 0) {
-            *time = times[i];
-            return true;
-        }
-    }
-    return false;
-}
-
-static bool take_key(const yaml_reader_t *reader, const yaml_node_t *key, const yaml_node_t *value,
-                     reading_t *reading) {
-    const char *name = yaml_node_text(key);
-    uint32_t *time = NULL;
-
-    if (name == NULL) {
-        return yaml_reader_fail(reader, key, "a key of a step must be a word");
-    }
-    if (is_time_key(name, reading, &time)) {
-        return scenario_parse_ms(reader, value, name, (time == &reading->again_every_ms) ? 1u : 0u,
-                                 SCENARIO_DURATION_MAX_MS, time);
-    }
-    for (const yaml_word_t *actor = SCENARIO_ACTORS; actor->word != NULL; actor++) {
-        if (strcmp(actor->word, name) == 0) {
-            if (reading->actor != ACTOR_NONE) {
-                return yaml_reader_fail(reader, key, "a step has one actor; '%s' is the second", name);
-            }
-            reading->actor = (scenario_actor_t)actor->value;
-            reading->word = value;
-            return true;
-        }
-    }
-    for (unsigned i = 0u; i < SCENARIO_PARAMETERS; i++) {
-        if (strcmp(SCENARIO_PARAMETER_NAMES[i], name) == 0) {
-            if (reading->value_of[i] != NULL) {
-                return yaml_reader_fail(reader, key, "'%s' is given twice in a step", name);
-            }
-            reading->value_of[i] = value;
-            return true;
-        }
-    }
-    return yaml_reader_fail(reader, key, "unknown key '%.40s' in a step", name);
-}
-
-static bool take_keys(const yaml_reader_t *reader, reading_t *reading) {
-    const yaml_node_t *node = reading->node;
-    bool has_time = false;
-
-    if (node->type != YAML_MAPPING_NODE) {
-        return yaml_reader_fail(reader, node, "a step must be like {at_ms: 5000, ai: stop}");
-    }
-    for (const yaml_node_pair_t *pair = node->data.mapping.pairs.start; pair < node->data.mapping.pairs.top; pair++) {
-        const yaml_node_t *key = yaml_document_get_node(reader->document, pair->key);
-        const char *name = yaml_node_text(key);
-        const bool is_time = (name != NULL) && (strcmp(name, "at_ms") == 0);
-        if (is_time && has_time) {
-            return yaml_reader_fail(reader, key, "'at_ms' is given twice in a step");
-        }
-        has_time = has_time || is_time;
-        if (!take_key(reader, key, yaml_document_get_node(reader->document, pair->value), reading)) {
-            return false;
-        }
-    }
-    if (!has_time) {
-        return yaml_reader_fail(reader, node, "a step: 'at_ms' is missing");
-    }
-    if ((reading->again_until_ms != UINT32_MAX) && (reading->again_every_ms == 0u)) {
-        return yaml_reader_fail(reader, node, "a step: 'again_until_ms' needs 'again_every_ms'");
-    }
-    return (reading->actor != ACTOR_NONE) ||
-           yaml_reader_fail(reader, node,
-                            "a step: the actor is missing (vcu, eps, ai, operator, bus, supervisor or board)");
-}
-
 bool scenario_parse_step(const yaml_reader_t *reader, const yaml_node_t *node, const agv_config_t *config,
                          scenario_step_t *step) {
-    reading_t reading = {.node = node, .again_until_ms = UINT32_MAX, .actor = ACTOR_NONE};
+    scenario_reading_t reading;
 
-    if (!take_keys(reader, &reading)) {
+    if (!scenario_read_step_keys(reader, node, &reading)) {
         return false;
     }
     const char *word = yaml_reader_text(reader, reading.word, "a step");
@@ -463,7 +363,7 @@ bool scenario_parse_step(const yaml_reader_t *reader, const yaml_node_t *node, c
                               .word = row->word,
                               .of_vehicle = row->of_vehicle};
     step->vehicle.message = AGV_MSG_NONE;
-    if (!has_what_it_needs(reader, &reading, row) || !take_message(reader, &reading, row, step)) {
+    if (!scenario_has_what_it_needs(reader, &reading, row) || !take_message(reader, &reading, row, step)) {
         return false;
     }
     return row->of_vehicle ? take_for_vehicle(reader, &reading, row, config, step)
@@ -481,6 +381,54 @@ static bool again_fits(const yaml_reader_t *reader, const yaml_node_t *node, con
            yaml_reader_fail(reader, node, "more than %u steps with again_every_ms", SCENARIO_AGAIN_MAX);
 }
 
+/** `name` of a step. */
+static bool take_name(const yaml_reader_t *reader, const yaml_node_t *node, const scenario_t *scenario,
+                      scenario_step_t *step) {
+    const yaml_node_t *name = yaml_reader_value(reader, node, "name");
+    scenario_anchor_t anchor;
+
+    if (name == NULL) {
+        return true;
+    }
+    const char *text = yaml_reader_text(reader, name, "name");
+    if (text == NULL) {
+        return false;
+    }
+    if (strlen(text) >= sizeof step->name) {
+        return yaml_reader_fail(reader, name, "name: longer than %u bytes", SCENARIO_NAME_MAX - 1u);
+    }
+    if (scenario_anchor_read(text, &anchor)) {
+        return yaml_reader_fail(reader, name, "name: '%s' is the name of an event", text);
+    }
+    for (const scenario_step_t *other = scenario->steps; other < step; other++) {
+        if (strcmp(other->name, text) == 0) {
+            return yaml_reader_fail(reader, name, "name: the step on line %zu has this name, too", other->line);
+        }
+    }
+    (void)strcpy(step->name, text);
+    return true;
+}
+
+/** `after` and `wait` of a step. */
+static bool take_after(const yaml_reader_t *reader, const yaml_node_t *node, scenario_t *scenario,
+                       scenario_step_t *step) {
+    const yaml_node_t *after = yaml_reader_value(reader, node, "after");
+    uint32_t offset_ms = 0u;
+
+    if (after == NULL) {
+        return true;
+    }
+    if (!scenario_parse_after(reader, after, scenario, &step->after, &offset_ms)) {
+        return false;
+    }
+    step->at_ms += offset_ms; /* both are at most SCENARIO_DURATION_MAX_MS */
+    if (step->at_ms > SCENARIO_DURATION_MAX_MS) {
+        return yaml_reader_fail(reader, node, "a step: %u ms are longer than a scenario may be", (unsigned)step->at_ms);
+    }
+    scenario->waiting_count += (step->after.kind != (uint8_t)SCENARIO_FROM_START) ? 1u : 0u;
+    return true;
+}
+
 static bool read_step(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     scenario_t *scenario = target;
 
@@ -488,9 +436,12 @@ static bool read_step(const yaml_reader_t *reader, const yaml_node_t *node, void
         return yaml_reader_fail(reader, node, "more than %u steps", SCENARIO_STEPS_MAX);
     }
     scenario_step_t *step = &scenario->steps[scenario->step_count];
+    if (!scenario_parse_step(reader, node, &scenario->config, step) || !take_after(reader, node, scenario, step) ||
+        !take_name(reader, node, scenario, step)) {
+        return false;
+    }
     scenario->step_count++;
-    return scenario_parse_step(reader, node, &scenario->config, step) &&
-           scenario_parse_board_fits(reader, node, scenario, step) && again_fits(reader, node, scenario);
+    return scenario_parse_board_fits(reader, node, scenario, step) && again_fits(reader, node, scenario);
 }
 
 bool scenario_parse_steps(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {

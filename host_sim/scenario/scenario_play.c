@@ -20,7 +20,7 @@ void scenario_play(scenario_testbed_t *testbed, const scenario_play_t *play) {
     scenario_player_t player;
     bool goes_on = true;
 
-    scenario_player_init(&player, play->scenario);
+    scenario_player_init(&player, play->scenario, scenario_testbed_events(testbed));
     for (uint64_t t_ms = play->from_ms; goes_on && (t_ms <= play->until_ms); t_ms++) {
         if (play->scenario != NULL) {
             do_steps(testbed, play, &player, t_ms);

@@ -2,9 +2,11 @@
 
 #include <string.h>
 
-void scenario_player_init(scenario_player_t *player, const scenario_t *scenario) {
+void scenario_player_init(scenario_player_t *player, const scenario_t *scenario, const scenario_events_t *events) {
     memset(player, 0, sizeof *player);
     player->scenario = scenario;
+    player->events = events;
+    player->waiting_count = (scenario != NULL) ? scenario->waiting_count : 0u;
 }
 
 /** A step that repeats is due again one period later; one whose end is reached is dropped. */
@@ -38,11 +40,37 @@ static const scenario_step_t *next_again(scenario_player_t *player, uint64_t t_m
     return NULL;
 }
 
-const scenario_step_t *scenario_player_next(scenario_player_t *player, uint64_t t_ms) {
-    const scenario_step_t *again = next_again(player, t_ms);
+static bool waits(const scenario_step_t *step) {
+    return step->after.kind != (uint8_t)SCENARIO_FROM_START;
+}
 
-    if (again != NULL) {
-        return again;
+/** The first step that is due because its event has come. */
+static const scenario_step_t *next_waiting(scenario_player_t *player, uint64_t t_ms) {
+    for (size_t i = 0u; (player->waiting_count > 0u) && (i < player->scenario->step_count); i++) {
+        const scenario_step_t *step = &player->scenario->steps[i];
+        uint64_t event_ms = 0u;
+        if (waits(step) && !player->is_done[i] && scenario_events_find(player->events, step->after, &event_ms) &&
+            (event_ms + step->at_ms <= t_ms)) {
+            player->is_done[i] = true;
+            player->waiting_count--;
+            plan_again(player, i, t_ms);
+            return step;
+        }
+    }
+    return NULL;
+}
+
+const scenario_step_t *scenario_player_next(scenario_player_t *player, uint64_t t_ms) {
+    const scenario_step_t *step = next_again(player, t_ms);
+
+    if (step == NULL) {
+        step = next_waiting(player, t_ms);
+    }
+    if (step != NULL) {
+        return step;
+    }
+    while ((player->next < player->scenario->step_count) && waits(&player->scenario->steps[player->next])) {
+        player->next++;
     }
     if ((player->next < player->scenario->step_count) && (player->scenario->steps[player->next].at_ms <= t_ms)) {
         player->next++;

@@ -7,7 +7,8 @@
 enum { PASSIVE_TEC = 200, BITS_PER_BYTE = 8 };
 
 static void pass_event(void *ctx, const session_event_t *event) {
-    const scenario_testbed_t *testbed = ctx;
+    scenario_testbed_t *testbed = ctx;
+    (void)scenario_events_note(&testbed->events, event);
     for (size_t i = 0u; i < testbed->watch_count; i++) {
         if (testbed->watches[i].on_event != NULL) {
             testbed->watches[i].on_event(testbed->watches[i].ctx, event);
@@ -473,6 +474,10 @@ void scenario_testbed_vehicle(scenario_testbed_t *testbed, vehicle_view_t *view)
 
 agv_message_t scenario_testbed_message(const scenario_testbed_t *testbed, uint32_t id) {
     return (agv_message_t)agv_ids_find(&testbed->ids, id);
+}
+
+const scenario_events_t *scenario_testbed_events(const scenario_testbed_t *testbed) {
+    return &testbed->events;
 }
 
 const session_t *scenario_testbed_session(const scenario_testbed_t *testbed) {

@@ -81,6 +81,7 @@ struct scenario_testbed {
     scenario_side_t sides[HAL_CAN_SIDES];
     scenario_watch_t watches[SCENARIO_WATCHES_MAX];
     size_t watch_count;
+    scenario_events_t events;
     uint64_t t_ms;
     uint16_t tick_phase_us;      /**< of scenario_t */
     uint64_t halted_until_ms;    /**< the supervisor hangs, or is without power, until then */
@@ -160,6 +161,9 @@ agv_message_t scenario_testbed_message(const scenario_testbed_t *testbed, uint32
 
 /** The supervisor's session, to read. */
 const session_t *scenario_testbed_session(const scenario_testbed_t *testbed);
+
+/** The events of the supervisor that steps may wait for. */
+const scenario_events_t *scenario_testbed_events(const scenario_testbed_t *testbed);
 
 /** A millisecond: @p t_ms is 0 and then one more each time. */
 void scenario_testbed_tick(scenario_testbed_t *testbed, uint64_t t_ms);

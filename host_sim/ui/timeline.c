@@ -89,12 +89,12 @@ static void line(timeline_t *timeline, uint64_t t_us, const char *who, const cha
                  (cm_s < 0) ? "-" : "", abs((int)cm_s) / 100, abs((int)cm_s) % 100);
 }
 
-void timeline_step(void *ctx, const scenario_step_t *step) {
+void timeline_step(void *ctx, uint64_t t_ms, const scenario_step_t *step) {
     timeline_t *timeline = ctx;
     const vehicle_action_t *action = &step->vehicle;
     char more[WHAT_SIZE] = "";
 
-    timeline->step_us = (uint64_t)step->at_ms * US_PER_MS;
+    timeline->step_us = t_ms * US_PER_MS;
     timeline->step_actor = step->actor;
     timeline->step_word = step->word;
     if (step->of_vehicle && ((action->what == VEHICLE_DO_AI_DRIVE) || (action->what == VEHICLE_DO_REMOTE_DRIVE))) {

@@ -53,6 +53,6 @@ void timeline_sent(timeline_t *timeline, hal_can_side_t side, const hal_can_fram
 scenario_watch_t timeline_watch(timeline_t *timeline);
 
 /** A step is about to be done; a scenario_step_fn with the timeline as context. */
-void timeline_step(void *ctx, const scenario_step_t *step);
+void timeline_step(void *ctx, uint64_t t_ms, const scenario_step_t *step);
 
 #endif

@@ -37,14 +37,17 @@ typedef struct {
     scenario_run_t *run;
     void *ctx;
     scenario_step_fn *on_step;
+    bool was_done[SCENARIO_STEPS_MAX]; /* a repeated step is told of once */
 } playing_t;
 
 static void before_step(void *ctx, uint64_t t_ms, const scenario_step_t *step) {
-    const playing_t *playing = ctx;
+    playing_t *playing = ctx;
+    bool *was_done = &playing->was_done[step - playing->run->scenario.steps];
 
-    if ((playing->on_step != NULL) && (step->at_ms == t_ms)) {
-        playing->on_step(playing->ctx, step);
+    if ((playing->on_step != NULL) && !*was_done) {
+        playing->on_step(playing->ctx, t_ms, step);
     }
+    *was_done = true;
     hazard_step(&playing->run->hazard, t_ms, step);
 }
 
@@ -80,7 +83,7 @@ bool scenario_run(scenario_run_t *run, const scenario_watch_t watches[], size_t 
         scenario_testbed_watch(&run->testbed, &watches[i]);
     }
     scenario_testbed_start(&run->testbed);
-    playing_t playing = {run, (count > 0u) ? watches[0].ctx : NULL, on_step};
+    playing_t playing = {.run = run, .ctx = (count > 0u) ? watches[0].ctx : NULL, .on_step = on_step};
     const scenario_play_t play = {.scenario = &run->scenario,
                                   .until_ms = run->scenario.duration_ms,
                                   .before_step = before_step,

@@ -13,7 +13,7 @@
 #include "scenario/scenario_testbed.h"
 
 /** Called for every step before it is done. */
-typedef void scenario_step_fn(void *ctx, const scenario_step_t *step);
+typedef void scenario_step_fn(void *ctx, uint64_t t_ms, const scenario_step_t *step);
 
 /** All that one run needs; some 300 KiB: allocate it. */
 typedef struct {
