@@ -125,13 +125,14 @@ static hal_can_side_t side_of(replay_t *replay, const candump_record_t *record) 
 
 static void hand_over(replay_t *replay, candump_record_t *record, uint64_t t_ms) {
     const hal_can_side_t side = side_of(replay, record);
+    const uint64_t t_us = record->stamp_us - replay->first_us;
     record->frame.time_ms = clock_at(replay, t_ms);
-    record->frame.time_us = (uint16_t)((record->stamp_us - replay->first_us) % US_PER_MS);
+    record->frame.time_us = (uint16_t)(t_us % US_PER_MS);
     sim_hal_set_now_ms(&replay->hal, record->frame.time_ms);
-    replay_heard_add(&replay->heard, record);
-    analysis_frame(replay->analysis, side, &record->frame, record->stamp_us - replay->first_us);
+    replay_heard_add(&replay->heard, record, t_us);
+    analysis_frame(replay->analysis, side, &record->frame, t_us);
     if (replay->request->timeline) {
-        timeline_received(&replay->timeline, side, &record->frame, record->stamp_us - replay->first_us);
+        timeline_received(&replay->timeline, side, &record->frame, t_us);
     }
     if ((record->frame.flags & HAL_CAN_ERROR) != 0u) {
         act_on_controller(replay, side, &record->frame);
@@ -143,6 +144,8 @@ static void hand_over(replay_t *replay, candump_record_t *record, uint64_t t_ms)
 static bool pass_record(replay_t *replay, candump_record_t *record) {
     if (record->stamp_us < replay->last_us) {
         replay->backward_stamps++;
+        replay_heard_back(&replay->heard, replay->last_us - record->stamp_us, replay->log.line,
+                          replay->last_us - replay->first_us);
         record->stamp_us = replay->last_us;
     } else if (record->stamp_us - replay->last_us > (uint64_t)REPLAY_GAP_MAX_MS * US_PER_MS) {
         return candump_reject(&replay->log, "the time stamp is more than 100 days after the previous one");
@@ -248,7 +251,9 @@ static bool conclude(replay_t *replay) {
         print_text(replay, &summary);
     }
     const why_t *why = analysis_why(replay->analysis);
-    replay->unmet = request->fail_on_trip && ((why_trip_count(why) > 0u) || (why_supervised_us(why) == 0u));
+    text_t back = {.used = 0u};
+    const bool is_whole = (why_supervised_us(why) > 0u) && !replay_text_goes_back(&back, &replay->heard);
+    replay->unmet = request->fail_on_trip && ((why_trip_count(why) > 0u) || !is_whole);
     if (good && (request->ai_interface != NULL) && !replay->ai_was_heard) {
         note("the log has no frame from %s, the AI side", request->ai_interface);
     }
@@ -288,7 +293,11 @@ static bool run(replay_t *replay) {
         return false;
     }
     start(replay, record.stamp_us);
-    return pass_log(replay, &record) ? conclude(replay) : output_flush_all(replay->outputs, OUTPUTS) && false;
+    if (pass_log(replay, &record)) {
+        return conclude(replay);
+    }
+    (void)(output_flush_all(replay->outputs, OUTPUTS) && analysis_flush(replay->analysis)); /* reports what failed */
+    return false;
 }
 
 static bool check_request(const replay_request_t *request) {

@@ -23,17 +23,36 @@ static void add_name(replay_heard_t *heard, const candump_record_t *record) {
     heard->name_count++;
 }
 
-void replay_heard_add(replay_heard_t *heard, const candump_record_t *record) {
+void replay_heard_back(replay_heard_t *heard, uint64_t back_us, uint64_t line, uint64_t t_us) {
+    if (back_us > heard->back_us) {
+        heard->back_us = back_us;
+        heard->back_line = line;
+        heard->back_at_us = t_us;
+    }
+}
+
+static void note_pause(replay_heard_t *heard, uint64_t t_us) {
+    if (t_us - heard->last_us > heard->pause_us) {
+        heard->pause_us = t_us - heard->last_us;
+        heard->pause_at_us = heard->last_us;
+    }
+    heard->last_us = t_us;
+}
+
+void replay_heard_add(replay_heard_t *heard, const candump_record_t *record, uint64_t t_us) {
     const hal_can_frame_t *frame = &record->frame;
+    note_pause(heard, t_us);
     if ((heard->name_count == 0u) || !is_named(heard->names[heard->last_name], record)) {
         add_name(heard, record);
     }
     if ((frame->flags & (HAL_CAN_ERROR | HAL_CAN_REMOTE)) != 0u) {
         return;
     }
-    if ((frame->flags & HAL_CAN_EXTENDED) != 0u) {
+    if ((frame->flags & HAL_CAN_FD) != 0u) {
+        heard->fd = true;
+    } else if ((frame->flags & HAL_CAN_EXTENDED) != 0u) {
         heard->extended = true;
     } else {
-        heard->ids[frame->id & AGV_ID_MAX] = 1u;
+        heard->ids[frame->id & AGV_ID_MAX] |= (uint8_t)(1u << heard->last_name);
     }
 }

@@ -1,8 +1,10 @@
 #include "replay/replay_hints.h"
 
-#include "agv/names.h"
+#include "agv/recorder.h"
+#include "common/units.h"
+#include "why/why_words.h"
 
-enum { SHOWN_IDS = 6 };
+enum { SHOWN_IDS = 6, PAUSE_US = US_PER_S };
 
 static bool is_heard(const replay_heard_t *heard, uint32_t id) {
     return (id <= AGV_ID_MAX) && (heard->ids[id] != 0u);
@@ -17,7 +19,9 @@ static void add_ids(text_t *text, const uint16_t ids[], size_t count) {
 }
 
 /** The identifiers of the other set are there, those of the configured one are not. */
-static bool hint_id_set(text_t *text, const agv_config_t *config, const replay_heard_t *heard) {
+static bool hint_id_set(text_t *text, const replay_clues_t *clues) {
+    const agv_config_t *config = clues->config;
+    const replay_heard_t *heard = clues->heard;
     const uint32_t other_set = (uint32_t)AGV_ID_SET_TABLE - config->id_set;
     agv_ids_t ids;
     uint16_t found[AGV_MSG_COUNT];
@@ -43,57 +47,82 @@ static bool hint_id_set(text_t *text, const agv_config_t *config, const replay_h
     return true;
 }
 
-static size_t known_heard(const agv_config_t *config, const replay_heard_t *heard) {
+static size_t known_heard(const replay_clues_t *clues) {
     agv_ids_t ids;
     size_t count = 0u;
-    agv_config_ids(config, &ids);
+    agv_config_ids(clues->config, &ids);
     for (size_t m = 0u; m < (size_t)AGV_MSG_COUNT; m++) {
-        count += is_heard(heard, ids.of[m]) ? 1u : 0u;
+        count += is_heard(clues->heard, ids.of[m]) ? 1u : 0u;
     }
     return count;
 }
 
-/** Add the first identifiers that were heard. */
-static void add_heard(text_t *text, const replay_heard_t *heard) {
-    uint16_t shown[SHOWN_IDS];
+/** Whether the log is of this vehicle: half of its messages were heard. */
+static bool is_this_vehicle(const replay_clues_t *clues) {
+    return 2u * known_heard(clues) >= (size_t)AGV_MSG_COUNT;
+}
+
+/** What was heard where no data frame of the right kind was. */
+static const char *other_frames(const replay_heard_t *heard) {
+    if (heard->fd) {
+        return "only CAN FD frames heard: the protocol has classic CAN frames";
+    }
+    return heard->extended ? "only 29-bit identifiers heard: the protocol has 11-bit ones" : "no data frame heard";
+}
+
+/** Add a list of identifiers; of many the first ones. */
+static void add_some(text_t *text, const uint16_t ids[], size_t count, bool more) {
+    if (!more) {
+        add_ids(text, ids, count);
+        return;
+    }
+    for (size_t i = 0u; i < count; i++) {
+        text_add(text, "%03Xh, ", (unsigned)ids[i]);
+    }
+    text_add(text, "and others");
+}
+
+/** The identifiers that were heard. @param of_protocol also those of the protocol @param more there are more than shown */
+static size_t heard_ids(const replay_clues_t *clues, bool of_protocol, uint16_t shown[SHOWN_IDS], bool *more) {
+    agv_ids_t ids;
     size_t count = 0u;
-    bool more = false;
-    for (uint32_t id = 0u; id <= AGV_ID_MAX; id++) {
-        if (heard->ids[id] != 0u) {
-            more = count == (size_t)SHOWN_IDS;
-            if (more) {
-                break;
-            }
+    agv_config_ids(clues->config, &ids);
+    *more = false;
+    for (uint32_t id = 0u; (id <= AGV_ID_MAX) && !*more; id++) {
+        const bool is_known = (agv_ids_find(&ids, id) != AGV_MSG_NONE) || (id == clues->config->status_frame_id);
+        if (!is_heard(clues->heard, id) || (is_known && !of_protocol)) {
+            continue;
+        }
+        *more = count == (size_t)SHOWN_IDS;
+        if (!*more) {
             shown[count] = (uint16_t)id;
             count++;
         }
     }
-    if (more) {
-        for (size_t i = 0u; i < count; i++) {
-            text_add(text, "%03Xh, ", (unsigned)shown[i]);
-        }
-        text_add(text, "and others heard");
-    } else if (count > 0u) {
-        add_ids(text, shown, count);
-        text_add(text, " heard");
-    } else {
-        text_add(text, heard->extended ? "only 29-bit identifiers heard" : "no data frame heard");
-    }
+    return count;
 }
 
-static bool hint_other_vehicle(text_t *text, const agv_config_t *config, const replay_heard_t *heard) {
-    const size_t known = known_heard(config, heard);
-    if (2u * known >= (size_t)AGV_MSG_COUNT) {
+static bool hint_other_vehicle(text_t *text, const replay_clues_t *clues) {
+    uint16_t shown[SHOWN_IDS];
+    bool more = false;
+    if (is_this_vehicle(clues)) {
         return false;
     }
-    add_heard(text, heard);
-    text_add(text, ", %zu of the %u messages of the protocol: another vehicle? Each identifier is a setting (id_...)",
-             known, (unsigned)AGV_MSG_COUNT);
+    const size_t count = heard_ids(clues, true, shown, &more);
+    if (count == 0u) {
+        text_add(text, "%s", other_frames(clues->heard));
+        return true;
+    }
+    add_some(text, shown, count, more);
+    text_add(text,
+             " heard, %zu of the %u messages of the protocol: another vehicle? Each identifier is a setting (id_...), "
+             "and host_sim survey proposes them",
+             known_heard(clues), (unsigned)AGV_MSG_COUNT);
     return true;
 }
 
 /** All messages of a node are missing: VCU, EPS, AI computer. */
-static bool hint_node(text_t *text, const agv_config_t *config, const replay_heard_t *heard) {
+static bool hint_node(text_t *text, const replay_clues_t *clues) {
     static const agv_message_t eps[] = {AGV_MSG_STEERING_STATUS, AGV_MSG_EPS_STATUS, AGV_MSG_STEERING_POSITION};
     static const agv_message_t vcu[] = {AGV_MSG_VEHICLE_STATUS, AGV_MSG_GEAR_STATUS, AGV_MSG_THROTTLE_STATUS,
                                         AGV_MSG_WHEEL_SPEED};
@@ -107,13 +136,13 @@ static bool hint_node(text_t *text, const agv_config_t *config, const replay_hea
                  {"VCU", vcu, sizeof vcu / sizeof vcu[0]},
                  {"AI computer", ai, sizeof ai / sizeof ai[0]}};
     agv_ids_t ids;
-    agv_config_ids(config, &ids);
-    for (size_t n = 0u; n < sizeof nodes / sizeof nodes[0]; n++) {
+    agv_config_ids(clues->config, &ids);
+    for (size_t n = 0u; is_this_vehicle(clues) && (n < sizeof nodes / sizeof nodes[0]); n++) {
         uint16_t lacking[AGV_MSG_COUNT];
         size_t count = 0u;
         for (size_t i = 0u; i < nodes[n].count; i++) {
             const uint16_t id = ids.of[nodes[n].messages[i]];
-            if (!is_heard(heard, id)) {
+            if (!is_heard(clues->heard, id)) {
                 lacking[count] = id;
                 count++;
             }
@@ -127,13 +156,113 @@ static bool hint_node(text_t *text, const agv_config_t *config, const replay_hea
     return false;
 }
 
-bool replay_hint(text_t *text, replay_hint_t hint, const agv_config_t *config, const replay_heard_t *heard) {
-    switch (hint) {
-    case REPLAY_HINT_ID_SET:
-        return hint_id_set(text, config, heard);
-    case REPLAY_HINT_OTHER_VEHICLE:
-        return hint_other_vehicle(text, config, heard);
-    default:
-        return (2u * known_heard(config, heard) >= (size_t)AGV_MSG_COUNT) && hint_node(text, config, heard);
+/** Some messages are missing, and there are identifiers that the protocol does not know. */
+static bool hint_ids(text_t *text, const replay_clues_t *clues) {
+    uint16_t unknown[SHOWN_IDS];
+    uint16_t lacking[AGV_MSG_COUNT];
+    size_t count = 0u;
+    bool more = false;
+    text_t other = {.used = 0u};
+    agv_ids_t ids;
+    agv_config_ids(clues->config, &ids);
+    for (size_t m = 0u; m < (size_t)AGV_MSG_COUNT; m++) {
+        if (!is_heard(clues->heard, ids.of[m])) {
+            lacking[count] = ids.of[m];
+            count++;
+        }
     }
+    const size_t unknown_count = heard_ids(clues, false, unknown, &more);
+    if ((count == 0u) || (unknown_count == 0u) || !is_this_vehicle(clues) || hint_id_set(&other, clues) ||
+        hint_node(&other, clues)) {
+        return false;
+    }
+    add_ids(text, lacking, count);
+    text_add(text, " never heard, but ");
+    add_some(text, unknown, unknown_count, more);
+    text_add(text, ", which the protocol does not know: other identifiers? host_sim survey proposes them");
+    return true;
+}
+
+/** The vehicle drives by itself from the first frame on. */
+static bool hint_begin(text_t *text, const replay_clues_t *clues) {
+    agv_ids_t ids;
+    agv_config_ids(clues->config, &ids);
+    if ((why_supervised_us(clues->why) > 0u) || ((why_missing(clues->why) & AGV_MISSING_MANUAL) == 0u) ||
+        !is_heard(clues->heard, ids.of[AGV_MSG_VEHICLE_STATUS])) {
+        return false;
+    }
+    text_add(text, "supervision begins in manual, at standstill: start the recording before the autopilot is engaged");
+    return true;
+}
+
+/** The interfaces on which commands or status messages were heard, as bits. */
+static uint32_t interfaces_of(const replay_clues_t *clues, bool commands) {
+    uint32_t interfaces = 0u;
+    agv_ids_t ids;
+    agv_config_ids(clues->config, &ids);
+    for (size_t m = 0u; m < (size_t)AGV_MSG_COUNT; m++) {
+        interfaces |= ((m < (size_t)AGV_COMMAND_COUNT) == commands) ? clues->heard->ids[ids.of[m]] : 0u;
+    }
+    return interfaces;
+}
+
+static void add_interfaces(text_t *text, const replay_heard_t *heard, uint32_t interfaces) {
+    const char *between = "";
+    for (size_t i = 0u; i < heard->name_count; i++) {
+        if (((interfaces >> i) & 1u) != 0u) {
+            text_add(text, "%s%s", between, heard->names[i]);
+            between = " and ";
+        }
+    }
+}
+
+static bool is_single(uint32_t bits) {
+    return (bits != 0u) && ((bits & (bits - 1u)) == 0u);
+}
+
+/** Several interfaces in the log of a shared bus: a gateway, or two vehicles. */
+static bool hint_interfaces(text_t *text, const replay_clues_t *clues) {
+    const uint32_t commands = interfaces_of(clues, true);
+    const uint32_t status = interfaces_of(clues, false);
+    if ((clues->config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) || is_single(commands | status) ||
+        ((commands | status) == 0u)) {
+        return false;
+    }
+    if (is_single(commands) && ((commands & status) == 0u)) {
+        text_add(text, "commands come on ");
+        add_interfaces(text, clues->heard, commands);
+        text_add(text, ", status messages on ");
+        add_interfaces(text, clues->heard, status);
+        text_add(text, ": a gateway? --ai-if ");
+        add_interfaces(text, clues->heard, commands);
+    } else {
+        text_add(text, "the messages come on ");
+        add_interfaces(text, clues->heard, commands | status);
+        text_add(text, ": a gateway (--ai-if names its AI side), or two vehicles in one log?");
+    }
+    return true;
+}
+
+/** Nothing at all was heard for some time. */
+static bool hint_pause(text_t *text, const replay_clues_t *clues) {
+    const replay_heard_t *heard = clues->heard;
+    if (heard->pause_us < (uint64_t)PAUSE_US) {
+        return false;
+    }
+    text_add(text, "no frame at all from ");
+    why_words_time(text, heard->pause_at_us);
+    text_add(text, " to ");
+    why_words_time(text, heard->pause_at_us + heard->pause_us);
+    text_add(text, ": was the recording interrupted, or its clock set?");
+    return true;
+}
+
+bool replay_hint(text_t *text, replay_hint_t hint, const replay_clues_t *clues) {
+    static bool (*const hints[REPLAY_HINTS])(text_t *, const replay_clues_t *) = {
+        [REPLAY_HINT_ID_SET] = hint_id_set, [REPLAY_HINT_OTHER_VEHICLE] = hint_other_vehicle,
+        [REPLAY_HINT_NODE] = hint_node,     [REPLAY_HINT_IDS] = hint_ids,
+        [REPLAY_HINT_BEGIN] = hint_begin,   [REPLAY_HINT_INTERFACES] = hint_interfaces,
+        [REPLAY_HINT_PAUSE] = hint_pause,
+    };
+    return hints[hint](text, clues);
 }

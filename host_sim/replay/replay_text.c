@@ -13,7 +13,7 @@
 
 enum { MANUAL_BIT = 5 };
 _Static_assert((1u << MANUAL_BIT) == AGV_MISSING_MANUAL, "the bit of manual");
-enum { NOT_SUPERVISED_LABEL = 16, START_MS = 1000 };
+enum { NOT_SUPERVISED_LABEL = 16, START_MS = 1000, BACK_US = US_PER_S };
 
 /** Whether something had begun when the log ended. */
 static bool has_pending(const replay_text_t *replay) {
@@ -45,10 +45,11 @@ static void print_head(const replay_text_t *replay) {
 }
 
 static void print_hints(const replay_text_t *replay) {
+    const replay_clues_t clues = {.config = replay->config, .heard = replay->heard, .why = replay->why};
     text_t text = {.used = 0u};
     for (int hint = 0; hint < (int)REPLAY_HINTS; hint++) {
         text_clear(&text);
-        if (replay_hint(&text, (replay_hint_t)hint, replay->config, replay->heard)) {
+        if (replay_hint(&text, (replay_hint_t)hint, &clues)) {
             why_text_line("  hint", WHY_TEXT_LABEL, text.bytes);
         }
     }
@@ -84,7 +85,7 @@ static void add_missing(text_t *text, const replay_text_t *replay, bool details)
 /** What was not supervised: all of it, or a beginning that is longer than a start takes. */
 static void print_not_supervised(const replay_text_t *replay) {
     const bool never = why_supervised_us(replay->why) == 0u;
-    const uint64_t init_us = why_state_us(replay->why, 0u);
+    const uint64_t init_us = why_state_us(replay->why, WHY_INIT);
     const uint64_t normal_us = ((uint64_t)replay->config->init_hold_ms + (uint64_t)START_MS) * US_PER_MS;
     text_t text = {.used = 0u};
     if (never) {
@@ -105,6 +106,32 @@ static void print_not_supervised(const replay_text_t *replay) {
     why_text_line("NOT SUPERVISED: ", NOT_SUPERVISED_LABEL, text.bytes);
 }
 
+bool replay_text_goes_back(text_t *text, const replay_heard_t *heard) {
+    if (heard->back_us < (uint64_t)BACK_US) {
+        return false;
+    }
+    text_add(text, "the time stamps go back by ");
+    why_words_time(text, heard->back_us);
+    text_add(text, " at line %" PRIu64 "; what follows counts at ", heard->back_line);
+    why_words_time(text, heard->back_at_us);
+    text_add(text, ": cut or sort the log there");
+    return true;
+}
+
+static void print_goes_back(const replay_text_t *replay) {
+    text_t text = {.used = 0u};
+    if (replay_text_goes_back(&text, replay->heard)) {
+        why_text_line("NOT SUPERVISED: ", NOT_SUPERVISED_LABEL, text.bytes);
+    }
+}
+
+/** Without an engagement nothing is known of the AI computer. */
+static void print_not_judged(const replay_text_t *replay) {
+    if ((why_supervised_us(replay->why) > 0u) && !why_was_engaged(replay->why)) {
+        why_text_line("not judged", WHY_TEXT_LABEL, "the commands of the AI computer: the autopilot was never engaged");
+    }
+}
+
 /** What the log ends in: a pass of something that had begun would be a lie. */
 static void print_pending(const replay_text_t *replay) {
     const char *label = "at the end";
@@ -118,26 +145,39 @@ static void print_pending(const replay_text_t *replay) {
     }
 }
 
+static void add_count(text_t *text, const char *what, uint64_t count) {
+    if (count > 0u) {
+        text_add(text, "%s%s: %" PRIu64, (text->used > 0u) ? ", " : "", what, count);
+    }
+}
+
 /** What was odd about the log. */
 static void print_lines(const events_summary_t *summary) {
-    const agv_counters_t *counters = &summary->counters;
-    uint64_t rejected = 0u;
+    static const char *const kinds[AGV_REJECTED_KINDS] = {
+        [AGV_REJECTED_LENGTH] = "messages of a wrong length",
+        [AGV_REJECTED_FD] = "CAN FD frames",
+        [AGV_REJECTED_REMOTE] = "remote frames",
+        [AGV_REJECTED_EXTENDED] = "frames with 29-bit identifiers",
+        [AGV_REJECTED_ERROR] = "error frames",
+    };
+    text_t text = {.used = 0u};
+    add_count(&text, "lines skipped", summary->skipped_lines);
+    add_count(&text, "time stamps that went backwards", summary->backward_stamps);
     for (size_t i = 0u; i < (size_t)AGV_REJECTED_KINDS; i++) {
-        rejected += counters->rejected[i];
+        add_count(&text, kinds[i], summary->counters.rejected[i]);
     }
-    if ((summary->skipped_lines == 0u) && (summary->backward_stamps == 0u) && (rejected == 0u)) {
-        return;
+    if (text.used > 0u) {
+        why_text_line("log", WHY_TEXT_LABEL, text.bytes);
     }
-    (void)printf("%-*slines skipped: %" PRIu64 ", time stamps that went backwards: %" PRIu64
-                 ", malformed frames: %" PRIu64 "\n",
-                 WHY_TEXT_LABEL, "log", summary->skipped_lines, summary->backward_stamps, rejected);
 }
 
 void replay_text_print(const replay_text_t *replay) {
     print_not_supervised(replay);
+    print_goes_back(replay);
     print_hints(replay);
     print_head(replay);
     why_text_supervised(replay->why);
+    print_not_judged(replay);
     const why_text_t shown = {
         .why = replay->why,
         .first_us = replay->first_us,

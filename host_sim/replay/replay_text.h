@@ -5,9 +5,11 @@
 #ifndef HOST_SIM_REPLAY_TEXT_H
 #define HOST_SIM_REPLAY_TEXT_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "agv/config.h"
+#include "common/text.h"
 #include "io/events.h"
 #include "replay/replay_heard.h"
 #include "why/why.h"
@@ -22,6 +24,9 @@ typedef struct {
     const why_t *why;
     const events_summary_t *summary;
 } replay_text_t;
+
+/** Add what is wrong with a log in which the time goes back by a second or more. @return false: it does not */
+bool replay_text_goes_back(text_t *text, const replay_heard_t *heard);
 
 /** Print it on standard output. */
 void replay_text_print(const replay_text_t *replay);

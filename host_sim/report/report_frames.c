@@ -19,25 +19,12 @@ typedef struct {
     uint64_t before_us; /* how long before the cause its message is shown */
 } choice_t;
 
-/** The message that the one that tells is compared with; AGV_MSG_NONE: none. */
-static uint32_t partner_of(agv_message_t message) {
-    switch (message) {
-    case AGV_MSG_STEERING_STATUS:
-        return AGV_MSG_STEERING_COMMAND;
-    case AGV_MSG_THROTTLE_STATUS:
-        return AGV_MSG_THROTTLE_COMMAND;
-    case AGV_MSG_GEAR_STATUS:
-        return AGV_MSG_GEAR_COMMAND;
-    default:
-        return AGV_MSG_NONE;
-    }
-}
-
 static void choose(choice_t *choice, const agv_config_t *config, const why_trip_t *trip) {
     agv_config_ids(config, &choice->ids);
     choice->status_id = config->status_frame_id;
     choice->telling[0] = (uint32_t)trip->message;
-    choice->telling[1] = (trip->kind == WHY_BUDGET) ? partner_of(trip->message) : (uint32_t)AGV_MSG_NONE;
+    choice->telling[1] =
+        (trip->kind == WHY_BUDGET) ? (uint32_t)why_compared_with(trip->reason) : (uint32_t)AGV_MSG_NONE;
     choice->trip_us = trip->t_us;
     choice->cause_us = (trip->cause_us < trip->t_us) ? trip->cause_us : trip->t_us;
     const uint64_t cycle_us = agv_message_cycle_ms((uint32_t)trip->message) * (uint64_t)US_A_MS;

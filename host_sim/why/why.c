@@ -56,16 +56,12 @@ void why_free(why_t *why) {
     }
 }
 
-static bool is_command(agv_message_t message) {
-    return (uint32_t)message < AGV_COMMAND_COUNT;
-}
-
 agv_message_t why_accepted(const why_t *why, hal_can_side_t side, const hal_can_frame_t *frame) {
     if ((frame->flags != 0u) || (frame->length != AGV_DLC)) {
         return AGV_MSG_NONE;
     }
     const agv_message_t message = (agv_message_t)agv_ids_find(&why->ids, frame->id);
-    const hal_can_side_t from = (is_command(message) && why->is_gateway) ? HAL_CAN_AI : HAL_CAN_VEHICLE;
+    const hal_can_side_t from = (why_is_command(message) && why->is_gateway) ? HAL_CAN_AI : HAL_CAN_VEHICLE;
     return (side == from) ? message : AGV_MSG_NONE;
 }
 
@@ -120,7 +116,7 @@ void why_frame(why_t *why, hal_can_side_t side, const hal_can_frame_t *frame, ui
     }
     why_life_frame(why, message, &evidence);
     why_track_frame(why, message, &evidence);
-    if (is_command(message) && !why->is_gateway) {
+    if (why_is_command(message) && !why->is_gateway) {
         why_budget_command(why, message, &evidence);
     }
     why_budget_frame(why, message, &evidence);
@@ -147,7 +143,7 @@ void why_sent(why_t *why, hal_can_side_t side, const hal_can_frame_t *frame, uin
     if (side != HAL_CAN_VEHICLE) {
         return;
     }
-    if (is_command(message) && why->is_gateway && !agv_state_is_latched((agv_state_t)why->state)) {
+    if (why_is_command(message) && why->is_gateway && !agv_state_is_latched((agv_state_t)why->state)) {
         why_budget_command(why, message, &evidence);
     }
     if (!is_safe(why, frame)) {

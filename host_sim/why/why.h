@@ -66,7 +66,7 @@ typedef struct {
 } why_fault_t;
 
 /** The five states, in the order of a run. */
-enum { WHY_STATES = 5 };
+enum { WHY_INIT, WHY_STANDBY, WHY_ACTIVE, WHY_TRIPPED, WHY_SAFE, WHY_STATES };
 
 typedef struct why why_t;
 
@@ -99,11 +99,14 @@ const why_trip_t *why_trip(const why_t *why, size_t index);
 size_t why_fault_count(const why_t *why);
 const why_fault_t *why_fault(const why_t *why, size_t index);
 
-/** How long a state lasted in all. @param index 0 = INIT .. 4 = SAFE */
+/** How long a state lasted in all. @param index WHY_INIT .. WHY_SAFE */
 uint64_t why_state_us(const why_t *why, size_t index);
 
 /** The time outside INIT. */
 uint64_t why_supervised_us(const why_t *why);
+
+/** Whether the autopilot was ever engaged: else the commands of the AI computer were not judged. */
+bool why_was_engaged(const why_t *why);
 
 /** AGV_MISSING_* bits: what kept it in INIT, until it left it or until the end. */
 uint16_t why_missing(const why_t *why);

@@ -261,7 +261,7 @@ static void evaluate(why_t *why, agv_message_t message, const why_evidence_t *fr
 }
 
 void why_budget_frame(why_t *why, agv_message_t message, const why_evidence_t *frame) {
-    if ((uint32_t)message >= AGV_COMMAND_COUNT) {
+    if (!why_is_command(message)) {
         why_budget_advance(why, frame->t_us);
         take_status(why, message, frame);
         evaluate(why, message, frame);

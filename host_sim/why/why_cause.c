@@ -73,10 +73,6 @@ static void began_before(why_trip_t *trip) {
     trip->cause_us = (trip->t_us > limit_us(trip)) ? trip->t_us - limit_us(trip) : 0u;
 }
 
-static bool is_command(agv_message_t message) {
-    return (uint32_t)message < AGV_COMMAND_COUNT;
-}
-
 /** The first frame that should have come and did not. Commands need not come before the engagement. */
 static void explain_silence(const why_t *why, why_trip_t *trip) {
     const why_message_t *message = &why->messages[trip->message];
@@ -88,7 +84,7 @@ static void explain_silence(const why_t *why, why_trip_t *trip) {
         trip->last_good_us = message->beat_us;
         trip->cause_us = message->beat_us + cycle_us;
     }
-    if (is_command(trip->message) && (engaged_us != WHY_NEVER) && (trip->cause_us < engaged_us)) {
+    if (why_is_command(trip->message) && (engaged_us != WHY_NEVER) && (trip->cause_us < engaged_us)) {
         trip->cause_us = engaged_us;
         if ((trip->message == AGV_MSG_TURN_SIGNAL_COMMAND) && (message->count == 0u)) {
             set_limit(why, trip, AGV_SETTING_ai_never_seen_timeout_ms, "ms");
@@ -103,28 +99,6 @@ static void explain_stuck(const why_t *why, why_trip_t *trip) {
     set_frame(trip, &message->first_repeat);
     why_show(trip, &message->beat);
     show_recent(why, trip, trip->message, RECENT_FRAMES);
-}
-
-/** What tells of a budget besides its own message: what it is compared with. */
-agv_message_t why_compared_with(agv_fault_t fault) {
-    switch (fault) {
-    case AGV_FAULT_STEERING_DEVIATION:
-        return AGV_MSG_STEERING_COMMAND;
-    case AGV_FAULT_THROTTLE_DEVIATION:
-        return AGV_MSG_THROTTLE_COMMAND;
-    case AGV_FAULT_GEAR_DEVIATION:
-        return AGV_MSG_GEAR_COMMAND;
-    case AGV_FAULT_AUTOPILOT_OFF_IGNORED:
-        return AGV_MSG_TURN_SIGNAL_COMMAND;
-    case AGV_FAULT_THROTTLE_IN_PARK:
-        return AGV_MSG_GEAR_STATUS;
-    case AGV_FAULT_SPEED_IMPLAUSIBLE:
-        return AGV_MSG_VEHICLE_STATUS;
-    case AGV_FAULT_MODE_NONE:
-        return AGV_MSG_WHEEL_SPEED;
-    default:
-        return AGV_MSG_NONE;
-    }
 }
 
 static void explain_tracked(const why_t *why, why_trip_t *trip) {

@@ -29,6 +29,10 @@ uint64_t why_supervised_us(const why_t *why) {
     return sum;
 }
 
+bool why_was_engaged(const why_t *why) {
+    return (why->engagement.count > 0u) || (why->state_us[WHY_ACTIVE] > 0u); /* a flight recorder has no frames */
+}
+
 uint16_t why_missing(const why_t *why) {
     return why->missing;
 }

@@ -29,7 +29,7 @@ static bool is_fresh(const why_t *why, agv_message_t number, uint64_t t_us) {
 static bool are_fresh(const why_t *why, uint64_t t_us) {
     for (int i = 0; i < (int)AGV_FAULT_COUNT; i++) {
         const why_row_t *row = why_row((agv_fault_t)i);
-        const bool counts = (row->kind == WHY_SILENCE) && ((uint32_t)row->message >= AGV_COMMAND_COUNT) &&
+        const bool counts = (row->kind == WHY_SILENCE) && !why_is_command(row->message) &&
                             agv_config_is_trip(&why->config, (uint32_t)i);
         if (counts && !is_fresh(why, row->message, t_us)) {
             return false;

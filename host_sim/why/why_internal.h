@@ -111,6 +111,11 @@ struct why {
     size_t fault_count;
 };
 
+/** Whether the AI computer sends it. */
+static inline bool why_is_command(agv_message_t message) {
+    return (uint32_t)message < AGV_COMMAND_COUNT;
+}
+
 /** The message of a frame that the supervisor accepts; AGV_MSG_NONE: it accepts none, or another sender sent it. */
 agv_message_t why_accepted(const why_t *why, hal_can_side_t side, const hal_can_frame_t *frame);
 
@@ -164,9 +169,6 @@ uint16_t why_silence_setting(agv_message_t message);
 
 /** Add a frame to the evidence, if there is room and it is not there yet. */
 void why_show(why_trip_t *trip, const why_evidence_t *evidence);
-
-/** What a fault's message is compared with; AGV_MSG_NONE: nothing. */
-agv_message_t why_compared_with(agv_fault_t fault);
 
 /** How long a condition has to last; 0: it is no budget. */
 uint64_t why_budget_us(const why_t *why, agv_fault_t fault);

@@ -53,7 +53,7 @@ void why_intruder_frame(why_t *why, const why_evidence_t *frame) {
     if (!is_data_frame(&frame->frame)) {
         return;
     }
-    if ((uint32_t)message < AGV_COMMAND_COUNT) {
+    if (why_is_command(message)) {
         if ((frame->side == HAL_CAN_VEHICLE) && why->is_gateway) {
             keep_first(why, &why->foreign, &why->foreign_last_us, frame);
         } else if (why->engagement.engaged) {

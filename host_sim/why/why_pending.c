@@ -9,7 +9,7 @@
 
 /** Whether the silence of a message counts now. */
 static bool counts(const why_t *why, agv_message_t message) {
-    const bool needs_engagement = ((uint32_t)message < AGV_COMMAND_COUNT) && (message != AGV_MSG_TURN_SIGNAL_COMMAND);
+    const bool needs_engagement = why_is_command(message) && (message != AGV_MSG_TURN_SIGNAL_COMMAND);
     return (why->messages[message].count > 0u) && (!needs_engagement || why->engagement.engaged);
 }
 

@@ -81,7 +81,7 @@ static void show_payload(const why_t *why, const agv_event_t *event, why_trip_t 
     if ((message == AGV_MSG_NONE) || (((event->seen >> (uint32_t)message) & 1u) == 0u)) {
         return;
     }
-    const bool from_ai = ((uint32_t)message < AGV_COMMAND_COUNT) && why->is_gateway;
+    const bool from_ai = why_is_command(message) && why->is_gateway;
     why_evidence_t evidence = {.t_us = trip->t_us, .side = from_ai ? HAL_CAN_AI : HAL_CAN_VEHICLE};
     evidence.frame.id = why->ids.of[message];
     evidence.frame.length = (uint8_t)AGV_DLC;

@@ -39,3 +39,24 @@ const char *why_kind_name(why_kind_t kind) {
 const why_row_t *why_row(agv_fault_t fault) {
     return &rows[fault];
 }
+
+agv_message_t why_compared_with(agv_fault_t fault) {
+    switch (fault) {
+    case AGV_FAULT_STEERING_DEVIATION:
+        return AGV_MSG_STEERING_COMMAND;
+    case AGV_FAULT_THROTTLE_DEVIATION:
+        return AGV_MSG_THROTTLE_COMMAND;
+    case AGV_FAULT_GEAR_DEVIATION:
+        return AGV_MSG_GEAR_COMMAND;
+    case AGV_FAULT_AUTOPILOT_OFF_IGNORED:
+        return AGV_MSG_TURN_SIGNAL_COMMAND;
+    case AGV_FAULT_THROTTLE_IN_PARK:
+        return AGV_MSG_GEAR_STATUS;
+    case AGV_FAULT_SPEED_IMPLAUSIBLE:
+        return AGV_MSG_VEHICLE_STATUS;
+    case AGV_FAULT_MODE_NONE:
+        return AGV_MSG_WHEEL_SPEED;
+    default:
+        return AGV_MSG_NONE;
+    }
+}

@@ -47,4 +47,7 @@ const char *why_kind_name(why_kind_t kind);
 /** The row of a fault. */
 const why_row_t *why_row(agv_fault_t fault);
 
+/** What a fault's message is compared with: the command of a deviation, for example; AGV_MSG_NONE: nothing. */
+agv_message_t why_compared_with(agv_fault_t fault);
+
 #endif

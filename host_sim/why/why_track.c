@@ -114,7 +114,7 @@ static void follow(why_t *why, const row_t *row, agv_message_t message, const wh
 }
 
 void why_track_frame(why_t *why, agv_message_t message, const why_evidence_t *frame) {
-    if ((uint32_t)message < AGV_COMMAND_COUNT) {
+    if (why_is_command(message)) {
         why_intruder_command(why, message, frame);
         return;
     }

@@ -11,7 +11,10 @@
 
 enum { DDEG_PER_DEG = 10 };
 
-/** What a fault means, after the name of its message. %L stands for the limit, %T for the setting of its time. */
+/**
+ * What a fault means, after the name of its message. %L stands for the limit, %T for the setting of its time, %C for the
+ * message with which its own is compared.
+ */
 typedef struct {
     const char *words;
     uint16_t time; /**< setting of %T */
@@ -39,14 +42,14 @@ static const meaning_t meanings[AGV_FAULT_COUNT] = {
     SAYS(EPS_MODE_INVALID, "reported an EPS mode that does not exist"),
     SAYS(EPS_MODE_NOT_ANGLE, "reported an EPS mode other than angle control"),
     SAYS(GEAR_STATUS_INVALID, "reported a gear that does not exist"),
-    SAYS(THROTTLE_STATUS_INVALID, "reported a throttle above 100 %"),
+    SAYS(THROTTLE_STATUS_INVALID, "reported a throttle above 100 %%"),
     SAYS(STEERING_ANGLE_INVALID, "reported an angle above 900 deg"),
-    LASTS(STEERING_DEVIATION, "was more than %L off 065h steering_command for %T", steering_deviation_ms),
-    LASTS(THROTTLE_DEVIATION, "was more than %L above 075h throttle_command for %T", throttle_deviation_ms),
+    LASTS(STEERING_DEVIATION, "was more than %L off %C for %T", steering_deviation_ms),
+    LASTS(THROTTLE_DEVIATION, "was more than %L above %C for %T", throttle_deviation_ms),
     SAYS(GEAR_DEVIATION, "reported a gear that was not commanded, with throttle, for %L"),
-    SAYS(AUTOPILOT_OFF_IGNORED, "still reported autopilot after 43Fh had requested autopilot off for %L"),
+    SAYS(AUTOPILOT_OFF_IGNORED, "still reported autopilot after %C had requested autopilot off for %L"),
     SAYS(THROTTLE_IN_PARK, "was above idle in gear P for %L"),
-    SAYS(SPEED_IMPLAUSIBLE, "differed from the speed in 363h for %L"),
+    SAYS(SPEED_IMPLAUSIBLE, "differed from the speed in %C for %L"),
     SAYS(VEHICLE_NOT_STOPPING, "reported turning wheels %L after the trip"),
     SAYS(MOVING_WHILE_SAFE, "reported turning wheels after the vehicle had stood"),
     SAYS(STARTUP_TIMEOUT, "the conditions to leave INIT did not hold within %L"),
@@ -59,6 +62,11 @@ static const meaning_t meanings[AGV_FAULT_COUNT] = {
 
 void why_words_time(text_t *text, uint64_t t_us) {
     text_add(text, "%" PRIu64 ".%03" PRIu64 " s", t_us / US_PER_S, (t_us % US_PER_S) / US_PER_MS);
+}
+
+/** "065h steering_command" */
+static void add_message(text_t *text, const why_t *why, agv_message_t message) {
+    text_add(text, "%03Xh %s", why->ids.of[message], agv_message_name(message));
 }
 
 static void add_name(text_t *text, const why_trip_t *trip) {
@@ -79,15 +87,25 @@ static void add_limit(text_t *text, const why_trip_t *trip) {
     }
 }
 
+/** Add what a letter after a per cent sign stands for. */
+static void add_part(text_t *text, const why_t *why, const why_trip_t *trip, char letter) {
+    if (letter == 'L') {
+        add_limit(text, trip);
+    } else if (letter == 'T') {
+        text_add(text, "%u ms", (unsigned)agv_config_get(&why->config, meanings[trip->reason].time));
+    } else if (letter == 'C') {
+        add_message(text, why, why_compared_with(trip->reason));
+    } else {
+        text_add(text, "%c", letter);
+    }
+}
+
 static void add_meaning(text_t *text, const why_t *why, const why_trip_t *trip) {
-    const meaning_t *meaning = &meanings[trip->reason];
-    for (const char *at = (meaning->words != NULL) ? meaning->words : ""; *at != '\0'; at++) {
-        if ((at[0] == '%') && (at[1] == 'L')) {
-            add_limit(text, trip);
+    const char *words = meanings[trip->reason].words;
+    for (const char *at = (words != NULL) ? words : ""; *at != '\0'; at++) {
+        if (*at == '%') {
             at++;
-        } else if ((at[0] == '%') && (at[1] == 'T')) {
-            text_add(text, "%u ms", (unsigned)agv_config_get(&why->config, meaning->time));
-            at++;
+            add_part(text, why, trip, *at);
         } else {
             text_add(text, "%c", *at);
         }

@@ -33,7 +33,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         OPTION_TEXT("--out", "FILE", "candump log of the frames that the supervisor sent", &given->request.out),
         OPTION_TEXT("--events", "FILE", "events as JSON Lines", &given->request.events),
         OPTION_FLAG("--timeline", "print a line for each action and event, as demo does", &given->request.timeline),
-        OPTION_FLAG("--fail-on-trip", "exit status 1 if it tripped, or if nothing was supervised",
+        OPTION_FLAG("--fail-on-trip", "exit status 1 if it tripped, nothing was supervised, or the time goes back",
                     &given->request.fail_on_trip),
         OPTION_NUMBER("--tail", "MS", "continue for this time after the last line (0)", &given->request.tail_ms, 0,
                       REPLAY_GAP_MAX_MS),

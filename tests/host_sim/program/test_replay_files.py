@@ -121,9 +121,9 @@ class Outputs(hostsim.Case):
 
     def test_where_nothing_can_be_written(self):
         self.write("log", LOG)
-        for option in ("--out", "--events", "--store"):
+        for option in ("--out", "--events", "--store", "--why", "--report", "--trace"):
             for path, reason in (("none/file", "No such file or directory"), ("log/file", "Not a directory"),
-                                 (".", "Is a directory")):
+                                 (".", "Is a directory"), ("/dev/full", "No space left on device")):
                 result = self.run_program("replay", option, path, "log")
                 self.assert_refused(result, path, reason)
         self.assertEqual(self.files(), ["log"])

@@ -38,9 +38,11 @@ class FiveLogs(Case):
     def test_a_log_that_begins_in_autopilot(self):
         log = traffic.log(traffic.frames(20000, engage_ms=0, edit=stop(("steering_command",), 10000, 11000)))
         lines = self.text(log)
-        self.assertEqual(lines[:4], [
+        self.assertEqual(lines[:6], [
             "NOT SUPERVISED: never left INIT, missing: manual (363h reports autopilot from its first frame),",
             "                standstill (101h reports 400 and 400 mm/s)",
+            "  hint      supervision begins in manual, at standstill: start the recording before the autopilot is",
+            "            engaged",
             "my.log: 19.994 s on can0, 2023-11-14 22:13:20.000 to 22:13:39.994",
             "supervised  0.00 s   INIT 19.99  STANDBY 0.00  ACTIVE 0.00  TRIPPED 0.00  SAFE 0.00"])
         self.assertIn("            STEERING_COMMAND_TIMEOUT  trip  10.107 s   1 time   0.900 s  in INIT: no trip", lines)
@@ -77,7 +79,45 @@ class FiveLogs(Case):
         hint = next(i for i, line in enumerate(lines) if line.startswith("  hint"))
         self.assertEqual(lines[hint:hint + 2], [
             "  hint      161h, 176h, 178h, 186h, 1B4h, 212h, and others heard, 0 of the 11 messages of the",
-            "            protocol: another vehicle? Each identifier is a setting (id_...)"])
+            "            protocol: another vehicle? Each identifier is a setting (id_...), and host_sim survey"])
+
+    def test_a_log_with_some_other_identifiers(self):
+        ids = dict(traffic.IDS, vehicle_status=0x303, steering_command=0x165)
+        lines = self.text(traffic.log(traffic.frames(2000, ids=ids)))
+        hint = next(i for i, line in enumerate(lines) if line.startswith("  hint"))
+        self.assertEqual(lines[hint:hint + 2], [
+            "  hint      065h and 363h never heard, but 165h and 303h, which the protocol does not know: other",
+            "            identifiers? host_sim survey proposes them"])
+
+    def test_frames_of_another_kind(self):
+        log = traffic.log(traffic.frames(2000))
+        lines = self.text(log.replace("#", "##0"))
+        self.assertIn("  hint      only CAN FD frames heard: the protocol has classic CAN frames", lines)
+        self.assertEqual(lines[-1], "log         CAN FD frames: 1420")
+        lines = self.text(log.replace(" can0 ", " can0 00000"))
+        self.assertIn("  hint      only 29-bit identifiers heard: the protocol has 11-bit ones", lines)
+        self.assertEqual(lines[-1], "log         frames with 29-bit identifiers: 1420")
+
+    def test_a_clock_that_is_set_back(self):
+        log = traffic.log(traffic.frames(2000)) + traffic.log(traffic.frames(2000), base_us=traffic.BASE_US - 60 * S)
+        lines = self.text(log, "--fail-on-trip", status=1)
+        self.assertEqual(lines[0], "NOT SUPERVISED: the time stamps go back by 61.994 s at line 1421; what follows "
+                                   "counts at 1.994 s:")
+        self.assertEqual(lines[1], "                cut or sort the log there")
+        self.assertEqual(lines[-1], "log         time stamps that went backwards: 1420")
+
+    def test_a_clock_that_is_set_forward(self):
+        log = traffic.log(traffic.frames(2000)) + traffic.log(traffic.frames(2000), base_us=traffic.BASE_US + 60 * S)
+        self.assertEqual(self.text(log)[:2], [
+            "  hint      no frame at all from 1.994 s to 60.000 s: was the recording interrupted, or its clock",
+            "            set?"])
+
+    def test_two_vehicles_in_one_log(self):
+        frames = traffic.frames(2000) + traffic.frames(2000, interface="can1")
+        lines = self.text(traffic.log(sorted(frames, key=lambda frame: frame.t_us)))
+        self.assertEqual(lines[:2], [
+            "  hint      the messages come on can0 and can1: a gateway (--ai-if names its AI side), or two",
+            "            vehicles in one log?"])
 
     def test_a_log_that_ends_in_the_middle_of_a_fault(self):
         frames = traffic.frames(3000, engage_ms=1000, edit=stop(("steering_command",), 2910))
@@ -123,6 +163,11 @@ class Text(Case):
             "            VEHICLE_NOT_STOPPING      trip  8.107 s   1 time   3.887 s  (a recording cannot obey)"])
         self.assertEqual(self.text(log, "--fail-on-trip", status=1), lines)
 
+    def test_a_log_without_an_engagement(self):
+        lines = self.text(traffic.log(traffic.frames(2000)), "--fail-on-trip")
+        self.assertEqual(lines[2:], ["not judged  the commands of the AI computer: the autopilot was never engaged",
+                                     "tripped     never", "faults      none"])
+
     def test_a_log_that_is_supervised_late(self):
         lines = self.text(traffic.log(traffic.frames(8000, edit=stop(EPS, 0, 3000))))
         self.assertEqual(lines[0], "NOT SUPERVISED: 3.513 s in INIT, until then missing: eps_heartbeat, trip_cause, "
@@ -142,14 +187,20 @@ class Text(Case):
     def test_a_night_has_two_dates_and_a_log_two_interfaces(self):
         frames = traffic.frames(2000, ai_interface="can1")
         lines = self.text(traffic.log(frames, base_us=1700006399 * S))
-        self.assertEqual(lines[0], "my.log: 1.994 s on can0, can1, 2023-11-14 23:59:59.000 to "
+        self.assertEqual(lines[0], "  hint      commands come on can1, status messages on can0: a gateway? --ai-if can1")
+        self.assertEqual(lines[1], "my.log: 1.994 s on can0, can1, 2023-11-14 23:59:59.000 to "
                                    "2023-11-15 00:00:00.994")
 
     def test_what_was_odd_about_the_log(self):
         log = "oops\n" + traffic.log(traffic.frames(2000)) + "(1700000001.000000) can0 0A3#08\n"
         lines = self.text(log, "--skip-bad-lines")
-        self.assertEqual(lines[-1],
-                         "log         lines skipped: 1, time stamps that went backwards: 1, malformed frames: 1")
+        self.assertEqual(lines[-1], "log         lines skipped: 1, time stamps that went backwards: 1, messages of a wrong "
+                                    "length: 1")
+
+    def test_error_frames(self):
+        frames = traffic.log(traffic.frames(2000)).splitlines(True)
+        frames.insert(700, frames[700].split(" ")[0] + " can0 20000088#0000000000000000\n")
+        self.assertEqual(self.text("".join(frames))[-1], "log         error frames: 1")
 
     def test_many_trips(self):
         def edit(frame):
@@ -220,6 +271,16 @@ class Causes(Case):
         self.assertEqual(self.sentence(edit_payload("steering_status", 2000, turn)),
                          "067h steering_status was more than 50.0 deg off 065h steering_command for 500 ms, from "
                          "2.002 s on")
+
+    def test_a_budget_with_other_identifiers(self):
+        ids = dict(traffic.IDS, steering_command=0x165)
+        def turn(data):
+            data[2:4] = (9501).to_bytes(2, "little")
+        frames = traffic.frames(4000, engage_ms=1000, ids=ids, edit=edit_payload("steering_status", 2000, turn))
+        self.write("ids.yaml", "id_steering_command: 0x165\n")
+        why = [line for line in self.text(traffic.log(frames), "--config", "ids.yaml") if line.startswith("  why")]
+        self.assertEqual(why, ["  why       067h steering_status was more than 50.0 deg off 165h steering_command for "
+                               "500 ms, from"])
 
     def test_a_mode(self):
         self.assertEqual(self.sentence(edit_payload("vehicle_status", 2000, lambda data: data.__setitem__(6, 0xC0))),
