@@ -13,6 +13,10 @@ install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/AgvSupervisor)
 install(TARGETS agv_core EXPORT AgvSupervisor ARCHIVE COMPONENT dev)
+if(CMAKE_STRIP) # only code: what gcc keeps for optimising at link time is of no use to another compiler
+  install(CODE "execute_process(COMMAND ${CMAKE_STRIP} --strip-debug --remove-section=.comment --remove-section=.gnu.lto_*
+    \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/libagv_core.a COMMAND_ERROR_IS_FATAL ANY)" COMPONENT dev)
+endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/firmware/include/agv ${PROJECT_SOURCE_DIR}/hal/include/hal
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/agv-supervisor COMPONENT dev)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/hal/template DESTINATION ${CMAKE_INSTALL_DATADIR}/agv-supervisor/hal COMPONENT dev
@@ -35,6 +39,18 @@ set(CPACK_DEBIAN_DEV_PACKAGE_NAME agv-supervisor-dev)
 set(CPACK_DEBIAN_HOST_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_HOST_PACKAGE_SECTION utils)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
-set(CPACK_COMPONENT_HOST_DESCRIPTION "host_sim: the supervisor as a program for Linux, with a simulated vehicle and its scenarios")
-set(CPACK_COMPONENT_DEV_DESCRIPTION "Portable core of the supervisor: headers, static library, CMake package")
+set(CPACK_COMPONENT_HOST_DESCRIPTION "host_sim: the supervisor as a program for Linux,\nwith a simulated vehicle and its scenarios")
+set(CPACK_COMPONENT_DEV_DESCRIPTION "Portable core of the supervisor:\nheaders, static library, CMake package")
 include(CPack)
+
+# What Debian's policy wants in each package.
+string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
+configure_file(${CMAKE_CURRENT_LIST_DIR}/debian/changelog.in ${PROJECT_BINARY_DIR}/debian/changelog @ONLY)
+file(ARCHIVE_CREATE OUTPUT ${PROJECT_BINARY_DIR}/debian/changelog.gz PATHS ${PROJECT_BINARY_DIR}/debian/changelog
+  FORMAT raw COMPRESSION GZip COMPRESSION_LEVEL 9 MTIME 0)
+foreach(component host dev)
+  string(TOUPPER ${component} upper)
+  set(folder share/doc/${CPACK_DEBIAN_${upper}_PACKAGE_NAME})
+  install(FILES ${PROJECT_BINARY_DIR}/debian/changelog.gz DESTINATION ${folder} COMPONENT ${component})
+  install(FILES ${CMAKE_CURRENT_LIST_DIR}/debian/copyright DESTINATION ${folder} COMPONENT ${component})
+endforeach()

@@ -103,7 +103,9 @@ static void pass_typed(companion_t *this) {
     char line[MONITOR_TYPED_SIZE + 1u];
     if (this->ui.wish.has_typed) {
         const int length = snprintf(line, sizeof line, "%s\n", this->ui.page.typed);
-        (void)write(this->ends->typed, line, (size_t)length);
+        if (write(this->ends->typed, line, (size_t)length) != length) {
+            monitor_note(this->monitor, MONITOR_WARN, "line not passed on", this->ui.page.typed);
+        }
         monitor_ui_typed_done(&this->ui);
     }
 }
