@@ -1,103 +1,6 @@
-/* Sending: own commands, forwarded frames and their pace, the status frame; waiting frames; reports. */
-#include "transmit/transmitter.h"
-
-#include <string.h>
-
+/* Sending: own commands, forwarded frames and their pace, overrides; waiting frames; reports. */
 #include "mock_can.h"
-#include "unity.h"
-
-/* The context of a port; the core never accesses its members. */
-struct hal {
-    int unused;
-};
-static hal_t hal;
-
-static agv_transmitter_t transmitter;
-static agv_timers_t timers;
-static agv_config_t config;
-static agv_ids_t ids;
-static agv_tx_orders_t orders;
-
-/* The frames that the HAL accepted. */
-typedef struct {
-    hal_can_side_t side;
-    hal_can_frame_t frame;
-} sent_t;
-static sent_t sent[64];
-static unsigned sent_count;
-static bool hal_takes;
-
-static bool send_stub(hal_t *port, hal_can_side_t side, const hal_can_frame_t *frame, int calls) {
-    (void)calls;
-    TEST_ASSERT_EQUAL_PTR(&hal, port);
-    if (hal_takes) {
-        TEST_ASSERT_TRUE(sent_count < sizeof sent / sizeof sent[0]);
-        sent[sent_count++] = (sent_t){side, *frame};
-    }
-    return hal_takes;
-}
-
-/* TRIPPED, with an angle of +12.3 degrees held: 9123 = 23A3h. */
-void setUp(void) {
-    hal_can_send_Stub(send_stub);
-    hal_takes = true;
-    sent_count = 0;
-    agv_config_defaults(&config);
-    config.status_frame_id = 0; /* tested separately */
-    agv_config_ids(&config, &ids);
-    agv_timers_set_time(&timers, 1000);
-    agv_timers_start(&timers);
-    transmitter = (agv_transmitter_t){0};
-    agv_transmitter_start(&transmitter, 1000);
-    orders = (agv_tx_orders_t){.hal = &hal,
-                               .config = &config,
-                               .ids = &ids,
-                               .timers = &timers,
-                               .hold = {.raw = 9123, .check = 0xDC5C},
-                               .state = AGV_STATE_TRIPPED,
-                               .first_reason = AGV_FAULT_BUS_OFF,
-                               .park_released = true,
-                               .holdable = true,
-                               .config_checksum = 0x12345678};
-}
-
-static void tick(uint32_t ms) {
-    for (uint32_t i = 0; i < ms; i++) {
-        agv_timers_advance(&timers, &config, timers.now_ms + 1, 0);
-        agv_transmitter_tick(&transmitter, &orders);
-    }
-}
-
-static void burst(void) {
-    agv_transmitter_burst(&transmitter, &orders);
-}
-
-static void expect_sent(unsigned n, hal_can_side_t side, uint32_t id, const uint8_t data[8]) {
-    TEST_ASSERT_TRUE(n < sent_count);
-    TEST_ASSERT_EQUAL(side, sent[n].side);
-    TEST_ASSERT_EQUAL_HEX32(id, sent[n].frame.id);
-    TEST_ASSERT_EQUAL_UINT8(8, sent[n].frame.length);
-    TEST_ASSERT_EQUAL_UINT8(0, sent[n].frame.flags);
-    TEST_ASSERT_EQUAL_UINT32(timers.now_ms, sent[n].frame.time_ms);
-    TEST_ASSERT_EQUAL_HEX8_ARRAY(data, sent[n].frame.data, 8);
-}
-
-/* Whenever it was sent. */
-static void expect_sent_data(unsigned n, uint32_t id, const uint8_t data[8]) {
-    TEST_ASSERT_TRUE(n < sent_count);
-    TEST_ASSERT_EQUAL_HEX32(id, sent[n].frame.id);
-    TEST_ASSERT_EQUAL_HEX8_ARRAY(data, sent[n].frame.data, 8);
-}
-
-static agv_tx_report_t report(void) {
-    return agv_transmitter_take_report(&transmitter);
-}
-
-static const uint8_t SIGNALS[8] = {0, 0, 0, 0, 0x70};
-static const uint8_t PARK[8] = {8};
-static const uint8_t ZEROS[8] = {0};
-static const uint8_t HELD[8] = {0xA3, 0x23};
-static const uint8_t DRIVE[8] = {1};
+#include "one_transmitter.h"
 
 /* ---- The safe commands ---- */
 
@@ -142,25 +45,21 @@ void test_in_standby_and_active_there_is_no_own_command(void) {
     burst();
     tick(500);
     orders.state = AGV_STATE_ACTIVE;
-    tick(500);
-    TEST_ASSERT_EQUAL_UINT(0, sent_count);
+    EXPECT_COUNT_AFTER(500, 0);
 }
 
 /* 43Fh after 100 ms, 168h after 66, 075h after 33, 065h after 25. */
 /* Shows: FSM-2, TIM-1 */
 void test_the_slots_after_all_were_sent_at_once(void) {
     burst();
-    tick(24);
-    TEST_ASSERT_EQUAL_UINT(4, sent_count);
+    EXPECT_COUNT_AFTER(24, 4);
     tick(1);
     expect_sent(4, HAL_CAN_VEHICLE, 0x065, HELD);
     tick(8);
     expect_sent(5, HAL_CAN_VEHICLE, 0x075, ZEROS);
-    tick(33);
-    TEST_ASSERT_EQUAL_UINT(8, sent_count); /* 065h at 50, 168h at 66 */
+    EXPECT_COUNT_AFTER(33, 8); /* 065h at 50, 168h at 66 */
     expect_sent(7, HAL_CAN_VEHICLE, 0x168, PARK);
-    tick(34);
-    TEST_ASSERT_EQUAL_UINT(11, sent_count); /* 065h at 75 and 100, 43Fh at 100 */
+    EXPECT_COUNT_AFTER(34, 11); /* 065h at 75 and 100, 43Fh at 100 */
 }
 
 /* Shows: FSM-8 */
@@ -181,13 +80,11 @@ void test_p_that_was_held_back_is_sent_as_soon_as_it_may_be(void) {
     orders.park_released = false;
     orders.holdable = false;
     burst();
-    tick(10);
-    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+    EXPECT_COUNT_AFTER(10, 2);
     orders.park_released = true;
     tick(1);
     expect_sent(2, HAL_CAN_VEHICLE, 0x168, PARK);
-    tick(99);
-    TEST_ASSERT_EQUAL_UINT(5, sent_count); /* 075h, 43Fh */
+    EXPECT_COUNT_AFTER(99, 5); /* 075h, 43Fh */
     tick(1);
     expect_sent(5, HAL_CAN_VEHICLE, 0x168, PARK);
 }
@@ -223,7 +120,7 @@ void test_in_shadow_mode_all_is_reported_and_nothing_sent(void) {
 /* Shows: INT-4, TX_GATE_REFUSED */
 void test_a_frame_refused_by_the_gate_is_reported(void) {
     orders.state = AGV_STATE_STANDBY;
-    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, DRIVE); /* shared bus */
+    pass(AGV_MSG_GEAR_COMMAND, DRIVE); /* shared bus */
     const agv_tx_report_t did = report();
     TEST_ASSERT_EQUAL_UINT(0, sent_count);
     TEST_ASSERT_EQUAL_UINT16(1, did.refused);
@@ -251,13 +148,10 @@ void test_an_own_command_waits_and_is_stalled(void) {
     agv_tx_report_t did = report();
     TEST_ASSERT_FALSE(did.park_sent);
     TEST_ASSERT_FALSE(did.hold_sent);
-    tick(100);
-    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
-    tick(1);
-    TEST_ASSERT_TRUE(agv_transmitter_is_stalled(&timers));
+    EXPECT_STALLED_AFTER(100, false);
+    EXPECT_STALLED_AFTER(1, true);
     hal_takes = true;
-    tick(1);
-    TEST_ASSERT_EQUAL_UINT(4, sent_count);
+    EXPECT_COUNT_AFTER(1, 4);
     expect_sent(0, HAL_CAN_VEHICLE, 0x43F, SIGNALS); /* the counter has not increased */
     TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
     did = report();
@@ -271,21 +165,15 @@ void test_a_command_that_is_not_wanted_any_more_is_not_stalled(void) {
     burst();
     tick(50);
     orders.state = AGV_STATE_STANDBY;
-    tick(200);
-    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
-}
-
-static void be_gateway(void) {
-    config.topology = AGV_TOPOLOGY_GATEWAY;
-    orders.state = AGV_STATE_ACTIVE;
+    EXPECT_STALLED_AFTER(200, false);
 }
 
 /* Shows: TOP-2 */
 void test_commands_pass_to_the_vehicle_and_status_to_the_ai(void) {
     static const uint8_t speeds[8] = {1, 2, 3, 4, 5, 6, 7, 8};
     be_gateway();
-    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, DRIVE);
-    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_WHEEL_SPEED, speeds);
+    pass(AGV_MSG_GEAR_COMMAND, DRIVE);
+    pass(AGV_MSG_WHEEL_SPEED, speeds);
     expect_sent(0, HAL_CAN_VEHICLE, 0x168, DRIVE);
     expect_sent(1, HAL_CAN_AI, 0x101, speeds);
     TEST_ASSERT_EQUAL_UINT16(2, report().sent);
@@ -297,18 +185,16 @@ void test_a_waiting_frame_is_replaced_by_a_newer_one(void) {
     static const uint8_t older[8] = {2};
     be_gateway();
     hal_takes = false;
-    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, older);
-    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_THROTTLE_COMMAND, older);
-    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, DRIVE);
+    pass(AGV_MSG_GEAR_COMMAND, older);
+    pass(AGV_MSG_THROTTLE_COMMAND, older);
+    pass(AGV_MSG_GEAR_COMMAND, DRIVE);
     TEST_ASSERT_EQUAL_UINT16(1, report().dropped);
     tick(5);
     hal_takes = true;
-    tick(1);
-    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+    EXPECT_COUNT_AFTER(1, 2);
     expect_sent(0, HAL_CAN_VEHICLE, 0x168, DRIVE);
     expect_sent(1, HAL_CAN_VEHICLE, 0x075, older);
-    tick(5);
-    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+    EXPECT_COUNT_AFTER(5, 2);
 }
 
 /* Each side alone. */
@@ -316,34 +202,30 @@ void test_a_waiting_frame_is_replaced_by_a_newer_one(void) {
 void test_a_discarded_frame_is_never_sent(void) {
     be_gateway();
     hal_takes = false;
-    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, DRIVE);
-    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_STEERING_COMMAND, ZEROS);
-    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_WHEEL_SPEED, ZEROS);
-    tick(101);
-    TEST_ASSERT_TRUE(agv_transmitter_is_stalled(&timers));
-    agv_transmitter_discard(&transmitter, &timers, HAL_CAN_VEHICLE);
+    pass(AGV_MSG_GEAR_COMMAND, DRIVE);
+    pass(AGV_MSG_STEERING_COMMAND, ZEROS);
+    pass(AGV_MSG_WHEEL_SPEED, ZEROS);
+    EXPECT_STALLED_AFTER(101, true);
+    discard(HAL_CAN_VEHICLE);
     TEST_ASSERT_EQUAL_UINT16(2, report().dropped);
     TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
     hal_takes = true;
-    tick(1);
-    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+    EXPECT_COUNT_AFTER(1, 1);
     expect_sent(0, HAL_CAN_AI, 0x101, ZEROS);
     hal_takes = false;
-    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_WHEEL_SPEED, ZEROS);
-    agv_transmitter_discard(&transmitter, &timers, HAL_CAN_AI);
+    pass(AGV_MSG_WHEEL_SPEED, ZEROS);
+    discard(HAL_CAN_AI);
     TEST_ASSERT_EQUAL_UINT16(1, report().dropped);
     hal_takes = true;
-    tick(10);
-    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+    EXPECT_COUNT_AFTER(10, 1);
 }
 
 /* A stalled AI side does not open the output. */
 void test_only_the_vehicle_side_is_stalled(void) {
     be_gateway();
     hal_takes = false;
-    agv_transmitter_pass(&transmitter, &orders, AGV_MSG_WHEEL_SPEED, ZEROS);
-    tick(500);
-    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
+    pass(AGV_MSG_WHEEL_SPEED, ZEROS);
+    EXPECT_STALLED_AFTER(500, false);
 }
 
 /* Shows: SUP-7, TOP-3 */
@@ -351,19 +233,11 @@ void test_in_bus_off_no_own_frame_is_passed_to_the_hal(void) {
     config.status_frame_id = 0x123;
     agv_timer_start(&timers, AGV_TIMER_BUS_OFF);
     burst();
-    tick(500);
-    TEST_ASSERT_EQUAL_UINT(0, sent_count);
+    EXPECT_COUNT_AFTER(500, 0);
     TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
 }
 
 /* ---- The pace of the gateway ---- */
-
-static const uint8_t REVERSE[8] = {2};
-static const uint8_t NEUTRAL[8] = {4};
-
-static void pass(unsigned message, const uint8_t data[8]) {
-    agv_transmitter_pass(&transmitter, &orders, message, data);
-}
 
 /* Of the frames within half a cycle the newest is sent at its end; the others are dropped and counted. */
 /* Shows: TOP-2 */
@@ -375,10 +249,8 @@ void test_a_command_passes_at_most_once_in_half_its_cycle(void) {
     tick(10);
     pass(AGV_MSG_GEAR_COMMAND, NEUTRAL);
     TEST_ASSERT_EQUAL_UINT16(1, report().dropped);
-    tick(29);
-    TEST_ASSERT_EQUAL_UINT(1, sent_count);
-    tick(1);
-    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+    EXPECT_COUNT_AFTER(29, 1);
+    EXPECT_COUNT_AFTER(1, 2);
     expect_sent(1, HAL_CAN_VEHICLE, 0x168, NEUTRAL);
     tick(49); /* from the time at which it was sent */
     pass(AGV_MSG_GEAR_COMMAND, DRIVE);
@@ -405,8 +277,7 @@ void test_half_a_cycle_of_each_command(unsigned command, uint32_t half_ms) {
     tick(half_ms - 1);
     pass(command, data);
     TEST_ASSERT_EQUAL_UINT(1, sent_count);
-    tick(1);
-    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+    EXPECT_COUNT_AFTER(1, 2);
     tick(half_ms);
     pass(command, data);
     TEST_ASSERT_EQUAL_UINT(3, sent_count);
@@ -468,12 +339,11 @@ void test_a_waiting_command_that_is_no_longer_allowed_is_dropped(void) {
     be_gateway();
     pass(AGV_MSG_GEAR_COMMAND, DRIVE);
     pass(AGV_MSG_GEAR_COMMAND, REVERSE);
-    agv_transmitter_drop(&transmitter, &timers, AGV_MSG_THROTTLE_COMMAND); /* none waits */
+    drop(AGV_MSG_THROTTLE_COMMAND); /* none waits */
     TEST_ASSERT_EQUAL_UINT16(0, report().dropped);
-    agv_transmitter_drop(&transmitter, &timers, AGV_MSG_GEAR_COMMAND);
+    drop(AGV_MSG_GEAR_COMMAND);
     TEST_ASSERT_EQUAL_UINT16(1, report().dropped);
-    tick(200);
-    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+    EXPECT_COUNT_AFTER(200, 1);
 }
 
 /* A dropped command that the HAL refused no longer counts as stalled. */
@@ -483,9 +353,8 @@ void test_a_dropped_command_does_not_stall(void) {
     hal_takes = false;
     pass(AGV_MSG_GEAR_COMMAND, DRIVE);
     tick(50);
-    agv_transmitter_drop(&transmitter, &timers, AGV_MSG_GEAR_COMMAND);
-    tick(200);
-    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
+    drop(AGV_MSG_GEAR_COMMAND);
+    EXPECT_STALLED_AFTER(200, false);
 }
 
 /* A command counts as given to the vehicle when it is sent. */
@@ -527,8 +396,7 @@ void test_an_engagement_ends_with_throttle_0(void) {
     TEST_ASSERT_EQUAL_UINT(2, sent_count);
     expect_sent(1, HAL_CAN_VEHICLE, 0x075, ZEROS);
     TEST_ASSERT_EQUAL_HEX8(0, report().passed);
-    tick(48);
-    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+    EXPECT_COUNT_AFTER(48, 2);
     orders.state = AGV_STATE_ACTIVE;
     tick(1);
     pass(AGV_MSG_THROTTLE_COMMAND, half); /* 50 ms after the last pass */
@@ -541,17 +409,13 @@ void test_throttle_0_waits_for_the_hal(void) {
     be_gateway();
     hal_takes = false;
     end_engagement();
-    tick(100);
-    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
-    tick(1);
-    TEST_ASSERT_TRUE(agv_transmitter_is_stalled(&timers));
+    EXPECT_STALLED_AFTER(100, false);
+    EXPECT_STALLED_AFTER(1, true);
     hal_takes = true;
-    tick(1);
-    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+    EXPECT_COUNT_AFTER(1, 1);
     expect_sent(0, HAL_CAN_VEHICLE, 0x075, ZEROS);
     TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
-    tick(100);
-    TEST_ASSERT_EQUAL_UINT(1, sent_count);
+    EXPECT_COUNT_AFTER(100, 1);
 }
 
 /* Discarded by a trip, and by the next engagement, because it would follow newer frames. */
@@ -561,18 +425,16 @@ void test_throttle_0_that_waits_is_discarded_and_replaced(void) {
     be_gateway();
     hal_takes = false;
     end_engagement();
-    agv_transmitter_discard(&transmitter, &timers, HAL_CAN_VEHICLE);
+    discard(HAL_CAN_VEHICLE);
     hal_takes = true;
-    tick(10);
-    TEST_ASSERT_EQUAL_UINT(0, sent_count);
+    EXPECT_COUNT_AFTER(10, 0);
     hal_takes = false;
     end_engagement();
     orders.state = AGV_STATE_ACTIVE;
     pass(AGV_MSG_GEAR_COMMAND, DRIVE); /* not by another command */
     pass(AGV_MSG_THROTTLE_COMMAND, half);
     hal_takes = true;
-    tick(10);
-    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+    EXPECT_COUNT_AFTER(10, 2);
     expect_sent_data(0, 0x168, DRIVE);
     expect_sent_data(1, 0x075, half);
 }
@@ -584,8 +446,7 @@ void test_in_bus_off_no_throttle_0_is_passed_to_the_hal(void) {
     end_engagement();
     TEST_ASSERT_EQUAL_UINT(0, sent_count);
     agv_timer_stop(&timers, AGV_TIMER_BUS_OFF);
-    tick(10);
-    TEST_ASSERT_EQUAL_UINT(0, sent_count);
+    EXPECT_COUNT_AFTER(10, 0);
 }
 
 /* ---- Overrides ---- */
@@ -593,13 +454,13 @@ void test_in_bus_off_no_throttle_0_is_passed_to_the_hal(void) {
 /* Shows: TOP-1 */
 void test_a_command_that_differs_is_overridden(void) {
     static const uint8_t reserved[8] = {8, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF};
-    agv_transmitter_answer(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, PARK);
-    agv_transmitter_answer(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, reserved); /* reserved bits command nothing */
+    answer(AGV_MSG_GEAR_COMMAND, PARK);
+    answer(AGV_MSG_GEAR_COMMAND, reserved); /* reserved bits command nothing */
     TEST_ASSERT_EQUAL_UINT(0, sent_count);
-    agv_transmitter_answer(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, DRIVE);
+    answer(AGV_MSG_GEAR_COMMAND, DRIVE);
     TEST_ASSERT_EQUAL_UINT(1, sent_count);
     expect_sent(0, HAL_CAN_VEHICLE, 0x168, PARK);
-    agv_transmitter_answer(&transmitter, &orders, AGV_MSG_THROTTLE_COMMAND, NULL); /* malformed */
+    answer(AGV_MSG_THROTTLE_COMMAND, NULL); /* malformed */
     expect_sent(1, HAL_CAN_VEHICLE, 0x075, ZEROS);
 }
 
@@ -608,18 +469,18 @@ void test_a_command_that_differs_is_overridden(void) {
 void test_the_alive_counter_of_a_foreign_43f_commands_nothing(void) {
     static const uint8_t same[8] = {0, 0, 0, 0, 0x70, 0, 0, 77};
     static const uint8_t other[8] = {0, 0, 0, 0, 0x30, 0, 0, 77};
-    agv_transmitter_answer(&transmitter, &orders, AGV_MSG_TURN_SIGNAL_COMMAND, same);
+    answer(AGV_MSG_TURN_SIGNAL_COMMAND, same);
     TEST_ASSERT_EQUAL_UINT(0, sent_count);
-    agv_transmitter_answer(&transmitter, &orders, AGV_MSG_TURN_SIGNAL_COMMAND, other);
+    answer(AGV_MSG_TURN_SIGNAL_COMMAND, other);
     TEST_ASSERT_EQUAL_UINT(1, sent_count);
 }
 
 /* Shows: TOP-1 */
 void test_a_command_that_is_not_sent_is_not_overridden(void) {
     orders.park_released = false;
-    agv_transmitter_answer(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, DRIVE);
+    answer(AGV_MSG_GEAR_COMMAND, DRIVE);
     orders.state = AGV_STATE_STANDBY;
-    agv_transmitter_answer(&transmitter, &orders, AGV_MSG_THROTTLE_COMMAND, DRIVE);
+    answer(AGV_MSG_THROTTLE_COMMAND, DRIVE);
     TEST_ASSERT_EQUAL_UINT(0, sent_count);
 }
 
@@ -628,221 +489,11 @@ void test_within_5_ms_the_override_waits_and_is_sent_by_a_tick(void) {
     burst();
     sent_count = 0;
     tick(1);
-    agv_transmitter_answer(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, DRIVE);
+    answer(AGV_MSG_GEAR_COMMAND, DRIVE);
     TEST_ASSERT_EQUAL_UINT(1, sent_count);
     tick(1);
-    agv_transmitter_answer(&transmitter, &orders, AGV_MSG_GEAR_COMMAND, DRIVE);
-    tick(3);
-    TEST_ASSERT_EQUAL_UINT(1, sent_count);
-    tick(1);
-    TEST_ASSERT_EQUAL_UINT(2, sent_count);
+    answer(AGV_MSG_GEAR_COMMAND, DRIVE);
+    EXPECT_COUNT_AFTER(3, 1);
+    EXPECT_COUNT_AFTER(1, 2);
     expect_sent(1, HAL_CAN_VEHICLE, 0x168, PARK);
-}
-
-/* ---- The status frame ---- */
-
-static void with_status_frame(void) {
-    config.status_frame_id = 0x123;
-    orders.state = AGV_STATE_STANDBY;
-    orders.first_reason = AGV_FAULT_NONE;
-}
-
-/* State, rank of the reason or FFh, output, counter, checksum with the low byte first. The first one at the start. */
-/* Shows: TOP-3 */
-void test_the_status_frame(void) {
-    const uint8_t first[8] = {0x33, 0xFF, 1, 0, 0x78, 0x56, 0x34, 0x12};
-    const uint8_t second[8] = {0x55, AGV_FAULT_BUS_OFF, 0, 1, 0x78, 0x56, 0x34, 0x12};
-    with_status_frame();
-    orders.output_closed = true;
-    agv_transmitter_status(&transmitter, &orders);
-    TEST_ASSERT_EQUAL_UINT(1, sent_count);
-    expect_sent(0, HAL_CAN_VEHICLE, 0x123, first);
-    TEST_ASSERT_EQUAL_UINT16(1, report().sent);
-    orders.output_closed = false;
-    tick(99);
-    TEST_ASSERT_EQUAL_UINT(1, sent_count);
-    orders.state = AGV_STATE_TRIPPED;
-    orders.first_reason = AGV_FAULT_BUS_OFF;
-    orders.park_released = false;
-    orders.holdable = false;
-    tick(1);
-    expect_sent(sent_count - 1, HAL_CAN_VEHICLE, 0x123, second);
-}
-
-/* 100 ms by default, and its counter wraps. */
-/* Shows: TOP-3 */
-void test_the_period_of_the_status_frame(void) {
-    with_status_frame();
-    for (unsigned i = 0; i < 300; i++) {
-        sent_count = 0;
-        tick((i == 0) ? 1 : 100);
-        TEST_ASSERT_EQUAL_UINT(1, sent_count);
-        TEST_ASSERT_EQUAL_UINT8(i, sent[0].frame.data[3]);
-    }
-    config.status_frame_period_ms = 10;
-    tick(100);
-    sent_count = 0;
-    tick(100);
-    TEST_ASSERT_EQUAL_UINT(10, sent_count);
-}
-
-/* Version 1.2.3 of the revision 89ABCDEFh, after the 256th frame. The bits 5 to 8 of byte 3 are the page. */
-/* Shows: TOP-3, HW-6 */
-void test_the_status_frame_reports_the_version_once_in_256_frames(void) {
-    static const agv_version_t version = {.major = 1, .minor = 2, .patch = 3, .revision = 0x89ABCDEF};
-    const uint8_t regular[8] = {0x33, 0xFF, 1, 255, 0x78, 0x56, 0x34, 0x12};
-    const uint8_t first[8] = {0x33, 0xFF, 0x11, 255, 1, 2, 3, 0};
-    const uint8_t second[8] = {0x33, 0xFF, 0x21, 255, 0xEF, 0xCD, 0xAB, 0x89};
-    with_status_frame();
-    orders.output_closed = true;
-    orders.version = &version;
-    config.status_version = AGV_STATUS_VERSION_ON;
-    agv_transmitter_status(&transmitter, &orders);
-    for (unsigned i = 1; i < 512; i++) {
-        sent_count = 0;
-        tick(100);
-        TEST_ASSERT_EQUAL_UINT((i % 256 == 255) ? 3 : 1, sent_count);
-    }
-    expect_sent(0, HAL_CAN_VEHICLE, 0x123, regular);
-    expect_sent(1, HAL_CAN_VEHICLE, 0x123, first);
-    expect_sent(2, HAL_CAN_VEHICLE, 0x123, second);
-    TEST_ASSERT_EQUAL_UINT16(512 + 4, report().sent);
-}
-
-static void expect_one_frame_in_each_period(void) {
-    with_status_frame();
-    agv_transmitter_status(&transmitter, &orders);
-    for (unsigned i = 1; i < 300; i++) {
-        sent_count = 0;
-        tick(100);
-        TEST_ASSERT_EQUAL_UINT(1, sent_count);
-    }
-}
-
-/* Shows: TOP-3, HW-6 */
-void test_the_version_is_reported_by_choice(void) {
-    static const agv_version_t version = {.major = 1};
-    orders.version = &version;
-    expect_one_frame_in_each_period();
-}
-
-/* Shows: TOP-3, HW-6 */
-void test_a_program_without_a_version_reports_none(void) {
-    config.status_version = AGV_STATUS_VERSION_ON;
-    expect_one_frame_in_each_period();
-}
-
-/* Of several missed frames one is sent, and the grid stays. */
-/* Shows: TOP-3, TIM-1 */
-void test_a_late_step_sends_one_status_frame(void) {
-    with_status_frame();
-    tick(1);
-    agv_timers_advance(&timers, &config, 1430, 0);
-    agv_transmitter_tick(&transmitter, &orders);
-    TEST_ASSERT_EQUAL_UINT(2, sent_count);
-    tick(69);
-    TEST_ASSERT_EQUAL_UINT(2, sent_count);
-    tick(1);
-    TEST_ASSERT_EQUAL_UINT(3, sent_count);
-}
-
-/* The status frame tests the transmit path: it is tried again at every tick, and counts as stalled after more than 100
- * ms. */
-/* Shows: TOP-3, SUP-7, TX_STALLED */
-void test_a_status_frame_that_is_not_taken_waits_and_stalls(void) {
-    with_status_frame();
-    hal_takes = false;
-    agv_transmitter_status(&transmitter, &orders);
-    tick(100);
-    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
-    tick(1);
-    TEST_ASSERT_TRUE(agv_transmitter_is_stalled(&timers));
-    hal_takes = true;
-    tick(1);
-    TEST_ASSERT_EQUAL_UINT(1, sent_count);
-    TEST_ASSERT_EQUAL_UINT8(0, sent[0].frame.data[3]);
-    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
-    tick(97);
-    TEST_ASSERT_EQUAL_UINT(1, sent_count);
-    tick(1); /* 200 ms after the start: on the grid */
-    TEST_ASSERT_EQUAL_UINT(2, sent_count);
-}
-
-/* Shows: TOP-3, TOP-4 */
-void test_there_is_no_status_frame_in_shadow_or_when_it_is_off(void) {
-    with_status_frame();
-    config.shadow = AGV_SHADOW_ON;
-    tick(250);
-    TEST_ASSERT_EQUAL_UINT16(0, report().shadowed);
-    config.shadow = AGV_SHADOW_OFF;
-    config.status_frame_id = 0;
-    tick(250);
-    TEST_ASSERT_EQUAL_UINT(0, sent_count);
-    TEST_ASSERT_FALSE(agv_transmitter_is_stalled(&timers));
-}
-
-/* No status frame during bus-off, not even one that waits. Afterwards it is on its grid again. */
-/* Shows: TOP-3, SUP-7 */
-void test_there_is_no_status_frame_in_bus_off(void) {
-    with_status_frame();
-    hal_takes = false;
-    tick(50);
-    agv_timer_start(&timers, AGV_TIMER_BUS_OFF);
-    hal_takes = true;
-    tick(100);
-    TEST_ASSERT_EQUAL_UINT(0, sent_count);
-    agv_timer_stop(&timers, AGV_TIMER_BUS_OFF);
-    tick(49);
-    TEST_ASSERT_EQUAL_UINT(0, sent_count);
-    tick(1);
-    TEST_ASSERT_EQUAL_UINT(1, sent_count);
-}
-
-/* At a start no status frame was passed to the HAL that could be discarded. */
-/* Shows: TOP-3 */
-void test_before_the_first_status_frame_none_is_sent_again(void) {
-    with_status_frame();
-    transmitter.status_due_ms = timers.now_ms + 50;
-    agv_transmitter_discard(&transmitter, &timers, HAL_CAN_VEHICLE);
-    tick(49);
-    TEST_ASSERT_EQUAL_UINT(0, sent_count);
-}
-
-/* A status frame passed to the HAL up to 2 ms before waiting frames are discarded may be lost, so it is sent again. */
-/* Shows: TOP-3, FSM-2 */
-TEST_CASE(0, 1)
-TEST_CASE(2, 1)
-TEST_CASE(3, 0)
-void test_a_status_frame_that_may_have_been_discarded_is_sent_again(uint32_t before_ms, unsigned again) {
-    with_status_frame();
-    agv_transmitter_status(&transmitter, &orders);
-    tick(before_ms);
-    agv_transmitter_discard(&transmitter, &timers, HAL_CAN_VEHICLE);
-    tick(1);
-    TEST_ASSERT_EQUAL_UINT(1 + again, sent_count);
-    tick(50);
-    TEST_ASSERT_EQUAL_UINT(1 + again, sent_count);
-}
-
-/* Frames discarded on the AI side do not matter. */
-void test_what_is_discarded_for_the_ai_side_is_no_status_frame(void) {
-    with_status_frame();
-    agv_transmitter_status(&transmitter, &orders);
-    agv_transmitter_discard(&transmitter, &timers, HAL_CAN_AI);
-    tick(50);
-    TEST_ASSERT_EQUAL_UINT(1, sent_count);
-}
-
-/* A start just before the wrap. */
-/* Shows: TOP-3, TIM-2 */
-void test_the_status_frame_across_the_wrap(void) {
-    with_status_frame();
-    agv_timers_set_time(&timers, 0xFFFFFFF0u);
-    transmitter = (agv_transmitter_t){0};
-    agv_transmitter_start(&transmitter, timers.now_ms);
-    agv_transmitter_status(&transmitter, &orders);
-    tick(99);
-    TEST_ASSERT_EQUAL_UINT(1, sent_count);
-    tick(201);
-    TEST_ASSERT_EQUAL_UINT(4, sent_count);
 }

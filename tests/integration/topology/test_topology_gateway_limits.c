@@ -1,0 +1,301 @@
+/* The gateway: limits of throttle, steering and gear changes. */
+#include "one_gateway.h"
+
+/* ---- Limits ---- */
+
+static void expect_throttle(uint16_t ceiling_pct, uint8_t commanded, uint8_t passed) {
+    const uint8_t command[8] = {commanded};
+    const uint8_t expected[8] = {passed};
+    setUp();
+    f.config.throttle_ceiling_pct = ceiling_pct;
+    fixture_active(&f);
+    expect_pass(0x075, command, expected);
+}
+
+/* 250 counts are 100 %. */
+/* Shows: TOP-2 */
+void test_the_throttle_is_limited_to_the_ceiling(void) {
+    expect_throttle(100, 250, 250);
+    expect_throttle(40, 250, 100);
+    expect_throttle(40, 101, 100);
+    expect_throttle(40, 100, 100);
+    expect_throttle(40, 99, 99);
+    expect_throttle(33, 250, 82); /* 82.5: never more than the ceiling */
+    expect_throttle(1, 250, 2);
+    expect_throttle(0, 250, 0);
+}
+
+static void expect_steering(uint16_t commanded, uint16_t passed) {
+    const uint8_t command[8] = {(uint8_t)commanded, (uint8_t)(commanded >> 8)};
+    const uint8_t expected[8] = {(uint8_t)passed, (uint8_t)(passed >> 8)};
+    fixture_run(&f, 25);
+    expect_pass(0x065, command, expected);
+}
+
+/* Shows: TOP-2 */
+void test_steering_is_not_limited_by_default(void) {
+    fixture_active(&f);
+    f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
+    expect_steering(0, 0);
+    expect_steering(18000, 18000);
+}
+
+/* 100.0 degrees a second are 2.5 degrees, 25 counts, in 25 ms. */
+/* Shows: TOP-2 */
+void test_steering_is_limited_to_the_slew_rate(void) {
+    f.config.steering_slew_ddeg_s = 1000;
+    fixture_active(&f);
+    fixture_run_past(&f, AGV_MSG_STEERING_COMMAND); /* 9000, as measured */
+    f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
+    expect_steering(9060, 9025);
+    expect_steering(9060, 9050);
+    expect_steering(9060, 9060);
+    expect_steering(8000, 9035);
+    expect_steering(8000, 9010);
+    expect_steering(9005, 9005);
+}
+
+/* The first command after the engagement starts from where the wheels are. */
+/* Shows: TOP-2 */
+void test_the_slew_rate_starts_from_the_measured_angle(void) {
+    f.config.steering_slew_ddeg_s = 1000;
+    fixture_angle(&f, 9300);
+    fixture_standby(&f);
+    fixture_mute_ai(&f, true);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    expect_steering(9000, 9275);
+}
+
+/* So does the first command of the next engagement, independent of the last one of this engagement. */
+/* Shows: TOP-2 */
+void test_the_slew_rate_starts_anew_with_every_engagement(void) {
+    f.config.steering_slew_ddeg_s = 1000;
+    fixture_active(&f);
+    fixture_mute_ai(&f, true);
+    expect_steering(9000, 9000);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_angle(&f, 9300);
+    fixture_run(&f, 50);
+    expect_state(&f, AGV_STATE_STANDBY);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_steering(9000, 9275);
+}
+
+/* 2.0 degrees a second are half a count in 25 ms: one count every 50 ms. */
+/* Shows: TOP-2 */
+void test_a_slow_slew_rate_adds_up(void) {
+    f.config.steering_slew_ddeg_s = 20;
+    fixture_active(&f);
+    fixture_run_past(&f, AGV_MSG_STEERING_COMMAND);
+    f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
+    expect_steering(9010, 9000);
+    expect_steering(9010, 9001);
+    expect_steering(9010, 9001);
+    expect_steering(9010, 9002);
+    expect_steering(8000, 9002);
+    expect_steering(8000, 9001);
+}
+
+/* Without a measured angle the rate starts from the first command. */
+/* Shows: TOP-2 */
+void test_without_a_measured_angle_the_slew_rate_starts_from_the_first_command(void) {
+    f.config.steering_slew_ddeg_s = 1000;
+    fixture_angle(&f, 18001);
+    fixture_standby(&f);
+    fixture_mute_ai(&f, true);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_steering(9400, 9400);
+    expect_steering(9000, 9375);
+}
+
+/* ---- Changes of the gear ---- */
+
+static const uint8_t REVERSE[8] = {2};
+static const uint8_t PARK[8] = {8};
+static const uint8_t NEUTRAL[8] = {4};
+
+/* The vehicle reports D and moves. */
+static void active_on_the_move(void) {
+    fixture_active(&f);
+    fixture_drive(&f, 500);
+    fixture_run(&f, 50);
+    f.traffic[AGV_MSG_GEAR_COMMAND].muted = true;
+    fixture_run(&f, 60);
+}
+
+/* Shows: TOP-2 */
+void test_the_gear_does_not_change_to_d_or_r_in_motion(void) {
+    active_on_the_move();
+    expect_dropped(0x168, REVERSE);
+    expect_pass(0x168, DRIVE_PACKED, DRIVE_PACKED); /* as reported */
+    fixture_run(&f, 50);
+    expect_pass(0x168, NEUTRAL, NEUTRAL);
+    fixture_gear(&f, GEAR_N);
+    fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
+    expect_dropped(0x168, DRIVE_PACKED); /* no longer as reported */
+    fixture_run(&f, 50);
+    expect_pass(0x168, PARK, PARK);
+}
+
+/* Standstill is 100 ms of it. */
+/* Shows: TOP-2 */
+void test_the_gear_changes_at_standstill(void) {
+    active_on_the_move();
+    fixture_drive(&f, 0);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
+    fixture_run(&f, 99);
+    expect_dropped(0x168, REVERSE);
+    fixture_run(&f, 1);
+    expect_pass(0x168, REVERSE, REVERSE);
+}
+
+/* Shows: TOP-2 */
+void test_the_gear_changes_in_motion_if_so_chosen(void) {
+    f.config.gear_change = AGV_GEAR_CHANGE_ANY;
+    active_on_the_move();
+    expect_pass(0x168, REVERSE, REVERSE);
+}
+
+/* A 168h that is dropped for this reason still refreshes its deadline. */
+/* Shows: TOP-2, SUP-3, GEAR_COMMAND_TIMEOUT */
+void test_a_gear_command_that_is_dropped_came_all_the_same(void) {
+    f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = GEAR_R;
+    fixture_active(&f);
+    fixture_drive(&f, 500);
+    f.long_run = true;
+    fixture_run(&f, 2000);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    fixture_forget_sent(&f);
+    fixture_run(&f, 500);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
+}
+
+/* ---- The rest of the envelope ---- */
+
+static uint32_t limited(void) {
+    return agv_supervisor_counters(&f.supervisor)->limited;
+}
+
+static void expect_rise(uint8_t commanded, uint8_t passed) {
+    const uint32_t before = limited();
+    const uint8_t command[8] = {commanded};
+    const uint8_t expected[8] = {passed};
+    expect_pass(0x075, command, expected);
+    TEST_ASSERT_EQUAL_UINT32(before + (commanded != passed ? 1u : 0u), limited());
+    fixture_run(&f, 100);
+}
+
+/* 100 % a second is 25 counts in 100 ms, from 0 on; down at once. */
+/* Shows: TOP-2 */
+void test_the_throttle_rises_no_faster_than_its_rate(void) {
+    f.config.throttle_rise_pct_s = 100;
+    fixture_active(&f);
+    fixture_run_past(&f, AGV_MSG_THROTTLE_COMMAND);
+    f.traffic[AGV_MSG_THROTTLE_COMMAND].muted = true;
+    fixture_run(&f, 100);
+    expect_rise(250, 25);
+    expect_rise(250, 50);
+    expect_rise(60, 60);
+    expect_rise(250, 85);
+    expect_rise(10, 10);
+    expect_rise(250, 35);
+    expect_rise(0, 0);
+    expect_rise(250, 25);
+}
+
+/* With each engagement from 0. */
+/* Shows: TOP-2 */
+void test_the_rise_begins_anew_with_every_engagement(void) {
+    f.config.throttle_rise_pct_s = 100;
+    fixture_active(&f);
+    fixture_run_past(&f, AGV_MSG_THROTTLE_COMMAND);
+    f.traffic[AGV_MSG_THROTTLE_COMMAND].muted = true;
+    fixture_run(&f, 100);
+    expect_rise(250, 25);
+    expect_rise(250, 50);
+    disengage();
+    fixture_run(&f, 50);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_rise(250, 25);
+}
+
+/* 30.0 degrees to both sides above 1000 mm/s. */
+static void active_and_fast(int32_t mm_s) {
+    setUp();
+    f.config.steering_fast_max_ddeg = 300;
+    f.config.fast_mm_s = 1000;
+    fixture_active(&f);
+    fixture_drive(&f, mm_s);
+    fixture_run(&f, 50);
+    f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
+}
+
+/* Shows: TOP-2 */
+void test_steering_is_limited_above_a_speed(void) {
+    active_and_fast(1000);
+    expect_steering(9400, 9400);
+    TEST_ASSERT_EQUAL_UINT32(0, limited());
+    active_and_fast(1001);
+    expect_steering(9400, 9300);
+    expect_steering(8600, 8700);
+    TEST_ASSERT_EQUAL_UINT32(2, limited());
+    expect_steering(9300, 9300);
+    expect_steering(8700, 8700);
+    TEST_ASSERT_EQUAL_UINT32(2, limited());
+    active_and_fast(-1001);
+    expect_steering(9400, 9300);
+}
+
+/* One wheel is enough, and a stale 101h (here a warning) counts as fast. */
+/* Shows: TOP-2, WHEEL_SPEED_TIMEOUT */
+void test_speeds_that_count_as_fast(void) {
+    active_and_fast(0);
+    fixture_wheels(&f, 0, 1001);
+    fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
+    expect_steering(9400, 9300);
+    setUp();
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_WHEEL_SPEED_TIMEOUT, false);
+    f.config.steering_fast_max_ddeg = 300;
+    f.config.fast_mm_s = 1000;
+    fixture_active(&f);
+    f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
+    fixture_run(&f, 100);
+    f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
+    expect_steering(9400, 9300);
+}
+
+/* The slew rate applies to the limit, too: the vehicle becomes fast at 40.0 degrees; the limit is reached in steps of
+ * 2.5. */
+/* Shows: TOP-2 */
+void test_the_slew_rate_applies_to_the_limit_above_a_speed(void) {
+    f.config.steering_fast_max_ddeg = 300;
+    f.config.fast_mm_s = 1000;
+    f.config.steering_slew_ddeg_s = 1000;
+    fixture_angle(&f, 9340);
+    fixture_command_angle(&f, 9340);
+    fixture_active(&f);
+    fixture_run_past(&f, AGV_MSG_STEERING_COMMAND);
+    f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
+    fixture_drive(&f, 2000);
+    expect_steering(9340, 9315);
+    expect_steering(9340, 9300);
+    expect_steering(9340, 9300);
+}
+
+/* An unchanged command is not counted as limited. */
+/* Shows: TOP-2 */
+void test_nothing_is_limited_by_default(void) {
+    fixture_active(&f);
+    f.long_run = true;
+    fixture_run(&f, 2000);
+    pause_ai();
+    from_ai(0x075, (const uint8_t[8]){250, 0xFF});
+    from_ai(0x065, (const uint8_t[8]){0x50, 0x46, 0xFF});
+    TEST_ASSERT_EQUAL_UINT32(0, limited());
+}

@@ -1,0 +1,249 @@
+/* The gateway: frames that wait, frames that come too soon, and the throttle 0 at the end of an engagement. */
+#include "one_gateway.h"
+
+/* ---- A side that accepts nothing ---- */
+
+/* Shows: TOP-2 */
+void test_towards_a_stalled_vehicle_side_the_newest_of_each_is_kept(void) {
+    static const uint8_t reverse[8] = {2};
+    static const uint8_t neutral[8] = {4};
+    fixture_active(&f);
+    fixture_mute_ai(&f, true);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    const uint32_t before = dropped();
+    from_ai(0x168, DRIVE);
+    from_ai(0x168, reverse);
+    from_ai(0x168, neutral);
+    from_ai(0x075, THROTTLE);
+    fixture_run(&f, 30);
+    TEST_ASSERT_EQUAL_UINT32(before + 2, dropped());
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    fixture_run(&f, 1);
+    expect_sent_once(0x168, neutral);
+    expect_sent_once(0x075, THROTTLE_PACKED);
+    fixture_run(&f, 50);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168)); /* once */
+    expect_state(&f, AGV_STATE_ACTIVE);
+}
+
+/* Shows: TOP-2 */
+void test_towards_a_stalled_ai_side_the_newest_of_each_is_kept(void) {
+    static const uint8_t neutral[8] = {4};
+    static const uint8_t park[8] = {8};
+    fixture_standby(&f);
+    sim_hal_set_full(&f.hal, HAL_CAN_AI, true);
+    fixture_frame(&f, AGV_MSG_GEAR_STATUS, neutral);
+    const uint32_t before = dropped();
+    fixture_frame(&f, AGV_MSG_GEAR_STATUS, park);
+    TEST_ASSERT_EQUAL_UINT32(before + 1, dropped());
+    expect_silence(&f);
+    sim_hal_set_full(&f.hal, HAL_CAN_AI, false);
+    fixture_jump(&f, 1);
+    expect_sent_once(0x0A3, park);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* ---- Waiting commands are dropped ---- */
+
+/* Commands that waited in ACTIVE are dropped with the first 363h without autopilot, without a trip. The throttle 0 of
+ * the end of the engagement waits instead. */
+/* Shows: TOP-2 */
+void test_waiting_commands_are_dropped_when_the_autopilot_is_disengaged(void) {
+    fixture_active(&f);
+    pause_ai();
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    from_ai(0x168, DRIVE);
+    from_ai(0x075, THROTTLE);
+    from_ai(0x065, ANGLE);
+    const uint32_t before = dropped();
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    TEST_ASSERT_EQUAL_UINT32(before + 3, dropped());
+    disengage();
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    fixture_run(&f, 50);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
+    expect_sent_once(0x075, ZERO);
+    TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->gate_refused);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* In STANDBY a 43Fh without "autopilot off" waits for a full queue; then comes a trip. */
+/* Shows: TOP-2, FSM-2, FSM-6 */
+void test_waiting_commands_are_dropped_at_a_trip_in_manual(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    fixture_standby(&f);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    fixture_run_past(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
+    fixture_mute_ai(&f, true);
+    walk_trip(&f);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    fixture_run(&f, 20);
+    TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->gate_refused);
+    expect_fault(&f, AGV_FAULT_TX_GATE_REFUSED, false);
+    TEST_ASSERT_EQUAL_HEX8(0x70, fixture_nth_sent(&f, 0x43F, 0)->data[4]);
+}
+
+/* ---- At most one frame in half a cycle ---- */
+
+typedef struct {
+    agv_message_t message;
+    uint32_t id;
+    uint32_t half_ms; /* the first whole millisecond of the other half */
+    uint8_t first[8];
+    uint8_t second[8];
+    uint8_t third[8];
+} too_soon_t;
+
+static const too_soon_t TOO_SOON[] = {{AGV_MSG_TURN_SIGNAL_COMMAND,
+                                       0x43F,
+                                       50,
+                                       {0, 0, 0, 0, 0x80, 0, 0, 1},
+                                       {0, 0, 0, 0, 0x80, 0, 0, 2},
+                                       {0, 0, 0, 0, 0x80, 0, 0, 3}},
+                                      {AGV_MSG_GEAR_COMMAND, 0x168, 50, {8}, {4}, {8}},
+                                      {AGV_MSG_THROTTLE_COMMAND, 0x075, 50, {10}, {20}, {30}},
+                                      {AGV_MSG_STEERING_COMMAND, 0x065, 13, {0x28, 0x23}, {0x29, 0x23}, {0x2A, 0x23}}};
+
+/* Only the test sends this command, and the last one is more than half a cycle ago. */
+static void active_without(const too_soon_t *row) {
+    setUp();
+    fixture_active(&f);
+    f.traffic[row->message].muted = true;
+    fixture_run(&f, 60);
+}
+
+/* The first passes. The second and the third come too soon: the newest is sent once, at the end of the half cycle. */
+static void check_newest(const too_soon_t *row) {
+    active_without(row);
+    const uint32_t before = dropped();
+    expect_pass(row->id, row->first, row->first);
+    fixture_run(&f, 1);
+    from_ai(row->id, row->second);
+    expect_silence(&f);
+    fixture_run(&f, row->half_ms - 2);
+    from_ai(row->id, row->third);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, row->id));
+    TEST_ASSERT_EQUAL_UINT32(before + 1, dropped());
+    fixture_run(&f, 1);
+    expect_sent_once(row->id, row->third);
+    fixture_run(&f, row->half_ms - 1);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, row->id));
+    from_ai(row->id, row->first); /* that one counted as a pass */
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, row->id));
+    TEST_ASSERT_EQUAL_UINT32(before + 1, dropped());
+}
+
+static void check_in_time(const too_soon_t *row) {
+    active_without(row);
+    from_ai(row->id, row->first);
+    fixture_run(&f, row->half_ms);
+    expect_pass(row->id, row->second, row->second);
+}
+
+/* Shows: TOP-2 */
+void test_of_commands_that_come_too_soon_the_newest_goes(void) {
+    for (unsigned i = 0; i < 4; i++) {
+        check_newest(&TOO_SOON[i]);
+        check_in_time(&TOO_SOON[i]);
+    }
+}
+
+/* 5 frames a millisecond for 950 ms: one each 50 ms is forwarded. */
+/* Shows: TOP-2, SUP-6 */
+void test_a_flood_from_the_ai_side_does_not_fill_the_vehicles_bus(void) {
+    fixture_active(&f);
+    pause_ai();
+    fixture_mute_ai(&f, false);
+    f.traffic[AGV_MSG_GEAR_COMMAND].muted = true;
+    uint32_t passed = 0;
+    const uint32_t before = dropped();
+    for (unsigned i = 0; i < 5 * 950; i++) {
+        from_ai(0x168, (const uint8_t[8]){GEAR_P});
+        passed += fixture_count_sent(&f, 0x168);
+        fixture_forget_sent(&f);
+        if (i % 5 == 4) {
+            fixture_run(&f, 1);
+            passed += fixture_count_sent(&f, 0x168);
+        }
+    }
+    TEST_ASSERT_UINT32_WITHIN(1, 20, passed);
+    TEST_ASSERT_UINT32_WITHIN(1, 5 * 950 - 20, dropped() - before);
+    expect_state(&f, AGV_STATE_ACTIVE);
+}
+
+/* Waiting commands are dropped at a trip and never sent. */
+/* Shows: TOP-2, FSM-2, FSM-6 */
+void test_commands_that_came_too_soon_are_dropped_at_a_trip(void) {
+    for (unsigned i = 0; i < 4; i++) {
+        setUp();
+        fixture_active(&f);
+        pause_ai();
+        from_ai(TOO_SOON[i].id, TOO_SOON[i].first);
+        from_ai(TOO_SOON[i].id, TOO_SOON[i].second);
+        walk_trip(&f);
+        fixture_run(&f, 200); /* the oracle checks each frame */
+        TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->gate_refused);
+    }
+}
+
+/* P passes, N waits, an invalid gear does not replace it. */
+/* Shows: TOP-2, SUP-5 */
+void test_an_invalid_frame_does_not_replace_one_that_waits(void) {
+    static const uint8_t park[8] = {8};
+    static const uint8_t neutral[8] = {4};
+    f.config.gateway_in_manual = AGV_IN_MANUAL_ALL;
+    fixture_standby(&f);
+    pause_ai();
+    expect_pass(0x168, park, park);
+    from_ai(0x168, neutral);
+    expect_dropped(0x168, NO_GEAR);
+    fixture_run(&f, 50);
+    expect_sent_once(0x168, neutral);
+}
+
+/* ---- The end of an engagement ---- */
+
+/* One 075h with throttle 0, in the call of the 363h that ends the engagement, and no other motion command. */
+/* Shows: TOP-2 */
+void test_the_end_of_an_engagement_sends_throttle_0(void) {
+    fixture_active(&f);
+    pause_ai();
+    from_ai(0x075, THROTTLE);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_run_before(&f, AGV_MSG_VEHICLE_STATUS);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x075));
+    fixture_forget_sent(&f);
+    fixture_run(&f, 1);
+    expect_sent_once(0x075, ZERO);
+    TEST_ASSERT_EQUAL_UINT32(f.traffic[AGV_MSG_VEHICLE_STATUS].call, fixture_nth_sent(&f, 0x075, 0)->call);
+    fixture_run(&f, 500);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x075));
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
+}
+
+/* It does not count as forwarded: the next 075h of the AI computer (in manual, as 0) does not wait for it. */
+/* Shows: TOP-2 */
+void test_the_supervisors_throttle_0_is_no_pass(void) {
+    f.config.gateway_in_manual = AGV_IN_MANUAL_ALL;
+    fixture_active(&f);
+    pause_ai();
+    disengage();
+    expect_pass(0x075, THROTTLE, ZERO);
+}
+
+/* On a shared bus nothing is sent: the AI computer commands there itself. */
+/* Shows: TOP-1, TOP-2 */
+void test_on_the_shared_bus_the_end_of_an_engagement_sends_nothing(void) {
+    f.config.topology = AGV_TOPOLOGY_SHARED;
+    fixture_active(&f);
+    disengage();
+    fixture_run(&f, 200);
+    expect_silence(&f);
+}
