@@ -11,6 +11,7 @@ set(AGV_ZEPHYR_PORT_SOURCES
   ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_second_clock.c
   ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_self_test.c
   ${AGV_ZEPHYR_PORT_DIR}/src/zephyr_watchdog.c
+  ${AGV_ZEPHYR_PORT_DIR}/src/$<IF:$<BOOL:${CONFIG_SOC_FAMILY_STM32}>,zephyr_stm32.c,zephyr_no_chip.c>
 )
 set(AGV_ZEPHYR_PORT_INCLUDES ${AGV_ZEPHYR_PORT_DIR}/include)
 

@@ -1,11 +1,14 @@
 #include "io/events.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <jansson.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "agv/names.h"
 #include "agv/recorder.h"
+#include "common/crash.h"
 
 /** Write an object as a line. Takes the reference. */
 static void write_line(output_t *output, json_t *object) {
@@ -63,6 +66,20 @@ static void add_fault(json_t *object, const agv_event_t *event) {
     }
 }
 
+static json_t *address(uint32_t value) {
+    char digits[9];
+    (void)snprintf(digits, sizeof digits, "%08" PRIx32, value);
+    return json_string(digits);
+}
+
+static void add_crash(json_t *object, const agv_event_t *event) {
+    const crash_addresses_t addresses = crash_addresses(event);
+    set(object, "cause", text_or_null(agv_reset_cause_name(event->a)));
+    set(object, "end", text_or_null(agv_end_name(event->b)));
+    set(object, "pc", address(addresses.pc));
+    set(object, "lr", address(addresses.lr));
+}
+
 static void write_recorded(output_t *output, uint64_t t_ms, const agv_event_t *event) {
     json_t *object = NULL;
     switch ((agv_event_kind_t)event->kind) {
@@ -86,6 +103,10 @@ static void write_recorded(output_t *output, uint64_t t_ms, const agv_event_t *e
     case AGV_EVENT_STARTUP:
         object = start(t_ms, "startup");
         set(object, "missing", words_of(agv_missing_name, event->missing));
+        break;
+    case AGV_EVENT_CRASH:
+        object = start(t_ms, "crash");
+        add_crash(object, event);
         break;
     default:
         return;

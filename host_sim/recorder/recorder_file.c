@@ -17,6 +17,7 @@
 /* A dump of flash has some 100 KB; a whole RAM fits, too. */
 #define FILE_MAX 16777216u
 #define EVENT_WORD "agv-event "
+#define VERSION_WORD "agv-version "
 #define STORE_WORD "agv-store "
 
 static bool add(recorder_events_t *events, const agv_event_t *event) {
@@ -88,21 +89,35 @@ static size_t hex_length(const char *text, size_t length) {
     return count;
 }
 
-/** What follows EVENT_WORD in a line; NULL: it is not there. */
-static const char *after_word(const char *line, size_t length) {
-    const size_t size = strlen(EVENT_WORD);
+/** What follows a word in a line; NULL: it is not there. */
+static const char *after_word(const char *word, const char *line, size_t length) {
+    const size_t size = strlen(word);
     for (size_t at = 0u; at + size <= length; at++) {
-        if (memcmp(&line[at], EVENT_WORD, size) == 0) {
+        if (memcmp(&line[at], word, size) == 0) {
             return &line[at + size];
         }
     }
     return NULL;
 }
 
+/** Take what names the device: printable characters, as many as fit. */
+static void take_version(recorder_events_t *events, const char *text, size_t length) {
+    size_t used = 0u;
+    while ((used < length) && (used < sizeof events->device - 1u) && (text[used] >= ' ') && (text[used] <= '~')) {
+        events->device[used] = text[used];
+        used++;
+    }
+    events->device[used] = '\0';
+}
+
 /** Take a line: an event behind EVENT_WORD, or nothing but an event. @return false: no memory; was reported */
 static bool take_line(recorder_events_t *events, const char *line, size_t length) {
     agv_event_t event;
-    const char *word = after_word(line, length);
+    const char *word = after_word(EVENT_WORD, line, length);
+    const char *version = after_word(VERSION_WORD, line, length);
+    if (version != NULL) {
+        take_version(events, version, length - (size_t)(version - line));
+    }
     const char *digits = (word != NULL) ? word : line;
     const size_t count = hex_length(digits, length - (size_t)(digits - line));
     if (event_of_hex(digits, count, &event) && is_event(&event)) {

@@ -3,6 +3,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "agv/state.h"
 #include "common/interrupt.h"
@@ -76,6 +77,20 @@ static void print_runs(const work_t *work) {
     }
 }
 
+/** Version and configuration of the device, and whether the events are read with this configuration. */
+static void print_device(const work_t *work) {
+    static const char word[] = "configuration ";
+    const char *named = strstr(work->events.device, word);
+    const uint32_t checksum = agv_config_checksum(&work->request->config);
+    if (work->events.device[0] != '\0') {
+        (void)printf("device      %s\n", work->events.device);
+    }
+    if ((named != NULL) && (strtoul(&named[strlen(word)], NULL, 16) != checksum)) {
+        (void)printf("            read with configuration %08" PRIx32 ": --config should name the device's own one\n",
+                     checksum);
+    }
+}
+
 static void print_head(const work_t *work) {
     const agv_event_t *first = &work->events.events[work->first];
     (void)printf("%s: %zu events", work->request->path, work->events.count);
@@ -83,7 +98,9 @@ static void print_head(const work_t *work) {
         (void)printf(" (%zu more are damaged)", work->events.damaged);
     }
     print_runs(work);
-    (void)printf("\nrun %u       %zu events, %" PRIu32 ".%03" PRIu32 " s to %" PRIu64 ".%03" PRIu64
+    (void)printf("\n");
+    print_device(work);
+    (void)printf("run %u       %zu events, %" PRIu32 ".%03" PRIu32 " s to %" PRIu64 ".%03" PRIu64
                  " s of its clock%s\n\n",
                  work->run, work->count, first->time_ms / (uint32_t)MS_PER_S, first->time_ms % (uint32_t)MS_PER_S,
                  work->end_ms / MS_PER_S, work->end_ms % MS_PER_S,

@@ -17,9 +17,13 @@ static const yaml_word_t PARTS[] = {{"output_feedback", OUTPUT_FEEDBACK},
                                     {NULL, 0}};
 
 /** Parts of the self-test that a port tests; the supervisor tests "core" itself. */
-static const yaml_word_t TESTS[] = {{"flash", HAL_SELF_TEST_FLASH},         {"ram", HAL_SELF_TEST_RAM},
-                                    {"processor", HAL_SELF_TEST_PROCESSOR}, {"watchdog", HAL_SELF_TEST_WATCHDOG},
-                                    {"devices", HAL_SELF_TEST_DEVICES},     {NULL, 0}};
+static const yaml_word_t TESTS[] = {{"flash", HAL_SELF_TEST_FLASH},
+                                    {"ram", HAL_SELF_TEST_RAM},
+                                    {"processor", HAL_SELF_TEST_PROCESSOR},
+                                    {"watchdog", HAL_SELF_TEST_WATCHDOG},
+                                    {"devices", HAL_SELF_TEST_DEVICES},
+                                    {"supply", HAL_SELF_TEST_SUPPLY},
+                                    {NULL, 0}};
 static const yaml_word_t RESULTS[] = {{"passed", 0}, {"failed", HAL_SELF_TEST_PROCESSOR}, {NULL, 0}};
 
 static bool *part_of(sim_board_t *board, int part) {

@@ -85,7 +85,8 @@ static bool read_failed_part(const yaml_reader_t *reader, const yaml_node_t *nod
     const uint16_t bit = part_bit(text);
     ((scenario_fault_t *)target)->parts |= bit;
     return (bit != 0u) ||
-           yaml_reader_fail(reader, node, "'%.40s' is not one of flash, ram, processor, watchdog, devices, core", text);
+           yaml_reader_fail(reader, node,
+                            "'%.40s' is not one of flash, ram, processor, watchdog, devices, core, supply", text);
 }
 
 static bool read_fault_ended(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {

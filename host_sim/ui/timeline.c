@@ -8,6 +8,7 @@
 
 #include "agv/codec.h"
 #include "agv/names.h"
+#include "common/crash.h"
 #include "common/missing.h"
 #include "common/units.h"
 #include "traffic/signals.h"
@@ -139,6 +140,12 @@ static void show_fault(timeline_t *timeline, uint64_t t_us, const agv_event_t *e
          has_parts ? ": " : "", has_parts ? parts_text(event->missing, parts) : "");
 }
 
+static void show_crash(timeline_t *timeline, uint64_t t_us, const agv_event_t *event) {
+    char text[CRASH_TEXT_SIZE];
+
+    line(timeline, t_us, "supervisor", "run before: %s", crash_text(event, text));
+}
+
 void timeline_event(void *ctx, const session_event_t *event) {
     timeline_t *timeline = ctx;
     const uint64_t t_us = event->t_ms * US_PER_MS;
@@ -165,6 +172,9 @@ void timeline_event(void *ctx, const session_event_t *event) {
         break;
     case AGV_EVENT_STARTUP:
         show_missing(timeline, t_us, "still in INIT", recorded->missing);
+        break;
+    case AGV_EVENT_CRASH:
+        show_crash(timeline, t_us, recorded);
         break;
     default:
         break;

@@ -20,21 +20,25 @@ NODE = "agv,supervisor"
 PINS = ("safety-output-gpios", "feedback-gpios", "estop-gpios", "reset-gpios")
 NOT_A_BUS = ("zephyr,can-loopback", "zephyr,fake-can", "zephyr,native-linux-can")
 
-# What Zephyr's driver of a watchdog can do: whether it takes a lower limit of the window.
-WATCHDOGS = {
-    "st,stm32-watchdog": ("IWDG", False),
-    "st,stm32-window-watchdog": ("WWDG", True),
-    "nxp,wdog32": ("WDOG", True),
-    "nxp,kinetis-wdog32": ("WDOG", True),
+# Watchdogs whose window the port can set: compatible, name. Zephyr's driver sets it, or the port itself.
+WINDOWS = {
+    "st,stm32-window-watchdog": "WWDG",
+    "nxp,wdog32": "WDOG",
+    "nxp,kinetis-wdog32": "WDOG",
 }
+WATCHDOGS = {"st,stm32-watchdog": "IWDG", **WINDOWS}
 
-# What the chip's reference manual says: brown-out reset, error correction. No driver of Zephyr sets or reports them.
+# What the chip's reference manual says of brown-out reset and memory errors, and what the port makes of it.
+OPTION = "option bytes, level read at the start"
+PARITY = "flash: ECC; RAM: parity by option byte; an error ends the run (NMI)"
 CHIPS = {
-    "stm32g0x": ("BOR level in the option bytes", "flash: corrects 1 bit, 2 bits are an NMI; RAM: parity by option byte"),
-    "stm32g4x": ("BOR level in the option bytes", "flash: corrects 1 bit, 2 bits are an NMI; SRAM1: parity by option byte"),
-    "stm32h7x": ("BOR level in the option bytes", "flash and RAM: corrects 1 bit, detects 2"),
-    "s32k1": ("low-voltage reset, always on", "flash and RAM: corrects 1 bit, detects 2"),
-    "s32k3": ("low-voltage reset, always on", "flash and RAM: corrects 1 bit, detects 2"),
+    "stm32g0x": (OPTION, PARITY),
+    "stm32g4x": (OPTION, PARITY),
+    "stm32h743": (OPTION, "flash and RAM: ECC; of the RAM read at every tick: SELF_TEST_FAILED"),
+    "stm32h753": (OPTION, "flash and RAM: ECC; of the RAM read at every tick: SELF_TEST_FAILED"),
+    "stm32h7": (OPTION, "flash and RAM: ECC, not used"),
+    "s32k1": ("low-voltage reset, always on", "flash and RAM: ECC, not used"),
+    "s32k3": ("low-voltage reset, always on", "flash and RAM: ECC, not used"),
 }
 
 
@@ -63,8 +67,8 @@ class Build:
         nodes = self.devicetree.compat2okay.get(NODE, [])
         return nodes[0] if nodes else None
 
-    def watchdog(self):
-        nodes = [node for node in self.devicetree.nodes if "watchdog0" in node.aliases]
+    def alias(self, name):
+        nodes = [node for node in self.devicetree.nodes if name in node.aliases]
         return nodes[0] if nodes else None
 
 
@@ -162,7 +166,7 @@ def check_second_clock(build):
 
 
 def check_watchdog(build):
-    watchdog = build.watchdog()
+    watchdog = build.alias("watchdog0")
     if build.has("AGV_WITHOUT_HARDWARE_WATCHDOG", "AGV_ACCEPT_NO_WATCHDOG") and not build.has("AGV_RELEASE"):
         return
     if watchdog is None:
@@ -170,6 +174,17 @@ def check_watchdog(build):
                       "CONFIG_AGV_ACCEPT_NO_WATCHDOG=y (not for a release): then the supervisor starts with SELF_TEST_FAILED")
     if is_disabled(watchdog):
         raise Refused(f"devicetree: watchdog0 = <{label(watchdog)}> is disabled: write {label(watchdog)} {{ status = \"okay\"; }};")
+
+
+def check_window(build):
+    watchdog = build.alias("window-watchdog")
+    if watchdog is None:
+        return
+    if is_disabled(watchdog):
+        raise Refused(f"devicetree: window-watchdog = <{label(watchdog)}> is disabled: write {label(watchdog)} {{ status = \"okay\"; }};")
+    if watchdog.matching_compat not in WINDOWS and not build.has("ZTEST"):
+        raise Refused(f"devicetree: window-watchdog = <{label(watchdog)}> is {watchdog.matching_compat}, of which the port cannot set a "
+                      "window: leave the alias out")
 
 
 def check_release(build):
@@ -191,26 +206,25 @@ def check(build):
     check_pins(build)
     check_second_clock(build)
     check_watchdog(build)
+    check_window(build)
     check_release(build)
 
 
 def chip(build):
     if build.has("ARCH_POSIX"):
         return ("none", "none")
-    family = build.config.get("SOC_SERIES", build.config.get("SOC", "")).strip('"')
-    for name, facts in CHIPS.items():
-        if family.startswith(name):
+    names = [build.config.get(symbol, "").strip('"') for symbol in ("SOC", "SOC_SERIES")]
+    for known, facts in CHIPS.items():
+        if any(name.startswith(known) for name in names):
             return facts
     return ("unknown", "unknown")
 
 
-def watchdog_text(build):
-    node = build.watchdog()
+def watchdog_text(build, alias):
+    node = build.alias(alias)
     if node is None or is_disabled(node):
         return "none"
-    name, window = WATCHDOGS.get(node.matching_compat, (node.matching_compat, None))
-    words = {True: "window possible", False: "no window", None: "window unknown"}
-    return f"{name}, {words[window]}"
+    return WATCHDOGS.get(node.matching_compat, node.matching_compat)
 
 
 def guard_text(build):
@@ -245,10 +259,11 @@ def controllers_text(build):
 
 FACTS = (
     ("CAN", controllers_text),
-    ("watchdog", watchdog_text),
+    ("watchdog", lambda build: watchdog_text(build, "watchdog0")),
+    ("window watchdog", lambda build: watchdog_text(build, "window-watchdog")),
     ("stack guard", guard_text),
     ("brown-out", lambda build: chip(build)[0]),
-    ("error correction", lambda build: chip(build)[1]),
+    ("memory errors", lambda build: chip(build)[1]),
     ("second clock", second_clock_text),
     ("output feedback", lambda build: input_text(build, "feedback-gpios")),
     ("emergency stop", lambda build: input_text(build, "estop-gpios")),
@@ -264,7 +279,8 @@ def header(build):
     lines = ["/* Made by scripts/tools/zephyr-board.py from devicetree and configuration: what this board can do. */",
              "#define AGV_BOARD_FACTS(X) \\"]
     lines += [f'    X("{name}", "{text(build)}") \\' for name, text in FACTS]
-    return "\n".join(lines) + "\n\n"
+    lacks = [name for name, text in FACTS if text(build) == "none" and name not in OF_THE_BUILD]
+    return "\n".join(lines) + f'\n\n#define AGV_BOARD_LACKS "{", ".join(lacks) or "nothing"}"\n'
 
 
 def table(builds):

@@ -35,10 +35,17 @@ const char *agv_message_name(agv_message_t message);
 const char *agv_missing_name(uint8_t index);
 
 /**
- * Name of a part of the self-test, a HAL_SELF_TEST_* bit: "flash", "ram", "processor", "watchdog", "devices", "core".
- * @param index number of the bit, 0..5
+ * Name of a part of the self-test, a HAL_SELF_TEST_* bit: "flash", "ram", "processor", "watchdog", "devices", "core",
+ * "supply".
+ * @param index number of the bit, 0..6
  * @return NULL for any other index.
  */
 const char *agv_self_test_part_name(uint8_t index);
+
+/** Name of a hal_reset_cause_t, such as "brown-out"; NULL for values above. */
+const char *agv_reset_cause_name(uint8_t cause);
+
+/** Name of a hal_end_t, such as "stack overflow"; NULL for HAL_END_UNKNOWN and values above. */
+const char *agv_end_name(uint8_t end);
 
 #endif

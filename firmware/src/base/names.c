@@ -3,6 +3,8 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "hal/reset.h"
+
 #define AGV_FAULT_EVENT AGV_FAULT
 #define AGV_COMMAND AGV_STATUS
 
@@ -22,7 +24,23 @@ static const char *const missing_names[] = {"state",      "vcu_heartbeat", "eps_
                                             "standstill", "manual",        "button",         "messages",
                                             "throttle",   "released",      "output_feedback"};
 
-static const char *const part_names[] = {"flash", "ram", "processor", "watchdog", "devices", "core"};
+static const char *const part_names[] = {"flash", "ram", "processor", "watchdog", "devices", "core", "supply"};
+
+static const char *const reset_names[] = {"power-on", "watchdog", "brown-out", "lock-up", "software", "unknown"};
+
+static const char *const end_names[HAL_ENDS] = {
+    [HAL_END_TASK_WATCHDOG] = "task watchdog",
+    [HAL_END_PROCESSOR] = "processor fault",
+    [HAL_END_INTERRUPT] = "spurious interrupt",
+    [HAL_END_STACK] = "stack overflow",
+    [HAL_END_ASSERTION] = "failed assertion",
+    [HAL_END_KERNEL] = "kernel panic",
+    [HAL_END_NMI] = "NMI",
+    [HAL_END_CLOCK] = "clock failure",
+    [HAL_END_FLASH_ECC] = "flash ECC error",
+    [HAL_END_RAM_PARITY] = "RAM parity error",
+    [HAL_END_WINDOW_WATCHDOG] = "window watchdog",
+};
 
 static const agv_setting_info_t settings[AGV_SETTING_COUNT] = {
 #define ANY false
@@ -84,6 +102,14 @@ const char *agv_missing_name(uint8_t index) {
 
 const char *agv_self_test_part_name(uint8_t index) {
     return (index < (sizeof(part_names) / sizeof(part_names[0]))) ? part_names[index] : NULL;
+}
+
+const char *agv_reset_cause_name(uint8_t cause) {
+    return (cause < (sizeof(reset_names) / sizeof(reset_names[0]))) ? reset_names[cause] : NULL;
+}
+
+const char *agv_end_name(uint8_t end) {
+    return (end < (uint8_t)HAL_ENDS) ? end_names[end] : NULL;
 }
 
 const agv_setting_info_t *agv_setting_info(uint16_t setting) {

@@ -81,10 +81,10 @@ static void add_reset(line_t *line, const agv_event_t *event) {
 }
 
 static void add_crash(line_t *line, const agv_event_t *event) {
-    static const char *const causes[] = {"power-on", "watchdog", "brown-out", "lock-up", "software", "unknown"};
-    add(line, "the run before ended: reset by %s", (event->a < ARRAY_SIZE(causes)) ? causes[event->a] : "-");
-    if (event->b != (uint8_t)ZEPHYR_HAL_NO_REASON) {
-        add(line, ", %s, PC %08x, LR %08x", zephyr_hal_reason_name(event->b), sys_get_le32(&event->frames[0][0]),
+    const char *const end = agv_end_name(event->b);
+    add(line, "the run before ended: reset by %s", name_or_dash(agv_reset_cause_name(event->a)));
+    if (end != NULL) {
+        add(line, ", %s, PC %08x, LR %08x", end, sys_get_le32(&event->frames[0][0]),
             sys_get_le32(&event->frames[0][4]));
     }
 }

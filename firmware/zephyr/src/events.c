@@ -25,6 +25,10 @@ const char *events_version(void) {
     return APP_VERSION_STRING "+" AGV_REVISION HOW BUS;
 }
 
+const char *events_lacks(void) {
+    return AGV_BOARD_LACKS;
+}
+
 #if defined(CONFIG_AGV_EVENTS)
 
 LOG_MODULE_REGISTER(agv, LOG_LEVEL_INF);

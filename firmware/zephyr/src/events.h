@@ -25,4 +25,7 @@ void events_print_led(uint32_t now_ms, int8_t code, int8_t *printed);
 /** The version, with what makes this build differ from one that acts. */
 const char *events_version(void);
 
+/** What the board of this build does not have, such as "second clock, reset button"; "nothing" if it has everything. */
+const char *events_lacks(void);
+
 #endif

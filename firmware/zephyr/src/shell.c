@@ -9,6 +9,7 @@
 #include "agv/names.h"
 #include "event_text.h"
 #include "events.h"
+#include "hal_zephyr/zephyr_chip.h"
 #include "supervise.h"
 
 extern supervise_t agv_supervise;
@@ -39,11 +40,18 @@ static int print_status(const struct shell *shell, size_t argc, char **argv) {
     ARG_UNUSED(argc);
     ARG_UNUSED(argv);
     const agv_supervisor_t *const seen = look();
+    const zephyr_chip_options_t options = zephyr_chip_options();
     shell_print(shell, "state %s, first reason %s, safety output %s, LED %d",
                 text(agv_state_name(agv_supervisor_state(seen))),
                 text(agv_fault_name(agv_supervisor_first_reason(seen))),
                 agv_supervisor_output_closed(seen) ? "closed" : "open", agv_supervisor_led_code(seen));
     shell_print(shell, "log in flash: %s", log_text());
+    if (options.brown_out_level >= 0) {
+        shell_print(shell, "brown-out level of the option bytes: %d", options.brown_out_level);
+    }
+    if (options.ram_parity >= 0) {
+        shell_print(shell, "parity of the RAM: %s", (options.ram_parity != 0) ? "checked" : "not checked");
+    }
     return 0;
 }
 
@@ -137,6 +145,10 @@ static int print_log(const struct shell *shell, size_t argc, char **argv) {
     return 0;
 }
 
+static uint32_t checksum(void) {
+    return agv_config_checksum(agv_supervisor_config(look()));
+}
+
 /* docs/firmware.md describes this format. */
 static void print_as_hex(const struct shell *shell, const agv_event_t *event) {
     static const char digits[] = "0123456789abcdef";
@@ -152,6 +164,7 @@ static void print_as_hex(const struct shell *shell, const agv_event_t *event) {
 static int print_dump(const struct shell *shell, size_t argc, char **argv) {
     ARG_UNUSED(argc);
     ARG_UNUSED(argv);
+    shell_print(shell, "agv-version %s, configuration %08x", events_version(), checksum());
     print_all(shell, print_as_hex);
     return 0;
 }
@@ -187,7 +200,7 @@ static int print_messages(const struct shell *shell, size_t argc, char **argv) {
 static int print_version(const struct shell *shell, size_t argc, char **argv) {
     ARG_UNUSED(argc);
     ARG_UNUSED(argv);
-    shell_print(shell, "%s, configuration %08x", events_version(), agv_config_checksum(agv_supervisor_config(look())));
+    shell_print(shell, "%s, configuration %08x, without: %s", events_version(), checksum(), events_lacks());
     return 0;
 }
 

@@ -5,6 +5,7 @@
 #ifndef HAL_ZEPHYR_ZEPHYR_HAL_INTERNAL_H
 #define HAL_ZEPHYR_ZEPHYR_HAL_INTERNAL_H
 
+#include "hal_zephyr/zephyr_chip.h"
 #include "hal_zephyr/zephyr_hal.h"
 
 /** The node of the wiring (dts/bindings/agv,supervisor.yaml). */
@@ -74,6 +75,9 @@ void zephyr_reset_note(const zephyr_hal_end_t *end);
 
 /** Whether the log in flash is being read: then an ECC error of the flash is a torn record. */
 extern volatile bool zephyr_log_is_read;
+
+/** Whether memory that outlives a reset is being tested: after a power-on it has never been written. */
+extern volatile bool zephyr_ram_is_new;
 
 /** Open the log in flash. @return false: the flash cannot be used (true without a log partition) */
 bool zephyr_log_start(hal_t *hal);

@@ -27,17 +27,17 @@ void zephyr_reset_note(const zephyr_hal_end_t *end) {
 /* Read and clear how the port itself ended the last run. */
 static zephyr_hal_end_t take_end(zephyr_hal_retained_t *retained) {
     const zephyr_hal_end_t end = retained->end;
-    const bool valid = (retained->end_checksum == end_checksum(&end)) && (end.reason < (uint32_t)ZEPHYR_HAL_REASONS);
+    const bool valid = (retained->end_checksum == end_checksum(&end)) && (end.reason < (uint32_t)HAL_ENDS);
     retained->end_checksum = ~end_checksum(&end);
-    return valid ? end : (zephyr_hal_end_t){.reason = ZEPHYR_HAL_NO_REASON};
+    return valid ? end : (zephyr_hal_end_t){.reason = HAL_END_UNKNOWN};
 }
 
 /* The cause of a software reset: the port itself requested it, or another part of the program. */
 static hal_reset_cause_t cause_of_end(const zephyr_hal_end_t *end) {
-    if (end->reason == (uint32_t)ZEPHYR_HAL_NO_REASON) {
+    if (end->reason == (uint32_t)HAL_END_UNKNOWN) {
         return HAL_RESET_SOFTWARE;
     }
-    return (end->reason == (uint32_t)ZEPHYR_HAL_TASK_WATCHDOG) ? HAL_RESET_WATCHDOG : HAL_RESET_LOCK_UP;
+    return (end->reason == (uint32_t)HAL_END_TASK_WATCHDOG) ? HAL_RESET_WATCHDOG : HAL_RESET_LOCK_UP;
 }
 
 /*

@@ -142,11 +142,26 @@ bool zephyr_march_kept(volatile uint32_t *words, size_t count) {
     return right;
 }
 
+volatile bool zephyr_ram_is_new;
+
 static bool test_memory(const zephyr_hal_memory_t *memory) {
     volatile uint32_t *const words = memory->start;
     const size_t count = memory->size / sizeof *words;
-    return memory->is_kept ? zephyr_march_kept(words, count) : zephyr_march(words, count);
+    zephyr_ram_is_new = memory->is_kept;
+    const bool right = memory->is_kept ? zephyr_march_kept(words, count) : zephyr_march(words, count);
+    zephyr_ram_is_new = false;
+    return right;
 }
+
+#if defined(CONFIG_AGV_BROWN_OUT_LEVEL)
+static bool test_supply(void) {
+    return zephyr_chip_options().brown_out_level >= CONFIG_AGV_BROWN_OUT_LEVEL;
+}
+#else
+static bool test_supply(void) {
+    return true;
+}
+#endif
 
 #if defined(CONFIG_CPU_CORTEX_M)
 /* Whether r0 to r12 hold a value. `inverse` is its complement: both come from the caller in registers of their own. */
@@ -213,6 +228,7 @@ static bool test_registers(void) {
 
 uint32_t zephyr_self_test_start(const zephyr_hal_config_t *config) {
     uint32_t failed = test_registers() ? 0u : HAL_SELF_TEST_PROCESSOR;
+    failed |= test_supply() ? 0u : HAL_SELF_TEST_SUPPLY;
     for (size_t i = 0u; i < config->memory_count; i++) {
         failed |= test_memory(&config->memory[i]) ? 0u : HAL_SELF_TEST_RAM;
     }
@@ -225,5 +241,6 @@ uint32_t zephyr_flash_test_start(hal_t *hal) {
 
 uint32_t hal_self_test(hal_t *hal) {
     hal->failed |= test_flash_on(&hal->flash_test) ? 0u : HAL_SELF_TEST_FLASH;
+    hal->failed |= zephyr_chip_ram_has_failed() ? HAL_SELF_TEST_RAM : 0u;
     return hal->failed;
 }

@@ -1,5 +1,6 @@
 /* hal/watchdog.h: the kernel's task watchdog, backed by the hardware watchdog, which also resets a chip whose kernel
- * hangs. */
+ * hangs; and a window watchdog, which also resets a chip that feeds too often. */
+#include <zephyr/drivers/watchdog.h>
 #include <zephyr/task_wdt/task_wdt.h>
 
 #include "zephyr_hal_internal.h"
@@ -19,18 +20,93 @@ BUILD_ASSERT((CONFIG_TASK_WDT_MIN_TIMEOUT + CONFIG_TASK_WDT_HW_FALLBACK_DELAY) <
 static void on_expired(int channel, void *user_data) {
     ARG_UNUSED(channel);
     ARG_UNUSED(user_data);
-    zephyr_hal_die(ZEPHYR_HAL_TASK_WATCHDOG, 0u, 0u);
+    zephyr_hal_die(HAL_END_TASK_WATCHDOG, 0u, 0u);
+}
+
+#define WINDOW_NODE DT_ALIAS(window_watchdog)
+#define HARDWARE_NODE DT_ALIAS(watchdog0)
+
+#if DT_NODE_HAS_STATUS(WINDOW_NODE, okay)
+
+/* It is fed at every 20th feed. These are 20 ms apart: between 10 ms and the time by which the hardware watchdog would
+ * have expired, in an interval that began up to 20 feeds earlier. */
+enum {
+    WINDOW_FEEDS = 20,
+    WINDOW_OPENS_MS = WINDOW_FEEDS / 2,
+    WINDOW_EXPIRES_MS = CONFIG_TASK_WDT_MIN_TIMEOUT + CONFIG_TASK_WDT_HW_FALLBACK_DELAY + WINDOW_FEEDS
+};
+
+static const struct device *const window = DEVICE_DT_GET(WINDOW_NODE);
+static int window_channel;
+static uint32_t window_feeds;
+
+static void on_window_expires(const struct device *device, int channel) {
+    ARG_UNUSED(device);
+    ARG_UNUSED(channel);
+    zephyr_hal_die(HAL_END_WINDOW_WATCHDOG, 0u, 0u);
+}
+
+static bool start_window(void) {
+    const struct wdt_timeout_cfg timeout = {.window = {.min = WINDOW_OPENS_MS, .max = WINDOW_EXPIRES_MS},
+                                            .callback = on_window_expires,
+                                            .flags = WDT_FLAG_RESET_SOC};
+    if (!device_is_ready(window)) {
+        return false;
+    }
+    window_channel = wdt_install_timeout(window, &timeout);
+#if DT_NODE_HAS_COMPAT(WINDOW_NODE, st_stm32_window_watchdog) /* whose driver takes no lower limit */
+    zephyr_chip_open_window(DT_REG_ADDR(WINDOW_NODE), WINDOW_OPENS_MS, WINDOW_EXPIRES_MS);
+#endif
+    return (window_channel >= 0) && (wdt_setup(window, WDT_OPT_PAUSE_HALTED_BY_DBG) == 0);
+}
+
+static void feed_window(void) {
+    window_feeds++;
+    if (window_feeds == (uint32_t)WINDOW_FEEDS) {
+        window_feeds = 0u;
+        (void)wdt_feed(window, window_channel);
+    }
+}
+
+#else
+
+static bool start_window(void) {
+    return true;
+}
+
+static void feed_window(void) {
+}
+
+#endif
+
+/* A board may have one watchdog for both. Then the kernel's one has no other behind it: it would feed it too early. */
+#if DT_NODE_HAS_STATUS(WINDOW_NODE, okay) && DT_NODE_HAS_STATUS(HARDWARE_NODE, okay)
+#define HARDWARE_IS_WINDOW DT_SAME_NODE(HARDWARE_NODE, WINDOW_NODE)
+#else
+#define HARDWARE_IS_WINDOW false
+#endif
+
+static bool start_once(void) {
+    const struct device *const hardware = DEVICE_DT_GET_OR_NULL(HARDWARE_NODE);
+    const bool is_there = !HARDWARE_IS_WINDOW && (hardware != NULL) && device_is_ready(hardware);
+    const bool is_enough =
+        is_there || DT_NODE_HAS_STATUS(WINDOW_NODE, okay) || IS_ENABLED(CONFIG_AGV_WITHOUT_HARDWARE_WATCHDOG);
+    const bool window_works = start_window();
+    return (task_wdt_init(is_there ? hardware : NULL) == 0) && window_works && is_enough;
 }
 
 bool zephyr_watchdog_start(hal_t *hal, uint32_t period_ms) {
-    const struct device *const hardware = DEVICE_DT_GET_OR_NULL(DT_ALIAS(watchdog0));
-    const bool is_there = (hardware != NULL) && device_is_ready(hardware);
-    static bool started; /* the kernel has one task watchdog, which cannot be stopped */
-    started = started || (task_wdt_init(is_there ? hardware : NULL) == 0);
+    static bool started; /* neither watchdog can be stopped */
+    static bool works;
+    if (!started) {
+        works = start_once();
+        started = true;
+    }
     hal->watchdog_channel = task_wdt_add(period_ms, on_expired, NULL);
-    return started && (hal->watchdog_channel >= 0) && (is_there || IS_ENABLED(CONFIG_AGV_WITHOUT_HARDWARE_WATCHDOG));
+    return works && (hal->watchdog_channel >= 0);
 }
 
 void hal_watchdog_feed(hal_t *hal) {
     (void)task_wdt_feed(hal->watchdog_channel);
+    feed_window();
 }

@@ -57,7 +57,7 @@ void test_what_is_written_comes_back(void) {
         recorded_comes_back((agv_event_t){.kind = AGV_EVENT_RESET, .missing = (uint16_t)missing});
         recorded_comes_back((agv_event_t){.kind = AGV_EVENT_STARTUP, .missing = (uint16_t)missing});
     }
-    for (unsigned parts = 0u; parts <= 0x3Fu; parts++) {
+    for (unsigned parts = 0u; parts <= 0x7Fu; parts++) {
         recorded_comes_back((agv_event_t){
             .kind = AGV_EVENT_FAULT, .a = AGV_FAULT_SELF_TEST_FAILED, .c = 1u, .missing = (uint16_t)parts});
     }

@@ -93,6 +93,18 @@ void test_reset_and_startup_name_what_was_missing(void) {
         lines());
 }
 
+/* Shows: INT-3 */
+void test_how_the_run_before_ended(void) {
+    write_event((agv_event_t){
+        .kind = AGV_EVENT_CRASH, .a = 3, .b = 4, .frames = {{0x34, 0x12, 0x00, 0x08, 0x79, 0x56, 0x00, 0x08}}});
+    write_event((agv_event_t){.kind = AGV_EVENT_CRASH, .a = 1});
+    TEST_ASSERT_EQUAL_STRING("{\"t_ms\": 12345678901, \"event\": \"crash\", \"cause\": \"lock-up\", \"end\": "
+                             "\"stack overflow\", \"pc\": \"08001234\", \"lr\": \"08005679\"}\n"
+                             "{\"t_ms\": 12345678901, \"event\": \"crash\", \"cause\": \"watchdog\", \"end\": "
+                             "null, \"pc\": \"00000000\", \"lr\": \"00000000\"}\n",
+                             lines());
+}
+
 void test_what_is_no_event_or_no_name(void) {
     write_event((agv_event_t){.kind = 99});
     write_event((agv_event_t){.kind = AGV_EVENT_STATE, .a = 1, .b = 2, .c = 255});

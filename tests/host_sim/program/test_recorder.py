@@ -1,7 +1,10 @@
 """`host_sim recorder`: what a device's flight recorder kept, in each form in which it leaves the device."""
 import json
 import os
+import re
+import struct
 import unittest
+import zlib
 
 import hostsim
 import traffic
@@ -26,13 +29,14 @@ class Recorder(hostsim.Case):
         events = [ring[at:at + EVENT] for at in range(0, len(ring), EVENT)]
         self.events = [event for event in events if event[8]]  # the kind
         self.assertEqual(len(self.events), 10)
+        self.version = []
 
     def text_of(self, name):
         return (self.folder / name).read_text(encoding="utf-8")
 
     def dump(self):
         """What a terminal shows of `agv dump`."""
-        lines = ["uart:~$ agv dump"] + ["agv-event " + event.hex() for event in self.events]
+        lines = ["uart:~$ agv dump"] + self.version + ["agv-event " + event.hex() for event in self.events]
         return "\r\n".join(lines + ["0 events from flash, 10 from RAM; log in flash: ready", "uart:~$ "])
 
     def recorder(self, content, *arguments):
@@ -97,6 +101,32 @@ class Recorder(hostsim.Case):
         self.assertIn("tripped     at 0.000 s: STEERING_COMMAND_TIMEOUT", text)
         self.assertIn("tripped     at 3.107 s", self.run_good("recorder", "--run", "0", "store").stdout)
         self.assert_refused(self.run_program("recorder", "--run", "7", "store"), "no event of run 7")
+
+    def test_how_the_run_before_ended(self):
+        sequence, time_ms = struct.unpack_from("<II", self.events[-1])
+        crash = struct.pack("<II4B", sequence + 1, time_ms + 1, 6, 3, 4, 0) + bytes(2) + self.events[-1][14:16]
+        crash += bytes(4) + struct.pack("<II", 0x08001234, 0x08005679) + bytes(80) + bytes([self.events[-1][108], 0])
+        crash += struct.pack("<H", (zlib.crc32(crash) ^ 0xFFFFFFFF) >> 16)
+        self.events.append(crash)
+        text = self.recorder(self.dump(), "--events", "e.jsonl")
+        self.assertRegex(text, r"4\.008 s +supervisor +run before: reset by lock-up, stack overflow, PC 08001234, LR 08005679 ")
+        self.assertEqual(json.loads(self.text_of("e.jsonl").splitlines()[-1]),
+                         {"t_ms": 4008, "event": "crash", "cause": "lock-up", "end": "stack overflow",
+                          "pc": "08001234", "lr": "08005679"})
+
+    def test_the_device_is_named(self):
+        checksum = re.search("Checksum: ([0-9A-F]{8})", self.run_good("config").stdout)[1].lower()
+        self.version = [f"agv-version 0.1.0+0123456789ab, configuration {checksum}"]
+        lines = self.recorder(self.dump()).splitlines()
+        self.assertEqual(lines[1], "device      0.1.0+0123456789ab, configuration " + checksum)
+        self.assertTrue(lines[2].startswith("run 0 "))
+        self.version = ["\x1b[mgarbage agv-version 9 \x07 bell"]
+        self.assertIn("\ndevice      9 \nrun 0 ", self.recorder(self.dump()))
+        self.version = ["agv-version " + "x" * 500 + ", configuration 12345678"]
+        self.assertIn("\ndevice      " + "x" * 119 + "\nrun 0 ", self.recorder(self.dump()))
+        self.version = ["agv-version 1.0.0+unknown, configuration 12345678"]
+        lines = self.recorder(self.dump()).splitlines()
+        self.assertEqual(lines[2], f"            read with configuration {checksum}: --config should name the device's own one")
 
     def test_a_damaged_event_is_counted(self):
         damaged = bytearray(self.events[3])

@@ -409,7 +409,7 @@ void test_what_is_wrong_in_an_expectation_is_refused_with_its_line(void) {
          "s.yaml:6: class: 'bad' is not one of trip, warn"},
         {EXPECT("faults: [{name: BUS_OFF, raised_ms: 1, ended_ms: x}]"), "s.yaml:6: ended_ms (a time, or never): 'x'"},
         {EXPECT("faults: [{name: SELF_TEST_FAILED, parts: [wheels], raised_ms: 1}]"),
-         "s.yaml:6: 'wheels' is not one of flash, ram, processor, watchdog, devices, core"},
+         "s.yaml:6: 'wheels' is not one of flash, ram, processor, watchdog, devices, core, supply"},
         {EXPECT("faults: [{name: BUS_OFF, parts: [ram], raised_ms: 1}]"), "s.yaml:6: a fault: only SELF_TEST_FAILED"},
         {EXPECT("other_faults: some"), "s.yaml:6: other_faults: 'some' is not one of allowed, never"},
         {EXPECT("resets: [{accepted: true, why: [button], at_ms: 1}]"), "s.yaml:6: a reset: 'why' is needed"},

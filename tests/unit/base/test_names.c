@@ -69,12 +69,40 @@ void test_what_is_missing(void) {
 /* By bit of HAL_SELF_TEST_*. */
 /* Shows: HW-4 */
 void test_parts_of_the_self_test(void) {
-    static const char *const expected[] = {"flash", "ram", "processor", "watchdog", "devices", "core"};
-    for (uint8_t i = 0; i < 6; i++) {
+    static const char *const expected[] = {"flash", "ram", "processor", "watchdog", "devices", "core", "supply"};
+    for (uint8_t i = 0; i < 7; i++) {
         TEST_ASSERT_EQUAL_STRING(expected[i], agv_self_test_part_name(i));
     }
-    TEST_ASSERT_NULL(agv_self_test_part_name(6));
+    TEST_ASSERT_NULL(agv_self_test_part_name(7));
     TEST_ASSERT_NULL(agv_self_test_part_name(255));
+}
+
+/* By hal_reset_cause_t and hal_end_t: the numbers are stored in the flight recorder. */
+/* Shows: INT-3 */
+void test_how_a_run_ended(void) {
+    static const char *const causes[] = {"power-on", "watchdog", "brown-out", "lock-up", "software", "unknown"};
+    static const char *const ends[] = {"task watchdog",
+                                       "processor fault",
+                                       "spurious interrupt",
+                                       "stack overflow",
+                                       "failed assertion",
+                                       "kernel panic",
+                                       "NMI",
+                                       "clock failure",
+                                       "flash ECC error",
+                                       "RAM parity error",
+                                       "window watchdog"};
+    for (uint8_t i = 0; i < 6; i++) {
+        TEST_ASSERT_EQUAL_STRING(causes[i], agv_reset_cause_name(i));
+    }
+    TEST_ASSERT_NULL(agv_reset_cause_name(6));
+    TEST_ASSERT_NULL(agv_reset_cause_name(255));
+    TEST_ASSERT_NULL(agv_end_name(0));
+    for (uint8_t i = 0; i < 11; i++) {
+        TEST_ASSERT_EQUAL_STRING(ends[i], agv_end_name((uint8_t)(i + 1)));
+    }
+    TEST_ASSERT_NULL(agv_end_name(12));
+    TEST_ASSERT_NULL(agv_end_name(255));
 }
 
 /* Shows: INT-2 */

@@ -47,24 +47,9 @@ BUILD_ASSERT(!IS_ENABLED(CONFIG_DCACHE), "retained memory must not be cached: ch
  */
 #define ZEPHYR_HAL_QUEUE_SIZE 16u
 
-/** Why the port ended a run. The numbers are stored in the flight recorder (AGV_EVENT_CRASH). */
-typedef enum {
-    ZEPHYR_HAL_NO_REASON = 0,
-    ZEPHYR_HAL_TASK_WATCHDOG = 1,
-    ZEPHYR_HAL_PROCESSOR = 2, /**< a fault exception */
-    ZEPHYR_HAL_INTERRUPT = 3, /**< an interrupt without a handler */
-    ZEPHYR_HAL_STACK = 4,
-    ZEPHYR_HAL_ASSERTION = 5, /**< pc: the place of the assertion */
-    ZEPHYR_HAL_KERNEL = 6,    /**< oops or panic */
-    ZEPHYR_HAL_NMI = 7,
-    ZEPHYR_HAL_CLOCK = 8,     /**< the oscillator failed (clock security system) */
-    ZEPHYR_HAL_FLASH_ECC = 9, /**< two wrong bits in a word of the flash */
-    ZEPHYR_HAL_REASONS
-} zephyr_hal_reason_t;
-
 /** How a run ended: the reason, program counter and link register; addresses are 0 where they are not known. */
 typedef struct {
-    uint32_t reason; /**< zephyr_hal_reason_t */
+    uint32_t reason; /**< hal_end_t */
     uint32_t pc;
     uint32_t lr;
 } zephyr_hal_end_t;
@@ -199,9 +184,6 @@ bool zephyr_hal_log_format(hal_t *hal, uint32_t step);
  * End the run: opens the safety output, stores the end over the reset, and resets the chip. May be called from any
  * context, and does not need a working kernel.
  */
-FUNC_NORETURN void zephyr_hal_die(zephyr_hal_reason_t reason, uint32_t pc, uint32_t lr);
-
-/** Name of a reason, such as "stack overflow"; "-" for ZEPHYR_HAL_NO_REASON and other values. */
-const char *zephyr_hal_reason_name(uint32_t reason);
+FUNC_NORETURN void zephyr_hal_die(hal_end_t reason, uint32_t pc, uint32_t lr);
 
 #endif

@@ -180,12 +180,20 @@ void fake_bus_state(hal_can_side_t side, enum can_state state, bool with_interru
 uint32_t fake_watchdog_feeds;
 uint32_t fake_watchdog_ms;
 bool fake_watchdog_started;
+fake_window_watchdog_t fake_window_watchdog;
 
 #if DT_HAS_COMPAT_STATUS_OKAY(agv_test_watchdog)
+static bool is_window(const struct device *device) {
+    return device == DEVICE_DT_GET(DT_NODELABEL(test_window_watchdog));
+}
+
 static int watchdog_setup(const struct device *device, uint8_t options) {
-    ARG_UNUSED(device);
     ARG_UNUSED(options);
-    fake_watchdog_started = true;
+    if (is_window(device)) {
+        fake_window_watchdog.fed_ms = k_uptime_get_32();
+    } else {
+        fake_watchdog_started = true;
+    }
     return 0;
 }
 
@@ -195,23 +203,40 @@ static int watchdog_disable(const struct device *device) {
 }
 
 static int watchdog_install(const struct device *device, const struct wdt_timeout_cfg *config) {
-    ARG_UNUSED(device);
-    fake_watchdog_ms = config->window.max;
+    if (is_window(device)) {
+        fake_window_watchdog.opens_ms = config->window.min;
+        fake_window_watchdog.expires_ms = config->window.max;
+    } else {
+        fake_watchdog_ms = config->window.max;
+    }
     return 0;
 }
 
+static void feed_window_watchdog(void) {
+    fake_window_watchdog_t *const fed = &fake_window_watchdog;
+    const uint32_t now_ms = k_uptime_get_32();
+    const uint32_t passed_ms = now_ms - fed->fed_ms;
+    fed->outside += ((passed_ms < fed->opens_ms) || (passed_ms > fed->expires_ms)) ? 1u : 0u;
+    fed->fed_ms = now_ms;
+    fed->feeds++;
+}
+
 static int watchdog_feed(const struct device *device, int channel) {
-    ARG_UNUSED(device);
     ARG_UNUSED(channel);
-    fake_watchdog_feeds++;
+    if (is_window(device)) {
+        feed_window_watchdog();
+    } else {
+        fake_watchdog_feeds++;
+    }
     return 0;
 }
 
 static const struct wdt_driver_api watchdog_api = {
     .setup = watchdog_setup, .disable = watchdog_disable, .install_timeout = watchdog_install, .feed = watchdog_feed};
 
-DEVICE_DT_DEFINE(DT_NODELABEL(test_watchdog), NULL, NULL, NULL, NULL, POST_KERNEL, CONFIG_KERNEL_INIT_PRIORITY_DEVICE,
-                 &watchdog_api);
+#define WATCHDOG(node)                                                                                                 \
+    DEVICE_DT_DEFINE(node, NULL, NULL, NULL, NULL, POST_KERNEL, CONFIG_KERNEL_INIT_PRIORITY_DEVICE, &watchdog_api);
+DT_FOREACH_STATUS_OKAY(agv_test_watchdog, WATCHDOG)
 #endif
 
 /* The reset flags. */

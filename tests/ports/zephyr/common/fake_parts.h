@@ -62,6 +62,17 @@ extern uint32_t fake_watchdog_feeds;
 extern uint32_t fake_watchdog_ms;
 extern bool fake_watchdog_started;
 
+/** The window watchdog: it counts feeds, and those that were too early or too late. */
+typedef struct {
+    uint32_t opens_ms;
+    uint32_t expires_ms;
+    uint32_t fed_ms; /**< time of the last feed, or of the start */
+    uint32_t feeds;
+    uint32_t outside;
+} fake_window_watchdog_t;
+
+extern fake_window_watchdog_t fake_window_watchdog;
+
 /** Reset flags of hwinfo, until they are cleared; number of reads and of clears. */
 extern uint32_t fake_reset_flags;
 extern int fake_reset_error;

@@ -58,19 +58,19 @@ ZTEST(port_reset, test_without_flags_the_cause_is_unknown) {
 
 /* Shows: FSM-7 */
 ZTEST(port_reset, test_a_reset_by_the_port_itself_reports_its_cause_once) {
-    zephyr_reset_note(&(zephyr_hal_end_t){.reason = ZEPHYR_HAL_TASK_WATCHDOG});
+    zephyr_reset_note(&(zephyr_hal_end_t){.reason = HAL_END_TASK_WATCHDOG});
     zassert_equal(cause_after(RESET_SOFTWARE), HAL_RESET_WATCHDOG);
-    zassert_equal(hal.end_before.reason, ZEPHYR_HAL_TASK_WATCHDOG);
+    zassert_equal(hal.end_before.reason, HAL_END_TASK_WATCHDOG);
     zassert_equal(cause_after(RESET_SOFTWARE), HAL_RESET_SOFTWARE);
-    zassert_equal(hal.end_before.reason, ZEPHYR_HAL_NO_REASON);
-    for (uint32_t reason = ZEPHYR_HAL_PROCESSOR; reason < ZEPHYR_HAL_REASONS; reason++) {
+    zassert_equal(hal.end_before.reason, HAL_END_UNKNOWN);
+    for (uint32_t reason = HAL_END_PROCESSOR; reason < HAL_ENDS; reason++) {
         zephyr_reset_note(&(zephyr_hal_end_t){.reason = reason, .pc = 0x08001234u, .lr = 0x08005679u});
         zassert_equal(cause_after(RESET_SOFTWARE), HAL_RESET_LOCK_UP);
         zassert_equal(hal.end_before.reason, reason);
         zassert_equal(hal.end_before.pc, 0x08001234u);
         zassert_equal(hal.end_before.lr, 0x08005679u);
     }
-    zephyr_reset_note(&(zephyr_hal_end_t){.reason = ZEPHYR_HAL_REASONS});
+    zephyr_reset_note(&(zephyr_hal_end_t){.reason = HAL_ENDS});
     zassert_equal(cause_after(RESET_SOFTWARE), HAL_RESET_SOFTWARE, "a reason that does not exist is none");
 }
 
@@ -114,6 +114,36 @@ ZTEST(port_reset, test_nothing_but_the_core_feeds_the_watchdog) {
     zassert_equal(fake_watchdog_feeds, before + 1u);
     k_msleep(90);
     zassert_equal(fake_watchdog_feeds, before + 1u);
+}
+
+static void feed(uint32_t times, uint32_t every_ms) {
+    for (uint32_t i = 0u; i < times; i++) {
+        k_msleep((int32_t)every_ms);
+        hal_watchdog_feed(&hal);
+    }
+}
+
+/* Shows: TIM-3 */
+ZTEST(port_reset, test_the_window_watchdog_is_fed_at_every_20th_feed) {
+    fake_window_watchdog_t *const window = &fake_window_watchdog;
+    zassert_equal(window->opens_ms, 10u);
+    zassert_equal(window->expires_ms, 140u);
+    const uint32_t before = window->feeds;
+    for (uint32_t i = 0u; (i < 20u) && (window->feeds == before); i++) {
+        feed(1u, 1u); /* in step with the port's count */
+    }
+    *window = (fake_window_watchdog_t){.opens_ms = 10u, .expires_ms = 140u, .fed_ms = k_uptime_get_32()};
+    feed(19u, 1u);
+    zassert_equal(window->feeds, 0u);
+    feed(1u, 1u);
+    zassert_equal(window->feeds, 1u);
+    zassert_equal(window->outside, 0u, "every millisecond: in the window");
+    feed(20u, 0u);
+    zassert_equal(window->feeds, 2u);
+    zassert_equal(window->outside, 1u, "without time between the feeds: too early");
+    feed(20u, 8u);
+    zassert_equal(window->feeds, 3u);
+    zassert_equal(window->outside, 2u, "160 ms: too late");
 }
 
 /* Shows: FSM-4 */

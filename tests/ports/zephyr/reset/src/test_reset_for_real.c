@@ -129,18 +129,18 @@ static const struct {
     const char *what;
     uint32_t flags; /* of the reset before */
     hal_reset_cause_t cause;
-    zephyr_hal_reason_t reason;
+    hal_end_t reason;
     void (*place)(void); /* the function whose address must be the program counter; NULL: not looked at */
     void (*end)(void);
 } runs[RUNS] = {
-    {"power-on", RESET_POR, HAL_RESET_POWER_ON, ZEPHYR_HAL_NO_REASON, NULL, end_by_a_supervisor_that_hangs},
-    {"the task watchdog", RESET_SOFTWARE, HAL_RESET_WATCHDOG, ZEPHYR_HAL_TASK_WATCHDOG, NULL, end_by_a_fault},
-    {"a fault", RESET_SOFTWARE, HAL_RESET_LOCK_UP, ZEPHYR_HAL_PROCESSOR, end_by_a_fault, end_by_a_failed_assertion},
-    {"a failed assertion", RESET_SOFTWARE, HAL_RESET_LOCK_UP, ZEPHYR_HAL_ASSERTION, end_by_a_failed_assertion,
+    {"power-on", RESET_POR, HAL_RESET_POWER_ON, HAL_END_UNKNOWN, NULL, end_by_a_supervisor_that_hangs},
+    {"the task watchdog", RESET_SOFTWARE, HAL_RESET_WATCHDOG, HAL_END_TASK_WATCHDOG, NULL, end_by_a_fault},
+    {"a fault", RESET_SOFTWARE, HAL_RESET_LOCK_UP, HAL_END_PROCESSOR, end_by_a_fault, end_by_a_failed_assertion},
+    {"a failed assertion", RESET_SOFTWARE, HAL_RESET_LOCK_UP, HAL_END_ASSERTION, end_by_a_failed_assertion,
      end_by_a_stack_that_overflows},
-    {"a stack that overflowed", RESET_SOFTWARE, HAL_RESET_LOCK_UP, ZEPHYR_HAL_STACK, NULL, end_by_an_nmi},
-    {"an NMI", RESET_SOFTWARE, HAL_RESET_LOCK_UP, ZEPHYR_HAL_NMI, end_by_an_nmi, end_by_a_kernel_that_hangs},
-    {"the hardware watchdog", RESET_WATCHDOG, HAL_RESET_WATCHDOG, ZEPHYR_HAL_NO_REASON, NULL, NULL},
+    {"a stack that overflowed", RESET_SOFTWARE, HAL_RESET_LOCK_UP, HAL_END_STACK, NULL, end_by_an_nmi},
+    {"an NMI", RESET_SOFTWARE, HAL_RESET_LOCK_UP, HAL_END_NMI, end_by_an_nmi, end_by_a_kernel_that_hangs},
+    {"the hardware watchdog", RESET_WATCHDOG, HAL_RESET_WATCHDOG, HAL_END_UNKNOWN, NULL, NULL},
 };
 
 /* The newest event of a crash: cause, reason, and a program counter in the function that ended the run before. */

@@ -78,6 +78,16 @@ ZTEST(shell_commands, test_without_a_fault_it_says_none) {
     assert_has(type("agv faults", 0), "none");
 }
 
+/* Shows: HW-4, HW-6 */
+ZTEST(shell_commands, test_the_version_says_what_the_board_lacks) {
+    const char *const printed = type("agv version", 0);
+    assert_has(printed, "test+");
+    assert_has(printed, ", configuration ");
+    assert_has(printed,
+               "without: stack guard, brown-out, memory errors, second clock, output feedback, emergency stop, "
+               "reset button");
+}
+
 /* Shows: INT-3 */
 ZTEST(shell_commands, test_the_log_is_that_of_the_flash_in_the_words_of_the_console) {
     const char *const printed = type("agv log", 0);
@@ -89,7 +99,10 @@ ZTEST(shell_commands, test_the_log_is_that_of_the_flash_in_the_words_of_the_cons
 
 /* Shows: INT-3 */
 ZTEST(shell_commands, test_the_dump_has_the_bytes_of_each_event) {
-    const char *line = strstr(type("agv dump", 0), "agv-event ");
+    const char *line = type("agv dump", 0);
+    assert_has(line, "agv-version test+");
+    assert_has(line, ", configuration ");
+    line = strstr(line, "agv-event ");
     zassert_not_null(line);
     line += strlen("agv-event ");
     zassert_equal(strspn(line, "0123456789abcdef"), 224u);

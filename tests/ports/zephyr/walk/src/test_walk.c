@@ -161,6 +161,9 @@ ZTEST(walk, test_the_whole_round) {
     vehicle.ai_is_silent = true;
     operator_resets();
 
+    zassert_true(fake_window_watchdog.feeds > 100u);
+    zassert_equal(fake_window_watchdog.outside, 0u, "always fed in its window");
+
     uint8_t event[HAL_STORE_RECORD_SIZE_MAX];
     zassert_equal(hal_store_read_record(&self.hal, 0u, event, sizeof event), sizeof(agv_event_t),
                   "events are in flash");
