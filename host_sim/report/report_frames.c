@@ -4,10 +4,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "common/units.h"
 #include "hal/can.h"
 #include "traffic/signals.h"
 
-enum { NEAR_US = 60000, AFTER_US = 120000, ID_SIZE = 12, DATA_SIZE = 32, CYCLES_BEFORE = 5, US_A_MS = 1000 };
+enum { NEAR_US = 60000, AFTER_US = 120000, ID_SIZE = 12, DATA_SIZE = 32, CYCLES_BEFORE = 5 };
 
 /** The frames that are shown. */
 typedef struct {
@@ -27,7 +28,7 @@ static void choose(choice_t *choice, const agv_config_t *config, const why_trip_
         (trip->kind == WHY_BUDGET) ? (uint32_t)why_compared_with(trip->reason) : (uint32_t)AGV_MSG_NONE;
     choice->trip_us = trip->t_us;
     choice->cause_us = (trip->cause_us < trip->t_us) ? trip->cause_us : trip->t_us;
-    const uint64_t cycle_us = agv_message_cycle_ms((uint32_t)trip->message) * (uint64_t)US_A_MS;
+    const uint64_t cycle_us = agv_message_cycle_ms((uint32_t)trip->message) * (uint64_t)US_PER_MS;
     choice->before_us = (cycle_us * CYCLES_BEFORE > (uint64_t)NEAR_US) ? cycle_us * CYCLES_BEFORE : (uint64_t)NEAR_US;
 }
 

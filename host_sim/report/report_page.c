@@ -8,46 +8,22 @@
 #include <time.h>
 
 #include "agv/names.h"
+#include "common/json_build.h"
+#include "common/units.h"
 #include "report/page_parts.h"
 #include "report/report_frames.h"
 #include "report/report_settings.h"
 #include "report/sentence.h"
 
-enum { TIME_TEXT_SIZE = 48, US_A_MS = 1000, US_A_S = 1000000 };
-
-static void set(json_t *object, const char *key, json_t *value) {
-    (void)json_object_set_new(object, key, value);
-}
-
-static json_t *text_or_null(const char *text) {
-    return (text != NULL) ? json_string(text) : json_null();
-}
-
-/** A name as it was given; what is no UTF-8 in it becomes `?`. */
-static json_t *name_json(const char *name) {
-    json_t *value = text_or_null(name);
-    char *ascii = (value == NULL) ? strdup(name) : NULL;
-    for (char *at = ascii; (at != NULL) && (*at != '\0'); at++) {
-        *at = ((unsigned char)*at < 0x80u) ? *at : '?';
-    }
-    if (ascii != NULL) {
-        value = json_string(ascii);
-        free(ascii);
-    }
-    return value;
-}
-
-static json_t *number(uint64_t value) {
-    return json_integer((json_int_t)value);
-}
+enum { TIME_TEXT_SIZE = 48 };
 
 static json_t *time_or_null(uint64_t t_us) {
-    return (t_us != WHY_NEVER) ? number(t_us) : json_null();
+    return (t_us != WHY_NEVER) ? json_uint(t_us) : json_null();
 }
 
 /** The time of day as a clock on the wall shows it: "2026-11-20 10:32:04.100". */
 static json_t *clock_json(uint64_t clock_us) {
-    const time_t seconds = (time_t)(clock_us / US_A_S);
+    const time_t seconds = (time_t)(clock_us / US_PER_S);
     struct tm local;
     char date[TIME_TEXT_SIZE];
     char text[TIME_TEXT_SIZE + 8];
@@ -55,7 +31,7 @@ static json_t *clock_json(uint64_t clock_us) {
         return json_null();
     }
     (void)strftime(date, sizeof date, "%Y-%m-%d %H:%M:%S", &local);
-    (void)snprintf(text, sizeof text, "%s.%03u", date, (unsigned)(clock_us % US_A_S / US_A_MS));
+    (void)snprintf(text, sizeof text, "%s.%03u", date, (unsigned)(clock_us % US_PER_S / US_PER_MS));
     return json_string(text);
 }
 
@@ -64,22 +40,22 @@ static json_t *trip_json(const report_page_t *page, const why_t *why, const seri
     sentence_t sentence;
     sentence_trip(&sentence, page, trip, series_output_opened_us(series, trip->t_us));
     json_t *object = json_object();
-    set(object, "t_us", number(sentence_trip_us(trip)));
-    set(object, "reason", text_or_null(agv_fault_name(trip->reason)));
-    set(object, "kind", json_string(why_kind_name(trip->kind)));
-    set(object, "message", text_or_null(agv_message_name(trip->message)));
-    set(object, "cause_us", time_or_null(trip->cause_us));
-    set(object, "last_good_us", time_or_null(trip->last_good_us));
-    set(object, "first_safe_us", time_or_null(trip->first_safe_us));
-    set(object, "confirmed_us", time_or_null(trip->confirmed_us));
-    set(object, "stopped_us", time_or_null(trip->stopped_us));
-    set(object, "limit", (trip->limit != WHY_NO_LIMIT) ? json_integer((json_int_t)trip->limit) : json_null());
-    set(object, "unit", text_or_null(trip->unit));
-    set(object, "from_recording", json_boolean(trip->from_recording));
-    set(object, "headline", json_string(sentence.headline));
-    set(object, "cause", json_string(sentence.cause));
-    set(object, "action", json_string(sentence.action));
-    set(object, "outcome", json_string(sentence.outcome));
+    json_put(object, "t_us", json_uint(sentence_trip_us(trip)));
+    json_put(object, "reason", json_text(agv_fault_name(trip->reason)));
+    json_put(object, "kind", json_string(why_kind_name(trip->kind)));
+    json_put(object, "message", json_text(agv_message_name(trip->message)));
+    json_put(object, "cause_us", time_or_null(trip->cause_us));
+    json_put(object, "last_good_us", time_or_null(trip->last_good_us));
+    json_put(object, "first_safe_us", time_or_null(trip->first_safe_us));
+    json_put(object, "confirmed_us", time_or_null(trip->confirmed_us));
+    json_put(object, "stopped_us", time_or_null(trip->stopped_us));
+    json_put(object, "limit", (trip->limit != WHY_NO_LIMIT) ? json_integer((json_int_t)trip->limit) : json_null());
+    json_put(object, "unit", json_text(trip->unit));
+    json_put(object, "from_recording", json_boolean(trip->from_recording));
+    json_put(object, "headline", json_string(sentence.headline));
+    json_put(object, "cause", json_string(sentence.cause));
+    json_put(object, "action", json_string(sentence.action));
+    json_put(object, "outcome", json_string(sentence.outcome));
     report_frames_add(object, page->config, trip, series);
     return object;
 }
@@ -87,7 +63,7 @@ static json_t *trip_json(const report_page_t *page, const why_t *why, const seri
 static json_t *trips_json(const report_page_t *page, const why_t *why, const series_t *series) {
     json_t *trips = json_array();
     for (size_t i = 0u; i < why_trip_count(why); i++) {
-        (void)json_array_append_new(trips, trip_json(page, why, series, i));
+        json_add(trips, trip_json(page, why, series, i));
     }
     return trips;
 }
@@ -97,15 +73,15 @@ static json_t *faults_json(const why_t *why) {
     for (size_t i = 0u; i < why_fault_count(why); i++) {
         const why_fault_t *fault = why_fault(why, i);
         json_t *object = json_object();
-        set(object, "name", text_or_null(agv_fault_name(fault->fault)));
-        set(object, "phrase", json_string(sentence_phrase(fault->fault)));
-        set(object, "class", text_or_null(agv_class_name(fault->fault_class)));
-        set(object, "first_us", number(fault->first_us));
-        set(object, "active_us", number(fault->active_us));
-        set(object, "times", number(fault->times));
-        set(object, "active", json_boolean(fault->active));
-        set(object, "from_recording", json_boolean(fault->from_recording));
-        (void)json_array_append_new(faults, object);
+        json_put(object, "name", json_text(agv_fault_name(fault->fault)));
+        json_put(object, "phrase", json_string(sentence_phrase(fault->fault)));
+        json_put(object, "class", json_text(agv_class_name(fault->fault_class)));
+        json_put(object, "first_us", json_uint(fault->first_us));
+        json_put(object, "active_us", json_uint(fault->active_us));
+        json_put(object, "times", json_uint(fault->times));
+        json_put(object, "active", json_boolean(fault->active));
+        json_put(object, "from_recording", json_boolean(fault->from_recording));
+        json_add(faults, object);
     }
     return faults;
 }
@@ -113,7 +89,7 @@ static json_t *faults_json(const why_t *why) {
 static json_t *states_json(const why_t *why) {
     json_t *states = json_array();
     for (size_t i = 0u; i < (size_t)WHY_STATES; i++) {
-        (void)json_array_append_new(states, number(why_state_us(why, i)));
+        json_add(states, json_uint(why_state_us(why, i)));
     }
     return states;
 }
@@ -124,40 +100,40 @@ static json_t *about_json(const report_page_t *page) {
     char checksum[16];
     (void)snprintf(checksum, sizeof checksum, "%08" PRIX32, agv_config_checksum(page->config));
     for (size_t side = 0u; side < (size_t)HAL_CAN_SIDES; side++) {
-        (void)json_array_append_new(interfaces, name_json(page->interfaces[side]));
+        json_add(interfaces, json_text(page->interfaces[side]));
     }
-    set(about, "name", name_json(page->name));
-    set(about, "interfaces", interfaces);
-    set(about, "clock", clock_json(page->clock_us));
-    set(about, "recording", json_boolean(page->is_recording));
-    set(about, "gateway", json_boolean(page->config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY));
-    set(about, "shadow", json_boolean(page->config->shadow == (uint16_t)AGV_SHADOW_ON));
-    set(about, "checksum", json_string(checksum));
-    set(about, "version", json_string(HOST_SIM_VERSION));
+    json_put(about, "name", json_text(page->name));
+    json_put(about, "interfaces", interfaces);
+    json_put(about, "clock", clock_json(page->clock_us));
+    json_put(about, "recording", json_boolean(page->is_recording));
+    json_put(about, "gateway", json_boolean(page->config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY));
+    json_put(about, "shadow", json_boolean(page->config->shadow == (uint16_t)AGV_SHADOW_ON));
+    json_put(about, "checksum", json_string(checksum));
+    json_put(about, "version", json_string(HOST_SIM_VERSION));
     return about;
 }
 
 static json_t *sentence_json(const sentence_t *sentence) {
     json_t *object = json_object();
-    set(object, "headline", json_string(sentence->headline));
-    set(object, "cause", json_string(sentence->cause));
-    set(object, "action", json_string(sentence->action));
-    set(object, "outcome", json_string(sentence->outcome));
+    json_put(object, "headline", json_string(sentence->headline));
+    json_put(object, "cause", json_string(sentence->cause));
+    json_put(object, "action", json_string(sentence->action));
+    json_put(object, "outcome", json_string(sentence->outcome));
     return object;
 }
 
 static json_t *page_json(const report_page_t *page, const why_t *why, const series_t *series,
                          const sentence_t *sentence) {
     json_t *object = json_object();
-    set(object, "about", about_json(page));
-    set(object, "sentence", sentence_json(sentence));
-    set(object, "supervised_us", number(why_supervised_us(why)));
-    set(object, "states", states_json(why));
-    set(object, "trips", trips_json(page, why, series));
-    set(object, "faults", faults_json(why));
-    set(object, "settings", report_settings_json(page->config));
-    set(object, "messages", (page->messages != NULL) ? json_deep_copy(page->messages) : json_null());
-    set(object, "series", series_json(series));
+    json_put(object, "about", about_json(page));
+    json_put(object, "sentence", sentence_json(sentence));
+    json_put(object, "supervised_us", json_uint(why_supervised_us(why)));
+    json_put(object, "states", states_json(why));
+    json_put(object, "trips", trips_json(page, why, series));
+    json_put(object, "faults", faults_json(why));
+    json_put(object, "settings", report_settings_json(page->config));
+    json_put(object, "messages", (page->messages != NULL) ? json_deep_copy(page->messages) : json_null());
+    json_put(object, "series", series_json(series));
     return object;
 }
 

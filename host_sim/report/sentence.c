@@ -7,8 +7,9 @@
 
 #include "agv/names.h"
 #include "agv/recorder.h"
+#include "common/units.h"
 
-enum { TIME_SIZE = 32, LIMIT_SIZE = 64, US_A_MS = 1000, US_A_S = 1000000, STATE_ACTIVE = 2, STOOD_US = 20000 };
+enum { TIME_SIZE = 32, LIMIT_SIZE = 64, STATE_ACTIVE = 2, STOOD_US = 20000 };
 
 const char *sentence_phrase(agv_fault_t fault) {
     static const char *const phrases[AGV_FAULT_COUNT] = {
@@ -37,7 +38,7 @@ const char *sentence_missing(unsigned index) {
 }
 
 uint64_t sentence_trip_us(const why_trip_t *trip) {
-    const bool is_within = (trip->cause_us != WHY_NEVER) && (trip->cause_us / US_A_MS == trip->t_us / US_A_MS);
+    const bool is_within = (trip->cause_us != WHY_NEVER) && (trip->cause_us / US_PER_MS == trip->t_us / US_PER_MS);
     return (is_within && (trip->cause_us > trip->t_us)) ? trip->cause_us : trip->t_us;
 }
 
@@ -53,19 +54,19 @@ static void say(char text[SENTENCE_SIZE], const char *format, ...) {
 
 /** A time since the start: "62.109 s". */
 static const char *at(uint64_t t_us, char text[TIME_SIZE]) {
-    const uint64_t t_ms = t_us / US_A_MS;
-    (void)snprintf(text, TIME_SIZE, "%" PRIu64 ".%03" PRIu64 " s", t_ms / US_A_MS, t_ms % US_A_MS);
+    const uint64_t t_ms = t_us / US_PER_MS;
+    (void)snprintf(text, TIME_SIZE, "%" PRIu64 ".%03" PRIu64 " s", t_ms / US_PER_MS, t_ms % US_PER_MS);
     return text;
 }
 
 /** A duration: "0.3 ms", "272 ms", "1.25 s". */
 static const char *lasting(uint64_t us, char text[TIME_SIZE]) {
     const uint64_t tenths = (us + 50u) / 100u;
-    const uint64_t ms = (us + 500u) / US_A_MS;
+    const uint64_t ms = (us + 500u) / US_PER_MS;
     const uint64_t hundredths = (us + 5000u) / 10000u;
     if (tenths < 100u) {
         (void)snprintf(text, TIME_SIZE, "%" PRIu64 ".%" PRIu64 " ms", tenths / 10u, tenths % 10u);
-    } else if (ms < US_A_MS) {
+    } else if (ms < US_PER_MS) {
         (void)snprintf(text, TIME_SIZE, "%" PRIu64 " ms", ms);
     } else {
         (void)snprintf(text, TIME_SIZE, "%" PRIu64 ".%02" PRIu64 " s", hundredths / 100u, hundredths % 100u);
@@ -172,7 +173,7 @@ static void say_output(char text[SENTENCE_SIZE], const why_trip_t *trip, uint64_
     char time[TIME_SIZE];
     if (opened_us == WHY_NEVER) {
         say(text, " The safety output stayed closed.");
-    } else if (opened_us <= trip->t_us + US_A_MS) {
+    } else if (opened_us <= trip->t_us + US_PER_MS) {
         say(text, " The safety output was opened at once.");
     } else {
         say(text, " The safety output was opened %s after the trip.", lasting(opened_us - trip->t_us, time));
@@ -190,8 +191,8 @@ static void say_action(char text[SENTENCE_SIZE], const report_page_t *page, cons
     } else {
         const uint64_t after_us = trip->first_safe_us - sentence_trip_us(trip);
         say(text, " %s%s it sent the first of the safe commands: gear P, throttle 0, autopilot off.",
-            (after_us < US_A_MS / 10u) ? "At once" : lasting(after_us, time),
-            (after_us < US_A_MS / 10u) ? "" : " later");
+            (after_us < US_PER_MS / 10u) ? "At once" : lasting(after_us, time),
+            (after_us < US_PER_MS / 10u) ? "" : " later");
     }
 }
 

@@ -6,9 +6,8 @@
 #include "agv/codec.h"
 #include "agv/recorder.h"
 #include "agv/state.h"
+#include "common/units.h"
 #include "report/series_internal.h"
-
-enum { US_A_MS = 1000 };
 
 series_t *series_new(const agv_config_t *config) {
     series_t *series = calloc(1u, sizeof *series);
@@ -187,7 +186,7 @@ static void take_recorded(series_t *series, uint64_t t_us, const agv_event_t *ev
 
 void series_event(void *ctx, const session_event_t *event) {
     series_t *series = ctx;
-    const uint64_t t_us = event->t_ms * US_A_MS;
+    const uint64_t t_us = event->t_ms * US_PER_MS;
     if (event->is_led) {
         set(series, SERIES_LANE_LED, t_us, (uint8_t)event->led_code);
     } else {
@@ -235,7 +234,7 @@ uint64_t series_output_opened_us(const series_t *series, uint64_t trip_us) {
     bool is_open = true;
     for (size_t i = 0u; (i < output->count) && (output->changes[i].t_us < end_us); i++) {
         const series_change_t *change = &output->changes[i];
-        if ((change->t_us / US_A_MS >= trip_us / US_A_MS) && (change->a == 0u)) {
+        if ((change->t_us / US_PER_MS >= trip_us / US_PER_MS) && (change->a == 0u)) {
             return change->t_us;
         }
         is_open = change->a == 0u;

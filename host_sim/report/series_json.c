@@ -3,6 +3,7 @@
 #include "agv/codec.h"
 #include "agv/names.h"
 #include "agv/recorder.h"
+#include "common/json_build.h"
 #include "common/missing.h"
 #include "report/series.h"
 #include "report/series_internal.h"
@@ -20,26 +21,6 @@ static const char *const lane_names[SERIES_LANES] = {
     [SERIES_LANE_LED] = "led",
 };
 
-static void set(json_t *object, const char *key, json_t *value) {
-    (void)json_object_set_new(object, key, value);
-}
-
-static void append(json_t *array, json_t *value) {
-    (void)json_array_append_new(array, value);
-}
-
-static json_t *number(uint64_t value) {
-    return json_integer((json_int_t)value);
-}
-
-static json_t *units(uint64_t t_us) {
-    return number(t_us / SERIES_UNIT_US);
-}
-
-static json_t *text_or_null(const char *text) {
-    return (text != NULL) ? json_string(text) : json_null();
-}
-
 static json_t *messages_json(const series_t *series) {
     static const char *const senders[] = {"AI computer", "VCU", "EPS"};
     json_t *messages = json_array();
@@ -51,15 +32,15 @@ static json_t *messages_json(const series_t *series) {
         char id[8];
         (void)snprintf(id, sizeof id, "%03X", (unsigned)series->reader.ids.of[i]);
         json_t *object = json_object();
-        set(object, "name", text_or_null(agv_message_name(message)));
-        set(object, "id", json_string(id));
-        set(object, "sender", json_string(senders[is_command ? 0 : (is_of_eps ? 2 : 1)]));
-        set(object, "cycle", number(agv_message_cycle_ms(i)));
-        set(object, "deadline", number(series_deadline_ms(&series->reader.config, message)));
-        set(object, "heartbeat", json_boolean(series_counter_at(message) >= 0));
-        set(object, "command", json_boolean(is_command));
-        set(object, "heard", json_boolean(series->ages.heard[i]));
-        append(messages, object);
+        json_put(object, "name", json_text(agv_message_name(message)));
+        json_put(object, "id", json_string(id));
+        json_put(object, "sender", json_string(senders[is_command ? 0 : (is_of_eps ? 2 : 1)]));
+        json_put(object, "cycle", json_uint(agv_message_cycle_ms(i)));
+        json_put(object, "deadline", json_uint(series_deadline_ms(&series->reader.config, message)));
+        json_put(object, "heartbeat", json_boolean(series_counter_at(message) >= 0));
+        json_put(object, "command", json_boolean(is_command));
+        json_put(object, "heard", json_boolean(series->ages.heard[i]));
+        json_add(messages, object);
     }
     return messages;
 }
@@ -88,7 +69,7 @@ static json_t *value_json(size_t lane, const series_change_t *change) {
                                         [SERIES_MODE_BOTH] = "both"};
     switch ((series_lane_t)lane) {
     case SERIES_LANE_STATE:
-        return text_or_null(agv_state_name((agv_state_t)change->b));
+        return json_text(agv_state_name((agv_state_t)change->b));
     case SERIES_LANE_MODE:
         return (change->c == 0u) ? json_string(modes[change->a]) : json_null();
     case SERIES_LANE_OUTPUT:
@@ -107,17 +88,17 @@ static json_t *lane_json(const series_changes_t *changes, size_t lane) {
     uint64_t last = 0u;
     for (size_t i = 0u; i < changes->count; i++) {
         series_append_time(t, &last, changes->changes[i].t_us);
-        append(v, value_json(lane, &changes->changes[i]));
+        json_add(v, value_json(lane, &changes->changes[i]));
     }
-    set(object, "t", t);
-    set(object, "v", v);
+    json_put(object, "t", t);
+    json_put(object, "v", v);
     return object;
 }
 
 static json_t *lanes_json(const series_t *series) {
     json_t *object = json_object();
     for (size_t lane = 0u; lane < (size_t)SERIES_LANE_FAULT; lane++) {
-        set(object, lane_names[lane], lane_json(&series->lanes[lane], lane));
+        json_put(object, lane_names[lane], lane_json(&series->lanes[lane], lane));
     }
     return object;
 }
@@ -127,11 +108,11 @@ static json_t *faults_json(const series_changes_t *faults) {
     for (size_t i = 0u; i < faults->count; i++) {
         const series_change_t *change = &faults->changes[i];
         json_t *entry = json_array();
-        append(entry, units(change->t_us));
-        append(entry, text_or_null(agv_fault_name((agv_fault_t)change->a)));
-        append(entry, text_or_null(agv_class_name((agv_fault_class_t)change->b)));
-        append(entry, json_integer((change->c != 0u) ? 1 : 0));
-        append(array, entry);
+        json_add(entry, series_units(change->t_us));
+        json_add(entry, json_text(agv_fault_name((agv_fault_t)change->a)));
+        json_add(entry, json_text(agv_class_name((agv_fault_class_t)change->b)));
+        json_add(entry, json_integer((change->c != 0u) ? 1 : 0));
+        json_add(array, entry);
     }
     return array;
 }
@@ -151,9 +132,9 @@ static json_t *notes_json(const series_changes_t *notes) {
         (void)snprintf(text, sizeof text, "%s%s%s", what, (change->missing != 0u) ? ", missing: " : "",
                        missing_text(change->missing, missing));
         json_t *entry = json_array();
-        append(entry, units(change->t_us));
-        append(entry, json_string(text));
-        append(array, entry);
+        json_add(entry, series_units(change->t_us));
+        json_add(entry, json_string(text));
+        json_add(array, entry);
     }
     return array;
 }
@@ -164,14 +145,14 @@ json_t *series_json(const series_t *series) {
     for (size_t lane = 0u; lane < (size_t)SERIES_LANES; lane++) {
         left_out += series->lanes[lane].left_out;
     }
-    set(object, "end", units(series->end_us));
-    set(object, "unit_us", number(SERIES_UNIT_US));
-    set(object, "messages", messages_json(series));
-    set(object, "lanes", lanes_json(series));
-    set(object, "faults", faults_json(&series->lanes[SERIES_LANE_FAULT]));
-    set(object, "notes", notes_json(&series->lanes[SERIES_LANE_NOTE]));
-    set(object, "left_out", number(left_out));
-    set(object, "overview", series_overview_json(series));
-    set(object, "details", series_details_json(series));
+    json_put(object, "end", series_units(series->end_us));
+    json_put(object, "unit_us", json_uint(SERIES_UNIT_US));
+    json_put(object, "messages", messages_json(series));
+    json_put(object, "lanes", lanes_json(series));
+    json_put(object, "faults", faults_json(&series->lanes[SERIES_LANE_FAULT]));
+    json_put(object, "notes", notes_json(&series->lanes[SERIES_LANE_NOTE]));
+    json_put(object, "left_out", json_uint(left_out));
+    json_put(object, "overview", series_overview_json(series));
+    json_put(object, "details", series_details_json(series));
     return object;
 }

@@ -1,5 +1,6 @@
 #include "report/series_lines.h"
 
+#include "common/json_build.h"
 #include "report/series_internal.h"
 
 /** A line of a signal as it is written: the points at which it changes. */
@@ -27,25 +28,13 @@ static const char *const signal_names[SERIES_SIGNALS] = {
     [SERIES_STEERING_STATUS] = "steering_status",
 };
 
-static void set(json_t *object, const char *key, json_t *value) {
-    (void)json_object_set_new(object, key, value);
-}
-
-static void append(json_t *array, json_t *value) {
-    (void)json_array_append_new(array, value);
-}
-
-static json_t *number(uint64_t value) {
-    return json_integer((json_int_t)value);
-}
-
-static json_t *units(uint64_t t_us) {
-    return number(t_us / SERIES_UNIT_US);
+json_t *series_units(uint64_t t_us) {
+    return json_uint(t_us / SERIES_UNIT_US);
 }
 
 void series_append_time(json_t *array, uint64_t *last, uint64_t t_us) {
     const uint64_t t = t_us / SERIES_UNIT_US;
-    append(array, number(t - *last));
+    json_add(array, json_uint(t - *last));
     *last = t;
 }
 
@@ -55,8 +44,8 @@ static void line_begin(line_t *line) {
 
 static void line_lost(line_t *line, uint64_t t_us) {
     series_append_time(line->t, &line->last_t, t_us);
-    append(line->lo, json_null());
-    append(line->hi, json_null());
+    json_add(line->lo, json_null());
+    json_add(line->hi, json_null());
     line->heard = false;
 }
 
@@ -70,8 +59,8 @@ static void line_point(line_t *line, uint64_t t_us, int32_t lo, int32_t hi, uint
         return;
     }
     series_append_time(line->t, &line->last_t, t_us);
-    append(line->lo, json_integer(lo));
-    append(line->hi, json_integer(hi));
+    json_add(line->lo, json_integer(lo));
+    json_add(line->hi, json_integer(hi));
     line->is_range = line->is_range || (lo != hi);
     line->heard = true;
     line->last_lo = lo;
@@ -88,15 +77,15 @@ static json_t *lines_json(line_t *lines, uint64_t end_us, uint64_t patience_us) 
         }
         json_t *entry = json_object();
         const bool is_used = json_array_size(line->t) > 0u;
-        set(entry, "t", line->t);
-        set(entry, "lo", line->lo);
+        json_put(entry, "t", line->t);
+        json_put(entry, "lo", line->lo);
         if (line->is_range) {
-            set(entry, "hi", line->hi);
+            json_put(entry, "hi", line->hi);
         } else {
             json_decref(line->hi);
         }
         if (is_used) {
-            set(object, signal_names[i], entry);
+            json_put(object, signal_names[i], entry);
         } else {
             json_decref(entry);
         }
@@ -106,8 +95,8 @@ static json_t *lines_json(line_t *lines, uint64_t end_us, uint64_t patience_us) 
 
 static json_t *span_json(uint64_t from_us, uint64_t to_us) {
     json_t *object = json_object();
-    set(object, "from", units(from_us));
-    set(object, "to", units(to_us));
+    json_put(object, "from", series_units(from_us));
+    json_put(object, "to", series_units(to_us));
     return object;
 }
 
@@ -139,22 +128,22 @@ static json_t *overview_gaps(const series_overview_t *overview, uint64_t end_us)
             const uint64_t step_end_us = (at + 1u) * overview->step_us;
             if (longest != 0u) {
                 series_append_time(t, &last, (step_end_us < end_us) ? step_end_us : end_us);
-                append(gap, number(longest));
+                json_add(gap, json_uint(longest));
             }
         }
         json_t *line = json_object();
-        set(line, "t", t);
-        set(line, "gap", gap);
-        append(gaps, line);
+        json_put(line, "t", t);
+        json_put(line, "gap", gap);
+        json_add(gaps, line);
     }
     return gaps;
 }
 
 json_t *series_overview_json(const series_t *series) {
     json_t *object = span_json(0u, series->end_us);
-    set(object, "step", units(series->overview.step_us));
-    set(object, "signals", overview_signals(&series->overview));
-    set(object, "gaps", overview_gaps(&series->overview, series->end_us));
+    json_put(object, "step", series_units(series->overview.step_us));
+    json_put(object, "signals", overview_signals(&series->overview));
+    json_put(object, "gaps", overview_gaps(&series->overview, series->end_us));
     return object;
 }
 
@@ -180,13 +169,13 @@ static json_t *detail_signals(const series_t *series, const series_detail_t *det
 static void append_gap(json_t *line, uint64_t *last, uint64_t t_us, uint64_t gap_us, bool is_new) {
     const json_int_t gap = (json_int_t)((gap_us + (SERIES_UNIT_US / 2u)) / SERIES_UNIT_US);
     series_append_time(json_object_get(line, "t"), last, t_us);
-    append(json_object_get(line, "gap"), json_integer(is_new ? gap : -gap));
+    json_add(json_object_get(line, "gap"), json_integer(is_new ? gap : -gap));
 }
 
 static json_t *gap_line(void) {
     json_t *line = json_object();
-    set(line, "t", json_array());
-    set(line, "gap", json_array());
+    json_put(line, "t", json_array());
+    json_put(line, "gap", json_array());
     return line;
 }
 
@@ -195,7 +184,7 @@ static json_t *detail_gaps(const series_t *series, const series_detail_t *detail
     uint64_t last[AGV_MSG_COUNT] = {0};
     series_ages_t ages = {.heard = {false}};
     for (size_t message = 0u; message < (size_t)AGV_MSG_COUNT; message++) {
-        append(gaps, gap_line());
+        json_add(gaps, gap_line());
     }
     for (size_t at = 0u; at < detail->count; at++) {
         const series_frame_t *frame = &detail->frames[at];
@@ -221,11 +210,11 @@ json_t *series_details_json(const series_t *series) {
         const series_detail_t *detail = &series->details[i];
         if (detail->count > 0u) {
             json_t *object = span_json(detail->frames[0].t_us, detail->to_us);
-            set(object, "trip", units(detail->trip_us));
-            set(object, "step", number(0u));
-            set(object, "signals", detail_signals(series, detail));
-            set(object, "gaps", detail_gaps(series, detail));
-            append(details, object);
+            json_put(object, "trip", series_units(detail->trip_us));
+            json_put(object, "step", json_uint(0u));
+            json_put(object, "signals", detail_signals(series, detail));
+            json_put(object, "gaps", detail_gaps(series, detail));
+            json_add(details, object);
         }
     }
     return details;

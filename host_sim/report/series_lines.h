@@ -12,6 +12,9 @@
 
 #define SERIES_UNIT_US 100u /**< the unit of times */
 
+/** A time in units. */
+json_t *series_units(uint64_t t_us);
+
 /** Append a time, in units, as the difference to the one before. */
 void series_append_time(json_t *array, uint64_t *last, uint64_t t_us);
 

@@ -1,16 +1,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "common/json_build.h"
 #include "common/units.h"
 #include "survey/survey_result.h"
-
-static void set(json_t *object, const char *key, json_t *value) {
-    (void)json_object_set_new(object, key, value);
-}
-
-static json_t *integer(uint64_t value) {
-    return json_integer((json_int_t)value);
-}
 
 static json_t *load_json(const survey_result_t *result) {
     static const char *const sides[HAL_CAN_SIDES] = {"vehicle", "ai"};
@@ -21,12 +14,13 @@ static json_t *load_json(const survey_result_t *result) {
         const bus_load_t *load = &result->observation.loads[side];
         if (load->bits > 0u) {
             json_t *object = json_object();
-            set(object, "side", json_string(sides[side]));
-            set(object, "bit_rate", integer(bit_rate));
-            set(object, "least_pct", json_real(bus_load_percent(load->bits, us, bit_rate)));
-            set(object, "most_pct", json_real(bus_load_percent(load->stuffed_bits, us, bit_rate)));
-            set(object, "busiest_second_pct", json_real(bus_load_percent(bus_load_busiest(load), US_PER_S, bit_rate)));
-            (void)json_array_append_new(array, object);
+            json_put(object, "side", json_string(sides[side]));
+            json_put(object, "bit_rate", json_uint(bit_rate));
+            json_put(object, "least_pct", json_real(bus_load_percent(load->bits, us, bit_rate)));
+            json_put(object, "most_pct", json_real(bus_load_percent(load->stuffed_bits, us, bit_rate)));
+            json_put(object, "busiest_second_pct",
+                     json_real(bus_load_percent(bus_load_busiest(load), US_PER_S, bit_rate)));
+            json_add(array, object);
         }
     }
     return array;
@@ -43,18 +37,18 @@ static json_t *id_sets_json(const survey_result_t *result) {
         for (size_t i = 0u; i < 2u; i++) {
             char id[8];
             (void)snprintf(id, sizeof id, "%03X", agv_message_id(messages[i], id_set));
-            set(set_object, id, integer(counts[i]));
+            json_put(set_object, id, json_uint(counts[i]));
         }
-        set(object, names[id_set], set_object);
+        json_put(object, names[id_set], set_object);
     }
-    set(object, "used", json_string(names[result->config.id_set]));
+    json_put(object, "used", json_string(names[result->config.id_set]));
     return object;
 }
 
 static json_t *interfaces_json(const observation_t *observation) {
     json_t *array = json_array();
     for (uint32_t i = 0u; i < observation->interface_count; i++) {
-        (void)json_array_append_new(array, json_string(observation->interfaces[i]));
+        json_add(array, json_string(observation->interfaces[i]));
     }
     return array;
 }
@@ -66,10 +60,10 @@ static json_t *unknown_json(const survey_result_t *result) {
         const traffic_id_t *entry = traffic_at(result->traffic, i);
         if (entry->message == TRAFFIC_UNKNOWN) {
             json_t *object = traffic_id_json(entry);
-            set(object, "per_s", (seconds > 0.0) ? json_real((double)entry->count / seconds) : json_null());
-            set(object, "length_min", json_integer((entry->count > 0u) ? entry->length_min : 0));
-            set(object, "length_max", json_integer(entry->length_max));
-            (void)json_array_append_new(array, object);
+            json_put(object, "per_s", (seconds > 0.0) ? json_real((double)entry->count / seconds) : json_null());
+            json_put(object, "length_min", json_integer((entry->count > 0u) ? entry->length_min : 0));
+            json_put(object, "length_max", json_integer(entry->length_max));
+            json_add(array, object);
         }
     }
     return array;
@@ -80,7 +74,7 @@ static json_t *not_heard_json(const survey_result_t *result) {
     for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
         const traffic_id_t *entry = traffic_message(result->traffic, message);
         if ((entry == NULL) || (entry->count == 0u)) {
-            (void)json_array_append_new(array, json_string(signals_message_name(message)));
+            json_add(array, json_string(signals_message_name(message)));
         }
     }
     return array;
@@ -90,24 +84,24 @@ bool survey_print_json(const survey_result_t *result) {
     const observation_t *observation = &result->observation;
     const traffic_totals_t totals = traffic_totals(result->traffic);
     json_t *root = json_object();
-    set(root, "source", json_string(result->source.name));
-    set(root, "format", (result->source.format[0] != '\0') ? json_string(result->source.format) : json_null());
-    set(root, "interfaces", interfaces_json(observation));
-    set(root, "first_us", integer(observation->first_us));
-    set(root, "duration_ms", json_real((double)observation_us(observation) / (double)US_PER_MS));
-    set(root, "frames", integer(observation->frames));
-    set(root, "error_frames", integer(totals.error));
-    set(root, "lost_frames", integer(observation->lost));
-    set(root, "skipped_lines", integer(result->source.skipped_lines));
-    set(root, "backward_stamps", integer(observation->backward_stamps));
-    set(root, "engaged_ms", json_real((double)totals.engaged_us / (double)US_PER_MS));
-    set(root, "engagements", integer(totals.engagements));
-    set(root, "load", load_json(result));
-    set(root, "id_sets", id_sets_json(result));
-    set(root, "messages", traffic_messages_json(result->traffic));
-    set(root, "not_heard", not_heard_json(result));
-    set(root, "unknown", unknown_json(result));
-    set(root, "proposal", proposal_json(&result->proposal));
+    json_put(root, "source", json_text(result->source.name));
+    json_put(root, "format", (result->source.format[0] != '\0') ? json_string(result->source.format) : json_null());
+    json_put(root, "interfaces", interfaces_json(observation));
+    json_put(root, "first_us", json_uint(observation->first_us));
+    json_put(root, "duration_ms", json_real((double)observation_us(observation) / (double)US_PER_MS));
+    json_put(root, "frames", json_uint(observation->frames));
+    json_put(root, "error_frames", json_uint(totals.error));
+    json_put(root, "lost_frames", json_uint(observation->lost));
+    json_put(root, "skipped_lines", json_uint(result->source.skipped_lines));
+    json_put(root, "backward_stamps", json_uint(observation->backward_stamps));
+    json_put(root, "engaged_ms", json_real((double)totals.engaged_us / (double)US_PER_MS));
+    json_put(root, "engagements", json_uint(totals.engagements));
+    json_put(root, "load", load_json(result));
+    json_put(root, "id_sets", id_sets_json(result));
+    json_put(root, "messages", traffic_messages_json(result->traffic));
+    json_put(root, "not_heard", not_heard_json(result));
+    json_put(root, "unknown", unknown_json(result));
+    json_put(root, "proposal", proposal_json(&result->proposal));
     char *text = json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(15));
     json_decref(root);
     if (text == NULL) {

@@ -150,6 +150,9 @@ static void print_range(const traffic_id_t *entry, size_t index) {
     char text[LINE_SIZE] = "";
     if ((info->kind == SIGNAL_CHOICE) || (info->kind == SIGNAL_FLAG)) {
         words_seen(text, sizeof text, entry->message, index, range);
+    } else if (info->kind == SIGNAL_HEX) {
+        (void)snprintf(text, sizeof text, "%08" PRIX64 "%s", (uint64_t)range->lowest,
+                       (range->lowest == range->highest) ? "" : " and others");
     } else if (range->valid > 0u) {
         const signal_value_t lowest = {.scaled = range->lowest};
         const signal_value_t highest = {.scaled = range->highest};
@@ -170,7 +173,8 @@ static void print_values(const survey_result_t *result) {
         for (size_t signal = 0u;
              (entry->count > 0u) && (entry->ranges != NULL) && (signal < signals_count(entry->message)); signal++) {
             const signal_kind_t kind = signals_info(entry->message, signal)->kind;
-            if ((kind != SIGNAL_ALARM) && (kind != SIGNAL_COUNTER)) {
+            const bool is_seen = entry->ranges[signal].valid + entry->ranges[signal].invalid > 0u;
+            if (is_seen && (kind != SIGNAL_ALARM) && (kind != SIGNAL_COUNTER)) {
                 print_range(entry, signal);
             }
         }

@@ -8,7 +8,7 @@
 #include "agv/names.h"
 #include "agv/state.h"
 
-enum { BITS_PER_BYTE = 8, NO_REASON = 0xFF, DECIMAL = 10 };
+enum { BITS_PER_BYTE = 8, NO_REASON = 0xFF, DECIMAL = 10, PAGE_AT = 2, PAGE_SHIFT = 4, ANY_PAGE = 0xFF };
 
 /** A raw value with its word. */
 typedef struct {
@@ -38,13 +38,14 @@ typedef enum {
     LAYOUT_CHOICE,
     LAYOUT_FLAG,
     LAYOUT_ALARM,
-    LAYOUT_COUNTER
+    LAYOUT_COUNTER,
+    LAYOUT_HEX
 } layout_t;
 
 static const signal_kind_t kinds[] = {
     [LAYOUT_NUMBER] = SIGNAL_NUMBER,   [LAYOUT_SIGNED] = SIGNAL_NUMBER, [LAYOUT_BIG] = SIGNAL_NUMBER,
     [LAYOUT_CHOICE] = SIGNAL_CHOICE,   [LAYOUT_FLAG] = SIGNAL_FLAG,     [LAYOUT_ALARM] = SIGNAL_ALARM,
-    [LAYOUT_COUNTER] = SIGNAL_COUNTER,
+    [LAYOUT_COUNTER] = SIGNAL_COUNTER, [LAYOUT_HEX] = SIGNAL_HEX,
 };
 
 /** A row of signals.def. */
@@ -60,13 +61,17 @@ typedef struct {
     const char *unit;
     uint32_t highest;
     const word_row_t *words;
+    uint8_t page; /**< ANY_PAGE, or the page of the status frame that has it */
 } row_t;
 
 static const row_t rows[] = {
 #define SIGNAL(message, name, kind, at, bits, factor, offset, decimals, unit, highest, words)                          \
-    {(uint32_t)(message), #name, LAYOUT_##kind, at, bits, factor, offset, decimals, unit, highest, words},
+    {(uint32_t)(message), #name, LAYOUT_##kind, at, bits, factor, offset, decimals, unit, highest, words, ANY_PAGE},
+#define PAGED(message, name, kind, at, bits, page)                                                                     \
+    {(uint32_t)(message), #name, LAYOUT_##kind, at, bits, 1, 0, 0, "", UINT32_MAX, no_words, page},
 #include "traffic/signals.def"
 #undef SIGNAL
+#undef PAGED
 };
 
 enum { ROWS = sizeof rows / sizeof rows[0] };
@@ -152,6 +157,7 @@ static signal_value_t value_of(const row_t *row, uint32_t raw) {
     return (signal_value_t){.raw = raw,
                             .scaled = (number * row->factor) + row->offset,
                             .word = word,
+                            .present = true,
                             .valid = (is_signed || (raw <= row->highest)) &&
                                      ((row->layout != LAYOUT_CHOICE) || (word != NULL))};
 }
@@ -162,7 +168,8 @@ bool signals_read(uint32_t message, size_t index, const uint8_t data[AGV_DLC], s
         return false;
     }
     const row_t *row = &rows[at];
-    *value = value_of(row, raw_of(row, data));
+    const bool present = (row->page == (uint8_t)ANY_PAGE) || (row->page == (data[PAGE_AT] >> PAGE_SHIFT));
+    *value = present ? value_of(row, raw_of(row, data)) : (signal_value_t){.valid = true};
     return true;
 }
 
@@ -190,6 +197,10 @@ double signals_number(const signal_info_t *info, const signal_value_t *value) {
 
 void signals_value_text(char text[SIGNALS_VALUE_SIZE], const signal_info_t *info, const signal_value_t *value) {
     const char *invalid = value->valid ? "" : " (invalid)";
+    if (info->kind == SIGNAL_HEX) {
+        (void)snprintf(text, SIGNALS_VALUE_SIZE, "%08" PRIX32, value->raw);
+        return;
+    }
     if (value->word != NULL) {
         (void)snprintf(text, SIGNALS_VALUE_SIZE, "%s%s", value->word, invalid);
         return;
@@ -209,6 +220,9 @@ void signals_raw_text(char text[SIGNALS_VALUE_SIZE], uint32_t message, size_t in
 
 /** Whether a text about the payload names this signal. */
 static bool is_shown(const signal_info_t *info, const signal_value_t *value) {
+    if (!value->present) {
+        return false;
+    }
     if ((info->kind == SIGNAL_FLAG) && (value->word != NULL)) {
         return (strcmp(value->word, "no") != 0) && (strcmp(value->word, "off") != 0);
     }

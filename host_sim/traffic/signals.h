@@ -27,11 +27,12 @@
 
 /** Kinds of signals. */
 typedef enum {
-    SIGNAL_NUMBER, /**< a measured or commanded value */
-    SIGNAL_CHOICE, /**< one of some words: gear, mode, state */
-    SIGNAL_FLAG,   /**< one bit with two words: a light, a button */
-    SIGNAL_ALARM,  /**< not 0: a fault; `fault` says which one */
-    SIGNAL_COUNTER /**< an alive counter */
+    SIGNAL_NUMBER,  /**< a measured or commanded value */
+    SIGNAL_CHOICE,  /**< one of some words: gear, mode, state */
+    SIGNAL_FLAG,    /**< one bit with two words: a light, a button */
+    SIGNAL_ALARM,   /**< not 0: a fault; `fault` says which one */
+    SIGNAL_COUNTER, /**< an alive counter */
+    SIGNAL_HEX      /**< 32 bits that are read as 8 hexadecimal digits: a checksum */
 } signal_kind_t;
 
 /** What is the same in every frame. */
@@ -49,6 +50,7 @@ typedef struct {
     int64_t scaled;   /**< value in `unit` times 10^decimals: -125 is -12.5 deg */
     const char *word; /**< "P", "autopilot", "on"; NULL: the value has no word */
     bool valid;       /**< false: a value that the protocol does not define */
+    bool present;     /**< false: the page of this frame has another signal in its place */
 } signal_value_t;
 
 /** "gear_command", ..., "supervisor_status"; NULL for a message above SIGNALS_STATUS_FRAME. */
@@ -61,7 +63,7 @@ size_t signals_count(uint32_t message);
 const signal_info_t *signals_info(uint32_t message, size_t index);
 
 /**
- * Read a signal from a payload.
+ * Read a signal from a payload. One that is not present has the value 0.
  *
  *     for (size_t i = 0; signals_read(message, i, data, &value); i++) { signals_info(message, i)->name ... }
  *

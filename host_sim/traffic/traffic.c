@@ -155,6 +155,9 @@ static traffic_id_t *entry_of(traffic_t *traffic, hal_can_side_t side, const hal
 }
 
 static void take_range(traffic_range_t *range, const signal_value_t *value, uint64_t t_us) {
+    if (!value->present) {
+        return;
+    }
     if (value->raw != 0u) {
         range->set_at_us = (range->set == 0u) ? t_us : range->set_at_us;
         range->set++;

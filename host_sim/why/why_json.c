@@ -3,19 +3,12 @@
 
 #include "agv/names.h"
 #include "agv/recorder.h"
+#include "common/json_build.h"
 #include "common/missing.h"
 #include "common/units.h"
 #include "why/why.h"
 
 enum { ID_SIZE = 12, DATA_SIZE = 17 };
-
-static void set(json_t *object, const char *key, json_t *value) {
-    (void)json_object_set_new(object, key, value);
-}
-
-static json_t *text_or_null(const char *text) {
-    return (text != NULL) ? json_string(text) : json_null();
-}
 
 static json_t *time_or_null(uint64_t t_us) {
     return (t_us != WHY_NEVER) ? json_integer((json_int_t)(t_us / US_PER_MS)) : json_null();
@@ -40,31 +33,31 @@ static json_t *evidence_of(const why_trip_t *trip, const why_names_t *names) {
     for (size_t i = 0u; i < trip->evidence_count; i++) {
         const why_evidence_t *evidence = &trip->evidence[i];
         json_t *object = json_object();
-        set(object, "t_ms", json_real((double)evidence->t_us / (double)US_PER_MS));
-        set(object, "if", text_or_null(names->interfaces[evidence->side]));
-        set(object, "id", id_or_null(evidence->frame.id));
-        set(object, "data", data_of(&evidence->frame));
-        (void)json_array_append_new(list, object);
+        json_put(object, "t_ms", json_real((double)evidence->t_us / (double)US_PER_MS));
+        json_put(object, "if", json_text(names->interfaces[evidence->side]));
+        json_put(object, "id", id_or_null(evidence->frame.id));
+        json_put(object, "data", data_of(&evidence->frame));
+        json_add(list, object);
     }
     return list;
 }
 
 static json_t *trip_of(const why_trip_t *trip, const why_names_t *names) {
     json_t *object = json_object();
-    set(object, "t_ms", time_or_null(trip->t_us));
-    set(object, "reason", text_or_null(agv_fault_name(trip->reason)));
-    set(object, "kind", json_string(why_kind_name(trip->kind)));
-    set(object, "message", text_or_null(agv_message_name(trip->message)));
-    set(object, "id", id_or_null(trip->id));
-    set(object, "cause_ms", time_or_null(trip->cause_us));
-    set(object, "last_good_ms", time_or_null(trip->last_good_us));
-    set(object, "limit", (trip->limit != WHY_NO_LIMIT) ? json_integer((json_int_t)trip->limit) : json_null());
-    set(object, "unit", (trip->limit != WHY_NO_LIMIT) ? text_or_null(trip->unit) : json_null());
-    set(object, "evidence", evidence_of(trip, names));
-    set(object, "first_safe_ms", time_or_null(trip->first_safe_us));
-    set(object, "confirmed_ms", time_or_null(trip->confirmed_us));
-    set(object, "stopped_ms", time_or_null(trip->stopped_us));
-    set(object, "from_recording", json_boolean(trip->from_recording));
+    json_put(object, "t_ms", time_or_null(trip->t_us));
+    json_put(object, "reason", json_text(agv_fault_name(trip->reason)));
+    json_put(object, "kind", json_string(why_kind_name(trip->kind)));
+    json_put(object, "message", json_text(agv_message_name(trip->message)));
+    json_put(object, "id", id_or_null(trip->id));
+    json_put(object, "cause_ms", time_or_null(trip->cause_us));
+    json_put(object, "last_good_ms", time_or_null(trip->last_good_us));
+    json_put(object, "limit", (trip->limit != WHY_NO_LIMIT) ? json_integer((json_int_t)trip->limit) : json_null());
+    json_put(object, "unit", (trip->limit != WHY_NO_LIMIT) ? json_text(trip->unit) : json_null());
+    json_put(object, "evidence", evidence_of(trip, names));
+    json_put(object, "first_safe_ms", time_or_null(trip->first_safe_us));
+    json_put(object, "confirmed_ms", time_or_null(trip->confirmed_us));
+    json_put(object, "stopped_ms", time_or_null(trip->stopped_us));
+    json_put(object, "from_recording", json_boolean(trip->from_recording));
     return object;
 }
 
@@ -74,7 +67,7 @@ static json_t *not_supervised(const why_t *why) {
     const uint16_t missing = (why_supervised_us(why) == 0u) ? why_missing(why) : 0u;
     for (uint8_t bit = 0u; agv_missing_name(bit) != NULL; bit++) {
         if (((missing >> bit) & 1u) != 0u) {
-            (void)json_array_append_new(words, json_string(agv_missing_name(bit)));
+            json_add(words, json_string(agv_missing_name(bit)));
         }
     }
     return words;
@@ -84,12 +77,12 @@ json_t *why_json(const why_t *why, const why_names_t *names) {
     json_t *object = json_object();
     json_t *trips = json_array();
     for (size_t i = 0u; i < why_trip_count(why); i++) {
-        (void)json_array_append_new(trips, trip_of(why_trip(why, i), names));
+        json_add(trips, trip_of(why_trip(why, i), names));
     }
-    set(object, "log", text_or_null(names->log));
-    set(object, "supervised_ms", time_or_null(why_supervised_us(why)));
-    set(object, "not_supervised", not_supervised(why));
-    set(object, "trips", trips);
-    set(object, "messages", (names->messages != NULL) ? names->messages : json_array());
+    json_put(object, "log", json_text(names->log));
+    json_put(object, "supervised_ms", time_or_null(why_supervised_us(why)));
+    json_put(object, "not_supervised", not_supervised(why));
+    json_put(object, "trips", trips);
+    json_put(object, "messages", (names->messages != NULL) ? names->messages : json_array());
     return object;
 }

@@ -329,6 +329,13 @@ class Why(Case):
         self.assertEqual((trip["reason"], trip["cause_ms"], trip["last_good_ms"], trip["limit"]),
                          ("STEERING_COMMAND_TIMEOUT", 1000, None, 125))
 
+    def test_a_log_whose_name_is_no_utf_8(self):
+        name = os.fsdecode(b"na\xefve.log")
+        (self.folder / name).write_text(traffic.log(traffic.frames(1000)), encoding="ascii")
+        for command, key in ((("replay", "--why", "-"), "log"), (("survey", "--json"), "source")):
+            result = self.run_good(*command, name)
+            self.assertEqual(json.loads(result.stdout)[key], "na?ve.log")
+
     def test_it_goes_to_standard_output_alone(self):
         self.write("my.log", traffic.log(traffic.frames(1000)))
         result = self.run_good("replay", "--why", "-", "my.log")

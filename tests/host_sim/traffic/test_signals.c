@@ -110,12 +110,23 @@ void test_flags_and_alarms_are_named_while_they_are_set(void) {
 void test_the_status_frame(void) {
     const uint8_t status[AGV_DLC] = {0x55, (uint8_t)AGV_FAULT_BUS_OFF, 0, 7, 0x78, 0x56, 0x34, 0x12};
     TEST_ASSERT_EQUAL_STRING("state TRIPPED, first_reason BUS_OFF, safety_output open, page 0, alive_counter 7, "
-                             "config_checksum 305419896",
+                             "config_checksum 12345678",
                              signals_print(text, sizeof text, SIGNALS_STATUS_FRAME, status));
     const uint8_t other[AGV_DLC] = {0x33, 0xFF, 1, 8, 0, 0, 0, 0};
     TEST_ASSERT_EQUAL_STRING("state STANDBY, first_reason none, safety_output closed, page 0, alive_counter 8, "
-                             "config_checksum 0",
+                             "config_checksum 00000000",
                              signals_print(text, sizeof text, SIGNALS_STATUS_FRAME, other));
+}
+
+void test_the_pages_of_the_status_frame(void) {
+    const uint8_t version[AGV_DLC] = {0x33, 0xFF, 0x11, 8, 1, 2, 30, 0};
+    TEST_ASSERT_EQUAL_STRING("state STANDBY, first_reason none, safety_output closed, page 1, alive_counter 8, "
+                             "version_major 1, version_minor 2, version_patch 30",
+                             signals_print(text, sizeof text, SIGNALS_STATUS_FRAME, version));
+    const uint8_t revision[AGV_DLC] = {0x33, 0xFF, 0x21, 8, 0x0D, 0xF0, 0xFE, 0xCA};
+    TEST_ASSERT_EQUAL_STRING("state STANDBY, first_reason none, safety_output closed, page 2, alive_counter 8, "
+                             "revision CAFEF00D",
+                             signals_print(text, sizeof text, SIGNALS_STATUS_FRAME, revision));
 }
 
 void test_every_alarm_is_a_fault(void) {
