@@ -12,56 +12,17 @@
 #include "cli/commands/commands.h"
 #include "common/report.h"
 
-/** One sub-command, as `--help` lists it. */
-typedef struct {
-    const char *name;
-    const char *help; /**< one line */
-    command_fn *run;
-} command_t;
-
-static const command_t commands[] = {
-    {"campaign", "inject random faults on the simulated bus, thousands of times, and check each run", cmd_campaign},
-    {"config", "print every setting as a configuration file, or a configuration as Kconfig", cmd_config},
-    {"demo", "watch the supervisor park a vehicle that loses its AI computer", cmd_demo},
-    {"hunt", "attack the supervisor at random, and search for runs with a hazard", cmd_hunt},
-    {"monitor", "watch a bus or a log: messages, deadlines, alarms, the supervisor's state", cmd_monitor},
-    {"recorder", "tell what the flight recorder of a device kept", cmd_recorder},
-    {"replay", "replay a recorded candump log to the supervisor in virtual time", cmd_replay},
-    {"run", "run the supervisor as a node on SocketCAN, in real time", cmd_run},
-    {"scenario", "run scenario files with a simulated vehicle, and check their expectations", cmd_scenario},
-    {"soak", "run supervisor and vehicle for months of virtual time, with tolerable disturbances", cmd_soak},
-    {"survey", "show what is in a log or on a bus, and propose a configuration", cmd_survey},
-    {"vehicle", "simulate VCU, EPS and AI computer as nodes on SocketCAN", cmd_vehicle},
-};
-
-static const size_t command_count = sizeof commands / sizeof commands[0];
-
-static void print_help(void) {
-    (void)printf("usage: host_sim COMMAND [OPTION]...\n"
-                 "\n"
-                 "The safety supervisor of an AGV's CAN bus, on a computer.\n"
-                 "\n"
-                 "Commands:\n");
-    for (size_t i = 0u; i < command_count; i++) {
-        (void)printf("  %-10s %s\n", commands[i].name, commands[i].help);
-    }
-    (void)printf(
-        "\n"
-        "  --help     print this help; after a command: its options\n"
-        "  --version  print the version\n"
-        "\n"
-        "Exit status: 0 success; 1 it ran, and an expectation failed; 2 it could not run, and one line on standard\n"
-        "error says why.\n");
-}
-
 static status_t run_command(int argc, char **argv) {
-    for (size_t i = 0u; i < command_count; i++) {
-        if (strcmp(argv[0], commands[i].name) == 0) {
-            return commands[i].run(argc - 1, &argv[1]);
-        }
+    char help[] = "help";
+    if ((strcmp(argv[0], "--help") == 0) || (strcmp(argv[0], "-h") == 0)) {
+        argv[0] = help;
     }
-    (void)report("unknown command '%s'; see host_sim --help", argv[0]);
-    return STATUS_UNUSABLE;
+    if ((strcmp(argv[0], "--version") == 0) || (strcmp(argv[0], "-V") == 0)) {
+        (void)printf("host_sim %s\n", HOST_SIM_VERSION);
+        return STATUS_OK;
+    }
+    const command_t *command = command_find(argv[0]);
+    return (command != NULL) ? command->run(argc - 1, &argv[1]) : STATUS_UNUSABLE;
 }
 
 /**
@@ -86,10 +47,6 @@ int main(int argc, char **argv) {
     if (argc < 2) {
         (void)report("no command given; see host_sim --help");
         status = STATUS_UNUSABLE;
-    } else if ((strcmp(argv[1], "--help") == 0) || (strcmp(argv[1], "-h") == 0)) {
-        print_help();
-    } else if (strcmp(argv[1], "--version") == 0) {
-        (void)printf("host_sim %s\n", HOST_SIM_VERSION);
     } else {
         status = run_command(argc - 1, &argv[1]);
     }

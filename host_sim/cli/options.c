@@ -1,49 +1,87 @@
 #include "cli/options.h"
 
 #include <inttypes.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "common/duration.h"
 #include "common/report.h"
+#include "common/suggest.h"
 #include "common/words.h"
 
-enum { HELP_COLUMN = 24 };
+/** Options of a command, at most. */
+#define OPTIONS_MAX 64u
+
+/** A command line that is being parsed. */
+typedef struct {
+    const option_syntax_t *syntax;
+    int argc;
+    char **argv;
+    int at;
+    bool given[OPTIONS_MAX];
+} parsing_t;
+
+static option_show_fn *show_instead;
+static const void *show_ctx;
+
+void options_show_with(option_show_fn *show, const void *ctx) {
+    show_instead = show;
+    show_ctx = ctx;
+}
+
+static void show(const option_syntax_t *syntax) {
+    if (show_instead != NULL) {
+        show_instead(show_ctx, syntax);
+    } else {
+        options_print_help(syntax);
+    }
+}
 
 static int command_length(const option_syntax_t *syntax) {
     return (int)strcspn(syntax->usage, " ");
 }
 
-static void print_help(const option_syntax_t *syntax) {
-    (void)printf("usage: host_sim %s\n\n%s", syntax->usage, syntax->summary);
+const option_t *options_at(const option_syntax_t *syntax, size_t index) {
     for (size_t g = 0u; g < syntax->group_count; g++) {
-        const option_group_t *group = &syntax->groups[g];
-        if (group->title != NULL) {
-            (void)printf("\n%s:\n", group->title);
+        if (index < syntax->groups[g].count) {
+            return &syntax->groups[g].options[index];
         }
-        for (size_t i = 0u; i < group->count; i++) {
-            const option_t *option = &group->options[i];
-            int width = printf("  %s%s%s", option->name, (option->value != NULL) ? " " : "",
-                               (option->value != NULL) ? option->value : "");
-            /* A long one gets a line of its own. */
-            (void)printf("%s%*s%s\n", (width >= HELP_COLUMN) ? "\n" : "",
-                         (width >= HELP_COLUMN) ? HELP_COLUMN : HELP_COLUMN - width, "", option->help);
-        }
+        index -= syntax->groups[g].count;
     }
+    return NULL;
 }
 
-/** Find the option of which `argument` is "--name" or "--name=value". */
-static const option_t *find(const option_syntax_t *syntax, const char *argument) {
-    size_t length = strcspn(argument, "=");
-    for (size_t g = 0u; g < syntax->group_count; g++) {
-        const option_group_t *group = &syntax->groups[g];
-        for (size_t i = 0u; i < group->count; i++) {
-            const char *name = group->options[i].name;
-            if ((strlen(name) == length) && (memcmp(name, argument, length) == 0)) {
-                return &group->options[i];
+static bool refuse_unknown(const option_syntax_t *syntax, const char *argument, size_t length) {
+    char meant[SUGGEST_SIZE];
+    suggestion_t suggestion = suggest_begin(argument, length);
+    for (size_t i = 0u; options_at(syntax, i) != NULL; i++) {
+        const char *name = options_at(syntax, i)->name;
+        suggest_offer(&suggestion, name, strlen(name));
+    }
+    if (suggestion.word != NULL) {
+        return report("unknown option '%s'%s", argument, suggest_text(&suggestion, meant));
+    }
+    return report("unknown option '%s'; see host_sim %.*s --help", argument, command_length(syntax), syntax->usage);
+}
+
+/** Find the option of which the argument is "--name" or "--name=value". @return NULL: reported */
+static const option_t *find(parsing_t *parsing) {
+    const char *argument = parsing->argv[parsing->at];
+    const size_t length = strcspn(argument, "=");
+    for (size_t i = 0u; i < OPTIONS_MAX; i++) {
+        const option_t *option = options_at(parsing->syntax, i);
+        if (option == NULL) {
+            break;
+        }
+        if ((strlen(option->name) == length) && (memcmp(option->name, argument, length) == 0)) {
+            if (parsing->given[i] && !option->adds_up) {
+                (void)report("%s: given twice", option->name);
+                return NULL;
             }
+            parsing->given[i] = true;
+            return option;
         }
     }
+    (void)refuse_unknown(parsing->syntax, argument, length);
     return NULL;
 }
 
@@ -75,7 +113,9 @@ static bool take_value(const option_t *option, const char *value) {
     if (option->word != NULL) {
         int index = words_find(option->words, value);
         if (index < 0) {
-            return report("%s: '%s' is not one of %s", option->name, value, option->words);
+            char meant[SUGGEST_SIZE];
+            return report("%s: '%s' is not one of %s%s", option->name, value, option->words,
+                          suggest_from(option->words, value, meant));
         }
         *option->word = index;
         return true;
@@ -87,14 +127,13 @@ static bool take_value(const option_t *option, const char *value) {
     return true;
 }
 
-/** Take the option at argv[*at], and its value. @return false: reported. */
-static bool take_option(const option_syntax_t *syntax, int argc, char **argv, int *at) {
-    const char *argument = argv[*at];
-    const option_t *option = find(syntax, argument);
+/** Take an option, and its value. @return false: reported. */
+static bool take_option(parsing_t *parsing) {
+    const char *value = strchr(parsing->argv[parsing->at], '=');
+    const option_t *option = find(parsing);
     if (option == NULL) {
-        return report("unknown option '%s'; see host_sim %.*s --help", argument, command_length(syntax), syntax->usage);
+        return false;
     }
-    const char *value = strchr(argument, '=');
     if (option->value == NULL) {
         if (value != NULL) {
             return report("%s takes no value", option->name);
@@ -105,11 +144,12 @@ static bool take_option(const option_syntax_t *syntax, int argc, char **argv, in
     if (value != NULL) {
         return take_value(option, &value[1]);
     }
-    if ((*at + 1 >= argc) || (strncmp(argv[*at + 1], "--", 2u) == 0)) {
+    const int next = parsing->at + 1;
+    if ((next >= parsing->argc) || (strncmp(parsing->argv[next], "--", 2u) == 0)) {
         return report("%s needs a value: %s", option->name, option->value);
     }
-    (*at)++;
-    return take_value(option, argv[*at]);
+    parsing->at = next;
+    return take_value(option, parsing->argv[next]);
 }
 
 static bool check_operands(const option_syntax_t *syntax, size_t operands, char **argv) {
@@ -125,19 +165,20 @@ static bool check_operands(const option_syntax_t *syntax, size_t operands, char 
 }
 
 options_result_t options_parse(const option_syntax_t *syntax, int argc, char **argv, size_t *operands) {
+    parsing_t parsing = {.syntax = syntax, .argc = argc, .argv = argv};
     bool only_operands = false;
     *operands = 0u;
-    for (int at = 0; at < argc; at++) {
-        char *argument = argv[at];
+    for (; parsing.at < argc; parsing.at++) {
+        char *argument = argv[parsing.at];
         if (only_operands || (argument[0] != '-') || (argument[1] == '\0')) {
             argv[*operands] = argument;
             (*operands)++;
         } else if (strcmp(argument, "--") == 0) {
             only_operands = true;
         } else if ((strcmp(argument, "--help") == 0) || (strcmp(argument, "-h") == 0)) {
-            print_help(syntax);
+            show(syntax);
             return OPTIONS_DONE;
-        } else if (!take_option(syntax, argc, argv, &at)) {
+        } else if (!take_option(&parsing)) {
             return OPTIONS_BAD;
         }
     }

@@ -1,10 +1,11 @@
 /**
  * @file options.h
- * Options of a command, described as tables of rows; one table says how they are parsed and what `--help` prints.
+ * Options of a command, described as tables of rows: how they are parsed, what `--help` prints, what the man page says
+ * and what a shell completes.
  *
- * `--name VALUE` and `--name=VALUE` (only the latter for a value that begins with `--`). Of an option that is given
- * twice the last one counts (except `each`). `--` ends the options. Everything else that does not begin with `-`, and
- * `-` itself, is an operand.
+ * `--name VALUE` and `--name=VALUE` (only the latter for a value that begins with `--`). An option that is given twice is
+ * refused, unless it `adds_up`. `--` ends the options. Everything else that does not begin with `-`, and `-` itself, is an
+ * operand.
  */
 #ifndef HOST_SIM_OPTIONS_H
 #define HOST_SIM_OPTIONS_H
@@ -21,6 +22,9 @@
  */
 typedef bool option_each_fn(void *ctx, const char *value);
 
+/** Lists the words that a text may be, "a|b|c". */
+typedef const char *option_words_fn(void);
+
 /** As a number that was not given. */
 #define OPTION_NOT_GIVEN UINT64_MAX
 
@@ -36,10 +40,12 @@ typedef struct {
     duration_unit_t unit;
     int *word; /**< index of one of `words` */
     option_each_fn *each;
-    void *ctx; /**< for `each` */
+    void *ctx;    /**< for `each` */
+    bool adds_up; /**< may be given several times; for `each` */
     uint64_t lowest;
     uint64_t highest;
-    const char *words; /**< "a|b|c" */
+    const char *words;           /**< "a|b|c" */
+    option_words_fn *candidates; /**< of a text: what a shell completes; NULL: what the name of its value says */
 } option_t;
 
 /** @name Rows of a table of options @{ */
@@ -68,6 +74,12 @@ typedef struct {
     size_t count;
 } option_group_t;
 
+/** A command line that works as it stands; `@` is the folder of the files that come with the program. */
+typedef struct {
+    const char *line; /**< "host_sim replay @/examples/ai-stops.log" */
+    const char *does;
+} option_example_t;
+
 /** What a command takes. */
 typedef struct {
     const char *usage;   /**< what follows "host_sim": "replay [OPTION]... LOG" */
@@ -77,7 +89,25 @@ typedef struct {
     size_t operands_min;
     size_t operands_max;
     const char *operand; /**< what an operand is called in a message: "LOG" */
+    const char *words;   /**< of an operand, "a|b|c"; NULL: any text */
+    const option_example_t *examples;
+    size_t example_count;
 } option_syntax_t;
+
+/** Shows what a command takes, in the place of its `--help`. */
+typedef void option_show_fn(const void *ctx, const option_syntax_t *syntax);
+
+/** From now on `--help` calls this: for man pages and completion. NULL: it prints the help */
+void options_show_with(option_show_fn *show, const void *ctx);
+
+/** The option with an index, counted over all groups; NULL: no such index. */
+const option_t *options_at(const option_syntax_t *syntax, size_t index);
+
+/** Write the line of an example, with the folder of the files in its place. What does not fit is cut. */
+void options_example_line(const option_example_t *example, const char *folder, char *line, size_t size);
+
+/** Print the help of a command. */
+void options_print_help(const option_syntax_t *syntax);
 
 /** The result. */
 typedef enum {

@@ -1,9 +1,14 @@
 #include "common/shipped.h"
 
+#include <dirent.h>
 #include <limits.h>
+#include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+enum { SCENARIOS_MAX = 1000, NAME_SIZE = 64 };
 
 /* From the folder of the program. */
 static const char installed[] = "../share/agv-supervisor/scenarios";
@@ -30,4 +35,75 @@ const char *shipped_scenarios(void) {
         }
     }
     return path;
+}
+
+const char *shipped_shown(char path[SHIPPED_PATH_SIZE]) {
+    char real[PATH_MAX];
+    char here[PATH_MAX];
+    (void)snprintf(path, SHIPPED_PATH_SIZE, "%s", SHIPPED_PACKAGE);
+    if ((realpath(shipped_scenarios(), real) == NULL) || (getcwd(here, sizeof here) == NULL)) {
+        return path;
+    }
+    *strrchr(real, '/') = '\0';
+    const size_t length = strlen(here);
+    const bool is_below = (strncmp(real, here, length) == 0) && (real[length] == '/');
+    (void)snprintf(path, SHIPPED_PATH_SIZE, "%s", is_below ? &real[length + 1u] : real);
+    return path;
+}
+
+/** Names that are being collected. */
+typedef struct {
+    char names[SCENARIOS_MAX][NAME_SIZE];
+    size_t count;
+} names_t;
+
+static int compare(const void *a, const void *b) {
+    return strcmp(a, b);
+}
+
+/** Add the scenarios of a folder. */
+static void collect(names_t *names, const char *path) {
+    DIR *folder = opendir(path);
+    if (folder == NULL) {
+        return;
+    }
+    for (const struct dirent *entry = readdir(folder); entry != NULL; entry = readdir(folder)) {
+        const char *end = strstr(entry->d_name, ".yaml");
+        const size_t length = (end != NULL) ? (size_t)(end - entry->d_name) : 0u;
+        if ((length > 0u) && (length < (size_t)NAME_SIZE) && (names->count < (size_t)SCENARIOS_MAX)) {
+            (void)snprintf(names->names[names->count], NAME_SIZE, "%.*s", (int)length, entry->d_name);
+            names->count++;
+        }
+    }
+    (void)closedir(folder);
+}
+
+/** Add the scenarios of all topics. */
+static void collect_all(names_t *names) {
+    DIR *topics = opendir(shipped_scenarios());
+    if (topics == NULL) {
+        return;
+    }
+    for (const struct dirent *topic = readdir(topics); topic != NULL; topic = readdir(topics)) {
+        char path[PATH_MAX];
+        if ((topic->d_name[0] != '.') &&
+            (snprintf(path, sizeof path, "%s/%s", shipped_scenarios(), topic->d_name) < (int)sizeof path)) {
+            collect(names, path);
+        }
+    }
+    (void)closedir(topics);
+}
+
+const char *shipped_scenario_names(void) {
+    static char list[SCENARIOS_MAX * NAME_SIZE];
+    static names_t names;
+    size_t used = 0u;
+    names.count = 0u;
+    list[0] = '\0';
+    collect_all(&names);
+    qsort(names.names, names.count, sizeof names.names[0], compare);
+    for (size_t i = 0u; (i < names.count) && (used < sizeof list); i++) {
+        used += (size_t)snprintf(&list[used], sizeof list - used, "%s%s", (i > 0u) ? "|" : "", names.names[i]);
+    }
+    return list;
 }

@@ -8,6 +8,7 @@
 #include "agv/names.h"
 #include "common/duration.h"
 #include "common/report.h"
+#include "common/suggest.h"
 #include "common/words.h"
 #include "config/config_text.h"
 #include "io/yaml_file.h"
@@ -102,7 +103,9 @@ static int take_word(const reading_t *reading, const char *words) {
         index = words_find(SWITCH_BOOLEANS, text); /* how YAML writers put off and on */
     }
     if (index < 0) {
-        (void)report_at(reading->lines->path, reading->line, "%s: '%s' is not one of %s", reading->key, text, words);
+        char meant[SUGGEST_SIZE];
+        (void)report_at(reading->lines->path, reading->line, "%s: '%s' is not one of %s%s", reading->key, text, words,
+                        suggest_from(words, text, meant));
     }
     return index;
 }
@@ -145,6 +148,22 @@ static bool take_class(const reading_t *reading, agv_fault_t fault) {
     return index >= 0;
 }
 
+static bool unknown(const reading_t *reading) {
+    char keys[AGV_FAULT_COUNT][CONFIG_CLASS_KEY_SIZE];
+    char meant[SUGGEST_SIZE];
+    suggestion_t suggestion = suggest_begin(reading->key, strlen(reading->key));
+    for (uint16_t setting = 0u; setting < (uint16_t)AGV_SETTING_COUNT; setting++) {
+        const char *name = agv_setting_info(setting)->name;
+        suggest_offer(&suggestion, name, strlen(name));
+    }
+    for (uint32_t fault = 0u; fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
+        config_class_key((agv_fault_t)fault, keys[fault]);
+        suggest_offer(&suggestion, keys[fault], strlen(keys[fault]));
+    }
+    return report_at(reading->lines->path, reading->line, "%s: unknown setting%s", reading->key,
+                     suggest_text(&suggestion, meant));
+}
+
 static bool take_pair(const reading_t *reading) {
     for (uint16_t setting = 0u; setting < (uint16_t)AGV_SETTING_COUNT; setting++) {
         if (strcmp(agv_setting_info(setting)->name, reading->key) == 0) {
@@ -158,7 +177,7 @@ static bool take_pair(const reading_t *reading) {
             return take_class(reading, (agv_fault_t)fault);
         }
     }
-    return wrong(reading, "unknown setting");
+    return unknown(reading);
 }
 
 bool config_read_mapping(yaml_document_t *document, const yaml_node_t *mapping, agv_config_t *config,

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "common/report.h"
+#include "common/suggest.h"
 #include "io/yaml_file.h"
 
 enum { SHOWN_MAX = 40, LINE_SHOWN_MAX = 80 };
@@ -34,7 +35,13 @@ static size_t find_key(const yaml_reader_t *reader, const yaml_node_t *key, cons
             return i;
         }
     }
-    (void)yaml_reader_fail(reader, key, "unknown key '%.*s' in %s", SHOWN_MAX, name, what);
+    char meant[SUGGEST_SIZE];
+    suggestion_t suggestion = suggest_begin(name, strlen(name));
+    for (size_t i = 0u; i < count; i++) {
+        suggest_offer(&suggestion, keys[i].name, strlen(keys[i].name));
+    }
+    (void)yaml_reader_fail(reader, key, "unknown key '%.*s' in %s%s", SHOWN_MAX, name, what,
+                           suggest_text(&suggestion, meant));
     return count;
 }
 

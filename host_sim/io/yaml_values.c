@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "common/hex.h"
+#include "common/suggest.h"
 #include "common/words.h"
 #include "io/yaml_file.h"
 
@@ -138,10 +139,25 @@ bool yaml_reader_bool(const yaml_reader_t *reader, const yaml_node_t *node, cons
     return true;
 }
 
+/** Report a word that is not one of those. */
+static bool fail_word(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, const yaml_word_t *words,
+                      const char *text) {
+    char list[200] = "";
+    char meant[SUGGEST_SIZE];
+    suggestion_t suggestion = suggest_begin(text, strlen(text));
+
+    for (const yaml_word_t *word = words; word->word != NULL; word++) {
+        const size_t used = strlen(list);
+        (void)snprintf(&list[used], sizeof list - used, "%s%s", (used == 0u) ? "" : ", ", word->word);
+        suggest_offer(&suggestion, word->word, strlen(word->word));
+    }
+    return yaml_reader_fail(reader, node, "%s: '%.*s' is not one of %s%s", what, SHOWN_MAX, text, list,
+                            suggest_text(&suggestion, meant));
+}
+
 bool yaml_reader_word(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, const yaml_word_t *words,
                       int *value) {
     const char *text = yaml_reader_text(reader, node, what);
-    char list[200] = "";
 
     if (text == NULL) {
         return false;
@@ -151,10 +167,8 @@ bool yaml_reader_word(const yaml_reader_t *reader, const yaml_node_t *node, cons
             *value = word->value;
             return true;
         }
-        const size_t used = strlen(list);
-        (void)snprintf(&list[used], sizeof list - used, "%s%s", (used == 0u) ? "" : ", ", word->word);
     }
-    return yaml_reader_fail(reader, node, "%s: '%.*s' is not one of %s", what, SHOWN_MAX, text, list);
+    return fail_word(reader, node, what, words, text);
 }
 
 /** Read one of the numbers of a range. */

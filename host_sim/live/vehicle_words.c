@@ -9,7 +9,7 @@
 #include "scenario/scenario_parse.h"
 
 #define ACTORS "vcu, eps, ai, operator, bus"
-#define FAULT_FORM "WHO-WHAT[,NAME=VALUE]...@MS"
+#define FAULT_FORM "WHO-WHAT[,NAME=VALUE]...@TIME"
 
 enum { PARTS_MAX = 12, SHOWN_MAX = 80, SOURCE_SIZE = 100, HELP_WIDTH = 100, HELP_INDENT = 14, PARTS_BEFORE_VALUES = 2 };
 
@@ -186,7 +186,7 @@ bool vehicle_words_fault(const char *text, const agv_config_t *config, vehicle_w
     char *at = strrchr(line.text, '@');
     char *dash = strchr(line.text, '-');
     if ((at == NULL) || (dash == NULL) || (dash > at) || has_empty_part(line.text, dash, at)) {
-        return wrong(&line, FAULT_FORM " is needed, such as ai-stop@2000");
+        return wrong(&line, FAULT_FORM " is needed, such as ai-stop@2s");
     }
     *at = '\0';
     *dash = ',';

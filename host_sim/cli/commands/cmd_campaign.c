@@ -3,6 +3,7 @@
  * `host_sim campaign`: randomised fault campaigns on the simulated bus.
  */
 #include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,10 +13,13 @@
 #include "cli/options.h"
 #include "cli/random_options.h"
 #include "common/interrupt.h"
+#include "common/suggest.h"
 #include "io/output.h"
 
 /** Runs of a campaign: as many as a table in memory may hold. */
 #define RUNS_MAX 100000000u
+
+enum { NAME_SIZE = 40 };
 
 /** The given options. */
 typedef struct {
@@ -32,12 +36,30 @@ typedef struct {
     size_t file_count;
 } given_t;
 
+/** The faults that a campaign can cause, "A|B|C". */
+static const char *fault_names(void) {
+    static char names[AGV_FAULT_COUNT * NAME_SIZE];
+    size_t used = 0u;
+    for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
+        const agv_fault_t fault = (agv_fault_t)i;
+        if ((campaign_row(fault) != NULL) && (used < sizeof names)) {
+            used += (size_t)snprintf(&names[used], sizeof names - used, "%s%s", (used > 0u) ? "|" : "",
+                                     agv_fault_name(fault));
+        }
+    }
+    return names;
+}
+
 static options_result_t parse(int argc, char **argv, given_t *given) {
     option_t random_rows[RANDOM_OPTIONS];
     random_options_init(&given->random, random_rows, "only part I of N of the runs (1/1)");
     const option_t rows[] = {
         OPTION_NUMBER("--runs", "N", "number of runs, of all shards together", &given->runs, 1, RUNS_MAX),
-        OPTION_TEXT("--fault", "NAME", "cause this fault in every run", &given->fault),
+        {.name = "--fault",
+         .value = "NAME",
+         .help = "cause this fault in every run",
+         .text = &given->fault,
+         .candidates = fault_names},
         OPTION_FLAG("--newly-engaged", "cause the fault at an engagement; for faults that this delays",
                     &given->newly_engaged),
         OPTION_TEXT("--results", "FILE", "results as JSON Lines", &given->results),
@@ -52,6 +74,11 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         {.title = "Options", .options = random_rows, .count = RANDOM_OPTIONS},
         {.options = rows, .count = sizeof rows / sizeof rows[0]},
     };
+    static const option_example_t examples[] = {
+        {"host_sim campaign --runs 200 --seed 1", "200 runs, and the table of their reaction times"},
+        {"host_sim campaign --runs 200 --seed 1 --fault VCU_HEARTBEAT_LOST", "the same fault in every run"},
+        {"host_sim campaign --runs 200 --seed 1 --show 17 > run.yaml", "run 17 as a file for host_sim scenario"},
+    };
     const option_syntax_t syntax = {
         .usage = "campaign --runs N --seed S [OPTION]... | campaign --merge FILE...",
         .summary =
@@ -59,6 +86,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
             "topology, ID set, kind of vehicle), check each run, and summarise the reaction times.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
+        .examples = examples,
+        .example_count = sizeof examples / sizeof examples[0],
         .operands_max = SHARDS_MAX,
         .operand = "FILE",
     };
@@ -68,7 +97,10 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
 static bool take_fault(const char *name, campaign_causes_t *causes) {
     const agv_fault_t fault = agv_fault_from_name(name);
     if (fault == AGV_FAULT_NONE) {
-        return report("--fault: unknown fault '%s'; docs/faults.md lists them", name);
+        char meant[SUGGEST_SIZE];
+        (void)suggest_from(fault_names(), name, meant);
+        return report("--fault: unknown fault '%s'%s", name,
+                      (meant[0] != '\0') ? meant : "; docs/faults.md lists them");
     }
     causes->only = campaign_row(fault);
     if (causes->only == NULL) {

@@ -19,12 +19,20 @@ status_t cmd_config(int argc, char **argv) {
         {.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]},
         {.title = "Configuration of the supervisor", .options = config_rows, .count = CONFIG_OPTIONS},
     };
+    static const option_example_t examples[] = {
+        {"host_sim config > agv.yaml", "all settings, to be changed in an editor"},
+        {"host_sim config --config agv.yaml --to-kconfig > agv.conf", "the same for the firmware"},
+    };
     const option_syntax_t syntax = {
         .usage = "config [OPTION]...",
-        .summary = "Print every setting with its default, unit, range and meaning, as a YAML file for --config; with\n"
-                   "--config FILE, print that configuration.\n",
+        .summary =
+            "Print every setting with its default, unit, range and meaning, as a YAML file for --config; with\n"
+            "--config FILE, print that configuration.\n"
+            "In a file, times are 250ms, 1.5s, or milliseconds alone; identifiers are 168h, 0x168 or decimal 360.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
+        .examples = examples,
+        .example_count = sizeof examples / sizeof examples[0],
         .operand = "",
     };
     size_t operands = 0u;

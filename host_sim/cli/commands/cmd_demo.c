@@ -14,6 +14,7 @@
 #include "cli/options.h"
 #include "common/interrupt.h"
 #include "common/shipped.h"
+#include "common/suggest.h"
 #include "common/units.h"
 #include "config/config_options.h"
 #include "io/events.h"
@@ -51,7 +52,11 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     config_options_init(&given->config, config_rows);
     analysis_options_init(&given->analysis, analysis_rows);
     const option_t rows[] = {
-        OPTION_TEXT("--scenario", "NAME", "another scenario: its name, or the path of a file", &given->scenario),
+        {.name = "--scenario",
+         .value = "NAME|FILE",
+         .help = "another scenario: its name, or the path of a file",
+         .text = &given->scenario,
+         .candidates = shipped_scenario_names},
         OPTION_TEXT("--events", "FILE", "events as JSON Lines; - prints them in place of the timeline", &given->events),
     };
     const option_group_t groups[] = {
@@ -61,6 +66,11 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .options = config_rows,
          .count = CONFIG_OPTIONS},
     };
+    static const option_example_t examples[] = {
+        {"host_sim demo", "the timeline"},
+        {"host_sim demo --scenario park_at_standstill", "another scenario"},
+        {"host_sim demo --report why.html", "a page that says why it tripped"},
+    };
     const option_syntax_t syntax = {
         .usage = "demo [OPTION]...",
         .summary =
@@ -68,6 +78,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
             "computer stops, the supervisor parks the vehicle, the operator resets; then the EPS fails.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
+        .examples = examples,
+        .example_count = sizeof examples / sizeof examples[0],
     };
     size_t operands = 0u;
     return options_parse(&syntax, argc, argv, &operands);
@@ -102,8 +114,11 @@ static bool find_scenario(const char *name, char path[PATH_SIZE]) {
         return report("--scenario: the name is too long");
     }
     if (!is_path && (length == 0)) {
-        return report("--scenario: no scenario '%s'; the shipped scenarios are the files in %s", name,
-                      shipped_scenarios());
+        char meant[SUGGEST_SIZE];
+        (void)suggest_from(shipped_scenario_names(), name, meant);
+        return (meant[0] != '\0') ? report("--scenario: no scenario '%s'%s", name, meant)
+                                  : report("--scenario: no scenario '%s'; the shipped scenarios are the files in %s",
+                                           name, shipped_scenarios());
     }
     return true;
 }

@@ -26,7 +26,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     random_options_init(&given->random, random_rows, "only part I of N of the runs (1/1)");
     const option_t rows[] = {
         OPTION_NUMBER("--runs", "N", "number of runs, of all shards together", &request->runs, 1, RUNS_MAX),
-        OPTION_NUMBER("--for-minutes", "M", "stop after this time", &request->minutes, 1, MINUTES_MAX),
+        OPTION_DURATION_IN(DURATION_MIN, "--for-minutes", "stop after this time: 2h, or minutes alone",
+                           &request->minutes, 1, MINUTES_MAX),
         OPTION_TEXT("--checkpoint", "FILE", "saved after each batch of runs; the same command resumes from it",
                     &request->checkpoint),
         OPTION_TEXT("--found", "FOLDER", "folder for the scenarios of runs with a hazard (.)", &given->folder),
@@ -36,6 +37,10 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         {.title = "Options", .options = random_rows, .count = RANDOM_OPTIONS},
         {.options = rows, .count = sizeof rows / sizeof rows[0]},
     };
+    static const option_example_t examples[] = {
+        {"host_sim hunt --seed 1 --runs 200", "200 runs"},
+        {"host_sim hunt --list-hazards", "what would be found"},
+    };
     const option_syntax_t syntax = {
         .usage = "hunt --seed S (--runs N | --for-minutes M) [OPTION]... | hunt --list-hazards",
         .summary =
@@ -43,6 +48,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
             "search for runs with a hazard. Exit status 1 if it finds one.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
+        .examples = examples,
+        .example_count = sizeof examples / sizeof examples[0],
     };
     size_t operands = 0u;
     return options_parse(&syntax, argc, argv, &operands);

@@ -69,6 +69,10 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .options = config_rows,
          .count = CONFIG_OPTIONS_OF_BUS},
     };
+    static const option_example_t examples[] = {
+        {"host_sim monitor --can can0", "a bus"},
+        {"host_sim monitor --log @/examples/ai-stops.log --speed max", "a log, without waiting"},
+    };
     const option_syntax_t syntax = {
         .usage = "monitor --can IF | --log FILE [OPTION]...",
         .summary =
@@ -83,6 +87,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
             "of a supervisor in this program, which only listens.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
+        .examples = examples,
+        .example_count = sizeof examples / sizeof examples[0],
         .operand = "argument",
     };
     size_t operands = 0u;

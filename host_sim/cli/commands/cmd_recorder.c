@@ -33,6 +33,11 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         {.options = rows, .count = sizeof rows / sizeof rows[0]},
         {.title = "Configuration of the device", .options = config_rows, .count = CONFIG_OPTIONS},
     };
+    static const option_example_t examples[] = {
+        {"host_sim replay --store agv.store @/examples/ai-stops.log", "leaves what a device would keep in agv.store"},
+        {"host_sim recorder agv.store", "what was kept"},
+        {"host_sim recorder --report why.html agv.store", "the same as a page with pictures"},
+    };
     const option_syntax_t syntax = {
         .usage = "recorder [OPTION]... FILE",
         .summary = "Tell what the flight recorder of a device kept: what its shell's 'agv dump' printed, what a "
@@ -40,6 +45,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
                    "of its memory, or the --store file of replay (- = standard input).\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
+        .examples = examples,
+        .example_count = sizeof examples / sizeof examples[0],
         .operands_min = 1u,
         .operands_max = 1u,
         .operand = "FILE",

@@ -35,9 +35,9 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         OPTION_FLAG("--timeline", "print a line for each action and event, as demo does", &given->request.timeline),
         OPTION_FLAG("--fail-on-trip", "exit status 1 if it tripped, nothing was supervised, or the time goes back",
                     &given->request.fail_on_trip),
-        OPTION_NUMBER("--tail", "MS", "continue for this time after the last line (0)", &given->request.tail_ms, 0,
-                      REPLAY_GAP_MAX_MS),
-        OPTION_NUMBER("--start-ms", "N", "the supervisor's clock at the start (0)", &given->start_ms, 0, UINT32_MAX),
+        OPTION_DURATION("--tail", "continue for this time after the last line (0)", &given->request.tail_ms, 0,
+                        REPLAY_GAP_MAX_MS),
+        OPTION_DURATION("--start-ms", "the supervisor's clock at the start (0)", &given->start_ms, 0, UINT32_MAX),
         OPTION_FLAG("--skip-bad-lines", "skip and count lines that are not candump lines",
                     &given->request.skip_bad_lines),
         OPTION_TEXT("--ai-if", "NAME", "the interface of the AI side: a gateway", &given->request.ai_interface),
@@ -54,6 +54,12 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         {.options = rows, .count = sizeof rows / sizeof rows[0]},
         {.title = "Configuration of the supervisor", .options = config_rows, .count = CONFIG_OPTIONS},
     };
+    static const option_example_t examples[] = {
+        {"host_sim replay @/examples/ai-stops.log", "whether and why it tripped"},
+        {"host_sim replay --report why.html @/examples/ai-stops.log", "the same as a page with pictures"},
+        {"host_sim replay --timeline --tail 1s @/examples/ai-stops.log",
+         "a line for each event; a second of silence after the log"},
+    };
     const option_syntax_t syntax = {
         .usage = "replay [OPTION]... LOG",
         .summary = "Replay a recorded log (candump -l; - = standard input) to the supervisor in virtual time, and say "
@@ -61,6 +67,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
                    "it would have stopped the vehicle, when, and why.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
+        .examples = examples,
+        .example_count = sizeof examples / sizeof examples[0],
         .operands_min = 1u,
         .operands_max = 1u,
         .operand = "LOG",

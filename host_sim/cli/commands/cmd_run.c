@@ -43,6 +43,11 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         {.options = analysis_rows, .count = ANALYSIS_OPTIONS},
         {.title = "Configuration of the supervisor", .options = config_rows, .count = CONFIG_OPTIONS},
     };
+    static const option_example_t examples[] = {
+        {"host_sim run --can can0", "supervise the bus can0"},
+        {"host_sim run --can can0 --shadow --for 1.5min --report why.html",
+         "only watch, and say what it would have done"},
+    };
     const option_syntax_t syntax = {
         .usage = "run --can IF [OPTION]...",
         .summary =
@@ -51,6 +56,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
             "its state while it runs.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
+        .examples = examples,
+        .example_count = sizeof examples / sizeof examples[0],
         .operand = "argument",
     };
     size_t operands = 0u;

@@ -86,8 +86,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
             "--bus", "sim|IF[,IF]",
             "the simulated bus in virtual time (sim), or CAN interfaces (of the vehicle, of the AI side) in real time",
             &given->bus),
-        OPTION_NUMBER("--tolerance", "MS", "on CAN interfaces: tolerance of all times (50)", &given->tolerance_ms, 0,
-                      TOLERANCE_MAX_MS),
+        OPTION_DURATION("--tolerance", "on CAN interfaces: tolerance of all times (50ms)", &given->tolerance_ms, 0,
+                        TOLERANCE_MAX_MS),
         OPTION_TEXT("--supervisor", "COMMAND",
                     "on CAN interfaces: start this external supervisor; it prints its events as JSON Lines",
                     &given->supervisor),
@@ -102,11 +102,20 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .options = config_rows,
          .count = CONFIG_OPTIONS},
     };
+    static const option_example_t examples[] = {
+        {"host_sim scenario @/scenarios/overview/demo.yaml", "one scenario"},
+        {"host_sim scenario --junit results.xml @/scenarios/reset/*.yaml", "many, with results for a CI server"},
+        {"host_sim scenario --bus vcan0 @/scenarios/overview/demo.yaml", "on a CAN interface, in real time"},
+    };
     const option_syntax_t syntax = {
         .usage = "scenario [OPTION]... FILE...",
-        .summary = "Run scenario files with a simulated vehicle, and report the expectations that failed.\n",
+        .summary =
+            "Run scenario files with a simulated vehicle, and report the expectations that failed.\n"
+            "In a file, times are 250ms, 1.5s, or milliseconds alone; identifiers are 168h, 0x168 or decimal 360.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
+        .examples = examples,
+        .example_count = sizeof examples / sizeof examples[0],
         .operands_min = 1u,
         .operands_max = FILES_MAX,
         .operand = "FILE",

@@ -21,8 +21,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     option_t random_rows[RANDOM_OPTIONS];
     random_options_init(&given->random, random_rows, "only part I of N of the time (1/1)");
     const option_t rows[] = {
-        OPTION_NUMBER("--hours", "N", "hours of virtual time, of all shards together; a year has 8760", &given->hours,
-                      1, HOURS_MAX),
+        OPTION_DURATION_IN(DURATION_H, "--hours", "virtual time, of all shards together: 365d, or hours alone",
+                           &given->hours, 1, HOURS_MAX),
         OPTION_TEXT("--checkpoint", "FILE",
                     "saved every 6 simulated hours and when interrupted; resumed from if it exists",
                     &given->request.checkpoint),
@@ -32,6 +32,10 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         {.title = "Options", .options = random_rows, .count = RANDOM_OPTIONS},
         {.options = rows, .count = sizeof rows / sizeof rows[0]},
     };
+    static const option_example_t examples[] = {
+        {"host_sim soak --hours 1 --seed 1", "an hour"},
+        {"host_sim soak --hours 365d --seed 1 --shard 1/5000", "a small part of a year"},
+    };
     const option_syntax_t syntax = {
         .usage = "soak --hours N --seed S [OPTION]...",
         .summary =
@@ -39,6 +43,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
             "limit: nothing may trip, drift or be miscounted.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
+        .examples = examples,
+        .example_count = sizeof examples / sizeof examples[0],
     };
     size_t operands = 0u;
     return options_parse(&syntax, argc, argv, &operands);

@@ -37,6 +37,12 @@ static options_result_t parse(int argc, char **argv, given_t *given, size_t *ope
         {.title = "Instead of a log", .options = interface_rows, .count = INTERFACE_OPTIONS},
         {.title = "Configuration to compare with", .options = config_rows, .count = CONFIG_OPTIONS_OF_BUS},
     };
+    static const option_example_t examples[] = {
+        {"host_sim survey @/examples/ai-stops.log", "what is in a log"},
+        {"host_sim survey --config-out agv.yaml @/examples/other-vehicle.log.gz",
+         "and the configuration that would fit, as a file"},
+        {"host_sim survey --can can0 --for 60s", "a bus, for a minute"},
+    };
     const option_syntax_t syntax = {
         .usage = "survey [OPTION]... (LOG | --can IF [--for TIME])",
         .summary =
@@ -46,6 +52,8 @@ static options_result_t parse(int argc, char **argv, given_t *given, size_t *ope
             "sent.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
+        .examples = examples,
+        .example_count = sizeof examples / sizeof examples[0],
         .operands_min = 0u,
         .operands_max = 1u,
         .operand = "LOG",

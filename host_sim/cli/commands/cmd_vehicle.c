@@ -35,9 +35,10 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     config_options_init(&given->config, config_rows);
     const option_t rows[] = {
         {.name = "--fault",
-         .value = "WHO-WHAT[,NAME=VALUE]...@MS",
-         .help = "inject a fault at that time; may be given several times",
+         .value = "WHO-WHAT[,NAME=VALUE]...@TIME",
+         .help = "inject a fault at that time",
          .each = take_fault,
+         .adds_up = true,
          .ctx = given},
         OPTION_FLAG("--screen", "on a terminal: the screen of host_sim monitor", &request->screen),
         OPTION_FLAG("--manual", "do not engage the autopilot", &request->manual),
@@ -49,6 +50,10 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .options = config_rows,
          .count = CONFIG_OPTIONS_OF_BUS},
     };
+    static const option_example_t examples[] = {
+        {"host_sim vehicle --can vcan0", "until Ctrl-C"},
+        {"host_sim vehicle --can vcan0 --fault ai-stop@4s --for 8.5s", "the AI computer stops after 4 s"},
+    };
     const option_syntax_t syntax = {
         .usage = "vehicle --can IF [OPTION]...",
         .summary =
@@ -56,12 +61,16 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
             "They obey the commands on the bus. After 1.5 s the operator engages the autopilot, and the AI computer\n"
             "drives: gear D, throttle 30 %.\n"
             "\n"
-            "Inject faults, and any other step of a scenario, by option: --fault ai-stop@2000 or\n"
-            "--fault eps-set,field=faults,value=08h@3000; or type them while it runs: 'ai stop', 'eps set "
+            "Inject faults, and any other step of a scenario, by option: --fault ai-stop@2s or\n"
+            "--fault eps-set,field=faults,value=08h@3s; or type them while it runs: 'ai stop', 'eps set "
             "field=faults\n"
-            "value=08h'. 'help' lists them; 'status' and 'quit' are commands, too.\n",
+            "value=08h'. 'help' lists them; 'status' and 'quit' are commands, too. Times are 250ms, 1.5s, or "
+            "milliseconds\n"
+            "alone; identifiers are 168h, 0x168 or decimal 360.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
+        .examples = examples,
+        .example_count = sizeof examples / sizeof examples[0],
         .operand = "argument",
     };
     size_t operands = 0u;

@@ -1,10 +1,13 @@
 /**
  * @file commands.h
- * The sub-commands. To add one: a file cmd_<name>.c with its function, a prototype here, a row in the table in main.c.
+ * The sub-commands. To add one: a file cmd_<name>.c with its function, a prototype here, a row in commands.c.
  */
 #ifndef HOST_SIM_COMMANDS_H
 #define HOST_SIM_COMMANDS_H
 
+#include <stddef.h>
+
+#include "cli/options.h"
 #include "common/report.h"
 
 /**
@@ -14,6 +17,29 @@
  * @return exit status of the program; whatever is not STATUS_OK was reported on standard error
  */
 typedef status_t command_fn(int argc, char **argv);
+
+/** One sub-command, as `--help` lists it. */
+typedef struct {
+    const char *name;
+    const char *help; /**< one line */
+    command_fn *run;
+} command_t;
+
+/** The commands by their names, and what they are; sorted. */
+extern const command_t COMMANDS[];
+extern const size_t COMMAND_COUNT;
+
+/** The command of a name. @return NULL: there is none; was reported */
+const command_t *command_find(const char *name);
+
+/** The names of all commands, "campaign|config|...". */
+const char *command_words(void);
+
+/** Have the options of a command shown. @param show its context is the command_t; NULL: print the help */
+status_t command_show(const command_t *command, option_show_fn *show);
+
+/** Print what the program is, its commands, and the exit statuses. */
+void command_print_help(void);
 
 /** `host_sim recorder`: what a device's flight recorder kept. */
 command_fn cmd_recorder;
@@ -47,6 +73,15 @@ command_fn cmd_hunt;
 
 /** `host_sim monitor`: a screen of what happens on a bus. */
 command_fn cmd_monitor;
+
+/** `host_sim help`: what `--help` prints. */
+command_fn cmd_help;
+
+/** `host_sim completion`: a script that completes command lines in a shell. */
+command_fn cmd_completion;
+
+/** `host_sim man`: a man page. */
+command_fn cmd_man;
 
 /** `host_sim config`: every setting, as YAML or as a Kconfig fragment. */
 command_fn cmd_config;

@@ -11,6 +11,8 @@ typedef struct {
     bool flag;
     const char *text;
     uint64_t number;
+    uint64_t time;
+    uint64_t hours;
     int word;
     unsigned times;
     size_t operands;
@@ -44,8 +46,13 @@ static options_result_t parse(const char *line) {
         {.name = "--number", .value = "N", .help = "a number", .number = &given.number, .lowest = 5, .highest = 1000},
         {.name = "--word", .value = "a|b|cc", .help = "a word", .word = &given.word, .words = "a|b|cc"},
     };
-    const option_t more[] = {{.name = "--each", .value = "WHAT", .help = "more", .each = count, .ctx = &given}};
-    const option_group_t groups[] = {{"Options", rows, 4}, {"More", more, 1}};
+    const option_t more[] = {
+        {.name = "--each", .value = "WHAT", .help = "more", .each = count, .ctx = &given, .adds_up = true},
+        {.name = "--once", .value = "WHAT", .help = "one", .each = count, .ctx = &given},
+        OPTION_DURATION("--time", "a time", &given.time, 1, 5000),
+        OPTION_DURATION_IN(DURATION_H, "--hours", "a long time", &given.hours, 1, 100),
+    };
+    const option_group_t groups[] = {{"Options", rows, 4}, {"More", more, 4}};
     const option_syntax_t syntax = {.usage = "try [OPTION]... FILE...",
                                     .summary = "Try.\n",
                                     .groups = groups,
@@ -87,16 +94,61 @@ void test_values_come_in_two_ways(void) {
     TEST_ASSERT_EQUAL_STRING("-", given.text);
 }
 
-void test_the_last_one_wins(void) {
-    parse_good("--text a --number 5 --text b --number 6 f");
-    TEST_ASSERT_EQUAL_STRING("b", given.text);
-    TEST_ASSERT_EQUAL_UINT64(6, given.number);
+void test_an_option_given_twice_is_refused(void) {
+    parse_bad("--text a --number 5 --text a f", "--text: given twice");
+    parse_bad("--number 5 f --number=6", "--number: given twice");
+    parse_bad("--flag --flag f", "--flag: given twice");
+    parse_bad("--once a --once b f", "--once: given twice");
 }
 
-void test_some_are_for_every_occurrence(void) {
+void test_some_add_up(void) {
     parse_good("--each a --each=b f --each c");
     TEST_ASSERT_EQUAL_UINT(3, given.times);
     TEST_ASSERT_EQUAL_INT(OPTIONS_BAD, parse("--each bad f"));
+}
+
+void test_a_time_has_a_unit_or_is_in_that_of_the_option(void) {
+    parse_good("--time 1.5s f");
+    TEST_ASSERT_EQUAL_UINT64(1500, given.time);
+    parse_good("--time 70 f");
+    TEST_ASSERT_EQUAL_UINT64(70, given.time);
+    parse_good("--hours 2d f");
+    TEST_ASSERT_EQUAL_UINT64(48, given.hours);
+    parse_good("--hours 7 f");
+    TEST_ASSERT_EQUAL_UINT64(7, given.hours);
+    parse_bad("--time 10parsecs f", "--time: '10parsecs' is not a time: 250ms, 10s, 1.5min, 2h, or milliseconds alone");
+    parse_bad("--time 1e9999s f", "--time: '1e9999s' is not a time: 250ms, 10s, 1.5min, 2h, or milliseconds alone");
+    parse_bad("--time -1s f", "--time: '-1s' is not a time: 250ms, 10s, 1.5min, 2h, or milliseconds alone");
+    parse_bad("--time 6s f", "--time: '6s' is not within 1ms to 5s");
+    parse_bad("--time 1us f", "--time: '1us' is not a whole number of milliseconds");
+    parse_bad("--hours 30min f", "--hours: '30min' is not a whole number of hours");
+    parse_bad("--hours 101h f", "--hours: '101h' is not within 1h to 100h");
+}
+
+static bool show_called;
+
+static void show(const void *ctx, const option_syntax_t *syntax) {
+    show_called = true;
+    TEST_ASSERT_EQUAL_PTR(&given, ctx);
+    TEST_ASSERT_EQUAL_STRING("--flag", options_at(syntax, 0)->name);
+    TEST_ASSERT_EQUAL_STRING("--each", options_at(syntax, 4)->name);
+    TEST_ASSERT_NULL(options_at(syntax, 8));
+}
+
+void test_what_a_command_takes_can_be_shown_in_another_way(void) {
+    options_show_with(show, &given);
+    TEST_ASSERT_EQUAL_INT(OPTIONS_DONE, parse("--help"));
+    options_show_with(NULL, NULL);
+    TEST_ASSERT_TRUE(show_called);
+}
+
+void test_the_line_of_an_example(void) {
+    static const option_example_t example = {"host_sim replay --why=a@b @/examples/a.log", ""};
+    char line[64];
+    options_example_line(&example, "/usr/share", line, sizeof line);
+    TEST_ASSERT_EQUAL_STRING("host_sim replay --why=a@b /usr/share/examples/a.log", line);
+    options_example_line(&example, "/usr/share", line, 20);
+    TEST_ASSERT_EQUAL_STRING("host_sim replay --w", line);
 }
 
 void test_operands_move_to_the_front(void) {
@@ -124,15 +176,17 @@ void test_numbers_are_checked_completely(void) {
 }
 
 void test_what_is_refused(void) {
-    parse_bad("--flags f", "unknown option '--flags'; see host_sim try --help");
+    parse_bad("--flags f", "unknown option '--flags': did you mean '--flag'?");
     parse_bad("-x f", "unknown option '-x'; see host_sim try --help");
-    parse_bad("--fla f", "unknown option '--fla'; see host_sim try --help");
-    parse_bad("--text=x=y --no=x f", "unknown option '--no=x'; see host_sim try --help");
+    parse_bad("--fla f", "unknown option '--fla': did you mean '--flag'?");
+    parse_bad("--txet=x=y f", "unknown option '--txet=x=y': did you mean '--text'?");
+    parse_bad("--text=x=y --fast=x f", "unknown option '--fast=x'; see host_sim try --help");
     parse_bad("--flag=1 f", "--flag takes no value");
     parse_bad("f --text", "--text needs a value: TEXT");
     parse_bad("--text --flag f", "--text needs a value: TEXT");
     parse_bad("--text= f", "--text: the value is empty");
     parse_bad("--text _ f", "--text: the value is empty");
+    parse_bad("--word CC f", "--word: 'CC' is not one of a|b|cc: did you mean 'cc'?");
     parse_bad("--word c f", "--word: 'c' is not one of a|b|cc");
     parse_bad("--word a|b f", "--word: 'a|b' is not one of a|b|cc");
     parse_bad("--word _ f", "--word: '' is not one of a|b|cc");

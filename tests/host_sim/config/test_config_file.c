@@ -229,7 +229,7 @@ void test_what_is_no_list_of_settings(void) {
     load_bad("[a, b]: 1\n", "c.yaml:1: the name of a setting is a word\n");
     load_bad("topology: \"sha\\0red\"\n", "c.yaml:1: topology: contains a NUL character\n");
     load_bad("\"topo\\0logy\": shared\n", "the name of a setting is a word");
-    load_bad("Topology: shared\n", "c.yaml:1: Topology: unknown setting\n");
+    load_bad("Topology: shared\n", "c.yaml:1: Topology: unknown setting: did you mean 'topology'?\n");
 }
 
 void test_a_setting_stands_once(void) {

@@ -107,7 +107,8 @@ class Case(unittest.TestCase):
         """Replay a log that is refused: nothing is written."""
         self.write("log", log)
         before = self.files()
-        result = self.run_program("replay", "--events", "events.jsonl", "--out", "out.log", "--store", "store",
-                                  *arguments, "log", **options)
+        outputs = {"--events": "events.jsonl", "--out": "out.log", "--store": "store"}
+        others = [word for option, file in outputs.items() if option not in arguments for word in (option, file)]
+        result = self.run_program("replay", *others, *arguments, "log", **options)
         self.assertEqual(self.files(), before)
         return result

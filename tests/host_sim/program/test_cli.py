@@ -18,6 +18,7 @@ class Front(hostsim.Case):
     def test_version_is_one_line(self):
         result = self.run_good("--version")
         self.assertRegex(result.stdout, r"\Ahost_sim \d+\.\d+\.\d+\n\Z")
+        self.assertEqual(result.stdout, self.run_good("-V").stdout)
         self.assertEqual(result.stderr, "")
 
     def test_help_lists_the_commands_and_each_has_its_own(self):
@@ -27,6 +28,9 @@ class Front(hostsim.Case):
             text = self.run_good(command, "--help").stdout
             self.assertIn("usage: host_sim " + command, text)
             self.assertEqual(text, self.run_good(command, "-h").stdout)
+            self.assertEqual(text, self.run_good("help", command).stdout)
+        self.assertEqual(self.run_good("--help").stdout, self.run_good("help").stdout)
+        self.assertEqual(self.run_good("--help").stdout, self.run_good("-h").stdout)
 
     def test_help_of_replay_names_every_option(self):
         text = self.run_good("replay", "--help").stdout
@@ -42,6 +46,23 @@ class Front(hostsim.Case):
         self.assert_refused(self.run_program("drive"), "'drive'")
         self.assert_refused(self.run_program("--nonsense"), "'--nonsense'")
         self.assert_refused(self.run_program(""), "''")
+
+    def test_what_was_meant(self):
+        self.write("c.yaml", "init_hold: 700\n")
+        self.write("d.yaml", "park: AT_ONCE\n")
+        self.write("s.yaml", "name: n\nshow: [SUP-2]\n")
+        for arguments, says in ((("replya",), "unknown command 'replya': did you mean 'replay'?"),
+                                (("help", "moniter"), "unknown command 'moniter': did you mean 'monitor'?"),
+                                (("--hepl",), "no command before '--hepl': did you mean '--help'?"),
+                                (("replay", "--tial", "5", "log"), "unknown option '--tial': did you mean '--tail'?"),
+                                (("config", "--topology", "gatway"), "'gatway' is not one of shared|gateway: did you mean 'gateway'?"),
+                                (("demo", "--scenario", "resett"), "no scenario 'resett': did you mean 'reset'?"),
+                                (("campaign", "--runs", "1", "--seed", "1", "--fault", "bus-of"), "did you mean 'BUS_OFF'?"),
+                                (("config", "--config", "c.yaml"), "c.yaml:1: init_hold: unknown setting: did you mean 'init_hold_ms'?"),
+                                (("config", "--config", "d.yaml"), "'AT_ONCE' is not one of at_once|at_standstill: did you mean 'at_once'?"),
+                                (("scenario", "s.yaml"), "s.yaml:2: unknown key 'show' in a scenario: did you mean 'shows'?")):
+            with self.subTest(says):
+                self.assert_refused(self.run_program(*arguments), says)
 
     def test_every_command_refuses_an_unknown_option_by_its_name(self):
         for command in self.commands():
@@ -68,8 +89,13 @@ class Options(hostsim.Case):
         self.assertEqual(one.stdout, two.stdout)
         self.assertIn("0.111 s", one.stdout)
 
-    def test_options_may_follow_the_log_and_the_last_one_wins(self):
-        self.assertIn("0.113 s", self.run_good("replay", "log", "--tail", "17", "--tail", "19").stdout)
+    def test_options_may_follow_the_log(self):
+        self.assertIn("0.113 s", self.run_good("replay", "log", "--tail", "19").stdout)
+
+    def test_an_option_given_twice_is_refused(self):
+        for arguments in (("replay", "log", "--tail", "17", "--tail=19"), ("replay", "--shadow", "--shadow", "log"),
+                          ("config", "--config", "c", "--config", "c"), ("soak", "--seed", "1", "--seed", "1")):
+            self.assert_refused(self.run_program(*arguments), "given twice")
 
     def test_what_is_missing_or_too_much(self):
         self.assert_refused(self.run_program("replay"), "LOG is missing")
@@ -82,8 +108,10 @@ class Options(hostsim.Case):
 
     def test_numbers_are_checked_completely(self):
         for option, highest in (("--tail", 8640000000), ("--start-ms", 4294967295)):
-            for bad in ("-1", "+1", "1.0", "1s", " 1", "", "0x1", "1e3", str(highest + 1), "9" * 30):
+            for bad in ("-1", "+1", "1.0", "-1s", " 1", "", "0x1", "1e3", str(highest + 1), "9" * 30, "10 parsecs", "1us"):
                 self.assert_refused(self.run_program("replay", option + "=" + bad, "log"), option, "'%s'" % bad)
+        for bad in ("1s", "1.0", "", "0", "+1"):
+            self.assert_refused(self.run_program("campaign", "--seed", "1", "--runs=" + bad), "--runs", "'%s'" % bad)
         self.run_good("replay", "--start-ms", 4294967295, "log")
         self.run_good("replay", "--start-ms", "0", "--tail", "0", "log")
         self.run_good("replay", "--tail", "0001", "log")

@@ -69,7 +69,7 @@ class Hunt(hostsim.Case):
             ((), "--seed is missing"),
             (("--seed", 1), "--runs or --for-minutes is missing"),
             (("--seed", 1, "--runs", 0), "--runs: '0' is not a number from 1"),
-            (("--seed", 1, "--for-minutes", "x"), "--for-minutes: 'x' is not a number"),
+            (("--seed", 1, "--for-minutes", "x"), "--for-minutes: 'x' is not a time"),
             (("--seed", 1, "--runs", 1, "--shard", "3/2"), "--shard: '3/2'"),
             (("--seed", 1, "--runs", 1, "--found", "nowhere"), "--found: 'nowhere' is not a folder"),
             (("--seed", 1, "--runs", 1, "--fuond", "x"), "unknown option '--fuond'"),

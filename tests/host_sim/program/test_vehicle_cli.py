@@ -4,7 +4,7 @@ import unittest
 
 import hostsim
 
-FORM = "WHO-WHAT[,NAME=VALUE]...@MS is needed, such as ai-stop@2000"
+FORM = "WHO-WHAT[,NAME=VALUE]...@TIME is needed, such as ai-stop@2s"
 FAULTS = {
     "ai-stop": FORM,
     "ai-stop,@2000": FORM,

@@ -1,0 +1,62 @@
+/* A line for each command and each option. */
+#include <stdio.h>
+
+#include "cli/completion/completion.h"
+
+/* Have a meaning within single quotes. */
+#define SPECIAL "\\"
+
+/** Print "-F" (files), "-x" (no files), and words. */
+static void print_value(const completion_value_t *value) {
+    (void)printf(" %s", value->is_file ? "-rF" : "-x");
+    if (value->words != NULL) {
+        (void)printf(" -a '");
+        completion_print_words(value->words);
+        (void)printf("'");
+    } else if (value->is_folder) {
+        (void)printf(" -a '(__fish_complete_directories)'");
+    } else if (value->is_interface) {
+        (void)printf(" -a '(" COMPLETION_CAN_INTERFACES ")'");
+    }
+}
+
+static void print_operand(const char *command, const option_syntax_t *syntax) {
+    if (syntax->operands_max == 0u) {
+        return;
+    }
+    (void)printf("complete -c host_sim -n '__fish_seen_subcommand_from %s'", command);
+    if (syntax->words == NULL) {
+        (void)printf(" -F\n");
+        return;
+    }
+    (void)printf(" -a '");
+    completion_print_words(syntax->words);
+    (void)printf("'\n");
+}
+
+static void print_command(const void *ctx, const option_syntax_t *syntax) {
+    const command_t *command = ctx;
+    (void)printf("\ncomplete -c host_sim -n __fish_use_subcommand -a %s -d '", command->name);
+    completion_print_escaped(command->help, SPECIAL);
+    (void)printf("'\n");
+    for (size_t i = 0u; options_at(syntax, i) != NULL; i++) {
+        const option_t *option = options_at(syntax, i);
+        (void)printf("complete -c host_sim -n '__fish_seen_subcommand_from %s' -l %s", command->name, &option->name[2]);
+        if (option->value != NULL) {
+            const completion_value_t value = completion_of_option(option);
+            print_value(&value);
+        }
+        (void)printf(" -d '");
+        completion_print_escaped(option->help, SPECIAL);
+        (void)printf("'\n");
+    }
+    print_operand(command->name, syntax);
+}
+
+void completion_print_fish(void) {
+    (void)printf("# fish completion of host_sim; made by `host_sim completion fish`\n"
+                 "complete -c host_sim -f\n"
+                 "complete -c host_sim -s h -l help -d 'print the help'\n"
+                 "complete -c host_sim -n __fish_use_subcommand -s V -l version -d 'print the version'\n");
+    completion_each_command(print_command);
+}

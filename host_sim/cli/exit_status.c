@@ -1,0 +1,9 @@
+#include "cli/exit_status.h"
+
+const exit_status_t EXIT_STATUSES[] = {
+    {STATUS_OK, "It ran. A trip is no failure, unless --fail-on-trip is given."},
+    {STATUS_UNMET, "It ran, and what was expected did not happen: see the help of the command."},
+    {STATUS_UNUSABLE, "It could not run, or stopped early. One line on standard error says why."},
+};
+
+const size_t EXIT_STATUS_COUNT = sizeof EXIT_STATUSES / sizeof EXIT_STATUSES[0];

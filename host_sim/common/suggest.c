@@ -1,0 +1,101 @@
+#include "common/suggest.h"
+
+#include <ctype.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "common/words.h"
+
+enum { LENGTH_MAX = 48, PREFIX_MIN = 3, LETTERS_OF_A_MISTAKE = 4 };
+
+/** A character for comparison. */
+static int folded(char character) {
+    return (character == '_') ? '-' : tolower((unsigned char)character);
+}
+
+static size_t least(size_t a, size_t b) {
+    return (a < b) ? a : b;
+}
+
+/** Skip dashes in front. */
+static const char *bare(const char *text, size_t *length) {
+    size_t dashes = 0u;
+    while ((dashes < *length) && (text[dashes] == '-')) {
+        dashes++;
+    }
+    *length -= dashes;
+    return &text[dashes];
+}
+
+/** Letters to add, leave out, replace or swap (optimal string alignment). Both lengths are at most LENGTH_MAX. */
+static size_t distance_of(const char *a, size_t a_length, const char *b, size_t b_length) {
+    size_t rows[3][LENGTH_MAX + 1];
+    for (size_t j = 0u; j <= b_length; j++) {
+        rows[0][j] = j;
+    }
+    for (size_t i = 1u; i <= a_length; i++) {
+        size_t *row = rows[i % 3u];
+        const size_t *last = rows[(i + 2u) % 3u];
+        row[0] = i;
+        for (size_t j = 1u; j <= b_length; j++) {
+            const bool is_same = folded(a[i - 1u]) == folded(b[j - 1u]);
+            row[j] = least(least(last[j], row[j - 1u]) + 1u, last[j - 1u] + (is_same ? 0u : 1u));
+            if ((i > 1u) && (j > 1u) && (folded(a[i - 1u]) == folded(b[j - 2u])) &&
+                (folded(a[i - 2u]) == folded(b[j - 1u]))) {
+                row[j] = least(row[j], rows[(i + 1u) % 3u][j - 2u] + 1u);
+            }
+        }
+    }
+    return rows[a_length % 3u][b_length];
+}
+
+/** Whether a word begins with what was written. */
+static bool begins_with(const char *word, size_t length, const char *written, size_t written_length) {
+    return (written_length >= (size_t)PREFIX_MIN) && (written_length < length) &&
+           (distance_of(word, written_length, written, written_length) == 0u);
+}
+
+suggestion_t suggest_begin(const char *written, size_t length) {
+    suggestion_t suggestion = {.written_length = length};
+    suggestion.written = bare(written, &suggestion.written_length);
+    return suggestion;
+}
+
+void suggest_offer(suggestion_t *suggestion, const char *word, size_t length) {
+    size_t compared = length;
+    const char *letters = bare(word, &compared);
+    const size_t written_length = suggestion->written_length;
+    if ((compared > (size_t)LENGTH_MAX) || (written_length > (size_t)LENGTH_MAX)) {
+        return;
+    }
+    const size_t distance = begins_with(letters, compared, suggestion->written, written_length)
+                                ? 1u
+                                : distance_of(letters, compared, suggestion->written, written_length);
+    const size_t mistakes = (compared + (size_t)LETTERS_OF_A_MISTAKE - 1u) / (size_t)LETTERS_OF_A_MISTAKE;
+    if ((distance <= mistakes) && (distance < written_length) &&
+        ((suggestion->word == NULL) || (distance < suggestion->distance))) {
+        suggestion->word = word;
+        suggestion->length = length;
+        suggestion->distance = distance;
+    }
+}
+
+const char *suggest_text(const suggestion_t *suggestion, char text[SUGGEST_SIZE]) {
+    text[0] = '\0';
+    if (suggestion->word != NULL) {
+        (void)snprintf(text, SUGGEST_SIZE, ": did you mean '%.*s'?", (int)suggestion->length, suggestion->word);
+    }
+    return text;
+}
+
+const char *suggest_from(const char *words, const char *written, char text[SUGGEST_SIZE]) {
+    suggestion_t suggestion = suggest_begin(written, strlen(written));
+    const char *word = NULL;
+    size_t length = words_at(words, 0u, &word);
+    for (size_t i = 1u; length > 0u; i++) {
+        suggest_offer(&suggestion, word, length);
+        length = words_at(words, i, &word);
+    }
+    return suggest_text(&suggestion, text);
+}
