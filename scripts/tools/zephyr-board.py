@@ -159,10 +159,21 @@ def check_pins(build):
 
 
 def check_second_clock(build):
-    props = build.node().props
-    if "second-clock" in props and is_disabled(props["second-clock"].val):
-        clock = label(props["second-clock"].val)
-        raise Refused(f'devicetree: second-clock = <{clock}> is disabled: write {clock} {{ status = "okay"; }};')
+    clock = build.node().props.get("second-clock")
+    if clock is None:
+        return
+    if is_disabled(clock.val):
+        raise Refused(f'devicetree: second-clock = <{label(clock.val)}> is disabled: write {label(clock.val)} {{ status = "okay"; }};')
+    kind = pathlib.Path(clock.val.binding_path or "/").parent.name  # edtlib has no question for a driver's interface
+    if kind not in ("counter", "rtc", "timer") and not build.has("ZTEST"):
+        raise Refused(f"devicetree: second-clock = <{label(clock.val)}> is no counter")
+
+
+def check_log(build):
+    log = build.node().props.get("log-partition")
+    if log is not None and (log.val.parent is None or "fixed-partitions" not in log.val.parent.compats):
+        raise Refused(f"devicetree: log-partition = <{label(log.val)}> is no partition: name a child of a node with compatible = "
+                      '"fixed-partitions"')
 
 
 def check_watchdog(build):
@@ -187,12 +198,19 @@ def check_window(build):
                       "window: leave the alias out")
 
 
+def check_update(build):
+    if build.has("AGV_UPDATE") and not build.has("BOOTLOADER_MCUBOOT"):
+        raise Refused("update.conf (CONFIG_AGV_UPDATE) needs a bootloader: build with sysbuild")
+
+
 def check_release(build):
     if not build.has("AGV_RELEASE"):
         return
     if not build.has("MPU_STACK_GUARD", "BUILTIN_STACK_GUARD", "STACK_SENTINEL"):
         raise Refused("release: no stack is guarded: set CONFIG_HW_STACK_PROTECTION=y, or CONFIG_STACK_SENTINEL=y on a processor "
                       "without MPU")
+    if build.has("SHELL"):
+        raise Refused("release: CONFIG_SHELL=y: leave out shell.conf")
     if build.has("AGV_SHADOW_ON", "AGV_CAN_LISTEN_ONLY"):
         raise Refused("release: a supervisor in shadow mode does not act: leave out shadow.conf (CONFIG_AGV_SHADOW_ON, "
                       "CONFIG_AGV_CAN_LISTEN_ONLY)")
@@ -205,8 +223,10 @@ def check(build):
     check_controllers(build)
     check_pins(build)
     check_second_clock(build)
+    check_log(build)
     check_watchdog(build)
     check_window(build)
+    check_update(build)
     check_release(build)
 
 
