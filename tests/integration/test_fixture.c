@@ -16,8 +16,7 @@ void test_a_second_of_healthy_traffic(void) {
 /* Shows: SUP-1, SUP-2, SUP-3 */
 void test_healthy_traffic_raises_nothing_and_nothing_is_sent(void) {
     fixture_active(&f);
-    fixture_run(&f, 5000);
-    expect_state(&f, AGV_STATE_ACTIVE);
+    expect_state_after(&f, 5000, AGV_STATE_ACTIVE);
     expect_silence(&f);
     expect_output(&f, true);
     expect_led(&f, 0);

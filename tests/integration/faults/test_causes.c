@@ -3,7 +3,6 @@
 #include <stdio.h>
 
 #include "causes.h"
-#include "expect.h"
 #include "one_fixture.h"
 
 static const fault_row_t *row_of(const cause_t *cause) {
@@ -67,16 +66,14 @@ static void raise(const cause_t *cause, agv_state_t state) {
 
 /* The first good frame ends it; where frames are scored, the last of 2 N. */
 static void end(const cause_t *cause) {
-    fixture_run(&f, is_by_bits(cause) ? 0 : 300);
-    expect_fault(&f, cause->fault, true);
+    expect_fault_after(&f, is_by_bits(cause) ? 0 : 300, cause->fault, true);
     cause_set(f.traffic, cause, false);
     for (unsigned i = 1; is_by_bits(cause) && cause->count > 1 && i < 2 * cause->count; i++) {
         fixture_run_past(&f, cause->message);
     }
     fixture_run_before(&f, cause->message);
     expect_fault(&f, cause->fault, true);
-    fixture_run(&f, 1);
-    expect_fault(&f, cause->fault, false);
+    expect_fault_after(&f, 1, cause->fault, false);
     TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, fixture_ended(&f, cause->fault), f.what);
     TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, fixture_raised(&f, cause->fault), f.what);
 }
@@ -131,8 +128,7 @@ static void check_bits(const cause_t *cause) {
     fixture_start(&f);
     fixture_run(&f, 100);
     raise(cause, AGV_STATE_INIT);
-    fixture_run(&f, 2000);
-    expect_fault(&f, cause->fault, true);
+    expect_fault_after(&f, 2000, cause->fault, true);
     expect_led(&f, led_of(cause));
     expect_reason(&f, AGV_FAULT_NONE);
     if (row_of(cause)->trip) {
@@ -154,8 +150,7 @@ void test_each_fault_bit(void) {
 /* None of the frames before the last one has an effect. */
 static void send_frames(const cause_t *cause, unsigned count, uint32_t gap_ms) {
     for (unsigned i = 0; i < count; i++) {
-        fixture_run(&f, gap_ms);
-        expect_nothing(&f, cause->fault, AGV_STATE_STANDBY);
+        expect_nothing_after(&f, gap_ms, cause->fault, AGV_STATE_STANDBY);
         fixture_send_now(&f, cause->message);
     }
 }
@@ -234,8 +229,7 @@ void test_fault_bits_count_in_a_frame_with_an_invalid_mode(void) {
 void test_reserved_alarm_bits_are_ignored(void) {
     fixture_active(&f);
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x44;
-    fixture_run(&f, 2000);
-    expect_state(&f, AGV_STATE_ACTIVE);
+    expect_state_after(&f, 2000, AGV_STATE_ACTIVE);
     TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
 }
 
@@ -258,13 +252,10 @@ static void check_silence(const cause_t *cause) {
     begin_case(cause, "never heard");
     cause_set(f.traffic, cause, true);
     fixture_start(&f);
-    fixture_run(&f, cause->count);
-    expect_nothing(&f, cause->fault, AGV_STATE_INIT);
-    fixture_run(&f, 1);
-    expect_fault(&f, cause->fault, true);
+    expect_nothing_after(&f, cause->count, cause->fault, AGV_STATE_INIT);
+    expect_fault_after(&f, 1, cause->fault, true);
     expect_led(&f, led_of(cause));
-    fixture_run(&f, 2000);
-    expect_reason(&f, AGV_FAULT_NONE);
+    expect_reason_after(&f, 2000, AGV_FAULT_NONE);
     expect_state(&f, row_of(cause)->trip ? AGV_STATE_INIT : AGV_STATE_STANDBY);
 }
 
@@ -290,8 +281,7 @@ static void check_never_in_manual(const cause_t *cause) {
     begin_case(cause, "manual, then afresh at the engagement");
     fixture_standby(&f);
     cause_set(f.traffic, cause, true);
-    fixture_run(&f, 5000);
-    expect_nothing(&f, cause->fault, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 5000, cause->fault, AGV_STATE_STANDBY);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, cause->fault));
 }
 
@@ -301,8 +291,7 @@ static void check_afresh(const cause_t *cause) {
     fixture_mode(&f, MODE_ENGAGED);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     expect_state(&f, AGV_STATE_ACTIVE);
-    fixture_run(&f, cause->count);
-    expect_nothing(&f, cause->fault, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, cause->count, cause->fault, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_trip(&f, cause->fault, f.call, ANGLE_CENTRE);
     expect_led(&f, led_of(cause));
@@ -338,8 +327,7 @@ static void check_value(const cause_t *cause) {
     cause_set(f.traffic, cause, true);
     fixture_run(&f, cause->count);
     TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, fixture_raised(&f, cause->fault), f.what);
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, cause->fault);
+    expect_tripped(&f, cause->fault);
 }
 
 /* Shows: SUP-5, AI_COMMAND_OUT_OF_RANGE, EPS_MODE_OFF, EPS_MODE_INVALID, EPS_MODE_NOT_ANGLE, GEAR_STATUS_INVALID,

@@ -1,7 +1,6 @@
 /* Classes that the configuration may change, and the fault on the LED when several are active. Single rows:
  * test_fault_rows. */
 #include "agv/names.h"
-#include "expect.h"
 #include "one_fixture.h"
 
 /* ---- Classes that configuration has changed ---- */
@@ -22,8 +21,7 @@ void test_a_warning_may_be_made_a_trip(void) {
     set_class(AGV_FAULT_STEERING_POSITION_TIMEOUT, true);
     f.traffic[AGV_MSG_STEERING_POSITION].muted = true;
     fixture_start(&f);
-    fixture_run(&f, 2000);
-    expect_state(&f, AGV_STATE_INIT); /* now INIT waits for this message, too */
+    expect_state_after(&f, 2000, AGV_STATE_INIT); /* now INIT waits for this message, too */
     fixture_init(&f);
     set_class(AGV_FAULT_STEERING_POSITION_TIMEOUT, true);
     fixture_standby(&f);
@@ -43,8 +41,7 @@ void test_some_trips_may_be_made_warnings(void) {
     expect_warning(&f, AGV_FAULT_REMOTE_SIGNAL_LOST, AGV_STATE_ACTIVE);
     expect_led(&f, 17);
     f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
-    fixture_run(&f, 100);
-    expect_fault(&f, AGV_FAULT_WHEEL_SPEED_TIMEOUT, true);
+    expect_fault_after(&f, 100, AGV_FAULT_WHEEL_SPEED_TIMEOUT, true);
     expect_state(&f, AGV_STATE_ACTIVE);
     fixture_init(&f);
     set_class(AGV_FAULT_THROTTLE_STATUS_TIMEOUT, false);
@@ -54,8 +51,7 @@ void test_some_trips_may_be_made_warnings(void) {
     set_class(AGV_FAULT_WHEEL_SPEED_TIMEOUT, false);
     f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
     fixture_start(&f);
-    fixture_run(&f, 2000);
-    expect_state(&f, AGV_STATE_INIT); /* for standstill */
+    expect_state_after(&f, 2000, AGV_STATE_INIT); /* for standstill */
 }
 
 /* Mandatory: faults of the VCU and EPS heartbeats, of the AI while engaged, and of the EPS. */
@@ -96,8 +92,7 @@ void test_the_led_shows_the_highest(void) {
     fixture_standby(&f);
     expect_led(&f, 0);
     sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_ERROR_PASSIVE);
-    fixture_run(&f, 1);
-    expect_led(&f, 14);
+    expect_led_after(&f, 1, 14);
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 0x01; /* level 2 alarm: no code */
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     expect_led(&f, -1);
@@ -127,8 +122,7 @@ void test_warnings_are_counted(void) {
     fixture_run(&f, 20);
     TEST_ASSERT_EQUAL_UINT32(before + 1, agv_supervisor_counters(&f.supervisor)->warnings);
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x80;
-    fixture_run(&f, 20);
-    expect_fault(&f, AGV_FAULT_S_DRIVER_ALARM, true);
+    expect_fault_after(&f, 20, AGV_FAULT_S_DRIVER_ALARM, true);
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0;
     fixture_run(&f, 20);
     TEST_ASSERT_EQUAL_UINT32(before + 1, agv_supervisor_counters(&f.supervisor)->warnings);

@@ -1,6 +1,5 @@
 /* Faults of the controllers (SUP-7) and of the supervisor's own time (TIM-4). The test sets the controller's state
  * between two ticks; the next tick reads it. */
-#include "expect.h"
 #include "one_fixture.h"
 #include "walk.h"
 
@@ -20,8 +19,7 @@ static uint32_t recoveries(hal_can_side_t side) {
 
 static void expect_bus_off_trip(void) {
     expect_fault(&f, AGV_FAULT_BUS_OFF, true);
-    expect_reason(&f, AGV_FAULT_BUS_OFF);
-    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_tripped(&f, AGV_FAULT_BUS_OFF);
     expect_output(&f, false); /* at once, because no command can be sent */
     expect_led(&f, 14);
     expect_silence(&f);
@@ -35,8 +33,7 @@ void test_bus_off_trips_and_opens_the_output(void) {
     expect_nothing(&f, AGV_FAULT_BUS_OFF, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_bus_off_trip();
-    fixture_run(&f, 200);
-    expect_fault(&f, AGV_FAULT_TX_STALLED, false); /* and nothing else of the bus */
+    expect_fault_after(&f, 200, AGV_FAULT_TX_STALLED, false); /* and nothing else of the bus */
     expect_fault(&f, AGV_FAULT_ERROR_PASSIVE, false);
     expect_fault(&f, AGV_FAULT_AI_BUS_OFF, false);
 }
@@ -65,16 +62,13 @@ void test_recovery_is_requested(void) {
 void test_after_the_recovery(void) {
     fixture_active(&f);
     set_state(HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
-    fixture_run(&f, 137);
-    expect_fault(&f, AGV_FAULT_BUS_OFF, true);
+    expect_fault_after(&f, 137, AGV_FAULT_BUS_OFF, true);
     expect_silence(&f);
     set_state(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_BUS_OFF, false);
+    expect_fault_after(&f, 1, AGV_FAULT_BUS_OFF, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_BUS_OFF));
     expect_safe_commands(&f, f.call, ANGLE_CENTRE);
-    expect_reason(&f, AGV_FAULT_BUS_OFF);
-    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_tripped(&f, AGV_FAULT_BUS_OFF);
     expect_output(&f, false); /* until the next STANDBY */
     expect_led(&f, 14);
 }
@@ -89,8 +83,7 @@ void test_bus_off_between_two_ticks(void) {
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_BUS_OFF, f.call, ANGLE_CENTRE);
     expect_output(&f, false);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_BUS_OFF, false);
+    expect_fault_after(&f, 1, AGV_FAULT_BUS_OFF, false);
 }
 
 /* In INIT nothing latches; recovered, the safe commands go out at once. */
@@ -100,16 +93,14 @@ void test_bus_off_in_init(void) {
     fixture_run(&f, 40);
     set_state(HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
     fixture_forget_sent(&f);
-    fixture_run(&f, 1500);
-    expect_fault(&f, AGV_FAULT_BUS_OFF, true);
+    expect_fault_after(&f, 1500, AGV_FAULT_BUS_OFF, true);
     expect_state(&f, AGV_STATE_INIT);
     expect_reason(&f, AGV_FAULT_NONE);
     expect_silence(&f);
     set_state(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
     fixture_run(&f, 1);
     expect_safe_commands(&f, f.call, NO_HOLD); /* INIT sends no 065h */
-    fixture_run(&f, 600);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 600, AGV_STATE_STANDBY);
 }
 
 /* A frame that waited to be forwarded at bus-off is never sent. */
@@ -139,8 +130,7 @@ void test_queued_frames_are_never_sent(void) {
 void test_a_frame_that_is_not_sent(void) {
     fixture_active(&f);
     sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 100);
-    fixture_run(&f, 10);
-    expect_nothing(&f, AGV_FAULT_TX_STALLED, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 10, AGV_FAULT_TX_STALLED, AGV_STATE_ACTIVE);
     sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101);
     const uint32_t purged = purges(HAL_CAN_VEHICLE);
     fixture_run(&f, 1);
@@ -148,8 +138,7 @@ void test_a_frame_that_is_not_sent(void) {
     expect_output(&f, false);
     expect_led(&f, 14);
     TEST_ASSERT_EQUAL_UINT32(purged + 1, purges(HAL_CAN_VEHICLE));
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_TX_STALLED, false); /* no frame is pending any more */
+    expect_fault_after(&f, 1, AGV_FAULT_TX_STALLED, false); /* no frame is pending any more */
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_TX_STALLED));
     expect_reason(&f, AGV_FAULT_TX_STALLED);
 }
@@ -161,19 +150,14 @@ void test_a_queue_that_accepts_nothing_in_init(void) {
     fixture_start(&f);
     fixture_run(&f, 10);
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
-    fixture_run(&f, 133 - 10);
-    expect_nothing(&f, AGV_FAULT_TX_STALLED, AGV_STATE_INIT);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_TX_STALLED, true);
+    expect_nothing_after(&f, 133 - 10, AGV_FAULT_TX_STALLED, AGV_STATE_INIT);
+    expect_fault_after(&f, 1, AGV_FAULT_TX_STALLED, true);
     expect_led(&f, 14);
-    fixture_run(&f, 1000);
-    expect_state(&f, AGV_STATE_INIT);
+    expect_state_after(&f, 1000, AGV_STATE_INIT);
     expect_reason(&f, AGV_FAULT_NONE);
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
-    fixture_run(&f, 2);
-    expect_fault(&f, AGV_FAULT_TX_STALLED, false);
-    fixture_run(&f, 600);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_fault_after(&f, 2, AGV_FAULT_TX_STALLED, false);
+    expect_state_after(&f, 600, AGV_STATE_STANDBY);
 }
 
 /* The gateway cannot forward: it trips 101 ms after the first refused command. When the queue accepts frames again, the
@@ -185,12 +169,9 @@ void test_a_queue_that_accepts_nothing_in_a_gateway(void) {
     fixture_run_before(&f, AGV_MSG_STEERING_COMMAND);
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
     fixture_run(&f, 1);
-    fixture_run(&f, 100);
-    expect_nothing(&f, AGV_FAULT_TX_STALLED, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_TX_STALLED, true);
-    expect_reason(&f, AGV_FAULT_TX_STALLED);
-    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_nothing_after(&f, 100, AGV_FAULT_TX_STALLED, AGV_STATE_ACTIVE);
+    expect_fault_after(&f, 1, AGV_FAULT_TX_STALLED, true);
+    expect_tripped(&f, AGV_FAULT_TX_STALLED);
     expect_output(&f, false);
     fixture_run(&f, 50);
     fixture_mute_ai(&f, true);
@@ -214,10 +195,8 @@ void test_receive_overrun(void) {
     fixture_run(&f, 500);
     sim_hal_add_overrun(&f.hal, HAL_CAN_VEHICLE);
     fixture_run(&f, 1);
-    fixture_run(&f, 999);
-    expect_fault(&f, AGV_FAULT_RX_OVERRUN, true);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_RX_OVERRUN, false);
+    expect_fault_after(&f, 999, AGV_FAULT_RX_OVERRUN, true);
+    expect_fault_after(&f, 1, AGV_FAULT_RX_OVERRUN, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_RX_OVERRUN));
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_RX_OVERRUN));
     expect_led(&f, 0);
@@ -231,11 +210,9 @@ void test_error_passive(void) {
     fixture_run(&f, 1);
     expect_warning(&f, AGV_FAULT_ERROR_PASSIVE, AGV_STATE_ACTIVE);
     expect_led(&f, 14);
-    fixture_run(&f, 3000);
-    expect_fault(&f, AGV_FAULT_ERROR_PASSIVE, true);
+    expect_fault_after(&f, 3000, AGV_FAULT_ERROR_PASSIVE, true);
     set_state(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_ERROR_PASSIVE, false);
+    expect_fault_after(&f, 1, AGV_FAULT_ERROR_PASSIVE, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_ERROR_PASSIVE));
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_ERROR_PASSIVE));
     expect_state(&f, AGV_STATE_ACTIVE);
@@ -248,11 +225,9 @@ void test_warnings_of_the_bus_in_init(void) {
     fixture_start(&f);
     set_state(HAL_CAN_VEHICLE, HAL_CAN_ERROR_PASSIVE);
     sim_hal_add_overrun(&f.hal, HAL_CAN_VEHICLE);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_ERROR_PASSIVE, true);
+    expect_fault_after(&f, 1, AGV_FAULT_ERROR_PASSIVE, true);
     expect_fault(&f, AGV_FAULT_RX_OVERRUN, true);
-    fixture_run(&f, 600);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 600, AGV_STATE_STANDBY);
 }
 
 /* The AI side only warns. Recovery is requested there, and only there. */
@@ -273,8 +248,7 @@ void test_bus_off_of_the_ai_side(void) {
     TEST_ASSERT_EQUAL_UINT32(purged + 1, purges(HAL_CAN_AI));
     TEST_ASSERT_EQUAL_UINT32(0, recoveries(HAL_CAN_VEHICLE));
     set_state(HAL_CAN_AI, HAL_CAN_ERROR_ACTIVE);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_AI_BUS_OFF, false);
+    expect_fault_after(&f, 1, AGV_FAULT_AI_BUS_OFF, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_AI_BUS_OFF));
     expect_state(&f, AGV_STATE_STANDBY);
 }
@@ -329,11 +303,9 @@ void test_in_bus_off_nothing_is_stalled(void) {
     fixture_active(&f);
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x80; /* S-driver alarm: trips */
-    fixture_run(&f, 50);
-    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_state_after(&f, 50, AGV_STATE_TRIPPED);
     set_state(HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
-    fixture_run(&f, 300);
-    expect_fault(&f, AGV_FAULT_BUS_OFF, true);
+    expect_fault_after(&f, 300, AGV_FAULT_BUS_OFF, true);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_TX_STALLED));
 }
 
@@ -345,11 +317,9 @@ void test_bus_off_of_the_ai_side_while_engaged(void) {
     fixture_run_past(&f, AGV_MSG_STEERING_COMMAND);
     set_state(HAL_CAN_AI, HAL_CAN_BUS_OFF);
     fixture_mute_ai(&f, true);
-    fixture_run(&f, 125);
-    expect_fault(&f, AGV_FAULT_AI_BUS_OFF, true);
+    expect_fault_after(&f, 125, AGV_FAULT_AI_BUS_OFF, true);
     expect_state(&f, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_reason(&f, AGV_FAULT_STEERING_COMMAND_TIMEOUT);
+    expect_reason_after(&f, 1, AGV_FAULT_STEERING_COMMAND_TIMEOUT);
 }
 
 /* An AI side that accepts no frames, or does not send them, only warns. */
@@ -359,8 +329,7 @@ void test_an_overfull_ai_side_only_warns(void) {
     fixture_active(&f);
     sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_AI, 101);
     sim_hal_set_full(&f.hal, HAL_CAN_AI, true);
-    fixture_run(&f, 3000);
-    expect_state(&f, AGV_STATE_ACTIVE);
+    expect_state_after(&f, 3000, AGV_STATE_ACTIVE);
     TEST_ASSERT_TRUE(agv_supervisor_counters(&f.supervisor)->warnings > 0);
     expect_fault(&f, AGV_FAULT_TX_STALLED, false);
 }
@@ -372,8 +341,7 @@ void test_errors_of_the_ai_side(void) {
     fixture_active(&f);
     set_state(HAL_CAN_AI, HAL_CAN_ERROR_PASSIVE);
     sim_hal_add_overrun(&f.hal, HAL_CAN_AI);
-    fixture_run(&f, 2000);
-    expect_state(&f, AGV_STATE_ACTIVE);
+    expect_state_after(&f, 2000, AGV_STATE_ACTIVE);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_ERROR_PASSIVE));
 }
 
@@ -394,10 +362,8 @@ void test_a_step_100_ms_late_is_in_time(void) {
     be_late(101);
     expect_trip(&f, AGV_FAULT_STEP_OVERRUN, f.call, ANGLE_CENTRE);
     expect_led(&f, -1);
-    fixture_run(&f, 999);
-    expect_fault(&f, AGV_FAULT_STEP_OVERRUN, true);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_STEP_OVERRUN, false);
+    expect_fault_after(&f, 999, AGV_FAULT_STEP_OVERRUN, true);
+    expect_fault_after(&f, 1, AGV_FAULT_STEP_OVERRUN, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_STEP_OVERRUN));
     expect_reason(&f, AGV_FAULT_STEP_OVERRUN);
 }
@@ -420,11 +386,9 @@ void test_a_late_step_in_init(void) {
     fixture_run(&f, 300);
     be_late(101);
     expect_fault(&f, AGV_FAULT_STEP_OVERRUN, true);
-    fixture_run(&f, 1400);
-    expect_state(&f, AGV_STATE_INIT);
+    expect_state_after(&f, 1400, AGV_STATE_INIT);
     expect_reason(&f, AGV_FAULT_NONE);
-    fixture_run(&f, 150);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 150, AGV_STATE_STANDBY);
 }
 
 /* 065h waits for a full queue and is no longer wanted (manual), so it cannot stall. */
@@ -444,7 +408,6 @@ void test_a_frame_that_is_no_longer_wanted_is_not_stalled(void) {
 void test_a_controller_that_accepts_nothing_is_detected_after_a_trip(void) {
     walk_to_tripped(&f);
     sim_hal_fail_at(&f.hal, 1, UINT32_MAX, 1u << SIM_HAL_OP_CAN_SEND);
-    fixture_run(&f, 300);
-    expect_fault(&f, AGV_FAULT_TX_STALLED, true);
+    expect_fault_after(&f, 300, AGV_FAULT_TX_STALLED, true);
     expect_output(&f, false);
 }

@@ -3,15 +3,13 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "expect.h"
 #include "one_fixture.h"
 
 /* ---- At the start ---- */
 
 static void expect_tripped_at_the_start(agv_fault_t fault) {
     agv_event_t event;
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, fault);
+    expect_tripped(&f, fault);
     expect_fault(&f, fault, true);
     TEST_ASSERT_TRUE(fixture_last_raised(&f, fault, &event));
     TEST_ASSERT_EQUAL_INT(AGV_CLASS_TRIP, event.b);
@@ -22,8 +20,7 @@ static void expect_tripped_at_the_start(agv_fault_t fault) {
 
 /* The vehicle confirms and the operator presses the button, but only a power-on ends the fault. */
 static void expect_no_reset(agv_fault_t fault) {
-    fixture_run(&f, 500);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 500, AGV_STATE_SAFE);
     fixture_press(&f, 3000);
     expect_state(&f, AGV_STATE_SAFE);
     expect_reason(&f, fault);
@@ -60,10 +57,8 @@ void test_supervisor_reset(void) {
         f.reset_cause = CAUSES[i];
         fixture_start(&f);
         expect_tripped_at_the_start(AGV_FAULT_SUPERVISOR_RESET);
-        fixture_run(&f, 999);
-        expect_fault(&f, AGV_FAULT_SUPERVISOR_RESET, true);
-        fixture_run(&f, 1);
-        expect_fault(&f, AGV_FAULT_SUPERVISOR_RESET, false);
+        expect_fault_after(&f, 999, AGV_FAULT_SUPERVISOR_RESET, true);
+        expect_fault_after(&f, 1, AGV_FAULT_SUPERVISOR_RESET, false);
         TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_SUPERVISOR_RESET));
         expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
         expect_led(&f, -1);
@@ -79,11 +74,9 @@ void test_store_invalid(void) {
     fixture_restart(&f, HAL_RESET_POWER_ON);
     expect_warning(&f, AGV_FAULT_STORE_INVALID, AGV_STATE_INIT);
     expect_led(&f, -1);
-    fixture_run(&f, 999);
-    expect_fault(&f, AGV_FAULT_STORE_INVALID, true);
+    expect_fault_after(&f, 999, AGV_FAULT_STORE_INVALID, true);
     expect_state(&f, AGV_STATE_STANDBY); /* it does not keep INIT */
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_STORE_INVALID, false);
+    expect_fault_after(&f, 1, AGV_FAULT_STORE_INVALID, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_STORE_INVALID));
     expect_led(&f, 0);
 }
@@ -102,10 +95,8 @@ void test_memory_corrupted(void) {
     fixture_mute_eps(&f, true);
     fixture_mute_ai(&f, true);
     flip(1000);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_MEMORY_CORRUPTED, true);
-    expect_reason(&f, AGV_FAULT_MEMORY_CORRUPTED);
-    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_fault_after(&f, 1, AGV_FAULT_MEMORY_CORRUPTED, true);
+    expect_tripped(&f, AGV_FAULT_MEMORY_CORRUPTED);
     expect_led(&f, -1);
     expect_output(&f, false);
     expect_safe_commands(&f, f.call, NO_HOLD);
@@ -124,9 +115,7 @@ void test_memory_corrupted_before_the_receive_path_checks_in(void) {
     fixture_mute_eps(&f, true);
     fixture_mute_ai(&f, true);
     flip(1000);
-    fixture_run(&f, 1);
-    expect_reason(&f, AGV_FAULT_MEMORY_CORRUPTED);
-    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_tripped_after(&f, 1, AGV_FAULT_MEMORY_CORRUPTED);
 }
 
 /* A frame detects it as well. */
@@ -135,8 +124,7 @@ void test_memory_corrupted_is_found_by_a_frame(void) {
     fixture_active(&f);
     flip(77);
     fixture_send_now(&f, AGV_MSG_WHEEL_SPEED);
-    expect_reason(&f, AGV_FAULT_MEMORY_CORRUPTED);
-    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_tripped(&f, AGV_FAULT_MEMORY_CORRUPTED);
     expect_safe_commands(&f, f.call, NO_HOLD);
 }
 
@@ -150,8 +138,7 @@ static void flip_every_bit(void) {
         flip(bit);
         fixture_forget_sent(&f);
         agv_supervisor_tick(&f.supervisor, &f.ports, f.now_ms);
-        expect_reason(&f, AGV_FAULT_MEMORY_CORRUPTED);
-        expect_state(&f, AGV_STATE_TRIPPED);
+        expect_tripped(&f, AGV_FAULT_MEMORY_CORRUPTED);
         expect_output(&f, false);
         expect_safe_commands(&f, f.call, NO_HOLD);
     }
@@ -217,8 +204,8 @@ void test_the_gate_refuses_a_forbidden_frame(void) {
     TEST_ASSERT_EQUAL_UINT32(1, agv_supervisor_counters(&f.supervisor)->gate_refused);
     expect_fault(&f, AGV_FAULT_TX_GATE_REFUSED, true);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
-    fixture_run(&f, 1); /* faults are evaluated once a call, before anything is sent */
-    expect_reason(&f, AGV_FAULT_TX_GATE_REFUSED);
+    expect_reason_after(&f, 1,
+                        AGV_FAULT_TX_GATE_REFUSED); /* faults are evaluated once a call, before anything is sent */
     expect_state(&f, AGV_STATE_TRIPPED);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x065)); /* the held angle, not the waiting command */
     const uint8_t hold[8] = {0x28, 0x23};
@@ -226,10 +213,8 @@ void test_the_gate_refuses_a_forbidden_frame(void) {
     TEST_ASSERT_EQUAL_HEX8(0x70, fixture_nth_sent(&f, 0x43F, 1)->data[4]);
     TEST_ASSERT_EQUAL_HEX8(8, fixture_nth_sent(&f, 0x168, 0)->data[0]);
     expect_led(&f, -1);
-    fixture_run(&f, 998);
-    expect_fault(&f, AGV_FAULT_TX_GATE_REFUSED, true);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_TX_GATE_REFUSED, false); /* a transient */
+    expect_fault_after(&f, 998, AGV_FAULT_TX_GATE_REFUSED, true);
+    expect_fault_after(&f, 1, AGV_FAULT_TX_GATE_REFUSED, false); /* a transient */
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_TX_GATE_REFUSED));
 }
 
@@ -240,18 +225,14 @@ void test_the_gate_refuses_a_forbidden_frame(void) {
 void test_startup_timeout(void) {
     fixture_mode(&f, MODE_NEITHER);
     fixture_start(&f);
-    fixture_run(&f, 10000);
-    expect_nothing(&f, AGV_FAULT_STARTUP_TIMEOUT, AGV_STATE_INIT);
+    expect_nothing_after(&f, 10000, AGV_FAULT_STARTUP_TIMEOUT, AGV_STATE_INIT);
     fixture_run(&f, 1);
     expect_warning(&f, AGV_FAULT_STARTUP_TIMEOUT, AGV_STATE_INIT);
-    fixture_run(&f, 1);
-    expect_led(&f, -1);
+    expect_led_after(&f, 1, -1);
     fixture_run(&f, 5000);
     fixture_mode(&f, MODE_MANUAL);
-    fixture_run(&f, 400);
-    expect_fault(&f, AGV_FAULT_STARTUP_TIMEOUT, true);
-    fixture_run(&f, 200);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_fault_after(&f, 400, AGV_FAULT_STARTUP_TIMEOUT, true);
+    expect_state_after(&f, 200, AGV_STATE_STANDBY);
     expect_fault(&f, AGV_FAULT_STARTUP_TIMEOUT, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_STARTUP_TIMEOUT));
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_STARTUP_TIMEOUT));
@@ -266,18 +247,15 @@ void test_safe_state_unconfirmed(void) {
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x02;
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     expect_reason(&f, AGV_FAULT_REMOTE_POWER_LOST);
-    fixture_run(&f, 498);
-    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
+    expect_fault_after(&f, 498, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
     expect_output(&f, true);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
+    expect_fault_after(&f, 1, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
     expect_output(&f, false);
     TEST_ASSERT_TRUE(fixture_last_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, &event));
     TEST_ASSERT_EQUAL_INT(AGV_CLASS_TRIP, event.b);
     expect_led(&f, 16); /* the reason of the trip ranks higher */
     fixture_vehicle_confirms(&f);
-    fixture_run(&f, 40); /* three 363h */
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 40, AGV_STATE_SAFE); /* three 363h */
     expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));

@@ -1,7 +1,6 @@
 /* The first reason (FSM-5): of two simultaneous faults the upper row of the table, within a row the left name. causes.c
  * has this order. */
 #include "causes.h"
-#include "expect.h"
 #include "one_fixture.h"
 
 /* ---- Two in one frame ---- */
@@ -121,8 +120,7 @@ void test_a_frame_comes_before_the_tick(void) {
     fixture_run(&f, 50);
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x02;
     expect_reason(&f, AGV_FAULT_NONE);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_EPS_HEARTBEAT_LOST, true);
+    expect_fault_after(&f, 1, AGV_FAULT_EPS_HEARTBEAT_LOST, true);
     expect_fault(&f, AGV_FAULT_REMOTE_POWER_LOST, true);
     expect_reason(&f, AGV_FAULT_REMOTE_POWER_LOST);
     expect_led(&f, 12); /* the LED shows the highest-ranking one */
@@ -139,7 +137,6 @@ void test_a_later_fault_is_not_the_first_reason(void) {
     f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x08;
     fixture_run_past(&f, AGV_MSG_EPS_STATUS);
     fixture_mute_vcu(&f, true);
-    fixture_run(&f, 200);
-    expect_fault(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, true);
+    expect_fault_after(&f, 200, AGV_FAULT_VCU_HEARTBEAT_LOST, true);
     expect_reason(&f, AGV_FAULT_REMOTE_POWER_LOST);
 }

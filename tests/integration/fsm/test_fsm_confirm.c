@@ -66,8 +66,7 @@ void test_without_each_part_of_the_confirmation_it_stays_tripped(void) {
                 {"VCU silent", vcu_silent}};
     for (unsigned i = 0; i < sizeof ROWS / sizeof ROWS[0]; i++) {
         trip_and_confirm_all_but(ROWS[i].spoil, ROWS[i].what);
-        expect_state(&f, AGV_STATE_TRIPPED);
-        expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
+        expect_tripped(&f, AGV_FAULT_S_DRIVER_ALARM);
         expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
         expect_output(&f, false);
     }
@@ -105,8 +104,7 @@ void test_the_confirmation_does_not_need_standstill(void) {
     walk_to_tripped_driving(&f, 900);
     fixture_vehicle_confirms(&f);
     fixture_drive(&f, 900);
-    fixture_run(&f, 4900);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 4900, AGV_STATE_SAFE);
     expect_output(&f, true);
 }
 
@@ -137,11 +135,9 @@ void test_safe_sends_as_tripped_does(void) {
     const uint32_t trip_ms = f.now_ms;
     fixture_vehicle_confirms(&f);
     fixture_mode(&f, MODE_NEITHER); /* so that the steering is held */
-    fixture_run(&f, 90);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 90, AGV_STATE_SAFE);
     fixture_forget_sent(&f);
-    fixture_run(&f, 1000); /* from 91 to 1090 ms after the trip */
-    TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x43F));
+    expect_count_after(&f, 1000, 0x43F, 10); /* from 91 to 1090 ms after the trip */
     TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x168));
     TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x075));
     TEST_ASSERT_EQUAL_UINT32(40, fixture_count_sent(&f, 0x065));
@@ -184,10 +180,8 @@ void test_a_gear_that_is_not_fresh_confirms_nothing(void) {
     walk_to_safe(&f);
     fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
     f.traffic[AGV_MSG_GEAR_STATUS].muted = true;
-    fixture_run(&f, 125);
-    expect_state(&f, AGV_STATE_SAFE);
-    fixture_run(&f, 1);
-    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_state_after(&f, 125, AGV_STATE_SAFE);
+    expect_state_after(&f, 1, AGV_STATE_TRIPPED);
     f.traffic[AGV_MSG_GEAR_STATUS].muted = false;
     fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
     expect_state(&f, AGV_STATE_SAFE);
@@ -199,10 +193,8 @@ void test_a_vcu_that_is_not_alive_confirms_nothing(void) {
     walk_to_safe(&f);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     f.traffic[AGV_MSG_VEHICLE_STATUS].muted = true;
-    fixture_run(&f, 50);
-    expect_state(&f, AGV_STATE_SAFE);
-    fixture_run(&f, 1);
-    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_state_after(&f, 50, AGV_STATE_SAFE);
+    expect_state_after(&f, 1, AGV_STATE_TRIPPED);
     f.traffic[AGV_MSG_VEHICLE_STATUS].frozen = true;
     (void)send_now(AGV_MSG_VEHICLE_STATUS);
     expect_state(&f, AGV_STATE_TRIPPED);
@@ -233,8 +225,7 @@ void test_both_modes_at_once_after_engaged_confirm_nothing(void) {
     walk_to_tripped(&f);
     fixture_vehicle_confirms(&f);
     fixture_mode(&f, MODE_BOTH); /* engaged stands until MODE_INVALID */
-    fixture_run(&f, 50);
-    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_state_after(&f, 50, AGV_STATE_TRIPPED);
 }
 
 /* Both modes at once do not count as "not engaged", whatever the mode was before. */

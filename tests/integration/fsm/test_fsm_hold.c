@@ -44,8 +44,7 @@ void test_safe_holds_the_same_angle(void) {
     fixture_vehicle_confirms(&f);
     fixture_mode(&f, MODE_NEITHER);
     fixture_angle(&f, 9400);
-    fixture_run(&f, 100);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 100, AGV_STATE_SAFE);
     expect_held_for_a_second(9123);
 }
 
@@ -55,8 +54,7 @@ void test_an_invalid_angle_is_no_hold_angle(void) {
     fixture_active(&f);
     fixture_mute_ai(&f, true);
     fixture_angle(&f, 18001);
-    fixture_run(&f, 30); /* three of them */
-    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_state_after(&f, 30, AGV_STATE_TRIPPED); /* three of them */
     expect_reason(&f, AGV_FAULT_STEERING_ANGLE_INVALID);
     expect_not_held_for_a_second(); /* no command to an EPS that reports no angle */
     fixture_angle(&f, 9400);
@@ -346,8 +344,7 @@ void test_after_a_restart_the_first_valid_angle_is_held(void) {
     fixture_restart(&f, HAL_RESET_WATCHDOG);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
     fixture_angle(&f, 18001);
-    fixture_run(&f, 200);
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
+    expect_count_after(&f, 200, 0x065, 0);
     fixture_angle(&f, 9210);
     fixture_run_past(&f, AGV_MSG_STEERING_STATUS);
     fixture_angle(&f, 9320);
@@ -364,8 +361,7 @@ void test_after_a_restart_nothing_is_held_before_the_eps_is_alive(void) {
     fixture_mute_ai(&f, true);
     eps_frozen(true);
     fixture_restart(&f, HAL_RESET_WATCHDOG);
-    fixture_run(&f, 45); /* a slot of 065h is among them */
-    expect_fault(&f, AGV_FAULT_EPS_HEARTBEAT_STUCK, false);
+    expect_fault_after(&f, 45, AGV_FAULT_EPS_HEARTBEAT_STUCK, false); /* a slot of 065h is among them */
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
     eps_frozen(false);
     fixture_run(&f, 100);

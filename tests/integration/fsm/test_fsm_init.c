@@ -1,4 +1,5 @@
 /* INIT: its frames, its end, the conditions that keep it. Nothing latches in INIT. */
+#include "expect.h"
 #include "fixture.h"
 #include "unity.h"
 #include "walk.h"
@@ -35,8 +36,7 @@ void test_init_sends_the_safe_commands_beginning_as_after_a_trip(void) {
 void test_init_sends_no_steering_command_though_the_angle_is_known(void) {
     fixture_mode(&f, MODE_ENGAGED);
     fixture_start(&f);
-    fixture_run(&f, 2000);
-    expect_state(&f, AGV_STATE_INIT);
+    expect_state_after(&f, 2000, AGV_STATE_INIT);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
 }
 
@@ -48,11 +48,9 @@ void test_init_sends_no_steering_command_though_the_angle_is_known(void) {
 void test_init_is_left_after_500_ms_of_all_well(void) {
     fixture_start(&f);
     expect_output(&f, false);
-    fixture_run(&f, 513);
-    expect_state(&f, AGV_STATE_INIT);
+    expect_state_after(&f, 513, AGV_STATE_INIT);
     expect_output(&f, false);
-    fixture_run(&f, 1);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 1, AGV_STATE_STANDBY);
     expect_output(&f, true);
     expect_reason(&f, AGV_FAULT_NONE);
     fixture_forget_sent(&f);
@@ -67,8 +65,7 @@ void test_safe_commands_that_wait_do_not_leave_after_init(void) {
     fixture_start(&f);
     fixture_run(&f, 490);
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
-    fixture_run(&f, 24);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 24, AGV_STATE_STANDBY);
     fixture_forget_sent(&f);
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
     fixture_run(&f, 500);
@@ -82,10 +79,8 @@ void test_one_frame_that_is_not_well_starts_the_500_ms_anew(void) {
     fixture_mode(&f, MODE_NEITHER);
     fixture_run(&f, 1); /* 363h at 411 ms */
     fixture_mode(&f, MODE_MANUAL);
-    fixture_run(&f, 509); /* well again from 421 ms on; now it is 920 ms */
-    expect_state(&f, AGV_STATE_INIT);
-    fixture_run(&f, 1);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 509, AGV_STATE_INIT); /* well again from 421 ms on; now it is 920 ms */
+    expect_state_after(&f, 1, AGV_STATE_STANDBY);
 }
 
 /* A fault of the vehicle, and the condition that STARTUP_TIMEOUT reports for it. */
@@ -197,13 +192,10 @@ void test_each_missing_condition_keeps_init_and_is_named_after_10_s(void) {
     for (unsigned i = 0; i < OBSTACLE_COUNT; i++) {
         agv_event_t report = {0};
         begin(&OBSTACLES[i]);
-        fixture_run(&f, 9999);
-        expect_state(&f, AGV_STATE_INIT);
+        expect_state_after(&f, 9999, AGV_STATE_INIT);
         expect_fault(&f, AGV_FAULT_STARTUP_TIMEOUT, false);
-        fixture_run(&f, 2);
-        expect_fault(&f, AGV_FAULT_STARTUP_TIMEOUT, true);
-        fixture_run(&f, 12000);
-        expect_state(&f, AGV_STATE_INIT);
+        expect_fault_after(&f, 2, AGV_FAULT_STARTUP_TIMEOUT, true);
+        expect_state_after(&f, 12000, AGV_STATE_INIT);
         expect_output(&f, false);
         expect_fault(&f, AGV_FAULT_STARTUP_TIMEOUT, true);
         TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, startup_reports(&report), f.what);
@@ -217,14 +209,11 @@ void test_each_missing_condition_keeps_init_and_is_named_after_10_s(void) {
 void test_init_is_left_once_the_obstacle_is_gone_and_nothing_has_latched(void) {
     for (unsigned i = 0; i < OBSTACLE_COUNT; i++) {
         begin(&OBSTACLES[i]);
-        fixture_run(&f, 10500);
-        expect_state(&f, AGV_STATE_INIT);
+        expect_state_after(&f, 10500, AGV_STATE_INIT);
         expect_reason(&f, AGV_FAULT_NONE);
         OBSTACLES[i].spoil(false);
-        fixture_run(&f, 500);
-        expect_state(&f, AGV_STATE_INIT); /* the first good frame or tick came 1 ms later at the earliest */
-        fixture_run(&f, 60);
-        expect_state(&f, AGV_STATE_STANDBY);
+        expect_state_after(&f, 500, AGV_STATE_INIT); /* the first good frame or tick came 1 ms later at the earliest */
+        expect_state_after(&f, 60, AGV_STATE_STANDBY);
         expect_reason(&f, AGV_FAULT_NONE);
         expect_fault(&f, AGV_FAULT_STARTUP_TIMEOUT, false);
         expect_output(&f, true);
@@ -241,8 +230,7 @@ void test_conditions_that_do_not_keep_init(void) {
     fixture_speed(&f, 180);
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 0x01; /* level 2 alarm */
     fixture_start(&f);
-    fixture_run(&f, 514);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 514, AGV_STATE_STANDBY);
 }
 
 /* Shows: FSM-7 */
@@ -250,8 +238,7 @@ void test_the_speed_of_the_vcu_may_be_left_out(void) {
     f.config.standstill_vcu_counts = AGV_STANDSTILL_VCU_ANY;
     fixture_speed(&f, 65535);
     fixture_start(&f);
-    fixture_run(&f, 514);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 514, AGV_STATE_STANDBY);
 }
 
 /* Moving, then standing: the 500 ms begin with the first slow value. */
@@ -262,10 +249,8 @@ void test_a_vehicle_that_moves_for_a_moment_starts_the_500_ms_anew(void) {
     fixture_wheels(&f, 50, 0);
     fixture_run(&f, 1); /* 101h at 403 ms */
     fixture_wheels(&f, 0, 0);
-    fixture_run(&f, 509); /* well again from 413 ms on; now it is 912 ms */
-    expect_state(&f, AGV_STATE_INIT);
-    fixture_run(&f, 1);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 509, AGV_STATE_INIT); /* well again from 413 ms on; now it is 912 ms */
+    expect_state_after(&f, 1, AGV_STATE_STANDBY);
 }
 
 /* A transient lasts for 1 s after the last occurrence. */
@@ -279,11 +264,9 @@ void test_a_lost_ai_computer_keeps_init_where_it_is_a_trip_in_manual(void) {
     fixture_mute_ai(&f, true);
     fixture_run(&f, 500);
     fixture_mute_vcu(&f, false);
-    fixture_run(&f, 2000);
-    expect_state(&f, AGV_STATE_INIT);
+    expect_state_after(&f, 2000, AGV_STATE_INIT);
     fixture_mute_ai(&f, false);
-    fixture_run(&f, 1000);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 1000, AGV_STATE_STANDBY);
     expect_reason(&f, AGV_FAULT_NONE);
 }
 
@@ -298,10 +281,8 @@ void test_a_transient_keeps_init_until_it_has_ended(void) {
     f.traffic[AGV_MSG_GEAR_COMMAND].side = HAL_CAN_AI;
     expect_fault(&f, AGV_FAULT_FOREIGN_COMMAND_SENDER, true);
     expect_state(&f, AGV_STATE_INIT);
-    fixture_run(&f, 1499);
-    expect_state(&f, AGV_STATE_INIT);
-    fixture_run(&f, 2);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 1499, AGV_STATE_INIT);
+    expect_state_after(&f, 2, AGV_STATE_STANDBY);
     expect_reason(&f, AGV_FAULT_NONE);
 }
 
@@ -312,26 +293,21 @@ void test_a_vehicle_that_is_engaged_at_power_on_is_not_resumed(void) {
     fixture_drive(&f, 1500);
     fixture_start(&f);
     f.long_run = true;
-    fixture_run(&f, 30000);
-    expect_state(&f, AGV_STATE_INIT);
+    expect_state_after(&f, 30000, AGV_STATE_INIT);
     expect_output(&f, false);
     fixture_mode(&f, MODE_MANUAL);
-    fixture_run(&f, 2000);
-    expect_state(&f, AGV_STATE_INIT); /* it still moves */
+    expect_state_after(&f, 2000, AGV_STATE_INIT); /* it still moves */
     fixture_drive(&f, 0);
-    fixture_run(&f, 600);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 600, AGV_STATE_STANDBY);
 }
 
 /* Shows: FSM-9, SELF_TEST_FAILED, CONFIG_INVALID */
 void test_only_unresettable_faults_latch_at_a_power_on(void) {
     f.self_test_passed = false;
     fixture_start(&f);
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, AGV_FAULT_SELF_TEST_FAILED);
+    expect_tripped(&f, AGV_FAULT_SELF_TEST_FAILED);
     fixture_init(&f);
     f.config.startup_timeout_ms = 0;
     fixture_start(&f);
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, AGV_FAULT_CONFIG_INVALID);
+    expect_tripped(&f, AGV_FAULT_CONFIG_INVALID);
 }

@@ -16,12 +16,10 @@ static void press_for(uint32_t ms) {
 void test_later_reasons_do_not_replace_the_first_one(void) {
     walk_to_safe(&f);
     sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF); /* ranks higher */
-    fixture_run(&f, 300);
-    expect_fault(&f, AGV_FAULT_BUS_OFF, true);
+    expect_fault_after(&f, 300, AGV_FAULT_BUS_OFF, true);
     expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
     sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
-    fixture_run(&f, 300);
-    expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
+    expect_reason_after(&f, 300, AGV_FAULT_S_DRIVER_ALARM);
 }
 
 /* Shows: FSM-5 */
@@ -43,8 +41,7 @@ static void expect_first(uint8_t alarms, agv_fault_t reason) {
     fixture_active(&f);
     walk_alarm(&f, alarms);
     fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, reason);
+    expect_tripped(&f, reason);
 }
 
 /* In one frame: the upper row of the table is the first. */
@@ -89,13 +86,11 @@ static void expect_cannot_be_reset(agv_fault_t fault) {
     uint16_t missing = 0;
     const uint32_t refusals = walk_refusals(&f, &missing);
     f.long_run = true;
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, fault);
+    expect_tripped(&f, fault);
     expect_output(&f, false);
     fixture_vehicle_confirms(&f);
     fixture_mute_ai(&f, true);
-    fixture_run(&f, 2000);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 2000, AGV_STATE_SAFE);
     press_for(3000);
     expect_state(&f, AGV_STATE_SAFE);
     expect_reason(&f, fault);
@@ -108,8 +103,7 @@ static void expect_a_power_on_ends(agv_fault_t fault) {
     expect_cannot_be_reset(fault);
     fixture_restart(&f, HAL_RESET_POWER_ON);
     expect_state(&f, AGV_STATE_INIT);
-    fixture_run(&f, 600);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 600, AGV_STATE_STANDBY);
     expect_output(&f, true);
 }
 
@@ -242,8 +236,7 @@ void test_the_own_heartbeat_is_frozen_if_so_chosen(void) {
     f.long_run = true;
     walk_to_safe(&f);
     fixture_forget_sent(&f);
-    fixture_run(&f, 3000);
-    TEST_ASSERT_EQUAL_UINT32(30, fixture_count_sent(&f, 0x43F));
+    expect_count_after(&f, 3000, 0x43F, 30);
     for (uint32_t n = 1; n < 30; n++) {
         TEST_ASSERT_EQUAL_HEX8(fixture_nth_sent(&f, 0x43F, 0)->data[7], fixture_nth_sent(&f, 0x43F, n)->data[7]);
     }

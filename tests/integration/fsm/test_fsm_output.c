@@ -26,18 +26,15 @@ void test_it_stays_closed_while_the_vehicle_obeys(void) {
 
 /* After 500 ms without the confirmation it is open until the next STANDBY. */
 static void expect_opens_at(uint32_t moment_ms) {
-    fixture_run(&f, moment_ms + 499 - f.now_ms);
-    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
+    expect_fault_after(&f, moment_ms + 499 - f.now_ms, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
     expect_output(&f, true);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
+    expect_fault_after(&f, 1, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
     expect_output(&f, false);
 }
 
 static void expect_open_until_the_reset(void) {
     fixture_vehicle_confirms(&f);
-    fixture_run(&f, 200);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 200, AGV_STATE_SAFE);
     expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
     expect_output(&f, false);
     reset_by_button();
@@ -81,8 +78,7 @@ void test_a_confirmation_in_time_keeps_it_closed(void) {
     fixture_run(&f, 499);
     fixture_gear(&f, GEAR_P);
     fixture_send_now(&f, AGV_MSG_GEAR_STATUS);
-    fixture_run(&f, 2000);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 2000, AGV_STATE_SAFE);
     expect_output(&f, true);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
 }
@@ -100,8 +96,7 @@ static void lose_p_for(uint32_t ms) {
 /* SAFE, and the sums are empty: confirmed for 5 s. */
 static void stay_in_safe(void) {
     walk_to_safe(&f);
-    fixture_run(&f, 5100);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 5100, AGV_STATE_SAFE);
 }
 
 /* 500 ms in all since the trip, with interruptions. */
@@ -183,11 +178,9 @@ void test_each_sum_has_its_own_limit(void) {
 void test_it_is_unconfirmed_until_both_are_confirmed(void) {
     f.config.park_confirm_timeout_ms = 5000;
     walk_to_tripped(&f);
-    fixture_run(&f, 700);
-    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
+    expect_fault_after(&f, 700, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
     fixture_mode(&f, MODE_MANUAL);
-    fixture_run(&f, 1000);
-    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
+    expect_fault_after(&f, 1000, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
     fixture_gear(&f, GEAR_P);
     fixture_send_now(&f, AGV_MSG_GEAR_STATUS);
@@ -211,8 +204,7 @@ static void expect_open_at_once(agv_state_t before, agv_fault_t fault) {
     } else {
         sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101);
     }
-    fixture_run(&f, 1);
-    expect_fault(&f, fault, true);
+    expect_fault_after(&f, 1, fault, true);
     expect_output(&f, false);
     sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
     sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 0);
@@ -287,11 +279,9 @@ void test_a_second_trip_has_its_own_500_ms(void) {
     fixture_gear(&f, GEAR_D);
     fixture_run(&f, 50);
     walk_trip(&f); /* in manual only P is missing */
-    fixture_run(&f, 495);
-    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
+    expect_fault_after(&f, 495, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
     expect_output(&f, true);
-    fixture_run(&f, 10);
-    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
+    expect_fault_after(&f, 10, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
     expect_output(&f, false);
 }
 
@@ -305,8 +295,6 @@ void test_after_a_restart_autopilot_off_is_awaited_from_the_start(void) {
     fixture_mute_ai(&f, true);
     fixture_run(&f, 50);
     fixture_restart(&f, HAL_RESET_WATCHDOG);
-    fixture_run(&f, 495);
-    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
-    fixture_run(&f, 10);
-    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
+    expect_fault_after(&f, 495, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
+    expect_fault_after(&f, 10, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
 }

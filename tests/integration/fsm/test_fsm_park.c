@@ -49,8 +49,7 @@ void test_at_standstill_throttle_0_and_autopilot_off_go_out_at_once_and_p_does_n
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x43F));
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x075));
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
-    fixture_run(&f, 1000);
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
+    expect_count_after(&f, 1000, 0x168, 0);
     TEST_ASSERT_EQUAL_UINT32(1 + 10, fixture_count_sent(&f, 0x43F)); /* the others keep their cycles */
 }
 
@@ -62,10 +61,8 @@ void test_at_standstill_p_is_sent_when_the_vehicle_stands(void) {
     fixture_wheels(&f, 49, -49); /* that 363h still reports 1 m/s does not matter: the wheels stand */
     fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
     const uint32_t slow_ms = f.now_ms;
-    fixture_run(&f, 99);
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
-    fixture_run(&f, 300);
-    TEST_ASSERT_EQUAL_UINT32(3, fixture_count_sent(&f, 0x168));
+    expect_count_after(&f, 99, 0x168, 0);
+    expect_count_after(&f, 300, 0x168, 3);
     for (uint32_t n = 0; n < 3; n++) {
         TEST_ASSERT_EQUAL_UINT32(100 + 100 * n, fixture_nth_sent(&f, 0x168, n)->time_ms - slow_ms);
     }
@@ -128,10 +125,8 @@ void test_at_standstill_a_wheel_that_turns_again_starts_the_100_ms_anew(void) {
     fixture_run(&f, 10);
     fixture_wheels(&f, 0, 0);
     fixture_run(&f, 10); /* slow again since now */
-    fixture_run(&f, 99);
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
-    fixture_run(&f, 1);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    expect_count_after(&f, 99, 0x168, 0);
+    expect_count_after(&f, 1, 0x168, 1);
 }
 
 /* A command that is not sent is not an override either. */
@@ -141,8 +136,7 @@ void test_at_standstill_a_gear_command_of_another_sender_is_not_overridden_befor
     const uint32_t trip_ms = trip_while_driving();
     fixture_run(&f, 500);
     fixture_frame(&f, AGV_MSG_GEAR_COMMAND, drive);
-    fixture_run(&f, 20);
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
+    expect_count_after(&f, 20, 0x168, 0);
     expect_p_only_after_3_s(trip_ms);
     fixture_run(&f, 10);
     fixture_frame(&f, AGV_MSG_GEAR_COMMAND, drive);

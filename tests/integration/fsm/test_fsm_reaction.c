@@ -1,5 +1,4 @@
 /* Reaction: its time, the first frames, and the schedule after it. */
-#include "expect.h"
 #include "one_fixture.h"
 #include "walk.h"
 
@@ -153,8 +152,6 @@ void test_refused_safe_commands_wait_one_per_message(void) {
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
     fixture_run(&f, 1);
     expect_each_command_sent(1);
-    fixture_run(&f, 28); /* the schedule stands: 43Fh is due 100 ms after the trip */
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x43F));
-    fixture_run(&f, 1);
-    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x43F));
+    expect_count_after(&f, 28, 0x43F, 1); /* the schedule stands: 43Fh is due 100 ms after the trip */
+    expect_count_after(&f, 1, 0x43F, 2);
 }

@@ -18,8 +18,7 @@ static void hold_for(uint32_t ms) {
 /* The reset comes with the release, not earlier. */
 static void expect_reset_by(uint32_t ms) {
     press(true);
-    fixture_run(&f, ms);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, ms, AGV_STATE_SAFE);
     press(false);
     expect_state(&f, AGV_STATE_STANDBY);
 }
@@ -40,8 +39,7 @@ void test_a_press_of_1_s_with_all_conditions_resets_at_its_release(void) {
     TEST_ASSERT_EQUAL_UINT32(1, fixture_events(&f, AGV_EVENT_RESET, 1, ANY, &event));
     TEST_ASSERT_EQUAL_UINT32(0, fixture_events(&f, AGV_EVENT_RESET, 0, ANY, &event));
     fixture_forget_sent(&f);
-    fixture_run(&f, 2000);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 2000, AGV_STATE_STANDBY);
     expect_silence(&f);
 }
 
@@ -50,8 +48,7 @@ void test_a_press_of_less_than_1_s_resets_nothing_and_is_not_reported(void) {
     walk_to_safe(&f);
     for (unsigned i = 0; i < 5; i++) {
         hold_for(999);
-        fixture_run(&f, 500);
-        expect_state(&f, AGV_STATE_SAFE);
+        expect_state_after(&f, 500, AGV_STATE_SAFE);
     }
     expect_refusals(0, 0);
 }
@@ -168,8 +165,7 @@ static void begin(const condition_t *condition) {
     f.long_run = true;
     walk_to_safe(&f);
     condition->spoil(true);
-    fixture_run(&f, 700); /* a deadline has expired, SAFE_STATE_UNCONFIRMED has been raised */
-    expect_state(&f, condition->state);
+    expect_state_after(&f, 700, condition->state); /* a deadline has expired, SAFE_STATE_UNCONFIRMED has been raised */
 }
 
 /* At its release, or at 5 s. */
@@ -327,8 +323,7 @@ void test_a_release_starts_the_press_anew(void) {
 
 static void expect_no_reset_before_a_new_press(void) {
     uint16_t missing = 0;
-    fixture_run(&f, 3000);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 3000, AGV_STATE_SAFE);
     press(false);
     expect_state(&f, AGV_STATE_SAFE);
     TEST_ASSERT_EQUAL_UINT32(1, walk_refusals(&f, &missing));
@@ -364,8 +359,7 @@ static void release_after_safe(uint32_t ms) {
     fixture_run(&f, 100);
     press(true);
     fixture_mode(&f, MODE_MANUAL);
-    fixture_run(&f, 300);
-    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_state_after(&f, 300, AGV_STATE_TRIPPED);
     fixture_gear(&f, GEAR_P);
     fixture_send_now(&f, AGV_MSG_GEAR_STATUS);
     expect_state(&f, AGV_STATE_SAFE);
@@ -390,12 +384,10 @@ void test_the_loss_of_the_vcu_ends_a_press(void) {
     press(true);
     fixture_run(&f, 1200);
     f.traffic[AGV_MSG_VEHICLE_STATUS].muted = true;
-    fixture_run(&f, 100);
-    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_state_after(&f, 100, AGV_STATE_TRIPPED);
     expect_refusals(1, AGV_MISSING_VCU_HEARTBEAT);
     f.traffic[AGV_MSG_VEHICLE_STATUS].muted = false;
-    fixture_run(&f, 1500);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 1500, AGV_STATE_SAFE);
     press(false);
     expect_refusals(2, AGV_MISSING_BUTTON); /* it was pressed before the VCU came back */
     expect_state(&f, AGV_STATE_SAFE);
@@ -416,8 +408,7 @@ void test_a_short_press_that_the_loss_of_the_vcu_ends_is_not_reported(void) {
 void test_the_button_of_a_vcu_that_is_not_alive_does_not_count(void) {
     walk_to_safe(&f);
     f.traffic[AGV_MSG_VEHICLE_STATUS].frozen = true;
-    fixture_run(&f, 100);
-    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_state_after(&f, 100, AGV_STATE_TRIPPED);
     hold_for(1500);
     expect_refusals(0, 0);
     press(true);
@@ -466,8 +457,7 @@ void test_button_2_resets_nothing(void) {
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[6] = 0x42;
     fixture_run(&f, 2000);
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[6] = 0x40;
-    fixture_run(&f, 1000);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 1000, AGV_STATE_SAFE);
     expect_refusals(0, 0);
 }
 
@@ -480,8 +470,7 @@ void test_a_press_outside_the_latch_is_no_event(void) {
     fixture_mode(&f, MODE_ENGAGED);
     fixture_run(&f, 3000);
     press(false);
-    fixture_run(&f, 100);
-    expect_state(&f, AGV_STATE_ACTIVE);
+    expect_state_after(&f, 100, AGV_STATE_ACTIVE);
     expect_refusals(0, 0);
 }
 
@@ -490,11 +479,9 @@ void test_a_press_outside_the_latch_is_no_event(void) {
 static void trip_by_silent_ai(void) {
     fixture_active(&f);
     fixture_mute_ai(&f, true);
-    fixture_run(&f, 500);
-    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_state_after(&f, 500, AGV_STATE_TRIPPED);
     fixture_vehicle_confirms(&f);
-    fixture_run(&f, 300);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 300, AGV_STATE_SAFE);
 }
 
 /* 065h is the fastest: 126 ms after the last one. */
@@ -503,8 +490,7 @@ void test_a_dead_ai_computer_does_not_hinder(void) {
     trip_by_silent_ai();
     expect_reason(&f, AGV_FAULT_STEERING_COMMAND_TIMEOUT);
     expect_reset_by(1000);
-    fixture_run(&f, 3000);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 3000, AGV_STATE_STANDBY);
 }
 
 /* Shows: FSM-3, SUP-8 */
@@ -513,8 +499,7 @@ void test_a_dead_ai_computer_does_not_hinder_though_it_trips_in_manual(void) {
     trip_by_silent_ai();
     expect_fault(&f, AGV_FAULT_AI_HEARTBEAT_LOST, true);
     expect_reset_by(1000);
-    fixture_run(&f, 3000); /* the reset forgot that the AI was received */
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 3000, AGV_STATE_STANDBY); /* the reset forgot that the AI was received */
 }
 
 /* Shows: FSM-3, SUP-8, AI_HEARTBEAT_STUCK */
@@ -522,9 +507,7 @@ void test_a_frozen_ai_computer_does_not_hinder_though_it_trips_in_manual(void) {
     f.config.ai_lost_in_manual = AGV_AI_LOST_TRIP;
     fixture_active(&f);
     f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].frozen = true;
-    fixture_run(&f, 500);
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, AGV_FAULT_AI_HEARTBEAT_STUCK);
+    expect_tripped_after(&f, 500, AGV_FAULT_AI_HEARTBEAT_STUCK);
     fixture_vehicle_confirms(&f);
     fixture_run(&f, 300);
     expect_reset_by(1000);
@@ -551,8 +534,7 @@ static void expect_babbling_ai_does_not_hinder(uint16_t topology) {
         f.traffic[message].phase_ms = 0;
     }
     f.edit = babble;
-    fixture_run(&f, 200);
-    expect_fault(&f, AGV_FAULT_COMMAND_TOO_FAST, true);
+    expect_fault_after(&f, 200, AGV_FAULT_COMMAND_TOO_FAST, true);
     expect_reset_by(1000);
 }
 
@@ -567,8 +549,7 @@ void test_a_dead_ai_side_of_a_gateway_does_not_hinder(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
     walk_to_safe(&f);
     sim_hal_set_can_state(&f.hal, HAL_CAN_AI, HAL_CAN_BUS_OFF);
-    fixture_run(&f, 200);
-    expect_fault(&f, AGV_FAULT_AI_BUS_OFF, true);
+    expect_fault_after(&f, 200, AGV_FAULT_AI_BUS_OFF, true);
     expect_reset_by(1000);
 }
 
@@ -613,8 +594,7 @@ void test_after_the_reset_the_autopilot_can_be_engaged_again(void) {
     fixture_mute_ai(&f, false);
     fixture_run(&f, 300);
     fixture_mode(&f, MODE_ENGAGED);
-    fixture_run(&f, 1000);
-    expect_state(&f, AGV_STATE_ACTIVE);
+    expect_state_after(&f, 1000, AGV_STATE_ACTIVE);
     expect_silence(&f);
 }
 

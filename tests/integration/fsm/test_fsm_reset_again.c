@@ -10,8 +10,7 @@ static void press(bool pressed) {
 /* Press now, release after this many milliseconds: this resets. */
 static void expect_reset_by(uint32_t ms) {
     press(true);
-    fixture_run(&f, ms);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, ms, AGV_STATE_SAFE);
     press(false);
     expect_state(&f, AGV_STATE_STANDBY);
 }
@@ -19,11 +18,9 @@ static void expect_reset_by(uint32_t ms) {
 /* The AI computer is forgotten in the frame that releases the button, not only in the next tick. */
 static void expect_reset_in_a_frame(agv_fault_t forgotten) {
     fixture_vehicle_confirms(&f);
-    fixture_run(&f, 300);
-    expect_fault(&f, forgotten, true);
+    expect_fault_after(&f, 300, forgotten, true);
     press(true);
-    fixture_run(&f, 999);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 999, AGV_STATE_SAFE);
     fixture_run_without_ticks(&f, 1);
     press(false);
     expect_state(&f, AGV_STATE_STANDBY);
@@ -65,8 +62,7 @@ void test_a_button_that_is_held_over_a_restart_resets_nothing(void) {
     fixture_button(&f, true);
     fixture_restart(&f, HAL_RESET_WATCHDOG);
     fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-    fixture_run(&f, 3000);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 3000, AGV_STATE_SAFE);
     press(false);
     fixture_run(&f, 20);
     expect_reset_by(1000);
@@ -99,6 +95,5 @@ void test_an_engagement_in_the_frame_after_a_reset_finds_the_ai_computer_lost(vo
     fixture_mode(&f, MODE_ENGAGED);
     expect_fault(&f, AGV_FAULT_AI_HEARTBEAT_LOST, false);
     fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, AGV_FAULT_AI_HEARTBEAT_LOST);
+    expect_tripped(&f, AGV_FAULT_AI_HEARTBEAT_LOST);
 }

@@ -45,10 +45,8 @@ void test_with_pin_the_push_button_resets_and_the_remote_button_does_not(void) {
     push(true);
     fixture_run(&f, 1000);
     push(false);
-    fixture_run(&f, 20);
-    expect_state(&f, AGV_STATE_SAFE);
-    fixture_run(&f, 1);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 20, AGV_STATE_SAFE);
+    expect_state_after(&f, 1, AGV_STATE_STANDBY);
 }
 
 /* Shows: HW-3 */
@@ -82,7 +80,6 @@ void test_a_press_of_the_push_button_in_vain_is_reported(void) {
     push(true);
     fixture_run(&f, 5100);
     push(false);
-    fixture_run(&f, 100);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 100, AGV_STATE_SAFE);
     expect_refusals(1, AGV_MISSING_RELEASED);
 }

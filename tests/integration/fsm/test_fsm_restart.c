@@ -80,8 +80,7 @@ void test_each_reset_cause_tripped_or_not_with_each_state_of_the_store(void) {
 static void expect_tripped_after_restart(agv_state_t before, agv_fault_t reason) {
     expect_state(&f, before);
     fixture_restart(&f, HAL_RESET_BROWN_OUT);
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, reason);
+    expect_tripped(&f, reason);
 }
 
 /* Shows: FSM-7 */
@@ -108,8 +107,7 @@ void test_the_first_reason_outlives_one_restart_after_the_other(void) {
     for (unsigned i = 0; i < 5; i++) {
         fixture_restart(&f, HAL_RESET_WATCHDOG);
         expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
-        fixture_run(&f, 300);
-        expect_state(&f, AGV_STATE_SAFE);
+        expect_state_after(&f, 300, AGV_STATE_SAFE);
     }
 }
 
@@ -117,8 +115,7 @@ void test_the_first_reason_outlives_one_restart_after_the_other(void) {
 void test_after_a_restart_a_reset_is_possible_and_forgets_the_latch(void) {
     walk_to_safe(&f);
     fixture_restart(&f, HAL_RESET_WATCHDOG);
-    fixture_run(&f, 1500);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 1500, AGV_STATE_SAFE);
     fixture_press(&f, 1050);
     expect_state(&f, AGV_STATE_STANDBY);
     fixture_restart(&f, HAL_RESET_WATCHDOG);
@@ -130,10 +127,8 @@ void test_after_a_restart_a_reset_is_possible_and_forgets_the_latch(void) {
 void test_the_restart_is_an_event(void) {
     fixture_standby(&f);
     fixture_restart(&f, HAL_RESET_SOFTWARE);
-    fixture_run(&f, 999);
-    expect_fault(&f, AGV_FAULT_SUPERVISOR_RESET, true);
-    fixture_run(&f, 2);
-    expect_fault(&f, AGV_FAULT_SUPERVISOR_RESET, false);
+    expect_fault_after(&f, 999, AGV_FAULT_SUPERVISOR_RESET, true);
+    expect_fault_after(&f, 2, AGV_FAULT_SUPERVISOR_RESET, false);
     expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
     expect_state(&f, AGV_STATE_SAFE);
 }
@@ -142,11 +137,9 @@ void test_the_restart_is_an_event(void) {
 void test_a_power_on_waits_for_manual(void) {
     fixture_active(&f);
     fixture_restart(&f, HAL_RESET_POWER_ON);
-    fixture_run(&f, 5000);
-    expect_state(&f, AGV_STATE_INIT); /* still engaged */
+    expect_state_after(&f, 5000, AGV_STATE_INIT); /* still engaged */
     fixture_vehicle_confirms(&f);
-    fixture_run(&f, 600);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 600, AGV_STATE_STANDBY);
 }
 
 /* With this setting a power-on needs the operator, too. The stored reason is not used. */
@@ -154,14 +147,11 @@ void test_a_power_on_waits_for_manual(void) {
 void test_a_power_on_that_starts_tripped(void) {
     f.config.after_power_on = AGV_AFTER_POWER_ON_TRIPPED;
     fixture_start(&f);
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
+    expect_tripped(&f, AGV_FAULT_SUPERVISOR_RESET);
     expect_output(&f, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
-    fixture_run(&f, 1500);
-    expect_state(&f, AGV_STATE_SAFE);
-    fixture_run(&f, 10000);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 1500, AGV_STATE_SAFE);
+    expect_state_after(&f, 10000, AGV_STATE_SAFE);
     expect_output(&f, false);
     fixture_press(&f, 1000);
     expect_state(&f, AGV_STATE_STANDBY);
@@ -169,8 +159,7 @@ void test_a_power_on_that_starts_tripped(void) {
     walk_trip(&f);
     f.store.keep_latch = true;
     fixture_restart(&f, HAL_RESET_POWER_ON);
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
+    expect_tripped(&f, AGV_FAULT_SUPERVISOR_RESET);
 }
 
 /* A tripped stored latch, an unreadable one, and none: only the warning differs. */
@@ -185,8 +174,7 @@ void test_a_power_on_that_starts_tripped_with_each_state_of_the_store(void) {
         f.store.keep_latch = true;
         spoil_store(STORES[i]);
         fixture_restart(&f, HAL_RESET_POWER_ON);
-        expect_state(&f, AGV_STATE_TRIPPED);
-        expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
+        expect_tripped(&f, AGV_FAULT_SUPERVISOR_RESET);
         expect_fault(&f, AGV_FAULT_STORE_INVALID, STORES[i] == STORE_CORRUPT);
     }
 }
@@ -212,8 +200,7 @@ void test_every_flipped_bit_of_the_stored_latch_counts_as_tripped(void) {
     for (unsigned bit = 0; bit < 8 * size; bit++) {
         TEST_ASSERT_TRUE(sim_store_corrupt_latch(&f.store, bit / 8, (uint8_t)(1u << (bit % 8))));
         fixture_restart(&f, HAL_RESET_WATCHDOG);
-        expect_state(&f, AGV_STATE_TRIPPED);
-        expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
+        expect_tripped(&f, AGV_FAULT_SUPERVISOR_RESET);
         expect_fault(&f, AGV_FAULT_STORE_INVALID, true);
     }
 }
@@ -247,8 +234,7 @@ void test_a_store_that_accepts_nothing_changes_only_the_reason(void) {
     walk_to_safe(&f);
     expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
     fixture_restart(&f, HAL_RESET_WATCHDOG);
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
+    expect_tripped(&f, AGV_FAULT_SUPERVISOR_RESET);
 }
 
 /* The trip is stored in the same call. */
@@ -270,8 +256,7 @@ void test_a_reset_cause_that_cannot_be_read_is_no_power_on(void) {
     sim_hal_fail_at(&f.hal, 1, UINT32_MAX, 1u << SIM_HAL_OP_RESET_CAUSE);
     f.hal.config.reset_cause = HAL_RESET_POWER_ON;
     agv_supervisor_start(&f.supervisor, &f.ports, &f.config, f.now_ms);
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
+    expect_tripped(&f, AGV_FAULT_SUPERVISOR_RESET);
 }
 
 /* Shows: FSM-7 */
@@ -279,6 +264,5 @@ void test_a_latch_that_cannot_be_read_is_tripped_after_a_restart(void) {
     walk_to_safe(&f);
     sim_hal_fail_at(&f.hal, 1, UINT32_MAX, 1u << SIM_HAL_OP_STORE_READ_LATCH);
     fixture_restart(&f, HAL_RESET_WATCHDOG);
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
+    expect_tripped(&f, AGV_FAULT_SUPERVISOR_RESET);
 }

@@ -1,4 +1,5 @@
 /* The vehicle must stop in the safe state (FSM-12): a vehicle that does not stop in time, and one that moves again. */
+#include "expect.h"
 #include "fixture.h"
 #include "unity.h"
 #include "walk.h"
@@ -26,14 +27,11 @@ static void expect_moving_fault(agv_fault_t fault, bool active) {
 static void expect_ends_when_the_wheels_stand(agv_fault_t fault) {
     fixture_drive(&f, 0);
     fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
-    fixture_run(&f, 99);
-    expect_fault(&f, fault, true);
-    fixture_run(&f, 1);
-    expect_fault(&f, fault, false);
+    expect_fault_after(&f, 99, fault, true);
+    expect_fault_after(&f, 1, fault, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, fault));
     expect_output(&f, false);
-    fixture_run(&f, 1500);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 1500, AGV_STATE_SAFE);
     fixture_press(&f, 1000);
     expect_state(&f, AGV_STATE_STANDBY);
     expect_output(&f, true);
@@ -55,8 +53,7 @@ void test_a_vehicle_that_drives_on_for_5_s(void) {
     expect_not_stopping_after(5000);
     expect_state(&f, AGV_STATE_SAFE);
     expect_fault(&f, AGV_FAULT_MOVING_WHILE_SAFE, false);
-    fixture_run(&f, 3000);
-    expect_fault(&f, AGV_FAULT_VEHICLE_NOT_STOPPING, true);
+    expect_fault_after(&f, 3000, AGV_FAULT_VEHICLE_NOT_STOPPING, true);
     expect_ends_when_the_wheels_stand(AGV_FAULT_VEHICLE_NOT_STOPPING);
 }
 
@@ -120,10 +117,8 @@ void test_a_trip_by_missing_wheel_speeds(void) {
     (void)walk_until(&f, AGV_STATE_TRIPPED, 100);
     expect_reason(&f, AGV_FAULT_WHEEL_SPEED_TIMEOUT);
     confirm();
-    fixture_run(&f, 4999);
-    expect_fault(&f, AGV_FAULT_VEHICLE_NOT_STOPPING, false);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_VEHICLE_NOT_STOPPING, true);
+    expect_fault_after(&f, 4999, AGV_FAULT_VEHICLE_NOT_STOPPING, false);
+    expect_fault_after(&f, 1, AGV_FAULT_VEHICLE_NOT_STOPPING, true);
     expect_output(&f, false);
 }
 
@@ -132,10 +127,8 @@ void test_after_a_restart_the_5_s_run_from_the_start(void) {
     walk_driving(&f, 1000);
     fixture_mute_ai(&f, true);
     fixture_restart(&f, HAL_RESET_WATCHDOG);
-    fixture_run(&f, 4999);
-    expect_fault(&f, AGV_FAULT_VEHICLE_NOT_STOPPING, false);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_VEHICLE_NOT_STOPPING, true);
+    expect_fault_after(&f, 4999, AGV_FAULT_VEHICLE_NOT_STOPPING, false);
+    expect_fault_after(&f, 1, AGV_FAULT_VEHICLE_NOT_STOPPING, true);
 }
 
 /* The standstill after the first trip does not count for the second one. */
@@ -224,8 +217,7 @@ void test_a_stale_101h_is_not_moving(void) {
     fixture_wheels(&f, 2000, 2000);
     fixture_run(&f, 100);
     f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
-    fixture_run(&f, 5000);
-    expect_fault(&f, AGV_FAULT_MOVING_WHILE_SAFE, false);
+    expect_fault_after(&f, 5000, AGV_FAULT_MOVING_WHILE_SAFE, false);
 }
 
 /* Also in TRIPPED: nothing is confirmed, but the vehicle has stood. */
@@ -243,15 +235,13 @@ void test_a_vehicle_that_moves_again_in_tripped(void) {
 void test_cases_that_are_not_moving_while_safe(void) {
     walk_to_tripped_driving(&f, 1000);
     confirm();
-    fixture_run(&f, 3000);
-    expect_fault(&f, AGV_FAULT_MOVING_WHILE_SAFE, false);
+    expect_fault_after(&f, 3000, AGV_FAULT_MOVING_WHILE_SAFE, false);
     fixture_drive(&f, 0);
     fixture_run(&f, 1500);
     fixture_press(&f, 1000);
     expect_state(&f, AGV_STATE_STANDBY);
     fixture_drive(&f, 1000);
-    fixture_run(&f, 10000);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 10000, AGV_STATE_STANDBY);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_MOVING_WHILE_SAFE));
 }
 

@@ -26,8 +26,7 @@ static void engage(void) {
 }
 
 static void expect_tripped_at_once(agv_fault_t reason) {
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, reason);
+    expect_tripped(&f, reason);
 }
 
 /* Dead since before the reset: manual driving is possible, but an engagement trips. */
@@ -35,11 +34,9 @@ static void expect_tripped_at_once(agv_fault_t reason) {
 void test_a_dead_ai_computer_trips_at_the_next_engagement(void) {
     fixture_active(&f);
     fixture_mute_ai(&f, true);
-    fixture_run(&f, 500);
-    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_state_after(&f, 500, AGV_STATE_TRIPPED);
     reset();
-    fixture_run(&f, 20000);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 20000, AGV_STATE_STANDBY);
     engage();
     expect_tripped_at_once(AGV_FAULT_AI_HEARTBEAT_LOST);
 }
@@ -48,11 +45,9 @@ void test_a_dead_ai_computer_trips_at_the_next_engagement(void) {
 void test_a_frozen_ai_computer_trips_at_the_next_engagement(void) {
     fixture_active(&f);
     f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].frozen = true;
-    fixture_run(&f, 500);
-    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_state_after(&f, 500, AGV_STATE_TRIPPED);
     reset();
-    fixture_run(&f, 5000);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 5000, AGV_STATE_STANDBY);
     engage();
     expect_tripped_at_once(AGV_FAULT_AI_HEARTBEAT_STUCK);
 }
@@ -74,8 +69,7 @@ void test_a_living_ai_computer_that_the_reset_has_forgotten(void) {
     expect_state(&f, AGV_STATE_STANDBY);
     fixture_run_before(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
     expect_state(&f, AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_state(&f, AGV_STATE_ACTIVE);
+    expect_state_after(&f, 1, AGV_STATE_ACTIVE);
 }
 
 /* 168h comes every 10 ms: gaps under half its cycle. As a trip it neither prevents the reset nor trips in manual. */
@@ -93,8 +87,7 @@ static void reset_while_the_ai_babbles(void) {
     fixture_run(&f, 300);
     expect_tripped_at_once(AGV_FAULT_COMMAND_TOO_FAST);
     reset();
-    fixture_run(&f, 5000);
-    expect_fault(&f, AGV_FAULT_COMMAND_TOO_FAST, true);
+    expect_fault_after(&f, 5000, AGV_FAULT_COMMAND_TOO_FAST, true);
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
@@ -109,12 +102,10 @@ void test_a_cause_that_outlived_the_reset_trips_at_the_next_engagement(void) {
 void test_in_manual_it_trips_when_it_has_ended_and_comes_again(void) {
     reset_while_the_ai_babbles();
     babble(false);
-    fixture_run(&f, 5000);
-    expect_fault(&f, AGV_FAULT_COMMAND_TOO_FAST, false);
+    expect_fault_after(&f, 5000, AGV_FAULT_COMMAND_TOO_FAST, false);
     expect_state(&f, AGV_STATE_STANDBY);
     babble(true);
-    fixture_run(&f, 300);
-    expect_reason(&f, AGV_FAULT_COMMAND_TOO_FAST);
+    expect_reason_after(&f, 300, AGV_FAULT_COMMAND_TOO_FAST);
     expect_state(&f, AGV_STATE_SAFE); /* the vehicle stands in P */
 }
 
@@ -151,8 +142,7 @@ void test_a_warning_in_manual_trips_at_the_engagement(void) {
     fixture_standby(&f);
     fixture_run(&f, 300);
     fixture_mute_ai(&f, true);
-    fixture_run(&f, 1000);
-    expect_fault(&f, AGV_FAULT_AI_HEARTBEAT_LOST, true);
+    expect_fault_after(&f, 1000, AGV_FAULT_AI_HEARTBEAT_LOST, true);
     expect_state(&f, AGV_STATE_STANDBY);
     engage();
     expect_trip(&f, AGV_FAULT_AI_HEARTBEAT_LOST, f.call, ANGLE_CENTRE);

@@ -1,6 +1,7 @@
 /* Frames on the bus at a trip: the simulated bus with frame times and arbitration, 500 kbit/s. */
 #include <string.h>
 
+#include "expect.h"
 #include "fixture.h"
 #include "hal_sim/sim_bus.h"
 #include "unity.h"
@@ -157,8 +158,7 @@ void test_after_bus_off_only_safe_commands_are_sent(void) {
     ai_commands();
     sim_bus_force_bus_off(&vehicle_bus, f.hal.can[HAL_CAN_VEHICLE].node);
     run(99);
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, AGV_FAULT_BUS_OFF);
+    expect_tripped(&f, AGV_FAULT_BUS_OFF);
     TEST_ASSERT_EQUAL_UINT32(0, f.hal.can[HAL_CAN_VEHICLE].recover_requests);
     run(4);
     TEST_ASSERT_EQUAL_UINT32(1, f.hal.can[HAL_CAN_VEHICLE].recover_requests);

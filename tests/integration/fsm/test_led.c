@@ -71,8 +71,7 @@ void test_code_07(void) {
     fixture_standby(&f);
     fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
     f.traffic[AGV_MSG_THROTTLE_STATUS].muted = true;
-    fixture_run(&f, 60);
-    expect_led(&f, 0);
+    expect_led_after(&f, 60, 0);
     expect_flashes(7);
 }
 
@@ -88,8 +87,7 @@ void test_a_fault_without_a_code_blinks_100_ms_on_and_100_ms_off(void) {
     fixture_standby(&f);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     f.traffic[AGV_MSG_VEHICLE_STATUS].muted = true;
-    fixture_run(&f, 50);
-    expect_led(&f, 0);
+    expect_led_after(&f, 50, 0);
     expect_blinking();
 }
 
@@ -110,14 +108,12 @@ void test_a_warning_without_a_code_blinks_too_and_ends(void) {
 /* Shows: LED-1, FSM-5 */
 void test_a_latched_trip_is_shown_until_the_reset(void) {
     trip_by_alarm(ALARM_S_DRIVER);
-    fixture_run(&f, 20000);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 20000, AGV_STATE_SAFE);
     expect_led(&f, 8);
     fixture_button(&f, true);
     fixture_run(&f, 1050);
     fixture_button(&f, false);
-    fixture_run(&f, 10);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 10, AGV_STATE_STANDBY);
     expect_led(&f, 0);
 }
 
@@ -126,25 +122,20 @@ void test_a_latch_that_was_kept_through_a_restart_is_shown(void) {
     trip_by_alarm(ALARM_S_DRIVER);
     fixture_run(&f, 100);
     fixture_restart(&f, HAL_RESET_WATCHDOG);
-    fixture_run(&f, 5000);
-    expect_led(&f, 8);
+    expect_led_after(&f, 5000, 8);
 }
 
 /* Of several trips the upper row is shown, even if it came later. A latched trip counts as active. */
 /* Shows: LED-1 */
 void test_of_two_trips_the_upper_row_is_shown(void) {
     trip_by_alarm(ALARM_REMOTE_POWER);
-    fixture_run(&f, 100);
-    expect_led(&f, 16);
+    expect_led_after(&f, 100, 16);
     walk_alarm(&f, ALARM_REMOTE_SIGNAL); /* one row above */
-    fixture_run(&f, 20);
-    expect_led(&f, 17);
+    expect_led_after(&f, 20, 17);
     walk_alarm(&f, ALARM_NONE);
-    fixture_run(&f, 100);
-    expect_led(&f, 17);
+    expect_led_after(&f, 100, 17);
     f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x40; /* motor encoder: far above */
-    fixture_run(&f, 20);
-    expect_led(&f, 13);
+    expect_led_after(&f, 20, 13);
 }
 
 /* The warning of 167h bit 5 ranks above the S-driver alarm, but trips are shown before warnings. */
@@ -152,25 +143,20 @@ void test_of_two_trips_the_upper_row_is_shown(void) {
 void test_trips_go_before_warnings(void) {
     fixture_standby(&f);
     f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x10;
-    fixture_run(&f, 20);
-    expect_led(&f, 13);
+    expect_led_after(&f, 20, 13);
     walk_trip(&f);
-    fixture_run(&f, 20);
-    expect_led(&f, 8);
+    expect_led_after(&f, 20, 8);
 }
 
 /* Shows: LED-1, STEERING_POSITION_TIMEOUT */
 void test_of_two_warnings_the_upper_row_is_shown(void) {
     fixture_standby(&f);
     f.traffic[AGV_MSG_STEERING_POSITION].muted = true;
-    fixture_run(&f, 100);
-    expect_led(&f, 12);
+    expect_led_after(&f, 100, 12);
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 0x80; /* VCU_LEVEL2_ALARM */
-    fixture_run(&f, 20);
-    expect_led(&f, -1);
+    expect_led_after(&f, 20, -1);
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 0;
-    fixture_run(&f, 20);
-    expect_led(&f, 12);
+    expect_led_after(&f, 20, 12);
 }
 
 /* ---- Timing of the pattern ---- */

@@ -1,6 +1,7 @@
 /* An invalid configuration is refused with its reason, and a supervisor that gets one trips. */
 #include <string.h>
 
+#include "expect.h"
 #include "fixture.h"
 #include "unity.h"
 #include "walk.h"
@@ -262,13 +263,10 @@ void test_others_may_be_made_weaker_and_warnings_stronger(void) {
     f.config = config;
     fixture_active(&f);
     walk_alarm(&f, ALARM_S_DRIVER);
-    fixture_run(&f, 100);
-    expect_fault(&f, AGV_FAULT_S_DRIVER_ALARM, true);
+    expect_fault_after(&f, 100, AGV_FAULT_S_DRIVER_ALARM, true);
     expect_state(&f, AGV_STATE_ACTIVE);
     f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x10;
-    fixture_run(&f, 10);
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, AGV_FAULT_EPS_TEMP_ABOVE_110);
+    expect_tripped_after(&f, 10, AGV_FAULT_EPS_TEMP_ABOVE_110);
 }
 
 /* Shows: INT-2 */
@@ -286,8 +284,7 @@ static void expect_refused_at_start(const char *what) {
     f.what = what;
     f.config = config;
     fixture_start(&f);
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, AGV_FAULT_CONFIG_INVALID);
+    expect_tripped(&f, AGV_FAULT_CONFIG_INVALID);
     expect_output(&f, false);
     TEST_ASSERT_EQUAL_UINT32_MESSAGE(3, f.sent_count, what);
     TEST_ASSERT_EQUAL_INT_MESSAGE(AGV_CONFIG_OK, agv_config_check(agv_supervisor_config(&f.supervisor)).problem, what);

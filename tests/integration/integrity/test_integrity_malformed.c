@@ -1,5 +1,6 @@
 /* Malformed frames change only counters (except the two cases of SUP-5 and SUP-6). Two supervisors get the same
  * traffic, one of them also malformed frames. */
+#include "expect.h"
 #include "fixture.h"
 #include "unity.h"
 #include "walk.h"

@@ -276,8 +276,7 @@ void test_in_safe_each_event_is_copied_once_and_in_order(void) {
     fixture_run(&f, 20000);
     expect_log_holds(next_sequence());
     fixture_restart(&f, HAL_RESET_WATCHDOG); /* RAM has the number of the last event in flash */
-    fixture_run(&f, 20000);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 20000, AGV_STATE_SAFE);
     expect_log_holds(next_sequence());
 }
 
@@ -400,13 +399,11 @@ static void trip_and_reset(bool driver) {
     walk_alarm(&f, driver ? ALARM_S_DRIVER : ALARM_REMOTE_POWER);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     walk_alarm(&f, ALARM_NONE);
-    fixture_run(&f, 1500);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 1500, AGV_STATE_SAFE);
     fixture_button(&f, true);
     fixture_run(&f, 1050);
     fixture_button(&f, false);
-    fixture_run(&f, 10);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 10, AGV_STATE_STANDBY);
 }
 
 static void expect_trip_event(uint32_t index, agv_fault_t reason, uint32_t time_ms) {
@@ -449,8 +446,7 @@ void test_a_confirmation_that_comes_and_goes_is_no_trip(void) {
     walk_to_safe(&f);
     for (unsigned i = 0; i < 5; i++) {
         fixture_gear(&f, GEAR_D);
-        fixture_run(&f, 50);
-        expect_state(&f, AGV_STATE_TRIPPED);
+        expect_state_after(&f, 50, AGV_STATE_TRIPPED);
         fixture_gear(&f, GEAR_P);
         fixture_run(&f, 50);
     }
@@ -481,8 +477,7 @@ void test_a_flipped_bit_in_the_head_of_the_recorder_changes_no_decision(void) {
         setUp();
         walk_to_safe(&f);
         ((uint8_t *)&f.recorder)[bit / 8] ^= (uint8_t)(1u << (bit % 8));
-        fixture_run(&f, 20);
-        expect_state(&f, AGV_STATE_SAFE);
+        expect_state_after(&f, 20, AGV_STATE_SAFE);
         fixture_press(&f, 1050);
         expect_state(&f, AGV_STATE_STANDBY);
     }

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "causes.h"
-#include "expect.h"
 #include "one_fixture.h"
 
 typedef struct {
@@ -53,14 +52,12 @@ static void check(const kind_t *kind, agv_message_t message, uint32_t deadline_m
     const uint32_t before = f.traffic[message].sent;
     f.traffic[message].flags = kind->flags;
     f.traffic[message].length = kind->length;
-    fixture_run(&f, deadline_ms);
-    expect_nothing(&f, fault, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, deadline_ms, fault, AGV_STATE_ACTIVE);
     TEST_ASSERT_TRUE(f.traffic[message].sent > before);
     TEST_ASSERT_EQUAL_UINT32_MESSAGE(f.traffic[message].sent - before, rejected(kind->counted), f.what);
     TEST_ASSERT_EQUAL_UINT32_MESSAGE(f.traffic[message].sent - before, rejected_in_all(), f.what);
     expect_silence(&f);
-    fixture_run(&f, 1);
-    expect_fault(&f, fault, true);
+    expect_fault_after(&f, 1, fault, true);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, fault));
 }
 
@@ -89,10 +86,8 @@ static void check_no_command(const kind_t *kind, agv_message_t message, uint32_t
     expect_trip(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, f.call, ANGLE_CENTRE);
     TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, rejected(kind->counted), f.what);
     TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, rejected_in_all(), f.what);
-    fixture_run(&f, deadline_ms - (f.now_ms - refreshed_ms));
-    expect_fault(&f, fault, false);
-    fixture_run(&f, 1);
-    expect_fault(&f, fault, true);
+    expect_fault_after(&f, deadline_ms - (f.now_ms - refreshed_ms), fault, false);
+    expect_fault_after(&f, 1, fault, true);
 }
 
 /* A silent 267h only warns. */
@@ -239,8 +234,7 @@ void test_reserved_bits_are_ignored(void) {
         }
     }
     fixture_active(&f);
-    fixture_run(&f, 2000);
-    expect_state(&f, AGV_STATE_ACTIVE);
+    expect_state_after(&f, 2000, AGV_STATE_ACTIVE);
     expect_silence(&f);
     TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
     TEST_ASSERT_EQUAL_UINT32(0, rejected_in_all());

@@ -1,7 +1,6 @@
 /* Times and counts are settings. Each is set to a different value and checked to the millisecond. Also frames that come
  * in the last possible millisecond. */
 #include "agv/names.h"
-#include "expect.h"
 #include "one_fixture.h"
 
 /* ---- Deadlines ---- */
@@ -51,10 +50,8 @@ void test_each_deadline_is_a_setting(void) {
         fixture_active(&f);
         fixture_run_past(&f, DEADLINES[i].message);
         f.traffic[DEADLINES[i].message].muted = true;
-        fixture_run(&f, DEADLINES[i].chosen_ms);
-        expect_nothing(&f, DEADLINES[i].fault, AGV_STATE_ACTIVE);
-        fixture_run(&f, 1);
-        expect_fault(&f, DEADLINES[i].fault, true);
+        expect_nothing_after(&f, DEADLINES[i].chosen_ms, DEADLINES[i].fault, AGV_STATE_ACTIVE);
+        expect_fault_after(&f, 1, DEADLINES[i].fault, true);
     }
 }
 
@@ -73,14 +70,11 @@ void test_a_frame_in_the_last_millisecond(void) {
         f.what = agv_fault_name(DEADLINES[i].fault);
         fixture_active(&f);
         slow_down(DEADLINES[i].message, DEADLINES[i].deadline_ms + 1);
-        fixture_run(&f, 3000);
-        expect_nothing(&f, DEADLINES[i].fault, AGV_STATE_ACTIVE);
+        expect_nothing_after(&f, 3000, DEADLINES[i].fault, AGV_STATE_ACTIVE);
         TEST_ASSERT_EQUAL_UINT32_MESSAGE(0, fixture_raised(&f, DEADLINES[i].fault), f.what);
         slow_down(DEADLINES[i].message, DEADLINES[i].deadline_ms + 2);
-        fixture_run(&f, DEADLINES[i].deadline_ms);
-        expect_nothing(&f, DEADLINES[i].fault, AGV_STATE_ACTIVE);
-        fixture_run(&f, 1);
-        expect_fault(&f, DEADLINES[i].fault, true);
+        expect_nothing_after(&f, DEADLINES[i].deadline_ms, DEADLINES[i].fault, AGV_STATE_ACTIVE);
+        expect_fault_after(&f, 1, DEADLINES[i].fault, true);
     }
 }
 
@@ -93,8 +87,7 @@ void test_ai_never_seen_timeout(void) {
     fixture_standby(&f);
     fixture_mode(&f, MODE_ENGAGED);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    fixture_run(&f, 777);
-    expect_nothing(&f, AGV_FAULT_AI_HEARTBEAT_LOST, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 777, AGV_FAULT_AI_HEARTBEAT_LOST, AGV_STATE_STANDBY);
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_AI_HEARTBEAT_LOST, f.call, ANGLE_CENTRE);
 }
@@ -105,8 +98,7 @@ void test_mode_invalid_time(void) {
     fixture_standby(&f);
     fixture_mode(&f, MODE_BOTH);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    fixture_run(&f, 123);
-    expect_nothing(&f, AGV_FAULT_MODE_INVALID, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 123, AGV_FAULT_MODE_INVALID, AGV_STATE_STANDBY);
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_MODE_INVALID, f.call, ANGLE_CENTRE);
 }
@@ -120,8 +112,7 @@ void test_grace_and_throttle_in_park_time(void) {
     f.traffic[AGV_MSG_THROTTLE_STATUS].data[0] = 10;
     fixture_mode(&f, MODE_ENGAGED);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    fixture_run(&f, 123 + 65);
-    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 123 + 65, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
 }
@@ -169,8 +160,7 @@ void test_times_of_the_bus(void) {
     f.config.bus_off_recovery_ms = 33;
     fixture_standby(&f);
     sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 20);
-    fixture_run(&f, 1);
-    expect_nothing(&f, AGV_FAULT_TX_STALLED, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 1, AGV_FAULT_TX_STALLED, AGV_STATE_STANDBY);
     sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 21);
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_TX_STALLED, f.call, NO_HOLD);
@@ -187,10 +177,8 @@ void test_the_duration_of_a_transient(void) {
     f.config.event_hold_ms = 250;
     fixture_active(&f);
     fixture_frame(&f, AGV_MSG_GEAR_COMMAND, (const uint8_t[8]){0});
-    fixture_run(&f, 249);
-    expect_fault(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, true);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, false);
+    expect_fault_after(&f, 249, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, true);
+    expect_fault_after(&f, 1, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, false);
 }
 
 /* Shows: STARTUP_TIMEOUT */
@@ -198,8 +186,7 @@ void test_startup_timeout(void) {
     f.config.startup_timeout_ms = 1234;
     fixture_mode(&f, MODE_NEITHER);
     fixture_start(&f);
-    fixture_run(&f, 1234);
-    expect_nothing(&f, AGV_FAULT_STARTUP_TIMEOUT, AGV_STATE_INIT);
+    expect_nothing_after(&f, 1234, AGV_FAULT_STARTUP_TIMEOUT, AGV_STATE_INIT);
     fixture_run(&f, 1);
     expect_warning(&f, AGV_FAULT_STARTUP_TIMEOUT, AGV_STATE_INIT);
 }
@@ -210,10 +197,9 @@ void test_confirm_timeout(void) {
     fixture_active(&f);
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x02;
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    fixture_run(&f, 109); /* the tick of the trip's own millisecond is the first */
-    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
+    expect_fault_after(&f, 109, AGV_FAULT_SAFE_STATE_UNCONFIRMED,
+                       false); /* the tick of the trip's own millisecond is the first */
+    expect_fault_after(&f, 1, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
 }
 
 /* ---- Engaged, not engaged, engaged again ---- */
@@ -241,8 +227,7 @@ void test_every_engagement_has_its_grace(void) {
     fixture_run(&f, 1000);
     for (unsigned i = 0; i < 3; i++) {
         engage();
-        fixture_run(&f, 530); /* of which four frames count */
-        expect_nothing(&f, AGV_FAULT_EPS_MODE_OFF, AGV_STATE_ACTIVE);
+        expect_nothing_after(&f, 530, AGV_FAULT_EPS_MODE_OFF, AGV_STATE_ACTIVE); /* of which four frames count */
         disengage();
         expect_nothing(&f, AGV_FAULT_EPS_MODE_OFF, AGV_STATE_STANDBY);
         fixture_run(&f, 110);
@@ -250,11 +235,9 @@ void test_every_engagement_has_its_grace(void) {
     engage();
     fixture_run(&f, 530);
     disengage();
-    fixture_run(&f, 50);
-    expect_nothing(&f, AGV_FAULT_EPS_MODE_OFF, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 50, AGV_FAULT_EPS_MODE_OFF, AGV_STATE_STANDBY);
     engage();
-    fixture_run(&f, 5);
-    expect_reason(&f, AGV_FAULT_EPS_MODE_OFF);
+    expect_reason_after(&f, 5, AGV_FAULT_EPS_MODE_OFF);
 }
 
 /* Faults that count only while engaged end with the engagement. */
@@ -264,8 +247,7 @@ void test_faults_that_end_with_the_engagement(void) {
     fixture_gear(&f, GEAR_P);
     f.traffic[AGV_MSG_THROTTLE_STATUS].data[0] = 10;
     fixture_command_angle(&f, 12000);
-    fixture_run(&f, 1000);
-    expect_fault(&f, AGV_FAULT_STEERING_DEVIATION, true);
+    expect_fault_after(&f, 1000, AGV_FAULT_STEERING_DEVIATION, true);
     expect_fault(&f, AGV_FAULT_THROTTLE_IN_PARK, true);
     disengage();
     expect_fault(&f, AGV_FAULT_STEERING_DEVIATION, false);

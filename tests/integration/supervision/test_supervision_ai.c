@@ -1,6 +1,5 @@
 /* The AI computer (SUP-8): required while engaged, a warning in manual, forgotten by a reset; and the VCU's alarm about
  * it. Calculated by hand: the deadline is 350 ms, 43Fh comes each 100 ms, two cycles are 200 ms. */
-#include "expect.h"
 #include "one_fixture.h"
 #include "walk.h"
 
@@ -40,8 +39,8 @@ static void check_manual(agv_fault_t fault, bool *how) {
     fixture_run(&f, 1);
     expect_warning(&f, fault, AGV_STATE_STANDBY);
     expect_led(&f, 14);
-    fixture_run(&f, 5000); /* switching the AI computer off while driving by remote control is normal */
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 5000,
+                       AGV_STATE_STANDBY); /* switching the AI computer off while driving by remote control is normal */
     expect_silence(&f);
     *how = false;
     fixture_run_before(&f, AI);
@@ -155,8 +154,7 @@ void test_lost_in_manual_may_be_made_a_trip(void) {
 static void check_at_engagement(agv_fault_t fault, bool *how) {
     fixture_standby(&f);
     *how = true;
-    fixture_run(&f, 1000);
-    expect_fault(&f, fault, true);
+    expect_fault_after(&f, 1000, fault, true);
     expect_state(&f, AGV_STATE_STANDBY);
     fixture_mode(&f, MODE_ENGAGED);
     fixture_run_before(&f, VCU);
@@ -188,8 +186,7 @@ void test_the_class_follows_the_mode(void) {
     agv_event_t event;
     fixture_active(&f);
     f.traffic[AI].muted = true;
-    fixture_run(&f, 500);
-    expect_reason(&f, LOST);
+    expect_reason_after(&f, 500, LOST);
     expect_active_trips(LOST);
     fixture_vehicle_confirms(&f);
     fixture_run_past(&f, VCU);
@@ -263,8 +260,7 @@ void test_never_seen_in_an_engagement_that_is_continued(void) {
     engage();
     fixture_run(&f, 500 - (f.now_ms - began_ms));
     expect_no_fault(AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_reason(&f, LOST);
+    expect_reason_after(&f, 1, LOST);
     TEST_ASSERT_EQUAL_UINT32(501, f.now_ms - began_ms);
 }
 
@@ -309,11 +305,9 @@ void test_lost_in_init(void) {
     fixture_start(&f);
     fixture_run(&f, 250);
     f.traffic[AI].muted = true;
-    fixture_run(&f, 400);
-    expect_fault(&f, LOST, true);
+    expect_fault_after(&f, 400, LOST, true);
     expect_led(&f, 14);
-    fixture_run(&f, 400);
-    expect_state(&f, AGV_STATE_STANDBY); /* a warning in manual does not keep INIT */
+    expect_state_after(&f, 400, AGV_STATE_STANDBY); /* a warning in manual does not keep INIT */
     expect_reason(&f, AGV_FAULT_NONE);
 }
 
@@ -321,13 +315,11 @@ void test_lost_in_init(void) {
 
 static void reset(void) {
     fixture_vehicle_confirms(&f);
-    fixture_run(&f, 300);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 300, AGV_STATE_SAFE);
     fixture_button(&f, true);
     fixture_run(&f, 1100);
     fixture_button(&f, false);
-    fixture_run(&f, 20);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 20, AGV_STATE_STANDBY);
     fixture_forget_sent(&f);
 }
 
@@ -391,8 +383,7 @@ static void check_reset_with_ai_alive(bool goes_on) {
     } else {
         fixture_run(&f, 350 - (f.now_ms - beat_ms));
         expect_no_fault(AGV_STATE_STANDBY);
-        fixture_run(&f, 1);
-        expect_reason(&f, LOST);
+        expect_reason_after(&f, 1, LOST);
     }
 }
 
@@ -417,8 +408,7 @@ void test_a_reset_forgets_it_also_if_its_loss_trips_in_manual(void) {
     f.traffic[AI].muted = true;
     fixture_run(&f, 350);
     expect_no_fault(AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_reason(&f, LOST);
+    expect_reason_after(&f, 1, LOST);
 }
 
 /* A cause of the AI computer that outlived the reset (here COMMAND_TOO_FAST as a trip) does not trip in manual. It
@@ -455,8 +445,7 @@ void test_a_cause_from_the_ai_that_outlived_the_reset(void) {
     babble_through_a_reset();
     fixture_run(&f, 400);
     fixture_mute_ai(&f, true);
-    fixture_run(&f, 400);
-    expect_fault(&f, AGV_FAULT_COMMAND_TOO_FAST, false);
+    expect_fault_after(&f, 400, AGV_FAULT_COMMAND_TOO_FAST, false);
     expect_state(&f, AGV_STATE_STANDBY);
     babble(200);
     expect_reason(&f, AGV_FAULT_COMMAND_TOO_FAST);
@@ -471,8 +460,7 @@ void test_a_reset_forgets_a_frozen_ai_until_its_counter_changes(void) {
     f.traffic[AI].frozen = true;
     fixture_run(&f, 350);
     expect_no_fault(AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_fault(&f, STUCK, true);
+    expect_fault_after(&f, 1, STUCK, true);
     expect_led(&f, 14);
     expect_state(&f, AGV_STATE_STANDBY);
 }
@@ -504,8 +492,7 @@ void test_the_vcus_ai_alarm_while_engaged(void) {
 void test_the_vcus_ai_alarm_ends_with_the_engagement(void) {
     fixture_active(&f);
     set_alarm(true);
-    fixture_run(&f, 100);
-    expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, true);
+    expect_fault_after(&f, 100, AGV_FAULT_VCU_AI_CAN_LOST, true);
     fixture_mode(&f, MODE_MANUAL);
     for (unsigned i = 0; i < 3; i++) {
         expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, true);
@@ -521,10 +508,8 @@ void test_the_vcus_ai_alarm_ends_when_the_mode_is_invalid(void) {
     set_alarm(true);
     fixture_mode(&f, MODE_BOTH);
     fixture_run_past(&f, VCU);
-    fixture_run(&f, 50);
-    expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, true);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_MODE_INVALID, true);
+    expect_fault_after(&f, 50, AGV_FAULT_VCU_AI_CAN_LOST, true);
+    expect_fault_after(&f, 1, AGV_FAULT_MODE_INVALID, true);
     expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, false);
 }
 
@@ -533,8 +518,7 @@ void test_the_vcus_ai_alarm_in_manual_is_normal(void) {
     fixture_mute_ai(&f, true);
     set_alarm(true);
     fixture_standby(&f);
-    fixture_run(&f, 5000);
-    expect_nothing(&f, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 5000, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_STANDBY);
     expect_led(&f, 0);
 }
 
@@ -549,8 +533,7 @@ void test_the_vcus_ai_alarm_has_to_be_clear_once(void) {
     fixture_mute_ai(&f, false);
     fixture_run(&f, 500);
     engage();
-    fixture_run(&f, 2000);
-    expect_nothing(&f, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 2000, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_ACTIVE);
     set_alarm(false);
     fixture_run_past(&f, VCU);
     set_alarm(true);
@@ -563,13 +546,11 @@ void test_the_vcus_ai_alarm_has_to_be_clear_once(void) {
 void test_the_vcus_ai_alarm_outlives_the_ai(void) {
     fixture_active(&f);
     fixture_mute_ai(&f, true);
-    fixture_run(&f, 600);
-    expect_fault(&f, AGV_FAULT_AI_HEARTBEAT_LOST, true);
+    expect_fault_after(&f, 600, AGV_FAULT_AI_HEARTBEAT_LOST, true);
     set_alarm(true);
     fixture_run_past(&f, VCU);
     expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, true);
-    fixture_run(&f, 500);
-    expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, true);
+    expect_fault_after(&f, 500, AGV_FAULT_VCU_AI_CAN_LOST, true);
     fixture_mode(&f, MODE_MANUAL);
     for (unsigned i = 0; i < 3; i++) {
         expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, true);
@@ -583,8 +564,7 @@ void test_the_vcus_ai_alarm_outlives_the_ai(void) {
 void test_the_vcus_ai_alarm_at_the_engagement(void) {
     fixture_standby(&f);
     set_alarm(true);
-    fixture_run(&f, 200);
-    expect_nothing(&f, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 200, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_STANDBY);
     fixture_mode(&f, MODE_ENGAGED);
     fixture_run_past(&f, VCU);
     expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
@@ -598,8 +578,8 @@ void test_the_vcus_ai_alarm_of_an_ai_that_was_never_received(void) {
     fixture_run(&f, 500);
     engage();
     set_alarm(true);
-    fixture_run(&f, 100); /* the missing commands trip after 125 ms */
-    expect_nothing(&f, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 100, AGV_FAULT_VCU_AI_CAN_LOST,
+                         AGV_STATE_STANDBY); /* the missing commands trip after 125 ms */
 }
 
 /* Alive with the alarm clear, then off for a second of manual driving, with the alarm, and on again. */
@@ -616,8 +596,7 @@ static void pause_ai_in_manual(void) {
 /* Shows: SUP-8, VCU_AI_CAN_LOST */
 void test_the_vcus_ai_alarm_that_stands_since_a_pause_counts_when_engaged(void) {
     pause_ai_in_manual();
-    fixture_run(&f, 500);
-    expect_nothing(&f, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 500, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_STANDBY);
     engage();
     expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
 }
@@ -630,8 +609,7 @@ void test_the_vcus_ai_alarm_of_a_pause_in_manual_that_is_over(void) {
     set_alarm(false);
     fixture_run_past(&f, VCU);
     engage();
-    fixture_run(&f, 200);
-    expect_nothing(&f, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 200, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_ACTIVE);
 }
 
 /* Another alarm of the same byte (the remote's signal, here a warning) does not prevent the arming. */

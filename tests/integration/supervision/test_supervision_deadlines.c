@@ -1,5 +1,4 @@
 /* Deadlines of messages (SUP-3) beyond the checks of test_causes, and MODE_INVALID. */
-#include "expect.h"
 #include "one_fixture.h"
 
 /* Engaged while the supervisor is still in INIT: the cause is active and latches nothing. */
@@ -10,12 +9,9 @@ void test_command_timeout_in_init(void) {
     fixture_start(&f);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS); /* the VCU is alive: engaged */
-    fixture_run(&f, 125);
-    expect_nothing(&f, AGV_FAULT_STEERING_COMMAND_TIMEOUT, AGV_STATE_INIT);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_STEERING_COMMAND_TIMEOUT, true);
-    fixture_run(&f, 1000);
-    expect_state(&f, AGV_STATE_INIT);
+    expect_nothing_after(&f, 125, AGV_FAULT_STEERING_COMMAND_TIMEOUT, AGV_STATE_INIT);
+    expect_fault_after(&f, 1, AGV_FAULT_STEERING_COMMAND_TIMEOUT, true);
+    expect_state_after(&f, 1000, AGV_STATE_INIT);
     expect_reason(&f, AGV_FAULT_NONE);
 }
 
@@ -25,11 +21,9 @@ void test_a_command_out_of_range_refreshes_nothing(void) {
     fixture_active(&f);
     fixture_run_past(&f, AGV_MSG_GEAR_COMMAND);
     f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = 3;
-    fixture_run(&f, 350);
-    expect_reason(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE);
+    expect_reason_after(&f, 350, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE);
     expect_fault(&f, AGV_FAULT_GEAR_COMMAND_TIMEOUT, false);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_GEAR_COMMAND_TIMEOUT, true);
+    expect_fault_after(&f, 1, AGV_FAULT_GEAR_COMMAND_TIMEOUT, true);
 }
 
 /* ---- A node that fails completely ---- */
@@ -40,8 +34,7 @@ static void check_death(void (*mute)(fixture_t *, bool), agv_message_t last, uin
     fixture_active(&f);
     fixture_run_past(&f, last);
     mute(&f, true);
-    fixture_run(&f, after_ms);
-    expect_nothing(&f, fault, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, after_ms, fault, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_trip(&f, fault, f.call, hold_raw);
 }
@@ -60,18 +53,15 @@ static void check_both_modes(agv_state_t state, uint8_t mode_after) {
     fixture_run_before(&f, AGV_MSG_VEHICLE_STATUS);
     fixture_mode(&f, MODE_BOTH);
     fixture_run(&f, 1);
-    fixture_run(&f, 50);
-    expect_nothing(&f, AGV_FAULT_MODE_INVALID, state);
+    expect_nothing_after(&f, 50, AGV_FAULT_MODE_INVALID, state);
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_MODE_INVALID, f.call, ANGLE_CENTRE);
     expect_led(&f, -1);
-    fixture_run(&f, 500);
-    expect_fault(&f, AGV_FAULT_MODE_INVALID, true);
+    expect_fault_after(&f, 500, AGV_FAULT_MODE_INVALID, true);
     fixture_mode(&f, mode_after);
     fixture_run_before(&f, AGV_MSG_VEHICLE_STATUS);
     expect_fault(&f, AGV_FAULT_MODE_INVALID, true);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_MODE_INVALID, false);
+    expect_fault_after(&f, 1, AGV_FAULT_MODE_INVALID, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_MODE_INVALID));
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_MODE_INVALID));
     expect_reason(&f, AGV_FAULT_MODE_INVALID);
@@ -94,12 +84,9 @@ void test_mode_invalid_in_init(void) {
     fixture_mode(&f, MODE_BOTH);
     fixture_start(&f);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    fixture_run(&f, 50);
-    expect_nothing(&f, AGV_FAULT_MODE_INVALID, AGV_STATE_INIT);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_MODE_INVALID, true);
-    fixture_run(&f, 2000);
-    expect_state(&f, AGV_STATE_INIT);
+    expect_nothing_after(&f, 50, AGV_FAULT_MODE_INVALID, AGV_STATE_INIT);
+    expect_fault_after(&f, 1, AGV_FAULT_MODE_INVALID, true);
+    expect_state_after(&f, 2000, AGV_STATE_INIT);
     expect_reason(&f, AGV_FAULT_NONE);
 }
 
@@ -116,10 +103,8 @@ void test_both_modes_with_interruptions(void) {
         fixture_mode(&f, BETWEEN[i]);
         fixture_run(&f, 10);
         fixture_mode(&f, MODE_BOTH);
-        fixture_run(&f, 6);
-        expect_nothing(&f, AGV_FAULT_MODE_INVALID, AGV_STATE_STANDBY);
-        fixture_run(&f, 1);
-        expect_reason(&f, AGV_FAULT_MODE_INVALID);
+        expect_nothing_after(&f, 6, AGV_FAULT_MODE_INVALID, AGV_STATE_STANDBY);
+        expect_reason_after(&f, 1, AGV_FAULT_MODE_INVALID);
     }
 }
 
@@ -145,7 +130,6 @@ void test_both_modes_every_other_frame(void) {
 void test_neither_mode_is_not_engaged(void) {
     fixture_active(&f);
     fixture_mode(&f, MODE_NEITHER);
-    fixture_run(&f, 500);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 500, AGV_STATE_STANDBY);
     TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
 }

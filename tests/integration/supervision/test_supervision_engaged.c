@@ -2,7 +2,6 @@
  * autopilot: EPS mode and invalid status values (scores), throttle in park (budget); and commands out of range, which
  * have no grace time. Calculated by hand: a fault that needs N frames is raised when bad frames (+2) and good ones (-1)
  * add up to 2 N, and ends at 0. */
-#include "expect.h"
 #include "one_fixture.h"
 
 typedef struct {
@@ -40,8 +39,7 @@ static void check_trips(const row_t *row) {
     fixture_run_past(&f, row->message);
     expect_trip(&f, row->fault, f.traffic[row->message].call, row->hold_raw);
     expect_led(&f, row->led);
-    fixture_run(&f, 300);
-    expect_fault(&f, row->fault, true);
+    expect_fault_after(&f, 300, row->fault, true);
     set_payload(row->message, good);
     for (unsigned i = 1; i < 2 * row->frames; i++) {
         fixture_run_past(&f, row->message);
@@ -62,12 +60,10 @@ static void check_grace(const row_t *row, uint16_t phase_ms, unsigned not_counte
     fixture_standby(&f);
     f.traffic[row->message].phase_ms = phase_ms;
     set_payload(row->message, row->bad);
-    fixture_run(&f, 3000);
-    expect_nothing(&f, row->fault, AGV_STATE_STANDBY); /* not engaged: not judged */
+    expect_nothing_after(&f, 3000, row->fault, AGV_STATE_STANDBY); /* not engaged: not judged */
     fixture_run(&f, 100 - f.elapsed_ms % 100);
     fixture_mode(&f, MODE_ENGAGED);
-    fixture_run(&f, 1);
-    expect_state(&f, AGV_STATE_ACTIVE);
+    expect_state_after(&f, 1, AGV_STATE_ACTIVE);
     fixture_run(&f, 498);
     send_bad_frames(row, not_counted + row->frames - 1, AGV_STATE_ACTIVE);
     fixture_run_past(&f, row->message);
@@ -267,8 +263,7 @@ void test_values_at_the_edge_are_valid(void) {
         fixture_command_angle(&f, i % 2 == 0 ? 18000 : 0);
         command_throttle(f.traffic[AGV_MSG_THROTTLE_STATUS].data[0]);
         command_gear(GEARS[i % 4]);
-        fixture_run(&f, 200);
-        expect_state(&f, AGV_STATE_ACTIVE);
+        expect_state_after(&f, 200, AGV_STATE_ACTIVE);
     }
     TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
 }
@@ -283,8 +278,7 @@ static void set_throttle(uint8_t counts) {
 static void active_in_park(void) {
     fixture_active(&f);
     fixture_gear(&f, GEAR_P);
-    fixture_run(&f, 1000); /* P alone is no fault */
-    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 1000, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE); /* P alone is no fault */
 }
 
 /* Above idle is more than 2 counts. The budget of 200 ms is 200 ticks from the frame on; then it decreases by 1 ms in
@@ -296,18 +290,15 @@ void test_throttle_in_park(void) {
     fixture_run(&f, 1000);
     set_throttle(3);
     fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
-    fixture_run(&f, 198);
-    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 198, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
     expect_led(&f, 7);
     fixture_run(&f, 500); /* never more than 200 */
     set_throttle(2);
     fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
-    fixture_run(&f, 398);
-    expect_fault(&f, AGV_FAULT_THROTTLE_IN_PARK, true);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_THROTTLE_IN_PARK, false);
+    expect_fault_after(&f, 398, AGV_FAULT_THROTTLE_IN_PARK, true);
+    expect_fault_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_THROTTLE_IN_PARK));
 }
 
@@ -317,11 +308,9 @@ void test_idle_is_a_setting(void) {
     f.config.throttle_idle_counts = 10;
     active_in_park();
     set_throttle(10);
-    fixture_run(&f, 1000);
-    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 1000, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     set_throttle(11);
-    fixture_run(&f, 210);
-    expect_reason(&f, AGV_FAULT_THROTTLE_IN_PARK);
+    expect_reason_after(&f, 210, AGV_FAULT_THROTTLE_IN_PARK);
 }
 
 /* An invalid throttle is not used; the previous one stays valid. */
@@ -334,8 +323,7 @@ void test_an_invalid_throttle_between_does_not_end_throttle_in_park(void) {
     set_throttle(255);
     fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
     set_throttle(3);
-    fixture_run(&f, 98);
-    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 98, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
 }
@@ -351,14 +339,12 @@ void test_park_with_throttle(void) {
     fixture_run(&f, 1000);
     fixture_gear(&f, GEAR_P);
     fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
-    fixture_run(&f, 198);
-    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 198, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
     fixture_gear(&f, GEAR_D);
     fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
-    fixture_run(&f, 500);
-    expect_fault(&f, AGV_FAULT_THROTTLE_IN_PARK, false);
+    expect_fault_after(&f, 500, AGV_FAULT_THROTTLE_IN_PARK, false);
 }
 
 /* One good frame in twenty does not restart it: 190 - 5 are left, 15 more make 200. */
@@ -371,8 +357,7 @@ void test_one_good_frame_does_not_restart_throttle_in_park(void) {
     set_throttle(0);
     fixture_run(&f, 10);
     set_throttle(10);
-    fixture_run(&f, 14);
-    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 14, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
 }
@@ -419,12 +404,10 @@ void test_budgets_are_paused_while_not_judged(void) {
 void test_throttle_in_park_counts_after_the_grace(void) {
     fixture_standby(&f);
     set_throttle(10);
-    fixture_run(&f, 3000);
-    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 3000, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_STANDBY);
     fixture_mode(&f, MODE_ENGAGED);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    fixture_run(&f, 698);
-    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 698, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
 }
@@ -436,8 +419,7 @@ void test_an_invalid_throttle_that_lasts_is_no_throttle_in_park(void) {
     fixture_active(&f);
     fixture_gear(&f, GEAR_P);
     set_throttle(251);
-    fixture_run(&f, 1000);
-    expect_fault(&f, AGV_FAULT_THROTTLE_STATUS_INVALID, true);
+    expect_fault_after(&f, 1000, AGV_FAULT_THROTTLE_STATUS_INVALID, true);
     expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
 }
 
@@ -458,8 +440,7 @@ void test_invalid_values_are_no_throttle_in_park(void) {
     fixture_gear(&f, 0);
     fixture_run(&f, 25);
     set_throttle(10);
-    fixture_run(&f, 200);
-    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 200, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
 }
 
 /* ---- AI_COMMAND_OUT_OF_RANGE ---- */
@@ -493,11 +474,9 @@ static void check_out_of_range(const command_t *command) {
     fixture_frame(&f, command->message, command->data);
     expect_trip(&f, fault, f.call, ANGLE_CENTRE);
     TEST_ASSERT_EQUAL_UINT32(2, agv_supervisor_counters(&f.supervisor)->dropped);
-    fixture_run(&f, 999);
-    expect_led(&f, 14);
+    expect_led_after(&f, 999, 14);
     expect_fault(&f, fault, true);
-    fixture_run(&f, 1); /* a transient: ends a second after the last occurrence */
-    expect_fault(&f, fault, false);
+    expect_fault_after(&f, 1, fault, false); /* a transient: ends a second after the last occurrence */
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, fault));
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, fault));
 }
@@ -516,11 +495,9 @@ void test_commands_out_of_range_again_and_again(void) {
     fixture_active(&f);
     for (unsigned i = 0; i < 4; i++) {
         fixture_frame(&f, AGV_MSG_GEAR_COMMAND, (const uint8_t[8]){3});
-        fixture_run(&f, 900);
-        expect_fault(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, true);
+        expect_fault_after(&f, 900, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, true);
     }
-    fixture_run(&f, 100);
-    expect_fault(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, false);
+    expect_fault_after(&f, 100, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE));
 }
 
@@ -540,8 +517,7 @@ void test_commands_in_range(void) {
     fixture_active(&f);
     for (unsigned i = 0; i < sizeof IN_RANGE / sizeof IN_RANGE[0]; i++) {
         fixture_frame(&f, IN_RANGE[i].message, IN_RANGE[i].data);
-        fixture_run(&f, 60);
-        expect_state(&f, AGV_STATE_ACTIVE);
+        expect_state_after(&f, 60, AGV_STATE_ACTIVE);
     }
     TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
     TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->dropped);
@@ -633,8 +609,6 @@ void test_the_end_of_an_engagement_does_not_end_the_count_of_a_bit(void) {
     fixture_run_past(&f, AGV_MSG_EPS_STATUS);
     fixture_run(&f, 10);
     fixture_mode(&f, MODE_MANUAL);
-    fixture_run(&f, 9);
-    expect_fault(&f, AGV_FAULT_EPS_UNDER_VOLTAGE, false);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_EPS_UNDER_VOLTAGE, true);
+    expect_fault_after(&f, 9, AGV_FAULT_EPS_UNDER_VOLTAGE, false);
+    expect_fault_after(&f, 1, AGV_FAULT_EPS_UNDER_VOLTAGE, true);
 }

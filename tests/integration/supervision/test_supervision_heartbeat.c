@@ -1,6 +1,5 @@
 /* The heartbeats of VCU and EPS (SUP-1, SUP-2): lost, stuck, and frames that count as a heartbeat. Calculated by hand:
  * the deadline is 50 ms, so there is no fault 50 ms after the last change, and a trip in the tick 51 ms after it. */
-#include "expect.h"
 #include "one_fixture.h"
 
 typedef struct {
@@ -58,16 +57,14 @@ void test_stuck_after_a_long_silence(void) {
     fixture_start(&f);
     fixture_run(&f, 100);
     f.traffic[VCU.message].muted = true;
-    fixture_run(&f, 60000);
-    expect_fault(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, true);
+    expect_fault_after(&f, 60000, AGV_FAULT_VCU_HEARTBEAT_LOST, true);
     f.traffic[VCU.message].muted = false;
     fixture_run_past(&f, VCU.message);
     expect_no_trip(&VCU, AGV_STATE_INIT);
     f.traffic[VCU.message].frozen = true;
     fixture_run(&f, 50);
     expect_no_trip(&VCU, AGV_STATE_INIT);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_VCU_HEARTBEAT_STUCK, true);
+    expect_fault_after(&f, 1, AGV_FAULT_VCU_HEARTBEAT_STUCK, true);
 }
 
 /* A repeat that is malformed is no valid frame: lost, not stuck. */
@@ -161,11 +158,9 @@ static void check_start(const node_t *node, bool muted, agv_fault_t expected) {
     fixture_start(&f);
     fixture_run(&f, 50);
     expect_no_trip(node, AGV_STATE_INIT);
-    fixture_run(&f, 1);
-    expect_fault(&f, expected, true);
+    expect_fault_after(&f, 1, expected, true);
     expect_led(&f, node->led);
-    fixture_run(&f, 2000);
-    expect_fault(&f, expected, true);
+    expect_fault_after(&f, 2000, expected, true);
     expect_state(&f, AGV_STATE_INIT); /* a cause in INIT only keeps INIT from being left */
     expect_reason(&f, AGV_FAULT_NONE);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, expected));
@@ -186,8 +181,7 @@ void test_one_single_frame_after_the_start(void) {
     take_over(&VCU);
     fixture_run(&f, 50 - f.elapsed_ms);
     expect_no_trip(&VCU, AGV_STATE_INIT);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, true);
+    expect_fault_after(&f, 1, AGV_FAULT_VCU_HEARTBEAT_LOST, true);
 }
 
 /* A frame with an invalid angle still counts as a heartbeat (the angle is never used). */
@@ -195,8 +189,7 @@ void test_one_single_frame_after_the_start(void) {
 void test_a_frame_with_an_invalid_angle_is_a_heartbeat(void) {
     fixture_standby(&f);
     fixture_angle(&f, 18001);
-    fixture_run(&f, 2000);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 2000, AGV_STATE_STANDBY);
     TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
     take_over(&EPS);
     fixture_run(&f, 51);
@@ -263,11 +256,8 @@ void test_an_engagement_is_no_heartbeat_of_the_vcu(void) {
     f.traffic[AGV_MSG_VEHICLE_STATUS].frozen = true;
     fixture_run(&f, 15);
     fixture_mode(&f, MODE_ENGAGED);
-    fixture_run(&f, 35);
-    expect_state(&f, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, AGV_FAULT_VCU_HEARTBEAT_STUCK);
+    expect_state_after(&f, 35, AGV_STATE_ACTIVE);
+    expect_tripped_after(&f, 1, AGV_FAULT_VCU_HEARTBEAT_STUCK);
 }
 
 /* ---- increments: the counter has to count up ---- */
@@ -337,8 +327,7 @@ void test_after_a_wrong_step_it_takes_two_right_ones(void) {
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_VCU_HEARTBEAT_STUCK, f.call, NO_HOLD);
     step_counter(&VCU, 1); /* the second one */
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_VCU_HEARTBEAT_STUCK, false);
+    expect_fault_after(&f, 1, AGV_FAULT_VCU_HEARTBEAT_STUCK, false);
     begin_counting(&VCU);
     fixture_run(&f, 10);
     step_counter(&VCU, 4);

@@ -1,6 +1,5 @@
 /* Intrusion (SUP-6): a foreign sender of a command on the vehicle side of a gateway, and commands that come faster than
  * half their cycle. */
-#include "expect.h"
 #include "one_fixture.h"
 
 /* ---- FOREIGN_COMMAND_SENDER ---- */
@@ -23,16 +22,13 @@ static void check_foreign(agv_id_set_t id_set, uint32_t id) {
     send_foreign(id, 8);
     expect_trip(&f, FOREIGN, f.call, NO_HOLD);
     TEST_ASSERT_EQUAL_UINT32(3, f.sent_count); /* it was not forwarded to the AI side */
-    fixture_run(&f, 1);
-    expect_led(&f, 14);
+    expect_led_after(&f, 1, 14);
     gateway(id_set);
     fixture_active(&f);
     send_foreign(id, 8);
     expect_trip(&f, FOREIGN, f.call, ANGLE_CENTRE);
-    fixture_run(&f, 999);
-    expect_fault(&f, FOREIGN, true);
-    fixture_run(&f, 1);
-    expect_fault(&f, FOREIGN, false);
+    expect_fault_after(&f, 999, FOREIGN, true);
+    expect_fault_after(&f, 1, FOREIGN, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, FOREIGN));
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, FOREIGN));
     expect_reason(&f, FOREIGN);
@@ -55,11 +51,9 @@ void test_a_foreign_sender_goes_on(void) {
     fixture_standby(&f);
     for (unsigned i = 0; i < 5; i++) {
         send_foreign(0x168, 8);
-        fixture_run(&f, 999);
-        expect_fault(&f, FOREIGN, true);
+        expect_fault_after(&f, 999, FOREIGN, true);
     }
-    fixture_run(&f, 1);
-    expect_fault(&f, FOREIGN, false);
+    expect_fault_after(&f, 1, FOREIGN, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, FOREIGN));
 }
 
@@ -71,11 +65,9 @@ void test_a_foreign_sender_in_init(void) {
     fixture_run(&f, 100);
     send_foreign(0x075, 8);
     expect_fault(&f, FOREIGN, true);
-    fixture_run(&f, 1200);
-    expect_state(&f, AGV_STATE_INIT);
+    expect_state_after(&f, 1200, AGV_STATE_INIT);
     expect_reason(&f, AGV_FAULT_NONE);
-    fixture_run(&f, 400);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 400, AGV_STATE_STANDBY);
 }
 
 /* Any data frame with the 11-bit identifier of a command, of any length, classic or FD: a VCU may obey it. */
@@ -107,8 +99,7 @@ void test_frames_that_are_no_foreign_command(void) {
         fixture_raw(&f, HAL_CAN_VEHICLE,
                     (hal_can_frame_t){.id = 0x168, .length = 8, .flags = (uint8_t)(FLAGS[i] | HAL_CAN_FD)});
     }
-    fixture_run(&f, 100);
-    expect_nothing(&f, FOREIGN, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 100, FOREIGN, AGV_STATE_ACTIVE);
 }
 
 /* On the shared bus the AI computer is on the vehicle side. */
@@ -117,8 +108,7 @@ void test_no_foreign_sender_on_the_shared_bus(void) {
     fixture_active(&f);
     send_foreign(0x168, 8);
     send_foreign(0x43F, 8);
-    fixture_run(&f, 200);
-    expect_nothing(&f, FOREIGN, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 200, FOREIGN, AGV_STATE_ACTIVE);
 }
 
 /* ---- COMMAND_TOO_FAST ---- */
@@ -147,16 +137,13 @@ static void check_fast(unsigned topology, agv_message_t message, uint32_t gap_ms
     fixture_standby(&f);
     send_first(message);
     send_gaps(message, 9, gap_ms);
-    fixture_run(&f, gap_ms);
-    expect_nothing(&f, FAST, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, gap_ms, FAST, AGV_STATE_STANDBY);
     fixture_send_now(&f, message);
     expect_warning(&f, FAST, AGV_STATE_STANDBY);
     send_gaps(message, 5, gap_ms); /* goes on: raised already */
-    fixture_run(&f, deadline_ms);
-    expect_fault(&f, FAST, true);
+    expect_fault_after(&f, deadline_ms, FAST, true);
     expect_led(&f, 14);
-    fixture_run(&f, 1);
-    expect_fault(&f, FAST, false);
+    expect_fault_after(&f, 1, FAST, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, FAST));
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, FAST));
     expect_state(&f, AGV_STATE_STANDBY);
@@ -299,8 +286,7 @@ void test_too_fast_in_other_states(void) {
     send_first(AGV_MSG_THROTTLE_COMMAND);
     send_gaps(AGV_MSG_THROTTLE_COMMAND, 10, 10);
     expect_fault(&f, FAST, true);
-    fixture_run(&f, 500);
-    expect_state(&f, AGV_STATE_STANDBY); /* a warning does not keep INIT */
+    expect_state_after(&f, 500, AGV_STATE_STANDBY); /* a warning does not keep INIT */
 }
 
 /* Malformed frames are no commands: they are not counted here. */

@@ -1,6 +1,5 @@
 /* The mode (SUP-9): too many engagements, and a missing mode. An engagement ends with the third 363h in a row without
  * bit 8; one that begins within 100 ms continues it. */
-#include "expect.h"
 #include "one_fixture.h"
 #include "walk.h"
 
@@ -105,10 +104,8 @@ void test_mode_flapping_is_a_transient(void) {
         flap(500);
     }
     expect_reason(&f, FLAPPING);
-    fixture_run(&f, 999);
-    expect_fault(&f, FLAPPING, true);
-    fixture_run(&f, 1);
-    expect_fault(&f, FLAPPING, false);
+    expect_fault_after(&f, 999, FLAPPING, true);
+    expect_fault_after(&f, 1, FLAPPING, false);
 }
 
 /* Any four successive engagements count; earlier ones do not matter. */
@@ -200,13 +197,11 @@ static void drive_in_manual(void) {
 void test_no_mode_for_500_ms_in_motion(void) {
     drive_in_manual();
     report(MODE_NEITHER, 1);
-    fixture_run(&f, 499);
-    expect_nothing(&f, NONE, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 499, NONE, AGV_STATE_STANDBY);
     fixture_run(&f, 1);
     expect_trip(&f, NONE, f.call, ANGLE_CENTRE);
     expect_led(&f, -1);
-    fixture_run(&f, 1000);
-    expect_fault(&f, NONE, true);
+    expect_fault_after(&f, 1000, NONE, true);
     report(MODE_MANUAL, 1);
     expect_fault(&f, NONE, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, NONE));
@@ -217,8 +212,7 @@ void test_no_mode_for_500_ms_in_motion(void) {
 void test_no_mode_after_an_engagement(void) {
     walk_driving(&f, 500);
     report(MODE_NEITHER, 1);
-    fixture_run(&f, 499);
-    expect_nothing(&f, NONE, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 499, NONE, AGV_STATE_STANDBY);
     fixture_run(&f, 1);
     expect_trip(&f, NONE, f.call, ANGLE_CENTRE);
 }
@@ -228,17 +222,13 @@ void test_no_mode_after_an_engagement(void) {
 void test_no_mode_at_standstill(void) {
     fixture_standby(&f);
     report(MODE_NEITHER, 1);
-    fixture_run(&f, 3000);
-    expect_nothing(&f, NONE, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 3000, NONE, AGV_STATE_STANDBY);
     fixture_wheels(&f, 500, 500);
     fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
-    fixture_run(&f, 499);
-    expect_nothing(&f, NONE, AGV_STATE_STANDBY); /* both together for 500 ms */
-    fixture_run(&f, 2);
-    expect_reason(&f, NONE);
+    expect_nothing_after(&f, 499, NONE, AGV_STATE_STANDBY); /* both together for 500 ms */
+    expect_reason_after(&f, 2, NONE);
     fixture_wheels(&f, 0, 0);
-    fixture_run(&f, 120);
-    expect_fault(&f, NONE, false);
+    expect_fault_after(&f, 120, NONE, false);
 }
 
 /* One frame with a mode bit, or with both, takes 5 ms off the 500 ms: after 490 ms, 485 ms are left. */
@@ -280,8 +270,7 @@ void test_no_mode_in_other_states(void) {
     fixture_mode(&f, MODE_NEITHER);
     fixture_wheels(&f, 500, 500);
     fixture_start(&f);
-    fixture_run(&f, 2000);
-    expect_nothing(&f, NONE, AGV_STATE_INIT);
+    expect_nothing_after(&f, 2000, NONE, AGV_STATE_INIT);
     fixture_init(&f);
     walk_to_tripped_driving(&f, 500);
     report(MODE_NEITHER, 1);
@@ -295,8 +284,6 @@ void test_the_time_without_a_mode_is_a_setting(void) {
     f.config.mode_none_ms = 123;
     drive_in_manual();
     report(MODE_NEITHER, 1);
-    fixture_run(&f, 122);
-    expect_nothing(&f, NONE, AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_reason(&f, NONE);
+    expect_nothing_after(&f, 122, NONE, AGV_STATE_STANDBY);
+    expect_reason_after(&f, 1, NONE);
 }

@@ -1,7 +1,6 @@
 /* The vehicle obeys its commands (SUP-11), and both measurements of its speed agree (SUP-12): budgets. Calculated by
  * hand: the tick in the millisecond of a frame is the first of a budget, so T ms are reached T - 1 ms later. A budget
  * decreases at half the rate. */
-#include "expect.h"
 #include "one_fixture.h"
 #include "walk.h"
 
@@ -59,10 +58,8 @@ void test_throttle_above_its_command(void) {
     measure_throttle(126);
     expect_trip_at(THROTTLE, f.now_ms + 499u, 7);
     measure_throttle(124); /* down, but not by 25 */
-    fixture_run(&f, 998);
-    expect_fault(&f, THROTTLE, true);
-    fixture_run(&f, 1);
-    expect_fault(&f, THROTTLE, false);
+    expect_fault_after(&f, 998, THROTTLE, true);
+    expect_fault_after(&f, 1, THROTTLE, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, THROTTLE));
 }
 
@@ -74,8 +71,7 @@ void test_throttle_that_is_as_commanded(void) {
     measure_throttle(125);
     fixture_run(&f, 3000);
     measure_throttle(0);
-    fixture_run(&f, 3000);
-    expect_nothing(&f, THROTTLE, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 3000, THROTTLE, AGV_STATE_ACTIVE);
 }
 
 /* A ramp: each 25 counts that it comes down empty the budget, 24 do not. */
@@ -153,11 +149,9 @@ void test_without_a_command_there_is_no_deviation(void) {
     f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = GEAR_D;
     fixture_gear(&f, GEAR_D);
     fixture_mode(&f, MODE_ENGAGED);
-    fixture_run(&f, 1500);
-    expect_nothing(&f, THROTTLE, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 1500, THROTTLE, AGV_STATE_ACTIVE);
     f.traffic[AGV_MSG_THROTTLE_COMMAND].muted = false;
-    fixture_run(&f, 250);
-    expect_reason(&f, THROTTLE);
+    expect_reason_after(&f, 250, THROTTLE);
 }
 
 /* Not in manual, and only after the grace time of the engagement. */
@@ -167,8 +161,7 @@ void test_throttle_deviation_counts_after_the_grace(void) {
     f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = GEAR_D;
     fixture_gear(&f, GEAR_D);
     fixture_throttle(&f, 200);
-    fixture_run(&f, 3000);
-    expect_nothing(&f, THROTTLE, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 3000, THROTTLE, AGV_STATE_STANDBY);
     fixture_wheels(&f, 500, 500);
     fixture_mode(&f, MODE_ENGAGED);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
@@ -184,8 +177,7 @@ void test_the_throttle_is_compared_with_the_forwarded_command(void) {
     active_in_d();
     command_throttle(250);
     measure_throttle(125);
-    fixture_run(&f, 2000);
-    expect_nothing(&f, THROTTLE, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 2000, THROTTLE, AGV_STATE_ACTIVE);
     measure_throttle(126);
     expect_trip_at(THROTTLE, f.now_ms + 499u, 7);
 }
@@ -204,8 +196,7 @@ static void check_gear(uint8_t reported, uint8_t commanded, bool trips) {
     if (trips) {
         expect_trip_at(GEAR, f.now_ms + 999u, 8);
     } else {
-        fixture_run(&f, 3000);
-        expect_fault(&f, GEAR, false);
+        expect_fault_after(&f, 3000, GEAR, false);
         TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, GEAR));
     }
 }
@@ -225,16 +216,14 @@ void test_d_or_r_against_the_command(void) {
 void test_a_gear_deviation_needs_throttle(void) {
     fixture_active(&f); /* D, commanded P */
     measure_throttle(2);
-    fixture_run(&f, 3000);
-    expect_nothing(&f, GEAR, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 3000, GEAR, AGV_STATE_ACTIVE);
     measure_throttle(3);
     fixture_run(&f, 500 - 1);
     measure_throttle(0); /* 508 or so up, then 250 down */
     fixture_run(&f, 499);
     measure_throttle(3);
     const uint32_t again_ms = f.now_ms;
-    fixture_run(&f, 700);
-    expect_nothing(&f, GEAR, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 700, GEAR, AGV_STATE_ACTIVE);
     (void)walk_until(&f, AGV_STATE_TRIPPED, 60);
     expect_reason(&f, GEAR);
     TEST_ASSERT_UINT32_WITHIN(10, 745, f.now_ms - again_ms);
@@ -266,12 +255,10 @@ void test_autopilot_off_is_obeyed(void) {
     ask_for_off(true);
     fixture_run(&f, 900);
     fixture_mode(&f, MODE_MANUAL);
-    fixture_run(&f, 500);
-    expect_nothing(&f, IGNORED, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 500, IGNORED, AGV_STATE_STANDBY);
     ask_for_off(false);
     fixture_mode(&f, MODE_ENGAGED);
-    fixture_run(&f, 3000);
-    expect_nothing(&f, IGNORED, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 3000, IGNORED, AGV_STATE_ACTIVE);
 }
 
 /* Every second 43Fh requests it: the budget increases by 1 ms in each 4, so it takes some 4 s. */
@@ -334,18 +321,14 @@ static void expect_warning_at(uint32_t moment_ms) {
 void test_two_measurements_of_speed(void) {
     fixture_standby(&f);
     set_speeds(3600, 250, 250);
-    fixture_run(&f, 3000);
-    expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 3000, SPEED, AGV_STATE_STANDBY);
     set_speeds(3600, 2000, 2000);
-    fixture_run(&f, 3000);
-    expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 3000, SPEED, AGV_STATE_STANDBY);
     set_speeds(3600, 249, 249);
     expect_warning_at(f.now_ms + 999u);
     set_speeds(3600, 1000, 1000);
-    fixture_run(&f, 1998);
-    expect_fault(&f, SPEED, true);
-    fixture_run(&f, 1);
-    expect_fault(&f, SPEED, false);
+    expect_fault_after(&f, 1998, SPEED, true);
+    expect_fault_after(&f, 1, SPEED, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, SPEED));
 }
 
@@ -363,8 +346,7 @@ void test_the_mean_of_both_wheels_in_amount(void) {
     set_speeds(3600, -1000, -1000);
     fixture_run(&f, 3000);
     set_speeds(3600, -500, -1500);
-    fixture_run(&f, 3000);
-    expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 3000, SPEED, AGV_STATE_STANDBY);
     set_speeds(3600, -2000, 2000);
     expect_warning_at(f.now_ms + 999u);
 }
@@ -374,13 +356,11 @@ void test_the_mean_of_both_wheels_in_amount(void) {
 void test_a_vcu_that_reports_no_speed(void) {
     fixture_standby(&f);
     set_speeds(0, 5000, 5000);
-    fixture_run(&f, 5000);
-    expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 5000, SPEED, AGV_STATE_STANDBY);
     fixture_speed(&f, 1);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     fixture_speed(&f, 0);
-    fixture_run(&f, 998);
-    expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 998, SPEED, AGV_STATE_STANDBY);
     fixture_run(&f, 1);
     expect_warning(&f, SPEED, AGV_STATE_STANDBY);
 }
@@ -392,8 +372,7 @@ void test_without_fresh_wheel_speeds_there_is_nothing_to_compare(void) {
     fixture_standby(&f);
     set_speeds(3600, 0, 0);
     f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
-    fixture_run(&f, 5000);
-    expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 5000, SPEED, AGV_STATE_STANDBY);
 }
 
 /* As a trip by setting, and with the largest values of the messages. */
@@ -405,8 +384,7 @@ void test_it_may_be_made_a_trip(void) {
     const uint32_t began_ms = f.now_ms;
     run_until(began_ms + 998u);
     expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_reason(&f, SPEED);
+    expect_reason_after(&f, 1, SPEED);
     fixture_init(&f);
     fixture_standby(&f);
     set_speeds(65535, INT32_MIN, INT32_MIN);

@@ -2,7 +2,6 @@
  * 25.0 degrees by which the measured angle has come nearer by its own motion empty it. Raw counts are 0.1 degree: 500 is 50.0
  * degrees. Calculated by hand: the tick in the millisecond of a frame is the first of the budget, so 500 ms are reached
  * 499 ms later. */
-#include "expect.h"
 #include "one_fixture.h"
 
 static const agv_fault_t FAULT = AGV_FAULT_STEERING_DEVIATION;
@@ -51,10 +50,8 @@ void test_a_deviation_ends_when_its_budget_is_empty(void) {
     command(9501);
     expect_trip_at(f.now_ms + 499u, ANGLE_CENTRE);
     measure(9001);
-    fixture_run(&f, 998);
-    expect_fault(&f, FAULT, true);
-    fixture_run(&f, 1);
-    expect_fault(&f, FAULT, false);
+    expect_fault_after(&f, 998, FAULT, true);
+    expect_fault_after(&f, 1, FAULT, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, FAULT));
     expect_reason(&f, FAULT);
 }
@@ -76,8 +73,7 @@ void test_50_degrees_are_no_deviation(void) {
     command(9500);
     fixture_run(&f, 3000);
     command(8500);
-    fixture_run(&f, 3000);
-    expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 3000, FAULT, AGV_STATE_ACTIVE);
     TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
 }
 
@@ -204,8 +200,7 @@ void test_to_and_fro_is_no_gain(void) {
     }
     run_until(began_ms + 498u);
     expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_reason(&f, FAULT);
+    expect_reason_after(&f, 1, FAULT);
 }
 
 /* 40.0 degrees at once empty the budget; the surplus of 15.0 does not count for the next 25.0. */
@@ -251,9 +246,7 @@ void test_without_a_measured_angle_there_is_no_deviation(void) {
     fixture_angle(&f, 18001);
     fixture_standby(&f);
     fixture_mode(&f, MODE_ENGAGED);
-    fixture_run(&f, 2000);
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, AGV_FAULT_STEERING_ANGLE_INVALID);
+    expect_tripped_after(&f, 2000, AGV_FAULT_STEERING_ANGLE_INVALID);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, FAULT));
 }
 
@@ -291,8 +284,7 @@ void test_a_growing_difference(void) {
 void test_deviation_counts_after_the_grace(void) {
     fixture_standby(&f);
     fixture_command_angle(&f, 12000);
-    fixture_run(&f, 3000);
-    expect_nothing(&f, FAULT, AGV_STATE_STANDBY); /* not in manual */
+    expect_nothing_after(&f, 3000, FAULT, AGV_STATE_STANDBY); /* not in manual */
     fixture_mode(&f, MODE_ENGAGED);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     expect_trip_at(f.now_ms + 999u, ANGLE_CENTRE);
@@ -314,8 +306,7 @@ static void check_forgotten(uint8_t mode_before) {
     fixture_run(&f, 500);
     fixture_mode(&f, MODE_ENGAGED);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    fixture_run(&f, 1000);
-    expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 1000, FAULT, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_STEERING_COMMAND_TIMEOUT, f.call, ANGLE_CENTRE);
 }
@@ -332,8 +323,7 @@ void test_a_command_out_of_range_is_no_command(void) {
     fixture_active(&f);
     command(18001);
     expect_reason(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE);
-    fixture_run(&f, 2000);
-    expect_fault(&f, FAULT, false);
+    expect_fault_after(&f, 2000, FAULT, false);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, FAULT));
 }
 
@@ -345,8 +335,7 @@ void test_an_invalid_angle_is_no_measured_angle(void) {
     measure(18001); /* would be 900 degrees off */
     fixture_run(&f, 80);
     measure(9000);
-    fixture_run(&f, 600);
-    expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 600, FAULT, AGV_STATE_ACTIVE);
 }
 
 /* Limits and times are settings. */
@@ -357,8 +346,7 @@ void test_the_limits_are_settings(void) {
     f.config.steering_deviation_ms = 100;
     fixture_active(&f);
     command(9100);
-    fixture_run(&f, 1000);
-    expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 1000, FAULT, AGV_STATE_ACTIVE);
     command(9200);
     fixture_run(&f, 60);
     measure(9010);

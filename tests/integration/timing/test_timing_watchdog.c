@@ -8,8 +8,7 @@ void test_the_watchdog_is_fed_in_every_state_while_all_activities_check_in(void)
     fixture_button(&f, true);
     fixture_run(&f, 1100);
     fixture_button(&f, false);
-    fixture_run(&f, 10);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 10, AGV_STATE_STANDBY);
     TEST_ASSERT_EQUAL_UINT32(0, f.hal.bites);
     for (unsigned i = 0; i < 50; i++) {
         const uint32_t feeds = f.hal.feeds;
@@ -86,8 +85,7 @@ void test_a_step_that_is_100_ms_late_does_not_trip_and_one_of_101_ms_does(void) 
     expect_state(&f, AGV_STATE_STANDBY);
     fixture_run(&f, 10);
     step_late_by(101);
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, AGV_FAULT_STEP_OVERRUN);
+    expect_tripped(&f, AGV_FAULT_STEP_OVERRUN);
 }
 
 static void expect_limit(uint16_t period_ms) {
@@ -115,10 +113,8 @@ void test_in_init_a_late_step_is_a_transient_that_keeps_init_for_a_second(void) 
     step_late_by(300);
     expect_state(&f, AGV_STATE_INIT);
     expect_fault(&f, AGV_FAULT_STEP_OVERRUN, true);
-    fixture_run(&f, 1499);
-    expect_state(&f, AGV_STATE_INIT);
-    fixture_run(&f, 2);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 1499, AGV_STATE_INIT);
+    expect_state_after(&f, 2, AGV_STATE_STANDBY);
     expect_reason(&f, AGV_FAULT_NONE);
 }
 
@@ -130,11 +126,10 @@ void test_a_second_after_it_has_ended_it_can_be_reset(void) {
         step_late_by(500);
         fixture_run(&f, 100);
         fixture_button(&f, true);
-        fixture_run(&f, i == 0 ? 1850 : 1950); /* it ends 900 ms after the press, and then a second must pass */
-        expect_state(&f, AGV_STATE_SAFE);
+        expect_state_after(&f, i == 0 ? 1850 : 1950,
+                           AGV_STATE_SAFE); /* it ends 900 ms after the press, and then a second must pass */
         fixture_button(&f, false);
-        fixture_run(&f, 10);
-        expect_state(&f, i == 0 ? AGV_STATE_SAFE : AGV_STATE_STANDBY);
+        expect_state_after(&f, 10, i == 0 ? AGV_STATE_SAFE : AGV_STATE_STANDBY);
     }
 }
 
@@ -146,10 +141,8 @@ void test_each_late_step_trips(void) {
     fixture_run(&f, 300);
     step_late_by(500);
     expect_fault(&f, AGV_FAULT_STEP_OVERRUN, true);
-    fixture_run(&f, 999);
-    expect_fault(&f, AGV_FAULT_STEP_OVERRUN, true);
-    fixture_run(&f, 1);
-    expect_fault(&f, AGV_FAULT_STEP_OVERRUN, false);
+    expect_fault_after(&f, 999, AGV_FAULT_STEP_OVERRUN, true);
+    expect_fault_after(&f, 1, AGV_FAULT_STEP_OVERRUN, false);
 }
 
 /* Only ticks check deadlines, so without them alive and fresh are unknown. */
@@ -161,8 +154,7 @@ void test_init_is_not_left_while_steps_stay_away(void) {
     fixture_run_without_ticks(&f, 1500);
     expect_state(&f, AGV_STATE_INIT);
     expect_output(&f, false);
-    fixture_run(&f, 1);
-    expect_state(&f, AGV_STATE_INIT);
+    expect_state_after(&f, 1, AGV_STATE_INIT);
     expect_fault(&f, AGV_FAULT_STEP_OVERRUN, true);
 }
 
@@ -172,8 +164,7 @@ void test_init_is_not_left_while_steps_stay_away(void) {
 void test_no_reset_is_accepted_while_steps_stay_away(void) {
     fixture_standby(&f);
     step_late_by(500);
-    fixture_run(&f, 1200);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 1200, AGV_STATE_SAFE);
     fixture_button(&f, true);
     fixture_run(&f, 500);
     fixture_run_without_ticks(&f, 1000);
@@ -183,8 +174,7 @@ void test_no_reset_is_accepted_while_steps_stay_away(void) {
     f.traffic[AGV_MSG_VEHICLE_STATUS].muted = true;
     fixture_run_without_ticks(&f, 500);
     expect_state(&f, AGV_STATE_SAFE);
-    fixture_run(&f, 1);
-    expect_state(&f, AGV_STATE_TRIPPED);
+    expect_state_after(&f, 1, AGV_STATE_TRIPPED);
     expect_fault(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, true);
 }
 
@@ -217,11 +207,8 @@ static uint32_t deliver_backlog(void) {
 /* Shows: TIM-4, SUP-2 */
 void test_a_backlog_is_as_old_as_its_time_stamps(void) {
     const uint32_t newest_ms = deliver_backlog();
-    fixture_run(&f, newest_ms + 50 - f.now_ms);
-    expect_state(&f, AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_state(&f, AGV_STATE_TRIPPED);
-    expect_reason(&f, AGV_FAULT_VCU_HEARTBEAT_LOST);
+    expect_state_after(&f, newest_ms + 50 - f.now_ms, AGV_STATE_STANDBY);
+    expect_tripped_after(&f, 1, AGV_FAULT_VCU_HEARTBEAT_LOST);
 }
 
 /* Frames from before the last step do not change the time. */

@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "expect.h"
 #include "fixture.h"
 #include "unity.h"
 #include "walk.h"

@@ -3,7 +3,6 @@
  * one. */
 #include <string.h>
 
-#include "expect.h"
 #include "one_fixture.h"
 
 static const agv_fault_t WRONG = AGV_FAULT_WRONG_ID_SET;
@@ -38,8 +37,7 @@ void test_both_sets_work(void) {
         fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
         expect_trip(&f, AGV_FAULT_REMOTE_SIGNAL_LOST, f.traffic[AGV_MSG_VEHICLE_STATUS].call, ANGLE_CENTRE);
         fixture_mute_ai(&f, true); /* otherwise its commands would be overridden, too */
-        fixture_run(&f, 1000);
-        TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, SETS[i].other_command_id));
+        expect_count_after(&f, 1000, SETS[i].other_command_id, 0);
         TEST_ASSERT_EQUAL_UINT32(11, fixture_count_sent(&f, SETS[i].command_id)); /* at once, then each 100 ms */
     }
 }
@@ -51,19 +49,16 @@ void test_a_command_on_the_other_identifier(void) {
         init(&SETS[i]);
         fixture_start(&f);
         f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].id = SETS[i].other_command_id;
-        fixture_run(&f, 500);
-        expect_fault(&f, WRONG, false);
+        expect_fault_after(&f, 500, WRONG, false);
         fixture_run(&f, 1);
         expect_warning(&f, WRONG, agv_supervisor_state(&f.supervisor));
         expect_led(&f, -1);
-        fixture_run(&f, 10000);
-        expect_state(&f, AGV_STATE_STANDBY);
+        expect_state_after(&f, 10000, AGV_STATE_STANDBY);
         TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, WRONG));
         f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].id = SETS[i].command_id; /* corrected */
         fixture_run_before(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
         expect_fault(&f, WRONG, true);
-        fixture_run(&f, 1);
-        expect_fault(&f, WRONG, false);
+        expect_fault_after(&f, 1, WRONG, false);
         TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, WRONG));
         expect_led(&f, 0);
     }
@@ -76,13 +71,10 @@ void test_a_status_on_the_other_identifier_is_never_accepted(void) {
         init(&SETS[i]);
         fixture_start(&f);
         f.traffic[AGV_MSG_VEHICLE_STATUS].id = SETS[i].other_status_id;
-        fixture_run(&f, 500);
-        expect_fault(&f, WRONG, false);
+        expect_fault_after(&f, 500, WRONG, false);
         expect_fault(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, true);
-        fixture_run(&f, 1);
-        expect_fault(&f, WRONG, true);
-        fixture_run(&f, 3000);
-        expect_state(&f, AGV_STATE_INIT);
+        expect_fault_after(&f, 1, WRONG, true);
+        expect_state_after(&f, 3000, AGV_STATE_INIT);
         expect_fault(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, true);
         TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, WRONG));
         TEST_ASSERT_EQUAL_UINT32(0, fixture_ended(&f, AGV_FAULT_VCU_HEARTBEAT_LOST));
@@ -98,10 +90,8 @@ void test_the_end_when_the_other_identifier_is_silent(void) {
     fixture_run(&f, 1000);
     fixture_run_past(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
     f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].muted = true;
-    fixture_run(&f, 500);
-    expect_fault(&f, WRONG, true);
-    fixture_run(&f, 1);
-    expect_fault(&f, WRONG, false);
+    expect_fault_after(&f, 500, WRONG, true);
+    expect_fault_after(&f, 1, WRONG, false);
 }
 
 /* While driving: the own identifier falls silent and the other one begins. */
@@ -112,12 +102,9 @@ void test_an_identifier_that_changes_while_driving(void) {
         fixture_active(&f);
         fixture_run_past(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
         f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].id = SETS[i].other_command_id;
-        fixture_run(&f, 351);
-        expect_reason(&f, AGV_FAULT_AI_HEARTBEAT_LOST);
-        fixture_run(&f, 149);
-        expect_fault(&f, WRONG, false);
-        fixture_run(&f, 1);
-        expect_fault(&f, WRONG, true);
+        expect_reason_after(&f, 351, AGV_FAULT_AI_HEARTBEAT_LOST);
+        expect_fault_after(&f, 149, WRONG, false);
+        expect_fault_after(&f, 1, WRONG, true);
     }
 }
 
@@ -166,12 +153,9 @@ void test_wrong_set_in_a_gateway(void) {
         f.config.topology = AGV_TOPOLOGY_GATEWAY;
         fixture_start(&f);
         f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].id = SETS[i].other_command_id;
-        fixture_run(&f, 500);
-        expect_fault(&f, WRONG, false);
-        fixture_run(&f, 1);
-        expect_fault(&f, WRONG, true);
-        fixture_run(&f, 200);
-        TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, SETS[i].other_command_id)); /* is not passed on */
+        expect_fault_after(&f, 500, WRONG, false);
+        expect_fault_after(&f, 1, WRONG, true);
+        expect_count_after(&f, 200, SETS[i].other_command_id, 0); /* is not passed on */
     }
 }
 
@@ -182,10 +166,8 @@ void test_the_time_is_a_setting(void) {
     f.config.wrong_id_set_ms = 300;
     fixture_start(&f);
     f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].id = SETS[0].other_command_id;
-    fixture_run(&f, 300);
-    expect_fault(&f, WRONG, false);
-    fixture_run(&f, 1);
-    expect_fault(&f, WRONG, true);
+    expect_fault_after(&f, 300, WRONG, false);
+    expect_fault_after(&f, 1, WRONG, true);
 }
 
 /* No frame comes on the own identifiers, and none on the others. */
@@ -219,8 +201,7 @@ void test_what_is_not_of_the_other_set(void) {
     }
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, WRONG));
     fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x203, .length = 8});
-    fixture_run(&f, 1);
-    expect_fault(&f, WRONG, true);
+    expect_fault_after(&f, 1, WRONG, true);
 }
 
 /* ---- Identifiers changed one by one: id_... ---- */
@@ -247,8 +228,7 @@ void test_every_identifier_may_be_another_one(void) {
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     expect_trip(&f, AGV_FAULT_REMOTE_SIGNAL_LOST, f.traffic[AGV_MSG_VEHICLE_STATUS].call, ANGLE_CENTRE);
     fixture_mute_ai(&f, true);
-    fixture_run(&f, 1000);
-    TEST_ASSERT_EQUAL_UINT32(11, fixture_count_sent(&f, 0x43F));
+    expect_count_after(&f, 1000, 0x43F, 11);
     TEST_ASSERT_EQUAL_UINT32(11, fixture_count_sent(&f, 0x168));
 }
 
@@ -259,8 +239,7 @@ void test_a_foreign_command_is_one_on_the_changed_identifier(void) {
     fixture_standby(&f);
     fixture_mute_ai(&f, true);
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x01;
-    fixture_run(&f, 50);
-    expect_state(&f, AGV_STATE_SAFE);
+    expect_state_after(&f, 50, AGV_STATE_SAFE);
     fixture_forget_sent(&f);
     fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x43F, .length = 8});
     fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x065, .length = 8, .data = {1}});
@@ -276,8 +255,7 @@ void test_a_gateway_passes_on_the_changed_identifiers(void) {
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
     change_ids();
     fixture_active(&f);
-    fixture_run(&f, 100);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x43F));
+    expect_count_after(&f, 100, 0x43F, 1);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x075));
     TEST_ASSERT_EQUAL_UINT32(4, fixture_count_sent(&f, 0x065));
@@ -300,12 +278,10 @@ void test_a_corrupted_supervisor_keeps_the_changed_identifiers(void) {
     change_ids();
     fixture_active(&f);
     corrupt_the_configuration();
-    fixture_run(&f, 1);
-    expect_reason(&f, AGV_FAULT_MEMORY_CORRUPTED);
+    expect_reason_after(&f, 1, AGV_FAULT_MEMORY_CORRUPTED);
     fixture_mute_ai(&f, true);
     fixture_forget_sent(&f);
-    fixture_run(&f, 1000);
-    TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x43F));
+    expect_count_after(&f, 1000, 0x43F, 10);
     TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x168));
     TEST_ASSERT_EQUAL_UINT32(10, fixture_count_sent(&f, 0x075));
 }

@@ -77,8 +77,7 @@ void test_the_slew_rate_starts_anew_with_every_engagement(void) {
     expect_steering(9000, 9000);
     fixture_mode(&f, MODE_MANUAL);
     fixture_angle(&f, 9300);
-    fixture_run(&f, 50);
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 50, AGV_STATE_STANDBY);
     fixture_mode(&f, MODE_ENGAGED);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     expect_steering(9000, 9275);
@@ -168,11 +167,9 @@ void test_a_gear_command_that_is_dropped_came_all_the_same(void) {
     fixture_active(&f);
     fixture_drive(&f, 500);
     f.long_run = true;
-    fixture_run(&f, 2000);
-    expect_state(&f, AGV_STATE_ACTIVE);
+    expect_state_after(&f, 2000, AGV_STATE_ACTIVE);
     fixture_forget_sent(&f);
-    fixture_run(&f, 500);
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
+    expect_count_after(&f, 500, 0x168, 0);
 }
 
 /* ---- The rest of the envelope ---- */

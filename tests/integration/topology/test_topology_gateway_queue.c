@@ -22,8 +22,7 @@ void test_towards_a_stalled_vehicle_side_the_newest_of_each_is_kept(void) {
     fixture_run(&f, 1);
     expect_sent_once(0x168, neutral);
     expect_sent_once(0x075, THROTTLE_PACKED);
-    fixture_run(&f, 50);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168)); /* once */
+    expect_count_after(&f, 50, 0x168, 1); /* once */
     expect_state(&f, AGV_STATE_ACTIVE);
 }
 
@@ -63,8 +62,7 @@ void test_waiting_commands_are_dropped_when_the_autopilot_is_disengaged(void) {
     TEST_ASSERT_EQUAL_UINT32(before + 3, dropped());
     disengage();
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
-    fixture_run(&f, 50);
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
+    expect_count_after(&f, 50, 0x168, 0);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
     expect_sent_once(0x075, ZERO);
     TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->gate_refused);
@@ -130,8 +128,7 @@ static void check_newest(const too_soon_t *row) {
     TEST_ASSERT_EQUAL_UINT32(before + 1, dropped());
     fixture_run(&f, 1);
     expect_sent_once(row->id, row->third);
-    fixture_run(&f, row->half_ms - 1);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, row->id));
+    expect_count_after(&f, row->half_ms - 1, row->id, 1);
     from_ai(row->id, row->first); /* that one counted as a pass */
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, row->id));
     TEST_ASSERT_EQUAL_UINT32(before + 1, dropped());
@@ -222,8 +219,7 @@ void test_the_end_of_an_engagement_sends_throttle_0(void) {
     fixture_run(&f, 1);
     expect_sent_once(0x075, ZERO);
     TEST_ASSERT_EQUAL_UINT32(f.traffic[AGV_MSG_VEHICLE_STATUS].call, fixture_nth_sent(&f, 0x075, 0)->call);
-    fixture_run(&f, 500);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x075));
+    expect_count_after(&f, 500, 0x075, 1);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
 }

@@ -1,7 +1,6 @@
 /* Overriding another sender: at once, for frames of any length, and at a limited rate. */
 #include <string.h>
 
-#include "expect.h"
 #include "one_fixture.h"
 #include "walk.h"
 
@@ -154,8 +153,7 @@ void test_standby_and_active_override_nothing(void) {
     foreign_signals(0x00);
     expect_silence(&f);
     fixture_mode(&f, MODE_ENGAGED);
-    fixture_run(&f, 100);
-    expect_state(&f, AGV_STATE_ACTIVE);
+    expect_state_after(&f, 100, AGV_STATE_ACTIVE);
     foreign_gear(GEAR_D);
     foreign_signals(0x00);
     expect_silence(&f);
@@ -238,8 +236,7 @@ void test_a_periodic_foreign_sender_is_overridden_each_time(void) {
         fixture_forget_sent(&f);
         foreign_gear(GEAR_D);
         const uint32_t heard_ms = f.now_ms;
-        fixture_run(&f, 100);
-        TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168));
+        expect_count_after(&f, 100, 0x168, 2);
         TEST_ASSERT_EQUAL_UINT32(0, fixture_nth_sent(&f, 0x168, 0)->time_ms - heard_ms);
         TEST_ASSERT_EQUAL_UINT32(50, fixture_nth_sent(&f, 0x168, 1)->time_ms - heard_ms);
     }
@@ -294,10 +291,8 @@ void test_the_gap_is_a_setting(void) {
     foreign_gear(GEAR_D);
     fixture_run(&f, 1);
     foreign_gear(GEAR_D);
-    fixture_run(&f, 8);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
-    fixture_run(&f, 1);
-    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168));
+    expect_count_after(&f, 8, 0x168, 1);
+    expect_count_after(&f, 1, 0x168, 2);
 }
 
 /* D at the n-th microsecond of this millisecond. */
@@ -322,10 +317,8 @@ void test_the_5_ms_are_exact_where_the_port_knows_microseconds(void) {
     foreign_drive_at_us(900);
     fixture_run(&f, 1);
     foreign_drive_at_us(0);
-    fixture_run(&f, 4); /* 4.1 ms have passed */
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
-    fixture_run(&f, 1);
-    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168));
+    expect_count_after(&f, 4, 0x168, 1); /* 4.1 ms have passed */
+    expect_count_after(&f, 1, 0x168, 2);
     TEST_ASSERT_EQUAL_UINT32(5 + 20 + 6, fixture_nth_sent(&f, 0x168, 1)->time_ms - first_ms);
 }
 
@@ -354,8 +347,7 @@ void test_at_most_one_frame_an_identifier_waits(void) {
     }
     expect_silence(&f);
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
-    fixture_run(&f, 1);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    expect_count_after(&f, 1, 0x168, 1);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x43F));
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x075));
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x065));
@@ -401,13 +393,10 @@ void test_commands_within_5_ms_are_overridden_when_they_are_over(void) {
     fixture_run(&f, 2);
     foreign_gear(GEAR_N);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
-    fixture_run(&f, 1);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
-    fixture_run(&f, 1);
-    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168));
+    expect_count_after(&f, 1, 0x168, 1);
+    expect_count_after(&f, 1, 0x168, 2);
     TEST_ASSERT_EQUAL_UINT32(5, fixture_nth_sent(&f, 0x168, 1)->time_ms - first_ms);
-    fixture_run(&f, 40);
-    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x168)); /* one override for both */
+    expect_count_after(&f, 40, 0x168, 2); /* one override for both */
 }
 
 /* 43Fh waits for the end of its 5 ms; an override of another identifier in between does not replace it. */
@@ -421,8 +410,7 @@ void test_an_override_that_waits_is_not_lost_by_another_one(void) {
     foreign_gear(1);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x43F));
-    fixture_run(&f, 4);
-    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x43F));
+    expect_count_after(&f, 4, 0x43F, 2);
 }
 
 /* A VCU with CAN FD may obey it. */

@@ -1,4 +1,5 @@
 /* The supervisor's own status frame, and shadow mode. */
+#include "expect.h"
 #include "fixture.h"
 #include "unity.h"
 #include "walk.h"
@@ -19,8 +20,7 @@ static const fixture_sent_t *last_status(void) {
 
 static void expect_status(agv_state_t state, agv_fault_t reason, uint8_t closed) {
     const uint32_t checksum = agv_config_checksum(&f.config);
-    fixture_run(&f, 100);
-    expect_state(&f, state);
+    expect_state_after(&f, 100, state);
     const fixture_sent_t *status = last_status();
     TEST_ASSERT_EQUAL_INT(HAL_CAN_VEHICLE, status->side);
     TEST_ASSERT_EQUAL_UINT8(8, status->length);
@@ -43,12 +43,9 @@ void test_the_status_frame_is_on_by_default(void) {
     TEST_ASSERT_EQUAL_HEX8(AGV_STATE_INIT, first->data[0]);
     TEST_ASSERT_EQUAL_HEX8(0xFF, first->data[1]); /* no reason */
     TEST_ASSERT_EQUAL_HEX8(0, first->data[2]);
-    fixture_run(&f, 99);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x7F0));
-    fixture_run(&f, 1);
-    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x7F0));
-    fixture_run(&f, 1900);
-    TEST_ASSERT_EQUAL_UINT32(21, fixture_count_sent(&f, 0x7F0));
+    expect_count_after(&f, 99, 0x7F0, 1);
+    expect_count_after(&f, 1, 0x7F0, 2);
+    expect_count_after(&f, 1900, 0x7F0, 21);
 }
 
 /* Shows: TOP-3 */
@@ -133,8 +130,7 @@ void test_the_status_frame_does_not_burst_after_an_overrun(void) {
     fixture_forget_sent(&f);
     fixture_jump(&f, 750);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, STATUS_ID));
-    fixture_run(&f, 500);
-    TEST_ASSERT_EQUAL_UINT32(6, fixture_count_sent(&f, STATUS_ID));
+    expect_count_after(&f, 500, STATUS_ID, 6);
 }
 
 /* The HAL accepts nothing: the frame is tried again at each tick, and 100 ms later TX_STALLED is raised. */
@@ -149,11 +145,9 @@ void test_a_dead_transmitter_shows_within_a_status_frame(void) {
     const uint8_t before = last_status()->data[3];
     fixture_forget_sent(&f);
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
-    fixture_run(&f, 100 + 100); /* the next one is due after 100 ms */
-    expect_state(&f, AGV_STATE_STANDBY);
+    expect_state_after(&f, 100 + 100, AGV_STATE_STANDBY); /* the next one is due after 100 ms */
     expect_fault(&f, AGV_FAULT_TX_STALLED, false);
-    fixture_run(&f, 2);
-    expect_reason(&f, AGV_FAULT_TX_STALLED);
+    expect_reason_after(&f, 2, AGV_FAULT_TX_STALLED);
     expect_output(&f, false);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, STATUS_ID));
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
@@ -174,12 +168,9 @@ void test_a_status_frame_that_has_to_wait(void) {
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
     fixture_run(&f, 190);
     sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
-    fixture_run(&f, 1);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, STATUS_ID));
-    fixture_run(&f, 8);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, STATUS_ID));
-    fixture_run(&f, 1); /* 200 ms after the last one but one: on its grid */
-    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, STATUS_ID));
+    expect_count_after(&f, 1, STATUS_ID, 1);
+    expect_count_after(&f, 8, STATUS_ID, 1);
+    expect_count_after(&f, 1, STATUS_ID, 2); /* 200 ms after the last one but one: on its grid */
     expect_state(&f, AGV_STATE_STANDBY);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_TX_STALLED));
 }
@@ -211,11 +202,9 @@ void test_another_sender_of_the_status_frames_identifier_warns(void) {
         expect_fault(&f, IN_USE, true);
         expect_state(&f, AGV_STATE_ACTIVE);
         TEST_ASSERT_EQUAL_UINT32(1, agv_supervisor_counters(&f.supervisor)->warnings);
-        fixture_run(&f, 999);
-        expect_fault(&f, IN_USE, true);
+        expect_fault_after(&f, 999, IN_USE, true);
         expect_led(&f, -1);
-        fixture_run(&f, 1);
-        expect_fault(&f, IN_USE, false);
+        expect_fault_after(&f, 1, IN_USE, false);
         expect_state(&f, AGV_STATE_ACTIVE);
     }
 }
@@ -316,8 +305,6 @@ void test_the_status_frame_keeps_its_grid(void) {
     fixture_forget_sent(&f);
     fixture_jump(&f, 74); /* 175 ms: the one of 150 ms is late */
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x123));
-    fixture_run(&f, 24);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x123));
-    fixture_run(&f, 1);
-    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x123));
+    expect_count_after(&f, 24, 0x123, 1);
+    expect_count_after(&f, 1, 0x123, 2);
 }

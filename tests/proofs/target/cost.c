@@ -1,4 +1,5 @@
 /* What the entry points cost in ordinary traffic: a second or more in every state, in both topologies. See meter.c. */
+#include "expect.h"
 #include "fixture.h"
 #include "unity.h"
 #include "walk.h"

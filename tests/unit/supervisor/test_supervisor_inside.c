@@ -5,6 +5,7 @@
 #include "supervisor/supervisor_internal.h"
 
 #include "agv/checksum.h"
+#include "expect.h"
 #include "fixture.h"
 #include "keep/latch.h"
 #include "unity.h"
