@@ -17,6 +17,11 @@ END = "<!-- end of size table -->"
 SIMULATED = "native_sim"
 
 
+def refuse(reason):
+    print(f"zephyr-size: {reason}", file=sys.stderr)
+    sys.exit(2)
+
+
 def symbols(build):
     text = (build / "zephyr/.config").read_text(encoding="utf-8")
     return dict(re.findall(r"^CONFIG_(\w+)=(.*)$", text, re.MULTILINE))
@@ -34,10 +39,12 @@ def stack(build):
     """The deepest path from main() on, without Zephyr's own functions."""
     graphs = sorted(map(str, build.glob("CMakeFiles/app.dir/**/*.ci")))
     if not graphs:
-        sys.exit(f"zephyr-size: {build} has no call graph: its compiler is not gcc")
+        refuse(f"{build} has no call graph: its compiler is not gcc")
     command = [pathlib.Path(__file__).resolve().parent / "stack-depth.py", *graphs, "--pointers-lead-outside", "--entry", "main"]
-    said = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-    return int(re.match(r"stack +(\d+) bytes", said)[1])
+    done = subprocess.run(command, check=False, capture_output=True, text=True)
+    if done.returncode != 0:
+        refuse(f"{build}: {done.stderr.strip()}")
+    return int(re.match(r"stack +(\d+) bytes", done.stdout)[1])
 
 
 def row(build):
@@ -55,8 +62,10 @@ def main():
     parser.add_argument("--write", action="store_true", help="into docs/firmware.md")
     parser.add_argument("builds", nargs="+", type=pathlib.Path)
     arguments = parser.parse_args()
-    builds = [build for build in arguments.builds if (build / "zephyr/zephyr.elf").exists()]
-    rows = sorted(filter(None, map(row, builds)))
+    for build in arguments.builds:
+        if not (build / "zephyr/.config").exists() or not list(build.glob("zephyr/zephyr.e*")):
+            refuse(f"{build} is no build of Zephyr, or not a whole one")
+    rows = sorted(filter(None, map(row, arguments.builds)))
     table = "\n".join(["| board | build | flash, bytes | RAM, bytes | deepest stack without Zephyr's | stack |",
                        "|---|---|---|---|---|---|", *rows])
     if not arguments.write:
@@ -65,7 +74,7 @@ def main():
     page = pathlib.Path(__file__).resolve().parents[2] / "docs/firmware.md"
     text = page.read_text(encoding="utf-8")
     if text.count(BEGIN) != 1 or text.count(END) != 1:
-        sys.exit(f"zephyr-size: {page} needs the lines '{BEGIN}' and '{END}'")
+        refuse(f"{page} needs the lines '{BEGIN}' and '{END}'")
     before, after = text.split(BEGIN)[0], text.split(END)[1]
     page.write_text(f"{before}{BEGIN}\n\n{table}\n\n{END}{after}", encoding="utf-8")
 

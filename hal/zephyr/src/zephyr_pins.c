@@ -22,9 +22,15 @@ bool zephyr_hal_output_is_open(void) {
     return gpio_is_ready_dt(&output) && (gpio_pin_get_dt(&output) == 0);
 }
 
+/* Not by gpio_pin_set_dt(): an assertion that fails in it would call this function again. */
 void zephyr_output_open_now(void) {
-    if (gpio_is_ready_dt(&output)) {
-        (void)gpio_pin_set_dt(&output, 0);
+    if (!gpio_is_ready_dt(&output)) {
+        return;
+    }
+    if ((output.dt_flags & GPIO_ACTIVE_LOW) != 0u) {
+        (void)gpio_port_set_bits_raw(output.port, BIT(output.pin));
+    } else {
+        (void)gpio_port_clear_bits_raw(output.port, BIT(output.pin));
     }
 }
 
