@@ -57,7 +57,7 @@ static void write_vehicle(const hunt_program_t *program, text_t *text) {
 }
 
 void hunt_program_write(const hunt_program_t *program, const char *name, text_t *text) {
-    text_add(text, "name: %s\nshows: [H1]\ntopology: %s\nid_set: heading\ntick_phase_us: %u\n", name,
+    text_add(text, "name: %s\nshows: [FSM-1]\ntopology: %s\nid_set: heading\ntick_phase_us: %u\n", name,
              program->gateway ? "gateway" : "shared", program->tick_phase_us);
     text_add(text, "board: [output_feedback, emergency_stop, reset_button, second_clock]\n");
     write_config(program, text);

@@ -1,4 +1,4 @@
-/* The judge of hazards: a planted supervisor that does wrong is a hazard, one that does right in the same run is none. */
+/* The hazards of the hunt: a stub supervisor that does wrong is a hazard, one that does right in the same run is none. */
 #include "hunt/hazard/hazard.h"
 
 #include <stdio.h>
@@ -27,12 +27,12 @@ typedef struct {
     uint32_t forges_ms;   /**< a throttle that nobody commanded */
     const char *setting;  /**< NULL: none */
     uint32_t recovers_ms; /**< from bus-off */
-} planted_t;
+} stub_t;
 
 static scenario_t scenario;
 static scenario_testbed_t testbed;
 static hazard_t hazard;
-static const planted_t *planted;
+static const stub_t *stub;
 static hal_can_frame_t queue[QUEUE];
 static hal_can_side_t towards[QUEUE];
 static unsigned queued;
@@ -63,18 +63,18 @@ static void enqueue(hal_can_side_t side, const hal_can_frame_t *frame) {
     }
 }
 
-/** What the planted gateway passes on: commands of the AI computer, and the mode. */
+/** What the stub gateway passes on: commands of the AI computer, and the mode. */
 static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
-    const bool engaged = vehicle_now().autopilot || !planted->only_engaged;
+    const bool engaged = vehicle_now().autopilot || !stub->only_engaged;
 
     (void)ctx;
     (void)t_us;
     if ((side == HAL_CAN_AI) && (from != SCENARIO_FROM_SUPERVISOR) && engaged) {
-        for (unsigned i = 0u; i < planted->passes; i++) {
+        for (unsigned i = 0u; i < stub->passes; i++) {
             enqueue(HAL_CAN_VEHICLE, frame);
         }
     }
-    if (planted->gateway && (side == HAL_CAN_VEHICLE) && (from == (int)VEHICLE_VCU)) {
+    if (stub->gateway && (side == HAL_CAN_VEHICLE) && (from == (int)VEHICLE_VCU)) {
         enqueue(HAL_CAN_AI, frame);
     }
 }
@@ -85,12 +85,12 @@ static void send_safe(uint32_t t_ms) {
     const uint8_t throttle[AGV_DLC] = {0};
     uint8_t steering[AGV_DLC] = {0};
 
-    if (t_ms == planted->safe_ms) {
-        held_ddeg = vehicle_now().angle_ddeg + planted->hold_ddeg + 9000;
+    if (t_ms == stub->safe_ms) {
+        held_ddeg = vehicle_now().angle_ddeg + stub->hold_ddeg + 9000;
     }
     steering[0] = (uint8_t)held_ddeg;
     steering[1] = (uint8_t)(held_ddeg >> 8);
-    if (planted->holds && (t_ms >= planted->hold_ms) && (t_ms % HOLD_CYCLE_MS == 0u)) {
+    if (stub->holds && (t_ms >= stub->hold_ms) && (t_ms % HOLD_CYCLE_MS == 0u)) {
         send(AGV_MSG_STEERING_COMMAND, steering);
     }
     if (t_ms % CYCLE_MS == 0u) {
@@ -100,16 +100,16 @@ static void send_safe(uint32_t t_ms) {
     }
 }
 
-/** A millisecond of the planted supervisor. */
+/** A millisecond of the stub supervisor. */
 static void act(void *ctx, uint64_t now_ms) {
     const uint32_t t_ms = (uint32_t)now_ms;
     const uint8_t throttle[AGV_DLC] = {125};
-    const bool is_safe = (planted->safe_ms != NEVER) && (t_ms >= planted->safe_ms) &&
-                         ((planted->safe_end_ms == NEVER) || (t_ms < planted->safe_end_ms));
+    const bool is_safe = (stub->safe_ms != NEVER) && (t_ms >= stub->safe_ms) &&
+                         ((stub->safe_end_ms == NEVER) || (t_ms < stub->safe_end_ms));
 
     (void)ctx;
     hal_safety_output_set(scenario_testbed_port(&testbed),
-                          (t_ms >= READY_MS) && ((planted->open_ms == NEVER) || (t_ms < planted->open_ms)));
+                          (t_ms >= READY_MS) && ((stub->open_ms == NEVER) || (t_ms < stub->open_ms)));
     for (unsigned i = 0u; i < queued; i++) {
         if (!is_safe || (towards[i] == HAL_CAN_AI)) {
             (void)hal_can_send(scenario_testbed_port(&testbed), towards[i], &queue[i]);
@@ -119,10 +119,10 @@ static void act(void *ctx, uint64_t now_ms) {
     if (is_safe) {
         send_safe(t_ms);
     }
-    if ((planted->recovers_ms != NEVER) && (t_ms == planted->recovers_ms)) {
+    if ((stub->recovers_ms != NEVER) && (t_ms == stub->recovers_ms)) {
         hal_can_recover(scenario_testbed_port(&testbed), HAL_CAN_VEHICLE);
     }
-    if ((planted->forges_ms != NEVER) && (t_ms == planted->forges_ms)) {
+    if ((stub->forges_ms != NEVER) && (t_ms == stub->forges_ms)) {
         send(AGV_MSG_THROTTLE_COMMAND, throttle);
     }
 }
@@ -138,17 +138,17 @@ static bool after_tick(void *ctx, uint64_t t_ms) {
     return true;
 }
 
-/** Play steps with a planted supervisor. @return which hazard it was */
-static hazard_kind_t play(const planted_t *supervisor, const char *steps) {
+/** Play steps with a stub supervisor. @return which hazard it was */
+static hazard_kind_t play(const stub_t *supervisor, const char *steps) {
     static const scenario_watch_t passing = {.on_frame = on_frame};
     const scenario_options_t options = {.topology = -1, .id_set = -1};
     scenario_options_t defaults = options;
     char text[TEXT_SIZE];
 
-    planted = supervisor;
+    stub = supervisor;
     agv_config_defaults(&defaults.config);
     (void)snprintf(text, sizeof text,
-                   "name: a hazard\nshows: [H1]\nboard: [reset_button]\ntopology: %s\n%s%svehicle:\n  park_guard: "
+                   "name: a hazard\nshows: [FSM-1]\nboard: [reset_button]\ntopology: %s\n%s%svehicle:\n  park_guard: "
                    "%s\n%sduration_ms: 12000\nsteps:\n"
                    "  - {at_ms: 1000, ai: drive, gear: D, throttle_pct: 60, steer_deg: 20}\n"
                    "  - {at_ms: 1500, operator: engage}\n%sexpect: {states: any}\n",
@@ -171,45 +171,46 @@ static hazard_kind_t play(const planted_t *supervisor, const char *steps) {
     return hazard.kind;
 }
 
-static void expect(hazard_kind_t kind, const char *cause, hazard_kind_t seen) {
-    TEST_ASSERT_EQUAL_STRING(hazard_info(kind)->name, hazard_info(seen)->name);
-    if (kind != HAZARD_NONE) {
-        TEST_ASSERT_EQUAL_STRING(cause, hazard.cause);
-    }
+static void expect_hazard(hazard_kind_t kind, const char *cause, const stub_t *supervisor, const char *steps) {
+    TEST_ASSERT_EQUAL_STRING(hazard_info(kind)->name, hazard_info(play(supervisor, steps))->name);
+    TEST_ASSERT_EQUAL_STRING(cause, hazard.cause);
+}
+
+static void expect_none(const stub_t *supervisor, const char *steps) {
+    TEST_ASSERT_EQUAL_STRING(hazard_info(HAZARD_NONE)->name, hazard_info(play(supervisor, steps))->name);
 }
 
 /** One that reacts: safe commands soon after the cause, the output opens a little later. */
-static const planted_t GOOD = {.safe_ms = TRIP_MS + 200, .open_ms = TRIP_MS + 600};
-static const planted_t GOOD_GATEWAY = {
-    .gateway = true, .passes = 1u, .safe_ms = TRIP_MS + 100, .open_ms = TRIP_MS + 600};
-static const planted_t MUTE = {0};
-static const planted_t PASSING = {.gateway = true, .passes = 1u};
+static const stub_t GOOD = {.safe_ms = TRIP_MS + 200, .open_ms = TRIP_MS + 600};
+static const stub_t GOOD_GATEWAY = {.gateway = true, .passes = 1u, .safe_ms = TRIP_MS + 100, .open_ms = TRIP_MS + 600};
+static const stub_t MUTE = {0};
+static const stub_t PASSING = {.gateway = true, .passes = 1u};
 
 void test_nothing_wrong_is_no_hazard(void) {
-    expect(HAZARD_NONE, "", play(&MUTE, ""));
-    expect(HAZARD_NONE, "", play(&PASSING, ""));
+    expect_none(&MUTE, "");
+    expect_none(&PASSING, "");
 }
 
 void test_h1_a_dead_node(void) {
     const char *const steps = "  - {at_ms: 3000, eps: freeze_counter}\n";
-    expect(HAZARD_NOT_STOPPING, "the EPS is silent", play(&MUTE, steps));
-    expect(HAZARD_NONE, "", play(&GOOD, steps));
+    expect_hazard(HAZARD_NOT_STOPPING, "the EPS is silent", &MUTE, steps);
+    expect_none(&GOOD, steps);
 }
 
 void test_h1_a_vehicle_that_does_not_obey(void) {
-    const planted_t stays = {.rolls = true, .safe_ms = TRIP_MS};
-    const planted_t opens = {.rolls = true, .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 5000};
-    expect(HAZARD_NOT_STOPPING, "the vehicle does not obey the safe commands", play(&stays, ""));
-    expect(HAZARD_NONE, "", play(&opens, ""));
+    const stub_t stays = {.rolls = true, .safe_ms = TRIP_MS};
+    const stub_t opens = {.rolls = true, .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 5000};
+    expect_hazard(HAZARD_NOT_STOPPING, "the vehicle does not obey the safe commands", &stays, "");
+    expect_none(&opens, "");
 }
 
 void test_h2_another_angle(void) {
     const char *const steps = "  - {at_ms: 2990, vcu: set, field: mode_bits, value: 2h}\n"
                               "  - {at_ms: 2990, ai: mute, message: steering_command}\n";
-    const planted_t steers = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 400, .holds = true, .hold_ddeg = 200};
-    const planted_t holds = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 400, .holds = true};
-    expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&steers, steps));
-    expect(HAZARD_NONE, "", play(&holds, steps));
+    const stub_t steers = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 400, .holds = true, .hold_ddeg = 200};
+    const stub_t holds = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 400, .holds = true};
+    expect_hazard(HAZARD_STEERING, "the supervisor steers to another angle", &steers, steps);
+    expect_none(&holds, steps);
 }
 
 /** The angle of the trip is sent late, and manual drops it soon after: one frame that was on its way still leaves. */
@@ -219,18 +220,18 @@ void test_h2_manual_drops_the_angle_of_the_trip(void) {
                               "  - {at_ms: 3180, operator: disengage}\n"
                               "  - {at_ms: 3180, operator: steer, steer_deg: -60}\n"
                               "  - {at_ms: 5000, operator: engage}\n";
-    const planted_t keeps = {
+    const stub_t keeps = {
         .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 10, .holds = true, .hold_ddeg = -300, .hold_ms = TRIP_MS + 190};
-    const planted_t ends = {.safe_ms = TRIP_MS,
-                            .safe_end_ms = TRIP_MS + 205,
-                            .open_ms = TRIP_MS + 10,
-                            .holds = true,
-                            .hold_ddeg = -300,
-                            .hold_ms = TRIP_MS + 190};
-    const planted_t at_once = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 10, .holds = true};
-    expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&keeps, steps));
-    expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&at_once, steps));
-    expect(HAZARD_NONE, "", play(&ends, steps));
+    const stub_t ends = {.safe_ms = TRIP_MS,
+                         .safe_end_ms = TRIP_MS + 205,
+                         .open_ms = TRIP_MS + 10,
+                         .holds = true,
+                         .hold_ddeg = -300,
+                         .hold_ms = TRIP_MS + 190};
+    const stub_t at_once = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 10, .holds = true};
+    expect_hazard(HAZARD_STEERING, "the supervisor steers to another angle", &keeps, steps);
+    expect_hazard(HAZARD_STEERING, "the supervisor steers to another angle", &at_once, steps);
+    expect_none(&ends, steps);
 }
 
 void test_h2_who_is_bus_off_does_not_hear_of_manual(void) {
@@ -239,11 +240,10 @@ void test_h2_who_is_bus_off_does_not_hear_of_manual(void) {
                               "  - {at_ms: 3150, operator: disengage}\n"
                               "  - {at_ms: 3150, operator: steer, steer_deg: -60}\n"
                               "  - {at_ms: 3650, operator: engage}\n";
-    const planted_t halted = {
-        .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .recovers_ms = TRIP_MS + 800};
-    const planted_t hears = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .recovers_ms = TRIP_MS + 300};
-    expect(HAZARD_NONE, "", play(&halted, steps));
-    expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&hears, steps));
+    const stub_t halted = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .recovers_ms = TRIP_MS + 800};
+    const stub_t hears = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .recovers_ms = TRIP_MS + 300};
+    expect_none(&halted, steps);
+    expect_hazard(HAZARD_STEERING, "the supervisor steers to another angle", &hears, steps);
 }
 
 void test_h2_a_flipped_bit_is_a_trip_of_its_own(void) {
@@ -251,14 +251,14 @@ void test_h2_a_flipped_bit_is_a_trip_of_its_own(void) {
                              "  - {at_ms: 3200, ai: drive, gear: D, throttle_pct: 60, steer_deg: 80}\n";
     const char *const tail = "  - {at_ms: 3520, ai: drive, gear: D, throttle_pct: 60, steer_deg: -20}\n"
                              "  - {at_ms: 3880, ai: mute, message: steering_command}\n";
-    const planted_t holds = {
+    const stub_t holds = {
         .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .hold_ddeg = 600, .hold_ms = TRIP_MS + 900};
     char steps[512];
 
     (void)snprintf(steps, sizeof steps, "%s%s", head, tail);
-    expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&holds, steps));
+    expect_hazard(HAZARD_STEERING, "the supervisor steers to another angle", &holds, steps);
     (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 3500, supervisor: flip_bit, bit: 1}\n%s", head, tail);
-    expect(HAZARD_NONE, "", play(&holds, steps));
+    expect_none(&holds, steps);
 }
 
 void test_h2_a_supervisor_that_hung_is_restarted_and_trips_anew(void) {
@@ -266,14 +266,14 @@ void test_h2_a_supervisor_that_hung_is_restarted_and_trips_anew(void) {
                              "  - {at_ms: 3200, ai: drive, gear: D, throttle_pct: 60, steer_deg: 80}\n";
     const char *const tail = "  - {at_ms: 3680, ai: drive, gear: D, throttle_pct: 60, steer_deg: -20}\n"
                              "  - {at_ms: 3880, ai: mute, message: steering_command}\n";
-    const planted_t holds = {
+    const stub_t holds = {
         .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .hold_ddeg = 600, .hold_ms = TRIP_MS + 900};
     char steps[512];
 
     (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 3500, supervisor: hang, for_ms: 50}\n%s", head, tail);
-    expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&holds, steps));
+    expect_hazard(HAZARD_STEERING, "the supervisor steers to another angle", &holds, steps);
     (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 3500, supervisor: hang, for_ms: 150}\n%s", head, tail);
-    expect(HAZARD_NONE, "", play(&holds, steps));
+    expect_none(&holds, steps);
 }
 
 /** 065h begins late, with the angle of the trip, from which the AI computer has steered away. */
@@ -281,10 +281,10 @@ void test_h2_the_angle_of_the_trip_is_out_of_date_after_2_s(void) {
     const char *const steps = "  - {at_ms: 2990, vcu: set, field: mode_bits, value: 2h}\n"
                               "  - {at_ms: 3300, ai: drive, gear: D, throttle_pct: 60, steer_deg: -60}\n"
                               "  - {at_ms: 3900, ai: mute, message: steering_command}\n";
-    const planted_t soon = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .hold_ms = TRIP_MS + 1900};
-    const planted_t late = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .hold_ms = TRIP_MS + 2500};
-    expect(HAZARD_NONE, "", play(&soon, steps));
-    expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&late, steps));
+    const stub_t soon = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .hold_ms = TRIP_MS + 1900};
+    const stub_t late = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .hold_ms = TRIP_MS + 2500};
+    expect_none(&soon, steps);
+    expect_hazard(HAZARD_STEERING, "the supervisor steers to another angle", &late, steps);
 }
 
 /** An angle that was right goes on after a gap of less than 2 s. */
@@ -293,25 +293,25 @@ void test_h2_a_right_angle_may_be_sent_again_within_2_s(void) {
                              "  - {at_ms: 6500, ai: drive, gear: D, throttle_pct: 60, steer_deg: -60}\n"
                              "  - {at_ms: 6500, supervisor: fill_queue}\n"
                              "  - {at_ms: 7000, ai: mute, message: steering_command}\n";
-    const planted_t holds = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true};
+    const stub_t holds = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true};
     char steps[512];
 
     (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 8400, supervisor: free_queue}\n", head);
-    expect(HAZARD_NONE, "", play(&holds, steps));
+    expect_none(&holds, steps);
     (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 9000, supervisor: free_queue}\n", head);
-    expect(HAZARD_STEERING, "the supervisor steers to another angle", play(&holds, steps));
+    expect_hazard(HAZARD_STEERING, "the supervisor steers to another angle", &holds, steps);
 }
 
 void test_h3_a_command_that_nobody_sent(void) {
-    const planted_t forges = {.gateway = true, .passes = 1u, .forges_ms = TRIP_MS, .only_engaged = true};
-    expect(HAZARD_FALSE_COMMAND, "the supervisor sent a command that the AI computer did not send",
-           play(&forges, "  - {at_ms: 2000, ai: drive, gear: D, throttle_pct: 20}\n"));
+    const stub_t forges = {.gateway = true, .passes = 1u, .forges_ms = TRIP_MS, .only_engaged = true};
+    expect_hazard(HAZARD_FALSE_COMMAND, "the supervisor sent a command that the AI computer did not send", &forges,
+                  "  - {at_ms: 2000, ai: drive, gear: D, throttle_pct: 20}\n");
 }
 
 void test_h3_a_foreign_sender(void) {
     const char *const steps = "  - {at_ms: 3000, bus: send, message: throttle_command, bytes: \"40\"}\n";
-    expect(HAZARD_FALSE_COMMAND, "a rogue node's command is not overridden", play(&PASSING, steps));
-    expect(HAZARD_NONE, "", play(&GOOD_GATEWAY, steps));
+    expect_hazard(HAZARD_FALSE_COMMAND, "a rogue node's command is not overridden", &PASSING, steps);
+    expect_none(&GOOD_GATEWAY, steps);
 }
 
 /** A stalled transmitter opens the output after tx_stalled_ms, so that nobody has to override before. */
@@ -319,70 +319,69 @@ void test_h3_a_foreign_sender_and_a_stalled_transmitter(void) {
     const char *const stalled = "  - {at_ms: 2990, supervisor: stall_tx}\n"
                                 "  - {at_ms: 3000, bus: send, message: throttle_command, bytes: \"40\"}\n";
     const char *const sends = "  - {at_ms: 3000, bus: send, message: throttle_command, bytes: \"40\"}\n";
-    const planted_t opens = {
-        .gateway = true, .passes = 1u, .open_ms = TRIP_MS + 450, .setting = "tx_stalled_ms: 500\n"};
-    const planted_t stays = {.gateway = true, .passes = 1u, .setting = "tx_stalled_ms: 500\n"};
-    expect(HAZARD_NONE, "", play(&opens, stalled));
-    expect(HAZARD_FALSE_COMMAND, "a rogue node's command is not overridden", play(&stays, stalled));
-    expect(HAZARD_FALSE_COMMAND, "a rogue node's command is not overridden", play(&opens, sends));
+    const stub_t opens = {.gateway = true, .passes = 1u, .open_ms = TRIP_MS + 450, .setting = "tx_stalled_ms: 500\n"};
+    const stub_t stays = {.gateway = true, .passes = 1u, .setting = "tx_stalled_ms: 500\n"};
+    expect_none(&opens, stalled);
+    expect_hazard(HAZARD_FALSE_COMMAND, "a rogue node's command is not overridden", &stays, stalled);
+    expect_hazard(HAZARD_FALSE_COMMAND, "a rogue node's command is not overridden", &opens, sends);
 }
 
 void test_h3_a_frame_past_the_wire(void) {
     const char *const steps = "  - {at_ms: 3000, bus: deliver, kind: fd, message: gear_command, bytes: \"01 00\"}\n";
-    expect(HAZARD_FALSE_COMMAND, "a rogue node's command is not overridden", play(&PASSING, steps));
-    expect(HAZARD_NONE, "", play(&GOOD_GATEWAY, steps));
+    expect_hazard(HAZARD_FALSE_COMMAND, "a rogue node's command is not overridden", &PASSING, steps);
+    expect_none(&GOOD_GATEWAY, steps);
 }
 
 void test_h3_an_old_throttle(void) {
     const char *const steps = "  - {at_ms: 3000, operator: disengage}\n  - {at_ms: 4000, operator: engage}\n";
-    const planted_t forgets = {.gateway = true, .passes = 1u, .only_engaged = true};
-    expect(HAZARD_FALSE_COMMAND, "an old throttle command is the latest one at an engagement", play(&forgets, steps));
-    expect(HAZARD_NONE, "", play(&PASSING, steps)); /* passes the throttle 0 that the AI computer commands in manual */
+    const stub_t forgets = {.gateway = true, .passes = 1u, .only_engaged = true};
+    expect_hazard(HAZARD_FALSE_COMMAND, "an old throttle command is the latest one at an engagement", &forgets, steps);
+    expect_none(&PASSING, steps); /* passes the throttle 0 that the AI computer commands in manual */
 }
 
 void test_h4_an_unconfirmed_safe_state(void) {
     const char *const gear = "  - {at_ms: 2900, vcu: set, field: gear, value: 01h}\n";
     const char *const now_and_then =
         "  - {at_ms: 2900, vcu: set, field: gear, value: 01h, frames: 17, again_every_ms: 475}\n";
-    const planted_t stays = {.safe_ms = TRIP_MS};
-    const planted_t opens = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 510};
-    expect(HAZARD_UNCONFIRMED, "gear P is not confirmed", play(&stays, gear));
-    expect(HAZARD_UNCONFIRMED, "gear P is not confirmed", play(&stays, now_and_then));
-    expect(HAZARD_NONE, "", play(&opens, gear));
+    const stub_t stays = {.safe_ms = TRIP_MS};
+    const stub_t opens = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 510};
+    expect_hazard(HAZARD_UNCONFIRMED, "gear P is not confirmed", &stays, gear);
+    expect_hazard(HAZARD_UNCONFIRMED, "gear P is not confirmed", &stays, now_and_then);
+    expect_none(&opens, gear);
 }
 
 void test_h5_a_reset(void) {
-    const planted_t resets = {.safe_ms = TRIP_MS, .safe_end_ms = 6000};
+    const stub_t resets = {.safe_ms = TRIP_MS, .safe_end_ms = 6000};
     const char *const before = "  - {at_ms: 2000, operator: press, button: 1}\n";
     const char *const stuck = "  - {at_ms: 4000, operator: press, button: 1}\n";
     const char *const pressed =
         "  - {at_ms: 4500, operator: press, button: 1}\n  - {at_ms: 5900, operator: release, button: 1}\n";
-    expect(HAZARD_RESET, "nobody pressed the button after the trip", play(&resets, ""));
-    expect(HAZARD_RESET, "nobody pressed the button after the trip", play(&resets, before));
-    expect(HAZARD_RESET, "no button that may reset was released", play(&resets, stuck));
-    expect(HAZARD_NONE, "", play(&resets, pressed));
+    expect_hazard(HAZARD_RESET, "nobody pressed the button after the trip", &resets, "");
+    expect_hazard(HAZARD_RESET, "nobody pressed the button after the trip", &resets, before);
+    expect_hazard(HAZARD_RESET, "no button that may reset was released", &resets, stuck);
+    expect_none(&resets, pressed);
 }
 
 /** Only a button that the configuration lets reset counts. */
 /* Shows: HW-3 */
 void test_h5_the_push_button(void) {
-    const planted_t by_can = {.safe_ms = TRIP_MS, .safe_end_ms = 6000};
-    const planted_t by_pin = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .setting = "reset_input: pin\n"};
-    const planted_t by_both = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .setting = "reset_input: both\n"};
+    const stub_t by_can = {.safe_ms = TRIP_MS, .safe_end_ms = 6000};
+    const stub_t by_pin = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .setting = "reset_input: pin\n"};
+    const stub_t by_both = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .setting = "reset_input: both\n"};
     const char *const remote =
         "  - {at_ms: 4500, operator: press, button: 1}\n  - {at_ms: 5900, operator: release, button: 1}\n";
     const char *const pin = "  - {at_ms: 4500, board: press}\n  - {at_ms: 5900, board: release}\n";
-    expect(HAZARD_RESET, "no button that may reset was released", play(&by_can, pin));
-    expect(HAZARD_RESET, "no button that may reset was released", play(&by_pin, remote));
-    expect(HAZARD_RESET, "no button that may reset was released", play(&by_pin, "  - {at_ms: 4500, board: press}\n"));
-    expect(HAZARD_NONE, "", play(&by_pin, pin));
-    expect(HAZARD_NONE, "", play(&by_both, pin));
-    expect(HAZARD_NONE, "", play(&by_both, remote));
+    expect_hazard(HAZARD_RESET, "no button that may reset was released", &by_can, pin);
+    expect_hazard(HAZARD_RESET, "no button that may reset was released", &by_pin, remote);
+    expect_hazard(HAZARD_RESET, "no button that may reset was released", &by_pin, "  - {at_ms: 4500, board: press}\n");
+    expect_none(&by_pin, pin);
+    expect_none(&by_both, pin);
+    expect_none(&by_both, remote);
 }
 
 /** What 363h reports of the button counts too: nobody can know better. */
 void test_h5_a_press_that_is_reported_late_or_wrongly(void) {
-    const planted_t resets = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .setting = "confirm_timeout_ms: 1000\n"};
+    const stub_t resets = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .setting = "confirm_timeout_ms: 1000\n"};
     const char *const lost = "  - {at_ms: 2000, operator: press, button: 1}\n"
                              "  - {at_ms: 2900, operator: lose_remote_signal}\n"
                              "%s"
@@ -394,13 +393,13 @@ void test_h5_a_press_that_is_reported_late_or_wrongly(void) {
     char steps[512];
 
     (void)snprintf(steps, sizeof steps, lost, "");
-    expect(HAZARD_RESET, "nobody pressed the button after the trip", play(&resets, steps));
+    expect_hazard(HAZARD_RESET, "nobody pressed the button after the trip", &resets, steps);
     (void)snprintf(steps, sizeof steps, lost, "  - {at_ms: 2900, vcu: set, field: alarms, value: 00h}\n");
-    expect(HAZARD_NONE, "", play(&resets, steps));
+    expect_none(&resets, steps);
     (void)snprintf(steps, sizeof steps, late, "4000");
-    expect(HAZARD_NONE, "", play(&resets, steps));
+    expect_none(&resets, steps);
     (void)snprintf(steps, sizeof steps, late, "3200"); /* shorter than reset_hold_ms */
-    expect(HAZARD_RESET, "nobody pressed the button after the trip", play(&resets, steps));
+    expect_hazard(HAZARD_RESET, "nobody pressed the button after the trip", &resets, steps);
 }
 
 /** Each engagement has its grace time, but not the fourth one within mode_flapping_ms. */
@@ -411,10 +410,10 @@ void test_h6_the_grace_time_is_that_of_each_engagement(void) {
     const char *const fast = "  - {at_ms: 2000, vcu: set, field: throttle, value: FAh}\n"
                              "  - {at_ms: 2400, operator: disengage, again_every_ms: 650}\n"
                              "  - {at_ms: 2560, operator: engage, again_every_ms: 650}\n";
-    const planted_t graceful = {.setting = "engaged_grace_ms: 1600\n"};
-    expect(HAZARD_NONE, "", play(&graceful, slow));
-    expect(HAZARD_FALSE_NODE, "more throttle than commanded", play(&MUTE, slow));
-    expect(HAZARD_FALSE_NODE, "more throttle than commanded", play(&MUTE, fast));
+    const stub_t graceful = {.setting = "engaged_grace_ms: 1600\n"};
+    expect_none(&graceful, slow);
+    expect_hazard(HAZARD_FALSE_NODE, "more throttle than commanded", &MUTE, slow);
+    expect_hazard(HAZARD_FALSE_NODE, "more throttle than commanded", &MUTE, fast);
 }
 
 void test_h6_a_node_that_reports_what_cannot_be(void) {
@@ -437,38 +436,38 @@ void test_h6_a_node_that_reports_what_cannot_be(void) {
 
     for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
         (void)snprintf(steps, sizeof steps, "  - {at_ms: 3000, %s}\n", rows[i].steps);
-        expect(HAZARD_FALSE_NODE, rows[i].cause, play(&MUTE, steps));
-        expect(HAZARD_NONE, "", play(&GOOD, steps));
+        expect_hazard(HAZARD_FALSE_NODE, rows[i].cause, &MUTE, steps);
+        expect_none(&GOOD, steps);
     }
 }
 
 void test_h6_a_dead_transmitter_shows_with_the_next_status_frame(void) {
     const char *const steps = "  - {at_ms: 3000, supervisor: stall_tx}\n";
-    const planted_t never = {.setting = "status_frame_period_ms: 3000\n"};
-    const planted_t late = {.setting = "status_frame_period_ms: 3000\n", .open_ms = TRIP_MS + 3200};
-    const planted_t too_late = {.open_ms = TRIP_MS + 3200};
-    expect(HAZARD_FALSE_NODE, "the supervisor's transmitter is dead", play(&never, steps));
-    expect(HAZARD_FALSE_NODE, "the supervisor's transmitter is dead", play(&too_late, steps));
-    expect(HAZARD_NONE, "", play(&late, steps));
+    const stub_t never = {.setting = "status_frame_period_ms: 3000\n"};
+    const stub_t late = {.setting = "status_frame_period_ms: 3000\n", .open_ms = TRIP_MS + 3200};
+    const stub_t too_late = {.open_ms = TRIP_MS + 3200};
+    expect_hazard(HAZARD_FALSE_NODE, "the supervisor's transmitter is dead", &never, steps);
+    expect_hazard(HAZARD_FALSE_NODE, "the supervisor's transmitter is dead", &too_late, steps);
+    expect_none(&late, steps);
 }
 
 void test_h6_what_only_warns_is_no_hazard(void) {
     const char *const steps = "  - {at_ms: 3000, vcu: ignore, message: turn_signal_command}\n"
                               "  - {at_ms: 3100, ai: ask_autopilot_off}\n";
-    const planted_t warns = {.setting = "class_autopilot_off_ignored: warn\n"};
-    expect(HAZARD_FALSE_NODE, "autopilot off is ignored", play(&MUTE, steps));
-    expect(HAZARD_NONE, "", play(&warns, steps));
+    const stub_t warns = {.setting = "class_autopilot_off_ignored: warn\n"};
+    expect_hazard(HAZARD_FALSE_NODE, "autopilot off is ignored", &MUTE, steps);
+    expect_none(&warns, steps);
 }
 
 void test_h6_an_ai_side_that_is_dead(void) {
     const char *const steps = "  - {at_ms: 3000, supervisor: stall_tx, side: ai}\n";
-    planted_t trips = PASSING;
-    planted_t reacts = GOOD_GATEWAY;
+    stub_t trips = PASSING;
+    stub_t reacts = GOOD_GATEWAY;
     trips.setting = "class_ai_bus_off: trip\n";
     reacts.setting = trips.setting;
-    expect(HAZARD_FALSE_NODE, "the AI side is stalled", play(&trips, steps));
-    expect(HAZARD_NONE, "", play(&reacts, steps));
-    expect(HAZARD_NONE, "", play(&PASSING, steps)); /* it only warns */
+    expect_hazard(HAZARD_FALSE_NODE, "the AI side is stalled", &trips, steps);
+    expect_none(&reacts, steps);
+    expect_none(&PASSING, steps); /* it only warns */
 }
 
 void test_h6_steering_that_is_stuck(void) {
@@ -476,11 +475,11 @@ void test_h6_steering_that_is_stuck(void) {
         "  - {at_ms: 3000, eps: stick}\n"
         "  - {at_ms: 3000, ai: drive, gear: D, throttle_pct: 60, steer_deg: 90, again_every_ms: 400}\n"
         "  - {at_ms: 3200, ai: drive, gear: D, throttle_pct: 60, steer_deg: -90, again_every_ms: 400}\n";
-    expect(HAZARD_FALSE_NODE, "the steering is stuck", play(&MUTE, steps));
-    expect(HAZARD_NONE, "", play(&GOOD, steps));
+    expect_hazard(HAZARD_FALSE_NODE, "the steering is stuck", &MUTE, steps);
+    expect_none(&GOOD, steps);
 }
 
 void test_h7_a_flood(void) {
-    const planted_t floods = {.gateway = true, .passes = 3u};
-    expect(HAZARD_FLOOD, "the vehicle's bus is flooded through the gateway", play(&floods, ""));
+    const stub_t floods = {.gateway = true, .passes = 3u};
+    expect_hazard(HAZARD_FLOOD, "the vehicle's bus is flooded through the gateway", &floods, "");
 }
