@@ -2,8 +2,6 @@
 
 #include <stddef.h>
 
-#include "scenario/scenario_player.h"
-
 static void do_steps(scenario_testbed_t *testbed, const scenario_play_t *play, scenario_player_t *player,
                      uint64_t t_ms) {
     const scenario_step_t *step = scenario_player_next(player, t_ms);
@@ -16,19 +14,24 @@ static void do_steps(scenario_testbed_t *testbed, const scenario_play_t *play, s
     }
 }
 
+bool scenario_play_ms(scenario_testbed_t *testbed, const scenario_play_t *play, scenario_player_t *player,
+                      uint64_t t_ms) {
+    if (play->scenario != NULL) {
+        do_steps(testbed, play, player, t_ms);
+    }
+    if (play->before_tick != NULL) {
+        play->before_tick(play->ctx, t_ms);
+    }
+    scenario_testbed_tick(testbed, t_ms);
+    return (play->after_tick == NULL) || play->after_tick(play->ctx, t_ms);
+}
+
 void scenario_play(scenario_testbed_t *testbed, const scenario_play_t *play) {
     scenario_player_t player;
     bool goes_on = true;
 
     scenario_player_init(&player, play->scenario, scenario_testbed_events(testbed));
     for (uint64_t t_ms = play->from_ms; goes_on && (t_ms <= play->until_ms); t_ms++) {
-        if (play->scenario != NULL) {
-            do_steps(testbed, play, &player, t_ms);
-        }
-        if (play->before_tick != NULL) {
-            play->before_tick(play->ctx, t_ms);
-        }
-        scenario_testbed_tick(testbed, t_ms);
-        goes_on = (play->after_tick == NULL) || play->after_tick(play->ctx, t_ms);
+        goes_on = scenario_play_ms(testbed, play, &player, t_ms);
     }
 }

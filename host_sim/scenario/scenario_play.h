@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "scenario/scenario.h"
+#include "scenario/scenario_player.h"
 #include "scenario/scenario_testbed.h"
 
 /** A run. The functions may be NULL. */
@@ -27,5 +28,13 @@ typedef struct {
 
 /** Run a testbed that was started. */
 void scenario_play(scenario_testbed_t *testbed, const scenario_play_t *play);
+
+/**
+ * Run one millisecond of it, for a caller with a loop of its own: from `from_ms` on, each once.
+ * @param player was made with scenario_player_init() for play->scenario
+ * @return false: the run ends here
+ */
+bool scenario_play_ms(scenario_testbed_t *testbed, const scenario_play_t *play, scenario_player_t *player,
+                      uint64_t t_ms);
 
 #endif

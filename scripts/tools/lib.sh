@@ -28,7 +28,7 @@ first_of() {
 
 # All C files of this project, in every folder that has some.
 c_files() {
-    find "$ROOT"/{firmware,hal,host_sim,bench,tests} -name '*.[ch]' | sort
+    find "$ROOT"/{firmware,hal,host_sim,bench,tests,web} -name '*.[ch]' | sort
 }
 
 # Runs of unit and integration tests with other start times of the clock are left out: they reach no other code.

@@ -1,7 +1,8 @@
 #include "scenario/run/scenario_run.h"
 
+#include <string.h>
+
 #include "common/interrupt.h"
-#include "scenario/scenario_play.h"
 
 enum { LOOK_FOR_SIGNALS_EVERY_MS = 1000 };
 
@@ -32,28 +33,19 @@ static void check_hazards(scenario_run_t *run) {
     }
 }
 
-/** A run and the callback for its steps. */
-typedef struct {
-    scenario_run_t *run;
-    void *ctx;
-    scenario_step_fn *on_step;
-    bool was_done[SCENARIO_STEPS_MAX]; /* a repeated step is told of once */
-} playing_t;
-
 static void before_step(void *ctx, uint64_t t_ms, const scenario_step_t *step) {
-    playing_t *playing = ctx;
-    bool *was_done = &playing->was_done[step - playing->run->scenario.steps];
+    scenario_run_t *run = ctx;
+    bool *was_done = &run->was_done[step - run->scenario.steps];
 
-    if ((playing->on_step != NULL) && !*was_done) {
-        playing->on_step(playing->ctx, t_ms, step);
+    if ((run->on_step != NULL) && !*was_done) {
+        run->on_step(run->step_ctx, t_ms, step);
     }
     *was_done = true;
-    hazard_step(&playing->run->hazard, t_ms, step);
+    hazard_step(&run->hazard, t_ms, step);
 }
 
 static bool after_tick(void *ctx, uint64_t t_ms) {
-    const playing_t *playing = ctx;
-    scenario_run_t *run = playing->run;
+    scenario_run_t *run = ctx;
     scenario_testbed_view_t seen;
 
     hazard_tick(&run->hazard, t_ms);
@@ -68,10 +60,15 @@ static bool after_tick(void *ctx, uint64_t t_ms) {
     return !run->was_interrupted;
 }
 
-bool scenario_run(scenario_run_t *run, const scenario_watch_t watches[], size_t count, scenario_step_fn *on_step) {
+bool scenario_run_start(scenario_run_t *run, const scenario_watch_t watches[], size_t count,
+                        scenario_step_fn *on_step) {
     const scenario_watch_t checked = {.on_event = check_event, .on_frame = check_frame, .ctx = &run->check};
 
     run->was_interrupted = false;
+    run->on_step = on_step;
+    run->step_ctx = (count > 0u) ? watches[0].ctx : NULL;
+    memset(run->was_done, 0, sizeof run->was_done);
+    scenario_player_init(&run->player, &run->scenario, scenario_testbed_events(&run->testbed));
     scenario_check_init(&run->check, &run->scenario);
     if (!scenario_testbed_init(&run->testbed, &run->scenario)) {
         scenario_check_fail(&run->check, 0u, "the testbed could not be built");
@@ -83,14 +80,34 @@ bool scenario_run(scenario_run_t *run, const scenario_watch_t watches[], size_t 
         scenario_testbed_watch(&run->testbed, &watches[i]);
     }
     scenario_testbed_start(&run->testbed);
-    playing_t playing = {.run = run, .ctx = (count > 0u) ? watches[0].ctx : NULL, .on_step = on_step};
-    const scenario_play_t play = {.scenario = &run->scenario,
-                                  .until_ms = run->scenario.duration_ms,
-                                  .before_step = before_step,
-                                  .after_tick = after_tick,
-                                  .ctx = &playing};
-    scenario_play(&run->testbed, &play);
+    return true;
+}
+
+bool scenario_run_ms(scenario_run_t *run, uint64_t t_ms) {
+    const scenario_play_t play = {
+        .scenario = &run->scenario, .before_step = before_step, .after_tick = after_tick, .ctx = run};
+
+    return scenario_play_ms(&run->testbed, &play, &run->player, t_ms);
+}
+
+void scenario_run_do(scenario_run_t *run, uint64_t t_ms, const scenario_step_t *step) {
+    hazard_step(&run->hazard, t_ms, step);
+    scenario_testbed_act(&run->testbed, t_ms, step);
+}
+
+bool scenario_run_end(scenario_run_t *run) {
     check_hazards(run);
     scenario_check_finish(&run->check, agv_supervisor_counters(&scenario_testbed_session(&run->testbed)->supervisor));
     return !run->was_interrupted && (run->check.failure_count == 0u);
+}
+
+bool scenario_run(scenario_run_t *run, const scenario_watch_t watches[], size_t count, scenario_step_fn *on_step) {
+    if (!scenario_run_start(run, watches, count, on_step)) {
+        return false;
+    }
+    bool goes_on = true;
+    for (uint64_t t_ms = 0u; goes_on && (t_ms <= run->scenario.duration_ms); t_ms++) {
+        goes_on = scenario_run_ms(run, t_ms);
+    }
+    return scenario_run_end(run);
 }
