@@ -44,7 +44,14 @@ typedef enum {
     YAML_KIND_WORD,
     YAML_KIND_RANGE,      /**< one number or two, into two members of 32 bits */
     YAML_KIND_TIME_RANGE, /**< the same, of times in milliseconds */
+    YAML_KIND_TEXT,       /**< this and what follows: for shapes only */
+    YAML_KIND_BYTES,
+    YAML_KIND_NAMES, /**< one of the words that a function names */
+    YAML_KIND_MAP,   /**< a mapping by a table */
 } yaml_kind_t;
+
+/** What a function accepts: yaml_shape.h. */
+typedef struct yaml_shape yaml_shape_t;
 
 /** A key of a mapping; made by the macros below. */
 typedef struct {
@@ -59,13 +66,14 @@ typedef struct {
     int64_t highest;
     duration_unit_t unit; /**< of a time */
     const yaml_word_t *words;
+    const yaml_shape_t *shape; /**< what the function of a CALL or a LIST (each item) accepts; NULL: anything */
 } yaml_key_t;
 
 /** @name Rows of a table of keys: OPTIONAL or REQUIRED, the key, and what its kind needs @{ */
 #define YAML_OPTIONAL(...) {.required = false, __VA_ARGS__}
 #define YAML_REQUIRED(...) {.required = true, __VA_ARGS__}
-#define YAML_CALL(key, function) .name = (key), .kind = YAML_KIND_CALL, .read = (function)
-#define YAML_LIST(key, function) .name = (key), .kind = YAML_KIND_LIST, .read = (function)
+#define YAML_CALL(key, function, shape_) .name = (key), .kind = YAML_KIND_CALL, .read = (function), .shape = (shape_)
+#define YAML_LIST(key, function, shape_) .name = (key), .kind = YAML_KIND_LIST, .read = (function), .shape = (shape_)
 #define YAML_MEMBER(type, member) .offset = offsetof(type, member), .size = sizeof(((type *)NULL)->member)
 #define YAML_FLAG(key, type, member) .name = (key), .kind = YAML_KIND_FLAG, YAML_MEMBER(type, member)
 #define YAML_NUMBER(key, type, member, low, high)                                                                      \

@@ -214,7 +214,7 @@ static void add_parameters(char *item, uint32_t parameters, const char *before, 
     for (unsigned i = 0u; i < SCENARIO_PARAMETERS; i++) {
         const size_t used = strlen(item);
         if ((parameters & (1u << i)) != 0u) {
-            (void)snprintf(&item[used], HELP_WIDTH - used, "%s%s%s", before, SCENARIO_PARAMETER_NAMES[i], after);
+            (void)snprintf(&item[used], HELP_WIDTH - used, "%s%s%s", before, SCENARIO_PARAMETER_ROWS[i].name, after);
         }
     }
 }

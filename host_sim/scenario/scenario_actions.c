@@ -1,9 +1,12 @@
-/* The words of steps. To add an action: a row here. To add a parameter: a bit in the header and a name here. */
+/* The words of steps. To add an action: a row here. To add a parameter: a bit in the header and a row of
+ * scenario_parameters.c. */
 #include "scenario/scenario_actions.h"
 
 #include <string.h>
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
+#define BITS_OF_BYTE 8u
+#define BITS_OF_VALUE 32u
 
 const yaml_word_t SCENARIO_ACTORS[] = {{"vcu", ACTOR_VCU},     {"eps", ACTOR_EPS},
                                        {"ai", ACTOR_AI},       {"operator", ACTOR_OPERATOR},
@@ -116,11 +119,6 @@ static const scenario_field_row_t FIELDS[] = {
     {"counter", ACTOR_AI, AGV_MSG_TURN_SIGNAL_COMMAND, 7u, 1u, 0xFFu, 0u},
 };
 
-const char *const SCENARIO_PARAMETER_NAMES[SCENARIO_PARAMETERS] = {
-    "message", "frames",       "by_ms",     "times",      "kind",       "every_ms", "bytes", "field",  "value",
-    "gear",    "throttle_pct", "steer_deg", "button",     "side",       "id",       "cause", "off_ms", "for_ms",
-    "bit",     "every_frames", "pct_s",     "speed_mm_s", "pattern_ms", "permille", "part"};
-
 const scenario_action_row_t *scenario_action(size_t number) {
     return (number < COUNT(ACTIONS)) ? &ACTIONS[number] : NULL;
 }
@@ -129,11 +127,19 @@ const scenario_field_row_t *scenario_field(size_t number) {
     return (number < COUNT(FIELDS)) ? &FIELDS[number] : NULL;
 }
 
+bool scenario_action_is_of(const scenario_action_row_t *row, scenario_actor_t actor) {
+    return (row->actor == actor) || ((row->actor == ACTOR_NONE) && (actor <= ACTOR_AI));
+}
+
+uint32_t scenario_field_highest(const scenario_field_row_t *row) {
+    return (row->size > 1u) ? UINT32_MAX >> (BITS_OF_VALUE - (BITS_OF_BYTE * row->size))
+                            : (uint32_t)row->mask >> row->shift;
+}
+
 const scenario_action_row_t *scenario_find_action(scenario_actor_t actor, const char *word) {
     for (size_t i = 0u; i < COUNT(ACTIONS); i++) {
         const scenario_action_row_t *row = &ACTIONS[i];
-        const bool mine = (row->actor == actor) || ((row->actor == ACTOR_NONE) && (actor <= ACTOR_AI));
-        if (mine && (strcmp(row->word, word) == 0)) {
+        if (scenario_action_is_of(row, actor) && (strcmp(row->word, word) == 0)) {
             return row;
         }
     }

@@ -1,7 +1,7 @@
 /**
  * @file scenario_actions.h
- * The words of steps: actors, their actions and the parameters of these. For scenario_parse*.c and vehicle_words.c
- * only.
+ * The words of steps: actors, their actions and the parameters of these. For scenario_parse*.c, scenario_schema*.c
+ * and vehicle_words.c only.
  */
 #ifndef HOST_SIM_SCENARIO_ACTIONS_H
 #define HOST_SIM_SCENARIO_ACTIONS_H
@@ -73,8 +73,22 @@ typedef struct {
 #define SCENARIO_PARAMETERS 25u
 
 extern const yaml_word_t SCENARIO_ACTORS[];
-/** Names of the parameters, in the order of their bits. */
-extern const char *const SCENARIO_PARAMETER_NAMES[SCENARIO_PARAMETERS];
+/** The parameters, in the order of their bits: name and limits. What they hold in a step is for its action to say. */
+extern const yaml_key_t SCENARIO_PARAMETER_ROWS[SCENARIO_PARAMETERS];
+
+/** @name Words of `kind` @{ */
+extern const yaml_word_t SCENARIO_GARBAGE[];
+extern const yaml_word_t SCENARIO_FRAME_KINDS[];
+/** @} */
+
+/** The row of a parameter, P_*. */
+const yaml_key_t *scenario_parameter(uint32_t parameter);
+
+/** Whether an actor can do this. */
+bool scenario_action_is_of(const scenario_action_row_t *row, scenario_actor_t actor);
+
+/** The largest value of a field. */
+uint32_t scenario_field_highest(const scenario_field_row_t *row);
 
 /** All actions, and all fields: those with the numbers from 0 on; NULL: no more. */
 const scenario_action_row_t *scenario_action(size_t number);

@@ -113,6 +113,10 @@ static bool read_shown(const yaml_reader_t *reader, const yaml_node_t *node, voi
     return true;
 }
 
+static bool read_shows(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
+    return yaml_reader_list(reader, node, "shows", read_shown, target);
+}
+
 static bool read_description(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     (void)target;
     return yaml_reader_text(reader, node, "description") != NULL;
@@ -149,26 +153,44 @@ static const yaml_word_t WATCHDOGS[] = {{"fitted", 0}, {"none", -1}, {NULL, 0}};
 
 #define MEMBER(kind, key, ...) YAML_##kind(key, scenario_t, __VA_ARGS__)
 
+static const char *fault_name(size_t index) {
+    return (index < (size_t)AGV_FAULT_COUNT) ? agv_fault_name((agv_fault_t)index) : NULL;
+}
+
+static const char *message_name(size_t index) {
+    return (index < (size_t)AGV_MSG_COUNT) ? agv_message_name((agv_message_t)index) : NULL;
+}
+
+const yaml_shape_t SCENARIO_MESSAGE_SHAPE = {.kind = YAML_KIND_NAMES, .name = message_name};
+const yaml_shape_t SCENARIO_FAULT_SHAPE = {.kind = YAML_KIND_NAMES, .name = fault_name};
+static const yaml_shape_t NAME = {.kind = YAML_KIND_TEXT, .highest = SCENARIO_TEXT_MAX - 1};
+static const yaml_shape_t SHOWN = {
+    .kind = YAML_KIND_NAMES, .name = scenario_requirement, .other = &SCENARIO_FAULT_SHAPE};
+static const yaml_shape_t SHOWS = {.kind = YAML_KIND_LIST, .items = &SHOWN, .highest = SCENARIO_SHOWS_MAX};
+static const yaml_shape_t STEPS = {.kind = YAML_KIND_LIST, .highest = SCENARIO_STEPS_MAX};
+
 static const yaml_key_t TOP[] = {
-    YAML_REQUIRED(YAML_CALL("name", read_name)),
-    YAML_REQUIRED(YAML_LIST("shows", read_shown)),
-    YAML_OPTIONAL(YAML_CALL("description", read_description)),
+    YAML_REQUIRED(YAML_CALL("name", read_name, &NAME)),
+    YAML_REQUIRED(YAML_CALL("shows", read_shows, &SHOWS)),
+    YAML_OPTIONAL(YAML_CALL("description", read_description, &SCENARIO_TEXT_SHAPE)),
     YAML_OPTIONAL(MEMBER(WORD, "topology", config.topology, TOPOLOGIES), YAML_GIVEN(scenario_t, fixes_topology)),
     YAML_OPTIONAL(MEMBER(WORD, "id_set", config.id_set, SCENARIO_ID_SETS), YAML_GIVEN(scenario_t, fixes_id_set)),
-    YAML_OPTIONAL(YAML_CALL("config", read_config)),
+    YAML_OPTIONAL(YAML_CALL("config", read_config, NULL)),
     YAML_OPTIONAL(MEMBER(FLAG, "config_unchecked", config_unchecked)),
-    YAML_OPTIONAL(YAML_CALL("self_test", scenario_parse_self_test)),
-    YAML_OPTIONAL(YAML_CALL("board", scenario_parse_board)),
+    YAML_OPTIONAL(YAML_CALL("self_test", scenario_parse_self_test, &SCENARIO_SELF_TEST_SHAPE)),
+    YAML_OPTIONAL(YAML_CALL("board", scenario_parse_board, &SCENARIO_BOARD_SHAPE)),
     YAML_OPTIONAL(MEMBER(WORD, "bitrate", bitrate, BITRATES)),
     YAML_OPTIONAL(MEMBER(TIME, "clock_start_ms", clock_start_ms, 0, UINT32_MAX)),
     YAML_OPTIONAL(MEMBER(TIME_US, "tick_phase_us", tick_phase_us, 0, TICK_PHASE_MAX_US)),
     YAML_OPTIONAL(MEMBER(WORD, "hardware_watchdog", watchdog_ms, WATCHDOGS)),
     YAML_OPTIONAL(MEMBER(WORD, "reset_cause", reset_cause, SCENARIO_CAUSES)),
-    YAML_OPTIONAL(YAML_CALL("vehicle", read_vehicle)),
+    YAML_OPTIONAL(YAML_CALL("vehicle", read_vehicle, &SCENARIO_VEHICLE_SHAPE)),
     YAML_REQUIRED(MEMBER(TIME, "duration_ms", duration_ms, 1, SCENARIO_DURATION_MAX_MS)),
-    YAML_OPTIONAL(YAML_CALL("steps", scenario_parse_steps)),
-    YAML_REQUIRED(YAML_CALL("expect", scenario_parse_expect)),
+    YAML_OPTIONAL(YAML_CALL("steps", scenario_parse_steps, &STEPS)),
+    YAML_REQUIRED(YAML_CALL("expect", scenario_parse_expect, &SCENARIO_EXPECT_SHAPE)),
 };
+
+const yaml_shape_t SCENARIO_SHAPE = {YAML_MAP_SHAPE(TOP)};
 
 static void preset(scenario_t *scenario, const scenario_options_t *options) {
     memset(scenario, 0, sizeof *scenario);

@@ -6,12 +6,30 @@
 #define HOST_SIM_SCENARIO_PARSE_H
 
 #include "io/yaml_reader.h"
+#include "io/yaml_shape.h"
 #include "scenario/scenario.h"
 
 extern const yaml_word_t SCENARIO_GEARS[];
 extern const yaml_word_t SCENARIO_SIDES[];
 extern const yaml_word_t SCENARIO_CAUSES[];
 extern const yaml_word_t SCENARIO_ID_SETS[];
+
+/** @name What may stand in a file @{ */
+extern const yaml_shape_t SCENARIO_SHAPE; /**< all of it, but for `config` and each of `steps` */
+extern const yaml_shape_t SCENARIO_VEHICLE_SHAPE;
+extern const yaml_shape_t SCENARIO_EXPECT_SHAPE;
+extern const yaml_shape_t SCENARIO_FRAME_SHAPE;
+extern const yaml_shape_t SCENARIO_NEVER_SHAPE;
+extern const yaml_shape_t SCENARIO_SEEN_SHAPE;
+extern const yaml_shape_t SCENARIO_COUNTERS_SHAPE;
+extern const yaml_shape_t SCENARIO_BOARD_SHAPE;
+extern const yaml_shape_t SCENARIO_SELF_TEST_SHAPE;
+extern const yaml_shape_t SCENARIO_TESTED_PART_SHAPE;
+extern const yaml_shape_t SCENARIO_BOUNCE_SHAPE;
+extern const yaml_shape_t SCENARIO_MESSAGE_SHAPE;
+extern const yaml_shape_t SCENARIO_FAULT_SHAPE;
+extern const yaml_shape_t SCENARIO_TEXT_SHAPE;
+/** @} */
 
 /** The next free place of a list; NULL when it is full, which was reported. */
 #define SCENARIO_NEXT(reader, node, list)                                                                              \
@@ -31,9 +49,13 @@ typedef struct {
 #define SCENARIO_WHEN(type, key, member)                                                                               \
     YAML_OPTIONAL(YAML_TIME_RANGE(key, type, member, 0, SCENARIO_DURATION_MAX_MS)), SCENARIO_AFTER(type, member)
 #define SCENARIO_AFTER(type, member)                                                                                   \
-    YAML_OPTIONAL(YAML_CALL("after", scenario_parse_any_text)),                                                        \
+    YAML_OPTIONAL(YAML_CALL("after", scenario_parse_any_text, &SCENARIO_TEXT_SHAPE)),                                  \
         YAML_OPTIONAL(YAML_TIME_RANGE("within", type, member, 0, SCENARIO_DURATION_MAX_MS))
 yaml_read_fn scenario_parse_any_text;
+
+/** How these rows go together. */
+#define SCENARIO_WHEN_RULES(key)                                                                                       \
+    {YAML_RULE_ONE_OF, (key), "after"}, {YAML_RULE_NEEDS, "after", "within"}, {YAML_RULE_NEEDS, "within", "after"}
 
 /** What these rows have read, taken together: an anchor that is a step is counted in. */
 bool scenario_parse_when(const yaml_reader_t *reader, const yaml_node_t *node, const scenario_when_t *when,
@@ -65,8 +87,6 @@ yaml_read_fn scenario_parse_self_test;
 /** @name Parameters of the board's actions @{ */
 yaml_read_fn scenario_parse_tested_part; /**< the target: a uint32_t of HAL_SELF_TEST_* */
 bool scenario_parse_bounce(const yaml_reader_t *reader, const yaml_node_t *node, scenario_action_t *action);
-/** @param node NULL: the clock is right again */
-bool scenario_parse_permille(const yaml_reader_t *reader, const yaml_node_t *node, scenario_action_t *action);
 /** @} */
 
 /** Whether the board has what a step needs. */

@@ -6,7 +6,7 @@
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
-enum { BOUNCE_LONGEST_MS = 10000, PERMILLE_MAX = 900, NO_PART = -1 };
+enum { NO_PART = -1, BOUNCE_LONGEST_MS = 10000 };
 
 /** The optional parts, in the order of their words. */
 enum { OUTPUT_FEEDBACK, EMERGENCY_STOP, RESET_BUTTON, SECOND_CLOCK };
@@ -25,6 +25,17 @@ static const yaml_word_t TESTS[] = {{"flash", HAL_SELF_TEST_FLASH},
                                     {"supply", HAL_SELF_TEST_SUPPLY},
                                     {NULL, 0}};
 static const yaml_word_t RESULTS[] = {{"passed", 0}, {"failed", HAL_SELF_TEST_PROCESSOR}, {NULL, 0}};
+
+static const yaml_shape_t PART = {.kind = YAML_KIND_WORD, .words = PARTS};
+const yaml_shape_t SCENARIO_BOARD_SHAPE = {.kind = YAML_KIND_LIST, .items = &PART, .is_unique = true};
+const yaml_shape_t SCENARIO_TESTED_PART_SHAPE = {.kind = YAML_KIND_WORD, .words = TESTS};
+static const yaml_shape_t FAILED_PARTS = {.kind = YAML_KIND_LIST, .items = &SCENARIO_TESTED_PART_SHAPE};
+const yaml_shape_t SCENARIO_SELF_TEST_SHAPE = {.kind = YAML_KIND_WORD, .words = RESULTS, .other = &FAILED_PARTS};
+
+static const yaml_shape_t BOUNCE_TIME = {
+    .kind = YAML_KIND_TIME, .unit = DURATION_MS, .lowest = 1, .highest = BOUNCE_LONGEST_MS};
+const yaml_shape_t SCENARIO_BOUNCE_SHAPE = {
+    .kind = YAML_KIND_LIST, .items = &BOUNCE_TIME, .lowest = 1, .highest = SCENARIO_BOUNCE_MAX};
 
 static bool *part_of(sim_board_t *board, int part) {
     bool *const parts[] = {&board->has_feedback, &board->has_emergency_stop, &board->has_reset_button,
@@ -92,19 +103,6 @@ static bool read_bounce_time(const yaml_reader_t *reader, const yaml_node_t *nod
 bool scenario_parse_bounce(const yaml_reader_t *reader, const yaml_node_t *node, scenario_action_t *action) {
     return yaml_reader_list(reader, node, "pattern_ms", read_bounce_time, action) &&
            ((action->bounce_count > 0u) || yaml_reader_fail(reader, node, "pattern_ms: is empty"));
-}
-
-bool scenario_parse_permille(const yaml_reader_t *reader, const yaml_node_t *node, scenario_action_t *action) {
-    uint32_t permille = 0u;
-
-    if (node == NULL) {
-        return true;
-    }
-    if (!scenario_parse_u32(reader, node, "permille", 1u, PERMILLE_MAX, &permille)) {
-        return false;
-    }
-    action->permille = (int16_t)(action->on ? (int)permille : -(int)permille);
-    return true;
 }
 
 /** The part of the board that an action needs. */

@@ -14,6 +14,23 @@ static const yaml_word_t STATES[] = {{"INIT", AGV_STATE_INIT},     {"STANDBY", A
                                      {"SAFE", AGV_STATE_SAFE},     {NULL, 0}};
 static const yaml_word_t CLASSES[] = {{"trip", AGV_CLASS_TRIP}, {"warn", AGV_CLASS_WARN}, {NULL, 0}};
 static const yaml_word_t OTHERS[] = {{"allowed", 0}, {"never", 1}, {NULL, 0}};
+static const yaml_word_t NEVER_WORDS[] = {{"never", 1}, {NULL, 0}};
+static const yaml_word_t ANY_WORDS[] = {{"any", 1}, {NULL, 0}};
+
+static const char *missing_name(size_t index) {
+    return agv_missing_name((uint8_t)index);
+}
+
+static const char *part_name(size_t index) {
+    return agv_self_test_part_name((uint8_t)index);
+}
+
+static const yaml_shape_t NEVER = {.kind = YAML_KIND_WORD, .words = NEVER_WORDS};
+static const yaml_shape_t FAILED_PART = {.kind = YAML_KIND_NAMES, .name = part_name};
+static const yaml_shape_t MISSING_WORD = {.kind = YAML_KIND_NAMES, .name = missing_name};
+static const yaml_shape_t MISSING = {.kind = YAML_KIND_LIST, .items = &MISSING_WORD};
+static const yaml_shape_t ENDED = {
+    .kind = YAML_KIND_TIME_RANGE, .unit = DURATION_MS, .highest = SCENARIO_DURATION_MAX_MS, .other = &NEVER};
 
 /* --- states --- */
 
@@ -21,10 +38,12 @@ static bool read_state_reason(const yaml_reader_t *reader, const yaml_node_t *no
     return scenario_parse_fault(reader, node, &((scenario_state_t *)target)->reason);
 }
 
+static const yaml_key_t STATE[] = {YAML_REQUIRED(YAML_WORD("to", scenario_state_t, to, STATES)),
+                                   YAML_OPTIONAL(YAML_CALL("reason", read_state_reason, &SCENARIO_FAULT_SHAPE)),
+                                   SCENARIO_WHEN(scenario_state_t, "at_ms", at_ms)};
+static const yaml_shape_t STATE_SHAPE = {YAML_MAP_SHAPE(STATE), .rules = {SCENARIO_WHEN_RULES("at_ms")}};
+
 static bool read_state(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {YAML_REQUIRED(YAML_WORD("to", scenario_state_t, to, STATES)),
-                                      YAML_OPTIONAL(YAML_CALL("reason", read_state_reason)),
-                                      SCENARIO_WHEN(scenario_state_t, "at_ms", at_ms)};
     scenario_state_t *state = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.states);
     const scenario_when_t when = {.scenario = target, .what = "a state", .key = "at_ms"};
 
@@ -33,15 +52,17 @@ static bool read_state(const yaml_reader_t *reader, const yaml_node_t *node, voi
     }
     state->line = yaml_node_line(node);
     state->reason = AGV_FAULT_NONE;
-    return yaml_reader_map(reader, node, when.what, keys, COUNT(keys), state) &&
+    return yaml_reader_map(reader, node, when.what, STATE, COUNT(STATE), state) &&
            scenario_parse_when(reader, node, &when, &state->at_ms);
 }
 
 /* --- safety output, LED --- */
 
+static const yaml_key_t OUTPUT[] = {YAML_REQUIRED(YAML_FLAG("closed", scenario_output_t, closed)),
+                                    SCENARIO_WHEN(scenario_output_t, "at_ms", at_ms)};
+static const yaml_shape_t OUTPUT_SHAPE = {YAML_MAP_SHAPE(OUTPUT), .rules = {SCENARIO_WHEN_RULES("at_ms")}};
+
 static bool read_output(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {YAML_REQUIRED(YAML_FLAG("closed", scenario_output_t, closed)),
-                                      SCENARIO_WHEN(scenario_output_t, "at_ms", at_ms)};
     scenario_output_t *output = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.outputs);
     const scenario_when_t when = {.scenario = target, .what = "a change of the safety output", .key = "at_ms"};
 
@@ -49,13 +70,15 @@ static bool read_output(const yaml_reader_t *reader, const yaml_node_t *node, vo
         return false;
     }
     output->line = yaml_node_line(node);
-    return yaml_reader_map(reader, node, when.what, keys, COUNT(keys), output) &&
+    return yaml_reader_map(reader, node, when.what, OUTPUT, COUNT(OUTPUT), output) &&
            scenario_parse_when(reader, node, &when, &output->at_ms);
 }
 
+static const yaml_key_t LED[] = {YAML_REQUIRED(YAML_NUMBER("code", scenario_led_t, code, -1, 17)),
+                                 SCENARIO_WHEN(scenario_led_t, "at_ms", at_ms)};
+static const yaml_shape_t LED_SHAPE = {YAML_MAP_SHAPE(LED), .rules = {SCENARIO_WHEN_RULES("at_ms")}};
+
 static bool read_led(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {YAML_REQUIRED(YAML_NUMBER("code", scenario_led_t, code, -1, 17)),
-                                      SCENARIO_WHEN(scenario_led_t, "at_ms", at_ms)};
     scenario_led_t *led = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.leds);
     const scenario_when_t when = {.scenario = target, .what = "a code of the LED", .key = "at_ms"};
 
@@ -63,7 +86,7 @@ static bool read_led(const yaml_reader_t *reader, const yaml_node_t *node, void 
         return false;
     }
     led->line = yaml_node_line(node);
-    if (!yaml_reader_map(reader, node, when.what, keys, COUNT(keys), led)) {
+    if (!yaml_reader_map(reader, node, when.what, LED, COUNT(LED), led)) {
         return false;
     }
     led->at_some_time = yaml_reader_value(reader, node, "within") != NULL;
@@ -106,13 +129,15 @@ static bool read_fault_ended(const yaml_reader_t *reader, const yaml_node_t *nod
     return true;
 }
 
+static const yaml_key_t FAULT[] = {
+    YAML_REQUIRED(YAML_CALL("name", read_fault_name, &SCENARIO_FAULT_SHAPE)),
+    YAML_OPTIONAL(YAML_WORD("class", scenario_fault_t, fault_class, CLASSES), YAML_GIVEN(scenario_fault_t, has_class)),
+    YAML_OPTIONAL(YAML_LIST("parts", read_failed_part, &FAILED_PART)),
+    SCENARIO_WHEN(scenario_fault_t, "raised_ms", raised_ms),
+    YAML_OPTIONAL(YAML_CALL("ended_ms", read_fault_ended, &ENDED))};
+static const yaml_shape_t FAULT_SHAPE = {YAML_MAP_SHAPE(FAULT), .rules = {SCENARIO_WHEN_RULES("raised_ms")}};
+
 static bool read_fault(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {YAML_REQUIRED(YAML_CALL("name", read_fault_name)),
-                                      YAML_OPTIONAL(YAML_WORD("class", scenario_fault_t, fault_class, CLASSES),
-                                                    YAML_GIVEN(scenario_fault_t, has_class)),
-                                      YAML_OPTIONAL(YAML_LIST("parts", read_failed_part)),
-                                      SCENARIO_WHEN(scenario_fault_t, "raised_ms", raised_ms),
-                                      YAML_OPTIONAL(YAML_CALL("ended_ms", read_fault_ended))};
     scenario_fault_t *fault = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.faults);
     const scenario_when_t when = {.scenario = target, .what = "a fault", .key = "raised_ms"};
 
@@ -120,7 +145,7 @@ static bool read_fault(const yaml_reader_t *reader, const yaml_node_t *node, voi
         return false;
     }
     fault->line = yaml_node_line(node);
-    if (!yaml_reader_map(reader, node, when.what, keys, COUNT(keys), fault) ||
+    if (!yaml_reader_map(reader, node, when.what, FAULT, COUNT(FAULT), fault) ||
         !scenario_parse_when(reader, node, &when, &fault->raised_ms)) {
         return false;
     }
@@ -152,10 +177,12 @@ static bool read_missing(const yaml_reader_t *reader, const yaml_node_t *node, v
     return yaml_reader_list(reader, node, "what is missing", read_missing_word, target);
 }
 
+static const yaml_key_t RESET[] = {YAML_REQUIRED(YAML_FLAG("accepted", scenario_reset_t, accepted)),
+                                   YAML_OPTIONAL(YAML_CALL("why", read_missing, &MISSING)),
+                                   SCENARIO_WHEN(scenario_reset_t, "at_ms", at_ms)};
+static const yaml_shape_t RESET_SHAPE = {YAML_MAP_SHAPE(RESET), .rules = {SCENARIO_WHEN_RULES("at_ms")}};
+
 static bool read_reset(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {YAML_REQUIRED(YAML_FLAG("accepted", scenario_reset_t, accepted)),
-                                      YAML_OPTIONAL(YAML_CALL("why", read_missing)),
-                                      SCENARIO_WHEN(scenario_reset_t, "at_ms", at_ms)};
     scenario_reset_t *reset = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.resets);
     const scenario_when_t when = {.scenario = target, .what = "a reset", .key = "at_ms"};
 
@@ -163,7 +190,7 @@ static bool read_reset(const yaml_reader_t *reader, const yaml_node_t *node, voi
         return false;
     }
     reset->line = yaml_node_line(node);
-    if (!yaml_reader_map(reader, node, when.what, keys, COUNT(keys), reset) ||
+    if (!yaml_reader_map(reader, node, when.what, RESET, COUNT(RESET), reset) ||
         !scenario_parse_when(reader, node, &when, &reset->at_ms)) {
         return false;
     }
@@ -171,9 +198,11 @@ static bool read_reset(const yaml_reader_t *reader, const yaml_node_t *node, voi
            yaml_reader_fail(reader, node, "a reset: 'why' is needed for a refused reset, and only for that");
 }
 
+static const yaml_key_t STARTUP[] = {YAML_REQUIRED(YAML_CALL("missing", read_missing, &MISSING)),
+                                     SCENARIO_WHEN(scenario_reset_t, "at_ms", at_ms)};
+static const yaml_shape_t STARTUP_SHAPE = {YAML_MAP_SHAPE(STARTUP), .rules = {SCENARIO_WHEN_RULES("at_ms")}};
+
 static bool read_startup(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {YAML_REQUIRED(YAML_CALL("missing", read_missing)),
-                                      SCENARIO_WHEN(scenario_reset_t, "at_ms", at_ms)};
     scenario_reset_t *startup = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.startups);
     const scenario_when_t when = {.scenario = target, .what = "a report at start", .key = "at_ms"};
 
@@ -181,11 +210,15 @@ static bool read_startup(const yaml_reader_t *reader, const yaml_node_t *node, v
         return false;
     }
     startup->line = yaml_node_line(node);
-    return yaml_reader_map(reader, node, when.what, keys, COUNT(keys), startup) &&
+    return yaml_reader_map(reader, node, when.what, STARTUP, COUNT(STARTUP), startup) &&
            scenario_parse_when(reader, node, &when, &startup->at_ms);
 }
 
 /* --- all of it --- */
+
+static const yaml_shape_t ANY = {.kind = YAML_KIND_WORD, .words = ANY_WORDS};
+static const yaml_shape_t STATES_SHAPE = {
+    .kind = YAML_KIND_LIST, .items = &STATE_SHAPE, .highest = SCENARIO_EXPECT_MAX, .other = &ANY};
 
 /** A list of all changes of state, or `any`. */
 static bool read_list_states(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
@@ -199,30 +232,31 @@ static bool read_list_states(const yaml_reader_t *reader, const yaml_node_t *nod
 }
 
 static bool read_hazards(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_word_t words[] = {{"never", 1}, {NULL, 0}};
     int value = 0;
 
-    if (!yaml_reader_word(reader, node, "hazards", words, &value)) {
+    if (!yaml_reader_word(reader, node, "hazards", NEVER_WORDS, &value)) {
         return false;
     }
     ((scenario_t *)target)->expect.no_hazards = yaml_node_line(node);
     return true;
 }
 
+static const yaml_key_t EXPECT[] = {
+    YAML_REQUIRED(YAML_CALL("states", read_list_states, &STATES_SHAPE)),
+    YAML_OPTIONAL(YAML_LIST("frames", scenario_parse_frame, &SCENARIO_FRAME_SHAPE), .highest = SCENARIO_EXPECT_MAX),
+    YAML_OPTIONAL(YAML_LIST("never", scenario_parse_never, &SCENARIO_NEVER_SHAPE), .highest = SCENARIO_EXPECT_MAX),
+    YAML_OPTIONAL(YAML_LIST("safety_output", read_output, &OUTPUT_SHAPE), .highest = SCENARIO_EXPECT_MAX),
+    YAML_OPTIONAL(YAML_LIST("led", read_led, &LED_SHAPE), .highest = SCENARIO_EXPECT_MAX),
+    YAML_OPTIONAL(YAML_LIST("faults", read_fault, &FAULT_SHAPE), .highest = SCENARIO_EXPECT_MAX),
+    YAML_OPTIONAL(YAML_WORD("other_faults", scenario_t, expect.no_other_faults, OTHERS)),
+    YAML_OPTIONAL(YAML_LIST("resets", read_reset, &RESET_SHAPE), .highest = SCENARIO_EXPECT_MAX),
+    YAML_OPTIONAL(YAML_LIST("startup", read_startup, &STARTUP_SHAPE), .highest = SCENARIO_EXPECT_MAX),
+    YAML_OPTIONAL(YAML_LIST("vehicle", scenario_parse_vehicle, &SCENARIO_SEEN_SHAPE), .highest = SCENARIO_EXPECT_MAX),
+    YAML_OPTIONAL(YAML_CALL("counters_at_end", scenario_parse_counters, &SCENARIO_COUNTERS_SHAPE)),
+    YAML_OPTIONAL(YAML_CALL("hazards", read_hazards, &NEVER)),
+};
+const yaml_shape_t SCENARIO_EXPECT_SHAPE = {YAML_MAP_SHAPE(EXPECT)};
+
 bool scenario_parse_expect(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {
-        YAML_REQUIRED(YAML_CALL("states", read_list_states)),
-        YAML_OPTIONAL(YAML_LIST("frames", scenario_parse_frame)),
-        YAML_OPTIONAL(YAML_LIST("never", scenario_parse_never)),
-        YAML_OPTIONAL(YAML_LIST("safety_output", read_output)),
-        YAML_OPTIONAL(YAML_LIST("led", read_led)),
-        YAML_OPTIONAL(YAML_LIST("faults", read_fault)),
-        YAML_OPTIONAL(YAML_WORD("other_faults", scenario_t, expect.no_other_faults, OTHERS)),
-        YAML_OPTIONAL(YAML_LIST("resets", read_reset)),
-        YAML_OPTIONAL(YAML_LIST("startup", read_startup)),
-        YAML_OPTIONAL(YAML_LIST("vehicle", scenario_parse_vehicle)),
-        YAML_OPTIONAL(YAML_CALL("counters_at_end", scenario_parse_counters)),
-        YAML_OPTIONAL(YAML_CALL("hazards", read_hazards)),
-    };
-    return yaml_reader_map(reader, node, "expect", keys, COUNT(keys), target);
+    return yaml_reader_map(reader, node, "expect", EXPECT, COUNT(EXPECT), target);
 }

@@ -14,6 +14,9 @@ static const yaml_word_t SENDERS[] = {{"supervisor", SCENARIO_FROM_SUPERVISOR},
                                       {"anybody", SCENARIO_FROM_ANY},
                                       {NULL, 0}};
 
+static const yaml_shape_t SIDE = {.kind = YAML_KIND_WORD, .words = SCENARIO_SIDES};
+static const yaml_shape_t PAYLOAD = {.kind = YAML_KIND_BYTES, .highest = AGV_DLC, .may_be_open = true};
+
 static bool read_frame_side(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
     scenario_frame_t *frame = target;
     int value = 0;
@@ -39,9 +42,10 @@ static bool read_frame_bytes(const yaml_reader_t *reader, const yaml_node_t *nod
 #define MEMBER(kind, key, ...) YAML_##kind(key, scenario_frame_t, __VA_ARGS__)
 /* What expected and forbidden frames have in common. */
 #define WHICH_FRAME                                                                                                    \
-    YAML_OPTIONAL(MEMBER(WORD, "from", from, SENDERS)), YAML_OPTIONAL(YAML_CALL("side", read_frame_side)),             \
-        YAML_OPTIONAL(MEMBER(ID, "id", id, 0x1FFFFFFF)), YAML_OPTIONAL(YAML_CALL("message", read_frame_message)),      \
-        YAML_OPTIONAL(YAML_CALL("bytes", read_frame_bytes))
+    YAML_OPTIONAL(MEMBER(WORD, "from", from, SENDERS)), YAML_OPTIONAL(YAML_CALL("side", read_frame_side, &SIDE)),      \
+        YAML_OPTIONAL(MEMBER(ID, "id", id, 0x1FFFFFFF)),                                                               \
+        YAML_OPTIONAL(YAML_CALL("message", read_frame_message, &SCENARIO_MESSAGE_SHAPE)),                              \
+        YAML_OPTIONAL(YAML_CALL("bytes", read_frame_bytes, &PAYLOAD))
 
 static void preset_frame(scenario_frame_t *frame, const yaml_node_t *node) {
     frame->line = yaml_node_line(node);
@@ -59,16 +63,19 @@ static bool names_one_id(const yaml_reader_t *reader, const yaml_node_t *node, c
            yaml_reader_fail(reader, node, "either 'id' or 'message', not both");
 }
 
+static const yaml_key_t FRAME[] = {
+    WHICH_FRAME,
+    SCENARIO_WHEN(scenario_frame_t, "at_ms", at_ms),
+    YAML_OPTIONAL(MEMBER(TIME, "first_since_ms", first_since_ms, 0, SCENARIO_DURATION_MAX_MS),
+                  YAML_GIVEN(scenario_frame_t, is_first)),
+    YAML_OPTIONAL(MEMBER(RANGE, "count", count, 0, SCENARIO_DURATION_MAX_MS)),
+    YAML_OPTIONAL(MEMBER(TIME, "every_ms", every_ms, 1, 60000)),
+    YAML_OPTIONAL(MEMBER(TIME, "jitter_ms", jitter_ms, 0, 60000)),
+};
+const yaml_shape_t SCENARIO_FRAME_SHAPE = {
+    YAML_MAP_SHAPE(FRAME), .rules = {SCENARIO_WHEN_RULES("at_ms"), {YAML_RULE_ONE_OF, "id", "message"}}};
+
 bool scenario_parse_frame(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {
-        WHICH_FRAME,
-        SCENARIO_WHEN(scenario_frame_t, "at_ms", at_ms),
-        YAML_OPTIONAL(MEMBER(TIME, "first_since_ms", first_since_ms, 0, SCENARIO_DURATION_MAX_MS),
-                      YAML_GIVEN(scenario_frame_t, is_first)),
-        YAML_OPTIONAL(MEMBER(RANGE, "count", count, 0, SCENARIO_DURATION_MAX_MS)),
-        YAML_OPTIONAL(MEMBER(TIME, "every_ms", every_ms, 1, 60000)),
-        YAML_OPTIONAL(MEMBER(TIME, "jitter_ms", jitter_ms, 0, 60000)),
-    };
     const scenario_when_t when = {.scenario = target, .what = "an expected frame", .key = "at_ms"};
     scenario_frame_t *frame = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.frames);
 
@@ -76,7 +83,7 @@ bool scenario_parse_frame(const yaml_reader_t *reader, const yaml_node_t *node, 
         return false;
     }
     preset_frame(frame, node);
-    if (!yaml_reader_map(reader, node, when.what, keys, COUNT(keys), frame) || !names_one_id(reader, node, frame) ||
+    if (!yaml_reader_map(reader, node, when.what, FRAME, COUNT(FRAME), frame) || !names_one_id(reader, node, frame) ||
         !scenario_parse_when(reader, node, &when, &frame->at_ms)) {
         return false;
     }
@@ -88,8 +95,13 @@ bool scenario_parse_frame(const yaml_reader_t *reader, const yaml_node_t *node, 
            yaml_reader_fail(reader, node, "an expected frame: 'id' or 'message' is missing");
 }
 
+static const yaml_key_t NEVER[] = {WHICH_FRAME, SCENARIO_WHEN(scenario_frame_t, "at_ms", at_ms)};
+const yaml_shape_t SCENARIO_NEVER_SHAPE = {YAML_MAP_SHAPE(NEVER), .rules = {{YAML_RULE_NOT_BOTH, "at_ms", "after"},
+                                                                            {YAML_RULE_NEEDS, "after", "within"},
+                                                                            {YAML_RULE_NEEDS, "within", "after"},
+                                                                            {YAML_RULE_NOT_BOTH, "id", "message"}}};
+
 bool scenario_parse_never(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {WHICH_FRAME, SCENARIO_WHEN(scenario_frame_t, "at_ms", at_ms)};
     const scenario_when_t when = {.scenario = target, .what = "a forbidden frame", .key = "at_ms", .is_optional = true};
     scenario_frame_t *frame = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.never);
 
@@ -97,6 +109,6 @@ bool scenario_parse_never(const yaml_reader_t *reader, const yaml_node_t *node, 
         return false;
     }
     preset_frame(frame, node);
-    return yaml_reader_map(reader, node, when.what, keys, COUNT(keys), frame) && names_one_id(reader, node, frame) &&
+    return yaml_reader_map(reader, node, when.what, NEVER, COUNT(NEVER), frame) && names_one_id(reader, node, frame) &&
            scenario_parse_when(reader, node, &when, &frame->at_ms);
 }

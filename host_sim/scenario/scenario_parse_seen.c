@@ -15,19 +15,21 @@ static const yaml_word_t EPS_MODES[] = {{"assist", AGV_EPS_MODE_ASSIST}, {"angle
 
 enum { RANGE_MAX = 100000 };
 
+static const yaml_key_t SEEN_KEYS[] = {
+    YAML_OPTIONAL(YAML_TIME("at_ms", scenario_vehicle_t, at_ms.from, 0, SCENARIO_DURATION_MAX_MS)),
+    SCENARIO_AFTER(scenario_vehicle_t, at_ms),
+    SEEN(YAML_WORD("gear", scenario_vehicle_t, gear, SCENARIO_GEARS), has_gear),
+    SEEN(YAML_WORD("mode", scenario_vehicle_t, autopilot, MODES), has_mode),
+    SEEN_RANGE("speed_mm_s", speed_mm_s, has_speed),
+    SEEN_RANGE("throttle_pct", throttle_pct, has_throttle),
+    SEEN(YAML_WORD("eps_mode", scenario_vehicle_t, eps_mode, EPS_MODES), has_eps_mode),
+    SEEN_RANGE("angle_deg", angle_deg, has_angle),
+    SEEN_RANGE("park_taken_at_mm_s", fastest_park_mm_s, has_fastest_park),
+    SEEN(YAML_HEX("alarms", scenario_vehicle_t, alarms, UINT8_MAX), has_alarms),
+};
+const yaml_shape_t SCENARIO_SEEN_SHAPE = {YAML_MAP_SHAPE(SEEN_KEYS), .rules = {SCENARIO_WHEN_RULES("at_ms")}};
+
 bool scenario_parse_vehicle(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {
-        YAML_OPTIONAL(YAML_TIME("at_ms", scenario_vehicle_t, at_ms.from, 0, SCENARIO_DURATION_MAX_MS)),
-        SCENARIO_AFTER(scenario_vehicle_t, at_ms),
-        SEEN(YAML_WORD("gear", scenario_vehicle_t, gear, SCENARIO_GEARS), has_gear),
-        SEEN(YAML_WORD("mode", scenario_vehicle_t, autopilot, MODES), has_mode),
-        SEEN_RANGE("speed_mm_s", speed_mm_s, has_speed),
-        SEEN_RANGE("throttle_pct", throttle_pct, has_throttle),
-        SEEN(YAML_WORD("eps_mode", scenario_vehicle_t, eps_mode, EPS_MODES), has_eps_mode),
-        SEEN_RANGE("angle_deg", angle_deg, has_angle),
-        SEEN_RANGE("park_taken_at_mm_s", fastest_park_mm_s, has_fastest_park),
-        SEEN(YAML_HEX("alarms", scenario_vehicle_t, alarms, UINT8_MAX), has_alarms),
-    };
     scenario_vehicle_t *vehicle = SCENARIO_NEXT(reader, node, ((scenario_t *)target)->expect.vehicle);
 
     if (vehicle == NULL) {
@@ -35,7 +37,7 @@ bool scenario_parse_vehicle(const yaml_reader_t *reader, const yaml_node_t *node
     }
     vehicle->line = yaml_node_line(node);
     const scenario_when_t when = {.scenario = target, .what = "the vehicle at a time", .key = "at_ms"};
-    if (!yaml_reader_map(reader, node, when.what, keys, COUNT(keys), vehicle)) {
+    if (!yaml_reader_map(reader, node, when.what, SEEN_KEYS, COUNT(SEEN_KEYS), vehicle)) {
         return false;
     }
     vehicle->at_ms.to = (vehicle->at_ms.to < vehicle->at_ms.from) ? vehicle->at_ms.from : vehicle->at_ms.to;
@@ -82,20 +84,24 @@ REJECTED(rejected_remote, AGV_REJECTED_REMOTE)
 REJECTED(rejected_extended, AGV_REJECTED_EXTENDED)
 REJECTED(rejected_error, AGV_REJECTED_ERROR)
 
+static const yaml_shape_t COUNT_SHAPE = {.kind = YAML_KIND_RANGE, .highest = UINT32_MAX};
+
+static const yaml_key_t COUNTERS[] = {
+    YAML_OPTIONAL(YAML_CALL("received", read_counter_received, &COUNT_SHAPE)),
+    YAML_OPTIONAL(YAML_CALL("dropped", read_counter_dropped, &COUNT_SHAPE)),
+    YAML_OPTIONAL(YAML_CALL("sent", read_counter_sent, &COUNT_SHAPE)),
+    YAML_OPTIONAL(YAML_CALL("shadowed", read_counter_shadowed, &COUNT_SHAPE)),
+    YAML_OPTIONAL(YAML_CALL("gate_refused", read_counter_gate_refused, &COUNT_SHAPE)),
+    YAML_OPTIONAL(YAML_CALL("skipped_slots", read_counter_skipped_slots, &COUNT_SHAPE)),
+    YAML_OPTIONAL(YAML_CALL("warnings", read_counter_warnings, &COUNT_SHAPE)),
+    YAML_OPTIONAL(YAML_CALL("rejected_length", read_counter_rejected_length, &COUNT_SHAPE)),
+    YAML_OPTIONAL(YAML_CALL("rejected_fd", read_counter_rejected_fd, &COUNT_SHAPE)),
+    YAML_OPTIONAL(YAML_CALL("rejected_remote", read_counter_rejected_remote, &COUNT_SHAPE)),
+    YAML_OPTIONAL(YAML_CALL("rejected_extended", read_counter_rejected_extended, &COUNT_SHAPE)),
+    YAML_OPTIONAL(YAML_CALL("rejected_error", read_counter_rejected_error, &COUNT_SHAPE)),
+};
+const yaml_shape_t SCENARIO_COUNTERS_SHAPE = {YAML_MAP_SHAPE(COUNTERS)};
+
 bool scenario_parse_counters(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {
-        YAML_OPTIONAL(YAML_CALL("received", read_counter_received)),
-        YAML_OPTIONAL(YAML_CALL("dropped", read_counter_dropped)),
-        YAML_OPTIONAL(YAML_CALL("sent", read_counter_sent)),
-        YAML_OPTIONAL(YAML_CALL("shadowed", read_counter_shadowed)),
-        YAML_OPTIONAL(YAML_CALL("gate_refused", read_counter_gate_refused)),
-        YAML_OPTIONAL(YAML_CALL("skipped_slots", read_counter_skipped_slots)),
-        YAML_OPTIONAL(YAML_CALL("warnings", read_counter_warnings)),
-        YAML_OPTIONAL(YAML_CALL("rejected_length", read_counter_rejected_length)),
-        YAML_OPTIONAL(YAML_CALL("rejected_fd", read_counter_rejected_fd)),
-        YAML_OPTIONAL(YAML_CALL("rejected_remote", read_counter_rejected_remote)),
-        YAML_OPTIONAL(YAML_CALL("rejected_extended", read_counter_rejected_extended)),
-        YAML_OPTIONAL(YAML_CALL("rejected_error", read_counter_rejected_error)),
-    };
-    return yaml_reader_map(reader, node, "counters_at_end", keys, COUNT(keys), target);
+    return yaml_reader_map(reader, node, "counters_at_end", COUNTERS, COUNT(COUNTERS), target);
 }

@@ -13,11 +13,12 @@ bool scenario_has_what_it_needs(const yaml_reader_t *reader, const scenario_read
                                 const scenario_action_row_t *row) {
     for (unsigned i = 0u; i < SCENARIO_PARAMETERS; i++) {
         if (((row->needs & (1u << i)) != 0u) && (reading->value_of[i] == NULL)) {
-            return yaml_reader_fail(reader, reading->node, "'%s' needs '%s'", row->word, SCENARIO_PARAMETER_NAMES[i]);
+            return yaml_reader_fail(reader, reading->node, "'%s' needs '%s'", row->word,
+                                    SCENARIO_PARAMETER_ROWS[i].name);
         }
         if ((((row->needs | row->takes) & (1u << i)) == 0u) && (reading->value_of[i] != NULL)) {
             return yaml_reader_fail(reader, reading->value_of[i], "'%s' takes no '%s'", row->word,
-                                    SCENARIO_PARAMETER_NAMES[i]);
+                                    SCENARIO_PARAMETER_ROWS[i].name);
         }
     }
     return true;
@@ -85,7 +86,7 @@ static bool take_key(const yaml_reader_t *reader, const yaml_node_t *key, const 
         }
     }
     for (unsigned i = 0u; i < SCENARIO_PARAMETERS; i++) {
-        if (strcmp(SCENARIO_PARAMETER_NAMES[i], name) == 0) {
+        if (strcmp(SCENARIO_PARAMETER_ROWS[i].name, name) == 0) {
             if (reading->value_of[i] != NULL) {
                 return yaml_reader_fail(reader, key, "'%s' is given twice in a step", name);
             }

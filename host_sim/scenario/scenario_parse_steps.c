@@ -12,7 +12,6 @@
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define BITS_OF_BYTE 8u
-#define BITS_OF_VALUE 32u
 
 static const yaml_node_t *given(const scenario_reading_t *reading, uint32_t parameter) {
     for (unsigned i = 0u; i < SCENARIO_PARAMETERS; i++) {
@@ -44,43 +43,37 @@ static bool take_message(const yaml_reader_t *reader, const scenario_reading_t *
     return true;
 }
 
+/** Read a number by the row of its parameter. */
+static bool read_number(const yaml_reader_t *reader, const scenario_reading_t *reading, uint32_t parameter,
+                        int64_t *number) {
+    const yaml_key_t *row = scenario_parameter(parameter);
+    const yaml_node_t *node = given(reading, parameter);
+
+    return (row->kind == YAML_KIND_TIME)
+               ? yaml_reader_time(reader, node, row->name, row->unit, row->lowest, row->highest, number)
+               : yaml_reader_number(reader, node, row->name, row->lowest, row->highest, number);
+}
+
 /** The numbers of an action: how many frames, how often, how long. */
 static bool take_numbers(const yaml_reader_t *reader, const scenario_reading_t *reading, scenario_step_t *step) {
-    static const struct {
-        uint32_t parameter;
-        const char *name;
-        uint32_t lowest;
-        uint32_t highest;
-        bool is_count;
-        bool is_time;
-    } rows[] = {
-        {P_FRAMES, "frames", 1u, UINT16_MAX - 1u, true, false},
-        {P_TIMES, "times", 0u, UINT16_MAX - 1u, true, false},
-        {P_BUTTON, "button", 1u, 2u, true, false},
-        {P_PCT_S, "pct_s", 1u, 10000u, true, false},
-        {P_BY_MS, "by_ms", 0u, 60000u, false, true},
-        {P_EVERY_MS, "every_ms", 1u, 60000u, false, true},
-        {P_OFF_MS, "off_ms", 0u, 3600000u, false, true},
-        {P_FOR_MS, "for_ms", 1u, 3600000u, false, true},
-        {P_BIT, "bit", 0u, 1000000u, false, false},
-    };
+    static const uint32_t counts[] = {P_FRAMES, P_TIMES, P_BUTTON, P_PCT_S};
+    static const uint32_t others[] = {P_BY_MS, P_EVERY_MS, P_OFF_MS, P_FOR_MS, P_BIT};
+    int64_t number = 0;
 
-    for (size_t i = 0u; i < COUNT(rows); i++) {
-        const yaml_node_t *node = given(reading, rows[i].parameter);
-        uint32_t number = 0u;
-        if (node == NULL) {
-            continue;
-        }
-        const bool good =
-            rows[i].is_time ? scenario_parse_ms(reader, node, rows[i].name, rows[i].lowest, rows[i].highest, &number)
-                            : scenario_parse_u32(reader, node, rows[i].name, rows[i].lowest, rows[i].highest, &number);
-        if (!good) {
-            return false;
-        }
-        if (rows[i].is_count) {
+    for (size_t i = 0u; i < COUNT(counts); i++) {
+        if (given(reading, counts[i]) != NULL) {
+            if (!read_number(reader, reading, counts[i], &number)) {
+                return false;
+            }
             step->vehicle.count = (uint16_t)number;
-        } else {
-            step->vehicle.ms = number;
+        }
+    }
+    for (size_t i = 0u; i < COUNT(others); i++) {
+        if (given(reading, others[i]) != NULL) {
+            if (!read_number(reader, reading, others[i], &number)) {
+                return false;
+            }
+            step->vehicle.ms = (uint32_t)number;
         }
     }
     return true;
@@ -89,7 +82,7 @@ static bool take_numbers(const yaml_reader_t *reader, const scenario_reading_t *
 /** `every_frames`: again and again. */
 static bool take_every(const yaml_reader_t *reader, const scenario_reading_t *reading, vehicle_action_t *action) {
     const yaml_node_t *node = given(reading, P_EVERY_FRAMES);
-    uint32_t every = 0u;
+    int64_t every = 0;
 
     if (node == NULL) {
         return true;
@@ -97,7 +90,7 @@ static bool take_every(const yaml_reader_t *reader, const scenario_reading_t *re
     if (given(reading, P_FRAMES) == NULL) {
         return yaml_reader_fail(reader, node, "every_frames: 'frames' is needed with it");
     }
-    if (!scenario_parse_u32(reader, node, "every_frames", 2u, UINT16_MAX - 1u, &every)) {
+    if (!read_number(reader, reading, P_EVERY_FRAMES, &every)) {
         return false;
     }
     action->every = (uint16_t)every;
@@ -114,7 +107,7 @@ static bool take_speed(const yaml_reader_t *reader, const scenario_reading_t *re
         action->what = action->on ? VEHICLE_DO_VCU_ROLL_ON : VEHICLE_DO_VCU_ROLL;
         return true;
     }
-    if (!yaml_reader_number(reader, node, "speed_mm_s", -VEHICLE_ROLL_MAX_MM_S, VEHICLE_ROLL_MAX_MM_S, &number)) {
+    if (!read_number(reader, reading, P_SPEED, &number)) {
         return false;
     }
     action->speed_mm_s = (int32_t)number;
@@ -135,13 +128,13 @@ static bool take_driving(const yaml_reader_t *reader, const scenario_reading_t *
         action->gear = (uint8_t)word;
     }
     if (throttle != NULL) {
-        if (!yaml_reader_number(reader, throttle, "throttle_pct", 0, 100, &number)) {
+        if (!read_number(reader, reading, P_THROTTLE, &number)) {
             return false;
         }
         action->throttle_permille = (uint16_t)(number * 10);
     }
     if (steer != NULL) {
-        if (!yaml_reader_number(reader, steer, "steer_deg", -900, 900, &number)) {
+        if (!read_number(reader, reading, P_STEER, &number)) {
             return false;
         }
         action->angle_ddeg = (int32_t)number * 10;
@@ -150,24 +143,13 @@ static bool take_driving(const yaml_reader_t *reader, const scenario_reading_t *
 }
 
 static bool take_garbage(const yaml_reader_t *reader, const scenario_reading_t *reading, vehicle_action_t *action) {
-    static const yaml_word_t words[] = {{"random", VEHICLE_GARBAGE_RANDOM},
-                                        {"wrong_length", VEHICLE_GARBAGE_LENGTH},
-                                        {"extended", VEHICLE_GARBAGE_EXTENDED},
-                                        {"remote", VEHICLE_GARBAGE_REMOTE},
-                                        {NULL, 0}};
     int word = 0;
 
-    if (!yaml_reader_word(reader, given(reading, P_KIND), "kind", words, &word)) {
+    if (!yaml_reader_word(reader, given(reading, P_KIND), "kind", SCENARIO_GARBAGE, &word)) {
         return false;
     }
     action->garbage = (vehicle_garbage_t)word;
     return true;
-}
-
-/** The largest value of a field. */
-static uint32_t highest_of(const scenario_field_row_t *row) {
-    return (row->size > 1u) ? UINT32_MAX >> (BITS_OF_VALUE - (BITS_OF_BYTE * row->size))
-                            : (uint32_t)row->mask >> row->shift;
 }
 
 /** `set`: a field keeps a value; `freeze_field`: the one that it has. */
@@ -184,7 +166,7 @@ static bool take_field(const yaml_reader_t *reader, const scenario_reading_t *re
         return yaml_reader_fail(reader, node, "field: this node has no field '%.40s'", name);
     }
     const yaml_node_t *given_value = given(reading, P_VALUE);
-    if ((given_value != NULL) && !yaml_reader_hex(reader, given_value, "value", highest_of(row), &value)) {
+    if ((given_value != NULL) && !yaml_reader_hex(reader, given_value, "value", scenario_field_highest(row), &value)) {
         return false;
     }
     action->message = row->message;
@@ -215,15 +197,13 @@ static bool take_patch_bytes(const yaml_reader_t *reader, const scenario_reading
 /** @param on_wire whether the simulated bus is to carry it */
 static bool take_kind(const yaml_reader_t *reader, const scenario_reading_t *reading, bool on_wire,
                       hal_can_frame_t *frame) {
-    static const yaml_word_t words[] = {{"data", 0},        {"extended", HAL_CAN_EXTENDED}, {"remote", HAL_CAN_REMOTE},
-                                        {"fd", HAL_CAN_FD}, {"error", HAL_CAN_ERROR},       {NULL, 0}};
     const yaml_node_t *node = given(reading, P_KIND);
     int word = 0;
 
     if (node == NULL) {
         return true;
     }
-    if (!yaml_reader_word(reader, node, "kind", words, &word)) {
+    if (!yaml_reader_word(reader, node, "kind", SCENARIO_FRAME_KINDS, &word)) {
         return false;
     }
     if (on_wire && ((word & (int)HAL_CAN_ERROR) != 0)) {
@@ -308,6 +288,17 @@ static bool take_for_vehicle(const yaml_reader_t *reader, const scenario_reading
     }
 }
 
+/** How wrong a clock is. */
+static bool take_permille(const yaml_reader_t *reader, const scenario_reading_t *reading, scenario_action_t *action) {
+    int64_t permille = 0;
+
+    if (!read_number(reader, reading, P_PERMILLE, &permille)) {
+        return false;
+    }
+    action->permille = (int16_t)(action->on ? permille : -permille);
+    return true;
+}
+
 static bool take_for_supervisor(const yaml_reader_t *reader, const scenario_reading_t *reading,
                                 const scenario_action_row_t *row, const agv_config_t *config, scenario_step_t *step) {
     scenario_action_t *action = &step->supervisor;
@@ -331,7 +322,7 @@ static bool take_for_supervisor(const yaml_reader_t *reader, const scenario_read
     case SCENARIO_BUTTON_BOUNCES:
         return scenario_parse_bounce(reader, given(reading, P_PATTERN), action);
     case SCENARIO_CLOCK:
-        return scenario_parse_permille(reader, given(reading, P_PERMILLE), action);
+        return (row->needs == 0u) || take_permille(reader, reading, action);
     case SCENARIO_TEST_FAILS:
         return scenario_parse_tested_part(reader, given(reading, P_PART), &action->parts);
     default:
@@ -368,82 +359,4 @@ bool scenario_parse_step(const yaml_reader_t *reader, const yaml_node_t *node, c
     }
     return row->of_vehicle ? take_for_vehicle(reader, &reading, row, config, step)
                            : take_for_supervisor(reader, &reading, row, config, step);
-}
-
-/** Check that there is room for all repeated steps. */
-static bool again_fits(const yaml_reader_t *reader, const yaml_node_t *node, const scenario_t *scenario) {
-    size_t count = 0u;
-
-    for (size_t i = 0u; i < scenario->step_count; i++) {
-        count += (scenario->steps[i].again_every_ms != 0u) ? 1u : 0u;
-    }
-    return (count <= SCENARIO_AGAIN_MAX) ||
-           yaml_reader_fail(reader, node, "more than %u steps with again_every_ms", SCENARIO_AGAIN_MAX);
-}
-
-/** `name` of a step. */
-static bool take_name(const yaml_reader_t *reader, const yaml_node_t *node, const scenario_t *scenario,
-                      scenario_step_t *step) {
-    const yaml_node_t *name = yaml_reader_value(reader, node, "name");
-    scenario_anchor_t anchor;
-
-    if (name == NULL) {
-        return true;
-    }
-    const char *text = yaml_reader_text(reader, name, "name");
-    if (text == NULL) {
-        return false;
-    }
-    if (strlen(text) >= sizeof step->name) {
-        return yaml_reader_fail(reader, name, "name: longer than %u bytes", SCENARIO_NAME_MAX - 1u);
-    }
-    if (scenario_anchor_read(text, &anchor)) {
-        return yaml_reader_fail(reader, name, "name: '%s' is the name of an event", text);
-    }
-    for (const scenario_step_t *other = scenario->steps; other < step; other++) {
-        if (strcmp(other->name, text) == 0) {
-            return yaml_reader_fail(reader, name, "name: the step on line %zu has this name, too", other->line);
-        }
-    }
-    (void)strcpy(step->name, text);
-    return true;
-}
-
-/** `after` and `wait` of a step. */
-static bool take_after(const yaml_reader_t *reader, const yaml_node_t *node, scenario_t *scenario,
-                       scenario_step_t *step) {
-    const yaml_node_t *after = yaml_reader_value(reader, node, "after");
-    uint32_t offset_ms = 0u;
-
-    if (after == NULL) {
-        return true;
-    }
-    if (!scenario_parse_after(reader, after, scenario, &step->after, &offset_ms)) {
-        return false;
-    }
-    step->at_ms += offset_ms; /* both are at most SCENARIO_DURATION_MAX_MS */
-    if (step->at_ms > SCENARIO_DURATION_MAX_MS) {
-        return yaml_reader_fail(reader, node, "a step: %u ms are longer than a scenario may be", (unsigned)step->at_ms);
-    }
-    scenario->waiting_count += (step->after.kind != (uint8_t)SCENARIO_FROM_START) ? 1u : 0u;
-    return true;
-}
-
-static bool read_step(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    scenario_t *scenario = target;
-
-    if (scenario->step_count == SCENARIO_STEPS_MAX) {
-        return yaml_reader_fail(reader, node, "more than %u steps", SCENARIO_STEPS_MAX);
-    }
-    scenario_step_t *step = &scenario->steps[scenario->step_count];
-    if (!scenario_parse_step(reader, node, &scenario->config, step) || !take_after(reader, node, scenario, step) ||
-        !take_name(reader, node, scenario, step)) {
-        return false;
-    }
-    scenario->step_count++;
-    return scenario_parse_board_fits(reader, node, scenario, step) && again_fits(reader, node, scenario);
-}
-
-bool scenario_parse_steps(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return yaml_reader_list(reader, node, "steps", read_step, target);
 }

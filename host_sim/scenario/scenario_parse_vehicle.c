@@ -6,6 +6,12 @@
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
+static const yaml_word_t NEVER_WORDS[] = {{"never", 0}, {NULL, 0}};
+static const yaml_shape_t NEVER = {.kind = YAML_KIND_WORD, .words = NEVER_WORDS};
+static const yaml_shape_t START = {
+    .kind = YAML_KIND_TIME, .unit = DURATION_MS, .highest = SCENARIO_DURATION_MAX_MS, .other = &NEVER};
+static const yaml_shape_t ID_SET = {.kind = YAML_KIND_WORD, .words = SCENARIO_ID_SETS};
+
 static bool read_start(const yaml_reader_t *reader, const yaml_node_t *node, uint32_t *start_ms) {
     const char *text = yaml_node_text(node);
 
@@ -31,21 +37,23 @@ static bool read_start_ai(const yaml_reader_t *reader, const yaml_node_t *node, 
 /* The phase of each message, by its name. */
 #define PHASE(name, message) YAML_OPTIONAL(YAML_TIME(#name, vehicle_config_t, phase_ms[message], 0, UINT16_MAX))
 
+static const yaml_key_t PHASES[] = {
+    PHASE(turn_signal_command, AGV_MSG_TURN_SIGNAL_COMMAND),
+    PHASE(gear_command, AGV_MSG_GEAR_COMMAND),
+    PHASE(throttle_command, AGV_MSG_THROTTLE_COMMAND),
+    PHASE(steering_command, AGV_MSG_STEERING_COMMAND),
+    PHASE(vehicle_status, AGV_MSG_VEHICLE_STATUS),
+    PHASE(gear_status, AGV_MSG_GEAR_STATUS),
+    PHASE(throttle_status, AGV_MSG_THROTTLE_STATUS),
+    PHASE(steering_status, AGV_MSG_STEERING_STATUS),
+    PHASE(eps_status, AGV_MSG_EPS_STATUS),
+    PHASE(steering_position, AGV_MSG_STEERING_POSITION),
+    PHASE(wheel_speed, AGV_MSG_WHEEL_SPEED),
+};
+static const yaml_shape_t PHASES_SHAPE = {YAML_MAP_SHAPE(PHASES)};
+
 static bool read_phases(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {
-        PHASE(turn_signal_command, AGV_MSG_TURN_SIGNAL_COMMAND),
-        PHASE(gear_command, AGV_MSG_GEAR_COMMAND),
-        PHASE(throttle_command, AGV_MSG_THROTTLE_COMMAND),
-        PHASE(steering_command, AGV_MSG_STEERING_COMMAND),
-        PHASE(vehicle_status, AGV_MSG_VEHICLE_STATUS),
-        PHASE(gear_status, AGV_MSG_GEAR_STATUS),
-        PHASE(throttle_status, AGV_MSG_THROTTLE_STATUS),
-        PHASE(steering_status, AGV_MSG_STEERING_STATUS),
-        PHASE(eps_status, AGV_MSG_EPS_STATUS),
-        PHASE(steering_position, AGV_MSG_STEERING_POSITION),
-        PHASE(wheel_speed, AGV_MSG_WHEEL_SPEED),
-    };
-    return yaml_reader_map(reader, node, "phases_ms", keys, COUNT(keys), target);
+    return yaml_reader_map(reader, node, "phases_ms", PHASES, COUNT(PHASES), target);
 }
 
 static bool read_vehicle_id_set(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
@@ -64,30 +72,32 @@ static bool read_vehicle_id_set(const yaml_reader_t *reader, const yaml_node_t *
 #define FIGURE(name, lowest) YAML_OPTIONAL(YAML_NUMBER(#name, vehicle_config_t, name, lowest, UINT16_MAX))
 #define FIGURE_MS(name, lowest) YAML_OPTIONAL(YAML_TIME(#name, vehicle_config_t, name, lowest, UINT16_MAX))
 
+static const yaml_key_t VEHICLE[] = {
+    YAML_OPTIONAL(YAML_CALL("id_set", read_vehicle_id_set, &ID_SET)),
+    YAML_OPTIONAL(YAML_FLAG("park_guard", vehicle_config_t, park_guard)),
+    YAML_OPTIONAL(YAML_FLAG("obeys_short_frames", vehicle_config_t, obeys_short_frames)),
+    YAML_OPTIONAL(YAML_CALL("vcu_starts_ms", read_start_vcu, &START)),
+    YAML_OPTIONAL(YAML_CALL("eps_starts_ms", read_start_eps, &START)),
+    YAML_OPTIONAL(YAML_CALL("ai_starts_ms", read_start_ai, &START)),
+    YAML_OPTIONAL(YAML_NUMBER("seed", vehicle_config_t, seed, 1, UINT32_MAX)),
+    FIGURE_MS(gear_change_ms, 0),
+    FIGURE(walking_pace_mm_s, 1),
+    FIGURE(top_speed_mm_s, 1),
+    FIGURE(acceleration_mm_s2, 1),
+    FIGURE(coasting_mm_s2, 1),
+    FIGURE(braking_mm_s2, 1),
+    FIGURE(locked_mm_s2, 1),
+    FIGURE(steering_rate_ddeg_s, 0),
+    FIGURE_MS(eps_mode_change_ms, 0),
+    FIGURE(throttle_rise_pct_s, 0),
+    FIGURE(throttle_fall_pct_s, 0),
+    FIGURE(reported_speed_pct, 0),
+    FIGURE_MS(ai_lost_ms, 1),
+    FIGURE_MS(eps_lost_ms, 1),
+    YAML_OPTIONAL(YAML_CALL("phases_ms", read_phases, &PHASES_SHAPE)),
+};
+const yaml_shape_t SCENARIO_VEHICLE_SHAPE = {YAML_MAP_SHAPE(VEHICLE)};
+
 bool scenario_parse_vehicle_config(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    static const yaml_key_t keys[] = {
-        YAML_OPTIONAL(YAML_CALL("id_set", read_vehicle_id_set)),
-        YAML_OPTIONAL(YAML_FLAG("park_guard", vehicle_config_t, park_guard)),
-        YAML_OPTIONAL(YAML_FLAG("obeys_short_frames", vehicle_config_t, obeys_short_frames)),
-        YAML_OPTIONAL(YAML_CALL("vcu_starts_ms", read_start_vcu)),
-        YAML_OPTIONAL(YAML_CALL("eps_starts_ms", read_start_eps)),
-        YAML_OPTIONAL(YAML_CALL("ai_starts_ms", read_start_ai)),
-        YAML_OPTIONAL(YAML_NUMBER("seed", vehicle_config_t, seed, 1, UINT32_MAX)),
-        FIGURE_MS(gear_change_ms, 0),
-        FIGURE(walking_pace_mm_s, 1),
-        FIGURE(top_speed_mm_s, 1),
-        FIGURE(acceleration_mm_s2, 1),
-        FIGURE(coasting_mm_s2, 1),
-        FIGURE(braking_mm_s2, 1),
-        FIGURE(locked_mm_s2, 1),
-        FIGURE(steering_rate_ddeg_s, 0),
-        FIGURE_MS(eps_mode_change_ms, 0),
-        FIGURE(throttle_rise_pct_s, 0),
-        FIGURE(throttle_fall_pct_s, 0),
-        FIGURE(reported_speed_pct, 0),
-        FIGURE_MS(ai_lost_ms, 1),
-        FIGURE_MS(eps_lost_ms, 1),
-        YAML_OPTIONAL(YAML_CALL("phases_ms", read_phases)),
-    };
-    return yaml_reader_map(reader, node, "vehicle", keys, COUNT(keys), target);
+    return yaml_reader_map(reader, node, "vehicle", VEHICLE, COUNT(VEHICLE), target);
 }

@@ -4,6 +4,8 @@
 #include "io/yaml_file.h"
 #include "scenario/scenario_parse.h"
 
+const yaml_shape_t SCENARIO_TEXT_SHAPE = {.kind = YAML_KIND_TEXT};
+
 /** The step with a name; NULL: there is none. */
 static const scenario_step_t *find_step(const scenario_t *scenario, const char *name) {
     for (size_t i = 0u; i < scenario->step_count; i++) {

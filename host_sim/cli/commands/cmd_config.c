@@ -5,15 +5,19 @@
 #include "cli/commands/commands.h"
 #include "cli/options.h"
 #include "config/config_options.h"
+#include "config/config_schema.h"
 #include "config/config_text.h"
+#include "io/yaml_schema.h"
 
 status_t cmd_config(int argc, char **argv) {
     config_options_t given;
     option_t config_rows[CONFIG_OPTIONS];
     config_options_init(&given, config_rows);
     bool to_kconfig = false;
+    bool is_schema = false;
     const option_t rows[] = {
         OPTION_FLAG("--to-kconfig", "print a Kconfig fragment for the firmware instead", &to_kconfig),
+        OPTION_FLAG("--schema", "print the JSON Schema of a configuration file instead", &is_schema),
     };
     const option_group_t groups[] = {
         {.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]},
@@ -39,6 +43,10 @@ status_t cmd_config(int argc, char **argv) {
     const options_result_t parsed = options_parse(&syntax, argc, argv, &operands);
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
+    }
+    if (is_schema) {
+        return yaml_schema_print(config_schema(false), "Configuration of the AGV safety supervisor") ? STATUS_OK
+                                                                                                     : STATUS_UNUSABLE;
     }
     agv_config_t config;
     if (!config_options_make(&given, &config)) {

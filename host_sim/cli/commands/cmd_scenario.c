@@ -18,10 +18,12 @@
 #include "io/events.h"
 #include "io/junit.h"
 #include "io/output.h"
+#include "io/yaml_schema.h"
 #include "live/scenario_bus.h"
 #include "logs/candump_line.h"
 #include "scenario/run/scenario_analysis.h"
 #include "scenario/run/scenario_run.h"
+#include "scenario/scenario_schema.h"
 
 enum { FILES_MAX = 1000, FIXED_FILES = 5, DEFAULT_TOLERANCE_MS = 50, TOLERANCE_MAX_MS = 1000 };
 
@@ -44,6 +46,7 @@ typedef struct {
     const char *bus;
     const char *supervisor;
     const char *sent;
+    bool is_schema;
     char interface_names[HAL_CAN_SIDES][INTERFACE_SIZE]; /**< "": none; no vehicle side: the simulated bus */
     uint64_t tolerance_ms;
     size_t file_count;
@@ -94,6 +97,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         OPTION_TEXT("--sent", "FILE",
                     "on CAN interfaces: candump log of the frames that the supervisor sent (of one scenario)",
                     &given->sent),
+        OPTION_FLAG("--schema", "print the JSON Schema of a scenario file, and run nothing", &given->is_schema),
     };
     const option_group_t groups[] = {
         {.title = "Options (FILE may be -, standard output)", .options = rows, .count = sizeof rows / sizeof rows[0]},
@@ -116,7 +120,6 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         .group_count = sizeof groups / sizeof groups[0],
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
-        .operands_min = 1u,
         .operands_max = FILES_MAX,
         .operand = "FILE",
     };
@@ -405,11 +408,26 @@ static status_t run_all(work_t *work, char **files) {
     return play_all(work, files);
 }
 
+static status_t print_schema(const given_t *given) {
+    if (given->file_count > 0u) {
+        (void)report("--schema takes no FILE");
+        return STATUS_UNUSABLE;
+    }
+    return yaml_schema_print(scenario_schema(), "Scenario of the AGV safety supervisor") ? STATUS_OK : STATUS_UNUSABLE;
+}
+
 status_t cmd_scenario(int argc, char **argv) {
     given_t given = {.tolerance_ms = NOT_GIVEN};
     const options_result_t parsed = parse(argc, argv, &given);
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
+    }
+    if (given.is_schema) {
+        return print_schema(&given);
+    }
+    if (given.file_count == 0u) {
+        (void)report("FILE is missing; see host_sim scenario --help");
+        return STATUS_UNUSABLE;
     }
     if (!check_given(&given, argv)) {
         return STATUS_UNUSABLE;

@@ -1,0 +1,240 @@
+"""The JSON Schemas: every shipped file is valid, and schema and parser agree on changed files.
+
+The changes are drawn from a seed. What the schema refuses the parser refuses, too. What the parser refuses and the schema
+does not is one of MEANING: what a schema cannot say. Needs python3-jsonschema and python3-yaml; ends with 77 without them.
+"""
+import copy
+import json
+import os
+import pathlib
+import random
+import re
+import sys
+import unittest
+
+try:
+    import jsonschema
+    import yaml
+except ImportError as missing:
+    print(f"NOT RUN: {missing}; scripts/install-deps installs it", file=sys.stderr)
+    sys.exit(77)
+
+import hostsim
+
+FOLDER = pathlib.Path(__file__).resolve().parents[3] / "host_sim" / "scenarios"
+SHIPPED = sorted(FOLDER.glob("*/*.yaml"))
+LEAST = 60  # fewer is a mistake of this test
+SCENARIO_CHANGES = 300 // hostsim.PART
+CONFIG_CHANGES = 200 // hostsim.PART
+SEED = int(os.environ.get("SCHEMA_SEED", "20"))
+
+NUMBER = re.compile(r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+")
+FLOAT = re.compile(r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)")
+FLAG = re.compile(r"true|True|TRUE|false|False|FALSE")
+NOTHING = re.compile(r"~|null|Null|NULL|")
+
+
+class Core(yaml.SafeLoader):
+    """YAML 1.2, as editors read it: `off` and `N` are texts."""
+    yaml_implicit_resolvers = {}
+
+
+for tag, found in (("bool", FLAG), ("int", NUMBER), ("float", FLOAT), ("null", NOTHING)):
+    Core.add_implicit_resolver("tag:yaml.org,2002:" + tag, re.compile(f"^(?:{found.pattern})$"), None)
+
+
+def text_of(value):
+    """In flow style, plain where that is possible."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{text_of(key)}: {text_of(item)}" for key, item in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(text_of, value)) + "]"
+    if isinstance(value, str):
+        is_other = any(kind.fullmatch(value) for kind in (NUMBER, FLOAT, FLAG, NOTHING))
+        return value if re.fullmatch(r"[A-Za-z0-9_.][A-Za-z0-9_. -]*", value) and not is_other else json.dumps(value)
+    return {True: "true", False: "false"}[value] if isinstance(value, bool) else str(value)
+
+
+# What only the parser refuses: a change of the file BASE, or of no settings, that shows it, and what is said.
+BASE = """\
+name: n
+shows: [SUP-2]
+duration_ms: 1000
+board: [reset_button]
+steps:
+  - {name: first, at_ms: 100, ai: stop}
+  - {at_ms: 200, eps: set, field: mode, value: 01h, frames: 2}
+expect:
+  states: [{to: INIT, at_ms: [0, 5]}]
+  frames: [{id: 168h, at_ms: 5}]
+  led: [{code: 0, at_ms: 5}]
+"""
+MEANING = {
+    "a step that is earlier than the one before": ("at_ms: 200", "at_ms: 50", "the step is earlier than the one before it"),
+    "a time after the end": ("at_ms: 200", "at_ms: 2000", r"ms is after the end \(duration_ms"),
+    "times of steps that add up to more than a day":
+        ("{at_ms: 200,", "{after: first, wait: 86400000,", "ms are longer than a scenario may be"),
+    "a range that ends before it begins": ("[0, 5]", "[5, 0]", "the first is above the second"),
+    "a time that is too fine": ("at_ms: 100", "at_ms: 0.5ms", "is not a whole number of"),
+    "a time with a unit that is out of range": ("at_ms: 100", "at_ms: 25h", "is not within [0-9a-z]+ to [0-9a-z]+$"),
+    "a number in quotes that is out of range": ("frames: 2", 'frames: "0"', r"is not within -?\d+ to \d+"),
+    "a value of a frame in decimal": ("value: 01h", "value: 12", "is not a hexadecimal number such as"),
+    "an identifier with a zero before it": ("id: 168h", "id: 065", "is not an identifier: 168h"),
+    "a number with a sign or a point, or an octal one": ("frames: 2", "frames: +2", "is not a (whole number|time)"),
+    "a byte without quotes that has one digit": ("value: 01h, frames: 2", "value: 01h, frames: 2}\n  - {at_ms: 300, bus: "
+                                                 "deliver, kind: data, id: 1h, bytes: 5", "is not a list of up to 8 bytes"),
+    "frames that never end": ("frames: 2", "frames: 2, every_frames: 2", "every_frames: must be more than 'frames'"),
+    "an anchor that there is not": ("{at_ms: 200,", "{after: nobody,", "after: '.*' is neither the name of a step"),
+    "a step's name that is taken": ("{at_ms: 200,", "{name: first, at_ms: 200,", r"name: the step on line \d+ has this name"),
+    "a step's name that is an event's": ("name: first", "name: trip", "name: 'trip' is the name of an event"),
+    "an AI side that there is not": ("value: 01h, frames: 2", "value: 01h}\n  - {at_ms: 300, supervisor: overrun, side: ai",
+                                     "side: only topology: gateway has an AI side"),
+    "a part that the board does not have": ("board: [reset_button]", "board: []", "needs a board with 'reset_button'"),
+    "too many repeated steps": ("steps:\n", "steps:\n" + "  - {at_ms: 1, ai: stop, again_every_ms: 5}\n" * 33,
+                                "more than 32 steps with again_every_ms"),
+    "a first frame that is looked for too late": ("id: 168h, at_ms: 5", "id: 168h, at_ms: 5, first_since_ms: 6",
+                                                  "first_since_ms is after at_ms"),
+    "settings that do not fit together": ("board:", "config: {own_heartbeat: frozen}\nboard:",
+                                          "needs the gateway topology|another message has this identifier|must be (below|"
+                                          "above) reset_hold|this fault must stay a trip|the value is out of range"),
+    "a name that is too long in bytes": ("name: n\n", "name: " + "\u00e4" * 60 + "\n", "longer than 95 bytes"),
+}
+MEANING_EXTRA = {"a part that the board does not have": ("at_ms: 200, eps: set, field: mode, value: 01h, frames: 2",
+                                                         "at_ms: 200, board: press")}
+# Settings only the parser refuses: a file, and what is said.
+MEANING_OF_SETTINGS = {
+    "settings that do not fit together": ("id_gear_command: 0x101\n", "another message has this identifier"),
+    "an identifier with a zero before it": ("id_gear_command: 0101\n", "is not an identifier"),
+    "a time that is too fine": ("init_hold_ms: 100.5ms\n", "is not a whole number of"),
+    "a time with a unit that is out of range": ("init_hold_ms: 25h\n", "is not within"),
+    "a number with a sign or a point, or an octal one": ("status_invalid_frames: +3\n", "is not a (whole number|time)"),
+    "an identifier in quotes": ('id_gear_command: "168h"\n', "a number is written without quotes"),
+}
+
+
+def paths(value, path=()):
+    yield path
+    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, item in items:
+        yield from paths(item, path + (key,))
+
+
+def at(value, path):
+    for key in path:
+        value = value[key]
+    return value
+
+
+WRONG = ("x", "never", "any", "trip", "168h", "0.5s", "10 parsecs", "1e9", "08 00", "..", "", 0, -1, 1, 5, 17, 300, 70000,
+         10 ** 10, True, False, [], {}, [1], [1, 2], [1, 2, 3], ["x"], {"x": 1}, {"to": "INIT", "at_ms": 0})
+
+
+def change(draw, value):
+    """A copy with one thing changed."""
+    value = copy.deepcopy(value)
+    places = [path for path in paths(value) if path]
+    path = draw.choice(places)
+    holder, key = at(value, path[:-1]), path[-1]
+    what = draw.randrange(8)
+    if what == 0 and isinstance(holder, dict):
+        del holder[key]
+    elif what == 1 and isinstance(holder, dict):
+        items = [(name + draw.choice(("x", "_ms", "s")) if name == key else name, item) for name, item in holder.items()]
+        holder.clear()
+        holder.update(items)
+    elif what == 2 and isinstance(holder, dict):
+        other = draw.choice([place for place in places if isinstance(place[-1], str)])
+        holder[other[-1]] = copy.deepcopy(at(value, other))
+    elif what == 3:
+        holder[key] = copy.deepcopy(at(value, draw.choice(places)))
+    elif what == 4 and isinstance(holder[key], int) and not isinstance(holder[key], bool):
+        holder[key] = draw.choice((-holder[key] - 1, holder[key] * 1000, holder[key] + 10 ** 9, str(holder[key]), holder[key] + 1))
+    elif what == 5 and isinstance(holder[key], str):
+        holder[key] = draw.choice((holder[key] + "x", holder[key][:-1], holder[key].upper(), holder[key].lower(), holder[key] + "0h"))
+    elif what == 6 and isinstance(holder, list):
+        holder.extend(copy.deepcopy(holder) * draw.choice((1, 70)))
+    else:
+        holder[key] = copy.deepcopy(draw.choice(WRONG))
+    return value
+
+
+class Schemas(hostsim.Case):
+    def setUp(self):
+        super().setUp()
+        self.validators = {}
+        for command in ("scenario", "config"):
+            schema = json.loads(self.run_good(command, "--schema").stdout)
+            jsonschema.Draft7Validator.check_schema(schema)
+            self.validators[command] = jsonschema.Draft7Validator(schema)
+
+    def is_valid(self, command, text):
+        return self.validators[command].is_valid(yaml.load(text, Core))
+
+    def refusal(self, command, text):
+        """What the parser says; an empty text: it takes the file. No scenario is run: the interfaces are not there."""
+        self.write("file.yaml", text)
+        if command == "config":
+            result = self.run_program("config", "--config", "file.yaml")
+            return result.stderr if result.status == 2 else ""
+        result = self.run_program("scenario", "--bus", "no0,no1", "file.yaml")
+        self.assertEqual(result.status, 2, result.stdout)
+        return "" if result.stderr.startswith("host_sim: no0: ") else result.stderr
+
+    def test_every_shipped_file_is_valid(self):
+        self.assertGreaterEqual(len(SHIPPED), LEAST)
+        for path in SHIPPED:
+            errors = list(self.validators["scenario"].iter_errors(yaml.load(path.read_text(encoding="utf-8"), Core)))
+            self.assertEqual([error.message for error in errors], [], path)
+        for options in ((), ("--topology", "gateway", "--id-set", "table")):
+            settings = self.run_good("config", *options).stdout
+            self.assertTrue(self.is_valid("config", settings))
+        self.assertEqual(self.refusal("scenario", BASE), "")
+        self.assertTrue(self.is_valid("scenario", BASE))
+        print(f"\n{len(SHIPPED)} scenarios are valid", end=" ")
+
+    def test_every_difference_is_one(self):
+        for name, (old, new, said) in MEANING.items():
+            with self.subTest(name):
+                self.assertIn(old, BASE)
+                text = BASE.replace(old, new)
+                if name in MEANING_EXTRA:
+                    text = text.replace(*MEANING_EXTRA[name])
+                self.assertTrue(self.is_valid("scenario", text), text)
+                self.assertRegex(self.refusal("scenario", text), said)
+        for name, (text, said) in MEANING_OF_SETTINGS.items():
+            with self.subTest(name):
+                self.assertTrue(self.is_valid("config", text), text)
+                self.assertRegex(self.refusal("config", text), said)
+
+    def compare(self, command, base, count, differences):
+        draw = random.Random(SEED)
+        refused = 0
+        for number in range(count):
+            value = draw.choice(base)
+            for _ in range(draw.choice((1, 1, 1, 2))):
+                value = change(draw, value)
+            text = text_of(value)
+            is_valid, said = self.is_valid(command, text), self.refusal(command, text)
+            refused += said != ""
+            if not is_valid:
+                self.assertNotEqual(said, "", f"{number}: only the schema refuses: {text}")
+            elif said:
+                self.assertTrue(any(re.search(each, said, re.MULTILINE) for each in differences),
+                                f"{number}: only the parser refuses: {said}{text}")
+        self.assertGreater(refused, count // 3)
+        self.assertLess(refused, count)
+        print(f"\n{command}: {count} changed files, {refused} refused", end=" ")
+
+    def test_scenarios_that_were_changed(self):
+        base = [yaml.load(path.read_text(encoding="utf-8"), Core) for path in SHIPPED]
+        self.compare("scenario", base, SCENARIO_CHANGES, [said for _, _, said in MEANING.values()])
+
+    def test_settings_that_were_changed(self):
+        base = [yaml.load(self.run_good("config").stdout, Core), {"shadow": "on", "init_hold_ms": "0.5s", "id_gear_command": "169h"}]
+        self.compare("config", base, CONFIG_CHANGES,
+                     [said for _, said in MEANING_OF_SETTINGS.values()] + [MEANING["settings that do not fit together"][2]])
+
+
+if __name__ == "__main__":
+    os.environ.setdefault("HOST_SIM", "build/host/bin/host_sim")
+    unittest.main()
