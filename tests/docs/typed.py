@@ -1,0 +1,72 @@
+"""A page, typed as it stands: its files are saved, its commands run, and what they print is compared.
+
+A block behind a paragraph that says "Save this as `NAME`:" is that file. A console block is a list of commands after `$ ` and what
+they print, standard error included; a line `...` stands for any lines, `...` at the end of a line for any rest of it.
+"""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+
+BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+SAVE = re.compile(r"[Ss]ave this as\s+`([^`]+)`:?\s*\Z")
+
+
+def steps(page):
+    """In the order of the page: ("save", name, text), or ("run", command, expected lines)."""
+    for block in BLOCK.finditer(page):
+        name = SAVE.search(page, 0, block.start())
+        if name:
+            yield "save", name[1], block[2]
+        elif block[1] == "console":
+            command, expected = None, []
+            for line in block[2].splitlines():
+                if line.startswith("$ "):
+                    if command is not None:
+                        yield "run", command, expected
+                    command, expected = line[2:], []
+                else:
+                    expected.append(line)
+            yield "run", command, expected
+
+
+def pattern(lines):
+    parts = []
+    for line in lines:
+        if line == "...":
+            parts.append(r"(?:.*\n)*?")
+        elif line.endswith("..."):
+            parts.append(re.escape(line[:-3]) + r".*\n")
+        else:
+            parts.append(re.escape(line) + r"\n")
+    return r"\A(?:%s)\Z" % "".join(parts)
+
+
+def copy_tree(root, copy):
+    """The sources, and what is new in them, without a repository. What `copy` has built stays."""
+    copy.mkdir(parents=True, exist_ok=True)
+    for entry in copy.iterdir():
+        if entry.name != "build":
+            shutil.rmtree(entry) if entry.is_dir() and not entry.is_symlink() else entry.unlink()
+    listed = subprocess.run(["git", "-c", f"safe.directory={root}", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
+                            cwd=root, check=True, stdout=subprocess.PIPE, text=True).stdout
+    for name in filter(None, listed.split("\0")):
+        if (root / name).exists():
+            (copy / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(root / name, copy / name, follow_symlinks=False)
+
+
+def run(case, page, folder, environment, left_out=()):
+    """Do what the page says, in this folder. @return the number of commands"""
+    count = 0
+    for kind, what, content in steps(pathlib.Path(page).read_text(encoding="utf-8")):
+        if kind == "save":
+            (folder / what).parent.mkdir(parents=True, exist_ok=True)
+            (folder / what).write_text(content, encoding="utf-8")
+        elif not what.startswith(tuple(left_out)):
+            done = subprocess.run([shutil.which("bash"), "-c", what], cwd=folder, env=dict(os.environ, **environment),
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=600, check=False, text=True)
+            case.assertRegex(done.stdout, pattern(content), what)
+            count += 1
+    return count
