@@ -57,16 +57,20 @@ def copy_tree(root, copy):
             shutil.copy2(root / name, copy / name, follow_symlinks=False)
 
 
-def run(case, page, folder, environment, left_out=()):
-    """Do what the page says, in this folder. @return the number of commands"""
-    count = 0
+def run(case, page, folder, environment, left_out=(), instead=None):
+    """Do what the page says, in this folder. `$?` is the status of the command before. @return the number of commands"""
+    count, status = 0, 0
     for kind, what, content in steps(pathlib.Path(page).read_text(encoding="utf-8")):
         if kind == "save":
             (folder / what).parent.mkdir(parents=True, exist_ok=True)
             (folder / what).write_text(content, encoding="utf-8")
         elif not what.startswith(tuple(left_out)):
-            done = subprocess.run([shutil.which("bash"), "-c", what], cwd=folder, env=dict(os.environ, **environment),
+            command = what.replace("$?", str(status))
+            for word, other in (instead or {}).items():
+                command = command.replace(word, other)
+            done = subprocess.run([shutil.which("bash"), "-c", command], cwd=folder, env=dict(os.environ, **environment),
                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=600, check=False, text=True)
+            status = done.returncode
             case.assertRegex(done.stdout, pattern(content), what)
             count += 1
     return count
