@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "analysis/trace.h"
+#include "common/json_build.h"
 #include "common/report.h"
 #include "report/report_page.h"
 #include "report/series.h"
@@ -21,6 +22,9 @@ struct analysis {
     why_t *why;
     traffic_t *traffic; /**< NULL: neither --why nor --report */
     series_t *series;   /**< NULL: no --report */
+    json_t *remarks;    /**< of the page; NULL: none */
+    bool is_partial;    /**< a part of the run was not supervised */
+    uint64_t last_us;   /**< of the last frame; in the end, of the end */
     trace_t trace;
     output_t files[ANALYSIS_FILES];
 };
@@ -97,6 +101,7 @@ void analysis_set_clock(analysis_t *analysis, uint64_t first_us) {
 }
 
 void analysis_frame(analysis_t *analysis, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
+    analysis->last_us = t_us;
     why_frame(analysis->why, side, frame, t_us);
     if (analysis->traffic != NULL) {
         traffic_frame(analysis->traffic, side, frame, t_us);
@@ -110,6 +115,7 @@ void analysis_frame(analysis_t *analysis, hal_can_side_t side, const hal_can_fra
 }
 
 void analysis_sent(analysis_t *analysis, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
+    analysis->last_us = t_us;
     why_sent(analysis->why, side, frame, t_us);
     if (analysis->series != NULL) {
         series_sent(analysis->series, side, frame, t_us);
@@ -160,7 +166,9 @@ static void write_report(analysis_t *analysis, const json_t *messages) {
                           .clock_us = analysis->first_us,
                           .is_recording = analysis->request.is_recording,
                           .config = &analysis->config,
-                          .messages = messages};
+                          .messages = messages,
+                          .remarks = analysis->remarks,
+                          .is_partial = analysis->is_partial};
     for (int side = 0; side < (int)HAL_CAN_SIDES; side++) {
         page.interfaces[side] = name_of(analysis, side);
     }
@@ -168,13 +176,28 @@ static void write_report(analysis_t *analysis, const json_t *messages) {
 }
 
 void analysis_end(analysis_t *analysis, uint64_t t_us) {
-    why_end(analysis->why, t_us);
+    const uint64_t end_us =
+        (t_us > analysis->last_us) ? t_us : analysis->last_us; /* a clock in ms is behind the frames */
+    analysis->last_us = end_us;
+    why_end(analysis->why, end_us);
     if (analysis->traffic != NULL) {
-        traffic_end(analysis->traffic, t_us);
+        traffic_end(analysis->traffic, end_us);
     }
     if (analysis->series != NULL) {
-        series_end(analysis->series, t_us);
+        series_end(analysis->series, end_us);
     }
+}
+
+void analysis_remark(analysis_t *analysis, analysis_remark_t kind, const char *text) {
+    if (analysis->remarks == NULL) {
+        analysis->remarks = json_array();
+    }
+    const bool is_hint = kind == ANALYSIS_HINT;
+    json_add(analysis->remarks, json_pack("{s:b, s:s}", "hint", is_hint, "text", text));
+    analysis->is_partial = analysis->is_partial || !is_hint;
+}
+
+void analysis_write(analysis_t *analysis) {
     json_t *messages = (analysis->traffic != NULL) ? traffic_messages_json(analysis->traffic) : NULL;
     if (analysis->files[ANALYSIS_REPORT].is_open) {
         write_report(analysis, messages);
@@ -185,7 +208,7 @@ void analysis_end(analysis_t *analysis, uint64_t t_us) {
         json_decref(why);
     }
     if (analysis->files[ANALYSIS_TRACE].is_open) {
-        trace_end(&analysis->trace, t_us);
+        trace_end(&analysis->trace, analysis->last_us);
     }
     json_decref(messages);
 }
@@ -220,5 +243,6 @@ void analysis_free(analysis_t *analysis) {
     why_free(analysis->why);
     traffic_free(analysis->traffic);
     series_free(analysis->series);
+    json_decref(analysis->remarks);
     free(analysis);
 }

@@ -56,8 +56,20 @@ void analysis_sent(analysis_t *analysis, hal_can_side_t side, const hal_can_fram
 /** An event of the supervisor: a session_observer_fn; @p ctx is the analysis_t. */
 void analysis_event(void *ctx, const session_event_t *event);
 
-/** The run is over: make the content of the files. */
+/** The run is over. */
 void analysis_end(analysis_t *analysis, uint64_t t_us);
+
+/** Kinds of remarks. */
+typedef enum {
+    ANALYSIS_NOT_SUPERVISED, /**< a part of the run was not supervised: the page may not look like a pass */
+    ANALYSIS_HINT            /**< what to try */
+} analysis_remark_t;
+
+/** A remark for the page. After analysis_end(). @param text is copied */
+void analysis_remark(analysis_t *analysis, analysis_remark_t kind, const char *text);
+
+/** Make the content of the files. Once, after analysis_end(). */
+void analysis_write(analysis_t *analysis);
 
 /** Write the files so far. @return false: one failed; was reported, and none is put in its place */
 bool analysis_flush(analysis_t *analysis);

@@ -249,6 +249,7 @@ static bool conclude(live_t *live, const events_summary_t *summary) {
     }
     if (live->analysis != NULL) {
         analysis_end(live->analysis, summary->t_ms * US_PER_MS);
+        analysis_write(live->analysis);
         good = analysis_commit(live->analysis) && good;
     }
     if (good && live->stdout_is_free) {

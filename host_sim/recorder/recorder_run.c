@@ -159,6 +159,7 @@ static bool analyse(work_t *work) {
     }
     feed(work, false);
     analysis_end(work->analysis, work->end_ms * US_PER_MS);
+    analysis_write(work->analysis);
     return output_flush_all(&work->lines, 1u) && analysis_commit(work->analysis) && output_commit(&work->lines);
 }
 

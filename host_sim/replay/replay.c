@@ -211,18 +211,21 @@ static bool has_text(const replay_request_t *request) {
     return !taken;
 }
 
-static void print_text(const replay_t *replay, const events_summary_t *summary) {
-    const replay_text_t text = {.name = replay->log.name,
-                                .first_us = replay->first_us,
-                                .duration_us = replay->now_us - replay->first_us,
-                                .config = &replay->request->config,
-                                .heard = &replay->heard,
-                                .why = analysis_why(replay->analysis),
-                                .summary = summary};
+static replay_text_t text_of(const replay_t *replay, const events_summary_t *summary) {
+    return (replay_text_t){.name = replay->log.name,
+                           .first_us = replay->first_us,
+                           .duration_us = replay->now_us - replay->first_us,
+                           .config = &replay->request->config,
+                           .heard = &replay->heard,
+                           .why = analysis_why(replay->analysis),
+                           .summary = summary};
+}
+
+static void print_text(const replay_t *replay, const replay_text_t *text) {
     if (replay->request->timeline) {
         (void)printf("\n");
     }
-    replay_text_print(&text);
+    replay_text_print(text);
 }
 
 /** Every file or none. @return false: reported */
@@ -245,10 +248,13 @@ static bool conclude(replay_t *replay) {
     if (request->store != NULL) {
         store_file_save(&replay->outputs[STORE], &replay->store, &replay->session.recorder);
     }
-    analysis_end(replay->analysis, replay->now_us - replay->first_us);
+    const replay_text_t text = text_of(replay, &summary);
+    analysis_end(replay->analysis, text.duration_us);
+    replay_text_remarks(&text, replay->analysis);
+    analysis_write(replay->analysis);
     const bool good = commit(replay);
     if (good && has_text(request)) {
-        print_text(replay, &summary);
+        print_text(replay, &text);
     }
     const why_t *why = analysis_why(replay->analysis);
     text_t back = {.used = 0u};

@@ -82,28 +82,27 @@ static void add_missing(text_t *text, const replay_text_t *replay, bool details)
     }
 }
 
-/** What was not supervised: all of it, or a beginning that is longer than a start takes. */
-static void print_not_supervised(const replay_text_t *replay) {
+/** What was not supervised: all of it, or a beginning that is longer than a start takes. @return false: neither */
+static bool add_not_supervised(text_t *text, const replay_text_t *replay) {
     const bool never = why_supervised_us(replay->why) == 0u;
     const uint64_t init_us = why_state_us(replay->why, WHY_INIT);
     const uint64_t normal_us = ((uint64_t)replay->config->init_hold_ms + (uint64_t)START_MS) * US_PER_MS;
-    text_t text = {.used = 0u};
     if (never) {
-        text_add(&text, "never left INIT");
+        text_add(text, "never left INIT");
         if (why_missing(replay->why) == 0u) {
-            text_add(&text, ": the log is too short, a start takes %u ms", (unsigned)replay->config->init_hold_ms);
+            text_add(text, ": the log is too short, a start takes %u ms", (unsigned)replay->config->init_hold_ms);
         }
     } else if (init_us > normal_us) {
-        why_words_time(&text, init_us);
-        text_add(&text, " in INIT");
+        why_words_time(text, init_us);
+        text_add(text, " in INIT");
     } else {
-        return;
+        return false;
     }
     if (why_missing(replay->why) != 0u) {
-        text_add(&text, never ? ", missing: " : ", until then missing: ");
-        add_missing(&text, replay, never);
+        text_add(text, never ? ", missing: " : ", until then missing: ");
+        add_missing(text, replay, never);
     }
-    why_text_line("NOT SUPERVISED: ", NOT_SUPERVISED_LABEL, text.bytes);
+    return true;
 }
 
 bool replay_text_goes_back(text_t *text, const replay_heard_t *heard) {
@@ -118,8 +117,12 @@ bool replay_text_goes_back(text_t *text, const replay_heard_t *heard) {
     return true;
 }
 
-static void print_goes_back(const replay_text_t *replay) {
+static void print_not_supervised(const replay_text_t *replay) {
     text_t text = {.used = 0u};
+    if (add_not_supervised(&text, replay)) {
+        why_text_line("NOT SUPERVISED: ", NOT_SUPERVISED_LABEL, text.bytes);
+    }
+    text_clear(&text);
     if (replay_text_goes_back(&text, replay->heard)) {
         why_text_line("NOT SUPERVISED: ", NOT_SUPERVISED_LABEL, text.bytes);
     }
@@ -132,15 +135,47 @@ static void print_not_judged(const replay_text_t *replay) {
     }
 }
 
+/** Add what of a fault had begun when the log ended. @return false: nothing had */
+static bool add_pending(text_t *text, const replay_text_t *replay, agv_fault_t fault) {
+    const bool pending = why_words_pending(text, replay->why, fault);
+    if (pending) {
+        text_add(text, ": the log ends first");
+    }
+    return pending;
+}
+
 /** What the log ends in: a pass of something that had begun would be a lie. */
 static void print_pending(const replay_text_t *replay) {
     const char *label = "at the end";
     for (int fault = 0; fault < (int)AGV_FAULT_COUNT; fault++) {
         text_t text = {.used = 0u};
-        if (why_words_pending(&text, replay->why, (agv_fault_t)fault)) {
-            text_add(&text, ": the log ends first");
+        if (add_pending(&text, replay, (agv_fault_t)fault)) {
             why_text_line(label, WHY_TEXT_LABEL, text.bytes);
             label = "";
+        }
+    }
+}
+
+void replay_text_remarks(const replay_text_t *replay, analysis_t *analysis) {
+    const replay_clues_t clues = {.config = replay->config, .heard = replay->heard, .why = replay->why};
+    text_t text = {.used = 0u};
+    if ((why_supervised_us(replay->why) > 0u) && add_not_supervised(&text, replay)) { /* else the page says it first */
+        analysis_remark(analysis, ANALYSIS_NOT_SUPERVISED, text.bytes);
+    }
+    text_clear(&text);
+    if (replay_text_goes_back(&text, replay->heard)) {
+        analysis_remark(analysis, ANALYSIS_NOT_SUPERVISED, text.bytes);
+    }
+    for (int fault = 0; fault < (int)AGV_FAULT_COUNT; fault++) {
+        text_clear(&text);
+        if (add_pending(&text, replay, (agv_fault_t)fault)) {
+            analysis_remark(analysis, ANALYSIS_NOT_SUPERVISED, text.bytes);
+        }
+    }
+    for (int hint = 0; hint < (int)REPLAY_HINTS; hint++) {
+        text_clear(&text);
+        if (replay_hint(&text, (replay_hint_t)hint, &clues)) {
+            analysis_remark(analysis, ANALYSIS_HINT, text.bytes);
         }
     }
 }
@@ -173,7 +208,6 @@ static void print_lines(const events_summary_t *summary) {
 
 void replay_text_print(const replay_text_t *replay) {
     print_not_supervised(replay);
-    print_goes_back(replay);
     print_hints(replay);
     print_head(replay);
     why_text_supervised(replay->why);

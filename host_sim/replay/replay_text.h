@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "agv/config.h"
+#include "analysis/analysis.h"
 #include "common/text.h"
 #include "io/events.h"
 #include "replay/replay_heard.h"
@@ -27,6 +28,9 @@ typedef struct {
 
 /** Add what is wrong with a log in which the time goes back by a second or more. @return false: it does not */
 bool replay_text_goes_back(text_t *text, const replay_heard_t *heard);
+
+/** Hand the page what its reader must know besides: what was not supervised, and the hints. */
+void replay_text_remarks(const replay_text_t *replay, analysis_t *analysis);
 
 /** Print it on standard output. */
 void replay_text_print(const replay_text_t *replay);

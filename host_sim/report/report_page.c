@@ -105,6 +105,7 @@ static json_t *about_json(const report_page_t *page) {
     json_put(about, "name", json_text(page->name));
     json_put(about, "interfaces", interfaces);
     json_put(about, "clock", clock_json(page->clock_us));
+    json_put(about, "clock_us", json_uint(page->clock_us % US_PER_MS));
     json_put(about, "recording", json_boolean(page->is_recording));
     json_put(about, "gateway", json_boolean(page->config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY));
     json_put(about, "shadow", json_boolean(page->config->shadow == (uint16_t)AGV_SHADOW_ON));
@@ -127,6 +128,8 @@ static json_t *page_json(const report_page_t *page, const why_t *why, const seri
     json_t *object = json_object();
     json_put(object, "about", about_json(page));
     json_put(object, "sentence", sentence_json(sentence));
+    json_put(object, "partial", json_boolean(page->is_partial));
+    json_put(object, "engaged", json_boolean(why_was_engaged(why)));
     json_put(object, "supervised_us", json_uint(why_supervised_us(why)));
     json_put(object, "states", states_json(why));
     json_put(object, "trips", trips_json(page, why, series));
@@ -169,14 +172,21 @@ static void put_paragraph(output_t *output, const char *id, const char *text) {
     put(output, "</p>\n");
 }
 
-/** The sentence, which a browser without scripts shows as well. */
-static void put_sentence(output_t *output, const sentence_t *sentence) {
+/** The first words, which a browser without scripts shows as well. */
+static void put_words(output_t *output, const sentence_t *sentence, const json_t *remarks) {
     put(output, "<h1 id=\"headline\">");
     put_text(output, sentence->headline);
     put(output, "</h1>\n");
     put_paragraph(output, "cause", sentence->cause);
     put_paragraph(output, "action", sentence->action);
     put_paragraph(output, "outcome", sentence->outcome);
+    for (size_t i = 0u; i < json_array_size(remarks); i++) {
+        const json_t *remark = json_array_get(remarks, i);
+        const bool is_hint = json_is_true(json_object_get(remark, "hint"));
+        put(output, is_hint ? "<p class=\"remark hint\">Hint: " : "<p class=\"remark\">Not supervised: ");
+        put_text(output, json_string_value(json_object_get(remark, "text")));
+        put(output, ".</p>\n");
+    }
 }
 
 /** A piece of JSON inside a script element: a `<` could end the element. It stands in strings alone. */
@@ -200,7 +210,8 @@ static void put_data(output_t *output, const json_t *data) {
 }
 
 /** What stands in the place of "@NAME@" in the frame of the page. */
-static void put_part(output_t *output, char part, const sentence_t *sentence, const json_t *data) {
+static void put_part(output_t *output, char part, const report_page_t *page, const sentence_t *sentence,
+                     const json_t *data) {
     switch (part) {
     case 'T':
         put_text(output, sentence->headline);
@@ -209,7 +220,7 @@ static void put_part(output_t *output, char part, const sentence_t *sentence, co
         put(output, page_styles);
         break;
     case 'S':
-        put_sentence(output, sentence);
+        put_words(output, sentence, page->remarks);
         break;
     case 'D':
         put_data(output, data);
@@ -232,7 +243,7 @@ void report_page_write(output_t *output, const report_page_t *page, const why_t 
     const char *at = page_frame;
     for (const char *mark = strchr(at, '@'); mark != NULL; mark = strchr(at, '@')) {
         (void)output_write(output, at, (size_t)(mark - at));
-        put_part(output, mark[1], &sentence, data);
+        put_part(output, mark[1], page, &sentence, data);
         at = strchr(&mark[1], '@') + 1;
     }
     put(output, at);

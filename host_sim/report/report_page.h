@@ -24,6 +24,8 @@ typedef struct {
     bool is_recording;                     /**< the frames came from a recording, which does not obey */
     const agv_config_t *config;
     const json_t *messages; /**< the array of survey, as in --why; NULL: none */
+    const json_t *remarks;  /**< what stands below the first words: {"hint": bool, "text"}; NULL: none */
+    bool is_partial;        /**< a part of the run was not supervised: without a trip it is no pass */
 } report_page_t;
 
 /**

@@ -8,8 +8,9 @@
 #include "agv/names.h"
 #include "agv/recorder.h"
 #include "common/units.h"
+#include "why/why_words.h"
 
-enum { TIME_SIZE = 32, LIMIT_SIZE = 64, STATE_ACTIVE = 2, STOOD_US = 20000 };
+enum { TIME_SIZE = 32, LIMIT_SIZE = 64, STOOD_US = 20000, US_PER_TENTH = 100, EXACT_TENTHS = 100 };
 
 const char *sentence_phrase(agv_fault_t fault) {
     static const char *const phrases[AGV_FAULT_COUNT] = {
@@ -59,17 +60,16 @@ static const char *at(uint64_t t_us, char text[TIME_SIZE]) {
     return text;
 }
 
-/** A duration: "0.3 ms", "272 ms", "1.25 s". */
-static const char *lasting(uint64_t us, char text[TIME_SIZE]) {
-    const uint64_t tenths = (us + 50u) / 100u;
-    const uint64_t ms = (us + 500u) / US_PER_MS;
-    const uint64_t hundredths = (us + 5000u) / 10000u;
-    if (tenths < 100u) {
+/** A duration: "0.3 ms", "272 ms", "1.254 s". From 10 ms on it is the difference of the times as they are shown. */
+static const char *lasting(uint64_t from_us, uint64_t to_us, char text[TIME_SIZE]) {
+    const uint64_t tenths = (to_us - from_us) / US_PER_TENTH;
+    const uint64_t ms = (to_us / US_PER_MS) - (from_us / US_PER_MS);
+    if (tenths < (uint64_t)EXACT_TENTHS) {
         (void)snprintf(text, TIME_SIZE, "%" PRIu64 ".%" PRIu64 " ms", tenths / 10u, tenths % 10u);
-    } else if (ms < US_PER_MS) {
+    } else if (ms < MS_PER_S) {
         (void)snprintf(text, TIME_SIZE, "%" PRIu64 " ms", ms);
     } else {
-        (void)snprintf(text, TIME_SIZE, "%" PRIu64 ".%02" PRIu64 " s", hundredths / 100u, hundredths % 100u);
+        (void)snprintf(text, TIME_SIZE, "%" PRIu64 ".%03" PRIu64 " s", ms / MS_PER_S, ms % MS_PER_S);
     }
     return text;
 }
@@ -176,7 +176,7 @@ static void say_output(char text[SENTENCE_SIZE], const why_trip_t *trip, uint64_
     } else if (opened_us <= trip->t_us + US_PER_MS) {
         say(text, " The safety output was opened at once.");
     } else {
-        say(text, " The safety output was opened %s after the trip.", lasting(opened_us - trip->t_us, time));
+        say(text, " The safety output was opened %s after the trip.", lasting(trip->t_us, opened_us, time));
     }
 }
 
@@ -189,10 +189,10 @@ static void say_action(char text[SENTENCE_SIZE], const report_page_t *page, cons
     } else if (trip->first_safe_us == WHY_NEVER) {
         say(text, " It sent no frame until the end.");
     } else {
-        const uint64_t after_us = trip->first_safe_us - sentence_trip_us(trip);
+        const uint64_t trip_us = sentence_trip_us(trip);
+        const bool at_once = trip->first_safe_us < trip_us + (uint64_t)US_PER_TENTH;
         say(text, " %s%s it sent the first of the safe commands: gear P, throttle 0, autopilot off.",
-            (after_us < US_PER_MS / 10u) ? "At once" : lasting(after_us, time),
-            (after_us < US_PER_MS / 10u) ? "" : " later");
+            at_once ? "At once" : lasting(trip_us, trip->first_safe_us, time), at_once ? "" : " later");
     }
 }
 
@@ -205,14 +205,14 @@ static void say_outcome(char text[SENTENCE_SIZE], const report_page_t *page, con
     }
     if (trip->confirmed_us != WHY_NEVER) {
         say(text, "%sThe VCU reported gear P and autopilot off %s after the trip.", (text[0] != '\0') ? " " : "",
-            lasting(trip->confirmed_us - sentence_trip_us(trip), time));
+            lasting(sentence_trip_us(trip), trip->confirmed_us, time));
     }
     const char *space = (text[0] != '\0') ? " " : "";
     if ((trip->stopped_us != WHY_NEVER) && (trip->stopped_us < trip->t_us + STOOD_US)) {
         say(text, "%sThe vehicle stood already.", space);
     } else if (trip->stopped_us != WHY_NEVER) {
         say(text, "%sThe wheels stood %s after the trip.", space,
-            lasting(trip->stopped_us - sentence_trip_us(trip), time));
+            lasting(sentence_trip_us(trip), trip->stopped_us, time));
     } else if (!page->is_recording) {
         say(text, "%sThe wheels were not seen to stand until the end.", space);
     }
@@ -234,11 +234,17 @@ void sentence_trip(sentence_t *sentence, const report_page_t *page, const why_tr
     say_outcome(sentence->outcome, page, trip);
 }
 
-static void say_missing(char text[SENTENCE_SIZE], uint16_t missing) {
+static void say_missing(char text[SENTENCE_SIZE], const why_t *why) {
+    const uint16_t missing = why_missing(why);
     const char *between = " What kept it there: ";
-    for (unsigned bit = 0u; bit < 16u; bit++) {
+    for (uint8_t bit = 0u; bit < 16u; bit++) {
         if ((missing & (1u << bit)) != 0u) {
+            text_t details = {.used = 0u};
+            why_words_missing(&details, why, bit);
             say(text, "%s%s", between, sentence_missing(bit));
+            if (details.used > 0u) {
+                say(text, " (%s)", details.bytes);
+            }
             between = "; ";
         }
     }
@@ -253,20 +259,21 @@ void sentence_no_trip(sentence_t *sentence, const why_t *why, uint64_t end_us) {
     if (supervised_us == 0u) {
         say(sentence->headline, "Nothing was supervised: the supervisor never left INIT.");
         say(sentence->cause, "The run took %s.", at(end_us, whole));
-        say_missing(sentence->cause, why_missing(why));
+        say_missing(sentence->cause, why);
         say(sentence->outcome, "This says nothing about the vehicle: it is no pass.");
         return;
     }
     say(sentence->headline, "No trip: the supervisor found no reason to stop the vehicle.");
     say(sentence->cause, "It supervised %s of %s.", at(supervised_us, supervised), at(end_us, whole));
     if (supervised_us < end_us) {
-        say(sentence->cause, " The other %s it was in INIT.", at(end_us - supervised_us, whole));
+        const uint64_t init_ms = (end_us / US_PER_MS) - (supervised_us / US_PER_MS);
+        say(sentence->cause, " The other %s it was in INIT.", at(init_ms * US_PER_MS, whole));
     }
     if (why_fault_count(why) > 0u) {
         say(sentence->action, "It warned of %zu fault%s.", why_fault_count(why),
             (why_fault_count(why) > 1u) ? "s" : "");
     }
-    if (why_state_us(why, STATE_ACTIVE) == 0u) {
+    if (!why_was_engaged(why)) {
         say(sentence->outcome, "The autopilot was never engaged: the commands of the AI computer were not judged.");
     }
 }

@@ -12,7 +12,7 @@
 #include "report/report_page.h"
 #include "why/why.h"
 
-#define SENTENCE_SIZE 512u
+#define SENTENCE_SIZE 1024u
 
 /** The words. "" where there is nothing to say. */
 typedef struct {
@@ -37,7 +37,7 @@ void sentence_trip(sentence_t *sentence, const report_page_t *page, const why_tr
 /** About a run without a trip. @param end_us its duration */
 void sentence_no_trip(sentence_t *sentence, const why_t *why, uint64_t end_us);
 
-/** What a missing condition means: "manual" is "the VCU did not report manual". @param index bit of AGV_MISSING_* */
+/** What a missing condition means: "manual" is "the VCU does not report manual". @param index bit of AGV_MISSING_* */
 const char *sentence_missing(unsigned index);
 
 #endif

@@ -162,6 +162,7 @@ static bool finish(work_t *work) {
     }
     if (work->analysis != NULL) {
         analysis_end(work->analysis, session->t_ms * US_PER_MS);
+        analysis_write(work->analysis);
         return output_flush_all(&work->events, 1u) && analysis_commit(work->analysis) && output_commit(&work->events);
     }
     return output_commit(&work->events);

@@ -278,6 +278,7 @@ static void play_simulated(work_t *work, events_summary_t *summary) {
     events_summarise(session, summary);
     if (work->analysis != NULL) {
         analysis_end(work->analysis, session->t_ms * US_PER_MS);
+        analysis_write(work->analysis);
     }
 }
 

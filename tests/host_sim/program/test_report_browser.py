@@ -33,6 +33,8 @@ PAGES = {
              "No trip: the supervisor found no reason to stop the vehicle."),
     "unsupervised": (("replay", "autopilot.log"), "NOT SUPERVISED",
                      "Nothing was supervised: the supervisor never left INIT."),
+    "partial": (("replay", "ends.log"), "NO TRIP, BUT NOT ALL WAS SUPERVISED",
+                "No trip: the supervisor found no reason to stop the vehicle."),
     "settings": (("replay", "--config", "other.yaml", EXAMPLE), "STEERING_COMMAND_TIMEOUT",
                  "The supervisor would have stopped this vehicle because the AI computer no longer sent steering commands."),
 }
@@ -69,6 +71,8 @@ class Report(hostsim.Case):
         cls.addClassCleanup(cls.pages.cleanup)
         folder = pathlib.Path(cls.pages.name)
         (folder / "autopilot.log").write_text(traffic.log(traffic.frames(2000, engage_ms=0)), encoding="ascii")
+        ends = traffic.frames(3000, engage_ms=1000, edit=lambda frame: None if frame.name == "steering_command" and frame.t_ms > 2910 else frame)
+        (folder / "ends.log").write_text(traffic.log(ends), encoding="ascii")
         (folder / "other.yaml").write_text("steering_command_timeout_ms: 120\nclass_s_driver_alarm: warn\n", encoding="ascii")
         cls.browser = browser.Browser()
         cls.addClassCleanup(cls.browser.__exit__)
@@ -136,6 +140,23 @@ class Report(hostsim.Case):
         for row in ("state", "safety output", "LED", "mode", "gearreported", "speed", "throttle", "steering", "065hsteering_command"):
             self.assertIn(row, rows)
 
+    def test_the_steps_have_the_times_of_the_text(self):
+        self.show("silence")
+        steps = self.browser.run("[...document.querySelectorAll('#steps li')].map((one) => [...one.children].slice(0, 3).map((part) => part.innerText))")
+        self.assertEqual([step[:2] for step in steps], [
+            ["last good frame", "0.881 s"], ["cause", "0.906 s"], ["trip", "1.007 s"], ["first safe frame", "1.007 s"],
+            ["P confirmed", "1.120 s"], ["stands", "1.281 s"]])
+        self.assertEqual([steps[0][2], steps[1][2], steps[4][2], steps[5][2]],
+                         ["126 ms before", "101 ms before", "113 ms after", "274 ms after"])
+        self.assertIn("The wheels stood 274 ms after the trip.", self.text("outcome"))
+
+    def test_the_messages_on_the_bus(self):
+        self.show("silence")
+        rows = self.browser.run("[...document.querySelectorAll('.messages tbody tr')].map((one) => [...one.children].map((cell) => cell.innerText))")
+        self.assertEqual(len(rows), 13)
+        self.assertEqual(rows[0], ["050h throttle_status", "140", "10.0", "10.0", "60", "50.0"])
+        self.assertEqual(rows[1:3], [["065h steering_command", "36", "25.0", "238.9", "125", "\u2212113.9"], ["late at 1.006 s"]])
+
     def test_the_frames_around_the_cause_are_decoded(self):
         self.show("bit")
         rows = self.browser.run("[...document.querySelectorAll('.frames tbody tr')].map((one) => one.innerText.split('\\t').map((cell) => cell.trim()))")
@@ -194,7 +215,14 @@ class Report(hostsim.Case):
         self.show("unsupervised")
         self.assertIn("it is no pass", self.text("outcome"))
         self.assertIn("Not supervised: 1.9", self.text("report"))
-        self.assertIn("The autopilot was never engaged", self.text("report"))
+        self.assertNotIn("The autopilot was never engaged", self.text("report"))
+        self.assertIn("the VCU does not report manual (363h reports autopilot from its first frame)", self.text("cause"))
+        remarks = "[...document.querySelectorAll('.remark')].map((one) => one.innerText)"
+        self.assertEqual(self.browser.run(remarks), ["Hint: supervision begins in manual, at standstill: start the recording "
+                                                     "before the autopilot is engaged."])
+        self.show("partial")
+        self.assertEqual(self.browser.run(remarks), ["Not supervised: 065h steering_command was silent for 88 ms, deadline "
+                                                     "125 ms: the log ends first."])
 
     def test_settings_that_differ(self):
         self.show("settings")

@@ -363,6 +363,8 @@ class Why(Case):
                           for trip in demo["trips"]],
                          [("STEERING_COMMAND_TIMEOUT", "silence", "steering_command", False),
                           ("EPS_OVER_CURRENT_SHUTDOWN", "bit", "eps_status", False)])
+        longest = {message["name"]: message["deadline_gap_ms"]["max"] for message in demo["messages"]}
+        self.assertEqual({name for name, gap in longest.items() if gap > 100.1}, {"turn_signal_command", "steering_command"})
         scenario = str(SCENARIOS / "vcu" / "vcu_heartbeat_stuck.yaml")
         why = json.loads(self.run_good("scenario", "--why", "-", scenario).stdout)
         self.assertEqual([(trip["reason"], trip["kind"], trip["id"]) for trip in why["trips"]][0],

@@ -73,7 +73,8 @@ export function ageAt(source, t) {
   const gap = Math.abs(source.gap[i]);
   if (source.step > 0 && gap <= source.step) return gap;
   const since = t - (source.t[i] - gap);
-  return since < 0 ? null : Math.min(since, gap);
+  if (since < 0) return i > 0 ? Math.abs(source.gap[i - 1]) : null; // a step before: its longest gap
+  return Math.min(since, gap);
 }
 
 /** Lowest and highest of a plot over the whole of its sources, widened to what the row asks for. */
