@@ -1,10 +1,10 @@
 #include "campaign/campaign_plan.h"
 
 #include <inttypes.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "agv/names.h"
+#include "campaign/campaign_steps.h"
 #include "common/prng.h"
 #include "common/units.h"
 
@@ -98,19 +98,9 @@ static void add_kind(campaign_plan_t *plan) {
     text_add(text, "bitrate: %" PRIu32 "\nclock_start_ms: %" PRIu32 "\ntick_phase_us: %u\n%s", plan->bitrate,
              plan->clock_start_ms, plan->tick_phase_us, row->top);
     text_add(text, "config:\n  park: %s\n", plan->at_standstill ? "at_standstill" : "at_once");
-    if (row->fault == AGV_FAULT_CONFIG_INVALID) {
-        text_add(text, "  own_heartbeat: frozen\n");
-    }
+    campaign_settings(text, row);
     if (plan->renumbered) {
         add_identifiers(plan);
-    }
-    if ((row->flags & CAMPAIGN_AS_TRIP) != 0u) {
-        text_add(text, "  class_");
-        for (; *name != '\0'; name++) {
-            const char letter = *name;
-            text_add(text, "%c", ((letter >= 'A') && (letter <= 'Z')) ? letter - 'A' + 'a' : letter);
-        }
-        text_add(text, ": trip\n");
     }
 }
 
@@ -160,58 +150,14 @@ static void add_drive(campaign_plan_t *plan, uint64_t *state) {
     }
 }
 
-/** Add one step of a row, with its placeholders filled in. */
-static const char *add_words(campaign_plan_t *plan, const char *at, const char *end) {
-    text_t *text = &plan->head;
-
-    for (; (at < end) && (*at != '|'); at++) {
-        if (*at != '$') {
-            text_add(text, "%c", *at);
-            continue;
-        }
-        at++;
-        if (*at == 'n') {
-            text_add(text, "%" PRIu32, plan->number);
-        } else if (*at == 's') {
-            text_add(text, "%s", plan->gateway ? "ai" : "vehicle");
-        } else { /* $o: 43Fh as the other set has it */
-            text_add(text, "%03Xh",
-                     (unsigned)agv_message_id(AGV_MSG_TURN_SIGNAL_COMMAND,
-                                              plan->table_ids ? AGV_ID_SET_HEADING : AGV_ID_SET_TABLE));
-        }
-    }
-    return (at < end) ? at + 1 : at;
-}
-
-/** One of the alternatives. */
-static const char *choose_steps(const char *steps, uint64_t *state, const char **end) {
-    uint32_t count = 1u;
-    for (const char *at = steps; *at != '\0'; at++) {
-        count += (*at == '/') ? 1u : 0u;
-    }
-    for (uint32_t skip = prng_draw(state, 0u, count - 1u); skip > 0u; skip--) {
-        steps = strchr(steps, '/') + 1;
-    }
-    *end = steps + strcspn(steps, "/");
-    return steps;
-}
-
 static void add_cause(campaign_plan_t *plan, uint64_t *state) {
-    const char *end = NULL;
-    const char *at = choose_steps(plan->row->steps, state, &end);
+    const campaign_values_t values = {.number = plan->number, .gateway = plan->gateway, .table_ids = plan->table_ids};
+    campaign_step_t steps[CAMPAIGN_STEPS_MAX];
+    const uint32_t alternative = prng_draw(state, 0u, campaign_alternatives(plan->row) - 1u);
+    const size_t count = campaign_steps(plan->row, alternative, plan->steps_ms, &values, steps);
 
-    while (at < end) {
-        uint32_t at_ms = plan->steps_ms;
-        if (*at == '+') {
-            for (uint32_t ms = 0u; *at != ' '; at_ms = plan->steps_ms + ms) {
-                at++;
-                ms = (*at != ' ') ? (ms * 10u) + (uint32_t)(*at - '0') : ms;
-            }
-            at++;
-        }
-        text_add(&plan->head, "  - {at_ms: %" PRIu32 ", ", at_ms);
-        at = add_words(plan, at, end);
-        text_add(&plan->head, "}\n");
+    for (size_t i = 0u; i < count; i++) {
+        text_add(&plan->head, "  - {at_ms: %" PRIu32 ", %s}\n", steps[i].at_ms, steps[i].words);
     }
 }
 

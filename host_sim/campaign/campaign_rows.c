@@ -5,7 +5,7 @@
 #include "agv/supervisor.h"
 #include "common/units.h"
 
-enum { BITS_PER_BYTE = 8, CONFIRM_LEAD_MS = 2 };
+enum { BITS_PER_BYTE = 8, CONFIRM_LEAD_MS = 2, CLOCKS_COMPARED_MS = 1000 };
 
 /** The longest frames that the wire may take, all in all: all messages twice, two rows of collisions, and some. */
 enum { ALLOWED_BITS = 40 * 138 };
@@ -28,6 +28,12 @@ const campaign_row_t CAMPAIGN_ROWS[] = {
     ROW(MEMORY_CORRUPTED, CAMPAIGN_TICK, NONE, NULL, 0u, 0u, BITS_OF_CORE - 1u, "", "supervisor: flip_bit, bit: $n"),
     ROW(CONFIG_INVALID, CAMPAIGN_AT_ONCE, NONE, NULL, CAMPAIGN_START | CAMPAIGN_NO_OUTPUT | CAMPAIGN_SHARED, 0u, 0u,
         "config_unchecked: true\n", ""),
+    ROW(OUTPUT_FEEDBACK, CAMPAIGN_CONTACT, NONE, "output_feedback_ms", 0u, 0u, 0u, "board: [output_feedback]\n",
+        "board: invert_feedback"),
+    ROW(EMERGENCY_STOP, CAMPAIGN_TICK, NONE, NULL, 0u, 0u, 0u, "board: [emergency_stop]\n",
+        "board: open_emergency_stop"),
+    ROW(CLOCK_DEVIATION, CAMPAIGN_CLOCKS, NONE, NULL, 0u, 60u, 900u, "board: [second_clock]\n",
+        "board: slow_clock, permille: $n/board: fast_clock, permille: $n"),
     ROW(SUPERVISOR_RESET, CAMPAIGN_AT_ONCE, NONE, NULL, CAMPAIGN_LATER, 0u, 300u, "",
         "supervisor: restart, cause: watchdog, off_ms: $n/supervisor: restart, cause: brown-out, off_ms: "
         "$n/supervisor: restart, cause: lock-up, off_ms: $n/supervisor: restart, cause: software, off_ms: "
@@ -225,6 +231,10 @@ uint32_t campaign_decision_ms(const campaign_row_t *row, const agv_config_t *con
         return cycle_ms + value + 2u;
     case CAMPAIGN_UNCONFIRMED:
         return config->steering_command_timeout_ms + value + CONFIRM_LEAD_MS;
+    case CAMPAIGN_CONTACT:
+        return value + 1u;
+    case CAMPAIGN_CLOCKS:
+        return 2u * (uint32_t)CLOCKS_COMPARED_MS;
     default:
         return 0u;
     }

@@ -32,6 +32,8 @@ typedef enum {
     CAMPAIGN_GAPS,        /**< so many gaps (`setting`) between frames of a message, each at most `highest` ms */
     CAMPAIGN_STALL,       /**< a frame waits for `setting` from when one is to be sent (the first of a message) */
     CAMPAIGN_UNCONFIRMED, /**< `setting` after a trip that the silence of a message causes */
+    CAMPAIGN_CONTACT,     /**< a contact has read wrongly at the ticks of `setting` */
+    CAMPAIGN_CLOCKS,      /**< at the end of the second whole comparison of the two clocks (HW-4) */
 } campaign_kind_t;
 
 /* What a row is like. */

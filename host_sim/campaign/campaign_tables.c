@@ -46,8 +46,8 @@ static json_t *flags_of(const campaign_row_t *row) {
 }
 
 static json_t *rows(void) {
-    static const char *const kinds[] = {"at_once", "tick", "frame", "frames",     "silence",
-                                        "lasts",   "gaps", "stall", "unconfirmed"};
+    static const char *const kinds[] = {"at_once", "tick",  "frame",       "frames",  "silence", "lasts",
+                                        "gaps",    "stall", "unconfirmed", "contact", "clocks"};
     json_t *list = json_array();
     for (size_t i = 0u; i < CAMPAIGN_ROW_COUNT; i++) {
         const campaign_row_t *row = &CAMPAIGN_ROWS[i];

@@ -12,8 +12,7 @@ void random_options_init(random_options_t *options, option_t rows[RANDOM_OPTIONS
     rows[1] = (option_t)OPTION_TEXT("--shard", "I/N", parts, &options->shard);
 }
 
-/** Read "2/8". @return false: it is not I/N; reported */
-static bool take_shard(const char *text, uint32_t *shard, uint32_t *shards) {
+bool random_options_shard(const char *text, uint32_t *shard, uint32_t *shards) {
     char first[8];
     uint64_t part = 0u;
     uint64_t parts = 0u;
@@ -38,5 +37,5 @@ bool random_options_check(const random_options_t *options, const char *command, 
     }
     *shard = 1u;
     *shards = 1u;
-    return (options->shard == NULL) || take_shard(options->shard, shard, shards);
+    return (options->shard == NULL) || random_options_shard(options->shard, shard, shards);
 }

@@ -26,6 +26,9 @@ typedef struct {
  */
 void random_options_init(random_options_t *options, option_t rows[RANDOM_OPTIONS], const char *parts);
 
+/** Read a shard: "2/8". @return false: it is not I/N; was reported */
+bool random_options_shard(const char *text, uint32_t *shard, uint32_t *shards);
+
 /**
  * Check the options.
  * @param command "soak": whose `--help` is named

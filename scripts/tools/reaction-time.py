@@ -23,6 +23,7 @@ BEGIN, END = "<!-- {}: made by scripts/tools/reaction-time.py -->", "<!-- end of
 BITRATES = (125000, 250000, 500000)
 TOPOLOGIES = ("shared", "gateway")
 TICK_US = 1000
+CLOCKS_COMPARED_US = 1000000  # HW-4
 # A controller is error passive above a TEC of 127, and each destroyed frame adds 8: so many collisions in a row.
 COLLISIONS = 16
 NEAR = 1.25
@@ -173,6 +174,10 @@ def under_way_decision_us(world, row):
         return TICK_US if "later" in row["flags"] else 0  # it runs again: from the next tick on
     if kind == "tick":
         return TICK_US
+    if kind == "contact":
+        return setting_us(world, row) + TICK_US
+    if kind == "clocks":  # a comparison that had begun before the cause may not show it
+        return 2 * CLOCKS_COMPARED_US + TICK_US
     if kind == "frame":  # of a stranger, with the ID of a command that the gateway sends too
         return world.vehicle.response_us(name, world.collisions_us([name]))
     cycle_us = world.messages[name]["cycle_ms"] * 1000
@@ -319,6 +324,8 @@ def up_ms(us):
 CAUSES = {
     "at_once": "the call that finds it",
     "tick": "the next tick",
+    "contact": "{setting} ms of ticks",
+    "clocks": "two comparisons of 1000 ms",
     "frame": "the frame itself",
     "frames": "{count} x {message} of {cycle} ms",
     "silence": "{message} away for {setting} ms",
@@ -519,8 +526,10 @@ def main():
             above = compare(derived, measured)
             if above:
                 raise Problem("measured above derived:\n" + "\n".join(above))
-            known = {row["fault"] for row in measured.rows} | ({"confirmed"} if measured.confirmation else set())
-            figures = {key: seen for key, seen in figures.items() if key[0] not in known} | figures_of(measured, derived)
+            known = set(measured.runs)  # figures of other faults stay
+            figures = {key: seen for key, seen in figures.items() if key[0] not in known}
+            for key, seen in figures_of(measured, derived).items():
+                figures[key] = max(seen, figures.get(key, 0))  # "confirmed": the greatest of all faults
         page.write_text(make_page(text, derived, figures), encoding="utf-8")
         return 0
     except (Problem, OSError) as problem:

@@ -10,6 +10,7 @@
 enum { WORDS_SIZE = 256 };
 
 const command_t COMMANDS[] = {
+    {"atlas", "cause every pair of faults on the simulated bus, and compare it with each of the two alone", cmd_atlas},
     {"campaign", "inject random faults on the simulated bus, thousands of times, and check each run", cmd_campaign},
     {"completion", "print a script that completes command lines in bash, zsh or fish", cmd_completion},
     {"config", "print every setting as a configuration file, or a configuration as Kconfig", cmd_config},

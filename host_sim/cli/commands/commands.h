@@ -62,6 +62,9 @@ command_fn cmd_survey;
 /** `host_sim vehicle`: VCU, EPS and AI computer as nodes on SocketCAN. */
 command_fn cmd_vehicle;
 
+/** `host_sim atlas`: every ordered pair of faults. */
+command_fn cmd_atlas;
+
 /** `host_sim campaign`: randomised fault campaigns on the simulated bus. */
 command_fn cmd_campaign;
 

@@ -115,6 +115,9 @@ void test_decision_times_worked_out_by_hand(void) {
         agv_fault_t fault;
         uint32_t ms;
     } rows[] = {
+        {AGV_FAULT_OUTPUT_FEEDBACK, 101u},
+        {AGV_FAULT_EMERGENCY_STOP, 1u},
+        {AGV_FAULT_CLOCK_DEVIATION, 2000u},
         {AGV_FAULT_BUS_OFF, 1u},
         {AGV_FAULT_SUPERVISOR_RESET, 0u},
         {AGV_FAULT_VCU_HEARTBEAT_LOST, 51u},

@@ -126,6 +126,12 @@ static void sound_config(agv_config_t *config) {
 #undef AGV_CHOICE
 }
 
+static void sound_reset_button(agv_reset_button_t *reset) {
+    reset->began_after = any_bool();
+    reset->answered = any_bool();
+    reset->is_pin = any_bool();
+}
+
 /* A truth is 0 or 1 in memory. */
 static void sound_decisions(agv_core_t *core) {
     core->machine.park_released = any_bool();
@@ -136,8 +142,8 @@ static void sound_decisions(agv_core_t *core) {
     core->faults.ai_loss_warns = any_bool();
     core->confirmation.park_sent = any_bool();
     core->confirmation.unconfirmed = any_bool();
-    core->reset_button.began_after = any_bool();
-    core->reset_button.answered = any_bool();
+    sound_reset_button(&core->reset_button);
+    sound_reset_button(&core->reset_pin);
     core->stopping.stood = any_bool();
     core->stopping.not_stopping = any_bool();
     core->stopping.moving = any_bool();

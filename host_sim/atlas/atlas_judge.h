@@ -1,0 +1,28 @@
+/**
+ * @file atlas_judge.h
+ * Compares a pair of faults with each of the two alone. A pair must not be weaker than its worse half.
+ */
+#ifndef HOST_SIM_ATLAS_JUDGE_H
+#define HOST_SIM_ATLAS_JUDGE_H
+
+#include "atlas/atlas_play.h"
+
+/** How a pair is weaker than its worse half: the first of these that applies. */
+typedef enum {
+    ATLAS_SOUND,
+    ATLAS_NOT_READY,   /**< the supervisor was not in the state of the case when the first fault came */
+    ATLAS_HAZARD,      /**< the hunt's judge found a hazard that neither half has */
+    ATLAS_NOT_LATCHED, /**< a half ends in TRIPPED, SAFE or INIT, the pair does not */
+    ATLAS_LATE_FRAME,  /**< the first safe command comes later than in both halves, or never */
+    ATLAS_LATE_OUTPUT, /**< the output opens later than in both halves, or never */
+    ATLAS_LATE_STOP,   /**< the vehicle stops later than in both halves, or never */
+    ATLAS_WEAKNESSES
+} atlas_weakness_t;
+
+/** "LATE_FRAME"; "" for ATLAS_SOUND. */
+const char *atlas_weakness_name(atlas_weakness_t weakness);
+
+/** Judge a pair by its halves. */
+atlas_weakness_t atlas_judge(const atlas_outcome_t *pair, const atlas_outcome_t *first, const atlas_outcome_t *second);
+
+#endif

@@ -1,0 +1,158 @@
+#include "atlas/atlas_scenario.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "agv/names.h"
+#include "campaign/campaign_steps.h"
+
+enum {
+    DRIVE_MS = 1000,
+    ENGAGE_MS = 1500,
+    TRIP_MS = 3000,
+    LATE_AI_MS = 800,
+    AFTERWARDS_MS = 7000, /* VEHICLE_NOT_STOPPING takes 5 s */
+    HEX = 16
+};
+
+static const uint32_t FIRST_MS[ATLAS_STATES] = {[ATLAS_INIT] = 200u,
+                                                [ATLAS_STANDBY] = 3000u,
+                                                [ATLAS_ACTIVE] = 3000u,
+                                                [ATLAS_TRIPPED] = 3400u,
+                                                [ATLAS_SAFE] = 8000u};
+
+uint32_t atlas_first_ms(atlas_state_t state) {
+    return FIRST_MS[state];
+}
+
+/** The steps of both faults, in the order of time. */
+typedef struct {
+    campaign_step_t steps[2u * CAMPAIGN_STEPS_MAX];
+    size_t count;
+} steps_t;
+
+/** "vcu: set, field: alarms, value: 10h": where the value begins, in a field whose bits are alarms; NULL: no such step. */
+static char *alarm_bits(char *words) {
+    static const char *const fields[] = {"vcu: set, field: alarms, value: ", "eps: set, field: faults, value: "};
+    for (size_t i = 0u; i < sizeof fields / sizeof fields[0]; i++) {
+        if (strncmp(words, fields[i], strlen(fields[i])) == 0) {
+            return words + strlen(fields[i]);
+        }
+    }
+    return NULL;
+}
+
+/** Alarms of an earlier step stay set. */
+static void keep_alarms(steps_t *all, campaign_step_t *step) {
+    char *bits = alarm_bits(step->words);
+    for (size_t i = 0u; (bits != NULL) && (i < all->count); i++) {
+        const char *earlier = alarm_bits(all->steps[i].words);
+        if ((earlier != NULL) && (strncmp(step->words, all->steps[i].words, (size_t)(bits - step->words)) == 0)) {
+            (void)snprintf(bits, CAMPAIGN_WORDS_SIZE - (size_t)(bits - step->words), "%02lXh",
+                           strtoul(bits, NULL, HEX) | strtoul(earlier, NULL, HEX));
+        }
+    }
+}
+
+static void add_sorted(steps_t *all, const campaign_step_t *step) {
+    size_t at = all->count;
+    while ((at > 0u) && (all->steps[at - 1u].at_ms > step->at_ms)) {
+        all->steps[at] = all->steps[at - 1u];
+        at--;
+    }
+    all->steps[at] = *step;
+    all->count++;
+}
+
+static void add_row(steps_t *all, const campaign_row_t *row, uint32_t from_ms, bool gateway) {
+    const campaign_values_t values = {.number = (row->lowest + row->highest) / 2u, .gateway = gateway};
+    campaign_step_t steps[CAMPAIGN_STEPS_MAX];
+    const size_t count = ((row->flags & CAMPAIGN_START) != 0u) ? 0u : campaign_steps(row, 0u, from_ms, &values, steps);
+
+    for (size_t i = 0u; i < count; i++) {
+        keep_alarms(all, &steps[i]);
+        add_sorted(all, &steps[i]);
+    }
+}
+
+/** Lines at the top level of both rows; parts of the board are one list. */
+static void add_top(text_t *text, const atlas_case_t *pair) {
+    const char *const tops[] = {(pair->first != NULL) ? pair->first->top : "",
+                                (pair->second != NULL) ? pair->second->top : ""};
+    static const char board[] = "board: [";
+    const bool boards =
+        (strncmp(tops[0], board, sizeof board - 1u) == 0) && (strncmp(tops[1], board, sizeof board - 1u) == 0);
+
+    if (boards) {
+        text_add(text, "%.*s, %s", (int)strcspn(tops[0], "]"), tops[0], tops[1] + sizeof board - 1u);
+        return;
+    }
+    text_add(text, "%s%s", tops[0], (strcmp(tops[0], tops[1]) == 0) ? "" : tops[1]);
+}
+
+static void add_config(text_t *text, const atlas_case_t *pair) {
+    text_add(text, "config:\n  park: %s\n", (pair->state == ATLAS_TRIPPED) ? "at_standstill" : "at_once");
+    if (pair->first != NULL) {
+        campaign_settings(text, pair->first);
+    }
+    if (pair->second != NULL) {
+        campaign_settings(text, pair->second);
+    }
+}
+
+static bool starts_late(const campaign_row_t *row) {
+    return (row != NULL) && ((row->flags & CAMPAIGN_LATE_AI) != 0u);
+}
+
+/** The vehicle drives, or has tripped, before the first fault comes. */
+static void add_drive(text_t *text, atlas_state_t state) {
+    text_add(text, "  - {at_ms: %d, ai: drive, gear: D, throttle_pct: 20, steer_deg: 5}\n", DRIVE_MS);
+    if (state == ATLAS_STANDBY) {
+        text_add(text, "  - {at_ms: %d, operator: drive, gear: D, throttle_pct: 20}\n", ENGAGE_MS);
+    } else {
+        text_add(text, "  - {at_ms: %d, operator: engage}\n", ENGAGE_MS);
+    }
+    if ((state == ATLAS_TRIPPED) || (state == ATLAS_SAFE)) {
+        text_add(text, "  - {at_ms: %d, ai: mute, message: steering_command}\n", TRIP_MS);
+    }
+}
+
+static void add_steps(text_t *text, const atlas_case_t *pair) {
+    const uint32_t first_ms = FIRST_MS[pair->state];
+    steps_t all = {.count = 0u};
+
+    if (pair->first != NULL) {
+        add_row(&all, pair->first, first_ms, pair->gateway);
+    }
+    if (pair->second != NULL) {
+        add_row(&all, pair->second, first_ms + ATLAS_DISTANCE_MS[pair->distance], pair->gateway);
+    }
+    text_add(text, "steps:\n");
+    if (pair->state != ATLAS_INIT) {
+        add_drive(text, pair->state);
+    }
+    for (size_t i = 0u; i < all.count; i++) {
+        text_add(text, "  - {at_ms: %" PRIu32 ", %s}\n", all.steps[i].at_ms, all.steps[i].words);
+    }
+    if (pair->state == ATLAS_INIT) {
+        add_drive(text, ATLAS_STANDBY);
+    }
+}
+
+void atlas_scenario_write(text_t *text, const atlas_case_t *pair) {
+    text_add(text, "name: %s, %s, then %s after %" PRIu32 " ms\n", atlas_state_name(pair->state),
+             (pair->first != NULL) ? agv_fault_name(pair->first->fault) : "nothing",
+             (pair->second != NULL) ? agv_fault_name(pair->second->fault) : "nothing",
+             ATLAS_DISTANCE_MS[pair->distance]);
+    text_add(text, "shows: [%s]\n", agv_fault_name(((pair->first != NULL) ? pair->first : pair->second)->fault));
+    text_add(text, "topology: %s\n", pair->gateway ? "gateway" : "shared");
+    add_top(text, pair);
+    add_config(text, pair);
+    text_add(text, "vehicle:\n  ai_starts_ms: %d\n",
+             (starts_late(pair->first) || starts_late(pair->second)) ? LATE_AI_MS : 0);
+    text_add(text, "duration_ms: %" PRIu32 "\n",
+             FIRST_MS[pair->state] + ATLAS_DISTANCE_MS[ATLAS_DISTANCES - 1u] + (uint32_t)AFTERWARDS_MS);
+    add_steps(text, pair);
+}

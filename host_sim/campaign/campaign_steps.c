@@ -1,0 +1,85 @@
+#include "campaign/campaign_steps.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "agv/names.h"
+
+void campaign_settings(text_t *text, const campaign_row_t *row) {
+    const char *name = agv_fault_name(row->fault);
+
+    if (row->fault == AGV_FAULT_CONFIG_INVALID) {
+        text_add(text, "  own_heartbeat: frozen\n");
+    }
+    if ((row->flags & CAMPAIGN_AS_TRIP) != 0u) {
+        text_add(text, "  class_");
+        for (; *name != '\0'; name++) {
+            const char letter = *name;
+            text_add(text, "%c", ((letter >= 'A') && (letter <= 'Z')) ? letter - 'A' + 'a' : letter);
+        }
+        text_add(text, ": trip\n");
+    }
+}
+
+uint32_t campaign_alternatives(const campaign_row_t *row) {
+    uint32_t count = 1u;
+    for (const char *at = row->steps; *at != '\0'; at++) {
+        count += (*at == '/') ? 1u : 0u;
+    }
+    return count;
+}
+
+/** What a placeholder stands for. */
+static void value_of(char letter, const campaign_values_t *values, char *text, size_t size) {
+    if (letter == 'n') {
+        (void)snprintf(text, size, "%" PRIu32, values->number);
+    } else if (letter == 's') {
+        (void)snprintf(text, size, "%s", values->gateway ? "ai" : "vehicle");
+    } else { /* $o: 43Fh as the other set has it */
+        (void)snprintf(text, size, "%03Xh",
+                       (unsigned)agv_message_id(AGV_MSG_TURN_SIGNAL_COMMAND,
+                                                values->table_ids ? AGV_ID_SET_HEADING : AGV_ID_SET_TABLE));
+    }
+}
+
+/** One step, with its placeholders filled in. @return where it ends */
+static const char *fill_in(const char *at, const campaign_values_t *values, char words[CAMPAIGN_WORDS_SIZE]) {
+    size_t used = 0u;
+
+    for (; (strchr("|/", *at) == NULL) && (used + 1u < CAMPAIGN_WORDS_SIZE); at++) {
+        if (*at != '$') {
+            words[used] = *at;
+            used++;
+        } else {
+            at++;
+            value_of(*at, values, &words[used], CAMPAIGN_WORDS_SIZE - used);
+            used += strlen(&words[used]);
+        }
+    }
+    words[used] = '\0';
+    return at;
+}
+
+size_t campaign_steps(const campaign_row_t *row, uint32_t alternative, uint32_t from_ms,
+                      const campaign_values_t *values, campaign_step_t *steps) {
+    const char *at = row->steps;
+    size_t count = 0u;
+
+    for (; alternative > 0u; alternative--) {
+        at = strchr(at, '/') + 1;
+    }
+    while ((*at != '\0') && (*at != '/') && (count < CAMPAIGN_STEPS_MAX)) {
+        steps[count].at_ms = from_ms;
+        if (*at == '+') {
+            char *end = NULL;
+            steps[count].at_ms += (uint32_t)strtoul(at + 1, &end, 10);
+            at = end + 1;
+        }
+        at = fill_in(at, values, steps[count].words);
+        at += (*at == '|') ? 1 : 0;
+        count++;
+    }
+    return count;
+}

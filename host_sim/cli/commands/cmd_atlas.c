@@ -1,0 +1,80 @@
+/**
+ * @file cmd_atlas.c
+ * `host_sim atlas`: every ordered pair of faults on the simulated bus.
+ */
+#include "agv/names.h"
+#include "atlas/atlas_case.h"
+#include "atlas/atlas_run.h"
+#include "cli/commands/commands.h"
+#include "cli/options.h"
+#include "cli/random_options.h"
+
+/** The given options. */
+typedef struct {
+    const char *shard;
+    const char *first;
+    const char *second;
+    const char *results;
+    uint64_t show;
+} given_t;
+
+static options_result_t parse(int argc, char **argv, given_t *given) {
+    const option_t rows[] = {
+        OPTION_TEXT("--shard", "I/N", "only part I of N of the pairs (1/1)", &given->shard),
+        OPTION_TEXT("--first", "FAULT", "only pairs with this first fault", &given->first),
+        OPTION_TEXT("--second", "FAULT", "only pairs with this second fault", &given->second),
+        OPTION_TEXT("--results", "FILE", "what came of each pair and of its halves, as JSON Lines", &given->results),
+        OPTION_NUMBER("--show", "CASE", "only print this case, as a scenario", &given->show, 0, UINT32_MAX - 1u),
+    };
+    const option_group_t groups[] = {{.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]}};
+    static const option_example_t examples[] = {
+        {"host_sim atlas --first EMERGENCY_STOP --second BUS_OFF", "one pair, in every state and topology"},
+        {"host_sim atlas --shard 1/64 --results atlas-1.jsonl", "a part of all pairs"},
+    };
+    const option_syntax_t syntax = {
+        .usage = "atlas [OPTION]...",
+        .summary =
+            "Cause every ordered pair of faults on the simulated bus, in every state in which the first one can\n"
+            "happen, in both topologies, 0, 1, 50 and 500 ms apart, and compare each pair with its halves.\n",
+        .groups = groups,
+        .group_count = sizeof groups / sizeof groups[0],
+        .examples = examples,
+        .example_count = sizeof examples / sizeof examples[0],
+    };
+    size_t operands = 0u; /* none: they are refused */
+    return options_parse(&syntax, argc, argv, &operands);
+}
+
+static bool take_fault(const char *option, const char *name, const campaign_row_t **row) {
+    if (name == NULL) {
+        return true;
+    }
+    const agv_fault_t fault = agv_fault_from_name(name);
+    if (fault == AGV_FAULT_NONE) {
+        return report("%s: unknown fault '%s'; docs/faults.md lists them", option, name);
+    }
+    *row = campaign_row(fault);
+    return (*row != NULL) || report("%s: the atlas cannot cause %s", option, name);
+}
+
+static bool make_request(const given_t *given, atlas_request_t *request) {
+    *request = (atlas_request_t){.shard = 1u, .shards = 1u, .results = given->results};
+    request->shows_one = given->show != OPTION_NOT_GIVEN;
+    if (request->shows_one && (given->show >= atlas_case_count())) {
+        return report("--show: the cases are 0 to %u", (unsigned)atlas_case_count() - 1u);
+    }
+    request->one = request->shows_one ? (uint32_t)given->show : 0u;
+    return ((given->shard == NULL) || random_options_shard(given->shard, &request->shard, &request->shards)) &&
+           take_fault("--first", given->first, &request->first) &&
+           take_fault("--second", given->second, &request->second);
+}
+
+status_t cmd_atlas(int argc, char **argv) {
+    given_t given = {.show = OPTION_NOT_GIVEN};
+    atlas_request_t request;
+    const options_result_t parsed = parse(argc, argv, &given);
+    if (parsed != OPTIONS_GO) {
+        return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
+    }
+    return make_request(&given, &request) ? atlas_run(&request) : STATUS_UNUSABLE;
+}

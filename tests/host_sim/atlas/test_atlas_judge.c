@@ -1,0 +1,81 @@
+/* Pairs that are as strong as their worse half, and one for each way to be weaker. */
+#include "agv/state.h"
+#include "atlas/atlas_judge.h"
+#include "unity.h"
+
+/* The halves: the first trips after 50 ms and stops after 2 s, the second after 300 ms and 3 s. */
+static const atlas_outcome_t FIRST = {
+    .ready = true, .state = AGV_STATE_SAFE, .safe_us = 50000, .open_us = ATLAS_NEVER, .stop_us = 2000000};
+static const atlas_outcome_t SECOND = {
+    .ready = true, .state = AGV_STATE_TRIPPED, .safe_us = 300000, .open_us = 800000, .stop_us = 3000000};
+static atlas_outcome_t pair;
+
+void setUp(void) {
+    pair = SECOND;
+}
+
+void tearDown(void) {
+}
+
+static void expect(atlas_weakness_t weakness) {
+    TEST_ASSERT_EQUAL(weakness, atlas_judge(&pair, &FIRST, &SECOND));
+    TEST_ASSERT_EQUAL(weakness, atlas_judge(&pair, &SECOND, &FIRST));
+}
+
+void test_as_the_worse_half_is_sound(void) {
+    expect(ATLAS_SOUND);
+}
+
+void test_what_the_wire_may_add_is_sound(void) {
+    pair.safe_us = 330000;
+    pair.stop_us = 3200000;
+    expect(ATLAS_SOUND);
+}
+
+void test_a_later_frame(void) {
+    pair.safe_us = 330001;
+    expect(ATLAS_LATE_FRAME);
+    pair.safe_us = ATLAS_NEVER;
+    expect(ATLAS_LATE_FRAME);
+}
+
+void test_the_output_may_stay_closed_if_it_does_in_a_half(void) {
+    pair.open_us = ATLAS_NEVER;
+    expect(ATLAS_SOUND);
+}
+
+void test_a_later_output_than_in_both_halves(void) {
+    pair.open_us = ATLAS_NEVER;
+    TEST_ASSERT_EQUAL(ATLAS_LATE_OUTPUT, atlas_judge(&pair, &SECOND, &SECOND));
+}
+
+void test_a_later_stop(void) {
+    pair.stop_us = 3200001;
+    expect(ATLAS_LATE_STOP);
+}
+
+void test_a_pair_that_drives_on(void) {
+    pair.state = AGV_STATE_ACTIVE;
+    expect(ATLAS_NOT_LATCHED);
+}
+
+void test_init_with_an_open_output_is_as_good_as_tripped(void) {
+    pair.state = AGV_STATE_INIT;
+    pair.open_us = 0;
+    expect(ATLAS_SOUND);
+    pair.open_us = 1;
+    expect(ATLAS_NOT_LATCHED);
+}
+
+void test_a_hazard_that_neither_half_has(void) {
+    atlas_outcome_t half = FIRST;
+    pair.hazard = HAZARD_STEERING;
+    expect(ATLAS_HAZARD);
+    half.hazard = HAZARD_NOT_STOPPING;
+    TEST_ASSERT_EQUAL(ATLAS_SOUND, atlas_judge(&pair, &half, &SECOND));
+}
+
+void test_a_case_that_did_not_begin_as_planned(void) {
+    pair.ready = false;
+    expect(ATLAS_NOT_READY);
+}
