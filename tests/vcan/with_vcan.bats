@@ -1,11 +1,12 @@
 #!/usr/bin/env bats
-# scripts/with-vcan: the virtual machine, and the network namespace; the latter inside the machine where the kernel that
-# runs the tests has no CAN. A start of the machine takes seconds, so a test looks at many things.
+# scripts/with-vcan: a virtual machine (WAY in the environment: qemu or uml), and the network namespace; the latter inside the
+# machine where the kernel that runs the tests has no CAN. A start of the machine takes seconds, so a test looks at many things.
 # shellcheck disable=SC2016 # what stands in '' is for the shell in there
 load ../support/helper
 
 setup_file() {
-    "$ROOT/scripts/with-vcan" --quiet --vm true # a new machine fetches its kernel, and says so
+    export WAY=${WAY:-qemu}
+    "$ROOT/scripts/with-vcan" --quiet --with "$WAY" true # a new machine fetches its kernel, and says so
 }
 
 setup() {
@@ -43,10 +44,10 @@ await_end() {
 
 # Run a command where there is a namespace for with-vcan: here, or in the machine.
 with_can_kernel() {
-    if "$vcan" --quiet --namespace true 2>/dev/null; then
+    if "$vcan" --quiet --with namespace true 2>/dev/null; then
         "$@"
     else
-        "$vcan" --quiet --vm "$@"
+        "$vcan" --quiet --with "$WAY" "$@"
     fi
 }
 
@@ -73,12 +74,12 @@ surroundings() {
     look_around
     # shellcheck disable=SC1003 # a backslash, and no quote
     local arguments=('' 'a b' "it's" $'new\nline' '*' '$HOME' '\' $'\xff') status=0
-    "$vcan" --vm bash -c '. ./look; cat file; echo inside >>file; echo made >new; date +%s.%N >first
+    "$vcan" --with "$WAY" bash -c '. ./look; cat file; echo inside >>file; echo made >new; date +%s.%N >first
         sleep 1; date +%s.%N >now; echo told >/dev/stderr; exit 77' bash "${arguments[@]}" >../out 2>../err || status=$?
     [[ $status -eq 77 ]]
     same "$(surroundings "${arguments[@]}"; echo outside)" "$(<../out)"
     same 'told' "$(sed 1d ../err)"
-    [[ $(head -n 1 ../err) == "with-vcan: virtual machine (qemu-system-"*", tcg), kernel "*", vcan0 vcan1 vcan2" ]]
+    [[ $(head -n 1 ../err) =~ ^"with-vcan: "("virtual machine (qemu-system-"[^,]+", tcg)"|user-mode-linux)", kernel "[^,]+", vcan0 vcan1 vcan2"$ ]]
     same $'outside\ninside\nmade' "$(cat file new)"
     # A second is a second, and the clock is right: the host has stamped the file when the first time was written.
     paste now <(stat -c %.9Y first now)
@@ -88,11 +89,11 @@ surroundings() {
 
 @test "machine: bytes in and out, 5 MB of them; outputs that are one keep their order; nothing outlives the command" {
     head -c 5000000 /dev/urandom >bytes
-    "$vcan" --vm --quiet bash -c 'sleep 1000 & tee >(sha256sum >&2)' <bytes >out 2>err
+    "$vcan" --with "$WAY" --quiet bash -c 'sleep 1000 & tee >(sha256sum >&2)' <bytes >out 2>err
     cmp bytes out
     [[ $(cut -d ' ' -f 1 err) == "$(sha256sum <bytes | cut -d ' ' -f 1)" ]]
 
-    "$vcan" --vm --quiet bash -c 'for i in {1..200}; do echo $i; echo $i >&2; done; kill -KILL $$' </dev/null >both 2>&1 ||
+    "$vcan" --with "$WAY" --quiet bash -c 'for i in {1..200}; do echo $i; echo $i >&2; done; kill -KILL $$' </dev/null >both 2>&1 ||
         status=$?
     [[ ${status:-0} -eq 137 ]]
     same "$(for i in {1..200}; do printf '%s\n%s\n' "$i" "$i"; done)" "$(<both)"
@@ -100,12 +101,12 @@ surroundings() {
 
 @test "machine: standard input and output can be opened anew, also where the other end is gone" {
     local statuses
-    printf 'one\ntwo\n' | timeout 60 "$vcan" --vm --quiet bash -c 'sleep 1; read -r line </dev/stdin; echo "$line" >/dev/stdout
+    printf 'one\ntwo\n' | timeout 60 "$vcan" --with "$WAY" --quiet bash -c 'sleep 1; read -r line </dev/stdin; echo "$line" >/dev/stdout
         cat /dev/stdin; echo end; exit 7' >out || status=$?
     [[ ${status:-0} -eq 7 ]]
     same $'one\ntwo\nend' "$(<out)"
 
-    timeout 60 "$vcan" --vm --quiet bash -c 'trap "" PIPE; echo first; until ! echo more 2>/dev/null; do sleep 0.1; done
+    timeout 60 "$vcan" --with "$WAY" --quiet bash -c 'trap "" PIPE; echo first; until ! echo more 2>/dev/null; do sleep 0.1; done
         : >/dev/stdout; : </dev/stdin; exit 8' </dev/null | head -n 1 >out
     statuses=${PIPESTATUS[*]}
     [[ $statuses == "8 0" && $(<out) == first ]]
@@ -113,16 +114,16 @@ surroundings() {
 
 @test "machine: what is closed at the start reads as empty, and swallows what is written" {
     local status=0
-    timeout 60 "$vcan" --vm sh -c 'cat; echo end; echo error >&2; exit 5' <&- >out 2>&- || status=$?
+    timeout 60 "$vcan" --with "$WAY" sh -c 'cat; echo end; echo error >&2; exit 5' <&- >out 2>&- || status=$?
     [[ $status -eq 5 ]]
     same end "$(<out)"
-    echo input | timeout 60 "$vcan" --vm --quiet sh -c 'echo output; cat >&2' 2>err >&-
+    echo input | timeout 60 "$vcan" --with "$WAY" --quiet sh -c 'echo output; cat >&2' 2>err >&-
     same input "$(<err)"
 }
 
 @test "machine: output that cannot be written: one line that says why, and 125" {
     local status=0
-    "$vcan" --vm --quiet sh -c 'echo lost; echo told >&2' </dev/null >/dev/full 2>err || status=$?
+    "$vcan" --with "$WAY" --quiet sh -c 'echo lost; echo told >&2' </dev/null >/dev/full 2>err || status=$?
     [[ $status -eq 125 ]]
     same $'told\nwith-vcan: standard output: No space left on device' "$(sort err)"
 }
@@ -132,14 +133,14 @@ surroundings() {
     mkdir gone
     cd gone
     rmdir ../gone
-    run "$BATS_TEST_TMPDIR/link" --vm true
+    run "$BATS_TEST_TMPDIR/link" --with "$WAY" true
     echo "$output"
     [[ $status -eq 125 && ${lines[-1]} == "with-vcan: the working directory no longer exists" ]]
     [[ $(grep -vc '^shell-init: ' <<<"$output") -eq 1 ]] # bash says that before it looks at the script
 
     folder=$(mktemp -d -p /dev/shm)
     cd "$folder"
-    run "$BATS_TEST_TMPDIR/link" --vm --quiet true
+    run "$BATS_TEST_TMPDIR/link" --with "$WAY" --quiet true
     rmdir "$folder"
     [[ $status -eq 125 ]]
     same "with-vcan: no way into $folder in the virtual machine, whose /run, /dev, /proc and /sys are its own" "$output"
@@ -158,10 +159,10 @@ folders() {
 
 @test "machine: signals reach the command, which ends as it likes; killed, with-vcan takes its machine along" {
     export TMPDIR=$PWD
-    env --default-signal=INT "$vcan" --vm --quiet bash -c 'trap "echo term; : >told" TERM; trap "echo int; exit 9" INT
+    env --default-signal=INT "$vcan" --with "$WAY" --quiet bash -c 'trap "echo term; : >told" TERM; trap "echo int; exit 9" INT
         : >started; while :; do sleep 0.1; done' </dev/null >out 3>&- &
     local command=$! victim machine status=0
-    "$vcan" --vm --quiet sh -c ': >running; sleep 1000' </dev/null 3>&- &
+    "$vcan" --with "$WAY" --quiet sh -c ': >running; sleep 1000' </dev/null 3>&- &
     victim=$!
     await started
     kill -TERM $command
@@ -172,7 +173,7 @@ folders() {
     same $'term\nint' "$(<out)"
 
     await running
-    machine=$(pgrep -P $victim qemu-system)
+    machine=$(pgrep -P $victim 'qemu-system|linux.uml')
     start_only
     [[ $(folders) -eq 1 ]]
     kill -KILL $victim
@@ -183,7 +184,7 @@ folders() {
 
 @test "machine: nobody reads its output any more: the command learns it, and ends" {
     local statuses
-    "$vcan" --vm --quiet yes </dev/null 2>err | head -n 2 >out
+    "$vcan" --with "$WAY" --quiet yes </dev/null 2>err | head -n 2 >out
     statuses=${PIPESTATUS[*]}
     [[ $statuses == "141 0" ]]
     same $'y\ny' "$(<out)"
@@ -202,7 +203,7 @@ folders() {
     echo secret >secret
     chmod 600 secret
     mkdir -m 777 shared
-    run "${as_user[@]}" "$vcan" --vm --quiet bash -c 'id -u; id -G; echo mine >shared/mine; cat secret
+    run "${as_user[@]}" "$vcan" --with "$WAY" --quiet bash -c 'id -u; id -G; echo mine >shared/mine; cat secret
         tc qdisc add dev vcan0 root netem limit 5 && ip link set vcan0 down && echo changed >/dev/stdout; exit 4'
     same $'1234\n1234 1235\ncat: secret: Permission denied\nchanged' "$output"
     [[ $status -eq 4 ]]
@@ -214,19 +215,19 @@ folders() {
     awk 'BEGIN { for (i = 0; i < 300; i++) printf "(%.6f) vcan0 %03X#%016X\n", 1 + i / 1000, i, i * i }' >sent
     look_around
     cat >inside <<'END'
-PLANTED=$'two\nlines' "$vcan" --namespace bash look 'a b' $'new\nline' >out 2>err
-"$vcan" --namespace --quiet bash -c 'exit 77'
+PLANTED=$'two\nlines' "$vcan" --with namespace bash look 'a b' $'new\nline' >out 2>err
+"$vcan" --with namespace --quiet bash -c 'exit 77'
 echo $? >statuses
-"$vcan" --namespace --quiet bash -c 'kill -KILL $$'
+"$vcan" --with namespace --quiet bash -c 'kill -KILL $$'
 echo $? >>statuses
-"$vcan" --namespace --quiet bash -c 'trap "exit 9" TERM; : >started; while :; do sleep 0.1; done' &
+"$vcan" --with namespace --quiet bash -c 'trap "exit 9" TERM; : >started; while :; do sleep 0.1; done' &
 until [[ -e started ]]; do sleep 0.1; done
 kill -TERM $!
 wait $!
 echo $? >>statuses
-setpriv --reuid 1234 --regid 1234 --clear-groups "$vcan" --namespace --quiet \
+setpriv --reuid 1234 --regid 1234 --clear-groups "$vcan" --with namespace --quiet \
     bash -c 'id -u && ip link set vcan2 down && ip -br link' >user 2>&1
-"$vcan" --namespace --quiet bash -c '
+"$vcan" --with namespace --quiet bash -c '
     candump -L -n 300 -T 5000 vcan0 >received & candump -L -n 1 -T 5000 vcan1 >other &
     sleep 0.5
     canplayer -I sent
@@ -255,34 +256,48 @@ only() {
     done
 }
 
-@test "neither way: one line that says why and what to do, and 125" {
+@test "no way: one line that says why and what to do, and 125" {
     only setpriv ip
     printf '#!/bin/sh\necho "unshare failed: Operation not permitted" >&2\nexit 1\n' >bin/unshare
     chmod +x bin/unshare
     run env PATH="$PWD/bin" "$vcan" true
     echo "$output"
     [[ $status -eq 125 && ${#lines[@]} -eq 1 ]]
-    [[ $output == "with-vcan: no vcan in a network namespace of kernel "*"(unshare failed: Operation not permitted); and no \
-virtual machine: 'qemu-system-"*"' is missing: run 'scripts/install-deps vcan'" ]]
-    run env PATH="$PWD/bin" "$vcan" --vm true
-    [[ $status -eq 125 && ${#lines[@]} -eq 1 && $output == "with-vcan: no virtual machine: 'qemu-system-"* ]]
-    run env PATH="$PWD/bin" "$vcan" --namespace true
-    [[ $status -eq 125 && ${#lines[@]} -eq 1 && $output == "with-vcan: no vcan in a network namespace"* ]]
+    [[ $output == "with-vcan: namespace: no vcan in kernel "*" (unshare failed: Operation not permitted); uml: 'linux.uml' is \
+missing: run 'scripts/install-deps vcan'; qemu: 'qemu-system-"*"' is missing: run 'scripts/install-deps vcan'" ]]
+    run env PATH="$PWD/bin" "$vcan" --with qemu true
+    [[ $status -eq 125 && ${#lines[@]} -eq 1 && $output == "with-vcan: qemu: 'qemu-system-"* ]]
+    run env PATH="$PWD/bin" "$vcan" --with namespace true
+    [[ $status -eq 125 && ${#lines[@]} -eq 1 && $output == "with-vcan: namespace: no vcan in kernel "* ]]
 }
 
-@test "machine: no network to fetch the kernel: it says so, 125, and leaves nothing half-made" {
+@test "qemu: no network to fetch the kernel: it says so, 125, and leaves nothing half-made" {
     mkdir project
     cp -r "$ROOT/scripts" project/
     mkdir bin
     printf '#!/bin/sh\necho "E: Could not resolve host" >&2\nexit 100\n' | tee bin/apt-get >bin/apt-cache
     chmod +x bin/apt-*
-    run env PATH="$PWD/bin:$PATH" project/scripts/with-vcan --vm true
+    run env PATH="$PWD/bin:$PATH" project/scripts/with-vcan --with qemu true
     echo "$output"
     [[ $status -eq 125 && ${lines[1]} == *"no kernel could be downloaded (apt-get: Could not resolve host): is there a network?" ]]
     same '.lock' "$(ls -A project/build/vcan)"
 }
 
-@test "machine: a kernel that panics: one line with its last words, and 125" {
+@test "uml: one that crashes at its start: it says so, and goes on to QEMU with the whole input; asked for, 125" {
+    mkdir bin
+    printf '#!/bin/sh\n[ "$1" = --version ] || kill -SEGV $$\n' >bin/linux.uml
+    chmod +x bin/linux.uml
+    run env PATH="$PWD/bin:$PATH" "$vcan" --with uml true
+    [[ $status -eq 125 && ${lines[1]} == "with-vcan: the virtual machine ended before the command did" ]]
+    if ! "$vcan" --quiet --with namespace true 2>/dev/null; then # which would come first
+        echo input | PATH=$PWD/bin:$PATH "$vcan" sh -c 'cat; exit 7' >out 2>err || status=$?
+        [[ $status -eq 7 && $(<out) == input ]]
+        cat err
+        [[ $(sed -n 2p err) == "with-vcan: user-mode-linux does not start here: "* && $(sed -n 3p err) == *"(qemu-system-"* ]]
+    fi
+}
+
+@test "qemu: a kernel that panics: one line with its last words, and 125" {
     mkdir broken empty
     cp "$("$ROOT/scripts/tools/vcan/prepare-machine.sh")/kernel" broken/
     (cd empty && echo . | cpio --create --format=newc --quiet) >broken/initramfs
@@ -296,7 +311,7 @@ virtual machine: 'qemu-system-"*"' is missing: run 'scripts/install-deps vcan'" 
 @test "options: help, and in one line what is wrong" {
     run "$vcan" --help
     [[ $status -eq 0 && $output == "usage: with-vcan "* ]]
-    for bad in "" --slow "--quiet --" "--vm --namespace true"; do
+    for bad in "" --slow "--quiet --" "--with xen true" "--with uml --with qemu true" "--with uml --steady true"; do
         # shellcheck disable=SC2086 # several words
         run "$vcan" $bad
         [[ $status -eq 2 && ${#lines[@]} -eq 1 && $output == "with-vcan: "* ]]

@@ -3,8 +3,9 @@
 # The first process of with-vcan's virtual machine, once the host's files are its root: run the command.
 #
 # The session, a folder of the host at /run/with-vcan/session, holds `settings` and `command`. The bytes of the command go
-# through the virtio ports stdin, stdout and stderr. Over the port control come `signal NAME` and `closed STREAM`; `ready`
-# goes, and in the end `exit STATUS STDOUT-BYTES STDERR-BYTES`: with-vcan ends the machine once it has got so many.
+# through the ports stdin, stdout and stderr: of virtio in QEMU, serial lines in user-mode-linux. Over the port control come
+# `signal NAME` and `closed STREAM`; `ready` goes, and in the end `exit STATUS STDOUT-BYTES STDERR-BYTES`: with-vcan ends the
+# machine once it has got so many.
 here=/run/with-vcan
 export PATH=$here/bin
 session=$here/session
@@ -43,8 +44,14 @@ raise_interfaces() {
     done
 }
 
-# port NAME: its device, which appears a little after the module was loaded
+# port NAME: its device; one of virtio appears a little after the module was loaded
 port() {
+    case $1:${machine:?} in
+    stdin:uml) echo /dev/ttyS0 && return ;;
+    stdout:uml) echo /dev/ttyS1 && return ;;
+    stderr:uml) echo /dev/ttyS2 && return ;;
+    control:uml) echo /dev/ttyS3 && return ;;
+    esac
     for _ in $(seq 200); do
         for folder in /sys/class/virtio-ports/*; do
             if [ "$(cat "$folder/name")" = "$1" ]; then
@@ -60,6 +67,16 @@ port() {
 copy_out() {
     # shellcheck disable=SC2016 # for the inner shell: its number becomes that of tee
     sh -c 'echo $$ >"$0.copier"; exec tee "$1"' "$streams/$1" "$(port "$1")" | wc -c >"$streams/$1.bytes"
+}
+
+# The input of the command. A serial line has no end of file: pieces come, each after a line with its size, at the end 0.
+copy_in() {
+    if [ "$machine" != uml ]; then
+        exec cat "$(port stdin)"
+    fi
+    while read -r size && [ "$size" -gt 0 ]; do
+        /usr/bin/dd bs=64k count="$size" iflag=count_bytes,fullblock status=none || return
+    done <"$(port stdin)"
 }
 
 # A terminal sends the first three to a whole group; the others are meant for one.
@@ -98,7 +115,7 @@ run_command() {
 # The command has pipes of its own, so it gets SIGPIPE when nobody reads any more. They have no name: to open /dev/stdin or
 # /dev/stdout anew would wait for ever for the other end of one that has. Nobody waits for the input to end.
 run_in_pipes() {
-    (cat "$(port stdin)" &) |
+    (copy_in &) |
         if [ -n "$merged" ]; then
             run_command 4>&1 5>&1 | copy_out stdout
         else
@@ -113,15 +130,20 @@ bytes_of() {
 mount_rest
 # shellcheck source=/dev/null
 . $session/settings || fail "the session cannot be read"
-set_clock &
-clock=$!
+clock=
+if [ "$machine" = qemu ]; then # user-mode-linux has the clock of the host
+    set_clock &
+    clock=$!
+fi
 hostname "${host_name:?}"
 # shellcheck disable=SC2154,SC2086 # a list of words
 raise_interfaces $interfaces
 exec 3<>"$(port control)" || fail "the control port is missing"
 mkdir $streams
 listen <&3 &
-wait $clock
+if [ -n "$clock" ]; then
+    wait $clock
+fi
 run_in_pipes
 sync
 echo "exit $(cat $streams/status) $(bytes_of stdout) $(bytes_of stderr)" >&3

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Run a command in the virtual machine of with-vcan, whose kernel is prepared; pass on bytes, signals and exit status.
+"""Run a command in a virtual machine of with-vcan; pass on bytes, signals and exit status.
 
-QEMU is given one end of a socket pair for each of stdin, stdout, stderr and control; scripts/tools/vcan/guest.sh is at the other
-end of them, and says how control is used.
+The machine is user-mode-linux, or QEMU with a kernel that is prepared. It is given one end of a socket pair for each of stdin,
+stdout, stderr and control; scripts/tools/vcan/guest.sh is at the other end of them, and says how control is used.
 """
 import argparse
 import fcntl
@@ -19,7 +19,8 @@ import tempfile
 import threading
 
 FAILED = 125
-BOOT_TIMEOUT_S = 300
+QEMU_START_S = 300
+UML_START_S = 60
 MEMORY_MB = 768
 STREAMS = ("stdin", "stdout", "stderr", "control")
 OUTPUTS = {"stdout": "standard output", "stderr": "standard error"}
@@ -34,21 +35,31 @@ class Failure(Exception):
     pass
 
 
+class NotStarted(Failure):
+    pass
+
+
 class Machine:
-    """QEMU with its channels; ends when this process ends, however that comes."""
+    """A virtual machine with its channels; ends when this process ends, however that comes."""
 
     def __init__(self, args, session):
         self.session = session
+        self.runs = False
         self.channels = {}
         ends = {}
         for name in STREAMS:
             self.channels[name], ends[name] = socket.socketpair()
-        command = ["setpriv", "--pdeathsig", "KILL", *qemu_command(args, ends)]
-        with open(session / "qemu.log", "wb") as log:
-            self.process = subprocess.Popen(command, cwd=session, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
+        command = uml_command(args, session, ends) if args.uml else qemu_command(args, ends)
+        environment = {"PATH": os.defpath}  # without a TMPDIR, user-mode-linux has its memory in /dev/shm
+        with open(session / "machine.log", "wb") as log:
+            self.process = subprocess.Popen(command, cwd=session, stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=environment,
                                             pass_fds=[end.fileno() for end in ends.values()], start_new_session=True)
         for end in ends.values():
             end.close()
+        # Not by --pdeathsig: the processes of user-mode-linux would go on, outside of it, once their kernel is gone.
+        self.guard = subprocess.Popen(["sh", "-c", "read -r line; kill -KILL -$0", str(self.process.pid)],
+                                      stdin=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True)
+        threading.Thread(target=self.reap, daemon=True).start()
         self.control = self.channels["control"].makefile("r")
 
     def tell(self, line):
@@ -57,20 +68,25 @@ class Machine:
         except OSError:
             pass  # it has ended, or has not taken the last hundred signals either
 
-    def hear(self, timeout=None):
-        """The words of the next line."""
+    def start(self, timeout):
         self.channels["control"].settimeout(timeout)
         try:
-            words = self.control.readline().split()
+            self.hear()
         except TimeoutError:
-            raise Failure(f"the virtual machine has not started within {timeout} s{self.last_words()}") from None
-        if not words:
-            raise Failure(f"the virtual machine ended before the command did{self.last_words()}")
+            raise NotStarted(f"the virtual machine has not started within {timeout} s{self.last_words()}") from None
         self.channels["control"].settimeout(None)
+        self.runs = True
+
+    def hear(self):
+        """The words of the next line."""
+        words = self.control.readline().split()
+        if not words:
+            kind = Failure if self.runs else NotStarted
+            raise kind(f"the virtual machine ended before the command did{self.last_words()}")
         return words
 
     def last_words(self):
-        for name in ("console.log", "qemu.log"):
+        for name in ("console.log", "machine.log"):
             path = self.session / name
             lines = path.read_text(errors="replace").split("\n") if path.exists() else []
             telling = [line.strip() for line in lines if "with-vcan: " in line or "Kernel panic" in line]
@@ -79,8 +95,18 @@ class Machine:
                 return f" ({lines[0]})"
         return ""
 
+    def reap(self):
+        """When the kernel has ended, by itself or killed, so do the processes that it ran."""
+        try:
+            os.waitid(os.P_PID, self.process.pid, os.WEXITED | os.WNOWAIT)
+            os.killpg(self.process.pid, signal.SIGKILL)
+        except (ChildProcessError, ProcessLookupError):
+            pass  # end() was faster
+
     def end(self):
-        self.process.kill()
+        os.killpg(self.process.pid, signal.SIGKILL)
+        self.guard.kill()
+        self.guard.wait()
         self.process.wait()
 
 
@@ -134,13 +160,16 @@ def write_all(file, data):
         data = data[os.write(file, data):]
 
 
-def copy_input(channel):
+def copy_input(channel, has_sizes):
+    """has_sizes: each piece follows a line with its size, and 0 is the end."""
     try:
         while not os.isatty(0) and (data := os.read(0, 65536)):
-            channel.sendall(data)
+            channel.sendall((b"%d\n" % len(data) if has_sizes else b"") + data)
+        channel.sendall(b"0\n" if has_sizes else b"")
     except OSError:
         pass  # there is no input, or no command any more that reads it
-    channel.shutdown(socket.SHUT_WR)
+    if not has_sizes:
+        channel.shutdown(socket.SHUT_WR)
 
 
 def qemu_command(args, ends):
@@ -159,6 +188,21 @@ def qemu_command(args, ends):
         command += ["-chardev", f"socket,id={name},fd={end.fileno()}",
                     "-device", f"virtserialport,chardev={name},name={name}"]
     return command
+
+
+def uml_memory_mb():
+    """It lies in /dev/shm, which is small in some containers: a machine that runs out of it crashes."""
+    folder = os.statvfs("/dev/shm")
+    free_mb = folder.f_bavail * folder.f_frsize >> 20
+    if free_mb < MEMORY_MB:
+        raise NotStarted(f"/dev/shm has only {free_mb} MB, and it needs {MEMORY_MB}")
+    return MEMORY_MB
+
+
+def uml_command(args, session, ends):
+    return [args.uml, f"mem={uml_memory_mb()}M", "rootfstype=hostfs", "rw", f'init="{session}/init-uml.sh"', "quiet", "loglevel=3",
+            f"uml_dir={session}/", "con=null", "con0=null,fd:1",
+            *(f"ssl{number}=fd:{ends[name].fileno()}" for number, name in enumerate(STREAMS))]
 
 
 def quoted(words):
@@ -218,9 +262,11 @@ def remove_left():
 
 
 def write_session(session, args, merged):
-    shutil.copy(pathlib.Path(__file__).with_name("guest.sh"), session / "guest")
+    pieces = pathlib.Path(__file__).parent
+    shutil.copy(pieces / "guest.sh", session / "guest")
+    shutil.copy(pieces / "init-uml.sh", session)
     (session / "command").write_bytes(command_script(args.command))
-    settings = {"interfaces": args.interfaces, "owner": f"{os.geteuid()}:{os.getegid()}",
+    settings = {"machine": "uml" if args.uml else "qemu", "interfaces": args.interfaces, "owner": f"{os.geteuid()}:{os.getegid()}",
                 "host_name": platform.node() or "localhost", "merged": "yes" if merged else ""}
     (session / "settings").write_text("".join(f"{name}={shlex.quote(value)}\n" for name, value in settings.items()))
 
@@ -250,9 +296,9 @@ def run(args, session):
             signal.signal(number, on_signal)
     try:
         outputs = [Output(machine, "stdout", 1), Output(machine, "stderr", 2)]
-        threading.Thread(target=copy_input, args=(machine.channels["stdin"],), daemon=True).start()
-        machine.hear(BOOT_TIMEOUT_S)
+        machine.start(UML_START_S if args.uml else QEMU_START_S)
         running = True
+        threading.Thread(target=copy_input, args=(machine.channels["stdin"], args.uml), daemon=True).start()
         _, status, *counts = machine.hear()
         for output, count in zip(outputs, counts):
             output.wait_for(int(count))
@@ -265,9 +311,12 @@ def run(args, session):
 
 def main():
     parser = argparse.ArgumentParser(description="a part of with-vcan")
-    parser.add_argument("--kernel", type=pathlib.Path, required=True)
-    parser.add_argument("--qemu", required=True)
-    parser.add_argument("--accel", required=True)
+    parser.add_argument("--uml", help="the program of user-mode-linux; else QEMU")
+    parser.add_argument("--otherwise", metavar="WITH-VCAN", help="to take this one's place where user-mode-linux does not start")
+    parser.add_argument("--quiet", action="store_true")
+    parser.add_argument("--kernel", type=pathlib.Path)
+    parser.add_argument("--qemu")
+    parser.add_argument("--accel")
     parser.add_argument("--interfaces", required=True)
     parser.add_argument("--steady", action="store_true")
     parser.add_argument("command", nargs="+")
@@ -276,6 +325,13 @@ def main():
     try:
         with tempfile.TemporaryDirectory(prefix="with-vcan.") as session:
             status = run(args, pathlib.Path(session))
+    except NotStarted as failure:
+        if args.otherwise:
+            if not args.quiet:
+                say(f"user-mode-linux does not start here: {failure}")
+            os.execv(args.otherwise, [args.otherwise, "--with", "qemu", *(["--quiet"] if args.quiet else []), "--", *args.command])
+        say(failure)
+        status = FAILED
     except Failure as failure:
         say(failure)
         status = FAILED
