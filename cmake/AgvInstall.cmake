@@ -1,5 +1,5 @@
-# `cmake --install`: host_sim with its scenarios and pages (component host), and the core for other programs with their own
-# port (component dev): headers, library, CMake package. `cpack` makes a Debian package of each.
+# `cmake --install`: host_sim with its scenarios, pages, man pages and completion (component host), and the core for other
+# programs with their own port (component dev): headers, library, CMake package. `cpack` makes a Debian package of each.
 set(CMAKE_INSTALL_DOCDIR share/doc/agv-supervisor)
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -11,6 +11,22 @@ install(DIRECTORY ${PROJECT_BINARY_DIR}/schemas DESTINATION ${CMAKE_INSTALL_DATA
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT host)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_SOURCE_DIR}/LICENSE
   DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT host)
+
+# Man pages and completion; Debian has its own folder for the completion of packages in zsh.
+set(AGV_ZSH_COMPLETION zsh/site-functions CACHE STRING "Folder below share for the completion in zsh")
+if(NOT CMAKE_CROSSCOMPILING)
+  set(shell_files ${PROJECT_BINARY_DIR}/shell-files)
+  add_custom_command(
+    OUTPUT ${shell_files}/man/man1
+    COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:host_sim> -DTO=${shell_files} -DZSH=${AGV_ZSH_COMPLETION}
+      -P ${CMAKE_CURRENT_LIST_DIR}/write-shell-files.cmake
+    DEPENDS host_sim ${CMAKE_CURRENT_LIST_DIR}/write-shell-files.cmake
+    COMMENT "Writing man pages and completion"
+    VERBATIM
+  )
+  add_custom_target(host_sim_shell_files ALL DEPENDS ${shell_files}/man/man1)
+  install(DIRECTORY ${shell_files}/ DESTINATION ${CMAKE_INSTALL_DATADIR} COMPONENT host)
+endif()
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/AgvSupervisor)
 install(TARGETS agv_core EXPORT AgvSupervisor ARCHIVE COMPONENT dev)

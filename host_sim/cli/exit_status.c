@@ -1,8 +1,10 @@
 #include "cli/exit_status.h"
 
 const exit_status_t EXIT_STATUSES[] = {
-    {STATUS_OK, "It ran. A trip is no failure, unless --fail-on-trip is given."},
-    {STATUS_UNMET, "It ran, and what was expected did not happen: see the help of the command."},
+    {STATUS_OK, "It ran. A trip of the supervisor is no failure, unless --fail-on-trip is given."},
+    {STATUS_UNMET,
+     "It ran, and found what should not be: an expectation that failed, a broken invariant, a hazard, a trip with "
+     "--fail-on-trip."},
     {STATUS_UNUSABLE, "It could not run, or stopped early. One line on standard error says why."},
 };
 

@@ -16,6 +16,16 @@ setup_file() {
     "$PREFIX/bin/host_sim" demo --scenario park_at_standstill
 }
 
+@test "man pages and completion are installed, and the examples of the help are found" {
+    compgen -G "$PREFIX/share/man/man1/host_sim.1*"
+    [ "$(find "$PREFIX/share/man/man1" -name 'host_sim-*' | wc -l)" -eq "$("$PREFIX/bin/host_sim" --help | grep -c '^  [a-z]* \{2,\}')" ]
+    [ -s "$PREFIX/share/bash-completion/completions/host_sim" ]
+    [ -s "$PREFIX/share/zsh/site-functions/_host_sim" ]
+    [ -s "$PREFIX/share/fish/vendor_completions.d/host_sim.fish" ]
+    run "$PREFIX/bin/host_sim" help replay
+    [[ $output == *"host_sim replay $PREFIX/share/agv-supervisor/examples/ai-stops.log"* ]]
+}
+
 @test "a scenario that is not shipped is named with the installed folder" {
     run "$PREFIX/bin/host_sim" demo --scenario none
     [ "$status" -eq 2 ]

@@ -34,7 +34,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     };
     static const option_example_t examples[] = {
         {"host_sim soak --hours 1 --seed 1", "an hour"},
-        {"host_sim soak --hours 365d --seed 1 --shard 1/5000", "a small part of a year"},
+        {"host_sim soak --hours 30d --seed 1 --shard 1/1000", "a small part of a month"},
     };
     const option_syntax_t syntax = {
         .usage = "soak --hours N --seed S [OPTION]...",

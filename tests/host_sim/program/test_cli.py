@@ -1,5 +1,6 @@
 """The program's front: commands, options, exit status, one line for what is wrong."""
 import os
+import pathlib
 import re
 import subprocess
 import unittest
@@ -7,6 +8,7 @@ import unittest
 import hostsim
 import traffic
 
+EXAMPLE = pathlib.Path(__file__).parents[3] / "host_sim/examples/ai-stops.log"
 LOG = traffic.log(traffic.frames(100))
 
 
@@ -76,6 +78,51 @@ class Front(hostsim.Case):
     def test_a_very_long_name_is_one_line(self):
         self.assert_refused(self.run_program("x" * 100000), "'xxx")
         self.assert_refused(self.run_program("replay", "x" * 100000), "xxx")
+
+
+class Examples(hostsim.Case):
+    """The examples of every help work as they stand, one after the other, in any folder."""
+    ON_A_BUS = {"monitor": 1, "run": 2, "scenario": 1, "survey": 1, "vehicle": 2}
+
+    def examples(self, command, **options):
+        text = self.run_good("help", command, **options).stdout
+        return re.findall(r"^  (host_sim .*)\n      \S", text.split("\nExamples:\n")[1], re.MULTILINE)
+
+    def test_each_one(self):
+        path = "%s:%s" % (os.path.dirname(hostsim.PROGRAM), os.environ["PATH"])
+        for command in Front.commands(self):
+            examples = self.examples(command)
+            self.assertIn(len(examples), (2, 3), command)
+            alone = [line for line in examples if "--can" not in line and "--bus" not in line]
+            self.assertEqual(len(examples) - len(alone), self.ON_A_BUS.get(command, 0), command)
+            if command == "man":
+                alone.remove("host_sim man replay | man -l -")  # test_man_pages
+            for line in alone:
+                done = subprocess.run(["sh", "-c", line], cwd=self.folder, env={**os.environ, "PATH": path}, check=False,
+                                      stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=300)
+                self.assertEqual(done.returncode, 0, line + "\n" + done.stderr.decode())
+
+    def test_files_are_named_as_one_would_type_them(self):
+        source = pathlib.Path(__file__).parents[3]
+        done = subprocess.run([hostsim.PROGRAM, "help", "replay"], cwd=source, stdout=subprocess.PIPE, check=True)
+        self.assertIn(b"\n  host_sim replay host_sim/examples/ai-stops.log\n", done.stdout)
+        self.assertIn("host_sim replay %s/host_sim/examples/ai-stops.log" % source, self.examples("replay"))
+
+
+class ExitStatus(hostsim.Case):
+    ROWS = {0: ("replay", EXAMPLE), 1: ("replay", "--fail-on-trip", EXAMPLE), 2: ("replay", "nofile")}
+
+    def test_the_table_is_the_same_everywhere_and_right(self):
+        printed = dict(re.findall(r"^  (\d)  (.*)$", self.run_good("--help").stdout, re.MULTILINE))
+        manual = (pathlib.Path(__file__).parents[3] / "docs/host-sim.md").read_text(encoding="utf-8")
+        self.assertEqual(printed, {status: means.replace("`", "")
+                                   for status, means in re.findall(r"^\| (\d) \| (.*) \|$", manual, re.MULTILINE)})
+        self.assertEqual({int(status) for status in printed}, set(self.ROWS))
+        for status, arguments in self.ROWS.items():
+            self.assertEqual(self.run_program(*arguments).status, status)
+        page = self.run_good("man").stdout.replace("\\-", "-")
+        for status, means in printed.items():
+            self.assertIn("\\fB%s\\fR\n%s\n" % (status, means), page)
 
 
 class Options(hostsim.Case):
