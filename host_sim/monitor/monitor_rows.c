@@ -2,39 +2,18 @@
 #include <string.h>
 
 #include "agv/names.h"
+#include "common/message_facts.h"
 #include "common/units.h"
 #include "monitor/monitor_internal.h"
-
-enum { NO_COUNTER = AGV_DLC };
-
-/** What the table of messages says of one. */
-typedef struct {
-    uint16_t deadline; /* the setting */
-    uint8_t counter;   /* index in the payload */
-    const char *sender;
-} message_t;
-
-static const message_t messages[AGV_MSG_COUNT] = {
-#define AGV_COMMAND(NAME, name, heading, table, cycle, deadline, fault, counter)                                       \
-    [AGV_MSG_##NAME] = {AGV_SETTING_##deadline, counter, "ai"},
-#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter)                                        \
-    [AGV_MSG_##NAME] = {AGV_SETTING_##deadline, counter, "vcu"},
-#include "agv/message_table.def"
-#undef AGV_COMMAND
-#undef AGV_STATUS
-};
-
-static bool is_of_eps(uint32_t message) {
-    return (message == (uint32_t)AGV_MSG_STEERING_STATUS) || (message == (uint32_t)AGV_MSG_EPS_STATUS) ||
-           (message == (uint32_t)AGV_MSG_STEERING_POSITION);
-}
 
 const char *monitor_sender(const monitor_t *monitor, const monitor_row_t *row) {
     const bool is_command = row->message < AGV_COMMAND_COUNT;
     if (is_command && monitor->given.is_gateway && (row->side == HAL_CAN_VEHICLE)) {
         return "supervisor"; /* it passes them on */
     }
-    return is_of_eps(row->message) ? "eps" : messages[row->message].sender;
+    static const char *const senders[] = {
+        [MESSAGE_FROM_AI] = "ai", [MESSAGE_FROM_VCU] = "vcu", [MESSAGE_FROM_EPS] = "eps"};
+    return senders[message_sender(row->message)];
 }
 
 static void add_row(monitor_t *monitor, const agv_ids_t *ids, hal_can_side_t side, uint32_t message) {
@@ -44,8 +23,8 @@ static void add_row(monitor_t *monitor, const agv_ids_t *ids, hal_can_side_t sid
                            .message = message,
                            .id = ids->of[message],
                            .gap_min_us = MONITOR_NO_GAP,
-                           .has_counter = messages[message].counter != (uint8_t)NO_COUNTER};
-    row->deadline_us = (uint32_t)agv_config_get(&monitor->config, messages[message].deadline) * US_PER_MS;
+                           .has_counter = message_counter_at(message) != MESSAGE_NO_COUNTER};
+    row->deadline_us = (uint32_t)agv_config_get(&monitor->config, message_deadline_setting(message)) * US_PER_MS;
     monitor->row_of[side][row->id] = (uint8_t)monitor->row_count;
 }
 
@@ -98,7 +77,7 @@ static void take_gap(monitor_row_t *row, uint64_t gap_us) {
 }
 
 static void take_counter(monitor_t *monitor, monitor_row_t *row, const uint8_t data[AGV_DLC], uint64_t t_us) {
-    const uint8_t counter = data[messages[row->message].counter];
+    const uint8_t counter = data[message_counter_at(row->message)];
     if ((row->count == 0u) || (counter != row->counter)) {
         if (row->is_stuck) {
             row->is_stuck = false;

@@ -4,7 +4,7 @@
 
 #include "common/units.h"
 #include "hal_sim/sim_hal.h"
-#include "logs/candump_line.h"
+#include "logs/error_frame.h"
 
 /** A longer leap of time is no silence of the bus, but a program that stood still, or a log with a hole. */
 #define LEAP_MAX_US (10u * (uint64_t)US_PER_S)
@@ -53,21 +53,6 @@ monitor_shadow_t *monitor_shadow_new(const agv_config_t *config, session_observe
     return shadow;
 }
 
-/** Let an error frame act on the simulated controller. */
-static void act_on_controller(monitor_shadow_t *shadow, hal_can_side_t side, const hal_can_frame_t *frame) {
-    const uint8_t details = ((frame->id & CANDUMP_ERROR_CONTROLLER) != 0u) ? frame->data[1] : 0u;
-    hal_can_status_t status;
-    if ((frame->id & CANDUMP_ERROR_BUS_OFF) != 0u) {
-        sim_hal_set_can_state(&shadow->hal, side, HAL_CAN_BUS_OFF);
-    } else if (((frame->id & CANDUMP_ERROR_RESTARTED) != 0u) || ((details & CANDUMP_CONTROLLER_ACTIVE) != 0u)) {
-        sim_hal_set_can_state(&shadow->hal, side, HAL_CAN_ERROR_ACTIVE);
-    }
-    hal_can_status(&shadow->hal, side, &status);
-    if ((status.state != HAL_CAN_BUS_OFF) && ((details & CANDUMP_CONTROLLER_PASSIVE) != 0u)) {
-        sim_hal_set_can_state(&shadow->hal, side, HAL_CAN_ERROR_PASSIVE);
-    }
-}
-
 static void run_ticks(monitor_shadow_t *shadow, uint64_t end_us) {
     while (shadow->next_ms * US_PER_MS < end_us) {
         sim_hal_set_now_ms(&shadow->hal, (uint32_t)shadow->next_ms);
@@ -96,7 +81,7 @@ void monitor_shadow_frame(monitor_shadow_t *shadow, hal_can_side_t side, const h
     received.time_us = (uint16_t)(t_us % US_PER_MS);
     sim_hal_set_now_ms(&shadow->hal, (uint32_t)t_ms);
     if (is_error) {
-        act_on_controller(shadow, side, frame);
+        error_frame_act(&shadow->hal, side, frame);
     }
     session_frame(&shadow->session, side, &received, t_ms);
 }

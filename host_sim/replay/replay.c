@@ -14,6 +14,7 @@
 #include "io/output.h"
 #include "io/store_file.h"
 #include "logs/candump_log.h"
+#include "logs/error_frame.h"
 #include "logs/sent_log.h"
 #include "replay/replay_heard.h"
 #include "replay/replay_text.h"
@@ -83,31 +84,6 @@ static bool run_ticks(replay_t *replay, uint64_t end_us) {
     return true;
 }
 
-/** Let an error frame act on the simulated controller. Bus-off lasts until the log shows its end. */
-static void act_on_controller(replay_t *replay, hal_can_side_t side, const hal_can_frame_t *frame) {
-    const uint8_t details = ((frame->id & CANDUMP_ERROR_CONTROLLER) != 0u) ? frame->data[1] : 0u;
-    if ((details & CANDUMP_CONTROLLER_RX_OVERFLOW) != 0u) {
-        sim_hal_add_overrun(&replay->hal, side);
-    }
-    if ((frame->id & CANDUMP_ERROR_BUS_OFF) != 0u) {
-        sim_hal_set_can_state(&replay->hal, side, HAL_CAN_BUS_OFF);
-        return;
-    }
-    if (((frame->id & CANDUMP_ERROR_RESTARTED) != 0u) || ((details & CANDUMP_CONTROLLER_ACTIVE) != 0u)) {
-        sim_hal_set_can_state(&replay->hal, side, HAL_CAN_ERROR_ACTIVE);
-    }
-    hal_can_status_t status;
-    hal_can_status(&replay->hal, side, &status);
-    if (status.state == HAL_CAN_BUS_OFF) {
-        return;
-    }
-    if ((details & CANDUMP_CONTROLLER_PASSIVE) != 0u) {
-        sim_hal_set_can_state(&replay->hal, side, HAL_CAN_ERROR_PASSIVE);
-    } else if ((details & CANDUMP_CONTROLLER_WARNING) != 0u) {
-        sim_hal_set_can_state(&replay->hal, side, HAL_CAN_ERROR_ACTIVE);
-    }
-}
-
 /** The side of a frame's interface. The first frame of the vehicle side also gives its name. */
 static hal_can_side_t side_of(replay_t *replay, const candump_record_t *record) {
     const char *ai = replay->request->ai_interface;
@@ -135,7 +111,7 @@ static void hand_over(replay_t *replay, candump_record_t *record, uint64_t t_ms)
         timeline_received(&replay->timeline, side, &record->frame, t_us);
     }
     if ((record->frame.flags & HAL_CAN_ERROR) != 0u) {
-        act_on_controller(replay, side, &record->frame);
+        error_frame_act(&replay->hal, side, &record->frame);
     }
     session_frame(&replay->session, side, &record->frame, t_ms);
 }

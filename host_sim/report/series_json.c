@@ -22,22 +22,21 @@ static const char *const lane_names[SERIES_LANES] = {
 };
 
 static json_t *messages_json(const series_t *series) {
-    static const char *const senders[] = {"AI computer", "VCU", "EPS"};
+    static const char *const senders[] = {
+        [MESSAGE_FROM_AI] = "AI computer", [MESSAGE_FROM_VCU] = "VCU", [MESSAGE_FROM_EPS] = "EPS"};
     json_t *messages = json_array();
     for (uint32_t i = 0u; i < (uint32_t)AGV_MSG_COUNT; i++) {
         const agv_message_t message = (agv_message_t)i;
         const bool is_command = i < AGV_COMMAND_COUNT;
-        const bool is_of_eps = (message == AGV_MSG_STEERING_STATUS) || (message == AGV_MSG_EPS_STATUS) ||
-                               (message == AGV_MSG_STEERING_POSITION);
         char id[8];
         (void)snprintf(id, sizeof id, "%03X", (unsigned)series->reader.ids.of[i]);
         json_t *object = json_object();
         json_put(object, "name", json_text(agv_message_name(message)));
         json_put(object, "id", json_string(id));
-        json_put(object, "sender", json_string(senders[is_command ? 0 : (is_of_eps ? 2 : 1)]));
+        json_put(object, "sender", json_string(senders[message_sender(i)]));
         json_put(object, "cycle", json_uint(agv_message_cycle_ms(i)));
-        json_put(object, "deadline", json_uint(series_deadline_ms(&series->reader.config, message)));
-        json_put(object, "heartbeat", json_boolean(series_counter_at(message) >= 0));
+        json_put(object, "deadline", json_uint(agv_config_get(&series->reader.config, message_deadline_setting(i))));
+        json_put(object, "heartbeat", json_boolean(message_counter_at(i) != MESSAGE_NO_COUNTER));
         json_put(object, "command", json_boolean(is_command));
         json_put(object, "heard", json_boolean(series->ages.heard[i]));
         json_add(messages, object);

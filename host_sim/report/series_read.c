@@ -4,31 +4,7 @@
 
 #include "agv/codec.h"
 
-enum { NO_COUNTER = -1, MM_S_PER_1000_M_PER_H = 278 };
-
-int series_counter_at(agv_message_t message) {
-    static const int8_t at[AGV_MSG_COUNT] = {
-#define AGV_COMMAND(NAME, name, heading, table, cycle, deadline, fault, counter) [AGV_MSG_##NAME] = (counter),
-#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter) [AGV_MSG_##NAME] = (counter),
-#include "agv/message_table.def"
-#undef AGV_COMMAND
-#undef AGV_STATUS
-    };
-    return at[message];
-}
-
-uint16_t series_deadline_ms(const agv_config_t *config, agv_message_t message) {
-    static const uint16_t settings[AGV_MSG_COUNT] = {
-#define AGV_COMMAND(NAME, name, heading, table, cycle, deadline, fault, counter)                                       \
-    [AGV_MSG_##NAME] = AGV_SETTING_##deadline,
-#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter)                                        \
-    [AGV_MSG_##NAME] = AGV_SETTING_##deadline,
-#include "agv/message_table.def"
-#undef AGV_COMMAND
-#undef AGV_STATUS
-    };
-    return agv_config_get(config, settings[message]);
-}
+enum { MM_S_PER_1000_M_PER_H = 278 };
 
 void series_reader_init(series_reader_t *reader, const agv_config_t *config) {
     reader->config = *config;
@@ -110,25 +86,14 @@ series_values_t series_values(agv_message_t message, const series_frame_t *frame
     return values;
 }
 
-static bool counts_up(const agv_config_t *config, agv_message_t message) {
-    const uint16_t choice = (message == AGV_MSG_VEHICLE_STATUS)    ? config->vcu_counter
-                            : (message == AGV_MSG_STEERING_STATUS) ? config->eps_counter
-                                                                   : config->ai_counter;
-    return choice == (uint16_t)AGV_COUNTER_INCREMENTS;
-}
-
 /** Whether a frame renews its message. */
 static bool renews(const series_reader_t *reader, series_ages_t *ages, agv_message_t message,
                    const series_frame_t *frame) {
-    const int at = series_counter_at(message);
-    if (at < 0) {
+    const uint8_t at = message_counter_at(message);
+    if (at == MESSAGE_NO_COUNTER) {
         return ((uint32_t)message >= AGV_COMMAND_COUNT) || agv_value_is_valid((uint32_t)message, frame->data);
     }
-    const uint8_t before = ages->counter[message];
-    const uint8_t now = frame->data[at];
-    ages->counter[message] = now;
-    const bool counted = counts_up(&reader->config, message) ? (now == (uint8_t)(before + 1u)) : (now != before);
-    return counted || !ages->heard[message];
+    return message_beats(&ages->counters[message], &reader->config, message, frame->data[at]);
 }
 
 bool series_ages_frame(const series_reader_t *reader, series_ages_t *ages, agv_message_t message,

@@ -10,6 +10,7 @@
 
 #include "agv/config.h"
 #include "agv/protocol.h"
+#include "common/message_facts.h"
 #include "report/series.h"
 
 /** The signals. The unit is that of the name. */
@@ -39,7 +40,7 @@ typedef struct {
 /** Time since the last frame of each message. */
 typedef struct {
     uint64_t last_us[AGV_MSG_COUNT];
-    uint8_t counter[AGV_MSG_COUNT];
+    message_beat_t counters[AGV_MSG_COUNT];
     bool heard[AGV_MSG_COUNT];
 } series_ages_t;
 
@@ -68,11 +69,5 @@ series_values_t series_values(agv_message_t message, const series_frame_t *frame
  */
 bool series_ages_frame(const series_reader_t *reader, series_ages_t *ages, agv_message_t message,
                        const series_frame_t *frame, uint64_t *gap_us);
-
-/** The index of a message's alive counter in data[]; -1: it has none. */
-int series_counter_at(agv_message_t message);
-
-/** The setting that limits the silence of a message, as its value in ms. */
-uint16_t series_deadline_ms(const agv_config_t *config, agv_message_t message);
 
 #endif

@@ -2,19 +2,11 @@
 
 #include <string.h>
 
+#include "common/message_facts.h"
 #include "common/units.h"
 
 enum { MEDIAN = 500, CYCLE_LOWEST_PCT = 60, CYCLE_HIGHEST_PCT = 160, PERCENT = 100 };
-enum { NO_COUNTER = 0xFF, FIRST_BYTE = 0, REPEATS_PER_STEP = 2 };
-
-/** The index of the alive counter in data[] of each message. */
-static const uint8_t counters_at[AGV_MSG_COUNT] = {
-#define AGV_COMMAND AGV_STATUS
-#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter) [AGV_MSG_##NAME] = (counter),
-#include "agv/message_table.def"
-#undef AGV_COMMAND
-#undef AGV_STATUS
-};
+enum { FIRST_BYTE = 0, REPEATS_PER_STEP = 2 };
 
 static bool has_cycle(const traffic_id_t *entry, uint32_t message) {
     const uint64_t cycle_us = (uint64_t)agv_message_cycle_ms(message) * US_PER_MS;
@@ -25,10 +17,10 @@ static bool has_cycle(const traffic_id_t *entry, uint32_t message) {
 
 /** Whether the byte at which a message has its alive counter counts. */
 static bool has_counter(const traffic_id_t *entry, uint32_t message) {
-    if (counters_at[message] == (uint8_t)NO_COUNTER) {
+    if (message_counter_at(message) == MESSAGE_NO_COUNTER) {
         return true;
     }
-    const counter_use_t *use = &entry->candidates[(counters_at[message] == (uint8_t)FIRST_BYTE) ? 0 : 1];
+    const counter_use_t *use = &entry->candidates[(message_counter_at(message) == (uint8_t)FIRST_BYTE) ? 0 : 1];
     return (use->steps + use->other_steps) * REPEATS_PER_STEP >= use->frames;
 }
 
@@ -36,7 +28,7 @@ static bool has_counter(const traffic_id_t *entry, uint32_t message) {
 static bool has_content(const traffic_id_t *entry, uint32_t message) {
     uint32_t bits = 0u;
     for (uint32_t i = 0u; i < AGV_DLC; i++) {
-        bits |= (i == counters_at[message]) ? 0u : entry->bits_ever[i];
+        bits |= (i == message_counter_at(message)) ? 0u : entry->bits_ever[i];
     }
     return bits != 0u;
 }

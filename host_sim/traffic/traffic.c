@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "agv/codec.h"
+#include "common/message_facts.h"
 #include "traffic/fits.h"
 #include "traffic/watch.h"
 
@@ -13,18 +14,13 @@ enum {
     SLOTS_29_BITS = 1024,
     IDS_MAX = HAL_CAN_SIDES * (IDS_11_BITS + IDS_29_BITS)
 };
-enum { NO_COUNTER = 0xFF, MESSAGE_UNKNOWN = 0xFF, FIRST_COUNTER_AT = 0, LAST_COUNTER_AT = 7, CANDIDATES = 2 };
+enum { STATUS_COUNTER_AT = 3, MESSAGE_UNKNOWN = 0xFF, FIRST_COUNTER_AT = 0, LAST_COUNTER_AT = 7, CANDIDATES = 2 };
 enum { BITS_PER_WORD = 32, WORD_CHOICES = 256 };
 
-/** The index of the alive counter in data[] of each message. */
-static const uint8_t counters_at[SIGNALS_MESSAGES] = {
-#define AGV_COMMAND AGV_STATUS
-#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter) [AGV_MSG_##NAME] = (counter),
-#include "agv/message_table.def"
-#undef AGV_COMMAND
-#undef AGV_STATUS
-    [AGV_MSG_COUNT] = 3 /* of the status frame */
-};
+/** The index of the alive counter in data[] of a message or the status frame. */
+static uint8_t counter_at(uint32_t message) {
+    return (message < (uint32_t)AGV_MSG_COUNT) ? message_counter_at(message) : (uint8_t)STATUS_COUNTER_AT;
+}
 
 struct traffic {
     agv_config_t config;
@@ -89,7 +85,7 @@ static bool furnish(const traffic_t *traffic, traffic_id_t *entry) {
     }
     entry->ranges = calloc(SIGNALS_MAX, sizeof *entry->ranges);
     bool good = entry->ranges != NULL;
-    if (counters_at[entry->message] != (uint8_t)NO_COUNTER) {
+    if (counter_at(entry->message) != MESSAGE_NO_COUNTER) {
         entry->counter = calloc(1u, sizeof *entry->counter);
         good = good && (entry->counter != NULL);
     }
@@ -220,7 +216,7 @@ static void take_known(traffic_t *traffic, traffic_id_t *entry, const hal_can_fr
     }
     bool restarts = (message >= AGV_COMMAND_COUNT) || agv_value_is_valid(message, frame->data);
     if (entry->counter != NULL) {
-        const counter_step_t step = counter_use_add(entry->counter, frame->data[counters_at[message]], t_us);
+        const counter_step_t step = counter_use_add(entry->counter, frame->data[counter_at(message)], t_us);
         restarts = is_heartbeat(traffic, message, step);
     }
     if ((entry->watch != NULL) && restarts) {

@@ -1,28 +1,15 @@
 #include "traffic/watch.h"
 
+#include "common/message_facts.h"
 #include "common/units.h"
-
-/** The setting of each message's deadline, and when it counts. */
-static const struct {
-    uint16_t setting;
-    traffic_when_t when;
-} deadlines[AGV_MSG_COUNT] = {
-#define AGV_COMMAND(NAME, name, heading, table, cycle, deadline, fault, counter)                                       \
-    [AGV_MSG_##NAME] = {AGV_SETTING_##deadline,                                                                        \
-                        (AGV_MSG_##NAME == AGV_MSG_TURN_SIGNAL_COMMAND) ? TRAFFIC_ALWAYS : TRAFFIC_ENGAGED},
-#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter)                                        \
-    [AGV_MSG_##NAME] = {AGV_SETTING_##deadline, TRAFFIC_ALWAYS},
-#include "agv/message_table.def"
-#undef AGV_COMMAND
-#undef AGV_STATUS
-};
 
 bool watch_init(traffic_watch_t *watch, const agv_config_t *config, uint32_t message) {
     if (message >= (uint32_t)AGV_MSG_COUNT) {
         return false;
     }
-    watch->when = deadlines[message].when;
-    watch->setting = deadlines[message].setting;
+    const bool is_command = (message < AGV_COMMAND_COUNT) && (message != (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND);
+    watch->when = is_command ? TRAFFIC_ENGAGED : TRAFFIC_ALWAYS;
+    watch->setting = message_deadline_setting(message);
     watch->deadline_ms = agv_config_get(config, watch->setting);
     return true;
 }

@@ -8,19 +8,6 @@
 
 enum { RECENT_FRAMES = 6, ERROR_FRAME_US = 20000 };
 
-static const uint16_t silence_settings[AGV_MSG_COUNT] = {
-#define AGV_COMMAND AGV_STATUS
-#define AGV_STATUS(NAME, name, heading, table, cycle, deadline, fault, counter)                                        \
-    [AGV_MSG_##NAME] = AGV_SETTING_##deadline,
-#include "agv/message_table.def"
-#undef AGV_COMMAND
-#undef AGV_STATUS
-};
-
-uint16_t why_silence_setting(agv_message_t message) {
-    return silence_settings[message];
-}
-
 void why_show(why_trip_t *trip, const why_evidence_t *evidence) {
     if ((evidence == NULL) || (evidence->t_us == WHY_NEVER) || (trip->evidence_count == (size_t)WHY_EVIDENCE_MAX)) {
         return;

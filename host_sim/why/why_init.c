@@ -11,7 +11,7 @@
 enum { CHECK_EVERY_US = 10000, FIRST_FRAMES_US = 200000 };
 
 static uint64_t deadline_us(const why_t *why, agv_message_t number) {
-    return ((uint64_t)agv_config_get(&why->config, why_silence_setting(number)) + 1u) * US_PER_MS;
+    return ((uint64_t)agv_config_get(&why->config, message_deadline_setting(number)) + 1u) * US_PER_MS;
 }
 
 /** Whether a heartbeat that INIT waits for beats. */

@@ -7,6 +7,7 @@
 #define HOST_SIM_WHY_INTERNAL_H
 
 #include "agv/recorder.h"
+#include "common/message_facts.h"
 #include "why/why.h"
 
 enum { WHY_HISTORY = 8, WHY_ENGAGEMENTS = 4, WHY_TRIPS_MAX = 1000, WHY_MISSING_BITS = 11 };
@@ -17,8 +18,7 @@ typedef struct {
     uint32_t count;                      /**< of all frames */
     uint64_t last_us;                    /**< of the last one; WHY_NEVER */
     uint64_t beat_us;                    /**< of the last one that restarted the deadline; WHY_NEVER */
-    uint8_t counter;                     /**< alive counter of the last one */
-    uint8_t steps_needed;                /**< right steps until an incrementing counter counts as changed again */
+    message_beat_t counter;              /**< its alive counter */
     bool repeats;                        /**< since `first_repeat` its counter did not change */
     why_evidence_t beat;                 /**< the frame of beat_us */
     why_evidence_t first_repeat;
@@ -163,9 +163,6 @@ void why_init_start(why_t *why);
 void why_init_check(why_t *why, uint64_t t_us);
 void why_init_end(why_t *why, uint64_t t_us);
 /** @} */
-
-/** The setting that limits the silence of a message. */
-uint16_t why_silence_setting(agv_message_t message);
 
 /** Add a frame to the evidence, if there is room and it is not there yet. */
 void why_show(why_trip_t *trip, const why_evidence_t *evidence);

@@ -83,7 +83,8 @@ void why_intruder_command(why_t *why, agv_message_t command, const why_evidence_
     }
     const uint64_t gap_us = frame->t_us - before->t_us;
     const uint64_t half_us = ((uint64_t)agv_message_cycle_ms(command) * US_PER_MS) / 2u;
-    const uint64_t silence_us = ((uint64_t)agv_config_get(&why->config, why_silence_setting(command)) + 1u) * US_PER_MS;
+    const uint64_t silence_us =
+        ((uint64_t)agv_config_get(&why->config, message_deadline_setting(command)) + 1u) * US_PER_MS;
     if (gap_us >= silence_us) {
         score->value = 0u;
         score->bad = false;

@@ -262,7 +262,7 @@ static void say_no_beat(text_t *text, const why_t *why, agv_message_t number) {
     if (message->count == 0u) {
         text_add(text, "%03Xh never heard", id);
     } else if (message->repeats) {
-        text_add(text, "alive counter of %03Xh stuck at %u", id, message->counter);
+        text_add(text, "alive counter of %03Xh stuck at %u", id, message->counter.value);
     } else {
         text_add(text, "%03Xh last heard at ", id);
         why_words_time(text, message->last_us);
@@ -290,7 +290,7 @@ static void say_no_messages(text_t *text, const why_t *why, bool heard) {
         const why_message_t *message = &why->messages[i];
         const uint64_t age_us = why->now_us - ((message->count > 0u) ? message->last_us : 0u);
         const bool late =
-            age_us > (uint64_t)agv_config_get(&why->config, why_silence_setting((agv_message_t)i)) * US_PER_MS;
+            age_us > (uint64_t)agv_config_get(&why->config, message_deadline_setting((uint32_t)i)) * US_PER_MS;
         if ((heard == (message->count > 0u)) && (!heard || late)) {
             text_add(text, "%s%03Xh", between, why->ids.of[i]);
             between = ", ";

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#define SCRATCH_TEXT_MAX 65536u
+#define SCRATCH_TEXT_MAX 262144u
 
 /* Make the folder, and keep standard error in it. For setUp(). */
 void scratch_open(void);

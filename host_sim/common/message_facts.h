@@ -1,0 +1,39 @@
+/**
+ * @file message_facts.h
+ * What the table of the messages (agv/message_table.def) says of each: its sender, its alive counter, its deadline.
+ *
+ * A message is an agv_message_t below AGV_MSG_COUNT.
+ */
+#ifndef HOST_SIM_MESSAGE_FACTS_H
+#define HOST_SIM_MESSAGE_FACTS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "agv/config.h"
+#include "agv/protocol.h"
+
+/** As the place of an alive counter: the message has none. */
+#define MESSAGE_NO_COUNTER 0xFFu
+
+/** Who sends a message. */
+typedef enum { MESSAGE_FROM_AI, MESSAGE_FROM_VCU, MESSAGE_FROM_EPS } message_sender_t;
+message_sender_t message_sender(uint32_t message);
+
+/** The index of the alive counter in data[]; MESSAGE_NO_COUNTER. */
+uint8_t message_counter_at(uint32_t message);
+
+/** The setting (AGV_SETTING_*) that limits its silence. */
+uint16_t message_deadline_setting(uint32_t message);
+
+/** The alive counter of a message, as the supervisor follows it (SUP-3). Begin with all zero. */
+typedef struct {
+    uint8_t value;        /**< of the last frame */
+    uint8_t steps_needed; /**< right steps until an incrementing counter counts as changed again */
+    bool is_heard;
+} message_beat_t;
+
+/** Take a frame's counter. @return whether it restarts the deadline of the heartbeat */
+bool message_beats(message_beat_t *beat, const agv_config_t *config, uint32_t message, uint8_t value);
+
+#endif
