@@ -215,12 +215,14 @@ class Faults(canbus.Case):
     def test_lines_without_end_do_not_stop_the_vehicle(self):
         bus = self.bus()
         with subprocess.Popen(["yes", "vcu run_counter"], stdout=subprocess.PIPE) as lines:
-            vehicle = self.start("vehicle", "--can", "vcan0", "--manual", stdin=lines.stdout)
-            bus.wait_for(0x363)
-            bus.forget()
-            self.assertGreater(len(canbus.of(bus.listen(0.5), 0x363)), 25)
-            self.assertEqual(vehicle.end(), 0)
-            lines.kill()
+            try:
+                vehicle = self.start("vehicle", "--can", "vcan0", "--manual", stdin=lines.stdout)
+                bus.wait_for(0x363)
+                bus.forget()
+                self.assertGreater(len(canbus.of(bus.listen(0.5), 0x363)), 25)
+                self.assertEqual(vehicle.end(), 0)
+            finally:
+                lines.kill()  # it would be waited for
 
     def test_standard_input_may_be_a_file(self):
         bus = self.bus()
