@@ -56,6 +56,22 @@ bool atlas_case_get(uint32_t number, atlas_case_t *pair) {
            has_topology(pair->second, pair->gateway) && has_state(pair->first, pair->state) && may_follow(pair);
 }
 
+static bool silences(const campaign_row_t *row) {
+    static const agv_fault_t faults[] = {AGV_FAULT_MEMORY_CORRUPTED, AGV_FAULT_SUPERVISOR_RESET,
+                                         AGV_FAULT_STEP_OVERRUN,     AGV_FAULT_BUS_OFF,
+                                         AGV_FAULT_TX_STALLED,       AGV_FAULT_STORE_INVALID};
+    for (size_t i = 0u; i < sizeof faults / sizeof faults[0]; i++) {
+        if (row->fault == faults[i]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool atlas_case_is_silent_twice(const atlas_case_t *pair) {
+    return silences(pair->first) && silences(pair->second);
+}
+
 atlas_case_t atlas_case_half(const atlas_case_t *pair, bool second) {
     atlas_case_t half = *pair;
     if (second) {

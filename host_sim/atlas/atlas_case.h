@@ -40,6 +40,9 @@ uint32_t atlas_case_count(void);
  */
 bool atlas_case_get(uint32_t number, atlas_case_t *pair);
 
+/** Both faults take the supervisor from the bus for a while: it hangs, restarts, or its controller is off. */
+bool atlas_case_is_silent_twice(const atlas_case_t *pair);
+
 /** One fault of a pair alone, at the same time. */
 atlas_case_t atlas_case_half(const atlas_case_t *pair, bool second);
 

@@ -22,7 +22,11 @@ typedef enum {
 /** "LATE_FRAME"; "" for ATLAS_SOUND. */
 const char *atlas_weakness_name(atlas_weakness_t weakness);
 
-/** Judge a pair by its halves. */
-atlas_weakness_t atlas_judge(const atlas_outcome_t *pair, const atlas_outcome_t *first, const atlas_outcome_t *second);
+/**
+ * Judge a pair by its halves. Two exceptions: where both faults take the supervisor from the bus, the first safe command
+ * may come 400 ms later; and where the first one comes in INIT, the second one may be over before INIT has ended.
+ */
+atlas_weakness_t atlas_judge(const atlas_case_t *of, const atlas_outcome_t *pair, const atlas_outcome_t *first,
+                             const atlas_outcome_t *second);
 
 #endif

@@ -113,7 +113,7 @@ static bool run_one(atlas_t *atlas, uint32_t number, const atlas_case_t *pair) {
     if ((halves[0] == NULL) || (halves[1] == NULL) || !atlas_play(&atlas->play, pair)) {
         return false;
     }
-    const atlas_weakness_t weakness = atlas_judge(&atlas->play.outcome, halves[0], halves[1]);
+    const atlas_weakness_t weakness = atlas_judge(pair, &atlas->play.outcome, halves[0], halves[1]);
     atlas->cases++;
     if (weakness != ATLAS_SOUND) {
         show_weak(atlas, number, pair, weakness);

@@ -102,8 +102,9 @@ static void add_config(text_t *text, const atlas_case_t *pair) {
     }
 }
 
-static bool starts_late(const campaign_row_t *row) {
-    return (row != NULL) && ((row->flags & CAMPAIGN_LATE_AI) != 0u);
+/** On the shared bus: no collisions with the AI computer in INIT. */
+static bool starts_late(const atlas_case_t *pair, const campaign_row_t *row) {
+    return !pair->gateway && (row != NULL) && ((row->flags & CAMPAIGN_LATE_AI) != 0u);
 }
 
 /** The vehicle drives, or has tripped, before the first fault comes. */
@@ -151,7 +152,7 @@ void atlas_scenario_write(text_t *text, const atlas_case_t *pair) {
     add_top(text, pair);
     add_config(text, pair);
     text_add(text, "vehicle:\n  ai_starts_ms: %d\n",
-             (starts_late(pair->first) || starts_late(pair->second)) ? LATE_AI_MS : 0);
+             (starts_late(pair, pair->first) || starts_late(pair, pair->second)) ? LATE_AI_MS : 0);
     text_add(text, "duration_ms: %" PRIu32 "\n",
              FIRST_MS[pair->state] + ATLAS_DISTANCE_MS[ATLAS_DISTANCES - 1u] + (uint32_t)AFTERWARDS_MS);
     add_steps(text, pair);

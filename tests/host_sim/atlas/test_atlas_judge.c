@@ -9,17 +9,21 @@ static const atlas_outcome_t FIRST = {
 static const atlas_outcome_t SECOND = {
     .ready = true, .state = AGV_STATE_TRIPPED, .safe_us = 300000, .open_us = 800000, .stop_us = 3000000};
 static atlas_outcome_t pair;
+static atlas_case_t of;
 
 void setUp(void) {
     pair = SECOND;
+    of = (atlas_case_t){.first = campaign_row(AGV_FAULT_S_DRIVER_ALARM),
+                        .second = campaign_row(AGV_FAULT_BUS_OFF),
+                        .state = ATLAS_ACTIVE};
 }
 
 void tearDown(void) {
 }
 
 static void expect(atlas_weakness_t weakness) {
-    TEST_ASSERT_EQUAL(weakness, atlas_judge(&pair, &FIRST, &SECOND));
-    TEST_ASSERT_EQUAL(weakness, atlas_judge(&pair, &SECOND, &FIRST));
+    TEST_ASSERT_EQUAL(weakness, atlas_judge(&of, &pair, &FIRST, &SECOND));
+    TEST_ASSERT_EQUAL(weakness, atlas_judge(&of, &pair, &SECOND, &FIRST));
 }
 
 void test_as_the_worse_half_is_sound(void) {
@@ -39,6 +43,14 @@ void test_a_later_frame(void) {
     expect(ATLAS_LATE_FRAME);
 }
 
+void test_a_supervisor_that_is_silent_twice_may_take_400_ms_more(void) {
+    of.first = campaign_row(AGV_FAULT_STEP_OVERRUN);
+    pair.safe_us = 700000;
+    TEST_ASSERT_EQUAL(ATLAS_SOUND, atlas_judge(&of, &pair, &FIRST, &SECOND));
+    pair.safe_us = 700001;
+    TEST_ASSERT_EQUAL(ATLAS_LATE_FRAME, atlas_judge(&of, &pair, &FIRST, &SECOND));
+}
+
 void test_the_output_may_stay_closed_if_it_does_in_a_half(void) {
     pair.open_us = ATLAS_NEVER;
     expect(ATLAS_SOUND);
@@ -46,7 +58,7 @@ void test_the_output_may_stay_closed_if_it_does_in_a_half(void) {
 
 void test_a_later_output_than_in_both_halves(void) {
     pair.open_us = ATLAS_NEVER;
-    TEST_ASSERT_EQUAL(ATLAS_LATE_OUTPUT, atlas_judge(&pair, &SECOND, &SECOND));
+    TEST_ASSERT_EQUAL(ATLAS_LATE_OUTPUT, atlas_judge(&of, &pair, &SECOND, &SECOND));
 }
 
 void test_a_later_stop(void) {
@@ -55,6 +67,14 @@ void test_a_later_stop(void) {
 }
 
 void test_a_pair_that_drives_on(void) {
+    pair.state = AGV_STATE_ACTIVE;
+    expect(ATLAS_NOT_LATCHED);
+}
+
+void test_a_fault_may_be_over_before_init_has_ended(void) {
+    of.state = ATLAS_INIT;
+    pair.state = AGV_STATE_STANDBY;
+    expect(ATLAS_SOUND);
     pair.state = AGV_STATE_ACTIVE;
     expect(ATLAS_NOT_LATCHED);
 }
@@ -72,7 +92,7 @@ void test_a_hazard_that_neither_half_has(void) {
     pair.hazard = HAZARD_STEERING;
     expect(ATLAS_HAZARD);
     half.hazard = HAZARD_NOT_STOPPING;
-    TEST_ASSERT_EQUAL(ATLAS_SOUND, atlas_judge(&pair, &half, &SECOND));
+    TEST_ASSERT_EQUAL(ATLAS_SOUND, atlas_judge(&of, &pair, &half, &SECOND));
 }
 
 void test_a_case_that_did_not_begin_as_planned(void) {
