@@ -27,7 +27,7 @@ static bool is_count(const json_t *value) {
     return is_within(value, 1, INT64_MAX);
 }
 
-static bool is_natural(const json_t *value) {
+static bool is_not_negative(const json_t *value) {
     return is_within(value, 0, INT64_MAX);
 }
 
@@ -101,7 +101,7 @@ static bool is_break(const json_t *value) {
 }
 
 /** @return NULL: no error; else what is wrong, for a message */
-static const char *misfit(const json_t *object, const key_line_t *keys, size_t count) {
+static const char *find_error(const json_t *object, const key_line_t *keys, size_t count) {
     for (size_t i = 0u; i < count; i++) {
         if (!keys[i].fits(json_object_get(object, keys[i].name))) {
             return keys[i].name;
@@ -116,9 +116,9 @@ static int64_t number(const json_t *object, const char *key) {
 
 bool campaign_line_part(const char *path, size_t line, const json_t *object, campaign_part_t *part) {
     static const key_line_t keys[] = {{"campaign", is_format},      {"version", is_version},    {"runs", is_count},
-                                      {"seed", is_natural},         {"shard", is_shard},        {"shards", is_shard},
+                                      {"seed", is_not_negative},    {"shard", is_shard},        {"shards", is_shard},
                                       {"fault", is_caused_or_null}, {"newly_engaged", is_flag}, {"planted", is_null}};
-    const char *wrong = misfit(object, keys, sizeof keys / sizeof keys[0]);
+    const char *wrong = find_error(object, keys, sizeof keys / sizeof keys[0]);
     if (wrong == NULL) {
         *part = (campaign_part_t){.runs = (uint64_t)number(object, "runs"),
                                   .seed = (uint64_t)number(object, "seed"),
@@ -140,12 +140,12 @@ static int32_t time_of(const json_t *object, const char *key) {
 
 bool campaign_line_run(const char *path, size_t line, const json_t *object, uint64_t *run, campaign_sample_t *sample) {
     static const key_line_t keys[] = {
-        {"run", is_natural},    {"fault", is_caused},         {"topology", is_topology}, {"id_set", is_id_set},
-        {"bitrate", is_figure}, {"park_guard", is_flag},      {"park", is_park},         {"mode", is_mode},
-        {"bunched", is_flag},   {"tick_phase_us", is_figure}, {"cause_ms", is_figure},   {"bound_us", is_figure},
-        {"safe_us", is_time},   {"confirmed_us", is_time},    {"opened_us", is_time},    {"bus_off", is_flag},
-        {"reason", is_reason},  {"broken", is_break}};
-    const char *wrong = misfit(object, keys, sizeof keys / sizeof keys[0]);
+        {"run", is_not_negative}, {"fault", is_caused},         {"topology", is_topology}, {"id_set", is_id_set},
+        {"bitrate", is_figure},   {"park_guard", is_flag},      {"park", is_park},         {"mode", is_mode},
+        {"bunched", is_flag},     {"tick_phase_us", is_figure}, {"cause_ms", is_figure},   {"bound_us", is_figure},
+        {"safe_us", is_time},     {"confirmed_us", is_time},    {"opened_us", is_time},    {"bus_off", is_flag},
+        {"reason", is_reason},    {"broken", is_break}};
+    const char *wrong = find_error(object, keys, sizeof keys / sizeof keys[0]);
     if (wrong != NULL) {
         return report_at(path, line, "not a result of a campaign: its '%s' is missing or wrong", wrong);
     }

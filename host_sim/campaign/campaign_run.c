@@ -49,7 +49,7 @@ static bool after_tick(void *ctx, uint64_t t_ms) {
     return true;
 }
 
-static void play(campaign_t *campaign) {
+static void play_run(campaign_t *campaign) {
     const scenario_play_t play = {.scenario = &campaign->scenario,
                                   .until_ms = campaign->scenario.duration_ms,
                                   .after_tick = after_tick,
@@ -81,7 +81,7 @@ static bool run_one(campaign_t *campaign, uint64_t run) {
         const scenario_watch_t why = campaign_why_watch(&campaign->why);
         scenario_testbed_watch(&campaign->testbed, &why);
     }
-    play(campaign);
+    play_run(campaign);
     return true;
 }
 
@@ -106,7 +106,7 @@ static bool write_file(campaign_t *campaign) {
     return true;
 }
 
-static bool keep(campaign_t *campaign) {
+static bool store_result(campaign_t *campaign) {
     const campaign_sample_t sample = campaign_sample_of(&campaign->check);
 
     if (campaign->results.is_open) {
@@ -138,7 +138,7 @@ static bool run_all(campaign_t *campaign) {
 
     progress_begin(&progress, (mine > 0u) ? mine : 1u);
     for (uint64_t run = part->shard - 1u; good && (run < part->runs); run += part->shards) {
-        good = run_one(campaign, run) && keep(campaign);
+        good = run_one(campaign, run) && store_result(campaign);
         done++;
         progress_show(&progress, done, "runs");
         if (((done % LOOK_FOR_SIGNALS_EVERY) == 0u) && (interrupt_pending() || !outputs_work(campaign))) {

@@ -37,7 +37,7 @@ static void print_time(int32_t us) {
     }
 }
 
-static int32_t later(int32_t one, int32_t two) {
+static int32_t maximum(int32_t one, int32_t two) {
     return (one > two) ? one : two;
 }
 
@@ -52,8 +52,8 @@ static line_t sum_up(const campaign_samples_t *samples, size_t row, int32_t *saf
         }
         line.runs++;
         line.broken += sample->broken ? 1u : 0u;
-        line.confirmed_us = later(line.confirmed_us, sample->confirmed_us);
-        line.opened_us = later(line.opened_us, sample->opened_us);
+        line.confirmed_us = maximum(line.confirmed_us, sample->confirmed_us);
+        line.opened_us = maximum(line.opened_us, sample->opened_us);
         if (sample->safe_us != CAMPAIGN_NO_TIME) {
             safe[line.safe_count] = sample->safe_us;
             line.safe_count++;

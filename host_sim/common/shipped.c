@@ -62,7 +62,7 @@ static int compare(const void *a, const void *b) {
 }
 
 /** Add the scenarios of a folder. */
-static void collect(names_t *names, const char *path) {
+static void add_scenarios_of(names_t *names, const char *path) {
     DIR *folder = opendir(path);
     if (folder == NULL) {
         return;
@@ -88,7 +88,7 @@ static void collect_all(names_t *names) {
         char path[PATH_MAX];
         if ((topic->d_name[0] != '.') &&
             (snprintf(path, sizeof path, "%s/%s", shipped_scenarios(), topic->d_name) < (int)sizeof path)) {
-            collect(names, path);
+            add_scenarios_of(names, path);
         }
     }
     (void)closedir(topics);

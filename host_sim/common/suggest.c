@@ -10,16 +10,16 @@
 enum { LENGTH_MAX = 48, PREFIX_MIN = 3, LETTERS_OF_A_MISTAKE = 4 };
 
 /** A character for comparison. */
-static int folded(char character) {
+static int fold_case(char character) {
     return (character == '_') ? '-' : tolower((unsigned char)character);
 }
 
-static size_t least(size_t a, size_t b) {
+static size_t minimum(size_t a, size_t b) {
     return (a < b) ? a : b;
 }
 
 /** Skip dashes in front. */
-static const char *bare(const char *text, size_t *length) {
+static const char *skip_dashes(const char *text, size_t *length) {
     size_t dashes = 0u;
     while ((dashes < *length) && (text[dashes] == '-')) {
         dashes++;
@@ -39,11 +39,11 @@ static size_t distance_of(const char *a, size_t a_length, const char *b, size_t 
         const size_t *last = rows[(i + 2u) % 3u];
         row[0] = i;
         for (size_t j = 1u; j <= b_length; j++) {
-            const bool is_same = folded(a[i - 1u]) == folded(b[j - 1u]);
-            row[j] = least(least(last[j], row[j - 1u]) + 1u, last[j - 1u] + (is_same ? 0u : 1u));
-            if ((i > 1u) && (j > 1u) && (folded(a[i - 1u]) == folded(b[j - 2u])) &&
-                (folded(a[i - 2u]) == folded(b[j - 1u]))) {
-                row[j] = least(row[j], rows[(i + 1u) % 3u][j - 2u] + 1u);
+            const bool is_same = fold_case(a[i - 1u]) == fold_case(b[j - 1u]);
+            row[j] = minimum(minimum(last[j], row[j - 1u]) + 1u, last[j - 1u] + (is_same ? 0u : 1u));
+            if ((i > 1u) && (j > 1u) && (fold_case(a[i - 1u]) == fold_case(b[j - 2u])) &&
+                (fold_case(a[i - 2u]) == fold_case(b[j - 1u]))) {
+                row[j] = minimum(row[j], rows[(i + 1u) % 3u][j - 2u] + 1u);
             }
         }
     }
@@ -58,13 +58,13 @@ static bool begins_with(const char *word, size_t length, const char *written, si
 
 suggestion_t suggest_begin(const char *written, size_t length) {
     suggestion_t suggestion = {.written_length = length};
-    suggestion.written = bare(written, &suggestion.written_length);
+    suggestion.written = skip_dashes(written, &suggestion.written_length);
     return suggestion;
 }
 
 void suggest_offer(suggestion_t *suggestion, const char *word, size_t length) {
     size_t compared = length;
-    const char *letters = bare(word, &compared);
+    const char *letters = skip_dashes(word, &compared);
     const size_t written_length = suggestion->written_length;
     if ((compared > (size_t)LENGTH_MAX) || (written_length > (size_t)LENGTH_MAX)) {
         return;

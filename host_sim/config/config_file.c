@@ -28,7 +28,7 @@ typedef struct {
     const yaml_node_t *value;
 } reading_t;
 
-static bool wrong(const reading_t *reading, const char *reason) {
+static bool report_key(const reading_t *reading, const char *reason) {
     return report_at(reading->lines->path, reading->line, "%s: %s", reading->key, reason);
 }
 
@@ -53,7 +53,7 @@ static bool take_time(const reading_t *reading, const char *text, const agv_sett
     char problem[DURATION_PROBLEM_SIZE];
     const duration_result_t result = duration_read(text, DURATION_MS, info->lowest, info->highest, number);
     return (result == DURATION_OK) ||
-           wrong(reading, duration_problem(result, text, DURATION_MS, info->lowest, info->highest, problem));
+           report_key(reading, duration_problem(result, text, DURATION_MS, info->lowest, info->highest, problem));
 }
 
 /** Read a number by the kind of its setting. @return false: reported */
@@ -78,7 +78,7 @@ static bool take_number(const reading_t *reading, uint16_t setting, const agv_se
     const char *text = yaml_node_plain(reading->value);
     uint64_t number = 0u;
     if (text == NULL) {
-        return wrong(reading, "a number is written without quotes");
+        return report_key(reading, "a number is written without quotes");
     }
     if (!read_value(reading, text, info, &number)) {
         return false;
@@ -117,10 +117,11 @@ static bool note_line(const reading_t *reading, size_t *line) {
     *line = reading->line;
     const char *text = yaml_node_text(reading->value);
     if (text == NULL) {
-        return wrong(reading, (reading->value->type == YAML_SCALAR_NODE) ? "contains a NUL character"
-                                                                         : "needs one value, not a list or a mapping");
+        return report_key(reading, (reading->value->type == YAML_SCALAR_NODE)
+                                       ? "contains a NUL character"
+                                       : "needs one value, not a list or a mapping");
     }
-    return (text[0] != '\0') ? true : wrong(reading, "has no value");
+    return (text[0] != '\0') ? true : report_key(reading, "has no value");
 }
 
 static bool take_setting(const reading_t *reading, uint16_t setting) {
@@ -148,7 +149,7 @@ static bool take_class(const reading_t *reading, agv_fault_t fault) {
     return index >= 0;
 }
 
-static bool unknown(const reading_t *reading) {
+static bool report_unknown_key(const reading_t *reading) {
     char keys[AGV_FAULT_COUNT][CONFIG_CLASS_KEY_SIZE];
     char meant[SUGGEST_SIZE];
     suggestion_t suggestion = suggest_begin(reading->key, strlen(reading->key));
@@ -177,7 +178,7 @@ static bool take_pair(const reading_t *reading) {
             return take_class(reading, (agv_fault_t)fault);
         }
     }
-    return unknown(reading);
+    return report_unknown_key(reading);
 }
 
 bool config_read_mapping(yaml_document_t *document, const yaml_node_t *mapping, agv_config_t *config,
@@ -220,7 +221,7 @@ bool config_file_load(const char *path, agv_config_t *config, config_lines_t *li
     return good;
 }
 
-static bool blame(const config_lines_t *lines, size_t line, const char *key, const char *reason) {
+static bool report_setting(const config_lines_t *lines, size_t line, const char *key, const char *reason) {
     if ((lines->path == NULL) || (line == 0u)) {
         return report("%s: %s", key, reason);
     }
@@ -237,7 +238,8 @@ static bool blame_twice(const agv_config_t *config, const config_lines_t *lines,
     for (uint16_t i = 0u; (lines->settings[blamed] == 0u) && (i < (uint16_t)AGV_MSG_COUNT); i++) {
         blamed = (ids.of[i] == id) ? (uint16_t)((uint16_t)AGV_SETTING_ID + i) : blamed;
     }
-    return blame(lines, lines->settings[blamed], agv_setting_info(blamed)->name, "another message has this identifier");
+    return report_setting(lines, lines->settings[blamed], agv_setting_info(blamed)->name,
+                          "another message has this identifier");
 }
 
 /** The setting of the file because of which no press would reset. */
@@ -245,9 +247,9 @@ static bool blame_press(const config_lines_t *lines) {
     const size_t longest = lines->settings[AGV_SETTING_reset_hold_max_ms];
     const size_t shortest = lines->settings[AGV_SETTING_reset_hold_ms];
     if ((longest == 0u) && (shortest != 0u)) {
-        return blame(lines, shortest, "reset_hold_ms", "must be below reset_hold_max_ms");
+        return report_setting(lines, shortest, "reset_hold_ms", "must be below reset_hold_max_ms");
     }
-    return blame(lines, longest, "reset_hold_max_ms", "must be above reset_hold_ms");
+    return report_setting(lines, longest, "reset_hold_max_ms", "must be above reset_hold_ms");
 }
 
 bool config_check(const agv_config_t *config, const config_lines_t *lines) {
@@ -260,16 +262,17 @@ bool config_check(const agv_config_t *config, const config_lines_t *lines) {
     case AGV_CONFIG_OK:
         return true;
     case AGV_CONFIG_OUT_OF_RANGE:
-        return blame(lines, line, name, "the value is out of range");
+        return report_setting(lines, line, name, "the value is out of range");
     case AGV_CONFIG_ID_TWICE:
         return blame_twice(config, lines, verdict.setting);
     case AGV_CONFIG_NEEDS_GATEWAY:
-        return blame(lines, line, name, "has no effect on a shared bus; this value needs the gateway topology");
+        return report_setting(lines, line, name,
+                              "has no effect on a shared bus; this value needs the gateway topology");
     case AGV_CONFIG_PRESS_TOO_SHORT:
         return blame_press(lines);
     case AGV_CONFIG_FAULT_TOO_WEAK:
         config_class_key(verdict.fault, key);
-        return blame(lines, lines->classes[verdict.fault], key, "this fault must stay a trip");
+        return report_setting(lines, lines->classes[verdict.fault], key, "this fault must stay a trip");
     case AGV_CONFIG_NO_SUCH_FAULT:
     default:
         return report("the configuration is invalid");

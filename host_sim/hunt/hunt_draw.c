@@ -124,7 +124,7 @@ static void draw_action(const hunt_program_t *program, hunt_action_t *action, ui
 }
 
 /** The run becomes longer; what lasts up to its end still does. */
-static void lengthen(hunt_program_t *program, uint32_t duration_ms) {
+static void extend_run(hunt_program_t *program, uint32_t duration_ms) {
     const uint32_t before_ms = program->duration_ms;
 
     if (duration_ms > before_ms) {
@@ -148,7 +148,7 @@ static void add_attack(hunt_program_t *program, size_t attack, uint64_t *state) 
         draw_action(program, action, state);
         program->action_count++;
         if (needs_long(action) && prng_toss(state, 2u)) {
-            lengthen(program, action->begin_ms + PATTERN_MS);
+            extend_run(program, action->begin_ms + PATTERN_MS);
             action->end_ms = program->duration_ms;
         }
     }
@@ -169,7 +169,7 @@ void hunt_add_reset(hunt_program_t *program, uint64_t *state) {
     add_attack(program, attack_of_reset(), state);
     if (program->action_count > count) {
         const hunt_action_t *reset = &program->actions[count];
-        lengthen(program, reset->begin_ms + reset->parameters[HUNT_ENGAGE_AFTER] + AFTER_ENGAGED_MS);
+        extend_run(program, reset->begin_ms + reset->parameters[HUNT_ENGAGE_AFTER] + AFTER_ENGAGED_MS);
     }
 }
 

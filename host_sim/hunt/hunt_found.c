@@ -11,7 +11,7 @@ enum { PATH_SIZE = 4096, BITS = 64, AFTER_MS = 500 };
 _Static_assert((unsigned)AGV_SETTING_COUNT <= 64u * (unsigned)HUNT_SETTING_WORDS, "a setting has no bit");
 _Static_assert((unsigned)AGV_FAULT_COUNT <= 64u * (unsigned)HUNT_CLASS_WORDS, "a fault has no bit");
 
-static hunt_signature_t sign(const hunt_program_t *program, const hazard_t *hazard) {
+static hunt_signature_t signature_of(const hunt_program_t *program, const hazard_t *hazard) {
     hunt_signature_t signature;
 
     memset(&signature, 0, sizeof signature);
@@ -74,7 +74,7 @@ static bool keep_if_same(hunt_play_t *play, hunt_program_t *program, const hunt_
 }
 
 /** Drop actions, settings and classes one by one, and make the vehicle the common one. */
-static void shrink(hunt_play_t *play, hunt_program_t *program, hazard_kind_t kind, const char *cause) {
+static void minimise(hunt_play_t *play, hunt_program_t *program, hazard_kind_t kind, const char *cause) {
     for (uint32_t i = program->action_count; (i > 0u) && (program->action_count > 1u); i--) {
         hunt_program_t changed = *program;
         memmove(&changed.actions[i - 1u], &changed.actions[i], (changed.action_count - i) * sizeof changed.actions[0]);
@@ -172,7 +172,7 @@ static bool make_small(hunt_play_t *play, hunt_program_t *program) {
     const hazard_kind_t kind = play->hazard.kind;
     const char *cause = play->hazard.cause;
 
-    shrink(play, program, kind, cause);
+    minimise(play, program, kind, cause);
     if (!hunt_play(play, program)) {
         return false;
     }
@@ -181,7 +181,7 @@ static bool make_small(hunt_play_t *play, hunt_program_t *program) {
 }
 
 bool hunt_found_take(hunt_found_t *found, hunt_play_t *play, const hunt_program_t *program, const hunt_place_t *place) {
-    hunt_signature_t signature = sign(program, &play->hazard);
+    hunt_signature_t signature = signature_of(program, &play->hazard);
     hunt_program_t small = *program;
 
     found->runs++;
@@ -191,7 +191,7 @@ bool hunt_found_take(hunt_found_t *found, hunt_play_t *play, const hunt_program_
     if (!make_small(play, &small)) {
         return false;
     }
-    signature = sign(&small, &play->hazard);
+    signature = signature_of(&small, &play->hazard);
     if (is_known(found, &signature)) {
         return true;
     }

@@ -29,7 +29,7 @@ static bool is_legal(const hunt_program_t *program) {
 }
 
 /** What a supervisor would refuse is taken back. */
-static void make_legal(hunt_program_t *program) {
+static void drop_refused_settings(hunt_program_t *program) {
     while ((program->setting_count > 0u) && !is_legal(program)) {
         program->setting_count--;
     }
@@ -66,7 +66,7 @@ void hunt_program_make(hunt_program_t *program, uint64_t *state) {
     if (prng_toss(state, 3u)) {
         hunt_add_reset(program, state);
     }
-    make_legal(program);
+    drop_refused_settings(program);
 }
 
 static void remove_action(hunt_program_t *program, uint64_t *state) {
@@ -137,5 +137,5 @@ void hunt_program_mutate(hunt_program_t *program, const hunt_program_t *other, u
         hunt_action_t *action = &program->actions[i];
         action->end_ms = (action->end_ms < program->duration_ms) ? action->end_ms : program->duration_ms;
     }
-    make_legal(program);
+    drop_refused_settings(program);
 }

@@ -64,7 +64,7 @@ static void draw_program(hunt_t *hunt, hunt_program_t *program, uint64_t *random
     hunt_program_mutate(program, &hunt->corpus[prng_draw(random, 0u, hunt->corpus_count - 1u)], random);
 }
 
-static void learn(hunt_t *hunt, const hunt_program_t *program, uint64_t *random) {
+static void add_to_corpus(hunt_t *hunt, const hunt_program_t *program, uint64_t *random) {
     if (!is_new(hunt)) {
         return;
     }
@@ -92,7 +92,7 @@ static bool run_one(hunt_t *hunt, uint64_t run, uint64_t *random) {
     hunt->done++;
     hunt->virtual_ms += hunt->play.played_ms;
     if (hunt->play.hazard.kind == HAZARD_NONE) {
-        learn(hunt, &program, random);
+        add_to_corpus(hunt, &program, random);
         return true;
     }
     return hunt_found_take(&hunt->state.found, &hunt->play, &program, &place);
@@ -171,7 +171,7 @@ static status_t conclude(const hunt_t *hunt, uint64_t took_ms) {
     return (found->count == 0u) ? STATUS_OK : STATUS_UNMET;
 }
 
-static status_t go(hunt_t *hunt) {
+static status_t run_until_end(hunt_t *hunt) {
     if (!hunt_state_load(hunt->request, &hunt->state)) {
         return STATUS_UNUSABLE;
     }
@@ -200,7 +200,7 @@ status_t hunt_run(const hunt_request_t *request) {
     }
     hunt->request = request;
     hunt_play_init(&hunt->play);
-    const status_t status = go(hunt);
+    const status_t status = run_until_end(hunt);
     output_discard(&hunt->file);
     free(hunt);
     interrupt_release();

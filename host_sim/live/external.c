@@ -91,7 +91,7 @@ static void report_frames(external_t *external) {
 }
 
 /** @return false: more frames than there is room for, and a lost one could be the one that must not be; reported */
-static bool hear(external_t *external, hal_can_side_t side) {
+static bool receive_frames(external_t *external, hal_can_side_t side) {
     linux_can_record_t record;
     while ((external->rx_sockets[side].fd >= 0) &&
            (linux_can_read(&external->rx_sockets[side], &record) == LINUX_CAN_RECORD)) {
@@ -167,7 +167,7 @@ external_t *external_open(const external_config_t *config) {
 }
 
 /** In the new process. */
-static _Noreturn void become(const char *command, int output) {
+static _Noreturn void execute(const char *command, int output) {
     sigset_t none;
     (void)sigemptyset(&none);
     (void)sigprocmask(SIG_SETMASK, &none, NULL);
@@ -202,7 +202,7 @@ bool external_start(external_t *external) {
     (void)fcntl(ends[1], F_SETFD, FD_CLOEXEC);
     external->pid = fork();
     if (external->pid == 0) {
-        become(external->config.command, ends[1]);
+        execute(external->config.command, ends[1]);
     }
     (void)close(ends[1]);
     external->output = ends[0];
@@ -240,7 +240,7 @@ void external_vehicle_sent(external_t *external, hal_can_side_t side, const hal_
 
 bool external_listen(external_t *external) {
     report_frames(external);
-    return hear(external, HAL_CAN_VEHICLE) && hear(external, HAL_CAN_AI) && read_output(external);
+    return receive_frames(external, HAL_CAN_VEHICLE) && receive_frames(external, HAL_CAN_AI) && read_output(external);
 }
 
 bool external_output_closed(const external_t *external) {

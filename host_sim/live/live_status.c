@@ -25,7 +25,7 @@ static const char *present_fault(const session_t *session) {
     return agv_fault_name(agv_supervisor_first_active(&session->supervisor));
 }
 
-static int compose(char line[LINE_SIZE], const session_t *session, uint64_t now_ms) {
+static int format_status(char line[LINE_SIZE], const session_t *session, uint64_t now_ms) {
     const agv_supervisor_t *supervisor = &session->supervisor;
     const agv_counters_t *counters = agv_supervisor_counters(supervisor);
     const char *state = agv_state_name(agv_supervisor_state(supervisor));
@@ -49,7 +49,7 @@ void live_status_show(live_status_t *status, const session_t *session, uint64_t 
         return;
     }
     status->next_ms = now_ms + EVERY_MS;
-    const int length = compose(line, session, now_ms);
+    const int length = format_status(line, session, now_ms);
     const int rest = (status->shown > length) ? status->shown - length : 0;
     (void)printf("\r%.*s%*s", length, line, rest, "");
     (void)fflush(stdout);

@@ -230,7 +230,7 @@ static bool do_steps(run_t *run, uint64_t t_ms) {
 }
 
 /** It has power again, or does not hang any more. */
-static bool wake(run_t *run) {
+static bool start_supervisor_again(run_t *run) {
     run->hangs = false;
     return (run->node != NULL) ? live_files_follow(&run->files, &run->loop, run->node) : switch_on(run);
 }
@@ -242,7 +242,7 @@ static bool serve_supervisor(run_t *run, uint64_t t_ms, bool is_tick) {
     if (t_ms < run->halted_until_ms) {
         return true;
     }
-    if ((run->hangs || (run->node == NULL)) && !wake(run)) {
+    if ((run->hangs || (run->node == NULL)) && !start_supervisor_again(run)) {
         return false;
     }
     if (!is_tick) {

@@ -36,7 +36,7 @@ static void read_more(typed_lines_t *typed) {
 }
 
 /** Take the first bytes as a line. @param taken how many bytes are used up, the line's end among them */
-static const char *hand_out(typed_lines_t *typed, size_t length, size_t taken) {
+static const char *take_line(typed_lines_t *typed, size_t length, size_t taken) {
     const bool too_long = typed->too_long;
 
     memcpy(typed->line, typed->bytes, length);
@@ -60,11 +60,12 @@ const char *typed_lines_next(typed_lines_t *typed) {
     }
     if (end != NULL) {
         const size_t length = (size_t)(end - typed->bytes);
-        return hand_out(typed, length, length + 1u);
+        return take_line(typed, length, length + 1u);
     }
     if (typed->used == sizeof typed->bytes) {
         typed->too_long = true;
         typed->used = 0u;
     }
-    return (typed->ended && ((typed->used > 0u) || typed->too_long)) ? hand_out(typed, typed->used, typed->used) : NULL;
+    return (typed->ended && ((typed->used > 0u) || typed->too_long)) ? take_line(typed, typed->used, typed->used)
+                                                                     : NULL;
 }

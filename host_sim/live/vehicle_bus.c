@@ -17,7 +17,7 @@ static linux_can_t *can_of_file(vehicle_bus_t *bus, unsigned file) {
 }
 
 /** The time by the clock; not before what the vehicle has seen. */
-static uint64_t come_to(vehicle_bus_t *bus, uint64_t now_us) {
+static uint64_t advance_clock(vehicle_bus_t *bus, uint64_t now_us) {
     const uint64_t now_ms = now_us / US_PER_MS;
 
     bus->now_ms = (now_ms > bus->now_ms) ? now_ms : bus->now_ms;
@@ -25,7 +25,7 @@ static uint64_t come_to(vehicle_bus_t *bus, uint64_t now_us) {
 }
 
 uint64_t vehicle_bus_now_ms(vehicle_bus_t *bus) {
-    return come_to(bus, linux_clock_now_us(bus->config.clock));
+    return advance_clock(bus, linux_clock_now_us(bus->config.clock));
 }
 
 static void send_frame(void *ctx, vehicle_node_t from, hal_can_side_t side, const hal_can_frame_t *frame) {
@@ -80,7 +80,7 @@ static void take(vehicle_bus_t *bus, unsigned file, const linux_can_record_t *re
     const uint64_t at_us = linux_clock_of_stamp(config->clock, record->stamp_us);
 
     if (!record->own) {
-        vehicle_receive(&bus->vehicle, (vehicle_node_t)file, come_to(bus, at_us), &record->frame);
+        vehicle_receive(&bus->vehicle, (vehicle_node_t)file, advance_clock(bus, at_us), &record->frame);
     } else if (config->on_sent != NULL) {
         config->on_sent(config->ctx, (vehicle_node_t)((file < (unsigned)VEHICLE_NODES) ? file : VEHICLE_ROGUE),
                         side_of_file(bus, file), &record->frame, at_us);

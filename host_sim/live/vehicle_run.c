@@ -35,7 +35,7 @@ typedef struct {
 } run_t;
 
 /** Do the action of a --fault or of a typed line. */
-static void act(run_t *run, const vehicle_words_t *words) {
+static void do_action(run_t *run, const vehicle_words_t *words) {
     const vehicle_action_t *action = &words->step.vehicle;
 
     const bool done = vehicle_bus_do(&run->bus, action);
@@ -55,7 +55,7 @@ static void act_on_faults(run_t *run, uint64_t now_ms) {
 
     while ((run->next_fault < request->fault_count) && (request->faults[run->next_fault].step.at_ms <= now_ms)) {
         run->next_fault++;
-        act(run, &request->faults[run->next_fault - 1u]);
+        do_action(run, &request->faults[run->next_fault - 1u]);
     }
 }
 
@@ -106,7 +106,7 @@ static void show(run_t *run) {
 }
 
 /** A line was typed. */
-static void obey(run_t *run, const char *line) {
+static void on_typed_line(run_t *run, const char *line) {
     vehicle_words_t words;
 
     vehicle_show_clear(&run->show, true);
@@ -121,7 +121,7 @@ static void obey(run_t *run, const char *line) {
         show(run);
         vehicle_show_status(&run->show);
     } else if (vehicle_words_typed(line, &run->request->config, &words)) {
-        act(run, &words);
+        do_action(run, &words);
     }
 }
 
@@ -136,7 +136,7 @@ static void take_typed(run_t *run) {
     for (unsigned i = 0u; (i < (unsigned)LINES_AT_ONCE) && !run->quits && (line != NULL); i++) {
         line = typed_lines_next(typed);
         if (line != NULL) {
-            obey(run, line);
+            on_typed_line(run, line);
         }
     }
     run->has_more_typed = line != NULL;
@@ -176,7 +176,7 @@ static bool goes_on(const run_t *run, uint32_t events) {
 }
 
 /** Go on until the end. @return false: an interface is gone; was reported */
-static bool go(run_t *run) {
+static bool run_until_end(run_t *run) {
     uint32_t events = LINUX_LOOP_TICK;
     bool there = true;
 
@@ -214,7 +214,7 @@ static bool run_on_bus(run_t *run) {
     vehicle_show_init(&run->show, &view);
     run->waits_for_typed = linux_loop_add(&run->loop, run->typed.fd); /* refused for a file */
     vehicle_action(run, VEHICLE_DO_AI_DRIVE);
-    const bool good = go(run);
+    const bool good = run_until_end(run);
     vehicle_show_clear(&run->show, false);
     monitor_companion_end(&run->screen);
     show_end(run);

@@ -22,7 +22,7 @@ typedef struct {
     char source[SOURCE_SIZE]; /**< how messages call it */
 } line_t;
 
-static bool wrong(const line_t *line, const char *what) {
+static bool report_wrong_line(const line_t *line, const char *what) {
     return report("%s: %s", line->source, what);
 }
 
@@ -50,7 +50,7 @@ static char *take_part(char *from, const char *separators) {
 }
 
 /** Cut the text at the separators. @return false: reported */
-static bool cut(line_t *line, const char *separators) {
+static bool split(line_t *line, const char *separators) {
     char *at = line->text;
 
     for (;;) {
@@ -59,13 +59,13 @@ static bool cut(line_t *line, const char *separators) {
             return true;
         }
         if (line->count == (unsigned)PARTS_MAX) {
-            return wrong(line, "too many words");
+            return report_wrong_line(line, "too many words");
         }
         line->parts[line->count] = at;
         line->count++;
         at = take_part(at, separators);
         if (at == NULL) {
-            return wrong(line, "a quote is not closed");
+            return report_wrong_line(line, "a quote is not closed");
         }
     }
 }
@@ -104,7 +104,7 @@ static bool add_pair(const line_t *line, yaml_document_t *document, int step, co
     const int v = yaml_document_add_scalar(document, NULL, (const yaml_char_t *)value, (int)strlen(value),
                                            YAML_PLAIN_SCALAR_STYLE);
     return ((k != 0) && (v != 0) && (yaml_document_append_mapping_pair(document, step, k, v) != 0)) ||
-           wrong(line, "not UTF-8 text");
+           report_wrong_line(line, "not UTF-8 text");
 }
 
 /** The step as a scenario file would have it: {at_ms: 3000, eps: set, field: faults, value: 08h}. */
@@ -129,12 +129,12 @@ static bool read_step(const line_t *line, const agv_config_t *config, scenario_s
     const yaml_reader_t reader = {.file = line->source, .document = &document, .is_line = true};
 
     if (yaml_document_initialize(&document, NULL, NULL, NULL, 1, 1) == 0) {
-        return wrong(line, "out of memory");
+        return report_wrong_line(line, "out of memory");
     }
     const bool good =
         build(line, &document) && scenario_parse_step(&reader, yaml_document_get_root_node(&document), config, step);
     yaml_document_delete(&document);
-    return good && ((step->again_every_ms == 0u) || wrong(line, "again_every_ms is for scenario files"));
+    return good && ((step->again_every_ms == 0u) || report_wrong_line(line, "again_every_ms is for scenario files"));
 }
 
 static void describe(const line_t *line, char what[VEHICLE_WORDS_MAX]) {
@@ -146,11 +146,11 @@ static void describe(const line_t *line, char what[VEHICLE_WORDS_MAX]) {
 }
 
 static bool read_line(line_t *line, const char *separators, const agv_config_t *config, vehicle_words_t *words) {
-    if (!cut(line, separators)) {
+    if (!split(line, separators)) {
         return false;
     }
     if (line->count == 0u) {
-        return wrong(line, "actor and action are missing");
+        return report_wrong_line(line, "actor and action are missing");
     }
     if (!check_actor(line) || !read_step(line, config, &words->step)) {
         return false;
@@ -186,7 +186,7 @@ bool vehicle_words_fault(const char *text, const agv_config_t *config, vehicle_w
     char *at = strrchr(line.text, '@');
     char *dash = strchr(line.text, '-');
     if ((at == NULL) || (dash == NULL) || (dash > at) || has_empty_part(line.text, dash, at)) {
-        return wrong(&line, FAULT_FORM " is needed, such as ai-stop@2s");
+        return report_wrong_line(&line, FAULT_FORM " is needed, such as ai-stop@2s");
     }
     *at = '\0';
     *dash = ',';

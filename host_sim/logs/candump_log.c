@@ -182,7 +182,7 @@ static bool is_blank(const char *line, size_t length) {
 }
 
 /** Tell the format by the first line that is not blank. @return false: one that is not read; was reported. */
-static bool tell_format(candump_log_t *log, const char *line, size_t length) {
+static bool detect_format(candump_log_t *log, const char *line, size_t length) {
     const log_foreign_t *foreign = log_foreign_text(line, length);
     if ((foreign != NULL) && !log->skip_bad) {
         return report_foreign(log, foreign);
@@ -226,7 +226,7 @@ candump_result_t candump_next(candump_log_t *log, candump_record_t *record) {
     for (; line != NULL; line = cut_line(log, &length, &failed)) {
         const bool is_blank_line = (length <= CANDUMP_LINE_MAX) && is_blank(line, length);
         const bool is_first = (log->format == CANDUMP_FORMAT_UNKNOWN) && (length <= CANDUMP_LONG_LINE_MAX);
-        if (is_first && !is_blank_line && !tell_format(log, line, length)) {
+        if (is_first && !is_blank_line && !detect_format(log, line, length)) {
             return CANDUMP_FAILED;
         }
         const char *wrong = parse_line(log, line, length, record);

@@ -41,7 +41,7 @@ void sent_log_heard(sent_log_t *log, hal_can_side_t side, const char *interface,
 }
 
 /** Give every side without a name one that no other side has. */
-static void make_names_up(sent_log_t *log) {
+static void name_interfaces(sent_log_t *log) {
     static const char *const made_up[HAL_CAN_SIDES] = {"can0", "can1"};
     for (uint32_t side = 0u; side < (uint32_t)HAL_CAN_SIDES; side++) {
         const char *other = log->interfaces[HAL_CAN_SIDES - 1u - side];
@@ -61,7 +61,7 @@ void sent_log_add(sent_log_t *log, hal_can_side_t side, const hal_can_frame_t *f
     sent_log_frame_t sent = {.stamp_us = stamp_us, .side = side, .id = (uint16_t)frame->id, .length = frame->length};
     (void)memcpy(sent.data, frame->data, sizeof sent.data);
     if (log->waiting_count == SENT_LOG_WAITING_MAX) {
-        make_names_up(log);
+        name_interfaces(log);
     }
     if ((log->waiting_count > 0u) || (log->interfaces[side][0] == '\0')) {
         log->waiting[log->waiting_count] = sent;
@@ -73,6 +73,6 @@ void sent_log_add(sent_log_t *log, hal_can_side_t side, const hal_can_frame_t *f
 
 void sent_log_finish(sent_log_t *log) {
     if (log->waiting_count > 0u) {
-        make_names_up(log);
+        name_interfaces(log);
     }
 }

@@ -90,7 +90,7 @@ static size_t hex_length(const char *text, size_t length) {
 }
 
 /** What follows a word in a line; NULL: it is not there. */
-static const char *after_word(const char *word, const char *line, size_t length) {
+static const char *text_after(const char *word, const char *line, size_t length) {
     const size_t size = strlen(word);
     for (size_t at = 0u; at + size <= length; at++) {
         if (memcmp(&line[at], word, size) == 0) {
@@ -113,8 +113,8 @@ static void take_version(recorder_events_t *events, const char *text, size_t len
 /** Take a line: an event behind EVENT_WORD, or nothing but an event. @return false: no memory; was reported */
 static bool take_line(recorder_events_t *events, const char *line, size_t length) {
     agv_event_t event;
-    const char *word = after_word(EVENT_WORD, line, length);
-    const char *version = after_word(VERSION_WORD, line, length);
+    const char *word = text_after(EVENT_WORD, line, length);
+    const char *version = text_after(VERSION_WORD, line, length);
     if (version != NULL) {
         take_version(events, version, length - (size_t)(version - line));
     }

@@ -99,7 +99,7 @@ static hal_can_side_t side_of(replay_t *replay, const candump_record_t *record) 
     return HAL_CAN_VEHICLE;
 }
 
-static void hand_over(replay_t *replay, candump_record_t *record, uint64_t t_ms) {
+static void pass_on_record(replay_t *replay, candump_record_t *record, uint64_t t_ms) {
     const hal_can_side_t side = side_of(replay, record);
     const uint64_t t_us = record->stamp_us - replay->first_us;
     record->frame.time_ms = clock_at(replay, t_ms);
@@ -132,7 +132,7 @@ static bool pass_record(replay_t *replay, candump_record_t *record) {
     }
     replay->now_us = record->stamp_us;
     const uint64_t t_ms = replay->next_tick_ms - ((record->stamp_us == replay->next_tick_us) ? 0u : 1u);
-    hand_over(replay, record, t_ms);
+    pass_on_record(replay, record, t_ms);
     return outputs_work(replay);
 }
 
@@ -205,7 +205,7 @@ static void print_text(const replay_t *replay, const replay_text_t *text) {
 }
 
 /** Every file or none. @return false: reported */
-static bool commit(replay_t *replay) {
+static bool put_files_in_place(replay_t *replay) {
     return output_flush_all(replay->outputs, OUTPUTS) && analysis_flush(replay->analysis) &&
            analysis_commit(replay->analysis) && output_commit_all(replay->outputs, OUTPUTS);
 }
@@ -228,7 +228,7 @@ static bool conclude(replay_t *replay) {
     analysis_end(replay->analysis, text.duration_us);
     replay_text_remarks(&text, replay->analysis);
     analysis_write(replay->analysis);
-    const bool good = commit(replay);
+    const bool good = put_files_in_place(replay);
     if (good && has_text(request)) {
         print_text(replay, &text);
     }

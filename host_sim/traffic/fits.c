@@ -44,7 +44,7 @@ static bool are_positions(const uint8_t data[AGV_DLC]) {
            ((position.left_raw > position.centre_raw) && (position.centre_raw > position.right_raw));
 }
 
-static bool can_be(uint32_t message, const uint8_t data[AGV_DLC]) {
+static bool is_plausible(uint32_t message, const uint8_t data[AGV_DLC]) {
     if (has_reserved_bits(message, data) || !agv_value_is_valid(message, data)) {
         return false;
     }
@@ -64,7 +64,7 @@ uint32_t fits_frame(uint32_t fits, const uint8_t data[AGV_DLC]) {
     uint32_t left = fits;
     for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
         const uint32_t bit = 1u << message;
-        if (((left & bit) != 0u) && !can_be(message, data)) {
+        if (((left & bit) != 0u) && !is_plausible(message, data)) {
             left &= ~bit;
         }
     }

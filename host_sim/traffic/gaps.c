@@ -15,7 +15,7 @@ static size_t cell_of(uint64_t gap_us) {
 }
 
 /** The longest gap of a cell. */
-static uint64_t top_of(size_t cell) {
+static uint64_t longest_gap_of(size_t cell) {
     if (cell < 2u * GAPS_CELLS_PER_OCTAVE) {
         return cell;
     }
@@ -37,7 +37,7 @@ void gaps_add(gaps_t *gaps, uint64_t begin_us, uint64_t gap_us) {
 }
 
 /** The cell of the gap with this rank, the shortest one having rank 1. @param before the gaps in the cells before */
-static size_t ranked(const gaps_t *gaps, uint64_t rank, uint64_t *before) {
+static size_t cell_of_rank(const gaps_t *gaps, uint64_t rank, uint64_t *before) {
     size_t cell = 0u;
     *before = 0u;
     while ((cell < GAPS_CELLS - 1u) && (*before + gaps->cells[cell] < rank)) {
@@ -59,13 +59,13 @@ uint64_t gaps_quantile_us(const gaps_t *gaps, uint32_t permille) {
     const uint64_t least = ((gaps->count * permille) + (uint64_t)PERMILLE - 1u) / (uint64_t)PERMILLE;
     const uint64_t rank = (least > 0u) ? least : 1u;
     uint64_t before = 0u;
-    const size_t cell = ranked(gaps, rank, &before);
+    const size_t cell = cell_of_rank(gaps, rank, &before);
     if (cell == GAPS_CELLS - 1u) {
         return gaps->longest_us;
     }
-    const uint64_t width_us = top_of(cell) - ((cell > 0u) ? top_of(cell - 1u) : 0u);
+    const uint64_t width_us = longest_gap_of(cell) - ((cell > 0u) ? longest_gap_of(cell - 1u) : 0u);
     const uint64_t above = gaps->cells[cell] - (rank - before); /* gaps of the cell that are longer */
-    return clamp(gaps, top_of(cell) - ((width_us * above) / gaps->cells[cell]));
+    return clamp(gaps, longest_gap_of(cell) - ((width_us * above) / gaps->cells[cell]));
 }
 
 uint64_t gaps_without_longest_us(const gaps_t *gaps, uint64_t longer) {
@@ -73,8 +73,8 @@ uint64_t gaps_without_longest_us(const gaps_t *gaps, uint64_t longer) {
         return 0u;
     }
     uint64_t before = 0u;
-    const size_t cell = ranked(gaps, gaps->count - longer, &before);
-    return clamp(gaps, (cell == GAPS_CELLS - 1u) ? gaps->longest_us : top_of(cell));
+    const size_t cell = cell_of_rank(gaps, gaps->count - longer, &before);
+    return clamp(gaps, (cell == GAPS_CELLS - 1u) ? gaps->longest_us : longest_gap_of(cell));
 }
 
 uint64_t gaps_longer_than(const gaps_t *gaps, uint64_t limit_us) {

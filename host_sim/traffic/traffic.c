@@ -78,7 +78,7 @@ static hal_can_side_t side_of(const traffic_t *traffic, uint32_t message) {
 }
 
 /** Give a new identifier what its message needs. @return false: out of memory */
-static bool furnish(const traffic_t *traffic, traffic_id_t *entry) {
+static bool allocate_parts(const traffic_t *traffic, traffic_id_t *entry) {
     if (entry->message == TRAFFIC_UNKNOWN) {
         entry->candidates = calloc(CANDIDATES, sizeof *entry->candidates);
         return entry->candidates != NULL;
@@ -112,7 +112,7 @@ static traffic_id_t *add_id(traffic_t *traffic, hal_can_side_t side, const hal_c
     entry->length_min = UINT8_MAX;
     entry->fits = FITS_ALL;
     (void)memset(entry->bits_always, UINT8_MAX, sizeof entry->bits_always);
-    if (!furnish(traffic, entry)) {
+    if (!allocate_parts(traffic, entry)) {
         free_id(entry);
         return NULL;
     }
@@ -170,7 +170,7 @@ static void take_range(traffic_range_t *range, const signal_value_t *value, uint
     range->valid++;
 }
 
-static void for_engaged(traffic_t *traffic, uint64_t t_us, void (*apply)(traffic_watch_t *, uint64_t)) {
+static void apply_to_engaged(traffic_t *traffic, uint64_t t_us, void (*apply)(traffic_watch_t *, uint64_t)) {
     for (uint32_t message = 0u; message < AGV_COMMAND_COUNT; message++) {
         const traffic_id_t *entry = traffic_message(traffic, message);
         if ((entry != NULL) && (entry->watch->when == TRAFFIC_ENGAGED)) {
@@ -180,7 +180,7 @@ static void for_engaged(traffic_t *traffic, uint64_t t_us, void (*apply)(traffic
 }
 
 static void end_engagement(traffic_t *traffic, uint64_t t_us) {
-    for_engaged(traffic, t_us, watch_stop);
+    apply_to_engaged(traffic, t_us, watch_stop);
     traffic->totals.engaged_us += t_us - traffic->engaged_since_us;
     traffic->is_engaged = false;
 }
@@ -193,7 +193,7 @@ static void take_mode(traffic_t *traffic, uint8_t flags, uint64_t t_us) {
         traffic->is_engaged = true;
         traffic->engaged_since_us = t_us;
         traffic->totals.engagements++;
-        for_engaged(traffic, t_us, watch_start);
+        apply_to_engaged(traffic, t_us, watch_start);
     } else if (traffic->is_engaged && (traffic->frames_not_engaged >= traffic->config.mode_frames)) {
         end_engagement(traffic, t_us);
     }

@@ -165,7 +165,7 @@ static void draw(vehicle_show_t *show) {
 }
 
 /** Whether the terminal takes something now; it may have been stopped (Ctrl-S). */
-static bool takes_text(void) {
+static bool terminal_is_writable(void) {
     struct pollfd wait = {.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0};
     return poll(&wait, 1, 0) > 0;
 }
@@ -176,7 +176,7 @@ void vehicle_show_view(vehicle_show_t *show, uint64_t t_ms, const vehicle_view_t
     show->view = *view;
     show->has_begun = true;
     show_changes(show, t_ms, &before);
-    if (show->is_live && (t_ms >= show->draw_ms) && takes_text()) {
+    if (show->is_live && (t_ms >= show->draw_ms) && terminal_is_writable()) {
         draw(show);
         show->draw_ms = t_ms + DRAW_EVERY_MS;
     }

@@ -72,7 +72,7 @@ void why_text_supervised(const why_t *why) {
 }
 
 /** Add what came after a trip, or that it did not come. */
-static void add_then(text_t *text, const char *what, const char *never, uint64_t t_us) {
+static void add_time_after_trip(text_t *text, const char *what, const char *never, uint64_t t_us) {
     if (t_us == WHY_NEVER) {
         text_add(text, "%s", never);
     } else {
@@ -84,13 +84,13 @@ static void add_then(text_t *text, const char *what, const char *never, uint64_t
 static void print_then(const why_text_t *shown, const why_trip_t *trip) {
     text_t text = {.used = 0u};
     if (!shown->is_recorder) {
-        add_then(&text, "first safe frame", "no safe frame", trip->first_safe_us);
+        add_time_after_trip(&text, "first safe frame", "no safe frame", trip->first_safe_us);
         text_add(&text, "; ");
     }
-    add_then(&text, "P confirmed", "P not confirmed", trip->confirmed_us);
+    add_time_after_trip(&text, "P confirmed", "P not confirmed", trip->confirmed_us);
     if (!shown->is_recorder) {
         text_add(&text, "; ");
-        add_then(&text, "stands", "does not stand", trip->stopped_us);
+        add_time_after_trip(&text, "stands", "does not stand", trip->stopped_us);
         if ((trip->confirmed_us == WHY_NEVER) || (trip->stopped_us == WHY_NEVER)) {
             text_add(&text, " (a recording cannot obey)");
         }

@@ -215,7 +215,7 @@ static bool do_as_operator(vehicle_t *vehicle, uint64_t now_ms, const vehicle_ac
     }
 }
 
-static bool is_sane(const vehicle_action_t *action) {
+static bool is_in_range(const vehicle_action_t *action) {
     switch (action->what) {
     case VEHICLE_DO_AI_DRIVE:
         return drive_is_valid(action) && angle_is_valid(action);
@@ -236,7 +236,7 @@ static bool is_sane(const vehicle_action_t *action) {
     }
 }
 
-static void stop_strangers(vehicle_t *vehicle) {
+static void stop_rogue_nodes(vehicle_t *vehicle) {
     for (unsigned i = 0; i < VEHICLE_ROGUES_MAX; i++) {
         vehicle->rogues[i].left = 0u;
     }
@@ -244,7 +244,7 @@ static void stop_strangers(vehicle_t *vehicle) {
 
 bool vehicle_do(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *action) {
     vehicle_look_again(vehicle, now_ms);
-    if (!is_sane(action)) {
+    if (!is_in_range(action)) {
         return false;
     }
     if (action->what <= VEHICLE_DO_RECOVER) {
@@ -268,6 +268,6 @@ bool vehicle_do(vehicle_t *vehicle, uint64_t now_ms, const vehicle_action_t *act
     if (action->what == VEHICLE_DO_SEND) {
         return vehicle_add_rogue(vehicle, now_ms, action);
     }
-    stop_strangers(vehicle);
+    stop_rogue_nodes(vehicle);
     return action->what == VEHICLE_DO_STOP_SENDING;
 }

@@ -45,7 +45,7 @@ void vehicle_eps_receive(vehicle_t *vehicle, uint64_t now_ms, const hal_can_fram
 }
 
 /** The angle that the steering moves to; its present angle if none is commanded. */
-static int32_t drawn_to_mddeg(const vehicle_t *vehicle) {
+static int32_t target_mddeg(const vehicle_t *vehicle) {
     const vehicle_eps_t *eps = &vehicle->eps;
 
     if (vehicle->operator.eps_stuck) {
@@ -65,7 +65,7 @@ void vehicle_eps_move(vehicle_t *vehicle, uint64_t now_ms) {
         const uint64_t step = elapsed * vehicle->config.steering_rate_ddeg_s;
         eps->at_ms = now_ms;
         eps->angle_mddeg =
-            vehicle_approach(eps->angle_mddeg, drawn_to_mddeg(vehicle), (step > INT32_MAX) ? INT32_MAX : (int32_t)step);
+            vehicle_approach(eps->angle_mddeg, target_mddeg(vehicle), (step > INT32_MAX) ? INT32_MAX : (int32_t)step);
     }
     if ((eps->mode != eps->wanted) && (now_ms - eps->changed_ms >= vehicle->config.eps_mode_change_ms)) {
         eps->mode = eps->wanted;

@@ -17,7 +17,7 @@ static uint32_t next_random(vehicle_t *vehicle) {
 }
 
 /** Count down what lasts for a number of frames. */
-static void use_up(uint16_t *left) {
+static void count_down(uint16_t *left) {
     if (*left != VEHICLE_FOREVER) {
         (*left)--;
     }
@@ -28,7 +28,7 @@ static void shorten(vehicle_t *vehicle, hal_can_frame_t *frame) {
     memset(&frame->data[frame->length], 0, (size_t)AGV_DLC - frame->length);
 }
 
-static void make_garbage(vehicle_t *vehicle, vehicle_garbage_t kind, hal_can_frame_t *frame) {
+static void corrupt_frame(vehicle_t *vehicle, vehicle_garbage_t kind, hal_can_frame_t *frame) {
     switch (kind) {
     case VEHICLE_GARBAGE_RANDOM:
         for (unsigned i = 0; i < AGV_DLC; i++) {
@@ -65,7 +65,7 @@ vehicle_stretch_t vehicle_stretch(uint16_t count, uint16_t every) {
 /** One more frame. @return whether it is in the stretch, and not in a gap or after the end */
 static bool pass_frame(vehicle_stretch_t *stretch) {
     if (stretch->left != 0u) {
-        use_up(&stretch->left);
+        count_down(&stretch->left);
         stretch->gap_left = (stretch->left == 0u) ? stretch->gap : (uint16_t)0;
         return true;
     }
@@ -125,7 +125,7 @@ static void apply_patches(vehicle_message_t *message, uint8_t data[AGV_DLC]) {
 }
 
 /** Put what was carried `delay_ms` ago in the place of what would be carried now; the counter runs on. */
-static void delay(vehicle_message_t *message, const vehicle_row_t *row, uint8_t data[AGV_DLC]) {
+static void delay_data(vehicle_message_t *message, const vehicle_row_t *row, uint8_t data[AGV_DLC]) {
     vehicle_past_t *past = &message->past;
     const uint32_t wanted = message->delay_ms / row->cycle_ms;
     const uint8_t counter = (row->counter_byte != VEHICLE_NO_COUNTER) ? data[row->counter_byte] : (uint8_t)0;
@@ -155,7 +155,7 @@ void vehicle_send_message(vehicle_t *vehicle, agv_message_t message, uint64_t no
     }
     row->compose(vehicle, now_ms, frame.data);
     if (state->delay_ms != 0u) {
-        delay(state, row, frame.data);
+        delay_data(state, row, frame.data);
     }
     if (pass_frame(&state->muted)) {
         return;
@@ -164,7 +164,7 @@ void vehicle_send_message(vehicle_t *vehicle, agv_message_t message, uint64_t no
         apply_patches(state, frame.data);
     }
     if (node->garbage != VEHICLE_GARBAGE_OFF) {
-        make_garbage(vehicle, (vehicle_garbage_t)node->garbage, &frame);
+        corrupt_frame(vehicle, (vehicle_garbage_t)node->garbage, &frame);
     }
     for (unsigned i = 0; i <= node->repeat; i++) {
         vehicle->send(vehicle->send_ctx, row->node, vehicle_side_of(vehicle, row->node), &frame);
@@ -223,7 +223,7 @@ uint64_t vehicle_send_rogues(vehicle_t *vehicle, uint64_t now_ms) {
         if (now_ms >= rogue->due_ms) {
             rogue->due_ms = now_ms + rogue->period_ms;
             rogue->frame.time_ms = (uint32_t)now_ms;
-            use_up(&rogue->left);
+            count_down(&rogue->left);
             vehicle->send(vehicle->send_ctx, VEHICLE_ROGUE, rogue->side, &rogue->frame);
         }
         if ((rogue->left != 0u) && (rogue->due_ms < next)) {

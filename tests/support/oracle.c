@@ -99,7 +99,7 @@ static void follow(oracle_t *oracle, agv_state_t state) {
 }
 
 /* If no angle is held, the first valid angle after the trip is. */
-static void heard_angle(oracle_t *oracle, const hal_can_frame_t *frame) {
+static void on_angle(oracle_t *oracle, const hal_can_frame_t *frame) {
     const uint16_t raw = word_at(&frame->data[2]);
     if (raw > 18000u) {
         return;
@@ -116,7 +116,7 @@ static void heard_angle(oracle_t *oracle, const hal_can_frame_t *frame) {
 }
 
 /* MODE_INVALID: a millisecond without both bits takes half a millisecond off. */
-static void heard_both(oracle_t *oracle, bool both, uint32_t time_ms) {
+static void on_both_modes(oracle_t *oracle, bool both, uint32_t time_ms) {
     const uint32_t past_ms = time_ms - oracle->both_since_ms;
     const uint32_t left = (past_ms < oracle->both_halves) ? (oracle->both_halves - past_ms) : 0u;
     if (both && (oracle->mode_bits != 0xC0u)) {
@@ -129,9 +129,9 @@ static void heard_both(oracle_t *oracle, bool both, uint32_t time_ms) {
     }
 }
 
-static void heard_mode(oracle_t *oracle, const hal_can_frame_t *frame) {
+static void on_mode(oracle_t *oracle, const hal_can_frame_t *frame) {
     const uint8_t bits = (uint8_t)(frame->data[6] & 0xC0u);
-    heard_both(oracle, bits == 0xC0u, frame->time_ms);
+    on_both_modes(oracle, bits == 0xC0u, frame->time_ms);
     if (bits != 0xC0u) {
         oracle->manual = bits == 0x40u;
     }
@@ -146,9 +146,9 @@ void oracle_heard(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *
         return;
     }
     if (frame->id == 0x067u) {
-        heard_angle(oracle, frame);
+        on_angle(oracle, frame);
     } else if (frame->id == oracle->vehicle_id) {
-        heard_mode(oracle, frame);
+        on_mode(oracle, frame);
     } else {
         /* other messages do not matter */
     }

@@ -73,7 +73,7 @@ static void forget_confirmation(rules_t *rules) {
 }
 
 /* Clear everything but the statistics. */
-static void forget(rules_t *rules, uint64_t now_ms) {
+static void clear_all_but_statistics(rules_t *rules, uint64_t now_ms) {
     rules->vcu = (rules_beat_t){.changed_ms = now_ms};
     rules->eps = (rules_beat_t){.changed_ms = now_ms};
     for (int i = 0; i < RULES_STATUS; i++) {
@@ -103,7 +103,7 @@ static void forget(rules_t *rules, uint64_t now_ms) {
 }
 
 /* FSM-7 */
-static void judge_start(rules_t *rules, hal_reset_cause_t cause, const rules_seen_t *before, const rules_seen_t *seen) {
+static void check_start(rules_t *rules, hal_reset_cause_t cause, const rules_seen_t *before, const rules_seen_t *seen) {
     const bool power_on = cause == HAL_RESET_POWER_ON;
     const bool was_tripped = (before != NULL) && is_latched(before->state);
     if (seen->state != (power_on ? AGV_STATE_INIT : AGV_STATE_TRIPPED)) {
@@ -120,16 +120,16 @@ static void judge_start(rules_t *rules, hal_reset_cause_t cause, const rules_see
 
 void rules_started(rules_t *rules, hal_reset_cause_t cause, const rules_seen_t *before, const rules_seen_t *seen,
                    uint64_t now_ms) {
-    judge_start(rules, cause, before, seen);
+    check_start(rules, cause, before, seen);
     rules->now_ms = now_ms;
-    forget(rules, now_ms);
+    clear_all_but_statistics(rules, now_ms);
     rules->last = *seen;
     oracle_returned(&rules->oracle, seen->state);
 }
 
 /* ---- Received frames ---- */
 
-static void hear_beat(rules_beat_t *beat, uint8_t counter, uint64_t stamp_ms) {
+static void on_counter(rules_beat_t *beat, uint8_t counter, uint64_t stamp_ms) {
     if (beat->heard && (beat->counter != counter)) {
         beat->changed_ms = stamp_ms;
     }
@@ -137,7 +137,7 @@ static void hear_beat(rules_beat_t *beat, uint8_t counter, uint64_t stamp_ms) {
     beat->counter = counter;
 }
 
-static void hear_mode(rules_t *rules, uint8_t byte7, uint64_t stamp_ms) {
+static void on_mode(rules_t *rules, uint8_t byte7, uint64_t stamp_ms) {
     const bool manual = (byte7 & 0xC0u) == 0x40u;
     if (((byte7 & 0xC0u) != 0xC0u) && (manual != rules->manual)) {
         rules->manual = manual;
@@ -146,7 +146,7 @@ static void hear_mode(rules_t *rules, uint8_t byte7, uint64_t stamp_ms) {
     rules->mode_bits = byte7 & (uint8_t)MODE_BITS;
 }
 
-static void hear_button(rules_t *rules, bool down) {
+static void on_button(rules_t *rules, bool down) {
     if (!down) {
         rules->released = rules->button_down && rules->button_was_up;
         rules->press_ms = rules->now_ms - rules->pressed_ms;
@@ -160,7 +160,7 @@ static void hear_button(rules_t *rules, bool down) {
 }
 
 /* Idle is up to 2 counts; an invalid value is not used. */
-static void hear_throttle(rules_t *rules, uint8_t counts) {
+static void on_throttle(rules_t *rules, uint8_t counts) {
     const bool before = rules->throttle_high;
     if (counts <= (uint8_t)THROTTLE_COUNTS) {
         rules->throttle_high = counts > (uint8_t)IDLE_COUNTS;
@@ -168,24 +168,24 @@ static void hear_throttle(rules_t *rules, uint8_t counts) {
     rules->throttle_ms = (before || rules->throttle_high) ? rules->now_ms : rules->throttle_ms;
 }
 
-static void hear_status(rules_t *rules, int status, const hal_can_frame_t *frame, uint64_t stamp_ms) {
+static void on_status(rules_t *rules, int status, const hal_can_frame_t *frame, uint64_t stamp_ms) {
     const uint8_t *data = frame->data;
     rules->status_ms[status] = stamp_ms;
     rules->status_heard[status] = true;
     memcpy(rules->status_data[status], data, 8);
     switch (status) {
     case VEHICLE:
-        hear_beat(&rules->vcu, data[7], stamp_ms);
-        hear_mode(rules, data[6], stamp_ms);
-        hear_button(rules, (data[6] & 1u) != 0u);
+        on_counter(&rules->vcu, data[7], stamp_ms);
+        on_mode(rules, data[6], stamp_ms);
+        on_button(rules, (data[6] & 1u) != 0u);
         rules->fast_ms = (word_at(data) > SLOW_COUNTS) ? stamp_ms : rules->fast_ms;
         rules->alarm = (data[4] & 0xB3u) != 0u; /* bits 0, 1, 4, 5, 7 */
         break;
     case THROTTLE_STATUS:
-        hear_throttle(rules, data[0]);
+        on_throttle(rules, data[0]);
         break;
     case STEERING_STATUS:
-        hear_beat(&rules->eps, data[0], stamp_ms);
+        on_counter(&rules->eps, data[0], stamp_ms);
         break;
     case EPS_STATUS:
         rules->alarm = (data[7] & 0xE8u) != 0u; /* bits 4, 6, 7, 8 in the protocol document */
@@ -198,7 +198,7 @@ static void hear_status(rules_t *rules, int status, const hal_can_frame_t *frame
     }
 }
 
-static void hear_command(rules_t *rules, int command, const hal_can_frame_t *frame) {
+static void on_command(rules_t *rules, int command, const hal_can_frame_t *frame) {
     if (in_range(command, frame->data)) {
         memcpy(rules->command_data[command], frame->data, 8);
         clear_reserved(command, rules->command_data[command]);
@@ -207,7 +207,7 @@ static void hear_command(rules_t *rules, int command, const hal_can_frame_t *fra
     }
 }
 
-static void owe_answer(rules_t *rules, int command, const hal_can_frame_t *frame, uint64_t stamp_ms) {
+static void require_override(rules_t *rules, int command, const hal_can_frame_t *frame, uint64_t stamp_ms) {
     const bool sends_it = (command == SIGNALS) || (command == THROTTLE) || ((command == GEAR) && rules->park_at_once);
     if (sends_it && (frame->flags == 0u) && commands_safe(rules->last.state) && differs_from_safe(command, frame) &&
         !rules->answer_owed[command]) {
@@ -226,16 +226,16 @@ void rules_heard(rules_t *rules, hal_can_side_t side, const hal_can_frame_t *fra
     rules->released = false;
     oracle_heard(&rules->oracle, side, frame);
     if (whole && (status >= 0) && (side == HAL_CAN_VEHICLE)) {
-        hear_status(rules, status, frame, stamp_ms);
+        on_status(rules, status, frame, stamp_ms);
     }
     if (command < 0) {
         return;
     }
     if (whole && (side == (rules->oracle.gateway ? HAL_CAN_AI : HAL_CAN_VEHICLE))) {
-        hear_command(rules, command, frame);
+        on_command(rules, command, frame);
     }
     if (side == HAL_CAN_VEHICLE) {
-        owe_answer(rules, command, frame, stamp_ms);
+        require_override(rules, command, frame, stamp_ms);
     }
 }
 
@@ -251,7 +251,7 @@ void rules_ticks(rules_t *rules, uint64_t now_ms, rules_bus_t bus) {
 
 /* TOP-2: a forwarded frame has the bytes of the last received one; a command has reserved bits cleared, and may be
  * limited. */
-static void judge_passed(rules_t *rules, hal_can_side_t side, const hal_can_frame_t *frame, agv_state_t state) {
+static void check_passed(rules_t *rules, hal_can_side_t side, const hal_can_frame_t *frame, agv_state_t state) {
     const int status = status_of(rules, frame->id);
     const int command = command_of(rules, frame->id);
     if (side == HAL_CAN_AI) {
@@ -284,7 +284,7 @@ static void judge_passed(rules_t *rules, hal_can_side_t side, const hal_can_fram
 }
 
 /* FSM-8: the supervisor's alive counter increases by one. */
-static void judge_own_counter(rules_t *rules, uint8_t counter) {
+static void check_own_counter(rules_t *rules, uint8_t counter) {
     if (rules->own_counter_known && ((counter != rules->own_counter) != rules->running_heartbeat)) {
         broken(rules, "FSM-8: the own alive counter was %u and is %u", rules->own_counter, counter);
     }
@@ -304,14 +304,14 @@ void rules_sent(rules_t *rules, hal_can_side_t side, const hal_can_frame_t *fram
         broken(rules, "TOP-4: %03X was sent in shadow mode", (unsigned)frame->id);
     }
     if (rules->oracle.gateway) {
-        judge_passed(rules, side, frame, state);
+        check_passed(rules, side, frame, state);
     }
     if ((command >= 0) && (side == HAL_CAN_VEHICLE)) {
         rules->sent_now |= (uint8_t)(1u << (unsigned)command);
         rules->sent_ms[command] = rules->now_ms;
         rules->answer_owed[command] = false;
         if ((command == SIGNALS) && commands_safe(state)) {
-            judge_own_counter(rules, frame->data[7]);
+            check_own_counter(rules, frame->data[7]);
         }
         rules->park_sent = rules->park_sent || ((command == GEAR) && is_latched(state));
     }
@@ -324,7 +324,7 @@ static uint64_t age_ms(const rules_t *rules, uint64_t then_ms) {
 }
 
 /* SUP-2, SUP-3: while supervising, silence must trip. Only a tick checks the clock. */
-static void judge_silence(rules_t *rules) {
+static void check_silence(rules_t *rules) {
     static const uint64_t LIMITS[RULES_STATUS] = {HEARTBEAT_MS, GEAR_STATUS_MS, STATUS_MS, HEARTBEAT_MS,
                                                   STATUS_MS,    UINT64_MAX,     STATUS_MS}; /* 267h only warns */
     if ((age_ms(rules, rules->vcu.changed_ms) > HEARTBEAT_MS) ||
@@ -342,7 +342,7 @@ static void judge_silence(rules_t *rules) {
 }
 
 /* FSM-2: all safe commands are sent in the call that trips. */
-static void judge_trip(rules_t *rules) {
+static void check_trip(rules_t *rules) {
     const uint8_t needed = (uint8_t)((1u << SIGNALS) | (1u << THROTTLE) | (rules->park_at_once ? (1u << GEAR) : 0u));
     rules->trips++;
     rules->button_was_up = rules->status_heard[VEHICLE] && !rules->button_down; /* the next press is a new one */
@@ -356,7 +356,7 @@ static void judge_trip(rules_t *rules) {
 }
 
 /* FSM-3 */
-static void judge_reset(rules_t *rules) {
+static void check_reset(rules_t *rules) {
     const char *missing = NULL;
     rules->resets++;
     if ((rules->last.state != AGV_STATE_SAFE) || (age_ms(rules, rules->safe_ms) < LATELY_MS)) {
@@ -378,16 +378,16 @@ static void judge_reset(rules_t *rules) {
     broken(rules, "FSM-3: the latch was left without %s", missing);
 }
 
-static void judge_state(rules_t *rules, const rules_seen_t *seen) {
+static void check_state(rules_t *rules, const rules_seen_t *seen) {
     const rules_seen_t *last = &rules->last;
     if (!is_latched(last->state) && is_latched(seen->state)) {
-        judge_trip(rules);
+        check_trip(rules);
     }
     if (is_latched(last->state) && !is_latched(seen->state)) {
         if (seen->state != AGV_STATE_STANDBY) {
             broken(rules, "FSM-3: the latch was left for state %02Xh", (unsigned)seen->state);
         }
-        judge_reset(rules);
+        check_reset(rules);
     }
     if ((last->state != AGV_STATE_INIT) && (seen->state == AGV_STATE_INIT)) {
         broken(rules, "back to INIT from %02Xh", (unsigned)last->state);
@@ -414,7 +414,7 @@ static void judge_state(rules_t *rules, const rules_seen_t *seen) {
  * clock. The values before the tick count, because a trip discards waiting frames, and the tick feeds the watchdog
  * last.
  */
-static void judge_closed(rules_t *rules) {
+static void check_closed(rules_t *rules) {
     if (rules->bus.is_bus_off) {
         broken(rules, "FSM-4: the safety output is closed in bus-off");
     }
@@ -453,7 +453,7 @@ static void add_up_confirmation(rules_t *rules) {
     rules->was_out_of_park = out_of_park;
 }
 
-static void judge_confirmation(rules_t *rules) {
+static void check_confirmation(rules_t *rules) {
     if ((rules->engaged_sum_ms > CONFIRM_MS) || (rules->no_park_sum_ms > CONFIRM_MS)) {
         broken(rules, "FSM-4: the safety output is closed after %u ms of autopilot and %u ms without P since the trip",
                (unsigned)rules->engaged_sum_ms, (unsigned)rules->no_park_sum_ms);
@@ -461,7 +461,7 @@ static void judge_confirmation(rules_t *rules) {
 }
 
 /* FSM-4. In STANDBY and ACTIVE the output is closed again at the next tick if the port did not close it before (HW-1). */
-static void judge_output(rules_t *rules, const rules_seen_t *seen, bool tick) {
+static void check_output(rules_t *rules, const rules_seen_t *seen, bool tick) {
     const bool closes = (seen->state == AGV_STATE_STANDBY) || (seen->state == AGV_STATE_ACTIVE);
     if (seen->output_closed && !rules->last.output_closed && !closes) {
         broken(rules, "FSM-4: the safety output has closed in state %02Xh", (unsigned)seen->state);
@@ -473,15 +473,15 @@ static void judge_output(rules_t *rules, const rules_seen_t *seen, bool tick) {
         broken(rules, "FSM-4: the safety output is closed in INIT");
     }
     if (tick) {
-        judge_closed(rules);
+        check_closed(rules);
     }
     if (tick && is_latched(seen->state)) {
-        judge_confirmation(rules);
+        check_confirmation(rules);
     }
 }
 
 /* TIM-1, TOP-1: safe commands are sent on their cycles, and other senders' commands are overridden. */
-static void judge_sending(rules_t *rules, const rules_seen_t *seen, uint64_t tick_gap_ms) {
+static void check_sending(rules_t *rules, const rules_seen_t *seen, uint64_t tick_gap_ms) {
     const bool able = rules->bus.takes_frames && !rules->shadow && commands_safe(seen->state);
     if (!able || !commands_safe(rules->last.state)) {
         rules->commanding_ms = rules->now_ms;
@@ -502,17 +502,17 @@ static void judge_sending(rules_t *rules, const rules_seen_t *seen, uint64_t tic
 
 void rules_returned(rules_t *rules, const rules_seen_t *seen, bool tick, uint64_t tick_gap_ms) {
     rules->calls++;
-    judge_state(rules, seen);
+    check_state(rules, seen);
     if (tick && is_latched(seen->state)) {
         add_up_confirmation(rules);
     }
     rules->ticked_ms = tick ? rules->now_ms : rules->ticked_ms;
-    judge_output(rules, seen, tick);
+    check_output(rules, seen, tick);
     if (tick && is_supervising(seen->state)) {
-        judge_silence(rules);
+        check_silence(rules);
     }
     if (tick) {
-        judge_sending(rules, seen, tick_gap_ms);
+        check_sending(rules, seen, tick_gap_ms);
     }
     if (seen->gate_refused != rules->last.gate_refused) {
         broken(rules, "INT-4: the gate refused a frame in state %02Xh", (unsigned)seen->state);

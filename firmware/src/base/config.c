@@ -81,7 +81,7 @@ static uint32_t out_of_range(const agv_config_t *config) {
 }
 
 /* The highest-ranking mandatory trip that is configured as a warning; AGV_FAULT_NONE if there is none. */
-static uint32_t too_weak(const agv_config_t *config) {
+static uint32_t first_weakened_trip(const agv_config_t *config) {
     uint32_t fault = 0u;
     while ((fault < (uint32_t)AGV_FAULT_COUNT) &&
            (((agv_fault_flags(fault) & AGV_FAULT_FLAG_FIXED) == 0u) || agv_config_is_trip(config, fault))) {
@@ -122,7 +122,7 @@ static bool has_unknown_fault(const agv_config_t *config) {
 }
 
 /* On a shared bus: the first setting that is not at its default and has no effect; AGV_SETTING_COUNT if there is none. */
-static uint32_t without_effect(const agv_config_t *config) {
+static uint32_t first_setting_without_effect(const agv_config_t *config) {
     uint32_t setting = (config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? (uint32_t)AGV_SETTING_COUNT : 0u;
     while ((setting < (uint32_t)AGV_SETTING_COUNT) &&
            ((rows[setting].scope == (uint8_t)ANY) || (agv_config_get(config, setting) == rows[setting].preset))) {
@@ -141,7 +141,7 @@ static agv_config_problem_t check_settings(const agv_config_t *config, uint16_t 
     if (*setting < (uint16_t)AGV_SETTING_COUNT) {
         return AGV_CONFIG_ID_TWICE;
     }
-    *setting = (uint16_t)without_effect(config);
+    *setting = (uint16_t)first_setting_without_effect(config);
     if (*setting < (uint16_t)AGV_SETTING_COUNT) {
         return AGV_CONFIG_NEEDS_GATEWAY;
     }
@@ -153,7 +153,7 @@ static agv_config_problem_t check_settings(const agv_config_t *config, uint16_t 
 }
 
 agv_config_verdict_t agv_config_check(const agv_config_t *config) {
-    agv_config_verdict_t verdict = {AGV_CONFIG_OK, AGV_SETTING_COUNT, (agv_fault_t)too_weak(config)};
+    agv_config_verdict_t verdict = {AGV_CONFIG_OK, AGV_SETTING_COUNT, (agv_fault_t)first_weakened_trip(config)};
     verdict.problem = check_settings(config, &verdict.setting);
     if (verdict.problem != AGV_CONFIG_OK) {
         return verdict;

@@ -59,7 +59,7 @@ void agv_timers_set_time(agv_timers_t *timers, uint32_t time_ms) {
 #define AGE_MAX_MS 0xFFFFu
 
 /* Time from since_ms until the timer has reached its limit. */
-static uint32_t span_of(const agv_config_t *config, uint32_t timer) {
+static uint32_t time_to_limit_ms(const agv_config_t *config, uint32_t timer) {
     return limit_of(config, timer) + rows[timer].more_ms;
 }
 
@@ -78,7 +78,7 @@ static uint32_t evaluate(agv_timers_t *timers, const agv_config_t *config, uint3
     for (uint32_t i = 0u; i < (uint32_t)AGV_TIMER_COUNT; i++) {
         if (is_running(timers, i)) {
             const uint32_t age_ms = age_of(timers, i) + step_ms;
-            const uint32_t span_ms = span_of(config, i);
+            const uint32_t span_ms = time_to_limit_ms(config, i);
             if (age_ms >= span_ms) {
                 timers->phase[i] = AGV_TIMER_REACHED;
             } else if ((span_ms - age_ms) < next_ms) {

@@ -73,7 +73,7 @@ static void follow_press(agv_reset_button_t *reset, agv_timers_t *timers) {
 }
 
 /* The press has just ended, or has reached reset_hold_max_ms. */
-static agv_press_result_t answer(const agv_reset_button_t *reset, const agv_timers_t *timers, uint32_t *missing) {
+static agv_press_result_t press_result(const agv_reset_button_t *reset, const agv_timers_t *timers, uint32_t *missing) {
     const bool too_long = agv_timer_reached(timers, long_press_timer(reset));
     const bool unheard = reset->button == (uint8_t)AGV_BUTTON_UNHEARD;
     *missing |= (reset->began_after && !unheard) ? 0u : AGV_MISSING_BUTTON;
@@ -93,7 +93,7 @@ agv_press_result_t agv_reset_button_step(agv_reset_button_t *reset, agv_timers_t
     const bool is_down = reset->button == (uint8_t)AGV_BUTTON_DOWN;
     const bool ends = !is_down || agv_timer_reached(timers, long_press_timer(reset));
     if (ends && !reset->answered && agv_timer_reached(timers, press_timer(reset))) {
-        result = answer(reset, timers, missing);
+        result = press_result(reset, timers, missing);
         reset->answered = true;
     }
     if (!is_down) {

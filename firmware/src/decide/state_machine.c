@@ -148,7 +148,7 @@ static uint32_t step_state(agv_state_machine_t *machine, agv_timers_t *timers, c
 }
 
 /* The actions that follow from a change of the state machine. */
-static uint32_t changes(const agv_state_machine_t *machine, const agv_state_machine_t *before) {
+static uint32_t actions_of_change(const agv_state_machine_t *machine, const agv_state_machine_t *before) {
     uint32_t what = (machine->state != before->state) ? AGV_ACTION_STATE : 0u;
     if ((machine->latched != before->latched) || (machine->unresettable != before->unresettable)) {
         what |= AGV_ACTION_STORE_LATCH;
@@ -169,7 +169,7 @@ agv_actions_t agv_state_machine_step(agv_state_machine_t *machine, agv_timers_t 
     if (((facts & AGV_FACT_OUTPUT_UNSAFE) != 0u) || has_cause(machine->unresettable)) {
         machine->output_closed = false;
     }
-    actions.what |= changes(machine, &before);
+    actions.what |= actions_of_change(machine, &before);
     return actions;
 }
 

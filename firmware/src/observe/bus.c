@@ -5,7 +5,7 @@ static uint32_t timer_of(hal_can_side_t side) {
 }
 
 /* Store the controller's counters. */
-static void follow(agv_bus_t *bus, const hal_can_status_t *status) {
+static void store_counters(agv_bus_t *bus, const hal_can_status_t *status) {
     bus->bus_offs = status->bus_off_count;
     bus->overruns = status->overrun_count;
 }
@@ -13,7 +13,7 @@ static void follow(agv_bus_t *bus, const hal_can_status_t *status) {
 void agv_bus_start(agv_bus_t *bus, hal_t *hal, hal_can_side_t side) {
     hal_can_status_t status;
     hal_can_status(hal, side, &status);
-    follow(bus, &status);
+    store_counters(bus, &status);
 }
 
 bool agv_bus_is_off(const agv_timers_t *timers, hal_can_side_t side) {
@@ -48,6 +48,6 @@ uint32_t agv_bus_tick(agv_bus_t *bus, agv_timers_t *timers, const agv_config_t *
         agv_timer_start(timers, timer_of(side));
         report |= AGV_BUS_ASK_RECOVERY;
     }
-    follow(bus, &status);
+    store_counters(bus, &status);
     return report;
 }

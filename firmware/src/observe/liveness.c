@@ -66,7 +66,7 @@ static bool is_changed(agv_heartbeat_t *heartbeat, uint8_t counter, bool increme
 }
 
 /* Handle an alive counter. Returns whether the deadline is restarted. */
-static bool beat(agv_liveness_t *liveness, uint32_t node, uint8_t counter, bool increments) {
+static bool evaluate_counter(agv_liveness_t *liveness, uint32_t node, uint8_t counter, bool increments) {
     agv_heartbeat_t *const heartbeat = &liveness->heartbeats[node];
     if (!heartbeat->counter_known) {
         heartbeat->counter_known = true;
@@ -87,7 +87,7 @@ static bool beat(agv_liveness_t *liveness, uint32_t node, uint8_t counter, bool 
     return changed;
 }
 
-static bool counts_up(const agv_config_t *config, uint32_t node) {
+static bool counter_must_increment(const agv_config_t *config, uint32_t node) {
     const uint16_t choices[AGV_NODE_COUNT] = {
         [AGV_NODE_VCU] = config->vcu_counter, [AGV_NODE_EPS] = config->eps_counter, [AGV_NODE_AI] = config->ai_counter};
     return choices[node] == (uint16_t)AGV_COUNTER_INCREMENTS;
@@ -105,7 +105,8 @@ void agv_liveness_refresh(agv_liveness_t *liveness, agv_timers_t *timers, const 
                           const hal_can_frame_t *frame) {
     const uint32_t at = counters_at[message];
     const uint32_t node = node_of(message);
-    if ((at == (uint32_t)NO_COUNTER) || beat(liveness, node, frame->data[at], counts_up(config, node))) {
+    if ((at == (uint32_t)NO_COUNTER) ||
+        evaluate_counter(liveness, node, frame->data[at], counter_must_increment(config, node))) {
         agv_timer_start_at(timers, deadline_of(message), frame->time_ms);
     }
 }

@@ -13,7 +13,7 @@ static bool has(const agv_mode_t *mode, uint32_t bit) {
     return (mode->bits & bit) != 0u;
 }
 
-static agv_mode_change_t begin(agv_mode_t *mode, agv_timers_t *timers, uint32_t time_ms) {
+static agv_mode_change_t begin_engagement(agv_mode_t *mode, agv_timers_t *timers, uint32_t time_ms) {
     const bool continues =
         agv_timer_runs(timers, AGV_TIMER_DISENGAGED) && !agv_timer_reached(timers, AGV_TIMER_DISENGAGED);
     mode->engaged = true;
@@ -60,7 +60,7 @@ static bool resume_while(agv_timers_t *timers, const agv_config_t *config, uint3
     return agv_timer_reached(timers, timer);
 }
 
-static void fade(const agv_timers_t *timers, uint32_t timer, agv_budget_t *spent, uint32_t elapsed_ms) {
+static void reduce_budget(const agv_timers_t *timers, uint32_t timer, agv_budget_t *spent, uint32_t elapsed_ms) {
     if (!agv_timer_runs(timers, timer)) {
         agv_budget_add(spent, false, elapsed_ms, UINT16_MAX);
     }
@@ -80,7 +80,7 @@ agv_mode_change_t agv_mode_report(agv_mode_t *mode, agv_timers_t *timers, const 
         return count_off_frame(mode, timers, config);
     }
     mode->off_frames = 0u;
-    return (!mode->engaged && vcu_alive) ? begin(mode, timers, time_ms) : AGV_MODE_SAME;
+    return (!mode->engaged && vcu_alive) ? begin_engagement(mode, timers, time_ms) : AGV_MODE_SAME;
 }
 
 static bool is_invalid(const agv_timers_t *timers) {
@@ -88,8 +88,8 @@ static bool is_invalid(const agv_timers_t *timers) {
 }
 
 agv_mode_change_t agv_mode_tick(agv_mode_t *mode, agv_timers_t *timers, bool vcu_alive, uint32_t elapsed_ms) {
-    fade(timers, AGV_TIMER_BOTH_MODES, &mode->both_spent, elapsed_ms);
-    fade(timers, AGV_TIMER_NO_MODE, &mode->none_spent, elapsed_ms);
+    reduce_budget(timers, AGV_TIMER_BOTH_MODES, &mode->both_spent, elapsed_ms);
+    reduce_budget(timers, AGV_TIMER_NO_MODE, &mode->none_spent, elapsed_ms);
     if (is_invalid(timers)) {
         mode->manual = false;
     }

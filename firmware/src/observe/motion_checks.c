@@ -16,7 +16,7 @@ static const uint8_t faults_of[AGV_BUDGET_COUNT] = {[AGV_BUDGET_STEERING] = AGV_
                                                     [AGV_BUDGET_THROTTLE_IN_PARK] = AGV_FAULT_THROTTLE_IN_PARK,
                                                     [AGV_BUDGET_SPEED] = AGV_FAULT_SPEED_IMPLAUSIBLE};
 
-static int32_t amount(int32_t value) {
+static int32_t magnitude_of(int32_t value) {
     return (value < 0) ? -value : value;
 }
 
@@ -28,7 +28,7 @@ static int32_t clamp(int32_t value, int32_t limit) {
 }
 
 static int32_t off_by_ddeg(const agv_motion_facts_t *facts, uint32_t angle_raw) {
-    return amount((int32_t)angle_raw - (int32_t)facts->commands->angle_raw);
+    return magnitude_of((int32_t)angle_raw - (int32_t)facts->commands->angle_raw);
 }
 
 /* Clear a budget because the deviation is decreasing. The progress counter restarts with the budget. */
@@ -83,11 +83,11 @@ static bool gear_is_another(const agv_motion_facts_t *facts) {
 static bool speeds_differ(const agv_vehicle_t *vehicle) {
     const int32_t left_mm_s = clamp(vehicle->wheels.left_mm_s, WHEEL_MAX_MM_S);
     const int32_t right_mm_s = clamp(vehicle->wheels.right_mm_s, WHEEL_MAX_MM_S);
-    const int32_t wheels_mm_s = amount(left_mm_s + right_mm_s) / 2;
+    const int32_t wheels_mm_s = magnitude_of(left_mm_s + right_mm_s) / 2;
     const int32_t vcu_mm_s = ((int32_t)vehicle->vcu_speed * MM_S_PER_18_COUNTS) / 18;
     const int32_t larger_mm_s = (wheels_mm_s > vcu_mm_s) ? wheels_mm_s : vcu_mm_s;
     return vehicle->wheels_fresh && vehicle->vcu_alive && vehicle->vcu_speed_seen &&
-           (amount(wheels_mm_s - vcu_mm_s) > (SPEED_SLACK_MM_S + (larger_mm_s / SPEED_SHARE)));
+           (magnitude_of(wheels_mm_s - vcu_mm_s) > (SPEED_SLACK_MM_S + (larger_mm_s / SPEED_SHARE)));
 }
 
 void agv_motion_checks_tick(agv_motion_checks_t *checks, const agv_motion_facts_t *facts, uint32_t elapsed_ms) {

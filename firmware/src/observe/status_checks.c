@@ -69,7 +69,7 @@ void agv_status_checks_value(agv_status_checks_t *checks, const agv_config_t *co
 }
 
 /* Whether a fault that depends on the engagement may be present. */
-static bool has_news(const agv_status_checks_t *checks) {
+static bool has_fault_of_engagement(const agv_status_checks_t *checks) {
     bool present = checks->reported || checks->eps_mode.present || checks->ai_alarm;
     for (uint32_t i = 0u; i < AGV_SCORED_VALUES; i++) {
         present = present || checks->values[i].present;
@@ -78,7 +78,7 @@ static bool has_news(const agv_status_checks_t *checks) {
 }
 
 void agv_status_checks_evaluate(agv_status_checks_t *checks, agv_fault_monitor_t *faults, bool engaged, bool judged) {
-    if (!has_news(checks)) {
+    if (!has_fault_of_engagement(checks)) {
         return;
     }
     const bool ai_alarm = engaged && checks->ai_alarm && checks->ai_alarm_armed;
@@ -91,7 +91,7 @@ void agv_status_checks_evaluate(agv_status_checks_t *checks, agv_fault_monitor_t
     }
     agv_fault_monitor_set(faults, AGV_FAULT_VCU_AI_CAN_LOST, ai_alarm);
     checks->reported = false;
-    checks->reported = has_news(checks);
+    checks->reported = has_fault_of_engagement(checks);
 }
 
 void agv_status_checks_engage(agv_status_checks_t *checks) {

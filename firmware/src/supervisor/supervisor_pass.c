@@ -279,7 +279,7 @@ agv_pass_t agv_core_decide(agv_core_t *core, const agv_ports_t *ports, uint32_t 
 }
 
 /* From now on the vehicle is compared with the forwarded commands (SUP-5). */
-static void take_passed_commands(agv_core_t *core, uint32_t passed) {
+static void note_forwarded_commands(agv_core_t *core, uint32_t passed) {
     for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
         if (((passed >> i) & 1u) != 0u) {
             agv_commands_take(&core->commands, i, agv_transmitter_passed(&core->transmitter, i));
@@ -297,7 +297,7 @@ void agv_core_take_tx_report(agv_core_t *core) {
     core->counters.dropped += report.dropped;
     core->counters.gate_refused += report.refused;
     core->counters.skipped_slots += report.skipped_slots;
-    take_passed_commands(core, report.passed);
+    note_forwarded_commands(core, report.passed);
     if (report.refused != 0u) {
         agv_fault_monitor_event(&core->faults, &core->timers,
                                 AGV_FAULT_TX_GATE_REFUSED); /* evaluated at the next call */

@@ -117,7 +117,7 @@ void agv_core_keep_wiring(agv_core_t *core) {
 }
 
 /* Use the defaults, with topology and identifiers of this vehicle if these are valid. */
-static void fall_back(agv_core_t *core) {
+static void use_default_config(agv_core_t *core) {
     agv_config_t *const config = &core->config;
     agv_config_defaults(config);
     config->topology = (core->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? AGV_TOPOLOGY_GATEWAY : config->topology;
@@ -138,7 +138,7 @@ static void fall_back(agv_core_t *core) {
 bool agv_core_check_config(agv_core_t *core, bool intact) {
     const bool stands = intact && (agv_config_check(&core->config).problem == AGV_CONFIG_OK);
     if (!stands) {
-        fall_back(core);
+        use_default_config(core);
     }
     return stands;
 }

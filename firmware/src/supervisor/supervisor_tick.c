@@ -33,7 +33,7 @@ static uint32_t follow_bus(agv_core_t *core, hal_t *hal, hal_can_side_t side) {
 }
 
 /* FSM-10: whether a 065h has left the controller. Bus-off discards it. */
-static void follow_handed_over(agv_core_t *core, uint32_t report) {
+static void track_hold_frame(agv_core_t *core, uint32_t report) {
     if ((report & (AGV_BUS_OFF | AGV_BUS_RECOVERED)) != 0u) {
         agv_hold_withdrawn(&core->hold);
     } else if ((report & AGV_BUS_WAITING) == 0u) {
@@ -49,7 +49,7 @@ static bool observe_buses(agv_core_t *core, hal_t *hal) {
     const uint32_t vehicle = follow_bus(core, hal, HAL_CAN_VEHICLE);
     const uint32_t ai = agv_core_is_gateway(core) ? follow_bus(core, hal, HAL_CAN_AI) : 0u;
     const bool stalled = agv_transmitter_is_stalled(&core->timers) || ((vehicle & AGV_BUS_STALLED) != 0u);
-    follow_handed_over(core, vehicle);
+    track_hold_frame(core, vehicle);
     if (((vehicle | ai) & AGV_BUS_OVERRUN) != 0u) {
         agv_fault_monitor_event(faults, &core->timers, AGV_FAULT_RX_OVERRUN);
     }

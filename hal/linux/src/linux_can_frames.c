@@ -75,7 +75,7 @@ static void note_error(linux_can_t *can, int error) {
     }
 }
 
-static linux_can_read_t why_nothing(linux_can_t *can, int error) {
+static linux_can_read_t result_of_read_error(linux_can_t *can, int error) {
     if (error == ENETDOWN) {
         can->is_down = false; /* the kernel reports it once each time that the interface goes down: report it again */
     }
@@ -88,7 +88,7 @@ static linux_can_read_t why_nothing(linux_can_t *can, int error) {
     return report_down ? LINUX_CAN_IS_DOWN : LINUX_CAN_NOTHING;
 }
 
-static linux_can_write_t why_not_taken(linux_can_t *can, int error) {
+static linux_can_write_t result_of_write_error(linux_can_t *can, int error) {
     if (error == ENOBUFS || error == EAGAIN) {
         return LINUX_CAN_FULL;
     }
@@ -98,7 +98,7 @@ static linux_can_write_t why_not_taken(linux_can_t *can, int error) {
 
 linux_can_read_t linux_can_read(linux_can_t *can, linux_can_record_t *record) {
     if (can->is_gone || can->report_down) {
-        return why_nothing(can, 0);
+        return result_of_read_error(can, 0);
     }
     struct canfd_frame raw = {0};
     control_t control;
@@ -107,7 +107,7 @@ linux_can_read_t linux_can_read(linux_can_t *can, linux_can_record_t *record) {
         .msg_iov = &part, .msg_iovlen = 1, .msg_control = &control, .msg_controllen = sizeof control};
     const ssize_t size = recvmsg(can->fd, &message, MSG_DONTWAIT);
     if (size < 0) {
-        return why_nothing(can, errno);
+        return result_of_read_error(can, errno);
     }
     if (size != (ssize_t)CAN_MTU && size != (ssize_t)CANFD_MTU) {
         return LINUX_CAN_NOTHING;
@@ -124,7 +124,7 @@ linux_can_write_t linux_can_write(linux_can_t *can, const hal_can_frame_t *frame
         return LINUX_CAN_NOT_TAKEN;
     }
     if (send(can->fd, &raw, sizeof raw, MSG_DONTWAIT) < 0) {
-        return why_not_taken(can, errno);
+        return result_of_write_error(can, errno);
     }
     can->is_down = false;
     return LINUX_CAN_TAKEN;

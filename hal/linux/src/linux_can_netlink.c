@@ -66,7 +66,7 @@ static int exchange(int fd, const void *request, size_t size, answer_t *answer) 
     return (answer->header.nlmsg_type == NLMSG_ERROR) ? -answer->is.verdict.error : 0;
 }
 
-static int ask(const void *request, size_t size, answer_t *answer) {
+static int query(const void *request, size_t size, answer_t *answer) {
     const int fd = socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_ROUTE);
     if (fd < 0) {
         return errno;
@@ -86,7 +86,7 @@ int linux_can_find(const char *name, int *index, unsigned *kind) {
                       .interface = {.ifi_family = AF_UNSPEC}};
     memcpy(request.name_text, name, strlen(name));
     request.name = attribute(IFLA_IFNAME, offsetof(find_t, name), offsetof(find_t, name_text) + strlen(name) + 1u);
-    const int result = ask(&request, sizeof request, &answer);
+    const int result = query(&request, sizeof request, &answer);
     if (result == 0) {
         *index = answer.is.interface.ifi_index;
         *kind = answer.is.interface.ifi_type;
@@ -105,7 +105,7 @@ bool linux_can_restart(const linux_can_t *can) {
     request.kind = attribute(IFLA_INFO_KIND, offsetof(restart_t, kind), offsetof(restart_t, data));
     request.data = attribute(IFLA_INFO_DATA, offsetof(restart_t, data), sizeof request);
     request.restart = attribute(IFLA_CAN_RESTART, offsetof(restart_t, restart), sizeof request);
-    return can->fd >= 0 && ask(&request, sizeof request, &answer) == 0;
+    return can->fd >= 0 && query(&request, sizeof request, &answer) == 0;
 }
 
 static bool ask_whether_up(const linux_can_t *can) {
@@ -113,7 +113,7 @@ static bool ask_whether_up(const linux_can_t *can) {
     const look_t request = {
         .header = {.nlmsg_len = sizeof request, .nlmsg_type = RTM_GETLINK, .nlmsg_flags = NLM_F_REQUEST},
         .interface = {.ifi_family = AF_UNSPEC, .ifi_index = can->index}};
-    return ask(&request, sizeof request, &answer) == 0 && (answer.is.interface.ifi_flags & (unsigned)IFF_UP) != 0;
+    return query(&request, sizeof request, &answer) == 0 && (answer.is.interface.ifi_flags & (unsigned)IFF_UP) != 0;
 }
 
 /* The socket is bound before the state is queried, so that no change between the two is missed. */
@@ -133,7 +133,7 @@ static bool open_link(linux_can_t *can) {
     return true;
 }
 
-static void take_news(linux_can_t *can, const answer_t *news, size_t size) {
+static void apply_report(linux_can_t *can, const answer_t *news, size_t size) {
     const struct ifinfomsg *interface = &news->is.interface;
     const bool tells = news->header.nlmsg_type == RTM_NEWLINK || news->header.nlmsg_type == RTM_DELLINK;
     if (tells && size >= sizeof(look_t) && interface->ifi_index == can->index && interface->ifi_family == AF_UNSPEC) {
@@ -142,13 +142,13 @@ static void take_news(linux_can_t *can, const answer_t *news, size_t size) {
 }
 
 /* When reports were lost, the state is queried after all kept reports were read, because they are older. */
-static void read_news(linux_can_t *can) {
+static void read_reports(linux_can_t *can) {
     bool has_lost = false;
     for (unsigned i = 0; i < NEWS_AT_ONCE_MAX; i++) {
         answer_t news = {0};
         const ssize_t size = recv(can->link_fd, &news, sizeof news, MSG_DONTWAIT);
         if (size >= 0) {
-            take_news(can, &news, (size_t)size);
+            apply_report(can, &news, (size_t)size);
         } else if (errno == ENOBUFS) {
             has_lost = true;
         } else {
@@ -168,6 +168,6 @@ bool linux_can_is_up(linux_can_t *can) {
     if (!can->has_link) {
         return open_link(can) && can->link_is_up;
     }
-    read_news(can);
+    read_reports(can);
     return can->link_is_up;
 }

@@ -46,7 +46,7 @@ static bool open_side(hal_t *hal, linux_hal_side_t *side, char *error) {
 }
 
 /* An adapter was unplugged: the socket cannot be used any more, even if an interface with the same name appears. */
-static void lose_side(linux_hal_side_t *side, uint64_t now_us) {
+static void mark_side_lost(linux_hal_side_t *side, uint64_t now_us) {
     linux_hal_controller_down(side);
     linux_can_close(&side->can);
     side->is_open = false;
@@ -207,7 +207,7 @@ static void read_ahead(hal_t *hal, hal_can_side_t which) {
             linux_hal_controller_down(side);
             break;
         case LINUX_CAN_IS_GONE:
-            lose_side(side, linux_hal_now_us(hal));
+            mark_side_lost(side, linux_hal_now_us(hal));
             break;
         case LINUX_CAN_NOTHING:
             return;
@@ -243,7 +243,7 @@ bool linux_hal_receive(hal_t *hal, hal_can_side_t *side, hal_can_frame_t *frame,
 }
 
 /* An interface that is down is checked at every tick, so that it is used again as soon as it is up. */
-static void look_after(hal_t *hal, linux_hal_side_t *side, uint64_t now_us) {
+static void check_link(hal_t *hal, linux_hal_side_t *side, uint64_t now_us) {
     const bool is_due = now_us >= side->look_again_us;
     if (is_due) {
         side->look_again_us = now_us + LOOK_EVERY_US;
@@ -264,7 +264,7 @@ bool linux_hal_tick(hal_t *hal) {
         if (side->interface == NULL) {
             continue;
         }
-        look_after(hal, side, now_us);
+        check_link(hal, side, now_us);
         linux_hal_queue_give(side, now_us);
         changed = changed || side->fd_changed;
         side->fd_changed = false;

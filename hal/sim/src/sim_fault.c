@@ -1,12 +1,12 @@
 /* Fault confinement: sets of nodes, error counters, bus-off and recovery, unplugged nodes. */
 #include "sim_internal.h"
 
-static void put(uint32_t *set, uint32_t bit, bool member) {
+static void put_bit(uint32_t *set, uint32_t bit, bool member) {
     *set = member ? *set | bit : *set & ~bit;
 }
 
 /* The node is off the bus: its own frame is aborted, and the frame that it was receiving is lost. */
-static void leave(sim_bus_t *bus, unsigned number) {
+static void leave_bus(sim_bus_t *bus, unsigned number) {
     sim_bus_node_state_t *node = &bus->nodes[number];
     bus->sending &= ~sim_bit(number);
     bus->hearing &= ~sim_bit(number);
@@ -30,14 +30,14 @@ void sim_bus_refresh(sim_bus_t *bus, unsigned number) {
     sim_bus_node_state_t *node = &bus->nodes[number];
     const uint32_t bit = sim_bit(number);
     const bool works = node->powered && !node->bus_off;
-    put(&bus->listening, bit, works && node->plugged);
+    put_bit(&bus->listening, bit, works && node->plugged);
     if ((bus->listening & bit) == 0) {
-        leave(bus, number);
+        leave_bus(bus, number);
     }
     const bool wants = works && node->tx_count > 0 && !node->stalled;
-    put(&bus->ready, bit, wants && node->plugged);
+    put_bit(&bus->ready, bit, wants && node->plugged);
     const bool was_alone = (bus->alone & bit) != 0;
-    put(&bus->alone, bit, wants && !node->plugged && !sim_is_passive(node));
+    put_bit(&bus->alone, bit, wants && !node->plugged && !sim_is_passive(node));
     if (!was_alone && (bus->alone & bit) != 0) {
         node->alone_us = bus->now_us + alone_attempt_us(bus, node);
     }
@@ -68,7 +68,7 @@ void sim_bus_penalise(sim_bus_t *bus, unsigned number) {
 
 /* Count the sequences since recovery_from_us. There are never more than recovery_left: the end of the recovery is an
  * event. */
-static void settle(const sim_bus_t *bus, sim_bus_node_state_t *node) {
+static void count_idle_sequences(const sim_bus_t *bus, sim_bus_node_state_t *node) {
     if (node->recovery_from_us < bus->now_us) {
         node->recovery_left -= (uint32_t)((bus->now_us - node->recovery_from_us) / sim_bus_sequence_us(bus));
     }
@@ -100,7 +100,7 @@ void sim_bus_pause_recovery(sim_bus_t *bus) {
     for (uint32_t set = bus->recovering; set != 0; set &= set - 1u) {
         sim_bus_node_state_t *node = &bus->nodes[sim_lowest(set)];
         if (node->plugged) {
-            settle(bus, node);
+            count_idle_sequences(bus, node);
             node->recovery_from_us = SIM_BUS_NEVER;
         }
     }
@@ -154,7 +154,7 @@ void sim_bus_set_plugged(sim_bus_t *bus, sim_bus_node_t number, bool plugged) {
     }
     sim_bus_node_state_t *node = &bus->nodes[number];
     if ((bus->recovering & sim_bit(number)) != 0) {
-        settle(bus, node);
+        count_idle_sequences(bus, node);
         node->plugged = plugged;
         node->recovery_from_us = recovery_goes_on_us(bus, node);
     }

@@ -83,7 +83,7 @@ static void set_power(hal_t *hal, bool on) {
     }
 }
 
-static void hold(hal_t *hal, uint32_t time_ms) {
+static void hold_in_reset(hal_t *hal, uint32_t time_ms) {
     hal->held = true;
     sim_hal_set_pin(&hal->safety_output, false, time_ms);
     sim_hal_set_pin(&hal->led, false, time_ms);
@@ -91,14 +91,14 @@ static void hold(hal_t *hal, uint32_t time_ms) {
 }
 
 void sim_hal_hold(hal_t *hal) {
-    hold(hal, sim_hal_now_ms(hal));
+    hold_in_reset(hal, sim_hal_now_ms(hal));
 }
 
 bool sim_hal_watch(hal_t *hal, uint32_t now_ms) {
     if (!hal->held && hal->config.watchdog_ms != SIM_HAL_WATCHDOG_OFF &&
         now_ms - hal->fed_ms > hal->config.watchdog_ms) {
         hal->bites++;
-        hold(hal, hal->fed_ms + hal->config.watchdog_ms);
+        hold_in_reset(hal, hal->fed_ms + hal->config.watchdog_ms);
     }
     return hal->held;
 }
@@ -109,7 +109,7 @@ bool sim_hal_poll(hal_t *hal) {
 
 void sim_hal_reset(hal_t *hal, hal_reset_cause_t cause) {
     const uint32_t now_ms = sim_hal_now_ms(hal);
-    hold(hal, now_ms);
+    hold_in_reset(hal, now_ms);
     hal->held = false;
     hal->resets++;
     hal->config.reset_cause = cause;

@@ -20,7 +20,7 @@ void sim_bus_corrupt_received(sim_bus_t *bus, sim_bus_node_t number, uint32_t co
 }
 
 /* Use up one of the injected errors. @return false: none is left */
-static bool take(uint32_t *count) {
+static bool use_one_error(uint32_t *count) {
     if (*count == 0) {
         return false;
     }
@@ -34,7 +34,7 @@ static bool spoiled_by_sender(sim_bus_t *bus) {
     bool spoiled = false;
     for (uint32_t set = bus->corrupting & bus->senders; set != 0; set &= set - 1u) {
         const unsigned number = sim_lowest(set);
-        if (take(&bus->nodes[number].corrupt_sent)) {
+        if (use_one_error(&bus->nodes[number].corrupt_sent)) {
             spoiled = true;
         } else {
             bus->corrupting &= ~sim_bit(number);
@@ -48,7 +48,7 @@ static bool spoiled_by_receiver(sim_bus_t *bus) {
     bool spoiled = false;
     for (uint32_t set = bus->misreading & bus->hearing; set != 0; set &= set - 1u) {
         const unsigned number = sim_lowest(set);
-        if (!take(&bus->nodes[number].corrupt_received)) {
+        if (!use_one_error(&bus->nodes[number].corrupt_received)) {
             bus->misreading &= ~sim_bit(number);
             continue;
         }
@@ -63,7 +63,7 @@ static bool spoiled_by_receiver(sim_bus_t *bus) {
 }
 
 bool sim_bus_spoil(sim_bus_t *bus) {
-    bool spoiled = take(&bus->corrupt_all);
+    bool spoiled = use_one_error(&bus->corrupt_all);
     spoiled = spoiled_by_sender(bus) || spoiled;
     return spoiled_by_receiver(bus) || spoiled;
 }

@@ -51,7 +51,7 @@ static bool refuses(sim_store_t *store) {
 }
 
 /* Number of bytes that this write stores. Below @p size: the power is cut during the write. */
-static size_t arriving(sim_store_t *store, size_t size) {
+static size_t bytes_stored(sim_store_t *store, size_t size) {
     if (!store->tear) {
         return size;
     }
@@ -75,7 +75,7 @@ bool sim_store_write_latch(sim_store_t *store, const void *record, size_t size) 
     if (size == 0 || size > sizeof store->latch || refuses(store)) {
         return false;
     }
-    const size_t arrived = arriving(store, size);
+    const size_t arrived = bytes_stored(store, size);
     memcpy(store->latch, record, arrived);
     store->latch_size = (uint8_t)size;
     return arrived == size;
@@ -90,7 +90,7 @@ bool sim_store_append(sim_store_t *store, const void *record, size_t size) {
         store->count--;
     }
     sim_store_record_t *slot = record_at(store, store->count++);
-    const size_t arrived = arriving(store, size);
+    const size_t arrived = bytes_stored(store, size);
     memset(slot->bytes, ERASED, sizeof slot->bytes);
     memcpy(slot->bytes, record, arrived);
     slot->size = (uint16_t)size;

@@ -2,7 +2,7 @@
 #include "sim_internal.h"
 
 /* The nodes that may start now: those whose suspend time is over. */
-static uint32_t contenders(sim_bus_t *bus) {
+static uint32_t nodes_that_may_start(sim_bus_t *bus) {
     for (uint32_t set = bus->suspended; set != 0; set &= set - 1u) {
         const unsigned number = sim_lowest(set);
         if (bus->nodes[number].suspend_until_us <= bus->now_us) {
@@ -16,7 +16,7 @@ static uint32_t contenders(sim_bus_t *bus) {
 static uint32_t arbitrate(sim_bus_t *bus) {
     uint32_t lowest_key = UINT32_MAX;
     uint32_t winners = 0;
-    for (uint32_t set = contenders(bus); set != 0; set &= set - 1u) {
+    for (uint32_t set = nodes_that_may_start(bus); set != 0; set &= set - 1u) {
         const unsigned number = sim_lowest(set);
         sim_bus_node_state_t *node = &bus->nodes[number];
         const unsigned slot = sim_bus_choose(node);
@@ -49,7 +49,7 @@ static uint32_t recessive_at(const sim_bus_t *bus, uint32_t set, uint32_t index)
     return recessive;
 }
 
-static bool any_active(const sim_bus_t *bus, uint32_t set) {
+static bool is_any_error_active(const sim_bus_t *bus, uint32_t set) {
     for (; set != 0; set &= set - 1u) {
         if (!sim_is_passive(&bus->nodes[sim_lowest(set)])) {
             return true;
@@ -64,7 +64,7 @@ static bool any_active(const sim_bus_t *bus, uint32_t set) {
  * all are error passive, they stop sending (dropped) and the others continue.
  * @return bits up to and including the error; 0 = the frame of the remaining senders is sent
  */
-static uint32_t collide(sim_bus_t *bus) {
+static uint32_t resolve_collision(sim_bus_t *bus) {
     for (uint32_t index = 0; (bus->senders & (bus->senders - 1u)) != 0; index++) {
         const hal_can_frame_t *frame = current_frame(bus, sim_lowest(bus->senders));
         if (index == sim_frame_body_bits(frame)) {
@@ -74,7 +74,7 @@ static uint32_t collide(sim_bus_t *bus) {
         if (recessive == 0 || recessive == bus->senders) {
             continue;
         }
-        if (any_active(bus, recessive)) {
+        if (is_any_error_active(bus, recessive)) {
             const uint32_t bits = sim_frame_header_bits(frame) + index + 1u;
             return bits + (bits - 1u) / 4u;
         }
@@ -85,8 +85,8 @@ static uint32_t collide(sim_bus_t *bus) {
 }
 
 /* Determine the outcome of the winners' frame, and its length in bits. */
-static uint32_t foresee(sim_bus_t *bus) {
-    const uint32_t collision_bits = collide(bus);
+static uint32_t determine_outcome(sim_bus_t *bus) {
+    const uint32_t collision_bits = resolve_collision(bus);
     bus->frame = *current_frame(bus, sim_lowest(bus->senders));
     bus->sending = bus->senders;
     bus->hearing = bus->listening & ~(bus->senders | bus->dropped);
@@ -114,11 +114,11 @@ static void begin(sim_bus_t *bus) {
     bus->dropped = 0;
     bus->misread = 0;
     bus->senders = arbitrate(bus);
-    bus->end_us = bus->start_us + (uint64_t)foresee(bus) * bus->bit_us;
+    bus->end_us = bus->start_us + (uint64_t)determine_outcome(bus) * bus->bit_us;
     bus->busy = true;
 }
 
-static void tell_taps(const sim_bus_t *bus) {
+static void notify_taps(const sim_bus_t *bus) {
     const sim_bus_event_t event = {
         .frame = &bus->frame,
         .start_us = bus->start_us,
@@ -133,7 +133,7 @@ static void tell_taps(const sim_bus_t *bus) {
 }
 
 /* An error-passive node that has sent must wait SIM_BUS_SUSPEND_BITS longer than the others. */
-static void suspend(sim_bus_t *bus, unsigned number) {
+static void suspend_sender(sim_bus_t *bus, unsigned number) {
     sim_bus_node_state_t *node = &bus->nodes[number];
     if (sim_is_passive(node)) {
         node->suspend_until_us = bus->free_us + (uint64_t)SIM_BUS_SUSPEND_BITS * bus->bit_us;
@@ -148,13 +148,13 @@ static void sent(sim_bus_t *bus, unsigned number) {
     if (node->tx_count == 0) {
         bus->ready &= ~sim_bit(number);
     }
-    suspend(bus, number);
+    suspend_sender(bus, number);
     if (node->tec > 0) {
         node->tec--;
     }
 }
 
-static void succeed(sim_bus_t *bus, uint32_t senders, uint32_t hearing) {
+static void complete_frame(sim_bus_t *bus, uint32_t senders, uint32_t hearing) {
     for (uint32_t set = senders; set != 0; set &= set - 1u) {
         sent(bus, sim_lowest(set));
     }
@@ -172,7 +172,7 @@ static void succeed(sim_bus_t *bus, uint32_t senders, uint32_t hearing) {
     }
 }
 
-static void fail(sim_bus_t *bus, uint32_t senders, uint32_t hearing) {
+static void fail_frame(sim_bus_t *bus, uint32_t senders, uint32_t hearing) {
     for (uint32_t set = senders; set != 0; set &= set - 1u) {
         const unsigned number = sim_lowest(set);
         sim_bus_node_state_t *node = &bus->nodes[number];
@@ -185,7 +185,7 @@ static void fail(sim_bus_t *bus, uint32_t senders, uint32_t hearing) {
         if (bus->outcome == SIM_BUS_DESTROYED || !sim_is_passive(node)) {
             sim_bus_penalise(bus, number);
         }
-        suspend(bus, number);
+        suspend_sender(bus, number);
     }
     for (uint32_t set = hearing; set != 0; set &= set - 1u) {
         sim_bus_misread(&bus->nodes[sim_lowest(set)], 1u);
@@ -193,14 +193,14 @@ static void fail(sim_bus_t *bus, uint32_t senders, uint32_t hearing) {
 }
 
 /* Count the errors of nodes that misread the frame or dropped out of a collision. */
-static void blame(sim_bus_t *bus, uint32_t hearing) {
+static void count_errors_of_receivers(sim_bus_t *bus, uint32_t hearing) {
     for (uint32_t set = bus->misread; set != 0; set &= set - 1u) {
         const unsigned number = sim_lowest(set);
         sim_bus_misread(&bus->nodes[number], (hearing & sim_bit(number)) != 0 ? 8u : 1u);
     }
     for (uint32_t set = bus->dropped & bus->listening; set != 0; set &= set - 1u) {
         sim_bus_penalise(bus, sim_lowest(set));
-        suspend(bus, sim_lowest(set));
+        suspend_sender(bus, sim_lowest(set));
     }
 }
 
@@ -219,19 +219,19 @@ static void finish(sim_bus_t *bus) {
     bus->sending = 0;
     bus->hearing = 0;
     bus->stats.busy_us += bus->free_us - bus->start_us;
-    tell_taps(bus);
+    notify_taps(bus);
     if (bus->recovering != 0) {
         sim_bus_resume_recovery(bus);
     }
     if ((bus->misread | bus->dropped) != 0) {
-        blame(bus, hearing);
+        count_errors_of_receivers(bus, hearing);
     }
     if (bus->outcome == SIM_BUS_ARRIVES) {
         bus->stats.frames++;
-        succeed(bus, senders, hearing);
+        complete_frame(bus, senders, hearing);
     } else {
         bus->stats.errors++;
-        fail(bus, senders, hearing);
+        fail_frame(bus, senders, hearing);
     }
 }
 

@@ -55,7 +55,7 @@ static bool read_rows(soak_t *soak) {
                            : scenario_read_text(&soak->scenario, "the soak", soak->text.bytes, &options);
 }
 
-static void act(soak_t *soak, uint32_t from, uint32_t to) {
+static void do_steps(soak_t *soak, uint32_t from, uint32_t to) {
     for (uint32_t i = from; i < to; i++) {
         const scenario_step_t *step = &soak->scenario.steps[i];
         if (!step->of_vehicle && (step->supervisor.what == SCENARIO_DELIVER)) {
@@ -88,7 +88,7 @@ static uint32_t choose(soak_t *soak) {
 }
 
 /** Begin a disturbance, or end it. */
-static void disturb(void *ctx, uint64_t t_ms) {
+static void begin_or_end_disturbance(void *ctx, uint64_t t_ms) {
     soak_t *soak = ctx;
     soak_state_t *state = &soak->state;
 
@@ -96,7 +96,7 @@ static void disturb(void *ctx, uint64_t t_ms) {
         return;
     }
     if (state->row < SOAK_ROW_COUNT) {
-        act(soak, soak->steps[state->row].end, soak->steps[state->row].after);
+        do_steps(soak, soak->steps[state->row].end, soak->steps[state->row].after);
         state->row = (uint32_t)SOAK_ROW_COUNT;
         state->next_ms = t_ms + prng_draw(&state->random, QUIET_MIN_MS, QUIET_MAX_MS);
         return;
@@ -105,7 +105,7 @@ static void disturb(void *ctx, uint64_t t_ms) {
     state->counts[state->row]++;
     const soak_row_t *row = &SOAK_ROWS[state->row];
     state->next_ms = t_ms + prng_draw(&state->random, row->lowest_ms, row->highest_ms);
-    act(soak, soak->steps[state->row].begin, soak->steps[state->row].end);
+    do_steps(soak, soak->steps[state->row].begin, soak->steps[state->row].end);
 }
 
 static void count_real_time(soak_t *soak) {
@@ -115,7 +115,7 @@ static void count_real_time(soak_t *soak) {
 }
 
 /** Once in a simulated second: show the progress, notice a signal, save. @return false: that is the end */
-static bool look(soak_t *soak) {
+static bool check_each_second(soak_t *soak) {
     progress_show(&soak->progress, soak->state.t_ms / LOOK_EVERY_MS, "simulated seconds");
     soak->went = interrupt_pending() ? INTERRUPTED : OVER;
     if ((soak->went == INTERRUPTED) || ((soak->state.t_ms % SAVE_EVERY_MS) == 0u)) {
@@ -133,14 +133,14 @@ static bool after_tick(void *ctx, uint64_t t_ms) {
         soak_check_counters(soak);
     }
     soak->state.t_ms = t_ms + 1u;
-    return (((soak->state.t_ms % LOOK_EVERY_MS) != 0u) || look(soak)) && (soak->state.broken[0] == '\0');
+    return (((soak->state.t_ms % LOOK_EVERY_MS) != 0u) || check_each_second(soak)) && (soak->state.broken[0] == '\0');
 }
 
 /** Until the end, or something is broken. */
-static void go(soak_t *soak) {
+static void run_until_end(soak_t *soak) {
     const scenario_play_t play = {.from_ms = soak->state.t_ms,
                                   .until_ms = soak->duration_ms - 1u,
-                                  .before_tick = disturb,
+                                  .before_tick = begin_or_end_disturbance,
                                   .after_tick = after_tick,
                                   .ctx = soak};
 
@@ -154,7 +154,7 @@ static void go(soak_t *soak) {
     count_real_time(soak);
 }
 
-static uint64_t disturbances(const soak_state_t *state) {
+static uint64_t count_disturbances(const soak_state_t *state) {
     uint64_t sum = 0u;
     for (size_t i = 0u; i < SOAK_ROW_COUNT; i++) {
         sum += state->counts[i];
@@ -162,7 +162,7 @@ static uint64_t disturbances(const soak_state_t *state) {
     return sum;
 }
 
-static uint32_t wraps(const soak_t *soak) {
+static uint32_t clock_wraps(const soak_t *soak) {
     return (uint32_t)(((soak->start_ms + soak->state.t_ms) >> 32u) - (soak->start_ms >> 32u));
 }
 
@@ -177,9 +177,9 @@ static void print_result(const soak_t *soak) {
                  " frames received, %" PRIu64 " sent, %" PRIu64 " warnings, %" PRIu64
                  " disturbances, status frames at most %" PRIu32 " ms late; took %" PRIu64 " s\n",
                  soak->gateway ? "gateway" : "shared bus", state->t_ms / SOAK_MS_PER_HOUR / HOURS_PER_DAY,
-                 (state->t_ms / SOAK_MS_PER_HOUR % HOURS_PER_DAY) * 100u / HOURS_PER_DAY, wraps(soak), state->ticks,
-                 state->wire_others + state->delivered, state->wire_own, state->warnings, disturbances(state),
-                 state->status_late_ms, state->real_ms / MS_PER_S);
+                 (state->t_ms / SOAK_MS_PER_HOUR % HOURS_PER_DAY) * 100u / HOURS_PER_DAY, clock_wraps(soak),
+                 state->ticks, state->wire_others + state->delivered, state->wire_own, state->warnings,
+                 count_disturbances(state), state->status_late_ms, state->real_ms / MS_PER_S);
     if (state->broken[0] != '\0') {
         (void)printf("BROKEN: %s\n", state->broken);
     }
@@ -197,12 +197,12 @@ static bool write_results(soak_t *soak) {
              ", \"topology\": \"%s\", \"ms\": %" PRIu64 ", \"wraps\": %" PRIu32 ", \"ticks\": %" PRIu64
              ", \"received\": %" PRIu64 ", \"sent\": %" PRIu64,
              soak->request->seed, soak->request->hours, soak->request->shard, soak->request->shards,
-             soak->gateway ? "gateway" : "shared", state->t_ms, wraps(soak), state->ticks,
+             soak->gateway ? "gateway" : "shared", state->t_ms, clock_wraps(soak), state->ticks,
              state->wire_others + state->delivered, state->wire_own);
     text_add(&soak->text,
              ", \"warnings\": %" PRIu64 ", \"disturbances\": %" PRIu64 ", \"status_late_ms\": %" PRIu32
              ", \"real_ms\": %" PRIu64 ", \"broken\": %s}\n",
-             state->warnings, disturbances(state), state->status_late_ms, state->real_ms,
+             state->warnings, count_disturbances(state), state->status_late_ms, state->real_ms,
              (state->broken[0] != '\0') ? "true" : "false");
     (void)output_write(&soak->results, soak->text.bytes, soak->text.used);
     return output_commit(&soak->results);
@@ -259,7 +259,7 @@ status_t soak_run(const soak_request_t *request) {
         return STATUS_UNUSABLE;
     }
     if (prepare(soak, request)) {
-        go(soak);
+        run_until_end(soak);
         if (soak->went == OVER) {
             status = conclude(soak);
         } else if (soak->went == INTERRUPTED) {

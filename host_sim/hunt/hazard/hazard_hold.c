@@ -14,7 +14,7 @@ static bool is_within(const hazard_range_t *range, int32_t ddeg) {
     return (ddeg >= range->low_ddeg - TOLERANCE_DDEG) && (ddeg <= range->high_ddeg + TOLERANCE_DDEG);
 }
 
-static void widen(hazard_range_t *range, int32_t ddeg) {
+static void extend_range(hazard_range_t *range, int32_t ddeg) {
     range->low_ddeg = (ddeg < range->low_ddeg) ? ddeg : range->low_ddeg;
     range->high_ddeg = (ddeg > range->high_ddeg) ? ddeg : range->high_ddeg;
 }
@@ -37,7 +37,7 @@ void hazard_hold_measured(hazard_t *hazard, int32_t angle_ddeg) {
     }
     /* Both mode bits: manual may end as late as they become MODE_INVALID. */
     if (hazard->t_ms - hold->first_ms <= (uint64_t)hazard->limits.mode_invalid_ms + FRESH_MS) {
-        widen(&hold->first, angle_ddeg);
+        extend_range(&hold->first, angle_ddeg);
     }
 }
 
@@ -48,7 +48,7 @@ static hazard_range_t range_now(const hazard_t *hazard, uint32_t within_ms) {
 
     for (uint32_t i = 0u; (i < HAZARD_ANGLES) && (i < hold->measured_count); i++) {
         if (hazard->t_ms - hold->measured_ms[i] <= within_ms) {
-            widen(&range, hold->measured_ddeg[i]);
+            extend_range(&range, hold->measured_ddeg[i]);
         }
     }
     return range;
@@ -119,7 +119,7 @@ static bool may_be_held(const hazard_t *hazard, int32_t held_ddeg) {
 }
 
 /** A right angle may be sent again, until it is out of date or manual is reported. */
-static void keep(hazard_t *hazard) {
+static void allow_again(hazard_t *hazard) {
     if (!hazard->mode.manual) {
         hazard->hold.kept = hazard->hold.value;
         hazard->hold.kept_until_ms = hazard->t_ms + in_date_ms(hazard);
@@ -149,7 +149,7 @@ void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame) {
     hold->last_ms = hazard->t_ms;
     hold->value = value;
     if (may_be_held(hazard, held_ddeg)) {
-        keep(hazard);
+        allow_again(hazard);
     } else {
         if (!hold->is_wrong) {
             hold->start_ddeg = hazard_angle_ddeg(hazard); /* what a right angle moved before does not count */

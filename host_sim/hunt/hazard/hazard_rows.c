@@ -200,7 +200,7 @@ static bool only_warns(const hazard_t *hazard, const char *name) {
 }
 
 /** A status frame that is switched off, though it is on by default, is the integrator's choice. */
-static bool gave_up_status_frame(const hazard_t *hazard) {
+static bool has_no_status_frame(const hazard_t *hazard) {
     for (uint16_t i = 0u; i < AGV_SETTING_COUNT; i++) {
         const agv_setting_info_t *info = agv_setting_info(i);
         if (strcmp(info->name, "status_frame_id") == 0) {
@@ -235,7 +235,7 @@ void hazard_rows_init(hazard_t *hazard) {
             hazard->score_counts[row->message]++;
         }
         hazard->off[r] =
-            only_warns(hazard, row->fault) || ((row->holds == is_transmitter_dead) && gave_up_status_frame(hazard));
+            only_warns(hazard, row->fault) || ((row->holds == is_transmitter_dead) && has_no_status_frame(hazard));
     }
 }
 

@@ -167,7 +167,7 @@ static void load(unsigned variant, unsigned state) {
 }
 
 /* Several times within a cycle: some before a frame, some before a tick only. */
-static void quiet_moments(unsigned variant, unsigned state) {
+static void flip_within_a_cycle(unsigned variant, unsigned state) {
     static const unsigned STEPS_MS[] = {0, 1, 2, 5, 19, 41};
     load(variant, state);
     for (unsigned i = 0; i < sizeof STEPS_MS / sizeof STEPS_MS[0]; i++) {
@@ -180,7 +180,7 @@ static void foreign_gear(void) {
     testbed_frame(HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .length = 8, .data = {GEAR_D}}, 0);
 }
 
-static void waiting_moments(unsigned variant, unsigned state) {
+static void flip_while_a_command_waits(unsigned variant, unsigned state) {
     load(variant, state);
     testbed_disturb(HAL_CAN_VEHICLE, 1, 1);
     testbed_run(40);
@@ -192,21 +192,21 @@ static void waiting_moments(unsigned variant, unsigned state) {
     flip_each_bit("an override waits", variant, state);
 }
 
-static void bus_off_moment(unsigned variant, unsigned state) {
+static void flip_in_bus_off(unsigned variant, unsigned state) {
     load(variant, state);
     testbed_disturb(HAL_CAN_VEHICLE, 0, 2);
     testbed_run(50);
     flip_each_bit("in bus-off", variant, state);
 }
 
-static void pressed_moment(unsigned variant) {
+static void flip_during_a_press(unsigned variant) {
     load(variant, 4);
     ask_for_reset();
     testbed_run(700);
     flip_each_bit("the button is held for 0.7 s", variant, 4);
 }
 
-static void restarted_moment(unsigned variant, unsigned state) {
+static void flip_after_a_restart(unsigned variant, unsigned state) {
     load(variant, state);
     testbed_restart(HAL_RESET_WATCHDOG);
     testbed_run(30);
@@ -214,7 +214,7 @@ static void restarted_moment(unsigned variant, unsigned state) {
 }
 
 /* The button is held since before the trip. Only a flipped bit could turn this into a valid press. */
-static void old_press_moment(unsigned variant) {
+static void flip_while_the_button_is_held(unsigned variant) {
     load(variant, 2);
     testbed_button(true);
     testbed_run(50);
@@ -228,16 +228,16 @@ static void old_press_moment(unsigned variant) {
     flip_each_bit("the button is held since before the trip", variant, 4);
 }
 
-static void all_moments(void) {
+static void flip_in_all_cases(void) {
     for (unsigned variant = 0; variant < (unsigned)TESTBED_VARIANTS; variant++) {
         for (unsigned state = 0; state < (unsigned)TESTBED_STATES; state++) {
-            quiet_moments(variant, state);
+            flip_within_a_cycle(variant, state);
         }
-        waiting_moments(variant, 3);
-        bus_off_moment(variant, 3);
-        pressed_moment(variant);
-        restarted_moment(variant, 4);
-        old_press_moment(variant);
+        flip_while_a_command_waits(variant, 3);
+        flip_in_bus_off(variant, 3);
+        flip_during_a_press(variant);
+        flip_after_a_restart(variant, 4);
+        flip_while_the_button_is_held(variant);
     }
 }
 
@@ -246,7 +246,7 @@ static void all_moments(void) {
 int main(int argc, char **argv) {
     part = part_read("bit_flips", argc, argv);
     testbed_on_broken = on_broken;
-    all_moments();
+    flip_in_all_cases();
     (void)printf(
         "situations: %llu INIT, %llu STANDBY, %llu ACTIVE, %llu TRIPPED, %llu SAFE; %u of %u bits are sealed\n",
         (unsigned long long)sum.moments_of[0], (unsigned long long)sum.moments_of[1],

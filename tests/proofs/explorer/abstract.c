@@ -68,7 +68,7 @@ static bool runs(unsigned timer) {
 }
 
 /* The running timers of a set that will reach their limit within the given time. */
-static uint64_t over_in(uint64_t set, uint32_t ms) {
+static uint64_t timers_that_expire_within(uint64_t set, uint32_t ms) {
     agv_timers_t copy = core()->timers;
     uint64_t over = 0;
     agv_timers_advance(&copy, &core()->config, copy.now_ms + ms, 0u);
@@ -113,8 +113,8 @@ static unsigned full_next(void) {
 }
 
 /* The first time that expires with the next tick; 0: none. */
-static uint8_t eve(void) {
-    const uint64_t set = over_in(timers(), 1);
+static uint8_t first_timer_that_expires_next(void) {
+    const uint64_t set = timers_that_expire_within(timers(), 1);
     for (unsigned i = 0; i < (unsigned)AGV_TIMER_COUNT; i++) {
         if (((set >> i) & 1u) != 0u) {
             return (uint8_t)(i + 1u);
@@ -153,7 +153,7 @@ uint32_t abstract_horizon_ms(void) {
     uint32_t ms = 0;
     for (unsigned i = 0; i < sizeof HORIZONS_MS / sizeof HORIZONS_MS[0]; i++) {
         ms = HORIZONS_MS[i];
-        if ((over_in(set, ms) == set) && ((ms >= (uint32_t)COUNTED_MS) || !counts())) {
+        if ((timers_that_expire_within(set, ms) == set) && ((ms >= (uint32_t)COUNTED_MS) || !counts())) {
             break;
         }
     }
@@ -179,7 +179,7 @@ static uint8_t phases(unsigned a, unsigned b, unsigned c) {
 }
 
 /* A value reduced to three: zero, in between, full. */
-static uint8_t third(uint32_t value, bool full) {
+static uint8_t zero_part_or_full(uint32_t value, bool full) {
     if (full) {
         return 2;
     }
@@ -191,7 +191,7 @@ static uint8_t worst(uint8_t a, uint8_t b) {
 }
 
 static uint8_t score(const agv_score_t *s) {
-    return third(s->value, s->present);
+    return zero_part_or_full(s->value, s->present);
 }
 
 /* The highest score of the status checks. */
@@ -211,7 +211,7 @@ static uint8_t worst_budget(void) {
     uint8_t most = 0;
     for (unsigned i = 0; i < (unsigned)AGV_BUDGET_SPEED; i++) {
         const agv_budget_t *b = &core()->motion_checks.budgets[i];
-        most = worst(most, third(b->value_ms, b->present));
+        most = worst(most, zero_part_or_full(b->value_ms, b->present));
     }
     return most;
 }
@@ -243,7 +243,7 @@ static uint8_t press(void) {
 }
 
 /* 0: the vehicle has not stood since the trip; 1: it has; 2: too late, or it moves again. */
-static uint8_t stands(void) {
+static uint8_t standstill_since_the_trip(void) {
     const agv_stopping_t *stopping = &core()->stopping;
     if (stopping->not_stopping || stopping->moving) {
         return 2;
@@ -255,8 +255,8 @@ static uint8_t stands(void) {
 static uint8_t unconfirmed(void) {
     const agv_confirmation_t *sums = &core()->confirmation;
     const agv_config_t *config = &core()->config;
-    return worst(third(sums->off_missing_ms, sums->off_missing_ms >= config->confirm_timeout_ms),
-                 third(sums->park_missing_ms, sums->park_missing_ms >= config->park_confirm_timeout_ms));
+    return worst(zero_part_or_full(sums->off_missing_ms, sums->off_missing_ms >= config->confirm_timeout_ms),
+                 zero_part_or_full(sums->park_missing_ms, sums->park_missing_ms >= config->park_confirm_timeout_ms));
 }
 
 static bool messages_fresh(void) {
@@ -300,7 +300,7 @@ static void always(abstract_t *key) {
                          !abstract_coarse && model_wrapped(),
                          (phase(AGV_TIMER_WATCHDOG_FED) == (uint8_t)AGV_TIMER_REACHED)};
     key->byte[0] = c->machine.state;
-    key->byte[1] = supervises ? model.illness : ILLNESS[model.illness].like;
+    key->byte[1] = supervises ? model.defect : SET_DEFECT[model.defect].like;
     key->byte[2] = bits(whats, 7);
     key->byte[3] = bits(more, 8);
     key->byte[4] = (uint8_t)(c->mode.bits | phase(AGV_TIMER_BOTH_MODES) | (c->mode.engaged ? 4u : 0u) |
@@ -309,7 +309,7 @@ static void always(abstract_t *key) {
         key->byte[4] = 0;
     }
     key->byte[5] = (uint8_t)(model.bus | (phase(AGV_TIMER_BUS_OFF) << 2u));
-    key->byte[6] = eve();
+    key->byte[6] = first_timer_that_expires_next();
 }
 
 static void in_init(abstract_t *key) {
@@ -339,15 +339,15 @@ static void in_latched(abstract_t *key) {
     const bool whats[] = {m->park_released,
                           is_holdable(),
                           m->unresettable != (uint8_t)AGV_FAULT_NONE,
-                          model.wheels_turn && (waits || (stands() != 0u)),
+                          model.wheels_turn && (waits || (standstill_since_the_trip() != 0u)),
                           c->faults.summary.cause != (uint8_t)AGV_FAULT_NONE,
                           c->faults.summary.ai_cause != (uint8_t)AGV_FAULT_NONE,
                           all_held_ms() >= c->config.reset_hold_ms};
     key->byte[8] = bits(whats, 7);
     if (abstract_coarse) {
-        key->byte[9] = (uint8_t)(press() | (worst(unconfirmed(), (stands() == 2u) ? 2u : 0u) << 5u));
+        key->byte[9] = (uint8_t)(press() | (worst(unconfirmed(), (standstill_since_the_trip() == 2u) ? 2u : 0u) << 5u));
     } else {
-        key->byte[9] = (uint8_t)(press() | (stands() << 3u) | (unconfirmed() << 5u));
+        key->byte[9] = (uint8_t)(press() | (standstill_since_the_trip() << 3u) | (unconfirmed() << 5u));
     }
 }
 

@@ -2,7 +2,7 @@
  * The key of an abstract state: two models with the same key are explored as one. The key is made from the supervisor's
  * memory, but only to distinguish states; behaviour is checked from outside (rules.h, oracle.h).
  *
- *   always      state, safety output, illness of the vehicle, mode (both bits set is a value of its own), button, gear in
+ *   always      state, safety output, defect of the vehicle, mode (both bits set is a value of its own), button, gear in
  *               P or not, VCU, EPS and AI computer alive or not, status messages fresh, controller of each side, queue
  *               full, frames that wait, answers that wait, watchdog not fed, stored latch damaged, clock wrapped
  *   INIT        progress of the 500 ms of the start-up check and of its 10 s, a trip cause, P released

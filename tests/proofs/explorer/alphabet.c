@@ -28,7 +28,7 @@ static bool gateway(unsigned how) {
 
 /* ---- Time ---- */
 
-static void go_on(unsigned how) {
+static void run_ticks(unsigned how) {
     const uint32_t horizon_ms = abstract_horizon_ms();
     abstract_t before;
     abstract_t now;
@@ -48,7 +48,7 @@ static void go_on(unsigned how) {
 static void apply_mode(unsigned mode) {
     model.mode = (uint8_t)mode;
     model.mode_ms = testbed.now_ms;
-    model_dress();
+    model_apply_defect();
     model_run_past(M_VEHICLE);
 }
 
@@ -58,7 +58,7 @@ static bool other_mode(unsigned mode) {
 
 static void apply_button(unsigned down) {
     model.button = down != 0u;
-    model_dress();
+    model_apply_defect();
     model_run_past(M_VEHICLE);
 }
 
@@ -68,7 +68,7 @@ static bool other_button(unsigned down) {
 
 static void apply_gear(unsigned gear) {
     model.gear = (uint8_t)gear;
-    model_dress();
+    model_apply_defect();
     model_run_past(M_GEAR_STATUS);
 }
 
@@ -79,7 +79,7 @@ static bool other_gear(unsigned gear) {
 static void apply_wheels(unsigned turn) {
     model.wheels_turn = turn != 0u;
     model.wheels_ms = testbed.now_ms;
-    model_dress();
+    model_apply_defect();
     model_run_past(M_WHEELS);
 }
 
@@ -90,39 +90,39 @@ static bool other_wheels(unsigned turn) {
 bool alphabet_pairs;
 
 /* Whether a controller or the stored latch has a trouble. */
-static bool is_troubled(void) {
+static bool has_hal_defect(void) {
     const sim_hal_can_t *can = testbed.hal.can;
     return (model.bus != (uint8_t)BUS_FINE) || model.ai_off || model.stalled || model.bad_latch ||
            can[HAL_CAN_VEHICLE].full || can[HAL_CAN_AI].full;
 }
 
-static bool is_ill(void) {
-    return model.illness != (uint8_t)ILL_NOTHING;
+static bool has_defect(void) {
+    return model.defect != (uint8_t)DEFECT_NONE;
 }
 
-/* Only one illness or trouble exists at a time. With `alphabet_pairs` one of each may exist. */
-static bool may_be_ill(void) {
-    return !is_ill() && (alphabet_pairs || !is_troubled());
+/* Only one defect or trouble exists at a time. With `alphabet_pairs` one of each may exist. */
+static bool may_have_defect(void) {
+    return !has_defect() && (alphabet_pairs || !has_hal_defect());
 }
 
-static bool may_be_troubled(void) {
-    return !is_troubled() && (alphabet_pairs || !is_ill());
+static bool may_have_hal_defect(void) {
+    return !has_hal_defect() && (alphabet_pairs || !has_defect());
 }
 
-static void apply_illness(unsigned illness) {
-    model.illness = (uint8_t)illness;
+static void apply_defect(unsigned defect) {
+    model.defect = (uint8_t)defect;
     model.foreign_ms = testbed.now_ms + 1u;
-    model.ill_ms = testbed.now_ms;
-    model_dress();
+    model.defect_ms = testbed.now_ms;
+    model_apply_defect();
     model_run(1);
 }
 
-static bool other_illness(unsigned illness) {
-    return (illness == (unsigned)ILL_NOTHING) ? is_ill() : may_be_ill();
+static bool other_defect(unsigned defect) {
+    return (defect == (unsigned)DEFECT_NONE) ? has_defect() : may_have_defect();
 }
 
 /* A silent or frozen node sends one frame just before the tick. */
-static void speak(unsigned how) {
+static void send_late_frame(unsigned how) {
     (void)how;
     model_speak();
 }
@@ -212,7 +212,7 @@ static void apply_bus(unsigned bus) {
 
 static bool other_bus(unsigned bus) {
     const bool stays = (model.bus == (uint8_t)BUS_PASSIVE) || (model.bus == (uint8_t)BUS_DEAD);
-    return (bus == (unsigned)BUS_FINE) ? stays : may_be_troubled();
+    return (bus == (unsigned)BUS_FINE) ? stays : may_have_hal_defect();
 }
 
 static void controller(unsigned how) {
@@ -244,10 +244,10 @@ static bool other_controller(unsigned how) {
     switch (how) {
     case C_FULL:
     case C_STALL:
-        return may_be_troubled();
+        return may_have_hal_defect();
     case C_AI_OFF:
     case C_AI_FULL:
-        return gateway(0) && may_be_troubled();
+        return gateway(0) && may_have_hal_defect();
     case C_FREE:
         return testbed.hal.can[HAL_CAN_VEHICLE].full;
     case C_FLOW:
@@ -267,7 +267,7 @@ static void late(unsigned ms) {
     model_late(ms);
 }
 
-static void doze(unsigned ms) {
+static void sleep_ms(unsigned ms) {
     model_sleep(ms);
 }
 
@@ -284,15 +284,15 @@ static void spoil_latch(unsigned how) {
 
 static bool latch_is_good(unsigned how) {
     (void)how;
-    return may_be_troubled();
+    return may_have_hal_defect();
 }
 
 /* ---- The table. The short alphabet comes first. ---- */
 
-#define ILL(kind) {NULL, apply_illness, other_illness, ILL_##kind}
+#define DEFECT(kind) {NULL, apply_defect, other_defect, DEFECT_##kind}
 
 static const symbol_t SYMBOLS[] = {
-    {"time passes", go_on, always, 0},
+    {"time passes", run_ticks, always, 0},
     {"363h: manual", apply_mode, other_mode, MODEL_MANUAL},
     {"363h: autopilot", apply_mode, other_mode, MODEL_ENGAGED},
     {"button 1 down", apply_button, other_button, 1},
@@ -301,10 +301,10 @@ static const symbol_t SYMBOLS[] = {
     {"0A3h: D", apply_gear, other_gear, MODEL_D},
     {"wheels turn", apply_wheels, other_wheels, 1},
     {"wheels stop", apply_wheels, other_wheels, 0},
-    ILL(NOTHING),
-    ILL(VCU_SILENT),
-    ILL(AI_SILENT),
-    ILL(EPS_FAULT),
+    DEFECT(NONE),
+    DEFECT(VCU_SILENT),
+    DEFECT(AI_SILENT),
+    DEFECT(EPS_FAULT),
     {"rogue node: 168h D", rogue_node, vehicle_hears, S_GEAR},
     {"bus-off", apply_bus, other_bus, BUS_OFF},
     {"restart: power-on", restart, always, HAL_RESET_POWER_ON},
@@ -313,36 +313,36 @@ static const symbol_t SYMBOLS[] = {
     /* end of the short alphabet */
     {"363h: both modes", apply_mode, other_mode, MODEL_BOTH},
     {"363h: neither mode", apply_mode, other_mode, MODEL_NEITHER},
-    {"silent node sends one frame", speak, can_speak, 0},
-    ILL(VCU_FROZEN),
-    ILL(VCU_SHORT),
-    ILL(EPS_SILENT),
-    ILL(EPS_FROZEN),
-    ILL(AI_FROZEN),
-    ILL(AI_SHORT),
-    ILL(ALL_SILENT),
-    ILL(GEAR_STATUS_SILENT),
-    ILL(THROTTLE_STATUS_SILENT),
-    ILL(WHEELS_SILENT),
-    ILL(EPS_STATUS_SILENT),
-    ILL(GEAR_COMMAND_SILENT),
-    ILL(STEERING_COMMAND_SILENT),
-    ILL(EPS_SUPPLY),
-    ILL(VCU_ALARM),
-    ILL(VCU_AI_ALARM),
-    ILL(AI_OUT_OF_RANGE),
-    ILL(AI_BABBLES),
-    ILL(GEAR_INVALID),
-    ILL(ANGLE_INVALID),
-    ILL(EPS_MODE_OFF),
-    ILL(STEERING_OFF),
-    ILL(THROTTLE),
-    ILL(THROTTLE_ABOVE),
-    ILL(GEAR_AGAINST),
-    ILL(AUTOPILOT_STAYS),
-    ILL(MODE_FLAPS),
-    ILL(FOREIGN),
-    ILL(RECEIVE_DEAD),
+    {"silent node sends one frame", send_late_frame, can_speak, 0},
+    DEFECT(VCU_FROZEN),
+    DEFECT(VCU_SHORT),
+    DEFECT(EPS_SILENT),
+    DEFECT(EPS_FROZEN),
+    DEFECT(AI_FROZEN),
+    DEFECT(AI_SHORT),
+    DEFECT(ALL_SILENT),
+    DEFECT(GEAR_STATUS_SILENT),
+    DEFECT(THROTTLE_STATUS_SILENT),
+    DEFECT(WHEELS_SILENT),
+    DEFECT(EPS_STATUS_SILENT),
+    DEFECT(GEAR_COMMAND_SILENT),
+    DEFECT(STEERING_COMMAND_SILENT),
+    DEFECT(EPS_SUPPLY),
+    DEFECT(VCU_ALARM),
+    DEFECT(VCU_AI_ALARM),
+    DEFECT(AI_OUT_OF_RANGE),
+    DEFECT(AI_BABBLES),
+    DEFECT(GEAR_INVALID),
+    DEFECT(ANGLE_INVALID),
+    DEFECT(EPS_MODE_OFF),
+    DEFECT(STEERING_OFF),
+    DEFECT(THROTTLE),
+    DEFECT(THROTTLE_ABOVE),
+    DEFECT(GEAR_AGAINST),
+    DEFECT(AUTOPILOT_STAYS),
+    DEFECT(MODE_FLAPS),
+    DEFECT(FOREIGN),
+    DEFECT(RECEIVE_DEAD),
     {"rogue node: 168h of one byte", rogue_node, vehicle_hears, S_SHORT},
     {"rogue node: 43Fh", rogue_node, vehicle_hears, S_SIGNALS},
     {"rogue node: 167h with a fault bit", rogue_node, vehicle_hears, S_FAULT},
@@ -362,7 +362,7 @@ static const symbol_t SYMBOLS[] = {
     {"AI side: queue full", controller, other_controller, C_AI_FULL},
     {"AI side: queue free", controller, other_controller, C_AI_FREE},
     {"tick late by 40 ms", late, always, BIT_LATE_MS},
-    {"eleven days without a tick", doze, may_sleep, SLEEP_MS},
+    {"eleven days without a tick", sleep_ms, may_sleep, SLEEP_MS},
     {"the stored latch is damaged", spoil_latch, latch_is_good, 0},
     {"restart: brown-out", restart, always, HAL_RESET_BROWN_OUT},
     {"restart: unknown", restart, always, HAL_RESET_UNKNOWN},
@@ -375,23 +375,23 @@ unsigned alphabet_size(bool quick) {
 
 const char *alphabet_name(unsigned symbol) {
     const symbol_t *s = &SYMBOLS[symbol];
-    return (s->name != NULL) ? s->name : ILLNESS[s->how].name;
+    return (s->name != NULL) ? s->name : SET_DEFECT[s->how].name;
 }
 
-bool alphabet_tellable;
+bool alphabet_scenario_only;
 bool alphabet_hangs;
 
 /* Inputs that trace.c cannot express, or not exactly: in a pause of host_sim frames wait until its end. */
-static bool cannot_be_told(const symbol_t *s) {
+static bool has_no_scenario_step(const symbol_t *s) {
     const bool waits = !alphabet_hangs || agv_state_commands_safe(agv_supervisor_state(&testbed.supervisor));
-    return (s->apply == doze) || ((s->apply == late) && waits) ||
+    return (s->apply == sleep_ms) || ((s->apply == late) && waits) ||
            ((s->apply == apply_bus) && (s->how == (unsigned)BUS_DEAD)) ||
-           ((s->apply == apply_illness) && (s->how == (unsigned)ILL_RECEIVE_DEAD)) ||
+           ((s->apply == apply_defect) && (s->how == (unsigned)DEFECT_RECEIVE_DEAD)) ||
            ((s->apply == controller) && (s->how == (unsigned)C_AI_OFF));
 }
 
 bool alphabet_enabled(unsigned symbol) {
-    if (alphabet_tellable && cannot_be_told(&SYMBOLS[symbol])) {
+    if (alphabet_scenario_only && has_no_scenario_step(&SYMBOLS[symbol])) {
         return false;
     }
     return SYMBOLS[symbol].enabled(SYMBOLS[symbol].how);
@@ -399,7 +399,8 @@ bool alphabet_enabled(unsigned symbol) {
 
 bool alphabet_leaves_no_trace(unsigned symbol) {
     void (*const apply)(unsigned) = SYMBOLS[symbol].apply;
-    return (apply == rogue_node) || (apply == controller) || (apply == late) || (apply == speak) || (apply == restart);
+    return (apply == rogue_node) || (apply == controller) || (apply == late) || (apply == send_late_frame) ||
+           (apply == restart);
 }
 
 void alphabet_apply(unsigned symbol) {

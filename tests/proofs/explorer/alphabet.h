@@ -4,7 +4,7 @@
  *
  *   time        passes until the abstract state changes or all times of the key have expired; so there is also a stop one
  *               millisecond before each
- *   frames      the vehicle's own frames with another value (mode, button, gear, wheels); an ill node falls silent,
+ *   frames      the vehicle's own frames with another value (mode, button, gear, wheels); a defective node falls silent,
  *               freezes, or sends faults, values out of range or short frames; a silent node sends one frame; frames of
  *               rogue nodes, and malformed ones
  *   controller  error-passive, bus-off (with or without recovery), overrun, queue full, frames that are not sent
@@ -15,14 +15,14 @@
 
 #include <stdbool.h>
 
-/* Whether an illness of the vehicle and a trouble of a controller or of the stored latch may exist at the same time. */
+/* Whether a defect of the vehicle and a trouble of a controller or of the stored latch may exist at the same time. */
 extern bool alphabet_pairs;
 
 /* Whether only inputs are tried that a scenario can express, so that a counterexample can be run. */
-extern bool alphabet_tellable;
+extern bool alphabet_scenario_only;
 
 /*
- * Whether --tellable includes late ticks, in STANDBY and ACTIVE. In host_sim the frames of such a pause wait until its end,
+ * Whether --scenario-only includes late ticks, in STANDBY and ACTIVE. In host_sim the frames of such a pause wait until its end,
  * with their own stamps. So their effects come later than in the model, and the end of INIT or a reset would differ.
  */
 extern bool alphabet_hangs;

@@ -16,12 +16,12 @@
  * --representatives). Limit: two models of one abstract state may differ in values outside the key, such as the phases of
  * cycles, and only the first ones were explored.
  *
- * usage: explorer [--quick] [--pairs] [--tellable [--hangs]] [--variant N] [--shard I/N] [--representatives N]
+ * usage: explorer [--quick] [--pairs] [--scenario-only [--hangs]] [--variant N] [--shard I/N] [--representatives N]
  *                 [--most STATES] [--scenario FILE]
  *   --quick     the short alphabet, a coarser abstraction (abstract.h)
  *   --pairs     a fault of the vehicle and a trouble of a controller may exist at the same time
- *   --tellable  only inputs that a scenario file can express, so that a counterexample can be run
- *   --hangs     with --tellable: also late ticks in STANDBY and ACTIVE
+ *   --scenario-only  only inputs that a scenario file can express, so that a counterexample can be run
+ *   --hangs     with --scenario-only: also late ticks in STANDBY and ACTIVE
  *   --shard     every N-th variant from I on
  *   --most      fail when a variant has more states
  *   --scenario  file for a counterexample; default: standard output
@@ -200,8 +200,8 @@ static void read_options(int argc, char **argv) {
             abstract_coarse = true;
         } else if (strcmp(argv[i], "--pairs") == 0) {
             alphabet_pairs = true;
-        } else if (strcmp(argv[i], "--tellable") == 0) {
-            alphabet_tellable = true;
+        } else if (strcmp(argv[i], "--scenario-only") == 0) {
+            alphabet_scenario_only = true;
         } else if (strcmp(argv[i], "--hangs") == 0) {
             alphabet_hangs = true;
         } else {
@@ -210,8 +210,9 @@ static void read_options(int argc, char **argv) {
         }
     }
     if (!good) {
-        (void)fprintf(stderr, "usage: explorer [--quick] [--pairs] [--tellable [--hangs]] [--variant N] [--shard I/N] "
-                              "[--representatives N] [--most STATES] [--scenario FILE]\n");
+        (void)fprintf(stderr,
+                      "usage: explorer [--quick] [--pairs] [--scenario-only [--hangs]] [--variant N] [--shard I/N] "
+                      "[--representatives N] [--most STATES] [--scenario FILE]\n");
         exit(2);
     }
 }

@@ -74,7 +74,7 @@ void model_root(const model_variant_t *variant) {
     for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
         testbed.traffic[m].counter = 0;
     }
-    model_dress();
+    model_apply_defect();
     testbed_restart(HAL_RESET_POWER_ON);
 }
 
@@ -86,7 +86,7 @@ void model_save(model_saved_t *saved) {
 void model_restore(const model_saved_t *saved) {
     testbed_restore(&saved->testbed);
     model = saved->model;
-    testbed.receive_path_dead = model.illness == (uint8_t)ILL_RECEIVE_DEAD;
+    testbed.receive_path_dead = model.defect == (uint8_t)DEFECT_RECEIVE_DEAD;
 }
 
 uint32_t model_now_ms(void) {
@@ -109,16 +109,16 @@ __attribute__((format(printf, 1, 2))) static void broken(const char *format, ...
     }
 }
 
-/* Whether the illness has lasted long enough for a trip. The limits are from the protocol, not the supervisor's own. */
+/* Whether the defect has lasted long enough for a trip. The limits are from the protocol, not the supervisor's own. */
 static bool must_trip(void) {
-    const uint64_t ill_ms = testbed.now_ms - model.ill_ms;
+    const uint64_t defect_ms = testbed.now_ms - model.defect_ms;
     const uint64_t engaged_ms = (model.mode == (uint8_t)MODEL_ENGAGED) ? (testbed.now_ms - model.mode_ms) : 0u;
-    const uint64_t both_ms = (ill_ms < engaged_ms) ? ill_ms : engaged_ms;
-    switch (ILLNESS[model.illness].trips) {
+    const uint64_t both_ms = (defect_ms < engaged_ms) ? defect_ms : engaged_ms;
+    switch (SET_DEFECT[model.defect].trips) {
     case TRIPS_ALWAYS:
-        return ill_ms > (uint64_t)ALWAYS_MS;
+        return defect_ms > (uint64_t)ALWAYS_MS;
     case TRIPS_FLAPPING:
-        return ill_ms > (uint64_t)FLAPPING_MS;
+        return defect_ms > (uint64_t)FLAPPING_MS;
     case TRIPS_ENGAGED:
         return both_ms > (uint64_t)ENGAGED_MS;
     case TRIPS_FOLLOWED:
@@ -128,17 +128,17 @@ static bool must_trip(void) {
     }
 }
 
-/* A lasting illness must trip and prevent a reset (except one of the AI computer). */
-static void judge_illness(bool was_latched) {
+/* A lasting defect must trip and prevent a reset (except one of the AI computer). */
+static void judge_defect(bool was_latched) {
     const agv_state_t state = agv_supervisor_state(&testbed.supervisor);
     if (agv_state_commands_safe(state) || !must_trip()) {
         return;
     }
     if (was_latched) {
-        broken("FSM-3: the latch was left with a trip cause: %s", ILLNESS[model.illness].name);
+        broken("FSM-3: the latch was left with a trip cause: %s", SET_DEFECT[model.defect].name);
     } else {
-        broken("SUP-4: %s for %u ms without a trip", ILLNESS[model.illness].name,
-               (unsigned)(testbed.now_ms - model.ill_ms));
+        broken("SUP-4: %s for %u ms without a trip", SET_DEFECT[model.defect].name,
+               (unsigned)(testbed.now_ms - model.defect_ms));
     }
 }
 
@@ -147,7 +147,7 @@ static void judge_mode(void) {
     const uint64_t mode_ms = testbed.now_ms - model.mode_ms;
     const uint64_t wheels_ms = testbed.now_ms - model.wheels_ms;
     if (agv_state_commands_safe(agv_supervisor_state(&testbed.supervisor)) ||
-        (model.illness == (uint8_t)ILL_MODE_FLAPS)) {
+        (model.defect == (uint8_t)DEFECT_MODE_FLAPS)) {
         return;
     }
     if ((model.mode == (uint8_t)MODEL_BOTH) && (mode_ms > (uint64_t)BOTH_MS)) {
@@ -163,7 +163,7 @@ static void judge_mode(void) {
 static void judge_stop(void) {
     const uint64_t wheels_ms = testbed.now_ms - model.wheels_ms;
     const uint64_t latched_ms = testbed.now_ms - model.latched_ms;
-    const bool seen = model_flows(M_WHEELS) && (testbed.now_ms - model.ill_ms > (uint64_t)SEEN_MS) &&
+    const bool seen = model_flows(M_WHEELS) && (testbed.now_ms - model.defect_ms > (uint64_t)SEEN_MS) &&
                       (wheels_ms > (uint64_t)SEEN_MS) && (latched_ms > (uint64_t)SEEN_MS);
     if (!agv_state_is_latched(agv_supervisor_state(&testbed.supervisor))) {
         model.latched_ms = testbed.now_ms;
@@ -187,7 +187,7 @@ static void judge(bool was_latched) {
     if (counted != model.frames) {
         broken("INT-4: %u frames were sent, the gate allowed %u", (unsigned)model.frames, (unsigned)counted);
     }
-    judge_illness(was_latched);
+    judge_defect(was_latched);
     judge_mode();
     judge_stop();
 }
@@ -198,14 +198,14 @@ const char *model_broken(void) {
 
 /* ---- Traffic ---- */
 
-void model_dress(void) {
+void model_apply_defect(void) {
     testbed_heal();
     testbed_mode(model.mode);
     testbed_button(model.button);
     testbed_gear(model.gear);
     testbed_wheels(model.wheels_turn ? (uint8_t)WHEEL_MM_S : 0u);
     testbed_ai_drives();
-    illness_dress((illness_t)model.illness);
+    defect_apply((defect_t)model.defect);
 }
 
 static bool is_off(hal_can_side_t side) {
@@ -225,7 +225,7 @@ static void send(unsigned message) {
 }
 
 static bool is_due(unsigned message, uint32_t t_ms) {
-    if ((message == (unsigned)M_GEAR) && (model.illness == (uint8_t)ILL_AI_BABBLES)) {
+    if ((message == (unsigned)M_GEAR) && (model.defect == (uint8_t)DEFECT_AI_BABBLES)) {
         return t_ms % (uint32_t)BABBLE_MS == 0u;
     }
     return t_ms % TRAFFIC[message].cycle_ms == MODEL_PHASE_MS[message];
@@ -238,8 +238,8 @@ static void send_due(void) {
             send(m);
         }
     }
-    if ((model.illness == (uint8_t)ILL_FOREIGN) && ((testbed.now_ms - model.foreign_ms) % (uint64_t)FOREIGN_MS == 0u) &&
-        !is_off(HAL_CAN_VEHICLE)) {
+    if ((model.defect == (uint8_t)DEFECT_FOREIGN) &&
+        ((testbed.now_ms - model.foreign_ms) % (uint64_t)FOREIGN_MS == 0u) && !is_off(HAL_CAN_VEHICLE)) {
         testbed_frame(HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x168, .length = 8, .data = {MODEL_D}}, 0);
     }
 }
@@ -268,7 +268,7 @@ static void age_pending(void) {
     }
 }
 
-static void before(void) {
+static void begin_step(void) {
     if (model_listener != NULL) {
         model_listener->before(model_now_ms() + 1u);
     }
@@ -289,14 +289,14 @@ static void finish_ms(void) {
     send_due();
     follow_controller();
     after(was_latched);
-    if (model.illness == (uint8_t)ILL_MODE_FLAPS) {
-        model_dress(); /* the next 363h may have another mode */
+    if (model.defect == (uint8_t)DEFECT_MODE_FLAPS) {
+        model_apply_defect(); /* the next 363h may have another mode */
     }
 }
 
 void model_run(uint32_t ms) {
     for (uint32_t i = 0; i < ms; i++) {
-        before();
+        begin_step();
         testbed.now_ms++;
         finish_ms();
     }
@@ -312,7 +312,7 @@ void model_run_past(unsigned message) {
 }
 
 void model_deliver(hal_can_side_t side, const hal_can_frame_t *frames, unsigned count) {
-    before();
+    begin_step();
     testbed.now_ms++;
     for (unsigned i = 0; i < count; i++) {
         if (model_listener != NULL) {
@@ -323,7 +323,7 @@ void model_deliver(hal_can_side_t side, const hal_can_frame_t *frames, unsigned 
     finish_ms();
 }
 
-static bool could_speak(unsigned message) {
+static bool may_send_late_frame(unsigned message) {
     const traffic_message_t *m = &testbed.traffic[message];
     return (m->muted || m->frozen) && !is_off(testbed.traffic[message].side);
 }
@@ -331,17 +331,17 @@ static bool could_speak(unsigned message) {
 bool model_can_speak(void) {
     bool can = false;
     for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
-        can = can || could_speak(m);
+        can = can || may_send_late_frame(m);
     }
     return can;
 }
 
 void model_speak(void) {
-    before();
+    begin_step();
     testbed.now_ms++;
     for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
         const traffic_message_t kept = testbed.traffic[m];
-        if (could_speak(m)) {
+        if (may_send_late_frame(m)) {
             testbed.traffic[m].frozen = false;
             testbed.traffic[m].counter = (uint8_t)(kept.counter + 100u);
             send(m);
@@ -371,7 +371,7 @@ static void judge_damaged(bool power_on) {
 }
 
 void model_restart(hal_reset_cause_t cause) {
-    before();
+    begin_step();
     empty_recorder();
     if (model_listener != NULL) {
         model_listener->restarted(cause);
@@ -401,20 +401,20 @@ static void log_pause(uint32_t ms, bool frames_come) {
 
 void model_late(uint32_t ms) {
     for (uint32_t i = 0; i < ms; i++) {
-        before();
+        begin_step();
         if (i == 0u) {
             log_pause(ms, true);
         }
         testbed.now_ms++;
         send_due();
     }
-    before();
+    begin_step();
     testbed.now_ms++;
     finish_ms();
 }
 
 void model_sleep(uint32_t ms) {
-    before();
+    begin_step();
     log_pause(ms, false);
     testbed.now_ms += ms;
     model.wheels_ms = testbed.now_ms; /* no frames of them were received before */

@@ -1,6 +1,6 @@
 /*
  * The model that the explorer runs: one supervisor and its vehicle (testbed.h), in steps of a millisecond. The vehicle
- * consists of few values: mode, button, gear, wheels, and at most one fault at a time (an illness). The traffic is derived
+ * consists of few values: mode, button, gear, wheels, and at most one fault at a time (a defect). The traffic is derived
  * from them, so a model can be saved and compared as a few bytes.
  *
  * The order within a millisecond is that of host_sim: changes of the model, the tick, then the frames that are due.
@@ -13,43 +13,43 @@
 
 #include "testbed_state.h"
 
-/* Illnesses of the vehicle. Their names, and the fault that each must cause, are in illness.c. */
+/* Defects of the vehicle. Their names, and the fault that each must cause, are in defect.c. */
 typedef enum {
-    ILL_NOTHING,
-    ILL_VCU_SILENT,
-    ILL_VCU_FROZEN,
-    ILL_VCU_SHORT,
-    ILL_EPS_SILENT,
-    ILL_EPS_FROZEN,
-    ILL_AI_SILENT,
-    ILL_AI_FROZEN,
-    ILL_AI_SHORT,
-    ILL_ALL_SILENT,
-    ILL_GEAR_STATUS_SILENT,
-    ILL_THROTTLE_STATUS_SILENT,
-    ILL_WHEELS_SILENT,
-    ILL_EPS_STATUS_SILENT,
-    ILL_GEAR_COMMAND_SILENT,
-    ILL_STEERING_COMMAND_SILENT,
-    ILL_EPS_FAULT,
-    ILL_EPS_SUPPLY,
-    ILL_VCU_ALARM,
-    ILL_VCU_AI_ALARM,
-    ILL_AI_OUT_OF_RANGE,
-    ILL_AI_BABBLES,
-    ILL_GEAR_INVALID,
-    ILL_ANGLE_INVALID,
-    ILL_EPS_MODE_OFF,
-    ILL_STEERING_OFF,
-    ILL_THROTTLE,
-    ILL_THROTTLE_ABOVE,
-    ILL_GEAR_AGAINST,
-    ILL_AUTOPILOT_STAYS,
-    ILL_MODE_FLAPS,
-    ILL_FOREIGN,
-    ILL_RECEIVE_DEAD,
-    ILLNESSES
-} illness_t;
+    DEFECT_NONE,
+    DEFECT_VCU_SILENT,
+    DEFECT_VCU_FROZEN,
+    DEFECT_VCU_SHORT,
+    DEFECT_EPS_SILENT,
+    DEFECT_EPS_FROZEN,
+    DEFECT_AI_SILENT,
+    DEFECT_AI_FROZEN,
+    DEFECT_AI_SHORT,
+    DEFECT_ALL_SILENT,
+    DEFECT_GEAR_STATUS_SILENT,
+    DEFECT_THROTTLE_STATUS_SILENT,
+    DEFECT_WHEELS_SILENT,
+    DEFECT_EPS_STATUS_SILENT,
+    DEFECT_GEAR_COMMAND_SILENT,
+    DEFECT_STEERING_COMMAND_SILENT,
+    DEFECT_EPS_FAULT,
+    DEFECT_EPS_SUPPLY,
+    DEFECT_VCU_ALARM,
+    DEFECT_VCU_AI_ALARM,
+    DEFECT_AI_OUT_OF_RANGE,
+    DEFECT_AI_BABBLES,
+    DEFECT_GEAR_INVALID,
+    DEFECT_ANGLE_INVALID,
+    DEFECT_EPS_MODE_OFF,
+    DEFECT_STEERING_OFF,
+    DEFECT_THROTTLE,
+    DEFECT_THROTTLE_ABOVE,
+    DEFECT_GEAR_AGAINST,
+    DEFECT_AUTOPILOT_STAYS,
+    DEFECT_MODE_FLAPS,
+    DEFECT_FOREIGN,
+    DEFECT_RECEIVE_DEAD,
+    DEFECTS
+} defect_t;
 
 /* The controller on the vehicle side. After BUS_OFF it recovers on request, after BUS_DEAD it never does. */
 typedef enum { BUS_FINE, BUS_PASSIVE, BUS_OFF, BUS_DEAD } model_bus_t;
@@ -71,7 +71,7 @@ extern const model_variant_t MODEL_VARIANT[MODEL_VARIANTS];
 typedef struct {
     uint64_t root_ms;
     uint64_t foreign_ms; /* start of a foreign sender's frames */
-    uint64_t ill_ms;     /* start of the illness, or of the time in which its frames reach the supervisor */
+    uint64_t defect_ms;  /* start of the defect, or of the time in which its frames reach the supervisor */
     uint64_t mode_ms;    /* start of the reported mode */
     uint64_t wheels_ms;  /* last time that the wheels began to turn or to stand */
     uint64_t latched_ms; /* start of TRIPPED or SAFE */
@@ -79,8 +79,8 @@ typedef struct {
     uint32_t frames;     /* sent since the last start */
     uint32_t recover_requests;
     uint8_t recover_in_ms;
-    uint8_t bus;     /* model_bus_t */
-    uint8_t illness; /* illness_t */
+    uint8_t bus;    /* model_bus_t */
+    uint8_t defect; /* defect_t */
     uint8_t mode;
     uint8_t gear;
     bool button;
@@ -111,7 +111,7 @@ uint32_t model_now_ms(void);
 bool model_wrapped(void);
 
 /* Derive the traffic from the values of the model; run milliseconds, with all checks. */
-void model_dress(void);
+void model_apply_defect(void);
 void model_run(uint32_t ms);
 void model_run_past(unsigned message);
 
@@ -152,17 +152,17 @@ extern const model_listener_t *model_listener; /* NULL: none */
 /* Phase of each message in its cycle. */
 extern const uint8_t MODEL_PHASE_MS[TRAFFIC_MESSAGES];
 
-/* illness.c */
-typedef enum { TRIPS_NEVER, TRIPS_ALWAYS, TRIPS_FLAPPING, TRIPS_ENGAGED, TRIPS_FOLLOWED } illness_trips_t;
+/* defect.c */
+typedef enum { TRIPS_NEVER, TRIPS_ALWAYS, TRIPS_FLAPPING, TRIPS_ENGAGED, TRIPS_FOLLOWED } defect_trips_t;
 
 typedef struct {
     const char *name;
     const char *fault;        /* reason of the trip */
     const char *frozen_fault; /* NULL, or another possible reason */
-    uint8_t like;             /* illness with the same effect while not engaged (abstract.h) */
-    uint8_t trips;            /* when it trips: illness_trips_t */
-} illness_row_t;
-extern const illness_row_t ILLNESS[ILLNESSES];
-void illness_dress(illness_t illness);
+    uint8_t like;             /* defect with the same effect while not engaged (abstract.h) */
+    uint8_t trips;            /* when it trips: defect_trips_t */
+} defect_row_t;
+extern const defect_row_t SET_DEFECT[DEFECTS];
+void defect_apply(defect_t defect);
 
 #endif

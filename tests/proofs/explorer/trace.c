@@ -130,25 +130,25 @@ static void log_length(unsigned m) {
     }
 }
 
-/* Illnesses that are not a property of a message. */
-static void log_illness(void) {
-    const uint8_t was = logged_model.illness;
-    const uint8_t is = model.illness;
+/* Defects that are not a property of a message. */
+static void log_defect(void) {
+    const uint8_t was = logged_model.defect;
+    const uint8_t is = model.defect;
     if (was == is) {
         return;
     }
-    if ((is == (uint8_t)ILL_AI_BABBLES) || (was == (uint8_t)ILL_AI_BABBLES)) {
+    if ((is == (uint8_t)DEFECT_AI_BABBLES) || (was == (uint8_t)DEFECT_AI_BABBLES)) {
         step("ai", "send_every");
-        add(", message: gear_command, every_ms: %u}\n", (is == (uint8_t)ILL_AI_BABBLES) ? 5u : 100u);
+        add(", message: gear_command, every_ms: %u}\n", (is == (uint8_t)DEFECT_AI_BABBLES) ? 5u : 100u);
     }
-    if (is == (uint8_t)ILL_FOREIGN) {
+    if (is == (uint8_t)DEFECT_FOREIGN) {
         step("bus", "send");
         add(", message: gear_command, side: vehicle, bytes: \"01 00 00 00 00 00 00 00\", every_ms: 20}\n");
     }
-    if (was == (uint8_t)ILL_FOREIGN) {
+    if (was == (uint8_t)DEFECT_FOREIGN) {
         plain_step("bus", "stop_sending");
     }
-    if (is == (uint8_t)ILL_RECEIVE_DEAD) {
+    if (is == (uint8_t)DEFECT_RECEIVE_DEAD) {
         cannot_express("the receive path no longer checks in");
     }
 }
@@ -159,7 +159,7 @@ static void log_vehicle(void) {
     for (unsigned m = 0; m < (unsigned)TRAFFIC_MESSAGES; m++) {
         log_message(m);
     }
-    log_illness();
+    log_defect();
 }
 
 /* ---- The supervisor and its controllers ---- */
@@ -254,7 +254,7 @@ static void delivered(hal_can_side_t side, const hal_can_frame_t *frame) {
     add("}\n");
 }
 
-static void spoke(unsigned message) {
+static void write_late_frame(unsigned message) {
     const bool ai =
         (message < (unsigned)TRAFFIC_COMMANDS) && (testbed.config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY);
     step("bus", "deliver");
@@ -280,7 +280,7 @@ static void without_ticks(uint32_t ms, bool frames_come) {
     }
 }
 
-static const model_listener_t TELLER = {before, after, delivered, spoke, restarted, without_ticks};
+static const model_listener_t TRACE_WRITER = {before, after, delivered, write_late_frame, restarted, without_ticks};
 
 void trace_begin(void) {
     used = 0;
@@ -288,7 +288,7 @@ void trace_begin(void) {
     symbol = NULL;
     complete = true;
     at_ms = 0;
-    model_listener = &TELLER;
+    model_listener = &TRACE_WRITER;
     memcpy(logged, testbed.traffic, sizeof logged);
     logged_model = model;
     memset(logged_full, 0, sizeof logged_full);

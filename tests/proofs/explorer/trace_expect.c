@@ -30,33 +30,34 @@ static bool is_broken;
 static bool drops_events; /* events */
 static bool drops_output;
 
-static bool says(const char *beginning) {
+static bool rule_begins_with(const char *beginning) {
     return strncmp(model_broken(), beginning, strlen(beginning)) == 0;
 }
 
 /* ---- Observations ---- */
 
-static bool was_closed(void) {
+static bool output_was_closed(void) {
     return (output_count > 0u) && outputs[output_count - 1u].closed;
 }
 
 /* A missing trip, although the supervisor was tripped until a reset in this call. */
-static bool undoes_latch(void) {
+static bool latch_was_released(void) {
     uint8_t state = 0;
     for (unsigned i = 0; i < seen_count; i++) {
         state = (seen[i].event.kind == (uint8_t)AGV_EVENT_STATE) ? seen[i].event.b : state;
     }
-    return says("SUP-") && agv_state_is_latched((agv_state_t)state);
+    return rule_begins_with("SUP-") && agv_state_is_latched((agv_state_t)state);
 }
 
 static void judge(uint32_t t_ms) {
     is_broken = model_broken()[0] != '\0';
     broken_ms = t_ms;
-    drops_events = is_broken && (undoes_latch() || says("FSM-3") || says("FSM-7") || says("INT-5") ||
-                                 says("back to INIT") || (says("FSM-5") && !says("FSM-5: the first reason was")));
-    drops_output = is_broken && (drops_events || says("FSM-4: the safety output has closed") ||
-                                 says("FSM-4: the safety output is closed in INIT") ||
-                                 says("FSM-4: the safety output is closed after a start"));
+    drops_events = is_broken && (latch_was_released() || rule_begins_with("FSM-3") || rule_begins_with("FSM-7") ||
+                                 rule_begins_with("INT-5") || rule_begins_with("back to INIT") ||
+                                 (rule_begins_with("FSM-5") && !rule_begins_with("FSM-5: the first reason was")));
+    drops_output = is_broken && (drops_events || rule_begins_with("FSM-4: the safety output has closed") ||
+                                 rule_begins_with("FSM-4: the safety output is closed in INIT") ||
+                                 rule_begins_with("FSM-4: the safety output is closed after a start"));
 }
 
 static void note_events(uint32_t t_ms) {
@@ -74,7 +75,7 @@ static void note_events(uint32_t t_ms) {
 
 static void note_output(uint32_t t_ms) {
     const bool closed = testbed.hal.safety_output.on;
-    if ((closed != was_closed()) && !drops_output && (output_count < (unsigned)EVENTS_MAX)) {
+    if ((closed != output_was_closed()) && !drops_output && (output_count < (unsigned)EVENTS_MAX)) {
         outputs[output_count] = (output_t){t_ms, closed};
         output_count++;
     }
@@ -108,7 +109,7 @@ void trace_expect_restarted(void) {
 /* ---- Expectations ---- */
 
 static const char *trip_reason(void) {
-    const illness_row_t *row = &ILLNESS[model.illness];
+    const defect_row_t *row = &SET_DEFECT[model.defect];
     unsigned vcu_ms = 0;
     unsigned eps_ms = 0;
     if ((sscanf(model_broken(), "SUP-2: the heartbeat of the VCU is %u ms old, of the EPS %u ms", &vcu_ms, &eps_ms) ==
@@ -135,8 +136,8 @@ static uint32_t status_period_ms(void) {
 
 uint32_t trace_expect_duration_ms(void) {
     char name[64];
-    return broken_ms +
-           (first_reason_was(name) ? (status_period_ms() + 1u) : ((undoes_latch() || says("FSM-3")) ? 0u : 1u));
+    return broken_ms + (first_reason_was(name) ? (status_period_ms() + 1u)
+                                               : ((latch_was_released() || rule_begins_with("FSM-3")) ? 0u : 1u));
 }
 
 static void write_at(FILE *file, uint32_t t_ms) {
@@ -158,9 +159,9 @@ static void write_state(FILE *file, agv_state_t to, const char *reason, uint32_t
 static void write_start(FILE *file) {
     static const char BEFORE[] = "FSM-7: after a reset the first reason is";
     const agv_fault_t reason = testbed.rules.last.first_reason;
-    if (says("FSM-7: after reset cause 0")) {
+    if (rule_begins_with("FSM-7: after reset cause 0")) {
         write_state(file, AGV_STATE_INIT, NULL, broken_ms);
-    } else if (says(BEFORE) || says("FSM-7")) {
+    } else if (rule_begins_with(BEFORE) || rule_begins_with("FSM-7")) {
         /* the first reason before the restart */
         const char *was = "SUPERVISOR_RESET";
         for (unsigned i = 0; i < seen_count; i++) {
@@ -186,7 +187,8 @@ static void write_states(FILE *file) {
         }
     }
     write_start(file);
-    if (!undoes_latch() && (says("SUP-2") || says("SUP-3") || says("SUP-4"))) {
+    if (!latch_was_released() &&
+        (rule_begins_with("SUP-2") || rule_begins_with("SUP-3") || rule_begins_with("SUP-4"))) {
         write_state(file, AGV_STATE_TRIPPED, trip_reason(), broken_ms);
     }
 }
@@ -219,7 +221,7 @@ static void write_frames(FILE *file) {
     char name[64];
     if (first_reason_was(name)) {
         write_first_reason(file, name);
-    } else if (says("FSM-2")) {
+    } else if (rule_begins_with("FSM-2")) {
         (void)fprintf(file, "  frames:\n");
         for (command = 0; command <= (unsigned)M_THROTTLE; command++) {
             if ((command != (unsigned)M_GEAR) || testbed.rules.park_at_once) {
@@ -240,10 +242,11 @@ static void write_frames(FILE *file) {
 
 static void write_never(FILE *file) {
     const hal_can_frame_t *frame = &model_last_frame;
-    if (!says("FSM-6") && !says("TOP-2") && !says("TOP-4") && !says("INT-4: ")) {
+    if (!rule_begins_with("FSM-6") && !rule_begins_with("TOP-2") && !rule_begins_with("TOP-4") &&
+        !rule_begins_with("INT-4: ")) {
         return;
     }
-    if (says("INT-4: the gate")) {
+    if (rule_begins_with("INT-4: the gate")) {
         (void)fprintf(file, "  counters_at_end: {gate_refused: 0}\n");
         return;
     }
@@ -263,7 +266,7 @@ static void write_output(FILE *file) {
         (void)fprintf(file, "%s    - {closed: %s, ", (i == 0u) ? "\n" : "", closed ? "true" : "false");
         write_at(file, outputs[i].t_ms);
     }
-    if (closed && !drops_output && says("FSM-4: the safety output is closed")) {
+    if (closed && !drops_output && rule_begins_with("FSM-4: the safety output is closed")) {
         (void)fprintf(file, "    - {closed: false, ");
         write_at(file, broken_ms);
     }
@@ -274,7 +277,7 @@ static void write_missing(FILE *file, const seen_t *s) {
     const char *between = "";
     /* a press that must not count: the button is missing, too */
     const bool wrong_press =
-        says("FSM-3: the latch was left without the button") && (s->event.kind == (uint8_t)AGV_EVENT_RESET);
+        rule_begins_with("FSM-3: the latch was left without the button") && (s->event.kind == (uint8_t)AGV_EVENT_RESET);
     const uint32_t missing = s->event.missing | (wrong_press ? AGV_MISSING_BUTTON : 0u);
     for (uint8_t bit = 0; bit < (uint8_t)MISSING_BITS; bit++) {
         if ((missing & (1u << bit)) != 0u) {
@@ -289,7 +292,8 @@ static void write_missing(FILE *file, const seen_t *s) {
 /* A press of 1 s to 5 s in vain is answered at its release (FSM-3). */
 static bool is_refused(void) {
     const uint64_t held_ms = testbed.now_ms - testbed.rules.pressed_ms;
-    return (undoes_latch() || says("FSM-3: the latch was left w")) && (held_ms >= 1000u) && (held_ms <= 5000u);
+    return (latch_was_released() || rule_begins_with("FSM-3: the latch was left w")) && (held_ms >= 1000u) &&
+           (held_ms <= 5000u);
 }
 
 static const char *refused_for(void) {

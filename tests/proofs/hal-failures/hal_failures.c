@@ -86,7 +86,7 @@ static void on_broken(void) {
 
 typedef enum { RUN, RESTART_WATCHDOG, RESTART_POWER_ON } act_t;
 
-static void act(act_t what) {
+static void run_step(act_t what) {
     switch (what) {
     case RUN:
         testbed_run(1);
@@ -131,7 +131,7 @@ static void fail(const char *where, act_t what, uint32_t call, uint32_t count, u
     failing_ops = ops;
     failing_count = count;
     sim_hal_fail_at(&testbed.hal, call, count, ops);
-    act(what);
+    run_step(what);
     testbed_run(follow_ms);
     is_failing = false;
     judge_counters(what);
@@ -164,7 +164,7 @@ static sim_hal_op_t find_op(act_t what, uint32_t call) {
     failing_ops = SIM_HAL_OP_ALL;
     failing_count = RUN_OF_CALLS;
     sim_hal_fail_at(&testbed.hal, call, 1, SIM_HAL_OP_ALL);
-    act(what);
+    run_step(what);
     is_failing = false;
     return testbed.hal.last_failed;
 }
@@ -187,7 +187,7 @@ static void step(const char *where, act_t what) {
     (void)alarm(HANG_S);
     const uint32_t calls = testbed.hal.calls;
     harm_begin();
-    act(what);
+    run_step(what);
     const uint32_t count = testbed.hal.calls - calls;
     harm_report("%s, without any failure", where);
     for (uint32_t i = 1; i <= count; i++) {
@@ -197,7 +197,7 @@ static void step(const char *where, act_t what) {
         }
     }
     testbed_restore(&saved);
-    act(what);
+    run_step(what);
 }
 
 static void steps(const char *where, uint32_t ms) {

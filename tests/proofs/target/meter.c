@@ -60,7 +60,7 @@ static uint32_t end(void) {
     return ((counted * 5u) + 4u) / 8u; /* below 10 million */
 }
 
-static void note(row_t *row, uint32_t instructions) {
+static void count_call(row_t *row, uint32_t instructions) {
     const uint32_t own = instructions > empty ? instructions - empty : 0u;
     row->calls++;
     row->sum += own;
@@ -70,7 +70,7 @@ static void note(row_t *row, uint32_t instructions) {
 /* A call that was not tripped before it and is now: FSM-2. */
 static void note_trip(row_t *row, agv_state_t before, agv_state_t now) {
     if (!agv_state_is_latched(before) && (now == AGV_STATE_TRIPPED) && (first_send != 0u)) {
-        note(row, ((first_send * 5u) + 4u) / 8u);
+        count_call(row, ((first_send * 5u) + 4u) / 8u);
     }
 }
 
@@ -116,7 +116,7 @@ void __wrap_agv_supervisor_start(agv_supervisor_t *supervisor, const agv_ports_t
     prepare();
     begin();
     __real_agv_supervisor_start(supervisor, ports, config, now_ms);
-    note(&starts, end());
+    count_call(&starts, end());
 }
 
 void __wrap_agv_supervisor_frame(agv_supervisor_t *supervisor, const agv_ports_t *ports, hal_can_side_t side,
@@ -126,7 +126,7 @@ void __wrap_agv_supervisor_frame(agv_supervisor_t *supervisor, const agv_ports_t
     first_send = 0;
     begin();
     __real_agv_supervisor_frame(supervisor, ports, side, frame);
-    note(&frames[message], end());
+    count_call(&frames[message], end());
     note_trip(&trips_by_frame, before, agv_supervisor_state(supervisor));
 }
 
@@ -136,7 +136,7 @@ void __wrap_agv_supervisor_tick(agv_supervisor_t *supervisor, const agv_ports_t 
     first_send = 0;
     begin();
     __real_agv_supervisor_tick(supervisor, ports, now_ms);
-    note(row, end());
+    count_call(row, end());
     note_trip(&trips_by_tick, before, agv_supervisor_state(supervisor));
 }
 

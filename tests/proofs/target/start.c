@@ -7,7 +7,7 @@
 
 void _start(void); /* newlib's */
 
-static void crashed(void) {
+static void report_crash(void) {
     (void)puts("the processor faulted");
     (void)fflush(stdout);
     _Exit(3);

@@ -37,7 +37,7 @@ bool testbed_has(agv_fault_t fault) {
     return agv_supervisor_has_fault(&testbed.supervisor, fault);
 }
 
-static rules_seen_t look(void) {
+static rules_seen_t state_of_supervisor(void) {
     const rules_seen_t seen = {.state = agv_supervisor_state(&testbed.supervisor),
                                .first_reason = agv_supervisor_first_reason(&testbed.supervisor),
                                .active = agv_supervisor_active_faults(&testbed.supervisor),
@@ -54,7 +54,7 @@ static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame
 }
 
 /* After a disturbance of a controller its rules are paused until the supervisor had ticks to detect its end. */
-static rules_bus_t bus(void) {
+static rules_bus_t state_of_bus(void) {
     const sim_hal_can_t *can = &testbed.hal.can[HAL_CAN_VEHICLE];
     const bool off = can->status.state == HAL_CAN_BUS_OFF;
     return (rules_bus_t){.takes_frames = !off && !can->full && (testbed.unsettled == 0u),
@@ -73,11 +73,11 @@ void testbed_frame(hal_can_side_t side, hal_can_frame_t frame, int32_t ahead_ms)
     testbed.now_ms = (stamp_ms > testbed.now_ms) ? stamp_ms : testbed.now_ms;
     frame.time_ms = clock_at(stamp_ms);
     sim_hal_set_now_ms(&testbed.hal, clock_at(testbed.now_ms));
-    testbed.rules.bus = bus();
+    testbed.rules.bus = state_of_bus();
     testbed.rules.oracle.now_ms = clock_at(testbed.now_ms);
     rules_heard(&testbed.rules, side, &frame, stamp_ms);
     agv_supervisor_frame(&testbed.supervisor, &testbed.ports, side, &frame);
-    const rules_seen_t seen = look();
+    const rules_seen_t seen = state_of_supervisor();
     rules_returned(&testbed.rules, &seen, false, 0);
     testbed_judge();
 }
@@ -86,12 +86,12 @@ void testbed_jump(uint32_t ms) {
     testbed.now_ms += ms;
     sim_hal_set_now_ms(&testbed.hal, clock_at(testbed.now_ms));
     testbed.rules.oracle.now_ms = clock_at(testbed.now_ms);
-    rules_ticks(&testbed.rules, testbed.now_ms, bus());
+    rules_ticks(&testbed.rules, testbed.now_ms, state_of_bus());
     if (!testbed.receive_path_dead) {
         agv_supervisor_receive_alive(&testbed.supervisor);
     }
     agv_supervisor_tick(&testbed.supervisor, &testbed.ports, clock_at(testbed.now_ms));
-    const rules_seen_t seen = look();
+    const rules_seen_t seen = state_of_supervisor();
     rules_returned(&testbed.rules, &seen, true, testbed.now_ms - testbed.ticked_ms);
     testbed.ticked_ms = testbed.now_ms;
     const sim_hal_can_t *can = &testbed.hal.can[HAL_CAN_VEHICLE];
@@ -102,16 +102,16 @@ void testbed_jump(uint32_t ms) {
 
 static void start(hal_reset_cause_t cause, const rules_seen_t *before) {
     testbed.rules.oracle.now_ms = clock_at(testbed.now_ms);
-    rules_ticks(&testbed.rules, testbed.now_ms, bus());
+    rules_ticks(&testbed.rules, testbed.now_ms, state_of_bus());
     agv_supervisor_start(&testbed.supervisor, &testbed.ports, &testbed.config, clock_at(testbed.now_ms));
-    const rules_seen_t seen = look();
+    const rules_seen_t seen = state_of_supervisor();
     rules_started(&testbed.rules, cause, before, &seen, testbed.now_ms);
     testbed.ticked_ms = testbed.now_ms;
     testbed_judge();
 }
 
 void testbed_restart(hal_reset_cause_t cause) {
-    const rules_seen_t before = look();
+    const rules_seen_t before = state_of_supervisor();
     sim_hal_reset(&testbed.hal, cause);
     /* During a start the supervisor has no state for the oracle: only the safe commands without 065h may be sent. */
     oracle_restart(&testbed.rules.oracle);
@@ -243,7 +243,7 @@ static void expect_state(unsigned state) {
 }
 
 /* Run from the start to a state. The vehicle moves in ACTIVE, and obeys on the way to SAFE. */
-static void go_to(unsigned state) {
+static void run_to_state(unsigned state) {
     testbed_run(state == 0u ? 50 : 700);
     if (state >= 2u) {
         testbed_mode(MODE_ENGAGED);
@@ -287,9 +287,9 @@ void testbed_load(unsigned variant, unsigned state) {
     testbed_t **copy = &kept[variant][state];
     if (*copy == NULL) {
         begin(variant, 0);
-        go_to(state);
+        run_to_state(state);
         begin(variant, offset_for(variant, testbed.now_ms - EPOCH_MS));
-        go_to(state);
+        run_to_state(state);
         *copy = malloc(sizeof testbed);
         if (*copy == NULL) {
             abort();
