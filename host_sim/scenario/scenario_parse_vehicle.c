@@ -35,20 +35,13 @@ static bool read_start_ai(const yaml_reader_t *reader, const yaml_node_t *node, 
 }
 
 /* The phase of each message, by its name. */
-#define PHASE(name, message) YAML_OPTIONAL(YAML_TIME(#name, vehicle_config_t, phase_ms[message], 0, UINT16_MAX))
-
 static const yaml_key_t PHASES[] = {
-    PHASE(turn_signal_command, AGV_MSG_TURN_SIGNAL_COMMAND),
-    PHASE(gear_command, AGV_MSG_GEAR_COMMAND),
-    PHASE(throttle_command, AGV_MSG_THROTTLE_COMMAND),
-    PHASE(steering_command, AGV_MSG_STEERING_COMMAND),
-    PHASE(vehicle_status, AGV_MSG_VEHICLE_STATUS),
-    PHASE(gear_status, AGV_MSG_GEAR_STATUS),
-    PHASE(throttle_status, AGV_MSG_THROTTLE_STATUS),
-    PHASE(steering_status, AGV_MSG_STEERING_STATUS),
-    PHASE(eps_status, AGV_MSG_EPS_STATUS),
-    PHASE(steering_position, AGV_MSG_STEERING_POSITION),
-    PHASE(wheel_speed, AGV_MSG_WHEEL_SPEED),
+#define AGV_COMMAND(NAME, name, heading, table, cycle, deadline, fault, counter)                                       \
+    YAML_OPTIONAL(YAML_TIME(#name, vehicle_config_t, phase_ms[AGV_MSG_##NAME], 0, UINT16_MAX)),
+#define AGV_STATUS AGV_COMMAND
+#include "agv/message_table.def"
+#undef AGV_COMMAND
+#undef AGV_STATUS
 };
 static const yaml_shape_t PHASES_SHAPE = {YAML_MAP_SHAPE(PHASES)};
 

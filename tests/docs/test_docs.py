@@ -16,7 +16,7 @@ class Manual(unittest.TestCase):
         environment = {"TZ": "UTC", "PATH": os.path.dirname(os.environ["HOST_SIM"]) + os.pathsep + os.environ["PATH"]}
         for page in PAGES:
             with self.subTest(page):
-                self.assertGreater(typed.run(self, ROOT / page, ROOT, environment, LEFT_OUT, INSTEAD), 0)
+                self.assertGreater(typed.follow(self, typed.steps(ROOT / page), ROOT, environment, LEFT_OUT, INSTEAD), 0)
 
 
 if __name__ == "__main__":

@@ -13,8 +13,9 @@ BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 SAVE = re.compile(r"[Ss]ave this as\s+`([^`]+)`:?\s*\Z")
 
 
-def steps(page):
+def steps(path):
     """In the order of the page: ("save", name, text), or ("run", command, expected lines)."""
+    page = pathlib.Path(path).read_text(encoding="utf-8")
     for block in BLOCK.finditer(page):
         name = SAVE.search(page, 0, block.start())
         if name:
@@ -57,10 +58,10 @@ def copy_tree(root, copy):
             shutil.copy2(root / name, copy / name, follow_symlinks=False)
 
 
-def run(case, page, folder, environment, left_out=(), instead=None):
-    """Do what the page says, in this folder. `$?` is the status of the command before. @return the number of commands"""
+def follow(case, these, folder, environment, left_out=(), instead=None):
+    """Do these steps, in this folder. `$?` is the status of the command before. @return the number of commands"""
     count, status = 0, 0
-    for kind, what, content in steps(pathlib.Path(page).read_text(encoding="utf-8")):
+    for kind, what, content in these:
         if kind == "save":
             (folder / what).parent.mkdir(parents=True, exist_ok=True)
             (folder / what).write_text(content, encoding="utf-8")
