@@ -152,14 +152,44 @@ static bool take_option(parsing_t *parsing) {
     return take_value(option, parsing->argv[next]);
 }
 
-static bool check_operands(const option_syntax_t *syntax, size_t operands, char **argv) {
+/** Whether an option was given. */
+static bool is_given(const parsing_t *parsing, const char *name) {
+    for (size_t i = 0u; i < OPTIONS_MAX; i++) {
+        const option_t *option = options_at(parsing->syntax, i);
+        if ((option == NULL) || (strcmp(option->name, name) == 0)) {
+            return (option != NULL) && parsing->given[i];
+        }
+    }
+    return false;
+}
+
+static bool refuse_operand(const parsing_t *parsing, size_t at) {
+    const option_syntax_t *syntax = parsing->syntax;
+    char **argv = parsing->argv;
+    if ((syntax->instead != NULL) && !is_given(parsing, syntax->instead)) {
+        return report("unexpected argument '%s': did you mean '%s %s'?", argv[at], syntax->instead, argv[at]);
+    }
+    if (at > 0u) {
+        return report("unexpected argument '%s' after '%s'; see host_sim %.*s --help", argv[at], argv[at - 1u],
+                      command_length(syntax), syntax->usage);
+    }
+    return report("unexpected argument '%s'; see host_sim %.*s --help", argv[at], command_length(syntax),
+                  syntax->usage);
+}
+
+static bool check_operands(const parsing_t *parsing, size_t operands) {
+    const option_syntax_t *syntax = parsing->syntax;
     if (operands < syntax->operands_min) {
         return report("%s is missing; see host_sim %.*s --help", syntax->operand, command_length(syntax),
                       syntax->usage);
     }
     if (operands > syntax->operands_max) {
-        return report("unexpected argument '%s'; see host_sim %.*s --help", argv[syntax->operands_max],
-                      command_length(syntax), syntax->usage);
+        return refuse_operand(parsing, syntax->operands_max);
+    }
+    for (size_t i = 0u; i < operands; i++) {
+        if (parsing->argv[i][0] == '\0') {
+            return report("%s: the name is empty", syntax->operand);
+        }
     }
     return true;
 }
@@ -182,5 +212,5 @@ options_result_t options_parse(const option_syntax_t *syntax, int argc, char **a
             return OPTIONS_BAD;
         }
     }
-    return check_operands(syntax, *operands, argv) ? OPTIONS_GO : OPTIONS_BAD;
+    return check_operands(&parsing, *operands) ? OPTIONS_GO : OPTIONS_BAD;
 }

@@ -90,6 +90,7 @@ typedef struct {
     size_t operands_max;
     const char *operand; /**< what an operand is called in a message: "LOG" */
     const char *words;   /**< of an operand, "a|b|c"; NULL: any text */
+    const char *instead; /**< the option that was meant with an operand too many, "--can"; NULL: none */
     const option_example_t *examples;
     size_t example_count;
 } option_syntax_t;

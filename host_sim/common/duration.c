@@ -135,8 +135,9 @@ const char *duration_problem(duration_result_t result, const char *text, duratio
         (void)snprintf(problem, DURATION_PROBLEM_SIZE, "'%.*s' is not a whole number of %s", SHOWN_MAX, text,
                        units[unit].words);
     } else {
-        (void)snprintf(problem, DURATION_PROBLEM_SIZE, "'%.*s' is not a time: 250ms, 10s, 1.5min, 2h, or %s alone",
-                       SHOWN_MAX, text, units[unit].words);
+        (void)snprintf(problem, DURATION_PROBLEM_SIZE,
+                       "'%.*s' is not a time: 250ms, 10s, 1.5min, 2h, or whole %s alone", SHOWN_MAX, text,
+                       units[unit].words);
     }
     return problem;
 }

@@ -31,7 +31,7 @@ duration_result_t duration_read(const char *text, duration_unit_t unit, uint64_t
 #define DURATION_PROBLEM_SIZE 160u
 
 /**
- * Say what is wrong with a text: "'10 parsecs' is not a time: 250ms, 10s, 1.5min, 2h, or milliseconds alone".
+ * Say what is wrong with a text: "'10 parsecs' is not a time: 250ms, 10s, 1.5min, 2h, or whole milliseconds alone".
  * @param result of duration_read() with the same arguments; not DURATION_OK
  * @return problem
  */

@@ -81,6 +81,15 @@ void suggest_offer(suggestion_t *suggestion, const char *word, size_t length) {
     }
 }
 
+void suggest_offer_words(suggestion_t *suggestion, const char *words) {
+    const char *word = NULL;
+    size_t length = words_at(words, 0u, &word);
+    for (size_t i = 1u; length > 0u; i++) {
+        suggest_offer(suggestion, word, length);
+        length = words_at(words, i, &word);
+    }
+}
+
 const char *suggest_text(const suggestion_t *suggestion, char text[SUGGEST_SIZE]) {
     text[0] = '\0';
     if (suggestion->word != NULL) {
@@ -91,11 +100,6 @@ const char *suggest_text(const suggestion_t *suggestion, char text[SUGGEST_SIZE]
 
 const char *suggest_from(const char *words, const char *written, char text[SUGGEST_SIZE]) {
     suggestion_t suggestion = suggest_begin(written, strlen(written));
-    const char *word = NULL;
-    size_t length = words_at(words, 0u, &word);
-    for (size_t i = 1u; length > 0u; i++) {
-        suggest_offer(&suggestion, word, length);
-        length = words_at(words, i, &word);
-    }
+    suggest_offer_words(&suggestion, words);
     return suggest_text(&suggestion, text);
 }

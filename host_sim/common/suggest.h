@@ -28,6 +28,9 @@ suggestion_t suggest_begin(const char *written, size_t length);
  */
 void suggest_offer(suggestion_t *suggestion, const char *word, size_t length);
 
+/** Offer each word of a list "a|b|c". */
+void suggest_offer_words(suggestion_t *suggestion, const char *words);
+
 /** Write the end of a message: ": did you mean 'replay'?", or "" if no word is near. @return text */
 const char *suggest_text(const suggestion_t *suggestion, char text[SUGGEST_SIZE]);
 

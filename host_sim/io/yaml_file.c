@@ -45,7 +45,9 @@ static void report_problem(const char *path, const yaml_parser_t *parser, const 
     /* Characters are decoded before lines are counted. */
     size_t line = (parser->error == YAML_READER_ERROR) ? line_of_offset(bytes, size, parser->problem_offset)
                                                        : parser->problem_mark.line + 1u;
-    (void)report_at(path, line, "not YAML: %s", problem);
+    const size_t at = parser->problem_mark.index;
+    const bool is_tab = (parser->error == YAML_SCANNER_ERROR) && (at < size) && (bytes[at] == '\t');
+    (void)report_at(path, line, "not YAML: %s%s", problem, is_tab ? ": a tab; YAML is indented with blanks" : "");
 }
 
 /** Follow an event. @return what is wrong with it, or NULL */

@@ -4,6 +4,7 @@
 
 #include "agv/names.h"
 #include "common/report.h"
+#include "common/suggest.h"
 #include "config/config_file.h"
 #include "io/yaml_file.h"
 #include "scenario/scenario_parse.h"
@@ -65,7 +66,13 @@ bool scenario_parse_message(const yaml_reader_t *reader, const yaml_node_t *node
             return true;
         }
     }
-    return yaml_reader_fail(reader, node, "message: unknown message '%.40s'", text);
+    char meant[SUGGEST_SIZE];
+    suggestion_t suggestion = suggest_begin(text, strlen(text));
+    for (int m = 0; m < AGV_MSG_COUNT; m++) {
+        const char *name = agv_message_name((agv_message_t)m);
+        suggest_offer(&suggestion, name, strlen(name));
+    }
+    return yaml_reader_fail(reader, node, "message: unknown message '%.40s'%s", text, suggest_text(&suggestion, meant));
 }
 
 bool scenario_parse_fault(const yaml_reader_t *reader, const yaml_node_t *node, agv_fault_t *fault) {
@@ -75,7 +82,16 @@ bool scenario_parse_fault(const yaml_reader_t *reader, const yaml_node_t *node, 
         return false;
     }
     *fault = agv_fault_from_name(text);
-    return (*fault != AGV_FAULT_NONE) || yaml_reader_fail(reader, node, "unknown fault '%.40s'", text);
+    if (*fault != AGV_FAULT_NONE) {
+        return true;
+    }
+    char meant[SUGGEST_SIZE];
+    suggestion_t suggestion = suggest_begin(text, strlen(text));
+    for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
+        const char *name = agv_fault_name((agv_fault_t)i);
+        suggest_offer(&suggestion, name, strlen(name));
+    }
+    return yaml_reader_fail(reader, node, "unknown fault '%.40s'%s", text, suggest_text(&suggestion, meant));
 }
 
 static bool read_name(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {

@@ -5,6 +5,7 @@
  */
 #include <string.h>
 
+#include "common/suggest.h"
 #include "io/yaml_file.h"
 #include "scenario/scenario_actions.h"
 #include "scenario/scenario_parse.h"
@@ -152,6 +153,20 @@ static bool take_garbage(const yaml_reader_t *reader, const scenario_reading_t *
     return true;
 }
 
+/** Report a field that the node does not have. */
+static bool unknown_field(const yaml_reader_t *reader, const yaml_node_t *node, scenario_actor_t actor,
+                          const char *name) {
+    char meant[SUGGEST_SIZE];
+    suggestion_t suggestion = suggest_begin(name, strlen(name));
+    for (size_t i = 0u; scenario_field(i) != NULL; i++) {
+        if (scenario_field(i)->actor == actor) {
+            suggest_offer(&suggestion, scenario_field(i)->name, strlen(scenario_field(i)->name));
+        }
+    }
+    return yaml_reader_fail(reader, node, "field: this node has no field '%.40s'%s", name,
+                            suggest_text(&suggestion, meant));
+}
+
 /** `set`: a field keeps a value; `freeze_field`: the one that it has. */
 static bool take_field(const yaml_reader_t *reader, const scenario_reading_t *reading, vehicle_action_t *action) {
     const yaml_node_t *node = given(reading, P_FIELD);
@@ -163,7 +178,7 @@ static bool take_field(const yaml_reader_t *reader, const scenario_reading_t *re
     }
     const scenario_field_row_t *row = scenario_find_field(reading->actor, name);
     if (row == NULL) {
-        return yaml_reader_fail(reader, node, "field: this node has no field '%.40s'", name);
+        return unknown_field(reader, node, reading->actor, name);
     }
     const yaml_node_t *given_value = given(reading, P_VALUE);
     if ((given_value != NULL) && !yaml_reader_hex(reader, given_value, "value", scenario_field_highest(row), &value)) {
@@ -330,6 +345,19 @@ static bool take_for_supervisor(const yaml_reader_t *reader, const scenario_read
     }
 }
 
+static bool unknown_action(const yaml_reader_t *reader, const scenario_reading_t *reading, const char *word) {
+    char meant[SUGGEST_SIZE];
+    suggestion_t suggestion = suggest_begin(word, strlen(word));
+    for (size_t i = 0u; scenario_action(i) != NULL; i++) {
+        const scenario_action_row_t *row = scenario_action(i);
+        if (scenario_action_is_of(row, reading->actor)) {
+            suggest_offer(&suggestion, row->word, strlen(row->word));
+        }
+    }
+    return yaml_reader_fail(reader, reading->word, "%s: unknown action '%.40s'%s", SCENARIO_ACTORS[reading->actor].word,
+                            word, suggest_text(&suggestion, meant));
+}
+
 bool scenario_parse_step(const yaml_reader_t *reader, const yaml_node_t *node, const agv_config_t *config,
                          scenario_step_t *step) {
     scenario_reading_t reading;
@@ -343,8 +371,7 @@ bool scenario_parse_step(const yaml_reader_t *reader, const yaml_node_t *node, c
     }
     const scenario_action_row_t *row = scenario_find_action(reading.actor, word);
     if (row == NULL) {
-        return yaml_reader_fail(reader, reading.word, "%s: unknown action '%.40s'", SCENARIO_ACTORS[reading.actor].word,
-                                word);
+        return unknown_action(reader, &reading, word);
     }
     *step = (scenario_step_t){.at_ms = reading.at_ms,
                               .again_every_ms = reading.again_every_ms,

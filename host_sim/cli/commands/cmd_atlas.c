@@ -29,7 +29,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_group_t groups[] = {{.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]}};
     static const option_example_t examples[] = {
         {"host_sim atlas --first EMERGENCY_STOP --second BUS_OFF", "one pair, in every state and topology"},
-        {"host_sim atlas --shard 1/64 --results atlas-1.jsonl", "a part of all pairs"},
+        {"host_sim atlas --shard 1/1000 --results atlas-1.jsonl", "a part of all pairs"},
     };
     const option_syntax_t syntax = {
         .usage = "atlas [OPTION]...",

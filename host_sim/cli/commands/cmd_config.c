@@ -35,6 +35,7 @@ status_t cmd_config(int argc, char **argv) {
             "In a file, times are 250ms, 1.5s, or milliseconds alone; identifiers are 168h, 0x168 or decimal 360.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
+        .instead = "--config",
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
         .operand = "",

@@ -78,6 +78,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
             "computer stops, the supervisor parks the vehicle, the operator resets; then the EPS fails.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
+        .instead = "--scenario",
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
     };

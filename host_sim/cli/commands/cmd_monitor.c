@@ -87,6 +87,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
             "of a supervisor in this program, which only listens.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
+        .instead = "--log",
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
         .operand = "argument",

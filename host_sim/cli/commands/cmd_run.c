@@ -56,6 +56,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
             "its state while it runs.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
+        .instead = "--can",
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
         .operand = "argument",

@@ -69,6 +69,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
             "alone; identifiers are 168h, 0x168 or decimal 360.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
+        .instead = "--can",
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
         .operand = "argument",

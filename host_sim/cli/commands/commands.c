@@ -1,8 +1,8 @@
 #include "cli/commands/commands.h"
 
-#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/exit_status.h"
 #include "common/suggest.h"
@@ -39,17 +39,30 @@ const char *command_words(void) {
     return words;
 }
 
+/** Report what is no command. */
+static void refuse(const char *name) {
+    char meant[SUGGEST_SIZE];
+    suggestion_t suggestion = suggest_begin(name, strlen(name));
+    suggest_offer_words(&suggestion, (name[0] == '-') ? "--help|--version|-V" : command_words());
+    suggest_offer_words(&suggestion, (name[0] == '-') ? command_words() : "--version");
+    if (suggestion.word != NULL) {
+        (void)report("unknown command '%s'%s", name, suggest_text(&suggestion, meant));
+    } else if (name[0] == '-') {
+        (void)report("no command before '%s'; see host_sim --help", name);
+    } else if (access(name, F_OK) == 0) {
+        (void)report("no command before the file '%s', such as replay; see host_sim --help", name);
+    } else {
+        (void)report("unknown command '%s'; see host_sim --help", name);
+    }
+}
+
 const command_t *command_find(const char *name) {
     for (size_t i = 0u; i < COMMAND_COUNT; i++) {
         if (strcmp(name, COMMANDS[i].name) == 0) {
             return &COMMANDS[i];
         }
     }
-    const bool is_option = name[0] == '-';
-    char meant[SUGGEST_SIZE];
-    (void)suggest_from(is_option ? "--help|--version" : command_words(), name, meant);
-    (void)report("%s '%s'%s", is_option ? "no command before" : "unknown command", name,
-                 (meant[0] != '\0') ? meant : "; see host_sim --help");
+    refuse(name);
     return NULL;
 }
 

@@ -116,9 +116,11 @@ void test_a_time_has_a_unit_or_is_in_that_of_the_option(void) {
     TEST_ASSERT_EQUAL_UINT64(48, given.hours);
     parse_good("--hours 7 f");
     TEST_ASSERT_EQUAL_UINT64(7, given.hours);
-    parse_bad("--time 10parsecs f", "--time: '10parsecs' is not a time: 250ms, 10s, 1.5min, 2h, or milliseconds alone");
-    parse_bad("--time 1e9999s f", "--time: '1e9999s' is not a time: 250ms, 10s, 1.5min, 2h, or milliseconds alone");
-    parse_bad("--time -1s f", "--time: '-1s' is not a time: 250ms, 10s, 1.5min, 2h, or milliseconds alone");
+    parse_bad("--time 10parsecs f",
+              "--time: '10parsecs' is not a time: 250ms, 10s, 1.5min, 2h, or whole milliseconds alone");
+    parse_bad("--time 1e9999s f",
+              "--time: '1e9999s' is not a time: 250ms, 10s, 1.5min, 2h, or whole milliseconds alone");
+    parse_bad("--time -1s f", "--time: '-1s' is not a time: 250ms, 10s, 1.5min, 2h, or whole milliseconds alone");
     parse_bad("--time 6s f", "--time: '6s' is not within 1ms to 5s");
     parse_bad("--time 1us f", "--time: '1us' is not a whole number of milliseconds");
     parse_bad("--hours 30min f", "--hours: '30min' is not a whole number of hours");
@@ -191,7 +193,7 @@ void test_what_is_refused(void) {
     parse_bad("--word a|b f", "--word: 'a|b' is not one of a|b|cc");
     parse_bad("--word _ f", "--word: '' is not one of a|b|cc");
     parse_bad("--flag", "FILE is missing; see host_sim try --help");
-    parse_bad("x y z", "unexpected argument 'z'; see host_sim try --help");
+    parse_bad("x y z", "unexpected argument 'z' after 'y'; see host_sim try --help");
 }
 
 void test_a_message_is_one_line_whatever_it_quotes(void) {

@@ -89,7 +89,7 @@ void test_the_limits(void) {
 
 void test_what_is_wrong_in_words(void) {
     char problem[DURATION_PROBLEM_SIZE];
-    TEST_ASSERT_EQUAL_STRING("'10 parsecs' is not a time: 250ms, 10s, 1.5min, 2h, or milliseconds alone",
+    TEST_ASSERT_EQUAL_STRING("'10 parsecs' is not a time: 250ms, 10s, 1.5min, 2h, or whole milliseconds alone",
                              duration_problem(DURATION_NO_TIME, "10 parsecs", DURATION_MS, 1, 5000, problem));
     TEST_ASSERT_EQUAL_STRING("'1us' is not a whole number of milliseconds",
                              duration_problem(DURATION_TOO_FINE, "1us", DURATION_MS, 1, 5000, problem));

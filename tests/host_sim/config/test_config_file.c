@@ -196,9 +196,10 @@ void test_times_with_units(void) {
         char text[64];
         char expected[160];
         (void)snprintf(text, sizeof text, "init_hold_ms: %s\n", bad[i]);
-        (void)snprintf(expected, sizeof expected,
-                       "c.yaml:1: init_hold_ms: '%s' is not a time: 250ms, 10s, 1.5min, 2h, or milliseconds alone\n",
-                       bad[i]);
+        (void)snprintf(
+            expected, sizeof expected,
+            "c.yaml:1: init_hold_ms: '%s' is not a time: 250ms, 10s, 1.5min, 2h, or whole milliseconds alone\n",
+            bad[i]);
         load_bad(text, expected);
     }
     load_bad("init_hold_ms: 10.001s\n", "c.yaml:1: init_hold_ms: '10.001s' is not within 100ms to 10s\n");

@@ -55,7 +55,15 @@ class Front(hostsim.Case):
         self.write("s.yaml", "name: n\nshow: [SUP-2]\n")
         for arguments, says in ((("replya",), "unknown command 'replya': did you mean 'replay'?"),
                                 (("help", "moniter"), "unknown command 'moniter': did you mean 'monitor'?"),
-                                (("--hepl",), "no command before '--hepl': did you mean '--help'?"),
+                                (("--hepl",), "unknown command '--hepl': did you mean '--help'?"),
+                                (("version",), "unknown command 'version': did you mean '--version'?"),
+                                (("-v",), "unknown command '-v': did you mean '-V'?"),
+                                (("c.yaml",), "no command before the file 'c.yaml', such as replay"),
+                                (("run", "can0"), "unexpected argument 'can0': did you mean '--can can0'?"),
+                                (("demo", "reset"), "unexpected argument 'reset': did you mean '--scenario reset'?"),
+                                (("vehicle", "--can", "none", "--fault", "ai-stpo@2s"), "unknown action 'stpo': did you mean 'stop'?"),
+                                (("vehicle", "--can", "none", "--fault", "ai-mute,message=gear_comand@2s"), "did you mean 'gear_command'?"),
+                                (("vehicle", "--can", "none", "--fault", "eps-set,field=fault,value=08h@3s"), "did you mean 'faults'?"),
                                 (("replay", "--tial", "5", "log"), "unknown option '--tial': did you mean '--tail'?"),
                                 (("config", "--topology", "gatway"), "'gatway' is not one of shared|gateway: did you mean 'gateway'?"),
                                 (("demo", "--scenario", "resett"), "no scenario 'resett': did you mean 'reset'?"),
@@ -146,7 +154,8 @@ class Options(hostsim.Case):
 
     def test_what_is_missing_or_too_much(self):
         self.assert_refused(self.run_program("replay"), "LOG is missing")
-        self.assert_refused(self.run_program("replay", "log", "more"), "unexpected argument 'more'")
+        self.assert_refused(self.run_program("replay", "log", "more"), "unexpected argument 'more' after 'log'")
+        self.assert_refused(self.run_program("replay", ""), "LOG: the name is empty")
         self.assert_refused(self.run_program("replay", "log", "--tail"), "--tail needs a value")
         self.assert_refused(self.run_program("replay", "log", "--out", "--shadow"), "--out needs a value")
         self.assert_refused(self.run_program("replay", "log", "--out="), "--out: the value is empty")
