@@ -9,6 +9,32 @@ void analysis_options_init(analysis_options_t *options, option_t rows[ANALYSIS_O
                                     &options->paths[ANALYSIS_TRACE]);
 }
 
+options_result_t analysis_options_parse(const analysis_command_t *command, int argc, char **argv,
+                                        analysis_options_t *analysis, config_options_t *config) {
+    option_t config_rows[CONFIG_OPTIONS];
+    option_t analysis_rows[ANALYSIS_OPTIONS];
+    config_options_init(config, config_rows);
+    analysis_options_init(analysis, analysis_rows);
+    const option_group_t groups[] = {
+        {.title = "Options (FILE may be -, standard output)", .options = analysis_rows, .count = ANALYSIS_OPTIONS},
+        {.options = command->rows, .count = command->row_count},
+        {.title = command->config_title, .options = config_rows, .count = CONFIG_OPTIONS},
+    };
+    const option_syntax_t syntax = {
+        .usage = command->usage,
+        .summary = command->summary,
+        .groups = groups,
+        .group_count = sizeof groups / sizeof groups[0],
+        .examples = command->examples,
+        .example_count = command->example_count,
+        .operands_min = 1u,
+        .operands_max = 1u,
+        .operand = command->operand,
+    };
+    size_t operands = 0u;
+    return options_parse(&syntax, argc, argv, &operands);
+}
+
 bool analysis_options_any(const analysis_options_t *options) {
     for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
         if (options->paths[i] != NULL) {

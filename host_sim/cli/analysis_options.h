@@ -9,6 +9,7 @@
 
 #include "analysis/analysis.h"
 #include "cli/options.h"
+#include "config/config_options.h"
 #include "io/output.h"
 
 #define ANALYSIS_OPTIONS 3u
@@ -20,6 +21,22 @@ typedef struct {
 
 /** Nothing given. @param rows are filled in with the options */
 void analysis_options_init(analysis_options_t *options, option_t rows[ANALYSIS_OPTIONS]);
+
+/** A command that analyses one file. */
+typedef struct {
+    const char *usage;
+    const char *summary;
+    const char *operand;      /**< the file: "LOG" */
+    const char *config_title; /**< of the group of the configuration */
+    const option_t *rows;     /**< its own options */
+    size_t row_count;
+    const option_example_t *examples;
+    size_t example_count;
+} analysis_command_t;
+
+/** Parse its command line: the files of the analysis, its own options, the configuration, and the one file. */
+options_result_t analysis_options_parse(const analysis_command_t *command, int argc, char **argv,
+                                        analysis_options_t *analysis, config_options_t *config);
 
 /** Whether one of the files was asked for. */
 bool analysis_options_any(const analysis_options_t *options);

@@ -19,40 +19,29 @@ typedef struct {
 } given_t;
 
 static options_result_t parse(int argc, char **argv, given_t *given) {
-    option_t config_rows[CONFIG_OPTIONS];
-    option_t analysis_rows[ANALYSIS_OPTIONS];
-    config_options_init(&given->config, config_rows);
-    analysis_options_init(&given->analysis, analysis_rows);
     const option_t rows[] = {
         OPTION_NUMBER("--run", "N", "the run of this number; else the newest one with a trip", &given->request.run, 0,
                       RUN_MAX),
         OPTION_TEXT("--events", "FILE", "events as JSON Lines", &given->request.events),
-    };
-    const option_group_t groups[] = {
-        {.title = "Options (FILE may be -, standard output)", .options = analysis_rows, .count = ANALYSIS_OPTIONS},
-        {.options = rows, .count = sizeof rows / sizeof rows[0]},
-        {.title = "Configuration of the device", .options = config_rows, .count = CONFIG_OPTIONS},
     };
     static const option_example_t examples[] = {
         {"host_sim replay --store agv.store @/examples/ai-stops.log", "leaves what a device would keep in agv.store"},
         {"host_sim recorder agv.store", "what was kept"},
         {"host_sim recorder --report why.html agv.store", "the same as a page with pictures"},
     };
-    const option_syntax_t syntax = {
+    const analysis_command_t command = {
         .usage = "recorder [OPTION]... FILE",
         .summary = "Tell what the flight recorder of a device kept: what its shell's 'agv dump' printed, what a "
                    "debugger dumped\n"
                    "of its memory, or the --store file of replay (- = standard input).\n",
-        .groups = groups,
-        .group_count = sizeof groups / sizeof groups[0],
+        .operand = "FILE",
+        .config_title = "Configuration of the device",
+        .rows = rows,
+        .row_count = sizeof rows / sizeof rows[0],
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
-        .operands_min = 1u,
-        .operands_max = 1u,
-        .operand = "FILE",
     };
-    size_t operands = 0u;
-    return options_parse(&syntax, argc, argv, &operands);
+    return analysis_options_parse(&command, argc, argv, &given->analysis, &given->config);
 }
 
 static bool check_files(const given_t *given) {

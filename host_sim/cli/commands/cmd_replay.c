@@ -25,10 +25,6 @@ typedef struct {
 } given_t;
 
 static options_result_t parse(int argc, char **argv, given_t *given) {
-    option_t config_rows[CONFIG_OPTIONS];
-    option_t analysis_rows[ANALYSIS_OPTIONS];
-    config_options_init(&given->config, config_rows);
-    analysis_options_init(&given->analysis, analysis_rows);
     const option_t rows[] = {
         OPTION_TEXT("--out", "FILE", "candump log of the frames that the supervisor sent", &given->request.out),
         OPTION_TEXT("--events", "FILE", "events as JSON Lines", &given->request.events),
@@ -49,32 +45,25 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         OPTION_TEXT("--store", "FILE", "storage that survives a reset: latch and flight recorder",
                     &given->request.store),
     };
-    const option_group_t groups[] = {
-        {.title = "Options (FILE may be -, standard output)", .options = analysis_rows, .count = ANALYSIS_OPTIONS},
-        {.options = rows, .count = sizeof rows / sizeof rows[0]},
-        {.title = "Configuration of the supervisor", .options = config_rows, .count = CONFIG_OPTIONS},
-    };
     static const option_example_t examples[] = {
         {"host_sim replay @/examples/ai-stops.log", "whether and why it tripped"},
         {"host_sim replay --report why.html @/examples/ai-stops.log", "the same as a page with pictures"},
         {"host_sim replay --timeline --tail 1s @/examples/ai-stops.log",
          "a line for each event; a second of silence after the log"},
     };
-    const option_syntax_t syntax = {
+    const analysis_command_t command = {
         .usage = "replay [OPTION]... LOG",
         .summary = "Replay a recorded log (candump -l; - = standard input) to the supervisor in virtual time, and say "
                    "whether\n"
                    "it would have stopped the vehicle, when, and why.\n",
-        .groups = groups,
-        .group_count = sizeof groups / sizeof groups[0],
+        .operand = "LOG",
+        .config_title = "Configuration of the supervisor",
+        .rows = rows,
+        .row_count = sizeof rows / sizeof rows[0],
         .examples = examples,
         .example_count = sizeof examples / sizeof examples[0],
-        .operands_min = 1u,
-        .operands_max = 1u,
-        .operand = "LOG",
     };
-    size_t operands = 0u;
-    return options_parse(&syntax, argc, argv, &operands);
+    return analysis_options_parse(&command, argc, argv, &given->analysis, &given->config);
 }
 
 static bool check_files(const given_t *given) {

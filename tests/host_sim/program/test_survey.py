@@ -5,7 +5,6 @@ import json
 import random
 import re
 import resource
-import time
 
 import hostsim
 import traffic

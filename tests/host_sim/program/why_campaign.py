@@ -11,7 +11,7 @@ import sys
 VCU, EPS, AI = "vehicle_status", "eps_status", "turn_signal_command"
 COMMANDS = ("gear_command", "throttle_command", "steering_command")
 
-# fault: kind, message that tells, cycle of that message in ms (0: none)
+# fault: kind, message that tells, cycle of that message in ms (0: none, the cause is not compared)
 EXPECTED = {
     "SELF_TEST_FAILED": ("own", None, 0),
     "MEMORY_CORRUPTED": ("own", None, 0),
@@ -67,12 +67,12 @@ EXPECTED = {
     "GEAR_DEVIATION": ("budget", "gear_status", 25),
     "AUTOPILOT_OFF_IGNORED": ("budget", VCU, 100),
     "THROTTLE_IN_PARK": ("budget", "throttle_status", 25),
-    "FOREIGN_COMMAND_SENDER": ("intrusion", "gear_command", 0),
+    "FOREIGN_COMMAND_SENDER": ("intrusion", "gear_command", 100),
     "SAFE_STATE_UNCONFIRMED": ("vehicle", (VCU, "gear_status"), None),
     "VEHICLE_NOT_STOPPING": ("vehicle", "wheel_speed", None),
     "COMMAND_TOO_FAST": ("intrusion", "gear_command", 100),
     "SPEED_IMPLAUSIBLE": ("budget", "wheel_speed", 10),
-    "STATUS_ID_IN_USE": ("intrusion", None, 0),
+    "STATUS_ID_IN_USE": ("intrusion", None, 100),
     "RX_OVERRUN": ("bus", None, 0),
     "ERROR_PASSIVE": ("bus", None, 0),
     "AI_BUS_OFF": ("bus", None, 0),
@@ -90,10 +90,7 @@ COMMAND_CYCLE_MS = 100
 
 # A cause that began before the injection, or much later, by its nature.
 BEFORE = {"MODE_FLAPPING"}  # the first of four engagements
-LATER = {
-    "STEERING_DEVIATION",   # when the angle that is commanded leaves the one that is held
-    "ERROR_PASSIVE", "RX_OVERRUN", "AI_BUS_OFF",
-}
+LATER = {"STEERING_DEVIATION"}  # when the angle that is commanded leaves the one that is held
 
 
 def problem_of(line):
