@@ -4,6 +4,7 @@
 
 #include "causes.h"
 #include "one_fixture.h"
+#include "walk.h"
 
 static const fault_row_t *row_of(const cause_t *cause) {
     return &FAULT_ROW[cause->fault];
@@ -288,8 +289,7 @@ static void check_never_in_manual(const cause_t *cause) {
 /* Silent for 5 s at the engagement (continued from the previous part: no command has come since). */
 static void check_afresh(const cause_t *cause) {
     fixture_wheels(&f, 800, 800);
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    walk_engage(&f);
     expect_state(&f, AGV_STATE_ACTIVE);
     expect_nothing_after(&f, cause->count, cause->fault, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);

@@ -2,6 +2,7 @@
  * in the last possible millisecond. */
 #include "agv/names.h"
 #include "one_fixture.h"
+#include "walk.h"
 
 /* ---- Deadlines ---- */
 
@@ -85,8 +86,7 @@ void test_ai_never_seen_timeout(void) {
     f.config.ai_never_seen_timeout_ms = 777;
     f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].muted = true;
     fixture_standby(&f);
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    walk_engage(&f);
     expect_nothing_after(&f, 777, AGV_FAULT_AI_HEARTBEAT_LOST, AGV_STATE_STANDBY);
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_AI_HEARTBEAT_LOST, f.call, ANGLE_CENTRE);
@@ -110,8 +110,7 @@ void test_grace_and_throttle_in_park_time(void) {
     f.config.throttle_in_park_ms = 67;
     fixture_standby(&f);
     f.traffic[AGV_MSG_THROTTLE_STATUS].data[0] = 10;
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    walk_engage(&f);
     expect_nothing_after(&f, 123 + 65, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
@@ -204,39 +203,26 @@ void test_confirm_timeout(void) {
 
 /* ---- Engaged, not engaged, engaged again ---- */
 
-static void engage(void) {
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-}
-
-/* The engagement ends with the third 363h without the autopilot bit. */
-static void disengage(void) {
-    fixture_mode(&f, MODE_MANUAL);
-    for (unsigned i = 0; i < 3; i++) {
-        fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    }
-}
-
 /* Each engagement has its own grace: 500 ms, and five frames of 167h. One that is continued has none. */
 /* Shows: SUP-5, EPS_MODE_OFF */
 void test_every_engagement_has_its_grace(void) {
     f.config.mode_flapping_ms = 1000;
     fixture_active(&f);
-    disengage();
+    walk_disengage(&f);
     f.traffic[AGV_MSG_EPS_STATUS].data[3] = 0xFF;
     fixture_run(&f, 1000);
     for (unsigned i = 0; i < 3; i++) {
-        engage();
+        walk_engage(&f);
         expect_nothing_after(&f, 530, AGV_FAULT_EPS_MODE_OFF, AGV_STATE_ACTIVE); /* of which four frames count */
-        disengage();
+        walk_disengage(&f);
         expect_nothing(&f, AGV_FAULT_EPS_MODE_OFF, AGV_STATE_STANDBY);
         fixture_run(&f, 110);
     }
-    engage();
+    walk_engage(&f);
     fixture_run(&f, 530);
-    disengage();
+    walk_disengage(&f);
     expect_nothing_after(&f, 50, AGV_FAULT_EPS_MODE_OFF, AGV_STATE_STANDBY);
-    engage();
+    walk_engage(&f);
     expect_reason_after(&f, 5, AGV_FAULT_EPS_MODE_OFF);
 }
 
@@ -249,7 +235,7 @@ void test_faults_that_end_with_the_engagement(void) {
     fixture_command_angle(&f, 12000);
     expect_fault_after(&f, 1000, AGV_FAULT_STEERING_DEVIATION, true);
     expect_fault(&f, AGV_FAULT_THROTTLE_IN_PARK, true);
-    disengage();
+    walk_disengage(&f);
     expect_fault(&f, AGV_FAULT_STEERING_DEVIATION, false);
     expect_fault(&f, AGV_FAULT_THROTTLE_IN_PARK, false);
 }
@@ -265,7 +251,7 @@ void test_a_gateway_drops_commands_out_of_range(void) {
     TEST_ASSERT_EQUAL_UINT32(0, f.sent_count);
     TEST_ASSERT_EQUAL_UINT32(dropped + 1, agv_supervisor_counters(&f.supervisor)->dropped);
     expect_nothing(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, AGV_STATE_STANDBY);
-    engage();
+    walk_engage(&f);
     fixture_forget_sent(&f);
     fixture_frame(&f, AGV_MSG_THROTTLE_COMMAND, (const uint8_t[8]){251});
     expect_trip(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, f.call, ANGLE_CENTRE);

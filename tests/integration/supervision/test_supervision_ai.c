@@ -13,20 +13,6 @@ static void expect_no_fault(agv_state_t state) {
     expect_nothing(&f, STUCK, state);
 }
 
-/* The 363h with the autopilot bit has just been processed. */
-static void engage(void) {
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_run_past(&f, VCU);
-}
-
-/* The engagement ends with the third 363h without it. */
-static void disengage(void) {
-    fixture_mode(&f, MODE_MANUAL);
-    for (unsigned i = 0; i < 3; i++) {
-        fixture_run_past(&f, VCU);
-    }
-}
-
 /* ---- Lost and stuck ---- */
 
 /* Muted: silent from now on. Frozen: sends on with an unchanged counter. */
@@ -212,7 +198,7 @@ void test_never_seen(void) {
     expect_no_fault(AGV_STATE_STANDBY);
     expect_led(&f, 0);
     fixture_wheels(&f, 800, 800);
-    engage();
+    walk_engage(&f);
     fixture_run(&f, 500);
     expect_no_fault(AGV_STATE_STANDBY);
     fixture_run(&f, 1);
@@ -239,9 +225,9 @@ void test_never_seen_and_not_engaged_for_long_enough(void) {
     f.traffic[AI].muted = true;
     fixture_standby(&f);
     for (unsigned i = 0; i < 3; i++) {
-        engage();
+        walk_engage(&f);
         fixture_run(&f, 460);
-        disengage();
+        walk_disengage(&f);
         fixture_run(&f, 110);
     }
     expect_no_fault(AGV_STATE_STANDBY);
@@ -252,12 +238,12 @@ void test_never_seen_and_not_engaged_for_long_enough(void) {
 void test_never_seen_in_an_engagement_that_is_continued(void) {
     f.traffic[AI].muted = true;
     fixture_standby(&f);
-    engage();
+    walk_engage(&f);
     const uint32_t began_ms = f.now_ms;
     fixture_run(&f, 300);
-    disengage();
+    walk_disengage(&f);
     fixture_run(&f, 80);
-    engage();
+    walk_engage(&f);
     fixture_run(&f, 500 - (f.now_ms - began_ms));
     expect_no_fault(AGV_STATE_STANDBY);
     expect_reason_after(&f, 1, LOST);
@@ -269,7 +255,7 @@ void test_never_seen_in_an_engagement_that_is_continued(void) {
 void test_seen_in_time(void) {
     f.traffic[AI].muted = true;
     fixture_standby(&f);
-    engage();
+    walk_engage(&f);
     fixture_run(&f, 390);
     fixture_send_now(&f, AI);
     fixture_run(&f, 200);
@@ -287,7 +273,7 @@ void test_seen_while_engaged_but_frozen(void) {
     f.traffic[AI].muted = true;
     f.traffic[AI].frozen = true;
     fixture_standby(&f);
-    engage();
+    walk_engage(&f);
     fixture_run(&f, 300);
     fixture_send_now(&f, AI);
     const uint32_t seen_ms = f.now_ms;
@@ -373,7 +359,7 @@ static void check_reset_with_ai_alive(bool goes_on) {
     f.traffic[AI].muted = !goes_on;
     fixture_run_past(&f, VCU);
     expect_state(&f, AGV_STATE_STANDBY);
-    engage();
+    walk_engage(&f);
     expect_no_fault(AGV_STATE_STANDBY);
     if (goes_on) {
         fixture_run_before(&f, AI);
@@ -532,7 +518,7 @@ void test_the_vcus_ai_alarm_has_to_be_clear_once(void) {
     fixture_run(&f, 1000);
     fixture_mute_ai(&f, false);
     fixture_run(&f, 500);
-    engage();
+    walk_engage(&f);
     expect_nothing_after(&f, 2000, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_ACTIVE);
     set_alarm(false);
     fixture_run_past(&f, VCU);
@@ -565,8 +551,7 @@ void test_the_vcus_ai_alarm_at_the_engagement(void) {
     fixture_standby(&f);
     set_alarm(true);
     expect_nothing_after(&f, 200, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_STANDBY);
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_run_past(&f, VCU);
+    walk_engage(&f);
     expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
 }
 
@@ -576,7 +561,7 @@ void test_the_vcus_ai_alarm_of_an_ai_that_was_never_received(void) {
     fixture_mute_ai(&f, true);
     fixture_standby(&f);
     fixture_run(&f, 500);
-    engage();
+    walk_engage(&f);
     set_alarm(true);
     expect_nothing_after(&f, 100, AGV_FAULT_VCU_AI_CAN_LOST,
                          AGV_STATE_STANDBY); /* the missing commands trip after 125 ms */
@@ -597,7 +582,7 @@ static void pause_ai_in_manual(void) {
 void test_the_vcus_ai_alarm_that_stands_since_a_pause_counts_when_engaged(void) {
     pause_ai_in_manual();
     expect_nothing_after(&f, 500, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_STANDBY);
-    engage();
+    walk_engage(&f);
     expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
 }
 
@@ -608,7 +593,7 @@ void test_the_vcus_ai_alarm_of_a_pause_in_manual_that_is_over(void) {
     fixture_run(&f, 300);
     set_alarm(false);
     fixture_run_past(&f, VCU);
-    engage();
+    walk_engage(&f);
     expect_nothing_after(&f, 200, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_ACTIVE);
 }
 

@@ -3,6 +3,7 @@
  * have no grace time. Calculated by hand: a fault that needs N frames is raised when bad frames (+2) and good ones (-1)
  * add up to 2 N, and ends at 0. */
 #include "one_fixture.h"
+#include "walk.h"
 
 typedef struct {
     agv_fault_t fault;
@@ -405,8 +406,7 @@ void test_throttle_in_park_counts_after_the_grace(void) {
     fixture_standby(&f);
     set_throttle(10);
     expect_nothing_after(&f, 3000, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_STANDBY);
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    walk_engage(&f);
     expect_nothing_after(&f, 698, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
@@ -527,10 +527,7 @@ void test_commands_in_range(void) {
 
 /* The engagement ends with the third 363h without bit 8, and begins again this long after it. */
 static void engage_again_after(uint32_t ms) {
-    fixture_mode(&f, MODE_MANUAL);
-    for (unsigned i = 0; i < 3; i++) {
-        fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    }
+    walk_disengage(&f);
     fixture_mode(&f, MODE_ENGAGED);
     f.traffic[AGV_MSG_VEHICLE_STATUS].muted = true; /* no fourth one */
     f.traffic[AGV_MSG_VEHICLE_STATUS].data[6] = MODE_MANUAL;

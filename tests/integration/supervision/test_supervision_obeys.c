@@ -163,8 +163,7 @@ void test_throttle_deviation_counts_after_the_grace(void) {
     fixture_throttle(&f, 200);
     expect_nothing_after(&f, 3000, THROTTLE, AGV_STATE_STANDBY);
     fixture_wheels(&f, 500, 500);
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    walk_engage(&f);
     expect_trip_at(THROTTLE, f.now_ms + 999u, 7);
 }
 

@@ -3,6 +3,7 @@
  * degrees. Calculated by hand: the tick in the millisecond of a frame is the first of the budget, so 500 ms are reached
  * 499 ms later. */
 #include "one_fixture.h"
+#include "walk.h"
 
 static const agv_fault_t FAULT = AGV_FAULT_STEERING_DEVIATION;
 
@@ -285,8 +286,7 @@ void test_deviation_counts_after_the_grace(void) {
     fixture_standby(&f);
     fixture_command_angle(&f, 12000);
     expect_nothing_after(&f, 3000, FAULT, AGV_STATE_STANDBY); /* not in manual */
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    walk_engage(&f);
     expect_trip_at(f.now_ms + 999u, ANGLE_CENTRE);
 }
 
@@ -304,8 +304,7 @@ static void check_forgotten(uint8_t mode_before) {
     f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
     fixture_mode(&f, MODE_MANUAL);
     fixture_run(&f, 500);
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    walk_engage(&f);
     expect_nothing_after(&f, 1000, FAULT, AGV_STATE_ACTIVE);
     fixture_run(&f, 1);
     expect_trip(&f, AGV_FAULT_STEERING_COMMAND_TIMEOUT, f.call, ANGLE_CENTRE);

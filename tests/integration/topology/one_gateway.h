@@ -80,10 +80,7 @@ static inline void pause_ai(void) {
 
 /* The third 363h without bit 8 ends the engagement. */
 static inline void disengage(void) {
-    fixture_mode(&f, MODE_MANUAL);
-    for (unsigned i = 0; i < 3; i++) {
-        fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    }
+    walk_disengage(&f);
     expect_state(&f, AGV_STATE_STANDBY);
 }
 

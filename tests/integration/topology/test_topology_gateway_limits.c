@@ -62,8 +62,7 @@ void test_the_slew_rate_starts_from_the_measured_angle(void) {
     fixture_angle(&f, 9300);
     fixture_standby(&f);
     fixture_mute_ai(&f, true);
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    walk_engage(&f);
     expect_state(&f, AGV_STATE_ACTIVE);
     expect_steering(9000, 9275);
 }
@@ -78,8 +77,7 @@ void test_the_slew_rate_starts_anew_with_every_engagement(void) {
     fixture_mode(&f, MODE_MANUAL);
     fixture_angle(&f, 9300);
     expect_state_after(&f, 50, AGV_STATE_STANDBY);
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    walk_engage(&f);
     expect_steering(9000, 9275);
 }
 
@@ -105,8 +103,7 @@ void test_without_a_measured_angle_the_slew_rate_starts_from_the_first_command(v
     fixture_angle(&f, 18001);
     fixture_standby(&f);
     fixture_mute_ai(&f, true);
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    walk_engage(&f);
     expect_steering(9400, 9400);
     expect_steering(9000, 9375);
 }
@@ -217,8 +214,7 @@ void test_the_rise_begins_anew_with_every_engagement(void) {
     expect_rise(250, 50);
     disengage();
     fixture_run(&f, 50);
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    walk_engage(&f);
     expect_rise(250, 25);
 }
 

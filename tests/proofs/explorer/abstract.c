@@ -300,7 +300,7 @@ static void always(abstract_t *key) {
                          !abstract_coarse && model_wrapped(),
                          (phase(AGV_TIMER_WATCHDOG_FED) == (uint8_t)AGV_TIMER_REACHED)};
     key->byte[0] = c->machine.state;
-    key->byte[1] = supervises ? model.defect : SET_DEFECT[model.defect].like;
+    key->byte[1] = supervises ? model.defect : DEFECT_ROWS[model.defect].like;
     key->byte[2] = bits(whats, 7);
     key->byte[3] = bits(more, 8);
     key->byte[4] = (uint8_t)(c->mode.bits | phase(AGV_TIMER_BOTH_MODES) | (c->mode.engaged ? 4u : 0u) |

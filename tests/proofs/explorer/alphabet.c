@@ -375,7 +375,7 @@ unsigned alphabet_size(bool quick) {
 
 const char *alphabet_name(unsigned symbol) {
     const symbol_t *s = &SYMBOLS[symbol];
-    return (s->name != NULL) ? s->name : SET_DEFECT[s->how].name;
+    return (s->name != NULL) ? s->name : DEFECT_ROWS[s->how].name;
 }
 
 bool alphabet_scenario_only;

@@ -2,7 +2,7 @@
 #include "model.h"
 
 /* TRIPS_NEVER for steering and throttle, because a trip depends on more than the defect. */
-const defect_row_t SET_DEFECT[DEFECTS] = {
+const defect_row_t DEFECT_ROWS[DEFECTS] = {
     [DEFECT_NONE] = {"healthy", NULL, NULL, DEFECT_NONE, TRIPS_NEVER},
     [DEFECT_VCU_SILENT] = {"VCU silent", "VCU_HEARTBEAT_LOST", NULL, DEFECT_VCU_SILENT, TRIPS_ALWAYS},
     [DEFECT_VCU_FROZEN] = {"VCU counter frozen", "VCU_HEARTBEAT_STUCK", NULL, DEFECT_VCU_FROZEN, TRIPS_ALWAYS},
@@ -48,130 +48,68 @@ const defect_row_t SET_DEFECT[DEFECTS] = {
 enum { FLAP_MS = 200, R = 2, SIGNALS = 4, AUTOPILOT_OFF = 0x40 };
 enum { SHORT = 5, EPS_FAULTS = 7, ALARMS = 4, EPS_MODE = 3, ANGLE_LOW = 2, ANGLE_HIGH = 3 };
 
-static void mute(unsigned first, unsigned last) {
-    for (unsigned m = first; m <= last; m++) {
-        testbed.traffic[m].muted = true;
-    }
-}
+/* What a defect does to the messages from `first` to `last`; BYTE sets one byte of the first. */
+typedef enum { MUTED, FROZEN, SHORTENED, BYTE } effect_t;
 
-static void shorten(unsigned first, unsigned last) {
-    for (unsigned m = first; m <= last; m++) {
-        testbed.traffic[m].length = SHORT;
-    }
-}
-
-/* Silent nodes and messages, and short frames. */
-static void apply_silent(defect_t defect) {
-    switch (defect) {
-    case DEFECT_VCU_SILENT:
-        mute(M_VEHICLE, M_THROTTLE_STATUS);
-        mute(M_WHEELS, M_WHEELS);
-        break;
-    case DEFECT_EPS_SILENT:
-        mute(M_STEERING_STATUS, M_POSITION);
-        break;
-    case DEFECT_AI_SILENT:
-        mute(M_SIGNALS, M_STEERING);
-        break;
-    case DEFECT_ALL_SILENT:
-        mute(M_SIGNALS, M_WHEELS);
-        break;
-    case DEFECT_GEAR_STATUS_SILENT:
-        mute(M_GEAR_STATUS, M_GEAR_STATUS);
-        break;
-    case DEFECT_THROTTLE_STATUS_SILENT:
-        mute(M_THROTTLE_STATUS, M_THROTTLE_STATUS);
-        break;
-    case DEFECT_WHEELS_SILENT:
-        mute(M_WHEELS, M_WHEELS);
-        break;
-    case DEFECT_EPS_STATUS_SILENT:
-        mute(M_EPS_STATUS, M_EPS_STATUS);
-        break;
-    case DEFECT_GEAR_COMMAND_SILENT:
-        mute(M_GEAR, M_GEAR);
-        break;
-    case DEFECT_STEERING_COMMAND_SILENT:
-        mute(M_STEERING, M_STEERING);
-        break;
-    case DEFECT_VCU_SHORT:
-        shorten(M_VEHICLE, M_THROTTLE_STATUS);
-        shorten(M_WHEELS, M_WHEELS);
-        break;
-    case DEFECT_AI_SHORT:
-        shorten(M_SIGNALS, M_STEERING);
-        break;
-    default:
-        break;
-    }
-}
-
-/* Wrong values. */
-static void apply_values(defect_t defect) {
-    traffic_message_t *t = testbed.traffic;
-    switch (defect) {
-    case DEFECT_VCU_FROZEN:
-        t[M_VEHICLE].frozen = true;
-        break;
-    case DEFECT_EPS_FROZEN:
-        t[M_STEERING_STATUS].frozen = true;
-        break;
-    case DEFECT_AI_FROZEN:
-        t[M_SIGNALS].frozen = true;
-        break;
-    case DEFECT_EPS_FAULT:
-        t[M_EPS_STATUS].data[EPS_FAULTS] = 0x08;
-        break;
-    case DEFECT_EPS_SUPPLY:
-        t[M_EPS_STATUS].data[EPS_FAULTS] = 0x01;
-        break;
-    case DEFECT_VCU_ALARM:
-        t[M_VEHICLE].data[ALARMS] = 0x80;
-        break;
-    case DEFECT_VCU_AI_ALARM:
-        t[M_VEHICLE].data[ALARMS] = 0x08;
-        break;
-    case DEFECT_AI_OUT_OF_RANGE:
-        t[M_GEAR].data[0] = 3;
-        break;
-    case DEFECT_GEAR_INVALID:
-        t[M_GEAR_STATUS].data[0] = 3;
-        break;
-    case DEFECT_ANGLE_INVALID:
-        t[M_STEERING_STATUS].data[ANGLE_LOW] = 0xFF;
-        t[M_STEERING_STATUS].data[ANGLE_HIGH] = 0xFF;
-        break;
-    case DEFECT_EPS_MODE_OFF:
-        t[M_EPS_STATUS].data[EPS_MODE] = 0;
-        break;
-    case DEFECT_STEERING_OFF:
-        t[M_STEERING_STATUS].data[ANGLE_LOW] = 0xD0; /* 20D0h: 60.0 degrees from the middle, 66.0 from the command */
-        t[M_STEERING_STATUS].data[ANGLE_HIGH] = 0x20;
-        break;
-    case DEFECT_THROTTLE:
-        t[M_THROTTLE_STATUS].data[0] = 100;
-        break;
-    case DEFECT_THROTTLE_ABOVE:
-        t[M_THROTTLE_STATUS].data[0] = 150; /* the command is 100 */
-        break;
-    case DEFECT_GEAR_AGAINST:
-        t[M_GEAR_STATUS].data[0] = R;
-        t[M_THROTTLE_STATUS].data[0] = 100;
-        break;
-    case DEFECT_AUTOPILOT_STAYS:
-        t[M_SIGNALS].data[SIGNALS] = AUTOPILOT_OFF;
-        break;
-    case DEFECT_MODE_FLAPS:
-        testbed_mode(((testbed.now_ms - model.defect_ms) / (uint64_t)FLAP_MS % 2u == 0u) ? MODEL_ENGAGED
-                                                                                         : MODEL_MANUAL);
-        break;
-    default:
-        break;
-    }
-}
+static const struct {
+    defect_t defect;
+    effect_t effect;
+    uint8_t first;
+    uint8_t last;
+    uint8_t at;
+    uint8_t value;
+} EFFECTS[] = {
+    {DEFECT_VCU_SILENT, MUTED, M_VEHICLE, M_THROTTLE_STATUS, 0, 0},
+    {DEFECT_VCU_SILENT, MUTED, M_WHEELS, M_WHEELS, 0, 0},
+    {DEFECT_EPS_SILENT, MUTED, M_STEERING_STATUS, M_POSITION, 0, 0},
+    {DEFECT_AI_SILENT, MUTED, M_SIGNALS, M_STEERING, 0, 0},
+    {DEFECT_ALL_SILENT, MUTED, M_SIGNALS, M_WHEELS, 0, 0},
+    {DEFECT_GEAR_STATUS_SILENT, MUTED, M_GEAR_STATUS, M_GEAR_STATUS, 0, 0},
+    {DEFECT_THROTTLE_STATUS_SILENT, MUTED, M_THROTTLE_STATUS, M_THROTTLE_STATUS, 0, 0},
+    {DEFECT_WHEELS_SILENT, MUTED, M_WHEELS, M_WHEELS, 0, 0},
+    {DEFECT_EPS_STATUS_SILENT, MUTED, M_EPS_STATUS, M_EPS_STATUS, 0, 0},
+    {DEFECT_GEAR_COMMAND_SILENT, MUTED, M_GEAR, M_GEAR, 0, 0},
+    {DEFECT_STEERING_COMMAND_SILENT, MUTED, M_STEERING, M_STEERING, 0, 0},
+    {DEFECT_VCU_SHORT, SHORTENED, M_VEHICLE, M_THROTTLE_STATUS, 0, 0},
+    {DEFECT_VCU_SHORT, SHORTENED, M_WHEELS, M_WHEELS, 0, 0},
+    {DEFECT_AI_SHORT, SHORTENED, M_SIGNALS, M_STEERING, 0, 0},
+    {DEFECT_VCU_FROZEN, FROZEN, M_VEHICLE, M_VEHICLE, 0, 0},
+    {DEFECT_EPS_FROZEN, FROZEN, M_STEERING_STATUS, M_STEERING_STATUS, 0, 0},
+    {DEFECT_AI_FROZEN, FROZEN, M_SIGNALS, M_SIGNALS, 0, 0},
+    {DEFECT_EPS_FAULT, BYTE, M_EPS_STATUS, M_EPS_STATUS, EPS_FAULTS, 0x08},
+    {DEFECT_EPS_SUPPLY, BYTE, M_EPS_STATUS, M_EPS_STATUS, EPS_FAULTS, 0x01},
+    {DEFECT_VCU_ALARM, BYTE, M_VEHICLE, M_VEHICLE, ALARMS, 0x80},
+    {DEFECT_VCU_AI_ALARM, BYTE, M_VEHICLE, M_VEHICLE, ALARMS, 0x08},
+    {DEFECT_AI_OUT_OF_RANGE, BYTE, M_GEAR, M_GEAR, 0, 3},
+    {DEFECT_GEAR_INVALID, BYTE, M_GEAR_STATUS, M_GEAR_STATUS, 0, 3},
+    {DEFECT_ANGLE_INVALID, BYTE, M_STEERING_STATUS, M_STEERING_STATUS, ANGLE_LOW, 0xFF},
+    {DEFECT_ANGLE_INVALID, BYTE, M_STEERING_STATUS, M_STEERING_STATUS, ANGLE_HIGH, 0xFF},
+    {DEFECT_EPS_MODE_OFF, BYTE, M_EPS_STATUS, M_EPS_STATUS, EPS_MODE, 0},
+    /* 20D0h: 60.0 degrees from the middle, 66.0 from the command */
+    {DEFECT_STEERING_OFF, BYTE, M_STEERING_STATUS, M_STEERING_STATUS, ANGLE_LOW, 0xD0},
+    {DEFECT_STEERING_OFF, BYTE, M_STEERING_STATUS, M_STEERING_STATUS, ANGLE_HIGH, 0x20},
+    {DEFECT_THROTTLE, BYTE, M_THROTTLE_STATUS, M_THROTTLE_STATUS, 0, 100},
+    {DEFECT_THROTTLE_ABOVE, BYTE, M_THROTTLE_STATUS, M_THROTTLE_STATUS, 0, 150}, /* the command is 100 */
+    {DEFECT_GEAR_AGAINST, BYTE, M_GEAR_STATUS, M_GEAR_STATUS, 0, R},
+    {DEFECT_GEAR_AGAINST, BYTE, M_THROTTLE_STATUS, M_THROTTLE_STATUS, 0, 100},
+    {DEFECT_AUTOPILOT_STAYS, BYTE, M_SIGNALS, M_SIGNALS, SIGNALS, AUTOPILOT_OFF},
+};
 
 void defect_apply(defect_t defect) {
-    apply_silent(defect);
-    apply_values(defect);
+    for (unsigned i = 0; i < sizeof EFFECTS / sizeof EFFECTS[0]; i++) {
+        for (unsigned m = EFFECTS[i].first; (EFFECTS[i].defect == defect) && (m <= EFFECTS[i].last); m++) {
+            traffic_message_t *message = &testbed.traffic[m];
+            message->muted = message->muted || (EFFECTS[i].effect == MUTED);
+            message->frozen = message->frozen || (EFFECTS[i].effect == FROZEN);
+            message->length = (EFFECTS[i].effect == SHORTENED) ? SHORT : message->length;
+            if (EFFECTS[i].effect == BYTE) {
+                message->data[EFFECTS[i].at] = EFFECTS[i].value;
+            }
+        }
+    }
+    if (defect == DEFECT_MODE_FLAPS) {
+        const uint64_t period = (testbed.now_ms - model.defect_ms) / (uint64_t)FLAP_MS;
+        testbed_mode((period % 2u == 0u) ? MODEL_ENGAGED : MODEL_MANUAL);
+    }
     testbed.receive_path_dead = defect == DEFECT_RECEIVE_DEAD;
 }

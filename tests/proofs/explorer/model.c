@@ -114,7 +114,7 @@ static bool must_trip(void) {
     const uint64_t defect_ms = testbed.now_ms - model.defect_ms;
     const uint64_t engaged_ms = (model.mode == (uint8_t)MODEL_ENGAGED) ? (testbed.now_ms - model.mode_ms) : 0u;
     const uint64_t both_ms = (defect_ms < engaged_ms) ? defect_ms : engaged_ms;
-    switch (SET_DEFECT[model.defect].trips) {
+    switch (DEFECT_ROWS[model.defect].trips) {
     case TRIPS_ALWAYS:
         return defect_ms > (uint64_t)ALWAYS_MS;
     case TRIPS_FLAPPING:
@@ -135,9 +135,9 @@ static void judge_defect(bool was_latched) {
         return;
     }
     if (was_latched) {
-        broken("FSM-3: the latch was left with a trip cause: %s", SET_DEFECT[model.defect].name);
+        broken("FSM-3: the latch was left with a trip cause: %s", DEFECT_ROWS[model.defect].name);
     } else {
-        broken("SUP-4: %s for %u ms without a trip", SET_DEFECT[model.defect].name,
+        broken("SUP-4: %s for %u ms without a trip", DEFECT_ROWS[model.defect].name,
                (unsigned)(testbed.now_ms - model.defect_ms));
     }
 }

@@ -162,7 +162,7 @@ typedef struct {
     uint8_t like;             /* defect with the same effect while not engaged (abstract.h) */
     uint8_t trips;            /* when it trips: defect_trips_t */
 } defect_row_t;
-extern const defect_row_t SET_DEFECT[DEFECTS];
+extern const defect_row_t DEFECT_ROWS[DEFECTS];
 void defect_apply(defect_t defect);
 
 #endif

@@ -109,7 +109,7 @@ void trace_expect_restarted(void) {
 /* ---- Expectations ---- */
 
 static const char *trip_reason(void) {
-    const defect_row_t *row = &SET_DEFECT[model.defect];
+    const defect_row_t *row = &DEFECT_ROWS[model.defect];
     unsigned vcu_ms = 0;
     unsigned eps_ms = 0;
     if ((sscanf(model_broken(), "SUP-2: the heartbeat of the VCU is %u ms old, of the EPS %u ms", &vcu_ms, &eps_ms) ==
