@@ -43,8 +43,10 @@ static json_t *bits(uint32_t highest, const char *decimal) {
     }
     char digit[8];
     (void)snprintf(digit, sizeof digit, (first > 9u) ? "0-9A-%X" : "0-%X", (unsigned)first);
-    char lower[8];
-    (void)snprintf(lower, sizeof lower, (first > 9u) ? "a-%x" : "", (unsigned)first);
+    char lower[8] = "";
+    if (first > 9u) {
+        (void)snprintf(lower, sizeof lower, "a-%x", (unsigned)first);
+    }
     char number[PATTERN_SIZE / 3];
     if (more > 0u) {
         (void)snprintf(number, sizeof number, "0*([%s%s][0-9A-Fa-f]{%u}|[0-9A-Fa-f]{1,%u})", digit, lower, more, more);

@@ -175,12 +175,15 @@ static void start(replay_t *replay, uint64_t first_us) {
     if (replay->outputs[EVENTS].is_open) {
         (void)session_observe(&replay->session, events_write, &replay->outputs[EVENTS]);
     }
+    if (request->listener != NULL) {
+        (void)session_observe(&replay->session, request->listener->on_event, request->listener->ctx);
+    }
     session_start(&replay->session, &request->config, 0u, request->start_ms);
 }
 
 /** Whether standard output is free for the text. */
 static bool has_text(const replay_request_t *request) {
-    bool taken = (request->events != NULL) || output_is_stdout(request->out);
+    bool taken = (request->events != NULL) || (request->listener != NULL) || output_is_stdout(request->out);
     for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
         taken = taken || output_is_stdout(request->analysis[i]);
     }
@@ -233,6 +236,9 @@ static bool conclude(replay_t *replay) {
         print_text(replay, &text);
     }
     const why_t *why = analysis_why(replay->analysis);
+    if (good && (request->listener != NULL)) {
+        request->listener->on_end(request->listener->ctx, why);
+    }
     text_t back = {.used = 0u};
     const bool is_whole = (why_supervised_us(why) > 0u) && !replay_text_goes_back(&back, &replay->heard);
     replay->unmet = request->fail_on_trip && ((why_trip_count(why) > 0u) || !is_whole);

@@ -20,6 +20,13 @@
 /** The longest tail, and the longest that a log may be silent: a stamp that is later is a bad line. 100 days. */
 #define REPLAY_GAP_MAX_MS 8640000000u
 
+/** Who wants to know what came of it, instead of a text on standard output. */
+typedef struct {
+    session_observer_fn *on_event;
+    void (*on_end)(void *ctx, const why_t *why); /**< the log is over */
+    void *ctx;
+} replay_listener_t;
+
 /** What to replay. */
 typedef struct {
     const char *log;                      /**< "-" = standard input */
@@ -35,6 +42,7 @@ typedef struct {
     bool skip_bad_lines;
     hal_reset_cause_t reset_cause;
     agv_config_t config;
+    const replay_listener_t *listener; /**< NULL: nobody, the text is printed */
 } replay_request_t;
 
 /**

@@ -10,6 +10,7 @@
 #include "analysis/analysis.h"
 #include "cli/analysis_options.h"
 #include "cli/commands/commands.h"
+#include "cli/commands/skeleton_options.h"
 #include "cli/options.h"
 #include "common/interrupt.h"
 #include "common/units.h"
@@ -47,6 +48,7 @@ typedef struct {
     const char *supervisor;
     const char *sent;
     bool is_schema;
+    skeleton_options_t from;
     char interface_names[HAL_CAN_SIDES][INTERFACE_SIZE]; /**< "": none; no vehicle side: the simulated bus */
     uint64_t tolerance_ms;
     size_t file_count;
@@ -82,6 +84,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     option_t analysis_rows[ANALYSIS_OPTIONS];
     config_options_init(&given->config, config_rows);
     analysis_options_init(&given->analysis, analysis_rows);
+    option_t from_rows[SKELETON_OPTIONS];
+    skeleton_options_init(&given->from, from_rows);
     const option_t rows[] = {
         OPTION_TEXT("--junit", "FILE", "results as JUnit XML", &given->junit),
         OPTION_TEXT("--events", "FILE", "events as JSON Lines (of one scenario)", &given->events),
@@ -102,6 +106,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_group_t groups[] = {
         {.title = "Options (FILE may be -, standard output)", .options = rows, .count = sizeof rows / sizeof rows[0]},
         {.options = analysis_rows, .count = ANALYSIS_OPTIONS},
+        {.title = "A scenario from a log", .options = from_rows, .count = SKELETON_OPTIONS},
         {.title = "Configuration of the supervisor (settings of a scenario take precedence)",
          .options = config_rows,
          .count = CONFIG_OPTIONS},
@@ -409,10 +414,14 @@ static status_t run_all(work_t *work, char **files) {
     return play_all(work, files);
 }
 
-static status_t print_schema(const given_t *given) {
+/** What runs no scenario. */
+static status_t run_none(given_t *given) {
     if (given->file_count > 0u) {
-        (void)report("--schema takes no FILE");
+        (void)report("%s takes no FILE", given->is_schema ? "--schema" : "--from");
         return STATUS_UNUSABLE;
+    }
+    if (given->from.log != NULL) {
+        return skeleton_options_run(&given->from, &given->config);
     }
     return yaml_schema_print(scenario_schema(), "Scenario of the AGV safety supervisor") ? STATUS_OK : STATUS_UNUSABLE;
 }
@@ -423,8 +432,11 @@ status_t cmd_scenario(int argc, char **argv) {
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
-    if (given.is_schema) {
-        return print_schema(&given);
+    if (!skeleton_options_check(&given.from)) {
+        return STATUS_UNUSABLE;
+    }
+    if (given.is_schema || (given.from.log != NULL)) {
+        return run_none(&given);
     }
     if (given.file_count == 0u) {
         (void)report("FILE is missing; see host_sim scenario --help");

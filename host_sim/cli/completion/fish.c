@@ -41,7 +41,9 @@ static void print_command(const void *ctx, const option_syntax_t *syntax) {
     (void)printf("'\n");
     for (size_t i = 0u; options_at(syntax, i) != NULL; i++) {
         const option_t *option = options_at(syntax, i);
-        (void)printf("complete -c host_sim -n '__fish_seen_subcommand_from %s' -l %s", command->name, &option->name[2]);
+        const bool is_short = option->name[1] != '-';
+        (void)printf("complete -c host_sim -n '__fish_seen_subcommand_from %s' -%c %s", command->name,
+                     is_short ? 's' : 'l', &option->name[is_short ? 1 : 2]);
         if (option->value != NULL) {
             const completion_value_t value = completion_of_option(option);
             print_value(&value);

@@ -1,4 +1,5 @@
 """Every shipped scenario: as it is, in the other topology and with the other ID set; and that each of them can fail."""
+import collections
 import json
 import os
 import pathlib
@@ -237,14 +238,35 @@ class Manual(hostsim.Case):
 
     PAGE = (FOLDER.parents[1] / "docs" / "scenarios.md").read_text(encoding="utf-8")
 
-    def test_the_example_prints_what_the_page_says(self):
-        example = re.search(r"```yaml\n(.*?)```", self.PAGE, re.DOTALL)[1]
-        passed, failed = re.findall(r"```text\n(.*?)```", self.PAGE, re.DOTALL)[:2]
-        self.write("throttle.yaml", example)
-        self.assertEqual(self.run_program("scenario", "throttle.yaml").stdout, passed)
-        self.assertEqual(example.count("at_ms: [4024, 4025]"), 1)
-        self.write("throttle.yaml", example.replace("at_ms: [4024, 4025]", "at_ms: [4004, 4005]"))
-        self.assertEqual(self.run_program("scenario", "throttle.yaml").stdout, failed)
+    def type_in(self, command, status):
+        """Run a command in bash, where `$?` is the status of the one before. Returns status and output."""
+        done = subprocess.run(["bash", "-c", command.replace("$?", str(status))], cwd=self.folder, check=False,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=300, text=True)
+        return done.returncode, done.stdout
+
+    def test_the_tutorial_is_typed_as_it_stands(self):
+        """All blocks above the reference, in their order: files are saved by the name before them, commands run."""
+        tutorial = self.PAGE.split("## How a file is read")[0]
+        (self.folder / "host_sim").symlink_to(FOLDER.parent)
+        (self.folder / "build" / "host" / "bin").mkdir(parents=True)
+        (self.folder / "build" / "host" / "bin" / "host_sim").symlink_to(hostsim.PROGRAM)
+        counts = collections.Counter()
+        for block in re.finditer(r"^```(\w+)\n(.*?)^```$", tutorial, re.MULTILINE | re.DOTALL):
+            kind, text = block.groups()
+            counts[kind] += 1
+            if kind == "yaml":
+                self.write(re.findall(r"Save this as `([^`]+)`", tutorial[:block.start()])[-1], text)
+            elif kind == "sh":
+                for command in text.splitlines():
+                    status, said = self.type_in(command, 0)
+                    self.assertEqual(status, 0, f"{command}: {said}")
+            else:
+                status = 0
+                for part in text.split("$ ")[1:]:
+                    command, _, expected = part.partition("\n")
+                    status, said = self.type_in(command, status)
+                    self.assertEqual(said, expected, command)
+        self.assertEqual(counts, {"sh": 1, "yaml": 1, "console": 3})
 
     def test_every_word_of_the_format_stands_on_the_page(self):
         schema = json.loads(self.run_good("scenario", "--schema").stdout)

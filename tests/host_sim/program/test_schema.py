@@ -148,9 +148,11 @@ def change(draw, value):
     elif what == 3:
         holder[key] = copy.deepcopy(at(value, draw.choice(places)))
     elif what == 4 and isinstance(holder[key], int) and not isinstance(holder[key], bool):
-        holder[key] = draw.choice((-holder[key] - 1, holder[key] * 1000, holder[key] + 10 ** 9, str(holder[key]), holder[key] + 1))
+        number = holder[key]
+        holder[key] = draw.choice((-number - 1, number * 1000, number + 10 ** 9, str(number), number + 1))
     elif what == 5 and isinstance(holder[key], str):
-        holder[key] = draw.choice((holder[key] + "x", holder[key][:-1], holder[key].upper(), holder[key].lower(), holder[key] + "0h"))
+        word = holder[key]
+        holder[key] = draw.choice((word + "x", word[:-1], word.upper(), word.lower(), word + "0h"))
     elif what == 6 and isinstance(holder, list):
         holder.extend(copy.deepcopy(holder) * draw.choice((1, 70)))
     else:
@@ -230,7 +232,8 @@ class Schemas(hostsim.Case):
         self.compare("scenario", base, SCENARIO_CHANGES, [said for _, _, said in MEANING.values()])
 
     def test_settings_that_were_changed(self):
-        base = [yaml.load(self.run_good("config").stdout, Core), {"shadow": "on", "init_hold_ms": "0.5s", "id_gear_command": "169h"}]
+        base = [yaml.load(self.run_good("config").stdout, Core),
+                {"shadow": "on", "init_hold_ms": "0.5s", "id_gear_command": "169h"}]
         self.compare("config", base, CONFIG_CHANGES,
                      [said for _, said in MEANING_OF_SETTINGS.values()] + [MEANING["settings that do not fit together"][2]])
 

@@ -1,0 +1,148 @@
+"""`host_sim scenario --from LOG`: the file passes as it was made, and trips for the reason of the log."""
+import os
+import pathlib
+import unittest
+
+import hostsim
+import traffic
+from test_replay import AI, EPS, VCU, edit_payload, stop
+
+EXAMPLES = pathlib.Path(__file__).resolve().parents[3] / "host_sim" / "examples"
+
+
+def byte(index, value):
+    return lambda data: data.__setitem__(index, value)
+
+
+def log(edit=None, engage_ms=1000, duration_ms=4000, **options):
+    return traffic.log(traffic.frames(duration_ms, engage_ms=engage_ms, edit=edit, **options))
+
+
+def turn(data):
+    data[0:2] = (9600).to_bytes(2, "little")
+
+
+def foreign(frame):
+    """A gear command on the side of the vehicle, which no AI computer sends there."""
+    if frame.name == "gear_status" and 2000 <= frame.t_ms < 2020:
+        return [frame, traffic.Frame(frame.t_us + 500, "foreign", 0x168, bytes([2] + [0] * 7), "can0")]
+    return frame
+
+
+# What is in the log: reason, log, options, and the step that stands in the file for it.
+LOGS = {
+    "the VCU dies": ("VCU_HEARTBEAT_LOST", log(stop(VCU, 2001)), (), "at_ms: 2001, vcu: stop}"),
+    "the EPS dies": ("EPS_HEARTBEAT_LOST", log(stop(EPS, 2001)), (), "eps: stop}"),
+    "the AI computer dies": ("STEERING_COMMAND_TIMEOUT", log(stop(AI, 2001)), (), "ai: stop}"),
+    "a message stops": ("EPS_STATUS_TIMEOUT", log(stop(("eps_status",), 2001)), (), "eps: mute, message: eps_status}"),
+    "a command stops": ("GEAR_COMMAND_TIMEOUT", log(stop(("gear_command",), 2001)), (), "ai: mute, message: gear_command}"),
+    "a counter stops": ("EPS_HEARTBEAT_STUCK", log(edit_payload("steering_status", 2010, byte(0, 7))),
+                        (), "eps: freeze_counter}"),
+    "a fault bit": ("EPS_MOTOR_ENCODER", log(edit_payload("eps_status", 2000, byte(7, 0x40))),
+                    (), "eps: set, field: faults, value: 40h}"),
+    "bad supply": ("EPS_UNDER_VOLTAGE", log(edit_payload("eps_status", 2000, byte(7, 1))),
+                   (), "eps: set, field: faults, value: 01h}"),
+    "an alarm of the VCU in manual": ("REMOTE_SIGNAL_LOST", log(edit_payload("vehicle_status", 2000, byte(4, 1)), None), (),
+                                      "vcu: set, field: alarms, value: 01h}"),
+    "an EPS mode that is none": ("EPS_MODE_INVALID", log(edit_payload("eps_status", 2000, byte(3, 7))),
+                                 (), "eps: set, field: mode, value: 07h}"),
+    "a gear that is none": ("AI_COMMAND_OUT_OF_RANGE", log(edit_payload("gear_command", 2000, byte(0, 3))),
+                            (), "ai: set, field: gear, value: 03h}"),
+    "a throttle that is none": ("THROTTLE_STATUS_INVALID", log(edit_payload("throttle_status", 2000, byte(0, 0xFB))), (),
+                                "vcu: set, field: throttle, value: FBh}"),
+    "the steering does not follow": ("STEERING_DEVIATION", log(edit_payload("steering_command", 2000, turn)),
+                                     (), "eps: stick}"),
+    "both modes at once": ("MODE_INVALID", log(edit_payload("vehicle_status", 2000, byte(6, 0xC0))),
+                           (), "vcu: set, field: mode_bits, value: 3h}"),
+    "the wrong gear": ("GEAR_DEVIATION", log(edit_payload("gear_status", 2000, byte(0, 2)), duration_ms=6000),
+                       (), "vcu: set, field: gear"),
+    "a stranger in the gateway": ("FOREIGN_COMMAND_SENDER", log(foreign, ai_interface="can1"),
+                                  ("--topology", "gateway", "--ai-if", "can1"), "bus: send, id: 168h"),
+    "the other ID set": ("STEERING_COMMAND_TIMEOUT", log(stop(AI, 2001), ids=traffic.TABLE_IDS),
+                         ("--id-set", "table"), "ai: stop}"),
+    "a warning made a trip": ("EPS_TEMP_ABOVE_110", log(edit_payload("eps_status", 2000, byte(7, 0x10))),
+                              ("--config", "c.yaml"), "eps: set, field: faults, value: 10h}"),
+    "a fault after a minute and more": ("EPS_MOTOR_ENCODER",
+                                        log(edit_payload("eps_status", 90000, byte(7, 0x40)), duration_ms=91000), (),
+                                        "eps: set, field: faults, value: 40h}"),
+}
+CONFIG = "class_eps_temp_above_110: trip\neps_status_timeout_ms: 60\n"
+
+
+class Skeleton(hostsim.Case):
+    def trips(self, *arguments):
+        """The reason of the first trip, by the events of a command."""
+        self.run_good(*arguments, "--events", "events.jsonl")
+        events = hostsim.Result(0, "", "", self.folder).events()
+        return next(event["reason"] for event in events if event["event"] == "state" and event["reason"])
+
+    def check(self, reason, path, options, step):
+        self.write("c.yaml", CONFIG)
+        self.assertEqual(self.trips("replay", *options, path), reason)
+        result = self.run_good("scenario", "--from", path, *options, "-o", "made.yaml")
+        self.assertEqual(result.stdout, "")
+        text = (self.folder / "made.yaml").read_text(encoding="ascii")
+        self.assertIn(step, text)
+        self.assertIn(f"reason: {reason}, after: fault, within: ", text)
+        self.assertEqual(self.trips("scenario", "made.yaml"), reason)  # which also passes
+        (self.folder / "made.yaml").unlink()
+        return text
+
+    def test_the_shipped_log(self):
+        self.check("STEERING_COMMAND_TIMEOUT", EXAMPLES / "ai-stops.log", (), "ai: stop}")
+
+    def test_logs_of_every_kind(self):
+        for name, (reason, content, options, step) in LOGS.items():
+            with self.subTest(name):
+                self.write("my.log", content)
+                self.check(reason, "my.log", options, step)
+
+    def test_what_it_says_of_a_long_log_and_of_more_trips(self):
+        def edit(frame):
+            if frame.name == "vehicle_status":
+                data = bytearray(frame.data)
+                data[4] = 0x01 if frame.t_ms % 4000 >= 3900 else 0
+                data[6] |= traffic.BUTTON_1 if 1000 <= frame.t_ms % 4000 < 2500 else 0
+                frame.data = bytes(data)
+            return frame
+
+        self.write("my.log", log(edit, engage_ms=None, duration_ms=12000))
+        text = self.check("REMOTE_SIGNAL_LOST", "my.log", (), "{name: fault, at_ms: 3900, ")
+        self.assertIn("  It has 2 more trips, which are not shown here.\n", text)
+        self.write("my.log", LOGS["a fault after a minute and more"][1])
+        text = self.check("EPS_MOTOR_ENCODER", "my.log", (), "name: fault, at_ms: 11000, ")
+        self.assertIn("  The log is longer: the time before the fault was cut.\n", text)
+
+    def test_a_log_with_an_odd_name(self):
+        self.write('#1: "my" log', LOGS["the EPS dies"][1])
+        self.check("EPS_HEARTBEAT_LOST", '#1: "my" log', (), "eps: stop}")
+
+    def test_logs_without_a_trip(self):
+        def refused(content, *options):
+            self.write("my.log", content)
+            result = self.run_program("scenario", "--from", "my.log", "-o", "made.yaml", *options)
+            self.assertEqual((result.status, result.stdout, "made.yaml" in self.files()), (1, "", False))
+            return result.stderr
+
+        self.assertEqual(refused(log()), "host_sim: my.log: no fault to replay: the supervisor did not trip\n")
+        self.assertEqual(refused(log(engage_ms=0)), "host_sim: my.log: no fault to replay: nothing was supervised; host_sim "
+                                                    "replay says why\n")
+
+    def test_what_makes_no_sense(self):
+        self.write("my.log", LOGS["the EPS dies"][1])
+        self.write("old.yaml", "old")
+        self.assert_refused(self.run_program("scenario", "--from", "my.log", "-o", "old.yaml"),
+                            "old.yaml: exists already, and is not replaced")
+        self.assertEqual((self.folder / "old.yaml").read_text(encoding="ascii"), "old")
+        self.assert_refused(self.run_program("scenario", "--from", "-"), "the log is read twice")
+        self.assert_refused(self.run_program("scenario", "--from", "no.log"), "no.log: No such file")
+        self.assert_refused(self.run_program("scenario", "--from", "my.log", "old.yaml"), "--from takes no FILE")
+        self.assert_refused(self.run_program("scenario", "-o", "x.yaml", "old.yaml"), "need --from LOG")
+        self.assert_refused(self.run_program("scenario", "--from", "old.yaml"), "old.yaml")
+        self.assert_refused(self.run_program("scenario", "--from", "my.log", "-o", "no/where.yaml"), "no/where.yaml")
+        self.assertEqual(self.files(), ["my.log", "old.yaml"])
+
+
+if __name__ == "__main__":
+    os.environ.setdefault("HOST_SIM", "build/host/bin/host_sim")
+    unittest.main()
