@@ -2,10 +2,10 @@
  * @file cmd_atlas.c
  * `host_sim atlas`: every ordered pair of faults on the simulated bus.
  */
-#include "agv/names.h"
 #include "atlas/atlas_case.h"
 #include "atlas/atlas_run.h"
 #include "cli/commands/commands.h"
+#include "cli/fault_option.h"
 #include "cli/options.h"
 #include "cli/random_options.h"
 
@@ -21,8 +21,8 @@ typedef struct {
 static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_t rows[] = {
         OPTION_TEXT("--shard", "I/N", "only part I of N of the pairs (1/1)", &given->shard),
-        OPTION_TEXT("--first", "FAULT", "only pairs with this first fault", &given->first),
-        OPTION_TEXT("--second", "FAULT", "only pairs with this second fault", &given->second),
+        OPTION_FAULT("--first", "only pairs with this first fault", &given->first),
+        OPTION_FAULT("--second", "only pairs with this second fault", &given->second),
         OPTION_TEXT("--results", "FILE", "what came of each pair and of its halves, as JSON Lines", &given->results),
         OPTION_NUMBER("--show", "CASE", "only print this case, as a scenario", &given->show, 0, UINT32_MAX - 1u),
     };
@@ -45,18 +45,6 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     return options_parse(&syntax, argc, argv, &operands);
 }
 
-static bool take_fault(const char *option, const char *name, const campaign_row_t **row) {
-    if (name == NULL) {
-        return true;
-    }
-    const agv_fault_t fault = agv_fault_from_name(name);
-    if (fault == AGV_FAULT_NONE) {
-        return report("%s: unknown fault '%s'; docs/faults.md lists them", option, name);
-    }
-    *row = campaign_row(fault);
-    return (*row != NULL) || report("%s: the atlas cannot cause %s", option, name);
-}
-
 static bool make_request(const given_t *given, atlas_request_t *request) {
     *request = (atlas_request_t){.shard = 1u, .shards = 1u, .results = given->results};
     request->shows_one = given->show != OPTION_NOT_GIVEN;
@@ -65,8 +53,8 @@ static bool make_request(const given_t *given, atlas_request_t *request) {
     }
     request->one = request->shows_one ? (uint32_t)given->show : 0u;
     return ((given->shard == NULL) || random_options_shard(given->shard, &request->shard, &request->shards)) &&
-           take_fault("--first", given->first, &request->first) &&
-           take_fault("--second", given->second, &request->second);
+           fault_option_take("--first", given->first, &request->first) &&
+           fault_option_take("--second", given->second, &request->second);
 }
 
 status_t cmd_atlas(int argc, char **argv) {

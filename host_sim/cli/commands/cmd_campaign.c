@@ -3,23 +3,20 @@
  * `host_sim campaign`: randomised fault campaigns on the simulated bus.
  */
 #include <inttypes.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "agv/names.h"
 #include "campaign/campaign_run.h"
 #include "cli/commands/commands.h"
+#include "cli/fault_option.h"
 #include "cli/options.h"
 #include "cli/random_options.h"
 #include "common/interrupt.h"
-#include "common/suggest.h"
 #include "io/output.h"
 
 /** Runs of a campaign: as many as a table in memory may hold. */
 #define RUNS_MAX 100000000u
-
-enum { NAME_SIZE = 40 };
 
 /** The given options. */
 typedef struct {
@@ -36,30 +33,12 @@ typedef struct {
     size_t file_count;
 } given_t;
 
-/** The faults that a campaign can cause, "A|B|C". */
-static const char *fault_names(void) {
-    static char names[AGV_FAULT_COUNT * NAME_SIZE];
-    size_t used = 0u;
-    for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
-        const agv_fault_t fault = (agv_fault_t)i;
-        if ((campaign_row(fault) != NULL) && (used < sizeof names)) {
-            used += (size_t)snprintf(&names[used], sizeof names - used, "%s%s", (used > 0u) ? "|" : "",
-                                     agv_fault_name(fault));
-        }
-    }
-    return names;
-}
-
 static options_result_t parse(int argc, char **argv, given_t *given) {
     option_t random_rows[RANDOM_OPTIONS];
     random_options_init(&given->random, random_rows, "only part I of N of the runs (1/1)");
     const option_t rows[] = {
         OPTION_NUMBER("--runs", "N", "number of runs, of all shards together", &given->runs, 1, RUNS_MAX),
-        {.name = "--fault",
-         .value = "NAME",
-         .help = "cause this fault in every run",
-         .text = &given->fault,
-         .candidates = fault_names},
+        OPTION_FAULT("--fault", "cause this fault in every run", &given->fault),
         OPTION_FLAG("--newly-engaged", "cause the fault at an engagement; for faults that this delays",
                     &given->newly_engaged),
         OPTION_TEXT("--results", "FILE", "results as JSON Lines", &given->results),
@@ -95,19 +74,9 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
 }
 
 static bool take_fault(const char *name, campaign_causes_t *causes) {
-    const agv_fault_t fault = agv_fault_from_name(name);
-    if (fault == AGV_FAULT_NONE) {
-        char meant[SUGGEST_SIZE];
-        (void)suggest_from(fault_names(), name, meant);
-        return report("--fault: unknown fault '%s'%s", name,
-                      (meant[0] != '\0') ? meant : "; docs/faults.md lists them");
-    }
-    causes->only = campaign_row(fault);
-    if (causes->only == NULL) {
-        return report("--fault: a campaign cannot cause %s", name);
-    }
-    return !causes->newly_engaged || (campaign_engagement(fault) != NULL) ||
-           report("--newly-engaged: an engagement does not delay %s", name);
+    return fault_option_take("--fault", name, &causes->only) &&
+           (!causes->newly_engaged || (campaign_engagement(agv_fault_from_name(name)) != NULL) ||
+            report("--newly-engaged: an engagement does not delay %s", name));
 }
 
 /** Make the request of a campaign. */

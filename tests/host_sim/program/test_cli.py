@@ -68,6 +68,7 @@ class Front(hostsim.Case):
                                 (("config", "--topology", "gatway"), "'gatway' is not one of shared|gateway: did you mean 'gateway'?"),
                                 (("demo", "--scenario", "resett"), "no scenario 'resett': did you mean 'reset'?"),
                                 (("campaign", "--runs", "1", "--seed", "1", "--fault", "bus-of"), "did you mean 'BUS_OFF'?"),
+                                (("atlas", "--second", "bus-of"), "--second: unknown fault 'bus-of': did you mean 'BUS_OFF'?"),
                                 (("config", "--config", "c.yaml"), "c.yaml:1: init_hold: unknown setting: did you mean 'init_hold_ms'?"),
                                 (("config", "--config", "d.yaml"), "'AT_ONCE' is not one of at_once|at_standstill: did you mean 'at_once'?"),
                                 (("scenario", "s.yaml"), "s.yaml:2: unknown key 'show' in a scenario: did you mean 'shows'?")):
