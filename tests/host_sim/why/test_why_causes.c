@@ -1,25 +1,97 @@
 /* When a cause began, by kind: frames and trips are fed by hand. */
-#include "unity.h"
-#include "why_feed.h"
+#include "one_why.h"
 
 #define AUTOPILOT "\0\0\0\0\0\0\x80"
-static why_t *why;
-static agv_config_t config;
-
-void setUp(void) {
-    agv_config_defaults(&config);
-    why = why_new(&config);
-    TEST_ASSERT_NOT_NULL(why);
-}
-
-void tearDown(void) {
-    why_free(why);
-}
 
 static const why_trip_t *trip_by(agv_fault_t fault, uint64_t t_ms) {
     feed_trip(why, (uint8_t)fault, t_ms);
     TEST_ASSERT_EQUAL_UINT(1, why_trip_count(why));
     return why_trip(why, 0);
+}
+
+/* Frames, then a trip: the kind of its cause, when it began, the last good frame before, the limit and its unit. */
+typedef struct {
+    const char *name;
+    struct {
+        uint32_t id; /* 0: no more */
+        char bytes[8];
+        uint64_t t_ms;
+    } frames[9];
+    struct {
+        agv_fault_t fault;
+        uint64_t trip_ms;
+        why_kind_t kind;
+        uint64_t cause_ms;
+        uint64_t good_ms; /* NONE: there was none */
+        int64_t limit;
+        const char *unit; /* NULL: no limit */
+    } trip;
+} row_t;
+enum { NONE = 0 };
+
+static const row_t ROWS[] = {
+    {"a command is silent from the engagement on",
+     {{0x168, "\x08", 1000}, {0x363, AUTOPILOT, 5000}},
+     {AGV_FAULT_GEAR_COMMAND_TIMEOUT, 5351, WHY_SILENCE, 5000, 1000, 350, "ms"}},
+    {"an AI computer that was never seen has its own deadline",
+     {{0x363, AUTOPILOT, 5000}},
+     {AGV_FAULT_AI_HEARTBEAT_LOST, 5501, WHY_SILENCE, 5000, NONE, 500, "ms"}},
+    {"a counter that is stuck",
+     {{0x067, "\x01", 1000}, {0x067, "\x02", 1010}, {0x067, "\x02", 1020}, {0x067, "\x02", 1030}},
+     {AGV_FAULT_EPS_HEARTBEAT_STUCK, 1061, WHY_STUCK, 1020, 1010, 50, "ms"}},
+    {"a bit began with the first frame that has it, since the last one without it",
+     {{0x363, "\0\0\0\0\x01\0\x40", 900},
+      {0x363, "\0\0\0\0\0\0\x40\x01", 1000},
+      {0x363, "\0\0\0\0\x01\0\x40\x02", 1010},
+      {0x363, "\0\0\0\0\x01\0\x40\x03", 1020}},
+     {AGV_FAULT_REMOTE_SIGNAL_LOST, 1020, WHY_BIT, 1010, 1000, WHY_NO_LIMIT, NULL}},
+    {"a score began where it left 0: 2 1 0 2 1 3 5 6",
+     {{0x167, "\0\0\0\x01\0\0\0\x01", 1000},
+      {0x167, "\0\0\0\x01", 1010},
+      {0x167, "\0\0\0\x01", 1020},
+      {0x167, "\0\0\0\x01\0\0\0\x01", 1030},
+      {0x167, "\0\0\0\x01", 1040},
+      {0x167, "\0\0\0\x01\0\0\0\x01", 1050},
+      {0x167, "\0\0\0\x01\0\0\0\x01", 1060},
+      {0x167, "\0\0\0\x01\0\0\0\x01", 1070}},
+     {AGV_FAULT_EPS_UNDER_VOLTAGE, 1070, WHY_SCORE, 1030, 1020, 3, "frames"}},
+    {"a budget began with the condition: 50.1 degrees off",
+     {{0x363, AUTOPILOT, 1000},
+      {0x065, "\x28\x23", 1001},
+      {0x067, "\x01\x64\x28\x23", 1990},
+      {0x067, "\x02\x64\x1D\x25", 2000},
+      {0x067, "\x03\x64\x1D\x25", 2490}},
+     {AGV_FAULT_STEERING_DEVIATION, 2500, WHY_BUDGET, 2000, 1990, 500, "ddeg"}},
+    {"progress begins a budget anew: 204.8, then 102.4 degrees off",
+     {{0x363, AUTOPILOT, 1000},
+      {0x065, "\x28\x23", 1001},
+      {0x067, "\x02\x64\x28\x2B", 2000},
+      {0x067, "\x03\x64\x28\x27", 2300}},
+     {AGV_FAULT_STEERING_DEVIATION, 2800, WHY_BUDGET, 2300, NONE, 500, "ddeg"}},
+    {"the command that is out of range: 18001",
+     {{0x363, AUTOPILOT, 1000}, {0x065, "\x28\x23", 1020}, {0x065, "\x51\x46", 1045}},
+     {AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, 1045, WHY_VALUE, 1045, 1020, 18000, "ddeg"}},
+};
+
+static void check_row(const row_t *row) {
+    for (size_t i = 0; row->frames[i].id != 0; i++) {
+        feed_frame(why, HAL_CAN_VEHICLE, row->frames[i].id, row->frames[i].bytes, row->frames[i].t_ms);
+    }
+    const why_trip_t *trip = trip_by(row->trip.fault, row->trip.trip_ms);
+    TEST_ASSERT_EQUAL_MESSAGE(row->trip.kind, trip->kind, row->name);
+    TEST_ASSERT_EQUAL_UINT64_MESSAGE(row->trip.cause_ms * 1000u, trip->cause_us, row->name);
+    TEST_ASSERT_EQUAL_UINT64_MESSAGE((row->trip.good_ms == NONE) ? WHY_NEVER : row->trip.good_ms * 1000u,
+                                     trip->last_good_us, row->name);
+    TEST_ASSERT_EQUAL_INT64_MESSAGE(row->trip.limit, trip->limit, row->name);
+    TEST_ASSERT_EQUAL_STRING_MESSAGE(row->trip.unit, trip->unit, row->name);
+}
+
+void test_causes(void) {
+    for (size_t i = 0; i < sizeof ROWS / sizeof ROWS[0]; i++) {
+        tearDown();
+        setUp();
+        check_row(&ROWS[i]);
+    }
 }
 
 void test_silence_begins_a_cycle_after_the_last_frame(void) {
@@ -54,32 +126,6 @@ void test_a_message_that_never_came(void) {
     TEST_ASSERT_EQUAL_UINT(0, trip->evidence_count);
 }
 
-void test_a_command_is_silent_from_the_engagement_on(void) {
-    feed_frame(why, HAL_CAN_VEHICLE, 0x168, "\x08\0\0\0\0\0\0", 1000);
-    feed_frame(why, HAL_CAN_VEHICLE, 0x363, AUTOPILOT, 5000);
-    const why_trip_t *trip = trip_by(AGV_FAULT_GEAR_COMMAND_TIMEOUT, 5351);
-    TEST_ASSERT_EQUAL_UINT64(1000000, trip->last_good_us);
-    TEST_ASSERT_EQUAL_UINT64(5000000, trip->cause_us);
-}
-
-void test_an_ai_computer_that_was_never_seen_has_a_deadline_of_its_own(void) {
-    feed_frame(why, HAL_CAN_VEHICLE, 0x363, AUTOPILOT, 5000);
-    const why_trip_t *trip = trip_by(AGV_FAULT_AI_HEARTBEAT_LOST, 5501);
-    TEST_ASSERT_EQUAL_INT64(500, trip->limit);
-    TEST_ASSERT_EQUAL_UINT64(5000000, trip->cause_us);
-}
-
-void test_a_counter_that_is_stuck(void) {
-    feed_frame(why, HAL_CAN_VEHICLE, 0x067, "\x01\0\0\0\0\0\0", 1000);
-    feed_frame(why, HAL_CAN_VEHICLE, 0x067, "\x02\0\0\0\0\0\0", 1010);
-    feed_frame(why, HAL_CAN_VEHICLE, 0x067, "\x02\0\0\0\0\0\0", 1020);
-    feed_frame(why, HAL_CAN_VEHICLE, 0x067, "\x02\0\0\0\0\0\0", 1030);
-    const why_trip_t *trip = trip_by(AGV_FAULT_EPS_HEARTBEAT_STUCK, 1061);
-    TEST_ASSERT_EQUAL(WHY_STUCK, trip->kind);
-    TEST_ASSERT_EQUAL_UINT64(1010000, trip->last_good_us);
-    TEST_ASSERT_EQUAL_UINT64(1020000, trip->cause_us);
-}
-
 void test_a_wrong_step_counts_as_stuck_where_the_counter_has_to_increment(void) {
     config.eps_counter = AGV_COUNTER_INCREMENTS;
     why_free(why);
@@ -91,34 +137,6 @@ void test_a_wrong_step_counts_as_stuck_where_the_counter_has_to_increment(void) 
     TEST_ASSERT_EQUAL_UINT64(1020000, trip_by(AGV_FAULT_EPS_HEARTBEAT_STUCK, 1061)->cause_us);
 }
 
-void test_a_bit_began_with_the_first_frame_that_has_it(void) {
-    feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\x01\0\x40", 900); /* an earlier time */
-    feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\0\0\x40\x01", 1000);
-    feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\x01\0\x40\x02", 1010);
-    feed_frame(why, HAL_CAN_VEHICLE, 0x363, "\0\0\0\0\x01\0\x40\x03", 1020);
-    const why_trip_t *trip = trip_by(AGV_FAULT_REMOTE_SIGNAL_LOST, 1020);
-    TEST_ASSERT_EQUAL(WHY_BIT, trip->kind);
-    TEST_ASSERT_EQUAL_UINT64(1010000, trip->cause_us);
-    TEST_ASSERT_EQUAL_UINT64(1000000, trip->last_good_us);
-    TEST_ASSERT_NULL(trip->unit);
-}
-
-void test_a_score_began_where_it_left_0(void) {
-    feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\x01\0\0\0\x01", 1000); /* 2 */
-    feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\x01\0\0\0\0", 1010);   /* 1 */
-    feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\x01\0\0\0\0", 1020);   /* 0 */
-    feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\x01\0\0\0\x01", 1030); /* 2: here */
-    feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\x01\0\0\0\0", 1040);   /* 1 */
-    feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\x01\0\0\0\x01", 1050); /* 3 */
-    feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\x01\0\0\0\x01", 1060); /* 5 */
-    feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\x01\0\0\0\x01", 1070); /* 6 */
-    const why_trip_t *trip = trip_by(AGV_FAULT_EPS_UNDER_VOLTAGE, 1070);
-    TEST_ASSERT_EQUAL(WHY_SCORE, trip->kind);
-    TEST_ASSERT_EQUAL_UINT64(1030000, trip->cause_us);
-    TEST_ASSERT_EQUAL_UINT64(1020000, trip->last_good_us);
-    TEST_ASSERT_EQUAL_STRING("frames", trip->unit);
-}
-
 void test_a_mode_of_the_eps_counts_from_the_engagement_on(void) {
     feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\0\0\0\0", 900); /* assists, in manual */
     feed_frame(why, HAL_CAN_VEHICLE, 0x363, AUTOPILOT, 1000);
@@ -126,28 +144,6 @@ void test_a_mode_of_the_eps_counts_from_the_engagement_on(void) {
         feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\0\0\0\0", t_ms);
     }
     TEST_ASSERT_EQUAL_UINT64(1000000, trip_by(AGV_FAULT_EPS_MODE_NOT_ANGLE, 1540)->cause_us);
-}
-
-void test_a_budget_began_with_the_condition(void) {
-    feed_frame(why, HAL_CAN_VEHICLE, 0x363, AUTOPILOT, 1000);
-    feed_frame(why, HAL_CAN_VEHICLE, 0x065, "\x28\x23\0\0\0\0\0", 1001);
-    feed_frame(why, HAL_CAN_VEHICLE, 0x067, "\x01\x64\x28\x23\0\0\0", 1990);
-    feed_frame(why, HAL_CAN_VEHICLE, 0x067, "\x02\x64\x1D\x25\0\0\0", 2000); /* 501: 50.1 deg off */
-    feed_frame(why, HAL_CAN_VEHICLE, 0x067, "\x03\x64\x1D\x25\0\0\0", 2490);
-    const why_trip_t *trip = trip_by(AGV_FAULT_STEERING_DEVIATION, 2500);
-    TEST_ASSERT_EQUAL(WHY_BUDGET, trip->kind);
-    TEST_ASSERT_EQUAL_UINT64(2000000, trip->cause_us);
-    TEST_ASSERT_EQUAL_UINT64(1990000, trip->last_good_us);
-    TEST_ASSERT_EQUAL_INT64(500, trip->limit);
-    TEST_ASSERT_EQUAL_STRING("ddeg", trip->unit);
-}
-
-void test_progress_begins_a_budget_anew(void) {
-    feed_frame(why, HAL_CAN_VEHICLE, 0x363, AUTOPILOT, 1000);
-    feed_frame(why, HAL_CAN_VEHICLE, 0x065, "\x28\x23\0\0\0\0\0", 1001);
-    feed_frame(why, HAL_CAN_VEHICLE, 0x067, "\x02\x64\x28\x2B\0\0\0", 2000); /* 204.8 deg off */
-    feed_frame(why, HAL_CAN_VEHICLE, 0x067, "\x03\x64\x28\x27\0\0\0", 2300); /* 102.4 deg off: better by 102.4 */
-    TEST_ASSERT_EQUAL_UINT64(2300000, trip_by(AGV_FAULT_STEERING_DEVIATION, 2800)->cause_us);
 }
 
 void test_a_fourth_engagement(void) {
@@ -160,19 +156,6 @@ void test_a_fourth_engagement(void) {
     const why_trip_t *trip = trip_by(AGV_FAULT_MODE_FLAPPING, 4000);
     TEST_ASSERT_EQUAL_UINT64(1000000, trip->cause_us);
     TEST_ASSERT_EQUAL_UINT(4, trip->evidence_count);
-}
-
-void test_the_command_that_is_out_of_range(void) {
-    feed_frame(why, HAL_CAN_VEHICLE, 0x363, AUTOPILOT, 1000);
-    feed_frame(why, HAL_CAN_VEHICLE, 0x065, "\x28\x23\0\0\0\0\0", 1020);
-    feed_frame(why, HAL_CAN_VEHICLE, 0x065, "\x51\x46\0\0\0\0\0", 1045); /* 18001 */
-    const why_trip_t *trip = trip_by(AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, 1045);
-    TEST_ASSERT_EQUAL(WHY_VALUE, trip->kind);
-    TEST_ASSERT_EQUAL(AGV_MSG_STEERING_COMMAND, trip->message);
-    TEST_ASSERT_EQUAL_UINT64(1045000, trip->cause_us);
-    TEST_ASSERT_EQUAL_UINT64(1020000, trip->last_good_us);
-    TEST_ASSERT_EQUAL_INT64(18000, trip->limit);
-    TEST_ASSERT_EQUAL_STRING("ddeg", trip->unit);
 }
 
 void test_a_command_of_another_length(void) {

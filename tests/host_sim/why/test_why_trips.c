@@ -2,21 +2,7 @@
 #include <stdio.h>
 
 #include "agv/names.h"
-#include "unity.h"
-#include "why_feed.h"
-
-static why_t *why;
-static agv_config_t config;
-
-void setUp(void) {
-    agv_config_defaults(&config);
-    why = why_new(&config);
-    TEST_ASSERT_NOT_NULL(why);
-}
-
-void tearDown(void) {
-    why_free(why);
-}
+#include "one_why.h"
 
 void test_how_long_each_state_lasted(void) {
     feed_state(why, 0, AGV_STATE_INIT, AGV_FAULT_NONE, 0);
