@@ -26,6 +26,12 @@ setup_file() {
     [[ $output == *"host_sim replay $PREFIX/share/agv-supervisor/examples/ai-stops.log"* ]]
 }
 
+@test "the JSON Schemas are installed as the program prints them" {
+    for file in scenario config; do
+        diff <("$PREFIX/bin/host_sim" "$file" --schema) "$PREFIX/share/agv-supervisor/schemas/$file.schema.json"
+    done
+}
+
 @test "a scenario that is not shipped is named with the installed folder" {
     run "$PREFIX/bin/host_sim" demo --scenario none
     [ "$status" -eq 2 ]
