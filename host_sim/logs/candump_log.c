@@ -18,6 +18,7 @@ bool candump_open(candump_log_t *log, const char *path, bool skip_bad) {
     log->skip_bad = skip_bad;
     log->interrupted = false;
     log->at_end = false;
+    log->is_cut_off = false;
     log->is_checked = false;
     log->format = CANDUMP_FORMAT_UNKNOWN;
     log->frameless = 0u;
@@ -51,7 +52,7 @@ bool candump_reject(candump_log_t *log, const char *wrong) {
         log->skipped++;
         return true;
     }
-    return report_at(log->name, (size_t)log->line, "%s", wrong);
+    return report_at(log->name, (size_t)log->line, "%s%s", wrong, log->is_cut_off ? "; the log ends in this line" : "");
 }
 
 /** Read from the file. @return number of bytes; 0: the end; -1: an error (reported) or an interruption. */
@@ -147,6 +148,7 @@ static char *cut_line(candump_log_t *log, size_t *length, bool *failed) {
             feed = &log->buffer[log->end]; /* a last line without a line feed: the buffer has room for one */
             *feed = '\n';
             log->end++;
+            log->is_cut_off = true;
         }
         if (feed != NULL) {
             *length = too_long ? (CANDUMP_LONG_LINE_MAX + 1u) : (size_t)(feed - begin);

@@ -40,6 +40,7 @@ typedef struct {
     bool interrupted; /**< a signal asked the program to end */
     int fd;
     bool at_end;
+    bool is_cut_off; /**< the line that was read last is the last one, and has no line feed */
     bool is_checked; /**< its first bytes are not those of a binary format */
     candump_format_t format;
     uint64_t frameless; /**< bytes read since the last frame */

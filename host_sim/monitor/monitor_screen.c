@@ -30,6 +30,7 @@ static struct {
     FILE *kept_back;
     attr_t attributes[STYLES];
     short pairs[STYLES];
+    monitor_view_t shown; /* what the lines show; width 0: nothing yet */
 } here = {.stderr_was = -1};
 
 bool monitor_screen_possible(void) {
@@ -95,6 +96,7 @@ static void give_stderr_back(void) {
 
 bool monitor_screen_open(void) {
     (void)setlocale(LC_CTYPE, "");
+    here.shown.width = 0;
     here.is_utf8 = strcmp(nl_langinfo(CODESET), "UTF-8") == 0;
     here.screen = newterm(NULL, stdout, stdin);
     if (here.screen == NULL) {
@@ -145,8 +147,15 @@ void monitor_screen_show(const monitor_view_t *view) {
     if (poll(&terminal, 1, 0) <= 0) {
         return;
     }
+    const bool same_size = (view->width == here.shown.width) && (view->height == here.shown.height);
+    const size_t size = (size_t)view->width * sizeof view->cells[0][0];
+    here.shown.width = view->width;
+    here.shown.height = view->height;
     for (int y = 0; y < view->height; y++) {
-        show_line(view, y);
+        if (!same_size || (memcmp(here.shown.cells[y], view->cells[y], size) != 0)) {
+            memcpy(here.shown.cells[y], view->cells[y], size);
+            show_line(view, y);
+        }
     }
     (void)refresh();
 }
@@ -169,6 +178,9 @@ int monitor_screen_key(void) {
     const int key = getch();
     if (key == ERR) {
         return MONITOR_KEY_NONE;
+    }
+    if (key == KEY_RESIZE) {
+        here.shown.width = 0; /* curses has made its lines anew */
     }
     if (key == CTRL_L) {
         monitor_screen_redraw();

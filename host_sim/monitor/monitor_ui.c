@@ -7,7 +7,7 @@
 
 #include "monitor/monitor_screen.h"
 
-enum { DRAW_EVERY_MS = 200, LOOK_EVERY_MS = 20, FILES_MAX = 4 };
+enum { DRAW_EVERY_MS = 200, DRAW_LARGE_EVERY_MS = 300, LARGE_CELLS = 4000, LOOK_EVERY_MS = 20, FILES_MAX = 4 };
 
 bool monitor_ui_open(monitor_ui_t *ui, monitor_t *monitor, const monitor_page_t *page) {
     memset(ui, 0, sizeof *ui);
@@ -153,8 +153,8 @@ void monitor_ui_draw(monitor_ui_t *ui, uint64_t now_ms) {
     if (now_ms < ui->draw_ms) {
         return;
     }
-    ui->draw_ms = now_ms + DRAW_EVERY_MS;
     monitor_screen_size(&width, &height);
+    ui->draw_ms = now_ms + (uint64_t)((width * height > (int)LARGE_CELLS) ? DRAW_LARGE_EVERY_MS : DRAW_EVERY_MS);
     monitor_view_clear(&ui->view, width, height);
     ui->log_lines = monitor_page_log_lines(shown(ui), ui->view.height);
     monitor_page_draw(&ui->view, shown(ui), &ui->page);

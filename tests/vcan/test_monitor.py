@@ -139,7 +139,11 @@ class Case(canbus.Case):
 class InAFlood(Case):
     def test_processor_time_and_keys(self):
         flood = self.flood()
-        terminal = self.terminal("monitor", "--can", "vcan0")
+        for width, height in ((80, 24), (160, 50)):
+            with self.subTest(width=width, height=height):
+                self.measure(flood, self.terminal("monitor", "--can", "vcan0", width=width, height=height))
+
+    def measure(self, flood, terminal):
         terminal.wait_for(rb"INIT")
         begin, used, sent = time.monotonic(), seconds_used(terminal.process.pid), flood.sent
         while time.monotonic() < begin + 10:

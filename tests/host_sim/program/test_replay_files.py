@@ -72,7 +72,8 @@ class Lines(hostsim.Case):
 
     def test_the_last_line_may_lack_its_end_but_not_more(self):
         self.replay(GOOD + GOOD[:-1])
-        self.assert_refused(self.refuse(GOOD + GOOD[:-2]), "log:2: ", "odd number")
+        self.assert_refused(self.refuse(GOOD + GOOD[:-2]), "log:2: ", "odd number", "the log ends in this line")
+        self.assertNotIn("ends", self.refuse(GOOD[:-2] + "\n" + GOOD).stderr)
 
     def test_a_log_without_a_frame_is_refused(self):
         for content in ("", "\n", "\r\n  \n"):
