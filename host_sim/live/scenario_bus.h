@@ -15,8 +15,8 @@
 #include "hal/can.h"
 #include "io/events.h"
 #include "live/node.h"
+#include "scenario/check/scenario_check.h"
 #include "scenario/scenario.h"
-#include "scenario/scenario_check.h"
 #include "session/session.h"
 
 /** Where and how strictly. */

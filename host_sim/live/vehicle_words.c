@@ -5,8 +5,8 @@
 
 #include "agv/names.h"
 #include "common/report.h"
+#include "scenario/parse/scenario_parse.h"
 #include "scenario/scenario_actions.h"
-#include "scenario/scenario_parse.h"
 
 #define ACTORS "vcu, eps, ai, operator, bus"
 #define FAULT_FORM "WHO-WHAT[,NAME=VALUE]...@TIME"

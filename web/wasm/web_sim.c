@@ -12,8 +12,8 @@
 #include "io/events.h"
 #include "io/yaml_file.h"
 #include "memory_output.h"
+#include "scenario/parse/scenario_parse.h"
 #include "scenario/run/scenario_analysis.h"
-#include "scenario/scenario_parse.h"
 #include "web_run.h"
 
 enum { SETTINGS_NOT_GIVEN = -1, NAME_SIZE = 120 };

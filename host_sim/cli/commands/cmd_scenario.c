@@ -22,9 +22,9 @@
 #include "io/yaml_schema.h"
 #include "live/scenario_bus.h"
 #include "logs/candump_line.h"
+#include "scenario/parse/scenario_schema.h"
 #include "scenario/run/scenario_analysis.h"
 #include "scenario/run/scenario_run.h"
-#include "scenario/scenario_schema.h"
 
 enum { FILES_MAX = 1000, FIXED_FILES = 5, DEFAULT_TOLERANCE_MS = 50, TOLERANCE_MAX_MS = 1000 };
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "hal/self_test.h"
-#include "scenario/scenario_check.h"
+#include "scenario/check/scenario_check.h"
 #include "scratch.h"
 #include "unity.h"
 

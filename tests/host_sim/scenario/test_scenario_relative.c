@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scenario/scenario_check.h"
+#include "scenario/check/scenario_check.h"
 #include "scenario/scenario_player.h"
 #include "scratch.h"
 #include "unity.h"

@@ -1,6 +1,6 @@
 /* Scenario files: frames that are expected, and frames that must not be. */
 #include "io/yaml_file.h"
-#include "scenario/scenario_parse.h"
+#include "scenario/parse/scenario_parse.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define ENDLESS UINT32_MAX

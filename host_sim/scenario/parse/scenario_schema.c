@@ -1,8 +1,8 @@
-#include "scenario/scenario_schema.h"
+#include "scenario/parse/scenario_schema.h"
 
 #include "config/config_schema.h"
 #include "io/yaml_schema.h"
-#include "scenario/scenario_parse.h"
+#include "scenario/parse/scenario_parse.h"
 
 /** The schema of a key within that of a mapping. */
 static json_t *property(json_t *schema, const char *key) {

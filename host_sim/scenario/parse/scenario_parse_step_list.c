@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "io/yaml_file.h"
-#include "scenario/scenario_parse.h"
+#include "scenario/parse/scenario_parse.h"
 
 /** Check that there is room for all repeated steps. */
 static bool again_fits(const yaml_reader_t *reader, const yaml_node_t *node, const scenario_t *scenario) {

@@ -1,10 +1,10 @@
 /* Scenario files: the keys of a step, sorted. */
-#include "scenario/scenario_parse_step_keys.h"
+#include "scenario/parse/scenario_parse_step_keys.h"
 
 #include <string.h>
 
 #include "io/yaml_file.h"
-#include "scenario/scenario_parse.h"
+#include "scenario/parse/scenario_parse.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 

@@ -1,4 +1,4 @@
-#include "scenario/scenario_requirements.h"
+#include "scenario/parse/scenario_requirements.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* Judging: the state of the vehicle. */
-#include "scenario/scenario_check.h"
+#include "scenario/check/scenario_check.h"
 
 bool scenario_check_wants_vehicle(const scenario_check_t *check, uint32_t t_ms) {
     for (size_t i = 0u; i < check->expect.vehicle.count; i++) {

@@ -2,7 +2,7 @@
 #include "common/missing.h"
 #include "hal/self_test.h"
 #include "io/yaml_file.h"
-#include "scenario/scenario_parse.h"
+#include "scenario/parse/scenario_parse.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 

@@ -1,7 +1,7 @@
 /* Judging: the times at which something is expected. */
 #include <stdio.h>
 
-#include "scenario/scenario_check.h"
+#include "scenario/check/scenario_check.h"
 
 bool scenario_check_waits(scenario_window_t window) {
     return window.after.kind != (uint8_t)SCENARIO_FROM_START;

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "io/yaml_file.h"
-#include "scenario/scenario_parse.h"
+#include "scenario/parse/scenario_parse.h"
 
 const yaml_shape_t SCENARIO_TEXT_SHAPE = {.kind = YAML_KIND_TEXT};
 

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "io/yaml_file.h"
-#include "scenario/scenario_parse.h"
+#include "scenario/parse/scenario_parse.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 

@@ -1,5 +1,5 @@
 /* Judging: states, faults, resets, outputs, the vehicle. */
-#include "scenario/scenario_check.h"
+#include "scenario/check/scenario_check.h"
 
 #include <stdarg.h>
 #include <stdio.h>

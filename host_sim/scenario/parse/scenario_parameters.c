@@ -1,7 +1,7 @@
 /* The parameters of steps, and the words of `kind`. */
 #include "hal/can.h"
+#include "scenario/parse/scenario_parse.h"
 #include "scenario/scenario_actions.h"
-#include "scenario/scenario_parse.h"
 
 enum { COUNT_MAX = UINT16_MAX - 1, SHORT_MAX_MS = 60000, LONG_MAX_MS = 3600000, BIT_MAX = 1000000 };
 enum { PERMILLE_MAX = 900, STEER_MAX_DEG = 900, PCT_S_MAX = 10000, ID_MAX = 0x1FFFFFFF };

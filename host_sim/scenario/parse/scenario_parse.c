@@ -7,8 +7,8 @@
 #include "common/suggest.h"
 #include "config/config_file.h"
 #include "io/yaml_file.h"
-#include "scenario/scenario_parse.h"
-#include "scenario/scenario_requirements.h"
+#include "scenario/parse/scenario_parse.h"
+#include "scenario/parse/scenario_requirements.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 /* The first identifier of a vehicle that has those of the configuration. */

@@ -3,9 +3,9 @@
 
 #include "agv/names.h"
 #include "io/yaml_schema.h"
+#include "scenario/parse/scenario_parse.h"
+#include "scenario/parse/scenario_schema.h"
 #include "scenario/scenario_actions.h"
-#include "scenario/scenario_parse.h"
-#include "scenario/scenario_schema.h"
 
 /** The keys of any step. */
 static const yaml_shape_t STEP_NAME = {.kind = YAML_KIND_TEXT, .highest = SCENARIO_NAME_MAX - 1};

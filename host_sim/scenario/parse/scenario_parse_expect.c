@@ -5,7 +5,7 @@
 #include "agv/recorder.h"
 #include "common/missing.h"
 #include "io/yaml_file.h"
-#include "scenario/scenario_parse.h"
+#include "scenario/parse/scenario_parse.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 

@@ -3,7 +3,7 @@
 
 #include "agv/names.h"
 #include "common/units.h"
-#include "scenario/scenario_check.h"
+#include "scenario/check/scenario_check.h"
 
 enum { FRAME_TEXT_SIZE = 80 };
 
