@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draw the pictures of docs/report.md from pages that the built host_sim makes: docs/report*.png. Needs Chromium.
+"""Draw the pictures of docs/report.md from pages that the built host_sim makes: docs/pictures/report*.png. Needs Chromium.
 usage: report-pictures [--host-sim PROGRAM]"""
 import argparse
 import pathlib
@@ -43,7 +43,7 @@ def main():
                            stdout=subprocess.DEVNULL)
             chromium.open(pathlib.Path(folder, "page.html"), width, 900, dark)
             top, bottom = chromium.run(PART % part)
-            path = ROOT / "docs" / f"{name}.png"
+            path = ROOT / "docs/pictures" / f"{name}.png"
             chromium.picture(path, True, {"x": 0, "y": top, "width": width, "height": bottom - top})
             path.write_bytes(png.with_palette(path.read_bytes()))
             print(f"{path.relative_to(ROOT)}: {path.stat().st_size / 1000:.0f} KB")

@@ -3,7 +3,8 @@
 
 A table stands between `<!-- pins of BOARD -->` and `<!-- end of pins -->`; its rows name the signal, the pin of the processor and that of
 a connector. Each signal that the overlay of the board, or its overlay for inputs, gives a pin must be there with that pin, and no other.
-CAN pins and LEDs stand in the board's own files of Zephyr: they are compared when ZEPHYR_BASE is set. The drawings are docs/wiring-*.svg.
+CAN pins and LEDs stand in the board's own files of Zephyr: they are compared when ZEPHYR_BASE is set. The
+drawings are docs/pictures/wiring-*.svg.
 
 --check: changes nothing; fails when a table is wrong or a drawing is out of date.
 """
@@ -104,10 +105,10 @@ def main():
             problems += compare(board, found[board], pins, "Zephyr")
             with_zephyr += len(pins)
     for name, svg in wiring_drawings.all_of(found).items():
-        path = root / "docs" / name
+        path = root / "docs/pictures" / name
         if not path.exists() or path.read_text(encoding="utf-8") != svg:
             if options.check:
-                problems.append(f"docs/{name} is out of date: run scripts/tools/wiring.py")
+                problems.append(f"docs/pictures/{name} is out of date: run scripts/tools/wiring.py")
             else:
                 path.write_text(svg, encoding="utf-8")
     for problem in problems:

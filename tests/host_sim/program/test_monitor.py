@@ -133,7 +133,7 @@ class Picture(hostsim.Case):
         made = self.folder / "made.svg"
         subprocess.run([ROOT / "scripts/tools/terminal-picture.py", "100x32", "END", made, hostsim.PROGRAM, "monitor", "--log",
                         EXAMPLE], check=True, timeout=60)
-        self.assertEqual(made.read_text(encoding="utf-8"), (ROOT / "docs/monitor.svg").read_text(encoding="utf-8"))
+        self.assertEqual(made.read_text(encoding="utf-8"), (ROOT / "docs/pictures/monitor.svg").read_text(encoding="utf-8"))
 
 
 class Lines(hostsim.Case):
