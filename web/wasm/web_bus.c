@@ -8,8 +8,8 @@
 
 #include "agv/codec.h"
 #include "common/json_build.h"
+#include "common/message_facts.h"
 #include "common/units.h"
-#include "report/series_read.h"
 #include "traffic/bus_load.h"
 #include "traffic/signals.h"
 #include "web_run.h"
@@ -185,6 +185,12 @@ static const char *dump(json_t *value) {
     return text;
 }
 
+/** The limit of a message's silence; 0: none. */
+static uint16_t deadline_ms(const web_bus_t *bus, uint32_t message) {
+    const bool has_deadline = message < (uint32_t)AGV_MSG_COUNT;
+    return has_deadline ? agv_config_get(&bus->config, message_deadline_setting(message)) : 0u;
+}
+
 /*
  * An object for each row: id "363h", name, side (0 vehicle, 1 AI), from, t_us, data, text of the last frame, and total,
  * rate (frames in the last full second), gap_us, deadline_ms (of its message; 0: none).
@@ -201,9 +207,7 @@ const char *web_bus(void) {
         json_put(object, "total", json_integer(row->total));
         json_put(object, "rate", json_integer(rate_of(row, second)));
         json_put(object, "gap_us", json_uint(row->gap_us));
-        const bool has_deadline = row->last.message < (uint32_t)AGV_MSG_COUNT;
-        json_put(object, "deadline_ms",
-                 json_integer(has_deadline ? series_deadline_ms(&bus->config, (agv_message_t)row->last.message) : 0));
+        json_put(object, "deadline_ms", json_integer(deadline_ms(bus, row->last.message)));
         json_add(rows, object);
     }
     return dump(rows);

@@ -70,7 +70,7 @@ static json_t *parameters(uint32_t bits) {
     json_t *list = json_array();
     for (unsigned i = 0u; i < SCENARIO_PARAMETERS; i++) {
         if ((bits & (1u << i)) != 0u) {
-            json_add(list, json_text(SCENARIO_PARAMETER_NAMES[i]));
+            json_add(list, json_text(SCENARIO_PARAMETER_ROWS[i].name));
         }
     }
     return list;

@@ -298,6 +298,7 @@ const char *web_report(void) {
         return NULL;
     }
     analysis_end(web.analysis, scenario_testbed_session(&web.run.testbed)->t_ms * (uint64_t)US_PER_MS);
+    analysis_write(web.analysis);
     web.is_there = false;
     return memory_output_text(WEB_REPORT);
 }

@@ -86,9 +86,10 @@ class Browser:
             self.events.append(message)
 
     def go(self, path):
-        """Open a file and wait until it is loaded."""
+        """Open a file, or an address (http://...), and wait until it is loaded."""
         self.events = []
-        self.call("Page.navigate", url=pathlib.Path(path).resolve().as_uri())
+        address = path if str(path).startswith("http:") else pathlib.Path(path).resolve().as_uri()
+        self.call("Page.navigate", url=address)
         until = time.monotonic() + PATIENCE_S
         while not any(event.get("method") == "Page.loadEventFired" for event in self.events):
             self.events.append(self._read(until))

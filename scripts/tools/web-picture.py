@@ -1,0 +1,58 @@
+#!/usr/bin/python3
+"""Draw docs/web.png from the built page (preset wasm). Needs Chromium. usage: web-picture"""
+import functools
+import http.server
+import pathlib
+import sys
+import threading
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests/host_sim/program"))
+import browser  # noqa: E402
+import png  # noqa: E402
+
+PAGE = ROOT / "build/wasm/page"
+PICTURE = ROOT / "docs/web.png"
+RUN = """(async () => {
+  agv.play(false);
+  agv.run.seek(12000);
+  agv.run.inject("eps", "set", { field: "faults", value: "08h" });
+  agv.run.step(3000);
+  agv.draw(true);
+})()"""
+
+
+class Handler(http.server.SimpleHTTPRequestHandler):
+    extensions_map = {".js": "text/javascript", ".wasm": "application/wasm", ".css": "text/css", "": "text/html"}
+
+    def log_message(self, *_):
+        pass
+
+
+def wait(chromium, script):
+    while not chromium.run(f"Boolean({script})"):
+        time.sleep(0.1)
+
+
+def main():
+    if browser.find() is None:
+        sys.exit("web-picture: there is no Chromium; Debian has it as chromium")
+    if not (PAGE / "index.html").exists():
+        sys.exit("web-picture: build the page first: cmake --preset wasm && cmake --build --preset wasm")
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, directory=str(PAGE)))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    with browser.Browser() as chromium:
+        chromium.open(f"http://127.0.0.1:{server.server_port}/", 1320, 1000)
+        wait(chromium, "document.documentElement.dataset.ready === 'yes'")
+        chromium.run(RUN)
+        wait(chromium, "document.querySelectorAll('#details p').length === 3")
+        chromium.settle()
+        height = chromium.run("document.getElementById('picture').getBoundingClientRect().bottom + scrollY + 2")
+        chromium.picture(PICTURE, True, {"x": 0, "y": 0, "width": 1320, "height": height})
+    server.shutdown()
+    PICTURE.write_bytes(png.with_palette(PICTURE.read_bytes()))
+    print(f"{PICTURE.relative_to(ROOT)}: {PICTURE.stat().st_size / 1000:.0f} KB")
+
+
+main()

@@ -1,0 +1,322 @@
+// page.js: puts the page together: one run, its parts on the screen, its time.
+
+import { byId, say } from "./dom.js";
+import { dataOf, Reports } from "./reports.js";
+import { fromLink, toLink } from "./simulation/link.js";
+import { instantiate } from "./simulation/module.js";
+import { Run } from "./simulation/run.js";
+import { makeBus } from "./view/bus.js";
+import { makeEvents } from "./view/events.js";
+import { makeExpectations } from "./view/expectations.js";
+import { endsOf, makeFaults } from "./view/faults.js";
+import { makeMachine } from "./view/machine.js";
+import { makePicture } from "./view/picture.js";
+import { makeSettings } from "./view/settings.js";
+import { makeTransport } from "./view/transport.js";
+import { makeVehicle } from "./view/vehicle.js";
+import { makeVerdict } from "./view/verdict.js";
+
+const DRIVE = "drive.yaml";
+const SLOWLY_MS = 200; // between two drawings of what is read, not watched
+const BUDGET_MS = 10; // of a screen frame, as fast as it goes
+const LEAP_MS = 250; // a page that was hidden does not catch up
+const LONG_RUN_MS = 600000; // a longer one is explained when it pauses
+
+class Page {
+  constructor(simulation) {
+    this.run = new Run(simulation);
+    this.lists = simulation.lists();
+    this.playing = false;
+    this.speed = 1;
+    this.debt = 0;
+    this.reports = new Reports();
+    this.explained = { key: "", data: null };
+  }
+
+  build() {
+    this.fast = [makeVehicle(), makeMachine()];
+    this.slow = [makeBus(), makeEvents(), makeExpectations()];
+    this.drawPicture = makePicture();
+    this.drawVerdict = makeVerdict(this.lists);
+    this.drawTransport = makeTransport(this);
+    this.showSettings = makeSettings(this.lists, (name, value) => this.set(name, value));
+    makeFaults(this.lists, (...step) => this.act(...step), () => this.endFaults());
+    say(byId("version"), `Version ${this.lists.version}.`);
+    byId("link").addEventListener("click", () => this.copyLink());
+    byId("report").addEventListener("click", () => this.showReport());
+    byId("file").addEventListener("change", ({ target }) => this.open(target.files[0]).then(() => (target.value = "")));
+    byId("scenario").addEventListener("change", ({ target }) => this.guard(() => this.load(target.value)));
+    addEventListener("hashchange", () => this.openLink());
+    addEventListener("dragover", (event) => event.preventDefault());
+    addEventListener("drop", (event) => {
+      event.preventDefault();
+      this.open(event.dataTransfer.files[0]);
+    });
+    addEventListener("keydown", (event) => this.key(event));
+  }
+
+  key(event) {
+    const isTyping = event.target.closest("input, select, button, summary, .tl-picture, dialog");
+    if (isTyping || event.ctrlKey || event.metaKey || event.altKey) return;
+    const keys = { " ": () => this.play(!this.playing), ".": () => this.step(1), ",": () => this.step(-1), n: () => this.toEvent() };
+    if (!keys[event.key]) return;
+    event.preventDefault();
+    keys[event.key]();
+  }
+
+  // --- messages
+
+  complain(error) {
+    const element = byId("message");
+    say(element, error.message);
+    element.hidden = false;
+  }
+
+  hush() {
+    byId("message").hidden = true;
+  }
+
+  /** Do something that may refuse: its sentence is shown. */
+  async guard(action) {
+    this.hush();
+    try {
+      await action();
+    } catch (error) {
+      this.complain(error);
+    }
+  }
+
+  // --- runs
+
+  /** @param file of the list of scenarios */
+  async load(file, { settings = {}, steps = [], t = 0 } = {}) {
+    const response = await fetch(file === DRIVE ? file : `scenarios/${file}`);
+    if (!response.ok) throw new Error(`There is no scenario ${file}.`);
+    this.beginPlan({ name: file, text: await response.text(), settings, steps });
+    byId("scenario").value = file;
+    this.run.seek(t);
+    this.play(t === 0);
+  }
+
+  beginPlan(plan) {
+    const before = this.run.plan;
+    const title = /^name: *(.*)/m.exec(plan.text)?.[1] ?? plan.name;
+    try {
+      this.run.begin({ ...plan, title });
+    } catch (error) {
+      if (before) this.run.begin(before);
+      throw error;
+    } finally {
+      this.showSettings(this.run.plan.settings);
+      this.draw(true);
+    }
+  }
+
+  begin() {
+    this.guard(() => {
+      this.beginPlan({ ...this.run.plan, steps: [] });
+      this.play(true);
+    });
+  }
+
+  set(name, value) {
+    this.guard(() => {
+      const { plan, now } = this.run;
+      const settings = name === null ? {} : { ...plan.settings, [name]: value };
+      if (value === null) delete settings[name];
+      try {
+        this.beginPlan({ ...plan, settings });
+      } finally {
+        this.run.seek(now);
+        this.draw(true);
+      }
+    });
+  }
+
+  act(actor, word, parameters, after = 0) {
+    this.guard(() => {
+      this.run.inject(actor, word, parameters, after);
+      if (!this.playing) this.play(true);
+    });
+  }
+
+  endFaults() {
+    this.guard(() => endsOf(this.run.plan.steps).forEach((step) => this.run.inject(...step)));
+  }
+
+  // --- time
+
+  play(on) {
+    this.playing = on && !this.run.hasEnded;
+    this.last = performance.now();
+    this.debt = 0;
+    this.draw(true);
+  }
+
+  setSpeed(speed) {
+    this.speed = speed;
+    this.draw(true);
+  }
+
+  step(ms) {
+    this.playing = false;
+    if (ms < 0) this.run.seek(this.run.now + ms);
+    else this.run.step(ms);
+    this.draw(true);
+  }
+
+  toEvent() {
+    this.playing = false;
+    this.run.stepToEvent();
+    this.draw(true);
+  }
+
+  advance(now) {
+    const passed = Math.min(now - this.last, LEAP_MS);
+    this.last = now;
+    if (this.speed === Infinity) {
+      const end = performance.now() + BUDGET_MS;
+      while (performance.now() < end && this.run.step(100) > 0);
+    } else {
+      this.debt += passed * this.speed;
+      const whole = Math.floor(this.debt);
+      this.debt -= whole;
+      this.run.step(whole);
+    }
+    if (this.run.hasEnded) this.play(false);
+  }
+
+  frame(now) {
+    if (this.playing) this.advance(now);
+    if (this.playing) this.draw(false);
+    requestAnimationFrame((next) => this.frame(next));
+  }
+
+  // --- drawing
+
+  /** @param all also what changes slowly */
+  draw(all) {
+    if (!this.run.view) return;
+    const now = performance.now();
+    this.fast.forEach((draw) => draw(this.run));
+    this.drawVerdict(this.run, this.explained.data);
+    this.drawTransport(this.run);
+    if (all || now - (this.drawn ?? 0) >= SLOWLY_MS) {
+      this.drawn = now;
+      this.slow.forEach((draw) => draw(this.run));
+      this.drawPicture(this.run, this.playing);
+      this.explain();
+    }
+  }
+
+  /** Ask for the words about a trip, when there is something new to say. */
+  async explain() {
+    const { run } = this;
+    if (run.view.reason < 0 || this.explaining || (this.playing && run.now > LONG_RUN_MS)) return;
+    const isStanding = run.view.speed_mm_s === 0;
+    const key = [run.plan.name, run.plan.steps.length, JSON.stringify(run.plan.settings), run.trips, run.view.state, isStanding].join();
+    if (key === this.explained.key) return;
+    this.explaining = true;
+    try {
+      const html = await this.reports.make({ kind: "run", plan: run.plan, until: run.now });
+      this.explained = { key, data: dataOf(html) };
+    } catch {
+      this.explained = { key, data: null }; // the plain sentence stays
+    }
+    this.explaining = false;
+    this.drawVerdict(run, this.explained.data);
+  }
+
+  // --- links, reports, files
+
+  openLink() {
+    return this.guard(async () => {
+      const hash = location.hash.slice(1);
+      if (!hash) return this.load(DRIVE);
+      let link;
+      try {
+        link = fromLink(hash);
+        await this.load(link.scenario, link);
+      } catch (error) {
+        if (!this.run.plan) await this.load(DRIVE);
+        throw error;
+      }
+      return undefined;
+    });
+  }
+
+  copyLink() {
+    return this.guard(async () => {
+      const { plan, now } = this.run;
+      if (plan.isOwn) throw new Error("A scenario of your own is not in a link: hand its file on as well.");
+      const hash = toLink({ scenario: plan.name, settings: plan.settings, steps: plan.steps, t: now });
+      history.replaceState(null, "", `#${hash}`);
+      await navigator.clipboard?.writeText(location.href).catch(() => {});
+      say(byId("link"), "Link copied");
+      setTimeout(() => say(byId("link"), "Copy link"), 2000);
+    });
+  }
+
+  showReport() {
+    return this.guard(async () => {
+      this.play(false);
+      this.reports.show(await this.reports.make({ kind: "run", plan: this.run.plan, until: this.run.now }), this.run.plan.title);
+    });
+  }
+
+  open(file) {
+    return this.guard(async () => {
+      if (!file) return;
+      if (/\.ya?ml$/.test(file.name)) {
+        this.beginPlan({ name: file.name, text: await file.text(), settings: {}, steps: [], isOwn: true });
+        this.play(true);
+        return;
+      }
+      const bytes = new Uint8Array(await file.arrayBuffer());
+      const request = { kind: "log", name: file.name, bytes, settings: this.run.plan?.settings ?? {}, aiInterface: "" };
+      this.play(false);
+      this.reports.show(await this.reports.make(request, [bytes.buffer]), file.name);
+    });
+  }
+}
+
+/** The list of scenarios: a line for each, its file and its name. */
+async function fillScenarios() {
+  const select = byId("scenario");
+  select.append(new Option("Free drive", DRIVE));
+  const groups = new Map();
+  for (const line of (await (await fetch("scenarios/list.txt")).text()).split("\n").filter(Boolean)) {
+    const [file, name] = line.split("\t");
+    const [folder] = file.split("/");
+    if (!groups.has(folder)) {
+      const group = document.createElement("optgroup");
+      group.label = folder;
+      groups.set(folder, group);
+      select.append(group);
+    }
+    groups.get(folder).append(new Option(name, file));
+  }
+}
+
+async function start() {
+  let simulation;
+  try {
+    const response = await fetch("agv.wasm");
+    if (!response.ok) throw new Error(`agv.wasm: ${response.status}`);
+    simulation = await instantiate(await WebAssembly.compile(await response.arrayBuffer()));
+  } catch (error) {
+    byId("message").textContent = `The simulation cannot be loaded, because this browser refuses WebAssembly or agv.wasm is missing (${error.message}).`;
+    byId("message").hidden = false;
+    byId("headline").textContent = "There is no simulation.";
+    return;
+  }
+  const page = new Page(simulation);
+  page.build();
+  await fillScenarios();
+  await page.openLink();
+  requestAnimationFrame((now) => page.frame(now));
+  document.documentElement.dataset.ready = "yes";
+  globalThis.agv = page; // for the console
+}
+
+start();

@@ -1,0 +1,76 @@
+// reports.js: asks the worker for reports, and shows or saves them.
+
+import { byId } from "./dom.js";
+
+const MODULES = "report/report.js";
+const STYLES = ["report/timeline/timeline.css", "report/report.css"];
+
+const fetchText = async (path) => (await fetch(path)).text();
+
+/** A module with those that it imports before it, as one script: as host_sim puts them into a report. */
+async function scriptOf(path, seen = new Set()) {
+  if (seen.has(path)) return "";
+  seen.add(path);
+  const source = await fetchText(path);
+  let before = "";
+  for (const [, from] of source.matchAll(/^import [^\n]* from "(.*?)";/gm)) {
+    before += await scriptOf(new URL(from, new URL(path, location.href)).href, seen);
+  }
+  return before + source.replace(/^import [^\n]*/gm, "");
+}
+
+/** The data of a report. */
+export function dataOf(html) {
+  return JSON.parse(/id="data">(.*?)<\/script>/s.exec(html)[1]);
+}
+
+export class Reports {
+  constructor() {
+    this.waiting = new Map();
+    this.count = 0;
+    byId("report-save").addEventListener("click", () => this.save());
+  }
+
+  /** @return the report as HTML, without its styles and scripts @throws Error with a sentence */
+  async make(request, transfer = []) {
+    if (!this.worker) {
+      this.worker = new Worker("simulation/worker.js", { type: "module" });
+      this.worker.addEventListener("message", ({ data }) => {
+        const { resolve, reject } = this.waiting.get(data.id);
+        this.waiting.delete(data.id);
+        if (data.error) reject(new Error(data.error));
+        else resolve(data.html);
+      });
+    }
+    const id = ++this.count;
+    return new Promise((resolve, reject) => {
+      this.waiting.set(id, { resolve, reject });
+      this.worker.postMessage({ id, ...request }, transfer);
+    });
+  }
+
+  show(html, name) {
+    this.html = html;
+    this.name = name;
+    const frame = byId("report-frame");
+    frame.addEventListener("load", () => frame.contentWindow.postMessage(html, location.origin), { once: true });
+    frame.src = "report/index.html";
+    byId("report-dialog").showModal();
+  }
+
+  /** The report that is shown as one file, as host_sim writes it. */
+  async whole() {
+    const styles = (await Promise.all(STYLES.map(fetchText))).join("");
+    const script = await scriptOf(new URL(MODULES, location.href).href);
+    return this.html.replace("<style>\n\n</style>", () => `<style>\n${styles}\n</style>`)
+      .replace('<script type="module">\n\n</script>', () => `<script type="module">\n${script}\n</script>`);
+  }
+
+  async save() {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([await this.whole()], { type: "text/html" }));
+    link.download = `${this.name.replace(/\.\w+$/, "").replaceAll(/[^\w-]+/g, "-")}.html`;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+  }
+}
