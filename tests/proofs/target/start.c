@@ -23,4 +23,4 @@ __attribute__((section(".vectors"))) const struct {
     handler_t *memory_fault;
     handler_t *bus_fault;
     handler_t *usage_fault;
-} agv_target_vectors = {TOP_OF_MEMORY, _start, crashed, crashed, crashed, crashed, crashed};
+} agv_target_vectors = {TOP_OF_MEMORY, _start, report_crash, report_crash, report_crash, report_crash, report_crash};
