@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draw docs/web.png from the built page (preset wasm). Needs Chromium. usage: web-picture"""
+"""Draw docs/pictures/web.png from the built page (preset wasm). Needs Chromium. usage: web-picture"""
 import functools
 import http.server
 import pathlib
@@ -13,7 +13,7 @@ import browser  # noqa: E402
 import png  # noqa: E402
 
 PAGE = ROOT / "build/wasm/page"
-PICTURE = ROOT / "docs/web.png"
+PICTURE = ROOT / "docs/pictures/web.png"
 RUN = """(async () => {
   agv.play(false);
   agv.run.seek(12000);
