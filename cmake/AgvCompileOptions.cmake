@@ -12,7 +12,8 @@ target_compile_options(agv_options INTERFACE
   -Wcast-qual -Wcast-align -Wpointer-arith
   -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition
   -Wformat=2 -Wimplicit-fallthrough
-  -Walloca -Wnull-dereference
+  -Walloca
+  $<$<NOT:$<BOOL:${AGV_PROFILE}>>:-Wnull-dereference> # a profile makes it guess
   $<$<C_COMPILER_ID:GNU>:-Wlogical-op -Wduplicated-cond -Wduplicated-branches -Wtrampolines>
   $<$<C_COMPILER_ID:Clang>:-Wcomma -Wunreachable-code -Wconditional-uninitialized -Wextra-semi>
 )

@@ -142,12 +142,14 @@ static void add_steps(text_t *text, const atlas_case_t *pair) {
     }
 }
 
+static const char *name_of(const campaign_row_t *row) {
+    return (row != NULL) ? agv_fault_name(row->fault) : "nothing";
+}
+
 void atlas_scenario_write(text_t *text, const atlas_case_t *pair) {
-    text_add(text, "name: %s, %s, then %s after %" PRIu32 " ms\n", atlas_state_name(pair->state),
-             (pair->first != NULL) ? agv_fault_name(pair->first->fault) : "nothing",
-             (pair->second != NULL) ? agv_fault_name(pair->second->fault) : "nothing",
-             ATLAS_DISTANCE_MS[pair->distance]);
-    text_add(text, "shows: [%s]\n", agv_fault_name(((pair->first != NULL) ? pair->first : pair->second)->fault));
+    text_add(text, "name: %s, %s, then %s after %" PRIu32 " ms\n", atlas_state_name(pair->state), name_of(pair->first),
+             name_of(pair->second), ATLAS_DISTANCE_MS[pair->distance]);
+    text_add(text, "shows: [%s]\n", name_of((pair->first != NULL) ? pair->first : pair->second));
     text_add(text, "topology: %s\n", pair->gateway ? "gateway" : "shared");
     add_top(text, pair);
     add_config(text, pair);

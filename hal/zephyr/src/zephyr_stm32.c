@@ -49,6 +49,7 @@ static RAMECC_MonitorTypeDef *const monitors[] = {RAMECC1_Monitor1, RAMECC1_Moni
 enum { MONITORS = sizeof monitors / sizeof monitors[0] };
 
 static void write_once(const zephyr_chip_ram_t *region) {
+    /* NOLINTNEXTLINE(performance-no-int-to-ptr): an address of the chip */
     volatile uint64_t *const words = (volatile uint64_t *)region->start;
     for (size_t i = 0u; i < (region->size / sizeof *words); i++) {
         const uint64_t word = words[i];
@@ -137,6 +138,7 @@ bool zephyr_chip_expects_nmi(bool is_log_read, bool is_ram_new) {
 /* The counter goes down from its start, and resets the chip below 0x40; above the window it must not be reloaded. */
 void zephyr_chip_open_window(uintptr_t base, uint32_t opens_ms, uint32_t expires_ms) {
     enum { LAST = 0x3F };
+    /* NOLINTNEXTLINE(performance-no-int-to-ptr): an address of the chip */
     WWDG_TypeDef *const watchdog = (WWDG_TypeDef *)base;
     const uint32_t start = LL_WWDG_GetCounter(watchdog);
     LL_WWDG_SetWindow(watchdog, start - (((start - (uint32_t)LAST) * opens_ms) / expires_ms));
