@@ -1,5 +1,7 @@
 #include "atlas/atlas_judge.h"
 
+#include <stddef.h>
+
 #include "agv/state.h"
 
 /* What the wire and the vehicle may add: a frame of others on the way, a cycle of the VCU that looks at its gear box. */
@@ -50,4 +52,26 @@ atlas_weakness_t atlas_judge(const atlas_case_t *of, const atlas_outcome_t *pair
         return ATLAS_LATE_OUTPUT;
     }
     return is_late(pair->stop_us, first->stop_us, second->stop_us, STOP_TOLERANCE_US) ? ATLAS_LATE_STOP : ATLAS_SOUND;
+}
+
+const char *atlas_known_reason(const atlas_case_t *of, atlas_weakness_t weakness) {
+    static const char hangs[] = "a supervisor that hangs answers nobody";
+    static const struct {
+        agv_fault_t first;
+        agv_fault_t second;
+        atlas_weakness_t weakness;
+        const char *reason;
+    } known[] = {
+        {AGV_FAULT_STEP_OVERRUN, AGV_FAULT_FOREIGN_COMMAND_SENDER, ATLAS_HAZARD, hangs},
+        {AGV_FAULT_FOREIGN_COMMAND_SENDER, AGV_FAULT_STEP_OVERRUN, ATLAS_HAZARD, hangs},
+        {AGV_FAULT_MODE_FLAPPING, AGV_FAULT_AUTOPILOT_OFF_IGNORED, ATLAS_LATE_FRAME,
+         "the second fault hides the changes of the mode, and the last engagement has its grace time"},
+    };
+    for (size_t i = 0u; i < sizeof known / sizeof known[0]; i++) {
+        if ((of->first->fault == known[i].first) && (of->second->fault == known[i].second) &&
+            (weakness == known[i].weakness)) {
+            return known[i].reason;
+        }
+    }
+    return NULL;
 }

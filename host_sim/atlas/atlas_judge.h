@@ -29,4 +29,7 @@ const char *atlas_weakness_name(atlas_weakness_t weakness);
 atlas_weakness_t atlas_judge(const atlas_case_t *of, const atlas_outcome_t *pair, const atlas_outcome_t *first,
                              const atlas_outcome_t *second);
 
+/** Why a pair is weaker than its worse half, where that is known and cannot be otherwise; NULL: it is a finding. */
+const char *atlas_known_reason(const atlas_case_t *of, atlas_weakness_t weakness);
+
 #endif

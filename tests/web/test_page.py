@@ -263,7 +263,7 @@ class Page(unittest.TestCase):
 
     def test_bad_input_is_one_clear_sentence(self):
         self.show("#scenario=drive.yaml&t=5000&end=12")
-        self.assertEqual(self.run_script(MESSAGE), "This link was cut or changed: its end is not that of its beginning. "
+        self.assertEqual(self.run_script(MESSAGE), "This link is incomplete, or it was changed. "
                          "The run starts from the beginning instead.")
         self.assertTrue(self.run_script("agv.playing"))
         cases = (("agv.set('steering_command_timeout_ms', 7)", r"^steering_command_timeout_ms: 7 is not within \d+ to \d+ ms$"),

@@ -99,3 +99,11 @@ void test_a_case_that_did_not_begin_as_planned(void) {
     pair.ready = false;
     expect(ATLAS_NOT_READY);
 }
+
+void test_known_reasons(void) {
+    TEST_ASSERT_NULL(atlas_known_reason(&of, ATLAS_HAZARD));
+    of.first = campaign_row(AGV_FAULT_STEP_OVERRUN);
+    of.second = campaign_row(AGV_FAULT_FOREIGN_COMMAND_SENDER);
+    TEST_ASSERT_NOT_NULL(atlas_known_reason(&of, ATLAS_HAZARD));
+    TEST_ASSERT_NULL(atlas_known_reason(&of, ATLAS_NOT_LATCHED));
+}

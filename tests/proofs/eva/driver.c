@@ -139,6 +139,7 @@ static void sound_decisions(agv_core_t *core) {
     core->machine.startup_reported = any_bool();
     core->faults.summary.eps_fault = any_bool();
     core->faults.outdated = any_bool();
+    core->faults.transient = any_bool();
     core->faults.ai_loss_warns = any_bool();
     core->confirmation.park_sent = any_bool();
     core->confirmation.unconfirmed = any_bool();

@@ -35,7 +35,7 @@ function readStep(text) {
 /** @return what toLink() took @throws Error with a sentence */
 export function fromLink(link) {
   const [text, end] = link.split("&end=");
-  if (end !== checksum(text)) throw new Error("This link was cut or changed: its end is not that of its beginning. The run starts from the beginning instead.");
+  if (end !== checksum(text)) throw new Error("This link is incomplete, or it was changed. The run starts from the beginning instead.");
   const run = { scenario: "", settings: {}, steps: [], t: 0 };
   for (const part of text.split("&")) {
     const [name, ...rest] = part.split("=");
