@@ -6,12 +6,11 @@
 #include "agv/recorder.h"
 #include "agv/state.h"
 #include "atlas/atlas_scenario.h"
+#include "campaign/campaign_check.h"
 #include "common/report.h"
 #include "common/units.h"
 
-/* What is safe is written out here by hand, from the requirements. */
-enum { GEAR_P = 0x08, SIGNALS_BYTES = 7, STANDS_MM_S = 50 };
-static const uint8_t SAFE_SIGNALS[SIGNALS_BYTES] = {0x00, 0x00, 0x00, 0x00, 0x70, 0x00, 0x00};
+enum { STANDS_MM_S = 50 };
 
 void atlas_play_init(atlas_play_t *play) {
     memset(play, 0, sizeof *play);
@@ -30,26 +29,13 @@ static int32_t after(const atlas_play_t *play, uint64_t t_us) {
     return (int32_t)(t_us - play->first_us);
 }
 
-static bool is_safe_command(agv_message_t message, const hal_can_frame_t *frame) {
-    switch (message) {
-    case AGV_MSG_GEAR_COMMAND:
-        return frame->data[0] == GEAR_P;
-    case AGV_MSG_THROTTLE_COMMAND:
-        return frame->data[0] == 0u;
-    case AGV_MSG_TURN_SIGNAL_COMMAND:
-        return memcmp(frame->data, SAFE_SIGNALS, sizeof SAFE_SIGNALS) == 0;
-    default:
-        return false;
-    }
-}
-
 static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
     atlas_play_t *play = ctx;
     const bool own = (from == SCENARIO_FROM_SUPERVISOR) && (side == HAL_CAN_VEHICLE);
     const bool commands_safe = play->tripped || (play->outcome.state == (int)AGV_STATE_INIT);
 
     if (own && commands_safe && (t_us >= play->first_us) && (play->outcome.safe_us == ATLAS_NEVER) &&
-        is_safe_command(scenario_testbed_message(&play->testbed, frame->id), frame)) {
+        campaign_is_safe_command(scenario_testbed_message(&play->testbed, frame->id), frame)) {
         play->outcome.safe_us = after(play, t_us);
     }
 }

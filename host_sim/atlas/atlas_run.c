@@ -14,7 +14,7 @@
 #include "io/output.h"
 #include "ui/progress.h"
 
-enum { ROWS_MAX = 80, LOOK_FOR_SIGNALS_EVERY = 16, SHOWN_MAX = 20 };
+enum { LOOK_FOR_SIGNALS_EVERY = 16, SHOWN_MAX = 20 };
 
 /** A half that was played: it is the same for all pairs that contain it. */
 typedef struct {
@@ -25,8 +25,8 @@ typedef struct {
 typedef struct {
     const atlas_request_t *request;
     atlas_play_t play;
-    half_t firsts[2][ATLAS_STATES][ROWS_MAX];
-    half_t seconds[2][ATLAS_STATES][ATLAS_DISTANCES][ROWS_MAX];
+    half_t firsts[2][ATLAS_STATES][AGV_FAULT_COUNT]; /**< by topology, state and fault */
+    half_t seconds[2][ATLAS_STATES][ATLAS_DISTANCES][AGV_FAULT_COUNT];
     output_t results;
     uint32_t cases;
     uint32_t weak;
@@ -40,9 +40,9 @@ static bool takes_part(const atlas_request_t *request, uint32_t number, atlas_ca
 
 /** A half of a pair; played when it is met first. @return NULL: reported */
 static const atlas_outcome_t *half_of(atlas_t *atlas, const atlas_case_t *pair, bool second) {
-    const size_t row = (size_t)((second ? pair->second : pair->first) - CAMPAIGN_ROWS);
-    half_t *half = second ? &atlas->seconds[pair->gateway][pair->state][pair->distance][row]
-                          : &atlas->firsts[pair->gateway][pair->state][row];
+    const agv_fault_t fault = (second ? pair->second : pair->first)->fault;
+    half_t *half = second ? &atlas->seconds[pair->gateway][pair->state][pair->distance][fault]
+                          : &atlas->firsts[pair->gateway][pair->state][fault];
     if (!half->known) {
         const atlas_case_t alone = atlas_case_half(pair, second);
         if (!atlas_play(&atlas->play, &alone)) {
@@ -191,9 +191,8 @@ status_t atlas_run(const atlas_request_t *request) {
         return show_one(request->one);
     }
     atlas_t *atlas = calloc(1u, sizeof *atlas);
-    if ((atlas == NULL) || (CAMPAIGN_ROW_COUNT > (size_t)ROWS_MAX)) {
+    if (atlas == NULL) {
         (void)report("out of memory");
-        free(atlas);
         return STATUS_UNUSABLE;
     }
     atlas->request = request;

@@ -65,8 +65,7 @@ static agv_message_t message_of(const campaign_check_t *check, const hal_can_fra
     return scenario_testbed_message(check->testbed, frame->id);
 }
 
-/** A command that takes the drive away. (065h, which holds the steering, is not counted as one.) */
-static bool is_safe_command(agv_message_t message, const hal_can_frame_t *frame) {
+bool campaign_is_safe_command(agv_message_t message, const hal_can_frame_t *frame) {
     switch (message) {
     case AGV_MSG_GEAR_COMMAND:
         return frame->data[0] == GEAR_P;
@@ -98,7 +97,7 @@ static bool may_be_sent(campaign_check_t *check, agv_message_t message, const ha
     if (message == AGV_MSG_STEERING_COMMAND) {
         return !in_init && is_held_angle(check, frame);
     }
-    return is_safe_command(message, frame);
+    return campaign_is_safe_command(message, frame);
 }
 
 static void check_before(campaign_check_t *check, uint64_t t_us, agv_message_t message, const hal_can_frame_t *frame) {
@@ -111,7 +110,7 @@ static void check_before(campaign_check_t *check, uint64_t t_us, agv_message_t m
     }
     /* The AI computer of a campaign never commands P or autopilot off; throttle 0 until it sees that it is engaged. */
     const bool passed =
-        check->plan->gateway && ((message == AGV_MSG_THROTTLE_COMMAND) || !is_safe_command(message, frame));
+        check->plan->gateway && ((message == AGV_MSG_THROTTLE_COMMAND) || !campaign_is_safe_command(message, frame));
     if (!passed && (t_us > check->closed_us + IN_FLIGHT_US)) {
         is_broken(check, CAMPAIGN_FALSE_TRIP, t_us);
     }
@@ -133,7 +132,7 @@ static int32_t measured_ddeg(const campaign_check_t *check) {
  * With an engagement, throttle 0 of an AI computer that has not seen it yet is passed on: only after a trip it counts.
  */
 static bool is_reaction(const campaign_check_t *check, agv_message_t message, const hal_can_frame_t *frame) {
-    return is_safe_command(message, frame) && ((check->plan->engagement == NULL) || (check->reason >= 0));
+    return campaign_is_safe_command(message, frame) && ((check->plan->engagement == NULL) || (check->reason >= 0));
 }
 
 static void check_after(campaign_check_t *check, uint64_t t_us, agv_message_t message, const hal_can_frame_t *frame) {

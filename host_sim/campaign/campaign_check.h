@@ -65,6 +65,9 @@ typedef struct {
     size_t state_count;
 } campaign_check_t;
 
+/** A command that takes the drive away: gear P, throttle 0, autopilot off. 065h, which holds the steering, is none. */
+bool campaign_is_safe_command(agv_message_t message, const hal_can_frame_t *frame);
+
 void campaign_check_init(campaign_check_t *check, const campaign_plan_t *plan, const scenario_testbed_t *testbed);
 
 /** The callbacks for events and frames. */
