@@ -13,7 +13,7 @@ target_compile_options(agv_options INTERFACE
   -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition
   -Wformat=2 -Wimplicit-fallthrough
   -Walloca
-  $<$<NOT:$<BOOL:${AGV_PROFILE}>>:-Wnull-dereference> # a profile makes it guess
+  $<$<NOT:$<OR:$<BOOL:${AGV_PROFILE}>,$<STREQUAL:${AGV_INSTRUMENT},profile>>>:-Wnull-dereference> # a profile makes it guess
   $<$<C_COMPILER_ID:GNU>:-Wlogical-op -Wduplicated-cond -Wduplicated-branches -Wtrampolines>
   $<$<C_COMPILER_ID:Clang>:-Wcomma -Wunreachable-code -Wconditional-uninitialized -Wextra-semi>
 )

@@ -53,9 +53,10 @@ const option_t *options_at(const option_syntax_t *syntax, size_t index) {
 static bool refuse_unknown(const option_syntax_t *syntax, const char *argument, size_t length) {
     char meant[SUGGEST_SIZE];
     suggestion_t suggestion = suggest_begin(argument, length);
-    for (size_t i = 0u; options_at(syntax, i) != NULL; i++) {
-        const char *name = options_at(syntax, i)->name;
-        suggest_offer(&suggestion, name, strlen(name));
+    size_t next = 0u;
+    for (const option_t *option = options_at(syntax, next); option != NULL; option = options_at(syntax, next)) {
+        suggest_offer(&suggestion, option->name, strlen(option->name));
+        next++;
     }
     if (suggestion.word != NULL) {
         return report("unknown option '%s'%s", argument, suggest_text(&suggestion, meant));
