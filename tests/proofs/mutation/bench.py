@@ -175,7 +175,7 @@ def prepare(key, old, say):
     say("preparing: the build tree")
     call(["cmake", "--preset", "mutation"], cwd=ROOT)
     call(["cmake", "--build", str(TREE), "--target", "tests/unit/all", "tests/integration/all", "tests/ports/sim/all",
-          "tests/ports/template/all"])
+          "tests/ports/template/all", "tests/ports/stm32/all"])
     CORE.mkdir(exist_ok=True)
     for path in core_files():
         if not compile_file(path, CORE / f"{path.stem}.o"):
