@@ -7,7 +7,7 @@
 
 #include "agv/names.h"
 #include "agv/recorder.h"
-#include "common/units.h"
+#include "text/units.h"
 #include "traffic/signals.h"
 
 enum { LINE_SIZE = 1024, DATA_SIZE = 24 };

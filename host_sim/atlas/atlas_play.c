@@ -8,7 +8,7 @@
 #include "atlas/atlas_scenario.h"
 #include "campaign/campaign_check.h"
 #include "common/report.h"
-#include "common/units.h"
+#include "text/units.h"
 
 enum { STANDS_MM_S = 50 };
 

@@ -9,9 +9,9 @@
 #include <stdint.h>
 
 #include "atlas/atlas_case.h"
-#include "common/text.h"
 #include "hunt/hazard/hazard.h"
 #include "scenario/scenario_play.h"
+#include "text/text.h"
 
 /** It did not happen. */
 #define ATLAS_NEVER INT32_MAX

@@ -6,7 +6,7 @@
 #define HOST_SIM_ATLAS_SCENARIO_H
 
 #include "atlas/atlas_case.h"
-#include "common/text.h"
+#include "text/text.h"
 
 /** When the first fault comes, in ms. */
 uint32_t atlas_first_ms(atlas_state_t state);

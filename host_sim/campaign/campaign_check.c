@@ -5,7 +5,7 @@
 
 #include "agv/recorder.h"
 #include "agv/state.h"
-#include "common/units.h"
+#include "text/units.h"
 
 /* What is safe is written out here by hand, from the requirements: nothing of the supervisor's gate is used. */
 enum {

@@ -6,7 +6,7 @@
 #include "agv/names.h"
 #include "campaign/campaign_steps.h"
 #include "common/prng.h"
-#include "common/units.h"
+#include "text/units.h"
 
 enum {
 

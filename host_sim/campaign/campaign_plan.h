@@ -12,7 +12,7 @@
 #include <stdint.h>
 
 #include "campaign/campaign_rows.h"
-#include "common/text.h"
+#include "text/text.h"
 
 /** A run. */
 typedef struct {

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "agv/supervisor.h"
-#include "common/units.h"
+#include "text/units.h"
 
 enum { BITS_PER_BYTE = 8, CONFIRM_LEAD_MS = 2, CLOCKS_COMPARED_MS = 1000 };
 

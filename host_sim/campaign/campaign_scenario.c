@@ -4,7 +4,7 @@
 
 #include "agv/names.h"
 #include "agv/state.h"
-#include "common/units.h"
+#include "text/units.h"
 
 enum { READY_FROM_MS = 500, READY_TO_MS = 1499, ENGAGED_TO_MS = 1700, BEAT_MS = 250 };
 

@@ -10,7 +10,7 @@
 #include <stdint.h>
 
 #include "campaign/campaign_rows.h"
-#include "common/text.h"
+#include "text/text.h"
 
 #define CAMPAIGN_STEPS_MAX 8u
 #define CAMPAIGN_WORDS_SIZE 160u

@@ -6,7 +6,7 @@
 #include "agv/names.h"
 #include "campaign/campaign_result.h"
 #include "common/report.h"
-#include "common/units.h"
+#include "text/units.h"
 
 enum { TIME_SIZE = 24 };
 

@@ -6,7 +6,7 @@
 
 #include "agv/names.h"
 #include "common/report.h"
-#include "common/units.h"
+#include "text/units.h"
 
 bool campaign_why_init(campaign_why_t *why, const agv_config_t *config) {
     campaign_why_free(why);

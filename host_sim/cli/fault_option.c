@@ -4,7 +4,7 @@
 
 #include "agv/names.h"
 #include "common/report.h"
-#include "common/suggest.h"
+#include "text/suggest.h"
 
 enum { NAME_SIZE = 40 };
 

@@ -3,10 +3,10 @@
 #include <inttypes.h>
 #include <string.h>
 
-#include "common/duration.h"
 #include "common/report.h"
-#include "common/suggest.h"
-#include "common/words.h"
+#include "text/duration.h"
+#include "text/suggest.h"
+#include "text/words.h"
 
 /** Options of a command, at most. */
 #define OPTIONS_MAX 64u

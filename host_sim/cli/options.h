@@ -14,7 +14,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "common/duration.h"
+#include "text/duration.h"
 
 /**
  * Called for every occurrence of an option.
@@ -36,7 +36,7 @@ typedef struct {
     bool *flag;         /**< set to true */
     const char **text;  /**< any text but an empty one */
     uint64_t *number;   /**< decimal, `lowest` .. `highest` */
-    uint64_t *duration; /**< a time (common/duration.h), in `unit`, `lowest` .. `highest` */
+    uint64_t *duration; /**< a time (text/duration.h), in `unit`, `lowest` .. `highest` */
     duration_unit_t unit;
     int *word; /**< index of one of `words` */
     option_each_fn *each;

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "common/report.h"
-#include "common/words.h"
+#include "text/words.h"
 
 void random_options_init(random_options_t *options, option_t rows[RANDOM_OPTIONS], const char *parts) {
     *options = (random_options_t){.seed = OPTION_NOT_GIVEN};

@@ -6,12 +6,12 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "common/duration.h"
 #include "common/report.h"
-#include "common/suggest.h"
-#include "common/words.h"
 #include "config/config_text.h"
 #include "io/yaml_file.h"
+#include "text/duration.h"
+#include "text/suggest.h"
+#include "text/words.h"
 
 enum { HEX_DIGITS_MAX = 8, CLASS_WORD_TRIP = 0, CLASS_WORD_WARN = 1 };
 

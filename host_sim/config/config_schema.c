@@ -6,10 +6,10 @@
 #include "agv/config.h"
 #include "agv/faults.h"
 #include "agv/names.h"
-#include "common/words.h"
 #include "config/config_file.h"
 #include "config/config_text.h"
 #include "io/yaml_schema.h"
+#include "text/words.h"
 
 #define TIME "^[0-9]+(\\.[0-9]+)? ?(us|ms|s|min|h|d)$"
 

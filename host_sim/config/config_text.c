@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "common/words.h"
 #include "config/config_file.h"
+#include "text/words.h"
 
 bool config_is_id(const agv_setting_info_t *info) {
     return (strncmp(info->name, "id_", 3u) == 0 && (info->words == NULL)) ||

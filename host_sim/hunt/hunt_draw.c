@@ -5,7 +5,7 @@
 
 #include "agv/faults.h"
 #include "common/prng.h"
-#include "common/words.h"
+#include "text/words.h"
 
 enum { BEGIN_FIRST_MS = 530, BEGIN_MIN_MS = 900, BEGIN_MAX_MS = 4000, BEGIN_SOON_MS = 2200 };
 enum { RESET_MIN_MS = 500, RESET_MAX_MS = 3000 };

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "common/report.h"
-#include "common/units.h"
+#include "text/units.h"
 
 enum { PATH_SIZE = 4096, BITS = 64, AFTER_MS = 500 };
 _Static_assert((unsigned)AGV_SETTING_COUNT <= 64u * (unsigned)HUNT_SETTING_WORDS, "a setting has no bit");

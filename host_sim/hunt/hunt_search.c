@@ -6,9 +6,9 @@
 
 #include "common/interrupt.h"
 #include "common/prng.h"
-#include "common/units.h"
 #include "hunt/hunt.h"
 #include "hunt/hunt_state.h"
+#include "text/units.h"
 #include "ui/progress.h"
 
 enum { CORPUS_MAX = 256, RANDOM_PERCENT = 35, PERCENT = 100, MS_PER_MIN = 60000 };

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/words.h"
 #include "hunt/hunt_program.h"
+#include "text/words.h"
 #include "vehicle/vehicle.h"
 
 enum { STEPS_MAX = 64, STEP_SIZE = 200, DRIVE_MS = 520, ENGAGE_MS = 840, DECIMAL = 10, STRETCH = 20, ZERO_DEG = 90 };

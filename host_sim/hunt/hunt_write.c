@@ -2,9 +2,9 @@
 #include <inttypes.h>
 
 #include "agv/config.h"
-#include "common/words.h"
 #include "config/config_file.h"
 #include "hunt/hunt_program.h"
+#include "text/words.h"
 
 enum { ROLLS_MM_S2 = 1 };
 

@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "agv/checksum.h"
-#include "common/hex.h"
 #include "common/report.h"
+#include "text/hex.h"
 
 #define FILE_SIZE_MAX 1048576u
 #define FIRST_LINE "agv-store 1\n"

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "common/report.h"
-#include "common/suggest.h"
 #include "io/yaml_file.h"
+#include "text/suggest.h"
 
 enum { SHOWN_MAX = 40, LINE_SHOWN_MAX = 80 };
 

@@ -12,7 +12,7 @@
 #include <stdint.h>
 #include <yaml.h>
 
-#include "common/duration.h"
+#include "text/duration.h"
 
 #define YAML_READER_KEYS_MAX 40u
 
@@ -131,7 +131,7 @@ bool yaml_reader_hex(const yaml_reader_t *reader, const yaml_node_t *node, const
 bool yaml_reader_id(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t highest,
                     uint32_t *number);
 
-/** A time (common/duration.h), in @p unit; a number alone is that, too. */
+/** A time (text/duration.h), in @p unit; a number alone is that, too. */
 bool yaml_reader_time(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, duration_unit_t unit,
                       int64_t lowest, int64_t highest, int64_t *number);
 

@@ -3,10 +3,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "common/hex.h"
-#include "common/suggest.h"
-#include "common/words.h"
 #include "io/yaml_file.h"
+#include "text/hex.h"
+#include "text/suggest.h"
+#include "text/words.h"
 
 #define DECIMAL_SET "0123456789"
 #define HEX_SET DECIMAL_SET "abcdefABCDEF"

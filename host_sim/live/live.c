@@ -10,7 +10,6 @@
 
 #include "analysis/analysis.h"
 #include "common/interrupt.h"
-#include "common/units.h"
 #include "config/config_text.h"
 #include "hal_linux/linux_can.h"
 #include "hal_linux/linux_loop.h"
@@ -21,6 +20,7 @@
 #include "live/node.h"
 #include "logs/sent_log.h"
 #include "monitor/companion/monitor_companion.h"
+#include "text/units.h"
 #include "ui/summary.h"
 
 /** The files that are written. */

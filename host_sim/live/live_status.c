@@ -7,8 +7,8 @@
 #include <unistd.h>
 
 #include "agv/names.h"
-#include "common/units.h"
 #include "live/live_output.h"
+#include "text/units.h"
 
 enum { EVERY_MS = 200, TENTH_MS = 100, LINE_SIZE = 200, WIDTH = 80 };
 

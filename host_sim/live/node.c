@@ -5,8 +5,8 @@
 
 #include "agv/protocol.h"
 #include "common/report.h"
-#include "common/units.h"
 #include "hal_linux/linux_hal.h"
+#include "text/units.h"
 
 enum { ID_SETS = 3, IDS_MAX = (int)AGV_MSG_COUNT * ID_SETS + 1 };
 

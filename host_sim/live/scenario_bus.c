@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "common/report.h"
-#include "common/units.h"
 #include "hal_linux/linux_can.h"
 #include "hal_linux/linux_clock.h"
 #include "hal_linux/linux_loop.h"
@@ -14,6 +13,7 @@
 #include "live/vehicle_bus.h"
 #include "logs/candump_line.h"
 #include "scenario/scenario_player.h"
+#include "text/units.h"
 
 /* 128 times 11 recessive bits at 500 kbit/s: how long the recovery of a controller takes on an idle bus. */
 enum { RECOVERY_MS = 3, ERROR_DLC = 8 };

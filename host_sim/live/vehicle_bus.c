@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "common/report.h"
-#include "common/units.h"
+#include "text/units.h"
 
 enum { RECORDS_AT_ONCE = 1000 };
 

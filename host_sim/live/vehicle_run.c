@@ -6,12 +6,12 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "common/units.h"
 #include "hal_linux/linux_clock.h"
 #include "hal_linux/linux_loop.h"
 #include "live/typed_lines.h"
 #include "live/vehicle_bus.h"
 #include "monitor/companion/monitor_companion.h"
+#include "text/units.h"
 #include "ui/vehicle_show.h"
 
 enum { ENGAGE_MS = 1500, ENGAGE_AGAIN_MS = 500, THROTTLE_PERMILLE = 300, LINES_AT_ONCE = 16 };

@@ -3,8 +3,8 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "common/hex.h"
-#include "common/units.h"
+#include "text/hex.h"
+#include "text/units.h"
 
 /*
  * Every scan stops at the line feed after the line: it belongs to no class of characters below, so no scan needs a

@@ -3,9 +3,9 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "common/civil.h"
-#include "common/units.h"
 #include "logs/log_token.h"
+#include "text/civil.h"
+#include "text/units.h"
 
 enum { HEX = 16, DECIMAL = 10, ID_DIGITS = 3, LONG_ID_DIGITS = 8, DATA_MAX = 8, FD_DATA_MAX = 64, BYTE_MAX = 255 };
 enum { DATE_LENGTH = 10, TIME_LENGTH = 8, FIRST_LINES = 200, BACKWARD_MAX = 40 };

@@ -3,8 +3,8 @@
 #include <string.h>
 #include <strings.h>
 
-#include "common/hex.h"
-#include "common/units.h"
+#include "text/hex.h"
+#include "text/units.h"
 
 enum { DECIMAL = 10, SECONDS_DIGITS_MAX = 12, MICRO_DIGITS = 6, DECIMALS_MAX = 9 };
 

@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "common/civil.h"
-#include "common/units.h"
+#include "text/civil.h"
+#include "text/units.h"
 
 enum { HEX = 16, DECIMAL = 10, DATA_MAX = 8, FD_DATA_MAX = 64, BYTE_MAX = 255, CHANNEL_MAX = 255, DLC_MAX = 15 };
 enum { MONTHS = 12, MONTH_LENGTH = 3, NOON = 12, CONTROLLER_STATE_AT = 1 };

@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "common/report.h"
-#include "common/units.h"
 #include "monitor/monitor_internal.h"
+#include "text/units.h"
 
 void monitor_say(monitor_t *monitor, uint64_t t_us, monitor_level_t level, const char *who, const char *format, ...) {
     char text[MONITOR_TEXT_SIZE];

@@ -2,8 +2,8 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "common/units.h"
 #include "monitor/monitor_internal.h"
+#include "text/units.h"
 
 /** Changes of one message that are listed within a second: two senders that disagree would fill the log. */
 enum { LISTED_PER_S = 4, BITS_PER_BYTE = 8 };

@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "common/interrupt.h"
-#include "common/units.h"
+#include "text/units.h"
 
 static bool has_news;
 

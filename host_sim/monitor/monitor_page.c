@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "common/units.h"
+#include "text/units.h"
 
 enum { LEAST_WIDTH = 40, LEAST_HEIGHT = 8, LABEL = 12, ALARMS_MAX = 14, CELL = 64, S_PER_MIN = 60, MIN_PER_H = 60 };
 

@@ -3,8 +3,8 @@
 
 #include "agv/names.h"
 #include "common/message_facts.h"
-#include "common/units.h"
 #include "monitor/monitor_internal.h"
+#include "text/units.h"
 
 const char *monitor_sender(const monitor_t *monitor, const monitor_row_t *row) {
     const bool is_command = row->message < AGV_COMMAND_COUNT;

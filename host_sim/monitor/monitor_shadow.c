@@ -2,9 +2,9 @@
 
 #include <stdlib.h>
 
-#include "common/units.h"
 #include "hal_sim/sim_hal.h"
 #include "logs/error_frame.h"
+#include "text/units.h"
 
 /** A longer leap of time is no silence of the bus, but a program that stood still, or a log with a hole. */
 #define LEAP_MAX_US (10u * (uint64_t)US_PER_S)

@@ -8,8 +8,8 @@
 #include "agv/names.h"
 #include "common/missing.h"
 #include "common/report.h"
-#include "common/units.h"
 #include "monitor/monitor_internal.h"
+#include "text/units.h"
 
 /** For so long a status frame is waited for, unless its period is longer. */
 enum { WAIT_MS = 1000, PERIODS = 3, LOW_NIBBLE = 0x0F };

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "common/units.h"
 #include "monitor/monitor_page.h"
+#include "text/units.h"
 
 enum { CELL_SIZE = 32, NAMES_FROM_WIDTH = 100, MS_WITH_DECIMAL = 100, WIDE = 120, WIDER = 140 };
 

@@ -9,10 +9,10 @@
 
 #include "agv/faults.h"
 #include "agv/state.h"
-#include "common/hex.h"
 #include "common/report.h"
 #include "hal_sim/sim_store.h"
 #include "io/store_file.h"
+#include "text/hex.h"
 
 /* A dump of flash has some 100 KB; a whole RAM fits, too. */
 #define FILE_MAX 16777216u

@@ -7,10 +7,10 @@
 
 #include "agv/state.h"
 #include "common/interrupt.h"
-#include "common/units.h"
 #include "io/events.h"
 #include "io/output.h"
 #include "recorder/recorder_file.h"
+#include "text/units.h"
 #include "ui/timeline.h"
 #include "ui/why_text.h"
 

@@ -7,7 +7,6 @@
 
 #include "analysis/analysis.h"
 #include "common/interrupt.h"
-#include "common/units.h"
 #include "config/config_text.h"
 #include "hal_sim/sim_hal.h"
 #include "io/events.h"
@@ -19,6 +18,7 @@
 #include "replay/replay_heard.h"
 #include "replay/replay_text.h"
 #include "session/session.h"
+#include "text/units.h"
 #include "ui/timeline.h"
 
 enum { LOOK_FOR_SIGNALS_EVERY = 65536 };

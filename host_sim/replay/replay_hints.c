@@ -1,7 +1,7 @@
 #include "replay/replay_hints.h"
 
 #include "agv/recorder.h"
-#include "common/units.h"
+#include "text/units.h"
 #include "why/why_words.h"
 
 enum { SHOWN_IDS = 6, PAUSE_US = US_PER_S };

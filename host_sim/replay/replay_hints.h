@@ -6,8 +6,8 @@
 #define HOST_SIM_REPLAY_HINTS_H
 
 #include "agv/config.h"
-#include "common/text.h"
 #include "replay/replay_heard.h"
+#include "text/text.h"
 #include "why/why.h"
 
 /** Hints, in the order in which they are printed. */

@@ -6,8 +6,8 @@
 
 #include "agv/names.h"
 #include "agv/recorder.h"
-#include "common/units.h"
 #include "replay/replay_hints.h"
+#include "text/units.h"
 #include "ui/why_text.h"
 #include "why/why_words.h"
 

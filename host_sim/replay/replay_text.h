@@ -10,9 +10,9 @@
 
 #include "agv/config.h"
 #include "analysis/analysis.h"
-#include "common/text.h"
 #include "io/events.h"
 #include "replay/replay_heard.h"
+#include "text/text.h"
 #include "why/why.h"
 
 /** What is printed. */

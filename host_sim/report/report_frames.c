@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "common/units.h"
 #include "hal/can.h"
+#include "text/units.h"
 #include "traffic/signals.h"
 
 enum { NEAR_US = 60000, AFTER_US = 120000, ID_SIZE = 12, DATA_SIZE = 32, CYCLES_BEFORE = 5 };

@@ -9,11 +9,11 @@
 
 #include "agv/names.h"
 #include "common/json_build.h"
-#include "common/units.h"
 #include "report/page_parts.h"
 #include "report/report_frames.h"
 #include "report/report_settings.h"
 #include "report/sentence.h"
+#include "text/units.h"
 
 enum { TIME_TEXT_SIZE = 48 };
 

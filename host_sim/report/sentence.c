@@ -7,7 +7,7 @@
 
 #include "agv/names.h"
 #include "agv/recorder.h"
-#include "common/units.h"
+#include "text/units.h"
 #include "why/why_words.h"
 
 enum { TIME_SIZE = 32, LIMIT_SIZE = 64, STOOD_US = 20000, US_PER_TENTH = 100, EXACT_TENTHS = 100 };

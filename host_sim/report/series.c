@@ -6,8 +6,8 @@
 #include "agv/codec.h"
 #include "agv/recorder.h"
 #include "agv/state.h"
-#include "common/units.h"
 #include "report/series_internal.h"
+#include "text/units.h"
 
 series_t *series_new(const agv_config_t *config) {
     series_t *series = calloc(1u, sizeof *series);

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "common/words.h"
+#include "text/words.h"
 
 /** Note that an event was. @return whether there was room for it */
 static bool note_kind(scenario_events_t *events, scenario_anchor_kind_t kind, uint64_t at_ms) {

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "common/units.h"
+#include "text/units.h"
 
 enum { PASSIVE_TEC = 200, BITS_PER_BYTE = 8 };
 

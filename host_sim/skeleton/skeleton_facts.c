@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "agv/codec.h"
-#include "common/units.h"
 #include "logs/candump_log.h"
 #include "replay/replay.h"
+#include "text/units.h"
 #include "vehicle/vehicle.h"
 #include "why/why_words.h"
 

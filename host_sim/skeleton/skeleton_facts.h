@@ -7,8 +7,8 @@
 #define HOST_SIM_SKELETON_FACTS_H
 
 #include "agv/state.h"
-#include "common/text.h"
 #include "skeleton/skeleton.h"
+#include "text/text.h"
 #include "why/why.h"
 
 /** All times are since the first frame. */

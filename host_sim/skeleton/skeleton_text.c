@@ -3,10 +3,10 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "common/units.h"
 #include "config/config_file.h"
 #include "config/config_text.h"
 #include "skeleton/skeleton_plan.h"
+#include "text/units.h"
 #include "why/why_words.h"
 
 enum { NAME_SHOWN_MAX = 40, DRIVE_BEFORE_MS = 100, PERMILLE_PER_PCT = 10, DDEG_PER_DEG = 10 };

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "common/message_facts.h"
-#include "common/units.h"
+#include "text/units.h"
 
 enum { MEDIAN = 500, CYCLE_LOWEST_PCT = 60, CYCLE_HIGHEST_PCT = 160, PERCENT = 100 };
 enum { FIRST_BYTE = 0, REPEATS_PER_STEP = 2 };

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "common/units.h"
+#include "text/units.h"
 
 enum { MEDIAN = 500, CYCLES = 3, PERMILLE = 1000, OUTAGES_MAX = 10, ROUND_MS = 5, STATUS_ID_LOWEST = 0x7F1 };
 

@@ -3,10 +3,10 @@
 #include <string.h>
 #include <time.h>
 
-#include "common/units.h"
 #include "hal_linux/linux_can.h"
 #include "hal_linux/linux_loop.h"
 #include "survey/sources.h"
+#include "text/units.h"
 
 enum { RECEIVE_BUFFER_BYTES = 4 << 20, FRAMES_AT_ONCE = 512 };
 

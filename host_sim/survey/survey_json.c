@@ -2,8 +2,8 @@
 #include <stdlib.h>
 
 #include "common/json_build.h"
-#include "common/units.h"
 #include "survey/survey_result.h"
+#include "text/units.h"
 
 static json_t *load_json(const survey_result_t *result) {
     static const char *const sides[HAL_CAN_SIDES] = {"vehicle", "ai"};

@@ -2,8 +2,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "common/units.h"
 #include "survey/survey_result.h"
+#include "text/units.h"
 
 enum { MEDIAN = 500, P999 = 999, BITS_PER_WORD = 32, WORD_CHOICES = 256, LINE_SIZE = 160, UNKNOWN_SHOWN_MAX = 40 };
 

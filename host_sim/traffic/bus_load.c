@@ -2,7 +2,7 @@
 
 #include <stdbool.h>
 
-#include "common/units.h"
+#include "text/units.h"
 
 enum { BITS_PER_BYTE = 8, BITS_BETWEEN_STUFF_BITS = 4, PERCENT = 100 };
 

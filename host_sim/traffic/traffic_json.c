@@ -1,7 +1,7 @@
 #include <stdio.h>
 
 #include "common/json_build.h"
-#include "common/units.h"
+#include "text/units.h"
 #include "traffic/traffic.h"
 
 enum { MEDIAN = 500, P999 = 999, BITS_PER_WORD = 32, WORD_CHOICES = 256 };

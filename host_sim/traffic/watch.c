@@ -1,7 +1,7 @@
 #include "traffic/watch.h"
 
 #include "common/message_facts.h"
-#include "common/units.h"
+#include "text/units.h"
 
 bool watch_init(traffic_watch_t *watch, const agv_config_t *config, uint32_t message) {
     if (message >= (uint32_t)AGV_MSG_COUNT) {

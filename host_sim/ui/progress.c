@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "common/units.h"
+#include "text/units.h"
 
 enum { EVERY_MS = 200, WIDTH = 30, PERCENT = 100 };
 

@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "agv/names.h"
-#include "common/units.h"
+#include "text/units.h"
 
 void summary_print_time(const events_summary_t *summary, const char *name, const char *more) {
     (void)printf("%s%s: %" PRIu64 ".%03" PRIu64 " s\n", name, more, summary->t_ms / MS_PER_S, summary->t_ms % MS_PER_S);

@@ -10,7 +10,7 @@
 #include "agv/names.h"
 #include "common/crash.h"
 #include "common/missing.h"
-#include "common/units.h"
+#include "text/units.h"
 #include "traffic/signals.h"
 
 enum { MM_PER_CM = 10, WHAT_SIZE = 160 };

@@ -9,8 +9,8 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "common/units.h"
 #include "scenario/parse/scenario_parse.h"
+#include "text/units.h"
 
 enum { DRAW_EVERY_MS = 100, WHAT_SIZE = 320, STATUS_SIZE = 160, WIDTH = 80, ALARM_BITS = 8 };
 

@@ -6,7 +6,7 @@
 #include <time.h>
 
 #include "agv/names.h"
-#include "common/units.h"
+#include "text/units.h"
 #include "why/why_words.h"
 
 enum { COLUMNS = 100, TRIPS_SHOWN = 8, US_PER_10_MS = 10000 };

@@ -6,7 +6,7 @@
 #include "agv/codec.h"
 #include "agv/recorder.h"
 #include "agv/state.h"
-#include "common/units.h"
+#include "text/units.h"
 #include "why/why_internal.h"
 
 /** The states, in the order of their index. */

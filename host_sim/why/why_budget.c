@@ -2,7 +2,7 @@
 #include <stdlib.h>
 
 #include "agv/codec.h"
-#include "common/units.h"
+#include "text/units.h"
 #include "why/why_internal.h"
 
 enum { THROTTLE_DROP = 25, MM_S_PER_18_COUNTS = 5, SPEED_SLACK_MM_S = 500, SPEED_SHARE = 4, WHEEL_MAX_MM_S = 1000000 };

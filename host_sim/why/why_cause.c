@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "agv/codec.h"
-#include "common/units.h"
+#include "text/units.h"
 #include "why/why_internal.h"
 
 enum { RECENT_FRAMES = 6, ERROR_FRAME_US = 20000 };

@@ -1,6 +1,6 @@
 /* The engagement of the autopilot, as 363h reports it (SUP-9). */
 #include "agv/codec.h"
-#include "common/units.h"
+#include "text/units.h"
 #include "why/why_internal.h"
 
 void why_engage_start(why_t *why) {

@@ -4,7 +4,7 @@
 #include "agv/codec.h"
 #include "agv/recorder.h"
 #include "agv/state.h"
-#include "common/units.h"
+#include "text/units.h"
 #include "why/why_internal.h"
 
 /* The first frames of a healthy bus come within some cycles. */

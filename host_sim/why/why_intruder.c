@@ -1,6 +1,6 @@
 /* Frames of other senders, and commands that come too fast (SUP-6, TOP-3, P1). */
 #include "agv/codec.h"
-#include "common/units.h"
+#include "text/units.h"
 #include "why/why_internal.h"
 
 void why_intruder_start(why_t *why) {

@@ -5,7 +5,7 @@
 #include "agv/recorder.h"
 #include "common/json_build.h"
 #include "common/missing.h"
-#include "common/units.h"
+#include "text/units.h"
 #include "why/why.h"
 
 enum { ID_SIZE = 12, DATA_SIZE = 17 };

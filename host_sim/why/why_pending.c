@@ -3,7 +3,7 @@
 
 #include "agv/names.h"
 #include "agv/state.h"
-#include "common/units.h"
+#include "text/units.h"
 #include "why/why_internal.h"
 #include "why/why_words.h"
 

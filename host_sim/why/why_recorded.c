@@ -3,7 +3,7 @@
  * times follow from the limits.
  */
 #include "agv/codec.h"
-#include "common/units.h"
+#include "text/units.h"
 #include "why/why_internal.h"
 
 static void before(why_trip_t *trip, uint64_t lasted_us) {

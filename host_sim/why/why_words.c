@@ -6,7 +6,7 @@
 #include "agv/codec.h"
 #include "agv/names.h"
 #include "agv/recorder.h"
-#include "common/units.h"
+#include "text/units.h"
 #include "why/why_internal.h"
 
 enum { DDEG_PER_DEG = 10 };

@@ -5,7 +5,7 @@
 #ifndef HOST_SIM_WHY_WORDS_H
 #define HOST_SIM_WHY_WORDS_H
 
-#include "common/text.h"
+#include "text/text.h"
 #include "why/why.h"
 
 /** Add the cause of a trip: "065h steering_command was silent: last at 61.984 s, deadline 125 ms, next at 63.002 s". */

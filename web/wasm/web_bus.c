@@ -9,7 +9,7 @@
 #include "agv/codec.h"
 #include "common/json_build.h"
 #include "common/message_facts.h"
-#include "common/units.h"
+#include "text/units.h"
 #include "traffic/bus_load.h"
 #include "traffic/signals.h"
 #include "web_run.h"

@@ -7,13 +7,13 @@
 #include <string.h>
 
 #include "common/report.h"
-#include "common/units.h"
 #include "config/config_file.h"
 #include "io/events.h"
 #include "io/yaml_file.h"
 #include "memory_output.h"
 #include "scenario/parse/scenario_parse.h"
 #include "scenario/run/scenario_analysis.h"
+#include "text/units.h"
 #include "web_run.h"
 
 enum { SETTINGS_NOT_GIVEN = -1, NAME_SIZE = 120 };

@@ -8,8 +8,8 @@
 #include "campaign/soak/soak_internal.h"
 #include "common/interrupt.h"
 #include "common/prng.h"
-#include "common/units.h"
 #include "scenario/scenario_play.h"
+#include "text/units.h"
 
 /* A disturbance comes when the one before is over and forgotten: counts in a row begin anew after a good frame. */
 enum { QUIET_MIN_MS = 500, QUIET_MAX_MS = 3000, READY_MS = 2000 };

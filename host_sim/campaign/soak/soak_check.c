@@ -7,7 +7,7 @@
 #include "agv/recorder.h"
 #include "agv/state.h"
 #include "campaign/soak/soak_internal.h"
-#include "common/units.h"
+#include "text/units.h"
 
 /* A status frame waits for others; a late step of 20 ms is one of the disturbances. */
 enum { STATUS_LATE_MS = 30, STATUS_AGAIN_MS = 4, WAITING_MAX = 8 };

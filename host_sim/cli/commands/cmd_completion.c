@@ -6,8 +6,8 @@
 
 #include "cli/commands/commands.h"
 #include "cli/options.h"
-#include "common/suggest.h"
-#include "common/words.h"
+#include "text/suggest.h"
+#include "text/words.h"
 
 #define SHELLS "bash|zsh|fish"
 

@@ -13,7 +13,6 @@
 #include "cli/commands/skeleton_options.h"
 #include "cli/options.h"
 #include "common/interrupt.h"
-#include "common/units.h"
 #include "config/config_options.h"
 #include "hal_linux/linux_can.h"
 #include "io/events.h"
@@ -25,6 +24,7 @@
 #include "scenario/parse/scenario_schema.h"
 #include "scenario/run/scenario_analysis.h"
 #include "scenario/run/scenario_run.h"
+#include "text/units.h"
 
 enum { FILES_MAX = 1000, FIXED_FILES = 5, DEFAULT_TOLERANCE_MS = 50, TOLERANCE_MAX_MS = 1000 };
 

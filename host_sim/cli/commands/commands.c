@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "cli/exit_status.h"
-#include "common/suggest.h"
+#include "text/suggest.h"
 
 enum { WORDS_SIZE = 256 };
 

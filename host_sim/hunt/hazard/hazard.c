@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "common/units.h"
+#include "text/units.h"
 
 enum { CENTRE_DDEG = 9000 };
 

@@ -10,10 +10,10 @@
 
 #include "common/interrupt.h"
 #include "common/report.h"
-#include "common/units.h"
 #include "monitor/companion/monitor_companion_internal.h"
 #include "monitor/inputs/monitor_can.h"
 #include "monitor/monitor_ui.h"
+#include "text/units.h"
 
 enum { MESSAGES_AT_ONCE = 256, LINE_SIZE = 400 };
 

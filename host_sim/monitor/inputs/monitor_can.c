@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "common/report.h"
-#include "common/units.h"
+#include "text/units.h"
 
 /** Frames that are passed on at once; the rest with the next call, so that keys are answered in a flood. */
 enum { FRAMES_AT_ONCE = 4000, AGAIN_MS = 200, RECEIVE_SIZE = 4 << 20 };

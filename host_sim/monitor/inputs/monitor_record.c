@@ -8,8 +8,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "common/units.h"
 #include "logs/candump_line.h"
+#include "text/units.h"
 
 enum { NO_FILE = -1, MODE = 0666 };
 

@@ -8,13 +8,13 @@
 #include <unistd.h>
 
 #include "common/interrupt.h"
-#include "common/units.h"
 #include "monitor/inputs/monitor_can.h"
 #include "monitor/inputs/monitor_file.h"
 #include "monitor/inputs/monitor_record.h"
 #include "monitor/monitor_lines.h"
 #include "monitor/monitor_screen.h"
 #include "monitor/monitor_ui.h"
+#include "text/units.h"
 
 #define SPEED_MAX 1024.0
 #define SPEED_MIN (1.0 / 64.0)

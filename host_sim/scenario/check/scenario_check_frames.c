@@ -2,8 +2,8 @@
 #include <stdio.h>
 
 #include "agv/names.h"
-#include "common/units.h"
 #include "scenario/check/scenario_check.h"
+#include "text/units.h"
 
 enum { FRAME_TEXT_SIZE = 80 };
 

@@ -4,11 +4,11 @@
 
 #include "agv/names.h"
 #include "common/report.h"
-#include "common/suggest.h"
 #include "config/config_file.h"
 #include "io/yaml_file.h"
 #include "scenario/parse/scenario_parse.h"
 #include "scenario/parse/scenario_requirements.h"
+#include "text/suggest.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 /* The first identifier of a vehicle that has those of the configuration. */

@@ -5,11 +5,11 @@
  */
 #include <string.h>
 
-#include "common/suggest.h"
 #include "io/yaml_file.h"
 #include "scenario/parse/scenario_parse.h"
 #include "scenario/parse/scenario_parse_step_keys.h"
 #include "scenario/scenario_actions.h"
+#include "text/suggest.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define BITS_OF_BYTE 8u

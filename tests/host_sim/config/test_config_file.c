@@ -1,6 +1,6 @@
 /* The configuration as a YAML file: what it may say, and what is refused with its line. */
-#include "common/words.h"
 #include "config/config_file.h"
+#include "text/words.h"
 
 #include <stdio.h>
 #include <string.h>

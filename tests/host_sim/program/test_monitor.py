@@ -131,7 +131,7 @@ class Screen(hostsim.Case):
 class Picture(hostsim.Case):
     def test_the_picture_of_the_page_is_what_the_program_shows(self):
         made = self.folder / "made.svg"
-        subprocess.run([ROOT / "scripts/tools/terminal-picture.py", "100x32", "END", made, hostsim.PROGRAM, "monitor", "--log",
+        subprocess.run([ROOT / "scripts/tools/pictures/terminal-picture.py", "100x32", "END", made, hostsim.PROGRAM, "monitor", "--log",
                         EXAMPLE], check=True, timeout=60)
         self.assertEqual(made.read_text(encoding="utf-8"), (ROOT / "docs/pictures/monitor.svg").read_text(encoding="utf-8"))
 

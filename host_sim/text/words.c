@@ -1,8 +1,8 @@
-#include "common/words.h"
+#include "text/words.h"
 
 #include <string.h>
 
-#include "common/hex.h"
+#include "text/hex.h"
 
 enum { DECIMAL = 10, HEX_DIGIT_BITS = 4, HEX_DIGITS_MAX = 16 };
 

@@ -10,7 +10,7 @@ from test_replay import AI, EPS, VCU, edit_payload, raise_remote_signal_lost, st
 
 S = 1000000
 COLUMNS = 100
-SCENARIOS = pathlib.Path(__file__).resolve().parents[3] / "host_sim" / "scenarios"
+SCENARIOS = pathlib.Path(__file__).resolve().parents[4] / "host_sim" / "scenarios"
 TRIP_KEYS = {"t_ms", "reason", "kind", "message", "id", "cause_ms", "last_good_ms", "limit", "unit", "evidence",
              "first_safe_ms", "confirmed_ms", "stopped_ms", "from_recording"}
 

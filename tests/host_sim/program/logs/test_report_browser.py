@@ -12,7 +12,7 @@ import browser
 import hostsim
 import traffic
 
-ROOT = pathlib.Path(__file__).resolve().parents[3]
+ROOT = pathlib.Path(__file__).resolve().parents[4]
 EXAMPLE = ROOT / "host_sim/examples/ai-stops.log"
 SCENARIOS = ROOT / "host_sim/scenarios"
 SIZES = ((1440, False), (1440, True), (390, False), (390, True), (768, False))

@@ -1,4 +1,4 @@
-#include "common/civil.h"
+#include "text/civil.h"
 
 enum { YEAR_MIN = 1970, YEAR_MAX = 9999, MARCH = 3, MONTHS = 12, HOURS = 24, SIXTY = 60 };
 enum { DAYS_PER_YEAR = 365, DAYS_PER_5_MONTHS = 153, DAYS_TO_1970 = 719468, LEAP = 4, CENTURY = 100, ERA = 400 };

@@ -1,4 +1,4 @@
-#include "common/duration.h"
+#include "text/duration.h"
 
 #include <inttypes.h>
 #include <stdbool.h>

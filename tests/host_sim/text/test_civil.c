@@ -1,5 +1,5 @@
 /* Dates as seconds since 1970; the expected values are those of `date -u -d '...' +%s`. */
-#include "common/civil.h"
+#include "text/civil.h"
 
 #include "unity.h"
 

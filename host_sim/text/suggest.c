@@ -1,11 +1,11 @@
-#include "common/suggest.h"
+#include "text/suggest.h"
 
 #include <ctype.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "common/words.h"
+#include "text/words.h"
 
 enum { LENGTH_MAX = 48, PREFIX_MIN = 3, LETTERS_OF_A_MISTAKE = 4 };
 

@@ -11,7 +11,7 @@ import unittest
 import hostsim
 import traffic
 
-ROOT = pathlib.Path(__file__).resolve().parents[3]
+ROOT = pathlib.Path(__file__).resolve().parents[4]
 EXAMPLE = ROOT / "host_sim/examples/ai-stops.log"
 SILENCE = ROOT / "host_sim/scenarios/motion/steering_command_timeout.yaml"
 ENGAGED = traffic.log(traffic.frames(3000))

@@ -7,7 +7,7 @@ import sys
 import threading
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests/host_sim/program"))
 import browser  # noqa: E402
 import png  # noqa: E402

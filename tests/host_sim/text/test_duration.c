@@ -1,5 +1,5 @@
 /* Times as people write them. */
-#include "common/duration.h"
+#include "text/duration.h"
 
 #include <stddef.h>
 

@@ -1,4 +1,4 @@
-#include "common/text.h"
+#include "text/text.h"
 
 #include <stdarg.h>
 #include <stdio.h>

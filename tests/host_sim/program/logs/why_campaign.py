@@ -1,6 +1,6 @@
 """Does `--why` name the fault that was injected? Reads what `host_sim campaign --why FILE` writes.
 
-    /usr/bin/python3 tests/host_sim/program/why_campaign.py FILE...
+    /usr/bin/python3 tests/host_sim/program/logs/why_campaign.py FILE...
 
 The table below is written by hand from the requirements; nothing of the program's own table is used.
 """

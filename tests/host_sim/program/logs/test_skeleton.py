@@ -7,7 +7,7 @@ import hostsim
 import traffic
 from test_replay import AI, EPS, VCU, edit_payload, stop
 
-EXAMPLES = pathlib.Path(__file__).resolve().parents[3] / "host_sim" / "examples"
+EXAMPLES = pathlib.Path(__file__).resolve().parents[4] / "host_sim" / "examples"
 
 
 def byte(index, value):

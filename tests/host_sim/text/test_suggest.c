@@ -1,5 +1,5 @@
 /* "did you mean". */
-#include "common/suggest.h"
+#include "text/suggest.h"
 
 #include "unity.h"
 

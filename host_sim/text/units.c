@@ -1,4 +1,4 @@
-#include "common/units.h"
+#include "text/units.h"
 
 #include <time.h>
 

@@ -1,4 +1,4 @@
-#include "common/words.h"
+#include "text/words.h"
 
 #include "unity.h"
 

@@ -85,7 +85,7 @@ def compare(board, table, pins, source):
 def main():
     parser = argparse.ArgumentParser(description="pins of docs/wiring.md: compare with the overlays, draw")
     parser.add_argument("--check", action="store_true")
-    parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[2])
+    parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[3])
     options = parser.parse_args()
     root, problems, compared, with_zephyr = options.root, [], 0, 0
     zephyr = os.environ.get("ZEPHYR_BASE")
@@ -108,7 +108,7 @@ def main():
         path = root / "docs/pictures" / name
         if not path.exists() or path.read_text(encoding="utf-8") != svg:
             if options.check:
-                problems.append(f"docs/pictures/{name} is out of date: run scripts/tools/wiring.py")
+                problems.append(f"docs/pictures/{name} is out of date: run scripts/tools/pictures/wiring.py")
             else:
                 path.write_text(svg, encoding="utf-8")
     for problem in problems:

@@ -136,6 +136,6 @@ class Drawing:
     def svg(self):
         head = (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width} {self.height}" '
                 f"font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\" role=\"img\" aria-label=\"{html.escape(self.title)}\">\n"
-                f"  <!-- made by scripts/tools/wiring.py -->\n  <style>{STYLE}\n  </style>\n"
+                f"  <!-- made by scripts/tools/pictures/wiring.py -->\n  <style>{STYLE}\n  </style>\n"
                 f'  <rect width="{self.width}" height="{self.height}" class="back"/>\n')
         return head + "\n".join(self.parts) + "\n</svg>\n"

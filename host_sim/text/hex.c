@@ -1,4 +1,4 @@
-#include "common/hex.h"
+#include "text/hex.h"
 
 const char HEX_DIGITS[] = "0123456789ABCDEF";
 
