@@ -3,7 +3,7 @@
 
 #include "hunt/hazard/hazard.h"
 
-enum { SIGNALS_BYTES = 7, IN_FLIGHT_MS = 12, GONE_MS = 700, PENDING_MS = 50, PRESS_SEEN_MS = 100 };
+enum { SIGNALS_BYTES = 7, IN_FLIGHT_MS = 12, GONE_MS = 700, RESET_GONE_MS = 200, PENDING_MS = 50, PRESS_SEEN_MS = 100 };
 enum { CONFIRM_MARGIN_MS = 300, CLEARED_MS = 5000, STALE_MARGIN_MS = 100 };
 enum { SPEED_SLOT_MS = 100, SLOWER_MM_S = 50, MOVING_MM_S = 300, STANDS_MM_S = 100, FRESH_MS = 100, MARGIN_MS = 1500 };
 enum { ALARMS_BYTE = 4, FLAGS_BYTE = 6, PRESS_MARGIN_MS = 20 };
@@ -108,11 +108,12 @@ void hazard_safe_reported(hazard_t *hazard, const uint8_t data[AGV_DLC]) {
     }
 }
 
-/** No safe command for a while, though the controller could send: they have ended. */
+/** No safe command for a while, though the controller could send: they have ended. After a reset the next trip may come soon. */
 static bool has_ended(hazard_t *hazard) {
+    const uint32_t gone_ms = hazard_reset_was_asked(hazard) ? (uint32_t)RESET_GONE_MS : (uint32_t)GONE_MS;
     scenario_controller_t controller;
 
-    if (!hazard->closed || hazard_is_safe_now(hazard, GONE_MS)) {
+    if (!hazard->closed || hazard_is_safe_now(hazard, gone_ms)) {
         return false;
     }
     scenario_testbed_controller(hazard->testbed, HAL_CAN_VEHICLE, &controller);

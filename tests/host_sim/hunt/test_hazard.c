@@ -19,6 +19,7 @@ typedef struct {
     uint32_t open_ms;     /**< the output opens, and stays open */
     uint32_t safe_ms;     /**< safe commands, from then on */
     uint32_t safe_end_ms; /**< until then */
+    uint32_t again_ms;    /**< and again from then on */
     bool holds;           /**< 065h beside them */
     int32_t hold_ddeg;    /**< more than the real angle at safe_ms */
     uint32_t hold_ms;     /**< 065h begins; NEVER: with the others */
@@ -105,7 +106,8 @@ static void act(void *ctx, uint64_t now_ms) {
     const uint32_t t_ms = (uint32_t)now_ms;
     const uint8_t throttle[AGV_DLC] = {125};
     const bool is_safe = (stub->safe_ms != NEVER) && (t_ms >= stub->safe_ms) &&
-                         ((stub->safe_end_ms == NEVER) || (t_ms < stub->safe_end_ms));
+                         ((stub->safe_end_ms == NEVER) || (t_ms < stub->safe_end_ms) ||
+                          ((stub->again_ms != NEVER) && (t_ms >= stub->again_ms)));
 
     (void)ctx;
     hal_safety_output_set(scenario_testbed_port(&testbed),
@@ -348,6 +350,22 @@ void test_h4_an_unconfirmed_safe_state(void) {
     expect_hazard(HAZARD_UNCONFIRMED, "gear P is not confirmed", &stays, gear);
     expect_hazard(HAZARD_UNCONFIRMED, "gear P is not confirmed", &stays, now_and_then);
     expect_none(&opens, gear);
+}
+
+/** A reset by the operator, and the next trip soon after it: each trip has its own time to be confirmed. */
+void test_h4_a_trip_soon_after_a_reset_is_a_new_one(void) {
+    const char *const twice = "  - {at_ms: 2900, vcu: set, field: gear, value: 01h, frames: 25}\n"
+                              "%s"
+                              "  - {at_ms: 6200, vcu: set, field: gear, value: 01h, frames: 25}\n";
+    const char *const reset =
+        "  - {at_ms: 4500, operator: press, button: 1}\n  - {at_ms: 5900, operator: release, button: 1}\n";
+    const stub_t trips_again = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .again_ms = 6300};
+    char steps[512];
+
+    (void)snprintf(steps, sizeof steps, twice, reset);
+    expect_none(&trips_again, steps);
+    (void)snprintf(steps, sizeof steps, twice, "");
+    expect_hazard(HAZARD_UNCONFIRMED, "gear P is not confirmed", &trips_again, steps);
 }
 
 void test_h5_a_reset(void) {
