@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 """What a board can do for the supervisor, from the devicetree and the configuration of a build.
 
-usage: zephyr-board.py check BUILD      refuse mistakes, one line each (the build of the firmware does this)
+usage: zephyr-board.py settings FILE|CONFIG_AGV_NAME=VALUE...     refuse a value that its Kconfig symbol cannot have; the last
+                                        one of a symbol counts (the build of the firmware does this, before Zephyr reads them)
+       zephyr-board.py check BUILD      refuse mistakes, one line each (the build of the firmware does this)
        zephyr-board.py header BUILD     the facts as a C header (the build of the firmware does this)
        zephyr-board.py table [--write] BUILD...     the facts as a table; --write puts it into docs/firmware.md
 
@@ -41,6 +43,9 @@ CHIPS = {
     "s32k3": ("low-voltage reset, always on", "flash and RAM: ECC, not used"),
 }
 
+KCONFIG_FILES = ("firmware/zephyr/Kconfig", "firmware/zephyr/Kconfig.settings", "firmware/zephyr/Kconfig.watchdog", "hal/zephyr/Kconfig")
+NUMBERS = {"int": "decimal number", "hex": "hexadecimal number (0x...)"}
+
 
 class Refused(Exception):
     """A mistake of the user, in one line."""
@@ -70,6 +75,52 @@ class Build:
     def alias(self, name):
         nodes = [node for node in self.devicetree.nodes if name in node.aliases]
         return nodes[0] if nodes else None
+
+
+def symbols():
+    """Type and range of each symbol of the application."""
+    root = pathlib.Path(__file__).resolve().parents[2]
+    known, name = {}, None
+    for file in KCONFIG_FILES:
+        for line in (root / file).read_text(encoding="utf-8").splitlines():
+            if found := re.match(r"(?:menu)?config (AGV_\w+)", line):
+                name = found[1]
+                known[name] = {"type": "bool", "range": None}
+            elif found := re.match(r"\t(int|hex)\b", line):
+                known[name]["type"] = found[1]
+            elif found := re.match(r"\trange (\w+) (\w+)$", line):
+                known[name]["range"] = found.groups()
+    return known
+
+
+def requested(sources):
+    """(symbol, value, where it is written) of each symbol of the application: the last one counts, as for Zephyr."""
+    last = {}
+    for source in sources:
+        is_value = source.startswith("CONFIG_AGV_")
+        lines = [source] if is_value else pathlib.Path(source).read_text(encoding="utf-8").splitlines()
+        for number, line in enumerate(lines, 1):
+            if found := re.match(r"\s*CONFIG_(AGV_\w+)=(.*?)\s*$", line):
+                last[found[1]] = (found[2], "" if is_value else f"{source}:{number}: ")
+    return [(name, *rest) for name, rest in last.items()]
+
+
+def check_settings(sources):
+    known = symbols()
+    for name, value, where in requested(sources):
+        if name not in known:
+            raise Refused(f"{where}CONFIG_{name}: there is no such setting")
+        kind, limits = known[name]["type"], known[name]["range"]
+        if kind == "bool":
+            if value not in ("y", "n"):
+                raise Refused(f"{where}CONFIG_{name}={value}: it must be y or n")
+            continue
+        wanted = f"it must be {limits[0]} to {limits[1]}"
+        if not re.fullmatch(r"0[xX][0-9a-fA-F]+" if kind == "hex" else r"-?[0-9]+", value):
+            raise Refused(f"{where}CONFIG_{name}={value} is no {NUMBERS[kind]}: {wanted}")
+        base = 16 if kind == "hex" else 10
+        if not int(limits[0], base) <= int(value, base) <= int(limits[1], base):
+            raise Refused(f"{where}CONFIG_{name}={value} is out of range: {wanted}")
 
 
 def zephyr_base(folder):
@@ -321,13 +372,16 @@ def write_table(text):
 
 def main():
     parser = argparse.ArgumentParser(description="what a board can do for the supervisor")
-    parser.add_argument("what", choices=("check", "header", "table"))
+    parser.add_argument("what", choices=("settings", "check", "header", "table"))
     parser.add_argument("--write", action="store_true", help="with table: into docs/firmware.md")
     parser.add_argument("--zephyr-base", type=pathlib.Path, help="folder of Zephyr; without it that of the build")
-    parser.add_argument("builds", nargs="+", type=pathlib.Path)
+    parser.add_argument("sources", nargs="+", help="build folders; with settings: files and values")
     arguments = parser.parse_args()
     try:
-        builds = [Build(folder, arguments.zephyr_base) for folder in arguments.builds]
+        if arguments.what == "settings":
+            check_settings(arguments.sources)
+            return
+        builds = [Build(pathlib.Path(folder), arguments.zephyr_base) for folder in arguments.sources]
         if arguments.what == "check":
             for build in builds:
                 check(build)
