@@ -13,18 +13,21 @@ yet" needs neither.
 
 Prints row -> tests. Fails on a row without a test, a level of evidence that no test has, a tag that names no row or stands
 above no test, a scenario without a tag, a C test that its folder's CMakeLists.txt does not build, and a proof without a tag.
+The pages: docs/requirements.md (the tests of each row) and docs/evidence.md (evidence.py).
 """
 import argparse
 import pathlib
 import re
 import sys
 
+import evidence
 import tables
 
 FAMILIES = ("SUP", "FSM", "TOP", "TIM", "INT", "LED", "HW")
 NOT_BUILT = "not built yet"
 BEGIN, END = "<!-- traceability: made by scripts/tools/traceability.py --markdown -->", "<!-- end of traceability -->"
-LEVELS = "<!-- levels of evidence: made by scripts/tools/traceability.py --markdown -->"
+BY_ROW = "<!-- evidence by row: made by scripts/tools/traceability.py --markdown -->"
+CLAIMS = "<!-- claims: command and figure made by scripts/tools/traceability.py --markdown, the other columns by hand -->"
 CODE = ("firmware/include/agv", "firmware/src", "hal/include/hal", "firmware/zephyr/src")
 PROOF_TAG = re.compile(r"^# Shows: (?P<rows>.*)$", re.MULTILINE)
 C_TAG = re.compile(
@@ -131,7 +134,7 @@ def trace_code(root, rows):
     named = {row: [] for row in rows}
     for folder in CODE:
         for path in sorted((root / folder).rglob("*.*")):
-            for row in set(re.findall(r"\b[A-Z]+-\d+\b", path.read_text(encoding="utf-8"))) & set(named):
+            for row in set(re.findall(r"\b(?:[A-Z]+-\d+|P\d+)\b", path.read_text(encoding="utf-8"))) & set(named):
                 named[row].append(path)
     return named
 
@@ -146,29 +149,41 @@ def levels(root, problems):
     return found
 
 
-def levels_markdown(root, shown, problems):
-    level_of, waiting = levels(root, problems), not_built(root)
-    code, proven = trace_code(root, shown), trace_proofs(root, shown, problems)
-    lines = ["| row | code | tests | proofs | evidence |", "|---|---|---|---|---|"]
-    for row, level in level_of.items():
-        count = {}
-        for _, place in shown[row]:
-            for source in evidence(place):
-                count[source] = count.get(source, 0) + 1
+def evidence_by_row(root, shown, problems):
+    """A line for each requirement and protocol decision."""
+    faults = {fault.name for fault in tables.faults(root)}
+    level_of, waiting, rows = levels(root, problems), not_built(root), set(shown)
+    code, proven, place_of = trace_code(root, shown), trace_proofs(root, shown, problems), evidence.places(root)
+    others = [evidence.mutants(root, rows, problems), evidence.hazards(root, rows, problems), evidence.atlas(root, rows)]
+    lines = ["| row | tests | proofs | mutants of | hunt | atlas | evidence | code |", "|---|---|---|---|---|---|---|---|"]
+    for row in (row for row in shown if row not in faults):
+        count = count_sources(shown[row])
+        level = level_of.get(row, ", ".join(sorted(count)))
         for source in sorted({source for sources in EVIDENCE.values() for source in sources}):
             if source in level.split("; open")[0] and source not in count:
                 problems.append(f"docs/requirements.md: {row} claims {source}, and no test there shows it")
         files = sorted({f"`{path.name}`" for path in code[row]})
-        if not files and row not in waiting:
+        if not files and row in level_of and row not in waiting:
             problems.append(f"no code names {row}")
         tests = ", ".join(f"{number} {where}" for where, number in sorted(count.items()))
-        proofs = ", ".join(f"`{name}`" for name in proven[row])
-        none = NOT_BUILT if row in waiting else "**none**"
-        lines.append(f"| {row} | {', '.join(files) or '-'} | {tests or none} | {proofs or '-'} | {level} |")
+        cells = [f"[{row}]({place_of.get(row, 'requirements.md')})", tests or (NOT_BUILT if row in waiting else "**none**"),
+                 ", ".join(f"`{name}`" for name in proven[row])]
+        for cell in (other.get(row, "") for other in others):
+            cells.append(cell if isinstance(cell, str) else ", ".join(cell))
+        lines.append("| " + " | ".join(cell or "-" for cell in [*cells, level, ", ".join(files)]) + " |")
     return "\n".join(lines)
 
 
-def evidence(place):
+def count_sources(tests):
+    """Where the tests run -> how many."""
+    count = {}
+    for _, place in tests:
+        for source in sources_of(place):
+            count[source] = count.get(source, 0) + 1
+    return count
+
+
+def sources_of(place):
     for folder, sources in EVIDENCE.items():
         if place.as_posix().startswith(folder + "/"):
             return sources
@@ -178,7 +193,7 @@ def evidence(place):
 def markdown(shown, waiting):
     lines = ["| row | shown on | by |", "|---|---|---|"]
     for row, tests in shown.items():
-        where = ", ".join(sorted({source for _, place in tests for source in evidence(place)})) or "-"
+        where = ", ".join(sorted({source for _, place in tests for source in sources_of(place)})) or "-"
         by_file = {}
         for test, place in tests:
             by_file.setdefault(place, []).append(test)
@@ -199,7 +214,7 @@ def replace_section(text, begin, section):
 
 def bring_up_to_date(document, begin, section, write, problems):
     """Write a generated section, or compare it."""
-    text = document.read_text(encoding="utf-8")
+    text = document.read_text(encoding="utf-8") if document.exists() else ""
     if text.count(begin) != 1 or END not in text.split(begin)[1]:
         problems.append(f"{document.name} needs the lines '{begin}' and '{END}'")
         return
@@ -213,7 +228,7 @@ def bring_up_to_date(document, begin, section, write, problems):
 def main():
     parser = argparse.ArgumentParser(description="row -> tests")
     parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[2])
-    parser.add_argument("--markdown", action="store_true", help="rewrite the sections in requirements.md and safety-manual.md")
+    parser.add_argument("--markdown", action="store_true", help="rewrite the sections in requirements.md and evidence.md")
     parser.add_argument("--check", action="store_true", help="fail when they are not up to date")
     arguments = parser.parse_args()
 
@@ -226,11 +241,11 @@ def main():
     if (arguments.markdown or arguments.check) and (docs / "requirements.md").exists():
         section = markdown(shown, not_built(arguments.root))
         bring_up_to_date(docs / "requirements.md", BEGIN, section, arguments.markdown, problems)
-        section = levels_markdown(arguments.root, shown, problems)
-        if (docs / "safety-manual.md").exists():
-            bring_up_to_date(docs / "safety-manual.md", LEVELS, section, arguments.markdown, problems)
-        else:
-            problems.append("docs/safety-manual.md is missing")
+        page = docs / "evidence.md"
+        section = evidence.claims(arguments.root, CLAIMS, END, problems)
+        bring_up_to_date(page, CLAIMS, section, arguments.markdown, problems)
+        section = evidence_by_row(arguments.root, shown, problems)
+        bring_up_to_date(page, BY_ROW, section, arguments.markdown, problems)
     sys.stdout.flush()
     for problem in problems:
         print(f"traceability: {problem}", file=sys.stderr)

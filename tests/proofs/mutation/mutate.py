@@ -168,6 +168,17 @@ def sum_up(verdicts, problems):
             f"{of['same']} of the same machine code, {of['compile']} that do not compile")
 
 
+def record(verdicts):
+    """The figures of each file, which docs/evidence.md shows."""
+    columns = (*VERDICTS, "equivalent")
+    of_file = collections.defaultdict(collections.Counter)
+    for key, verdict in verdicts.items():
+        of_file[key.split(":")[0]][verdict] += 1
+    lines = ["# Mutants of each file, written by mutate.py merge --record.", "\t".join(("# file", *columns))]
+    lines += ["\t".join((file, *(str(of_file[file][name]) for name in columns))) for file in sorted(of_file)]
+    (HERE / "figures.tsv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
 def command_merge(arguments):
     folder = arguments.results or results_folder(bench.digest())
     paths = [pathlib.Path(name) for name in arguments.names] or sorted(folder.glob("*.jsonl"))
@@ -184,6 +195,8 @@ def command_merge(arguments):
         say(problem)
     if len(problems) > 20:
         say(f"... and {len(problems) - 20} more problems")
+    if arguments.record and not problems:
+        record(verdicts)
     print(line)
     return 1 if problems else 0
 
@@ -205,6 +218,7 @@ def main():
     parser.add_argument("--without", action="append", default=[], metavar="TEST", help="leave out a test program")
     parser.add_argument("--equivalents", type=pathlib.Path, default=HERE / "equivalents", help="another such file")
     parser.add_argument("--rows", type=pathlib.Path, default=HERE / "rows", help="another such file")
+    parser.add_argument("--record", action="store_true", help="merge: write figures.tsv, if nothing failed")
     parser.add_argument("--results", type=pathlib.Path, help="folder of the results, instead of one named by the sources")
     arguments = parser.parse_intermixed_args()
     return commands[arguments.command](arguments)
