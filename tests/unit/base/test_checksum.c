@@ -34,8 +34,20 @@ void test_the_seal_is_the_inverted_exclusive_or_of_the_words(void) {
                                 0x00004000u, 0x00050000u, 0x00600000u, 0x07000000u, 0x80000000u};
     TEST_ASSERT_EQUAL_HEX32(0xE2C4A688u, agv_seal(words, 8));
     TEST_ASSERT_EQUAL_HEX32(0xE2C4A6A9u, agv_seal(words, 16));
-    TEST_ASSERT_EQUAL_HEX32(0xE2A1E5A9u, agv_seal(words, 32)); /* one iteration of the loop */
+    TEST_ASSERT_EQUAL_HEX32(0xE2A1E5A9u, agv_seal(words, 32));
     TEST_ASSERT_EQUAL_HEX32(0x65A1E5A9u, agv_seal(words, 40));
+}
+
+/* Eight pairs of words are one turn of the unrolled loop: 00000001h in one place, 0 elsewhere, inverted. */
+void test_the_seal_covers_each_word_of_a_turn_and_of_the_rest(void) {
+    for (uint32_t size = 64; size <= 144; size += 8) {
+        for (uint32_t i = 0; i < size / 4; i++) {
+            uint32_t words[36] = {0};
+            TEST_ASSERT_EQUAL_HEX32(0xFFFFFFFFu, agv_seal(words, size));
+            words[i] = 1;
+            TEST_ASSERT_EQUAL_HEX32(0xFFFFFFFEu, agv_seal(words, size));
+        }
+    }
 }
 
 /* Shows: INT-5 */

@@ -159,6 +159,9 @@ void test_the_status_frame_may_not_have_an_identifier_of_the_protocol(void) {
             is_taken = is_taken || taken[i] == id;
         }
         config.status_frame_id = id;
+        config.id_set = AGV_ID_SET_TABLE;
+        TEST_ASSERT_EQUAL(is_taken ? AGV_CONFIG_ID_TWICE : AGV_CONFIG_OK, agv_config_check(&config).problem);
+        config.id_set = AGV_ID_SET_HEADING;
         TEST_ASSERT_EQUAL(is_taken ? AGV_CONFIG_ID_TWICE : AGV_CONFIG_OK, agv_config_check(&config).problem);
     }
     config.status_frame_id = 0x201;

@@ -78,6 +78,22 @@ void test_a_timer_starts_at_a_given_time(uint32_t start_ms) {
     }
 }
 
+/* A start of long ago counts in full, also 65,536 ms ago, which 16 bits do not hold. */
+/* Shows: TIM-2 */
+TEST_CASE(0)
+TEST_CASE(0x8000)
+void test_a_start_of_long_ago_counts_in_full(uint32_t now_ms) {
+    start(60000);
+    for (uint32_t age_ms = 60000; age_ms <= 200000; age_ms += 536) {
+        agv_timers_set_time(&timers, now_ms);
+        agv_timer_start_at(&timers, DURATION, now_ms - age_ms);
+        TEST_ASSERT_TRUE(reached(DURATION, now_ms + 1));
+    }
+    agv_timers_set_time(&timers, now_ms);
+    agv_timer_start_at(&timers, DURATION, now_ms - 65536);
+    TEST_ASSERT_TRUE(reached(DURATION, now_ms + 1));
+}
+
 /* A limit of 60 s is the longest one. A step may be longer than the 65,536 ms that 16 bits hold. */
 /* Shows: TIM-2 */
 TEST_CASE(0)

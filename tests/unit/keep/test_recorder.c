@@ -142,6 +142,7 @@ void test_a_torn_write_loses_the_newest_event_only(void) {
     TEST_ASSERT_EQUAL_UINT32(9, agv_recorder_next_sequence(&recorder));
     expect_there(8);
     expect_gone(9);
+    TEST_ASSERT_EQUAL_UINT8(0, recorder.events[9].kind); /* a dump of the memory does not have it either */
 }
 
 /* Every byte of an event is under its checksum. */
@@ -300,6 +301,11 @@ void test_a_ring_of_holes_stores_nothing_but_the_last(void) {
         recorder.events[i].kind = 0;
     }
     TEST_ASSERT_EQUAL_UINT32(1, store_all(255));
+    add(300); /* 256 to 555, of which 300 and later are kept */
+    for (unsigned i = 0; i < 256; i++) {
+        recorder.events[i].kind = (i == 555 - 512) ? recorder.events[i].kind : 0;
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, store_all(555));
     add(256);
     for (unsigned i = 0; i < 256; i++) {
         recorder.events[i].kind = 0;
@@ -421,6 +427,21 @@ void test_a_torn_event_whose_trip_is_kept(void) {
         trip(number);
         expect_trips(number, (number < 8) ? number : 8);
     }
+    agv_event_t event;
+    TEST_ASSERT_TRUE(agv_recorder_get_trip(&recorder, 0, &event));
+    TEST_ASSERT_EQUAL_UINT8(2, event.run); /* the third start: that of the kept trip was the second */
+}
+
+/* An event before the trips is no trip: the oldest of the eight is replaced, also after a restart. */
+/* Shows: INT-3 */
+void test_the_oldest_trip_is_replaced_after_a_restart(void) {
+    add(1);
+    for (uint32_t number = 1; number <= 9; number++) {
+        trip(number);
+    }
+    agv_recorder_start(&recorder);
+    trip(10);
+    expect_trips(10, 8);
 }
 
 /* ---- Four times a second ---- */
@@ -474,6 +495,20 @@ void test_a_fault_that_flickers_leaves_room_for_the_others(void) {
         agv_recorder_add(&recorder, &none, 50);
     }
     TEST_ASSERT_EQUAL_UINT32(sequence + 20, agv_recorder_next_sequence(&recorder));
+}
+
+/* The number is that of this event alone, not of what was in its place 256 events before. */
+/* Shows: INT-3 */
+void test_the_number_left_out_is_not_that_of_a_replaced_event(void) {
+    agv_event_t event;
+    for (uint32_t ms = 0; ms <= 1000; ms += 100) {
+        (void)recorded(AGV_FAULT_RX_OVERRUN, ms);
+    }
+    TEST_ASSERT_TRUE(agv_recorder_get(&recorder, 4, &event));
+    TEST_ASSERT_EQUAL_UINT16(6, event.left_out);
+    add(256);
+    TEST_ASSERT_TRUE(agv_recorder_get(&recorder, 260, &event));
+    TEST_ASSERT_EQUAL_UINT16(0, event.left_out);
 }
 
 /* However many. */

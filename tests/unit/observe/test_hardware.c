@@ -194,6 +194,18 @@ void test_a_late_tick_counts_in_full(uint32_t elapsed_ms, bool is_fault) {
     TEST_ASSERT_EQUAL(is_fault, is_active(AGV_FAULT_OUTPUT_FEEDBACK));
 }
 
+/* Ticks that are all late by 4 ms count 5 ms each. */
+/* Shows: HW-1 */
+void test_late_ticks_add_up(void) {
+    inputs.output_feedback = CLOSED;
+    for (unsigned i = 0; i < 19; i++) {
+        tick_after(5);
+    }
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
+    tick_after(5);
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
+}
+
 /* Shows: HW-1 */
 void test_a_late_tick_takes_all_of_its_time_away(void) {
     inputs.output_feedback = CLOSED;

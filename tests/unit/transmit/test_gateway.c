@@ -228,6 +228,31 @@ void test_a_slow_rise_adds_up(void) {
     }
 }
 
+/* While the throttle stays where it is, no rise is saved up for later. */
+/* Shows: TOP-2 */
+void test_a_held_throttle_saves_up_no_rise(void) {
+    config.throttle_rise_pct_s = 1;
+    for (unsigned i = 0; i < 10; i++) {
+        TEST_ASSERT_EQUAL_UINT(0, throttle(0));
+        now_ms += 100;
+    }
+    TEST_ASSERT_EQUAL_UINT(0, throttle(250));
+}
+
+/* 59 % a second for 61 ms are 8.9975 counts, 100 % for 4 ms are exactly 1. */
+/* Shows: TOP-2 */
+void test_the_rise_is_rounded_down(void) {
+    config.throttle_rise_pct_s = 59;
+    TEST_ASSERT_EQUAL_UINT(0, throttle(0));
+    now_ms += 61;
+    TEST_ASSERT_EQUAL_UINT(8, throttle(250));
+    config.throttle_rise_pct_s = 100;
+    now_ms += 4;
+    TEST_ASSERT_EQUAL_UINT(9, throttle(250));
+    now_ms += 3;
+    TEST_ASSERT_EQUAL_UINT(9, throttle(250));
+}
+
 /* A pause counts as at most one second: 125 counts, limited by the ceiling. */
 /* Shows: TOP-2, TIM-2 */
 void test_a_pause_gives_at_most_a_second_of_rise(void) {
