@@ -15,7 +15,7 @@
 #include "report/sentence.h"
 #include "text/units.h"
 
-enum { TIME_TEXT_SIZE = 48 };
+enum { TIME_TEXT_SIZE = 96, YEAR_0 = 1900 };
 
 static json_t *time_or_null(uint64_t t_us) {
     return (t_us != WHY_NEVER) ? json_uint(t_us) : json_null();
@@ -25,13 +25,13 @@ static json_t *time_or_null(uint64_t t_us) {
 static json_t *clock_json(uint64_t clock_us) {
     const time_t seconds = (time_t)(clock_us / US_PER_S);
     struct tm local;
-    char date[TIME_TEXT_SIZE];
-    char text[TIME_TEXT_SIZE + 8];
+    char text[TIME_TEXT_SIZE];
     if ((clock_us == 0u) || (localtime_r(&seconds, &local) == NULL)) {
         return json_null();
     }
-    (void)strftime(date, sizeof date, "%Y-%m-%d %H:%M:%S", &local);
-    (void)snprintf(text, sizeof text, "%s.%03u", date, (unsigned)(clock_us % US_PER_S / US_PER_MS));
+    (void)snprintf(text, sizeof text, "%04d-%02d-%02d %02d:%02d:%02d.%03u", local.tm_year + YEAR_0, local.tm_mon + 1,
+                   local.tm_mday, local.tm_hour, local.tm_min, local.tm_sec,
+                   (unsigned)(clock_us % US_PER_S / US_PER_MS));
     return json_string(text);
 }
 

@@ -3,12 +3,22 @@
  * no signals; its files are always ready; it unpacks gzip itself; nothing of a run is kept on a disk, traced for
  * another program, or printed on a terminal.
  */
+#include <string.h>
+
 #include "analysis/trace.h"
 #include "common/interrupt.h"
 #include "io/store_file.h"
 #include "logs/gunzip.h"
 #include "replay/replay_text.h"
 #include "ui/timeline.h"
+
+/* --- string.h: texts of errors of files */
+
+char *strerror(int number) {
+    (void)number;
+    static char text[] = "no memory"; /* nothing else fails in a page */
+    return text;
+}
 
 /* --- common/interrupt.h */
 
