@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""clang-tidy 19 over the C files that ship: the core, the ports for hosts, the host program (not tests and benchmarks).
+"""clang-tidy 19 over the C files that ship: the core, the ports for hosts, the host program, the page's module (not tests and
+benchmarks).
 
 usage: check-tidy.py [--changed] [FILE...]
   --changed: not again a file in which it found nothing, while neither that file nor a header that it includes changed
@@ -36,6 +37,8 @@ def compile_commands(configure):
     for entry in json.loads(database.read_text(encoding="utf-8")):
         words = shlex.split(entry["command"])
         commands[pathlib.Path(entry["file"])] = words[:words.index("-o")]
+    for file in (ROOT / "web/wasm").glob("*.c"):  # for another compiler: here as a part of the host program
+        commands[file] = [*commands[ROOT / "host_sim/replay/replay.c"], "-D_DEFAULT_SOURCE", "-Wno-unknown-attributes"]
     return commands
 
 
@@ -56,7 +59,7 @@ def check(file, command, stamp):
     """Whether nothing was found in this file, and what was said."""
     if stamp and stamp.exists():
         return True, ""
-    options = ["-p", str(BUILD)] if command else ["--", "-std=c11"]
+    options = ["--", *(command[1:] if command else ["-std=c11"])]
     done = subprocess.run([*TIDY, str(file), *options], check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     said = "".join(line for line in done.stdout.splitlines(True) if not line.rstrip().endswith(NOISE) and line.strip())
     if done.returncode == 0 and stamp:
@@ -68,7 +71,7 @@ def main(words):
     changed = words[:1] == ["--changed"]
     asked = [pathlib.Path(word).resolve() for word in words[changed:]]
     commands = compile_commands(not asked)
-    folders = tuple(f"{ROOT}/{folder}/" for folder in ("firmware", "hal", "host_sim"))
+    folders = tuple(f"{ROOT}/{folder}/" for folder in ("firmware", "hal", "host_sim", "web"))
     files = asked or [file for file in commands if str(file).startswith(folders)]
     PASSED.mkdir(exist_ok=True)
     common = output_of("clang-tidy-19", "--version") + pathlib.Path(__file__).read_bytes() + (ROOT / ".clang-tidy").read_bytes()

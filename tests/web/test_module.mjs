@@ -2,7 +2,8 @@
 // it says of bad input. Run by ctest of the preset wasm: AGV_WASM is the module, HOST_SIM the native program.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { readdirSync, readFileSync } from "node:fs";
+import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
 import { join } from "node:path";
 import test from "node:test";
 import { gzipSync } from "node:zlib";
@@ -131,6 +132,25 @@ test("the report of a log is that of host_sim", async () => {
   other.about.name = "ai-stops.log";
   own.about.clock = other.about.clock; // a page without a time zone
   assert.deepEqual(own, other);
+});
+
+test("a log of a gateway has the interface of its AI side", async () => {
+  const simulation = await instantiate(compiled);
+  const folder = mkdtempSync(join(tmpdir(), "agv-web-"));
+  const log = join(folder, "gateway.log");
+  writeFileSync(log, readFileSync(join(ROOT, "host_sim/examples/ai-stops.log"), "utf8").replace(/can0 (065|075|168|43F)#/g, "can1 $1#"));
+  const data = /id="data">(.*?)<\/script>/s;
+  const ofPage = (ai) => JSON.parse(data.exec(simulation.replay("gateway.log", readFileSync(log), "topology: gateway\n", ai))[1]);
+  const ofProgram = (...options) => JSON.parse(data.exec(native("replay", "--report", "-", ...options, log))[1]);
+  for (const [ai, ...options] of [["can1", "--ai-if", "can1"], [""]]) {
+    const [own, other] = [ofPage(ai), ofProgram(...options)];
+    assert.equal(own.about.gateway, ai !== "");
+    assert.deepEqual({ ...own, about: { ...own.about, name: "", clock: "" } }, { ...other, about: { ...other.about, name: "", clock: "" } });
+    assert.deepEqual(simulation.interfaces(), ["can0", "can1"]);
+  }
+  assert.throws(() => simulation.replay("a.log", Buffer.from("hello\n")));
+  assert.deepEqual(simulation.interfaces(), []);
+  rmSync(folder, { recursive: true });
 });
 
 test("bad input is one sentence", async () => {

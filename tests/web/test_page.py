@@ -9,6 +9,7 @@ import http.server
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import threading
@@ -114,20 +115,31 @@ class Page(unittest.TestCase):
             self.assertEqual(text, native("scenario", "--events", "-", SCENARIOS / file), file)
         print(f"\n{len(files)} scenario files", end=" ")
 
+    def click(self, label):
+        """A button outside of a screen frame. @return the state that the frame begins with that is painted next"""
+        return self.run_script(f"""new Promise((done) => setTimeout(() => {{
+            document.querySelector('[aria-label="{label}"]').click();
+            requestAnimationFrame(() => done({STATE}));
+        }}))""")
+
     def test_a_fault_that_is_clicked_trips_within_a_screen_frame(self):
+        for speed in ("0.0001", "1", "Infinity"):  # at the first one, a frame alone plays nothing
+            with self.subTest(speed=speed):
+                self.show()
+                self.run_script(f"agv.setSpeed({speed}); agv.play(false); agv.run.seek(3000); agv.play(true)")
+                self.assertIn(self.click("Operator: emergency stop"), ("TRIPPED", "SAFE"))
+        self.clean()
+
+    def test_a_fault_that_is_clicked_while_the_time_stands(self):
+        self.paused(3000)
+        self.run_script("agv.setSpeed(0.0001)")
+        self.assertEqual(self.click("Operator: emergency stop"), "TRIPPED")
+        self.assertTrue(self.run_script("agv.playing"))
+
+    def test_what_tripped_is_said(self):
         self.show()
         self.run_script("agv.play(false); agv.run.seek(3000); agv.play(true)")
-        frames = self.run_script("""new Promise((done) => requestAnimationFrame(() => {
-            document.querySelector('[aria-label="EPS (power steering): over-current"]').click();
-            let frames = 0;
-            const look = () => {
-              frames++;
-              if (agv.run.view.reason >= 0 || frames > 60) done(frames);
-              else requestAnimationFrame(look);
-            };
-            requestAnimationFrame(look);
-        }))""")
-        self.assertLessEqual(frames, 2)  # the one that was begun when the button was pressed, and one
+        self.click("EPS (power steering): over-current")
         self.wait("document.querySelectorAll('#details p').length === 3")
         self.assertEqual(self.run_script("document.getElementById('headline').textContent").split(" because ")[1],
                          "the EPS (power steering) reported a shutdown by over-current.")
@@ -260,6 +272,22 @@ class Page(unittest.TestCase):
                 self.wait("document.getElementById('report-frame').contentDocument?.getElementById('headline')")
                 headline = self.run_script("document.getElementById('report-frame').contentDocument.getElementById('headline').textContent")
                 self.assertIn(headline, native("replay", "--report", "-", EXAMPLE.parent / name))
+
+    def test_a_log_of_two_interfaces_has_a_choice_of_the_ai_side(self):
+        log = re.sub(rb"can0 (065|075|168|43F)#", rb"can1 \1#", EXAMPLE.read_bytes())
+        data = "JSON.parse(/id=\"data\">(.*?)<\\/script>/s.exec(agv.reports.html)[1])"
+        label = "document.getElementById('report-ai')"
+        self.show()
+        self.open_log("one.log", EXAMPLE.read_bytes())
+        self.assertTrue(self.run_script(f"{label}.hidden"))
+        self.open_log("gateway.log", log)
+        self.assertFalse(self.run_script(f"{label}.hidden"))
+        self.assertFalse(self.run_script(f"{data}.about.gateway"))
+        self.assertEqual(self.run_script(f"[...{label}.querySelectorAll('option')].map((one) => one.value)"), ["", "can0", "can1"])
+        self.run_script(f"const select = {label}.querySelector('select'); select.value = 'can1'; select.dispatchEvent(new Event('change'))")
+        self.wait(f"{data}.about.gateway")
+        self.assertEqual(self.run_script(f"[{data}.about.interfaces, {label}.querySelector('select').value]"), [["can0", "can1"], "can1"])
+        self.clean()
 
     def test_bad_input_is_one_clear_sentence(self):
         self.show("#scenario=drive.yaml&t=5000&end=12")

@@ -70,6 +70,7 @@ class Page {
     const element = byId("message");
     say(element, error.message);
     element.hidden = false;
+    byId("report-dialog").close(); // it would hide the message
   }
 
   hush() {
@@ -136,6 +137,7 @@ class Page {
   act(actor, word, parameters, after = 0) {
     this.guard(() => {
       this.run.inject(actor, word, parameters, after);
+      this.run.step(1); // what trips at once is in the next picture
       if (!this.playing) this.play(true);
     });
   }
@@ -172,7 +174,7 @@ class Page {
   }
 
   advance(now) {
-    const passed = Math.min(now - this.last, LEAP_MS);
+    const passed = Math.min(Math.max(now - this.last, 0), LEAP_MS); // a frame can have begun before play()
     this.last = now;
     if (this.speed === Infinity) {
       const end = performance.now() + BUDGET_MS;
@@ -218,7 +220,7 @@ class Page {
     if (key === this.explained.key) return;
     this.explaining = true;
     try {
-      const html = await this.reports.make({ kind: "run", plan: run.plan, until: run.now });
+      const { html } = await this.reports.make({ kind: "run", plan: run.plan, until: run.now });
       this.explained = { key, data: dataOf(html) };
     } catch {
       this.explained = { key, data: null }; // the plain sentence stays
@@ -260,11 +262,13 @@ class Page {
   showReport() {
     return this.guard(async () => {
       this.play(false);
-      this.reports.show(await this.reports.make({ kind: "run", plan: this.run.plan, until: this.run.now }), this.run.plan.title);
+      const { html } = await this.reports.make({ kind: "run", plan: this.run.plan, until: this.run.now });
+      this.reports.show(html, this.run.plan.title);
     });
   }
 
-  open(file) {
+  /** @param aiInterface of a log: the interface of the AI side; "": a shared bus */
+  open(file, aiInterface = "") {
     return this.guard(async () => {
       if (!file) return;
       if (/\.ya?ml$/.test(file.name)) {
@@ -273,9 +277,10 @@ class Page {
         return;
       }
       const bytes = new Uint8Array(await file.arrayBuffer());
-      const request = { kind: "log", name: file.name, bytes, settings: this.run.plan?.settings ?? {}, aiInterface: "" };
+      const request = { kind: "log", name: file.name, bytes, settings: this.run.plan?.settings ?? {}, aiInterface };
       this.play(false);
-      this.reports.show(await this.reports.make(request, [bytes.buffer]), file.name);
+      const { html, interfaces } = await this.reports.make(request, [bytes.buffer]);
+      this.reports.show(html, file.name, { interfaces, aiInterface, choose: (name) => this.open(file, name) });
     });
   }
 }

@@ -31,7 +31,7 @@ export class Reports {
     byId("report-save").addEventListener("click", () => this.save());
   }
 
-  /** @return the report as HTML, without its styles and scripts @throws Error with a sentence */
+  /** @return the answer of the worker: html is the report without its styles and scripts @throws Error with a sentence */
   async make(request, transfer = []) {
     if (!this.worker) {
       this.worker = new Worker("simulation/worker.js", { type: "module" });
@@ -39,7 +39,7 @@ export class Reports {
         const { resolve, reject } = this.waiting.get(data.id);
         this.waiting.delete(data.id);
         if (data.error) reject(new Error(data.error));
-        else resolve(data.html);
+        else resolve(data);
       });
     }
     const id = ++this.count;
@@ -49,13 +49,20 @@ export class Reports {
     });
   }
 
-  show(html, name) {
+  /** @param log { interfaces, aiInterface, choose }: with two interfaces, one of them can be the AI side */
+  show(html, name, log = { interfaces: [] }) {
+    const [label, dialog] = [byId("report-ai"), byId("report-dialog")];
+    label.hidden = log.interfaces.length < 2;
+    const select = label.querySelector("select");
+    select.replaceChildren(new Option("none: one shared bus", ""), ...log.interfaces.map((one) => new Option(one, one)));
+    select.value = log.aiInterface ?? "";
+    select.onchange = () => log.choose(select.value);
     this.html = html;
     this.name = name;
     const frame = byId("report-frame");
     frame.addEventListener("load", () => frame.contentWindow.postMessage(html, location.origin), { once: true });
     frame.src = "report/index.html";
-    byId("report-dialog").showModal();
+    if (!dialog.open) dialog.showModal();
   }
 
   /** The report that is shown as one file, as host_sim writes it. */

@@ -1,7 +1,7 @@
 /*
  * What a page has no use for, or has by itself: functions of the host program that replay and analysis call. A page has
  * no signals; its files are always ready; it unpacks gzip itself; nothing of a run is kept on a disk, traced for
- * another program, or printed on a terminal.
+ * another program, or printed on a terminal. Of the C library, what would bring much with it.
  */
 #include <string.h>
 
@@ -9,10 +9,17 @@
 #include "common/interrupt.h"
 #include "io/store_file.h"
 #include "logs/gunzip.h"
-#include "replay/replay_text.h"
 #include "ui/timeline.h"
 
-/* --- string.h: texts of errors of files */
+/* --- fcntl.h, string.h */
+
+/** open() of candump_log.c: the log of web_replay() is standard input. */
+int open_log(const char *path, int flags, ...);
+int open_log(const char *path, int flags, ...) {
+    (void)path;
+    (void)flags;
+    return 0;
+}
 
 char *strerror(int number) {
     (void)number;
@@ -97,10 +104,6 @@ void trace_end(trace_t *trace, uint64_t t_us) {
 }
 
 /* --- texts for a terminal */
-
-void replay_text_print(const replay_text_t *replay) {
-    (void)replay;
-}
 
 void timeline_init_run(timeline_t *timeline, const agv_config_t *config) {
     (void)timeline;

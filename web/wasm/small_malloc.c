@@ -28,21 +28,22 @@ static uint32_t class_of(size_t size) {
 
 /** A new block from behind all others. */
 static block_t *extend(uint32_t size_class) {
-    static uintptr_t begin;
-    static uintptr_t end;
+    static uint8_t *begin;
+    static size_t left; /* bytes from there on */
     enum { PAGE = 65536 };
     const size_t size = (size_t)1u << size_class;
-    if (end - begin < size) {
-        const size_t more = (size - (end - begin) + PAGE - 1u) / PAGE * PAGE;
+    if ((begin == NULL) || (left < size)) {
+        const size_t more = (size - left + PAGE - 1u) / PAGE * PAGE;
         void *grown = sbrk((intptr_t)more);
-        if (grown == (void *)-1) {
+        if ((intptr_t)grown == -1) {
             return NULL;
         }
-        begin = (begin == 0u) ? (uintptr_t)grown : begin;
-        end = (uintptr_t)grown + more;
+        begin = (begin == NULL) ? grown : begin;
+        left += more;
     }
-    block_t *block = (block_t *)begin;
+    block_t *block = (void *)begin;
     begin += size;
+    left -= size;
     block->size_class = size_class;
     return block;
 }
@@ -62,9 +63,13 @@ void *malloc(size_t size) {
     return (uint8_t *)block + HEADER;
 }
 
+static block_t *block_of(void *memory) {
+    return (void *)((uint8_t *)memory - HEADER);
+}
+
 void free(void *memory) {
     if (memory != NULL) {
-        block_t *block = (block_t *)((uintptr_t)memory - (uintptr_t)HEADER);
+        block_t *block = block_of(memory);
         block->next = unused[block->size_class];
         unused[block->size_class] = block;
     }
@@ -83,8 +88,7 @@ void *realloc(void *memory, size_t size) {
     if (memory == NULL) {
         return malloc(size);
     }
-    const block_t *block = (const block_t *)((uintptr_t)memory - (uintptr_t)HEADER);
-    const size_t room = ((size_t)1u << block->size_class) - (size_t)HEADER;
+    const size_t room = ((size_t)1u << block_of(memory)->size_class) - (size_t)HEADER;
     if (size <= room) {
         return memory;
     }

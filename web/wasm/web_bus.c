@@ -135,8 +135,8 @@ static const char *sender_name(int from) {
 
 static json_t *bytes_text(const hal_can_frame_t *frame) {
     char text[BYTES_TEXT + 1] = "";
-    const unsigned length = (frame->length < AGV_DLC) ? frame->length : AGV_DLC;
-    for (unsigned i = 0u; ((frame->flags & HAL_CAN_REMOTE) == 0u) && (i < length); i++) {
+    const size_t length = (frame->length < AGV_DLC) ? frame->length : AGV_DLC;
+    for (size_t i = 0u; ((frame->flags & HAL_CAN_REMOTE) == 0u) && (i < length); i++) {
         (void)snprintf(&text[i * 3u], 4u, "%02X%s", frame->data[i], (i + 1u < length) ? " " : "");
     }
     return json_text(text);

@@ -21,14 +21,6 @@ enum { SETTINGS_NOT_GIVEN = -1, NAME_SIZE = 120 };
 static web_run_t web;
 static char run_name[NAME_SIZE];
 
-/** The only file that is opened is the log of web_replay(): it is standard input. */
-int __wrap_open(const char *path, int flags, ...);
-int __wrap_open(const char *path, int flags, ...) {
-    (void)path;
-    (void)flags;
-    return 0;
-}
-
 const web_run_t *web_run(void) {
     return &web;
 }
@@ -249,7 +241,7 @@ static void view_supervisor(web_view_t *view) {
     view->contact_closed = port->contact_closed ? 1 : 0;
     view->stop_open = port->board.stop_is_open ? 1 : 0;
     view->led_on = port->led.on ? 1 : 0;
-    view->led_code = agv_supervisor_led_code(supervisor);
+    view->led_code = (int32_t)agv_supervisor_led_code(supervisor);
     view->button_1 = seen.vehicle.button_1 ? 1 : 0;
 }
 

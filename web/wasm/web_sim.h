@@ -111,10 +111,13 @@ WEB_EXPORT(web_report) const char *web_report(void);
  * Replay a log as `host_sim replay --report` does. The log is read from standard input (the import fd_read of WASI,
  * descriptor 0), not packed.
  * @param name of the log
- * @param settings text of a configuration file; "": the defaults
- * @param ai_interface name of the interface of the AI side; "": a shared bus
+ * @param settings text of a configuration file; "": the defaults. Its topology does not count
+ * @param ai_interface name of the interface of the AI side: a gateway; "": a shared bus
  * @return the report; NULL: the log is none
  */
 WEB_EXPORT(web_replay) const char *web_replay(const char *name, const char *settings, const char *ai_interface);
+
+/** The interfaces of the log of the last web_replay(): their names, each with a line end. "": it was none. */
+WEB_EXPORT(web_interfaces) const char *web_interfaces(void);
 
 #endif

@@ -173,6 +173,11 @@ export class Simulation {
     this.system.feed(new Uint8Array());
     return this.text(report);
   }
+
+  /** The names of the interfaces of the log of the last replay(). */
+  interfaces() {
+    return this.text(this.exports.web_interfaces()).split("\n").filter(Boolean);
+  }
 }
 
 /** @param module a compiled WebAssembly.Module */

@@ -1,7 +1,7 @@
 // worker.js: reports, made beside the page so that it never waits. A message is { id, kind, ... }, the answer
 // { id, html } or { id, error }.
 //   kind "run": plan (as Run.begin() of run.js), until: the run is played again up to this time
-//   kind "log": name, bytes, settings, aiInterface
+//   kind "log": name, bytes, settings, aiInterface ("": a shared bus); its answer has { interfaces } too, their names
 
 import { instantiate } from "./module.js";
 import { settingsText, stepText } from "./run.js";
@@ -17,7 +17,7 @@ function ofRun({ plan, until }) {
   simulation.create(plan.title, plan.text, settingsText(plan.settings), true);
   plan.steps.forEach((step) => simulation.inject(stepText(step)));
   simulation.step(until);
-  return simulation.report();
+  return { html: simulation.report() };
 }
 
 /** gzip is told by its first bytes. */
@@ -34,13 +34,13 @@ async function ofLog({ name, bytes, settings, aiInterface }) {
   } catch {
     throw new Error(`${name}: the compressed data is damaged or cut off`);
   }
-  return simulation.replay(name, log, settingsText(settings), aiInterface);
+  return { html: simulation.replay(name, log, settingsText(settings), aiInterface), interfaces: simulation.interfaces() };
 }
 
 addEventListener("message", async ({ data }) => {
   try {
     simulation ??= await start();
-    postMessage({ id: data.id, html: data.kind === "run" ? ofRun(data) : await ofLog(data) });
+    postMessage({ id: data.id, ...(data.kind === "run" ? ofRun(data) : await ofLog(data)) });
   } catch (error) {
     postMessage({ id: data.id, error: error.message });
   }
