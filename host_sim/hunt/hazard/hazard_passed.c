@@ -52,6 +52,7 @@ void hazard_passed(hazard_t *hazard, agv_message_t message, const hal_can_frame_
         (hazard->trip.tripped || hazard_is_safe_now(hazard, SAFE_MS) || hazard->limits.limits_steering);
     if (is_motion(message, value) && !is_hold && !hazard_was_sent(hazard, message, value) && (hazard->false_ms == 0u)) {
         hazard->false_ms = hazard->t_ms; /* 065h of a hold leaves before the other safe commands */
+        hazard->false_is_065h = message == AGV_MSG_STEERING_COMMAND;
     }
 }
 
@@ -67,22 +68,40 @@ static bool is_unanswered(const hazard_t *hazard, uint64_t *since_ms, uint32_t w
     return hazard->t_ms - *since_ms > within_ms;
 }
 
-/** A command on the vehicle side is followed by the safe ones at once, if they leave the controller. */
-static uint32_t answer_ms(const hazard_t *hazard) {
+static void follow_stall(hazard_t *hazard) {
     scenario_controller_t controller;
 
     scenario_testbed_controller(hazard->testbed, HAL_CAN_VEHICLE, &controller);
-    return (uint32_t)ANSWER_MS + (controller.is_stalled ? hazard->limits.tx_stalled_ms : (uint32_t)MARGIN_MS);
+    if (controller.is_stalled) {
+        hazard->stalled_ms = hazard->t_ms;
+    }
+}
+
+/** Now, or until a moment ago: what waited needs time to leave. */
+static bool is_stalled(const hazard_t *hazard) {
+    return (hazard->stalled_ms != 0u) && (hazard->t_ms - hazard->stalled_ms <= MARGIN_MS);
+}
+
+/** A command on the vehicle side is followed by the safe ones at once, if they leave the controller. */
+static uint32_t answer_ms(const hazard_t *hazard) {
+    return (uint32_t)ANSWER_MS + (is_stalled(hazard) ? hazard->limits.tx_stalled_ms : (uint32_t)MARGIN_MS);
+}
+
+/** The safe commands follow a 065h of theirs; where they are stalled, the output opens. */
+static uint32_t in_flight_ms(const hazard_t *hazard) {
+    const bool waits = hazard->false_is_065h && is_stalled(hazard);
+    return (uint32_t)IN_FLIGHT_MS + (waits ? hazard->limits.tx_stalled_ms : 0u);
 }
 
 void hazard_passed_tick(hazard_t *hazard) {
     if (!hazard->gateway) {
         return;
     }
+    follow_stall(hazard);
     if (is_unanswered(hazard, &hazard->foreign_ms, answer_ms(hazard))) {
         hazard_found(hazard, HAZARD_FALSE_COMMAND, "a rogue node's command is not overridden");
     }
-    if (is_unanswered(hazard, &hazard->false_ms, IN_FLIGHT_MS)) {
+    if (is_unanswered(hazard, &hazard->false_ms, in_flight_ms(hazard))) {
         hazard_found(hazard, HAZARD_FALSE_COMMAND, "the supervisor sent a command that the AI computer did not send");
     }
     if ((hazard->t_ms % SLOT_MS) != 0u) {

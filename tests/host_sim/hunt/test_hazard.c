@@ -328,6 +328,32 @@ void test_h3_a_foreign_sender_and_a_stalled_transmitter(void) {
     expect_hazard(HAZARD_FALSE_COMMAND, "a rogue node's command is not overridden", &opens, sends);
 }
 
+/** What waited in a transmitter leaves when it is free again. */
+void test_h3_a_foreign_sender_and_a_transmitter_that_was_stalled(void) {
+    const char *const freed = "  - {at_ms: 2800, supervisor: stall_tx}\n"
+                              "  - {at_ms: 3000, bus: send, message: throttle_command, bytes: \"40\"}\n"
+                              "  - {at_ms: 3290, supervisor: free_tx}\n";
+    stub_t overrides = {
+        .gateway = true, .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 600, .setting = "tx_stalled_ms: 500\n"};
+    expect_none(&overrides, freed);
+    overrides.safe_ms = TRIP_MS + 500;
+    expect_hazard(HAZARD_FALSE_COMMAND, "a rogue node's command is not overridden", &overrides, freed);
+}
+
+/** 065h is the first safe command. The others wait in a transmitter that stalls then, and the output opens. */
+void test_h3_a_transmitter_that_stalls_within_the_safe_commands(void) {
+    const char *const stalls = "  - {at_ms: 3030, supervisor: stall_tx}\n";
+    const char *const again = "  - {at_ms: 3030, supervisor: stall_tx}\n  - {at_ms: 3035, supervisor: free_tx}\n";
+    stub_t opens = {.gateway = true, .holds = true, .safe_ms = TRIP_MS + 25, .open_ms = TRIP_MS + 130};
+    expect_none(&opens, stalls);
+    opens.open_ms = TRIP_MS + 600;
+    expect_hazard(HAZARD_FALSE_COMMAND, "the supervisor sent a command that the AI computer did not send", &opens,
+                  stalls);
+    opens.safe_end_ms = TRIP_MS + 40;
+    expect_hazard(HAZARD_FALSE_COMMAND, "the supervisor sent a command that the AI computer did not send", &opens,
+                  again);
+}
+
 void test_h3_a_frame_past_the_wire(void) {
     const char *const steps = "  - {at_ms: 3000, bus: deliver, kind: fd, message: gear_command, bytes: \"01 00\"}\n";
     expect_hazard(HAZARD_FALSE_COMMAND, "a rogue node's command is not overridden", &PASSING, steps);
