@@ -44,7 +44,7 @@ void agv_hold_withdrawn(agv_hold_t *hold) {
 }
 
 bool agv_hold_is_stuck(const agv_hold_t *hold, bool stalled, bool sendable) {
-    return stalled && hold->handed_over && !(sendable && agv_hold_is_held(hold));
+    return stalled && hold->handed_over && (!sendable || !agv_hold_is_held(hold));
 }
 
 bool agv_hold_is_held(const agv_hold_t *hold) {

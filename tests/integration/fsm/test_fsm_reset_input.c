@@ -83,3 +83,62 @@ void test_a_press_of_the_push_button_in_vain_is_reported(void) {
     expect_state_after(&f, 100, AGV_STATE_SAFE);
     expect_refusals(1, AGV_MISSING_RELEASED);
 }
+
+/* Also while the push button is not touched. */
+/* Shows: HW-3, FSM-3 */
+void test_a_press_of_the_remote_button_in_vain_is_reported(void) {
+    choose(AGV_RESET_INPUT_BOTH);
+    remote(true);
+    fixture_run(&f, 5100);
+    remote(false);
+    expect_state_after(&f, 100, AGV_STATE_SAFE);
+    expect_refusals(1, AGV_MISSING_RELEASED);
+}
+
+/* The remote button is down too long for a reset, from 5001 ms on. The push button resets whenever its own press ends, in the
+ * same millisecond, before or after. */
+/* Shows: HW-3, FSM-3 */
+void test_a_press_in_vain_of_one_button_does_not_hinder_the_other(void) {
+    for (uint32_t released_ms = 4970; released_ms <= 4990; released_ms++) {
+        choose(AGV_RESET_INPUT_BOTH);
+        remote(true);
+        fixture_run(&f, 3500);
+        push(true);
+        fixture_run(&f, released_ms - 3500);
+        push(false);
+        expect_state_after(&f, 25, AGV_STATE_STANDBY);
+    }
+}
+
+/* A press that began before the trip is a stuck button. */
+/* Shows: HW-3, FSM-3 */
+void test_a_push_button_that_was_down_at_the_trip_does_not_reset(void) {
+    fixture_init(&f);
+    f.config.reset_input = AGV_RESET_INPUT_PIN;
+    f.board = (sim_board_t){.has_reset_button = true};
+    fixture_active(&f);
+    push(true);
+    fixture_run(&f, 100);
+    walk_trip(&f);
+    fixture_vehicle_confirms(&f);
+    expect_state_after(&f, 2000, AGV_STATE_SAFE);
+    push(false);
+    expect_state_after(&f, 100, AGV_STATE_SAFE);
+    expect_refusals(1, AGV_MISSING_BUTTON);
+    push_for(1000);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
+/* The output that was confirmed in time is still closed, and its contact reads so. */
+/* Shows: HW-1, FSM-3 */
+void test_a_closed_contact_of_a_closed_output_does_not_hinder_the_reset(void) {
+    fixture_init(&f);
+    f.board = (sim_board_t){.has_feedback = true};
+    walk_to_safe(&f);
+    expect_output(&f, true);
+    fixture_run(&f, 1100);
+    remote(true);
+    fixture_run(&f, 1000);
+    remote(false);
+    expect_state(&f, AGV_STATE_STANDBY);
+}

@@ -261,3 +261,18 @@ void test_standstill_can_be_read(void) {
     fixture_run(&f, 1);
     TEST_ASSERT_TRUE(agv_supervisor_is_at_standstill(&f.supervisor));
 }
+
+/* In the frame that reports the motion, not at the next tick. */
+void test_standstill_ends_with_the_frame_that_reports_motion(void) {
+    walk_to_safe(&f);
+    fixture_run(&f, 200);
+    fixture_wheels(&f, 60, 60);
+    fixture_send_now(&f, AGV_MSG_WHEEL_SPEED);
+    TEST_ASSERT_FALSE(agv_supervisor_is_at_standstill(&f.supervisor));
+    fixture_init(&f);
+    walk_to_safe(&f);
+    fixture_run(&f, 200);
+    fixture_speed(&f, 181); /* 180 m/h are 50 mm/s */
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    TEST_ASSERT_FALSE(agv_supervisor_is_at_standstill(&f.supervisor));
+}

@@ -250,6 +250,23 @@ void test_never_seen_in_an_engagement_that_is_continued(void) {
     TEST_ASSERT_EQUAL_UINT32(501, f.now_ms - began_ms);
 }
 
+/* The 500 ms end between the two: the frame that continues the engagement trips, not the tick after it. */
+/* Shows: SUP-8, AI_HEARTBEAT_LOST */
+void test_never_seen_and_the_time_is_over_before_the_engagement_is_continued(void) {
+    f.traffic[AI].muted = true;
+    fixture_standby(&f);
+    walk_engage(&f);
+    const uint32_t began_ms = f.now_ms;
+    fixture_run(&f, 450);
+    walk_disengage(&f);
+    TEST_ASSERT_LESS_THAN_UINT32(500, f.now_ms - began_ms);
+    fixture_run(&f, 520 - (f.now_ms - began_ms));
+    expect_no_fault(AGV_STATE_STANDBY);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_send_now(&f, VCU);
+    expect_trip(&f, LOST, f.call, ANGLE_CENTRE);
+}
+
 /* It starts while engaged: the first 43Fh is the baseline, the second makes it alive. */
 /* Shows: SUP-8, P13 */
 void test_seen_in_time(void) {

@@ -423,6 +423,30 @@ void test_an_invalid_throttle_that_lasts_is_no_throttle_in_park(void) {
     expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
 }
 
+/* A P that is out of date counts no more, where the silence of 0A3h only warns. A fresh 050h does not help. */
+/* Shows: SUP-5, SUP-3, THROTTLE_IN_PARK */
+void test_a_p_that_is_out_of_date_is_no_throttle_in_park(void) {
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_GEAR_STATUS_TIMEOUT, false);
+    active_in_park();
+    f.traffic[AGV_MSG_GEAR_STATUS].muted = true;
+    expect_fault_after(&f, 200, AGV_FAULT_GEAR_STATUS_TIMEOUT, true);
+    set_throttle(3);
+    expect_nothing_after(&f, 1000, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+}
+
+/* A silence of 050h, which only warns here, does not end the comparison with a fresh P. */
+/* Shows: SUP-5, SUP-3, THROTTLE_IN_PARK */
+void test_a_throttle_that_is_out_of_date_is_still_throttle_in_park(void) {
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_THROTTLE_STATUS_TIMEOUT, false);
+    f.config.throttle_in_park_ms = 1000;
+    active_in_park();
+    set_throttle(3);
+    fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
+    f.traffic[AGV_MSG_THROTTLE_STATUS].muted = true;
+    expect_nothing_after(&f, 998, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    expect_reason_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK);
+}
+
 /* An invalid throttle is not above 0, an invalid gear is not P. */
 /* Shows: SUP-5, THROTTLE_IN_PARK */
 void test_invalid_values_are_no_throttle_in_park(void) {
@@ -580,6 +604,24 @@ void test_every_engagement_scores_invalid_angles_anew(void) {
     fixture_active(&f);
     fixture_angle(&f, 18001);
     check_scores_anew(AGV_FAULT_STEERING_ANGLE_INVALID, AGV_MSG_STEERING_STATUS, 3);
+}
+
+/* 150 of 200 ms in the last engagement do not count in the next one. */
+/* Shows: SUP-5, THROTTLE_IN_PARK */
+void test_every_engagement_begins_its_budgets_anew(void) {
+    f.config.engaged_grace_ms = 50;
+    active_in_park();
+    set_throttle(3);
+    fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
+    fixture_run(&f, 150);
+    set_throttle(0);
+    engage_again_after(110);
+    fixture_run(&f, 50); /* the grace */
+    set_throttle(3);
+    fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
+    expect_nothing_after(&f, 198, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    fixture_run(&f, 1);
+    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
 }
 
 /* An engagement that begins within 100 ms continues the last one: neither grace time nor scores restart. */
