@@ -232,7 +232,7 @@ void test_a_slow_rise_adds_up(void) {
 /* Shows: TOP-2 */
 void test_a_held_throttle_saves_up_no_rise(void) {
     config.throttle_rise_pct_s = 1;
-    for (unsigned i = 0; i < 10; i++) {
+    for (unsigned i = 0; i < 11; i++) {
         TEST_ASSERT_EQUAL_UINT(0, throttle(0));
         now_ms += 100;
     }
