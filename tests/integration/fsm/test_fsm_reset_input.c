@@ -111,6 +111,22 @@ void test_a_press_in_vain_of_one_button_does_not_hinder_the_other(void) {
     }
 }
 
+/* The other way round: the push button is down too long, 21 ms and 5001 ms after it was pushed. The 363h that releases the remote
+ * button comes before, in the same millisecond, or after. */
+/* Shows: HW-3, FSM-3 */
+void test_a_push_button_that_is_down_too_long_does_not_hinder_the_remote_button(void) {
+    for (uint32_t run = 0; run < 10; run++) {
+        choose(AGV_RESET_INPUT_BOTH);
+        fixture_run(&f, run);
+        push(true);
+        fixture_run(&f, 3500);
+        remote(true);
+        fixture_run(&f, 5015 - 3500);
+        fixture_button(&f, false);
+        expect_state_after(&f, 10, AGV_STATE_STANDBY);
+    }
+}
+
 /* A press that began before the trip is a stuck button. */
 /* Shows: HW-3, FSM-3 */
 void test_a_push_button_that_was_down_at_the_trip_does_not_reset(void) {
@@ -128,6 +144,13 @@ void test_a_push_button_that_was_down_at_the_trip_does_not_reset(void) {
     expect_refusals(1, AGV_MISSING_BUTTON);
     push_for(1000);
     expect_state(&f, AGV_STATE_STANDBY);
+    push(true); /* and once more, after a good press */
+    fixture_run(&f, 100);
+    walk_trip(&f);
+    expect_state_after(&f, 2000, AGV_STATE_SAFE);
+    push(false);
+    expect_state_after(&f, 100, AGV_STATE_SAFE);
+    expect_refusals(2, AGV_MISSING_BUTTON);
 }
 
 /* The output that was confirmed in time is still closed, and its contact reads so. */

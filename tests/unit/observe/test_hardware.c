@@ -206,6 +206,22 @@ void test_late_ticks_add_up(void) {
     TEST_ASSERT_TRUE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
 }
 
+/* The time does not go past its limit: 1 ms less half a ms, then 49 times 2 ms are 98.5 ms. */
+/* Shows: HW-1 */
+void test_half_a_millisecond_does_not_carry_the_time_past_its_limit(void) {
+    inputs.output_feedback = CLOSED;
+    tick_after(1);
+    inputs.output_feedback = OPEN;
+    tick_after(1);
+    inputs.output_feedback = CLOSED;
+    for (unsigned i = 0; i < 49; i++) {
+        tick_after(2);
+    }
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
+    tick_after(2);
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
+}
+
 /* Shows: HW-1 */
 void test_a_late_tick_takes_all_of_its_time_away(void) {
     inputs.output_feedback = CLOSED;
