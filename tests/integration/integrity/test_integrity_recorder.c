@@ -65,6 +65,7 @@ void test_an_event_has_time_state_and_reason(void) {
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_S_DRIVER_ALARM, raised.a);
     TEST_ASSERT_EQUAL_UINT8(AGV_CLASS_TRIP, raised.b);
     TEST_ASSERT_EQUAL_UINT8(1, raised.c);
+    TEST_ASSERT_EQUAL_UINT16(0, raised.missing);
     const agv_event_t tripped = event_at(first + 1);
     TEST_ASSERT_EQUAL_UINT8(AGV_EVENT_STATE, tripped.kind);
     TEST_ASSERT_EQUAL_HEX8(AGV_STATE_ACTIVE, tripped.a);
@@ -72,6 +73,7 @@ void test_an_event_has_time_state_and_reason(void) {
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_S_DRIVER_ALARM, tripped.c);
     TEST_ASSERT_EQUAL_HEX8(AGV_STATE_TRIPPED, tripped.state);
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_S_DRIVER_ALARM, tripped.first_reason);
+    TEST_ASSERT_EQUAL_UINT32(first + 2, next_sequence()); /* these two and no other */
 }
 
 /* Shows: INT-3, FSM-4 */
