@@ -247,6 +247,16 @@ void test_autopilot_off_is_ignored(void) {
     expect_fault(&f, IGNORED, false);
 }
 
+/* Through a gateway, too: it counts from the 43Fh that was passed on. */
+/* Shows: SUP-11, TOP-2, AUTOPILOT_OFF_IGNORED */
+void test_a_forwarded_autopilot_off_is_ignored(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    f.long_run = true;
+    active_in_d();
+    ask_for_off(true);
+    expect_reason_after(&f, 1010, IGNORED);
+}
+
 /* The VCU obeys within the second: no fault, and the next engagement starts without the old command. */
 /* Shows: SUP-11, AUTOPILOT_OFF_IGNORED */
 void test_autopilot_off_is_obeyed(void) {
