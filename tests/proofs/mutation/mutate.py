@@ -5,7 +5,7 @@
   mutate prepare                           build what all shards need (they do it themselves, the first for all)
   mutate run [--shard i/n] [FILE...]       try those that have no result yet; results are appended to a file of lines
   mutate try ID...                         try some, and tell
-  mutate merge [RESULTS...]                sum up; fails below 95 % or above 3 %, or when a mutant has no result
+  mutate merge [RESULTS...]                sum up; fails below 95 % or above 5 %, or when a mutant has no result
   mutate rows [ROW...]                     the kept changes of the file rows: each breaks its row, and a test notices
 """
 import argparse
