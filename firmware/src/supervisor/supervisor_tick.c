@@ -133,7 +133,10 @@ static void feed_watchdog(agv_core_t *core, const agv_ports_t *ports) {
 
 void agv_core_tick(agv_core_t *core, const agv_ports_t *ports, bool receive_alive) {
     const uint32_t elapsed_ms = step_time(core);
-    core->checked_in |= (uint8_t)(CHECKED_STEP | (receive_alive ? CHECKED_RECEIVE : 0));
+    core->checked_in |= (uint8_t)(receive_alive ? CHECKED_RECEIVE : 0);
+    if (elapsed_ms != 0u) { /* a time stamp far ahead stops the time: then a step supervises nothing */
+        core->checked_in |= CHECKED_STEP;
+    }
     observe_hardware(core, ports->hal, elapsed_ms);
     const bool recovered = observe_buses(core, ports->hal);
     observe_time(core, elapsed_ms);

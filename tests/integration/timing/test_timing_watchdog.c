@@ -69,6 +69,24 @@ void test_a_receive_path_that_comes_back_in_time_is_in_time(void) {
     expect_output(&f, true);
 }
 
+/*
+ * A frame whose time stamp is far ahead stops the supervisor's time until that time has come: no deadline would expire, and no
+ * command would be sent again, while ticks go on.
+ */
+/* Shows: TIM-3 */
+void test_the_watchdog_is_not_fed_while_the_time_stands_still(void) {
+    const hal_can_frame_t ahead = {.id = 0x101, .time_ms = f.now_ms + 100000000u, .length = 8};
+    fixture_standby(&f);
+    agv_supervisor_frame(&f.supervisor, &f.ports, HAL_CAN_VEHICLE, &ahead);
+    fixture_run(&f, 1); /* a step that comes late */
+    const uint32_t feeds = f.hal.feeds;
+    fixture_run(&f, 100);
+    TEST_ASSERT_EQUAL_UINT32(feeds, f.hal.feeds);
+    fixture_run(&f, 1);
+    TEST_ASSERT_EQUAL_UINT32(1, f.hal.bites);
+    TEST_ASSERT_FALSE(f.hal.safety_output.on);
+}
+
 /* ---- Late steps ---- */
 
 /* Frames are processed in time, but the next step comes this much later than 1 ms after the last one. */
