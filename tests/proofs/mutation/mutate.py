@@ -22,7 +22,7 @@ import bench  # noqa: E402
 import mutants  # noqa: E402
 import rows  # noqa: E402
 
-KILLED_AT_LEAST, EQUIVALENT_AT_MOST = 95.0, 3.0
+KILLED_AT_LEAST, EQUIVALENT_AT_MOST = 95.0, 5.0
 VERDICTS = ("killed", "crash", "timeout", "survived")
 
 
