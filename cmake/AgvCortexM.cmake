@@ -70,4 +70,6 @@ foreach(entry IN LISTS AGV_ENTRY_POINTS)
   target_link_options(size_image PRIVATE -Wl,--require-defined=${entry})
 endforeach()
 
+add_subdirectory(tests/proofs/image)
+
 add_test(NAME size_budget COMMAND ${PROJECT_SOURCE_DIR}/scripts/tools/size.py --build ${PROJECT_BINARY_DIR})
