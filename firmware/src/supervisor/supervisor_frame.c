@@ -293,5 +293,8 @@ void agv_core_frame(agv_core_t *core, const agv_ports_t *ports, hal_can_side_t s
         const agv_pass_t pass = agv_core_decide(core, ports, 0u);
         transmit(core, ports, &intake, (pass.actions.what & AGV_ACTION_TRIP) != 0u);
         agv_core_conclude(core, ports, &pass);
+    } else {
+        transmit(core, ports, &intake, false);
+        agv_core_take_tx_report(core);
     }
 }

@@ -26,7 +26,7 @@ agv_pass_t agv_core_decide(agv_core_t *core, const agv_ports_t *ports, uint32_t 
 /** Restart the checks of the safe state (confirmation, stopping), at a trip or a start in TRIPPED. */
 void agv_core_await_safe_state(agv_core_t *core);
 
-/** Count sent and refused frames. agv_core_conclude does it for each pass. */
+/** Count sent and refused frames. This alone ends a call that decides nothing. */
 void agv_core_take_tx_report(agv_core_t *core);
 
 /** Conclude a pass, after everything was sent: latch record, counters, events, closing the output. */
