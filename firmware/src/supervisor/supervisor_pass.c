@@ -373,7 +373,7 @@ static void conclude_actions(agv_core_t *core, const agv_ports_t *ports, agv_act
     }
     record_answer(core, ports, actions);
     if ((what & AGV_ACTION_CLOSE_OUTPUT) != 0u) {
-        hal_safety_output_set(ports->hal, true);
+        hal_safety_output_set(ports->hal, core->machine.output_closed);
     }
     if ((what & (AGV_ACTION_OPEN_OUTPUT | AGV_ACTION_CLOSE_OUTPUT)) != 0u) {
         agv_core_record(core, ports, AGV_EVENT_OUTPUT, core->machine.output_closed ? 1u : 0u, 0u, 0u);
