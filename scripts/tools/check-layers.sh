@@ -42,7 +42,7 @@ report 'only firmware/src/supervisor/supervisor*.[ch] may access the memory of a
 )
 
 # Programs and ports know agv/... and hal/...; tests that look inside have their folder in $insiders.
-insiders='^tests/(unit/|proofs/(explorer|bit-flips|gate|eva)/|support/gate_oracle\.h:)'
+insiders='^tests/(unit/|proofs/(explorer|bit-flips|gate|eva|unbounded)/|support/gate_oracle\.h:)'
 rooms=$(find firmware/src -mindepth 1 -maxdepth 1 -type d -printf '|%f')
 outside=()
 for folder in hal host_sim firmware/zephyr bench tests; do

@@ -69,12 +69,22 @@ static bool is_running(const agv_timers_t *timers, uint32_t timer) {
 
 /* The age of a running timer at the latest time seen. */
 static uint32_t age_of(const agv_timers_t *timers, uint32_t timer) {
-    return (timers->now_ms - timers->since_ms[timer]) & AGE_MAX_MS;
+    return (uint16_t)(timers->now_ms - timers->since_ms[timer]);
 }
 
 /* Note which timers reach their limit within @p step_ms. Returns the time from then until the next one, or less. */
 static uint32_t evaluate(agv_timers_t *timers, const agv_config_t *config, uint32_t step_ms) {
     uint32_t next_ms = AGE_MAX_MS;
+    /* for tests/proofs/unbounded/run */
+    /*@ loop invariant i <= AGV_TIMER_COUNT && 1 <= next_ms <= 65535;
+        loop invariant \forall integer k; i <= k < AGV_TIMER_COUNT ==> timers->phase[k] == \at(timers->phase[k], Pre);
+        loop invariant \forall integer k; 0 <= k < i ==>
+            (\at(running(timers, k), Pre) && age(timers, k) + step_ms >= span(config, k) ?
+                 reached(timers, k) : timers->phase[k] == \at(timers->phase[k], Pre));
+        loop invariant \forall integer k; 0 <= k < i && running(timers, k) ==>
+            next_ms + age(timers, k) + step_ms <= span(config, k);
+        loop assigns i, next_ms, timers->phase[0 .. AGV_TIMER_COUNT - 1];
+        loop variant AGV_TIMER_COUNT - i; */
     for (uint32_t i = 0u; i < (uint32_t)AGV_TIMER_COUNT; i++) {
         if (is_running(timers, i)) {
             const uint32_t age_ms = age_of(timers, i) + step_ms;

@@ -49,6 +49,11 @@ void agv_reset_button_trip(agv_reset_button_t *reset, agv_timers_t *timers) {
 /* The conditions that did not hold at some time in the last reset_hold_ms. */
 static uint32_t missing_lately(const agv_reset_button_t *reset, const agv_config_t *config) {
     uint32_t missing = 0u;
+    /* for tests/proofs/unbounded/run */
+    /*@ loop invariant 0 <= i <= 9;
+        loop invariant missing == 0 <==> \forall integer k; 0 <= k < i ==> reset->held_ms[k] >= config->reset_hold_ms;
+        loop assigns i, missing;
+        loop variant 9 - i; */
     for (uint32_t i = 0u; i < AGV_RESET_CONDITIONS; i++) {
         missing |= (reset->held_ms[i] < config->reset_hold_ms) ? conditions[i] : 0u;
     }
@@ -57,6 +62,15 @@ static uint32_t missing_lately(const agv_reset_button_t *reset, const agv_config
 
 static void follow_conditions(agv_reset_button_t *reset, const agv_config_t *config, uint32_t elapsed_ms,
                               uint32_t lacking) {
+    /* for tests/proofs/unbounded/run */
+    /*@ loop invariant 0 <= i <= 9;
+        loop invariant \forall integer k; i <= k < 9 ==> reset->held_ms[k] == \at(reset->held_ms[k], Pre);
+        loop invariant \forall integer k; 0 <= k < i ==> reset->held_ms[k] <= config->reset_hold_ms;
+        loop invariant \forall integer k; 0 <= k < i && (lacking & bit_of(k)) != 0 ==> reset->held_ms[k] == 0;
+        loop invariant \forall integer k; 0 <= k < i && (lacking & bit_of(k)) == 0 ==>
+            reset->held_ms[k] == \at(held_for(reset, config, k, elapsed_ms), Pre);
+        loop assigns i, reset->held_ms[0 .. 8];
+        loop variant 9 - i; */
     for (uint32_t i = 0u; i < AGV_RESET_CONDITIONS; i++) {
         const uint32_t room_ms = (uint32_t)config->reset_hold_ms - reset->held_ms[i];
         const uint32_t more_ms = (elapsed_ms < room_ms) ? elapsed_ms : room_ms;

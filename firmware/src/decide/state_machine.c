@@ -183,6 +183,13 @@ bool agv_state_machine_is_sound(const agv_state_machine_t *machine) {
                  {AGV_STATE_TRIPPED, AGV_LATCH_CLOSED},
                  {AGV_STATE_SAFE, AGV_LATCH_CLOSED}};
     bool sound = false;
+    /* for tests/proofs/unbounded/run */
+    /*@ loop invariant 0 <= i <= 5;
+        loop invariant sound == 0 || sound == 1;
+        loop invariant sound != 0 <==> \exists integer k; 0 <= k < i &&
+            machine->state == pairs[k].state && machine->latched == pairs[k].latched;
+        loop assigns i, sound;
+        loop variant 5 - i; */
     for (uint32_t i = 0u; i < (sizeof(pairs) / sizeof(pairs[0])); i++) {
         if ((machine->state == pairs[i].state) && (machine->latched == pairs[i].latched)) {
             sound = true;
