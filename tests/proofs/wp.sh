@@ -1,5 +1,6 @@
 # shellcheck shell=bash
 # Common part of the proofs by frama-c WP. Source it after proof.sh.
+work=${work:?}
 
 # The provers of this computer, independent of its user's configuration, into $provers.
 prepare() {
