@@ -37,8 +37,9 @@ def compile_commands(configure):
     for entry in json.loads(database.read_text(encoding="utf-8")):
         words = shlex.split(entry["command"])
         commands[pathlib.Path(entry["file"])] = words[:words.index("-o")]
-    for file in (ROOT / "web/wasm").glob("*.c"):  # for another compiler: here as a part of the host program
-        commands[file] = [*commands[ROOT / "host_sim/replay/replay.c"], "-D_DEFAULT_SOURCE", "-Wno-unknown-attributes"]
+    part = commands.get(ROOT / "host_sim/replay/replay.c")
+    for file in (ROOT / "web/wasm").glob("*.c") if part else ():  # for another compiler: here as a part of the host program
+        commands[file] = [*part, "-D_DEFAULT_SOURCE", "-Wno-unknown-attributes"]
     return commands
 
 
