@@ -52,7 +52,9 @@ class Completion(hostsim.Case):
 
     def test_what_is_typed_is_completed(self):
         folder = str(pathlib.Path(hostsim.PROGRAM).resolve().parent)
-        tmux = Tmux(self.folder, 200, 20, *START[SHELL], HOME=str(self.folder), PATH=folder + ":" + os.environ["PATH"])
+        # Without HISTFILE=, bash writes its history into the folder while the test removes it.
+        tmux = Tmux(self.folder, 200, 20, *START[SHELL], HOME=str(self.folder), HISTFILE="",
+                    PATH=folder + ":" + os.environ["PATH"])
         self.addCleanup(tmux.close)
         tmux.press(PREPARE[SHELL], "Enter")
         for typed, expected in TYPED.items():
