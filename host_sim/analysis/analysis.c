@@ -1,6 +1,5 @@
 #include "analysis/analysis.h"
 
-#include <errno.h>
 #include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +7,7 @@
 #include "analysis/trace.h"
 #include "common/json_build.h"
 #include "common/report.h"
+#include "io/output_json.h"
 #include "report/report_page.h"
 #include "report/series.h"
 #include "traffic/traffic.h"
@@ -149,17 +149,6 @@ static json_t *make_why(const analysis_t *analysis, json_t *messages) {
     return why_json(analysis->why, &names);
 }
 
-static void write_json(output_t *output, json_t *object) {
-    char *text = (object != NULL) ? json_dumps(object, JSON_INDENT(1) | JSON_REAL_PRECISION(DIGITS)) : NULL;
-    if (text == NULL) {
-        output->error = (output->error == 0) ? ENOMEM : output->error;
-        return;
-    }
-    (void)output_write(output, text, strlen(text));
-    (void)output_write(output, "\n", 1u);
-    free(text);
-}
-
 /** The page of --report. */
 static void write_report(analysis_t *analysis, const json_t *messages) {
     report_page_t page = {.name = analysis->request.log,
@@ -203,9 +192,8 @@ void analysis_write(analysis_t *analysis) {
         write_report(analysis, messages);
     }
     if (analysis->files[ANALYSIS_WHY].is_open) {
-        json_t *why = make_why(analysis, json_incref(messages));
-        write_json(&analysis->files[ANALYSIS_WHY], why);
-        json_decref(why);
+        output_json(&analysis->files[ANALYSIS_WHY], make_why(analysis, json_incref(messages)),
+                    JSON_INDENT(1) | JSON_REAL_PRECISION(DIGITS));
     }
     if (analysis->files[ANALYSIS_TRACE].is_open) {
         trace_end(&analysis->trace, analysis->last_us);

@@ -4,7 +4,6 @@
 #include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "agv/names.h"
 #include "agv/state.h"
@@ -12,6 +11,7 @@
 #include "atlas/atlas_scenario.h"
 #include "common/interrupt.h"
 #include "io/output.h"
+#include "io/output_json.h"
 #include "ui/progress.h"
 
 enum { LOOK_FOR_SIGNALS_EVERY = 16, SHOWN_MAX = 20 };
@@ -66,35 +66,27 @@ static json_t *outcome_json(const atlas_outcome_t *outcome) {
                      (outcome->hazard == HAZARD_NONE) ? NULL : hazard_info(outcome->hazard)->name);
 }
 
-static void write_line(output_t *output, json_t *line) {
-    char *text = json_dumps(line, JSON_COMPACT);
-    if (text != NULL) {
-        (void)output_write(output, text, strlen(text));
-        (void)output_write(output, "\n", 1u);
-    }
-    free(text);
-    json_decref(line);
-}
-
 static void write_head(atlas_t *atlas) {
     const atlas_request_t *request = atlas->request;
-    write_line(&atlas->results,
-               json_pack("{s:i, s:s, s:i, s:i, s:s?, s:s?}", "atlas", 1, "version", HOST_SIM_VERSION, "shard",
-                         (int)request->shard, "shards", (int)request->shards, "first",
-                         (request->first != NULL) ? agv_fault_name(request->first->fault) : NULL, "second",
-                         (request->second != NULL) ? agv_fault_name(request->second->fault) : NULL));
+    output_json(&atlas->results,
+                json_pack("{s:i, s:s, s:i, s:i, s:s?, s:s?}", "atlas", 1, "version", HOST_SIM_VERSION, "shard",
+                          (int)request->shard, "shards", (int)request->shards, "first",
+                          (request->first != NULL) ? agv_fault_name(request->first->fault) : NULL, "second",
+                          (request->second != NULL) ? agv_fault_name(request->second->fault) : NULL),
+                JSON_COMPACT);
 }
 
 static void write_case(atlas_t *atlas, uint32_t number, const atlas_case_t *pair, const atlas_outcome_t *halves[2],
                        atlas_weakness_t weakness) {
-    write_line(&atlas->results,
-               json_pack("{s:i, s:s, s:s, s:s, s:s, s:i, s:o, s:o, s:o, s:s?}", "case", (int)number, "topology",
-                         pair->gateway ? "gateway" : "shared", "in", atlas_state_name(pair->state), "first",
-                         agv_fault_name(pair->first->fault), "second", agv_fault_name(pair->second->fault),
-                         "distance_ms", (int)ATLAS_DISTANCE_MS[pair->distance], "both",
-                         outcome_json(&atlas->play.outcome), "first_alone", outcome_json(halves[0]), "second_alone",
-                         outcome_json(halves[1]), "weaker",
-                         (weakness == ATLAS_SOUND) ? NULL : atlas_weakness_name(weakness)));
+    output_json(&atlas->results,
+                json_pack("{s:i, s:s, s:s, s:s, s:s, s:i, s:o, s:o, s:o, s:s?}", "case", (int)number, "topology",
+                          pair->gateway ? "gateway" : "shared", "in", atlas_state_name(pair->state), "first",
+                          agv_fault_name(pair->first->fault), "second", agv_fault_name(pair->second->fault),
+                          "distance_ms", (int)ATLAS_DISTANCE_MS[pair->distance], "both",
+                          outcome_json(&atlas->play.outcome), "first_alone", outcome_json(halves[0]), "second_alone",
+                          outcome_json(halves[1]), "weaker",
+                          (weakness == ATLAS_SOUND) ? NULL : atlas_weakness_name(weakness)),
+                JSON_COMPACT);
 }
 
 static void show_weak(atlas_t *atlas, uint32_t number, const atlas_case_t *pair, atlas_weakness_t weakness) {

@@ -1,13 +1,12 @@
 #include "campaign/campaign_result.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <jansson.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "agv/names.h"
 #include "common/report.h"
+#include "io/output_json.h"
 
 enum { FIRST_ROOM = 1024 };
 
@@ -46,20 +45,6 @@ campaign_sample_t campaign_sample_of(const campaign_check_t *check) {
     };
 }
 
-/** Write an object as a line. Takes the reference. */
-static void write_line(output_t *output, json_t *object) {
-    char *text = (object != NULL) ? json_dumps(object, 0) : NULL;
-    json_decref(object);
-    if (text == NULL) {
-        output->error = (output->error == 0) ? ENOMEM : output->error;
-        return;
-    }
-    const size_t length = strlen(text);
-    text[length] = '\n'; /* in the place of the terminating zero */
-    (void)output_write(output, text, length + 1u);
-    free(text);
-}
-
 static json_t *fault_or_null(int fault) {
     const char *name = ((fault >= 0) && (fault < (int)AGV_FAULT_COUNT)) ? agv_fault_name((agv_fault_t)fault) : NULL;
     return (name != NULL) ? json_string(name) : json_null();
@@ -71,12 +56,13 @@ static json_t *time_or_null(int32_t us) {
 
 void campaign_write_part(output_t *output, const campaign_part_t *part) {
     const campaign_row_t *only = part->causes.only;
-    write_line(output,
-               json_pack("{s:i, s:s, s:I, s:I, s:i, s:i, s:o, s:b, s:o}", "campaign", 1, "version", HOST_SIM_VERSION,
-                         "runs", (json_int_t)part->runs, "seed", (json_int_t)part->seed, "shard", (int)part->shard,
-                         "shards", (int)part->shards, "fault", fault_or_null((only != NULL) ? (int)only->fault : -1),
-                         "newly_engaged", (int)part->causes.newly_engaged, "planted",
-                         json_null() /* kept for results of older versions */));
+    output_json(output,
+                json_pack("{s:i, s:s, s:I, s:I, s:i, s:i, s:o, s:b, s:o}", "campaign", 1, "version", HOST_SIM_VERSION,
+                          "runs", (json_int_t)part->runs, "seed", (json_int_t)part->seed, "shard", (int)part->shard,
+                          "shards", (int)part->shards, "fault", fault_or_null((only != NULL) ? (int)only->fault : -1),
+                          "newly_engaged", (int)part->causes.newly_engaged, "planted",
+                          json_null() /* kept for results of older versions */),
+                0u);
 }
 
 void campaign_write_run(output_t *output, const campaign_check_t *check) {
@@ -97,5 +83,5 @@ void campaign_write_run(output_t *output, const campaign_check_t *check) {
     (void)json_object_set_new(object, "reason", fault_or_null(check->reason));
     (void)json_object_set_new(object, "broken",
                               sample.broken ? json_string(campaign_break_name(check->broken)) : json_null());
-    write_line(output, object);
+    output_json(output, object, 0u);
 }

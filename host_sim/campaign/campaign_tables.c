@@ -1,12 +1,10 @@
 /* The tables that the reaction times follow from, as the code has them, for scripts/tools/reaction-time.py. */
-#include <errno.h>
 #include <jansson.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "agv/names.h"
 #include "campaign/campaign_rows.h"
 #include "hal_sim/sim_bus.h"
+#include "io/output_json.h"
 #include "vehicle/vehicle.h"
 
 static json_t *messages(void) {
@@ -105,13 +103,6 @@ bool campaign_print_tables(output_t *output) {
                   "standard_bits", frame_bits(false), "extended_bits", frame_bits(true), "interframe_bits",
                   (int)SIM_BUS_INTERFRAME_BITS, "suspend_bits", (int)SIM_BUS_SUSPEND_BITS, "error_bits",
                   (int)SIM_BUS_ERROR_BITS, "recovery_sequences", (int)SIM_BUS_RECOVERY_SEQUENCES);
-    char *text = (all != NULL) ? json_dumps(all, JSON_INDENT(1)) : NULL;
-    json_decref(all);
-    if (text == NULL) {
-        output->error = ENOMEM;
-        return false;
-    }
-    (void)output_write(output, text, strlen(text));
-    free(text);
-    return output_write(output, "\n", 1u);
+    output_json(output, all, JSON_INDENT(1));
+    return output->error == 0;
 }

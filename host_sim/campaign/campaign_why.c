@@ -1,11 +1,8 @@
 #include "campaign/campaign_why.h"
 
-#include <errno.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "agv/names.h"
 #include "common/report.h"
+#include "io/output_json.h"
 #include "text/units.h"
 
 bool campaign_why_init(campaign_why_t *why, const agv_config_t *config) {
@@ -53,15 +50,7 @@ void campaign_why_write(campaign_why_t *why, output_t *output, const campaign_pl
         json_pack("{s:I, s:s, s:b, s:i, s:i, s:i, s:o}", "run", (json_int_t)plan->run, "fault",
                   agv_fault_name(plan->row->fault), "gateway", (int)plan->gateway, "steps_ms", (int)plan->steps_ms,
                   "cause_ms", (int)plan->cause_ms, "engage_ms", (int)plan->engage_ms, "trips", trips_of(why->why));
-    char *text = (line != NULL) ? json_dumps(line, 0) : NULL;
-    json_decref(line);
-    if (text == NULL) {
-        output->error = (output->error == 0) ? ENOMEM : output->error;
-        return;
-    }
-    (void)output_write(output, text, strlen(text));
-    (void)output_write(output, "\n", 1u);
-    free(text);
+    output_json(output, line, 0u);
 }
 
 void campaign_why_free(campaign_why_t *why) {

@@ -1,6 +1,5 @@
 #include "io/events.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <jansson.h>
 #include <stdio.h>
@@ -10,20 +9,7 @@
 #include "agv/recorder.h"
 #include "common/crash.h"
 #include "common/json_build.h"
-
-/** Write an object as a line. Takes the reference. */
-static void write_line(output_t *output, json_t *object) {
-    char *text = json_dumps(object, 0);
-    json_decref(object);
-    if (text == NULL) {
-        output->error = (output->error == 0) ? ENOMEM : output->error;
-        return;
-    }
-    size_t length = strlen(text);
-    text[length] = '\n'; /* in the place of the terminating zero */
-    (void)output_write(output, text, length + 1u);
-    free(text);
-}
+#include "io/output_json.h"
 
 /** The words of all bits that are set. @param name word of a bit; NULL: there are no further bits */
 static json_t *words_of(const char *(*name)(uint8_t bit), uint16_t bits) {
@@ -103,7 +89,7 @@ static void write_recorded(output_t *output, uint64_t t_ms, const agv_event_t *e
     default:
         return;
     }
-    write_line(output, object);
+    output_json(output, object, 0u);
 }
 
 void events_write(void *ctx, const session_event_t *event) {
@@ -111,7 +97,7 @@ void events_write(void *ctx, const session_event_t *event) {
     if (event->is_led) {
         json_t *object = start(event->t_ms, "led");
         json_put(object, "code", json_integer(event->led_code));
-        write_line(output, object);
+        output_json(output, object, 0u);
     } else {
         write_recorded(output, event->t_ms, &event->recorded);
     }
@@ -147,5 +133,5 @@ void events_write_summary(output_t *output, const events_summary_t *summary) {
     json_put(object, "backward_stamps", json_uint(summary->backward_stamps));
     json_put(object, "final_state", json_text(agv_state_name(summary->final_state)));
     json_put(object, "first_reason", json_text(agv_fault_name(summary->first_reason)));
-    write_line(output, object);
+    output_json(output, object, 0u);
 }

@@ -14,6 +14,7 @@
 #include "io/store_file.h"
 #include "logs/candump_log.h"
 #include "logs/error_frame.h"
+#include "logs/log_sides.h"
 #include "logs/sent_log.h"
 #include "replay/replay_heard.h"
 #include "replay/replay_text.h"
@@ -290,16 +291,7 @@ static bool run(replay_t *replay) {
 
 static bool check_request(const replay_request_t *request) {
     const bool is_gateway = request->config.topology == AGV_TOPOLOGY_GATEWAY;
-    if (is_gateway && (request->ai_interface == NULL)) {
-        return report("the gateway topology needs --ai-if: which interface of the log is the AI side");
-    }
-    if (!is_gateway && (request->ai_interface != NULL)) {
-        return report("--ai-if needs --topology gateway: a shared bus has no AI side");
-    }
-    if ((request->ai_interface != NULL) && (strlen(request->ai_interface) > CANDUMP_INTERFACE_MAX)) {
-        return report("--ai-if: '%s' is too long for an interface name", request->ai_interface);
-    }
-    return true;
+    return log_sides_check(is_gateway, request->ai_interface);
 }
 
 static bool make_analysis(replay_t *replay) {

@@ -10,7 +10,7 @@
 #include "cli/options.h"
 #include "config/config_options.h"
 #include "io/output.h"
-#include "logs/candump_line.h"
+#include "logs/log_sides.h"
 #include "monitor/inputs/monitor_run.h"
 
 #define SPEED_LOWEST 0.01
@@ -105,16 +105,7 @@ static bool check_log(const given_t *given) {
     if (request->record != NULL) {
         return report("--record needs --can: a log is recorded already");
     }
-    if (is_gateway && (request->ai_interface == NULL)) {
-        return report("the gateway topology needs --ai-if: which interface of the log is the AI side");
-    }
-    if (!is_gateway && (request->ai_interface != NULL)) {
-        return report("--ai-if needs --topology gateway: a shared bus has no AI side");
-    }
-    if ((request->ai_interface != NULL) && (strlen(request->ai_interface) > CANDUMP_INTERFACE_MAX)) {
-        return report("--ai-if: '%s' is too long for an interface name", request->ai_interface);
-    }
-    return true;
+    return log_sides_check(is_gateway, request->ai_interface);
 }
 
 static bool check_bus(const given_t *given) {
