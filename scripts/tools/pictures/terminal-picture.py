@@ -35,8 +35,11 @@ def capture(width, height, text, command):
                 if time.monotonic() > end:
                     sys.exit(f"terminal-picture: no '{text}' on the screen")
                 time.sleep(0.1)
-            time.sleep(0.3)
-            return tmux("capture-pane", "-p", "-e", "-N").split("\n")
+            before, screen = None, ""
+            while screen != before:  # the program may still be drawing
+                time.sleep(0.3)
+                before, screen = screen, tmux("capture-pane", "-p", "-e", "-N")
+            return screen.split("\n")
         finally:
             tmux("kill-server")
 
@@ -85,10 +88,11 @@ def draw(lines, width, height):
                 out.append(f'<rect x="{x}" y="{y}" width="{length}" height="{CELL_HEIGHT}" fill="{colour}"/>')
                 colour = BACKGROUND
             out += blocks(text, column, y, colour)
-            shown = re.sub("[\u2588-\u258f ]", "\u00a0", text)  # blanks would be collapsed
-            if shown.strip("\u00a0"):
+            # Blanks would be collapsed. Those at the end depend on what was drawn there before.
+            shown = re.sub("[\u2588-\u258f ]", "\u00a0", text).rstrip("\u00a0")
+            if shown:
                 weight = ' font-weight="bold"' if how.get(1) else ""
-                out.append(f'<text x="{x}" y="{y + BASELINE}" textLength="{length}" fill="{colour}"{weight}>'
+                out.append(f'<text x="{x}" y="{y + BASELINE}" textLength="{len(shown) * CELL_WIDTH}" fill="{colour}"{weight}>'
                            f'{html.escape(shown, quote=False)}</text>')
     return "\n".join(out) + "\n</svg>\n"
 
