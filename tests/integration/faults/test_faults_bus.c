@@ -203,6 +203,23 @@ void test_receive_overrun(void) {
     expect_silence(&f);
 }
 
+/* Corrupted memory is found, and the supervisor begins anew: what the controllers counted before is no new overrun. */
+/* Shows: SUP-7, INT-5, RX_OVERRUN */
+void test_an_overrun_before_a_corruption_is_not_raised_again(void) {
+    for (unsigned side = 0; side < 2; side++) {
+        fixture_init(&f);
+        f.config.topology = AGV_TOPOLOGY_GATEWAY;
+        fixture_standby(&f);
+        sim_hal_add_overrun(&f.hal, (hal_can_side_t)side);
+        expect_fault_after(&f, 1, AGV_FAULT_RX_OVERRUN, true);
+        expect_fault_after(&f, 1000, AGV_FAULT_RX_OVERRUN, false);
+        ((uint8_t *)&f.supervisor)[sizeof f.supervisor / 2u] ^= 0x01u;
+        expect_tripped_after(&f, 1, AGV_FAULT_MEMORY_CORRUPTED);
+        expect_fault_after(&f, 10, AGV_FAULT_RX_OVERRUN, false);
+        TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_RX_OVERRUN));
+    }
+}
+
 /* Shows: SUP-7, ERROR_PASSIVE */
 void test_error_passive(void) {
     fixture_active(&f);

@@ -240,6 +240,36 @@ void test_manual_withdraws_an_angle_that_waits_in_a_stalled_transmitter(void) {
     }
 }
 
+/* The status frame that the controller accepted last is withdrawn with the angle, so it is sent again. */
+/* Shows: FSM-10, TOP-3 */
+void test_a_status_frame_that_is_withdrawn_with_the_angle_is_sent_again(void) {
+    trip_at(9123);
+    sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101);
+    const uint32_t before = f.status_count;
+    while (f.status_count == before) {
+        fixture_run(&f, 1);
+    }
+    const uint32_t purged = purges();
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    TEST_ASSERT_EQUAL_UINT32(purged + 1, purges());
+    fixture_run(&f, 1);
+    TEST_ASSERT_EQUAL_UINT32(before + 2, f.status_count);
+}
+
+/* An angle that waits in a stalled transmitter for 2 s is withdrawn: later it would turn the wheels back. */
+/* Shows: FSM-10, SUP-7, TX_STALLED */
+void test_an_angle_that_waits_in_a_stalled_transmitter_for_2_s_is_withdrawn(void) {
+    trip_at(9123);
+    fixture_run(&f, 100);
+    sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101);
+    const uint32_t purged = purges();
+    fixture_run(&f, 1950);
+    TEST_ASSERT_EQUAL_UINT32(purged, purges());
+    fixture_run(&f, 100);
+    TEST_ASSERT_EQUAL_UINT32(purged + 1, purges());
+}
+
 /* The transmitter accepts nothing for a time, in which the wheels turn. */
 static void expect_held_after(uint32_t full_ms, uint16_t held) {
     trip_at(9123);
@@ -258,6 +288,32 @@ void test_an_angle_that_cannot_leave_for_2_s_is_taken_anew(void) {
     expect_held_after(1900, 9123);
     fixture_init(&f);
     expect_held_after(2050, 8700);
+}
+
+/*
+ * A 065h leaves, and the next one is discarded by a bus-off. When that ends, the transmitter accepts nothing for a while.
+ * In this time the wheels turn.
+ */
+static void expect_held_after_bus_off(uint32_t unsent_ms, uint16_t held) {
+    fixture_init(&f);
+    trip_at(9123);
+    fixture_run(&f, 50); /* 065h at 25 and 50; the first has left */
+    fixture_angle(&f, 8700);
+    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
+    fixture_run(&f, 1000);
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
+    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
+    fixture_run(&f, unsent_ms - 1000 - 24); /* the first left with the tick at 26 */
+    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
+    fixture_run(&f, 100);
+    expect_held_for_a_second(held);
+}
+
+/* What a bus-off discards has not left: the 2 s run on. */
+/* Shows: FSM-10, SUP-7, BUS_OFF */
+void test_an_angle_that_a_bus_off_discards_has_not_left(void) {
+    expect_held_after_bus_off(1990, 9123);
+    expect_held_after_bus_off(2012, 8700);
 }
 
 /* ---- The age of the angle ---- */

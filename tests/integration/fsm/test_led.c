@@ -125,6 +125,30 @@ void test_a_latch_that_was_kept_through_a_restart_is_shown(void) {
     expect_led_after(&f, 5000, 8);
 }
 
+/* The AI side's bus-off, a trip by choice, outlives the reset and trips with the engagement. It ends in the next tick. */
+/* Shows: LED-1, FSM-11, AI_BUS_OFF */
+void test_a_trip_of_one_instant_is_shown(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    f.config.ai_lost_in_manual = AGV_AI_LOST_TRIP;
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_AI_BUS_OFF, true);
+    f.long_run = true;
+    fixture_active(&f);
+    walk_trip(&f);
+    fixture_vehicle_confirms(&f);
+    sim_hal_set_can_state(&f.hal, HAL_CAN_AI, HAL_CAN_BUS_OFF);
+    expect_state_after(&f, 1000, AGV_STATE_SAFE);
+    fixture_press(&f, 1050);
+    expect_state(&f, AGV_STATE_STANDBY);
+    expect_led_after(&f, 500, 14);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_tripped(&f, AGV_FAULT_AI_BUS_OFF);
+    sim_hal_set_can_state(&f.hal, HAL_CAN_AI, HAL_CAN_ERROR_ACTIVE);
+    fixture_jump(&f, 1); /* no frame in between */
+    expect_fault(&f, AGV_FAULT_AI_BUS_OFF, false);
+    expect_led_after(&f, 100, 14);
+}
+
 /* Of several trips the upper row is shown, even if it came later. A latched trip counts as active. */
 /* Shows: LED-1 */
 void test_of_two_trips_the_upper_row_is_shown(void) {

@@ -84,11 +84,13 @@ void test_the_safety_output_is_recorded_when_it_closes_and_opens(void) {
     TEST_ASSERT_EQUAL_UINT32(f.now_ms, event.time_ms);
     TEST_ASSERT_EQUAL_HEX8(AGV_STATE_STANDBY, event.state);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_events(&f, AGV_EVENT_OUTPUT, 0, ANY, &event)); /* at the start */
+    TEST_ASSERT_EQUAL_UINT8(0, event.b);                                               /* no further parameter */
+    TEST_ASSERT_EQUAL_UINT8(0, event.c);
     sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
     fixture_run(&f, 500);
     TEST_ASSERT_EQUAL_UINT32(2, fixture_events(&f, AGV_EVENT_OUTPUT, 0, ANY, &event));
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_BUS_OFF, event.first_reason);
-    TEST_ASSERT_EQUAL_UINT8(0, event.b); /* no further parameter */
+    TEST_ASSERT_EQUAL_UINT8(0, event.b);
     TEST_ASSERT_EQUAL_UINT8(0, event.c);
 }
 

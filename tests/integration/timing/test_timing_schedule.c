@@ -167,3 +167,16 @@ void test_one_skipped_slot_is_counted(void) {
     fixture_jump(&f, 60);
     TEST_ASSERT_EQUAL_UINT32(before + 1, agv_supervisor_counters(&f.supervisor)->skipped_slots);
 }
+
+/* So is one in bus-off, in which nothing is sent. */
+/* Shows: TIM-1, SUP-7 */
+void test_a_slot_that_a_late_step_skips_in_bus_off_is_counted(void) {
+    f.config.eps_heartbeat_timeout_ms = 100;
+    f.config.eps_status_timeout_ms = 100;
+    walk_to_tripped(&f);
+    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
+    fixture_run(&f, 1);
+    const uint32_t before = skipped();
+    fixture_jump(&f, 59);
+    TEST_ASSERT_EQUAL_UINT32(before + 1, skipped());
+}

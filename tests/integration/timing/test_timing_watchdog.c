@@ -31,6 +31,19 @@ void test_the_watchdog_is_not_fed_without_the_receive_path(void) {
     TEST_ASSERT_FALSE(f.hal.safety_output.on);
 }
 
+/* Never since the start, on a board without a hardware watchdog: STANDBY does not close the output. */
+/* Shows: TIM-3, FSM-4 */
+void test_the_output_stays_open_without_the_receive_path(void) {
+    f.receive_path_dead = true;
+    fixture_start(&f);
+    f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF;
+    (void)walk_until(&f, AGV_STATE_STANDBY, 1000);
+    expect_output(&f, false);
+    fixture_run(&f, 500);
+    expect_output(&f, false);
+    TEST_ASSERT_EQUAL_UINT32(0, f.hal.safety_output.changes);
+}
+
 /* Shows: TIM-3 */
 void test_the_watchdog_is_not_fed_without_the_step(void) {
     fixture_standby(&f);

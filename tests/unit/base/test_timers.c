@@ -218,6 +218,13 @@ void test_a_reached_timer_stays_reached_over_a_full_wrap_of_the_clock(void) {
     }
 }
 
+/* 7FFFFFFFh ms are 24.8 days without a call. */
+/* Shows: TIM-2 */
+void test_a_timer_is_reached_after_half_the_range_of_the_clock(void) {
+    begin(DURATION, 7);
+    TEST_ASSERT_TRUE(reached(DURATION, 7 + 0x7FFFFFFFu));
+}
+
 /* An old stamp of a frame does not reset a reached timer. */
 void test_a_reached_timer_stays_reached_after_an_old_stamp(void) {
     begin(DURATION, 0);

@@ -406,10 +406,12 @@ void test_the_flash_is_written_at_most_once_a_second_on_average_over_a_minute(vo
 /* Shows: INT-3 */
 void test_a_late_step_earns_a_second_of_flash_at_most(void) {
     walk_to_standby();
+    const uint16_t earned_ms = core->store_credit_ms;
     now_ms += 5000;
     tick();
     TEST_ASSERT_EQUAL(AGV_STATE_TRIPPED, agv_supervisor_state(&supervisor));
     TEST_ASSERT_EQUAL_UINT8(1, core->store_credits);
+    TEST_ASSERT_EQUAL_UINT16(earned_ms, core->store_credit_ms);
     TEST_ASSERT_EQUAL_UINT(0, written);
 }
 

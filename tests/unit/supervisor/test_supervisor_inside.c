@@ -65,12 +65,15 @@ void test_a_frame_of_its_own_that_the_gate_refuses_trips(void) {
 /* 168h has the identifier of 43Fh, so the gate checks it as 43Fh: P is not sent. */
 /* Shows: INT-4, FSM-9, SELF_TEST_FAILED */
 void test_a_gate_that_refuses_p_fails_the_self_test(void) {
+    agv_event_t event;
     fixture_start(&f);
     fixture_forget_sent(&f);
     core->config.id_gear_command = 0x43F;
     begin();
     expect_state(&f, AGV_STATE_TRIPPED);
     expect_reason(&f, AGV_FAULT_SELF_TEST_FAILED);
+    TEST_ASSERT_TRUE(fixture_last_raised(&f, AGV_FAULT_SELF_TEST_FAILED, &event));
+    TEST_ASSERT_EQUAL_HEX16(HAL_SELF_TEST_CORE, event.missing); /* this part alone */
     expect_output(&f, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x43F)); /* the status frame, not P */
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
@@ -99,6 +102,34 @@ void test_an_intact_configuration_is_kept(void) {
     fixture_run(&f, 1);
     expect_reason(&f, AGV_FAULT_MEMORY_CORRUPTED);
     TEST_ASSERT_EQUAL_UINT16(200, agv_supervisor_config(&f.supervisor)->tx_stalled_ms);
+}
+
+/* Corrupted memory is no restart: SUPERVISOR_RESET is not raised. */
+/* Shows: FSM-7, INT-5, MEMORY_CORRUPTED */
+void test_corrupted_memory_raises_no_other_fault(void) {
+    fixture_standby(&f);
+    core->vehicle.angle_raw ^= 1;
+    fixture_send_now(&f, AGV_MSG_STEERING_POSITION);
+    const agv_fault_set_t active = agv_supervisor_active_faults(&f.supervisor);
+    for (unsigned fault = 0; fault < AGV_FAULT_COUNT; fault++) {
+        TEST_ASSERT_EQUAL(fault == AGV_FAULT_MEMORY_CORRUPTED, agv_fault_is_in(&active, fault));
+    }
+}
+
+/* A flipped bit may start any timer, that of a bus-off too. In the frame that detects it the safe commands go out. */
+/* Shows: INT-5, FSM-2, MEMORY_CORRUPTED */
+void test_a_timer_that_a_flipped_bit_starts_holds_no_safe_command_back(void) {
+    fixture_standby(&f);
+    const agv_supervisor_t healthy = f.supervisor;
+    for (unsigned i = 0; i < 8 * AGV_TIMER_COUNT; i++) {
+        f.supervisor = healthy;
+        sim_store_init(&f.store);
+        fixture_forget_sent(&f);
+        core->timers.phase[i / 8] ^= (uint8_t)(1u << (i % 8));
+        fixture_send_now(&f, AGV_MSG_STEERING_POSITION);
+        expect_tripped(&f, AGV_FAULT_MEMORY_CORRUPTED);
+        expect_safe_commands(&f, f.call, NO_HOLD);
+    }
 }
 
 /* An unresettable fault must outlive the next reset, although the state does not change any more. */

@@ -201,9 +201,11 @@ void test_what_was_answered_or_discarded_does_not_wait(void) {
     }
 }
 
-/* 18 days without a step: 60000000h ms are 16106127 cycles of 100 ms and 36 ms. */
+/* 18 and 24.8 days without a step: 60000000h ms are 16106127 cycles of 100 ms and 36 ms, 7FFFFFFFh ms 21474836 and 47. */
 /* Shows: TIM-1 */
-void test_a_slot_that_is_very_late_is_due(void) {
+TEST_CASE(0x60000000, 16106128)
+TEST_CASE(0x7FFFFFFF, 21474837)
+void test_a_slot_that_is_very_late_is_due(uint32_t late_ms, uint32_t slots) {
     restart(0);
-    TEST_ASSERT_EQUAL_UINT32(16106128, agv_scheduler_due(&scheduler, 100u + 0x60000000u, AGV_MSG_TURN_SIGNAL_COMMAND));
+    TEST_ASSERT_EQUAL_UINT32(slots, agv_scheduler_due(&scheduler, 100u + late_ms, AGV_MSG_TURN_SIGNAL_COMMAND));
 }

@@ -159,6 +159,20 @@ void test_an_own_command_waits_and_is_stalled(void) {
     TEST_ASSERT_TRUE(did.hold_sent);
 }
 
+/* Also when it waits alone, as 43Fh does in a gateway in manual. */
+/* Shows: SUP-7, TX_STALLED */
+TEST_CASE(AGV_MSG_TURN_SIGNAL_COMMAND)
+TEST_CASE(AGV_MSG_GEAR_COMMAND)
+TEST_CASE(AGV_MSG_THROTTLE_COMMAND)
+TEST_CASE(AGV_MSG_STEERING_COMMAND)
+void test_each_command_that_waits_is_stalled(unsigned command) {
+    be_gateway();
+    hal_takes = false;
+    pass(command, (command == AGV_MSG_GEAR_COMMAND) ? DRIVE : ZEROS);
+    EXPECT_STALLED_AFTER(100, false);
+    EXPECT_STALLED_AFTER(1, true);
+}
+
 /* A frame that is no longer wanted does not wait any more. */
 void test_a_command_that_is_not_wanted_any_more_is_not_stalled(void) {
     hal_takes = false;
@@ -496,4 +510,31 @@ void test_within_5_ms_the_override_waits_and_is_sent_by_a_tick(void) {
     EXPECT_COUNT_AFTER(3, 1);
     EXPECT_COUNT_AFTER(1, 2);
     expect_sent(1, HAL_CAN_VEHICLE, 0x168, PARK);
+}
+
+/* The queue is full: the override is tried again, and also answers a frame that came within its 5 ms. */
+/* Shows: TOP-1 */
+void test_an_override_that_waits_for_the_hal_answers_what_comes_meanwhile(void) {
+    burst();
+    sent_count = 0;
+    hal_takes = false;
+    answer(AGV_MSG_GEAR_COMMAND, DRIVE);
+    tick(1);
+    answer(AGV_MSG_GEAR_COMMAND, DRIVE);
+    hal_takes = true;
+    EXPECT_COUNT_AFTER(1, 1);
+    expect_sent(0, HAL_CAN_VEHICLE, 0x168, PARK);
+    EXPECT_COUNT_AFTER(10, 1);
+}
+
+/* Shows: SUP-7, FSM-2 */
+void test_an_override_that_waits_is_discarded_too(void) {
+    burst();
+    sent_count = 0;
+    tick(1);
+    answer(AGV_MSG_GEAR_COMMAND, DRIVE);
+    tick(1);
+    answer(AGV_MSG_GEAR_COMMAND, DRIVE);
+    discard(HAL_CAN_VEHICLE);
+    EXPECT_COUNT_AFTER(10, 1);
 }

@@ -147,9 +147,34 @@ void test_there_is_no_status_frame_in_bus_off(void) {
 /* Shows: TOP-3 */
 void test_before_the_first_status_frame_none_is_sent_again(void) {
     with_status_frame();
-    transmitter.status_due_ms = timers.now_ms + 50;
+    agv_timers_set_time(&timers, 0); /* the time in zeroed memory */
+    agv_transmitter_start(&transmitter, 0);
+    transmitter.status_due_ms = 50;
     discard(HAL_CAN_VEHICLE);
     EXPECT_COUNT_AFTER(49, 0);
+}
+
+/* Shows: TOP-3, FSM-2, SUP-7 */
+void test_a_status_frame_that_waits_is_discarded(void) {
+    with_status_frame();
+    hal_takes = false;
+    agv_transmitter_status(&transmitter, &orders);
+    tick(60);
+    discard(HAL_CAN_VEHICLE);
+    hal_takes = true;
+    EXPECT_COUNT_AFTER(39, 0);
+    EXPECT_COUNT_AFTER(1, 1); /* on its grid */
+}
+
+/* 18 and 24.8 days without a step. */
+/* Shows: TOP-3, TIM-1 */
+TEST_CASE(0x60000000)
+TEST_CASE(0x7FFFFFFF)
+void test_a_status_frame_that_is_very_late_is_due(uint32_t late_ms) {
+    with_status_frame();
+    agv_timers_set_time(&timers, timers.now_ms + late_ms);
+    agv_transmitter_status(&transmitter, &orders);
+    TEST_ASSERT_EQUAL_UINT(1, sent_count);
 }
 
 /* A status frame passed to the HAL up to 2 ms before waiting frames are discarded may be lost, so it is sent again. */
