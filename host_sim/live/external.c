@@ -48,6 +48,7 @@ struct external {
     linux_can_t rx_sockets[HAL_CAN_SIDES];
     frames_t heard;   /**< up to the last external_listen(); the next one knows the sender */
     frames_t vehicle; /**< frames of the vehicle that are not found in `heard` yet */
+    frames_t sent;    /**< by the program, not reported yet */
 };
 
 static bool add(frames_t *frames, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t at_us) {
@@ -80,14 +81,46 @@ static bool is_of_vehicle(external_t *external, const heard_t *heard) {
     return false;
 }
 
-static void report_frames(external_t *external) {
+static bool too_many_frames(const external_t *external) {
+    return report("more than %d frames at once from '%s'", (int)FRAMES_MAX, external->config.command);
+}
+
+/** Of what was heard, keep what it has sent. @return false: reported */
+static bool sort_frames(external_t *external) {
     for (size_t i = 0u; i < external->heard.count; i++) {
         const heard_t *heard = &external->heard.items[i];
-        if (!is_of_vehicle(external, heard)) {
-            external->config.on_sent(external->config.ctx, heard->side, &heard->frame, heard->at_us);
+        if (!is_of_vehicle(external, heard) && !add(&external->sent, heard->side, &heard->frame, heard->at_us)) {
+            return too_many_frames(external);
         }
     }
     external->heard.count = 0u;
+    return true;
+}
+
+/** Report the frames up to this time. */
+static void report_frames(external_t *external, uint64_t until_us) {
+    frames_t *sent = &external->sent;
+    size_t count = 0u;
+    while ((count < sent->count) && (sent->items[count].at_us <= until_us)) {
+        const heard_t *frame = &sent->items[count];
+        external->config.on_sent(external->config.ctx, frame->side, &frame->frame, frame->at_us);
+        count++;
+    }
+    sent->count -= count;
+    memmove(sent->items, &sent->items[count], sent->count * sizeof sent->items[0]);
+}
+
+/** @return false: reported */
+static bool report_old_frames(external_t *external) {
+    const uint64_t now_us = linux_clock_now_us(external->config.clock);
+    const uint64_t delay_us = external->config.delay_us;
+    if (!sort_frames(external)) {
+        return false;
+    }
+    if (now_us >= delay_us) {
+        report_frames(external, now_us - delay_us);
+    }
+    return true;
 }
 
 /** @return false: more frames than there is room for, and a lost one could be the one that must not be; reported */
@@ -97,7 +130,7 @@ static bool receive_frames(external_t *external, hal_can_side_t side) {
            (linux_can_read(&external->rx_sockets[side], &record) == LINUX_CAN_RECORD)) {
         const uint64_t at_us = linux_clock_of_stamp(external->config.clock, record.stamp_us);
         if (!add(&external->heard, side, &record.frame, at_us)) {
-            return report("more than %d frames at once from '%s'", (int)FRAMES_MAX, external->config.command);
+            return too_many_frames(external);
         }
     }
     return true;
@@ -239,8 +272,12 @@ void external_vehicle_sent(external_t *external, hal_can_side_t side, const hal_
 }
 
 bool external_listen(external_t *external) {
-    report_frames(external);
-    return receive_frames(external, HAL_CAN_VEHICLE) && receive_frames(external, HAL_CAN_AI) && read_output(external);
+    return report_old_frames(external) && receive_frames(external, HAL_CAN_VEHICLE) &&
+           receive_frames(external, HAL_CAN_AI) && read_output(external);
+}
+
+void external_finish(external_t *external) {
+    report_frames(external, UINT64_MAX);
 }
 
 bool external_output_closed(const external_t *external) {

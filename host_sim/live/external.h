@@ -23,6 +23,7 @@ typedef struct {
     const char *command;                   /**< for the shell */
     const char *interfaces[HAL_CAN_SIDES]; /**< the AI side: NULL on the shared bus */
     const linux_clock_t *clock;            /**< of all times */
+    uint64_t delay_us; /**< frames are reported so late: the event that comes with a frame is read after it */
     session_observer_fn *on_event;
     node_sent_fn *on_sent; /**< at_us by the clock */
     void *ctx;             /**< of both */
@@ -51,6 +52,9 @@ bool external_listen(external_t *external);
 
 /** Whether the last event of its safety output was "closed". */
 bool external_output_closed(const external_t *external);
+
+/** Report the frames that are not reported yet. */
+void external_finish(external_t *external);
 
 /** Stop it, and listen no more; NULL: nothing. */
 void external_close(external_t *external);

@@ -89,6 +89,7 @@ static bool open_external(run_t *run) {
         .interfaces =
             {[HAL_CAN_VEHICLE] = interface_of(run, HAL_CAN_VEHICLE), [HAL_CAN_AI] = interface_of(run, HAL_CAN_AI)},
         .clock = &run->clock,
+        .delay_us = (uint64_t)run->bus->tolerance_ms * US_PER_MS,
         .on_event = on_event,
         .on_sent = on_sent,
         .ctx = run,
@@ -346,6 +347,9 @@ bool scenario_bus_play(const scenario_bus_t *bus, scenario_check_t *check, const
     bool good = prepare(&run);
     while (good && (now_ms(&run) <= run.scenario->duration_ms)) {
         good = advance(&run);
+    }
+    if (good && (run.external != NULL)) {
+        external_finish(run.external);
     }
     close_run(&run);
     if (good) {

@@ -188,13 +188,15 @@ const char *scenario_bus_leaves_out(const scenario_bus_t *bus, const scenario_t 
 
 /** An event is expected within it. */
 static void widen(scenario_window_t *window, uint32_t by_ms) {
+    window->early = (window->from < by_ms) ? by_ms - window->from : 0u;
     window->from = (window->from > by_ms) ? window->from - by_ms : 0u;
     window->to = (window->to < UINT32_MAX - by_ms) ? window->to + by_ms : UINT32_MAX;
 }
 
 /** A condition holds throughout it. One that is shorter than twice the tolerance is not evaluated. */
 static void narrow(scenario_window_t *window, uint32_t by_ms, uint32_t end_ms) {
-    window->from += (window->from > 0u) ? by_ms : 0u;
+    const bool from_start = (window->from == 0u) && (window->after.kind == (uint8_t)SCENARIO_FROM_START);
+    window->from += from_start ? 0u : by_ms;
     window->to -= ((window->to < end_ms) && (window->to > by_ms)) ? by_ms : 0u;
     if (window->from > window->to) {
         *window = (scenario_window_t){.from = UINT32_MAX, .to = 0u};

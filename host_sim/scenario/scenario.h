@@ -36,6 +36,7 @@
 typedef struct {
     uint32_t from;
     uint32_t to;
+    uint32_t early; /**< it begins so long before the anchor: a tolerance; `from` is 0 then */
     scenario_anchor_t after;
 } scenario_window_t;
 

@@ -31,6 +31,7 @@ static void resolve(const scenario_events_t *events, scenario_window_t *window) 
 
     if (scenario_check_waits(*window) && scenario_events_find(events, window->after, &event_ms)) {
         window->from += (uint32_t)event_ms;
+        window->from -= (window->early < window->from) ? window->early : window->from;
         window->to = (window->to < UINT32_MAX - (uint32_t)event_ms) ? window->to + (uint32_t)event_ms : UINT32_MAX;
         window->after = (scenario_anchor_t){0};
     }

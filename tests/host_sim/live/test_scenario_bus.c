@@ -124,6 +124,26 @@ void test_moments_are_widened(void) {
     is_window(expect->startups.items[0].at_ms, 650u, 750u);
 }
 
+/* The event of another program is read after the frames that come with it. */
+void test_moments_after_an_event_are_widened_to_before_it(void) {
+    read_scenario(BEGIN "expect:\n  states: [{to: INIT, at_ms: 0}, {to: SAFE, after: trip, within: [40, 60]}]\n"
+                        "  frames: [{id: 168h, after: trip, within: 2}, {id: 43Fh, after: trip, within: [70, 90]}]\n");
+    scenario_bus_tolerate(&virtual_bus, &scenario);
+    const scenario_expect_t *expect = &scenario.expect;
+    is_window(expect->states.items[1].at_ms, 0u, 110u);
+    TEST_ASSERT_EQUAL_UINT32(10u, expect->states.items[1].at_ms.early);
+    is_window(expect->frames.items[0].at_ms, 0u, 52u);
+    TEST_ASSERT_EQUAL_UINT32(50u, expect->frames.items[0].at_ms.early);
+    is_window(expect->frames.items[1].at_ms, 20u, 140u);
+    TEST_ASSERT_EQUAL_UINT32(0u, expect->frames.items[1].at_ms.early);
+}
+
+void test_what_lasts_after_an_event_is_narrowed_on_both_sides(void) {
+    read_scenario(BEGIN "expect:\n  states: any\n  never: [{id: 168h, after: trip, within: 200}]\n");
+    scenario_bus_tolerate(&virtual_bus, &scenario);
+    is_window(scenario.expect.never.items[0].at_ms, 50u, 150u);
+}
+
 void test_what_lasts_is_narrowed_but_for_the_ends_of_the_run(void) {
     read_scenario(
         BEGIN "expect:\n  states: []\n  led:\n    - {code: 0, at_ms: [0, 1000]}\n    - {code: 1, at_ms: [100, 300]}\n"

@@ -168,6 +168,24 @@ void test_a_frame_within_a_time_after_the_trip(void) {
     expect_failure(NULL);
 }
 
+/* With a tolerance of 50 ms, "within: [2, 5]" is 48 ms before the trip to 55 ms after it. */
+static void tolerated(uint32_t sent_ms, const char *failure) {
+    begin(FRAME);
+    check.expect.frames.items[0].at_ms.from = 0u;
+    check.expect.frames.items[0].at_ms.to = 55u;
+    check.expect.frames.items[0].at_ms.early = 48u;
+    trip(100u);
+    gear_frame(sent_ms, 8u);
+    expect_failure(failure);
+}
+
+void test_a_tolerance_begins_before_the_trip(void) {
+    tolerated(51u, "line 6: 168h is expected at least 1 times in 52..155 ms, seen: 0 (one at 51 ms)");
+    tolerated(52u, NULL);
+    tolerated(155u, NULL);
+    tolerated(156u, "line 6: 168h is expected at least 1 times in 52..155 ms, seen: 0 (one at 156 ms)");
+}
+
 void test_a_frame_too_late_after_the_trip(void) {
     begin(FRAME);
     trip(100u);
