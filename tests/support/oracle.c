@@ -54,8 +54,11 @@ static void hold(oracle_t *oracle) {
     oracle->held_raw = oracle->angle_raw;
 }
 
-/* After 2 s without 065h a new angle may be held, within the time that the supervisor needs to detect this. */
-enum { ANEW_MS = 2000, SURELY_ANEW_MS = 2700, RECENT_MS = 40 };
+/*
+ * After 2 s without 065h a new angle may be held, within the time that the supervisor needs to detect this. A tick may come so
+ * late that the EPS is only just alive.
+ */
+enum { ANEW_MS = 2000, SURELY_ANEW_MS = 2700, RECENT_MS = 50 };
 
 static bool is_recent(const oracle_t *oracle, uint16_t raw) {
     bool recent = false;

@@ -21,11 +21,13 @@ void agv_hold_trip(agv_hold_t *hold, const agv_vehicle_t *vehicle, const agv_tim
     }
 }
 
-bool agv_hold_follow(agv_hold_t *hold, uint32_t elapsed_ms) {
+void agv_hold_follow(agv_hold_t *hold, const agv_timers_t *timers, uint32_t elapsed_ms) {
     const uint32_t left_ms = (uint32_t)AGV_HOLD_UNSENT_MAX_MS - hold->unsent_ms;
     const uint32_t step_ms = (elapsed_ms < left_ms) ? elapsed_ms : left_ms;
     hold->unsent_ms = (uint16_t)(hold->unsent_ms + step_ms);
-    return (step_ms != 0u) && (step_ms == left_ms);
+    if ((step_ms == left_ms) && ((step_ms != 0u) || agv_timer_reached(timers, AGV_TIMER_ANGLE))) {
+        agv_hold_drop(hold);
+    }
 }
 
 void agv_hold_handed_over(agv_hold_t *hold) {

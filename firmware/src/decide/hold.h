@@ -34,11 +34,11 @@ void agv_hold_drop(agv_hold_t *hold);
 void agv_hold_take(agv_hold_t *hold, const agv_vehicle_t *vehicle);
 
 /**
- * Measure for how long no 065h has left the controller. Call in TRIPPED and SAFE, in every pass.
+ * Measure for how long no 065h has left the controller, and drop an angle that goes out of date. While that lasts, an angle that
+ * was taken is dropped again when it is older than hold_age_ms. Call in TRIPPED and SAFE, in every pass.
  * @param elapsed_ms since the last tick; 0 for a frame
- * @return whether the angle has just gone out of date
  */
-bool agv_hold_follow(agv_hold_t *hold, uint32_t elapsed_ms);
+void agv_hold_follow(agv_hold_t *hold, const agv_timers_t *timers, uint32_t elapsed_ms);
 
 /** The controller accepted a 065h. */
 void agv_hold_handed_over(agv_hold_t *hold);

@@ -12,9 +12,9 @@ void agv_vehicle_gear(agv_vehicle_t *vehicle, const uint8_t data[AGV_DLC], bool 
 }
 
 void agv_vehicle_throttle(agv_vehicle_t *vehicle, const uint8_t data[AGV_DLC], bool valid) {
+    vehicle->throttle_known = valid;
     if (valid) {
         vehicle->throttle = data[0];
-        vehicle->throttle_known = true;
     }
 }
 

@@ -21,7 +21,7 @@ typedef struct {
     uint16_t angle_raw;     /**< last valid measured steering angle, 0.1 degree above the leftmost one (P5) */
     uint8_t gear;           /**< agv_gear_t of the last 0A3h; 0 when that was invalid */
     uint8_t throttle;       /**< counts of the last valid 050h */
-    bool throttle_known;    /**< a valid 050h was received */
+    bool throttle_known;    /**< the last 050h was valid */
     bool angle_known;       /**< a valid 067h was received */
     bool eps_in_angle_mode; /**< mode of the last 167h */
     bool vcu_speed_seen;    /**< 363h reported a speed above 0 in this run */
@@ -63,7 +63,7 @@ bool agv_vehicle_wheels_stand(const agv_timers_t *timers);
 /** Whether a wheel turns, in either direction, at @p speed_mm_s or faster, with fresh 101h. */
 bool agv_vehicle_wheel_turns(const agv_vehicle_t *vehicle, uint32_t speed_mm_s);
 
-/** Whether the throttle status is idle; false if no valid 050h was received. */
+/** Whether the throttle status is idle; false if none was received, or the last 050h was not valid. */
 bool agv_vehicle_throttle_is_idle(const agv_vehicle_t *vehicle, const agv_config_t *config);
 
 #endif

@@ -190,33 +190,35 @@ void agv_core_await_safe_state(agv_core_t *core) {
 
 /*
  * FSM-10: manual drops the held angle, and so do 2 s in which no 065h left. A 065h that may no longer be sent must not leave
- * a stalled transmitter later.
+ * a stalled transmitter later: returns whether it was withdrawn, and all other frames with it.
  */
-static void follow_hold(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) {
+static bool follow_hold(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) {
     const bool stalled = agv_fault_monitor_is_active(&core->faults, AGV_FAULT_TX_STALLED);
     if (!is_latched(core) || agv_mode_is_manual(&core->mode)) {
         agv_hold_drop(&core->hold);
     }
     if (!is_latched(core)) {
-        return;
+        return false;
     }
-    if (agv_hold_follow(&core->hold, elapsed_ms)) {
-        agv_hold_drop(&core->hold);
-    }
-    if (agv_hold_is_stuck(&core->hold, stalled, is_holdable(core))) {
+    agv_hold_follow(&core->hold, &core->timers, elapsed_ms);
+    const bool stuck = agv_hold_is_stuck(&core->hold, stalled, is_holdable(core));
+    if (stuck) {
         agv_hold_withdrawn(&core->hold);
         agv_transmitter_discard(&core->transmitter, &core->timers, HAL_CAN_VEHICLE);
         hal_can_purge(hal, HAL_CAN_VEHICLE);
     }
+    return stuck;
 }
 
-/* Update the modules that depend on the state: hold, confirmation, limits. */
-static void follow_state(agv_core_t *core, hal_t *hal, uint32_t what, uint32_t elapsed_ms) {
+/*
+ * Update the modules that depend on the state: hold, confirmation, limits. Returns whether the safe commands must be sent anew.
+ */
+static bool follow_state(agv_core_t *core, hal_t *hal, uint32_t what, uint32_t elapsed_ms) {
     if ((what & AGV_ACTION_TRIP) != 0u) {
         agv_core_await_safe_state(core);
         agv_hold_trip(&core->hold, &core->vehicle, &core->timers);
     }
-    follow_hold(core, hal, elapsed_ms);
+    const bool withdrawn = follow_hold(core, hal, elapsed_ms);
     if ((what & AGV_ACTION_RESET_ACCEPTED) != 0u) {
         agv_confirmation_start(&core->confirmation, &core->timers);
         agv_stopping_end(&core->stopping);
@@ -226,6 +228,7 @@ static void follow_state(agv_core_t *core, hal_t *hal, uint32_t what, uint32_t e
     if ((what & AGV_ACTION_STATE) != 0u) {
         agv_gateway_restart(&core->gateway);
     }
+    return withdrawn || ((what & AGV_ACTION_TRIP) != 0u);
 }
 
 static void drop_what_may_not_wait(agv_core_t *core) {
@@ -241,7 +244,7 @@ static void carry_out_at_once(agv_core_t *core, const agv_ports_t *ports, uint32
     if ((what & AGV_ACTION_OPEN_OUTPUT) != 0u) {
         hal_safety_output_set(ports->hal, false);
     }
-    follow_state(core, ports->hal, what, elapsed_ms);
+    const bool send_all = follow_state(core, ports->hal, what, elapsed_ms);
     if ((what & AGV_ACTION_DISCARD) != 0u) {
         agv_transmitter_discard(&core->transmitter, &core->timers, HAL_CAN_VEHICLE);
     }
@@ -252,7 +255,7 @@ static void carry_out_at_once(agv_core_t *core, const agv_ports_t *ports, uint32
         drop_what_may_not_wait(core);
     }
     const agv_tx_orders_t orders = agv_core_orders(core, ports);
-    if ((what & AGV_ACTION_TRIP) != 0u) {
+    if (send_all) {
         agv_transmitter_burst(&core->transmitter, &orders);
     }
     if (((what & AGV_ACTION_END_ENGAGEMENT) != 0u) && agv_core_is_gateway(core)) {

@@ -54,7 +54,7 @@ bool agv_scheduler_override_due(agv_scheduler_t *scheduler, uint32_t now_us, uin
 /** Note that an override was sent: the next periodic frame is due half a cycle later. */
 void agv_scheduler_overridden(agv_scheduler_t *scheduler, const agv_timers_t *timers, uint32_t command);
 
-/** Note that the own command was sent: a waiting override of it is done. */
+/** Note that the own command was sent, or is no longer sent: a waiting override of it is done. */
 void agv_scheduler_answered(agv_scheduler_t *scheduler, uint32_t command);
 
 /** Discard all waiting overrides. */

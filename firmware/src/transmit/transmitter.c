@@ -33,7 +33,6 @@ void agv_transmitter_discard(agv_transmitter_t *transmitter, agv_timers_t *timer
     transmitter->kept &= ~messages;
     if (side == HAL_CAN_VEHICLE) {
         transmitter->status_again = agv_age_ms(timers->now_ms, transmitter->status_ms) <= (uint32_t)STATUS_ON_WIRE_MS;
-
         transmitter->throttle_0_waits = false;
         agv_scheduler_discard(&transmitter->scheduler);
         for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
@@ -240,6 +239,7 @@ static void tick_own(agv_transmitter_t *transmitter, const agv_tx_orders_t *orde
                                                     orders->config->override_gap_ms, command);
     if ((wanted & bit_of(command)) == 0u) {
         agv_timer_stop(orders->timers, waits[command]);
+        agv_scheduler_answered(&transmitter->scheduler, command);
         return;
     }
     if (slots > 1u) {

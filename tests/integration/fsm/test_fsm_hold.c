@@ -378,6 +378,30 @@ void test_a_trip_after_the_wheels_have_stood_for_5_s_holds_nothing(void) {
     expect_held_for_a_second(ANGLE_CENTRE);
 }
 
+/*
+ * The wheels stand, then the EPS falls silent, and somebody turns them. It comes back with angles that are invalid, which is a
+ * fault with the third one, while the wheels roll. No 065h may carry an angle from before the silence, whenever it comes back.
+ */
+/* Shows: FSM-10 */
+void test_an_angle_from_before_a_silence_of_the_eps_is_not_sent_after_it(void) {
+    for (uint32_t later_ms = 0; later_ms < 25; later_ms++) {
+        fixture_init(&f);
+        f.long_run = true;
+        fixture_active(&f);
+        fixture_run(&f, 5000);
+        fixture_mute_ai(&f, true);
+        walk_trip(&f);
+        fixture_run(&f, 3000);
+        fixture_mute_eps(&f, true);
+        fixture_run(&f, 2000 + later_ms);
+        fixture_wheels(&f, 0, 60);
+        fixture_run(&f, 30);
+        fixture_angle(&f, 18001);
+        fixture_mute_eps(&f, false);
+        expect_not_held_for_a_second();
+    }
+}
+
 /* Shows: FSM-10, FSM-3 */
 void test_a_press_in_vain_leaves_the_held_angle(void) {
     uint16_t missing = 0;

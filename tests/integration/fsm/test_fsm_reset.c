@@ -125,6 +125,10 @@ static void throttle(bool spoilt) {
     fixture_throttle(&f, spoilt ? 3 : 2);
 }
 
+static void invalid_throttle(bool spoilt) {
+    fixture_throttle(&f, spoilt ? 251 : 2);
+}
+
 static void vcu_says_moving(bool spoilt) {
     fixture_speed(&f, spoilt ? 181 : 180);
 }
@@ -155,6 +159,7 @@ static const condition_t CONDITIONS[] = {
     {"no 050h", no_throttle_status, AGV_STATE_SAFE, AGV_MISSING_TRIP_CAUSE | AGV_MISSING_MESSAGES},
     {"not in P", not_in_p, AGV_STATE_TRIPPED, AGV_MISSING_STATE | AGV_MISSING_TRIP_CAUSE},
     {"throttle", throttle, AGV_STATE_SAFE, AGV_MISSING_THROTTLE},
+    {"throttle invalid", invalid_throttle, AGV_STATE_SAFE, AGV_MISSING_THROTTLE},
     {"moving, by the VCU's speed", vcu_says_moving, AGV_STATE_SAFE, AGV_MISSING_STANDSTILL},
     {"engaged", engaged, AGV_STATE_TRIPPED, AGV_MISSING_STATE | AGV_MISSING_TRIP_CAUSE | AGV_MISSING_MANUAL},
 };

@@ -413,6 +413,47 @@ void test_an_override_that_waits_is_not_lost_by_another_one(void) {
     expect_count_after(&f, 4, 0x43F, 2);
 }
 
+/* In a stalled transmitter, manual withdraws 065h and all that the controller still has. The rest is sent again at once. */
+/* Shows: TOP-1, FSM-10, TX_STALLED */
+void test_an_override_that_waits_is_not_lost_when_the_steering_command_is_withdrawn(void) {
+    tripped();
+    fixture_run(&f, 100);
+    sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101);
+    fixture_run(&f, 70);
+    fixture_forget_sent(&f);
+    foreign_signals(0x30);
+    fixture_run(&f, 1);
+    foreign_signals(0x30);
+    const uint32_t purged = f.hal.can[HAL_CAN_VEHICLE].purges;
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    TEST_ASSERT_EQUAL_UINT32(purged + 1, f.hal.can[HAL_CAN_VEHICLE].purges);
+    TEST_ASSERT_EQUAL_UINT32(2, fixture_count_sent(&f, 0x43F));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x168));
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x075));
+}
+
+/* Manual drops the angle while its override waits. The next angle is sent in its slot: 12 ms after the override, then every 25 ms. */
+/* Shows: TOP-1, FSM-10 */
+void test_an_override_of_an_angle_that_is_dropped_does_not_hasten_the_next_one(void) {
+    static const uint8_t angle[8] = {0x00, 0x10};
+    tripped();
+    foreign(0x065, 8, angle);
+    const uint32_t first_ms = f.now_ms;
+    fixture_run(&f, 1);
+    foreign(0x065, 8, angle);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_run(&f, 68);
+    fixture_forget_sent(&f);
+    fixture_mode(&f, MODE_ENGAGED);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_send_now(&f, AGV_MSG_STEERING_STATUS);
+    expect_count_after(&f, 17, 0x065, 0);
+    expect_count_after(&f, 1, 0x065, 1);
+    TEST_ASSERT_EQUAL_UINT32(87, fixture_nth_sent(&f, 0x065, 0)->time_ms - first_ms);
+}
+
 /* A VCU with CAN FD may obey it. */
 /* Shows: TOP-1, P15 */
 void test_a_command_in_an_fd_frame_is_overridden(void) {

@@ -108,6 +108,10 @@ static void measured_later(uint16_t raw, uint32_t ms) {
     agv_hold_take(&hold, &vehicle);
 }
 
+static void follow(uint32_t elapsed_ms) {
+    agv_hold_follow(&hold, &timers, elapsed_ms);
+}
+
 /* 065h is sent. */
 static void left(void) {
     agv_hold_handed_over(&hold);
@@ -118,13 +122,15 @@ static void left(void) {
 void test_after_2_s_without_065h_the_angle_is_taken_anew(void) {
     measured(9123, 0);
     trip(0);
-    TEST_ASSERT_FALSE(agv_hold_follow(&hold, 1999));
+    follow(1999);
     measured_later(4000, 2000);
     expect_held(9123);
-    TEST_ASSERT_TRUE(agv_hold_follow(&hold, 1)); /* reported once */
+    follow(1);
+    expect_none();
     measured_later(5000, 2010);
     expect_held(5000);
-    TEST_ASSERT_FALSE(agv_hold_follow(&hold, 70000));
+    follow(70000);
+    expect_held(5000);
     measured_later(6000, 2020);
     expect_held(6000);
     left();
@@ -132,20 +138,40 @@ void test_after_2_s_without_065h_the_angle_is_taken_anew(void) {
     expect_held(6000);
 }
 
+/* While no 065h leaves, an angle that was taken anew is dropped when it is older than hold_age_ms (50). */
+/* Shows: FSM-10 */
+void test_an_angle_that_was_taken_anew_goes_out_of_date(void) {
+    measured(9123, 0);
+    trip(0);
+    follow(2000);
+    measured_later(4000, 2010);
+    agv_timers_advance(&timers, &config, at(2060), 0);
+    follow(50);
+    expect_held(4000);
+    agv_timers_advance(&timers, &config, at(2061), 0);
+    follow(1);
+    expect_none();
+    measured_later(5000, 2100);
+    left();
+    agv_timers_advance(&timers, &config, at(3000), 0);
+    follow(900);
+    expect_held(5000);
+}
+
 /* Each 065h that is sent begins the 2 s again, and so does a trip. A frame takes no time. */
 /* Shows: FSM-10 */
 void test_the_2_s_without_065h_are_uninterrupted(void) {
     measured(9123, 0);
     trip(0);
-    (void)agv_hold_follow(&hold, 1999);
+    follow(1999);
     left();
-    (void)agv_hold_follow(&hold, 1999);
-    (void)agv_hold_follow(&hold, 0);
+    follow(1999);
+    follow(0);
     measured_later(4000, 40);
     expect_held(9123);
     trip(41);
     expect_held(4000);
-    (void)agv_hold_follow(&hold, 1);
+    follow(1);
     measured_later(5000, 50);
     expect_held(4000);
 }
@@ -179,12 +205,12 @@ void test_every_angle_may_be_held(void) {
 void test_a_065h_that_does_not_leave_does_not_begin_the_2_s_again(void) {
     measured(9123, 0);
     trip(0);
-    (void)agv_hold_follow(&hold, 1999);
+    follow(1999);
     agv_hold_handed_over(&hold);
     agv_hold_withdrawn(&hold);
     agv_hold_left(&hold); /* there is none */
     agv_hold_handed_over(&hold);
-    (void)agv_hold_follow(&hold, 1);
+    follow(1);
     measured_later(4000, 2000);
     expect_held(4000);
     agv_hold_left(&hold);

@@ -63,17 +63,21 @@ static void throttle(unsigned counts, bool valid) {
     agv_vehicle_throttle(&vehicle, (const uint8_t[8]){(uint8_t)counts}, valid);
 }
 
-void test_a_throttle_that_is_invalid_changes_nothing(void) {
+void test_a_throttle_that_is_invalid_is_not_taken(void) {
     throttle(10, true);
     throttle(251, false);
     TEST_ASSERT_EQUAL_UINT8(10, vehicle.throttle);
 }
 
-/* At most 2 counts; unknown is not idle. */
+/* At most 2 counts; unknown or invalid is not idle. */
 /* Shows: FSM-3 */
 void test_idle_is_known_and_at_most_two_counts(void) {
     TEST_ASSERT_FALSE(agv_vehicle_throttle_is_idle(&vehicle, &config));
     throttle(0, false);
+    TEST_ASSERT_FALSE(agv_vehicle_throttle_is_idle(&vehicle, &config));
+    throttle(2, true);
+    TEST_ASSERT_TRUE(agv_vehicle_throttle_is_idle(&vehicle, &config));
+    throttle(251, false);
     TEST_ASSERT_FALSE(agv_vehicle_throttle_is_idle(&vehicle, &config));
     throttle(2, true);
     TEST_ASSERT_TRUE(agv_vehicle_throttle_is_idle(&vehicle, &config));
