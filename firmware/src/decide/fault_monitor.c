@@ -133,7 +133,10 @@ void agv_fault_monitor_latch(agv_fault_monitor_t *monitor) {
 }
 
 void agv_fault_monitor_latch_one(agv_fault_monitor_t *monitor, uint32_t fault) {
-    agv_fault_set_put(&monitor->latched, fault, true);
+    if (fault < (uint32_t)AGV_FAULT_COUNT) {
+        agv_fault_set_put(&monitor->latched, fault, true);
+        monitor->outdated = true;
+    }
 }
 
 void agv_fault_monitor_forget(agv_fault_monitor_t *monitor) {

@@ -69,7 +69,7 @@ static uint32_t follow_engagement(agv_state_machine_t *machine, uint32_t facts) 
     const bool was_active = machine->state == (uint8_t)AGV_STATE_ACTIVE;
     if ((facts & AGV_FACT_ENGAGED) == 0u) {
         machine->state = (uint8_t)AGV_STATE_STANDBY;
-        return was_active ? (AGV_ACTION_DISCARD | AGV_ACTION_END_ENGAGEMENT) : 0u;
+        return was_active ? AGV_ACTION_END_ENGAGEMENT : 0u;
     }
     if ((facts & AGV_FACT_AI_ALIVE) != 0u) {
         machine->state = (uint8_t)AGV_STATE_ACTIVE;

@@ -111,6 +111,13 @@ static uint32_t vcu_facts(const agv_core_t *core) {
     return bit_if(off, AGV_FACT_AUTOPILOT_OFF) | bit_if(!agv_core_step_is_late(core), AGV_FACT_VCU_ALIVE);
 }
 
+/* A 050h that is missing is missed with AGV_FACT_MESSAGES; if its silence only warns, here. */
+static bool throttle_is_idle(const agv_core_t *core) {
+    const bool unseen = agv_fault_monitor_is_active(&core->faults, AGV_FAULT_THROTTLE_STATUS_TIMEOUT) &&
+                        !agv_config_is_trip(&core->config, AGV_FAULT_THROTTLE_STATUS_TIMEOUT);
+    return !unseen && agv_vehicle_throttle_is_idle(&core->vehicle, &core->config);
+}
+
 /* The facts for INIT, TRIPPED and SAFE. */
 static uint32_t safe_state_facts(const agv_core_t *core) {
     const agv_timers_t *const timers = &core->timers;
@@ -118,8 +125,7 @@ static uint32_t safe_state_facts(const agv_core_t *core) {
            bit_if(agv_mode_is_manual(&core->mode), AGV_FACT_MANUAL) |
            bit_if(agv_vehicle_is_at_standstill(timers), AGV_FACT_STANDSTILL) |
            bit_if(agv_vehicle_is_slow(&core->vehicle, &core->config), AGV_FACT_SLOW) |
-           bit_if(agv_vehicle_throttle_is_idle(&core->vehicle, &core->config), AGV_FACT_IDLE) |
-           bit_if(agv_core_is_in_park(core), AGV_FACT_IN_PARK) |
+           bit_if(throttle_is_idle(core), AGV_FACT_IDLE) | bit_if(agv_core_is_in_park(core), AGV_FACT_IN_PARK) |
            bit_if(core->machine.output_closed || agv_hardware_output_reads_open(&core->hardware),
                   AGV_FACT_OUTPUT_OPEN) |
            bit_if(agv_deadlines_messages_fresh(&core->liveness, timers, &core->config), AGV_FACT_MESSAGES);
@@ -231,10 +237,12 @@ static bool follow_state(agv_core_t *core, hal_t *hal, uint32_t what, uint32_t e
     return withdrawn || ((what & AGV_ACTION_TRIP) != 0u);
 }
 
-static void drop_what_may_not_wait(agv_core_t *core) {
+/* What was commanded in an engagement does not outlast it, whatever passes in manual. */
+static void drop_what_may_not_wait(agv_core_t *core, bool engagement_ended) {
     const agv_gateway_facts_t facts = agv_core_gateway_facts(core);
     for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
-        if (!agv_gateway_may_wait(&facts, i)) {
+        const bool outdated = engagement_ended && (i != (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND);
+        if (outdated || !agv_gateway_may_wait(&facts, i)) {
             agv_transmitter_drop(&core->transmitter, &core->timers, i);
         }
     }
@@ -252,7 +260,7 @@ static void carry_out_at_once(agv_core_t *core, const agv_ports_t *ports, uint32
         hal_can_purge(ports->hal, HAL_CAN_VEHICLE);
     }
     if (core->transmitter.kept != 0u) {
-        drop_what_may_not_wait(core);
+        drop_what_may_not_wait(core, (what & AGV_ACTION_END_ENGAGEMENT) != 0u);
     }
     const agv_tx_orders_t orders = agv_core_orders(core, ports);
     if (send_all) {

@@ -425,6 +425,21 @@ void test_the_button_of_a_vcu_that_is_not_alive_does_not_count(void) {
     expect_state(&f, AGV_STATE_SAFE);
 }
 
+/* The silence of 050h only warns, by choice: the throttle is not known to be idle all the same. */
+/* Shows: FSM-3, THROTTLE_STATUS_TIMEOUT */
+void test_a_throttle_status_whose_silence_only_warns_is_needed_too(void) {
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_THROTTLE_STATUS_TIMEOUT, false);
+    walk_to_safe(&f);
+    f.traffic[AGV_MSG_THROTTLE_STATUS].muted = true;
+    fixture_run(&f, 100);
+    hold_for(1500);
+    expect_state(&f, AGV_STATE_SAFE);
+    expect_refusals(1, AGV_MISSING_THROTTLE);
+    f.traffic[AGV_MSG_THROTTLE_STATUS].muted = false;
+    fixture_run(&f, 100);
+    expect_reset_by(1100);
+}
+
 /* ---- The remote receiver is lost ---- */
 
 /* The operator holds the button. The VCU reports the receiver as lost and the button as not pressed. */

@@ -125,6 +125,16 @@ void test_a_latch_that_was_kept_through_a_restart_is_shown(void) {
     expect_led_after(&f, 5000, 8);
 }
 
+/* At once, also where a lost AI computer has the same class in manual as when engaged. */
+/* Shows: LED-1, FSM-7 */
+void test_a_latch_that_was_kept_is_shown_from_the_start(void) {
+    f.config.ai_lost_in_manual = AGV_AI_LOST_TRIP;
+    fixture_standby(&f);
+    walk_trip(&f);
+    fixture_restart(&f, HAL_RESET_WATCHDOG);
+    expect_led(&f, 8);
+}
+
 /* The AI side's bus-off, a trip by choice, outlives the reset and trips with the engagement. It ends in the next tick. */
 /* Shows: LED-1, FSM-11, AI_BUS_OFF */
 void test_a_trip_of_one_instant_is_shown(void) {

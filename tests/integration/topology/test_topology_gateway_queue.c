@@ -224,6 +224,43 @@ void test_the_end_of_an_engagement_sends_throttle_0(void) {
     TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
 }
 
+/* A 43Fh is no command of motion: it waits for its half cycle of 50 ms also over the end of the engagement. */
+/* Shows: TOP-2 */
+void test_a_43fh_that_came_too_soon_outlasts_the_engagement(void) {
+    const too_soon_t *const row = &TOO_SOON[0];
+    active_without(row);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    expect_pass(row->id, row->first, row->first);
+    fixture_run(&f, 1);
+    from_ai(row->id, row->second);
+    expect_state_after(&f, 48, AGV_STATE_STANDBY);
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, row->id));
+    fixture_run(&f, 1);
+    expect_sent_once(row->id, row->second);
+}
+
+/* With one frame for the end of an engagement, a throttle may wait at it. In STANDBY only 0 would pass. */
+/* Shows: TOP-2, INT-4 */
+void test_a_throttle_that_waits_does_not_outlast_the_engagement(void) {
+    f.config.gateway_in_manual = AGV_IN_MANUAL_ALL;
+    f.config.mode_frames = 1;
+    fixture_active(&f);
+    pause_ai();
+    fixture_run_before(&f, AGV_MSG_VEHICLE_STATUS);
+    from_ai(0x075, (const uint8_t[8]){10});
+    from_ai(0x075, (const uint8_t[8]){20});
+    fixture_forget_sent(&f);
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_run(&f, 1);
+    expect_state(&f, AGV_STATE_STANDBY);
+    expect_sent_once(0x075, ZERO);
+    expect_count_after(&f, 200, 0x075, 1);
+    TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->gate_refused);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
 /* It does not count as forwarded: the next 075h of the AI computer (in manual, as 0) does not wait for it. */
 /* Shows: TOP-2 */
 void test_the_supervisors_throttle_0_is_no_pass(void) {

@@ -131,8 +131,9 @@ void test_a_tick_ends_no_condition(void) {
 }
 
 void test_an_invalid_fault_changes_nothing(void) {
-    static const unsigned none[] = {AGV_FAULT_NONE, 32u * AGV_FAULT_WORDS - 1u, 32u * AGV_FAULT_WORDS, 255};
-    for (unsigned i = 0; i < 4; i++) {
+    static const unsigned none[] = {AGV_FAULT_NONE, AGV_FAULT_COUNT, 32u * AGV_FAULT_WORDS - 1u, 32u * AGV_FAULT_WORDS,
+                                    255};
+    for (unsigned i = 0; i < 5; i++) {
         set(none[i], true);
         event(none[i], 0);
         agv_fault_monitor_latch_one(&monitor, none[i]);

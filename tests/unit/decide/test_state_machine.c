@@ -485,15 +485,15 @@ void test_the_actions_of_a_reset(void) {
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_BUS_OFF, did.first_reason);
 }
 
-/* Motion commands that wait for a stalled side. */
-void test_from_active_to_standby_waiting_commands_are_discarded(void) {
+/* Shows: TOP-2 */
+void test_from_active_to_standby_the_engagement_ends(void) {
     to_standby();
     facts.engaged = true;
     step(1);
     TEST_ASSERT_EQUAL_HEX32(AGV_ACTION_STATE, did.what);
     facts.engaged = false;
     step(1);
-    TEST_ASSERT_EQUAL_HEX32(AGV_ACTION_STATE | AGV_ACTION_DISCARD | AGV_ACTION_END_ENGAGEMENT, did.what);
+    TEST_ASSERT_EQUAL_HEX32(AGV_ACTION_STATE | AGV_ACTION_END_ENGAGEMENT, did.what);
     step(1);
     TEST_ASSERT_EQUAL_HEX32(0, did.what);
 }
