@@ -32,6 +32,13 @@ typedef struct {
 /** Called for every event, in order. */
 typedef void session_observer_fn(void *ctx, const session_event_t *event);
 
+/** What observers were last told of a fault. */
+typedef struct {
+    uint64_t t_ms;
+    bool is_active;
+    uint8_t fault_class; /**< agv_fault_class_t */
+} session_fault_t;
+
 /** Read the members freely; change nothing but through the functions. */
 typedef struct {
     _Alignas(16) agv_supervisor_t supervisor; /**< aligned, for the speed of its seal */
@@ -42,6 +49,7 @@ typedef struct {
     uint64_t supervised_ms; /**< time outside INIT */
     uint32_t next;          /**< sequence number of the next event to report */
     int8_t led_code;        /**< as last reported */
+    session_fault_t faults[AGV_FAULT_COUNT];
     size_t observer_count;
     struct {
         session_observer_fn *fn;
@@ -63,6 +71,12 @@ bool session_observe(session_t *session, session_observer_fn *fn, void *ctx);
  * @param clock_ms the supervisor's clock, any value
  */
 void session_start(session_t *session, const agv_config_t *config, uint64_t t_ms, uint32_t clock_ms);
+
+/**
+ * Tell observers what the recorder has left out, because it records a fault at most 4 times a second: whether the fault is active
+ * now. session_tick does this a second after the last event of the fault. Call this at the end of a run.
+ */
+void session_end(session_t *session);
 
 /** Hand over a frame that was received; its time_ms is the supervisor's clock. */
 void session_frame(session_t *session, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_ms);

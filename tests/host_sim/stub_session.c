@@ -74,3 +74,7 @@ void session_tick(session_t *session, uint64_t t_ms, uint32_t clock_ms) {
         send_safe_commands(session, t_ms);
     }
 }
+
+void session_end(session_t *session) {
+    (void)session;
+}

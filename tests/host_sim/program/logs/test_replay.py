@@ -240,6 +240,25 @@ class Events(hostsim.Case):
         self.assertEqual(result.trips(), [])
 
     # Shows: FSM-3
+    def flapping(self, until_ms, active_after):
+        """A warning that comes and goes every 20 ms, and then stays as it is. Its events as (t_ms, active)."""
+        def edit(frame):
+            if frame.name == "eps_status" and frame.t_ms >= 1000:
+                flap = frame.t_ms < until_ms and (int(frame.t_ms) // 20) % 2 == 0
+                frame.data = frame.data[:7] + bytes([0x10 if flap or (active_after and frame.t_ms >= until_ms) else 0])
+            return frame
+        result = self.replay(traffic.log(traffic.frames(4000, edit=edit)))
+        return [(event["t_ms"], event["active"]) for event in result.of("fault") if event["name"] == "EPS_TEMP_ABOVE_110"]
+
+    # Shows: INT-3
+    def test_a_warning_that_flaps_is_told_at_most_4_times_a_second_and_its_last_event_is_true(self):
+        for until_ms in (1500, 3900):
+            for active_after in (False, True):
+                events = self.flapping(until_ms, active_after)
+                self.assertEqual(events[-1][1], active_after, events)
+                for later, earlier in zip(events[4:-1], events):
+                    self.assertGreaterEqual(later[0] - earlier[0], 1000, events)
+
     def test_a_reset_that_is_refused_and_one_that_is_accepted(self):
         def edit(frame):
             frame = edit_payload("vehicle_status", 1000, raise_remote_signal_lost, 1500)(frame)
