@@ -159,11 +159,19 @@ static void on_data(hazard_t *hazard, hal_can_side_t side, int from, const hal_c
     }
 }
 
+/** The supervisor has begun anew: it measures another angle, and knows of no earlier gap between commands. */
+static void begin_anew(hazard_t *hazard) {
+    hazard_hold_anew(hazard);
+    for (unsigned m = 0u; m < AGV_COMMAND_COUNT; m++) {
+        hazard->messages[m].fast = 0;
+    }
+}
+
 static void look(hazard_t *hazard) {
     scenario_testbed_view(hazard->testbed, &hazard->view);
     if (hazard->view.bites != hazard->bites) {
         hazard->bites = hazard->view.bites;
-        hazard_hold_anew(hazard); /* it hung, and its watchdog restarted it */
+        begin_anew(hazard); /* it hung, and its watchdog restarted it */
     }
 }
 
@@ -196,7 +204,7 @@ void hazard_step(hazard_t *hazard, uint64_t t_ms, const scenario_step_t *step) {
     hazard->t_ms = t_ms;
     hazard->t_us = t_ms * US_PER_MS;
     if (is_anew) {
-        hazard_hold_anew(hazard);
+        begin_anew(hazard);
     }
     if (is_delivered) {
         on_data(hazard, step->supervisor.side, VEHICLE_ROGUE, &step->supervisor.frame);

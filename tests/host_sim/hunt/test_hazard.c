@@ -495,6 +495,18 @@ void test_h6_a_dead_transmitter_shows_with_the_next_status_frame(void) {
     expect_none(&late, steps);
 }
 
+/** 200 gaps of 1 ms; after a restart nobody knows of them. */
+void test_h6_a_restart_forgets_commands_that_came_too_fast(void) {
+    const char *const flood = "  - {at_ms: 3000, ai: send_every, message: turn_signal_command, every_ms: 1}\n"
+                              "  - {at_ms: 3200, ai: send_every, message: turn_signal_command, every_ms: 100}\n";
+    const stub_t ignores = {.setting = "class_command_too_fast: trip\n  command_too_fast_gaps: 65\n"};
+    char steps[512];
+
+    expect_hazard(HAZARD_FALSE_NODE, "commands come too fast", &ignores, flood);
+    (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 3250, supervisor: restart, cause: software}\n", flood);
+    expect_none(&ignores, steps);
+}
+
 void test_h6_what_only_warns_is_no_hazard(void) {
     const char *const steps = "  - {at_ms: 3000, vcu: ignore, message: turn_signal_command}\n"
                               "  - {at_ms: 3100, ai: ask_autopilot_off}\n";
