@@ -495,6 +495,17 @@ void test_h6_a_dead_transmitter_shows_with_the_next_status_frame(void) {
     expect_none(&late, steps);
 }
 
+/** The last 0A3h said P while the throttle is at 60 %. When 0A3h is silent, which only warns, it says nothing any more. */
+void test_h6_a_silent_gear_status_reports_no_gear(void) {
+    const char *const park = "  - {at_ms: 3000, vcu: set, field: gear, value: 08h}\n";
+    const stub_t ignores = {.setting = "class_gear_status_timeout: warn\n"};
+    char steps[512];
+
+    expect_hazard(HAZARD_FALSE_NODE, "throttle with gear P", &ignores, park);
+    (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 3040, vcu: mute, message: gear_status}\n", park);
+    expect_none(&ignores, steps);
+}
+
 /** 200 gaps of 1 ms; after a restart nobody knows of them. */
 void test_h6_a_restart_forgets_commands_that_came_too_fast(void) {
     const char *const flood = "  - {at_ms: 3000, ai: send_every, message: turn_signal_command, every_ms: 1}\n"
