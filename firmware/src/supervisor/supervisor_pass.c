@@ -111,7 +111,7 @@ static uint32_t vcu_facts(const agv_core_t *core) {
     return bit_if(off, AGV_FACT_AUTOPILOT_OFF) | bit_if(!agv_core_step_is_late(core), AGV_FACT_VCU_ALIVE);
 }
 
-/* A 050h that is missing is missed with AGV_FACT_MESSAGES; if its silence only warns, here. */
+/* If THROTTLE_STATUS_TIMEOUT is a trip, AGV_FACT_MESSAGES covers a silent 050h. If it only warns, this does. */
 static bool throttle_is_idle(const agv_core_t *core) {
     const bool unseen = agv_fault_monitor_is_active(&core->faults, AGV_FAULT_THROTTLE_STATUS_TIMEOUT) &&
                         !agv_config_is_trip(&core->config, AGV_FAULT_THROTTLE_STATUS_TIMEOUT);
