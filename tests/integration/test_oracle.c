@@ -117,6 +117,26 @@ void test_an_angle_of_more_than_50_ms_before_the_trip_is_not_held(void) {
     TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x8C, 0x23), AGV_STATE_TRIPPED));
 }
 
+/* A tick that is 51 ms late: the frames before it were handled late. */
+/* Shows: FSM-6, FSM-10 */
+void test_a_late_tick_replaces_an_angle_of_the_frames_before_it(void) {
+    measured(9200);
+    oracle_returned(&oracle, AGV_STATE_TRIPPED);
+    measured(9100);
+    oracle_tick(&oracle, 50);
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED)); /* 9200 */
+    oracle_tick(&oracle, 101);
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED));
+    oracle_restart(&oracle);
+    measured(9200);
+    oracle_returned(&oracle, AGV_STATE_TRIPPED);
+    oracle.now_ms = 102;
+    measured(9100); /* 8C 23 */
+    oracle_tick(&oracle, 152);
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x8C, 0x23), AGV_STATE_TRIPPED));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED));
+}
+
 /* Both bits: the previous mode stays valid for 50 ms. */
 /* Shows: FSM-6, FSM-10 */
 void test_manual_drops_the_held_angle(void) {

@@ -33,6 +33,7 @@ void oracle_restart(oracle_t *oracle) {
     oracle->angle_known = false;
     oracle->angles = 0u;
     oracle->held_sent_ms = oracle->now_ms;
+    oracle->ticked_ms = oracle->now_ms;
     oracle->latched = false;
     oracle->held = false;
     oracle->manual = false;
@@ -51,6 +52,7 @@ static bool manual_is_reported(const oracle_t *oracle) {
 
 static void hold(oracle_t *oracle) {
     oracle->held = true;
+    oracle->held_since_tick = true;
     oracle->held_raw = oracle->angle_raw;
 }
 
@@ -99,6 +101,18 @@ static void follow(oracle_t *oracle, agv_state_t state) {
     }
     oracle->before = state;
     oracle->latched = latched;
+}
+
+/* An angle of the frames before a late tick is outdated: the newest is held, if it is not too old. */
+void oracle_tick(oracle_t *oracle, uint32_t now_ms) {
+    const bool late = (now_ms - oracle->ticked_ms) > oracle->hold_age_ms;
+    oracle->now_ms = now_ms;
+    oracle->ticked_ms = now_ms;
+    if (late && oracle->held && oracle->held_since_tick) {
+        oracle->held = (now_ms - oracle->angle_ms) <= oracle->hold_age_ms;
+        oracle->held_raw = oracle->angle_raw;
+    }
+    oracle->held_since_tick = false;
 }
 
 /* If no angle is held, the first valid angle after the trip is. */

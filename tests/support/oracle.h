@@ -24,7 +24,8 @@ typedef struct {
     uint32_t own_status_id; /* 0 = none */
     uint32_t hold_age_ms;
     uint32_t mode_invalid_ms;
-    uint32_t now_ms; /* clock of the supervisor, set by the test */
+    uint32_t now_ms;    /* clock of the supervisor, set by the test */
+    uint32_t ticked_ms; /* last tick */
 
     /* mode: the bits of the last 363h, and the mode that counts */
     uint8_t mode_bits;
@@ -42,6 +43,7 @@ typedef struct {
     uint32_t angle_ms;
     bool latched;
     bool held;
+    bool held_since_tick; /* it is held since a frame that came after the last tick */
     uint16_t held_raw;
     uint32_t held_sent_ms; /* last own 065h; the trip before the first one */
     uint16_t recent_raw[ORACLE_ANGLES];
@@ -62,6 +64,9 @@ void oracle_configure(oracle_t *oracle, const agv_config_t *config);
 
 /* A supervisor starts: clears what was received, keeps the counts. */
 void oracle_restart(oracle_t *oracle);
+
+/* Call before each tick of the supervisor. */
+void oracle_tick(oracle_t *oracle, uint32_t now_ms);
 
 /* Call before a frame is passed to the supervisor. */
 void oracle_heard(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *frame);

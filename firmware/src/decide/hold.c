@@ -9,6 +9,13 @@ void agv_hold_take(agv_hold_t *hold, const agv_vehicle_t *vehicle) {
     if (!agv_hold_is_held(hold) || (hold->unsent_ms == (uint16_t)AGV_HOLD_UNSENT_MAX_MS)) {
         hold->raw = vehicle->angle_raw;
         hold->check = (uint16_t)~hold->raw;
+        hold->taken = true;
+    }
+}
+
+static void take_if_recent(agv_hold_t *hold, const agv_vehicle_t *vehicle, const agv_timers_t *timers) {
+    if (agv_timer_runs(timers, AGV_TIMER_ANGLE) && !agv_timer_reached(timers, AGV_TIMER_ANGLE)) {
+        agv_hold_take(hold, vehicle);
     }
 }
 
@@ -16,8 +23,17 @@ void agv_hold_trip(agv_hold_t *hold, const agv_vehicle_t *vehicle, const agv_tim
     agv_hold_drop(hold);
     hold->unsent_ms = 0u;
     hold->handed_over = false;
-    if (agv_timer_runs(timers, AGV_TIMER_ANGLE) && !agv_timer_reached(timers, AGV_TIMER_ANGLE)) {
-        agv_hold_take(hold, vehicle);
+    take_if_recent(hold, vehicle, timers);
+}
+
+void agv_hold_renew(agv_hold_t *hold, const agv_vehicle_t *vehicle, const agv_timers_t *timers, uint32_t hold_age_ms,
+                    uint32_t elapsed_ms) {
+    if (hold->taken && agv_hold_is_held(hold) && (elapsed_ms > hold_age_ms)) {
+        agv_hold_drop(hold);
+        take_if_recent(hold, vehicle, timers);
+    }
+    if (elapsed_ms != 0u) {
+        hold->taken = false;
     }
 }
 

@@ -16,6 +16,7 @@ typedef struct {
     uint16_t check;     /**< complement of raw */
     uint16_t unsent_ms; /**< time for which no 065h has left the controller, at most AGV_HOLD_UNSENT_MAX_MS */
     bool handed_over;   /**< the controller accepted a 065h, and may still have it */
+    bool taken;         /**< it was taken since the last tick */
 } agv_hold_t;
 
 /** After this time without 065h, ms, the wheels may have turned: the angle is out of date (FSM-10). */
@@ -39,6 +40,15 @@ void agv_hold_take(agv_hold_t *hold, const agv_vehicle_t *vehicle);
  * @param elapsed_ms since the last tick; 0 for a frame
  */
 void agv_hold_follow(agv_hold_t *hold, const agv_timers_t *timers, uint32_t elapsed_ms);
+
+/**
+ * Replace an angle that was taken among frames that were handled late: the wheels may have turned since. If the tick is later
+ * than hold_age_ms and the angle was taken since the tick before it, the newest one is held, if it is not older than hold_age_ms.
+ * Call in TRIPPED and SAFE, in every pass.
+ * @param elapsed_ms since the last tick; 0 for a frame
+ */
+void agv_hold_renew(agv_hold_t *hold, const agv_vehicle_t *vehicle, const agv_timers_t *timers, uint32_t hold_age_ms,
+                    uint32_t elapsed_ms);
 
 /** The controller accepted a 065h. */
 void agv_hold_handed_over(agv_hold_t *hold);

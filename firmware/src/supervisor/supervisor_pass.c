@@ -195,8 +195,9 @@ void agv_core_await_safe_state(agv_core_t *core) {
 }
 
 /*
- * FSM-10: manual drops the held angle, and so do 2 s in which no 065h left. A 065h that may no longer be sent must not leave
- * a stalled transmitter later: returns whether it was withdrawn, and all other frames with it.
+ * FSM-10: manual drops the held angle, and so do 2 s in which no 065h left. A late tick replaces one of the frames before it. A
+ * 065h that may no longer be sent must not leave a stalled transmitter later: returns whether it was withdrawn, and all other
+ * frames with it.
  */
 static bool follow_hold(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) {
     const bool stalled = agv_fault_monitor_is_active(&core->faults, AGV_FAULT_TX_STALLED);
@@ -206,6 +207,7 @@ static bool follow_hold(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) {
     if (!is_latched(core)) {
         return false;
     }
+    agv_hold_renew(&core->hold, &core->vehicle, &core->timers, core->config.hold_age_ms, elapsed_ms);
     agv_hold_follow(&core->hold, &core->timers, elapsed_ms);
     const bool stuck = agv_hold_is_stuck(&core->hold, stalled, is_holdable(core));
     if (stuck) {

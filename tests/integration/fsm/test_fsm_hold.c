@@ -347,6 +347,40 @@ void test_an_angle_of_50_ms_before_the_trip_is_held_and_an_older_one_is_not(void
     expect_held_for_a_second(9400);
 }
 
+/* ---- Frames that are handled late ---- */
+
+/*
+ * The supervisor hangs and then handles the frames of that time, with a trip among the first. Meanwhile the AI computer went on
+ * steering. The angle of the trip would turn the wheels back.
+ */
+static void trip_among_late_frames(uint32_t late_ms) {
+    fixture_init(&f);
+    f.config.watchdog_period_ms = 1000;
+    fixture_angle(&f, 9123);
+    fixture_command_angle(&f, 9123);
+    fixture_active(&f);
+    f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF;
+    fixture_mute_ai(&f, true);
+    walk_trip(&f);
+    fixture_forget_sent(&f);
+    fixture_angle(&f, 8000);
+    fixture_run_without_ticks(&f, late_ms - 1u);
+    fixture_run(&f, 1);
+}
+
+/* The slots of 065h, 25 and 50 ms after the trip, are past: it goes out with the late tick. */
+/* Shows: FSM-10, TIM-1, TIM-4 */
+void test_after_a_late_step_the_newest_angle_is_held(void) {
+    trip_among_late_frames(51);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x065));
+    fixture_angle(&f, 7000);
+    expect_held_for_a_second(8000);
+    trip_among_late_frames(344);
+    expect_held_for_a_second(8000);
+    trip_among_late_frames(50);
+    expect_held_for_a_second(9123);
+}
+
 /* ---- The wheels stand ---- */
 
 /* Standing begins 100 ms after the first slow 101h. The last 065h is sent before its 5 s are over. */

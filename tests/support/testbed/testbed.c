@@ -85,7 +85,7 @@ void testbed_frame(hal_can_side_t side, hal_can_frame_t frame, int32_t ahead_ms)
 void testbed_jump(uint32_t ms) {
     testbed.now_ms += ms;
     sim_hal_set_now_ms(&testbed.hal, clock_at(testbed.now_ms));
-    testbed.rules.oracle.now_ms = clock_at(testbed.now_ms);
+    oracle_tick(&testbed.rules.oracle, clock_at(testbed.now_ms));
     rules_ticks(&testbed.rules, testbed.now_ms, state_of_bus());
     if (!testbed.receive_path_dead) {
         agv_supervisor_receive_alive(&testbed.supervisor);

@@ -158,6 +158,59 @@ void test_an_angle_that_was_taken_anew_goes_out_of_date(void) {
     expect_held(5000);
 }
 
+static void renew(uint32_t ms, uint32_t elapsed_ms) {
+    agv_timers_advance(&timers, &config, at(ms), 0);
+    agv_hold_renew(&hold, &vehicle, &timers, 50, elapsed_ms);
+}
+
+/* A tick that comes more than 50 ms (hold_age_ms) after the last one: the frames before it were handled late. */
+/* Shows: FSM-10 */
+void test_a_late_tick_replaces_an_angle_of_the_frames_before_it(void) {
+    measured(9123, 0);
+    trip(0);
+    measured(4000, 40);
+    renew(40, 0); /* a frame */
+    expect_held(9123);
+    renew(51, 51);
+    expect_held(4000);
+    measured(5000, 60);
+    renew(110, 59); /* it was held before */
+    expect_held(4000);
+}
+
+/* Shows: FSM-10 */
+void test_a_tick_in_time_keeps_it(void) {
+    measured(9123, 0);
+    trip(0);
+    measured(4000, 40);
+    renew(50, 50);
+    expect_held(9123);
+    renew(101, 51);
+    expect_held(9123);
+}
+
+/* Shows: FSM-10 */
+void test_a_late_tick_drops_it_if_the_newest_is_older_than_50_ms(void) {
+    measured(9123, 0);
+    trip(0);
+    measured(4000, 40);
+    renew(91, 91);
+    expect_none();
+    measured(5000, 92);
+    agv_hold_take(&hold, &vehicle);
+    renew(93, 2);
+    expect_held(5000);
+}
+
+/* Shows: FSM-10 */
+void test_a_late_tick_holds_nothing_that_was_dropped(void) {
+    measured(9123, 0);
+    trip(0);
+    agv_hold_drop(&hold);
+    renew(40, 60);
+    expect_none();
+}
+
 /* Each 065h that is sent begins the 2 s again, and so does a trip. A frame takes no time. */
 /* Shows: FSM-10 */
 void test_the_2_s_without_065h_are_uninterrupted(void) {
