@@ -14,7 +14,8 @@
 #include "text/hex.h"
 
 #define FILE_SIZE_MAX 1048576u
-#define FIRST_LINE "agv-store 1\n"
+#define FIRST_WORD "agv-store "
+#define FIRST_LINE FIRST_WORD "1\n"
 #define LATCH "latch "
 #define RECORD "record "
 #define RECORDER "recorder "
@@ -119,10 +120,26 @@ static bool take_text(const char *text, size_t size, sim_store_t *store, agv_rec
     return whole && checked;
 }
 
-bool store_file_load(const char *path, sim_store_t *store, agv_recorder_t *recorder) {
+static void clear(sim_store_t *store, agv_recorder_t *recorder) {
     sim_store_init(store);
     store->keep_latch = true; /* the supervisor reads it after any reset, and decides itself what it means */
     (void)memset(recorder, 0, sizeof *recorder);
+}
+
+bool store_file_is(const char *text, size_t size) {
+    return (size >= strlen(FIRST_WORD)) && (memcmp(text, FIRST_WORD, strlen(FIRST_WORD)) == 0);
+}
+
+void store_file_take(const char *text, size_t size, sim_store_t *store, agv_recorder_t *recorder) {
+    clear(store, recorder);
+    if (!take_text(text, size, store, recorder)) {
+        (void)memset(store->latch, DAMAGED_BYTE, sizeof store->latch);
+        store->latch_size = DAMAGED_LATCH_SIZE;
+    }
+}
+
+bool store_file_load(const char *path, sim_store_t *store, agv_recorder_t *recorder) {
+    clear(store, recorder);
     int fd = open(path, O_RDONLY | O_CLOEXEC);
     if (fd < 0) {
         return (errno == ENOENT) ? true : report("%s: %s", path, strerror(errno));
@@ -135,9 +152,8 @@ bool store_file_load(const char *path, sim_store_t *store, agv_recorder_t *recor
         size = read_up_to_limit(fd, path, text);
     }
     (void)close(fd);
-    if ((size >= 0) && !take_text(text, (size_t)size, store, recorder)) {
-        (void)memset(store->latch, DAMAGED_BYTE, sizeof store->latch);
-        store->latch_size = DAMAGED_LATCH_SIZE;
+    if (size >= 0) {
+        store_file_take(text, (size_t)size, store, recorder);
     }
     free(text);
     return size >= 0;

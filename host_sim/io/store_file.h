@@ -29,6 +29,12 @@
  */
 bool store_file_load(const char *path, sim_store_t *store, agv_recorder_t *recorder);
 
+/** Whether a file begins as a store does. */
+bool store_file_is(const char *text, size_t size);
+
+/** As store_file_load, of a file that is in memory. */
+void store_file_take(const char *text, size_t size, sim_store_t *store, agv_recorder_t *recorder);
+
 /** Write a store. A failure is remembered in @p output. */
 void store_file_save(output_t *output, const sim_store_t *store, const agv_recorder_t *recorder);
 

@@ -18,7 +18,6 @@
 #define FILE_MAX 16777216u
 #define EVENT_WORD "agv-event "
 #define VERSION_WORD "agv-version "
-#define STORE_WORD "agv-store "
 
 static bool add(recorder_events_t *events, const agv_event_t *event) {
     if (events->count == events->room) {
@@ -141,18 +140,19 @@ static bool take_lines(recorder_events_t *events, const char *text, size_t size)
 }
 
 /** The file of --store: its records, and the recorder in RAM. */
-static bool take_store(recorder_events_t *events, const char *path) {
+static bool take_store(recorder_events_t *events, const char *text, size_t size) {
     sim_store_t *store = calloc(1u, sizeof *store);
     agv_recorder_t *recorder = calloc(1u, sizeof *recorder);
     bool good = (store != NULL) && (recorder != NULL);
     if (!good) {
         (void)report("out of memory");
     }
-    good = good && store_file_load(path, store, recorder);
+    if (good) {
+        store_file_take(text, size, store, recorder);
+    }
     for (uint32_t i = 0u; good && (i < store->count); i++) {
         uint8_t record[SIM_STORE_RECORD_SIZE_MAX];
-        const size_t size = sim_store_read_record(store, i, record, sizeof record);
-        good = take_bytes(events, record, size);
+        good = take_bytes(events, record, sim_store_read_record(store, i, record, sizeof record));
     }
     good = good && take_bytes(events, (const uint8_t *)recorder, sizeof *recorder);
     free(store);
@@ -209,10 +209,9 @@ static void sort(recorder_events_t *events) {
     events->count = kept;
 }
 
-static bool take_file(recorder_events_t *events, const char *path, const char *text, size_t size) {
-    if ((size >= strlen(STORE_WORD)) && (memcmp(text, STORE_WORD, strlen(STORE_WORD)) == 0) &&
-        (strcmp(path, "-") != 0)) {
-        return take_store(events, path);
+static bool take_file(recorder_events_t *events, const char *text, size_t size) {
+    if (store_file_is(text, size)) {
+        return take_store(events, text, size);
     }
     if (!take_lines(events, text, size)) {
         return false;
@@ -224,7 +223,7 @@ bool recorder_file_read(const char *path, recorder_events_t *events) {
     const char *name = (strcmp(path, "-") == 0) ? "standard input" : path;
     char *text = NULL;
     const ssize_t size = read_all(path, name, &text);
-    bool good = (size >= 0) && take_file(events, path, text, (size_t)size);
+    bool good = (size >= 0) && take_file(events, text, (size_t)size);
     free(text);
     if (good && (events->count == 0u)) {
         good = report("%s: contains no event of a flight recorder (of the shell's 'agv dump', or bytes)", name);

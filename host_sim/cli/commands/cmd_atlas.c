@@ -48,6 +48,9 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
 static bool make_request(const given_t *given, atlas_request_t *request) {
     *request = (atlas_request_t){.shard = 1u, .shards = 1u, .results = given->results};
     request->shows_one = given->show != OPTION_NOT_GIVEN;
+    if (request->shows_one && (given->results != NULL)) {
+        return report("--show prints one case: --results cannot be combined with it");
+    }
     if (request->shows_one && (given->show >= atlas_case_count())) {
         return report("--show: the cases are 0 to %u", (unsigned)atlas_case_count() - 1u);
     }

@@ -168,6 +168,10 @@ status_t cmd_campaign(int argc, char **argv) {
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
+    if (given.tables && ((given.results != NULL) || (given.request.why != NULL) || given.merge)) {
+        (void)report("--tables runs nothing: --results, --why and --merge cannot be combined with it");
+        return STATUS_UNUSABLE;
+    }
     if (given.tables) {
         return print_tables();
     }

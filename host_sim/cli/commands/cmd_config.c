@@ -45,6 +45,10 @@ status_t cmd_config(int argc, char **argv) {
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
+    if (is_schema && to_kconfig) {
+        (void)report("--schema and --to-kconfig: one of them");
+        return STATUS_UNUSABLE;
+    }
     if (is_schema) {
         return yaml_schema_print(config_schema(false), "Configuration of the AGV safety supervisor") ? STATUS_OK
                                                                                                      : STATUS_UNUSABLE;

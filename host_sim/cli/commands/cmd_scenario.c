@@ -416,6 +416,13 @@ static status_t run_all(work_t *work, char **files) {
 
 /** What runs no scenario. */
 static status_t run_none(given_t *given) {
+    const bool any = (given->junit != NULL) || (given->events != NULL) || (given->bus != NULL) ||
+                     (given->supervisor != NULL) || (given->sent != NULL) || (given->tolerance_ms != NOT_GIVEN) ||
+                     analysis_options_any(&given->analysis);
+    if (any || (given->is_schema && (given->from.log != NULL))) {
+        (void)report("%s runs no scenario, so it takes no option of a run", given->is_schema ? "--schema" : "--from");
+        return STATUS_UNUSABLE;
+    }
     if (given->file_count > 0u) {
         (void)report("%s takes no FILE", given->is_schema ? "--schema" : "--from");
         return STATUS_UNUSABLE;

@@ -179,6 +179,8 @@ class Refused(Campaign):
         self.refuse(says="--runs is missing")
         self.refuse(*good, "--show", "1", "--results", "out.jsonl", says="--show prints one run")
         self.refuse(*good, "--show", "1", "--shard", "1/2", says="--show prints one run")
+        self.refuse("--tables", "--results", "out.jsonl", says="--tables runs nothing")
+        self.refuse("--tables", "--why", "out.jsonl", says="--tables runs nothing")
         self.refuse("--runs", "3", says="--seed is missing")
         self.refuse("--runs", "0", "--seed", "1", says="--runs")
         self.refuse("--runs", "100000001", "--seed", "1", says="--runs")

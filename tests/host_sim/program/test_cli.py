@@ -75,6 +75,12 @@ class Front(hostsim.Case):
             with self.subTest(says):
                 self.assert_refused(self.run_program(*arguments), says)
 
+    def test_what_prints_one_thing_refuses_an_option_of_another(self):
+        for arguments, says in ((("config", "--schema", "--to-kconfig"), "--schema and --to-kconfig: one of them"),
+                                (("atlas", "--show", "100", "--results", "r"), "--show prints one case")):
+            self.assert_refused(self.run_program(*arguments), says)
+        self.assertNotIn("r", self.files())
+
     def test_every_command_refuses_an_unknown_option_by_its_name(self):
         for command in self.commands():
             for option in ("--nonsense", "--nonsense=1", "-n"):

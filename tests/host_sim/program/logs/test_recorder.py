@@ -66,6 +66,8 @@ class Recorder(hostsim.Case):
             self.assertEqual(self.recorder(form), as_dump)
         again = self.run_good("recorder", "-", stdin=self.dump().encode("ascii")).stdout
         self.assertEqual(again.replace("-: ", "dump: ", 1), as_dump)
+        stored = self.run_good("recorder", "-", stdin=self.text_of("store").encode("ascii")).stdout
+        self.assertEqual(stored.replace("-: ", "dump: ", 1), as_dump)
 
     def test_why_is_that_of_the_replay(self):
         found = json.loads(self.recorder(self.dump(), "--why", "-"))

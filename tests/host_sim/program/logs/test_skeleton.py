@@ -138,6 +138,11 @@ class Skeleton(hostsim.Case):
         self.assert_refused(self.run_program("scenario", "--from", "no.log"), "no.log: No such file")
         self.assert_refused(self.run_program("scenario", "--from", "my.log", "old.yaml"), "--from takes no FILE")
         self.assert_refused(self.run_program("scenario", "-o", "x.yaml", "old.yaml"), "need --from LOG")
+        for option in ("--junit=x", "--events=x", "--bus=vcan0", "--supervisor=x", "--sent=x", "--tolerance=5", "--why=x",
+                       "--report=x", "--trace=x"):
+            for instead in ("--from=my.log", "--schema"):
+                self.assert_refused(self.run_program("scenario", instead, option), "takes no option of a run")
+        self.assert_refused(self.run_program("scenario", "--from", "my.log", "--schema"), "--schema")
         self.assert_refused(self.run_program("scenario", "--from", "old.yaml"), "old.yaml")
         self.assert_refused(self.run_program("scenario", "--from", "my.log", "-o", "no/where.yaml"), "no/where.yaml")
         self.assertEqual(self.files(), ["my.log", "old.yaml"])
