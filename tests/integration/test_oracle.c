@@ -137,6 +137,18 @@ void test_a_late_tick_replaces_an_angle_of_the_frames_before_it(void) {
     TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED));
 }
 
+/* A trip in a tick: the angle is that of this tick, and the next tick may be late. */
+/* Shows: FSM-6, FSM-10 */
+void test_a_late_tick_keeps_the_angle_of_a_trip_in_the_tick_before_it(void) {
+    measured(9200);
+    oracle_tick(&oracle, 10);
+    oracle_returned(&oracle, AGV_STATE_TRIPPED);
+    measured(9100);
+    oracle_tick(&oracle, 61);
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED)); /* 9200 */
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x8C, 0x23), AGV_STATE_TRIPPED));
+}
+
 /* Both bits: the previous mode stays valid for 50 ms. */
 /* Shows: FSM-6, FSM-10 */
 void test_manual_drops_the_held_angle(void) {

@@ -52,7 +52,7 @@ static bool manual_is_reported(const oracle_t *oracle) {
 
 static void hold(oracle_t *oracle) {
     oracle->held = true;
-    oracle->held_since_tick = true;
+    oracle->held_since_tick = !oracle->in_tick;
     oracle->held_raw = oracle->angle_raw;
 }
 
@@ -113,6 +113,7 @@ void oracle_tick(oracle_t *oracle, uint32_t now_ms) {
         oracle->held_raw = oracle->angle_raw;
     }
     oracle->held_since_tick = false;
+    oracle->in_tick = true;
 }
 
 /* If no angle is held, the first valid angle after the trip is. */
@@ -156,6 +157,7 @@ static void on_mode(oracle_t *oracle, const hal_can_frame_t *frame) {
 }
 
 void oracle_heard(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *frame) {
+    oracle->in_tick = false;
     if ((int32_t)(frame->time_ms - oracle->now_ms) > 0) {
         oracle->now_ms = frame->time_ms;
     }

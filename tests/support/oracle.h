@@ -26,6 +26,7 @@ typedef struct {
     uint32_t mode_invalid_ms;
     uint32_t now_ms;    /* clock of the supervisor, set by the test */
     uint32_t ticked_ms; /* last tick */
+    bool in_tick;       /* no frame was heard since then */
 
     /* mode: the bits of the last 363h, and the mode that counts */
     uint8_t mode_bits;
