@@ -155,6 +155,9 @@ static void check_after(campaign_check_t *check, uint64_t t_us, agv_message_t me
 
 static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, const hal_can_frame_t *frame) {
     campaign_check_t *check = ctx;
+    if ((from != SCENARIO_FROM_SUPERVISOR) && (message_of(check, frame) == check->plan->row->message)) {
+        check->heard_us = t_us;
+    }
     if ((from != SCENARIO_FROM_SUPERVISOR) || (side != HAL_CAN_VEHICLE)) {
         return;
     }
@@ -176,6 +179,13 @@ static uint64_t now_us(const campaign_check_t *check) {
     return look(check).now_us;
 }
 
+/** Whether the row's message stayed away: its frames may be late on a slow bus that is full. */
+static bool is_silent(const campaign_check_t *check) {
+    const agv_message_t message = check->plan->row->message;
+    return (message != AGV_MSG_NONE) &&
+           (now_us(check) - check->heard_us > 2u * US_PER_MS * (uint64_t)agv_message_cycle_ms(message));
+}
+
 static void on_state(campaign_check_t *check, uint64_t t_ms, const agv_event_t *event) {
     if (check->state_count < CAMPAIGN_STATES_MAX) {
         check->states[check->state_count] = (campaign_state_t){t_ms, event->b, event->c};
@@ -183,6 +193,7 @@ static void on_state(campaign_check_t *check, uint64_t t_ms, const agv_event_t *
     }
     if ((event->b == (uint8_t)AGV_STATE_TRIPPED) && (check->reason < 0)) {
         check->reason = event->c;
+        check->silent = is_silent(check);
         check->angle_ddeg =
             (check->plan->row->fault == AGV_FAULT_STEERING_ANGLE_INVALID) ? check->reported_ddeg : measured_ddeg(check);
     }
@@ -263,12 +274,31 @@ static void check_bound(campaign_check_t *check) {
     }
 }
 
+/** A node whose counter stands is lost instead of stuck when its frames stay away, too (SUP-2). */
+static bool is_lost_instead(const campaign_check_t *check) {
+    switch (check->plan->row->fault) {
+    case AGV_FAULT_VCU_HEARTBEAT_STUCK:
+        return check->silent && (check->reason == (int)AGV_FAULT_VCU_HEARTBEAT_LOST);
+    case AGV_FAULT_EPS_HEARTBEAT_STUCK:
+        return check->silent && (check->reason == (int)AGV_FAULT_EPS_HEARTBEAT_LOST);
+    case AGV_FAULT_AI_HEARTBEAT_STUCK:
+        return check->silent && (check->reason == (int)AGV_FAULT_AI_HEARTBEAT_LOST);
+    default:
+        return false;
+    }
+}
+
+static bool is_wrong_reason(const campaign_check_t *check) {
+    const bool right = (check->reason == (int)check->plan->row->first) && check->raised;
+    return !right && !is_lost_instead(check);
+}
+
 void campaign_check_finish(campaign_check_t *check) {
     const campaign_plan_t *plan = check->plan;
     const uint64_t end_us = ((uint64_t)plan->duration_ms + 1u) * US_PER_MS;
 
     check_bound(check);
-    if ((check->reason != (int)plan->row->first) || !check->raised) {
+    if (is_wrong_reason(check)) {
         is_broken(check, CAMPAIGN_WRONG_REASON, end_us);
     }
     if (check->first_safe_us != CAMPAIGN_NEVER) {

@@ -55,7 +55,9 @@ typedef struct {
     bool raised;                  /**< the fault of the row */
     bool bus_off;                 /**< BUS_OFF was raised */
     bool was_closed;
-    int reason; /**< of the first trip; -1: none */
+    uint64_t heard_us; /**< the last frame of the row's message */
+    bool silent;       /**< at the first trip, that was more than two of its cycles ago */
+    int reason;        /**< of the first trip; -1: none */
     bool holds;
     uint16_t held; /**< angle in the first 065h of its own */
     int32_t

@@ -89,6 +89,12 @@ class Results(Campaign):
         self.campaign("--runs", 20, "--seed", 1, "--fault", "BUS_OFF", "--results", "a")
         self.assertEqual({run["fault"] for run in self.lines("a")[1:]}, {"BUS_OFF"})
 
+    def test_a_counter_that_stands_in_frames_that_are_late_is_lost(self):
+        """On a full bus of 125 kbit/s 363h stays away for more than two cycles, right at the deadline (SUP-2)."""
+        self.campaign("--runs", 4180, "--seed", 20, "--fault", "VCU_HEARTBEAT_STUCK", "--shard", "180/1000",
+                      "--results", "a")
+        self.assertEqual(self.lines("a")[-1]["reason"], "VCU_HEARTBEAT_LOST")
+
     def test_no_bar_where_there_is_no_terminal(self):
         self.assertEqual(self.campaign("--runs", 5, "--seed", 1).stderr, "")
 
