@@ -184,7 +184,7 @@ static void start(replay_t *replay, uint64_t first_us) {
 
 /** Whether standard output is free for the text. */
 static bool has_text(const replay_request_t *request) {
-    bool taken = (request->events != NULL) || (request->listener != NULL) || output_is_stdout(request->out);
+    bool taken = (request->listener != NULL) || output_is_stdout(request->events) || output_is_stdout(request->out);
     for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
         taken = taken || output_is_stdout(request->analysis[i]);
     }

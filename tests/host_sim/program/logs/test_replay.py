@@ -289,12 +289,13 @@ class Events(hostsim.Case):
         self.assertEqual(lines[-1]["event"], "summary")
         self.assertEqual(self.files(), ["log"])
 
-    def test_without_events_a_summary_for_people(self):
+    def test_a_summary_for_people_unless_standard_output_is_taken(self):
         self.write("log", traffic.log(traffic.frames(100)))
         result = self.run_good("replay", "log")
+        self.assertIn("NOT SUPERVISED", result.stdout)
         self.assertIn("tripped     never", result.stdout)
         self.assertNotIn("{", result.stdout)
-        self.assertEqual(self.run_good("replay", "--events", "e", "log").stdout, "")
+        self.assertEqual(self.run_good("replay", "--events", "e", "log").stdout, result.stdout)
 
     def test_what_was_sent_on_standard_output(self):
         self.write("log", traffic.log(traffic.frames(100)))
