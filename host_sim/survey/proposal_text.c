@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/json_build.h"
 #include "config/config_text.h"
 #include "survey/proposal.h"
 
@@ -17,7 +18,7 @@ static void print_comment(FILE *file, const char *first, const char *text) {
         }
         used += (size_t)fprintf(file, " ");
         for (size_t i = 0u; i < length; i++) {
-            const bool is_text = (unsigned char)at[i] >= 0x20u;
+            const bool is_text = ((unsigned char)at[i] >= 0x20u) && (at[i] != '\x7F');
             (void)fputc(is_text ? at[i] : '?', file);
         }
         used += length;
@@ -51,7 +52,9 @@ static size_t print_settings(FILE *file, const proposal_t *proposal) {
 }
 
 static void print_all(FILE *file, const proposal_t *proposal, const char *source) {
-    print_comment(file, " Proposed by host_sim survey from", source);
+    json_t *name = json_text(source); /* the name of a file may be no UTF-8, which YAML has to be */
+    print_comment(file, " Proposed by host_sim survey from", (name != NULL) ? json_string_value(name) : "");
+    json_decref(name);
     print_comment(file, "", "Settings that are not here keep their defaults; host_sim config prints them all.");
     if (print_settings(file, proposal) == 0u) {
         (void)fputc('\n', file);

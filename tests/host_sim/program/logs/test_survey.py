@@ -2,6 +2,7 @@
 same log: it trips nothing that the log does not deserve, and what is really wrong still trips."""
 import gzip
 import json
+import os
 import random
 import re
 import resource
@@ -329,6 +330,13 @@ class Text(Case):
         self.assertTrue(result.stdout.startswith("# Proposed by host_sim survey from log\n"), result.stdout)
         self.write("c.yaml", result.stdout)
         self.run_good("config", "--config", "c.yaml")
+
+    def test_the_proposal_from_a_log_whose_name_is_no_text(self):
+        content = traffic.log(traffic.frames(2000)).encode("ascii")
+        for name in (b"\xff.log", b"\x7f\x01.log", "\u00fc.log".encode("utf-8")):
+            (self.folder / os.fsdecode(name)).write_bytes(content)
+            self.run_good("survey", "--config-out", "c.yaml", os.fsdecode(name))
+            self.run_good("config", "--config", "c.yaml")
 
     def test_every_format(self):
         frames = traffic.frames(3000, 1000)
