@@ -182,8 +182,8 @@ static uint64_t now_us(const campaign_check_t *check) {
 /** Whether the row's message stayed away: its frames may be late on a slow bus that is full. */
 static bool is_silent(const campaign_check_t *check) {
     const agv_message_t message = check->plan->row->message;
-    return (message != AGV_MSG_NONE) &&
-           (now_us(check) - check->heard_us > 2u * US_PER_MS * (uint64_t)agv_message_cycle_ms(message));
+    const uint64_t two_cycles_us = (uint64_t)agv_message_cycle_ms(message) * 2u * US_PER_MS;
+    return (message != AGV_MSG_NONE) && (now_us(check) - check->heard_us > two_cycles_us);
 }
 
 static void on_state(campaign_check_t *check, uint64_t t_ms, const agv_event_t *event) {
