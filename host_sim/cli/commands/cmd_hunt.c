@@ -69,6 +69,22 @@ static bool make_request(given_t *given) {
     return output_check_folder("--found", request->folder);
 }
 
+static bool has_run_options(const given_t *given) {
+    const hunt_request_t *request = &given->request;
+    return (request->runs != OPTION_NOT_GIVEN) || (request->minutes != OPTION_NOT_GIVEN) ||
+           (request->checkpoint != NULL) || (given->folder != NULL);
+}
+
+static status_t list_hazards(const given_t *given) {
+    if (has_run_options(given)) {
+        (void)report(
+            "--list-hazards runs nothing: --runs, --for-minutes, --checkpoint and --found cannot be combined with it");
+        return STATUS_UNUSABLE;
+    }
+    hunt_list_hazards();
+    return STATUS_OK;
+}
+
 status_t cmd_hunt(int argc, char **argv) {
     given_t given = {.request = {.runs = OPTION_NOT_GIVEN, .minutes = OPTION_NOT_GIVEN}};
     const options_result_t parsed = parse(argc, argv, &given);
@@ -77,8 +93,7 @@ status_t cmd_hunt(int argc, char **argv) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
     if (given.lists) {
-        hunt_list_hazards();
-        return STATUS_OK;
+        return list_hazards(&given);
     }
     return make_request(&given) ? hunt_run(&given.request) : STATUS_UNUSABLE;
 }

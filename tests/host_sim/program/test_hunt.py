@@ -68,6 +68,7 @@ class Hunt(hostsim.Case):
         for arguments, said in (
             ((), "--seed is missing"),
             (("--seed", 1), "--runs or --for-minutes is missing"),
+            (("--list-hazards", "--checkpoint", "x"), "--list-hazards runs nothing"),
             (("--seed", 1, "--runs", 0), "--runs: '0' is not a number from 1"),
             (("--seed", 1, "--for-minutes", "x"), "--for-minutes: 'x' is not a time"),
             (("--seed", 1, "--runs", 1, "--shard", "3/2"), "--shard: '3/2'"),
