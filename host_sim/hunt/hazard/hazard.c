@@ -83,6 +83,7 @@ static void read_limits(hazard_t *hazard) {
     limits->stop_ms = hazard_setting(hazard, "stop_timeout_ms", 5000u);
     limits->vcu_ms = hazard_setting(hazard, "vcu_heartbeat_timeout_ms", 50u);
     limits->tx_stalled_ms = hazard_setting(hazard, "tx_stalled_ms", 100u);
+    limits->watchdog_ms = hazard_setting(hazard, "watchdog_period_ms", 100u);
     limits->mode_invalid_ms = hazard_setting(hazard, "mode_invalid_ms", 50u);
     limits->mode_flapping_ms = hazard_setting(hazard, "mode_flapping_ms", 5000u);
     limits->engaged_grace_ms = hazard_setting(hazard, "engaged_grace_ms", 500u);

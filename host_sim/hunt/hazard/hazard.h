@@ -75,6 +75,7 @@ typedef struct {
     uint32_t stop_ms;
     uint32_t vcu_ms;
     uint32_t tx_stalled_ms;
+    uint32_t watchdog_ms;
     uint32_t mode_invalid_ms;
     uint32_t mode_flapping_ms;
     uint32_t engaged_grace_ms;
@@ -194,7 +195,8 @@ typedef struct {
     uint64_t throttle_ms; /**< last 075h above 0 on the vehicle side; newest one there */
     bool throttle_is_newest;
     uint64_t asked_off_ms; /**< the AI computer has been asking for autopilot off since then; 0: it does not */
-    uint64_t asked_all_ms; /**< when its 43Fh asked for the same as the safe one */
+    uint64_t
+        asked_all_ms[256]; /**< when its 43Fh with this alive counter asked for the same as the safe one; 0: never */
     int32_t speeds_mm_s[HAZARD_SPEEDS];
     uint32_t speed_at;
     uint32_t passed[HAZARD_FLOOD_SLOTS];

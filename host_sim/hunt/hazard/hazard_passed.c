@@ -82,9 +82,14 @@ static bool is_stalled(const hazard_t *hazard) {
     return (hazard->stalled_ms != 0u) && (hazard->t_ms - hazard->stalled_ms <= MARGIN_MS);
 }
 
-/** A command on the vehicle side is followed by the safe ones at once, if they leave the controller. */
+/**
+ * A command on the vehicle side is followed by the safe ones at once, if they leave the controller, and if the supervisor does not
+ * hang for as long as its watchdog lets it.
+ */
 static uint32_t answer_ms(const hazard_t *hazard) {
-    return (uint32_t)ANSWER_MS + (is_stalled(hazard) ? hazard->limits.tx_stalled_ms : (uint32_t)MARGIN_MS);
+    const uint32_t step_ms =
+        (hazard->limits.watchdog_ms > (uint32_t)MARGIN_MS) ? hazard->limits.watchdog_ms : (uint32_t)MARGIN_MS;
+    return (uint32_t)ANSWER_MS + (is_stalled(hazard) ? hazard->limits.tx_stalled_ms : step_ms);
 }
 
 /** The safe commands follow a 065h of theirs; where they are stalled, the output opens. */

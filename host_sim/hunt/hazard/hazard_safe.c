@@ -31,9 +31,10 @@ static void begin_trip(hazard_t *hazard) {
     hazard_hold_trip(hazard);
 }
 
-/** Gateway: the AI computer asked for the same as the safe 43Fh, which is passed on. */
-static bool is_of_ai(const hazard_t *hazard) {
-    return hazard->gateway && (hazard->asked_all_ms != 0u) && (hazard->t_ms - hazard->asked_all_ms <= SPEED_SLOT_MS);
+/** Gateway: the AI computer asked for the same as the safe 43Fh, which is passed on with its alive counter. */
+static bool is_of_ai(const hazard_t *hazard, uint8_t counter) {
+    const uint64_t asked_ms = hazard->asked_all_ms[counter];
+    return hazard->gateway && (asked_ms != 0u) && (hazard->t_ms - asked_ms <= SPEED_SLOT_MS);
 }
 
 void hazard_safe_frame(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
@@ -43,7 +44,7 @@ void hazard_safe_frame(hazard_t *hazard, agv_message_t message, const hal_can_fr
         trip->parks = trip->parks || trip->tripped;
     }
     if ((message != AGV_MSG_TURN_SIGNAL_COMMAND) || (memcmp(frame->data, SAFE_SIGNALS, sizeof SAFE_SIGNALS) != 0) ||
-        is_of_ai(hazard)) {
+        is_of_ai(hazard, frame->data[SIGNALS_BYTES])) {
         return;
     }
     trip->last_ms = hazard->t_ms;

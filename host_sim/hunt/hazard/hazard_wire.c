@@ -221,7 +221,7 @@ void hazard_wire_command(hazard_t *hazard, agv_message_t message, const hal_can_
         (void)agv_unpack_turn_signal_command(&command, frame->data);
         hazard->asked_off_ms = command.autopilot_off ? hazard->t_ms : 0u;
         if (command.autopilot_off && command.turn_left_on && command.turn_right_on && command.headlight_on) {
-            hazard->asked_all_ms = hazard->t_ms;
+            hazard->asked_all_ms[command.alive_counter] = hazard->t_ms;
         }
     }
 }

@@ -380,9 +380,9 @@ void test_h4_an_unconfirmed_safe_state(void) {
 
 /** A reset by the operator, and the next trip soon after it: each trip has its own time to be confirmed. */
 void test_h4_a_trip_soon_after_a_reset_is_a_new_one(void) {
-    const char *const twice = "  - {at_ms: 2900, vcu: set, field: gear, value: 01h, frames: 25}\n"
-                              "%s"
-                              "  - {at_ms: 6200, vcu: set, field: gear, value: 01h, frames: 25}\n";
+    static const char twice[] = "  - {at_ms: 2900, vcu: set, field: gear, value: 01h, frames: 25}\n"
+                                "%s"
+                                "  - {at_ms: 6200, vcu: set, field: gear, value: 01h, frames: 25}\n";
     const char *const reset =
         "  - {at_ms: 4500, operator: press, button: 1}\n  - {at_ms: 5900, operator: release, button: 1}\n";
     const stub_t trips_again = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .again_ms = 6300};
@@ -426,14 +426,14 @@ void test_h5_the_push_button(void) {
 /** What 363h reports of the button counts too: nobody can know better. */
 void test_h5_a_press_that_is_reported_late_or_wrongly(void) {
     const stub_t resets = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .setting = "confirm_timeout_ms: 1000\n"};
-    const char *const lost = "  - {at_ms: 2000, operator: press, button: 1}\n"
-                             "  - {at_ms: 2900, operator: lose_remote_signal}\n"
-                             "%s"
-                             "  - {at_ms: 4500, operator: regain_remote_signal}\n"
-                             "  - {at_ms: 5900, operator: release, button: 1}\n";
-    const char *const late = "  - {at_ms: 2500, vcu: delay, message: vehicle_status, by_ms: 700}\n"
-                             "  - {at_ms: 2700, operator: press, button: 1}\n"
-                             "  - {at_ms: %s, operator: release, button: 1}\n";
+    static const char lost[] = "  - {at_ms: 2000, operator: press, button: 1}\n"
+                               "  - {at_ms: 2900, operator: lose_remote_signal}\n"
+                               "%s"
+                               "  - {at_ms: 4500, operator: regain_remote_signal}\n"
+                               "  - {at_ms: 5900, operator: release, button: 1}\n";
+    static const char late[] = "  - {at_ms: 2500, vcu: delay, message: vehicle_status, by_ms: 700}\n"
+                               "  - {at_ms: 2700, operator: press, button: 1}\n"
+                               "  - {at_ms: %s, operator: release, button: 1}\n";
     char steps[512];
 
     (void)snprintf(steps, sizeof steps, lost, "");
