@@ -42,9 +42,9 @@ void agv_hold_take(agv_hold_t *hold, const agv_vehicle_t *vehicle);
 void agv_hold_follow(agv_hold_t *hold, const agv_timers_t *timers, uint32_t elapsed_ms);
 
 /**
- * Replace an angle that was taken among frames that were handled late: the wheels may have turned since. If the tick is later
- * than hold_age_ms and the angle was taken since the tick before it, the newest one is held, if it is not older than hold_age_ms.
- * Call in TRIPPED and SAFE, in every pass.
+ * Replace an angle that was taken from frames that were handled late: the wheels may have turned since. If a tick comes more than
+ * hold_age_ms after the last one, and the angle was taken between the two, the newest angle is held instead. If that is older
+ * than hold_age_ms, none is held. Call in TRIPPED and SAFE, in every pass.
  * @param elapsed_ms since the last tick; 0 for a frame
  */
 void agv_hold_renew(agv_hold_t *hold, const agv_vehicle_t *vehicle, const agv_timers_t *timers, uint32_t hold_age_ms,

@@ -195,9 +195,9 @@ void agv_core_await_safe_state(agv_core_t *core) {
 }
 
 /*
- * FSM-10: manual drops the held angle, and so do 2 s in which no 065h left. A late tick replaces one of the frames before it. A
- * 065h that may no longer be sent must not leave a stalled transmitter later: returns whether it was withdrawn, and all other
- * frames with it.
+ * FSM-10: manual drops the held angle, and so do 2 s in which no 065h left. A late tick replaces an angle that was taken since
+ * the last tick. A 065h that may no longer be sent must not leave a stalled transmitter later: returns whether it was
+ * withdrawn, and all other frames with it.
  */
 static bool follow_hold(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) {
     const bool stalled = agv_fault_monitor_is_active(&core->faults, AGV_FAULT_TX_STALLED);

@@ -194,9 +194,8 @@ typedef struct {
     bool false_is_065h;   /**< that may be the first frame of a hold, whose others wait in a stalled transmitter */
     uint64_t throttle_ms; /**< last 075h above 0 on the vehicle side; newest one there */
     bool throttle_is_newest;
-    uint64_t asked_off_ms; /**< the AI computer has been asking for autopilot off since then; 0: it does not */
-    uint64_t
-        asked_all_ms[256]; /**< when its 43Fh with this alive counter asked for the same as the safe one; 0: never */
+    uint64_t asked_off_ms;      /**< the AI computer has been asking for autopilot off since then; 0: it does not */
+    uint64_t asked_all_ms[256]; /**< by alive counter: when its 43Fh asked for the same as the safe one; 0: never */
     int32_t speeds_mm_s[HAZARD_SPEEDS];
     uint32_t speed_at;
     uint32_t passed[HAZARD_FLOOD_SLOTS];

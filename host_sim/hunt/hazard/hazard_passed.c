@@ -83,8 +83,8 @@ static bool is_stalled(const hazard_t *hazard) {
 }
 
 /**
- * A command on the vehicle side is followed by the safe ones at once, if they leave the controller, and if the supervisor does not
- * hang for as long as its watchdog lets it.
+ * A command on the vehicle side is followed by the safe ones at once, if they leave the controller. A supervisor that hangs sends
+ * them when it runs again, after the period of its watchdog at the latest.
  */
 static uint32_t answer_ms(const hazard_t *hazard) {
     const uint32_t step_ms =
