@@ -38,35 +38,43 @@ static int32_t clamp(int32_t value, int32_t lowest, int32_t highest) {
     return (value > highest) ? highest : value;
 }
 
-/* The change that a rate limit allows in the elapsed time, in steps of 1 / @p per_s of the rate. */
-static uint32_t steps_since(uint32_t rate_per_s, uint32_t scale, uint32_t now_ms, uint32_t then_ms) {
-    const uint32_t since_ms = now_ms - then_ms;
+/* The whole steps that a rate, in 1 / @p scale of a step a second, has made since it was counted. The rest is kept. */
+static uint32_t take_steps(agv_gateway_rate_t *rate, uint32_t per_s, uint32_t scale, uint32_t now_ms) {
+    const uint32_t since_ms = now_ms - rate->counted_ms;
     const uint32_t time_ms = (since_ms < RATE_TIME_MAX_MS) ? since_ms : RATE_TIME_MAX_MS;
-    return (rate_per_s * time_ms) / scale;
+    const uint32_t parts = rate->rest + (per_s * time_ms);
+    rate->counted_ms = now_ms;
+    rate->rest = (uint16_t)(parts % scale);
+    return parts / scale;
+}
+
+/* A command that its rate does not limit: nothing is kept for the next one. */
+static void reach(agv_gateway_rate_t *rate, uint32_t value, uint32_t now_ms) {
+    *rate = (agv_gateway_rate_t){.counted_ms = now_ms, .value = (uint16_t)value};
 }
 
 /* In counts; 5 counts are 2 %. The first command may rise from 0 by the change of one cycle. */
 static uint32_t limit_throttle(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t wanted) {
-    const uint32_t rate_pct_s = facts->config->throttle_rise_pct_s;
+    agv_gateway_rate_t *const rate = &gateway->throttle;
+    const uint32_t rise_pct_s = facts->config->throttle_rise_pct_s;
     const uint32_t ceiling = ((uint32_t)facts->config->throttle_ceiling_pct * AGV_THROTTLE_MAX_COUNTS) / 100u;
-    uint32_t limited = (wanted < ceiling) ? wanted : ceiling;
+    const uint32_t allowed = (wanted < ceiling) ? wanted : ceiling;
     if (facts->state != AGV_STATE_ACTIVE) {
         return 0u;
     }
     if (!gateway->throttle_known) {
         gateway->throttle_known = true;
-        gateway->throttle_ms = facts->now_ms - agv_message_cycle_ms(AGV_MSG_THROTTLE_COMMAND);
+        reach(rate, 0u, facts->now_ms - agv_message_cycle_ms(AGV_MSG_THROTTLE_COMMAND));
     }
-    if ((rate_pct_s != 0u) && (limited > gateway->throttle)) {
-        const uint32_t rise = steps_since(rate_pct_s * 5u, 2000u, facts->now_ms, gateway->throttle_ms);
-        if (rise == 0u) {
-            return gateway->throttle; /* time goes on adding up until it makes a whole step */
+    if (rise_pct_s != 0u) {
+        const uint32_t risen = rate->value + take_steps(rate, rise_pct_s * 5u, 2000u, facts->now_ms);
+        if (risen < allowed) {
+            rate->value = (uint16_t)risen;
+            return risen;
         }
-        limited = (limited < (gateway->throttle + rise)) ? limited : (gateway->throttle + rise);
     }
-    gateway->throttle = (uint8_t)limited;
-    gateway->throttle_ms = facts->now_ms;
-    return limited;
+    reach(rate, allowed, facts->now_ms);
+    return allowed;
 }
 
 /* Above a speed the angle is limited to both sides of the centre. */
@@ -83,28 +91,28 @@ static uint32_t limit_to_speed(const agv_gateway_facts_t *facts, uint32_t wanted
 /* The limit of the first command starts at the measured angle, one cycle ago. */
 static void begin_slew(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t wanted_raw) {
     if (!gateway->steering_known) {
-        gateway->steering_raw = facts->vehicle->angle_known ? facts->vehicle->angle_raw : (uint16_t)wanted_raw;
-        gateway->steering_ms = facts->now_ms - agv_message_cycle_ms(AGV_MSG_STEERING_COMMAND);
+        const uint32_t from_raw = facts->vehicle->angle_known ? facts->vehicle->angle_raw : wanted_raw;
         gateway->steering_known = true;
+        reach(&gateway->steering, from_raw, facts->now_ms - agv_message_cycle_ms(AGV_MSG_STEERING_COMMAND));
     }
 }
 
 /* Raw angles: a step is a tenth of a degree. */
 static uint32_t limit_slew(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t wanted_raw) {
-    const uint32_t rate_ddeg_s = facts->config->steering_slew_ddeg_s;
-    uint32_t limited_raw = wanted_raw;
+    agv_gateway_rate_t *const rate = &gateway->steering;
+    const uint32_t slew_ddeg_s = facts->config->steering_slew_ddeg_s;
     begin_slew(gateway, facts, wanted_raw);
-    if (rate_ddeg_s != 0u) {
-        const int32_t step = (int32_t)steps_since(rate_ddeg_s, 1000u, facts->now_ms, gateway->steering_ms);
-        const int32_t from = (int32_t)gateway->steering_raw;
-        limited_raw = (uint32_t)clamp((int32_t)wanted_raw, from - step, from + step);
-        if ((step == 0) && (limited_raw != wanted_raw)) {
-            return limited_raw; /* time goes on adding up until it makes a whole step */
+    if (slew_ddeg_s != 0u) {
+        const int32_t from = (int32_t)rate->value;
+        const int32_t step = (int32_t)take_steps(rate, slew_ddeg_s, 1000u, facts->now_ms);
+        const uint32_t slewed_raw = (uint32_t)clamp((int32_t)wanted_raw, from - step, from + step);
+        if (slewed_raw != wanted_raw) {
+            rate->value = (uint16_t)slewed_raw;
+            return slewed_raw;
         }
     }
-    gateway->steering_raw = (uint16_t)limited_raw;
-    gateway->steering_ms = facts->now_ms;
-    return limited_raw;
+    reach(rate, wanted_raw, facts->now_ms);
+    return wanted_raw;
 }
 
 bool agv_gateway_limit(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t command,

@@ -13,14 +13,19 @@
 #include "agv/state.h"
 #include "observe/vehicle.h"
 
-/** The last values of the rate limits. All zero: no command was checked since the engagement. */
+/** A value whose rate of change is limited. */
 typedef struct {
-    uint32_t steering_ms;  /**< time of the last 065h */
-    uint32_t throttle_ms;  /**< time of the last 075h */
-    uint16_t steering_raw; /**< angle of that 065h after the limit, raw (P5) */
-    uint8_t throttle;      /**< throttle of that 075h after the limit, counts */
-    bool steering_known;   /**< steering_ms and steering_raw are valid */
-    bool throttle_known;   /**< throttle_ms and throttle are valid */
+    uint32_t counted_ms; /**< the limit has counted the time up to here */
+    uint16_t rest;       /**< what that time made of a step that is not whole yet, in parts of the limit's scale */
+    uint16_t value;      /**< the last command after the limit: throttle in counts, angle raw (P5) */
+} agv_gateway_rate_t;
+
+/** The rate limits. All zero: no command was checked since the engagement. */
+typedef struct {
+    agv_gateway_rate_t steering;
+    agv_gateway_rate_t throttle;
+    bool steering_known; /**< steering is valid */
+    bool throttle_known; /**< throttle is valid */
 } agv_gateway_t;
 
 /** Inputs of the gateway. */

@@ -239,28 +239,53 @@ void test_a_held_throttle_saves_up_no_rise(void) {
     TEST_ASSERT_EQUAL_UINT(0, throttle(250));
 }
 
-/* 59 % a second for 61 ms are 8.9975 counts, 100 % for 4 ms are exactly 1. */
+/* 59 % a second are 147.5 counts: 8.9975 in 61 ms, 9.9999 in 67.796 ms. */
 /* Shows: TOP-2 */
-void test_the_rise_is_rounded_down(void) {
+void test_the_rise_is_rounded_down_and_the_rest_is_kept(void) {
     config.throttle_rise_pct_s = 59;
     TEST_ASSERT_EQUAL_UINT(0, throttle(0));
     now_ms += 61;
     TEST_ASSERT_EQUAL_UINT(8, throttle(250));
-    config.throttle_rise_pct_s = 100;
-    now_ms += 4;
+    now_ms += 1;
     TEST_ASSERT_EQUAL_UINT(9, throttle(250));
-    now_ms += 3;
+    now_ms += 5; /* 67 ms in all */
     TEST_ASSERT_EQUAL_UINT(9, throttle(250));
+    now_ms += 1;
+    TEST_ASSERT_EQUAL_UINT(10, throttle(250));
 }
 
-/* A pause counts as at most one second: 125 counts, limited by the ceiling. */
+/* 10 % a second are 2.5 counts in a cycle of 100 ms: 25 counts in a second, not 20. */
+/* Shows: TOP-2 */
+void test_a_rise_of_half_counts_loses_nothing(void) {
+    config.throttle_rise_pct_s = 10;
+    (void)throttle(0);
+    for (unsigned i = 1; i <= 10; i++) {
+        now_ms += 100;
+        TEST_ASSERT_EQUAL_UINT(i * 5 / 2, throttle(250));
+    }
+}
+
+/* The rest of a rise that was reached is not kept: 100 ms are 2.5 counts, 2 are wanted; 40 ms later 1 more. */
+/* Shows: TOP-2 */
+void test_a_throttle_that_is_reached_keeps_no_rest(void) {
+    config.throttle_rise_pct_s = 10;
+    (void)throttle(0);
+    now_ms += 100;
+    TEST_ASSERT_EQUAL_UINT(2, throttle(2));
+    now_ms += 39;
+    TEST_ASSERT_EQUAL_UINT(2, throttle(250));
+    now_ms += 1;
+    TEST_ASSERT_EQUAL_UINT(3, throttle(250));
+}
+
+/* A pause counts as at most one second: 125 counts, limited by the ceiling. 12.5 and 124.9 counts make 137. */
 /* Shows: TOP-2, TIM-2 */
 void test_a_pause_gives_at_most_a_second_of_rise(void) {
     config.throttle_rise_pct_s = 50;
     now_ms = 0xFFFFFF00u;
     TEST_ASSERT_EQUAL_UINT(12, throttle(250));
     now_ms += 999;
-    TEST_ASSERT_EQUAL_UINT(12 + 124, throttle(250));
+    TEST_ASSERT_EQUAL_UINT(137, throttle(250));
     TEST_ASSERT_EQUAL_UINT(0, throttle(0));
     now_ms += 5000;
     TEST_ASSERT_EQUAL_UINT(125, throttle(250));
@@ -401,6 +426,27 @@ void test_a_slow_slew_adds_up(void) {
     for (int i = 1; i <= 40; i++) {
         TEST_ASSERT_EQUAL_INT(i / 4, steer(25, 1000));
     }
+}
+
+/* 7.9 degrees a second are 1.975 tenths in 25 ms: 79 tenths in a second, not 40. */
+/* Shows: TOP-2 */
+void test_a_slew_of_broken_tenths_loses_nothing(void) {
+    config.steering_slew_ddeg_s = 79;
+    (void)steer(0, 0);
+    for (int i = 1; i < 40; i++) {
+        (void)steer(25, -1000);
+    }
+    TEST_ASSERT_EQUAL_INT(-79, steer(25, -1000));
+}
+
+/* The rest of a slew that was reached is not kept: 25 ms are 0.5 tenths more than the one that was wanted. */
+/* Shows: TOP-2 */
+void test_an_angle_that_is_reached_keeps_no_rest(void) {
+    config.steering_slew_ddeg_s = 60;
+    (void)steer(0, 0);
+    TEST_ASSERT_EQUAL_INT(1, steer(25, 1));
+    TEST_ASSERT_EQUAL_INT(1, steer(16, 1000));
+    TEST_ASSERT_EQUAL_INT(2, steer(1, 1000));
 }
 
 /* When the last command is reached, the collected time is cleared. */
