@@ -152,6 +152,7 @@ static void sound_decisions(agv_core_t *core) {
     core->transmitter.report.park_sent = any_bool();
     core->transmitter.report.hold_sent = any_bool();
     core->hold.handed_over = any_bool();
+    core->hold.stalled = any_bool();
     core->hold.taken = any_bool();
     core->transmitter.status_again = any_bool();
     core->transmitter.throttle_0_waits = any_bool();
