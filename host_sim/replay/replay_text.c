@@ -13,7 +13,7 @@
 
 enum { MANUAL_BIT = 5 };
 _Static_assert((1u << MANUAL_BIT) == AGV_MISSING_MANUAL, "the bit of manual");
-enum { NOT_SUPERVISED_LABEL = 16, START_MS = 1000, BACK_US = US_PER_S };
+enum { NOT_SUPERVISED_LABEL = 16, START_MS = 1000, BACK_US = 10 * US_PER_MS };
 
 /** Whether something had begun when the log ended. */
 static bool has_pending(const replay_text_t *replay) {

@@ -26,7 +26,7 @@ typedef struct {
     const events_summary_t *summary;
 } replay_text_t;
 
-/** Add what is wrong with a log in which the time goes back by a second or more. @return false: it does not */
+/** Add what is wrong with a log in which the time goes back by 10 ms or more. @return false: it does not */
 bool replay_text_goes_back(text_t *text, const replay_heard_t *heard);
 
 /** Hand the page what its reader must know besides: what was not supervised, and the hints. */

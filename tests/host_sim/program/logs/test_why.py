@@ -106,6 +106,37 @@ class FiveLogs(Case):
         self.assertEqual(lines[1], "                cut or sort the log there")
         self.assertEqual(lines[-1], "log         time stamps that went backwards: 1420")
 
+    def test_a_clock_that_is_set_back_by_less_than_a_silence_hides_it(self):
+        silent = traffic.frames(6000, engage_ms=1000, edit=lambda frame: None if frame.name == "steering_command" and
+                                3000 <= frame.t_ms < 3900 else frame)
+        tripped = self.text(traffic.log(silent), "--fail-on-trip", status=1)
+        self.assertTrue([line for line in tripped if "STEERING_COMMAND_TIMEOUT" in line])
+        for frame in silent:
+            frame.t_us -= 900 * 1000 if frame.t_ms >= 3500 else 0
+        lines = self.text(traffic.log(silent), "--fail-on-trip", status=1)
+        self.assertTrue(lines[0].startswith("NOT SUPERVISED: the time stamps go back by 0.894 s at line "), lines[0])
+
+    def set_back(self, back_us):
+        """A healthy log; after 2 s its clock is set back."""
+        frames = traffic.frames(3000)
+        at = next(i for i, frame in enumerate(frames) if frame.t_us >= 2 * S)
+        step = back_us + frames[at].t_us - frames[at - 1].t_us
+        for frame in frames[at:]:
+            frame.t_us -= step
+        return traffic.log(frames)
+
+    def test_how_far_a_clock_may_be_set_back(self):
+        lines = self.text(self.set_back(10000), "--fail-on-trip", status=1)
+        self.assertTrue(lines[0].startswith("NOT SUPERVISED: the time stamps go back by 0.010 s at line "), lines[0])
+        self.assertNotIn("NOT SUPERVISED", "".join(self.text(self.set_back(9999), "--fail-on-trip")))
+
+    def test_two_interfaces_that_were_logged_out_of_order(self):
+        frames = traffic.frames(3000, engage_ms=1000, ai_interface="can1")
+        frames.sort(key=lambda frame: frame.t_us + (5000 if frame.interface == "can0" else 0))
+        lines = self.text(traffic.log(frames), "--ai-if", "can1", "--fail-on-trip")
+        self.assertNotIn("NOT SUPERVISED", "".join(lines))
+        self.assertTrue(lines[-1].startswith("log         time stamps that went backwards: "), lines[-1])
+
     def test_a_clock_that_is_set_forward(self):
         log = traffic.log(traffic.frames(2000)) + traffic.log(traffic.frames(2000), base_us=traffic.BASE_US + 60 * S)
         self.assertEqual(self.text(log)[:2], [
