@@ -18,6 +18,10 @@ static status_t run_command(int argc, char **argv) {
         argv[0] = help;
     }
     if ((strcmp(argv[0], "--version") == 0) || (strcmp(argv[0], "-V") == 0)) {
+        if (argc > 1) {
+            (void)report("unexpected argument '%s'; see host_sim --help", argv[1]);
+            return STATUS_UNUSABLE;
+        }
         (void)printf("host_sim %s\n", HOST_SIM_VERSION);
         return STATUS_OK;
     }

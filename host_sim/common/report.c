@@ -55,5 +55,10 @@ bool report_stdout(void) {
     if (fflush(stdout) != 0) {
         return report("standard output: %s", strerror(errno));
     }
-    return failed ? report("standard output: write error") : true;
+    if (!failed) {
+        return true;
+    }
+    clearerr(stdout); /* the output is incomplete anyway: writing once more tells the reason, unless that is gone */
+    const bool fails_again = (putchar('\n') == EOF) || (fflush(stdout) != 0);
+    return report("standard output: %s", (fails_again && (errno != 0)) ? strerror(errno) : "write error");
 }

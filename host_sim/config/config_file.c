@@ -203,8 +203,10 @@ bool config_read_mapping(yaml_document_t *document, const yaml_node_t *mapping, 
 
 static bool take_root(yaml_document_t *document, agv_config_t *config, config_lines_t *lines) {
     const yaml_node_t *root = yaml_document_get_root_node(document);
-    if (root == NULL) {
-        return true; /* nothing but comments: the defaults */
+    const char *text = (root != NULL) ? yaml_node_plain(root) : NULL;
+    const bool is_marker = (text != NULL) && (text[0] == '\0');
+    if ((root == NULL) || is_marker) {
+        return true; /* nothing but comments, or a '---': the defaults */
     }
     return config_read_mapping(document, root, config, lines);
 }

@@ -68,22 +68,26 @@ void junit_text(output_t *output, const char *text) {
     }
 }
 
-void junit_begin(output_t *output, const char *suite, size_t tests, size_t failures) {
+void junit_begin(output_t *output, const char *suite, size_t tests, size_t failures, size_t errors) {
     char numbers[NUMBER_TEXT_SIZE];
 
-    (void)snprintf(numbers, sizeof numbers, "\" tests=\"%zu\" failures=\"%zu\" errors=\"0\" skipped=\"0\">\n", tests,
-                   failures);
+    (void)snprintf(numbers, sizeof numbers, "\" tests=\"%zu\" failures=\"%zu\" errors=\"%zu\" skipped=\"0\">\n", tests,
+                   failures, errors);
     put(output, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"");
     junit_text(output, suite);
     put(output, numbers);
 }
 
-void junit_test(output_t *output, const char *class_name, const char *name, const char *failures, size_t count,
-                size_t stride) {
+static void begin_test(output_t *output, const char *class_name, const char *name) {
     put(output, "  <testcase classname=\"");
     junit_text(output, class_name);
     put(output, "\" name=\"");
     junit_text(output, name);
+}
+
+void junit_test(output_t *output, const char *class_name, const char *name, const char *failures, size_t count,
+                size_t stride) {
+    begin_test(output, class_name, name);
     if (count == 0u) {
         put(output, "\"/>\n");
         return;
@@ -96,6 +100,13 @@ void junit_test(output_t *output, const char *class_name, const char *name, cons
         put(output, "\n");
     }
     put(output, "</failure>\n  </testcase>\n");
+}
+
+void junit_error(output_t *output, const char *class_name, const char *name, const char *message) {
+    begin_test(output, class_name, name);
+    put(output, "\">\n    <error message=\"");
+    junit_text(output, message);
+    put(output, "\"/>\n  </testcase>\n");
 }
 
 void junit_end(output_t *output) {

@@ -10,7 +10,7 @@
 #include "io/output.h"
 
 /** The root element with its totals. */
-void junit_begin(output_t *output, const char *suite, size_t tests, size_t failures);
+void junit_begin(output_t *output, const char *suite, size_t tests, size_t failures, size_t errors);
 
 /**
  * One test.
@@ -19,6 +19,9 @@ void junit_begin(output_t *output, const char *suite, size_t tests, size_t failu
  */
 void junit_test(output_t *output, const char *class_name, const char *name, const char *failures, size_t count,
                 size_t stride);
+
+/** One that could not be run. */
+void junit_error(output_t *output, const char *class_name, const char *name, const char *message);
 
 /** The end of the root element. */
 void junit_end(output_t *output);

@@ -84,6 +84,21 @@ static bool is_plain_screen(const char *line, size_t length) {
     return has_id && (size.length >= 3u) && (size.at[0] == '[') && (size.at[size.length - 1u] == ']');
 }
 
+static bool has(const char *line, size_t length, const char *text) {
+    const size_t size = strlen(text);
+    bool found = false;
+    for (size_t at = 0u; !found && (at + size <= length); at++) {
+        found = strncasecmp(&line[at], text, size) == 0;
+    }
+    return found;
+}
+
+/** The first lines of PEAK's first version, which does not name itself: comments. */
+static bool is_old_trc(const char *line, size_t length) {
+    return (length > 0u) && (line[0] == ';') &&
+           (has(line, length, ";####") || has(line, length, "Start time:") || has(line, length, "PCAN"));
+}
+
 const log_foreign_t *log_foreign_text(const char *line, size_t length) {
     static const beginning_t beginnings[] = {
         BEGINS(";$FILEVERSION", "a PEAK TRC log", CAN_LOGCONVERT),
@@ -93,12 +108,16 @@ const log_foreign_t *log_foreign_text(const char *line, size_t length) {
     };
     static const log_foreign_t plain_screen = {"candump's screen form without time stamps",
                                                "record it again: candump -l can0"};
+    static const log_foreign_t old_trc = {"a PEAK TRC log", CAN_LOGCONVERT};
     static const log_foreign_t csv = {"a CSV file",
                                       "make it one line a frame: (seconds.micros) can0 43F#0000000000000011"};
     for (size_t i = 0u; i < sizeof beginnings / sizeof beginnings[0]; i++) {
         if ((length >= beginnings[i].size) && (strncasecmp(line, beginnings[i].bytes, beginnings[i].size) == 0)) {
             return &beginnings[i].format;
         }
+    }
+    if (is_old_trc(line, length)) {
+        return &old_trc;
     }
     if (is_plain_screen(line, length)) {
         return &plain_screen;

@@ -17,3 +17,9 @@ bool log_sides_check(bool is_gateway, const char *ai_interface) {
     }
     return true;
 }
+
+void log_sides_note_silent(const char *ai_interface, bool was_heard) {
+    if ((ai_interface != NULL) && !was_heard) {
+        note("the log has no frame from %s, the AI side", ai_interface);
+    }
+}

@@ -51,14 +51,21 @@ static void say_missing(monitor_t *monitor, uint64_t t_us, monitor_level_t level
                 missing_text(missing, words));
 }
 
-static void say_fault(monitor_t *monitor, uint64_t t_us, const agv_event_t *event) {
-    const char *name = agv_fault_name((agv_fault_t)event->a);
-    const bool is_trip = event->b == (uint8_t)AGV_CLASS_TRIP;
-    const bool is_raised = event->c != 0u;
-    const monitor_level_t raised = is_trip ? MONITOR_BAD : MONITOR_WARN;
+static void say_fault(monitor_t *monitor, uint64_t t_us, agv_fault_t fault, agv_fault_class_t kind, bool is_raised) {
+    const char *name = agv_fault_name(fault);
+    const monitor_level_t raised = (kind == AGV_CLASS_TRIP) ? MONITOR_BAD : MONITOR_WARN;
     monitor_say(monitor, t_us, is_raised ? raised : MONITOR_GOOD, name_of(monitor), "fault %s (%s)%s",
-                (name != NULL) ? name : "?", agv_class_name((agv_fault_class_t)event->b),
-                is_raised ? "" : " has ended");
+                (name != NULL) ? name : "?", agv_class_name(kind), is_raised ? "" : " has ended");
+}
+
+/** The faults that were raised before anything of the supervisor was shown. */
+static void say_active_faults(monitor_t *monitor, uint64_t t_us) {
+    for (uint32_t fault = 0u; fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
+        if (agv_fault_is_in(&monitor->supervisor.faults, fault)) {
+            say_fault(monitor, t_us, (agv_fault_t)fault,
+                      agv_config_is_trip(&monitor->config, fault) ? AGV_CLASS_TRIP : AGV_CLASS_WARN, true);
+        }
+    }
 }
 
 void monitor_event(monitor_t *monitor, const session_event_t *event, uint64_t t_us) {
@@ -71,7 +78,7 @@ void monitor_event(monitor_t *monitor, const session_event_t *event, uint64_t t_
         say_state(monitor, t_us, (agv_state_t)recorded->a, (agv_state_t)recorded->b, (agv_fault_t)recorded->c);
         break;
     case AGV_EVENT_FAULT:
-        say_fault(monitor, t_us, recorded);
+        say_fault(monitor, t_us, (agv_fault_t)recorded->a, (agv_fault_class_t)recorded->b, recorded->c != 0u);
         break;
     case AGV_EVENT_RESET:
         say_missing(monitor, t_us, (recorded->a != 0u) ? MONITOR_GOOD : MONITOR_WARN,
@@ -219,6 +226,7 @@ static void show_shadow(monitor_t *monitor) {
         read_shadow(monitor);
         say_state(monitor, monitor->now_us, (agv_state_t)0, monitor->supervisor.state,
                   monitor->supervisor.first_reason);
+        say_active_faults(monitor, monitor->now_us);
     }
 }
 

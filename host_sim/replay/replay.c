@@ -244,8 +244,8 @@ static bool conclude(replay_t *replay) {
     text_t back = {.used = 0u};
     const bool is_whole = (why_supervised_us(why) > 0u) && !replay_text_goes_back(&back, &replay->heard);
     replay->unmet = request->fail_on_trip && ((why_trip_count(why) > 0u) || !is_whole);
-    if (good && (request->ai_interface != NULL) && !replay->ai_was_heard) {
-        note("the log has no frame from %s, the AI side", request->ai_interface);
+    if (good) {
+        log_sides_note_silent(request->ai_interface, replay->ai_was_heard);
     }
     return good;
 }

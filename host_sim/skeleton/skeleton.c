@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "agv/names.h"
@@ -94,6 +95,10 @@ static status_t make(work_t *work, const skeleton_request_t *request) {
 static bool check_files(const skeleton_request_t *request) {
     if (strcmp(request->log, "-") == 0) {
         return report("--from: the log is read twice, which standard input cannot be");
+    }
+    struct stat found; /* one that is not there is for who reads it */
+    if ((stat(request->log, &found) == 0) && !S_ISREG(found.st_mode)) {
+        return report("--from: the log is read twice, and %s is not a regular file", request->log);
     }
     return (request->out == NULL) || output_is_stdout(request->out) || (access(request->out, F_OK) != 0) ||
            report("%s: exists already, and is not replaced", request->out);

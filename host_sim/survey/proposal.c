@@ -80,6 +80,7 @@ static void propose_deadline(proposal_t *proposal, const traffic_id_t *entry) {
         note(proposal, "%03Xh %s: %" PRIu64 " gaps%s are too few to judge its deadline", entry->id, name,
              watch->gaps.count, (watch->when == TRAFFIC_ENGAGED) ? " while engaged" : "");
     } else {
+        proposal->judged++;
         const habit_t habit = habit_of(&watch->gaps);
         const uint64_t step_us = (uint64_t)ROUND_MS * US_PER_MS;
         const uint64_t need_ms = ((habit.need_us + step_us - 1u) / step_us) * ROUND_MS;

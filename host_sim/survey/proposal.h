@@ -32,6 +32,7 @@
 typedef struct {
     agv_config_t config;
     char reasons[AGV_SETTING_COUNT][PROPOSAL_REASON_SIZE]; /**< "": keeps its default */
+    size_t judged; /**< messages that came often enough to judge their deadline */
     size_t note_count;
     char notes[PROPOSAL_NOTES_MAX]
               [PROPOSAL_REASON_SIZE]; /**< what must not be relaxed, and what a person has to decide */

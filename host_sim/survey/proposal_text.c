@@ -58,7 +58,9 @@ static void print_all(FILE *file, const proposal_t *proposal, const char *source
     print_comment(file, "", "Settings that are not here keep their defaults; host_sim config prints them all.");
     if (print_settings(file, proposal) == 0u) {
         (void)fputc('\n', file);
-        print_comment(file, "", "The defaults fit.");
+        print_comment(file, "",
+                      (proposal->judged > 0u) ? "The defaults fit."
+                                              : "No message of the protocol came often enough to judge the defaults.");
     }
     if (proposal->note_count > 0u) {
         (void)fputc('\n', file);

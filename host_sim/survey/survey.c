@@ -7,6 +7,7 @@
 
 #include "common/interrupt.h"
 #include "io/output.h"
+#include "logs/log_sides.h"
 #include "survey/survey_result.h"
 
 enum { REASON_SIZE = 160 };
@@ -110,8 +111,12 @@ static bool print(const survey_result_t *result) {
 }
 
 static bool run(survey_result_t *result) {
-    if (!gather(result, &result->request->config)) {
+    const survey_request_t *request = result->request;
+    if (!gather(result, &request->config)) {
         return false;
+    }
+    if (request->log != NULL) {
+        log_sides_note_silent(request->ai_interface, result->source.has_ai_side);
     }
     choose(result);
     if (!survey_renumbered(result)) {

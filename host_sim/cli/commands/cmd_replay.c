@@ -75,6 +75,9 @@ static bool check_files(const given_t *given) {
         {.role = "--store", .path = given->request.store, .is_written = true},
     };
     analysis_options_roles(&given->analysis, &roles[FIXED_FILES]);
+    if (output_is_stdout(given->request.store)) {
+        return report("--store: storage is read and written, which standard output cannot be");
+    }
     if (given->request.timeline && (analysis_options_use_stdout(&given->analysis) ||
                                     output_is_stdout(given->request.out) || output_is_stdout(given->request.events))) {
         return report("--timeline: standard output is already used by another option");

@@ -230,16 +230,16 @@ static bool check_readable_twice(const given_t *given, const char *file) {
            report("%s: not a regular file, which is needed to run several scenarios", file);
 }
 
-/** Read every file once, so that nothing runs when one of them makes no sense. */
-static bool check_scenarios(work_t *work, char **files) {
+/** Read every file once, so that nothing runs when one of them makes no sense. @return NULL: all do; else that one */
+static const char *find_unusable(work_t *work, char **files) {
     for (size_t i = 0u; i < work->given.file_count; i++) {
         if (!check_readable_twice(&work->given, files[i]) ||
             !scenario_read(&work->run.scenario, files[i], &work->given.options) || !check_place(work, files[i])) {
-            return false;
+            return files[i];
         }
     }
     const scenario_bus_t bus = real_bus(&work->given);
-    return !is_real(&work->given) || scenario_bus_check(&bus);
+    return (!is_real(&work->given) || scenario_bus_check(&bus)) ? NULL : work->given.bus;
 }
 
 static void print_result(const work_t *work, const char *file, const result_t *result) {
@@ -340,9 +340,11 @@ static bool play(work_t *work, const char *file, result_t *result) {
     return true;
 }
 
-static void write_junit(work_t *work, char **files, const totals_t *totals) {
-    junit_begin(&work->outputs[JUNIT], "scenarios", totals->passed + totals->failed, totals->failed);
-    for (size_t i = 0u; i < work->given.file_count; i++) {
+/** @param played so many files were played @param unusable what could not be played then; NULL: nothing */
+static void write_junit(work_t *work, char **files, const totals_t *totals, size_t played, const char *unusable) {
+    const size_t errors = (unusable != NULL) ? 1u : 0u;
+    junit_begin(&work->outputs[JUNIT], "scenarios", totals->passed + totals->failed + errors, totals->failed, errors);
+    for (size_t i = 0u; i < played; i++) {
         const result_t *result = &work->results[i];
         const size_t shown =
             (result->failure_count < SCENARIO_FAILURES_MAX) ? result->failure_count : SCENARIO_FAILURES_MAX;
@@ -351,7 +353,19 @@ static void write_junit(work_t *work, char **files, const totals_t *totals) {
                        SCENARIO_FAILURE_SIZE);
         }
     }
+    if (unusable != NULL) {
+        junit_error(&work->outputs[JUNIT], unusable, unusable, "could not be run; standard error says why");
+    }
     junit_end(&work->outputs[JUNIT]);
+}
+
+/** An older file of --junit would pass for the result of this run, so it says what could not be played. */
+static status_t give_up(work_t *work, char **files, const totals_t *totals, size_t played, const char *unusable) {
+    if (work->outputs[JUNIT].is_open && !interrupt_pending()) {
+        write_junit(work, files, totals, played, unusable);
+        (void)output_commit(&work->outputs[JUNIT]);
+    }
+    return STATUS_UNUSABLE;
 }
 
 static void count(totals_t *totals, const result_t *result) {
@@ -384,7 +398,7 @@ static status_t play_all(work_t *work, char **files) {
 
     for (size_t i = 0u; i < work->given.file_count; i++) {
         if (!play(work, files[i], &work->results[i])) {
-            return STATUS_UNUSABLE;
+            return give_up(work, files, &totals, i, files[i]);
         }
         count(&totals, &work->results[i]);
         if (is_real(&work->given)) {
@@ -393,7 +407,7 @@ static status_t play_all(work_t *work, char **files) {
     }
     print_totals(work, files, &totals);
     if (work->given.junit != NULL) {
-        write_junit(work, files, &totals);
+        write_junit(work, files, &totals, work->given.file_count, NULL);
     }
     if (((work->analysis != NULL) && (!output_flush_all(work->outputs, OUTPUTS) || !analysis_commit(work->analysis))) ||
         !output_commit_all(work->outputs, OUTPUTS)) {
@@ -404,12 +418,18 @@ static status_t play_all(work_t *work, char **files) {
 
 static status_t run_all(work_t *work, char **files) {
     const given_t *given = &work->given;
+    const totals_t none = {0};
 
-    if (!check_scenarios(work, files) ||
-        ((given->junit != NULL) && !output_open(&work->outputs[JUNIT], given->junit)) ||
-        ((given->events != NULL) && !output_open(&work->outputs[EVENTS], given->events)) ||
-        ((given->sent != NULL) && !output_open(&work->outputs[SENT], given->sent)) || !open_analysis(work)) {
+    if ((given->junit != NULL) && !output_open(&work->outputs[JUNIT], given->junit)) {
         return STATUS_UNUSABLE;
+    }
+    const char *unusable = find_unusable(work, files);
+    if (unusable != NULL) {
+        return give_up(work, files, &none, 0u, unusable);
+    }
+    if (((given->events != NULL) && !output_open(&work->outputs[EVENTS], given->events)) ||
+        ((given->sent != NULL) && !output_open(&work->outputs[SENT], given->sent)) || !open_analysis(work)) {
+        return give_up(work, files, &none, 0u, files[0]);
     }
     return play_all(work, files);
 }

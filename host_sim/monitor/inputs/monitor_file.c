@@ -28,6 +28,7 @@ bool monitor_file_open(monitor_file_t *file, const char *path, const char *ai_in
     file->ai_interface = ai_interface;
     file->first_us = UINT64_MAX;
     file->next_us = 0u;
+    file->ai_was_heard = false;
     if (!candump_open(&file->log, path, false)) {
         return false;
     }
@@ -46,7 +47,9 @@ bool monitor_file_open(monitor_file_t *file, const char *path, const char *ai_in
 bool monitor_file_pass(monitor_file_t *file, monitor_t *monitor, uint64_t until_us) {
     int passed = 0;
     while (file->has_next && (file->next_us <= until_us) && (passed < (int)FRAMES_AT_ONCE)) {
-        monitor_frame(monitor, is_ai(file) ? HAL_CAN_AI : HAL_CAN_VEHICLE, &file->next.frame, file->next_us);
+        const hal_can_side_t side = is_ai(file) ? HAL_CAN_AI : HAL_CAN_VEHICLE;
+        file->ai_was_heard = file->ai_was_heard || (side == HAL_CAN_AI);
+        monitor_frame(monitor, side, &file->next.frame, file->next_us);
         read_next(file);
         passed++;
     }

@@ -22,6 +22,7 @@ typedef struct {
     char interface[CANDUMP_INTERFACE_MAX + 1u]; /**< the first other one */
     uint64_t first_us;                          /**< stamp of the first frame */
     uint64_t next_us;                           /**< time of `next`; never goes back */
+    bool ai_was_heard;                          /**< a frame of the AI side was passed on */
     bool has_next;
     bool failed; /**< a bad line or a read error: was reported */
 } monitor_file_t;

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "common/interrupt.h"
+#include "logs/log_sides.h"
 #include "monitor/inputs/monitor_can.h"
 #include "monitor/inputs/monitor_file.h"
 #include "monitor/inputs/monitor_record.h"
@@ -175,6 +176,10 @@ static bool run_all(run_t *run) {
         monitor_ui_close(&run->ui);
     }
     run->failed = !end_record(run) || run->failed;
+    const bool is_read = (run->request->log != NULL) && !run->file.has_next && !run->file.failed;
+    if (is_read) {
+        log_sides_note_silent(run->request->ai_interface, run->file.ai_was_heard);
+    }
     return !run->failed && !run->file.failed;
 }
 

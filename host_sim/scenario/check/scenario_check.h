@@ -42,7 +42,7 @@ typedef struct {
 typedef struct {
     char failures[SCENARIO_FAILURES_MAX][SCENARIO_FAILURE_SIZE]; /**< "LINE: what was expected, what was seen" */
     size_t failure_count;                                        /**< may be larger than SCENARIO_FAILURES_MAX */
-    size_t expectation_count;                                    /**< how many there are */
+    size_t expectation_count; /**< how many there are; one more for each failure without a line */
     const scenario_t *scenario;
     scenario_expect_t expect; /* that of the scenario; times that count from an event are replaced when it comes */
     scenario_events_t events;

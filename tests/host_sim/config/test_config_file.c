@@ -54,7 +54,11 @@ void test_a_file_that_says_nothing(void) {
     assert_default();
     load_good("# only a comment\n");
     assert_default();
-    load_bad("---\n...\n", "c.yaml:2: not a list of settings"); /* a document with nothing in it is a value, null */
+    load_good("---\n...\n"); /* a document with nothing in it */
+    assert_default();
+    load_good("--- # the beginning\n# of nothing\n");
+    assert_default();
+    load_bad("--- ''\n", "c.yaml:1: not a list of settings");
 }
 
 /* What a setting needs beside it. */

@@ -87,6 +87,18 @@ void test_without_a_status_frame_for_a_second_a_supervisor_listens(void) {
     TEST_ASSERT_EQUAL(1, said("shadow: fault AI_HEARTBEAT_LOST (warn)"));
 }
 
+void test_the_faults_that_the_listening_supervisor_had_before_it_is_shown(void) {
+    wait_until(999);
+    TEST_ASSERT_EQUAL(0, said("fault"));
+    wait_until(1001);
+    TEST_ASSERT_EQUAL(1, said("shadow: INIT"));
+    TEST_ASSERT_EQUAL(1, said("shadow: fault VCU_HEARTBEAT_LOST (trip)"));
+    TEST_ASSERT_EQUAL(1, said("shadow: fault EPS_HEARTBEAT_LOST (trip)"));
+    TEST_ASSERT_TRUE(said_at("fault VCU_HEARTBEAT_LOST") >= 1000);
+    wait_until(3000);
+    TEST_ASSERT_EQUAL(1, said("fault VCU_HEARTBEAT_LOST"));
+}
+
 void test_a_status_frame_that_stops_coming(void) {
     default_status(100, 0x33, 255, 1);
     wait_until(1099);

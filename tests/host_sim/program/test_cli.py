@@ -21,6 +21,8 @@ class Front(hostsim.Case):
         result = self.run_good("--version")
         self.assertRegex(result.stdout, r"\Ahost_sim \d+\.\d+\.\d+\n\Z")
         self.assertEqual(result.stdout, self.run_good("-V").stdout)
+        self.assert_refused(self.run_program("-V", "extra"), "unexpected argument 'extra'; see host_sim --help")
+        self.assert_refused(self.run_program("--version", "--help"), "unexpected argument '--help'")
         self.assertEqual(result.stderr, "")
 
     def test_help_lists_the_commands_and_each_has_its_own(self):
@@ -203,6 +205,13 @@ class StandardOutput(hostsim.Case):
         self.write("log", LOG)
         for arguments in (("--help",), ("--version",), ("config",), ("config", "--to-kconfig"), ("replay", "--help"),
                           ("replay", "log"), ("replay", "--events", "-", "log"), ("replay", "--out=-", "log")):
+            with self.subTest(arguments):
+                self.assert_refused(self.full(*arguments), "standard output: No space left on device")
+
+    def test_a_full_disk_that_was_noticed_long_before_the_end(self):
+        self.write("log", LOG)
+        for arguments in (("monitor", "--shadow", "--speed", "max", "--log", "log"), ("scenario", "--schema"), ("config", "--schema"),
+                          ("survey", "--json", "log")):
             with self.subTest(arguments):
                 self.assert_refused(self.full(*arguments), "standard output: No space left on device")
 

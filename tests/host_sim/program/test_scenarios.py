@@ -121,10 +121,29 @@ class Command(hostsim.Case):
     def test_one_bad_file_and_nothing_runs_and_nothing_is_written(self):
         self.write("good.yaml", GOOD)
         self.write("bad.yaml", GOOD + "oops: 1\n")
-        result = self.run_program("scenario", "--junit", "j.xml", "good.yaml", "bad.yaml")
+        result = self.run_program("scenario", "good.yaml", "bad.yaml")
         self.assert_refused(result, "bad.yaml:7: unknown key 'oops'")
         self.assertEqual(result.stdout, "")
+        self.assert_refused(self.run_program("scenario", "--events", "e.jsonl", "bad.yaml"), "unknown key")
         self.assertEqual(self.files(), ["bad.yaml", "good.yaml"])
+
+    def test_an_older_junit_file_does_not_pass_for_the_result_of_what_could_not_be_run(self):
+        self.write("good.yaml", GOOD)
+        self.write("bad.yaml", GOOD + "oops: 1\n")
+        self.run_good("scenario", "--junit", "j.xml", "good.yaml")
+        for files, unusable in ((("good.yaml", "bad.yaml"), "bad.yaml"), (("nowhere.yaml",), "nowhere.yaml")):
+            result = self.run_program("scenario", "--junit", "j.xml", *files)
+            self.assert_refused(result, unusable)
+            suite = xml.etree.ElementTree.parse(self.folder / "j.xml").getroot()
+            self.assertEqual([suite.get(key) for key in ("tests", "failures", "errors")], ["1", "0", "1"])
+            self.assertEqual([case.get("classname") for case in suite], [unusable])
+            self.assertEqual(suite[0].find("error").get("message"), "could not be run; standard error says why")
+        self.assertEqual(self.files(), ["bad.yaml", "good.yaml", "j.xml"])
+
+    def test_what_comes_unexpected_counts_as_an_expectation_that_failed(self):
+        result = self.scenario("name: N\nshows: [FSM-1]\nduration_ms: 600\nexpect:\n  states: []\n")
+        self.assertEqual(result.status, 1, result.stderr)
+        self.assertEqual(result.stdout.splitlines()[0], "FAILED  s.yaml: 3 of 3 expectations")
 
     def test_events(self):
         result = self.scenario(GOOD, "--events", "e.jsonl")

@@ -507,6 +507,11 @@ class Restart(hostsim.Case):
         self.assertEqual([event["from"] for event in result.of("state")].count(None), 1)
         self.assertEqual(result.events()[0]["event"], "state")
 
+    def test_a_store_on_standard_output_is_refused(self):
+        self.write("log", traffic.log(traffic.frames(100)))
+        for path in ("-", "/dev/stdout"):
+            self.assert_refused(self.run_program("replay", "--store", path, "log"), "--store: storage is read and written")
+
     # Shows: FSM-7, STORE_INVALID
     def test_a_store_that_is_damaged_counts_as_tripped_and_warns(self):
         self.trip()

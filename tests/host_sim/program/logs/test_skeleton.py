@@ -136,6 +136,10 @@ class Skeleton(hostsim.Case):
         self.assertEqual((self.folder / "old.yaml").read_text(encoding="ascii"), "old")
         self.assert_refused(self.run_program("scenario", "--from", "-"), "the log is read twice")
         self.assert_refused(self.run_program("scenario", "--from", "no.log"), "no.log: No such file")
+        os.mkfifo(self.folder / "pipe")
+        self.assert_refused(self.run_program("scenario", "--from", "pipe"), "--from: the log is read twice, and pipe is not a "
+                                                                            "regular file")
+        (self.folder / "pipe").unlink()
         self.assert_refused(self.run_program("scenario", "--from", "my.log", "old.yaml"), "--from takes no FILE")
         self.assert_refused(self.run_program("scenario", "-o", "x.yaml", "old.yaml"), "need --from LOG")
         for option in ("--junit=x", "--events=x", "--bus=vcan0", "--supervisor=x", "--sent=x", "--tolerance=5", "--why=x",

@@ -307,6 +307,22 @@ class Text(Case):
         half = self.survey("".join(lines), "--bitrate", "250000")["load"][0]
         self.assertAlmostEqual(half["most_pct"], 54.0, delta=0.02)
 
+    def test_an_ai_side_that_the_log_does_not_have(self):
+        self.write("log", traffic.log(traffic.frames(3000)))
+        for arguments in ((), ("--json",)):
+            result = self.run_good("survey", "--ai-if", "can9", *arguments, "log")
+            self.assertEqual(result.stderr, "host_sim: the log has no frame from can9, the AI side\n")
+
+    def test_a_log_that_says_nothing_of_the_defaults(self):
+        fit, unknown = "# The defaults fit.", "# No message of the protocol came often enough to judge the defaults."
+        for log, said, unsaid in (("(1.000000) can0 123#11\n", unknown, fit),
+                                  (traffic.log(traffic.frames(500)), unknown, fit),
+                                  (traffic.log(traffic.frames(3000, engage_ms=1000)), fit, unknown)):
+            self.write("log", log)
+            lines = self.run_good("survey", "log").stdout.splitlines()
+            self.assertIn(said, lines)
+            self.assertNotIn(unsaid, lines)
+
     def test_messages_that_were_not_heard(self):
         self.write("log", traffic.log(traffic.frames(2000, senders=("vcu",))))
         result = self.run_good("survey", "log")
