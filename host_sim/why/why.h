@@ -42,6 +42,7 @@ typedef struct {
     uint32_t id;           /**< of that message on the wire; WHY_NO_ID */
     uint64_t cause_us;     /**< when it began, not when it was noticed; WHY_NEVER: not known */
     uint64_t last_good_us; /**< last frame before that was as it should be; WHY_NEVER */
+    bool is_old;           /**< it was so before that already, but counts from the engagement on only */
     uint64_t next_us;      /**< silence: the frame that ended it; WHY_NEVER */
     int64_t limit;         /**< that was exceeded; WHY_NO_LIMIT */
     const char *unit;      /**< of the limit: "ms", "frames", "ddeg", "counts"; NULL: no limit */

@@ -240,6 +240,16 @@ static void take_status(why_t *why, agv_message_t message, const why_evidence_t 
     }
 }
 
+/** Whether the commands are known with which a budget compares: before, no frame is a good one. */
+static bool has_commands(const why_t *why, const row_t *row) {
+    for (uint32_t command = 0u; command < AGV_COMMAND_COUNT; command++) {
+        if (((row->messages & BIT_OF(command)) != 0u) && !why->facts.command_known[command]) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /** Evaluate what depends on a message, after it was read. */
 static void evaluate(why_t *why, agv_message_t message, const why_evidence_t *frame) {
     for (size_t i = 0u; i < (size_t)ROWS; i++) {
@@ -251,12 +261,13 @@ static void evaluate(why_t *why, agv_message_t message, const why_evidence_t *fr
         if (bad && !tracker->bad && (tracker->value == 0u)) {
             const agv_message_t shown = why_row(rows[i].fault)->message;
             const why_evidence_t *before = why_history(&why->messages[shown], (message == shown) ? 1u : 0u);
-            tracker->good = (before != NULL) ? *before : why_no_evidence();
+            tracker->good = ((before != NULL) && tracker->is_comparable) ? *before : why_no_evidence();
             tracker->first = *frame;
             tracker->since_us = frame->t_us;
         }
         tracker->bad_since_us = (bad && !tracker->bad) ? frame->t_us : tracker->bad_since_us;
         tracker->bad = bad;
+        tracker->is_comparable = has_commands(why, &rows[i]);
     }
 }
 

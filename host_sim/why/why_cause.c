@@ -94,6 +94,7 @@ static void explain_tracked(const why_t *why, why_trip_t *trip) {
     if (tracker != NULL) {
         trip->cause_us = tracker->began_us;
         trip->last_good_us = tracker->good.t_us;
+        trip->is_old = tracker->is_old;
         why_show(trip, &tracker->good);
         why_show(trip, &tracker->first);
     }
@@ -145,7 +146,8 @@ static void explain_value(const why_t *why, why_trip_t *trip) {
     set_frame(trip, &why->bad_command);
     for (uint32_t back = 0u; back < (uint32_t)WHY_HISTORY; back++) {
         const why_evidence_t *before = why_history(&why->messages[trip->message], back);
-        if ((before != NULL) && (before->t_us < why->bad_command.t_us)) {
+        if ((before != NULL) && (before->t_us < why->bad_command.t_us) &&
+            agv_value_is_valid(trip->message, before->frame.data)) {
             trip->last_good_us = before->t_us;
             break;
         }

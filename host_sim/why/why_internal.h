@@ -31,8 +31,10 @@ typedef struct {
     uint64_t since_us; /**< budget: counted up to here */
     uint64_t bad_since_us;
     uint64_t began_us;    /**< of what is counted; valid while value is not 0 */
+    bool is_old;          /**< score: it was bad before that already, when it did not count */
+    bool is_comparable;   /**< budget: there was something to compare with at the last frame */
     why_evidence_t good;  /**< last frame before the first bad one; t_us WHY_NEVER: none */
-    why_evidence_t first; /**< first bad frame; t_us WHY_NEVER: none */
+    why_evidence_t first; /**< first bad frame that counts; t_us WHY_NEVER: none */
 } why_tracker_t;
 
 /** A frame, and the one of its message before it. */

@@ -64,12 +64,15 @@ static void note_first(why_tracker_t *tracker, const why_evidence_t *frame, cons
 void why_score(why_tracker_t *tracker, bool bad, uint32_t frames, uint64_t from_us, const why_score_frames_t *seen) {
     const uint64_t full = 2u * (uint64_t)frames;
     if (bad && (tracker->value == 0u)) {
-        const bool was_bad = tracker->bad;
-        const bool is_old = was_bad && (tracker->first.t_us < from_us);
-        if (!was_bad || is_old) {
+        tracker->is_old = tracker->bad && (tracker->first.t_us < from_us);
+        if (!tracker->bad) {
             note_first(tracker, seen->frame, seen->before);
+        } else if (tracker->is_old) {
+            tracker->first = *seen->frame; /* the one before it is bad too: the last good one stays */
+        } else {
+            /* it began after that time */
         }
-        tracker->began_us = is_old ? from_us : tracker->first.t_us;
+        tracker->began_us = tracker->is_old ? from_us : tracker->first.t_us;
     }
     if (bad) {
         tracker->value = (tracker->value + 2u < full) ? tracker->value + 2u : full;

@@ -182,6 +182,11 @@ static void say_score(text_t *text, const why_t *why, const why_trip_t *trip) {
         text_add(text, "reported %s", agv_fault_name(trip->reason));
     }
     text_add(text, " in %" PRId64 " frames", trip->limit);
+    if (trip->is_old) {
+        add_from(text, ", from the engagement at ", trip->cause_us);
+        text_add(text, " on; it was so before");
+        return;
+    }
     add_from(text, ", the first at ", trip->cause_us);
     add_payload(text, trip);
 }

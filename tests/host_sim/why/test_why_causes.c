@@ -1,5 +1,6 @@
 /* When a cause began, by kind: frames and trips are fed by hand. */
 #include "one_why.h"
+#include "why/why_words.h"
 
 #define AUTOPILOT "\0\0\0\0\0\0\x80"
 
@@ -7,6 +8,12 @@ static const why_trip_t *trip_by(agv_fault_t fault, uint64_t t_ms) {
     feed_trip(why, (uint8_t)fault, t_ms);
     TEST_ASSERT_EQUAL_UINT(1, why_trip_count(why));
     return why_trip(why, 0);
+}
+
+static void check_words(const why_trip_t *trip, const char *expected) {
+    text_t text = {.used = 0u};
+    why_words_cause(&text, why, trip);
+    TEST_ASSERT_EQUAL_STRING(expected, text.bytes);
 }
 
 /* Frames, then a trip: the kind of its cause, when it began, the last good frame before, the limit and its unit. */
@@ -68,6 +75,19 @@ static const row_t ROWS[] = {
       {0x067, "\x02\x64\x28\x2B", 2000},
       {0x067, "\x03\x64\x28\x27", 2300}},
      {AGV_FAULT_STEERING_DEVIATION, 2800, WHY_BUDGET, 2300, NONE, 500, "ddeg"}},
+    {"throttle in gear P before the engagement: no frame before was good",
+     {{0x0A3, "\x08", 900},
+      {0x050, "\xC8", 910},
+      {0x050, "\xC8", 990},
+      {0x363, AUTOPILOT, 1000},
+      {0x050, "\xC8", 1010}},
+     {AGV_FAULT_THROTTLE_IN_PARK, 2010, WHY_BUDGET, 1010, NONE, 200, "ms"}},
+    {"an angle that was off before the first command: no frame before was good",
+     {{0x363, AUTOPILOT, 1000}, {0x067, "\x01\x64\x1D\x25", 1005}, {0x065, "\x28\x23", 1010}},
+     {AGV_FAULT_STEERING_DEVIATION, 2010, WHY_BUDGET, 1010, NONE, 500, "ddeg"}},
+    {"a command was out of range before the engagement too: the last good one is older",
+     {{0x065, "\x28\x23", 900}, {0x065, "\x51\x46", 950}, {0x363, AUTOPILOT, 1000}, {0x065, "\x51\x46", 1020}},
+     {AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, 1020, WHY_VALUE, 1020, 900, 18000, "ddeg"}},
     {"the command that is out of range: 18001",
      {{0x363, AUTOPILOT, 1000}, {0x065, "\x28\x23", 1020}, {0x065, "\x51\x46", 1045}},
      {AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, 1045, WHY_VALUE, 1045, 1020, 18000, "ddeg"}},
@@ -143,7 +163,21 @@ void test_a_mode_of_the_eps_counts_from_the_engagement_on(void) {
     for (uint64_t t_ms = 1010; t_ms <= 1540; t_ms += 10) {
         feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\0\0\0\0", t_ms);
     }
-    TEST_ASSERT_EQUAL_UINT64(1000000, trip_by(AGV_FAULT_EPS_MODE_NOT_ANGLE, 1540)->cause_us);
+    const why_trip_t *trip = trip_by(AGV_FAULT_EPS_MODE_NOT_ANGLE, 1540);
+    TEST_ASSERT_EQUAL_UINT64(1000000, trip->cause_us);
+    TEST_ASSERT_EQUAL_UINT64(WHY_NEVER, trip->last_good_us);
+    check_words(trip, "167h eps_status reported an EPS mode other than angle control in 5 frames, "
+                      "from the engagement at 1.000 s on; it was so before");
+}
+
+void test_the_last_good_mode_of_the_eps_is_a_good_one(void) {
+    feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\x01\0\0\0", 800);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\0\0\0\0", 900);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x363, AUTOPILOT, 1000);
+    for (uint64_t t_ms = 1010; t_ms <= 1540; t_ms += 10) {
+        feed_frame(why, HAL_CAN_VEHICLE, 0x167, "\0\0\0\0\0\0\0", t_ms);
+    }
+    TEST_ASSERT_EQUAL_UINT64(800000, trip_by(AGV_FAULT_EPS_MODE_NOT_ANGLE, 1540)->last_good_us);
 }
 
 void test_a_fourth_engagement(void) {
