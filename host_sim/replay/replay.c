@@ -197,6 +197,7 @@ static replay_text_t text_of(const replay_t *replay, const events_summary_t *sum
                            .duration_us = replay->now_us - replay->first_us,
                            .config = &replay->request->config,
                            .heard = &replay->heard,
+                           .ai_interface = replay->request->ai_interface,
                            .why = analysis_why(replay->analysis),
                            .summary = summary};
 }

@@ -1,5 +1,7 @@
 #include "replay/replay_hints.h"
 
+#include <string.h>
+
 #include "agv/recorder.h"
 #include "text/units.h"
 #include "why/why_words.h"
@@ -185,10 +187,8 @@ static bool hint_ids(text_t *text, const replay_clues_t *clues) {
 
 /** The vehicle drives by itself from the first frame on. */
 static bool hint_begin(text_t *text, const replay_clues_t *clues) {
-    agv_ids_t ids;
-    agv_config_ids(clues->config, &ids);
     if ((why_supervised_us(clues->why) > 0u) || ((why_missing(clues->why) & AGV_MISSING_MANUAL) == 0u) ||
-        !is_heard(clues->heard, ids.of[AGV_MSG_VEHICLE_STATUS])) {
+        !why_began_in_autopilot(clues->why)) {
         return false;
     }
     text_add(text, "supervision begins in manual, at standstill: start the recording before the autopilot is engaged");
@@ -218,6 +218,38 @@ static void add_interfaces(text_t *text, const replay_heard_t *heard, uint32_t i
 
 static bool is_single(uint32_t bits) {
     return (bits != 0u) && ((bits & (bits - 1u)) == 0u);
+}
+
+/** The AI side as a bit; 0: nothing was heard there. */
+static uint32_t ai_side_of(const replay_clues_t *clues) {
+    const replay_heard_t *heard = clues->heard;
+    for (size_t i = 0u; (clues->ai_interface != NULL) && (i < heard->name_count); i++) {
+        if (strcmp(heard->names[i], clues->ai_interface) == 0) {
+            return 1u << i;
+        }
+    }
+    return 0u;
+}
+
+/** A gateway's log that keeps it in INIT: the sides are swapped, or the commands that the gateway sent are in it. */
+static bool hint_sides(text_t *text, const replay_clues_t *clues) {
+    const uint32_t ai_side = ai_side_of(clues);
+    const uint32_t status = interfaces_of(clues, false);
+    const uint32_t other_commands = interfaces_of(clues, true) & ~ai_side;
+    if ((clues->config->topology != (uint16_t)AGV_TOPOLOGY_GATEWAY) || (why_supervised_us(clues->why) > 0u) ||
+        (other_commands == 0u)) {
+        return false;
+    }
+    if ((status != 0u) && (status == ai_side) && is_single(other_commands)) {
+        text_add(text, "status messages come on the AI side (%s), commands on the other: --ai-if ",
+                 clues->ai_interface);
+        add_interfaces(text, clues->heard, other_commands);
+    } else {
+        text_add(text, "commands come on the vehicle side (");
+        add_interfaces(text, clues->heard, other_commands);
+        text_add(text, "): recorded behind a gateway? Leave out the frames that it sent");
+    }
+    return true;
 }
 
 /** Several interfaces in the log of a shared bus: a gateway, or two vehicles. */
@@ -259,9 +291,13 @@ static bool hint_pause(text_t *text, const replay_clues_t *clues) {
 
 bool replay_hint(text_t *text, replay_hint_t hint, const replay_clues_t *clues) {
     static bool (*const hints[REPLAY_HINTS])(text_t *, const replay_clues_t *) = {
-        [REPLAY_HINT_ID_SET] = hint_id_set, [REPLAY_HINT_OTHER_VEHICLE] = hint_other_vehicle,
-        [REPLAY_HINT_NODE] = hint_node,     [REPLAY_HINT_IDS] = hint_ids,
-        [REPLAY_HINT_BEGIN] = hint_begin,   [REPLAY_HINT_INTERFACES] = hint_interfaces,
+        [REPLAY_HINT_ID_SET] = hint_id_set,
+        [REPLAY_HINT_OTHER_VEHICLE] = hint_other_vehicle,
+        [REPLAY_HINT_NODE] = hint_node,
+        [REPLAY_HINT_IDS] = hint_ids,
+        [REPLAY_HINT_BEGIN] = hint_begin,
+        [REPLAY_HINT_SIDES] = hint_sides,
+        [REPLAY_HINT_INTERFACES] = hint_interfaces,
         [REPLAY_HINT_PAUSE] = hint_pause,
     };
     return hints[hint](text, clues);

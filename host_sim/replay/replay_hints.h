@@ -17,6 +17,7 @@ typedef enum {
     REPLAY_HINT_NODE,
     REPLAY_HINT_IDS,
     REPLAY_HINT_BEGIN,
+    REPLAY_HINT_SIDES,
     REPLAY_HINT_INTERFACES,
     REPLAY_HINT_PAUSE,
     REPLAY_HINTS
@@ -26,7 +27,8 @@ typedef enum {
 typedef struct {
     const agv_config_t *config;
     const replay_heard_t *heard;
-    const why_t *why; /**< after why_end() */
+    const char *ai_interface; /**< NULL: none */
+    const why_t *why;         /**< after why_end() */
 } replay_clues_t;
 
 /** Add a hint. @return false: it does not apply */

@@ -44,8 +44,13 @@ static void print_head(const replay_text_t *replay) {
     (void)printf("\n");
 }
 
+static replay_clues_t clues_of(const replay_text_t *replay) {
+    return (replay_clues_t){
+        .config = replay->config, .heard = replay->heard, .ai_interface = replay->ai_interface, .why = replay->why};
+}
+
 static void print_hints(const replay_text_t *replay) {
-    const replay_clues_t clues = {.config = replay->config, .heard = replay->heard, .why = replay->why};
+    const replay_clues_t clues = clues_of(replay);
     text_t text = {.used = 0u};
     for (int hint = 0; hint < (int)REPLAY_HINTS; hint++) {
         text_clear(&text);
@@ -157,7 +162,7 @@ static void print_pending(const replay_text_t *replay) {
 }
 
 void replay_text_remarks(const replay_text_t *replay, analysis_t *analysis) {
-    const replay_clues_t clues = {.config = replay->config, .heard = replay->heard, .why = replay->why};
+    const replay_clues_t clues = clues_of(replay);
     text_t text = {.used = 0u};
     if ((why_supervised_us(replay->why) > 0u) && add_not_supervised(&text, replay)) { /* else the page says it first */
         analysis_remark(analysis, ANALYSIS_NOT_SUPERVISED, text.bytes);

@@ -22,6 +22,7 @@ typedef struct {
     uint64_t duration_us; /**< until the end of the run */
     const agv_config_t *config;
     const replay_heard_t *heard;
+    const char *ai_interface; /**< NULL: none */
     const why_t *why;
     const events_summary_t *summary;
 } replay_text_t;

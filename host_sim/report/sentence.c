@@ -109,9 +109,14 @@ static void say_silence(char text[SENTENCE_SIZE], const why_trip_t *trip) {
     const bool is_stuck = trip->kind == WHY_STUCK;
     char time[TIME_SIZE];
     char limit[LIMIT_SIZE];
-    if (trip->last_good_us == WHY_NEVER) {
+    if ((trip->last_good_us == WHY_NEVER) && !trip->was_heard) {
         say_message(text, trip);
         say(text, " never came.");
+    } else if (trip->last_good_us == WHY_NEVER) {
+        say(text, is_stuck ? "The alive counter of " : "");
+        say_message(text, trip);
+        say(text, " did not %s from %s%s on.", is_stuck ? "change" : "come",
+            trip->from_engagement ? "the engagement at " : "", at(trip->cause_us, time));
     } else {
         say(text, is_stuck ? "The alive counter of " : "");
         say_message(text, trip);
@@ -156,7 +161,9 @@ static void say_cause(char text[SENTENCE_SIZE], const agv_config_t *config, cons
         return;
     }
     if (trip->cause_us != WHY_NEVER) {
-        say(text, "It began at %s", at(trip->cause_us, time));
+        say(text, trip->from_engagement ? "It counted from the engagement at %s on" : "It began at %s",
+            at(trip->cause_us, time));
+        say(text, trip->at_the_latest ? " at the latest" : "");
         if ((trip->message != AGV_MSG_NONE) || (trip->id != WHY_NO_ID)) {
             say(text, ", as ");
             say_message(text, trip);

@@ -8,7 +8,7 @@
 #include "skeleton/skeleton_plan.h"
 
 enum { EPS_MODE_BYTE = 3, BITS_OF_BYTE = 8, DECIMAL = 10, ENGAGE_EARLIEST_MS = 500, DRIVE_EARLIEST_MS = 1500 };
-enum { LONGEST_MS = 60000, SHORT_MS = 10000, AFTERWARDS_MS = 3000, DECISION_MAX_MS = 5000 };
+enum { LONGEST_MS = 60000, SHORT_MS = 10000, AFTERWARDS_MS = 3000, DECISION_MAX_MS = 5000, HEARD_MS = 200 };
 
 /** Begin a step of the cause. */
 static void begin_step(skeleton_plan_t *plan, uint32_t later_ms) {
@@ -176,17 +176,42 @@ bool skeleton_cause_by_campaign(skeleton_plan_t *plan) {
     return true;
 }
 
+/** Cut what is longer than people wait for. */
+static uint64_t cut(skeleton_plan_t *plan, uint64_t ms, uint32_t shorter_ms) {
+    const bool is_longer = ms > (uint64_t)LONGEST_MS;
+    plan->is_shorter = plan->is_shorter || is_longer;
+    return is_longer ? (uint64_t)shorter_ms : ms;
+}
+
+/** The AI computer was silent before it was engaged, which counts from the engagement on. */
+static void plan_early(skeleton_plan_t *plan, uint32_t ready_ms) {
+    const skeleton_facts_t *facts = plan->facts;
+    const uint64_t engaged_ms = skeleton_engaged_ms(facts);
+    uint64_t engage_ms = cut(plan, engaged_ms, (uint32_t)DRIVE_EARLIEST_MS);
+
+    engage_ms = (engage_ms < ready_ms) ? ready_ms : engage_ms;
+    plan->engage_ms = (uint32_t)engage_ms;
+    plan->cause_ms = 0u;
+    if (skeleton_was_heard(facts)) {
+        const uint64_t lead_ms = engaged_ms - skeleton_cause_ms(facts);
+        plan->cause_ms =
+            (uint32_t)((engage_ms > lead_ms + (uint64_t)HEARD_MS) ? engage_ms - lead_ms : (uint64_t)HEARD_MS);
+    }
+    plan->duration_ms = plan->engage_ms + (uint32_t)DECISION_MAX_MS;
+}
+
 void skeleton_plan_times(skeleton_plan_t *plan) {
     const skeleton_facts_t *facts = plan->facts;
     const uint32_t ready_ms = facts->request->config.init_hold_ms + (uint32_t)ENGAGE_EARLIEST_MS;
     const uint64_t cause_ms = skeleton_cause_ms(facts);
     const bool is_engaged = (facts->before == AGV_STATE_ACTIVE) && (cause_ms >= facts->engaged_ms);
-    uint64_t before_ms = is_engaged ? facts->engaged_ms : cause_ms;
-    uint64_t since_ms = is_engaged ? cause_ms - facts->engaged_ms : 0u;
 
-    plan->is_shorter = (before_ms > (uint64_t)LONGEST_MS) || (since_ms > (uint64_t)LONGEST_MS);
-    before_ms = (before_ms > (uint64_t)LONGEST_MS) ? (uint64_t)DRIVE_EARLIEST_MS : before_ms;
-    since_ms = (since_ms > (uint64_t)LONGEST_MS) ? (uint64_t)SHORT_MS : since_ms;
+    if (skeleton_is_early(facts)) {
+        plan_early(plan, ready_ms);
+        return;
+    }
+    uint64_t before_ms = cut(plan, is_engaged ? facts->engaged_ms : cause_ms, (uint32_t)DRIVE_EARLIEST_MS);
+    const uint64_t since_ms = cut(plan, is_engaged ? cause_ms - facts->engaged_ms : 0u, (uint32_t)SHORT_MS);
     before_ms = (before_ms < ready_ms) ? ready_ms : before_ms;
     plan->engage_ms = is_engaged ? (uint32_t)before_ms : 0u;
     plan->cause_ms = (uint32_t)(before_ms + since_ms);

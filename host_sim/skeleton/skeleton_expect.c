@@ -17,17 +17,18 @@ static uint32_t rounded(uint32_t ms) {
 /** The step or event that a change of state counts from; NULL: the start of the run. */
 static const char *anchor_of(const skeleton_plan_t *plan, const skeleton_seen_t *seen, const skeleton_change_t *change,
                              uint32_t *since_ms) {
+    const bool is_early = (plan->engage_ms > plan->cause_ms) && (change->t_ms >= plan->engage_ms);
     if ((change->to == (uint8_t)AGV_STATE_TRIPPED) && (change->t_ms == seen->trip_ms) &&
         (change->t_ms >= plan->cause_ms)) {
-        *since_ms = change->t_ms - plan->cause_ms;
-        return "fault";
+        *since_ms = change->t_ms - (is_early ? plan->engage_ms : plan->cause_ms);
+        return is_early ? "engages" : "fault";
     }
     if (seen->has_tripped && (change->t_ms > seen->trip_ms)) {
         *since_ms = change->t_ms - seen->trip_ms;
         return "trip";
     }
     if ((change->to == (uint8_t)AGV_STATE_ACTIVE) && (plan->engage_ms != 0u) && (change->t_ms >= plan->engage_ms) &&
-        (change->t_ms < plan->cause_ms)) {
+        (is_early || (change->t_ms < plan->cause_ms))) {
         *since_ms = change->t_ms - plan->engage_ms;
         return "engages";
     }

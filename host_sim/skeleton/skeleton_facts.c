@@ -43,6 +43,27 @@ static void on_end(void *ctx, const why_t *why) {
     }
 }
 
+/** What counts while the autopilot is engaged only. */
+static bool is_by_silent_command(const why_trip_t *trip) {
+    return ((trip->kind == WHY_SILENCE) || (trip->kind == WHY_STUCK)) && ((uint32_t)trip->message < AGV_COMMAND_COUNT);
+}
+
+bool skeleton_was_heard(const skeleton_facts_t *facts) {
+    return facts->trip.last_good_us != WHY_NEVER;
+}
+
+uint64_t skeleton_engaged_ms(const skeleton_facts_t *facts) {
+    if (facts->trip.from_engagement) {
+        return facts->trip.cause_us / US_PER_MS;
+    }
+    return (facts->before == AGV_STATE_ACTIVE) ? facts->engaged_ms : facts->trip.t_us / US_PER_MS;
+}
+
+bool skeleton_is_early(const skeleton_facts_t *facts) {
+    return is_by_silent_command(&facts->trip) &&
+           (!skeleton_was_heard(facts) || (skeleton_cause_ms(facts) < skeleton_engaged_ms(facts)));
+}
+
 uint64_t skeleton_cause_ms(const skeleton_facts_t *facts) {
     const why_trip_t *trip = &facts->trip;
     const bool by_silence = (trip->kind == WHY_SILENCE) || (trip->kind == WHY_STUCK);
@@ -143,12 +164,13 @@ static void prepare(listening_t *listening) {
     const why_trip_t *trip = &facts->trip;
 
     agv_config_ids(&facts->request->config, &listening->ids);
-    facts->node_is_silent =
-        (trip->kind == WHY_SILENCE) && (trip->message != AGV_MSG_NONE) && (trip->last_good_us != WHY_NEVER);
+    facts->node_is_silent = (trip->kind == WHY_SILENCE) && (trip->message != AGV_MSG_NONE);
     if (facts->node_is_silent) {
         listening->node = vehicle_sender_of(trip->message);
         listening->silent_from_us =
-            trip->last_good_us + ((uint64_t)agv_message_cycle_ms(trip->message) * (uint64_t)US_PER_MS);
+            skeleton_was_heard(facts)
+                ? trip->last_good_us + ((uint64_t)agv_message_cycle_ms(trip->message) * (uint64_t)US_PER_MS)
+                : 0u;
         listening->silent_to_us = trip->t_us + ((uint64_t)LISTEN_MS * (uint64_t)US_PER_MS);
     }
 }

@@ -35,4 +35,13 @@ bool skeleton_facts_read(skeleton_facts_t *facts, const skeleton_request_t *requ
 /** When the cause began, in ms. */
 uint64_t skeleton_cause_ms(const skeleton_facts_t *facts);
 
+/** When the autopilot was engaged that the trip counts from, in ms. It may trip before it is ACTIVE. */
+uint64_t skeleton_engaged_ms(const skeleton_facts_t *facts);
+
+/** Whether a silent message had come before. */
+bool skeleton_was_heard(const skeleton_facts_t *facts);
+
+/** Whether a command, or its counter, was silent before the engagement already. */
+bool skeleton_is_early(const skeleton_facts_t *facts);
+
 #endif

@@ -101,8 +101,14 @@ void skeleton_text(text_t *text, const skeleton_plan_t *plan, const skeleton_see
     add_head(text, plan);
     add_settings(text, &plan->facts->request->config);
     text_add(text, "duration_ms: %" PRIu32 "\nsteps:\n", plan->duration_ms);
-    add_driver(text, plan);
-    text_add(text, "%sexpect:\n", plan->steps.bytes);
+    if (plan->engage_ms > plan->cause_ms) {
+        text_add(text, "%s", plan->steps.bytes);
+        add_driver(text, plan);
+    } else {
+        add_driver(text, plan);
+        text_add(text, "%s", plan->steps.bytes);
+    }
+    text_add(text, "expect:\n");
     if (seen == NULL) {
         text_add(text, "  states: any\n");
     } else {

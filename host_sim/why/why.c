@@ -232,6 +232,9 @@ static void on_state(why_t *why, const agv_event_t *event, uint64_t t_us) {
         why_init_end(why, t_us);
     }
     why->state = event->b;
+    if (why->is_recorder) {
+        why_engage_state(why, event, t_us);
+    }
     if ((event->b == (uint8_t)AGV_STATE_TRIPPED) && (event->c < (uint8_t)AGV_FAULT_COUNT)) {
         on_trip(why, (agv_fault_t)event->c, t_us);
     } else if (!agv_state_is_latched((agv_state_t)event->b)) {

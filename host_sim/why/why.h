@@ -28,7 +28,7 @@
 
 /** A frame that shows the cause. */
 typedef struct {
-    uint64_t t_us;
+    uint64_t t_us; /**< WHY_NEVER: not known */
     hal_can_side_t side;
     hal_can_frame_t frame;
 } why_evidence_t;
@@ -42,7 +42,9 @@ typedef struct {
     uint32_t id;           /**< of that message on the wire; WHY_NO_ID */
     uint64_t cause_us;     /**< when it began, not when it was noticed; WHY_NEVER: not known */
     uint64_t last_good_us; /**< last frame before that was as it should be; WHY_NEVER */
-    bool is_old;           /**< it was so before that already, but counts from the engagement on only */
+    bool from_engagement;  /**< cause_us is the engagement: it may have been so before, when it did not count */
+    bool at_the_latest;    /**< it began at cause_us or before */
+    bool was_heard;        /**< silence: it had come before; last_good_us WHY_NEVER: when is not known */
     uint64_t next_us;      /**< silence: the frame that ended it; WHY_NEVER */
     int64_t limit;         /**< that was exceeded; WHY_NO_LIMIT */
     const char *unit;      /**< of the limit: "ms", "frames", "ddeg", "counts"; NULL: no limit */
@@ -108,6 +110,9 @@ uint64_t why_supervised_us(const why_t *why);
 
 /** Whether the autopilot was ever engaged: else the commands of the AI computer were not judged. */
 bool why_was_engaged(const why_t *why);
+
+/** Whether the first 363h reported autopilot. */
+bool why_began_in_autopilot(const why_t *why);
 
 /** AGV_MISSING_* bits: what kept it in INIT, until it left it or until the end. */
 uint16_t why_missing(const why_t *why);

@@ -207,6 +207,9 @@ static void take_wheels(why_t *why, const why_evidence_t *frame) {
 static void take_vehicle(why_t *why, const uint8_t *data) {
     agv_vehicle_status_t status;
     (void)agv_unpack_vehicle_status(&status, data);
+    if (!why->facts.mode_known) {
+        why->began_in_autopilot = status.autopilot_mode;
+    }
     why->facts.vcu_speed = status.speed_m_per_h;
     why->facts.mode_bits = data[6];
     why->facts.mode_known = true;

@@ -68,11 +68,13 @@ static void explain_silence(const why_t *why, why_trip_t *trip) {
     if (message->beat_us == WHY_NEVER) {
         trip->cause_us = why->start_us;
     } else {
+        trip->was_heard = true;
         trip->last_good_us = message->beat_us;
         trip->cause_us = message->beat_us + cycle_us;
     }
     if (why_is_command(trip->message) && (engaged_us != WHY_NEVER) && (trip->cause_us < engaged_us)) {
         trip->cause_us = engaged_us;
+        trip->from_engagement = true;
         if ((trip->message == AGV_MSG_TURN_SIGNAL_COMMAND) && (message->count == 0u)) {
             set_limit(why, trip, AGV_SETTING_ai_never_seen_timeout_ms, "ms");
         }
@@ -94,7 +96,7 @@ static void explain_tracked(const why_t *why, why_trip_t *trip) {
     if (tracker != NULL) {
         trip->cause_us = tracker->began_us;
         trip->last_good_us = tracker->good.t_us;
-        trip->is_old = tracker->is_old;
+        trip->from_engagement = tracker->is_old;
         why_show(trip, &tracker->good);
         why_show(trip, &tracker->first);
     }
@@ -126,6 +128,18 @@ static void explain_mode(const why_t *why, why_trip_t *trip) {
     }
 }
 
+void why_value_limit(why_trip_t *trip) {
+    if (trip->message == AGV_MSG_THROTTLE_COMMAND) {
+        trip->limit = (int64_t)AGV_THROTTLE_MAX_COUNTS;
+        trip->unit = "counts";
+    } else if (trip->message == AGV_MSG_STEERING_COMMAND) {
+        trip->limit = AGV_ANGLE_RAW_MAX;
+        trip->unit = "ddeg";
+    } else {
+        /* a gear has none */
+    }
+}
+
 static void explain_value(const why_t *why, why_trip_t *trip) {
     const hal_can_frame_t *frame = &why->bad_command.frame;
     if (why->bad_command.t_us == WHY_NEVER) {
@@ -133,14 +147,8 @@ static void explain_value(const why_t *why, why_trip_t *trip) {
     }
     set_message(why, trip, (agv_message_t)agv_ids_find(&why->ids, frame->id));
     const bool whole = (frame->length == AGV_DLC) && (frame->flags == 0u);
-    if (whole && (trip->message == AGV_MSG_THROTTLE_COMMAND)) {
-        trip->limit = (int64_t)AGV_THROTTLE_MAX_COUNTS;
-        trip->unit = "counts";
-    } else if (whole && (trip->message == AGV_MSG_STEERING_COMMAND)) {
-        trip->limit = AGV_ANGLE_RAW_MAX;
-        trip->unit = "ddeg";
-    } else {
-        trip->limit = WHY_NO_LIMIT; /* a gear, or no whole frame */
+    if (whole) {
+        why_value_limit(trip);
     }
     show_recent(why, trip, trip->message, RECENT_FRAMES);
     set_frame(trip, &why->bad_command);

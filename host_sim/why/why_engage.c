@@ -1,5 +1,6 @@
 /* The engagement of the autopilot, as 363h reports it (SUP-9). */
 #include "agv/codec.h"
+#include "agv/state.h"
 #include "text/units.h"
 #include "why/why_internal.h"
 
@@ -9,15 +10,19 @@ void why_engage_start(why_t *why) {
     why->engagement.judged_us = WHY_NEVER;
 }
 
+/** Whether an engagement follows the one before so soon that it is the same. */
+static bool continues(const why_t *why, uint64_t t_us) {
+    const uint64_t reengage_us = (uint64_t)why->config.reengage_ms * US_PER_MS;
+    return (why->engagement.ended_us != WHY_NEVER) && (t_us <= why->engagement.ended_us + reengage_us);
+}
+
 static void begin(why_t *why, const why_evidence_t *frame) {
     why_engagement_t *engagement = &why->engagement;
-    const uint64_t reengage_us = (uint64_t)why->config.reengage_ms * US_PER_MS;
-    const bool continues = (engagement->ended_us != WHY_NEVER) && (frame->t_us <= engagement->ended_us + reengage_us);
     engagement->engaged = true;
     engagement->off_frames = 0u;
     engagement->frames[engagement->count % (uint32_t)WHY_ENGAGEMENTS] = *frame;
     engagement->count++;
-    if (!continues) {
+    if (!continues(why, frame->t_us)) {
         engagement->began_us = frame->t_us;
         why_track_engage(why);
         why_budget_engage(why);
@@ -49,5 +54,14 @@ void why_engage_frame(why_t *why, const why_evidence_t *frame) {
         }
     } else {
         /* manual, as before */
+    }
+}
+
+void why_engage_state(why_t *why, const agv_event_t *event, uint64_t t_us) {
+    if (event->a == (uint8_t)AGV_STATE_ACTIVE) {
+        end(why, t_us);
+    }
+    if ((event->b == (uint8_t)AGV_STATE_ACTIVE) && !continues(why, t_us)) {
+        why->engagement.began_us = t_us;
     }
 }

@@ -33,6 +33,10 @@ bool why_was_engaged(const why_t *why) {
     return (why->engagement.count > 0u) || (why->state_us[WHY_ACTIVE] > 0u); /* a flight recorder has no frames */
 }
 
+bool why_began_in_autopilot(const why_t *why) {
+    return why->began_in_autopilot;
+}
+
 uint16_t why_missing(const why_t *why) {
     return why->missing;
 }

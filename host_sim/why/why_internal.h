@@ -101,7 +101,8 @@ struct why {
     uint64_t missing_us[WHY_MISSING_BITS]; /* when each condition was missing last; WHY_NEVER */
     uint64_t init_due_us;                  /* when they are evaluated next */
     bool manual_was_seen;
-    bool was_tripped; /**< in this run of the supervisor */
+    bool began_in_autopilot; /* the first 363h */
+    bool was_tripped;        /**< in this run of the supervisor */
 
     why_trip_t *trips;
     size_t trip_count;
@@ -159,6 +160,8 @@ const why_tracker_t *why_tracker(const why_t *why, agv_fault_t fault);
 /** The engagement (why_engage.c). */
 void why_engage_start(why_t *why);
 void why_engage_frame(why_t *why, const why_evidence_t *frame);
+/** A change of state of a flight recorder, which has no frames: it was engaged while it was ACTIVE. */
+void why_engage_state(why_t *why, const agv_event_t *event, uint64_t t_us);
 
 /** @name The conditions for leaving INIT (why_init.c). @{ */
 void why_init_start(why_t *why);
@@ -168,6 +171,9 @@ void why_init_end(why_t *why, uint64_t t_us);
 
 /** Add a frame to the evidence, if there is room and it is not there yet. */
 void why_show(why_trip_t *trip, const why_evidence_t *evidence);
+
+/** Set the limit of a command's value, if it has one. */
+void why_value_limit(why_trip_t *trip);
 
 /** How long a condition has to last; 0: it is no budget. */
 uint64_t why_budget_us(const why_t *why, agv_fault_t fault);

@@ -3,6 +3,7 @@
  * times follow from the limits.
  */
 #include "agv/codec.h"
+#include "agv/state.h"
 #include "text/units.h"
 #include "why/why_internal.h"
 
@@ -18,21 +19,55 @@ static uint64_t cycle_us(const why_trip_t *trip) {
     return (uint64_t)agv_message_cycle_ms(trip->message) * US_PER_MS;
 }
 
+static bool is_seen(const agv_event_t *event, agv_message_t message) {
+    return (message != AGV_MSG_NONE) && (((event->seen >> (uint32_t)message) & 1u) != 0u);
+}
+
+/**
+ * A command that had come before. Its deadline counts from the engagement on; a heartbeat that was lost before trips when
+ * it is engaged, before it is ACTIVE. Else it is known when it came last only if it was ACTIVE already.
+ */
+static void explain_silent_command(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
+    const bool is_active = event->a != (uint8_t)AGV_STATE_STANDBY;
+    const uint64_t engaged_us = why->engagement.began_us;
+    if (!is_active && (trip->message == AGV_MSG_TURN_SIGNAL_COMMAND)) {
+        trip->cause_us = trip->t_us;
+        trip->from_engagement = true;
+    } else if (!is_active || ((engaged_us != WHY_NEVER) && (engaged_us >= trip->cause_us))) {
+        trip->from_engagement = is_active && (engaged_us <= trip->cause_us + US_PER_MS);
+    } else {
+        trip->last_good_us = trip->cause_us;
+        trip->cause_us += cycle_us(trip);
+    }
+}
+
 /** A deadline expires when the last good frame is older than its limit. */
-static void explain_silence(why_trip_t *trip) {
+static void explain_silence(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
+    const bool is_command = why_is_command(trip->message);
+    trip->was_heard = is_seen(event, trip->message);
+    if (!trip->was_heard && (trip->message == AGV_MSG_TURN_SIGNAL_COMMAND)) {
+        trip->limit = why->config.ai_never_seen_timeout_ms;
+    }
     before(trip, limit_us(trip) + US_PER_MS);
-    trip->last_good_us = trip->cause_us;
-    trip->cause_us += cycle_us(trip);
+    if (trip->was_heard && is_command) {
+        explain_silent_command(why, event, trip);
+    } else if (trip->was_heard) {
+        trip->last_good_us = trip->cause_us;
+        trip->cause_us += cycle_us(trip);
+    } else {
+        trip->cause_us = is_command ? trip->cause_us : why->start_us;
+        trip->from_engagement = is_command; /* the deadline began with it */
+    }
 }
 
 static void explain_value(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
     for (uint32_t command = 0u; command < AGV_COMMAND_COUNT; command++) {
-        const bool seen = ((event->seen >> command) & 1u) != 0u;
-        if (seen && !agv_value_is_valid(command, event->frames[command])) {
+        if (is_seen(event, (agv_message_t)command) && !agv_value_is_valid(command, event->frames[command])) {
             trip->message = (agv_message_t)command;
             trip->id = why->ids.of[command];
         }
     }
+    why_value_limit(trip);
 }
 
 static void explain_vehicle(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
@@ -50,9 +85,10 @@ static void explain(const why_t *why, const agv_event_t *event, why_trip_t *trip
     switch (trip->kind) {
     case WHY_SILENCE:
     case WHY_STUCK:
-        explain_silence(trip);
+        explain_silence(why, event, trip);
         break;
     case WHY_SCORE:
+        trip->at_the_latest = true;
         before(trip, ((uint64_t)trip->limit - 1u) * cycle_us(trip));
         break;
     case WHY_VALUE:
@@ -76,19 +112,26 @@ static void explain(const why_t *why, const agv_event_t *event, why_trip_t *trip
     }
 }
 
+/** Whether the last frame of the message that tells made it trip. */
+static bool is_decided_by_frame(const why_trip_t *trip) {
+    return (trip->kind == WHY_BIT) || (trip->kind == WHY_SCORE) || (trip->kind == WHY_VALUE);
+}
+
 /** The last payload of a message, if there was one. */
 static void show_payload(const why_t *why, const agv_event_t *event, why_trip_t *trip, agv_message_t message) {
-    if ((message == AGV_MSG_NONE) || (((event->seen >> (uint32_t)message) & 1u) == 0u)) {
+    if (!is_seen(event, message)) {
         return;
     }
     const bool from_ai = why_is_command(message) && why->is_gateway;
-    why_evidence_t evidence = {.t_us = trip->t_us, .side = from_ai ? HAL_CAN_AI : HAL_CAN_VEHICLE};
+    const uint64_t t_us = ((message == trip->message) && is_decided_by_frame(trip)) ? trip->t_us : WHY_NEVER;
+    why_evidence_t evidence = {.t_us = t_us, .side = from_ai ? HAL_CAN_AI : HAL_CAN_VEHICLE};
     evidence.frame.id = why->ids.of[message];
     evidence.frame.length = (uint8_t)AGV_DLC;
     for (size_t i = 0u; i < (size_t)AGV_DLC; i++) {
         evidence.frame.data[i] = event->frames[message][i];
     }
-    why_show(trip, &evidence);
+    trip->evidence[trip->evidence_count] = evidence; /* two at most */
+    trip->evidence_count++;
 }
 
 void why_cause_recorded(const why_t *why, const agv_event_t *event, why_trip_t *trip) {

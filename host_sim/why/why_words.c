@@ -69,9 +69,25 @@ static void add_message(text_t *text, const why_t *why, agv_message_t message) {
     text_add(text, "%03Xh %s", why->ids.of[message], agv_message_name(message));
 }
 
+/** What the sentence is about where it is not known which message it was. */
+static const char *unknown_name(agv_fault_t reason) {
+    switch (reason) {
+    case AGV_FAULT_AI_COMMAND_OUT_OF_RANGE:
+    case AGV_FAULT_FOREIGN_COMMAND_SENDER:
+    case AGV_FAULT_COMMAND_TOO_FAST:
+        return "a command ";
+    case AGV_FAULT_WRONG_ID_SET:
+        return "an identifier of the other set ";
+    default:
+        return "";
+    }
+}
+
 static void add_name(text_t *text, const why_trip_t *trip) {
-    if (trip->id != WHY_NO_ID) {
-        const char *name = agv_message_name(trip->message);
+    const char *name = agv_message_name(trip->message);
+    if (trip->id == WHY_NO_ID) {
+        text_add(text, "%s", unknown_name(trip->reason));
+    } else {
         text_add(text, "%03" PRIX32 "h%s%s ", trip->id, (name != NULL) ? " " : "", (name != NULL) ? name : "");
     }
 }
@@ -120,12 +136,12 @@ static void add_from(text_t *text, const char *words, uint64_t t_us) {
 }
 
 static void say_silence(text_t *text, const why_t *why, const why_trip_t *trip) {
-    if (trip->last_good_us == WHY_NEVER) {
-        text_add(text, "was never heard, deadline %" PRId64 " ms", trip->limit);
-    } else {
-        add_from(text, "was silent: last at ", trip->last_good_us);
-        text_add(text, ", deadline %" PRId64 " ms", trip->limit);
+    text_add(text, trip->was_heard ? "was silent" : "was never heard");
+    add_from(text, ": last at ", trip->last_good_us);
+    if (trip->from_engagement) {
+        add_from(text, ", engaged at ", trip->cause_us);
     }
+    text_add(text, ", deadline %" PRId64 " ms", trip->limit);
     if (trip->next_us != WHY_NEVER) {
         add_from(text, ", next at ", trip->next_us);
     } else if ((trip->last_good_us != WHY_NEVER) && !why->is_recorder) {
@@ -139,7 +155,7 @@ static void say_silence(text_t *text, const why_t *why, const why_trip_t *trip) 
 static const why_evidence_t *first_bad(const why_trip_t *trip) {
     for (size_t i = 0u; i < trip->evidence_count; i++) {
         const why_evidence_t *evidence = &trip->evidence[i];
-        if ((evidence->t_us == trip->cause_us) && (evidence->frame.id == trip->id)) {
+        if ((evidence->t_us == trip->cause_us) && (evidence->t_us != WHY_NEVER) && (evidence->frame.id == trip->id)) {
             return evidence;
         }
     }
@@ -182,19 +198,25 @@ static void say_score(text_t *text, const why_t *why, const why_trip_t *trip) {
         text_add(text, "reported %s", agv_fault_name(trip->reason));
     }
     text_add(text, " in %" PRId64 " frames", trip->limit);
-    if (trip->is_old) {
+    if (trip->from_engagement) {
         add_from(text, ", from the engagement at ", trip->cause_us);
         text_add(text, " on; it was so before");
         return;
     }
     add_from(text, ", the first at ", trip->cause_us);
+    text_add(text, trip->at_the_latest ? " at the latest" : "");
     add_payload(text, trip);
 }
 
 static void say_value(text_t *text, const why_trip_t *trip) {
     const why_evidence_t *bad = first_bad(trip);
     const bool malformed = (bad != NULL) && ((bad->frame.length != AGV_DLC) || (bad->frame.flags != 0u));
-    text_add(text, malformed ? "had another length or format" : "commanded a value that does not exist");
+    if (trip->id == WHY_NO_ID) {
+        text_add(text,
+                 "had a value that does not exist, or another length or format,"); /* a recorder has values only */
+    } else {
+        text_add(text, malformed ? "had another length or format" : "commanded a value that does not exist");
+    }
     add_from(text, " at ", trip->cause_us);
     add_payload(text, trip);
 }

@@ -58,6 +58,37 @@ void test_a_message_that_never_came(void) {
     TEST_ASSERT_EQUAL_STRING("steering_command (065h) never came. Its deadline is 125 ms.", sentence.cause);
 }
 
+void test_a_message_that_came_at_a_time_that_is_not_known(void) {
+    trip.cause_us = 61984000u;
+    trip.last_good_us = WHY_NEVER;
+    trip.next_us = WHY_NEVER;
+    trip.was_heard = true;
+    trip.from_engagement = true;
+    say();
+    TEST_ASSERT_EQUAL_STRING("steering_command (065h) did not come from the engagement at 61.984 s on. Its deadline is "
+                             "125 ms.",
+                             sentence.cause);
+    trip.kind = WHY_STUCK;
+    say();
+    TEST_ASSERT_EQUAL_STRING(
+        "The alive counter of steering_command (065h) did not change from the engagement at 61.984 s "
+        "on. Its deadline is 125 ms.",
+        sentence.cause);
+}
+
+void test_since_when_a_score_counts(void) {
+    trip.kind = WHY_SCORE;
+    trip.limit = WHY_NO_LIMIT;
+    trip.at_the_latest = true;
+    say();
+    TEST_ASSERT_EQUAL_STRING("It began at 62.009 s at the latest, as steering_command (065h) shows.", sentence.cause);
+    trip.at_the_latest = false;
+    trip.from_engagement = true;
+    say();
+    TEST_ASSERT_EQUAL_STRING("It counted from the engagement at 62.009 s on, as steering_command (065h) shows.",
+                             sentence.cause);
+}
+
 void test_a_counter_that_stands_still(void) {
     trip.kind = WHY_STUCK;
     trip.reason = AGV_FAULT_VCU_HEARTBEAT_STUCK;

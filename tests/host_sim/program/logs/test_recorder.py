@@ -77,7 +77,7 @@ class Recorder(hostsim.Case):
         self.assertEqual([[trip[key] for key in same] for trip in found["trips"]],
                          [[trip[key] for key in same] for trip in replayed["trips"]])
         self.assertEqual(found["trips"][0]["evidence"],
-                         [{"t_ms": 3107, "if": None, "id": "065", "data": "2823000000000000"}])
+                         [{"t_ms": None, "if": None, "id": "065", "data": "2823000000000000"}])
 
     def test_faults_of_other_kinds(self):
         cases = (("eps_status", 7, 0x40, ("EPS_MOTOR_ENCODER", "bit", "eps_status", 3003)),
@@ -93,6 +93,17 @@ class Recorder(hostsim.Case):
             self.run_good("replay", "--store", expected[0], "x.log")
             trip = json.loads(self.run_good("recorder", "--why", "-", expected[0]).stdout)["trips"][0]
             self.assertEqual((trip["reason"], trip["kind"], trip["message"], trip["cause_ms"]), expected)
+
+    def test_a_silence_from_the_engagement_on_is_that_of_the_replay(self):
+        for name, from_ms in (("turn_signal_command", 0), ("turn_signal_command", 400), ("gear_command", 400)):
+            self.write("x.log", traffic.log(traffic.frames(3000, engage_ms=1000, edit=stop((name,), from_ms))))
+            self.run_good("replay", "--store", f"s{name}{from_ms}", "--why", "x.json", "x.log")
+            replayed = json.loads(self.text_of("x.json"))["trips"][0]
+            found = json.loads(self.run_good("recorder", "--why", "-", f"s{name}{from_ms}").stdout)["trips"][0]
+            self.assertEqual(found["cause_ms"], 1000)
+            self.assertIsNone(found["last_good_ms"])
+            for key in ("t_ms", "reason", "message", "cause_ms", "limit", "unit"):
+                self.assertEqual(found[key], replayed[key], key)
 
     def test_runs(self):
         self.write("short.log", traffic.log(traffic.frames(300)))

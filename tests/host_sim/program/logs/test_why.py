@@ -150,6 +150,23 @@ class FiveLogs(Case):
             "  hint      the messages come on can0 and can1: a gateway (--ai-if names its AI side), or two",
             "            vehicles in one log?"])
 
+    def test_a_gateway_recorded_on_both_of_its_sides(self):
+        def forward(frame):
+            other = "can0" if frame.interface == "can1" else "can1"
+            return [frame, traffic.Frame(frame.t_us + 200, frame.name, frame.can_id, frame.data, other)]
+        frames = traffic.frames(3000, engage_ms=1000, ai_interface="can1", edit=forward)
+        lines = self.text(traffic.log(frames), "--ai-if", "can1", "--fail-on-trip", status=1)
+        self.assertEqual([line for line in lines if line.startswith("  hint")],
+                         ["  hint      commands come on the vehicle side (can0): recorded behind a gateway? Leave out the"])
+        self.assertEqual(lines[3], "            frames that it sent")
+
+    def test_the_sides_of_a_gateway_are_swapped(self):
+        log = traffic.log(traffic.frames(3000, engage_ms=1000, ai_interface="can1"))
+        lines = self.text(log, "--ai-if", "can0")
+        self.assertEqual([line for line in lines if line.startswith("  hint")],
+                         ["  hint      status messages come on the AI side (can0), commands on the other: --ai-if can1"])
+        self.assertFalse(self.text(log, "--ai-if", "can1")[0].startswith("NOT SUPERVISED"))
+
     def test_a_log_that_ends_in_the_middle_of_a_fault(self):
         frames = traffic.frames(3000, engage_ms=1000, edit=stop(("steering_command",), 2910))
         lines = self.text(traffic.log(frames))

@@ -1,0 +1,121 @@
+/* Causes of trips that a flight recorder kept: events with payloads, no frames. Expected values by hand. */
+#include "agv/codec.h"
+#include "one_why.h"
+#include "why/why_words.h"
+
+#define ALL 0x7FF /* every message came */
+#define WITHOUT(message) (ALL & ~(1 << (message)))
+
+static agv_event_t event;
+
+enum { NOT_ACTIVE = 0 };
+
+/* A recorder that was ACTIVE from some time on, or NOT_ACTIVE, and tripped. @return its trip */
+static const why_trip_t *trip_of(agv_fault_t reason, uint16_t seen, uint64_t engaged_ms, uint64_t trip_ms) {
+    why_is_recorder(why);
+    feed_state(why, 0, AGV_STATE_INIT, AGV_FAULT_NONE, 0);
+    feed_state(why, AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_FAULT_NONE, 510);
+    if (engaged_ms != NOT_ACTIVE) {
+        feed_state(why, AGV_STATE_STANDBY, AGV_STATE_ACTIVE, AGV_FAULT_NONE, engaged_ms);
+    }
+    event.kind = AGV_EVENT_STATE;
+    event.a = (engaged_ms != NOT_ACTIVE) ? AGV_STATE_ACTIVE : AGV_STATE_STANDBY;
+    event.b = AGV_STATE_TRIPPED;
+    event.c = (uint8_t)reason;
+    event.seen = seen;
+    const session_event_t recorded = {.t_ms = trip_ms, .recorded = event};
+    why_event(why, &recorded);
+    event = (agv_event_t){.kind = 0};
+    TEST_ASSERT_EQUAL_UINT(1, why_trip_count(why));
+    return why_trip(why, 0);
+}
+
+static void check_words(const why_trip_t *trip, const char *expected) {
+    text_t text = {.used = 0u};
+    why_words_cause(&text, why, trip);
+    TEST_ASSERT_EQUAL_STRING(expected, text.bytes);
+}
+
+static void check_times(const why_trip_t *trip, uint64_t cause_ms, uint64_t good_us) {
+    TEST_ASSERT_EQUAL_UINT64(cause_ms * 1000u, trip->cause_us);
+    TEST_ASSERT_EQUAL_UINT64(good_us, trip->last_good_us);
+}
+
+void test_a_silence_after_the_engagement_is_as_long_as_its_deadline(void) {
+    const why_trip_t *trip = trip_of(AGV_FAULT_STEERING_COMMAND_TIMEOUT, ALL, 1000, 3107);
+    check_times(trip, 3006, 2981000); /* 3107 - 125 - 1, and a cycle of 25 ms later */
+    check_words(trip, "065h steering_command was silent: last at 2.981 s, deadline 125 ms");
+    TEST_ASSERT_EQUAL_UINT(1, trip->evidence_count);
+    TEST_ASSERT_EQUAL_UINT64(WHY_NEVER, trip->evidence[0].t_us);
+}
+
+void test_a_silence_that_counts_from_the_engagement_on(void) {
+    const why_trip_t *trip = trip_of(AGV_FAULT_GEAR_COMMAND_TIMEOUT, ALL, 1000, 1351);
+    check_times(trip, 1000, WHY_NEVER);
+    check_words(trip, "168h gear_command was silent, engaged at 1.000 s, deadline 350 ms");
+}
+
+void test_a_heartbeat_that_was_lost_before_the_engagement(void) {
+    const why_trip_t *trip = trip_of(AGV_FAULT_AI_HEARTBEAT_LOST, ALL, NOT_ACTIVE, 1000);
+    check_times(trip, 1000, WHY_NEVER);
+    check_words(trip, "43Fh turn_signal_command was silent, engaged at 1.000 s, deadline 350 ms");
+    TEST_ASSERT_EQUAL_INT64(350, trip->limit);
+}
+
+void test_a_silence_that_began_before_it_was_active(void) {
+    const why_trip_t *trip = trip_of(AGV_FAULT_GEAR_COMMAND_TIMEOUT, ALL, 1300, 1351);
+    check_times(trip, 1000, WHY_NEVER); /* engaged then, or it came then */
+    check_words(trip, "168h gear_command was silent, deadline 350 ms");
+}
+
+void test_an_ai_computer_that_was_never_seen(void) {
+    const why_trip_t *trip =
+        trip_of(AGV_FAULT_AI_HEARTBEAT_LOST, WITHOUT(AGV_MSG_TURN_SIGNAL_COMMAND), NOT_ACTIVE, 1501);
+    check_times(trip, 1000, WHY_NEVER);
+    TEST_ASSERT_EQUAL_INT64(500, trip->limit);
+    TEST_ASSERT_EQUAL_UINT(0, trip->evidence_count);
+    check_words(trip, "43Fh turn_signal_command was never heard, engaged at 1.000 s, deadline 500 ms");
+}
+
+void test_a_short_interruption_is_the_same_engagement(void) {
+    why_is_recorder(why);
+    feed_state(why, AGV_STATE_STANDBY, AGV_STATE_ACTIVE, AGV_FAULT_NONE, 600);
+    feed_state(why, AGV_STATE_ACTIVE, AGV_STATE_STANDBY, AGV_FAULT_NONE, 2900);
+    const why_trip_t *trip = trip_of(AGV_FAULT_STEERING_COMMAND_TIMEOUT, ALL, 3000, 3107);
+    check_times(trip, 3006, 2981000);
+}
+
+void test_a_score_began_at_the_latest(void) {
+    event.frames[AGV_MSG_EPS_STATUS][3] = 7;
+    const why_trip_t *trip = trip_of(AGV_FAULT_EPS_MODE_INVALID, ALL, 1000, 3043);
+    check_times(trip, 3003, WHY_NEVER); /* five frames, 10 ms apart */
+    TEST_ASSERT_EQUAL_UINT64(3043000, trip->evidence[0].t_us);
+    check_words(trip,
+                "167h eps_status reported an EPS mode that does not exist in 5 frames, the first at 3.003 s at the "
+                "latest");
+}
+
+void test_the_limit_of_a_command(void) {
+    event.frames[AGV_MSG_STEERING_COMMAND][0] = 0x51; /* 18001 */
+    event.frames[AGV_MSG_STEERING_COMMAND][1] = 0x46;
+    event.frames[AGV_MSG_GEAR_COMMAND][0] = AGV_GEAR_D;
+    const why_trip_t *trip = trip_of(AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, ALL, 1000, 3008);
+    TEST_ASSERT_EQUAL_INT64(18000, trip->limit);
+    TEST_ASSERT_EQUAL_STRING("ddeg", trip->unit);
+    check_words(trip,
+                "065h steering_command commanded a value that does not exist at 3.008 s [51 46 00 00 00 00 00 00]");
+}
+
+void test_a_sentence_has_a_subject_where_the_message_is_not_known(void) {
+    event.frames[AGV_MSG_GEAR_COMMAND][0] = AGV_GEAR_D;
+    check_words(trip_of(AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, ALL, 1000, 3008),
+                "a command had a value that does not exist, or another length or format, at 3.008 s");
+    tearDown();
+    setUp();
+    check_words(trip_of(AGV_FAULT_FOREIGN_COMMAND_SENDER, ALL, 1000, 3008),
+                "a command came from the vehicle side: at 3.008 s");
+    tearDown();
+    setUp();
+    check_words(trip_of(AGV_FAULT_COMMAND_TOO_FAST, ALL, 1000, 3008),
+                "a command came in less than half its cycle 10 times");
+}
