@@ -58,9 +58,9 @@ static void hold(oracle_t *oracle) {
 
 /*
  * After 2 s without 065h a new angle may be held, within the time that the supervisor needs to detect this. A tick may come so
- * late that the EPS is only just alive.
+ * late that the EPS is only just alive. The last 065h that the controller accepted may not have left: then the one before counts.
  */
-enum { ANEW_MS = 2000, SURELY_ANEW_MS = 2700, RECENT_MS = 50 };
+enum { ANEW_MS = 2000 - 25, SURELY_ANEW_MS = 2700, RECENT_MS = 50 };
 
 static bool is_recent(const oracle_t *oracle, uint16_t raw) {
     bool recent = false;

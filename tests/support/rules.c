@@ -422,7 +422,7 @@ static void check_closed(rules_t *rules) {
         broken(rules, "FSM-4: the safety output is closed, and a frame has not been sent for %u ms",
                (unsigned)rules->bus.tx_pending_ms);
     }
-    if (age_ms(rules, rules->fed_ms) > rules->watchdog_period_ms) {
+    if (age_ms(rules, rules->fed_ms) > (rules->watchdog_period_ms + 1u)) {
         broken(rules, "FSM-4: the safety output is closed, and the watchdog has not been fed for %u ms",
                (unsigned)age_ms(rules, rules->fed_ms));
     }

@@ -3,8 +3,8 @@
 #include <stddef.h>
 #include <string.h>
 
-/* Time in ms that a timer must run beyond its limit: durations expire at >= the limit, deadlines at > it. */
-enum { DURATION = 0, DEADLINE = 1 };
+/* Time in ms that a timer must run beyond its limit: durations expire at >= the limit, deadlines at > it; a step adds 1 ms. */
+enum { DURATION = 0, DEADLINE = 1, STEP = 2 };
 
 /* The setting that is the limit, and the kind of each timer. */
 static const struct {

@@ -61,10 +61,8 @@ void agv_hold_withdrawn(agv_hold_t *hold) {
     hold->handed_over = false;
 }
 
-bool agv_hold_is_stuck(agv_hold_t *hold, bool stalled, bool sendable) {
-    const bool is_replaced = !hold->stalled && (hold->unsent_ms == (uint16_t)AGV_HOLD_UNSENT_MAX_MS);
-    hold->stalled = stalled;
-    return stalled && hold->handed_over && (!sendable || !agv_hold_is_held(hold) || is_replaced);
+bool agv_hold_is_stuck(const agv_hold_t *hold, bool stalled, bool sendable) {
+    return stalled && hold->handed_over && (!sendable || !agv_hold_is_held(hold));
 }
 
 bool agv_hold_is_held(const agv_hold_t *hold) {

@@ -17,7 +17,6 @@ typedef struct {
     uint16_t unsent_ms; /**< time for which no 065h has left the controller, at most AGV_HOLD_UNSENT_MAX_MS */
     bool handed_over;   /**< the controller accepted a 065h, and may still have it */
     bool taken;         /**< it was taken since the last tick */
-    bool stalled;       /**< the transmitter was stalled in the last pass */
 } agv_hold_t;
 
 /** After this time without 065h, ms, the wheels may have turned: the angle is out of date (FSM-10). */
@@ -61,12 +60,10 @@ void agv_hold_left(agv_hold_t *hold);
 void agv_hold_withdrawn(agv_hold_t *hold);
 
 /**
- * Whether a 065h that may no longer be sent waits in a stalled transmitter, from which it would leave later. After
- * AGV_HOLD_UNSENT_MAX_MS this is so whenever a stall begins: the newest angle is held, and the 065h that waits carries an
- * older one. Call in TRIPPED and SAFE, once in every pass.
+ * Whether a 065h that may no longer be sent waits in a stalled transmitter, from which it would leave later.
  * @param sendable 065h may be sent now
  */
-bool agv_hold_is_stuck(agv_hold_t *hold, bool stalled, bool sendable);
+bool agv_hold_is_stuck(const agv_hold_t *hold, bool stalled, bool sendable);
 
 /** Whether an angle is held. */
 bool agv_hold_is_held(const agv_hold_t *hold);

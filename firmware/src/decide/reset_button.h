@@ -54,7 +54,7 @@ void agv_reset_button_trip(agv_reset_button_t *reset, agv_timers_t *timers);
 
 /**
  * Evaluate the button, in TRIPPED and SAFE.
- * @param elapsed_ms since the last tick; 0 for a frame
+ * @param elapsed_ms for so long since the last tick the conditions are known to hold; 0 for a frame
  * @param lacking    AGV_MISSING_* bits of the conditions that do not hold now
  * @param missing    out, for AGV_PRESS_IN_VAIN: the conditions that did not hold at some time in its last reset_hold_ms
  */

@@ -48,6 +48,7 @@ static uint32_t missing_in_init(const agv_fault_summary_t *faults, uint32_t fact
         AGV_FACT_VCU_ALIVE | AGV_FACT_EPS_ALIVE | AGV_FACT_MANUAL | AGV_FACT_MESSAGES | AGV_FACT_OUTPUT_OPEN;
     uint32_t missing = needed & ~facts;
     missing |= ((facts & AGV_FACT_SLOW) == 0u) ? AGV_MISSING_STANDSTILL : 0u;
+    missing |= ((facts & AGV_FACT_ENGAGED) != 0u) ? AGV_FACT_MANUAL : 0u;
     missing |= (has_cause(faults->cause) || has_cause(faults->ai_cause)) ? AGV_MISSING_TRIP_CAUSE : 0u;
     return missing;
 }

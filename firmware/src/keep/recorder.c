@@ -94,7 +94,7 @@ void agv_recorder_frame(agv_recorder_t *recorder, uint32_t message, const uint8_
 
 /* Whether a fault may be recorded: its fourth last recorded event is at least a second ago. */
 static bool is_within_rate(agv_fault_rate_t *rate, uint32_t time_ms) {
-    uint32_t *const oldest_ms = &rate->recorded_ms[rate->oldest];
+    uint32_t *const oldest_ms = &rate->recorded_ms[rate->oldest % AGV_RECORDER_FAULTS_PER_S];
     if ((rate->count == (uint8_t)AGV_RECORDER_FAULTS_PER_S) && ((time_ms - *oldest_ms) < RATE_TIME_MS)) {
         rate->left_out = (uint16_t)(rate->left_out + ((rate->left_out < UINT16_MAX) ? 1u : 0u));
         return false;

@@ -30,8 +30,11 @@ static void check_feedback(agv_hardware_t *hardware, agv_fault_monitor_t *faults
     const uint32_t full = 2u * (uint32_t)config->output_feedback_ms;
     const uint8_t right = (uint8_t)(output_closed ? HAL_CONTACT_CLOSED : HAL_CONTACT_OPEN);
     const uint32_t spent = hardware->mismatch_halves;
-    const uint32_t ms = (elapsed_ms < full) ? elapsed_ms : full;
+    /* After a change the contact cannot be wrong for longer than the change is old: a late step does not count in full. */
+    const uint32_t limit_ms = (hardware->was_closed == output_closed) ? full : 1u;
+    const uint32_t ms = (elapsed_ms < limit_ms) ? elapsed_ms : limit_ms;
     uint32_t halves;
+    hardware->was_closed = output_closed;
     if ((hardware->feedback != (uint8_t)HAL_CONTACT_NONE) && (hardware->feedback != right)) {
         halves = ((2u * ms) < (full - spent)) ? (spent + (2u * ms)) : full;
     } else {

@@ -28,6 +28,7 @@ typedef struct {
     uint8_t button_raw;  /**< agv_button_t at the last tick */
     uint8_t button_ms;   /**< for so long it was read like that */
     uint8_t failed;      /**< HAL_SELF_TEST_* bits of the parts that have failed */
+    bool was_closed;     /**< command of the safety output at the last tick */
     uint8_t parts;       /**< optional parts that the board was seen to have */
 } agv_hardware_t;
 

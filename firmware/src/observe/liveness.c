@@ -130,7 +130,7 @@ static void expire(agv_liveness_t *liveness, const agv_timers_t *timers, uint32_
     const bool running = (heartbeat->state <= (uint8_t)AGV_HEARTBEAT_ALIVE) ||
                          ((heartbeat->state == (uint8_t)AGV_HEARTBEAT_FORGOTTEN) && engaged);
     if (running && agv_timer_reached(timers, deadline_of(message))) {
-        const uint32_t age_ms = agv_age_ms(timers->now_ms, liveness->last_ms[message]);
+        const uint32_t age_ms = agv_liveness_age_ms(liveness, timers, message);
         const bool recent = age_ms <= (2u * agv_message_cycle_ms(message));
         heartbeat->state = (uint8_t)((heartbeat->repeated && recent) ? AGV_HEARTBEAT_STUCK : AGV_HEARTBEAT_LOST);
     }

@@ -164,6 +164,12 @@ static void observe_bad_command(agv_core_t *core) {
     }
 }
 
+/* Gateway: a command of motion that is dropped because 363h does not report autopilot does not reach the vehicle. */
+static bool is_withheld(const agv_core_t *core, uint32_t message) {
+    return agv_core_is_gateway(core) && is_command(message) && (message != (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND) &&
+           agv_mode_is_engaged(&core->mode) && !agv_mode_reports_autopilot(&core->mode);
+}
+
 /* Handle a well-formed frame from the expected side. */
 static void observe_message(agv_core_t *core, const agv_ports_t *ports, intake_t *intake) {
     const hal_can_frame_t *const frame = intake->frame;
@@ -176,11 +182,13 @@ static void observe_message(agv_core_t *core, const agv_ports_t *ports, intake_t
         agv_intrusion_evaluate(&core->intrusion, &core->faults, &core->timers, &core->config, &core->liveness);
     }
     intake->passes = valid || !is_command(message);
-    if (intake->passes) {
-        agv_liveness_refresh(&core->liveness, &core->timers, &core->config, message, frame);
-    } else {
+    if (!intake->passes) {
         core->counters.dropped++;
         observe_bad_command(core);
+    } else if (!is_withheld(core, message)) {
+        agv_liveness_refresh(&core->liveness, &core->timers, &core->config, message, frame);
+    } else {
+        /* its deadline runs on */
     }
     observe_content(core, message, frame, valid);
     intake->decides = true;
@@ -260,6 +268,7 @@ static void pass_on(agv_core_t *core, const agv_tx_orders_t *orders, const intak
     hal_can_frame_t frame = *intake->frame;
     if (is_command(intake->message)) {
         const agv_gateway_facts_t facts = agv_core_gateway_facts(core);
+        agv_gateway_follow_gear(&core->gateway, &facts, intake->message, frame.data);
         if (!agv_gateway_passes(&facts, intake->message, frame.data)) {
             core->counters.dropped++;
             return;

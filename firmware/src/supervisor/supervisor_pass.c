@@ -166,20 +166,24 @@ static void evaluate_faults(agv_core_t *core, uint32_t facts, uint32_t elapsed_m
     agv_fault_monitor_evaluate(&core->faults, &core->config.trips, ai_loss_warns, changes);
 }
 
+/* After a late step, a condition may hold only since the last frames before it: no more than this counts. */
+enum { RESET_STEP_MAX_MS = 10 };
+
 /* A press of a button, in TRIPPED and SAFE (FSM-3, HW-3). */
 static agv_press_result_t evaluate_press(agv_core_t *core, uint32_t facts, uint32_t elapsed_ms, uint32_t *missing) {
     if (!is_latched(core)) {
         return AGV_PRESS_NOTHING;
     }
     const uint32_t lacking = agv_state_machine_lacks_for_reset(&core->machine, &core->faults.summary, facts);
+    const uint32_t held_ms = (elapsed_ms < (uint32_t)RESET_STEP_MAX_MS) ? elapsed_ms : (uint32_t)RESET_STEP_MAX_MS;
     const agv_press_result_t remote =
-        agv_reset_button_step(&core->reset_button, &core->timers, &core->config, elapsed_ms, lacking, missing);
+        agv_reset_button_step(&core->reset_button, &core->timers, &core->config, held_ms, lacking, missing);
     if (core->config.reset_input == (uint16_t)AGV_RESET_INPUT_CAN) {
         return remote;
     }
     uint32_t missing_pin = 0u;
     const agv_press_result_t pin =
-        agv_reset_button_step(&core->reset_pin, &core->timers, &core->config, elapsed_ms, lacking, &missing_pin);
+        agv_reset_button_step(&core->reset_pin, &core->timers, &core->config, held_ms, lacking, &missing_pin);
     if ((remote == AGV_PRESS_RESETS) || (pin == AGV_PRESS_NOTHING)) {
         return remote;
     }
@@ -196,10 +200,9 @@ void agv_core_await_safe_state(agv_core_t *core) {
 
 /*
  * FSM-10: manual drops the held angle, and so do 2 s in which no 065h left. A late tick replaces an angle that was taken since
- * the last tick. A 065h that may no longer be sent must not leave a stalled transmitter later: returns whether it was
- * withdrawn, and all other frames with it.
+ * the last tick. Returns whether a 065h that may no longer be sent waits in a stalled transmitter, and would leave it later.
  */
-static bool follow_hold(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) {
+static bool follow_hold(agv_core_t *core, uint32_t elapsed_ms) {
     const bool stalled = agv_fault_monitor_is_active(&core->faults, AGV_FAULT_TX_STALLED);
     if (!is_latched(core) || agv_mode_is_manual(&core->mode)) {
         agv_hold_drop(&core->hold);
@@ -209,13 +212,23 @@ static bool follow_hold(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) {
     }
     agv_hold_renew(&core->hold, &core->vehicle, &core->timers, core->config.hold_age_ms, elapsed_ms);
     agv_hold_follow(&core->hold, &core->timers, elapsed_ms);
-    const bool stuck = agv_hold_is_stuck(&core->hold, stalled, is_holdable(core));
-    if (stuck) {
+    return agv_hold_is_stuck(&core->hold, stalled, is_holdable(core));
+}
+
+/*
+ * SUP-7: in TRIPPED and SAFE, no frame that cannot leave keeps the safe commands back, and none leaves later with an old
+ * value. Returns whether all frames were withdrawn.
+ */
+static bool withdraw_frames(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) {
+    const bool stuck = follow_hold(core, elapsed_ms);
+    const bool begins = core->stall_begins && is_latched(core);
+    core->stall_begins = false;
+    if (stuck || begins) {
         agv_hold_withdrawn(&core->hold);
-        agv_transmitter_discard(&core->transmitter, &core->timers, HAL_CAN_VEHICLE);
+        agv_transmitter_withdraw(&core->transmitter, &core->timers, !begins);
         hal_can_purge(hal, HAL_CAN_VEHICLE);
     }
-    return stuck;
+    return stuck || begins;
 }
 
 /*
@@ -223,10 +236,11 @@ static bool follow_hold(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) {
  */
 static bool follow_state(agv_core_t *core, hal_t *hal, uint32_t what, uint32_t elapsed_ms) {
     if ((what & AGV_ACTION_TRIP) != 0u) {
+        core->stall_begins = false; /* the trip withdraws all frames */
         agv_core_await_safe_state(core);
         agv_hold_trip(&core->hold, &core->vehicle, &core->timers);
     }
-    const bool withdrawn = follow_hold(core, hal, elapsed_ms);
+    const bool withdrawn = withdraw_frames(core, hal, elapsed_ms);
     if ((what & AGV_ACTION_RESET_ACCEPTED) != 0u) {
         agv_confirmation_start(&core->confirmation, &core->timers);
         agv_stopping_end(&core->stopping);

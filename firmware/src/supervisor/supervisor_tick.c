@@ -43,18 +43,35 @@ static void track_hold_frame(agv_core_t *core, uint32_t report) {
     }
 }
 
+/*
+ * SUP-7: the transmitter stalls when a frame has waited for too long, and until none waits. In TRIPPED and SAFE all frames are
+ * withdrawn when one has waited for too long, which is no end of the stall.
+ */
+static bool follow_stall(agv_core_t *core, uint32_t report) {
+    const bool stalled = agv_transmitter_is_stalled(&core->timers) || ((report & AGV_BUS_STALLED) != 0u);
+    const bool waits = agv_transmitter_waits(&core->timers) || ((report & AGV_BUS_WAITING) != 0u);
+    core->stall_begins = stalled && !core->stalled;
+    core->stalled = stalled;
+    return stalled || (waits && agv_fault_monitor_is_active(&core->faults, AGV_FAULT_TX_STALLED));
+}
+
+/* Overruns. SUP-7: one of the AI side only warns. */
+static void observe_overruns(agv_core_t *core, uint32_t vehicle, uint32_t ai) {
+    const bool warns = !agv_config_is_trip(&core->config, AGV_FAULT_RX_OVERRUN);
+    if ((((vehicle | (warns ? ai : 0u)) & AGV_BUS_OVERRUN)) != 0u) {
+        agv_fault_monitor_event(&core->faults, &core->timers, AGV_FAULT_RX_OVERRUN);
+    }
+}
+
 /* Returns whether the vehicle side has recovered from bus-off. */
 static bool observe_buses(agv_core_t *core, hal_t *hal) {
     agv_fault_monitor_t *const faults = &core->faults;
     const uint32_t vehicle = follow_bus(core, hal, HAL_CAN_VEHICLE);
     const uint32_t ai = agv_core_is_gateway(core) ? follow_bus(core, hal, HAL_CAN_AI) : 0u;
-    const bool stalled = agv_transmitter_is_stalled(&core->timers) || ((vehicle & AGV_BUS_STALLED) != 0u);
     track_hold_frame(core, vehicle);
-    if (((vehicle | ai) & AGV_BUS_OVERRUN) != 0u) {
-        agv_fault_monitor_event(faults, &core->timers, AGV_FAULT_RX_OVERRUN);
-    }
+    observe_overruns(core, vehicle, ai);
     agv_fault_monitor_set(faults, AGV_FAULT_BUS_OFF, (vehicle & AGV_BUS_OFF) != 0u);
-    agv_fault_monitor_set(faults, AGV_FAULT_TX_STALLED, stalled);
+    agv_fault_monitor_set(faults, AGV_FAULT_TX_STALLED, follow_stall(core, vehicle));
     agv_fault_monitor_set(faults, AGV_FAULT_ERROR_PASSIVE, (vehicle & AGV_BUS_PASSIVE) != 0u);
     agv_fault_monitor_set(faults, AGV_FAULT_AI_BUS_OFF, (ai & (AGV_BUS_OFF | AGV_BUS_STALLED)) != 0u);
     return (vehicle & AGV_BUS_RECOVERED) != 0u;

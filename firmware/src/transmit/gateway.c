@@ -15,11 +15,24 @@ bool agv_gateway_may_wait(const agv_gateway_facts_t *facts, uint32_t command) {
     return (facts->state == AGV_STATE_STANDBY) && (facts->config->gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL);
 }
 
+static bool drives(uint8_t gear) {
+    return (gear == (uint8_t)AGV_GEAR_D) || (gear == (uint8_t)AGV_GEAR_R);
+}
+
 /* Whether a command changes to D or R while the vehicle does not stand. */
 static bool changes_gear_in_motion(const agv_gateway_facts_t *facts, uint8_t gear) {
-    const bool drives = (gear == (uint8_t)AGV_GEAR_D) || (gear == (uint8_t)AGV_GEAR_R);
-    return drives && (gear != facts->vehicle->gear) && !facts->standstill &&
+    return drives(gear) && (gear != facts->vehicle->gear) && !facts->standstill &&
            (facts->config->gear_change == (uint16_t)AGV_GEAR_CHANGE_AT_STANDSTILL);
+}
+
+void agv_gateway_follow_gear(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t command,
+                             const uint8_t data[AGV_DLC]) {
+    if ((command != (uint32_t)AGV_MSG_GEAR_COMMAND) || !agv_gateway_may_wait(facts, command)) {
+        return;
+    }
+    const bool drops = changes_gear_in_motion(facts, data[0]);
+    gateway->gear_waits = drops && drives(facts->vehicle->gear) && (data[0] != gateway->gear);
+    gateway->gear = drops ? gateway->gear : data[0];
 }
 
 bool agv_gateway_passes(const agv_gateway_facts_t *facts, uint32_t command, const uint8_t data[AGV_DLC]) {
@@ -58,7 +71,8 @@ static uint32_t limit_throttle(agv_gateway_t *gateway, const agv_gateway_facts_t
     agv_gateway_rate_t *const rate = &gateway->throttle;
     const uint32_t rise_pct_s = facts->config->throttle_rise_pct_s;
     const uint32_t ceiling = ((uint32_t)facts->config->throttle_ceiling_pct * AGV_THROTTLE_MAX_COUNTS) / 100u;
-    const uint32_t allowed = (wanted < ceiling) ? wanted : ceiling;
+    const uint32_t highest = gateway->gear_waits ? 0u : ceiling;
+    const uint32_t allowed = (wanted < highest) ? wanted : highest;
     if (facts->state != AGV_STATE_ACTIVE) {
         return 0u;
     }

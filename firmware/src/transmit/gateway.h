@@ -26,6 +26,8 @@ typedef struct {
     agv_gateway_rate_t throttle;
     bool steering_known; /**< steering is valid */
     bool throttle_known; /**< throttle is valid */
+    bool gear_waits;     /**< the last 168h is dropped until standstill: throttle 0 until then */
+    uint8_t gear;        /**< gear of the last 168h that was forwarded; 0: none */
 } agv_gateway_t;
 
 /** Inputs of the gateway. */
@@ -37,6 +39,14 @@ typedef struct {
     bool autopilot; /**< the last 363h reports autopilot */
     bool standstill;
 } agv_gateway_facts_t;
+
+/**
+ * Note whether a received 168h asks for D instead of R or the reverse, and has to wait for standstill. Until one does not, 075h is forwarded with
+ * throttle 0: otherwise the throttle would drive the vehicle on in the gear that the AI computer wants to leave. A gear that
+ * was forwarded before is not new: the vehicle deviates from it (SUP-11). Call for each command, before the others.
+ */
+void agv_gateway_follow_gear(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t command,
+                             const uint8_t data[AGV_DLC]);
 
 /** Whether a command is forwarded; depends on state, mode and, for gear D and R, standstill. */
 bool agv_gateway_passes(const agv_gateway_facts_t *facts, uint32_t command, const uint8_t data[AGV_DLC]);

@@ -42,6 +42,11 @@ void agv_transmitter_discard(agv_transmitter_t *transmitter, agv_timers_t *timer
     }
 }
 
+void agv_transmitter_withdraw(agv_transmitter_t *transmitter, agv_timers_t *timers, bool status_again) {
+    agv_transmitter_discard(transmitter, timers, HAL_CAN_VEHICLE);
+    transmitter->status_again = transmitter->status_again && status_again;
+}
+
 /* The own commands that are sent in this state (FSM-1, FSM-10). */
 static uint32_t wanted_commands(const agv_tx_orders_t *orders) {
     uint32_t wanted = 0u;
@@ -339,6 +344,14 @@ void agv_transmitter_tick(agv_transmitter_t *transmitter, const agv_tx_orders_t 
     }
     transmitter->wanted_before = (uint8_t)wanted;
     agv_transmitter_status(transmitter, orders);
+}
+
+bool agv_transmitter_waits(const agv_timers_t *timers) {
+    bool waiting = agv_timer_runs(timers, AGV_TIMER_TX_STATUS);
+    for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
+        waiting = waiting || agv_timer_runs(timers, waits[i]);
+    }
+    return waiting;
 }
 
 bool agv_transmitter_is_stalled(const agv_timers_t *timers) {

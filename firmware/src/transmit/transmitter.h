@@ -81,6 +81,12 @@ void agv_transmitter_start(agv_transmitter_t *transmitter, uint32_t now_ms);
 /** Discard the frames that wait to be sent on a side. */
 void agv_transmitter_discard(agv_transmitter_t *transmitter, agv_timers_t *timers, hal_can_side_t side);
 
+/**
+ * Discard the frames that wait to be sent to the vehicle, in TRIPPED and SAFE.
+ * @param status_again send the status frame again at once; false: in its next slot, because it may be what cannot leave
+ */
+void agv_transmitter_withdraw(agv_transmitter_t *transmitter, agv_timers_t *timers, bool status_again);
+
 /** Send all commands of the state at once, and restart their slots (FSM-2). */
 void agv_transmitter_burst(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders);
 
@@ -116,6 +122,9 @@ void agv_transmitter_status(agv_transmitter_t *transmitter, const agv_tx_orders_
 
 /** Send everything that is due: waiting frames, overrides, slots, the status frame. */
 void agv_transmitter_tick(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders);
+
+/** Whether a frame for the vehicle waits for the HAL. */
+bool agv_transmitter_waits(const agv_timers_t *timers);
 
 /** Whether a frame for the vehicle has been waiting for the HAL for longer than tx_stalled_ms (SUP-7). */
 bool agv_transmitter_is_stalled(const agv_timers_t *timers);

@@ -143,6 +143,46 @@ void test_a_frame_that_is_not_sent(void) {
     expect_reason(&f, AGV_FAULT_TX_STALLED);
 }
 
+/* The controller holds a frame that cannot leave. Each 101 ms all frames are withdrawn, and the safe commands go out anew. */
+/* Shows: SUP-7, FSM-1, TX_STALLED */
+void test_in_tripped_a_frame_that_cannot_leave_is_withdrawn_again_and_again(void) {
+    fixture_active(&f);
+    sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101);
+    fixture_run(&f, 1);
+    expect_tripped(&f, AGV_FAULT_TX_STALLED);
+    for (uint32_t n = 1; n <= 5; n++) {
+        const uint32_t purged = purges(HAL_CAN_VEHICLE);
+        sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 100);
+        fixture_run(&f, 100);
+        TEST_ASSERT_EQUAL_UINT32(purged, purges(HAL_CAN_VEHICLE));
+        sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101);
+        fixture_run(&f, 1);
+        TEST_ASSERT_EQUAL_UINT32(purged + 1, purges(HAL_CAN_VEHICLE));
+        expect_safe_commands(&f, f.call, ANGLE_CENTRE);
+        expect_fault(&f, AGV_FAULT_TX_STALLED, true); /* that was no end of it */
+    }
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_TX_STALLED));
+    expect_fault_after(&f, 1, AGV_FAULT_TX_STALLED, false); /* none waits */
+}
+
+/* A controller from which they cannot be withdrawn is asked once: the commands do not flood it. */
+/* Shows: SUP-7, TX_STALLED */
+void test_a_stall_without_an_end_is_answered_once(void) {
+    fixture_active(&f);
+    const uint32_t purged = purges(HAL_CAN_VEHICLE);
+    for (uint32_t n = 0; n < 300; n++) {
+        sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101);
+        fixture_run(&f, 1);
+    }
+    TEST_ASSERT_EQUAL_UINT32(purged + 1, purges(HAL_CAN_VEHICLE));
+    fixture_forget_sent(&f);
+    for (uint32_t n = 0; n < 100; n++) {
+        sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101);
+        fixture_run(&f, 1);
+    }
+    TEST_ASSERT_UINT32_WITHIN(1, 1, fixture_count_sent(&f, 0x43F));
+}
+
 /* The queue accepts nothing: INIT's first 075h is due 33 ms after the start, so the transmitter is stalled 101 ms
  * later. */
 /* Shows: SUP-7, TX_STALLED */
@@ -201,6 +241,19 @@ void test_receive_overrun(void) {
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_RX_OVERRUN));
     expect_led(&f, 0);
     expect_silence(&f);
+}
+
+/* An overrun of the AI side only warns: an AI computer that babbles must not hinder the operator. */
+/* Shows: SUP-7, FSM-3, RX_OVERRUN */
+void test_an_overrun_that_trips_is_one_of_the_vehicle_side(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_RX_OVERRUN, true);
+    fixture_standby(&f);
+    sim_hal_add_overrun(&f.hal, HAL_CAN_AI);
+    expect_nothing_after(&f, 100, AGV_FAULT_RX_OVERRUN, AGV_STATE_STANDBY);
+    sim_hal_add_overrun(&f.hal, HAL_CAN_VEHICLE);
+    fixture_run(&f, 1);
+    expect_tripped(&f, AGV_FAULT_RX_OVERRUN);
 }
 
 /* Corrupted memory is found, and the supervisor begins anew: what the controllers counted before is no new overrun. */

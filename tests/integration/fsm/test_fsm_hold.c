@@ -222,6 +222,14 @@ static uint32_t purges(void) {
     return f.hal.can[HAL_CAN_VEHICLE].purges;
 }
 
+/* The controller holds a frame for longer than tx_stalled_ms, which all frames are withdrawn for, and one of them stays. */
+static void stall(uint32_t pending_ms) {
+    for (unsigned i = 0; i < 2; i++) {
+        sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, pending_ms);
+        fixture_run(&f, 1);
+    }
+}
+
 /* When manual drops the angle, a waiting 065h is withdrawn from a stalled transmitter, but not from one that sends. */
 /* Shows: FSM-10, SUP-7, TX_STALLED */
 void test_manual_withdraws_an_angle_that_waits_in_a_stalled_transmitter(void) {
@@ -230,8 +238,8 @@ void test_manual_withdraws_an_angle_that_waits_in_a_stalled_transmitter(void) {
         fixture_init(&f);
         trip_at(9123);
         fixture_run(&f, 100);
-        sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, PENDING_MS[stalled]);
-        fixture_run(&f, 100);
+        stall(PENDING_MS[stalled]);
+        fixture_run(&f, 98);
         const uint32_t purged = purges();
         fixture_mode(&f, MODE_MANUAL);
         fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
@@ -244,7 +252,7 @@ void test_manual_withdraws_an_angle_that_waits_in_a_stalled_transmitter(void) {
 /* Shows: FSM-10, TOP-3 */
 void test_a_status_frame_that_is_withdrawn_with_the_angle_is_sent_again(void) {
     trip_at(9123);
-    sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101);
+    stall(101);
     const uint32_t before = f.status_count;
     while (f.status_count == before) {
         fixture_run(&f, 1);
@@ -261,8 +269,8 @@ void test_a_status_frame_that_is_withdrawn_with_the_angle_is_sent_again(void) {
 /* Shows: FSM-10, SUP-7, TX_STALLED */
 void test_an_angle_that_waits_in_a_stalled_transmitter_for_2_s_is_withdrawn(void) {
     trip_at(9123);
-    fixture_run(&f, 100);
-    sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101);
+    fixture_run(&f, 98);
+    stall(101);
     const uint32_t purged = purges();
     fixture_run(&f, 1950);
     TEST_ASSERT_EQUAL_UINT32(purged, purges());

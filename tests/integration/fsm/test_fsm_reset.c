@@ -626,3 +626,28 @@ void test_a_press_that_began_before_a_restart_does_not_count(void) {
     fixture_restart(&f, HAL_RESET_WATCHDOG);
     expect_no_reset_before_a_new_press();
 }
+
+/* The throttle is at idle since the frames of a late step: of its 99 ms, 10 count. */
+/* Shows: FSM-3, TIM-4 */
+void test_of_a_late_step_10_ms_count_for_the_conditions(void) {
+    static const struct {
+        uint32_t more_ms;
+        agv_state_t state;
+    } cases[] = {{980, AGV_STATE_SAFE}, {1010, AGV_STATE_STANDBY}};
+    for (unsigned i = 0; i < 2; i++) {
+        fixture_init(&f);
+        walk_to_safe(&f);
+        f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF;
+        fixture_throttle(&f, 3);
+        fixture_run(&f, 500);
+        press(true);
+        fixture_run(&f, 500);
+        fixture_run_without_ticks(&f, 60);
+        fixture_throttle(&f, 0);
+        fixture_send_now(&f, AGV_MSG_THROTTLE_STATUS);
+        fixture_run(&f, 1);
+        fixture_run(&f, cases[i].more_ms);
+        press(false);
+        expect_state(&f, cases[i].state);
+    }
+}

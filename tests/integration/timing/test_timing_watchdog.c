@@ -109,11 +109,13 @@ static void step_late_by(uint32_t ms) {
     fixture_run(&f, 1);
 }
 
-/* Shows: TIM-4, STEP_OVERRUN */
+/* The output opens with the trip, not before: nothing would close it again. */
+/* Shows: TIM-4, FSM-4, STEP_OVERRUN */
 void test_a_step_that_is_100_ms_late_does_not_trip_and_one_of_101_ms_does(void) {
     fixture_standby(&f);
     step_late_by(100);
     expect_state(&f, AGV_STATE_STANDBY);
+    expect_output(&f, true);
     fixture_run(&f, 10);
     step_late_by(101);
     expect_tripped(&f, AGV_FAULT_STEP_OVERRUN);
@@ -255,4 +257,26 @@ void test_an_old_time_stamp_does_not_turn_the_clock_back(void) {
     }
     TEST_ASSERT_EQUAL_UINT32(100, fixture_nth_sent(&f, 0x43F, 0)->time_ms - trip_ms);
     expect_fault(&f, AGV_FAULT_STEP_OVERRUN, false);
+}
+
+/* The output closes in a late step; its contact follows in 10 ms. The time before that is no time of a wrong contact. */
+static void expect_no_wrong_contact(uint16_t feedback_ms, uint32_t late_ms) {
+    for (uint32_t at_ms = 400; at_ms < 520; at_ms++) {
+        fixture_init(&f);
+        f.board.has_feedback = true;
+        f.config.output_feedback_ms = feedback_ms;
+        fixture_start(&f);
+        fixture_run(&f, at_ms);
+        fixture_run_without_ticks(&f, late_ms);
+        fixture_run(&f, 200);
+        TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_OUTPUT_FEEDBACK));
+        expect_state(&f, AGV_STATE_STANDBY);
+        expect_output(&f, true);
+    }
+}
+
+/* Shows: HW-1, TIM-4, OUTPUT_FEEDBACK */
+void test_a_late_step_makes_no_contact_wrong(void) {
+    expect_no_wrong_contact(100, 98);
+    expect_no_wrong_contact(20, 15);
 }

@@ -419,7 +419,9 @@ void test_an_override_that_waits_is_not_lost_when_the_steering_command_is_withdr
     tripped();
     fixture_run(&f, 100);
     sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101);
-    fixture_run(&f, 70);
+    fixture_run(&f, 1);
+    sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101); /* one of those that are withdrawn stays */
+    fixture_run(&f, 69);
     fixture_forget_sent(&f);
     foreign_signals(0x30);
     fixture_run(&f, 1);

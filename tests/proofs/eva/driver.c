@@ -152,7 +152,8 @@ static void sound_decisions(agv_core_t *core) {
     core->transmitter.report.park_sent = any_bool();
     core->transmitter.report.hold_sent = any_bool();
     core->hold.handed_over = any_bool();
-    core->hold.stalled = any_bool();
+    core->stalled = any_bool();
+    core->stall_begins = any_bool();
     core->hold.taken = any_bool();
     core->transmitter.status_again = any_bool();
     core->transmitter.throttle_0_waits = any_bool();
@@ -171,6 +172,7 @@ static void sound_observations(agv_core_t *core) {
     core->commands.autopilot_off = any_bool();
     core->gateway.steering_known = any_bool();
     core->gateway.throttle_known = any_bool();
+    core->gateway.gear_waits = any_bool();
     core->motion_checks.reported = any_bool();
     core->status_checks.ai_alarm = any_bool();
     core->status_checks.reported = any_bool();

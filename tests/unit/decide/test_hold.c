@@ -289,25 +289,3 @@ void test_a_065h_that_may_not_be_sent_is_stuck_in_a_stalled_transmitter(void) {
     trip(10); /* discards what waits */
     TEST_ASSERT_FALSE(agv_hold_is_stuck(&hold, true, false));
 }
-
-/* After 2 s the newest angle is held, and a 065h that waits has an older one: out with it whenever a stall begins. */
-/* Shows: FSM-10, SUP-7 */
-void test_a_065h_with_an_older_angle_is_stuck_when_a_stall_begins(void) {
-    measured(9123, 0);
-    trip(0);
-    follow(1999);
-    agv_hold_handed_over(&hold);
-    TEST_ASSERT_FALSE(agv_hold_is_stuck(&hold, false, true));
-    TEST_ASSERT_FALSE(agv_hold_is_stuck(&hold, true, true));
-    follow(1);
-    measured_later(4000, 2000);
-    TEST_ASSERT_FALSE(agv_hold_is_stuck(&hold, true, true)); /* since before the 2 s */
-    TEST_ASSERT_FALSE(agv_hold_is_stuck(&hold, false, true));
-    for (unsigned i = 0; i < 2; i++) {
-        TEST_ASSERT_TRUE(agv_hold_is_stuck(&hold, true, true));
-        TEST_ASSERT_FALSE(agv_hold_is_stuck(&hold, true, true)); /* not in every pass, if it cannot be withdrawn */
-        TEST_ASSERT_FALSE(agv_hold_is_stuck(&hold, false, true));
-    }
-    agv_hold_withdrawn(&hold);
-    TEST_ASSERT_FALSE(agv_hold_is_stuck(&hold, true, true)); /* there is none */
-}

@@ -181,6 +181,10 @@ void test_conditions_that_keep_init(void) {
     run(1000);
     expect_state(AGV_STATE_INIT);
     setUp();
+    facts.engaged = true; /* of 363h, some report manual and others both modes */
+    run(1000);
+    expect_state(AGV_STATE_INIT);
+    setUp();
     facts.missing = AGV_MISSING_STANDSTILL | AGV_MISSING_THROTTLE;
     facts.wheels_turn = true;
     run(1000);

@@ -187,6 +187,73 @@ void test_in_manual_the_throttle_is_0(void) {
     TEST_ASSERT_FALSE(limited);
 }
 
+/* A received 168h: 1 D, 2 R, 4 N, 8 P. */
+static void gear_commanded(uint8_t gear) {
+    const agv_gateway_facts_t now = facts();
+    const uint8_t payload[8] = {gear};
+    agv_gateway_follow_gear(&gateway, &now, AGV_MSG_GEAR_COMMAND, payload);
+}
+
+/* Until standstill the throttle would drive the vehicle on in the gear that the AI computer wants to leave. */
+/* Shows: TOP-2 */
+void test_while_a_gear_waits_for_standstill_the_throttle_is_0(void) {
+    gear_commanded(1);
+    TEST_ASSERT_EQUAL_UINT(75, throttle(75));
+    gear_commanded(2);
+    TEST_ASSERT_EQUAL_UINT(0, throttle(75));
+    TEST_ASSERT_TRUE(limited);
+    TEST_ASSERT_EQUAL_UINT(0, throttle(0));
+    TEST_ASSERT_FALSE(limited);
+    standstill = true;
+    gear_commanded(2);
+    TEST_ASSERT_EQUAL_UINT(75, throttle(75));
+}
+
+/* Engaged in R, and the AI computer begins with D. It may take it back, or ask for N or P, which do not wait. */
+/* Shows: TOP-2 */
+void test_which_gears_wait(void) {
+    static const uint8_t taken_back[] = {2, 4, 8};
+    vehicle.gear = 2;
+    for (unsigned i = 0; i < 3; i++) {
+        agv_gateway_restart(&gateway);
+        gear_commanded(1);
+        TEST_ASSERT_EQUAL_UINT(0, throttle(75));
+        gear_commanded(taken_back[i]);
+        TEST_ASSERT_EQUAL_UINT(75, throttle(75));
+    }
+    config.gear_change = AGV_GEAR_CHANGE_ANY;
+    gear_commanded(1);
+    TEST_ASSERT_EQUAL_UINT(75, throttle(75));
+}
+
+/* A vehicle that leaves the gear by itself deviates from its command (SUP-11). In N and P the throttle does not drive it. */
+/* Shows: TOP-2, SUP-11 */
+void test_a_gear_that_was_forwarded_does_not_wait(void) {
+    gear_commanded(1);
+    vehicle.gear = 2;
+    gear_commanded(1);
+    TEST_ASSERT_EQUAL_UINT(75, throttle(75));
+    agv_gateway_restart(&gateway);
+    vehicle.gear = 8;
+    gear_commanded(1);
+    TEST_ASSERT_EQUAL_UINT(75, throttle(75));
+    vehicle.gear = 4;
+    gear_commanded(1);
+    TEST_ASSERT_EQUAL_UINT(75, throttle(75));
+}
+
+/* A 168h that may not pass, or another command, changes nothing. */
+/* Shows: TOP-2 */
+void test_only_a_gear_that_may_pass_waits(void) {
+    const uint8_t payload[8] = {2};
+    const agv_gateway_facts_t now = facts();
+    agv_gateway_follow_gear(&gateway, &now, AGV_MSG_THROTTLE_COMMAND, payload);
+    TEST_ASSERT_EQUAL_UINT(75, throttle(75));
+    autopilot = false;
+    gear_commanded(2);
+    TEST_ASSERT_EQUAL_UINT(75, throttle(75));
+}
+
 /* ---- Throttle rise ---- */
 
 /* 100 % a second: 25 counts in the 100 ms of a cycle. The first one starts at 0 and may use one cycle. */
