@@ -1,8 +1,12 @@
 /* hal/can.h: the controllers. The driver gets one frame at a time; other frames wait in the port's queue, which can be
- * purged. */
+ * purged. A frame that the driver cannot send is taken back by a stop of the controller. */
 #include "zephyr_hal_internal.h"
 
 #include <string.h>
+
+/* A frame that the driver has had for longer is kept from the bus. At 125 kbit/s it takes 1.1 ms with 8 bytes and all stuff
+ * bits, and waits at most 1.3 ms for the frame of another node that is on the bus already. */
+enum { FRAME_TURN_MS = 3 };
 
 enum { US_PER_MS = 1000 };
 
@@ -40,15 +44,27 @@ static void on_frame(const struct device *device, struct can_frame *frame, void 
     k_sem_give(side->wake);
 }
 
-/* Runs in the transmit interrupt, when the driver has sent the frame, or discarded it in bus-off. */
-static void on_sent(const struct device *device, int error, void *user_data) {
-    zephyr_hal_side_t *const side = user_data;
-    ARG_UNUSED(device);
-    ARG_UNUSED(error);
+static void sent(zephyr_hal_side_t *side, bool is_odd) {
     const k_spinlock_key_t key = k_spin_lock(&side->lock);
-    side->in_flight = false;
+    if (side->newest_is_odd == is_odd) {
+        side->in_flight = false;
+    }
     k_spin_unlock(&side->lock, key);
     k_sem_give(side->wake);
+}
+
+/* These two run in the transmit interrupt, when the driver has sent the frame, or discarded it in bus-off or at a stop.
+ * They alternate when a frame is taken back: a driver that reports it late does not report the next frame as sent. */
+static void on_even_sent(const struct device *device, int error, void *user_data) {
+    ARG_UNUSED(device);
+    ARG_UNUSED(error);
+    sent(user_data, false);
+}
+
+static void on_odd_sent(const struct device *device, int error, void *user_data) {
+    ARG_UNUSED(device);
+    ARG_UNUSED(error);
+    sent(user_data, true);
 }
 
 static hal_can_state_t state_of(enum can_state state) {
@@ -71,15 +87,18 @@ static void enter(zephyr_hal_side_t *side, hal_can_state_t state) {
     side->state = state;
 }
 
-/* Runs in the controller's interrupt, so that a bus-off that ends before the next hal_can_status() is counted, too. */
+/* Runs in the controller's interrupt, so that a bus-off that ends before the next hal_can_status() is counted, too. Only
+ * the port stops the controller, and only for a moment; look() notices one that stays stopped. */
 static void on_state(const struct device *device, enum can_state state, struct can_bus_err_cnt errors,
                      void *user_data) {
     zephyr_hal_side_t *const side = user_data;
     ARG_UNUSED(device);
     ARG_UNUSED(errors);
     const k_spinlock_key_t key = k_spin_lock(&side->lock);
-    side->callback_gave_state = true;
-    enter(side, state_of(state));
+    if ((state != CAN_STATE_STOPPED) && !side->is_halted) {
+        side->callback_gave_state = true;
+        enter(side, state_of(state));
+    }
     k_spin_unlock(&side->lock, key);
     k_sem_give(side->wake);
 }
@@ -90,7 +109,7 @@ static void look(zephyr_hal_side_t *side) {
     k_spinlock_key_t key = k_spin_lock(&side->lock);
     side->callback_gave_state = false;
     k_spin_unlock(&side->lock, key);
-    const bool known = can_get_state(side->device, &state, NULL) == 0;
+    const bool known = !side->is_halted && (can_get_state(side->device, &state, NULL) == 0);
     key = k_spin_lock(&side->lock);
     if (!side->callback_gave_state) {
         enter(side, known ? state_of(state) : HAL_CAN_BUS_OFF);
@@ -133,6 +152,7 @@ bool zephyr_can_start(zephyr_hal_side_t *side, const zephyr_hal_config_t *config
         side->state = HAL_CAN_BUS_OFF;
         return false;
     }
+    side->listen_only = config->listen_only;
     can_set_state_change_callback(side->device, on_state, side);
     const bool works = set_mode(side->device, config->listen_only) && set_timing(side->device, config) &&
                        listen(side) && (can_start(side->device) == 0);
@@ -171,13 +191,15 @@ static bool is_in_flight(zephyr_hal_side_t *side) {
     return in_flight;
 }
 
-static bool give(zephyr_hal_side_t *side, const hal_can_frame_t *frame, uint32_t taken_ms) {
-    struct can_frame sent = {.id = frame->id, .dlc = can_bytes_to_dlc(frame->length)};
-    (void)memcpy(sent.data, frame->data, MIN(frame->length, sizeof frame->data));
+static bool give(zephyr_hal_side_t *side, const hal_can_frame_t *frame, uint32_t taken_ms, uint32_t now_ms) {
+    struct can_frame given = {.id = frame->id, .dlc = can_bytes_to_dlc(frame->length)};
+    (void)memcpy(given.data, frame->data, MIN(frame->length, sizeof frame->data));
     set_in_flight(side, true);
     side->sent_is_purged = false;
     side->sent_taken_ms = taken_ms;
-    const bool taken = can_send(side->device, &sent, K_NO_WAIT, on_sent, side) == 0;
+    side->sent_given_ms = now_ms;
+    const can_tx_callback_t on_sent = side->newest_is_odd ? on_odd_sent : on_even_sent;
+    const bool taken = can_send(side->device, &given, K_NO_WAIT, on_sent, side) == 0;
     if (!taken) {
         set_in_flight(side, false);
     }
@@ -195,16 +217,16 @@ bool hal_can_send(hal_t *hal, hal_can_side_t side, const hal_can_frame_t *frame)
     }
     const uint32_t now_ms = hal_clock_now_ms(hal);
     if (!is_in_flight(sender) && (sender->waiting_count == 0u)) {
-        return give(sender, frame, now_ms);
+        return give(sender, frame, now_ms, now_ms);
     }
     return zephyr_queue_insert(sender, frame, now_ms);
 }
 
-static void transmit(zephyr_hal_side_t *side) {
+static void transmit(zephyr_hal_side_t *side, uint32_t now_ms) {
     if (side->state == HAL_CAN_BUS_OFF) {
         side->waiting_count = 0u;
     } else if (!is_in_flight(side) && (side->waiting_count > 0u) &&
-               give(side, &side->waiting[0].frame, side->waiting[0].taken_ms)) {
+               give(side, &side->waiting[0].frame, side->waiting[0].taken_ms, now_ms)) {
         zephyr_queue_drop_first(side);
     } else {
         /* the driver is busy or refused the frame, or no frame waits */
@@ -214,9 +236,62 @@ static void transmit(zephyr_hal_side_t *side) {
 void zephyr_hal_transmit(hal_t *hal) {
     for (uint32_t i = 0u; i < (uint32_t)HAL_CAN_SIDES; i++) {
         if (hal->sides[i].device != NULL) {
-            transmit(&hal->sides[i]);
+            transmit(&hal->sides[i], hal_clock_now_ms(hal));
         }
     }
+}
+
+static uint32_t driver_counter(const zephyr_hal_side_t *side) {
+#if defined(CONFIG_CAN_STATS)
+    return can_stats_get_rx_overruns(side->device);
+#else
+    ARG_UNUSED(side);
+    return 0u;
+#endif
+}
+
+static void count_overruns(zephyr_hal_side_t *side) {
+    const uint32_t counter = driver_counter(side);
+    side->driver_lost += counter - side->driver_counted;
+    side->driver_counted = counter;
+}
+
+/* A start keeps filters, mode and timing, but sets the driver's counters to 0. */
+static void start_again(zephyr_hal_side_t *side) {
+    count_overruns(side);
+    const bool works = can_start(side->device) == 0;
+    side->driver_counted = driver_counter(side);
+    const k_spinlock_key_t key = k_spin_lock(&side->lock);
+    side->is_halted = !works;
+    if (!works) {
+        enter(side, HAL_CAN_BUS_OFF);
+    }
+    k_spin_unlock(&side->lock, key);
+}
+
+/* Zephyr's only way is a stop. Its result does not matter: a controller that has not stopped does not start again either. A
+ * start sets the error counters to 0; one purge in 100 ms leaves time for a bus-off, which takes 32 failed frames. */
+static void take_back(zephyr_hal_side_t *side) {
+    (void)can_stop(side->device);
+    const k_spinlock_key_t key = k_spin_lock(&side->lock);
+    side->in_flight = false;
+    side->newest_is_odd = !side->newest_is_odd;
+    side->is_halted = side->state == HAL_CAN_BUS_OFF; /* reported during the stop: it waits for hal_can_recover() */
+    const bool is_off = side->is_halted;
+    k_spin_unlock(&side->lock, key);
+    if (!is_off) {
+        start_again(side);
+    }
+}
+
+/* Not in bus-off, because a start would end it, nor while the controller only listens. */
+static bool is_kept_from_the_bus(zephyr_hal_side_t *side, uint32_t now_ms) {
+    const bool overdue = is_in_flight(side) && ((now_ms - side->sent_given_ms) > (uint32_t)FRAME_TURN_MS);
+    if (!overdue || side->listen_only) {
+        return false;
+    }
+    look(side);
+    return side->state != HAL_CAN_BUS_OFF;
 }
 
 void hal_can_purge(hal_t *hal, hal_can_side_t side) {
@@ -224,26 +299,29 @@ void hal_can_purge(hal_t *hal, hal_can_side_t side) {
     if (purged != NULL) {
         purged->waiting_count = 0u;
         purged->sent_is_purged = true;
+        if (is_kept_from_the_bus(purged, hal_clock_now_ms(hal))) {
+            take_back(purged);
+        }
+    }
+}
+
+/* After a failure the supervisor requests it again. */
+static void recover(zephyr_hal_side_t *side) {
+    if (side->is_halted) {
+        (void)can_stop(side->device);
+        start_again(side);
+    } else {
+#if defined(CONFIG_CAN_MANUAL_RECOVERY_MODE)
+        (void)can_recover(side->device, K_NO_WAIT);
+#endif
     }
 }
 
 void hal_can_recover(hal_t *hal, hal_can_side_t side) {
-    const zephyr_hal_side_t *const off = zephyr_hal_side(hal, side);
-#if defined(CONFIG_CAN_MANUAL_RECOVERY_MODE)
+    zephyr_hal_side_t *const off = zephyr_hal_side(hal, side);
     if ((off != NULL) && (off->state == HAL_CAN_BUS_OFF)) {
-        (void)can_recover(off->device, K_NO_WAIT); /* after a failure the supervisor requests it again */
+        recover(off);
     }
-#else
-    ARG_UNUSED(off);
-#endif
-}
-
-static uint16_t overruns(const zephyr_hal_side_t *side) {
-#if defined(CONFIG_CAN_STATS)
-    return (uint16_t)(side->lost + can_stats_get_rx_overruns(side->device));
-#else
-    return side->lost;
-#endif
 }
 
 void hal_can_status(hal_t *hal, hal_can_side_t side, hal_can_status_t *status) {
@@ -254,6 +332,7 @@ void hal_can_status(hal_t *hal, hal_can_side_t side, hal_can_status_t *status) {
         status->tx_pending_ms = zephyr_queue_pending_ms(asked, is_in_flight(asked), hal_clock_now_ms(hal));
         status->state = asked->state;
         status->bus_off_count = asked->bus_offs;
-        status->overrun_count = overruns(asked);
+        count_overruns(asked);
+        status->overrun_count = (uint16_t)(asked->lost + asked->driver_lost);
     }
 }

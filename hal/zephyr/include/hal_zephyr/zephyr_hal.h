@@ -4,7 +4,7 @@
  * memory of the program.
  *
  * Contexts: only the supervisor's thread calls the functions of this header and of hal/include. Interrupts (or a
- * driver's thread) call the callbacks in zephyr_can.c. These put frames into a message queue, record that a frame was
+ * driver's thread, or can_stop()) call the callbacks in zephyr_can.c. These put frames into a message queue, record that a frame was
  * sent or that the controller's state changed, and wake the thread. The kernel's timer wakes it every millisecond.
  * zephyr_hal_die() may be called from any context, also from a fault handler.
  */
@@ -77,13 +77,19 @@ typedef struct {
     char received_buffer[CONFIG_AGV_CAN_RX_QUEUE * sizeof(hal_can_frame_t)];
     struct k_spinlock lock; /**< protects the next members up to `lost`, which callbacks write */
     bool in_flight;         /**< the driver has a frame */
+    bool newest_is_odd;     /**< changes with each frame that is taken back from the driver */
+    bool is_halted;         /**< it did not start again after a frame was taken back: reported as bus-off */
     bool callback_gave_state;
     hal_can_state_t state;
     uint16_t bus_offs;
     uint16_t lost; /**< frames lost because the queue was full */
     bool running;  /**< started without an error */
+    bool listen_only;
     bool sent_is_purged;
-    uint32_t sent_taken_ms;
+    uint32_t sent_taken_ms;                              /**< when the port took the frame that the driver has */
+    uint32_t sent_given_ms;                              /**< when the driver took it */
+    uint32_t driver_lost;                                /**< frames lost by the driver */
+    uint32_t driver_counted;                             /**< the driver's counter, when it was last read */
     zephyr_hal_waiting_t waiting[ZEPHYR_HAL_QUEUE_SIZE]; /**< lowest identifier first */
     uint32_t waiting_count;
 } zephyr_hal_side_t;

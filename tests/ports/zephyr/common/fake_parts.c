@@ -21,8 +21,38 @@ static fake_bus_t *bus_of(const struct device *device) {
 }
 
 static int start(const struct device *device) {
-    bus_of(device)->started = true;
-    bus_of(device)->state = CAN_STATE_ERROR_ACTIVE;
+    fake_bus_t *const bus = bus_of(device);
+    if ((bus->start_error != 0) || bus->started) {
+        return (bus->start_error != 0) ? bus->start_error : -EALREADY;
+    }
+    bus->started = true;
+    bus->state = CAN_STATE_ERROR_ACTIVE;
+    return 0;
+}
+
+static void end_of_bus(fake_bus_t *bus) {
+    bus->state_callback(bus->device, CAN_STATE_BUS_OFF, (struct can_bus_err_cnt){0}, bus->state_data);
+}
+
+/* Reports more than Zephyr's drivers do: also the stop. */
+static int stop(const struct device *device) {
+    fake_bus_t *const bus = bus_of(device);
+    bus->stops++;
+    if (bus->stop_error != 0) {
+        return bus->stop_error;
+    }
+    if (bus->bus_off_at_stop) {
+        end_of_bus(bus);
+    }
+    bus->started = false;
+    bus->state = CAN_STATE_STOPPED;
+    bus->state_callback(device, CAN_STATE_STOPPED, (struct can_bus_err_cnt){0}, bus->state_data);
+    if (bus->in_mailbox > 0u) {
+        bus->in_mailbox = 0u;
+        if (!bus->is_late) {
+            bus->sent_callback(device, -ENETDOWN, bus->sent_data);
+        }
+    }
     return 0;
 }
 
@@ -68,6 +98,9 @@ static void complete(const void *argument) {
 static int send(const struct device *device, const struct can_frame *frame, k_timeout_t timeout,
                 can_tx_callback_t callback, void *data) {
     fake_bus_t *const bus = bus_of(device);
+    if (!bus->started) {
+        return -ENETDOWN;
+    }
     if (!K_TIMEOUT_EQ(timeout, K_NO_WAIT) || (bus->send_error != 0)) {
         return (bus->send_error != 0) ? bus->send_error : -EINVAL; /* the caller must not wait */
     }
@@ -117,6 +150,7 @@ static void reset_buses(void) {
 
 void fake_parts_connect(void) {
     fake_can_start_fake.custom_fake = start;
+    fake_can_stop_fake.custom_fake = stop;
     fake_can_get_capabilities_fake.custom_fake = get_capabilities;
     fake_can_set_mode_fake.custom_fake = set_mode;
     fake_can_set_timing_fake.custom_fake = set_timing;

@@ -18,7 +18,12 @@ enum { FAKE_FILTERS_MAX = 4, FAKE_SENT_MAX = 256 };
 typedef struct {
     const struct device *device;
     bool started;
-    can_mode_t able; /**< its reported capabilities */
+    uint32_t stops;       /**< can_stop() calls */
+    int stop_error;       /**< result of the next stops; 0: it stops */
+    int start_error;      /**< result of the next starts; 0: it starts */
+    bool is_late;         /**< a stop does not report the frame that it discards */
+    bool bus_off_at_stop; /**< the controller enters bus-off just before it is stopped */
+    can_mode_t able;      /**< its reported capabilities */
     can_mode_t mode;
     struct can_timing timing;
     uint32_t filter_limit;

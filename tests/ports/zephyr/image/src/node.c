@@ -2,7 +2,7 @@
  * A controller does not receive its own frames, but the loopback driver has one set of filters for all nodes. So this
  * node passes on all received frames except its own. It recognises them because the driver's thread calls the callback
  * of a sent frame just before it delivers that frame. This node also adds bus-off, which the loopback driver does not
- * have.
+ * have, and a flood: frames of lower priority than the flood's stay in the controller.
  */
 #define DT_DRV_COMPAT agv_test_node
 
@@ -25,6 +25,10 @@ static struct {
     void *sent_data;
     bool is_sender;
     bool is_off;
+    bool is_stopped;
+    uint32_t flood_id; /* 0: no flood */
+    bool is_full;
+    struct can_frame mailbox;
     uint32_t recoveries;
     can_state_change_callback_t state_changed;
     void *state_data;
@@ -63,18 +67,38 @@ static void on_sent(const struct device *device, int error, void *data) {
 static int send(const struct device *device, const struct can_frame *frame, k_timeout_t timeout,
                 can_tx_callback_t callback, void *data) {
     ARG_UNUSED(device);
-    if (self.is_off) {
-        return -ENETUNREACH;
+    if (self.is_off || self.is_stopped) {
+        return self.is_stopped ? -ENETDOWN : -ENETUNREACH;
+    }
+    if (self.is_full) {
+        return -EAGAIN;
     }
     self.sent = callback;
     self.sent_data = data;
+    if ((self.flood_id != 0u) && (frame->id > self.flood_id)) {
+        self.is_full = true;
+        self.mailbox = *frame;
+        return 0;
+    }
     return can_send(test_wire, frame, timeout, on_sent, NULL);
+}
+
+void test_node_flood(uint32_t id) {
+    self.flood_id = id;
+    if ((id == 0u) && self.is_full) {
+        self.is_full = false;
+        (void)can_send(test_wire, &self.mailbox, K_FOREVER, on_sent, NULL);
+    }
+}
+
+void test_node_overrun(void) {
+    CAN_STATS_RX_OVERRUN_INC(node);
 }
 
 static void on_frame(const struct device *device, struct can_frame *frame, void *data) {
     const listener_t *const listener = data;
     ARG_UNUSED(device);
-    if (!self.is_sender && !self.is_off) {
+    if (!self.is_sender && !self.is_off && !self.is_stopped) {
         listener->callback(node, frame, listener->data);
     }
 }
@@ -91,14 +115,24 @@ static int add_rx_filter(const struct device *device, can_rx_callback_t callback
     return can_add_rx_filter(test_wire, on_frame, listener, filter);
 }
 
+/* The other nodes stay on the bus when this one stops. */
 static int start(const struct device *device) {
-    ARG_UNUSED(device);
-    return can_start(test_wire);
+    CAN_STATS_RESET(device);
+    if (!self.is_stopped) {
+        return can_start(test_wire);
+    }
+    self.is_stopped = false;
+    return 0;
 }
 
 static int stop(const struct device *device) {
     ARG_UNUSED(device);
-    return can_stop(test_wire);
+    self.is_stopped = true;
+    if (self.is_full) {
+        self.is_full = false;
+        self.sent(node, -ENETDOWN, self.sent_data);
+    }
+    return 0;
 }
 
 static int get_capabilities(const struct device *device, can_mode_t *able) {
@@ -127,6 +161,9 @@ static int get_state(const struct device *device, enum can_state *state, struct 
     const int status = can_get_state(test_wire, state, errors);
     if (self.is_off && (state != NULL)) {
         *state = CAN_STATE_BUS_OFF;
+    }
+    if (self.is_stopped && (state != NULL)) {
+        *state = CAN_STATE_STOPPED;
     }
     return status;
 }

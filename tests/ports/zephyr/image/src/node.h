@@ -25,4 +25,10 @@ void test_node_goes_bus_off(void);
 /** Number of recovery requests. */
 uint32_t test_node_recoveries(void);
 
+/** Another node floods the bus with this identifier, so that frames with a higher one stay in the controller; 0 ends it. */
+void test_node_flood(uint32_t id);
+
+/** The controller loses a received frame. */
+void test_node_overrun(void);
+
 #endif

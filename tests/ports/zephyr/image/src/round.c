@@ -1,7 +1,7 @@
 /*
  * A simulated vehicle on the bus of the firmware's image: start, engagement, the AI computer falls silent, the vehicle
- * confirms, the operator resets; then bus-off. The test receives the image's frames on the bus and reads its output at
- * the pin.
+ * confirms, the operator resets; then bus-off; then a flood. The test receives the image's frames on the bus and reads
+ * its output at the pin.
  */
 #include <string.h>
 
@@ -146,6 +146,39 @@ static void bus_off(void) {
     obey_and_reset();
 }
 
+static hal_can_status_t status_now(void) {
+    hal_can_status_t status;
+    k_sched_lock();
+    hal_can_status(&agv_supervise.hal, HAL_CAN_VEHICLE, &status);
+    k_sched_unlock();
+    return status;
+}
+
+static void flood(void) {
+    enum { FLOOD_ID = 0x500 }; /* above the safe commands, below the status frame */
+    drive_off();
+    test_node_overrun();
+    const hal_can_status_t earlier = status_now();
+    const uint32_t before = heard_count;
+    test_node_flood(FLOOD_ID);
+    vehicle_run(250u);
+    expect_state(AGV_STATE_TRIPPED, "a flood keeps the status frame in the controller");
+    expect(agv_supervisor_first_reason(&agv_supervise.supervisor) == AGV_FAULT_TX_STALLED,
+           "and that is the first reason");
+    expect_safe_commands_since(before, "safe commands are on the wire, in front of the flood");
+    expect(frame_since(before, 0x7F0u) == NULL, "the status frame that waited is not");
+    const hal_can_status_t later = status_now();
+    expect((later.state == HAL_CAN_ERROR_ACTIVE) && (later.bus_off_count == earlier.bus_off_count),
+           "that was no bus-off");
+    expect((earlier.overrun_count == 1u) && (later.overrun_count == 1u), "the lost frame is counted once");
+    vehicle_run(750u);
+    const uint32_t since = heard_count;
+    vehicle_run(250u);
+    expect_safe_commands_since(since, "and again after a second of the flood");
+    test_node_flood(0u);
+    obey_and_reset();
+}
+
 /* Shows: SUP-7, FSM-2, FSM-3, FSM-4, FSM-5, TOP-1 */
 static void test_the_image(void *a, void *b, void *c) {
     ARG_UNUSED(a);
@@ -162,6 +195,7 @@ static void test_the_image(void *a, void *b, void *c) {
     expect_output(true, "the output is closed");
     silent_ai();
     bus_off();
+    flood();
     size_t unused = 0u;
     (void)k_thread_stack_space_get(&z_main_thread, &unused);
     printk("supervisor's stack: %u of %u bytes used\n", (unsigned)(CONFIG_MAIN_STACK_SIZE - unused),

@@ -5,12 +5,26 @@
 hal_t hal;
 zephyr_hal_retained_t retained;
 
-bool fixture_begin(void) {
-    static const zephyr_hal_config_t config = {
-        .bitrate = 500000u, .sample_point_permille = 875u, .watchdog_ms = 100u, .retained = &retained};
+static bool begin(bool listen_only) {
+    const zephyr_hal_config_t config = {.bitrate = 500000u,
+                                        .sample_point_permille = 875u,
+                                        .watchdog_ms = 100u,
+                                        .listen_only = listen_only,
+                                        .retained = &retained};
+    for (size_t i = 0u; i < (size_t)HAL_CAN_SIDES; i++) {
+        fake_buses[i].started = false; /* the reset has stopped it */
+    }
     const bool works = zephyr_hal_init(&hal, &config);
     (void)task_wdt_delete(hal.watchdog_channel); /* most tests do not feed it */
     return works;
+}
+
+bool fixture_begin(void) {
+    return begin(false);
+}
+
+bool fixture_begin_listening(void) {
+    return begin(true);
 }
 
 void fixture_before(void *unused) {

@@ -22,6 +22,9 @@ void fixture_after(void *unused);
 /** Start the port again, as after a reset. @return result of zephyr_hal_init() */
 bool fixture_begin(void);
 
+/** The same with controllers that only listen. */
+bool fixture_begin_listening(void);
+
 /** Read the vehicle side's status. */
 hal_can_status_t fixture_status(void);
 

@@ -180,6 +180,164 @@ ZTEST(port_can, test_after_a_purge_at_most_the_frame_in_the_controller_is_sent) 
     zassert_equal(vehicle->sent[1].data[0], 3u);
 }
 
+enum { LONG_MS = 10 }; /* longer than a frame can take, also behind another one */
+
+/* The status frame of the supervisor is in the controller, and another node keeps it there. */
+static void jam(void) {
+    zassert_true(send(0x7F0u, 1u));
+    k_msleep(LONG_MS);
+    zassert_equal(vehicle->in_mailbox, 1u);
+}
+
+static void expect_on_the_bus(void) {
+    const hal_can_status_t status = fixture_status();
+    zassert_equal(status.state, HAL_CAN_ERROR_ACTIVE);
+    zassert_equal(status.bus_off_count, 0u);
+    zassert_equal(status.overrun_count, 0u);
+    zassert_true(vehicle->started);
+}
+
+/* Shows: FSM-2 */
+ZTEST(port_can, test_a_purge_takes_back_a_frame_that_cannot_leave) {
+    jam();
+    (void)send(0x363u, 2u);
+    hal_can_purge(&hal, HAL_CAN_VEHICLE);
+    zassert_equal(vehicle->in_mailbox, 0u, "the driver has no frame");
+    zassert_equal(fixture_status().tx_pending_ms, 0u);
+    expect_on_the_bus();
+    zassert_true(send(0x168u, 3u));
+    zassert_equal(vehicle->sent_count, 2u, "at once, not after the next wait");
+    zassert_equal(vehicle->sent[1].id, 0x168u);
+    zassert_equal(vehicle->in_mailbox, 1u);
+    expect_on_the_bus();
+    zassert_equal(vehicle->filters, 2u);
+    zassert_equal(vehicle->mode, CAN_MODE_NORMAL | CAN_MODE_MANUAL_RECOVERY);
+}
+
+/* Shows: FSM-2 */
+ZTEST(port_can, test_each_purge_of_a_jammed_bus_takes_a_frame_back) {
+    for (uint32_t i = 0u; i < 5u; i++) {
+        jam();
+        hal_can_purge(&hal, HAL_CAN_VEHICLE);
+        zassert_equal(vehicle->in_mailbox, 0u);
+        zassert_equal(vehicle->stops, i + 1u);
+    }
+    expect_on_the_bus();
+    zassert_equal(fake_buses[HAL_CAN_AI].stops, 0u, "the other side is left alone");
+}
+
+ZTEST(port_can, test_a_late_report_of_a_frame_taken_back_is_ignored) {
+    jam();
+    vehicle->is_late = true;
+    const can_tx_callback_t report = vehicle->sent_callback;
+    void *const reported = vehicle->sent_data;
+    hal_can_purge(&hal, HAL_CAN_VEHICLE);
+    zassert_true(send(0x168u, 2u));
+    report(vehicle->device, -ENETDOWN, reported);
+    zassert_true(send(0x43Fu, 3u));
+    zephyr_hal_transmit(&hal);
+    zassert_equal(vehicle->sent_count, 2u, "the driver still has 168h");
+    fake_bus_complete(HAL_CAN_VEHICLE, 0);
+    zephyr_hal_transmit(&hal);
+    zassert_equal(vehicle->sent_count, 3u);
+    zassert_equal(vehicle->sent[2].id, 0x43Fu);
+}
+
+/* Shows: FSM-2 */
+ZTEST(port_can, test_a_purge_leaves_a_frame_that_may_be_on_the_bus) {
+    (void)send(0x7F0u, 1u);
+    k_msleep(2);
+    hal_can_purge(&hal, HAL_CAN_VEHICLE);
+    zassert_equal(vehicle->stops, 0u);
+    zassert_equal(vehicle->in_mailbox, 1u);
+    (void)send(0x168u, 2u);
+    k_msleep(LONG_MS);
+    fake_bus_complete(HAL_CAN_VEHICLE, 0);
+    zephyr_hal_transmit(&hal);
+    hal_can_purge(&hal, HAL_CAN_VEHICLE);
+    zassert_equal(vehicle->stops, 0u, "it waited in the queue, and the driver has had it for no time");
+    zassert_equal(vehicle->in_mailbox, 1u);
+    fake_bus_complete(HAL_CAN_VEHICLE, 0);
+    k_msleep(LONG_MS);
+    hal_can_purge(&hal, HAL_CAN_VEHICLE);
+    zassert_equal(vehicle->stops, 0u, "all was sent");
+}
+
+static void expect_bus_off(void) {
+    const hal_can_status_t status = fixture_status();
+    zassert_equal(status.state, HAL_CAN_BUS_OFF);
+    zassert_equal(status.bus_off_count, 1u);
+    zassert_equal(status.tx_pending_ms, 0u);
+    zassert_false(send(0x168u, 2u));
+    zassert_false(send(0x168u, 2u));
+}
+
+static void recover_by_a_start(void) {
+    hal_can_recover(&hal, HAL_CAN_VEHICLE);
+    const hal_can_status_t status = fixture_status();
+    zassert_true(vehicle->started);
+    zassert_equal(vehicle->recoveries, 0u, "a stopped controller is started");
+    zassert_equal(status.state, HAL_CAN_ERROR_ACTIVE);
+    zassert_equal(status.bus_off_count, 1u);
+    zassert_true(send(0x168u, 3u));
+    zassert_equal(vehicle->sent[vehicle->sent_count - 1u].data[0], 3u);
+}
+
+/* Shows: SUP-7 */
+ZTEST(port_can, test_a_controller_that_does_not_start_again_is_bus_off) {
+    jam();
+    vehicle->start_error = -EIO;
+    hal_can_purge(&hal, HAL_CAN_VEHICLE);
+    expect_bus_off();
+    hal_can_recover(&hal, HAL_CAN_VEHICLE);
+    expect_bus_off();
+    vehicle->start_error = 0;
+    expect_bus_off();
+    recover_by_a_start();
+}
+
+/* Shows: SUP-7 */
+ZTEST(port_can, test_a_controller_that_does_not_stop_is_bus_off) {
+    jam();
+    vehicle->stop_error = -EIO;
+    hal_can_purge(&hal, HAL_CAN_VEHICLE);
+    expect_bus_off();
+    fake_bus_state(HAL_CAN_VEHICLE, CAN_STATE_ERROR_PASSIVE, true);
+    expect_bus_off();
+    vehicle->stop_error = 0;
+    recover_by_a_start();
+}
+
+/* Shows: SUP-7 */
+ZTEST(port_can, test_a_bus_off_just_before_the_stop_waits_for_the_request) {
+    jam();
+    vehicle->bus_off_at_stop = true;
+    hal_can_purge(&hal, HAL_CAN_VEHICLE);
+    expect_bus_off();
+    zassert_false(vehicle->started);
+    vehicle->bus_off_at_stop = false;
+    recover_by_a_start();
+}
+
+/* Shows: SUP-7 */
+ZTEST(port_can, test_a_purge_in_bus_off_stops_nothing) {
+    jam();
+    fake_bus_state(HAL_CAN_VEHICLE, CAN_STATE_BUS_OFF, false);
+    hal_can_purge(&hal, HAL_CAN_VEHICLE);
+    zassert_equal(vehicle->stops, 0u);
+    expect_bus_off();
+}
+
+ZTEST(port_can, test_a_controller_that_only_listens_is_not_stopped) {
+    fixture_after(NULL);
+    fake_parts_reset();
+    zassert_true(fixture_begin_listening());
+    jam();
+    hal_can_purge(&hal, HAL_CAN_VEHICLE);
+    zassert_equal(vehicle->stops, 0u);
+    expect_on_the_bus();
+}
+
 /* Shows: SUP-7 */
 ZTEST(port_can, test_the_age_of_an_unsent_frame_grows) {
     (void)send(0x168u, 1u);
