@@ -165,6 +165,36 @@ void test_in_tripped_a_frame_that_cannot_leave_is_withdrawn_again_and_again(void
     expect_fault_after(&f, 1, AGV_FAULT_TX_STALLED, false); /* none waits */
 }
 
+/* In INIT the frames wait: at the start nobody may be there to receive them. A bus-off ends the stall. */
+/* Shows: SUP-7, TX_STALLED, BUS_OFF */
+void test_in_init_a_frame_that_cannot_leave_waits(void) {
+    fixture_start(&f);
+    fixture_run(&f, 10);
+    const uint32_t purged = purges(HAL_CAN_VEHICLE);
+    sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101);
+    expect_fault_after(&f, 1, AGV_FAULT_TX_STALLED, true);
+    TEST_ASSERT_EQUAL_UINT32(purged, purges(HAL_CAN_VEHICLE));
+    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
+    expect_fault_after(&f, 1, AGV_FAULT_TX_STALLED, false);
+}
+
+/* The status frame goes out in its next slot: it may be what cannot leave, and would be next in the controller. */
+/* Shows: SUP-7, TOP-3, TX_STALLED */
+void test_a_status_frame_that_is_withdrawn_waits_for_its_slot(void) {
+    fixture_active(&f);
+    sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101);
+    fixture_run(&f, 1);
+    for (uint32_t before = f.status_count; f.status_count == before;) {
+        fixture_run(&f, 1);
+    }
+    const uint32_t count = f.status_count;
+    sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101);
+    fixture_run(&f, 95);
+    TEST_ASSERT_EQUAL_UINT32(count, f.status_count);
+    fixture_run(&f, 5);
+    TEST_ASSERT_EQUAL_UINT32(count + 1, f.status_count);
+}
+
 /* A controller from which they cannot be withdrawn is asked once: the commands do not flood it. */
 /* Shows: SUP-7, TX_STALLED */
 void test_a_stall_without_an_end_is_answered_once(void) {

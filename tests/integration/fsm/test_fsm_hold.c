@@ -265,6 +265,24 @@ void test_a_status_frame_that_is_withdrawn_with_the_angle_is_sent_again(void) {
     TEST_ASSERT_EQUAL_UINT32(before + 2, f.status_count);
 }
 
+/* A status frame that was accepted 50 ms before is not: it may be what waits. */
+/* Shows: FSM-10, TOP-3 */
+void test_an_older_status_frame_that_is_withdrawn_with_the_angle_waits_for_its_slot(void) {
+    trip_at(9123);
+    stall(101);
+    for (uint32_t before = f.status_count; f.status_count == before;) {
+        fixture_run(&f, 1);
+    }
+    fixture_run(&f, 50);
+    const uint32_t count = f.status_count;
+    const uint32_t purged = purges();
+    fixture_mode(&f, MODE_MANUAL);
+    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+    TEST_ASSERT_EQUAL_UINT32(purged + 1, purges());
+    fixture_run(&f, 10);
+    TEST_ASSERT_EQUAL_UINT32(count, f.status_count);
+}
+
 /* An angle that waits in a stalled transmitter for 2 s is withdrawn: later it would turn the wheels back. */
 /* Shows: FSM-10, SUP-7, TX_STALLED */
 void test_an_angle_that_waits_in_a_stalled_transmitter_for_2_s_is_withdrawn(void) {

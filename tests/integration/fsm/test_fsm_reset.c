@@ -633,7 +633,7 @@ void test_of_a_late_step_10_ms_count_for_the_conditions(void) {
     static const struct {
         uint32_t more_ms;
         agv_state_t state;
-    } cases[] = {{980, AGV_STATE_SAFE}, {1010, AGV_STATE_STANDBY}};
+    } cases[] = {{989, AGV_STATE_SAFE}, {990, AGV_STATE_STANDBY}};
     for (unsigned i = 0; i < 2; i++) {
         fixture_init(&f);
         walk_to_safe(&f);

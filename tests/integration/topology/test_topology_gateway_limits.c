@@ -169,6 +169,64 @@ void test_a_gear_command_that_is_dropped_came_all_the_same(void) {
     expect_count_after(&f, 500, 0x168, 0);
 }
 
+/* R waits until the vehicle stands; the throttle that passes is 0 until then, or until D is commanded again. */
+/* Shows: TOP-2 */
+void test_while_a_gear_waits_the_throttle_that_passes_is_0(void) {
+    static const uint8_t commanded[8] = {75};
+    static const uint8_t nothing[8] = {0};
+    fixture_active(&f);
+    fixture_drive(&f, 500);
+    fixture_run(&f, 200);
+    f.traffic[AGV_MSG_THROTTLE_COMMAND].muted = true;
+    f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = GEAR_R;
+    fixture_run(&f, 100);
+    expect_pass(0x075, commanded, nothing);
+    f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = GEAR_D;
+    fixture_send_now(&f, AGV_MSG_GEAR_COMMAND);
+    fixture_run(&f, 100);
+    expect_pass(0x075, commanded, commanded);
+}
+
+/* ---- Withheld commands ---- */
+
+/* Each time, one 363h reports manual before the message, and one reports autopilot after it. */
+static void only_while_manual(uint16_t topology, agv_message_t message, uint32_t every_ms, uint32_t for_ms) {
+    setUp();
+    f.config.topology = topology;
+    fixture_active(&f);
+    f.traffic[message].muted = true;
+    for (uint32_t ms = 0; ms < for_ms; ms += every_ms) {
+        fixture_mode(&f, MODE_MANUAL);
+        fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+        fixture_send_now(&f, message);
+        fixture_mode(&f, MODE_ENGAGED);
+        fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
+        fixture_run(&f, every_ms);
+    }
+}
+
+/* A motion command that is withheld because of the mode has not reached the vehicle: its deadline runs on. */
+/* Shows: TOP-2, SUP-3, STEERING_COMMAND_TIMEOUT, THROTTLE_COMMAND_TIMEOUT, GEAR_COMMAND_TIMEOUT */
+void test_a_command_that_is_withheld_misses_its_deadline(void) {
+    only_while_manual(AGV_TOPOLOGY_GATEWAY, AGV_MSG_STEERING_COMMAND, 25, 175);
+    expect_tripped(&f, AGV_FAULT_STEERING_COMMAND_TIMEOUT);
+    only_while_manual(AGV_TOPOLOGY_GATEWAY, AGV_MSG_THROTTLE_COMMAND, 100, 500);
+    expect_tripped(&f, AGV_FAULT_THROTTLE_COMMAND_TIMEOUT);
+    only_while_manual(AGV_TOPOLOGY_GATEWAY, AGV_MSG_GEAR_COMMAND, 66, 462);
+    expect_tripped(&f, AGV_FAULT_GEAR_COMMAND_TIMEOUT);
+}
+
+/* 43Fh passes in manual, too; what the vehicle reports is not withheld; on the shared bus nothing is. */
+/* Shows: TOP-2, SUP-1, SUP-3 */
+void test_what_is_not_withheld_meets_its_deadline(void) {
+    only_while_manual(AGV_TOPOLOGY_GATEWAY, AGV_MSG_TURN_SIGNAL_COMMAND, 100, 1000);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    only_while_manual(AGV_TOPOLOGY_GATEWAY, AGV_MSG_THROTTLE_STATUS, 20, 500);
+    expect_state(&f, AGV_STATE_ACTIVE);
+    only_while_manual(AGV_TOPOLOGY_SHARED, AGV_MSG_STEERING_COMMAND, 25, 1000);
+    expect_state(&f, AGV_STATE_ACTIVE);
+}
+
 /* ---- The rest of the envelope ---- */
 
 static uint32_t limited(void) {

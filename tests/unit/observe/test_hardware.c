@@ -194,6 +194,19 @@ void test_a_late_tick_counts_in_full(uint32_t elapsed_ms, bool is_fault) {
     TEST_ASSERT_EQUAL(is_fault, is_active(AGV_FAULT_OUTPUT_FEEDBACK));
 }
 
+/* The output was closed at some time in a late step. Its contact still reads open: of that step 1 ms counts, of later ones all. */
+/* Shows: HW-1, TIM-4 */
+void test_a_late_tick_in_which_the_output_changed_counts_1_ms(void) {
+    inputs.output_feedback = OPEN;
+    ticks(10);
+    output_closed = true;
+    tick_after(99);
+    tick_after(98); /* 99 */
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
+    ticks(1);
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
+}
+
 /* Ticks that are all late by 4 ms count 5 ms each. */
 /* Shows: HW-1 */
 void test_late_ticks_add_up(void) {
