@@ -41,9 +41,10 @@ typedef struct {
 } agv_gateway_facts_t;
 
 /**
- * Note whether a received 168h asks for D instead of R or the reverse, and has to wait for standstill. Until one does not, 075h is forwarded with
- * throttle 0: otherwise the throttle would drive the vehicle on in the gear that the AI computer wants to leave. A gear that
- * was forwarded before is not new: the vehicle deviates from it (SUP-11). Call for each command, before the others.
+ * Note whether a received 168h asks for D instead of R or the reverse, and has to wait for standstill. Until one does not, 075h
+ * is forwarded with throttle 0: otherwise the throttle would drive the vehicle on in the gear that the AI computer wants to
+ * leave. A gear that was forwarded before is not new: the vehicle deviates from it (SUP-11). Call for each command, before the
+ * others.
  */
 void agv_gateway_follow_gear(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t command,
                              const uint8_t data[AGV_DLC]);
