@@ -2,6 +2,7 @@
 # What the scripts share. Source it.
 set -euo pipefail
 ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+SCRIPT=$(readlink -f "$0")
 export LC_ALL=C.UTF-8
 
 # Lines on standard error, and out. A proof goes by the name of its folder.
@@ -10,6 +11,13 @@ die() {
     name=${name##*/}
     echo "${name%.*}: $*" >&2
     exit 1
+}
+
+# help_of ARGUMENT...: for --help, the comment at the top of the script, and out
+help_of() {
+    [[ ${1:-} == --help ]] || return 0
+    sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$SCRIPT" | grep -v '^shellcheck'
+    exit
 }
 
 headline() {
