@@ -48,10 +48,13 @@ agv_motion_facts_t agv_core_motion_facts(const agv_core_t *core) {
 }
 
 agv_gateway_facts_t agv_core_gateway_facts(const agv_core_t *core) {
+    const bool gear_sent = agv_commands_has(&core->commands, AGV_MSG_GEAR_COMMAND);
     return (agv_gateway_facts_t){.config = &core->config,
                                  .vehicle = &core->vehicle,
                                  .state = (agv_state_t)core->machine.state,
                                  .now_ms = core->timers.now_ms,
+                                 .gear_sent = gear_sent ? core->commands.gear : 0u,
+                                 .gear_fresh = agv_liveness_fresh(&core->liveness, &core->timers, AGV_MSG_GEAR_STATUS),
                                  .autopilot = agv_mode_reports_autopilot(&core->mode),
                                  .standstill = agv_vehicle_is_at_standstill(&core->timers)};
 }
@@ -78,6 +81,7 @@ agv_tx_orders_t agv_core_orders(agv_core_t *core, const agv_ports_t *ports) {
                              .output_closed = core->machine.output_closed,
                              .park_released = core->machine.park_released,
                              .holdable = is_holdable(core),
+                             .stalled = agv_fault_monitor_is_active(&core->faults, AGV_FAULT_TX_STALLED),
                              .config_checksum = core->config_checksum,
                              .version = ports->version};
 }

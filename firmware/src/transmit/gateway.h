@@ -27,7 +27,6 @@ typedef struct {
     bool steering_known; /**< steering is valid */
     bool throttle_known; /**< throttle is valid */
     bool gear_waits;     /**< the last 168h is dropped until standstill: throttle 0 until then */
-    uint8_t gear;        /**< gear of the last 168h that was forwarded; 0: none */
 } agv_gateway_t;
 
 /** Inputs of the gateway. */
@@ -36,14 +35,16 @@ typedef struct {
     const agv_vehicle_t *vehicle;
     agv_state_t state;
     uint32_t now_ms;
-    bool autopilot; /**< the last 363h reports autopilot */
+    uint8_t gear_sent; /**< gear of the last 168h that was sent in this engagement; 0: none */
+    bool gear_fresh;   /**< 0A3h is fresh */
+    bool autopilot;    /**< the last 363h reports autopilot */
     bool standstill;
 } agv_gateway_facts_t;
 
 /**
  * Note whether a received 168h asks for D instead of R or the reverse, and has to wait for standstill. Until one does not, 075h
  * is forwarded with throttle 0: otherwise the throttle would drive the vehicle on in the gear that the AI computer wants to
- * leave. A gear that was forwarded before is not new: the vehicle deviates from it (SUP-11). Call for each command, before the
+ * leave. A gear that was sent before is not new: the vehicle deviates from it (SUP-11). Call for each command, before the
  * others.
  */
 void agv_gateway_follow_gear(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t command,

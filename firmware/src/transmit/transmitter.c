@@ -25,6 +25,11 @@ void agv_transmitter_start(agv_transmitter_t *transmitter, uint32_t now_ms) {
     transmitter->status_ms = now_ms - (uint32_t)STATUS_ON_WIRE_MS - 1u;
 }
 
+/* The controller was purged, or will be: the last status frame may be lost. */
+static void repeat_status(agv_transmitter_t *transmitter, const agv_timers_t *timers) {
+    transmitter->status_again = agv_age_ms(timers->now_ms, transmitter->status_ms) <= (uint32_t)STATUS_ON_WIRE_MS;
+}
+
 void agv_transmitter_discard(agv_transmitter_t *transmitter, agv_timers_t *timers, hal_can_side_t side) {
     const uint32_t messages = (side == HAL_CAN_VEHICLE) ? AGV_SET_COMMANDS : AGV_SET_STATUS;
     for (uint32_t waiting = transmitter->kept & messages; waiting != 0u; waiting &= waiting - 1u) {
@@ -32,7 +37,7 @@ void agv_transmitter_discard(agv_transmitter_t *transmitter, agv_timers_t *timer
     }
     transmitter->kept &= ~messages;
     if (side == HAL_CAN_VEHICLE) {
-        transmitter->status_again = agv_age_ms(timers->now_ms, transmitter->status_ms) <= (uint32_t)STATUS_ON_WIRE_MS;
+        repeat_status(transmitter, timers);
         transmitter->throttle_0_waits = false;
         agv_scheduler_discard(&transmitter->scheduler);
         for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
@@ -139,12 +144,18 @@ static void send_own(agv_transmitter_t *transmitter, const agv_tx_orders_t *orde
     }
 }
 
+/* The nth own command that is sent. In a stall, a command that cannot leave comes after those that can. */
+static uint32_t nth_command(const agv_tx_orders_t *orders, uint32_t n) {
+    return orders->stalled ? (((uint32_t)AGV_COMMAND_COUNT - 1u) - n) : n;
+}
+
 void agv_transmitter_burst(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
     const uint32_t wanted = wanted_commands(orders);
     agv_scheduler_restart(&transmitter->scheduler, orders->timers->now_ms);
     for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
-        if ((wanted & bit_of(i)) != 0u) {
-            send_own(transmitter, orders, i);
+        const uint32_t command = nth_command(orders, i);
+        if ((wanted & bit_of(command)) != 0u) {
+            send_own(transmitter, orders, command);
         }
     }
     transmitter->wanted_before = (uint8_t)wanted;
@@ -216,10 +227,16 @@ void agv_transmitter_drop(agv_transmitter_t *transmitter, agv_timers_t *timers, 
     }
 }
 
-void agv_transmitter_end_engagement(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
+static void send_throttle_0(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
     static const uint8_t throttle_0[AGV_DLC] = {0};
     transmitter->throttle_0_waits = !agv_bus_is_off(orders->timers, HAL_CAN_VEHICLE) &&
                                     send_message(transmitter, orders, AGV_MSG_THROTTLE_COMMAND, throttle_0);
+}
+
+void agv_transmitter_end_engagement(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
+    hal_can_purge(orders->hal, HAL_CAN_VEHICLE);
+    repeat_status(transmitter, orders->timers);
+    send_throttle_0(transmitter, orders);
 }
 
 const uint8_t *agv_transmitter_passed(const agv_transmitter_t *transmitter, uint32_t command) {
@@ -335,11 +352,11 @@ void agv_transmitter_tick(agv_transmitter_t *transmitter, const agv_tx_orders_t 
         }
     }
     if (transmitter->throttle_0_waits) {
-        agv_transmitter_end_engagement(transmitter, orders);
+        send_throttle_0(transmitter, orders);
     }
     if ((wanted | transmitter->wanted_before) != 0u) {
         for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
-            tick_own(transmitter, orders, i, wanted);
+            tick_own(transmitter, orders, nth_command(orders, i), wanted);
         }
     }
     transmitter->wanted_before = (uint8_t)wanted;

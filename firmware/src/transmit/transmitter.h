@@ -71,6 +71,7 @@ typedef struct {
     bool output_closed;
     bool park_released; /**< own 168h may be sent (FSM-1) */
     bool holdable;      /**< own 065h may be sent (FSM-10) */
+    bool stalled;       /**< TX_STALLED: own commands are sent in the order of their identifiers, the lowest first */
     uint32_t config_checksum;
     const agv_version_t *version; /**< NULL: none */
 } agv_tx_orders_t;
@@ -109,8 +110,8 @@ void agv_transmitter_pass(agv_transmitter_t *transmitter, const agv_tx_orders_t 
 void agv_transmitter_drop(agv_transmitter_t *transmitter, agv_timers_t *timers, uint32_t command);
 
 /**
- * Send one 075h with throttle 0 at the end of an engagement (TOP-2): otherwise the vehicle's latest throttle command at the
- * next engagement would be an old one.
+ * The end of an engagement (TOP-2). What waits in the controller is purged: a command of motion may not leave after it. One
+ * 075h with throttle 0 is sent: otherwise the vehicle's latest throttle command at the next engagement would be an old one.
  */
 void agv_transmitter_end_engagement(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders);
 

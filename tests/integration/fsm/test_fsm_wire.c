@@ -12,6 +12,8 @@ enum { WIRE_MAX = 64 };
 static fixture_t f;
 static sim_bus_t vehicle_bus;
 static sim_bus_t ai_bus;
+static sim_bus_node_t vcu; /* the other node on the vehicle side */
+static uint32_t flood_id;  /* which it sends without a pause; 0: none */
 static uint32_t start_ms;
 static hal_can_frame_t wire[WIRE_MAX]; /* sent by the supervisor on the vehicle side */
 static uint32_t wire_count;
@@ -29,16 +31,25 @@ static void run_bus_until_us(uint64_t us) {
     sim_bus_run_all_until(buses, 2, us);
 }
 
+static void flood(void) {
+    const hal_can_frame_t frame = {.id = flood_id, .length = 8};
+    while (flood_id != 0 && sim_bus_send(&vehicle_bus, vcu, &frame)) {
+    }
+}
+
 static void run(uint32_t ms) {
     for (uint32_t i = 0; i < ms; i++) {
+        flood();
         run_bus_until_us(1000u * (uint64_t)(f.now_ms - start_ms + 1u));
         fixture_run(&f, 1);
     }
 }
 
 /* The fixture's supervisor on two buses, each with another node that acknowledges. The traffic is passed to it
- * directly. */
-void setUp(void) {
+ * directly. mailboxes: of its controllers; 0 = 8 */
+static void engage(uint8_t mailboxes) {
+    const sim_bus_node_config_t own = {.tx_slots = mailboxes, .rx_slots = SIM_BUS_RX_SLOTS_MAX};
+    flood_id = 0;
     fixture_init(&f);
     f.config.topology = AGV_TOPOLOGY_GATEWAY;
     f.long_run = true;
@@ -47,9 +58,9 @@ void setUp(void) {
     const sim_hal_config_t config = {.clock_start_ms = f.now_ms, .store = &f.store};
     TEST_ASSERT_TRUE(sim_bus_init(&vehicle_bus, 500000) && sim_bus_init(&ai_bus, 500000));
     sim_hal_init(&f.hal, &config);
-    TEST_ASSERT_TRUE(sim_hal_attach(&f.hal, HAL_CAN_VEHICLE, &vehicle_bus, NULL));
-    TEST_ASSERT_TRUE(sim_hal_attach(&f.hal, HAL_CAN_AI, &ai_bus, NULL));
-    (void)sim_bus_attach(&vehicle_bus, NULL);
+    TEST_ASSERT_TRUE(sim_hal_attach(&f.hal, HAL_CAN_VEHICLE, &vehicle_bus, &own));
+    TEST_ASSERT_TRUE(sim_hal_attach(&f.hal, HAL_CAN_AI, &ai_bus, &own));
+    vcu = sim_bus_attach(&vehicle_bus, NULL);
     (void)sim_bus_attach(&ai_bus, NULL);
     (void)sim_bus_add_tap(&vehicle_bus, on_wire, NULL);
     agv_supervisor_start(&f.supervisor, &f.ports, &f.config, f.now_ms);
@@ -62,6 +73,10 @@ void setUp(void) {
     fixture_mute_ai(&f, true);
     run(3);
     wire_count = 0;
+}
+
+void setUp(void) {
+    engage(0);
 }
 
 /* D, 20 %, 5.0 degrees: accepted by the controller. */
@@ -136,6 +151,21 @@ void test_behind_a_blocked_bus_the_safe_commands_are_the_first(void) {
     expect_safe_commands_from(0);
 }
 
+/* The operator takes over while commands wait in the controller. Only throttle 0 leaves it. */
+/* Shows: TOP-2 */
+void test_commands_that_wait_in_the_controller_are_never_sent_in_manual(void) {
+    sim_bus_set_stalled(&vehicle_bus, f.hal.can[HAL_CAN_VEHICLE].node, true);
+    ai_commands();
+    fixture_mode(&f, MODE_MANUAL);
+    run(40);
+    expect_state(&f, AGV_STATE_STANDBY);
+    sim_bus_set_stalled(&vehicle_bus, f.hal.can[HAL_CAN_VEHICLE].node, false);
+    run(20);
+    TEST_ASSERT_EQUAL_UINT32(1, wire_count);
+    TEST_ASSERT_EQUAL_HEX32(0x075, wire[0].id);
+    TEST_ASSERT_EQUAL_HEX8(0, wire[0].data[0]);
+}
+
 /* Shows: FSM-2, INT-5, MEMORY_CORRUPTED */
 void test_after_memory_corruption_frames_that_wait_in_the_controller_are_never_sent(void) {
     ai_commands();
@@ -164,4 +194,33 @@ void test_after_bus_off_only_safe_commands_are_sent(void) {
     TEST_ASSERT_EQUAL_UINT32(1, f.hal.can[HAL_CAN_VEHICLE].recover_requests);
     run(20); /* 128 times 11 bits of an idle bus are 2.8 ms */
     expect_safe_commands_from(0);
+}
+
+static uint32_t count_on_wire(uint32_t id) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < wire_count; i++) {
+        count += (wire[i].id == id) ? 1u : 0u;
+    }
+    return count;
+}
+
+/* Another node sends 400h without a pause: 43Fh cannot leave, and it is all that the controller has room for. When it has
+ * waited for 100 ms, the others go first. */
+/* Shows: SUP-7, FSM-2, TX_STALLED */
+void test_a_flood_that_stops_43fh_does_not_stop_gear_p(void) {
+    engage(1);
+    flood_id = 0x400;
+    walk_trip(&f);
+    run(110);
+    TEST_ASSERT_EQUAL_UINT32(1, count_on_wire(0x168));
+    TEST_ASSERT_EQUAL_HEX32(0x065, wire[0].id);
+    TEST_ASSERT_EQUAL_HEX32(0x075, wire[1].id);
+    TEST_ASSERT_EQUAL_HEX32(0x168, wire[2].id);
+    TEST_ASSERT_EQUAL_HEX8(GEAR_P, wire[2].data[0]);
+    run(1000);
+    TEST_ASSERT_UINT32_WITHIN(1, 10, count_on_wire(0x168) - 1u);
+    TEST_ASSERT_EQUAL_UINT32(0, count_on_wire(0x43F));
+    flood_id = 0;
+    run(20);
+    TEST_ASSERT_EQUAL_UINT32(1, count_on_wire(0x43F));
 }

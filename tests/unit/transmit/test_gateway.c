@@ -10,6 +10,8 @@ static agv_config_t config;
 static agv_vehicle_t vehicle;
 static agv_state_t state;
 static uint32_t now_ms;
+static uint8_t gear_sent;
+static bool gear_fresh;
 static bool autopilot;
 static bool standstill;
 static bool limited;
@@ -22,6 +24,8 @@ void setUp(void) {
     config.topology = AGV_TOPOLOGY_GATEWAY;
     state = AGV_STATE_ACTIVE;
     now_ms = 1000;
+    gear_sent = 0;
+    gear_fresh = true;
     autopilot = true;
     standstill = false;
     vehicle.wheels_fresh = true;
@@ -34,6 +38,8 @@ static agv_gateway_facts_t facts(void) {
                                  .vehicle = &vehicle,
                                  .state = state,
                                  .now_ms = now_ms,
+                                 .gear_sent = gear_sent,
+                                 .gear_fresh = gear_fresh,
                                  .autopilot = autopilot,
                                  .standstill = standstill};
 }
@@ -120,6 +126,18 @@ void test_a_change_of_gear_waits_for_standstill(void) {
     }
 }
 
+/* 0A3h is silent and only warns: the gear that was sent passes, another waits for standstill. */
+/* Shows: TOP-2 */
+void test_with_a_silent_0a3h_the_gear_does_not_change_in_motion(void) {
+    gear_fresh = false;
+    vehicle.gear = 1;
+    gear_sent = 2;
+    TEST_ASSERT_FALSE(passes(AGV_MSG_GEAR_COMMAND, 1));
+    TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 2));
+    standstill = true;
+    TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 1));
+}
+
 /* The first byte of other commands is not a gear. Standstill alone does not permit a command. */
 /* Shows: TOP-2 */
 void test_only_168h_changes_the_gear(void) {
@@ -197,6 +215,7 @@ static void gear_commanded(uint8_t gear) {
 /* Until standstill the throttle would drive the vehicle on in the gear that the AI computer wants to leave. */
 /* Shows: TOP-2 */
 void test_while_a_gear_waits_for_standstill_the_throttle_is_0(void) {
+    gear_sent = 1;
     gear_commanded(1);
     TEST_ASSERT_EQUAL_UINT(75, throttle(75));
     gear_commanded(2);
@@ -226,20 +245,27 @@ void test_which_gears_wait(void) {
     TEST_ASSERT_EQUAL_UINT(75, throttle(75));
 }
 
-/* A vehicle that leaves the gear by itself deviates from its command (SUP-11). In N and P the throttle does not drive it. */
+/* A vehicle that leaves the gear by itself deviates from its command (SUP-11). */
 /* Shows: TOP-2, SUP-11 */
-void test_a_gear_that_was_forwarded_does_not_wait(void) {
-    gear_commanded(1);
+void test_a_gear_that_was_sent_does_not_wait(void) {
+    gear_sent = 1;
     vehicle.gear = 2;
     gear_commanded(1);
     TEST_ASSERT_EQUAL_UINT(75, throttle(75));
-    agv_gateway_restart(&gateway);
-    vehicle.gear = 8;
+    gear_sent = 2;
     gear_commanded(1);
-    TEST_ASSERT_EQUAL_UINT(75, throttle(75));
-    vehicle.gear = 4;
+    TEST_ASSERT_EQUAL_UINT(0, throttle(75));
+}
+
+/* In N and P the throttle does not drive the vehicle. An invalid 0A3h (0) does not say so. */
+/* Shows: TOP-2 */
+TEST_CASE(8, 75)
+TEST_CASE(4, 75)
+TEST_CASE(0, 0)
+void test_which_reported_gears_drive(unsigned reported, unsigned passes_counts) {
+    vehicle.gear = (uint8_t)reported;
     gear_commanded(1);
-    TEST_ASSERT_EQUAL_UINT(75, throttle(75));
+    TEST_ASSERT_EQUAL_UINT(passes_counts, throttle(75));
 }
 
 /* A 168h that may not pass, or another command, changes nothing. */

@@ -173,6 +173,25 @@ void test_each_command_that_waits_is_stalled(unsigned command) {
     EXPECT_STALLED_AFTER(1, true);
 }
 
+/* A controller for one frame, on a bus that lets identifiers below 400h pass: 43Fh must not keep the others back. */
+/* Shows: SUP-7, FSM-2 */
+void test_in_a_stall_the_lowest_identifier_is_sent_first(void) {
+    orders.stalled = true;
+    burst();
+    TEST_ASSERT_EQUAL_UINT(4, sent_count);
+    expect_sent(0, HAL_CAN_VEHICLE, 0x065, HELD);
+    expect_sent(1, HAL_CAN_VEHICLE, 0x075, ZEROS);
+    expect_sent(2, HAL_CAN_VEHICLE, 0x168, PARK);
+    expect_sent(3, HAL_CAN_VEHICLE, 0x43F, SIGNALS);
+    sent_count = 0;
+    hal_takes = false;
+    burst();
+    hal_takes = true;
+    EXPECT_COUNT_AFTER(1, 4);
+    expect_sent(0, HAL_CAN_VEHICLE, 0x065, HELD);
+    expect_sent(3, HAL_CAN_VEHICLE, 0x43F, (const uint8_t[8]){0, 0, 0, 0, 0x70, 0, 0, 1});
+}
+
 /* A frame that is no longer wanted does not wait any more. */
 void test_a_command_that_is_not_wanted_any_more_is_not_stalled(void) {
     hal_takes = false;
@@ -391,10 +410,12 @@ void test_a_forwarded_frame_is_reported_when_it_is_sent(void) {
     TEST_ASSERT_EQUAL_HEX8(0, report().passed);
 }
 
-/* ---- Throttle 0 at the end of an engagement ---- */
+/* ---- The end of an engagement ---- */
 
+/* What waits in the controller is purged. */
 static void end_engagement(void) {
     orders.state = AGV_STATE_STANDBY;
+    hal_can_purge_Expect(&hal, HAL_CAN_VEHICLE);
     agv_transmitter_end_engagement(&transmitter, &orders);
 }
 

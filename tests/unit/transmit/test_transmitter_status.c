@@ -191,6 +191,21 @@ void test_a_status_frame_that_may_have_been_discarded_is_sent_again(uint32_t bef
     EXPECT_COUNT_AFTER(50, 1 + again);
 }
 
+/* The end of an engagement purges the controller, too. */
+/* Shows: TOP-3, TOP-2 */
+TEST_CASE(2, 1)
+TEST_CASE(3, 0)
+void test_a_status_frame_that_may_have_been_purged_is_sent_again(uint32_t before_ms, unsigned again) {
+    with_status_frame();
+    be_gateway();
+    orders.state = AGV_STATE_STANDBY;
+    agv_transmitter_status(&transmitter, &orders);
+    tick(before_ms);
+    hal_can_purge_Expect(&hal, HAL_CAN_VEHICLE);
+    agv_transmitter_end_engagement(&transmitter, &orders); /* sends 075h */
+    EXPECT_COUNT_AFTER(50, 2 + again);
+}
+
 /* Frames discarded on the AI side do not matter. */
 void test_what_is_discarded_for_the_ai_side_is_no_status_frame(void) {
     with_status_frame();
