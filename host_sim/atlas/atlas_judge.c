@@ -55,7 +55,7 @@ atlas_weakness_t atlas_judge(const atlas_case_t *of, const atlas_outcome_t *pair
 }
 
 const char *atlas_known_reason(const atlas_case_t *of, atlas_weakness_t weakness) {
-    static const char hangs[] = "a supervisor that hangs answers nobody";
+    static const char hangs[] = "a supervisor that hangs does not answer";
     static const struct {
         agv_fault_t first;
         agv_fault_t second;

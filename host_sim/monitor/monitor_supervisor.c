@@ -241,7 +241,7 @@ void monitor_supervisor_time(monitor_t *monitor) {
     if ((monitor->shadow != NULL) && !monitor_shadow_time(monitor->shadow, monitor->now_us)) {
         monitor_shadow_free(monitor->shadow);
         monitor->shadow = NULL;
-        monitor_say(monitor, monitor->now_us, MONITOR_WARN, "shadow", "time has leapt: it starts anew");
+        monitor_say(monitor, monitor->now_us, MONITOR_WARN, "shadow", "the time jumped: it starts again");
     }
     if ((monitor->shadow == NULL) && !monitor->shadow_failed && (monitor->supervisor.source != MONITOR_STATUS_FRAME)) {
         start_shadow(monitor);

@@ -220,7 +220,7 @@ void replay_text_print(const replay_text_t *replay) {
     const why_text_t shown = {
         .why = replay->why,
         .first_us = replay->first_us,
-        .never = has_pending(replay) ? "never, but see what the log ends in" : "never",
+        .never = has_pending(replay) ? "never; see the line 'at the end'" : "never",
     };
     why_text_trips(&shown);
     why_text_faults(replay->why);

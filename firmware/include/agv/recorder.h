@@ -34,7 +34,7 @@ typedef enum {
     AGV_EVENT_OUTPUT = 3,  /**< a = 1: safety output closed, 0: opened */
     AGV_EVENT_RESET = 4,   /**< a = 1: accepted, 0: refused; missing = AGV_MISSING_* */
     AGV_EVENT_STARTUP = 5, /**< missing = AGV_MISSING_*: the conditions for leaving INIT that do not hold */
-    AGV_EVENT_CRASH = 6    /**< how the port ended the run before: a = hal_reset_cause_t, b = what of the port it was;
+    AGV_EVENT_CRASH = 6    /**< how the port ended the run before: a = hal_reset_cause_t, b = hal_end_t;
                               frames[0] = program counter and link register, 4 bytes each, lowest byte first */
 } agv_event_kind_t;
 

@@ -18,7 +18,7 @@ uint32_t hal_clock_now_ms(hal_t *hal);
  * both when one of them has come a second further, so that a slow first clock is found in time. One that returned true and
  * returns false later counts as standing still.
  * @param time_ms out: milliseconds since an arbitrary time; wraps as the first clock does. It must be accurate to 1 %.
- * @return false if the board has no second clock: always or never
+ * @return false if the board has no second clock; then in every call
  */
 bool hal_clock_second_ms(hal_t *hal, uint32_t *time_ms);
 

@@ -1,6 +1,6 @@
 /**
  * @file hal.h
- * The context that all parts of the hardware abstraction share. Include the header of the part that you need.
+ * The context that all parts of the hardware abstraction layer share. Include the header of the part that you need.
  *
  * The headers of this folder are the contract. A port implements all their functions and defines `struct hal`; a program
  * selects its port by linking it. The core never accesses the members of `struct hal` and never keeps the pointer: it is

@@ -1,7 +1,7 @@
 /**
  * @file inputs.h
- * The hard-wired inputs of the supervisor (HW-1, HW-2, HW-3). All are optional: a port reports HAL_CONTACT_NONE for an
- * input that the board does not have, always or never.
+ * The hard-wired inputs of the supervisor (HW-1, HW-2, HW-3). All are optional: for an input that the board does not
+ * have, a port reports HAL_CONTACT_NONE in every call.
  */
 #ifndef HAL_INPUTS_H
 #define HAL_INPUTS_H

@@ -23,7 +23,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         OPTION_TEXT("--shard", "I/N", "only part I of N of the pairs (1/1)", &given->shard),
         OPTION_FAULT("--first", "only pairs with this first fault", &given->first),
         OPTION_FAULT("--second", "only pairs with this second fault", &given->second),
-        OPTION_TEXT("--results", "FILE", "what came of each pair and of its halves, as JSON Lines", &given->results),
+        OPTION_TEXT("--results", "FILE", "results of each pair, and of each of the two alone, as JSON Lines",
+                    &given->results),
         OPTION_NUMBER("--show", "CASE", "only print this case, as a scenario", &given->show, 0, UINT32_MAX - 1u),
     };
     const option_group_t groups[] = {{.title = "Options", .options = rows, .count = sizeof rows / sizeof rows[0]}};
@@ -35,7 +36,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         .usage = "atlas [OPTION]...",
         .summary =
             "Cause every ordered pair of faults on the simulated bus, in every state in which the first one can\n"
-            "happen, in both topologies, 0, 1, 50 and 500 ms apart, and compare each pair with its halves.\n",
+            "happen, in both topologies, 0, 1, 50 and 500 ms apart, and compare each pair with each of the two "
+            "alone.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
         .examples = examples,

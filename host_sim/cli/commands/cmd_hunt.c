@@ -39,7 +39,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     };
     static const option_example_t examples[] = {
         {"host_sim hunt --seed 1 --runs 200", "200 runs"},
-        {"host_sim hunt --list-hazards", "what would be found"},
+        {"host_sim hunt --list-hazards", "what counts as a hazard"},
     };
     const option_syntax_t syntax = {
         .usage = "hunt --seed S (--runs N | --for-minutes M) [OPTION]... | hunt --list-hazards",

@@ -50,10 +50,10 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     config_options_init(&given->config, config_rows);
     const option_t rows[] = {
         OPTION_TEXT("--record", "FILE", "record the bus into this candump log, a new file", &request->record),
-        OPTION_FLAG("--shadow", "show a supervisor of this program, which only listens, at any rate", &request->shadow),
+        OPTION_FLAG("--shadow", "show a supervisor of this program, even when a status frame comes", &request->shadow),
     };
     const option_t log_rows[] = {
-        OPTION_TEXT("--log", "FILE", "a recorded candump log instead; - is standard input", &request->log),
+        OPTION_TEXT("--log", "FILE", "a recorded log instead; - is standard input", &request->log),
         {.name = "--speed",
          .value = "N",
          .help = "of the log: 4 is four times as fast as recorded; max",

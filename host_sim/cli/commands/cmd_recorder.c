@@ -31,7 +31,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     };
     const analysis_command_t command = {
         .usage = "recorder [OPTION]... FILE",
-        .summary = "Tell what the flight recorder of a device kept: what its shell's 'agv dump' printed, what a "
+        .summary = "Show what the flight recorder of a device kept: what its shell's 'agv dump' printed, what a "
                    "debugger dumped\n"
                    "of its memory, or the --store file of replay (- = standard input).\n",
         .operand = "FILE",

@@ -34,8 +34,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         OPTION_DURATION("--tail", "continue for this time after the last line (0)", &given->request.tail_ms, 0,
                         REPLAY_GAP_MAX_MS),
         OPTION_DURATION("--start-ms", "the supervisor's clock at the start (0)", &given->start_ms, 0, UINT32_MAX),
-        OPTION_FLAG("--skip-bad-lines", "skip and count lines that are not candump lines",
-                    &given->request.skip_bad_lines),
+        OPTION_FLAG("--skip-bad-lines", "skip and count lines that are not frames", &given->request.skip_bad_lines),
         OPTION_TEXT("--ai-if", "NAME", "the interface of the AI side: a gateway", &given->request.ai_interface),
         {.name = "--reset-cause",
          .value = "CAUSE",
@@ -53,9 +52,9 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     };
     const analysis_command_t command = {
         .usage = "replay [OPTION]... LOG",
-        .summary = "Replay a recorded log (candump -l; - = standard input) to the supervisor in virtual time, and say "
-                   "whether\n"
-                   "it would have stopped the vehicle, when, and why.\n",
+        .summary = "Replay a recorded log to the supervisor in virtual time, and say whether, when and why it would\n"
+                   "have stopped the vehicle. LOG is candump -l, candump -t a or Vector ASC, also gzip'd; - = standard "
+                   "input.\n",
         .operand = "LOG",
         .config_title = "Configuration of the supervisor",
         .rows = rows,

@@ -19,7 +19,7 @@ const command_t COMMANDS[] = {
     {"hunt", "attack the supervisor at random, and search for runs with a hazard", cmd_hunt},
     {"man", "print a man page", cmd_man},
     {"monitor", "watch a bus or a log: messages, deadlines, alarms, the supervisor's state", cmd_monitor},
-    {"recorder", "tell what the flight recorder of a device kept", cmd_recorder},
+    {"recorder", "show what the flight recorder of a device kept", cmd_recorder},
     {"replay", "replay a recorded log to the supervisor in virtual time, and say why it trips", cmd_replay},
     {"run", "run the supervisor as a node on SocketCAN, in real time", cmd_run},
     {"scenario", "run scenario files with a simulated vehicle, and check their expectations", cmd_scenario},

@@ -188,7 +188,7 @@ static const row_t ROWS[] = {
     {"both modes are reported", LEVEL, false, NONE, "mode_invalid_ms", 50u, NULL, NULL, 0u, is_in_both_modes},
     {"commands come too fast", LEVEL, true, NONE, NULL, 0u, "COMMAND_TOO_FAST", NULL, 0u, is_command_too_fast},
     {"an invalid command", LEVEL, true, NONE, NULL, 0u, NULL, NULL, 0u, is_command_bad},
-    {"the supervisor's transmitter is dead", LEVEL, false, NONE, "tx_stalled_ms", 100u, NULL, NULL, 0u,
+    {"the supervisor's transmitter has failed", LEVEL, false, NONE, "tx_stalled_ms", 100u, NULL, NULL, 0u,
      is_transmitter_dead},
     {"the AI side is stalled", LEVEL, true, NONE, "tx_stalled_ms", 100u, "AI_BUS_OFF", NULL, 0u, is_ai_side_dead},
 };

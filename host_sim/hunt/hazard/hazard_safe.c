@@ -140,7 +140,7 @@ static void check_reset(hazard_t *hazard, bool was_closed) {
         }
         hazard_found(hazard, HAZARD_RESET,
                      (trip->button.pressed || trip->pin.pressed) ? "no button that may reset was released"
-                                                                 : "nobody pressed the button after the trip");
+                                                                 : "the button was not pressed after the trip");
     }
 }
 

@@ -53,7 +53,7 @@ export function drawFrames(trip) {
     });
   };
   const choice = make("div.choice");
-  [["the message that tells, and what the supervisor sent", false], ["all frames near the cause and the trip", true]].forEach(([text, all], i) => {
+  [["the message that shows the fault, and what the supervisor sent", false], ["all frames near the cause and the trip", true]].forEach(([text, all], i) => {
     const input = make("input");
     input.type = "radio";
     input.name = "frames";

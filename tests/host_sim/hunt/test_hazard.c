@@ -400,8 +400,8 @@ void test_h5_a_reset(void) {
     const char *const stuck = "  - {at_ms: 4000, operator: press, button: 1}\n";
     const char *const pressed =
         "  - {at_ms: 4500, operator: press, button: 1}\n  - {at_ms: 5900, operator: release, button: 1}\n";
-    expect_hazard(HAZARD_RESET, "nobody pressed the button after the trip", &resets, "");
-    expect_hazard(HAZARD_RESET, "nobody pressed the button after the trip", &resets, before);
+    expect_hazard(HAZARD_RESET, "the button was not pressed after the trip", &resets, "");
+    expect_hazard(HAZARD_RESET, "the button was not pressed after the trip", &resets, before);
     expect_hazard(HAZARD_RESET, "no button that may reset was released", &resets, stuck);
     expect_none(&resets, pressed);
 }
@@ -437,13 +437,13 @@ void test_h5_a_press_that_is_reported_late_or_wrongly(void) {
     char steps[512];
 
     (void)snprintf(steps, sizeof steps, lost, "");
-    expect_hazard(HAZARD_RESET, "nobody pressed the button after the trip", &resets, steps);
+    expect_hazard(HAZARD_RESET, "the button was not pressed after the trip", &resets, steps);
     (void)snprintf(steps, sizeof steps, lost, "  - {at_ms: 2900, vcu: set, field: alarms, value: 00h}\n");
     expect_none(&resets, steps);
     (void)snprintf(steps, sizeof steps, late, "4000");
     expect_none(&resets, steps);
     (void)snprintf(steps, sizeof steps, late, "3200"); /* shorter than reset_hold_ms */
-    expect_hazard(HAZARD_RESET, "nobody pressed the button after the trip", &resets, steps);
+    expect_hazard(HAZARD_RESET, "the button was not pressed after the trip", &resets, steps);
 }
 
 /** Each engagement has its grace time, but not the fourth one within mode_flapping_ms. */
@@ -473,8 +473,8 @@ void test_h6_a_node_that_reports_what_cannot_be(void) {
         {"both modes are reported", "vcu: set, field: mode_bits, value: 3h"},
         {"neither mode is reported", "vcu: set, field: mode_bits, value: 0h"},
         {"an invalid command", "bus: send, message: throttle_command, bytes: \"FF\", every_ms: 100"},
-        {"the supervisor's transmitter is dead", "supervisor: stall_tx"},
-        {"the supervisor's transmitter is dead", "supervisor: fill_queue"},
+        {"the supervisor's transmitter has failed", "supervisor: stall_tx"},
+        {"the supervisor's transmitter has failed", "supervisor: fill_queue"},
     };
     char steps[256];
 
@@ -490,8 +490,8 @@ void test_h6_a_dead_transmitter_shows_with_the_next_status_frame(void) {
     const stub_t never = {.setting = "status_frame_period_ms: 3000\n"};
     const stub_t late = {.setting = "status_frame_period_ms: 3000\n", .open_ms = TRIP_MS + 3200};
     const stub_t too_late = {.open_ms = TRIP_MS + 3200};
-    expect_hazard(HAZARD_FALSE_NODE, "the supervisor's transmitter is dead", &never, steps);
-    expect_hazard(HAZARD_FALSE_NODE, "the supervisor's transmitter is dead", &too_late, steps);
+    expect_hazard(HAZARD_FALSE_NODE, "the supervisor's transmitter has failed", &never, steps);
+    expect_hazard(HAZARD_FALSE_NODE, "the supervisor's transmitter has failed", &too_late, steps);
     expect_none(&late, steps);
 }
 

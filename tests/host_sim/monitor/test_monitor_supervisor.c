@@ -125,7 +125,7 @@ void test_the_shadow_that_was_asked_for_stays(void) {
 void test_a_hole_in_a_log_is_no_silence_of_the_bus(void) {
     healthy(0, 1500, true);
     healthy(3600000, 3601000, true);
-    TEST_ASSERT_EQUAL(1, said("shadow: time has leapt: it starts anew"));
+    TEST_ASSERT_EQUAL(1, said("shadow: the time jumped: it starts again"));
     TEST_ASSERT_EQUAL(0, said("TRIPPED"));
     TEST_ASSERT_EQUAL(AGV_STATE_STANDBY, monitor->supervisor.state);
 }
