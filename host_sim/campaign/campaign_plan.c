@@ -31,11 +31,13 @@ enum { THROTTLE_MIN_PCT = 5, STEER_MAX_DEG = 30, DRIVE_MS = 1000 };
 static void choose_kind(campaign_plan_t *plan, uint64_t *state) {
     static const uint32_t bitrates[] = {125000u, 250000u, 500000u};
     const uint32_t flags = plan->row->flags;
-    const bool gateway = prng_toss(state, 2u);
+    const bool engaged_in_gear = (plan->engagement != NULL) && ((flags & CAMPAIGN_IN_GEAR) != 0u);
+    const bool shared = ((flags & CAMPAIGN_SHARED) != 0u) || engaged_in_gear;
+    const bool gateway = prng_toss(state, 2u) && !shared;
     const bool manual = prng_toss(state, 4u);
 
     plan->bitrate = bitrates[prng_draw(state, 0u, 2u)];
-    plan->gateway = ((flags & CAMPAIGN_GATEWAY) != 0u) || (((flags & CAMPAIGN_SHARED) == 0u) && gateway);
+    plan->gateway = ((flags & CAMPAIGN_GATEWAY) != 0u) || gateway;
     plan->table_ids = prng_toss(state, 4u);
     plan->park_guard = !prng_toss(state, 4u);
     plan->at_standstill = prng_toss(state, 4u) && ((flags & CAMPAIGN_AT_ONCE_P) == 0u);

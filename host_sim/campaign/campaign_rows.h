@@ -49,8 +49,9 @@ typedef enum {
 #define CAMPAIGN_NO_OUTPUT (1u << 9)  /**< the safety output is never closed */
 #define CAMPAIGN_NO_WIRE (1u << 10)   /**< no frame leaves for a while */
 #define CAMPAIGN_AT_ONCE_P (1u << 11) /**< with park: at_once only */
-#define CAMPAIGN_AGAIN (1u << 13)     /**< engaged more than once before the cause */
 #define CAMPAIGN_LATE_AI (1u << 12)   /**< the AI computer starts after INIT: no collisions with it there */
+#define CAMPAIGN_AGAIN (1u << 13)     /**< engaged more than once before the cause */
+#define CAMPAIGN_IN_GEAR (1u << 14) /**< with an engagement: not on the gateway, which waits with D and the throttle */
 
 typedef struct {
     agv_fault_t fault;

@@ -106,8 +106,18 @@ static uint32_t bit_if(bool condition, uint32_t bit) {
     return condition ? bit : 0u;
 }
 
+/* A step that comes later than this after the last one is preceded by frames that are handled late. */
+enum { STEP_USUAL_MS = 10 };
+
+/* Ticks evaluate the heartbeats. A frame that is handled late may come after a deadline that no tick has seen yet. */
+static bool is_alive_now(const agv_core_t *core, agv_node_t node, uint32_t message) {
+    const bool late = (core->timers.now_ms - core->last_tick_ms) > (uint32_t)STEP_USUAL_MS;
+    return agv_liveness_alive(&core->liveness, node) &&
+           (!late || agv_liveness_fresh(&core->liveness, &core->timers, message));
+}
+
 static uint32_t vcu_facts(const agv_core_t *core) {
-    if (!agv_liveness_alive(&core->liveness, AGV_NODE_VCU)) {
+    if (!is_alive_now(core, AGV_NODE_VCU, AGV_MSG_VEHICLE_STATUS)) {
         return 0u;
     }
     const bool off = !agv_mode_is_engaged(&core->mode) && !agv_mode_is_ambiguous(&core->mode);
@@ -125,7 +135,7 @@ static bool throttle_is_idle(const agv_core_t *core) {
 /* The facts for INIT, TRIPPED and SAFE. */
 static uint32_t safe_state_facts(const agv_core_t *core) {
     const agv_timers_t *const timers = &core->timers;
-    return vcu_facts(core) | bit_if(agv_liveness_alive(&core->liveness, AGV_NODE_EPS), AGV_FACT_EPS_ALIVE) |
+    return vcu_facts(core) | bit_if(is_alive_now(core, AGV_NODE_EPS, AGV_MSG_STEERING_STATUS), AGV_FACT_EPS_ALIVE) |
            bit_if(agv_mode_is_manual(&core->mode), AGV_FACT_MANUAL) |
            bit_if(agv_vehicle_is_at_standstill(timers), AGV_FACT_STANDSTILL) |
            bit_if(agv_vehicle_is_slow(&core->vehicle, &core->config), AGV_FACT_SLOW) |
@@ -170,16 +180,16 @@ static void evaluate_faults(agv_core_t *core, uint32_t facts, uint32_t elapsed_m
     agv_fault_monitor_evaluate(&core->faults, &core->config.trips, ai_loss_warns, changes);
 }
 
-/* After a late step, a condition may hold only since the last frames before it: no more than this counts. */
-enum { RESET_STEP_MAX_MS = 10 };
-
-/* A press of a button, in TRIPPED and SAFE (FSM-3, HW-3). */
+/*
+ * A press of a button, in TRIPPED and SAFE (FSM-3, HW-3). After a late step, a condition may hold only since the last frames
+ * before it: no more than the usual time counts.
+ */
 static agv_press_result_t evaluate_press(agv_core_t *core, uint32_t facts, uint32_t elapsed_ms, uint32_t *missing) {
     if (!is_latched(core)) {
         return AGV_PRESS_NOTHING;
     }
     const uint32_t lacking = agv_state_machine_lacks_for_reset(&core->machine, &core->faults.summary, facts);
-    const uint32_t held_ms = (elapsed_ms < (uint32_t)RESET_STEP_MAX_MS) ? elapsed_ms : (uint32_t)RESET_STEP_MAX_MS;
+    const uint32_t held_ms = (elapsed_ms < (uint32_t)STEP_USUAL_MS) ? elapsed_ms : (uint32_t)STEP_USUAL_MS;
     const agv_press_result_t remote =
         agv_reset_button_step(&core->reset_button, &core->timers, &core->config, held_ms, lacking, missing);
     if (core->config.reset_input == (uint16_t)AGV_RESET_INPUT_CAN) {
@@ -220,12 +230,14 @@ static bool follow_hold(agv_core_t *core, uint32_t elapsed_ms) {
 }
 
 /*
- * SUP-7: in TRIPPED and SAFE, no frame that cannot leave keeps the safe commands back, and none leaves later with an old
- * value. Returns whether all frames were withdrawn.
+ * SUP-7: while safe commands are sent, no frame that cannot leave keeps them back, and none leaves later with an old value.
+ * Returns whether all frames were withdrawn. In INIT there may be no other node yet: then the frames wait for one.
  */
 static bool withdraw_frames(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) {
     const bool stuck = follow_hold(core, elapsed_ms);
-    const bool begins = core->stall_begins && is_latched(core);
+    const bool starts =
+        (core->machine.state == (uint8_t)AGV_STATE_INIT) && agv_liveness_alive(&core->liveness, AGV_NODE_VCU);
+    const bool begins = core->stall_begins && (is_latched(core) || starts);
     core->stall_begins = false;
     if (stuck || begins) {
         agv_hold_withdrawn(&core->hold);

@@ -26,18 +26,12 @@ static bool changes_gear_in_motion(const agv_gateway_facts_t *facts, uint8_t gea
            (facts->config->gear_change == (uint16_t)AGV_GEAR_CHANGE_AT_STANDSTILL);
 }
 
-/* An invalid 0A3h does not say that the vehicle is in N or P. */
-static bool may_drive(uint8_t gear) {
-    return (gear != (uint8_t)AGV_GEAR_N) && (gear != (uint8_t)AGV_GEAR_P);
-}
-
 void agv_gateway_follow_gear(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t command,
                              const uint8_t data[AGV_DLC]) {
     if ((command != (uint32_t)AGV_MSG_GEAR_COMMAND) || !agv_gateway_may_wait(facts, command)) {
         return;
     }
-    gateway->gear_waits =
-        changes_gear_in_motion(facts, data[0]) && may_drive(facts->vehicle->gear) && (data[0] != facts->gear_sent);
+    gateway->gear_waits = changes_gear_in_motion(facts, data[0]) && (data[0] != facts->gear_sent);
 }
 
 bool agv_gateway_passes(const agv_gateway_facts_t *facts, uint32_t command, const uint8_t data[AGV_DLC]) {

@@ -165,17 +165,26 @@ void test_in_tripped_a_frame_that_cannot_leave_is_withdrawn_again_and_again(void
     expect_fault_after(&f, 1, AGV_FAULT_TX_STALLED, false); /* none waits */
 }
 
-/* In INIT the frames wait: at the start nobody may be there to receive them. A bus-off ends the stall. */
-/* Shows: SUP-7, TX_STALLED, BUS_OFF */
-void test_in_init_a_frame_that_cannot_leave_waits(void) {
+static void expect_withdrawals_in_init(bool vcu_is_there, uint32_t expected) {
+    setUp();
     fixture_start(&f);
-    fixture_run(&f, 10);
+    fixture_mute_vcu(&f, !vcu_is_there);
+    fixture_run(&f, 30);
     const uint32_t purged = purges(HAL_CAN_VEHICLE);
     sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101);
+    fixture_forget_sent(&f);
     expect_fault_after(&f, 1, AGV_FAULT_TX_STALLED, true);
-    TEST_ASSERT_EQUAL_UINT32(purged, purges(HAL_CAN_VEHICLE));
+    TEST_ASSERT_EQUAL_UINT32(purged + expected, purges(HAL_CAN_VEHICLE));
+    TEST_ASSERT_EQUAL_UINT32(expected, fixture_count_sent(&f, 0x168));
     sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
     expect_fault_after(&f, 1, AGV_FAULT_TX_STALLED, false);
+}
+
+/* In INIT the frames wait as long as no VCU is there to receive them. A bus-off ends the stall. */
+/* Shows: SUP-7, TX_STALLED, BUS_OFF */
+void test_in_init_a_frame_that_cannot_leave_waits_for_a_vcu(void) {
+    expect_withdrawals_in_init(false, 0);
+    expect_withdrawals_in_init(true, 1);
 }
 
 /* The status frame goes out in its next slot: it may be what cannot leave, and would be next in the controller. */
