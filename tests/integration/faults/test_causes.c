@@ -18,16 +18,6 @@ static bool is_by_bits(const cause_t *cause) {
     return cause->how == BY_BITS || cause->how == BY_BITS_ENGAGED;
 }
 
-static const cause_t *cause_of(agv_fault_t fault) {
-    for (unsigned i = 0; i < CAUSES; i++) {
-        if (CAUSE[i].fault == fault) {
-            return &CAUSE[i];
-        }
-    }
-    TEST_FAIL_MESSAGE(FAULT_ROW[fault].name);
-    return NULL;
-}
-
 static void begin_case(const cause_t *cause, const char *where) {
     static char what[80];
     (void)snprintf(what, sizeof what, "%s: %s", row_of(cause)->name, where);
@@ -148,72 +138,6 @@ void test_each_fault_bit(void) {
     check_all(BY_BITS_ENGAGED, check_engaged);
 }
 
-/* None of the frames before the last one has an effect. */
-static void send_frames(const cause_t *cause, unsigned count, uint32_t gap_ms) {
-    for (unsigned i = 0; i < count; i++) {
-        expect_nothing_after(&f, gap_ms, cause->fault, AGV_STATE_STANDBY);
-        fixture_send_now(&f, cause->message);
-    }
-}
-
-static void begin_score(const cause_t *cause, const char *where) {
-    begin_case(cause, where);
-    fixture_standby(&f);
-    fixture_run_past(&f, cause->message);
-    f.traffic[cause->message].muted = true;
-}
-
-/* Every second frame is bad: 2, 1, 3, 2, 4, 3, 5, 4, 6: the fifth bad one brings the score to 2 N. */
-static void check_every_second(const cause_t *cause) {
-    begin_score(cause, "every second frame");
-    for (unsigned i = 0; i < 9; i++) {
-        cause_set(f.traffic, cause, i % 2 == 0);
-        send_frames(cause, 1, 10);
-    }
-    expect_trip(&f, cause->fault, f.call, NO_HOLD);
-}
-
-/* Gaps between frames change nothing. One bad frame in three never raises the fault: 2, 1, 0. */
-static void check_gaps_and_thirds(const cause_t *cause) {
-    begin_score(cause, "every third frame, then gaps");
-    for (unsigned i = 0; i < 30; i++) {
-        cause_set(f.traffic, cause, i % 3 == 0);
-        send_frames(cause, 1, 10);
-    }
-    cause_set(f.traffic, cause, true);
-    send_frames(cause, cause->count, 60);
-    expect_trip(&f, cause->fault, f.call, NO_HOLD);
-}
-
-static void check_score(const cause_t *cause) {
-    if (cause->count > 1) {
-        check_every_second(cause);
-        check_gaps_and_thirds(cause);
-    }
-}
-
-/* Shows: SUP-4, FSM-2, EPS_UNDER_VOLTAGE, EPS_OVER_VOLTAGE, EPS_EXCESSIVE_CURRENT */
-void test_each_scored_bit(void) {
-    check_all(BY_BITS, check_score);
-}
-
-/* The three scores are separate: each bit in every third frame raises none of the faults. */
-/* Shows: SUP-4 */
-void test_scores_of_different_bits_do_not_add_up(void) {
-    static const agv_fault_t SCORED[] = {AGV_FAULT_EPS_UNDER_VOLTAGE, AGV_FAULT_EPS_OVER_VOLTAGE,
-                                         AGV_FAULT_EPS_EXCESSIVE_CURRENT};
-    fixture_standby(&f);
-    for (unsigned i = 0; i < 30; i++) {
-        for (unsigned bit = 0; bit < 3; bit++) {
-            cause_set(f.traffic, cause_of(SCORED[bit]), i % 3 == bit);
-        }
-        fixture_run_past(&f, AGV_MSG_EPS_STATUS);
-        for (unsigned bit = 0; bit < 3; bit++) {
-            expect_nothing(&f, SCORED[bit], AGV_STATE_STANDBY);
-        }
-    }
-}
-
 /* The fault bits of a frame with an invalid mode still count. */
 /* Shows: SUP-4, SUP-5, P18 */
 void test_fault_bits_count_in_a_frame_with_an_invalid_mode(void) {
@@ -223,25 +147,6 @@ void test_fault_bits_count_in_a_frame_with_an_invalid_mode(void) {
     f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x40;
     fixture_run_past(&f, AGV_MSG_EPS_STATUS);
     expect_trip(&f, AGV_FAULT_EPS_MOTOR_ENCODER, f.traffic[AGV_MSG_EPS_STATUS].call, NO_HOLD);
-}
-
-/* Bit2 and Bit6 of 363h byte 5 are reserved (P14): they raise nothing. */
-/* Shows: SUP-4, P14 */
-void test_reserved_alarm_bits_are_ignored(void) {
-    fixture_active(&f);
-    f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x44;
-    expect_state_after(&f, 2000, AGV_STATE_ACTIVE);
-    TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
-}
-
-/* The number of frames is a setting: with 1 the first bad frame raises the fault. */
-/* Shows: SUP-4, EPS_OVER_VOLTAGE */
-void test_the_count_is_a_setting(void) {
-    cause_t cause = *cause_of(AGV_FAULT_EPS_OVER_VOLTAGE);
-    cause.count = 1;
-    f.config.eps_supply_fault_frames = 1;
-    fixture_standby(&f);
-    check_trip(&cause, AGV_STATE_STANDBY, NO_HOLD);
 }
 
 /* ---- Heartbeats and deadlines of status messages: always ---- */

@@ -1,6 +1,5 @@
 /* Classes that the configuration may change, and the fault on the LED when several are active. Single rows:
  * test_fault_rows. */
-#include "agv/names.h"
 #include "one_fixture.h"
 
 /* ---- Classes that configuration has changed ---- */
@@ -52,36 +51,6 @@ void test_some_trips_may_be_made_warnings(void) {
     f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
     fixture_start(&f);
     expect_state_after(&f, 2000, AGV_STATE_INIT); /* for standstill */
-}
-
-/* Mandatory: faults of the VCU and EPS heartbeats, of the AI while engaged, and of the EPS. */
-/* Shows: INT-2, CONFIG_INVALID */
-void test_the_others_may_not(void) {
-    static const agv_fault_t FIXED[] = {AGV_FAULT_VCU_HEARTBEAT_LOST,     AGV_FAULT_VCU_HEARTBEAT_STUCK,
-                                        AGV_FAULT_EPS_HEARTBEAT_LOST,     AGV_FAULT_EPS_HEARTBEAT_STUCK,
-                                        AGV_FAULT_AI_HEARTBEAT_LOST,      AGV_FAULT_AI_HEARTBEAT_STUCK,
-                                        AGV_FAULT_EPS_UNDER_VOLTAGE,      AGV_FAULT_EPS_MOTOR_ENCODER,
-                                        AGV_FAULT_VCU_EPS_HARDWARE_FAULT, AGV_FAULT_VCU_EPS_CAN_BUS_FAULT,
-                                        AGV_FAULT_EPS_STATUS_TIMEOUT,     AGV_FAULT_EPS_MODE_OFF,
-                                        AGV_FAULT_EPS_MODE_INVALID,       AGV_FAULT_EPS_MODE_NOT_ANGLE,
-                                        AGV_FAULT_STEERING_ANGLE_INVALID, AGV_FAULT_STEERING_DEVIATION,
-                                        AGV_FAULT_GEAR_COMMAND_TIMEOUT,   AGV_FAULT_THROTTLE_COMMAND_TIMEOUT,
-                                        AGV_FAULT_VCU_AI_CAN_LOST,        AGV_FAULT_AI_COMMAND_OUT_OF_RANGE,
-                                        AGV_FAULT_SAFE_STATE_UNCONFIRMED, AGV_FAULT_VEHICLE_NOT_STOPPING,
-                                        AGV_FAULT_MOVING_WHILE_SAFE,      AGV_FAULT_MODE_INVALID,
-                                        AGV_FAULT_MODE_FLAPPING,          AGV_FAULT_MODE_NONE,
-                                        AGV_FAULT_FOREIGN_COMMAND_SENDER, AGV_FAULT_EMERGENCY_STOP,
-                                        AGV_FAULT_OUTPUT_FEEDBACK,        AGV_FAULT_CLOCK_DEVIATION};
-    for (unsigned i = 0; i < sizeof FIXED / sizeof FIXED[0]; i++) {
-        fixture_init(&f);
-        f.what = agv_fault_name(FIXED[i]);
-        set_class(FIXED[i], false);
-        const agv_config_verdict_t verdict = agv_config_check(&f.config);
-        TEST_ASSERT_EQUAL_INT_MESSAGE(AGV_CONFIG_FAULT_TOO_WEAK, verdict.problem, f.what);
-        TEST_ASSERT_EQUAL_INT_MESSAGE(FIXED[i], verdict.fault, f.what);
-        fixture_start(&f);
-        expect_reason(&f, AGV_FAULT_CONFIG_INVALID);
-    }
 }
 
 /* ---- The LED shows one of them ---- */

@@ -477,29 +477,6 @@ void test_a_step_100_ms_late_is_in_time(void) {
     expect_reason(&f, AGV_FAULT_STEP_OVERRUN);
 }
 
-/* The limit is the watchdog's period. */
-/* Shows: TIM-4, STEP_OVERRUN */
-void test_the_watchdog_period_is_a_setting(void) {
-    f.config.watchdog_period_ms = 10;
-    fixture_standby(&f);
-    be_late(10);
-    expect_nothing(&f, AGV_FAULT_STEP_OVERRUN, AGV_STATE_STANDBY);
-    be_late(11);
-    expect_trip(&f, AGV_FAULT_STEP_OVERRUN, f.call, NO_HOLD);
-}
-
-/* In INIT it latches nothing, and keeps INIT for a second. */
-/* Shows: TIM-4, STEP_OVERRUN */
-void test_a_late_step_in_init(void) {
-    fixture_start(&f);
-    fixture_run(&f, 300);
-    be_late(101);
-    expect_fault(&f, AGV_FAULT_STEP_OVERRUN, true);
-    expect_state_after(&f, 1400, AGV_STATE_INIT);
-    expect_reason(&f, AGV_FAULT_NONE);
-    expect_state_after(&f, 150, AGV_STATE_STANDBY);
-}
-
 /* 065h waits for a full queue and is no longer wanted (manual), so it cannot stall. */
 /* Shows: SUP-7, FSM-10, TX_STALLED */
 void test_a_frame_that_is_no_longer_wanted_is_not_stalled(void) {

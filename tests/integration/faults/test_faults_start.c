@@ -218,7 +218,7 @@ void test_the_gate_refuses_a_forbidden_frame(void) {
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_TX_GATE_REFUSED));
 }
 
-/* ---- STARTUP_TIMEOUT, SAFE_STATE_UNCONFIRMED: raised by the states ---- */
+/* ---- STARTUP_TIMEOUT ---- */
 
 /* 10 s in INIT; ends when INIT is left. */
 /* Shows: STARTUP_TIMEOUT */
@@ -237,27 +237,4 @@ void test_startup_timeout(void) {
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_STARTUP_TIMEOUT));
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_STARTUP_TIMEOUT));
     expect_led(&f, 0);
-}
-
-/* The vehicle reports autopilot for 500 ms, including the one of the trip. The fault ends with the confirmation. */
-/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
-void test_safe_state_unconfirmed(void) {
-    agv_event_t event;
-    fixture_active(&f);
-    f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x02;
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    expect_reason(&f, AGV_FAULT_REMOTE_POWER_LOST);
-    expect_fault_after(&f, 498, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
-    expect_output(&f, true);
-    expect_fault_after(&f, 1, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
-    expect_output(&f, false);
-    TEST_ASSERT_TRUE(fixture_last_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, &event));
-    TEST_ASSERT_EQUAL_INT(AGV_CLASS_TRIP, event.b);
-    expect_led(&f, 16); /* the reason of the trip ranks higher */
-    fixture_vehicle_confirms(&f);
-    expect_state_after(&f, 40, AGV_STATE_SAFE); /* three 363h */
-    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
-    expect_reason(&f, AGV_FAULT_REMOTE_POWER_LOST);
 }

@@ -241,19 +241,6 @@ void test_the_speed_of_the_vcu_may_be_left_out(void) {
     expect_state_after(&f, 514, AGV_STATE_STANDBY);
 }
 
-/* Moving, then standing: the 500 ms begin with the first slow value. */
-/* Shows: FSM-7 */
-void test_a_vehicle_that_moves_for_a_moment_starts_the_500_ms_anew(void) {
-    fixture_start(&f);
-    fixture_run(&f, 402);
-    fixture_wheels(&f, 50, 0);
-    fixture_run(&f, 1); /* 101h at 403 ms */
-    fixture_wheels(&f, 0, 0);
-    expect_state_after(&f, 509, AGV_STATE_INIT); /* well again from 413 ms on; now it is 912 ms */
-    expect_state_after(&f, 1, AGV_STATE_STANDBY);
-}
-
-/* A transient lasts for 1 s after the last occurrence. */
 /* An AI computer that was received and is lost keeps INIT if its loss is a trip, until it is back. */
 /* Shows: SUP-8, FSM-7, AI_HEARTBEAT_LOST */
 void test_a_lost_ai_computer_keeps_init_where_it_is_a_trip_in_manual(void) {
@@ -270,6 +257,7 @@ void test_a_lost_ai_computer_keeps_init_where_it_is_a_trip_in_manual(void) {
     expect_reason(&f, AGV_FAULT_NONE);
 }
 
+/* A transient lasts for 1 s after the last occurrence. */
 /* Shows: FOREIGN_COMMAND_SENDER, FSM-7 */
 void test_a_transient_keeps_init_until_it_has_ended(void) {
     static const uint8_t park[8] = {GEAR_P};
@@ -299,15 +287,4 @@ void test_a_vehicle_that_is_engaged_at_power_on_is_not_resumed(void) {
     expect_state_after(&f, 2000, AGV_STATE_INIT); /* it still moves */
     fixture_drive(&f, 0);
     expect_state_after(&f, 600, AGV_STATE_STANDBY);
-}
-
-/* Shows: FSM-9, SELF_TEST_FAILED, CONFIG_INVALID */
-void test_only_unresettable_faults_latch_at_a_power_on(void) {
-    f.self_test_passed = false;
-    fixture_start(&f);
-    expect_tripped(&f, AGV_FAULT_SELF_TEST_FAILED);
-    fixture_init(&f);
-    f.config.startup_timeout_ms = 0;
-    fixture_start(&f);
-    expect_tripped(&f, AGV_FAULT_CONFIG_INVALID);
 }

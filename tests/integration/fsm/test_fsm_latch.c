@@ -12,16 +12,6 @@ static void press_for(uint32_t ms) {
 
 /* ---- The first reason ---- */
 
-/* Shows: FSM-5, BUS_OFF */
-void test_later_reasons_do_not_replace_the_first_one(void) {
-    walk_to_safe(&f);
-    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF); /* ranks higher */
-    expect_fault_after(&f, 300, AGV_FAULT_BUS_OFF, true);
-    expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
-    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
-    expect_reason_after(&f, 300, AGV_FAULT_S_DRIVER_ALARM);
-}
-
 /* Shows: FSM-5 */
 void test_the_reason_goes_with_the_reset_and_the_recorder_keeps_it(void) {
     agv_event_t event = {0};
@@ -34,32 +24,6 @@ void test_the_reason_goes_with_the_reset_and_the_recorder_keeps_it(void) {
     TEST_ASSERT_EQUAL_UINT32(1, fixture_events(&f, AGV_EVENT_STATE, AGV_STATE_ACTIVE, ANY, &event));
     TEST_ASSERT_EQUAL_HEX8(AGV_STATE_TRIPPED, event.b);
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_S_DRIVER_ALARM, event.c);
-}
-
-static void expect_first(uint8_t alarms, agv_fault_t reason) {
-    fixture_init(&f);
-    fixture_active(&f);
-    walk_alarm(&f, alarms);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-    expect_tripped(&f, reason);
-}
-
-/* In one frame: the upper row of the table is the first. */
-/* Shows: FSM-5, REMOTE_SIGNAL_LOST, REMOTE_POWER_LOST, VCU_EPS_HARDWARE_FAULT */
-void test_of_two_in_the_same_instant_the_upper_row_is_the_first(void) {
-    expect_first(ALARM_REMOTE_SIGNAL | ALARM_REMOTE_POWER, AGV_FAULT_REMOTE_SIGNAL_LOST);
-    expect_first(ALARM_REMOTE_POWER | ALARM_S_DRIVER, AGV_FAULT_S_DRIVER_ALARM);
-    expect_first(ALARM_REMOTE_SIGNAL | ALARM_EPS_HARDWARE | ALARM_S_DRIVER, AGV_FAULT_VCU_EPS_HARDWARE_FAULT);
-}
-
-/* Within a row the left one: bits 6 and 4 of 167h byte 8. */
-/* Shows: FSM-5, EPS_OVER_CURRENT_SHUTDOWN, EPS_TEMP_ABOVE_120 */
-void test_of_two_of_a_row_in_the_same_instant_the_left_one_is_the_first(void) {
-    fixture_active(&f);
-    f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x28;
-    fixture_send_now(&f, AGV_MSG_EPS_STATUS);
-    expect_reason(&f, AGV_FAULT_EPS_OVER_CURRENT_SHUTDOWN);
-    expect_fault(&f, AGV_FAULT_EPS_TEMP_ABOVE_120, true);
 }
 
 /* ---- Unresettable faults ---- */
@@ -135,11 +99,20 @@ void test_corrupted_memory_keeps_the_reason_of_an_earlier_trip(void) {
     expect_cannot_be_reset(AGV_FAULT_S_DRIVER_ALARM);
 }
 
-/* A flipped bit in the configuration: the defaults are used, with this vehicle's identifiers and topology. */
-/* Shows: FSM-9, INT-5, MEMORY_CORRUPTED, P1 */
-void test_a_corrupted_configuration_is_replaced_by_one_that_fits_the_vehicle(void) {
-    f.config.topology = AGV_TOPOLOGY_GATEWAY;
-    f.config.id_set = AGV_ID_SET_TABLE;
+static void expect_the_kind_of_vehicle(const agv_config_t *config) {
+    TEST_ASSERT_EQUAL_INT(AGV_CONFIG_OK, agv_config_check(config).problem);
+    TEST_ASSERT_EQUAL_UINT16(AGV_TOPOLOGY_GATEWAY, config->topology);
+    TEST_ASSERT_EQUAL_UINT16(AGV_ID_SET_TABLE, config->id_set);
+}
+
+static void expect_the_identifiers(const agv_config_t *config) {
+    TEST_ASSERT_EQUAL_HEX16(0x169, config->id_gear_command);
+    TEST_ASSERT_EQUAL_HEX16(0x102, config->id_wheel_speed);
+    TEST_ASSERT_EQUAL_HEX16(0x43F, config->id_turn_signal_command);
+}
+
+/* Each bit of the configuration in turn. */
+static void expect_after_a_flipped_bit(void (*expect_kept)(const agv_config_t *config)) {
     f.long_run = true;
     fixture_active(&f);
     const agv_supervisor_t intact = f.supervisor;
@@ -149,11 +122,16 @@ void test_a_corrupted_configuration_is_replaced_by_one_that_fits_the_vehicle(voi
         ((uint8_t *)&f.supervisor)[at + bit / 8] ^= (uint8_t)(1u << (bit % 8));
         fixture_send_now(&f, AGV_MSG_WHEEL_SPEED);
         expect_fault(&f, AGV_FAULT_MEMORY_CORRUPTED, true);
-        const agv_config_t *config = agv_supervisor_config(&f.supervisor);
-        TEST_ASSERT_EQUAL_INT(AGV_CONFIG_OK, agv_config_check(config).problem);
-        TEST_ASSERT_EQUAL_UINT16(AGV_TOPOLOGY_GATEWAY, config->topology);
-        TEST_ASSERT_EQUAL_UINT16(AGV_ID_SET_TABLE, config->id_set);
+        expect_kept(agv_supervisor_config(&f.supervisor));
     }
+}
+
+/* The defaults are used, with this vehicle's identifiers and topology. */
+/* Shows: FSM-9, INT-5, MEMORY_CORRUPTED, P1 */
+void test_a_corrupted_configuration_is_replaced_by_one_that_fits_the_vehicle(void) {
+    f.config.topology = AGV_TOPOLOGY_GATEWAY;
+    f.config.id_set = AGV_ID_SET_TABLE;
+    expect_after_a_flipped_bit(expect_the_kind_of_vehicle);
 }
 
 /* Identifiers that were changed one by one are kept, too. */
@@ -162,19 +140,7 @@ void test_a_corrupted_configuration_keeps_identifiers_that_were_changed(void) {
     f.config.id_gear_command = 0x169;
     f.config.id_wheel_speed = 0x102;
     f.other_ids = true;
-    f.long_run = true;
-    fixture_active(&f);
-    const agv_supervisor_t intact = f.supervisor;
-    const size_t at = (size_t)((const uint8_t *)agv_supervisor_config(&f.supervisor) - (const uint8_t *)&f.supervisor);
-    for (size_t bit = 0; bit < 8 * sizeof(agv_config_t); bit++) {
-        f.supervisor = intact;
-        ((uint8_t *)&f.supervisor)[at + bit / 8] ^= (uint8_t)(1u << (bit % 8));
-        fixture_send_now(&f, AGV_MSG_WHEEL_SPEED);
-        expect_fault(&f, AGV_FAULT_MEMORY_CORRUPTED, true);
-        TEST_ASSERT_EQUAL_HEX16(0x169, agv_supervisor_config(&f.supervisor)->id_gear_command);
-        TEST_ASSERT_EQUAL_HEX16(0x102, agv_supervisor_config(&f.supervisor)->id_wheel_speed);
-        TEST_ASSERT_EQUAL_HEX16(0x43F, agv_supervisor_config(&f.supervisor)->id_turn_signal_command);
-    }
+    expect_after_a_flipped_bit(expect_the_identifiers);
 }
 
 /* With an invalid identifier all identifiers fall back to those of the ID set. */
@@ -240,15 +206,6 @@ void test_the_own_heartbeat_is_frozen_if_so_chosen(void) {
     for (uint32_t n = 1; n < 30; n++) {
         TEST_ASSERT_EQUAL_HEX8(fixture_nth_sent(&f, 0x43F, 0)->data[7], fixture_nth_sent(&f, 0x43F, n)->data[7]);
     }
-}
-
-/* A frozen counter is refused on a shared bus, where two heartbeats would alternate. */
-/* Shows: FSM-8, INT-2 */
-void test_a_frozen_heartbeat_needs_a_gateway(void) {
-    f.config.own_heartbeat = AGV_OWN_HEARTBEAT_FROZEN;
-    TEST_ASSERT_EQUAL_INT(AGV_CONFIG_NEEDS_GATEWAY, agv_config_check(&f.config).problem);
-    f.config.topology = AGV_TOPOLOGY_GATEWAY;
-    TEST_ASSERT_EQUAL_INT(AGV_CONFIG_OK, agv_config_check(&f.config).problem);
 }
 
 static void expect_outlives_every_other_reset(agv_fault_t fault) {

@@ -117,23 +117,6 @@ void test_a_confirmation_that_comes_and_goes_opens_it(void) {
     expect_open_until_the_reset();
 }
 
-/* At its limit the fault is raised again by the next millisecond, until both were confirmed for 5 s without
- * interruption. */
-/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
-void test_only_5_s_of_both_confirmations_empty_the_sums(void) {
-    stay_in_safe();
-    lose_p_for(500);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
-    fixture_run(&f, 4999);
-    lose_p_for(1);
-    TEST_ASSERT_EQUAL_UINT32(2, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
-    fixture_run(&f, 5000);
-    lose_p_for(499);
-    TEST_ASSERT_EQUAL_UINT32(2, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
-    lose_p_for(1);
-    TEST_ASSERT_EQUAL_UINT32(3, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
-}
-
 /* Engaged for this time, then manual: the third such 363h ends the engagement. */
 static void engage_for(uint32_t ms) {
     fixture_mode(&f, MODE_ENGAGED);
@@ -143,17 +126,6 @@ static void engage_for(uint32_t ms) {
     for (unsigned i = 0; i < 3; i++) {
         fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
     }
-}
-
-/* Shows: FSM-4 */
-void test_the_two_sums_do_not_add_up(void) {
-    stay_in_safe();
-    lose_p_for(499);
-    engage_for(499);
-    expect_output(&f, true);
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
-    engage_for(1);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
 }
 
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
@@ -171,21 +143,6 @@ void test_each_sum_has_its_own_limit(void) {
     expect_output(&f, true);
     engage_for(1);
     expect_output(&f, false);
-}
-
-/* Raised because the autopilot is not off. The missing P is still in time, but keeps the fault active. */
-/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
-void test_it_is_unconfirmed_until_both_are_confirmed(void) {
-    f.config.park_confirm_timeout_ms = 5000;
-    walk_to_tripped(&f);
-    expect_fault_after(&f, 700, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
-    fixture_mode(&f, MODE_MANUAL);
-    expect_fault_after(&f, 1000, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
-    fixture_gear(&f, GEAR_P);
-    fixture_send_now(&f, AGV_MSG_GEAR_STATUS);
-    expect_fault(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
-    expect_open_until_the_reset();
 }
 
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */

@@ -20,17 +20,6 @@ void test_a_fault_in_a_frame_trips_in_the_same_call(void) {
     TEST_ASSERT_EQUAL_UINT32(4, f.sent_count);
 }
 
-/* Shows: FSM-2, EPS_UNDER_VOLTAGE */
-void test_a_fault_that_needs_3_frames_trips_in_the_call_of_the_third(void) {
-    fixture_active(&f);
-    f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x01;
-    (void)send_now(AGV_MSG_EPS_STATUS);
-    (void)send_now(AGV_MSG_EPS_STATUS);
-    expect_silence(&f);
-    const uint32_t call = send_now(AGV_MSG_EPS_STATUS);
-    expect_trip(&f, AGV_FAULT_EPS_UNDER_VOLTAGE, call, NO_HOLD);
-}
-
 /* Shows: FSM-2, AI_COMMAND_OUT_OF_RANGE */
 void test_a_command_out_of_range_is_answered_once_and_in_its_own_handling(void) {
     static const uint8_t no_gear[8] = {3};
@@ -38,18 +27,6 @@ void test_a_command_out_of_range_is_answered_once_and_in_its_own_handling(void) 
     fixture_frame(&f, AGV_MSG_GEAR_COMMAND, no_gear);
     expect_trip(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, f.call, 9000);
     TEST_ASSERT_EQUAL_UINT32(4, f.sent_count); /* no additional override */
-}
-
-/* The last counter came at t; at t + 50 its age is 50 ms, not greater. */
-/* Shows: FSM-2, SUP-2, EPS_HEARTBEAT_LOST */
-void test_an_expired_deadline_trips_within_the_tick(void) {
-    fixture_active(&f);
-    fixture_run_past(&f, AGV_MSG_STEERING_STATUS);
-    f.traffic[AGV_MSG_STEERING_STATUS].muted = true;
-    fixture_run(&f, 50);
-    expect_silence(&f);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_EPS_HEARTBEAT_LOST, f.call, NO_HOLD);
 }
 
 static void expect_sent_at(uint32_t trip_ms, uint32_t id, const uint32_t *after_ms, uint32_t count) {

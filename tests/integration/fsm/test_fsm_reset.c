@@ -43,54 +43,6 @@ void test_a_press_of_1_s_with_all_conditions_resets_at_its_release(void) {
     expect_silence(&f);
 }
 
-/* Shows: FSM-3 */
-void test_a_press_of_less_than_1_s_resets_nothing_and_is_not_reported(void) {
-    walk_to_safe(&f);
-    for (unsigned i = 0; i < 5; i++) {
-        hold_for(999);
-        expect_state_after(&f, 500, AGV_STATE_SAFE);
-    }
-    expect_refusals(0, 0);
-}
-
-/* Shows: FSM-3 */
-void test_a_press_of_5_s_resets(void) {
-    walk_to_safe(&f);
-    expect_reset_by(5000);
-    expect_refusals(0, 0);
-}
-
-/* A stuck button: reported once, after more than 5 s, and not again at its release. */
-/* Shows: FSM-3 */
-void test_a_press_of_more_than_5_s_resets_nothing_and_is_reported_once(void) {
-    f.long_run = true;
-    walk_to_safe(&f);
-    press(true);
-    fixture_run(&f, 5000);
-    expect_refusals(0, 0);
-    fixture_run(&f, 1);
-    expect_refusals(1, AGV_MISSING_RELEASED);
-    fixture_run(&f, 60000);
-    press(false);
-    fixture_run(&f, 100);
-    expect_refusals(1, AGV_MISSING_RELEASED);
-    expect_reset_by(1000); /* a press of its own */
-}
-
-/* Shows: FSM-3 */
-void test_both_times_are_settings(void) {
-    f.config.reset_hold_ms = 1500;
-    f.config.reset_hold_max_ms = 2000;
-    walk_to_safe(&f);
-    fixture_run(&f, 1000);
-    hold_for(1499);
-    expect_state(&f, AGV_STATE_SAFE);
-    expect_refusals(0, 0);
-    hold_for(2001);
-    expect_refusals(1, AGV_MISSING_RELEASED);
-    expect_reset_by(1500);
-}
-
 /* ---- Each condition missing in turn ---- */
 
 static void moving(bool spoilt) {
@@ -194,34 +146,6 @@ void test_each_missing_condition_refuses_and_is_named_once_a_press(void) {
     }
 }
 
-/* Moving until 0.4 s after the press, not manual from 0.3 s to 0.6 s after it. */
-static void press_with_two_breaks(uint32_t released_after_ms) {
-    walk_to_safe(&f);
-    moving(true);
-    fixture_run(&f, 20);
-    press(true);
-    fixture_run(&f, 300);
-    moving(false);
-    not_manual(true);
-    fixture_run(&f, 300);
-    not_manual(false);
-    fixture_run(&f, released_after_ms - 600);
-    press(false);
-}
-
-/* Shows: FSM-3 */
-void test_a_refusal_names_what_was_missing_at_any_time_in_the_last_1_s(void) {
-    press_with_two_breaks(1300);
-    expect_refusals(1, AGV_MISSING_STANDSTILL | AGV_MISSING_MANUAL);
-    fixture_init(&f);
-    press_with_two_breaks(1500);
-    expect_refusals(1, AGV_MISSING_MANUAL);
-    fixture_init(&f);
-    press_with_two_breaks(1700);
-    expect_state(&f, AGV_STATE_STANDBY);
-    expect_refusals(0, 0);
-}
-
 /* A condition that was missing before the last second does not matter, even during the press. */
 /* Shows: FSM-3 */
 void test_from_the_end_of_a_break_on_it_takes_1_s(void) {
@@ -240,29 +164,6 @@ void test_from_the_end_of_a_break_on_it_takes_1_s(void) {
         fixture_run(&f, 1130); /* 100 ms of standstill, three 363h, a cycle of 0A3h */
         press(false);
         expect_state(&f, AGV_STATE_STANDBY);
-    }
-}
-
-static void neither_mode_for_a_moment(void) {
-    fixture_mode(&f, MODE_NEITHER);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-    fixture_mode(&f, MODE_MANUAL);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-}
-
-/* Shows: FSM-3 */
-void test_a_break_of_one_frame(void) {
-    static const uint32_t THEN_MS[] = {10, 999, 1000};
-    for (unsigned i = 0; i < 3; i++) {
-        fixture_init(&f);
-        walk_to_safe(&f);
-        press(true);
-        fixture_run(&f, 990);
-        neither_mode_for_a_moment();
-        fixture_run(&f, THEN_MS[i]);
-        press(false);
-        expect_state(&f, THEN_MS[i] < 1000 ? AGV_STATE_SAFE : AGV_STATE_STANDBY);
-        expect_refusals(THEN_MS[i] < 1000 ? 1 : 0, THEN_MS[i] < 1000 ? AGV_MISSING_MANUAL : 0);
     }
 }
 
@@ -315,15 +216,6 @@ void test_a_deadline_that_expires_in_the_last_tick(void) {
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
-/* Shows: FSM-3 */
-void test_a_release_starts_the_press_anew(void) {
-    walk_to_safe(&f);
-    hold_for(990);
-    hold_for(999);
-    expect_state(&f, AGV_STATE_SAFE);
-    expect_reset_by(1000);
-}
-
 /* ---- The edge of the button ---- */
 
 static void expect_no_reset_before_a_new_press(void) {
@@ -334,17 +226,6 @@ static void expect_no_reset_before_a_new_press(void) {
     TEST_ASSERT_EQUAL_UINT32(1, walk_refusals(&f, &missing));
     TEST_ASSERT_BITS_HIGH(AGV_MISSING_BUTTON, missing);
     expect_reset_by(1000);
-}
-
-/* Shows: FSM-3 */
-void test_a_press_that_began_before_the_trip_does_not_count(void) {
-    fixture_active(&f);
-    press(true);
-    fixture_run(&f, 50);
-    walk_trip(&f);
-    fixture_mute_ai(&f, true);
-    fixture_vehicle_confirms(&f);
-    expect_no_reset_before_a_new_press();
 }
 
 /* Shows: FSM-3 */
@@ -397,16 +278,6 @@ void test_the_loss_of_the_vcu_ends_a_press(void) {
     expect_refusals(2, AGV_MISSING_BUTTON); /* it was pressed before the VCU came back */
     expect_state(&f, AGV_STATE_SAFE);
     expect_reset_by(1000);
-}
-
-/* Shows: FSM-3, VCU_HEARTBEAT_LOST */
-void test_a_short_press_that_the_loss_of_the_vcu_ends_is_not_reported(void) {
-    walk_to_safe(&f);
-    press(true);
-    fixture_run(&f, 500);
-    f.traffic[AGV_MSG_VEHICLE_STATUS].muted = true;
-    fixture_run(&f, 2000);
-    expect_refusals(0, 0);
 }
 
 /* Shows: FSM-3, VCU_HEARTBEAT_STUCK */
@@ -616,15 +487,6 @@ void test_after_the_reset_the_autopilot_can_be_engaged_again(void) {
     fixture_mode(&f, MODE_ENGAGED);
     expect_state_after(&f, 1000, AGV_STATE_ACTIVE);
     expect_silence(&f);
-}
-
-/* Shows: FSM-3, FSM-7 */
-void test_a_press_that_began_before_a_restart_does_not_count(void) {
-    walk_to_safe(&f);
-    press(true);
-    fixture_run(&f, 500);
-    fixture_restart(&f, HAL_RESET_WATCHDOG);
-    expect_no_reset_before_a_new_press();
 }
 
 /* The throttle is at idle since the frames of a late step: of its 99 ms, 10 count. */

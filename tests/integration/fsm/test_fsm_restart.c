@@ -122,17 +122,6 @@ void test_after_a_restart_a_reset_is_possible_and_forgets_the_latch(void) {
     expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET); /* not the earlier alarm */
 }
 
-/* The restart itself is a transient: it ends after 1 s, and prevents a reset until then. */
-/* Shows: FSM-7, SUPERVISOR_RESET */
-void test_the_restart_is_an_event(void) {
-    fixture_standby(&f);
-    fixture_restart(&f, HAL_RESET_SOFTWARE);
-    expect_fault_after(&f, 999, AGV_FAULT_SUPERVISOR_RESET, true);
-    expect_fault_after(&f, 2, AGV_FAULT_SUPERVISOR_RESET, false);
-    expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET);
-    expect_state(&f, AGV_STATE_SAFE);
-}
-
 /* Shows: FSM-7 */
 void test_a_power_on_waits_for_manual(void) {
     fixture_active(&f);

@@ -57,22 +57,6 @@ void test_a_vehicle_that_drives_on_for_5_s(void) {
     expect_ends_when_the_wheels_stand(AGV_FAULT_VEHICLE_NOT_STOPPING);
 }
 
-/* Shows: FSM-12, VEHICLE_NOT_STOPPING */
-void test_one_slow_wheel_is_enough_to_move(void) {
-    walk_to_tripped_driving(&f, 1000);
-    confirm();
-    fixture_wheels(&f, 0, -50);
-    expect_not_stopping_after(5000);
-}
-
-/* Shows: FSM-12, VEHICLE_NOT_STOPPING */
-void test_the_time_to_stop_is_a_setting(void) {
-    f.config.stop_timeout_ms = 1000;
-    walk_to_tripped_driving(&f, 1000);
-    confirm();
-    expect_not_stopping_after(1000);
-}
-
 /* The speed of 363h does not matter; the wheel speeds count. */
 /* Shows: FSM-12 */
 void test_a_vehicle_that_stops_within_5_s(void) {
@@ -95,18 +79,6 @@ void test_wheels_without_fresh_speeds_do_not_stand(void) {
     fixture_drive(&f, 0);
     f.traffic[AGV_MSG_WHEEL_SPEED].muted = false;
     expect_ends_when_the_wheels_stand(AGV_FAULT_VEHICLE_NOT_STOPPING);
-}
-
-/* Standstill at the trip counts, even if 101h is silent from then on, which is a separate fault. */
-/* Shows: FSM-12 */
-void test_wheels_that_stand_at_the_trip_count_as_stopped(void) {
-    walk_to_tripped(&f);
-    confirm();
-    f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
-    fixture_run(&f, 10000);
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_VEHICLE_NOT_STOPPING));
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_MOVING_WHILE_SAFE));
-    expect_output(&f, true);
 }
 
 /* The vehicle stood before, but at the trip its wheel speeds are too old. */
@@ -167,18 +139,6 @@ void test_a_vehicle_that_moves_again_for_200_ms(void) {
     expect_ends_when_the_wheels_stand(AGV_FAULT_MOVING_WHILE_SAFE);
 }
 
-/* Exact to the millisecond: 101h comes every millisecond. */
-/* Shows: FSM-12, MOVING_WHILE_SAFE */
-void test_199_ms_are_not_200_ms(void) {
-    walk_to_safe(&f);
-    f.traffic[AGV_MSG_WHEEL_SPEED].cycle_ms = 1;
-    f.traffic[AGV_MSG_WHEEL_SPEED].phase_ms = 0;
-    move_for(100, 0, 199);
-    expect_moving_fault(AGV_FAULT_MOVING_WHILE_SAFE, false);
-    move_for(100, 0, 200);
-    expect_moving_fault(AGV_FAULT_MOVING_WHILE_SAFE, true);
-}
-
 /* Shows: FSM-12, MOVING_WHILE_SAFE */
 void test_either_wheel_in_either_direction(void) {
     static const int32_t ROWS[][2] = {{100, 0},    {0, 100},       {-100, 0},     {0, -100},
@@ -189,35 +149,6 @@ void test_either_wheel_in_either_direction(void) {
         move_for(ROWS[i][0], ROWS[i][1], 200);
         expect_fault(&f, AGV_FAULT_MOVING_WHILE_SAFE, true);
     }
-}
-
-/* Shows: FSM-12 */
-void test_creeping_is_not_moving(void) {
-    walk_to_safe(&f);
-    move_for(99, -99, 5000);
-    expect_fault(&f, AGV_FAULT_MOVING_WHILE_SAFE, false);
-    expect_output(&f, true);
-}
-
-/* Shows: FSM-12 */
-void test_one_slow_101h_starts_the_200_ms_anew(void) {
-    walk_to_safe(&f);
-    for (unsigned i = 0; i < 10; i++) {
-        move_for(100, 100, 190);
-    }
-    expect_fault(&f, AGV_FAULT_MOVING_WHILE_SAFE, false);
-    expect_output(&f, true);
-}
-
-/* The last 101h reports motion, then 101h is silent. */
-/* Shows: FSM-12, WHEEL_SPEED_TIMEOUT */
-void test_a_stale_101h_is_not_moving(void) {
-    walk_to_safe(&f);
-    fixture_run_before(&f, AGV_MSG_WHEEL_SPEED);
-    fixture_wheels(&f, 2000, 2000);
-    fixture_run(&f, 100);
-    f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
-    expect_fault_after(&f, 5000, AGV_FAULT_MOVING_WHILE_SAFE, false);
 }
 
 /* Also in TRIPPED: nothing is confirmed, but the vehicle has stood. */

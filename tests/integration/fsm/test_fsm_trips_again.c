@@ -25,53 +25,6 @@ static void engage(void) {
     fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
 }
 
-static void expect_tripped_at_once(agv_fault_t reason) {
-    expect_tripped(&f, reason);
-}
-
-/* Dead since before the reset: manual driving is possible, but an engagement trips. */
-/* Shows: FSM-11, SUP-8, AI_HEARTBEAT_LOST */
-void test_a_dead_ai_computer_trips_at_the_next_engagement(void) {
-    fixture_active(&f);
-    fixture_mute_ai(&f, true);
-    expect_state_after(&f, 500, AGV_STATE_TRIPPED);
-    reset();
-    expect_state_after(&f, 20000, AGV_STATE_STANDBY);
-    engage();
-    expect_tripped_at_once(AGV_FAULT_AI_HEARTBEAT_LOST);
-}
-
-/* Shows: FSM-11, SUP-8, AI_HEARTBEAT_STUCK */
-void test_a_frozen_ai_computer_trips_at_the_next_engagement(void) {
-    fixture_active(&f);
-    f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].frozen = true;
-    expect_state_after(&f, 500, AGV_STATE_TRIPPED);
-    reset();
-    expect_state_after(&f, 5000, AGV_STATE_STANDBY);
-    engage();
-    expect_tripped_at_once(AGV_FAULT_AI_HEARTBEAT_STUCK);
-}
-
-/* Alive all the time: the counter from before the reset is the baseline, so ACTIVE waits for the next 43Fh. */
-/* Shows: FSM-11, SUP-8 */
-void test_a_living_ai_computer_that_the_reset_has_forgotten(void) {
-    fixture_active(&f);
-    walk_trip(&f);
-    fixture_vehicle_confirms(&f);
-    fixture_run(&f, 1500);
-    fixture_run_past(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
-    fixture_button(&f, true);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-    fixture_run(&f, 1010);
-    fixture_button(&f, false);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-    engage();
-    expect_state(&f, AGV_STATE_STANDBY);
-    fixture_run_before(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
-    expect_state(&f, AGV_STATE_STANDBY);
-    expect_state_after(&f, 1, AGV_STATE_ACTIVE);
-}
-
 /* 168h comes every 10 ms: gaps under half its cycle. As a trip it neither prevents the reset nor trips in manual. */
 static void babble(bool on) {
     f.traffic[AGV_MSG_GEAR_COMMAND].cycle_ms = on ? 10 : 100;
@@ -85,7 +38,7 @@ static void reset_while_the_ai_babbles(void) {
     fixture_active(&f);
     babble(true);
     fixture_run(&f, 300);
-    expect_tripped_at_once(AGV_FAULT_COMMAND_TOO_FAST);
+    expect_tripped(&f, AGV_FAULT_COMMAND_TOO_FAST);
     reset();
     expect_fault_after(&f, 5000, AGV_FAULT_COMMAND_TOO_FAST, true);
     expect_state(&f, AGV_STATE_STANDBY);
@@ -95,7 +48,7 @@ static void reset_while_the_ai_babbles(void) {
 void test_a_cause_that_outlived_the_reset_trips_at_the_next_engagement(void) {
     reset_while_the_ai_babbles();
     engage();
-    expect_tripped_at_once(AGV_FAULT_COMMAND_TOO_FAST);
+    expect_tripped(&f, AGV_FAULT_COMMAND_TOO_FAST);
 }
 
 /* Shows: FSM-11, COMMAND_TOO_FAST */
@@ -116,24 +69,11 @@ void test_a_transient_that_has_not_ended_trips_at_the_next_engagement(void) {
     f.config.event_hold_ms = 10000;
     fixture_active(&f);
     fixture_frame(&f, AGV_MSG_GEAR_COMMAND, no_gear);
-    expect_tripped_at_once(AGV_FAULT_AI_COMMAND_OUT_OF_RANGE);
+    expect_tripped(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE);
     reset();
     expect_fault(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, true);
     engage();
-    expect_tripped_at_once(AGV_FAULT_AI_COMMAND_OUT_OF_RANGE);
-}
-
-/* The VCU's alarm stays armed over the reset. */
-/* Shows: FSM-11, SUP-8, VCU_AI_CAN_LOST */
-void test_the_alarm_of_the_vcu_stays_armed(void) {
-    fixture_active(&f);
-    walk_alarm(&f, 0x08);
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    expect_tripped_at_once(AGV_FAULT_VCU_AI_CAN_LOST);
-    reset();
-    fixture_run(&f, 1000);
-    engage();
-    expect_tripped_at_once(AGV_FAULT_VCU_AI_CAN_LOST);
+    expect_tripped(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE);
 }
 
 /* ACTIVE has no active faults of the AI: with the engagement the warnings of manual driving become trips. */

@@ -66,22 +66,6 @@ void test_code_n_is_n_flashes_and_1_4_s_dark(void) {
     }
 }
 
-/* Shows: LED-1, THROTTLE_STATUS_TIMEOUT */
-void test_code_07(void) {
-    fixture_standby(&f);
-    fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
-    f.traffic[AGV_MSG_THROTTLE_STATUS].muted = true;
-    expect_led_after(&f, 60, 0);
-    expect_flashes(7);
-}
-
-/* Shows: LED-1, BUS_OFF */
-void test_code_14(void) {
-    fixture_standby(&f);
-    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
-    expect_flashes(14);
-}
-
 /* Shows: LED-1, VCU_HEARTBEAT_LOST */
 void test_a_fault_without_a_code_blinks_100_ms_on_and_100_ms_off(void) {
     fixture_standby(&f);
@@ -89,18 +73,6 @@ void test_a_fault_without_a_code_blinks_100_ms_on_and_100_ms_off(void) {
     f.traffic[AGV_MSG_VEHICLE_STATUS].muted = true;
     expect_led_after(&f, 50, 0);
     expect_blinking();
-}
-
-/* Shows: LED-1, VCU_LEVEL2_ALARM */
-void test_a_warning_without_a_code_blinks_too_and_ends(void) {
-    fixture_standby(&f);
-    f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 0x04;
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-    expect_blinking();
-    f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 0;
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-    expect_on_and_off(1000, 2);
-    expect_led(&f, 0);
 }
 
 /* ---- Priority of faults ---- */
@@ -172,27 +144,6 @@ void test_of_two_trips_the_upper_row_is_shown(void) {
     expect_led_after(&f, 20, 13);
 }
 
-/* The warning of 167h bit 5 ranks above the S-driver alarm, but trips are shown before warnings. */
-/* Shows: LED-1, EPS_TEMP_ABOVE_110 */
-void test_trips_go_before_warnings(void) {
-    fixture_standby(&f);
-    f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x10;
-    expect_led_after(&f, 20, 13);
-    walk_trip(&f);
-    expect_led_after(&f, 20, 8);
-}
-
-/* Shows: LED-1, STEERING_POSITION_TIMEOUT */
-void test_of_two_warnings_the_upper_row_is_shown(void) {
-    fixture_standby(&f);
-    f.traffic[AGV_MSG_STEERING_POSITION].muted = true;
-    expect_led_after(&f, 100, 12);
-    f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 0x80; /* VCU_LEVEL2_ALARM */
-    expect_led_after(&f, 20, -1);
-    f.traffic[AGV_MSG_VEHICLE_STATUS].data[5] = 0;
-    expect_led_after(&f, 20, 12);
-}
-
 /* ---- Timing of the pattern ---- */
 
 /* A new code begins at once, with its first flash. */
@@ -205,19 +156,6 @@ void test_a_new_code_begins_anew(void) {
     fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
     walk_alarm(&f, ALARM_NONE);
     expect_flashes(17);
-}
-
-/* Steps that come every 10 ms: the same pattern in time. */
-/* Shows: LED-1 */
-void test_the_pattern_keeps_time_when_steps_come_late(void) {
-    trip_by_alarm(ALARM_S_DRIVER);
-    fixture_run(&f, 1); /* first millisecond of the pattern */
-    fixture_mute_vcu(&f, false);
-    for (unsigned ms = 10; ms < 10000; ms += 10) {
-        fixture_run_without_ticks(&f, 10);
-        fixture_jump(&f, 0);
-        TEST_ASSERT_EQUAL_INT(flashes(8, ms), f.hal.led.on);
-    }
 }
 
 /* Shows: LED-1 */

@@ -40,20 +40,6 @@ static void events(unsigned pairs) {
 
 /* ---- Content ---- */
 
-/* Shows: INT-3 */
-void test_the_last_256_events_are_kept(void) {
-    fixture_standby(&f);
-    events(400);
-    const uint32_t next = next_sequence();
-    TEST_ASSERT_TRUE(next >= 800);
-    for (uint32_t i = 1; i <= 256; i++) {
-        TEST_ASSERT_TRUE(is_there(next - i));
-    }
-    TEST_ASSERT_FALSE(is_there(next - 257));
-    TEST_ASSERT_FALSE(is_there(0));
-    TEST_ASSERT_FALSE(is_there(next));
-}
-
 /* Shows: INT-3, FSM-5 */
 void test_an_event_has_time_state_and_reason(void) {
     fixture_active(&f);
@@ -156,44 +142,6 @@ void test_after_a_power_on_random_memory_has_no_events(void) {
         (void)walk_until(&f, AGV_STATE_STANDBY, 600);
         TEST_ASSERT_TRUE(is_there(0));
     }
-}
-
-/* Flip a bit in the n-th byte of the stored event. */
-static void tear(uint32_t sequence, unsigned byte) {
-    ((uint8_t *)&f.recorder.events[sequence % AGV_RECORDER_EVENTS])[byte] ^= 0x04u;
-}
-
-static void expect_all_but(uint32_t lost, uint32_t count) {
-    for (uint32_t i = 0; i < count; i++) {
-        TEST_ASSERT_EQUAL_INT(i != lost, is_there(i));
-    }
-}
-
-/* Shows: INT-3 */
-void test_a_torn_event_is_lost_alone(void) {
-    walk_to_safe(&f);
-    const uint32_t count = next_sequence();
-    const uint32_t torn = count / 2;
-    for (unsigned byte = 0; byte < sizeof(agv_event_t); byte++) {
-        tear(torn, byte);
-        expect_all_but(torn, count);
-        tear(torn, byte);
-    }
-    tear(torn, 5);
-    fixture_restart(&f, HAL_RESET_BROWN_OUT);
-    expect_all_but(torn, next_sequence());
-}
-
-/* Shows: INT-3 */
-void test_when_the_newest_event_is_torn_counting_goes_on_behind_the_one_before(void) {
-    walk_to_safe(&f);
-    const uint32_t count = next_sequence();
-    tear(count - 1, sizeof(agv_event_t) - 1);
-    fixture_restart(&f, HAL_RESET_BROWN_OUT);
-    for (uint32_t i = 0; i + 1 < count; i++) {
-        TEST_ASSERT_TRUE(is_there(i));
-    }
-    TEST_ASSERT_EQUAL_HEX8(0, event_at(count - 1).a); /* the new run has used its place */
 }
 
 /* ---- Flash ---- */
@@ -328,18 +276,6 @@ void test_a_flash_that_accepts_nothing_changes_nothing_else(void) {
     TEST_ASSERT_TRUE(is_there(next_sequence() - 1));
 }
 
-/* More events than the recorder holds come before they can be copied: the newest 256 are copied. */
-/* Shows: INT-3 */
-void test_events_replaced_before_they_were_copied_are_lost(void) {
-    fixture_standby(&f);
-    drive_on();
-    const uint32_t before = appended();
-    events(200);
-    fixture_wheels(&f, 0, 0);
-    fixture_run(&f, 260000);
-    TEST_ASSERT_UINT32_WITHIN(1, before + 256, appended());
-}
-
 /* ---- One fault at most 4 times a second ---- */
 
 static uint32_t level2_events(agv_event_t *last) {
@@ -369,31 +305,6 @@ void test_a_fault_that_flutters_is_recorded_4_times_a_second(void) {
     TEST_ASSERT_EQUAL_UINT16(0, event.left_out);
     TEST_ASSERT_TRUE(agv_recorder_get(&f.recorder, event.sequence - 1, &event));
     TEST_ASSERT_EQUAL_UINT16(40 - 4 + 2, event.left_out);
-}
-
-/* Another fault has its own four. */
-/* Shows: INT-3, STEERING_POSITION_TIMEOUT */
-void test_a_fault_that_flutters_hides_no_other(void) {
-    agv_event_t event = {0};
-    fixture_standby(&f);
-    for (unsigned i = 0; i < 20; i++) {
-        two_events();
-    }
-    walk_trip(&f);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_events(&f, AGV_EVENT_FAULT, AGV_FAULT_S_DRIVER_ALARM, ANY, &event));
-    TEST_ASSERT_EQUAL_UINT16(0, event.left_out);
-}
-
-/* Never more than four in a second, however long it lasts. */
-/* Shows: INT-3 */
-void test_a_minute_of_fluttering(void) {
-    agv_event_t event = {0};
-    fixture_standby(&f);
-    for (unsigned i = 0; i < 600; i++) {
-        two_events();
-        fixture_run(&f, 50);
-    }
-    TEST_ASSERT_UINT32_WITHIN(2, 4 * 30, level2_events(&event));
 }
 
 /* ---- The last 8 trips ---- */

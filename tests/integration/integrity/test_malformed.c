@@ -1,8 +1,6 @@
 /* Malformed frames (P15): each kind on each message is counted and refreshes nothing, so the missing valid frames trip.
  * A malformed data frame with the identifier of a command trips by itself while engaged (SUP-5). Reserved bits (P14)
  * are ignored. */
-#include <string.h>
-
 #include "causes.h"
 #include "one_fixture.h"
 
@@ -141,47 +139,6 @@ void test_malformed_commands_from_the_ai_side(void) {
 
 /* ---- The content of malformed frames raises nothing ---- */
 
-/* Every kind on every message in every millisecond, with all bits set: alarms, faults, modes, values out of range. */
-static void storm(unsigned round, bool with_commands) {
-    const kind_t *kind = &KINDS[round % KIND_COUNT];
-    for (unsigned i = with_commands || !is_data_frame(kind) ? 0 : AGV_COMMAND_COUNT; i < AGV_MSG_COUNT; i++) {
-        hal_can_frame_t frame = {.id = f.traffic[i].id, .flags = kind->flags, .length = kind->length};
-        memset(frame.data, 0xFF, kind->length < 8 ? kind->length : 8);
-        fixture_raw(&f, f.traffic[i].side, frame);
-    }
-}
-
-static void run_storm(agv_state_t state) {
-    for (unsigned round = 0; round < 1000; round++) {
-        storm(round, state == AGV_STATE_STANDBY);
-        fixture_run(&f, 1);
-        f.sent_count = f.config.topology == AGV_TOPOLOGY_GATEWAY ? 0 : f.sent_count;
-    }
-    expect_state(&f, state);
-    expect_silence(&f);
-    TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
-    TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->warnings);
-}
-
-/* Also commands, in manual. */
-static void check_storm(unsigned topology) {
-    fixture_init(&f);
-    f.config.topology = (uint16_t)topology;
-    fixture_standby(&f);
-    run_storm(AGV_STATE_STANDBY);
-    TEST_ASSERT_EQUAL_UINT32(1000 * AGV_MSG_COUNT, rejected_in_all());
-    fixture_init(&f);
-    f.config.topology = (uint16_t)topology;
-    fixture_active(&f);
-    run_storm(AGV_STATE_ACTIVE);
-}
-
-/* Shows: P15, INT-2 */
-void test_a_storm_of_malformed_frames(void) {
-    check_storm(AGV_TOPOLOGY_SHARED);
-    check_storm(AGV_TOPOLOGY_GATEWAY);
-}
-
 /* They do not count in a score either, neither as bad nor as good: two bad frames, two malformed ones, and the third
  * bad one. */
 /* Shows: P15, SUP-4, EPS_UNDER_VOLTAGE */
@@ -198,18 +155,6 @@ void test_malformed_frames_are_not_scored(void) {
     f.traffic[AGV_MSG_EPS_STATUS].length = 8;
     fixture_run_past(&f, AGV_MSG_EPS_STATUS);
     expect_trip(&f, AGV_FAULT_EPS_UNDER_VOLTAGE, f.traffic[AGV_MSG_EPS_STATUS].call, NO_HOLD);
-}
-
-/* Frames with unknown identifiers may have any length; they are counted as received and ignored. */
-/* Shows: P15 */
-void test_frames_of_others(void) {
-    fixture_active(&f);
-    const uint32_t received = agv_supervisor_counters(&f.supervisor)->received;
-    fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0x7FF, .length = 3});
-    fixture_raw(&f, HAL_CAN_VEHICLE, (hal_can_frame_t){.id = 0, .length = 8});
-    TEST_ASSERT_EQUAL_UINT32(received + 2, agv_supervisor_counters(&f.supervisor)->received);
-    TEST_ASSERT_EQUAL_UINT32(0, rejected_in_all());
-    TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
 }
 
 /* ---- Reserved bits ---- */

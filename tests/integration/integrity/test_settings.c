@@ -190,17 +190,6 @@ void test_startup_timeout(void) {
     expect_warning(&f, AGV_FAULT_STARTUP_TIMEOUT, AGV_STATE_INIT);
 }
 
-/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
-void test_confirm_timeout(void) {
-    f.config.confirm_timeout_ms = 111;
-    fixture_active(&f);
-    f.traffic[AGV_MSG_VEHICLE_STATUS].data[4] = 0x02;
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    expect_fault_after(&f, 109, AGV_FAULT_SAFE_STATE_UNCONFIRMED,
-                       false); /* the tick of the trip's own millisecond is the first */
-    expect_fault_after(&f, 1, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
-}
-
 /* ---- Engaged, not engaged, engaged again ---- */
 
 /* Each engagement has its own grace: 500 ms, and five frames of 167h. One that is continued has none. */
@@ -238,21 +227,4 @@ void test_faults_that_end_with_the_engagement(void) {
     walk_disengage(&f);
     expect_fault(&f, AGV_FAULT_STEERING_DEVIATION, false);
     expect_fault(&f, AGV_FAULT_THROTTLE_IN_PARK, false);
-}
-
-/* A gateway drops a command out of range, in manual and while engaged. */
-/* Shows: SUP-5, TOP-2, AI_COMMAND_OUT_OF_RANGE */
-void test_a_gateway_drops_commands_out_of_range(void) {
-    f.config.topology = AGV_TOPOLOGY_GATEWAY;
-    f.config.gateway_in_manual = AGV_IN_MANUAL_ALL;
-    fixture_standby(&f);
-    const uint32_t dropped = agv_supervisor_counters(&f.supervisor)->dropped;
-    fixture_frame(&f, AGV_MSG_GEAR_COMMAND, (const uint8_t[8]){3});
-    TEST_ASSERT_EQUAL_UINT32(0, f.sent_count);
-    TEST_ASSERT_EQUAL_UINT32(dropped + 1, agv_supervisor_counters(&f.supervisor)->dropped);
-    expect_nothing(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, AGV_STATE_STANDBY);
-    walk_engage(&f);
-    fixture_forget_sent(&f);
-    fixture_frame(&f, AGV_MSG_THROTTLE_COMMAND, (const uint8_t[8]){251});
-    expect_trip(&f, AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, f.call, ANGLE_CENTRE);
 }

@@ -105,18 +105,6 @@ void test_only_a_changed_counter_is_a_heartbeat(void) {
     expect_warning(&f, STUCK, AGV_STATE_STANDBY);
 }
 
-/* One valid 43Fh is received, which does not make it alive: its deadline runs from there. */
-/* Shows: SUP-8, AI_HEARTBEAT_LOST */
-void test_seen_once(void) {
-    f.traffic[AI].muted = true;
-    fixture_standby(&f);
-    fixture_send_now(&f, AI);
-    fixture_run(&f, 350);
-    expect_no_fault(AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_warning(&f, LOST, AGV_STATE_STANDBY);
-}
-
 /* ai_lost_in_manual: trip. */
 /* Shows: SUP-8, AI_HEARTBEAT_LOST, AI_HEARTBEAT_STUCK */
 void test_lost_in_manual_may_be_made_a_trip(void) {
@@ -414,46 +402,6 @@ void test_a_reset_forgets_it_also_if_its_loss_trips_in_manual(void) {
     expect_reason_after(&f, 1, LOST);
 }
 
-/* A cause of the AI computer that outlived the reset (here COMMAND_TOO_FAST as a trip) does not trip in manual. It
- * trips with the next engagement, or in manual when it has ended and is raised again. */
-static void babble(uint32_t ms) {
-    for (uint32_t i = 0; i < ms; i += 10) {
-        fixture_send_now(&f, AGV_MSG_GEAR_COMMAND);
-        fixture_run(&f, 10);
-    }
-}
-
-static void babble_through_a_reset(void) {
-    fixture_init(&f);
-    agv_fault_set_put(&f.config.trips, AGV_FAULT_COMMAND_TOO_FAST, true);
-    fixture_active(&f);
-    babble(300);
-    expect_reason(&f, AGV_FAULT_COMMAND_TOO_FAST);
-    fixture_vehicle_confirms(&f);
-    babble(300);
-    fixture_button(&f, true);
-    babble(1100);
-    fixture_button(&f, false);
-    babble(1000);
-    expect_state(&f, AGV_STATE_STANDBY);
-    expect_fault(&f, AGV_FAULT_COMMAND_TOO_FAST, true);
-}
-
-/* Shows: FSM-3, FSM-11, COMMAND_TOO_FAST */
-void test_a_cause_from_the_ai_that_outlived_the_reset(void) {
-    babble_through_a_reset();
-    fixture_mode(&f, MODE_ENGAGED);
-    babble(10);
-    expect_reason(&f, AGV_FAULT_COMMAND_TOO_FAST);
-    babble_through_a_reset();
-    fixture_run(&f, 400);
-    fixture_mute_ai(&f, true);
-    expect_fault_after(&f, 400, AGV_FAULT_COMMAND_TOO_FAST, false);
-    expect_state(&f, AGV_STATE_STANDBY);
-    babble(200);
-    expect_reason(&f, AGV_FAULT_COMMAND_TOO_FAST);
-}
-
 /* A changed counter ends the forgetting, frames with the old counter do not. */
 /* Shows: SUP-8, FSM-3, AI_HEARTBEAT_STUCK */
 void test_a_reset_forgets_a_frozen_ai_until_its_counter_changes(void) {
@@ -516,52 +464,6 @@ void test_the_vcus_ai_alarm_ends_when_the_mode_is_invalid(void) {
     expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, false);
 }
 
-/* Shows: SUP-8, VCU_AI_CAN_LOST */
-void test_the_vcus_ai_alarm_in_manual_is_normal(void) {
-    fixture_mute_ai(&f, true);
-    set_alarm(true);
-    fixture_standby(&f);
-    expect_nothing_after(&f, 5000, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_STANDBY);
-    expect_led(&f, 0);
-}
-
-/* The AI computer starts while the alarm is still set. The alarm counts only after it was clear once with an alive AI;
- * a clear alarm while the AI was silent does not arm it. */
-/* Shows: SUP-8, VCU_AI_CAN_LOST */
-void test_the_vcus_ai_alarm_has_to_be_clear_once(void) {
-    fixture_mute_ai(&f, true);
-    fixture_standby(&f);
-    set_alarm(true);
-    fixture_run(&f, 1000);
-    fixture_mute_ai(&f, false);
-    fixture_run(&f, 500);
-    walk_engage(&f);
-    expect_nothing_after(&f, 2000, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_ACTIVE);
-    set_alarm(false);
-    fixture_run_past(&f, VCU);
-    set_alarm(true);
-    fixture_run_past(&f, VCU);
-    expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
-}
-
-/* The AI computer fails while engaged: the VCU's alarm counts, and stays until the engagement ends. */
-/* Shows: SUP-8, VCU_AI_CAN_LOST */
-void test_the_vcus_ai_alarm_outlives_the_ai(void) {
-    fixture_active(&f);
-    fixture_mute_ai(&f, true);
-    expect_fault_after(&f, 600, AGV_FAULT_AI_HEARTBEAT_LOST, true);
-    set_alarm(true);
-    fixture_run_past(&f, VCU);
-    expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, true);
-    expect_fault_after(&f, 500, AGV_FAULT_VCU_AI_CAN_LOST, true);
-    fixture_mode(&f, MODE_MANUAL);
-    for (unsigned i = 0; i < 3; i++) {
-        expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, true);
-        fixture_run_past(&f, VCU);
-    }
-    expect_fault(&f, AGV_FAULT_VCU_AI_CAN_LOST, false);
-}
-
 /* Clear, then set, then engaged: it trips in the frame of the engagement. */
 /* Shows: SUP-8, FSM-2, VCU_AI_CAN_LOST */
 void test_the_vcus_ai_alarm_at_the_engagement(void) {
@@ -570,18 +472,6 @@ void test_the_vcus_ai_alarm_at_the_engagement(void) {
     expect_nothing_after(&f, 200, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_STANDBY);
     walk_engage(&f);
     expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
-}
-
-/* Clear only while the AI computer was silent, then engaged: an alarm that is not armed does not trip. */
-/* Shows: SUP-8, VCU_AI_CAN_LOST */
-void test_the_vcus_ai_alarm_of_an_ai_that_was_never_received(void) {
-    fixture_mute_ai(&f, true);
-    fixture_standby(&f);
-    fixture_run(&f, 500);
-    walk_engage(&f);
-    set_alarm(true);
-    expect_nothing_after(&f, 100, AGV_FAULT_VCU_AI_CAN_LOST,
-                         AGV_STATE_STANDBY); /* the missing commands trip after 125 ms */
 }
 
 /* Alive with the alarm clear, then off for a second of manual driving, with the alarm, and on again. */
@@ -612,17 +502,6 @@ void test_the_vcus_ai_alarm_of_a_pause_in_manual_that_is_over(void) {
     fixture_run_past(&f, VCU);
     walk_engage(&f);
     expect_nothing_after(&f, 200, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_ACTIVE);
-}
-
-/* Another alarm of the same byte (the remote's signal, here a warning) does not prevent the arming. */
-/* Shows: SUP-8, VCU_AI_CAN_LOST */
-void test_the_vcus_ai_alarm_beside_another_alarm(void) {
-    agv_fault_set_put(&f.config.trips, AGV_FAULT_REMOTE_SIGNAL_LOST, false);
-    f.traffic[VCU].data[4] = 0x01;
-    fixture_active(&f);
-    f.traffic[VCU].data[4] = 0x09;
-    fixture_run_past(&f, VCU);
-    expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
 }
 
 /* A reset forgets only that the AI computer was alive: the alarm stays armed, also when the very next 363h reports autopilot. */

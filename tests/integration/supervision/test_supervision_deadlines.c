@@ -90,41 +90,6 @@ void test_mode_invalid_in_init(void) {
     expect_reason(&f, AGV_FAULT_NONE);
 }
 
-/* A frame with only one bit, or none, takes 5 ms off: 45 of 50 ms are left. */
-/* Shows: MODE_INVALID */
-void test_both_modes_with_interruptions(void) {
-    static const uint8_t BETWEEN[] = {MODE_MANUAL, MODE_NEITHER};
-    for (unsigned i = 0; i < 2; i++) {
-        fixture_init(&f);
-        fixture_standby(&f);
-        fixture_mode(&f, MODE_BOTH);
-        fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-        fixture_run(&f, 49);
-        fixture_mode(&f, BETWEEN[i]);
-        fixture_run(&f, 10);
-        fixture_mode(&f, MODE_BOTH);
-        expect_nothing_after(&f, 6, AGV_FAULT_MODE_INVALID, AGV_STATE_STANDBY);
-        expect_reason_after(&f, 1, AGV_FAULT_MODE_INVALID);
-    }
-}
-
-/* Every other frame with both bits: 20 ms in four frames are left, so the fault comes with the tenth. One such frame in
- * four is tolerated. */
-/* Shows: MODE_INVALID */
-void test_both_modes_every_other_frame(void) {
-    fixture_standby(&f);
-    for (unsigned i = 0; i < 100; i++) {
-        fixture_mode(&f, (i % 4 == 0) ? MODE_BOTH : MODE_MANUAL);
-        fixture_run(&f, 10);
-    }
-    expect_nothing(&f, AGV_FAULT_MODE_INVALID, AGV_STATE_STANDBY);
-    for (unsigned i = 0; i < 20; i++) {
-        fixture_mode(&f, (i % 2 == 0) ? MODE_BOTH : MODE_MANUAL);
-        fixture_run(&f, 10);
-    }
-    expect_reason(&f, AGV_FAULT_MODE_INVALID);
-}
-
 /* Neither bit set is no fault, and means not engaged. */
 /* Shows: MODE_INVALID */
 void test_neither_mode_is_not_engaged(void) {

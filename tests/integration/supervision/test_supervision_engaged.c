@@ -2,6 +2,9 @@
  * autopilot: EPS mode and invalid status values (scores), throttle in park (budget); and commands out of range, which
  * have no grace time. Calculated by hand: a fault that needs N frames is raised when bad frames (+2) and good ones (-1)
  * add up to 2 N, and ends at 0. */
+#include <string.h>
+
+#include "agv/names.h"
 #include "one_fixture.h"
 #include "walk.h"
 
@@ -74,80 +77,10 @@ static void check_grace(const row_t *row, uint16_t phase_ms, unsigned not_counte
     expect_fault(&f, row->fault, false); /* no longer engaged */
 }
 
-/* Send a bad or a good frame. */
-static void send_one(const row_t *row, const uint8_t good[8], bool is_bad) {
-    set_payload(row->message, is_bad ? row->bad : good);
-    fixture_run_past(&f, row->message);
-}
-
-static void begin_scoring(const row_t *row, uint8_t good[8], const char *what) {
-    fixture_init(&f);
-    fixture_active(&f);
-    f.what = what;
-    fixture_run_past(&f, row->message);
-    for (unsigned i = 0; i < 8; i++) {
-        good[i] = f.traffic[row->message].data[i];
-    }
-}
-
-/* One good frame before the last bad one: 2 (N - 1) - 1 + 2 is 1 below 2 N, so one more bad frame is needed. */
-static void check_one_good(const row_t *row) {
-    uint8_t good[8];
-    begin_scoring(row, good, "one good frame");
-    set_payload(row->message, row->bad);
-    send_bad_frames(row, row->frames - 1, AGV_STATE_ACTIVE);
-    send_one(row, good, false);
-    send_one(row, good, true);
-    expect_nothing(&f, row->fault, AGV_STATE_ACTIVE);
-    send_one(row, good, true);
-    expect_trip(&f, row->fault, f.traffic[row->message].call, row->hold_raw);
-}
-
-/* Every second frame bad adds 1 in two frames: the bad frame after 2 N - 2 such pairs reaches 2 N. */
-static void check_every_second(const row_t *row) {
-    uint8_t good[8];
-    begin_scoring(row, good, "every second frame");
-    for (unsigned i = 0; i < 2 * row->frames - 2; i++) {
-        send_one(row, good, true);
-        expect_nothing(&f, row->fault, AGV_STATE_ACTIVE);
-        send_one(row, good, false);
-    }
-    send_one(row, good, true);
-    expect_trip(&f, row->fault, f.traffic[row->message].call, row->hold_raw);
-}
-
-/* One bad frame in three never raises the fault. */
-static void check_every_third(const row_t *row) {
-    uint8_t good[8];
-    begin_scoring(row, good, "every third frame");
-    for (unsigned i = 0; i < 90; i++) {
-        send_one(row, good, i % 3 == 0);
-        expect_nothing(&f, row->fault, AGV_STATE_ACTIVE);
-    }
-}
-
-/* Gaps between frames change nothing. */
-static void check_gaps(const row_t *row, uint32_t cycle_ms) {
-    uint8_t good[8];
-    begin_scoring(row, good, "gaps");
-    set_payload(row->message, row->bad);
-    f.traffic[row->message].muted = true;
-    for (unsigned i = 1; i <= row->frames; i++) {
-        expect_nothing(&f, row->fault, AGV_STATE_ACTIVE);
-        fixture_run(&f, 4 * cycle_ms);
-        fixture_send_now(&f, row->message);
-    }
-    expect_trip(&f, row->fault, f.call, row->hold_raw);
-}
-
 static void check(const row_t *row) {
     check_trips(row);
     check_grace(row, 1, 0);
     check_grace(row, 0, 1);
-    check_one_good(row);
-    check_every_second(row);
-    check_every_third(row);
-    check_gaps(row, row->message == AGV_MSG_GEAR_STATUS ? 25 : 10);
 }
 
 /* ---- EPS mode: 167h byte 4, N = 5 ---- */
@@ -173,29 +106,6 @@ void test_eps_mode_not_angle(void) {
         fixture_init(&f);
         check(&(row_t){AGV_FAULT_EPS_MODE_NOT_ANGLE, 13, AGV_MSG_EPS_STATUS, 5, {0, 0, 0, OTHERS[i]}, NO_HOLD});
     }
-}
-
-static void check_named_after_the_last(const uint8_t modes[5], agv_fault_t expected) {
-    static const agv_fault_t ALL[] = {AGV_FAULT_EPS_MODE_OFF, AGV_FAULT_EPS_MODE_INVALID, AGV_FAULT_EPS_MODE_NOT_ANGLE};
-    fixture_init(&f);
-    fixture_active(&f);
-    for (unsigned i = 0; i < 5; i++) {
-        expect_nothing(&f, expected, AGV_STATE_ACTIVE);
-        f.traffic[AGV_MSG_EPS_STATUS].data[3] = modes[i];
-        fixture_run_past(&f, AGV_MSG_EPS_STATUS);
-    }
-    expect_trip(&f, expected, f.traffic[AGV_MSG_EPS_STATUS].call, NO_HOLD);
-    for (unsigned i = 0; i < 3; i++) {
-        expect_fault(&f, ALL[i], ALL[i] == expected);
-    }
-}
-
-/* Any five of them count; the last one names the fault. */
-/* Shows: SUP-5, EPS_MODE_OFF, EPS_MODE_INVALID, EPS_MODE_NOT_ANGLE */
-void test_eps_modes_mixed(void) {
-    check_named_after_the_last((const uint8_t[5]){0x00, 0x04, 0x02, 0x77, 0xFF}, AGV_FAULT_EPS_MODE_OFF);
-    check_named_after_the_last((const uint8_t[5]){0xFF, 0xFF, 0xFF, 0xFF, 0x04}, AGV_FAULT_EPS_MODE_INVALID);
-    check_named_after_the_last((const uint8_t[5]){0xFF, 0x04, 0x00, 0x02, 0x03}, AGV_FAULT_EPS_MODE_NOT_ANGLE);
 }
 
 /* The fault lasts as long as its cause, also after a gap. */
@@ -346,36 +256,6 @@ void test_park_with_throttle(void) {
     fixture_gear(&f, GEAR_D);
     fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
     expect_fault_after(&f, 500, AGV_FAULT_THROTTLE_IN_PARK, false);
-}
-
-/* One good frame in twenty does not restart it: 190 - 5 are left, 15 more make 200. */
-/* Shows: SUP-5, THROTTLE_IN_PARK */
-void test_one_good_frame_does_not_restart_throttle_in_park(void) {
-    active_in_park();
-    fixture_run_before(&f, AGV_MSG_THROTTLE_STATUS);
-    set_throttle(10);
-    fixture_run(&f, 190);
-    set_throttle(0);
-    fixture_run(&f, 10);
-    set_throttle(10);
-    expect_nothing_after(&f, 14, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
-}
-
-/* With a third of the time, increase and decrease are equal. */
-/* Shows: SUP-5, THROTTLE_IN_PARK */
-void test_throttle_in_park_for_a_third_of_the_time(void) {
-    active_in_park();
-    fixture_run_before(&f, AGV_MSG_THROTTLE_STATUS);
-    for (unsigned i = 0; i < 100; i++) {
-        set_throttle(10);
-        fixture_run(&f, 100);
-        set_throttle(0);
-        fixture_run(&f, 200);
-    }
-    expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_THROTTLE_IN_PARK));
 }
 
 /* While bit 8 is clear in the last 363h nothing is judged: budgets and scores are paused. */
@@ -581,29 +461,28 @@ static void check_scores_anew(agv_fault_t fault, agv_message_t message, unsigned
     }
 }
 
-/* Shows: SUP-5, EPS_MODE_OFF */
-void test_every_engagement_scores_eps_modes_anew(void) {
-    f.config.engaged_grace_ms = 50;
-    fixture_active(&f);
-    f.traffic[AGV_MSG_EPS_STATUS].data[3] = 0xFF;
-    check_scores_anew(AGV_FAULT_EPS_MODE_OFF, AGV_MSG_EPS_STATUS, 5);
-}
-
-/* Shows: SUP-5, GEAR_STATUS_INVALID */
-void test_every_engagement_scores_invalid_gears_anew(void) {
-    f.config.engaged_grace_ms = 50;
-    fixture_active(&f);
-    fixture_gear(&f, 0);
-    check_scores_anew(AGV_FAULT_GEAR_STATUS_INVALID, AGV_MSG_GEAR_STATUS, 3);
-}
-
-/* Shows: SUP-5, STEERING_ANGLE_INVALID */
-void test_every_engagement_scores_invalid_angles_anew(void) {
-    f.config.engaged_grace_ms = 50;
-    f.config.eps_heartbeat_timeout_ms = 100;
-    fixture_active(&f);
-    fixture_angle(&f, 18001);
-    check_scores_anew(AGV_FAULT_STEERING_ANGLE_INVALID, AGV_MSG_STEERING_STATUS, 3);
+/* Shows: SUP-5, EPS_MODE_OFF, GEAR_STATUS_INVALID, STEERING_ANGLE_INVALID */
+void test_every_engagement_scores_anew(void) {
+    static const struct {
+        agv_fault_t fault;
+        agv_message_t message;
+        unsigned byte;
+        uint8_t bad[2];
+        unsigned frames;
+    } ROWS[] = {
+        {AGV_FAULT_EPS_MODE_OFF, AGV_MSG_EPS_STATUS, 4, {0xFF}, 5},
+        {AGV_FAULT_GEAR_STATUS_INVALID, AGV_MSG_GEAR_STATUS, 1, {0}, 3},
+        {AGV_FAULT_STEERING_ANGLE_INVALID, AGV_MSG_STEERING_STATUS, 3, {0x51, 0x46}, 3},
+    };
+    for (unsigned i = 0; i < sizeof ROWS / sizeof ROWS[0]; i++) {
+        fixture_init(&f);
+        f.what = agv_fault_name(ROWS[i].fault);
+        f.config.engaged_grace_ms = 50;
+        f.config.eps_heartbeat_timeout_ms = 100;
+        fixture_active(&f);
+        memcpy(&f.traffic[ROWS[i].message].data[ROWS[i].byte - 1], ROWS[i].bad, 2);
+        check_scores_anew(ROWS[i].fault, ROWS[i].message, ROWS[i].frames);
+    }
 }
 
 /* 150 of 200 ms in the last engagement do not count in the next one. */

@@ -31,26 +31,6 @@ void test_an_engagement_ends_with_the_third_frame(void) {
     }
 }
 
-/* A frame with both bits has bit 8. */
-/* Shows: SUP-9, MODE_INVALID */
-void test_both_bits_in_between_count_anew(void) {
-    fixture_active(&f);
-    report(MODE_MANUAL, 2);
-    report(MODE_BOTH, 1);
-    report(MODE_MANUAL, 2);
-    expect_state(&f, AGV_STATE_ACTIVE);
-    report(MODE_MANUAL, 1);
-    expect_state(&f, AGV_STATE_STANDBY);
-}
-
-/* Shows: SUP-9 */
-void test_the_number_of_frames_is_a_setting(void) {
-    f.config.mode_frames = 1;
-    fixture_active(&f);
-    report(MODE_MANUAL, 1);
-    expect_state(&f, AGV_STATE_STANDBY);
-}
-
 /* ---- MODE_FLAPPING ---- */
 
 static const agv_fault_t FLAPPING = AGV_FAULT_MODE_FLAPPING;
@@ -229,22 +209,6 @@ void test_no_mode_at_standstill(void) {
     expect_reason_after(&f, 2, NONE);
     fixture_wheels(&f, 0, 0);
     expect_fault_after(&f, 120, NONE, false);
-}
-
-/* One frame with a mode bit, or with both, takes 5 ms off the 500 ms: after 490 ms, 485 ms are left. */
-/* Shows: SUP-9, MODE_NONE */
-void test_a_mode_in_between_takes_half_its_time_off(void) {
-    static const uint8_t BETWEEN[] = {MODE_MANUAL, MODE_BOTH};
-    for (unsigned i = 0; i < 2; i++) {
-        fixture_init(&f);
-        drive_in_manual();
-        report(MODE_NEITHER, 49);
-        report(BETWEEN[i], 1);
-        report(MODE_NEITHER, 2);
-        expect_nothing(&f, NONE, AGV_STATE_STANDBY);
-        report(MODE_NEITHER, 1);
-        expect_reason(&f, NONE);
-    }
 }
 
 /* Engaged, with neither bit in two frames of three: 15 ms in three frames, so within 35 times three. One in four is

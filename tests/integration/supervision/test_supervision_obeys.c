@@ -63,17 +63,6 @@ void test_throttle_above_its_command(void) {
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, THROTTLE));
 }
 
-/* No fault with 25 counts above the command, or with less than the command. */
-/* Shows: SUP-11, THROTTLE_DEVIATION */
-void test_throttle_that_is_as_commanded(void) {
-    active_in_d();
-    command_throttle(100);
-    measure_throttle(125);
-    fixture_run(&f, 3000);
-    measure_throttle(0);
-    expect_nothing_after(&f, 3000, THROTTLE, AGV_STATE_ACTIVE);
-}
-
 /* A ramp: each 25 counts that it comes down empty the budget, 24 do not. */
 /* Shows: SUP-11, THROTTLE_DEVIATION */
 void test_a_throttle_on_its_way_down(void) {
@@ -90,49 +79,6 @@ void test_a_throttle_on_its_way_down(void) {
     fixture_run(&f, 100);
     measure_throttle(26); /* 24 */
     expect_trip_at(THROTTLE, emptied_ms + 499u, 7);
-}
-
-/* A rise counts against it: 20 up, 44 down is 24. */
-/* Shows: SUP-11, THROTTLE_DEVIATION */
-void test_a_rise_counts_against_the_ramp(void) {
-    for (unsigned i = 0; i < 2; i++) {
-        fixture_init(&f);
-        active_in_d();
-        command_throttle(100);
-        measure_throttle(200);
-        const uint32_t began_ms = f.now_ms;
-        fixture_run(&f, 100);
-        measure_throttle(220);
-        fixture_run(&f, 100);
-        measure_throttle(i == 0 ? 176 : 175);
-        expect_trip_at(THROTTLE, i == 0 ? began_ms + 499u : f.now_ms + 499u, 7);
-    }
-}
-
-/* A decrease before the deviation does not count. */
-/* Shows: SUP-11, THROTTLE_DEVIATION */
-void test_a_ramp_from_before_does_not_count(void) {
-    active_in_d();
-    command_throttle(250);
-    measure_throttle(250);
-    measure_throttle(200);
-    command_throttle(0);
-    const uint32_t began_ms = f.now_ms;
-    fixture_run(&f, 100);
-    measure_throttle(176);
-    expect_trip_at(THROTTLE, began_ms + 499u, 7);
-}
-
-/* One good frame in twenty does not restart the budget: 190 - 5, and 315 more. */
-/* Shows: SUP-11, THROTTLE_DEVIATION */
-void test_one_good_throttle_does_not_restart_it(void) {
-    active_in_d();
-    fixture_run_before(&f, AGV_MSG_THROTTLE_STATUS);
-    measure_throttle(40);
-    fixture_run(&f, 189);
-    measure_throttle(20); /* by 20: not on its way */
-    measure_throttle(40);
-    expect_trip_at(THROTTLE, f.now_ms + 314u, 7);
 }
 
 /* Without a command nothing is compared; the deadline covers that. A command from before the engagement does not
@@ -210,24 +156,6 @@ void test_d_or_r_against_the_command(void) {
     check_gear(GEAR_D, GEAR_D, false);
 }
 
-/* No fault at idle; 3 counts are above it. The budget decreases at half the rate. */
-/* Shows: SUP-11, GEAR_DEVIATION */
-void test_a_gear_deviation_needs_throttle(void) {
-    fixture_active(&f); /* D, commanded P */
-    measure_throttle(2);
-    expect_nothing_after(&f, 3000, GEAR, AGV_STATE_ACTIVE);
-    measure_throttle(3);
-    fixture_run(&f, 500 - 1);
-    measure_throttle(0); /* 508 or so up, then 250 down */
-    fixture_run(&f, 499);
-    measure_throttle(3);
-    const uint32_t again_ms = f.now_ms;
-    expect_nothing_after(&f, 700, GEAR, AGV_STATE_ACTIVE);
-    (void)walk_until(&f, AGV_STATE_TRIPPED, 60);
-    expect_reason(&f, GEAR);
-    TEST_ASSERT_UINT32_WITHIN(10, 745, f.now_ms - again_ms);
-}
-
 /* ---- AUTOPILOT_OFF_IGNORED ---- */
 
 /* 43Fh byte 5, bit 7: asks for autopilot off. */
@@ -268,20 +196,6 @@ void test_autopilot_off_is_obeyed(void) {
     ask_for_off(false);
     fixture_mode(&f, MODE_ENGAGED);
     expect_nothing_after(&f, 3000, IGNORED, AGV_STATE_ACTIVE);
-}
-
-/* Every second 43Fh requests it: the budget increases by 1 ms in each 4, so it takes some 4 s. */
-/* Shows: SUP-11, AUTOPILOT_OFF_IGNORED */
-void test_autopilot_off_asked_for_now_and_then(void) {
-    active_in_d();
-    ask_for_off(true);
-    const uint32_t began_ms = f.now_ms;
-    while (agv_supervisor_state(&f.supervisor) == AGV_STATE_ACTIVE && f.now_ms - began_ms < 5000) {
-        ask_for_off(false);
-        ask_for_off(true);
-    }
-    expect_reason(&f, IGNORED);
-    TEST_ASSERT_UINT32_WITHIN(300, 3700, f.now_ms - began_ms);
 }
 
 /* Times are settings. */
@@ -339,25 +253,6 @@ void test_two_measurements_of_speed(void) {
     expect_fault_after(&f, 1998, SPEED, true);
     expect_fault_after(&f, 1, SPEED, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, SPEED));
-}
-
-/* Shows: SUP-12, SPEED_IMPLAUSIBLE */
-void test_wheels_faster_than_the_vcu_reports(void) {
-    fixture_standby(&f);
-    set_speeds(3600, 2004, 2004);
-    expect_warning_at(f.now_ms + 999u);
-}
-
-/* The absolute value of the mean counts: backwards is as fast as forwards, turning on the spot is no speed. */
-/* Shows: SUP-12, SPEED_IMPLAUSIBLE */
-void test_the_mean_of_both_wheels_in_amount(void) {
-    fixture_standby(&f);
-    set_speeds(3600, -1000, -1000);
-    fixture_run(&f, 3000);
-    set_speeds(3600, -500, -1500);
-    expect_nothing_after(&f, 3000, SPEED, AGV_STATE_STANDBY);
-    set_speeds(3600, -2000, 2000);
-    expect_warning_at(f.now_ms + 999u);
 }
 
 /* Nothing is compared until the VCU has reported a speed. */

@@ -109,18 +109,6 @@ static void step_late_by(uint32_t ms) {
     fixture_run(&f, 1);
 }
 
-/* The output opens with the trip, not before: nothing would close it again. */
-/* Shows: TIM-4, FSM-4, STEP_OVERRUN */
-void test_a_step_that_is_100_ms_late_does_not_trip_and_one_of_101_ms_does(void) {
-    fixture_standby(&f);
-    step_late_by(100);
-    expect_state(&f, AGV_STATE_STANDBY);
-    expect_output(&f, true);
-    fixture_run(&f, 10);
-    step_late_by(101);
-    expect_tripped(&f, AGV_FAULT_STEP_OVERRUN);
-}
-
 static void expect_limit(uint16_t period_ms) {
     fixture_init(&f);
     f.config.watchdog_period_ms = period_ms;

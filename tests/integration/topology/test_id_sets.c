@@ -81,19 +81,6 @@ void test_a_status_on_the_other_identifier_is_never_accepted(void) {
     }
 }
 
-/* The fault ends when the other identifier is silent, too: 500 ms after its last frame it is still active. */
-/* Shows: P1, WRONG_ID_SET */
-void test_the_end_when_the_other_identifier_is_silent(void) {
-    init(&SETS[0]);
-    fixture_start(&f);
-    f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].id = SETS[0].other_command_id;
-    fixture_run(&f, 1000);
-    fixture_run_past(&f, AGV_MSG_TURN_SIGNAL_COMMAND);
-    f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].muted = true;
-    expect_fault_after(&f, 500, WRONG, true);
-    expect_fault_after(&f, 1, WRONG, false);
-}
-
 /* While driving: the own identifier falls silent and the other one begins. */
 /* Shows: P1, WRONG_ID_SET, AI_HEARTBEAT_LOST */
 void test_an_identifier_that_changes_while_driving(void) {
@@ -168,19 +155,6 @@ void test_the_time_is_a_setting(void) {
     f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].id = SETS[0].other_command_id;
     expect_fault_after(&f, 300, WRONG, false);
     expect_fault_after(&f, 1, WRONG, true);
-}
-
-/* No frame comes on the own identifiers, and none on the others. */
-/* Shows: P1, WRONG_ID_SET */
-void test_silence_alone_is_no_wrong_set(void) {
-    for (unsigned i = 0; i < SET_COUNT; i++) {
-        init(&SETS[i]);
-        fixture_mute_vcu(&f, true);
-        fixture_mute_ai(&f, true);
-        fixture_start(&f);
-        fixture_run(&f, 12000);
-        TEST_ASSERT_EQUAL_UINT32_MESSAGE(0, fixture_raised(&f, WRONG), f.what);
-    }
 }
 
 /* A VCU that is silent, and frames with unknown identifiers, or with an identifier of the other set that comes from the wrong

@@ -32,14 +32,6 @@ static void expect_steering(uint16_t commanded, uint16_t passed) {
     expect_pass(0x065, command, expected);
 }
 
-/* Shows: TOP-2 */
-void test_steering_is_not_limited_by_default(void) {
-    fixture_active(&f);
-    f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
-    expect_steering(0, 0);
-    expect_steering(18000, 18000);
-}
-
 /* 100.0 degrees a second are 2.5 degrees, 25 counts, in 25 ms. */
 /* Shows: TOP-2 */
 void test_steering_is_limited_to_the_slew_rate(void) {
@@ -55,18 +47,6 @@ void test_steering_is_limited_to_the_slew_rate(void) {
     expect_steering(9005, 9005);
 }
 
-/* The first command after the engagement starts from where the wheels are. */
-/* Shows: TOP-2 */
-void test_the_slew_rate_starts_from_the_measured_angle(void) {
-    f.config.steering_slew_ddeg_s = 1000;
-    fixture_angle(&f, 9300);
-    fixture_standby(&f);
-    fixture_mute_ai(&f, true);
-    walk_engage(&f);
-    expect_state(&f, AGV_STATE_ACTIVE);
-    expect_steering(9000, 9275);
-}
-
 /* So does the first command of the next engagement, independent of the last one of this engagement. */
 /* Shows: TOP-2 */
 void test_the_slew_rate_starts_anew_with_every_engagement(void) {
@@ -79,33 +59,6 @@ void test_the_slew_rate_starts_anew_with_every_engagement(void) {
     expect_state_after(&f, 50, AGV_STATE_STANDBY);
     walk_engage(&f);
     expect_steering(9000, 9275);
-}
-
-/* 2.0 degrees a second are half a count in 25 ms: one count every 50 ms. */
-/* Shows: TOP-2 */
-void test_a_slow_slew_rate_adds_up(void) {
-    f.config.steering_slew_ddeg_s = 20;
-    fixture_active(&f);
-    fixture_run_past(&f, AGV_MSG_STEERING_COMMAND);
-    f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
-    expect_steering(9010, 9000);
-    expect_steering(9010, 9001);
-    expect_steering(9010, 9001);
-    expect_steering(9010, 9002);
-    expect_steering(8000, 9002);
-    expect_steering(8000, 9001);
-}
-
-/* Without a measured angle the rate starts from the first command. */
-/* Shows: TOP-2 */
-void test_without_a_measured_angle_the_slew_rate_starts_from_the_first_command(void) {
-    f.config.steering_slew_ddeg_s = 1000;
-    fixture_angle(&f, 18001);
-    fixture_standby(&f);
-    fixture_mute_ai(&f, true);
-    walk_engage(&f);
-    expect_steering(9400, 9400);
-    expect_steering(9000, 9375);
 }
 
 /* ---- Changes of the gear ---- */
@@ -147,13 +100,6 @@ void test_the_gear_changes_at_standstill(void) {
     fixture_run(&f, 99);
     expect_dropped(0x168, REVERSE);
     fixture_run(&f, 1);
-    expect_pass(0x168, REVERSE, REVERSE);
-}
-
-/* Shows: TOP-2 */
-void test_the_gear_changes_in_motion_if_so_chosen(void) {
-    f.config.gear_change = AGV_GEAR_CHANGE_ANY;
-    active_on_the_move();
     expect_pass(0x168, REVERSE, REVERSE);
 }
 
@@ -319,34 +265,4 @@ void test_speeds_that_count_as_fast(void) {
     fixture_run(&f, 100);
     f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
     expect_steering(9400, 9300);
-}
-
-/* The slew rate applies to the limit, too: the vehicle becomes fast at 40.0 degrees; the limit is reached in steps of
- * 2.5. */
-/* Shows: TOP-2 */
-void test_the_slew_rate_applies_to_the_limit_above_a_speed(void) {
-    f.config.steering_fast_max_ddeg = 300;
-    f.config.fast_mm_s = 1000;
-    f.config.steering_slew_ddeg_s = 1000;
-    fixture_angle(&f, 9340);
-    fixture_command_angle(&f, 9340);
-    fixture_active(&f);
-    fixture_run_past(&f, AGV_MSG_STEERING_COMMAND);
-    f.traffic[AGV_MSG_STEERING_COMMAND].muted = true;
-    fixture_drive(&f, 2000);
-    expect_steering(9340, 9315);
-    expect_steering(9340, 9300);
-    expect_steering(9340, 9300);
-}
-
-/* An unchanged command is not counted as limited. */
-/* Shows: TOP-2 */
-void test_nothing_is_limited_by_default(void) {
-    fixture_active(&f);
-    f.long_run = true;
-    fixture_run(&f, 2000);
-    pause_ai();
-    from_ai(0x075, (const uint8_t[8]){250, 0xFF});
-    from_ai(0x065, (const uint8_t[8]){0x50, 0x46, 0xFF});
-    TEST_ASSERT_EQUAL_UINT32(0, limited());
 }

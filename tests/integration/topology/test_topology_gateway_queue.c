@@ -149,29 +149,6 @@ void test_of_commands_that_come_too_soon_the_newest_goes(void) {
     }
 }
 
-/* 5 frames a millisecond for 950 ms: one each 50 ms is forwarded. */
-/* Shows: TOP-2, SUP-6 */
-void test_a_flood_from_the_ai_side_does_not_fill_the_vehicles_bus(void) {
-    fixture_active(&f);
-    pause_ai();
-    fixture_mute_ai(&f, false);
-    f.traffic[AGV_MSG_GEAR_COMMAND].muted = true;
-    uint32_t passed = 0;
-    const uint32_t before = dropped();
-    for (unsigned i = 0; i < 5 * 950; i++) {
-        from_ai(0x168, (const uint8_t[8]){GEAR_P});
-        passed += fixture_count_sent(&f, 0x168);
-        fixture_forget_sent(&f);
-        if (i % 5 == 4) {
-            fixture_run(&f, 1);
-            passed += fixture_count_sent(&f, 0x168);
-        }
-    }
-    TEST_ASSERT_UINT32_WITHIN(1, 20, passed);
-    TEST_ASSERT_UINT32_WITHIN(1, 5 * 950 - 20, dropped() - before);
-    expect_state(&f, AGV_STATE_ACTIVE);
-}
-
 /* Waiting commands are dropped at a trip and never sent. */
 /* Shows: TOP-2, FSM-2, FSM-6 */
 void test_commands_that_came_too_soon_are_dropped_at_a_trip(void) {

@@ -227,21 +227,6 @@ void test_after_an_override_the_next_periodic_frame_is_due_half_a_cycle_later(vo
     expect_next_after(0x065, f.now_ms, 12, 25);
 }
 
-/* An AI computer that sends D every 100 ms is overridden each time, and the periodic frames are in the middle
- * between. */
-/* Shows: TOP-1 */
-void test_a_periodic_foreign_sender_is_overridden_each_time(void) {
-    tripped();
-    for (unsigned i = 0; i < 20; i++) {
-        fixture_forget_sent(&f);
-        foreign_gear(GEAR_D);
-        const uint32_t heard_ms = f.now_ms;
-        expect_count_after(&f, 100, 0x168, 2);
-        TEST_ASSERT_EQUAL_UINT32(0, fixture_nth_sent(&f, 0x168, 0)->time_ms - heard_ms);
-        TEST_ASSERT_EQUAL_UINT32(50, fixture_nth_sent(&f, 0x168, 1)->time_ms - heard_ms);
-    }
-}
-
 /* ---- Not more often than every 5 ms ---- */
 
 /* Shows: TOP-1 */
@@ -254,15 +239,6 @@ void test_after_5_ms_it_is_overridden_at_once_again(void) {
         fixture_run_without_ticks(&f, 5);
         fixture_jump(&f, 0);
     }
-}
-
-/* Shows: TOP-1 */
-void test_identifiers_are_overridden_independently(void) {
-    tripped();
-    foreign_gear(GEAR_D);
-    fixture_forget_sent(&f);
-    foreign_signals(0x00);
-    expect_answered_in_this_call(0x43F, "another identifier");
 }
 
 /* A sender of one frame a millisecond: an override every 5 ms, and after its last frame. */

@@ -310,17 +310,3 @@ void test_a_sent_frame_is_counted_once(void) {
     TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->shadowed);
     TEST_ASSERT_EQUAL_UINT32(0, agv_supervisor_counters(&f.supervisor)->gate_refused);
 }
-
-/* After an overrun the frames are on their old grid again: every 50 ms from the start. */
-/* Shows: TOP-3, TIM-1 */
-void test_the_status_frame_keeps_its_grid(void) {
-    f.config.status_frame_id = 0x123;
-    f.config.status_frame_period_ms = 50;
-    fixture_start(&f);
-    fixture_run(&f, 101);
-    fixture_forget_sent(&f);
-    fixture_jump(&f, 74); /* 175 ms: the one of 150 ms is late */
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x123));
-    expect_count_after(&f, 24, 0x123, 1);
-    expect_count_after(&f, 1, 0x123, 2);
-}

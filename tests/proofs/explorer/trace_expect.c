@@ -157,11 +157,9 @@ static void write_state(FILE *file, agv_state_t to, const char *reason, uint32_t
 }
 
 static void write_start(FILE *file) {
-    static const char BEFORE[] = "FSM-7: after a reset the first reason is";
-    const agv_fault_t reason = testbed.rules.last.first_reason;
     if (rule_begins_with("FSM-7: after reset cause 0")) {
         write_state(file, AGV_STATE_INIT, NULL, broken_ms);
-    } else if (rule_begins_with(BEFORE) || rule_begins_with("FSM-7")) {
+    } else if (rule_begins_with("FSM-7")) {
         /* the first reason before the restart */
         const char *was = "SUPERVISOR_RESET";
         for (unsigned i = 0; i < seen_count; i++) {
@@ -175,7 +173,7 @@ static void write_start(FILE *file) {
         }
         write_state(file, AGV_STATE_TRIPPED, was, broken_ms);
     } else {
-        (void)reason;
+        /* not a rule of the start */
     }
 }
 

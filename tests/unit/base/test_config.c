@@ -92,24 +92,30 @@ void test_the_defaults_of_the_safe_state_and_the_envelope(void) {
     TEST_ASSERT_EQUAL_UINT16(0, config.steering_fast_max_ddeg);
 }
 
+/* Three cycles of 10, 25 or 100 ms; both limits by hand. */
 /* Shows: INT-2 */
 void test_a_deadline_under_three_cycles_is_refused(void) {
     static const struct {
         uint16_t setting;
         uint16_t three_cycles_ms;
+        uint16_t highest_ms;
     } deadlines[] = {
-        {AGV_SETTING_vcu_heartbeat_timeout_ms, 30},     {AGV_SETTING_eps_heartbeat_timeout_ms, 30},
-        {AGV_SETTING_ai_heartbeat_timeout_ms, 300},     {AGV_SETTING_gear_command_timeout_ms, 300},
-        {AGV_SETTING_throttle_command_timeout_ms, 300}, {AGV_SETTING_steering_command_timeout_ms, 75},
-        {AGV_SETTING_gear_status_timeout_ms, 75},       {AGV_SETTING_throttle_status_timeout_ms, 30},
-        {AGV_SETTING_eps_status_timeout_ms, 30},        {AGV_SETTING_steering_position_timeout_ms, 30},
-        {AGV_SETTING_wheel_speed_timeout_ms, 30},
+        {AGV_SETTING_vcu_heartbeat_timeout_ms, 30, 500},      {AGV_SETTING_eps_heartbeat_timeout_ms, 30, 500},
+        {AGV_SETTING_ai_heartbeat_timeout_ms, 300, 2000},     {AGV_SETTING_gear_command_timeout_ms, 300, 2000},
+        {AGV_SETTING_throttle_command_timeout_ms, 300, 2000}, {AGV_SETTING_steering_command_timeout_ms, 75, 1000},
+        {AGV_SETTING_gear_status_timeout_ms, 75, 1000},       {AGV_SETTING_throttle_status_timeout_ms, 30, 500},
+        {AGV_SETTING_eps_status_timeout_ms, 30, 500},         {AGV_SETTING_steering_position_timeout_ms, 30, 500},
+        {AGV_SETTING_wheel_speed_timeout_ms, 30, 500},
     };
     for (size_t i = 0; i < sizeof deadlines / sizeof deadlines[0]; i++) {
         setUp();
         TEST_ASSERT_TRUE(agv_config_set(&config, deadlines[i].setting, deadlines[i].three_cycles_ms));
         expect_good();
         TEST_ASSERT_TRUE(agv_config_set(&config, deadlines[i].setting, (uint16_t)(deadlines[i].three_cycles_ms - 1)));
+        expect_problem(AGV_CONFIG_OUT_OF_RANGE, deadlines[i].setting);
+        TEST_ASSERT_TRUE(agv_config_set(&config, deadlines[i].setting, deadlines[i].highest_ms));
+        expect_good();
+        TEST_ASSERT_TRUE(agv_config_set(&config, deadlines[i].setting, (uint16_t)(deadlines[i].highest_ms + 1)));
         expect_problem(AGV_CONFIG_OUT_OF_RANGE, deadlines[i].setting);
     }
 }
@@ -140,12 +146,28 @@ void test_every_setting_is_held_to_its_range(void) {
 }
 
 /* Shows: INT-2 */
-void test_a_zero_period_is_refused(void) {
-    config.status_frame_period_ms = 0;
-    expect_problem(AGV_CONFIG_OUT_OF_RANGE, AGV_SETTING_status_frame_period_ms);
-    setUp();
-    config.watchdog_period_ms = 0;
-    expect_problem(AGV_CONFIG_OUT_OF_RANGE, AGV_SETTING_watchdog_period_ms);
+void test_a_period_count_or_time_of_zero_is_refused(void) {
+    static const uint16_t never_zero[] = {
+        AGV_SETTING_status_frame_period_ms, AGV_SETTING_watchdog_period_ms,    AGV_SETTING_eps_supply_fault_frames,
+        AGV_SETTING_eps_mode_frames,        AGV_SETTING_status_invalid_frames, AGV_SETTING_command_too_fast_gaps,
+        AGV_SETTING_reset_hold_ms,          AGV_SETTING_confirm_timeout_ms,    AGV_SETTING_park_timeout_ms,
+        AGV_SETTING_init_hold_ms,           AGV_SETTING_standstill_speed_mm_s, AGV_SETTING_standstill_ms,
+        AGV_SETTING_tx_stalled_ms,          AGV_SETTING_bus_off_recovery_ms,   AGV_SETTING_override_gap_ms,
+        AGV_SETTING_event_hold_ms};
+    for (size_t i = 0; i < sizeof never_zero / sizeof never_zero[0]; i++) {
+        setUp();
+        (void)agv_config_set(&config, never_zero[i], 0);
+        expect_problem(AGV_CONFIG_OUT_OF_RANGE, never_zero[i]);
+    }
+}
+
+/* Shows: INT-2 */
+void test_a_choice_beyond_its_words_is_refused(void) {
+    for (uint16_t i = AGV_SETTING_topology; i <= AGV_SETTING_gear_change; i++) {
+        setUp();
+        (void)agv_config_set(&config, i, 2);
+        expect_problem(AGV_CONFIG_OUT_OF_RANGE, i);
+    }
 }
 
 /* Of the 2048 identifiers the 13 of the two sets are taken. */
@@ -166,6 +188,8 @@ void test_the_status_frame_may_not_have_an_identifier_of_the_protocol(void) {
     }
     config.status_frame_id = 0x201;
     expect_problem(AGV_CONFIG_ID_TWICE, AGV_SETTING_status_frame_id);
+    config.status_frame_id = 0x800; /* no 11-bit identifier */
+    expect_problem(AGV_CONFIG_OUT_OF_RANGE, AGV_SETTING_status_frame_id);
 }
 
 /* By hand: an identifier follows the ID set unless it was changed. */
@@ -309,6 +333,7 @@ static const struct {
     {AGV_SETTING_vcu_heartbeat_timeout_ms, 49, 51, false, true},
     {AGV_SETTING_steering_deviation_ddeg, 499, 501, false, true},
     {AGV_SETTING_steering_gain_ddeg, 249, 251, true, false},
+    {AGV_SETTING_throttle_deviation_counts, 24, 26, false, true},
     {AGV_SETTING_mode_flapping_ms, 4999, 5001, true, false},
     {AGV_SETTING_mode_frames, 2, 4, true, false},
     {AGV_SETTING_reengage_ms, 99, 101, true, false},
@@ -317,6 +342,8 @@ static const struct {
     {AGV_SETTING_standstill_vcu_counts, 179, 65535, false, true},
     {AGV_SETTING_reset_hold_ms, 999, 1001, true, false},
     {AGV_SETTING_reset_hold_max_ms, 4999, 5001, false, true},
+    {AGV_SETTING_confirm_timeout_ms, 499, 501, false, true},
+    {AGV_SETTING_hold_age_ms, 49, 51, false, true},
     {AGV_SETTING_confirmed_ms, 4999, 5001, true, false},
     {AGV_SETTING_stop_timeout_ms, 4999, 5001, false, true},
     {AGV_SETTING_hold_standstill_ms, 4999, 5001, false, false},
@@ -355,19 +382,54 @@ void test_no_default_weakens_and_nothing_beyond_the_last_setting(void) {
     TEST_ASSERT_FALSE(agv_config_weakens(&config, UINT32_MAX));
 }
 
+/* By hand: those of the heartbeats of VCU and EPS, of the AI computer while engaged, of the EPS, and of the supervisor. */
 /* Shows: INT-2 */
 void test_mandatory_trips_cannot_be_made_warnings(void) {
     static const agv_fault_t must[] = {
-        AGV_FAULT_VCU_HEARTBEAT_LOST,        AGV_FAULT_VCU_HEARTBEAT_STUCK,   AGV_FAULT_EPS_HEARTBEAT_LOST,
-        AGV_FAULT_EPS_HEARTBEAT_STUCK,       AGV_FAULT_AI_HEARTBEAT_LOST,     AGV_FAULT_AI_HEARTBEAT_STUCK,
-        AGV_FAULT_EPS_OVER_CURRENT_SHUTDOWN, AGV_FAULT_EPS_MOTOR_ENCODER,     AGV_FAULT_EPS_POSITION_ENCODER,
-        AGV_FAULT_EPS_UNDER_VOLTAGE,         AGV_FAULT_EPS_OVER_VOLTAGE,      AGV_FAULT_EPS_EXCESSIVE_CURRENT,
-        AGV_FAULT_EPS_TEMP_ABOVE_120,        AGV_FAULT_VCU_EPS_CAN_BUS_FAULT, AGV_FAULT_VCU_EPS_HARDWARE_FAULT,
-        AGV_FAULT_EPS_STATUS_TIMEOUT,        AGV_FAULT_VCU_AI_CAN_LOST,       AGV_FAULT_AI_COMMAND_OUT_OF_RANGE,
-        AGV_FAULT_STEERING_COMMAND_TIMEOUT,  AGV_FAULT_STEERING_DEVIATION,    AGV_FAULT_MODE_FLAPPING,
-        AGV_FAULT_SAFE_STATE_UNCONFIRMED,    AGV_FAULT_VEHICLE_NOT_STOPPING,  AGV_FAULT_MOVING_WHILE_SAFE,
-        AGV_FAULT_MEMORY_CORRUPTED,          AGV_FAULT_TX_GATE_REFUSED,       AGV_FAULT_CONFIG_INVALID,
+        AGV_FAULT_VCU_HEARTBEAT_LOST,
+        AGV_FAULT_VCU_HEARTBEAT_STUCK,
+        AGV_FAULT_EPS_HEARTBEAT_LOST,
+        AGV_FAULT_EPS_HEARTBEAT_STUCK,
+        AGV_FAULT_AI_HEARTBEAT_LOST,
+        AGV_FAULT_AI_HEARTBEAT_STUCK,
+        AGV_FAULT_EPS_OVER_CURRENT_SHUTDOWN,
+        AGV_FAULT_EPS_MOTOR_ENCODER,
+        AGV_FAULT_EPS_POSITION_ENCODER,
+        AGV_FAULT_EPS_UNDER_VOLTAGE,
+        AGV_FAULT_EPS_OVER_VOLTAGE,
+        AGV_FAULT_EPS_EXCESSIVE_CURRENT,
+        AGV_FAULT_EPS_TEMP_ABOVE_120,
+        AGV_FAULT_VCU_EPS_CAN_BUS_FAULT,
+        AGV_FAULT_VCU_EPS_HARDWARE_FAULT,
+        AGV_FAULT_VCU_AI_CAN_LOST,
+        AGV_FAULT_EPS_STATUS_TIMEOUT,
+        AGV_FAULT_GEAR_COMMAND_TIMEOUT,
+        AGV_FAULT_THROTTLE_COMMAND_TIMEOUT,
+        AGV_FAULT_STEERING_COMMAND_TIMEOUT,
+        AGV_FAULT_AI_COMMAND_OUT_OF_RANGE,
+        AGV_FAULT_EPS_MODE_OFF,
+        AGV_FAULT_EPS_MODE_INVALID,
+        AGV_FAULT_EPS_MODE_NOT_ANGLE,
+        AGV_FAULT_STEERING_ANGLE_INVALID,
+        AGV_FAULT_STEERING_DEVIATION,
+        AGV_FAULT_MODE_INVALID,
+        AGV_FAULT_MODE_FLAPPING,
+        AGV_FAULT_MODE_NONE,
+        AGV_FAULT_FOREIGN_COMMAND_SENDER,
+        AGV_FAULT_EMERGENCY_STOP,
+        AGV_FAULT_SAFE_STATE_UNCONFIRMED,
+        AGV_FAULT_VEHICLE_NOT_STOPPING,
+        AGV_FAULT_MOVING_WHILE_SAFE,
+        AGV_FAULT_BUS_OFF,
+        AGV_FAULT_TX_STALLED,
+        AGV_FAULT_STEP_OVERRUN,
+        AGV_FAULT_TX_GATE_REFUSED,
+        AGV_FAULT_MEMORY_CORRUPTED,
+        AGV_FAULT_CONFIG_INVALID,
         AGV_FAULT_SELF_TEST_FAILED,
+        AGV_FAULT_SUPERVISOR_RESET,
+        AGV_FAULT_OUTPUT_FEEDBACK,
+        AGV_FAULT_CLOCK_DEVIATION,
     };
     for (size_t i = 0; i < sizeof must / sizeof must[0]; i++) {
         setUp();
