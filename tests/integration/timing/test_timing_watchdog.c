@@ -202,6 +202,35 @@ void test_no_reset_is_accepted_while_steps_stay_away(void) {
     expect_fault(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, true);
 }
 
+/* A frame is handled late when the last tick was more than 10 ms ago. The VCU's deadline is over since 50 ms. */
+/* Shows: TIM-4, FSM-3 */
+void test_a_frame_10_ms_after_a_tick_is_not_late_and_one_after_11_is(void) {
+    fixture_standby(&f);
+    step_late_by(500);
+    expect_state_after(&f, 1200, AGV_STATE_SAFE);
+    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].muted = true;
+    fixture_run(&f, 45);
+    fixture_run_without_ticks(&f, 10);
+    fixture_send_now(&f, AGV_MSG_STEERING_STATUS);
+    expect_state(&f, AGV_STATE_SAFE);
+    fixture_run_without_ticks(&f, 1);
+    fixture_send_now(&f, AGV_MSG_STEERING_STATUS);
+    expect_state(&f, AGV_STATE_TRIPPED);
+}
+
+/* 500 ms of INIT are over among the late frames, and so is the deadline of the EPS. Its other message goes on. */
+/* Shows: TIM-4 */
+void test_late_frames_do_not_end_init_without_the_eps(void) {
+    fixture_start(&f);
+    fixture_run(&f, 440);
+    f.traffic[AGV_MSG_STEERING_STATUS].muted = true;
+    fixture_run_without_ticks(&f, 90);
+    expect_state(&f, AGV_STATE_INIT);
+    f.traffic[AGV_MSG_STEERING_STATUS].muted = false;
+    expect_state_after(&f, 700, AGV_STATE_STANDBY);
+}
+
 /* ---- A backlog does not look fresh ---- */
 
 static bool hold_back(fixture_t *fixture, agv_message_t message, hal_can_frame_t *frame) {

@@ -133,6 +133,58 @@ void test_while_a_gear_waits_the_throttle_that_passes_is_0(void) {
     expect_pass(0x075, commanded, commanded);
 }
 
+/* D was sent in the engagement before, which does not count: the vehicle reverses now. Throttle 0 passes. */
+/* Shows: TOP-2 */
+void test_a_gear_of_the_engagement_before_was_not_sent_in_this_one(void) {
+    static const uint8_t commanded[8] = {75};
+    static const uint8_t nothing[8] = {0};
+    f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = GEAR_D;
+    fixture_active(&f);
+    fixture_run(&f, 200);
+    fixture_mode(&f, MODE_MANUAL);
+    expect_state_after(&f, 50, AGV_STATE_STANDBY);
+    fixture_gear(&f, GEAR_R);
+    fixture_drive(&f, -500);
+    fixture_run(&f, 1000);
+    walk_engage(&f);
+    fixture_run(&f, 150);
+    f.traffic[AGV_MSG_THROTTLE_COMMAND].muted = true;
+    fixture_run(&f, 100);
+    expect_pass(0x075, commanded, nothing);
+}
+
+/* The vehicle changes from D to R by itself: that is no new gear, but a deviation (SUP-11). */
+/* Shows: TOP-2, SUP-11 */
+void test_a_gear_that_the_vehicle_leaves_does_not_wait(void) {
+    static const uint8_t commanded[8] = {75};
+    f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = GEAR_D;
+    fixture_active(&f);
+    fixture_run(&f, 200);
+    fixture_drive(&f, -500);
+    fixture_gear(&f, GEAR_R);
+    f.traffic[AGV_MSG_THROTTLE_COMMAND].muted = true;
+    fixture_run(&f, 150);
+    expect_pass(0x075, commanded, commanded);
+}
+
+/* Only a warning here: R was sent at standstill, 0A3h still says D. In motion D is another gear. */
+/* Shows: TOP-2, GEAR_STATUS_TIMEOUT */
+void test_a_silent_gear_status_is_not_the_gear(void) {
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_GEAR_STATUS_TIMEOUT, false);
+    fixture_active(&f);
+    fixture_gear(&f, GEAR_D);
+    fixture_run(&f, 100);
+    f.traffic[AGV_MSG_GEAR_STATUS].muted = true;
+    f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = GEAR_R;
+    fixture_run(&f, 300);
+    fixture_drive(&f, -500);
+    fixture_run(&f, 20);
+    f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = GEAR_D;
+    fixture_forget_sent(&f);
+    expect_count_after(&f, 300, 0x168, 0);
+    expect_state(&f, AGV_STATE_ACTIVE);
+}
+
 /* ---- Withheld commands ---- */
 
 /* Each time, one 363h reports manual before the message, and one reports autopilot after it. */
