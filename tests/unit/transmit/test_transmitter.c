@@ -192,6 +192,21 @@ void test_in_a_stall_the_lowest_identifier_is_sent_first(void) {
     expect_sent(3, HAL_CAN_VEHICLE, 0x43F, (const uint8_t[8]){0, 0, 0, 0, 0x70, 0, 0, 1});
 }
 
+/* Whatever waits for the vehicle: 43Fh, 168h, 075h, 065h, or the status frame. */
+/* Shows: SUP-7, TX_STALLED */
+TEST_CASE(AGV_TIMER_TX_TURN_SIGNAL)
+TEST_CASE(AGV_TIMER_TX_GEAR)
+TEST_CASE(AGV_TIMER_TX_THROTTLE)
+TEST_CASE(AGV_TIMER_TX_STEERING)
+TEST_CASE(AGV_TIMER_TX_STATUS)
+void test_each_frame_that_waits(unsigned timer) {
+    TEST_ASSERT_FALSE(agv_transmitter_waits(&timers));
+    agv_timer_start(&timers, timer);
+    TEST_ASSERT_TRUE(agv_transmitter_waits(&timers));
+    agv_timer_stop(&timers, timer);
+    TEST_ASSERT_FALSE(agv_transmitter_waits(&timers));
+}
+
 /* A frame that is no longer wanted does not wait any more. */
 void test_a_command_that_is_not_wanted_any_more_is_not_stalled(void) {
     hal_takes = false;
