@@ -155,6 +155,7 @@ static void sound_decisions(agv_core_t *core) {
     core->stalled = any_bool();
     core->stall_begins = any_bool();
     core->hold.taken = any_bool();
+    core->hardware.was_closed = any_bool();
     core->transmitter.status_again = any_bool();
     core->transmitter.throttle_0_waits = any_bool();
 }
