@@ -1,7 +1,8 @@
 /**
  * @file reset_button.h
- * The reset by a button: remote button 1 (FSM-3), or the push button on the reset input (HW-3). The press must begin after the trip and last reset_hold_ms to reset_hold_max_ms;
- * all conditions of a reset must hold in the last reset_hold_ms before the release.
+ * The reset by a button: remote button 1 (FSM-3), or the push button on the reset input (HW-3). The press must begin after
+ * the trip and last reset_hold_ms to reset_hold_max_ms. All conditions of a reset must hold in the last reset_hold_ms before
+ * the release.
  */
 #ifndef AGV_RESET_BUTTON_H
 #define AGV_RESET_BUTTON_H
@@ -46,7 +47,7 @@ void agv_reset_button_report(agv_reset_button_t *reset, bool vcu_alive, bool rem
 /** Take the debounced state of the push button. @param button agv_button_t */
 void agv_reset_button_read(agv_reset_button_t *reset, uint8_t button);
 
-/** Set the button to unknown, because the VCU is lost. */
+/** Set the button to unknown, because the VCU is lost: a press that goes on when it returns resets nothing. */
 void agv_reset_button_lose(agv_reset_button_t *reset);
 
 /** Ignore, at a trip, a press that began before it. */

@@ -93,6 +93,7 @@ static void observe_time(agv_core_t *core, uint32_t elapsed_ms) {
     agv_core_follow_mode(core, agv_mode_tick(&core->mode, timers, vcu_alive, elapsed_ms), timers->now_ms);
     if (!vcu_alive) {
         agv_reset_button_lose(&core->reset_button);
+        agv_reset_button_lose(&core->reset_pin);
     }
     agv_core_evaluate_standstill(core);
     agv_intrusion_evaluate(&core->intrusion, faults, timers, &core->config, &core->liveness);
@@ -109,8 +110,8 @@ void agv_core_show_led(agv_core_t *core, const agv_ports_t *ports, uint32_t elap
     }
 }
 
-/* INT-3: at most one write per second, averaged over a minute. */
-enum { STORE_CREDIT_MS = 1000, STORE_CREDITS_MAX = 60 };
+/* INT-3: at most 60 writes in any minute: 20 that were not used before, and one each 1.5 s. */
+enum { STORE_CREDIT_MS = 1500, STORE_CREDITS_MAX = 20 };
 
 static void earn_store_credits(agv_core_t *core, uint32_t elapsed_ms) {
     const uint32_t time_ms = core->store_credit_ms + ((elapsed_ms < STORE_CREDIT_MS) ? elapsed_ms : STORE_CREDIT_MS);

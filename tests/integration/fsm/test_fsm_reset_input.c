@@ -153,6 +153,24 @@ void test_a_push_button_that_was_down_at_the_trip_does_not_reset(void) {
     expect_refusals(2, AGV_MISSING_BUTTON);
 }
 
+/* A press on which the VCU was lost says nothing about the vehicle that came back (FSM-3). */
+/* Shows: HW-3, FSM-3, VCU_HEARTBEAT_LOST */
+void test_the_loss_of_the_vcu_ends_a_press_of_the_push_button(void) {
+    choose(AGV_RESET_INPUT_PIN);
+    push(true);
+    fixture_run(&f, 1300);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].muted = true;
+    expect_state_after(&f, 100, AGV_STATE_TRIPPED);
+    expect_refusals(1, AGV_MISSING_VCU_HEARTBEAT);
+    f.traffic[AGV_MSG_VEHICLE_STATUS].muted = false;
+    expect_state_after(&f, 1500, AGV_STATE_SAFE);
+    push(false);
+    expect_state_after(&f, 100, AGV_STATE_SAFE);
+    expect_refusals(2, AGV_MISSING_BUTTON);
+    push_for(1000);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
 /* The output that was confirmed in time is still closed, and its contact reads so. */
 /* Shows: HW-1, FSM-3 */
 void test_a_closed_contact_of_a_closed_output_does_not_hinder_the_reset(void) {

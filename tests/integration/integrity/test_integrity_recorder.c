@@ -190,13 +190,13 @@ void test_flash_is_written_in_standby_at_standstill_only(void) {
     fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
     fixture_run(&f, 99);
     TEST_ASSERT_EQUAL_UINT32(before, appended());
-    fixture_run(&f, 1); /* the unused writes: one a second */
+    fixture_run(&f, 1); /* the unused writes */
     TEST_ASSERT_EQUAL_UINT32(before + 1, appended());
-    fixture_run(&f, 25000);
+    fixture_run(&f, 40000);
     TEST_ASSERT_EQUAL_UINT32(next_sequence(), appended());
 }
 
-/* The first minute of motion leaves 60 unused writes, used one a tick; then one a second. */
+/* Motion leaves 20 unused writes, used one a tick; then one each 1.5 s: 60 in a minute. */
 /* Shows: INT-3 */
 void test_flash_is_written_at_most_once_a_second_on_average_over_a_minute(void) {
     fixture_standby(&f);
@@ -206,10 +206,12 @@ void test_flash_is_written_at_most_once_a_second_on_average_over_a_minute(void) 
     fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
     fixture_run(&f, 99);
     const uint32_t before = appended();
-    fixture_run(&f, 60);
-    TEST_ASSERT_EQUAL_UINT32(before + 60, appended());
-    fixture_run(&f, 100000);
-    TEST_ASSERT_UINT32_WITHIN(1, before + 160, appended());
+    fixture_run(&f, 20);
+    TEST_ASSERT_EQUAL_UINT32(before + 20, appended());
+    fixture_run(&f, 60000 - 20);
+    TEST_ASSERT_UINT32_WITHIN(1, before + 59, appended());
+    fixture_run(&f, 60000);
+    TEST_ASSERT_UINT32_WITHIN(1, before + 99, appended());
 }
 
 static void expect_log_holds(uint32_t count) {
@@ -244,7 +246,7 @@ void test_at_most_one_event_a_tick_is_copied(void) {
         const uint32_t before = appended();
         fixture_run(&f, 1);
         TEST_ASSERT_TRUE(appended() - before <= 1);
-        TEST_ASSERT_TRUE(f.elapsed_ms - began_ms < 50000);
+        TEST_ASSERT_TRUE(f.elapsed_ms - began_ms < 80000);
     }
 }
 
