@@ -145,24 +145,48 @@ void why_budget_engage(why_t *why) {
             why->trackers[rows[i].fault] = (why_tracker_t){.good = why_no_evidence(), .first = why_no_evidence()};
         }
     }
-    why->facts.steering_gain = 0;
-    why->facts.throttle_drop = 0;
+    why->facts.steering_progress = (why_progress_t){0};
+    why->facts.throttle_progress = (why_progress_t){0};
     for (size_t i = 0u; i < (size_t)AGV_COMMAND_COUNT; i++) {
         why->facts.command_known[i] = false;
     }
 }
 
+/** For as long as a full budget decays, within the limit, steps back count after progress has cleared it. */
+static void follow_steps_back(why_progress_t *progress, bool bad, uint64_t full_us, uint64_t t_us) {
+    const uint64_t elapsed_us = t_us - progress->at_us;
+    progress->at_us = t_us;
+    if (progress->steps_back_us == 0u) {
+        return;
+    }
+    const uint64_t left_us = progress->steps_back_us;
+    progress->steps_back_us = bad ? full_us : ((left_us > elapsed_us) ? (left_us - elapsed_us) : 0u);
+}
+
 /** Progress towards what is commanded clears a budget. */
-static void follow_progress(why_t *why, agv_fault_t fault, int32_t *progress, int32_t enough, uint64_t t_us) {
+static void follow_progress(why_t *why, agv_fault_t fault, why_progress_t *progress, int32_t step, int32_t enough,
+                            uint64_t t_us) {
     why_tracker_t *tracker = &why->trackers[fault];
-    if ((tracker->value != 0u) && (*progress >= enough)) {
+    const uint64_t full_us = 2u * why_budget_us(why, fault);
+    follow_steps_back(progress, tracker->bad, full_us, t_us);
+    if ((tracker->value == 0u) && (progress->steps_back_us == 0u)) {
+        progress->gained = 0;
+    }
+    progress->gained += step;
+    if ((tracker->value != 0u) && (progress->gained >= enough)) {
         tracker->value = 0u;
         tracker->since_us = t_us;
         tracker->bad_since_us = t_us;
+        progress->steps_back_us = full_us;
     }
-    if (tracker->value == 0u) {
-        *progress = 0;
+    if ((tracker->value == 0u) && ((progress->gained > 0) || (progress->steps_back_us == 0u))) {
+        progress->gained = 0;
     }
+}
+
+static int32_t throttle_above(const why_t *why, uint32_t throttle) {
+    const int32_t above = (int32_t)throttle - (int32_t)why->facts.throttle_command;
+    return (above > 0) ? above : 0;
 }
 
 static void take_angle(why_t *why, const why_evidence_t *frame) {
@@ -171,8 +195,8 @@ static void take_angle(why_t *why, const why_evidence_t *frame) {
     why->facts.angle_raw = agv_angle_read(&frame->frame.data[2]);
     why->facts.angle_known = true;
     if (known && why->facts.command_known[AGV_MSG_STEERING_COMMAND] && (frame->t_us >= why->engagement.judged_us)) {
-        why->facts.steering_gain += off_by(why, before) - off_by(why, why->facts.angle_raw);
-        follow_progress(why, AGV_FAULT_STEERING_DEVIATION, &why->facts.steering_gain,
+        follow_progress(why, AGV_FAULT_STEERING_DEVIATION, &why->facts.steering_progress,
+                        off_by(why, before) - off_by(why, why->facts.angle_raw),
                         (int32_t)why->config.steering_gain_ddeg, frame->t_us);
     }
 }
@@ -181,8 +205,9 @@ static void take_throttle(why_t *why, const why_evidence_t *frame) {
     const uint32_t before = why->facts.throttle;
     why->facts.throttle = frame->frame.data[0];
     if (frame->t_us >= why->engagement.judged_us) {
-        why->facts.throttle_drop += (int32_t)before - (int32_t)why->facts.throttle;
-        follow_progress(why, AGV_FAULT_THROTTLE_DEVIATION, &why->facts.throttle_drop, THROTTLE_DROP, frame->t_us);
+        follow_progress(why, AGV_FAULT_THROTTLE_DEVIATION, &why->facts.throttle_progress,
+                        throttle_above(why, before) - throttle_above(why, why->facts.throttle), THROTTLE_DROP,
+                        frame->t_us);
     }
 }
 

@@ -106,11 +106,20 @@ static void explain_tracked(const why_t *why, why_trip_t *trip) {
     }
 }
 
-/** The first of the engagements that were too many. */
+/** What a flicker of manual scores at its trip (SUP-9): more than the end of an engagement. */
+enum { FLICKER_SCORE = 40 };
+
+/** The first of the engagements that were too many, or the first 363h of a flicker. */
 static void explain_flapping(const why_t *why, why_trip_t *trip) {
     const why_engagement_t *engagement = &why->engagement;
     const uint32_t kept =
         (engagement->count < (uint32_t)WHY_ENGAGEMENTS) ? engagement->count : (uint32_t)WHY_ENGAGEMENTS;
+    if (engagement->manual_score >= (uint32_t)FLICKER_SCORE) {
+        trip->cause_us = engagement->manual.t_us;
+        why_show(trip, &engagement->manual);
+        show_recent(why, trip, trip->message, RECENT_FRAMES);
+        return;
+    }
     for (uint32_t i = 0u; i < kept; i++) {
         const why_evidence_t *frame = &engagement->frames[(engagement->count - kept + i) % (uint32_t)WHY_ENGAGEMENTS];
         if (i == 0u) {

@@ -36,10 +36,27 @@ static void end(why_t *why, uint64_t t_us) {
     why->engagement.judged_us = WHY_NEVER;
 }
 
+/** Manual that flickers while engaged (MODE_FLAPPING). */
+static void follow_flicker(why_engagement_t *engagement, const why_evidence_t *frame, bool manual) {
+    if (!engagement->engaged) {
+        engagement->manual_score = 0u;
+    } else if (manual) {
+        if (engagement->manual_score == 0u) {
+            engagement->manual = *frame;
+        }
+        engagement->manual_score += 2u;
+    } else if (engagement->manual_score > 0u) {
+        engagement->manual_score--;
+    } else {
+        /* no flicker */
+    }
+}
+
 void why_engage_frame(why_t *why, const why_evidence_t *frame) {
     why_engagement_t *engagement = &why->engagement;
     const uint32_t bits = frame->frame.data[6] & (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT);
     why_budget_advance(why, frame->t_us);
+    follow_flicker(engagement, frame, bits == AGV_VCU_FLAG_MANUAL);
     if (bits == (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT)) {
         engagement->off_frames = 0u; /* the mode before remains */
     } else if ((bits & AGV_VCU_FLAG_AUTOPILOT) != 0u) {

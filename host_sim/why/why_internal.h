@@ -43,6 +43,13 @@ typedef struct {
     const why_evidence_t *before; /**< NULL: none */
 } why_score_frames_t;
 
+/** Progress towards a command, which clears a budget; steps back count for some time after it has done so. */
+typedef struct {
+    int32_t gained;
+    uint64_t steps_back_us; /**< left of that time */
+    uint64_t at_us;         /**< when the last step was handled */
+} why_progress_t;
+
 /** What vehicle and AI computer say, as far as budgets need it. */
 typedef struct {
     bool angle_known, command_known[AGV_COMMAND_COUNT], mode_known, speed_known, gear_known;
@@ -53,7 +60,7 @@ typedef struct {
     uint32_t mode_bits;
     uint32_t vcu_speed;
     int32_t left_mm_s, right_mm_s;
-    int32_t steering_gain, throttle_drop; /**< progress that clears a budget */
+    why_progress_t steering_progress, throttle_progress;
 } why_facts_t;
 
 /** The engagement of the autopilot. */
@@ -65,6 +72,8 @@ typedef struct {
     uint64_t judged_us;                     /**< from here on it is judged; WHY_NEVER: not engaged */
     why_evidence_t frames[WHY_ENGAGEMENTS]; /**< of the last ones, a ring */
     uint32_t count;
+    uint32_t manual_score; /**< frames that report manual, 2 up and 1 down */
+    why_evidence_t manual; /**< the first of them */
 } why_engagement_t;
 
 /** All that is known. */

@@ -36,7 +36,7 @@ static const meaning_t meanings[AGV_FAULT_COUNT] = {
     SAYS(BUS_OFF, "the vehicle-side controller was bus-off"),
     SAYS(TX_STALLED, "a frame waited for longer than %L to be sent"),
     SAYS(MODE_INVALID, "reported manual and autopilot together for %L"),
-    SAYS(MODE_FLAPPING, "reported a fourth engagement within %L"),
+    SAYS(MODE_FLAPPING, "changed between manual and autopilot too often (at most three engagements in %L)"),
     SAYS(MODE_NONE, "reported neither manual nor autopilot for %L while the vehicle moved"),
     SAYS(EPS_MODE_OFF, "reported that the EPS is off"),
     SAYS(EPS_MODE_INVALID, "reported an EPS mode that does not exist"),

@@ -1,6 +1,6 @@
 #include "decide/stopping.h"
 
-/* The vehicle moves if a wheel turns at this speed for this time. */
+/* The vehicle moves if a wheel turns at this speed for this time: a budget, so that a slow reading now and then hides nothing. */
 enum { MOVING_MM_S = 100, MOVING_MS = 200 };
 
 void agv_stopping_start(agv_stopping_t *stopping, agv_timers_t *timers) {
@@ -13,20 +13,12 @@ void agv_stopping_end(agv_stopping_t *stopping) {
     *stopping = (agv_stopping_t){0};
 }
 
-static void follow_wheels(agv_stopping_t *stopping, const agv_vehicle_t *vehicle, uint32_t elapsed_ms) {
-    const uint32_t moving_ms = (uint32_t)stopping->moving_ms + elapsed_ms;
-    if (!agv_vehicle_wheel_turns(vehicle, MOVING_MM_S)) {
-        stopping->moving_ms = 0u;
-    } else {
-        stopping->moving_ms = (uint16_t)((moving_ms < (uint32_t)MOVING_MS) ? moving_ms : (uint32_t)MOVING_MS);
-    }
-}
-
 void agv_stopping_step(agv_stopping_t *stopping, const agv_timers_t *timers, const agv_vehicle_t *vehicle,
                        uint32_t elapsed_ms) {
-    follow_wheels(stopping, vehicle, elapsed_ms);
+    agv_budget_add(&stopping->moved, agv_vehicle_wheel_turns(vehicle, MOVING_MM_S), elapsed_ms, MOVING_MS);
     if (agv_vehicle_wheels_stand(timers)) {
         stopping->stood = true;
+        stopping->moved = (agv_budget_t){0};
         stopping->not_stopping = false;
         stopping->moving = false;
         return;
@@ -34,7 +26,7 @@ void agv_stopping_step(agv_stopping_t *stopping, const agv_timers_t *timers, con
     if (!stopping->stood && agv_timer_reached(timers, AGV_TIMER_STOP)) {
         stopping->not_stopping = true;
     }
-    if (stopping->stood && (stopping->moving_ms >= (uint16_t)MOVING_MS)) {
+    if (stopping->stood && stopping->moved.present) {
         stopping->moving = true;
     }
 }

@@ -8,12 +8,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/score.h"
 #include "base/timers.h"
 #include "observe/vehicle.h"
 
 /** State of the check since the trip. */
 typedef struct {
-    uint16_t moving_ms; /**< how long a wheel has been turning, up to the limit */
+    agv_budget_t moved; /**< how long a wheel has been turning */
     bool stood;         /**< the wheels have stood since the trip */
     bool not_stopping;  /**< the cause of VEHICLE_NOT_STOPPING is present */
     bool moving;        /**< the cause of MOVING_WHILE_SAFE is present */

@@ -27,23 +27,14 @@ static uint8_t contact_of(agv_hardware_t *hardware, uint8_t part, uint8_t contac
 /* HW-1: a contact that comes and goes is found too. */
 static void check_feedback(agv_hardware_t *hardware, agv_fault_monitor_t *faults, const agv_config_t *config,
                            uint32_t elapsed_ms, bool output_closed) {
-    const uint32_t full = 2u * (uint32_t)config->output_feedback_ms;
     const uint8_t right = (uint8_t)(output_closed ? HAL_CONTACT_CLOSED : HAL_CONTACT_OPEN);
-    const uint32_t spent = hardware->mismatch_halves;
+    const bool wrong = (hardware->feedback != (uint8_t)HAL_CONTACT_NONE) && (hardware->feedback != right);
     /* After a change the contact cannot be wrong for longer than the change is old: a late step does not count in full. */
-    const uint32_t limit_ms = (hardware->was_closed == output_closed) ? full : 1u;
-    const uint32_t ms = (elapsed_ms < limit_ms) ? elapsed_ms : limit_ms;
-    uint32_t halves;
+    const bool changed = hardware->was_closed != output_closed;
+    const uint32_t ms = (changed && (elapsed_ms > 1u)) ? 1u : elapsed_ms;
     hardware->was_closed = output_closed;
-    if ((hardware->feedback != (uint8_t)HAL_CONTACT_NONE) && (hardware->feedback != right)) {
-        halves = ((2u * ms) < (full - spent)) ? (spent + (2u * ms)) : full;
-    } else {
-        halves = (ms < spent) ? (spent - ms) : 0u;
-    }
-    hardware->mismatch_halves = (uint16_t)halves;
-    if ((halves == full) || (halves == 0u)) {
-        agv_fault_monitor_set(faults, AGV_FAULT_OUTPUT_FEEDBACK, halves == full);
-    }
+    agv_budget_add(&hardware->mismatch, wrong, ms, config->output_feedback_ms);
+    agv_fault_monitor_set(faults, AGV_FAULT_OUTPUT_FEEDBACK, hardware->mismatch.present);
 }
 
 /* HW-3: until it has been read alike for the first time, the button is unknown: one that is stuck is no press. */

@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/score.h"
 #include "base/timers.h"
 #include "decide/fault_monitor.h"
 #include "decide/reset_button.h"
@@ -19,17 +20,16 @@ enum { AGV_BUTTON_DEBOUNCE_MS = 20 };
 
 /** What is known of the hardware. */
 typedef struct {
-    uint32_t compared_ms; /**< time of the last comparison of the clocks */
-    uint32_t second_ms;   /**< the second clock at that time */
-    uint16_t
-        mismatch_halves; /**< half milliseconds of a wrong contact: 2 for each ms with it, 1 less for each without */
-    uint8_t feedback;    /**< hal_contact_t of the safety output at the last tick, or an invalid value */
-    uint8_t button;      /**< agv_button_t, debounced */
-    uint8_t button_raw;  /**< agv_button_t at the last tick */
-    uint8_t button_ms;   /**< for so long it was read like that */
-    uint8_t failed;      /**< HAL_SELF_TEST_* bits of the parts that have failed */
-    bool was_closed;     /**< command of the safety output at the last tick */
-    uint8_t parts;       /**< optional parts that the board was seen to have */
+    uint32_t compared_ms;  /**< time of the last comparison of the clocks */
+    uint32_t second_ms;    /**< the second clock at that time */
+    agv_budget_t mismatch; /**< how long the contact was wrong */
+    uint8_t feedback;      /**< hal_contact_t of the safety output at the last tick, or an invalid value */
+    uint8_t button;        /**< agv_button_t, debounced */
+    uint8_t button_raw;    /**< agv_button_t at the last tick */
+    uint8_t button_ms;     /**< for so long it was read like that */
+    uint8_t failed;        /**< HAL_SELF_TEST_* bits of the parts that have failed */
+    bool was_closed;       /**< command of the safety output at the last tick */
+    uint8_t parts;         /**< optional parts that the board was seen to have */
 } agv_hardware_t;
 
 /** Run the self-test of the port, and raise SELF_TEST_FAILED if a part has failed. @param failed parts found elsewhere */

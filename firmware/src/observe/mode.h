@@ -22,8 +22,9 @@ typedef struct {
     bool heard;         /**< a 363h was received */
     bool engaged;
     bool manual;
-    agv_budget_t both_spent; /**< how long the timer of "both mode bits" had run, while they are not both set */
-    agv_budget_t none_spent; /**< the same for "neither mode bit" */
+    agv_score_t manual_score; /**< 363h that report manual, while engaged */
+    agv_budget_t both_spent;  /**< how long the timer of "both mode bits" had run, while they are not both set */
+    agv_budget_t none_spent;  /**< the same for "neither mode bit" */
 } agv_mode_t;
 
 /** Change of the engagement. */
@@ -51,6 +52,7 @@ void agv_mode_count_engagement(agv_mode_t *mode, agv_timers_t *timers, agv_fault
 /**
  * Set or end MODE_INVALID and MODE_NONE (SUP-9). Call at every tick. The condition of each must last for its time. A ms
  * without the condition subtracts only half a ms from that time, so that occasional good frames do not hide the fault.
+ * Manual that flickers while engaged, and never ends the engagement, is MODE_FLAPPING: driving would not be judged.
  * @param supervising the state is STANDBY or ACTIVE
  */
 void agv_mode_check(agv_mode_t *mode, agv_timers_t *timers, agv_fault_monitor_t *faults, const agv_config_t *config,

@@ -3,7 +3,7 @@
 #include <stddef.h>
 #include <string.h>
 
-/* SUP-11: a decrease of 050h that clears the budget, counts. */
+/* SUP-11: the decrease of 050h towards 075h that clears the budget, in counts. */
 enum { THROTTLE_DROP_COUNTS = 25 };
 
 /* SUP-12: m/h to mm/s is 1000 / 3600. The speeds may differ by the constant plus a quarter of the larger one. */
@@ -31,30 +31,47 @@ static int32_t off_by_ddeg(const agv_motion_facts_t *facts, uint32_t angle_raw) 
     return magnitude_of((int32_t)angle_raw - (int32_t)facts->commands->angle_raw);
 }
 
-/* Clear a budget because the deviation is decreasing. The progress counter restarts with the budget. */
-static void follow_progress(agv_budget_t *budget, int16_t *progress, int32_t enough) {
-    if ((budget->value_ms != 0u) && (*progress >= enough)) {
+static int32_t throttle_above(const agv_motion_facts_t *facts, uint32_t throttle) {
+    const int32_t above = (int32_t)throttle - (int32_t)facts->commands->throttle;
+    return (above > 0) ? above : 0;
+}
+
+/* While the budget is 0, progress counts from 0, and steps back do not count unless progress has just cleared it. */
+static void restart_progress(const agv_budget_t *budget, agv_progress_t *progress) {
+    if ((budget->value_ms == 0u) && ((progress->gained > 0) || (progress->steps_back_ms == 0u))) {
+        progress->gained = 0;
+    }
+}
+
+/* The time for which a full budget decays. */
+static uint16_t decay_ms(uint32_t limit_ms) {
+    return (uint16_t)(2u * limit_ms);
+}
+
+/* Count a step towards the command. Enough of them clear the budget. */
+static void follow_progress(agv_budget_t *budget, agv_progress_t *progress, int32_t step, int32_t enough,
+                            uint32_t limit_ms) {
+    progress->gained = (int16_t)clamp(progress->gained + step, AGV_ANGLE_RAW_MAX);
+    if ((budget->value_ms != 0u) && (progress->gained >= enough)) {
         *budget = (agv_budget_t){0};
+        progress->steps_back_ms = decay_ms(limit_ms);
     }
-    if (budget->value_ms == 0u) {
-        *progress = 0;
-    }
+    restart_progress(budget, progress);
 }
 
 void agv_motion_checks_angle(agv_motion_checks_t *checks, const agv_motion_facts_t *facts, uint32_t before_raw) {
     if (facts->judged && agv_commands_has(facts->commands, AGV_MSG_STEERING_COMMAND)) {
-        const int32_t step_ddeg = off_by_ddeg(facts, before_raw) - off_by_ddeg(facts, facts->vehicle->angle_raw);
-        checks->steering_gain_ddeg = (int16_t)clamp(checks->steering_gain_ddeg + step_ddeg, AGV_ANGLE_RAW_MAX);
-        follow_progress(&checks->budgets[AGV_BUDGET_STEERING], &checks->steering_gain_ddeg,
-                        (int32_t)facts->config->steering_gain_ddeg);
+        follow_progress(&checks->budgets[AGV_BUDGET_STEERING], &checks->steering,
+                        off_by_ddeg(facts, before_raw) - off_by_ddeg(facts, facts->vehicle->angle_raw),
+                        (int32_t)facts->config->steering_gain_ddeg, facts->config->steering_deviation_ms);
     }
 }
 
 void agv_motion_checks_throttle(agv_motion_checks_t *checks, const agv_motion_facts_t *facts, uint32_t before) {
     if (facts->judged) {
-        const int32_t drop = (int32_t)before - (int32_t)facts->vehicle->throttle;
-        checks->throttle_drop = (int16_t)clamp(checks->throttle_drop + drop, AGV_ANGLE_RAW_MAX);
-        follow_progress(&checks->budgets[AGV_BUDGET_THROTTLE], &checks->throttle_drop, THROTTLE_DROP_COUNTS);
+        follow_progress(&checks->budgets[AGV_BUDGET_THROTTLE], &checks->throttle,
+                        throttle_above(facts, before) - throttle_above(facts, facts->vehicle->throttle),
+                        THROTTLE_DROP_COUNTS, facts->config->throttle_deviation_ms);
     }
 }
 
@@ -90,6 +107,20 @@ static bool speeds_differ(const agv_vehicle_t *vehicle) {
            (magnitude_of(wheels_mm_s - vcu_mm_s) > (SPEED_SLACK_MM_S + (larger_mm_s / SPEED_SHARE)));
 }
 
+/* Add the time to a budget that progress clears. */
+static void spend(agv_budget_t *budget, agv_progress_t *progress, bool off, uint32_t elapsed_ms, uint32_t limit_ms) {
+    agv_budget_add(budget, off, elapsed_ms, limit_ms);
+    if (progress->steps_back_ms == 0u) {
+        /* nothing is remembered */
+    } else if (off) {
+        progress->steps_back_ms = decay_ms(limit_ms);
+    } else {
+        progress->steps_back_ms -=
+            (uint16_t)((elapsed_ms < progress->steps_back_ms) ? elapsed_ms : progress->steps_back_ms);
+    }
+    restart_progress(budget, progress);
+}
+
 void agv_motion_checks_tick(agv_motion_checks_t *checks, const agv_motion_facts_t *facts, uint32_t elapsed_ms) {
     const agv_config_t *const config = facts->config;
     agv_budget_t *const budgets = checks->budgets;
@@ -97,8 +128,10 @@ void agv_motion_checks_tick(agv_motion_checks_t *checks, const agv_motion_facts_
     if (!facts->judged) {
         return; /* the other budgets do not change */
     }
-    agv_budget_add(&budgets[AGV_BUDGET_STEERING], steering_is_off(facts), elapsed_ms, config->steering_deviation_ms);
-    agv_budget_add(&budgets[AGV_BUDGET_THROTTLE], throttle_is_above(facts), elapsed_ms, config->throttle_deviation_ms);
+    spend(&budgets[AGV_BUDGET_STEERING], &checks->steering, steering_is_off(facts), elapsed_ms,
+          config->steering_deviation_ms);
+    spend(&budgets[AGV_BUDGET_THROTTLE], &checks->throttle, throttle_is_above(facts), elapsed_ms,
+          config->throttle_deviation_ms);
     agv_budget_add(&budgets[AGV_BUDGET_GEAR], gear_is_another(facts), elapsed_ms, config->gear_deviation_ms);
     agv_budget_add(&budgets[AGV_BUDGET_AUTOPILOT_OFF],
                    agv_commands_has(facts->commands, AGV_MSG_TURN_SIGNAL_COMMAND) && facts->commands->autopilot_off,
@@ -106,8 +139,6 @@ void agv_motion_checks_tick(agv_motion_checks_t *checks, const agv_motion_facts_
     agv_budget_add(&budgets[AGV_BUDGET_THROTTLE_IN_PARK],
                    facts->gear_fresh && (facts->vehicle->gear == (uint8_t)AGV_GEAR_P) && throttle_is_above_idle(facts),
                    elapsed_ms, config->throttle_in_park_ms);
-    follow_progress(&budgets[AGV_BUDGET_STEERING], &checks->steering_gain_ddeg, (int32_t)config->steering_gain_ddeg);
-    follow_progress(&budgets[AGV_BUDGET_THROTTLE], &checks->throttle_drop, THROTTLE_DROP_COUNTS);
 }
 
 static bool is_any_present(const agv_motion_checks_t *checks) {
@@ -132,6 +163,6 @@ void agv_motion_checks_evaluate(agv_motion_checks_t *checks, agv_fault_monitor_t
 
 void agv_motion_checks_engage(agv_motion_checks_t *checks) {
     (void)memset(checks->budgets, 0, sizeof(agv_budget_t) * (size_t)AGV_BUDGET_SPEED);
-    checks->steering_gain_ddeg = 0;
-    checks->throttle_drop = 0;
+    checks->steering = (agv_progress_t){0};
+    checks->throttle = (agv_progress_t){0};
 }

@@ -26,12 +26,22 @@ typedef enum {
     AGV_BUDGET_COUNT
 } agv_budget_name_t;
 
+/**
+ * Progress of the vehicle towards a command, which clears a budget: in 0.1 degrees, or counts of 050h. It counts from 0
+ * while the budget is 0. For some time after it has cleared the budget, steps back count then too: a vehicle that hunts, or
+ * one good frame in many, makes no progress.
+ */
+typedef struct {
+    int16_t gained;
+    uint16_t steps_back_ms; /**< for so long within the limit, steps back still count */
+} agv_progress_t;
+
 /** State of the checks. */
 typedef struct {
     agv_budget_t budgets[AGV_BUDGET_COUNT];
-    int16_t steering_gain_ddeg; /**< how far the steering has moved towards its command */
-    int16_t throttle_drop;      /**< counts by which 050h has decreased */
-    bool reported;              /**< one of the faults was set at the last evaluation */
+    agv_progress_t steering;
+    agv_progress_t throttle;
+    bool reported; /**< one of the faults was set at the last evaluation */
 } agv_motion_checks_t;
 
 /** Inputs of the checks. */

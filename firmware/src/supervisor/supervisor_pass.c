@@ -81,6 +81,7 @@ agv_tx_orders_t agv_core_orders(agv_core_t *core, const agv_ports_t *ports) {
                              .output_closed = core->machine.output_closed,
                              .park_released = core->machine.park_released,
                              .holdable = is_holdable(core),
+                             .passive = agv_fault_monitor_is_active(&core->faults, AGV_FAULT_ERROR_PASSIVE),
                              .stalled = agv_fault_monitor_is_active(&core->faults, AGV_FAULT_TX_STALLED),
                              .config_checksum = core->config_checksum,
                              .version = ports->version};

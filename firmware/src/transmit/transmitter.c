@@ -181,9 +181,11 @@ static void override(agv_transmitter_t *transmitter, const agv_tx_orders_t *orde
 void agv_transmitter_answer(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command,
                             const uint8_t *data) {
     const bool differs = (data == NULL) || !is_same_command(transmitter, orders, command, data);
-    if (differs && ((wanted_commands(orders) & bit_of(command)) != 0u) &&
+    const bool wanted = (wanted_commands(orders) & bit_of(command)) != 0u;
+    if (differs && wanted &&
         agv_scheduler_override(&transmitter->scheduler, orders->timers->now_us, orders->config->override_gap_ms,
-                               command)) {
+                               command) &&
+        !orders->passive) {
         override(transmitter, orders, command);
     }
 }

@@ -71,6 +71,7 @@ typedef struct {
     bool output_closed;
     bool park_released; /**< own 168h may be sent (FSM-1) */
     bool holdable;      /**< own 065h may be sent (FSM-10) */
+    bool passive;       /**< ERROR_PASSIVE: overrides wait for the next tick */
     bool stalled;       /**< TX_STALLED: own commands are sent in the order of their identifiers, the lowest first */
     uint32_t config_checksum;
     const agv_version_t *version; /**< NULL: none */
@@ -93,7 +94,8 @@ void agv_transmitter_burst(agv_transmitter_t *transmitter, const agv_tx_orders_t
 
 /**
  * Override another sender's command, now or when override_gap_ms is over, if the own one is sent in this state and
- * differs (TOP-1).
+ * differs (TOP-1). While the controller is error-passive the override waits for the next tick: behind a frame that another
+ * one follows without a gap it would collide with that one each time, up to bus-off.
  * @param data its payload; NULL if it is malformed, which always counts as different
  */
 void agv_transmitter_answer(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command,

@@ -125,6 +125,39 @@ void test_frames_that_end_no_engagement_do_not_count(void) {
     expect_nothing(&f, FLAPPING, AGV_STATE_ACTIVE);
 }
 
+/* Manual in every second frame: 2 points up, 1 down, 50 in all. Then the engagement is never judged in half of the time. */
+/* Shows: SUP-9, MODE_FLAPPING */
+void test_manual_that_flickers_while_engaged(void) {
+    fixture_active(&f);
+    for (unsigned i = 0; i < 48; i++) {
+        report(MODE_MANUAL, 1);
+        report(MODE_ENGAGED, 1);
+    }
+    expect_nothing(&f, FLAPPING, AGV_STATE_ACTIVE);
+    report(MODE_MANUAL, 1);
+    expect_reason_after(&f, 1, FLAPPING);
+}
+
+/* One in three is a glitch, and so are the frames that end an engagement: each one counts afresh. */
+/* Shows: SUP-9 */
+void test_manual_that_does_not_flicker(void) {
+    f.config.mode_frames = 5;
+    f.config.mode_flapping_ms = 1000;
+    fixture_active(&f);
+    for (unsigned i = 0; i < 100; i++) {
+        report(MODE_MANUAL, 1);
+        report(MODE_ENGAGED, 2);
+    }
+    for (unsigned i = 0; i < 10; i++) {
+        report(MODE_MANUAL, 5);
+        expect_state(&f, AGV_STATE_STANDBY);
+        fixture_run(&f, 500);
+        report(MODE_ENGAGED, 1);
+        expect_state(&f, AGV_STATE_ACTIVE);
+    }
+    expect_nothing(&f, FLAPPING, AGV_STATE_ACTIVE);
+}
+
 /* Engagements that begin in TRIPPED do not count, but those before a reset do: three engagements, a trip and a
  * reset. */
 /* Shows: SUP-9, MODE_FLAPPING */

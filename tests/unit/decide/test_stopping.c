@@ -169,9 +169,38 @@ void test_slow_wheels_and_short_ones_do_not_move_the_vehicle(void) {
         wheels(5000, 5000);
         run(199);
         wheels(99, 99);
-        run(1);
+        run(398);
     }
     expect(false, false);
+}
+
+/* 10 ms in 190 read slow: 180 ms are spent, and 5 are given back. */
+/* Shows: FSM-12, MOVING_WHILE_SAFE */
+void test_a_slow_reading_now_and_then_hides_no_motion(void) {
+    trip_and_stop();
+    wheels(5000, 5000);
+    run(180);
+    wheels(0, 0);
+    run(10);
+    wheels(5000, 5000);
+    run(24);
+    expect(false, false);
+    run(1);
+    expect(false, true);
+}
+
+/* Readings of 60 ms, then silence for 40. */
+/* Shows: FSM-12, MOVING_WHILE_SAFE */
+void test_speeds_that_drop_out_hide_no_motion(void) {
+    trip_and_stop();
+    wheels(5000, 5000);
+    for (unsigned i = 0; i < 6; i++) {
+        wheels_fresh = true;
+        run(60);
+        wheels_fresh = false;
+        run(40);
+    }
+    expect(false, true);
 }
 
 /* A stale 101h is not moving. */
@@ -208,7 +237,7 @@ void test_late_steps(void) {
     expect(false, false);
     agv_stopping_step(&stopping, &timers, &vehicle, 100000);
     expect(false, true);
-    TEST_ASSERT_EQUAL_UINT16(200, stopping.moving_ms);
+    TEST_ASSERT_EQUAL_UINT16(200, stopping.moved.value_ms);
 }
 
 /* Shows: FSM-12 */

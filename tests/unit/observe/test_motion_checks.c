@@ -187,6 +187,74 @@ void test_a_command_that_is_near_for_1_ms_in_20_restarts_nothing(void) {
     TEST_ASSERT_TRUE(is_active(STEERING)); /* 26 times 19 less 13, and 19 */
 }
 
+/* 400.0 degrees off in 47 of 48 frames: the first good one clears the budget, the later ones are steps back and forth. */
+/* Shows: SUP-10, STEERING_DEVIATION */
+void test_one_good_angle_in_many_is_no_gain(void) {
+    steer(9000);
+    for (unsigned i = 0; i < 2; i++) {
+        measured(13000);
+        run(470);
+        TEST_ASSERT_FALSE(is_active(STEERING));
+        measured(9000);
+        run(10);
+    }
+    measured(13000); /* 470 - 5 ms are spent */
+    expect_after(35, STEERING);
+}
+
+/* 100.0 degrees to both sides, in steps of 10.0: half of the time is too far. */
+/* Shows: SUP-10, STEERING_DEVIATION */
+void test_a_steering_that_hunts_makes_no_gain(void) {
+    steer(9000);
+    unsigned swings = 0;
+    while (!is_active(STEERING) && (swings < 20)) {
+        for (unsigned step = 0; step < 40; step++) {
+            const int32_t at = (step < 20) ? (1000 - (int32_t)(step * 100)) : (-1000 + (int32_t)((step - 20) * 100));
+            measured((unsigned)(9000 + at));
+            run(30);
+        }
+        swings++;
+    }
+    TEST_ASSERT_TRUE(is_active(STEERING));
+    TEST_ASSERT_TRUE(swings > 1);
+}
+
+/* A steering that follows, whose command goes back and forth, makes a gain each time. */
+/* Shows: SUP-10 */
+void test_a_command_that_weaves_is_no_step_back(void) {
+    measured(9000);
+    for (unsigned i = 0; i < 20; i++) {
+        steer(10000);
+        run(400);
+        measured(10000);
+        run(10);
+        steer(9000);
+        run(400);
+        measured(9000);
+        run(10);
+    }
+    TEST_ASSERT_FALSE(is_active(STEERING));
+}
+
+/* Within the limit for 1 s, the time for which a full budget decays: steps back are forgotten. */
+/* Shows: SUP-10 */
+TEST_CASE(1000, false)
+TEST_CASE(999, true)
+void test_steps_back_count_for_a_second(uint32_t within_ms, bool count) {
+    steer(9000);
+    measured(9600);
+    run(100);
+    measured(9350); /* the budget is cleared */
+    run(within_ms);
+    measured(9650); /* 30.0 away */
+    run(400);
+    measured(9400); /* 25.0 nearer */
+    run(1);
+    measured(9650);
+    run(100);
+    TEST_ASSERT_EQUAL(count, is_active(STEERING));
+}
+
 /* Motion is measured against the current command: past it is away from it. */
 /* Shows: SUP-10 */
 void test_motion_past_the_command_is_no_gain(void) {
@@ -358,6 +426,38 @@ void test_a_rise_counts_against_the_drop(void) {
     TEST_ASSERT_FALSE(is_active(THROTTLE));
     throttle(175);
     expect_after(500, THROTTLE);
+}
+
+/* Full throttle in 47 of 48 frames, against 100 counts. The good ones are below the command, which is no further drop. */
+/* Shows: SUP-11, THROTTLE_DEVIATION */
+void test_one_good_throttle_in_many_is_no_drop(void) {
+    command_throttle(100);
+    for (unsigned i = 0; i < 2; i++) {
+        throttle(250);
+        run(470);
+        TEST_ASSERT_FALSE(is_active(THROTTLE));
+        throttle(0);
+        run(10);
+    }
+    throttle(250);
+    expect_after(35, THROTTLE);
+}
+
+/* A rise that follows the command is no step back: each ramp down is a drop again. */
+/* Shows: SUP-11 */
+void test_a_rise_with_the_command_does_not_count(void) {
+    for (unsigned i = 0; i < 5; i++) {
+        command_throttle(250);
+        throttle(250);
+        run(100);
+        command_throttle(0);
+        for (unsigned counts = 250; counts > 25; counts -= 25) {
+            run(450);
+            throttle(counts - 25);
+        }
+        run(100);
+    }
+    TEST_ASSERT_FALSE(is_active(THROTTLE));
 }
 
 /* Neither a remainder nor an earlier drop counts. */
