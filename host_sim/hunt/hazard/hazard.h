@@ -183,6 +183,8 @@ typedef struct {
     bool is_commanded[AGV_COMMAND_COUNT];  /**< in this engagement */
     uint16_t throttle_high;                /**< 050h: the value from which it has to come down */
     uint64_t throttle_high_ms;
+    uint16_t throttle_before; /**< the same before it came down last: a fall that is undone is none */
+    uint64_t throttle_before_ms;
     hazard_mode_t mode;
     hazard_trip_t trip;
     hazard_hold_t hold;
@@ -201,8 +203,10 @@ typedef struct {
     uint32_t passed[HAZARD_FLOOD_SLOTS];
     uint32_t passed_at;
     uint64_t rolling_since_ms;
-    int32_t still_at_ddeg; /**< 067h: the last angle */
-    int32_t moved_ddeg;    /**< 067h: way to and fro, since */
+    int32_t still_at_ddeg;  /**< 067h: the last angle */
+    int32_t moved_ddeg;     /**< 067h: way to and fro, since */
+    int32_t really_at_ddeg; /**< the same of the real steering */
+    int32_t really_moved_ddeg;
     uint64_t still_since_ms;
     uint8_t score_rows[AGV_MSG_COUNT][HAZARD_SCORES_MAX]; /**< rows that a message has a score for */
     uint8_t score_counts[AGV_MSG_COUNT];

@@ -119,9 +119,9 @@ static bool may_be_held(const hazard_t *hazard, int32_t held_ddeg) {
 }
 
 /** A right angle may be sent again, until it is out of date or manual is reported. */
-static void allow_again(hazard_t *hazard) {
+static void allow_again(hazard_t *hazard, uint16_t value) {
     if (!hazard->mode.manual) {
-        hazard->hold.kept = hazard->hold.value;
+        hazard->hold.kept = value;
         hazard->hold.kept_until_ms = hazard->t_ms + in_date_ms(hazard);
     }
 }
@@ -139,6 +139,9 @@ void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame) {
     const int32_t held_ddeg = (int32_t)value - CENTRE_DDEG;
 
     if (is_passed_on(hazard, value)) {
+        if (may_be_held(hazard, held_ddeg)) {
+            allow_again(hazard, value); /* the held angle may be that of the AI computer */
+        }
         return;
     }
     if ((hold->last_ms == 0u) || (hazard->t_ms - hold->last_ms > NEW_HOLD_MS) || (value != hold->value) ||
@@ -149,7 +152,7 @@ void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame) {
     hold->last_ms = hazard->t_ms;
     hold->value = value;
     if (may_be_held(hazard, held_ddeg)) {
-        allow_again(hazard);
+        allow_again(hazard, value);
     } else {
         if (!hold->is_wrong) {
             hold->start_ddeg = hazard_angle_ddeg(hazard); /* what a right angle moved before does not count */

@@ -135,24 +135,34 @@ static void note_mode(hazard_t *hazard, uint8_t bits) {
     mode->both = autopilot && ((bits & MANUAL_BIT) != 0);
 }
 
-/** 050h may be above its command while it comes down. */
+/** 050h may be above its command while it comes down. Where it goes up again, it did not come down. */
 static void note_throttle(hazard_t *hazard, uint8_t value) {
     if ((value + FALL_COUNTS <= hazard->throttle_high) || (hazard->throttle_high_ms == 0u)) {
+        hazard->throttle_before = hazard->throttle_high;
+        hazard->throttle_before_ms = hazard->throttle_high_ms;
         hazard->throttle_high = value;
         hazard->throttle_high_ms = hazard->t_ms;
+    }
+    if ((hazard->throttle_before_ms != 0u) && (value >= hazard->throttle_before)) {
+        hazard->throttle_high_ms = hazard->throttle_before_ms;
     }
     hazard->throttle_high = (value > hazard->throttle_high) ? value : hazard->throttle_high;
 }
 
-/** The steering moves if the sum of its movements is four fifths of the supervisor's limit. */
+/** The steering moves if the sum of its movements is four fifths of the supervisor's limit, on the wire and really. */
 static void note_angle(hazard_t *hazard) {
     const int32_t angle_ddeg = hazard_measured_ddeg(hazard);
 
     hazard_hold_measured(hazard, angle_ddeg);
     hazard->moved_ddeg += abs(angle_ddeg - hazard->still_at_ddeg);
     hazard->still_at_ddeg = angle_ddeg;
-    if (hazard->moved_ddeg * 5 >= hazard->limits.steering_gain_ddeg * 4) {
+    hazard->really_moved_ddeg += abs(hazard_angle_ddeg(hazard) - hazard->really_at_ddeg);
+    hazard->really_at_ddeg = hazard_angle_ddeg(hazard);
+    const int32_t moved_ddeg =
+        (hazard->moved_ddeg < hazard->really_moved_ddeg) ? hazard->moved_ddeg : hazard->really_moved_ddeg;
+    if (moved_ddeg * 5 >= hazard->limits.steering_gain_ddeg * 4) {
         hazard->moved_ddeg = 0;
+        hazard->really_moved_ddeg = 0;
         hazard->still_since_ms = hazard->t_ms;
     }
 }

@@ -546,6 +546,20 @@ void test_h6_steering_that_is_stuck(void) {
     expect_none(&GOOD, steps);
 }
 
+/** One good reading in 48 is neither a movement nor a fall. */
+void test_h6_a_good_reading_now_and_then_hides_nothing(void) {
+    const char *const stuck = "  - {at_ms: 3000, eps: stick}\n"
+                              "  - {at_ms: 3000, ai: drive, gear: D, throttle_pct: 60, steer_deg: 120}\n"
+                              "  - {at_ms: 3000, eps: set, field: angle, value: 27D8h, frames: 1, every_frames: 48}\n";
+    const char *const open = "  - {at_ms: 3000, vcu: ignore, message: throttle_command}\n"
+                             "  - {at_ms: 3000, ai: drive, gear: D, throttle_pct: 0, steer_deg: 20}\n"
+                             "  - {at_ms: 3000, vcu: set, field: throttle, value: 00h, frames: 1, every_frames: 48}\n";
+    expect_hazard(HAZARD_FALSE_NODE, "the steering is stuck", &MUTE, stuck);
+    expect_none(&GOOD, stuck);
+    expect_hazard(HAZARD_FALSE_NODE, "more throttle than commanded", &MUTE, open);
+    expect_none(&GOOD, open);
+}
+
 void test_h7_a_flood(void) {
     const stub_t floods = {.gateway = true, .passes = 3u};
     expect_hazard(HAZARD_FLOOD, "the vehicle's bus is flooded through the gateway", &floods, "");
