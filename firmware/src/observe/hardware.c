@@ -30,8 +30,7 @@ static void check_feedback(agv_hardware_t *hardware, agv_fault_monitor_t *faults
     const uint8_t right = (uint8_t)(output_closed ? HAL_CONTACT_CLOSED : HAL_CONTACT_OPEN);
     const bool wrong = (hardware->feedback != (uint8_t)HAL_CONTACT_NONE) && (hardware->feedback != right);
     /* After a change the contact cannot be wrong for longer than the change is old: a late step does not count in full. */
-    const bool changed = hardware->was_closed != output_closed;
-    const uint32_t ms = (changed && (elapsed_ms > 1u)) ? 1u : elapsed_ms;
+    const uint32_t ms = (hardware->was_closed == output_closed) ? elapsed_ms : 1u;
     hardware->was_closed = output_closed;
     agv_budget_add(&hardware->mismatch, wrong, ms, config->output_feedback_ms);
     agv_fault_monitor_set(faults, AGV_FAULT_OUTPUT_FEEDBACK, hardware->mismatch.present);

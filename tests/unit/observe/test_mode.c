@@ -316,6 +316,37 @@ void test_three_engagements_within_5_s_are_not_flapping(void) {
     }
 }
 
+/* 363h of 10 ms, manual and autopilot in turn: whether it is flapping after the last one. */
+static bool flickers(uint32_t from_ms, unsigned frames, bool supervising) {
+    for (unsigned i = 0; i < frames; i++) {
+        (void)report(((i % 2u) == 0u) ? MANUAL : ENGAGED, from_ms + (10u * i));
+    }
+    (void)tick(from_ms + (10u * frames));
+    agv_mode_check(&mode, &timers, &faults, &config, supervising, true);
+    return is_active(AGV_FAULT_MODE_FLAPPING);
+}
+
+/* From the frame after the engagement on: 48 pairs make 48 points, and the next one the 50. */
+/* Shows: SUP-9, MODE_FLAPPING */
+TEST_CASE(96, true, false)
+TEST_CASE(97, true, true)
+TEST_CASE(97, false, false) /* INIT, TRIPPED, SAFE */
+void test_manual_that_flickers_while_engaged_is_flapping(unsigned frames, bool supervising, bool flapping) {
+    (void)report(MANUAL, 0);
+    (void)report(ENGAGED, 10);
+    TEST_ASSERT_EQUAL(flapping, flickers(20, frames, supervising));
+}
+
+/* The next engagement counts from 0. */
+/* Shows: SUP-9 */
+void test_the_end_of_an_engagement_ends_the_flicker(void) {
+    (void)report(ENGAGED, 0);
+    TEST_ASSERT_FALSE(flickers(10, 94, true));
+    (void)disengage(1000);
+    (void)report(ENGAGED, 1500);
+    TEST_ASSERT_FALSE(flickers(1510, 96, true));
+}
+
 /* ---- No mode ---- */
 
 static bool none_at(uint32_t ms, bool supervising, bool standstill) {

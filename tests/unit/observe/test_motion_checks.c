@@ -236,6 +236,36 @@ void test_a_command_that_weaves_is_no_step_back(void) {
     TEST_ASSERT_FALSE(is_active(STEERING));
 }
 
+/* After a gain, too: 0.1 degrees nearer within the limit are no part of the next 25.0. */
+/* Shows: SUP-10 */
+void test_after_a_gain_no_remainder_is_kept(void) {
+    steer(9000);
+    measured(9600);
+    run(1);
+    measured(9300);
+    measured(9299);
+    steer(9900);
+    run(400);
+    measured(9548); /* 24.9 nearer */
+    steer(18000);
+    expect_after(100, STEERING);
+}
+
+/* Steps back count after a gain that has cleared a budget, not after one without. */
+/* Shows: SUP-10 */
+void test_a_gain_without_a_budget_is_none(void) {
+    steer(9000);
+    measured(9400);
+    measured(9100); /* 30.0 nearer, but within the limit */
+    measured(9650); /* 55.0 away */
+    run(400);
+    measured(9400); /* 25.0 nearer: cleared */
+    run(1);
+    measured(9650);
+    run(100);
+    TEST_ASSERT_FALSE(is_active(STEERING));
+}
+
 /* Within the limit for 1 s, the time for which a full budget decays: steps back are forgotten. */
 /* Shows: SUP-10 */
 TEST_CASE(1000, false)
@@ -425,6 +455,18 @@ void test_a_rise_counts_against_the_drop(void) {
     run(99);
     TEST_ASSERT_FALSE(is_active(THROTTLE));
     throttle(175);
+    expect_after(500, THROTTLE);
+}
+
+/* From 25 counts above the command to it. */
+/* Shows: SUP-11 */
+void test_a_drop_to_the_command_counts_in_full(void) {
+    config.throttle_deviation_counts = 20;
+    command_throttle(100);
+    throttle(125);
+    run(499);
+    throttle(100);
+    throttle(125);
     expect_after(500, THROTTLE);
 }
 
