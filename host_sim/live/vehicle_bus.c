@@ -77,7 +77,7 @@ int vehicle_bus_fd(const vehicle_bus_t *bus, unsigned file) {
 /** A frame for a node; or one that has left it. */
 static void take(vehicle_bus_t *bus, unsigned file, const linux_can_record_t *record) {
     const vehicle_bus_config_t *config = &bus->config;
-    const uint64_t at_us = linux_clock_of_stamp(config->clock, record->stamp_us);
+    const uint64_t at_us = linux_clock_of_stamp_after(config->clock, record->stamp_us, bus->now_ms * US_PER_MS);
 
     if (!record->own) {
         vehicle_receive(&bus->vehicle, (vehicle_node_t)file, advance_clock(bus, at_us), &record->frame);

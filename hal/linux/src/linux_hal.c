@@ -125,6 +125,10 @@ static void frame_left(hal_t *hal, hal_can_side_t which, const linux_can_record_
     }
 }
 
+static uint64_t time_of(const hal_t *hal, const linux_can_record_t *record) {
+    return linux_clock_of_stamp_after(&hal->clock, record->stamp_us, hal->handed_us);
+}
+
 /* Read the echoes of frames that were sent, also those behind a report that the interface went down. Frames of other
  * senders are discarded. */
 static void read_echoes(hal_t *hal, hal_can_side_t which) {
@@ -136,7 +140,7 @@ static void read_echoes(hal_t *hal, hal_can_side_t which) {
             return;
         }
         if (result == LINUX_CAN_RECORD && record.own) {
-            frame_left(hal, which, &record, linux_clock_of_stamp(&hal->clock, record.stamp_us));
+            frame_left(hal, which, &record, time_of(hal, &record));
         }
     }
 }
@@ -178,7 +182,7 @@ void linux_hal_close(hal_t *hal) {
 
 static void take_record(hal_t *hal, hal_can_side_t which, const linux_can_record_t *record) {
     linux_hal_side_t *side = &hal->sides[which];
-    const uint64_t at_us = linux_clock_of_stamp(&hal->clock, record->stamp_us);
+    const uint64_t at_us = time_of(hal, record);
     if (record->lost != side->lost) {
         count_lost(side, record, at_us);
     }
