@@ -125,11 +125,13 @@ bool vehicle_bus_receive(vehicle_bus_t *bus) {
     return true;
 }
 
+/** The tick's time is read before the frames: none that has arrived by then is unread when deadlines are judged. */
 bool vehicle_bus_tick(vehicle_bus_t *bus) {
+    const uint64_t tick_us = linux_clock_now_us(bus->config.clock);
     const bool good = vehicle_bus_receive(bus);
 
     if (good) {
-        vehicle_tick(&bus->vehicle, vehicle_bus_now_ms(bus));
+        vehicle_tick(&bus->vehicle, advance_clock(bus, tick_us));
     }
     return good;
 }

@@ -230,6 +230,7 @@ static bool find_first(const hal_t *hal, hal_can_side_t *first) {
 }
 
 bool linux_hal_receive(hal_t *hal, hal_can_side_t *side, hal_can_frame_t *frame, uint64_t *at_us) {
+    hal->looked_us = linux_hal_now_us(hal);
     read_ahead(hal, HAL_CAN_VEHICLE);
     read_ahead(hal, HAL_CAN_AI);
     read_ahead(hal, HAL_CAN_VEHICLE); /* a frame that arrived between the two calls may be older than the AI side's */

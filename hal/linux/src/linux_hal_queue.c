@@ -95,10 +95,10 @@ uint32_t linux_hal_queue_pending_ms(const linux_hal_side_t *side, uint64_t now_u
     if (!sent_counts && side->waiting_count == 0) {
         return 0;
     }
-    uint64_t oldest_us = sent_counts ? side->sent.taken_us : now_us;
+    uint64_t oldest_us = sent_counts ? side->sent.taken_us : UINT64_MAX;
     for (size_t i = 0; i < side->waiting_count; i++) {
         oldest_us = (side->waiting[i].taken_us < oldest_us) ? side->waiting[i].taken_us : oldest_us;
     }
-    const uint64_t age_ms = (now_us - oldest_us) / US_PER_MS;
+    const uint64_t age_ms = (now_us > oldest_us) ? (now_us - oldest_us) / US_PER_MS : 0;
     return (age_ms == 0) ? 1u : (uint32_t)age_ms;
 }

@@ -80,6 +80,7 @@ struct hal {
     linux_hal_config_t config;
     linux_clock_t clock;
     uint64_t handed_us; /**< receive time of the frame that was returned last */
+    uint64_t looked_us; /**< when linux_hal_receive() last looked */
     bool led_on;
     bool output_closed;
     uint32_t feeds;
