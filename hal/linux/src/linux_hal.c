@@ -30,6 +30,7 @@ static void look_whether_up(linux_hal_side_t *side) {
     } else if (!is_up && side->is_up) {
         linux_hal_controller_down(side);
     }
+    linux_hal_controller_look(side);
 }
 
 static bool open_side(hal_t *hal, linux_hal_side_t *side, char *error) {

@@ -41,6 +41,12 @@ void linux_hal_controller_down(linux_hal_side_t *side);
 /** The interface is up. */
 void linux_hal_controller_up(linux_hal_side_t *side);
 
+/** Compare with the state that the kernel reports: error frames may have been lost, or sent before the port was opened. */
+void linux_hal_controller_look(linux_hal_side_t *side);
+
+/** Update the controller's state from one that the kernel was asked for. */
+void linux_hal_controller_asked(linux_hal_side_t *side, hal_can_state_t state);
+
 /** The state that hal_can_status() reports. */
 hal_can_state_t linux_hal_controller_state(const linux_hal_side_t *side);
 
