@@ -271,6 +271,7 @@ bool linux_hal_tick(hal_t *hal) {
             continue;
         }
         check_link(hal, side, now_us);
+        linux_hal_queue_look(side, hal->looked_us);
         linux_hal_queue_give(side, now_us);
         changed = changed || side->fd_changed;
         side->fd_changed = false;

@@ -26,6 +26,9 @@ void linux_hal_controller_error(linux_hal_side_t *side, const hal_can_frame_t *f
         enter_bus_off(side);
         return;
     }
+    if ((frame->id & CAN_ERR_RESTARTED) != 0) {
+        enter_bus_off(side); /* there was one, even if its error frame was lost */
+    }
     if ((frame->id & CAN_ERR_RESTARTED) != 0 || (details & CAN_ERR_CRTL_ACTIVE) != 0) {
         side->state = HAL_CAN_ERROR_ACTIVE;
     }

@@ -14,7 +14,7 @@ static bool can_send(hal_t *hal, hal_can_side_t side, const hal_can_frame_t *fra
 static void can_purge(hal_t *hal, hal_can_side_t side) {
     linux_hal_side_t *purged = linux_hal_side(hal, side);
     if (purged != NULL) {
-        linux_hal_queue_purge(purged);
+        linux_hal_queue_purge(purged, hal->looked_us);
     }
 }
 

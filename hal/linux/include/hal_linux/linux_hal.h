@@ -70,6 +70,7 @@ typedef struct {
     linux_hal_waiting_t sent; /**< that one */
     bool sent_is_purged;      /**< it may still be sent, but no longer counts as pending (tx_pending_ms) */
     uint64_t given_us;        /**< when the kernel accepted it */
+    uint8_t given_up;         /**< frames whose echo did not come, in a row (up to a limit) */
     linux_hal_waiting_t waiting[LINUX_HAL_QUEUE_SIZE];
     size_t waiting_count;
     bool has_next; /**< `next` is the record that linux_hal_receive() returns next */
