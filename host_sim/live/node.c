@@ -10,8 +10,9 @@
 
 enum { ID_SETS = 3, IDS_MAX = (int)AGV_MSG_COUNT * ID_SETS + 1 };
 
-/** Most frames that are handed over before the next tick: more than a bus carries in 20 ms. */
-enum { FRAMES_AT_ONCE = 256 };
+/** Most frames that are handed over before a tick: those from before it are more than the sockets hold, unless their size was
+ * raised; those after it are more than a bus carries in 20 ms. */
+enum { FRAMES_AT_ONCE = 4096, LATER_AT_ONCE = 256 };
 
 struct node {
     node_config_t given;
@@ -100,22 +101,40 @@ int node_fd(const node_t *node, hal_can_side_t side) {
     return linux_hal_fd(&node->hal, side);
 }
 
-void node_receive(node_t *node) {
+/** Hand over what has arrived. @return false: there may be more that arrived up to this time */
+static bool receive_until(node_t *node, uint64_t until_us) {
     hal_can_side_t side = HAL_CAN_VEHICLE;
     hal_can_frame_t frame;
     uint64_t at_us = 0u;
-    for (int i = 0; (i < FRAMES_AT_ONCE) && linux_hal_receive(&node->hal, &side, &frame, &at_us); i++) {
+    int later = 0;
+    for (int i = 0; (i < FRAMES_AT_ONCE) && (later < LATER_AT_ONCE); i++) {
+        if (!linux_hal_receive(&node->hal, &side, &frame, &at_us)) {
+            return true;
+        }
         if (node->given.on_received != NULL) {
             node->given.on_received(node->given.ctx, side, &frame, at_us);
         }
         session_frame(&node->session, side, &frame, now_ms(node));
+        later += (at_us > until_us) ? 1 : 0;
     }
+    return later > 0;
 }
 
+void node_receive(node_t *node) {
+    (void)receive_until(node, 0u);
+}
+
+/** The tick's time is read before the frames: none that has arrived by then is unread when deadlines are judged (SUP-2). */
 bool node_tick(node_t *node) {
-    node_receive(node);
+    const uint64_t tick_us = node_now_us(node);
+    const uint32_t clock_ms = (uint32_t)(tick_us / US_PER_MS);
+    const bool is_done = receive_until(node, tick_us);
     const bool changed = linux_hal_tick(&node->hal);
-    session_tick(&node->session, now_ms(node), hal_clock_now_ms(&node->hal));
+    if (is_done) {
+        session_tick(&node->session, now_ms(node), clock_ms);
+    } else {
+        session_tick_behind(&node->session, now_ms(node), clock_ms);
+    }
     return changed;
 }
 

@@ -47,7 +47,7 @@ int node_fd(const node_t *node, hal_can_side_t side);
 /** Hand over what has arrived. */
 void node_receive(node_t *node);
 
-/** node_receive(), and a tick at the present time. @return true: a file of node_fd() has changed */
+/** Hand over what has arrived by now, and a tick at this time. @return true: a file of node_fd() has changed */
 bool node_tick(node_t *node);
 
 /** Microseconds since the node was opened. */

@@ -77,7 +77,7 @@ int vehicle_bus_fd(const vehicle_bus_t *bus, unsigned file) {
 /** A frame for a node; or one that has left it. */
 static void take(vehicle_bus_t *bus, unsigned file, const linux_can_record_t *record) {
     const vehicle_bus_config_t *config = &bus->config;
-    const uint64_t at_us = linux_clock_of_stamp(config->clock, record->stamp_us);
+    const uint64_t at_us = linux_clock_of_stamp_after(config->clock, record->stamp_us, bus->now_ms * US_PER_MS);
 
     if (!record->own) {
         vehicle_receive(&bus->vehicle, (vehicle_node_t)file, advance_clock(bus, at_us), &record->frame);
@@ -125,11 +125,13 @@ bool vehicle_bus_receive(vehicle_bus_t *bus) {
     return true;
 }
 
+/** The tick's time is read before the frames: none that has arrived by then is unread when deadlines are judged. */
 bool vehicle_bus_tick(vehicle_bus_t *bus) {
+    const uint64_t tick_us = linux_clock_now_us(bus->config.clock);
     const bool good = vehicle_bus_receive(bus);
 
     if (good) {
-        vehicle_tick(&bus->vehicle, vehicle_bus_now_ms(bus));
+        vehicle_tick(&bus->vehicle, advance_clock(bus, tick_us));
     }
     return good;
 }

@@ -53,7 +53,7 @@ int vehicle_bus_fd(const vehicle_bus_t *bus, unsigned file);
  */
 bool vehicle_bus_receive(vehicle_bus_t *bus);
 
-/** vehicle_bus_receive(), and send what is due by now. @return as vehicle_bus_receive() */
+/** vehicle_bus_receive(), and send what was due before it. @return as vehicle_bus_receive() */
 bool vehicle_bus_tick(vehicle_bus_t *bus);
 
 /** The present time of the vehicle: the clock's, in milliseconds. */

@@ -127,13 +127,12 @@ void session_frame(session_t *session, hal_can_side_t side, const hal_can_frame_
     }
 }
 
-void session_tick(session_t *session, uint64_t t_ms, uint32_t clock_ms) {
+void session_tick_behind(session_t *session, uint64_t t_ms, uint32_t clock_ms) {
     if (agv_supervisor_state(&session->supervisor) != AGV_STATE_INIT) {
         session->supervised_ms += t_ms - session->ticked_ms;
     }
     session->ticked_ms = t_ms;
     session->t_ms = t_ms;
-    agv_supervisor_receive_alive(&session->supervisor);
     agv_supervisor_tick(&session->supervisor, &session->ports, clock_ms);
     if (has_news(session)) {
         notify_recorded(session, true);
@@ -144,6 +143,11 @@ void session_tick(session_t *session, uint64_t t_ms, uint32_t clock_ms) {
     if ((t_ms % COMPARE_EVERY_MS) == 0u) {
         tell_left_out(session, TELL_AFTER_MS);
     }
+}
+
+void session_tick(session_t *session, uint64_t t_ms, uint32_t clock_ms) {
+    agv_supervisor_receive_alive(&session->supervisor);
+    session_tick_behind(session, t_ms, clock_ms);
 }
 
 void session_end(session_t *session) {

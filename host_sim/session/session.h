@@ -84,4 +84,7 @@ void session_frame(session_t *session, hal_can_side_t side, const hal_can_frame_
 /** A millisecond passed and every frame up to it was handed over. */
 void session_tick(session_t *session, uint64_t t_ms, uint32_t clock_ms);
 
+/** A millisecond passed, but frames up to it were not handed over yet: the receive path does not check in (TIM-3). */
+void session_tick_behind(session_t *session, uint64_t t_ms, uint32_t clock_ms);
+
 #endif

@@ -1,4 +1,5 @@
-/* Operations by rtnetlink: find an interface, read whether it is up, and restart a controller in bus-off. */
+/* Operations by rtnetlink: find an interface, read whether it is up and the state of its controller, and restart a
+ * controller in bus-off. */
 #include <errno.h>
 #include <linux/can/netlink.h>
 #include <linux/if_link.h>
@@ -42,36 +43,38 @@ typedef struct {
 _Static_assert(sizeof(find_t) == NLMSG_HDRLEN + sizeof(struct ifinfomsg) + 20, "attributes follow each other");
 _Static_assert(sizeof(restart_t) == NLMSG_HDRLEN + sizeof(struct ifinfomsg) + 24, "attributes follow each other");
 
-/* The beginning of the answer; further attributes of the interface are cut off. */
-typedef struct {
-    struct nlmsghdr header;
-    union {
+/* A message of the kernel: all of what it says of a CAN interface. The rest of a longer one is cut off. */
+typedef union {
+    struct {
+        struct nlmsghdr header;
         struct nlmsgerr verdict;
-        struct ifinfomsg interface;
     } is;
+    unsigned char bytes[8192];
 } answer_t;
 
 /* The kernel executes a request within send(), so the answer can be read as soon as send() returns. */
-static int exchange(int fd, const void *request, size_t size, answer_t *answer) {
+static int exchange(int fd, const void *request, size_t size, linux_can_link_t *link) {
+    answer_t answer;
     if (send(fd, request, size, MSG_DONTWAIT) < 0) {
         return errno;
     }
-    const ssize_t answered = recv(fd, answer, sizeof *answer, MSG_DONTWAIT);
+    const ssize_t answered = recv(fd, &answer, sizeof answer, MSG_DONTWAIT);
     if (answered < 0) {
         return errno;
     }
-    if ((size_t)answered < sizeof answer->header + sizeof answer->is.interface) {
-        return EPROTO;
+    if ((size_t)answered >= sizeof answer.is && answer.is.header.nlmsg_type == NLMSG_ERROR) {
+        return -answer.is.verdict.error;
     }
-    return (answer->header.nlmsg_type == NLMSG_ERROR) ? -answer->is.verdict.error : 0;
+    return linux_can_link_read(answer.bytes, (size_t)answered, link) ? 0 : EPROTO;
 }
 
-static int query(const void *request, size_t size, answer_t *answer) {
+static int query(const void *request, size_t size, linux_can_link_t *link) {
+    *link = (linux_can_link_t){0};
     const int fd = socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_ROUTE);
     if (fd < 0) {
         return errno;
     }
-    const int result = exchange(fd, request, size, answer);
+    const int result = exchange(fd, request, size, link);
     (void)close(fd);
     return result;
 }
@@ -81,21 +84,21 @@ static struct rtattr attribute(unsigned type, size_t begin, size_t end) {
 }
 
 int linux_can_find(const char *name, int *index, unsigned *kind) {
-    answer_t answer = {0};
+    linux_can_link_t link;
     find_t request = {.header = {.nlmsg_len = sizeof request, .nlmsg_type = RTM_GETLINK, .nlmsg_flags = NLM_F_REQUEST},
                       .interface = {.ifi_family = AF_UNSPEC}};
     memcpy(request.name_text, name, strlen(name));
     request.name = attribute(IFLA_IFNAME, offsetof(find_t, name), offsetof(find_t, name_text) + strlen(name) + 1u);
-    const int result = query(&request, sizeof request, &answer);
+    const int result = query(&request, sizeof request, &link);
     if (result == 0) {
-        *index = answer.is.interface.ifi_index;
-        *kind = answer.is.interface.ifi_type;
+        *index = link.index;
+        *kind = link.kind;
     }
     return result;
 }
 
 bool linux_can_restart(const linux_can_t *can) {
-    answer_t answer = {0};
+    linux_can_link_t link;
     restart_t request = {
         .header = {.nlmsg_len = sizeof request, .nlmsg_type = RTM_NEWLINK, .nlmsg_flags = NLM_F_REQUEST | NLM_F_ACK},
         .interface = {.ifi_family = AF_UNSPEC, .ifi_index = can->index},
@@ -105,15 +108,25 @@ bool linux_can_restart(const linux_can_t *can) {
     request.kind = attribute(IFLA_INFO_KIND, offsetof(restart_t, kind), offsetof(restart_t, data));
     request.data = attribute(IFLA_INFO_DATA, offsetof(restart_t, data), sizeof request);
     request.restart = attribute(IFLA_CAN_RESTART, offsetof(restart_t, restart), sizeof request);
-    return can->fd >= 0 && query(&request, sizeof request, &answer) == 0;
+    return can->fd >= 0 && query(&request, sizeof request, &link) == 0;
 }
 
-static bool ask_whether_up(const linux_can_t *can) {
-    answer_t answer = {0};
+static void set_link(linux_can_t *can, const linux_can_link_t *link) {
+    can->link_is_up = link->is_up;
+    can->link_has_state = link->has_state;
+    can->link_state = link->state;
+}
+
+bool linux_can_ask(linux_can_t *can) {
+    linux_can_link_t link;
     const look_t request = {
         .header = {.nlmsg_len = sizeof request, .nlmsg_type = RTM_GETLINK, .nlmsg_flags = NLM_F_REQUEST},
         .interface = {.ifi_family = AF_UNSPEC, .ifi_index = can->index}};
-    return query(&request, sizeof request, &answer) == 0 && (answer.is.interface.ifi_flags & (unsigned)IFF_UP) != 0;
+    if (can->fd < 0 || query(&request, sizeof request, &link) != 0) {
+        return false;
+    }
+    set_link(can, &link);
+    return true;
 }
 
 /* The socket is bound before the state is queried, so that no change between the two is missed. */
@@ -129,26 +142,21 @@ static bool open_link(linux_can_t *can) {
     }
     can->has_link = true;
     can->link_fd = fd;
-    can->link_is_up = ask_whether_up(can);
+    (void)linux_can_ask(can);
     return true;
-}
-
-static void apply_report(linux_can_t *can, const answer_t *news, size_t size) {
-    const struct ifinfomsg *interface = &news->is.interface;
-    const bool tells = news->header.nlmsg_type == RTM_NEWLINK || news->header.nlmsg_type == RTM_DELLINK;
-    if (tells && size >= sizeof(look_t) && interface->ifi_index == can->index && interface->ifi_family == AF_UNSPEC) {
-        can->link_is_up = news->header.nlmsg_type == RTM_NEWLINK && (interface->ifi_flags & (unsigned)IFF_UP) != 0;
-    }
 }
 
 /* When reports were lost, the state is queried after all kept reports were read, because they are older. */
 static void read_reports(linux_can_t *can) {
     bool has_lost = false;
+    answer_t news;
+    linux_can_link_t link;
     for (unsigned i = 0; i < NEWS_AT_ONCE_MAX; i++) {
-        answer_t news = {0};
         const ssize_t size = recv(can->link_fd, &news, sizeof news, MSG_DONTWAIT);
         if (size >= 0) {
-            apply_report(can, &news, (size_t)size);
+            if (linux_can_link_read(news.bytes, (size_t)size, &link) && link.index == can->index) {
+                set_link(can, &link);
+            }
         } else if (errno == ENOBUFS) {
             has_lost = true;
         } else {
@@ -156,7 +164,7 @@ static void read_reports(linux_can_t *can) {
         }
     }
     if (has_lost) {
-        can->link_is_up = ask_whether_up(can);
+        can->link_is_up = linux_can_ask(can) && can->link_is_up;
     }
 }
 
@@ -170,4 +178,9 @@ bool linux_can_is_up(linux_can_t *can) {
     }
     read_reports(can);
     return can->link_is_up;
+}
+
+bool linux_can_state(const linux_can_t *can, hal_can_state_t *state) {
+    *state = can->link_state;
+    return can->has_link && can->link_has_state;
 }

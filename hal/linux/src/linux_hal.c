@@ -30,6 +30,7 @@ static void look_whether_up(linux_hal_side_t *side) {
     } else if (!is_up && side->is_up) {
         linux_hal_controller_down(side);
     }
+    linux_hal_controller_look(side);
 }
 
 static bool open_side(hal_t *hal, linux_hal_side_t *side, char *error) {
@@ -125,6 +126,10 @@ static void frame_left(hal_t *hal, hal_can_side_t which, const linux_can_record_
     }
 }
 
+static uint64_t time_of(const hal_t *hal, const linux_can_record_t *record) {
+    return linux_clock_of_stamp_after(&hal->clock, record->stamp_us, hal->handed_us);
+}
+
 /* Read the echoes of frames that were sent, also those behind a report that the interface went down. Frames of other
  * senders are discarded. */
 static void read_echoes(hal_t *hal, hal_can_side_t which) {
@@ -136,7 +141,7 @@ static void read_echoes(hal_t *hal, hal_can_side_t which) {
             return;
         }
         if (result == LINUX_CAN_RECORD && record.own) {
-            frame_left(hal, which, &record, linux_clock_of_stamp(&hal->clock, record.stamp_us));
+            frame_left(hal, which, &record, time_of(hal, &record));
         }
     }
 }
@@ -178,7 +183,7 @@ void linux_hal_close(hal_t *hal) {
 
 static void take_record(hal_t *hal, hal_can_side_t which, const linux_can_record_t *record) {
     linux_hal_side_t *side = &hal->sides[which];
-    const uint64_t at_us = linux_clock_of_stamp(&hal->clock, record->stamp_us);
+    const uint64_t at_us = time_of(hal, record);
     if (record->lost != side->lost) {
         count_lost(side, record, at_us);
     }
@@ -226,6 +231,7 @@ static bool find_first(const hal_t *hal, hal_can_side_t *first) {
 }
 
 bool linux_hal_receive(hal_t *hal, hal_can_side_t *side, hal_can_frame_t *frame, uint64_t *at_us) {
+    hal->looked_us = linux_hal_now_us(hal);
     read_ahead(hal, HAL_CAN_VEHICLE);
     read_ahead(hal, HAL_CAN_AI);
     read_ahead(hal, HAL_CAN_VEHICLE); /* a frame that arrived between the two calls may be older than the AI side's */
@@ -265,6 +271,7 @@ bool linux_hal_tick(hal_t *hal) {
             continue;
         }
         check_link(hal, side, now_us);
+        linux_hal_queue_look(side, hal->looked_us);
         linux_hal_queue_give(side, now_us);
         changed = changed || side->fd_changed;
         side->fd_changed = false;

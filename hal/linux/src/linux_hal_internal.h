@@ -23,10 +23,16 @@ void linux_hal_queue_give(linux_hal_side_t *side, uint64_t now_us);
 /** Handle the echo of a sent frame: if it is the frame in flight, none is in flight any more. */
 void linux_hal_queue_left(linux_hal_side_t *side, const hal_can_frame_t *frame);
 
-/** Discard the waiting frames. The frame in flight may still be sent. */
-void linux_hal_queue_purge(linux_hal_side_t *side);
+/**
+ * Give up a frame in flight whose echo does not come. Call regularly, for a side that is not purged.
+ * @param now_us the time up to which echoes were read; here and below
+ */
+void linux_hal_queue_look(linux_hal_side_t *side, uint64_t now_us);
 
-/** Discard the waiting frames and the frame in flight. */
+/** Discard the waiting frames. The frame in flight may still be sent; one whose echo does not come is given up. */
+void linux_hal_queue_purge(linux_hal_side_t *side, uint64_t now_us);
+
+/** Discard the waiting frames and the frame in flight: the kernel has dropped it. */
 void linux_hal_queue_discard(linux_hal_side_t *side);
 
 /** As hal_can_status_t.tx_pending_ms. */
@@ -40,6 +46,12 @@ void linux_hal_controller_down(linux_hal_side_t *side);
 
 /** The interface is up. */
 void linux_hal_controller_up(linux_hal_side_t *side);
+
+/** Compare with the state that the kernel reports: error frames may have been lost, or sent before the port was opened. */
+void linux_hal_controller_look(linux_hal_side_t *side);
+
+/** Update the controller's state from one that the kernel was asked for. */
+void linux_hal_controller_asked(linux_hal_side_t *side, hal_can_state_t state);
 
 /** The state that hal_can_status() reports. */
 hal_can_state_t linux_hal_controller_state(const linux_hal_side_t *side);

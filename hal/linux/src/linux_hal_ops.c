@@ -14,7 +14,7 @@ static bool can_send(hal_t *hal, hal_can_side_t side, const hal_can_frame_t *fra
 static void can_purge(hal_t *hal, hal_can_side_t side) {
     linux_hal_side_t *purged = linux_hal_side(hal, side);
     if (purged != NULL) {
-        linux_hal_queue_purge(purged);
+        linux_hal_queue_purge(purged, hal->looked_us);
     }
 }
 
@@ -30,7 +30,7 @@ static void can_status(hal_t *hal, hal_can_side_t side, hal_can_status_t *status
     *status = (hal_can_status_t){.state = HAL_CAN_ERROR_ACTIVE};
     if (asked != NULL) {
         status->state = linux_hal_controller_state(asked);
-        status->tx_pending_ms = linux_hal_queue_pending_ms(asked, linux_hal_now_us(hal));
+        status->tx_pending_ms = linux_hal_queue_pending_ms(asked, hal->looked_us);
         status->bus_off_count = asked->bus_offs;
         status->overrun_count = asked->overruns;
     }

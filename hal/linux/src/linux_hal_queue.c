@@ -5,6 +5,9 @@
 
 enum { US_PER_MS = 1000, STANDARD_SHIFT = 18 };
 
+/* Patience with a frame whose echo does not come: after a purge; without one, so that a stall is reported before (SUP-7). */
+enum { PATIENCE_US = 100000, PATIENCE_UNPURGED = 10, DOUBLED_MAX = 7 };
+
 /* Rank in the arbitration: the lower one wins. An 11-bit ID is compared with the first 11 bits of a 29-bit one. */
 static uint64_t rank_of(const hal_can_frame_t *frame) {
     const bool is_extended = (frame->flags & HAL_CAN_EXTENDED) != 0;
@@ -75,19 +78,38 @@ void linux_hal_queue_give(linux_hal_side_t *side, uint64_t now_us) {
 /* The frames are compared, because a frame that was discarded at bus-off may still be sent while another one is in
  * flight. */
 void linux_hal_queue_left(linux_hal_side_t *side, const hal_can_frame_t *frame) {
+    side->given_up = 0;
     if (side->in_flight && is_same(frame, &side->sent.frame)) {
         side->in_flight = false;
     }
 }
 
-void linux_hal_queue_purge(linux_hal_side_t *side) {
+/* An echo may be lost without a trace. But the frame may also be in the kernel still, because the bus is blocked, and leave
+ * later. So the patience doubles until an echo comes: few frames gather in a blocked kernel. */
+static void give_up(linux_hal_side_t *side, uint64_t now_us, uint64_t patience_us) {
+    if (!side->in_flight || now_us <= side->given_us + (patience_us << side->given_up)) {
+        return;
+    }
+    side->in_flight = false;
+    if (side->given_up < DOUBLED_MAX) {
+        side->given_up++;
+    }
+}
+
+void linux_hal_queue_look(linux_hal_side_t *side, uint64_t now_us) {
+    give_up(side, now_us, (uint64_t)PATIENCE_US * PATIENCE_UNPURGED);
+}
+
+void linux_hal_queue_purge(linux_hal_side_t *side, uint64_t now_us) {
     side->waiting_count = 0;
     side->sent_is_purged = true;
+    give_up(side, now_us, PATIENCE_US);
 }
 
 void linux_hal_queue_discard(linux_hal_side_t *side) {
     side->waiting_count = 0;
     side->in_flight = false;
+    side->given_up = 0;
 }
 
 uint32_t linux_hal_queue_pending_ms(const linux_hal_side_t *side, uint64_t now_us) {
@@ -95,10 +117,10 @@ uint32_t linux_hal_queue_pending_ms(const linux_hal_side_t *side, uint64_t now_u
     if (!sent_counts && side->waiting_count == 0) {
         return 0;
     }
-    uint64_t oldest_us = sent_counts ? side->sent.taken_us : now_us;
+    uint64_t oldest_us = sent_counts ? side->sent.taken_us : UINT64_MAX;
     for (size_t i = 0; i < side->waiting_count; i++) {
         oldest_us = (side->waiting[i].taken_us < oldest_us) ? side->waiting[i].taken_us : oldest_us;
     }
-    const uint64_t age_ms = (now_us - oldest_us) / US_PER_MS;
+    const uint64_t age_ms = (now_us > oldest_us) ? (now_us - oldest_us) / US_PER_MS : 0;
     return (age_ms == 0) ? 1u : (uint32_t)age_ms;
 }

@@ -24,9 +24,10 @@ static void close_file(int *fd) {
     *fd = -1;
 }
 
+/* The clock of linux_clock.h, which goes on while the computer sleeps. */
 static int open_timer(void) {
     const struct itimerspec every_tick = {.it_interval = {.tv_nsec = TICK_NS}, .it_value = {.tv_nsec = TICK_NS}};
-    int timer = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
+    int timer = timerfd_create(CLOCK_BOOTTIME, TFD_NONBLOCK | TFD_CLOEXEC);
     if (timer >= 0 && timerfd_settime(timer, 0, &every_tick, NULL) != 0) {
         close_file(&timer);
     }

@@ -17,7 +17,7 @@ static uint64_t read_us(clockid_t id) {
 
 /* A clock that was started this long ago, which may be longer than the computer runs (unsigned). */
 static linux_clock_t started(uint64_t ago_us) {
-    return (linux_clock_t){.start_ns = (read_us(CLOCK_MONOTONIC) - ago_us) * 1000u};
+    return (linux_clock_t){.start_ns = (read_us(CLOCK_BOOTTIME) - ago_us) * 1000u};
 }
 
 static void expect_age(const linux_clock_t *clock, uint64_t stamp_us, uint64_t age_us) {

@@ -140,17 +140,17 @@ void test_a_waiting_frame_is_tried_again_in_ticks_only(void) {
 void test_the_age_of_waiting_frames_grows(void) {
     TEST_ASSERT_TRUE(port_send(&hal, 0x100));
     vcan_pause_ms(20);
-    const uint32_t first_ms = pending_ms();
-    TEST_ASSERT_TRUE(first_ms >= 20 && first_ms < 2000);
+    TEST_ASSERT_EQUAL_UINT32(1, pending_ms()); /* the echo lies unread, so it is not a late one */
     const uint64_t taken_us = linux_hal_now_us(&hal);
     TEST_ASSERT_TRUE(port_send(&hal, 0x10F));
     vcan_stick();
     fill_kernel_queue();
     (void)port_drain(&hal); /* 100h was sent: the age is now that of 10Fh, which finds no room */
     vcan_pause_ms(30);
-    const uint32_t second_ms = pending_ms();
-    TEST_ASSERT_TRUE(second_ms >= 30);
-    TEST_ASSERT_TRUE(second_ms <= (linux_hal_now_us(&hal) - taken_us) / 1000u);
+    (void)port_drain(&hal);
+    const uint32_t age_ms = pending_ms();
+    TEST_ASSERT_TRUE(age_ms >= 30);
+    TEST_ASSERT_TRUE(age_ms <= (linux_hal_now_us(&hal) - taken_us) / 1000u);
 }
 
 /* Shows: SUP-7 */

@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <sched.h>
 #include <signal.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -80,6 +81,21 @@ void test_a_late_program_gets_one_tick_and_not_a_burst(void) {
         TEST_ASSERT_TRUE(took_us >= 1000); /* one that was due, up to one soon, and a whole millisecond */
     }
     TEST_ASSERT_TRUE(most < 1000000);
+}
+
+/* Shows: TIM-4 */
+void test_the_timer_goes_on_while_the_computer_sleeps(void) {
+    char path[64];
+    char line[256] = "";
+    int clock = -1;
+    (void)snprintf(path, sizeof path, "/proc/self/fdinfo/%d", loop.timer);
+    FILE *info = fopen(path, "r");
+    TEST_ASSERT_NOT_NULL(info);
+    while (fgets(line, sizeof line, info) != NULL) {
+        (void)sscanf(line, "clockid: %d", &clock);
+    }
+    (void)fclose(info);
+    TEST_ASSERT_EQUAL_INT(CLOCK_BOOTTIME, clock);
 }
 
 void test_a_file_is_reported_as_long_as_it_is_ready(void) {

@@ -31,14 +31,16 @@ typedef struct {
 
 /** An open socket; change it through the functions. */
 typedef struct {
-    int fd;           /**< for epoll: readable when linux_can_read() has something; -1: not open */
-    int index;        /**< of the interface */
-    bool is_down;     /**< it was down at the last read or write */
-    bool report_down; /**< a write found it down, and linux_can_read() must still report it */
-    bool is_gone;     /**< the interface no longer exists */
-    bool has_link;    /**< linux_can_is_up() was called */
-    int link_fd;      /**< then: the socket on which the kernel reports changes of interfaces */
-    bool link_is_up;  /**< then: the last reported state */
+    int fd;                     /**< for epoll: readable when linux_can_read() has something; -1: not open */
+    int index;                  /**< of the interface */
+    bool is_down;               /**< it was down at the last read or write */
+    bool report_down;           /**< a write found it down, and linux_can_read() must still report it */
+    bool is_gone;               /**< the interface no longer exists */
+    bool has_link;              /**< linux_can_is_up() was called */
+    int link_fd;                /**< then: the socket on which the kernel reports changes of interfaces */
+    bool link_is_up;            /**< then: the last reported state */
+    bool link_has_state;        /**< then: its controller has an error state */
+    hal_can_state_t link_state; /**< then: the last reported one */
 } linux_can_t;
 
 /** Result of linux_can_read(). */
@@ -86,6 +88,19 @@ linux_can_write_t linux_can_write(linux_can_t *can, const hal_can_frame_t *frame
  * these reports were lost (hundreds of changes between two calls).
  */
 bool linux_can_is_up(linux_can_t *can);
+
+/**
+ * The controller's state that the kernel last reported (linux_can_is_up()). It reports the begin and the end of bus-off, up
+ * to a second late, and not each change between the other states.
+ * @return false: unknown, because it has no controller (a virtual interface), or that does not run
+ */
+bool linux_can_state(const linux_can_t *can, hal_can_state_t *state);
+
+/**
+ * Query the kernel now, for linux_can_state() and linux_can_is_up(). This may block while an interface is being changed.
+ * @return false: no answer, and nothing has changed
+ */
+bool linux_can_ask(linux_can_t *can);
 
 /**
  * Request that the kernel restarts a controller in bus-off (`ip link set IF type can restart`). Needs CAP_NET_ADMIN.

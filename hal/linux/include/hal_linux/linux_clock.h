@@ -1,6 +1,7 @@
 /**
  * @file linux_clock.h
- * Monotonic time since a start, and conversion of the kernel's time stamps to it.
+ * Monotonic time since a start, the time in which the computer slept included, and conversion of the kernel's time stamps to
+ * it.
  */
 #ifndef HAL_LINUX_LINUX_CLOCK_H
 #define HAL_LINUX_LINUX_CLOCK_H
@@ -9,7 +10,7 @@
 
 /** The start from which time is counted. */
 typedef struct {
-    uint64_t start_ns; /**< CLOCK_MONOTONIC */
+    uint64_t start_ns; /**< CLOCK_BOOTTIME */
 } linux_clock_t;
 
 /** Start the clock now. */
@@ -25,5 +26,12 @@ uint64_t linux_clock_now_us(const linux_clock_t *clock);
  * @return microseconds since the start
  */
 uint64_t linux_clock_of_stamp(const linux_clock_t *clock, uint64_t stamp_us);
+
+/**
+ * The same for a supervisor: a stamp before the start, or more than 60 s old, counts as @p last_us, so that a frame that
+ * waited for so long does not look fresh.
+ * @param last_us time of the frame before this one
+ */
+uint64_t linux_clock_of_stamp_after(const linux_clock_t *clock, uint64_t stamp_us, uint64_t last_us);
 
 #endif

@@ -6,9 +6,12 @@
  * the last one was sent. So after a purge or bus-off at most one frame may still be sent (hal/can.h). SocketCAN alone does
  * not ensure that: frames cannot be removed from the kernel's queue.
  *
- * Controller states come from error frames: bus-off, restarted, error passive, error active, overrun. An interface that
- * is down or gone reports bus-off until it is back. A virtual interface has no controller; error frames that a program
- * sends there have the same effect. There is no hardware watchdog, and the latch is kept in memory only.
+ * Controller states come from error frames: bus-off, restarted, error passive, error active, overrun. Bus-off also comes from
+ * the kernel's reports on the interface. An interface that is down or gone reports bus-off until it is back. A virtual
+ * interface has no controller; error frames that a program sends there have the same effect. There is no hardware watchdog,
+ * and the latch is kept in memory only.
+ *
+ * What hal_can_status() reports is as of the last linux_hal_receive().
  */
 #ifndef HAL_LINUX_LINUX_HAL_H
 #define HAL_LINUX_LINUX_HAL_H
@@ -58,7 +61,8 @@ typedef struct {
     bool is_up;
     bool fd_changed; /**< linux_hal_tick() must still report it */
     uint64_t look_again_us;
-    hal_can_state_t state; /**< of the controller, from error frames */
+    hal_can_state_t state;   /**< of the controller */
+    uint8_t looks_restarted; /**< times in a row that the kernel, asked in bus-off, said that this is over */
     uint16_t bus_offs;
     uint16_t overruns;
     uint32_t lost;            /**< as in the last record */
@@ -66,6 +70,7 @@ typedef struct {
     linux_hal_waiting_t sent; /**< that one */
     bool sent_is_purged;      /**< it may still be sent, but no longer counts as pending (tx_pending_ms) */
     uint64_t given_us;        /**< when the kernel accepted it */
+    uint8_t given_up;         /**< frames whose echo did not come, in a row (up to a limit) */
     linux_hal_waiting_t waiting[LINUX_HAL_QUEUE_SIZE];
     size_t waiting_count;
     bool has_next; /**< `next` is the record that linux_hal_receive() returns next */
@@ -80,6 +85,7 @@ struct hal {
     linux_hal_config_t config;
     linux_clock_t clock;
     uint64_t handed_us; /**< receive time of the frame that was returned last */
+    uint64_t looked_us; /**< when linux_hal_receive() last looked */
     bool led_on;
     bool output_closed;
     uint32_t feeds;
