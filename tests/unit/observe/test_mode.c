@@ -326,11 +326,11 @@ static bool flickers(uint32_t from_ms, unsigned frames, bool supervising) {
     return is_active(AGV_FAULT_MODE_FLAPPING);
 }
 
-/* From the frame after the engagement on: 48 pairs make 48 points, and the next one the 50. */
+/* From the frame after the engagement on: 48 pairs make 48 points, and the next frame the 50. Not in INIT, TRIPPED and SAFE. */
 /* Shows: SUP-9, MODE_FLAPPING */
 TEST_CASE(96, true, false)
 TEST_CASE(97, true, true)
-TEST_CASE(97, false, false) /* INIT, TRIPPED, SAFE */
+TEST_CASE(97, false, false)
 void test_manual_that_flickers_while_engaged_is_flapping(unsigned frames, bool supervising, bool flapping) {
     (void)report(MANUAL, 0);
     (void)report(ENGAGED, 10);
