@@ -19,8 +19,14 @@ static void stamp(hal_can_frame_t *frame) {
     frame->time_us = (uint16_t)(now_us % US_PER_MS);
 }
 
+/* A classic frame may have a DLC of 9 to 15, and carries 8 bytes then (ISO 11898-1). */
+static uint8_t length_of(const struct can_frame *frame) {
+    const bool is_fd = (frame->flags & CAN_FRAME_FDF) != 0u;
+    return is_fd ? can_dlc_to_bytes(frame->dlc) : (uint8_t)MIN(frame->dlc, CAN_MAX_DLC);
+}
+
 static void convert(hal_can_frame_t *to, const struct can_frame *from) {
-    *to = (hal_can_frame_t){.id = from->id, .length = can_dlc_to_bytes(from->dlc)};
+    *to = (hal_can_frame_t){.id = from->id, .length = length_of(from)};
     to->flags |= ((from->flags & CAN_FRAME_IDE) != 0u) ? HAL_CAN_EXTENDED : 0u;
     to->flags |= ((from->flags & CAN_FRAME_RTR) != 0u) ? HAL_CAN_REMOTE : 0u;
     to->flags |= ((from->flags & CAN_FRAME_FDF) != 0u) ? HAL_CAN_FD : 0u;

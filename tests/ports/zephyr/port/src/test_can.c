@@ -71,12 +71,16 @@ ZTEST(port_can, test_frames_that_are_rejected_are_passed_on_too) {
         {.id = 0x363u, .dlc = 8u, .flags = CAN_FRAME_RTR, .data = {1u}},
         {.id = 0x363u, .dlc = 12u, .flags = CAN_FRAME_FDF, .data = {9u}},
         {.id = 0x363u, .dlc = 3u, .data = {1u, 2u, 3u, 4u}},
+        {.id = 0x363u, .dlc = 9u, .data = {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u}},
+        {.id = 0x363u, .dlc = 15u, .flags = CAN_FRAME_RTR},
     };
     static const hal_can_frame_t wanted[] = {
         {.id = 0x12345u, .length = 8u, .flags = HAL_CAN_EXTENDED},
         {.id = 0x363u, .length = 8u, .flags = HAL_CAN_REMOTE},
         {.id = 0x363u, .length = 24u, .flags = HAL_CAN_FD, .data = {9u}},
         {.id = 0x363u, .length = 3u, .data = {1u, 2u, 3u}},
+        {.id = 0x363u, .length = 8u, .data = {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u}},
+        {.id = 0x363u, .length = 8u, .flags = HAL_CAN_REMOTE},
     };
     for (size_t i = 0u; i < ARRAY_SIZE(sent); i++) {
         hal_can_side_t side;
