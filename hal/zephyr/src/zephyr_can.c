@@ -175,10 +175,14 @@ static bool is_older(const hal_can_frame_t *a, const hal_can_frame_t *b) {
     return (ms < 0) || ((ms == 0) && (a->time_us < b->time_us));
 }
 
+/* A frame of the vehicle that arrived after the first look may be older than the one of the AI side. */
 bool zephyr_hal_receive(hal_t *hal, hal_can_side_t *side, hal_can_frame_t *frame) {
     hal_can_frame_t of_ai;
-    const bool vehicle = take(&hal->sides[HAL_CAN_VEHICLE], frame);
+    bool vehicle = take(&hal->sides[HAL_CAN_VEHICLE], frame);
     const bool ai = take(&hal->sides[HAL_CAN_AI], &of_ai);
+    if (ai && !vehicle) {
+        vehicle = take(&hal->sides[HAL_CAN_VEHICLE], frame);
+    }
     *side = (ai && (!vehicle || is_older(&of_ai, frame))) ? HAL_CAN_AI : HAL_CAN_VEHICLE;
     return (vehicle || ai) && (k_msgq_get(&hal->sides[*side].received, frame, K_NO_WAIT) == 0);
 }

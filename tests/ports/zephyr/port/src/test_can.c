@@ -110,6 +110,40 @@ ZTEST(port_can, test_frames_of_both_sides_come_in_the_order_of_their_arrival) {
     }
 }
 
+static void vehicle_then_ai(void) {
+    arrive(HAL_CAN_VEHICLE, 0x100u, 0u);
+    k_busy_wait(1000);
+    arrive(HAL_CAN_AI, 0x101u, 0u);
+}
+
+static void ai_then_vehicle(void) {
+    arrive(HAL_CAN_AI, 0x100u, 0u);
+    k_busy_wait(1000);
+    arrive(HAL_CAN_VEHICLE, 0x101u, 0u);
+}
+
+static void expect_in_order(void (*arrives)(void), uint32_t looks) {
+    fixture_arrives = arrives;
+    fixture_looks = looks;
+    for (uint32_t next = 0x100u, calls = 0u; next < 0x102u; calls++) {
+        hal_can_side_t side;
+        hal_can_frame_t frame;
+        zassert_true(calls < 3u, "after %u looks: a frame is missing", looks);
+        if (zephyr_hal_receive(&hal, &side, &frame)) {
+            zassert_equal(frame.id, next, "after %u looks: the younger one came first", looks);
+            next++;
+        }
+    }
+}
+
+/* Shows: TOP-2 */
+ZTEST(port_can, test_frames_that_arrive_while_the_port_looks_keep_their_order) {
+    for (uint32_t looks = 1u; looks <= 2u; looks++) {
+        expect_in_order(vehicle_then_ai, looks);
+        expect_in_order(ai_then_vehicle, looks);
+    }
+}
+
 /* Shows: SUP-7 */
 ZTEST(port_can, test_a_full_queue_is_an_overrun) {
     for (uint32_t i = 0u; i < (CONFIG_AGV_CAN_RX_QUEUE + 3u); i++) {
