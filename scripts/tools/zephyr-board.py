@@ -273,6 +273,25 @@ def check_watchdog(build):
         raise Refused(f"devicetree: watchdog0 = <{label(watchdog)}> is disabled: write {label(watchdog)} {{ status = \"okay\"; }};")
 
 
+def longest_window_ms(watchdog):
+    """Of an STM32's WWDG: 64 counts of 4096 cycles of its bus, and the largest prescaler of G0, G4 and H7. Otherwise None."""
+    if watchdog.matching_compat != "st,stm32-window-watchdog":
+        return None
+    clock = {name: prop.val for name, prop in watchdog.props["clocks"].val[0].controller.props.items()}
+    divider = clock["hpre"] * clock["d1ppre"] if "d1ppre" in clock else clock.get("apb1-prescaler", 1)
+    return 64 * 4096 * 128 * 1000 * divider // clock["clock-frequency"]
+
+
+def check_window_time(build, watchdog):
+    added_ms = 20  # WINDOW_FEEDS of hal/zephyr/src/zephyr_watchdog.c
+    wanted_ms = int(build.config["TASK_WDT_MIN_TIMEOUT"]) + int(build.config["TASK_WDT_HW_FALLBACK_DELAY"]) + added_ms
+    longest_ms = longest_window_ms(watchdog)
+    if longest_ms is not None and wanted_ms > longest_ms:
+        raise Refused(f"CONFIG_AGV_WATCHDOG_PERIOD_MS={build.config['AGV_WATCHDOG_PERIOD_MS']}: window-watchdog = <{label(watchdog)}> can wait "
+                      f"{longest_ms} ms here, and {wanted_ms} ms are needed (CONFIG_TASK_WDT_MIN_TIMEOUT + "
+                      f"CONFIG_TASK_WDT_HW_FALLBACK_DELAY + {added_ms}): make them shorter, or leave the alias out")
+
+
 def check_window(build):
     watchdog = build.alias("window-watchdog")
     if watchdog is None:
@@ -282,6 +301,7 @@ def check_window(build):
     if watchdog.matching_compat not in WINDOWS and not build.has("ZTEST"):
         raise Refused(f"devicetree: window-watchdog = <{label(watchdog)}> is {watchdog.matching_compat}, of which the port cannot set a "
                       "window: leave the alias out")
+    check_window_time(build, watchdog)
 
 
 def check_update(build):
