@@ -4,10 +4,11 @@
 usage: zephyr-board.py settings FILE|CONFIG_AGV_NAME=VALUE...     refuse a value that its Kconfig symbol cannot have; the last
                                         one of a symbol counts (the build of the firmware does this, before Zephyr reads them)
        zephyr-board.py check BUILD      refuse mistakes, one line each (the build of the firmware does this)
+       zephyr-board.py bootloader BUILD BUILD-OF-MCUBOOT     refuse a bootloader that overwrites what outlives a reset
        zephyr-board.py header BUILD     the facts as a C header (the build of the firmware does this)
        zephyr-board.py table [--write] BUILD...     the facts as a table; --write puts it into docs/firmware.md
 
-BUILD is the build folder of firmware/zephyr. Exit code 2: the build is refused.
+BUILD is the build folder of firmware/zephyr, or of MCUboot. Exit code 2: the build is refused.
 """
 import argparse
 import os
@@ -71,6 +72,9 @@ class Build:
     def node(self):
         nodes = self.devicetree.compat2okay.get(NODE, [])
         return nodes[0] if nodes else None
+
+    def chosen(self, name):
+        return self.devicetree.chosen_nodes.get(name)
 
     def alias(self, name):
         nodes = [node for node in self.devicetree.nodes if name in node.aliases]
@@ -227,6 +231,37 @@ def check_log(build):
                       '"fixed-partitions"')
 
 
+def retained_memory(build):
+    """The node of the memory that outlives a reset, or None: then it is a part of zephyr,sram."""
+    named = build.node().props.get("retained-memory")
+    return named.val if named is not None else build.chosen("zephyr,dtcm")
+
+
+def overlap(one, other):
+    a, b = one.regs[0], other.regs[0]
+    return a.addr < b.addr + b.size and b.addr < a.addr + a.size
+
+
+def check_retained(build):
+    memory, ram = retained_memory(build), build.chosen("zephyr,sram")
+    if memory is None:
+        if build.has("BOOTLOADER_MCUBOOT"):
+            raise Refused("devicetree: a bootloader overwrites what outlives a reset: write retained-memory = <&a_region>; into the node "
+                          "agv_supervisor, and leave the region out of zephyr,sram of both programs")
+        return
+    if "zephyr,memory-region" not in memory.compats:
+        raise Refused(f'devicetree: retained-memory = <{label(memory)}> needs compatible = "zephyr,memory-region"')
+    if ram is not None and overlap(memory, ram):
+        raise Refused(f"devicetree: retained-memory = <{label(memory)}> overlaps zephyr,sram = <{label(ram)}>: make that smaller")
+
+
+def check_bootloader(build, bootloader):
+    memory, ram = retained_memory(build), bootloader.chosen("zephyr,sram")
+    if memory is not None and overlap(memory, ram):
+        raise Refused(f"devicetree: {label(ram)} of the bootloader overlaps {label(memory)}, which outlives a reset: make it smaller in "
+                      "sysbuild/mcuboot/boards/<board>.overlay, too")
+
+
 def check_watchdog(build):
     watchdog = build.alias("watchdog0")
     if build.has("AGV_WITHOUT_HARDWARE_WATCHDOG", "AGV_ACCEPT_NO_WATCHDOG") and not build.has("AGV_RELEASE"):
@@ -238,6 +273,25 @@ def check_watchdog(build):
         raise Refused(f"devicetree: watchdog0 = <{label(watchdog)}> is disabled: write {label(watchdog)} {{ status = \"okay\"; }};")
 
 
+def longest_window_ms(watchdog):
+    """Of an STM32's WWDG: 64 counts of 4096 cycles of its bus, and the largest prescaler of G0, G4 and H7. Otherwise None."""
+    if watchdog.matching_compat != "st,stm32-window-watchdog":
+        return None
+    clock = {name: prop.val for name, prop in watchdog.props["clocks"].val[0].controller.props.items()}
+    divider = clock["hpre"] * clock["d1ppre"] if "d1ppre" in clock else clock.get("apb1-prescaler", 1)
+    return 64 * 4096 * 128 * 1000 * divider // clock["clock-frequency"]
+
+
+def check_window_time(build, watchdog):
+    added_ms = 20  # WINDOW_FEEDS of hal/zephyr/src/zephyr_watchdog.c
+    wanted_ms = int(build.config["TASK_WDT_MIN_TIMEOUT"]) + int(build.config["TASK_WDT_HW_FALLBACK_DELAY"]) + added_ms
+    longest_ms = longest_window_ms(watchdog)
+    if longest_ms is not None and wanted_ms > longest_ms:
+        raise Refused(f"CONFIG_AGV_WATCHDOG_PERIOD_MS={build.config['AGV_WATCHDOG_PERIOD_MS']}: window-watchdog = <{label(watchdog)}> can wait "
+                      f"{longest_ms} ms here, and {wanted_ms} ms are needed (CONFIG_TASK_WDT_MIN_TIMEOUT + "
+                      f"CONFIG_TASK_WDT_HW_FALLBACK_DELAY + {added_ms}): make them shorter, or leave the alias out")
+
+
 def check_window(build):
     watchdog = build.alias("window-watchdog")
     if watchdog is None:
@@ -247,6 +301,7 @@ def check_window(build):
     if watchdog.matching_compat not in WINDOWS and not build.has("ZTEST"):
         raise Refused(f"devicetree: window-watchdog = <{label(watchdog)}> is {watchdog.matching_compat}, of which the port cannot set a "
                       "window: leave the alias out")
+    check_window_time(build, watchdog)
 
 
 def check_update(build):
@@ -275,6 +330,7 @@ def check(build):
     check_pins(build)
     check_second_clock(build)
     check_log(build)
+    check_retained(build)
     check_watchdog(build)
     check_window(build)
     check_update(build)
@@ -372,7 +428,7 @@ def write_table(text):
 
 def main():
     parser = argparse.ArgumentParser(description="what a board can do for the supervisor")
-    parser.add_argument("what", choices=("settings", "check", "header", "table"))
+    parser.add_argument("what", choices=("settings", "check", "bootloader", "header", "table"))
     parser.add_argument("--write", action="store_true", help="with table: into docs/firmware.md")
     parser.add_argument("--zephyr-base", type=pathlib.Path, help="folder of Zephyr; without it that of the build")
     parser.add_argument("sources", nargs="+", help="build folders; with settings: files and values")
@@ -385,6 +441,8 @@ def main():
         if arguments.what == "check":
             for build in builds:
                 check(build)
+        elif arguments.what == "bootloader":
+            check_bootloader(*builds)
         elif arguments.what == "header":
             sys.stdout.write("".join(header(build) for build in builds))
         elif arguments.write:

@@ -19,8 +19,14 @@ static void stamp(hal_can_frame_t *frame) {
     frame->time_us = (uint16_t)(now_us % US_PER_MS);
 }
 
+/* A classic frame may have a DLC of 9 to 15, and carries 8 bytes then (ISO 11898-1). */
+static uint8_t length_of(const struct can_frame *frame) {
+    const bool is_fd = (frame->flags & CAN_FRAME_FDF) != 0u;
+    return is_fd ? can_dlc_to_bytes(frame->dlc) : (uint8_t)MIN(frame->dlc, CAN_MAX_DLC);
+}
+
 static void convert(hal_can_frame_t *to, const struct can_frame *from) {
-    *to = (hal_can_frame_t){.id = from->id, .length = can_dlc_to_bytes(from->dlc)};
+    *to = (hal_can_frame_t){.id = from->id, .length = length_of(from)};
     to->flags |= ((from->flags & CAN_FRAME_IDE) != 0u) ? HAL_CAN_EXTENDED : 0u;
     to->flags |= ((from->flags & CAN_FRAME_RTR) != 0u) ? HAL_CAN_REMOTE : 0u;
     to->flags |= ((from->flags & CAN_FRAME_FDF) != 0u) ? HAL_CAN_FD : 0u;
@@ -169,10 +175,14 @@ static bool is_older(const hal_can_frame_t *a, const hal_can_frame_t *b) {
     return (ms < 0) || ((ms == 0) && (a->time_us < b->time_us));
 }
 
+/* A frame of the vehicle that arrived after the first look may be older than the one of the AI side. */
 bool zephyr_hal_receive(hal_t *hal, hal_can_side_t *side, hal_can_frame_t *frame) {
     hal_can_frame_t of_ai;
-    const bool vehicle = take(&hal->sides[HAL_CAN_VEHICLE], frame);
+    bool vehicle = take(&hal->sides[HAL_CAN_VEHICLE], frame);
     const bool ai = take(&hal->sides[HAL_CAN_AI], &of_ai);
+    if (ai && !vehicle) {
+        vehicle = take(&hal->sides[HAL_CAN_VEHICLE], frame);
+    }
     *side = (ai && (!vehicle || is_older(&of_ai, frame))) ? HAL_CAN_AI : HAL_CAN_VEHICLE;
     return (vehicle || ai) && (k_msgq_get(&hal->sides[*side].received, frame, K_NO_WAIT) == 0);
 }
@@ -241,12 +251,15 @@ void zephyr_hal_transmit(hal_t *hal) {
     }
 }
 
+BUILD_ASSERT(IS_ENABLED(CONFIG_CAN_STATS) || IS_ENABLED(CONFIG_CAN_FAKE),
+             "the driver's overruns must be counted: CONFIG_STATS and CONFIG_CAN_STATS");
+
 static uint32_t driver_counter(const zephyr_hal_side_t *side) {
-#if defined(CONFIG_CAN_STATS)
-    return can_stats_get_rx_overruns(side->device);
-#else
+#if defined(CONFIG_CAN_FAKE)
     ARG_UNUSED(side);
     return 0u;
+#else
+    return can_stats_get_rx_overruns(side->device);
 #endif
 }
 

@@ -16,6 +16,7 @@
 #endif
 
 FUNC_NORETURN void zephyr_hal_die(hal_end_t reason, uint32_t pc, uint32_t lr) {
+    (void)irq_lock(); /* otherwise the supervisor's thread could run once more, and close the output again */
     zephyr_output_open_now();
     zephyr_reset_note(&(zephyr_hal_end_t){.reason = (uint32_t)reason, .pc = pc, .lr = lr});
     sys_reboot(SYS_REBOOT_COLD);

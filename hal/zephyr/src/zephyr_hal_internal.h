@@ -8,9 +8,6 @@
 #include "hal_zephyr/zephyr_chip.h"
 #include "hal_zephyr/zephyr_hal.h"
 
-/** The node of the wiring (dts/bindings/agv,supervisor.yaml). */
-#define ZEPHYR_HAL_NODE DT_COMPAT_GET_ANY_STATUS_OKAY(agv_supervisor)
-
 /** The side, or NULL when it does not exist. */
 zephyr_hal_side_t *zephyr_hal_side(hal_t *hal, hal_can_side_t side);
 

@@ -19,6 +19,7 @@
 #include <zephyr/drivers/gpio.h>
 #include <zephyr/fs/fcb.h>
 #include <zephyr/kernel.h>
+#include <zephyr/linker/devicetree_regions.h>
 
 #include "hal/can.h"
 #include "hal/clock.h"
@@ -31,14 +32,22 @@
 #include "hal/store.h"
 #include "hal/watchdog.h"
 
+/** The node of the wiring (dts/bindings/agv,supervisor.yaml). */
+#define ZEPHYR_HAL_NODE DT_COMPAT_GET_ANY_STATUS_OKAY(agv_supervisor)
+
 /**
- * Memory that a reset does not clear. It must be uncached, because a reset discards data that is still in a data cache.
+ * Memory that a reset does not clear. It must be uncached, because a reset discards data that is still in a data cache; and no
+ * bootloader may use it, because a bootloader runs first after each reset.
  */
-#if DT_NODE_HAS_STATUS(DT_CHOSEN(zephyr_dtcm), okay)
+#if DT_NODE_HAS_PROP(ZEPHYR_HAL_NODE, retained_memory)
+#define ZEPHYR_HAL_RETAINED                                                                                            \
+    __attribute__((section(LINKER_DT_NODE_REGION_NAME(DT_PHANDLE(ZEPHYR_HAL_NODE, retained_memory)))))
+#elif DT_NODE_HAS_STATUS(DT_CHOSEN(zephyr_dtcm), okay)
 #define ZEPHYR_HAL_RETAINED __dtcm_noinit_section
 #else
 #define ZEPHYR_HAL_RETAINED __noinit
 BUILD_ASSERT(!IS_ENABLED(CONFIG_DCACHE), "retained memory must not be cached: choose zephyr,dtcm");
+BUILD_ASSERT(!IS_ENABLED(CONFIG_BOOTLOADER_MCUBOOT), "the bootloader overwrites this memory: set retained-memory");
 #endif
 
 /**

@@ -39,6 +39,20 @@ void fixture_after(void *unused) {
     k_timer_stop(&hal.timer);
 }
 
+void (*fixture_arrives)(void);
+uint32_t fixture_looks;
+
+/* In zephyr_can.c, in place of the kernel's function. */
+int fixture_peek(struct k_msgq *queue, void *data);
+
+int fixture_peek(struct k_msgq *queue, void *data) {
+    const int result = z_impl_k_msgq_peek(queue, data);
+    if ((fixture_looks > 0u) && (--fixture_looks == 0u)) {
+        fixture_arrives();
+    }
+    return result;
+}
+
 hal_can_status_t fixture_status(void) {
     hal_can_status_t status;
     hal_can_status(&hal, HAL_CAN_VEHICLE, &status);

@@ -25,6 +25,10 @@ bool fixture_begin(void);
 /** The same with controllers that only listen. */
 bool fixture_begin_listening(void);
 
+/** Called once, after that many looks of the port into a queue of received frames: what arrives between two looks. */
+extern void (*fixture_arrives)(void);
+extern uint32_t fixture_looks;
+
 /** Read the vehicle side's status. */
 hal_can_status_t fixture_status(void);
 

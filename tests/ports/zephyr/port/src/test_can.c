@@ -71,12 +71,16 @@ ZTEST(port_can, test_frames_that_are_rejected_are_passed_on_too) {
         {.id = 0x363u, .dlc = 8u, .flags = CAN_FRAME_RTR, .data = {1u}},
         {.id = 0x363u, .dlc = 12u, .flags = CAN_FRAME_FDF, .data = {9u}},
         {.id = 0x363u, .dlc = 3u, .data = {1u, 2u, 3u, 4u}},
+        {.id = 0x363u, .dlc = 9u, .data = {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u}},
+        {.id = 0x363u, .dlc = 15u, .flags = CAN_FRAME_RTR},
     };
     static const hal_can_frame_t wanted[] = {
         {.id = 0x12345u, .length = 8u, .flags = HAL_CAN_EXTENDED},
         {.id = 0x363u, .length = 8u, .flags = HAL_CAN_REMOTE},
         {.id = 0x363u, .length = 24u, .flags = HAL_CAN_FD, .data = {9u}},
         {.id = 0x363u, .length = 3u, .data = {1u, 2u, 3u}},
+        {.id = 0x363u, .length = 8u, .data = {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u}},
+        {.id = 0x363u, .length = 8u, .flags = HAL_CAN_REMOTE},
     };
     for (size_t i = 0u; i < ARRAY_SIZE(sent); i++) {
         hal_can_side_t side;
@@ -103,6 +107,40 @@ ZTEST(port_can, test_frames_of_both_sides_come_in_the_order_of_their_arrival) {
         zassert_true(zephyr_hal_receive(&hal, &side, &frame));
         zassert_equal(frame.id, 0x100u + i);
         zassert_equal(side, order[i]);
+    }
+}
+
+static void vehicle_then_ai(void) {
+    arrive(HAL_CAN_VEHICLE, 0x100u, 0u);
+    k_busy_wait(1000);
+    arrive(HAL_CAN_AI, 0x101u, 0u);
+}
+
+static void ai_then_vehicle(void) {
+    arrive(HAL_CAN_AI, 0x100u, 0u);
+    k_busy_wait(1000);
+    arrive(HAL_CAN_VEHICLE, 0x101u, 0u);
+}
+
+static void expect_in_order(void (*arrives)(void), uint32_t looks) {
+    fixture_arrives = arrives;
+    fixture_looks = looks;
+    for (uint32_t next = 0x100u, calls = 0u; next < 0x102u; calls++) {
+        hal_can_side_t side;
+        hal_can_frame_t frame;
+        zassert_true(calls < 3u, "after %u looks: a frame is missing", looks);
+        if (zephyr_hal_receive(&hal, &side, &frame)) {
+            zassert_equal(frame.id, next, "after %u looks: the younger one came first", looks);
+            next++;
+        }
+    }
+}
+
+/* Shows: TOP-2 */
+ZTEST(port_can, test_frames_that_arrive_while_the_port_looks_keep_their_order) {
+    for (uint32_t looks = 1u; looks <= 2u; looks++) {
+        expect_in_order(vehicle_then_ai, looks);
+        expect_in_order(ai_then_vehicle, looks);
     }
 }
 

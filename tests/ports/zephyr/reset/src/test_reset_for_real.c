@@ -1,9 +1,11 @@
 /*
- * One supervisor over seven starts of an emulated Cortex-M3. Each run but the last ends with another kind of reset, and
+ * One supervisor over eight starts of an emulated Cortex-M3. Each run but the last ends with another kind of reset, and
  * the next one checks what outlived it: latch, first reason, recorder, cause. The test sets hwinfo's flags, because
- * this machine has none. The task watchdog, the faults, the MPU's stack guard and the hardware watchdog are real.
+ * this machine has none. The task watchdog, the faults, the MPU's stack guard and the hardware watchdog are real. The story
+ * itself is in zephyr,sram, and what the supervisor keeps is in a region of its own, as with a bootloader.
  */
 #include <zephyr/arch/arm/nmi.h>
+#include <zephyr/drivers/gpio.h>
 #include <zephyr/drivers/hwinfo.h>
 #include <zephyr/sys/byteorder.h>
 #include <zephyr/ztest.h>
@@ -12,11 +14,11 @@
 #include "supervise.h"
 #include "vehicle.h"
 
-enum { STORY = 0x53544F52, RUNS = 7, ENDS_MS = 400 };
+enum { STORY = 0x53544F52, RUNS = 8, ENDS_MS = 400 };
 
 static ZEPHYR_HAL_RETAINED agv_recorder_t recorder;
 static ZEPHYR_HAL_RETAINED zephyr_hal_retained_t retained;
-static ZEPHYR_HAL_RETAINED struct {
+static __noinit struct {
     uint32_t magic;
     uint32_t run;
     uint32_t output_was_open;
@@ -108,6 +110,47 @@ static void end_by_a_stack_that_overflows(void) {
     k_msleep(ENDS_MS);
 }
 
+/* A thread that is readied by the opening of the output, and closes it: as the supervisor's could be by its timer. */
+static K_THREAD_STACK_DEFINE(closer_stack, 512);
+static struct k_thread closer_thread;
+static K_SEM_DEFINE(opened, 0, 1);
+static struct gpio_callback on_opening;
+
+static void close_again(void *a, void *b, void *c) {
+    ARG_UNUSED(a);
+    ARG_UNUSED(b);
+    ARG_UNUSED(c);
+    (void)k_sem_take(&opened, K_FOREVER);
+    hal_safety_output_set(&self.hal, true);
+}
+
+static void output_opens(const struct device *port, struct gpio_callback *callback, gpio_port_pins_t pins) {
+    ARG_UNUSED(port);
+    ARG_UNUSED(callback);
+    ARG_UNUSED(pins);
+    k_sem_give(&opened);
+}
+
+static void fail(void *a, void *b, void *c) {
+    ARG_UNUSED(a);
+    ARG_UNUSED(b);
+    ARG_UNUSED(c);
+    hal_safety_output_set(&self.hal, true);
+    __ASSERT(self.ticked_ms == 0u, "on purpose");
+}
+
+static void end_by_a_thread_that_can_be_preempted(void) {
+    static const struct gpio_dt_spec output = GPIO_DT_SPEC_GET(DT_NODELABEL(agv_supervisor), safety_output_gpios);
+    gpio_init_callback(&on_opening, output_opens, BIT(output.pin));
+    zassert_ok(gpio_add_callback(output.port, &on_opening));
+    (void)k_thread_create(&closer_thread, closer_stack, K_THREAD_STACK_SIZEOF(closer_stack), close_again, NULL, NULL,
+                          NULL, K_PRIO_COOP(1), 0, K_NO_WAIT);
+    (void)k_thread_create(&small_thread, small_stack, K_THREAD_STACK_SIZEOF(small_stack), fail, NULL, NULL, NULL,
+                          K_PRIO_PREEMPT(1), 0, K_NO_WAIT);
+    zassert_ok(gpio_pin_interrupt_configure_dt(&output, GPIO_INT_EDGE_FALLING));
+    k_msleep(ENDS_MS);
+}
+
 static void hang_for_good(void) {
     for (;;) {
     }
@@ -139,7 +182,9 @@ static const struct {
     {"a failed assertion", RESET_SOFTWARE, HAL_RESET_LOCK_UP, HAL_END_ASSERTION, end_by_a_failed_assertion,
      end_by_a_stack_that_overflows},
     {"a stack that overflowed", RESET_SOFTWARE, HAL_RESET_LOCK_UP, HAL_END_STACK, NULL, end_by_an_nmi},
-    {"an NMI", RESET_SOFTWARE, HAL_RESET_LOCK_UP, HAL_END_NMI, end_by_an_nmi, end_by_a_kernel_that_hangs},
+    {"an NMI", RESET_SOFTWARE, HAL_RESET_LOCK_UP, HAL_END_NMI, end_by_an_nmi, end_by_a_thread_that_can_be_preempted},
+    {"an assertion that failed in a thread that can be preempted", RESET_SOFTWARE, HAL_RESET_LOCK_UP, HAL_END_ASSERTION,
+     NULL, end_by_a_kernel_that_hangs},
     {"the hardware watchdog", RESET_WATCHDOG, HAL_RESET_WATCHDOG, HAL_END_UNKNOWN, NULL, NULL},
 };
 
