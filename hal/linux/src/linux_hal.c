@@ -234,7 +234,9 @@ bool linux_hal_receive(hal_t *hal, hal_can_side_t *side, hal_can_frame_t *frame,
     hal->looked_us = linux_hal_now_us(hal);
     read_ahead(hal, HAL_CAN_VEHICLE);
     read_ahead(hal, HAL_CAN_AI);
-    read_ahead(hal, HAL_CAN_VEHICLE); /* a frame that arrived between the two calls may be older than the AI side's */
+    if (hal->sides[HAL_CAN_AI].has_next) {
+        read_ahead(hal, HAL_CAN_VEHICLE); /* a frame that arrived between the two calls may be older */
+    }
     if (!find_first(hal, side)) {
         return false;
     }
