@@ -163,8 +163,17 @@ static void follow_steps_back(why_progress_t *progress, bool bad, uint64_t full_
     progress->steps_back_us = bad ? full_us : ((left_us > elapsed_us) ? (left_us - elapsed_us) : 0u);
 }
 
+static int32_t beyond(int32_t off, int32_t limit) {
+    return (off > limit) ? (off - limit) : 0;
+}
+
+/** How far a value is off its command, before and after it moved, and how far it may be. */
+typedef struct {
+    int32_t before, now, limit;
+} step_t;
+
 /** Progress towards what is commanded clears a budget. */
-static void follow_progress(why_t *why, agv_fault_t fault, why_progress_t *progress, int32_t step, int32_t enough,
+static void follow_progress(why_t *why, agv_fault_t fault, why_progress_t *progress, step_t step, int32_t enough,
                             uint64_t t_us) {
     why_tracker_t *tracker = &why->trackers[fault];
     const uint64_t full_us = 2u * why_budget_us(why, fault);
@@ -172,7 +181,12 @@ static void follow_progress(why_t *why, agv_fault_t fault, why_progress_t *progr
     if ((tracker->value == 0u) && (progress->steps_back_us == 0u)) {
         progress->gained = 0;
     }
-    progress->gained += step;
+    const bool steps_back_count = progress->steps_back_us != 0u;
+    const int32_t limit = steps_back_count ? step.limit : 0;
+    const int32_t nearer = beyond(step.before, limit) - beyond(step.now, limit);
+    if ((t_us >= why->engagement.judged_us) || (steps_back_count && (nearer < 0))) {
+        progress->gained += nearer;
+    }
     if ((tracker->value != 0u) && (progress->gained >= enough)) {
         tracker->value = 0u;
         tracker->since_us = t_us;
@@ -184,19 +198,16 @@ static void follow_progress(why_t *why, agv_fault_t fault, why_progress_t *progr
     }
 }
 
-static int32_t throttle_above(const why_t *why, uint32_t throttle) {
-    const int32_t above = (int32_t)throttle - (int32_t)why->facts.throttle_command;
-    return (above > 0) ? above : 0;
-}
-
 static void take_angle(why_t *why, const why_evidence_t *frame) {
     const uint32_t before = why->facts.angle_raw;
     const bool known = why->facts.angle_known;
     why->facts.angle_raw = agv_angle_read(&frame->frame.data[2]);
     why->facts.angle_known = true;
-    if (known && why->facts.command_known[AGV_MSG_STEERING_COMMAND] && (frame->t_us >= why->engagement.judged_us)) {
-        follow_progress(why, AGV_FAULT_STEERING_DEVIATION, &why->facts.steering_progress,
-                        off_by(why, before) - off_by(why, why->facts.angle_raw),
+    if (known && why->facts.command_known[AGV_MSG_STEERING_COMMAND]) {
+        const step_t step = {.before = off_by(why, before),
+                             .now = off_by(why, why->facts.angle_raw),
+                             .limit = (int32_t)why->config.steering_deviation_ddeg};
+        follow_progress(why, AGV_FAULT_STEERING_DEVIATION, &why->facts.steering_progress, step,
                         (int32_t)why->config.steering_gain_ddeg, frame->t_us);
     }
 }
@@ -204,11 +215,11 @@ static void take_angle(why_t *why, const why_evidence_t *frame) {
 static void take_throttle(why_t *why, const why_evidence_t *frame) {
     const uint32_t before = why->facts.throttle;
     why->facts.throttle = frame->frame.data[0];
-    if (frame->t_us >= why->engagement.judged_us) {
-        follow_progress(why, AGV_FAULT_THROTTLE_DEVIATION, &why->facts.throttle_progress,
-                        throttle_above(why, before) - throttle_above(why, why->facts.throttle), THROTTLE_DROP,
-                        frame->t_us);
-    }
+    const int32_t commanded = (int32_t)why->facts.throttle_command;
+    const step_t step = {.before = (int32_t)before - commanded,
+                         .now = (int32_t)why->facts.throttle - commanded,
+                         .limit = (int32_t)why->config.throttle_deviation_counts};
+    follow_progress(why, AGV_FAULT_THROTTLE_DEVIATION, &why->facts.throttle_progress, step, THROTTLE_DROP, frame->t_us);
 }
 
 /** The first frame of a movement, for MOVING_WHILE_SAFE. */

@@ -106,15 +106,15 @@ static void explain_tracked(const why_t *why, why_trip_t *trip) {
     }
 }
 
-/** What a flicker of manual scores at its trip (SUP-9): more than the end of an engagement. */
-enum { FLICKER_SCORE = 40 };
+/** A flicker of manual trips a little later (SUP-9). The end of an engagement takes less. */
+enum { FLICKER_US = 220000 };
 
 /** The first of the engagements that were too many, or the first 363h of a flicker. */
 static void explain_flapping(const why_t *why, why_trip_t *trip) {
     const why_engagement_t *engagement = &why->engagement;
     const uint32_t kept =
         (engagement->count < (uint32_t)WHY_ENGAGEMENTS) ? engagement->count : (uint32_t)WHY_ENGAGEMENTS;
-    if (engagement->manual_score >= (uint32_t)FLICKER_SCORE) {
+    if (engagement->manual_us >= (uint64_t)FLICKER_US) {
         trip->cause_us = engagement->manual.t_us;
         why_show(trip, &engagement->manual);
         show_recent(why, trip, trip->message, RECENT_FRAMES);

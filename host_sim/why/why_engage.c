@@ -36,19 +36,21 @@ static void end(why_t *why, uint64_t t_us) {
     why->engagement.judged_us = WHY_NEVER;
 }
 
-/** Manual that flickers while engaged (MODE_FLAPPING). */
-static void follow_flicker(why_engagement_t *engagement, const why_evidence_t *frame, bool manual) {
+/** Manual that flickers while engaged (MODE_FLAPPING): the time since the last frame, and a first frame. */
+static void follow_flicker(const why_t *why, why_engagement_t *engagement, const why_evidence_t *frame, bool manual) {
+    const uint32_t before = why->facts.mode_bits & (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT);
+    const uint64_t elapsed_us = frame->t_us - engagement->at_us;
+    const uint64_t less_us = elapsed_us / 2u;
+    engagement->at_us = frame->t_us;
     if (!engagement->engaged) {
-        engagement->manual_score = 0u;
-    } else if (manual) {
-        if (engagement->manual_score == 0u) {
-            engagement->manual = *frame;
-        }
-        engagement->manual_score += 2u;
-    } else if (engagement->manual_score > 0u) {
-        engagement->manual_score--;
+        engagement->manual_us = 0u;
+    } else if (before == AGV_VCU_FLAG_MANUAL) {
+        engagement->manual_us += elapsed_us;
     } else {
-        /* no flicker */
+        engagement->manual_us -= (engagement->manual_us > less_us) ? less_us : engagement->manual_us;
+    }
+    if (manual && (engagement->manual_us == 0u)) {
+        engagement->manual = *frame;
     }
 }
 
@@ -56,7 +58,7 @@ void why_engage_frame(why_t *why, const why_evidence_t *frame) {
     why_engagement_t *engagement = &why->engagement;
     const uint32_t bits = frame->frame.data[6] & (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT);
     why_budget_advance(why, frame->t_us);
-    follow_flicker(engagement, frame, bits == AGV_VCU_FLAG_MANUAL);
+    follow_flicker(why, engagement, frame, bits == AGV_VCU_FLAG_MANUAL);
     if (bits == (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT)) {
         engagement->off_frames = 0u; /* the mode before remains */
     } else if ((bits & AGV_VCU_FLAG_AUTOPILOT) != 0u) {

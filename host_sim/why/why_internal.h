@@ -72,8 +72,9 @@ typedef struct {
     uint64_t judged_us;                     /**< from here on it is judged; WHY_NEVER: not engaged */
     why_evidence_t frames[WHY_ENGAGEMENTS]; /**< of the last ones, a ring */
     uint32_t count;
-    uint32_t manual_score; /**< frames that report manual, 2 up and 1 down */
-    why_evidence_t manual; /**< the first of them */
+    uint64_t manual_us;    /**< how long manual was reported while engaged, less half of the other time */
+    uint64_t at_us;        /**< of the last 363h */
+    why_evidence_t manual; /**< the first of those that reported manual */
 } why_engagement_t;
 
 /** All that is known. */

@@ -17,8 +17,10 @@ void agv_stopping_step(agv_stopping_t *stopping, const agv_timers_t *timers, con
                        uint32_t elapsed_ms) {
     agv_budget_add(&stopping->moved, agv_vehicle_wheel_turns(vehicle, MOVING_MM_S), elapsed_ms, MOVING_MS);
     if (agv_vehicle_wheels_stand(timers)) {
+        if (!stopping->stood) {
+            stopping->moved = (agv_budget_t){0}; /* of the way to the stop */
+        }
         stopping->stood = true;
-        stopping->moved = (agv_budget_t){0};
         stopping->not_stopping = false;
         stopping->moving = false;
         return;
@@ -26,7 +28,7 @@ void agv_stopping_step(agv_stopping_t *stopping, const agv_timers_t *timers, con
     if (!stopping->stood && agv_timer_reached(timers, AGV_TIMER_STOP)) {
         stopping->not_stopping = true;
     }
-    if (stopping->stood && stopping->moved.present) {
+    if (stopping->stood && (stopping->moved.value_ms == (uint16_t)MOVING_MS)) {
         stopping->moving = true;
     }
 }

@@ -9,8 +9,8 @@ enum { ENGAGEMENTS = 3 };
 static const uint8_t engagement_timers[ENGAGEMENTS] = {AGV_TIMER_ENGAGEMENT_1, AGV_TIMER_ENGAGEMENT_2,
                                                        AGV_TIMER_ENGAGEMENT_3};
 
-/* 363h that report manual while engaged (score): many more than the end of an engagement has. */
-enum { FLICKER_FRAMES = 25 };
+/* Budget of manual while engaged: more than the frames that end an engagement take. */
+enum { FLICKER_MS = 250 };
 
 static bool has(const agv_mode_t *mode, uint32_t bit) {
     return (mode->bits & bit) != 0u;
@@ -69,19 +69,10 @@ static void reduce_budget(const agv_timers_t *timers, uint32_t timer, agv_budget
     }
 }
 
-static void score_manual(agv_mode_t *mode) {
-    if (mode->engaged) {
-        agv_score_add(&mode->manual_score, mode->bits == (uint8_t)MANUAL, FLICKER_FRAMES);
-    } else {
-        mode->manual_score = (agv_score_t){0};
-    }
-}
-
 agv_mode_change_t agv_mode_report(agv_mode_t *mode, agv_timers_t *timers, const agv_config_t *config, uint32_t flags,
                                   bool vcu_alive, uint32_t time_ms) {
     mode->heard = true;
     mode->bits = (uint8_t)(flags & (uint32_t)BOTH);
-    score_manual(mode);
     (void)resume_while(timers, config, AGV_TIMER_BOTH_MODES, &mode->both_spent, mode->bits == (uint8_t)BOTH);
     if (mode->bits == (uint8_t)BOTH) {
         mode->off_frames = 0u;
@@ -100,6 +91,8 @@ static bool is_invalid(const agv_timers_t *timers) {
 }
 
 agv_mode_change_t agv_mode_tick(agv_mode_t *mode, agv_timers_t *timers, bool vcu_alive, uint32_t elapsed_ms) {
+    /* manual that never ends the engagement keeps driving from being judged */
+    agv_budget_add(&mode->manual_spent, mode->engaged && (mode->bits == (uint8_t)MANUAL), elapsed_ms, FLICKER_MS);
     reduce_budget(timers, AGV_TIMER_BOTH_MODES, &mode->both_spent, elapsed_ms);
     reduce_budget(timers, AGV_TIMER_NO_MODE, &mode->none_spent, elapsed_ms);
     if (is_invalid(timers)) {
@@ -121,7 +114,7 @@ void agv_mode_check(agv_mode_t *mode, agv_timers_t *timers, agv_fault_monitor_t 
                     bool supervising, bool standstill) {
     const bool began = agv_timer_reached(timers, AGV_TIMER_NO_MODE);
     const bool none = mode->heard && (mode->bits == 0u) && !standstill;
-    if (supervising && mode->manual_score.present) {
+    if (supervising && mode->manual_spent.present) {
         agv_fault_monitor_event(faults, timers, AGV_FAULT_MODE_FLAPPING);
     }
     agv_fault_monitor_set(faults, AGV_FAULT_MODE_INVALID, is_invalid(timers));

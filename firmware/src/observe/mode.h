@@ -22,9 +22,9 @@ typedef struct {
     bool heard;         /**< a 363h was received */
     bool engaged;
     bool manual;
-    agv_score_t manual_score; /**< 363h that report manual, while engaged */
-    agv_budget_t both_spent;  /**< how long the timer of "both mode bits" had run, while they are not both set */
-    agv_budget_t none_spent;  /**< the same for "neither mode bit" */
+    agv_budget_t manual_spent; /**< how long manual was reported while engaged */
+    agv_budget_t both_spent;   /**< how long the timer of "both mode bits" had run, while they are not both set */
+    agv_budget_t none_spent;   /**< the same for "neither mode bit" */
 } agv_mode_t;
 
 /** Change of the engagement. */
@@ -43,7 +43,7 @@ typedef enum {
 agv_mode_change_t agv_mode_report(agv_mode_t *mode, agv_timers_t *timers, const agv_config_t *config, uint32_t flags,
                                   bool vcu_alive, uint32_t time_ms);
 
-/** End the engagement on MODE_INVALID and on loss of the VCU. Call at every tick. */
+/** Add the time since the last tick; end the engagement on MODE_INVALID and on loss of the VCU. Call at every tick. */
 agv_mode_change_t agv_mode_tick(agv_mode_t *mode, agv_timers_t *timers, bool vcu_alive, uint32_t elapsed_ms);
 
 /** Count an engagement that began or continued in STANDBY or ACTIVE. The fourth within mode_flapping_ms trips (SUP-9). */

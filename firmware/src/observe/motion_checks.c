@@ -31,11 +31,6 @@ static int32_t off_by_ddeg(const agv_motion_facts_t *facts, uint32_t angle_raw) 
     return magnitude_of((int32_t)angle_raw - (int32_t)facts->commands->angle_raw);
 }
 
-static int32_t throttle_above(const agv_motion_facts_t *facts, uint32_t throttle) {
-    const int32_t above = (int32_t)throttle - (int32_t)facts->commands->throttle;
-    return (above > 0) ? above : 0;
-}
-
 /* While the budget is 0, progress counts from 0, and steps back do not count unless progress has just cleared it. */
 static void restart_progress(const agv_budget_t *budget, agv_progress_t *progress) {
     if ((budget->value_ms == 0u) && ((progress->gained > 0) || (progress->steps_back_ms == 0u))) {
@@ -48,10 +43,26 @@ static uint16_t decay_ms(uint32_t limit_ms) {
     return (uint16_t)(2u * limit_ms);
 }
 
-/* Count a step towards the command. Enough of them clear the budget. */
-static void follow_progress(agv_budget_t *budget, agv_progress_t *progress, int32_t step, int32_t enough,
+static int32_t beyond(int32_t off, int32_t limit) {
+    return (off > limit) ? (off - limit) : 0;
+}
+
+/* A value has moved: how far it is off its command, before and now, and how far it may be. */
+typedef struct {
+    int32_t before;
+    int32_t now;
+    int32_t limit;
+} step_t;
+
+/* Count a step, if driving is judged or it is one back that counts. Enough progress towards the command clears the budget. */
+static void follow_progress(agv_budget_t *budget, agv_progress_t *progress, step_t step, bool judged, int32_t enough,
                             uint32_t limit_ms) {
-    progress->gained = (int16_t)clamp(progress->gained + step, AGV_ANGLE_RAW_MAX);
+    const bool steps_back_count = progress->steps_back_ms != 0u;
+    const int32_t limit = steps_back_count ? step.limit : 0;
+    const int32_t nearer = beyond(step.before, limit) - beyond(step.now, limit);
+    if (judged || (steps_back_count && (nearer < 0))) {
+        progress->gained = (int16_t)clamp(progress->gained + nearer, AGV_ANGLE_RAW_MAX);
+    }
     if ((budget->value_ms != 0u) && (progress->gained >= enough)) {
         *budget = (agv_budget_t){0};
         progress->steps_back_ms = decay_ms(limit_ms);
@@ -60,19 +71,24 @@ static void follow_progress(agv_budget_t *budget, agv_progress_t *progress, int3
 }
 
 void agv_motion_checks_angle(agv_motion_checks_t *checks, const agv_motion_facts_t *facts, uint32_t before_raw) {
-    if (facts->judged && agv_commands_has(facts->commands, AGV_MSG_STEERING_COMMAND)) {
-        follow_progress(&checks->budgets[AGV_BUDGET_STEERING], &checks->steering,
-                        off_by_ddeg(facts, before_raw) - off_by_ddeg(facts, facts->vehicle->angle_raw),
-                        (int32_t)facts->config->steering_gain_ddeg, facts->config->steering_deviation_ms);
+    const agv_config_t *const config = facts->config;
+    if (agv_commands_has(facts->commands, AGV_MSG_STEERING_COMMAND)) {
+        const step_t step = {.before = off_by_ddeg(facts, before_raw),
+                             .now = off_by_ddeg(facts, facts->vehicle->angle_raw),
+                             .limit = (int32_t)config->steering_deviation_ddeg};
+        follow_progress(&checks->budgets[AGV_BUDGET_STEERING], &checks->steering, step, facts->judged,
+                        (int32_t)config->steering_gain_ddeg, config->steering_deviation_ms);
     }
 }
 
 void agv_motion_checks_throttle(agv_motion_checks_t *checks, const agv_motion_facts_t *facts, uint32_t before) {
-    if (facts->judged) {
-        follow_progress(&checks->budgets[AGV_BUDGET_THROTTLE], &checks->throttle,
-                        throttle_above(facts, before) - throttle_above(facts, facts->vehicle->throttle),
-                        THROTTLE_DROP_COUNTS, facts->config->throttle_deviation_ms);
-    }
+    const agv_config_t *const config = facts->config;
+    const int32_t commanded = (int32_t)facts->commands->throttle;
+    const step_t step = {.before = (int32_t)before - commanded,
+                         .now = (int32_t)facts->vehicle->throttle - commanded,
+                         .limit = (int32_t)config->throttle_deviation_counts};
+    follow_progress(&checks->budgets[AGV_BUDGET_THROTTLE], &checks->throttle, step, facts->judged, THROTTLE_DROP_COUNTS,
+                    config->throttle_deviation_ms);
 }
 
 static bool steering_is_off(const agv_motion_facts_t *facts) {

@@ -28,8 +28,8 @@ typedef enum {
 
 /**
  * Progress of the vehicle towards a command, which clears a budget: in 0.1 degrees, or counts of 050h. It counts from 0
- * while the budget is 0. For some time after it has cleared the budget, steps back count then too: a vehicle that hunts, or
- * one good frame in many, makes no progress.
+ * while the budget is 0. For some time after it has cleared the budget, only what happens beyond the limit counts, but there
+ * steps back count at any time: a vehicle that hunts, or one good frame in many, makes no progress.
  */
 typedef struct {
     int16_t gained;

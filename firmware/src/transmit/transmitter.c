@@ -181,9 +181,11 @@ static void override(agv_transmitter_t *transmitter, const agv_tx_orders_t *orde
 void agv_transmitter_answer(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command,
                             const uint8_t *data) {
     const bool differs = (data == NULL) || !is_same_command(transmitter, orders, command, data);
-    const bool wanted = (wanted_commands(orders) & bit_of(command)) != 0u;
-    if (differs && wanted &&
-        agv_scheduler_override(&transmitter->scheduler, orders->timers->now_us, orders->config->override_gap_ms,
+    if (!differs || ((wanted_commands(orders) & bit_of(command)) == 0u)) {
+        return;
+    }
+    transmitter->foreign_lately |= (uint8_t)bit_of(command);
+    if (agv_scheduler_override(&transmitter->scheduler, orders->timers->now_us, orders->config->override_gap_ms,
                                command) &&
         !orders->passive) {
         override(transmitter, orders, command);
@@ -269,7 +271,7 @@ static void tick_own(agv_transmitter_t *transmitter, const agv_tx_orders_t *orde
     if (slots > 1u) {
         transmitter->report.skipped_slots += slots - 1u;
     }
-    if (foreign) {
+    if (foreign && (!orders->passive || ((transmitter->foreign_lately & bit_of(command)) == 0u))) {
         override(transmitter, orders, command);
         return;
     }
@@ -362,6 +364,7 @@ void agv_transmitter_tick(agv_transmitter_t *transmitter, const agv_tx_orders_t 
         }
     }
     transmitter->wanted_before = (uint8_t)wanted;
+    transmitter->foreign_lately = 0u;
     agv_transmitter_status(transmitter, orders);
 }
 

@@ -189,6 +189,20 @@ void test_a_slow_reading_now_and_then_hides_no_motion(void) {
     expect(false, true);
 }
 
+/* 110 ms in 300 read 0: the wheels seem to stand for a moment. */
+/* Shows: FSM-12, MOVING_WHILE_SAFE */
+void test_wheels_that_seem_to_stand_now_and_then_hide_no_motion(void) {
+    trip_and_stop();
+    for (unsigned i = 0; i < 2; i++) {
+        wheels(5000, 5000);
+        run(190);
+        expect(false, i == 1);
+        wheels(0, 0);
+        run(110);
+        expect(false, false);
+    }
+}
+
 /* Readings of 60 ms, then silence for 40. */
 /* Shows: FSM-12, MOVING_WHILE_SAFE */
 void test_speeds_that_drop_out_hide_no_motion(void) {

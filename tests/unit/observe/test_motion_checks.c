@@ -236,19 +236,55 @@ void test_a_command_that_weaves_is_no_step_back(void) {
     TEST_ASSERT_FALSE(is_active(STEERING));
 }
 
-/* After a gain, too: 0.1 degrees nearer within the limit are no part of the next 25.0. */
+/* After a gain, too: 0.1 degrees nearer, before the budget counts, are no part of the next 25.0. */
 /* Shows: SUP-10 */
 void test_after_a_gain_no_remainder_is_kept(void) {
     steer(9000);
     measured(9600);
     run(1);
     measured(9300);
-    measured(9299);
-    steer(9900);
+    steer(12000);
+    measured(9301);
     run(400);
-    measured(9548); /* 24.9 nearer */
-    steer(18000);
+    measured(9550); /* 24.9 nearer */
     expect_after(100, STEERING);
+}
+
+/* While steps back count, only what is beyond 50.0 degrees does: motion within the limit is neither gain nor step back. */
+/* Shows: SUP-10 */
+void test_after_a_gain_motion_within_the_limit_does_not_count(void) {
+    steer(9000);
+    measured(9600);
+    run(1);
+    measured(9100);
+    for (unsigned i = 0; i < 10; i++) {
+        measured(9500);
+        steer(9400); /* follows it */
+        steer(9000);
+        measured(9100);
+        measured(9500);
+    }
+    steer(12000);
+    run(400);
+    measured(9750); /* 25.0 nearer */
+    expect_after(500, STEERING);
+}
+
+/* The step away falls into a frame that is not judged, the way back into one that is. The first one clears the budget. */
+/* Shows: SUP-10, STEERING_DEVIATION */
+void test_a_step_back_counts_in_a_frame_that_is_not_judged(void) {
+    steer(9000);
+    for (unsigned i = 0; i < 60; i++) {
+        facts.judged = false;
+        measured(12000);
+        run(10);
+        facts.judged = true;
+        measured(12000);
+        run(10);
+        measured(9000);
+        run(10);
+    }
+    TEST_ASSERT_EQUAL_UINT16(295, checks.budgets[AGV_BUDGET_STEERING].value_ms);
 }
 
 /* Steps back count after a gain that has cleared a budget, not after one without. */
