@@ -257,6 +257,24 @@ static const yaml_key_t EXPECT[] = {
 };
 const yaml_shape_t SCENARIO_EXPECT_SHAPE = {YAML_MAP_SHAPE(EXPECT)};
 
+/** What is not checked with `states: any` must not be expected. */
+static const char *unchecked(const scenario_expect_t *expect) {
+    if (!expect->any_states) {
+        return NULL;
+    }
+    if (expect->outputs.count > 0u) {
+        return "safety_output";
+    }
+    if (expect->resets.count > 0u) {
+        return "resets";
+    }
+    return (expect->startups.count > 0u) ? "startup" : NULL;
+}
+
 bool scenario_parse_expect(const yaml_reader_t *reader, const yaml_node_t *node, void *target) {
-    return yaml_reader_map(reader, node, "expect", EXPECT, COUNT(EXPECT), target);
+    if (!yaml_reader_map(reader, node, "expect", EXPECT, COUNT(EXPECT), target)) {
+        return false;
+    }
+    const char *what = unchecked(&((const scenario_t *)target)->expect);
+    return (what == NULL) || yaml_reader_fail(reader, node, "%s is not checked with 'states: any'", what);
 }
