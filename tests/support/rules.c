@@ -207,10 +207,11 @@ static void on_command(rules_t *rules, int command, const hal_can_frame_t *frame
     }
 }
 
+/* While error-passive, behind the last one of a burst: each further command begins the time anew. */
 static void require_override(rules_t *rules, int command, const hal_can_frame_t *frame, uint64_t stamp_ms) {
     const bool sends_it = (command == SIGNALS) || (command == THROTTLE) || ((command == GEAR) && rules->park_at_once);
     if (sends_it && (frame->flags == 0u) && commands_safe(rules->last.state) && differs_from_safe(command, frame) &&
-        !rules->answer_owed[command]) {
+        (!rules->answer_owed[command] || rules->bus.is_passive)) {
         rules->answer_owed[command] = true;
         rules->answer_owed_ms[command] = (stamp_ms > rules->now_ms) ? stamp_ms : rules->now_ms;
     }

@@ -46,6 +46,7 @@ typedef struct {
 typedef struct {
     bool takes_frames;
     bool is_bus_off;
+    bool is_passive;
     uint32_t tx_pending_ms; /* age of the oldest accepted frame that is not sent yet; 0: none */
 } rules_bus_t;
 

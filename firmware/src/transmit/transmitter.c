@@ -16,6 +16,9 @@ static const uint8_t waits[AGV_COMMAND_COUNT] = {[AGV_MSG_TURN_SIGNAL_COMMAND] =
 /* A status frame that the HAL accepted less than this ago may still be waiting. */
 enum { STATUS_ON_WIRE_MS = 2 };
 
+/* A tick that comes later than this after the last one is late. */
+enum { TICK_USUAL_MS = 2 };
+
 static uint32_t bit_of(uint32_t message) {
     return (uint32_t)1u << message;
 }
@@ -259,6 +262,12 @@ void agv_transmitter_pass(agv_transmitter_t *transmitter, const agv_tx_orders_t 
     send_passed(transmitter, orders, message);
 }
 
+/* Whether no command that has to be overridden came in the last ms. After a late tick, those since the last one are older. */
+static bool is_quiet(const agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command) {
+    return ((transmitter->foreign_lately & bit_of(command)) == 0u) ||
+           ((orders->timers->now_ms - transmitter->tick_ms) > (uint32_t)TICK_USUAL_MS);
+}
+
 static void tick_own(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command, uint32_t wanted) {
     const uint32_t slots = agv_scheduler_due(&transmitter->scheduler, orders->timers->now_ms, command);
     const bool foreign = agv_scheduler_override_due(&transmitter->scheduler, orders->timers->now_us,
@@ -271,7 +280,7 @@ static void tick_own(agv_transmitter_t *transmitter, const agv_tx_orders_t *orde
     if (slots > 1u) {
         transmitter->report.skipped_slots += slots - 1u;
     }
-    if (foreign && (!orders->passive || ((transmitter->foreign_lately & bit_of(command)) == 0u))) {
+    if (foreign && (!orders->passive || is_quiet(transmitter, orders, command))) {
         override(transmitter, orders, command);
         return;
     }
@@ -365,6 +374,7 @@ void agv_transmitter_tick(agv_transmitter_t *transmitter, const agv_tx_orders_t 
     }
     transmitter->wanted_before = (uint8_t)wanted;
     transmitter->foreign_lately = 0u;
+    transmitter->tick_ms = orders->timers->now_ms;
     agv_transmitter_status(transmitter, orders);
 }
 

@@ -47,6 +47,7 @@ typedef struct {
     agv_scheduler_t scheduler;
     uint32_t status_due_ms;                /**< when the next status frame is due */
     uint32_t status_ms;                    /**< when the last one was handed to the HAL */
+    uint32_t tick_ms;                      /**< the last tick */
     uint32_t kept;                         /**< frames that wait to be forwarded, bit n = message n */
     uint32_t passed_ms[AGV_COMMAND_COUNT]; /**< when a command was last forwarded */
     agv_tx_report_t report;

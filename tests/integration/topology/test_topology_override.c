@@ -113,6 +113,18 @@ void test_while_the_controller_is_error_passive_an_override_waits_for_a_quiet_ti
     expect_answered_in_this_call(0x168, "error-active again");
 }
 
+/* Frames from the time before a late tick are over. */
+/* Shows: TOP-1, ERROR_PASSIVE */
+void test_while_error_passive_a_late_tick_overrides_what_came_before_it(void) {
+    tripped();
+    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_ERROR_PASSIVE);
+    settle();
+    foreign_gear(1);
+    fixture_jump(&f, 3);
+    TEST_ASSERT_EQUAL_UINT32(1, f.sent_count);
+    TEST_ASSERT_EQUAL_HEX32(0x168, f.sent[0].id);
+}
+
 /* Shows: TOP-1, P14 */
 void test_a_command_that_does_not_differ_is_not_overridden(void) {
     tripped();

@@ -59,6 +59,7 @@ static rules_bus_t state_of_bus(void) {
     const bool off = can->status.state == HAL_CAN_BUS_OFF;
     return (rules_bus_t){.takes_frames = !off && !can->full && (testbed.unsettled == 0u),
                          .is_bus_off = off,
+                         .is_passive = can->status.state == HAL_CAN_ERROR_PASSIVE,
                          .tx_pending_ms = can->status.tx_pending_ms};
 }
 
