@@ -189,6 +189,20 @@ void test_a_slow_reading_now_and_then_hides_no_motion(void) {
     expect(false, true);
 }
 
+/* The way to the stop is no motion after it. */
+/* Shows: FSM-12 */
+void test_motion_counts_from_the_first_stop_on(void) {
+    trip();
+    run(1000);
+    wheels(0, 0);
+    run(100);
+    wheels(2000, 2000);
+    run(199);
+    expect(false, false);
+    run(1);
+    expect(false, true);
+}
+
 /* 110 ms in 300 read 0: the wheels seem to stand for a moment. */
 /* Shows: FSM-12, MOVING_WHILE_SAFE */
 void test_wheels_that_seem_to_stand_now_and_then_hide_no_motion(void) {

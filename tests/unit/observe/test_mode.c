@@ -343,6 +343,20 @@ void test_manual_that_flickers_while_engaged_is_flapping(unsigned cycles, bool s
     TEST_ASSERT_EQUAL(flapping, flickers(10, 9, 10, cycles, supervising));
 }
 
+/* Autopilot for no time at all: exactly 250 ms. */
+/* Shows: SUP-9, MODE_FLAPPING */
+void test_manual_may_be_reported_for_250_ms(void) {
+    (void)report(ENGAGED, 0);
+    TEST_ASSERT_FALSE(flickers(0, 10, 10, 24, true));
+    (void)report(MANUAL, 240);
+    (void)tick(249);
+    agv_mode_check(&mode, &timers, &faults, &config, true, true);
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_MODE_FLAPPING));
+    (void)tick(250);
+    agv_mode_check(&mode, &timers, &faults, &config, true, true);
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_MODE_FLAPPING));
+}
+
 /* Manual in one frame of three: the time with autopilot takes it off again. Not in INIT, TRIPPED and SAFE. */
 /* Shows: SUP-9 */
 void test_manual_in_one_frame_of_three_is_not_flapping(void) {

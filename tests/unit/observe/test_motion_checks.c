@@ -270,6 +270,60 @@ void test_after_a_gain_motion_within_the_limit_does_not_count(void) {
     expect_after(500, STEERING);
 }
 
+/* After a gain: 30.0 degrees nearer, of which 10.0 are beyond the limit. */
+/* Shows: SUP-10 */
+void test_after_a_gain_only_motion_beyond_the_limit_counts(void) {
+    steer(9000);
+    measured(9600);
+    run(1);
+    measured(9100);
+    steer(9700);
+    run(400);
+    measured(9400);
+    steer(18000);
+    expect_after(100, STEERING);
+}
+
+/* Frames that are not judged: before a gain no step counts, after one only a step away. */
+/* Shows: SUP-10 */
+void test_steps_that_are_not_judged(void) {
+    steer(18000);
+    run(400);
+    facts.judged = false;
+    measured(8900);
+    facts.judged = true;
+    measured(9150); /* 25.0 nearer: a gain */
+    run(400);
+    facts.judged = false;
+    measured(9400); /* none */
+    facts.judged = true;
+    run(99);
+    TEST_ASSERT_FALSE(is_active(STEERING));
+    run(1);
+    TEST_ASSERT_TRUE(is_active(STEERING));
+}
+
+/* Within the limit for 700 ms, beyond it, and within it for 700 ms once more: the second begins anew. */
+/* Shows: SUP-10 */
+void test_the_second_begins_anew_with_each_deviation(void) {
+    steer(9000);
+    measured(9600);
+    run(100);
+    measured(9350);
+    run(700);
+    measured(9650);
+    run(100);
+    measured(9400);
+    run(700);
+    measured(9650);
+    run(400);
+    measured(9400);
+    run(1);
+    measured(9650);
+    run(100);
+    TEST_ASSERT_TRUE(is_active(STEERING));
+}
+
 /* The step away falls into a frame that is not judged, the way back into one that is. The first one clears the budget. */
 /* Shows: SUP-10, STEERING_DEVIATION */
 void test_a_step_back_counts_in_a_frame_that_is_not_judged(void) {
