@@ -120,9 +120,24 @@ void test_while_error_passive_a_late_tick_overrides_what_came_before_it(void) {
     sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_ERROR_PASSIVE);
     settle();
     foreign_gear(1);
+    fixture_jump(&f, 2); /* not late */
+    TEST_ASSERT_EQUAL_UINT32(0, f.sent_count);
+    settle();
+    foreign_signals(0x30);
     fixture_jump(&f, 3);
     TEST_ASSERT_EQUAL_UINT32(1, f.sent_count);
-    TEST_ASSERT_EQUAL_HEX32(0x168, f.sent[0].id);
+    TEST_ASSERT_EQUAL_HEX32(0x43F, f.sent[0].id);
+}
+
+/* Shows: TOP-1, ERROR_PASSIVE */
+void test_while_error_passive_a_43f_is_overridden_too(void) {
+    tripped();
+    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_ERROR_PASSIVE);
+    settle();
+    foreign_signals(0x30);
+    fixture_run(&f, 2);
+    TEST_ASSERT_EQUAL_UINT32(1, f.sent_count);
+    TEST_ASSERT_EQUAL_HEX32(0x43F, f.sent[0].id);
 }
 
 /* Shows: TOP-1, P14 */
