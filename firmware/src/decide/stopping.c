@@ -1,6 +1,6 @@
 #include "decide/stopping.h"
 
-/* The vehicle moves if a wheel turns at this speed for this time: a budget, so that a slow reading now and then hides nothing. */
+/* The vehicle moves if a wheel turns at this speed for this time. A slow reading now and then hides nothing. */
 enum { MOVING_MM_S = 100, MOVING_MS = 200 };
 
 void agv_stopping_start(agv_stopping_t *stopping, agv_timers_t *timers) {

@@ -27,9 +27,9 @@ typedef enum {
 } agv_budget_name_t;
 
 /**
- * Progress of the vehicle towards a command, which clears a budget: in 0.1 degrees, or counts of 050h. It counts from 0
- * while the budget is 0. For some time after it has cleared the budget, only what happens beyond the limit counts, but there
- * steps back count at any time: a vehicle that hunts, or one good frame in many, makes no progress.
+ * Progress of the vehicle towards a command, in 0.1 degrees or counts of 050h. Enough of it clears a budget. It counts from
+ * 0 while the budget is 0. For some time after it has cleared the budget, only motion beyond the limit counts, and steps
+ * back count at any time. So a vehicle that hunts, or one good frame in many, makes no progress.
  */
 typedef struct {
     int16_t gained;
