@@ -27,9 +27,12 @@ typedef struct {
     output_t lines; /**< of --events */
 } work_t;
 
-static bool is_trip(const agv_event_t *event) {
+/** Whether an event is a trip, and not a start that continues the trip of the run before. */
+static bool is_trip(const recorder_events_t *events, size_t i) {
+    const agv_event_t *event = &events->events[i];
+    const bool continues = (event->a == 0u) && (i > 0u) && (events->events[i - 1u].first_reason == event->c);
     return (event->kind == (uint8_t)AGV_EVENT_STATE) && (event->b == (uint8_t)AGV_STATE_TRIPPED) &&
-           (event->c < (uint8_t)AGV_FAULT_COUNT);
+           (event->c < (uint8_t)AGV_FAULT_COUNT) && !continues;
 }
 
 /** The run to tell of. @return false: there is none; was reported */
@@ -40,7 +43,7 @@ static bool choose_run(work_t *work) {
     for (size_t i = 0u; i < events->count; i++) {
         const agv_event_t *event = &events->events[i];
         if (work->request->run == RECORDER_RUN_NEWEST) {
-            work->run = is_trip(event) ? event->run : work->run;
+            work->run = is_trip(events, i) ? event->run : work->run;
             found = true;
         } else if (event->run == (uint8_t)work->request->run) {
             work->run = event->run;

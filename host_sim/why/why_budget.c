@@ -65,12 +65,18 @@ static bool has_both_modes(const why_t *why) {
     return mode_bits(why) == (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT);
 }
 
+/** Neither bit, both bits, and manual while engaged. */
+static bool is_no_mode(const why_t *why) {
+    const uint32_t bits = mode_bits(why);
+    return (bits != AGV_VCU_FLAG_AUTOPILOT) && ((bits != AGV_VCU_FLAG_MANUAL) || why->engagement.engaged);
+}
+
 static bool has_no_mode(const why_t *why) {
     const int32_t slow = why->config.standstill_speed_mm_s;
     const bool wheels_turn = (abs(why->facts.left_mm_s) >= slow) || (abs(why->facts.right_mm_s) >= slow);
     const uint32_t limit = why->config.standstill_vcu_counts;
     const bool vcu_moves = (limit != (uint32_t)ANY_SPEED) && (why->facts.vcu_speed > limit);
-    return why->facts.mode_known && (mode_bits(why) == 0u) && (wheels_turn || vcu_moves);
+    return why->facts.mode_known && is_no_mode(why) && (wheels_turn || vcu_moves);
 }
 
 /** A budget: its condition depends on these messages. */

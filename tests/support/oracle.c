@@ -57,10 +57,11 @@ static void hold(oracle_t *oracle) {
 }
 
 /*
- * After 2 s without 065h a new angle may be held, within the time that the supervisor needs to detect this. A tick may come so
+ * An angle that was measured just now moves nothing: it may be held instead, since the EPS may have been unable to take angles
+ * in between. After 2 s without 065h it has to be, within the time that the supervisor needs to detect this. A tick may come so
  * late that the EPS is only just alive. The last 065h that the controller accepted may not have left: then the one before counts.
  */
-enum { ANEW_MS = 2000 - 25, SURELY_ANEW_MS = 2700, RECENT_MS = 50 };
+enum { SURELY_ANEW_MS = 2700, RECENT_MS = 50 };
 
 static bool is_recent(const oracle_t *oracle, uint16_t raw) {
     bool recent = false;
@@ -74,7 +75,7 @@ static bool is_recent(const oracle_t *oracle, uint16_t raw) {
 static bool may_hold(oracle_t *oracle, uint16_t raw) {
     const uint32_t unsent_ms = oracle->now_ms - oracle->held_sent_ms;
     const bool kept = oracle->held && (raw == oracle->held_raw) && (unsent_ms <= SURELY_ANEW_MS);
-    const bool anew = oracle->held && (unsent_ms >= ANEW_MS) && is_recent(oracle, raw);
+    const bool anew = oracle->held && is_recent(oracle, raw);
     if (kept || anew) {
         oracle->held_raw = raw;
         oracle->held_sent_ms = oracle->now_ms;

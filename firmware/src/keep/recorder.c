@@ -122,6 +122,12 @@ static void fill(const agv_recorder_t *recorder, const agv_entry_t *entry, uint3
     event->reserved = 0u;
 }
 
+/* Whether a start, which names no state before it, continues the trip of the run before. */
+static bool continues_trip(const agv_recorder_t *recorder, const agv_event_t *event) {
+    const agv_event_t *const before = &recorder->events[slot_of(event->sequence - 1u)];
+    return (event->a == 0u) && agv_event_is_valid(before) && (before->first_reason == event->c);
+}
+
 static bool is_trip(const agv_event_t *event) {
     return (event->kind == (uint8_t)AGV_EVENT_STATE) && (event->b == (uint8_t)AGV_STATE_TRIPPED) &&
            (event->c < (uint8_t)AGV_FAULT_COUNT);
@@ -149,7 +155,7 @@ void agv_recorder_add(agv_recorder_t *recorder, const agv_entry_t *entry, uint32
     if ((recorder->next_sequence - recorder->stored_sequence) > AGV_RECORDER_EVENTS) {
         recorder->stored_sequence++;
     }
-    if (is_trip(event)) {
+    if (is_trip(event) && !continues_trip(recorder, event)) {
         keep_trip(recorder, event);
     }
 }

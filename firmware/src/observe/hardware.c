@@ -36,9 +36,17 @@ static void check_feedback(agv_hardware_t *hardware, agv_fault_monitor_t *faults
     agv_fault_monitor_set(faults, AGV_FAULT_OUTPUT_FEEDBACK, hardware->mismatch.present);
 }
 
+/* An input that falls silent ends a press, but does not release the button. */
+static uint8_t button_of(uint8_t contact) {
+    if (contact == (uint8_t)HAL_CONTACT_CLOSED) {
+        return AGV_BUTTON_DOWN;
+    }
+    return (uint8_t)((contact == (uint8_t)HAL_CONTACT_OPEN) ? AGV_BUTTON_UP : AGV_BUTTON_UNHEARD);
+}
+
 /* HW-3: until it has been read alike for the first time, the button is unknown: one that is stuck is no press. */
 static void debounce(agv_hardware_t *hardware, uint8_t contact, uint32_t elapsed_ms) {
-    const uint8_t raw = (uint8_t)((contact == (uint8_t)HAL_CONTACT_CLOSED) ? AGV_BUTTON_DOWN : AGV_BUTTON_UP);
+    const uint8_t raw = button_of(contact);
     const uint32_t ms =
         hardware->button_ms + ((elapsed_ms < AGV_BUTTON_DEBOUNCE_MS) ? elapsed_ms : AGV_BUTTON_DEBOUNCE_MS);
     if (raw != hardware->button_raw) {

@@ -113,7 +113,9 @@ void agv_mode_count_engagement(agv_mode_t *mode, agv_timers_t *timers, agv_fault
 void agv_mode_check(agv_mode_t *mode, agv_timers_t *timers, agv_fault_monitor_t *faults, const agv_config_t *config,
                     bool supervising, bool standstill) {
     const bool began = agv_timer_reached(timers, AGV_TIMER_NO_MODE);
-    const bool none = mode->heard && (mode->bits == 0u) && !standstill;
+    /* both bits, and manual while engaged, are no mode either: a node that reports them in turn must not hide */
+    const bool known = (mode->bits == (uint8_t)AUTOPILOT) || ((mode->bits == (uint8_t)MANUAL) && !mode->engaged);
+    const bool none = mode->heard && !known && !standstill;
     if (supervising && mode->manual_spent.present) {
         agv_fault_monitor_event(faults, timers, AGV_FAULT_MODE_FLAPPING);
     }

@@ -157,6 +157,10 @@ void agv_motion_checks_tick(agv_motion_checks_t *checks, const agv_motion_facts_
                    elapsed_ms, config->throttle_in_park_ms);
 }
 
+bool agv_motion_checks_speed_is_implausible(const agv_motion_checks_t *checks) {
+    return checks->budgets[AGV_BUDGET_SPEED].present;
+}
+
 static bool is_any_present(const agv_motion_checks_t *checks) {
     bool present = false;
     for (uint32_t i = 0u; i < (uint32_t)AGV_BUDGET_COUNT; i++) {

@@ -52,8 +52,18 @@ void agv_vehicle_evaluate(agv_vehicle_t *vehicle, agv_timers_t *timers, const ag
     vehicle->wheels_fresh = wheels_fresh;
     vehicle->vcu_alive = vcu_alive;
     (void)agv_timer_while(timers, AGV_TIMER_STANDSTILL, agv_vehicle_is_slow(vehicle, config));
-    const bool stand = agv_timer_while(timers, AGV_TIMER_WHEELS_SLOW, wheels_are_slow(vehicle, config));
+    const bool slow = wheels_are_slow(vehicle, config) && !vehicle->wheels_doubted;
+    const bool stand = agv_timer_while(timers, AGV_TIMER_WHEELS_SLOW, slow);
     (void)agv_timer_while(timers, AGV_TIMER_WHEELS_STOOD, stand);
+}
+
+void agv_vehicle_doubt_wheels(agv_vehicle_t *vehicle, agv_timers_t *timers, const agv_config_t *config,
+                              bool implausible) {
+    vehicle->wheels_doubted = implausible && (config->standstill_vcu_counts != AGV_STANDSTILL_VCU_ANY);
+    if (vehicle->wheels_doubted) {
+        (void)agv_timer_while(timers, AGV_TIMER_WHEELS_SLOW, false);
+        (void)agv_timer_while(timers, AGV_TIMER_WHEELS_STOOD, false);
+    }
 }
 
 bool agv_vehicle_is_slow(const agv_vehicle_t *vehicle, const agv_config_t *config) {
@@ -71,7 +81,7 @@ bool agv_vehicle_wheels_stand(const agv_timers_t *timers) {
 }
 
 bool agv_vehicle_wheel_turns(const agv_vehicle_t *vehicle, uint32_t speed_mm_s) {
-    return vehicle->wheels_fresh && !wheels_are_below(vehicle, speed_mm_s);
+    return vehicle->wheels_fresh && (vehicle->wheels_doubted || !wheels_are_below(vehicle, speed_mm_s));
 }
 
 bool agv_vehicle_throttle_is_idle(const agv_vehicle_t *vehicle, const agv_config_t *config) {

@@ -26,6 +26,7 @@ typedef struct {
     bool eps_in_angle_mode; /**< mode of the last 167h */
     bool vcu_speed_seen;    /**< 363h reported a speed above 0 in this run */
     bool wheels_fresh;      /**< 101h is fresh, as of the last evaluation */
+    bool wheels_doubted;    /**< the VCU's speed contradicts 101h (SUP-12) */
     bool vcu_alive;         /**< the VCU is alive, as of the last evaluation */
 } agv_vehicle_t;
 
@@ -51,16 +52,24 @@ void agv_vehicle_wheels(agv_vehicle_t *vehicle, const uint8_t data[AGV_DLC]);
 void agv_vehicle_evaluate(agv_vehicle_t *vehicle, agv_timers_t *timers, const agv_config_t *config, bool wheels_fresh,
                           bool vcu_alive);
 
+/**
+ * Take whether the two speeds contradict each other (SUP-12). While they do, the wheels neither stand nor are slow: a 101h
+ * that reads 0 for good must not hide a vehicle that moves. It has no effect where the VCU's speed is not looked at
+ * (standstill_vcu_counts is AGV_STANDSTILL_VCU_ANY). Call at every tick.
+ */
+void agv_vehicle_doubt_wheels(agv_vehicle_t *vehicle, agv_timers_t *timers, const agv_config_t *config,
+                              bool implausible);
+
 /** Whether both wheels are slow now with fresh 101h, and a live VCU also reports a slow speed (INIT). */
 bool agv_vehicle_is_slow(const agv_vehicle_t *vehicle, const agv_config_t *config);
 
 /** Whether the vehicle is at standstill: agv_vehicle_is_slow has held for standstill_ms. */
 bool agv_vehicle_is_at_standstill(const agv_timers_t *timers);
 
-/** Whether the wheels stand: both have been slow for standstill_ms, with fresh 101h. */
+/** Whether the wheels stand: both have been slow for standstill_ms, with fresh 101h that the VCU does not contradict. */
 bool agv_vehicle_wheels_stand(const agv_timers_t *timers);
 
-/** Whether a wheel turns, in either direction, at @p speed_mm_s or faster, with fresh 101h. */
+/** Whether a wheel turns, in either direction, at @p speed_mm_s or faster, with fresh 101h; or the VCU contradicts 101h. */
 bool agv_vehicle_wheel_turns(const agv_vehicle_t *vehicle, uint32_t speed_mm_s);
 
 /** Whether the throttle status is idle; false if none was received, or the last 050h was not valid. */

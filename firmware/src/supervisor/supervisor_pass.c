@@ -59,14 +59,15 @@ agv_gateway_facts_t agv_core_gateway_facts(const agv_core_t *core) {
                                  .standstill = agv_vehicle_is_at_standstill(&core->timers)};
 }
 
-/*
- * FSM-10: EPS alive and without a fault, in angle control, manual not reported, the wheels have not stood for long. A stale
- * 167h is a fault of the EPS.
- */
-static bool is_holdable(const agv_core_t *core) {
+/* FSM-10: EPS alive and without a fault, in angle control, manual not reported. A stale 167h is a fault of the EPS. */
+static bool eps_takes_angles(const agv_core_t *core) {
     return agv_liveness_alive(&core->liveness, AGV_NODE_EPS) && core->vehicle.eps_in_angle_mode &&
-           !agv_mode_is_manual(&core->mode) && !core->faults.summary.eps_fault &&
-           agv_status_checks_angle_is_usable(&core->status_checks) &&
+           !agv_mode_is_manual(&core->mode) && !core->faults.summary.eps_fault;
+}
+
+/* FSM-10: moreover the measured angle is valid, and the wheels have not stood for long. */
+static bool is_holdable(const agv_core_t *core) {
+    return eps_takes_angles(core) && agv_status_checks_angle_is_usable(&core->status_checks) &&
            !agv_timer_reached(&core->timers, AGV_TIMER_WHEELS_STOOD);
 }
 
@@ -214,12 +215,12 @@ void agv_core_await_safe_state(agv_core_t *core) {
 }
 
 /*
- * FSM-10: manual drops the held angle, and so do 2 s in which no 065h left. A late tick replaces an angle that was taken since
- * the last tick. Returns whether a 065h that may no longer be sent waits in a stalled transmitter, and would leave it later.
+ * FSM-10: while the EPS takes no angles, or a human steers, the steering moves: the held angle is dropped. So it is when no
+ * 065h left for 2 s. A late tick replaces an angle that was taken since the last tick. Returns whether a 065h that may no longer be sent waits in a stalled transmitter, and would leave it later.
  */
 static bool follow_hold(agv_core_t *core, uint32_t elapsed_ms) {
     const bool stalled = agv_fault_monitor_is_active(&core->faults, AGV_FAULT_TX_STALLED);
-    if (!is_latched(core) || agv_mode_is_manual(&core->mode)) {
+    if (!is_latched(core) || !eps_takes_angles(core)) {
         agv_hold_drop(&core->hold);
     }
     if (!is_latched(core)) {

@@ -102,6 +102,8 @@ static void observe_time(agv_core_t *core, uint32_t elapsed_ms) {
     agv_deadlines_tick(faults, timers, &core->config, &core->liveness, agv_mode_is_engaged(&core->mode));
     const agv_motion_facts_t facts = agv_core_motion_facts(core);
     agv_motion_checks_tick(&core->motion_checks, &facts, elapsed_ms);
+    agv_vehicle_doubt_wheels(&core->vehicle, timers, &core->config,
+                             agv_motion_checks_speed_is_implausible(&core->motion_checks));
 }
 
 void agv_core_show_led(agv_core_t *core, const agv_ports_t *ports, uint32_t elapsed_ms) {

@@ -15,7 +15,7 @@ typedef enum { HAL_CONTACT_NONE = 0, HAL_CONTACT_OPEN = 1, HAL_CONTACT_CLOSED = 
 
 /**
  * The inputs, hal_contact_t each. Another value, and HAL_CONTACT_NONE after another one, is a broken input: a feedback that
- * contradicts the output in both positions, an open circuit of the emergency stop, a button that is not pressed.
+ * contradicts the output in both positions, an open circuit of the emergency stop, a button whose press ends in vain.
  */
 typedef struct {
     uint8_t output_feedback; /**< contact of the safety output, read back: OPEN is the safe position (HW-1) */

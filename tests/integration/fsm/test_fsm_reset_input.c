@@ -171,6 +171,23 @@ void test_the_loss_of_the_vcu_ends_a_press_of_the_push_button(void) {
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
+/* Shows: HW-3, FSM-3 */
+void test_an_input_that_falls_silent_is_no_release(void) {
+    choose(AGV_RESET_INPUT_PIN);
+    push(true);
+    fixture_run(&f, 1500);
+    f.hal.board.has_reset_button = false;
+    fixture_run(&f, 100);
+    expect_state(&f, AGV_STATE_SAFE);
+    expect_refusals(1, AGV_MISSING_BUTTON);
+    f.hal.board.has_reset_button = true;
+    fixture_run(&f, 100);
+    push(false);
+    expect_state_after(&f, 100, AGV_STATE_SAFE);
+    push_for(1000);
+    expect_state(&f, AGV_STATE_STANDBY);
+}
+
 /* The output that was confirmed in time is still closed, and its contact reads so. */
 /* Shows: HW-1, FSM-3 */
 void test_a_closed_contact_of_a_closed_output_does_not_hinder_the_reset(void) {

@@ -57,17 +57,56 @@ void test_a_vehicle_that_drives_on_for_5_s(void) {
     expect_ends_when_the_wheels_stand(AGV_FAULT_VEHICLE_NOT_STOPPING);
 }
 
-/* The speed of 363h does not matter; the wheel speeds count. */
 /* Shows: FSM-12 */
 void test_a_vehicle_that_stops_within_5_s(void) {
     walk_to_tripped_driving(&f, 1000);
     confirm();
     fixture_run(&f, 4880);
-    fixture_wheels(&f, 49, 49);
+    fixture_drive(&f, 49);
     fixture_run_past(&f, AGV_MSG_WHEEL_SPEED);
     fixture_run(&f, 5000);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_VEHICLE_NOT_STOPPING));
     expect_output(&f, true);
+}
+
+/* 101h reads 0 for good, the VCU reports 1 m/s: after 1 s the wheels are not believed. */
+/* Shows: FSM-12, SUP-12, VEHICLE_NOT_STOPPING, SPEED_IMPLAUSIBLE */
+void test_wheels_that_the_vcu_contradicts_do_not_stand(void) {
+    walk_driving(&f, 1000);
+    fixture_wheels(&f, 0, 0);
+    fixture_run(&f, 1100);
+    expect_fault(&f, AGV_FAULT_SPEED_IMPLAUSIBLE, true);
+    fixture_mute_ai(&f, true);
+    (void)walk_until(&f, AGV_STATE_TRIPPED, 400);
+    confirm();
+    expect_fault_after(&f, 4999, AGV_FAULT_VEHICLE_NOT_STOPPING, false);
+    expect_fault_after(&f, 1, AGV_FAULT_VEHICLE_NOT_STOPPING, true);
+    expect_output(&f, false);
+    fixture_drive(&f, 0);
+    fixture_run(&f, 2200);
+    expect_fault(&f, AGV_FAULT_VEHICLE_NOT_STOPPING, false);
+}
+
+/* Shows: FSM-12, SUP-12, MOVING_WHILE_SAFE, SPEED_IMPLAUSIBLE */
+void test_a_vehicle_that_rolls_away_while_101h_reads_0(void) {
+    walk_to_safe(&f);
+    fixture_speed(&f, 3600);
+    fixture_run(&f, 1190);
+    expect_moving_fault(AGV_FAULT_MOVING_WHILE_SAFE, false);
+    fixture_run(&f, 30);
+    expect_moving_fault(AGV_FAULT_MOVING_WHILE_SAFE, true);
+}
+
+/* Where the VCU's speed is not looked at, it contradicts nothing. */
+/* Shows: FSM-12, SUP-12 */
+void test_a_vcu_speed_that_is_not_looked_at_does_not_contradict(void) {
+    f.config.standstill_vcu_counts = 65535;
+    fixture_restart(&f, HAL_RESET_POWER_ON);
+    walk_to_safe(&f);
+    fixture_speed(&f, 3600);
+    fixture_run(&f, 3000);
+    expect_fault(&f, AGV_FAULT_SPEED_IMPLAUSIBLE, true);
+    expect_moving_fault(AGV_FAULT_MOVING_WHILE_SAFE, false);
 }
 
 /* Shows: FSM-12, VEHICLE_NOT_STOPPING, WHEEL_SPEED_TIMEOUT */

@@ -444,6 +444,58 @@ void test_the_oldest_trip_is_replaced_after_a_restart(void) {
     expect_trips(10, 8);
 }
 
+/* A start in TRIPPED. */
+static void start_tripped(uint8_t reason, uint32_t number) {
+    const agv_entry_t entry = {.kind = AGV_EVENT_STATE,
+                               .b = AGV_STATE_TRIPPED,
+                               .c = reason,
+                               .state = AGV_STATE_TRIPPED,
+                               .first_reason = reason};
+    agv_recorder_start(&recorder);
+    agv_recorder_add(&recorder, &entry, number);
+}
+
+/* However often the supervisor restarts: the trip of the run before goes on. */
+/* Shows: INT-3, FSM-7 */
+void test_a_start_that_continues_a_trip_is_no_trip(void) {
+    trip(1);
+    for (uint32_t number = 2; number <= 300; number++) {
+        start_tripped(AGV_FAULT_BUS_OFF, number);
+    }
+    expect_trips(1, 1);
+}
+
+/* Shows: INT-3, FSM-7 */
+void test_a_start_with_another_reason_or_after_a_reset_is_a_trip(void) {
+    const agv_entry_t reset = {.kind = AGV_EVENT_STATE,
+                               .a = AGV_STATE_SAFE,
+                               .b = AGV_STATE_STANDBY,
+                               .c = AGV_FAULT_NONE,
+                               .state = AGV_STATE_STANDBY,
+                               .first_reason = AGV_FAULT_NONE};
+    agv_event_t event;
+    start_tripped(AGV_FAULT_BUS_OFF, 1); /* the first event of all */
+    expect_trips(1, 1);
+    agv_recorder_add(&recorder, &reset, 2);
+    start_tripped(AGV_FAULT_BUS_OFF, 3);
+    start_tripped(AGV_FAULT_SUPERVISOR_RESET, 4);
+    TEST_ASSERT_TRUE(agv_recorder_get_trip(&recorder, 0, &event));
+    TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_SUPERVISOR_RESET, event.c);
+    TEST_ASSERT_TRUE(agv_recorder_get_trip(&recorder, 1, &event));
+    TEST_ASSERT_EQUAL_UINT32(3, event.time_ms);
+    TEST_ASSERT_TRUE(agv_recorder_get_trip(&recorder, 2, &event));
+    TEST_ASSERT_FALSE(agv_recorder_get_trip(&recorder, 3, &event));
+}
+
+/* A torn event says nothing: then the start counts. */
+/* Shows: INT-3 */
+void test_a_start_after_a_torn_event_is_a_trip(void) {
+    trip(1);
+    recorder.events[0].time_ms ^= 1u;
+    start_tripped(AGV_FAULT_BUS_OFF, 2);
+    expect_trips(2, 2);
+}
+
 /* ---- Four times a second ---- */
 
 /* Whether an event of this fault is recorded, and how many were left out before it. */

@@ -245,6 +245,23 @@ void test_which_gears_wait(void) {
     TEST_ASSERT_EQUAL_UINT(75, throttle(75));
 }
 
+/* The VCU of such a vehicle does not guard P against speed. */
+/* Shows: TOP-2, FSM-1 */
+void test_with_park_at_standstill_p_waits_too(void) {
+    config.park = AGV_PARK_AT_STANDSTILL;
+    vehicle.gear = 1;
+    gear_sent = 1;
+    TEST_ASSERT_FALSE(passes(AGV_MSG_GEAR_COMMAND, 8));
+    TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 4));
+    gear_commanded(8);
+    TEST_ASSERT_EQUAL_UINT(0, throttle(75));
+    standstill = true;
+    TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 8));
+    standstill = false;
+    config.gear_change = AGV_GEAR_CHANGE_ANY;
+    TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 8));
+}
+
 /* A vehicle that leaves the gear by itself deviates from its command (SUP-11). */
 /* Shows: TOP-2, SUP-11 */
 void test_a_gear_that_was_sent_does_not_wait(void) {

@@ -110,9 +110,10 @@ class Recorder(hostsim.Case):
         self.run_good("replay", "--store", "store", "--reset-cause", "watchdog", "short.log")
         text = self.run_good("recorder", "store").stdout
         self.assertIn("; runs 0, 1\n", text)
-        self.assertIn("run 1  ", text)
-        self.assertIn("tripped     at 0.000 s: STEERING_COMMAND_TIMEOUT", text)
-        self.assertIn("tripped     at 3.107 s", self.run_good("recorder", "--run", "0", "store").stdout)
+        self.assertIn("run 0  ", text)  # run 1 only continues its trip
+        self.assertIn("tripped     at 3.107 s", text)
+        self.assertIn("tripped     at 0.000 s: STEERING_COMMAND_TIMEOUT",
+                      self.run_good("recorder", "--run", "1", "store").stdout)
         self.assert_refused(self.run_program("recorder", "--run", "7", "store"), "no event of run 7")
 
     def test_how_the_run_before_ended(self):
