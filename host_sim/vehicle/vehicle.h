@@ -1,31 +1,31 @@
 /**
  * @file vehicle.h
- * A vehicle to supervise: VCU, EPS and AI computer, each sending its messages on their cycles (P16), and the dynamics
- * that they move. It obeys the commands on the bus, and every node can misbehave on demand.
+ * A simulated vehicle: VCU, EPS and AI computer, which send their messages on their cycles (P16), and the motion of the
+ * vehicle. The vehicle obeys the commands on the bus. Every node can misbehave on demand.
  *
- * It knows no bus: time and received frames are passed in, what a node sends goes to a callback. So the same vehicle
- * runs on the simulated bus and on a real one. Nothing is random but by a seed: the same calls give the same frames.
+ * The vehicle has no bus of its own: time and received frames are passed in, and what a node sends goes to a callback. So
+ * the same vehicle runs on the simulated bus and on a real one. All random values follow from a seed: the same calls give
+ * the same frames.
  *
- * How it behaves (the figures are members of vehicle_config_t):
- * - *VCU*. In autopilot it obeys 168h, 075h and 43Fh. In manual it obeys the remote controller, and of the bus only gear P
- *   and autopilot off. Autopilot off ends autopilot mode at once: the gear stays, the throttle goes to 0. It engages
- * when
- *   the operator asks for it, unless autopilot off was commanded in the last 300 ms. While gear P is commanded (last
- * one
- *   within 300 ms) and until the operator drives anew, the remote controller moves nothing.
- *   A gear takes time to engage. With the guard, P is taken only below walking pace: it brakes until then; without it,
- * P
- *   is taken at speed, and the wheels lock. 075h that stays away for 500 ms is throttle 0.
- *   The throttle (050h) follows what is commanded at a limited rate. D and R engage against the motion only when the
- *   vehicle stands: it brakes until then, with throttle 0. 363h carries the speed of the wheels in metres per hour.
- *   Alarms: AI CAN signal lost (43Fh counter unchanged for ai_lost_ms; the throttle goes to 0), EPS CAN bus fault (067h
- *   counter unchanged for eps_lost_ms), EPS hardware fault (a bit in 167h byte 8), remote signal and power lost (it
- *   brakes in manual). After a start: manual, gear P when it stands still, else N, all counters at 0.
- * - *EPS*. Angle control while 363h reports autopilot, steering assist otherwise; a change takes eps_mode_change_ms. In
- *   angle control it follows 065h, in assist the driver's hand, both with a limited rate.
+ * How the nodes behave (the figures are members of vehicle_config_t):
+ * - *VCU, commands*. In autopilot the VCU obeys 168h, 075h and 43Fh. In manual it obeys the remote control, and of the
+ *   frames on the bus only gear P and autopilot off. Autopilot off ends autopilot mode at once: the gear stays, the
+ *   throttle goes to 0. The VCU engages the autopilot when the operator asks for it, unless autopilot off was commanded
+ *   in the last 300 ms. While gear P is commanded (the last 168h within 300 ms), and then until the operator drives anew,
+ *   the remote control has no effect. When no 075h was received for 500 ms, the throttle is 0.
+ * - *VCU, gear and throttle*. A gear takes time to engage. With the guard, the VCU brakes to walking pace before it engages
+ *   P. Without the guard, it engages P at any speed, and the wheels lock. D and R against the motion engage only when the
+ *   vehicle stands: the VCU brakes until then, with throttle 0. The throttle (050h) follows its command at a limited rate.
+ *   363h carries the speed of the wheels in metres per hour.
+ * - *VCU, alarms*. AI CAN signal lost: the counter of 43Fh is unchanged for ai_lost_ms; the throttle goes to 0. EPS CAN bus
+ *   fault: the counter of 067h is unchanged for eps_lost_ms. EPS hardware fault: a bit in 167h byte 8. Remote signal or
+ *   power lost: the VCU brakes in manual.
+ * - *VCU, start*. Manual, all counters at 0, gear P when the vehicle stands, otherwise N.
+ * - *EPS*. Angle control while 363h reports autopilot, otherwise steering assist; a change takes eps_mode_change_ms. In
+ *   angle control it follows 065h, in steering assist the driver's hand, both at a limited rate.
  * - *AI computer*. It drives as told while 363h reports autopilot; otherwise it sends gear N, throttle 0, angle 0.
  *   To change between D and R, or out of N, it waits with throttle 0 until the wheels stand.
- *   Stubborn, it sends its commands at once and in every mode.
+ *   A stubborn AI computer sends its commands at once and in every mode.
  *
  * Single-threaded, no allocation, no globals. All times are milliseconds since the start of the run.
  */
@@ -104,7 +104,7 @@ typedef enum {
     VEHICLE_DO_LAG,     /**< every cycle of it takes `ms` longer; 0 = no more */
     VEHICLE_DO_REPEAT,  /**< every frame of it is sent `count` times more; 0 = no more */
     VEHICLE_DO_GARBAGE, /**< `garbage` */
-    VEHICLE_DO_RECOVER, /**< end of every misbehaviour of this node, its messages included */
+    VEHICLE_DO_RECOVER, /**< ends every misbehaviour of this node and of its messages */
     /* a message: `message` */
     VEHICLE_DO_MUTE, /**< it is not sent; for `count` frames (VEHICLE_FOREVER), again after every `every` frames */
     VEHICLE_DO_UNMUTE,
@@ -355,7 +355,7 @@ static inline void vehicle_tick(vehicle_t *vehicle, uint64_t now_ms) {
     }
 }
 
-/** A node receives a frame. Not for its own ones; a node that is off receives nothing. */
+/** A node receives a frame. Do not call it for the node's own frames. A node that is off receives nothing. */
 void vehicle_receive(vehicle_t *vehicle, vehicle_node_t node, uint64_t now_ms, const hal_can_frame_t *frame);
 
 /**
@@ -378,7 +378,7 @@ static inline uint32_t vehicle_power_changes(const vehicle_t *vehicle) {
     return vehicle->power_changes;
 }
 
-/** Pass what is sent to another callback from now on; for a vehicle that was copied. */
+/** From now on pass what is sent to another callback. For a vehicle that was copied. */
 void vehicle_set_send(vehicle_t *vehicle, vehicle_send_fn *send, void *ctx);
 
 /** The controller side that a node is on; a rogue node is on the vehicle side. */

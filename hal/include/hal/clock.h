@@ -14,11 +14,11 @@
 uint32_t hal_clock_now_ms(hal_t *hal);
 
 /**
- * Read a second clock, from another oscillator than the first one (HW-4). Called at every tick; the core compares
- * both when one of them has come a second further, so that a slow first clock is found in time. One that returned true and
- * returns false later counts as standing still.
+ * Read a second clock, from another oscillator than the first one (HW-4). Called at every tick. The core compares both each
+ * time that one of them has advanced by a second, so that a slow first clock is found in time. When a call returns false after
+ * an earlier one returned true, the second clock counts as standing still.
  * @param time_ms out: milliseconds since an arbitrary time; wraps as the first clock does. It must be accurate to 1 %.
- * @return false if the board has no second clock; then in every call
+ * @return false in every call if the board has no second clock
  */
 bool hal_clock_second_ms(hal_t *hal, uint32_t *time_ms);
 

@@ -1,6 +1,6 @@
 /**
  * @file reset.h
- * The cause of the last MCU reset. (The button that resets the supervisor is in inputs.h.)
+ * The cause of the last reset of the microcontroller. (The button that resets the supervisor is in inputs.h.)
  */
 #ifndef HAL_RESET_H
 #define HAL_RESET_H

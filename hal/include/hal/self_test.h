@@ -21,7 +21,7 @@
 
 /**
  * Run the next slice of the background test, in a small part of a tick. Called once at the start, before the first frame is
- * sent, and then at every tick. The flash is tested once round in 60 s at most.
+ * sent, and then at every tick. The whole flash is tested within 60 s.
  * @return the parts that have failed since boot, HAL_SELF_TEST_* bits; a part that a port cannot test is never among them
  */
 uint32_t hal_self_test(hal_t *hal);

@@ -9,7 +9,7 @@
 
 /**
  * Feed the watchdog. Only the core calls it, under the conditions of TIM-3. A port does not report a failure to feed: the
- * watchdog then resets the MCU, which is safe.
+ * watchdog then resets the microcontroller, which is safe.
  */
 void hal_watchdog_feed(hal_t *hal);
 
