@@ -14,8 +14,7 @@ typedef struct {
     bool judged; /**< counts in autopilot only */
 } row_t;
 
-#define ALWAYS(fault)                                                                                                  \
-    { AGV_FAULT_##fault, BIT, false }
+#define ALWAYS(fault) {AGV_FAULT_##fault, BIT, false}
 
 static const row_t rows[] = {
     ALWAYS(VCU_EPS_HARDWARE_FAULT),

@@ -46,9 +46,9 @@ static void expect_restart(const restart_t *row) {
 }
 
 #define POWER_ON(what, tripped, store, invalid)                                                                        \
-    { what, HAL_RESET_POWER_ON, tripped, store, AGV_STATE_INIT, AGV_FAULT_NONE, invalid }
+    {what, HAL_RESET_POWER_ON, tripped, store, AGV_STATE_INIT, AGV_FAULT_NONE, invalid}
 #define OTHER(what, cause, tripped, store, reason, invalid)                                                            \
-    { what, cause, tripped, store, AGV_STATE_TRIPPED, AGV_FAULT_##reason, invalid }
+    {what, cause, tripped, store, AGV_STATE_TRIPPED, AGV_FAULT_##reason, invalid}
 #define OTHERS(name, cause)                                                                                            \
     OTHER(name ", tripped", cause, true, STORE_OK, S_DRIVER_ALARM, false),                                             \
         OTHER(name ", tripped, corrupt", cause, true, STORE_CORRUPT, SUPERVISOR_RESET, true),                          \
