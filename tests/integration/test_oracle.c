@@ -20,8 +20,9 @@ static uint32_t forbidden(hal_can_side_t side, hal_can_frame_t frame, agv_state_
 
 /* 067h with this raw angle. */
 static void measured(uint16_t raw) {
+    const uint8_t counter = (uint8_t)(oracle.eps_counter + 1u);
     const hal_can_frame_t frame = {
-        .id = 0x067, .length = 8, .data = {1, 100, (uint8_t)raw, (uint8_t)(raw >> 8u)}, .time_ms = oracle.now_ms};
+        .id = 0x067, .length = 8, .data = {counter, 100, (uint8_t)raw, (uint8_t)(raw >> 8u)}, .time_ms = oracle.now_ms};
     oracle_heard(&oracle, HAL_CAN_VEHICLE, &frame);
 }
 
@@ -90,6 +91,20 @@ void test_the_held_angle_is_that_of_the_moment_of_the_trip(void) {
     TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x8C, 0x23), AGV_STATE_SAFE));
     TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_SAFE));
     TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_INIT));
+}
+
+/* Shows: FSM-6, FSM-10 */
+void test_an_eps_that_could_not_take_angles_gets_a_new_one(void) {
+    hal_can_frame_t status = {.id = 0x167, .length = 8, .data = {0, 0, 0, 1, 0, 0, 0, 0}};
+    measured(9200);
+    oracle_returned(&oracle, AGV_STATE_TRIPPED);
+    measured(9100);
+    oracle_heard(&oracle, HAL_CAN_VEHICLE, &status);
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x8C, 0x23), AGV_STATE_TRIPPED)); /* 9100 */
+    status.data[7] = 0x02;                                                                            /* over-voltage */
+    oracle_heard(&oracle, HAL_CAN_VEHICLE, &status);
+    TEST_ASSERT_EQUAL(0, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0x8C, 0x23), AGV_STATE_TRIPPED));
+    TEST_ASSERT_EQUAL(1, forbidden(HAL_CAN_VEHICLE, frame_of(0x065, 0xF0, 0x23), AGV_STATE_TRIPPED)); /* 9200 */
 }
 
 /* Shows: FSM-6, FSM-10 */

@@ -57,11 +57,14 @@ static void hold(oracle_t *oracle) {
 }
 
 /*
- * An angle that was measured just now moves nothing: it may be held instead, since the EPS may have been unable to take angles
- * in between. After 2 s without 065h it has to be, within the time that the supervisor needs to detect this. A tick may come so
- * late that the EPS is only just alive. The last 065h that the controller accepted may not have left: then the one before counts.
+ * After 2 s without 065h, and when the EPS could not take angles, a new angle may be held, within the time that the supervisor
+ * needs to detect this. A tick may come so late that the EPS is only just alive. The last 065h that the controller accepted may
+ * not have left: then the one before counts.
  */
-enum { SURELY_ANEW_MS = 2700, RECENT_MS = 50 };
+enum { ANEW_MS = 2000 - 25, SURELY_ANEW_MS = 2700, RECENT_MS = 50 };
+
+/* Deadlines of 067h and 167h, less what a late tick may hide. */
+enum { EPS_GAP_MS = 45, EPS_STATUS_GAP_MS = 55, EPS_ALARMS = 0x30 };
 
 static bool is_recent(const oracle_t *oracle, uint16_t raw) {
     bool recent = false;
@@ -75,8 +78,10 @@ static bool is_recent(const oracle_t *oracle, uint16_t raw) {
 static bool may_hold(oracle_t *oracle, uint16_t raw) {
     const uint32_t unsent_ms = oracle->now_ms - oracle->held_sent_ms;
     const bool kept = oracle->held && (raw == oracle->held_raw) && (unsent_ms <= SURELY_ANEW_MS);
-    const bool anew = oracle->held && is_recent(oracle, raw);
+    const bool may_change = (unsent_ms >= ANEW_MS) || oracle->eps_was_unfit;
+    const bool anew = oracle->held && may_change && is_recent(oracle, raw);
     if (kept || anew) {
+        oracle->eps_was_unfit = false;
         oracle->held_raw = raw;
         oracle->held_sent_ms = oracle->now_ms;
     }
@@ -134,6 +139,25 @@ static void on_angle(oracle_t *oracle, const hal_can_frame_t *frame) {
     }
 }
 
+static void unfit_if(oracle_t *oracle, bool unfit) {
+    oracle->eps_was_unfit = oracle->eps_was_unfit || unfit;
+}
+
+static void on_eps_counter(oracle_t *oracle, const hal_can_frame_t *frame) {
+    const bool silent = (frame->time_ms - oracle->eps_ms) > EPS_GAP_MS;
+    unfit_if(oracle, silent || (frame->data[0] != (uint8_t)(oracle->eps_counter + 1u)));
+    if (frame->data[0] != oracle->eps_counter) {
+        oracle->eps_ms = frame->time_ms;
+    }
+    oracle->eps_counter = frame->data[0];
+}
+
+static void on_eps_status(oracle_t *oracle, const hal_can_frame_t *frame) {
+    const bool silent = (frame->time_ms - oracle->eps_status_ms) > EPS_STATUS_GAP_MS;
+    oracle->eps_status_ms = frame->time_ms;
+    unfit_if(oracle, silent || (frame->data[3] != 1u) || (frame->data[7] != 0u));
+}
+
 /* MODE_INVALID: a millisecond without both bits takes half a millisecond off. */
 static void on_both_modes(oracle_t *oracle, bool both, uint32_t time_ms) {
     const uint32_t past_ms = time_ms - oracle->both_since_ms;
@@ -149,6 +173,7 @@ static void on_both_modes(oracle_t *oracle, bool both, uint32_t time_ms) {
 }
 
 static void on_mode(oracle_t *oracle, const hal_can_frame_t *frame) {
+    unfit_if(oracle, (frame->data[4] & EPS_ALARMS) != 0u);
     const uint8_t bits = (uint8_t)(frame->data[6] & 0xC0u);
     on_both_modes(oracle, bits == 0xC0u, frame->time_ms);
     if (bits != 0xC0u) {
@@ -166,7 +191,10 @@ void oracle_heard(oracle_t *oracle, hal_can_side_t side, const hal_can_frame_t *
         return;
     }
     if (frame->id == 0x067u) {
+        on_eps_counter(oracle, frame);
         on_angle(oracle, frame);
+    } else if (frame->id == 0x167u) {
+        on_eps_status(oracle, frame);
     } else if (frame->id == oracle->vehicle_id) {
         on_mode(oracle, frame);
     } else {

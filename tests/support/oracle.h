@@ -49,7 +49,11 @@ typedef struct {
     uint32_t held_sent_ms; /* last own 065h; the trip before the first one */
     uint16_t recent_raw[ORACLE_ANGLES];
     uint32_t recent_ms[ORACLE_ANGLES];
-    uint32_t angles; /* valid ones received */
+    uint32_t angles;     /* valid ones received */
+    bool eps_was_unfit;  /* since the last 065h: a fault, another mode, or a gap, so that the angle may be taken anew */
+    uint8_t eps_counter; /* of the last 067h */
+    uint32_t eps_ms;     /* last 067h with a changed counter */
+    uint32_t eps_status_ms; /* last 167h */
 
     /* result */
     uint32_t judged;    /* frames sent in INIT, TRIPPED, SAFE */
