@@ -67,6 +67,9 @@ static bool check_files(const given_t *given) {
         {.role = "--config", .path = given->config.path},
         {.role = "--config-out", .path = given->request.config_out, .is_written = true},
     };
+    if (given->request.is_json && output_is_stdout(given->request.config_out)) {
+        return report("--json and --config-out -: only one of them can be on standard output; give --config-out a file");
+    }
     return output_check_distinct(roles, sizeof roles / sizeof roles[0]);
 }
 

@@ -394,6 +394,9 @@ class Refused(Case):
                                 (("log", "--bitrate", "5"), "--bitrate: '5' is not a number"),
                                 (("none",), "none: No such file"), (("log", "--config-out", "log"), "same file"),
                                 (("log", "--config-out", "no/c.yaml"), "no/c.yaml"),
+                                (("--can", "nosuchcan", "--config-out", "no/c.yaml"), "no/c.yaml"),
+                                (("log", "--json", "--config-out", "-"), "--json and --config-out -: only one"),
+                                (("log", "--json", "--config-out", "/dev/stdout"), "--json and --config-out -"),
                                 (("--can", "nosuchcan"), "nosuchcan")):
             with self.subTest(arguments):
                 self.assert_refused(self.run_program("survey", *arguments), part)
@@ -409,6 +412,13 @@ class Refused(Case):
                 self.assert_refused(self.run_program("survey", "--config-out", "config.yaml", "log"), part)
                 self.assertEqual(self.text("config.yaml"), "park: at_once\n")
                 self.assertEqual(self.files(), ["config.yaml", "log"])
+
+    def test_the_survey_is_printed_though_the_proposal_is_lost(self):
+        self.write("log", traffic.log(traffic.frames(2000)))
+        expected = self.run_good("survey", "log").stdout
+        result = self.run_program("survey", "--config-out", "/dev/full", "log")
+        self.assert_refused(result, "/dev/full: No space left")
+        self.assertEqual(result.stdout, expected)
 
     def test_endless_input(self):
         self.assert_refused(self.run_program("survey", "/dev/zero", timeout=20), "binary data")
