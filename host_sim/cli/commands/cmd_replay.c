@@ -7,6 +7,7 @@
 #include "cli/options.h"
 #include "config/config_options.h"
 #include "io/output.h"
+#include "io/store_file.h"
 #include "replay/replay.h"
 
 /** The words of --reset-cause, in the order of hal_reset_cause_t. */
@@ -81,7 +82,8 @@ static bool check_files(const given_t *given) {
                                     output_is_stdout(given->request.out) || output_is_stdout(given->request.events))) {
         return report("--timeline: standard output is already used by another option");
     }
-    return output_check_distinct(roles, sizeof roles / sizeof roles[0]);
+    return output_check_distinct(roles, sizeof roles / sizeof roles[0]) &&
+           ((given->request.store == NULL) || store_file_may_replace(given->request.store));
 }
 
 status_t cmd_replay(int argc, char **argv) {
