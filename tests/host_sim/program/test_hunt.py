@@ -1,5 +1,8 @@
 """Hunts: the same seed gives the same runs, what is found can be played, a checkpoint is gone on from, bad options."""
 import re
+import signal
+import subprocess
+import time
 import unittest
 
 import hostsim
@@ -59,6 +62,30 @@ class Hunt(hostsim.Case):
         (self.folder / "state").write_bytes((self.folder / "state").read_bytes()[:-1])
         torn = self.hunt("--seed", 3, "--runs", 650, "--checkpoint", "state", status=(2,))
         self.assertIn("damaged", torn.stderr)
+
+    def interrupted(self, *arguments):
+        """What it says when a signal ends it during its first runs."""
+        with subprocess.Popen([hostsim.PROGRAM, "hunt", "--seed", "3", "--runs", "100000", *map(str, arguments)],
+                              cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            time.sleep(0.3)
+            process.send_signal(signal.SIGINT)
+            said = process.communicate(timeout=600)[1]
+        self.assertEqual(process.returncode, -signal.SIGINT)
+        return said
+
+    def test_an_interrupted_hunt_says_what_is_saved(self):
+        self.assertRegex(self.interrupted(), r"^host_sim: interrupted after \d+ runs\n$")
+        self.assertRegex(self.interrupted("--checkpoint", "state"), r"^host_sim: interrupted after \d+ runs; nothing is saved "
+                         r"yet: the checkpoint is written after each 500 runs\n$")
+        self.assertEqual(self.files(), [])
+        if hostsim.PART > 1:
+            return  # a piece takes minutes in a program full of checks
+        self.hunt("--seed", 3, "--runs", 1000, "--shard", "2/2", "--checkpoint", "state")
+        self.assertRegex(self.interrupted("--shard", "2/2", "--checkpoint", "state"),
+                         r"^host_sim: interrupted after \d+ runs; the same command resumes from run 1500\n$")
+
+    def test_a_checkpoint_that_cannot_be_written_is_refused_at_once(self):
+        self.assert_refused(self.hunt("--seed", 1, "--runs", 100000, "--checkpoint", "no/where", status=(2,)), "no/where: ")
 
     def test_files_that_are_no_checkpoint(self):
         self.write("log", "(1.000000) can0 123#00\n" * 90)
