@@ -81,7 +81,8 @@ class Soak(hostsim.Case):
 
     def test_options(self):
         for arguments, says in (((), "--hours is missing"), (("--hours", "1"), "--seed is missing"),
-                                (("--hours", "0", "--seed", "1"), "--hours"), (("--hours", "1", "--seed", "x"), "--seed"),
+                                (("--hours", "0", "--seed", "1"), "--hours"), (("--hours", "1.5", "--seed", "1"), "a time: 2h, or whole"),
+                                (("--hours", "1", "--seed", "x"), "--seed"),
                                 (("--hours", "1", "--seed", "1", "--shard", "2"), "--shard: '2'"),
                                 (("--hours", "1", "--seed", "1", "--planted", "trip"), "--planted"),
                                 (("--hours", "1", "--seed", "1", "more"), "unexpected argument 'more'"),
