@@ -64,6 +64,9 @@ static bool make_request(given_t *given) {
     if ((request->runs == OPTION_NOT_GIVEN) && (request->minutes == OPTION_NOT_GIVEN)) {
         return report("--runs or --for-minutes is missing; see host_sim hunt --help");
     }
+    if ((request->runs != OPTION_NOT_GIVEN) && (request->minutes != OPTION_NOT_GIVEN)) {
+        return report("give only one of --runs and --for-minutes");
+    }
     request->seed = given->random.seed;
     request->folder = (given->folder != NULL) ? given->folder : ".";
     return output_check_folder("--found", request->folder);
@@ -72,13 +75,13 @@ static bool make_request(given_t *given) {
 static bool has_run_options(const given_t *given) {
     const hunt_request_t *request = &given->request;
     return (request->runs != OPTION_NOT_GIVEN) || (request->minutes != OPTION_NOT_GIVEN) ||
-           (request->checkpoint != NULL) || (given->folder != NULL);
+           (request->checkpoint != NULL) || (given->folder != NULL) || (given->random.seed != OPTION_NOT_GIVEN) ||
+           (given->random.shard != NULL);
 }
 
 static status_t list_hazards(const given_t *given) {
     if (has_run_options(given)) {
-        (void)report(
-            "--list-hazards runs nothing: --runs, --for-minutes, --checkpoint and --found cannot be combined with it");
+        (void)report("--list-hazards runs nothing: no other option can be combined with it");
         return STATUS_UNUSABLE;
     }
     hunt_list_hazards();

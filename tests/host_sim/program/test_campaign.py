@@ -186,7 +186,9 @@ class Refused(Campaign):
         self.refuse(*good, "--show", "1", "--results", "out.jsonl", says="--show prints one run")
         self.refuse(*good, "--show", "1", "--shard", "1/2", says="--show prints one run")
         self.refuse("--tables", "--results", "out.jsonl", says="--tables runs nothing")
-        self.refuse("--tables", "--why", "out.jsonl", says="--tables runs nothing")
+        for more in (("--why", "out.jsonl"), ("--runs", 5), ("--seed", 1), ("--shard", "1/2"), ("--merge",), ("--newly-engaged",),
+                     ("--fault", "BUS_OFF"), ("--show", 1), ("--broken", "."), ("file",)):
+            self.refuse("--tables", *more, says="--tables runs nothing")
         self.refuse("--runs", "3", says="--seed is missing")
         self.refuse("--runs", "0", "--seed", "1", says="--runs")
         self.refuse("--runs", "100000001", "--seed", "1", says="--runs")
@@ -198,6 +200,7 @@ class Refused(Campaign):
         self.refuse(*good, "--fault", "TX_GATE_REFUSED", says="cannot cause TX_GATE_REFUSED")
         self.refuse(*good, "--show", "3", says="no run 3")
         self.refuse(*good, "--broken", "nowhere", says="'nowhere' is not a folder")
+        self.refuse(*good, "--broken", "/proc", says="--broken: the folder '/proc' cannot be written: ")
         self.refuse(*good, "--results", "no/where", says="no/where")
         self.refuse(*good, "file", says="unexpected argument 'file'")
         self.refuse(*good, "--planted", "mute", says="--planted")

@@ -102,11 +102,14 @@ class Hunt(hostsim.Case):
         for arguments, said in (
             ((), "--seed is missing"),
             (("--seed", 1), "--runs or --for-minutes is missing"),
-            (("--list-hazards", "--checkpoint", "x"), "--list-hazards runs nothing"),
+            *((("--list-hazards", option, value), "--list-hazards runs nothing") for option, value in (
+                ("--checkpoint", "x"), ("--seed", 1), ("--shard", "1/2"), ("--runs", 1), ("--for-minutes", 1), ("--found", "."))),
+            (("--seed", 1, "--runs", 1, "--for-minutes", 1), "give only one of --runs and --for-minutes"),
             (("--seed", 1, "--runs", 0), "--runs: '0' is not a number from 1"),
             (("--seed", 1, "--for-minutes", "x"), "--for-minutes: 'x' is not a time"),
             (("--seed", 1, "--runs", 1, "--shard", "3/2"), "--shard: '3/2'"),
             (("--seed", 1, "--runs", 1, "--found", "nowhere"), "--found: 'nowhere' is not a folder"),
+            (("--seed", 1, "--runs", 1, "--found", "/proc"), "--found: the folder '/proc' cannot be written: "),
             (("--seed", 1, "--runs", 1, "--fuond", "x"), "unknown option '--fuond'"),
             (("--seed", 1, "--runs", 1, "more"), "unexpected argument 'more'"),
         ):
