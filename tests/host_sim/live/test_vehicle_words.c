@@ -80,8 +80,22 @@ void test_identifiers_and_topology_are_those_of_the_vehicle(void) {
     TEST_ASSERT_EQUAL_HEX32(0x169, words.step.vehicle.frame.id);
 }
 
+void test_commands_stand_alone(void) {
+    TEST_ASSERT_EQUAL(VEHICLE_COMMAND_HELP, vehicle_words_command("help"));
+    TEST_ASSERT_EQUAL(VEHICLE_COMMAND_STATUS, vehicle_words_command(" \tstatus "));
+    TEST_ASSERT_EQUAL(VEHICLE_COMMAND_QUIT, vehicle_words_command("quit"));
+    TEST_ASSERT_EQUAL(VEHICLE_COMMAND_NONE, vehicle_words_command("ai stop"));
+    TEST_ASSERT_EQUAL(VEHICLE_COMMAND_NONE, vehicle_words_command("statu"));
+    TEST_ASSERT_EQUAL(VEHICLE_COMMAND_NONE, vehicle_words_command("statuss"));
+    TEST_ASSERT_EQUAL(VEHICLE_COMMAND_NONE, vehicle_words_command(""));
+    TEST_ASSERT_EQUAL_STRING("", scratch_said());
+    TEST_ASSERT_EQUAL(VEHICLE_COMMAND_BAD, vehicle_words_command("status x"));
+    TEST_ASSERT_EQUAL_STRING("host_sim: 'status x': 'status' stands alone on its line\n", scratch_said());
+}
+
 void test_what_makes_no_sense_is_one_line(void) {
-    refused_when_typed("nobody stop", "host_sim: 'nobody stop': 'nobody' is not one of vcu, eps, ai, operator, bus\n");
+    refused_when_typed("nobody stop", "host_sim: 'nobody stop': 'nobody' is not one of vcu, eps, ai, operator, bus, "
+                                      "help, status, quit\n");
     refused_when_typed("ai", "host_sim: 'ai': the action of ai is missing\n");
     refused_when_typed(" ", "host_sim: ' ': actor and action are missing\n");
     refused_when_typed("ai explode", "host_sim: 'ai explode': ai: unknown action 'explode'\n");
@@ -154,7 +168,8 @@ void test_the_parameters_of_a_fault_reach_the_vehicle(void) {
 
 void test_what_needs_a_simulated_bus_is_refused(void) {
     refused_when_typed("supervisor bus_off",
-                       "host_sim: 'supervisor bus_off': 'supervisor' is not one of vcu, eps, ai, operator, bus\n");
+                       "host_sim: 'supervisor bus_off': 'supervisor' is not one of vcu, eps, ai, operator, bus, help, "
+                       "status, quit\n");
     refused_when_typed("bus destroy frames=1",
                        "host_sim: 'bus destroy frames=1': bus: 'destroy' is for the simulated bus only\n");
 }

@@ -15,7 +15,7 @@ FAULTS = {
     "ai@-2000": FORM,
     "": FORM,
     "ai-stop@soon": "at_ms: 'soon' is not a time: 250ms, 10s, 1.5min, 2h, or whole milliseconds alone",
-    "ai-stop@": "at_ms: a word or a text is missing",
+    "ai-stop@": "the time after @ is missing, such as @2s",
     "ai-stop@1.5": "at_ms: '1.5' is not a time: 250ms, 10s, 1.5min, 2h, or whole milliseconds alone",
     "ai-stop@25h": "at_ms: '25h' is not within 0ms to 1d",
     "ai-stop@1us": "at_ms: '1us' is not a whole number of milliseconds",
