@@ -225,7 +225,7 @@ class Refused(Campaign):
                                     ("torn", lines[:-1] + [lines[-1][:20]], "not a result of a campaign"),
                                     ("text", ["hello\n"], ":1: not a result of a campaign"),
                                     ("other", ["{}\n"], ":1: no results of a campaign"),
-                                    ("empty", [], "it ends after line 0")):
+                                    ("empty", [], "empty: is empty")):
             self.write(name, "".join(changed))
             self.refuse("--merge", one, name, *out, says=says)
 
