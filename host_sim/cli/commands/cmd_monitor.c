@@ -4,6 +4,7 @@
  */
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/commands/commands.h"
 #include "cli/interface_options.h"
@@ -119,12 +120,18 @@ static bool check_bus(const given_t *given) {
                                    given->request.config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY);
 }
 
+/** Before the bus is opened. */
+static bool check_record(const char *path) {
+    return (access(path, F_OK) != 0) || report("%s: exists already, and is not replaced", path);
+}
+
 static bool check_files(const given_t *given) {
     const output_role_t roles[] = {
         {.role = "--config", .path = given->config.path},
         {.role = "--record", .path = given->request.record, .is_written = true},
     };
-    return output_check_distinct(roles, sizeof roles / sizeof roles[0]);
+    const char *record = given->request.record;
+    return output_check_distinct(roles, sizeof roles / sizeof roles[0]) && ((record == NULL) || check_record(record));
 }
 
 status_t cmd_monitor(int argc, char **argv) {

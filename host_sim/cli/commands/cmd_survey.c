@@ -68,7 +68,8 @@ static bool check_files(const given_t *given) {
         {.role = "--config-out", .path = given->request.config_out, .is_written = true},
     };
     if (given->request.is_json && output_is_stdout(given->request.config_out)) {
-        return report("--json and --config-out -: only one of them can be on standard output; give --config-out a file");
+        return report(
+            "--json and --config-out -: only one of them can be on standard output; give --config-out a file");
     }
     return output_check_distinct(roles, sizeof roles / sizeof roles[0]);
 }
@@ -82,7 +83,7 @@ static bool check_source(const survey_request_t *request) {
         return report("LOG or --can is missing; see host_sim survey --help");
     }
     if ((request->log != NULL) && is_live) {
-        return report("LOG and --can: one of them");
+        return report("give only one of LOG and --can");
     }
     if (request->log == NULL) {
         return (request->ai_interface == NULL) ? interface_options_check(&request->bus, "survey", is_gateway)

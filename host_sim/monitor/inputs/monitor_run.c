@@ -37,7 +37,8 @@ typedef struct {
 
 static bool begin_record(run_t *run, const char *path) {
     if (!monitor_record_begin(&run->record, path)) {
-        return report("%s: %s", run->record.name, strerror(errno));
+        return (errno == EEXIST) ? report("%s: exists already, and is not replaced", run->record.name)
+                                 : report("%s: %s", run->record.name, strerror(errno));
     }
     return true;
 }

@@ -196,6 +196,7 @@ class Lines(hostsim.Case):
                 (["--log", EXAMPLE, "--can", "can0"], "--log and --can exclude each other"),
                 (["--log", EXAMPLE, "--record", "x"], "--record needs --can: a log is recorded already"),
                 (["--can", "can0", "--speed", "4"], "--speed needs --log"),
+                (["--can", "nosuch", "--record", EXAMPLE], f"{EXAMPLE}: exists already, and is not replaced"),
                 (["--log", EXAMPLE, "--speed", "-1"], "--speed: '-1' is not a number from 0.01 to 1000, nor max"),
                 (["--log", EXAMPLE, "--speed", "1e3"], "--speed: '1e3' is not a number from 0.01 to 1000, nor max"),
                 (["--log", EXAMPLE, "--speed", "nan"], "--speed: 'nan' is not a number from 0.01 to 1000, nor max"),

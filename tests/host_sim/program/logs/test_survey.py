@@ -385,7 +385,7 @@ class Refused(Case):
     def test_bad_command_lines(self):
         self.write("log", traffic.log(traffic.frames(500)))
         for arguments, part in (((), "LOG or --can is missing"), (("log", "log"), "unexpected argument 'log'"),
-                                (("log", "--can", "can0"), "LOG and --can: one of them"),
+                                (("log", "--can", "can0"), "give only one of LOG and --can"),
                                 (("log", "--for", "1s"), "--for is for --can"),
                                 (("--can", "can0", "--for", "1m"), "--for: '1m' is not a time"),
                                 (("--can", "can0", "--ai-if", "x"), "--ai-if is for a log"),
