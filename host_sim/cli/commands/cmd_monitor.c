@@ -57,10 +57,11 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         OPTION_TEXT("--log", "FILE", "a recorded log instead; - is standard input", &request->log),
         {.name = "--speed",
          .value = "N",
-         .help = "of the log: 4 is four times as fast as recorded; max",
+         .help = "play the log N times as fast as recorded; max: without waiting",
          .each = take_speed,
          .ctx = given},
         OPTION_TEXT("--ai-if", "NAME", "of the log: the interface of the AI side", &request->ai_interface),
+        OPTION_FLAG("--skip-bad-lines", "of the log: skip and count invalid lines", &request->skip_bad_lines),
     };
     const option_group_t groups[] = {
         {.title = "A bus", .options = interface_rows, .count = INTERFACE_OPTIONS},
@@ -109,9 +110,21 @@ static bool check_log(const given_t *given) {
     return log_sides_check(is_gateway, request->ai_interface);
 }
 
+/** An option that was given and makes sense for a log only; NULL: none was. */
+static const char *option_of_log(const given_t *given) {
+    if (given->has_speed) {
+        return "--speed";
+    }
+    if (given->request.ai_interface != NULL) {
+        return "--ai-if";
+    }
+    return given->request.skip_bad_lines ? "--skip-bad-lines" : NULL;
+}
+
 static bool check_bus(const given_t *given) {
-    if (given->has_speed || (given->request.ai_interface != NULL)) {
-        return report("%s needs --log", given->has_speed ? "--speed" : "--ai-if");
+    const char *of_log = option_of_log(given);
+    if (of_log != NULL) {
+        return report("%s needs --log", of_log);
     }
     if (given->bus.interfaces[HAL_CAN_VEHICLE] == NULL) {
         return report("--can or --log is missing: what to watch; see host_sim monitor --help");
