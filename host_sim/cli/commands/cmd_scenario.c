@@ -402,8 +402,8 @@ static void print_totals(const work_t *work, char **files, const totals_t *total
             (void)fprintf(work->text_out, "left out %s: %s\n", files[i], work->results[i].left_out);
         }
     }
-    (void)fprintf(work->text_out, "%zu scenarios: %zu passed, %zu failed", work->given.file_count, totals->passed,
-                  totals->failed);
+    (void)fprintf(work->text_out, "%zu scenario%s: %zu passed, %zu failed", work->given.file_count,
+                  (work->given.file_count == 1u) ? "" : "s", totals->passed, totals->failed);
     if (is_real(&work->given)) {
         (void)fprintf(work->text_out, ", %zu left out", totals->left_out);
     }
