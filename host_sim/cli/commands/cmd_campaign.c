@@ -39,15 +39,17 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_t rows[] = {
         OPTION_NUMBER("--runs", "N", "number of runs, of all shards together", &given->runs, 1, RUNS_MAX),
         OPTION_FAULT("--fault", "cause this fault in every run", &given->fault),
-        OPTION_FLAG("--newly-engaged", "cause the fault at an engagement; for faults that this delays",
+        OPTION_FLAG("--newly-engaged",
+                    "cause the fault at an engagement; only for faults that are detected later after an engagement",
                     &given->newly_engaged),
         OPTION_TEXT("--results", "FILE", "results as JSON Lines", &given->results),
         OPTION_TEXT("--why", "FILE", "what replay --why would say of each run, as JSON Lines", &given->request.why),
         OPTION_TEXT("--broken", "FOLDER", "folder for the scenarios of runs that break an invariant (.)",
                     &given->folder),
         OPTION_NUMBER("--show", "RUN", "only print this run, as a scenario", &given->show, 0, RUNS_MAX - 1u),
-        OPTION_FLAG("--merge", "merge the results of all shards into one table, and one --results", &given->merge),
-        OPTION_FLAG("--tables", "print the data that reaction times follow from, as JSON", &given->tables),
+        OPTION_FLAG("--merge", "merge the results of all shards into one table, and into one file with --results",
+                    &given->merge),
+        OPTION_FLAG("--tables", "print the data from which reaction times are derived, as JSON", &given->tables),
     };
     const option_group_t groups[] = {
         {.title = "Options", .options = random_rows, .count = RANDOM_OPTIONS},

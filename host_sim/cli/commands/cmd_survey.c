@@ -24,7 +24,8 @@ static options_result_t parse(int argc, char **argv, given_t *given, size_t *ope
     option_t interface_rows[INTERFACE_OPTIONS];
     interface_options_init(&request->bus, interface_rows);
     const option_t rows[] = {
-        OPTION_TEXT("--ai-if", "NAME", "of a log: the interface of the AI side: a gateway", &request->ai_interface),
+        OPTION_TEXT("--ai-if", "NAME", "of a log: interface of the AI side; selects the gateway topology",
+                    &request->ai_interface),
         OPTION_NUMBER("--bitrate", "N", "bit/s of the bus, for its load (500000)", &request->bit_rate, BIT_RATE_LOWEST,
                       BIT_RATE_HIGHEST),
         OPTION_FLAG("--json", "print JSON instead of text", &request->is_json),
