@@ -85,7 +85,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
             "line\n"
             "for each change. NO_COLOR=1 turns colours off.\n"
             "\n"
-            "The state of the supervisor is that of its status frame. Where none is heard for a second, it is that\n"
+            "The state of the supervisor is that of its status frame. Where none is received for a second, it is that\n"
             "of a supervisor in this program, which only listens.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],

@@ -161,7 +161,7 @@ class Proposal(Case):
         settings = self.settings()
         for name in ("throttle_status", "wheel_speed", "throttle_command"):
             self.assertNotIn("id_" + name, settings)
-            self.assertTrue(any(note.startswith(name + " was not heard") for note in survey["proposal"]["notes"]))
+            self.assertTrue(any(note.startswith(name + " was not received") for note in survey["proposal"]["notes"]))
 
     def test_two_identifiers_that_fit_one_message(self):
         def twice(frame):
@@ -169,7 +169,7 @@ class Proposal(Case):
             return [frame, copy] if frame.name == "gear_status" else frame
         survey = self.survey(traffic.frames(MINUTE, ENGAGED, ids=dict(traffic.IDS, gear_status=0x1A3), edit=twice))
         self.assertNotIn("id_gear_status", self.settings())
-        self.assertIn("gear_status was not heard; it could be 1A3h 1A4h: set id_gear_status",
+        self.assertIn("gear_status was not received; it could be 1A3h 1A4h: set id_gear_status",
                       survey["proposal"]["notes"])
 
     def test_counters_that_count_otherwise(self):
@@ -326,8 +326,8 @@ class Text(Case):
     def test_messages_that_were_not_heard(self):
         self.write("log", traffic.log(traffic.frames(2000, senders=("vcu",))))
         result = self.run_good("survey", "log")
-        self.assertIn("067h   steering_status             -  not heard\n", result.stdout)
-        self.assertIn("# - steering_status was not heard\n", result.stdout)
+        self.assertIn("067h   steering_status             -  not received\n", result.stdout)
+        self.assertIn("# - steering_status was not received\n", result.stdout)
         self.assertIn("# - autopilot was never engaged", result.stdout)
 
     def test_two_interfaces_that_are_not_a_gateway(self):
