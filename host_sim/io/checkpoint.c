@@ -84,8 +84,7 @@ static bool read_all(const checkpoint_t *checkpoint, const checkpoint_part_t par
         whole = fread(parts[i].bytes, parts[i].size, 1u, stream) == 1u;
     }
     whole = whole && (fread(&checksum, sizeof checksum, 1u, stream) == 1u) && (fgetc(stream) == EOF);
-    return (whole && (checksum == checksum_of(parts, count))) ||
-           report(DAMAGED, path);
+    return (whole && (checksum == checksum_of(parts, count))) || report(DAMAGED, path);
 }
 
 bool checkpoint_load(const checkpoint_t *checkpoint, const checkpoint_part_t parts[], size_t count, bool *loaded) {

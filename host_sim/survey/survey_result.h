@@ -21,7 +21,7 @@ typedef struct {
     identify_t found;
     proposal_t proposal;
     output_t config_file; /**< opened before the survey begins */
-    bool is_unread; /**< identifiers are proposed, and the messages that they carry could not be surveyed again */
+    bool is_unread;       /**< identifiers are proposed, and the messages that they carry could not be surveyed again */
 } survey_result_t;
 
 /** Print it for people on standard output, the configuration last. @param yaml the proposal as a file */

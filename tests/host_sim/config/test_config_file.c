@@ -262,7 +262,8 @@ void test_settings_that_do_not_fit_together(void) {
              "c.yaml:2: own_heartbeat: has no effect on a shared bus; this value needs the gateway topology\n");
     load_good("own_heartbeat: frozen\ntopology: gateway\n");
     agv_config_defaults(&config);
-    load_bad("status_frame_id: 0x203\n", "c.yaml:1: status_frame_id: another message has this identifier: id_vehicle_status\n");
+    load_bad("status_frame_id: 0x203\n",
+             "c.yaml:1: status_frame_id: another message has this identifier: id_vehicle_status\n");
     agv_config_defaults(&config);
     load_bad("\nthrottle_ceiling_pct: 50\n",
              "c.yaml:2: throttle_ceiling_pct: has no effect on a shared bus; this value needs the gateway topology\n");
