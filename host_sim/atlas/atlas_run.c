@@ -169,7 +169,13 @@ static status_t show_one(uint32_t number) {
     static text_t text;
     atlas_case_t pair;
     if (!atlas_case_get(number, &pair)) {
-        (void)report("--show: case %" PRIu32 " cannot happen", number);
+        uint32_t next = number + 1u;
+        while ((next < atlas_case_count()) && !atlas_case_get(next, &pair)) {
+            next++;
+        }
+        (void)((next < atlas_case_count())
+                   ? report("--show: case %" PRIu32 " cannot happen; the next one that can is %" PRIu32, number, next)
+                   : report("--show: case %" PRIu32 " cannot happen, nor one behind it", number));
         return STATUS_UNUSABLE;
     }
     text_clear(&text);

@@ -41,6 +41,8 @@ static json_t *read_object(shard_t *shard) {
     if (length < 0) {
         if (errno != 0) {
             (void)report("%s: %s", shard->path, strerror(errno));
+        } else if (shard->number == 0u) {
+            (void)report("%s: is empty", shard->path);
         } else {
             (void)report("%s: it ends after line %zu: runs are missing", shard->path, shard->number);
         }

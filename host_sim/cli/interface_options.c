@@ -12,7 +12,7 @@ void interface_options_init(interface_options_t *options, option_t rows[INTERFAC
     *options = (interface_options_t){.for_ms = INTERFACE_UNTIL_SIGNAL};
     rows[0] = (option_t)OPTION_TEXT("--can", "IF", "the interface of the vehicle side, or of the shared bus",
                                     &options->interfaces[HAL_CAN_VEHICLE]);
-    rows[1] = (option_t)OPTION_TEXT("--ai-can", "IF", "the interface of the AI side: a gateway",
+    rows[1] = (option_t)OPTION_TEXT("--ai-can", "IF", "interface of the AI side; selects the gateway topology",
                                     &options->interfaces[HAL_CAN_AI]);
     rows[2] = (option_t)OPTION_DURATION("--for", "stop after this time (250ms, 10s, 1.5min), or earlier by a signal",
                                         &options->for_ms, 1, FOR_MAX_MS);

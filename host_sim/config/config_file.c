@@ -13,7 +13,7 @@
 #include "text/suggest.h"
 #include "text/words.h"
 
-enum { HEX_DIGITS_MAX = 8, CLASS_WORD_TRIP = 0, CLASS_WORD_WARN = 1 };
+enum { HEX_DIGITS_MAX = 8, CLASS_WORD_TRIP = 0, CLASS_WORD_WARN = 1, REASON_SIZE = 80 };
 
 #define CLASS_WORDS "trip|warn"
 #define SWITCH_WORDS "off|on"
@@ -230,6 +230,20 @@ static bool report_setting(const config_lines_t *lines, size_t line, const char 
     return report_at(lines->path, line, "%s: %s", key, reason);
 }
 
+/** Of two settings with an identifier, the other one. The status frame may have no identifier of either set. */
+static uint16_t other_of(const agv_ids_t *ids, uint16_t id, uint16_t blamed) {
+    const bool is_status = blamed == (uint16_t)AGV_SETTING_status_frame_id;
+    uint16_t other = (uint16_t)AGV_SETTING_status_frame_id;
+    for (uint16_t i = 0u; i < (uint16_t)AGV_MSG_COUNT; i++) {
+        const uint16_t setting = (uint16_t)((uint16_t)AGV_SETTING_ID + i);
+        const bool is_of_a_set =
+            (agv_message_id(i, AGV_ID_SET_HEADING) == id) || (agv_message_id(i, AGV_ID_SET_TABLE) == id);
+        const bool has_it = (ids->of[i] == id) || (is_status && is_of_a_set);
+        other = (has_it && (setting != blamed)) ? setting : other;
+    }
+    return other;
+}
+
 /** The setting of the file that gives a message the identifier of another. */
 static bool blame_twice(const agv_config_t *config, const config_lines_t *lines, uint16_t setting) {
     agv_ids_t ids;
@@ -240,8 +254,10 @@ static bool blame_twice(const agv_config_t *config, const config_lines_t *lines,
     for (uint16_t i = 0u; (lines->settings[blamed] == 0u) && (i < (uint16_t)AGV_MSG_COUNT); i++) {
         blamed = (ids.of[i] == id) ? (uint16_t)((uint16_t)AGV_SETTING_ID + i) : blamed;
     }
-    return report_setting(lines, lines->settings[blamed], agv_setting_info(blamed)->name,
-                          "another message has this identifier");
+    const uint16_t other = other_of(&ids, id, blamed);
+    char reason[REASON_SIZE];
+    (void)snprintf(reason, sizeof reason, "another message has this identifier: %s", agv_setting_info(other)->name);
+    return report_setting(lines, lines->settings[blamed], agv_setting_info(blamed)->name, reason);
 }
 
 /** The setting of the file because of which no press would reset. */

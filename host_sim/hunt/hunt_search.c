@@ -135,12 +135,17 @@ static went_t run_piece(hunt_t *hunt, uint64_t piece) {
     return GOES_ON;
 }
 
+/** The piece that is next, by its number. */
+static uint64_t next_piece(const hunt_t *hunt) {
+    return (hunt->state.pieces * hunt->request->shards) + hunt->request->shard - 1u;
+}
+
 static went_t run_all(hunt_t *hunt) {
     const hunt_request_t *request = hunt->request;
     went_t went = GOES_ON;
 
     while (went == GOES_ON) {
-        const uint64_t piece = (hunt->state.pieces * request->shards) + request->shard - 1u;
+        const uint64_t piece = next_piece(hunt);
         if (piece * HUNT_PIECE_RUNS >= request->runs) {
             return OVER;
         }
@@ -171,8 +176,29 @@ static status_t conclude(const hunt_t *hunt, uint64_t took_ms) {
     return (found->count == 0u) ? STATUS_OK : STATUS_UNMET;
 }
 
+/** A checkpoint is whole pieces: the runs after the last one are done once more. */
+static void note_interrupted(const hunt_t *hunt) {
+    if (hunt->request->checkpoint == NULL) {
+        note("interrupted after %" PRIu64 " runs", hunt->done);
+    } else if (hunt->state.pieces == 0u) {
+        note("interrupted after %" PRIu64 " runs; nothing is saved yet: the checkpoint is written after each %u runs",
+             hunt->done, HUNT_PIECE_RUNS);
+    } else {
+        note("interrupted after %" PRIu64 " runs; the same command resumes from run %" PRIu64, hunt->done,
+             next_piece(hunt) * HUNT_PIECE_RUNS);
+    }
+}
+
+/** Before the first run, so that none is lost. */
+static bool may_save(hunt_t *hunt) {
+    const char *path = hunt->request->checkpoint;
+    const bool may = (path == NULL) || output_open(&hunt->file, path);
+    output_discard(&hunt->file);
+    return may;
+}
+
 static status_t run_until_end(hunt_t *hunt) {
-    if (!hunt_state_load(hunt->request, &hunt->state)) {
+    if (!hunt_state_load(hunt->request, &hunt->state) || !may_save(hunt)) {
         return STATUS_UNUSABLE;
     }
     interrupt_hold();
@@ -185,8 +211,7 @@ static status_t run_until_end(hunt_t *hunt) {
         return STATUS_UNUSABLE;
     }
     if (went == INTERRUPTED) {
-        note("interrupted after %" PRIu64 " runs%s", hunt->done,
-             (hunt->request->checkpoint != NULL) ? "; the same command resumes" : "");
+        note_interrupted(hunt);
     }
     return conclude(hunt, monotonic_ms() - start_ms);
 }

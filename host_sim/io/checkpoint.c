@@ -7,6 +7,8 @@
 #include "agv/checksum.h"
 #include "common/report.h"
 
+#define DAMAGED "%s: a damaged checkpoint; remove it to start over"
+
 /** The header. */
 typedef struct {
     char magic[24];
@@ -53,6 +55,13 @@ bool checkpoint_save(const checkpoint_t *checkpoint, output_t *file, const check
     return output_commit(file);
 }
 
+/** The magic without its number: a file that begins otherwise is something else. */
+static bool is_kind(const checkpoint_t *checkpoint, const head_t *head, size_t size) {
+    char begin[sizeof head->magic];
+    const int length = snprintf(begin, sizeof begin, "agv %s ", checkpoint->kind);
+    return (length > 0) && (size >= (size_t)length) && (memcmp(head, begin, (size_t)length) == 0);
+}
+
 static bool read_all(const checkpoint_t *checkpoint, const checkpoint_part_t parts[], size_t count, FILE *stream) {
     const head_t expected = head_of(checkpoint, parts, count);
     const char *path = checkpoint->path;
@@ -60,8 +69,12 @@ static bool read_all(const checkpoint_t *checkpoint, const checkpoint_part_t par
     bool whole = true;
     head_t head;
 
-    if (fread(&head, sizeof head, 1u, stream) != 1u) {
+    const size_t size = fread(&head, 1u, sizeof head, stream);
+    if (!is_kind(checkpoint, &head, size)) {
         return report("%s: not a %s checkpoint", path, checkpoint->kind);
+    }
+    if (size < sizeof head) {
+        return report(DAMAGED, path);
     }
     if (memcmp(&head, &expected, sizeof head) != 0) {
         return report("%s: the checkpoint of another %s or another build; remove it to start over", path,
@@ -71,8 +84,7 @@ static bool read_all(const checkpoint_t *checkpoint, const checkpoint_part_t par
         whole = fread(parts[i].bytes, parts[i].size, 1u, stream) == 1u;
     }
     whole = whole && (fread(&checksum, sizeof checksum, 1u, stream) == 1u) && (fgetc(stream) == EOF);
-    return (whole && (checksum == checksum_of(parts, count))) ||
-           report("%s: a damaged checkpoint; remove it to start over", path);
+    return (whole && (checksum == checksum_of(parts, count))) || report(DAMAGED, path);
 }
 
 bool checkpoint_load(const checkpoint_t *checkpoint, const checkpoint_part_t parts[], size_t count, bool *loaded) {

@@ -276,8 +276,25 @@ bool output_check_distinct(const output_role_t *roles, size_t count) {
 }
 
 bool output_check_folder(const char *role, const char *path) {
+    static const char name[] = "/.host_sim.XXXXXX";
     struct stat about;
-    return ((stat(path, &about) == 0) && S_ISDIR(about.st_mode)) || report("%s: '%s' is not a folder", role, path);
+    if ((stat(path, &about) != 0) || !S_ISDIR(about.st_mode)) {
+        return report("%s: '%s' is not a folder", role, path);
+    }
+    const size_t size = strlen(path) + sizeof name;
+    char *file = malloc(size);
+    if (file == NULL) {
+        return report("out of memory");
+    }
+    (void)snprintf(file, size, "%s%s", path, name);
+    const int fd = mkstemp(file);
+    const int error = errno;
+    if (fd >= 0) {
+        (void)unlink(file);
+        (void)close(fd);
+    }
+    free(file);
+    return (fd >= 0) || report("%s: the folder '%s' cannot be written: %s", role, path, strerror(error));
 }
 
 bool output_put(output_t *output, const char *path, const void *bytes, size_t size) {

@@ -88,7 +88,7 @@ typedef struct {
  */
 bool output_check_distinct(const output_role_t *roles, size_t count);
 
-/** Check that a path is a folder. @param role "--found" @return false: it is not; was reported */
+/** Check that a path is a folder in which files can be written. @param role "--found" @return false: was reported */
 bool output_check_folder(const char *role, const char *path);
 
 /** Write a file of these bytes. @return false: was reported */

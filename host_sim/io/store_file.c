@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "agv/checksum.h"
@@ -128,6 +129,23 @@ static void clear(sim_store_t *store, agv_recorder_t *recorder) {
 
 bool store_file_is(const char *text, size_t size) {
     return (size >= strlen(FIRST_WORD)) && (memcmp(text, FIRST_WORD, strlen(FIRST_WORD)) == 0);
+}
+
+bool store_file_may_replace(const char *path) {
+    struct stat about;
+    if ((stat(path, &about) != 0) || !S_ISREG(about.st_mode)) {
+        return true;
+    }
+    char begin[sizeof FIRST_WORD - 1u];
+    FILE *stream = fopen(path, "rb");
+    const size_t size = (stream != NULL) ? fread(begin, 1u, sizeof begin, stream) : 0u;
+    if (stream != NULL) {
+        (void)fclose(stream);
+    }
+    return (memcmp(begin, FIRST_WORD, size) == 0) ||
+           report("%s: no store, which begins with '" FIRST_WORD "', so it is not overwritten; "
+                  "give a store or a new file",
+                  path);
 }
 
 void store_file_take(const char *text, size_t size, sim_store_t *store, agv_recorder_t *recorder) {

@@ -32,6 +32,13 @@ bool store_file_load(const char *path, sim_store_t *store, agv_recorder_t *recor
 /** Whether a file begins as a store does. */
 bool store_file_is(const char *text, size_t size);
 
+/**
+ * Whether a store may be written to a path: there is no file, a store that may be damaged, or one that was cut off at its very
+ * beginning, but not a file of another kind. What cannot be read is left to store_file_load().
+ * @return false: was reported
+ */
+bool store_file_may_replace(const char *path);
+
 /** As store_file_load, of a file that is in memory. */
 void store_file_take(const char *text, size_t size, sim_store_t *store, agv_recorder_t *recorder);
 

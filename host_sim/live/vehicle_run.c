@@ -113,15 +113,24 @@ static void on_typed_line(run_t *run, const char *line) {
     if (line[strspn(line, " \t")] == '\0') {
         return;
     }
-    if (strcmp(line, "quit") == 0) {
+    switch (vehicle_words_command(line)) {
+    case VEHICLE_COMMAND_QUIT:
         run->quits = true;
-    } else if (strcmp(line, "help") == 0) {
+        break;
+    case VEHICLE_COMMAND_HELP:
         vehicle_words_help();
-    } else if (strcmp(line, "status") == 0) {
+        break;
+    case VEHICLE_COMMAND_STATUS:
         show(run);
         vehicle_show_status(&run->show);
-    } else if (vehicle_words_typed(line, &run->request->config, &words)) {
-        do_action(run, &words);
+        break;
+    case VEHICLE_COMMAND_NONE:
+        if (vehicle_words_typed(line, &run->request->config, &words)) {
+            do_action(run, &words);
+        }
+        break;
+    default:
+        break;
     }
 }
 

@@ -11,6 +11,8 @@
 #define ACTORS "vcu, eps, ai, operator, bus"
 #define FAULT_FORM "WHO-WHAT[,NAME=VALUE]...@TIME"
 
+#define COMMANDS "help, status, quit"
+
 enum { PARTS_MAX = 12, SHOWN_MAX = 80, SOURCE_SIZE = 100, HELP_WIDTH = 100, HELP_INDENT = 14, PARTS_BEFORE_VALUES = 2 };
 
 /** A line in its parts. */
@@ -19,6 +21,7 @@ typedef struct {
     const char *parts[PARTS_MAX]; /**< actor, word, NAME=VALUE... */
     unsigned count;
     const char *at_ms;
+    bool is_typed;
     char source[SOURCE_SIZE]; /**< how messages call it */
 } line_t;
 
@@ -84,7 +87,8 @@ static bool check_actor(const line_t *line) {
     const yaml_word_t *actor = find_actor(line->parts[0]);
 
     if (actor == NULL) {
-        return report("%s: '%.40s' is not one of " ACTORS, line->source, line->parts[0]);
+        return report("%s: '%.40s' is not one of " ACTORS "%s", line->source, line->parts[0],
+                      line->is_typed ? ", " COMMANDS : "");
     }
     if (line->count == 1u) {
         return report("%s: the action of %s is missing", line->source, actor->word);
@@ -166,8 +170,27 @@ static bool take_text(line_t *line, const char *text, const char *before, const 
            report("%s: longer than %u characters", line->source, VEHICLE_WORDS_MAX - 1u);
 }
 
+vehicle_command_t vehicle_words_command(const char *text) {
+    static const char *const commands[] = {
+        [VEHICLE_COMMAND_HELP] = "help", [VEHICLE_COMMAND_STATUS] = "status", [VEHICLE_COMMAND_QUIT] = "quit"};
+    const char *word = &text[strspn(text, " \t")];
+    const size_t length = strcspn(word, " \t");
+    const char *rest = &word[length + strspn(&word[length], " \t")];
+    for (size_t i = VEHICLE_COMMAND_HELP; i < sizeof commands / sizeof commands[0]; i++) {
+        if ((strlen(commands[i]) != length) || (memcmp(commands[i], word, length) != 0)) {
+            continue;
+        }
+        if (*rest == '\0') {
+            return (vehicle_command_t)i;
+        }
+        (void)report("'%.*s': '%s' stands alone on its line", SHOWN_MAX, text, commands[i]);
+        return VEHICLE_COMMAND_BAD;
+    }
+    return VEHICLE_COMMAND_NONE;
+}
+
 bool vehicle_words_typed(const char *text, const agv_config_t *config, vehicle_words_t *words) {
-    line_t line = {.at_ms = "0"};
+    line_t line = {.at_ms = "0", .is_typed = true};
 
     return take_text(&line, text, "'", "'") && read_line(&line, " \t", config, words);
 }
@@ -187,6 +210,9 @@ bool vehicle_words_fault(const char *text, const agv_config_t *config, vehicle_w
     char *dash = strchr(line.text, '-');
     if ((at == NULL) || (dash == NULL) || (dash > at) || has_empty_part(line.text, dash, at)) {
         return report_wrong_line(&line, FAULT_FORM " is needed, such as ai-stop@2s");
+    }
+    if (at[1] == '\0') {
+        return report_wrong_line(&line, "the time after @ is missing, such as @2s");
     }
     *at = '\0';
     *dash = ',';
@@ -273,5 +299,5 @@ void vehicle_words_help(void) {
     }
     print_fields();
     print_messages();
-    (void)printf("%-*shelp, status, quit\n", HELP_INDENT, "this program");
+    (void)printf("%-*s" COMMANDS "\n", HELP_INDENT, "this program");
 }

@@ -20,6 +20,18 @@ typedef struct {
     char what[VEHICLE_WORDS_MAX]; /**< "set field=faults value=08h" */
 } vehicle_words_t;
 
+/** What a typed line is beside a step. */
+typedef enum {
+    VEHICLE_COMMAND_NONE, /**< a step, if anything */
+    VEHICLE_COMMAND_HELP,
+    VEHICLE_COMMAND_STATUS,
+    VEHICLE_COMMAND_QUIT,
+    VEHICLE_COMMAND_BAD /**< a command with more words behind it; was reported */
+} vehicle_command_t;
+
+/** Whether a typed line is a command. Blanks around it do not matter. */
+vehicle_command_t vehicle_words_command(const char *line);
+
 /**
  * Read a typed line: `eps set field=faults value=08h`. A value with blanks stands in quotes.
  * @param config its ID set and topology decide what may be named

@@ -144,7 +144,7 @@ static const char *parse_data(const char **cursor, hal_can_frame_t *frame, uint3
         }
         uint32_t low = hex_digit(at[1]);
         if (low >= HEX_NO_DIGIT) {
-            return "the data has an odd number of digits";
+            return (at[1] > ' ') ? "the data is not hexadecimal" : "the data has an odd number of digits";
         }
         if (length >= most) {
             return (most == DATA_MAX) ? "the data is longer than 8 bytes" : "the data is longer than 64 bytes";

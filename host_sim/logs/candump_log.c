@@ -10,6 +10,13 @@
 #include "common/report.h"
 #include "logs/log_foreign.h"
 
+#ifdef CANDUMP_NO_OPTIONS
+#define CUT_OFF "; the log ends in this line"
+#else
+#define CUT_OFF                                                                                                        \
+    "; the log ends in this line, which --skip-bad-lines leaves out" /* as all commands with a log have it */
+#endif
+
 bool candump_open(candump_log_t *log, const char *path, bool skip_bad) {
     bool is_stdin = strcmp(path, "-") == 0;
     log->name = is_stdin ? "standard input" : path;
@@ -52,7 +59,7 @@ bool candump_reject(candump_log_t *log, const char *wrong) {
         log->skipped++;
         return true;
     }
-    return report_at(log->name, (size_t)log->line, "%s%s", wrong, log->is_cut_off ? "; the log ends in this line" : "");
+    return report_at(log->name, (size_t)log->line, "%s%s", wrong, log->is_cut_off ? CUT_OFF : "");
 }
 
 /** Read from the file. @return number of bytes; 0: the end; -1: an error (reported) or an interruption. */

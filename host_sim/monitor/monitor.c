@@ -118,7 +118,7 @@ static void take_other(monitor_t *monitor, hal_can_side_t side, const hal_can_fr
     if (other->count == 0u) {
         const bool other_set = is_of_other_set(monitor, other);
         monitor_say(monitor, t_us, other_set ? MONITOR_WARN : MONITOR_QUIET, interface_of(monitor, side),
-                    "%0*" PRIX32 "h heard, %s", other->is_extended ? 8 : 3, other->id,
+                    "%0*" PRIX32 "h received, %s", other->is_extended ? 8 : 3, other->id,
                     other_set ? "an identifier of the other ID set (--id-set)" : "no message of the protocol");
     }
     other->count++;

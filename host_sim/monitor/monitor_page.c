@@ -172,7 +172,7 @@ static void draw_vehicle(monitor_view_t *view, int y, const monitor_t *monitor) 
     x = put_value(view, y, x, monitor, AGV_MSG_THROTTLE_STATUS, "throttle", "  throttle ");
     x = put_value(view, y, x, monitor, AGV_MSG_STEERING_STATUS, "angle", "  steering ");
     if (x == begin) {
-        (void)monitor_view_put(view, y, x, STYLE_DIM, "nothing heard yet");
+        (void)monitor_view_put(view, y, x, STYLE_DIM, "nothing received yet");
     }
 }
 
@@ -193,7 +193,7 @@ static void draw_alarms(monitor_view_t *view, int y, const monitor_t *monitor) {
 }
 
 static void draw_others(monitor_view_t *view, int y, const monitor_t *monitor) {
-    int x = label(view, y, "also heard");
+    int x = label(view, y, "also seen");
     const int begin = x;
     if (monitor->supervisor.heard_count > 0u) {
         x = monitor_view_print(view, y, x, STYLE_PLAIN, "%03Xh status frame  ",

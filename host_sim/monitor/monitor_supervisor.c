@@ -176,7 +176,7 @@ static void begin_status(monitor_t *monitor, uint64_t t_us) {
                                          .first_reason = AGV_FAULT_NONE,
                                          .heard_us = supervisor->heard_us,
                                          .heard_count = supervisor->heard_count};
-    monitor_say(monitor, t_us, MONITOR_QUIET, "supervisor", "its status frame %03Xh is heard",
+    monitor_say(monitor, t_us, MONITOR_QUIET, "supervisor", "its status frame %03Xh is received",
                 (unsigned)monitor->config.status_frame_id);
 }
 

@@ -177,7 +177,7 @@ static void draw_signals(monitor_view_t *view, int y, int x, const monitor_t *mo
                          monitor_style_t style) {
     signal_value_t value;
     if (row->count == 0u) {
-        (void)monitor_view_put(view, y, x, style, "never heard");
+        (void)monitor_view_put(view, y, x, style, "never received");
         return;
     }
     if (monitor_is_late(monitor, row)) {

@@ -43,7 +43,7 @@ static bool hint_id_set(text_t *text, const replay_clues_t *clues) {
         return false;
     }
     add_ids(text, found, count);
-    text_add(text, " heard, ");
+    text_add(text, " received, ");
     add_ids(text, lacking, count);
     text_add(text, " not: --id-set %s", (other_set == (uint32_t)AGV_ID_SET_TABLE) ? "table" : "heading");
     return true;
@@ -67,9 +67,10 @@ static bool is_this_vehicle(const replay_clues_t *clues) {
 /** What was heard where no data frame of the right kind was. */
 static const char *other_frames(const replay_heard_t *heard) {
     if (heard->fd) {
-        return "only CAN FD frames heard: the protocol has classic CAN frames";
+        return "only CAN FD frames received: the protocol has classic CAN frames";
     }
-    return heard->extended ? "only 29-bit identifiers heard: the protocol has 11-bit ones" : "no data frame heard";
+    return heard->extended ? "only 29-bit identifiers received: the protocol has 11-bit ones"
+                           : "no data frame received";
 }
 
 /** Add a list of identifiers; of many the first ones. */
@@ -116,10 +117,11 @@ static bool hint_other_vehicle(text_t *text, const replay_clues_t *clues) {
         return true;
     }
     add_some(text, shown, count, more);
-    text_add(text,
-             " heard, %zu of the %u messages of the protocol: another vehicle? Each identifier is a setting (id_...), "
-             "and host_sim survey proposes them",
-             known_heard(clues), (unsigned)AGV_MSG_COUNT);
+    text_add(
+        text,
+        " received, %zu of the %u messages of the protocol: another vehicle? Each identifier is a setting (id_...), "
+        "and host_sim survey proposes them",
+        known_heard(clues), (unsigned)AGV_MSG_COUNT);
     return true;
 }
 
@@ -151,7 +153,7 @@ static bool hint_node(text_t *text, const replay_clues_t *clues) {
         }
         if (count == nodes[n].count) {
             add_ids(text, lacking, count);
-            text_add(text, " never heard: is the %s on this bus?", nodes[n].name);
+            text_add(text, " never received: is the %s on this bus?", nodes[n].name);
             return true;
         }
     }
@@ -179,7 +181,7 @@ static bool hint_ids(text_t *text, const replay_clues_t *clues) {
         return false;
     }
     add_ids(text, lacking, count);
-    text_add(text, " never heard, but ");
+    text_add(text, " never received, but ");
     add_some(text, unknown, unknown_count, more);
     text_add(text, ", which the protocol does not know: other identifiers? host_sim survey proposes them");
     return true;

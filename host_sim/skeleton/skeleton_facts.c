@@ -41,6 +41,10 @@ static void on_end(void *ctx, const why_t *why) {
         facts->trip = *why_trip(why, 0u);
         why_words_cause(&facts->why, why, &facts->trip);
     }
+    facts->more = 0u;
+    for (size_t i = 1u; i < facts->trips; i++) {
+        facts->more += (why_trip(why, i)->kind == WHY_VEHICLE) ? 0u : 1u;
+    }
 }
 
 /** What counts while the autopilot is engaged only. */

@@ -16,6 +16,7 @@ typedef struct {
     const skeleton_request_t *request;
     bool has_ended;     /**< the log was replayed to its end */
     size_t trips;       /**< how many there were */
+    size_t more;        /**< trips after the first one that replay shows, too: none because a recording cannot obey */
     uint64_t states_us; /**< how long it supervised */
     why_trip_t trip;    /**< the first one */
     text_t why;         /**< as a sentence */

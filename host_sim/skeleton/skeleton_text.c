@@ -35,8 +35,9 @@ static void add_head(text_t *text, const skeleton_plan_t *plan) {
     text_add(text, ": %s\"\nshows: [%s]\ndescription: |\n  The log: tripped at ", reason, reason);
     why_words_time(text, facts->trip.t_us);
     text_add(text, ", %s.\n  %s.\n", reason, facts->why.bytes);
-    if (facts->trips > 1u) {
-        text_add(text, "  It has %zu more trips, which are not shown here.\n", facts->trips - 1u);
+    if (facts->more > 0u) {
+        text_add(text, "  It has %zu more trip%s not shown here.\n", facts->more,
+                 (facts->more == 1u) ? ", which is" : "s, which are");
     }
     if (plan->is_shorter) {
         text_add(text, "  The log is longer: the time before the fault was cut.\n");

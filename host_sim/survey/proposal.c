@@ -162,7 +162,7 @@ static void propose_identifier(proposal_t *proposal, uint32_t message, const ide
     for (size_t i = 0u; i < found->count; i++) {
         (void)snprintf(&candidates[strlen(candidates)], 8u, " %03Xh", found->candidates[i]);
     }
-    note(proposal, "%s was not heard%s%s%s%s", name, (found->count > 0u) ? "; it could be" : "", candidates,
+    note(proposal, "%s was not received%s%s%s%s", name, (found->count > 0u) ? "; it could be" : "", candidates,
          (found->count > 0u) ? ": set " : "", (found->count > 0u) ? agv_setting_info((uint16_t)setting)->name : "");
 }
 

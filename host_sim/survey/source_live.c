@@ -90,7 +90,8 @@ static bool run(live_t *live) {
     }
     const char *interface = live->request->bus.interfaces[HAL_CAN_VEHICLE];
     if (live->observation->frames == 0u) {
-        return report("%s: no frame came", interface);
+        return report("%s: no frame came; check the bit rate and the cable, and that ip link shows the interface as up",
+                      interface);
     }
     (void)snprintf(live->source->name, sizeof live->source->name, "%s", interface);
     live->observation->lost = (uint64_t)live->lost[HAL_CAN_VEHICLE] + live->lost[HAL_CAN_AI];

@@ -74,37 +74,37 @@ static void propose(survey_result_t *result) {
     const bool is_other = result->config.id_set != result->request->config.id_set;
     const bool is_table = result->config.id_set == (uint16_t)AGV_ID_SET_TABLE;
     char reason[REASON_SIZE];
-    (void)snprintf(reason, sizeof reason, "%s were heard, %s were not, or less often",
+    (void)snprintf(reason, sizeof reason, "%s were received, %s were not, or less often",
                    is_table ? "201h and 203h" : "43Fh and 363h", is_table ? "43Fh and 363h" : "201h and 203h");
     proposal_make(&result->proposal, result->traffic, &result->config, &result->found, is_other ? reason : NULL);
 }
 
-static bool write_config(const survey_result_t *result, const char *yaml) {
+/** Before anything is heard: a survey of an hour is not lost because its file cannot be written. */
+static bool open_config(survey_result_t *result) {
     const char *path = result->request->config_out;
-    if (path == NULL) {
+    return (path == NULL) || output_open(&result->config_file, path);
+}
+
+static bool write_config(survey_result_t *result, const char *yaml) {
+    if (!result->config_file.is_open) {
         return true;
     }
-    output_t *output = calloc(1u, sizeof *output);
-    if (output == NULL) {
-        return report("out of memory");
-    }
-    const bool good = output_put(output, path, yaml, strlen(yaml));
-    free(output);
+    (void)output_write(&result->config_file, yaml, strlen(yaml));
+    const bool good = output_commit(&result->config_file);
     interrupt_release();
     return good;
 }
 
-static bool print(const survey_result_t *result) {
+static bool print(survey_result_t *result) {
     char *yaml = proposal_yaml(&result->proposal, result->source.name);
     if (yaml == NULL) {
         return report("out of memory");
     }
-    const bool is_quiet = output_is_stdout(result->request->config_out);
     bool good = write_config(result, yaml);
-    if (good && result->request->is_json) {
-        good = survey_print_json(result);
-    } else if (good && !is_quiet) {
-        survey_print(result, yaml);
+    if (result->request->is_json) {
+        good = survey_print_json(result) && good;
+    } else if (!output_is_stdout(result->request->config_out)) {
+        survey_print(result, yaml); /* also when its file could not be written: a bus is not heard twice */
     }
     free(yaml);
     return good;
@@ -112,7 +112,7 @@ static bool print(const survey_result_t *result) {
 
 static bool run(survey_result_t *result) {
     const survey_request_t *request = result->request;
-    if (!gather(result, &request->config)) {
+    if (!open_config(result) || !gather(result, &request->config)) {
         return false;
     }
     if (request->log != NULL) {
@@ -134,7 +134,9 @@ status_t survey_run(const survey_request_t *request) {
     }
     result->request = request;
     const bool good = run(result);
+    output_discard(&result->config_file);
     observation_free(&result->observation);
     free(result);
+    interrupt_release();
     return good ? STATUS_OK : STATUS_UNUSABLE;
 }

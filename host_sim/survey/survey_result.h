@@ -5,6 +5,7 @@
 #ifndef HOST_SIM_SURVEY_RESULT_H
 #define HOST_SIM_SURVEY_RESULT_H
 
+#include "io/output.h"
 #include "survey/identify.h"
 #include "survey/observation.h"
 #include "survey/proposal.h"
@@ -19,7 +20,8 @@ typedef struct {
     agv_config_t config;      /**< that of `traffic` */
     identify_t found;
     proposal_t proposal;
-    bool is_unread; /**< identifiers are proposed, and the messages that they carry could not be surveyed again */
+    output_t config_file; /**< opened before the survey begins */
+    bool is_unread;       /**< identifiers are proposed, and the messages that they carry could not be surveyed again */
 } survey_result_t;
 
 /** Print it for people on standard output, the configuration last. @param yaml the proposal as a file */

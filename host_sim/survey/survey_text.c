@@ -110,7 +110,7 @@ static void print_messages(const survey_result_t *result) {
         if ((entry == NULL) || (entry->count == 0u)) {
             agv_ids_t ids;
             agv_config_ids(&result->config, &ids);
-            (void)printf("%03Xh   %-19s         -  not heard\n", ids.of[message], signals_message_name(message));
+            (void)printf("%03Xh   %-19s         -  not received\n", ids.of[message], signals_message_name(message));
         }
     }
     (void)printf(

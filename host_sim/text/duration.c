@@ -124,6 +124,14 @@ duration_result_t duration_read(const char *text, duration_unit_t unit, uint64_t
     return DURATION_OK;
 }
 
+/** Times that are a whole number of a unit. */
+static const char *examples_of(duration_unit_t unit) {
+    if (unit >= DURATION_D) {
+        return "2d";
+    }
+    return (unit >= DURATION_MIN) ? "2h" : &"250ms, 10s, 1.5min, 2h"[(unit == DURATION_S) ? strlen("250ms, ") : 0u];
+}
+
 const char *duration_problem(duration_result_t result, const char *text, duration_unit_t unit, uint64_t lowest,
                              uint64_t highest, char problem[DURATION_PROBLEM_SIZE]) {
     char from[DURATION_TEXT_SIZE];
@@ -135,9 +143,8 @@ const char *duration_problem(duration_result_t result, const char *text, duratio
         (void)snprintf(problem, DURATION_PROBLEM_SIZE, "'%.*s' is not a whole number of %s", SHOWN_MAX, text,
                        units[unit].words);
     } else {
-        (void)snprintf(problem, DURATION_PROBLEM_SIZE,
-                       "'%.*s' is not a time: 250ms, 10s, 1.5min, 2h, or whole %s alone", SHOWN_MAX, text,
-                       units[unit].words);
+        (void)snprintf(problem, DURATION_PROBLEM_SIZE, "'%.*s' is not a time: %s, or whole %s alone", SHOWN_MAX, text,
+                       examples_of(unit), units[unit].words);
     }
     return problem;
 }

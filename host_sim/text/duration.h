@@ -31,7 +31,8 @@ duration_result_t duration_read(const char *text, duration_unit_t unit, uint64_t
 #define DURATION_PROBLEM_SIZE 160u
 
 /**
- * Say what is wrong with a text: "'10 parsecs' is not a time: 250ms, 10s, 1.5min, 2h, or whole milliseconds alone".
+ * Say what is wrong with a text: "'10 parsecs' is not a time: 250ms, 10s, 1.5min, 2h, or whole milliseconds alone". The
+ * examples are whole numbers of @p unit: none that would be refused next.
  * @param result of duration_read() with the same arguments; not DURATION_OK
  * @return problem
  */

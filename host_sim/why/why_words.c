@@ -136,7 +136,7 @@ static void add_from(text_t *text, const char *words, uint64_t t_us) {
 }
 
 static void say_silence(text_t *text, const why_t *why, const why_trip_t *trip) {
-    text_add(text, trip->was_heard ? "was silent" : "was never heard");
+    text_add(text, trip->was_heard ? "was silent" : "was never received");
     add_from(text, ": last at ", trip->last_good_us);
     if (trip->from_engagement) {
         add_from(text, ", engaged at ", trip->cause_us);
@@ -287,11 +287,11 @@ static void say_no_beat(text_t *text, const why_t *why, agv_message_t number) {
     const why_message_t *message = &why->messages[number];
     const unsigned id = why->ids.of[number];
     if (message->count == 0u) {
-        text_add(text, "%03Xh never heard", id);
+        text_add(text, "%03Xh never received", id);
     } else if (message->repeats) {
         text_add(text, "alive counter of %03Xh stuck at %u", id, message->counter.value);
     } else {
-        text_add(text, "%03Xh last heard at ", id);
+        text_add(text, "%03Xh last received at ", id);
         why_words_time(text, message->last_us);
     }
 }
@@ -300,7 +300,7 @@ static void say_no_manual(text_t *text, const why_t *why) {
     const unsigned id = why->ids.of[AGV_MSG_VEHICLE_STATUS];
     const uint32_t bits = why->facts.mode_bits & (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT);
     if (!why->facts.mode_known) {
-        text_add(text, "%03Xh never heard", id);
+        text_add(text, "%03Xh never received", id);
         return;
     }
     const char *mode = (bits == 0u)                       ? "neither mode"
@@ -324,7 +324,7 @@ static void say_no_messages(text_t *text, const why_t *why, bool heard) {
         }
     }
     if (between[0] != '\0') {
-        text_add(text, heard ? " silent" : " never heard");
+        text_add(text, heard ? " silent" : " never received");
     }
 }
 

@@ -186,7 +186,7 @@ class Faults(canbus.Case):
         bus.forget()
         self.assertEqual(canbus.of(bus.listen(0.3), 0x0A3), [])
         vehicle.say("ai explode")
-        self.assertEqual(vehicle.wait_line("", "stderr"), "host_sim: 'ai explode': ai: unknown action 'explode'\n")
+        self.assertEqual(vehicle.wait_line("", "stderr"), "host_sim: 'ai explode': ai: unknown action 'explode'; docs/scenarios.md lists them\n")
         vehicle.say("")
         vehicle.say("status")
         vehicle.wait_line(r"^gear P, manual, 0\.00 m/s, throttle 0 %, steering 0\.0 deg, alarms: EPS_HARDWARE")

@@ -164,7 +164,7 @@ test("bad input is one sentence", async () => {
   simulation.create("short.yaml", SHORT);
   simulation.step(100);
   says(() => simulation.inject("{at_ms: 5, ai: stop}"), "5 ms has passed");
-  says(() => simulation.inject("{at_ms: 500, ai: fly}"), "ai: unknown action 'fly'");
+  says(() => simulation.inject("{at_ms: 500, ai: fly}"), "ai: unknown action 'fly'; docs/scenarios.md lists them");
   says(() => simulation.inject("{at_ms: 500"), /^not YAML/);
   says(() => simulation.replay("a.log", Buffer.from("hello\n")), /^a\.log:1: .*candump/);
   says(() => simulation.replay("a.log", Buffer.from("")), /^a\.log: /);

@@ -39,15 +39,17 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     const option_t rows[] = {
         OPTION_NUMBER("--runs", "N", "number of runs, of all shards together", &given->runs, 1, RUNS_MAX),
         OPTION_FAULT("--fault", "cause this fault in every run", &given->fault),
-        OPTION_FLAG("--newly-engaged", "cause the fault at an engagement; for faults that this delays",
+        OPTION_FLAG("--newly-engaged",
+                    "cause the fault at an engagement; only for faults that are detected later after an engagement",
                     &given->newly_engaged),
         OPTION_TEXT("--results", "FILE", "results as JSON Lines", &given->results),
         OPTION_TEXT("--why", "FILE", "what replay --why would say of each run, as JSON Lines", &given->request.why),
         OPTION_TEXT("--broken", "FOLDER", "folder for the scenarios of runs that break an invariant (.)",
                     &given->folder),
         OPTION_NUMBER("--show", "RUN", "only print this run, as a scenario", &given->show, 0, RUNS_MAX - 1u),
-        OPTION_FLAG("--merge", "merge the results of all shards into one table, and one --results", &given->merge),
-        OPTION_FLAG("--tables", "print the data that reaction times follow from, as JSON", &given->tables),
+        OPTION_FLAG("--merge", "merge the results of all shards into one table, and into one file with --results",
+                    &given->merge),
+        OPTION_FLAG("--tables", "print the data from which reaction times are derived, as JSON", &given->tables),
     };
     const option_group_t groups[] = {
         {.title = "Options", .options = random_rows, .count = RANDOM_OPTIONS},
@@ -108,16 +110,20 @@ static bool make_request(given_t *given, char **operands) {
                                    {.role = "--why", .path = request->why, .is_written = true}};
     return output_check_distinct(roles, sizeof roles / sizeof roles[0]) &&
            ((given->fault == NULL) || take_fault(given->fault, &request->part.causes)) &&
-           output_check_folder("--broken", request->folder);
+           (request->shows_one || output_check_folder("--broken", request->folder));
+}
+
+static bool has_run_options(const given_t *given) {
+    return (given->runs != OPTION_NOT_GIVEN) || (given->random.seed != OPTION_NOT_GIVEN) ||
+           (given->random.shard != NULL) || (given->fault != NULL) || (given->show != OPTION_NOT_GIVEN) ||
+           (given->folder != NULL) || given->newly_engaged || (given->request.why != NULL);
 }
 
 static bool check_merge(const given_t *given, char **files) {
     if (given->file_count == 0u) {
         return report("--merge: FILE is missing; see host_sim campaign --help");
     }
-    if ((given->runs != OPTION_NOT_GIVEN) || (given->random.seed != OPTION_NOT_GIVEN) ||
-        (given->random.shard != NULL) || (given->fault != NULL) || (given->show != OPTION_NOT_GIVEN) ||
-        (given->folder != NULL) || given->newly_engaged || (given->request.why != NULL)) {
+    if (has_run_options(given)) {
         return report("--merge takes files, and of the other options only --results");
     }
     for (size_t i = 0u; i < given->file_count; i++) {
@@ -154,7 +160,11 @@ static status_t merge(const given_t *given, char **files) {
     return status;
 }
 
-static status_t print_tables(void) {
+static status_t print_tables(const given_t *given) {
+    if (has_run_options(given) || given->merge || (given->results != NULL) || (given->file_count > 0u)) {
+        (void)report("--tables runs nothing: no other option and no file can be combined with it");
+        return STATUS_UNUSABLE;
+    }
     output_t *output = calloc(1u, sizeof *output);
     const bool good = (output != NULL) && output_open(output, "-") && campaign_print_tables(output);
     const bool written = good && output_commit(output);
@@ -168,12 +178,8 @@ status_t cmd_campaign(int argc, char **argv) {
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
-    if (given.tables && ((given.results != NULL) || (given.request.why != NULL) || given.merge)) {
-        (void)report("--tables runs nothing: --results, --why and --merge cannot be combined with it");
-        return STATUS_UNUSABLE;
-    }
     if (given.tables) {
-        return print_tables();
+        return print_tables(&given);
     }
     if (given.merge) {
         return check_merge(&given, argv) ? merge(&given, argv) : STATUS_UNUSABLE;

@@ -46,7 +46,7 @@ status_t cmd_config(int argc, char **argv) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
     if (is_schema && to_kconfig) {
-        (void)report("--schema and --to-kconfig: one of them");
+        (void)report("give only one of --schema and --to-kconfig");
         return STATUS_UNUSABLE;
     }
     if (is_schema) {

@@ -114,6 +114,10 @@ static bool find_scenario(const char *name, char path[PATH_SIZE]) {
     if ((length < 0) || (length >= PATH_SIZE)) {
         return report("--scenario: the name is too long");
     }
+    if (!is_path && (length == 0) && (access(shipped_scenarios(), R_OK) != 0)) {
+        return report("no folder %s; keep the program with its share folder, or give --scenario FILE",
+                      shipped_scenarios());
+    }
     if (!is_path && (length == 0)) {
         char meant[SUGGEST_SIZE];
         (void)suggest_from(shipped_scenario_names(), name, meant);

@@ -28,7 +28,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         OPTION_NUMBER("--runs", "N", "number of runs, of all shards together", &request->runs, 1, RUNS_MAX),
         OPTION_DURATION_IN(DURATION_MIN, "--for-minutes", "stop after this time: 2h, or minutes alone",
                            &request->minutes, 1, MINUTES_MAX),
-        OPTION_TEXT("--checkpoint", "FILE", "saved after each batch of runs; the same command resumes from it",
+        OPTION_TEXT("--checkpoint", "FILE", "save here after each 500 runs; the same command resumes from it",
                     &request->checkpoint),
         OPTION_TEXT("--found", "FOLDER", "folder for the scenarios of runs with a hazard (.)", &given->folder),
         OPTION_FLAG("--list-hazards", "print what counts as a hazard", &given->lists),
@@ -64,6 +64,9 @@ static bool make_request(given_t *given) {
     if ((request->runs == OPTION_NOT_GIVEN) && (request->minutes == OPTION_NOT_GIVEN)) {
         return report("--runs or --for-minutes is missing; see host_sim hunt --help");
     }
+    if ((request->runs != OPTION_NOT_GIVEN) && (request->minutes != OPTION_NOT_GIVEN)) {
+        return report("give only one of --runs and --for-minutes");
+    }
     request->seed = given->random.seed;
     request->folder = (given->folder != NULL) ? given->folder : ".";
     return output_check_folder("--found", request->folder);
@@ -72,13 +75,13 @@ static bool make_request(given_t *given) {
 static bool has_run_options(const given_t *given) {
     const hunt_request_t *request = &given->request;
     return (request->runs != OPTION_NOT_GIVEN) || (request->minutes != OPTION_NOT_GIVEN) ||
-           (request->checkpoint != NULL) || (given->folder != NULL);
+           (request->checkpoint != NULL) || (given->folder != NULL) || (given->random.seed != OPTION_NOT_GIVEN) ||
+           (given->random.shard != NULL);
 }
 
 static status_t list_hazards(const given_t *given) {
     if (has_run_options(given)) {
-        (void)report(
-            "--list-hazards runs nothing: --runs, --for-minutes, --checkpoint and --found cannot be combined with it");
+        (void)report("--list-hazards runs nothing: no other option can be combined with it");
         return STATUS_UNUSABLE;
     }
     hunt_list_hazards();

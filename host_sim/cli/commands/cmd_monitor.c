@@ -4,6 +4,7 @@
  */
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/commands/commands.h"
 #include "cli/interface_options.h"
@@ -56,10 +57,11 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         OPTION_TEXT("--log", "FILE", "a recorded log instead; - is standard input", &request->log),
         {.name = "--speed",
          .value = "N",
-         .help = "of the log: 4 is four times as fast as recorded; max",
+         .help = "play the log N times as fast as recorded; max: without waiting",
          .each = take_speed,
          .ctx = given},
         OPTION_TEXT("--ai-if", "NAME", "of the log: the interface of the AI side", &request->ai_interface),
+        OPTION_FLAG("--skip-bad-lines", "of the log: skip and count invalid lines", &request->skip_bad_lines),
     };
     const option_group_t groups[] = {
         {.title = "A bus", .options = interface_rows, .count = INTERFACE_OPTIONS},
@@ -83,7 +85,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
             "line\n"
             "for each change. NO_COLOR=1 turns colours off.\n"
             "\n"
-            "The state of the supervisor is that of its status frame. Where none is heard for a second, it is that\n"
+            "The state of the supervisor is that of its status frame. Where none is received for a second, it is that\n"
             "of a supervisor in this program, which only listens.\n",
         .groups = groups,
         .group_count = sizeof groups / sizeof groups[0],
@@ -108,9 +110,21 @@ static bool check_log(const given_t *given) {
     return log_sides_check(is_gateway, request->ai_interface);
 }
 
+/** An option that was given and makes sense for a log only; NULL: none was. */
+static const char *option_of_log(const given_t *given) {
+    if (given->has_speed) {
+        return "--speed";
+    }
+    if (given->request.ai_interface != NULL) {
+        return "--ai-if";
+    }
+    return given->request.skip_bad_lines ? "--skip-bad-lines" : NULL;
+}
+
 static bool check_bus(const given_t *given) {
-    if (given->has_speed || (given->request.ai_interface != NULL)) {
-        return report("%s needs --log", given->has_speed ? "--speed" : "--ai-if");
+    const char *of_log = option_of_log(given);
+    if (of_log != NULL) {
+        return report("%s needs --log", of_log);
     }
     if (given->bus.interfaces[HAL_CAN_VEHICLE] == NULL) {
         return report("--can or --log is missing: what to watch; see host_sim monitor --help");
@@ -119,12 +133,18 @@ static bool check_bus(const given_t *given) {
                                    given->request.config.topology == (uint16_t)AGV_TOPOLOGY_GATEWAY);
 }
 
+/** Before the bus is opened. */
+static bool check_record(const char *path) {
+    return (access(path, F_OK) != 0) || report("%s: exists already, and is not replaced", path);
+}
+
 static bool check_files(const given_t *given) {
     const output_role_t roles[] = {
         {.role = "--config", .path = given->config.path},
         {.role = "--record", .path = given->request.record, .is_written = true},
     };
-    return output_check_distinct(roles, sizeof roles / sizeof roles[0]);
+    const char *record = given->request.record;
+    return output_check_distinct(roles, sizeof roles / sizeof roles[0]) && ((record == NULL) || check_record(record));
 }
 
 status_t cmd_monitor(int argc, char **argv) {

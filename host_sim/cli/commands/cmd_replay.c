@@ -7,6 +7,7 @@
 #include "cli/options.h"
 #include "config/config_options.h"
 #include "io/output.h"
+#include "io/store_file.h"
 #include "replay/replay.h"
 
 /** The words of --reset-cause, in the order of hal_reset_cause_t. */
@@ -35,7 +36,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
                         REPLAY_GAP_MAX_MS),
         OPTION_DURATION("--start-ms", "the supervisor's clock at the start (0)", &given->start_ms, 0, UINT32_MAX),
         OPTION_FLAG("--skip-bad-lines", "skip and count lines that are not frames", &given->request.skip_bad_lines),
-        OPTION_TEXT("--ai-if", "NAME", "the interface of the AI side: a gateway", &given->request.ai_interface),
+        OPTION_TEXT("--ai-if", "NAME", "interface of the AI side; selects the gateway topology",
+                    &given->request.ai_interface),
         {.name = "--reset-cause",
          .value = "CAUSE",
          .help = RESET_CAUSES,
@@ -81,7 +83,8 @@ static bool check_files(const given_t *given) {
                                     output_is_stdout(given->request.out) || output_is_stdout(given->request.events))) {
         return report("--timeline: standard output is already used by another option");
     }
-    return output_check_distinct(roles, sizeof roles / sizeof roles[0]);
+    return output_check_distinct(roles, sizeof roles / sizeof roles[0]) &&
+           ((given->request.store == NULL) || store_file_may_replace(given->request.store));
 }
 
 status_t cmd_replay(int argc, char **argv) {

@@ -2,10 +2,12 @@
  * @file cmd_scenario.c
  * `host_sim scenario`: scenario files, played and evaluated.
  */
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "analysis/analysis.h"
 #include "cli/analysis_options.h"
@@ -27,6 +29,7 @@
 #include "text/units.h"
 
 enum { FILES_MAX = 1000, FIXED_FILES = 5, DEFAULT_TOLERANCE_MS = 50, TOLERANCE_MAX_MS = 1000 };
+enum { PROGRAM_SIZE = 4096 };
 
 /** Its outputs. */
 enum { EVENTS, JUNIT, SENT, OUTPUTS };
@@ -157,6 +160,20 @@ static bool take_interface(given_t *given, hal_can_side_t side, const char *name
     return true;
 }
 
+/** A command that begins with a path: what the shell would say of a program that is not there, in one line. */
+static bool check_program(const char *command) {
+    char path[PROGRAM_SIZE];
+    const size_t length = strspn(command, "/._-+ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789");
+    const bool is_path = ((command[length] == '\0') || (command[length] == ' ')) && (length < sizeof path) &&
+                         (memchr(command, '/', length) != NULL);
+    if (!is_path) {
+        return true;
+    }
+    memcpy(path, command, length);
+    path[length] = '\0';
+    return (access(path, X_OK) == 0) || report("--supervisor: %s: %s", path, strerror(errno));
+}
+
 /** What --bus says: the simulated bus, or interfaces. */
 static bool check_bus(given_t *given) {
     if ((given->bus == NULL) || (strcmp(given->bus, "sim") == 0)) {
@@ -174,7 +191,7 @@ static bool check_bus(given_t *given) {
         return report("--bus: both sides are the same interface, '%s'", second);
     }
     given->tolerance_ms = (given->tolerance_ms == NOT_GIVEN) ? DEFAULT_TOLERANCE_MS : given->tolerance_ms;
-    return true;
+    return (given->supervisor == NULL) || check_program(given->supervisor);
 }
 
 static bool is_real(const given_t *given) {
@@ -385,8 +402,8 @@ static void print_totals(const work_t *work, char **files, const totals_t *total
             (void)fprintf(work->text_out, "left out %s: %s\n", files[i], work->results[i].left_out);
         }
     }
-    (void)fprintf(work->text_out, "%zu scenarios: %zu passed, %zu failed", work->given.file_count, totals->passed,
-                  totals->failed);
+    (void)fprintf(work->text_out, "%zu scenario%s: %zu passed, %zu failed", work->given.file_count,
+                  (work->given.file_count == 1u) ? "" : "s", totals->passed, totals->failed);
     if (is_real(&work->given)) {
         (void)fprintf(work->text_out, ", %zu left out", totals->left_out);
     }

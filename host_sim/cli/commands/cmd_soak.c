@@ -24,7 +24,7 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
         OPTION_DURATION_IN(DURATION_H, "--hours", "virtual time, of all shards together: 365d, or hours alone",
                            &given->hours, 1, HOURS_MAX),
         OPTION_TEXT("--checkpoint", "FILE",
-                    "saved every 6 simulated hours and when interrupted; resumed from if it exists",
+                    "save here every 6 simulated hours and on interrupt; continue from it if it exists",
                     &given->request.checkpoint),
         OPTION_TEXT("--results", "FILE", "results as a line of JSON", &given->request.results),
     };

@@ -24,7 +24,8 @@ static options_result_t parse(int argc, char **argv, given_t *given, size_t *ope
     option_t interface_rows[INTERFACE_OPTIONS];
     interface_options_init(&request->bus, interface_rows);
     const option_t rows[] = {
-        OPTION_TEXT("--ai-if", "NAME", "of a log: the interface of the AI side: a gateway", &request->ai_interface),
+        OPTION_TEXT("--ai-if", "NAME", "of a log: interface of the AI side; selects the gateway topology",
+                    &request->ai_interface),
         OPTION_NUMBER("--bitrate", "N", "bit/s of the bus, for its load (500000)", &request->bit_rate, BIT_RATE_LOWEST,
                       BIT_RATE_HIGHEST),
         OPTION_FLAG("--json", "print JSON instead of text", &request->is_json),
@@ -67,6 +68,10 @@ static bool check_files(const given_t *given) {
         {.role = "--config", .path = given->config.path},
         {.role = "--config-out", .path = given->request.config_out, .is_written = true},
     };
+    if (given->request.is_json && output_is_stdout(given->request.config_out)) {
+        return report(
+            "--json and --config-out -: only one of them can be on standard output; give --config-out a file");
+    }
     return output_check_distinct(roles, sizeof roles / sizeof roles[0]);
 }
 
@@ -79,7 +84,7 @@ static bool check_source(const survey_request_t *request) {
         return report("LOG or --can is missing; see host_sim survey --help");
     }
     if ((request->log != NULL) && is_live) {
-        return report("LOG and --can: one of them");
+        return report("give only one of LOG and --can");
     }
     if (request->log == NULL) {
         return (request->ai_interface == NULL) ? interface_options_check(&request->bus, "survey", is_gateway)

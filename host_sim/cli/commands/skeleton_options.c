@@ -11,7 +11,7 @@ void skeleton_options_init(skeleton_options_t *from, option_t rows[SKELETON_OPTI
                     &from->log),
         OPTION_TEXT("-o", "FILE", "where to write it (standard output); a file that exists is not replaced",
                     &from->out),
-        OPTION_TEXT("--ai-if", "NAME", "the interface of the AI side in the log: a gateway", &from->ai_interface),
+        OPTION_TEXT("--ai-if", "NAME", "interface of the AI side; selects the gateway topology", &from->ai_interface),
         OPTION_FLAG("--skip-bad-lines", "skip lines of the log that are not frames", &from->skip_bad_lines),
     };
     (void)memcpy(rows, all, sizeof all);

@@ -1,10 +1,21 @@
 #include "monitor/inputs/monitor_file.h"
 
+#include <inttypes.h>
 #include <string.h>
 
 #include "common/report.h"
+#include "text/units.h"
 
-enum { FRAMES_AT_ONCE = 4000 };
+enum { FRAMES_AT_ONCE = 4000, BACK_MS = 10 /* less is the order of two interfaces, as for replay */ };
+
+static void note_back(monitor_file_t *file) {
+    const uint64_t newest_us = file->first_us + file->next_us;
+    const uint64_t stamp_us = file->next.stamp_us;
+    if ((file->first_us != UINT64_MAX) && (stamp_us < newest_us) && (newest_us - stamp_us > file->back_us)) {
+        file->back_us = newest_us - stamp_us;
+        file->back_line = file->log.line;
+    }
+}
 
 static void read_next(monitor_file_t *file) {
     const uint64_t before_us = file->next_us;
@@ -12,6 +23,7 @@ static void read_next(monitor_file_t *file) {
     file->has_next = result == CANDUMP_RECORD;
     file->failed = result == CANDUMP_FAILED;
     if (file->has_next) {
+        note_back(file);
         const uint64_t stamp_us = file->next.stamp_us;
         const uint64_t t_us = (stamp_us > file->first_us) ? stamp_us - file->first_us : 0u;
         file->next_us = (t_us > before_us) ? t_us : before_us;
@@ -24,12 +36,13 @@ static bool is_ai(const monitor_file_t *file) {
            (memcmp(file->ai_interface, next->interface, next->interface_length) == 0);
 }
 
-bool monitor_file_open(monitor_file_t *file, const char *path, const char *ai_interface) {
+bool monitor_file_open(monitor_file_t *file, const char *path, const char *ai_interface, bool skip_bad) {
     file->ai_interface = ai_interface;
     file->first_us = UINT64_MAX;
     file->next_us = 0u;
     file->ai_was_heard = false;
-    if (!candump_open(&file->log, path, false)) {
+    file->back_us = 0u;
+    if (!candump_open(&file->log, path, skip_bad)) {
         return false;
     }
     read_next(file);
@@ -57,6 +70,17 @@ bool monitor_file_pass(monitor_file_t *file, monitor_t *monitor, uint64_t until_
         monitor_time(monitor, until_us);
     }
     return file->has_next;
+}
+
+void monitor_file_remark(const monitor_file_t *file) {
+    if (file->back_us >= (uint64_t)BACK_MS * US_PER_MS) {
+        note("%s:%" PRIu64 ": the time stamps go back by %" PRIu64 ".%03" PRIu64
+             " s; the times are wrong there: cut or sort the log",
+             file->log.name, file->back_line, file->back_us / US_PER_S, file->back_us % US_PER_S / US_PER_MS);
+    }
+    if (file->log.skipped > 0u) {
+        note("%s: lines skipped: %" PRIu64, file->log.name, file->log.skipped);
+    }
 }
 
 void monitor_file_close(monitor_file_t *file) {

@@ -22,13 +22,18 @@ typedef struct {
     char interface[CANDUMP_INTERFACE_MAX + 1u]; /**< the first other one */
     uint64_t first_us;                          /**< stamp of the first frame */
     uint64_t next_us;                           /**< time of `next`; never goes back */
+    uint64_t back_us;                           /**< the furthest that a time stamp went back; 0: none did */
+    uint64_t back_line;                         /**< where */
     bool ai_was_heard;                          /**< a frame of the AI side was passed on */
     bool has_next;
     bool failed; /**< a bad line or a read error: was reported */
 } monitor_file_t;
 
 /** Open a log and read its first frame. @return false: was reported */
-bool monitor_file_open(monitor_file_t *file, const char *path, const char *ai_interface);
+bool monitor_file_open(monitor_file_t *file, const char *path, const char *ai_interface, bool skip_bad);
+
+/** Say on standard error what is wrong with the times, and how many lines were skipped. Nothing if all is well. */
+void monitor_file_remark(const monitor_file_t *file);
 
 /**
  * Pass on the frames up to a time, some thousand at most.

@@ -37,7 +37,8 @@ typedef struct {
 
 static bool begin_record(run_t *run, const char *path) {
     if (!monitor_record_begin(&run->record, path)) {
-        return report("%s: %s", run->record.name, strerror(errno));
+        return (errno == EEXIST) ? report("%s: exists already, and is not replaced", run->record.name)
+                                 : report("%s: %s", run->record.name, strerror(errno));
     }
     return true;
 }
@@ -133,7 +134,7 @@ static void go(run_t *run) {
 static bool open_input(run_t *run) {
     const monitor_request_t *request = run->request;
     if (request->log != NULL) {
-        return monitor_file_open(&run->file, request->log, request->ai_interface);
+        return monitor_file_open(&run->file, request->log, request->ai_interface, request->skip_bad_lines);
     }
     return monitor_can_open(&run->bus, request->interfaces);
 }
@@ -176,6 +177,9 @@ static bool run_all(run_t *run) {
         monitor_ui_close(&run->ui);
     }
     run->failed = !end_record(run) || run->failed;
+    if (run->request->log != NULL) {
+        monitor_file_remark(&run->file);
+    }
     const bool is_read = (run->request->log != NULL) && !run->file.has_next && !run->file.failed;
     if (is_read) {
         log_sides_note_silent(run->request->ai_interface, run->file.ai_was_heard);

@@ -27,6 +27,7 @@ typedef struct {
     double speed;                          /**< of the log; MONITOR_SPEED_ANY */
     uint64_t for_ms;
     bool shadow;
+    bool skip_bad_lines; /**< of the log */
     agv_config_t config;
 } monitor_request_t;
 

@@ -87,7 +87,7 @@ function drawSupervision() {
   const rest = inMs(data.states[0]);
   if (rest > 0.5) parts.push(make("p", `Not supervised: ${seconds(rest)} in INIT.`));
   if (!data.engaged) parts.push(make("p", "Not judged: the commands of the AI computer. The autopilot was never engaged."));
-  if (silent.length) parts.push(make("p", `Never heard: ${silent.map((message) => `${message.id}h ${message.name}`).join(", ")}.`));
+  if (silent.length) parts.push(make("p", `Never received: ${silent.map((message) => `${message.id}h ${message.name}`).join(", ")}.`));
   if (series.notes.length) {
     parts.push(table([["time", "nowrap"], ["what", "wide"]], series.notes.slice(0, 50).map(([t, text]) => [seconds(t * unit), text])));
   }

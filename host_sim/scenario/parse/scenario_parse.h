@@ -8,6 +8,7 @@
 #include "io/yaml_reader.h"
 #include "io/yaml_shape.h"
 #include "scenario/scenario.h"
+#include "text/suggest.h"
 
 extern const yaml_word_t SCENARIO_GEARS[];
 extern const yaml_word_t SCENARIO_SIDES[];
@@ -30,6 +31,9 @@ extern const yaml_shape_t SCENARIO_MESSAGE_SHAPE;
 extern const yaml_shape_t SCENARIO_FAULT_SHAPE;
 extern const yaml_shape_t SCENARIO_TEXT_SHAPE;
 /** @} */
+
+/** The end of a message about an unknown word: what was meant, or the page that lists them all. @return text */
+const char *scenario_parse_meant(const suggestion_t *suggestion, char text[SUGGEST_SIZE]);
 
 /** The next free place of a list; NULL when it is full, which was reported. */
 #define SCENARIO_NEXT(reader, node, list)                                                                              \

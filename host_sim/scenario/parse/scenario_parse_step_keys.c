@@ -64,6 +64,19 @@ static int take_time(const yaml_reader_t *reader, const yaml_node_t *key, const 
     return scenario_parse_ms(reader, value, name, lowest, SCENARIO_DURATION_MAX_MS, time) ? 1 : -1;
 }
 
+static bool unknown_key(const yaml_reader_t *reader, const yaml_node_t *key, const char *name) {
+    char meant[SUGGEST_SIZE];
+    suggestion_t suggestion = suggest_begin(name, strlen(name));
+    for (const yaml_word_t *actor = SCENARIO_ACTORS; actor->word != NULL; actor++) {
+        suggest_offer(&suggestion, actor->word, strlen(actor->word));
+    }
+    for (unsigned i = 0u; i < SCENARIO_PARAMETERS; i++) {
+        suggest_offer(&suggestion, SCENARIO_PARAMETER_ROWS[i].name, strlen(SCENARIO_PARAMETER_ROWS[i].name));
+    }
+    return yaml_reader_fail(reader, key, "unknown key '%.40s' in a step%s", name,
+                            scenario_parse_meant(&suggestion, meant));
+}
+
 static bool take_key(const yaml_reader_t *reader, const yaml_node_t *key, const yaml_node_t *value,
                      scenario_reading_t *reading) {
     const char *name = yaml_node_text(key);
@@ -94,7 +107,7 @@ static bool take_key(const yaml_reader_t *reader, const yaml_node_t *key, const 
             return true;
         }
     }
-    return yaml_reader_fail(reader, key, "unknown key '%.40s' in a step", name);
+    return unknown_key(reader, key, name);
 }
 
 /** The keys of the time go together. */

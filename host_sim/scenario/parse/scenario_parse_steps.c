@@ -153,6 +153,10 @@ static bool take_garbage(const yaml_reader_t *reader, const scenario_reading_t *
     return true;
 }
 
+const char *scenario_parse_meant(const suggestion_t *suggestion, char text[SUGGEST_SIZE]) {
+    return (suggestion->word != NULL) ? suggest_text(suggestion, text) : "; docs/scenarios.md lists them";
+}
+
 /** Report a field that the node does not have. */
 static bool unknown_field(const yaml_reader_t *reader, const yaml_node_t *node, scenario_actor_t actor,
                           const char *name) {
@@ -164,7 +168,7 @@ static bool unknown_field(const yaml_reader_t *reader, const yaml_node_t *node, 
         }
     }
     return yaml_reader_fail(reader, node, "field: this node has no field '%.40s'%s", name,
-                            suggest_text(&suggestion, meant));
+                            scenario_parse_meant(&suggestion, meant));
 }
 
 /** `set`: a field keeps a value; `freeze_field`: the one that it has. */
@@ -355,7 +359,7 @@ static bool unknown_action(const yaml_reader_t *reader, const scenario_reading_t
         }
     }
     return yaml_reader_fail(reader, reading->word, "%s: unknown action '%.40s'%s", SCENARIO_ACTORS[reading->actor].word,
-                            word, suggest_text(&suggestion, meant));
+                            word, scenario_parse_meant(&suggestion, meant));
 }
 
 bool scenario_parse_step(const yaml_reader_t *reader, const yaml_node_t *node, const agv_config_t *config,

@@ -262,7 +262,8 @@ void test_settings_that_do_not_fit_together(void) {
              "c.yaml:2: own_heartbeat: has no effect on a shared bus; this value needs the gateway topology\n");
     load_good("own_heartbeat: frozen\ntopology: gateway\n");
     agv_config_defaults(&config);
-    load_bad("status_frame_id: 0x203\n", "c.yaml:1: status_frame_id: another message has this identifier\n");
+    load_bad("status_frame_id: 0x203\n",
+             "c.yaml:1: status_frame_id: another message has this identifier: id_vehicle_status\n");
     agv_config_defaults(&config);
     load_bad("\nthrottle_ceiling_pct: 50\n",
              "c.yaml:2: throttle_ceiling_pct: has no effect on a shared bus; this value needs the gateway topology\n");
@@ -279,15 +280,16 @@ void test_an_identifier_twice_is_refused_with_the_line_that_makes_it_so(void) {
     TEST_ASSERT_EQUAL_HEX16(0x364, config.id_vehicle_status);
     agv_config_defaults(&config);
     load_bad("id_gear_command: 0x169\nid_throttle_command: 0x169\n",
-             "c.yaml:2: id_throttle_command: another message has this identifier\n");
+             "c.yaml:2: id_throttle_command: another message has this identifier: id_gear_command\n");
     agv_config_defaults(&config);
     load_bad("park: at_once\nid_gear_command: 0x101\n",
-             "c.yaml:2: id_gear_command: another message has this identifier\n");
+             "c.yaml:2: id_gear_command: another message has this identifier: id_wheel_speed\n");
     agv_config_defaults(&config);
-    load_bad("\nid_gear_command: 0x7F0\n", "c.yaml:2: id_gear_command: another message has this identifier\n");
+    load_bad("\nid_gear_command: 0x7F0\n",
+             "c.yaml:2: id_gear_command: another message has this identifier: status_frame_id\n");
     agv_config_defaults(&config);
     load_bad("id_set: table\nid_gear_command: 0x203\n",
-             "c.yaml:2: id_gear_command: another message has this identifier\n");
+             "c.yaml:2: id_gear_command: another message has this identifier: id_vehicle_status\n");
 }
 
 void test_a_problem_without_a_line_is_named_without_one(void) {

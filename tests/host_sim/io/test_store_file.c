@@ -142,6 +142,22 @@ void test_what_is_no_store_at_all(void) {
     }
 }
 
+void test_a_file_of_another_kind_is_not_replaced(void) {
+    static const char *const stores[] = {"", "a", "agv-store", "agv-store 1\n", "agv-store x"};
+    static const char *const others[] = {"\n", "x", "agv-stork 1\n", "agv_store 1\n"};
+    TEST_ASSERT_TRUE(store_file_may_replace(scratch_path("s")));
+    for (size_t i = 0; i < sizeof stores / sizeof stores[0]; i++) {
+        (void)scratch_write("s", stores[i], strlen(stores[i]));
+        TEST_ASSERT_TRUE_MESSAGE(store_file_may_replace(scratch_path("s")), stores[i]);
+    }
+    TEST_ASSERT_EQUAL_STRING("", scratch_said());
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+        (void)scratch_write("s", others[i], strlen(others[i]));
+        TEST_ASSERT_FALSE_MESSAGE(store_file_may_replace(scratch_path("s")), others[i]);
+        TEST_ASSERT_NOT_NULL(strstr(scratch_said(), "no store, which begins with 'agv-store '"));
+    }
+}
+
 void test_more_after_the_end_is_damage(void) {
     fill();
     save();

@@ -80,11 +80,26 @@ void test_identifiers_and_topology_are_those_of_the_vehicle(void) {
     TEST_ASSERT_EQUAL_HEX32(0x169, words.step.vehicle.frame.id);
 }
 
+void test_commands_stand_alone(void) {
+    TEST_ASSERT_EQUAL(VEHICLE_COMMAND_HELP, vehicle_words_command("help"));
+    TEST_ASSERT_EQUAL(VEHICLE_COMMAND_STATUS, vehicle_words_command(" \tstatus "));
+    TEST_ASSERT_EQUAL(VEHICLE_COMMAND_QUIT, vehicle_words_command("quit"));
+    TEST_ASSERT_EQUAL(VEHICLE_COMMAND_NONE, vehicle_words_command("ai stop"));
+    TEST_ASSERT_EQUAL(VEHICLE_COMMAND_NONE, vehicle_words_command("statu"));
+    TEST_ASSERT_EQUAL(VEHICLE_COMMAND_NONE, vehicle_words_command("statuss"));
+    TEST_ASSERT_EQUAL(VEHICLE_COMMAND_NONE, vehicle_words_command(""));
+    TEST_ASSERT_EQUAL_STRING("", scratch_said());
+    TEST_ASSERT_EQUAL(VEHICLE_COMMAND_BAD, vehicle_words_command("status x"));
+    TEST_ASSERT_EQUAL_STRING("host_sim: 'status x': 'status' stands alone on its line\n", scratch_said());
+}
+
 void test_what_makes_no_sense_is_one_line(void) {
-    refused_when_typed("nobody stop", "host_sim: 'nobody stop': 'nobody' is not one of vcu, eps, ai, operator, bus\n");
+    refused_when_typed("nobody stop", "host_sim: 'nobody stop': 'nobody' is not one of vcu, eps, ai, operator, bus, "
+                                      "help, status, quit\n");
     refused_when_typed("ai", "host_sim: 'ai': the action of ai is missing\n");
     refused_when_typed(" ", "host_sim: ' ': actor and action are missing\n");
-    refused_when_typed("ai explode", "host_sim: 'ai explode': ai: unknown action 'explode'\n");
+    refused_when_typed("ai explode",
+                       "host_sim: 'ai explode': ai: unknown action 'explode'; docs/scenarios.md lists them\n");
     refused_when_typed("vcu mute", "host_sim: 'vcu mute': 'mute' needs 'message'\n");
     refused_when_typed("ai stop now", "host_sim: 'ai stop now': 'now': NAME=VALUE is needed here\n");
     refused_when_typed("ai stop vcu=stop", "host_sim: 'ai stop vcu=stop': a step has one actor; 'vcu' is the second\n");
@@ -108,11 +123,11 @@ void test_what_makes_no_sense_in_the_parameters_of_a_fault_is_one_line(void) {
         {"vcu ignore message=steering_command", "message: steering_command is not a command that this node obeys"},
         {"eps ignore message=gear_command", "message: gear_command is not a command that this node obeys"},
         {"vcu ignore message=gear_status", "message: gear_status is not a command that this node obeys"},
-        {"ai ignore message=gear_command", "ai: unknown action 'ignore'"},
+        {"ai ignore message=gear_command", "ai: unknown action 'ignore'; docs/scenarios.md lists them"},
         {"vcu roll speed_mm_s=20001", "speed_mm_s: 20001 is not within -20000 to 20000"},
         {"vcu ramp_throttle pct_s=0", "pct_s: 0 is not within 1 to 10000"},
         {"vcu set field=speed value=10000h", "value: 10000h is above FFFFh"},
-        {"vcu freeze_field field=angle", "field: this node has no field 'angle'"},
+        {"vcu freeze_field field=angle", "field: this node has no field 'angle'; docs/scenarios.md lists them"},
         {"vcu freeze_field field=speed value=1h", "'freeze_field' takes no 'value'"},
         {"eps hunt steer_deg=901 every_ms=500", "steer_deg: 901 is not within -900 to 900"},
         {"eps hunt steer_deg=60", "'hunt' needs 'every_ms'"},
@@ -154,7 +169,8 @@ void test_the_parameters_of_a_fault_reach_the_vehicle(void) {
 
 void test_what_needs_a_simulated_bus_is_refused(void) {
     refused_when_typed("supervisor bus_off",
-                       "host_sim: 'supervisor bus_off': 'supervisor' is not one of vcu, eps, ai, operator, bus\n");
+                       "host_sim: 'supervisor bus_off': 'supervisor' is not one of vcu, eps, ai, operator, bus, help, "
+                       "status, quit\n");
     refused_when_typed("bus destroy frames=1",
                        "host_sim: 'bus destroy frames=1': bus: 'destroy' is for the simulated bus only\n");
 }

@@ -221,7 +221,9 @@ void test_identifiers(void) {
 void test_data(void) {
     parse_bad("(1.000000) c 43F#0", "odd number");
     parse_bad("(1.000000) c 43F#001", "odd number");
-    parse_bad("(1.000000) c 43F#0G", "odd number");
+    parse_bad("(1.000000) c 43F#0 R", "odd number");
+    parse_bad("(1.000000) c 43F#0G", "the data is not hexadecimal");
+    parse_bad("(1.000000) c 43F#0Z00", "the data is not hexadecimal");
     parse_bad("(1.000000) c 43F#00.11", "after the frame");
     parse_bad("(1.000000) c 43F#G0", "after the frame");
     parse_bad("(1.000000) c 43F#00#", "after the frame");

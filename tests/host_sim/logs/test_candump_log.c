@@ -71,7 +71,8 @@ void test_the_last_line_may_lack_its_end(void) {
 void test_a_line_that_was_cut_off_is_a_bad_one(void) {
     open_text(LINE LINE, sizeof LINE LINE - 3u, false);
     TEST_ASSERT_EQUAL_UINT(1, read_all(CANDUMP_FAILED));
-    assert_said("log:2: the data has an odd number of digits; the log ends in this line\n");
+    assert_said(
+        "log:2: the data has an odd number of digits; the log ends in this line, which --skip-bad-lines leaves out\n");
 }
 
 void test_a_bad_line_ends_the_reading(void) {

@@ -136,8 +136,8 @@ void test_other_identifiers(void) {
     frame(VEHICLE, 30, 0x203, MANUAL);
     TEST_ASSERT_EQUAL(2, monitor->other_count);
     TEST_ASSERT_EQUAL(2, monitor->others[0].count);
-    TEST_ASSERT_EQUAL(1, said("can0: 123h heard, no message of the protocol"));
-    TEST_ASSERT_EQUAL(1, said("can0: 203h heard, an identifier of the other ID set"));
+    TEST_ASSERT_EQUAL(1, said("can0: 123h received, no message of the protocol"));
+    TEST_ASSERT_EQUAL(1, said("can0: 203h received, an identifier of the other ID set"));
     for (uint32_t id = 0x500u; id < 0x540u; id++) {
         frame(VEHICLE, 40, id, MANUAL);
     }
@@ -159,7 +159,7 @@ void test_frames_of_another_form_count_as_no_message(void) {
     TEST_ASSERT_EQUAL(1, said("168h in another form"));
     const hal_can_frame_t extended = {.id = 0x168u, .length = 8u, .flags = HAL_CAN_EXTENDED};
     monitor_frame(monitor, HAL_CAN_VEHICLE, &extended, 5000u);
-    TEST_ASSERT_EQUAL(1, said("00000168h heard, no message of the protocol"));
+    TEST_ASSERT_EQUAL(1, said("00000168h received, no message of the protocol"));
 }
 
 void test_the_sides_of_a_gateway_are_apart(void) {

@@ -46,12 +46,12 @@ void test_the_empty_page(void) {
     TEST_ASSERT_EQUAL_STRING(" host_sim monitor  can0                                     0 frames/s  0:00:00",
                              line(0));
     TEST_ASSERT_EQUAL_STRING("supervisor  waiting for its status frame", line(1));
-    TEST_ASSERT_EQUAL_STRING("vehicle     nothing heard yet", line(2));
+    TEST_ASSERT_EQUAL_STRING("vehicle     nothing received yet", line(2));
     TEST_ASSERT_EQUAL_STRING("alarms      none", line(3));
     TEST_ASSERT_EQUAL_STRING("ID   message               age deadline gap min/max cnt signals", line(5));
-    TEST_ASSERT_EQUAL_STRING("43Fh turn_signal_command     - ········     -     -     never heard", line(6));
+    TEST_ASSERT_EQUAL_STRING("43Fh turn_signal_command     - ········     -     -     never received", line(6));
     TEST_ASSERT_EQUAL(STYLE_DIM, view->cells[6][0].style);
-    TEST_ASSERT_EQUAL_STRING("also heard  nothing else", line(17));
+    TEST_ASSERT_EQUAL_STRING("also seen   nothing else", line(17));
     TEST_ASSERT_EQUAL_STRING("transitions", line(18));
     TEST_ASSERT_NOT_EQUAL(-1, find("quit"));
 }
@@ -119,7 +119,7 @@ void test_a_gateway_has_room_on_80_by_24(void) {
     TEST_ASSERT_EQUAL(0, strncmp(line(4), "bus ID   message", 16));
     TEST_ASSERT_EQUAL(0, strncmp(line(6), "ai  168h gear_command ", 22));
     TEST_ASSERT_EQUAL(0, strncmp(line(9), "veh 43Fh turn_signal_command ", 29));
-    TEST_ASSERT_EQUAL(20, find("also heard"));
+    TEST_ASSERT_EQUAL(20, find("also seen"));
     TEST_ASSERT_EQUAL(2, monitor_page_log_lines(monitor, 24));
     frame(AI, 20, 0x168, "0800000000000000");
     draw(80, 24);

@@ -54,7 +54,7 @@ void test_the_state_of_the_status_frame(void) {
     TEST_ASSERT_TRUE(monitor->supervisor.output_closed);
     default_status(300, 0x55, AGV_FAULT_EPS_OVER_VOLTAGE, 1);
     TEST_ASSERT_EQUAL(AGV_FAULT_EPS_OVER_VOLTAGE, monitor->supervisor.first_reason);
-    TEST_ASSERT_EQUAL(1, said("supervisor: its status frame 7F0h is heard"));
+    TEST_ASSERT_EQUAL(1, said("supervisor: its status frame 7F0h is received"));
     TEST_ASSERT_EQUAL(1, said("supervisor: INIT -> STANDBY"));
     TEST_ASSERT_EQUAL(1, said("supervisor: STANDBY -> TRIPPED: EPS_OVER_VOLTAGE"));
     TEST_ASSERT_EQUAL(0, said("configuration"));

@@ -10,6 +10,7 @@ import hostsim
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 PICTURE = ROOT / "scripts/campaign-picture"
+ATLAS_PAGE = ROOT / "tests/proofs/atlas/atlas-page.py"
 VERSION = subprocess.run([hostsim.PROGRAM, "--version"], capture_output=True, text=True, check=True).stdout.split()[1]
 RUNS = 150 if hostsim.PART == 1 else 20
 RUNS_WITH_EACH_FAULT = max(RUNS, 45)
@@ -186,7 +187,9 @@ class Refused(Campaign):
         self.refuse(*good, "--show", "1", "--results", "out.jsonl", says="--show prints one run")
         self.refuse(*good, "--show", "1", "--shard", "1/2", says="--show prints one run")
         self.refuse("--tables", "--results", "out.jsonl", says="--tables runs nothing")
-        self.refuse("--tables", "--why", "out.jsonl", says="--tables runs nothing")
+        for more in (("--why", "out.jsonl"), ("--runs", 5), ("--seed", 1), ("--shard", "1/2"), ("--merge",), ("--newly-engaged",),
+                     ("--fault", "BUS_OFF"), ("--show", 1), ("--broken", "."), ("file",)):
+            self.refuse("--tables", *more, says="--tables runs nothing")
         self.refuse("--runs", "3", says="--seed is missing")
         self.refuse("--runs", "0", "--seed", "1", says="--runs")
         self.refuse("--runs", "100000001", "--seed", "1", says="--runs")
@@ -198,6 +201,7 @@ class Refused(Campaign):
         self.refuse(*good, "--fault", "TX_GATE_REFUSED", says="cannot cause TX_GATE_REFUSED")
         self.refuse(*good, "--show", "3", says="no run 3")
         self.refuse(*good, "--broken", "nowhere", says="'nowhere' is not a folder")
+        self.refuse(*good, "--broken", "/proc", says="--broken: the folder '/proc' cannot be written: ")
         self.refuse(*good, "--results", "no/where", says="no/where")
         self.refuse(*good, "file", says="unexpected argument 'file'")
         self.refuse(*good, "--planted", "mute", says="--planted")
@@ -222,7 +226,7 @@ class Refused(Campaign):
                                     ("torn", lines[:-1] + [lines[-1][:20]], "not a result of a campaign"),
                                     ("text", ["hello\n"], ":1: not a result of a campaign"),
                                     ("other", ["{}\n"], ":1: no results of a campaign"),
-                                    ("empty", [], "it ends after line 0")):
+                                    ("empty", [], "empty: is empty")):
             self.write(name, "".join(changed))
             self.refuse("--merge", one, name, *out, says=says)
 
@@ -310,6 +314,41 @@ class Picture(Campaign):
             done = self.draw(*arguments)
             self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1), done.stderr)
             self.assertIn(says, done.stderr)
+
+
+class AtlasPage(hostsim.Case):
+    def make(self, *arguments):
+        return subprocess.run([sys.executable, ATLAS_PAGE, *arguments], cwd=self.folder, capture_output=True, text=True,
+                              check=False)
+
+    def results(self):
+        """One pair of faults, without the runs: its head and one case."""
+        half = {"reason": None, "state": "STANDBY", "safe_us": None, "open_us": None, "stop_us": None, "hazard": None}
+        head = {"atlas": 1, "version": "0.2.0", "shard": 1, "shards": 1}
+        case = {"case": 8, "topology": "shared", "in": "STANDBY", "first": "BUS_OFF", "second": "TX_STALLED", "distance_ms": 0,
+                "both": half, "first_alone": half, "second_alone": half, "weaker": None}
+        return json.dumps(head) + "\n" + json.dumps(case) + "\n"
+
+    def test_a_pair_is_of_two_faults(self):
+        self.write("a", self.results())
+        done = self.make("a", "-o", "a.html")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("1 pair of 2 faults, weaker than their worse half: none", done.stdout)
+
+    def test_what_is_refused_in_one_line_with_the_file(self):
+        self.write("bytes", b"\x7fELF\xff\xfe")
+        self.write("text", "hello\n")
+        self.write("list", "[]\n")
+        self.write("damaged", self.results() + "{}\n")
+        self.write("good", self.results())
+        for arguments, said in ((("nofile",), "nofile: No such file or directory"), (("bytes",), "bytes holds no results"),
+                                (("text",), "text holds no results"), (("list",), "list holds no results"),
+                                (("damaged",), "damaged holds no results of host_sim atlas, or is damaged"),
+                                (("good", "good"), "shard 1 is given twice"),
+                                (("good", "-o", "no/where"), "no/where: No such file or directory")):
+            done = self.make("-o", "x.html", *arguments)
+            self.assertEqual((done.returncode, done.stdout, done.stderr.count("\n")), (2, "", 1), done.stderr)
+            self.assertIn(f"atlas-page: {said}", done.stderr)
 
 
 if __name__ == "__main__":

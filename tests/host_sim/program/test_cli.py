@@ -78,7 +78,11 @@ class Front(hostsim.Case):
                 self.assert_refused(self.run_program(*arguments), says)
 
     def test_what_prints_one_thing_refuses_an_option_of_another(self):
-        for arguments, says in ((("config", "--schema", "--to-kconfig"), "--schema and --to-kconfig: one of them"),
+        for arguments, says in ((("config", "--schema", "--to-kconfig"), "give only one of --schema and --to-kconfig"),
+                                (("atlas", "--show", "0"), "--show: case 0 cannot happen; the next one that can is 4"),
+                                (("atlas", "--show", "-1"), "--show: '-1' is not a number from 0 to 168999"),
+                                (("atlas", "--show", "99999999"), "--show: '99999999' is not a number from 0 to 168999"),
+                                (("atlas", "--show", "168999"), "--show: case 168999 cannot happen, nor one behind it"),
                                 (("atlas", "--show", "100", "--results", "r"), "--show prints one case")):
             self.assert_refused(self.run_program(*arguments), says)
         self.assertNotIn("r", self.files())

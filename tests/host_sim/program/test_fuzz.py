@@ -109,7 +109,8 @@ class Fuzz(hostsim.Case):
         self.run_good("replay", "--store", "store", "log")
         good = (self.folder / "store").read_bytes()
         for _ in range(40 * RUNS):
-            content = mutate(good[:chance.choice((10, 50, len(good)))], chance)
+            word = b"agv-store "  # what does not begin so is no store
+            content = word + mutate(good[len(word):chance.choice((10, 50, len(good)))], chance)
             if content == good:
                 continue
             self.write("store", content)

@@ -1,5 +1,8 @@
 """Hunts: the same seed gives the same runs, what is found can be played, a checkpoint is gone on from, bad options."""
 import re
+import signal
+import subprocess
+import time
 import unittest
 
 import hostsim
@@ -60,6 +63,37 @@ class Hunt(hostsim.Case):
         torn = self.hunt("--seed", 3, "--runs", 650, "--checkpoint", "state", status=(2,))
         self.assertIn("damaged", torn.stderr)
 
+    def interrupted(self, *arguments):
+        """What it says when a signal ends it during its first runs."""
+        with subprocess.Popen([hostsim.PROGRAM, "hunt", "--seed", "3", "--runs", "100000", *map(str, arguments)],
+                              cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            time.sleep(0.3)
+            process.send_signal(signal.SIGINT)
+            said = process.communicate(timeout=600)[1]
+        self.assertEqual(process.returncode, -signal.SIGINT)
+        return said
+
+    def test_an_interrupted_hunt_says_what_is_saved(self):
+        self.assertRegex(self.interrupted(), r"^host_sim: interrupted after \d+ runs\n$")
+        self.assertRegex(self.interrupted("--checkpoint", "state"), r"^host_sim: interrupted after \d+ runs; nothing is saved "
+                         r"yet: the checkpoint is written after each 500 runs\n$")
+        self.assertEqual(self.files(), [])
+        if hostsim.PART > 1:
+            return  # a piece takes minutes in a program full of checks
+        self.hunt("--seed", 3, "--runs", 1000, "--shard", "2/2", "--checkpoint", "state")
+        self.assertRegex(self.interrupted("--shard", "2/2", "--checkpoint", "state"),
+                         r"^host_sim: interrupted after \d+ runs; the same command resumes from run 1500\n$")
+
+    def test_a_checkpoint_that_cannot_be_written_is_refused_at_once(self):
+        self.assert_refused(self.hunt("--seed", 1, "--runs", 100000, "--checkpoint", "no/where", status=(2,)), "no/where: ")
+
+    def test_files_that_are_no_checkpoint(self):
+        self.write("log", "(1.000000) can0 123#00\n" * 90)
+        self.write("cut", "agv hunt 2\0")
+        for name, said in (("log", "log: not a hunt checkpoint"), ("/dev/full", "/dev/full: not a hunt checkpoint"),
+                           ("cut", "cut: a damaged checkpoint; remove it to start over")):
+            self.assert_refused(self.hunt("--seed", 1, "--runs", 1, "--checkpoint", name, status=(2,)), said)
+
     def test_hazards_are_listed(self):
         lines = self.hunt("--list-hazards", status=(0,)).stdout.splitlines()
         self.assertEqual([line[:2] for line in lines[::2]], ["H%d" % number for number in range(1, 8)])
@@ -68,11 +102,14 @@ class Hunt(hostsim.Case):
         for arguments, said in (
             ((), "--seed is missing"),
             (("--seed", 1), "--runs or --for-minutes is missing"),
-            (("--list-hazards", "--checkpoint", "x"), "--list-hazards runs nothing"),
+            *((("--list-hazards", option, value), "--list-hazards runs nothing") for option, value in (
+                ("--checkpoint", "x"), ("--seed", 1), ("--shard", "1/2"), ("--runs", 1), ("--for-minutes", 1), ("--found", "."))),
+            (("--seed", 1, "--runs", 1, "--for-minutes", 1), "give only one of --runs and --for-minutes"),
             (("--seed", 1, "--runs", 0), "--runs: '0' is not a number from 1"),
             (("--seed", 1, "--for-minutes", "x"), "--for-minutes: 'x' is not a time"),
             (("--seed", 1, "--runs", 1, "--shard", "3/2"), "--shard: '3/2'"),
             (("--seed", 1, "--runs", 1, "--found", "nowhere"), "--found: 'nowhere' is not a folder"),
+            (("--seed", 1, "--runs", 1, "--found", "/proc"), "--found: the folder '/proc' cannot be written: "),
             (("--seed", 1, "--runs", 1, "--fuond", "x"), "unknown option '--fuond'"),
             (("--seed", 1, "--runs", 1, "more"), "unexpected argument 'more'"),
         ):

@@ -177,6 +177,21 @@ class Lines(hostsim.Case):
         for fault in ("VCU_HEARTBEAT_LOST", "WRONG_ID_SET"):
             self.assertEqual(asked.count(fault), 1)
 
+    def test_a_time_that_goes_backwards(self):
+        for back, said in ((9, ""), (500, "host_sim: b.log:3: the time stamps go back by 0.500 s; the times are wrong there: cut "
+                                          "or sort the log\n")):
+            self.write("b.log", "".join("(170000000%d.%03d000) can0 123#01\n" % (ms // 1000, ms % 1000)
+                                        for ms in (0, 2000, 2000 - back, 2000 - 1, 2500)))
+            done = self.monitor("--log", "b.log", "--speed", "max", cwd=self.folder)
+            self.assertEqual((done.returncode, done.stderr), (0, said))
+
+    def test_bad_lines(self):
+        self.write("b.log", "(1700000000.000000) can0 123#01\nnonsense\n(1700000000.300000) can0 123#01\n(17000")
+        done = self.monitor("--log", "b.log", "--speed", "max", cwd=self.folder)
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1))
+        done = self.monitor("--log", "b.log", "--speed", "max", "--skip-bad-lines", cwd=self.folder)
+        self.assertEqual((done.returncode, done.stderr), (0, "host_sim: b.log: lines skipped: 2\n"))
+
     def test_an_ai_side_that_the_log_does_not_have(self):
         for name, said in (("can9", "host_sim: the log has no frame from can9, the AI side\n"), ("can0", "")):
             done = self.monitor("--log", EXAMPLE, "--speed", "max", "--ai-if", name)
@@ -196,6 +211,8 @@ class Lines(hostsim.Case):
                 (["--log", EXAMPLE, "--can", "can0"], "--log and --can exclude each other"),
                 (["--log", EXAMPLE, "--record", "x"], "--record needs --can: a log is recorded already"),
                 (["--can", "can0", "--speed", "4"], "--speed needs --log"),
+                (["--can", "can0", "--skip-bad-lines"], "--skip-bad-lines needs --log"),
+                (["--can", "nosuch", "--record", EXAMPLE], f"{EXAMPLE}: exists already, and is not replaced"),
                 (["--log", EXAMPLE, "--speed", "-1"], "--speed: '-1' is not a number from 0.01 to 1000, nor max"),
                 (["--log", EXAMPLE, "--speed", "1e3"], "--speed: '1e3' is not a number from 0.01 to 1000, nor max"),
                 (["--log", EXAMPLE, "--speed", "nan"], "--speed: 'nan' is not a number from 0.01 to 1000, nor max"),

@@ -84,6 +84,14 @@ class ScenarioBus(hostsim.Case):
         for option in (("--tolerance", "5"), ("--supervisor", "true"), ("--sent", "sent.log")):
             self.assert_refused(self.scenario("sim", *option), "--tolerance, --supervisor and --sent need CAN interfaces")
 
+    def test_an_external_supervisor_that_is_not_there_is_named_in_one_line(self):
+        for command in ("/nonexistent", "./none --option"):
+            self.assert_refused(self.scenario(NO_INTERFACE, "--supervisor", command),
+                                f"--supervisor: {command.split()[0]}: No such file or directory")
+        self.assert_refused(self.scenario(NO_INTERFACE, "--supervisor", "/etc/passwd"), "Permission denied")
+        for command in ("/bin/true", "X=/none true"):
+            self.assert_refused(self.scenario(NO_INTERFACE, "--supervisor", command), NO_INTERFACE)
+
     def test_the_gateway_needs_two_interfaces(self):
         gateway = next(path for path in sorted(SCENARIOS.glob("*/*.yaml"))
                        if re.search("^topology: gateway", path.read_text(encoding="utf-8"), re.MULTILINE))

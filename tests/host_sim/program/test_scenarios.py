@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import time
@@ -98,7 +99,7 @@ class Command(hostsim.Case):
     def test_it_says_what_held(self):
         result = self.scenario(GOOD)
         self.assertEqual(result.status, 0, result.stderr)
-        self.assertEqual(result.stdout, "ok      s.yaml: 3 expectations\n1 scenarios: 1 passed, 0 failed\n")
+        self.assertEqual(result.stdout, "ok      s.yaml: 3 expectations\n1 scenario: 1 passed, 0 failed\n")
 
     def test_it_says_what_did_not_hold_and_what_was_seen(self):
         result = self.scenario(GOOD.replace("[510, 513]", "[500, 505]"))
@@ -106,7 +107,7 @@ class Command(hostsim.Case):
         self.assertEqual(result.stdout.splitlines(), [
             "FAILED  s.yaml: 1 of 3 expectations",
             "        line 5: STANDBY (no reason) is expected in 500..505 ms, seen: STANDBY (no reason) at 511 ms",
-            "1 scenarios: 0 passed, 1 failed"])
+            "1 scenario: 0 passed, 1 failed"])
 
     def test_results_as_junit(self):
         self.write("bad & <worse>.yaml", GOOD.replace("to: INIT", "to: SAFE"))
@@ -170,7 +171,7 @@ class Command(hostsim.Case):
         result = self.scenario(GOOD, "--events", "-")
         events = [json.loads(line) for line in result.stdout.splitlines()]
         self.assertEqual(events[-1]["event"], "summary")
-        self.assertEqual(result.stderr, "ok      s.yaml: 3 expectations\n1 scenarios: 1 passed, 0 failed\n")
+        self.assertEqual(result.stderr, "ok      s.yaml: 3 expectations\n1 scenario: 1 passed, 0 failed\n")
         suite = xml.etree.ElementTree.fromstring(self.scenario(GOOD, "--junit", "-").stdout)
         self.assertEqual(suite.get("tests"), "1")
 
@@ -331,6 +332,13 @@ class Demo(hostsim.Case):
         self.assertEqual((self.folder / "s.yaml").read_text(encoding="ascii"), GOOD)
         result = self.run_program("demo", "--events", "/dev/full")
         self.assertEqual((result.status, result.stderr), (2, "host_sim: /dev/full: No space left on device\n"))
+
+    def test_a_program_without_its_folder_of_scenarios(self):
+        (self.folder / "bin").mkdir()
+        alone = self.folder / "bin" / "host_sim"
+        shutil.copy(hostsim.PROGRAM, alone)
+        self.assert_refused(self.run_program("demo", program=alone), "no folder ", "share/agv-supervisor/scenarios; keep the "
+                            "program with its share folder, or give --scenario FILE")
 
     def test_a_name_that_there_is_not(self):
         self.assert_refused(self.run_program("demo", "--scenario", "nonesuch"), "nonesuch", "host_sim/scenarios")

@@ -81,7 +81,8 @@ class Soak(hostsim.Case):
 
     def test_options(self):
         for arguments, says in (((), "--hours is missing"), (("--hours", "1"), "--seed is missing"),
-                                (("--hours", "0", "--seed", "1"), "--hours"), (("--hours", "1", "--seed", "x"), "--seed"),
+                                (("--hours", "0", "--seed", "1"), "--hours"), (("--hours", "1.5", "--seed", "1"), "a time: 2h, or whole"),
+                                (("--hours", "1", "--seed", "x"), "--seed"),
                                 (("--hours", "1", "--seed", "1", "--shard", "2"), "--shard: '2'"),
                                 (("--hours", "1", "--seed", "1", "--planted", "trip"), "--planted"),
                                 (("--hours", "1", "--seed", "1", "more"), "unexpected argument 'more'"),
@@ -145,8 +146,12 @@ class Soak(hostsim.Case):
         self.assertTrue(self.stopped("--hours", "100", "--seed", "1", "--checkpoint", "good"))
         good = (self.folder / "good").read_bytes()
         torn = good[:5000] + bytes([good[5000] ^ 1]) + good[5001:]
-        for name, content, says in (("text", b"hello\n", "not a soak checkpoint"), ("torn", torn, "a damaged checkpoint"),
-                                    ("cut", good[:-1], "a damaged checkpoint"), ("more", good + b"x", "a damaged checkpoint")):
+        for name, content, says in (("text", b"hello\n", "not a soak checkpoint"), ("empty", b"", "not a soak checkpoint"),
+                                    ("log", b"(1.000000) can0 123#00\n" * 90, "not a soak checkpoint"),
+                                    ("hunt", good.replace(b"agv soak ", b"agv hunt ", 1), "not a soak checkpoint"),
+                                    ("head", good[:50], "a damaged checkpoint"), ("torn", torn, "a damaged checkpoint"),
+                                    ("cut", good[:-1], "a damaged checkpoint"), ("more", good + b"x", "a damaged checkpoint"),
+                                    ("old", good.replace(b"agv soak 2", b"agv soak 1", 1), "or another build")):
             self.write(name, content)
             self.assert_refused(self.run_program("soak", "--hours", 100, "--seed", 1, "--checkpoint", name), name, says)
         for other in (("--hours", 100, "--seed", 2), ("--hours", 101, "--seed", 1),

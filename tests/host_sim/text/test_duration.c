@@ -2,6 +2,7 @@
 #include "text/duration.h"
 
 #include <stddef.h>
+#include <string.h>
 
 #include "unity.h"
 
@@ -95,6 +96,29 @@ void test_what_is_wrong_in_words(void) {
                              duration_problem(DURATION_TOO_FINE, "1us", DURATION_MS, 1, 5000, problem));
     TEST_ASSERT_EQUAL_STRING("'6s' is not within 1ms to 5s",
                              duration_problem(DURATION_OUT_OF_RANGE, "6s", DURATION_MS, 1, 5000, problem));
+}
+
+void test_what_is_offered_is_accepted(void) {
+    static const char *const offered[] = {
+        [DURATION_US] = "'x' is not a time: 250ms, 10s, 1.5min, 2h, or whole microseconds alone",
+        [DURATION_MS] = "'x' is not a time: 250ms, 10s, 1.5min, 2h, or whole milliseconds alone",
+        [DURATION_S] = "'x' is not a time: 10s, 1.5min, 2h, or whole seconds alone",
+        [DURATION_MIN] = "'x' is not a time: 2h, or whole minutes alone",
+        [DURATION_H] = "'x' is not a time: 2h, or whole hours alone",
+        [DURATION_D] = "'x' is not a time: 2d, or whole days alone",
+    };
+    for (size_t unit = 0; unit < sizeof offered / sizeof offered[0]; unit++) {
+        char problem[DURATION_PROBLEM_SIZE];
+        TEST_ASSERT_EQUAL_STRING(offered[unit],
+                                 duration_problem(DURATION_NO_TIME, "x", (duration_unit_t)unit, 1, 5000, problem));
+        char *times = strchr(problem, ':') + 1;
+        *strstr(times, ", or whole") = '\0';
+        for (char *time = strtok(times, ","); time != NULL; time = strtok(NULL, ",")) {
+            uint64_t number = 0;
+            TEST_ASSERT_EQUAL_INT_MESSAGE(DURATION_OK,
+                                          duration_read(&time[1], (duration_unit_t)unit, 1, UINT64_MAX, &number), time);
+        }
+    }
 }
 
 static void check_text(const char *expected, uint64_t number, duration_unit_t unit) {

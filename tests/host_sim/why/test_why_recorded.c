@@ -74,7 +74,7 @@ void test_an_ai_computer_that_was_never_seen(void) {
     check_times(trip, 1000, WHY_NEVER);
     TEST_ASSERT_EQUAL_INT64(500, trip->limit);
     TEST_ASSERT_EQUAL_UINT(0, trip->evidence_count);
-    check_words(trip, "43Fh turn_signal_command was never heard, engaged at 1.000 s, deadline 500 ms");
+    check_words(trip, "43Fh turn_signal_command was never received, engaged at 1.000 s, deadline 500 ms");
 }
 
 void test_a_short_interruption_is_the_same_engagement(void) {

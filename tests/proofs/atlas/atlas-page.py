@@ -31,6 +31,10 @@ def ms(time_us):
     return "" if time_us is None else str(round(time_us / 1000))
 
 
+def counted(number, word):
+    return f"{number} {word}" if number == 1 else f"{number} {word}s"
+
+
 class Atlas:
     def __init__(self):
         self.words = Index()
@@ -42,6 +46,14 @@ class Atlas:
         self.head = None
 
     def read(self, path):
+        try:
+            self.read_lines(path)
+        except OSError as error:
+            raise Problem(f"{path}: {error.strerror}") from error
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            raise Problem(f"{path} holds no results of host_sim atlas, or is damaged") from error
+
+    def read_lines(self, path):
         with open(path, encoding="ascii") as lines:
             head = json.loads(next(lines, "{}"))
             if head.get("atlas") != 1:
@@ -82,8 +94,9 @@ class Atlas:
 
     def figures(self):
         weak = ", ".join(f"{count} {name}" for name, count in sorted(self.weaker.items())) or "none"
-        return (f"{len(self.rows)} pairs of {len({row.split(';')[2] for row in self.rows})} faults, weaker than their worse "
-                f"half: {weak}; first safe frame later than in the quicker half: {self.slower}")
+        faults = {fault for row in self.rows for fault in row.split(";")[2:4]}
+        return (f"{counted(len(self.rows), 'pair')} of {counted(len(faults), 'fault')}, weaker than their worse half: {weak}; "
+                f"first safe frame later than in the quicker half: {self.slower}")
 
 
 def main():
@@ -99,8 +112,11 @@ def main():
         if not arguments.partial:
             atlas.check_whole()
         pathlib.Path(arguments.out).write_text(atlas.page(), encoding="utf-8")
-    except (Problem, OSError, ValueError, KeyError) as problem:
+    except Problem as problem:
         print(f"atlas-page: {problem}", file=sys.stderr)
+        return 2
+    except OSError as error:
+        print(f"atlas-page: {error.filename}: {error.strerror}", file=sys.stderr)
         return 2
     print(atlas.figures())
     return 0

@@ -118,7 +118,7 @@ function drawAge(layout, row, top) {
   for (const kind of Object.keys(parts)) if (parts[kind]) text += `<path class="tl-age tl-${kind}" d="${parts[kind]}"/>`;
   text += `<path class="tl-deadline" d="M${left} ${(base - top.height * LIMIT_AT).toFixed(1)}h${plotWidth}"/>`;
   if (age.length > 0) return text;
-  return `${text}<text class="tl-hint" x="${left + 6}" y="${top.y + top.height / 2 + 4}">never heard</text>`;
+  return `${text}<text class="tl-hint" x="${left + 6}" y="${top.y + top.height / 2 + 4}">never received</text>`;
 }
 
 const rowDrawers = { head: () => "", lane: drawLane, plot: drawPlot, age: drawAge };

@@ -519,7 +519,7 @@ class Restart(hostsim.Case):
         log = traffic.log(traffic.frames(1000))
         changed = bytearray(good)
         changed[20] ^= 1
-        for content in (b"", good[:10], good[:-1], good[:-9], bytes(changed), b"\0" * 1000, b"nonsense\n" * 9, good * 30):
+        for content in (b"", good[:5], good[:10], good[:-1], good[:-9], bytes(changed), b"agv-store 9\nnonsense\n", good * 30):
             for cause, state in (("watchdog", "TRIPPED"), ("power-on", "INIT")):
                 self.write("store", content)
                 result = self.replay(log, "--store", "store", "--reset-cause", cause, "--tail=0")
@@ -528,6 +528,13 @@ class Restart(hostsim.Case):
             self.replay(log, "--store", "store", "--reset-cause", "watchdog", "--tail=0")
             self.assertNotIn("STORE_INVALID", [name for _, name, _ in self.replay(
                 log, "--store", "store", "--tail=0").faults()])
+
+    def test_a_file_that_is_no_store_is_not_overwritten(self):
+        log = traffic.log(traffic.frames(50))
+        for content in (b"\n", b"x", b"nonsense\n" * 9, b"\0" * 1000, b"agv-latch 1\n", log.encode()):
+            self.write("mine", content)
+            self.assert_refused(self.refuse(log, "--store", "mine"), "mine: no store, which begins with 'agv-store '")
+            self.assertEqual((self.folder / "mine").read_bytes(), content)
 
     def test_a_store_is_made_when_it_is_not_there(self):
         self.replay(traffic.log(traffic.frames(100)), "--store", "store")

@@ -91,10 +91,10 @@ class Outputs(hostsim.Case):
         log = LOG + "nonsense\n"
         self.assert_refused(self.refuse(log), ":356: ")
         for name in ("events.jsonl", "out.log", "store"):
-            self.write(name, "old")
+            self.write(name, "agv-store old")
         self.assert_refused(self.refuse(log), ":356: ")
         for name in ("events.jsonl", "out.log", "store"):
-            self.assertEqual((self.folder / name).read_text(encoding="ascii"), "old")
+            self.assertEqual((self.folder / name).read_text(encoding="ascii"), "agv-store old")
 
     def test_files_are_replaced_as_a_whole(self):
         for name in ("events.jsonl", "out.log"):

@@ -161,7 +161,7 @@ class Proposal(Case):
         settings = self.settings()
         for name in ("throttle_status", "wheel_speed", "throttle_command"):
             self.assertNotIn("id_" + name, settings)
-            self.assertTrue(any(note.startswith(name + " was not heard") for note in survey["proposal"]["notes"]))
+            self.assertTrue(any(note.startswith(name + " was not received") for note in survey["proposal"]["notes"]))
 
     def test_two_identifiers_that_fit_one_message(self):
         def twice(frame):
@@ -169,7 +169,7 @@ class Proposal(Case):
             return [frame, copy] if frame.name == "gear_status" else frame
         survey = self.survey(traffic.frames(MINUTE, ENGAGED, ids=dict(traffic.IDS, gear_status=0x1A3), edit=twice))
         self.assertNotIn("id_gear_status", self.settings())
-        self.assertIn("gear_status was not heard; it could be 1A3h 1A4h: set id_gear_status",
+        self.assertIn("gear_status was not received; it could be 1A3h 1A4h: set id_gear_status",
                       survey["proposal"]["notes"])
 
     def test_counters_that_count_otherwise(self):
@@ -326,8 +326,8 @@ class Text(Case):
     def test_messages_that_were_not_heard(self):
         self.write("log", traffic.log(traffic.frames(2000, senders=("vcu",))))
         result = self.run_good("survey", "log")
-        self.assertIn("067h   steering_status             -  not heard\n", result.stdout)
-        self.assertIn("# - steering_status was not heard\n", result.stdout)
+        self.assertIn("067h   steering_status             -  not received\n", result.stdout)
+        self.assertIn("# - steering_status was not received\n", result.stdout)
         self.assertIn("# - autopilot was never engaged", result.stdout)
 
     def test_two_interfaces_that_are_not_a_gateway(self):
@@ -385,7 +385,7 @@ class Refused(Case):
     def test_bad_command_lines(self):
         self.write("log", traffic.log(traffic.frames(500)))
         for arguments, part in (((), "LOG or --can is missing"), (("log", "log"), "unexpected argument 'log'"),
-                                (("log", "--can", "can0"), "LOG and --can: one of them"),
+                                (("log", "--can", "can0"), "give only one of LOG and --can"),
                                 (("log", "--for", "1s"), "--for is for --can"),
                                 (("--can", "can0", "--for", "1m"), "--for: '1m' is not a time"),
                                 (("--can", "can0", "--ai-if", "x"), "--ai-if is for a log"),
@@ -394,6 +394,9 @@ class Refused(Case):
                                 (("log", "--bitrate", "5"), "--bitrate: '5' is not a number"),
                                 (("none",), "none: No such file"), (("log", "--config-out", "log"), "same file"),
                                 (("log", "--config-out", "no/c.yaml"), "no/c.yaml"),
+                                (("--can", "nosuchcan", "--config-out", "no/c.yaml"), "no/c.yaml"),
+                                (("log", "--json", "--config-out", "-"), "--json and --config-out -: only one"),
+                                (("log", "--json", "--config-out", "/dev/stdout"), "--json and --config-out -"),
                                 (("--can", "nosuchcan"), "nosuchcan")):
             with self.subTest(arguments):
                 self.assert_refused(self.run_program("survey", *arguments), part)
@@ -409,6 +412,13 @@ class Refused(Case):
                 self.assert_refused(self.run_program("survey", "--config-out", "config.yaml", "log"), part)
                 self.assertEqual(self.text("config.yaml"), "park: at_once\n")
                 self.assertEqual(self.files(), ["config.yaml", "log"])
+
+    def test_the_survey_is_printed_though_the_proposal_is_lost(self):
+        self.write("log", traffic.log(traffic.frames(2000)))
+        expected = self.run_good("survey", "log").stdout
+        result = self.run_program("survey", "--config-out", "/dev/full", "log")
+        self.assert_refused(result, "/dev/full: No space left")
+        self.assertEqual(result.stdout, expected)
 
     def test_endless_input(self):
         self.assert_refused(self.run_program("survey", "/dev/zero", timeout=20), "binary data")

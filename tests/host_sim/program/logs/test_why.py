@@ -53,21 +53,21 @@ class FiveLogs(Case):
     def test_the_other_id_set(self):
         log = traffic.log(traffic.frames(5000, ids=traffic.TABLE_IDS))
         lines = self.text(log, "--fail-on-trip", status=1)
-        self.assertTrue(lines[0].startswith("NOT SUPERVISED: never left INIT, missing: manual (363h never heard)"))
-        self.assertIn("  hint      201h and 203h heard, 43Fh and 363h not: --id-set table", lines)
+        self.assertTrue(lines[0].startswith("NOT SUPERVISED: never left INIT, missing: manual (363h never received)"))
+        self.assertIn("  hint      201h and 203h received, 43Fh and 363h not: --id-set table", lines)
         fits = self.text(log, "--id-set", "table", "--fail-on-trip")
         self.assertTrue(fits[0].startswith("my.log: "), fits[0])
 
     def test_the_other_way_round(self):
         lines = self.text(traffic.log(traffic.frames(3000)), "--id-set", "table")
-        self.assertIn("  hint      43Fh and 363h heard, 201h and 203h not: --id-set heading", lines)
+        self.assertIn("  hint      43Fh and 363h received, 201h and 203h not: --id-set heading", lines)
 
     def test_a_log_without_the_eps(self):
         log = traffic.log(traffic.frames(3000, senders=("vcu", "ai")))
         lines = self.text(log, "--fail-on-trip", status=1)
-        self.assertIn("NOT SUPERVISED: never left INIT, missing: eps_heartbeat (067h never heard)", lines[0])
-        self.assertIn("  hint      067h, 167h and 267h never heard: is the EPS on this bus?", lines)
-        self.assertIn("messages (067h, 167h, 267h never heard)", " ".join(line.strip() for line in lines[:4]))
+        self.assertIn("NOT SUPERVISED: never left INIT, missing: eps_heartbeat (067h never received)", lines[0])
+        self.assertIn("  hint      067h, 167h and 267h never received: is the EPS on this bus?", lines)
+        self.assertIn("messages (067h, 167h, 267h never received)", " ".join(line.strip() for line in lines[:4]))
         self.assertEqual(set(self.why(log)["not_supervised"]), {"eps_heartbeat", "trip_cause", "messages"})
 
     def test_a_log_of_another_vehicle(self):
@@ -78,7 +78,7 @@ class FiveLogs(Case):
         self.assertTrue(lines[0].startswith("NOT SUPERVISED: "), lines[0])
         hint = next(i for i, line in enumerate(lines) if line.startswith("  hint"))
         self.assertEqual(lines[hint:hint + 2], [
-            "  hint      161h, 176h, 178h, 186h, 1B4h, 212h, and others heard, 0 of the 11 messages of the",
+            "  hint      161h, 176h, 178h, 186h, 1B4h, 212h, and others received, 0 of the 11 messages of the",
             "            protocol: another vehicle? Each identifier is a setting (id_...), and host_sim survey"])
 
     def test_a_log_with_some_other_identifiers(self):
@@ -86,16 +86,16 @@ class FiveLogs(Case):
         lines = self.text(traffic.log(traffic.frames(2000, ids=ids)))
         hint = next(i for i, line in enumerate(lines) if line.startswith("  hint"))
         self.assertEqual(lines[hint:hint + 2], [
-            "  hint      065h and 363h never heard, but 165h and 303h, which the protocol does not know: other",
+            "  hint      065h and 363h never received, but 165h and 303h, which the protocol does not know: other",
             "            identifiers? host_sim survey proposes them"])
 
     def test_frames_of_another_kind(self):
         log = traffic.log(traffic.frames(2000))
         lines = self.text(log.replace("#", "##0"))
-        self.assertIn("  hint      only CAN FD frames heard: the protocol has classic CAN frames", lines)
+        self.assertIn("  hint      only CAN FD frames received: the protocol has classic CAN frames", lines)
         self.assertEqual(lines[-1], "log         CAN FD frames: 1420")
         lines = self.text(log.replace(" can0 ", " can0 00000"))
-        self.assertIn("  hint      only 29-bit identifiers heard: the protocol has 11-bit ones", lines)
+        self.assertIn("  hint      only 29-bit identifiers received: the protocol has 11-bit ones", lines)
         self.assertEqual(lines[-1], "log         frames with 29-bit identifiers: 1420")
 
     def test_a_clock_that_is_set_back(self):
