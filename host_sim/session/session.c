@@ -40,30 +40,16 @@ static void notify_led(session_t *session) {
     notify(session, &event);
 }
 
-/** Note what observers are told of a fault. */
-static void note_fault(session_t *session, const agv_event_t *recorded) {
-    const bool is_fault = (recorded->kind == (uint8_t)AGV_EVENT_FAULT) && (recorded->a < (uint8_t)AGV_FAULT_COUNT);
-    if (is_fault) {
-        const bool is_active = recorded->c != 0u;
-        const bool is_trip = is_active && (recorded->b == (uint8_t)AGV_CLASS_TRIP);
-        agv_fault_set_put(&session->told.active, recorded->a, is_active);
-        agv_fault_set_put(&session->told.trips, recorded->a, is_trip);
-        session->told.left_out[recorded->a] = 0u; /* the recorder counts anew */
-    }
-}
-
 /** The event of a fault that the recorder left out. */
-static void notify_left_out(session_t *session, uint32_t fault, bool is_active, bool is_trip) {
+static void notify_left_out(const session_t *session, uint32_t fault, bool is_active, bool is_trip) {
     const agv_supervisor_t *supervisor = &session->supervisor;
-    const bool tells_trip = is_active ? is_trip : agv_fault_is_in(&session->told.trips, fault);
     const session_event_t event = {.t_ms = session->t_ms,
                                    .recorded = {.kind = AGV_EVENT_FAULT,
                                                 .a = (uint8_t)fault,
-                                                .b = (uint8_t)(tells_trip ? AGV_CLASS_TRIP : AGV_CLASS_WARN),
+                                                .b = (uint8_t)(is_trip ? AGV_CLASS_TRIP : AGV_CLASS_WARN),
                                                 .c = is_active ? 1u : 0u,
                                                 .state = (uint8_t)agv_supervisor_state(supervisor),
                                                 .first_reason = (uint8_t)agv_supervisor_first_reason(supervisor)}};
-    note_fault(session, &event.recorded);
     notify(session, &event);
 }
 
@@ -71,31 +57,24 @@ static inline bool is_same(const agv_fault_set_t *a, const agv_fault_set_t *b) {
     return memcmp(a, b, sizeof *a) == 0;
 }
 
-/** The recorder keeps at most 4 events of a fault in a second. The faults of the supervisor show those it left out. */
+/** The recorder keeps at most 4 events of a fault in a second, and counts the others. */
 static void tell_left_out(session_t *session) {
+    session_faults_t *before = &session->faults;
     const agv_fault_set_t active = agv_supervisor_active_faults(&session->supervisor);
     const agv_fault_set_t trips = agv_supervisor_active_trips(&session->supervisor);
-    if (is_same(&active, &session->told.active) && is_same(&trips, &session->told.trips)) {
+    if (is_same(&active, &before->active) && is_same(&trips, &before->trips)) {
         return;
     }
     for (uint32_t fault = 0u; fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
         const uint16_t left_out = session->recorder.rates[fault].left_out;
-        if (left_out != session->told.left_out[fault]) {
-            notify_left_out(session, fault, agv_fault_is_in(&active, fault), agv_fault_is_in(&trips, fault));
-            session->told.left_out[fault] = left_out;
+        if ((left_out != 0u) && (left_out != before->left_out[fault])) {
+            const bool is_active = agv_fault_is_in(&active, fault);
+            notify_left_out(session, fault, is_active, agv_fault_is_in(is_active ? &trips : &before->trips, fault));
         }
+        before->left_out[fault] = left_out;
     }
-}
-
-/** What the recorder has is told as it has it: tell_left_out() leaves that alone. */
-static void note_recorded(session_t *session) {
-    const uint32_t end = agv_recorder_next_sequence(&session->recorder);
-    agv_event_t event;
-    for (uint32_t next = session->next; next != end; next++) {
-        if (agv_recorder_get(&session->recorder, next, &event)) {
-            note_fault(session, &event);
-        }
-    }
+    before->active = active;
+    before->trips = trips;
 }
 
 static void notify_recorded(session_t *session, bool with_output) {
@@ -111,12 +90,8 @@ static void notify_recorded(session_t *session, bool with_output) {
 
 /** Tell what a call of the supervisor has changed. A fault that was left out comes before what follows from it. */
 static void tell_news(session_t *session) {
-    const bool has_news = agv_recorder_next_sequence(&session->recorder) != session->next;
-    if (has_news) {
-        note_recorded(session);
-    }
     tell_left_out(session);
-    if (has_news) {
+    if (agv_recorder_next_sequence(&session->recorder) != session->next) {
         notify_recorded(session, true);
     }
 }
@@ -141,8 +116,7 @@ void session_start(session_t *session, const agv_config_t *config, uint64_t t_ms
     session->counted_ms = t_ms;
     agv_supervisor_start(&session->supervisor, &session->ports, config, clock_ms);
     session->next = first_of_run(&session->recorder);
-    (void)memset(&session->told, 0, sizeof session->told);
-    note_recorded(session);
+    (void)memset(&session->faults, 0, sizeof session->faults);
     notify_recorded(session, false);
     notify_output(session, agv_supervisor_output_closed(&session->supervisor));
     notify_led(session);

@@ -35,12 +35,12 @@ typedef struct {
  */
 typedef void session_observer_fn(void *ctx, const session_event_t *event);
 
-/** What observers were told of the faults. */
+/** The faults after the last call. */
 typedef struct {
     agv_fault_set_t active;
-    agv_fault_set_t trips;              /**< those of `active` whose class was trip */
-    uint16_t left_out[AGV_FAULT_COUNT]; /**< by the recorder, of each fault, up to then */
-} session_told_t;
+    agv_fault_set_t trips;              /**< those of `active` that count as trips */
+    uint16_t left_out[AGV_FAULT_COUNT]; /**< events of each fault that the recorder left out since the last it kept */
+} session_faults_t;
 
 /** Read the members freely; change nothing but through the functions. */
 typedef struct {
@@ -52,7 +52,7 @@ typedef struct {
     uint64_t supervised_ms; /**< time outside INIT */
     uint32_t next;          /**< sequence number of the next event to report */
     int8_t led_code;        /**< as last reported */
-    session_told_t told;
+    session_faults_t faults;
     size_t observer_count;
     struct {
         session_observer_fn *fn;
