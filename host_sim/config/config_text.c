@@ -77,8 +77,7 @@ void config_print_yaml(const agv_config_t *config) {
         (void)printf("%s%s\n", weakens_text(info), info->gateway_only ? "; gateway only" : "");
         (void)printf("%s: %s\n", info->name, value);
     }
-    (void)printf("\n# Class of each fault: trip|warn. A warning may be made a trip; a mandatory trip cannot be made a "
-                 "warning.\n");
+    (void)printf("\n# Class of each fault: trip|warn. A warning may be made a trip; a mandatory trip stays one.\n");
     for (uint32_t i = 0u; i < (uint32_t)AGV_FAULT_COUNT; i++) {
         const agv_fault_t fault = (agv_fault_t)i;
         char key[CONFIG_CLASS_KEY_SIZE];

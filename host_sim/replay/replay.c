@@ -219,7 +219,6 @@ static bool put_files_in_place(replay_t *replay) {
 static bool conclude(replay_t *replay) {
     const replay_request_t *request = replay->request;
     events_summary_t summary;
-    session_end(&replay->session);
     events_summarise(&replay->session, &summary);
     summary.skipped_lines = replay->log.skipped;
     summary.backward_stamps = replay->backward_stamps;

@@ -25,23 +25,35 @@ static bool has_pending(const replay_text_t *replay) {
     return pending;
 }
 
-static void print_head(const replay_text_t *replay) {
+/** Add how long the log is, its interfaces and its time of day. */
+static void add_head(text_t *text, const replay_text_t *replay) {
     const replay_heard_t *heard = replay->heard;
-    (void)printf("%s: %" PRIu64 ".%03" PRIu64 " s on ", replay->name, replay->duration_us / US_PER_S,
-                 (replay->duration_us % US_PER_S) / US_PER_MS);
+    text_add(text, "%" PRIu64 ".%03" PRIu64 " s on ", replay->duration_us / US_PER_S,
+             (replay->duration_us % US_PER_S) / US_PER_MS);
     for (size_t i = 0u; i < heard->name_count; i++) {
-        (void)printf("%s%s", (i > 0u) ? ", " : "", heard->names[i]);
+        text_add(text, "%s%s", (i > 0u) ? ", " : "", heard->names[i]);
     }
-    (void)printf("%s", heard->more_names ? " and others" : "");
+    text_add(text, "%s", heard->more_names ? " and others" : "");
     if (why_text_has_clock(replay->first_us)) {
         char from[WHY_TEXT_CLOCK_SIZE];
         char to[WHY_TEXT_CLOCK_SIZE];
         (void)why_text_clock(from, replay->first_us);
         (void)why_text_clock(to, replay->first_us + replay->duration_us);
         const bool same_day = strncmp(from, to, WHY_TEXT_DATE) == 0;
-        (void)printf(", %s to %s", from, same_day ? &to[WHY_TEXT_DATE + 1] : to);
+        text_add(text, ", %s to %s", from, same_day ? &to[WHY_TEXT_DATE + 1] : to);
     }
-    (void)printf("\n");
+}
+
+/** The name of the log has a line of its own where the rest does not fit behind it. */
+static void print_head(const replay_text_t *replay) {
+    text_t text = {.used = 0u};
+    add_head(&text, replay);
+    if (strlen(replay->name) + strlen(": ") + text.used <= (size_t)WHY_TEXT_COLUMNS) {
+        (void)printf("%s: %s\n", replay->name, text.bytes);
+    } else {
+        (void)printf("%s:\n", replay->name);
+        why_text_line("", WHY_TEXT_LABEL, text.bytes);
+    }
 }
 
 static replay_clues_t clues_of(const replay_text_t *replay) {

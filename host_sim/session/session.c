@@ -2,8 +2,6 @@
 
 #include <string.h>
 
-enum { COMPARE_EVERY_MS = 100, TELL_AFTER_MS = 1000 };
-
 static const agv_version_t version = {
     .major = HOST_SIM_VERSION_MAJOR, .minor = HOST_SIM_VERSION_MINOR, .patch = HOST_SIM_VERSION_PATCH};
 
@@ -42,39 +40,41 @@ static void notify_led(session_t *session) {
     notify(session, &event);
 }
 
-static void note_fault(session_t *session, const agv_event_t *recorded) {
-    if ((recorded->kind == (uint8_t)AGV_EVENT_FAULT) && (recorded->a < (uint8_t)AGV_FAULT_COUNT)) {
-        session->faults[recorded->a] =
-            (session_fault_t){.t_ms = session->t_ms, .is_active = recorded->c != 0u, .fault_class = recorded->b};
-    }
-}
-
 /** The event of a fault that the recorder left out. */
-static void notify_left_out(session_t *session, uint32_t fault, bool is_active) {
+static void notify_left_out(const session_t *session, uint32_t fault, bool is_active, bool is_trip) {
     const agv_supervisor_t *supervisor = &session->supervisor;
-    const agv_fault_set_t trips = agv_supervisor_active_trips(supervisor);
-    const uint32_t now = agv_fault_is_in(&trips, fault) ? AGV_CLASS_TRIP : AGV_CLASS_WARN;
     const session_event_t event = {.t_ms = session->t_ms,
                                    .recorded = {.kind = AGV_EVENT_FAULT,
                                                 .a = (uint8_t)fault,
-                                                .b = is_active ? (uint8_t)now : session->faults[fault].fault_class,
+                                                .b = (uint8_t)(is_trip ? AGV_CLASS_TRIP : AGV_CLASS_WARN),
                                                 .c = is_active ? 1u : 0u,
                                                 .state = (uint8_t)agv_supervisor_state(supervisor),
                                                 .first_reason = (uint8_t)agv_supervisor_first_reason(supervisor)}};
-    note_fault(session, &event.recorded);
     notify(session, &event);
 }
 
-static void tell_left_out(session_t *session, uint64_t after_ms) {
+static inline bool is_same(const agv_fault_set_t *a, const agv_fault_set_t *b) {
+    return memcmp(a, b, sizeof *a) == 0;
+}
+
+/** The recorder keeps at most 4 events of a fault in a second, and counts the others. */
+static void tell_left_out(session_t *session) {
+    session_faults_t *before = &session->faults;
     const agv_fault_set_t active = agv_supervisor_active_faults(&session->supervisor);
-    for (uint32_t fault = 0u; fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
-        const session_fault_t *told = &session->faults[fault];
-        const bool is_active = agv_fault_is_in(&active, fault);
-        if ((session->recorder.rates[fault].left_out != 0u) && (is_active != told->is_active) &&
-            (session->t_ms - told->t_ms >= after_ms)) {
-            notify_left_out(session, fault, is_active);
-        }
+    const agv_fault_set_t trips = agv_supervisor_active_trips(&session->supervisor);
+    if (is_same(&active, &before->active) && is_same(&trips, &before->trips)) {
+        return;
     }
+    for (uint32_t fault = 0u; fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
+        const uint16_t left_out = session->recorder.rates[fault].left_out;
+        if ((left_out != 0u) && (left_out != before->left_out[fault])) {
+            const bool is_active = agv_fault_is_in(&active, fault);
+            notify_left_out(session, fault, is_active, agv_fault_is_in(is_active ? &trips : &before->trips, fault));
+        }
+        before->left_out[fault] = left_out;
+    }
+    before->active = active;
+    before->trips = trips;
 }
 
 static void notify_recorded(session_t *session, bool with_output) {
@@ -83,14 +83,17 @@ static void notify_recorded(session_t *session, bool with_output) {
         session_event_t event = {.t_ms = session->t_ms, .is_led = false};
         if (agv_recorder_get(&session->recorder, session->next, &event.recorded) &&
             (with_output || (event.recorded.kind != (uint8_t)AGV_EVENT_OUTPUT))) {
-            note_fault(session, &event.recorded);
             notify(session, &event);
         }
     }
 }
 
-static inline bool has_news(const session_t *session) {
-    return agv_recorder_next_sequence(&session->recorder) != session->next;
+/** Tell what a call of the supervisor has changed. A fault that was left out comes before what follows from it. */
+static void tell_news(session_t *session) {
+    tell_left_out(session);
+    if (agv_recorder_next_sequence(&session->recorder) != session->next) {
+        notify_recorded(session, true);
+    }
 }
 
 /** Find the first event of the run that has just begun: its events carry the same run number as the newest one. */
@@ -110,46 +113,41 @@ static uint32_t first_of_run(const agv_recorder_t *recorder) {
 
 void session_start(session_t *session, const agv_config_t *config, uint64_t t_ms, uint32_t clock_ms) {
     session->t_ms = t_ms;
-    session->ticked_ms = t_ms;
+    session->counted_ms = t_ms;
     agv_supervisor_start(&session->supervisor, &session->ports, config, clock_ms);
     session->next = first_of_run(&session->recorder);
-    (void)memset(session->faults, 0, sizeof session->faults);
+    (void)memset(&session->faults, 0, sizeof session->faults);
     notify_recorded(session, false);
     notify_output(session, agv_supervisor_output_closed(&session->supervisor));
     notify_led(session);
 }
 
-void session_frame(session_t *session, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_ms) {
-    session->t_ms = t_ms;
-    agv_supervisor_frame(&session->supervisor, &session->ports, side, frame);
-    if (has_news(session)) {
-        notify_recorded(session, true);
+/** A call begins: up to here the state was as it is. */
+static void advance(session_t *session, uint64_t t_ms) {
+    const bool supervised = agv_supervisor_state(&session->supervisor) != AGV_STATE_INIT;
+    if (t_ms > session->counted_ms) {
+        session->supervised_ms += supervised ? (t_ms - session->counted_ms) : 0u;
+        session->counted_ms = t_ms;
     }
+    session->t_ms = t_ms;
+}
+
+void session_frame(session_t *session, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_ms) {
+    advance(session, t_ms);
+    agv_supervisor_frame(&session->supervisor, &session->ports, side, frame);
+    tell_news(session);
 }
 
 void session_tick_behind(session_t *session, uint64_t t_ms, uint32_t clock_ms) {
-    if (agv_supervisor_state(&session->supervisor) != AGV_STATE_INIT) {
-        session->supervised_ms += t_ms - session->ticked_ms;
-    }
-    session->ticked_ms = t_ms;
-    session->t_ms = t_ms;
+    advance(session, t_ms);
     agv_supervisor_tick(&session->supervisor, &session->ports, clock_ms);
-    if (has_news(session)) {
-        notify_recorded(session, true);
-    }
+    tell_news(session);
     if (agv_supervisor_led_code(&session->supervisor) != session->led_code) {
         notify_led(session); /* a fault in a frame changes it in the next tick */
-    }
-    if ((t_ms % COMPARE_EVERY_MS) == 0u) {
-        tell_left_out(session, TELL_AFTER_MS);
     }
 }
 
 void session_tick(session_t *session, uint64_t t_ms, uint32_t clock_ms) {
     agv_supervisor_receive_alive(&session->supervisor);
     session_tick_behind(session, t_ms, clock_ms);
-}
-
-void session_end(session_t *session) {
-    tell_left_out(session, 0u);
 }

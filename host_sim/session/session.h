@@ -21,7 +21,7 @@
 
 #define SESSION_OBSERVERS_MAX 4u
 
-/** An event of the flight recorder, or a change of the LED code. */
+/** An event of the flight recorder, of a fault that it left out, or a change of the LED code. */
 typedef struct {
     uint64_t t_ms;        /**< since the start of the run */
     bool is_led;          /**< `led_code` is the news; else `recorded` */
@@ -29,15 +29,18 @@ typedef struct {
     agv_event_t recorded; /**< kind, a, b, c, missing as recorder.h says */
 } session_event_t;
 
-/** Called for every event, in order. */
+/**
+ * Called for every event, in order. The recorder keeps at most 4 events of a fault in a second; observers are told of
+ * those it left out, too, from the faults of the supervisor.
+ */
 typedef void session_observer_fn(void *ctx, const session_event_t *event);
 
-/** What observers were last told of a fault. */
+/** The faults after the last call. */
 typedef struct {
-    uint64_t t_ms;
-    bool is_active;
-    uint8_t fault_class; /**< agv_fault_class_t */
-} session_fault_t;
+    agv_fault_set_t active;
+    agv_fault_set_t trips;              /**< those of `active` that count as trips */
+    uint16_t left_out[AGV_FAULT_COUNT]; /**< events of each fault that the recorder left out since the last it kept */
+} session_faults_t;
 
 /** Read the members freely; change nothing but through the functions. */
 typedef struct {
@@ -45,11 +48,11 @@ typedef struct {
     agv_recorder_t recorder;
     agv_ports_t ports;
     uint64_t t_ms;          /**< time of the last call, since the start of the run */
-    uint64_t ticked_ms;     /**< time of the last tick, or of the start */
+    uint64_t counted_ms;    /**< up to here supervised_ms is counted */
     uint64_t supervised_ms; /**< time outside INIT */
     uint32_t next;          /**< sequence number of the next event to report */
     int8_t led_code;        /**< as last reported */
-    session_fault_t faults[AGV_FAULT_COUNT];
+    session_faults_t faults;
     size_t observer_count;
     struct {
         session_observer_fn *fn;
@@ -71,12 +74,6 @@ bool session_observe(session_t *session, session_observer_fn *fn, void *ctx);
  * @param clock_ms the supervisor's clock, any value
  */
 void session_start(session_t *session, const agv_config_t *config, uint64_t t_ms, uint32_t clock_ms);
-
-/**
- * Tell observers what the recorder has left out, because it records a fault at most 4 times a second: whether the fault is active
- * now. session_tick does this a second after the last event of the fault. Call this at the end of a run.
- */
-void session_end(session_t *session);
 
 /** Hand over a frame that was received; its time_ms is the supervisor's clock. */
 void session_frame(session_t *session, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_ms);

@@ -21,3 +21,11 @@ void text_add(text_t *text, const char *format, ...) {
     }
     text->used += (size_t)length;
 }
+
+size_t text_break(const char *text, size_t room) {
+    size_t length = room;
+    while ((length > 0u) && (text[length] != ' ')) {
+        length--;
+    }
+    return (length > 0u) ? length : room;
+}

@@ -23,4 +23,7 @@ void text_add(text_t *text, const char *format, ...) __attribute__((format(print
 /** Make it empty. */
 void text_clear(text_t *text);
 
+/** Where to break a text that is longer than @p room: at a blank if there is one. @return length of what fits */
+size_t text_break(const char *text, size_t room);
+
 #endif

@@ -10,10 +10,14 @@
 #include "agv/names.h"
 #include "common/crash.h"
 #include "common/missing.h"
+#include "text/text.h"
 #include "text/units.h"
 #include "traffic/signals.h"
 
-enum { MM_PER_CM = 10, WHAT_SIZE = 160 };
+enum { MM_PER_CM = 10, WHAT_SIZE = SIGNALS_TEXT_SIZE + 80 };
+
+/** A line has 100 columns: before the action, the action, and with it where the vehicle has no room. */
+enum { BEFORE_WHAT = 25, WHAT = 51, WHAT_ALONE = 100 - BEFORE_WHAT };
 
 #define MODE_BITS 0xC0
 #define MODE_MANUAL 0x40
@@ -69,6 +73,28 @@ static const char *mode_word(int mode) {
     }
 }
 
+/** Print what the vehicle reports, and end the line. */
+static void print_vehicle(const timeline_t *timeline) {
+    const int32_t cm_s = timeline->speed_mm_s / MM_PER_CM;
+    (void)printf("%c %-9s %s%d.%02d m/s\n", gear_letter(timeline->gear), mode_word(timeline->mode),
+                 (cm_s < 0) ? "-" : "", abs((int)cm_s) / 100, abs((int)cm_s) % 100);
+}
+
+/** Print an action, and the vehicle if there is room for it; a long action is broken at blanks. */
+static void print_what(const timeline_t *timeline, const char *what) {
+    while (strlen(what) > (size_t)WHAT_ALONE) {
+        const size_t length = text_break(what, (size_t)WHAT_ALONE);
+        (void)printf("%.*s\n%*s", (int)length, what, BEFORE_WHAT, "");
+        what = &what[length + ((what[length] == ' ') ? 1u : 0u)];
+    }
+    if (strlen(what) > (size_t)WHAT) {
+        (void)printf("%s\n", what);
+    } else {
+        (void)printf("%-*s  ", WHAT, what);
+        print_vehicle(timeline);
+    }
+}
+
 /** Print a line: time, actor, action, and what the vehicle reports. */
 static void line(timeline_t *timeline, uint64_t t_us, const char *who, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
@@ -82,12 +108,10 @@ static void line(timeline_t *timeline, uint64_t t_us, const char *who, const cha
     va_end(arguments);
     if (!timeline->header_done) {
         timeline->header_done = true;
-        (void)printf("%11s  %-10s  %-64s  %s\n", "time", "who", "what", "vehicle: gear, mode, speed");
+        (void)printf("%11s  %-10s  %-*s  %s\n", "time", "who", WHAT, "what", "gear, mode, speed");
     }
-    const int32_t cm_s = timeline->speed_mm_s / MM_PER_CM;
-    (void)printf("%5" PRIu64 ".%03" PRIu64 " s  %-10s  %-64s  %c %-9s %s%d.%02d m/s\n", t_us / US_PER_S,
-                 (t_us % US_PER_S) / US_PER_MS, who, what, gear_letter(timeline->gear), mode_word(timeline->mode),
-                 (cm_s < 0) ? "-" : "", abs((int)cm_s) / 100, abs((int)cm_s) % 100);
+    (void)printf("%5" PRIu64 ".%03" PRIu64 " s  %-10s  ", t_us / US_PER_S, (t_us % US_PER_S) / US_PER_MS, who);
+    print_what(timeline, what);
 }
 
 void timeline_step(void *ctx, uint64_t t_ms, const scenario_step_t *step) {

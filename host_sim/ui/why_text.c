@@ -6,23 +6,20 @@
 #include <time.h>
 
 #include "agv/names.h"
+#include "text/text.h"
 #include "text/units.h"
 #include "why/why_words.h"
 
-enum { COLUMNS = 100, TRIPS_SHOWN = 8, US_PER_10_MS = 10000 };
+enum { TRIPS_SHOWN = 8, US_PER_10_MS = 10000 };
 
 /** A stamp before the year 2000 is no time of day. */
 #define CLOCK_FROM_S 946684800u
 
 void why_text_line(const char *label, int width, const char *text) {
-    size_t room = (size_t)(COLUMNS - width);
+    const size_t room = (size_t)(WHY_TEXT_COLUMNS - width);
     (void)printf("%-*s", width, label);
     while (strlen(text) > room) {
-        size_t length = room;
-        while ((length > 0u) && (text[length] != ' ')) {
-            length--;
-        }
-        length = (length > 0u) ? length : room;
+        const size_t length = text_break(text, room);
         (void)printf("%.*s\n%*s", (int)length, text, width, "");
         text = &text[length + ((text[length] == ' ') ? 1u : 0u)];
     }

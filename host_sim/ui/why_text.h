@@ -10,7 +10,7 @@
 
 #include "why/why.h"
 
-enum { WHY_TEXT_LABEL = 12, WHY_TEXT_CLOCK_SIZE = 40, WHY_TEXT_DATE = 10 };
+enum { WHY_TEXT_COLUMNS = 100, WHY_TEXT_LABEL = 12, WHY_TEXT_CLOCK_SIZE = 40, WHY_TEXT_DATE = 10 };
 
 /** What is printed. */
 typedef struct {

@@ -77,11 +77,6 @@ static why_trip_t *open_trip(why_t *why) {
     return (why->open_trip < why->trip_count) ? &why->trips[why->open_trip] : NULL;
 }
 
-static bool wheels_stand(const why_t *why) {
-    const int32_t limit = why->config.standstill_speed_mm_s;
-    return (abs(why->facts.left_mm_s) < limit) && (abs(why->facts.right_mm_s) < limit);
-}
-
 /** What a frame adds to the trip before it: the end of a silence, standstill. */
 static void follow_trip(why_t *why, agv_message_t message, const why_evidence_t *frame) {
     const uint64_t t_us = frame->t_us;
@@ -93,7 +88,7 @@ static void follow_trip(why_t *why, agv_message_t message, const why_evidence_t 
         trip->next_us = t_us;
         why_show(trip, frame);
     }
-    if ((message == AGV_MSG_WHEEL_SPEED) && (trip->stopped_us == WHY_NEVER) && wheels_stand(why)) {
+    if ((message == AGV_MSG_WHEEL_SPEED) && (trip->stopped_us == WHY_NEVER) && why_wheels_are_slow(why)) {
         trip->stopped_us = t_us;
     }
 }
@@ -200,7 +195,7 @@ static void on_trip(why_t *why, agv_fault_t reason, uint64_t t_us) {
     if ((why->safe_frame.t_us != WHY_NEVER) && (why->safe_frame.t_us / US_PER_MS == t_us / US_PER_MS)) {
         trip->first_safe_us = why->safe_frame.t_us;
     }
-    if ((why->messages[AGV_MSG_WHEEL_SPEED].count > 0u) && wheels_stand(why)) {
+    if ((why->messages[AGV_MSG_WHEEL_SPEED].count > 0u) && why_wheels_are_slow(why)) {
         trip->stopped_us = t_us;
     }
 }
@@ -227,6 +222,7 @@ static void on_state(why_t *why, const agv_event_t *event, uint64_t t_us) {
     if (event->a == 0u) {
         why->start_us = t_us;
         why->was_tripped = false;
+        why->startup_missing = 0u;
     }
     if (why->state == (uint8_t)AGV_STATE_INIT) {
         why_init_end(why, t_us);
@@ -310,6 +306,9 @@ void why_event(void *ctx, const session_event_t *event) {
     case AGV_EVENT_FAULT:
         on_fault(why, &event->recorded, t_us);
         break;
+    case AGV_EVENT_STARTUP:
+        why->startup_missing = event->recorded.missing;
+        break;
     default:
         break;
     }
@@ -323,6 +322,7 @@ void why_end(why_t *why, uint64_t t_us) {
         why->init_due_us = t_us;
         why_init_check(why, t_us);
         why_init_end(why, t_us);
+        why->missing = (why->startup_missing != 0u) ? why->startup_missing : why->missing;
     }
     for (size_t i = 0u; i < why->fault_count; i++) {
         why_fault_t *entry = &why->faults[why->fault_order[i]];

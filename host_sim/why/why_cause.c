@@ -36,6 +36,10 @@ static int by_time(const void *one, const void *other) {
 static void set_limit(const why_t *why, why_trip_t *trip, uint16_t setting, const char *unit) {
     trip->limit = (setting != WHY_NO_SETTING) ? (int64_t)agv_config_get(&why->config, setting) : WHY_NO_LIMIT;
     trip->unit = (setting != WHY_NO_SETTING) ? unit : NULL;
+    if (trip->reason == AGV_FAULT_MOVING_WHILE_SAFE) {
+        trip->limit = (int64_t)WHY_MOVING_MS;
+        trip->unit = "ms";
+    }
 }
 
 /** The message that tells, and its identifier. */

@@ -25,11 +25,12 @@ static bool is_fresh(const why_t *why, agv_message_t number, uint64_t t_us) {
     return (message->count > 0u) && (t_us <= message->last_us + deadline_us(why, number));
 }
 
-/** The messages whose silence trips must be fresh. */
+/** The messages whose silence trips must be fresh, apart from those with an alive counter: they have to beat. */
 static bool are_fresh(const why_t *why, uint64_t t_us) {
     for (int i = 0; i < (int)AGV_FAULT_COUNT; i++) {
         const why_row_t *row = why_row((agv_fault_t)i);
         const bool counts = (row->kind == WHY_SILENCE) && !why_is_command(row->message) &&
+                            (message_counter_at(row->message) == MESSAGE_NO_COUNTER) &&
                             agv_config_is_trip(&why->config, (uint32_t)i);
         if (counts && !is_fresh(why, row->message, t_us)) {
             return false;
@@ -48,11 +49,19 @@ static bool has_trip_cause(const why_t *why) {
     return false;
 }
 
-static bool is_slow(const why_t *why) {
+bool why_wheels_are_slow(const why_t *why) {
     const int32_t limit = why->config.standstill_speed_mm_s;
-    const uint32_t vcu = why->config.standstill_vcu_counts;
-    return (abs(why->facts.left_mm_s) < limit) && (abs(why->facts.right_mm_s) < limit) &&
-           ((vcu == (uint32_t)UINT16_MAX) || (why->facts.vcu_speed <= vcu));
+    return (abs(why->facts.left_mm_s) < limit) && (abs(why->facts.right_mm_s) < limit);
+}
+
+bool why_vcu_is_slow(const why_t *why) {
+    const uint32_t limit = why->config.standstill_vcu_counts;
+    return (limit == AGV_STANDSTILL_VCU_ANY) || (why->facts.vcu_speed <= limit);
+}
+
+static bool is_slow(const why_t *why, uint64_t t_us) {
+    return beats(why, AGV_MSG_VEHICLE_STATUS, t_us) && is_fresh(why, AGV_MSG_WHEEL_SPEED, t_us) &&
+           why_wheels_are_slow(why) && why_vcu_is_slow(why);
 }
 
 static uint32_t missing_now(const why_t *why, uint64_t t_us) {
@@ -63,7 +72,7 @@ static uint32_t missing_now(const why_t *why, uint64_t t_us) {
     missing |= beats(why, AGV_MSG_STEERING_STATUS, t_us) ? 0u : AGV_MISSING_EPS_HEARTBEAT;
     missing |= manual ? 0u : AGV_MISSING_MANUAL;
     missing |= are_fresh(why, t_us) ? 0u : AGV_MISSING_MESSAGES;
-    missing |= is_slow(why) ? 0u : AGV_MISSING_STANDSTILL;
+    missing |= is_slow(why, t_us) ? 0u : AGV_MISSING_STANDSTILL;
     missing |= has_trip_cause(why) ? AGV_MISSING_TRIP_CAUSE : 0u;
     return missing;
 }
@@ -97,5 +106,6 @@ void why_init_end(why_t *why, uint64_t t_us) {
         const bool counts = (last_us != WHY_NEVER) && (last_us > why->start_us + (uint64_t)FIRST_FRAMES_US);
         missing |= (counts && (last_us + hold_us >= t_us)) ? (1u << bit) : 0u;
     }
-    why->missing = (uint16_t)missing;
+    why->lacking = (uint16_t)missing;
+    why->missing = why->lacking;
 }

@@ -12,6 +12,9 @@
 
 enum { WHY_HISTORY = 8, WHY_ENGAGEMENTS = 4, WHY_TRIPS_MAX = 1000, WHY_MISSING_BITS = 11 };
 
+/** MOVING_WHILE_SAFE: a wheel turns for so long. No setting (FSM-12). */
+enum { WHY_MOVING_MS = 200 };
+
 /** The frames of a message. */
 typedef struct {
     why_evidence_t history[WHY_HISTORY]; /**< the last ones, a ring */
@@ -108,6 +111,8 @@ struct why {
     uint64_t now_us;
     uint64_t start_us;                     /**< of the supervisor */
     uint16_t missing;                      /* what kept it in INIT */
+    uint16_t lacking;                      /* the same, as of the end of INIT or of the run */
+    uint16_t startup_missing;              /* the same, as the supervisor said; 0: it did not */
     uint64_t missing_us[WHY_MISSING_BITS]; /* when each condition was missing last; WHY_NEVER */
     uint64_t init_due_us;                  /* when they are evaluated next */
     bool manual_was_seen;
@@ -177,6 +182,10 @@ void why_engage_state(why_t *why, const agv_event_t *event, uint64_t t_us);
 void why_init_start(why_t *why);
 void why_init_check(why_t *why, uint64_t t_us);
 void why_init_end(why_t *why, uint64_t t_us);
+/** Whether both wheels report standstill. */
+bool why_wheels_are_slow(const why_t *why);
+/** Whether the speed of 363h is that of standstill. */
+bool why_vcu_is_slow(const why_t *why);
 /** @} */
 
 /** Add a frame to the evidence, if there is room and it is not there yet. */

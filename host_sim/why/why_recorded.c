@@ -78,7 +78,9 @@ static void explain_vehicle(const why_t *why, const agv_event_t *event, why_trip
         trip->limit = why->config.park_confirm_timeout_ms;
     }
     before(trip, limit_us(trip));
-    trip->cause_us = (trip->limit != WHY_NO_LIMIT) ? trip->cause_us : WHY_NEVER;
+    if (trip->reason == AGV_FAULT_MOVING_WHILE_SAFE) { /* slow readings in between prolong it */
+        trip->cause_us = WHY_NEVER;
+    }
 }
 
 static void explain(const why_t *why, const agv_event_t *event, why_trip_t *trip) {

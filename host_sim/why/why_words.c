@@ -51,7 +51,7 @@ static const meaning_t meanings[AGV_FAULT_COUNT] = {
     SAYS(THROTTLE_IN_PARK, "was above idle in gear P for %L"),
     SAYS(SPEED_IMPLAUSIBLE, "differed from the speed in %C for %L"),
     SAYS(VEHICLE_NOT_STOPPING, "reported turning wheels %L after the trip"),
-    SAYS(MOVING_WHILE_SAFE, "reported turning wheels after the vehicle had stood"),
+    SAYS(MOVING_WHILE_SAFE, "reported turning wheels for %L after the vehicle had stood"),
     SAYS(STARTUP_TIMEOUT, "the conditions to leave INIT did not hold within %L"),
     SAYS(RX_OVERRUN, "the controller lost received frames"),
     SAYS(ERROR_PASSIVE, "the vehicle-side controller was error passive"),
@@ -339,7 +339,26 @@ static void say_trip_causes(text_t *text, const why_t *why) {
     }
 }
 
+/** Where the words of the VCU's heartbeat say it already, nothing. */
+static void say_no_standstill(text_t *text, const why_t *why) {
+    const uint32_t wheels = why->ids.of[AGV_MSG_WHEEL_SPEED];
+    if (why->messages[AGV_MSG_WHEEL_SPEED].count == 0u) {
+        text_add(text, "%03Xh never heard", (unsigned)wheels);
+    } else if (!why_wheels_are_slow(why)) {
+        text_add(text, "%03Xh reports %d and %d mm/s", (unsigned)wheels, (int)why->facts.left_mm_s,
+                 (int)why->facts.right_mm_s);
+    } else if (!why_vcu_is_slow(why)) {
+        text_add(text, "%03Xh reports a speed of %u", (unsigned)why->ids.of[AGV_MSG_VEHICLE_STATUS],
+                 (unsigned)why->facts.vcu_speed);
+    } else {
+        /* one of the two messages is silent */
+    }
+}
+
 void why_words_missing(text_t *text, const why_t *why, uint8_t bit) {
+    if (((why->lacking >> bit) & 1u) == 0u) {
+        return; /* it was there in the end: how it is now says nothing */
+    }
     switch (1u << bit) {
     case AGV_MISSING_VCU_HEARTBEAT:
         say_no_beat(text, why, AGV_MSG_VEHICLE_STATUS);
@@ -355,8 +374,7 @@ void why_words_missing(text_t *text, const why_t *why, uint8_t bit) {
         say_no_messages(text, why, true);
         break;
     case AGV_MISSING_STANDSTILL:
-        text_add(text, "%03Xh reports %d and %d mm/s", why->ids.of[AGV_MSG_WHEEL_SPEED], (int)why->facts.left_mm_s,
-                 (int)why->facts.right_mm_s);
+        say_no_standstill(text, why);
         break;
     case AGV_MISSING_TRIP_CAUSE:
         say_trip_causes(text, why);

@@ -78,7 +78,3 @@ void session_tick(session_t *session, uint64_t t_ms, uint32_t clock_ms) {
 void session_tick_behind(session_t *session, uint64_t t_ms, uint32_t clock_ms) {
     session_tick(session, t_ms, clock_ms);
 }
-
-void session_end(session_t *session) {
-    (void)session;
-}

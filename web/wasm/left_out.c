@@ -10,6 +10,7 @@
 #include "io/store_file.h"
 #include "logs/gunzip.h"
 #include "ui/timeline.h"
+#include "why/why_internal.h"
 
 /* --- fcntl.h, string.h */
 
@@ -127,4 +128,12 @@ void timeline_sent(timeline_t *timeline, hal_can_side_t side, const hal_can_fram
     (void)side;
     (void)frame;
     (void)t_us;
+}
+
+/* --- why/why_recorded.c: no page reads a flight recorder */
+
+void why_cause_recorded(const why_t *why, const agv_event_t *event, why_trip_t *trip) {
+    (void)why;
+    (void)event;
+    (void)trip;
 }

@@ -64,6 +64,9 @@ class Listing(hostsim.Case):
         self.assertIn("# at_once|at_standstill, default at_once; the second word weakens the supervision\n", text)
         self.assertIn("default 100; gateway only\nthrottle_ceiling_pct: 100\n", text)
 
+    def test_no_line_is_wider_than_a_terminal(self):
+        self.assertEqual([line for line in self.run_good("config").stdout.splitlines() if len(line) > 100], [])
+
     def test_what_is_listed_is_taken_back(self):
         text = self.run_good("config").stdout
         self.write("c.yaml", text)

@@ -303,6 +303,7 @@ class Demo(hostsim.Case):
                      "reports manual", "reports gear P", "=> SAFE", "press button 1", "reset accepted",
                      "=> TRIPPED: EPS_OVER_CURRENT_SHUTDOWN", "first safe frame is out", "expectations passed"):
             self.assertIn(text, result.stdout)
+        self.assertEqual([line for line in result.stdout.splitlines() if len(line) > 100], [])
 
     def test_a_scenario_by_name_and_by_path(self):
         self.assertIn("BUS_OFF", self.run_good("demo", "--scenario", "bus_off").stdout)

@@ -104,8 +104,26 @@ void test_what_init_lacked(void) {
         feed_frame(why, HAL_CAN_VEHICLE, 0x363, vcu, t_ms);
     }
     why_end(why, 3000000);
-    TEST_ASSERT_EQUAL_HEX16(AGV_MISSING_MANUAL | AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_MESSAGES, why_missing(why));
+    TEST_ASSERT_EQUAL_HEX16(AGV_MISSING_MANUAL | AGV_MISSING_EPS_HEARTBEAT | AGV_MISSING_MESSAGES |
+                                AGV_MISSING_STANDSTILL, /* no 101h */
+                            why_missing(why));
     TEST_ASSERT_EQUAL_UINT64(0, why_supervised_us(why));
+}
+
+void test_what_init_lacked_is_what_the_supervisor_says(void) {
+    const session_event_t startup = {
+        .t_ms = 10001, .recorded = {.kind = AGV_EVENT_STARTUP, .missing = AGV_MISSING_OUTPUT | AGV_MISSING_MANUAL}};
+    feed_state(why, 0, AGV_STATE_INIT, AGV_FAULT_NONE, 0);
+    why_event(why, &startup);
+    why_end(why, 11000000);
+    TEST_ASSERT_EQUAL_HEX16(AGV_MISSING_OUTPUT | AGV_MISSING_MANUAL, why_missing(why));
+}
+
+void test_the_limit_of_moving_while_safe_is_no_setting(void) {
+    feed_trip(why, AGV_FAULT_EMERGENCY_STOP, 2000);
+    feed_fault(why, AGV_FAULT_MOVING_WHILE_SAFE, AGV_CLASS_TRIP, true, 7000);
+    TEST_ASSERT_EQUAL_INT64(200, why_trip(why, 1)->limit);
+    TEST_ASSERT_EQUAL_STRING("ms", why_trip(why, 1)->unit);
 }
 
 void test_more_trips_than_fit_are_left_out(void) {

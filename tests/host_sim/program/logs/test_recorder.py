@@ -123,7 +123,7 @@ class Recorder(hostsim.Case):
         crash += struct.pack("<H", (zlib.crc32(crash) ^ 0xFFFFFFFF) >> 16)
         self.events.append(crash)
         text = self.recorder(self.dump(), "--events", "e.jsonl")
-        self.assertRegex(text, r"4\.008 s +supervisor +run before: reset by lock-up, stack overflow, PC 08001234, LR 08005679 ")
+        self.assertRegex(text, r"4\.008 s +supervisor +run before: reset by lock-up, stack overflow, PC 08001234, LR 08005679\n")
         self.assertEqual(json.loads(self.text_of("e.jsonl").splitlines()[-1]),
                          {"t_ms": 4008, "event": "crash", "cause": "lock-up", "end": "stack overflow",
                           "pc": "08001234", "lr": "08005679"})

@@ -60,6 +60,19 @@ class Healthy(hostsim.Case):
         self.assertEqual(result.summary()["first_reason"], None)
         self.assertEqual(result.summary()["final_state"], "STANDBY")
 
+    def supervised_for(self, expected_ms, frames):
+        result = self.replay(traffic.log(frames), "--tail", "0", "--why", "why.json")
+        self.assertEqual((result.summary()["supervised_ms"], json.loads(result.text("why.json"))["supervised_ms"]),
+                         (expected_ms, expected_ms))
+
+    def test_the_time_of_supervision_begins_with_the_frame_that_ends_init(self):
+        for us in (0, 1, 999):
+            frames = traffic.frames(3000)
+            for frame in frames:  # each on a whole millisecond, or all after one
+                frame.t_us = frame.t_us // US_PER_MS * US_PER_MS + (us if frame.t_us >= US_PER_MS else 0)
+            standby = self.replay(traffic.log(frames), "--tail", "0").of("state")[1]["t_ms"]
+            self.supervised_for(frames[-1].t_us // US_PER_MS - standby, frames)
+
     def test_engaged_traffic_is_active(self):
         result = self.replay(traffic.log(traffic.frames(3000, engage_ms=1000)), "--tail=0")
         self.assertEqual([(event["t_ms"], event["to"]) for event in result.of("state")][2:], [(1000, "ACTIVE")])
@@ -239,25 +252,33 @@ class Events(hostsim.Case):
         self.assertEqual(result.summary()["warnings"], 1)
         self.assertEqual(result.trips(), [])
 
-    # Shows: FSM-3
-    def flapping(self, until_ms, active_after):
-        """A warning that comes and goes every 20 ms, and then stays as it is. Its events as (t_ms, active)."""
+    def flapping(self, times, until_ms=None):
+        """A warning that comes with every second 167h, so many times; then, from until_ms on, it stays."""
         def edit(frame):
-            if frame.name == "eps_status" and frame.t_ms >= 1000:
-                flap = frame.t_ms < until_ms and (int(frame.t_ms) // 20) % 2 == 0
-                frame.data = frame.data[:7] + bytes([0x10 if flap or (active_after and frame.t_ms >= until_ms) else 0])
+            if frame.name == "eps_status":
+                number = (int(frame.t_ms) - 2000) // 10
+                comes = number >= 0 and number % 2 == 0 and number < 2 * times
+                stays = until_ms is not None and frame.t_ms >= until_ms
+                frame.data = frame.data[:7] + bytes([0x10 if comes or stays else 0])
             return frame
-        result = self.replay(traffic.log(traffic.frames(4000, edit=edit)))
-        return [(event["t_ms"], event["active"]) for event in result.of("fault") if event["name"] == "EPS_TEMP_ABOVE_110"]
+        return self.replay(traffic.log(traffic.frames(4000, edit=edit)), "--tail", "0")
 
-    # Shows: INT-3
-    def test_a_warning_that_flaps_is_told_at_most_4_times_a_second_and_its_last_event_is_true(self):
-        for until_ms in (1500, 3900):
-            for active_after in (False, True):
-                events = self.flapping(until_ms, active_after)
-                self.assertEqual(events[-1][1], active_after, events)
-                for later, earlier in zip(events[4:-1], events):
-                    self.assertGreaterEqual(later[0] - earlier[0], 1000, events)
+    # Shows: EPS_TEMP_ABOVE_110
+    def test_a_warning_that_flaps_is_told_and_counted_each_time(self):
+        for times in (3, 4, 5, 10, 40):
+            result = self.flapping(times)
+            self.assertEqual(result.faults(), [(2003 + 20 * i, "EPS_TEMP_ABOVE_110", "warn") for i in range(times)])
+            self.assertEqual(result.faults(active=False),
+                             [(2013 + 20 * i, "EPS_TEMP_ABOVE_110", "warn") for i in range(times)])
+            self.assertEqual(result.summary()["warnings"], times)
+            self.assertIn("EPS_TEMP_ABOVE_110  warn  2.003 s   %d times   0.%02d0 s\n" % (times, times), result.stdout)
+
+    # Shows: EPS_TEMP_ABOVE_110
+    def test_a_warning_that_flaps_and_stays_is_active_at_the_end(self):
+        result = self.flapping(40, 2900)
+        self.assertEqual(len(result.faults()), 41)
+        self.assertEqual(result.faults()[-1][0], 2903)
+        self.assertRegex(result.stdout, r"41 times   1\.49\d s  active at the end\n")
 
     def test_a_reset_that_is_refused_and_one_that_is_accepted(self):
         def edit(frame):
@@ -281,6 +302,25 @@ class Events(hostsim.Case):
         self.assertEqual(len(result.of("startup")), 1)
         self.assertLessEqual({"eps_heartbeat", "messages"}, set(result.of("startup")[0]["missing"]))
         self.assertIn("STARTUP_TIMEOUT", [name for _, name, _ in result.faults()])
+
+    # Shows: STARTUP_TIMEOUT
+    def test_what_is_missing_has_the_same_words_everywhere(self):
+        autopilot = edit_payload("vehicle_status", 0, lambda data: data.__setitem__(6, 0x80))
+        rolls = edit_payload("wheel_speed", 0, lambda data: data.__setitem__(slice(0, 8), (500).to_bytes(4, "little") * 2))
+        for edit, missing in ((stop(("vehicle_status",), 0), ["vcu_heartbeat", "trip_cause", "standstill", "manual"]),
+                              (stop(EPS, 0), ["eps_heartbeat", "trip_cause", "messages"]),
+                              (stop(("steering_status",), 0), ["eps_heartbeat", "trip_cause"]),
+                              (stop(("wheel_speed",), 0), ["trip_cause", "standstill", "messages"]),
+                              (stop(("gear_status",), 0), ["trip_cause", "messages"]),
+                              (autopilot, ["manual"]),
+                              (rolls, ["standstill"])):
+            for end_ms in (9500, 10500):  # before and after the timeout
+                result = self.replay(traffic.log(traffic.frames(end_ms, edit=edit)), "--tail", "0", "--why", "why.json")
+                self.assertEqual([event["missing"] for event in result.of("startup")],
+                                 [missing] if end_ms > 10000 else [])
+                self.assertEqual(json.loads(result.text("why.json"))["not_supervised"], missing)
+                text = " ".join(result.stdout[:result.stdout.index("log:")].split())
+                self.assertEqual({word for word in missing if word not in text}, set(), text)
 
     def test_events_on_standard_output(self):
         self.write("log", traffic.log(traffic.frames(100)))

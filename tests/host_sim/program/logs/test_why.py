@@ -22,8 +22,7 @@ class Case(hostsim.Case):
         result = self.run_program("replay", *arguments, "my.log", env=dict(os.environ, TZ="UTC"))
         self.assertEqual(result.status, status, result.stderr)
         lines = result.stdout.splitlines()
-        if "--timeline" not in arguments:
-            self.assertLessEqual(max(map(len, lines)), COLUMNS, result.stdout)
+        self.assertLessEqual(max(map(len, lines)), COLUMNS, result.stdout)
         return lines
 
     def why(self, log, *arguments):
@@ -263,6 +262,14 @@ class Text(Case):
         self.assertEqual(len([line for line in lines if line.endswith(": REMOTE_SIGNAL_LOST")]), 8)
         self.assertIn("            and 2 times more: --why FILE has them all", lines)
         self.assertEqual(len(self.why(traffic.log(traffic.frames(40000, edit=edit)))["trips"]), 10)
+
+    def test_a_long_path_has_a_line_of_its_own(self):
+        rest = "2.994 s on can0, 2023-11-14 22:13:20.000 to 22:13:22.994"
+        for length, expected in ((42, "%s: " + rest), (43, "%s:\n            " + rest)):
+            name = "x" * length
+            self.write(name, traffic.log(traffic.frames(3000)))
+            result = self.run_program("replay", name, env=dict(os.environ, TZ="UTC"))
+            self.assertTrue(result.stdout.startswith(expected % name + "\n"), result.stdout)
 
     def test_the_timeline(self):
         log = traffic.log(traffic.frames(4000, engage_ms=1000, edit=stop(("steering_command",), 2000)))
