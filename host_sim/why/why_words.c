@@ -343,7 +343,7 @@ static void say_trip_causes(text_t *text, const why_t *why) {
 static void say_no_standstill(text_t *text, const why_t *why) {
     const uint32_t wheels = why->ids.of[AGV_MSG_WHEEL_SPEED];
     if (why->messages[AGV_MSG_WHEEL_SPEED].count == 0u) {
-        text_add(text, "%03Xh never heard", (unsigned)wheels);
+        text_add(text, "%03Xh never received", (unsigned)wheels);
     } else if (!why_wheels_are_slow(why)) {
         text_add(text, "%03Xh reports %d and %d mm/s", (unsigned)wheels, (int)why->facts.left_mm_s,
                  (int)why->facts.right_mm_s);
