@@ -229,7 +229,7 @@ class Record(Case):
         with open(path, "w", encoding="ascii") as file:
             file.write("mine")
         self.assertEqual(self.run_to_end("monitor", "--can", "vcan0", "--record", path),
-                         (2, "", "host_sim: %s: File exists\n" % path))
+                         (2, "", "host_sim: %s: exists already, and is not replaced\n" % path))
         with open(path, encoding="ascii") as file:
             self.assertEqual(file.read(), "mine")
 

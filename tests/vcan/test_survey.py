@@ -61,4 +61,5 @@ class Survey(canbus.Case):
 
     def test_a_silent_bus_is_no_result(self):
         self.assertEqual(self.run_to_end("survey", "--can", "vcan2", "--for", "300ms"),
-                         (2, "", "host_sim: vcan2: no frame came\n"))
+                         (2, "", "host_sim: vcan2: no frame came; check the bit rate and the cable, and that ip link shows "
+                                 "the interface as up\n"))

@@ -186,7 +186,8 @@ class Faults(canbus.Case):
         bus.forget()
         self.assertEqual(canbus.of(bus.listen(0.3), 0x0A3), [])
         vehicle.say("ai explode")
-        self.assertEqual(vehicle.wait_line("", "stderr"), "host_sim: 'ai explode': ai: unknown action 'explode'; docs/scenarios.md lists them\n")
+        self.assertEqual(vehicle.wait_line("", "stderr"), "host_sim: 'ai explode': ai: unknown action "
+                         "'explode'; docs/scenarios.md lists them\n")
         vehicle.say("")
         vehicle.say("status")
         vehicle.wait_line(r"^gear P, manual, 0\.00 m/s, throttle 0 %, steering 0\.0 deg, alarms: EPS_HARDWARE")
@@ -235,7 +236,8 @@ class Faults(canbus.Case):
         bus.forget()
         self.assertEqual(canbus.of(bus.listen(0.3), 0x067), [])
         self.assertEqual(vehicle.end(), 0)
-        self.assertEqual(vehicle.text("stderr"), "host_sim: '# no word': '#' is not one of vcu, eps, ai, operator, bus\n"
+        self.assertEqual(vehicle.text("stderr"), "host_sim: '# no word': '#' is not one of vcu, eps, ai, operator, bus, help, "
+                         "status, quit\n"
                          "host_sim: a line of standard input is longer than 1000 characters\n")
 
 
