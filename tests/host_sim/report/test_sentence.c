@@ -216,9 +216,8 @@ void test_what_was_not_supervised_is_no_pass(void) {
     TEST_ASSERT_EQUAL_STRING("Nothing was supervised: the supervisor never left INIT.", sentence.headline);
     TEST_ASSERT_EQUAL_STRING(
         "The run took 86.000 s. What kept it there: the VCU is not alive (363h never heard); the EPS is not alive "
-        "(067h "
-        "never heard); the VCU does not report manual (363h never heard); a status message is missing or late (363h, "
-        "0A3h, 050h, 067h, 167h, 267h, 101h never heard).",
+        "(067h never heard); the vehicle does not stand (101h never heard); the VCU does not report manual (363h never "
+        "heard); a status message is missing or late (0A3h, 050h, 167h, 267h, 101h never heard).",
         sentence.cause); /* nothing was heard */
     TEST_ASSERT_EQUAL_STRING("This says nothing about the vehicle: it is no pass.", sentence.outcome);
 }
