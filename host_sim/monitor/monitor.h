@@ -119,8 +119,9 @@ typedef struct {
     monitor_other_t others[MONITOR_OTHERS_MAX];
     uint64_t others_uncounted; /**< frames of identifiers for which there was no room */
     monitor_supervisor_t supervisor;
-    monitor_shadow_t *shadow; /**< NULL: none runs */
-    bool shadow_failed;       /**< out of memory */
+    monitor_shadow_t *shadow;       /**< NULL: none runs */
+    bool shadow_failed;             /**< out of memory */
+    bool flickers[AGV_FAULT_COUNT]; /**< it was said that not each change of the fault is listed */
     monitor_log_t log;
 } monitor_t;
 

@@ -58,6 +58,25 @@ static void say_fault(monitor_t *monitor, uint64_t t_us, agv_fault_t fault, agv_
                 (name != NULL) ? name : "?", agv_class_name(kind), is_raised ? "" : " has ended");
 }
 
+/** A fault that changes too often would fill the log. */
+static void say_change(monitor_t *monitor, uint64_t t_us, const session_event_t *event) {
+    const agv_event_t *recorded = &event->recorded;
+    const char *name = agv_fault_name((agv_fault_t)recorded->a);
+    if (recorded->a >= (uint8_t)AGV_FAULT_COUNT) {
+        return;
+    }
+    if (!event->is_left_out) {
+        say_fault(monitor, t_us, (agv_fault_t)recorded->a, (agv_fault_class_t)recorded->b, recorded->c != 0u);
+    } else if (!monitor->flickers[recorded->a]) {
+        monitor_say(monitor, t_us, MONITOR_WARN, name_of(monitor),
+                    "fault %s changes more than %u times a second: not listed", name,
+                    (unsigned)AGV_RECORDER_FAULTS_PER_S);
+    } else {
+        /* it was said */
+    }
+    monitor->flickers[recorded->a] = event->is_left_out;
+}
+
 /** The faults that were raised before anything of the supervisor was shown. */
 static void say_active_faults(monitor_t *monitor, uint64_t t_us) {
     for (uint32_t fault = 0u; fault < (uint32_t)AGV_FAULT_COUNT; fault++) {
@@ -78,7 +97,7 @@ void monitor_event(monitor_t *monitor, const session_event_t *event, uint64_t t_
         say_state(monitor, t_us, (agv_state_t)recorded->a, (agv_state_t)recorded->b, (agv_fault_t)recorded->c);
         break;
     case AGV_EVENT_FAULT:
-        say_fault(monitor, t_us, (agv_fault_t)recorded->a, (agv_fault_class_t)recorded->b, recorded->c != 0u);
+        say_change(monitor, t_us, event);
         break;
     case AGV_EVENT_RESET:
         say_missing(monitor, t_us, (recorded->a != 0u) ? MONITOR_GOOD : MONITOR_WARN,

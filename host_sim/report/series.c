@@ -184,11 +184,18 @@ static void take_recorded(series_t *series, uint64_t t_us, const agv_event_t *ev
     }
 }
 
+/** A fault that changes too often may fill half of its lane: the other half is for the other faults. */
+static bool is_too_often(const series_t *series, const session_event_t *event) {
+    return event->is_left_out && (series->lanes[SERIES_LANE_FAULT].count >= SERIES_CHANGES_MAX / 2u);
+}
+
 void series_event(void *ctx, const session_event_t *event) {
     series_t *series = ctx;
     const uint64_t t_us = event->t_ms * US_PER_MS;
     if (event->is_led) {
         set(series, SERIES_LANE_LED, t_us, (uint8_t)event->led_code);
+    } else if (is_too_often(series, event)) {
+        series->lanes[SERIES_LANE_FAULT].left_out++;
     } else {
         take_recorded(series, t_us, &event->recorded);
     }

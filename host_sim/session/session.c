@@ -44,6 +44,7 @@ static void notify_led(session_t *session) {
 static void notify_left_out(const session_t *session, uint32_t fault, bool is_active, bool is_trip) {
     const agv_supervisor_t *supervisor = &session->supervisor;
     const session_event_t event = {.t_ms = session->t_ms,
+                                   .is_left_out = true,
                                    .recorded = {.kind = AGV_EVENT_FAULT,
                                                 .a = (uint8_t)fault,
                                                 .b = (uint8_t)(is_trip ? AGV_CLASS_TRIP : AGV_CLASS_WARN),

@@ -26,6 +26,7 @@ typedef struct {
     uint64_t t_ms;        /**< since the start of the run */
     bool is_led;          /**< `led_code` is the news; else `recorded` */
     int8_t led_code;      /**< as agv_supervisor_led_code() */
+    bool is_left_out;     /**< of a fault that changes too often: the recorder did not keep it */
     agv_event_t recorded; /**< kind, a, b, c, missing as recorder.h says */
 } session_event_t;
 

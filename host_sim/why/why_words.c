@@ -310,7 +310,7 @@ static void say_no_manual(text_t *text, const why_t *why) {
     text_add(text, "%03Xh reports %s%s", id, mode, why->manual_was_seen ? "" : " from its first frame");
 }
 
-/** Name the messages that INIT waits for. */
+/** Name the messages that INIT waits for, apart from the two that have to beat. */
 static void say_no_messages(text_t *text, const why_t *why, bool heard) {
     const char *between = "";
     for (int i = (int)AGV_COMMAND_COUNT; i < (int)AGV_MSG_COUNT; i++) {
@@ -318,7 +318,8 @@ static void say_no_messages(text_t *text, const why_t *why, bool heard) {
         const uint64_t age_us = why->now_us - ((message->count > 0u) ? message->last_us : 0u);
         const bool late =
             age_us > (uint64_t)agv_config_get(&why->config, message_deadline_setting((uint32_t)i)) * US_PER_MS;
-        if ((heard == (message->count > 0u)) && (!heard || late)) {
+        const bool counts = message_counter_at((uint32_t)i) == MESSAGE_NO_COUNTER;
+        if (counts && (heard == (message->count > 0u)) && (!heard || late)) {
             text_add(text, "%s%03Xh", between, why->ids.of[i]);
             between = ", ";
         }

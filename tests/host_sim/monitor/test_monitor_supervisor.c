@@ -159,3 +159,21 @@ void test_the_program_says_what_its_supervisor_does(void) {
     TEST_ASSERT_EQUAL(1, said("supervisor: STANDBY -> ACTIVE"));
     TEST_ASSERT_EQUAL(1, monitor_log_length(&monitor->log));
 }
+
+void test_a_fault_that_changes_too_often_is_said_once(void) {
+    end();
+    const monitor_config_t config = {.config = &settings, .interfaces = {"can0", NULL}, .owned = true};
+    monitor = monitor_new(&config);
+    session_event_t event = {.recorded = {.kind = AGV_EVENT_FAULT, .a = AGV_FAULT_EPS_TEMP_ABOVE_110, .c = 1}};
+    monitor_event(monitor, &event, 1000u);
+    for (uint64_t i = 0; i < 10; i++) {
+        event.is_left_out = true;
+        monitor_event(monitor, &event, 2000u + i);
+    }
+    event.is_left_out = false;
+    event.recorded.c = 0;
+    monitor_event(monitor, &event, 3000u);
+    TEST_ASSERT_EQUAL(1, said("fault EPS_TEMP_ABOVE_110 changes more than 4 times a second: not listed"));
+    TEST_ASSERT_EQUAL(1, said("fault EPS_TEMP_ABOVE_110 (warn) has ended"));
+    TEST_ASSERT_EQUAL(3, monitor_log_length(&monitor->log));
+}

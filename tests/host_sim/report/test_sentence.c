@@ -216,10 +216,9 @@ void test_what_was_not_supervised_is_no_pass(void) {
     TEST_ASSERT_EQUAL_STRING("Nothing was supervised: the supervisor never left INIT.", sentence.headline);
     TEST_ASSERT_EQUAL_STRING(
         "The run took 86.000 s. What kept it there: the VCU is not alive (363h never received); the EPS is not alive "
-        "(067h "
-        "never received); the VCU does not report manual (363h never received); a status message is missing or late "
-        "(363h, "
-        "0A3h, 050h, 067h, 167h, 267h, 101h never received).",
+        "(067h never received); the vehicle does not stand (101h never received); the VCU does not report manual (363h "
+        "never "
+        "received); a status message is missing or late (0A3h, 050h, 167h, 267h, 101h never received).",
         sentence.cause); /* nothing was heard */
     TEST_ASSERT_EQUAL_STRING("This says nothing about the vehicle: it is no pass.", sentence.outcome);
 }

@@ -257,6 +257,22 @@ void test_changes_without_room_are_counted(void) {
     TEST_ASSERT_EQUAL(SERIES_CHANGES_MAX, json_array_size(at("lanes/gear/t")));
 }
 
+void test_a_fault_that_changes_too_often_leaves_room_for_others(void) {
+    session_event_t event = {.is_left_out = true,
+                             .recorded = {.kind = AGV_EVENT_FAULT, .a = AGV_FAULT_EPS_TEMP_ABOVE_110}};
+    for (uint64_t i = 0; i < SERIES_CHANGES_MAX; i++) {
+        event.t_ms = i * 10;
+        event.recorded.c = (i % 2u == 0u) ? 1 : 0;
+        series_event(series, &event);
+    }
+    event.is_left_out = false;
+    event.recorded.a = AGV_FAULT_BUS_OFF;
+    series_event(series, &event);
+    end(20 * (uint64_t)S);
+    is("left_out", "512");
+    TEST_ASSERT_EQUAL((SERIES_CHANGES_MAX / 2u) + 1u, json_array_size(at("faults")));
+}
+
 void test_when_the_output_opened_for_a_trip(void) {
     output(0, 0);
     output(500, 1);

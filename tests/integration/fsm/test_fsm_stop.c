@@ -100,8 +100,8 @@ void test_a_vehicle_that_rolls_away_while_101h_reads_0(void) {
 /* Where the VCU's speed is not looked at, it contradicts nothing. */
 /* Shows: FSM-12, SUP-12 */
 void test_a_vcu_speed_that_is_not_looked_at_does_not_contradict(void) {
+    fixture_init(&f);
     f.config.standstill_vcu_counts = 65535;
-    fixture_restart(&f, HAL_RESET_POWER_ON);
     walk_to_safe(&f);
     fixture_speed(&f, 3600);
     fixture_run(&f, 3000);
