@@ -1,8 +1,8 @@
 /**
  * @file recorder.h
  * The flight recorder (INT-3): a ring buffer of the last 256 events, each with a snapshot of the last frames, and the last
- * 8 trips, which only later trips replace. It is the only source of events: logs, `--events` of host_sim and the shell of
- * a target print what is recorded here. The same fault is recorded at most 4 times per second.
+ * 8 trips, which only later trips replace. The shell of a target prints what is recorded here; `--events` of host_sim
+ * prints it too, and the changes of faults that were left out. The same fault is recorded at most 4 times per second.
  *
  * Place the struct in RAM that keeps its content over a reset. Each event has its own checksum: an interrupted write
  * loses only that event.
