@@ -7,10 +7,9 @@
 
 #include "common/interrupt.h"
 #include "io/output.h"
-#include "logs/log_sides.h"
 #include "survey/survey_result.h"
 
-enum { REASON_SIZE = 160 };
+enum { REASON_SIZE = 160, NAMES_SIZE = OBSERVATION_INTERFACES_MAX * (CANDUMP_INTERFACE_MAX + 3) };
 
 /** Gather frames under a configuration. @return false: was reported */
 static bool gather(survey_result_t *result, const agv_config_t *config) {
@@ -110,13 +109,27 @@ static bool print(const survey_result_t *result) {
     return good;
 }
 
+/** Without frames of the AI side there is nothing to survey there: the name is wrong. @return false: was reported */
+static bool check_ai_side(const survey_result_t *result) {
+    const observation_t *observation = &result->observation;
+    char names[NAMES_SIZE] = "";
+    if ((result->request->ai_interface == NULL) || result->source.has_ai_side) {
+        return true;
+    }
+    for (uint32_t i = 0u; i < observation->interface_count; i++) {
+        const size_t used = strlen(names);
+        (void)snprintf(&names[used], sizeof names - used, "%s%s", (i > 0u) ? ", " : "", observation->interfaces[i]);
+    }
+    return report("--ai-if: the log has no frame from %s, only from %s", result->request->ai_interface, names);
+}
+
 static bool run(survey_result_t *result) {
     const survey_request_t *request = result->request;
     if (!gather(result, &request->config)) {
         return false;
     }
-    if (request->log != NULL) {
-        log_sides_note_silent(request->ai_interface, result->source.has_ai_side);
+    if ((request->log != NULL) && !check_ai_side(result)) {
+        return false;
     }
     choose(result);
     if (!survey_renumbered(result)) {

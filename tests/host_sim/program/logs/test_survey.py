@@ -307,12 +307,6 @@ class Text(Case):
         half = self.survey("".join(lines), "--bitrate", "250000")["load"][0]
         self.assertAlmostEqual(half["most_pct"], 54.0, delta=0.02)
 
-    def test_an_ai_side_that_the_log_does_not_have(self):
-        self.write("log", traffic.log(traffic.frames(3000)))
-        for arguments in ((), ("--json",)):
-            result = self.run_good("survey", "--ai-if", "can9", *arguments, "log")
-            self.assertEqual(result.stderr, "host_sim: the log has no frame from can9, the AI side\n")
-
     def test_a_log_that_says_nothing_of_the_defaults(self):
         fit, unknown = "# The defaults fit.", "# No message of the protocol came often enough to judge the defaults."
         for log, said, unsaid in (("(1.000000) can0 123#11\n", unknown, fit),
@@ -409,6 +403,14 @@ class Refused(Case):
                 self.assert_refused(self.run_program("survey", "--config-out", "config.yaml", "log"), part)
                 self.assertEqual(self.text("config.yaml"), "park: at_once\n")
                 self.assertEqual(self.files(), ["config.yaml", "log"])
+
+    def test_an_ai_side_that_the_log_does_not_have(self):
+        for ai_interface, heard in ((None, "can0"), ("can1", "can0, can1")):
+            self.write("log", traffic.log(traffic.frames(500, ai_interface=ai_interface)))
+            for arguments in ((), ("--json",), ("--config-out", "config.yaml")):
+                result = self.run_program("survey", "--ai-if", "can9", *arguments, "log")
+                self.assert_refused(result, "--ai-if: the log has no frame from can9, only from " + heard)
+                self.assertEqual((result.stdout, self.files()), ("", ["log"]))
 
     def test_endless_input(self):
         self.assert_refused(self.run_program("survey", "/dev/zero", timeout=20), "binary data")
