@@ -19,7 +19,7 @@
 #include "survey/identify.h"
 #include "traffic/traffic.h"
 
-#define PROPOSAL_REASON_SIZE 240u
+#define PROPOSAL_REASON_SIZE 480u
 #define PROPOSAL_NOTES_MAX 96u
 
 /** Gaps that are needed to judge a sender. */
@@ -28,7 +28,7 @@
 /** Steps of an alive counter that are needed to ask for `increments`. */
 #define PROPOSAL_STEPS_MIN 1000u
 
-/** A proposal. Some 60 KiB: not for the stack. */
+/** A proposal. Some 100 KiB: not for the stack. */
 typedef struct {
     agv_config_t config;
     char reasons[AGV_SETTING_COUNT][PROPOSAL_REASON_SIZE]; /**< "": keeps its default */

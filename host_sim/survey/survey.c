@@ -28,7 +28,7 @@ static void choose(survey_result_t *result) {
         result->request->id_set_is_given ? OBSERVATION_GIVEN : observation_heard_set(&result->observation);
     result->traffic = result->observation.sets[set];
     result->config = result->observation.configs[set];
-    identify(result->traffic, &result->found);
+    identify(result->traffic, result->observation.evidence, &result->config, &result->found);
 }
 
 /** Whether the log can be read once more. */
@@ -43,7 +43,7 @@ static bool renumber(const survey_result_t *result, agv_config_t *config) {
     for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
         const identify_message_t *found = &result->found.of[message];
         if (found->is_assigned) {
-            (void)agv_config_set(config, (uint32_t)AGV_SETTING_ID + message, (uint16_t)found->candidates[0]);
+            (void)agv_config_set(config, (uint32_t)AGV_SETTING_ID + message, (uint16_t)found->candidates[0].id);
         }
     }
     return agv_config_check(config).problem == AGV_CONFIG_OK;
@@ -51,9 +51,8 @@ static bool renumber(const survey_result_t *result, agv_config_t *config) {
 
 /** Survey once more with the identifiers that were found, so that the messages that they carry are known. */
 static bool survey_renumbered(survey_result_t *result) {
-    const identify_t found = result->found;
     agv_config_t config = result->config;
-    if ((identify_assigned(&found) == 0u) || !renumber(result, &config)) {
+    if ((identify_assigned(&result->found) == 0u) || !renumber(result, &config)) {
         return true;
     }
     if (!is_readable_again(result->request)) {
@@ -65,7 +64,6 @@ static bool survey_renumbered(survey_result_t *result) {
     }
     result->traffic = result->observation.sets[OBSERVATION_GIVEN];
     result->config = config;
-    result->found = found;
     return true;
 }
 
