@@ -1,103 +1,177 @@
 #include "survey/identify.h"
 
+#include <stdio.h>
 #include <string.h>
 
-#include "common/message_facts.h"
-#include "text/units.h"
-
-enum { MEDIAN = 500, CYCLE_LOWEST_PCT = 60, CYCLE_HIGHEST_PCT = 160, PERCENT = 100 };
-enum { FIRST_BYTE = 0, REPEATS_PER_STEP = 2 };
-
-static bool has_cycle(const traffic_id_t *entry, uint32_t message) {
-    const uint64_t cycle_us = (uint64_t)agv_message_cycle_ms(message) * US_PER_MS;
-    const uint64_t median_us = gaps_quantile_us(&entry->gaps, MEDIAN);
-    return (median_us * PERCENT >= cycle_us * CYCLE_LOWEST_PCT) &&
-           (median_us * PERCENT <= cycle_us * CYCLE_HIGHEST_PCT);
-}
-
-/** Whether the byte at which a message has its alive counter counts. */
-static bool has_counter(const traffic_id_t *entry, uint32_t message) {
-    if (message_counter_at(message) == MESSAGE_NO_COUNTER) {
-        return true;
+/** What speaks for a candidate, in the order of candidates: the higher the better. */
+static int rank(const candidate_t *candidate) {
+    static const int weights[] = {[VERDICT_NONE] = 0,
+                                  [VERDICT_FOR] = 1,
+                                  [VERDICT_DECIDES] = 10,
+                                  [VERDICT_AGAINST] = -1,
+                                  [VERDICT_REFUSES] = -100};
+    int sum = 0;
+    for (size_t i = 0u; i < candidate->count; i++) {
+        sum += weights[candidate->criteria[i].verdict];
     }
-    const counter_use_t *use = &entry->candidates[(message_counter_at(message) == (uint8_t)FIRST_BYTE) ? 0 : 1];
-    return (use->steps + use->other_steps) * REPEATS_PER_STEP >= use->frames;
+    return sum;
 }
 
-/** Whether a bit beside the alive counter was ever set: a payload of zeros says nothing. */
-static bool has_content(const traffic_id_t *entry, uint32_t message) {
-    uint32_t bits = 0u;
-    for (uint32_t i = 0u; i < AGV_DLC; i++) {
-        bits |= (i == message_counter_at(message)) ? 0u : entry->bits_ever[i];
+static bool has(const candidate_t *candidate, verdict_t verdict) {
+    for (size_t i = 0u; i < candidate->count; i++) {
+        if (candidate->criteria[i].verdict == verdict) {
+            return true;
+        }
     }
-    return bits != 0u;
+    return false;
 }
 
-static bool fits(const traffic_id_t *entry, uint32_t message) {
-    return !entry->is_extended && (entry->message == TRAFFIC_UNKNOWN) && (entry->count >= IDENTIFY_FRAMES_MIN) &&
-           ((entry->fits >> message) & 1u) != 0u && has_cycle(entry, message) && has_counter(entry, message) &&
-           has_content(entry, message);
+/** Put a candidate at its place. The last one is left out when there are too many. */
+static void insert(identify_message_t *found, const candidate_t *candidate) {
+    size_t at = found->count;
+    while ((at > 0u) && (rank(&found->candidates[at - 1u]) < rank(candidate))) {
+        at--;
+    }
+    if (at == IDENTIFY_CANDIDATES_MAX) {
+        found->left_out++;
+        return;
+    }
+    if (found->count == IDENTIFY_CANDIDATES_MAX) {
+        found->left_out++;
+    } else {
+        found->count++;
+    }
+    (void)memmove(&found->candidates[at + 1u], &found->candidates[at],
+                  (found->count - 1u - at) * sizeof found->candidates[0]);
+    found->candidates[at] = *candidate;
 }
 
-static void collect(const traffic_t *traffic, identify_t *result, uint32_t message) {
-    identify_message_t *found = &result->of[message];
-    const traffic_id_t *heard = traffic_message(traffic, message);
-    found->is_missing = (heard == NULL) || (heard->count == 0u);
-    for (size_t i = 0u; found->is_missing && (traffic_at(traffic, i) != NULL); i++) {
-        const traffic_id_t *entry = traffic_at(traffic, i);
-        if (fits(entry, message) && (found->count < IDENTIFY_CANDIDATES_MAX)) {
-            found->candidates[found->count] = entry->id;
-            found->count++;
+/** The candidates of a message, with what is known by now. */
+static void collect(const inquiry_t *inquiry, identify_message_t *found, uint32_t message) {
+    found->count = 0u;
+    found->left_out = 0u;
+    for (size_t i = 0u; traffic_at(inquiry->traffic, i) != NULL; i++) {
+        const traffic_id_t *entry = traffic_at(inquiry->traffic, i);
+        if (criteria_allow(inquiry, entry, message)) {
+            candidate_t candidate = {.id = entry->id, .heard = criteria_evidence(inquiry, entry)};
+            candidate.count = criteria_judge(inquiry, entry, message, candidate.criteria);
+            insert(found, &candidate);
         }
     }
 }
 
-/** An identifier is taken: it is no candidate of other messages any more. */
-static void strike(identify_t *result, uint32_t taken_by, uint32_t id) {
+static void collect_all(const inquiry_t *inquiry, identify_t *result) {
     for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
         identify_message_t *found = &result->of[message];
-        size_t kept = 0u;
-        for (size_t i = 0u; i < found->count; i++) {
-            if ((message == taken_by) || (found->candidates[i] != id)) {
-                found->candidates[kept] = found->candidates[i];
-                kept++;
-            }
+        if (found->is_missing && !found->is_assigned) {
+            collect(inquiry, found, message);
         }
-        found->count = kept;
     }
 }
 
-/** Whether another message has this identifier for its only candidate. */
+/** Whether an identifier could carry another message, too. */
 static bool is_contested(const identify_t *result, uint32_t message, uint32_t id) {
     for (uint32_t other = 0u; other < (uint32_t)AGV_MSG_COUNT; other++) {
         const identify_message_t *found = &result->of[other];
-        if ((other != message) && !found->is_assigned && (found->count == 1u) && (found->candidates[0] == id)) {
-            return true;
+        for (size_t i = 0u; (other != message) && !found->is_assigned && (i < found->count); i++) {
+            if ((found->candidates[i].id == id) && !has(&found->candidates[i], VERDICT_REFUSES)) {
+                return true;
+            }
         }
     }
     return false;
 }
 
-/** Assign what has one candidate. @return whether something was assigned */
-static bool assign_once(identify_t *result) {
+/** Whether the first candidate is the identifier: something decides for it, and it is the only one that fits. */
+static bool is_certain(const identify_t *result, uint32_t message) {
+    const identify_message_t *found = &result->of[message];
+    if ((found->count == 0u) || !has(&found->candidates[0], VERDICT_DECIDES) ||
+        has(&found->candidates[0], VERDICT_REFUSES)) {
+        return false;
+    }
+    if ((found->count > 1u) && !has(&found->candidates[1], VERDICT_REFUSES)) {
+        return false;
+    }
+    return !is_contested(result, message, found->candidates[0].id);
+}
+
+/** Assign one message. @return whether one was assigned */
+static bool assign_once(inquiry_t *inquiry, identify_t *result) {
     for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
         identify_message_t *found = &result->of[message];
-        if (!found->is_assigned && (found->count == 1u) && !is_contested(result, message, found->candidates[0])) {
+        if (found->is_missing && !found->is_assigned && is_certain(result, message)) {
             found->is_assigned = true;
-            strike(result, message, found->candidates[0]);
+            inquiry->of[message] = found->candidates[0].heard;
             return true;
         }
     }
     return false;
 }
 
-void identify(const traffic_t *traffic, identify_t *result) {
-    (void)memset(result, 0, sizeof *result);
+/** A message that has got the identifier of another one, which has no other yet. @return NULL: none */
+static identify_message_t *find_clash(identify_t *result, const agv_ids_t *ids) {
     for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
-        collect(traffic, result, message);
+        for (uint32_t other = 0u; other < (uint32_t)AGV_MSG_COUNT; other++) {
+            identify_message_t *found = &result->of[other];
+            if ((message != other) && !result->of[message].is_assigned && found->is_assigned &&
+                (found->candidates[0].id == ids->of[message])) {
+                return found;
+            }
+        }
     }
-    while (assign_once(result)) {
-        /* what it strikes may leave one candidate to another message */
+    return NULL;
+}
+
+/** What is at the identifier of a message: the message, nothing, or something else. */
+static void look(const evidence_t *evidence, const traffic_t *traffic, uint32_t message, identify_message_t *found,
+                 const evidence_id_t **heard) {
+    const traffic_id_t *entry = traffic_message(traffic, message);
+    *heard = NULL;
+    found->is_missing = (entry == NULL) || (entry->count == 0u);
+    if (!found->is_missing) {
+        *heard = evidence_of(evidence, entry->side, entry->id);
+        found->is_contradicted = (*heard != NULL) && evidence_contradicts(*heard);
+        found->contradicted_id = entry->id;
+    }
+    if (found->is_contradicted) {
+        found->is_missing = true;
+        *heard = NULL;
+    }
+}
+
+static void look_at_all(inquiry_t *inquiry, identify_t *result) {
+    for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
+        look(inquiry->evidence, inquiry->traffic, message, &result->of[message], &inquiry->of[message]);
+        inquiry->heard |= (inquiry->of[message] != NULL) ? 1u << message : 0u;
+    }
+}
+
+/** The number of messages that came with their own identifier, and of whose values nothing refuses them. */
+static size_t count_credible(const inquiry_t *inquiry) {
+    size_t count = 0u;
+    for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
+        const evidence_id_t *heard = inquiry->of[message];
+        if ((heard != NULL) && (((heard->fits >> message) & 1u) != 0u)) {
+            candidate_t own = {.id = heard->id, .heard = heard};
+            own.count = criteria_judge(inquiry, traffic_message(inquiry->traffic, message), message, own.criteria);
+            count += has(&own, VERDICT_REFUSES) ? 0u : 1u;
+        }
+    }
+    return count;
+}
+
+void identify(const traffic_t *traffic, const evidence_t *evidence, const agv_config_t *config, identify_t *result) {
+    inquiry_t inquiry = {.traffic = traffic, .evidence = evidence, .config = config};
+    agv_ids_t ids;
+    agv_config_ids(config, &ids);
+    (void)memset(result, 0, sizeof *result);
+    look_at_all(&inquiry, result);
+    inquiry.is_foreign = count_credible(&inquiry) * 2u < (size_t)AGV_MSG_COUNT;
+    do {
+        collect_all(&inquiry, result);
+    } while (assign_once(&inquiry, result)); /* the next one may go together with it */
+    for (identify_message_t *clash = find_clash(result, &ids); clash != NULL; clash = find_clash(result, &ids)) {
+        clash->is_assigned = false;
     }
 }
 
@@ -107,4 +181,17 @@ size_t identify_assigned(const identify_t *result) {
         count += result->of[i].is_assigned ? 1u : 0u;
     }
     return count;
+}
+
+const char *identify_words(const candidate_t *candidate, bool is_for, char *text, size_t size) {
+    text[0] = '\0';
+    for (size_t i = 0u; i < candidate->count; i++) {
+        const verdict_t verdict = candidate->criteria[i].verdict;
+        const bool speaks_for = (verdict == VERDICT_FOR) || (verdict == VERDICT_DECIDES);
+        if (speaks_for == is_for) {
+            const size_t used = strlen(text);
+            (void)snprintf(&text[used], size - used, "%s%s", (used > 0u) ? "; " : "", candidate->criteria[i].text);
+        }
+    }
+    return text;
 }

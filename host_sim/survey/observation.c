@@ -17,7 +17,8 @@ bool observation_begin(observation_t *observation, const agv_config_t *config) {
             return report("out of memory");
         }
     }
-    return true;
+    observation->evidence = evidence_new(observation->configs, OBSERVATION_SETS);
+    return (observation->evidence != NULL) || report("out of memory");
 }
 
 void observation_frame(observation_t *observation, hal_can_side_t side, const hal_can_frame_t *frame,
@@ -34,6 +35,7 @@ void observation_frame(observation_t *observation, hal_can_side_t side, const ha
     const uint64_t t_us = observation->last_us - observation->first_us;
     observation->frames++;
     bus_load_frame(&observation->loads[side], frame, t_us);
+    evidence_frame(observation->evidence, side, frame, t_us);
     for (unsigned set = 0u; set < OBSERVATION_SETS; set++) {
         traffic_frame(observation->sets[set], side, frame, t_us);
     }
@@ -63,16 +65,18 @@ void observation_end(observation_t *observation, uint64_t last_us) {
     }
 }
 
-static uint64_t count_of(const traffic_t *traffic, uint32_t message) {
-    const traffic_id_t *entry = traffic_message(traffic, message);
-    return (entry != NULL) ? entry->count : 0u;
+/** Frames of a message; none if its identifier carries something else. */
+static uint64_t count_of(const observation_t *observation, unsigned set, uint32_t message) {
+    const traffic_id_t *entry = traffic_message(observation->sets[set], message);
+    const evidence_id_t *heard = (entry != NULL) ? evidence_of(observation->evidence, entry->side, entry->id) : NULL;
+    return ((heard != NULL) && !evidence_contradicts(heard)) ? entry->count : 0u;
 }
 
 unsigned observation_heard_set(const observation_t *observation) {
     uint64_t counts[OBSERVATION_SETS];
     for (unsigned set = 0u; set < OBSERVATION_SETS; set++) {
-        counts[set] = count_of(observation->sets[set], AGV_MSG_VEHICLE_STATUS) +
-                      count_of(observation->sets[set], AGV_MSG_TURN_SIGNAL_COMMAND);
+        counts[set] = count_of(observation, set, AGV_MSG_VEHICLE_STATUS) +
+                      count_of(observation, set, AGV_MSG_TURN_SIGNAL_COMMAND);
     }
     return (counts[OBSERVATION_OTHER] > counts[OBSERVATION_GIVEN]) ? OBSERVATION_OTHER : OBSERVATION_GIVEN;
 }
@@ -94,4 +98,6 @@ void observation_free(observation_t *observation) {
         traffic_free(observation->sets[set]);
         observation->sets[set] = NULL;
     }
+    evidence_free(observation->evidence);
+    observation->evidence = NULL;
 }

@@ -6,6 +6,7 @@
 #define HOST_SIM_OBSERVATION_H
 
 #include "logs/candump_line.h"
+#include "survey/evidence.h"
 #include "traffic/bus_load.h"
 #include "traffic/traffic.h"
 
@@ -18,6 +19,7 @@ enum { OBSERVATION_GIVEN, OBSERVATION_OTHER, OBSERVATION_SETS };
 typedef struct {
     agv_config_t configs[OBSERVATION_SETS];
     traffic_t *sets[OBSERVATION_SETS];
+    evidence_t *evidence; /**< what the identifiers may carry */
     bus_load_t loads[HAL_CAN_SIDES];
     char interfaces[OBSERVATION_INTERFACES_MAX][CANDUMP_INTERFACE_MAX + 1u];
     uint32_t interface_count;

@@ -148,22 +148,44 @@ static void note_values(proposal_t *proposal, const traffic_id_t *entry) {
     }
 }
 
+/** An identifier with its reason: "169h has the gear of 0A3h; ...". */
+static void propose_found(proposal_t *proposal, uint32_t setting, const candidate_t *candidate) {
+    char words[PROPOSAL_REASON_SIZE];
+    (void)agv_config_set(&proposal->config, setting, (uint16_t)candidate->id);
+    reason(proposal, setting, "%03Xh %.400s: check it with the vehicle's maker", candidate->id,
+           identify_words(candidate, true, words, sizeof words));
+}
+
+/** Why a message is not there. */
+static const char *absence_of(const identify_message_t *found, char text[PROPOSAL_REASON_SIZE]) {
+    if (!found->is_contradicted) {
+        return "was not received";
+    }
+    (void)snprintf(text, PROPOSAL_REASON_SIZE, "is not what %03Xh carries (most of its frames do not fit)",
+                   found->contradicted_id);
+    return text;
+}
+
 static void propose_identifier(proposal_t *proposal, uint32_t message, const identify_message_t *found) {
     const uint32_t setting = (uint32_t)AGV_SETTING_ID + message;
     const char *name = signals_message_name(message);
     if (found->is_assigned) {
-        (void)agv_config_set(&proposal->config, setting, (uint16_t)found->candidates[0]);
-        reason(proposal, setting,
-               "%03Xh alone has the cycle, reserved bits and values of %s: check it with the vehicle's maker",
-               found->candidates[0], name);
+        propose_found(proposal, setting, &found->candidates[0]);
         return;
     }
+    char absence[PROPOSAL_REASON_SIZE];
     char candidates[IDENTIFY_CANDIDATES_MAX * 8u] = "";
     for (size_t i = 0u; i < found->count; i++) {
-        (void)snprintf(&candidates[strlen(candidates)], 8u, " %03Xh", found->candidates[i]);
+        (void)snprintf(&candidates[strlen(candidates)], 8u, "%s%03Xh", (i > 0u) ? ", " : "", found->candidates[i].id);
     }
-    note(proposal, "%s was not received%s%s%s%s", name, (found->count > 0u) ? "; it could be" : "", candidates,
-         (found->count > 0u) ? ": set " : "", (found->count > 0u) ? agv_setting_info((uint16_t)setting)->name : "");
+    if (found->count > 0u) {
+        note(proposal, "%s %.80s; candidates: %s%s. Look it up in the vehicle's document, and set %s", name,
+             absence_of(found, absence), candidates, (found->left_out > 0u) ? " and more" : "",
+             agv_setting_info((uint16_t)setting)->name);
+    } else {
+        note(proposal, "%s %.80s, and no identifier here could be it. Look it up in the vehicle's document, and set %s",
+             name, absence_of(found, absence), agv_setting_info((uint16_t)setting)->name);
+    }
 }
 
 /** The status frame needs an identifier that nobody else uses. */
@@ -232,10 +254,13 @@ void proposal_make(proposal_t *proposal, const traffic_t *traffic, const agv_con
         reason(proposal, AGV_SETTING_id_set, "%s", id_set_reason);
     }
     for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
-        if (found->of[message].is_missing) {
-            propose_identifier(proposal, message, &found->of[message]);
+        const identify_message_t *missing = &found->of[message];
+        if (missing->is_missing) {
+            propose_identifier(proposal, message, missing);
         }
-        propose_message(proposal, traffic, message);
+        if (!missing->is_contradicted || missing->is_assigned) {
+            propose_message(proposal, traffic, message);
+        }
     }
     if (traffic_totals(traffic).engagements == 0u) {
         note(proposal, "autopilot was never engaged: the deadlines of the commands are not judged");

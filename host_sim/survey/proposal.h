@@ -3,8 +3,8 @@
  * The configuration that would fit what was surveyed, each setting with its reason.
  *
  * A deadline is relaxed only for a sender that is slower as a rule: to three of its cycles (the median gap), and to 1.5
- * times its usual longest gap where that is no more than three cycles. The usual longest gap leaves out the ten longest and
- * one in a thousand, so that no outage relaxes a deadline. It is never above the highest value of its setting (INT-2), and
+ * times its usual longest gap where that is no more than three cycles. The usual longest gap is the longest one without
+ * the ten longest, or without the longest one in a thousand if these are more, so that no outage relaxes a deadline. It is never above the highest value of its setting (INT-2), and
  * never tighter than the default. No class of a fault is ever changed.
  */
 #ifndef HOST_SIM_PROPOSAL_H
@@ -19,7 +19,7 @@
 #include "survey/identify.h"
 #include "traffic/traffic.h"
 
-#define PROPOSAL_REASON_SIZE 240u
+#define PROPOSAL_REASON_SIZE 480u
 #define PROPOSAL_NOTES_MAX 96u
 
 /** Gaps that are needed to judge a sender. */
@@ -28,7 +28,7 @@
 /** Steps of an alive counter that are needed to ask for `increments`. */
 #define PROPOSAL_STEPS_MIN 1000u
 
-/** A proposal. Some 60 KiB: not for the stack. */
+/** A proposal. Some 100 KiB: not for the stack. */
 typedef struct {
     agv_config_t config;
     char reasons[AGV_SETTING_COUNT][PROPOSAL_REASON_SIZE]; /**< "": keeps its default */

@@ -7,10 +7,9 @@
 
 #include "common/interrupt.h"
 #include "io/output.h"
-#include "logs/log_sides.h"
 #include "survey/survey_result.h"
 
-enum { REASON_SIZE = 160 };
+enum { REASON_SIZE = 160, NAMES_SIZE = OBSERVATION_INTERFACES_MAX * (CANDUMP_INTERFACE_MAX + 3) };
 
 /** Gather frames under a configuration. @return false: was reported */
 static bool gather(survey_result_t *result, const agv_config_t *config) {
@@ -29,7 +28,7 @@ static void choose(survey_result_t *result) {
         result->request->id_set_is_given ? OBSERVATION_GIVEN : observation_heard_set(&result->observation);
     result->traffic = result->observation.sets[set];
     result->config = result->observation.configs[set];
-    identify(result->traffic, &result->found);
+    identify(result->traffic, result->observation.evidence, &result->config, &result->found);
 }
 
 /** Whether the log can be read once more. */
@@ -44,7 +43,7 @@ static bool renumber(const survey_result_t *result, agv_config_t *config) {
     for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
         const identify_message_t *found = &result->found.of[message];
         if (found->is_assigned) {
-            (void)agv_config_set(config, (uint32_t)AGV_SETTING_ID + message, (uint16_t)found->candidates[0]);
+            (void)agv_config_set(config, (uint32_t)AGV_SETTING_ID + message, (uint16_t)found->candidates[0].id);
         }
     }
     return agv_config_check(config).problem == AGV_CONFIG_OK;
@@ -52,9 +51,8 @@ static bool renumber(const survey_result_t *result, agv_config_t *config) {
 
 /** Survey once more with the identifiers that were found, so that the messages that they carry are known. */
 static bool survey_renumbered(survey_result_t *result) {
-    const identify_t found = result->found;
     agv_config_t config = result->config;
-    if ((identify_assigned(&found) == 0u) || !renumber(result, &config)) {
+    if ((identify_assigned(&result->found) == 0u) || !renumber(result, &config)) {
         return true;
     }
     if (!is_readable_again(result->request)) {
@@ -66,7 +64,6 @@ static bool survey_renumbered(survey_result_t *result) {
     }
     result->traffic = result->observation.sets[OBSERVATION_GIVEN];
     result->config = config;
-    result->found = found;
     return true;
 }
 
@@ -110,13 +107,27 @@ static bool print(survey_result_t *result) {
     return good;
 }
 
+/** Without frames of the AI side there is nothing to survey there: the name is wrong. @return false: was reported */
+static bool check_ai_side(const survey_result_t *result) {
+    const observation_t *observation = &result->observation;
+    char names[NAMES_SIZE] = "";
+    if ((result->request->ai_interface == NULL) || result->source.has_ai_side) {
+        return true;
+    }
+    for (uint32_t i = 0u; i < observation->interface_count; i++) {
+        const size_t used = strlen(names);
+        (void)snprintf(&names[used], sizeof names - used, "%s%s", (i > 0u) ? ", " : "", observation->interfaces[i]);
+    }
+    return report("--ai-if: the log has no frame from %s, only from %s", result->request->ai_interface, names);
+}
+
 static bool run(survey_result_t *result) {
     const survey_request_t *request = result->request;
     if (!open_config(result) || !gather(result, &request->config)) {
         return false;
     }
-    if (request->log != NULL) {
-        log_sides_note_silent(request->ai_interface, result->source.has_ai_side);
+    if ((request->log != NULL) && !check_ai_side(result)) {
+        return false;
     }
     choose(result);
     if (!survey_renumbered(result)) {

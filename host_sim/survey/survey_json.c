@@ -80,6 +80,47 @@ static json_t *not_heard_json(const survey_result_t *result) {
     return array;
 }
 
+static json_t *words_json(const candidate_t *candidate, bool is_for) {
+    json_t *array = json_array();
+    for (size_t i = 0u; i < candidate->count; i++) {
+        const verdict_t verdict = candidate->criteria[i].verdict;
+        if (((verdict == VERDICT_FOR) || (verdict == VERDICT_DECIDES)) == is_for) {
+            json_add(array, json_string(candidate->criteria[i].text));
+        }
+    }
+    return array;
+}
+
+/** The messages that were not received: the identifiers that may carry them, the best one first. */
+static json_t *candidates_json(const survey_result_t *result) {
+    json_t *array = json_array();
+    for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
+        const identify_message_t *found = &result->found.of[message];
+        json_t *candidates = json_array();
+        for (size_t i = 0u; i < found->count; i++) {
+            const candidate_t *candidate = &found->candidates[i];
+            char id[8];
+            (void)snprintf(id, sizeof id, "%03X", candidate->id);
+            json_t *object = json_object();
+            json_put(object, "id", json_string(id));
+            json_put(object, "for", words_json(candidate, true));
+            json_put(object, "against", words_json(candidate, false));
+            json_add(candidates, object);
+        }
+        if (!found->is_missing) {
+            json_decref(candidates);
+            continue;
+        }
+        json_t *object = json_object();
+        json_put(object, "message", json_string(signals_message_name(message)));
+        json_put(object, "setting", json_string(agv_setting_info((uint16_t)(AGV_SETTING_ID + message))->name));
+        json_put(object, "proposed", json_boolean(found->is_assigned));
+        json_put(object, "identifiers", candidates);
+        json_add(array, object);
+    }
+    return array;
+}
+
 bool survey_print_json(const survey_result_t *result) {
     const observation_t *observation = &result->observation;
     const traffic_totals_t totals = traffic_totals(result->traffic);
@@ -101,6 +142,7 @@ bool survey_print_json(const survey_result_t *result) {
     json_put(root, "messages", traffic_messages_json(result->traffic));
     json_put(root, "not_heard", not_heard_json(result));
     json_put(root, "unknown", unknown_json(result));
+    json_put(root, "candidates", candidates_json(result));
     json_put(root, "proposal", proposal_json(&result->proposal));
     char *text = json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(15));
     json_decref(root);

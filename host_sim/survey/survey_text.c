@@ -233,6 +233,52 @@ static void print_unknown(const survey_result_t *result) {
     }
 }
 
+/** One candidate: what speaks for it and what against it. */
+static void print_candidate(const candidate_t *candidate) {
+    char id[8];
+    (void)snprintf(id, sizeof id, "%03Xh", candidate->id);
+    for (unsigned side = 0u; side < 2u; side++) {
+        const bool is_for = side == 0u;
+        for (size_t i = 0u; i < candidate->count; i++) {
+            const verdict_t verdict = candidate->criteria[i].verdict;
+            if (((verdict == VERDICT_FOR) || (verdict == VERDICT_DECIDES)) == is_for) {
+                (void)printf("    %-5s %-7s  %s\n", id, is_for ? "for" : "against", candidate->criteria[i].text);
+                id[0] = '\0';
+            }
+        }
+    }
+}
+
+static void print_candidates_of(uint32_t message, const identify_message_t *found) {
+    (void)printf("  %s: %s\n", agv_setting_info((uint16_t)(AGV_SETTING_ID + message))->name,
+                 (found->count > 0u) ? "candidates" : "no candidate");
+    for (size_t i = 0u; i < found->count; i++) {
+        print_candidate(&found->candidates[i]);
+    }
+    if (found->left_out > 0u) {
+        (void)printf("    and %zu more, for which less speaks\n", found->left_out);
+    }
+}
+
+/** What may carry the messages that were not received and got no identifier. */
+static void print_candidates(const survey_result_t *result) {
+    bool any = false;
+    for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
+        const identify_message_t *found = &result->found.of[message];
+        if (found->is_missing && !found->is_assigned) {
+            if (!any) {
+                (void)printf("\nmessages that were not received, and the identifiers that may carry them\n");
+            }
+            print_candidates_of(message, found);
+            any = true;
+        }
+    }
+    if (any) {
+        (void)printf("  Their senders may have been off. Or look up the identifiers in the vehicle's document, write\n"
+                     "  them to a file, for example \"id_gear_status: 0x123\", and survey again with --config FILE.\n");
+    }
+}
+
 void survey_print(const survey_result_t *result, const char *yaml) {
     print_head(result);
     print_load(result);
@@ -242,6 +288,7 @@ void survey_print(const survey_result_t *result, const char *yaml) {
     print_values(result);
     print_alarms(result);
     print_unknown(result);
+    print_candidates(result);
     if (result->is_unread) {
         (void)printf("\nThe messages with other identifiers are not judged yet: survey again with --config and the "
                      "file below.\n");

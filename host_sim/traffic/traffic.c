@@ -5,7 +5,6 @@
 
 #include "agv/codec.h"
 #include "common/message_facts.h"
-#include "traffic/fits.h"
 #include "traffic/watch.h"
 
 enum {
@@ -14,7 +13,7 @@ enum {
     SLOTS_29_BITS = 1024,
     IDS_MAX = HAL_CAN_SIDES * (IDS_11_BITS + IDS_29_BITS)
 };
-enum { STATUS_COUNTER_AT = 3, MESSAGE_UNKNOWN = 0xFF, FIRST_COUNTER_AT = 0, LAST_COUNTER_AT = 7, CANDIDATES = 2 };
+enum { STATUS_COUNTER_AT = 3, MESSAGE_UNKNOWN = 0xFF };
 enum { BITS_PER_WORD = 32, WORD_CHOICES = 256 };
 
 /** The index of the alive counter in data[] of a message or the status frame. */
@@ -58,7 +57,6 @@ static void free_id(traffic_id_t *entry) {
     free(entry->watch);
     free(entry->counter);
     free(entry->ranges);
-    free(entry->candidates);
     free(entry);
 }
 
@@ -80,8 +78,7 @@ static hal_can_side_t side_of(const traffic_t *traffic, uint32_t message) {
 /** Give a new identifier what its message needs. @return false: out of memory */
 static bool allocate_parts(const traffic_t *traffic, traffic_id_t *entry) {
     if (entry->message == TRAFFIC_UNKNOWN) {
-        entry->candidates = calloc(CANDIDATES, sizeof *entry->candidates);
-        return entry->candidates != NULL;
+        return true;
     }
     entry->ranges = calloc(SIGNALS_MAX, sizeof *entry->ranges);
     bool good = entry->ranges != NULL;
@@ -110,7 +107,6 @@ static traffic_id_t *add_id(traffic_t *traffic, hal_can_side_t side, const hal_c
     entry->message = (message == (uint8_t)MESSAGE_UNKNOWN) ? TRAFFIC_UNKNOWN : message;
     entry->first_us = t_us;
     entry->length_min = UINT8_MAX;
-    entry->fits = FITS_ALL;
     (void)memset(entry->bits_always, UINT8_MAX, sizeof entry->bits_always);
     if (!allocate_parts(traffic, entry)) {
         free_id(entry);
@@ -252,12 +248,6 @@ static void take_data(traffic_t *traffic, traffic_id_t *entry, const hal_can_fra
     take_bits(entry, frame);
     if (entry->message != TRAFFIC_UNKNOWN) {
         take_known(traffic, entry, frame, t_us);
-    } else if (is_well_formed) {
-        entry->fits = fits_frame(entry->fits, frame->data);
-        (void)counter_use_add(&entry->candidates[0], frame->data[FIRST_COUNTER_AT], t_us);
-        (void)counter_use_add(&entry->candidates[1], frame->data[LAST_COUNTER_AT], t_us);
-    } else {
-        entry->fits = 0u;
     }
 }
 

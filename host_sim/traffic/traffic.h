@@ -73,8 +73,6 @@ typedef struct {
     counter_use_t *counter;  /**< NULL: the message has no alive counter */
     traffic_range_t *ranges; /**< of each signal; NULL: unknown */
     /** @} */
-    counter_use_t *candidates; /**< of an unknown one with 8 bytes: data[0] and data[7] as if they were counters */
-    uint32_t fits;             /**< of an unknown one: bit n: its frames could all be those of message n (fits.h) */
 } traffic_id_t;
 
 /** Statistics of a run. */

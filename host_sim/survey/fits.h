@@ -5,6 +5,7 @@
 #ifndef HOST_SIM_FITS_H
 #define HOST_SIM_FITS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "agv/protocol.h"
@@ -18,5 +19,8 @@
  * @param fits bits of the messages that are still possible @return what is left of them
  */
 uint32_t fits_frame(uint32_t fits, const uint8_t data[AGV_DLC]);
+
+/** Whether a payload has no reserved bit and no invalid value of a message, and reports a mode if it is 363h. */
+bool fits_protocol(uint32_t message, const uint8_t data[AGV_DLC]);
 
 #endif

@@ -1,6 +1,5 @@
-#include "traffic/fits.h"
+#include "survey/fits.h"
 
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdlib.h>
 
@@ -36,21 +35,26 @@ static bool are_wheels(const uint8_t data[AGV_DLC]) {
            (abs(wheels.left_mm_s - wheels.right_mm_s) < WHEEL_APART_MM_S);
 }
 
-/** The centre lies between left and right. */
+/** The centre lies between left and right, or nothing was measured yet. */
 static bool are_positions(const uint8_t data[AGV_DLC]) {
     agv_steering_position_t position;
     (void)agv_unpack_steering_position(&position, data);
-    return ((position.left_raw < position.centre_raw) && (position.centre_raw < position.right_raw)) ||
+    const bool is_empty = (position.left_raw == 0u) && (position.centre_raw == 0u) && (position.right_raw == 0u);
+    return is_empty || ((position.left_raw < position.centre_raw) && (position.centre_raw < position.right_raw)) ||
            ((position.left_raw > position.centre_raw) && (position.centre_raw > position.right_raw));
 }
 
+bool fits_protocol(uint32_t message, const uint8_t data[AGV_DLC]) {
+    const bool has_mode = (data[MODE_AT] & (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT)) != 0u;
+    return !has_reserved_bits(message, data) && agv_value_is_valid(message, data) &&
+           (has_mode || (message != (uint32_t)AGV_MSG_VEHICLE_STATUS));
+}
+
 static bool is_plausible(uint32_t message, const uint8_t data[AGV_DLC]) {
-    if (has_reserved_bits(message, data) || !agv_value_is_valid(message, data)) {
+    if (!fits_protocol(message, data)) {
         return false;
     }
     switch (message) {
-    case AGV_MSG_VEHICLE_STATUS:
-        return (data[MODE_AT] & (AGV_VCU_FLAG_MANUAL | AGV_VCU_FLAG_AUTOPILOT)) != 0u;
     case AGV_MSG_WHEEL_SPEED:
         return are_wheels(data);
     case AGV_MSG_STEERING_POSITION:
