@@ -25,12 +25,12 @@ enum { AGV_HOLD_UNSENT_MAX_MS = 2000 };
 /** Hold, at a trip, the angle of the last valid 067h if it is not older than hold_age_ms. */
 void agv_hold_trip(agv_hold_t *hold, const agv_vehicle_t *vehicle, const agv_timers_t *timers);
 
-/** Drop the held angle: at a reset, when manual is reported and the operator steers, and when it is out of date. */
+/** Drop the held angle: at a reset, when manual is reported, when the EPS takes no angles, and when it is out of date. */
 void agv_hold_drop(agv_hold_t *hold);
 
 /**
- * Hold the angle of a valid 067h if none is held, or if the held one is out of date. Call in TRIPPED and SAFE while manual is
- * not reported.
+ * Hold the angle of a valid 067h if none is held, or if the held one is out of date. Call in TRIPPED and SAFE while manual
+ * is not reported.
  */
 void agv_hold_take(agv_hold_t *hold, const agv_vehicle_t *vehicle);
 
