@@ -24,7 +24,7 @@ typedef struct {
     bool manual;
     agv_budget_t manual_spent; /**< how long manual was reported while engaged */
     agv_budget_t both_spent;   /**< how long the timer of "both mode bits" had run, while they are not both set */
-    agv_budget_t none_spent;   /**< the same for "neither mode bit" */
+    agv_budget_t none_spent;   /**< the same for "no valid mode" */
 } agv_mode_t;
 
 /** Change of the engagement. */

@@ -95,6 +95,11 @@ static void read_limits(hazard_t *hazard) {
     limits->command_ms[AGV_MSG_THROTTLE_COMMAND] = hazard_setting(hazard, "throttle_command_timeout_ms", 350u);
     limits->command_ms[AGV_MSG_STEERING_COMMAND] = hazard_setting(hazard, "steering_command_timeout_ms", 125u);
     limits->command_too_fast_gaps = hazard_setting(hazard, "command_too_fast_gaps", 10u);
+    limits->eps_ms = hazard_setting(hazard, "eps_heartbeat_timeout_ms", 50u);
+    limits->eps_status_ms = hazard_setting(hazard, "eps_status_timeout_ms", 60u);
+    limits->eps_supply_frames = hazard_setting(hazard, "eps_supply_fault_frames", 3u);
+    limits->speed_implausible_ms = hazard_setting(hazard, "speed_implausible_ms", 1000u);
+    limits->wheels_alone = hazard_setting(hazard, "standstill_vcu_counts", 180u) == AGV_STANDSTILL_VCU_ANY;
     limits->steering_deviation_ddeg = hazard_setting(hazard, "steering_deviation_ddeg", 500u);
     limits->steering_deviation_ms = hazard_setting(hazard, "steering_deviation_ms", 500u);
     limits->steering_gain_ddeg = (int32_t)hazard_setting(hazard, "steering_gain_ddeg", 250u);
@@ -220,6 +225,7 @@ void hazard_tick(hazard_t *hazard, uint64_t t_ms) {
     look(hazard);
     hazard->t_ms = t_ms;
     hazard->closed = hazard->view.output_closed;
+    hazard_speed_tick(hazard);
     hazard_safe_tick(hazard);
     hazard_hold_tick(hazard);
     hazard_passed_tick(hazard);

@@ -84,6 +84,11 @@ typedef struct {
     uint32_t gear_status_ms;
     uint32_t command_ms[AGV_COMMAND_COUNT];
     uint32_t command_too_fast_gaps;
+    uint32_t eps_ms;
+    uint32_t eps_status_ms;
+    uint32_t eps_supply_frames;
+    uint32_t speed_implausible_ms;
+    bool wheels_alone; /**< 363h does not count for standstill */
     uint32_t steering_deviation_ddeg;
     uint32_t steering_deviation_ms;
     int32_t steering_gain_ddeg;
@@ -147,9 +152,9 @@ typedef struct {
     hazard_range_t at_trip; /**< the same at the trip */
     bool has_trip;
     uint64_t trip_ms;
-    bool is_dropped; /**< manual was reported since */
+    bool is_dropped; /**< since then manual was reported, or the EPS took no angle */
     uint64_t dropped_ms;
-    hazard_range_t first; /**< the first measured angles after the trip, or after manual ended */
+    hazard_range_t first; /**< the first measured angles after the trip, or after it was dropped */
     uint64_t first_ms;    /**< when the first of them came */
     bool has_first;
     uint16_t kept;          /**< the last right value */
@@ -160,6 +165,13 @@ typedef struct {
     uint64_t measured_ms[HAZARD_ANGLES];
     uint32_t measured_count;
 } hazard_hold_t;
+
+/** What the EPS and the VCU report of the EPS: consecutive frames. */
+typedef struct {
+    uint32_t supply_frames; /**< 167h with a fault of its supply */
+    uint32_t bad_frames;    /**< with another fault, or not in angle control */
+    uint32_t alarm_frames;  /**< 363h with an alarm of the EPS */
+} hazard_eps_t;
 
 /** An evaluation. Read `kind`, `cause`, `at_ms` and `closeness`. */
 typedef struct {
@@ -188,6 +200,8 @@ typedef struct {
     hazard_mode_t mode;
     hazard_trip_t trip;
     hazard_hold_t hold;
+    hazard_eps_t eps;
+    int32_t contradicted_ms; /**< 101h reports standstill, and 363h a speed: budget, up to speed_implausible_ms */
     uint64_t bad_command_ms; /**< the last malformed AI command */
     bool has_bad_command;
     uint64_t foreign_ms;  /**< first foreign command on the vehicle side that was not answered; 0: none */
@@ -239,6 +253,10 @@ bool hazard_is_tripped(const hazard_t *hazard);
 bool hazard_reset_was_asked(const hazard_t *hazard);
 
 /** @name Private: the parts. @{ */
+
+/** Whether its controller receives: a supervisor in bus-off does not, nor one without power. */
+bool hazard_is_hearing(const hazard_t *hazard);
+
 void hazard_found(hazard_t *hazard, hazard_kind_t kind, const char *cause);
 uint32_t hazard_setting(const hazard_t *hazard, const char *name, uint32_t preset);
 bool hazard_is_safe_now(const hazard_t *hazard, uint32_t within_ms);
@@ -259,7 +277,11 @@ void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame);
 void hazard_hold_tick(hazard_t *hazard);
 void hazard_hold_measured(hazard_t *hazard, int32_t angle_ddeg);
 void hazard_hold_trip(hazard_t *hazard);
-void hazard_hold_manual(hazard_t *hazard);
+void hazard_hold_drop(hazard_t *hazard);
+void hazard_eps_status(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV_DLC]);
+bool hazard_eps_takes_no_angle(const hazard_t *hazard);
+void hazard_speed_tick(hazard_t *hazard);
+bool hazard_is_said_to_stand(const hazard_t *hazard);
 void hazard_hold_anew(hazard_t *hazard);
 /** @} */
 

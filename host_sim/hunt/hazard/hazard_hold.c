@@ -19,6 +19,12 @@ static void extend_range(hazard_range_t *range, int32_t ddeg) {
     range->high_ddeg = (ddeg > range->high_ddeg) ? ddeg : range->high_ddeg;
 }
 
+/** What an EPS that takes no angle measures may be wrong. */
+static void forget_measured(hazard_t *hazard) {
+    hazard->hold.has_first = false;
+    hazard->hold.measured_count = 0u;
+}
+
 void hazard_hold_measured(hazard_t *hazard, int32_t angle_ddeg) {
     hazard_hold_t *hold = &hazard->hold;
     const uint32_t at = hold->measured_count % HAZARD_ANGLES;
@@ -28,6 +34,10 @@ void hazard_hold_measured(hazard_t *hazard, int32_t angle_ddeg) {
     hold->measured_count++;
     if (hazard->view.is_off) {
         hold->has_first = false; /* one without power measures nothing */
+        return;
+    }
+    if (hazard_eps_takes_no_angle(hazard)) {
+        forget_measured(hazard);
         return;
     }
     if (!hold->has_first) {
@@ -75,7 +85,8 @@ void hazard_hold_anew(hazard_t *hazard) {
     trip_now(hazard, FRESH_MS);
 }
 
-void hazard_hold_manual(hazard_t *hazard) {
+/** Manual was reported, or the EPS took no angle: it may have turned, and what it measured before is out of date. */
+void hazard_hold_drop(hazard_t *hazard) {
     hazard_hold_t *hold = &hazard->hold;
 
     if (hold->has_trip && !hold->is_dropped) {
@@ -92,7 +103,7 @@ static uint64_t in_date_ms(const hazard_t *hazard) {
     return (uint64_t)OUT_OF_DATE_MS + hazard->limits.tx_stalled_ms + FRESH_MS;
 }
 
-/** Manual drops the angle of the trip; a frame that was in the controller then may still leave. */
+/** The angle of the trip may have been dropped; a frame that was in the controller then may still leave. */
 static bool is_of_trip(const hazard_t *hazard, int32_t held_ddeg) {
     const hazard_hold_t *hold = &hazard->hold;
 
@@ -101,7 +112,7 @@ static bool is_of_trip(const hazard_t *hazard, int32_t held_ddeg) {
            is_within(&hold->at_trip, held_ddeg);
 }
 
-/** The first angles after the trip, or after manual ended. */
+/** The first angles after the trip, or after it was dropped. */
 static bool is_of_first(const hazard_t *hazard, int32_t held_ddeg) {
     const hazard_hold_t *hold = &hazard->hold;
 
@@ -166,6 +177,10 @@ void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame) {
 void hazard_hold_tick(hazard_t *hazard) {
     const hazard_hold_t *hold = &hazard->hold;
 
+    if (hazard_eps_takes_no_angle(hazard)) {
+        hazard_hold_drop(hazard);
+        forget_measured(hazard);
+    }
     if (!hold->is_wrong || (hazard->t_ms - hold->last_ms > NEW_HOLD_MS)) {
         return;
     }

@@ -102,9 +102,10 @@ static bool is_off_ignored(const hazard_t *hazard) {
     return hazard->asked_off_ms != 0u;
 }
 
+/** Neither, or both. */
 static bool is_without_mode(const hazard_t *hazard) {
     const hazard_message_t *status = &hazard->messages[AGV_MSG_VEHICLE_STATUS];
-    return status->has && ((status->data[MODE_BYTE] & MODE_BITS) == 0u);
+    return status->has && (((status->data[MODE_BYTE] & MODE_BITS) == 0u) || hazard->mode.both);
 }
 
 static bool is_in_both_modes(const hazard_t *hazard) {
@@ -184,7 +185,7 @@ static const row_t ROWS[] = {
      is_other_gear},
     {"autopilot off is ignored", LEVEL, true, NONE, "autopilot_off_ms", 1000u, "AUTOPILOT_OFF_IGNORED", NULL, 0u,
      is_off_ignored},
-    {"neither mode is reported", LEVEL, false, NONE, "mode_none_ms", 500u, NULL, NULL, 0u, is_without_mode},
+    {"no valid mode is reported", LEVEL, false, NONE, "mode_none_ms", 500u, NULL, NULL, 0u, is_without_mode},
     {"both modes are reported", LEVEL, false, NONE, "mode_invalid_ms", 50u, NULL, NULL, 0u, is_in_both_modes},
     {"commands come too fast", LEVEL, true, NONE, NULL, 0u, "COMMAND_TOO_FAST", NULL, 0u, is_command_too_fast},
     {"an invalid command", LEVEL, true, NONE, NULL, 0u, NULL, NULL, 0u, is_command_bad},

@@ -5,7 +5,7 @@
 
 enum { SIGNALS_BYTES = 7, IN_FLIGHT_MS = 12, GONE_MS = 700, RESET_GONE_MS = 200, PENDING_MS = 50, PRESS_SEEN_MS = 100 };
 enum { CONFIRM_MARGIN_MS = 300, CLEARED_MS = 5000, STALE_MARGIN_MS = 100 };
-enum { SPEED_SLOT_MS = 100, SLOWER_MM_S = 50, MOVING_MM_S = 300, STANDS_MM_S = 100, FRESH_MS = 100, MARGIN_MS = 1500 };
+enum { SPEED_SLOT_MS = 100, SLOWER_MM_S = 50, MOVING_MM_S = 300, MARGIN_MS = 1500 };
 enum { ALARMS_BYTE = 4, FLAGS_BYTE = 6, PRESS_MARGIN_MS = 20 };
 
 static const uint8_t SAFE_SIGNALS[SIGNALS_BYTES] = {0x00, 0x00, 0x00, 0x00, 0x70, 0x00, 0x00};
@@ -144,19 +144,6 @@ static void check_reset(hazard_t *hazard, bool was_closed) {
     }
 }
 
-/** 101h reports standstill, so the supervisor cannot detect that the vehicle moves. */
-static bool is_said_to_stand(const hazard_t *hazard) {
-    const hazard_message_t *wheels = &hazard->messages[AGV_MSG_WHEEL_SPEED];
-    agv_wheel_speed_t speed;
-
-    if (!wheels->has || (hazard->t_ms - wheels->seen_ms > FRESH_MS)) {
-        return false;
-    }
-    (void)agv_unpack_wheel_speed(&speed, wheels->data);
-    return (speed.left_mm_s < STANDS_MM_S) && (speed.left_mm_s > -STANDS_MM_S) && (speed.right_mm_s < STANDS_MM_S) &&
-           (speed.right_mm_s > -STANDS_MM_S);
-}
-
 /** The safe commands are sent, and the vehicle does not become slower (H1). */
 static void check_stopping(hazard_t *hazard) {
     const int32_t now_mm_s = hazard_speed_mm_s(hazard);
@@ -165,7 +152,7 @@ static void check_stopping(hazard_t *hazard) {
     hazard->speeds_mm_s[hazard->speed_at] = now_mm_s;
     hazard->speed_at = (hazard->speed_at + 1u) % HAZARD_SPEEDS;
     if (!hazard->closed || !hazard->trip.tripped || (now_mm_s < MOVING_MM_S) ||
-        (before_mm_s - now_mm_s >= SLOWER_MM_S) || is_said_to_stand(hazard)) {
+        (before_mm_s - now_mm_s >= SLOWER_MM_S) || hazard_is_said_to_stand(hazard)) {
         hazard->rolling_since_ms = hazard->t_ms;
     }
     if (hazard->trip.tripped && (hazard->t_ms - hazard->trip.first_ms > (uint64_t)hazard->limits.stop_ms + MARGIN_MS) &&

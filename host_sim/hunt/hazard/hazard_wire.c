@@ -74,12 +74,11 @@ static void check_newest_throttle(hazard_t *hazard) {
     }
 }
 
-/** A supervisor in bus-off does not receive the report of manual. */
-static bool is_heard(const hazard_t *hazard) {
+bool hazard_is_hearing(const hazard_t *hazard) {
     scenario_controller_t controller;
 
     scenario_testbed_controller(hazard->testbed, HAL_CAN_VEHICLE, &controller);
-    return controller.status.state != HAL_CAN_BUS_OFF;
+    return !hazard->view.is_halted && (controller.status.state != HAL_CAN_BUS_OFF);
 }
 
 /** What manual drops. */
@@ -91,11 +90,11 @@ static void note_manual(hazard_t *hazard, bool manual) {
         hazard->hold.has_first = false;
     }
     if (manual) {
-        mode->heard = (mode->manual && mode->heard) || is_heard(hazard);
+        mode->heard = (mode->manual && mode->heard) || hazard_is_hearing(hazard);
         mode->manual_ms = hazard->t_ms;
     }
     if (manual && mode->heard) {
-        hazard_hold_manual(hazard);
+        hazard_hold_drop(hazard);
     }
 }
 
@@ -182,6 +181,7 @@ void hazard_wire_status(hazard_t *hazard, agv_message_t message, const hal_can_f
     } else {
         /* noted */
     }
+    hazard_eps_status(hazard, message, frame->data);
     hazard_rows_frame(hazard, message, frame->data);
 }
 

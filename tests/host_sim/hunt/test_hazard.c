@@ -206,6 +206,24 @@ void test_h1_a_vehicle_that_does_not_obey(void) {
     expect_none(&opens, "");
 }
 
+/** 101h reads 0 for a vehicle that rolls at 3 m/s: 363h, which reports the true speed, contradicts it after 1 s. */
+void test_h1_wheels_that_read_0_are_no_excuse_when_the_vcu_contradicts_them(void) {
+    static const char wheels[] = "  - {at_ms: 2500, vcu: set, field: left_speed, value: 00000000h}\n"
+                                 "  - {at_ms: 2500, vcu: set, field: right_speed, value: 00000000h}\n%s";
+    const char *const both = "  - {at_ms: 2500, vcu: set, field: speed, value: 0000h}\n";
+    const stub_t stays = {.rolls = true, .safe_ms = TRIP_MS};
+    const stub_t opens = {.rolls = true, .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 5000};
+    const stub_t alone = {.rolls = true, .safe_ms = TRIP_MS, .setting = "standstill_vcu_counts: 65535\n"};
+    char steps[512];
+
+    (void)snprintf(steps, sizeof steps, wheels, "");
+    expect_hazard(HAZARD_NOT_STOPPING, "the vehicle does not obey the safe commands", &stays, steps);
+    expect_none(&opens, steps);
+    expect_none(&alone, steps);
+    (void)snprintf(steps, sizeof steps, wheels, both); /* nobody can know that it moves */
+    expect_none(&stays, steps);
+}
+
 void test_h2_another_angle(void) {
     const char *const steps = "  - {at_ms: 2990, vcu: set, field: mode_bits, value: 2h}\n"
                               "  - {at_ms: 2990, ai: mute, message: steering_command}\n";
@@ -236,9 +254,43 @@ void test_h2_manual_drops_the_angle_of_the_trip(void) {
     expect_none(&ends, steps);
 }
 
+/** The EPS has a fault, or another mode, while the AI computer steers on: then the angle of the trip is out of date. */
+void test_h2_an_eps_that_takes_no_angle_drops_the_angle_of_the_trip(void) {
+    static const struct {
+        const char *steps;
+        bool drops;
+    } rows[] = {
+        {"eps: set, field: faults, value: 08h, frames: 20", true},
+        {"eps: set, field: faults, value: 02h, frames: 20", true},
+        {"eps: set, field: mode, value: FFh, frames: 20", true},
+        {"vcu: set, field: alarms, value: 10h, frames: 20", true},
+        {"eps: mute, message: eps_status, frames: 20", true},
+        {"eps: mute, message: steering_status, frames: 20", true},
+        {"eps: set, field: faults, value: 02h, frames: 2", false},
+    };
+    const stub_t returns = {
+        .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 500, .holds = true, .hold_ms = TRIP_MS + 400, .hold_ddeg = 0};
+    char steps[768];
+
+    for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
+        (void)snprintf(steps, sizeof steps,
+                       "  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
+                       "  - {at_ms: 3010, %s}\n"
+                       "  - {at_ms: 3010, ai: drive, gear: D, throttle_pct: 60, steer_deg: -60}\n"
+                       "  - {at_ms: 3395, ai: mute, message: steering_command}\n",
+                       rows[i].steps);
+        if (rows[i].drops) {
+            expect_hazard(HAZARD_STEERING, "the supervisor steers to another angle", &returns, steps);
+        } else {
+            expect_none(&returns, steps);
+        }
+    }
+}
+
 void test_h2_who_is_bus_off_does_not_hear_of_manual(void) {
     const char *const steps = "  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
                               "  - {at_ms: 3100, supervisor: bus_off}\n"
+                              "  - {at_ms: 3100, eps: set, field: mode, value: 01h}\n"
                               "  - {at_ms: 3150, operator: disengage}\n"
                               "  - {at_ms: 3150, operator: steer, steer_deg: -60}\n"
                               "  - {at_ms: 3650, operator: engage}\n";
@@ -471,7 +523,7 @@ void test_h6_a_node_that_reports_what_cannot_be(void) {
         {"more throttle than commanded", "vcu: set, field: throttle, value: FAh"},
         {"another gear than commanded", "vcu: set, field: gear, value: 02h"},
         {"both modes are reported", "vcu: set, field: mode_bits, value: 3h"},
-        {"neither mode is reported", "vcu: set, field: mode_bits, value: 0h"},
+        {"no valid mode is reported", "vcu: set, field: mode_bits, value: 0h"},
         {"an invalid command", "bus: send, message: throttle_command, bytes: \"FF\", every_ms: 100"},
         {"the supervisor's transmitter has failed", "supervisor: stall_tx"},
         {"the supervisor's transmitter has failed", "supervisor: fill_queue"},
@@ -483,6 +535,17 @@ void test_h6_a_node_that_reports_what_cannot_be(void) {
         expect_hazard(HAZARD_FALSE_NODE, rows[i].cause, &MUTE, steps);
         expect_none(&GOOD, steps);
     }
+}
+
+/** None, manual and both in turn: each for less than its own time. */
+void test_h6_modes_that_are_wrong_in_turn(void) {
+    const char *const steps =
+        "  - {at_ms: 1900, ai: be_stubborn}\n"
+        "  - {at_ms: 2000, vcu: set, field: mode_bits, value: 0h, frames: 1, again_every_ms: 30}\n"
+        "  - {at_ms: 2010, vcu: set, field: mode_bits, value: 1h, frames: 1, again_every_ms: 30}\n"
+        "  - {at_ms: 2020, vcu: set, field: mode_bits, value: 3h, frames: 1, again_every_ms: 30}\n";
+    expect_hazard(HAZARD_FALSE_NODE, "no valid mode is reported", &MUTE, steps);
+    expect_none(&GOOD, steps);
 }
 
 void test_h6_a_dead_transmitter_shows_with_the_next_status_frame(void) {

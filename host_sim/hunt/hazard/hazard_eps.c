@@ -1,0 +1,43 @@
+/* An EPS that takes no angles, as 067h, 167h and 363h show it: what it measured before is no angle to hold (H2). */
+#include "hunt/hazard/hazard.h"
+
+enum { ANGLE_MODE = 0x01, SUPPLY_BITS = 0x07, VCU_ALARMS = 0x30, MODE_BYTE = 3, FAULTS_BYTE = 7, ALARMS_BYTE = 4 };
+enum { FRAMES = 3, MARGIN_MS = 60, FRAMES_MAX = 65535 };
+
+static void count(uint32_t *frames, bool is_bad) {
+    *frames = !is_bad ? 0u : (*frames < (uint32_t)FRAMES_MAX) ? *frames + 1u : *frames;
+}
+
+/** A frame more than the debouncing of the supervisor needs, and another one that may have been lost. */
+void hazard_eps_status(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV_DLC]) {
+    hazard_eps_t *eps = &hazard->eps;
+
+    if (!hazard_is_hearing(hazard)) {
+        *eps = (hazard_eps_t){0};
+    } else if (message == AGV_MSG_EPS_STATUS) {
+        count(&eps->supply_frames, (data[FAULTS_BYTE] & (uint8_t)SUPPLY_BITS) != 0u);
+        count(&eps->bad_frames,
+              (data[MODE_BYTE] != (uint8_t)ANGLE_MODE) || ((data[FAULTS_BYTE] & (uint8_t)~SUPPLY_BITS & 0xE8u) != 0u));
+    } else if (message == AGV_MSG_VEHICLE_STATUS) {
+        count(&eps->alarm_frames, (data[ALARMS_BYTE] & (uint8_t)VCU_ALARMS) != 0u);
+    } else {
+        /* says nothing of it */
+    }
+}
+
+static bool is_silent(const hazard_t *hazard) {
+    const hazard_message_t *angle = &hazard->messages[AGV_MSG_STEERING_STATUS];
+    const hazard_message_t *status = &hazard->messages[AGV_MSG_EPS_STATUS];
+    const uint64_t alive_ms = (uint64_t)hazard->limits.eps_ms + MARGIN_MS;
+    const uint64_t fresh_ms = (uint64_t)hazard->limits.eps_status_ms + MARGIN_MS;
+
+    return (hazard->t_ms - angle->changed_ms > alive_ms) || (hazard->t_ms - status->seen_ms > fresh_ms);
+}
+
+bool hazard_eps_takes_no_angle(const hazard_t *hazard) {
+    const hazard_eps_t *eps = &hazard->eps;
+
+    return hazard_is_hearing(hazard) &&
+           (is_silent(hazard) || (eps->bad_frames >= (uint32_t)FRAMES) || (eps->alarm_frames >= (uint32_t)FRAMES) ||
+            (eps->supply_frames >= hazard->limits.eps_supply_frames + (uint32_t)FRAMES - 1u));
+}
