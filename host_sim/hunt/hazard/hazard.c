@@ -80,6 +80,7 @@ static void read_limits(hazard_t *hazard) {
 
     limits->confirm_ms = hazard_setting(hazard, "confirm_timeout_ms", 500u);
     limits->park_confirm_ms = hazard_setting(hazard, "park_confirm_timeout_ms", limits->confirm_ms);
+    limits->confirmed_ms = hazard_setting(hazard, "confirmed_ms", 5000u);
     limits->stop_ms = hazard_setting(hazard, "stop_timeout_ms", 5000u);
     limits->vcu_ms = hazard_setting(hazard, "vcu_heartbeat_timeout_ms", 50u);
     limits->tx_stalled_ms = hazard_setting(hazard, "tx_stalled_ms", 100u);

@@ -72,6 +72,7 @@ typedef struct {
 typedef struct {
     uint32_t confirm_ms;
     uint32_t park_confirm_ms;
+    uint32_t confirmed_ms; /**< both confirmations for so long set the sums to 0 */
     uint32_t stop_ms;
     uint32_t vcu_ms;
     uint32_t tx_stalled_ms;
@@ -195,7 +196,8 @@ typedef struct {
     bool is_commanded[AGV_COMMAND_COUNT];  /**< in this engagement */
     uint16_t throttle_high;                /**< 050h: the value from which it has to come down */
     uint64_t throttle_high_ms;
-    uint16_t throttle_before; /**< the same before it came down last: a fall that is undone is none */
+    uint16_t
+        throttle_before; /**< the same before it came down last: a fall that is undone, without a command to rise, is none */
     uint64_t throttle_before_ms;
     hazard_mode_t mode;
     hazard_trip_t trip;
@@ -266,6 +268,7 @@ void hazard_rows_init(hazard_t *hazard);
 void hazard_rows_frame(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV_DLC]);
 void hazard_rows_tick(hazard_t *hazard);
 void hazard_wire_status(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame);
+void hazard_commanded(hazard_t *hazard, agv_message_t message, uint16_t value);
 void hazard_wire_command(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame);
 bool hazard_was_sent(const hazard_t *hazard, agv_message_t message, uint16_t value);
 void hazard_passed(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame);

@@ -41,8 +41,7 @@ void hazard_passed(hazard_t *hazard, agv_message_t message, const hal_can_frame_
     if (message == AGV_MSG_TURN_SIGNAL_COMMAND) {
         return;
     }
-    hazard->commanded[message] = value;
-    hazard->is_commanded[message] = true;
+    hazard_commanded(hazard, message, value);
     if (message == AGV_MSG_THROTTLE_COMMAND) {
         hazard->throttle_is_newest = value != 0u;
         hazard->throttle_ms = hazard->t_ms;

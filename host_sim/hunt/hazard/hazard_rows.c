@@ -64,10 +64,10 @@ static uint8_t throttle_of(const hazard_t *hazard) {
     return hazard->messages[AGV_MSG_THROTTLE_STATUS].valid[0];
 }
 
-/** 0 while 0A3h is silent: then it reports no gear. */
+/** 0 while 0A3h is silent or has no valid gear. */
 static uint8_t gear_of(const hazard_t *hazard) {
     const hazard_message_t *seen = &hazard->messages[AGV_MSG_GEAR_STATUS];
-    return (hazard->t_ms - seen->seen_ms > hazard->limits.gear_status_ms) ? 0u : seen->valid[0];
+    return (hazard->t_ms - seen->valid_ms > hazard->limits.gear_status_ms) ? 0u : seen->valid[0];
 }
 
 static bool is_steering_stuck(const hazard_t *hazard) {

@@ -4,7 +4,7 @@
 #include "hunt/hazard/hazard.h"
 
 enum { SIGNALS_BYTES = 7, IN_FLIGHT_MS = 12, GONE_MS = 700, RESET_GONE_MS = 200, PENDING_MS = 50, PRESS_SEEN_MS = 100 };
-enum { CONFIRM_MARGIN_MS = 300, CLEARED_MS = 5000, STALE_MARGIN_MS = 100 };
+enum { CONFIRM_MARGIN_MS = 300, STALE_MARGIN_MS = 100 };
 enum { SPEED_SLOT_MS = 100, SLOWER_MM_S = 50, MOVING_MM_S = 300, MARGIN_MS = 1500 };
 enum { ALARMS_BYTE = 4, FLAGS_BYTE = 6, PRESS_MARGIN_MS = 20 };
 
@@ -70,7 +70,7 @@ static void check_confirmation(hazard_t *hazard) {
     trip->engaged_ms += off ? 0u : 1u;
     trip->unparked_ms += (parked || !trip->parks) ? 0u : 1u;
     trip->confirmed_ms = (off && parked) ? trip->confirmed_ms + 1u : 0u;
-    if (trip->confirmed_ms >= CLEARED_MS) {
+    if (trip->confirmed_ms >= hazard->limits.confirmed_ms) {
         trip->engaged_ms = 0u;
         trip->unparked_ms = 0u;
     }

@@ -206,6 +206,14 @@ static void note_recent(hazard_t *hazard, agv_message_t message, uint16_t value)
     recent->next++;
 }
 
+void hazard_commanded(hazard_t *hazard, agv_message_t message, uint16_t value) {
+    if ((message == AGV_MSG_THROTTLE_COMMAND) && (value >= hazard->messages[AGV_MSG_THROTTLE_STATUS].valid[0])) {
+        hazard->throttle_before_ms = 0u; /* it may rise again */
+    }
+    hazard->commanded[message] = value;
+    hazard->is_commanded[message] = true;
+}
+
 void hazard_wire_command(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
     const bool whole = (frame->flags == 0u) && (frame->length == AGV_DLC);
 
@@ -222,8 +230,7 @@ void hazard_wire_command(hazard_t *hazard, agv_message_t message, const hal_can_
     if (is_usable(message, frame->data)) {
         note_recent(hazard, message, value);
         if (!hazard->gateway) {
-            hazard->commanded[message] = value;
-            hazard->is_commanded[message] = true;
+            hazard_commanded(hazard, message, value);
         }
     }
     if (message == AGV_MSG_TURN_SIGNAL_COMMAND) {

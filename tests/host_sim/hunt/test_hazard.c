@@ -430,6 +430,16 @@ void test_h4_an_unconfirmed_safe_state(void) {
     expect_none(&opens, gear);
 }
 
+/** 0.6 s without P, twice, with 3 s of confirmation between them. */
+void test_h4_a_confirmation_that_lasts_sets_the_sum_to_0(void) {
+    const char *const twice = "  - {at_ms: 2900, vcu: set, field: gear, value: 01h, frames: 25}\n"
+                              "  - {at_ms: 6500, vcu: set, field: gear, value: 01h, frames: 25}\n";
+    const stub_t stays = {.safe_ms = TRIP_MS};
+    const stub_t clears = {.safe_ms = TRIP_MS, .setting = "confirmed_ms: 1000\n"};
+    expect_hazard(HAZARD_UNCONFIRMED, "gear P is not confirmed", &stays, twice);
+    expect_none(&clears, twice);
+}
+
 /** A reset by the operator, and the next trip soon after it: each trip has its own time to be confirmed. */
 void test_h4_a_trip_soon_after_a_reset_is_a_new_one(void) {
     static const char twice[] = "  - {at_ms: 2900, vcu: set, field: gear, value: 01h, frames: 25}\n"
@@ -562,11 +572,14 @@ void test_h6_a_dead_transmitter_shows_with_the_next_status_frame(void) {
 void test_h6_a_silent_gear_status_reports_no_gear(void) {
     const char *const park = "  - {at_ms: 3000, vcu: set, field: gear, value: 08h}\n";
     const stub_t ignores = {.setting = "class_gear_status_timeout: warn\n"};
+    const stub_t warns = {.setting = "class_gear_status_invalid: warn\n"};
     char steps[512];
 
     expect_hazard(HAZARD_FALSE_NODE, "throttle with gear P", &ignores, park);
     (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 3040, vcu: mute, message: gear_status}\n", park);
     expect_none(&ignores, steps);
+    (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 3040, vcu: set, field: gear, value: 03h}\n", park);
+    expect_none(&warns, steps);
 }
 
 /** 200 gaps of 1 ms; after a restart nobody knows of them. */
@@ -621,6 +634,18 @@ void test_h6_a_good_reading_now_and_then_hides_nothing(void) {
     expect_none(&GOOD, stuck);
     expect_hazard(HAZARD_FALSE_NODE, "more throttle than commanded", &MUTE, open);
     expect_none(&GOOD, open);
+}
+
+/** A VCU that comes down slowly obeys the AI computer, which asks for 100 % now and then. */
+void test_h6_a_throttle_that_was_commanded_to_rise_again_is_no_hazard(void) {
+    const char *const slow =
+        "  - {at_ms: 2000, vcu: ramp_throttle, pct_s: 27}\n"
+        "  - {at_ms: 3000, ai: set, field: throttle, value: FAh, frames: 1, again_every_ms: 600}\n";
+    const char *const stays =
+        "  - {at_ms: 2000, vcu: set, field: throttle, value: FAh}\n"
+        "  - {at_ms: 3000, ai: set, field: throttle, value: FAh, frames: 1, again_every_ms: 600}\n";
+    expect_none(&MUTE, slow);
+    expect_hazard(HAZARD_FALSE_NODE, "more throttle than commanded", &MUTE, stays);
 }
 
 void test_h7_a_flood(void) {
