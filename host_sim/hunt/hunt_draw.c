@@ -180,9 +180,9 @@ static bool is_fixed(const char *name) {
 
 /** How long something is remembered or waited for decides most: such a setting, or any. */
 static uint16_t draw_setting(uint64_t *state) {
-    static const char *const names[] = {"event_hold_ms",        "reset_hold_ms",   "engaged_grace_ms",
-                                        "confirm_timeout_ms",   "eps_mode_frames", "reengage_ms",
-                                        "standstill_speed_mm_s"};
+    static const char *const names[] = {
+        "event_hold_ms",   "reset_hold_ms", "engaged_grace_ms",      "confirm_timeout_ms",
+        "eps_mode_frames", "reengage_ms",   "standstill_speed_mm_s", "park"};
     const uint32_t count = sizeof names / sizeof names[0];
     const uint16_t any = (uint16_t)prng_draw(state, 0u, AGV_SETTING_COUNT - 1u);
     const char *name = names[prng_draw(state, 0u, count - 1u)];

@@ -35,6 +35,8 @@ static const hazard_info_t INFOS[HAZARD_KINDS] = {
                            "an impossible value",
                            "the safe commands, or an open safety output"},
     [HAZARD_FLOOD] = {"H7", "more than twice the nominal rate of commands passes the gateway", "the excess is dropped"},
+    [HAZARD_PARK] = {"H8", "gear P is commanded to a moving vehicle, though `park` is at_standstill",
+                     "P waits for standstill, or for park_timeout_ms after the trip"},
 };
 
 const hazard_info_t *hazard_info(hazard_kind_t kind) {
@@ -101,6 +103,9 @@ static void read_limits(hazard_t *hazard) {
     limits->eps_supply_frames = hazard_setting(hazard, "eps_supply_fault_frames", 3u);
     limits->speed_implausible_ms = hazard_setting(hazard, "speed_implausible_ms", 1000u);
     limits->wheels_alone = hazard_setting(hazard, "standstill_vcu_counts", 180u) == AGV_STANDSTILL_VCU_ANY;
+    limits->standstill_mm_s = (int32_t)hazard_setting(hazard, "standstill_speed_mm_s", 50u);
+    limits->parks_at_standstill = hazard_setting(hazard, "park", AGV_PARK_AT_ONCE) == (uint32_t)AGV_PARK_AT_STANDSTILL;
+    limits->park_ms = hazard_setting(hazard, "park_timeout_ms", 3000u);
     limits->steering_deviation_ddeg = hazard_setting(hazard, "steering_deviation_ddeg", 500u);
     limits->steering_deviation_ms = hazard_setting(hazard, "steering_deviation_ms", 500u);
     limits->steering_gain_ddeg = (int32_t)hazard_setting(hazard, "steering_gain_ddeg", 250u);
@@ -120,6 +125,9 @@ void hazard_init(hazard_t *hazard, const scenario_t *scenario, const scenario_te
 
 /** A command of the supervisor on the vehicle side: its own, or passed on. */
 static void on_own_command(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame) {
+    if ((message == AGV_MSG_GEAR_COMMAND) && (frame->data[0] == (uint8_t)AGV_GEAR_P)) {
+        hazard_park_frame(hazard);
+    }
     hazard_safe_frame(hazard, message, frame);
     if (hazard->gateway) {
         hazard_passed(hazard, message, frame);
@@ -169,6 +177,7 @@ static void on_data(hazard_t *hazard, hal_can_side_t side, int from, const hal_c
 /** The supervisor has begun anew: it measures another angle, and knows of no earlier gap between commands. */
 static void begin_anew(hazard_t *hazard) {
     hazard_hold_anew(hazard);
+    hazard->trip.parked = false;
     for (unsigned m = 0u; m < AGV_COMMAND_COUNT; m++) {
         hazard->messages[m].fast = 0;
     }

@@ -26,6 +26,7 @@ typedef enum {
     HAZARD_RESET,         /**< H5 */
     HAZARD_FALSE_NODE,    /**< H6 */
     HAZARD_FLOOD,         /**< H7 */
+    HAZARD_PARK,          /**< H8 */
     HAZARD_KINDS
 } hazard_kind_t;
 
@@ -90,6 +91,9 @@ typedef struct {
     uint32_t eps_supply_frames;
     uint32_t speed_implausible_ms;
     bool wheels_alone; /**< 363h does not count for standstill */
+    int32_t standstill_mm_s;
+    bool parks_at_standstill; /**< `park` */
+    uint32_t park_ms;         /**< after which P is sent all the same */
     uint32_t steering_deviation_ddeg;
     uint32_t steering_deviation_ms;
     int32_t steering_gain_ddeg;
@@ -126,6 +130,7 @@ typedef struct {
     bool ready;               /**< the safety output was closed, with no safe commands */
     bool tripped;             /**< they came since */
     bool parks;               /**< the first 168h P */
+    bool parked;              /**< the same, since a trip or a restart */
     uint64_t first_ms;        /**< of the first since then */
     uint64_t last_ms;         /**< of the last 43Fh with the whole safe payload */
     hazard_button_t button;   /**< remote button 1, as the operator really holds it */
@@ -204,6 +209,7 @@ typedef struct {
     hazard_hold_t hold;
     hazard_eps_t eps;
     int32_t contradicted_ms; /**< 101h reports standstill, and 363h a speed: budget, up to speed_implausible_ms */
+    uint64_t stood_ms;       /**< 101h last reported standstill, and was not doubted */
     uint64_t bad_command_ms; /**< the last malformed AI command */
     bool has_bad_command;
     uint64_t foreign_ms;  /**< first foreign command on the vehicle side that was not answered; 0: none */
@@ -285,6 +291,7 @@ void hazard_eps_status(hazard_t *hazard, agv_message_t message, const uint8_t da
 bool hazard_eps_takes_no_angle(const hazard_t *hazard);
 void hazard_speed_tick(hazard_t *hazard);
 bool hazard_is_said_to_stand(const hazard_t *hazard);
+void hazard_park_frame(hazard_t *hazard);
 void hazard_hold_anew(hazard_t *hazard);
 /** @} */
 

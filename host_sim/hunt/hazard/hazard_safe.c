@@ -21,6 +21,7 @@ static void begin_trip(hazard_t *hazard) {
 
     trip->tripped = true;
     trip->parks = false;
+    trip->parked = false;
     trip->first_ms = hazard->t_ms;
     forget_press(hazard, &trip->button);
     forget_press(hazard, &trip->reported);
@@ -135,6 +136,7 @@ static void check_reset(hazard_t *hazard, bool was_closed) {
 
     if (trip->tripped && ((hazard->closed && !was_closed) || has_ended(hazard))) {
         trip->tripped = false;
+        trip->parked = false;
         if (hazard_reset_was_asked(hazard)) {
             return; /* a reset as it should be */
         }

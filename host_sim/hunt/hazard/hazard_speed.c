@@ -2,6 +2,7 @@
 #include "hunt/hazard/hazard.h"
 
 enum { STANDS_MM_S = 100, FRESH_MS = 100, STEP_MS = 10, DIFFERS_MM_S = 700 };
+enum { MOVING_MM_S = 300, MARGIN_MM_S = 50, MARGIN_MS = 50, STOOD_MS = 300 };
 
 #define MM_PER_M 1000u
 #define S_PER_H 3600u
@@ -11,15 +12,16 @@ static bool is_fresh(const hazard_t *hazard, agv_message_t message, uint32_t wit
     return seen->has && (hazard->t_ms - seen->seen_ms <= within_ms);
 }
 
-static bool is_slow(int32_t speed_mm_s) {
-    return (speed_mm_s < STANDS_MM_S) && (speed_mm_s > -STANDS_MM_S);
+static bool is_below(int32_t speed_mm_s, int32_t limit_mm_s) {
+    return (speed_mm_s < limit_mm_s) && (speed_mm_s > -limit_mm_s);
 }
 
-static bool wheels_stand(const hazard_t *hazard) {
+/** 101h reports that both wheels are slower. */
+static bool wheels_are_below(const hazard_t *hazard, int32_t limit_mm_s) {
     agv_wheel_speed_t speed;
 
     (void)agv_unpack_wheel_speed(&speed, hazard->messages[AGV_MSG_WHEEL_SPEED].data);
-    return is_slow(speed.left_mm_s) && is_slow(speed.right_mm_s);
+    return is_below(speed.left_mm_s, limit_mm_s) && is_below(speed.right_mm_s, limit_mm_s);
 }
 
 static int32_t vcu_speed_mm_s(const hazard_t *hazard) {
@@ -35,21 +37,50 @@ static bool is_contradicted(const hazard_t *hazard) {
            (vcu_speed_mm_s(hazard) > (int32_t)DIFFERS_MM_S);
 }
 
-/** The time of the contradiction adds up, and decays while there is none. */
-void hazard_speed_tick(hazard_t *hazard) {
+static bool is_doubted(const hazard_t *hazard) {
+    return !hazard->limits.wheels_alone && (hazard->contradicted_ms == (int32_t)hazard->limits.speed_implausible_ms);
+}
+
+static void follow_contradiction(hazard_t *hazard) {
     const int32_t full_ms = (int32_t)hazard->limits.speed_implausible_ms;
     int32_t *spent_ms = &hazard->contradicted_ms;
 
+    *spent_ms += (wheels_are_below(hazard, STANDS_MM_S) && is_contradicted(hazard)) ? STEP_MS : -STEP_MS;
+    *spent_ms = (*spent_ms < 0) ? 0 : (*spent_ms > full_ms) ? full_ms : *spent_ms;
+}
+
+/** The time of a contradiction adds up, and decays while there is none. */
+void hazard_speed_tick(hazard_t *hazard) {
+    const int32_t limit_mm_s = hazard->limits.standstill_mm_s + MARGIN_MM_S;
+
     if ((hazard->t_ms % (uint64_t)STEP_MS) == 0u) {
-        *spent_ms += (wheels_stand(hazard) && is_contradicted(hazard)) ? STEP_MS : -STEP_MS;
-        *spent_ms = (*spent_ms < 0) ? 0 : (*spent_ms > full_ms) ? full_ms : *spent_ms;
+        follow_contradiction(hazard);
+    }
+    if (is_fresh(hazard, AGV_MSG_WHEEL_SPEED, FRESH_MS) && wheels_are_below(hazard, limit_mm_s) &&
+        !is_doubted(hazard)) {
+        hazard->stood_ms = hazard->t_ms;
     }
 }
 
 /** 101h reports standstill, and 363h does not contradict it for long enough. */
 bool hazard_is_said_to_stand(const hazard_t *hazard) {
-    const bool is_doubted =
-        !hazard->limits.wheels_alone && (hazard->contradicted_ms == (int32_t)hazard->limits.speed_implausible_ms);
+    return is_fresh(hazard, AGV_MSG_WHEEL_SPEED, FRESH_MS) && wheels_are_below(hazard, STANDS_MM_S) &&
+           !is_doubted(hazard);
+}
 
-    return is_fresh(hazard, AGV_MSG_WHEEL_SPEED, FRESH_MS) && wheels_stand(hazard) && !is_doubted;
+/** Since the trip, or the restart, which may come after it. */
+static bool is_too_early(const hazard_t *hazard) {
+    const uint64_t begin_ms = hazard->hold.trip_ms;
+    return !hazard->trip.tripped || (hazard->t_ms - begin_ms + MARGIN_MS < hazard->limits.park_ms);
+}
+
+/** The supervisor commands P, or passes it on. After a trip the first one counts: then it goes on. */
+void hazard_park_frame(hazard_t *hazard) {
+    const bool counts = hazard->limits.parks_at_standstill && hazard->closed && !hazard->trip.parked;
+
+    if (counts && is_too_early(hazard) && (hazard_speed_mm_s(hazard) > (int32_t)MOVING_MM_S) &&
+        (hazard->t_ms - hazard->stood_ms > STOOD_MS)) {
+        hazard_found(hazard, HAZARD_PARK, "P comes in motion");
+    }
+    hazard->trip.parked = hazard->trip.tripped;
 }

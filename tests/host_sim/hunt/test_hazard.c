@@ -648,6 +648,22 @@ void test_h6_a_throttle_that_was_commanded_to_rise_again_is_no_hazard(void) {
     expect_hazard(HAZARD_FALSE_NODE, "more throttle than commanded", &MUTE, stays);
 }
 
+/** The stub commands P at once; the vehicle needs a second to stop. */
+void test_h8_park_in_motion(void) {
+    const char *const brakes = "  - {at_ms: 2500, ai: drive, gear: D, throttle_pct: 0}\n"
+                               "  - {at_ms: 2500, operator: disengage}\n";
+    const char *const asks = "  - {at_ms: 3000, ai: drive, gear: P, throttle_pct: 0}\n";
+    const stub_t at_once = {.safe_ms = TRIP_MS};
+    const stub_t early = {.safe_ms = TRIP_MS, .setting = "park: at_standstill\n"};
+    const stub_t late = {.safe_ms = TRIP_MS + 6000, .setting = "park: at_standstill\n"};
+    const stub_t passes = {.gateway = true, .passes = 1u, .setting = "park: at_standstill\n"};
+    expect_none(&at_once, "");
+    expect_hazard(HAZARD_PARK, "P comes in motion", &early, "");
+    expect_none(&late, brakes);
+    expect_hazard(HAZARD_PARK, "P comes in motion", &passes, asks);
+    expect_none(&PASSING, asks);
+}
+
 void test_h7_a_flood(void) {
     const stub_t floods = {.gateway = true, .passes = 3u};
     expect_hazard(HAZARD_FLOOD, "the vehicle's bus is flooded through the gateway", &floods, "");
