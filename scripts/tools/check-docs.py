@@ -22,6 +22,7 @@ import tables
 
 FENCE = re.compile(r"^ *(```+|~~~+) *(.*)$")
 LINK = re.compile(r"!?\[(?:[^\[\]]|\[[^\]]*\])*\]\(<?([^)\s>]+)>?(?: \"[^\"]*\")?\)", re.DOTALL)
+IMAGE = re.compile(r'!\[[^\]]*\]\(<?([^)\s>]+)|<img\s[^>]*?\bsrc="([^"]+)"')
 HEADING = re.compile(r"^#{1,6} +(.*?) *#*$")
 STATED = re.compile(r"(\d+(?:\.\d+)?)( s| ms| mm/s| %|°)\s\(`(\w+)`")
 IN_UNIT = {" s": ("ms", 1000), " ms": ("ms", 1), " mm/s": ("mm/s", 1), " %": ("%", 1), "°": ("0.1 deg", 10)}
@@ -73,7 +74,9 @@ def anchors(path):
 
 def check_links(root, page, prose, problems):
     count = 0
-    for target in LINK.findall(re.sub(r"`[^`]*`", "`code`", prose)):
+    text = re.sub(r"`[^`]*`", "`code`", prose)
+    images = {first or second for first, second in IMAGE.findall(text)}
+    for target in sorted(images.union(LINK.findall(text))):
         if re.match(r"[a-z][a-z+.-]*:", target):
             continue
         count += 1
