@@ -76,7 +76,7 @@ static bool is_too_early(const hazard_t *hazard) {
 
 /** The supervisor commands P, or passes it on. After a trip the first one counts: then it goes on. */
 void hazard_park_frame(hazard_t *hazard) {
-    const bool counts = hazard->limits.parks_at_standstill && hazard->closed && !hazard->trip.parked;
+    const bool counts = hazard->limits.parks_at_standstill && hazard->view.output_closed && !hazard->trip.parked;
 
     if (counts && is_too_early(hazard) && (hazard_speed_mm_s(hazard) > (int32_t)MOVING_MM_S) &&
         (hazard->t_ms - hazard->stood_ms > STOOD_MS)) {
