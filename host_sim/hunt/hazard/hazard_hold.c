@@ -19,7 +19,7 @@ static void extend_range(hazard_range_t *range, int32_t ddeg) {
     range->high_ddeg = (ddeg > range->high_ddeg) ? ddeg : range->high_ddeg;
 }
 
-/** What an EPS that takes no angle measures may be wrong. */
+/** After a trip, what an EPS that takes no angle measures may be wrong. */
 static void forget_measured(hazard_t *hazard) {
     hazard->hold.has_first = false;
     hazard->hold.measured_count = 0u;
@@ -36,7 +36,7 @@ void hazard_hold_measured(hazard_t *hazard, int32_t angle_ddeg) {
         hold->has_first = false; /* one without power measures nothing */
         return;
     }
-    if (hazard_eps_takes_no_angle(hazard)) {
+    if (hazard->trip.tripped && hazard_eps_takes_no_angle(hazard)) {
         forget_measured(hazard);
         return;
     }
@@ -177,7 +177,7 @@ void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame) {
 void hazard_hold_tick(hazard_t *hazard) {
     const hazard_hold_t *hold = &hazard->hold;
 
-    if (hazard_eps_takes_no_angle(hazard)) {
+    if (hazard->trip.tripped && hazard_eps_takes_no_angle(hazard)) {
         hazard_hold_drop(hazard);
         forget_measured(hazard);
     }
