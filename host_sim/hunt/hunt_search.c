@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "common/interrupt.h"
 #include "common/prng.h"
@@ -23,7 +24,8 @@ typedef struct {
     hunt_program_t corpus[CORPUS_MAX];
     uint32_t corpus_count;
     uint64_t began_ms;
-    uint64_t done; /**< runs, in this start of the program */
+    uint64_t processor_began_ms;
+    uint64_t runs; /**< from the beginning on, with those that the checkpoint does not have yet */
     uint64_t virtual_ms;
     output_t file;
     progress_t progress;
@@ -41,6 +43,21 @@ void hunt_list_hazards(void) {
 
 static uint64_t spent_ms(const hunt_t *hunt) {
     return hunt->state.spent_ms + (monotonic_ms() - hunt->began_ms);
+}
+
+/** Processor time of the program. */
+static uint64_t used_ms(void) {
+    return (uint64_t)clock() / ((uint64_t)CLOCKS_PER_SEC / MS_PER_S);
+}
+
+static uint64_t processor_ms(const hunt_t *hunt) {
+    return hunt->state.processor_ms + (used_ms() - hunt->processor_began_ms);
+}
+
+/** From now on, time counts that the checkpoint does not have. */
+static void begin_counting(hunt_t *hunt) {
+    hunt->began_ms = monotonic_ms();
+    hunt->processor_began_ms = used_ms();
 }
 
 /** Whether a run showed what no run of the piece did before. */
@@ -89,7 +106,7 @@ static bool run_one(hunt_t *hunt, uint64_t run, uint64_t *random) {
     if (!hunt_play(&hunt->play, &program)) {
         return report("run %" PRIu64 ": its scenario is invalid", run);
     }
-    hunt->done++;
+    hunt->runs++;
     hunt->virtual_ms += hunt->play.played_ms;
     if (hunt->play.hazard.kind == HAZARD_NONE) {
         add_to_corpus(hunt, &program, random);
@@ -102,7 +119,7 @@ static void show_progress(hunt_t *hunt) {
     if (hunt->request->minutes != UINT64_MAX) {
         progress_show(&hunt->progress, spent_ms(hunt) / MS_PER_S, "seconds");
     } else {
-        progress_show(&hunt->progress, hunt->done, "runs");
+        progress_show(&hunt->progress, hunt->runs, "runs");
     }
 }
 
@@ -152,8 +169,11 @@ static went_t run_all(hunt_t *hunt) {
         went = run_piece(hunt, piece);
         if (went == GOES_ON) {
             hunt->state.pieces++;
+            hunt->state.runs = hunt->runs;
+            hunt->state.virtual_ms = hunt->virtual_ms;
             hunt->state.spent_ms = spent_ms(hunt);
-            hunt->began_ms = monotonic_ms();
+            hunt->state.processor_ms = processor_ms(hunt);
+            begin_counting(hunt);
             went = hunt_state_save(request, &hunt->state, &hunt->file) ? GOES_ON : FAILED;
         }
     }
@@ -166,12 +186,14 @@ static uint64_t total_of(const hunt_request_t *request) {
     return (total > 0u) ? total : 1u;
 }
 
-static status_t conclude(const hunt_t *hunt, uint64_t took_ms) {
+/** What the checkpoint has is counted. */
+static status_t conclude(const hunt_t *hunt) {
     const hunt_found_t *found = &hunt->state.found;
 
+    (void)printf("%" PRIu64 " s of processor time\n", processor_ms(hunt) / MS_PER_S);
     (void)printf("%" PRIu64 " runs, %" PRIu64 " simulated seconds, took %" PRIu64 " s; %" PRIu64
                  " runs with a hazard, %" PRIu32 " distinct\n",
-                 hunt->done, hunt->virtual_ms / MS_PER_S, took_ms / MS_PER_S, found->runs, found->count);
+                 hunt->runs, hunt->virtual_ms / MS_PER_S, spent_ms(hunt) / MS_PER_S, found->runs, found->count);
     (void)fflush(stdout); /* also when a signal that came ends the program */
     return (found->count == 0u) ? STATUS_OK : STATUS_UNMET;
 }
@@ -179,12 +201,12 @@ static status_t conclude(const hunt_t *hunt, uint64_t took_ms) {
 /** A checkpoint is whole pieces: the runs after the last one are done once more. */
 static void note_interrupted(const hunt_t *hunt) {
     if (hunt->request->checkpoint == NULL) {
-        note("interrupted after %" PRIu64 " runs", hunt->done);
+        note("interrupted after %" PRIu64 " runs", hunt->runs);
     } else if (hunt->state.pieces == 0u) {
         note("interrupted after %" PRIu64 " runs; nothing is saved yet: the checkpoint is written after each %u runs",
-             hunt->done, HUNT_PIECE_RUNS);
+             hunt->runs, HUNT_PIECE_RUNS);
     } else {
-        note("interrupted after %" PRIu64 " runs; the same command resumes from run %" PRIu64, hunt->done,
+        note("interrupted after %" PRIu64 " runs; the same command resumes from run %" PRIu64, hunt->runs,
              next_piece(hunt) * HUNT_PIECE_RUNS);
     }
 }
@@ -202,8 +224,9 @@ static status_t run_until_end(hunt_t *hunt) {
         return STATUS_UNUSABLE;
     }
     interrupt_hold();
-    hunt->began_ms = monotonic_ms();
-    const uint64_t start_ms = hunt->began_ms;
+    hunt->runs = hunt->state.runs;
+    hunt->virtual_ms = hunt->state.virtual_ms;
+    begin_counting(hunt);
     progress_begin(&hunt->progress, total_of(hunt->request));
     const went_t went = run_all(hunt);
     progress_end(&hunt->progress);
@@ -213,7 +236,7 @@ static status_t run_until_end(hunt_t *hunt) {
     if (went == INTERRUPTED) {
         note_interrupted(hunt);
     }
-    return conclude(hunt, monotonic_ms() - start_ms);
+    return conclude(hunt);
 }
 
 status_t hunt_run(const hunt_request_t *request) {

@@ -1,6 +1,6 @@
 /**
  * @file hunt_state.h
- * Checkpoints of a hunt: how many pieces are done, and what was found in them.
+ * Checkpoints of a hunt: how many pieces are done, in which time, and what was found in them.
  */
 #ifndef HOST_SIM_HUNT_STATE_H
 #define HOST_SIM_HUNT_STATE_H
@@ -11,7 +11,10 @@
 /** What is kept. */
 typedef struct {
     uint64_t pieces; /**< of this shard that are done */
+    uint64_t runs;
+    uint64_t virtual_ms; /**< that they simulated */
     uint64_t spent_ms;
+    uint64_t processor_ms;
     hunt_found_t found;
 } hunt_state_t;
 
