@@ -15,17 +15,19 @@ bool agv_gateway_may_wait(const agv_gateway_facts_t *facts, uint32_t command) {
     return (facts->state == AGV_STATE_STANDBY) && (facts->config->gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL);
 }
 
-/* Whether a gear may be engaged at standstill only: D, R, and P of a vehicle that does not guard it against speed (FSM-1). */
+/* Whether a gear may be engaged at standstill only: D and R, and P of a vehicle that does not guard it against speed (FSM-1). */
 static bool needs_standstill(const agv_config_t *config, uint8_t gear) {
-    return (gear == (uint8_t)AGV_GEAR_D) || (gear == (uint8_t)AGV_GEAR_R) ||
-           ((gear == (uint8_t)AGV_GEAR_P) && (config->park == (uint16_t)AGV_PARK_AT_STANDSTILL));
+    if (gear == (uint8_t)AGV_GEAR_P) {
+        return config->park == (uint16_t)AGV_PARK_AT_STANDSTILL;
+    }
+    return ((gear == (uint8_t)AGV_GEAR_D) || (gear == (uint8_t)AGV_GEAR_R)) &&
+           (config->gear_change == (uint16_t)AGV_GEAR_CHANGE_AT_STANDSTILL);
 }
 
 /* Whether a command changes to such a gear in motion. A silent 0A3h does not say which gear is engaged. */
 static bool changes_gear_in_motion(const agv_gateway_facts_t *facts, uint8_t gear) {
     const uint8_t engaged = facts->gear_fresh ? facts->vehicle->gear : facts->gear_sent;
-    return needs_standstill(facts->config, gear) && (gear != engaged) && !facts->standstill &&
-           (facts->config->gear_change == (uint16_t)AGV_GEAR_CHANGE_AT_STANDSTILL);
+    return needs_standstill(facts->config, gear) && (gear != engaged) && !facts->standstill;
 }
 
 void agv_gateway_follow_gear(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t command,

@@ -258,7 +258,10 @@ void test_with_park_at_standstill_p_waits_too(void) {
     standstill = true;
     TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 8));
     standstill = false;
-    config.gear_change = AGV_GEAR_CHANGE_ANY;
+    config.gear_change = AGV_GEAR_CHANGE_ANY; /* of D and R */
+    TEST_ASSERT_FALSE(passes(AGV_MSG_GEAR_COMMAND, 8));
+    TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 2));
+    config.park = AGV_PARK_AT_ONCE;
     TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 8));
 }
 
