@@ -242,7 +242,7 @@ static verdict_t judge_order(const suspect_t *suspect, criterion_t *criterion) {
     const pair_t *pair = pair_of(suspect->message);
     const evidence_id_t *partner = suspect->partner;
     compare_t compare;
-    if ((partner == NULL) || (pair->fields[0] != pair->fields[1]) ||
+    if ((pair == NULL) || (partner == NULL) || (pair->fields[0] != pair->fields[1]) ||
         !compare_begin(suspect->inquiry, pair, suspect->heard, partner, &compare)) {
         return VERDICT_NONE;
     }
@@ -304,7 +304,7 @@ static bool may_be_swapped(const suspect_t *suspect, const pair_t *pair) {
 static verdict_t judge_counterpart(const suspect_t *suspect, criterion_t *criterion) {
     const pair_t *pair = pair_of(suspect->message);
     const evidence_id_t *partner = suspect->partner;
-    if (partner == NULL) {
+    if ((pair == NULL) || (partner == NULL)) {
         return VERDICT_NONE;
     }
     verdict_t verdict = agreement_with(suspect, pair, partner);

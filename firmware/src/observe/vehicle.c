@@ -52,8 +52,7 @@ void agv_vehicle_evaluate(agv_vehicle_t *vehicle, agv_timers_t *timers, const ag
     vehicle->wheels_fresh = wheels_fresh;
     vehicle->vcu_alive = vcu_alive;
     (void)agv_timer_while(timers, AGV_TIMER_STANDSTILL, agv_vehicle_is_slow(vehicle, config));
-    const bool slow = wheels_are_slow(vehicle, config) && !vehicle->wheels_doubted;
-    const bool stand = agv_timer_while(timers, AGV_TIMER_WHEELS_SLOW, slow);
+    const bool stand = agv_timer_while(timers, AGV_TIMER_WHEELS_SLOW, wheels_are_slow(vehicle, config));
     (void)agv_timer_while(timers, AGV_TIMER_WHEELS_STOOD, stand);
 }
 
@@ -61,8 +60,7 @@ void agv_vehicle_doubt_wheels(agv_vehicle_t *vehicle, agv_timers_t *timers, cons
                               bool implausible) {
     vehicle->wheels_doubted = implausible && (config->standstill_vcu_counts != AGV_STANDSTILL_VCU_ANY);
     if (vehicle->wheels_doubted) {
-        (void)agv_timer_while(timers, AGV_TIMER_WHEELS_SLOW, false);
-        (void)agv_timer_while(timers, AGV_TIMER_WHEELS_STOOD, false);
+        agv_timer_stop(timers, AGV_TIMER_WHEELS_SLOW);
     }
 }
 

@@ -55,7 +55,7 @@ void agv_vehicle_evaluate(agv_vehicle_t *vehicle, agv_timers_t *timers, const ag
 /**
  * Take whether the two speeds contradict each other (SUP-12). While they do, the wheels neither stand nor are slow: a 101h
  * that reads 0 for good must not hide a vehicle that moves. It has no effect where the VCU's speed is not looked at
- * (standstill_vcu_counts is AGV_STANDSTILL_VCU_ANY). Call at every tick.
+ * (standstill_vcu_counts is AGV_STANDSTILL_VCU_ANY). Call at every tick after agv_vehicle_evaluate().
  */
 void agv_vehicle_doubt_wheels(agv_vehicle_t *vehicle, agv_timers_t *timers, const agv_config_t *config,
                               bool implausible);

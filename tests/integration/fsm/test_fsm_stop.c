@@ -87,6 +87,20 @@ void test_wheels_that_the_vcu_contradicts_do_not_stand(void) {
     expect_fault(&f, AGV_FAULT_VEHICLE_NOT_STOPPING, false);
 }
 
+/* The contradiction is the reason of the trip: the wheels, which have read 0 for a second, are not seen to stand at that moment. */
+/* Shows: FSM-12, SUP-12, MOVING_WHILE_SAFE, SPEED_IMPLAUSIBLE */
+void test_a_trip_by_wheels_that_the_vcu_contradicts(void) {
+    agv_fault_set_put(&f.config.trips, AGV_FAULT_SPEED_IMPLAUSIBLE, true);
+    walk_driving(&f, 1000);
+    fixture_wheels(&f, 0, 0);
+    (void)walk_until(&f, AGV_STATE_TRIPPED, 1100);
+    expect_reason(&f, AGV_FAULT_SPEED_IMPLAUSIBLE);
+    confirm();
+    expect_fault_after(&f, 4999, AGV_FAULT_MOVING_WHILE_SAFE, false);
+    expect_output(&f, true);
+    expect_fault_after(&f, 1, AGV_FAULT_VEHICLE_NOT_STOPPING, true);
+}
+
 /* Shows: FSM-12, SUP-12, MOVING_WHILE_SAFE, SPEED_IMPLAUSIBLE */
 void test_a_vehicle_that_rolls_away_while_101h_reads_0(void) {
     walk_to_safe(&f);

@@ -444,15 +444,19 @@ void test_the_oldest_trip_is_replaced_after_a_restart(void) {
     expect_trips(10, 8);
 }
 
-/* A start in TRIPPED. */
-static void start_tripped(uint8_t reason, uint32_t number) {
+/* The first event of a start in TRIPPED. */
+static void add_tripped(uint8_t reason, uint32_t number) {
     const agv_entry_t entry = {.kind = AGV_EVENT_STATE,
                                .b = AGV_STATE_TRIPPED,
                                .c = reason,
                                .state = AGV_STATE_TRIPPED,
                                .first_reason = reason};
-    agv_recorder_start(&recorder);
     agv_recorder_add(&recorder, &entry, number);
+}
+
+static void start_tripped(uint8_t reason, uint32_t number) {
+    agv_recorder_start(&recorder);
+    add_tripped(reason, number);
 }
 
 /* However often the supervisor restarts: the trip of the run before goes on. */
@@ -494,6 +498,10 @@ void test_a_start_after_a_torn_event_is_a_trip(void) {
     recorder.events[0].time_ms ^= 1u;
     start_tripped(AGV_FAULT_BUS_OFF, 2);
     expect_trips(2, 2);
+    agv_recorder_start(&recorder);
+    recorder.events[1].time_ms ^= 1u; /* later than the start has looked */
+    add_tripped(AGV_FAULT_BUS_OFF, 3);
+    expect_trips(3, 3);
 }
 
 /* ---- Four times a second ---- */
