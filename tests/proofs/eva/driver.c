@@ -170,6 +170,7 @@ static void sound_observations(agv_core_t *core) {
     core->vehicle.vcu_speed_seen = any_bool();
     core->vehicle.wheels_fresh = any_bool();
     core->vehicle.vcu_alive = any_bool();
+    core->vehicle.wheels_doubted = any_bool();
     core->commands.autopilot_off = any_bool();
     core->gateway.steering_known = any_bool();
     core->gateway.throttle_known = any_bool();
@@ -190,8 +191,10 @@ static void sound_budget(agv_budget_t *budget) {
 }
 
 static void sound_counts(agv_core_t *core) {
+    sound_budget(&core->mode.manual_spent);
     sound_budget(&core->mode.both_spent);
     sound_budget(&core->mode.none_spent);
+    sound_budget(&core->stopping.moved);
     for (unsigned i = 0u; i < AGV_COMMAND_COUNT; i++) {
         core->intrusion.fast_gaps[i].present = any_bool();
     }
