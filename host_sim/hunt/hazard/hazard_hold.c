@@ -173,10 +173,22 @@ void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame) {
     }
 }
 
+/** A supervisor that hears nothing in bus-off takes the EPS for dead, and then measures anew. One that hangs does not notice. */
+static void follow_hearing(hazard_t *hazard) {
+    hazard_hold_t *hold = &hazard->hold;
+    const bool is_deaf = !hazard_is_hearing(hazard) && !hazard->view.is_halted;
+
+    if (hold->was_deaf && !is_deaf) {
+        hold->first_ms = hazard->t_ms;
+    }
+    hold->was_deaf = is_deaf;
+}
+
 /** The steering went where the supervisor had it go. */
 void hazard_hold_tick(hazard_t *hazard) {
     const hazard_hold_t *hold = &hazard->hold;
 
+    follow_hearing(hazard);
     if (hazard->trip.tripped && hazard_eps_takes_no_angle(hazard)) {
         hazard_hold_drop(hazard);
         forget_measured(hazard);

@@ -195,6 +195,7 @@ static void sound_counts(agv_core_t *core) {
     sound_budget(&core->mode.both_spent);
     sound_budget(&core->mode.none_spent);
     sound_budget(&core->stopping.moved);
+    sound_budget(&core->hardware.mismatch);
     for (unsigned i = 0u; i < AGV_COMMAND_COUNT; i++) {
         core->intrusion.fast_gaps[i].present = any_bool();
     }
