@@ -163,7 +163,7 @@ typedef struct {
     hazard_range_t first; /**< the first measured angles after the trip, or after it was dropped */
     uint64_t first_ms;    /**< when the first of them came */
     bool has_first;
-    bool was_deaf; /**< in bus-off */
+    bool was_deaf;          /**< in bus-off */
     uint16_t kept;          /**< the last right value */
     uint64_t kept_until_ms; /**< it may be sent again until then */
     int32_t wrong_ddeg;     /**< the commanded angle that is none of these */
