@@ -222,6 +222,12 @@ void test_h1_wheels_that_read_0_are_no_excuse_when_the_vcu_contradicts_them(void
     expect_none(&alone, steps);
     (void)snprintf(steps, sizeof steps, wheels, both); /* nobody can know that it moves */
     expect_none(&stays, steps);
+    (void)snprintf(steps, sizeof steps, wheels,
+                   "  - {at_ms: 2500, vcu: set, field: speed, value: 0B40h}\n"); /* 0.80 m/s */
+    expect_none(&stays, steps);
+    (void)snprintf(steps, sizeof steps, wheels,
+                   "  - {at_ms: 2500, vcu: set, field: speed, value: 0C80h}\n"); /* 0.89 m/s */
+    expect_hazard(HAZARD_NOT_STOPPING, "the vehicle does not obey the safe commands", &stays, steps);
 }
 
 void test_h2_another_angle(void) {
