@@ -280,6 +280,10 @@ void hazard_wire_command(hazard_t *hazard, agv_message_t message, const hal_can_
 bool hazard_was_sent(const hazard_t *hazard, agv_message_t message, uint16_t value);
 void hazard_passed(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame);
 void hazard_passed_tick(hazard_t *hazard);
+
+/** Gateway: its transmitter towards the vehicle is stalled now, or was until a moment ago: what waited needs time to leave. */
+bool hazard_is_stalled(const hazard_t *hazard);
+
 void hazard_safe_frame(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame);
 void hazard_safe_tick(hazard_t *hazard);
 void hazard_safe_reported(hazard_t *hazard, const uint8_t data[AGV_DLC]);

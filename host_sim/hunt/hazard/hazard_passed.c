@@ -76,8 +76,7 @@ static void follow_stall(hazard_t *hazard) {
     }
 }
 
-/** Now, or until a moment ago: what waited needs time to leave. */
-static bool is_stalled(const hazard_t *hazard) {
+bool hazard_is_stalled(const hazard_t *hazard) {
     return (hazard->stalled_ms != 0u) && (hazard->t_ms - hazard->stalled_ms <= MARGIN_MS);
 }
 
@@ -88,12 +87,12 @@ static bool is_stalled(const hazard_t *hazard) {
 static uint32_t answer_ms(const hazard_t *hazard) {
     const uint32_t step_ms =
         (hazard->limits.watchdog_ms > (uint32_t)MARGIN_MS) ? hazard->limits.watchdog_ms : (uint32_t)MARGIN_MS;
-    return (uint32_t)ANSWER_MS + (is_stalled(hazard) ? hazard->limits.tx_stalled_ms : step_ms);
+    return (uint32_t)ANSWER_MS + (hazard_is_stalled(hazard) ? hazard->limits.tx_stalled_ms : step_ms);
 }
 
 /** The safe commands follow a 065h of theirs; where they are stalled, the output opens. */
 static uint32_t in_flight_ms(const hazard_t *hazard) {
-    const bool waits = hazard->false_is_065h && is_stalled(hazard);
+    const bool waits = hazard->false_is_065h && hazard_is_stalled(hazard);
     return (uint32_t)IN_FLIGHT_MS + (waits ? hazard->limits.tx_stalled_ms : 0u);
 }
 

@@ -64,12 +64,12 @@ static void note(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV
     }
 }
 
-/** At an engagement the vehicle uses the last throttle command. */
+/** At an engagement the vehicle uses the last throttle command. A stalled transmitter cannot send another one, and opens the output. */
 static void check_newest_throttle(hazard_t *hazard) {
     const uint32_t deadline_ms = hazard->limits.command_ms[AGV_MSG_THROTTLE_COMMAND];
 
-    if (hazard->gateway && hazard->closed && !hazard->trip.tripped && hazard->throttle_is_newest &&
-        (hazard->t_ms - hazard->throttle_ms > deadline_ms + REENGAGE_MS)) {
+    if (hazard->gateway && hazard->closed && !hazard->trip.tripped && !hazard_is_stalled(hazard) &&
+        hazard->throttle_is_newest && (hazard->t_ms - hazard->throttle_ms > deadline_ms + REENGAGE_MS)) {
         hazard_found(hazard, HAZARD_FALSE_COMMAND, "an old throttle command is the latest one at an engagement");
     }
 }

@@ -423,6 +423,10 @@ void test_h3_an_old_throttle(void) {
     const stub_t forgets = {.gateway = true, .passes = 1u, .only_engaged = true};
     expect_hazard(HAZARD_FALSE_COMMAND, "an old throttle command is the latest one at an engagement", &forgets, steps);
     expect_none(&PASSING, steps); /* passes the throttle 0 that the AI computer commands in manual */
+    const char *const stalled = "  - {at_ms: 2900, supervisor: fill_queue}\n"
+                                "  - {at_ms: 3300, operator: disengage}\n  - {at_ms: 3450, operator: engage}\n";
+    const stub_t opens = {.gateway = true, .passes = 1u, .only_engaged = true, .open_ms = TRIP_MS + 500};
+    expect_none(&opens, stalled);
 }
 
 void test_h4_an_unconfirmed_safe_state(void) {
