@@ -1,14 +1,22 @@
 /* An EPS that takes no angles, as 067h, 167h and 363h show it: what it measured before is no angle to hold (H2). */
 #include "hunt/hazard/hazard.h"
 
-enum { ANGLE_MODE = 0x01, SUPPLY_BITS = 0x07, VCU_ALARMS = 0x30, MODE_BYTE = 3, FAULTS_BYTE = 7, ALARMS_BYTE = 4 };
+enum {
+    ANGLE_MODE = 0x01,
+    SUPPLY_BITS = 0x07,
+    FAULT_BITS = 0xE8,
+    VCU_ALARMS = 0x30,
+    MODE_BYTE = 3,
+    FAULTS_BYTE = 7,
+    ALARMS_BYTE = 4
+};
 enum { FRAMES = 3, MARGIN_MS = 60, FRAMES_MAX = 65535 };
 
 static void count(uint32_t *frames, bool is_bad) {
     *frames = !is_bad ? 0u : (*frames < (uint32_t)FRAMES_MAX) ? *frames + 1u : *frames;
 }
 
-/** A frame more than the debouncing of the supervisor needs, and another one that may have been lost. */
+/** Count consecutive frames that say so. */
 void hazard_eps_status(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV_DLC]) {
     hazard_eps_t *eps = &hazard->eps;
 
@@ -17,7 +25,7 @@ void hazard_eps_status(hazard_t *hazard, agv_message_t message, const uint8_t da
     } else if (message == AGV_MSG_EPS_STATUS) {
         count(&eps->supply_frames, (data[FAULTS_BYTE] & (uint8_t)SUPPLY_BITS) != 0u);
         count(&eps->bad_frames,
-              (data[MODE_BYTE] != (uint8_t)ANGLE_MODE) || ((data[FAULTS_BYTE] & (uint8_t)~SUPPLY_BITS & 0xE8u) != 0u));
+              (data[MODE_BYTE] != (uint8_t)ANGLE_MODE) || ((data[FAULTS_BYTE] & (uint8_t)FAULT_BITS) != 0u));
     } else if (message == AGV_MSG_VEHICLE_STATUS) {
         count(&eps->alarm_frames, (data[ALARMS_BYTE] & (uint8_t)VCU_ALARMS) != 0u);
     } else {
@@ -34,6 +42,7 @@ static bool is_silent(const hazard_t *hazard) {
     return (hazard->t_ms - angle->changed_ms > alive_ms) || (hazard->t_ms - status->seen_ms > fresh_ms);
 }
 
+/** The supervisor must know: two frames more than its debouncing needs, so that one may be lost. */
 bool hazard_eps_takes_no_angle(const hazard_t *hazard) {
     const hazard_eps_t *eps = &hazard->eps;
 

@@ -173,7 +173,7 @@ void hazard_hold_frame(hazard_t *hazard, const hal_can_frame_t *frame) {
     }
 }
 
-/** A supervisor that hears nothing in bus-off takes the EPS for dead, and then measures anew. One that hangs does not notice. */
+/** In bus-off the supervisor hears no EPS, drops the angle, and takes one after it. One that hangs does not notice. */
 static void follow_hearing(hazard_t *hazard) {
     hazard_hold_t *hold = &hazard->hold;
     const bool is_deaf = !hazard_is_hearing(hazard) && !hazard->view.is_halted;

@@ -64,7 +64,7 @@ static void note(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV
     }
 }
 
-/** At an engagement the vehicle uses the last throttle command. A stalled transmitter cannot send another one, and opens the output. */
+/** At an engagement the vehicle uses the last throttle command. A stalled transmitter sends no other, and opens the output. */
 static void check_newest_throttle(hazard_t *hazard) {
     const uint32_t deadline_ms = hazard->limits.command_ms[AGV_MSG_THROTTLE_COMMAND];
 
@@ -206,9 +206,10 @@ static void note_recent(hazard_t *hazard, agv_message_t message, uint16_t value)
     recent->next++;
 }
 
+/** A throttle that is commanded as high as it is may rise: then an earlier fall still counts. */
 void hazard_commanded(hazard_t *hazard, agv_message_t message, uint16_t value) {
     if ((message == AGV_MSG_THROTTLE_COMMAND) && (value >= hazard->messages[AGV_MSG_THROTTLE_STATUS].valid[0])) {
-        hazard->throttle_before_ms = 0u; /* it may rise again */
+        hazard->throttle_before_ms = 0u;
     }
     hazard->commanded[message] = value;
     hazard->is_commanded[message] = true;
