@@ -52,7 +52,9 @@ void agv_vehicle_evaluate(agv_vehicle_t *vehicle, agv_timers_t *timers, const ag
     vehicle->wheels_fresh = wheels_fresh;
     vehicle->vcu_alive = vcu_alive;
     (void)agv_timer_while(timers, AGV_TIMER_STANDSTILL, agv_vehicle_is_slow(vehicle, config));
-    const bool stand = agv_timer_while(timers, AGV_TIMER_WHEELS_SLOW, wheels_are_slow(vehicle, config));
+    /* also between two ticks, when one is late */
+    const bool slow = wheels_are_slow(vehicle, config) && !vehicle->wheels_doubted;
+    const bool stand = agv_timer_while(timers, AGV_TIMER_WHEELS_SLOW, slow);
     (void)agv_timer_while(timers, AGV_TIMER_WHEELS_STOOD, stand);
 }
 
