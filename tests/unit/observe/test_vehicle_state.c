@@ -244,3 +244,15 @@ void test_a_wheel_that_turns(void) {
     run(0);
     TEST_ASSERT_FALSE(agv_vehicle_wheel_turns(&vehicle, 100));
 }
+
+/* No tick comes for longer than standstill_ms, and frames go on: 101h that is doubted says nothing. */
+/* Shows: FSM-12, SUP-12 */
+void test_wheels_in_doubt_do_not_stand_however_late_the_tick_is(void) {
+    evaluate();
+    agv_vehicle_doubt_wheels(&vehicle, &timers, &config, true);
+    run(150);
+    TEST_ASSERT_FALSE(agv_vehicle_wheels_stand(&timers));
+    agv_vehicle_doubt_wheels(&vehicle, &timers, &config, false);
+    run(150);
+    TEST_ASSERT_TRUE(agv_vehicle_wheels_stand(&timers));
+}
