@@ -1,7 +1,7 @@
 /*
  * The timers (TIM-2) as a contract in ACSL: ages and limits for every time of the clock, also across its wrap, every
  * configuration in its ranges and every order of calls. Written from docs/requirements.md and the comments of the table of
- * timers: which setting limits a timer, and whether it is a deadline. A compiler sees declarations only.
+ * timers: which setting limits a timer, and what kind it is. A compiler sees declarations only.
  */
 #ifndef PROOF_UNBOUNDED_TIMERS_H
 #define PROOF_UNBOUNDED_TIMERS_H
@@ -15,7 +15,8 @@
 // function here writes the configuration.
 #ifdef ROWS
 /*@
-  // The limit of each timer, and the deadlines. A duration is over at its limit, a deadline 1 ms later.
+  // The limit of each timer. A duration is over at its limit, a deadline 1 ms later, a step, which is due 1 ms after the last
+  // one, 2 ms later.
   logic integer limit{L}(agv_config_t *c, integer timer) =
       timer == AGV_TIMER_BUS_OFF ? c->bus_off_recovery_ms :
       timer == AGV_TIMER_AI_BUS_OFF ? c->bus_off_recovery_ms :
@@ -57,11 +58,11 @@
       timer == AGV_TIMER_MESSAGE_WHEEL_SPEED ? c->wheel_speed_timeout_ms :
       c->event_hold_ms; // a transient fault is active
 
-  logic integer more(integer timer) =
+  logic integer more(integer timer) = timer == AGV_TIMER_WATCHDOG_FED ? 2 :
       (timer == AGV_TIMER_ANGLE || timer == AGV_TIMER_DISENGAGED ||
       AGV_TIMER_ENGAGEMENT_1 <= timer <= AGV_TIMER_BOTH_MODES ||
       AGV_TIMER_AI_NEVER_SEEN <= timer <= AGV_TIMER_OTHER_VEHICLE_STATUS || timer == AGV_TIMER_STARTUP ||
-      timer == AGV_TIMER_PRESS_LONG || AGV_TIMER_PIN_PRESS_LONG <= timer <= AGV_TIMER_TX_STATUS ||
+      timer == AGV_TIMER_PRESS_LONG || timer == AGV_TIMER_PIN_PRESS_LONG || AGV_TIMER_TX_TURN_SIGNAL <= timer <= AGV_TIMER_TX_STATUS ||
       AGV_TIMER_MESSAGE_TURN_SIGNAL_COMMAND <= timer <= AGV_TIMER_MESSAGE_WHEEL_SPEED) ? 1 : 0;
 
   // The age at which a timer has reached its limit.
@@ -78,7 +79,7 @@
 /*@
   // agv_config_check allows 60000 ms at most.
   predicate limits_in_range{L}(agv_config_t *c) = \forall integer timer; is_timer(timer) ==>
-      0 <= limit(c, timer) <= 60000 && limit(c, timer) <= span(c, timer) <= limit(c, timer) + 1;
+      0 <= limit(c, timer) <= 60000 && limit(c, timer) <= span(c, timer) <= limit(c, timer) + 2;
 
   // ---- A timer: stopped is 0, running 1, reached 2. The age counts only while it runs.
   predicate running{L}(agv_timers_t *t, integer timer) = t->phase[timer] == 1;
