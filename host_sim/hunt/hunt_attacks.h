@@ -21,7 +21,15 @@
 #define HUNT_MESSAGE 0x02u /**< its first parameter is a message */
 #define HUNT_PATTERN 0x04u /**< its third and fourth are: so many frames bad (0: all), so many good, again and again */
 #define HUNT_SHORT_BYTES 0x08u /**< its fourth is a length; more than 8 counts as 8 */
+#define HUNT_VALUE 0x10u       /**< a field of its message has a wrong value */
 /** @} */
+
+/** A parameter: one of its words, or a number. */
+typedef struct {
+    const char *words; /**< divided by `|`; NULL: a number */
+    uint32_t lowest;
+    uint32_t highest;
+} hunt_parameter_t;
 
 /**
  * An attack. In the steps `|` divides; `+N ` or `+$b ` before a step: so many ms after the begin; and these stand for
@@ -34,12 +42,10 @@
 typedef struct {
     const char *name;
     uint32_t flags;
-    agv_message_t message; /**< AGV_MSG_NONE: the first parameter is the message, or there is none */
+    agv_message_t message; /**< with HUNT_VALUE */
     const char *begin;     /**< steps */
-    const char *end;       /**< steps; "": none */
-    const char *words[HUNT_PARAMETERS];
-    uint32_t lowest[HUNT_PARAMETERS];
-    uint32_t highest[HUNT_PARAMETERS];
+    const char *end;       /**< steps; NULL: none */
+    hunt_parameter_t parameters[HUNT_PARAMETERS];
 } hunt_attack_t;
 
 extern const hunt_attack_t HUNT_ATTACKS[];

@@ -58,24 +58,26 @@ static uint32_t draw_pattern(const hunt_attack_t *attack, unsigned i, uint64_t *
     if ((i == HUNT_PATTERN_BAD) && prng_toss(state, 3u)) {
         return 0u;
     }
-    return prng_toss(state, 2u) ? prng_draw(state, 1u, SHORT_PATTERN) : prng_draw(state, 1u, attack->highest[i]);
+    return prng_toss(state, 2u) ? prng_draw(state, 1u, SHORT_PATTERN)
+                                : prng_draw(state, 1u, attack->parameters[i].highest);
 }
 
 uint32_t hunt_draw_parameter(const hunt_attack_t *attack, unsigned i, uint64_t *state) {
+    const hunt_parameter_t *parameter = &attack->parameters[i];
     if ((i == 0u) && ((attack->flags & HUNT_PATTERN) != 0u) && ((attack->flags & HUNT_MESSAGE) == 0u) &&
         prng_toss(state, 3u)) {
         return 0u; /* the first word is the worst */
     }
-    if (attack->words[i] != NULL) {
-        return prng_draw(state, 0u, count_words(attack->words[i]) - 1u);
+    if (parameter->words != NULL) {
+        return prng_draw(state, 0u, count_words(parameter->words) - 1u);
     }
     if (((attack->flags & HUNT_PATTERN) != 0u) && (i >= HUNT_PATTERN_BAD)) {
         return draw_pattern(attack, i, state);
     }
     if (prng_toss(state, 4u)) {
-        return prng_toss(state, 2u) ? attack->lowest[i] : attack->highest[i];
+        return prng_toss(state, 2u) ? parameter->lowest : parameter->highest;
     }
-    return prng_draw(state, attack->lowest[i], attack->highest[i]);
+    return prng_draw(state, parameter->lowest, parameter->highest);
 }
 
 /** A reset comes some time after the other attacks have begun. */
@@ -101,12 +103,6 @@ void hunt_draw_times(const hunt_program_t *program, hunt_action_t *action, uint6
     action->end_ms = (action->end_ms < program->duration_ms) ? action->end_ms : program->duration_ms;
 }
 
-/** The message of an action, for others to be about the same one; AGV_MSG_NONE. */
-static agv_message_t message_of(const hunt_action_t *action) {
-    const hunt_attack_t *attack = &HUNT_ATTACKS[action->attack];
-    return ((attack->flags & HUNT_MESSAGE) != 0u) ? (agv_message_t)action->parameters[0] : attack->message;
-}
-
 /** Parameters and times of an action whose attack stands. */
 static void draw_action(const hunt_program_t *program, hunt_action_t *action, uint64_t *state) {
     const hunt_attack_t *attack = &HUNT_ATTACKS[action->attack];
@@ -115,8 +111,9 @@ static void draw_action(const hunt_program_t *program, hunt_action_t *action, ui
         action->parameters[i] = hunt_draw_parameter(attack, i, state);
     }
     if (((attack->flags & HUNT_MESSAGE) != 0u) && (program->action_count > 0u) && prng_toss(state, 2u)) {
-        const agv_message_t other = message_of(&program->actions[prng_draw(state, 0u, program->action_count - 1u)]);
-        if ((uint32_t)other < count_words(attack->words[0])) {
+        const agv_message_t other =
+            hunt_action_message(&program->actions[prng_draw(state, 0u, program->action_count - 1u)]);
+        if ((uint32_t)other < count_words(attack->parameters[0].words)) {
             action->parameters[0] = (uint32_t)other;
         }
     }

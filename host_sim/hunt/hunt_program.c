@@ -77,6 +77,15 @@ static void remove_action(hunt_program_t *program, uint64_t *state) {
     }
 }
 
+agv_message_t hunt_action_message(const hunt_action_t *action) {
+    const hunt_attack_t *attack = &HUNT_ATTACKS[action->attack];
+
+    if ((attack->flags & HUNT_MESSAGE) != 0u) {
+        return (agv_message_t)action->parameters[0];
+    }
+    return ((attack->flags & HUNT_VALUE) != 0u) ? attack->message : AGV_MSG_NONE;
+}
+
 /** Another parameter, or other times. */
 static void change_action(hunt_program_t *program, uint64_t *state) {
     hunt_action_t *action = &program->actions[prng_draw(state, 0u, program->action_count - 1u)];

@@ -59,6 +59,9 @@ void hunt_program_config(const hunt_program_t *program, agv_config_t *config);
 /** Write it as the head of a scenario: all but what is expected. */
 void hunt_program_write(const hunt_program_t *program, const char *name, text_t *text);
 
+/** The message that an action is about; AGV_MSG_NONE. */
+agv_message_t hunt_action_message(const hunt_action_t *action);
+
 /** Write its attacks, as steps. */
 void hunt_steps_write(const hunt_program_t *program, text_t *text);
 

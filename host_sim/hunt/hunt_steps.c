@@ -35,8 +35,7 @@ __attribute__((format(printf, 2, 3))) static void append(line_t *line, const cha
 }
 
 static agv_message_t message_of(const steps_t *steps) {
-    return ((steps->attack->flags & HUNT_MESSAGE) != 0u) ? (agv_message_t)steps->action->parameters[0]
-                                                         : steps->attack->message;
+    return hunt_action_message(steps->action);
 }
 
 static uint32_t cycle_of(const steps_t *steps) {
@@ -45,7 +44,7 @@ static uint32_t cycle_of(const steps_t *steps) {
 
 /** A parameter: its word, or its number. */
 static void add_parameter(const steps_t *steps, line_t *line, unsigned i) {
-    const char *words = steps->attack->words[i];
+    const char *words = steps->attack->parameters[i].words;
 
     if (words == NULL) {
         append(line, "%" PRIu32, steps->action->parameters[i]);
@@ -219,7 +218,7 @@ void hunt_steps_write(const hunt_program_t *program, text_t *text) {
         steps.action = &program->actions[i];
         steps.attack = &HUNT_ATTACKS[steps.action->attack];
         add_steps(&steps, steps.attack->begin, steps.action->begin_ms);
-        if (steps.action->end_ms < program->duration_ms) {
+        if ((steps.attack->end != NULL) && (steps.action->end_ms < program->duration_ms)) {
             add_steps(&steps, steps.attack->end, steps.action->end_ms);
         }
     }
