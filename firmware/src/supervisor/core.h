@@ -38,8 +38,10 @@ typedef struct {
     /* The members below are reset at every start, also after a corruption. */
     uint32_t config_checksum; /**< agv_config_checksum at the start */
     agv_ids_t ids;            /**< derived from config; also a second copy in case the configuration is corrupted */
-    uint16_t topology;        /**< second copy, as above */
-    uint16_t id_set;          /**< second copy, as above */
+    uint16_t status_frame_id; /**< second copy, as above */
+    uint8_t topology;         /**< second copy, as above */
+    uint8_t id_set;           /**< second copy, as above */
+    uint8_t park;             /**< second copy, as above */
     agv_state_machine_t machine;
     agv_fault_monitor_t faults;
     agv_liveness_t liveness;

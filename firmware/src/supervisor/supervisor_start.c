@@ -112,20 +112,30 @@ void agv_core_begin(agv_core_t *core, const agv_ports_t *ports, uint32_t found) 
 
 void agv_core_keep_wiring(agv_core_t *core) {
     agv_config_ids(&core->config, &core->ids);
-    core->topology = core->config.topology;
-    core->id_set = core->config.id_set;
+    core->status_frame_id = core->config.status_frame_id;
+    core->topology = (uint8_t)core->config.topology;
+    core->id_set = (uint8_t)core->config.id_set;
+    core->park = (uint8_t)core->config.park;
 }
 
-/* Use the defaults, with topology and identifiers of this vehicle if these are valid. */
+/*
+ * Use the defaults, with topology, identifiers and `park` of this vehicle if these are valid. Without the status frame, if
+ * its identifier is the one of a message.
+ */
 static void use_default_config(agv_core_t *core) {
     agv_config_t *const config = &core->config;
     agv_config_defaults(config);
-    config->topology = (core->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY) ? AGV_TOPOLOGY_GATEWAY : config->topology;
-    config->id_set = (core->id_set == (uint16_t)AGV_ID_SET_TABLE) ? (uint16_t)AGV_ID_SET_TABLE : config->id_set;
+    config->topology = (core->topology == (uint8_t)AGV_TOPOLOGY_GATEWAY) ? AGV_TOPOLOGY_GATEWAY : config->topology;
+    config->id_set = (core->id_set == (uint8_t)AGV_ID_SET_TABLE) ? (uint16_t)AGV_ID_SET_TABLE : config->id_set;
+    config->park = (core->park == (uint8_t)AGV_PARK_AT_STANDSTILL) ? (uint16_t)AGV_PARK_AT_STANDSTILL : config->park;
+    config->status_frame_id = core->status_frame_id;
     for (uint32_t i = 0u; i < (uint32_t)AGV_MSG_COUNT; i++) {
         if (core->ids.of[i] != agv_message_id(i, config->id_set)) {
             (void)agv_config_set(config, (uint32_t)AGV_SETTING_ID + i, core->ids.of[i]);
         }
+    }
+    if (agv_config_check(config).problem != AGV_CONFIG_OK) {
+        config->status_frame_id = 0u;
     }
     if (agv_config_check(config).problem != AGV_CONFIG_OK) {
         for (uint32_t i = 0u; i < (uint32_t)AGV_MSG_COUNT; i++) {

@@ -12,7 +12,8 @@ bool agv_gateway_may_wait(const agv_gateway_facts_t *facts, uint32_t command) {
     if (facts->state == AGV_STATE_ACTIVE) {
         return facts->autopilot;
     }
-    return (facts->state == AGV_STATE_STANDBY) && (facts->config->gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL);
+    return (facts->state == AGV_STATE_STANDBY) && !facts->autopilot &&
+           (facts->config->gateway_in_manual == (uint16_t)AGV_IN_MANUAL_ALL);
 }
 
 /* Whether a gear may be engaged at standstill only: D and R, and P of a vehicle that does not guard it against speed (FSM-1). */
@@ -24,9 +25,11 @@ static bool needs_standstill(const agv_config_t *config, uint8_t gear) {
            (config->gear_change == (uint16_t)AGV_GEAR_CHANGE_AT_STANDSTILL);
 }
 
-/* Whether a command changes to such a gear in motion. A silent 0A3h does not say which gear is engaged. */
+/* Whether a command changes to such a gear in motion. A silent 0A3h does not say which gear is engaged. That it is P must not
+ * depend on 0A3h alone. */
 static bool changes_gear_in_motion(const agv_gateway_facts_t *facts, uint8_t gear) {
-    const uint8_t engaged = facts->gear_fresh ? facts->vehicle->gear : facts->gear_sent;
+    const bool reported = facts->gear_fresh && (gear != (uint8_t)AGV_GEAR_P);
+    const uint8_t engaged = reported ? facts->vehicle->gear : facts->gear_sent;
     return needs_standstill(facts->config, gear) && (gear != engaged) && !facts->standstill;
 }
 
@@ -105,9 +108,9 @@ static uint32_t limit_to_speed(const agv_gateway_facts_t *facts, uint32_t wanted
     return (uint32_t)clamp((int32_t)wanted_raw, AGV_ANGLE_RAW_CENTRE - max_ddeg, AGV_ANGLE_RAW_CENTRE + max_ddeg);
 }
 
-/* The limit of the first command starts at the measured angle, one cycle ago. */
+/* The limit starts at the measured angle, one cycle ago, and does so again until the EPS follows the commands. */
 static void begin_slew(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t wanted_raw) {
-    if (!gateway->steering_known) {
+    if (!gateway->steering_known || !facts->vehicle->eps_in_angle_mode) {
         const uint32_t from_raw = facts->vehicle->angle_known ? facts->vehicle->angle_raw : wanted_raw;
         gateway->steering_known = true;
         reach(&gateway->steering, from_raw, facts->now_ms - agv_message_cycle_ms(AGV_MSG_STEERING_COMMAND));

@@ -205,6 +205,8 @@ typedef struct {
     uint16_t
         throttle_before; /**< the same before it came down last: a fall that is undone, without a command to rise, is none */
     uint64_t throttle_before_ms;
+    uint8_t throttle_seen;      /**< the last 050h */
+    uint64_t throttle_rises_ms; /**< last 075h above it; 0: none */
     hazard_mode_t mode;
     hazard_trip_t trip;
     hazard_hold_t hold;

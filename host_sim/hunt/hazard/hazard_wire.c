@@ -5,7 +5,7 @@
 #include "hunt/hazard/hazard.h"
 #include "text/units.h"
 
-enum { THROTTLE_MAX = 250, ANGLE_MAX = 18000, FALL_COUNTS = 25, FAST_CAP = 3 };
+enum { THROTTLE_MAX = 250, ANGLE_MAX = 18000, FALL_COUNTS = 25, FAST_CAP = 3, RISES_MS = 120 };
 enum { MODE_BYTE = 6, MANUAL_BIT = 0x40, AUTOPILOT_BIT = 0x80, REENGAGE_MS = 100 };
 
 static uint16_t word_at(const uint8_t *data, unsigned at) {
@@ -134,8 +134,20 @@ static void note_mode(hazard_t *hazard, uint8_t bits) {
     mode->both = autopilot && ((bits & MANUAL_BIT) != 0);
 }
 
-/** 050h may be above its command while it comes down. Where it goes up again, it did not come down. */
+/** Whether 050h was commanded to rise shortly before. */
+static bool may_have_risen(const hazard_t *hazard) {
+    return (hazard->throttle_rises_ms != 0u) && (hazard->t_ms - hazard->throttle_rises_ms <= RISES_MS);
+}
+
+/**
+ * 050h may be above its command while it comes down. Where it goes up again, it did not come down; unless it was commanded to
+ * rise: then its falls add up.
+ */
 static void note_throttle(hazard_t *hazard, uint8_t value) {
+    if ((value > hazard->throttle_seen) && may_have_risen(hazard)) {
+        hazard->throttle_high = (uint16_t)(hazard->throttle_high + (value - hazard->throttle_seen));
+    }
+    hazard->throttle_seen = value;
     if ((value + FALL_COUNTS <= hazard->throttle_high) || (hazard->throttle_high_ms == 0u)) {
         hazard->throttle_before = hazard->throttle_high;
         hazard->throttle_before_ms = hazard->throttle_high_ms;
@@ -210,6 +222,9 @@ static void note_recent(hazard_t *hazard, agv_message_t message, uint16_t value)
 void hazard_commanded(hazard_t *hazard, agv_message_t message, uint16_t value) {
     if ((message == AGV_MSG_THROTTLE_COMMAND) && (value >= hazard->messages[AGV_MSG_THROTTLE_STATUS].valid[0])) {
         hazard->throttle_before_ms = 0u;
+    }
+    if ((message == AGV_MSG_THROTTLE_COMMAND) && (value > hazard->throttle_seen)) {
+        hazard->throttle_rises_ms = hazard->t_ms;
     }
     hazard->commanded[message] = value;
     hazard->is_commanded[message] = true;

@@ -658,6 +658,16 @@ void test_h6_a_throttle_that_was_commanded_to_rise_again_is_no_hazard(void) {
     expect_hazard(HAZARD_FALSE_NODE, "more throttle than commanded", &MUTE, stays);
 }
 
+/** The AI computer commands 82 % every 100 ms, a rogue node 0 every 30 ms. The VCU obeys both, slowly: the falls add up. */
+void test_h6_a_throttle_with_two_senders_is_no_hazard(void) {
+    const char *const slow =
+        "  - {at_ms: 2000, vcu: ramp_throttle, pct_s: 40}\n"
+        "  - {at_ms: 2000, ai: drive, gear: D, throttle_pct: 82}\n"
+        "  - {at_ms: 3500, bus: send, side: vehicle, message: throttle_command, bytes: \"01 00 00 00 00 00 00 00\", "
+        "every_ms: 30}\n";
+    expect_none(&MUTE, slow);
+}
+
 /** The stub commands P at once; the vehicle needs a second to stop. */
 void test_h8_park_in_motion(void) {
     const char *const brakes = "  - {at_ms: 2500, ai: drive, gear: D, throttle_pct: 0}\n"

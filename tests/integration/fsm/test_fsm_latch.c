@@ -143,6 +143,49 @@ void test_a_corrupted_configuration_keeps_identifiers_that_were_changed(void) {
     expect_after_a_flipped_bit(expect_the_identifiers);
 }
 
+static void expect_park_at_standstill(const agv_config_t *config) {
+    TEST_ASSERT_EQUAL_UINT16(AGV_PARK_AT_STANDSTILL, config->park);
+}
+
+/* The VCU does not guard P against speed. */
+/* Shows: FSM-9, FSM-1, INT-5, MEMORY_CORRUPTED */
+void test_a_corrupted_configuration_keeps_park_at_standstill(void) {
+    f.config.park = AGV_PARK_AT_STANDSTILL;
+    expect_after_a_flipped_bit(expect_park_at_standstill);
+}
+
+static void expect_identifiers_beside_the_status_frame(const agv_config_t *config) {
+    TEST_ASSERT_EQUAL_INT(AGV_CONFIG_OK, agv_config_check(config).problem);
+    TEST_ASSERT_EQUAL_HEX16(0x7F0, config->id_gear_command);
+    TEST_ASSERT_EQUAL_HEX16(0x43F, config->id_steering_command);
+    TEST_ASSERT_EQUAL_HEX16(0x23F, config->id_turn_signal_command);
+    TEST_ASSERT_EQUAL_HEX16(0x6F0, config->status_frame_id);
+}
+
+/* 168h has the identifier that the status frame has by default, 065h that of another command. */
+/* Shows: FSM-9, INT-5, MEMORY_CORRUPTED, P1, TOP-3 */
+void test_a_corrupted_configuration_keeps_the_identifier_of_the_status_frame(void) {
+    f.config.id_gear_command = 0x7F0;
+    f.config.id_steering_command = 0x43F;
+    f.config.id_turn_signal_command = 0x23F;
+    f.config.status_frame_id = 0x6F0;
+    f.other_ids = true;
+    expect_after_a_flipped_bit(expect_identifiers_beside_the_status_frame);
+}
+
+/* The status frame is off then, and the commands keep the identifiers of this vehicle. */
+/* Shows: FSM-9, CONFIG_INVALID, P1, TOP-3 */
+void test_the_identifier_of_the_status_frame_twice(void) {
+    f.config.id_gear_command = 0x169;
+    f.config.status_frame_id = 0x169;
+    f.log_status = true;
+    fixture_start(&f);
+    expect_reason(&f, AGV_FAULT_CONFIG_INVALID);
+    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x169));
+    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x168));
+    TEST_ASSERT_EQUAL_UINT16(0, agv_supervisor_config(&f.supervisor)->status_frame_id);
+}
+
 /* With an invalid identifier all identifiers fall back to those of the ID set. */
 /* Shows: FSM-9, CONFIG_INVALID, P1 */
 void test_an_identifier_twice_falls_back_to_those_of_the_set(void) {

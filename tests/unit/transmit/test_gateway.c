@@ -29,6 +29,7 @@ void setUp(void) {
     autopilot = true;
     standstill = false;
     vehicle.wheels_fresh = true;
+    vehicle.eps_in_angle_mode = true;
     vehicle.gear = 1;
 }
 
@@ -87,7 +88,7 @@ static int steer(uint32_t after_ms, int wanted_ddeg) {
 
 /* ---- Permitted commands ---- */
 
-/* Motion commands in ACTIVE with autopilot reported; 43Fh in STANDBY, too. All eight bits of the state. */
+/* Motion commands in ACTIVE with autopilot reported, with `all` in STANDBY without it; 43Fh always. All bits of the state. */
 /* Shows: TOP-2 */
 void test_which_commands_pass_in_which_state_and_mode(void) {
     for (unsigned value = 0; value < 512; value++) {
@@ -101,8 +102,9 @@ void test_which_commands_pass_in_which_state_and_mode(void) {
             TEST_ASSERT_EQUAL(motion || ((active || standby) && command == 0), passes(command, 1));
             TEST_ASSERT_EQUAL(motion || ((active || standby) && command == 0), may_wait(command));
             config.gateway_in_manual = AGV_IN_MANUAL_ALL;
-            TEST_ASSERT_EQUAL(motion || standby || (active && command == 0), passes(command, 1));
-            TEST_ASSERT_EQUAL(motion || standby || (active && command == 0), may_wait(command));
+            const bool manual = standby && !autopilot;
+            TEST_ASSERT_EQUAL(motion || manual || ((active || standby) && command == 0), passes(command, 1));
+            TEST_ASSERT_EQUAL(motion || manual || ((active || standby) && command == 0), may_wait(command));
         }
     }
 }
@@ -149,6 +151,7 @@ void test_only_168h_changes_the_gear(void) {
     state = AGV_STATE_STANDBY;
     TEST_ASSERT_FALSE(passes(AGV_MSG_GEAR_COMMAND, 1));
     config.gateway_in_manual = AGV_IN_MANUAL_ALL;
+    autopilot = false;
     TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 1));
     standstill = false;
     TEST_ASSERT_FALSE(passes(AGV_MSG_GEAR_COMMAND, 1));
@@ -262,6 +265,17 @@ void test_with_park_at_standstill_p_waits_too(void) {
     TEST_ASSERT_FALSE(passes(AGV_MSG_GEAR_COMMAND, 8));
     TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 2));
     config.park = AGV_PARK_AT_ONCE;
+    TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 8));
+}
+
+/* A wrong 0A3h does not let P pass in motion. In a vehicle that rolls away in P, a P that passed before may pass again. */
+/* Shows: TOP-2, FSM-1 */
+void test_p_does_not_depend_on_0a3h_alone(void) {
+    config.park = AGV_PARK_AT_STANDSTILL;
+    vehicle.gear = 8;
+    gear_sent = 1;
+    TEST_ASSERT_FALSE(passes(AGV_MSG_GEAR_COMMAND, 8));
+    gear_sent = 8;
     TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 8));
 }
 
@@ -506,6 +520,23 @@ void test_the_slew_limit_starts_from_the_measured_angle(void) {
     TEST_ASSERT_EQUAL_INT(100, steer(25, 100));
     TEST_ASSERT_EQUAL_INT(0, steer(25, -9000));
     TEST_ASSERT_EQUAL_INT(-100, steer(25, -9000));
+}
+
+/* At a hand-over the operator may still steer, for as long as the EPS is not in angle control. */
+/* Shows: TOP-2 */
+void test_the_slew_limit_starts_anew_until_the_eps_is_in_angle_control(void) {
+    config.steering_slew_ddeg_s = 4000;
+    vehicle.angle_known = true;
+    vehicle.angle_raw = 9000;
+    vehicle.eps_in_angle_mode = false;
+    TEST_ASSERT_EQUAL_INT(0, steer(25, 0));
+    vehicle.angle_raw = 9000 + 600;
+    TEST_ASSERT_EQUAL_INT(500, steer(25, 0));
+    TEST_ASSERT_EQUAL_INT(500, steer(1000, 0));
+    vehicle.eps_in_angle_mode = true;
+    TEST_ASSERT_EQUAL_INT(400, steer(25, 0));
+    vehicle.angle_raw = 9000 + 900;
+    TEST_ASSERT_EQUAL_INT(300, steer(25, 0));
 }
 
 void test_without_a_measured_angle_the_first_command_is_the_start(void) {
