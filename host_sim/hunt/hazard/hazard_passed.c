@@ -67,11 +67,12 @@ static bool is_unanswered(const hazard_t *hazard, uint64_t *since_ms, uint32_t w
     return hazard->t_ms - *since_ms > within_ms;
 }
 
+/** A controller that is error-passive sends again what was destroyed. */
 static void follow_stall(hazard_t *hazard) {
     scenario_controller_t controller;
 
     scenario_testbed_controller(hazard->testbed, HAL_CAN_VEHICLE, &controller);
-    if (controller.is_stalled) {
+    if (controller.is_stalled || (controller.status.state != HAL_CAN_ERROR_ACTIVE)) {
         hazard->stalled_ms = hazard->t_ms;
     }
 }

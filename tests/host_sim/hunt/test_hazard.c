@@ -402,8 +402,10 @@ void test_h3_a_foreign_sender_and_a_transmitter_that_was_stalled(void) {
 void test_h3_a_transmitter_that_stalls_within_the_safe_commands(void) {
     const char *const stalls = "  - {at_ms: 3030, supervisor: stall_tx}\n";
     const char *const again = "  - {at_ms: 3030, supervisor: stall_tx}\n  - {at_ms: 3035, supervisor: free_tx}\n";
+    const char *const destroyed = "  - {at_ms: 3029, bus: destroy, frames: 200}\n";
     stub_t opens = {.gateway = true, .holds = true, .safe_ms = TRIP_MS + 25, .open_ms = TRIP_MS + 130};
     expect_none(&opens, stalls);
+    expect_none(&opens, destroyed);
     opens.open_ms = TRIP_MS + 600;
     expect_hazard(HAZARD_FALSE_COMMAND, "the supervisor sent a command that the AI computer did not send", &opens,
                   stalls);
