@@ -10,9 +10,9 @@ static const uint16_t conditions[AGV_RESET_CONDITIONS] = {
     AGV_MISSING_MESSAGES,   AGV_MISSING_THROTTLE,      AGV_MISSING_OUTPUT};
 
 void agv_reset_button_report(agv_reset_button_t *reset, bool vcu_alive, bool remote_lost, bool down) {
-    const agv_button_t up = remote_lost ? AGV_BUTTON_UNHEARD : AGV_BUTTON_UP;
+    const agv_button_t heard = down ? AGV_BUTTON_DOWN : AGV_BUTTON_UP;
     if (vcu_alive) {
-        reset->button = (uint8_t)(down ? AGV_BUTTON_DOWN : up);
+        reset->button = (uint8_t)(remote_lost ? AGV_BUTTON_UNHEARD : heard);
     }
 }
 

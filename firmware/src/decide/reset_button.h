@@ -38,9 +38,9 @@ typedef struct {
 typedef enum { AGV_PRESS_NOTHING, AGV_PRESS_RESETS, AGV_PRESS_IN_VAIN } agv_press_result_t;
 
 /**
- * Handle the button state in a 363h. It is ignored if the VCU is not alive. While the remote receiver is lost, "not
- * pressed" is not a release, and a button that is pressed when the receiver returns is not a rising edge: in both cases
- * the operator did nothing.
+ * Handle the button state in a 363h. It is ignored if the VCU is not alive. While the remote receiver is lost, what
+ * 363h says of the button does not count: it ends a press without a release, and a button that is pressed when the receiver
+ * returns is not a rising edge.
  */
 void agv_reset_button_report(agv_reset_button_t *reset, bool vcu_alive, bool remote_lost, bool down);
 

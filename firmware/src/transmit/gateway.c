@@ -25,12 +25,15 @@ static bool needs_standstill(const agv_config_t *config, uint8_t gear) {
            (config->gear_change == (uint16_t)AGV_GEAR_CHANGE_AT_STANDSTILL);
 }
 
-/* Whether a command changes to such a gear in motion. A silent 0A3h does not say which gear is engaged. That it is P must not
- * depend on 0A3h alone. */
+/* Whether a gear is engaged already. A silent 0A3h does not say which one is. That it is P must not depend on 0A3h alone. */
+static bool is_engaged(const agv_gateway_facts_t *facts, uint8_t gear) {
+    const uint8_t engaged = facts->gear_fresh ? facts->vehicle->gear : facts->gear_sent;
+    return (gear == engaged) && ((gear != (uint8_t)AGV_GEAR_P) || (gear == facts->gear_sent));
+}
+
+/* Whether a command changes to such a gear in motion. */
 static bool changes_gear_in_motion(const agv_gateway_facts_t *facts, uint8_t gear) {
-    const bool reported = facts->gear_fresh && (gear != (uint8_t)AGV_GEAR_P);
-    const uint8_t engaged = reported ? facts->vehicle->gear : facts->gear_sent;
-    return needs_standstill(facts->config, gear) && (gear != engaged) && !facts->standstill;
+    return needs_standstill(facts->config, gear) && !is_engaged(facts, gear) && !facts->standstill;
 }
 
 void agv_gateway_follow_gear(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t command,
@@ -47,7 +50,7 @@ bool agv_gateway_passes(const agv_gateway_facts_t *facts, uint32_t command, cons
 }
 
 void agv_gateway_restart(agv_gateway_t *gateway) {
-    *gateway = (agv_gateway_t){0};
+    *gateway = (agv_gateway_t){.gear_waits = gateway->gear_waits};
 }
 
 static int32_t clamp(int32_t value, int32_t lowest, int32_t highest) {

@@ -20,7 +20,7 @@ typedef struct {
     uint16_t value;      /**< the last command after the limit: throttle in counts, angle raw (P5) */
 } agv_gateway_rate_t;
 
-/** The rate limits. All zero: no command was checked since the engagement. */
+/** The rate limits, and whether a gear waits. All zero: no command was checked. */
 typedef struct {
     agv_gateway_rate_t steering;
     agv_gateway_rate_t throttle;
@@ -56,7 +56,7 @@ bool agv_gateway_passes(const agv_gateway_facts_t *facts, uint32_t command, cons
 /** Whether a waiting command may still be sent. */
 bool agv_gateway_may_wait(const agv_gateway_facts_t *facts, uint32_t command);
 
-/** Restart the rate limits, because the state changed. */
+/** Restart the rate limits, because the state changed. Whether a gear waits is decided by the next 168h. */
 void agv_gateway_restart(agv_gateway_t *gateway);
 
 /**

@@ -411,16 +411,38 @@ void test_a_short_press_ended_by_the_loss_of_the_remote_is_not_reported(void) {
     expect_nothing();
 }
 
-/* A receiver with a fault may still report "pressed". The press continues, and its release counts when the receiver
- * works again. */
+/* A receiver that is lost reports a button that nobody presses, or the last one that it heard. */
 /* Shows: FSM-3 */
-void test_pressed_is_pressed_whatever_the_receiver_reports(void) {
-    frame(true);
-    run(500);
+void test_a_press_that_begins_while_the_receiver_is_lost(void) {
     frame_without_receiver(true);
-    run(500);
+    run(1500);
+    frame_without_receiver(false);
+    run(1);
     frame(false);
-    expect_reset();
+    run(1);
+    TEST_ASSERT_EQUAL_UINT32(0, resets);
+    frame_without_receiver(true);
+    run(200);
+    frame(true); /* no rising edge */
+    run(1500);
+    frame(false);
+    run(1);
+    expect_in_vain(AGV_MISSING_BUTTON);
+}
+
+/* The operator lets go meanwhile. */
+/* Shows: FSM-3 */
+void test_a_press_during_which_the_receiver_is_lost(void) {
+    frame(false);
+    run(1);
+    frame(true);
+    run(100);
+    frame_without_receiver(true);
+    run(1500);
+    frame(false);
+    run(1);
+    TEST_ASSERT_EQUAL_UINT32(0, resets);
+    TEST_ASSERT_EQUAL_UINT32(0, in_vain);
 }
 
 /* ---- Late steps ---- */

@@ -277,6 +277,20 @@ void test_p_does_not_depend_on_0a3h_alone(void) {
     TEST_ASSERT_FALSE(passes(AGV_MSG_GEAR_COMMAND, 8));
     gear_sent = 8;
     TEST_ASSERT_TRUE(passes(AGV_MSG_GEAR_COMMAND, 8));
+    vehicle.gear = 1; /* since then the operator has engaged D */
+    TEST_ASSERT_FALSE(passes(AGV_MSG_GEAR_COMMAND, 8));
+}
+
+/* The mode flickers. */
+/* Shows: TOP-2 */
+void test_a_gear_waits_on_when_the_state_changes(void) {
+    vehicle.gear = 1;
+    gear_sent = 1;
+    gear_commanded(2);
+    agv_gateway_restart(&gateway);
+    TEST_ASSERT_EQUAL_UINT(0, throttle(75));
+    gear_commanded(1);
+    TEST_ASSERT_EQUAL_UINT(75, throttle(75));
 }
 
 /* A vehicle that leaves the gear by itself deviates from its command (SUP-11). */
