@@ -1,7 +1,7 @@
 /**
  * @file interrupt.h
- * Ctrl-C and its like while something unfinished lies on the disk: the signal is held back, noticed between two steps,
- * and acts once the unfinished is removed.
+ * Delays SIGINT, SIGTERM and SIGHUP while a temporary file exists. The program polls for them between two steps, removes the
+ * file, and then lets them act.
  */
 #ifndef HOST_SIM_INTERRUPT_H
 #define HOST_SIM_INTERRUPT_H

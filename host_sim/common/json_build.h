@@ -1,6 +1,6 @@
 /**
  * @file json_build.h
- * JSON values that are put together with jansson. A failure of memory leaves a part out; the dump of the whole tells it.
+ * JSON values that are put together with jansson. Without memory a part is left out, and the final dump fails.
  */
 #ifndef HOST_SIM_JSON_BUILD_H
 #define HOST_SIM_JSON_BUILD_H

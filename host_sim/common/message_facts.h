@@ -26,14 +26,14 @@ uint8_t message_counter_at(uint32_t message);
 /** The setting (AGV_SETTING_*) that limits its silence. */
 uint16_t message_deadline_setting(uint32_t message);
 
-/** The alive counter of a message, as the supervisor follows it (SUP-3). Begin with all zero. */
+/** The alive counter of a message, as the supervisor follows it (SUP-2). Begin with all zero. */
 typedef struct {
     uint8_t value;        /**< of the last frame */
     uint8_t steps_needed; /**< right steps until an incrementing counter counts as changed again */
     bool is_heard;
 } message_beat_t;
 
-/** Take a frame's counter. @return whether it restarts the deadline of the heartbeat */
+/** Take a frame's counter. @return whether it counts as changed; true for the first frame */
 bool message_beats(message_beat_t *beat, const agv_config_t *config, uint32_t message, uint8_t value);
 
 #endif

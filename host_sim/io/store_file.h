@@ -20,8 +20,8 @@
 
 /**
  * Read a store. A file that is not there is an empty store. A file that is damaged anywhere (cut off, changed, no store
- * at all) is read as far as it goes, and its latch as bytes that fail their checksum: what a supervisor makes of that
- * is its own affair.
+ * at all) is read as far as it goes, and its latch as bytes that fail their checksum. The supervisor then treats
+ * the latch as corrupt (FSM-7).
  *
  * @param store is filled in
  * @param recorder is filled in; all zero where the file has none

@@ -14,7 +14,7 @@
  */
 bool log_sides_check(bool is_gateway, const char *ai_interface);
 
-/** Tell when the log had no frame of the interface that was given: the rest is then not what it seems. */
+/** Print when the log had no frame of the given interface: the AI side was then silent in the whole run. */
 void log_sides_note_silent(const char *ai_interface, bool was_heard);
 
 #endif

@@ -172,7 +172,7 @@ extern const uint8_t agv_command_bits[AGV_COMMAND_COUNT][AGV_DLC];
 /** Read a raw steering angle from its two bytes (P5). @return a value above AGV_ANGLE_RAW_MAX if the angle is invalid. */
 uint32_t agv_angle_read(const uint8_t *bytes);
 
-/** Write a raw steering angle as two bytes. */
+/** Write the low 16 bits of a raw steering angle as two bytes. The range is not checked. */
 void agv_angle_write(uint8_t *bytes, uint32_t angle_raw);
 
 bool agv_pack_turn_signal_command(uint8_t data[AGV_DLC], const agv_turn_signal_command_t *in);

@@ -62,8 +62,8 @@ enum {
 /** Why agv_config_check refuses a configuration. */
 typedef enum {
     AGV_CONFIG_OK,
-    AGV_CONFIG_OUT_OF_RANGE,    /**< `setting` is below its lowest or above its highest value */
-    AGV_CONFIG_ID_TWICE,        /**< another message or the status frame has the same identifier as `setting` */
+    AGV_CONFIG_OUT_OF_RANGE, /**< `setting` is below its lowest or above its highest value */
+    AGV_CONFIG_ID_TWICE, /**< `setting` is the identifier of another message, or status_frame_id is one of either ID set */
     AGV_CONFIG_NEEDS_GATEWAY,   /**< `setting` has no effect on a shared bus and is not at its default */
     AGV_CONFIG_PRESS_TOO_SHORT, /**< reset_hold_max_ms is not above reset_hold_ms: no press could reset */
     AGV_CONFIG_FAULT_TOO_WEAK,  /**< `fault` is a mandatory trip and is configured as a warning */
@@ -73,8 +73,8 @@ typedef enum {
 /** Result of agv_config_check. */
 typedef struct {
     agv_config_problem_t problem;
-    uint16_t setting;  /**< AGV_SETTING_* index */
-    agv_fault_t fault; /**< of AGV_CONFIG_FAULT_TOO_WEAK: the highest-ranking one */
+    uint16_t setting;  /**< AGV_SETTING_* index; AGV_SETTING_COUNT: the problem is not one of a setting */
+    agv_fault_t fault; /**< highest-ranking mandatory trip that is configured as a warning; AGV_FAULT_NONE: none */
 } agv_config_verdict_t;
 
 /** Fill in the default configuration. */
@@ -113,7 +113,7 @@ typedef struct {
     uint16_t preset; /**< default */
     uint16_t lowest;
     uint16_t highest;
-    const char *unit;    /**< "" for choices */
+    const char *unit;    /**< "" for choices and identifiers */
     const char *words;   /**< "a|b" for choices, NULL for numbers */
     const char *meaning; /**< one line, with the requirement ID */
     const char *weakens; /**< "ABOVE", "BELOW", "ZERO", "CHOSEN" or "NEVER": see config_settings.def */

@@ -21,7 +21,8 @@ typedef enum {
 typedef struct {
     uint32_t received; /**< frames received, of any kind, on both sides */
     uint32_t rejected[AGV_REJECTED_KINDS];
-    uint32_t dropped;       /**< commands out of range, frames that the gateway did not forward, frames not sent */
+    uint32_t
+        dropped; /**< invalid commands, frames of the wrong side, frames that were not forwarded, replaced or discarded */
     uint32_t sent;          /**< frames that the HAL accepted */
     uint32_t shadowed;      /**< frames not sent because of the shadow mode (TOP-4) */
     uint32_t gate_refused;  /**< frames that the gate refused (INT-4) */

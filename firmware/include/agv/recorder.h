@@ -45,12 +45,13 @@ typedef enum {
 #define AGV_MISSING_TRIP_CAUSE 0x08u    /**< the cause of a trip is present */
 #define AGV_MISSING_STANDSTILL 0x10u    /**< the vehicle is not at standstill */
 #define AGV_MISSING_MANUAL 0x20u        /**< 363h does not report manual */
-#define AGV_MISSING_BUTTON 0x40u        /**< the press began before the trip, or the button is not pressed */
-#define AGV_MISSING_MESSAGES 0x80u      /**< a status message whose silence trips is not fresh */
-#define AGV_MISSING_THROTTLE 0x100u     /**< 050h is above idle */
-#define AGV_MISSING_RELEASED 0x200u     /**< the button was held for longer than reset_hold_max_ms */
-#define AGV_MISSING_OUTPUT 0x400u       /**< the contact of the safety output does not read open (HW-1) */
-#define AGV_MISSING_ALL 0x7FFu          /**< all of these bits */
+#define AGV_MISSING_BUTTON                                                                                             \
+    0x40u /**< the press had no rising edge after the trip, or ended with the loss of the button's signal */
+#define AGV_MISSING_MESSAGES 0x80u  /**< a status message whose silence trips is not fresh */
+#define AGV_MISSING_THROTTLE 0x100u /**< 050h is above idle */
+#define AGV_MISSING_RELEASED 0x200u /**< the button was held for longer than reset_hold_max_ms */
+#define AGV_MISSING_OUTPUT 0x400u   /**< the contact of the safety output does not read open (HW-1) */
+#define AGV_MISSING_ALL 0x7FFu      /**< all of these bits */
 
 /** An event as the supervisor hands it to the recorder. */
 typedef struct {
@@ -135,9 +136,10 @@ uint32_t agv_recorder_next_sequence(const agv_recorder_t *recorder);
 bool agv_recorder_get(const agv_recorder_t *recorder, uint32_t sequence, agv_event_t *event);
 
 /**
- * Read one of the last trips: an AGV_EVENT_STATE whose new state is TRIPPED.
+ * Read one of the last trips: a change to TRIPPED that names a fault. A start that continues the trip of the run before is
+ * none. Trips with a wrong checksum are not counted.
  * @param index 0 = the latest
- * @return false if there is no such trip, or its checksum is wrong.
+ * @return false if there is no such trip; then @p event is unchanged
  */
 bool agv_recorder_get_trip(const agv_recorder_t *recorder, uint32_t index, agv_event_t *event);
 

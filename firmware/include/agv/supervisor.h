@@ -92,11 +92,11 @@ bool agv_supervisor_has_fault(const agv_supervisor_t *supervisor, agv_fault_t fa
 
 /**
  * Age of the last frame of a message in ms; if none was received, the time since the start. UINT32_MAX above
- * 6000 ms.
+ * 6000 ms, and for AGV_MSG_NONE and values above.
  */
 uint32_t agv_supervisor_age_ms(const agv_supervisor_t *supervisor, agv_message_t message);
 
-/** Whether a message was received and its deadline has not expired. */
+/** Whether a message was received and its deadline has not expired. False for AGV_MSG_NONE and values above. */
 bool agv_supervisor_is_fresh(const agv_supervisor_t *supervisor, agv_message_t message);
 
 /** Time of the last tick in ms; before the first one, of the start. */
@@ -114,7 +114,10 @@ int8_t agv_supervisor_led_code(const agv_supervisor_t *supervisor);
 /** The counters. */
 const agv_counters_t *agv_supervisor_counters(const agv_supervisor_t *supervisor);
 
-/** The configuration in use: the one passed to agv_supervisor_start, or the defaults if that was refused. */
+/**
+ * The configuration in use: the one passed to agv_supervisor_start. If that was refused or is corrupted: the defaults, with
+ * the topology, ID set, identifiers, park and status_frame_id of this vehicle where these are valid (FSM-9).
+ */
 const agv_config_t *agv_supervisor_config(const agv_supervisor_t *supervisor);
 
 #endif

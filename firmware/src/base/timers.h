@@ -62,6 +62,7 @@ void agv_timers_set_time(agv_timers_t *timers, uint32_t time_ms);
  * Advance the time to a time stamp, and note which timers have reached their limit. The timers are only checked when the
  * first of them may have reached it. An earlier time stamp changes nothing: time never goes backwards. Call this at least
  * once in 24 days, so that the comparison holds across the wrap.
+ * @param time_us microseconds within that millisecond, 0..999; a tick passes 0
  */
 void agv_timers_advance(agv_timers_t *timers, const agv_config_t *config, uint32_t time_ms, uint32_t time_us);
 

@@ -14,7 +14,7 @@ void agv_hold_take(agv_hold_t *hold, const agv_vehicle_t *vehicle) {
 }
 
 static void take_if_recent(agv_hold_t *hold, const agv_vehicle_t *vehicle, const agv_timers_t *timers) {
-    if (agv_timer_runs(timers, AGV_TIMER_ANGLE) && !agv_timer_reached(timers, AGV_TIMER_ANGLE)) {
+    if (agv_timer_is_within(timers, AGV_TIMER_ANGLE)) {
         agv_hold_take(hold, vehicle);
     }
 }

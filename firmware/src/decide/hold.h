@@ -35,8 +35,8 @@ void agv_hold_drop(agv_hold_t *hold);
 void agv_hold_take(agv_hold_t *hold, const agv_vehicle_t *vehicle);
 
 /**
- * Measure for how long no 065h has left the controller, and drop an angle that goes out of date. While that lasts, an angle that
- * was taken is dropped again when it is older than hold_age_ms. Call in TRIPPED and SAFE, in every pass.
+ * Measure for how long no 065h has left the controller. After AGV_HOLD_UNSENT_MAX_MS the angle is dropped; one that is taken
+ * later is kept only while it is not older than hold_age_ms, until a 065h has left. Call in TRIPPED and SAFE, in every pass.
  * @param elapsed_ms since the last tick; 0 for a frame
  */
 void agv_hold_follow(agv_hold_t *hold, const agv_timers_t *timers, uint32_t elapsed_ms);

@@ -18,7 +18,7 @@ typedef enum {
     AGV_BUTTON_UNKNOWN,
     AGV_BUTTON_DOWN,
     AGV_BUTTON_UP,
-    AGV_BUTTON_UNHEARD /**< reported as not pressed, but the remote receiver has lost signal or power */
+    AGV_BUTTON_UNHEARD /**< unknown: the remote receiver has lost signal or power, or the push button's input is silent */
 } agv_button_t;
 
 /** Number of conditions of a reset. */

@@ -17,8 +17,7 @@ static bool has(const agv_mode_t *mode, uint32_t bit) {
 }
 
 static agv_mode_change_t begin_engagement(agv_mode_t *mode, agv_timers_t *timers, uint32_t time_ms) {
-    const bool continues =
-        agv_timer_runs(timers, AGV_TIMER_DISENGAGED) && !agv_timer_reached(timers, AGV_TIMER_DISENGAGED);
+    const bool continues = agv_timer_is_within(timers, AGV_TIMER_DISENGAGED);
     mode->engaged = true;
     mode->off_frames = 0u;
     agv_timer_stop(timers, AGV_TIMER_DISENGAGED);
@@ -103,7 +102,7 @@ agv_mode_change_t agv_mode_tick(agv_mode_t *mode, agv_timers_t *timers, bool vcu
 
 void agv_mode_count_engagement(agv_mode_t *mode, agv_timers_t *timers, agv_fault_monitor_t *faults) {
     const uint32_t timer = engagement_timers[mode->oldest];
-    if (agv_timer_runs(timers, timer) && !agv_timer_reached(timers, timer)) {
+    if (agv_timer_is_within(timers, timer)) {
         agv_fault_monitor_event(faults, timers, AGV_FAULT_MODE_FLAPPING);
     }
     agv_timer_start(timers, timer);

@@ -18,7 +18,7 @@
 typedef struct {
     agv_wheel_speed_t wheels;
     uint16_t vcu_speed;     /**< 363h, metres per hour (P7) */
-    uint16_t angle_raw;     /**< last valid measured steering angle, 0.1 degree above the leftmost one (P5) */
+    uint16_t angle_raw;     /**< last valid measured steering angle, raw, 9000 is the centre (P5) */
     uint8_t gear;           /**< agv_gear_t of the last 0A3h; 0 when that was invalid */
     uint8_t throttle;       /**< counts of the last valid 050h */
     bool throttle_known;    /**< the last 050h was valid */

@@ -65,7 +65,7 @@ typedef struct {
     uint16_t store_credit_ms; /**< time until one more write to flash is allowed (INT-3) */
     uint8_t store_credits;    /**< number of writes to flash allowed now */
     uint8_t checked_in;       /**< activities that have checked in since the watchdog was fed (TIM-3) */
-    int8_t led_code;          /**< LED code of the highest-ranking fault */
+    int8_t led_code;          /**< LED code of agv_fault_monitor_shown */
     bool stalled;             /**< at the last tick a frame had waited for longer than tx_stalled_ms */
     bool stall_begins;        /**< that tick was the first one */
 } agv_core_t;

@@ -73,12 +73,12 @@ void agv_core_begin(agv_core_t *core, const agv_ports_t *ports, uint32_t found);
 /** Start again after a corruption of the supervisor's memory was found (INT-5). */
 void agv_core_begin_corrupted(agv_core_t *core, const agv_ports_t *ports);
 
-/** Make second copies of the identifiers and the topology. */
+/** Make second copies of topology, ID set, identifiers, status_frame_id and park. */
 void agv_core_keep_wiring(agv_core_t *core);
 
 /**
- * Check the configuration in the core. If it is refused, it is replaced by the defaults, with the identifiers and the
- * topology of the second copies.
+ * Check the configuration in the core. If it is refused, it is replaced by the defaults, with the values of the
+ * second copies.
  * @param intact whether it is still the configuration that was passed to agv_supervisor_start
  * @return whether it was accepted
  */

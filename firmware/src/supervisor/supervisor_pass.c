@@ -215,8 +215,9 @@ void agv_core_await_safe_state(agv_core_t *core) {
 }
 
 /*
- * FSM-10: while the EPS takes no angles, or a human steers, the steering moves: the held angle is dropped. So it is when no
- * 065h left for 2 s. A late tick replaces an angle that was taken since the last tick. Returns whether a 065h that may no longer be sent waits in a stalled transmitter, and would leave it later.
+ * FSM-10: the held angle is dropped while the EPS takes no angles or the operator steers, and after 2 s without 065h. A late
+ * tick replaces an angle that was taken since the last one. Returns whether a 065h that may no longer be sent waits in a
+ * stalled transmitter.
  */
 static bool follow_hold(agv_core_t *core, uint32_t elapsed_ms) {
     const bool stalled = agv_fault_monitor_is_active(&core->faults, AGV_FAULT_TX_STALLED);

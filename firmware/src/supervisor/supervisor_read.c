@@ -27,12 +27,15 @@ bool agv_supervisor_has_fault(const agv_supervisor_t *supervisor, agv_fault_t fa
 
 uint32_t agv_supervisor_age_ms(const agv_supervisor_t *supervisor, agv_message_t message) {
     const agv_core_t *const core = agv_core_read(supervisor);
+    if ((uint32_t)message >= (uint32_t)AGV_MSG_COUNT) {
+        return UINT32_MAX;
+    }
     return agv_liveness_age_ms(&core->liveness, &core->timers, message);
 }
 
 bool agv_supervisor_is_fresh(const agv_supervisor_t *supervisor, agv_message_t message) {
     const agv_core_t *const core = agv_core_read(supervisor);
-    return agv_liveness_fresh(&core->liveness, &core->timers, message);
+    return ((uint32_t)message < (uint32_t)AGV_MSG_COUNT) && agv_liveness_fresh(&core->liveness, &core->timers, message);
 }
 
 uint32_t agv_supervisor_tick_ms(const agv_supervisor_t *supervisor) {

@@ -16,7 +16,7 @@
 /** A value whose rate of change is limited. */
 typedef struct {
     uint32_t counted_ms; /**< the limit has counted the time up to here */
-    uint16_t rest;       /**< what that time made of a step that is not whole yet, in parts of the limit's scale */
+    uint16_t rest;       /**< remainder of the last division: fraction of a step, in 1/scale */
     uint16_t value;      /**< the last command after the limit: throttle in counts, angle raw (P5) */
 } agv_gateway_rate_t;
 
@@ -42,15 +42,14 @@ typedef struct {
 } agv_gateway_facts_t;
 
 /**
- * Note whether a received 168h asks for D instead of R or the reverse, and has to wait for standstill. Until one does not, 075h
- * is forwarded with throttle 0: otherwise the throttle would drive the vehicle on in the gear that the AI computer wants to
- * leave. A gear that was sent before is not new: the vehicle deviates from it (SUP-11). Call for each command, before the
- * others.
+ * Note whether a received 168h asks for a gear that has to wait for standstill: D or R (gear_change), P (park: at_standstill).
+ * While it waits, 075h is forwarded with throttle 0, so that the throttle does not drive the vehicle on in the old gear. A gear
+ * that was sent before does not wait: then the vehicle deviates from it (SUP-11). Call for each command, before the others.
  */
 void agv_gateway_follow_gear(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t command,
                              const uint8_t data[AGV_DLC]);
 
-/** Whether a command is forwarded; depends on state, mode and, for gear D and R, standstill. */
+/** Whether a command is forwarded; depends on state, mode and, for a gear that needs it, standstill. */
 bool agv_gateway_passes(const agv_gateway_facts_t *facts, uint32_t command, const uint8_t data[AGV_DLC]);
 
 /** Whether a waiting command may still be sent. */

@@ -19,8 +19,8 @@
 #include "transmit/scheduler.h"
 
 /** Sets of messages, bit n is message n: the commands, and the status messages that are forwarded to the AI side. */
-#define AGV_SET_COMMANDS 0x000Fu
-#define AGV_SET_STATUS 0x07F0u
+#define AGV_SET_COMMANDS (((uint32_t)1u << AGV_COMMAND_COUNT) - 1u)
+#define AGV_SET_STATUS ((((uint32_t)1u << (uint32_t)AGV_MSG_COUNT) - 1u) & ~AGV_SET_COMMANDS)
 
 /** Status frame (TOP-3), byte 2: no first reason. */
 #define AGV_STATUS_FRAME_NO_REASON 0xFFu
@@ -96,8 +96,8 @@ void agv_transmitter_burst(agv_transmitter_t *transmitter, const agv_tx_orders_t
 
 /**
  * Override another sender's command, now or when override_gap_ms is over, if the own one is sent in this state and
- * differs (TOP-1). While the controller is error-passive the override waits for a tick since the last of which no such frame
- * came: behind a frame that another one follows without a gap it would collide with that one each time, up to bus-off.
+ * differs (TOP-1). While the controller is error-passive, the override waits for the end of a ms in which no such frame came:
+ * between frames that follow each other without a gap it would collide each time, up to bus-off.
  * @param data its payload; NULL if it is malformed, which always counts as different
  */
 void agv_transmitter_answer(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command,

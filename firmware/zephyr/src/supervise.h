@@ -33,8 +33,9 @@ void supervise_start(supervise_t *self, agv_recorder_t *recorder, zephyr_hal_ret
 void supervise_once(supervise_t *self);
 
 /**
- * Integrator's own test of RAM, flash and processor, before anything begins; weak, true.
- * @return false: the supervisor starts with SELF_TEST_FAILED
+ * The integrator's own test of RAM, flash and processor. Called after zephyr_hal_init() and before the supervisor starts. The
+ * default is a weak function that returns true.
+ * @return false: the supervisor starts with SELF_TEST_FAILED, part "processor"
  */
 bool supervise_self_test(void);
 

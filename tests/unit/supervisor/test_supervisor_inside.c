@@ -295,3 +295,12 @@ void test_the_readers_of_ages_and_of_the_time(void) {
     fixture_run(&f, 6000);
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, agv_supervisor_age_ms(&f.supervisor, AGV_MSG_VEHICLE_STATUS));
 }
+
+/* Shows: SUP-3 */
+void test_a_message_that_does_not_exist_has_no_age(void) {
+    fixture_standby(&f);
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, agv_supervisor_age_ms(&f.supervisor, AGV_MSG_NONE));
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, agv_supervisor_age_ms(&f.supervisor, AGV_MSG_COUNT));
+    TEST_ASSERT_FALSE(agv_supervisor_is_fresh(&f.supervisor, AGV_MSG_NONE));
+    TEST_ASSERT_FALSE(agv_supervisor_is_fresh(&f.supervisor, AGV_MSG_COUNT));
+}
