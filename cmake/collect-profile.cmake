@@ -3,6 +3,7 @@
 #   cmake -DFROM=<tree that counted> -DFOR=<tree to compile in> -DTO=<folder of counts> -P collect-profile.cmake
 #
 # gcc names the file after the object: its full path, with # for each /.
+file(REMOVE_RECURSE ${TO}) # it may lie in FROM, and would be copied into itself
 file(GLOB_RECURSE counts RELATIVE ${FROM} ${FROM}/*.gcda)
 if(NOT counts)
   message(FATAL_ERROR "${FROM}: no profile was recorded")
