@@ -21,10 +21,9 @@ typedef enum {
 typedef struct {
     uint32_t received; /**< frames received, of any kind, on both sides */
     uint32_t rejected[AGV_REJECTED_KINDS];
-    uint32_t
-        dropped; /**< invalid commands, frames of the wrong side, frames that were not forwarded, replaced or discarded */
-    uint32_t sent;          /**< frames that the HAL accepted */
-    uint32_t shadowed;      /**< frames not sent because of the shadow mode (TOP-4) */
+    uint32_t dropped;  /**< invalid commands, frames of the wrong side, and frames that were not sent or forwarded */
+    uint32_t sent;     /**< frames that the HAL accepted */
+    uint32_t shadowed; /**< frames not sent because of the shadow mode (TOP-4) */
     uint32_t gate_refused;  /**< frames that the gate refused (INT-4) */
     uint32_t skipped_slots; /**< transmit slots missed after an overrun (TIM-1) */
     uint32_t limited;       /**< commands that the gateway limited (TOP-2) */

@@ -45,8 +45,7 @@ typedef enum {
 #define AGV_MISSING_TRIP_CAUSE 0x08u    /**< the cause of a trip is present */
 #define AGV_MISSING_STANDSTILL 0x10u    /**< the vehicle is not at standstill */
 #define AGV_MISSING_MANUAL 0x20u        /**< 363h does not report manual */
-#define AGV_MISSING_BUTTON                                                                                             \
-    0x40u /**< the press had no rising edge after the trip, or ended with the loss of the button's signal */
+#define AGV_MISSING_BUTTON 0x40u    /**< the press had no rising edge after the trip, or the button's signal was lost */
 #define AGV_MISSING_MESSAGES 0x80u  /**< a status message whose silence trips is not fresh */
 #define AGV_MISSING_THROTTLE 0x100u /**< 050h is above idle */
 #define AGV_MISSING_RELEASED 0x200u /**< the button was held for longer than reset_hold_max_ms */

@@ -215,10 +215,9 @@ typedef struct {
     uint64_t stood_ms;       /**< 101h last reported standstill, and was not doubted */
     uint64_t bad_command_ms; /**< the last malformed AI command */
     bool has_bad_command;
-    uint64_t foreign_ms; /**< first foreign command on the vehicle side that was not answered; 0: none */
-    uint64_t false_ms;   /**< first command on the vehicle side that no node sent; 0: none */
-    uint64_t
-        stalled_ms; /**< the supervisor's transmitter towards the vehicle stalled last, or was error-passive; 0: never */
+    uint64_t foreign_ms;  /**< first foreign command on the vehicle side that was not answered; 0: none */
+    uint64_t false_ms;    /**< first command on the vehicle side that no node sent; 0: none */
+    uint64_t stalled_ms;  /**< last time its transmitter towards the vehicle was stalled or error-passive; 0: never */
     bool false_is_065h;   /**< that may be the first frame of a hold, whose others wait in a stalled transmitter */
     uint64_t throttle_ms; /**< last 075h above 0 on the vehicle side; newest one there */
     bool throttle_is_newest;
