@@ -149,6 +149,13 @@ typedef struct {
     int32_t high_ddeg;
 } hazard_range_t;
 
+/** The first measured angles after an event. */
+typedef struct {
+    hazard_range_t range;
+    uint64_t since_ms; /**< when the first of them came */
+    bool any;
+} hazard_first_t;
+
 /** 065h of the supervisor. */
 typedef struct {
     uint64_t last_ms;
@@ -160,9 +167,8 @@ typedef struct {
     uint64_t trip_ms;
     bool is_dropped; /**< since then manual was reported, or the EPS took no angle */
     uint64_t dropped_ms;
-    hazard_range_t first; /**< the first measured angles after the trip, or after it was dropped */
-    uint64_t first_ms;    /**< when the first of them came */
-    bool has_first;
+    hazard_first_t first;   /**< after the trip, or after its angle was dropped */
+    hazard_first_t perhaps; /**< after its angle was perhaps dropped */
     bool was_deaf;          /**< in bus-off */
     uint16_t kept;          /**< the last right value */
     uint64_t kept_until_ms; /**< it may be sent again until then */
@@ -296,6 +302,7 @@ void hazard_hold_trip(hazard_t *hazard);
 void hazard_hold_drop(hazard_t *hazard);
 void hazard_eps_status(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV_DLC]);
 bool hazard_eps_takes_no_angle(const hazard_t *hazard);
+bool hazard_eps_perhaps_takes_none(const hazard_t *hazard);
 void hazard_speed_tick(hazard_t *hazard);
 bool hazard_is_said_to_stand(const hazard_t *hazard);
 void hazard_park_frame(hazard_t *hazard);

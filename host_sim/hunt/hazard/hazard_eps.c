@@ -10,7 +10,7 @@ enum {
     FAULTS_BYTE = 7,
     ALARMS_BYTE = 4
 };
-enum { FRAMES = 3, MARGIN_MS = 60, FRAMES_MAX = 65535 };
+enum { FRAMES_MORE = 2, MARGIN_MS = 60, FRAMES_MAX = 65535 };
 
 static void count(uint32_t *frames, bool is_bad) {
     *frames = !is_bad ? 0u : (*frames < (uint32_t)FRAMES_MAX) ? *frames + 1u : *frames;
@@ -33,20 +33,30 @@ void hazard_eps_status(hazard_t *hazard, agv_message_t message, const uint8_t da
     }
 }
 
-static bool is_silent(const hazard_t *hazard) {
+static bool is_silent(const hazard_t *hazard, uint32_t margin_ms) {
     const hazard_message_t *angle = &hazard->messages[AGV_MSG_STEERING_STATUS];
     const hazard_message_t *status = &hazard->messages[AGV_MSG_EPS_STATUS];
-    const uint64_t alive_ms = (uint64_t)hazard->limits.eps_ms + MARGIN_MS;
-    const uint64_t fresh_ms = (uint64_t)hazard->limits.eps_status_ms + MARGIN_MS;
+    const uint64_t alive_ms = (uint64_t)hazard->limits.eps_ms + margin_ms;
+    const uint64_t fresh_ms = (uint64_t)hazard->limits.eps_status_ms + margin_ms;
 
     return (hazard->t_ms - angle->changed_ms > alive_ms) || (hazard->t_ms - status->seen_ms > fresh_ms);
 }
 
-/** The supervisor must know: two frames more than its debouncing needs, so that one may be lost. */
-bool hazard_eps_takes_no_angle(const hazard_t *hazard) {
+/** @param more_frames than debouncing needs */
+static bool takes_none(const hazard_t *hazard, uint32_t more_frames, uint32_t margin_ms) {
     const hazard_eps_t *eps = &hazard->eps;
 
     return hazard_is_hearing(hazard) &&
-           (is_silent(hazard) || (eps->bad_frames >= (uint32_t)FRAMES) || (eps->alarm_frames >= (uint32_t)FRAMES) ||
-            (eps->supply_frames >= hazard->limits.eps_supply_frames + (uint32_t)FRAMES - 1u));
+           (is_silent(hazard, margin_ms) || (eps->bad_frames > more_frames) || (eps->alarm_frames > more_frames) ||
+            (eps->supply_frames >= hazard->limits.eps_supply_frames + more_frames));
+}
+
+/** The supervisor must know: two frames more than its debouncing needs, so that one may be lost. */
+bool hazard_eps_takes_no_angle(const hazard_t *hazard) {
+    return takes_none(hazard, FRAMES_MORE, MARGIN_MS);
+}
+
+/** The supervisor may know: it received each frame. */
+bool hazard_eps_perhaps_takes_none(const hazard_t *hazard) {
+    return takes_none(hazard, 0u, 0u);
 }

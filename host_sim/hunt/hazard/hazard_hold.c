@@ -21,8 +21,18 @@ static void extend_range(hazard_range_t *range, int32_t ddeg) {
 
 /** After a trip, what an EPS that takes no angle measures may be wrong. */
 static void forget_measured(hazard_t *hazard) {
-    hazard->hold.has_first = false;
+    hazard->hold.first.any = false;
     hazard->hold.measured_count = 0u;
+}
+
+/** Both mode bits: manual may end as late as they become MODE_INVALID. */
+static void add_first(const hazard_t *hazard, hazard_first_t *first, int32_t angle_ddeg) {
+    if (!first->any) {
+        *first = (hazard_first_t){.range = {angle_ddeg, angle_ddeg}, .since_ms = hazard->t_ms, .any = true};
+    }
+    if (hazard->t_ms - first->since_ms <= (uint64_t)hazard->limits.mode_invalid_ms + FRESH_MS) {
+        extend_range(&first->range, angle_ddeg);
+    }
 }
 
 void hazard_hold_measured(hazard_t *hazard, int32_t angle_ddeg) {
@@ -33,21 +43,12 @@ void hazard_hold_measured(hazard_t *hazard, int32_t angle_ddeg) {
     hold->measured_ms[at] = hazard->t_ms;
     hold->measured_count++;
     if (hazard->view.is_off) {
-        hold->has_first = false; /* one without power measures nothing */
-        return;
-    }
-    if (hazard->trip.tripped && hazard_eps_takes_no_angle(hazard)) {
+        hold->first.any = false; /* one without power measures nothing */
+    } else if (hazard->trip.tripped && hazard_eps_takes_no_angle(hazard)) {
         forget_measured(hazard);
-        return;
-    }
-    if (!hold->has_first) {
-        hold->has_first = true;
-        hold->first = (hazard_range_t){angle_ddeg, angle_ddeg};
-        hold->first_ms = hazard->t_ms;
-    }
-    /* Both mode bits: manual may end as late as they become MODE_INVALID. */
-    if (hazard->t_ms - hold->first_ms <= (uint64_t)hazard->limits.mode_invalid_ms + FRESH_MS) {
-        extend_range(&hold->first, angle_ddeg);
+    } else {
+        add_first(hazard, &hold->first, angle_ddeg);
+        add_first(hazard, &hold->perhaps, angle_ddeg);
     }
 }
 
@@ -71,7 +72,8 @@ static void trip_now(hazard_t *hazard, uint32_t within_ms) {
     hold->has_trip = true;
     hold->trip_ms = hazard->t_ms;
     hold->is_dropped = false;
-    hold->has_first = false;
+    hold->first.any = false;
+    hold->perhaps.any = false;
     hold->kept_until_ms = 0u;
 }
 
@@ -112,12 +114,8 @@ static bool is_of_trip(const hazard_t *hazard, int32_t held_ddeg) {
            is_within(&hold->at_trip, held_ddeg);
 }
 
-/** The first angles after the trip, or after it was dropped. */
-static bool is_of_first(const hazard_t *hazard, int32_t held_ddeg) {
-    const hazard_hold_t *hold = &hazard->hold;
-
-    return hold->has_first && (hazard->t_ms - hold->first_ms <= in_date_ms(hazard)) &&
-           is_within(&hold->first, held_ddeg);
+static bool is_of_first(const hazard_t *hazard, const hazard_first_t *first, int32_t held_ddeg) {
+    return first->any && (hazard->t_ms - first->since_ms <= in_date_ms(hazard)) && is_within(&first->range, held_ddeg);
 }
 
 /** Whether the angle is one that may be held. */
@@ -126,7 +124,7 @@ static bool may_be_held(const hazard_t *hazard, int32_t held_ddeg) {
     const bool is_kept = (held_ddeg + CENTRE_DDEG == (int32_t)hold->kept) && (hazard->t_ms <= hold->kept_until_ms);
 
     return is_kept || is_within(&hold->now, held_ddeg) || is_of_trip(hazard, held_ddeg) ||
-           is_of_first(hazard, held_ddeg);
+           is_of_first(hazard, &hold->first, held_ddeg) || is_of_first(hazard, &hold->perhaps, held_ddeg);
 }
 
 /** A right angle may be sent again, until it is out of date or manual is reported. */
@@ -179,7 +177,7 @@ static void follow_hearing(hazard_t *hazard) {
     const bool is_deaf = !hazard_is_hearing(hazard) && !hazard->view.is_halted;
 
     if (hold->was_deaf && !is_deaf) {
-        hold->first_ms = hazard->t_ms;
+        hold->first.since_ms = hazard->t_ms;
     }
     hold->was_deaf = is_deaf;
 }
@@ -192,6 +190,9 @@ void hazard_hold_tick(hazard_t *hazard) {
     if (hazard->trip.tripped && hazard_eps_takes_no_angle(hazard)) {
         hazard_hold_drop(hazard);
         forget_measured(hazard);
+    }
+    if (hazard_eps_perhaps_takes_none(hazard)) {
+        hazard->hold.perhaps.any = false;
     }
     if (!hold->is_wrong || (hazard->t_ms - hold->last_ms > NEW_HOLD_MS)) {
         return;

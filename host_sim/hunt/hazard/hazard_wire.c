@@ -87,7 +87,8 @@ static void note_manual(hazard_t *hazard, bool manual) {
 
     if (mode->manual && !manual && mode->heard) {
         mode->handback_ms = hazard->t_ms;
-        hazard->hold.has_first = false;
+        hazard->hold.first.any = false;
+        hazard->hold.perhaps.any = false;
     }
     if (manual) {
         mode->heard = (mode->manual && mode->heard) || hazard_is_hearing(hazard);

@@ -293,6 +293,36 @@ void test_h2_an_eps_that_takes_no_angle_drops_the_angle_of_the_trip(void) {
     }
 }
 
+/** A supervisor that received each faulty frame dropped the angle of the trip, and took the next one. */
+void test_h2_an_angle_that_was_perhaps_dropped_may_be_taken_anew(void) {
+    static const struct {
+        const char *steps;
+        bool may;
+    } rows[] = {{"eps: set, field: mode, value: 01h, frames: 4", false},
+                {"eps: set, field: faults, value: 02h, frames: 4", true},
+                {"eps: set, field: faults, value: 08h, frames: 1", true},
+                {"vcu: set, field: alarms, value: 10h, frames: 1", true},
+                {"eps: mute, message: eps_status, frames: 7", true}};
+    const stub_t later = {
+        .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 500, .holds = true, .hold_ms = TRIP_MS + 1300, .hold_ddeg = -800};
+    char steps[768];
+
+    for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
+        (void)snprintf(steps, sizeof steps,
+                       "  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
+                       "  - {at_ms: 3010, ai: drive, gear: D, throttle_pct: 60, steer_deg: -60}\n"
+                       "  - {at_ms: 3110, %s}\n"
+                       "  - {at_ms: 3800, ai: drive, gear: D, throttle_pct: 60, steer_deg: 20}\n"
+                       "  - {at_ms: 4200, ai: mute, message: steering_command}\n",
+                       rows[i].steps);
+        if (rows[i].may) {
+            expect_none(&later, steps);
+        } else {
+            expect_hazard(HAZARD_STEERING, "the supervisor steers to another angle", &later, steps);
+        }
+    }
+}
+
 void test_h2_who_is_bus_off_does_not_hear_of_manual(void) {
     const char *const steps = "  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
                               "  - {at_ms: 3100, supervisor: bus_off}\n"
