@@ -4,6 +4,7 @@ set(AGV_CORE_SOURCES
   ${AGV_CORE_DIR}/src/base/checksum.c
   ${AGV_CORE_DIR}/src/base/codec.c
   ${AGV_CORE_DIR}/src/base/config.c
+  ${AGV_CORE_DIR}/src/base/fault_monitor.c
   ${AGV_CORE_DIR}/src/base/fault_table.c
   ${AGV_CORE_DIR}/src/base/message.c
   ${AGV_CORE_DIR}/src/base/names.c
@@ -11,7 +12,6 @@ set(AGV_CORE_SOURCES
   ${AGV_CORE_DIR}/src/base/state.c
   ${AGV_CORE_DIR}/src/base/timers.c
   ${AGV_CORE_DIR}/src/decide/confirmation.c
-  ${AGV_CORE_DIR}/src/decide/fault_monitor.c
   ${AGV_CORE_DIR}/src/decide/hold.c
   ${AGV_CORE_DIR}/src/decide/reset_button.c
   ${AGV_CORE_DIR}/src/decide/state_machine.c

@@ -36,6 +36,15 @@ report 'firmware/ includes something other than C headers, "agv/...", "hal/..." 
 
 report 'a source of firmware/src is not in a folder of a module group' < <(find firmware/src -maxdepth 1 -name '*.[ch]')
 
+# A room includes itself and those before it.
+order=(base keep observe decide transmit supervisor)
+for ((i = 0; i < ${#order[@]}; i++)); do
+    later=$(printf '|%s' "${order[@]:i+1}")
+    report "firmware/src/${order[i]} includes a later room of ${order[*]}" < <(
+        [[ $later == '|' ]] || grep -rnE "^\s*#\s*include\s+\"(${later#|})/" "firmware/src/${order[i]}" || true
+    )
+done
+
 report 'only firmware/src/supervisor/supervisor*.[ch] may access the memory of a supervisor' < <(
     grep -rnE '^\s*#\s*include\s+"([^"]*/)?(core|supervisor_internal)\.h"' firmware hal --include='*.[ch]' |
         grep -v '^firmware/src/supervisor/supervisor'

@@ -46,6 +46,11 @@ typedef struct {
     uint16_t of[AGV_MSG_COUNT];
 } agv_ids_t;
 
+/** The bit of a message in a set of messages. @param message agv_message_t */
+static inline uint32_t agv_message_bit(uint32_t message) {
+    return (uint32_t)1u << message;
+}
+
 /**
  * The identifier of a message in one of the two sets.
  * @return the 11-bit identifier; a value above AGV_ID_MAX if @p message or @p id_set is invalid.

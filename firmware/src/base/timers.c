@@ -1,6 +1,5 @@
 #include "base/timers.h"
 
-#include <stddef.h>
 #include <string.h>
 
 /* Time in ms that a timer must run beyond its limit: durations expire at >= the limit, deadlines at > it; a step adds 1 ms. */
@@ -150,7 +149,7 @@ bool agv_timer_reached(const agv_timers_t *timers, uint32_t timer) {
 bool agv_timer_while(agv_timers_t *timers, uint32_t timer, bool condition) {
     if (!condition) {
         agv_timer_stop(timers, timer);
-    } else if (!agv_timer_runs(timers, timer)) {
+    } else if (!agv_timer_is_started(timers, timer)) {
         agv_timer_start(timers, timer);
     } else {
         /* runs on */
@@ -162,6 +161,6 @@ bool agv_timer_is_within(const agv_timers_t *timers, uint32_t timer) {
     return is_running(timers, timer);
 }
 
-bool agv_timer_runs(const agv_timers_t *timers, uint32_t timer) {
+bool agv_timer_is_started(const agv_timers_t *timers, uint32_t timer) {
     return timers->phase[timer] != (uint8_t)AGV_TIMER_STOPPED;
 }

@@ -88,6 +88,6 @@ bool agv_timer_while(agv_timers_t *timers, uint32_t timer, bool condition);
 bool agv_timer_is_within(const agv_timers_t *timers, uint32_t timer);
 
 /** Whether a timer is running or has reached its limit. */
-bool agv_timer_runs(const agv_timers_t *timers, uint32_t timer);
+bool agv_timer_is_started(const agv_timers_t *timers, uint32_t timer);
 
 #endif

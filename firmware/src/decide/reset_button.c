@@ -1,6 +1,5 @@
 #include "decide/reset_button.h"
 
-#include <stddef.h>
 #include <string.h>
 
 /* The conditions. */

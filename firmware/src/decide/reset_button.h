@@ -12,14 +12,7 @@
 
 #include "agv/recorder.h"
 #include "base/timers.h"
-
-/** State of a button. */
-typedef enum {
-    AGV_BUTTON_UNKNOWN,
-    AGV_BUTTON_DOWN,
-    AGV_BUTTON_UP,
-    AGV_BUTTON_UNHEARD /**< unknown: the remote receiver has lost signal or power, or the push button's input is silent */
-} agv_button_t;
+#include "observe/hardware.h"
 
 /** Number of conditions of a reset. */
 #define AGV_RESET_CONDITIONS 9u

@@ -11,8 +11,8 @@
 
 #include "agv/recorder.h"
 #include "agv/state.h"
+#include "base/fault_monitor.h"
 #include "base/timers.h"
-#include "decide/fault_monitor.h"
 
 /** Inputs of a step: bits. A fact that is a condition of a reset has the bit of its AGV_MISSING_*. */
 #define AGV_FACT_VCU_ALIVE AGV_MISSING_VCU_HEARTBEAT

@@ -88,7 +88,7 @@ void agv_recorder_start(agv_recorder_t *recorder) {
 void agv_recorder_frame(agv_recorder_t *recorder, uint32_t message, const uint8_t data[AGV_DLC]) {
     if (message < (uint32_t)AGV_MSG_COUNT) {
         (void)memcpy(recorder->frames[message], data, AGV_DLC);
-        recorder->seen |= (uint16_t)((uint32_t)1u << message);
+        recorder->seen |= (uint16_t)agv_message_bit(message);
     }
 }
 

@@ -17,7 +17,7 @@ void agv_bus_start(agv_bus_t *bus, hal_t *hal, hal_can_side_t side) {
 }
 
 bool agv_bus_is_off(const agv_timers_t *timers, hal_can_side_t side) {
-    return agv_timer_runs(timers, timer_of(side));
+    return agv_timer_is_started(timers, timer_of(side));
 }
 
 uint32_t agv_bus_tick(agv_bus_t *bus, agv_timers_t *timers, const agv_config_t *config, hal_t *hal,

@@ -2,12 +2,8 @@
 
 #include "agv/codec.h"
 
-static uint32_t bit_of(uint32_t command) {
-    return (uint32_t)1u << command;
-}
-
 void agv_commands_take(agv_commands_t *commands, uint32_t command, const uint8_t data[AGV_DLC]) {
-    commands->known |= (uint8_t)bit_of(command);
+    commands->known |= (uint8_t)agv_message_bit(command);
     if (command == (uint32_t)AGV_MSG_STEERING_COMMAND) {
         commands->angle_raw = (uint16_t)agv_angle_read(data);
     } else if (command == (uint32_t)AGV_MSG_THROTTLE_COMMAND) {
@@ -24,5 +20,5 @@ void agv_commands_forget(agv_commands_t *commands) {
 }
 
 bool agv_commands_has(const agv_commands_t *commands, uint32_t command) {
-    return (commands->known & bit_of(command)) != 0u;
+    return (commands->known & agv_message_bit(command)) != 0u;
 }

@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "decide/fault_monitor.h"
+#include "base/fault_monitor.h"
 #include "observe/liveness.h"
 
 /** Evaluate all deadlines and heartbeats. Call at every tick, after agv_liveness_tick. */

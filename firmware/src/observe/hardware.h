@@ -9,14 +9,21 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/fault_monitor.h"
 #include "base/score.h"
 #include "base/timers.h"
-#include "decide/fault_monitor.h"
-#include "decide/reset_button.h"
 #include "hal/hal.h"
 
 /** Time for which the reset button must be read alike, ms (HW-3). */
 enum { AGV_BUTTON_DEBOUNCE_MS = 20 };
+
+/** State of a button. */
+typedef enum {
+    AGV_BUTTON_UNKNOWN,
+    AGV_BUTTON_DOWN,
+    AGV_BUTTON_UP,
+    AGV_BUTTON_UNHEARD /**< unknown: the remote receiver has lost signal or power, or the push button's input is silent */
+} agv_button_t;
 
 /** What is known of the hardware. */
 typedef struct {

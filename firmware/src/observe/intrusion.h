@@ -10,8 +10,8 @@
 
 #include "agv/config.h"
 #include "agv/protocol.h"
+#include "base/fault_monitor.h"
 #include "base/score.h"
-#include "decide/fault_monitor.h"
 #include "observe/liveness.h"
 
 /** Scores of gaps between commands that are shorter than half the cycle. */

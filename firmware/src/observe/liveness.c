@@ -1,7 +1,5 @@
 #include "observe/liveness.h"
 
-#include <stddef.h>
-
 /* The message that carries a heartbeat, by node. */
 static const uint8_t carriers[AGV_NODE_COUNT] = {[AGV_NODE_VCU] = AGV_MSG_VEHICLE_STATUS,
                                                  [AGV_NODE_EPS] = AGV_MSG_STEERING_STATUS,
@@ -16,10 +14,6 @@ static const uint8_t counters_at[AGV_MSG_COUNT] = {
 #undef AGV_COMMAND
 #undef AGV_STATUS
 };
-
-static uint16_t bit_of(uint32_t message) {
-    return (uint16_t)((uint32_t)1u << message);
-}
 
 static bool has(uint32_t set, uint32_t message) {
     return ((set >> message) & 1u) != 0u;
@@ -41,8 +35,8 @@ uint32_t agv_liveness_arrived(agv_liveness_t *liveness, uint32_t message, uint32
     const uint32_t last_ms = liveness->last_ms[message];
     const bool known = has(liveness->heard, message) && !has(liveness->old, message);
     liveness->last_ms[message] = time_ms;
-    liveness->heard |= bit_of(message);
-    liveness->old &= (uint16_t)~bit_of(message);
+    liveness->heard |= (uint16_t)agv_message_bit(message);
+    liveness->old &= (uint16_t)~agv_message_bit(message);
     return known ? agv_age_ms(time_ms, last_ms) : AGV_AGE_MAX;
 }
 
@@ -140,7 +134,7 @@ static void expire(agv_liveness_t *liveness, const agv_timers_t *timers, uint32_
 static void age_one(agv_liveness_t *liveness, const agv_timers_t *timers) {
     const uint32_t next = liveness->next_to_age;
     if (agv_age_ms(timers->now_ms, liveness->last_ms[next]) > AGV_AGE_LIMIT_MS) {
-        liveness->old |= bit_of(next);
+        liveness->old |= (uint16_t)agv_message_bit(next);
     }
     liveness->next_to_age = (uint8_t)((next + 1u) % (uint32_t)AGV_MSG_COUNT);
 }

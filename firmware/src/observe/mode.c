@@ -51,9 +51,9 @@ static agv_mode_change_t count_off_frame(agv_mode_t *mode, agv_timers_t *timers,
 /* Time an interrupted condition: it resumes with the time that is left. Returns whether it has lasted long enough. */
 static bool resume_while(agv_timers_t *timers, const agv_config_t *config, uint32_t timer, agv_budget_t *spent,
                          bool condition) {
-    if (condition && !agv_timer_runs(timers, timer)) {
+    if (condition && !agv_timer_is_started(timers, timer)) {
         agv_timer_start_at(timers, timer, timers->now_ms - spent->value_ms);
-    } else if (!condition && agv_timer_runs(timers, timer)) {
+    } else if (!condition && agv_timer_is_started(timers, timer)) {
         spent->value_ms = (uint16_t)agv_timer_spent_ms(timers, config, timer);
         agv_timer_stop(timers, timer);
     } else {
@@ -63,7 +63,7 @@ static bool resume_while(agv_timers_t *timers, const agv_config_t *config, uint3
 }
 
 static void reduce_budget(const agv_timers_t *timers, uint32_t timer, agv_budget_t *spent, uint32_t elapsed_ms) {
-    if (!agv_timer_runs(timers, timer)) {
+    if (!agv_timer_is_started(timers, timer)) {
         agv_budget_add(spent, false, elapsed_ms, UINT16_MAX);
     }
 }

@@ -10,9 +10,9 @@
 #include <stdint.h>
 
 #include "agv/config.h"
+#include "base/fault_monitor.h"
 #include "base/score.h"
 #include "base/timers.h"
-#include "decide/fault_monitor.h"
 
 /** The mode of one vehicle. */
 typedef struct {

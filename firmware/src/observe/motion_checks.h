@@ -10,8 +10,8 @@
 #include <stdint.h>
 
 #include "agv/config.h"
+#include "base/fault_monitor.h"
 #include "base/score.h"
-#include "decide/fault_monitor.h"
 #include "observe/commands.h"
 #include "observe/vehicle.h"
 

@@ -11,8 +11,8 @@
 
 #include "agv/config.h"
 #include "agv/protocol.h"
+#include "base/fault_monitor.h"
 #include "base/score.h"
-#include "decide/fault_monitor.h"
 
 /** Number of fault bits of 167h that are scored: under voltage, over voltage, excessive current. */
 #define AGV_SCORED_EPS_BITS 3u

@@ -10,9 +10,9 @@
 #include <stdint.h>
 
 #include "agv/supervisor.h"
+#include "base/fault_monitor.h"
 #include "base/timers.h"
 #include "decide/confirmation.h"
-#include "decide/fault_monitor.h"
 #include "decide/hold.h"
 #include "decide/reset_button.h"
 #include "decide/state_machine.h"

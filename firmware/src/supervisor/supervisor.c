@@ -1,6 +1,5 @@
 #include "agv/supervisor.h"
 
-#include <stddef.h>
 #include <string.h>
 
 #include "agv/checksum.h"

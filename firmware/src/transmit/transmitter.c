@@ -19,10 +19,6 @@ enum { STATUS_ON_WIRE_MS = 2 };
 /* A tick that comes later than this after the last one is late. */
 enum { TICK_USUAL_MS = 2 };
 
-static uint32_t bit_of(uint32_t message) {
-    return (uint32_t)1u << message;
-}
-
 void agv_transmitter_start(agv_transmitter_t *transmitter, uint32_t now_ms) {
     transmitter->status_due_ms = now_ms;
     transmitter->status_ms = now_ms - (uint32_t)STATUS_ON_WIRE_MS - 1u;
@@ -59,12 +55,12 @@ void agv_transmitter_withdraw(agv_transmitter_t *transmitter, agv_timers_t *time
 static uint32_t wanted_commands(const agv_tx_orders_t *orders) {
     uint32_t wanted = 0u;
     if (agv_state_commands_safe((agv_state_t)orders->state)) {
-        wanted = bit_of(AGV_MSG_TURN_SIGNAL_COMMAND) | bit_of(AGV_MSG_THROTTLE_COMMAND);
+        wanted = agv_message_bit(AGV_MSG_TURN_SIGNAL_COMMAND) | agv_message_bit(AGV_MSG_THROTTLE_COMMAND);
         if (orders->park_released) {
-            wanted |= bit_of(AGV_MSG_GEAR_COMMAND);
+            wanted |= agv_message_bit(AGV_MSG_GEAR_COMMAND);
         }
         if (orders->holdable && agv_hold_is_held(&orders->hold)) {
-            wanted |= bit_of(AGV_MSG_STEERING_COMMAND);
+            wanted |= agv_message_bit(AGV_MSG_STEERING_COMMAND);
         }
     }
     return wanted;
@@ -157,7 +153,7 @@ void agv_transmitter_burst(agv_transmitter_t *transmitter, const agv_tx_orders_t
     agv_scheduler_restart(&transmitter->scheduler, orders->timers->now_ms);
     for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
         const uint32_t command = nth_command(orders, i);
-        if ((wanted & bit_of(command)) != 0u) {
+        if ((wanted & agv_message_bit(command)) != 0u) {
             send_own(transmitter, orders, command);
         }
     }
@@ -184,10 +180,10 @@ static void override(agv_transmitter_t *transmitter, const agv_tx_orders_t *orde
 void agv_transmitter_answer(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command,
                             const uint8_t *data) {
     const bool differs = (data == NULL) || !is_same_command(transmitter, orders, command, data);
-    if (!differs || ((wanted_commands(orders) & bit_of(command)) == 0u)) {
+    if (!differs || ((wanted_commands(orders) & agv_message_bit(command)) == 0u)) {
         return;
     }
-    transmitter->foreign_lately |= (uint8_t)bit_of(command);
+    transmitter->foreign_lately |= (uint8_t)agv_message_bit(command);
     if (agv_scheduler_override(&transmitter->scheduler, orders->timers->now_us, orders->config->override_gap_ms,
                                command) &&
         !orders->passive) {
@@ -201,16 +197,16 @@ static bool is_too_soon(agv_transmitter_t *transmitter, uint32_t message, uint32
         return false;
     }
     if ((2u * (now_ms - transmitter->passed_ms[message])) >= agv_message_cycle_ms(message)) {
-        transmitter->passed_lately &= (uint8_t)~bit_of(message);
+        transmitter->passed_lately &= (uint8_t)~agv_message_bit(message);
     }
-    return (transmitter->passed_lately & bit_of(message)) != 0u;
+    return (transmitter->passed_lately & agv_message_bit(message)) != 0u;
 }
 
 static void note_passed(agv_transmitter_t *transmitter, uint32_t message, uint32_t now_ms) {
-    transmitter->kept &= ~bit_of(message);
+    transmitter->kept &= ~agv_message_bit(message);
     if (message < AGV_COMMAND_COUNT) {
-        transmitter->report.passed |= (uint8_t)bit_of(message);
-        transmitter->passed_lately |= (uint8_t)bit_of(message);
+        transmitter->report.passed |= (uint8_t)agv_message_bit(message);
+        transmitter->passed_lately |= (uint8_t)agv_message_bit(message);
         transmitter->passed_ms[message] = now_ms;
     }
 }
@@ -220,15 +216,15 @@ static void send_passed(agv_transmitter_t *transmitter, const agv_tx_orders_t *o
     const uint32_t now_ms = orders->timers->now_ms;
     if (is_too_soon(transmitter, message, now_ms) ||
         send_message(transmitter, orders, message, transmitter->kept_data[message])) {
-        transmitter->kept |= bit_of(message);
+        transmitter->kept |= agv_message_bit(message);
     } else {
         note_passed(transmitter, message, now_ms);
     }
 }
 
 void agv_transmitter_drop(agv_transmitter_t *transmitter, agv_timers_t *timers, uint32_t command) {
-    if ((transmitter->kept & bit_of(command)) != 0u) {
-        transmitter->kept &= ~bit_of(command);
+    if ((transmitter->kept & agv_message_bit(command)) != 0u) {
+        transmitter->kept &= ~agv_message_bit(command);
         transmitter->report.dropped++;
         agv_timer_stop(timers, waits[command]);
     }
@@ -252,7 +248,7 @@ const uint8_t *agv_transmitter_passed(const agv_transmitter_t *transmitter, uint
 
 void agv_transmitter_pass(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t message,
                           const uint8_t data[AGV_DLC]) {
-    if ((transmitter->kept & bit_of(message)) != 0u) {
+    if ((transmitter->kept & agv_message_bit(message)) != 0u) {
         transmitter->report.dropped++; /* the older waiting one */
     }
     if (message == (uint32_t)AGV_MSG_THROTTLE_COMMAND) {
@@ -264,7 +260,7 @@ void agv_transmitter_pass(agv_transmitter_t *transmitter, const agv_tx_orders_t 
 
 /* Whether no command that has to be overridden came in the last ms. After a late tick, those since the last one are older. */
 static bool is_quiet(const agv_transmitter_t *transmitter, const agv_tx_orders_t *orders, uint32_t command) {
-    return ((transmitter->foreign_lately & bit_of(command)) == 0u) ||
+    return ((transmitter->foreign_lately & agv_message_bit(command)) == 0u) ||
            ((orders->timers->now_ms - transmitter->tick_ms) > (uint32_t)TICK_USUAL_MS);
 }
 
@@ -272,7 +268,7 @@ static void tick_own(agv_transmitter_t *transmitter, const agv_tx_orders_t *orde
     const uint32_t slots = agv_scheduler_due(&transmitter->scheduler, orders->timers->now_ms, command);
     const bool foreign = agv_scheduler_override_due(&transmitter->scheduler, orders->timers->now_us,
                                                     orders->config->override_gap_ms, command);
-    if ((wanted & bit_of(command)) == 0u) {
+    if ((wanted & agv_message_bit(command)) == 0u) {
         agv_timer_stop(orders->timers, waits[command]);
         agv_scheduler_answered(&transmitter->scheduler, command);
         return;
@@ -286,11 +282,11 @@ static void tick_own(agv_transmitter_t *transmitter, const agv_tx_orders_t *orde
     }
     /* park: at_standstill held P back; 065h waits for its slot */
     const bool first_park =
-        (command == (uint32_t)AGV_MSG_GEAR_COMMAND) && ((transmitter->wanted_before & bit_of(command)) == 0u);
+        (command == (uint32_t)AGV_MSG_GEAR_COMMAND) && ((transmitter->wanted_before & agv_message_bit(command)) == 0u);
     if (first_park) {
         agv_scheduler_restart_slot(&transmitter->scheduler, orders->timers->now_ms, command);
     }
-    if (first_park || (slots != 0u) || agv_timer_runs(orders->timers, waits[command])) {
+    if (first_park || (slots != 0u) || agv_timer_is_started(orders->timers, waits[command])) {
         send_own(transmitter, orders, command);
     }
 }
@@ -339,7 +335,7 @@ void agv_transmitter_status(agv_transmitter_t *transmitter, const agv_tx_orders_
     const agv_config_t *const config = orders->config;
     const uint32_t late_ms = orders->timers->now_ms - transmitter->status_due_ms;
     const bool due = late_ms <= (UINT32_MAX / 2u);
-    bool has_to_wait = agv_timer_runs(orders->timers, AGV_TIMER_TX_STATUS) || transmitter->status_again;
+    bool has_to_wait = agv_timer_is_started(orders->timers, AGV_TIMER_TX_STATUS) || transmitter->status_again;
     if ((config->status_frame_id == 0u) || (config->shadow == (uint16_t)AGV_SHADOW_ON) ||
         agv_bus_is_off(orders->timers, HAL_CAN_VEHICLE)) {
         has_to_wait = false;
@@ -358,7 +354,7 @@ void agv_transmitter_status(agv_transmitter_t *transmitter, const agv_tx_orders_
 void agv_transmitter_tick(agv_transmitter_t *transmitter, const agv_tx_orders_t *orders) {
     const uint32_t wanted = wanted_commands(orders);
     for (uint32_t i = 0u; ((transmitter->kept | transmitter->passed_lately) >> i) != 0u; i++) {
-        if ((transmitter->kept & bit_of(i)) != 0u) {
+        if ((transmitter->kept & agv_message_bit(i)) != 0u) {
             send_passed(transmitter, orders, i);
         } else {
             (void)is_too_soon(transmitter, i, orders->timers->now_ms);
@@ -379,9 +375,9 @@ void agv_transmitter_tick(agv_transmitter_t *transmitter, const agv_tx_orders_t 
 }
 
 bool agv_transmitter_waits(const agv_timers_t *timers) {
-    bool waiting = agv_timer_runs(timers, AGV_TIMER_TX_STATUS);
+    bool waiting = agv_timer_is_started(timers, AGV_TIMER_TX_STATUS);
     for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
-        waiting = waiting || agv_timer_runs(timers, waits[i]);
+        waiting = waiting || agv_timer_is_started(timers, waits[i]);
     }
     return waiting;
 }

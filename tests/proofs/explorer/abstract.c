@@ -273,9 +273,9 @@ static bool is_holdable(void) {
 static bool waits_to_send(void) {
     bool waits = false;
     for (unsigned i = 0; i < (unsigned)AGV_COMMAND_COUNT; i++) {
-        waits = waits || agv_timer_runs(&core()->timers, (unsigned)AGV_TIMER_TX_TURN_SIGNAL + i);
+        waits = waits || agv_timer_is_started(&core()->timers, (unsigned)AGV_TIMER_TX_TURN_SIGNAL + i);
     }
-    return waits || agv_timer_runs(&core()->timers, AGV_TIMER_TX_STATUS);
+    return waits || agv_timer_is_started(&core()->timers, AGV_TIMER_TX_STATUS);
 }
 
 static void always(abstract_t *key) {

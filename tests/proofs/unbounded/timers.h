@@ -210,6 +210,6 @@ bool agv_timer_is_within(const agv_timers_t *timers, uint32_t timer);
     assigns \nothing;
     ensures \result <==> timers->phase[timer] != 0;
 */
-bool agv_timer_runs(const agv_timers_t *timers, uint32_t timer);
+bool agv_timer_is_started(const agv_timers_t *timers, uint32_t timer);
 
 #endif

@@ -120,18 +120,18 @@ void test_a_duration_of_a_millisecond_is_reached_in_the_next_one(void) {
 }
 
 void test_a_stopped_timer_reaches_nothing(void) {
-    TEST_ASSERT_FALSE(agv_timer_runs(&timers, DURATION));
+    TEST_ASSERT_FALSE(agv_timer_is_started(&timers, DURATION));
     TEST_ASSERT_FALSE(agv_timer_is_within(&timers, DURATION));
     TEST_ASSERT_FALSE(reached(DURATION, 1000));
     TEST_ASSERT_FALSE(reached(DEADLINE, 1001));
     begin(DURATION, 1001);
-    TEST_ASSERT_TRUE(agv_timer_runs(&timers, DURATION));
+    TEST_ASSERT_TRUE(agv_timer_is_started(&timers, DURATION));
     TEST_ASSERT_TRUE(agv_timer_is_within(&timers, DURATION));
     advance(1101);
-    TEST_ASSERT_TRUE(agv_timer_runs(&timers, DURATION));
+    TEST_ASSERT_TRUE(agv_timer_is_started(&timers, DURATION));
     TEST_ASSERT_FALSE(agv_timer_is_within(&timers, DURATION));
     agv_timer_stop(&timers, DURATION);
-    TEST_ASSERT_FALSE(agv_timer_runs(&timers, DURATION));
+    TEST_ASSERT_FALSE(agv_timer_is_started(&timers, DURATION));
     TEST_ASSERT_FALSE(agv_timer_reached(&timers, DURATION));
     TEST_ASSERT_FALSE(reached(DURATION, 2000));
 }
@@ -197,7 +197,7 @@ void test_every_timer_runs_alone(void) {
         begin(timer, 7);
         advance(8);
         for (uint32_t other = 0; other < AGV_TIMER_COUNT; other++) {
-            TEST_ASSERT_EQUAL(other == timer, agv_timer_runs(&timers, other));
+            TEST_ASSERT_EQUAL(other == timer, agv_timer_is_started(&timers, other));
             TEST_ASSERT_FALSE(agv_timer_reached(&timers, other));
         }
         advance(70000);
@@ -205,7 +205,7 @@ void test_every_timer_runs_alone(void) {
             TEST_ASSERT_EQUAL(other == timer, agv_timer_reached(&timers, other));
         }
         agv_timer_stop(&timers, timer);
-        TEST_ASSERT_FALSE(agv_timer_runs(&timers, timer));
+        TEST_ASSERT_FALSE(agv_timer_is_started(&timers, timer));
     }
 }
 
@@ -244,7 +244,7 @@ void test_a_condition_that_breaks_starts_the_time_again(void) {
     TEST_ASSERT_FALSE(go_on_while(true, 10));
     TEST_ASSERT_FALSE(go_on_while(true, 109));
     TEST_ASSERT_FALSE(go_on_while(false, 110));
-    TEST_ASSERT_FALSE(agv_timer_runs(&timers, DURATION));
+    TEST_ASSERT_FALSE(agv_timer_is_started(&timers, DURATION));
     TEST_ASSERT_FALSE(go_on_while(true, 111));
     TEST_ASSERT_FALSE(go_on_while(true, 210));
     TEST_ASSERT_TRUE(go_on_while(true, 211));
@@ -335,7 +335,7 @@ void test_a_start_stops_all_timers(void) {
     agv_timers_start(&timers);
     TEST_ASSERT_EQUAL_UINT32(1000, timers.now_ms);
     for (uint32_t timer = 0; timer < AGV_TIMER_COUNT; timer++) {
-        TEST_ASSERT_FALSE(agv_timer_runs(&timers, timer));
+        TEST_ASSERT_FALSE(agv_timer_is_started(&timers, timer));
     }
 }
 

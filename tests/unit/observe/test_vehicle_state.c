@@ -93,7 +93,7 @@ void test_an_angle_that_is_invalid_changes_nothing(void) {
     hal_can_frame_t frame = {.time_ms = timers.now_ms, .length = 8, .data = {1, 2, 0xFF, 0xFF}};
     agv_vehicle_steering(&vehicle, &timers, &frame, false);
     TEST_ASSERT_FALSE(vehicle.angle_known);
-    TEST_ASSERT_FALSE(agv_timer_runs(&timers, AGV_TIMER_ANGLE));
+    TEST_ASSERT_FALSE(agv_timer_is_started(&timers, AGV_TIMER_ANGLE));
     frame.data[2] = 0xA3;
     frame.data[3] = 0x23;
     agv_vehicle_steering(&vehicle, &timers, &frame, true);

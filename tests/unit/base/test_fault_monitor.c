@@ -1,5 +1,5 @@
 /* The faults of one supervisor: conditions, transients, and their evaluation. */
-#include "decide/fault_monitor.h"
+#include "base/fault_monitor.h"
 
 #include <string.h>
 

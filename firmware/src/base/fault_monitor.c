@@ -1,6 +1,5 @@
-#include "decide/fault_monitor.h"
+#include "base/fault_monitor.h"
 
-#include <stddef.h>
 #include <string.h>
 
 /* The transient faults, each with its timer. */
