@@ -260,6 +260,8 @@ static bool blame_twice(const agv_config_t *config, const config_lines_t *lines,
     return report_setting(lines, lines->settings[blamed], agv_setting_info(blamed)->name, reason);
 }
 
+static const char NEEDS_GATEWAY[] = "has no effect on a shared bus; this value needs the gateway topology";
+
 /** The setting of the file because of which no press would reset. */
 static bool blame_press(const config_lines_t *lines) {
     const size_t longest = lines->settings[AGV_SETTING_reset_hold_max_ms];
@@ -268,6 +270,15 @@ static bool blame_press(const config_lines_t *lines) {
         return report_setting(lines, shortest, "reset_hold_ms", "must be below reset_hold_max_ms");
     }
     return report_setting(lines, longest, "reset_hold_max_ms", "must be above reset_hold_ms");
+}
+
+/** Why a fault must keep its default class. */
+static const char *class_reason(agv_fault_t fault) {
+    if ((agv_fault_flags(fault) & AGV_FAULT_FLAG_FIXED) == 0u) {
+        return NEEDS_GATEWAY;
+    }
+    return (agv_fault_default_class(fault) == AGV_CLASS_TRIP) ? "this fault must stay a trip"
+                                                              : "this fault must stay a warning";
 }
 
 bool config_check(const agv_config_t *config, const config_lines_t *lines) {
@@ -284,13 +295,12 @@ bool config_check(const agv_config_t *config, const config_lines_t *lines) {
     case AGV_CONFIG_ID_TWICE:
         return blame_twice(config, lines, verdict.setting);
     case AGV_CONFIG_NEEDS_GATEWAY:
-        return report_setting(lines, line, name,
-                              "has no effect on a shared bus; this value needs the gateway topology");
+        return report_setting(lines, line, name, NEEDS_GATEWAY);
     case AGV_CONFIG_PRESS_TOO_SHORT:
         return blame_press(lines);
-    case AGV_CONFIG_FAULT_TOO_WEAK:
+    case AGV_CONFIG_CLASS_FIXED:
         config_class_key(verdict.fault, key);
-        return report_setting(lines, lines->classes[verdict.fault], key, "this fault must stay a trip");
+        return report_setting(lines, lines->classes[verdict.fault], key, class_reason(verdict.fault));
     case AGV_CONFIG_NO_SUCH_FAULT:
     default:
         return report("the configuration is invalid");

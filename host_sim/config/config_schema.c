@@ -62,11 +62,12 @@ static json_t *setting_of(const agv_setting_info_t *info) {
     return schema;
 }
 
-/** A fault that must stay a trip has one class, but for a scenario with `config_unchecked`. */
+/** A fault whose class is fixed has that one, but for a scenario with `config_unchecked`. */
 static json_t *class_of(agv_fault_t fault, bool may_be_unchecked) {
     const bool is_fixed = !may_be_unchecked && ((agv_fault_flags(fault) & AGV_FAULT_FLAG_FIXED) != 0u);
-    json_t *schema = is_fixed ? json_pack("{s:[s]}", "enum", "trip") : json_pack("{s:[s, s]}", "enum", "trip", "warn");
-    (void)json_object_set_new(schema, "default", json_string(agv_class_name(agv_fault_default_class(fault))));
+    const char *preset = agv_class_name(agv_fault_default_class(fault));
+    json_t *schema = is_fixed ? json_pack("{s:[s]}", "enum", preset) : json_pack("{s:[s, s]}", "enum", "trip", "warn");
+    (void)json_object_set_new(schema, "default", json_string(preset));
     return schema;
 }
 

@@ -70,7 +70,8 @@ def make(settings, messages, faults):
     kconfig += ['menu "What each fault does"', ""]
     for name, fault_class, _, flags, _ in faults:
         if "FIXED" not in flags:
-            kconfig += choice_lines(f"CLASS_{name}", name, ["warn", "trip"], int(fault_class == "TRIP"), "ANY")
+            kconfig += choice_lines(f"CLASS_{name}", name, ["warn", "trip"], int(fault_class == "TRIP"),
+                                    "GATEWAY" if "GATEWAY" in flags else "ANY")
             rows_made.append(f"AGV_KCONFIG_CLASS({name}, IS_ENABLED(CONFIG_AGV_CLASS_{name}_TRIP))")
     return "\n".join(kconfig + ["endmenu", ""]), "\n".join(rows_made + [""])
 

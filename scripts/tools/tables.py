@@ -4,7 +4,7 @@ import re
 
 HEADERS = "firmware/include/agv"
 NUMBER = r"(\d+|0x[0-9A-F]+)"
-FLAGS = {"NONE", "UNRESETTABLE", "FIXED", "FROM_AI", "OF_EPS"}
+FLAGS = {"NONE", "UNRESETTABLE", "FIXED", "FROM_AI", "OF_EPS", "GATEWAY"}
 
 Fault = collections.namedtuple("Fault", "name fault_class led flags event")
 Setting = collections.namedtuple("Setting", "name default lowest highest unit weakens scope meaning")

@@ -66,7 +66,7 @@ typedef enum {
     AGV_CONFIG_ID_TWICE, /**< `setting` is the identifier of another message, or status_frame_id is one of either ID set */
     AGV_CONFIG_NEEDS_GATEWAY,   /**< `setting` has no effect on a shared bus and is not at its default */
     AGV_CONFIG_PRESS_TOO_SHORT, /**< reset_hold_max_ms is not above reset_hold_ms: no press could reset */
-    AGV_CONFIG_FAULT_TOO_WEAK,  /**< `fault` is a mandatory trip and is configured as a warning */
+    AGV_CONFIG_CLASS_FIXED,     /**< the class of `fault` must be its default, always or on a shared bus */
     AGV_CONFIG_NO_SUCH_FAULT    /**< `trips` has bits beyond the last fault */
 } agv_config_problem_t;
 
@@ -74,7 +74,7 @@ typedef enum {
 typedef struct {
     agv_config_problem_t problem;
     uint16_t setting;  /**< AGV_SETTING_* index; AGV_SETTING_COUNT: the problem is not one of a setting */
-    agv_fault_t fault; /**< highest-ranking mandatory trip that is configured as a warning; AGV_FAULT_NONE: none */
+    agv_fault_t fault; /**< highest-ranking fault whose class must be its default and is not; AGV_FAULT_NONE: none */
 } agv_config_verdict_t;
 
 /** Fill in the default configuration. */

@@ -44,6 +44,7 @@ uint32_t agv_fault_first(const agv_fault_set_t *set);
 #define AGV_FAULT_FLAG_FIXED 0x02u
 #define AGV_FAULT_FLAG_FROM_AI 0x04u
 #define AGV_FAULT_FLAG_OF_EPS 0x08u
+#define AGV_FAULT_FLAG_GATEWAY 0x10u
 
 /** The properties of a fault, AGV_FAULT_FLAG_* bits; 0 for AGV_FAULT_NONE and values above. */
 uint8_t agv_fault_flags(uint32_t fault);

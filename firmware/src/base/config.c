@@ -80,11 +80,14 @@ static uint32_t out_of_range(const agv_config_t *config) {
     return setting;
 }
 
-/* The highest-ranking mandatory trip that is configured as a warning; AGV_FAULT_NONE if there is none. */
-static uint32_t first_weakened_trip(const agv_config_t *config) {
+/* The highest-ranking fault whose class must be its default and is not; AGV_FAULT_NONE if there is none. */
+static uint32_t first_class_that_is_fixed(const agv_config_t *config) {
+    const bool is_gateway = config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
+    const uint32_t fixed = AGV_FAULT_FLAG_FIXED | (is_gateway ? 0u : AGV_FAULT_FLAG_GATEWAY);
     uint32_t fault = 0u;
     while ((fault < (uint32_t)AGV_FAULT_COUNT) &&
-           (((agv_fault_flags(fault) & AGV_FAULT_FLAG_FIXED) == 0u) || agv_config_is_trip(config, fault))) {
+           (((agv_fault_flags(fault) & fixed) == 0u) ||
+            (agv_config_is_trip(config, fault) == (agv_fault_default_class(fault) == AGV_CLASS_TRIP)))) {
         fault++;
     }
     return fault;
@@ -153,13 +156,13 @@ static agv_config_problem_t check_settings(const agv_config_t *config, uint16_t 
 }
 
 agv_config_verdict_t agv_config_check(const agv_config_t *config) {
-    agv_config_verdict_t verdict = {AGV_CONFIG_OK, AGV_SETTING_COUNT, (agv_fault_t)first_weakened_trip(config)};
+    agv_config_verdict_t verdict = {AGV_CONFIG_OK, AGV_SETTING_COUNT, (agv_fault_t)first_class_that_is_fixed(config)};
     verdict.problem = check_settings(config, &verdict.setting);
     if (verdict.problem != AGV_CONFIG_OK) {
         return verdict;
     }
     if (verdict.fault != AGV_FAULT_NONE) {
-        verdict.problem = AGV_CONFIG_FAULT_TOO_WEAK;
+        verdict.problem = AGV_CONFIG_CLASS_FIXED;
     } else if (has_unknown_fault(config)) {
         verdict.problem = AGV_CONFIG_NO_SUCH_FAULT;
     } else {

@@ -12,15 +12,10 @@ enum {
     FIXED = AGV_FAULT_FLAG_FIXED,
     FROM_AI = AGV_FAULT_FLAG_FROM_AI,
     OF_EPS = AGV_FAULT_FLAG_OF_EPS,
+    GATEWAY = AGV_FAULT_FLAG_GATEWAY,
     WARN = AGV_CLASS_WARN,
     TRIP = AGV_CLASS_TRIP
 };
-
-/* Mandatory faults (FIXED) must trip by default: a warning could not be made weaker. */
-#define AGV_FAULT(name, class, led, flags)                                                                             \
-    _Static_assert(((int)(class) == (int)TRIP) || (((flags) & (int)FIXED) == 0), #name);
-#include "agv/fault_table.def"
-#undef AGV_FAULT
 
 static const struct {
     uint8_t class_by_default;

@@ -113,13 +113,17 @@ static bool gear_is_another(const agv_motion_facts_t *facts) {
            throttle_is_above_idle(facts);
 }
 
+static bool speeds_are_known(const agv_vehicle_t *vehicle) {
+    return vehicle->wheels_fresh && vehicle->vcu_alive && vehicle->vcu_speed_seen;
+}
+
 static bool speeds_differ(const agv_vehicle_t *vehicle) {
     const int32_t left_mm_s = clamp(vehicle->wheels.left_mm_s, WHEEL_MAX_MM_S);
     const int32_t right_mm_s = clamp(vehicle->wheels.right_mm_s, WHEEL_MAX_MM_S);
     const int32_t wheels_mm_s = magnitude_of(left_mm_s + right_mm_s) / 2;
     const int32_t vcu_mm_s = ((int32_t)vehicle->vcu_speed * MM_S_PER_18_COUNTS) / 18;
     const int32_t larger_mm_s = (wheels_mm_s > vcu_mm_s) ? wheels_mm_s : vcu_mm_s;
-    return vehicle->wheels_fresh && vehicle->vcu_alive && vehicle->vcu_speed_seen &&
+    return speeds_are_known(vehicle) &&
            (magnitude_of(wheels_mm_s - vcu_mm_s) > (SPEED_SLACK_MM_S + (larger_mm_s / SPEED_SHARE)));
 }
 
@@ -157,8 +161,9 @@ void agv_motion_checks_tick(agv_motion_checks_t *checks, const agv_motion_facts_
                    elapsed_ms, config->throttle_in_park_ms);
 }
 
-bool agv_motion_checks_speed_is_implausible(const agv_motion_checks_t *checks) {
-    return checks->budgets[AGV_BUDGET_SPEED].present;
+bool agv_motion_checks_doubts_wheels(const agv_motion_checks_t *checks, const agv_vehicle_t *vehicle) {
+    const bool agree = speeds_are_known(vehicle) && !speeds_differ(vehicle);
+    return checks->budgets[AGV_BUDGET_SPEED].present && !agree;
 }
 
 static bool is_any_present(const agv_motion_checks_t *checks) {

@@ -65,8 +65,11 @@ void agv_motion_checks_tick(agv_motion_checks_t *checks, const agv_motion_facts_
 /** Set or end the faults. Those of judged checks end when driving is no longer judged. Call once per pass. */
 void agv_motion_checks_evaluate(agv_motion_checks_t *checks, agv_fault_monitor_t *faults, bool judged);
 
-/** Whether the speeds of 101h and 363h have contradicted each other for long enough (SUP-12), as of the last tick. */
-bool agv_motion_checks_speed_is_implausible(const agv_motion_checks_t *checks);
+/**
+ * Whether 101h must not be believed when it reports standing wheels: SPEED_IMPLAUSIBLE is present, and fresh 101h and a live
+ * VCU do not agree again.
+ */
+bool agv_motion_checks_doubts_wheels(const agv_motion_checks_t *checks, const agv_vehicle_t *vehicle);
 
 /** Reset the budgets of the judged checks, because an engagement began. */
 void agv_motion_checks_engage(agv_motion_checks_t *checks);

@@ -103,7 +103,7 @@ static void observe_time(agv_core_t *core, uint32_t elapsed_ms) {
     const agv_motion_facts_t facts = agv_core_motion_facts(core);
     agv_motion_checks_tick(&core->motion_checks, &facts, elapsed_ms);
     agv_vehicle_doubt_wheels(&core->vehicle, timers, &core->config,
-                             agv_motion_checks_speed_is_implausible(&core->motion_checks));
+                             agv_motion_checks_doubts_wheels(&core->motion_checks, &core->vehicle));
 }
 
 void agv_core_show_led(agv_core_t *core, const agv_ports_t *ports, uint32_t elapsed_ms) {

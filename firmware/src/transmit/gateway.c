@@ -111,9 +111,13 @@ static uint32_t limit_to_speed(const agv_gateway_facts_t *facts, uint32_t wanted
     return (uint32_t)clamp((int32_t)wanted_raw, AGV_ANGLE_RAW_CENTRE - max_ddeg, AGV_ANGLE_RAW_CENTRE + max_ddeg);
 }
 
-/* The limit starts at the measured angle, one cycle ago, and does so again until the EPS follows the commands. */
+/*
+ * The limit starts at the measured angle, one cycle ago, and does so again until the EPS takes angles. What an EPS says later
+ * does not start it again: with one that is stuck, the commands would never leave the measured angle (SUP-10).
+ */
 static void begin_slew(agv_gateway_t *gateway, const agv_gateway_facts_t *facts, uint32_t wanted_raw) {
-    if (!gateway->steering_known || !facts->vehicle->eps_in_angle_mode) {
+    gateway->steering_taken = gateway->steering_taken || facts->vehicle->eps_in_angle_mode;
+    if (!gateway->steering_known || !gateway->steering_taken) {
         const uint32_t from_raw = facts->vehicle->angle_known ? facts->vehicle->angle_raw : wanted_raw;
         gateway->steering_known = true;
         reach(&gateway->steering, from_raw, facts->now_ms - agv_message_cycle_ms(AGV_MSG_STEERING_COMMAND));

@@ -25,6 +25,7 @@ typedef struct {
     agv_gateway_rate_t steering;
     agv_gateway_rate_t throttle;
     bool steering_known; /**< steering is valid */
+    bool steering_taken; /**< since the restart the EPS was in angle control */
     bool throttle_known; /**< throttle is valid */
     bool gear_waits;     /**< the last 168h is dropped until standstill: throttle 0 until then */
 } agv_gateway_t;

@@ -96,7 +96,7 @@ MEANING = {
                                                   "first_since_ms is after at_ms"),
     "settings that do not fit together": ("board:", "config: {own_heartbeat: frozen}\nboard:",
                                           "needs the gateway topology|another message has this identifier|must be (below|"
-                                          "above) reset_hold|this fault must stay a trip|the value is out of range"),
+                                          "above) reset_hold|this fault must stay a (trip|warning)|the value is out of range"),
     "what is not checked with any states": ("states: [{to: INIT, at_ms: [0, 5]}]", "states: any\n  resets: [{accepted: true, at_ms: 5}]",
                                             "is not checked with 'states: any'"),
     "a name that is too long in bytes": ("name: n\n", "name: " + "\u00e4" * 60 + "\n", "longer than 95 bytes"),

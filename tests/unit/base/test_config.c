@@ -436,7 +436,7 @@ void test_mandatory_trips_cannot_be_made_warnings(void) {
         TEST_ASSERT_TRUE(agv_config_is_trip(&config, must[i]));
         agv_fault_set_put(&config.trips, must[i], false);
         TEST_ASSERT_FALSE(agv_config_is_trip(&config, must[i]));
-        TEST_ASSERT_EQUAL(AGV_CONFIG_FAULT_TOO_WEAK, agv_config_check(&config).problem);
+        TEST_ASSERT_EQUAL(AGV_CONFIG_CLASS_FIXED, agv_config_check(&config).problem);
         TEST_ASSERT_EQUAL(must[i], agv_config_check(&config).fault);
     }
 }
@@ -467,11 +467,31 @@ void test_other_faults_may_have_any_class(void) {
 }
 
 /* Shows: INT-2 */
-void test_every_fault_may_be_made_a_trip(void) {
+void test_every_fault_but_two_may_be_made_a_trip(void) {
     for (unsigned fault = 0; fault < AGV_FAULT_COUNT; fault++) {
-        agv_fault_set_put(&config.trips, fault, true);
-        expect_good();
+        if ((fault != AGV_FAULT_STARTUP_TIMEOUT) && (fault != AGV_FAULT_AI_BUS_OFF)) {
+            agv_fault_set_put(&config.trips, fault, true);
+            expect_good();
+        }
     }
+}
+
+/* As a trip it would keep INIT, which keeps the fault: a healthy vehicle could never be released. */
+/* Shows: INT-2 */
+void test_a_late_start_must_not_be_a_trip(void) {
+    agv_fault_set_put(&config.trips, AGV_FAULT_STARTUP_TIMEOUT, true);
+    expect_problem(AGV_CONFIG_CLASS_FIXED, AGV_SETTING_COUNT);
+    TEST_ASSERT_EQUAL(AGV_FAULT_STARTUP_TIMEOUT, agv_config_check(&config).fault);
+}
+
+/* A shared bus has no AI side that could be bus-off. */
+/* Shows: INT-2 */
+void test_an_ai_side_that_is_bus_off_trips_on_a_gateway_only(void) {
+    agv_fault_set_put(&config.trips, AGV_FAULT_AI_BUS_OFF, true);
+    expect_problem(AGV_CONFIG_CLASS_FIXED, AGV_SETTING_COUNT);
+    TEST_ASSERT_EQUAL(AGV_FAULT_AI_BUS_OFF, agv_config_check(&config).fault);
+    config.topology = AGV_TOPOLOGY_GATEWAY;
+    expect_good();
 }
 
 /* Shows: INT-2 */

@@ -786,6 +786,29 @@ void test_both_measurements_are_needed(void) {
     expect_after(1000, SPEED);
 }
 
+/* Until the two agree again, or the fault has decayed because one of them is missing. */
+/* Shows: SUP-12, FSM-12 */
+void test_wheels_are_doubted_while_the_vcu_contradicts_them(void) {
+    speeds(0, 0, 7200);
+    run(999);
+    TEST_ASSERT_FALSE(agv_motion_checks_doubts_wheels(&checks, &vehicle));
+    run(1);
+    TEST_ASSERT_TRUE(agv_motion_checks_doubts_wheels(&checks, &vehicle));
+    vehicle.vcu_alive = false;
+    run(1000);
+    TEST_ASSERT_TRUE(agv_motion_checks_doubts_wheels(&checks, &vehicle));
+    run(1001);
+    TEST_ASSERT_FALSE(agv_motion_checks_doubts_wheels(&checks, &vehicle));
+    vehicle.vcu_alive = true;
+    run(1000);
+    speeds(0, 0, 0);
+    run(1);
+    TEST_ASSERT_TRUE(is_active(SPEED));
+    TEST_ASSERT_FALSE(agv_motion_checks_doubts_wheels(&checks, &vehicle));
+    speeds(0, 0, 7200);
+    TEST_ASSERT_TRUE(agv_motion_checks_doubts_wheels(&checks, &vehicle));
+}
+
 /* ---- One engagement ---- */
 
 /* Shows: SUP-10, SUP-11 */

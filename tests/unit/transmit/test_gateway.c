@@ -631,3 +631,21 @@ void test_after_a_restart_the_slew_limit_starts_from_the_measured_angle(void) {
     agv_gateway_restart(&gateway);
     TEST_ASSERT_EQUAL_INT(-200, steer(0, 500));
 }
+
+/* An EPS that is stuck at the centre, and now and then reports another mode: the commands leave its angle all the same. */
+/* Shows: TOP-2, SUP-10 */
+void test_once_the_eps_has_taken_angles_its_mode_does_not_restart_the_slew_limit(void) {
+    config.steering_slew_ddeg_s = 4000;
+    vehicle.angle_known = true;
+    vehicle.angle_raw = 9000;
+    TEST_ASSERT_EQUAL_INT(100, steer(0, 500));
+    TEST_ASSERT_EQUAL_INT(200, steer(25, 500));
+    vehicle.eps_in_angle_mode = false;
+    TEST_ASSERT_EQUAL_INT(300, steer(25, 500));
+    vehicle.eps_in_angle_mode = true;
+    TEST_ASSERT_EQUAL_INT(400, steer(25, 500));
+    agv_gateway_restart(&gateway); /* the next engagement begins before the EPS takes angles */
+    vehicle.eps_in_angle_mode = false;
+    TEST_ASSERT_EQUAL_INT(100, steer(25, 500));
+    TEST_ASSERT_EQUAL_INT(100, steer(25, 500));
+}
