@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "analysis/analysis.h"
-#include "cli/analysis_options.h"
+#include "analysis/analysis_options.h"
 #include "cli/commands/commands.h"
 #include "cli/options.h"
 #include "common/interrupt.h"

@@ -2,7 +2,7 @@
  * @file cmd_replay.c
  * `host_sim replay`: its options.
  */
-#include "cli/analysis_options.h"
+#include "analysis/analysis_options.h"
 #include "cli/commands/commands.h"
 #include "cli/options.h"
 #include "config/config_options.h"

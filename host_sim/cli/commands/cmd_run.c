@@ -4,7 +4,7 @@
  */
 #include <stddef.h>
 
-#include "cli/analysis_options.h"
+#include "analysis/analysis_options.h"
 #include "cli/commands/commands.h"
 #include "cli/interface_options.h"
 #include "cli/options.h"

@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "analysis/analysis.h"
-#include "cli/analysis_options.h"
+#include "analysis/analysis_options.h"
 #include "cli/commands/commands.h"
 #include "cli/commands/skeleton_options.h"
 #include "cli/options.h"

@@ -1,5 +1,5 @@
 /* The hazards of the hunt: a stub supervisor that does wrong is a hazard, one that does right in the same run is none. */
-#include "hunt/hazard/hazard.h"
+#include "scenario/hazard/hazard.h"
 
 #include <stdio.h>
 #include <string.h>

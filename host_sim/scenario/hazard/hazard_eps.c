@@ -1,5 +1,5 @@
 /* An EPS that takes no angles, as 067h, 167h and 363h show it: what it measured before is no angle to hold (H2). */
-#include "hunt/hazard/hazard.h"
+#include "scenario/hazard/hazard.h"
 
 enum {
     ANGLE_MODE = 0x01,

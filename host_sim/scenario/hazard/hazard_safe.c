@@ -1,7 +1,7 @@
 /* The safe state as the wire, the output and the operator show it: confirmed (H4), reset (H5), stopped (H1). */
 #include <string.h>
 
-#include "hunt/hazard/hazard.h"
+#include "scenario/hazard/hazard.h"
 
 enum { SIGNALS_BYTES = 7, IN_FLIGHT_MS = 12, GONE_MS = 700, RESET_GONE_MS = 200, PENDING_MS = 50, PRESS_SEEN_MS = 100 };
 enum { CONFIRM_MARGIN_MS = 300, STALE_MARGIN_MS = 100 };

@@ -1,4 +1,4 @@
-#include "cli/analysis_options.h"
+#include "analysis/analysis_options.h"
 
 void analysis_options_init(analysis_options_t *options, option_t rows[ANALYSIS_OPTIONS]) {
     *options = (analysis_options_t){{NULL}};

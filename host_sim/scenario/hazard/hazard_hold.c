@@ -1,7 +1,7 @@
 /* Steering held by the supervisor: it must not move (H2). */
 #include <stdlib.h>
 
-#include "hunt/hazard/hazard.h"
+#include "scenario/hazard/hazard.h"
 
 enum { NEW_HOLD_MS = 300, FRESH_MS = 150, IN_FLIGHT_MS = 20, TOLERANCE_DDEG = 50, CENTRE_DDEG = 9000 };
 enum { OUT_OF_DATE_MS = 2000 };

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hunt/hazard/hazard.h"
+#include "scenario/hazard/hazard.h"
 #include "text/units.h"
 
 enum { THROTTLE_MAX = 250, ANGLE_MAX = 18000, FALL_COUNTS = 25, FAST_CAP = 3, RISES_MS = 120 };

@@ -1,5 +1,5 @@
 /* Gateway: commands that the supervisor lets through, and those of foreign senders (H3, H7). */
-#include "hunt/hazard/hazard.h"
+#include "scenario/hazard/hazard.h"
 
 enum { MARGIN_MS = 100, IN_FLIGHT_MS = 60, ANSWER_MS = 100, SLOT_MS = 100, SAFE_MS = 300, DROP_RATE = 2 };
 enum { NOMINAL_PER_S = 10 + 10 + 10 + 40, SPARE_PER_S = 8 };

@@ -1,4 +1,4 @@
-#include "hunt/hazard/hazard.h"
+#include "scenario/hazard/hazard.h"
 
 #include <stdlib.h>
 #include <string.h>

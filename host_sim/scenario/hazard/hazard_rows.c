@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "hunt/hazard/hazard.h"
+#include "scenario/hazard/hazard.h"
 
 enum { STEP_MS = 10, MARGIN_MS = 1500, MOVING_MM_S = 300, REACTED_MS = 350, REENGAGE_MS = 100, MANUAL_WEIGHT = 2 };
 enum { SCORE_CAP = 4, EVENT_MS = 400, STILL_MARGIN_MS = 200, DEVIATION_DDEG = 50, CLOSE = 16 };

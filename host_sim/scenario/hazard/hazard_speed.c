@@ -1,5 +1,5 @@
 /* Two reports of the speed: the wheels (101h) and the VCU (363h). Whether the supervisor can know that the vehicle moves. */
-#include "hunt/hazard/hazard.h"
+#include "scenario/hazard/hazard.h"
 
 enum { STANDS_MM_S = 100, FRESH_MS = 100, STEP_MS = 10, DIFFERS_MM_S = 850 };
 enum { MOVING_MM_S = 300, MARGIN_MM_S = 50, MARGIN_MS = 50, STOOD_MS = 300 };
