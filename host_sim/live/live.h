@@ -6,7 +6,6 @@
 #define HOST_SIM_LIVE_H
 
 #include <stdbool.h>
-#include <stdint.h>
 
 #include "agv/config.h"
 #include "analysis/analysis.h"

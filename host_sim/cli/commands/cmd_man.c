@@ -2,7 +2,6 @@
  * @file cmd_man.c
  * `host_sim man`: a man page.
  */
-#include <ctype.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,6 +10,7 @@
 #include "cli/exit_status.h"
 #include "cli/options.h"
 #include "common/shipped.h"
+#include "text/words.h"
 
 /** Print a text so that troff leaves it as it is: no hyphens for dashes, no requests at the beginning of a line. */
 static void print_text(const char *text) {
@@ -48,17 +48,11 @@ static void print_paragraphs(const char *text) {
     }
 }
 
-static void print_upper(const char *text) {
-    for (const char *at = text; *at != '\0'; at++) {
-        (void)putchar(toupper((unsigned char)*at));
-    }
-}
-
 static void print_head(const char *command, const char *help) {
     (void)printf(".TH HOST_SIM");
     if (command != NULL) {
         (void)printf("\\-");
-        print_upper(command);
+        words_print_upper(command);
     }
     (void)printf(" 1 \"\" \"agv\\-supervisor " HOST_SIM_VERSION "\" \"User Commands\"\n.SH NAME\nhost_sim%s%s \\- ",
                  (command != NULL) ? "\\-" : "", (command != NULL) ? command : "");
