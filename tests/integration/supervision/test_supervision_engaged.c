@@ -175,8 +175,7 @@ void test_throttle_in_park(void) {
     set_throttle(3);
     fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
     expect_nothing_after(&f, 198, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
     expect_led(&f, 7);
     fixture_run(&f, 500); /* never more than 200 */
     set_throttle(2);
@@ -208,8 +207,7 @@ void test_an_invalid_throttle_between_does_not_end_throttle_in_park(void) {
     fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
     set_throttle(3);
     expect_nothing_after(&f, 98, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
 }
 
 /* The gear may also change second. Out of P the budget decreases. */
@@ -224,8 +222,7 @@ void test_park_with_throttle(void) {
     fixture_gear(&f, GEAR_P);
     fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
     expect_nothing_after(&f, 198, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
     fixture_gear(&f, GEAR_D);
     fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
     expect_fault_after(&f, 500, AGV_FAULT_THROTTLE_IN_PARK, false);
@@ -248,8 +245,7 @@ void test_budgets_are_paused_while_not_judged(void) {
     fixture_run(&f, 190);
     TEST_ASSERT_EQUAL_UINT32(210, f.now_ms - began_ms);
     expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_EPS_MODE_OFF));
 }
 
@@ -261,8 +257,7 @@ void test_throttle_in_park_counts_after_the_grace(void) {
     expect_nothing_after(&f, 3000, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_STANDBY);
     walk_engage(&f);
     expect_nothing_after(&f, 698, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
 }
 
 /* Without limit of time; here an invalid throttle only warns. */
@@ -472,8 +467,7 @@ void test_every_engagement_begins_its_budgets_anew(void) {
     set_throttle(3);
     fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
     expect_nothing_after(&f, 198, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
 }
 
 /* An engagement that begins within 100 ms continues the last one: neither grace time nor scores restart. */
