@@ -29,14 +29,26 @@ struct analysis {
     output_t files[ANALYSIS_FILES];
 };
 
-void analysis_copy_paths(const char *to[ANALYSIS_FILES], const char *const from[ANALYSIS_FILES]) {
+bool analysis_paths_any(const analysis_paths_t *files) {
     for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
-        to[i] = from[i];
+        if (files->paths[i] != NULL) {
+            return true;
+        }
     }
+    return false;
+}
+
+bool analysis_paths_use_stdout(const analysis_paths_t *files) {
+    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
+        if (output_is_stdout(files->paths[i])) {
+            return true;
+        }
+    }
+    return false;
 }
 
 static bool is_asked_for(const analysis_t *analysis, analysis_file_t file) {
-    return analysis->request.paths[file] != NULL;
+    return analysis->request.files.paths[file] != NULL;
 }
 
 /** Make the parts that are needed. @return false: no memory */
@@ -78,7 +90,7 @@ analysis_t *analysis_new(const analysis_request_t *request) {
 
 bool analysis_open(analysis_t *analysis) {
     for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
-        const char *path = analysis->request.paths[i];
+        const char *path = analysis->request.files.paths[i];
         if ((path != NULL) && !output_open(&analysis->files[i], path)) {
             return false;
         }

@@ -21,17 +21,25 @@
 /** The files that an analysis writes. */
 typedef enum { ANALYSIS_WHY, ANALYSIS_REPORT, ANALYSIS_TRACE, ANALYSIS_FILES } analysis_file_t;
 
+/** Their paths. */
+typedef struct {
+    const char *paths[ANALYSIS_FILES]; /**< NULL: not asked for; are not copied */
+} analysis_paths_t;
+
+/** Whether one of the files was asked for. */
+bool analysis_paths_any(const analysis_paths_t *files);
+
+/** Whether one of the files is standard output. */
+bool analysis_paths_use_stdout(const analysis_paths_t *files);
+
 /** What is analysed. */
 typedef struct {
-    const agv_config_t *config;        /**< is copied */
-    const char *log;                   /**< name of the log, the interface or the scenario; is not copied */
-    const char *paths[ANALYSIS_FILES]; /**< NULL: not asked for; are not copied */
-    bool is_recording;                 /**< the frames do not obey the supervisor */
-    bool is_recorder;                  /**< the events come from a flight recorder, and no frames with them */
+    const agv_config_t *config; /**< is copied */
+    const char *log;            /**< name of the log, the interface or the scenario; is not copied */
+    analysis_paths_t files;
+    bool is_recording; /**< the frames do not obey the supervisor */
+    bool is_recorder;  /**< the events come from a flight recorder, and no frames with them */
 } analysis_request_t;
-
-/** Copy the paths of the files. */
-void analysis_copy_paths(const char *to[ANALYSIS_FILES], const char *const from[ANALYSIS_FILES]);
 
 typedef struct analysis analysis_t;
 

@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 #include "atlas/atlas_case.h"
-#include "hunt/hazard/hazard.h"
+#include "scenario/hazard/hazard.h"
 #include "scenario/scenario_play.h"
 #include "text/text.h"
 

@@ -57,10 +57,6 @@ static scenario_testbed_view_t look(const campaign_check_t *check) {
     return view;
 }
 
-static bool has_flag(const campaign_check_t *check, uint32_t flag) {
-    return (check->plan->row->flags & flag) != 0u;
-}
-
 static agv_message_t message_of(const campaign_check_t *check, const hal_can_frame_t *frame) {
     return scenario_testbed_message(check->testbed, frame->id);
 }
@@ -168,7 +164,7 @@ static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, co
     if ((check->closed_us == CAMPAIGN_NEVER) && look(check).output_closed) {
         check->closed_us = t_us;
     }
-    if ((t_us < check->cause_us) && !has_flag(check, CAMPAIGN_START)) {
+    if ((t_us < check->cause_us) && !campaign_has_flag(check, CAMPAIGN_START)) {
         check_before(check, t_us, message, frame);
     } else {
         check_after(check, t_us, message, frame);
@@ -203,7 +199,7 @@ static void on_state(campaign_check_t *check, uint64_t t_ms, const agv_event_t *
     check->confirmed_us = (check->confirmed_us == CAMPAIGN_NEVER) ? now_us(check) : check->confirmed_us;
     const scenario_testbed_view_t view = look(check);
     const bool parked = (view.vehicle.gear == (uint8_t)AGV_GEAR_P) && !view.vehicle.autopilot;
-    if (!parked && !has_flag(check, CAMPAIGN_LIES)) {
+    if (!parked && !campaign_has_flag(check, CAMPAIGN_LIES)) {
         is_broken(check, CAMPAIGN_FALSE_CONFIRM, now_us(check));
     }
 }
@@ -244,7 +240,7 @@ static uint64_t changed_us(const campaign_check_t *check, uint64_t t_ms) {
 void campaign_check_tick(campaign_check_t *check, uint64_t t_ms) {
     const bool closed = look(check).output_closed;
     const campaign_plan_t *plan = check->plan;
-    const uint64_t step_ms = plan->cause_ms - (has_flag(check, CAMPAIGN_LATER) ? plan->number : 0u);
+    const uint64_t step_ms = plan->cause_ms - (campaign_has_flag(check, CAMPAIGN_LATER) ? plan->number : 0u);
 
     if (closed && !check->was_closed) {
         if (check->opened_us != CAMPAIGN_NEVER) {
@@ -268,7 +264,7 @@ void campaign_check_tick(campaign_check_t *check, uint64_t t_ms) {
 }
 
 static void check_bound(campaign_check_t *check) {
-    const uint64_t reaction_us = has_flag(check, CAMPAIGN_BY_OUTPUT) ? check->opened_us : check->first_safe_us;
+    const uint64_t reaction_us = campaign_has_flag(check, CAMPAIGN_BY_OUTPUT) ? check->opened_us : check->first_safe_us;
     if ((reaction_us == CAMPAIGN_NEVER) || (reaction_us > check->cause_us + check->plan->bound_us)) {
         is_broken(check, CAMPAIGN_LATE, check->cause_us + check->plan->bound_us);
     }

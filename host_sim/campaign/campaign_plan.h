@@ -8,7 +8,6 @@
 #define HOST_SIM_CAMPAIGN_PLAN_H
 
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 #include "campaign/campaign_rows.h"

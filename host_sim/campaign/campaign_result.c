@@ -1,6 +1,5 @@
 #include "campaign/campaign_result.h"
 
-#include <inttypes.h>
 #include <jansson.h>
 #include <stdlib.h>
 

@@ -1,7 +1,5 @@
 #include "campaign/campaign_rows.h"
 
-#include <string.h>
-
 #include "agv/supervisor.h"
 #include "text/units.h"
 
@@ -11,6 +9,7 @@ enum { BITS_PER_BYTE = 8, CONFIRM_LEAD_MS = 2, CLOCKS_COMPARED_MS = 1000 };
 enum { ALLOWED_BITS = 40 * 138 };
 
 #define NONE AGV_MSG_NONE
+#define NO_SETTING AGV_SETTING_COUNT
 #define NOTHING 0u, 0u, ""
 #define BITS_OF_CORE (AGV_SUPERVISOR_MEMORY * (uint32_t)BITS_PER_BYTE)
 /* A VCU that reports nothing of the EPS by itself: its alarm would come first. */
@@ -23,163 +22,166 @@ enum { ALLOWED_BITS = 40 * 138 };
     {AGV_FAULT_##name, AGV_FAULT_##first, (kind), (message), (setting), (flags), __VA_ARGS__}
 
 const campaign_row_t CAMPAIGN_ROWS[] = {
-    ROW(SELF_TEST_FAILED, CAMPAIGN_AT_ONCE, NONE, NULL, CAMPAIGN_START | CAMPAIGN_NO_OUTPUT, 0u, 0u,
+    ROW(SELF_TEST_FAILED, CAMPAIGN_AT_ONCE, NONE, NO_SETTING, CAMPAIGN_START | CAMPAIGN_NO_OUTPUT, 0u, 0u,
         "self_test: failed\n", ""),
-    ROW(MEMORY_CORRUPTED, CAMPAIGN_TICK, NONE, NULL, 0u, 0u, BITS_OF_CORE - 1u, "", "supervisor: flip_bit, bit: $n"),
-    ROW(CONFIG_INVALID, CAMPAIGN_AT_ONCE, NONE, NULL, CAMPAIGN_START | CAMPAIGN_NO_OUTPUT | CAMPAIGN_SHARED, 0u, 0u,
-        "config_unchecked: true\n", ""),
-    ROW(OUTPUT_FEEDBACK, CAMPAIGN_CONTACT, NONE, "output_feedback_ms", 0u, 0u, 0u, "board: [output_feedback]\n",
-        "board: invert_feedback"),
-    ROW(SUPERVISOR_RESET, CAMPAIGN_AT_ONCE, NONE, NULL, CAMPAIGN_LATER, 0u, 300u, "",
+    ROW(MEMORY_CORRUPTED, CAMPAIGN_TICK, NONE, NO_SETTING, 0u, 0u, BITS_OF_CORE - 1u, "",
+        "supervisor: flip_bit, bit: $n"),
+    ROW(CONFIG_INVALID, CAMPAIGN_AT_ONCE, NONE, NO_SETTING, CAMPAIGN_START | CAMPAIGN_NO_OUTPUT | CAMPAIGN_SHARED, 0u,
+        0u, "config_unchecked: true\n", ""),
+    ROW(OUTPUT_FEEDBACK, CAMPAIGN_CONTACT, NONE, AGV_SETTING_output_feedback_ms, 0u, 0u, 0u,
+        "board: [output_feedback]\n", "board: invert_feedback"),
+    ROW(SUPERVISOR_RESET, CAMPAIGN_AT_ONCE, NONE, NO_SETTING, CAMPAIGN_LATER, 0u, 300u, "",
         "supervisor: restart, cause: watchdog, off_ms: $n/supervisor: restart, cause: brown-out, off_ms: "
         "$n/supervisor: restart, cause: lock-up, off_ms: $n/supervisor: restart, cause: software, off_ms: "
         "$n/supervisor: restart, cause: unknown, off_ms: $n"),
-    ROW(EMERGENCY_STOP, CAMPAIGN_TICK, NONE, NULL, 0u, 0u, 0u, "board: [emergency_stop]\n",
+    ROW(EMERGENCY_STOP, CAMPAIGN_TICK, NONE, NO_SETTING, 0u, 0u, 0u, "board: [emergency_stop]\n",
         "board: open_emergency_stop"),
-    ROW(STEP_OVERRUN, CAMPAIGN_AT_ONCE, NONE, NULL, CAMPAIGN_LATER, 102u, 400u, "hardware_watchdog: none\n",
+    ROW(STEP_OVERRUN, CAMPAIGN_AT_ONCE, NONE, NO_SETTING, CAMPAIGN_LATER, 102u, 400u, "hardware_watchdog: none\n",
         "supervisor: hang, for_ms: $n"),
-    ROW(CLOCK_DEVIATION, CAMPAIGN_CLOCKS, NONE, NULL, 0u, 60u, 900u, "board: [second_clock]\n",
+    ROW(CLOCK_DEVIATION, CAMPAIGN_CLOCKS, NONE, NO_SETTING, 0u, 60u, 900u, "board: [second_clock]\n",
         "board: slow_clock, permille: $n/board: fast_clock, permille: $n"),
-    ROW(BUS_OFF, CAMPAIGN_TICK, NONE, NULL, CAMPAIGN_BY_OUTPUT | CAMPAIGN_NO_WIRE, NOTHING, "supervisor: bus_off"),
-    ROW(TX_STALLED, CAMPAIGN_STALL, AGV_MSG_STEERING_COMMAND, "tx_stalled_ms",
+    ROW(BUS_OFF, CAMPAIGN_TICK, NONE, NO_SETTING, CAMPAIGN_BY_OUTPUT | CAMPAIGN_NO_WIRE, NOTHING,
+        "supervisor: bus_off"),
+    ROW(TX_STALLED, CAMPAIGN_STALL, AGV_MSG_STEERING_COMMAND, AGV_SETTING_tx_stalled_ms,
         CAMPAIGN_GATEWAY | CAMPAIGN_ENGAGED | CAMPAIGN_BY_OUTPUT | CAMPAIGN_NO_WIRE, NOTHING,
         "supervisor: stall_tx|+1500 supervisor: free_tx"),
-    ROW(VCU_HEARTBEAT_LOST, CAMPAIGN_SILENCE, AGV_MSG_VEHICLE_STATUS, "vcu_heartbeat_timeout_ms", CAMPAIGN_LIES,
-        NOTHING, "vcu: mute, message: vehicle_status"),
-    ROW(VCU_HEARTBEAT_STUCK, CAMPAIGN_SILENCE, AGV_MSG_VEHICLE_STATUS, "vcu_heartbeat_timeout_ms", CAMPAIGN_LIES,
-        NOTHING, "vcu: freeze_counter"),
-    ROW(EPS_HEARTBEAT_LOST, CAMPAIGN_SILENCE, AGV_MSG_STEERING_STATUS, "eps_heartbeat_timeout_ms", 0u, NOTHING,
-        "eps: mute, message: steering_status"),
-    ROW(EPS_HEARTBEAT_STUCK, CAMPAIGN_SILENCE, AGV_MSG_STEERING_STATUS, "eps_heartbeat_timeout_ms", 0u, NOTHING,
-        "eps: freeze_counter"),
-    ROW(AI_HEARTBEAT_LOST, CAMPAIGN_SILENCE, AGV_MSG_TURN_SIGNAL_COMMAND, "ai_heartbeat_timeout_ms", CAMPAIGN_ENGAGED,
-        NOTHING, "ai: mute, message: turn_signal_command"),
-    ROW(AI_HEARTBEAT_STUCK, CAMPAIGN_SILENCE, AGV_MSG_TURN_SIGNAL_COMMAND, "ai_heartbeat_timeout_ms", CAMPAIGN_ENGAGED,
-        NOTHING, "ai: freeze_counter"),
-    ROW(EPS_OVER_CURRENT_SHUTDOWN, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, NULL, 0u, NOTHING,
+    ROW(VCU_HEARTBEAT_LOST, CAMPAIGN_SILENCE, AGV_MSG_VEHICLE_STATUS, AGV_SETTING_vcu_heartbeat_timeout_ms,
+        CAMPAIGN_LIES, NOTHING, "vcu: mute, message: vehicle_status"),
+    ROW(VCU_HEARTBEAT_STUCK, CAMPAIGN_SILENCE, AGV_MSG_VEHICLE_STATUS, AGV_SETTING_vcu_heartbeat_timeout_ms,
+        CAMPAIGN_LIES, NOTHING, "vcu: freeze_counter"),
+    ROW(EPS_HEARTBEAT_LOST, CAMPAIGN_SILENCE, AGV_MSG_STEERING_STATUS, AGV_SETTING_eps_heartbeat_timeout_ms, 0u,
+        NOTHING, "eps: mute, message: steering_status"),
+    ROW(EPS_HEARTBEAT_STUCK, CAMPAIGN_SILENCE, AGV_MSG_STEERING_STATUS, AGV_SETTING_eps_heartbeat_timeout_ms, 0u,
+        NOTHING, "eps: freeze_counter"),
+    ROW(AI_HEARTBEAT_LOST, CAMPAIGN_SILENCE, AGV_MSG_TURN_SIGNAL_COMMAND, AGV_SETTING_ai_heartbeat_timeout_ms,
+        CAMPAIGN_ENGAGED, NOTHING, "ai: mute, message: turn_signal_command"),
+    ROW(AI_HEARTBEAT_STUCK, CAMPAIGN_SILENCE, AGV_MSG_TURN_SIGNAL_COMMAND, AGV_SETTING_ai_heartbeat_timeout_ms,
+        CAMPAIGN_ENGAGED, NOTHING, "ai: freeze_counter"),
+    ROW(EPS_OVER_CURRENT_SHUTDOWN, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, NO_SETTING, 0u, NOTHING,
         MUTE_VCU "eps: set, field: faults, value: 08h"),
-    ROW(EPS_TEMP_ABOVE_120, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, NULL, 0u, NOTHING,
+    ROW(EPS_TEMP_ABOVE_120, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, NO_SETTING, 0u, NOTHING,
         MUTE_VCU "eps: set, field: faults, value: 20h"),
-    ROW(EPS_MOTOR_ENCODER, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, NULL, 0u, NOTHING,
+    ROW(EPS_MOTOR_ENCODER, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, NO_SETTING, 0u, NOTHING,
         MUTE_VCU "eps: set, field: faults, value: 40h"),
-    ROW(EPS_POSITION_ENCODER, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, NULL, 0u, NOTHING,
+    ROW(EPS_POSITION_ENCODER, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, NO_SETTING, 0u, NOTHING,
         MUTE_VCU "eps: set, field: faults, value: 80h"),
-    ROW(EPS_UNDER_VOLTAGE, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, "eps_supply_fault_frames", 0u, NOTHING,
+    ROW(EPS_UNDER_VOLTAGE, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, AGV_SETTING_eps_supply_fault_frames, 0u, NOTHING,
         MUTE_VCU "eps: set, field: faults, value: 01h"),
-    ROW(EPS_OVER_VOLTAGE, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, "eps_supply_fault_frames", 0u, NOTHING,
+    ROW(EPS_OVER_VOLTAGE, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, AGV_SETTING_eps_supply_fault_frames, 0u, NOTHING,
         MUTE_VCU "eps: set, field: faults, value: 02h"),
-    ROW(EPS_EXCESSIVE_CURRENT, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, "eps_supply_fault_frames", 0u, NOTHING,
+    ROW(EPS_EXCESSIVE_CURRENT, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, AGV_SETTING_eps_supply_fault_frames, 0u, NOTHING,
         MUTE_VCU "eps: set, field: faults, value: 04h"),
-    ROW(EPS_TEMP_ABOVE_110, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, NULL, CAMPAIGN_AS_TRIP, NOTHING,
+    ROW(EPS_TEMP_ABOVE_110, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, NO_SETTING, CAMPAIGN_AS_TRIP, NOTHING,
         "eps: set, field: faults, value: 10h"),
-    ROW(VCU_EPS_HARDWARE_FAULT, CAMPAIGN_FRAMES, AGV_MSG_VEHICLE_STATUS, NULL, 0u, NOTHING,
+    ROW(VCU_EPS_HARDWARE_FAULT, CAMPAIGN_FRAMES, AGV_MSG_VEHICLE_STATUS, NO_SETTING, 0u, NOTHING,
         "vcu: set, field: alarms, value: 10h"),
-    ROW(VCU_EPS_CAN_BUS_FAULT, CAMPAIGN_FRAMES, AGV_MSG_VEHICLE_STATUS, NULL, 0u, NOTHING,
+    ROW(VCU_EPS_CAN_BUS_FAULT, CAMPAIGN_FRAMES, AGV_MSG_VEHICLE_STATUS, NO_SETTING, 0u, NOTHING,
         "vcu: set, field: alarms, value: 20h"),
-    ROW(S_DRIVER_ALARM, CAMPAIGN_FRAMES, AGV_MSG_VEHICLE_STATUS, NULL, 0u, NOTHING,
+    ROW(S_DRIVER_ALARM, CAMPAIGN_FRAMES, AGV_MSG_VEHICLE_STATUS, NO_SETTING, 0u, NOTHING,
         "vcu: set, field: alarms, value: 80h"),
-    ROW(REMOTE_SIGNAL_LOST, CAMPAIGN_FRAMES, AGV_MSG_VEHICLE_STATUS, NULL, 0u, NOTHING,
+    ROW(REMOTE_SIGNAL_LOST, CAMPAIGN_FRAMES, AGV_MSG_VEHICLE_STATUS, NO_SETTING, 0u, NOTHING,
         "vcu: set, field: alarms, value: 01h"),
-    ROW(REMOTE_POWER_LOST, CAMPAIGN_FRAMES, AGV_MSG_VEHICLE_STATUS, NULL, 0u, NOTHING,
+    ROW(REMOTE_POWER_LOST, CAMPAIGN_FRAMES, AGV_MSG_VEHICLE_STATUS, NO_SETTING, 0u, NOTHING,
         "vcu: set, field: alarms, value: 02h"),
-    ROW(VCU_AI_CAN_LOST, CAMPAIGN_FRAMES, AGV_MSG_VEHICLE_STATUS, NULL, CAMPAIGN_ENGAGED, NOTHING,
+    ROW(VCU_AI_CAN_LOST, CAMPAIGN_FRAMES, AGV_MSG_VEHICLE_STATUS, NO_SETTING, CAMPAIGN_ENGAGED, NOTHING,
         "vcu: set, field: alarms, value: 08h"),
-    ROW(VCU_LEVEL2_ALARM, CAMPAIGN_FRAMES, AGV_MSG_VEHICLE_STATUS, NULL, CAMPAIGN_AS_TRIP, NOTHING,
+    ROW(VCU_LEVEL2_ALARM, CAMPAIGN_FRAMES, AGV_MSG_VEHICLE_STATUS, NO_SETTING, CAMPAIGN_AS_TRIP, NOTHING,
         "vcu: set, field: level2_alarms, value: 01h"),
-    ROW(MODE_INVALID, CAMPAIGN_LASTS, AGV_MSG_VEHICLE_STATUS, "mode_invalid_ms", CAMPAIGN_LIES, NOTHING,
+    ROW(MODE_INVALID, CAMPAIGN_LASTS, AGV_MSG_VEHICLE_STATUS, AGV_SETTING_mode_invalid_ms, CAMPAIGN_LIES, NOTHING,
         "vcu: set, field: mode_bits, value: 3h"),
-    ROW(MODE_FLAPPING, CAMPAIGN_FRAMES, AGV_MSG_VEHICLE_STATUS, NULL,
+    ROW(MODE_FLAPPING, CAMPAIGN_FRAMES, AGV_MSG_VEHICLE_STATUS, NO_SETTING,
         CAMPAIGN_ENGAGED | CAMPAIGN_LATER | CAMPAIGN_AGAIN, 1500u, 1500u, "",
         "operator: disengage|+300 operator: engage|+600 operator: disengage|+900 operator: engage|+1200 operator: "
         "disengage|+1500 operator: engage"),
-    ROW(MODE_NONE, CAMPAIGN_LASTS, AGV_MSG_VEHICLE_STATUS, "mode_none_ms", CAMPAIGN_MANUAL | CAMPAIGN_LIES, NOTHING,
-        "vcu: set, field: mode_bits, value: 0h"),
-    ROW(EPS_STATUS_TIMEOUT, CAMPAIGN_SILENCE, AGV_MSG_EPS_STATUS, "eps_status_timeout_ms", 0u, NOTHING,
+    ROW(MODE_NONE, CAMPAIGN_LASTS, AGV_MSG_VEHICLE_STATUS, AGV_SETTING_mode_none_ms, CAMPAIGN_MANUAL | CAMPAIGN_LIES,
+        NOTHING, "vcu: set, field: mode_bits, value: 0h"),
+    ROW(EPS_STATUS_TIMEOUT, CAMPAIGN_SILENCE, AGV_MSG_EPS_STATUS, AGV_SETTING_eps_status_timeout_ms, 0u, NOTHING,
         "eps: mute, message: eps_status"),
-    ROW(GEAR_STATUS_TIMEOUT, CAMPAIGN_SILENCE, AGV_MSG_GEAR_STATUS, "gear_status_timeout_ms", CAMPAIGN_LIES, NOTHING,
-        "vcu: mute, message: gear_status"),
-    ROW(THROTTLE_STATUS_TIMEOUT, CAMPAIGN_SILENCE, AGV_MSG_THROTTLE_STATUS, "throttle_status_timeout_ms", 0u, NOTHING,
-        "vcu: mute, message: throttle_status"),
-    ROW(WHEEL_SPEED_TIMEOUT, CAMPAIGN_SILENCE, AGV_MSG_WHEEL_SPEED, "wheel_speed_timeout_ms", 0u, NOTHING,
+    ROW(GEAR_STATUS_TIMEOUT, CAMPAIGN_SILENCE, AGV_MSG_GEAR_STATUS, AGV_SETTING_gear_status_timeout_ms, CAMPAIGN_LIES,
+        NOTHING, "vcu: mute, message: gear_status"),
+    ROW(THROTTLE_STATUS_TIMEOUT, CAMPAIGN_SILENCE, AGV_MSG_THROTTLE_STATUS, AGV_SETTING_throttle_status_timeout_ms, 0u,
+        NOTHING, "vcu: mute, message: throttle_status"),
+    ROW(WHEEL_SPEED_TIMEOUT, CAMPAIGN_SILENCE, AGV_MSG_WHEEL_SPEED, AGV_SETTING_wheel_speed_timeout_ms, 0u, NOTHING,
         "vcu: mute, message: wheel_speed"),
-    ROW(STEERING_POSITION_TIMEOUT, CAMPAIGN_SILENCE, AGV_MSG_STEERING_POSITION, "steering_position_timeout_ms",
-        CAMPAIGN_AS_TRIP, NOTHING, "eps: mute, message: steering_position"),
-    ROW(GEAR_COMMAND_TIMEOUT, CAMPAIGN_SILENCE, AGV_MSG_GEAR_COMMAND, "gear_command_timeout_ms", CAMPAIGN_ENGAGED,
-        NOTHING, "ai: mute, message: gear_command"),
-    ROW(THROTTLE_COMMAND_TIMEOUT, CAMPAIGN_SILENCE, AGV_MSG_THROTTLE_COMMAND, "throttle_command_timeout_ms",
+    ROW(STEERING_POSITION_TIMEOUT, CAMPAIGN_SILENCE, AGV_MSG_STEERING_POSITION,
+        AGV_SETTING_steering_position_timeout_ms, CAMPAIGN_AS_TRIP, NOTHING, "eps: mute, message: steering_position"),
+    ROW(GEAR_COMMAND_TIMEOUT, CAMPAIGN_SILENCE, AGV_MSG_GEAR_COMMAND, AGV_SETTING_gear_command_timeout_ms,
+        CAMPAIGN_ENGAGED, NOTHING, "ai: mute, message: gear_command"),
+    ROW(THROTTLE_COMMAND_TIMEOUT, CAMPAIGN_SILENCE, AGV_MSG_THROTTLE_COMMAND, AGV_SETTING_throttle_command_timeout_ms,
         CAMPAIGN_ENGAGED, NOTHING, "ai: mute, message: throttle_command"),
-    ROW(STEERING_COMMAND_TIMEOUT, CAMPAIGN_SILENCE, AGV_MSG_STEERING_COMMAND, "steering_command_timeout_ms",
+    ROW(STEERING_COMMAND_TIMEOUT, CAMPAIGN_SILENCE, AGV_MSG_STEERING_COMMAND, AGV_SETTING_steering_command_timeout_ms,
         CAMPAIGN_ENGAGED, NOTHING, "ai: mute, message: steering_command/ai: stop"),
-    ROW(AI_COMMAND_OUT_OF_RANGE, CAMPAIGN_FRAMES, AGV_MSG_GEAR_COMMAND, NULL, CAMPAIGN_ENGAGED, NOTHING,
+    ROW(AI_COMMAND_OUT_OF_RANGE, CAMPAIGN_FRAMES, AGV_MSG_GEAR_COMMAND, NO_SETTING, CAMPAIGN_ENGAGED, NOTHING,
         "ai: set, field: gear, value: 03h/ai: set, field: throttle, value: FBh/ai: set, field: angle, value: 4651h"),
-    ROW(EPS_MODE_OFF, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, "eps_mode_frames", CAMPAIGN_ENGAGED, NOTHING,
+    ROW(EPS_MODE_OFF, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, AGV_SETTING_eps_mode_frames, CAMPAIGN_ENGAGED, NOTHING,
         "eps: set, field: mode, value: FFh"),
-    ROW(EPS_MODE_INVALID, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, "eps_mode_frames", CAMPAIGN_ENGAGED, NOTHING,
+    ROW(EPS_MODE_INVALID, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, AGV_SETTING_eps_mode_frames, CAMPAIGN_ENGAGED, NOTHING,
         "eps: set, field: mode, value: 07h"),
-    ROW(EPS_MODE_NOT_ANGLE, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, "eps_mode_frames", CAMPAIGN_ENGAGED, NOTHING,
+    ROW(EPS_MODE_NOT_ANGLE, CAMPAIGN_FRAMES, AGV_MSG_EPS_STATUS, AGV_SETTING_eps_mode_frames, CAMPAIGN_ENGAGED, NOTHING,
         "eps: set, field: mode, value: 02h"),
-    ROW(GEAR_STATUS_INVALID, CAMPAIGN_FRAMES, AGV_MSG_GEAR_STATUS, "status_invalid_frames",
+    ROW(GEAR_STATUS_INVALID, CAMPAIGN_FRAMES, AGV_MSG_GEAR_STATUS, AGV_SETTING_status_invalid_frames,
         CAMPAIGN_ENGAGED | CAMPAIGN_LIES, NOTHING, "vcu: set, field: gear, value: 03h"),
-    ROW(THROTTLE_STATUS_INVALID, CAMPAIGN_FRAMES, AGV_MSG_THROTTLE_STATUS, "status_invalid_frames", CAMPAIGN_ENGAGED,
-        NOTHING, "vcu: set, field: throttle, value: FBh"),
-    ROW(STEERING_ANGLE_INVALID, CAMPAIGN_FRAMES, AGV_MSG_STEERING_STATUS, "status_invalid_frames", CAMPAIGN_ENGAGED,
-        NOTHING, "eps: set, field: angle, value: 4651h"),
-    ROW(STEERING_DEVIATION, CAMPAIGN_LASTS, AGV_MSG_STEERING_COMMAND, "steering_deviation_ms", CAMPAIGN_ENGAGED, 90u,
-        300u, "", "eps: stick|ai: drive, gear: D, throttle_pct: 20, steer_deg: $n"),
-    ROW(THROTTLE_DEVIATION, CAMPAIGN_LASTS, AGV_MSG_THROTTLE_STATUS, "throttle_deviation_ms", CAMPAIGN_ENGAGED, NOTHING,
-        "vcu: set, field: throttle, value: FAh"),
-    ROW(GEAR_DEVIATION, CAMPAIGN_LASTS, AGV_MSG_GEAR_STATUS, "gear_deviation_ms", CAMPAIGN_ENGAGED | CAMPAIGN_LIES,
-        NOTHING, "vcu: set, field: gear, value: 02h"),
-    ROW(AUTOPILOT_OFF_IGNORED, CAMPAIGN_LASTS, AGV_MSG_TURN_SIGNAL_COMMAND, "autopilot_off_ms",
+    ROW(THROTTLE_STATUS_INVALID, CAMPAIGN_FRAMES, AGV_MSG_THROTTLE_STATUS, AGV_SETTING_status_invalid_frames,
+        CAMPAIGN_ENGAGED, NOTHING, "vcu: set, field: throttle, value: FBh"),
+    ROW(STEERING_ANGLE_INVALID, CAMPAIGN_FRAMES, AGV_MSG_STEERING_STATUS, AGV_SETTING_status_invalid_frames,
+        CAMPAIGN_ENGAGED, NOTHING, "eps: set, field: angle, value: 4651h"),
+    ROW(STEERING_DEVIATION, CAMPAIGN_LASTS, AGV_MSG_STEERING_COMMAND, AGV_SETTING_steering_deviation_ms,
+        CAMPAIGN_ENGAGED, 90u, 300u, "", "eps: stick|ai: drive, gear: D, throttle_pct: 20, steer_deg: $n"),
+    ROW(THROTTLE_DEVIATION, CAMPAIGN_LASTS, AGV_MSG_THROTTLE_STATUS, AGV_SETTING_throttle_deviation_ms,
+        CAMPAIGN_ENGAGED, NOTHING, "vcu: set, field: throttle, value: FAh"),
+    ROW(GEAR_DEVIATION, CAMPAIGN_LASTS, AGV_MSG_GEAR_STATUS, AGV_SETTING_gear_deviation_ms,
+        CAMPAIGN_ENGAGED | CAMPAIGN_LIES, NOTHING, "vcu: set, field: gear, value: 02h"),
+    ROW(AUTOPILOT_OFF_IGNORED, CAMPAIGN_LASTS, AGV_MSG_TURN_SIGNAL_COMMAND, AGV_SETTING_autopilot_off_ms,
         CAMPAIGN_ENGAGED | CAMPAIGN_LIES, NOTHING, "vcu: set, field: mode_bits, value: 2h|ai: ask_autopilot_off"),
-    ROW(THROTTLE_IN_PARK, CAMPAIGN_LASTS, AGV_MSG_GEAR_STATUS, "throttle_in_park_ms",
+    ROW(THROTTLE_IN_PARK, CAMPAIGN_LASTS, AGV_MSG_GEAR_STATUS, AGV_SETTING_throttle_in_park_ms,
         CAMPAIGN_ENGAGED | CAMPAIGN_LIES | CAMPAIGN_IN_GEAR, NOTHING, "vcu: set, field: gear, value: 08h"),
-    ROW(FOREIGN_COMMAND_SENDER, CAMPAIGN_FRAME, AGV_MSG_GEAR_COMMAND, NULL, CAMPAIGN_GATEWAY, NOTHING,
+    ROW(FOREIGN_COMMAND_SENDER, CAMPAIGN_FRAME, AGV_MSG_GEAR_COMMAND, NO_SETTING, CAMPAIGN_GATEWAY, NOTHING,
         "bus: send, side: vehicle, message: gear_command, bytes: \"02 00 00 00 00 00 00 00\""),
     ROW_AFTER(SAFE_STATE_UNCONFIRMED, STEERING_COMMAND_TIMEOUT, CAMPAIGN_UNCONFIRMED, AGV_MSG_STEERING_COMMAND,
-              "confirm_timeout_ms", CAMPAIGN_ENGAGED | CAMPAIGN_BY_OUTPUT | CAMPAIGN_LIES | CAMPAIGN_AT_ONCE_P, NOTHING,
+              AGV_SETTING_confirm_timeout_ms,
+              CAMPAIGN_ENGAGED | CAMPAIGN_BY_OUTPUT | CAMPAIGN_LIES | CAMPAIGN_AT_ONCE_P, NOTHING,
               "vcu: set, field: gear, value: 01h|ai: mute, message: steering_command"),
     ROW_AFTER(VEHICLE_NOT_STOPPING, STEERING_COMMAND_TIMEOUT, CAMPAIGN_UNCONFIRMED, AGV_MSG_STEERING_COMMAND,
-              "stop_timeout_ms", CAMPAIGN_ENGAGED | CAMPAIGN_BY_OUTPUT, NOTHING,
+              AGV_SETTING_stop_timeout_ms, CAMPAIGN_ENGAGED | CAMPAIGN_BY_OUTPUT, NOTHING,
               "vcu: set_bytes, message: wheel_speed, bytes: \"2C 01 00 00 2C 01 00 00\"|ai: mute, message: "
               "steering_command"),
-    ROW(COMMAND_TOO_FAST, CAMPAIGN_GAPS, AGV_MSG_GEAR_COMMAND, "command_too_fast_gaps", CAMPAIGN_AS_TRIP, 10u, 35u, "",
-        "ai: send_every, message: gear_command, every_ms: $n"),
-    ROW(SPEED_IMPLAUSIBLE, CAMPAIGN_LASTS, AGV_MSG_WHEEL_SPEED, "speed_implausible_ms", CAMPAIGN_AS_TRIP, NOTHING,
-        "vcu: set_bytes, message: wheel_speed, bytes: \"B8 0B 00 00 B8 0B 00 00\""),
-    ROW(STATUS_ID_IN_USE, CAMPAIGN_TICK, NONE, NULL, CAMPAIGN_AS_TRIP, NOTHING,
+    ROW(COMMAND_TOO_FAST, CAMPAIGN_GAPS, AGV_MSG_GEAR_COMMAND, AGV_SETTING_command_too_fast_gaps, CAMPAIGN_AS_TRIP, 10u,
+        35u, "", "ai: send_every, message: gear_command, every_ms: $n"),
+    ROW(SPEED_IMPLAUSIBLE, CAMPAIGN_LASTS, AGV_MSG_WHEEL_SPEED, AGV_SETTING_speed_implausible_ms, CAMPAIGN_AS_TRIP,
+        NOTHING, "vcu: set_bytes, message: wheel_speed, bytes: \"B8 0B 00 00 B8 0B 00 00\""),
+    ROW(STATUS_ID_IN_USE, CAMPAIGN_TICK, NONE, NO_SETTING, CAMPAIGN_AS_TRIP, NOTHING,
         "bus: deliver, side: vehicle, kind: fd, id: 7F0h, bytes: \"00 00 00 00 00 00 00 00\""),
-    ROW(RX_OVERRUN, CAMPAIGN_TICK, NONE, NULL, CAMPAIGN_AS_TRIP, NOTHING, "supervisor: overrun"),
-    ROW(ERROR_PASSIVE, CAMPAIGN_TICK, NONE, NULL, CAMPAIGN_AS_TRIP | CAMPAIGN_LATE_AI, NOTHING,
+    ROW(RX_OVERRUN, CAMPAIGN_TICK, NONE, NO_SETTING, CAMPAIGN_AS_TRIP, NOTHING, "supervisor: overrun"),
+    ROW(ERROR_PASSIVE, CAMPAIGN_TICK, NONE, NO_SETTING, CAMPAIGN_AS_TRIP | CAMPAIGN_LATE_AI, NOTHING,
         "supervisor: error_passive"),
-    ROW(AI_BUS_OFF, CAMPAIGN_TICK, NONE, NULL, CAMPAIGN_GATEWAY | CAMPAIGN_AS_TRIP, NOTHING,
+    ROW(AI_BUS_OFF, CAMPAIGN_TICK, NONE, NO_SETTING, CAMPAIGN_GATEWAY | CAMPAIGN_AS_TRIP, NOTHING,
         "supervisor: bus_off, side: ai"),
-    ROW(WRONG_ID_SET, CAMPAIGN_SILENCE, AGV_MSG_TURN_SIGNAL_COMMAND, "wrong_id_set_ms",
+    ROW(WRONG_ID_SET, CAMPAIGN_SILENCE, AGV_MSG_TURN_SIGNAL_COMMAND, AGV_SETTING_wrong_id_set_ms,
         CAMPAIGN_MANUAL | CAMPAIGN_AS_TRIP, NOTHING,
         "ai: mute, message: turn_signal_command|bus: send, side: $s, id: $o, bytes: \"00 00 00 00 10 00 00 00\", "
         "every_ms: 100"),
-    ROW_AFTER(STORE_INVALID, SUPERVISOR_RESET, CAMPAIGN_AT_ONCE, NONE, NULL, 0u, NOTHING,
+    ROW_AFTER(STORE_INVALID, SUPERVISOR_RESET, CAMPAIGN_AT_ONCE, NONE, NO_SETTING, 0u, NOTHING,
               "supervisor: corrupt_latch|supervisor: restart, cause: watchdog"),
 };
 
 const size_t CAMPAIGN_ROW_COUNT = sizeof CAMPAIGN_ROWS / sizeof CAMPAIGN_ROWS[0];
 
 const campaign_engagement_t CAMPAIGN_ENGAGEMENTS[] = {
-    {AGV_FAULT_AI_HEARTBEAT_LOST, "ai_never_seen_timeout_ms", true},
-    {AGV_FAULT_GEAR_COMMAND_TIMEOUT, NULL, false},
-    {AGV_FAULT_THROTTLE_COMMAND_TIMEOUT, NULL, false},
-    {AGV_FAULT_STEERING_COMMAND_TIMEOUT, NULL, false},
-    {AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, NULL, false},
-    {AGV_FAULT_EPS_MODE_OFF, "engaged_grace_ms", false},
-    {AGV_FAULT_EPS_MODE_INVALID, "engaged_grace_ms", false},
-    {AGV_FAULT_EPS_MODE_NOT_ANGLE, "engaged_grace_ms", false},
-    {AGV_FAULT_GEAR_STATUS_INVALID, "engaged_grace_ms", false},
-    {AGV_FAULT_THROTTLE_STATUS_INVALID, "engaged_grace_ms", false},
-    {AGV_FAULT_STEERING_ANGLE_INVALID, "engaged_grace_ms", false},
-    {AGV_FAULT_STEERING_DEVIATION, "engaged_grace_ms", false},
-    {AGV_FAULT_THROTTLE_DEVIATION, "engaged_grace_ms", false},
-    {AGV_FAULT_AUTOPILOT_OFF_IGNORED, "engaged_grace_ms", false},
-    {AGV_FAULT_THROTTLE_IN_PARK, "engaged_grace_ms", false},
+    {AGV_FAULT_AI_HEARTBEAT_LOST, AGV_SETTING_ai_never_seen_timeout_ms, true},
+    {AGV_FAULT_GEAR_COMMAND_TIMEOUT, NO_SETTING, false},
+    {AGV_FAULT_THROTTLE_COMMAND_TIMEOUT, NO_SETTING, false},
+    {AGV_FAULT_STEERING_COMMAND_TIMEOUT, NO_SETTING, false},
+    {AGV_FAULT_AI_COMMAND_OUT_OF_RANGE, NO_SETTING, false},
+    {AGV_FAULT_EPS_MODE_OFF, AGV_SETTING_engaged_grace_ms, false},
+    {AGV_FAULT_EPS_MODE_INVALID, AGV_SETTING_engaged_grace_ms, false},
+    {AGV_FAULT_EPS_MODE_NOT_ANGLE, AGV_SETTING_engaged_grace_ms, false},
+    {AGV_FAULT_GEAR_STATUS_INVALID, AGV_SETTING_engaged_grace_ms, false},
+    {AGV_FAULT_THROTTLE_STATUS_INVALID, AGV_SETTING_engaged_grace_ms, false},
+    {AGV_FAULT_STEERING_ANGLE_INVALID, AGV_SETTING_engaged_grace_ms, false},
+    {AGV_FAULT_STEERING_DEVIATION, AGV_SETTING_engaged_grace_ms, false},
+    {AGV_FAULT_THROTTLE_DEVIATION, AGV_SETTING_engaged_grace_ms, false},
+    {AGV_FAULT_AUTOPILOT_OFF_IGNORED, AGV_SETTING_engaged_grace_ms, false},
+    {AGV_FAULT_THROTTLE_IN_PARK, AGV_SETTING_engaged_grace_ms, false},
 };
 
 const size_t CAMPAIGN_ENGAGEMENT_COUNT = sizeof CAMPAIGN_ENGAGEMENTS / sizeof CAMPAIGN_ENGAGEMENTS[0];
@@ -202,25 +204,20 @@ const campaign_row_t *campaign_row(agv_fault_t fault) {
     return NULL;
 }
 
-/** The value of a setting; 0: no such setting. */
-static uint32_t setting(const agv_config_t *config, const char *name) {
-    for (uint16_t i = 0u; (name != NULL) && (i < AGV_SETTING_COUNT); i++) {
-        if (strcmp(agv_setting_info(i)->name, name) == 0) {
-            return agv_config_get(config, i);
-        }
-    }
-    return 0u;
+/** The value of a setting; 0: none. */
+static uint32_t value_of(const agv_config_t *config, uint16_t setting) {
+    return (setting == NO_SETTING) ? 0u : agv_config_get(config, setting);
 }
 
 uint32_t campaign_decision_ms(const campaign_row_t *row, const agv_config_t *config) {
     const uint32_t cycle_ms = agv_message_cycle_ms(row->message);
-    const uint32_t value = setting(config, row->setting);
+    const uint32_t value = value_of(config, row->setting);
 
     switch (row->kind) {
     case CAMPAIGN_TICK:
         return 1u;
     case CAMPAIGN_FRAMES:
-        return cycle_ms * ((row->setting != NULL) ? value : 1u);
+        return cycle_ms * ((row->setting != NO_SETTING) ? value : 1u);
     case CAMPAIGN_SILENCE:
         return value + 1u;
     case CAMPAIGN_LASTS:
@@ -242,7 +239,7 @@ uint32_t campaign_decision_ms(const campaign_row_t *row, const agv_config_t *con
 
 uint32_t campaign_engaged_decision_ms(const campaign_row_t *row, const campaign_engagement_t *engagement,
                                       const agv_config_t *config) {
-    const uint32_t known_ms = agv_message_cycle_ms(AGV_MSG_VEHICLE_STATUS) + setting(config, engagement->wait);
+    const uint32_t known_ms = agv_message_cycle_ms(AGV_MSG_VEHICLE_STATUS) + value_of(config, engagement->wait);
     if (engagement->never_seen) {
         return known_ms + 1u;
     }

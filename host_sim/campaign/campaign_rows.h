@@ -58,7 +58,7 @@ typedef struct {
     agv_fault_t first; /**< the first reason of the trip; it is the fault itself but for a few */
     campaign_kind_t kind;
     agv_message_t message;
-    const char *setting;
+    uint16_t setting; /**< AGV_SETTING_*; AGV_SETTING_COUNT: none */
     uint32_t flags;
     uint32_t lowest; /**< of $n, a random number in `steps` */
     uint32_t highest;
@@ -76,8 +76,8 @@ const campaign_row_t *campaign_row(agv_fault_t fault);
 /** A fault that is known later when its cause comes with an engagement than under way (SUP-3, SUP-5, SUP-8). */
 typedef struct {
     agv_fault_t fault;
-    const char
-        *wait; /**< setting: for so long after the engagement it is not judged; NULL: from the engagement on it is */
+    uint16_t
+        wait; /**< AGV_SETTING_*: for so long after the engagement it is not judged; AGV_SETTING_COUNT: from then on */
     bool never_seen; /**< the cause is there from the start on, and `wait` is all the time that it takes */
 } campaign_engagement_t;
 

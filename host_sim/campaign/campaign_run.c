@@ -1,10 +1,8 @@
 #include "campaign/campaign_run.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "agv/names.h"
 #include "campaign/campaign_scenario.h"

@@ -8,10 +8,6 @@
 
 enum { READY_FROM_MS = 500, READY_TO_MS = 1499, ENGAGED_TO_MS = 1700, BEAT_MS = 250 };
 
-static bool has_flag(const campaign_check_t *check, uint32_t flag) {
-    return (check->plan->row->flags & flag) != 0u;
-}
-
 static uint32_t bound_ms(const campaign_plan_t *plan) {
     return plan->cause_ms + (plan->bound_us / (uint32_t)US_PER_MS) + 1u;
 }
@@ -60,14 +56,14 @@ static void add_states(text_t *text, const campaign_check_t *check) {
     uint32_t latest_ms = bound_ms(plan);
 
     text_add(text, "  states:\n");
-    if (!has_flag(check, CAMPAIGN_START)) {
+    if (!campaign_has_flag(check, CAMPAIGN_START)) {
         add_state(text, AGV_STATE_INIT, -1, 0u, 0u);
         add_state(text, AGV_STATE_STANDBY, -1, READY_FROM_MS, READY_TO_MS);
         if (plan->engaged && ((plan->engagement == NULL) || !plan->engagement->never_seen)) {
             add_state(text, AGV_STATE_ACTIVE, -1, READY_TO_MS + 1u, ENGAGED_TO_MS);
         }
     }
-    if (has_flag(check, CAMPAIGN_AGAIN)) {
+    if (campaign_has_flag(check, CAMPAIGN_AGAIN)) {
         add_changes(text, check);
     }
     add_state(text, AGV_STATE_TRIPPED, (int)plan->row->first, plan->cause_ms, latest_ms);
@@ -77,12 +73,12 @@ static void add_states(text_t *text, const campaign_check_t *check) {
 static void add_output(text_t *text, const campaign_check_t *check) {
     const campaign_plan_t *plan = check->plan;
 
-    text_add(text, "  safety_output:%s\n", has_flag(check, CAMPAIGN_NO_OUTPUT) ? " []" : "");
-    if (has_flag(check, CAMPAIGN_NO_OUTPUT)) {
+    text_add(text, "  safety_output:%s\n", campaign_has_flag(check, CAMPAIGN_NO_OUTPUT) ? " []" : "");
+    if (campaign_has_flag(check, CAMPAIGN_NO_OUTPUT)) {
         return;
     }
     text_add(text, "    - {closed: true, at_ms: [%d, %d]}\n", READY_FROM_MS, READY_TO_MS);
-    if (has_flag(check, CAMPAIGN_BY_OUTPUT)) {
+    if (campaign_has_flag(check, CAMPAIGN_BY_OUTPUT)) {
         text_add(text, "    - {closed: false, at_ms: [%" PRIu32 ", %" PRIu32 "]}\n", plan->cause_ms, bound_ms(plan));
     } else if ((check->opened_us != CAMPAIGN_NEVER) && (check->broken != CAMPAIGN_FALSE_TRIP)) {
         text_add(text, "    - {closed: false, at_ms: %" PRIu64 "}\n", check->opened_us / US_PER_MS);
@@ -95,7 +91,7 @@ static void add_frames(text_t *text, const campaign_check_t *check) {
     const campaign_plan_t *plan = check->plan;
 
     text_add(text, "  frames:\n");
-    if (!has_flag(check, CAMPAIGN_BY_OUTPUT)) {
+    if (!campaign_has_flag(check, CAMPAIGN_BY_OUTPUT)) {
         text_add(text, "%s[%" PRIu32 ", %" PRIu32 "]}\n", safe, plan->cause_ms, bound_ms(plan));
     }
     text_add(text, "%s[%" PRIu32 ", %" PRIu32 "]}\n", safe, plan->duration_ms - (uint32_t)BEAT_MS, plan->duration_ms);
@@ -121,8 +117,8 @@ void campaign_scenario_write(text_t *text, const campaign_check_t *check) {
     add_states(text, check);
     add_frames(text, check);
     add_output(text, check);
-    if (!has_flag(check, CAMPAIGN_START) && (plan->engagement == NULL)) {
-        const uint32_t later_ms = has_flag(check, CAMPAIGN_LATER) ? plan->number : 0u;
+    if (!campaign_has_flag(check, CAMPAIGN_START) && (plan->engagement == NULL)) {
+        const uint32_t later_ms = campaign_has_flag(check, CAMPAIGN_LATER) ? plan->number : 0u;
         text_add(text, "  vehicle:\n    - {at_ms: %" PRIu32 ", mode: %s}\n", plan->cause_ms - later_ms - 1u,
                  plan->engaged ? "autopilot" : "manual");
     }

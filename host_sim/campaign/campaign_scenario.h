@@ -6,7 +6,6 @@
 #define HOST_SIM_CAMPAIGN_SCENARIO_H
 
 #include "campaign/campaign_check.h"
-#include "campaign/campaign_plan.h"
 
 /**
  * Write a run that was evaluated. What is expected are the invariants, so that a run that breaks one fails as a

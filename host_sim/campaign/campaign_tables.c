@@ -30,6 +30,11 @@ static json_t *settings(void) {
     return object;
 }
 
+/** NULL: none. */
+static const char *name_of(uint16_t setting) {
+    return (setting < AGV_SETTING_COUNT) ? agv_setting_info(setting)->name : NULL;
+}
+
 static json_t *flags_of(const campaign_row_t *row) {
     static const char *const names[] = {"gateway", "shared",    "engaged", "manual",     "start",
                                         "later",   "output",    "as_trip", "unreliable", "no_output",
@@ -53,7 +58,7 @@ static json_t *rows(void) {
             list, json_pack("{s:s, s:i, s:s, s:s?, s:s?, s:i, s:o}", "fault", agv_fault_name(row->fault), "rank",
                             (int)row->fault, "kind", kinds[row->kind], "message",
                             (row->message != AGV_MSG_NONE) ? agv_message_name(row->message) : NULL, "setting",
-                            row->setting, "highest", (int)row->highest, "flags", flags_of(row)));
+                            name_of(row->setting), "highest", (int)row->highest, "flags", flags_of(row)));
     }
     return list;
 }
@@ -64,7 +69,7 @@ static json_t *engagements(void) {
         const campaign_engagement_t *engagement = &CAMPAIGN_ENGAGEMENTS[i];
         (void)json_array_append_new(list,
                                     json_pack("{s:s, s:s?, s:b}", "fault", agv_fault_name(engagement->fault), "wait",
-                                              engagement->wait, "never_seen", (int)engagement->never_seen));
+                                              name_of(engagement->wait), "never_seen", (int)engagement->never_seen));
     }
     return list;
 }

@@ -6,7 +6,6 @@
 #ifndef HOST_SIM_MISSING_H
 #define HOST_SIM_MISSING_H
 
-#include <stddef.h>
 #include <stdint.h>
 
 #define MISSING_TEXT_SIZE 160u

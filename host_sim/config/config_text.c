@@ -1,6 +1,5 @@
 #include "config/config_text.h"
 
-#include <ctype.h>
 #include <inttypes.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -87,12 +86,6 @@ void config_print_yaml(const agv_config_t *config) {
     }
 }
 
-static void print_upper(const char *text) {
-    for (const char *at = text; *at != '\0'; at++) {
-        (void)putchar(toupper((unsigned char)*at));
-    }
-}
-
 void config_print_kconfig(const agv_config_t *config) {
     (void)printf("# Configuration of the supervisor, for the firmware.\n"
                  "# Checksum: %08" PRIX32 "\n",
@@ -102,12 +95,12 @@ void config_print_kconfig(const agv_config_t *config) {
         char value[CONFIG_VALUE_SIZE];
         config_value_text(info, agv_config_get(config, i), value);
         (void)printf("CONFIG_AGV_");
-        print_upper(info->name);
+        words_print_upper(info->name);
         if (info->words == NULL) {
             (void)printf("=%s\n", value);
         } else {
             (void)putchar('_');
-            print_upper(value);
+            words_print_upper(value);
             (void)printf("=y\n");
         }
     }
@@ -115,7 +108,7 @@ void config_print_kconfig(const agv_config_t *config) {
         const agv_fault_t fault = (agv_fault_t)i;
         if (may_be_chosen(fault)) {
             (void)printf("CONFIG_AGV_CLASS_%s_", agv_fault_name(fault));
-            print_upper(class_word(config, fault));
+            words_print_upper(class_word(config, fault));
             (void)printf("=y\n");
         }
     }

@@ -9,7 +9,6 @@
 #ifndef HOST_SIM_HUNT_H
 #define HOST_SIM_HUNT_H
 
-#include <stdbool.h>
 #include <stdint.h>
 
 #include "common/report.h"

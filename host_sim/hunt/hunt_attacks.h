@@ -5,7 +5,6 @@
 #ifndef HOST_SIM_HUNT_ATTACKS_H
 #define HOST_SIM_HUNT_ATTACKS_H
 
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 

@@ -8,7 +8,6 @@
 #ifndef HOST_SIM_HUNT_DRAW_H
 #define HOST_SIM_HUNT_DRAW_H
 
-#include <stdbool.h>
 #include <stdint.h>
 
 #include "hunt/hunt_program.h"

@@ -5,8 +5,8 @@
 #ifndef HOST_SIM_HUNT_PLAY_H
 #define HOST_SIM_HUNT_PLAY_H
 
-#include "hunt/hazard/hazard.h"
 #include "hunt/hunt_program.h"
+#include "scenario/hazard/hazard.h"
 
 enum { HUNT_FEATURES = 16384, HUNT_FEATURE_BYTES = HUNT_FEATURES / 8 };
 

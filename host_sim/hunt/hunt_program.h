@@ -10,8 +10,8 @@
 #include <stdint.h>
 
 #include "agv/config.h"
-#include "campaign/campaign_plan.h"
 #include "hunt/hunt_attacks.h"
+#include "text/text.h"
 
 enum { HUNT_ACTIONS_MAX = 6, HUNT_SETTINGS_MAX = 4, HUNT_CLASSES_MAX = 2 };
 

@@ -90,15 +90,12 @@ static uint64_t time_of_day_us(void) {
 static bool open_outputs(live_t *live) {
     const live_request_t *request = live->request;
     const char *const paths[OUTPUTS] = {[OUT] = request->out, [EVENTS] = request->events};
-    bool stdout_is_free = true;
+    bool stdout_is_free = !analysis_paths_use_stdout(&request->analysis);
     for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
         if ((paths[i] != NULL) && !live_output_open(&live->outputs[i], paths[i])) {
             return false;
         }
         stdout_is_free = stdout_is_free && !output_is_stdout(paths[i]);
-    }
-    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
-        stdout_is_free = stdout_is_free && !output_is_stdout(request->analysis[i]);
     }
     live->stdout_is_free = stdout_is_free;
     live->is_terminal = stdout_is_free && (live->screen.child == 0) && (isatty(STDOUT_FILENO) == 1);
@@ -122,23 +119,17 @@ static bool open_screen(live_t *live) {
                        [HAL_CAN_AI] = request->bus.interfaces[HAL_CAN_AI]},
         .has_supervisor = true,
     };
-    bool is_wanted = request->screen && !output_is_stdout(request->out) && !output_is_stdout(request->events);
-    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
-        is_wanted = is_wanted && !output_is_stdout(request->analysis[i]);
-    }
+    const bool is_wanted = request->screen && !output_is_stdout(request->out) && !output_is_stdout(request->events) &&
+                           !analysis_paths_use_stdout(&request->analysis);
     return !is_wanted || monitor_companion_fork(&live->screen, &config);
 }
 
 /** The files of the analysis, which are written at the end. @return false: reported */
 static bool open_analysis(live_t *live) {
     const live_request_t *request = live->request;
-    analysis_request_t analysed = {.config = &request->config, .log = request->bus.interfaces[HAL_CAN_VEHICLE]};
-    bool any = false;
-    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
-        analysed.paths[i] = request->analysis[i];
-        any = any || (request->analysis[i] != NULL);
-    }
-    if (!any) {
+    const analysis_request_t analysed = {
+        .config = &request->config, .log = request->bus.interfaces[HAL_CAN_VEHICLE], .files = request->analysis};
+    if (!analysis_paths_any(&request->analysis)) {
         return true;
     }
     live->analysis = analysis_new(&analysed);

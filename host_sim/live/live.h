@@ -6,7 +6,6 @@
 #define HOST_SIM_LIVE_H
 
 #include <stdbool.h>
-#include <stdint.h>
 
 #include "agv/config.h"
 #include "analysis/analysis.h"
@@ -15,10 +14,10 @@
 
 /** What to run. */
 typedef struct {
-    interface_options_t bus;              /**< the AI side: NULL on the shared bus */
-    const char *out;                      /**< log of what was sent; NULL: none */
-    const char *events;                   /**< NULL: none */
-    const char *analysis[ANALYSIS_FILES]; /**< written at the end; NULL: none */
+    interface_options_t bus;   /**< the AI side: NULL on the shared bus */
+    const char *out;           /**< log of what was sent; NULL: none */
+    const char *events;        /**< NULL: none */
+    analysis_paths_t analysis; /**< written at the end */
     bool fail_on_trip;
     bool realtime; /**< SCHED_FIFO, memory locked */
     bool screen;   /**< the screen of the monitor, if there is a terminal */

@@ -5,7 +5,6 @@
 #ifndef HOST_SIM_LIVE_STATUS_H
 #define HOST_SIM_LIVE_STATUS_H
 
-#include <stdbool.h>
 #include <stdint.h>
 
 #include "session/session.h"

@@ -1,7 +1,6 @@
 #include "live/node.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "agv/protocol.h"
 #include "common/report.h"

@@ -9,7 +9,6 @@
 #ifndef HOST_SIM_SENT_LOG_H
 #define HOST_SIM_SENT_LOG_H
 
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 

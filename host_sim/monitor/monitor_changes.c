@@ -1,7 +1,6 @@
 /* Transitions of signals: words, flags and alarms that change are listed; numbers are not. */
 #include <string.h>
 
-#include "agv/names.h"
 #include "monitor/monitor_internal.h"
 #include "text/units.h"
 

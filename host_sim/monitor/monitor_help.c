@@ -29,8 +29,7 @@ static const line_t lines[] = {
 
 enum { LEFT = 2, RIGHT = 14 };
 
-void monitor_help_draw(monitor_view_t *view, int y, const monitor_page_t *page) {
-    (void)page;
+void monitor_help_draw(monitor_view_t *view, int y) {
     for (size_t i = 0u; i < sizeof lines / sizeof lines[0]; i++) {
         (void)monitor_view_put(view, y + (int)i, LEFT, STYLE_BOLD, lines[i].left);
         (void)monitor_view_put(view, y + (int)i, RIGHT, STYLE_PLAIN, lines[i].right);

@@ -283,7 +283,7 @@ void monitor_page_draw(monitor_view_t *view, const monitor_t *monitor, const mon
     int y = 1;
     draw_header(view, monitor, page);
     if (page->shows_help) {
-        monitor_help_draw(view, 2, page);
+        monitor_help_draw(view, 2);
     } else {
         draw_supervisor(view, y, monitor);
         draw_vehicle(view, y + 1, monitor);

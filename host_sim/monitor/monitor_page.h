@@ -40,6 +40,6 @@ int monitor_page_log_lines(const monitor_t *monitor, int height);
 int monitor_table_draw(monitor_view_t *view, int y, const monitor_t *monitor);
 
 /** Draw the page of help from a line on. */
-void monitor_help_draw(monitor_view_t *view, int y, const monitor_page_t *page);
+void monitor_help_draw(monitor_view_t *view, int y);
 
 #endif

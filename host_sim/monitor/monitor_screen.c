@@ -160,7 +160,7 @@ void monitor_screen_show(const monitor_view_t *view) {
     (void)refresh();
 }
 
-void monitor_screen_redraw(void) {
+static void redraw(void) {
     (void)clearok(stdscr, TRUE);
 }
 
@@ -183,7 +183,7 @@ int monitor_screen_key(void) {
         here.shown.width = 0; /* curses has made its lines anew */
     }
     if (key == CTRL_L) {
-        monitor_screen_redraw();
+        redraw();
         return MONITOR_KEY_RESIZE;
     }
     for (size_t i = 0u; i < sizeof keys / sizeof keys[0]; i++) {

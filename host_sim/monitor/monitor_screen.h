@@ -44,9 +44,6 @@ void monitor_screen_show(const monitor_view_t *view);
 /** The next key. @return a character, MONITOR_KEY_..., or MONITOR_KEY_NONE */
 int monitor_screen_key(void);
 
-/** Draw everything anew with the next monitor_screen_show(). */
-void monitor_screen_redraw(void);
-
 /** Close it; print what standard error has got meanwhile. Nothing when it is not open. */
 void monitor_screen_close(void);
 

@@ -3,11 +3,9 @@
  * status frame is heard; or from the program whose screen this is.
  */
 #include <inttypes.h>
-#include <string.h>
 
 #include "agv/names.h"
 #include "common/missing.h"
-#include "common/report.h"
 #include "monitor/monitor_internal.h"
 #include "text/units.h"
 
@@ -15,7 +13,7 @@
 enum { WAIT_MS = 1000, PERIODS = 3, LOW_NIBBLE = 0x0F };
 
 /** The status frame (docs/protocol.md, 7F0h). */
-enum { STATE_AT = 0, REASON_AT = 1, OUTPUT_AT = 2, CHECKSUM_AT = 4, NO_REASON = 255, PAGE_SHIFT = 4, BITS = 8 };
+enum { STATE_AT = 0, REASON_AT = 1, OUTPUT_AT = 2, CHECKSUM_AT = 4, PAGE_SHIFT = 4, BITS = 8 };
 
 static uint64_t wait_us(const monitor_t *monitor) {
     const uint64_t periods_ms = (uint64_t)PERIODS * monitor->config.status_frame_period_ms;

@@ -41,7 +41,7 @@ static bool is_event(const agv_event_t *event) {
                            ? (event->state == (uint8_t)AGV_STATE_TRIPPED) || (event->state == (uint8_t)AGV_STATE_SAFE)
                            : true;
     return kind && state && (event->reserved == 0u) && (event->first_reason <= (uint8_t)AGV_FAULT_COUNT) &&
-           (event->seen < (1u << (unsigned)AGV_MSG_COUNT)) && agv_event_is_valid(event);
+           (event->seen < agv_message_bit(AGV_MSG_COUNT)) && agv_event_is_valid(event);
 }
 
 /** Find the events in bytes, wherever they lie. @return false: no memory; was reported */

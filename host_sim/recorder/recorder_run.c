@@ -134,11 +134,7 @@ static void feed(work_t *work, bool with_timeline) {
 }
 
 static bool has_text(const recorder_request_t *request) {
-    bool taken = output_is_stdout(request->events);
-    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
-        taken = taken || output_is_stdout(request->analysis[i]);
-    }
-    return !taken;
+    return !output_is_stdout(request->events) && !analysis_paths_use_stdout(&request->analysis);
 }
 
 static void print_text(work_t *work) {
@@ -153,8 +149,8 @@ static void print_text(work_t *work) {
 
 static bool analyse(work_t *work) {
     const recorder_request_t *request = work->request;
-    analysis_request_t analysed = {.config = &request->config, .log = request->path, .is_recorder = true};
-    analysis_copy_paths(analysed.paths, request->analysis);
+    const analysis_request_t analysed = {
+        .config = &request->config, .log = request->path, .files = request->analysis, .is_recorder = true};
     work->analysis = analysis_new(&analysed);
     if ((work->analysis == NULL) || !analysis_open(work->analysis) ||
         ((request->events != NULL) && !output_open(&work->lines, request->events))) {

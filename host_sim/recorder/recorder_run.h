@@ -20,7 +20,7 @@
 /** What to read. */
 typedef struct {
     const char *path; /**< "-" = standard input */
-    const char *analysis[ANALYSIS_FILES];
+    analysis_paths_t analysis;
     const char *events; /**< JSON Lines; NULL: none */
     uint64_t run;
     agv_config_t config;

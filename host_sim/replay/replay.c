@@ -1,6 +1,5 @@
 #include "replay/replay.h"
 
-#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -184,11 +183,8 @@ static void start(replay_t *replay, uint64_t first_us) {
 
 /** Whether standard output is free for the text. */
 static bool has_text(const replay_request_t *request) {
-    bool taken = (request->listener != NULL) || output_is_stdout(request->events) || output_is_stdout(request->out);
-    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
-        taken = taken || output_is_stdout(request->analysis[i]);
-    }
-    return !taken;
+    return (request->listener == NULL) && !output_is_stdout(request->events) && !output_is_stdout(request->out) &&
+           !analysis_paths_use_stdout(&request->analysis);
 }
 
 static replay_text_t text_of(const replay_t *replay, const events_summary_t *summary) {
@@ -296,9 +292,9 @@ static bool check_request(const replay_request_t *request) {
 }
 
 static bool make_analysis(replay_t *replay) {
-    analysis_request_t request = {.config = &replay->request->config, .is_recording = true};
+    analysis_request_t request = {
+        .config = &replay->request->config, .files = replay->request->analysis, .is_recording = true};
     request.log = (strcmp(replay->request->log, "-") == 0) ? "standard input" : replay->request->log;
-    analysis_copy_paths(request.paths, replay->request->analysis);
     replay->analysis = analysis_new(&request);
     return replay->analysis != NULL;
 }

@@ -29,16 +29,16 @@ typedef struct {
 
 /** What to replay. */
 typedef struct {
-    const char *log;                      /**< "-" = standard input */
-    const char *out;                      /**< log of what was sent; NULL: none */
-    const char *events;                   /**< NULL: none, a summary goes to standard output */
-    const char *store;                    /**< what outlives a reset; NULL: nothing does */
-    const char *analysis[ANALYSIS_FILES]; /**< NULL: none */
-    bool timeline;                        /**< a line for each action and event on standard output */
-    bool fail_on_trip;                    /**< STATUS_UNMET if it tripped, or if nothing was supervised */
-    const char *ai_interface;             /**< gateway: the AI side; NULL on the shared bus */
-    uint32_t start_ms;                    /**< what the supervisor's clock reads at the start */
-    uint64_t tail_ms;                     /**< how long to go on after the last line */
+    const char *log;    /**< "-" = standard input */
+    const char *out;    /**< log of what was sent; NULL: none */
+    const char *events; /**< NULL: none, a summary goes to standard output */
+    const char *store;  /**< what outlives a reset; NULL: nothing does */
+    analysis_paths_t analysis;
+    bool timeline;            /**< a line for each action and event on standard output */
+    bool fail_on_trip;        /**< STATUS_UNMET if it tripped, or if nothing was supervised */
+    const char *ai_interface; /**< gateway: the AI side; NULL on the shared bus */
+    uint32_t start_ms;        /**< what the supervisor's clock reads at the start */
+    uint64_t tail_ms;         /**< how long to go on after the last line */
     bool skip_bad_lines;
     hal_reset_cause_t reset_cause;
     agv_config_t config;

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "agv/recorder.h"
 #include "text/units.h"
 #include "why/why_words.h"
 

@@ -5,8 +5,6 @@
 #ifndef HOST_SIM_SENTENCE_H
 #define HOST_SIM_SENTENCE_H
 
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 #include "report/report_page.h"

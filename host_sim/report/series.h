@@ -23,7 +23,6 @@
 #define SERIES_AFTER_US 6000000u    /**< and after it */
 #define SERIES_OVERVIEW_STEPS 4096u /**< steps of the whole run, at most */
 #define SERIES_CHANGES_MAX 1024u    /**< changes of one lane, at most; later ones are counted */
-#define SERIES_NOTES_PER_DETAIL_MAX 64u
 
 typedef struct series series_t;
 

@@ -1,6 +1,5 @@
 #include "skeleton/skeleton.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

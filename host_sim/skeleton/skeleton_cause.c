@@ -8,7 +8,7 @@
 #include "skeleton/skeleton_plan.h"
 
 enum { EPS_MODE_BYTE = 3, BITS_OF_BYTE = 8, DECIMAL = 10, ENGAGE_EARLIEST_MS = 500, DRIVE_EARLIEST_MS = 1500 };
-enum { LONGEST_MS = 60000, SHORT_MS = 10000, AFTERWARDS_MS = 3000, DECISION_MAX_MS = 5000, HEARD_MS = 200 };
+enum { LONGEST_MS = 60000, SHORT_MS = 10000, DECISION_MAX_MS = 5000, HEARD_MS = 200 };
 
 /** Begin a step of the cause. */
 static void begin_step(skeleton_plan_t *plan, uint32_t later_ms) {

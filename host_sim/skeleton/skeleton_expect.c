@@ -1,6 +1,5 @@
 /* The expectations of a skeleton: what a run of it showed, with some room around each time. */
 #include <inttypes.h>
-#include <stdlib.h>
 
 #include "agv/codec.h"
 #include "agv/names.h"

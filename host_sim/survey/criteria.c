@@ -3,7 +3,6 @@
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "agv/codec.h"
 #include "common/message_facts.h"
@@ -68,7 +67,7 @@ static verdict_t judge_cycle(const suspect_t *suspect, criterion_t *criterion) {
     const uint32_t cycle_ms = agv_message_cycle_ms(suspect->message);
     const uint64_t median_us = gaps_quantile_us(&suspect->entry->gaps, MEDIAN);
     const uint64_t percent = (median_us * PERCENT) / ((uint64_t)cycle_ms * US_PER_MS);
-    const double ms = (double)median_us / (double)US_PER_MS;
+    const double ms = ms_of_us(median_us);
     if ((percent >= (uint64_t)CYCLE_LOWEST_PCT) && (percent <= (uint64_t)CYCLE_HIGHEST_PCT)) {
         return say(criterion, VERDICT_FOR, "comes every %.1f ms, as in the protocol", ms);
     }

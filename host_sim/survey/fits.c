@@ -67,7 +67,7 @@ static bool is_plausible(uint32_t message, const uint8_t data[AGV_DLC]) {
 uint32_t fits_frame(uint32_t fits, const uint8_t data[AGV_DLC]) {
     uint32_t left = fits;
     for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
-        const uint32_t bit = 1u << message;
+        const uint32_t bit = agv_message_bit(message);
         if (((left & bit) != 0u) && !is_plausible(message, data)) {
             left &= ~bit;
         }

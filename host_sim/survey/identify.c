@@ -142,7 +142,7 @@ static void look(const evidence_t *evidence, const traffic_t *traffic, uint32_t 
 static void look_at_all(inquiry_t *inquiry, identify_t *result) {
     for (uint32_t message = 0u; message < (uint32_t)AGV_MSG_COUNT; message++) {
         look(inquiry->evidence, inquiry->traffic, message, &result->of[message], &inquiry->of[message]);
-        inquiry->heard |= (inquiry->of[message] != NULL) ? 1u << message : 0u;
+        inquiry->heard |= (inquiry->of[message] != NULL) ? agv_message_bit(message) : 0u;
     }
 }
 

@@ -28,14 +28,6 @@ __attribute__((format(printf, 2, 3))) static void note(proposal_t *proposal, con
     }
 }
 
-static double ms_of(uint64_t us) {
-    return (double)us / (double)US_PER_MS;
-}
-
-static double s_of(uint64_t us) {
-    return (double)us / (double)US_PER_S;
-}
-
 /** What a sender does as a rule. */
 typedef struct {
     uint64_t cycle_us;
@@ -63,8 +55,8 @@ static void note_late(proposal_t *proposal, const traffic_id_t *entry, const cha
         note(proposal,
              "%03Xh %s: %" PRIu64
              " gap%s of up to %.1f ms, the longest at %.3f s; an outage, not a slow sender: %s stays",
-             entry->id, name, (late > 0u) ? late : 1u, (late > 1u) ? "s" : "", ms_of(watch->gaps.longest_us),
-             s_of(watch->gaps.longest_at_us), agv_setting_info(watch->setting)->name);
+             entry->id, name, (late > 0u) ? late : 1u, (late > 1u) ? "s" : "", ms_of_us(watch->gaps.longest_us),
+             s_of_us(watch->gaps.longest_at_us), agv_setting_info(watch->setting)->name);
     }
 }
 
@@ -89,7 +81,7 @@ static void propose_deadline(proposal_t *proposal, const traffic_id_t *entry) {
             (void)agv_config_set(&proposal->config, watch->setting, (uint16_t)value);
             reason(proposal, watch->setting,
                    "%03Xh %s comes every %.1f ms, usually after %.1f ms at most: needs %" PRIu64 " ms", entry->id, name,
-                   ms_of(habit.cycle_us), ms_of(habit.usual_us), need_ms);
+                   ms_of_us(habit.cycle_us), ms_of_us(habit.usual_us), need_ms);
         }
         if (need_ms > info->highest) {
             note(proposal, "%03Xh %s needs %" PRIu64 " ms, and %s may be %u ms at most: the sender must be faster",
@@ -116,7 +108,7 @@ static void propose_counter(proposal_t *proposal, const traffic_id_t *entry, uin
         note(proposal,
              "%03Xh %s: %" PRIu64 " of %" PRIu64
              " steps of its counter were not by 1 to 3, the first at %.3f s: %s stays any",
-             entry->id, name, use->other_steps, use->steps + use->other_steps, s_of(use->other_at_us),
+             entry->id, name, use->other_steps, use->steps + use->other_steps, s_of_us(use->other_at_us),
              agv_setting_info((uint16_t)setting)->name);
         break;
     case COUNTER_STUCK:
@@ -135,7 +127,7 @@ static void note_values(proposal_t *proposal, const traffic_id_t *entry) {
         const traffic_range_t *range = &entry->ranges[i];
         if ((info->kind == SIGNAL_ALARM) && (range->set > 0u)) {
             note(proposal, "%s was set in %" PRIu64 " frames, first at %.3f s: its class stays %s", info->name,
-                 range->set, s_of(range->set_at_us),
+                 range->set, s_of_us(range->set_at_us),
                  agv_class_name(agv_config_is_trip(&proposal->config, info->fault) ? AGV_CLASS_TRIP : AGV_CLASS_WARN));
         } else if (range->invalid > 0u) {
             note(proposal, "%03Xh %s: %" PRIu64 " frames with an invalid %s; no setting allows them", entry->id,

@@ -11,9 +11,7 @@
 #define HOST_SIM_PROPOSAL_H
 
 #include <jansson.h>
-#include <stdbool.h>
 #include <stddef.h>
-#include <stdint.h>
 
 #include "agv/config.h"
 #include "survey/identify.h"

@@ -2,7 +2,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/interrupt.h"
 #include "logs/candump_log.h"
 #include "survey/sources.h"
 

@@ -54,7 +54,7 @@ static json_t *interfaces_json(const observation_t *observation) {
 }
 
 static json_t *unknown_json(const survey_result_t *result) {
-    const double seconds = (double)observation_us(&result->observation) / (double)US_PER_S;
+    const double seconds = s_of_us(observation_us(&result->observation));
     json_t *array = json_array();
     for (size_t i = 0u; traffic_at(result->traffic, i) != NULL; i++) {
         const traffic_id_t *entry = traffic_at(result->traffic, i);
@@ -129,13 +129,13 @@ bool survey_print_json(const survey_result_t *result) {
     json_put(root, "format", (result->source.format[0] != '\0') ? json_string(result->source.format) : json_null());
     json_put(root, "interfaces", interfaces_json(observation));
     json_put(root, "first_us", json_uint(observation->first_us));
-    json_put(root, "duration_ms", json_real((double)observation_us(observation) / (double)US_PER_MS));
+    json_put(root, "duration_ms", json_real(ms_of_us(observation_us(observation))));
     json_put(root, "frames", json_uint(observation->frames));
     json_put(root, "error_frames", json_uint(totals.error));
     json_put(root, "lost_frames", json_uint(observation->lost));
     json_put(root, "skipped_lines", json_uint(result->source.skipped_lines));
     json_put(root, "backward_stamps", json_uint(observation->backward_stamps));
-    json_put(root, "engaged_ms", json_real((double)totals.engaged_us / (double)US_PER_MS));
+    json_put(root, "engaged_ms", json_real(ms_of_us(totals.engaged_us)));
     json_put(root, "engagements", json_uint(totals.engagements));
     json_put(root, "load", load_json(result));
     json_put(root, "id_sets", id_sets_json(result));

@@ -7,17 +7,9 @@
 
 enum { MEDIAN = 500, P999 = 999, BITS_PER_WORD = 32, WORD_CHOICES = 256, LINE_SIZE = 160, UNKNOWN_SHOWN_MAX = 40 };
 
-static double ms_of(uint64_t us) {
-    return (double)us / (double)US_PER_MS;
-}
-
-static double s_of(uint64_t us) {
-    return (double)us / (double)US_PER_S;
-}
-
 static void print_head(const survey_result_t *result) {
     const observation_t *observation = &result->observation;
-    const double seconds = s_of(observation_us(observation));
+    const double seconds = s_of_us(observation_us(observation));
     (void)printf("%s: %.3f s on ", result->source.name, seconds);
     for (uint32_t i = 0u; i < observation->interface_count; i++) {
         (void)printf("%s%s", (i > 0u) ? ", " : "", observation->interfaces[i]);
@@ -37,7 +29,7 @@ static void print_head(const survey_result_t *result) {
                      "; not in them: lost %" PRIu64 ", lines skipped %" PRIu64 "\n",
                      totals.error, observation->backward_stamps, observation->lost, result->source.skipped_lines);
     }
-    (void)printf("engaged  %.3f s in %" PRIu64 " engagement%s\n", s_of(totals.engaged_us), totals.engagements,
+    (void)printf("engaged  %.3f s in %" PRIu64 " engagement%s\n", s_of_us(totals.engaged_us), totals.engagements,
                  (totals.engagements == 1u) ? "" : "s");
 }
 
@@ -75,7 +67,7 @@ static void print_deadline(const traffic_watch_t *watch) {
     }
     (void)printf(" %8" PRIu32 "%s", watch->deadline_ms, (watch->when == TRAFFIC_ENGAGED) ? "*" : " ");
     if (watch->gaps.count > 0u) {
-        (void)printf(" %9.2f%s", (double)watch->deadline_ms - ms_of(watch->gaps.longest_us),
+        (void)printf(" %9.2f%s", (double)watch->deadline_ms - ms_of_us(watch->gaps.longest_us),
                      (watch->late > 0u) ? "  LATE" : "");
     } else {
         (void)printf(" %9s", "-");
@@ -89,8 +81,8 @@ static void print_message(const traffic_id_t *entry) {
                  signals_message_name(entry->message), entry->count);
     const gaps_t *gaps = &entry->gaps;
     if (gaps->count > 0u) {
-        (void)printf(" %8.2f %8.2f %8.2f %9.2f", ms_of(gaps->shortest_us), ms_of(gaps_quantile_us(gaps, MEDIAN)),
-                     ms_of(gaps_quantile_us(gaps, P999)), ms_of(gaps->longest_us));
+        (void)printf(" %8.2f %8.2f %8.2f %9.2f", ms_of_us(gaps->shortest_us), ms_of_us(gaps_quantile_us(gaps, MEDIAN)),
+                     ms_of_us(gaps_quantile_us(gaps, P999)), ms_of_us(gaps->longest_us));
         print_deadline(entry->watch);
     }
     (void)putchar('\n');
@@ -126,7 +118,7 @@ static void print_counters(const survey_result_t *result) {
             (void)printf("  %03Xh  %-10s  steps by 1 to 3: %" PRIu64 ", by more: %" PRIu64 ", repeated: %" PRIu64
                          ", longest without a change %.1f ms\n",
                          entry->id, counter_use_word(counter_use_kind(use)), use->steps, use->other_steps, use->repeats,
-                         ms_of(use->longest_us));
+                         ms_of_us(use->longest_us));
         }
     }
 }
@@ -191,7 +183,7 @@ static void print_alarms(const survey_result_t *result) {
             const traffic_range_t *range = &entry->ranges[signal];
             if ((info->kind == SIGNAL_ALARM) && (range->set > 0u)) {
                 (void)printf("  %03Xh  %-26s %" PRIu64 " frames, first at %.3f s\n", entry->id, info->name, range->set,
-                             s_of(range->set_at_us));
+                             s_of_us(range->set_at_us));
                 any = true;
             }
         }
@@ -202,7 +194,7 @@ static void print_alarms(const survey_result_t *result) {
 }
 
 static void print_unknown(const survey_result_t *result) {
-    const double seconds = s_of(observation_us(&result->observation));
+    const double seconds = s_of_us(observation_us(&result->observation));
     uint32_t count = 0u;
     (void)printf("\nidentifiers that the protocol does not know\n");
     for (size_t i = 0u; traffic_at(result->traffic, i) != NULL; i++) {
@@ -217,7 +209,7 @@ static void print_unknown(const survey_result_t *result) {
                          (entry->side == HAL_CAN_AI) ? " AI side" : "", entry->count,
                          (seconds > 0.0) ? (double)entry->count / seconds : 0.0,
                          (entry->count > 0u) ? entry->length_min : 0u, entry->length_max,
-                         ms_of(gaps_quantile_us(&entry->gaps, MEDIAN)));
+                         ms_of_us(gaps_quantile_us(&entry->gaps, MEDIAN)));
         }
     }
     if (count == 0u) {

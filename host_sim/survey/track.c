@@ -36,7 +36,7 @@ uint32_t field_of_message(uint32_t message) {
     return of_message[message];
 }
 
-int32_t field_read(field_t field, const uint8_t data[AGV_DLC]) {
+static int32_t field_read(field_t field, const uint8_t data[AGV_DLC]) {
     uint32_t raw = 0u;
     for (uint32_t i = 0u; i < fields[field].bytes; i++) {
         raw |= (uint32_t)data[fields[field].at + i] << (i * (uint32_t)BITS_PER_BYTE);

@@ -50,9 +50,6 @@ typedef struct {
 /** The fields of a message, a bit each. */
 uint32_t field_of_message(uint32_t message);
 
-/** Read a field. */
-int32_t field_read(field_t field, const uint8_t data[AGV_DLC]);
-
 /** Take a frame. */
 void track_add(track_t *track, field_t field, const uint8_t data[AGV_DLC], uint64_t t_us);
 

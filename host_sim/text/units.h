@@ -9,6 +9,16 @@
 
 enum { NS_PER_US = 1000, NS_PER_MS = 1000000, US_PER_MS = 1000, US_PER_S = 1000000, MS_PER_S = 1000 };
 
+/** Microseconds in ms. */
+static inline double ms_of_us(uint64_t us) {
+    return (double)us / (double)US_PER_MS;
+}
+
+/** Microseconds in s. */
+static inline double s_of_us(uint64_t us) {
+    return (double)us / (double)US_PER_S;
+}
+
 /** Milliseconds of a clock that never goes back. */
 uint64_t monotonic_ms(void);
 

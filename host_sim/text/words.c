@@ -1,5 +1,7 @@
 #include "text/words.h"
 
+#include <ctype.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "text/hex.h"
@@ -79,4 +81,10 @@ bool words_id(const char *text, uint64_t *number) {
         *number = UINT64_MAX;
     }
     return true;
+}
+
+void words_print_upper(const char *text) {
+    for (const char *at = text; *at != '\0'; at++) {
+        (void)putchar(toupper((unsigned char)*at));
+    }
 }

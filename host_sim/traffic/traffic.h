@@ -23,9 +23,6 @@
 /** As the message of an identifier: the protocol does not know it. */
 #define TRAFFIC_UNKNOWN UINT32_MAX
 
-/** As the deadline of an identifier: it has none. */
-#define TRAFFIC_NO_DEADLINE 0u
-
 /** When the silence of a message counts (SUP-2, SUP-3). */
 typedef enum { TRAFFIC_NEVER, TRAFFIC_ALWAYS, TRAFFIC_ENGAGED } traffic_when_t;
 
@@ -44,7 +41,7 @@ typedef struct {
 typedef struct {
     traffic_when_t when;
     uint16_t setting;     /**< AGV_SETTING_* of the deadline */
-    uint32_t deadline_ms; /**< TRAFFIC_NO_DEADLINE: none */
+    uint32_t deadline_ms; /**< 0: none */
     gaps_t gaps;          /**< a silence that lasts until traffic_end() is in it if it is late */
     uint64_t late;        /**< gaps that were longer than the deadline */
     uint64_t late_at_us;  /**< when the first of them exceeded it */

@@ -8,7 +8,7 @@ enum { MEDIAN = 500, P999 = 999, BITS_PER_WORD = 32, WORD_CHOICES = 256 };
 
 /** A time in milliseconds with three decimals. */
 static json_t *ms_of(uint64_t us) {
-    return json_real((double)us / (double)US_PER_MS);
+    return json_real(ms_of_us(us));
 }
 
 static json_t *gaps_json(const gaps_t *gaps) {
@@ -102,8 +102,7 @@ static void add_deadline(json_t *object, const traffic_watch_t *watch) {
     json_put(object, "deadline_counts", json_string((watch->when == TRAFFIC_ENGAGED) ? "engaged" : "always"));
     json_put(object, "deadline_gap_ms", gaps_json(&watch->gaps));
     json_put(object, "margin_ms",
-             (watch->gaps.count > 0u) ? json_real(deadline_ms - ((double)watch->gaps.longest_us / (double)US_PER_MS))
-                                      : json_null());
+             (watch->gaps.count > 0u) ? json_real(deadline_ms - ms_of_us(watch->gaps.longest_us)) : json_null());
     json_put(object, "late", json_integer((json_int_t)watch->late));
     json_put(object, "first_late_ms", (watch->late > 0u) ? ms_of(watch->late_at_us) : json_null());
 }

@@ -222,10 +222,10 @@ static void show_sent(timeline_t *timeline, uint64_t t_us, const hal_can_frame_t
     const uint8_t *d = frame->data;
     char signals[SIGNALS_TEXT_SIZE];
 
-    if ((message == AGV_MSG_NONE) || ((timeline->shown & (1u << message)) != 0u)) {
+    if ((message == AGV_MSG_NONE) || ((timeline->shown & agv_message_bit(message)) != 0u)) {
         return;
     }
-    timeline->shown |= 1u << message;
+    timeline->shown |= agv_message_bit(message);
     line(timeline, t_us, "supervisor", "sends %03X [%02X %02X %02X %02X %02X %02X %02X %02X] %s: %s",
          (unsigned)frame->id, d[0], d[1], d[2], d[3], d[4], d[5], d[6], d[7], agv_message_name(message),
          signals_print(signals, sizeof signals, (uint32_t)message, d));

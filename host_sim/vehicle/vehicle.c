@@ -5,19 +5,19 @@
 
 #include "vehicle/vehicle_internal.h"
 
-/* Phases: at most two frames start in one millisecond. The cycles are those of agv_message_cycle_ms() (a test compares). */
+/* Phases: at most two frames start in one millisecond. */
 const vehicle_row_t VEHICLE_ROWS[AGV_MSG_COUNT] = {
-    [AGV_MSG_TURN_SIGNAL_COMMAND] = {VEHICLE_AI, 9u, 100u, vehicle_ai_turn_signal_command, 7u},
-    [AGV_MSG_GEAR_COMMAND] = {VEHICLE_AI, 37u, 100u, vehicle_ai_gear_command, VEHICLE_NO_COUNTER},
-    [AGV_MSG_THROTTLE_COMMAND] = {VEHICLE_AI, 67u, 100u, vehicle_ai_throttle_command, VEHICLE_NO_COUNTER},
-    [AGV_MSG_STEERING_COMMAND] = {VEHICLE_AI, 8u, 25u, vehicle_ai_steering_command, VEHICLE_NO_COUNTER},
-    [AGV_MSG_VEHICLE_STATUS] = {VEHICLE_VCU, 0u, 10u, vehicle_vcu_vehicle_status, 7u},
-    [AGV_MSG_GEAR_STATUS] = {VEHICLE_VCU, 6u, 25u, vehicle_vcu_gear_status, VEHICLE_NO_COUNTER},
-    [AGV_MSG_THROTTLE_STATUS] = {VEHICLE_VCU, 4u, 10u, vehicle_vcu_throttle_status, VEHICLE_NO_COUNTER},
-    [AGV_MSG_STEERING_STATUS] = {VEHICLE_EPS, 1u, 10u, vehicle_eps_steering_status, 0u},
-    [AGV_MSG_EPS_STATUS] = {VEHICLE_EPS, 3u, 10u, vehicle_eps_eps_status, VEHICLE_NO_COUNTER},
-    [AGV_MSG_STEERING_POSITION] = {VEHICLE_EPS, 5u, 10u, vehicle_eps_steering_position, VEHICLE_NO_COUNTER},
-    [AGV_MSG_WHEEL_SPEED] = {VEHICLE_VCU, 2u, 10u, vehicle_vcu_wheel_speed, VEHICLE_NO_COUNTER},
+    [AGV_MSG_TURN_SIGNAL_COMMAND] = {VEHICLE_AI, 9u, vehicle_ai_turn_signal_command},
+    [AGV_MSG_GEAR_COMMAND] = {VEHICLE_AI, 37u, vehicle_ai_gear_command},
+    [AGV_MSG_THROTTLE_COMMAND] = {VEHICLE_AI, 67u, vehicle_ai_throttle_command},
+    [AGV_MSG_STEERING_COMMAND] = {VEHICLE_AI, 8u, vehicle_ai_steering_command},
+    [AGV_MSG_VEHICLE_STATUS] = {VEHICLE_VCU, 0u, vehicle_vcu_vehicle_status},
+    [AGV_MSG_GEAR_STATUS] = {VEHICLE_VCU, 6u, vehicle_vcu_gear_status},
+    [AGV_MSG_THROTTLE_STATUS] = {VEHICLE_VCU, 4u, vehicle_vcu_throttle_status},
+    [AGV_MSG_STEERING_STATUS] = {VEHICLE_EPS, 1u, vehicle_eps_steering_status},
+    [AGV_MSG_EPS_STATUS] = {VEHICLE_EPS, 3u, vehicle_eps_eps_status},
+    [AGV_MSG_STEERING_POSITION] = {VEHICLE_EPS, 5u, vehicle_eps_steering_position},
+    [AGV_MSG_WHEEL_SPEED] = {VEHICLE_VCU, 2u, vehicle_vcu_wheel_speed},
 };
 
 void vehicle_defaults(vehicle_config_t *config) {

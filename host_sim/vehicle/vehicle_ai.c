@@ -5,8 +5,7 @@
 
 #define STANDING_MM_S 50
 #define MODE_BYTE 6
-#define MANUAL_BIT 0x40u /* 363h byte 7 */
-#define AUTOPILOT_BIT 0x80u
+#define AUTOPILOT_BIT 0x80u /* 363h byte 7 */
 
 void vehicle_ai_start(vehicle_t *vehicle, uint64_t now_ms) {
     (void)now_ms;

@@ -1,5 +1,4 @@
 /* The EPS: its mode, the steering angle, and its three messages. */
-#include <string.h>
 
 #include "vehicle/vehicle_internal.h"
 

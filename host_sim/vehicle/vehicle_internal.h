@@ -14,12 +14,8 @@ typedef void vehicle_compose_fn(vehicle_t *vehicle, uint64_t now_ms, uint8_t dat
 typedef struct {
     vehicle_node_t node;
     uint16_t phase_ms; /**< the preset of vehicle_config_t: spread, so that few fall together */
-    uint16_t cycle_ms;
     vehicle_compose_fn *compose;
-    uint8_t counter_byte; /**< that its alive counter is in; VEHICLE_NO_COUNTER */
 } vehicle_row_t;
-
-#define VEHICLE_NO_COUNTER UINT8_MAX
 
 extern const vehicle_row_t VEHICLE_ROWS[AGV_MSG_COUNT];
 

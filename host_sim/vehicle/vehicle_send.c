@@ -1,6 +1,7 @@
 /* How nodes send: on their cycles, and as they misbehave. */
 #include <string.h>
 
+#include "common/message_facts.h"
 #include "vehicle/vehicle_internal.h"
 
 #define EXTENDED_ID_SHIFT 18u /* an 11-bit identifier in the upper bits of a 29-bit one */
@@ -125,18 +126,19 @@ static void apply_patches(vehicle_message_t *message, uint8_t data[AGV_DLC]) {
 }
 
 /** Put what was carried `delay_ms` ago in the place of what would be carried now; the counter runs on. */
-static void delay_data(vehicle_message_t *message, const vehicle_row_t *row, uint8_t data[AGV_DLC]) {
-    vehicle_past_t *past = &message->past;
-    const uint32_t wanted = message->delay_ms / row->cycle_ms;
-    const uint8_t counter = (row->counter_byte != VEHICLE_NO_COUNTER) ? data[row->counter_byte] : (uint8_t)0;
+static void delay_data(vehicle_message_t *state, agv_message_t message, uint8_t data[AGV_DLC]) {
+    vehicle_past_t *past = &state->past;
+    const uint32_t wanted = state->delay_ms / agv_message_cycle_ms(message);
+    const uint8_t at = message_counter_at(message);
+    const uint8_t counter = (at != MESSAGE_NO_COUNTER) ? data[at] : (uint8_t)0;
 
     memcpy(past->data[past->next], data, AGV_DLC);
     const uint32_t back = (wanted < past->count) ? wanted : past->count;
     memcpy(data, past->data[(past->next + VEHICLE_PAST_MAX - back) % VEHICLE_PAST_MAX], AGV_DLC);
     past->next = (uint16_t)((past->next + 1u) % VEHICLE_PAST_MAX);
     past->count = (past->count < VEHICLE_PAST_MAX - 1u) ? (uint16_t)(past->count + 1u) : past->count;
-    if (row->counter_byte != VEHICLE_NO_COUNTER) {
-        data[row->counter_byte] = counter;
+    if (at != MESSAGE_NO_COUNTER) {
+        data[at] = counter;
     }
 }
 
@@ -144,7 +146,8 @@ void vehicle_send_message(vehicle_t *vehicle, agv_message_t message, uint64_t no
     const vehicle_row_t *row = &VEHICLE_ROWS[message];
     vehicle_message_t *state = &vehicle->messages[message];
     const vehicle_node_state_t *node = &vehicle->nodes[row->node];
-    const uint32_t period_ms = ((state->period_ms != 0u) ? state->period_ms : row->cycle_ms) + node->lag_ms;
+    const uint32_t period_ms =
+        ((state->period_ms != 0u) ? state->period_ms : agv_message_cycle_ms(message)) + node->lag_ms;
     hal_can_frame_t frame = {.id = vehicle->id[message], .time_ms = (uint32_t)now_ms, .length = AGV_DLC};
 
     uint64_t *due_ms = &vehicle->message_ms[message];
@@ -155,7 +158,7 @@ void vehicle_send_message(vehicle_t *vehicle, agv_message_t message, uint64_t no
     }
     row->compose(vehicle, now_ms, frame.data);
     if (state->delay_ms != 0u) {
-        delay_data(state, row, frame.data);
+        delay_data(state, message, frame.data);
     }
     if (pass_frame(&state->muted)) {
         return;

@@ -1,7 +1,6 @@
 #include "why/why.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "agv/codec.h"
 #include "agv/recorder.h"
@@ -13,7 +12,7 @@
 static const uint8_t states[WHY_STATES] = {AGV_STATE_INIT, AGV_STATE_STANDBY, AGV_STATE_ACTIVE, AGV_STATE_TRIPPED,
                                            AGV_STATE_SAFE};
 
-why_evidence_t why_evidence(hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
+static why_evidence_t evidence_of(hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
     return (why_evidence_t){.t_us = t_us, .side = side, .frame = *frame};
 }
 
@@ -56,7 +55,8 @@ void why_free(why_t *why) {
     }
 }
 
-agv_message_t why_accepted(const why_t *why, hal_can_side_t side, const hal_can_frame_t *frame) {
+/** The message of a frame that the supervisor accepts; AGV_MSG_NONE: it accepts none, or another sender sent it. */
+static agv_message_t accepted(const why_t *why, hal_can_side_t side, const hal_can_frame_t *frame) {
     if ((frame->flags != 0u) || (frame->length != AGV_DLC)) {
         return AGV_MSG_NONE;
     }
@@ -94,8 +94,8 @@ static void follow_trip(why_t *why, agv_message_t message, const why_evidence_t 
 }
 
 void why_frame(why_t *why, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
-    const why_evidence_t evidence = why_evidence(side, frame, t_us);
-    const agv_message_t message = why_accepted(why, side, frame);
+    const why_evidence_t evidence = evidence_of(side, frame, t_us);
+    const agv_message_t message = accepted(why, side, frame);
     why->now_us = t_us;
     why_init_check(why, t_us);
     if ((frame->flags & HAL_CAN_ERROR) != 0u) {
@@ -133,7 +133,7 @@ static bool is_safe(const why_t *why, const hal_can_frame_t *frame) {
 }
 
 void why_sent(why_t *why, hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us) {
-    const why_evidence_t evidence = why_evidence(side, frame, t_us);
+    const why_evidence_t evidence = evidence_of(side, frame, t_us);
     const agv_message_t message = (agv_message_t)agv_ids_find(&why->ids, frame->id);
     if (side != HAL_CAN_VEHICLE) {
         return;

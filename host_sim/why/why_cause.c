@@ -1,6 +1,5 @@
 /* The cause of a trip: what told, since when, and the frames that show it. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "agv/codec.h"
 #include "text/units.h"

@@ -134,14 +134,8 @@ static inline bool why_is_command(agv_message_t message) {
     return (uint32_t)message < AGV_COMMAND_COUNT;
 }
 
-/** The message of a frame that the supervisor accepts; AGV_MSG_NONE: it accepts none, or another sender sent it. */
-agv_message_t why_accepted(const why_t *why, hal_can_side_t side, const hal_can_frame_t *frame);
-
 /** The last frames of a message. @param back 0 = the last one @return NULL: there are not so many */
 const why_evidence_t *why_history(const why_message_t *message, uint32_t back);
-
-/** Make an evidence. */
-why_evidence_t why_evidence(hal_can_side_t side, const hal_can_frame_t *frame, uint64_t t_us);
 
 /** No evidence. */
 why_evidence_t why_no_evidence(void);

@@ -2,9 +2,7 @@
 #include <stdio.h>
 
 #include "agv/names.h"
-#include "agv/recorder.h"
 #include "common/json_build.h"
-#include "common/missing.h"
 #include "text/units.h"
 #include "why/why.h"
 
@@ -33,8 +31,7 @@ static json_t *evidence_of(const why_trip_t *trip, const why_names_t *names) {
     for (size_t i = 0u; i < trip->evidence_count; i++) {
         const why_evidence_t *evidence = &trip->evidence[i];
         json_t *object = json_object();
-        json_put(object, "t_ms",
-                 (evidence->t_us != WHY_NEVER) ? json_real((double)evidence->t_us / (double)US_PER_MS) : json_null());
+        json_put(object, "t_ms", (evidence->t_us != WHY_NEVER) ? json_real(ms_of_us(evidence->t_us)) : json_null());
         json_put(object, "if", json_text(names->interfaces[evidence->side]));
         json_put(object, "id", id_or_null(evidence->frame.id));
         json_put(object, "data", data_of(&evidence->frame));

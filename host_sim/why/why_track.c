@@ -1,5 +1,4 @@
 /* Fault bits, bad values and their scores (SUP-4, SUP-5). */
-#include <string.h>
 
 #include "agv/codec.h"
 #include "why/why_internal.h"

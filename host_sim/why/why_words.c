@@ -1,7 +1,6 @@
 #include "why/why_words.h"
 
 #include <inttypes.h>
-#include <stdlib.h>
 
 #include "agv/codec.h"
 #include "agv/names.h"

@@ -36,14 +36,23 @@ report 'firmware/ includes something other than C headers, "agv/...", "hal/..." 
 
 report 'a source of firmware/src is not in a folder of a module group' < <(find firmware/src -maxdepth 1 -name '*.[ch]')
 
-# A room includes itself and those before it.
-order=(base keep observe decide transmit supervisor)
-for ((i = 0; i < ${#order[@]}; i++)); do
-    later=$(printf '|%s' "${order[@]:i+1}")
-    report "firmware/src/${order[i]} includes a later room of ${order[*]}" < <(
-        [[ $later == '|' ]] || grep -rnE "^\s*#\s*include\s+\"(${later#|})/" "firmware/src/${order[i]}" || true
-    )
-done
+# A room includes itself and those before it. $1: the folder of the rooms; then the rooms in order
+check_order() {
+    local root=$1 later
+    shift
+    for room in "$@"; do
+        later=${later-$(printf '%s|' "$@")}
+        later=${later#"$room|"}
+        report "$root/$room includes a later room of $*" < <(
+            [[ -z $later ]] || grep -rnE --exclude-dir=commands "^\s*#\s*include\s+\"(${later%|})/" "$root/$room" || true
+        )
+    done
+}
+check_order firmware/src base keep observe decide transmit supervisor
+if [[ -d host_sim ]]; then
+    check_order host_sim text common session io logs traffic why cli config report analysis vehicle scenario ui survey recorder \
+        replay campaign hunt atlas skeleton monitor live cli/commands
+fi
 
 report 'only firmware/src/supervisor/supervisor*.[ch] may access the memory of a supervisor' < <(
     grep -rnE '^\s*#\s*include\s+"([^"]*/)?(core|supervisor_internal)\.h"' firmware hal --include='*.[ch]' |

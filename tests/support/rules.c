@@ -29,9 +29,8 @@ static bool is_supervising(agv_state_t state) {
     return !commands_safe(state);
 }
 
-static int command_of(const rules_t *rules, uint32_t id) {
-    const uint32_t ids[RULES_COMMANDS] = {rules->oracle.signal_id, 0x168u, 0x075u, 0x065u};
-    for (int i = 0; i < RULES_COMMANDS; i++) {
+static int index_of(uint32_t id, const uint32_t ids[], int count) {
+    for (int i = 0; i < count; i++) {
         if (ids[i] == id) {
             return i;
         }
@@ -39,14 +38,14 @@ static int command_of(const rules_t *rules, uint32_t id) {
     return -1;
 }
 
+static int command_of(const rules_t *rules, uint32_t id) {
+    const uint32_t ids[RULES_COMMANDS] = {rules->oracle.signal_id, 0x168u, 0x075u, 0x065u};
+    return index_of(id, ids, RULES_COMMANDS);
+}
+
 static int status_of(const rules_t *rules, uint32_t id) {
     const uint32_t ids[RULES_STATUS] = {rules->oracle.vehicle_id, 0x0A3u, 0x050u, 0x067u, 0x167u, 0x267u, 0x101u};
-    for (int i = 0; i < RULES_STATUS; i++) {
-        if (ids[i] == id) {
-            return i;
-        }
-    }
-    return -1;
+    return index_of(id, ids, RULES_STATUS);
 }
 
 void rules_init(rules_t *rules, const agv_config_t *config) {

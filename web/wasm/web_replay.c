@@ -47,7 +47,7 @@ static bool read_settings(const char *text, agv_config_t *config, bool is_gatewa
 
 const char *web_replay(const char *name, const char *settings, const char *ai_interface) {
     replay_request_t request = {
-        .log = name, .analysis = {[ANALYSIS_REPORT] = WEB_REPORT}, .reset_cause = HAL_RESET_POWER_ON};
+        .log = name, .analysis = {.paths = {[ANALYSIS_REPORT] = WEB_REPORT}}, .reset_cause = HAL_RESET_POWER_ON};
     interfaces[0] = '\0';
     request.ai_interface = (ai_interface[0] != '\0') ? ai_interface : NULL;
     if (!read_settings(settings, &request.config, request.ai_interface != NULL) ||

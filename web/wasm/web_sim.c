@@ -108,7 +108,7 @@ static void on_frame(void *ctx, uint64_t t_us, hal_can_side_t side, int from, co
 
 static bool open_report(void) {
     const analysis_request_t request = {
-        .config = &web.run.scenario.config, .log = run_name, .paths = {[ANALYSIS_REPORT] = WEB_REPORT}};
+        .config = &web.run.scenario.config, .log = run_name, .files = {.paths = {[ANALYSIS_REPORT] = WEB_REPORT}}};
     web.analysis = analysis_new(&request);
     return (web.analysis != NULL) && analysis_open(web.analysis);
 }

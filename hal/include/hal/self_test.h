@@ -17,7 +17,6 @@
 #define HAL_SELF_TEST_DEVICES 0x10u   /**< a CAN controller or a pin could not be set up */
 #define HAL_SELF_TEST_CORE 0x20u      /**< the supervisor's codec and gate contradict each other */
 #define HAL_SELF_TEST_SUPPLY 0x40u    /**< the brown-out level is below the one that the build asks for */
-#define HAL_SELF_TEST_PARTS 7u        /**< number of parts */
 
 /**
  * Run the next slice of the background test, in a small part of a tick. Called once at the start, before the first frame is

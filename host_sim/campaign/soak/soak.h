@@ -6,7 +6,6 @@
 #ifndef HOST_SIM_SOAK_H
 #define HOST_SIM_SOAK_H
 
-#include <stdbool.h>
 #include <stdint.h>
 
 #include "common/report.h"

@@ -15,7 +15,7 @@ enum { STATUS_LATE_MS = 30, STATUS_AGAIN_MS = 4, WAITING_MAX = 8 };
 /* Safe commands of INIT that the controller has already when STANDBY comes; they wait for a few frames of others. */
 enum { HANDED_OVER_MS = 4 };
 
-void soak_break(soak_t *soak, const char *format, ...) {
+__attribute__((format(printf, 2, 3))) static void soak_break(soak_t *soak, const char *format, ...) {
     soak_state_t *state = &soak->state;
     if (state->broken[0] != '\0') {
         return;

@@ -5,11 +5,11 @@
 #ifndef HOST_SIM_SOAK_INTERNAL_H
 #define HOST_SIM_SOAK_INTERNAL_H
 
-#include "campaign/campaign_plan.h"
 #include "campaign/soak/soak.h"
 #include "campaign/soak/soak_rows.h"
 #include "io/output.h"
 #include "scenario/scenario_testbed.h"
+#include "text/text.h"
 #include "ui/progress.h"
 
 #define SOAK_BROKEN_SIZE 160u
@@ -74,9 +74,6 @@ typedef struct {
     progress_t progress;
     output_t results; /**< open from the start on, so that it is known that it can be written */
 } soak_t;
-
-/** Something is not as it must be; the first one counts. */
-void soak_break(soak_t *soak, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /** @name soak_check.c @{ */
 scenario_watch_t soak_watch(soak_t *soak);

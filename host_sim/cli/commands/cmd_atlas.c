@@ -4,8 +4,8 @@
  */
 #include "atlas/atlas_case.h"
 #include "atlas/atlas_run.h"
+#include "campaign/fault_option.h"
 #include "cli/commands/commands.h"
-#include "cli/fault_option.h"
 #include "cli/options.h"
 #include "cli/random_options.h"
 

@@ -4,12 +4,11 @@
  */
 #include <inttypes.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "agv/names.h"
 #include "campaign/campaign_run.h"
+#include "campaign/fault_option.h"
 #include "cli/commands/commands.h"
-#include "cli/fault_option.h"
 #include "cli/options.h"
 #include "cli/random_options.h"
 #include "common/interrupt.h"

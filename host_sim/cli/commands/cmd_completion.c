@@ -2,7 +2,7 @@
  * @file cmd_completion.c
  * `host_sim completion`: a script that completes command lines in a shell.
  */
-#include "cli/completion/completion.h"
+#include "cli/commands/completion/completion.h"
 
 #include "cli/commands/commands.h"
 #include "cli/options.h"

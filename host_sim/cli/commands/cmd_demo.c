@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "analysis/analysis.h"
-#include "cli/analysis_options.h"
+#include "analysis/analysis_options.h"
 #include "cli/commands/commands.h"
 #include "cli/options.h"
 #include "common/interrupt.h"
@@ -30,7 +30,7 @@ enum { PATH_SIZE = 4096, FIXED_FILES = 3 };
 /** The given options. */
 typedef struct {
     config_options_t config;
-    analysis_options_t analysis;
+    analysis_paths_t analysis;
     const char *scenario;
     const char *events;
 } given_t;
@@ -148,11 +148,11 @@ static bool prepare(work_t *work, const given_t *given) {
         ((given->events != NULL) && !output_open(&work->events, given->events))) {
         return false;
     }
-    if (!analysis_options_any(&given->analysis)) {
+    if (!analysis_paths_any(&given->analysis)) {
         return true;
     }
     analysis_request_t request = {.config = &work->run.scenario.config, .log = work->run.scenario.name};
-    analysis_copy_paths(request.paths, given->analysis.paths);
+    request.files = given->analysis;
     work->analysis = analysis_new(&request);
     return (work->analysis != NULL) && analysis_open(work->analysis);
 }
@@ -179,7 +179,7 @@ static status_t play(work_t *work, const given_t *given) {
     }
     scenario_watch_t watches[3];
     size_t count = 0u;
-    const bool is_told = !output_is_stdout(given->events) && !analysis_options_use_stdout(&given->analysis);
+    const bool is_told = !output_is_stdout(given->events) && !analysis_paths_use_stdout(&given->analysis);
     work->text_out = is_told ? stdout : stderr;
     if (is_told) {
         timeline_init(&work->timeline, &work->run.testbed);

@@ -2,7 +2,7 @@
  * @file cmd_recorder.c
  * `host_sim recorder`: its options.
  */
-#include "cli/analysis_options.h"
+#include "analysis/analysis_options.h"
 #include "cli/commands/commands.h"
 #include "cli/options.h"
 #include "config/config_options.h"
@@ -15,7 +15,7 @@ enum { RUN_MAX = 255, FIXED_FILES = 3 };
 typedef struct {
     recorder_request_t request;
     config_options_t config;
-    analysis_options_t analysis;
+    analysis_paths_t analysis;
 } given_t;
 
 static options_result_t parse(int argc, char **argv, given_t *given) {
@@ -60,7 +60,7 @@ status_t cmd_recorder(int argc, char **argv) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
     given.request.path = argv[0];
-    analysis_copy_paths(given.request.analysis, given.analysis.paths);
+    given.request.analysis = given.analysis;
     if (!check_files(&given) || !config_options_make(&given.config, &given.request.config)) {
         return STATUS_UNUSABLE;
     }

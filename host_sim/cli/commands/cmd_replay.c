@@ -2,7 +2,7 @@
  * @file cmd_replay.c
  * `host_sim replay`: its options.
  */
-#include "cli/analysis_options.h"
+#include "analysis/analysis_options.h"
 #include "cli/commands/commands.h"
 #include "cli/options.h"
 #include "config/config_options.h"
@@ -20,7 +20,7 @@ enum { FIXED_FILES = 5 };
 typedef struct {
     replay_request_t request;
     config_options_t config;
-    analysis_options_t analysis;
+    analysis_paths_t analysis;
     uint64_t start_ms;
     int reset_cause;
 } given_t;
@@ -79,7 +79,7 @@ static bool check_files(const given_t *given) {
     if (output_is_stdout(given->request.store)) {
         return report("--store: storage is read and written, which standard output cannot be");
     }
-    if (given->request.timeline && (analysis_options_use_stdout(&given->analysis) ||
+    if (given->request.timeline && (analysis_paths_use_stdout(&given->analysis) ||
                                     output_is_stdout(given->request.out) || output_is_stdout(given->request.events))) {
         return report("--timeline: standard output is already used by another option");
     }
@@ -94,7 +94,7 @@ status_t cmd_replay(int argc, char **argv) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
     given.request.log = argv[0];
-    analysis_copy_paths(given.request.analysis, given.analysis.paths);
+    given.request.analysis = given.analysis;
     given.request.start_ms = (uint32_t)given.start_ms;
     given.request.reset_cause = (hal_reset_cause_t)given.reset_cause;
     given.config.has_ai_side = given.request.ai_interface != NULL;

@@ -4,7 +4,7 @@
  */
 #include <stddef.h>
 
-#include "cli/analysis_options.h"
+#include "analysis/analysis_options.h"
 #include "cli/commands/commands.h"
 #include "cli/interface_options.h"
 #include "cli/options.h"
@@ -16,7 +16,7 @@
 typedef struct {
     live_request_t request;
     config_options_t config;
-    analysis_options_t analysis;
+    analysis_paths_t analysis;
 } given_t;
 
 /** Files besides those of the analysis. */
@@ -81,7 +81,7 @@ status_t cmd_run(int argc, char **argv) {
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
     }
-    analysis_copy_paths(given.request.analysis, given.analysis.paths);
+    given.request.analysis = given.analysis;
     given.config.has_ai_side = given.request.bus.interfaces[HAL_CAN_AI] != NULL;
     if (!check_files(&given) || !config_options_make(&given.config, &given.request.config) ||
         !interface_options_check(&given.request.bus, "run", given.request.config.topology == AGV_TOPOLOGY_GATEWAY)) {

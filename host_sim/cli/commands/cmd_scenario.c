@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "analysis/analysis.h"
-#include "cli/analysis_options.h"
+#include "analysis/analysis_options.h"
 #include "cli/commands/commands.h"
 #include "cli/commands/skeleton_options.h"
 #include "cli/options.h"
@@ -43,7 +43,7 @@ enum { EVENTS, JUNIT, SENT, OUTPUTS };
 /** The given options. */
 typedef struct {
     config_options_t config;
-    analysis_options_t analysis;
+    analysis_paths_t analysis;
     scenario_options_t options;
     const char *junit;
     const char *events;
@@ -213,12 +213,12 @@ static bool check_given(given_t *given, char **files) {
     if (!check_bus(given)) {
         return false;
     }
-    const bool is_of_one = (given->events != NULL) || (given->sent != NULL) || analysis_options_any(&given->analysis);
+    const bool is_of_one = (given->events != NULL) || (given->sent != NULL) || analysis_paths_any(&given->analysis);
     if (is_of_one && (given->file_count > 1u)) {
         return report("--events, --sent, --why, --report and --trace need a single scenario, %zu were given",
                       given->file_count);
     }
-    if (is_real(given) && analysis_options_any(&given->analysis)) {
+    if (is_real(given) && analysis_paths_any(&given->analysis)) {
         return report("--why, --report and --trace need the simulated bus; on CAN interfaces host_sim run has them");
     }
     if (!check_files(given, files) || !config_options_make(&given->config, &given->options.config)) {
@@ -274,10 +274,10 @@ static void print_result(const work_t *work, const char *file, const result_t *r
 /** What the simulated run is analysed with. @return false: reported */
 static bool open_analysis(work_t *work) {
     analysis_request_t request = {.config = &work->run.scenario.config, .log = work->run.scenario.name};
-    if (!analysis_options_any(&work->given.analysis)) {
+    if (!analysis_paths_any(&work->given.analysis)) {
         return true;
     }
-    analysis_copy_paths(request.paths, work->given.analysis.paths);
+    request.files = work->given.analysis;
     work->analysis = analysis_new(&request);
     return (work->analysis != NULL) && analysis_open(work->analysis);
 }
@@ -455,7 +455,7 @@ static status_t run_all(work_t *work, char **files) {
 static status_t run_none(given_t *given) {
     const bool any = (given->junit != NULL) || (given->events != NULL) || (given->bus != NULL) ||
                      (given->supervisor != NULL) || (given->sent != NULL) || (given->tolerance_ms != NOT_GIVEN) ||
-                     analysis_options_any(&given->analysis);
+                     analysis_paths_any(&given->analysis);
     if (any || (given->is_schema && (given->from.log != NULL))) {
         (void)report("%s runs no scenario, so it takes no option of a run", given->is_schema ? "--schema" : "--from");
         return STATUS_UNUSABLE;
@@ -496,7 +496,7 @@ status_t cmd_scenario(int argc, char **argv) {
     }
     work->given = given;
     const bool is_taken = output_is_stdout(given.junit) || output_is_stdout(given.events) ||
-                          output_is_stdout(given.sent) || analysis_options_use_stdout(&given.analysis);
+                          output_is_stdout(given.sent) || analysis_paths_use_stdout(&given.analysis);
     work->text_out = is_taken ? stderr : stdout;
     const status_t status = run_all(work, argv);
     for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {

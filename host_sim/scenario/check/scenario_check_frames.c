@@ -1,7 +1,6 @@
 /* Judging: frames that are expected, and frames that must not be. */
 #include <stdio.h>
 
-#include "agv/names.h"
 #include "scenario/check/scenario_check.h"
 #include "text/units.h"
 

@@ -28,17 +28,6 @@ const yaml_word_t SCENARIO_CAUSES[] = {{"power-on", HAL_RESET_POWER_ON},
                                        {"unknown", HAL_RESET_UNKNOWN},
                                        {NULL, 0}};
 
-bool scenario_parse_u32(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t lowest,
-                        uint32_t highest, uint32_t *number) {
-    int64_t value = 0;
-
-    if (!yaml_reader_number(reader, node, what, lowest, highest, &value)) {
-        return false;
-    }
-    *number = (uint32_t)value;
-    return true;
-}
-
 bool scenario_parse_time(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t *ms) {
     return scenario_parse_ms(reader, node, what, 0u, SCENARIO_DURATION_MAX_MS, ms);
 }

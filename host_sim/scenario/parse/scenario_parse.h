@@ -111,10 +111,6 @@ bool scenario_parse_ms(const yaml_reader_t *reader, const yaml_node_t *node, con
 /** A time: 0 .. SCENARIO_DURATION_MAX_MS. */
 bool scenario_parse_time(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t *ms);
 
-/** A number that is 0 or more. */
-bool scenario_parse_u32(const yaml_reader_t *reader, const yaml_node_t *node, const char *what, uint32_t lowest,
-                        uint32_t highest, uint32_t *number);
-
 /** A message by its name. */
 bool scenario_parse_message(const yaml_reader_t *reader, const yaml_node_t *node, agv_message_t *message);
 

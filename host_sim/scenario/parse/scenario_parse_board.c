@@ -1,7 +1,5 @@
 /* Scenario files: the hard-wired parts of the supervisor's board. */
-#include "common/missing.h"
 #include "hal/self_test.h"
-#include "io/yaml_file.h"
 #include "scenario/parse/scenario_parse.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])

@@ -2,7 +2,6 @@
 #include <string.h>
 
 #include "agv/names.h"
-#include "agv/recorder.h"
 #include "common/missing.h"
 #include "io/yaml_file.h"
 #include "scenario/parse/scenario_parse.h"

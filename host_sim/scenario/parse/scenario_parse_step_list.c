@@ -1,7 +1,6 @@
 /* Scenario files: the list of the steps, their names, and what their times count from. */
 #include <string.h>
 
-#include "io/yaml_file.h"
 #include "scenario/parse/scenario_parse.h"
 
 /** Check that there is room for all repeated steps. */

@@ -1,7 +1,6 @@
 /* Scenario files: times, which count from the start of the run, from a step or from an event. */
 #include <string.h>
 
-#include "io/yaml_file.h"
 #include "scenario/parse/scenario_parse.h"
 
 const yaml_shape_t SCENARIO_TEXT_SHAPE = {.kind = YAML_KIND_TEXT};

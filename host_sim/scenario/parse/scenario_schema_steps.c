@@ -1,5 +1,4 @@
 /* The JSON Schema of a step: for each action what it needs and what it takes. */
-#include <string.h>
 
 #include "agv/names.h"
 #include "io/yaml_schema.h"

@@ -7,8 +7,8 @@
 
 #include <stddef.h>
 
-#include "hunt/hazard/hazard.h"
 #include "scenario/check/scenario_check.h"
+#include "scenario/hazard/hazard.h"
 #include "scenario/scenario.h"
 #include "scenario/scenario_play.h"
 #include "scenario/scenario_testbed.h"

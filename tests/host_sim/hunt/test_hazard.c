@@ -1,5 +1,5 @@
 /* The hazards of the hunt: a stub supervisor that does wrong is a hazard, one that does right in the same run is none. */
-#include "hunt/hazard/hazard.h"
+#include "scenario/hazard/hazard.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -336,34 +336,34 @@ void test_h2_who_is_bus_off_does_not_hear_of_manual(void) {
     expect_hazard(HAZARD_STEERING, "the supervisor steers to another angle", &hears, steps);
 }
 
-void test_h2_a_flipped_bit_is_a_trip_of_its_own(void) {
-    const char *const head = "  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
-                             "  - {at_ms: 3200, ai: drive, gear: D, throttle_pct: 60, steer_deg: 80}\n";
-    const char *const tail = "  - {at_ms: 3520, ai: drive, gear: D, throttle_pct: 60, steer_deg: -20}\n"
-                             "  - {at_ms: 3880, ai: mute, message: steering_command}\n";
+/** The supervisor steers to another angle, and a step before the AI computer turns the wheel makes no hazard of it. */
+static void expect_excused(const char *unexcused, const char *excuse, unsigned turned_ms) {
     const stub_t holds = {
         .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .hold_ddeg = 600, .hold_ms = TRIP_MS + 900};
-    char steps[512];
+    const char *const steps[] = {unexcused, excuse};
+    for (unsigned i = 0; i < 2u; i++) {
+        char all[512];
+        (void)snprintf(all, sizeof all,
+                       "  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
+                       "  - {at_ms: 3200, ai: drive, gear: D, throttle_pct: 60, steer_deg: 80}\n%s"
+                       "  - {at_ms: %u, ai: drive, gear: D, throttle_pct: 60, steer_deg: -20}\n"
+                       "  - {at_ms: 3880, ai: mute, message: steering_command}\n",
+                       steps[i], turned_ms);
+        if (i == 0u) {
+            expect_hazard(HAZARD_STEERING, "the supervisor steers to another angle", &holds, all);
+        } else {
+            expect_none(&holds, all);
+        }
+    }
+}
 
-    (void)snprintf(steps, sizeof steps, "%s%s", head, tail);
-    expect_hazard(HAZARD_STEERING, "the supervisor steers to another angle", &holds, steps);
-    (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 3500, supervisor: flip_bit, bit: 1}\n%s", head, tail);
-    expect_none(&holds, steps);
+void test_h2_a_flipped_bit_is_a_trip_of_its_own(void) {
+    expect_excused("", "  - {at_ms: 3500, supervisor: flip_bit, bit: 1}\n", 3520);
 }
 
 void test_h2_a_supervisor_that_hung_is_restarted_and_trips_anew(void) {
-    const char *const head = "  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
-                             "  - {at_ms: 3200, ai: drive, gear: D, throttle_pct: 60, steer_deg: 80}\n";
-    const char *const tail = "  - {at_ms: 3680, ai: drive, gear: D, throttle_pct: 60, steer_deg: -20}\n"
-                             "  - {at_ms: 3880, ai: mute, message: steering_command}\n";
-    const stub_t holds = {
-        .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .hold_ddeg = 600, .hold_ms = TRIP_MS + 900};
-    char steps[512];
-
-    (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 3500, supervisor: hang, for_ms: 50}\n%s", head, tail);
-    expect_hazard(HAZARD_STEERING, "the supervisor steers to another angle", &holds, steps);
-    (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 3500, supervisor: hang, for_ms: 150}\n%s", head, tail);
-    expect_none(&holds, steps);
+    expect_excused("  - {at_ms: 3500, supervisor: hang, for_ms: 50}\n",
+                   "  - {at_ms: 3500, supervisor: hang, for_ms: 150}\n", 3680);
 }
 
 /** 065h begins late, with the angle of the trip, from which the AI computer has steered away. */

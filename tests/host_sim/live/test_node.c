@@ -2,8 +2,6 @@
  * that a call takes. */
 #include "live/node.h"
 
-#include <string.h>
-
 #include "agv/supervisor.h"
 #include "hal_linux/linux_hal.h"
 #include "unity.h"

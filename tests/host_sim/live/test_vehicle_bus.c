@@ -1,8 +1,6 @@
 /* The time of a simulated vehicle on a bus. Sockets and clock are those of the test. */
 #include "live/vehicle_bus.h"
 
-#include <string.h>
-
 #include "unity.h"
 
 enum { US_PER_MS = 1000, LATE_MS = 70 };

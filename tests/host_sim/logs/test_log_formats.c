@@ -113,6 +113,15 @@ void test_the_screen_with_times_from_zero_and_with_dates(void) {
     expect_end();
 }
 
+/* Each bad line after these good ones. */
+static void refuse_each(const char *good, const char *const bad[][2], size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        char text[256];
+        (void)snprintf(text, sizeof text, "%s%s", good, bad[i][0]);
+        refuse(text, bad[i][1]);
+    }
+}
+
 void test_lines_of_the_screen_that_are_damaged(void) {
     static const char *const bad[][2] = {
         {" (000.1)  can0  43F   [8]  00 11 22\n", "log:2: the data is shorter than its length says"},
@@ -128,11 +137,7 @@ void test_lines_of_the_screen_that_are_damaged(void) {
         {" (2023-02-30 22:13:20.0)  can0  043   [1]  00\n", "log:2: the time stamp is neither"},
         {" can0  043   [1]  00\n", "log:2: the line does not begin with a time stamp"},
     };
-    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-        char text[256];
-        (void)snprintf(text, sizeof text, " (000.000000)  can0  43F   [1]  01\n%s", bad[i][0]);
-        refuse(text, bad[i][1]);
-    }
+    refuse_each(" (000.000000)  can0  43F   [1]  01\n", bad, sizeof bad / sizeof bad[0]);
 }
 
 void test_differences_of_time_are_refused(void) {
@@ -223,11 +228,7 @@ void test_lines_of_vector_asc_that_are_damaged(void) {
         {" 0.1 CANFD 1 Rx 123 1 0 9 12 00\n", "log:3: the data is shorter"},
         {"nonsense\n", "log:3: neither a frame nor another line of an ASC log"},
     };
-    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-        char text[256];
-        (void)snprintf(text, sizeof text, "base hex  timestamps absolute\n 0.0 1 43F Rx d 1 00\n%s", bad[i][0]);
-        refuse(text, bad[i][1]);
-    }
+    refuse_each("base hex  timestamps absolute\n 0.0 1 43F Rx d 1 00\n", bad, sizeof bad / sizeof bad[0]);
 }
 
 static size_t pack(const char *text, unsigned char *packed, size_t size) {

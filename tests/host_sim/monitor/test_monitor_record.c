@@ -2,7 +2,6 @@
 #include "monitor/inputs/monitor_record.h"
 
 #include <errno.h>
-#include <string.h>
 
 #include "scratch.h"
 #include "unity.h"

@@ -1,6 +1,5 @@
 /* Scenario files: what they may say, and what is refused with its line. */
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "hal/self_test.h"

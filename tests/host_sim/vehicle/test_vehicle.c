@@ -1,8 +1,6 @@
 /* The vehicle that obeys: cycles, gear box, wheels, steering, modes, alarms. */
 #include "vehicle_fixture.h"
 
-#include <stdlib.h>
-
 #include "agv/config.h"
 
 #define AUTOPILOT_OFF 0x40u

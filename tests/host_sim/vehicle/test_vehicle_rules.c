@@ -1,8 +1,6 @@
 /* The vehicle that does not do what it was told, or reports what is not so: what the rules of the supervisor are about. */
 #include "vehicle_fixture.h"
 
-#include <stdlib.h>
-
 void setUp(void) {
     vehicle_defaults(&config);
     connected = true;

@@ -3,6 +3,7 @@
 #define ONE_WHY_H
 
 #include "unity.h"
+#include "why/why_words.h"
 #include "why_feed.h"
 
 static why_t *why;
@@ -16,6 +17,12 @@ void setUp(void) {
 
 void tearDown(void) {
     why_free(why);
+}
+
+static inline void check_words(const why_trip_t *trip, const char *expected) {
+    text_t text = {.used = 0u};
+    why_words_cause(&text, why, trip);
+    TEST_ASSERT_EQUAL_STRING(expected, text.bytes);
 }
 
 #endif

@@ -1,6 +1,5 @@
 /* When a cause began, by kind: frames and trips are fed by hand. */
 #include "one_why.h"
-#include "why/why_words.h"
 
 #define AUTOPILOT "\0\0\0\0\0\0\x80"
 
@@ -8,12 +7,6 @@ static const why_trip_t *trip_by(agv_fault_t fault, uint64_t t_ms) {
     feed_trip(why, (uint8_t)fault, t_ms);
     TEST_ASSERT_EQUAL_UINT(1, why_trip_count(why));
     return why_trip(why, 0);
-}
-
-static void check_words(const why_trip_t *trip, const char *expected) {
-    text_t text = {.used = 0u};
-    why_words_cause(&text, why, trip);
-    TEST_ASSERT_EQUAL_STRING(expected, text.bytes);
 }
 
 /* Frames, then a trip: the kind of its cause, when it began, the last good frame before, the limit and its unit. */

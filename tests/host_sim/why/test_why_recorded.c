@@ -1,7 +1,6 @@
 /* Causes of trips that a flight recorder kept: events with payloads, no frames. Expected values by hand. */
 #include "agv/codec.h"
 #include "one_why.h"
-#include "why/why_words.h"
 
 #define ALL 0x7FF /* every message came */
 #define WITHOUT(message) (ALL & ~(1 << (message)))
@@ -28,12 +27,6 @@ static const why_trip_t *trip_of(agv_fault_t reason, uint16_t seen, uint64_t eng
     event = (agv_event_t){.kind = 0};
     TEST_ASSERT_EQUAL_UINT(1, why_trip_count(why));
     return why_trip(why, 0);
-}
-
-static void check_words(const why_trip_t *trip, const char *expected) {
-    text_t text = {.used = 0u};
-    why_words_cause(&text, why, trip);
-    TEST_ASSERT_EQUAL_STRING(expected, text.bytes);
 }
 
 static void check_times(const why_trip_t *trip, uint64_t cause_ms, uint64_t good_us) {

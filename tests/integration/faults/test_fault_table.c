@@ -26,8 +26,7 @@ void test_a_warning_may_be_made_a_trip(void) {
     fixture_standby(&f);
     fixture_run_past(&f, AGV_MSG_STEERING_POSITION);
     f.traffic[AGV_MSG_STEERING_POSITION].muted = true;
-    fixture_run(&f, 61);
-    expect_trip(&f, AGV_FAULT_STEERING_POSITION_TIMEOUT, f.call, NO_HOLD);
+    expect_trip_after(&f, 61, AGV_FAULT_STEERING_POSITION_TIMEOUT, NO_HOLD);
 }
 
 /* Shows: SUP-4, INT-2, REMOTE_SIGNAL_LOST, WHEEL_SPEED_TIMEOUT, THROTTLE_STATUS_TIMEOUT */

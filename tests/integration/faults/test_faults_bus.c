@@ -80,8 +80,7 @@ void test_bus_off_between_two_ticks(void) {
     fixture_active(&f);
     set_state(HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
     set_state(HAL_CAN_VEHICLE, HAL_CAN_ERROR_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_BUS_OFF, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, AGV_FAULT_BUS_OFF, ANGLE_CENTRE);
     expect_output(&f, false);
     expect_fault_after(&f, 1, AGV_FAULT_BUS_OFF, false);
 }
@@ -133,8 +132,7 @@ void test_a_frame_that_is_not_sent(void) {
     expect_nothing_after(&f, 10, AGV_FAULT_TX_STALLED, AGV_STATE_ACTIVE);
     sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 101);
     const uint32_t purged = purges(HAL_CAN_VEHICLE);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_TX_STALLED, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, AGV_FAULT_TX_STALLED, ANGLE_CENTRE);
     expect_output(&f, false);
     expect_led(&f, 14);
     TEST_ASSERT_EQUAL_UINT32(purged + 1, purges(HAL_CAN_VEHICLE));

@@ -1,5 +1,4 @@
 /* Frames on the bus at a trip: the simulated bus with frame times and arbitration, 500 kbit/s. */
-#include <string.h>
 
 #include "expect.h"
 #include "fixture.h"

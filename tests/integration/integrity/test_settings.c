@@ -88,8 +88,7 @@ void test_ai_never_seen_timeout(void) {
     fixture_standby(&f);
     walk_engage(&f);
     expect_nothing_after(&f, 777, AGV_FAULT_AI_HEARTBEAT_LOST, AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_AI_HEARTBEAT_LOST, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, AGV_FAULT_AI_HEARTBEAT_LOST, ANGLE_CENTRE);
 }
 
 /* Shows: MODE_INVALID */
@@ -99,8 +98,7 @@ void test_mode_invalid_time(void) {
     fixture_mode(&f, MODE_BOTH);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     expect_nothing_after(&f, 123, AGV_FAULT_MODE_INVALID, AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_MODE_INVALID, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, AGV_FAULT_MODE_INVALID, ANGLE_CENTRE);
 }
 
 /* Grace 123 ms, then a budget of 67 ms, of which the tick at 123 ms is the first. */
@@ -112,8 +110,7 @@ void test_grace_and_throttle_in_park_time(void) {
     f.traffic[AGV_MSG_THROTTLE_STATUS].data[0] = 10;
     walk_engage(&f);
     expect_nothing_after(&f, 123 + 65, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
 }
 
 static void check_count(agv_message_t message, const uint8_t bad[8], unsigned frames, agv_fault_t fault) {
@@ -161,8 +158,7 @@ void test_times_of_the_bus(void) {
     sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 20);
     expect_nothing_after(&f, 1, AGV_FAULT_TX_STALLED, AGV_STATE_STANDBY);
     sim_hal_set_tx_pending_ms(&f.hal, HAL_CAN_VEHICLE, 21);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_TX_STALLED, f.call, NO_HOLD);
+    expect_trip_after(&f, 1, AGV_FAULT_TX_STALLED, NO_HOLD);
     sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
     fixture_run(&f, 1);
     fixture_run(&f, 32);

@@ -45,8 +45,7 @@ static void check_engaged(agv_fault_t fault, bool *how) {
     *how = true;
     fixture_run(&f, 350);
     expect_no_fault(AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, fault, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, fault, ANGLE_CENTRE);
     expect_led(&f, 14);
     *how = false;
     fixture_run_past(&f, AI);
@@ -189,8 +188,7 @@ void test_never_seen(void) {
     walk_engage(&f);
     fixture_run(&f, 500);
     expect_no_fault(AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_trip(&f, LOST, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, LOST, ANGLE_CENTRE);
     expect_led(&f, 14);
 }
 
@@ -203,8 +201,7 @@ void test_never_seen_when_engaged_between_two_ticks(void) {
     fixture_send_now(&f, VCU);
     fixture_run(&f, 500);
     expect_no_fault(AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_trip(&f, LOST, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, LOST, ANGLE_CENTRE);
 }
 
 /* The 500 ms restart with each engagement. */
@@ -286,8 +283,7 @@ void test_seen_while_engaged_but_frozen(void) {
     fixture_send_now(&f, AI);
     fixture_run(&f, 350 - (f.now_ms - seen_ms));
     expect_no_fault(AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_trip(&f, STUCK, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, STUCK, ANGLE_CENTRE);
 }
 
 /* A cause in INIT latches nothing. */

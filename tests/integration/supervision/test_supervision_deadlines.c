@@ -35,8 +35,7 @@ static void check_death(void (*mute)(fixture_t *, bool), agv_message_t last, uin
     fixture_run_past(&f, last);
     mute(&f, true);
     expect_nothing_after(&f, after_ms, fault, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, fault, f.call, hold_raw);
+    expect_trip_after(&f, 1, fault, hold_raw);
 }
 
 /* Shows: SUP-3, STEERING_COMMAND_TIMEOUT, VCU_HEARTBEAT_LOST, EPS_HEARTBEAT_LOST */
@@ -54,8 +53,7 @@ static void check_both_modes(agv_state_t state, uint8_t mode_after) {
     fixture_mode(&f, MODE_BOTH);
     fixture_run(&f, 1);
     expect_nothing_after(&f, 50, AGV_FAULT_MODE_INVALID, state);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_MODE_INVALID, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, AGV_FAULT_MODE_INVALID, ANGLE_CENTRE);
     expect_led(&f, -1);
     expect_fault_after(&f, 500, AGV_FAULT_MODE_INVALID, true);
     fixture_mode(&f, mode_after);

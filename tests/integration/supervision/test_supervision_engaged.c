@@ -32,6 +32,7 @@ static void send_bad_frames(const row_t *row, unsigned count, agv_state_t state)
 
 static void check_trips(const row_t *row) {
     uint8_t good[8];
+    fixture_init(&f);
     f.what = "engaged";
     fixture_active(&f);
     fixture_run_past(&f, row->message);
@@ -77,34 +78,32 @@ static void check_grace(const row_t *row, uint16_t phase_ms, unsigned not_counte
     expect_fault(&f, row->fault, false); /* no longer engaged */
 }
 
-static void check(const row_t *row) {
-    check_trips(row);
-    check_grace(row, 1, 0);
-    check_grace(row, 0, 1);
-}
+/* With a fault of the EPS the steering is not held. 18001 = 4651h. */
+static const row_t ROWS[] = {
+    {AGV_FAULT_EPS_MODE_OFF, 13, AGV_MSG_EPS_STATUS, 5, {0, 0, 0, 0xFF}, NO_HOLD},
+    {AGV_FAULT_EPS_MODE_INVALID, 13, AGV_MSG_EPS_STATUS, 5, {0, 0, 0, 0x04}, NO_HOLD},
+    {AGV_FAULT_EPS_MODE_INVALID, 13, AGV_MSG_EPS_STATUS, 5, {0, 0, 0, 0x7F}, NO_HOLD},
+    {AGV_FAULT_EPS_MODE_INVALID, 13, AGV_MSG_EPS_STATUS, 5, {0, 0, 0, 0xFE}, NO_HOLD},
+    {AGV_FAULT_EPS_MODE_NOT_ANGLE, 13, AGV_MSG_EPS_STATUS, 5, {0, 0, 0, 0x00}, NO_HOLD},
+    {AGV_FAULT_EPS_MODE_NOT_ANGLE, 13, AGV_MSG_EPS_STATUS, 5, {0, 0, 0, 0x02}, NO_HOLD},
+    {AGV_FAULT_EPS_MODE_NOT_ANGLE, 13, AGV_MSG_EPS_STATUS, 5, {0, 0, 0, 0x03}, NO_HOLD},
+    {AGV_FAULT_GEAR_STATUS_INVALID, 8, AGV_MSG_GEAR_STATUS, 3, {0}, ANGLE_CENTRE},
+    {AGV_FAULT_GEAR_STATUS_INVALID, 8, AGV_MSG_GEAR_STATUS, 3, {3}, ANGLE_CENTRE},
+    {AGV_FAULT_GEAR_STATUS_INVALID, 8, AGV_MSG_GEAR_STATUS, 3, {9}, ANGLE_CENTRE},
+    {AGV_FAULT_GEAR_STATUS_INVALID, 8, AGV_MSG_GEAR_STATUS, 3, {0xFF}, ANGLE_CENTRE},
+    {AGV_FAULT_THROTTLE_STATUS_INVALID, 7, AGV_MSG_THROTTLE_STATUS, 3, {251}, ANGLE_CENTRE},
+    {AGV_FAULT_THROTTLE_STATUS_INVALID, 7, AGV_MSG_THROTTLE_STATUS, 3, {255}, ANGLE_CENTRE},
+    {AGV_FAULT_STEERING_ANGLE_INVALID, 13, AGV_MSG_STEERING_STATUS, 3, {0, 100, 0x51, 0x46}, NO_HOLD},
+    {AGV_FAULT_STEERING_ANGLE_INVALID, 13, AGV_MSG_STEERING_STATUS, 3, {0, 100, 0xFF, 0xFF}, NO_HOLD},
+};
 
-/* ---- EPS mode: 167h byte 4, N = 5 ---- */
-
-/* Shows: SUP-5, P18, FSM-10, EPS_MODE_OFF */
-void test_eps_mode_off(void) {
-    check(&(row_t){AGV_FAULT_EPS_MODE_OFF, 13, AGV_MSG_EPS_STATUS, 5, {0, 0, 0, 0xFF}, NO_HOLD});
-}
-
-/* Shows: SUP-5, P18, FSM-10, EPS_MODE_INVALID */
-void test_eps_mode_invalid(void) {
-    static const uint8_t INVALID[] = {0x04, 0x7F, 0xFE};
-    for (unsigned i = 0; i < sizeof INVALID; i++) {
-        fixture_init(&f);
-        check(&(row_t){AGV_FAULT_EPS_MODE_INVALID, 13, AGV_MSG_EPS_STATUS, 5, {0, 0, 0, INVALID[i]}, NO_HOLD});
-    }
-}
-
-/* Shows: SUP-5, P18, FSM-10, EPS_MODE_NOT_ANGLE */
-void test_eps_mode_not_angle(void) {
-    static const uint8_t OTHERS[] = {0x00, 0x02, 0x03};
-    for (unsigned i = 0; i < sizeof OTHERS; i++) {
-        fixture_init(&f);
-        check(&(row_t){AGV_FAULT_EPS_MODE_NOT_ANGLE, 13, AGV_MSG_EPS_STATUS, 5, {0, 0, 0, OTHERS[i]}, NO_HOLD});
+/* Shows: SUP-5, P2, P5, P6, P18, FSM-10, EPS_MODE_OFF, EPS_MODE_INVALID, EPS_MODE_NOT_ANGLE, GEAR_STATUS_INVALID,
+   THROTTLE_STATUS_INVALID, STEERING_ANGLE_INVALID */
+void test_each_value_that_counts_while_engaged(void) {
+    for (unsigned i = 0; i < sizeof ROWS / sizeof ROWS[0]; i++) {
+        check_trips(&ROWS[i]);
+        check_grace(&ROWS[i], 1, 0);
+        check_grace(&ROWS[i], 0, 1);
     }
 }
 
@@ -126,32 +125,6 @@ void test_a_gap_does_not_end_an_eps_mode_fault(void) {
         TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, FAULTS[i]));
         TEST_ASSERT_EQUAL_UINT32(0, fixture_ended(&f, FAULTS[i]));
     }
-}
-
-/* ---- Invalid status values: N = 3 ---- */
-
-/* Shows: SUP-5, P2, GEAR_STATUS_INVALID */
-void test_gear_status_invalid(void) {
-    static const uint8_t INVALID[] = {0, 3, 9, 0xFF};
-    for (unsigned i = 0; i < sizeof INVALID; i++) {
-        fixture_init(&f);
-        check(&(row_t){AGV_FAULT_GEAR_STATUS_INVALID, 8, AGV_MSG_GEAR_STATUS, 3, {INVALID[i]}, ANGLE_CENTRE});
-    }
-}
-
-/* Shows: SUP-5, P6, THROTTLE_STATUS_INVALID */
-void test_throttle_status_invalid(void) {
-    check(&(row_t){AGV_FAULT_THROTTLE_STATUS_INVALID, 7, AGV_MSG_THROTTLE_STATUS, 3, {251}, ANGLE_CENTRE});
-    fixture_init(&f);
-    check(&(row_t){AGV_FAULT_THROTTLE_STATUS_INVALID, 7, AGV_MSG_THROTTLE_STATUS, 3, {255}, ANGLE_CENTRE});
-}
-
-/* 18001 = 4651h. With this fault of the EPS the steering is not held. */
-/* Shows: SUP-5, P5, FSM-10, STEERING_ANGLE_INVALID */
-void test_steering_angle_invalid(void) {
-    check(&(row_t){AGV_FAULT_STEERING_ANGLE_INVALID, 13, AGV_MSG_STEERING_STATUS, 3, {0, 100, 0x51, 0x46}, NO_HOLD});
-    fixture_init(&f);
-    check(&(row_t){AGV_FAULT_STEERING_ANGLE_INVALID, 13, AGV_MSG_STEERING_STATUS, 3, {0, 100, 0xFF, 0xFF}, NO_HOLD});
 }
 
 static void command_throttle(uint8_t counts) {
@@ -202,8 +175,7 @@ void test_throttle_in_park(void) {
     set_throttle(3);
     fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
     expect_nothing_after(&f, 198, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
     expect_led(&f, 7);
     fixture_run(&f, 500); /* never more than 200 */
     set_throttle(2);
@@ -235,8 +207,7 @@ void test_an_invalid_throttle_between_does_not_end_throttle_in_park(void) {
     fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
     set_throttle(3);
     expect_nothing_after(&f, 98, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
 }
 
 /* The gear may also change second. Out of P the budget decreases. */
@@ -251,8 +222,7 @@ void test_park_with_throttle(void) {
     fixture_gear(&f, GEAR_P);
     fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
     expect_nothing_after(&f, 198, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
     fixture_gear(&f, GEAR_D);
     fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
     expect_fault_after(&f, 500, AGV_FAULT_THROTTLE_IN_PARK, false);
@@ -275,8 +245,7 @@ void test_budgets_are_paused_while_not_judged(void) {
     fixture_run(&f, 190);
     TEST_ASSERT_EQUAL_UINT32(210, f.now_ms - began_ms);
     expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_EPS_MODE_OFF));
 }
 
@@ -288,8 +257,7 @@ void test_throttle_in_park_counts_after_the_grace(void) {
     expect_nothing_after(&f, 3000, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_STANDBY);
     walk_engage(&f);
     expect_nothing_after(&f, 698, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
 }
 
 /* Without limit of time; here an invalid throttle only warns. */
@@ -469,19 +437,19 @@ void test_every_engagement_scores_anew(void) {
         unsigned byte;
         uint8_t bad[2];
         unsigned frames;
-    } ROWS[] = {
+    } SCORES[] = {
         {AGV_FAULT_EPS_MODE_OFF, AGV_MSG_EPS_STATUS, 4, {0xFF}, 5},
         {AGV_FAULT_GEAR_STATUS_INVALID, AGV_MSG_GEAR_STATUS, 1, {0}, 3},
         {AGV_FAULT_STEERING_ANGLE_INVALID, AGV_MSG_STEERING_STATUS, 3, {0x51, 0x46}, 3},
     };
-    for (unsigned i = 0; i < sizeof ROWS / sizeof ROWS[0]; i++) {
+    for (unsigned i = 0; i < sizeof SCORES / sizeof SCORES[0]; i++) {
         fixture_init(&f);
-        f.what = agv_fault_name(ROWS[i].fault);
+        f.what = agv_fault_name(SCORES[i].fault);
         f.config.engaged_grace_ms = 50;
         f.config.eps_heartbeat_timeout_ms = 100;
         fixture_active(&f);
-        memcpy(&f.traffic[ROWS[i].message].data[ROWS[i].byte - 1], ROWS[i].bad, 2);
-        check_scores_anew(ROWS[i].fault, ROWS[i].message, ROWS[i].frames);
+        memcpy(&f.traffic[SCORES[i].message].data[SCORES[i].byte - 1], SCORES[i].bad, 2);
+        check_scores_anew(SCORES[i].fault, SCORES[i].message, SCORES[i].frames);
     }
 }
 
@@ -499,8 +467,7 @@ void test_every_engagement_begins_its_budgets_anew(void) {
     set_throttle(3);
     fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
     expect_nothing_after(&f, 198, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_THROTTLE_IN_PARK, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
 }
 
 /* An engagement that begins within 100 ms continues the last one: neither grace time nor scores restart. */

@@ -38,8 +38,7 @@ static void check_last_repeat(const node_t *node, uint32_t repeat_ms, agv_fault_
     fixture_send_now(&f, node->message);
     fixture_run(&f, 50 - repeat_ms);
     expect_no_trip(node, AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_trip(&f, expected, f.call, NO_HOLD);
+    expect_trip_after(&f, 1, expected, NO_HOLD);
 }
 
 /* Two cycles are 20 ms: a repeat 31 ms after the change is 20 ms old at the deadline, one 30 ms after it is 21 ms old. */
@@ -76,8 +75,7 @@ void test_malformed_repeats_are_not_stuck(void) {
     f.traffic[AGV_MSG_VEHICLE_STATUS].length = 7;
     fixture_run(&f, 50);
     expect_no_trip(&VCU, AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_VCU_HEARTBEAT_LOST, f.call, NO_HOLD);
+    expect_trip_after(&f, 1, AGV_FAULT_VCU_HEARTBEAT_LOST, NO_HOLD);
 }
 
 static void send_counter(const node_t *node, uint8_t counter) {
@@ -103,8 +101,7 @@ void test_repeats_between_changes(void) {
         expect_no_trip(&VCU, AGV_STATE_STANDBY);
         fixture_send_now(&f, VCU.message);
     }
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_VCU_HEARTBEAT_STUCK, f.call, NO_HOLD);
+    expect_trip_after(&f, 1, AGV_FAULT_VCU_HEARTBEAT_STUCK, NO_HOLD);
 }
 
 /* 363h byte 8 and 067h byte 1, and no other byte. */
@@ -162,8 +159,7 @@ void test_a_frame_with_an_invalid_angle_is_a_heartbeat(void) {
     expect_state_after(&f, 2000, AGV_STATE_STANDBY);
     TEST_ASSERT_EQUAL(AGV_FAULT_NONE, agv_supervisor_first_active(&f.supervisor));
     take_over(&EPS);
-    fixture_run(&f, 51);
-    expect_trip(&f, AGV_FAULT_EPS_HEARTBEAT_LOST, f.call, NO_HOLD);
+    expect_trip_after(&f, 51, AGV_FAULT_EPS_HEARTBEAT_LOST, NO_HOLD);
 }
 
 /* An engagement starts only the deadlines of the three commands: 363h with a frozen counter reports autopilot. */

@@ -214,8 +214,7 @@ void test_no_mode_for_500_ms_in_motion(void) {
     drive_in_manual();
     report(MODE_NEITHER, 1);
     expect_nothing_after(&f, 499, NONE, AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_trip(&f, NONE, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, NONE, ANGLE_CENTRE);
     expect_led(&f, -1);
     expect_fault_after(&f, 1000, NONE, true);
     report(MODE_MANUAL, 1);
@@ -229,8 +228,7 @@ void test_no_mode_after_an_engagement(void) {
     walk_driving(&f, 500);
     report(MODE_NEITHER, 1);
     expect_nothing_after(&f, 499, NONE, AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_trip(&f, NONE, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, NONE, ANGLE_CENTRE);
 }
 
 /* At standstill there is no fault, and standstill ends it. */

@@ -36,8 +36,7 @@ static void expect_trip_at(agv_fault_t fault, uint32_t moment_ms, int led) {
     run_until(moment_ms - 1u);
     expect_nothing(&f, fault, AGV_STATE_ACTIVE);
     fixture_forget_sent(&f);
-    fixture_run(&f, 1);
-    expect_trip(&f, fault, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, fault, ANGLE_CENTRE);
     expect_led(&f, led);
 }
 

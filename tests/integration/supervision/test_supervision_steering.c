@@ -28,8 +28,7 @@ static void run_until(uint32_t moment_ms) {
 static void expect_trip_at(uint32_t moment_ms, int32_t hold_raw) {
     run_until(moment_ms - 1u);
     expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, FAULT, f.call, hold_raw);
+    expect_trip_after(&f, 1, FAULT, hold_raw);
     expect_led(&f, 13);
 }
 
@@ -146,8 +145,7 @@ static void check_forgotten(uint8_t mode_before) {
     fixture_run(&f, 500);
     walk_engage(&f);
     expect_nothing_after(&f, 1000, FAULT, AGV_STATE_ACTIVE);
-    fixture_run(&f, 1);
-    expect_trip(&f, AGV_FAULT_STEERING_COMMAND_TIMEOUT, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, AGV_FAULT_STEERING_COMMAND_TIMEOUT, ANGLE_CENTRE);
 }
 
 /* Shows: SUP-10, STEERING_DEVIATION, STEERING_COMMAND_TIMEOUT */
@@ -204,8 +202,7 @@ static void check_gateway(uint16_t slew_ddeg_s, uint32_t trips_after_ms) {
     run_until(began_ms + trips_after_ms - 1u);
     expect_nothing(&f, FAULT, AGV_STATE_ACTIVE);
     fixture_forget_sent(&f);
-    fixture_run(&f, 1);
-    expect_trip(&f, FAULT, f.call, ANGLE_CENTRE);
+    expect_trip_after(&f, 1, FAULT, ANGLE_CENTRE);
 }
 
 /* Without a limit, 12000 is forwarded at once. With 400.0 degrees a second (100 counts each 25 ms) the forwarded

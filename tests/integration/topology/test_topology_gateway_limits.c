@@ -240,14 +240,19 @@ static void expect_rise(uint8_t commanded, uint8_t passed) {
     fixture_run(&f, 100);
 }
 
-/* 100 % a second is 25 counts in 100 ms, from 0 on; down at once. */
-/* Shows: TOP-2 */
-void test_the_throttle_rises_no_faster_than_its_rate(void) {
+/* 100 % a second. */
+static void active_with_a_rise(void) {
     f.config.throttle_rise_pct_s = 100;
     fixture_active(&f);
     fixture_run_past(&f, AGV_MSG_THROTTLE_COMMAND);
     f.traffic[AGV_MSG_THROTTLE_COMMAND].muted = true;
     fixture_run(&f, 100);
+}
+
+/* 25 counts in 100 ms, from 0 on; down at once. */
+/* Shows: TOP-2 */
+void test_the_throttle_rises_no_faster_than_its_rate(void) {
+    active_with_a_rise();
     expect_rise(250, 25);
     expect_rise(250, 50);
     expect_rise(60, 60);
@@ -261,11 +266,7 @@ void test_the_throttle_rises_no_faster_than_its_rate(void) {
 /* With each engagement from 0. */
 /* Shows: TOP-2 */
 void test_the_rise_begins_anew_with_every_engagement(void) {
-    f.config.throttle_rise_pct_s = 100;
-    fixture_active(&f);
-    fixture_run_past(&f, AGV_MSG_THROTTLE_COMMAND);
-    f.traffic[AGV_MSG_THROTTLE_COMMAND].muted = true;
-    fixture_run(&f, 100);
+    active_with_a_rise();
     expect_rise(250, 25);
     expect_rise(250, 50);
     disengage();

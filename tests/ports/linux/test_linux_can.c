@@ -1,5 +1,4 @@
 /* A socket on an interface of the kernel: opening, both directions, reports besides frames. */
-#include <string.h>
 
 #include "hal_linux/linux_can.h"
 #include "unity.h"

@@ -1,5 +1,4 @@
 /* Errors: error frames, lost frames, interfaces that go down or are removed. A tester sends the error frames. */
-#include <string.h>
 
 #include "one_port.h"
 

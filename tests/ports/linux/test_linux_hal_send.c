@@ -1,5 +1,4 @@
 /* Sending: order, waiting, a full kernel queue, purging, a lost echo. */
-#include <string.h>
 
 #include "one_port.h"
 

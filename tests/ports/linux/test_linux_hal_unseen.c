@@ -1,6 +1,5 @@
 /* What the port does when an echo or an error frame does not come: without interfaces, at times that the test says. A pair of
  * sockets is the kernel, which takes frames and does with them what it likes. */
-#include <string.h>
 #include <sys/socket.h>
 #include <unistd.h>
 

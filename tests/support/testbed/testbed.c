@@ -17,7 +17,7 @@ static const agv_state_t STATES[TESTBED_STATES] = {AGV_STATE_INIT, AGV_STATE_STA
 
 void (*testbed_on_broken)(void);
 
-void testbed_judge(void) {
+static void judge(void) {
     if (testbed.rules.broken[0] == '\0') {
         return;
     }
@@ -50,7 +50,7 @@ static rules_seen_t state_of_supervisor(void) {
 static void on_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *frame) {
     (void)ctx;
     rules_sent(&testbed.rules, side, frame, agv_supervisor_state(&testbed.supervisor));
-    testbed_judge();
+    judge();
 }
 
 /* After a disturbance of a controller its rules are paused until the supervisor had ticks to detect its end. */
@@ -80,7 +80,7 @@ void testbed_frame(hal_can_side_t side, hal_can_frame_t frame, int32_t ahead_ms)
     agv_supervisor_frame(&testbed.supervisor, &testbed.ports, side, &frame);
     const rules_seen_t seen = state_of_supervisor();
     rules_returned(&testbed.rules, &seen, false, 0);
-    testbed_judge();
+    judge();
 }
 
 void testbed_jump(uint32_t ms) {
@@ -98,7 +98,7 @@ void testbed_jump(uint32_t ms) {
     const sim_hal_can_t *can = &testbed.hal.can[HAL_CAN_VEHICLE];
     const bool troubled = (can->status.state == HAL_CAN_BUS_OFF) || can->full;
     testbed.unsettled = troubled ? (uint32_t)SETTLE_TICKS : (testbed.unsettled - ((testbed.unsettled != 0u) ? 1u : 0u));
-    testbed_judge();
+    judge();
 }
 
 static void start(hal_reset_cause_t cause, const rules_seen_t *before) {
@@ -108,7 +108,7 @@ static void start(hal_reset_cause_t cause, const rules_seen_t *before) {
     const rules_seen_t seen = state_of_supervisor();
     rules_started(&testbed.rules, cause, before, &seen, testbed.now_ms);
     testbed.ticked_ms = testbed.now_ms;
-    testbed_judge();
+    judge();
 }
 
 void testbed_restart(hal_reset_cause_t cause) {

@@ -74,8 +74,7 @@ void testbed_ai_drives(void);
 bool testbed_is_latched(void);
 bool testbed_has(agv_fault_t fault);
 
-/* End the program if a rule was broken, or call this function instead, if it is set. */
-void testbed_judge(void);
+/* Called when a rule was broken; NULL: the program ends. */
 extern void (*testbed_on_broken)(void);
 
 #endif

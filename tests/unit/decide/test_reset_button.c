@@ -146,6 +146,16 @@ void test_a_release_between_begins_the_time_anew(void) {
 
 /* ---- The edge ---- */
 
+/* The press had no edge; the next one has. */
+static void expect_release_in_vain_then_reset(void) {
+    frame(false);
+    expect_in_vain(AGV_MISSING_BUTTON);
+    in_vain = 0;
+    run(10);
+    press(1000);
+    expect_reset();
+}
+
 /* Held at the trip and released 1 s later. */
 /* Shows: FSM-3 */
 void test_a_press_from_before_the_trip_does_not_count(void) {
@@ -153,12 +163,7 @@ void test_a_press_from_before_the_trip_does_not_count(void) {
     run(500);
     agv_reset_button_trip(&reset, &timers);
     run(1500);
-    frame(false);
-    expect_in_vain(AGV_MISSING_BUTTON);
-    in_vain = 0;
-    run(100);
-    press(1000);
-    expect_reset();
+    expect_release_in_vain_then_reset();
 }
 
 /* The same when the button was not evaluated since the last reset: in STANDBY it was pressed, then came the trip. */
@@ -168,12 +173,7 @@ void test_a_press_in_standby_is_one_from_before_the_trip(void) {
     agv_timers_advance(&timers, &config, timers.now_ms + 50, 0);
     agv_reset_button_trip(&reset, &timers);
     run(1500);
-    frame(false);
-    expect_in_vain(AGV_MISSING_BUTTON);
-    in_vain = 0;
-    run(100);
-    press(1000);
-    expect_reset();
+    expect_release_in_vain_then_reset();
 }
 
 /* A button that was up in STANDBY and is pressed after the trip has an edge, whatever its state at the last reset. */
@@ -356,12 +356,7 @@ void test_a_press_from_before_the_vcu_came_back_resets_nothing(void) {
     run(100);
     frame(true);
     run(2000);
-    frame(false);
-    expect_in_vain(AGV_MISSING_BUTTON);
-    in_vain = 0;
-    run(10);
-    press(2000);
-    expect_reset();
+    expect_release_in_vain_then_reset();
 }
 
 /* ---- The remote receiver has lost signal or power ---- */
@@ -393,12 +388,7 @@ void test_a_press_from_before_the_remote_came_back_resets_nothing(void) {
     run(2000);
     frame(true);
     run(2000);
-    frame(false);
-    expect_in_vain(AGV_MISSING_BUTTON);
-    in_vain = 0;
-    run(10);
-    press(1000);
-    expect_reset();
+    expect_release_in_vain_then_reset();
 }
 
 /* A short press that ends with the receiver's loss is not reported, as any other short press. */

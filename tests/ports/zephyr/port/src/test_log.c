@@ -9,7 +9,7 @@
 
 #include "fixture.h"
 
-enum { RECORD = 108, WRITES_MAX = 40 }; /* as large as an event of the recorder */
+enum { RECORD = 108 }; /* as large as an event of the recorder */
 
 static uint32_t *writes_so_far;
 static uint32_t *writes_until_the_cut;

@@ -1,7 +1,7 @@
 /* A line for each command and each option. */
 #include <stdio.h>
 
-#include "cli/completion/completion.h"
+#include "cli/commands/completion/completion.h"
 
 /* Have a meaning within single quotes. */
 #define SPECIAL "\\"

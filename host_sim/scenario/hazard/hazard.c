@@ -1,9 +1,8 @@
-#include "hunt/hazard/hazard.h"
+#include "scenario/hazard/hazard.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "agv/names.h"
 #include "text/units.h"
 
 enum { CENTRE_DDEG = 9000 };
@@ -51,15 +50,6 @@ void hazard_found(hazard_t *hazard, hazard_kind_t kind, const char *cause) {
     }
 }
 
-uint32_t hazard_setting(const hazard_t *hazard, const char *name, uint32_t preset) {
-    for (uint16_t i = 0u; i < AGV_SETTING_COUNT; i++) {
-        if (strcmp(agv_setting_info(i)->name, name) == 0) {
-            return agv_config_get(&hazard->scenario->config, i);
-        }
-    }
-    return preset;
-}
-
 bool hazard_is_safe_now(const hazard_t *hazard, uint32_t within_ms) {
     return (hazard->trip.last_ms != 0u) && (hazard->t_ms - hazard->trip.last_ms <= within_ms);
 }
@@ -77,49 +67,14 @@ int32_t hazard_measured_ddeg(const hazard_t *hazard) {
     return (int32_t)(data[2] | ((uint32_t)data[3] << 8u)) - CENTRE_DDEG;
 }
 
-static void read_limits(hazard_t *hazard) {
-    hazard_limits_t *limits = &hazard->limits;
-
-    limits->confirm_ms = hazard_setting(hazard, "confirm_timeout_ms", 500u);
-    limits->park_confirm_ms = hazard_setting(hazard, "park_confirm_timeout_ms", limits->confirm_ms);
-    limits->confirmed_ms = hazard_setting(hazard, "confirmed_ms", 5000u);
-    limits->stop_ms = hazard_setting(hazard, "stop_timeout_ms", 5000u);
-    limits->vcu_ms = hazard_setting(hazard, "vcu_heartbeat_timeout_ms", 50u);
-    limits->tx_stalled_ms = hazard_setting(hazard, "tx_stalled_ms", 100u);
-    limits->watchdog_ms = hazard_setting(hazard, "watchdog_period_ms", 100u);
-    limits->mode_invalid_ms = hazard_setting(hazard, "mode_invalid_ms", 50u);
-    limits->mode_flapping_ms = hazard_setting(hazard, "mode_flapping_ms", 5000u);
-    limits->engaged_grace_ms = hazard_setting(hazard, "engaged_grace_ms", 500u);
-    limits->reengage_ms = hazard_setting(hazard, "reengage_ms", 100u);
-    limits->reset_hold_ms = hazard_setting(hazard, "reset_hold_ms", 1000u);
-    limits->reset_input = hazard_setting(hazard, "reset_input", AGV_RESET_INPUT_CAN);
-    limits->gear_status_ms = hazard_setting(hazard, "gear_status_timeout_ms", 125u);
-    limits->command_ms[AGV_MSG_GEAR_COMMAND] = hazard_setting(hazard, "gear_command_timeout_ms", 350u);
-    limits->command_ms[AGV_MSG_THROTTLE_COMMAND] = hazard_setting(hazard, "throttle_command_timeout_ms", 350u);
-    limits->command_ms[AGV_MSG_STEERING_COMMAND] = hazard_setting(hazard, "steering_command_timeout_ms", 125u);
-    limits->command_too_fast_gaps = hazard_setting(hazard, "command_too_fast_gaps", 10u);
-    limits->eps_ms = hazard_setting(hazard, "eps_heartbeat_timeout_ms", 50u);
-    limits->eps_status_ms = hazard_setting(hazard, "eps_status_timeout_ms", 60u);
-    limits->eps_supply_frames = hazard_setting(hazard, "eps_supply_fault_frames", 3u);
-    limits->speed_implausible_ms = hazard_setting(hazard, "speed_implausible_ms", 1000u);
-    limits->wheels_alone = hazard_setting(hazard, "standstill_vcu_counts", 180u) == AGV_STANDSTILL_VCU_ANY;
-    limits->standstill_mm_s = (int32_t)hazard_setting(hazard, "standstill_speed_mm_s", 50u);
-    limits->parks_at_standstill = hazard_setting(hazard, "park", AGV_PARK_AT_ONCE) == (uint32_t)AGV_PARK_AT_STANDSTILL;
-    limits->park_ms = hazard_setting(hazard, "park_timeout_ms", 3000u);
-    limits->steering_deviation_ddeg = hazard_setting(hazard, "steering_deviation_ddeg", 500u);
-    limits->steering_deviation_ms = hazard_setting(hazard, "steering_deviation_ms", 500u);
-    limits->steering_gain_ddeg = (int32_t)hazard_setting(hazard, "steering_gain_ddeg", 250u);
-    limits->throttle_deviation_counts = hazard_setting(hazard, "throttle_deviation_counts", 25u);
-    limits->limits_steering = (hazard_setting(hazard, "steering_slew_ddeg_s", 0u) != 0u) ||
-                              (hazard_setting(hazard, "steering_fast_max_ddeg", 0u) != 0u);
-}
-
 void hazard_init(hazard_t *hazard, const scenario_t *scenario, const scenario_testbed_t *testbed) {
     memset(hazard, 0, sizeof *hazard);
     hazard->scenario = scenario;
+    hazard->config = &scenario->config;
     hazard->testbed = testbed;
     hazard->gateway = scenario->vehicle.gateway;
-    read_limits(hazard);
+    hazard->limits_steering =
+        (hazard->config->steering_slew_ddeg_s != 0u) || (hazard->config->steering_fast_max_ddeg != 0u);
     hazard_rows_init(hazard);
 }
 

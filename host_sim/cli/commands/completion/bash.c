@@ -1,7 +1,7 @@
 /* The table is made from the options; the function that reads it is the same for all commands. */
 #include <stdio.h>
 
-#include "cli/completion/completion.h"
+#include "cli/commands/completion/completion.h"
 
 static const char HEAD[] = "# bash completion of host_sim; made by `host_sim completion bash`\n"
                            "\n"

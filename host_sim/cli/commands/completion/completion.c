@@ -1,4 +1,4 @@
-#include "cli/completion/completion.h"
+#include "cli/commands/completion/completion.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,5 +1,7 @@
 /* Gateway: commands that the supervisor lets through, and those of foreign senders (H3, H7). */
-#include "hunt/hazard/hazard.h"
+#include "scenario/hazard/hazard.h"
+
+#include "common/message_facts.h"
 
 enum { MARGIN_MS = 100, IN_FLIGHT_MS = 60, ANSWER_MS = 100, SLOT_MS = 100, SAFE_MS = 300, DROP_RATE = 2 };
 enum { NOMINAL_PER_S = 10 + 10 + 10 + 40, SPARE_PER_S = 8 };
@@ -8,7 +10,7 @@ enum { NOMINAL_PER_S = 10 + 10 + 10 + 40, SPARE_PER_S = 8 };
 bool hazard_was_sent(const hazard_t *hazard, agv_message_t message, uint16_t value) {
     const hazard_recent_t *recent = &hazard->recent[message];
     const uint32_t count = (recent->next < HAZARD_RECENT) ? recent->next : (uint32_t)HAZARD_RECENT;
-    const uint64_t within_ms = (uint64_t)hazard->limits.command_ms[message] + MARGIN_MS;
+    const uint64_t within_ms = (uint64_t)agv_config_get(hazard->config, message_deadline_setting(message)) + MARGIN_MS;
 
     for (uint32_t i = 1u; i <= count; i++) {
         const uint32_t at = (recent->next - i) % HAZARD_RECENT;
@@ -46,9 +48,8 @@ void hazard_passed(hazard_t *hazard, agv_message_t message, const hal_can_frame_
         hazard->throttle_is_newest = value != 0u;
         hazard->throttle_ms = hazard->t_ms;
     }
-    const bool is_hold =
-        (message == AGV_MSG_STEERING_COMMAND) &&
-        (hazard->trip.tripped || hazard_is_safe_now(hazard, SAFE_MS) || hazard->limits.limits_steering);
+    const bool is_hold = (message == AGV_MSG_STEERING_COMMAND) &&
+                         (hazard->trip.tripped || hazard_is_safe_now(hazard, SAFE_MS) || hazard->limits_steering);
     if (is_motion(message, value) && !is_hold && !hazard_was_sent(hazard, message, value) && (hazard->false_ms == 0u)) {
         hazard->false_ms = hazard->t_ms; /* 065h of a hold leaves before the other safe commands */
         hazard->false_is_065h = message == AGV_MSG_STEERING_COMMAND;
@@ -86,15 +87,16 @@ bool hazard_is_stalled(const hazard_t *hazard) {
  * them when it runs again, after the period of its watchdog at the latest.
  */
 static uint32_t answer_ms(const hazard_t *hazard) {
-    const uint32_t step_ms =
-        (hazard->limits.watchdog_ms > (uint32_t)MARGIN_MS) ? hazard->limits.watchdog_ms : (uint32_t)MARGIN_MS;
-    return (uint32_t)ANSWER_MS + (hazard_is_stalled(hazard) ? hazard->limits.tx_stalled_ms : step_ms);
+    const uint32_t step_ms = (hazard->config->watchdog_period_ms > (uint32_t)MARGIN_MS)
+                                 ? hazard->config->watchdog_period_ms
+                                 : (uint32_t)MARGIN_MS;
+    return (uint32_t)ANSWER_MS + (hazard_is_stalled(hazard) ? hazard->config->tx_stalled_ms : step_ms);
 }
 
 /** The safe commands follow a 065h of theirs; where they are stalled, the output opens. */
 static uint32_t in_flight_ms(const hazard_t *hazard) {
     const bool waits = hazard->false_is_065h && hazard_is_stalled(hazard);
-    return (uint32_t)IN_FLIGHT_MS + (waits ? hazard->limits.tx_stalled_ms : 0u);
+    return (uint32_t)IN_FLIGHT_MS + (waits ? hazard->config->tx_stalled_ms : 0u);
 }
 
 void hazard_passed_tick(hazard_t *hazard) {

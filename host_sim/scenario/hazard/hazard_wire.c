@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hunt/hazard/hazard.h"
+#include "scenario/hazard/hazard.h"
 #include "text/units.h"
 
 enum { THROTTLE_MAX = 250, ANGLE_MAX = 18000, FALL_COUNTS = 25, FAST_CAP = 3, RISES_MS = 120 };
@@ -66,7 +66,7 @@ static void note(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV
 
 /** At an engagement the vehicle uses the last throttle command. A stalled transmitter sends no other, and opens the output. */
 static void check_newest_throttle(hazard_t *hazard) {
-    const uint32_t deadline_ms = hazard->limits.command_ms[AGV_MSG_THROTTLE_COMMAND];
+    const uint32_t deadline_ms = hazard->config->throttle_command_timeout_ms;
 
     if (hazard->gateway && hazard->closed && !hazard->trip.tripped && !hazard_is_stalled(hazard) &&
         hazard->throttle_is_newest && (hazard->t_ms - hazard->throttle_ms > deadline_ms + REENGAGE_MS)) {
@@ -106,7 +106,7 @@ static void begin_engagement(hazard_t *hazard) {
 
     mode->engaged_ms = hazard->t_ms;
     mode->graced = (mode->begun_count < (uint32_t)HAZARD_ENGAGEMENTS) ||
-                   (hazard->t_ms - *oldest_ms > hazard->limits.mode_flapping_ms);
+                   (hazard->t_ms - *oldest_ms > hazard->config->mode_flapping_ms);
     if (!hazard->trip.tripped) {
         *oldest_ms = hazard->t_ms;
         mode->begun_count++;
@@ -123,7 +123,7 @@ static void note_mode(hazard_t *hazard, uint8_t bits) {
         memset(hazard->is_commanded, 0, sizeof hazard->is_commanded);
     }
     if (autopilot && !mode->autopilot &&
-        ((mode->begun_count == 0u) || (hazard->t_ms - mode->clear_ms >= hazard->limits.reengage_ms))) {
+        ((mode->begun_count == 0u) || (hazard->t_ms - mode->clear_ms >= hazard->config->reengage_ms))) {
         begin_engagement(hazard);
     }
     if (!autopilot && mode->autopilot) {
@@ -172,7 +172,7 @@ static void note_angle(hazard_t *hazard) {
     hazard->really_at_ddeg = hazard_angle_ddeg(hazard);
     const int32_t moved_ddeg =
         (hazard->moved_ddeg < hazard->really_moved_ddeg) ? hazard->moved_ddeg : hazard->really_moved_ddeg;
-    if (moved_ddeg * 5 >= hazard->limits.steering_gain_ddeg * 4) {
+    if (moved_ddeg * 5 >= hazard->config->steering_gain_ddeg * 4) {
         hazard->moved_ddeg = 0;
         hazard->really_moved_ddeg = 0;
         hazard->still_since_ms = hazard->t_ms;
@@ -202,7 +202,7 @@ void hazard_wire_status(hazard_t *hazard, agv_message_t message, const hal_can_f
 static void note_gap(hazard_t *hazard, agv_message_t message) {
     hazard_message_t *seen = &hazard->messages[message];
     const uint64_t gap_us = hazard->t_us - seen->seen_us;
-    const int32_t cap = FAST_CAP * (int32_t)hazard->limits.command_too_fast_gaps;
+    const int32_t cap = FAST_CAP * (int32_t)hazard->config->command_too_fast_gaps;
 
     if (seen->has) {
         seen->fast += (gap_us < (uint64_t)agv_message_cycle_ms(message) * US_PER_MS / 2u) ? 1 : -1;

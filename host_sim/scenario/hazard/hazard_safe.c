@@ -1,7 +1,7 @@
 /* The safe state as the wire, the output and the operator show it: confirmed (H4), reset (H5), stopped (H1). */
 #include <string.h>
 
-#include "hunt/hazard/hazard.h"
+#include "scenario/hazard/hazard.h"
 
 enum { SIGNALS_BYTES = 7, IN_FLIGHT_MS = 12, GONE_MS = 700, RESET_GONE_MS = 200, PENDING_MS = 50, PRESS_SEEN_MS = 100 };
 enum { CONFIRM_MARGIN_MS = 300, STALE_MARGIN_MS = 100 };
@@ -63,22 +63,22 @@ static bool is_fresh(const hazard_t *hazard, agv_message_t message, uint32_t dea
 static void check_confirmation(hazard_t *hazard) {
     hazard_trip_t *trip = &hazard->trip;
     const hazard_message_t *gear = &hazard->messages[AGV_MSG_GEAR_STATUS];
-    const bool alive = is_fresh(hazard, AGV_MSG_VEHICLE_STATUS, hazard->limits.vcu_ms);
+    const bool alive = is_fresh(hazard, AGV_MSG_VEHICLE_STATUS, hazard->config->vcu_heartbeat_timeout_ms);
     const bool off = alive && !hazard->mode.autopilot;
     const bool parked = gear->has_valid && (gear->valid[0] == (uint8_t)AGV_GEAR_P) &&
-                        is_fresh(hazard, AGV_MSG_GEAR_STATUS, hazard->limits.gear_status_ms);
+                        is_fresh(hazard, AGV_MSG_GEAR_STATUS, hazard->config->gear_status_timeout_ms);
 
     trip->engaged_ms += off ? 0u : 1u;
     trip->unparked_ms += (parked || !trip->parks) ? 0u : 1u;
     trip->confirmed_ms = (off && parked) ? trip->confirmed_ms + 1u : 0u;
-    if (trip->confirmed_ms >= hazard->limits.confirmed_ms) {
+    if (trip->confirmed_ms >= hazard->config->confirmed_ms) {
         trip->engaged_ms = 0u;
         trip->unparked_ms = 0u;
     }
-    if (trip->engaged_ms > hazard->limits.confirm_ms + CONFIRM_MARGIN_MS) {
+    if (trip->engaged_ms > (uint32_t)hazard->config->confirm_timeout_ms + CONFIRM_MARGIN_MS) {
         hazard_found(hazard, HAZARD_UNCONFIRMED, "the autopilot is not confirmed as off");
     }
-    if (trip->unparked_ms > hazard->limits.park_confirm_ms + CONFIRM_MARGIN_MS) {
+    if (trip->unparked_ms > (uint32_t)hazard->config->park_confirm_timeout_ms + CONFIRM_MARGIN_MS) {
         hazard_found(hazard, HAZARD_UNCONFIRMED, "gear P is not confirmed");
     }
 }
@@ -103,7 +103,7 @@ void hazard_safe_reported(hazard_t *hazard, const uint8_t data[AGV_DLC]) {
     const bool lost = (data[ALARMS_BYTE] & (AGV_VCU_ALARM_REMOTE_SIGNAL_LOST | AGV_VCU_ALARM_REMOTE_POWER_LOST)) != 0u;
 
     if (down || !lost) {
-        follow_button(hazard, button, down, hazard->limits.reset_hold_ms - (uint32_t)PRESS_MARGIN_MS);
+        follow_button(hazard, button, down, hazard->config->reset_hold_ms - (uint32_t)PRESS_MARGIN_MS);
     } else {
         button->pressed = button->pressed && button->released;
         button->down = true;
@@ -125,9 +125,9 @@ static bool has_ended(hazard_t *hazard) {
 
 bool hazard_reset_was_asked(const hazard_t *hazard) {
     const hazard_trip_t *trip = &hazard->trip;
-    const bool by_remote = (hazard->limits.reset_input != (uint32_t)AGV_RESET_INPUT_PIN) &&
+    const bool by_remote = (hazard->config->reset_input != (uint32_t)AGV_RESET_INPUT_PIN) &&
                            (trip->button.released || trip->reported.released);
-    const bool by_pin = (hazard->limits.reset_input != (uint32_t)AGV_RESET_INPUT_CAN) && trip->pin.released;
+    const bool by_pin = (hazard->config->reset_input != (uint32_t)AGV_RESET_INPUT_CAN) && trip->pin.released;
     return by_remote || by_pin;
 }
 
@@ -157,7 +157,8 @@ static void check_stopping(hazard_t *hazard) {
         (before_mm_s - now_mm_s >= SLOWER_MM_S) || hazard_is_said_to_stand(hazard)) {
         hazard->rolling_since_ms = hazard->t_ms;
     }
-    if (hazard->trip.tripped && (hazard->t_ms - hazard->trip.first_ms > (uint64_t)hazard->limits.stop_ms + MARGIN_MS) &&
+    if (hazard->trip.tripped &&
+        (hazard->t_ms - hazard->trip.first_ms > (uint64_t)hazard->config->stop_timeout_ms + MARGIN_MS) &&
         (hazard->t_ms - hazard->rolling_since_ms > MARGIN_MS)) {
         hazard_found(hazard, HAZARD_NOT_STOPPING, "the vehicle does not obey the safe commands");
     }

@@ -1,7 +1,7 @@
 /* One call of _arguments for each command. */
 #include <stdio.h>
 
-#include "cli/completion/completion.h"
+#include "cli/commands/completion/completion.h"
 
 /* Have a meaning in the descriptions of _arguments. */
 #define SPECIAL "[]:\\"

@@ -1,5 +1,5 @@
 /* Two reports of the speed: the wheels (101h) and the VCU (363h). Whether the supervisor can know that the vehicle moves. */
-#include "hunt/hazard/hazard.h"
+#include "scenario/hazard/hazard.h"
 
 enum { STANDS_MM_S = 100, FRESH_MS = 100, STEP_MS = 10, DIFFERS_MM_S = 850 };
 enum { MOVING_MM_S = 300, MARGIN_MM_S = 50, MARGIN_MS = 50, STOOD_MS = 300 };
@@ -33,16 +33,17 @@ static int32_t vcu_speed_mm_s(const hazard_t *hazard) {
 
 /** 363h reports a speed at which 101h, which reports none, cannot be right. */
 static bool is_contradicted(const hazard_t *hazard) {
-    return is_fresh(hazard, AGV_MSG_VEHICLE_STATUS, hazard->limits.vcu_ms) &&
+    return is_fresh(hazard, AGV_MSG_VEHICLE_STATUS, hazard->config->vcu_heartbeat_timeout_ms) &&
            (vcu_speed_mm_s(hazard) > (int32_t)DIFFERS_MM_S);
 }
 
 static bool is_doubted(const hazard_t *hazard) {
-    return !hazard->limits.wheels_alone && (hazard->contradicted_ms == (int32_t)hazard->limits.speed_implausible_ms);
+    return (hazard->config->standstill_vcu_counts != AGV_STANDSTILL_VCU_ANY) &&
+           (hazard->contradicted_ms == (int32_t)hazard->config->speed_implausible_ms);
 }
 
 static void follow_contradiction(hazard_t *hazard) {
-    const int32_t full_ms = (int32_t)hazard->limits.speed_implausible_ms;
+    const int32_t full_ms = (int32_t)hazard->config->speed_implausible_ms;
     int32_t *spent_ms = &hazard->contradicted_ms;
 
     *spent_ms += (wheels_are_below(hazard, STANDS_MM_S) && is_contradicted(hazard)) ? STEP_MS : -STEP_MS;
@@ -51,7 +52,7 @@ static void follow_contradiction(hazard_t *hazard) {
 
 /** The time of a contradiction adds up, and decays while there is none. */
 void hazard_speed_tick(hazard_t *hazard) {
-    const int32_t limit_mm_s = hazard->limits.standstill_mm_s + MARGIN_MM_S;
+    const int32_t limit_mm_s = hazard->config->standstill_speed_mm_s + MARGIN_MM_S;
 
     if ((hazard->t_ms % (uint64_t)STEP_MS) == 0u) {
         follow_contradiction(hazard);
@@ -71,12 +72,13 @@ bool hazard_is_said_to_stand(const hazard_t *hazard) {
 /** Since the trip, or the restart, which may come after it. */
 static bool is_too_early(const hazard_t *hazard) {
     const uint64_t begin_ms = hazard->hold.trip_ms;
-    return !hazard->trip.tripped || (hazard->t_ms - begin_ms + MARGIN_MS < hazard->limits.park_ms);
+    return !hazard->trip.tripped || (hazard->t_ms - begin_ms + MARGIN_MS < hazard->config->park_timeout_ms);
 }
 
 /** The supervisor commands P, or passes it on. After a trip the first one counts: then it goes on. */
 void hazard_park_frame(hazard_t *hazard) {
-    const bool counts = hazard->limits.parks_at_standstill && hazard->view.output_closed && !hazard->trip.parked;
+    const bool counts = (hazard->config->park == (uint16_t)AGV_PARK_AT_STANDSTILL) && hazard->view.output_closed &&
+                        !hazard->trip.parked;
 
     if (counts && is_too_early(hazard) && (hazard_speed_mm_s(hazard) > (int32_t)MOVING_MM_S) &&
         (hazard->t_ms - hazard->stood_ms > STOOD_MS)) {

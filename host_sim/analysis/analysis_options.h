@@ -14,13 +14,8 @@
 
 #define ANALYSIS_OPTIONS 3u
 
-/** What was given. Start from analysis_options_init(). */
-typedef struct {
-    const char *paths[ANALYSIS_FILES]; /**< NULL: not given */
-} analysis_options_t;
-
 /** Nothing given. @param rows are filled in with the options */
-void analysis_options_init(analysis_options_t *options, option_t rows[ANALYSIS_OPTIONS]);
+void analysis_options_init(analysis_paths_t *options, option_t rows[ANALYSIS_OPTIONS]);
 
 /** A command that analyses one file. */
 typedef struct {
@@ -36,15 +31,9 @@ typedef struct {
 
 /** Parse its command line: the files of the analysis, its own options, the configuration, and the one file. */
 options_result_t analysis_options_parse(const analysis_command_t *command, int argc, char **argv,
-                                        analysis_options_t *analysis, config_options_t *config);
-
-/** Whether one of the files was asked for. */
-bool analysis_options_any(const analysis_options_t *options);
-
-/** Whether one of the files is standard output. */
-bool analysis_options_use_stdout(const analysis_options_t *options);
+                                        analysis_paths_t *analysis, config_options_t *config);
 
 /** The roles of the files, for output_check_distinct(). */
-void analysis_options_roles(const analysis_options_t *options, output_role_t roles[ANALYSIS_FILES]);
+void analysis_options_roles(const analysis_paths_t *options, output_role_t roles[ANALYSIS_FILES]);
 
 #endif

@@ -10,7 +10,6 @@
 #define HOST_SIM_HAZARD_H
 
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 #include "scenario/scenario.h"
@@ -68,39 +67,6 @@ typedef struct {
     uint16_t value[HAZARD_RECENT];
     uint32_t next;
 } hazard_recent_t;
-
-/** The settings of the run that limits follow from. */
-typedef struct {
-    uint32_t confirm_ms;
-    uint32_t park_confirm_ms;
-    uint32_t confirmed_ms; /**< both confirmations for so long set the sums to 0 */
-    uint32_t stop_ms;
-    uint32_t vcu_ms;
-    uint32_t tx_stalled_ms;
-    uint32_t watchdog_ms;
-    uint32_t mode_invalid_ms;
-    uint32_t mode_flapping_ms;
-    uint32_t engaged_grace_ms;
-    uint32_t reengage_ms;
-    uint32_t reset_hold_ms;
-    uint32_t gear_status_ms;
-    uint32_t command_ms[AGV_COMMAND_COUNT];
-    uint32_t command_too_fast_gaps;
-    uint32_t eps_ms;
-    uint32_t eps_status_ms;
-    uint32_t eps_supply_frames;
-    uint32_t speed_implausible_ms;
-    bool wheels_alone; /**< 363h does not count for standstill */
-    int32_t standstill_mm_s;
-    bool parks_at_standstill; /**< `park` */
-    uint32_t park_ms;         /**< after which P is sent all the same */
-    uint32_t steering_deviation_ddeg;
-    uint32_t steering_deviation_ms;
-    int32_t steering_gain_ddeg;
-    uint32_t throttle_deviation_counts;
-    uint32_t reset_input; /**< AGV_RESET_INPUT_* */
-    bool limits_steering;
-} hazard_limits_t;
 
 /** The mode as 363h reports it. */
 typedef struct {
@@ -194,10 +160,11 @@ typedef struct {
     uint8_t closeness[HAZARD_ROWS_MAX]; /**< the most that each condition came to: sixteenths of its limit */
 
     const scenario_t *scenario;
+    const agv_config_t *config;
     const scenario_testbed_t *testbed;
     scenario_testbed_view_t view; /**< when the evaluation last looked at it */
-    hazard_limits_t limits;
     bool gateway;
+    bool limits_steering;
     uint64_t t_us;
     uint64_t t_ms;
     bool closed;
@@ -275,7 +242,6 @@ bool hazard_reset_was_asked(const hazard_t *hazard);
 bool hazard_is_hearing(const hazard_t *hazard);
 
 void hazard_found(hazard_t *hazard, hazard_kind_t kind, const char *cause);
-uint32_t hazard_setting(const hazard_t *hazard, const char *name, uint32_t preset);
 bool hazard_is_safe_now(const hazard_t *hazard, uint32_t within_ms);
 int32_t hazard_angle_ddeg(const hazard_t *hazard);
 int32_t hazard_measured_ddeg(const hazard_t *hazard);

@@ -1,7 +1,7 @@
-#include "cli/analysis_options.h"
+#include "analysis/analysis_options.h"
 
-void analysis_options_init(analysis_options_t *options, option_t rows[ANALYSIS_OPTIONS]) {
-    *options = (analysis_options_t){{NULL}};
+void analysis_options_init(analysis_paths_t *options, option_t rows[ANALYSIS_OPTIONS]) {
+    *options = (analysis_paths_t){{NULL}};
     rows[0] = (option_t)OPTION_TEXT("--why", "FILE", "why it tripped, as JSON", &options->paths[ANALYSIS_WHY]);
     rows[1] = (option_t)OPTION_TEXT("--report", "FILE", "the same as a page with pictures (HTML)",
                                     &options->paths[ANALYSIS_REPORT]);
@@ -10,7 +10,7 @@ void analysis_options_init(analysis_options_t *options, option_t rows[ANALYSIS_O
 }
 
 options_result_t analysis_options_parse(const analysis_command_t *command, int argc, char **argv,
-                                        analysis_options_t *analysis, config_options_t *config) {
+                                        analysis_paths_t *analysis, config_options_t *config) {
     option_t config_rows[CONFIG_OPTIONS];
     option_t analysis_rows[ANALYSIS_OPTIONS];
     config_options_init(config, config_rows);
@@ -35,25 +35,7 @@ options_result_t analysis_options_parse(const analysis_command_t *command, int a
     return options_parse(&syntax, argc, argv, &operands);
 }
 
-bool analysis_options_any(const analysis_options_t *options) {
-    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
-        if (options->paths[i] != NULL) {
-            return true;
-        }
-    }
-    return false;
-}
-
-bool analysis_options_use_stdout(const analysis_options_t *options) {
-    for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {
-        if (output_is_stdout(options->paths[i])) {
-            return true;
-        }
-    }
-    return false;
-}
-
-void analysis_options_roles(const analysis_options_t *options, output_role_t roles[ANALYSIS_FILES]) {
+void analysis_options_roles(const analysis_paths_t *options, output_role_t roles[ANALYSIS_FILES]) {
     static const char *const names[ANALYSIS_FILES] = {
         [ANALYSIS_WHY] = "--why", [ANALYSIS_REPORT] = "--report", [ANALYSIS_TRACE] = "--trace"};
     for (size_t i = 0u; i < (size_t)ANALYSIS_FILES; i++) {

@@ -1,4 +1,4 @@
-#include "cli/fault_option.h"
+#include "campaign/fault_option.h"
 
 #include <stdio.h>
 

@@ -1,5 +1,5 @@
 /* An EPS that takes no angles, as 067h, 167h and 363h show it: what it measured before is no angle to hold (H2). */
-#include "hunt/hazard/hazard.h"
+#include "scenario/hazard/hazard.h"
 
 enum {
     ANGLE_MODE = 0x01,
@@ -36,8 +36,8 @@ void hazard_eps_status(hazard_t *hazard, agv_message_t message, const uint8_t da
 static bool is_silent(const hazard_t *hazard, uint32_t margin_ms) {
     const hazard_message_t *angle = &hazard->messages[AGV_MSG_STEERING_STATUS];
     const hazard_message_t *status = &hazard->messages[AGV_MSG_EPS_STATUS];
-    const uint64_t alive_ms = (uint64_t)hazard->limits.eps_ms + margin_ms;
-    const uint64_t fresh_ms = (uint64_t)hazard->limits.eps_status_ms + margin_ms;
+    const uint64_t alive_ms = (uint64_t)hazard->config->eps_heartbeat_timeout_ms + margin_ms;
+    const uint64_t fresh_ms = (uint64_t)hazard->config->eps_status_timeout_ms + margin_ms;
 
     return (hazard->t_ms - angle->changed_ms > alive_ms) || (hazard->t_ms - status->seen_ms > fresh_ms);
 }
@@ -48,7 +48,7 @@ static bool takes_none(const hazard_t *hazard, uint32_t more_frames, uint32_t ma
 
     return hazard_is_hearing(hazard) &&
            (is_silent(hazard, margin_ms) || (eps->bad_frames > more_frames) || (eps->alarm_frames > more_frames) ||
-            (eps->supply_frames >= hazard->limits.eps_supply_frames + more_frames));
+            (eps->supply_frames >= hazard->config->eps_supply_fault_frames + more_frames));
 }
 
 /** The supervisor must know: two frames more than its debouncing needs, so that one may be lost. */

@@ -1,7 +1,7 @@
 /* Steering held by the supervisor: it must not move (H2). */
 #include <stdlib.h>
 
-#include "hunt/hazard/hazard.h"
+#include "scenario/hazard/hazard.h"
 
 enum { NEW_HOLD_MS = 300, FRESH_MS = 150, IN_FLIGHT_MS = 20, TOLERANCE_DDEG = 50, CENTRE_DDEG = 9000 };
 enum { OUT_OF_DATE_MS = 2000 };
@@ -30,7 +30,7 @@ static void add_first(const hazard_t *hazard, hazard_first_t *first, int32_t ang
     if (!first->any) {
         *first = (hazard_first_t){.range = {angle_ddeg, angle_ddeg}, .since_ms = hazard->t_ms, .any = true};
     }
-    if (hazard->t_ms - first->since_ms <= (uint64_t)hazard->limits.mode_invalid_ms + FRESH_MS) {
+    if (hazard->t_ms - first->since_ms <= (uint64_t)hazard->config->mode_invalid_ms + FRESH_MS) {
         extend_range(&first->range, angle_ddeg);
     }
 }
@@ -79,7 +79,7 @@ static void trip_now(hazard_t *hazard, uint32_t within_ms) {
 
 void hazard_hold_trip(hazard_t *hazard) {
     /* An open output without a safe command: the trip came when the first frame did not leave. */
-    trip_now(hazard, (uint32_t)FRESH_MS + (hazard->closed ? 0u : hazard->limits.tx_stalled_ms));
+    trip_now(hazard, (uint32_t)FRESH_MS + (hazard->closed ? 0u : hazard->config->tx_stalled_ms));
 }
 
 /** A supervisor that restarts or detects a flipped bit trips again, and holds the angle that it then measures. */
@@ -102,7 +102,7 @@ void hazard_hold_drop(hazard_t *hazard) {
 
 /** An angle that was not sent for so long is out of date: it is not held again. */
 static uint64_t in_date_ms(const hazard_t *hazard) {
-    return (uint64_t)OUT_OF_DATE_MS + hazard->limits.tx_stalled_ms + FRESH_MS;
+    return (uint64_t)OUT_OF_DATE_MS + hazard->config->tx_stalled_ms + FRESH_MS;
 }
 
 /** The angle of the trip may have been dropped; a frame that was in the controller then may still leave. */
@@ -137,7 +137,7 @@ static void allow_again(hazard_t *hazard, uint16_t value) {
 
 /** Passed on for the AI computer: after a reset the safe commands may have ended already. */
 static bool is_passed_on(const hazard_t *hazard, uint16_t value) {
-    const bool is_limited = hazard->limits.limits_steering && hazard_reset_was_asked(hazard) && hazard->mode.autopilot;
+    const bool is_limited = hazard->limits_steering && hazard_reset_was_asked(hazard) && hazard->mode.autopilot;
 
     return hazard->gateway && (is_limited || hazard_was_sent(hazard, AGV_MSG_STEERING_COMMAND, value));
 }

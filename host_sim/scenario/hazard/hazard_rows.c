@@ -2,8 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "agv/names.h"
-#include "hunt/hazard/hazard.h"
+#include "scenario/hazard/hazard.h"
 
 enum { STEP_MS = 10, MARGIN_MS = 1500, MOVING_MM_S = 300, REACTED_MS = 350, REENGAGE_MS = 100, MANUAL_WEIGHT = 2 };
 enum { SCORE_CAP = 4, EVENT_MS = 400, STILL_MARGIN_MS = 200, DEVIATION_DDEG = 50, CLOSE = 16 };
@@ -25,9 +24,8 @@ typedef struct {
     form_t form;
     bool engaged; /**< counts while 363h reports autopilot, and after the grace time */
     agv_message_t message;
-    const char *setting;
-    uint32_t preset;
-    const char *fault; /**< that must be a trip in this configuration; NULL: it always is */
+    uint16_t setting;  /**< AGV_SETTING_*, NO_SETTING */
+    agv_fault_t fault; /**< that must be a trip in this configuration; AGV_FAULT_NONE: it always is */
     frame_fn *is_bad;
     uint8_t mask;
     condition_fn *holds;
@@ -67,15 +65,16 @@ static uint8_t throttle_of(const hazard_t *hazard) {
 /** 0 while 0A3h is silent or has no valid gear. */
 static uint8_t gear_of(const hazard_t *hazard) {
     const hazard_message_t *seen = &hazard->messages[AGV_MSG_GEAR_STATUS];
-    return (hazard->t_ms - seen->valid_ms > hazard->limits.gear_status_ms) ? 0u : seen->valid[0];
+    return (hazard->t_ms - seen->valid_ms > hazard->config->gear_status_timeout_ms) ? 0u : seen->valid[0];
 }
 
 static bool is_steering_stuck(const hazard_t *hazard) {
     const int32_t told_ddeg = (int32_t)hazard->commanded[AGV_MSG_STEERING_COMMAND] - 9000;
-    const int32_t limit_ddeg = (int32_t)hazard->limits.steering_deviation_ddeg + DEVIATION_DDEG;
+    const int32_t limit_ddeg = (int32_t)hazard->config->steering_deviation_ddeg + DEVIATION_DDEG;
 
     return hazard->is_commanded[AGV_MSG_STEERING_COMMAND] &&
-           (hazard->t_ms - hazard->still_since_ms > hazard->limits.steering_deviation_ms + STILL_MARGIN_MS) &&
+           (hazard->t_ms - hazard->still_since_ms >
+            (uint64_t)hazard->config->steering_deviation_ms + STILL_MARGIN_MS) &&
            (abs(hazard_measured_ddeg(hazard) - told_ddeg) > limit_ddeg);
 }
 
@@ -84,7 +83,7 @@ static bool is_throttle_in_park(const hazard_t *hazard) {
 }
 
 static bool is_throttle_too_high(const hazard_t *hazard) {
-    const uint32_t highest = hazard->commanded[AGV_MSG_THROTTLE_COMMAND] + hazard->limits.throttle_deviation_counts;
+    const uint32_t highest = hazard->commanded[AGV_MSG_THROTTLE_COMMAND] + hazard->config->throttle_deviation_counts;
 
     return hazard->is_commanded[AGV_MSG_THROTTLE_COMMAND] && (throttle_of(hazard) > highest + THROTTLE_SPARE) &&
            (hazard->t_ms - hazard->throttle_high_ms > FALL_MS);
@@ -116,7 +115,7 @@ static bool is_command_too_fast(const hazard_t *hazard) {
     bool fast = false;
 
     for (unsigned m = 0u; m < AGV_COMMAND_COUNT; m++) {
-        fast = fast || (hazard->messages[m].fast >= 2 * (int32_t)hazard->limits.command_too_fast_gaps);
+        fast = fast || (hazard->messages[m].fast >= 2 * (int32_t)hazard->config->command_too_fast_gaps);
     }
     return fast;
 }
@@ -141,88 +140,82 @@ static bool is_ai_side_dead(const hazard_t *hazard) {
 }
 
 #define NONE AGV_MSG_NONE
+#define NO_SETTING AGV_SETTING_COUNT
 static const row_t ROWS[] = {
-    {"the VCU is silent", STUCK, false, AGV_MSG_VEHICLE_STATUS, "vcu_heartbeat_timeout_ms", 50u, NULL, NULL, 0u, NULL},
-    {"the EPS is silent", STUCK, false, AGV_MSG_STEERING_STATUS, "eps_heartbeat_timeout_ms", 50u, NULL, NULL, 0u, NULL},
-    {"the AI computer is silent", STUCK, true, AGV_MSG_TURN_SIGNAL_COMMAND, "ai_heartbeat_timeout_ms", 350u, NULL, NULL,
+    {"the VCU is silent", STUCK, false, AGV_MSG_VEHICLE_STATUS, AGV_SETTING_vcu_heartbeat_timeout_ms, AGV_FAULT_NONE,
+     NULL, 0u, NULL},
+    {"the EPS is silent", STUCK, false, AGV_MSG_STEERING_STATUS, AGV_SETTING_eps_heartbeat_timeout_ms, AGV_FAULT_NONE,
+     NULL, 0u, NULL},
+    {"the AI computer is silent", STUCK, true, AGV_MSG_TURN_SIGNAL_COMMAND, AGV_SETTING_ai_heartbeat_timeout_ms,
+     AGV_FAULT_NONE, NULL, 0u, NULL},
+    {"168h is missing", SILENT, true, AGV_MSG_GEAR_COMMAND, AGV_SETTING_gear_command_timeout_ms, AGV_FAULT_NONE, NULL,
      0u, NULL},
-    {"168h is missing", SILENT, true, AGV_MSG_GEAR_COMMAND, "gear_command_timeout_ms", 350u, NULL, NULL, 0u, NULL},
-    {"075h is missing", SILENT, true, AGV_MSG_THROTTLE_COMMAND, "throttle_command_timeout_ms", 350u, NULL, NULL, 0u,
+    {"075h is missing", SILENT, true, AGV_MSG_THROTTLE_COMMAND, AGV_SETTING_throttle_command_timeout_ms, AGV_FAULT_NONE,
+     NULL, 0u, NULL},
+    {"065h is missing", SILENT, true, AGV_MSG_STEERING_COMMAND, AGV_SETTING_steering_command_timeout_ms, AGV_FAULT_NONE,
+     NULL, 0u, NULL},
+    {"167h is missing", SILENT, false, AGV_MSG_EPS_STATUS, AGV_SETTING_eps_status_timeout_ms, AGV_FAULT_NONE, NULL, 0u,
      NULL},
-    {"065h is missing", SILENT, true, AGV_MSG_STEERING_COMMAND, "steering_command_timeout_ms", 125u, NULL, NULL, 0u,
+    {"0A3h is missing", SILENT, false, AGV_MSG_GEAR_STATUS, AGV_SETTING_gear_status_timeout_ms,
+     AGV_FAULT_GEAR_STATUS_TIMEOUT, NULL, 0u, NULL},
+    {"050h is missing", SILENT, false, AGV_MSG_THROTTLE_STATUS, AGV_SETTING_throttle_status_timeout_ms,
+     AGV_FAULT_THROTTLE_STATUS_TIMEOUT, NULL, 0u, NULL},
+    {"101h is missing", SILENT, false, AGV_MSG_WHEEL_SPEED, AGV_SETTING_wheel_speed_timeout_ms,
+     AGV_FAULT_WHEEL_SPEED_TIMEOUT, NULL, 0u, NULL},
+    {"the EPS reports a fault", SCORE, false, AGV_MSG_EPS_STATUS, NO_SETTING, AGV_FAULT_NONE, has_bit, 0xE8u, NULL},
+    {"the EPS reports its supply", SCORE, false, AGV_MSG_EPS_STATUS, AGV_SETTING_eps_supply_fault_frames,
+     AGV_FAULT_NONE, has_bit, 0x07u, NULL},
+    {"the VCU reports the EPS", SCORE, false, AGV_MSG_VEHICLE_STATUS, NO_SETTING, AGV_FAULT_NONE, has_alarm, 0x30u,
      NULL},
-    {"167h is missing", SILENT, false, AGV_MSG_EPS_STATUS, "eps_status_timeout_ms", 60u, NULL, NULL, 0u, NULL},
-    {"0A3h is missing", SILENT, false, AGV_MSG_GEAR_STATUS, "gear_status_timeout_ms", 125u, "GEAR_STATUS_TIMEOUT", NULL,
-     0u, NULL},
-    {"050h is missing", SILENT, false, AGV_MSG_THROTTLE_STATUS, "throttle_status_timeout_ms", 60u,
-     "THROTTLE_STATUS_TIMEOUT", NULL, 0u, NULL},
-    {"101h is missing", SILENT, false, AGV_MSG_WHEEL_SPEED, "wheel_speed_timeout_ms", 60u, "WHEEL_SPEED_TIMEOUT", NULL,
-     0u, NULL},
-    {"the EPS reports a fault", SCORE, false, AGV_MSG_EPS_STATUS, NULL, 1u, NULL, has_bit, 0xE8u, NULL},
-    {"the EPS reports its supply", SCORE, false, AGV_MSG_EPS_STATUS, "eps_supply_fault_frames", 3u, NULL, has_bit,
-     0x07u, NULL},
-    {"the VCU reports the EPS", SCORE, false, AGV_MSG_VEHICLE_STATUS, NULL, 1u, NULL, has_alarm, 0x30u, NULL},
-    {"the VCU reports the S driver", SCORE, false, AGV_MSG_VEHICLE_STATUS, NULL, 1u, "S_DRIVER_ALARM", has_alarm, 0x80u,
-     NULL},
-    {"the remote signal is lost", SCORE, false, AGV_MSG_VEHICLE_STATUS, NULL, 1u, "REMOTE_SIGNAL_LOST", has_alarm,
-     0x01u, NULL},
-    {"the remote power is lost", SCORE, false, AGV_MSG_VEHICLE_STATUS, NULL, 1u, "REMOTE_POWER_LOST", has_alarm, 0x02u,
-     NULL},
-    {"the EPS is not in angle control", SCORE, true, AGV_MSG_EPS_STATUS, "eps_mode_frames", 5u, NULL,
+    {"the VCU reports the S driver", SCORE, false, AGV_MSG_VEHICLE_STATUS, NO_SETTING, AGV_FAULT_S_DRIVER_ALARM,
+     has_alarm, 0x80u, NULL},
+    {"the remote signal is lost", SCORE, false, AGV_MSG_VEHICLE_STATUS, NO_SETTING, AGV_FAULT_REMOTE_SIGNAL_LOST,
+     has_alarm, 0x01u, NULL},
+    {"the remote power is lost", SCORE, false, AGV_MSG_VEHICLE_STATUS, NO_SETTING, AGV_FAULT_REMOTE_POWER_LOST,
+     has_alarm, 0x02u, NULL},
+    {"the EPS is not in angle control", SCORE, true, AGV_MSG_EPS_STATUS, AGV_SETTING_eps_mode_frames, AGV_FAULT_NONE,
      is_no_angle_control, EPS_ANGLE_MODE, NULL},
-    {"0A3h has an invalid gear", SCORE, true, AGV_MSG_GEAR_STATUS, "status_invalid_frames", 3u, "GEAR_STATUS_INVALID",
-     is_no_gear, 0u, NULL},
-    {"050h has an invalid throttle", SCORE, true, AGV_MSG_THROTTLE_STATUS, "status_invalid_frames", 3u,
-     "THROTTLE_STATUS_INVALID", is_above, 250u, NULL},
-    {"067h has an invalid angle", SCORE, true, AGV_MSG_STEERING_STATUS, "status_invalid_frames", 3u, NULL, is_no_angle,
-     0u, NULL},
-    {"the steering is stuck", LEVEL, true, NONE, "steering_deviation_ms", 500u, NULL, NULL, 0u, is_steering_stuck},
-    {"throttle with gear P", LEVEL, true, NONE, "throttle_in_park_ms", 200u, "THROTTLE_IN_PARK", NULL, 0u,
+    {"0A3h has an invalid gear", SCORE, true, AGV_MSG_GEAR_STATUS, AGV_SETTING_status_invalid_frames,
+     AGV_FAULT_GEAR_STATUS_INVALID, is_no_gear, 0u, NULL},
+    {"050h has an invalid throttle", SCORE, true, AGV_MSG_THROTTLE_STATUS, AGV_SETTING_status_invalid_frames,
+     AGV_FAULT_THROTTLE_STATUS_INVALID, is_above, 250u, NULL},
+    {"067h has an invalid angle", SCORE, true, AGV_MSG_STEERING_STATUS, AGV_SETTING_status_invalid_frames,
+     AGV_FAULT_NONE, is_no_angle, 0u, NULL},
+    {"the steering is stuck", LEVEL, true, NONE, AGV_SETTING_steering_deviation_ms, AGV_FAULT_NONE, NULL, 0u,
+     is_steering_stuck},
+    {"throttle with gear P", LEVEL, true, NONE, AGV_SETTING_throttle_in_park_ms, AGV_FAULT_THROTTLE_IN_PARK, NULL, 0u,
      is_throttle_in_park},
-    {"more throttle than commanded", LEVEL, true, NONE, "throttle_deviation_ms", 500u, "THROTTLE_DEVIATION", NULL, 0u,
-     is_throttle_too_high},
-    {"another gear than commanded", LEVEL, true, NONE, "gear_deviation_ms", 1000u, "GEAR_DEVIATION", NULL, 0u,
-     is_other_gear},
-    {"autopilot off is ignored", LEVEL, true, NONE, "autopilot_off_ms", 1000u, "AUTOPILOT_OFF_IGNORED", NULL, 0u,
-     is_off_ignored},
-    {"no valid mode is reported", LEVEL, false, NONE, "mode_none_ms", 500u, NULL, NULL, 0u, is_without_mode},
-    {"both modes are reported", LEVEL, false, NONE, "mode_invalid_ms", 50u, NULL, NULL, 0u, is_in_both_modes},
-    {"commands come too fast", LEVEL, true, NONE, NULL, 0u, "COMMAND_TOO_FAST", NULL, 0u, is_command_too_fast},
-    {"an invalid command", LEVEL, true, NONE, NULL, 0u, NULL, NULL, 0u, is_command_bad},
-    {"the supervisor's transmitter has failed", LEVEL, false, NONE, "tx_stalled_ms", 100u, NULL, NULL, 0u,
+    {"more throttle than commanded", LEVEL, true, NONE, AGV_SETTING_throttle_deviation_ms, AGV_FAULT_THROTTLE_DEVIATION,
+     NULL, 0u, is_throttle_too_high},
+    {"another gear than commanded", LEVEL, true, NONE, AGV_SETTING_gear_deviation_ms, AGV_FAULT_GEAR_DEVIATION, NULL,
+     0u, is_other_gear},
+    {"autopilot off is ignored", LEVEL, true, NONE, AGV_SETTING_autopilot_off_ms, AGV_FAULT_AUTOPILOT_OFF_IGNORED, NULL,
+     0u, is_off_ignored},
+    {"no valid mode is reported", LEVEL, false, NONE, AGV_SETTING_mode_none_ms, AGV_FAULT_NONE, NULL, 0u,
+     is_without_mode},
+    {"both modes are reported", LEVEL, false, NONE, AGV_SETTING_mode_invalid_ms, AGV_FAULT_NONE, NULL, 0u,
+     is_in_both_modes},
+    {"commands come too fast", LEVEL, true, NONE, NO_SETTING, AGV_FAULT_COMMAND_TOO_FAST, NULL, 0u,
+     is_command_too_fast},
+    {"an invalid command", LEVEL, true, NONE, NO_SETTING, AGV_FAULT_NONE, NULL, 0u, is_command_bad},
+    {"the supervisor's transmitter has failed", LEVEL, false, NONE, AGV_SETTING_tx_stalled_ms, AGV_FAULT_NONE, NULL, 0u,
      is_transmitter_dead},
-    {"the AI side is stalled", LEVEL, true, NONE, "tx_stalled_ms", 100u, "AI_BUS_OFF", NULL, 0u, is_ai_side_dead},
+    {"the AI side is stalled", LEVEL, true, NONE, AGV_SETTING_tx_stalled_ms, AGV_FAULT_AI_BUS_OFF, NULL, 0u,
+     is_ai_side_dead},
 };
 enum { ROW_COUNT = sizeof ROWS / sizeof ROWS[0] };
 _Static_assert(sizeof ROWS / sizeof ROWS[0] <= (unsigned)HAZARD_ROWS_MAX, "a row has no place in hazard_t");
-
-/** A fault that this supervisor does not know yet counts as a trip. */
-static bool only_warns(const hazard_t *hazard, const char *name) {
-    const agv_fault_t fault = (name != NULL) ? agv_fault_from_name(name) : AGV_FAULT_NONE;
-    return (fault != AGV_FAULT_NONE) && !agv_config_is_trip(&hazard->scenario->config, fault);
-}
-
-/** A status frame that is switched off, though it is on by default, is the integrator's choice. */
-static bool has_no_status_frame(const hazard_t *hazard) {
-    for (uint16_t i = 0u; i < AGV_SETTING_COUNT; i++) {
-        const agv_setting_info_t *info = agv_setting_info(i);
-        if (strcmp(info->name, "status_frame_id") == 0) {
-            return (info->preset != 0u) && (agv_config_get(&hazard->scenario->config, i) == 0u);
-        }
-    }
-    return false;
-}
 
 /** For how long it may be; @param value of its setting. */
 static uint32_t limit_ms(const hazard_t *hazard, const row_t *row, uint32_t value) {
     uint32_t limit = MARGIN_MS + ((row->form == LEVEL) ? value : 0u);
 
-    limit += (row->engaged && (row->form <= STUCK)) ? hazard->limits.engaged_grace_ms : 0u;
+    limit += (row->engaged && (row->form <= STUCK)) ? hazard->config->engaged_grace_ms : 0u;
     if (row->message == AGV_MSG_TURN_SIGNAL_COMMAND) {
-        limit += hazard_setting(hazard, "ai_never_seen_timeout_ms", 500u);
+        limit += hazard->config->ai_never_seen_timeout_ms;
     }
     if (row->holds == is_transmitter_dead) {
-        limit += hazard_setting(hazard, "status_frame_period_ms", 100u); /* the next frame shows it */
+        limit += hazard->config->status_frame_period_ms; /* the next frame shows it */
     }
     return limit;
 }
@@ -230,15 +223,17 @@ static uint32_t limit_ms(const hazard_t *hazard, const row_t *row, uint32_t valu
 void hazard_rows_init(hazard_t *hazard) {
     for (unsigned r = 0u; r < (unsigned)ROW_COUNT; r++) {
         const row_t *row = &ROWS[r];
-        const uint32_t value = (row->setting != NULL) ? hazard_setting(hazard, row->setting, row->preset) : row->preset;
+        const uint32_t none = (row->form == SCORE) ? 1u : 0u;
+        const uint32_t value = (row->setting == NO_SETTING) ? none : agv_config_get(hazard->config, row->setting);
         hazard->thresholds[r] = value;
         hazard->limits_ms[r] = limit_ms(hazard, row, value);
         if ((row->form == SCORE) && (hazard->score_counts[row->message] < (uint8_t)HAZARD_SCORES_MAX)) {
             hazard->score_rows[row->message][hazard->score_counts[row->message]] = (uint8_t)r;
             hazard->score_counts[row->message]++;
         }
-        hazard->off[r] =
-            only_warns(hazard, row->fault) || ((row->holds == is_transmitter_dead) && has_no_status_frame(hazard));
+        const bool only_warns = (row->fault != AGV_FAULT_NONE) && !agv_config_is_trip(hazard->config, row->fault);
+        const bool has_no_status_frame = hazard->config->status_frame_id == 0u; /* the integrator's choice */
+        hazard->off[r] = only_warns || ((row->holds == is_transmitter_dead) && has_no_status_frame);
     }
 }
 
@@ -278,7 +273,7 @@ static bool is_in_grace(const hazard_t *hazard, const row_t *row) {
     const hazard_mode_t *mode = &hazard->mode;
 
     return row->engaged && (row->form > STUCK) && mode->autopilot && mode->graced &&
-           (hazard->t_ms - mode->engaged_ms < hazard->limits.engaged_grace_ms);
+           (hazard->t_ms - mode->engaged_ms < hazard->config->engaged_grace_ms);
 }
 
 /** Time in which a condition holds adds up; time in which it does not takes away. */
