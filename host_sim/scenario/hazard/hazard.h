@@ -247,6 +247,7 @@ int32_t hazard_angle_ddeg(const hazard_t *hazard);
 int32_t hazard_measured_ddeg(const hazard_t *hazard);
 void hazard_rows_init(hazard_t *hazard);
 void hazard_rows_frame(hazard_t *hazard, agv_message_t message, const uint8_t data[AGV_DLC]);
+void hazard_rows_engage(hazard_t *hazard);
 void hazard_rows_tick(hazard_t *hazard);
 void hazard_wire_status(hazard_t *hazard, agv_message_t message, const hal_can_frame_t *frame);
 void hazard_commanded(hazard_t *hazard, agv_message_t message, uint16_t value);

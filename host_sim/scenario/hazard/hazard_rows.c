@@ -283,9 +283,9 @@ static void add_up(hazard_t *hazard, unsigned r) {
     const bool long_manual = is_manual && (hazard->t_ms - hazard->mode.clear_ms >= REENGAGE_MS);
     int32_t *budget_ms = &hazard->budgets_ms[r];
 
-    if (long_manual) {
-        *budget_ms -= STEP_MS * MANUAL_WEIGHT;
-    } else if (!is_manual) {
+    if (is_manual) {
+        *budget_ms -= long_manual ? STEP_MS * MANUAL_WEIGHT : STEP_MS;
+    } else {
         *budget_ms += holds(hazard, r) ? STEP_MS : -STEP_MS;
     }
     *budget_ms = (*budget_ms < 0) ? 0 : *budget_ms;
@@ -295,6 +295,15 @@ static void add_up(hazard_t *hazard, unsigned r) {
     }
     if (*budget_ms > (int32_t)hazard->limits_ms[r]) {
         hazard_found(hazard, (row->form <= STUCK) ? HAZARD_NOT_STOPPING : HAZARD_FALSE_NODE, row->name);
+    }
+}
+
+/** A reading that moves to the command and back may be progress, once in each engagement (SUP-10). */
+void hazard_rows_engage(hazard_t *hazard) {
+    for (unsigned r = 0u; r < (unsigned)ROW_COUNT; r++) {
+        if (ROWS[r].holds == is_steering_stuck) {
+            hazard->budgets_ms[r] = 0;
+        }
     }
 }
 

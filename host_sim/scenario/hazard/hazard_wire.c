@@ -111,6 +111,9 @@ static void begin_engagement(hazard_t *hazard) {
         *oldest_ms = hazard->t_ms;
         mode->begun_count++;
     }
+    if (mode->graced) {
+        hazard_rows_engage(hazard);
+    }
 }
 
 static void note_mode(hazard_t *hazard, uint8_t bits) {

@@ -678,6 +678,28 @@ void test_h6_a_good_reading_now_and_then_hides_nothing(void) {
     expect_none(&GOOD, open);
 }
 
+/** In each engagement the first step to the command and back looks like progress. */
+void test_h6_steering_that_seems_to_move_once_in_each_engagement(void) {
+    const char *const reads =
+        "  - {at_ms: 2000, ai: drive, gear: D, throttle_pct: 60, steer_deg: 120}\n"
+        "  - {at_ms: 2500, eps: set, field: angle, value: 2328h, frames: 44, again_every_ms: 480}\n";
+    const char *const toggles = "  - {at_ms: 3000, operator: disengage, again_every_ms: 1506}\n"
+                                "  - {at_ms: 3133, operator: engage, again_every_ms: 1506}\n";
+    char steps[512];
+
+    expect_hazard(HAZARD_FALSE_NODE, "the steering is stuck", &MUTE, reads);
+    (void)snprintf(steps, sizeof steps, "%s%s", reads, toggles);
+    expect_none(&MUTE, steps);
+}
+
+/** Who reports manual in most frames, and both modes in the others, is in manual. */
+void test_h6_manual_with_short_both_is_manual(void) {
+    const char *const steps = "  - {at_ms: 2000, vcu: set, field: mode_bits, value: 3h, again_every_ms: 101}\n"
+                              "  - {at_ms: 2000, eps: set, field: mode, value: 00h}\n"
+                              "  - {at_ms: 2021, vcu: set, field: mode_bits, value: 1h, again_every_ms: 101}\n";
+    expect_none(&MUTE, steps);
+}
+
 /** A VCU that comes down slowly obeys the AI computer, which asks for 100 % now and then. */
 void test_h6_a_throttle_that_was_commanded_to_rise_again_is_no_hazard(void) {
     const char *const slow =
