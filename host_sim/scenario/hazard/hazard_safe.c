@@ -23,6 +23,7 @@ static void begin_trip(hazard_t *hazard) {
     trip->parks = false;
     trip->parked = false;
     trip->first_ms = hazard->t_ms;
+    trip->since_ms = trip->free_ms;
     forget_press(hazard, &trip->button);
     forget_press(hazard, &trip->reported);
     forget_press(hazard, &trip->pin);
@@ -146,6 +147,12 @@ static void check_reset(hazard_t *hazard, bool was_closed) {
     }
 }
 
+/** 101h reported standstill since the trip, and is silent: nobody can know that the vehicle moves on (FSM-12). */
+static bool is_silent_after_standing(const hazard_t *hazard) {
+    return !is_fresh(hazard, AGV_MSG_WHEEL_SPEED, hazard->config->wheel_speed_timeout_ms) &&
+           (hazard->stood_ms >= hazard->trip.first_ms);
+}
+
 /** The safe commands are sent, and the vehicle does not become slower (H1). */
 static void check_stopping(hazard_t *hazard) {
     const int32_t now_mm_s = hazard_speed_mm_s(hazard);
@@ -154,7 +161,8 @@ static void check_stopping(hazard_t *hazard) {
     hazard->speeds_mm_s[hazard->speed_at] = now_mm_s;
     hazard->speed_at = (hazard->speed_at + 1u) % HAZARD_SPEEDS;
     if (!hazard->closed || !hazard->trip.tripped || (now_mm_s < MOVING_MM_S) ||
-        (before_mm_s - now_mm_s >= SLOWER_MM_S) || hazard_is_said_to_stand(hazard)) {
+        (before_mm_s - now_mm_s >= SLOWER_MM_S) || hazard_is_said_to_stand(hazard) ||
+        is_silent_after_standing(hazard)) {
         hazard->rolling_since_ms = hazard->t_ms;
     }
     if (hazard->trip.tripped &&
@@ -184,10 +192,24 @@ static void follow_output(hazard_t *hazard, bool was_closed) {
     }
 }
 
+/** The first frame after a stall leaves some ms after its end. */
+static void follow_transmitter(hazard_t *hazard) {
+    hazard_trip_t *trip = &hazard->trip;
+    scenario_controller_t controller;
+
+    scenario_testbed_controller(hazard->testbed, HAL_CAN_VEHICLE, &controller);
+    if (controller.is_stalled) {
+        trip->stalled_ms = hazard->t_ms;
+    } else if (hazard->t_ms - trip->stalled_ms > IN_FLIGHT_MS) {
+        trip->free_ms = hazard->t_ms;
+    }
+}
+
 void hazard_safe_tick(hazard_t *hazard) {
     hazard_trip_t *trip = &hazard->trip;
     const bool was_closed = trip->was_closed;
 
+    follow_transmitter(hazard);
     follow_button(hazard, &trip->button, hazard->view.vehicle.button_1, 0u);
     follow_button(hazard, &trip->pin, hazard->view.pin_is_down, 0u);
     check_reset(hazard, was_closed);

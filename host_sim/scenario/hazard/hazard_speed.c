@@ -69,10 +69,10 @@ bool hazard_is_said_to_stand(const hazard_t *hazard) {
            !is_doubted(hazard);
 }
 
-/** Since the trip, or the restart, which may come after it. */
+/** Since the trip. A flipped bit while it is tripped begins no other time. */
 static bool is_too_early(const hazard_t *hazard) {
-    const uint64_t begin_ms = hazard->hold.trip_ms;
-    return !hazard->trip.tripped || (hazard->t_ms - begin_ms + MARGIN_MS < hazard->config->park_timeout_ms);
+    const hazard_trip_t *trip = &hazard->trip;
+    return !trip->tripped || (hazard->t_ms - trip->since_ms + MARGIN_MS < hazard->config->park_timeout_ms);
 }
 
 /** The supervisor commands P, or passes it on. After a trip the first one counts: then it goes on. */

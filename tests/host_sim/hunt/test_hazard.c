@@ -28,6 +28,7 @@ typedef struct {
     uint32_t forges_ms;   /**< a throttle that nobody commanded */
     const char *setting;  /**< NULL: none */
     uint32_t recovers_ms; /**< from bus-off */
+    uint32_t parks_ms;    /**< P begins; NEVER: with the others */
 } stub_t;
 
 static scenario_t scenario;
@@ -95,7 +96,9 @@ static void send_safe(uint32_t t_ms) {
         send(AGV_MSG_STEERING_COMMAND, steering);
     }
     if (t_ms % CYCLE_MS == 0u) {
-        send(AGV_MSG_GEAR_COMMAND, gear);
+        if (t_ms >= stub->parks_ms) {
+            send(AGV_MSG_GEAR_COMMAND, gear);
+        }
         send(AGV_MSG_THROTTLE_COMMAND, throttle);
         send(AGV_MSG_TURN_SIGNAL_COMMAND, signals);
     }
@@ -228,6 +231,17 @@ void test_h1_wheels_that_read_0_are_no_excuse_when_the_vcu_contradicts_them(void
     (void)snprintf(steps, sizeof steps, wheels,
                    "  - {at_ms: 2500, vcu: set, field: speed, value: 0C80h}\n"); /* 0.89 m/s */
     expect_hazard(HAZARD_NOT_STOPPING, "the vehicle does not obey the safe commands", &stays, steps);
+}
+
+/** 101h reads 0 for half a second after the trip, and is silent then. */
+void test_h1_who_stood_and_is_silent_may_roll_unseen(void) {
+    const char *const silent = "  - {at_ms: 2990, vcu: set, field: left_speed, value: 00000000h, frames: 50}\n"
+                               "  - {at_ms: 2990, vcu: set, field: right_speed, value: 00000000h, frames: 50}\n"
+                               "  - {at_ms: 3400, vcu: mute, message: wheel_speed}\n";
+    const char *const never_stood = "  - {at_ms: 3400, vcu: mute, message: wheel_speed}\n";
+    const stub_t stays = {.rolls = true, .safe_ms = TRIP_MS};
+    expect_none(&stays, silent);
+    expect_hazard(HAZARD_NOT_STOPPING, "the vehicle does not obey the safe commands", &stays, never_stood);
 }
 
 void test_h2_another_angle(void) {
@@ -736,6 +750,19 @@ void test_h8_park_in_motion(void) {
     expect_none(&late, brakes);
     expect_hazard(HAZARD_PARK, "P comes in motion", &passes, asks);
     expect_none(&PASSING, asks);
+}
+
+/** P after park_timeout_ms: from the trip on, which a transmitter that took nothing may hide; a flipped bit is no other trip. */
+void test_h8_the_time_counts_from_the_trip(void) {
+    const char *const config = "park: at_standstill\n  park_timeout_ms: 500\n";
+    const char *const full = "  - {at_ms: 2000, supervisor: fill_queue}\n"
+                             "  - {at_ms: 2990, supervisor: free_queue}\n";
+    const stub_t parks = {.safe_ms = TRIP_MS, .parks_ms = TRIP_MS + 50, .setting = config};
+    const stub_t waits = {
+        .rolls = true, .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 5000, .parks_ms = TRIP_MS + 550, .setting = config};
+    expect_hazard(HAZARD_PARK, "P comes in motion", &parks, "");
+    expect_none(&parks, full);
+    expect_none(&waits, "  - {at_ms: 3300, supervisor: flip_bit, bit: 1}\n");
 }
 
 void test_h7_a_flood(void) {

@@ -219,7 +219,10 @@ static void sound_truths(agv_core_t *core) {
     sound_counts(core);
 }
 
-/* Bits of `kept` are messages, `oldest` and `next_to_age` are places. All else is any bytes. */
+/*
+ * Bits of `kept` are messages, `oldest` and `next_to_age` are places. The second copy of status_frame_id is in its range: where it
+ * is not, agv_config_check refuses it (tests/proofs/bit-flips). All else is any bytes.
+ */
 static void any_sound_state(void) {
     agv_core_t *const core = agv_core_of(&supervisor);
     any_bytes(&supervisor, sizeof supervisor);
@@ -227,6 +230,7 @@ static void any_sound_state(void) {
     sound_config(&core->config);
     sound_truths(core);
     core->transmitter.kept = any(0u, (1u << AGV_MSG_COUNT) - 1u);
+    core->status_frame_id = (uint16_t)any(0u, AGV_ID_MAX);
     core->mode.oldest = (uint8_t)any(0u, 2u);
     core->liveness.next_to_age = (uint8_t)any(0u, AGV_MSG_COUNT - 1u);
     supervisor.receive_alive = any_bool();
