@@ -66,8 +66,8 @@ void agv_motion_checks_tick(agv_motion_checks_t *checks, const agv_motion_facts_
 void agv_motion_checks_evaluate(agv_motion_checks_t *checks, agv_fault_monitor_t *faults, bool judged);
 
 /**
- * Whether 101h must not be believed when it reports standing wheels: SPEED_IMPLAUSIBLE is present, and fresh 101h and a live
- * VCU do not agree again.
+ * Whether standing wheels in 101h are doubted (FSM-12): SPEED_IMPLAUSIBLE is active, and the speed of 363h does not agree with
+ * 101h now. Without fresh 101h or a live VCU nothing agrees.
  */
 bool agv_motion_checks_doubts_wheels(const agv_motion_checks_t *checks, const agv_vehicle_t *vehicle);
 
