@@ -38,11 +38,11 @@ report 'a source of firmware/src is not in a folder of a module group' < <(find 
 
 # A room includes itself and those before it. $1: the folder of the rooms; then the rooms in order
 check_order() {
-    local root=$1 rooms=("${@:2}") i later
-    for ((i = 0; i < ${#rooms[@]}; i++)); do
-        later=$(printf '|%s' "${rooms[@]:i+1}")
-        report "$root/${rooms[i]} includes a later room of ${rooms[*]}" < <(
-            [[ $later == '|' ]] || grep -rnE --exclude-dir=commands "^\s*#\s*include\s+\"(${later#|})/" "$root/${rooms[i]}" || true
+    local root=$1 order=("${@:2}") i later
+    for ((i = 0; i < ${#order[@]}; i++)); do
+        later=$(printf '|%s' "${order[@]:i+1}")
+        report "$root/${order[i]} includes a later room of ${order[*]}" < <(
+            [[ $later == '|' ]] || grep -rnE --exclude-dir=commands "^\s*#\s*include\s+\"(${later#|})/" "$root/${order[i]}" || true
         )
     done
 }
