@@ -83,10 +83,10 @@ static uint32_t out_of_range(const agv_config_t *config) {
 /* The highest-ranking fault whose class must be its default and is not; AGV_FAULT_NONE if there is none. */
 static uint32_t first_class_that_is_fixed(const agv_config_t *config) {
     const bool is_gateway = config->topology == (uint16_t)AGV_TOPOLOGY_GATEWAY;
-    const uint32_t fixed = AGV_FAULT_FLAG_FIXED | (is_gateway ? 0u : AGV_FAULT_FLAG_GATEWAY);
+    const uint32_t without_effect = is_gateway ? 0u : (uint32_t)AGV_FAULT_FLAG_GATEWAY;
     uint32_t fault = 0u;
     while ((fault < (uint32_t)AGV_FAULT_COUNT) &&
-           (((agv_fault_flags(fault) & fixed) == 0u) ||
+           (((agv_fault_flags(fault) & (AGV_FAULT_FLAG_FIXED | without_effect)) == 0u) ||
             (agv_config_is_trip(config, fault) == (agv_fault_default_class(fault) == AGV_CLASS_TRIP)))) {
         fault++;
     }

@@ -1,5 +1,8 @@
 #include "base/score.h"
 
+/* Bits of a budget: half of 1 ms is still to be subtracted; the condition held at the last call. */
+enum { BUDGET_HALF = 1, BUDGET_HELD = 2 };
+
 void agv_score_add(agv_score_t *score, bool bad, uint32_t frames) {
     const uint32_t full = 2u * frames;
     uint32_t value = score->value;
@@ -14,19 +17,28 @@ void agv_score_add(agv_score_t *score, bool bad, uint32_t frames) {
     score->present = (value == full) || (score->present && (value != 0u));
 }
 
+uint32_t agv_budget_sum(uint32_t sum_ms, bool condition, uint32_t elapsed_ms, uint32_t limit_ms) {
+    const uint32_t held_ms = condition ? elapsed_ms : 1u;
+    return (held_ms < (limit_ms - sum_ms)) ? (sum_ms + held_ms) : limit_ms;
+}
+
 void agv_budget_add(agv_budget_t *budget, bool condition, uint32_t elapsed_ms, uint32_t limit_ms) {
+    if (elapsed_ms == 0u) {
+        return;
+    }
     uint32_t value_ms = budget->value_ms;
-    if (condition) {
-        value_ms = (elapsed_ms < (limit_ms - value_ms)) ? (value_ms + elapsed_ms) : limit_ms;
+    uint32_t half = budget->bits & (uint32_t)BUDGET_HALF;
+    if ((budget->bits & (uint32_t)BUDGET_HELD) != 0u) {
+        value_ms = agv_budget_sum(value_ms, condition, elapsed_ms, limit_ms);
     } else {
-        const bool odd = (elapsed_ms & 1u) != 0u;
-        const uint32_t down_ms = (elapsed_ms / 2u) + ((odd && budget->half) ? 1u : 0u);
-        budget->half = odd != budget->half;
+        const uint32_t down_ms = (elapsed_ms / 2u) + (elapsed_ms & half);
+        half ^= elapsed_ms & (uint32_t)BUDGET_HALF;
         value_ms = (value_ms > down_ms) ? (value_ms - down_ms) : 0u;
     }
     if (value_ms == 0u) {
-        budget->half = false;
+        half = 0u;
     }
+    budget->bits = (uint8_t)(half | (condition ? (uint32_t)BUDGET_HELD : 0u));
     budget->value_ms = (uint16_t)value_ms;
     budget->present = (value_ms == limit_ms) || (budget->present && (value_ms != 0u));
 }

@@ -10,16 +10,22 @@
 
 #include "base/timers.h"
 
-/** The total times without a confirmation. They are cleared only when both have been confirmed for confirmed_ms. */
+/** The total time without a confirmation. It is cleared only when both have been confirmed for confirmed_ms. */
 typedef struct {
-    uint16_t off_missing_ms;  /**< total time since the trip without confirmed autopilot off */
-    uint16_t park_missing_ms; /**< total time since the first P was sent without confirmed P */
-    bool park_sent;           /**< P was sent since the trip */
-    bool unconfirmed;         /**< the cause of SAFE_STATE_UNCONFIRMED is present */
+    uint16_t sum_ms;
+    bool at_tick; /**< it was missing at the last tick */
+} agv_missing_t;
+
+/** The confirmations. */
+typedef struct {
+    agv_missing_t off;  /**< autopilot off, since the trip */
+    agv_missing_t park; /**< P, since the first P was sent */
+    bool park_sent;     /**< P was sent since the trip */
+    bool unconfirmed;   /**< the cause of SAFE_STATE_UNCONFIRMED is present */
 } agv_confirmation_t;
 
-/** Start again, after a trip or at a start in TRIPPED. */
-void agv_confirmation_start(agv_confirmation_t *confirmation, agv_timers_t *timers);
+/** Start again, after a trip or at a start in TRIPPED. @param at_tick in a tick, from which on time counts; not in a frame */
+void agv_confirmation_start(agv_confirmation_t *confirmation, agv_timers_t *timers, bool at_tick);
 
 /** Note that a 168h P was sent: from now on P must be confirmed. */
 void agv_confirmation_park_sent(agv_confirmation_t *confirmation);

@@ -9,10 +9,6 @@ void agv_stopping_start(agv_stopping_t *stopping, agv_timers_t *timers) {
     agv_timer_start(timers, AGV_TIMER_STOP);
 }
 
-void agv_stopping_end(agv_stopping_t *stopping) {
-    *stopping = (agv_stopping_t){0};
-}
-
 void agv_stopping_step(agv_stopping_t *stopping, const agv_timers_t *timers, const agv_vehicle_t *vehicle,
                        uint32_t elapsed_ms) {
     agv_budget_add(&stopping->moved, agv_vehicle_wheel_turns(vehicle, MOVING_MM_S), elapsed_ms, MOVING_MS);

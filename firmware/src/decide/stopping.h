@@ -27,7 +27,4 @@ void agv_stopping_start(agv_stopping_t *stopping, agv_timers_t *timers);
 void agv_stopping_step(agv_stopping_t *stopping, const agv_timers_t *timers, const agv_vehicle_t *vehicle,
                        uint32_t elapsed_ms);
 
-/** End the check at a reset. */
-void agv_stopping_end(agv_stopping_t *stopping);
-
 #endif

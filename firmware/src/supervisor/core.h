@@ -46,12 +46,12 @@ typedef struct {
     agv_fault_monitor_t faults;
     agv_liveness_t liveness;
     agv_mode_t mode;
+    agv_confirmation_t confirmation;
     agv_vehicle_t vehicle;
     agv_status_checks_t status_checks;
     agv_motion_checks_t motion_checks;
     agv_intrusion_t intrusion;
     agv_commands_t commands;
-    agv_confirmation_t confirmation;
     agv_stopping_t stopping;
     agv_reset_button_t reset_button;
     agv_reset_button_t reset_pin;

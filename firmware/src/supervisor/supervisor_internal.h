@@ -23,8 +23,11 @@ typedef struct {
  */
 agv_pass_t agv_core_decide(agv_core_t *core, const agv_ports_t *ports, uint32_t elapsed_ms);
 
-/** Restart the checks of the safe state (confirmation, stopping), at a trip or a start in TRIPPED. */
-void agv_core_await_safe_state(agv_core_t *core);
+/**
+ * Restart the checks of the safe state (confirmation, stopping), at a trip or a start in TRIPPED.
+ * @param at_tick in a tick or at the start, not in the handling of a frame
+ */
+void agv_core_await_safe_state(agv_core_t *core, bool at_tick);
 
 /** Count sent and refused frames. This alone ends a call that decides nothing. */
 void agv_core_take_tx_report(agv_core_t *core);

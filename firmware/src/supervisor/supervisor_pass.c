@@ -207,8 +207,8 @@ static agv_press_result_t evaluate_press(agv_core_t *core, uint32_t facts, uint3
     return pin;
 }
 
-void agv_core_await_safe_state(agv_core_t *core) {
-    agv_confirmation_start(&core->confirmation, &core->timers);
+void agv_core_await_safe_state(agv_core_t *core, bool at_tick) {
+    agv_confirmation_start(&core->confirmation, &core->timers, at_tick);
     agv_stopping_start(&core->stopping, &core->timers);
     agv_reset_button_trip(&core->reset_button, &core->timers);
     agv_reset_button_trip(&core->reset_pin, &core->timers);
@@ -251,18 +251,16 @@ static bool withdraw_frames(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) {
 }
 
 /*
- * Update the modules that depend on the state: hold, confirmation, limits. Returns whether the safe commands must be sent anew.
+ * Update the modules that depend on the state: hold, checks of the safe state, limits. Returns whether the safe commands must be sent anew.
  */
 static bool follow_state(agv_core_t *core, hal_t *hal, uint32_t what, uint32_t elapsed_ms) {
     if ((what & AGV_ACTION_TRIP) != 0u) {
         core->stall_begins = false; /* the trip withdraws all frames */
-        agv_core_await_safe_state(core);
+        agv_core_await_safe_state(core, elapsed_ms != 0u);
         agv_hold_trip(&core->hold, &core->vehicle, &core->timers);
     }
     const bool withdrawn = withdraw_frames(core, hal, elapsed_ms);
     if ((what & AGV_ACTION_RESET_ACCEPTED) != 0u) {
-        agv_confirmation_start(&core->confirmation, &core->timers);
-        agv_stopping_end(&core->stopping);
         agv_liveness_forget_ai(&core->liveness);
         agv_deadlines_forget_ai(&core->faults);
     }

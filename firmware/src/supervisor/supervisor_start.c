@@ -78,7 +78,7 @@ static void begin_state(agv_core_t *core, const agv_ports_t *ports, uint32_t kep
                                core->config.ai_lost_in_manual == (uint16_t)AGV_AI_LOST_WARN, &pass->faults);
     pass->actions = (agv_actions_t){.from = core->machine.state, .first_reason = core->machine.first_reason};
     agv_state_machine_forbid_reset(&core->machine, core->faults.summary.unresettable);
-    agv_core_await_safe_state(core);
+    agv_core_await_safe_state(core, true);
 }
 
 static void raise_found(agv_core_t *core, uint32_t found) {

@@ -26,7 +26,7 @@ void test_it_stays_closed_while_the_vehicle_obeys(void) {
 
 /* After 500 ms without the confirmation it is open until the next STANDBY. */
 static void expect_opens_at(uint32_t moment_ms) {
-    expect_fault_after(&f, moment_ms + 499 - f.now_ms, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
+    expect_fault_after(&f, moment_ms + 500 - f.now_ms, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
     expect_output(&f, true);
     expect_fault_after(&f, 1, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
     expect_output(&f, false);
@@ -110,9 +110,10 @@ void test_a_confirmation_that_comes_and_goes_opens_it(void) {
     }
     expect_output(&f, true);
     lose_p_for(99);
+    fixture_run(&f, 1);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
     expect_output(&f, true);
-    lose_p_for(1);
+    lose_p_for(2);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
     expect_open_until_the_reset();
 }
@@ -133,15 +134,17 @@ void test_each_sum_has_its_own_limit(void) {
     f.config.park_confirm_timeout_ms = 2000;
     stay_in_safe();
     lose_p_for(1999);
+    fixture_run(&f, 1);
     expect_output(&f, true);
-    lose_p_for(1);
+    lose_p_for(2);
     expect_output(&f, false);
     fixture_init(&f);
     f.config.confirm_timeout_ms = 300;
     stay_in_safe();
     engage_for(299);
+    fixture_run(&f, 1);
     expect_output(&f, true);
-    engage_for(1);
+    engage_for(2);
     expect_output(&f, false);
 }
 

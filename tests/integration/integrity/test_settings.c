@@ -109,7 +109,7 @@ void test_grace_and_throttle_in_park_time(void) {
     fixture_standby(&f);
     f.traffic[AGV_MSG_THROTTLE_STATUS].data[0] = 10;
     walk_engage(&f);
-    expect_nothing_after(&f, 123 + 65, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 123 + 66, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
 }
 

@@ -165,7 +165,7 @@ static void active_in_park(void) {
     expect_nothing_after(&f, 1000, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE); /* P alone is no fault */
 }
 
-/* Above idle is more than 2 counts. The budget of 200 ms is 200 ticks from the frame on; then it decreases by 1 ms in
+/* Above idle is more than 2 counts. The budget of 200 ms is used up 200 ms after the frame; then it decreases by 1 ms in
  * each 2. */
 /* Shows: SUP-5, FSM-2, THROTTLE_IN_PARK */
 void test_throttle_in_park(void) {
@@ -174,13 +174,13 @@ void test_throttle_in_park(void) {
     fixture_run(&f, 1000);
     set_throttle(3);
     fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
-    expect_nothing_after(&f, 198, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 199, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
     expect_led(&f, 7);
     fixture_run(&f, 500); /* never more than 200 */
     set_throttle(2);
     fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
-    expect_fault_after(&f, 398, AGV_FAULT_THROTTLE_IN_PARK, true);
+    expect_fault_after(&f, 399, AGV_FAULT_THROTTLE_IN_PARK, true);
     expect_fault_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_THROTTLE_IN_PARK));
 }
@@ -206,7 +206,7 @@ void test_an_invalid_throttle_between_does_not_end_throttle_in_park(void) {
     set_throttle(255);
     fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
     set_throttle(3);
-    expect_nothing_after(&f, 98, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 99, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
 }
 
@@ -221,7 +221,7 @@ void test_park_with_throttle(void) {
     fixture_run(&f, 1000);
     fixture_gear(&f, GEAR_P);
     fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
-    expect_nothing_after(&f, 198, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 199, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
     fixture_gear(&f, GEAR_D);
     fixture_run_past(&f, AGV_MSG_GEAR_STATUS);
@@ -233,17 +233,17 @@ void test_park_with_throttle(void) {
 void test_budgets_are_paused_while_not_judged(void) {
     active_in_park();
     set_throttle(10);
-    fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS); /* 1 ms of the budget */
+    fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
     fixture_run_before(&f, AGV_MSG_VEHICLE_STATUS);
-    const uint32_t began_ms = f.now_ms; /* 9 ms of it */
+    const uint32_t began_ms = f.now_ms; /* 8 ms of the budget */
     fixture_mode(&f, MODE_MANUAL);
     fixture_run(&f, 1);
     f.traffic[AGV_MSG_EPS_STATUS].data[3] = 0xFF;
     fixture_run(&f, 19); /* two 363h without bit 8; two 167h */
     f.traffic[AGV_MSG_EPS_STATUS].data[3] = 1;
     fixture_mode(&f, MODE_ENGAGED);
-    fixture_run(&f, 190);
-    TEST_ASSERT_EQUAL_UINT32(210, f.now_ms - began_ms);
+    fixture_run(&f, 191);
+    TEST_ASSERT_EQUAL_UINT32(211, f.now_ms - began_ms);
     expect_nothing(&f, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_EPS_MODE_OFF));
@@ -256,7 +256,7 @@ void test_throttle_in_park_counts_after_the_grace(void) {
     set_throttle(10);
     expect_nothing_after(&f, 3000, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_STANDBY);
     walk_engage(&f);
-    expect_nothing_after(&f, 698, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 699, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
 }
 
@@ -291,7 +291,7 @@ void test_a_throttle_that_is_out_of_date_is_still_throttle_in_park(void) {
     set_throttle(3);
     fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
     f.traffic[AGV_MSG_THROTTLE_STATUS].muted = true;
-    expect_nothing_after(&f, 998, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 999, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     expect_reason_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK);
 }
 
@@ -466,7 +466,7 @@ void test_every_engagement_begins_its_budgets_anew(void) {
     fixture_run(&f, 50); /* the grace */
     set_throttle(3);
     fixture_run_past(&f, AGV_MSG_THROTTLE_STATUS);
-    expect_nothing_after(&f, 198, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
+    expect_nothing_after(&f, 199, AGV_FAULT_THROTTLE_IN_PARK, AGV_STATE_ACTIVE);
     expect_trip_after(&f, 1, AGV_FAULT_THROTTLE_IN_PARK, ANGLE_CENTRE);
 }
 

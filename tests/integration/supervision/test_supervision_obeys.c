@@ -1,6 +1,6 @@
 /* The vehicle obeys its commands (SUP-11), and both measurements of its speed agree (SUP-12): budgets. Calculated by
- * hand: the tick in the millisecond of a frame is the first of a budget, so T ms are reached T - 1 ms later. A budget
- * decreases at half the rate. */
+ * hand: after a frame a budget begins with the tick before f.now_ms, so the tick that reaches T ms is over at
+ * f.now_ms + T. A budget decreases at half the rate. */
 #include "one_fixture.h"
 #include "walk.h"
 
@@ -55,9 +55,9 @@ void test_throttle_above_its_command(void) {
     active_in_d();
     command_throttle(100);
     measure_throttle(126);
-    expect_trip_at(THROTTLE, f.now_ms + 499u, 7);
+    expect_trip_at(THROTTLE, f.now_ms + 500u, 7);
     measure_throttle(124); /* down, but not by 25 */
-    expect_fault_after(&f, 998, THROTTLE, true);
+    expect_fault_after(&f, 999, THROTTLE, true);
     expect_fault_after(&f, 1, THROTTLE, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, THROTTLE));
 }
@@ -77,7 +77,7 @@ void test_a_throttle_on_its_way_down(void) {
     const uint32_t emptied_ms = f.now_ms;
     fixture_run(&f, 100);
     measure_throttle(26); /* 24 */
-    expect_trip_at(THROTTLE, emptied_ms + 499u, 7);
+    expect_trip_at(THROTTLE, emptied_ms + 500u, 7);
 }
 
 /* Without a command nothing is compared; the deadline covers that. A command from before the engagement does not
@@ -109,7 +109,7 @@ void test_throttle_deviation_counts_after_the_grace(void) {
     expect_nothing_after(&f, 3000, THROTTLE, AGV_STATE_STANDBY);
     fixture_wheels(&f, 500, 500);
     walk_engage(&f);
-    expect_trip_at(THROTTLE, f.now_ms + 999u, 7);
+    expect_trip_at(THROTTLE, f.now_ms + 1000u, 7);
 }
 
 /* Gateway: compared with the forwarded command. 40 % of 250 are 100 counts. */
@@ -123,7 +123,7 @@ void test_the_throttle_is_compared_with_the_forwarded_command(void) {
     measure_throttle(125);
     expect_nothing_after(&f, 2000, THROTTLE, AGV_STATE_ACTIVE);
     measure_throttle(126);
-    expect_trip_at(THROTTLE, f.now_ms + 499u, 7);
+    expect_trip_at(THROTTLE, f.now_ms + 500u, 7);
 }
 
 /* ---- GEAR_DEVIATION ---- */
@@ -138,7 +138,7 @@ static void check_gear(uint8_t reported, uint8_t commanded, bool trips) {
     measure_throttle(3);
     command_gear(commanded);
     if (trips) {
-        expect_trip_at(GEAR, f.now_ms + 999u, 8);
+        expect_trip_at(GEAR, f.now_ms + 1000u, 8);
     } else {
         expect_fault_after(&f, 3000, GEAR, false);
         TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, GEAR));
@@ -168,7 +168,7 @@ static void ask_for_off(bool off) {
 void test_autopilot_off_is_ignored(void) {
     active_in_d();
     ask_for_off(true);
-    expect_trip_at(IGNORED, f.now_ms + 999u, -1);
+    expect_trip_at(IGNORED, f.now_ms + 1000u, -1);
     fixture_mode(&f, MODE_MANUAL);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     expect_fault(&f, IGNORED, false);
@@ -204,18 +204,18 @@ void test_the_budgets_are_settings(void) {
     f.config.throttle_idle_counts = 5;
     fixture_active(&f);
     measure_throttle(6);
-    expect_trip_at(GEAR, f.now_ms + 320u, 8);
+    expect_trip_at(GEAR, f.now_ms + 321u, 8);
     fixture_init(&f);
     f.config.autopilot_off_ms = 234;
     active_in_d();
     ask_for_off(true);
-    expect_trip_at(IGNORED, f.now_ms + 233u, -1);
+    expect_trip_at(IGNORED, f.now_ms + 234u, -1);
     fixture_init(&f);
     f.config.throttle_deviation_ms = 111;
     f.config.throttle_deviation_counts = 5;
     active_in_d();
     measure_throttle(6);
-    expect_trip_at(THROTTLE, f.now_ms + 110u, 7);
+    expect_trip_at(THROTTLE, f.now_ms + 111u, 7);
 }
 
 /* ---- SPEED_IMPLAUSIBLE: 36 counts of 363h are 10 mm/s ---- */
@@ -247,9 +247,9 @@ void test_two_measurements_of_speed(void) {
     set_speeds(3600, 2000, 2000);
     expect_nothing_after(&f, 3000, SPEED, AGV_STATE_STANDBY);
     set_speeds(3600, 249, 249);
-    expect_warning_at(f.now_ms + 999u);
+    expect_warning_at(f.now_ms + 1000u);
     set_speeds(3600, 1000, 1000);
-    expect_fault_after(&f, 1998, SPEED, true);
+    expect_fault_after(&f, 1999, SPEED, true);
     expect_fault_after(&f, 1, SPEED, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, SPEED));
 }
@@ -263,7 +263,7 @@ void test_a_vcu_that_reports_no_speed(void) {
     fixture_speed(&f, 1);
     fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
     fixture_speed(&f, 0);
-    expect_nothing_after(&f, 998, SPEED, AGV_STATE_STANDBY);
+    expect_nothing_after(&f, 999, SPEED, AGV_STATE_STANDBY);
     fixture_run(&f, 1);
     expect_warning(&f, SPEED, AGV_STATE_STANDBY);
 }
@@ -285,11 +285,11 @@ void test_it_may_be_made_a_trip(void) {
     fixture_standby(&f);
     set_speeds(1, INT32_MAX, INT32_MAX);
     const uint32_t began_ms = f.now_ms;
-    run_until(began_ms + 998u);
+    run_until(began_ms + 999u);
     expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
     expect_reason_after(&f, 1, SPEED);
     fixture_init(&f);
     fixture_standby(&f);
     set_speeds(65535, INT32_MIN, INT32_MIN);
-    expect_warning_at(f.now_ms + 999u);
+    expect_warning_at(f.now_ms + 1000u);
 }

@@ -1,7 +1,7 @@
 /* STEERING_DEVIATION (SUP-10): a budget of 500 ms with the measured steering more than 50.0 degrees from its command; each
  * 25.0 degrees by which the measured angle has come nearer by its own motion empty it. Raw counts are 0.1 degree: 500 is 50.0
- * degrees. Calculated by hand: the tick in the millisecond of a frame is the first of the budget, so 500 ms are reached
- * 499 ms later. */
+ * degrees. Calculated by hand: after a command the budget begins with the tick before f.now_ms, so the tick that reaches
+ * 500 ms is over at f.now_ms + 500. */
 #include "one_fixture.h"
 #include "walk.h"
 
@@ -39,7 +39,7 @@ void test_more_than_50_degrees_for_500_ms(void) {
         fixture_init(&f);
         fixture_active(&f);
         command(COMMANDS[i]);
-        expect_trip_at(f.now_ms + 499u, ANGLE_CENTRE);
+        expect_trip_at(f.now_ms + 500u, ANGLE_CENTRE);
     }
 }
 
@@ -48,9 +48,9 @@ void test_more_than_50_degrees_for_500_ms(void) {
 void test_a_deviation_ends_when_its_budget_is_empty(void) {
     fixture_active(&f);
     command(9501);
-    expect_trip_at(f.now_ms + 499u, ANGLE_CENTRE);
+    expect_trip_at(f.now_ms + 500u, ANGLE_CENTRE);
     measure(9001);
-    expect_fault_after(&f, 998, FAULT, true);
+    expect_fault_after(&f, 999, FAULT, true);
     expect_fault_after(&f, 1, FAULT, false);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, FAULT));
     expect_reason(&f, FAULT);
@@ -68,7 +68,7 @@ void test_a_gain_of_25_0_degrees_starts_anew(void) {
     const uint32_t gained_ms = f.now_ms;
     fixture_run(&f, 300);
     measure(9749);
-    expect_trip_at(gained_ms + 499u, 9749);
+    expect_trip_at(gained_ms + 500u, 9749);
 }
 
 /* The gain is measured against the current command: 20.0 degrees to the left, then 5.0 for a command on the left. */
@@ -82,7 +82,7 @@ void test_a_gain_is_against_the_command_of_its_moment(void) {
     measure(9151);
     fixture_run(&f, 30);
     measure(9150);
-    expect_trip_at(f.now_ms + 499u, 9150);
+    expect_trip_at(f.now_ms + 500u, 9150);
 }
 
 /* An invalid angle in between is no step: from one valid 067h to the next it is 25.0 degrees. */
@@ -93,7 +93,7 @@ void test_a_gain_across_an_invalid_angle(void) {
     fixture_run(&f, 200);
     measure(18001);
     measure(9250);
-    expect_trip_at(f.now_ms + 499u, 9250);
+    expect_trip_at(f.now_ms + 500u, 9250);
 }
 
 /* Without any valid measured angle nothing is compared. */
@@ -116,7 +116,7 @@ void test_a_growing_difference(void) {
     command(10200);
     fixture_run(&f, 150);
     command(10800);
-    expect_trip_at(began_ms + 499u, ANGLE_CENTRE);
+    expect_trip_at(began_ms + 500u, ANGLE_CENTRE);
 }
 
 /* With a deviation from the start the 500 ms begin after the grace time of 500 ms. */
@@ -126,7 +126,7 @@ void test_deviation_counts_after_the_grace(void) {
     fixture_command_angle(&f, 12000);
     expect_nothing_after(&f, 3000, FAULT, AGV_STATE_STANDBY); /* not in manual */
     walk_engage(&f);
-    expect_trip_at(f.now_ms + 999u, ANGLE_CENTRE);
+    expect_trip_at(f.now_ms + 1000u, ANGLE_CENTRE);
 }
 
 /* The steering is not compared with a command from before the engagement, neither from manual nor from an earlier
@@ -187,7 +187,7 @@ void test_the_limits_are_settings(void) {
     command(9200);
     fixture_run(&f, 60);
     measure(9010);
-    expect_trip_at(f.now_ms + 99u, 9010);
+    expect_trip_at(f.now_ms + 100u, 9010);
 }
 
 /* ---- Gateway: compared with the forwarded command ---- */
@@ -209,8 +209,8 @@ static void check_gateway(uint16_t slew_ddeg_s, uint32_t trips_after_ms) {
  * command is 9500 with the fifth frame and 9600 with the sixth: 125 ms later. */
 /* Shows: SUP-10, TOP-2, STEERING_DEVIATION */
 void test_a_gateway_compares_with_the_forwarded_command(void) {
-    check_gateway(0, 499);
-    check_gateway(4000, 624);
+    check_gateway(0, 500);
+    check_gateway(4000, 625);
 }
 
 /* A tripped gateway forwards nothing, so the steering is not compared with later commands of the AI computer. */

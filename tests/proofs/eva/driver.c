@@ -187,7 +187,6 @@ static void sound_observations(agv_core_t *core) {
 }
 
 static void sound_budget(agv_budget_t *budget) {
-    budget->half = any_bool();
     budget->present = any_bool();
 }
 

@@ -45,7 +45,7 @@ static uint64_t latched_timers(void) {
         set |= EVENTS | ((reset->began_after && !reset->answered) ? (TIMER(PRESS) | TIMER(PRESS_LONG)) : 0u);
     }
     set |= core()->stopping.stood ? 0u : TIMER(STOP);
-    set |= ((sums->off_missing_ms | sums->park_missing_ms) != 0u) ? TIMER(CONFIRMED) : 0u;
+    set |= ((sums->off.sum_ms | sums->park.sum_ms) != 0u) ? TIMER(CONFIRMED) : 0u;
     return set;
 }
 
@@ -99,8 +99,8 @@ static unsigned full_next(void) {
                                                   config->throttle_in_park_ms};
     unsigned full = 0;
     if (agv_state_is_latched((agv_state_t)c->machine.state)) {
-        full |= (c->confirmation.off_missing_ms + 1u == config->confirm_timeout_ms) ? 1u : 0u;
-        full |= (c->confirmation.park_missing_ms + 1u == config->park_confirm_timeout_ms) ? 2u : 0u;
+        full |= (c->confirmation.off.sum_ms + 1u == config->confirm_timeout_ms) ? 1u : 0u;
+        full |= (c->confirmation.park.sum_ms + 1u == config->park_confirm_timeout_ms) ? 2u : 0u;
         full |= (all_held_ms() + 1u == config->reset_hold_ms) ? 4u : 0u;
     } else if (agv_mode_is_engaged(&c->mode)) {
         for (unsigned i = 0; i < (unsigned)AGV_BUDGET_SPEED; i++) {
@@ -255,8 +255,8 @@ static uint8_t standstill_since_the_trip(void) {
 static uint8_t unconfirmed(void) {
     const agv_confirmation_t *sums = &core()->confirmation;
     const agv_config_t *config = &core()->config;
-    return worst(zero_part_or_full(sums->off_missing_ms, sums->off_missing_ms >= config->confirm_timeout_ms),
-                 zero_part_or_full(sums->park_missing_ms, sums->park_missing_ms >= config->park_confirm_timeout_ms));
+    return worst(zero_part_or_full(sums->off.sum_ms, sums->off.sum_ms >= config->confirm_timeout_ms),
+                 zero_part_or_full(sums->park.sum_ms, sums->park.sum_ms >= config->park_confirm_timeout_ms));
 }
 
 static bool messages_fresh(void) {

@@ -140,13 +140,86 @@ static void run(bool condition, unsigned ms, uint32_t limit_ms) {
     }
 }
 
+/* A tick that sees what the condition is from now on. The ms before it counts by what it was. */
+static void begin(bool condition, uint32_t limit_ms) {
+    agv_budget_add(&budget, condition, 1, limit_ms);
+}
+
 static void expect_budget(unsigned value_ms, bool present) {
     TEST_ASSERT_EQUAL_UINT16(value_ms, budget.value_ms);
     TEST_ASSERT_EQUAL(present, budget.present);
 }
 
+/* However late the tick is. */
+/* Shows: SUP-10, SUP-11, SUP-12 */
+TEST_CASE(1)
+TEST_CASE(600)
+void test_a_condition_that_is_seen_for_the_first_time_has_lasted_for_0_ms(uint32_t elapsed_ms) {
+    agv_budget_add(&budget, true, elapsed_ms, 500);
+    expect_budget(0, false);
+    agv_budget_add(&budget, true, 1, 500);
+    expect_budget(1, false);
+}
+
+/* Shows: SUP-10, SUP-11, SUP-12 */
+void test_the_ms_before_the_tick_that_sees_the_end_counts(void) {
+    begin(true, 500);
+    run(true, 9, 500);
+    expect_budget(9, false);
+    agv_budget_add(&budget, false, 1, 500);
+    expect_budget(10, false);
+    agv_budget_add(&budget, false, 1, 500);
+    expect_budget(10, false);
+    agv_budget_add(&budget, false, 1, 500);
+    expect_budget(9, false);
+    begin(true, 500);
+    agv_budget_add(&budget, true, 490, 500);
+    expect_budget(499, false);
+    agv_budget_add(&budget, false, 1, 500);
+    expect_budget(500, true);
+}
+
+/* The condition may have ended right after the last tick, so 1 ms counts. */
+/* Shows: SUP-10, SUP-11, SUP-12, TIM-4 */
+void test_of_a_late_tick_that_sees_the_end_1_ms_counts(void) {
+    begin(true, 500);
+    agv_budget_add(&budget, false, 300, 500);
+    expect_budget(1, false);
+}
+
+/* It brings 0 ms, and does not change what the last tick saw. */
+/* Shows: SUP-10, SUP-11, SUP-12 */
+void test_a_frame_counts_nothing(void) {
+    begin(true, 500);
+    agv_budget_add(&budget, false, 0, 500);
+    agv_budget_add(&budget, true, 1, 500);
+    expect_budget(1, false);
+    begin(false, 500); /* 2 */
+    agv_budget_add(&budget, true, 0, 500);
+    expect_budget(2, false);
+    agv_budget_add(&budget, true, 1, 500);
+    expect_budget(2, false);
+    agv_budget_add(&budget, true, 1, 500);
+    expect_budget(3, false);
+}
+
+/* A ms without the condition that has not been subtracted yet is kept while the condition lasts. */
+/* Shows: SUP-10, SUP-11, SUP-12 */
+void test_half_ms_are_kept_across_the_condition(void) {
+    static const struct {
+        bool condition;
+        uint16_t value_ms; /* after the tick */
+    } ticks[] = {{true, 0},  {true, 1}, {true, 2}, {true, 3},  {false, 4}, {true, 4},  {false, 5}, {true, 4}, {true, 5},
+                 {false, 6}, {true, 6}, {true, 7}, {false, 8}, {false, 7}, {false, 7}, {true, 6},  {true, 7}};
+    for (unsigned i = 0; i < sizeof ticks / sizeof ticks[0]; i++) {
+        agv_budget_add(&budget, ticks[i].condition, 1, 100);
+        expect_budget(ticks[i].value_ms, false);
+    }
+}
+
 /* Shows: SUP-10, SUP-11, SUP-12 */
 void test_the_fault_is_raised_at_the_limit_of_the_budget(void) {
+    begin(true, 500);
     run(true, 499, 500);
     expect_budget(499, false);
     run(true, 1, 500);
@@ -157,7 +230,9 @@ void test_the_fault_is_raised_at_the_limit_of_the_budget(void) {
 
 /* Shows: SUP-10, SUP-11, SUP-12 */
 void test_every_second_ms_without_the_condition_takes_one_away(void) {
+    begin(true, 500);
     run(true, 500, 500);
+    begin(false, 500);
     run(false, 1, 500);
     expect_budget(500, true);
     run(false, 1, 500);
@@ -168,6 +243,7 @@ void test_every_second_ms_without_the_condition_takes_one_away(void) {
     expect_budget(0, false);
     run(false, 7, 500);
     expect_budget(0, false);
+    begin(true, 500);
     run(true, 499, 500);
     expect_budget(499, false);
 }
@@ -181,7 +257,8 @@ void test_one_good_ms_in_twenty_does_not_restart_the_budget(void) {
         ms++;
         TEST_ASSERT_TRUE(ms < 1000);
     }
-    TEST_ASSERT_EQUAL_UINT(539, ms); /* 500 = 26 rows of 19 less 13, and 19 more: 26 * 20 + 19 ms */
+    /* 500 = 26 rows of 19 less 13, and 19 more: 26 * 20 + 19 ms after the first tick */
+    TEST_ASSERT_EQUAL_UINT(540, ms);
 }
 
 /* 1 ms with and 2 ms without never fill the budget; 1 ms with and 1 ms without do, at half the rate. */
@@ -191,28 +268,32 @@ void test_the_good_time_that_empties_a_budget(void) {
         TEST_ASSERT_FALSE(budget.present);
     }
     setUp();
-    for (unsigned i = 0; i < 398; i++) {
+    for (unsigned i = 0; i < 395; i++) {
         agv_budget_add(&budget, i % 2 == 0, 1, 100);
     }
+    expect_budget(99, false); /* 98 rows of 4 ms are 98 ms, and 1 ms more */
+    agv_budget_add(&budget, false, 1, 100);
     expect_budget(100, true);
 }
 
 /* An empty budget also forgets an odd good ms. */
 void test_an_empty_budget_begins_anew(void) {
-    run(false, 1, 100);
-    run(true, 2, 100);
+    begin(true, 100); /* a good ms before it */
+    run(true, 1, 100);
+    begin(false, 100);
     run(false, 1, 100);
     expect_budget(2, false);
     run(false, 1, 100);
     expect_budget(1, false);
-    run(false, 3, 100);
+    run(false, 4, 100);
     expect_budget(0, false);
-    run(true, 1, 100);
+    begin(true, 100); /* the third good ms of an empty budget */
+    begin(false, 100);
     run(false, 1, 100);
     expect_budget(1, false);
 }
 
-/* Late steps bring several ms at once: the same as one by one. */
+/* Late steps bring several ms at once: the same as one by one, while the condition is what it was. */
 /* Shows: TIM-4 */
 void test_several_ms_at_once_are_the_same_as_one_by_one(void) {
     static const struct {
@@ -221,14 +302,23 @@ void test_several_ms_at_once_are_the_same_as_one_by_one(void) {
     } times[] = {{true, 70}, {false, 3}, {false, 5}, {true, 11}, {false, 1}, {false, 1},  {true, 0},
                  {false, 0}, {true, 55}, {false, 7}, {true, 90}, {false, 1}, {false, 396}};
     agv_budget_t steps = {0};
+    bool before = false;
     for (unsigned i = 0; i < sizeof times / sizeof times[0]; i++) {
+        if (times[i].condition != before) {
+            before = times[i].condition;
+            agv_budget_add(&steps, before, 1, 200);
+            begin(before, 200);
+        }
         agv_budget_add(&steps, times[i].condition, times[i].ms, 200);
         run(times[i].condition, times[i].ms, 200);
         TEST_ASSERT_EQUAL_UINT16(budget.value_ms, steps.value_ms);
         TEST_ASSERT_EQUAL(budget.present, steps.present);
     }
     expect_budget(1, true); /* 200 less half of 1 + 1 + 396: one good ms was left over from before */
+    agv_budget_add(&steps, true, 1, 65535);
     agv_budget_add(&steps, true, 0xFFFFFFFFu, 65535);
+    TEST_ASSERT_EQUAL_UINT16(65535, steps.value_ms);
+    agv_budget_add(&steps, false, 1, 65535);
     TEST_ASSERT_EQUAL_UINT16(65535, steps.value_ms);
     agv_budget_add(&steps, false, 0xFFFFFFFFu, 65535);
     TEST_ASSERT_EQUAL_UINT16(0, steps.value_ms);

@@ -12,7 +12,7 @@ void setUp(void) {
     agv_config_defaults(&config);
     agv_timers_set_time(&timers, 0xFFFFFF00u);
     agv_timers_start(&timers);
-    agv_confirmation_start(&confirmation, &timers);
+    agv_confirmation_start(&confirmation, &timers, true);
 }
 
 static void step(uint32_t elapsed_ms, bool autopilot_off, bool in_park) {
@@ -24,6 +24,11 @@ static void run(uint32_t ms, bool autopilot_off, bool in_park) {
     for (uint32_t i = 0; i < ms; i++) {
         step(1, autopilot_off, in_park);
     }
+}
+
+/* A tick that sees what is confirmed from now on. The ms before it counts by what was. */
+static void begin(bool autopilot_off, bool in_park) {
+    step(1, autopilot_off, in_park);
 }
 
 static void expect(bool unconfirmed) {
@@ -40,6 +45,42 @@ void test_autopilot_off_may_be_missing_for_500_ms(void) {
     expect(true);
     step(0, true, true); /* a frame confirms */
     expect(false);
+}
+
+/* After a trip in a tick it is missing from then on; after one between two ticks, from the next tick on. */
+/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
+TEST_CASE(true, 500)
+TEST_CASE(false, 501)
+void test_the_time_begins_with_a_tick(bool at_tick, uint32_t ticks) {
+    agv_confirmation_start(&confirmation, &timers, at_tick);
+    run(ticks - 1, false, true);
+    expect(false);
+    TEST_ASSERT_EQUAL_UINT16(499, confirmation.off.sum_ms);
+    run(1, false, true);
+    expect(true);
+}
+
+/* What the last tick saw stays: missing there and confirmed in a frame, and the other way round. */
+/* Shows: FSM-4 */
+void test_a_frame_between_two_ticks_does_not_count(void) {
+    run(498, false, true);
+    step(0, true, true);
+    run(1, false, true);
+    TEST_ASSERT_EQUAL_UINT16(499, confirmation.off.sum_ms);
+    step(0, false, true);
+    expect(false);
+    TEST_ASSERT_EQUAL_UINT16(499, confirmation.off.sum_ms);
+    run(1, false, true);
+    expect(true);
+    agv_confirmation_start(&confirmation, &timers, false);
+    begin(true, true);
+    step(0, false, true);
+    begin(false, true);
+    TEST_ASSERT_EQUAL_UINT16(0, confirmation.off.sum_ms);
+    run(499, false, true);
+    expect(false);
+    run(1, false, true);
+    expect(true);
 }
 
 /* From the first P on, however often it is sent. */
@@ -81,8 +122,10 @@ void test_the_two_limits_are_two_settings(void) {
 void test_the_two_sums_are_not_added_up(void) {
     agv_confirmation_park_sent(&confirmation);
     run(300, false, false);
-    run(199, false, true);
-    run(199, true, false);
+    begin(false, true); /* 301 ms in each */
+    run(197, false, true);
+    begin(true, false); /* 499 without autopilot off */
+    run(198, true, false);
     expect(false);
     run(1, true, false);
     expect(true);
@@ -96,8 +139,9 @@ void test_a_confirmation_that_comes_and_goes(void) {
         run(4999, true, true);
         expect(false);
     }
-    run(99, false, true);
+    run(99, false, true); /* 101 since the trip, 3 times 100, 98 */
     expect(false);
+    TEST_ASSERT_EQUAL_UINT16(499, confirmation.off.sum_ms);
     run(1, false, true);
     expect(true);
 }
@@ -108,6 +152,7 @@ void test_5_s_of_both_without_a_break_clear_the_sums(void) {
     run(499, false, false);
     step(0, true, true);
     run(5000, true, true);
+    begin(false, false);
     run(499, false, false);
     expect(false);
     run(1, false, true);
@@ -117,10 +162,13 @@ void test_5_s_of_both_without_a_break_clear_the_sums(void) {
 /* A frame without P restarts the 5 s, even while autopilot off stays confirmed. */
 /* Shows: FSM-4 */
 void test_a_break_of_either_begins_the_5_s_anew(void) {
-    run(499, false, true);
+    run(498, false, true);
+    begin(true, true); /* 499 */
     run(4000, true, true);
     step(0, true, false);
     run(4999, true, true);
+    begin(false, true);
+    expect(false);
     run(1, false, true);
     expect(true);
 }
@@ -138,10 +186,11 @@ void test_a_sum_at_its_limit_raises_it_again_at_once(void) {
     expect(false);
     step(0, false, true); /* no ms has passed */
     expect(false);
-    run(1, false, true);
+    begin(false, true);
     expect(true);
     step(0, true, true);
     run(5000, true, true);
+    begin(false, true);
     run(499, false, true);
     expect(false);
 }
@@ -149,14 +198,44 @@ void test_a_sum_at_its_limit_raises_it_again_at_once(void) {
 /* A full sum does not change the other one. */
 /* Shows: FSM-4 */
 void test_a_full_sum_of_the_one_raises_nothing_for_the_other(void) {
+    agv_confirmation_start(&confirmation, &timers, false);
     agv_confirmation_park_sent(&confirmation);
+    begin(false, true);
     run(500, false, true);
     expect(true);
     step(0, true, true);
+    run(1, true, true);
     expect(false);
+    begin(true, false);
     run(499, true, false);
     expect(false);
     run(1, true, false);
+    expect(true);
+}
+
+/* The ms in which the confirmation comes counts, but raises nothing by itself. */
+/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
+void test_a_confirmation_within_the_last_ms_is_in_time(void) {
+    run(499, false, true);
+    step(0, true, true);
+    run(1, true, true);
+    expect(false);
+    TEST_ASSERT_EQUAL_UINT16(500, confirmation.off.sum_ms);
+    begin(false, true);
+    expect(true);
+}
+
+/* Missing in each second ms: all of it counts in the end. */
+/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
+void test_a_confirmation_that_flickers_with_the_ticks(void) {
+    for (unsigned i = 0; i < 499; i++) {
+        run(1, true, true);
+        run(1, false, true);
+        expect(false);
+    }
+    run(1, true, true);
+    expect(false);
+    run(1, false, true);
     expect(true);
 }
 
@@ -167,8 +246,16 @@ void test_late_steps(void) {
     step(70000, false, true);
     step(70000, false, true);
     expect(true);
-    TEST_ASSERT_EQUAL_UINT16(500, confirmation.off_missing_ms);
-    TEST_ASSERT_EQUAL_UINT16(0, confirmation.park_missing_ms);
+    TEST_ASSERT_EQUAL_UINT16(500, confirmation.off.sum_ms);
+    TEST_ASSERT_EQUAL_UINT16(1, confirmation.park.sum_ms); /* the ms after the trip */
+}
+
+/* It may have come right after the last tick, so 1 ms counts. */
+/* Shows: FSM-4, TIM-4 */
+void test_of_a_late_tick_that_sees_the_confirmation_1_ms_counts(void) {
+    run(400, false, true);
+    step(99, true, true);
+    TEST_ASSERT_EQUAL_UINT16(401, confirmation.off.sum_ms);
 }
 
 /* Shows: FSM-4 */
@@ -176,9 +263,9 @@ void test_a_trip_clears_the_sums(void) {
     agv_confirmation_park_sent(&confirmation);
     run(600, false, false);
     expect(true);
-    agv_confirmation_start(&confirmation, &timers);
+    agv_confirmation_start(&confirmation, &timers, true);
     expect(false);
     run(499, false, false);
     expect(false);
-    TEST_ASSERT_EQUAL_UINT16(0, confirmation.park_missing_ms); /* no P was sent yet */
+    TEST_ASSERT_EQUAL_UINT16(1, confirmation.park.sum_ms); /* no P was sent yet: only the ms after the trip */
 }

@@ -109,6 +109,11 @@ void test_a_board_without_any_part_raises_nothing(void) {
 
 /* --- the contact of the safety output --- */
 
+/* A tick that reads another contact. The ms before it counts by the last one: a wrong contact has lasted for 0 ms. */
+static void begin(void) {
+    ticks(1);
+}
+
 /* Open but reads closed, closed but reads open, and values that the contract does not have, in both positions. */
 /* Shows: HW-1, OUTPUT_FEEDBACK */
 TEST_CASE(false, 2)
@@ -119,6 +124,7 @@ TEST_CASE(false, 255)
 void test_a_wrong_contact_is_a_fault_after_100_ms(bool closed, int contact) {
     output_closed = closed;
     inputs.output_feedback = (uint8_t)contact;
+    begin();
     ticks(99);
     TEST_ASSERT_FALSE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
     ticks(1);
@@ -141,6 +147,7 @@ TEST_CASE(1000)
 void test_the_time_is_a_setting(unsigned setting_ms) {
     config.output_feedback_ms = (uint16_t)setting_ms;
     inputs.output_feedback = CLOSED;
+    begin();
     ticks(setting_ms - 1u);
     TEST_ASSERT_FALSE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
     ticks(1);
@@ -154,6 +161,7 @@ void test_the_time_goes_down_by_1_ms_in_2(void) {
     inputs.output_feedback = OPEN;
     ticks(60); /* 30 */
     inputs.output_feedback = CLOSED;
+    begin();
     ticks(69);
     TEST_ASSERT_FALSE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
     ticks(1);
@@ -165,6 +173,7 @@ void test_the_fault_ends_when_the_time_is_used_up(void) {
     inputs.output_feedback = CLOSED;
     ticks(5000); /* no more than 100 */
     inputs.output_feedback = OPEN;
+    begin();
     ticks(199);
     TEST_ASSERT_TRUE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
     ticks(1);
@@ -190,15 +199,29 @@ TEST_CASE(0x7FFFFFFF, true)
 TEST_CASE(0xFFFFFFFF, true)
 void test_a_late_tick_counts_in_full(uint32_t elapsed_ms, bool is_fault) {
     inputs.output_feedback = CLOSED;
+    begin();
     tick_after(elapsed_ms);
     TEST_ASSERT_EQUAL(is_fault, is_active(AGV_FAULT_OUTPUT_FEEDBACK));
 }
 
-/* The output was closed at some time in a late step. Its contact still reads open: of that step 1 ms counts, of later ones all. */
+/* The output was closed at some time in a late step. Its contact still reads open: it is wrong from the end of that step on. */
 /* Shows: HW-1, TIM-4 */
-void test_a_late_tick_in_which_the_output_changed_counts_1_ms(void) {
+void test_of_a_late_tick_in_which_the_contact_became_wrong_nothing_counts(void) {
     inputs.output_feedback = OPEN;
     ticks(10);
+    output_closed = true;
+    tick_after(99);
+    tick_after(99); /* 99 */
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
+    ticks(1);
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
+}
+
+/* A value that is wrong in both positions: of the step in which the output changed 1 ms counts, of later ones all. */
+/* Shows: HW-1, TIM-4 */
+void test_a_late_tick_in_which_the_output_changed_counts_1_ms(void) {
+    inputs.output_feedback = 3;
+    begin();
     output_closed = true;
     tick_after(99);
     tick_after(98); /* 99 */
@@ -207,10 +230,40 @@ void test_a_late_tick_in_which_the_output_changed_counts_1_ms(void) {
     TEST_ASSERT_TRUE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
 }
 
+/*
+ * A late tick of 10 ms, after 60 ms of a wrong contact; with a right one before it: after 61, and half of 1 ms less. After a
+ * wrong one it counts in full if the contact is still wrong and the output has not changed, else as 1 ms. After a right one it
+ * takes half of its time away, and if the output has changed, half of 1 ms.
+ */
+/* Shows: HW-1, TIM-4 */
+TEST_CASE(2, false, 2, 70)
+TEST_CASE(2, false, 1, 61)
+TEST_CASE(2, true, 1, 61)
+TEST_CASE(2, true, 2, 61)
+TEST_CASE(1, false, 2, 56)
+TEST_CASE(1, false, 1, 56)
+TEST_CASE(1, true, 1, 60)
+TEST_CASE(1, true, 2, 60)
+void test_how_much_of_a_late_tick_counts(int before, bool closes, int at_its_end, unsigned value_ms) {
+    inputs.output_feedback = CLOSED;
+    begin();
+    ticks(60);
+    if (before == OPEN) {
+        inputs.output_feedback = OPEN;
+        begin();
+        ticks(1);
+    }
+    output_closed = closes;
+    inputs.output_feedback = (uint8_t)at_its_end;
+    tick_after(10);
+    TEST_ASSERT_EQUAL_UINT16(value_ms, hardware.mismatch.value_ms);
+}
+
 /* Ticks that are all late by 4 ms count 5 ms each. */
 /* Shows: HW-1 */
 void test_late_ticks_add_up(void) {
     inputs.output_feedback = CLOSED;
+    begin();
     for (unsigned i = 0; i < 19; i++) {
         tick_after(5);
     }
@@ -223,10 +276,11 @@ void test_late_ticks_add_up(void) {
 /* Shows: HW-1 */
 void test_half_a_millisecond_does_not_carry_the_time_past_its_limit(void) {
     inputs.output_feedback = CLOSED;
-    tick_after(1);
+    begin();
     inputs.output_feedback = OPEN;
-    tick_after(1);
+    begin(); /* 1 */
     inputs.output_feedback = CLOSED;
+    begin(); /* less half a ms */
     for (unsigned i = 0; i < 49; i++) {
         tick_after(2);
     }
@@ -238,8 +292,11 @@ void test_half_a_millisecond_does_not_carry_the_time_past_its_limit(void) {
 /* Shows: HW-1 */
 void test_a_late_tick_takes_all_of_its_time_away(void) {
     inputs.output_feedback = CLOSED;
+    begin();
     ticks(100);
     inputs.output_feedback = OPEN;
+    tick_after(0xFFFFFFFF); /* wrong until then */
+    TEST_ASSERT_TRUE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
     tick_after(0xFFFFFFFF);
     TEST_ASSERT_FALSE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
 }
@@ -253,6 +310,7 @@ void test_a_feedback_that_falls_silent_is_a_fault(bool closed) {
     inputs.output_feedback = closed ? CLOSED : OPEN;
     ticks(1);
     inputs.output_feedback = NONE;
+    begin();
     ticks(99);
     TEST_ASSERT_FALSE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
     TEST_ASSERT_FALSE(agv_hardware_output_reads_open(&hardware));

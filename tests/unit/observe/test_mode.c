@@ -48,6 +48,13 @@ static agv_mode_change_t tick(uint32_t ms) {
     return agv_mode_tick(&mode, &timers, true, elapsed_ms);
 }
 
+/* In time, one each ms. */
+static void ticks_to(uint32_t ms) {
+    while (ticked_ms < ms) {
+        (void)tick(ticked_ms + 1);
+    }
+}
+
 static void expect_mode(bool manual, bool engaged) {
     TEST_ASSERT_EQUAL(manual, agv_mode_is_manual(&mode));
     TEST_ASSERT_EQUAL(engaged, agv_mode_is_engaged(&mode));
@@ -321,38 +328,38 @@ static bool flickers(uint32_t from_ms, uint32_t manual_ms, uint32_t cycle_ms, un
     for (unsigned i = 0; i < cycles; i++) {
         const uint32_t at_ms = from_ms + (cycle_ms * i);
         (void)report(MANUAL, at_ms);
-        (void)tick(at_ms + manual_ms);
+        ticks_to(at_ms + manual_ms - 1);
         (void)report(ENGAGED, at_ms + manual_ms);
         if (manual_ms < cycle_ms) {
-            (void)tick(at_ms + cycle_ms);
+            ticks_to(at_ms + cycle_ms - 1);
         }
     }
     agv_mode_check(&mode, &timers, &faults, &config, supervising, true);
     return is_active(AGV_FAULT_MODE_FLAPPING);
 }
 
-/* A second sender right behind the VCU: manual for 9 ms in 10, which leaves 17 half ms a cycle. 29 cycles are 246.5 ms. */
+/* A second sender right behind the VCU: manual for 9 ms in 10, which leaves 17 half ms a cycle. 29 cycles are 261 - 14 ms. */
 /* Shows: SUP-9, MODE_FLAPPING */
 TEST_CASE(29, true, false)
 TEST_CASE(30, true, true)
 TEST_CASE(30, false, false)
 void test_manual_that_flickers_while_engaged_is_flapping(unsigned cycles, bool supervising, bool flapping) {
     (void)report(MANUAL, 0);
-    (void)report(ENGAGED, 10);
-    (void)tick(10);
+    (void)report(ENGAGED, 9);
+    (void)tick(9);
     TEST_ASSERT_EQUAL(flapping, flickers(10, 9, 10, cycles, supervising));
 }
 
-/* Autopilot for no time at all: exactly 250 ms. */
+/* Autopilot for no time at all: exactly 250 ms after the tick that saw manual. */
 /* Shows: SUP-9, MODE_FLAPPING */
 void test_manual_may_be_reported_for_250_ms(void) {
     (void)report(ENGAGED, 0);
-    TEST_ASSERT_FALSE(flickers(0, 10, 10, 24, true));
-    (void)report(MANUAL, 240);
-    (void)tick(249);
+    TEST_ASSERT_FALSE(flickers(1, 10, 10, 24, true));
+    (void)report(MANUAL, 241);
+    ticks_to(250);
     agv_mode_check(&mode, &timers, &faults, &config, true, true);
     TEST_ASSERT_FALSE(is_active(AGV_FAULT_MODE_FLAPPING));
-    (void)tick(250);
+    ticks_to(251);
     agv_mode_check(&mode, &timers, &faults, &config, true, true);
     TEST_ASSERT_TRUE(is_active(AGV_FAULT_MODE_FLAPPING));
 }
@@ -368,11 +375,11 @@ void test_manual_in_one_frame_of_three_is_not_flapping(void) {
 /* Shows: SUP-9 */
 void test_the_end_of_an_engagement_ends_the_flicker(void) {
     (void)report(ENGAGED, 0);
-    TEST_ASSERT_FALSE(flickers(0, 9, 10, 29, true));
+    TEST_ASSERT_FALSE(flickers(1, 9, 10, 29, true));
     (void)disengage(1000);
     (void)tick(1100);
-    (void)report(ENGAGED, 1500);
-    (void)tick(1500);
+    (void)report(ENGAGED, 1499);
+    (void)tick(1499);
     TEST_ASSERT_FALSE(flickers(1500, 9, 10, 29, true));
 }
 

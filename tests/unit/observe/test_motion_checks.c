@@ -34,8 +34,14 @@ static bool is_active(unsigned fault) {
     return agv_fault_monitor_is_active(&faults, fault);
 }
 
-/* The fault must become active exactly in this millisecond from now. */
+/* A tick that sees the condition: it has lasted for 0 ms. The ms before it counts by what the last tick saw. */
+static void begin(void) {
+    run(1);
+}
+
+/* The fault must become active exactly this many ms after the next tick. */
 static void expect_after(uint32_t ms, unsigned fault) {
+    begin();
     run(ms - 1);
     TEST_ASSERT_FALSE(is_active(fault));
     run(1);
@@ -84,6 +90,7 @@ void test_50_degrees_are_not_too_much(unsigned raw) {
 /* Shows: SUP-10, STEERING_DEVIATION */
 void test_25_degrees_nearer_empty_the_budget(void) {
     steer(10000);
+    begin();
     run(499);
     measured(9250);
     expect_after(500, STEERING);
@@ -95,6 +102,7 @@ void test_25_degrees_nearer_empty_the_budget(void) {
 /* Shows: SUP-10 */
 void test_25_degrees_nearer_empty_a_budget_of_1_ms(void) {
     steer(10000);
+    begin();
     run(1);
     measured(9250);
     expect_after(500, STEERING);
@@ -104,6 +112,7 @@ void test_25_degrees_nearer_empty_a_budget_of_1_ms(void) {
 /* Shows: SUP-10 */
 void test_a_gain_to_the_other_side_counts_as_well(void) {
     steer(8000);
+    begin();
     run(499);
     measured(8750);
     expect_after(500, STEERING);
@@ -121,6 +130,7 @@ void test_a_gain_of_less_than_25_degrees_is_none(void) {
 /* Shows: SUP-10 */
 void test_small_steps_add_up(void) {
     steer(18000);
+    begin();
     run(400);
     for (unsigned raw = 9010; raw < 9250; raw += 10) {
         measured(raw);
@@ -149,6 +159,7 @@ void test_steps_away_count_against_it(void) {
 /* Shows: SUP-10 */
 void test_steps_away_count_up_to_the_range_of_an_angle(void) {
     steer(0);
+    begin();
     run(400);
     measured(18000);
     steer(18000);
@@ -179,12 +190,12 @@ void test_the_motion_of_the_command_does_not_count(void) {
 /* A command that is near for 1 ms in each 20 ms. */
 /* Shows: SUP-10, STEERING_DEVIATION */
 void test_a_command_that_is_near_for_1_ms_in_20_restarts_nothing(void) {
-    for (unsigned ms = 0; ms < 539; ms++) {
+    for (unsigned ms = 0; ms < 540; ms++) {
         TEST_ASSERT_FALSE(is_active(STEERING));
         steer((ms % 20 == 19) ? 9000 : 12000);
         run(1);
     }
-    TEST_ASSERT_TRUE(is_active(STEERING)); /* 26 times 19 less 13, and 19 */
+    TEST_ASSERT_TRUE(is_active(STEERING)); /* 26 times 19 less 13, and 19, after the first tick */
 }
 
 /* 400.0 degrees off in 47 of 48 frames: the first good one clears the budget, the later ones are steps back and forth. */
@@ -241,6 +252,7 @@ void test_a_command_that_weaves_is_no_step_back(void) {
 void test_after_a_gain_no_remainder_is_kept(void) {
     steer(9000);
     measured(9600);
+    begin();
     run(1);
     measured(9300);
     steer(12000);
@@ -255,6 +267,7 @@ void test_after_a_gain_no_remainder_is_kept(void) {
 void test_after_a_gain_motion_within_the_limit_does_not_count(void) {
     steer(9000);
     measured(9600);
+    begin();
     run(1);
     measured(9100);
     for (unsigned i = 0; i < 10; i++) {
@@ -275,6 +288,7 @@ void test_after_a_gain_motion_within_the_limit_does_not_count(void) {
 void test_after_a_gain_only_motion_beyond_the_limit_counts(void) {
     steer(9000);
     measured(9600);
+    begin();
     run(1);
     measured(9100);
     steer(9700);
@@ -293,6 +307,7 @@ void test_steps_that_are_not_judged(void) {
     measured(8900);
     facts.judged = true;
     measured(9150); /* 25.0 nearer: a gain */
+    begin();
     run(400);
     facts.judged = false;
     measured(9400); /* none */
@@ -320,7 +335,10 @@ void test_the_second_begins_anew_with_each_deviation(void) {
     measured(9400);
     run(1);
     measured(9650);
-    run(100);
+    begin();
+    run(99);
+    TEST_ASSERT_FALSE(is_active(STEERING));
+    run(1);
     TEST_ASSERT_TRUE(is_active(STEERING));
 }
 
@@ -338,6 +356,7 @@ void test_a_step_back_counts_in_a_frame_that_is_not_judged(void) {
         measured(9000);
         run(10);
     }
+    run(1); /* 59 times 10 less 5 */
     TEST_ASSERT_EQUAL_UINT16(295, checks.budgets[AGV_BUDGET_STEERING].value_ms);
 }
 
@@ -352,6 +371,7 @@ void test_a_gain_without_a_budget_is_none(void) {
     measured(9400); /* 25.0 nearer: cleared */
     run(1);
     measured(9650);
+    begin();
     run(100);
     TEST_ASSERT_FALSE(is_active(STEERING));
 }
@@ -371,7 +391,10 @@ void test_steps_back_count_for_a_second(uint32_t within_ms, bool count) {
     measured(9400); /* 25.0 nearer */
     run(1);
     measured(9650);
-    run(100);
+    begin();
+    run(99);
+    TEST_ASSERT_FALSE(is_active(STEERING));
+    run(1);
     TEST_ASSERT_EQUAL(count, is_active(STEERING));
 }
 
@@ -382,7 +405,8 @@ void test_motion_past_the_command_is_no_gain(void) {
     run(400);
     measured(9849); /* 60.0 before it, 24.9 behind it: 35.1 nearer */
     steer(9000);
-    run(99);
+    begin();
+    run(100);
     TEST_ASSERT_FALSE(is_active(STEERING));
     setUp();
     steer(9600);
@@ -406,6 +430,7 @@ void test_no_remainder_is_kept(void) {
 void test_motion_while_the_budget_is_empty_does_not_count(void) {
     steer(18000);
     measured(9240);
+    begin();
     run(499);
     measured(9250);
     TEST_ASSERT_FALSE(is_active(STEERING));
@@ -513,8 +538,10 @@ void test_cases_that_are_no_throttle_above_the_command(void) {
 void test_a_drop_of_25_counts_empties_the_budget(void) {
     command_throttle(0);
     throttle(250);
+    begin();
     run(499);
     throttle(225);
+    begin();
     run(499);
     TEST_ASSERT_FALSE(is_active(THROTTLE));
     throttle(201); /* 24 are too few */
@@ -535,6 +562,7 @@ void test_a_rise_counts_against_the_drop(void) {
     config.throttle_deviation_counts = 50;
     command_throttle(0);
     throttle(200);
+    begin();
     run(400);
     for (unsigned i = 0; i < 10; i++) {
         throttle(180);
@@ -554,6 +582,7 @@ void test_a_drop_to_the_command_counts_in_full(void) {
     config.throttle_deviation_counts = 20;
     command_throttle(100);
     throttle(125);
+    begin();
     run(499);
     throttle(100);
     throttle(125);
@@ -650,6 +679,7 @@ void test_d_or_r_other_than_commanded_for_1_s(void) {
             command_throttle(250);
             vehicle.gear = (uint8_t)gears[is];
             vehicle.throttle = 3;
+            begin();
             run(999);
             TEST_ASSERT_FALSE(is_active(GEAR));
             run(1);
@@ -669,6 +699,7 @@ void test_idle_or_no_command_is_no_gear_deviation(void) {
     vehicle.throttle = 3;
     expect_after(1000, GEAR);
     vehicle.throttle = 2;
+    begin();
     run(1999);
     TEST_ASSERT_TRUE(is_active(GEAR)); /* until the budget is empty */
     run(1);
@@ -753,6 +784,7 @@ TEST_CASE(0x7FFFFFFF, 0x7FFFFFFF, 0, 1)
 TEST_CASE(-0x7FFFFFFF, -0x7FFFFFFF, 65535, 1)
 void test_how_much_two_speeds_may_differ(int left_mm_s, int right_mm_s, unsigned vcu_m_h, int differ) {
     speeds(left_mm_s, right_mm_s, vcu_m_h);
+    begin();
     run(999);
     TEST_ASSERT_FALSE(is_active(SPEED));
     run(1);
@@ -790,6 +822,7 @@ void test_both_measurements_are_needed(void) {
 /* Shows: SUP-12, FSM-12 */
 void test_wheels_are_doubted_while_the_vcu_contradicts_them(void) {
     speeds(0, 0, 7200);
+    begin();
     run(999);
     TEST_ASSERT_FALSE(agv_motion_checks_doubts_wheels(&checks, &vehicle));
     run(1);
@@ -820,6 +853,7 @@ void test_an_engagement_begins_all_budgets_anew(void) {
     agv_commands_take(&commands, AGV_MSG_TURN_SIGNAL_COMMAND, (const uint8_t[8]){0, 0, 0, 0, 0x40});
     vehicle.gear = AGV_GEAR_R;
     throttle(250);
+    begin();
     run(1000);
     measured(9249);
     throttle(226);
@@ -830,6 +864,7 @@ void test_an_engagement_begins_all_budgets_anew(void) {
     for (unsigned i = 0; i < 4; i++) {
         TEST_ASSERT_FALSE(is_active(judged[i]));
     }
+    begin();
     run(400);
     measured(9250); /* a tenth, and one count: earlier motion does not count */
     throttle(225);

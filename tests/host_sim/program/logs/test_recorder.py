@@ -83,7 +83,7 @@ class Recorder(hostsim.Case):
         cases = (("eps_status", 7, 0x40, ("EPS_MOTOR_ENCODER", "bit", "eps_status", 3003)),
                  ("eps_status", 3, 0x07, ("EPS_MODE_INVALID", "score", "eps_status", 3003)),
                  ("throttle_command", 0, 251, ("AI_COMMAND_OUT_OF_RANGE", "value", "throttle_command", 3008)),
-                 ("throttle_status", 0, 100, ("THROTTLE_DEVIATION", "budget", "throttle_status", 3000)),
+                 ("throttle_status", 0, 100, ("THROTTLE_DEVIATION", "budget", "throttle_status", 3001)),
                  ("vehicle_status", 6, 0xC0, ("MODE_INVALID", "mode", "vehicle_status", 3001)))
         for message, at, value, expected in cases:
             def change(data, at=at, value=value):
