@@ -43,7 +43,7 @@ static bool hint_id_set(text_t *text, const replay_clues_t *clues) {
         return false;
     }
     add_ids(text, found, count);
-    text_add(text, " received, ");
+    text_add(text, " heard, ");
     add_ids(text, lacking, count);
     text_add(text, " not: --id-set %s", (other_set == (uint32_t)AGV_ID_SET_TABLE) ? "table" : "heading");
     return true;

@@ -53,13 +53,13 @@ class FiveLogs(Case):
         log = traffic.log(traffic.frames(5000, ids=traffic.TABLE_IDS))
         lines = self.text(log, "--fail-on-trip", status=1)
         self.assertTrue(lines[0].startswith("NOT SUPERVISED: never left INIT, missing: manual (363h never received)"))
-        self.assertIn("  hint      201h and 203h received, 43Fh and 363h not: --id-set table", lines)
+        self.assertIn("  hint      201h and 203h heard, 43Fh and 363h not: --id-set table", lines)
         fits = self.text(log, "--id-set", "table", "--fail-on-trip")
         self.assertTrue(fits[0].startswith("my.log: "), fits[0])
 
     def test_the_other_way_round(self):
         lines = self.text(traffic.log(traffic.frames(3000)), "--id-set", "table")
-        self.assertIn("  hint      43Fh and 363h received, 201h and 203h not: --id-set heading", lines)
+        self.assertIn("  hint      43Fh and 363h heard, 201h and 203h not: --id-set heading", lines)
 
     def test_a_log_without_the_eps(self):
         log = traffic.log(traffic.frames(3000, senders=("vcu", "ai")))
