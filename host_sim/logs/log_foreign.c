@@ -8,6 +8,9 @@
 #include "logs/log_token.h"
 
 #define CAN_LOGCONVERT "convert it: python3 -m can.logconvert @ @.log (python-can)"
+#define CAN_LOGCONVERT_MDF                                                                                             \
+    "convert it: python3 -m can.logconvert @ @.log (python-can[mf4])" /* it finalises a copy, too */
+#define EXPORT "export its CAN frames as a candump log or Vector ASC"
 #define TSHARK                                                                                                         \
     "convert it: tshark -r @ -T fields -E separator=/s -e frame.time_epoch -e can.id -e data.data"                     \
     " | awk '{printf \"(%.6f) can0 %03X#%s\\n\", $1, $2, $3}' > @.log"
@@ -40,7 +43,8 @@ void log_foreign_advice(char text[LOG_FOREIGN_TEXT_SIZE], const log_foreign_t *f
 const log_foreign_t *log_foreign_binary(const char *bytes, size_t size) {
     static const beginning_t beginnings[] = {
         BEGINS("LOGG", "a Vector BLF log", CAN_LOGCONVERT),
-        BEGINS("MDF     ", "an MDF log", "convert it: python3 -m can.logconvert @ @.log (python-can[mf4])"),
+        BEGINS("MDF     ", "an MDF log", CAN_LOGCONVERT_MDF),
+        BEGINS("UnFinMF", "an MDF log that was not finalised", CAN_LOGCONVERT_MDF),
         BEGINS("SQLite format 3", "an SQLite log", CAN_LOGCONVERT),
         BEGINS("\xD4\xC3\xB2\xA1", "a pcap capture", TSHARK),
         BEGINS("\xA1\xB2\xC3\xD4", "a pcap capture", TSHARK),
@@ -51,9 +55,12 @@ const log_foreign_t *log_foreign_binary(const char *bytes, size_t size) {
                "7zXZ",
                "compressed with xz", "unpack it: xz -dc @ > @.log"),
         BEGINS("\x28\xB5\x2F\xFD", "compressed with zstd", "unpack it: zstd -dc @ > @.log"),
+        BEGINS("\x04\x22\x4D\x18", "compressed with lz4", "unpack it: lz4 -dc @ > @.log"),
         BEGINS("BZh", "compressed with bzip2", "unpack it: bzip2 -dc @ > @.log"),
         BEGINS("PK\x03\x04", "a zip archive", "unpack it: unzip -p @ > @.log"),
         BEGINS("7z\xBC\xAF", "a 7z archive", "unpack it: 7z e -so @ > @.log"),
+        BEGINS("\x89HDF", "an HDF5 file", EXPORT),
+        BEGINS("#ROSBAG", "a ROS bag", EXPORT),
         BEGINS("\xFF\xFE", "text in UTF-16", "convert it: iconv -f UTF-16 -t UTF-8 @ > @.log"),
         BEGINS("\xFE\xFF", "text in UTF-16", "convert it: iconv -f UTF-16 -t UTF-8 @ > @.log"),
     };
@@ -102,6 +109,7 @@ static bool is_old_trc(const char *line, size_t length) {
 const log_foreign_t *log_foreign_text(const char *line, size_t length) {
     static const beginning_t beginnings[] = {
         BEGINS(";$FILEVERSION", "a PEAK TRC log", CAN_LOGCONVERT),
+        BEGINS("***BUSMASTER", "a BUSMASTER log", "open @ in SavvyCAN and save it as a candump log, @.log"),
         BEGINS("timestamp,arbitration_id", "a CSV log of python-can", CAN_LOGCONVERT),
         BEGINS("Time Stamp,ID,Extended", "a CSV log of SavvyCAN",
                "open @ in SavvyCAN and save it as a candump log, @.log"),
