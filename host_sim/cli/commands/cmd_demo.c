@@ -15,6 +15,7 @@
 #include "common/interrupt.h"
 #include "common/shipped.h"
 #include "config/config_options.h"
+#include "config/config_text.h"
 #include "io/events.h"
 #include "io/output.h"
 #include "scenario/run/scenario_analysis.h"
@@ -177,6 +178,7 @@ static status_t play(work_t *work, const given_t *given) {
     if (!prepare(work, given)) {
         return STATUS_UNUSABLE;
     }
+    config_note_deviations(&work->options.config);
     scenario_watch_t watches[3];
     size_t count = 0u;
     const bool is_told = !output_is_stdout(given->events) && !analysis_paths_use_stdout(&given->analysis);

@@ -16,6 +16,7 @@
 #include "cli/options.h"
 #include "common/interrupt.h"
 #include "config/config_options.h"
+#include "config/config_text.h"
 #include "hal_linux/linux_can.h"
 #include "io/events.h"
 #include "io/junit.h"
@@ -448,6 +449,7 @@ static status_t run_all(work_t *work, char **files) {
         ((given->sent != NULL) && !output_open(&work->outputs[SENT], given->sent)) || !open_analysis(work)) {
         return give_up(work, files, &none, 0u, files[0]);
     }
+    config_note_deviations(&given->options.config);
     return play_all(work, files);
 }
 

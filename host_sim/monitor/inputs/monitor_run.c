@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "common/interrupt.h"
+#include "config/config_text.h"
 #include "logs/log_sides.h"
 #include "monitor/inputs/monitor_can.h"
 #include "monitor/inputs/monitor_file.h"
@@ -168,7 +169,11 @@ static bool open_screen(run_t *run) {
 static bool run_all(run_t *run) {
     interrupt_hold();
     if (!open_input(run) || ((run->request->record != NULL) && !begin_record(run, run->request->record)) ||
-        !make_monitor(run) || !open_screen(run)) {
+        !make_monitor(run)) {
+        return false;
+    }
+    config_note_deviations(&run->request->config); /* before the screen, which would be drawn over it */
+    if (!open_screen(run)) {
         return false;
     }
     go(run);

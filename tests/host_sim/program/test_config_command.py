@@ -1,4 +1,5 @@
 """`host_sim config`, and configurations as files."""
+import pathlib
 import re
 import unittest
 import zlib
@@ -6,6 +7,7 @@ import zlib
 import hostsim
 import traffic
 
+ROOT = pathlib.Path(__file__).parents[3]
 LOG = traffic.log(traffic.frames(50))
 
 # Written by hand from the requirements: some settings and their defaults.
@@ -205,6 +207,23 @@ class Deviations(hostsim.Case):
         self.write("log", LOG)
         self.write("c.yaml", "# nothing\n")
         self.assertEqual(self.run_good("replay", "--config", "c.yaml", "log").stderr, "")
+
+    # Shows: INT-2
+    def test_each_command_that_runs_the_supervisor_lists_them_once(self):
+        self.write("c.yaml", "mode_invalid_ms: 60\n")
+        log = ROOT / "host_sim/examples/ai-stops.log"
+        scenario = ROOT / "host_sim/scenarios/overview/demo.yaml"
+        own = self.write("own.yaml", scenario.read_text() + "config: {mode_invalid_ms: 60}\n")  # part of the test: not listed
+        listed = "host_sim: not the default: mode_invalid_ms: 60 (default 50, WEAKER)\n"
+        for arguments in (("demo",), ("demo", "--events", "-"), ("scenario", scenario, scenario),
+                          ("scenario", own), ("scenario", "--events", "-", scenario), ("scenario", "--from", log),
+                          ("monitor", "--speed", "max", "--log", log), ("replay", log)):
+            with self.subTest(arguments):
+                plain = self.run_good(*arguments)
+                changed = self.run_good(arguments[0], "--config", "c.yaml", *arguments[1:])
+                self.assertEqual(changed.stderr, listed + plain.stderr)
+                if "--from" not in arguments:  # it writes the settings into the scenario that it makes
+                    self.assertEqual(changed.stdout, plain.stdout)
 
 
 if __name__ == "__main__":

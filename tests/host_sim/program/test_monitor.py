@@ -11,6 +11,7 @@ from tmux import Tmux
 ROOT = pathlib.Path(__file__).parents[3]
 EXAMPLE = ROOT / "host_sim/examples/ai-stops.log"
 PATIENCE_S = 30
+GATEWAY = "host_sim: not the default: topology: gateway (default shared)\n"
 
 
 def long_log(seconds=600):
@@ -122,6 +123,14 @@ class Screen(hostsim.Case):
         self.assertEqual(tmux.exit_status(), 2)
         self.assertIn("bad.log:3: ", "".join(tmux.lines()))
 
+    # Shows: INT-2
+    def test_settings_that_are_not_the_default_are_left_above_the_screen(self):
+        tmux = self.open(80, 24, "--log", EXAMPLE, "--ai-if", "can1")
+        tmux.wait_for("END")
+        tmux.press("q")
+        self.assertEqual(tmux.exit_status(), 0)
+        self.assertIn(GATEWAY, "".join(line + "\n" for line in tmux.lines()))
+
     def test_a_dumb_terminal_gets_lines(self):
         tmux = self.open(80, 24, "--log", EXAMPLE, "--speed", "max", TERM="dumb")
         self.assertEqual(tmux.exit_status(), 0)
@@ -195,7 +204,7 @@ class Lines(hostsim.Case):
     def test_an_ai_side_that_the_log_does_not_have(self):
         for name, said in (("can9", "host_sim: the log has no frame from can9, the AI side\n"), ("can0", "")):
             done = self.monitor("--log", EXAMPLE, "--speed", "max", "--ai-if", name)
-            self.assertEqual((done.returncode, done.stderr), (0, said))
+            self.assertEqual((done.returncode, done.stderr), (0, GATEWAY + said))
 
     def test_a_reader_that_goes_away(self):
         reader, writer = os.pipe()
