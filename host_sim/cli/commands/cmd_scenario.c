@@ -2,22 +2,20 @@
  * @file cmd_scenario.c
  * `host_sim scenario`: scenario files, played and evaluated.
  */
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include "analysis/analysis.h"
 #include "analysis/analysis_options.h"
 #include "cli/commands/commands.h"
+#include "cli/commands/scenario_bus_options.h"
 #include "cli/commands/skeleton_options.h"
 #include "cli/options.h"
 #include "common/interrupt.h"
 #include "config/config_options.h"
 #include "config/config_text.h"
-#include "hal_linux/linux_can.h"
 #include "io/events.h"
 #include "io/junit.h"
 #include "io/output.h"
@@ -29,17 +27,10 @@
 #include "scenario/run/scenario_run.h"
 #include "text/units.h"
 
-enum { FILES_MAX = 1000, FIXED_FILES = 5, DEFAULT_TOLERANCE_MS = 50, TOLERANCE_MAX_MS = 1000 };
-enum { PROGRAM_SIZE = 4096 };
+enum { FILES_MAX = 1000, FIXED_FILES = 5 };
 
 /** Its outputs. */
 enum { EVENTS, JUNIT, SENT, OUTPUTS };
-
-/** As a tolerance. */
-#define NOT_GIVEN UINT64_MAX
-
-/** Room for the name of an interface. */
-#define INTERFACE_SIZE (LINUX_CAN_NAME_MAX + 1u)
 
 /** The given options. */
 typedef struct {
@@ -48,13 +39,9 @@ typedef struct {
     scenario_options_t options;
     const char *junit;
     const char *events;
-    const char *bus;
-    const char *supervisor;
-    const char *sent;
     bool is_schema;
+    scenario_bus_options_t bus;
     skeleton_options_t from;
-    char interface_names[HAL_CAN_SIDES][INTERFACE_SIZE]; /**< "": none; no vehicle side: the simulated bus */
-    uint64_t tolerance_ms;
     size_t file_count;
 } given_t;
 
@@ -90,25 +77,19 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
     analysis_options_init(&given->analysis, analysis_rows);
     option_t from_rows[SKELETON_OPTIONS];
     skeleton_options_init(&given->from, from_rows);
+    option_t bus_rows[SCENARIO_BUS_OPTIONS];
+    scenario_bus_options_init(&given->bus, bus_rows);
     const option_t rows[] = {
         OPTION_TEXT("--junit", "FILE", "results as JUnit XML", &given->junit),
         OPTION_TEXT("--events", "FILE", "events as JSON Lines (of one scenario)", &given->events),
-        OPTION_TEXT(
-            "--bus", "sim|IF[,IF]",
-            "the simulated bus in virtual time (sim), or CAN interfaces (of the vehicle, of the AI side) in real time",
-            &given->bus),
-        OPTION_DURATION("--tolerance", "on CAN interfaces: tolerance of all times (50ms)", &given->tolerance_ms, 0,
-                        TOLERANCE_MAX_MS),
-        OPTION_TEXT("--supervisor", "COMMAND",
-                    "on CAN interfaces: start this external supervisor; it prints its events as JSON Lines",
-                    &given->supervisor),
-        OPTION_TEXT("--sent", "FILE",
-                    "on CAN interfaces: candump log of the frames that the supervisor sent (of one scenario)",
-                    &given->sent),
+    };
+    const option_t schema_rows[] = {
         OPTION_FLAG("--schema", "print the JSON Schema of a scenario file, and run nothing", &given->is_schema),
     };
     const option_group_t groups[] = {
         {.title = "Options (FILE may be -, standard output)", .options = rows, .count = sizeof rows / sizeof rows[0]},
+        {.options = bus_rows, .count = SCENARIO_BUS_OPTIONS},
+        {.options = schema_rows, .count = sizeof schema_rows / sizeof schema_rows[0]},
         {.options = analysis_rows, .count = ANALYSIS_OPTIONS},
         {.title = "A scenario from a log", .options = from_rows, .count = SKELETON_OPTIONS},
         {.title = "Configuration of the supervisor (settings of a scenario take precedence)",
@@ -142,7 +123,7 @@ static bool check_files(const given_t *given, char **files) {
             {.role = "--config", .path = given->config.path},
             {.role = "--junit", .path = given->junit, .is_written = true},
             {.role = "--events", .path = given->events, .is_written = true},
-            {.role = "--sent", .path = given->sent, .is_written = true},
+            {.role = "--sent", .path = given->bus.sent, .is_written = true},
         };
         analysis_options_roles(&given->analysis, &roles[FIXED_FILES]);
         if (!output_check_distinct(roles, sizeof roles / sizeof roles[0])) {
@@ -152,74 +133,16 @@ static bool check_files(const given_t *given, char **files) {
     return true;
 }
 
-/** Take the name of an interface out of --bus. */
-static bool take_interface(given_t *given, hal_can_side_t side, const char *name, size_t length) {
-    if ((length == 0u) || (length > LINUX_CAN_NAME_MAX) || (memchr(name, ',', length) != NULL)) {
-        return report("--bus: '%s' is not sim, IF or IF,IF", given->bus);
-    }
-    memcpy(given->interface_names[side], name, length);
-    return true;
-}
-
-/** A command that begins with a path: what the shell would say of a program that is not there, in one line. */
-static bool check_program(const char *command) {
-    char path[PROGRAM_SIZE];
-    const size_t length = strspn(command, "/._-+ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789");
-    const bool is_path = ((command[length] == '\0') || (command[length] == ' ')) && (length < sizeof path) &&
-                         (memchr(command, '/', length) != NULL);
-    if (!is_path) {
-        return true;
-    }
-    memcpy(path, command, length);
-    path[length] = '\0';
-    return (access(path, X_OK) == 0) || report("--supervisor: %s: %s", path, strerror(errno));
-}
-
-/** What --bus says: the simulated bus, or interfaces. */
-static bool check_bus(given_t *given) {
-    if ((given->bus == NULL) || (strcmp(given->bus, "sim") == 0)) {
-        const bool is_simulated =
-            (given->tolerance_ms == NOT_GIVEN) && (given->supervisor == NULL) && (given->sent == NULL);
-        return is_simulated || report("--tolerance, --supervisor and --sent need CAN interfaces: --bus IF[,IF]");
-    }
-    const size_t length = strcspn(given->bus, ",");
-    const char *second = (given->bus[length] == ',') ? &given->bus[length + 1u] : NULL;
-    if (!take_interface(given, HAL_CAN_VEHICLE, given->bus, length) ||
-        ((second != NULL) && !take_interface(given, HAL_CAN_AI, second, strlen(second)))) {
-        return false;
-    }
-    if ((second != NULL) && (strcmp(given->interface_names[HAL_CAN_VEHICLE], second) == 0)) {
-        return report("--bus: both sides are the same interface, '%s'", second);
-    }
-    given->tolerance_ms = (given->tolerance_ms == NOT_GIVEN) ? DEFAULT_TOLERANCE_MS : given->tolerance_ms;
-    return (given->supervisor == NULL) || check_program(given->supervisor);
-}
-
-static bool is_real(const given_t *given) {
-    return given->interface_names[HAL_CAN_VEHICLE][0] != '\0';
-}
-
-/** The interfaces; not kept in given_t, which is copied. */
-static scenario_bus_t real_bus(const given_t *given) {
-    const char *ai = given->interface_names[HAL_CAN_AI];
-    return (scenario_bus_t){
-        .interfaces =
-            {[HAL_CAN_VEHICLE] = given->interface_names[HAL_CAN_VEHICLE], [HAL_CAN_AI] = (ai[0] != '\0') ? ai : NULL},
-        .tolerance_ms = (uint32_t)given->tolerance_ms,
-        .command = given->supervisor,
-    };
-}
-
 static bool check_given(given_t *given, char **files) {
-    if (!check_bus(given)) {
+    if (!scenario_bus_options_check(&given->bus)) {
         return false;
     }
-    const bool is_of_one = (given->events != NULL) || (given->sent != NULL) || analysis_paths_any(&given->analysis);
+    const bool is_of_one = (given->events != NULL) || (given->bus.sent != NULL) || analysis_paths_any(&given->analysis);
     if (is_of_one && (given->file_count > 1u)) {
         return report("--events, --sent, --why, --report and --trace need a single scenario, %zu were given",
                       given->file_count);
     }
-    if (is_real(given) && analysis_paths_any(&given->analysis)) {
+    if (scenario_bus_options_is_real(&given->bus) && analysis_paths_any(&given->analysis)) {
         return report("--why, --report and --trace need the simulated bus; on CAN interfaces host_sim run has them");
     }
     if (!check_files(given, files) || !config_options_make(&given->config, &given->options.config)) {
@@ -233,8 +156,9 @@ static bool check_given(given_t *given, char **files) {
 /** Whether --bus names the interfaces that a scenario needs. */
 static bool check_place(const work_t *work, const char *file) {
     const scenario_t *scenario = &work->run.scenario;
-    const scenario_bus_t bus = real_bus(&work->given);
-    if (is_real(&work->given) && scenario->vehicle.gateway && (bus.interfaces[HAL_CAN_AI] == NULL)) {
+    const scenario_bus_t bus = scenario_bus_options_bus(&work->given.bus);
+    if (scenario_bus_options_is_real(&work->given.bus) && scenario->vehicle.gateway &&
+        (bus.interfaces[HAL_CAN_AI] == NULL)) {
         return report("%s: the gateway topology needs two interfaces: --bus %s,IF", file,
                       bus.interfaces[HAL_CAN_VEHICLE]);
     }
@@ -256,8 +180,8 @@ static const char *find_unusable(work_t *work, char **files) {
             return files[i];
         }
     }
-    const scenario_bus_t bus = real_bus(&work->given);
-    return (!is_real(&work->given) || scenario_bus_check(&bus)) ? NULL : work->given.bus;
+    const scenario_bus_t bus = scenario_bus_options_bus(&work->given.bus);
+    return (!scenario_bus_options_is_real(&work->given.bus) || scenario_bus_check(&bus)) ? NULL : work->given.bus.bus;
 }
 
 static void print_result(const work_t *work, const char *file, const result_t *result) {
@@ -310,7 +234,7 @@ static void write_sent(void *ctx, hal_can_side_t side, const hal_can_frame_t *fr
     work_t *work = ctx;
     char line[CANDUMP_WRITE_MAX];
     (void)output_write(&work->outputs[SENT], line,
-                       candump_write(line, at_us, work->given.interface_names[side], frame));
+                       candump_write(line, at_us, work->given.bus.interface_names[side], frame));
 }
 
 /** Play it on CAN interfaces, or leave it out. @return false: reported */
@@ -318,10 +242,10 @@ static bool play_real(work_t *work, events_summary_t *summary, const char **left
     const scenario_bus_watch_t watch = {
         .on_event = (work->given.events != NULL) ? events_write : NULL,
         .event_ctx = &work->outputs[EVENTS],
-        .on_sent = (work->given.sent != NULL) ? write_sent : NULL,
+        .on_sent = (work->given.bus.sent != NULL) ? write_sent : NULL,
         .sent_ctx = work,
     };
-    const scenario_bus_t bus = real_bus(&work->given);
+    const scenario_bus_t bus = scenario_bus_options_bus(&work->given.bus);
 
     *left_out = scenario_bus_leaves_out(&bus, &work->run.scenario);
     if (*left_out != NULL) {
@@ -338,7 +262,7 @@ static bool play(work_t *work, const char *file, result_t *result) {
     if ((work->given.file_count > 1u) && !scenario_read(&work->run.scenario, file, &work->given.options)) {
         return false;
     }
-    if (!is_real(&work->given)) {
+    if (!scenario_bus_options_is_real(&work->given.bus)) {
         play_simulated(work, &summary);
         if (work->run.was_interrupted) {
             return false;
@@ -348,7 +272,7 @@ static bool play(work_t *work, const char *file, result_t *result) {
     } else if (result->left_out != NULL) {
         return true;
     }
-    if ((work->given.events != NULL) && (work->given.supervisor == NULL)) {
+    if ((work->given.events != NULL) && (work->given.bus.supervisor == NULL)) {
         events_write_summary(&work->outputs[EVENTS], &summary);
     }
     memcpy(result->name, work->run.scenario.name, sizeof result->name);
@@ -405,7 +329,7 @@ static void print_totals(const work_t *work, char **files, const totals_t *total
     }
     (void)fprintf(work->text_out, "%zu scenario%s: %zu passed, %zu failed", work->given.file_count,
                   (work->given.file_count == 1u) ? "" : "s", totals->passed, totals->failed);
-    if (is_real(&work->given)) {
+    if (scenario_bus_options_is_real(&work->given.bus)) {
         (void)fprintf(work->text_out, ", %zu left out", totals->left_out);
     }
     (void)fprintf(work->text_out, "\n");
@@ -419,7 +343,7 @@ static status_t play_all(work_t *work, char **files) {
             return give_up(work, files, &totals, i, files[i]);
         }
         count(&totals, &work->results[i]);
-        if (is_real(&work->given)) {
+        if (scenario_bus_options_is_real(&work->given.bus)) {
             (void)fflush(work->text_out); /* it takes its time until the next line */
         }
     }
@@ -446,7 +370,7 @@ static status_t run_all(work_t *work, char **files) {
         return give_up(work, files, &none, 0u, unusable);
     }
     if (((given->events != NULL) && !output_open(&work->outputs[EVENTS], given->events)) ||
-        ((given->sent != NULL) && !output_open(&work->outputs[SENT], given->sent)) || !open_analysis(work)) {
+        ((given->bus.sent != NULL) && !output_open(&work->outputs[SENT], given->bus.sent)) || !open_analysis(work)) {
         return give_up(work, files, &none, 0u, files[0]);
     }
     config_note_deviations(&given->options.config);
@@ -455,8 +379,7 @@ static status_t run_all(work_t *work, char **files) {
 
 /** What runs no scenario. */
 static status_t run_none(given_t *given) {
-    const bool any = (given->junit != NULL) || (given->events != NULL) || (given->bus != NULL) ||
-                     (given->supervisor != NULL) || (given->sent != NULL) || (given->tolerance_ms != NOT_GIVEN) ||
+    const bool any = (given->junit != NULL) || (given->events != NULL) || scenario_bus_options_any(&given->bus) ||
                      analysis_paths_any(&given->analysis);
     if (any || (given->is_schema && (given->from.log != NULL))) {
         (void)report("%s runs no scenario, so it takes no option of a run", given->is_schema ? "--schema" : "--from");
@@ -473,7 +396,7 @@ static status_t run_none(given_t *given) {
 }
 
 status_t cmd_scenario(int argc, char **argv) {
-    given_t given = {.tolerance_ms = NOT_GIVEN};
+    given_t given = {0};
     const options_result_t parsed = parse(argc, argv, &given);
     if (parsed != OPTIONS_GO) {
         return (parsed == OPTIONS_DONE) ? STATUS_OK : STATUS_UNUSABLE;
@@ -498,7 +421,7 @@ status_t cmd_scenario(int argc, char **argv) {
     }
     work->given = given;
     const bool is_taken = output_is_stdout(given.junit) || output_is_stdout(given.events) ||
-                          output_is_stdout(given.sent) || analysis_paths_use_stdout(&given.analysis);
+                          output_is_stdout(given.bus.sent) || analysis_paths_use_stdout(&given.analysis);
     work->text_out = is_taken ? stderr : stdout;
     const status_t status = run_all(work, argv);
     for (size_t i = 0u; i < (size_t)OUTPUTS; i++) {
