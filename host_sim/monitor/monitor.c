@@ -193,6 +193,7 @@ void monitor_reset(monitor_t *monitor) {
     for (size_t i = 0u; i < monitor->row_count; i++) {
         monitor->rows[i].gap_min_us = MONITOR_NO_GAP;
         monitor->rows[i].gap_max_us = 0u;
+        monitor->rows[i].has_been_late = monitor->rows[i].is_late;
     }
 }
 

@@ -20,6 +20,7 @@
 #include "monitor/inputs/monitor_log.h"
 #include "monitor/monitor_shadow.h"
 #include "session/session.h"
+#include "traffic/engagement.h"
 #include "traffic/signals.h"
 
 /** Rows: all messages on the vehicle side, and in the gateway the commands on the AI side. */
@@ -44,7 +45,10 @@ typedef struct {
     uint32_t gap_max_us;
     uint32_t worst_us[2]; /**< longest gap that ended in this half second, and in the one before */
     uint64_t counts[2];   /**< `count` at the start of this half second, and of the one before */
-    bool is_late;         /**< its age exceeds the deadline */
+    bool is_late;         /**< its age exceeds the deadline, which counts */
+    bool is_silent;       /**< its age exceeds the deadline, which does not count: a command while not engaged */
+    bool was_late[2];     /**< it was late in this half second, and in the one before */
+    bool has_been_late;   /**< since the start, or since monitor_reset() */
     bool has_counter;
     bool is_stuck;       /**< frames come, but their alive counter has not changed for longer than the deadline */
     uint8_t counter;     /**< as in the last frame */
@@ -111,6 +115,8 @@ typedef struct {
     uint64_t lost;      /**< frames that this program was too slow for */
     uint64_t lost_us;   /**< when it lost the last ones */
     bool is_down[HAL_CAN_SIDES];
+    engagement_t engagement;
+    uint64_t engaged_us; /**< when the last engagement began */
     size_t row_count;
     monitor_row_t rows[MONITOR_ROWS_MAX];
     uint8_t row_of[HAL_CAN_SIDES][AGV_ID_MAX + 1u]; /**< index + 1; 0: none */
@@ -158,7 +164,7 @@ void monitor_reset(monitor_t *monitor);
 /** The longest age of a message within the last half to whole second; 0: never heard. */
 uint64_t monitor_age_us(const monitor_t *monitor, const monitor_row_t *row);
 
-/** Whether a message is or was late within that time. */
+/** Whether a message is or was late within that time, by a deadline that counted. */
 bool monitor_is_late(const monitor_t *monitor, const monitor_row_t *row);
 
 /** Frames a second, over the last half to whole second. @param counts of a row, or of the monitor */

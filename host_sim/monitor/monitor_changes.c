@@ -139,7 +139,7 @@ static size_t put_reported(const monitor_t *monitor, monitor_alarm_t *alarms, si
     for (size_t i = 0u; (row->count > 0u) && signals_read(row->message, i, row->data, &value); i++) {
         const signal_info_t *info = signals_info(row->message, i);
         if ((info->kind == SIGNAL_ALARM) && (value.raw != 0u)) {
-            const monitor_alarm_t alarm = {.fault = info->fault, .is_fresh = !row->is_late};
+            const monitor_alarm_t alarm = {.fault = info->fault, .is_fresh = !row->is_late && !row->is_silent};
             count = put_alarm(monitor, alarms, count, room, alarm);
         }
     }

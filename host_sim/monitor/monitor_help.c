@@ -12,7 +12,7 @@ static const line_t lines[] = {
     {"deadline", "a bar that is full at the deadline; red and LATE: exceeded"},
     {"gap", "shortest and longest time between two frames, ms"},
     {"cnt", "alive counter; red and STUCK: frames come, it does not change"},
-    {"grey", "never received"},
+    {"grey", "never received; silent: a command of the AI while not engaged"},
     {"supervisor", "its state, from its status frame"},
     {"shadow", "the state of a supervisor in this program, which only listens"},
     {"alarms", "of VCU and EPS, and faults; LED: flashes of the alarm LED"},

@@ -6,6 +6,8 @@
 #include "monitor/monitor_internal.h"
 #include "text/units.h"
 
+enum { MODE_AT = 6 }; /* in 363h (docs/protocol.md) */
+
 const char *monitor_sender(const monitor_t *monitor, const monitor_row_t *row) {
     const bool is_command = row->message < AGV_COMMAND_COUNT;
     if (is_command && monitor->given.is_gateway && (row->side == HAL_CAN_VEHICLE)) {
@@ -45,15 +47,69 @@ static void say(monitor_t *monitor, const monitor_row_t *row, uint64_t t_us, mon
                 agv_message_name((agv_message_t)row->message), what, (unsigned long)ms);
 }
 
-static void find_late(monitor_t *monitor, monitor_row_t *row) {
-    if ((row->count > 0u) && !row->is_late && (monitor->now_us > row->last_us + row->deadline_us)) {
-        row->is_late = true;
-        say(monitor, row, row->last_us + row->deadline_us, MONITOR_BAD, "late: no frame for",
+static bool is_vcu(const monitor_row_t *row) {
+    return (row->message == (uint32_t)AGV_MSG_VEHICLE_STATUS) && (row->side == HAL_CAN_VEHICLE);
+}
+
+static bool is_command(const monitor_row_t *row) {
+    return row->message < AGV_COMMAND_COUNT;
+}
+
+/** Whether a deadline counts now: that of a command while engaged (SUP-3), that of 43Fh by choice in manual, too (SUP-8). */
+static bool counts(const monitor_t *monitor, const monitor_row_t *row) {
+    const bool in_manual = row->has_counter && (monitor->config.ai_lost_in_manual != (uint16_t)AGV_AI_LOST_WARN);
+    return !is_command(row) || monitor->engagement.is_engaged || in_manual;
+}
+
+/** When a message is due. An engagement restarts the deadlines of the commands, but not that of a heartbeat. */
+static uint64_t due_us(const monitor_t *monitor, const monitor_row_t *row) {
+    const bool restarts = is_command(row) && !row->has_counter && (monitor->engaged_us > row->last_us);
+    return (restarts ? monitor->engaged_us : row->last_us) + row->deadline_us;
+}
+
+static void begin_late(monitor_t *monitor, monitor_row_t *row) {
+    const uint64_t due = due_us(monitor, row);
+    const bool was_due = row->is_silent && (monitor->engaged_us > due); /* a heartbeat that was silent already */
+    const uint64_t at_us = was_due ? monitor->engaged_us : due;
+    row->is_late = true;
+    row->is_silent = false;
+    row->was_late[0] = true;
+    row->has_been_late = true;
+    monitor->engagement.is_engaged = monitor->engagement.is_engaged && !is_vcu(row); /* the loss of the VCU ends it */
+    say(monitor, row, at_us, MONITOR_BAD, "late: no frame for", (at_us - row->last_us) / US_PER_MS);
+}
+
+/** Normal in manual: an AI computer may be switched off then. The loss of its heartbeat is a warning (SUP-8). */
+static void begin_silent(monitor_t *monitor, monitor_row_t *row) {
+    const bool was_late = row->is_late;
+    row->is_late = false;
+    row->is_silent = true;
+    if (!was_late) {
+        say(monitor, row, due_us(monitor, row), row->has_counter ? MONITOR_WARN : MONITOR_QUIET, "silent: no frame for",
             row->deadline_us / US_PER_MS);
     }
 }
 
+/** Find whether a message is overdue. */
+static void find_late(monitor_t *monitor, monitor_row_t *row) {
+    if ((row->count == 0u) || (monitor->now_us <= due_us(monitor, row))) {
+        return;
+    }
+    if (!counts(monitor, row) && !row->is_silent) {
+        begin_silent(monitor, row);
+    } else if (counts(monitor, row) && !row->is_late) {
+        begin_late(monitor, row);
+    } else {
+        /* as before */
+    }
+}
+
 void monitor_rows_time(monitor_t *monitor) {
+    for (size_t i = 0u; i < monitor->row_count; i++) {
+        if (is_vcu(&monitor->rows[i])) {
+            find_late(monitor, &monitor->rows[i]); /* first: it ends the engagement, for which the commands are due */
+        }
+    }
     for (size_t i = 0u; i < monitor->row_count; i++) {
         find_late(monitor, &monitor->rows[i]);
     }
@@ -64,6 +120,8 @@ void monitor_rows_half(monitor_t *monitor) {
         monitor_row_t *row = &monitor->rows[i];
         row->worst_us[1] = row->worst_us[0];
         row->worst_us[0] = 0u;
+        row->was_late[1] = row->was_late[0];
+        row->was_late[0] = row->is_late;
         row->counts[1] = row->counts[0];
         row->counts[0] = row->count;
     }
@@ -91,16 +149,28 @@ static void take_counter(monitor_t *monitor, monitor_row_t *row, const uint8_t d
     }
 }
 
+/** Follow the mode. A VCU whose counter stands still counts as lost: it ends an engagement, and begins none. */
+static void follow_engagement(monitor_t *monitor, const monitor_row_t *row, uint64_t t_us) {
+    if (is_vcu(row) && row->is_stuck) {
+        monitor->engagement = (engagement_t){.is_engaged = false};
+    } else if (is_vcu(row) && engagement_take(&monitor->engagement, &monitor->config, row->data[MODE_AT])) {
+        monitor->engaged_us = monitor->engagement.is_engaged ? t_us : monitor->engaged_us;
+    } else {
+        /* another message */
+    }
+}
+
 void monitor_rows_take(monitor_t *monitor, monitor_row_t *row, const uint8_t data[AGV_DLC], uint64_t t_us) {
     const uint64_t gap_us = (t_us > row->last_us) ? t_us - row->last_us : 0u;
     find_late(monitor, row);
     if (row->count > 0u) {
         take_gap(row, gap_us);
     }
-    if (row->is_late) {
+    if (row->is_late || row->is_silent) {
+        say(monitor, row, t_us, row->is_late ? MONITOR_GOOD : MONITOR_QUIET, "back after", gap_us / US_PER_MS);
         row->is_late = false;
+        row->is_silent = false;
         row->counter_us = t_us;
-        say(monitor, row, t_us, MONITOR_GOOD, "back after", gap_us / US_PER_MS);
     }
     if (row->has_counter) {
         take_counter(monitor, row, data, t_us);
@@ -109,6 +179,7 @@ void monitor_rows_take(monitor_t *monitor, monitor_row_t *row, const uint8_t dat
     (void)memcpy(row->data, data, sizeof row->data);
     row->last_us = t_us;
     row->count++;
+    follow_engagement(monitor, row, t_us);
 }
 
 uint64_t monitor_age_us(const monitor_t *monitor, const monitor_row_t *row) {
@@ -121,5 +192,6 @@ uint64_t monitor_age_us(const monitor_t *monitor, const monitor_row_t *row) {
 }
 
 bool monitor_is_late(const monitor_t *monitor, const monitor_row_t *row) {
-    return (row->count > 0u) && (monitor_age_us(monitor, row) > row->deadline_us);
+    (void)monitor;
+    return row->is_late || row->was_late[0] || row->was_late[1];
 }

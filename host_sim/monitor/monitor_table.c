@@ -113,7 +113,7 @@ static void draw_gap_max(monitor_view_t *view, int y, int x, const monitor_t *mo
     if (row->gap_min_us != MONITOR_NO_GAP) {
         write_ms(text, row->gap_max_us);
     }
-    right(view, y, x, GAP_WIDTH, (row->gap_max_us > row->deadline_us) ? STYLE_BAD : style, text);
+    right(view, y, x, GAP_WIDTH, row->has_been_late ? STYLE_BAD : style, text);
 }
 
 static void draw_rate(monitor_view_t *view, int y, int x, const monitor_t *monitor, const monitor_row_t *row,
@@ -184,6 +184,10 @@ static void draw_signals(monitor_view_t *view, int y, int x, const monitor_t *mo
         x = monitor_view_put(view, y, x, STYLE_BAD, "LATE ");
     } else if (row->is_stuck) {
         x = monitor_view_put(view, y, x, STYLE_BAD, "STUCK ");
+    } else if (row->is_silent) {
+        x = monitor_view_put(view, y, x, style, "silent ");
+    } else {
+        /* as it should be */
     }
     bool is_first = true;
     for (size_t i = 0u; signals_read(row->message, i, row->data, &value); i++) {
@@ -228,9 +232,19 @@ static void draw_titles(monitor_view_t *view, int y, const monitor_t *monitor) {
     }
 }
 
+/** Red: late or stuck. Grey: never heard, or silent while no deadline counts; yellow where that is a warning (43Fh). */
+static monitor_style_t style_of(const monitor_t *monitor, const monitor_row_t *row) {
+    if (monitor_is_late(monitor, row) || row->is_stuck) {
+        return STYLE_BAD;
+    }
+    if (row->is_silent && row->has_counter) {
+        return STYLE_WARN;
+    }
+    return ((row->count == 0u) || row->is_silent) ? STYLE_DIM : STYLE_PLAIN;
+}
+
 static void draw_row(monitor_view_t *view, int y, const monitor_t *monitor, const monitor_row_t *row) {
-    const bool is_bad = monitor_is_late(monitor, row) || row->is_stuck;
-    const monitor_style_t style = (row->count == 0u) ? STYLE_DIM : (is_bad ? STYLE_BAD : STYLE_PLAIN);
+    const monitor_style_t style = style_of(monitor, row);
     int x = 0;
     for (size_t c = 0u; c < sizeof columns / sizeof columns[0]; c++) {
         if (has_column(view, monitor, &columns[c])) {

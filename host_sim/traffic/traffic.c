@@ -5,6 +5,7 @@
 
 #include "agv/codec.h"
 #include "common/message_facts.h"
+#include "traffic/engagement.h"
 #include "traffic/watch.h"
 
 enum {
@@ -30,8 +31,7 @@ struct traffic {
     traffic_id_t *all[IDS_MAX];
     size_t all_count;
     traffic_totals_t totals;
-    bool is_engaged;
-    uint32_t frames_not_engaged; /**< 363h in a row without autopilot mode */
+    engagement_t engagement;
     uint64_t engaged_since_us;
 };
 
@@ -114,7 +114,7 @@ static traffic_id_t *add_id(traffic_t *traffic, hal_can_side_t side, const hal_c
     }
     traffic->all[traffic->all_count] = entry;
     traffic->all_count++;
-    if ((entry->watch != NULL) && (entry->watch->when == TRAFFIC_ENGAGED) && traffic->is_engaged) {
+    if ((entry->watch != NULL) && (entry->watch->when == TRAFFIC_ENGAGED) && traffic->engagement.is_engaged) {
         watch_start(entry->watch, traffic->engaged_since_us);
     }
     return entry;
@@ -178,21 +178,20 @@ static void apply_to_engaged(traffic_t *traffic, uint64_t t_us, void (*apply)(tr
 static void end_engagement(traffic_t *traffic, uint64_t t_us) {
     apply_to_engaged(traffic, t_us, watch_stop);
     traffic->totals.engaged_us += t_us - traffic->engaged_since_us;
-    traffic->is_engaged = false;
 }
 
 /** Follow the mode that the VCU reports. */
 static void take_mode(traffic_t *traffic, uint8_t flags, uint64_t t_us) {
-    const bool is_autopilot = (flags & AGV_VCU_FLAG_AUTOPILOT) != 0u;
-    traffic->frames_not_engaged = is_autopilot ? 0u : traffic->frames_not_engaged + 1u;
-    if (is_autopilot && !traffic->is_engaged) {
-        traffic->is_engaged = true;
-        traffic->engaged_since_us = t_us;
-        traffic->totals.engagements++;
-        apply_to_engaged(traffic, t_us, watch_start);
-    } else if (traffic->is_engaged && (traffic->frames_not_engaged >= traffic->config.mode_frames)) {
-        end_engagement(traffic, t_us);
+    if (!engagement_take(&traffic->engagement, &traffic->config, flags)) {
+        return;
     }
+    if (!traffic->engagement.is_engaged) {
+        end_engagement(traffic, t_us);
+        return;
+    }
+    traffic->engaged_since_us = t_us;
+    traffic->totals.engagements++;
+    apply_to_engaged(traffic, t_us, watch_start);
 }
 
 /** Whether the setting of a heartbeat's sender accepts a step of its counter. */
@@ -284,8 +283,9 @@ static int compare(const void *left, const void *right) {
 }
 
 void traffic_end(traffic_t *traffic, uint64_t t_us) {
-    if (traffic->is_engaged) {
+    if (traffic->engagement.is_engaged) {
         end_engagement(traffic, t_us);
+        traffic->engagement.is_engaged = false;
     }
     for (size_t i = 0u; i < traffic->all_count; i++) {
         if (traffic->all[i]->watch != NULL) {

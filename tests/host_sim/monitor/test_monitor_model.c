@@ -41,17 +41,110 @@ void test_gaps_and_their_reset(void) {
     TEST_ASSERT_EQUAL(100000, row->gap_max_us);
 }
 
+/* 363h every 10 ms, with a mode, up to a time. */
+static void report_mode(unsigned from_ms, unsigned to_ms, const char *mode) {
+    char data[17];
+    for (unsigned ms = from_ms; ms <= to_ms; ms += 10u) {
+        (void)snprintf(data, sizeof data, "000000000000%s%02X", mode, (ms / 10u) % 256u);
+        frame(VEHICLE, ms, 0x363, data);
+    }
+}
+
 void test_late_at_the_deadline_and_back(void) {
+    frame(VEHICLE, 100, 0x0A3, "0800000000000000");
+    wait_until(225);
+    TEST_ASSERT_FALSE(row_of(VEHICLE, 0x0A3)->is_late);
+    wait_until(230);
+    TEST_ASSERT_TRUE(row_of(VEHICLE, 0x0A3)->is_late);
+    TEST_ASSERT_EQUAL(1, said("vcu: 0A3h gear_status late: no frame for 125 ms"));
+    TEST_ASSERT_EQUAL(225, said_at("0A3h gear_status late"));
+    frame(VEHICLE, 1100, 0x0A3, "0800000000000000");
+    TEST_ASSERT_FALSE(row_of(VEHICLE, 0x0A3)->is_late);
+    TEST_ASSERT_EQUAL(1, said("vcu: 0A3h gear_status back after 1000 ms"));
+}
+
+/* Shows: SUP-3 */
+void test_in_manual_no_command_is_late(void) {
+    const uint32_t commands[] = {0x168, 0x075, 0x065};
+    report_mode(0, 90, "40");
     frame(VEHICLE, 100, 0x168, "0800000000000000");
-    wait_until(450);
-    TEST_ASSERT_FALSE(row_of(VEHICLE, 0x168)->is_late);
-    wait_until(460);
+    frame(VEHICLE, 100, 0x075, "0000000000000000");
+    frame(VEHICLE, 100, 0x065, "2823000000000000");
+    report_mode(100, 2000, "40");
+    for (size_t i = 0u; i < 3u; i++) {
+        TEST_ASSERT_TRUE(row_of(VEHICLE, commands[i])->is_silent);
+        TEST_ASSERT_FALSE(monitor_is_late(monitor, row_of(VEHICLE, commands[i])));
+    }
+    TEST_ASSERT_EQUAL(0, said("late"));
+    TEST_ASSERT_EQUAL(1, said("ai: 168h gear_command silent: no frame for 350 ms"));
+    TEST_ASSERT_EQUAL(450, said_at("168h gear_command silent"));
+    frame(VEHICLE, 2010, 0x168, "0800000000000000");
+    TEST_ASSERT_FALSE(row_of(VEHICLE, 0x168)->is_silent);
+    TEST_ASSERT_FALSE(monitor_is_late(monitor, row_of(VEHICLE, 0x168)));
+    TEST_ASSERT_EQUAL(1, said("168h gear_command back after 1910 ms"));
+}
+
+/* Shows: SUP-3 */
+void test_an_engagement_restarts_the_deadline_of_a_command(void) {
+    frame(VEHICLE, 100, 0x168, "0800000000000000");
+    report_mode(110, 1000, "40");
+    report_mode(1010, 1360, "80");
+    TEST_ASSERT_EQUAL(0, said("late"));
+    report_mode(1370, 1380, "80");
     TEST_ASSERT_TRUE(row_of(VEHICLE, 0x168)->is_late);
-    TEST_ASSERT_EQUAL(1, said("ai: 168h gear_command late: no frame for 350 ms"));
-    TEST_ASSERT_EQUAL(450, said_at("168h gear_command late"));
-    frame(VEHICLE, 1100, 0x168, "0800000000000000");
-    TEST_ASSERT_FALSE(row_of(VEHICLE, 0x168)->is_late);
-    TEST_ASSERT_EQUAL(1, said("ai: 168h gear_command back after 1000 ms"));
+    TEST_ASSERT_EQUAL(1, said("168h gear_command late: no frame for 1260 ms"));
+    TEST_ASSERT_EQUAL(1360, said_at("168h gear_command late"));
+    report_mode(1390, 3000, "40"); /* after the third one it is engaged no more */
+    TEST_ASSERT_FALSE(monitor_is_late(monitor, row_of(VEHICLE, 0x168)));
+    TEST_ASSERT_EQUAL(1, said("late"));
+}
+
+/* Shows: SUP-9 */
+void test_both_modes_neither_begin_nor_end_an_engagement(void) {
+    report_mode(0, 50, "C0");
+    TEST_ASSERT_FALSE(monitor->engagement.is_engaged);
+    report_mode(60, 60, "80");
+    report_mode(70, 80, "40");
+    report_mode(90, 120, "C0");
+    report_mode(130, 140, "40");
+    TEST_ASSERT_TRUE(monitor->engagement.is_engaged);
+    report_mode(150, 150, "40");
+    TEST_ASSERT_FALSE(monitor->engagement.is_engaged);
+}
+
+/* Shows: SUP-8 */
+void test_in_manual_the_loss_of_43fh_is_a_warning_unless_the_setting_says_trip(void) {
+    frame(VEHICLE, 100, 0x43F, "0000000000000001");
+    report_mode(100, 1000, "40");
+    TEST_ASSERT_EQUAL(0, said("late"));
+    TEST_ASSERT_EQUAL(1, said("ai: 43Fh turn_signal_command silent: no frame for 350 ms"));
+    TEST_ASSERT_EQUAL(MONITOR_WARN, monitor_log_back(&monitor->log, 0)->level);
+    report_mode(1010, 1020, "80"); /* no engagement makes a heartbeat younger */
+    TEST_ASSERT_EQUAL(1010, said_at("43Fh turn_signal_command late: no frame for 910 ms"));
+    end();
+    settings.ai_lost_in_manual = AGV_AI_LOST_TRIP;
+    begin(false, false);
+    frame(VEHICLE, 100, 0x43F, "0000000000000001");
+    report_mode(100, 1000, "40");
+    TEST_ASSERT_EQUAL(450, said_at("43Fh turn_signal_command late: no frame for 350 ms"));
+}
+
+void test_a_vcu_that_is_lost_ends_the_engagement(void) {
+    report_mode(0, 100, "80");
+    frame(VEHICLE, 100, 0x168, "0800000000000000");
+    wait_until(2000);
+    TEST_ASSERT_EQUAL(1, said("late"));
+    TEST_ASSERT_EQUAL(1, said("363h vehicle_status late"));
+    TEST_ASSERT_TRUE(row_of(VEHICLE, 0x168)->is_silent);
+}
+
+void test_the_longest_gap_is_no_lateness_in_manual(void) {
+    frame(VEHICLE, 100, 0x168, "0800000000000000");
+    report_mode(110, 1000, "40");
+    frame(VEHICLE, 1005, 0x168, "0800000000000000");
+    TEST_ASSERT_FALSE(row_of(VEHICLE, 0x168)->has_been_late);
+    report_mode(1010, 1020, "80"); /* nor is it one when the engagement begins */
+    TEST_ASSERT_FALSE(monitor_is_late(monitor, row_of(VEHICLE, 0x168)));
 }
 
 void test_a_short_lateness_is_shown_for_half_a_second_at_least(void) {

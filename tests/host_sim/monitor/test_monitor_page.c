@@ -82,6 +82,22 @@ void test_a_row_near_its_deadline_and_a_late_one(void) {
     TEST_ASSERT_EQUAL(STYLE_BAD, view->cells[11][31].style);
 }
 
+/* Shows: SUP-3 */
+void test_a_command_that_is_silent_in_manual_is_grey(void) {
+    frame(VEHICLE, 100, 0x43F, "0000000000000000");
+    frame(VEHICLE, 100, 0x168, "0800000000000000");
+    wait_until(1000);
+    frame(VEHICLE, 1010, 0x168, "0800000000000000");
+    wait_until(1500);
+    draw(80, 24);
+    TEST_ASSERT_EQUAL_STRING("168h gear_command          910 ████████   910   910     silent P", line(7));
+    TEST_ASSERT_EQUAL(STYLE_DIM, view->cells[7][0].style);
+    TEST_ASSERT_EQUAL(STYLE_DIM, view->cells[7][31].style);
+    TEST_ASSERT_EQUAL(STYLE_DIM, view->cells[7][48].style); /* the longest gap */
+    TEST_ASSERT_EQUAL(STYLE_WARN, view->cells[6][0].style);
+    TEST_ASSERT_NOT_NULL(strstr(line(6), "silent"));
+}
+
 void test_signals_and_alarms(void) {
     frame(VEHICLE, 100, 0x363, "B004000001009007"); /* 1200 m/h, remote signal lost, left turn signal, autopilot */
     frame(VEHICLE, 101, 0x065, "E02E000000000000"); /* 12000 - 9000 = 300.0 deg */

@@ -43,7 +43,7 @@ class Screen(hostsim.Case):
         self.assertEqual(lines[5], "ID   message               age deadline gap min/max cnt signals")
         self.assertRegex(lines[9], "^065h steering_command      [0-9]{3} ████████  25.0  25.0     LATE 0.0 deg$")
         self.assertEqual(lines[11], "0A3h gear_status          25.0 █▌······  25.0  25.0     P")
-        self.assertEqual(lines[19], "      1.157  ai         43Fh turn_signal_command late: no frame for 350 ms")
+        self.assertEqual(lines[19], "      1.157  ai         43Fh turn_signal_command silent: no frame for 350 ms")
         self.assertRegex(lines[23], "^ space  pause .* q  quit$")
         tmux.press("q")
         self.assertEqual(tmux.exit_status(), 0)
@@ -168,6 +168,18 @@ class Lines(hostsim.Case):
         begin = time.monotonic()
         self.monitor("--log", EXAMPLE, "--speed", "4")
         self.assertGreater(time.monotonic() - begin, 1.394 / 4)
+
+    # Shows: SUP-3
+    def test_in_manual_an_ai_computer_may_be_switched_off(self):
+        ai = ["(1700000000.%06d) can0 %s\n" % (1000 * ms + 5, text) for ms in range(0, 500, 25)
+              for text in ("43F#00000000000000%02X" % (ms // 25), "168#0800000000000000", "075#0000000000000000",
+                           "065#2823000000000000")]
+        self.write("b.log", "".join(sorted(long_log(3).splitlines(keepends=True) + ai)))
+        done = self.monitor("--log", "b.log", "--speed", "max", cwd=self.folder)
+        self.assertEqual(done.returncode, 0)
+        self.assertNotIn(" late", done.stdout)
+        self.assertEqual([line.split()[3] for line in done.stdout.splitlines() if " silent: no frame" in line],
+                         ["065h", "43Fh", "168h", "075h"])
 
     def test_a_log_on_standard_input(self):
         done = subprocess.run([hostsim.PROGRAM, "monitor", "--log", "-", "--speed", "max"], input=EXAMPLE.read_bytes(),
