@@ -41,9 +41,9 @@ static bool read_frame_bytes(const yaml_reader_t *reader, const yaml_node_t *nod
 
 #define MEMBER(kind, key, ...) YAML_##kind(key, scenario_frame_t, __VA_ARGS__)
 /* What expected and forbidden frames have in common. */
-#define WHICH_FRAME                                                                                                    \
+#define WHICH_FRAME(id_max)                                                                                            \
     YAML_OPTIONAL(MEMBER(WORD, "from", from, SENDERS)), YAML_OPTIONAL(YAML_CALL("side", read_frame_side, &SIDE)),      \
-        YAML_OPTIONAL(MEMBER(ID, "id", id, 0x1FFFFFFF)),                                                               \
+        YAML_OPTIONAL(MEMBER(ID, "id", id, id_max)),                                                                   \
         YAML_OPTIONAL(YAML_CALL("message", read_frame_message, &SCENARIO_MESSAGE_SHAPE)),                              \
         YAML_OPTIONAL(YAML_CALL("bytes", read_frame_bytes, &PAYLOAD))
 
@@ -64,7 +64,7 @@ static bool names_one_id(const yaml_reader_t *reader, const yaml_node_t *node, c
 }
 
 static const yaml_key_t FRAME[] = {
-    WHICH_FRAME,
+    WHICH_FRAME(AGV_ID_MAX), /* the messages have 11 bits */
     SCENARIO_WHEN(scenario_frame_t, "at_ms", at_ms),
     YAML_OPTIONAL(MEMBER(TIME, "first_since_ms", first_since_ms, 0, SCENARIO_DURATION_MAX_MS),
                   YAML_GIVEN(scenario_frame_t, is_first)),
@@ -95,7 +95,8 @@ bool scenario_parse_frame(const yaml_reader_t *reader, const yaml_node_t *node, 
            yaml_reader_fail(reader, node, "an expected frame: 'id' or 'message' is missing");
 }
 
-static const yaml_key_t NEVER[] = {WHICH_FRAME, SCENARIO_WHEN(scenario_frame_t, "at_ms", at_ms)};
+/* An extended frame must not be, either: a gateway may not pass it. */
+static const yaml_key_t NEVER[] = {WHICH_FRAME(0x1FFFFFFF), SCENARIO_WHEN(scenario_frame_t, "at_ms", at_ms)};
 const yaml_shape_t SCENARIO_NEVER_SHAPE = {YAML_MAP_SHAPE(NEVER), .rules = {{YAML_RULE_NOT_BOTH, "at_ms", "after"},
                                                                             {YAML_RULE_NEEDS, "after", "within"},
                                                                             {YAML_RULE_NEEDS, "within", "after"},

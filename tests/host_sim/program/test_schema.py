@@ -196,6 +196,11 @@ class Schemas(hostsim.Case):
         self.assertTrue(self.is_valid("scenario", BASE))
         print(f"\n{len(SHIPPED)} scenarios are valid", end=" ")
 
+    def test_an_expected_frame_has_11_bits(self):
+        for identifier, good in (("7FFh", True), ("0x800", False), ("2048", False)):
+            text = BASE.replace("id: 168h", "id: " + identifier)
+            self.assertEqual((self.is_valid("scenario", text), self.refusal("scenario", text) == ""), (good, good), identifier)
+
     def test_every_difference_is_one(self):
         for name, (old, new, said) in MEANING.items():
             with self.subTest(name):

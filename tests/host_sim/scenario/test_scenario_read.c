@@ -393,6 +393,8 @@ void test_what_is_wrong_in_an_expectation_is_refused_with_its_line(void) {
         {HEAD "expect:\n  states: [{to: INIT, at_ms: [1]}]\n", "s.yaml:5: at_ms: a number or [lowest, highest]"},
         {HEAD "expect:\n  states: [{to: INIT, at_ms: [1, x]}]\n", "s.yaml:5: at_ms: 'x' is not a time: 250ms"},
         {EXPECT("frames: [{at_ms: 1}]"), "s.yaml:6: an expected frame: 'id' or 'message' is missing"},
+        {EXPECT("frames: [{id: 0x800, at_ms: 1}]"), "s.yaml:6: id: 0x800 is above 7FFh"},
+        {EXPECT("never: [{id: 20000000h}]"), "s.yaml:6: id: 20000000h is above 1FFFFFFFh"},
         {EXPECT("frames: [{id: 168h}]"), "s.yaml:6: an expected frame: 'at_ms' is missing"},
         {EXPECT("frames: [{id: 168h, message: gear_command, at_ms: 1}]"),
          "s.yaml:6: either 'id' or 'message', not both"},
