@@ -50,7 +50,25 @@ const option_t *options_at(const option_syntax_t *syntax, size_t index) {
     return NULL;
 }
 
+/** The only option that begins with what was written, of which at least a letter. @return NULL: none, or several do */
+static const char *abbreviated(const option_syntax_t *syntax, const char *argument, size_t length) {
+    const char *only = NULL;
+    size_t found = 0u;
+    for (size_t i = 0u; (length > strlen("--")) && (i < OPTIONS_MAX); i++) {
+        const option_t *option = options_at(syntax, i);
+        if ((option != NULL) && (strncmp(option->name, argument, length) == 0)) {
+            only = option->name;
+            found++;
+        }
+    }
+    return (found == 1u) ? only : NULL;
+}
+
 static bool refuse_unknown(const option_syntax_t *syntax, const char *argument, size_t length) {
+    const char *whole = abbreviated(syntax, argument, length);
+    if (whole != NULL) {
+        return report("unknown option '%s': did you mean '%s'?", argument, whole);
+    }
     char meant[SUGGEST_SIZE];
     suggestion_t suggestion = suggest_begin(argument, length);
     size_t next = 0u;
@@ -58,6 +76,7 @@ static bool refuse_unknown(const option_syntax_t *syntax, const char *argument, 
         suggest_offer(&suggestion, option->name, strlen(option->name));
         next++;
     }
+    suggest_offer(&suggestion, "--help", strlen("--help"));
     if (suggestion.word != NULL) {
         return report("unknown option '%s'%s", argument, suggest_text(&suggestion, meant));
     }

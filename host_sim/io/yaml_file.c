@@ -9,6 +9,10 @@
 
 /** Read a whole file. @return NULL: reported. The caller frees it. */
 static unsigned char *read_file(const char *path, size_t *size) {
+    if (strcmp(path, "-") == 0) { /* of a log it means that, so it is not taken for a name here */
+        (void)report("-: standard input is not read here; give the name of a file");
+        return NULL;
+    }
     FILE *file = fopen(path, "rb");
     if (file == NULL) {
         (void)report("%s: %s", path, strerror(errno));

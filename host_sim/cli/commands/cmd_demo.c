@@ -133,7 +133,8 @@ static status_t print_result(const work_t *work, bool good) {
     const scenario_check_t *check = &work->run.check;
 
     if (good) {
-        (void)fprintf(work->text_out, "\nAll %zu expectations passed.\n", check->expectation_count);
+        const size_t count = check->expectation_count;
+        (void)fprintf(work->text_out, "\nAll %zu expectation%s passed.\n", count, (count == 1u) ? "" : "s");
         return STATUS_OK;
     }
     (void)fprintf(work->text_out, "\nExpectations FAILED, %s:\n", work->path);

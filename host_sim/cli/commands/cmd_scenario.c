@@ -185,12 +185,13 @@ static const char *find_unusable(work_t *work, char **files) {
 }
 
 static void print_result(const work_t *work, const char *file, const result_t *result) {
+    const size_t count = work->run.check.expectation_count;
+    const char *plural = (count == 1u) ? "" : "s";
     if (result->failure_count == 0u) {
-        (void)fprintf(work->text_out, "ok      %s: %zu expectations\n", file, work->run.check.expectation_count);
+        (void)fprintf(work->text_out, "ok      %s: %zu expectation%s\n", file, count, plural);
         return;
     }
-    (void)fprintf(work->text_out, "FAILED  %s: %zu of %zu expectations\n", file, result->failure_count,
-                  work->run.check.expectation_count);
+    (void)fprintf(work->text_out, "FAILED  %s: %zu of %zu expectation%s\n", file, result->failure_count, count, plural);
     for (size_t i = 0u; (i < result->failure_count) && (i < SCENARIO_FAILURES_MAX); i++) {
         (void)fprintf(work->text_out, "        %s\n", result->failures[i]);
     }

@@ -101,6 +101,20 @@ class Command(hostsim.Case):
         self.assertEqual(result.status, 0, result.stderr)
         self.assertEqual(result.stdout, "ok      s.yaml: 3 expectations\n1 scenario: 1 passed, 0 failed\n")
 
+    def test_a_single_expectation(self):
+        for states, status, said in (("[{to: INIT, at_ms: 0}]", 0, "ok      s.yaml: 1 expectation\n"),
+                                     ("[{to: SAFE, at_ms: 0}]", 1, "FAILED  s.yaml: 1 of 1 expectation\n")):
+            result = self.scenario("name: n\nshows: [SUP-2]\nduration_ms: 1\nexpect: {states: %s}\n" % states)
+            self.assertEqual(result.status, status, result.stdout)
+            self.assertIn(said, result.stdout)
+
+    def test_standard_input_is_no_file(self):
+        self.write("s.yaml", GOOD)
+        says = "host_sim: -: standard input is not read here; give the name of a file\n"
+        for arguments in (("-",), ("s.yaml", "-"), ("--config", "-", "s.yaml")):
+            self.assert_refused(self.run_program("scenario", *arguments, stdin=GOOD.encode()), says)
+        self.assert_refused(self.run_program("replay", "--config", "-", "log"), says)
+
     def test_it_says_what_did_not_hold_and_what_was_seen(self):
         result = self.scenario(GOOD.replace("[510, 513]", "[500, 505]"))
         self.assertEqual(result.status, 1)
