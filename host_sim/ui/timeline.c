@@ -248,7 +248,7 @@ static void show_reported(timeline_t *timeline, uint64_t t_us, const hal_can_fra
         const bool stopped = (wheels.left_mm_s == 0) && (timeline->speed_mm_s != 0);
         timeline->speed_mm_s = wheels.left_mm_s;
         if (stopped) {
-            line(timeline, t_us, "vcu", "stands still");
+            line(timeline, t_us, "vcu", "reports 0.00 m/s");
         }
     } else {
         return;

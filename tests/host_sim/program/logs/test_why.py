@@ -283,6 +283,13 @@ class Text(Case):
         self.assertIn("tripped     at 2.107 s (22:13:22.107): STEERING_COMMAND_TIMEOUT", lines)
         self.assert_refused(self.run_program("replay", "--timeline", "--why", "-", "my.log"), "--timeline")
 
+    def test_below_the_speed_of_standstill_and_0_are_told_apart(self):
+        example = pathlib.Path(__file__).parents[4] / "host_sim/examples/ai-stops.log"
+        text = self.run_good("replay", "--timeline", example).stdout
+        self.assertIn("    1.301 s  vcu         reports 0.00 m/s ", text)
+        self.assertIn("; stands 1.281 s\n", text)
+        self.assertNotIn("stands still", text)
+
 
 class Causes(Case):
     """The sentence behind `why`."""
