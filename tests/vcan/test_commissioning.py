@@ -37,7 +37,7 @@ class Checklist(unittest.TestCase):
                 vehicle = subprocess.Popen(["sh", "-c", 'sleep 0.3; exec "$0" vehicle --can can0 --for 20s', canbus.PROGRAM],
                                            stdout=subprocess.DEVNULL) if listens else None
                 done = subprocess.run(["bash", "-c", command], cwd=folder, stdout=subprocess.PIPE,
-                                      stderr=subprocess.STDOUT, timeout=300, check=False, text=True)
+                                      stderr=subprocess.STDOUT, check=False, text=True)  # no timeout: in_memory.py
                 if vehicle:
                     vehicle.terminate()
                     vehicle.wait()

@@ -3,6 +3,8 @@
 The vehicle drives: in manual mode first, then in autopilot mode, in which gear, throttle and steering of the vehicle follow
 the commands of the AI computer with a delay.
 """
+import bisect
+import functools
 import random
 
 import traffic
@@ -13,18 +15,23 @@ SOME_CYCLES = (5, 10, 20, 25, 40, 50, 100)
 ENGAGED_MS, MANUAL_MS, END_MS = 6000, 34000, 40000
 
 
+def course(steps, first=0):
+    """The times from which on each value holds, and the values; `first` from the start on."""
+    return tuple(zip((0, first), *steps))
+
+
 class Drive:
     """What the AI computer commands, and what the vehicle does, at a time in ms."""
 
     def __init__(self, draw, lag_ms):
         self.draw = draw
         self.lag_ms = lag_ms
-        self.throttles = [(0, 0)] + [(t, draw.choice((0, 20, 40, 75, 125))) for t in range(7000, MANUAL_MS - 3000, 2500)]
-        self.angles = [(0, 0)] + [(t, draw.randrange(-1500, 1500)) for t in range(7500, MANUAL_MS - 2000, 1500)]
-        self.angles.append((MANUAL_MS - 1500, 0))
-        self.gears = [(0, traffic.GEAR_N), (6300, traffic.GEAR_D), (19000, traffic.GEAR_N), (19900, traffic.GEAR_R),
-                      (27000, traffic.GEAR_N), (27700, traffic.GEAR_D)]
-        self.lights = [(0, 0), (9000, 0x10), (14000, 0), (22000, 0x20), (26000, 0)]
+        self.throttles = course((t, draw.choice((0, 20, 40, 75, 125))) for t in range(7000, MANUAL_MS - 3000, 2500))
+        angles = [(t, draw.randrange(-1500, 1500)) for t in range(7500, MANUAL_MS - 2000, 1500)]
+        self.angles = course([*angles, (MANUAL_MS - 1500, 0)])
+        self.gears = course([(6300, traffic.GEAR_D), (19000, traffic.GEAR_N), (19900, traffic.GEAR_R),
+                             (27000, traffic.GEAR_N), (27700, traffic.GEAR_D)], traffic.GEAR_N)
+        self.lights = course([(9000, 0x10), (14000, 0), (22000, 0x20), (26000, 0)])
 
     @staticmethod
     def engaged(t_ms):
@@ -32,7 +39,8 @@ class Drive:
 
     @staticmethod
     def at(steps, t_ms):
-        return [value for since, value in steps if since <= t_ms][-1]
+        since, values = steps
+        return values[bisect.bisect_right(since, t_ms) - 1]
 
     def command(self, steps, t_ms, idle):
         return self.at(steps, t_ms) if self.engaged(t_ms) else idle
@@ -42,6 +50,7 @@ class Drive:
             return self.at(self.gears, t_ms - self.lag_ms)
         return traffic.GEAR_D if 2000 <= t_ms < 4500 else traffic.GEAR_P if not self.engaged(t_ms) else traffic.GEAR_N
 
+    @functools.lru_cache(maxsize=2000)
     def throttle(self, t_ms):
         if self.engaged(t_ms):
             return self.command(self.throttles, t_ms - self.lag_ms, 0)
@@ -52,10 +61,12 @@ class Drive:
         if not self.engaged(t_ms):
             return 200 if 2600 <= t_ms < 3600 else 0
         asked = t_ms - self.lag_ms
-        begin, to = [step for step in self.angles if step[0] <= asked][-1]
-        before = ([value for since, value in self.angles if since < begin] or [0])[-1]
-        return round(before + (to - before) * min(1.0, (asked - begin) / 500))
+        since, values = self.angles
+        step = bisect.bisect_right(since, asked) - 1
+        before = values[max(0, step - 1)]
+        return round(before + (values[step] - before) * min(1.0, (asked - since[step]) / 500))
 
+    @functools.lru_cache(maxsize=200)
     def speed(self, t_ms):
         """mm/s: the throttle of the last 800 ms."""
         return round(sum(self.throttle(max(0, t_ms - back)) for back in range(0, 800, 100)) * 1.5)

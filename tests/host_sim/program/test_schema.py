@@ -34,7 +34,7 @@ FLAG = re.compile(r"true|True|TRUE|false|False|FALSE")
 NOTHING = re.compile(r"~|null|Null|NULL|")
 
 
-class Core(yaml.SafeLoader):
+class Core(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):
     """YAML 1.2, as editors read it: `off` and `N` are texts."""
     yaml_implicit_resolvers = {}
 

@@ -111,7 +111,7 @@ def frames(duration_ms, engage_ms=None, ids=None, interface="can0", ai_interface
 
 
 def stamp(t_us):
-    return "(%010d.%06d)" % (t_us // 1000000, t_us % 1000000)
+    return "(%010d.%06d)" % divmod(t_us, 1000000)
 
 
 BASE_US = 1700000000 * 1000000
@@ -119,4 +119,5 @@ BASE_US = 1700000000 * 1000000
 
 def log(traffic, base_us=BASE_US):
     """Frames as a candump log."""
-    return "".join("%s %s %s\n" % (stamp(base_us + f.t_us), f.interface, f.text()) for f in traffic)
+    return "".join(["(%010d.%06d) %s %03X#%s\n" %
+                    (*divmod(base_us + f.t_us, 1000000), f.interface, f.can_id, f.data.hex().upper()) for f in traffic])
