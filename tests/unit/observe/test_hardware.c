@@ -494,6 +494,17 @@ void test_a_slow_first_clock_is_found_in_a_second_of_the_other_one(void) {
     TEST_ASSERT_TRUE(is_active(AGV_FAULT_CLOCK_DEVIATION));
 }
 
+/* A board with a second clock may have no inputs. */
+/* Shows: HW-1, HW-2, HW-4 */
+void test_a_second_clock_makes_no_input(void) {
+    start_clocks(0, 0);
+    for (unsigned i = 0; i < 200; i++) {
+        clocks(1, 1);
+    }
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
+    TEST_ASSERT_FALSE(is_active(AGV_FAULT_EMERGENCY_STOP));
+}
+
 /* The deviation of a second does not spoil the next one. */
 /* Shows: HW-4 */
 void test_the_fault_ends_with_a_good_second(void) {

@@ -889,3 +889,39 @@ void test_an_engagement_begins_a_way_at_0(void) {
     throttle(76);
     expect_after(100, THROTTLE);
 }
+
+/* Cleared, and 25.0 degrees or 25 counts back: in the next engagement one step of 25 clears again. */
+/* Shows: SUP-10, SUP-11 */
+void test_an_engagement_forgets_the_steps_back(void) {
+    steer(10000);
+    run(400);
+    measured(9250);
+    measured(9000);
+    command_throttle(0);
+    throttle(100);
+    run(400);
+    throttle(75);
+    throttle(100);
+    agv_motion_checks_engage(&checks);
+    begin();
+    run(499);
+    measured(9250);
+    throttle(75);
+    run(499);
+    TEST_ASSERT_FALSE(is_active(STEERING));
+    TEST_ASSERT_FALSE(is_active(THROTTLE));
+}
+
+/* A gain and a step back in the same millisecond: the step back counts from 0. */
+/* Shows: SUP-10 */
+void test_after_a_gain_a_step_back_counts_at_once(void) {
+    steer(10000);
+    run(400);
+    measured(9250);
+    measured(9000);
+    begin();
+    run(300);
+    measured(9250); /* only back where it was */
+    run(200);
+    TEST_ASSERT_TRUE(is_active(STEERING));
+}
