@@ -17,19 +17,14 @@ void agv_score_add(agv_score_t *score, bool bad, uint32_t frames) {
     score->present = (value == full) || (score->present && (value != 0u));
 }
 
-uint32_t agv_budget_sum(uint32_t sum_ms, bool condition, uint32_t elapsed_ms, uint32_t limit_ms) {
-    const uint32_t held_ms = condition ? elapsed_ms : 1u;
-    return (held_ms < (limit_ms - sum_ms)) ? (sum_ms + held_ms) : limit_ms;
-}
-
 void agv_budget_add(agv_budget_t *budget, bool condition, uint32_t elapsed_ms, uint32_t limit_ms) {
+    uint32_t value_ms = budget->value_ms;
+    uint32_t half = budget->bits & (uint32_t)BUDGET_HALF;
     if (elapsed_ms == 0u) {
         return;
     }
-    uint32_t value_ms = budget->value_ms;
-    uint32_t half = budget->bits & (uint32_t)BUDGET_HALF;
-    if ((budget->bits & (uint32_t)BUDGET_HELD) != 0u) {
-        value_ms = agv_budget_sum(value_ms, condition, elapsed_ms, limit_ms);
+    if (agv_held_since_tick((budget->bits & (uint32_t)BUDGET_HELD) != 0u, condition, elapsed_ms)) {
+        value_ms = (elapsed_ms < (limit_ms - value_ms)) ? (value_ms + elapsed_ms) : limit_ms;
     } else {
         const uint32_t down_ms = (elapsed_ms / 2u) + (elapsed_ms & half);
         half ^= elapsed_ms & (uint32_t)BUDGET_HALF;

@@ -27,19 +27,20 @@ void agv_score_add(agv_score_t *score, bool bad, uint32_t frames);
  */
 typedef struct {
     uint16_t value_ms;
-    uint8_t bits; /**< of score.c: the condition held at the last call; one ms without it has not been subtracted yet */
+    uint8_t bits; /**< of score.c: the condition held at the last tick; one ms without it has not been subtracted yet */
     bool present;
 } agv_budget_t;
 
 /**
- * The time for which a condition has held, when it held at the last tick. A late tick counts in full only if it still holds.
- * @param sum_ms before, at most limit_ms  @param condition what it is now  @param elapsed_ms at least 1
+ * Whether the time since the last tick counts as one with the condition: by what the condition was at that tick, so that one
+ * that is seen for the first time has lasted for 0 ms. After a late tick (more than 1 ms) by what it is now.
  */
-uint32_t agv_budget_sum(uint32_t sum_ms, bool condition, uint32_t elapsed_ms, uint32_t limit_ms);
+static inline bool agv_held_since_tick(bool before, bool now, uint32_t elapsed_ms) {
+    return (elapsed_ms == 1u) ? before : now;
+}
 
 /**
- * Add the time since the last tick, by what the condition was at that tick: a condition that is seen for the first time has
- * lasted for 0 ms.
+ * Add the time since the last tick, as agv_held_since_tick() says.
  * @param condition what it is now  @param elapsed_ms 0 for a frame, which changes nothing  @param limit_ms T
  */
 void agv_budget_add(agv_budget_t *budget, bool condition, uint32_t elapsed_ms, uint32_t limit_ms);

@@ -13,19 +13,16 @@ void agv_confirmation_park_sent(agv_confirmation_t *confirmation) {
     confirmation->park_sent = true;
 }
 
-/*
- * Add the time since the last tick, if the confirmation was missing then. Returns whether it is missing and the total has
- * reached the limit.
- */
+/* Add the time since the last tick. Returns whether the confirmation is missing and the total has reached the limit. */
 static bool add(agv_missing_t *missing, bool is_missing, uint32_t elapsed_ms, uint32_t limit_ms) {
     if (elapsed_ms == 0u) {
         return false;
     }
-    const bool was_missing = missing->at_tick;
-    missing->at_tick = is_missing;
-    if (was_missing) {
-        missing->sum_ms = (uint16_t)agv_budget_sum(missing->sum_ms, is_missing, elapsed_ms, limit_ms);
+    if (agv_held_since_tick(missing->at_tick, is_missing, elapsed_ms)) {
+        const uint32_t sum_ms = missing->sum_ms;
+        missing->sum_ms = (uint16_t)((elapsed_ms < (limit_ms - sum_ms)) ? (sum_ms + elapsed_ms) : limit_ms);
     }
+    missing->at_tick = is_missing;
     return is_missing && (missing->sum_ms == limit_ms);
 }
 

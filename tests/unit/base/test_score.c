@@ -150,12 +150,9 @@ static void expect_budget(unsigned value_ms, bool present) {
     TEST_ASSERT_EQUAL(present, budget.present);
 }
 
-/* However late the tick is. */
 /* Shows: SUP-10, SUP-11, SUP-12 */
-TEST_CASE(1)
-TEST_CASE(600)
-void test_a_condition_that_is_seen_for_the_first_time_has_lasted_for_0_ms(uint32_t elapsed_ms) {
-    agv_budget_add(&budget, true, elapsed_ms, 500);
+void test_a_condition_that_is_seen_for_the_first_time_has_lasted_for_0_ms(void) {
+    agv_budget_add(&budget, true, 1, 500);
     expect_budget(0, false);
     agv_budget_add(&budget, true, 1, 500);
     expect_budget(1, false);
@@ -179,12 +176,28 @@ void test_the_ms_before_the_tick_that_sees_the_end_counts(void) {
     expect_budget(500, true);
 }
 
-/* The condition may have ended right after the last tick, so 1 ms counts. */
+/* It hides no condition that began since the last tick, and goes on with none that ended. */
 /* Shows: SUP-10, SUP-11, SUP-12, TIM-4 */
-void test_of_a_late_tick_that_sees_the_end_1_ms_counts(void) {
-    begin(true, 500);
+void test_a_late_tick_counts_by_what_it_sees(void) {
+    agv_budget_add(&budget, true, 2, 500);
+    expect_budget(2, false);
+    agv_budget_add(&budget, true, 300, 500);
+    expect_budget(302, false);
+    agv_budget_add(&budget, false, 4, 500);
+    expect_budget(300, false);
     agv_budget_add(&budget, false, 300, 500);
-    expect_budget(1, false);
+    expect_budget(150, false);
+    agv_budget_add(&budget, true, 351, 500);
+    expect_budget(500, true);
+}
+
+/* Above idle in all but each second of ticks that come every 10 ms. */
+/* Shows: SUP-5, TIM-4 */
+void test_a_condition_that_pauses_at_each_second_late_tick_is_found(void) {
+    for (unsigned i = 0; i < 38; i++) {
+        agv_budget_add(&budget, i % 2 == 0, 10, 100);
+        TEST_ASSERT_EQUAL(i >= 36, budget.present); /* 5 ms in each two, and 10 */
+    }
 }
 
 /* It brings 0 ms, and does not change what the last tick saw. */

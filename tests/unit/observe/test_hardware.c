@@ -206,7 +206,7 @@ void test_a_late_tick_counts_in_full(uint32_t elapsed_ms, bool is_fault) {
 
 /* The output was closed at some time in a late step. Its contact still reads open: it is wrong from the end of that step on. */
 /* Shows: HW-1, TIM-4 */
-void test_of_a_late_tick_in_which_the_contact_became_wrong_nothing_counts(void) {
+void test_of_a_late_tick_in_which_the_output_changed_nothing_counts(void) {
     inputs.output_feedback = OPEN;
     ticks(10);
     output_closed = true;
@@ -231,16 +231,16 @@ void test_a_late_tick_in_which_the_output_changed_counts_1_ms(void) {
 }
 
 /*
- * A late tick of 10 ms, after 60 ms of a wrong contact; with a right one before it: after 61, and half of 1 ms less. After a
- * wrong one it counts in full if the contact is still wrong and the output has not changed, else as 1 ms. After a right one it
- * takes half of its time away, and if the output has changed, half of 1 ms.
+ * A late tick of 10 ms, after 60 ms of a wrong contact; with a right one before it: after 61, and half of 1 ms less. It counts
+ * by what it sees: up if the contact is wrong, down by half if not. If the output has changed, it counts as a tick of 1 ms,
+ * which counts by what the last one saw.
  */
 /* Shows: HW-1, TIM-4 */
 TEST_CASE(2, false, 2, 70)
-TEST_CASE(2, false, 1, 61)
+TEST_CASE(2, false, 1, 55)
 TEST_CASE(2, true, 1, 61)
 TEST_CASE(2, true, 2, 61)
-TEST_CASE(1, false, 2, 56)
+TEST_CASE(1, false, 2, 71)
 TEST_CASE(1, false, 1, 56)
 TEST_CASE(1, true, 1, 60)
 TEST_CASE(1, true, 2, 60)
@@ -295,8 +295,6 @@ void test_a_late_tick_takes_all_of_its_time_away(void) {
     begin();
     ticks(100);
     inputs.output_feedback = OPEN;
-    tick_after(0xFFFFFFFF); /* wrong until then */
-    TEST_ASSERT_TRUE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
     tick_after(0xFFFFFFFF);
     TEST_ASSERT_FALSE(is_active(AGV_FAULT_OUTPUT_FEEDBACK));
 }
