@@ -12,7 +12,7 @@
 #define AGV_CRC32_START 0xFFFFFFFFu
 
 /**
- * CRC-32 (IEEE 802.3, reflected) over bytes, which may come in several calls: pass AGV_CRC32_START to the first call, the
+ * CRC-32 (IEEE 802.3, reflected) over bytes, in one or several calls: pass AGV_CRC32_START to the first call, pass the
  * result of each call to the next, and invert the last result. "123456789" gives CBF43926h.
  */
 uint32_t agv_crc32(uint32_t crc, const void *bytes, size_t size);

@@ -160,8 +160,8 @@ typedef struct {
 } agv_wheel_speed_t;
 
 /**
- * Whether the gear, throttle, steering angle or EPS mode that a message carries is valid. The result is the one of the
- * agv_unpack_X of that message, without unpacking it.
+ * Whether the gear, throttle, steering angle or EPS mode that a message carries is valid. The result is that of
+ * agv_unpack_X for this message, without unpacking it.
  * @return true for messages in which every value is valid.
  */
 bool agv_value_is_valid(uint32_t message, const uint8_t data[AGV_DLC]);

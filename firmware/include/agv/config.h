@@ -73,7 +73,7 @@ typedef enum {
 /** Result of agv_config_check. */
 typedef struct {
     agv_config_problem_t problem;
-    uint16_t setting;  /**< AGV_SETTING_* index; AGV_SETTING_COUNT: the problem is not one of a setting */
+    uint16_t setting;  /**< AGV_SETTING_* index; AGV_SETTING_COUNT: the problem concerns no setting */
     agv_fault_t fault; /**< highest-ranking fault whose class must be its default and is not; AGV_FAULT_NONE: none */
 } agv_config_verdict_t;
 
@@ -90,8 +90,8 @@ bool agv_config_set(agv_config_t *config, uint32_t setting, uint16_t value);
 bool agv_config_is_trip(const agv_config_t *config, uint32_t fault);
 
 /**
- * The identifiers of a configuration (P1). Each is its setting id_...; one that is at its default is replaced by that of
- * the table when `id_set` is `table`.
+ * The identifiers of a configuration (P1). Each is the value of its setting id_...; when `id_set` is `table`, a setting
+ * at its default stands for the identifier of the table.
  */
 void agv_config_ids(const agv_config_t *config, agv_ids_t *ids);
 

@@ -2,7 +2,7 @@
  * @file recorder.h
  * The flight recorder (INT-3): a ring buffer of the last 256 events, each with a snapshot of the last frames, and the last
  * 8 trips, which only later trips replace. The shell of a target prints what is recorded here; `--events` of host_sim
- * prints it too, and the changes of faults that were left out. The same fault is recorded at most 4 times per second.
+ * also prints the changes of faults that the recorder leaves out. A fault is recorded at most 4 times per second.
  *
  * Place the struct in RAM that keeps its content over a reset. Each event has its own checksum: an interrupted write
  * loses only that event.
@@ -34,7 +34,7 @@ typedef enum {
     AGV_EVENT_OUTPUT = 3,  /**< a = 1: safety output closed, 0: opened */
     AGV_EVENT_RESET = 4,   /**< a = 1: accepted, 0: refused; missing = AGV_MISSING_* */
     AGV_EVENT_STARTUP = 5, /**< missing = AGV_MISSING_*: the conditions for leaving INIT that do not hold */
-    AGV_EVENT_CRASH = 6    /**< how the port ended the run before: a = hal_reset_cause_t, b = hal_end_t;
+    AGV_EVENT_CRASH = 6    /**< how the port ended the previous run: a = hal_reset_cause_t, b = hal_end_t;
                               frames[0] = program counter and link register, 4 bytes each, lowest byte first */
 } agv_event_kind_t;
 
@@ -52,7 +52,7 @@ typedef enum {
 #define AGV_MISSING_OUTPUT 0x400u   /**< the contact of the safety output does not read open (HW-1) */
 #define AGV_MISSING_ALL 0x7FFu      /**< all of these bits */
 
-/** An event as the supervisor hands it to the recorder. */
+/** An event as the supervisor passes it to the recorder. */
 typedef struct {
     uint8_t kind; /**< agv_event_kind_t */
     uint8_t a;
@@ -118,7 +118,7 @@ void agv_recorder_frame(agv_recorder_t *recorder, uint32_t message, const uint8_
  */
 void agv_recorder_add(agv_recorder_t *recorder, const agv_entry_t *entry, uint32_t time_ms);
 
-/** Record an AGV_EVENT_CRASH. Its frames[0] is @p addresses; its other frames are 0, and none was seen. */
+/** Record an AGV_EVENT_CRASH. Its frames[0] is @p addresses; its other frames and `seen` are 0. */
 void agv_recorder_add_crash(agv_recorder_t *recorder, const agv_entry_t *entry, const uint8_t addresses[AGV_DLC],
                             uint32_t time_ms);
 
@@ -135,8 +135,8 @@ uint32_t agv_recorder_next_sequence(const agv_recorder_t *recorder);
 bool agv_recorder_get(const agv_recorder_t *recorder, uint32_t sequence, agv_event_t *event);
 
 /**
- * Read one of the last trips: a change to TRIPPED that names a fault. A start that continues the trip of the run before is
- * none. Trips with a wrong checksum are not counted.
+ * Read one of the last trips: a change to TRIPPED that names a fault. A start that continues the trip of the previous
+ * run does not count. Trips with a wrong checksum are not counted.
  * @param index 0 = the latest
  * @return false if there is no such trip; then @p event is unchanged
  */

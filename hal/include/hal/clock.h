@@ -1,6 +1,6 @@
 /**
  * @file clock.h
- * The clocks. Only programs read the first one: the core gets the time as an argument.
+ * The clocks. Only programs read the first one: they pass the time to the core as an argument.
  */
 #ifndef HAL_CLOCK_H
 #define HAL_CLOCK_H

@@ -10,13 +10,13 @@
 
 #include "hal/hal.h"
 
-/** A contact, as read now: not debounced, not inverted by the core. */
+/** A contact, as read now: not debounced. The core does not invert it. */
 typedef enum { HAL_CONTACT_NONE = 0, HAL_CONTACT_OPEN = 1, HAL_CONTACT_CLOSED = 2 } hal_contact_t;
 
 /**
  * The inputs, hal_contact_t each. Any other value is a broken input, and so is HAL_CONTACT_NONE after another value. A broken
- * feedback contradicts the output in both positions. A broken emergency stop counts as open, and a press of a broken button
- * ends in vain.
+ * feedback contradicts the output in both positions. A broken emergency stop counts as open, and a press of a broken
+ * button ends without a reset.
  */
 typedef struct {
     uint8_t output_feedback; /**< contact of the safety output, read back: OPEN is the safe position (HW-1) */

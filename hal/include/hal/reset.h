@@ -7,7 +7,7 @@
 
 #include "hal/hal.h"
 
-/** A reset cause. A port reports HAL_RESET_POWER_ON only if it is certain, HAL_RESET_UNKNOWN if it cannot tell. */
+/** A reset cause. A port reports HAL_RESET_POWER_ON only if it is certain, HAL_RESET_UNKNOWN if it does not know. */
 typedef enum {
     HAL_RESET_POWER_ON,
     HAL_RESET_WATCHDOG,

@@ -1,8 +1,7 @@
 /**
  * @file safety_output.h
- * The hardware safety output: a contact that the integrator wires into the vehicle's drive enable. Open is safe. It must
- * not cut the supply of VCU, EPS or remote receiver.
- * A feedback of the contact is one of the inputs (inputs.h).
+ * The hardware safety output: a contact that the integrator wires into the vehicle's drive enable. Open is safe. It
+ * must not cut the supply of VCU, EPS or remote receiver. The feedback of the contact is one of the inputs (inputs.h).
  */
 #ifndef HAL_SAFETY_OUTPUT_H
 #define HAL_SAFETY_OUTPUT_H

@@ -1,6 +1,6 @@
 /**
  * @file self_test.h
- * The self-test of the target (HW-4). The port tests at boot, and goes on in the background.
+ * The self-test of the target (HW-4). The port tests at boot, and continues in the background.
  */
 #ifndef HAL_SELF_TEST_H
 #define HAL_SELF_TEST_H

@@ -1,8 +1,8 @@
 /**
  * @file store.h
- * Storage over a reset: the latch record, in RAM that a reset does not clear (but a power-on may), and a log of the flight
- * recorder's events in flash. The core never passes NULL pointers. Stored bytes may be read back corrupt: the caller puts
- * its own checksum into them.
+ * Storage that survives a reset: the latch record, in RAM that a reset does not clear (but a power-on may), and a log
+ * of the flight recorder's events in flash. The core never passes NULL pointers. Stored bytes may be read back corrupt:
+ * the caller adds its own checksum.
  */
 #ifndef HAL_STORE_H
 #define HAL_STORE_H
