@@ -75,9 +75,9 @@ def try_source(at, change, shown):
 
 
 def try_script(change, shown):
-    """The same for a script and the tests of tests/gates, on a copy of what these need."""
+    """The same for a script and the tests of tests/checks, on a copy of what these need."""
     with tempfile.TemporaryDirectory(dir=bench.BUILD) as folder:
-        for name in ("scripts", "tests/gates", "tests/support"):
+        for name in ("scripts", "tests/checks", "tests/support"):
             shutil.copytree(bench.ROOT / name, f"{folder}/{name}")
         text = changed_text((bench.ROOT / change.file).read_text(encoding="utf-8"), change)
         if text is None:
