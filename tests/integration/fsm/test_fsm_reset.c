@@ -470,10 +470,7 @@ void test_a_press_from_before_a_second_trip_does_not_reset_it(void) {
     expect_reset_by(1000);
     press(true);
     fixture_run(&f, 50);
-    walk_alarm(&f, ALARM_REMOTE_SIGNAL);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-    walk_alarm(&f, ALARM_NONE);
-    expect_reason(&f, AGV_FAULT_REMOTE_SIGNAL_LOST);
+    walk_trip(&f);
     expect_no_reset_before_a_new_press();
 }
 

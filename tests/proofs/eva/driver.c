@@ -141,6 +141,8 @@ static void sound_decisions(agv_core_t *core) {
     core->faults.outdated = any_bool();
     core->faults.transient = any_bool();
     core->faults.ai_loss_warns = any_bool();
+    core->confirmation.off.at_tick = any_bool();
+    core->confirmation.park.at_tick = any_bool();
     core->confirmation.park_sent = any_bool();
     core->confirmation.unconfirmed = any_bool();
     sound_reset_button(&core->reset_button);
