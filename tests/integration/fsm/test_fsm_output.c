@@ -255,6 +255,6 @@ void test_after_a_restart_autopilot_off_is_awaited_from_the_start(void) {
     fixture_mute_ai(&f, true);
     fixture_run(&f, 50);
     fixture_restart(&f, HAL_RESET_WATCHDOG);
-    expect_fault_after(&f, 495, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
-    expect_fault_after(&f, 10, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
+    expect_fault_after(&f, 499, AGV_FAULT_SAFE_STATE_UNCONFIRMED, false);
+    expect_fault_after(&f, 1, AGV_FAULT_SAFE_STATE_UNCONFIRMED, true);
 }

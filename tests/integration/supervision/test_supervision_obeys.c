@@ -1,6 +1,6 @@
 /* The vehicle obeys its commands (SUP-11), and both measurements of its speed agree (SUP-12): budgets. Calculated by
- * hand: after a frame a budget begins with the tick before f.now_ms, so the tick that reaches T ms is over at
- * f.now_ms + T. A budget decreases at half the rate. */
+ * hand: the tick in the millisecond of a frame sees it for the first time, so T ms are reached T ms later. A budget
+ * decreases at half the rate. */
 #include "one_fixture.h"
 #include "walk.h"
 

@@ -1,7 +1,7 @@
 /* STEERING_DEVIATION (SUP-10): a budget of 500 ms with the measured steering more than 50.0 degrees from its command; each
  * 25.0 degrees by which the measured angle has come nearer by its own motion empty it. Raw counts are 0.1 degree: 500 is 50.0
- * degrees. Calculated by hand: after a command the budget begins with the tick before f.now_ms, so the tick that reaches
- * 500 ms is over at f.now_ms + 500. */
+ * degrees. Calculated by hand: the tick in the millisecond of a frame sees it for the first time, so 500 ms are reached 500 ms
+ * later. */
 #include "one_fixture.h"
 #include "walk.h"
 
