@@ -57,7 +57,7 @@ class Hunt(hostsim.Case):
         whole = self.hunt("--seed", 3, "--runs", 550, "--found", "whole")
         self.hunt("--seed", 3, "--runs", 500, "--found", "parts", "--checkpoint", "state")
         self.assertRegex(self.interrupted("--checkpoint", "state"),
-                         r"^host_sim: interrupted after \d+ runs; the same command resumes from run 501\n$")
+                         r"^host_sim: interrupted after \d+ runs; the same command resumes from run 500\n$")
         rest = self.hunt("--seed", 3, "--runs", 550, "--found", "parts", "--checkpoint", "state")
         self.assertEqual(LAST.search(rest.stdout)[0].replace(LAST_TOOK.search(rest.stdout)[0], ""),
                          LAST.search(whole.stdout)[0].replace(LAST_TOOK.search(whole.stdout)[0], ""))
