@@ -165,7 +165,7 @@ void monitor_reset(monitor_t *monitor);
 uint64_t monitor_age_us(const monitor_t *monitor, const monitor_row_t *row);
 
 /** Whether a message is or was late within that time, by a deadline that counted. */
-bool monitor_is_late(const monitor_t *monitor, const monitor_row_t *row);
+bool monitor_is_late(const monitor_row_t *row);
 
 /** Frames a second, over the last half to whole second. @param counts of a row, or of the monitor */
 uint64_t monitor_rate(const monitor_t *monitor, uint64_t count, const uint64_t counts[2]);

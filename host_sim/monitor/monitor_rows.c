@@ -191,7 +191,6 @@ uint64_t monitor_age_us(const monitor_t *monitor, const monitor_row_t *row) {
     return (row->worst_us[1] > age_us) ? row->worst_us[1] : age_us;
 }
 
-bool monitor_is_late(const monitor_t *monitor, const monitor_row_t *row) {
-    (void)monitor;
+bool monitor_is_late(const monitor_row_t *row) {
     return row->is_late || row->was_late[0] || row->was_late[1];
 }

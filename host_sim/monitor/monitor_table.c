@@ -175,12 +175,13 @@ static int draw_signal(monitor_view_t *view, int y, int x, const signal_info_t *
 
 static void draw_signals(monitor_view_t *view, int y, int x, const monitor_t *monitor, const monitor_row_t *row,
                          monitor_style_t style) {
+    (void)monitor;
     signal_value_t value;
     if (row->count == 0u) {
         (void)monitor_view_put(view, y, x, style, "never received");
         return;
     }
-    if (monitor_is_late(monitor, row)) {
+    if (monitor_is_late(row)) {
         x = monitor_view_put(view, y, x, STYLE_BAD, "LATE ");
     } else if (row->is_stuck) {
         x = monitor_view_put(view, y, x, STYLE_BAD, "STUCK ");
@@ -233,8 +234,8 @@ static void draw_titles(monitor_view_t *view, int y, const monitor_t *monitor) {
 }
 
 /** Red: late or stuck. Grey: never heard, or silent while no deadline counts; yellow where that is a warning (43Fh). */
-static monitor_style_t style_of(const monitor_t *monitor, const monitor_row_t *row) {
-    if (monitor_is_late(monitor, row) || row->is_stuck) {
+static monitor_style_t style_of(const monitor_row_t *row) {
+    if (monitor_is_late(row) || row->is_stuck) {
         return STYLE_BAD;
     }
     if (row->is_silent && row->has_counter) {
@@ -244,7 +245,7 @@ static monitor_style_t style_of(const monitor_t *monitor, const monitor_row_t *r
 }
 
 static void draw_row(monitor_view_t *view, int y, const monitor_t *monitor, const monitor_row_t *row) {
-    const monitor_style_t style = style_of(monitor, row);
+    const monitor_style_t style = style_of(row);
     int x = 0;
     for (size_t c = 0u; c < sizeof columns / sizeof columns[0]; c++) {
         if (has_column(view, monitor, &columns[c])) {

@@ -1,6 +1,6 @@
 #include "base/score.h"
 
-/* Bits of a budget: half of 1 ms is still to be subtracted; the condition held at the last call. */
+/* Bits of a budget: half of 1 ms is still to be subtracted; the condition held at the last tick. */
 enum { BUDGET_HALF = 1, BUDGET_HELD = 2 };
 
 void agv_score_add(agv_score_t *score, bool bad, uint32_t frames) {

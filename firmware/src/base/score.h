@@ -32,8 +32,8 @@ typedef struct {
 } agv_budget_t;
 
 /**
- * Whether the time since the last tick counts as one with the condition: by what the condition was at that tick, so that one
- * that is seen for the first time has lasted for 0 ms. After a late tick (more than 1 ms) by what it is now.
+ * Whether a condition counts as held since the last tick. If that was 1 ms ago: what it was then, so a condition that is seen
+ * for the first time has lasted for 0 ms. If the tick is late: what the condition is now.
  */
 static inline bool agv_held_since_tick(bool before, bool now, uint32_t elapsed_ms) {
     return (elapsed_ms == 1u) ? before : now;

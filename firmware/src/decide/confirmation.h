@@ -24,7 +24,10 @@ typedef struct {
     bool unconfirmed;   /**< the cause of SAFE_STATE_UNCONFIRMED is present */
 } agv_confirmation_t;
 
-/** Start again, after a trip or at a start in TRIPPED. @param at_tick in a tick, from which on time counts; not in a frame */
+/**
+ * Start again, after a trip or at a start in TRIPPED.
+ * @param at_tick true: in a tick or at the start, time counts from now on; false: in a frame, it counts from the next tick on
+ */
 void agv_confirmation_start(agv_confirmation_t *confirmation, agv_timers_t *timers, bool at_tick);
 
 /** Note that a 168h P was sent: from now on P must be confirmed. */

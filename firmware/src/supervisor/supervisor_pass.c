@@ -251,7 +251,7 @@ static bool withdraw_frames(agv_core_t *core, hal_t *hal, uint32_t elapsed_ms) {
 }
 
 /*
- * Update the modules that depend on the state: hold, checks of the safe state, limits. Returns whether the safe commands must be sent anew.
+ * Update hold, checks of the safe state and limits. Returns whether the safe commands must be sent anew.
  */
 static bool follow_state(agv_core_t *core, hal_t *hal, uint32_t what, uint32_t elapsed_ms) {
     if ((what & AGV_ACTION_TRIP) != 0u) {

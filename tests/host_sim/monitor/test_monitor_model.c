@@ -73,14 +73,14 @@ void test_in_manual_no_command_is_late(void) {
     report_mode(100, 2000, "40");
     for (size_t i = 0u; i < 3u; i++) {
         TEST_ASSERT_TRUE(row_of(VEHICLE, commands[i])->is_silent);
-        TEST_ASSERT_FALSE(monitor_is_late(monitor, row_of(VEHICLE, commands[i])));
+        TEST_ASSERT_FALSE(monitor_is_late(row_of(VEHICLE, commands[i])));
     }
     TEST_ASSERT_EQUAL(0, said("late"));
     TEST_ASSERT_EQUAL(1, said("ai: 168h gear_command silent: no frame for 350 ms"));
     TEST_ASSERT_EQUAL(450, said_at("168h gear_command silent"));
     frame(VEHICLE, 2010, 0x168, "0800000000000000");
     TEST_ASSERT_FALSE(row_of(VEHICLE, 0x168)->is_silent);
-    TEST_ASSERT_FALSE(monitor_is_late(monitor, row_of(VEHICLE, 0x168)));
+    TEST_ASSERT_FALSE(monitor_is_late(row_of(VEHICLE, 0x168)));
     TEST_ASSERT_EQUAL(1, said("168h gear_command back after 1910 ms"));
 }
 
@@ -95,7 +95,7 @@ void test_an_engagement_restarts_the_deadline_of_a_command(void) {
     TEST_ASSERT_EQUAL(1, said("168h gear_command late: no frame for 1260 ms"));
     TEST_ASSERT_EQUAL(1360, said_at("168h gear_command late"));
     report_mode(1390, 3000, "40"); /* after the third one it is engaged no more */
-    TEST_ASSERT_FALSE(monitor_is_late(monitor, row_of(VEHICLE, 0x168)));
+    TEST_ASSERT_FALSE(monitor_is_late(row_of(VEHICLE, 0x168)));
     TEST_ASSERT_EQUAL(1, said("late"));
 }
 
@@ -144,7 +144,7 @@ void test_the_longest_gap_is_no_lateness_in_manual(void) {
     frame(VEHICLE, 1005, 0x168, "0800000000000000");
     TEST_ASSERT_FALSE(row_of(VEHICLE, 0x168)->has_been_late);
     report_mode(1010, 1020, "80"); /* nor is it one when the engagement begins */
-    TEST_ASSERT_FALSE(monitor_is_late(monitor, row_of(VEHICLE, 0x168)));
+    TEST_ASSERT_FALSE(monitor_is_late(row_of(VEHICLE, 0x168)));
 }
 
 void test_a_short_lateness_is_shown_for_half_a_second_at_least(void) {
@@ -155,12 +155,12 @@ void test_a_short_lateness_is_shown_for_half_a_second_at_least(void) {
     for (unsigned ms = 180u; ms <= 600u; ms += 10u) {
         frame(VEHICLE, ms, 0x363, MANUAL);
     }
-    TEST_ASSERT_TRUE(monitor_is_late(monitor, row_of(VEHICLE, 0x363)));
+    TEST_ASSERT_TRUE(monitor_is_late(row_of(VEHICLE, 0x363)));
     TEST_ASSERT_EQUAL(70000, monitor_age_us(monitor, row_of(VEHICLE, 0x363)));
     for (unsigned ms = 610u; ms <= 1010u; ms += 10u) {
         frame(VEHICLE, ms, 0x363, MANUAL);
     }
-    TEST_ASSERT_FALSE(monitor_is_late(monitor, row_of(VEHICLE, 0x363)));
+    TEST_ASSERT_FALSE(monitor_is_late(row_of(VEHICLE, 0x363)));
     TEST_ASSERT_EQUAL(10000, monitor_age_us(monitor, row_of(VEHICLE, 0x363)));
 }
 
