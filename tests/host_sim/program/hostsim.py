@@ -3,8 +3,10 @@ import json
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import tempfile
+import time
 import unittest
 
 PROGRAM = os.environ["HOST_SIM"]
@@ -89,6 +91,16 @@ class Case(unittest.TestCase):
         result = self.run_program(*arguments, **options)
         self.assertEqual(result.status, 0, result.stderr)
         return result
+
+    def wait_until_it_looks_for_signals(self, pid):
+        """A program that is still being loaded would be killed without a word."""
+        for _ in range(1000):
+            with open(f"/proc/{pid}/status", encoding="ascii") as status:
+                blocked = int(re.search(r"^SigBlk:\s+(\w+)$", status.read(), re.MULTILINE)[1], 16)
+            if blocked & (1 << (signal.SIGINT - 1)) != 0:
+                return
+            time.sleep(0.05)
+        self.fail("it does not look for SIGINT")
 
     def assert_refused(self, result, *parts):
         """Exit status 2, and one line on standard error that names the thing."""

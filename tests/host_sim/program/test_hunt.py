@@ -2,7 +2,6 @@
 import re
 import signal
 import subprocess
-import time
 import unittest
 
 import hostsim
@@ -29,7 +28,7 @@ class Hunt(hostsim.Case):
 
     def test_the_same_seed_the_same_runs(self):
         self.folders("a", "b", "c")
-        runs = max(200 // hostsim.PART, 20)
+        runs = max(100 // hostsim.PART, 20)
         first = self.hunt("--seed", 7, "--runs", runs, "--found", "a")
         second = self.hunt("--seed", 7, "--runs", runs, "--found", "b")
         other = self.hunt("--seed", 8, "--runs", runs, "--found", "c")
@@ -40,7 +39,7 @@ class Hunt(hostsim.Case):
 
     def test_what_is_found_can_be_played(self):
         self.folders("a")
-        result = self.hunt("--seed", 1, "--runs", max(300 // hostsim.PART, 40), "--found", "a")
+        result = self.hunt("--seed", 1, "--runs", max(150 // hostsim.PART, 40), "--found", "a")
         found = FOUND.findall(result.stdout)
         self.assertEqual(result.status, 1 if found else 0)
         self.assertEqual(len(found), int(LAST.search(result.stdout)[4]))
@@ -73,7 +72,7 @@ class Hunt(hostsim.Case):
         """What it says when a signal ends it during its first runs."""
         with subprocess.Popen([hostsim.PROGRAM, "hunt", "--seed", "3", "--runs", "100000", *map(str, arguments)],
                               cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-            time.sleep(0.3)
+            self.wait_until_it_looks_for_signals(process.pid)
             process.send_signal(signal.SIGINT)
             said = process.communicate(timeout=600)[1]
         self.assertEqual(process.returncode, -signal.SIGINT)
