@@ -54,6 +54,12 @@ void test_messages_in_the_order_of_the_document(void) {
     TEST_ASSERT_NULL(agv_message_name((agv_message_t)255));
 }
 
+static void assert_no_name_from(uint8_t first, const char *(*name)(uint8_t index)) {
+    for (uint16_t i = first; i <= UINT8_MAX; i++) {
+        TEST_ASSERT_NULL(name((uint8_t)i));
+    }
+}
+
 /* By bit of AGV_MISSING_*. */
 void test_what_is_missing(void) {
     static const char *const expected[] = {"state",      "vcu_heartbeat", "eps_heartbeat",  "trip_cause",
@@ -62,8 +68,7 @@ void test_what_is_missing(void) {
     for (uint8_t i = 0; i < 11; i++) {
         TEST_ASSERT_EQUAL_STRING(expected[i], agv_missing_name(i));
     }
-    TEST_ASSERT_NULL(agv_missing_name(11));
-    TEST_ASSERT_NULL(agv_missing_name(255));
+    assert_no_name_from(11, agv_missing_name);
 }
 
 /* By bit of HAL_SELF_TEST_*. */
@@ -73,8 +78,7 @@ void test_parts_of_the_self_test(void) {
     for (uint8_t i = 0; i < 7; i++) {
         TEST_ASSERT_EQUAL_STRING(expected[i], agv_self_test_part_name(i));
     }
-    TEST_ASSERT_NULL(agv_self_test_part_name(7));
-    TEST_ASSERT_NULL(agv_self_test_part_name(255));
+    assert_no_name_from(7, agv_self_test_part_name);
 }
 
 /* By hal_reset_cause_t and hal_end_t: the numbers are stored in the flight recorder. */
@@ -95,14 +99,12 @@ void test_how_a_run_ended(void) {
     for (uint8_t i = 0; i < 6; i++) {
         TEST_ASSERT_EQUAL_STRING(causes[i], agv_reset_cause_name(i));
     }
-    TEST_ASSERT_NULL(agv_reset_cause_name(6));
-    TEST_ASSERT_NULL(agv_reset_cause_name(255));
+    assert_no_name_from(6, agv_reset_cause_name);
     TEST_ASSERT_NULL(agv_end_name(0));
     for (uint8_t i = 0; i < 11; i++) {
         TEST_ASSERT_EQUAL_STRING(ends[i], agv_end_name((uint8_t)(i + 1)));
     }
-    TEST_ASSERT_NULL(agv_end_name(12));
-    TEST_ASSERT_NULL(agv_end_name(255));
+    assert_no_name_from(12, agv_end_name);
 }
 
 /* Shows: INT-2 */
