@@ -99,7 +99,7 @@ uint32_t agv_supervisor_age_ms(const agv_supervisor_t *supervisor, agv_message_t
 /** Whether a message was received and its deadline has not expired. False for AGV_MSG_NONE and values above. */
 bool agv_supervisor_is_fresh(const agv_supervisor_t *supervisor, agv_message_t message);
 
-/** Time of the last tick in ms; before the first one, of the start. */
+/** Time of the last tick in ms; the time of the start when there was no tick yet. */
 uint32_t agv_supervisor_tick_ms(const agv_supervisor_t *supervisor);
 
 /** Whether the safety output is closed (FSM-4). */
