@@ -228,6 +228,21 @@ static const char *parse_line(candump_log_t *log, const char *line, size_t lengt
     }
 }
 
+/**
+ * Whether this is the last line of a log whose writer was stopped while it wrote the data: it has fewer than 8 bytes and no
+ * line feed. As a frame of another length it could trip the supervisor.
+ */
+static bool may_lack_data(const candump_log_t *log, const hal_can_frame_t *frame) {
+    return log->is_cut_off && (log->format == CANDUMP_FORMAT_LOG) && (frame->length < sizeof frame->data) &&
+           ((frame->flags & (HAL_CAN_FD | HAL_CAN_REMOTE)) == 0u);
+}
+
+static void leave_out(candump_log_t *log) {
+    log->skipped++;
+    note("%s:%" PRIu64 ": the log ends in this line, whose data may be cut off; the line is left out", log->name,
+         log->line);
+}
+
 candump_result_t candump_next(candump_log_t *log, candump_record_t *record) {
     bool failed = !log->is_checked && !check_beginning(log);
     size_t length = 0u;
@@ -239,6 +254,10 @@ candump_result_t candump_next(candump_log_t *log, candump_record_t *record) {
             return CANDUMP_FAILED;
         }
         const char *wrong = parse_line(log, line, length, record);
+        if ((wrong == NULL) && may_lack_data(log, &record->frame)) {
+            leave_out(log);
+            return CANDUMP_END;
+        }
         if (wrong == NULL) {
             log->frameless = 0u;
             return CANDUMP_RECORD;

@@ -75,6 +75,22 @@ void test_a_line_that_was_cut_off_is_a_bad_one(void) {
         "log:2: the data has an odd number of digits; the log ends in this line, which --skip-bad-lines leaves out\n");
 }
 
+/* Else a log whose writer was stopped would show a frame of another length, which trips. */
+void test_a_last_frame_that_may_lack_data_is_left_out(void) {
+    static const char text[] = LINE "(1.000000) can0 075#0000000000";
+    open_text(text, sizeof text - 1u, false);
+    TEST_ASSERT_EQUAL_UINT(1, read_all(CANDUMP_END));
+    TEST_ASSERT_EQUAL_UINT64(1, log_file->skipped);
+    assert_said("log:2: the log ends in this line, whose data may be cut off; the line is left out\n");
+}
+
+void test_a_last_frame_with_fewer_bytes_counts_if_its_line_ends(void) {
+    static const char text[] = LINE "(1.000000) can0 075#0000000000\n";
+    open_text(text, sizeof text - 1u, false);
+    TEST_ASSERT_EQUAL_UINT(2, read_all(CANDUMP_END));
+    TEST_ASSERT_EQUAL_UINT64(0, log_file->skipped);
+}
+
 void test_a_bad_line_ends_the_reading(void) {
     static const char text[] = LINE "nonsense\n" LINE;
     open_text(text, sizeof text - 1u, false);
