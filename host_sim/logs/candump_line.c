@@ -1,6 +1,8 @@
 #include "logs/candump_line.h"
 
+#include <inttypes.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "text/hex.h"
@@ -183,6 +185,13 @@ static const char *parse_payload(const char **cursor, hal_can_frame_t *frame) {
     frame->flags |= HAL_CAN_FD;
     *cursor = &at[2];
     return parse_data(cursor, frame, FD_DATA_MAX);
+}
+
+const char *candump_id_text(char text[CANDUMP_ID_SIZE], uint32_t id, uint8_t flags) {
+    const bool is_error = (flags & HAL_CAN_ERROR) != 0u;
+    const bool is_long = is_error || ((flags & HAL_CAN_EXTENDED) != 0u);
+    (void)snprintf(text, CANDUMP_ID_SIZE, "%0*" PRIX32, is_long ? 8 : 3, id | (is_error ? CANDUMP_ERROR_FLAG : 0u));
+    return text;
 }
 
 const char *candump_parse(const char *line, size_t length, candump_record_t *record) {

@@ -21,6 +21,7 @@
 
 #define CANDUMP_INTERFACE_MAX 15u /**< characters of an interface's name */
 #define CANDUMP_LINE_MAX 255u     /**< characters of a line; the longest valid one has fewer */
+#define CANDUMP_ID_SIZE 9u        /**< of the text of an identifier */
 #define CANDUMP_WRITE_MAX 80u     /**< more than candump_write() ever writes */
 
 /** What a parser returns for a line that is in order but has no frame: a header, a comment, another event. */
@@ -52,6 +53,13 @@ typedef struct {
  * @return NULL: @p record is filled in. Else: what is wrong, a phrase for a message.
  */
 const char *candump_parse(const char *line, size_t length, candump_record_t *record);
+
+/**
+ * An identifier as candump writes it: three digits, or eight of an extended identifier and of an error frame.
+ * @param flags HAL_CAN_* of the frame
+ * @return text
+ */
+const char *candump_id_text(char text[CANDUMP_ID_SIZE], uint32_t id, uint8_t flags);
 
 /**
  * Write a classic data frame as a line, line feed included.

@@ -4,10 +4,11 @@
 #include <stdio.h>
 
 #include "hal/can.h"
+#include "logs/candump_line.h"
 #include "text/units.h"
 #include "traffic/signals.h"
 
-enum { NEAR_US = 60000, AFTER_US = 120000, ID_SIZE = 12, DATA_SIZE = 32, CYCLES_BEFORE = 5 };
+enum { NEAR_US = 60000, AFTER_US = 120000, DATA_SIZE = 32, CYCLES_BEFORE = 5 };
 
 /** The frames that are shown. */
 typedef struct {
@@ -86,13 +87,12 @@ static json_t *frame_json(const choice_t *choice, const series_frame_t *frame) {
     const uint32_t message = message_of(choice, frame);
     const bool has_signals =
         (frame->flags == 0u) && (frame->length == (uint8_t)AGV_DLC) && (message <= SIGNALS_STATUS_FRAME);
-    char id[ID_SIZE];
+    char id[CANDUMP_ID_SIZE];
     char data[DATA_SIZE];
     char signals[SIGNALS_TEXT_SIZE];
-    (void)snprintf(id, sizeof id, ((frame->flags & HAL_CAN_EXTENDED) != 0u) ? "%08" PRIX32 : "%03" PRIX32, frame->id);
     const char *name = (message <= SIGNALS_STATUS_FRAME) ? signals_message_name(message) : NULL;
-    return json_pack("[I,i,b,s,s,s,s,b]", (json_int_t)frame->t_us, (int)frame->side, (int)frame->sent, id,
-                     data_text(frame, data), (name != NULL) ? name : "",
+    return json_pack("[I,i,b,s,s,s,s,b]", (json_int_t)frame->t_us, (int)frame->side, (int)frame->sent,
+                     candump_id_text(id, frame->id, frame->flags), data_text(frame, data), (name != NULL) ? name : "",
                      has_signals ? signals_print(signals, sizeof signals, message, frame->data) : flags_text(frame),
                      (int)tells(choice, frame, message));
 }

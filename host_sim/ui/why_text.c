@@ -185,6 +185,9 @@ static void print_fault(const why_fault_t *fault, const widths_t *widths, bool i
         text_add(&text, "  (a recording cannot obey)");
     } else if (fault->in_init && (fault->fault_class == AGV_CLASS_TRIP)) {
         text_add(&text, "  in INIT: no trip");
+    } else if ((fault->fault_class == AGV_CLASS_TRIP) && (fault->trip_us > fault->first_us)) {
+        text_add(&text, "  a warning until ");
+        why_words_time(&text, fault->trip_us);
     } else if (fault->active) {
         text_add(&text, "  active at the end");
     } else {

@@ -84,7 +84,8 @@ static void follow_trip(why_t *why, agv_message_t message, const why_evidence_t 
     if (trip == NULL) {
         return;
     }
-    if ((trip->kind == WHY_SILENCE) && (trip->message == message) && (trip->next_us == WHY_NEVER)) {
+    const bool ends_silence = (trip->kind == WHY_SILENCE) && (trip->message == message) && !trip->from_earlier_run;
+    if (ends_silence && (trip->next_us == WHY_NEVER)) {
         trip->next_us = t_us;
         why_show(trip, frame);
     }
@@ -171,21 +172,33 @@ static why_trip_t *add_trip(why_t *why) {
     return &why->trips[why->trip_count - 1u];
 }
 
-/** Note a trip, and find its cause. */
-static why_trip_t *note_trip(why_t *why, agv_fault_t reason, uint64_t t_us) {
+/**
+ * Whether a trip at the start of a run was latched in an earlier one: of the faults that trip, the start itself finds only
+ * those of the supervisor.
+ */
+static bool is_from_earlier_run(agv_fault_t reason, bool at_start) {
+    return at_start && (why_row(reason)->kind != WHY_OWN);
+}
+
+/** Note a trip, and find its cause. @param at_start the run began in TRIPPED */
+static why_trip_t *note_trip(why_t *why, agv_fault_t reason, uint64_t t_us, bool at_start) {
     why_trip_t *trip = add_trip(why);
     if (trip == NULL) {
         return NULL;
     }
     why_budget_advance(why, t_us);
-    *trip = (why_trip_t){
-        .t_us = t_us, .reason = reason, .first_safe_us = WHY_NEVER, .confirmed_us = WHY_NEVER, .stopped_us = WHY_NEVER};
+    *trip = (why_trip_t){.t_us = t_us,
+                         .reason = reason,
+                         .from_earlier_run = is_from_earlier_run(reason, at_start),
+                         .first_safe_us = WHY_NEVER,
+                         .confirmed_us = WHY_NEVER,
+                         .stopped_us = WHY_NEVER};
     why_cause(why, trip);
     return trip;
 }
 
-static void on_trip(why_t *why, agv_fault_t reason, uint64_t t_us) {
-    why_trip_t *trip = note_trip(why, reason, t_us);
+static void on_trip(why_t *why, agv_fault_t reason, uint64_t t_us, bool at_start) {
+    why_trip_t *trip = note_trip(why, reason, t_us, at_start);
     why->was_tripped = true;
     if (trip == NULL) {
         return;
@@ -232,7 +245,7 @@ static void on_state(why_t *why, const agv_event_t *event, uint64_t t_us) {
         why_engage_state(why, event, t_us);
     }
     if ((event->b == (uint8_t)AGV_STATE_TRIPPED) && (event->c < (uint8_t)AGV_FAULT_COUNT)) {
-        on_trip(why, (agv_fault_t)event->c, t_us);
+        on_trip(why, (agv_fault_t)event->c, t_us, event->a == 0u);
     } else if (!agv_state_is_latched((agv_state_t)event->b)) {
         why->open_trip = SIZE_MAX;
     } else {
@@ -254,19 +267,23 @@ static void raise(why_t *why, agv_fault_t fault, agv_fault_class_t fault_class, 
     if (entry->times == 0u) {
         entry->fault = fault;
         entry->first_us = t_us;
+        entry->trip_us = WHY_NEVER;
         why->fault_order[why->fault_count] = (size_t)fault;
         why->fault_count++;
     }
     entry->from_recording = recorded && (entry->from_recording || (entry->times == 0u));
     entry->in_init = (why->state == (uint8_t)AGV_STATE_INIT) && (entry->in_init || (entry->times == 0u));
     entry->fault_class = fault_class;
+    if ((fault_class == AGV_CLASS_TRIP) && (entry->trip_us == WHY_NEVER)) {
+        entry->trip_us = t_us;
+    }
     if (!entry->active) {
         entry->times++;
         why->fault_since_us[fault] = t_us;
     }
     entry->active = true;
     if (is_consequence(why, fault) && (fault_class == AGV_CLASS_TRIP)) {
-        why_trip_t *trip = note_trip(why, fault, t_us);
+        why_trip_t *trip = note_trip(why, fault, t_us, false);
         if (trip != NULL) {
             trip->from_recording = recorded;
         }

@@ -42,6 +42,7 @@ typedef struct {
     uint32_t id;           /**< of that message on the wire; WHY_NO_ID */
     uint64_t cause_us;     /**< when it began, not when it was noticed; WHY_NEVER: not known */
     uint64_t last_good_us; /**< last frame before that was as it should be; WHY_NEVER */
+    bool from_earlier_run; /**< latched in an earlier run of the supervisor; neither cause nor limit are known */
     bool from_engagement;  /**< cause_us is the engagement: it may have been so before, when it did not count */
     bool at_the_latest;    /**< it began at cause_us or before */
     bool was_heard;        /**< silence: it had come before; last_good_us WHY_NEVER: when is not known */
@@ -61,6 +62,7 @@ typedef struct {
     agv_fault_t fault;
     agv_fault_class_t fault_class; /**< when it was raised last */
     uint64_t first_us;
+    uint64_t trip_us;   /**< when it was first of the class that trips; WHY_NEVER */
     uint64_t active_us; /**< in all */
     uint32_t times;
     bool active;         /**< at the end */

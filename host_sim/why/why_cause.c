@@ -263,6 +263,11 @@ void why_cause(const why_t *why, why_trip_t *trip) {
     trip->last_good_us = WHY_NEVER;
     trip->next_us = WHY_NEVER;
     set_message(why, trip, row->message);
+    if (trip->from_earlier_run) {
+        trip->cause_us = WHY_NEVER;
+        trip->limit = WHY_NO_LIMIT;
+        return;
+    }
     set_limit(why, trip, row->setting, row->unit);
     if (why->snapshot != NULL) {
         why_cause_recorded(why, why->snapshot, trip);

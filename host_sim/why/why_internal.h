@@ -194,7 +194,7 @@ uint64_t why_budget_us(const why_t *why, agv_fault_t fault);
 /** The same from an event of a flight recorder (why_recorded.c). */
 void why_cause_recorded(const why_t *why, const agv_event_t *event, why_trip_t *trip);
 
-/** Fill in what is known of a cause (why_cause.c); t_us and reason are set. */
+/** Fill in what is known of a cause (why_cause.c); t_us, reason and from_earlier_run are set. */
 void why_cause(const why_t *why, why_trip_t *trip);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include "agv/names.h"
 #include "common/json_build.h"
+#include "logs/candump_line.h"
 #include "text/units.h"
 #include "why/why.h"
 
@@ -30,10 +31,11 @@ static json_t *evidence_of(const why_trip_t *trip, const why_names_t *names) {
     json_t *list = json_array();
     for (size_t i = 0u; i < trip->evidence_count; i++) {
         const why_evidence_t *evidence = &trip->evidence[i];
+        char id[CANDUMP_ID_SIZE];
         json_t *object = json_object();
         json_put(object, "t_ms", (evidence->t_us != WHY_NEVER) ? json_real(ms_of_us(evidence->t_us)) : json_null());
         json_put(object, "if", json_text(names->interfaces[evidence->side]));
-        json_put(object, "id", id_or_null(evidence->frame.id));
+        json_put(object, "id", json_string(candump_id_text(id, evidence->frame.id, evidence->frame.flags)));
         json_put(object, "data", data_of(&evidence->frame));
         json_add(list, object);
     }

@@ -23,7 +23,7 @@ typedef struct {
 #define LASTS(fault, words_, setting) [AGV_FAULT_##fault] = {(words_), AGV_SETTING_##setting}
 
 static const meaning_t meanings[AGV_FAULT_COUNT] = {
-    SAYS(SELF_TEST_FAILED, "the self-test at the start failed"),
+    SAYS(SELF_TEST_FAILED, "a self-test failed"),
     SAYS(MEMORY_CORRUPTED, "the memory of the supervisor was changed by something else"),
     SAYS(CONFIG_INVALID, "the configuration is not valid"),
     SAYS(OUTPUT_FEEDBACK, "the contact of the safety output differed from its command for %L"),
@@ -253,6 +253,10 @@ static void say_lasting(text_t *text, const why_t *why, const why_trip_t *trip) 
 }
 
 void why_words_cause(text_t *text, const why_t *why, const why_trip_t *trip) {
+    if (trip->from_earlier_run) {
+        text_add(text, "the run began in TRIPPED: this trip was latched in an earlier run");
+        return;
+    }
     add_name(text, trip);
     switch (trip->kind) {
     case WHY_SILENCE:

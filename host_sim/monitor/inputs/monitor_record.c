@@ -13,8 +13,6 @@
 
 enum { NO_FILE = -1, MODE = 0666 };
 
-#define ERROR_FLAG 0x20000000u
-
 void monitor_record_init(monitor_record_t *record) {
     memset(record, 0, sizeof *record);
     record->fd = NO_FILE;
@@ -46,9 +44,9 @@ bool monitor_record_begin(monitor_record_t *record, const char *path) {
 static size_t write_special(char *line, size_t size, const char *interface, uint64_t stamp_us,
                             const hal_can_frame_t *frame) {
     const bool is_error = (frame->flags & HAL_CAN_ERROR) != 0u;
-    const bool is_long = is_error || ((frame->flags & HAL_CAN_EXTENDED) != 0u);
-    int used = snprintf(line, size, "(%010" PRIu64 ".%06" PRIu64 ") %s %0*" PRIX32 "#", stamp_us / US_PER_S,
-                        stamp_us % US_PER_S, interface, is_long ? 8 : 3, frame->id | (is_error ? ERROR_FLAG : 0u));
+    char id[CANDUMP_ID_SIZE];
+    int used = snprintf(line, size, "(%010" PRIu64 ".%06" PRIu64 ") %s %s#", stamp_us / US_PER_S, stamp_us % US_PER_S,
+                        interface, candump_id_text(id, frame->id, frame->flags));
     if (!is_error) {
         used += snprintf(&line[used], size - (size_t)used, "R%u", (unsigned)frame->length);
     }

@@ -22,6 +22,32 @@ void test_how_long_each_state_lasted(void) {
     TEST_ASSERT_EQUAL_UINT64(3300000, why_trip(why, 0)->confirmed_us); /* for the first time */
 }
 
+void test_a_run_that_begins_in_tripped_does_not_know_the_cause(void) {
+    feed_state(why, 0, AGV_STATE_TRIPPED, AGV_FAULT_STEERING_COMMAND_TIMEOUT, 0);
+    feed_frame(why, HAL_CAN_VEHICLE, 0x065, "\0\0\0\0\0\0\0", 6);
+    const why_trip_t *trip = why_trip(why, 0);
+    TEST_ASSERT_TRUE(trip->from_earlier_run);
+    TEST_ASSERT_EQUAL_INT(WHY_SILENCE, trip->kind);
+    TEST_ASSERT_EQUAL_INT(AGV_MSG_STEERING_COMMAND, trip->message);
+    TEST_ASSERT_EQUAL_UINT64(WHY_NEVER, trip->cause_us);
+    TEST_ASSERT_EQUAL_INT64(WHY_NO_LIMIT, trip->limit);
+    TEST_ASSERT_EQUAL_UINT64(WHY_NEVER, trip->next_us);
+    TEST_ASSERT_EQUAL_UINT(0, trip->evidence_count);
+}
+
+void test_what_the_start_itself_finds_is_of_this_run(void) {
+    feed_state(why, 0, AGV_STATE_TRIPPED, AGV_FAULT_SUPERVISOR_RESET, 0);
+    TEST_ASSERT_FALSE(why_trip(why, 0)->from_earlier_run);
+    TEST_ASSERT_EQUAL_UINT64(0, why_trip(why, 0)->cause_us);
+}
+
+void test_when_a_warning_became_a_fault_that_trips(void) {
+    feed_fault(why, AGV_FAULT_AI_HEARTBEAT_LOST, AGV_CLASS_WARN, true, 1000);
+    feed_fault(why, AGV_FAULT_AI_HEARTBEAT_LOST, AGV_CLASS_TRIP, true, 3000);
+    TEST_ASSERT_EQUAL_UINT64(1000000, why_fault(why, 0)->first_us);
+    TEST_ASSERT_EQUAL_UINT64(3000000, why_fault(why, 0)->trip_us);
+}
+
 void test_the_first_safe_frame_may_be_reported_before_the_trip(void) {
     const hal_can_frame_t park = {.id = 0x168, .length = 8, .data = {0x08}};
     const hal_can_frame_t drive = {.id = 0x168, .length = 8, .data = {0x01}};

@@ -210,6 +210,21 @@ class Text(Case):
             "            VEHICLE_NOT_STOPPING      trip  8.107 s   1 time   3.887 s  (a recording cannot obey)"])
         self.assertEqual(self.text(log, "--fail-on-trip", status=1), lines)
 
+    def test_a_trip_that_an_earlier_run_latched(self):
+        log = traffic.log(traffic.frames(4000, engage_ms=1000, edit=stop(("steering_command",), 3000)))
+        self.text(log, "--store", "store")
+        lines = self.text(log, "--store", "store", "--reset-cause", "watchdog", "--why", "why.json")
+        self.assertEqual(lines[2:4], ["tripped     at 0.000 s (22:13:20.000): STEERING_COMMAND_TIMEOUT", "  why       the run "
+                                      "began in TRIPPED: this trip was latched in an earlier run"])
+        trip = json.loads((self.folder / "why.json").read_text(encoding="utf-8"))["trips"][0]
+        self.assertEqual([trip[key] for key in ("kind", "message", "cause_ms", "last_good_ms", "limit", "unit", "evidence")],
+                         ["silence", "steering_command", None, None, None, None, []])
+
+    def test_a_warning_that_an_engagement_makes_a_trip(self):
+        log = traffic.log(traffic.frames(4000, engage_ms=3000, edit=stop(("turn_signal_command",), 1500)))
+        self.assertIn("faults      AI_HEARTBEAT_LOST       trip  1.758 s   1 time   2.236 s  a warning until 3.000 s",
+                      self.text(log))
+
     def test_a_log_without_an_engagement(self):
         lines = self.text(traffic.log(traffic.frames(2000)), "--fail-on-trip")
         self.assertEqual(lines[2:], ["not judged  the commands of the AI computer: the autopilot was never engaged",
@@ -366,6 +381,12 @@ class Why(Case):
         self.assertEqual([(trip["reason"], trip["kind"], trip["from_recording"]) for trip in why["trips"][1:]],
                          [("SAFE_STATE_UNCONFIRMED", "vehicle", True), ("VEHICLE_NOT_STOPPING", "vehicle", True)])
         self.assertIn("steering_command", [message["name"] for message in why["messages"]])
+
+    def test_an_error_frame_is_told_from_a_data_frame(self):
+        frames = traffic.log(traffic.frames(2000)).splitlines(True)
+        frames.insert(700, frames[700].split(" ")[0] + " can0 20000040#0000000000000000\n")
+        evidence = self.why("".join(frames))["trips"][0]["evidence"]
+        self.assertEqual([frame["id"] for frame in evidence], ["20000040"])
 
     def test_a_gateway_and_a_foreign_sender(self):
         frames = traffic.frames(3000, engage_ms=1000, ai_interface="can1")
