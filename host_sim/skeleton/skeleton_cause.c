@@ -78,13 +78,14 @@ static bool add_value(skeleton_plan_t *plan) {
     return true;
 }
 
-/** A frame of another sender, as it was in the log. */
-static bool add_foreign_frame(skeleton_plan_t *plan) {
+/** The last frame of the evidence as a raw frame, as it was in the log. @return false: there is none */
+static bool add_raw_frame(skeleton_plan_t *plan) {
     const why_trip_t *trip = &plan->facts->trip;
     if (trip->evidence_count == 0u) {
         return false;
     }
-    const hal_can_frame_t *frame = &trip->evidence[trip->evidence_count - 1u].frame;
+    const why_evidence_t *evidence = &trip->evidence[trip->evidence_count - 1u];
+    const hal_can_frame_t *frame = &evidence->frame;
     static const struct {
         uint8_t flag;
         const char *kind;
@@ -103,8 +104,19 @@ static bool add_foreign_frame(skeleton_plan_t *plan) {
             break;
         }
     }
-    text_add(&plan->steps, "}\n");
+    text_add(&plan->steps, "%s}\n", (evidence->side == HAL_CAN_AI) ? ", side: ai" : "");
     return true;
+}
+
+/** A command whose value is invalid, or one of another length or format. */
+static bool add_bad_command(skeleton_plan_t *plan) {
+    const why_trip_t *trip = &plan->facts->trip;
+    if (trip->evidence_count == 0u) {
+        return false;
+    }
+    const hal_can_frame_t *frame = &trip->evidence[trip->evidence_count - 1u].frame;
+    const bool is_whole = (frame->flags == 0u) && (frame->length == (uint8_t)AGV_DLC);
+    return is_whole ? add_value(plan) : add_raw_frame(plan);
 }
 
 bool skeleton_cause_by_evidence(skeleton_plan_t *plan) {
@@ -121,10 +133,11 @@ bool skeleton_cause_by_evidence(skeleton_plan_t *plan) {
         return true;
     case WHY_BIT:
     case WHY_SCORE:
-    case WHY_VALUE:
         return add_value(plan);
+    case WHY_VALUE:
+        return add_bad_command(plan);
     case WHY_INTRUSION:
-        return (trip->reason != AGV_FAULT_COMMAND_TOO_FAST) && add_foreign_frame(plan);
+        return (trip->reason != AGV_FAULT_COMMAND_TOO_FAST) && add_raw_frame(plan);
     default:
         return false;
     }

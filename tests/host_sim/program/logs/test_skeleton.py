@@ -29,6 +29,15 @@ def foreign(frame):
     return frame
 
 
+def short(name):
+    """One of these commands has seven bytes."""
+    def edit(frame):
+        if frame.name == name and 2000 <= frame.t_ms < 2020:
+            return [traffic.Frame(frame.t_us, frame.name, frame.can_id, bytes(7), frame.interface)]
+        return frame
+    return edit
+
+
 # What is in the log: reason, log, options, and the step that stands in the file for it.
 LOGS = {
     "the VCU dies": ("VCU_HEARTBEAT_LOST", log(stop(VCU, 2001)), (), "at_ms: 2001, vcu: stop}"),
@@ -58,6 +67,8 @@ LOGS = {
                                       "vcu: set, field: alarms, value: 01h}"),
     "an EPS mode that is none": ("EPS_MODE_INVALID", log(edit_payload("eps_status", 2000, byte(3, 7))),
                                  (), "eps: set, field: mode, value: 07h}"),
+    "a command of another length": ("AI_COMMAND_OUT_OF_RANGE", log(short("steering_command")), (),
+                                    'bus: send, id: 065h, bytes: "00 00 00 00 00 00 00"}'),
     "a gear that is none": ("AI_COMMAND_OUT_OF_RANGE", log(edit_payload("gear_command", 2000, byte(0, 3))),
                             (), "ai: set, field: gear, value: 03h}"),
     "a throttle that is none": ("THROTTLE_STATUS_INVALID", log(edit_payload("throttle_status", 2000, byte(0, 0xFB))), (),
