@@ -178,30 +178,44 @@ typedef struct {
     int32_t before, now, limit;
 } step_t;
 
+/** While the budget is 0, only steps back are kept, and those only if progress has just cleared it. */
+static void restart_progress(const why_tracker_t *tracker, why_progress_t *progress) {
+    const bool steps_back_count = progress->steps_back_us != 0u;
+    if (tracker->value == 0u) {
+        progress->gained = (steps_back_count && (progress->gained < 0)) ? progress->gained : 0;
+        progress->gained_beyond = (steps_back_count && (progress->gained_beyond < 0)) ? progress->gained_beyond : 0;
+    }
+}
+
+/** Count a step, of whose way only what is farther off than the limit counts. */
+static void add_step(int32_t *gained, step_t step, int32_t limit, bool judged, bool steps_back_count) {
+    const int32_t nearer = beyond(step.before, limit) - beyond(step.now, limit);
+    if (judged || (steps_back_count && (nearer < 0))) {
+        *gained += nearer;
+    }
+}
+
 /** Progress towards what is commanded clears a budget. */
 static void follow_progress(why_t *why, agv_fault_t fault, why_progress_t *progress, step_t step, int32_t enough,
                             uint64_t t_us) {
     why_tracker_t *tracker = &why->trackers[fault];
     const uint64_t full_us = 2u * why_budget_us(why, fault);
     follow_steps_back(progress, tracker->bad, full_us, t_us);
-    if ((tracker->value == 0u) && (progress->steps_back_us == 0u)) {
-        progress->gained = 0;
-    }
+    restart_progress(tracker, progress);
     const bool steps_back_count = progress->steps_back_us != 0u;
-    const int32_t limit = steps_back_count ? step.limit : 0;
-    const int32_t nearer = beyond(step.before, limit) - beyond(step.now, limit);
-    if ((t_us >= why->engagement.judged_us) || (steps_back_count && (nearer < 0))) {
-        progress->gained += nearer;
+    const bool judged = t_us >= why->engagement.judged_us;
+    add_step(&progress->gained, step, 0, judged, steps_back_count);
+    if (steps_back_count) {
+        add_step(&progress->gained_beyond, step, step.limit, judged, true);
     }
-    if ((tracker->value != 0u) && (progress->gained >= enough)) {
+    const bool is_enough = (progress->gained >= enough) || (progress->gained_beyond >= enough);
+    if ((tracker->value != 0u) && is_enough) {
         tracker->value = 0u;
         tracker->since_us = t_us;
         tracker->bad_since_us = t_us;
         progress->steps_back_us = full_us;
     }
-    if ((tracker->value == 0u) && ((progress->gained > 0) || (progress->steps_back_us == 0u))) {
-        progress->gained = 0;
-    }
+    restart_progress(tracker, progress);
 }
 
 static void take_angle(why_t *why, const why_evidence_t *frame) {

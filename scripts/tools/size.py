@@ -101,7 +101,7 @@ def stack_fails(build, limit):
 def main():
     parser = argparse.ArgumentParser(description="flash, RAM and stack of the core on a Cortex-M4")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/cortex-m")
-    parser.add_argument("--max-flash", type=int, default=19968)
+    parser.add_argument("--max-flash", type=int, default=20480)
     parser.add_argument("--max-ram", type=int, default=1024)
     parser.add_argument("--max-stack", type=int, default=512)
     parser.add_argument("--detail", action="store_true", help="also flash by object")

@@ -30,7 +30,7 @@ typedef struct {
 } agv_ports_t;
 
 /** Memory of a supervisor in bytes, the same on every platform. The core needs a little less: the rest is 0. */
-#define AGV_SUPERVISOR_MEMORY 1008u
+#define AGV_SUPERVISOR_MEMORY 1016u
 
 /**
  * One supervisor, in memory of the caller. Read it through the functions below. `seal` is a checksum over `memory`,

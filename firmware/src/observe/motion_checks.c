@@ -31,10 +31,16 @@ static int32_t off_by_ddeg(const agv_motion_facts_t *facts, uint32_t angle_raw) 
     return magnitude_of((int32_t)angle_raw - (int32_t)facts->commands->angle_raw);
 }
 
-/* While the budget is 0, progress counts from 0, and steps back do not count unless progress has just cleared it. */
+/* What is kept while the budget is 0: steps back, if progress has just cleared it. */
+static int16_t kept(int16_t gained, bool steps_back_count) {
+    return (steps_back_count && (gained < 0)) ? gained : 0;
+}
+
 static void restart_progress(const agv_budget_t *budget, agv_progress_t *progress) {
-    if ((budget->value_ms == 0u) && ((progress->gained > 0) || (progress->steps_back_ms == 0u))) {
-        progress->gained = 0;
+    if (budget->value_ms == 0u) {
+        const bool steps_back_count = progress->steps_back_ms != 0u;
+        progress->gained = kept(progress->gained, steps_back_count);
+        progress->gained_beyond = kept(progress->gained_beyond, steps_back_count);
     }
 }
 
@@ -54,16 +60,22 @@ typedef struct {
     int32_t limit;
 } step_t;
 
+/* Progress after a step, of whose way only what is farther off than the limit counts. */
+static int16_t gained_by(int16_t gained, step_t step, int32_t limit, bool judged, bool steps_back_count) {
+    const int32_t nearer = beyond(step.before, limit) - beyond(step.now, limit);
+    const bool counts = judged || (steps_back_count && (nearer < 0));
+    return counts ? (int16_t)clamp(gained + nearer, AGV_ANGLE_RAW_MAX) : gained;
+}
+
 /* Count a step, if driving is judged or it is one back that counts. Enough progress towards the command clears the budget. */
 static void follow_progress(agv_budget_t *budget, agv_progress_t *progress, step_t step, bool judged, int32_t enough,
                             uint32_t limit_ms) {
     const bool steps_back_count = progress->steps_back_ms != 0u;
-    const int32_t limit = steps_back_count ? step.limit : 0;
-    const int32_t nearer = beyond(step.before, limit) - beyond(step.now, limit);
-    if (judged || (steps_back_count && (nearer < 0))) {
-        progress->gained = (int16_t)clamp(progress->gained + nearer, AGV_ANGLE_RAW_MAX);
+    progress->gained = gained_by(progress->gained, step, 0, judged, steps_back_count);
+    if (steps_back_count) {
+        progress->gained_beyond = gained_by(progress->gained_beyond, step, step.limit, judged, true);
     }
-    if ((budget->value_ms != 0u) && (progress->gained >= enough)) {
+    if ((budget->value_ms != 0u) && ((progress->gained >= enough) || (progress->gained_beyond >= enough))) {
         *budget = (agv_budget_t){0};
         progress->steps_back_ms = decay_ms(limit_ms);
     }

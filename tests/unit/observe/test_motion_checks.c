@@ -262,9 +262,9 @@ void test_after_a_gain_no_remainder_is_kept(void) {
     expect_after(100, STEERING);
 }
 
-/* While steps back count, only what is beyond 50.0 degrees does: motion within the limit is neither gain nor step back. */
+/* While steps back count, too: motion beyond 50.0 degrees counts apart from that within. */
 /* Shows: SUP-10 */
-void test_after_a_gain_motion_within_the_limit_does_not_count(void) {
+void test_motion_within_the_limit_takes_nothing_from_the_next_gain(void) {
     steer(9000);
     measured(9600);
     begin();
@@ -283,9 +283,11 @@ void test_after_a_gain_motion_within_the_limit_does_not_count(void) {
     expect_after(500, STEERING);
 }
 
-/* After a gain: 30.0 degrees nearer, of which 10.0 are beyond the limit. */
+/* After a gain: from 60.0 degrees off, of which 10.0 are beyond the limit. */
 /* Shows: SUP-10 */
-void test_after_a_gain_only_motion_beyond_the_limit_counts(void) {
+TEST_CASE(9350, 500)
+TEST_CASE(9349, 100)
+void test_after_a_gain_the_way_within_the_limit_counts_too(unsigned raw, unsigned expected_ms) {
     steer(9000);
     measured(9600);
     begin();
@@ -293,9 +295,36 @@ void test_after_a_gain_only_motion_beyond_the_limit_counts(void) {
     measured(9100);
     steer(9700);
     run(400);
-    measured(9400);
+    measured(raw);
     steer(18000);
-    expect_after(100, STEERING);
+    expect_after(expected_ms, STEERING);
+}
+
+/* Steps of 55.0 degrees, each of which the steering follows 200 ms later. */
+/* Shows: SUP-10 */
+void test_a_steering_that_follows_later_trips_nothing(void) {
+    for (unsigned raw = 9000; raw <= 17800; raw += 550) {
+        steer(raw);
+        run(200);
+        measured(raw);
+        run(200);
+    }
+    TEST_ASSERT_FALSE(is_active(STEERING));
+}
+
+/* Away in steps of 10.0 degrees, of which the first five are within the limit; back in one. The first way back is a gain. */
+/* Shows: SUP-10, STEERING_DEVIATION */
+void test_away_in_small_steps_and_back_in_one_makes_no_gain(void) {
+    steer(9000);
+    for (unsigned i = 0; i < 4; i++) {
+        for (unsigned raw = 9000; raw <= 9800; raw += 100) {
+            measured(raw);
+        }
+        TEST_ASSERT_FALSE(is_active(STEERING));
+        run(200);
+        measured(9000);
+    }
+    TEST_ASSERT_TRUE(is_active(STEERING));
 }
 
 /* Frames that are not judged: before a gain no step counts, after one only a step away. */
@@ -619,6 +648,18 @@ void test_a_rise_with_the_command_does_not_count(void) {
         run(100);
     }
     TEST_ASSERT_FALSE(is_active(THROTTLE));
+}
+
+/* The AI computer brakes: 27 counts less with each 075h, which 050h follows 90 ms later. */
+/* Shows: SUP-11 */
+void test_a_throttle_that_follows_later_trips_nothing(void) {
+    for (unsigned i = 0; i < 10; i++) {
+        command_throttle(250 - 27 * i);
+        run(90);
+        throttle(250 - 27 * i);
+        run(10);
+        TEST_ASSERT_FALSE(is_active(THROTTLE));
+    }
 }
 
 /* Neither a remainder nor an earlier drop counts. */
