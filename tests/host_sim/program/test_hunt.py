@@ -1,4 +1,5 @@
 """Hunts: the same seed gives the same runs, what is found can be played, a checkpoint is gone on from, bad options."""
+import os
 import re
 import signal
 import subprocess
@@ -7,65 +8,56 @@ import unittest
 import hostsim
 
 FOUND = re.compile(r"^HAZARD  (H[1-8]) run (\d+) after \d+ s: (.*); (.*); (\S+)$", re.MULTILINE)
-LAST = re.compile(r"^(\d+) runs, (\d+) simulated seconds, took \d+ s; (\d+) runs with a hazard, (\d+) distinct$",
-                  re.MULTILINE)
-
-LAST_TOOK = re.compile(r"took \d+ s")
+LAST = re.compile(r"^\d+ s of processor time\n"
+                  r"(\d+) runs, (\d+) simulated seconds, took \d+ s; (\d+) runs with a hazard, (\d+) distinct$", re.MULTILINE)
 
 
 class Hunt(hostsim.Case):
-    def hunt(self, *arguments, status=(0, 1)):
-        result = self.run_program("hunt", *arguments, timeout=600)
+    def hunt(self, *arguments, status=(0, 1), **options):
+        result = self.run_program("hunt", *arguments, timeout=600, **options)
         self.assertIn(result.status, status, result.stdout + result.stderr)
         return result
 
-    def found_in(self, folder):
-        return {path.name: path.read_text(encoding="ascii") for path in sorted((self.folder / folder).iterdir())}
-
-    def folders(self, *names):
-        for name in names:
-            (self.folder / name).mkdir()
+    def figures(self, *arguments):
+        """How many runs, and how long they were in simulated seconds."""
+        return tuple(map(int, LAST.search(self.hunt(*arguments).stdout).group(1, 2)))
 
     def test_the_same_seed_the_same_runs(self):
-        self.folders("a", "b", "c")
-        runs = max(100 // hostsim.PART, 20)
-        first = self.hunt("--seed", 7, "--runs", runs, "--found", "a")
-        second = self.hunt("--seed", 7, "--runs", runs, "--found", "b")
-        other = self.hunt("--seed", 8, "--runs", runs, "--found", "c")
-        self.assertEqual(self.found_in("a"), self.found_in("b"))
-        self.assertEqual(LAST.search(first.stdout)[2], LAST.search(second.stdout)[2])
-        self.assertNotEqual(LAST.search(first.stdout)[2], LAST.search(other.stdout)[2])
-        self.assertEqual(int(LAST.search(first.stdout)[1]), runs)
+        first, second, other = (self.figures("--seed", seed, "--runs", 20) for seed in (7, 7, 8))
+        self.assertEqual(first, second)
+        self.assertNotEqual(first, other)
+        self.assertEqual((first[0], other[0]), (20, 20))
 
     def test_what_is_found_can_be_played(self):
-        self.folders("a")
-        result = self.hunt("--seed", 1, "--runs", max(150 // hostsim.PART, 40), "--found", "a")
+        if hostsim.PART > 1:
+            return  # there are no seeded faults in a program full of checks
+        seeded = os.environ["HOST_SIM_SEEDED"]  # whose supervisor lets a flood through
+        (self.folder / "a").mkdir()
+        result = self.hunt("--seed", 3, "--runs", 40, "--found", "a", status=(1,), program=seeded)
         found = FOUND.findall(result.stdout)
-        self.assertEqual(result.status, 1 if found else 0)
-        self.assertEqual(len(found), int(LAST.search(result.stdout)[4]))
-        self.assertEqual(len(self.found_in("a")), len(found))
-        for kind, run, cause, _, path in found:
-            played = self.run_program("scenario", path)
-            self.assertEqual(played.status, 1, path)
-            self.assertRegex(played.stdout, r"no hazard is expected, seen: %s \(%s\) at \d+ ms" % (kind, re.escape(cause)))
+        self.assertEqual([kind for kind, *_ in found], ["H7"])
+        self.assertEqual(os.listdir(self.folder / "a"), [os.path.basename(found[0][4])])
+        self.assertEqual(LAST.search(result.stdout)[4], "1")
+        kind, _, cause, _, path = found[0]
+        played = self.run_program("scenario", path, program=seeded)
+        self.assertEqual(played.status, 1, path)
+        self.assertRegex(played.stdout, rf"no hazard is expected, seen: {kind} \({re.escape(cause)}\) at \d+ ms")
 
     def test_a_checkpoint_is_gone_on_from(self):
         if hostsim.PART > 1:
             return  # a piece takes minutes in a program full of checks
-        self.folders("whole", "parts")
-        whole = self.hunt("--seed", 3, "--runs", 550, "--found", "whole")
-        self.hunt("--seed", 3, "--runs", 500, "--found", "parts", "--checkpoint", "state")
+        arguments = ("--seed", 3, "--runs", 520)
+        saved = self.figures("--seed", 3, "--runs", 500, "--checkpoint", "state")
         self.assertRegex(self.interrupted("--checkpoint", "state"),
                          r"^host_sim: interrupted after \d+ runs; the same command resumes from run 500\n$")
-        rest = self.hunt("--seed", 3, "--runs", 550, "--found", "parts", "--checkpoint", "state")
-        self.assertEqual(LAST.search(rest.stdout)[0].replace(LAST_TOOK.search(rest.stdout)[0], ""),
-                         LAST.search(whole.stdout)[0].replace(LAST_TOOK.search(whole.stdout)[0], ""))
-        self.assertRegex(rest.stdout, r"(?m)^\d+ s of processor time$")
-        self.assertEqual(self.found_in("whole"), self.found_in("parts"))
-        bad = self.hunt("--seed", 4, "--runs", 550, "--checkpoint", "state", status=(2,))
+        whole = self.figures(*arguments, "--checkpoint", "state")
+        rest = self.figures(*arguments, "--shard", "2/2")  # the runs from 500 on
+        self.assertEqual((saved[0], rest[0], whole[0]), (500, 20, 520))
+        self.assertAlmostEqual(saved[1] + rest[1], whole[1], delta=1)  # each is rounded down
+        bad = self.hunt("--seed", 4, "--runs", 520, "--checkpoint", "state", status=(2,))
         self.assertIn("the checkpoint of another hunt", bad.stderr)
         (self.folder / "state").write_bytes((self.folder / "state").read_bytes()[:-1])
-        torn = self.hunt("--seed", 3, "--runs", 550, "--checkpoint", "state", status=(2,))
+        torn = self.hunt(*arguments, "--checkpoint", "state", status=(2,))
         self.assertIn("damaged", torn.stderr)
 
     def interrupted(self, *arguments):
