@@ -4,6 +4,7 @@ The eleven messages come on their cycles, spread by phase, with running heartbea
 gear P in manual mode, until `engage_ms`: from there on the VCU reports autopilot mode and the AI computer drives.
 What is wrong is said by the test: `edit` is asked for every frame and may change, drop or repeat it.
 """
+import itertools
 
 US_PER_MS = 1000
 
@@ -121,3 +122,12 @@ def log(traffic, base_us=BASE_US):
     """Frames as a candump log."""
     return "".join(["(%010d.%06d) %s %03X#%s\n" %
                     (*divmod(base_us + f.t_us, 1000000), f.interface, f.can_id, f.data.hex().upper()) for f in traffic])
+
+
+def repeated(text, times):
+    """A log of whole seconds, so many times: each time right behind the one before."""
+    seconds = [(int(second), "".join(lines))
+               for second, lines in itertools.groupby(text.splitlines(keepends=True), lambda line: line[1:11])]
+    length = seconds[-1][0] + 1 - seconds[0][0]
+    return "".join(lines.replace("(%010d." % second, "(%010d." % (second + number * length))
+                   for number in range(times) for second, lines in seconds)

@@ -175,11 +175,10 @@ class Outputs(hostsim.Case):
 class Memory(hostsim.Case):
     def peak_kib(self, seconds):
         """Peak resident set, read when all but the end of the log has gone in."""
-        block = traffic.frames(25600)
+        block = traffic.log(traffic.frames(25000))
         with subprocess.Popen([hostsim.PROGRAM, "replay", "--out", "out", "--events", "events", "-"], cwd=self.folder,
                               stdin=subprocess.PIPE) as program:
-            for number in range(seconds // 25):
-                program.stdin.write(traffic.log(block, traffic.BASE_US + number * 25600000).encode())
+            program.stdin.write(traffic.repeated(block, seconds // 25).encode())
             program.stdin.flush()
             with open("/proc/%d/status" % program.pid, encoding="ascii") as status:
                 peak = int(re.search(r"VmHWM:\s*(\d+) kB", status.read())[1])
