@@ -74,26 +74,27 @@ class Drive:
 
 def payload(name, count, t_ms, drive):
     """The payload of a message, `count` times sent before."""
-    mode = traffic.AUTOPILOT if drive.engaged(t_ms) else traffic.MANUAL
-    speed = drive.speed(t_ms) if name in ("vehicle_status", "wheel_speed") else 0
-    lights = drive.command(drive.lights, t_ms, 0)
-    byte = {"gear_command": lambda: drive.command(drive.gears, t_ms, traffic.GEAR_N),
-            "gear_status": lambda: drive.gear(t_ms),
-            "throttle_command": lambda: drive.command(drive.throttles, t_ms, 0),
-            "throttle_status": lambda: drive.throttle(t_ms)}
-    if name in byte:
-        return bytes([byte[name]()]) + bytes(7)
+    if name == "gear_command":
+        return bytes([drive.command(drive.gears, t_ms, traffic.GEAR_N)]) + bytes(7)
+    if name == "gear_status":
+        return bytes([drive.gear(t_ms)]) + bytes(7)
+    if name == "throttle_command":
+        return bytes([drive.command(drive.throttles, t_ms, 0)]) + bytes(7)
+    if name == "throttle_status":
+        return bytes([drive.throttle(t_ms)]) + bytes(7)
     if name == "steering_command":
         return (9000 + drive.command(drive.angles, t_ms, 0)).to_bytes(2, "little") + bytes(6)
     if name == "steering_status":
         return bytes([count & 0xFF, 98]) + (9000 + drive.angle(t_ms)).to_bytes(2, "little") + bytes(4)
     if name == "turn_signal_command":
-        return bytes(4) + bytes([lights, 0, 0, count & 0xFF])
+        return bytes(4) + bytes([drive.command(drive.lights, t_ms, 0), 0, 0, count & 0xFF])
     if name == "vehicle_status":
-        return round(speed * 3.6).to_bytes(2, "little") + bytes(4) + bytes([mode | lights, count & 0xFF])
+        bits = (traffic.AUTOPILOT if drive.engaged(t_ms) else traffic.MANUAL) | drive.command(drive.lights, t_ms, 0)
+        return round(drive.speed(t_ms) * 3.6).to_bytes(2, "little") + bytes(4) + bytes([bits, count & 0xFF])
     if name == "eps_status":
         return bytes([0, 0, 0, 1 if drive.engaged(t_ms) and drive.engaged(t_ms - 100) else 0]) + bytes(4)
     if name == "wheel_speed":
+        speed = drive.speed(t_ms)
         return speed.to_bytes(4, "little") + (speed + speed // 20).to_bytes(4, "little")
     return bytes([0x23, 0x28, 0x06, 0x40, 0x40, 0x10, 0, 0])
 

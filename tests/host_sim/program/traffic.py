@@ -44,27 +44,20 @@ BUTTON_1 = 0x01
 GEAR_P, GEAR_R, GEAR_N, GEAR_D = 8, 2, 4, 1
 
 
-def payload(name, count, t_ms, engaged):
-    """The healthy payload of a message, `count` times sent before."""
-    mode = AUTOPILOT if engaged else MANUAL
-    gear = GEAR_D if engaged else GEAR_P
-    throttle = 10 if engaged else 0
-    speed = 400 if engaged else 0
-    angle = 9000
-    data = {
-        "vehicle_status": lambda: bytes([0, 0, 0, 0, 0, 0, mode, count & 0xFF]),
-        "throttle_status": lambda: bytes([throttle, 0, 0, 0, 0, 0, 0, 0]),
-        "wheel_speed": lambda: speed.to_bytes(4, "little") * 2,
-        "steering_status": lambda: bytes([count & 0xFF, 100]) + angle.to_bytes(2, "little") + bytes(4),
-        "eps_status": lambda: bytes([0, 0, 0, 1, 0, 0, 0, 0]),
-        "steering_position": lambda: bytes([0x23, 0x28, 0, 0, 0x46, 0x50, 0, 0]),
-        "gear_status": lambda: bytes([gear, 0, 0, 0, 0, 0, 0, 0]),
-        "steering_command": lambda: angle.to_bytes(2, "little") + bytes(6),
-        "turn_signal_command": lambda: bytes([0, 0, 0, 0, 0x80, 0, 0, count & 0xFF]),
-        "gear_command": lambda: bytes([gear, 0, 0, 0, 0, 0, 0, 0]),
-        "throttle_command": lambda: bytes([throttle, 0, 0, 0, 0, 0, 0, 0]),
-    }
-    return data[name]()
+ANGLE = (9000).to_bytes(2, "little")
+PAYLOADS = {  # healthy: count is how often the message was sent before
+    "vehicle_status": lambda count, engaged: bytes([0, 0, 0, 0, 0, 0, AUTOPILOT if engaged else MANUAL, count & 0xFF]),
+    "throttle_status": lambda count, engaged: bytes([10 if engaged else 0, 0, 0, 0, 0, 0, 0, 0]),
+    "wheel_speed": lambda count, engaged: (400 if engaged else 0).to_bytes(4, "little") * 2,
+    "steering_status": lambda count, engaged: bytes([count & 0xFF, 100]) + ANGLE + bytes(4),
+    "eps_status": lambda count, engaged: bytes([0, 0, 0, 1, 0, 0, 0, 0]),
+    "steering_position": lambda count, engaged: bytes([0x23, 0x28, 0, 0, 0x46, 0x50, 0, 0]),
+    "gear_status": lambda count, engaged: bytes([GEAR_D if engaged else GEAR_P, 0, 0, 0, 0, 0, 0, 0]),
+    "steering_command": lambda count, engaged: ANGLE + bytes(6),
+    "turn_signal_command": lambda count, engaged: bytes([0, 0, 0, 0, 0x80, 0, 0, count & 0xFF]),
+    "gear_command": lambda count, engaged: bytes([GEAR_D if engaged else GEAR_P, 0, 0, 0, 0, 0, 0, 0]),
+    "throttle_command": lambda count, engaged: bytes([10 if engaged else 0, 0, 0, 0, 0, 0, 0, 0]),
+}
 
 
 class Frame:
@@ -102,7 +95,7 @@ def frames(duration_ms, engage_ms=None, ids=None, interface="can0", ai_interface
             counts[name] = count + 1
             engaged = engage_ms is not None and t_us >= engage_ms * US_PER_MS
             side = ai_interface if ai_interface and sender == "ai" else interface
-            frame = Frame(t_us, name, ids[name], payload(name, count, t_us // US_PER_MS, engaged), side)
+            frame = Frame(t_us, name, ids[name], PAYLOADS[name](count, engaged), side)
             edited = frame if edit is None else edit(frame)
             if edited is None:
                 continue
