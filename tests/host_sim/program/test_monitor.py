@@ -1,5 +1,4 @@
 """host_sim monitor from outside: the screen in tmux, lines where there is no terminal, refused options."""
-import os
 import pathlib
 import subprocess
 import time
@@ -187,17 +186,6 @@ class Lines(hostsim.Case):
         self.assertEqual(done.returncode, 0)
         self.assertIn(b"TRIPPED", done.stdout)
 
-    def test_faults_from_before_the_supervisor_is_shown(self):
-        other = ROOT / "host_sim/examples/other-vehicle.log.gz"
-        lines = self.monitor("--log", other, "--speed", "max").stdout.splitlines()
-        at = next(i for i, line in enumerate(lines) if line.endswith("shadow      INIT"))
-        self.assertEqual(lines[at:at + 3], ["      1.000 s  shadow      INIT",
-                                            "      1.000 s  shadow      fault VCU_HEARTBEAT_LOST (trip)",
-                                            "      1.000 s  shadow      fault WRONG_ID_SET (warn)"])
-        asked = self.monitor("--log", other, "--speed", "max", "--shadow").stdout
-        for fault in ("VCU_HEARTBEAT_LOST", "WRONG_ID_SET"):
-            self.assertEqual(asked.count(fault), 1)
-
     def test_a_time_that_goes_backwards(self):
         for back, said in ((9, ""), (500, "host_sim: b.log:3: the time stamps go back by 0.500 s; the times are wrong there: cut "
                                           "or sort the log\n")):
@@ -217,14 +205,6 @@ class Lines(hostsim.Case):
         for name, said in (("can9", "host_sim: the log has no frame from can9, the AI side\n"), ("can0", "")):
             done = self.monitor("--log", EXAMPLE, "--speed", "max", "--ai-if", name)
             self.assertEqual((done.returncode, done.stderr), (0, GATEWAY + said))
-
-    def test_a_reader_that_goes_away(self):
-        reader, writer = os.pipe()
-        os.close(reader)
-        done = subprocess.run([hostsim.PROGRAM, "monitor", "--log", str(EXAMPLE), "--speed", "max"], stdin=subprocess.DEVNULL,
-                              stdout=writer, stderr=subprocess.PIPE, check=False, timeout=60)
-        os.close(writer)
-        self.assertEqual((done.returncode, done.stderr), (2, b"host_sim: standard output: Broken pipe\n"))
 
     def test_refused(self):
         for arguments, message in (

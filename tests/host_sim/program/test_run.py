@@ -13,12 +13,6 @@ NO_INTERFACE = "nosuchcan0"
 
 
 class Run(hostsim.Case):
-    def test_help_names_every_option(self):
-        text = self.run_good("run", "--help").stdout
-        for option in ("--can", "--ai-can", "--for", "--fail-on-trip", "--events", "--out", "--realtime", "--config",
-                       "--topology", "--id-set", "--shadow"):
-            self.assertRegex(text, r"(?m)^  %s( |$)" % option)
-
     def test_which_interface(self):
         self.assert_refused(self.run_program("run"), "--can is missing")
         self.assert_refused(self.run_program("run", "can0"), "unexpected argument 'can0'")
