@@ -13,6 +13,9 @@ PROGRAM = os.environ["HOST_SIM"]
 STUBS = {name: os.environ.get("HOST_SIM_" + name.upper()) for name in ("mute", "tripped")}  # with a stub supervisor
 PART = int(os.environ.get("HOST_SIM_PART", "1"))  # long runs do so small a part: a program full of checks is ten times slower
 
+OUTPUTS = {"--events": "events.jsonl", "--out": "out.log", "--store": "store", "--why": "why.json", "--report": "report.html",
+           "--trace": "trace.json"}
+
 SENT = re.compile(r"\((\d{10,})\.(\d{6})\) (\S+) ([0-9A-F]{3})#((?:[0-9A-F]{2})*)")
 
 
@@ -119,8 +122,7 @@ class Case(unittest.TestCase):
         """Replay a log that is refused: nothing is written."""
         self.write("log", log)
         before = self.files()
-        outputs = {"--events": "events.jsonl", "--out": "out.log", "--store": "store"}
-        others = [word for option, file in outputs.items() if option not in arguments for word in (option, file)]
+        others = [word for option, file in OUTPUTS.items() if option not in arguments for word in (option, file)]
         result = self.run_program("replay", *others, *arguments, "log", **options)
         self.assertEqual(self.files(), before)
         return result

@@ -425,20 +425,6 @@ class Why(Case):
         self.assertEqual(json.loads(result.stdout)["trips"], [])
         self.assert_refused(self.run_program("replay", "--why", "-", "--events", "-", "my.log"), "--why")
 
-    def test_it_is_never_written_onto_its_log(self):
-        log = traffic.log(traffic.frames(1000))
-        for option in ("--why", "--report", "--trace"):
-            self.write("my.log", log)
-            self.assert_refused(self.run_program("replay", option, "my.log", "my.log"), "are the same file")
-            self.assertEqual((self.folder / "my.log").read_text(encoding="ascii"), log)
-
-    def test_nothing_good_is_replaced_when_the_log_is_bad(self):
-        self.write("why.json", "good")
-        self.write("bad.log", traffic.log(traffic.frames(1000)) + "oops\n")
-        self.assert_refused(self.run_program("replay", "--why", "why.json", "bad.log"), "bad.log:")
-        self.assertEqual((self.folder / "why.json").read_text(encoding="ascii"), "good")
-        self.assertEqual(self.files(), ["bad.log", "why.json"])
-
     def test_demo_and_scenario_say_why(self):
         self.run_good("demo", "--why", "why.json", "--trace", "trace.json")
         demo = json.loads((self.folder / "why.json").read_text(encoding="utf-8"))
