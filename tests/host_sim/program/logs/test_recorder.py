@@ -8,7 +8,7 @@ import zlib
 
 import hostsim
 import traffic
-from test_replay import edit_payload, stop
+from test_replay import byte, edit_payload, stop
 
 EVENT = 112    # bytes of agv_event_t (firmware/include/agv/recorder.h)
 EVENTS = 256   # of the ring at the end of agv_recorder_t
@@ -86,10 +86,8 @@ class Recorder(hostsim.Case):
                  ("throttle_status", 0, 100, ("THROTTLE_DEVIATION", "budget", "throttle_status", 3001)),
                  ("vehicle_status", 6, 0xC0, ("MODE_INVALID", "mode", "vehicle_status", 3001)))
         for message, at, value, expected in cases:
-            def change(data, at=at, value=value):
-                data[at] = value
-            self.write("x.log", traffic.log(traffic.frames(4000, engage_ms=1000,
-                                                           edit=edit_payload(message, 3000, change))))
+            edit = edit_payload(message, 3000, byte(at, value))
+            self.write("x.log", traffic.log(traffic.frames(4000, engage_ms=1000, edit=edit)))
             self.run_good("replay", "--store", expected[0], "x.log")
             trip = json.loads(self.run_good("recorder", "--why", "-", expected[0]).stdout)["trips"][0]
             self.assertEqual((trip["reason"], trip["kind"], trip["message"], trip["cause_ms"]), expected)

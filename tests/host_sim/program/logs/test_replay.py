@@ -27,6 +27,11 @@ def edit_payload(name, at_ms, change, until_ms=None):
     return edit
 
 
+def byte(index, value):
+    """A change of the payload, for edit_payload()."""
+    return lambda data: data.__setitem__(index, value)
+
+
 def stop(names, at_ms, until_ms=None):
     """An edit: messages that stop."""
     def edit(frame):
@@ -227,7 +232,7 @@ class Events(hostsim.Case):
         self.assertEqual([event["event"] for event in result.events()].count("summary"), 1)
 
     def test_every_line_is_of_the_kinds_that_are_documented(self):
-        edit = edit_payload("eps_status", 1500, lambda data: data.__setitem__(7, 0x20), 2500)
+        edit = edit_payload("eps_status", 1500, byte(7, 0x20), 2500)
         result = self.replay(traffic.log(traffic.frames(4000, engage_ms=1000, edit=edit)))
         keys = {"state": {"from", "to", "reason"}, "fault": {"name", "class", "active"}, "safety_output": {"closed"},
                 "led": {"code"}, "reset": {"accepted", "why"}, "startup": {"missing"}}
@@ -239,7 +244,7 @@ class Events(hostsim.Case):
 
     # Shows: EPS_TEMP_ABOVE_110, LED-1
     def test_a_warning_begins_and_ends(self):
-        edit = edit_payload("eps_status", 1000, lambda data: data.__setitem__(7, 0x10), 1500)
+        edit = edit_payload("eps_status", 1000, byte(7, 0x10), 1500)
         result = self.replay(traffic.log(traffic.frames(3000, edit=edit)), "--tail", "0")
         self.assertEqual(result.faults(), [(1003, "EPS_TEMP_ABOVE_110", "warn")])
         self.assertEqual(result.faults(active=False), [(1503, "EPS_TEMP_ABOVE_110", "warn")])
@@ -300,7 +305,7 @@ class Events(hostsim.Case):
 
     # Shows: STARTUP_TIMEOUT
     def test_what_is_missing_has_the_same_words_everywhere(self):
-        autopilot = edit_payload("vehicle_status", 0, lambda data: data.__setitem__(6, 0x80))
+        autopilot = edit_payload("vehicle_status", 0, byte(6, 0x80))
         rolls = edit_payload("wheel_speed", 0, lambda data: data.__setitem__(slice(0, 8), (500).to_bytes(4, "little") * 2))
         for edit, missing in ((stop(("vehicle_status",), 0), ["vcu_heartbeat", "trip_cause", "standstill", "manual"]),
                               (stop(EPS, 0), ["eps_heartbeat", "trip_cause", "messages"]),

@@ -4,11 +4,7 @@ import unittest
 
 import hostsim
 import traffic
-from test_replay import AI, EPS, VCU, edit_payload, stop
-
-
-def byte(index, value):
-    return lambda data: data.__setitem__(index, value)
+from test_replay import AI, EPS, VCU, byte, edit_payload, stop
 
 
 def log(edit=None, engage_ms=1000, duration_ms=4000, **options):

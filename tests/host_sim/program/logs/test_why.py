@@ -6,7 +6,7 @@ import unittest
 
 import hostsim
 import traffic
-from test_replay import AI, EPS, VCU, edit_payload, raise_remote_signal_lost, stop
+from test_replay import AI, EPS, VCU, byte, edit_payload, raise_remote_signal_lost, stop
 
 S = 1000000
 COLUMNS = 100
@@ -176,7 +176,7 @@ class FiveLogs(Case):
         self.assertIn("tripped     at 3.032 s (22:13:23.032): STEERING_COMMAND_TIMEOUT", tripped)
 
     def test_a_log_that_ends_before_its_bad_frames_are_enough(self):
-        edit = edit_payload("eps_status", 2980, lambda data: data.__setitem__(7, 0x01))
+        edit = edit_payload("eps_status", 2980, byte(7, 0x01))
         lines = self.text(traffic.log(traffic.frames(3000, edit=edit)))
         self.assertEqual(lines[-1], "at the end  EPS_UNDER_VOLTAGE had begun at 2.983 s: the log ends first")
 
@@ -306,62 +306,55 @@ class Text(Case):
         self.assertNotIn("stands still", text)
 
 
-class Causes(Case):
-    """The sentence behind `why`."""
+def turned(data):
+    data[2:4] = (9501).to_bytes(2, "little")
 
-    def sentence(self, edit, duration_ms=4000, engage_ms=1000, **options):
-        lines = self.text(traffic.log(traffic.frames(duration_ms, engage_ms=engage_ms, edit=edit, **options)))
+
+CAUSES = {  # the sentence behind `why` of a log with this edit
+    "a heartbeat that is lost": (
+        stop(VCU, 2001), "363h vehicle_status was silent: last at 2.000 s, deadline 50 ms, none since"),
+    "a heartbeat that is stuck": (
+        edit_payload("steering_status", 2010, byte(0, 7)),
+        "067h steering_status kept its alive counter from 2.022 s on [07 64 28 23 00 00 00 00]: last change at 2.012 s, "
+        "deadline 50 ms"),
+    "a fault bit": (
+        edit_payload("eps_status", 2000, byte(7, 0x40)),
+        "167h eps_status reported EPS_MOTOR_ENCODER from 2.003 s on [00 00 00 01 00 00 00 40]"),
+    "a score": (
+        edit_payload("eps_status", 2000, byte(3, 7)),
+        "167h eps_status reported an EPS mode that does not exist in 5 frames, the first at 2.003 s [00 00 00 07 00 00 00 00]"),
+    "a value": (
+        edit_payload("throttle_command", 2000, byte(0, 251)),
+        "075h throttle_command commanded a value that does not exist at 2.008 s [FB 00 00 00 00 00 00 00]"),
+    "a budget of the throttle": (
+        edit_payload("throttle_status", 2000, byte(0, 100)),
+        "050h throttle_status was more than 25 counts above 075h throttle_command for 500 ms, from 2.000 s on"),
+    "a budget of the steering": (
+        edit_payload("steering_status", 2000, turned),
+        "067h steering_status was more than 50.0 deg off 065h steering_command for 500 ms, from 2.002 s on"),
+    "a mode": (
+        edit_payload("vehicle_status", 2000, byte(6, 0xC0)),
+        "363h vehicle_status reported manual and autopilot together for 50 ms, from 2.000 s on"),
+}
+
+
+class Causes(Case):
+    def sentence(self, *arguments, **options):
+        lines = self.text(traffic.log(traffic.frames(4000, engage_ms=1000, **options)), *arguments)
         at = next(i for i, line in enumerate(lines) if line.startswith("  why"))
         end = next(i for i, line in enumerate(lines) if line.startswith("  then"))
         return " ".join(line[12:].strip() for line in lines[at:end])
 
-    def test_a_heartbeat_that_is_lost(self):
-        self.assertEqual(self.sentence(stop(VCU, 2001)), "363h vehicle_status was silent: last at 2.000 s, deadline 50 "
-                                                          "ms, none since")
+    def test_each_kind_has_its_sentence(self):
+        for name, (edit, sentence) in CAUSES.items():
+            with self.subTest(name):
+                self.assertEqual(self.sentence(edit=edit), sentence)
 
-    def test_a_heartbeat_that_is_stuck(self):
-        self.assertEqual(
-            self.sentence(edit_payload("steering_status", 2010, lambda data: data.__setitem__(0, 7))),
-            "067h steering_status kept its alive counter from 2.022 s on [07 64 28 23 00 00 00 00]: last change at "
-            "2.012 s, deadline 50 ms")
-
-    def test_a_fault_bit(self):
-        self.assertEqual(self.sentence(edit_payload("eps_status", 2000, lambda data: data.__setitem__(7, 0x40))),
-                         "167h eps_status reported EPS_MOTOR_ENCODER from 2.003 s on [00 00 00 01 00 00 00 40]")
-
-    def test_a_score(self):
-        self.assertEqual(self.sentence(edit_payload("eps_status", 2000, lambda data: data.__setitem__(3, 7))),
-                         "167h eps_status reported an EPS mode that does not exist in 5 frames, the first at 2.003 s "
-                         "[00 00 00 07 00 00 00 00]")
-
-    def test_a_value(self):
-        self.assertEqual(self.sentence(edit_payload("throttle_command", 2000, lambda data: data.__setitem__(0, 251))),
-                         "075h throttle_command commanded a value that does not exist at 2.008 s "
-                         "[FB 00 00 00 00 00 00 00]")
-
-    def test_a_budget(self):
-        self.assertEqual(self.sentence(edit_payload("throttle_status", 2000, lambda data: data.__setitem__(0, 100))),
-                         "050h throttle_status was more than 25 counts above 075h throttle_command for 500 ms, from "
-                         "2.000 s on")
-        def turn(data):
-            data[2:4] = (9501).to_bytes(2, "little")
-        self.assertEqual(self.sentence(edit_payload("steering_status", 2000, turn)),
-                         "067h steering_status was more than 50.0 deg off 065h steering_command for 500 ms, from "
-                         "2.002 s on")
-
-    def test_a_budget_with_other_identifiers(self):
-        ids = dict(traffic.IDS, steering_command=0x165)
-        def turn(data):
-            data[2:4] = (9501).to_bytes(2, "little")
-        frames = traffic.frames(4000, engage_ms=1000, ids=ids, edit=edit_payload("steering_status", 2000, turn))
+    def test_a_sentence_has_the_identifiers_of_the_configuration(self):
         self.write("ids.yaml", "id_steering_command: 0x165\n")
-        why = [line for line in self.text(traffic.log(frames), "--config", "ids.yaml") if line.startswith("  why")]
-        self.assertEqual(why, ["  why       067h steering_status was more than 50.0 deg off 165h steering_command for "
-                               "500 ms, from"])
-
-    def test_a_mode(self):
-        self.assertEqual(self.sentence(edit_payload("vehicle_status", 2000, lambda data: data.__setitem__(6, 0xC0))),
-                         "363h vehicle_status reported manual and autopilot together for 50 ms, from 2.000 s on")
+        edit, sentence = CAUSES["a budget of the steering"]
+        self.assertEqual(self.sentence("--config", "ids.yaml", edit=edit, ids=dict(traffic.IDS, steering_command=0x165)),
+                         sentence.replace("065h", "165h"))
 
 
 class Why(Case):
@@ -403,7 +396,7 @@ class Why(Case):
         log = traffic.log(traffic.frames(4000, engage_ms=1000, edit=stop(("steering_command",), 3000)))
         trip = self.why(log, "--config", "c.yaml")["trips"][0]
         self.assertEqual((trip["limit"], trip["cause_ms"], trip["t_ms"]), (200, 3006, 3182))
-        edit = edit_payload("eps_status", 3000, lambda data: data.__setitem__(7, 0x01))
+        edit = edit_payload("eps_status", 3000, byte(7, 0x01))
         trip = self.why(traffic.log(traffic.frames(4000, edit=edit)), "--config", "c.yaml")["trips"][0]
         self.assertEqual((trip["reason"], trip["kind"]), ("EPS_UNDER_VOLTAGE", "bit"))  # one frame is enough
 
