@@ -15,7 +15,7 @@ import traffic
 ROOT = pathlib.Path(__file__).resolve().parents[4]
 EXAMPLE = ROOT / "host_sim/examples/ai-stops.log"
 SCENARIOS = ROOT / "host_sim/scenarios"
-SIZES = ((1440, False), (1440, True), (390, False), (390, True), (768, False))
+SIZES = ((1440, False), (390, True), (768, False))  # each width, and each light; the one does not depend on the other
 
 # page: (how it is made, what its badge says, what its headline says)
 PAGES = {
