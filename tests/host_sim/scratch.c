@@ -87,3 +87,11 @@ const char *scratch_said(void) {
     (void)lseek(said_fd, 0, SEEK_SET);
     return said;
 }
+
+const char *scratch_said_line(const char *text) {
+    const char *line = scratch_said();
+    const char *found = strstr(line, text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(found, line);
+    TEST_ASSERT_EQUAL_PTR_MESSAGE(&line[strlen(line) - 1u], strchr(line, '\n'), line);
+    return found;
+}

@@ -28,4 +28,7 @@ size_t scratch_count(void);
 /* What was said on standard error since the last call. */
 const char *scratch_said(void);
 
+/* One line was said since the last call, with this text in it. Returns where the text begins. */
+const char *scratch_said_line(const char *text);
+
 #endif

@@ -24,10 +24,9 @@ void tearDown(void) {
 static void expect(const char *text) {
     static char file[4000];
     scenario_options_t options = {.topology = -1, .id_set = -1};
-    const int used = snprintf(file, sizeof file, "name: n\nshows: [SUP-2]\nduration_ms: 1000\nexpect:\n%s", text);
+    (void)snprintf(file, sizeof file, "name: n\nshows: [SUP-2]\nduration_ms: 1000\nexpect:\n%s", text);
     agv_config_defaults(&options.config);
-    TEST_ASSERT_TRUE_MESSAGE(scenario_read(&scenario, scratch_write("s.yaml", file, (size_t)used), &options),
-                             scratch_said());
+    TEST_ASSERT_TRUE_MESSAGE(scenario_read_text(&scenario, "s.yaml", file, &options), scratch_said());
     scenario_check_init(&check, &scenario);
 }
 

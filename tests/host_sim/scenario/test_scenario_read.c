@@ -22,9 +22,7 @@ void tearDown(void) {
 }
 
 static bool read_text(const char *text) {
-    static char path[256];
-    (void)snprintf(path, sizeof path, "%s", scratch_write("s.yaml", text, strlen(text)));
-    return scenario_read(&scenario, path, &options);
+    return scenario_read_text(&scenario, "s.yaml", text, &options);
 }
 
 static void read_good(const char *text) {
@@ -35,11 +33,8 @@ static void read_good(const char *text) {
 /* It is refused with one line, which names the file and holds this. */
 static void read_bad(const char *text, const char *expected) {
     TEST_ASSERT_FALSE_MESSAGE(read_text(text), text);
-    const char *said = scratch_said();
-    const char *place = strstr(said, "s.yaml");
-    TEST_ASSERT_NOT_NULL_MESSAGE(place, said);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(place, expected), said);
-    TEST_ASSERT_EQUAL_PTR_MESSAGE(&said[strlen(said) - 1u], strchr(said, '\n'), said);
+    const char *place = scratch_said_line("s.yaml");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(place, expected), place);
 }
 
 #define HEAD "name: n\nshows: [SUP-2]\nduration_ms: 1000\n"
@@ -61,7 +56,8 @@ void test_the_least_that_a_file_needs(void) {
 }
 
 void test_everything_about_the_beginning(void) {
-    read_good("steps: []\nname: n\nshows: [P15, FSM-10, BUS_OFF]\ndescription: d\ntopology: gateway\nid_set: table\n"
+    read_good("steps: []\nname: n\nshows: [P15, FSM-10, HW-4, LED-1, BUS_OFF]\n"
+              "description: d\ntopology: gateway\nid_set: table\n"
               "config: {park: at_standstill, vcu_heartbeat_timeout_ms: 60}\nself_test: failed\nbitrate: 250000\n"
               "clock_start_ms: 4294967295\nhardware_watchdog: none\nreset_cause: brown-out\nduration_ms: 86400000\n"
               "vehicle: {park_guard: false, obeys_short_frames: true, vcu_starts_ms: 5, eps_starts_ms: never, "
@@ -86,16 +82,21 @@ void test_everything_about_the_beginning(void) {
 }
 
 void test_times_with_units_and_identifiers_in_any_notation(void) {
-    read_good("name: n\nshows: [SUP-2]\nduration_ms: 1.5min\ntick_phase_us: 0.5ms\n"
-              "vehicle: {vcu_starts_ms: 2 s, eps_lost_ms: 0.09s}\n"
-              "steps:\n"
-              "  - {at_ms: 2s, ai: lag, by_ms: 0.25s}\n"
-              "  - {at_ms: 2001, bus: send, id: 0x168, bytes: \"01\"}\n"
-              "  - {at_ms: 3s, bus: send, id: 360, bytes: \"01\"}\n"
-              "expect:\n  states: []\n  frames: [{id: 168h, at_ms: [1s, 1500], jitter_ms: 3000us}]\n");
+    read_good(
+        "name: n\nshows: [SUP-2]\nduration_ms: 1.5min\ntick_phase_us: 0.5ms\nclock_start_ms: 1min\n"
+        "vehicle: {vcu_starts_ms: 2 s, eps_lost_ms: 0.09s, gear_change_ms: 120ms, phases_ms: {gear_status: 3ms}}\n"
+        "steps:\n"
+        "  - {at_ms: 2s, ai: lag, by_ms: 0.25s}\n"
+        "  - {at_ms: 2001, bus: send, id: 0x168, bytes: \"01\"}\n"
+        "  - {at_ms: 3s, bus: send, id: 360, bytes: \"01\"}\n"
+        "expect:\n  states: []\n  frames: [{id: 168h, at_ms: [1s, 1500], jitter_ms: 3000us}]\n"
+        "  faults: [{name: BUS_OFF, raised_ms: 1s, ended_ms: [1s, 2s]}]\n");
     TEST_ASSERT_EQUAL_UINT32(90000u, scenario.duration_ms);
     TEST_ASSERT_EQUAL_UINT32(500u, scenario.tick_phase_us);
+    TEST_ASSERT_EQUAL_UINT32(60000u, scenario.clock_start_ms);
     TEST_ASSERT_EQUAL_UINT32(2000u, scenario.vehicle.start_ms[VEHICLE_VCU]);
+    TEST_ASSERT_EQUAL_UINT16(120u, scenario.vehicle.gear_change_ms);
+    TEST_ASSERT_EQUAL_UINT16(3u, scenario.vehicle.phase_ms[AGV_MSG_GEAR_STATUS]);
     TEST_ASSERT_EQUAL_UINT16(90u, scenario.vehicle.eps_lost_ms);
     TEST_ASSERT_EQUAL_UINT32(2000u, scenario.steps[0].at_ms);
     TEST_ASSERT_EQUAL_UINT32(250u, scenario.steps[0].vehicle.ms);
@@ -105,6 +106,7 @@ void test_times_with_units_and_identifiers_in_any_notation(void) {
     TEST_ASSERT_EQUAL_UINT32(1000u, scenario.expect.frames.items[0].at_ms.from);
     TEST_ASSERT_EQUAL_UINT32(1500u, scenario.expect.frames.items[0].at_ms.to);
     TEST_ASSERT_EQUAL_UINT32(3u, scenario.expect.frames.items[0].jitter_ms);
+    TEST_ASSERT_EQUAL_UINT32(2000u, scenario.expect.faults.items[0].ended_ms.to);
 }
 
 /* Shows: HW-1, HW-2, HW-3, HW-4 */
@@ -268,6 +270,11 @@ void test_what_is_wrong_at_the_top_is_refused_with_its_line(void) {
         {"name: n\nshows: SUP-2\n", "s.yaml:2: shows must be a list"},
         {"name: n\nshows: [sup-2]\n", "s.yaml:2: shows: 'sup-2' is neither a requirement"},
         {"name: n\nshows: [BUS_ON]\n", "s.yaml:2: shows: 'BUS_ON' is neither"},
+        {"name: n\nshows: [SUP-99]\n", "s.yaml:2: shows: 'SUP-99' is neither"},
+        {"name: n\nshows: [SUP-0]\n", "s.yaml:2: shows: 'SUP-0' is neither"},
+        {"name: n\nshows: [P999]\n", "s.yaml:2: shows: 'P999' is neither"},
+        {"name: n\nshows: [SUP]\n", "s.yaml:2: shows: 'SUP' is neither"},
+        {"name: n\nshows: [ABC-1]\n", "s.yaml:2: shows: 'ABC-1' is neither"},
         {"name: n\nshows: [SUP-2]\nduration_ms: 0\n", "s.yaml:3: duration_ms: 0 is not within 1 to 86400000"},
         {"name: n\nshows: [SUP-2]\nduration_ms: 1.5\n", "s.yaml:3: duration_ms: '1.5' is not a time"},
         {"name: n\nshows: [SUP-2]\nduration_ms: 99999999999999999999\n",
@@ -373,6 +380,8 @@ void test_what_is_wrong_in_a_step_is_refused_with_its_line(void) {
         {STEP("at_ms: 1, board: fast_clock, permille: 901"), "s.yaml:5: permille: 901 is not within 1 to 900"},
         {STEP("at_ms: 1, board: fail_test, part: core"), "s.yaml:5: a part of the self-test: 'core' is not one of"},
         {STEP("at_ms: never, ai: stop"), "s.yaml:5: at_ms: 'never' is not a time"},
+        {STEP("at_ms: 10 parsecs, ai: stop"), "s.yaml:5: at_ms: '10 parsecs' is not a time"},
+        {STEP("at_ms: 25h, ai: stop"), "s.yaml:5: at_ms: '25h' is not within 0ms to 1d"},
         {STEP("[1]: 1, ai: stop"), "s.yaml:5: a key of a step must be a word"},
         {HEAD "steps:\n  - {at_ms: 9, ai: stop}\n  - {at_ms: 8, ai: start}\n" STATES, "s.yaml:6: the step is earlier"},
     };
@@ -456,7 +465,7 @@ void test_there_is_room_for_so_many_and_no_more(void) {
 
 void test_a_file_that_is_not_there(void) {
     TEST_ASSERT_FALSE(scenario_read(&scenario, "/nowhere/s.yaml", &options));
-    TEST_ASSERT_NOT_NULL(strstr(scratch_said(), "/nowhere/s.yaml: No such file or directory"));
+    (void)scratch_said_line("/nowhere/s.yaml: No such file or directory");
 }
 
 void test_aliases_that_lead_back_are_refused_and_do_no_harm(void) {
