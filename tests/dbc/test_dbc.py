@@ -488,7 +488,7 @@ def main():
     parser.add_argument("--status", required=True)
     parser.add_argument("--document", required=True)
     parser.add_argument("--seed", type=int, default=20261121)
-    parser.add_argument("--random", type=int, default=2000)
+    parser.add_argument("--random", type=int, default=500)
     parser.parse_args(namespace=OPTIONS)
 
     print(f"seed {OPTIONS.seed}, {OPTIONS.random} random values of each kind a message", flush=True)
