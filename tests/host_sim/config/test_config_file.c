@@ -26,6 +26,7 @@ void tearDown(void) {
 
 static bool load(const char *text) {
     static char path[256];
+    agv_config_defaults(&config);
     (void)snprintf(path, sizeof path, "%s", scratch_write("c.yaml", text, strlen(text)));
     return config_file_load(path, &config, &lines) && config_check(&config, &lines);
 }
@@ -80,7 +81,6 @@ void test_every_setting_is_read_by_its_name_up_to_its_limits(void) {
         for (size_t v = 0; v < 2; v++) {
             char text[128];
             (void)snprintf(text, sizeof text, "%s%s: %u\n", company(info), info->name, values[v]);
-            agv_config_defaults(&config);
             load_good(text);
             TEST_ASSERT_EQUAL_UINT16_MESSAGE(values[v], agv_config_get(&config, i), text);
             (void)agv_config_set(&config, i, info->preset);
@@ -128,7 +128,6 @@ void test_every_word_of_every_choice(void) {
             const size_t length = words_at(info->words, value, &word);
             (void)snprintf(text, sizeof text, "%s: %.*s\n%s", info->name, (int)length, word,
                            i == 0 ? "" : "topology: gateway\n");
-            agv_config_defaults(&config);
             load_good(text);
             TEST_ASSERT_EQUAL_UINT16_MESSAGE(value, agv_config_get(&config, i), text);
         }
@@ -155,11 +154,9 @@ void test_every_class_may_be_strengthened_and_weakened_as_far_as_allowed(void) {
         const bool only_warns = fault == AGV_FAULT_STARTUP_TIMEOUT;
         const bool fixed = (agv_fault_flags(fault) & AGV_FAULT_FLAG_FIXED) != 0;
         config_class_key(fault, key);
-        agv_config_defaults(&config);
         (void)snprintf(text, sizeof text, "topology: gateway\n\n%s: %s\n", key, only_warns ? "warn" : "trip");
         load_good(text);
         TEST_ASSERT_EQUAL(!only_warns, agv_fault_is_in(&config.trips, fault));
-        agv_config_defaults(&config);
         (void)snprintf(text, sizeof text, "\n\n%s: %s\n", key, only_warns ? "trip" : "warn");
         (void)snprintf(expected, sizeof expected, "c.yaml:3: %s: this fault must stay a %s\n", key,
                        only_warns ? "warning" : "trip");
@@ -263,15 +260,11 @@ void test_settings_that_do_not_fit_together(void) {
     load_bad("park: at_once\nown_heartbeat: frozen\n",
              "c.yaml:2: own_heartbeat: has no effect on a shared bus; this value needs the gateway topology\n");
     load_good("own_heartbeat: frozen\ntopology: gateway\n");
-    agv_config_defaults(&config);
     load_bad("status_frame_id: 0x203\n",
              "c.yaml:1: status_frame_id: another message has this identifier: id_vehicle_status\n");
-    agv_config_defaults(&config);
     load_bad("\nthrottle_ceiling_pct: 50\n",
              "c.yaml:2: throttle_ceiling_pct: has no effect on a shared bus; this value needs the gateway topology\n");
-    agv_config_defaults(&config);
     load_bad("reset_hold_ms: 5000\n", "c.yaml:1: reset_hold_ms: must be below reset_hold_max_ms\n");
-    agv_config_defaults(&config);
     load_bad("reset_hold_max_ms: 1000\n", "c.yaml:1: reset_hold_max_ms: must be above reset_hold_ms\n");
 }
 
@@ -280,16 +273,12 @@ void test_an_identifier_twice_is_refused_with_the_line_that_makes_it_so(void) {
     load_good("id_gear_command: 0x169\nid_vehicle_status: 868\n");
     TEST_ASSERT_EQUAL_HEX16(0x169, config.id_gear_command);
     TEST_ASSERT_EQUAL_HEX16(0x364, config.id_vehicle_status);
-    agv_config_defaults(&config);
     load_bad("id_gear_command: 0x169\nid_throttle_command: 0x169\n",
              "c.yaml:2: id_throttle_command: another message has this identifier: id_gear_command\n");
-    agv_config_defaults(&config);
     load_bad("park: at_once\nid_gear_command: 0x101\n",
              "c.yaml:2: id_gear_command: another message has this identifier: id_wheel_speed\n");
-    agv_config_defaults(&config);
     load_bad("\nid_gear_command: 0x7F0\n",
              "c.yaml:2: id_gear_command: another message has this identifier: status_frame_id\n");
-    agv_config_defaults(&config);
     load_bad("id_set: table\nid_gear_command: 0x203\n",
              "c.yaml:2: id_gear_command: another message has this identifier: id_vehicle_status\n");
 }
