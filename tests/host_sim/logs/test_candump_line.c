@@ -33,7 +33,8 @@ static void parse_bad(const char *text, const char *expected) {
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(wrong, expected), wrong);
 }
 
-static void assert_frame(uint32_t id, uint8_t flags, uint8_t length, const char *first_8_bytes) {
+static void is_frame(const char *text, uint32_t id, uint8_t flags, uint8_t length, const char *first_8_bytes) {
+    parse_good(text);
     TEST_ASSERT_EQUAL_HEX32(id, record.frame.id);
     TEST_ASSERT_EQUAL_HEX8(flags, record.frame.flags);
     TEST_ASSERT_EQUAL_UINT8(length, record.frame.length);
@@ -42,11 +43,10 @@ static void assert_frame(uint32_t id, uint8_t flags, uint8_t length, const char 
 }
 
 void test_a_classic_frame(void) {
-    parse_good("(1700000000.000001) can0 43F#0000000000000011");
+    is_frame("(1700000000.000001) can0 43F#0000000000000011", 0x43F, 0, 8, "\0\0\0\0\0\0\0\x11");
     TEST_ASSERT_EQUAL_UINT64(1700000000000001u, record.stamp_us);
     TEST_ASSERT_EQUAL_UINT(4, record.interface_length);
     TEST_ASSERT_EQUAL_MEMORY("can0", record.interface, 4);
-    assert_frame(0x43F, 0, 8, "\0\0\0\0\0\0\0\x11");
 }
 
 void test_every_length_of_a_classic_frame(void) {
@@ -56,42 +56,32 @@ void test_every_length_of_a_classic_frame(void) {
         char expected[8] = {0};
         (void)snprintf(text, sizeof text, "(0.000000) c 7FF#%.*s", (int)(2 * length), digits);
         memcpy(expected, "\x01\x23\x45\x67\x89\xAB\xCD\xEF", length);
-        parse_good(text);
-        assert_frame(0x7FF, 0, (uint8_t)length, expected);
+        is_frame(text, 0x7FF, 0, (uint8_t)length, expected);
     }
     parse_bad("(0.000000) c 7FF#0123456789ABCDEF01", "longer than 8 bytes");
 }
 
 void test_lower_case_digits_are_digits(void) {
-    parse_good("(0.000000) c 0a3#abcdef");
-    assert_frame(0x0A3, 0, 3, "\xAB\xCD\xEF\0\0\0\0\0");
+    is_frame("(0.000000) c 0a3#abcdef", 0x0A3, 0, 3, "\xAB\xCD\xEF\0\0\0\0\0");
 }
 
 void test_an_extended_frame(void) {
-    parse_good("(0.000000) c 0000043F#01");
-    assert_frame(0x43F, HAL_CAN_EXTENDED, 1, "\x01\0\0\0\0\0\0\0");
-    parse_good("(0.000000) c 1FFFFFFF#");
-    assert_frame(0x1FFFFFFF, HAL_CAN_EXTENDED, 0, "\0\0\0\0\0\0\0\0");
+    is_frame("(0.000000) c 0000043F#01", 0x43F, HAL_CAN_EXTENDED, 1, "\x01\0\0\0\0\0\0\0");
+    is_frame("(0.000000) c 1FFFFFFF#", 0x1FFFFFFF, HAL_CAN_EXTENDED, 0, "\0\0\0\0\0\0\0\0");
 }
 
 void test_an_error_frame(void) {
-    parse_good("(0.000000) c 20000004#0001000000000000");
-    assert_frame(4, HAL_CAN_ERROR, 8, "\0\x01\0\0\0\0\0\0");
-    parse_good("(0.000000) c 3FFFFFFF#");
-    assert_frame(0x1FFFFFFF, HAL_CAN_ERROR, 0, "\0\0\0\0\0\0\0\0");
+    is_frame("(0.000000) c 20000004#0001000000000000", 4, HAL_CAN_ERROR, 8, "\0\x01\0\0\0\0\0\0");
+    is_frame("(0.000000) c 3FFFFFFF#", 0x1FFFFFFF, HAL_CAN_ERROR, 0, "\0\0\0\0\0\0\0\0");
     parse_bad("(0.000000) c 20000004#R", "after the frame");
     parse_bad("(0.000000) c 20000004##000", "not CAN FD");
 }
 
 void test_a_remote_frame(void) {
-    parse_good("(0.000000) c 43F#R");
-    assert_frame(0x43F, HAL_CAN_REMOTE, 0, "\0\0\0\0\0\0\0\0");
-    parse_good("(0.000000) c 43F#R8");
-    assert_frame(0x43F, HAL_CAN_REMOTE, 8, "\0\0\0\0\0\0\0\0");
-    parse_good("(0.000000) c 43F#R8_F");
-    assert_frame(0x43F, HAL_CAN_REMOTE, 8, "\0\0\0\0\0\0\0\0");
-    parse_good("(0.000000) c 0000043F#R3");
-    assert_frame(0x43F, HAL_CAN_REMOTE | HAL_CAN_EXTENDED, 3, "\0\0\0\0\0\0\0\0");
+    is_frame("(0.000000) c 43F#R", 0x43F, HAL_CAN_REMOTE, 0, "\0\0\0\0\0\0\0\0");
+    is_frame("(0.000000) c 43F#R8", 0x43F, HAL_CAN_REMOTE, 8, "\0\0\0\0\0\0\0\0");
+    is_frame("(0.000000) c 43F#R8_F", 0x43F, HAL_CAN_REMOTE, 8, "\0\0\0\0\0\0\0\0");
+    is_frame("(0.000000) c 0000043F#R3", 0x43F, HAL_CAN_REMOTE | HAL_CAN_EXTENDED, 3, "\0\0\0\0\0\0\0\0");
     parse_good("(0.000000) c 43F#R R");
     parse_bad("(0.000000) c 43F#R9", "after the frame");
     parse_bad("(0.000000) c 43F#R7_9", "after the frame");
@@ -99,12 +89,10 @@ void test_a_remote_frame(void) {
 }
 
 void test_a_can_fd_frame(void) {
-    parse_good("(0.000000) c 43F##1");
-    assert_frame(0x43F, HAL_CAN_FD, 0, "\0\0\0\0\0\0\0\0");
-    parse_good("(0.000000) c 43F##30011223344556677");
-    assert_frame(0x43F, HAL_CAN_FD, 8, "\x00\x11\x22\x33\x44\x55\x66\x77");
-    parse_good("(0.000000) c 0000043F##F00112233445566778899AABB");
-    assert_frame(0x43F, HAL_CAN_FD | HAL_CAN_EXTENDED, 12, "\x00\x11\x22\x33\x44\x55\x66\x77");
+    is_frame("(0.000000) c 43F##1", 0x43F, HAL_CAN_FD, 0, "\0\0\0\0\0\0\0\0");
+    is_frame("(0.000000) c 43F##30011223344556677", 0x43F, HAL_CAN_FD, 8, "\x00\x11\x22\x33\x44\x55\x66\x77");
+    is_frame("(0.000000) c 0000043F##F00112233445566778899AABB", 0x43F, HAL_CAN_FD | HAL_CAN_EXTENDED, 12,
+             "\x00\x11\x22\x33\x44\x55\x66\x77");
     parse_bad("(0.000000) c 43F##", "flags");
     parse_bad("(0.000000) c 43F##G", "flags");
     parse_bad("(0.000000) c 43F##10", "odd number");
@@ -116,15 +104,13 @@ void test_the_longest_can_fd_frame(void) {
     for (unsigned i = 0; i < 64; i++) {
         strcat(text, "A5");
     }
-    parse_good(text);
-    assert_frame(0x1FFFFFFF, HAL_CAN_FD | HAL_CAN_EXTENDED, 64, "\xA5\xA5\xA5\xA5\xA5\xA5\xA5\xA5");
+    is_frame(text, 0x1FFFFFFF, HAL_CAN_FD | HAL_CAN_EXTENDED, 64, "\xA5\xA5\xA5\xA5\xA5\xA5\xA5\xA5");
     strcat(text, "00");
     parse_bad(text, "longer than 64 bytes");
 }
 
 void test_a_raw_dlc_is_a_frame_of_eight_bytes(void) {
-    parse_good("(0.000000) c 43F#0011223344556677_9");
-    assert_frame(0x43F, 0, 8, "\x00\x11\x22\x33\x44\x55\x66\x77");
+    is_frame("(0.000000) c 43F#0011223344556677_9", 0x43F, 0, 8, "\x00\x11\x22\x33\x44\x55\x66\x77");
     parse_good("(0.000000) c 43F#0011223344556677_F T");
     parse_bad("(0.000000) c 43F#0011223344556677_8", "after the frame");
     parse_bad("(0.000000) c 43F#0011223344556677_G", "after the frame");
