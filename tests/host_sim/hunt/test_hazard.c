@@ -1,6 +1,7 @@
 /* The hazards of the hunt: a stub supervisor that does wrong is a hazard, one that does right in the same run is none. */
 #include "scenario/hazard/hazard.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -185,6 +186,17 @@ static void expect_none(const stub_t *supervisor, const char *steps) {
     TEST_ASSERT_EQUAL_STRING(hazard_info(HAZARD_NONE)->name, hazard_info(play(supervisor, steps))->name);
 }
 
+/** Steps with something put in. Is overwritten by the next call. */
+__attribute__((format(printf, 1, 2))) static const char *with(const char *format, ...) {
+    static char steps[1024];
+    va_list arguments;
+
+    va_start(arguments, format);
+    (void)vsnprintf(steps, sizeof steps, format, arguments);
+    va_end(arguments);
+    return steps;
+}
+
 /** One that reacts: safe commands soon after the cause, the output opens a little later. */
 static const stub_t GOOD = {.safe_ms = TRIP_MS + 200, .open_ms = TRIP_MS + 600};
 static const stub_t GOOD_GATEWAY = {.gateway = true, .passes = 1u, .safe_ms = TRIP_MS + 100, .open_ms = TRIP_MS + 600};
@@ -217,20 +229,14 @@ void test_h1_wheels_that_read_0_are_no_excuse_when_the_vcu_contradicts_them(void
     const stub_t stays = {.rolls = true, .safe_ms = TRIP_MS};
     const stub_t opens = {.rolls = true, .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 5000};
     const stub_t alone = {.rolls = true, .safe_ms = TRIP_MS, .setting = "standstill_vcu_counts: 65535\n"};
-    char steps[512];
 
-    (void)snprintf(steps, sizeof steps, wheels, "");
-    expect_hazard(HAZARD_NOT_STOPPING, "the vehicle does not obey the safe commands", &stays, steps);
-    expect_none(&opens, steps);
-    expect_none(&alone, steps);
-    (void)snprintf(steps, sizeof steps, wheels, both); /* nobody can know that it moves */
-    expect_none(&stays, steps);
-    (void)snprintf(steps, sizeof steps, wheels,
-                   "  - {at_ms: 2500, vcu: set, field: speed, value: 0B40h}\n"); /* 0.80 m/s */
-    expect_none(&stays, steps);
-    (void)snprintf(steps, sizeof steps, wheels,
-                   "  - {at_ms: 2500, vcu: set, field: speed, value: 0C80h}\n"); /* 0.89 m/s */
-    expect_hazard(HAZARD_NOT_STOPPING, "the vehicle does not obey the safe commands", &stays, steps);
+    expect_hazard(HAZARD_NOT_STOPPING, "the vehicle does not obey the safe commands", &stays, with(wheels, ""));
+    expect_none(&opens, with(wheels, ""));
+    expect_none(&alone, with(wheels, ""));
+    expect_none(&stays, with(wheels, both)); /* nobody can know that it moves */
+    expect_none(&stays, with(wheels, "  - {at_ms: 2500, vcu: set, field: speed, value: 0B40h}\n")); /* 0.80 m/s */
+    expect_hazard(HAZARD_NOT_STOPPING, "the vehicle does not obey the safe commands", &stays,
+                  with(wheels, "  - {at_ms: 2500, vcu: set, field: speed, value: 0C80h}\n")); /* 0.89 m/s */
 }
 
 /** 101h reads 0 for half a second after the trip, and is silent then. */
@@ -290,15 +296,13 @@ void test_h2_an_eps_that_takes_no_angle_drops_the_angle_of_the_trip(void) {
     };
     const stub_t returns = {
         .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 500, .holds = true, .hold_ms = TRIP_MS + 400, .hold_ddeg = 0};
-    char steps[768];
 
     for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
-        (void)snprintf(steps, sizeof steps,
-                       "  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
-                       "  - {at_ms: 3010, %s}\n"
-                       "  - {at_ms: 3010, ai: drive, gear: D, throttle_pct: 60, steer_deg: -60}\n"
-                       "  - {at_ms: 3395, ai: mute, message: steering_command}\n",
-                       rows[i].steps);
+        const char *const steps = with("  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
+                                       "  - {at_ms: 3010, %s}\n"
+                                       "  - {at_ms: 3010, ai: drive, gear: D, throttle_pct: 60, steer_deg: -60}\n"
+                                       "  - {at_ms: 3395, ai: mute, message: steering_command}\n",
+                                       rows[i].steps);
         if (rows[i].drops) {
             expect_hazard(HAZARD_STEERING, "the supervisor steers to another angle", &returns, steps);
         } else {
@@ -319,16 +323,14 @@ void test_h2_an_angle_that_was_perhaps_dropped_may_be_taken_anew(void) {
                 {"eps: mute, message: eps_status, frames: 7", true}};
     const stub_t later = {
         .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 500, .holds = true, .hold_ms = TRIP_MS + 1300, .hold_ddeg = -800};
-    char steps[768];
 
     for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
-        (void)snprintf(steps, sizeof steps,
-                       "  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
-                       "  - {at_ms: 3010, ai: drive, gear: D, throttle_pct: 60, steer_deg: -60}\n"
-                       "  - {at_ms: 3110, %s}\n"
-                       "  - {at_ms: 3800, ai: drive, gear: D, throttle_pct: 60, steer_deg: 20}\n"
-                       "  - {at_ms: 4200, ai: mute, message: steering_command}\n",
-                       rows[i].steps);
+        const char *const steps = with("  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
+                                       "  - {at_ms: 3010, ai: drive, gear: D, throttle_pct: 60, steer_deg: -60}\n"
+                                       "  - {at_ms: 3110, %s}\n"
+                                       "  - {at_ms: 3800, ai: drive, gear: D, throttle_pct: 60, steer_deg: 20}\n"
+                                       "  - {at_ms: 4200, ai: mute, message: steering_command}\n",
+                                       rows[i].steps);
         if (rows[i].may) {
             expect_none(&later, steps);
         } else {
@@ -356,13 +358,11 @@ static void expect_excused(const char *unexcused, const char *excuse, unsigned t
         .safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true, .hold_ddeg = 600, .hold_ms = TRIP_MS + 900};
     const char *const steps[] = {unexcused, excuse};
     for (unsigned i = 0; i < 2u; i++) {
-        char all[512];
-        (void)snprintf(all, sizeof all,
-                       "  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
-                       "  - {at_ms: 3200, ai: drive, gear: D, throttle_pct: 60, steer_deg: 80}\n%s"
-                       "  - {at_ms: %u, ai: drive, gear: D, throttle_pct: 60, steer_deg: -20}\n"
-                       "  - {at_ms: 3880, ai: mute, message: steering_command}\n",
-                       steps[i], turned_ms);
+        const char *const all = with("  - {at_ms: 2950, vcu: ignore, message: turn_signal_command}\n"
+                                     "  - {at_ms: 3200, ai: drive, gear: D, throttle_pct: 60, steer_deg: 80}\n%s"
+                                     "  - {at_ms: %u, ai: drive, gear: D, throttle_pct: 60, steer_deg: -20}\n"
+                                     "  - {at_ms: 3880, ai: mute, message: steering_command}\n",
+                                     steps[i], turned_ms);
         if (i == 0u) {
             expect_hazard(HAZARD_STEERING, "the supervisor steers to another angle", &holds, all);
         } else {
@@ -398,12 +398,10 @@ void test_h2_a_right_angle_may_be_sent_again_within_2_s(void) {
                              "  - {at_ms: 6500, supervisor: fill_queue}\n"
                              "  - {at_ms: 7000, ai: mute, message: steering_command}\n";
     const stub_t holds = {.safe_ms = TRIP_MS, .open_ms = TRIP_MS + 100, .holds = true};
-    char steps[512];
 
-    (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 8400, supervisor: free_queue}\n", head);
-    expect_none(&holds, steps);
-    (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 9000, supervisor: free_queue}\n", head);
-    expect_hazard(HAZARD_STEERING, "the supervisor steers to another angle", &holds, steps);
+    expect_none(&holds, with("%s  - {at_ms: 8400, supervisor: free_queue}\n", head));
+    expect_hazard(HAZARD_STEERING, "the supervisor steers to another angle", &holds,
+                  with("%s  - {at_ms: 9000, supervisor: free_queue}\n", head));
 }
 
 void test_h3_a_command_that_nobody_sent(void) {
@@ -504,12 +502,9 @@ void test_h4_a_trip_soon_after_a_reset_is_a_new_one(void) {
     const char *const reset =
         "  - {at_ms: 4500, operator: press, button: 1}\n  - {at_ms: 5900, operator: release, button: 1}\n";
     const stub_t trips_again = {.safe_ms = TRIP_MS, .safe_end_ms = 6000, .again_ms = 6300};
-    char steps[512];
 
-    (void)snprintf(steps, sizeof steps, twice, reset);
-    expect_none(&trips_again, steps);
-    (void)snprintf(steps, sizeof steps, twice, "");
-    expect_hazard(HAZARD_UNCONFIRMED, "gear P is not confirmed", &trips_again, steps);
+    expect_none(&trips_again, with(twice, reset));
+    expect_hazard(HAZARD_UNCONFIRMED, "gear P is not confirmed", &trips_again, with(twice, ""));
 }
 
 void test_h5_a_reset(void) {
@@ -552,16 +547,12 @@ void test_h5_a_press_that_is_reported_late_or_wrongly(void) {
     static const char late[] = "  - {at_ms: 2500, vcu: delay, message: vehicle_status, by_ms: 700}\n"
                                "  - {at_ms: 2700, operator: press, button: 1}\n"
                                "  - {at_ms: %s, operator: release, button: 1}\n";
-    char steps[512];
 
-    (void)snprintf(steps, sizeof steps, lost, "");
-    expect_hazard(HAZARD_RESET, "the button was not pressed after the trip", &resets, steps);
-    (void)snprintf(steps, sizeof steps, lost, "  - {at_ms: 2900, vcu: set, field: alarms, value: 00h}\n");
-    expect_none(&resets, steps);
-    (void)snprintf(steps, sizeof steps, late, "4000");
-    expect_none(&resets, steps);
-    (void)snprintf(steps, sizeof steps, late, "3200"); /* shorter than reset_hold_ms */
-    expect_hazard(HAZARD_RESET, "the button was not pressed after the trip", &resets, steps);
+    expect_hazard(HAZARD_RESET, "the button was not pressed after the trip", &resets, with(lost, ""));
+    expect_none(&resets, with(lost, "  - {at_ms: 2900, vcu: set, field: alarms, value: 00h}\n"));
+    expect_none(&resets, with(late, "4000"));
+    expect_hazard(HAZARD_RESET, "the button was not pressed after the trip", &resets,
+                  with(late, "3200")); /* shorter than reset_hold_ms */
 }
 
 /** Each engagement has its grace time, but not the fourth one within mode_flapping_ms. */
@@ -594,10 +585,9 @@ void test_h6_a_node_that_reports_what_cannot_be(void) {
         {"the supervisor's transmitter has failed", "supervisor: stall_tx"},
         {"the supervisor's transmitter has failed", "supervisor: fill_queue"},
     };
-    char steps[256];
 
     for (size_t i = 0u; i < sizeof rows / sizeof rows[0]; i++) {
-        (void)snprintf(steps, sizeof steps, "  - {at_ms: 3000, %s}\n", rows[i].steps);
+        const char *const steps = with("  - {at_ms: 3000, %s}\n", rows[i].steps);
         expect_hazard(HAZARD_FALSE_NODE, rows[i].cause, &MUTE, steps);
         expect_none(&GOOD, steps);
     }
@@ -629,13 +619,10 @@ void test_h6_a_silent_gear_status_reports_no_gear(void) {
     const char *const park = "  - {at_ms: 3000, vcu: set, field: gear, value: 08h}\n";
     const stub_t ignores = {.setting = "class_gear_status_timeout: warn\n"};
     const stub_t warns = {.setting = "class_gear_status_invalid: warn\n"};
-    char steps[512];
 
     expect_hazard(HAZARD_FALSE_NODE, "throttle with gear P", &ignores, park);
-    (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 3040, vcu: mute, message: gear_status}\n", park);
-    expect_none(&ignores, steps);
-    (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 3040, vcu: set, field: gear, value: 03h}\n", park);
-    expect_none(&warns, steps);
+    expect_none(&ignores, with("%s  - {at_ms: 3040, vcu: mute, message: gear_status}\n", park));
+    expect_none(&warns, with("%s  - {at_ms: 3040, vcu: set, field: gear, value: 03h}\n", park));
 }
 
 /** 200 gaps of 1 ms; after a restart nobody knows of them. */
@@ -643,11 +630,9 @@ void test_h6_a_restart_forgets_commands_that_came_too_fast(void) {
     const char *const flood = "  - {at_ms: 3000, ai: send_every, message: turn_signal_command, every_ms: 1}\n"
                               "  - {at_ms: 3200, ai: send_every, message: turn_signal_command, every_ms: 100}\n";
     const stub_t ignores = {.setting = "class_command_too_fast: trip\n  command_too_fast_gaps: 65\n"};
-    char steps[512];
 
     expect_hazard(HAZARD_FALSE_NODE, "commands come too fast", &ignores, flood);
-    (void)snprintf(steps, sizeof steps, "%s  - {at_ms: 3250, supervisor: restart, cause: software}\n", flood);
-    expect_none(&ignores, steps);
+    expect_none(&ignores, with("%s  - {at_ms: 3250, supervisor: restart, cause: software}\n", flood));
 }
 
 void test_h6_what_only_warns_is_no_hazard(void) {
@@ -699,11 +684,9 @@ void test_h6_steering_that_seems_to_move_once_in_each_engagement(void) {
         "  - {at_ms: 2500, eps: set, field: angle, value: 2328h, frames: 44, again_every_ms: 480}\n";
     const char *const toggles = "  - {at_ms: 3000, operator: disengage, again_every_ms: 1506}\n"
                                 "  - {at_ms: 3133, operator: engage, again_every_ms: 1506}\n";
-    char steps[512];
 
     expect_hazard(HAZARD_FALSE_NODE, "the steering is stuck", &MUTE, reads);
-    (void)snprintf(steps, sizeof steps, "%s%s", reads, toggles);
-    expect_none(&MUTE, steps);
+    expect_none(&MUTE, with("%s%s", reads, toggles));
 }
 
 /** Who reports manual in most frames, and both modes in the others, is in manual. */
