@@ -80,6 +80,9 @@ class Case(unittest.TestCase):
         path.write_bytes(content if isinstance(content, bytes) else content.encode("utf-8"))
         return path
 
+    def read(self, name):
+        return (self.folder / name).read_text(encoding="utf-8")
+
     def files(self):
         return sorted(path.name for path in self.folder.iterdir())
 

@@ -27,7 +27,7 @@ class Campaign(hostsim.Case):
         return name
 
     def lines(self, name):
-        return [json.loads(line) for line in (self.folder / name).read_text(encoding="ascii").splitlines()]
+        return [json.loads(line) for line in self.read(name).splitlines()]
 
     def refuse(self, *arguments, says):
         result = self.run_program("campaign", *arguments)
@@ -48,7 +48,7 @@ class Results(Campaign):
     def test_results_on_standard_output_are_all_that_is_there(self):
         self.campaign("--runs", 5, "--seed", 7, "--results", "file.jsonl")
         printed = self.campaign("--runs", 5, "--seed", 7, "--results", "-").stdout
-        self.assertEqual(printed, (self.folder / "file.jsonl").read_text(encoding="ascii"))
+        self.assertEqual(printed, self.read("file.jsonl"))
         self.assertEqual(self.campaign("--merge", "file.jsonl", "--results", "-").stdout, printed)
 
     def test_a_shard_without_runs_is_one_that_merges(self):
@@ -143,7 +143,7 @@ class NewlyEngaged(Campaign):
         self.campaign(*good, "--shard", "1/2", "--results", "1")
         self.campaign(*good[:4], "--shard", "2/2", "--results", "2")
         self.refuse("--merge", "1", "2", says="2:1: not the same campaign as 1")
-        head, *runs = (self.folder / "2").read_text(encoding="ascii").splitlines(keepends=True)
+        head, *runs = self.read("2").splitlines(keepends=True)
         runs[0] = json.dumps({**json.loads(runs[0]), "fault": "BUS_OFF"}) + "\n"
         self.write("2", "".join([head.replace('"newly_engaged": false', '"newly_engaged": true'), *runs]))
         self.refuse("--merge", "1", "2", says="2:2: a fault that an engagement does not delay")
@@ -206,7 +206,7 @@ class Refused(Campaign):
         self.refuse("--merge", one, two, "--results", one, says="are the same file")
         self.refuse("--merge", one, self.shard(2, 2, seed=8, name="seed"), *out, says="not the same campaign")
         self.refuse("--merge", one, self.shard(2, 2, runs=18, name="runs"), *out, says="not the same campaign")
-        lines = (self.folder / two).read_text(encoding="ascii").splitlines(keepends=True)
+        lines = self.read(two).splitlines(keepends=True)
         for name, changed, says in (("cut", lines[:-1], "it ends after line"),
                                     ("more", lines + lines[-1:], "more runs than the campaign has"),
                                     ("gap", lines[:5] + lines[6:], ":6: run 9 is expected here"),
@@ -228,7 +228,7 @@ class Refused(Campaign):
 
     def refuse_line(self, number, line, says):
         """Shard 2 of 2, of which a line is another."""
-        lines = (self.folder / "2.jsonl").read_text(encoding="ascii").splitlines(keepends=True)
+        lines = self.read("2.jsonl").splitlines(keepends=True)
         lines[number - 1] = line if isinstance(line, str) else json.dumps(line) + "\n"
         self.write("bad", "".join(lines))
         self.refuse("--merge", "1.jsonl", "bad", "--results", "out.jsonl", says=f"bad:{number}: {says}")
@@ -288,7 +288,7 @@ class Picture(Campaign):
         self.shard(1, 1, name="a")
         done = self.draw("a", "picture.svg")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        text = (self.folder / "picture.svg").read_text(encoding="utf-8")
+        text = self.read("picture.svg")
         self.assertIn("20 runs", text)
         self.assertIn("500 kbit/s", text)
 

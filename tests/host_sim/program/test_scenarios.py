@@ -53,7 +53,7 @@ class Shipped(Playing):
             runs = []
             for _ in range(2):
                 self.run_good("scenario", "--events", "e.jsonl", next(FOLDER.glob(f"*/{name}.yaml")))
-                runs.append((self.folder / "e.jsonl").read_text(encoding="ascii"))
+                runs.append(self.read("e.jsonl"))
             self.assertEqual(*runs)
 
 
@@ -163,7 +163,7 @@ class Command(hostsim.Case):
     def test_events(self):
         result = self.scenario(GOOD, "--events", "e.jsonl")
         self.assertEqual(result.status, 0, result.stderr)
-        events = [json.loads(line) for line in (self.folder / "e.jsonl").read_text(encoding="ascii").splitlines()]
+        events = result.events("e.jsonl")
         self.assertEqual(events[0], {"t_ms": 0, "event": "state", "from": None, "to": "INIT", "reason": None})
         self.assertEqual(events[-1]["event"], "summary")
         self.assertEqual(events[-1]["final_state"], "STANDBY")
@@ -180,7 +180,7 @@ class Command(hostsim.Case):
         self.write("e.jsonl", "old")
         result = self.scenario(GOOD, "--events", "e.jsonl", "--junit", "/dev/full")
         self.assertEqual((result.status, result.stderr), (2, "host_sim: /dev/full: No space left on device\n"))
-        self.assertEqual((self.folder / "e.jsonl").read_text(encoding="ascii"), "old")
+        self.assertEqual(self.read("e.jsonl"), "old")
 
     def test_standard_output_as_an_output_gets_nothing_else(self):
         result = self.scenario(GOOD, "--events", "-")
@@ -201,7 +201,7 @@ class Command(hostsim.Case):
                     time.sleep(0.01)
                 program.send_signal(number)
                 self.assertEqual((program.wait(timeout=30), program.stdout.read()), (-number, b""))
-            self.assertEqual((self.folder / "j.xml").read_text(encoding="ascii"), "old")
+            self.assertEqual(self.read("j.xml"), "old")
             self.assertEqual(self.files(), ["j.xml", "s.yaml"])
 
     def test_a_pipe_is_read_once(self):
@@ -336,8 +336,8 @@ class Demo(hostsim.Case):
         self.run_good("scenario", "--events", "of_scenario.jsonl", FOLDER / "overview" / "demo.yaml")
         result = self.run_good("demo", "--events", "of_demo.jsonl")
         self.assertIn("expectations passed", result.stdout)
-        events = (self.folder / "of_demo.jsonl").read_text(encoding="ascii")
-        self.assertEqual(events, (self.folder / "of_scenario.jsonl").read_text(encoding="ascii"))
+        events = self.read("of_demo.jsonl")
+        self.assertEqual(events, self.read("of_scenario.jsonl"))
         result = self.run_good("demo", "--events", "-")
         self.assertEqual(result.stdout, events)
         self.assertIn("expectations passed", result.stderr)
@@ -347,7 +347,7 @@ class Demo(hostsim.Case):
             self.assert_refused(self.run_program("demo", option, "no/where"), "no/where: No such file or directory")
         self.write("s.yaml", GOOD)
         self.assert_refused(self.run_program("demo", "--scenario", "./s.yaml", "--events", "s.yaml"), "same file")
-        self.assertEqual((self.folder / "s.yaml").read_text(encoding="ascii"), GOOD)
+        self.assertEqual(self.read("s.yaml"), GOOD)
         result = self.run_program("demo", "--events", "/dev/full")
         self.assertEqual((result.status, result.stderr), (2, "host_sim: /dev/full: No space left on device\n"))
 

@@ -17,7 +17,7 @@ class Soak(hostsim.Case):
         return result
 
     def figures(self, name):
-        figures = json.loads((self.folder / name).read_text(encoding="ascii"))
+        figures = json.loads(self.read(name))
         del figures["real_ms"]
         return figures
 
@@ -86,7 +86,7 @@ class Soak(hostsim.Case):
         self.assert_refused(self.run_program("soak", *self.LONG, "--results", "old", "--checkpoint", "no/where"), "no/where")
         self.assert_refused(self.run_program("soak", *self.LONG, "--results", "no/where", "--checkpoint", "new"), "no/where")
         self.assert_refused(self.run_program("soak", *self.LONG, "--results", "old", "--checkpoint", "text"), "not a soak checkpoint")
-        self.assertEqual((self.folder / "old").read_text(encoding="ascii"), "hello\n")
+        self.assertEqual(self.read("old"), "hello\n")
         self.assertEqual(self.files(), ["folder", "old", "text"])
 
     # so much work that the folder vanishes before its end

@@ -11,7 +11,7 @@ class SoakWrap(hostsim.Case):
         # 4294967.296 s are 1193.05 hours; the last of a thousand parts of 1194 hours begins at 1192.8
         result = self.run_program("soak", "--hours", 1194, "--seed", 1, "--shard", "1000/1000", "--results", "a", timeout=600)
         self.assertEqual(result.status, 0, result.stdout + result.stderr)
-        figures = json.loads((self.folder / "a").read_text(encoding="ascii"))
+        figures = json.loads(self.read("a"))
         self.assertEqual((figures["wraps"], figures["broken"]), (1, False))
 
 

@@ -67,7 +67,7 @@ class OtherPrograms(Case):
         command = result.stderr.split("convert it: ")[1].split(" (")[0]
         self.assertEqual(command, "python3 -m can.logconvert my.blf my.blf.log")
         self.convert("/usr/bin/python3", *command.split()[1:])
-        events, _ = self.outcome((self.folder / "my.blf.log").read_text())
+        events, _ = self.outcome(self.read("my.blf.log"))
         self.assertEqual([event for event in events if event["event"] == "state"],
                          [event for event in self.expected[0] if event["event"] == "state"])
 

@@ -23,16 +23,13 @@ class Recorder(hostsim.Case):
         super().setUp()
         self.write("my.log", trip_log())
         self.run_good("replay", "--store", "store", "--why", "replay.json", "my.log")
-        line = next(line for line in self.text_of("store").splitlines() if line.startswith("recorder "))
+        line = next(line for line in self.read("store").splitlines() if line.startswith("recorder "))
         self.image = bytes.fromhex(line.split()[1])
         ring = self.image[-EVENT * EVENTS:]
         events = [ring[at:at + EVENT] for at in range(0, len(ring), EVENT)]
         self.events = [event for event in events if event[8]]  # the kind
         self.assertEqual(len(self.events), 10)
         self.version = []
-
-    def text_of(self, name):
-        return (self.folder / name).read_text(encoding="utf-8")
 
     def dump(self):
         """What a terminal shows of `agv dump`."""
@@ -62,16 +59,16 @@ class Recorder(hostsim.Case):
         for form in (b"".join(self.events), self.image, noise + b"".join(reversed(self.events)) + noise,
                      "\n".join(event.hex().upper() for event in self.events),
                      "\n".join("agv-event " + event.hex() for event in self.events + self.events[:3]),
-                     self.text_of("store")):
+                     self.read("store")):
             self.assertEqual(self.recorder(form), as_dump)
         again = self.run_good("recorder", "-", stdin=self.dump().encode("ascii")).stdout
         self.assertEqual(again.replace("-: ", "dump: ", 1), as_dump)
-        stored = self.run_good("recorder", "-", stdin=self.text_of("store").encode("ascii")).stdout
+        stored = self.run_good("recorder", "-", stdin=self.read("store").encode("ascii")).stdout
         self.assertEqual(stored.replace("-: ", "dump: ", 1), as_dump)
 
     def test_why_is_that_of_the_replay(self):
         found = json.loads(self.recorder(self.dump(), "--why", "-"))
-        replayed = json.loads(self.text_of("replay.json"))
+        replayed = json.loads(self.read("replay.json"))
         self.assertEqual(set(found), set(replayed))
         same = ("t_ms", "reason", "kind", "message", "id", "cause_ms", "last_good_ms", "limit", "unit")
         self.assertEqual([[trip[key] for key in same] for trip in found["trips"]],
@@ -96,7 +93,7 @@ class Recorder(hostsim.Case):
         for name, from_ms in (("turn_signal_command", 0), ("turn_signal_command", 400), ("gear_command", 400)):
             self.write("x.log", traffic.log(traffic.frames(3000, engage_ms=1000, edit=stop((name,), from_ms))))
             self.run_good("replay", "--store", f"s{name}{from_ms}", "--why", "x.json", "x.log")
-            replayed = json.loads(self.text_of("x.json"))["trips"][0]
+            replayed = json.loads(self.read("x.json"))["trips"][0]
             found = json.loads(self.run_good("recorder", "--why", "-", f"s{name}{from_ms}").stdout)["trips"][0]
             self.assertEqual(found["cause_ms"], 1000)
             self.assertIsNone(found["last_good_ms"])
@@ -122,7 +119,7 @@ class Recorder(hostsim.Case):
         self.events.append(crash)
         text = self.recorder(self.dump(), "--events", "e.jsonl")
         self.assertRegex(text, r"4\.008 s +supervisor +run before: reset by lock-up, stack overflow, PC 08001234, LR 08005679\n")
-        self.assertEqual(json.loads(self.text_of("e.jsonl").splitlines()[-1]),
+        self.assertEqual(json.loads(self.read("e.jsonl").splitlines()[-1]),
                          {"t_ms": 4008, "event": "crash", "cause": "lock-up", "end": "stack overflow",
                           "pc": "08001234", "lr": "08005679"})
 
@@ -152,11 +149,11 @@ class Recorder(hostsim.Case):
 
     def test_the_report_the_trace_and_the_events(self):
         self.recorder(self.dump(), "--report", "r.html", "--trace", "t.json", "--events", "e.jsonl")
-        self.assertIn("STEERING_COMMAND_TIMEOUT", self.text_of("r.html"))
+        self.assertIn("STEERING_COMMAND_TIMEOUT", self.read("r.html"))
         self.assertIn({"t_ms": 3107, "event": "state", "from": "ACTIVE", "to": "TRIPPED",
                        "reason": "STEERING_COMMAND_TIMEOUT"},
-                      [json.loads(line) for line in self.text_of("e.jsonl").splitlines()])
-        self.assertGreater(len(json.loads(self.text_of("t.json"))["traceEvents"]), 10)
+                      [json.loads(line) for line in self.read("e.jsonl").splitlines()])
+        self.assertGreater(len(json.loads(self.read("t.json"))["traceEvents"]), 10)
 
     def test_what_is_no_flight_recorder_is_refused(self):
         for content in (b"", b"hello\n", os.urandom(5000), bytes(200000), trip_log().encode("ascii")):

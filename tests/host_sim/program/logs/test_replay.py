@@ -560,7 +560,7 @@ class Restart(hostsim.Case):
         log = traffic.log(traffic.frames(50))
         self.write("mine", log)
         self.assert_refused(self.refuse(log, "--store", "mine"), "mine: no store, which begins with 'agv-store '")
-        self.assertEqual((self.folder / "mine").read_text(), log)
+        self.assertEqual(self.read("mine"), log)
 
     def test_a_store_is_made_when_it_is_not_there(self):
         self.replay(traffic.log(traffic.frames(100)), "--store", "store")

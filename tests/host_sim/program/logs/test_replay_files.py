@@ -73,7 +73,7 @@ class Outputs(hostsim.Case):
         for bad in (log, "", "\0\1\2", gzip.compress(LOG.encode())[:500]):
             self.assertEqual(self.refuse(bad).status, 2)
             for name in hostsim.OUTPUTS.values():
-                self.assertEqual((self.folder / name).read_text(encoding="ascii"), "agv-store old")
+                self.assertEqual(self.read(name), "agv-store old")
 
     def test_files_are_replaced_as_a_whole(self):
         for name in ("events.jsonl", "out.log"):
@@ -117,7 +117,7 @@ class Outputs(hostsim.Case):
                           ("--config", "c.yaml", "--out", "c.yaml"), ("--events=/dev/stdout", "--out=-")):
             with self.subTest(arguments):
                 self.assert_refused(self.run_program("replay", *arguments, "log"), "same file")
-        self.assertEqual((self.folder / "log").read_text(encoding="ascii"), LOG)
+        self.assertEqual(self.read("log"), LOG)
         self.assertEqual(self.files(), ["c.yaml", "link", "log", "twin"])
 
     def test_a_file_is_one_also_as_standard_input_or_output(self):
@@ -130,7 +130,7 @@ class Outputs(hostsim.Case):
             result = subprocess.run([hostsim.PROGRAM, "replay", "--out", "-", "--events", "both", "log"], cwd=self.folder,
                                     stdout=both, stderr=subprocess.PIPE, check=False)
             self.assertEqual((result.returncode, b"same file" in result.stderr), (2, True), result.stderr)
-        self.assertEqual((self.folder / "log").read_text(encoding="ascii"), LOG)
+        self.assertEqual(self.read("log"), LOG)
 
     def test_a_link_to_nothing_is_not_replaced(self):
         self.write("log", LOG)

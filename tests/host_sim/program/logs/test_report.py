@@ -27,12 +27,9 @@ def headline(page):
 
 
 class Written(hostsim.Case):
-    def page(self, name="r.html"):
-        return (self.folder / name).read_text(encoding="utf-8")
-
     def test_replay(self):
         self.run_good("replay", "--report", "r.html", EXAMPLE)
-        page = self.page()
+        page = self.read("r.html")
         self.assertEqual(headline(page), "The supervisor would have stopped this vehicle because the AI computer no "
                          "longer sent steering commands.")
         data = data_of(page)
@@ -46,9 +43,9 @@ class Written(hostsim.Case):
 
     def test_scenario_demo_and_standard_output(self):
         self.run_good("scenario", "--report", "r.html", SILENCE)
-        self.assertFalse(data_of(self.page())["about"]["recording"])
+        self.assertFalse(data_of(self.read("r.html"))["about"]["recording"])
         self.run_good("demo", "--report", "d.html")
-        self.assertEqual([trip["reason"] for trip in data_of(self.page("d.html"))["trips"]],
+        self.assertEqual([trip["reason"] for trip in data_of(self.read("d.html"))["trips"]],
                          ["STEERING_COMMAND_TIMEOUT", "EPS_OVER_CURRENT_SHUTDOWN"])
         out = self.run_good("replay", "--report", "-", EXAMPLE).stdout
         self.assertTrue(out.startswith("<!doctype html>"), out[:80])
@@ -57,12 +54,12 @@ class Written(hostsim.Case):
     def test_the_same_run_makes_the_same_page(self):
         self.run_good("replay", "--report", "a.html", EXAMPLE)
         self.run_good("replay", "--report", "b.html", EXAMPLE)
-        self.assertEqual(self.page("a.html"), self.page("b.html"))
+        self.assertEqual(self.read("a.html"), self.read("b.html"))
 
     def test_a_gateway_has_both_sides(self):
         self.write("log", traffic.log(traffic.frames(3000, engage_ms=1000, ai_interface="can1")))
         self.run_good("replay", "--topology", "gateway", "--ai-if", "can1", "--report", "r.html", "log")
-        data = data_of(self.page())
+        data = data_of(self.read("r.html"))
         self.assertEqual(data["about"]["interfaces"], ["can0", "can1"])
         self.assertTrue(data["about"]["gateway"])
         self.assertIn("throttle_command", data["series"]["overview"]["signals"])
@@ -71,8 +68,8 @@ class Written(hostsim.Case):
         name = "<img src=x onerror=alert(1)>.log"
         shutil.copy(EXAMPLE, self.folder / name)
         self.run_good("replay", "--report", "r.html", name)
-        self.assertNotIn("<img", self.page())
-        self.assertEqual(data_of(self.page())["about"]["name"], name)
+        self.assertNotIn("<img", self.read("r.html"))
+        self.assertEqual(data_of(self.read("r.html"))["about"]["name"], name)
 
 
 class Refused(hostsim.Case):
@@ -83,7 +80,7 @@ class Refused(hostsim.Case):
         result = self.run_program("replay", "--report", "r.html", "log",
                                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, limit), restore_signals=False)
         self.assert_refused(result, "r.html: File too large")
-        self.assertEqual((self.folder / "r.html").read_text(), "good")
+        self.assertEqual(self.read("r.html"), "good")
         self.assertEqual(self.files(), ["log", "r.html"])
 
 
@@ -124,7 +121,7 @@ class Hour(hostsim.Case):
         self.run_good("replay", "--report", "r.html", "log")
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         cpu_s = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-        page = (self.folder / "r.html").read_text(encoding="utf-8")
+        page = self.read("r.html")
         data = data_of(page)
         print(f"an hour: {len(page) / 1e6:.2f} MB, {cpu_s:.2f} s CPU, {len(data['trips'])} trips", flush=True)
         self.assertGreaterEqual(len(data["trips"]), HOUR_S // 110)

@@ -88,16 +88,14 @@ CONFIG = "class_eps_temp_above_110: trip\neps_status_timeout_ms: 60\n"
 class Skeleton(hostsim.Case):
     def trips(self, *arguments):
         """The reason of the first trip, by the events of a command."""
-        self.run_good(*arguments, "--events", "events.jsonl")
-        events = hostsim.Result(0, "", "", self.folder).events()
-        return next(event["reason"] for event in events if event["event"] == "state" and event["reason"])
+        return self.run_good(*arguments, "--events", "events.jsonl").trips()[0][1]
 
     def check(self, reason, path, options, step):
         self.write("c.yaml", CONFIG)
         self.assertEqual(self.trips("replay", *options, path), reason)
         result = self.run_good("scenario", "--from", path, *options, "-o", "made.yaml")
         self.assertEqual(result.stdout, "")
-        text = (self.folder / "made.yaml").read_text(encoding="ascii")
+        text = self.read("made.yaml")
         self.assertIn(step, text)
         self.assertRegex(text, f"reason: {reason}, after: (fault|engages), within: ")
         self.assertEqual(self.trips("scenario", "made.yaml"), reason)  # which also passes
@@ -147,7 +145,7 @@ class Skeleton(hostsim.Case):
         self.write("old.yaml", "old")
         self.assert_refused(self.run_program("scenario", "--from", "my.log", "-o", "old.yaml"),
                             "old.yaml: exists already, and is not replaced")
-        self.assertEqual((self.folder / "old.yaml").read_text(encoding="ascii"), "old")
+        self.assertEqual(self.read("old.yaml"), "old")
         self.assert_refused(self.run_program("scenario", "--from", "-"), "the log is read twice")
         self.assert_refused(self.run_program("scenario", "--from", "no.log"), "no.log: No such file")
         os.mkfifo(self.folder / "pipe")

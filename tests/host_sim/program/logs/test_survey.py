@@ -63,11 +63,8 @@ class Case(hostsim.Case):
 
     def settings(self):
         """The settings of config.yaml, as text."""
-        lines = self.text("config.yaml").splitlines()
+        lines = self.read("config.yaml").splitlines()
         return dict(re.match(r"(\w+): (\S+)", line).groups() for line in lines if line and line[0] != "#")
-
-    def text(self, name):
-        return (self.folder / name).read_text(encoding="utf-8")
 
     def trips_with_proposal(self, *arguments, name="log"):
         result = self.run_good("replay", "--config", "config.yaml", "--events", "events.jsonl", *arguments, name)
@@ -103,7 +100,7 @@ class Proposal(Case):
         self.assertGreaterEqual(int(settings["throttle_status_timeout_ms"]), 240)
         self.assertLessEqual(int(settings["throttle_status_timeout_ms"]), 250)
         self.assertEqual(self.trips_with_proposal(), NO_TRIP)
-        self.assertIn("WEAKER", self.text("config.yaml"))
+        self.assertIn("WEAKER", self.read("config.yaml"))
         plain = self.run_good("replay", "--events", "events.jsonl", "log")
         self.assertEqual(plain.summary()["supervised_ms"], 0)  # with the default it never leaves INIT
 
@@ -140,7 +137,7 @@ class Proposal(Case):
         result = self.run_good("survey", "--config-out", "config.yaml", "-", stdin=log)
         self.assertIn("survey again with --config", result.stdout)
         self.assertEqual(self.settings()["id_gear_status"], "0x1A3")
-        self.write("first.yaml", self.text("config.yaml"))
+        self.write("first.yaml", self.read("config.yaml"))
         survey = self.survey(log, "--config", "first.yaml")
         self.assertEqual(self.message(survey, "gear_status")["id"], "1A3")
         self.assertEqual(self.trips_with_proposal(), NO_TRIP)
@@ -514,7 +511,7 @@ class Refused(Case):
             self.write("log", content)
             with self.subTest(part):
                 self.assert_refused(self.run_program("survey", "--config-out", "config.yaml", "log"), part)
-                self.assertEqual(self.text("config.yaml"), "park: at_once\n")
+                self.assertEqual(self.read("config.yaml"), "park: at_once\n")
                 self.assertEqual(self.files(), ["config.yaml", "log"])
 
     def test_the_survey_is_printed_though_the_proposal_is_lost(self):

@@ -28,7 +28,7 @@ class Case(hostsim.Case):
     def why(self, log, *arguments):
         self.write("my.log", log)
         self.run_good("replay", "--why", "why.json", *arguments, "my.log")
-        return json.loads((self.folder / "why.json").read_text(encoding="utf-8"))
+        return json.loads(self.read("why.json"))
 
 
 class FiveLogs(Case):
@@ -216,7 +216,7 @@ class Text(Case):
         lines = self.text(log, "--store", "store", "--reset-cause", "watchdog", "--why", "why.json")
         self.assertEqual(lines[2:4], ["tripped     at 0.000 s (22:13:20.000): STEERING_COMMAND_TIMEOUT", "  why       the run "
                                       "began in TRIPPED: this trip was latched in an earlier run"])
-        trip = json.loads((self.folder / "why.json").read_text(encoding="utf-8"))["trips"][0]
+        trip = json.loads(self.read("why.json"))["trips"][0]
         self.assertEqual([trip[key] for key in ("kind", "message", "cause_ms", "last_good_ms", "limit", "unit", "evidence")],
                          ["silence", "steering_command", None, None, None, None, []])
 
@@ -420,7 +420,7 @@ class Why(Case):
 
     def test_demo_and_scenario_say_why(self):
         self.run_good("demo", "--why", "why.json", "--trace", "trace.json")
-        demo = json.loads((self.folder / "why.json").read_text(encoding="utf-8"))
+        demo = json.loads(self.read("why.json"))
         self.assertEqual([(trip["reason"], trip["kind"], trip["message"], trip["from_recording"])
                           for trip in demo["trips"]],
                          [("STEERING_COMMAND_TIMEOUT", "silence", "steering_command", False),
@@ -437,7 +437,7 @@ class Why(Case):
     def test_the_trace(self):
         self.write("my.log", traffic.log(traffic.frames(4000, engage_ms=1000, edit=stop(("steering_command",), 3000))))
         self.run_good("replay", "--trace", "trace.json", "my.log")
-        events = json.loads((self.folder / "trace.json").read_text(encoding="utf-8"))["traceEvents"]
+        events = json.loads(self.read("trace.json"))["traceEvents"]
         bars = [(event["name"], event["ts"], event["dur"]) for event in events if event["ph"] == "X"]
         self.assertEqual(bars[:3], [("INIT", 0, 512000), ("STANDBY", 512000, 488000), ("ACTIVE", 1000000, 2107000)])
         self.assertIn(("closed", 512000, 3095000), bars)
