@@ -68,10 +68,6 @@ class TableIds(Playing):
     def test_every_scenario_that_leaves_the_id_set_open_passes_with_the_table_ids(self):
         self.play([path for path in SHIPPED if not fixes(path, "id_set")], "--id-set", "table")
 
-    def test_both_at_once(self):
-        self.play([path for path in SHIPPED if not fixes(path, "topology") and not fixes(path, "id_set")],
-                  "--topology", "gateway", "--id-set", "table")
-
 
 class Stubs(hostsim.Case):
     """No scenario passes against a supervisor that does nothing, nor against one that is always tripped."""
