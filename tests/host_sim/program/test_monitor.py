@@ -5,6 +5,7 @@ import time
 import unittest
 
 import hostsim
+import traffic
 from tmux import Tmux
 
 ROOT = pathlib.Path(__file__).parents[3]
@@ -13,17 +14,13 @@ PATIENCE_S = 30
 GATEWAY = "host_sim: not the default: topology: gateway (default shared)\n"
 
 
-def long_log(seconds=600):
+def long_log(seconds):
     """A healthy vehicle in manual mode; at 2 s the VCU reports the loss of the remote signal, for half a second."""
-    lines = []
-    for ms in range(0, seconds * 1000, 10):
-        counter = ms // 10 % 256
-        alarm = "01" if 2000 <= ms < 2500 else "00"
-        frames = [(0x363, "00000000%s0040%02X" % (alarm, counter)), (0x067, "%02X64282300000000" % counter),
-                  (0x0A3, "0800000000000000"), (0x050, "0" * 16), (0x167, "0000000100000000"), (0x267, "0" * 16),
-                  (0x101, "0" * 16)]
-        lines += ["(%.6f) can0 %03X#%s" % (1700000000 + ms / 1000, can_id, data) for can_id, data in frames]
-    return "\n".join(lines) + "\n"
+    def edit(frame):
+        if frame.name == "vehicle_status" and 2000 <= frame.t_ms < 2500:
+            frame.data = frame.data[:4] + b"\x01" + frame.data[5:]
+        return frame
+    return traffic.log(traffic.frames(1000 * seconds, senders=("vcu", "eps"), edit=edit))
 
 
 class Screen(hostsim.Case):
