@@ -84,7 +84,7 @@ class Stuffing(hostsim.Case):
         limit = self.tables()["standard_bits"]
         identifiers = [message["heading_id"] for message in self.tables()["messages"]]
         longest = 0
-        for _ in range(20000):
+        for _ in range(5000):
             data = [chance.choice((0, 0xFF, 0x0F, 0xF0, 0x1E, 0x87, chance.randrange(256))) for _ in range(8)]
             length = frame_length(chance.choice(identifiers), data)
             longest = max(longest, length)
