@@ -12,6 +12,7 @@ work=$ROOT/build/proof/$(basename "$here")
 mkdir -p "$work" build/log
 
 proof() {
+    help_of "$@"
     if [[ ${1:-} == --seeded ]]; then
         seeded
     else
