@@ -127,7 +127,7 @@ static bool is_time_over(const hunt_t *hunt) {
     return (hunt->request->minutes != UINT64_MAX) && (spent_ms(hunt) >= hunt->request->minutes * MS_PER_MIN);
 }
 
-/** A piece of the whole, by its number. */
+/** A piece of the whole, by its number. It is OVER when the hunt ends before it is whole. */
 static went_t run_piece(hunt_t *hunt, uint64_t piece) {
     uint64_t random = hunt->request->seed;
     const uint64_t first = piece * HUNT_PIECE_RUNS;
@@ -135,7 +135,10 @@ static went_t run_piece(hunt_t *hunt, uint64_t piece) {
     random = prng_next(&random) ^ piece;
     memset(hunt->seen, 0, sizeof hunt->seen);
     hunt->corpus_count = 0u;
-    for (uint64_t i = 0u; (i < HUNT_PIECE_RUNS) && (first + i < hunt->request->runs); i++) {
+    for (uint64_t i = 0u; i < HUNT_PIECE_RUNS; i++) {
+        if (first + i >= hunt->request->runs) {
+            return OVER;
+        }
         if (!run_one(hunt, first + i, &random)) {
             return FAILED;
         }
@@ -162,14 +165,9 @@ static went_t run_all(hunt_t *hunt) {
     went_t went = GOES_ON;
 
     while (went == GOES_ON) {
-        const uint64_t piece = next_piece(hunt);
-        if (piece * HUNT_PIECE_RUNS >= request->runs) {
-            return OVER;
-        }
-        went = run_piece(hunt, piece);
+        went = run_piece(hunt, next_piece(hunt));
         if (went == GOES_ON) {
             hunt->state.pieces++;
-            hunt->state.runs = hunt->runs;
             hunt->state.virtual_ms = hunt->virtual_ms;
             hunt->state.spent_ms = spent_ms(hunt);
             hunt->state.processor_ms = processor_ms(hunt);
@@ -224,7 +222,7 @@ static status_t run_until_end(hunt_t *hunt) {
         return STATUS_UNUSABLE;
     }
     interrupt_hold();
-    hunt->runs = hunt->state.runs;
+    hunt->runs = hunt->state.pieces * HUNT_PIECE_RUNS;
     hunt->virtual_ms = hunt->state.virtual_ms;
     begin_counting(hunt);
     progress_begin(&hunt->progress, total_of(hunt->request));

@@ -1,5 +1,6 @@
 #include "hunt/hunt_state.h"
 
+#include <inttypes.h>
 #include <string.h>
 
 #include "io/checkpoint.h"
@@ -21,11 +22,21 @@ bool hunt_state_save(const hunt_request_t *request, hunt_state_t *state, output_
     return checkpoint_save(&checkpoint, file, parts, sizeof parts / sizeof parts[0]);
 }
 
+/** A hunt of fewer runs cannot take back those that are done. */
+static bool check_end(const hunt_request_t *request, const hunt_state_t *state) {
+    const uint64_t end =
+        (state->pieces > 0u) ? (((state->pieces - 1u) * request->shards) + request->shard) * HUNT_PIECE_RUNS : 0u;
+
+    return (end <= request->runs) ||
+           report("%s: its runs go up to %" PRIu64 ": give --runs %" PRIu64 " or more, or remove it to start over",
+                  request->checkpoint, end, end);
+}
+
 bool hunt_state_load(const hunt_request_t *request, hunt_state_t *state) {
     const checkpoint_t checkpoint = checkpoint_of(request);
     const checkpoint_part_t parts[] = {{state, sizeof *state}};
     bool loaded = false;
 
     memset(state, 0, sizeof *state);
-    return checkpoint_load(&checkpoint, parts, sizeof parts / sizeof parts[0], &loaded);
+    return checkpoint_load(&checkpoint, parts, sizeof parts / sizeof parts[0], &loaded) && check_end(request, state);
 }

@@ -10,8 +10,7 @@
 
 /** What is kept. */
 typedef struct {
-    uint64_t pieces; /**< of this shard that are done */
-    uint64_t runs;
+    uint64_t pieces;     /**< of this shard that are done, each a whole one */
     uint64_t virtual_ms; /**< that they simulated */
     uint64_t spent_ms;
     uint64_t processor_ms;
@@ -21,7 +20,8 @@ typedef struct {
 /** Write it. Nothing without a checkpoint. @return false: reported */
 bool hunt_state_save(const hunt_request_t *request, hunt_state_t *state, output_t *file);
 
-/** Resume from the checkpoint, if it exists. @return false: it belongs to another hunt; reported */
+/** Resume from the checkpoint, if it exists. @return false: it belongs to another hunt, or goes on after this one's end;
+ *  reported */
 bool hunt_state_load(const hunt_request_t *request, hunt_state_t *state);
 
 #endif

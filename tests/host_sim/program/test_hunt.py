@@ -60,6 +60,29 @@ class Hunt(hostsim.Case):
         torn = self.hunt(*arguments, "--checkpoint", "state", status=(2,))
         self.assertIn("damaged", torn.stderr)
 
+    def test_more_runs_later_are_those_of_one_hunt(self):
+        if hostsim.PART > 1:
+            return  # a piece takes minutes in a program full of checks
+        said = {}
+        for runs in (20, 30, 520, 530):
+            self.folders(f"whole-{runs}")
+            said[runs] = self.hunt("--seed", 5, "--runs", runs, "--found", f"whole-{runs}").stdout
+        self.folders("parts")
+        for runs in (20, 30, 20, 520, 530, 520):
+            part = self.hunt("--seed", 5, "--runs", runs, "--found", "parts", "--checkpoint", "state").stdout
+            self.assertEqual(LAST_TOOK.sub("", LAST.search(part)[0]), LAST_TOOK.sub("", LAST.search(said[runs])[0]))
+        self.assertEqual(self.found_in("parts"), self.found_in("whole-530"))
+        less = self.hunt("--seed", 5, "--runs", 499, "--checkpoint", "state", status=(2,))
+        self.assert_refused(less, "state: its runs go up to 500: give --runs 500 or more, or remove it to start over")
+
+    def test_runs_of_a_shard_go_up_to_the_end_of_its_last_batch(self):
+        if hostsim.PART > 1:
+            return
+        arguments = ("--seed", 5, "--shard", "2/2", "--checkpoint", "state")
+        self.assertEqual(LAST.search(self.hunt(*arguments, "--runs", 1000).stdout)[1], "500")
+        self.assertEqual(LAST.search(self.hunt(*arguments, "--runs", 1500).stdout)[1], "500")
+        self.assert_refused(self.hunt(*arguments, "--runs", 999, status=(2,)), "state: its runs go up to 1000: give --runs 1000")
+
     def interrupted(self, *arguments):
         """What it says when a signal ends it during its first runs."""
         with subprocess.Popen([hostsim.PROGRAM, "hunt", "--seed", "3", "--runs", "100000", *map(str, arguments)],
