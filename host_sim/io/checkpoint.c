@@ -37,6 +37,11 @@ static uint32_t checksum_of(const checkpoint_part_t parts[], size_t count) {
     return checksum;
 }
 
+bool checkpoint_check_path(const char *path) {
+    return !output_is_stdout(path) ||
+           report("--checkpoint: a checkpoint is read and written, which standard output cannot be");
+}
+
 bool checkpoint_save(const checkpoint_t *checkpoint, output_t *file, const checkpoint_part_t parts[], size_t count) {
     const head_t head = head_of(checkpoint, parts, count);
     const uint32_t checksum = checksum_of(parts, count);

@@ -29,6 +29,9 @@ typedef struct {
     size_t size;
 } checkpoint_part_t;
 
+/** Check the path of --checkpoint: standard output cannot be read. NULL is good. @return false: was reported */
+bool checkpoint_check_path(const char *path);
+
 /** Write it. @return false: was reported */
 bool checkpoint_save(const checkpoint_t *checkpoint, output_t *file, const checkpoint_part_t parts[], size_t count);
 

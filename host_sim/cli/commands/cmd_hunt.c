@@ -6,6 +6,7 @@
 #include "cli/options.h"
 #include "cli/random_options.h"
 #include "hunt/hunt.h"
+#include "io/checkpoint.h"
 #include "io/output.h"
 
 #define RUNS_MAX 1000000000u
@@ -69,7 +70,7 @@ static bool make_request(given_t *given) {
     }
     request->seed = given->random.seed;
     request->folder = (given->folder != NULL) ? given->folder : ".";
-    return output_check_folder("--found", request->folder);
+    return checkpoint_check_path(request->checkpoint) && output_check_folder("--found", request->folder);
 }
 
 static bool has_run_options(const given_t *given) {

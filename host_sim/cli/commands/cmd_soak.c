@@ -6,6 +6,7 @@
 #include "cli/commands/commands.h"
 #include "cli/options.h"
 #include "cli/random_options.h"
+#include "io/checkpoint.h"
 #include "io/output.h"
 
 enum { HOURS_MAX = 876000 };
@@ -61,7 +62,7 @@ static bool make_request(given_t *given) {
     request->hours = (uint32_t)given->hours;
     request->seed = given->random.seed;
     return random_options_check(&given->random, "soak", &request->shard, &request->shards) &&
-           output_check_distinct(roles, sizeof roles / sizeof roles[0]);
+           checkpoint_check_path(request->checkpoint) && output_check_distinct(roles, sizeof roles / sizeof roles[0]);
 }
 
 status_t cmd_soak(int argc, char **argv) {

@@ -126,6 +126,8 @@ class Hunt(hostsim.Case):
             (("--seed", 1, "--runs", 1, "--found", "nowhere"), "--found: 'nowhere' is not a folder"),
             (("--seed", 1, "--runs", 1, "--found", "/proc"), "--found: the folder '/proc' cannot be written: "),
             (("--seed", 1, "--runs", 1, "--fuond", "x"), "unknown option '--fuond'"),
+            *((("--seed", 1, "--runs", 1, "--checkpoint", path), "--checkpoint: a checkpoint is read and written, which standard output cannot be")
+              for path in ("-", "/dev/stdout")),
             (("--seed", 1, "--runs", 1, "more"), "unexpected argument 'more'"),
         ):
             result = self.hunt(*arguments, status=(2,))
