@@ -17,9 +17,9 @@ typedef struct {
 } log_foreign_t;
 
 /** Room for what log_foreign_advice() writes. */
-#define LOG_FOREIGN_TEXT_SIZE 700u
+#define LOG_FOREIGN_TEXT_SIZE 900u
 
-/** Write what a file is and what to do: "a Vector BLF log; convert it: ...". @param path a name longer than 200 is "FILE" */
+/** Write what a file is and what to do: "a Vector BLF log; convert it: ...". @param path a name longer than 150 is "FILE" */
 void log_foreign_advice(char text[LOG_FOREIGN_TEXT_SIZE], const log_foreign_t *format, const char *path);
 
 /** Tell a binary format by the first bytes of a file. @return NULL: none that is known */

@@ -1,6 +1,7 @@
 """Logs of other formats, as other programs write them: can-utils and python-can. Each gives the same replay as the log
 that it was made from."""
 import gzip
+import json
 import os
 import resource
 import subprocess
@@ -70,6 +71,56 @@ class OtherPrograms(Case):
         events, _ = self.outcome(self.read("my.blf.log"))
         self.assertEqual([event for event in events if event["event"] == "state"],
                          [event for event in self.expected[0] if event["event"] == "state"])
+
+
+class OfTshark(Case):
+    """The command for captures, run in bash with a stand-in for tshark that prints columns as tshark does."""
+    BASE = {"frame.time_epoch": "1700000001.123456000"}
+    ERROR = dict.fromkeys(("tx_timeout", "lostarb", "ctrl", "prot", "trx", "ack", "busoff", "buserror", "restarted"), 0)
+
+    def frame(self, can_id, length, data="", xtd=0, rtr=0, **more):
+        return {**self.BASE, "can.id": can_id, "can.len": length, "can.flags.xtd": xtd, "can.flags.rtr": rtr,
+                "data.data": data, **more}
+
+    def error(self, *names, **more):
+        bits = {**self.ERROR, **dict.fromkeys(names, 1)}
+        return {**self.BASE, "can.len": 8, **{"can.err." + name: value for name, value in bits.items()}, **more}
+
+    def converted(self, frames):
+        """What the command makes of frames: columns by their names."""
+        (self.folder / "bin").mkdir()
+        self.write("frames.json", json.dumps(frames))
+        stand_in = self.write("bin/tshark", "#!/usr/bin/python3\nimport json, sys\n"
+                              "assert sys.argv[1:5] == ['-r', 'my.pcap', '-T', 'fields']\n"
+                              "for frame in json.load(open('frames.json')):\n"
+                              "    print(*(frame.get(word.removeprefix('-e'), '') for word in sys.argv[5:]), sep='\\t')\n")
+        stand_in.chmod(0o755)
+        self.write("my.pcap", b"\xD4\xC3\xB2\xA1\x02\0\x04\0")
+        refused = self.run_program("replay", "my.pcap")
+        self.assert_refused(refused, "my.pcap: a pcap capture; convert it: ")
+        subprocess.run(["bash", "-c", refused.stderr.split("convert it: ")[1]], cwd=self.folder, check=True,
+                       env={**os.environ, "PATH": f"{self.folder}/bin:{os.environ['PATH']}"})
+        return [line.removeprefix("(1700000001.123456) can0 ") for line in (self.folder / "my.pcap.log").read_text(encoding="ascii").splitlines()]
+
+    def test_frames(self):
+        self.assertEqual(self.converted([
+            self.frame(0x43F, 8, "0000000000000011"), self.frame(0x43F, 1, "01", xtd=1), self.frame(0xCF00400, 2, "0102", xtd="True"),
+            self.frame(0x43F, 8, rtr=1), self.frame(0x363, 0, xtd="False", rtr="False"),
+            self.frame(0x123, 3, "616263", **{"canfd.flags.brs": 1, "canfd.flags.esi": 0}),
+        ]), ["43F#0000000000000011", "0000043F#01", "0CF00400#0102", "43F#R8", "363#", "123##1616263"])
+        self.run_good("replay", "my.pcap.log")
+
+    def test_error_frames(self):
+        controller = {"can.err.ctrl." + name: value for name, value in (("rx_passive", 1), ("tx_passive", 0), ("tx_warning", 1))}
+        self.assertEqual(self.converted([self.error("busoff"), self.error("restarted"), self.error("ctrl", **controller),
+                                         self.error("buserror", "prot"), self.error()]),
+                         ["20000040#" + 16 * "0", "20000100#" + 16 * "0", "20000004#0018" + 12 * "0", "20000088#" + 16 * "0",
+                          "20000000#" + 16 * "0"])
+        self.run_good("survey", "my.pcap.log")
+
+    def test_what_it_cannot_write_is_left_out(self):
+        """Data that tshark dissected further, and frames of other networks."""
+        self.assertEqual(self.converted([self.frame(0x43F, 8), dict(self.BASE), self.frame(0x168, 1, "00")]), ["168#00"])
 
 
 class Bounded(Case):
