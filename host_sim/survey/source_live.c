@@ -45,7 +45,7 @@ static bool open_sockets(live_t *live) {
     return true;
 }
 
-/** Take what has arrived on a side, but for a flood that leaves no time for the rest. @return false: was reported */
+/** Take what has arrived on a side, but for a flood that leaves no time for the rest. @return false: it is gone */
 static bool receive(live_t *live, hal_can_side_t side) {
     linux_can_record_t record;
     const char *interface = live->request->bus.interfaces[side];
@@ -61,7 +61,8 @@ static bool receive(live_t *live, hal_can_side_t side) {
             note("%s is down", interface);
             break;
         case LINUX_CAN_IS_GONE:
-            return report("%s: the interface no longer exists", interface);
+            live->source->gone = interface;
+            return false;
         default:
             return true;
         }
@@ -69,7 +70,8 @@ static bool receive(live_t *live, hal_can_side_t side) {
     return true;
 }
 
-static bool listen(live_t *live) {
+/** Until the time is over, a signal comes, or an interface is gone. */
+static void listen(live_t *live) {
     const uint64_t begin_ms = monotonic_ms();
     const uint64_t for_ms = live->request->bus.for_ms;
     uint32_t events = 0u;
@@ -81,19 +83,25 @@ static bool listen(live_t *live) {
             good = (live->sockets[side].fd < 0) || receive(live, (hal_can_side_t)side);
         }
     }
-    return good;
+}
+
+static bool report_silence(const live_t *live) {
+    if (live->source->gone != NULL) {
+        return report(SOURCE_GONE, live->source->gone);
+    }
+    return report("%s: no frame came; check the bit rate and the cable, and that ip link shows the interface as up",
+                  live->request->bus.interfaces[HAL_CAN_VEHICLE]);
 }
 
 static bool run(live_t *live) {
-    if (!open_sockets(live) || !listen(live)) {
+    if (!open_sockets(live)) {
         return false;
     }
-    const char *interface = live->request->bus.interfaces[HAL_CAN_VEHICLE];
+    listen(live);
     if (live->observation->frames == 0u) {
-        return report("%s: no frame came; check the bit rate and the cable, and that ip link shows the interface as up",
-                      interface);
+        return report_silence(live);
     }
-    (void)snprintf(live->source->name, sizeof live->source->name, "%s", interface);
+    (void)snprintf(live->source->name, sizeof live->source->name, "%s", live->request->bus.interfaces[HAL_CAN_VEHICLE]);
     live->observation->lost = (uint64_t)live->lost[HAL_CAN_VEHICLE] + live->lost[HAL_CAN_AI];
     observation_end(live->observation, realtime_us());
     return true;

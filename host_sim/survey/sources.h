@@ -8,12 +8,15 @@
 #include "survey/observation.h"
 #include "survey/survey.h"
 
+#define SOURCE_GONE "%s: the interface no longer exists"
+
 /** What a source says about itself. */
 typedef struct {
     char name[256];         /**< for messages: "my.log", "can0" */
     char format[32];        /**< of a log: "candump -l" */
     uint64_t skipped_lines; /**< of a log */
     bool has_ai_side;       /**< a frame came from it */
+    const char *gone;       /**< the interface that ceased to exist, which ended the survey; NULL: none */
 } source_t;
 
 /** Read a log into an observation that has begun. @return false: was reported */

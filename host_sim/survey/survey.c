@@ -134,7 +134,8 @@ static bool run(survey_result_t *result) {
         return false;
     }
     propose(result);
-    return print(result);
+    const bool is_printed = print(result);
+    return ((result->source.gone == NULL) || report(SOURCE_GONE, result->source.gone)) && is_printed;
 }
 
 status_t survey_run(const survey_request_t *request) {

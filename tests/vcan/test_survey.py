@@ -2,6 +2,7 @@
 import json
 import pathlib
 import signal
+import subprocess
 import tempfile
 
 import canbus
@@ -58,6 +59,21 @@ class Survey(canbus.Case):
         self.assertEqual(sides["wheel_speed"], "vehicle")
         self.assertIn({"name": "topology", "value": "gateway", "default": "shared", "weakens": False,
                        "reason": "as given to this survey"}, survey["proposal"]["settings"])
+
+    def test_an_interface_that_is_removed_ends_it_with_the_result(self):
+        canbus.ip("link", "add", "dev", "vcan9", "type", "vcan")
+        self.addCleanup(subprocess.run, ["ip", "link", "delete", "vcan9"], stderr=subprocess.DEVNULL, check=False)
+        canbus.ip("link", "set", "vcan9", "up")
+        bus = self.bus("vcan9")
+        process = self.start("survey", "--can", "vcan9", "--config-out", self.folder / "config.yaml", "--json")
+        for _ in range(15):
+            bus.send(0x123, [1])
+            bus.listen(0.1)
+        canbus.ip("link", "delete", "vcan9")
+        self.assertEqual(process.end(None), 2)
+        self.assertEqual([unknown["id"] for unknown in json.loads(process.text())["unknown"]], ["123"])
+        self.assertEqual(process.text("stderr"), "host_sim: vcan9 is down\nhost_sim: vcan9: the interface no longer exists\n")
+        self.assertIn("from vcan9", (self.folder / "config.yaml").read_text())
 
     def test_a_silent_bus_is_no_result(self):
         self.assertEqual(self.run_to_end("survey", "--can", "vcan2", "--for", "300ms"),
