@@ -5,6 +5,10 @@
 
 #include "common/report.h"
 
+_Static_assert(OBSERVATION_NAMES_SIZE >=
+                   (OBSERVATION_INTERFACES_MAX * (CANDUMP_INTERFACE_MAX + sizeof ",")) + sizeof " and others",
+               "the names of the interfaces have no room");
+
 bool observation_begin(observation_t *observation, const agv_config_t *config) {
     (void)memset(observation, 0, sizeof *observation);
     observation->configs[OBSERVATION_GIVEN] = *config;
@@ -41,17 +45,30 @@ void observation_frame(observation_t *observation, hal_can_side_t side, const ha
     }
 }
 
-void observation_interface(observation_t *observation, const char *name, size_t length) {
+void observation_interface(observation_t *observation, const char *name, size_t length, bool is_named) {
     for (uint32_t i = 0u; i < observation->interface_count; i++) {
         if ((strncmp(observation->interfaces[i], name, length) == 0) && (observation->interfaces[i][length] == '\0')) {
             return;
         }
     }
-    if (observation->interface_count < OBSERVATION_INTERFACES_MAX) {
-        (void)snprintf(observation->interfaces[observation->interface_count], CANDUMP_INTERFACE_MAX + 1u, "%.*s",
-                       (int)length, name);
+    const bool is_full = observation->interface_count == OBSERVATION_INTERFACES_MAX;
+    observation->more_interfaces = observation->more_interfaces || is_full;
+    if (!is_full) {
         observation->interface_count++;
     }
+    if (!is_full || is_named) {
+        (void)snprintf(observation->interfaces[observation->interface_count - 1u], CANDUMP_INTERFACE_MAX + 1u, "%.*s",
+                       (int)length, name);
+    }
+}
+
+void observation_interfaces(const observation_t *observation, char text[OBSERVATION_NAMES_SIZE]) {
+    size_t used = 0u;
+    for (uint32_t i = 0u; i < observation->interface_count; i++) {
+        used += (size_t)snprintf(&text[used], OBSERVATION_NAMES_SIZE - used, "%s%s", (i > 0u) ? ", " : "",
+                                 observation->interfaces[i]);
+    }
+    (void)snprintf(&text[used], OBSERVATION_NAMES_SIZE - used, "%s", observation->more_interfaces ? " and others" : "");
 }
 
 uint64_t observation_us(const observation_t *observation) {

@@ -10,7 +10,10 @@
 #include "traffic/bus_load.h"
 #include "traffic/traffic.h"
 
-#define OBSERVATION_INTERFACES_MAX 4u
+#define OBSERVATION_INTERFACES_MAX 8u
+
+/** Room for observation_interfaces(). */
+#define OBSERVATION_NAMES_SIZE 160u
 
 /** The ID sets: the one that was configured, and the other. */
 enum { OBSERVATION_GIVEN, OBSERVATION_OTHER, OBSERVATION_SETS };
@@ -23,8 +26,9 @@ typedef struct {
     bus_load_t loads[HAL_CAN_SIDES];
     char interfaces[OBSERVATION_INTERFACES_MAX][CANDUMP_INTERFACE_MAX + 1u];
     uint32_t interface_count;
-    uint64_t first_us; /**< stamp of the first frame */
-    uint64_t last_us;  /**< stamp of the last frame, never going backwards */
+    bool more_interfaces; /**< than have room */
+    uint64_t first_us;    /**< stamp of the first frame */
+    uint64_t last_us;     /**< stamp of the last frame, never going backwards */
     uint64_t frames;
     uint64_t backward_stamps;
     uint64_t lost; /**< frames that the interfaces' queues lost */
@@ -37,8 +41,11 @@ bool observation_begin(observation_t *observation, const agv_config_t *config);
 void observation_frame(observation_t *observation, hal_can_side_t side, const hal_can_frame_t *frame,
                        uint64_t stamp_us);
 
-/** An interface was heard. Only the first few are kept. */
-void observation_interface(observation_t *observation, const char *name, size_t length);
+/** An interface was heard. The first are kept, and one that an option names. */
+void observation_interface(observation_t *observation, const char *name, size_t length, bool is_named);
+
+/** Write the interfaces: "can0, can1 and others". */
+void observation_interfaces(const observation_t *observation, char text[OBSERVATION_NAMES_SIZE]);
 
 /** No more frames. @param last_us the end of the time */
 void observation_end(observation_t *observation, uint64_t last_us);

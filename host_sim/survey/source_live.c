@@ -40,7 +40,7 @@ static bool open_sockets(live_t *live) {
         if (!linux_loop_add(&live->loop, live->sockets[side].fd)) {
             return report("%s: %s", interface, strerror(errno));
         }
-        observation_interface(live->observation, interface, strlen(interface));
+        observation_interface(live->observation, interface, strlen(interface), true);
     }
     return true;
 }

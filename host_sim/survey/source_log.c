@@ -19,7 +19,7 @@ static bool read_frames(const survey_request_t *request, candump_log_t *log, obs
     for (; result == CANDUMP_RECORD; result = candump_next(log, &record)) {
         const hal_can_side_t side = side_of(request, &record);
         source->has_ai_side = source->has_ai_side || (side == HAL_CAN_AI);
-        observation_interface(observation, record.interface, record.interface_length);
+        observation_interface(observation, record.interface, record.interface_length, side == HAL_CAN_AI);
         observation_frame(observation, side, &record.frame, record.stamp_us);
     }
     (void)snprintf(source->name, sizeof source->name, "%s", log->name);

@@ -9,7 +9,7 @@
 #include "io/output.h"
 #include "survey/survey_result.h"
 
-enum { REASON_SIZE = 160, NAMES_SIZE = OBSERVATION_INTERFACES_MAX * (CANDUMP_INTERFACE_MAX + 3) };
+enum { REASON_SIZE = 160 };
 
 /** Gather frames under a configuration. @return false: was reported */
 static bool gather(survey_result_t *result, const agv_config_t *config) {
@@ -109,15 +109,11 @@ static bool print(survey_result_t *result) {
 
 /** Without frames of the AI side there is nothing to survey there: the name is wrong. @return false: was reported */
 static bool check_ai_side(const survey_result_t *result) {
-    const observation_t *observation = &result->observation;
-    char names[NAMES_SIZE] = "";
+    char names[OBSERVATION_NAMES_SIZE];
     if ((result->request->ai_interface == NULL) || result->source.has_ai_side) {
         return true;
     }
-    for (uint32_t i = 0u; i < observation->interface_count; i++) {
-        const size_t used = strlen(names);
-        (void)snprintf(&names[used], sizeof names - used, "%s%s", (i > 0u) ? ", " : "", observation->interfaces[i]);
-    }
+    observation_interfaces(&result->observation, names);
     return report("--ai-if: the log has no frame from %s, only from %s", result->request->ai_interface, names);
 }
 

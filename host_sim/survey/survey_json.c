@@ -128,6 +128,7 @@ bool survey_print_json(const survey_result_t *result) {
     json_put(root, "source", json_text(result->source.name));
     json_put(root, "format", (result->source.format[0] != '\0') ? json_string(result->source.format) : json_null());
     json_put(root, "interfaces", interfaces_json(observation));
+    json_put(root, "more_interfaces", json_boolean(observation->more_interfaces));
     json_put(root, "first_us", json_uint(observation->first_us));
     json_put(root, "duration_ms", json_real(ms_of_us(observation_us(observation))));
     json_put(root, "frames", json_uint(observation->frames));

@@ -10,11 +10,9 @@ enum { MEDIAN = 500, P999 = 999, BITS_PER_WORD = 32, WORD_CHOICES = 256, LINE_SI
 static void print_head(const survey_result_t *result) {
     const observation_t *observation = &result->observation;
     const double seconds = s_of_us(observation_us(observation));
-    (void)printf("%s: %.3f s on ", result->source.name, seconds);
-    for (uint32_t i = 0u; i < observation->interface_count; i++) {
-        (void)printf("%s%s", (i > 0u) ? ", " : "", observation->interfaces[i]);
-    }
-    (void)printf(", %" PRIu64 " frames", observation->frames);
+    char interfaces[OBSERVATION_NAMES_SIZE];
+    observation_interfaces(observation, interfaces);
+    (void)printf("%s: %.3f s on %s, %" PRIu64 " frames", result->source.name, seconds, interfaces, observation->frames);
     if (seconds > 0.0) {
         (void)printf(" (%.0f/s)", (double)observation->frames / seconds);
     }

@@ -457,6 +457,19 @@ class Text(Case):
         self.assertIn("all interfaces count as one bus", self.run_good("survey", "log").stdout)
         self.assertNotIn("all interfaces", self.run_good("survey", "--ai-if", "can1", "log").stdout)
 
+    def test_eight_interfaces_are_named_and_the_one_that_an_option_names(self):
+        def log(count):
+            return "".join("(%d.000000) can%d 123#00\n" % (second, second) for second in range(count))
+        eight = "can0, can1, can2, can3, can4, can5, can6, can7"
+        for count, arguments, said, more in ((8, (), eight + ", 8 frames", False), (9, (), eight + " and others, 9 frames", True),
+                                             (10, ("--ai-if", "can9"), eight.replace("can7", "can9 and others, 10 frames"), True)):
+            self.write("log", log(count))
+            self.assertIn(" s on " + said, self.run_good("survey", *arguments, "log").stdout)
+            survey = json.loads(self.run_good("survey", "--json", *arguments, "log").stdout)
+            self.assertEqual((survey["interfaces"], survey["more_interfaces"]),
+                             (said.split(" and")[0].rsplit(", 8 frames")[0].split(", "), more))
+        self.assert_refused(self.run_program("survey", "--ai-if", "ai", "log"), "only from " + eight + " and others")
+
     def test_the_proposal_alone(self):
         self.write("log", traffic.log(traffic.frames(2000)))
         result = self.run_good("survey", "--config-out", "-", "log")
