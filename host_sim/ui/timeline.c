@@ -19,6 +19,9 @@ enum { MM_PER_CM = 10, WHAT_SIZE = SIGNALS_TEXT_SIZE + 80 };
 /** A line has 100 columns: before the action, the action, and with it where the vehicle has no room. */
 enum { BEFORE_WHAT = 25, WHAT = 51, WHAT_ALONE = 100 - BEFORE_WHAT };
 
+/** A speed that is outside has no room, and no vehicle has it. */
+enum { CM_S_LOWEST = -9999, CM_S_HIGHEST = 99999 };
+
 #define MODE_BITS 0xC0
 #define MODE_MANUAL 0x40
 #define MODE_AUTOPILOT 0x80
@@ -76,8 +79,12 @@ static const char *mode_word(int mode) {
 /** Print what the vehicle reports, and end the line. */
 static void print_vehicle(const timeline_t *timeline) {
     const int32_t cm_s = timeline->speed_mm_s / MM_PER_CM;
-    (void)printf("%c %-9s %s%d.%02d m/s\n", gear_letter(timeline->gear), mode_word(timeline->mode),
-                 (cm_s < 0) ? "-" : "", abs((int)cm_s) / 100, abs((int)cm_s) % 100);
+    (void)printf("%c %-9s ", gear_letter(timeline->gear), mode_word(timeline->mode));
+    if ((cm_s < CM_S_LOWEST) || (cm_s > CM_S_HIGHEST)) {
+        (void)printf("%s m/s\n", (cm_s < 0) ? "<-99" : ">999");
+    } else {
+        (void)printf("%s%d.%02d m/s\n", (cm_s < 0) ? "-" : "", abs((int)cm_s) / 100, abs((int)cm_s) % 100);
+    }
 }
 
 /** Print an action, and the vehicle if there is room for it; a long action is broken at blanks. */

@@ -298,6 +298,15 @@ class Text(Case):
         self.assertIn("tripped     at 2.107 s (22:13:22.107): STEERING_COMMAND_TIMEOUT", lines)
         self.assert_refused(self.run_program("replay", "--timeline", "--why", "-", "my.log"), "--timeline")
 
+    def test_the_timeline_of_any_speed_fits(self):
+        for mm_s, shown in ((999999, "999.99"), (1000000, ">999"), (-99999, "-99.99"), (-100000, "<-99"), (-2**31, "<-99")):
+            def change(data, left=mm_s.to_bytes(4, "little", signed=True)):
+                data[0:4] = left
+            wheels, ended = edit_payload("wheel_speed", 1100, change), stop(("steering_command",), 1500)
+            log = traffic.log(traffic.frames(2000, engage_ms=1000, edit=lambda frame: ended(wheels(frame))))
+            lines = self.text(log, "--timeline")
+            self.assertTrue(any(line.endswith(f"  D autopilot {shown} m/s") for line in lines), lines)
+
     def test_below_the_speed_of_standstill_and_0_are_told_apart(self):
         example = pathlib.Path(__file__).parents[4] / "host_sim/examples/ai-stops.log"
         text = self.run_good("replay", "--timeline", example).stdout
