@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "text/text.h"
+
 enum { LINE_SIZE = 1024 };
 
 __attribute__((format(printf, 2, 0))) static void print_line(const char *prefix, const char *format,
@@ -14,11 +16,7 @@ __attribute__((format(printf, 2, 0))) static void print_line(const char *prefix,
     if (used < sizeof line) {
         (void)vsnprintf(&line[used], sizeof line - used, format, arguments);
     }
-    for (char *at = line; *at != '\0'; at++) {
-        if (((unsigned char)*at < 0x20u) || (*at == 0x7F)) {
-            *at = '?';
-        }
-    }
+    text_mask(line);
     /* One call, so that lines of several processes on one terminal do not mix. */
     (void)fprintf(stderr, "%s\n", line);
 }

@@ -16,8 +16,8 @@ typedef enum {
 } status_t;
 
 /**
- * Print "host_sim: " and a message as one line on standard error. Control characters that came in with the arguments
- * (a file name with a line break) are shown as `?`; what is longer than some 1000 characters is cut.
+ * Print "host_sim: " and a message as one line on standard error. What came in with the arguments and is no text in one
+ * line (a file name with a line break) is shown as `?`; what is longer than some 1000 characters is cut.
  * @return false, so that a check can `return report("...")`
  */
 bool report(const char *format, ...) __attribute__((format(printf, 1, 2)));

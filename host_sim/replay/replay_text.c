@@ -7,6 +7,7 @@
 #include "agv/names.h"
 #include "agv/recorder.h"
 #include "replay/replay_hints.h"
+#include "text/text.h"
 #include "text/units.h"
 #include "ui/why_text.h"
 #include "why/why_words.h"
@@ -47,11 +48,13 @@ static void add_head(text_t *text, const replay_text_t *replay) {
 /** The name of the log has a line of its own where the rest does not fit behind it. */
 static void print_head(const replay_text_t *replay) {
     text_t text = {.used = 0u};
+    text_t copy;
+    const char *name = text_one_line(&copy, replay->name);
     add_head(&text, replay);
-    if (strlen(replay->name) + strlen(": ") + text.used <= (size_t)WHY_TEXT_COLUMNS) {
-        (void)printf("%s: %s\n", replay->name, text.bytes);
+    if (strlen(name) + strlen(": ") + text.used <= (size_t)WHY_TEXT_COLUMNS) {
+        (void)printf("%s: %s\n", name, text.bytes);
     } else {
-        (void)printf("%s:\n", replay->name);
+        (void)printf("%s:\n", name);
         why_text_line("", WHY_TEXT_LABEL, text.bytes);
     }
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "survey/survey_result.h"
+#include "text/text.h"
 #include "text/units.h"
 
 enum { MEDIAN = 500, P999 = 999, BITS_PER_WORD = 32, WORD_CHOICES = 256, LINE_SIZE = 160, UNKNOWN_SHOWN_MAX = 40 };
@@ -11,8 +12,10 @@ static void print_head(const survey_result_t *result) {
     const observation_t *observation = &result->observation;
     const double seconds = s_of_us(observation_us(observation));
     char interfaces[OBSERVATION_NAMES_SIZE];
+    text_t name;
     observation_interfaces(observation, interfaces);
-    (void)printf("%s: %.3f s on %s, %" PRIu64 " frames", result->source.name, seconds, interfaces, observation->frames);
+    (void)printf("%s: %.3f s on %s, %" PRIu64 " frames", text_one_line(&name, result->source.name), seconds, interfaces,
+                 observation->frames);
     if (seconds > 0.0) {
         (void)printf(" (%.0f/s)", (double)observation->frames / seconds);
     }

@@ -1,6 +1,7 @@
 #include "text/text.h"
 
 #include <stdarg.h>
+#include <stdint.h>
 #include <stdio.h>
 
 void text_clear(text_t *text) {
@@ -20,6 +21,73 @@ void text_add(text_t *text, const char *format, ...) {
         return;
     }
     text->used += (size_t)length;
+}
+
+/** Read a character in UTF-8. @return its length; 0: there is none */
+static size_t read_character(const char *text, uint32_t *character) {
+    static const struct {
+        uint32_t mask; /**< of the first byte */
+        uint32_t value;
+        uint32_t lowest; /**< that is so long */
+    } lengths[] = {{0x80u, 0x00u, 0u}, {0xE0u, 0xC0u, 0x80u}, {0xF0u, 0xE0u, 0x800u}, {0xF8u, 0xF0u, 0x10000u}};
+    const unsigned char *at = (const unsigned char *)text;
+    size_t more = 0u;
+    while ((more < sizeof lengths / sizeof lengths[0]) && ((at[0] & lengths[more].mask) != lengths[more].value)) {
+        more++;
+    }
+    if (more == sizeof lengths / sizeof lengths[0]) {
+        return 0u;
+    }
+    *character = at[0] & ~lengths[more].mask;
+    for (size_t i = 1u; i <= more; i++) {
+        if ((at[i] & 0xC0u) != 0x80u) {
+            return 0u;
+        }
+        *character = (*character << 6u) | (at[i] & 0x3Fu);
+    }
+    return (*character >= lengths[more].lowest) ? more + 1u : 0u;
+}
+
+/** The length of a character that can be shown within a line; 0: it cannot. */
+static size_t shown_length(const char *text) {
+    static const struct {
+        uint32_t first;
+        uint32_t last;
+    } hidden[] = {
+        {0x00u, 0x1Fu},     {0x7Fu, 0x9Fu},     {0x2028u, 0x202Eu},      {0xD800u, 0xDFFFu},
+        {0xFEFFu, 0xFEFFu}, {0xFFFEu, 0xFFFFu}, {0x110000u, UINT32_MAX},
+    };
+    uint32_t character = 0u;
+    const size_t length = read_character(text, &character);
+    for (size_t i = 0u; i < sizeof hidden / sizeof hidden[0]; i++) {
+        if ((character >= hidden[i].first) && (character <= hidden[i].last)) {
+            return 0u;
+        }
+    }
+    return length;
+}
+
+bool text_is_one_line(const char *text) {
+    const char *at = text;
+    for (size_t length = shown_length(at); length > 0u; length = shown_length(at)) {
+        at += length;
+    }
+    return *at == '\0';
+}
+
+void text_mask(char *text) {
+    for (char *at = text; *at != '\0';) {
+        const size_t length = shown_length(at);
+        *at = (length > 0u) ? *at : '?';
+        at += (length > 0u) ? length : 1u;
+    }
+}
+
+const char *text_one_line(text_t *copy, const char *from) {
+    text_clear(copy);
+    text_add(copy, "%s", from);
+    text_mask(copy->bytes);
+    return copy->bytes;
 }
 
 size_t text_break(const char *text, size_t room) {

@@ -23,6 +23,15 @@ void text_add(text_t *text, const char *format, ...) __attribute__((format(print
 /** Make it empty. */
 void text_clear(text_t *text);
 
+/** Whether a text is one line that a terminal can show: UTF-8 without control characters and other ends of a line. */
+bool text_is_one_line(const char *text);
+
+/** Make it one: each byte of another character, or of none, becomes `?`. */
+void text_mask(char *text);
+
+/** A copy of a text from outside, such as the name of a file, as one line. @return the bytes of @p copy */
+const char *text_one_line(text_t *copy, const char *from);
+
 /** Where to break a text that is longer than @p room: at a blank if there is one. @return length of what fits */
 size_t text_break(const char *text, size_t room);
 

@@ -25,6 +25,7 @@
 #include "scenario/parse/scenario_schema.h"
 #include "scenario/run/scenario_analysis.h"
 #include "scenario/run/scenario_run.h"
+#include "text/text.h"
 #include "text/units.h"
 
 enum { FILES_MAX = 1000, FIXED_FILES = 5 };
@@ -187,11 +188,13 @@ static const char *find_unusable(work_t *work, char **files) {
 static void print_result(const work_t *work, const char *file, const result_t *result) {
     const size_t count = work->run.check.expectation_count;
     const char *plural = (count == 1u) ? "" : "s";
+    text_t copy;
+    const char *name = text_one_line(&copy, file);
     if (result->failure_count == 0u) {
-        (void)fprintf(work->text_out, "ok      %s: %zu expectation%s\n", file, count, plural);
+        (void)fprintf(work->text_out, "ok      %s: %zu expectation%s\n", name, count, plural);
         return;
     }
-    (void)fprintf(work->text_out, "FAILED  %s: %zu of %zu expectation%s\n", file, result->failure_count, count, plural);
+    (void)fprintf(work->text_out, "FAILED  %s: %zu of %zu expectation%s\n", name, result->failure_count, count, plural);
     for (size_t i = 0u; (i < result->failure_count) && (i < SCENARIO_FAILURES_MAX); i++) {
         (void)fprintf(work->text_out, "        %s\n", result->failures[i]);
     }
@@ -325,7 +328,9 @@ static void count(totals_t *totals, const result_t *result) {
 static void print_totals(const work_t *work, char **files, const totals_t *totals) {
     for (size_t i = 0u; i < work->given.file_count; i++) {
         if (work->results[i].left_out != NULL) {
-            (void)fprintf(work->text_out, "left out %s: %s\n", files[i], work->results[i].left_out);
+            text_t name;
+            (void)fprintf(work->text_out, "left out %s: %s\n", text_one_line(&name, files[i]),
+                          work->results[i].left_out);
         }
     }
     (void)fprintf(work->text_out, "%zu scenario%s: %zu passed, %zu failed", work->given.file_count,

@@ -9,6 +9,7 @@
 #include "scenario/parse/scenario_parse.h"
 #include "scenario/parse/scenario_requirements.h"
 #include "text/suggest.h"
+#include "text/text.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 /* The first identifier of a vehicle that has those of the configuration. */
@@ -92,6 +93,9 @@ static bool read_name(const yaml_reader_t *reader, const yaml_node_t *node, void
     }
     if (strlen(text) >= sizeof scenario->name) {
         return yaml_reader_fail(reader, node, "name: longer than %u bytes", SCENARIO_TEXT_MAX - 1u);
+    }
+    if (!text_is_one_line(text)) {
+        return yaml_reader_fail(reader, node, "name: must be one line without control characters");
     }
     (void)strcpy(scenario->name, text);
     return true;

@@ -106,7 +106,8 @@ void test_what_makes_no_sense_is_one_line(void) {
     refused_when_typed("vcu mute message=", "message: a word or a text is missing");
     refused_when_typed("ai lag by_ms=1 by_ms=2", "'by_ms' is given twice in a step");
     refused_when_typed("ai a=1 b=2 c=3 d=4 e=5 f=6 g=7 h=8 i=9 j=10 k=11 l=12", "too many words");
-    refused_when_typed("ai sto\xFFp", "not UTF-8 text");
+    TEST_ASSERT_FALSE(vehicle_words_typed("ai sto\xFFp", &config, &words));
+    TEST_ASSERT_EQUAL_STRING("host_sim: 'ai sto?p': not UTF-8 text\n", scratch_said());
 }
 
 void test_what_makes_no_sense_in_the_parameters_of_a_fault_is_one_line(void) {

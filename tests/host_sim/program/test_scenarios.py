@@ -104,6 +104,11 @@ class Command(hostsim.Case):
             self.assertEqual(result.status, status, result.stdout)
             self.assertIn(said, result.stdout)
 
+    def test_the_name_of_a_file_is_one_line_of_text(self):
+        self.write("a\n\x1b[2J.yaml", GOOD)
+        result = self.run_good("scenario", "a\n\x1b[2J.yaml")
+        self.assertEqual(result.stdout, "ok      a??[2J.yaml: 3 expectations\n1 scenario: 1 passed, 0 failed\n")
+
     def test_standard_input_is_no_file(self):
         self.write("s.yaml", GOOD)
         says = "host_sim: -: standard input is not read here; give the name of a file\n"

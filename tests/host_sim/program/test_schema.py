@@ -106,6 +106,7 @@ MEANING = {
                                           "above) reset_hold|this fault must stay a (trip|warning)|the value is out of range"),
     "what is not checked with any states": ("states: [{to: INIT, at_ms: [0, 5]}]", "states: any\n  resets: [{accepted: true, at_ms: 5}]",
                                             "is not checked with 'states: any'"),
+    "a name of more than a line": ("name: n\n", 'name: "a\\nb"\n', "name: must be one line"),
     "a name that is too long in bytes": ("name: n\n", "name: " + "\u00e4" * 60 + "\n", "longer than 95 bytes"),
 }
 MEANING_EXTRA = {"a part that the board does not have": ("at_ms: 200, eps: set, field: mode, value: 01h, frames: 2",

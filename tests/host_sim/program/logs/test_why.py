@@ -286,6 +286,12 @@ class Text(Case):
             result = self.run_program("replay", name, env=dict(os.environ, TZ="UTC"))
             self.assertTrue(result.stdout.startswith(expected % name + "\n"), result.stdout)
 
+    def test_the_name_of_a_log_is_one_line_of_text(self):
+        name = os.fsdecode(b"a\n\x1b[31m\xef\xc3\xbc.log")
+        (self.folder / name).write_text(traffic.log(traffic.frames(1000)), encoding="ascii")
+        for command in ("replay", "survey"):
+            self.assertTrue(self.run_good(command, name).stdout.startswith("a??[31m?\u00fc.log: 0.994 s on can0, "), command)
+
     def test_the_timeline(self):
         log = traffic.log(traffic.frames(4000, engage_ms=1000, edit=stop(("steering_command",), 2000)))
         lines = self.text(log, "--timeline")
