@@ -2,9 +2,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/json_build.h"
 #include "config/config_text.h"
 #include "survey/proposal.h"
+#include "text/text.h"
 
 enum { COLUMNS = 100 };
 
@@ -16,12 +16,7 @@ static void print_comment(FILE *file, const char *first, const char *text) {
         if ((used + 1u + length > (size_t)COLUMNS) && (used > 1u)) {
             used = (size_t)fprintf(file, "\n#%*s", (int)strlen(first), "") - 1u;
         }
-        used += (size_t)fprintf(file, " ");
-        for (size_t i = 0u; i < length; i++) {
-            const bool is_text = ((unsigned char)at[i] >= 0x20u) && (at[i] != '\x7F');
-            (void)fputc(is_text ? at[i] : '?', file);
-        }
-        used += length;
+        used += (size_t)fprintf(file, " %.*s", (int)length, at);
         at += length;
         at += (*at == ' ') ? 1 : 0;
     }
@@ -52,9 +47,8 @@ static size_t print_settings(FILE *file, const proposal_t *proposal) {
 }
 
 static void print_all(FILE *file, const proposal_t *proposal, const char *source) {
-    json_t *name = json_text(source); /* the name of a file may be no UTF-8, which YAML has to be */
-    print_comment(file, " Proposed by host_sim survey from", (name != NULL) ? json_string_value(name) : "");
-    json_decref(name);
+    text_t name; /* in YAML a comment, too, has to be UTF-8, and some characters end it */
+    print_comment(file, " Proposed by host_sim survey from", text_one_line(&name, source));
     print_comment(file, "", "Settings that are not here keep their defaults; host_sim config prints them all.");
     if (print_settings(file, proposal) == 0u) {
         (void)fputc('\n', file);

@@ -480,7 +480,8 @@ class Text(Case):
 
     def test_the_proposal_from_a_log_whose_name_is_no_text(self):
         content = traffic.log(traffic.frames(2000)).encode("ascii")
-        for name in (b"\xff.log", b"\x7f\x01.log", "\u00fc.log".encode("utf-8")):
+        for name in (b"\xff.log", b"\x7f\x01.log", *(f"{letter}: 1.log".encode("utf-8") for letter in
+                                                     "\u00fc\u0080\u0085\u2028\u2029\ufeff\ufffe\uffff\U0001f697")):
             (self.folder / os.fsdecode(name)).write_bytes(content)
             self.run_good("survey", "--config-out", "c.yaml", os.fsdecode(name))
             self.run_good("config", "--config", "c.yaml")
