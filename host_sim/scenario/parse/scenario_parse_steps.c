@@ -271,6 +271,16 @@ static bool take_side(const yaml_reader_t *reader, const scenario_reading_t *rea
     return true;
 }
 
+/** How often a raw frame is sent. */
+static bool take_times(const yaml_reader_t *reader, const scenario_reading_t *reading, vehicle_action_t *action) {
+    const yaml_node_t *times = given(reading, P_TIMES);
+
+    if ((given(reading, P_EVERY_MS) != NULL) && (times == NULL)) {
+        action->count = VEHICLE_FOREVER;
+    }
+    return (times == NULL) || (action->count > 0u) || yaml_reader_fail(reader, times, "times: at least 1 for 'send'");
+}
+
 static bool take_for_vehicle(const yaml_reader_t *reader, const scenario_reading_t *reading,
                              const scenario_action_row_t *row, const agv_config_t *config, scenario_step_t *step) {
     vehicle_action_t *action = &step->vehicle;
@@ -297,10 +307,7 @@ static bool take_for_vehicle(const yaml_reader_t *reader, const scenario_reading
         return ((row->needs & P_FIELD) != 0u) ? take_field(reader, reading, action)
                                               : take_patch_bytes(reader, reading, action);
     case VEHICLE_DO_SEND:
-        if ((given(reading, P_EVERY_MS) != NULL) && (given(reading, P_TIMES) == NULL)) {
-            action->count = VEHICLE_FOREVER;
-        }
-        return take_side(reader, reading, config, &action->side) &&
+        return take_times(reader, reading, action) && take_side(reader, reading, config, &action->side) &&
                take_frame(reader, reading, config, step, &action->frame);
     default:
         return true;

@@ -88,6 +88,9 @@ static void add_raw_frame(json_t *then, json_t *properties, bool on_wire) {
     yaml_schema_also(then, json_pack("{s:o, s:{}, s:o}", "if", holds("kind", "extended"), "then", "else",
                                      with_key("id", yaml_schema(&identifier))));
     if (on_wire) {
+        yaml_key_t times = *scenario_parameter(P_TIMES);
+        times.lowest = 1;
+        (void)json_object_set_new(properties, times.name, yaml_schema_of_key(&times));
         yaml_schema_also(then, json_pack("{s:o}", "not", holds("kind", "error")));
     }
 }

@@ -116,6 +116,7 @@ void test_what_makes_no_sense_in_the_parameters_of_a_fault_is_one_line(void) {
         {"vcu set field=gear value=1h frames=5 every_frames=5", "every_frames: must be more than 'frames', which is 5"},
         {"vcu mute message=gear_status frames=3 every_frames=2",
          "every_frames: must be more than 'frames', which is 3"},
+        {"bus send id=123h bytes=01 times=0", "times: at least 1 for 'send'"},
         {"vcu delay message=vehicle_status by_ms=1001", "by_ms: at most 1000 for 'delay'"},
         {"vcu delay message=eps_status by_ms=10", "message: another node sends eps_status"},
         {"vcu ignore message=steering_command", "message: steering_command is not a command that this node obeys"},

@@ -204,6 +204,11 @@ class Schemas(hostsim.Case):
         self.assertTrue(self.is_valid("scenario", BASE))
         print(f"\n{len(SHIPPED)} scenarios are valid", end=" ")
 
+    def test_a_frame_is_sent_at_least_once(self):
+        for times, is_good in ((0, False), (1, True)):
+            text = BASE.replace("frames: 2}", 'frames: 2}\n  - {at_ms: 300, bus: send, id: 1h, bytes: "01", times: %d}' % times)
+            self.assertEqual((self.is_valid("scenario", text), self.refusal("scenario", text) == ""), (is_good, is_good))
+
     def test_an_expected_frame_has_11_bits(self):
         for identifier, good in (("7FFh", True), ("0x800", False), ("2048", False)):
             text = BASE.replace("id: 168h", "id: " + identifier)
