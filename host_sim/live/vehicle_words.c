@@ -73,9 +73,14 @@ static bool split(line_t *line, const char *separators) {
     }
 }
 
+/** The supervisor and its board are those of the simulated bus only. */
+static bool is_on_a_bus(const yaml_word_t *actor) {
+    return actor->value < (int)ACTOR_SUPERVISOR;
+}
+
 static const yaml_word_t *find_actor(const char *name) {
     for (const yaml_word_t *actor = SCENARIO_ACTORS; actor->word != NULL; actor++) {
-        if ((actor->value < (int)ACTOR_SUPERVISOR) && (strcmp(actor->word, name) == 0)) {
+        if (is_on_a_bus(actor) && (strcmp(actor->word, name) == 0)) {
             return actor;
         }
     }
@@ -293,7 +298,7 @@ static void print_messages(void) {
 void vehicle_words_help(void) {
     print_actions(ACTOR_NONE, "vcu, eps, ai");
     for (const yaml_word_t *actor = SCENARIO_ACTORS; actor->word != NULL; actor++) {
-        if (actor->value != (int)ACTOR_SUPERVISOR) {
+        if (is_on_a_bus(actor)) {
             print_actions((scenario_actor_t)actor->value, actor->word);
         }
     }

@@ -1,8 +1,10 @@
 /* Steps that are typed, or follow --fault: the same as in a scenario file, and one line for what makes no sense. */
 #include "live/vehicle_words.h"
 
+#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "scratch.h"
 #include "unity.h"
@@ -79,6 +81,33 @@ void test_identifiers_and_topology_are_those_of_the_vehicle(void) {
     config.id_gear_command = 0x169;
     TEST_ASSERT_TRUE(vehicle_words_typed("bus send message=gear_command bytes=''", &config, &words));
     TEST_ASSERT_EQUAL_HEX32(0x169, words.step.vehicle.frame.id);
+}
+
+/** What `help` prints. */
+static const char *help(void) {
+    (void)fflush(stdout);
+    const int real_stdout = dup(STDOUT_FILENO);
+    const int file = open(scratch_path("help"), O_WRONLY | O_CREAT, 0600);
+    (void)dup2(file, STDOUT_FILENO);
+    vehicle_words_help();
+    (void)fflush(stdout);
+    (void)dup2(real_stdout, STDOUT_FILENO);
+    (void)close(real_stdout);
+    (void)close(file);
+    return scratch_read("help");
+}
+
+void test_help_lists_the_actors_that_are_taken(void) {
+    static const char *const first[] = {"vcu, eps, ai ", "vcu ", "eps ",    "ai ",
+                                        "operator ",     "bus ", "field= ", "message= "};
+    const char *line = help();
+    for (size_t i = 0; i < sizeof first / sizeof first[0]; i++) {
+        TEST_ASSERT_EQUAL_STRING_LEN(first[i], line, strlen(first[i]));
+        do {
+            line = strchr(line, '\n') + 1;
+        } while (*line == ' ');
+    }
+    TEST_ASSERT_EQUAL_STRING("this program  help, status, quit\n", line);
 }
 
 void test_commands_stand_alone(void) {
