@@ -7,6 +7,7 @@
 #include "campaign/campaign_result.h"
 #include "common/report.h"
 #include "text/units.h"
+#include "text/words.h"
 
 enum { TIME_SIZE = 24 };
 
@@ -90,7 +91,7 @@ bool campaign_print_table(const campaign_samples_t *samples) {
             print_line(row, &line, safe);
         }
     }
-    (void)printf("%zu runs, %zu broken\n", samples->count, broken);
+    (void)printf("%zu run%s, %zu broken\n", samples->count, words_plural(samples->count), broken);
     free(safe);
     return true;
 }

@@ -10,6 +10,7 @@
 #include "hunt/hunt.h"
 #include "hunt/hunt_state.h"
 #include "text/units.h"
+#include "text/words.h"
 #include "ui/progress.h"
 
 enum { CORPUS_MAX = 256, RANDOM_PERCENT = 35, PERCENT = 100, MS_PER_MIN = 60000 };
@@ -189,22 +190,24 @@ static status_t conclude(const hunt_t *hunt) {
     const hunt_found_t *found = &hunt->state.found;
 
     (void)printf("%" PRIu64 " s of processor time\n", processor_ms(hunt) / MS_PER_S);
-    (void)printf("%" PRIu64 " runs, %" PRIu64 " simulated seconds, took %" PRIu64 " s; %" PRIu64
-                 " runs with a hazard, %" PRIu32 " distinct\n",
-                 hunt->runs, hunt->virtual_ms / MS_PER_S, spent_ms(hunt) / MS_PER_S, found->runs, found->count);
+    (void)printf("%" PRIu64 " run%s, %" PRIu64 " simulated seconds, took %" PRIu64 " s; %" PRIu64
+                 " run%s with a hazard, %" PRIu32 " distinct\n",
+                 hunt->runs, words_plural(hunt->runs), hunt->virtual_ms / MS_PER_S, spent_ms(hunt) / MS_PER_S,
+                 found->runs, words_plural(found->runs), found->count);
     (void)fflush(stdout); /* also when a signal that came ends the program */
     return (found->count == 0u) ? STATUS_OK : STATUS_UNMET;
 }
 
 /** A checkpoint is whole pieces: the runs after the last one are done once more. */
 static void note_interrupted(const hunt_t *hunt) {
+    const char *plural = words_plural(hunt->runs);
     if (hunt->request->checkpoint == NULL) {
-        note("interrupted after %" PRIu64 " runs", hunt->runs);
+        note("interrupted after %" PRIu64 " run%s", hunt->runs, plural);
     } else if (hunt->state.pieces == 0u) {
-        note("interrupted after %" PRIu64 " runs; nothing is saved yet: the checkpoint is written after each %u runs",
-             hunt->runs, HUNT_PIECE_RUNS);
+        note("interrupted after %" PRIu64 " run%s; nothing is saved yet: the checkpoint is written after each %u runs",
+             hunt->runs, plural, HUNT_PIECE_RUNS);
     } else {
-        note("interrupted after %" PRIu64 " runs; the same command resumes from run %" PRIu64, hunt->runs,
+        note("interrupted after %" PRIu64 " run%s; the same command resumes from run %" PRIu64, hunt->runs, plural,
              next_piece(hunt) * HUNT_PIECE_RUNS);
     }
 }

@@ -83,6 +83,10 @@ bool words_id(const char *text, uint64_t *number) {
     return true;
 }
 
+const char *words_plural(uint64_t count) {
+    return (count == 1u) ? "" : "s";
+}
+
 void words_print_upper(const char *text) {
     for (const char *at = text; *at != '\0'; at++) {
         (void)putchar(toupper((unsigned char)*at));

@@ -30,6 +30,9 @@ bool words_id(const char *text, uint64_t *number);
 /** Read @p length hexadecimal digits, 1 to 16 of them. @return false: other characters, or too many; not reported */
 bool words_hex(const char *text, size_t length, uint64_t *number);
 
+/** The ending of a noun behind its number: "1 run", "2 runs". */
+const char *words_plural(uint64_t count);
+
 /** Print a word on standard output, in capitals. */
 void words_print_upper(const char *text);
 

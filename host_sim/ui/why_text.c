@@ -8,6 +8,7 @@
 #include "agv/names.h"
 #include "text/text.h"
 #include "text/units.h"
+#include "text/words.h"
 #include "why/why_words.h"
 
 enum { TRIPS_SHOWN = 8, US_PER_10_MS = 10000 };
@@ -129,7 +130,8 @@ void why_text_trips(const why_text_t *shown) {
     if (count == 0u) {
         why_text_line("tripped", WHY_TEXT_LABEL, shown->never);
     } else if (count > printed) {
-        (void)printf("%*sand %zu times more: --why FILE has them all\n", WHY_TEXT_LABEL, "", count - printed);
+        (void)printf("%*sand %zu time%s more: --why FILE has them all\n", WHY_TEXT_LABEL, "", count - printed,
+                     words_plural(count - printed));
     } else {
         /* all of them were shown */
     }

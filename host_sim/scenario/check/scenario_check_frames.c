@@ -52,13 +52,17 @@ static const char *frame_text(const hal_can_frame_t *frame, char text[FRAME_TEXT
 static const char *expected_text(const scenario_frame_t *expected, uint32_t id, char text[FRAME_TEXT_SIZE]) {
     int used = (id == SCENARIO_NO_ID) ? snprintf(text, FRAME_TEXT_SIZE, "a frame")
                                       : snprintf(text, FRAME_TEXT_SIZE, "%03Xh", (unsigned)id);
-    for (unsigned i = 0u; expected->exact_length && (i < expected->length); i++) {
-        const char *separator = (i > 0u) ? " " : " [";
+    if (!expected->exact_length) {
+        return text;
+    }
+    used += snprintf(&text[used], FRAME_TEXT_SIZE - (size_t)used, " [");
+    for (unsigned i = 0u; i < expected->length; i++) {
+        const char *separator = (i > 0u) ? " " : "";
         used += (expected->mask[i] != 0u)
                     ? snprintf(&text[used], FRAME_TEXT_SIZE - (size_t)used, "%s%02X", separator, expected->value[i])
                     : snprintf(&text[used], FRAME_TEXT_SIZE - (size_t)used, "%s..", separator);
     }
-    (void)snprintf(&text[used], FRAME_TEXT_SIZE - (size_t)used, "%s", expected->exact_length ? "]" : "");
+    (void)snprintf(&text[used], FRAME_TEXT_SIZE - (size_t)used, "]");
     return text;
 }
 
@@ -171,7 +175,10 @@ static void finish_frame(scenario_check_t *check, size_t index) {
         if ((seen->count == 0u) && (seen->nearest_ms != 0u)) {
             (void)snprintf(near, sizeof near, " (one at %u ms)", (unsigned)seen->nearest_ms);
         }
-        if (expected->count.to == UINT32_MAX) {
+        if ((expected->count.to == UINT32_MAX) && (expected->count.from == 1u)) {
+            scenario_check_fail(check, expected->line, "%s is expected at least once %s, seen: %u%s", wanted, window,
+                                (unsigned)seen->count, near);
+        } else if (expected->count.to == UINT32_MAX) {
             scenario_check_fail(check, expected->line, "%s is expected at least %u times %s, seen: %u%s", wanted,
                                 (unsigned)expected->count.from, window, (unsigned)seen->count, near);
         } else {

@@ -18,6 +18,8 @@ void scenario_check_window_text(scenario_window_t window, char text[SCENARIO_WIN
         (void)scenario_anchor_text(window.after, anchor);
         (void)snprintf(text, SCENARIO_WINDOW_TEXT_SIZE, "%u..%u ms after %s", (unsigned)window.from,
                        (unsigned)window.to, anchor);
+    } else if (window.to == UINT32_MAX) {
+        (void)snprintf(text, SCENARIO_WINDOW_TEXT_SIZE, "in the whole run");
     } else if (window.from == window.to) {
         (void)snprintf(text, SCENARIO_WINDOW_TEXT_SIZE, "at %u ms", (unsigned)window.from);
     } else {

@@ -9,7 +9,7 @@ import hostsim
 
 FOUND = re.compile(r"^HAZARD  (H[1-8]) run (\d+) after \d+ s: (.*); (.*); (\S+)$", re.MULTILINE)
 LAST = re.compile(r"^\d+ s of processor time\n"
-                  r"(\d+) runs, (\d+) simulated seconds, took \d+ s; (\d+) runs with a hazard, (\d+) distinct$", re.MULTILINE)
+                  r"(\d+) runs?, (\d+) simulated seconds, took \d+ s; (\d+) runs? with a hazard, (\d+) distinct$", re.MULTILINE)
 
 
 class Hunt(hostsim.Case):
@@ -43,13 +43,16 @@ class Hunt(hostsim.Case):
         self.assertEqual(played.status, 1, path)
         self.assertRegex(played.stdout, rf"no hazard is expected, seen: {kind} \({re.escape(cause)}\) at \d+ ms")
 
+    def test_one_run(self):
+        self.assertRegex(self.hunt("--seed", 1, "--runs", 1).stdout, r"(?m)^1 run, \d+ simulated seconds, .*; 0 runs with a hazard")
+
     def test_a_checkpoint_is_gone_on_from(self):
         if hostsim.PART > 1:
             return  # a piece takes minutes in a program full of checks
         arguments = ("--seed", 3, "--runs", 520)
         saved = self.figures("--seed", 3, "--runs", 500, "--checkpoint", "state")
         self.assertRegex(self.interrupted("--checkpoint", "state"),
-                         r"^host_sim: interrupted after \d+ runs; the same command resumes from run 500\n$")
+                         r"^host_sim: interrupted after \d+ runs?; the same command resumes from run 500\n$")
         whole = self.figures(*arguments, "--checkpoint", "state")
         rest = self.figures(*arguments, "--shard", "2/2")  # the runs from 500 on
         self.assertEqual((saved[0], rest[0], whole[0]), (500, 20, 520))
@@ -94,8 +97,8 @@ class Hunt(hostsim.Case):
         return said
 
     def test_an_interrupted_hunt_says_that_nothing_is_saved_yet(self):
-        self.assertRegex(self.interrupted(), r"^host_sim: interrupted after \d+ runs\n$")
-        self.assertRegex(self.interrupted("--checkpoint", "state"), r"^host_sim: interrupted after \d+ runs; nothing is saved "
+        self.assertRegex(self.interrupted(), r"^host_sim: interrupted after \d+ runs?\n$")
+        self.assertRegex(self.interrupted("--checkpoint", "state"), r"^host_sim: interrupted after \d+ runs?; nothing is saved "
                          r"yet: the checkpoint is written after each 500 runs\n$")
         self.assertEqual(self.files(), [])
 

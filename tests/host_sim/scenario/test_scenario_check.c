@@ -116,7 +116,19 @@ void test_a_frame_too_late_with_other_bytes_or_of_another_length(void) {
     frame_at(15u, 0x168u, 0x08u, 2u);
     frame_at(15u, 0x169u, 0x08u, 1u);
     frame_at(21u, 0x168u, 0x08u, 1u);
-    expect_failure("line 6: 168h [08] is expected at least 1 times in 10..20 ms, seen: 0 (one at 21 ms)");
+    expect_failure("line 6: 168h [08] is expected at least once in 10..20 ms, seen: 0 (one at 21 ms)");
+}
+
+void test_a_frame_without_bytes(void) {
+    expect(NO_STATES "  frames: [{id: 168h, bytes: \"\", at_ms: 10}]\n");
+    frame_at(10u, 0x168u, 0x08u, 1u);
+    expect_failure("line 6: 168h [] is expected at least once at 10 ms, seen: 0");
+}
+
+void test_a_frame_that_is_forbidden_without_an_end(void) {
+    expect(NO_STATES "  never: [{id: 168h}]\n");
+    frame_at(20u, 0x168u, 0x01u, 1u);
+    expect_failure("line 6: a frame is forbidden in the whole run, seen: 168h [01] at 20 ms");
 }
 
 void test_the_first_frame_since_a_moment(void) {

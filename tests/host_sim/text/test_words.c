@@ -66,3 +66,9 @@ void test_an_identifier_in_any_notation(void) {
     TEST_ASSERT_TRUE(words_id("18446744073709551616", &number));
     TEST_ASSERT_EQUAL_UINT64(UINT64_MAX, number);
 }
+
+void test_the_ending_of_a_noun(void) {
+    TEST_ASSERT_EQUAL_STRING("s", words_plural(0u));
+    TEST_ASSERT_EQUAL_STRING("", words_plural(1u));
+    TEST_ASSERT_EQUAL_STRING("s", words_plural(2u));
+}
