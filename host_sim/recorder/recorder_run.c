@@ -10,7 +10,9 @@
 #include "io/events.h"
 #include "io/output.h"
 #include "recorder/recorder_file.h"
+#include "text/text.h"
 #include "text/units.h"
+#include "text/words.h"
 #include "ui/timeline.h"
 #include "ui/why_text.h"
 
@@ -52,7 +54,8 @@ static bool choose_run(work_t *work) {
             /* another run */
         }
     }
-    return found || report("--run: %s has no event of run %" PRIu64, work->request->path, work->request->run);
+    return found || report("--run: %s has no event of run %" PRIu64, recorder_file_name(work->request->path),
+                           work->request->run);
 }
 
 /** Run numbers wrap: the events of the last run with this number follow each other. */
@@ -96,17 +99,19 @@ static void print_device(const work_t *work) {
 
 static void print_head(const work_t *work) {
     const agv_event_t *first = &work->events.events[work->first];
-    (void)printf("%s: %zu events", work->request->path, work->events.count);
+    text_t name;
+    (void)printf("%s: %zu event%s", text_one_line(&name, recorder_file_name(work->request->path)), work->events.count,
+                 words_plural(work->events.count));
     if (work->events.damaged > 0u) {
-        (void)printf(" (%zu more are damaged)", work->events.damaged);
+        (void)printf(" (%zu more %s damaged)", work->events.damaged, (work->events.damaged == 1u) ? "is" : "are");
     }
     print_runs(work);
     (void)printf("\n");
     print_device(work);
-    (void)printf("run %u       %zu events, %" PRIu32 ".%03" PRIu32 " s to %" PRIu64 ".%03" PRIu64
+    (void)printf("run %u       %zu event%s, %" PRIu32 ".%03" PRIu32 " s to %" PRIu64 ".%03" PRIu64
                  " s of its clock%s\n\n",
-                 work->run, work->count, first->time_ms / (uint32_t)MS_PER_S, first->time_ms % (uint32_t)MS_PER_S,
-                 work->end_ms / MS_PER_S, work->end_ms % MS_PER_S,
+                 work->run, work->count, words_plural(work->count), first->time_ms / (uint32_t)MS_PER_S,
+                 first->time_ms % (uint32_t)MS_PER_S, work->end_ms / MS_PER_S, work->end_ms % MS_PER_S,
                  ((first->kind == (uint8_t)AGV_EVENT_STATE) && (first->a == 0u)) ? "" : "; its start was overwritten");
 }
 
@@ -149,8 +154,10 @@ static void print_text(work_t *work) {
 
 static bool analyse(work_t *work) {
     const recorder_request_t *request = work->request;
-    const analysis_request_t analysed = {
-        .config = &request->config, .log = request->path, .files = request->analysis, .is_recorder = true};
+    const analysis_request_t analysed = {.config = &request->config,
+                                         .log = recorder_file_name(request->path),
+                                         .files = request->analysis,
+                                         .is_recorder = true};
     work->analysis = analysis_new(&analysed);
     if ((work->analysis == NULL) || !analysis_open(work->analysis) ||
         ((request->events != NULL) && !output_open(&work->lines, request->events))) {

@@ -62,9 +62,16 @@ class Recorder(hostsim.Case):
                      self.read("store")):
             self.assertEqual(self.recorder(form), as_dump)
         again = self.run_good("recorder", "-", stdin=self.dump().encode("ascii")).stdout
-        self.assertEqual(again.replace("-: ", "dump: ", 1), as_dump)
+        self.assertEqual(again.replace("standard input: ", "dump: ", 1), as_dump)
         stored = self.run_good("recorder", "-", stdin=self.read("store").encode("ascii")).stdout
-        self.assertEqual(stored.replace("-: ", "dump: ", 1), as_dump)
+        self.assertEqual(stored.replace("standard input: ", "dump: ", 1), as_dump)
+        why = self.run_good("recorder", "--why", "-", "-", stdin=self.dump().encode("ascii")).stdout
+        self.assertEqual(json.loads(why)["log"], "standard input")
+
+    def test_a_single_event(self):
+        lines = self.recorder(self.events[0]).splitlines()
+        self.assertTrue(lines[0].startswith("dump: 1 event; runs 0"), lines)
+        self.assertTrue(lines[1].startswith("run 0       1 event, 0.000 s to 0.000 s"), lines)
 
     def test_why_is_that_of_the_replay(self):
         found = json.loads(self.recorder(self.dump(), "--why", "-"))
@@ -141,7 +148,7 @@ class Recorder(hostsim.Case):
         damaged = bytearray(self.events[3])
         damaged[20] ^= 1
         self.events[3] = bytes(damaged)
-        self.assertTrue(self.recorder(self.dump()).startswith("dump: 9 events (1 more are damaged); runs 0\n"))
+        self.assertTrue(self.recorder(self.dump()).startswith("dump: 9 events (1 more is damaged); runs 0\n"))
 
     def test_a_ring_that_was_overwritten(self):
         self.events = self.events[4:]
