@@ -42,12 +42,15 @@ const char *why_text_clock(char text[WHY_TEXT_CLOCK_SIZE], uint64_t at_us) {
     return text;
 }
 
-/** The time of day alone. */
+/** The time of day, with its date where that is not the one of the first frame. */
 static void add_time_of_day(text_t *text, const why_text_t *shown, uint64_t t_us) {
-    char clock[WHY_TEXT_CLOCK_SIZE];
+    char first[WHY_TEXT_CLOCK_SIZE];
+    char clock[WHY_TEXT_CLOCK_SIZE] = "";
     if (why_text_has_clock(shown->first_us)) {
-        const char *full = why_text_clock(clock, shown->first_us + t_us);
-        text_add(text, " (%s)", (strlen(full) > (size_t)WHY_TEXT_DATE) ? &full[WHY_TEXT_DATE + 1] : full);
+        (void)why_text_clock(first, shown->first_us);
+        (void)why_text_clock(clock, shown->first_us + t_us);
+        const bool same_day = strncmp(first, clock, WHY_TEXT_DATE) == 0;
+        text_add(text, " (%s)", same_day ? &clock[WHY_TEXT_DATE + 1] : clock);
     }
 }
 

@@ -292,6 +292,13 @@ class Text(Case):
         for command in ("replay", "survey"):
             self.assertTrue(self.run_good(command, name).stdout.startswith("a??[31m?\u00fc.log: 0.994 s on can0, "), command)
 
+    def test_a_trip_after_midnight_has_its_date(self):
+        midnight_us = 1700006400 * S
+        frames = traffic.frames(4000, engage_ms=1000, edit=stop(("steering_command",), 2000))
+        self.assertIn("tripped     at 2.107 s (2023-11-15 00:00:00.107): STEERING_COMMAND_TIMEOUT",
+                      self.text(traffic.log(frames, midnight_us - 2 * S)))
+        self.assertIn("tripped     at 2.107 s (00:00:02.107): STEERING_COMMAND_TIMEOUT", self.text(traffic.log(frames, midnight_us)))
+
     def test_the_timeline(self):
         log = traffic.log(traffic.frames(4000, engage_ms=1000, edit=stop(("steering_command",), 2000)))
         lines = self.text(log, "--timeline")
