@@ -44,7 +44,7 @@ typedef struct {
     bool adds_up; /**< may be given several times; for `each` */
     uint64_t lowest;
     uint64_t highest;
-    const char *words;           /**< "a|b|c" */
+    const char *words;           /**< "a|b|c"; of a text, those that a shell completes besides */
     option_words_fn *candidates; /**< of a text: what a shell completes; NULL: what the name of its value says */
 } option_t;
 

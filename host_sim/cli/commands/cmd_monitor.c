@@ -59,7 +59,8 @@ static options_result_t parse(int argc, char **argv, given_t *given) {
          .value = "N",
          .help = "play the log N times as fast as recorded; max: without waiting",
          .each = take_speed,
-         .ctx = given},
+         .ctx = given,
+         .words = "max"},
         OPTION_TEXT("--ai-if", "NAME", "of the log: the interface of the AI side", &request->ai_interface),
         OPTION_FLAG("--skip-bad-lines", "of the log: skip and count invalid lines", &request->skip_bad_lines),
     };

@@ -11,10 +11,12 @@ enum { DEFAULT_TOLERANCE_MS = 50, TOLERANCE_MAX_MS = 1000, PROGRAM_SIZE = 4096 }
 void scenario_bus_options_init(scenario_bus_options_t *options, option_t rows[SCENARIO_BUS_OPTIONS]) {
     *options = (scenario_bus_options_t){.tolerance_ms = OPTION_NOT_GIVEN};
     const option_t all[SCENARIO_BUS_OPTIONS] = {
-        OPTION_TEXT(
-            "--bus", "sim|IF[,IF]",
-            "the simulated bus in virtual time (sim), or CAN interfaces (of the vehicle, of the AI side) in real time",
-            &options->bus),
+        {.name = "--bus",
+         .value = "sim|IF[,IF]",
+         .help =
+             "the simulated bus in virtual time (sim), or CAN interfaces (of the vehicle, of the AI side) in real time",
+         .text = &options->bus,
+         .words = "sim"},
         OPTION_DURATION("--tolerance", "on CAN interfaces: tolerance of all times (50ms)", &options->tolerance_ms, 0,
                         TOLERANCE_MAX_MS),
         OPTION_TEXT("--supervisor", "COMMAND",

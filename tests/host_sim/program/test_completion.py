@@ -35,6 +35,8 @@ TYPED = {  # before the tab: what the line is then
     "host_sim completion z": "host_sim completion zsh",
     "host_sim campaign --fault VCU_HEARTBEAT_L": "host_sim campaign --fault VCU_HEARTBEAT_LOST",
     "host_sim campaign --broken fol": "host_sim campaign --broken folder/",
+    "host_sim monitor --speed m": "host_sim monitor --speed max",
+    "host_sim scenario --bus s": "host_sim scenario --bus sim",
     "host_sim demo --scenario healthy_b": "host_sim demo --scenario healthy_busy_bus",
 }
 
@@ -72,6 +74,26 @@ class EveryOption(hostsim.Case):
         "bash": 'source host_sim.bash; COMP_WORDS=(host_sim "$0" --); COMP_CWORD=2; _host_sim; printf "%s\\n" "${COMPREPLY[@]}"',
         "fish": 'source host_sim.fish; complete -C "host_sim $argv[1] --"',
     }
+
+    def offered(self, *words):
+        """What bash offers for the last word."""
+        ask = 'source host_sim.bash; COMP_WORDS=(host_sim "$@"); COMP_CWORD=$#; _host_sim; printf "%s\\n" "${COMPREPLY[@]}"'
+        done = subprocess.run(["bash", "-c", ask, "bash", *words], cwd=self.folder, check=True, stdout=subprocess.PIPE)
+        return done.stdout.decode().split()
+
+    def test_bash_offers_what_may_come_there(self):
+        if SHELL != "bash":
+            return
+        self.write(FILE[SHELL], self.run_good("completion", SHELL).stdout)
+        self.write("--file", "")
+        self.assertIn("--shadow", self.offered("replay", "--"))
+        for given in (["--shadow"], ["--shadow", "--store", "x"], ["--store", "=", "x", "--shadow"]):
+            self.assertNotIn("--shadow", self.offered("replay", *given, "--"))
+            self.assertIn("--why", self.offered("replay", *given, "--"))
+        self.assertNotIn("--store", self.offered("replay", "--store", "=", "x", "--"))
+        self.assertIn("--fault", self.offered("vehicle", "--fault", "ai-stop@2s", "--"))
+        self.assertEqual(self.offered("replay", "--shadow", "--", "--"), ["--file"])
+        self.assertEqual(self.offered("replay", "--topology", "g"), ["gateway"])
 
     def test_every_option_of_every_command_is_offered(self):
         if SHELL not in self.ASK:

@@ -5,11 +5,11 @@
 
 static const char HEAD[] = "# bash completion of host_sim; made by `host_sim completion bash`\n"
                            "\n"
-                           "# The options of command $1, and what its option $2 takes (with $2 empty: an operand): "
-                           "kinds and words. Without a\n"
-                           "# command: the commands.\n"
+                           "# The options of command $1, those that may be given again, and what its option $2 takes "
+                           "(with $2 empty: an operand):\n"
+                           "# kinds and words. Without a command: the commands.\n"
                            "_host_sim_table() {\n"
-                           "    options='' kinds='' words=''\n"
+                           "    options='' again='' kinds='' words=''\n"
                            "    case $1 in\n";
 
 static const char TAIL[] =
@@ -24,7 +24,8 @@ static const char TAIL[] =
     "}\n"
     "\n"
     "_host_sim() {\n"
-    "    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} options kinds words\n"
+    "    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} options again kinds words given\n"
+    "    local ended=''\n"
     "    COMPREPLY=()\n"
     "    if ((COMP_CWORD == 1)); then\n"
     "        _host_sim_table '' ''\n"
@@ -37,13 +38,24 @@ static const char TAIL[] =
     "    elif [[ $before == = ]]; then\n"
     "        before=${COMP_WORDS[COMP_CWORD - 2]}\n"
     "    fi\n"
-    "    if [[ $before == -* ]]; then\n"
+    "    for given in \"${COMP_WORDS[@]:2:COMP_CWORD - 2}\"; do\n"
+    "        if [[ $given == -- ]]; then\n"
+    "            ended=yes\n"
+    "        fi\n"
+    "    done\n"
+    "    if [[ -z $ended && $before == -* ]]; then\n"
     "        _host_sim_table \"${COMP_WORDS[1]}\" \"$before\"\n"
     "    fi\n"
     "    if [[ -z $kinds ]]; then\n"
     "        _host_sim_table \"${COMP_WORDS[1]}\" ''\n"
-    "        if [[ $word == -* ]]; then\n"
-    "            _host_sim_add -W \"$options --help\" -- \"$word\"\n"
+    "        if [[ -z $ended && $word == -* ]]; then\n"
+    "            options=\" $options --help \"\n"
+    "            for given in \"${COMP_WORDS[@]:2:COMP_CWORD - 2}\"; do\n"
+    "                if [[ \" $again \" != *\" $given \"* ]]; then\n"
+    "                    options=${options/\" $given \"/ }\n"
+    "                fi\n"
+    "            done\n"
+    "            _host_sim_add -W \"$options\" -- \"$word\"\n"
     "            return\n"
     "        fi\n"
     "    fi\n"
@@ -73,12 +85,24 @@ static void print_value(const completion_value_t *value) {
     (void)printf(" ;;\n");
 }
 
+/** Print the options, or only those that may be given again. */
+static void print_options(const option_syntax_t *syntax, bool only_again) {
+    const char *separator = "";
+    for (size_t i = 0u; options_at(syntax, i) != NULL; i++) {
+        const option_t *option = options_at(syntax, i);
+        if (!only_again || option->adds_up) {
+            (void)printf("%s%s", separator, option->name);
+            separator = " ";
+        }
+    }
+}
+
 static void print_command(const void *ctx, const option_syntax_t *syntax) {
     const command_t *command = ctx;
     (void)printf("    %s)\n        options='", command->name);
-    for (size_t i = 0u; options_at(syntax, i) != NULL; i++) {
-        (void)printf("%s%s", (i > 0u) ? " " : "", options_at(syntax, i)->name);
-    }
+    print_options(syntax, false);
+    (void)printf("' again='");
+    print_options(syntax, true);
     (void)printf("'\n        case $2 in\n");
     for (size_t i = 0u; options_at(syntax, i) != NULL; i++) {
         const option_t *option = options_at(syntax, i);

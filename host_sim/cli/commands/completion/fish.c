@@ -9,15 +9,13 @@
 /** Print "-F" (files), "-x" (no files), and words. */
 static void print_value(const completion_value_t *value) {
     (void)printf(" %s", value->is_file ? "-rF" : "-x");
-    if (value->words != NULL) {
-        (void)printf(" -a '");
-        completion_print_words(value->words);
-        (void)printf("'");
-    } else if (value->is_folder) {
-        (void)printf(" -a '(__fish_complete_directories)'");
-    } else if (value->is_interface) {
-        (void)printf(" -a '(" COMPLETION_CAN_INTERFACES ")'");
+    if ((value->words == NULL) && !value->is_folder && !value->is_interface) {
+        return;
     }
+    (void)printf(" -a '");
+    completion_print_words((value->words != NULL) ? value->words : "");
+    (void)printf("%s%s'", value->is_folder ? " (__fish_complete_directories)" : "",
+                 value->is_interface ? " (" COMPLETION_CAN_INTERFACES ")" : "");
 }
 
 static void print_operand(const char *command, const option_syntax_t *syntax) {

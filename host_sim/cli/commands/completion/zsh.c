@@ -26,7 +26,7 @@ static void print_action(const completion_value_t *value) {
     } else {
         (void)printf("{ compadd -- ");
         completion_print_words(value->words);
-        (void)printf("; %s }", action); /* no action of both kinds has braces */
+        (void)printf("; %s }", action);
     }
 }
 
