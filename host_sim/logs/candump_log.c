@@ -239,8 +239,7 @@ static bool may_lack_data(const candump_log_t *log, const hal_can_frame_t *frame
 
 static void leave_out(candump_log_t *log) {
     log->skipped++;
-    note("%s:%" PRIu64 ": the log ends in this line, whose data may be cut off; the line is left out", log->name,
-         log->line);
+    note("%s:%" PRIu64 ": the log ends in this line, which may be cut off; it is left out", log->name, log->line);
 }
 
 candump_result_t candump_next(candump_log_t *log, candump_record_t *record) {

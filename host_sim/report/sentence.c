@@ -156,7 +156,7 @@ static void say_limit(char text[SENTENCE_SIZE], const agv_config_t *config, cons
 static void say_cause(char text[SENTENCE_SIZE], const agv_config_t *config, const why_trip_t *trip) {
     char time[TIME_SIZE];
     if (trip->from_earlier_run) {
-        say(text, "The run began in TRIPPED: this trip was latched in an earlier run.");
+        say(text, "This trip was latched in an earlier run.");
         return;
     }
     if ((trip->kind == WHY_SILENCE) || (trip->kind == WHY_STUCK)) {
@@ -228,7 +228,7 @@ static void say_outcome(char text[SENTENCE_SIZE], const report_page_t *page, con
     }
     const bool is_resettable = (agv_fault_flags((uint32_t)trip->reason) & AGV_FAULT_FLAG_UNRESETTABLE) == 0u;
     say(text, is_resettable ? " Only the operator ends this, by a reset at standstill and in manual."
-                            : " No reset ends this: the supervisor has to be switched off and on.");
+                            : " Only a power-on ends this.");
 }
 
 void sentence_trip(sentence_t *sentence, const report_page_t *page, const why_trip_t *trip, uint64_t opened_us) {

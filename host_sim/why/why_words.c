@@ -254,7 +254,7 @@ static void say_lasting(text_t *text, const why_t *why, const why_trip_t *trip) 
 
 void why_words_cause(text_t *text, const why_t *why, const why_trip_t *trip) {
     if (trip->from_earlier_run) {
-        text_add(text, "the run began in TRIPPED: this trip was latched in an earlier run");
+        text_add(text, "latched in an earlier run");
         return;
     }
     add_name(text, trip);

@@ -95,7 +95,7 @@ static bool read_name(const yaml_reader_t *reader, const yaml_node_t *node, void
         return yaml_reader_fail(reader, node, "name: longer than %u bytes", SCENARIO_TEXT_MAX - 1u);
     }
     if (!text_is_one_line(text)) {
-        return yaml_reader_fail(reader, node, "name: must be one line without control characters");
+        return yaml_reader_fail(reader, node, "name: must be one line of text");
     }
     (void)strcpy(scenario->name, text);
     return true;

@@ -152,14 +152,13 @@ void test_a_recording_cannot_obey(void) {
 void test_a_trip_that_an_earlier_run_latched(void) {
     trip.from_earlier_run = true;
     say();
-    TEST_ASSERT_EQUAL_STRING("The run began in TRIPPED: this trip was latched in an earlier run.", sentence.cause);
+    TEST_ASSERT_EQUAL_STRING("This trip was latched in an earlier run.", sentence.cause);
 }
 
 void test_what_no_reset_ends(void) {
     trip.reason = AGV_FAULT_OUTPUT_FEEDBACK;
     say();
-    TEST_ASSERT_NOT_NULL(
-        strstr(sentence.outcome, " No reset ends this: the supervisor has to be switched off and on."));
+    TEST_ASSERT_NOT_NULL(strstr(sentence.outcome, " Only a power-on ends this."));
     TEST_ASSERT_NULL(strstr(sentence.outcome, "operator"));
 }
 

@@ -315,8 +315,8 @@ void test_what_is_wrong_at_the_top_is_refused_with_its_line(void) {
     static char text[400];
     (void)snprintf(text, sizeof text, "name: %0200d\nshows: [SUP-2]\n", 1);
     read_bad(text, "s.yaml:1: name: longer than 95 bytes");
-    read_bad("name: \"a\\nb\"\nshows: [SUP-2]\n", "s.yaml:1: name: must be one line without control characters");
-    read_bad("name: \"a\\e[2J\"\nshows: [SUP-2]\n", "s.yaml:1: name: must be one line without control characters");
+    read_bad("name: \"a\\nb\"\nshows: [SUP-2]\n", "s.yaml:1: name: must be one line of text");
+    read_bad("name: \"a\\e[2J\"\nshows: [SUP-2]\n", "s.yaml:1: name: must be one line of text");
 }
 
 void test_what_is_wrong_in_a_step_is_refused_with_its_line(void) {

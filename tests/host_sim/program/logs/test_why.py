@@ -214,8 +214,8 @@ class Text(Case):
         log = traffic.log(traffic.frames(4000, engage_ms=1000, edit=stop(("steering_command",), 3000)))
         self.text(log, "--store", "store")
         lines = self.text(log, "--store", "store", "--reset-cause", "watchdog", "--why", "why.json")
-        self.assertEqual(lines[2:4], ["tripped     at 0.000 s (22:13:20.000): STEERING_COMMAND_TIMEOUT", "  why       the run "
-                                      "began in TRIPPED: this trip was latched in an earlier run"])
+        self.assertEqual(lines[2:4], ["tripped     at 0.000 s (22:13:20.000): STEERING_COMMAND_TIMEOUT", "  why       latched "
+                                      "in an earlier run"])
         trip = json.loads(self.read("why.json"))["trips"][0]
         self.assertEqual([trip[key] for key in ("kind", "message", "cause_ms", "last_good_ms", "limit", "unit", "evidence")],
                          ["silence", "steering_command", None, None, None, None, []])
