@@ -129,13 +129,17 @@ static void on_data(hazard_t *hazard, hal_can_side_t side, int from, const hal_c
     }
 }
 
-/** The supervisor has begun anew: it measures another angle, and knows of no earlier gap between commands. */
-static void begin_anew(hazard_t *hazard) {
-    hazard_hold_anew(hazard);
+/** The supervisor has perhaps begun anew: then it knows neither of its P nor of an earlier gap between commands. */
+static void forget_commands(hazard_t *hazard) {
     hazard->trip.parked = false;
     for (unsigned m = 0u; m < AGV_COMMAND_COUNT; m++) {
         hazard->messages[m].fast = 0;
     }
+}
+
+static void begin_anew(hazard_t *hazard) {
+    hazard_hold_anew(hazard);
+    forget_commands(hazard);
 }
 
 static void look(hazard_t *hazard) {
@@ -168,14 +172,18 @@ void hazard_step(hazard_t *hazard, uint64_t t_ms, const scenario_step_t *step) {
     const bool is_fd =
         step->of_vehicle && (step->vehicle.what == VEHICLE_DO_SEND) && ((step->vehicle.frame.flags & HAL_CAN_FD) != 0u);
 
-    const bool is_anew = !step->of_vehicle &&
-                         ((step->supervisor.what == SCENARIO_RESTART) || (step->supervisor.what == SCENARIO_FLIP_BIT));
+    const bool is_restart = !step->of_vehicle && (step->supervisor.what == SCENARIO_RESTART);
+    const bool is_flip = !step->of_vehicle && (step->supervisor.what == SCENARIO_FLIP_BIT);
 
     look(hazard);
     hazard->t_ms = t_ms;
     hazard->t_us = t_ms * US_PER_MS;
-    if (is_anew) {
+    if (is_restart) {
         begin_anew(hazard);
+    }
+    if (is_flip) {
+        hazard_hold_perhaps_anew(hazard);
+        forget_commands(hazard);
     }
     if (is_delivered) {
         on_data(hazard, step->supervisor.side, VEHICLE_ROGUE, &step->supervisor.frame);

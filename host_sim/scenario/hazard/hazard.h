@@ -277,6 +277,7 @@ void hazard_speed_tick(hazard_t *hazard);
 bool hazard_is_said_to_stand(const hazard_t *hazard);
 void hazard_park_frame(hazard_t *hazard);
 void hazard_hold_anew(hazard_t *hazard);
+void hazard_hold_perhaps_anew(hazard_t *hazard);
 /** @} */
 
 #endif

@@ -82,11 +82,6 @@ void hazard_hold_trip(hazard_t *hazard) {
     trip_now(hazard, (uint32_t)FRESH_MS + (hazard->closed ? 0u : hazard->config->tx_stalled_ms));
 }
 
-/** A supervisor that restarts or detects a flipped bit trips again, and holds the angle that it then measures. */
-void hazard_hold_anew(hazard_t *hazard) {
-    trip_now(hazard, FRESH_MS);
-}
-
 /** Manual was reported, or the EPS took no angle: it may have turned, and what it measured before is out of date. */
 void hazard_hold_drop(hazard_t *hazard) {
     hazard_hold_t *hold = &hazard->hold;
@@ -112,6 +107,24 @@ static bool is_of_trip(const hazard_t *hazard, int32_t held_ddeg) {
     return hold->has_trip && (hazard->t_ms - hold->trip_ms <= in_date_ms(hazard)) &&
            (!hold->is_dropped || (hazard->t_ms - hold->dropped_ms <= IN_FLIGHT_MS)) &&
            is_within(&hold->at_trip, held_ddeg);
+}
+
+/** A supervisor that restarts trips again, and holds the angle that it then measures. */
+void hazard_hold_anew(hazard_t *hazard) {
+    trip_now(hazard, FRESH_MS);
+}
+
+/** So does one that detects a flipped bit. One that does not still holds the angle of the trip. */
+void hazard_hold_perhaps_anew(hazard_t *hazard) {
+    hazard_hold_t *hold = &hazard->hold;
+    const hazard_range_t before = hold->at_trip;
+    const bool is_held = hold->has_trip && !hold->is_dropped && (hazard->t_ms - hold->trip_ms <= in_date_ms(hazard));
+
+    trip_now(hazard, FRESH_MS);
+    if (is_held) {
+        extend_range(&hold->at_trip, before.low_ddeg);
+        extend_range(&hold->at_trip, before.high_ddeg);
+    }
 }
 
 static bool is_of_first(const hazard_t *hazard, const hazard_first_t *first, int32_t held_ddeg) {
