@@ -187,7 +187,7 @@ static void restart_progress(const why_tracker_t *tracker, why_progress_t *progr
     }
 }
 
-/** Count a step, of whose way only what is farther off than the limit counts. */
+/** Count the part of a step that is farther from the command than the limit. */
 static void add_step(int32_t *gained, step_t step, int32_t limit, bool judged, bool steps_back_count) {
     const int32_t nearer = beyond(step.before, limit) - beyond(step.now, limit);
     if (judged || (steps_back_count && (nearer < 0))) {

@@ -49,7 +49,7 @@ typedef struct {
 /** Progress towards a command, which clears a budget; steps back count for some time after it has done so. */
 typedef struct {
     int32_t gained;
-    int32_t gained_beyond;  /**< of it, what is beyond the limit; 0 while steps back do not count */
+    int32_t gained_beyond;  /**< of motion beyond the limit alone; 0 while steps back do not count */
     uint64_t steps_back_us; /**< left of that time */
     uint64_t at_us;         /**< when the last step was handled */
 } why_progress_t;

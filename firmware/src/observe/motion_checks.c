@@ -31,7 +31,7 @@ static int32_t off_by_ddeg(const agv_motion_facts_t *facts, uint32_t angle_raw) 
     return magnitude_of((int32_t)angle_raw - (int32_t)facts->commands->angle_raw);
 }
 
-/* What is kept while the budget is 0: steps back, if progress has just cleared it. */
+/* While the budget is 0, only steps back are kept, and only for some time after progress has cleared it. */
 static int16_t kept(int16_t gained, bool steps_back_count) {
     return (steps_back_count && (gained < 0)) ? gained : 0;
 }
@@ -60,7 +60,7 @@ typedef struct {
     int32_t limit;
 } step_t;
 
-/* Progress after a step, of whose way only what is farther off than the limit counts. */
+/* Progress after a step. Only the part of the step that is farther from the command than the limit counts. */
 static int16_t gained_by(int16_t gained, step_t step, int32_t limit, bool judged, bool steps_back_count) {
     const int32_t nearer = beyond(step.before, limit) - beyond(step.now, limit);
     const bool counts = judged || (steps_back_count && (nearer < 0));

@@ -28,13 +28,13 @@ typedef enum {
 
 /**
  * Progress of the vehicle towards a command, in 0.1 degrees or counts of 050h. Enough of it clears a budget. It counts from
- * 0 while the budget is 0. For some time after it has cleared the budget, steps back count at any time: a vehicle that
- * hunts, or one good frame in many, makes no progress. Motion beyond the limit then counts apart, too, so that small motion
- * around the command takes nothing away from the next progress.
+ * 0 while the budget is 0. For some time after progress has cleared the budget, steps back count at any time, so a vehicle
+ * that hunts, or one good frame in many, makes no progress. During this time a second count follows motion beyond the limit
+ * alone, so that small motion around the command does not reduce the next progress.
  */
 typedef struct {
     int16_t gained;
-    int16_t gained_beyond;  /**< of it, what is beyond the limit; 0 while steps back do not count */
+    int16_t gained_beyond;  /**< the second count; 0 at other times */
     uint16_t steps_back_ms; /**< for so long within the limit, steps back still count */
 } agv_progress_t;
 

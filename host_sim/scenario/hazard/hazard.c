@@ -129,7 +129,7 @@ static void on_data(hazard_t *hazard, hal_can_side_t side, int from, const hal_c
     }
 }
 
-/** The supervisor has perhaps begun anew: then it knows neither of its P nor of an earlier gap between commands. */
+/** A supervisor that has begun anew does not know that it sent P, nor how close earlier commands came. */
 static void forget_commands(hazard_t *hazard) {
     hazard->trip.parked = false;
     for (unsigned m = 0u; m < AGV_COMMAND_COUNT; m++) {

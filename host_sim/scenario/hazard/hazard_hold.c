@@ -114,7 +114,7 @@ void hazard_hold_anew(hazard_t *hazard) {
     trip_now(hazard, FRESH_MS);
 }
 
-/** So does one that detects a flipped bit. One that does not still holds the angle of the trip. */
+/** A supervisor that detects a flipped bit trips again, too. If it does not detect it, it still holds the angle of the trip. */
 void hazard_hold_perhaps_anew(hazard_t *hazard) {
     hazard_hold_t *hold = &hazard->hold;
     const hazard_range_t before = hold->at_trip;
