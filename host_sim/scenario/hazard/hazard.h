@@ -209,6 +209,10 @@ typedef struct {
     int32_t really_at_ddeg; /**< the same of the real steering */
     int32_t really_moved_ddeg;
     uint64_t still_since_ms;
+    uint16_t
+        lowest_raw; /**< 065h: lowest and highest angle since it last swung by more than SUP-10 allows, at `swung_ms` */
+    uint16_t highest_raw;
+    uint64_t swung_ms;                                    /**< 0: never */
     uint8_t score_rows[AGV_MSG_COUNT][HAZARD_SCORES_MAX]; /**< rows that a message has a score for */
     uint8_t score_counts[AGV_MSG_COUNT];
     int32_t scores[HAZARD_ROWS_MAX];

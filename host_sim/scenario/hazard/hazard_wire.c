@@ -6,7 +6,7 @@
 #include "text/units.h"
 
 enum { THROTTLE_MAX = 250, ANGLE_MAX = 18000, FALL_COUNTS = 25, FAST_CAP = 3, RISES_MS = 120 };
-enum { MODE_BYTE = 6, MANUAL_BIT = 0x40, AUTOPILOT_BIT = 0x80, REENGAGE_MS = 100 };
+enum { MODE_BYTE = 6, MANUAL_BIT = 0x40, AUTOPILOT_BIT = 0x80, REENGAGE_MS = 100, SWING_MARGIN_MS = 200 };
 
 static uint16_t word_at(const uint8_t *data, unsigned at) {
     return (uint16_t)(data[at] | ((uint32_t)data[at + 1u] << 8u));
@@ -164,7 +164,29 @@ static void note_throttle(hazard_t *hazard, uint8_t value) {
     hazard->throttle_high = (value > hazard->throttle_high) ? value : hazard->throttle_high;
 }
 
-/** The steering moves if the sum of its movements is four fifths of the supervisor's limit, on the wire and really. */
+/**
+ * 065h swings: its angles differ by more than the limit within the time of SUP-10. A reading that moves with it looks like a
+ * steering that follows.
+ */
+static bool is_command_swinging(const hazard_t *hazard) {
+    return (hazard->swung_ms != 0u) &&
+           (hazard->t_ms - hazard->swung_ms <= (uint64_t)hazard->config->steering_deviation_ms + SWING_MARGIN_MS);
+}
+
+static void note_command_angle(hazard_t *hazard, uint16_t angle_raw) {
+    hazard->lowest_raw = (angle_raw < hazard->lowest_raw) ? angle_raw : hazard->lowest_raw;
+    hazard->highest_raw = (angle_raw > hazard->highest_raw) ? angle_raw : hazard->highest_raw;
+    if ((uint32_t)hazard->highest_raw > hazard->lowest_raw + hazard->config->steering_deviation_ddeg) {
+        hazard->swung_ms = hazard->is_commanded[AGV_MSG_STEERING_COMMAND] ? hazard->t_ms : 0u;
+        hazard->lowest_raw = angle_raw;
+        hazard->highest_raw = angle_raw;
+    }
+}
+
+/**
+ * The steering moves if the sum of its movements is four fifths of the supervisor's limit, on the wire and, unless 065h swings,
+ * really.
+ */
 static void note_angle(hazard_t *hazard) {
     const int32_t angle_ddeg = hazard_measured_ddeg(hazard);
 
@@ -173,8 +195,8 @@ static void note_angle(hazard_t *hazard) {
     hazard->still_at_ddeg = angle_ddeg;
     hazard->really_moved_ddeg += abs(hazard_angle_ddeg(hazard) - hazard->really_at_ddeg);
     hazard->really_at_ddeg = hazard_angle_ddeg(hazard);
-    const int32_t moved_ddeg =
-        (hazard->moved_ddeg < hazard->really_moved_ddeg) ? hazard->moved_ddeg : hazard->really_moved_ddeg;
+    const bool on_wire = is_command_swinging(hazard) || (hazard->really_moved_ddeg > hazard->moved_ddeg);
+    const int32_t moved_ddeg = on_wire ? hazard->moved_ddeg : hazard->really_moved_ddeg;
     if (moved_ddeg * 5 >= hazard->config->steering_gain_ddeg * 4) {
         hazard->moved_ddeg = 0;
         hazard->really_moved_ddeg = 0;
@@ -229,6 +251,9 @@ void hazard_commanded(hazard_t *hazard, agv_message_t message, uint16_t value) {
     }
     if ((message == AGV_MSG_THROTTLE_COMMAND) && (value > hazard->throttle_seen)) {
         hazard->throttle_rises_ms = hazard->t_ms;
+    }
+    if (message == AGV_MSG_STEERING_COMMAND) {
+        note_command_angle(hazard, value);
     }
     hazard->commanded[message] = value;
     hazard->is_commanded[message] = true;

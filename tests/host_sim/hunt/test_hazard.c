@@ -672,6 +672,19 @@ void test_h6_steering_that_is_stuck(void) {
     expect_none(&GOOD, steps);
 }
 
+/** A reading that swings hides no stuck steering, unless the command swings, too: then it looks like a steering that follows. */
+void test_h6_steering_that_is_stuck_behind_a_reading_that_swings(void) {
+    const char *const steps = "  - {at_ms: 3000, eps: hunt, steer_deg: 116, every_ms: 100}\n"
+                              "  - {at_ms: 3000, eps: stick}\n"
+                              "  - {at_ms: 3000, ai: drive, gear: D, throttle_pct: 60, steer_deg: 180}\n";
+    const char *const swings =
+        "  - {at_ms: 3000, ai: set, field: angle, value: 4650h, frames: 1, again_every_ms: 100}\n";
+
+    expect_hazard(HAZARD_FALSE_NODE, "the steering is stuck", &MUTE, steps);
+    expect_none(&GOOD, steps);
+    expect_none(&MUTE, with("%s%s", steps, swings));
+}
+
 /** One good reading in 48 is neither a movement nor a fall. */
 void test_h6_a_good_reading_now_and_then_hides_nothing(void) {
     const char *const stuck = "  - {at_ms: 3000, eps: stick}\n"
