@@ -11,7 +11,7 @@ void agv_stopping_start(agv_stopping_t *stopping, agv_timers_t *timers) {
 
 void agv_stopping_step(agv_stopping_t *stopping, const agv_timers_t *timers, const agv_vehicle_t *vehicle,
                        uint32_t elapsed_ms) {
-    agv_budget_add(&stopping->moved, agv_vehicle_wheel_turns(vehicle, MOVING_MM_S), elapsed_ms, MOVING_MS);
+    agv_budget_add(&stopping->moved, agv_vehicle_may_move(vehicle, MOVING_MM_S), elapsed_ms, MOVING_MS);
     if (agv_vehicle_wheels_stand(timers)) {
         if (!stopping->stood) {
             stopping->moved = (agv_budget_t){0}; /* of the way to the stop */

@@ -270,11 +270,11 @@ static bool follow_state(agv_core_t *core, hal_t *hal, uint32_t what, uint32_t e
     return withdrawn || ((what & AGV_ACTION_TRIP) != 0u);
 }
 
-/* What was commanded in an engagement does not outlast it, whatever passes in manual. */
-static void drop_what_may_not_wait(agv_core_t *core, bool engagement_ended) {
+/* A motion command outlasts no change of state, whatever passes in manual. */
+static void drop_what_may_not_wait(agv_core_t *core, bool state_changed) {
     const agv_gateway_facts_t facts = agv_core_gateway_facts(core);
     for (uint32_t i = 0u; i < AGV_COMMAND_COUNT; i++) {
-        const bool outdated = engagement_ended && (i != (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND);
+        const bool outdated = state_changed && (i != (uint32_t)AGV_MSG_TURN_SIGNAL_COMMAND);
         if (outdated || !agv_gateway_may_wait(&facts, i)) {
             agv_transmitter_drop(&core->transmitter, &core->timers, i);
         }
@@ -293,7 +293,7 @@ static void carry_out_at_once(agv_core_t *core, const agv_ports_t *ports, uint32
         hal_can_purge(ports->hal, HAL_CAN_VEHICLE);
     }
     if (core->transmitter.kept != 0u) {
-        drop_what_may_not_wait(core, (what & AGV_ACTION_END_ENGAGEMENT) != 0u);
+        drop_what_may_not_wait(core, (what & AGV_ACTION_STATE) != 0u);
     }
     const agv_tx_orders_t orders = agv_core_orders(core, ports);
     if (send_all) {

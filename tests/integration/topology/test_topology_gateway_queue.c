@@ -238,6 +238,28 @@ void test_a_throttle_that_waits_does_not_outlast_the_engagement(void) {
     expect_state(&f, AGV_STATE_STANDBY);
 }
 
+/* What came in manual, and waits for its half cycle when the engagement begins, is no command of this engagement. */
+/* Shows: TOP-2, SUP-11 */
+void test_a_motion_command_that_waits_in_manual_is_not_sent_in_the_engagement(void) {
+    for (unsigned i = 1; i < 4; i++) { /* the commands of motion */
+        const too_soon_t *const row = &TOO_SOON[i];
+        setUp();
+        f.config.gateway_in_manual = AGV_IN_MANUAL_ALL;
+        fixture_standby(&f);
+        pause_ai();
+        fixture_run_before(&f, AGV_MSG_VEHICLE_STATUS);
+        from_ai(row->id, row->first);
+        from_ai(row->id, row->second);
+        fixture_forget_sent(&f);
+        fixture_mode(&f, MODE_ENGAGED);
+        fixture_run(&f, 1);
+        expect_state(&f, AGV_STATE_ACTIVE);
+        fixture_run(&f, 100);
+        TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, row->id));
+        expect_state(&f, AGV_STATE_ACTIVE);
+    }
+}
+
 /* It does not count as forwarded: the next 075h of the AI computer (in manual, as 0) does not wait for it. */
 /* Shows: TOP-2 */
 void test_the_supervisors_throttle_0_is_no_pass(void) {

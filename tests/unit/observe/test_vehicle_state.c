@@ -245,6 +245,24 @@ void test_a_wheel_that_turns(void) {
     TEST_ASSERT_FALSE(agv_vehicle_wheel_turns(&vehicle, 100));
 }
 
+/* Standing wheels of a fresh 101h that is doubted may move. */
+/* Shows: FSM-12, SUP-12 */
+void test_wheels_in_doubt_may_move(void) {
+    run(0);
+    TEST_ASSERT_FALSE(agv_vehicle_may_move(&vehicle, 100));
+    agv_vehicle_doubt_wheels(&vehicle, &timers, &config, true);
+    TEST_ASSERT_TRUE(agv_vehicle_may_move(&vehicle, 100));
+    TEST_ASSERT_FALSE(agv_vehicle_wheel_turns(&vehicle, 100));
+    wheels_fresh = false;
+    run(0);
+    TEST_ASSERT_FALSE(agv_vehicle_may_move(&vehicle, 100));
+    agv_vehicle_doubt_wheels(&vehicle, &timers, &config, false);
+    wheels_fresh = true;
+    wheels(100, 0);
+    run(0);
+    TEST_ASSERT_TRUE(agv_vehicle_may_move(&vehicle, 100));
+}
+
 /* No tick comes for longer than standstill_ms, and frames go on: 101h that is doubted says nothing. */
 /* Shows: FSM-12, SUP-12 */
 void test_wheels_in_doubt_do_not_stand_however_late_the_tick_is(void) {

@@ -496,6 +496,18 @@ void test_stale_wheel_speeds_count_as_fast(void) {
     TEST_ASSERT_EQUAL_INT(500, steer(25, 500));
 }
 
+/* The VCU's speed only warns when it contradicts 101h (SUP-12, P7): it limits no steering. */
+/* Shows: TOP-2, SUP-12 */
+void test_wheel_speeds_in_doubt_are_not_fast(void) {
+    config.steering_fast_max_ddeg = 100;
+    config.fast_mm_s = 1000;
+    vehicle.wheels_doubted = true;
+    wheels(1000, 1000);
+    TEST_ASSERT_EQUAL_INT(500, steer(25, 500));
+    wheels(1001, 1001);
+    TEST_ASSERT_EQUAL_INT(100, steer(25, 500));
+}
+
 /* The limit is reached at the slew rate: 10.0 degrees a cycle. */
 /* Shows: TOP-2 */
 void test_slew_applies_to_the_limit_above_a_speed(void) {
