@@ -454,40 +454,6 @@ void test_errors_of_the_ai_side(void) {
 
 /* ---- STEP_OVERRUN ---- */
 
-/* The frames keep their time stamps, only the tick is late; the simulated watchdog does not expire. */
-static void be_late(uint32_t ms) {
-    f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF;
-    fixture_run_without_ticks(&f, ms + 1u);
-    fixture_jump(&f, 0);
-}
-
-/* Shows: TIM-4, FSM-2, STEP_OVERRUN */
-void test_a_step_100_ms_late_is_in_time(void) {
-    fixture_active(&f);
-    be_late(100);
-    expect_nothing(&f, AGV_FAULT_STEP_OVERRUN, AGV_STATE_ACTIVE);
-    be_late(101);
-    expect_trip(&f, AGV_FAULT_STEP_OVERRUN, f.call, ANGLE_CENTRE);
-    expect_led(&f, -1);
-    expect_fault_after(&f, 999, AGV_FAULT_STEP_OVERRUN, true);
-    expect_fault_after(&f, 1, AGV_FAULT_STEP_OVERRUN, false);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_ended(&f, AGV_FAULT_STEP_OVERRUN));
-    expect_reason(&f, AGV_FAULT_STEP_OVERRUN);
-}
-
-/* 065h waits for a full queue and is no longer wanted (manual), so it cannot stall. */
-/* Shows: SUP-7, FSM-10, TX_STALLED */
-void test_a_frame_that_is_no_longer_wanted_is_not_stalled(void) {
-    walk_to_tripped(&f);
-    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
-    fixture_run(&f, 30);
-    fixture_mode(&f, MODE_MANUAL);
-    fixture_run(&f, 20);
-    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
-    fixture_run(&f, 300);
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_TX_STALLED));
-}
-
 /* Shows: TX_STALLED, SUP-7 */
 void test_a_controller_that_accepts_nothing_is_detected_after_a_trip(void) {
     walk_to_tripped(&f);

@@ -266,24 +266,6 @@ void test_a_status_frame_that_is_withdrawn_with_the_angle_is_sent_again(void) {
     TEST_ASSERT_EQUAL_UINT32(before + 2, f.status_count);
 }
 
-/* A status frame that was accepted 50 ms before is not: it may be what waits. */
-/* Shows: FSM-10, TOP-3 */
-void test_an_older_status_frame_that_is_withdrawn_with_the_angle_waits_for_its_slot(void) {
-    trip_at(9123);
-    stall(101);
-    for (uint32_t before = f.status_count; f.status_count == before;) {
-        fixture_run(&f, 1);
-    }
-    fixture_run(&f, 50);
-    const uint32_t count = f.status_count;
-    const uint32_t purged = purges();
-    fixture_mode(&f, MODE_MANUAL);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-    TEST_ASSERT_EQUAL_UINT32(purged + 1, purges());
-    fixture_run(&f, 10);
-    TEST_ASSERT_EQUAL_UINT32(count, f.status_count);
-}
-
 /* An angle that waits in a stalled transmitter for 2 s is withdrawn: later it would turn the wheels back. */
 /* Shows: FSM-10, SUP-7, TX_STALLED */
 void test_an_angle_that_waits_in_a_stalled_transmitter_for_2_s_is_withdrawn(void) {
@@ -295,26 +277,6 @@ void test_an_angle_that_waits_in_a_stalled_transmitter_for_2_s_is_withdrawn(void
     TEST_ASSERT_EQUAL_UINT32(purged, purges());
     fixture_run(&f, 100);
     TEST_ASSERT_EQUAL_UINT32(purged + 1, purges());
-}
-
-/* The transmitter accepts nothing for a time, in which the wheels turn. */
-static void expect_held_after(uint32_t full_ms, uint16_t held) {
-    trip_at(9123);
-    fixture_run(&f, 100);
-    fixture_angle(&f, 8700);
-    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
-    fixture_run(&f, full_ms);
-    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
-    fixture_run(&f, 100);
-    expect_held_for_a_second(held);
-}
-
-/* When no 065h has left for 2 s, the angle of the trip is dropped, and one is taken anew. */
-/* Shows: FSM-10, SUP-7, TX_STALLED */
-void test_an_angle_that_cannot_leave_for_2_s_is_taken_anew(void) {
-    expect_held_after(1900, 9123);
-    fixture_init(&f);
-    expect_held_after(2050, 8700);
 }
 
 /*
@@ -344,35 +306,6 @@ void test_an_angle_that_a_bus_off_discards_has_not_left(void) {
 }
 
 /* ---- The age of the angle ---- */
-
-/* The last valid angle has this age at the trip. Since then only invalid ones came, too few for a fault. */
-static void trip_with_an_angle_of_age(uint32_t age_ms) {
-    fixture_init(&f);
-    f.config.status_invalid_frames = 10;
-    fixture_angle(&f, 9123);
-    fixture_command_angle(&f, 9123);
-    fixture_active(&f);
-    fixture_mute_ai(&f, true);
-    fixture_run_past(&f, AGV_MSG_STEERING_STATUS);
-    fixture_angle(&f, 18001);
-    fixture_run(&f, age_ms);
-    walk_trip(&f);
-}
-
-/* Shows: FSM-10 */
-void test_an_angle_of_50_ms_before_the_trip_is_held_and_an_older_one_is_not(void) {
-    trip_with_an_angle_of_age(50);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, 0x065));
-    fixture_angle(&f, 9400);
-    expect_held_for_a_second(9123);
-    trip_with_an_angle_of_age(51);
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_count_sent(&f, 0x065));
-    fixture_angle(&f, 9400);
-    fixture_run_past(&f, AGV_MSG_STEERING_STATUS);
-    fixture_angle(&f, 9500);
-    fixture_run(&f, 30);
-    expect_held_for_a_second(9400);
-}
 
 /* ---- Frames that are handled late ---- */
 

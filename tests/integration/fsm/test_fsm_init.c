@@ -72,17 +72,6 @@ void test_safe_commands_that_wait_do_not_leave_after_init(void) {
     expect_silence(&f);
 }
 
-/* Shows: FSM-7 */
-void test_one_frame_that_is_not_well_starts_the_500_ms_anew(void) {
-    fixture_start(&f);
-    fixture_run(&f, 410);
-    fixture_mode(&f, MODE_NEITHER);
-    fixture_run(&f, 1); /* 363h at 411 ms */
-    fixture_mode(&f, MODE_MANUAL);
-    expect_state_after(&f, 509, AGV_STATE_INIT); /* well again from 421 ms on; now it is 920 ms */
-    expect_state_after(&f, 1, AGV_STATE_STANDBY);
-}
-
 /* A fault of the vehicle, and the condition that STARTUP_TIMEOUT reports for it. */
 typedef struct {
     const char *what;

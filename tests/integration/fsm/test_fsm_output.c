@@ -70,19 +70,6 @@ void test_p_counts_from_the_first_p_that_was_sent(void) {
     expect_opens_at(trip_ms + 3000);
 }
 
-/* Autopilot off is confirmed, and P comes 499 ms after its command. */
-/* Shows: FSM-4 */
-void test_a_confirmation_in_time_keeps_it_closed(void) {
-    walk_to_tripped(&f);
-    fixture_mode(&f, MODE_MANUAL);
-    fixture_run(&f, 499);
-    fixture_gear(&f, GEAR_P);
-    fixture_send_now(&f, AGV_MSG_GEAR_STATUS);
-    expect_state_after(&f, 2000, AGV_STATE_SAFE);
-    expect_output(&f, true);
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
-}
-
 /* P is not reported for this time, then it is again. */
 static void lose_p_for(uint32_t ms) {
     fixture_gear(&f, GEAR_D);
@@ -116,36 +103,6 @@ void test_a_confirmation_that_comes_and_goes_opens_it(void) {
     lose_p_for(2);
     TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, AGV_FAULT_SAFE_STATE_UNCONFIRMED));
     expect_open_until_the_reset();
-}
-
-/* Engaged for this time, then manual: the third such 363h ends the engagement. */
-static void engage_for(uint32_t ms) {
-    fixture_mode(&f, MODE_ENGAGED);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-    fixture_run(&f, ms);
-    fixture_mode(&f, MODE_MANUAL);
-    for (unsigned i = 0; i < 3; i++) {
-        fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-    }
-}
-
-/* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */
-void test_each_sum_has_its_own_limit(void) {
-    f.config.park_confirm_timeout_ms = 2000;
-    stay_in_safe();
-    lose_p_for(1999);
-    fixture_run(&f, 1);
-    expect_output(&f, true);
-    lose_p_for(2);
-    expect_output(&f, false);
-    fixture_init(&f);
-    f.config.confirm_timeout_ms = 300;
-    stay_in_safe();
-    engage_for(299);
-    fixture_run(&f, 1);
-    expect_output(&f, true);
-    engage_for(2);
-    expect_output(&f, false);
 }
 
 /* Shows: FSM-4, SAFE_STATE_UNCONFIRMED */

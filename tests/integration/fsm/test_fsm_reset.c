@@ -146,27 +146,6 @@ void test_each_missing_condition_refuses_and_is_named_once_a_press(void) {
     }
 }
 
-/* A condition that was missing before the last second does not matter, even during the press. */
-/* Shows: FSM-3 */
-void test_from_the_end_of_a_break_on_it_takes_1_s(void) {
-    for (unsigned i = 0; i < sizeof CONDITIONS / sizeof CONDITIONS[0]; i++) {
-        begin(&CONDITIONS[i]);
-        press(true);
-        fixture_run(&f, 2000);
-        CONDITIONS[i].spoil(false);
-        fixture_run(&f, 999);
-        press(false);
-        TEST_ASSERT_NOT_EQUAL_MESSAGE(AGV_STATE_STANDBY, agv_supervisor_state(&f.supervisor), f.what);
-        begin(&CONDITIONS[i]);
-        press(true);
-        fixture_run(&f, 2000);
-        CONDITIONS[i].spoil(false);
-        fixture_run(&f, 1130); /* 100 ms of standstill, three 363h, a cycle of 0A3h */
-        press(false);
-        expect_state(&f, AGV_STATE_STANDBY);
-    }
-}
-
 /* Shows: FSM-3 */
 void test_the_conditions_must_hold_in_the_releasing_frame_too(void) {
     walk_to_safe(&f);
@@ -236,30 +215,6 @@ void test_a_press_in_the_very_frame_of_the_trip_does_not_count(void) {
     fixture_mute_ai(&f, true);
     fixture_vehicle_confirms(&f);
     expect_no_reset_before_a_new_press();
-}
-
-/* The press begins in TRIPPED and ends this many milliseconds after the entry to SAFE. */
-static void release_after_safe(uint32_t ms) {
-    fixture_init(&f);
-    walk_to_tripped(&f);
-    fixture_run(&f, 100);
-    press(true);
-    fixture_mode(&f, MODE_MANUAL);
-    expect_state_after(&f, 300, AGV_STATE_TRIPPED);
-    fixture_gear(&f, GEAR_P);
-    fixture_send_now(&f, AGV_MSG_GEAR_STATUS);
-    expect_state(&f, AGV_STATE_SAFE);
-    fixture_run(&f, ms);
-    press(false);
-}
-
-/* Shows: FSM-3 */
-void test_a_press_after_the_trip_and_before_safe_counts_from_safe_on(void) {
-    release_after_safe(999);
-    expect_refusals(1, AGV_MISSING_STATE);
-    expect_state(&f, AGV_STATE_SAFE);
-    release_after_safe(1000);
-    expect_state(&f, AGV_STATE_STANDBY);
 }
 
 /* ---- The VCU is lost ---- */

@@ -122,15 +122,6 @@ void test_after_a_restart_a_reset_is_possible_and_forgets_the_latch(void) {
     expect_reason(&f, AGV_FAULT_SUPERVISOR_RESET); /* not the earlier alarm */
 }
 
-/* Shows: FSM-7 */
-void test_a_power_on_waits_for_manual(void) {
-    fixture_active(&f);
-    fixture_restart(&f, HAL_RESET_POWER_ON);
-    expect_state_after(&f, 5000, AGV_STATE_INIT); /* still engaged */
-    fixture_vehicle_confirms(&f);
-    expect_state_after(&f, 600, AGV_STATE_STANDBY);
-}
-
 /* With this setting a power-on needs the operator, too. The stored reason is not used. */
 /* Shows: FSM-7, FSM-3, SUPERVISOR_RESET */
 void test_a_power_on_that_starts_tripped(void) {
@@ -179,30 +170,6 @@ void test_after_power_on_changes_no_other_reset(void) {
     walk_trip(&f);
     fixture_restart(&f, HAL_RESET_WATCHDOG);
     expect_reason(&f, AGV_FAULT_S_DRIVER_ALARM);
-}
-
-/* Shows: FSM-7, STORE_INVALID */
-void test_every_flipped_bit_of_the_stored_latch_counts_as_tripped(void) {
-    walk_to_safe(&f);
-    const unsigned size = f.store.latch_size;
-    TEST_ASSERT_TRUE(size > 0);
-    for (unsigned bit = 0; bit < 8 * size; bit++) {
-        TEST_ASSERT_TRUE(sim_store_corrupt_latch(&f.store, bit / 8, (uint8_t)(1u << (bit % 8))));
-        fixture_restart(&f, HAL_RESET_WATCHDOG);
-        expect_tripped(&f, AGV_FAULT_SUPERVISOR_RESET);
-        expect_fault(&f, AGV_FAULT_STORE_INVALID, true);
-    }
-}
-
-/* Shows: FSM-7, STORE_INVALID */
-void test_a_stored_latch_that_is_cut_short_counts_as_tripped(void) {
-    walk_to_safe(&f);
-    for (uint8_t size = (uint8_t)(f.store.latch_size - 1u); size > 0; size--) {
-        f.store.latch_size = size;
-        fixture_restart(&f, HAL_RESET_WATCHDOG);
-        expect_state(&f, AGV_STATE_TRIPPED);
-        expect_fault(&f, AGV_FAULT_STORE_INVALID, true);
-    }
 }
 
 /* Shows: FSM-7, STORE_INVALID */

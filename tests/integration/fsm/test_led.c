@@ -17,18 +17,6 @@ static void expect_flashes(unsigned n) {
     expect_led(&f, (int)n);
 }
 
-static void expect_on_and_off(unsigned each_ms, unsigned periods) {
-    for (unsigned ms = 0; ms < periods * 2 * each_ms; ms++) {
-        fixture_run(&f, 1);
-        TEST_ASSERT_EQUAL_INT_MESSAGE(ms % (2 * each_ms) < each_ms, f.hal.led.on, f.what);
-    }
-}
-
-static void expect_blinking(void) {
-    expect_on_and_off(100, 20);
-    expect_led(&f, -1);
-}
-
 /* The driving vehicle reports this alarm once; the AI computer is silent from then on. */
 static void trip_by_alarm(uint8_t alarms) {
     fixture_init(&f);
@@ -40,17 +28,6 @@ static void trip_by_alarm(uint8_t alarms) {
     fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
     walk_alarm(&f, ALARM_NONE);
     expect_state(&f, AGV_STATE_TRIPPED);
-}
-
-/* Shows: LED-1 */
-void test_healthy_is_1_s_on_and_1_s_off(void) {
-    fixture_start(&f);
-    TEST_ASSERT_TRUE(f.hal.led.on); /* the pattern begins with the start */
-    for (unsigned ms = 1; ms < 7000; ms++) {
-        fixture_run(&f, 1);
-        TEST_ASSERT_EQUAL_INT(ms % 2000 < 1000, f.hal.led.on);
-    }
-    expect_led(&f, 0);
 }
 
 /* Shows: LED-1, S_DRIVER_ALARM, REMOTE_SIGNAL_LOST, REMOTE_POWER_LOST, VCU_EPS_HARDWARE_FAULT, VCU_EPS_CAN_BUS_FAULT */
@@ -66,15 +43,6 @@ void test_code_n_is_n_flashes_and_1_4_s_dark(void) {
     }
 }
 
-/* Shows: LED-1, VCU_HEARTBEAT_LOST */
-void test_a_fault_without_a_code_blinks_100_ms_on_and_100_ms_off(void) {
-    fixture_standby(&f);
-    fixture_run_past(&f, AGV_MSG_VEHICLE_STATUS);
-    f.traffic[AGV_MSG_VEHICLE_STATUS].muted = true;
-    expect_led_after(&f, 50, 0);
-    expect_blinking();
-}
-
 /* ---- Priority of faults ---- */
 
 /* Shows: LED-1, FSM-5 */
@@ -87,14 +55,6 @@ void test_a_latched_trip_is_shown_until_the_reset(void) {
     fixture_button(&f, false);
     expect_state_after(&f, 10, AGV_STATE_STANDBY);
     expect_led(&f, 0);
-}
-
-/* Shows: LED-1, FSM-7 */
-void test_a_latch_that_was_kept_through_a_restart_is_shown(void) {
-    trip_by_alarm(ALARM_S_DRIVER);
-    fixture_run(&f, 100);
-    fixture_restart(&f, HAL_RESET_WATCHDOG);
-    expect_led_after(&f, 5000, 8);
 }
 
 /* At once, also where a lost AI computer has the same class in manual as when engaged. */
@@ -131,32 +91,7 @@ void test_a_trip_of_one_instant_is_shown(void) {
     expect_led_after(&f, 100, 14);
 }
 
-/* Of several trips the upper row is shown, even if it came later. A latched trip counts as active. */
-/* Shows: LED-1 */
-void test_of_two_trips_the_upper_row_is_shown(void) {
-    trip_by_alarm(ALARM_REMOTE_POWER);
-    expect_led_after(&f, 100, 16);
-    walk_alarm(&f, ALARM_REMOTE_SIGNAL); /* one row above */
-    expect_led_after(&f, 20, 17);
-    walk_alarm(&f, ALARM_NONE);
-    expect_led_after(&f, 100, 17);
-    f.traffic[AGV_MSG_EPS_STATUS].data[7] = 0x40; /* motor encoder: far above */
-    expect_led_after(&f, 20, 13);
-}
-
 /* ---- Timing of the pattern ---- */
-
-/* A new code begins at once, with its first flash. */
-/* Shows: LED-1 */
-void test_a_new_code_begins_anew(void) {
-    trip_by_alarm(ALARM_REMOTE_POWER);
-    fixture_run(&f, 330); /* in the dark of the first flash */
-    TEST_ASSERT_FALSE(f.hal.led.on);
-    walk_alarm(&f, ALARM_REMOTE_SIGNAL);
-    fixture_send_now(&f, AGV_MSG_VEHICLE_STATUS);
-    walk_alarm(&f, ALARM_NONE);
-    expect_flashes(17);
-}
 
 /* Shows: LED-1 */
 void test_the_led_is_switched_when_it_changes_only(void) {

@@ -218,23 +218,6 @@ void test_never_seen_and_not_engaged_for_long_enough(void) {
     expect_no_fault(AGV_STATE_STANDBY);
 }
 
-/* An engagement that is continued within 100 ms does not restart them: 300 ms, 30 ms and 90 ms, 80 ms more. */
-/* Shows: SUP-8, AI_HEARTBEAT_LOST */
-void test_never_seen_in_an_engagement_that_is_continued(void) {
-    f.traffic[AI].muted = true;
-    fixture_standby(&f);
-    walk_engage(&f);
-    const uint32_t began_ms = f.now_ms;
-    fixture_run(&f, 300);
-    walk_disengage(&f);
-    fixture_run(&f, 80);
-    walk_engage(&f);
-    fixture_run(&f, 500 - (f.now_ms - began_ms));
-    expect_no_fault(AGV_STATE_STANDBY);
-    expect_reason_after(&f, 1, LOST);
-    TEST_ASSERT_EQUAL_UINT32(501, f.now_ms - began_ms);
-}
-
 /* The 500 ms end between the two: the frame that continues the engagement trips, not the tick after it. */
 /* Shows: SUP-8, AI_HEARTBEAT_LOST */
 void test_never_seen_and_the_time_is_over_before_the_engagement_is_continued(void) {
@@ -489,17 +472,6 @@ void test_the_vcus_ai_alarm_that_stands_since_a_pause_counts_when_engaged(void) 
     expect_trip(&f, AGV_FAULT_VCU_AI_CAN_LOST, f.traffic[VCU].call, ANGLE_CENTRE);
 }
 
-/* The AI computer is switched off and on in manual, and so is the alarm: no effect at the engagement. */
-/* Shows: SUP-8, VCU_AI_CAN_LOST */
-void test_the_vcus_ai_alarm_of_a_pause_in_manual_that_is_over(void) {
-    pause_ai_in_manual();
-    fixture_run(&f, 300);
-    set_alarm(false);
-    fixture_run_past(&f, VCU);
-    walk_engage(&f);
-    expect_nothing_after(&f, 200, AGV_FAULT_VCU_AI_CAN_LOST, AGV_STATE_ACTIVE);
-}
-
 /* A reset forgets only that the AI computer was alive: the alarm stays armed, also when the very next 363h reports autopilot. */
 /* Shows: SUP-8, FSM-11, VCU_AI_CAN_LOST */
 void test_the_vcus_ai_alarm_stays_armed_after_a_reset(void) {
@@ -510,29 +482,4 @@ void test_the_vcus_ai_alarm_stays_armed_after_a_reset(void) {
     fixture_mode(&f, MODE_ENGAGED);
     fixture_send_now(&f, VCU);
     expect_reason(&f, AGV_FAULT_VCU_AI_CAN_LOST);
-}
-
-/* ai_counter: increments. Steps of 1 to 3 are heartbeats. Other steps are not, and after one of them two right steps
- * are needed. */
-/* Shows: SUP-2, AI_HEARTBEAT_STUCK */
-void test_a_counter_that_has_to_count_up(void) {
-    f.config.ai_counter = AGV_COUNTER_INCREMENTS;
-    fixture_standby(&f);
-    for (uint8_t i = 0; i < 20; i++) {
-        f.traffic[AI].counter = (uint8_t)(f.traffic[AI].counter + i % 3);
-        fixture_run_past(&f, AI);
-        expect_no_fault(AGV_STATE_STANDBY);
-    }
-    for (unsigned i = 0; i < 3; i++) {
-        f.traffic[AI].counter = (uint8_t)(f.traffic[AI].counter + 3);
-        fixture_run_past(&f, AI);
-    }
-    fixture_run(&f, 50);
-    expect_no_fault(AGV_STATE_STANDBY);
-    fixture_run(&f, 1);
-    expect_warning(&f, STUCK, AGV_STATE_STANDBY);
-    fixture_run_past(&f, AI);
-    expect_fault(&f, STUCK, true);
-    fixture_run_past(&f, AI);
-    expect_fault(&f, STUCK, false);
 }

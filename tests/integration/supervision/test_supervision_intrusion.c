@@ -44,19 +44,6 @@ void test_each_command_on_the_vehicle_side(void) {
     }
 }
 
-/* Each one restarts the second; it stays one fault. */
-/* Shows: SUP-6, FOREIGN_COMMAND_SENDER */
-void test_a_foreign_sender_goes_on(void) {
-    gateway(AGV_ID_SET_HEADING);
-    fixture_standby(&f);
-    for (unsigned i = 0; i < 5; i++) {
-        send_foreign(0x168, 8);
-        expect_fault_after(&f, 999, FOREIGN, true);
-    }
-    expect_fault_after(&f, 1, FOREIGN, false);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_raised(&f, FOREIGN));
-}
-
 /* In INIT it latches nothing. */
 /* Shows: SUP-6, FOREIGN_COMMAND_SENDER */
 void test_a_foreign_sender_in_init(void) {

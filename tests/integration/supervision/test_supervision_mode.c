@@ -76,32 +76,6 @@ void test_the_fourth_engagement_within_5_s(void) {
     }
 }
 
-/* A transient: it ends after a second. */
-/* Shows: SUP-9, MODE_FLAPPING */
-void test_mode_flapping_is_a_transient(void) {
-    engage_first();
-    for (unsigned i = 0; i < 3; i++) {
-        flap(500);
-    }
-    expect_reason(&f, FLAPPING);
-    expect_fault_after(&f, 999, FLAPPING, true);
-    expect_fault_after(&f, 1, FLAPPING, false);
-}
-
-/* Any four successive engagements count; earlier ones do not matter. */
-/* Shows: SUP-9, MODE_FLAPPING */
-void test_the_last_four_count(void) {
-    engage_first();
-    for (unsigned i = 0; i < 6; i++) {
-        flap(2000);
-        expect_nothing(&f, FLAPPING, AGV_STATE_ACTIVE);
-    }
-    flap(1010);
-    expect_nothing(&f, FLAPPING, AGV_STATE_ACTIVE); /* 2000 + 2000 + 1010 */
-    flap(1990);                                     /* 2000 + 1010 + 1990 */
-    expect_reason(&f, FLAPPING);
-}
-
 /* An engagement that is continued within 100 ms is a change to engaged, too: 30 ms off, 40 ms off. */
 /* Shows: SUP-9, MODE_FLAPPING */
 void test_glitches_count(void) {
@@ -141,26 +115,6 @@ void test_manual_that_flickers_while_engaged(void) {
     expect_reason(&f, FLAPPING);
 }
 
-/* One in three is a glitch, and so are the frames that end an engagement: each one counts from 0. */
-/* Shows: SUP-9 */
-void test_manual_that_does_not_flicker(void) {
-    f.config.mode_frames = 5;
-    f.config.mode_flapping_ms = 1000;
-    fixture_active(&f);
-    for (unsigned i = 0; i < 100; i++) {
-        report(MODE_MANUAL, 1);
-        report(MODE_ENGAGED, 2);
-    }
-    for (unsigned i = 0; i < 10; i++) {
-        report(MODE_MANUAL, 5);
-        expect_state(&f, AGV_STATE_STANDBY);
-        fixture_run(&f, 500);
-        report(MODE_ENGAGED, 1);
-        expect_state(&f, AGV_STATE_ACTIVE);
-    }
-    expect_nothing(&f, FLAPPING, AGV_STATE_ACTIVE);
-}
-
 /* Engagements that begin in TRIPPED do not count, but those before a reset do: three engagements, a trip and a
  * reset. */
 /* Shows: SUP-9, MODE_FLAPPING */
@@ -183,19 +137,6 @@ void test_engagements_while_tripped_do_not_count(void) {
         expect_fault(&f, FLAPPING, false);
         report(MODE_ENGAGED, 1);
     }
-    expect_reason(&f, FLAPPING);
-}
-
-/* The time is a setting. */
-/* Shows: SUP-9, MODE_FLAPPING */
-void test_the_time_of_four_engagements_is_a_setting(void) {
-    f.config.mode_flapping_ms = 1000;
-    engage_first();
-    flap(300);
-    flap(300);
-    flap(410);
-    expect_nothing(&f, FLAPPING, AGV_STATE_ACTIVE);
-    flap(280);
     expect_reason(&f, FLAPPING);
 }
 
@@ -245,23 +186,6 @@ void test_no_mode_at_standstill(void) {
     expect_fault_after(&f, 120, NONE, false);
 }
 
-/* Engaged, with neither bit in two frames of three: 15 ms in three frames, so within 35 times three. One in four is
- * tolerated. */
-/* Shows: SUP-9, MODE_NONE */
-void test_no_mode_in_two_frames_of_three(void) {
-    walk_driving(&f, 500);
-    for (unsigned i = 0; i < 100; i++) {
-        report(MODE_NEITHER, 1);
-        report(MODE_ENGAGED, 3);
-    }
-    expect_nothing(&f, NONE, AGV_STATE_ACTIVE);
-    for (unsigned i = 0; i < 35; i++) {
-        report(MODE_NEITHER, 2);
-        report(MODE_ENGAGED, 1);
-    }
-    expect_reason(&f, NONE);
-}
-
 /* Not checked in INIT and TRIPPED. */
 /* Shows: SUP-9, MODE_NONE */
 void test_no_mode_in_other_states(void) {
@@ -274,14 +198,4 @@ void test_no_mode_in_other_states(void) {
     report(MODE_NEITHER, 1);
     fixture_run(&f, 2000);
     TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, NONE));
-}
-
-/* The time is a setting. */
-/* Shows: SUP-9, MODE_NONE */
-void test_the_time_without_a_mode_is_a_setting(void) {
-    f.config.mode_none_ms = 123;
-    drive_in_manual();
-    report(MODE_NEITHER, 1);
-    expect_nothing_after(&f, 122, NONE, AGV_STATE_STANDBY);
-    expect_reason_after(&f, 1, NONE);
 }

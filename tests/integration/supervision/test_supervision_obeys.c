@@ -99,19 +99,6 @@ void test_without_a_command_there_is_no_deviation(void) {
     expect_reason_after(&f, 250, THROTTLE);
 }
 
-/* Not in manual, and only after the grace time of the engagement. */
-/* Shows: SUP-11, THROTTLE_DEVIATION */
-void test_throttle_deviation_counts_after_the_grace(void) {
-    fixture_standby(&f);
-    f.traffic[AGV_MSG_GEAR_COMMAND].data[0] = GEAR_D;
-    fixture_gear(&f, GEAR_D);
-    fixture_throttle(&f, 200);
-    expect_nothing_after(&f, 3000, THROTTLE, AGV_STATE_STANDBY);
-    fixture_wheels(&f, 500, 500);
-    walk_engage(&f);
-    expect_trip_at(THROTTLE, f.now_ms + 1000u, 7);
-}
-
 /* Gateway: compared with the forwarded command. 40 % of 250 are 100 counts. */
 /* Shows: SUP-11, TOP-2, THROTTLE_DEVIATION */
 void test_the_throttle_is_compared_with_the_forwarded_command(void) {
@@ -148,11 +135,8 @@ static void check_gear(uint8_t reported, uint8_t commanded, bool trips) {
 /* Shows: SUP-11, FSM-2, GEAR_DEVIATION */
 void test_d_or_r_against_the_command(void) {
     check_gear(GEAR_D, GEAR_R, true);
-    check_gear(GEAR_D, GEAR_P, true);
-    check_gear(GEAR_R, GEAR_N, true);
     check_gear(GEAR_R, GEAR_D, true);
     check_gear(GEAR_N, GEAR_D, false); /* N does not move the vehicle */
-    check_gear(GEAR_D, GEAR_D, false);
 }
 
 /* ---- AUTOPILOT_OFF_IGNORED ---- */
@@ -268,17 +252,7 @@ void test_a_vcu_that_reports_no_speed(void) {
     expect_warning(&f, SPEED, AGV_STATE_STANDBY);
 }
 
-/* Without a fresh 101h (here a warning) the budget decreases. */
-/* Shows: SUP-12, SPEED_IMPLAUSIBLE */
-void test_without_fresh_wheel_speeds_there_is_nothing_to_compare(void) {
-    agv_fault_set_put(&f.config.trips, AGV_FAULT_WHEEL_SPEED_TIMEOUT, false);
-    fixture_standby(&f);
-    set_speeds(3600, 0, 0);
-    f.traffic[AGV_MSG_WHEEL_SPEED].muted = true;
-    expect_nothing_after(&f, 5000, SPEED, AGV_STATE_STANDBY);
-}
-
-/* As a trip by setting, and with the largest values of the messages. */
+/* As a trip by setting. */
 /* Shows: SUP-12, SPEED_IMPLAUSIBLE */
 void test_it_may_be_made_a_trip(void) {
     agv_fault_set_put(&f.config.trips, SPEED, true);
@@ -288,8 +262,4 @@ void test_it_may_be_made_a_trip(void) {
     run_until(began_ms + 999u);
     expect_nothing(&f, SPEED, AGV_STATE_STANDBY);
     expect_reason_after(&f, 1, SPEED);
-    fixture_init(&f);
-    fixture_standby(&f);
-    set_speeds(65535, INT32_MIN, INT32_MIN);
-    expect_warning_at(f.now_ms + 1000u);
 }

@@ -56,35 +56,6 @@ void test_a_deviation_ends_when_its_budget_is_empty(void) {
     expect_reason(&f, FAULT);
 }
 
-/* 25.0 degrees are enough: the budget is empty with that frame, once. The next time needs another 25.0 degrees. */
-/* Shows: SUP-10, STEERING_DEVIATION */
-void test_a_gain_of_25_0_degrees_starts_anew(void) {
-    fixture_active(&f);
-    command(11000);
-    fixture_run(&f, 300);
-    measure(9250);
-    fixture_run(&f, 300);
-    measure(9500);
-    const uint32_t gained_ms = f.now_ms;
-    fixture_run(&f, 300);
-    measure(9749);
-    expect_trip_at(gained_ms + 500u, 9749);
-}
-
-/* The gain is measured against the current command: 20.0 degrees to the left, then 5.0 for a command on the left. */
-/* Shows: SUP-10, STEERING_DEVIATION */
-void test_a_gain_is_against_the_command_of_its_moment(void) {
-    fixture_active(&f);
-    command(11000);
-    fixture_run(&f, 100);
-    measure(9200);
-    command(7000);
-    measure(9151);
-    fixture_run(&f, 30);
-    measure(9150);
-    expect_trip_at(f.now_ms + 500u, 9150);
-}
-
 /* An invalid angle in between is no step: from one valid 067h to the next it is 25.0 degrees. */
 /* Shows: SUP-10, P5, STEERING_DEVIATION */
 void test_a_gain_across_an_invalid_angle(void) {
@@ -94,29 +65,6 @@ void test_a_gain_across_an_invalid_angle(void) {
     measure(18001);
     measure(9250);
     expect_trip_at(f.now_ms + 500u, 9250);
-}
-
-/* Without any valid measured angle nothing is compared. */
-/* Shows: SUP-10, STEERING_DEVIATION */
-void test_without_a_measured_angle_there_is_no_deviation(void) {
-    fixture_angle(&f, 18001);
-    fixture_standby(&f);
-    fixture_mode(&f, MODE_ENGAGED);
-    expect_tripped_after(&f, 2000, AGV_FAULT_STEERING_ANGLE_INVALID);
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, FAULT));
-}
-
-/* A command that keeps moving away does not prevent the fault, because the difference grows. */
-/* Shows: SUP-10, STEERING_DEVIATION */
-void test_a_growing_difference(void) {
-    fixture_active(&f);
-    command(9600);
-    const uint32_t began_ms = f.now_ms;
-    fixture_run(&f, 150);
-    command(10200);
-    fixture_run(&f, 150);
-    command(10800);
-    expect_trip_at(began_ms + 500u, ANGLE_CENTRE);
 }
 
 /* With a deviation from the start the 500 ms begin after the grace time of 500 ms. */

@@ -146,17 +146,6 @@ void test_wrong_set_in_a_gateway(void) {
     }
 }
 
-/* The 500 ms are a setting. */
-/* Shows: P1, WRONG_ID_SET */
-void test_the_time_is_a_setting(void) {
-    init(&SETS[0]);
-    f.config.wrong_id_set_ms = 300;
-    fixture_start(&f);
-    f.traffic[AGV_MSG_TURN_SIGNAL_COMMAND].id = SETS[0].other_command_id;
-    expect_fault_after(&f, 300, WRONG, false);
-    expect_fault_after(&f, 1, WRONG, true);
-}
-
 /* A VCU that is silent, and frames with unknown identifiers, or with an identifier of the other set that comes from the wrong
  * side, or with one that both sets have and that was changed: 267h. */
 /* Shows: P1, WRONG_ID_SET */

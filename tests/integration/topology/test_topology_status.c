@@ -58,16 +58,6 @@ void test_a_restart_begins_with_a_status_frame(void) {
     TEST_ASSERT_EQUAL_UINT8(AGV_FAULT_S_DRIVER_ALARM, fixture_nth_sent(&f, 0x7F0, 0)->data[1]);
 }
 
-/* Switched off, which is listed as a weakening. */
-/* Shows: TOP-3, INT-2 */
-void test_the_status_frame_may_be_switched_off(void) {
-    f.config.status_frame_id = 0;
-    TEST_ASSERT_TRUE(agv_config_weakens(&f.config, AGV_SETTING_status_frame_id));
-    fixture_active(&f);
-    fixture_run(&f, 2000);
-    expect_silence(&f);
-}
-
 /* Shows: TOP-3 */
 void test_the_status_frame_has_state_first_reason_output_and_configuration(void) {
     f.config.status_frame_id = STATUS_ID;
@@ -95,44 +85,6 @@ void test_the_status_frame_of_a_gateway_has_them_too(void) {
     expect_status(AGV_STATE_ACTIVE, AGV_FAULT_NONE, 1);
 }
 
-static void expect_period(uint16_t period_ms) {
-    setUp();
-    f.config.status_frame_id = 0x001;
-    f.config.status_frame_period_ms = period_ms;
-    fixture_active(&f);
-    const uint32_t times = 2000u / period_ms;
-    fixture_run(&f, 2000);
-    TEST_ASSERT_UINT32_WITHIN(1, times, fixture_count_sent(&f, 0x001));
-    for (uint32_t n = 1; n < fixture_count_sent(&f, 0x001); n++) {
-        const fixture_sent_t *before = fixture_nth_sent(&f, 0x001, n - 1);
-        const fixture_sent_t *sent = fixture_nth_sent(&f, 0x001, n);
-        TEST_ASSERT_EQUAL_UINT32(period_ms, sent->time_ms - before->time_ms);
-        TEST_ASSERT_EQUAL_HEX8((uint8_t)(before->data[3] + 1), sent->data[3]); /* the alive counter */
-    }
-}
-
-/* Shows: TOP-3 */
-void test_the_status_frame_comes_in_its_period_and_counts(void) {
-    expect_period(10);
-    expect_period(100);
-    expect_period(333);
-    expect_period(1000);
-}
-
-/* Shows: TOP-3, TIM-1 */
-void test_the_status_frame_does_not_burst_after_an_overrun(void) {
-    f.config.status_frame_id = STATUS_ID;
-    fixture_standby(&f);
-    fixture_run(&f, 100);
-    fixture_forget_sent(&f);
-    f.hal.config.watchdog_ms = SIM_HAL_WATCHDOG_OFF; /* a hardware watchdog would have expired */
-    fixture_run(&f, 10);
-    fixture_forget_sent(&f);
-    fixture_jump(&f, 750);
-    TEST_ASSERT_EQUAL_UINT32(1, fixture_count_sent(&f, STATUS_ID));
-    expect_count_after(&f, 500, STATUS_ID, 6);
-}
-
 /* The HAL accepts nothing: the frame is tried again at each tick, and 100 ms later TX_STALLED is raised. */
 /* Shows: TOP-3, SUP-7, TX_STALLED */
 void test_a_dead_transmitter_shows_within_a_status_frame(void) {
@@ -154,53 +106,6 @@ void test_a_dead_transmitter_shows_within_a_status_frame(void) {
     fixture_run(&f, 100);
     TEST_ASSERT_TRUE(fixture_count_sent(&f, STATUS_ID) > 0);
     TEST_ASSERT_EQUAL_HEX8((uint8_t)(before + 1), fixture_nth_sent(&f, STATUS_ID, 0)->data[3]);
-}
-
-/* A full queue for less than 100 ms is no fault: the frame is sent with the first tick that finds room. */
-/* Shows: TOP-3, TX_STALLED */
-void test_a_status_frame_that_has_to_wait(void) {
-    f.config.status_frame_id = STATUS_ID;
-    fixture_standby(&f);
-    while (fixture_count_sent(&f, STATUS_ID) == 0) {
-        fixture_run(&f, 1);
-    }
-    fixture_forget_sent(&f);
-    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, true);
-    fixture_run(&f, 190);
-    sim_hal_set_full(&f.hal, HAL_CAN_VEHICLE, false);
-    expect_count_after(&f, 1, STATUS_ID, 1);
-    expect_count_after(&f, 8, STATUS_ID, 1);
-    expect_count_after(&f, 1, STATUS_ID, 2); /* 200 ms after the last one but one: on its grid */
-    expect_state(&f, AGV_STATE_STANDBY);
-    TEST_ASSERT_EQUAL_UINT32(0, fixture_raised(&f, AGV_FAULT_TX_STALLED));
-}
-
-/* A trip discards what the controller has: a status frame of up to 2 ms before may be lost, so it is sent again. */
-/* Shows: TOP-3, FSM-2 */
-void test_a_status_frame_just_before_a_trip_is_sent_again(void) {
-    for (uint32_t before_ms = 1; before_ms <= 3; before_ms++) {
-        setUp();
-        fixture_active(&f);
-        while (fixture_count_sent(&f, 0x7F0) == 0) {
-            fixture_run(&f, 1);
-        }
-        fixture_run(&f, before_ms);
-        walk_trip(&f);
-        expect_count_after(&f, 1, 0x7F0, before_ms <= 2 ? 2 : 1);
-        expect_count_after(&f, 50, 0x7F0, before_ms <= 2 ? 2 : 1);
-    }
-}
-
-/* Shows: TOP-3, SUP-7 */
-void test_no_status_frame_during_bus_off(void) {
-    fixture_standby(&f);
-    sim_hal_set_can_state(&f.hal, HAL_CAN_VEHICLE, HAL_CAN_BUS_OFF);
-    fixture_run(&f, 1);
-    fixture_forget_sent(&f);
-    const uint32_t calls = f.hal.op_calls[SIM_HAL_OP_CAN_SEND];
-    fixture_run(&f, 500);
-    TEST_ASSERT_EQUAL_UINT32(calls, f.hal.op_calls[SIM_HAL_OP_CAN_SEND]);
-    expect_reason(&f, AGV_FAULT_BUS_OFF);
 }
 
 /* ---- Another sender of its identifier ---- */

@@ -139,55 +139,61 @@ void test_a_stopped_timer_reaches_nothing(void) {
 /* By hand from the rows of the requirements: "for 100 ms" is reached at 100, a deadline of 50 ms at 51. */
 static const struct {
     uint32_t timer;
+    uint32_t setting;
     uint32_t reached_ms;
 } ROWS[] = {
-    {AGV_TIMER_BUS_OFF, 100},
-    {AGV_TIMER_AI_BUS_OFF, 100},
-    {AGV_TIMER_WHEELS_SLOW, 100},
-    {AGV_TIMER_STANDSTILL, 100},
-    {AGV_TIMER_WHEELS_STOOD, 5000},
-    {AGV_TIMER_ANGLE, 51},
-    {AGV_TIMER_ENGAGED, 500},
-    {AGV_TIMER_DISENGAGED, 101},
-    {AGV_TIMER_ENGAGEMENT_1, 5001},
-    {AGV_TIMER_ENGAGEMENT_2, 5001},
-    {AGV_TIMER_ENGAGEMENT_3, 5001},
-    {AGV_TIMER_BOTH_MODES, 51},
-    {AGV_TIMER_NO_MODE, 500},
-    {AGV_TIMER_AI_NEVER_SEEN, 501},
-    {AGV_TIMER_OTHER_TURN_SIGNAL, 501},
-    {AGV_TIMER_OTHER_VEHICLE_STATUS, 501},
-    {AGV_TIMER_INIT_GOOD, 500},
-    {AGV_TIMER_STARTUP, 10001},
-    {AGV_TIMER_PARK_WAIT, 3000},
-    {AGV_TIMER_CONFIRMED, 5000},
-    {AGV_TIMER_STOP, 5000},
-    {AGV_TIMER_PRESS, 1000},
-    {AGV_TIMER_PRESS_LONG, 5001},
-    {AGV_TIMER_WATCHDOG_FED, 102},
-    {AGV_TIMER_TX_TURN_SIGNAL, 101},
-    {AGV_TIMER_TX_STEERING, 101},
-    {AGV_TIMER_TX_STATUS, 101},
-    {AGV_TIMER_EVENT_RX_OVERRUN, 1000},
-    {AGV_TIMER_EVENT_MODE_FLAPPING, 1000},
-    {(unsigned)AGV_TIMER_MESSAGE + (unsigned)AGV_MSG_TURN_SIGNAL_COMMAND, 351},
-    {(unsigned)AGV_TIMER_MESSAGE + (unsigned)AGV_MSG_STEERING_COMMAND, 126},
-    {(unsigned)AGV_TIMER_MESSAGE + (unsigned)AGV_MSG_VEHICLE_STATUS, 51},
-    {(unsigned)AGV_TIMER_MESSAGE + (unsigned)AGV_MSG_GEAR_STATUS, 126},
-    {(unsigned)AGV_TIMER_MESSAGE + (unsigned)AGV_MSG_STEERING_STATUS, 51},
-    {(unsigned)AGV_TIMER_MESSAGE + (unsigned)AGV_MSG_WHEEL_SPEED, 61},
+    {AGV_TIMER_BUS_OFF, AGV_SETTING_bus_off_recovery_ms, 100},
+    {AGV_TIMER_AI_BUS_OFF, AGV_SETTING_bus_off_recovery_ms, 100},
+    {AGV_TIMER_WHEELS_SLOW, AGV_SETTING_standstill_ms, 100},
+    {AGV_TIMER_STANDSTILL, AGV_SETTING_standstill_ms, 100},
+    {AGV_TIMER_WHEELS_STOOD, AGV_SETTING_hold_standstill_ms, 5000},
+    {AGV_TIMER_ANGLE, AGV_SETTING_hold_age_ms, 51},
+    {AGV_TIMER_ENGAGED, AGV_SETTING_engaged_grace_ms, 500},
+    {AGV_TIMER_DISENGAGED, AGV_SETTING_reengage_ms, 101},
+    {AGV_TIMER_ENGAGEMENT_1, AGV_SETTING_mode_flapping_ms, 5001},
+    {AGV_TIMER_ENGAGEMENT_2, AGV_SETTING_mode_flapping_ms, 5001},
+    {AGV_TIMER_ENGAGEMENT_3, AGV_SETTING_mode_flapping_ms, 5001},
+    {AGV_TIMER_BOTH_MODES, AGV_SETTING_mode_invalid_ms, 51},
+    {AGV_TIMER_NO_MODE, AGV_SETTING_mode_none_ms, 500},
+    {AGV_TIMER_AI_NEVER_SEEN, AGV_SETTING_ai_never_seen_timeout_ms, 501},
+    {AGV_TIMER_OTHER_TURN_SIGNAL, AGV_SETTING_wrong_id_set_ms, 501},
+    {AGV_TIMER_OTHER_VEHICLE_STATUS, AGV_SETTING_wrong_id_set_ms, 501},
+    {AGV_TIMER_INIT_GOOD, AGV_SETTING_init_hold_ms, 500},
+    {AGV_TIMER_STARTUP, AGV_SETTING_startup_timeout_ms, 10001},
+    {AGV_TIMER_PARK_WAIT, AGV_SETTING_park_timeout_ms, 3000},
+    {AGV_TIMER_CONFIRMED, AGV_SETTING_confirmed_ms, 5000},
+    {AGV_TIMER_STOP, AGV_SETTING_stop_timeout_ms, 5000},
+    {AGV_TIMER_PRESS, AGV_SETTING_reset_hold_ms, 1000},
+    {AGV_TIMER_PRESS_LONG, AGV_SETTING_reset_hold_max_ms, 5001},
+    {AGV_TIMER_WATCHDOG_FED, AGV_SETTING_watchdog_period_ms, 102},
+    {AGV_TIMER_TX_TURN_SIGNAL, AGV_SETTING_tx_stalled_ms, 101},
+    {AGV_TIMER_TX_STEERING, AGV_SETTING_tx_stalled_ms, 101},
+    {AGV_TIMER_TX_STATUS, AGV_SETTING_tx_stalled_ms, 101},
+    {AGV_TIMER_EVENT_RX_OVERRUN, AGV_SETTING_event_hold_ms, 1000},
+    {AGV_TIMER_EVENT_MODE_FLAPPING, AGV_SETTING_event_hold_ms, 1000},
+    {AGV_TIMER_MESSAGE_TURN_SIGNAL_COMMAND, AGV_SETTING_ai_heartbeat_timeout_ms, 351},
+    {AGV_TIMER_MESSAGE_GEAR_COMMAND, AGV_SETTING_gear_command_timeout_ms, 351},
+    {AGV_TIMER_MESSAGE_THROTTLE_COMMAND, AGV_SETTING_throttle_command_timeout_ms, 351},
+    {AGV_TIMER_MESSAGE_STEERING_COMMAND, AGV_SETTING_steering_command_timeout_ms, 126},
+    {AGV_TIMER_MESSAGE_VEHICLE_STATUS, AGV_SETTING_vcu_heartbeat_timeout_ms, 51},
+    {AGV_TIMER_MESSAGE_GEAR_STATUS, AGV_SETTING_gear_status_timeout_ms, 126},
+    {AGV_TIMER_MESSAGE_THROTTLE_STATUS, AGV_SETTING_throttle_status_timeout_ms, 61},
+    {AGV_TIMER_MESSAGE_STEERING_STATUS, AGV_SETTING_eps_heartbeat_timeout_ms, 51},
+    {AGV_TIMER_MESSAGE_EPS_STATUS, AGV_SETTING_eps_status_timeout_ms, 61},
+    {AGV_TIMER_MESSAGE_STEERING_POSITION, AGV_SETTING_steering_position_timeout_ms, 61},
+    {AGV_TIMER_MESSAGE_WHEEL_SPEED, AGV_SETTING_wheel_speed_timeout_ms, 61},
 };
 
+/* Shows: INT-2 */
 void test_every_timer_has_the_limit_of_its_setting(void) {
-    agv_config_defaults(&config);
     for (unsigned i = 0; i < sizeof ROWS / sizeof ROWS[0]; i++) {
+        agv_config_defaults(&config);
         begin(ROWS[i].timer, 7);
         TEST_ASSERT_FALSE(reached(ROWS[i].timer, 7 + ROWS[i].reached_ms - 1));
         TEST_ASSERT_TRUE(reached(ROWS[i].timer, 7 + ROWS[i].reached_ms));
+        TEST_ASSERT_TRUE(agv_config_set(&config, ROWS[i].setting, 777));
+        TEST_ASSERT_EQUAL_UINT32(777, agv_timer_limit_ms(&config, ROWS[i].timer));
     }
-    TEST_ASSERT_EQUAL_UINT32(350,
-                             agv_timer_limit_ms(&config, (unsigned)AGV_TIMER_MESSAGE + (unsigned)AGV_MSG_GEAR_COMMAND));
-    TEST_ASSERT_EQUAL_UINT32(5000, agv_timer_limit_ms(&config, AGV_TIMER_PRESS_LONG));
 }
 
 /* Every timer has its own limit and does not affect the others. */

@@ -197,32 +197,6 @@ void test_a_button_that_is_stuck_resets_nothing(void) {
     expect_in_vain(AGV_MISSING_BUTTON | AGV_MISSING_RELEASED);
 }
 
-/* A press that began before the trip is interrupted by the loss of the remote receiver, and reported again
- * afterwards. */
-/* Shows: FSM-3, REMOTE_SIGNAL_LOST */
-void test_a_receiver_that_comes_back_makes_no_press(void) {
-    frame(true);
-    agv_reset_button_trip(&reset, &timers);
-    run(100);
-    agv_reset_button_report(&reset, true, true, false);
-    run(500);
-    frame(true);
-    run(2000);
-    frame(false);
-    expect_in_vain(AGV_MISSING_BUTTON);
-}
-
-/* The loss of the remote receiver does not count as a release. */
-/* Shows: FSM-3, REMOTE_POWER_LOST */
-void test_a_receiver_that_is_lost_releases_nothing(void) {
-    run(2000);
-    frame(true);
-    run(2000);
-    agv_reset_button_report(&reset, true, true, false);
-    step(0);
-    expect_in_vain(AGV_MISSING_BUTTON);
-}
-
 /* Frames of a VCU that is not alive cause neither an edge nor a release. */
 /* Shows: FSM-3 */
 void test_frames_of_a_vcu_that_is_not_alive_are_ignored(void) {
